@@ -1,0 +1,118 @@
+# Farfield: one Makefile, no configure. `make help` lists the targets from the lines marked with two hashes.
+#
+# Flavours: `make SAN=1` builds everything with AddressSanitizer and UndefinedBehaviorSanitizer under build/san.
+# Folders are layers; every folder is a static library, every *_main.c a program:
+#   tools/bake_main.c -> build/bin/farfield-bake
+
+CC ?= cc
+AR ?= ar
+PREFIX ?= /usr/local
+BUILD ?= $(if $(SAN),build/san,build)
+PKG_CONFIG ?= pkg-config
+VERSION := $(shell sed -n 's/^\#define FARFIELD_VERSION "\(.*\)"/\1/p' client/farfield.h)
+
+WARN := -Wall -Wextra -Wpedantic -Wmissing-prototypes -Wstrict-prototypes -Wshadow -Wvla
+OPT ?= $(if $(SAN),-O1 -g -fno-omit-frame-pointer -fsanitize=address$(,)undefined -fno-sanitize-recover=undefined,-O2 -g)
+, := ,
+CFLAGS_BASE = $(OPT) $(WARN) $(if $(WERROR),-Werror) -D_GNU_SOURCE -DFF_ENCODER=1 -MMD -MP
+STD_core := -std=c99
+STD_host := -std=c11
+LDLIBS_core := -lz -ljpeg -lpthread
+LDLIBS_surface := -lEGL -lOSMesa -lglfw -ldl
+LDLIBS_host := -lpng16 -lm
+GDAL_CFLAGS = $(shell $(PKG_CONFIG) --cflags gdal 2>/dev/null)
+GDAL_LIBS = $(shell $(PKG_CONFIG) --libs gdal 2>/dev/null)
+
+# ---- sources, by layer ----
+CORE_DIRS := protocol client client/terrain common3d common3d/gl common3d/gles1
+HOST_DIRS := platform platform/posix platform/egl platform/osmesa platform/glfw platform/sim server tools sim
+srcs = $(filter-out %_main.c,$(wildcard $(1)/*.c))
+obj = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
+
+SRC_core := $(foreach d,$(CORE_DIRS),$(call srcs,$d))
+SRC_platform := $(foreach d,platform platform/posix platform/sim,$(call srcs,$d))
+SRC_surface := $(foreach d,platform/egl platform/osmesa platform/glfw,$(call srcs,$d))
+SRC_server := $(call srcs,server)
+SRC_tools := $(call srcs,tools)
+SRC_sim := $(call srcs,sim)
+MAINS := $(wildcard tools/*_main.c server/*_main.c sim/*_main.c)
+PROGRAMS := $(sort $(patsubst %_main.c,$(BUILD)/bin/farfield-%,$(notdir $(MAINS))))
+
+LIB = $(BUILD)/lib
+LIBS := $(LIB)/libffsim.a $(LIB)/libffserver.a $(LIB)/libfftools.a $(LIB)/libffcore.a $(LIB)/libffsurface.a \
+        $(LIB)/libffplatform.a
+LINK_LIBS = -Wl,--start-group $(LIBS) -Wl,--end-group $(LDLIBS_core) $(LDLIBS_surface) $(LDLIBS_host)
+
+.DEFAULT_GOAL := all
+.PHONY: all help deps server emulator flyover demo test check install clean lib fuzz FORCE
+
+all: $(PROGRAMS) lib ## build all programs and libraries into build/
+
+help: ## this list
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1|\2/p' $(firstword $(MAKEFILE_LIST)) | awk -F'|' '{printf "%-18s %s\n",$$1,$$2}'
+
+# ---- what Debian 12 must have ----
+DEPS := gcc make pkg-config zlib1g-dev libjpeg62-turbo-dev libpng-dev libosmesa6-dev libegl-dev libegl1 libgl1-mesa-dri \
+        libglfw3-dev libgdal-dev gdal-bin libcmocka-dev xvfb xauth python3 help2man gnuplot-nox man-db
+DEPS_STAMP := build/.deps
+
+$(DEPS_STAMP): Makefile
+	@tools/install-deps.sh $(DEPS)
+	@mkdir -p $(@D) && touch $@
+
+deps: $(DEPS_STAMP) ## install what is missing (Debian packages; says so first)
+
+# ---- compiling ----
+$(BUILD)/obj/tools/%.o: CFLAGS_LAYER = $(STD_host) $(GDAL_CFLAGS)
+$(BUILD)/obj/server/%.o $(BUILD)/obj/sim/%.o $(BUILD)/obj/tests/%.o $(BUILD)/obj/platform/%.o: CFLAGS_LAYER = $(STD_host)
+CFLAGS_LAYER = $(STD_core)
+$(BUILD)/obj/%.o: %.c | $(DEPS_STAMP)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_BASE) $(CFLAGS_LAYER) $(CFLAGS) -fPIC -c $< -o $@
+
+define archive
+	@mkdir -p $(@D)
+	@rm -f $@
+	$(AR) rcsD $@ $(filter %.o,$^)
+endef
+$(LIB)/libffcore.a: $(call obj,$(SRC_core)); $(archive)
+$(LIB)/libffplatform.a: $(call obj,$(SRC_platform)); $(archive)
+$(LIB)/libffsurface.a: $(call obj,$(SRC_surface)); $(archive)
+$(LIB)/libffserver.a: $(call obj,$(SRC_server)); $(archive)
+$(LIB)/libfftools.a: $(call obj,$(SRC_tools)); $(archive)
+$(LIB)/libffsim.a: $(call obj,$(SRC_sim)); $(archive)
+
+# ---- programs ----
+define program_rule
+$(BUILD)/bin/farfield-$(patsubst %_main.c,%,$(notdir $(1))): $(call obj,$(1)) $(LIBS)
+	@mkdir -p $$(@D)
+	$$(CC) $$(OPT) $$(LDFLAGS) $$< $$(LINK_LIBS) $(if $(filter tools/%,$(1)),$$(GDAL_LIBS)) -o $$@
+endef
+$(foreach m,$(MAINS),$(eval $(call program_rule,$m)))
+
+server: $(BUILD)/bin/farfield-server ## the panorama server
+emulator: $(BUILD)/bin/farfield-view ## the desktop emulator
+flyover: $(BUILD)/bin/farfield-fly $(BUILD)/bin/farfield-link ## flights over emulated links
+
+# ---- libfarfield: what an embedding program links ----
+LIBFARFIELD_OBJS = $(call obj,$(SRC_core) $(call srcs,platform) $(call srcs,platform/posix))
+lib: $(LIB)/libfarfield.a $(LIB)/libfarfield.so
+$(LIB)/libfarfield.a: $(LIBFARFIELD_OBJS); $(archive)
+$(LIB)/libfarfield.so: $(LIBFARFIELD_OBJS)
+	$(CC) $(OPT) -shared -Wl,-soname,libfarfield.so.0 $^ $(LDLIBS_core) -lpng16 -o $@
+
+# ---- tests: tests/test_*.c are cmocka programs, tests/*.sh scripts; tests/run.sh counts ----
+TESTS := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
+TEST_LIB_SRC := $(filter-out tests/test_% tests/fuzz_%,$(wildcard tests/*.c))
+$(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(call obj,$(TEST_LIB_SRC)) $(LIBS)
+	@mkdir -p $(@D)
+	$(CC) $(OPT) $(LDFLAGS) $(filter %.o,$^) $(LINK_LIBS) $(GDAL_LIBS) -lcmocka -o $@
+test-build: $(TESTS)
+
+# ---- fuzz targets: each tests/fuzz_*.c has LLVMFuzzerTestOneInput; saved inputs in tests/corpus/NAME run in `make test` ----
+FUZZERS := $(patsubst tests/%.c,$(BUILD)/tests/%-replay,$(wildcard tests/fuzz_*.c))
+$(BUILD)/tests/fuzz_%-replay: $(BUILD)/obj/tests/fuzz_%.o $(BUILD)/obj/tests/replay.o $(LIBS)
+	@mkdir -p $(@D)
+	$(CC) $(OPT) $(LDFLAGS) $(filter %.o,$^) $(LINK_LIBS) -o $@
+
+-include $(shell find $(BUILD)/obj -name '*.d' 2>/dev/null)

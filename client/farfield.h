@@ -1,0 +1,116 @@
+/* Farfield: the embedding API. One header for a program that wants to show terrain.
+ *
+ *   static unsigned char block[4 << 20];
+ *   ff_client_desc desc = {0};                    // zero means the default, see each field
+ *   desc.memory = block; desc.memory_bytes = sizeof block;
+ *   desc.stream = &stream;                        // or desc.pack = &pack for a terrain on this device
+ *   desc.backend = c3d_backend_gles1(); desc.surface_api = sys_surface_egl();  // NULL: geometry only, no pictures
+ *   ff_client *client; int rc = ff_client_create(&desc, &client);
+ *   each frame:
+ *       ff_client_work(client, now_us);           // or desc.use_thread = 1, and a thread does it
+ *       if (ff_client_update(client, now_us, &camera)) ff_client_draw(client);   // then present
+ *
+ * Rules
+ *   1. Everything lives in the block; nothing is allocated after ff_client_create, except by zlib/libjpeg inside platform/ calls.
+ *   2. All calls come from one thread (the one that owns the GL context); only ff_client_work may come from another one.
+ *   3. Time is the caller's: microseconds that never go back. Camera as in common3d/c3d.h: position in 1/256 m from the terrain's
+ *      south-west corner, angles in 1/65536 turn. near_wu and far_wu of the camera may be 0: fitted to what is drawn.
+ *   4. The picture may lag behind the link, never break: what has not arrived is drawn coarser.
+ */
+#ifndef FARFIELD_H
+#define FARFIELD_H
+
+#include "terrain/ff_tree.h"
+#include "../protocol/ff_pack.h"
+
+#define FARFIELD_VERSION "0.1.0"
+
+typedef struct ff_client ff_client;
+
+/* Zero in any field takes the default given. */
+typedef struct ff_panorama_desc {
+    uint8_t enabled;          /* 0: the client draws all ground up to quality.view_wu itself */
+    int32_t back_plane_wu;    /* z_back_c = z_front_s, default 7500 m: ground up to here is the client's */
+    int32_t server_back_wu;   /* z_back_s, default 100 km */
+    int32_t error_px_q8;      /* epsilon of Hybrid eq. 6, 7 and 13 in pixels of the screen, default 5 % of its half-width */
+    uint16_t face_size;       /* default 256 */
+    uint8_t jpeg_quality;     /* default 70 */
+    uint8_t hold_back;        /* Hybrid's congestion flag: 0 default (one set outstanding at most), 1 never hold back */
+} ff_panorama_desc;
+
+typedef struct ff_client_desc {
+    void *memory;
+    size_t memory_bytes;      /* at least ff_client_bytes_min(); more memory holds finer ground */
+    sys_stream *stream;       /* to a server; or NULL */
+    const ff_pack *pack;      /* a pack in memory instead; or NULL */
+    const struct c3d_backend *backend;       /* NULL: no pictures */
+    const sys_surface_api *surface_api;      /* its context is current */
+    uint16_t width, height;   /* viewport, default 240x320 */
+    ff_quality quality;       /* all zero: DISTANCE, C = 3, depth 4, sigma 1.25, view 30 km */
+    ff_panorama_desc panorama;
+    uint8_t use_thread;       /* 1: ff_client_create starts a thread that calls ff_client_work */
+    uint8_t use_plain_arrays; /* 1: no vertex buffers */
+    uint8_t no_textures;      /* 1: images of the terrain are not asked for */
+    uint8_t no_prefetch;
+    uint16_t in_flight_max;   /* requests sent and unanswered at most, default 32 */
+    uint32_t answer_timeout_ms; /* a connection silent this long with requests out is closed and made anew, default 60000 */
+} ff_client_desc;
+
+enum ff_link_state { FF_LINK_NONE /* local pack */, FF_LINK_CONNECTING, FF_LINK_UP, FF_LINK_DOWN /* retrying */ };
+
+typedef struct ff_client_stats {
+    ff_tree_stats tree;
+    c3d_stats c3d;
+    enum ff_link_state link;
+    uint8_t have_terrain;        /* WELCOME has come */
+    uint8_t low_power;           /* battery low or interrupted: slower, coarser, no prefetch */
+    uint64_t bytes_down, bytes_up;
+    uint32_t requests_sent, requests_done, requests_failed, requests_cancelled, requests_dropped;
+    uint32_t in_flight, in_flight_high, queued, queued_high;
+    uint32_t panorama_requests, panorama_faces, panorama_faces_empty, panorama_bytes;
+    uint32_t textures_held, textures_high, textures_full;
+    uint32_t protocol_errors, reconnects;
+    uint32_t frames_updated, frames_skipped; /* skipped: nothing changed, nothing to redraw */
+    uint32_t rtt_ms, bandwidth_bytes_s;      /* as measured by the worker */
+    size_t memory_used, memory_bytes;
+} ff_client_stats;
+
+size_t ff_client_bytes_min(void);
+/* FF_OK or FF_ERR_ARGUMENT, FF_ERR_MEMORY, FF_ERR_UNSUPPORTED, and errors of the pack. */
+int ff_client_create(const ff_client_desc *desc, ff_client **client);
+void ff_client_destroy(ff_client *client);
+
+/* The network worker's step: sends, receives, decodes; never blocks. Returns 1 when it did something, 0 when idle. */
+int ff_client_work(ff_client *client, int64_t now_us);
+/* Takes in new data and selects for this camera. 1: the picture changed, draw; 0: same picture as before. */
+int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera);
+/* Draws the last update through the back end (no present). */
+void ff_client_draw(ff_client *client);
+
+/* Device events (battery, interruption): what does not concern the client is ignored. */
+void ff_client_event(ff_client *client, const sys_event *event);
+
+/* Settings that may change between frames. */
+void ff_client_set_quality(ff_client *client, const ff_quality *quality);
+void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama);
+enum ff_show { FF_SHOW_WIREFRAME = 1, FF_SHOW_NODE_BORDERS = 2, FF_SHOW_NO_FOG = 4 };
+void ff_client_set_show(ff_client *client, unsigned show);
+
+/* NULL until the terrain is known. */
+const ff_terrain_info *ff_client_terrain(const ff_client *client);
+const ff_tree *ff_client_tree(const ff_client *client);
+/* For checks and the emulator: the c3d device (NULL without a back end). */
+c3d_device *ff_client_device(ff_client *client);
+/* Ground height at (x, y) as drawn now: 1 and *z_wu, or 0. */
+int ff_client_ground(const ff_client *client, int32_t x_wu, int32_t y_wu, int32_t *z_wu);
+void ff_client_get_stats(const ff_client *client, ff_client_stats *stats);
+
+/* The panorama in use: 1 and where it was taken, or 0. *faces: bit per enum ff_face_name held (empty ones included). */
+int ff_client_panorama(const ff_client *client, int32_t position_wu[3], unsigned *faces);
+
+/* FNV-1a hash over what is drawn (keys, border masks, heights, origins) and another one over requests made, since the start:
+ * the same on every back end. */
+uint64_t ff_client_geometry_hash(const ff_client *client);
+uint64_t ff_client_request_hash(const ff_client *client);
+
+#endif

@@ -1,0 +1,122 @@
+/* Common System API: all that Farfield asks of an operating system (Hybrid, section 4.1).
+ *
+ * The build picks the files behind it: platform/posix (clock, threads, sockets, files), platform/glfw (window with a GL
+ * context), platform/egl and platform/osmesa (GL contexts without a window), platform/sim (simulated clock and events),
+ * platform/null (a blank port: builds anywhere, answers FF_ERR_UNSUPPORTED). Errors are those of protocol/ff_error.h.
+ */
+#ifndef SYS_H
+#define SYS_H
+
+#include "../protocol/ff_error.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* ---- clock: monotonic microseconds since an arbitrary start ---- */
+int64_t sys_time_us(void);
+void sys_sleep_us(int64_t us);
+/* Replaces the clock of this process (simulation, tests); NULL brings the real one back. sys_sleep_us then does nothing. */
+void sys_clock_replace(int64_t (*now_us)(void *context), void *context);
+
+/* ---- randomness: PCG32 streams, all from one seed; the same seed gives the same numbers on every machine ---- */
+typedef struct sys_random { uint64_t state, stream; } sys_random;
+void sys_random_seed(sys_random *random, uint64_t seed, uint64_t stream);
+uint32_t sys_random_u32(sys_random *random);
+uint32_t sys_random_below(sys_random *random, uint32_t limit); /* 0 .. limit-1, unbiased; limit > 0 */
+
+/* ---- threads ---- */
+/* Platforms without threads: sys_thread_start returns FF_ERR_UNSUPPORTED and locks do nothing. */
+typedef struct sys_mutex { union { void *align; unsigned char bytes[64]; } u; } sys_mutex;
+typedef struct sys_thread { union { void *align; unsigned char bytes[32]; } u; } sys_thread;
+int sys_mutex_init(sys_mutex *mutex);
+void sys_mutex_destroy(sys_mutex *mutex);
+void sys_mutex_lock(sys_mutex *mutex);
+void sys_mutex_unlock(sys_mutex *mutex);
+int sys_thread_start(sys_thread *thread, void (*run)(void *arg), void *arg);
+void sys_thread_join(sys_thread *thread);
+
+/* ---- byte streams: a connection seen from one end; real sockets, in-process pipes and simulated links alike ---- */
+typedef struct sys_stream {
+    void *state;
+    /* Bytes taken (0: would block) or FF_ERR_CLOSED. Never block. */
+    int (*send)(void *state, const uint8_t *bytes, size_t count);
+    int (*recv)(void *state, uint8_t *bytes, size_t capacity);
+    void (*close)(void *state);
+    /* Start connecting again after FF_ERR_CLOSED: FF_OK when connected, FF_ERR_AGAIN while under way, else an error (try later). */
+    int (*reconnect)(void *state);
+} sys_stream;
+
+/* TCP, non-blocking, no delay. `address` is HOST:PORT ([HOST]:PORT for IPv6). */
+typedef struct sys_tcp { int fd; int connecting; char address[128]; } sys_tcp;
+/* Sets `tcp` up and starts connecting; `stream` drives it. `tcp` must stay where it is. FF_ERR_ARGUMENT for a bad address. */
+int sys_tcp_client(sys_tcp *tcp, const char *address, sys_stream *stream);
+/* Listening socket (fd) or a negative error; reuse_port lets several processes share it; *port receives the bound port. */
+int sys_tcp_listen(const char *address, int reuse_port, uint16_t *port);
+/* Accepted fd (non-blocking) or FF_ERR_AGAIN, FF_ERR_SYSTEM. */
+int sys_tcp_accept(int listen_fd);
+/* A stream over an accepted fd; reconnect is NULL. */
+void sys_tcp_adopt(sys_tcp *tcp, int fd, sys_stream *stream);
+
+/* ---- files ---- */
+typedef struct sys_mapping { const void *bytes; uint64_t size; } sys_mapping;
+int sys_map_file(const char *path, sys_mapping *mapping);   /* read-only; FF_ERR_NOT_FOUND, FF_ERR_SYSTEM */
+void sys_unmap_file(sys_mapping *mapping);
+/* Writes a whole file by way of a temporary one and a rename: the old or the new content, never half of it. */
+int sys_write_file(const char *path, const void *bytes, size_t count);
+
+/* ---- images (libjpeg-turbo, libpng behind it; allocate inside) ---- */
+/* Decodes a JPEG of exactly width x height to tightly packed RGB888, top row first. FF_OK, FF_ERR_FORMAT, FF_ERR_RANGE. */
+int sys_jpeg_decode(const uint8_t *bytes, size_t byte_count, uint32_t width, uint32_t height, uint8_t *rgb);
+/* Width and height of a JPEG without decoding it. */
+int sys_jpeg_size(const uint8_t *bytes, size_t byte_count, uint32_t *width, uint32_t *height);
+/* Encodes RGB888, top row first, quality 1..100; bytes written or FF_ERR_FULL. */
+int sys_jpeg_encode(const uint8_t *rgb, uint32_t width, uint32_t height, int quality, uint8_t *out, size_t capacity);
+/* Writes RGB888, top row first, as a PNG file. */
+int sys_png_write(const char *path, const uint8_t *rgb, uint32_t width, uint32_t height);
+
+/* ---- window, GL context and device events ---- */
+enum sys_event_type {
+    SYS_EVENT_NONE, SYS_EVENT_QUIT, SYS_EVENT_RESIZE, SYS_EVENT_KEY, SYS_EVENT_POINTER, /* touch or mouse */
+    SYS_EVENT_POSITION,      /* position fix (GPS) */
+    SYS_EVENT_ACCELEROMETER, SYS_EVENT_BATTERY, SYS_EVENT_INTERRUPTION /* incoming call: on, off */
+};
+enum sys_pointer_action { SYS_POINTER_DOWN, SYS_POINTER_MOVE, SYS_POINTER_UP, SYS_POINTER_SCROLL };
+typedef struct sys_event {
+    enum sys_event_type type;
+    int64_t time_us;
+    union {
+        struct { int width, height; } resize;
+        struct { int code; int down; } key;               /* ASCII for printable keys (lower case), SYS_KEY_* otherwise */
+        struct { enum sys_pointer_action action; int x, y, button; } pointer;
+        struct { int32_t x_wu, y_wu, z_wu; int32_t accuracy_wu; } position;
+        struct { int32_t x_mg, y_mg, z_mg; } accelerometer; /* thousandths of g; device axes: x right, y up, z to the user */
+        struct { int percent; int low; } battery;
+        struct { int begins; } interruption;
+    } u;
+} sys_event;
+enum sys_key { SYS_KEY_LEFT = 256, SYS_KEY_RIGHT, SYS_KEY_UP, SYS_KEY_DOWN, SYS_KEY_PAGE_UP, SYS_KEY_PAGE_DOWN,
+               SYS_KEY_ESCAPE, SYS_KEY_ENTER, SYS_KEY_SPACE, SYS_KEY_F1 /* .. F12 = F1 + 11 */, SYS_KEY_SHIFT = 300 };
+
+enum sys_gl_kind { SYS_GL_ES1, SYS_GL_DESKTOP };
+typedef struct sys_surface sys_surface;
+typedef struct sys_surface_desc { const char *title; int width, height; enum sys_gl_kind gl; } sys_surface_desc;
+/* A place to draw with its GL context. Several kinds may live in one process; the table says which. */
+typedef struct sys_surface_api {
+    const char *name; /* "glfw", "egl", "osmesa" */
+    int (*open)(const sys_surface_desc *desc, sys_surface **surface); /* makes current; FF_ERR_UNSUPPORTED, FF_ERR_SYSTEM */
+    void (*close)(sys_surface *surface);
+    int (*make_current)(sys_surface *surface);
+    void *(*gl_proc)(const char *name);     /* address of a GL function for the current context, or NULL */
+    int (*present)(sys_surface *surface);   /* swap; offscreen: finish */
+    int (*poll)(sys_surface *surface, sys_event *event); /* 1: an event; 0: none */
+} sys_surface_api;
+const sys_surface_api *sys_surface_glfw(void);   /* NULL when not built in */
+const sys_surface_api *sys_surface_egl(void);
+const sys_surface_api *sys_surface_osmesa(void);
+
+/* Injected device events (emulator, simulator): poll() of any surface hands them out too, first in first out; FF_ERR_FULL. */
+int sys_event_inject(const sys_event *event);
+/* Takes one injected event: 1, or 0 when there is none. For programs without a surface. */
+int sys_event_take(sys_event *event);
+
+#endif
