@@ -11,10 +11,12 @@ typedef struct ff_session ff_session;
 
 typedef struct ff_session_desc {
     const ff_pack *pack;
-    uint32_t out_bytes_max;       /* answers buffered; 0: 256 kB. While full, requests wait unread */
+    uint32_t out_bytes_max;       /* answers buffered (and one face); 0: 256 kB. While full, requests wait in the queue below, so
+                                     that a CANCEL still reaches them; without room even for short answers, bytes wait unread */
     uint32_t requests_max;        /* requests waiting; 0: 256; more closes the session (GOODBYE, FULL) */
     uint32_t panoramas_per_minute;/* 0: 120; more are answered FAILED(FULL) */
     uint32_t idle_ms_max;         /* no message for this long closes; 0: 10 minutes */
+    int64_t now_us;               /* time of the connection: idle counts from here until the first message */
 } ff_session_desc;
 
 typedef struct ff_session_stats { uint64_t bytes_in, bytes_out; uint32_t nodes, textures, panoramas, faces, failed, cancelled; } ff_session_stats;
@@ -22,8 +24,8 @@ typedef struct ff_session_stats { uint64_t bytes_in, bytes_out; uint32_t nodes, 
 ff_session *ff_session_create(const ff_session_desc *desc); /* malloc; NULL when out of memory */
 void ff_session_destroy(ff_session *session);
 
-/* Bytes from the client. Returns bytes taken (may be fewer while the out buffer is full), or a negative error: send what is
- * pending (a GOODBYE), then close. */
+/* Bytes from the client. Returns bytes taken (fewer while the out buffer is full: offer the rest again after ff_session_sent), or
+ * a negative error: send what is pending (a GOODBYE), then close. */
 int ff_session_receive(ff_session *session, const uint8_t *bytes, size_t count, int64_t now_us);
 /* Pending output: count and *bytes. After sending n of them call ff_session_sent(n). */
 size_t ff_session_output(ff_session *session, const uint8_t **bytes);

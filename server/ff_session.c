@@ -1,0 +1,413 @@
+/* One client's session: a small parser, a queue of requests and a buffer of answers.
+ *
+ * Room in the buffer: nodes and textures up to out_bytes_max, above that one face of a panorama, above that short answers (FAILED,
+ * CANCELLED, PONG), and a last reserve for the GOODBYE. So a slow reader costs a fixed amount of memory, and says itself when to go on.
+ */
+#include "ff_session.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define IN_BYTES 128              /* the longest client message, with room for longer HELLOs to come */
+#define SHORT_ANSWER_BYTES 64     /* WELCOME aside, more than any answer without a payload needs */
+#define WELCOME_BYTES 256
+#define SHORT_ANSWERS_BYTES 4096  /* reserve for them */
+#define FACE_BYTES (FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX)
+#define MINUTE_US 60000000
+
+typedef struct request {
+    uint8_t type;  /* FF_MSG_GET_NODE, FF_MSG_GET_TEXTURE; 0: cancelled */
+    ff_get get;
+} request;
+
+struct ff_session {
+    ff_session_desc desc;
+    ff_session_stats stats;
+    int error;                /* not 0: the session is over */
+    int welcomed;
+    int64_t now_us, last_message_us;
+
+    uint8_t in[IN_BYTES];     /* the beginning of one message, never a whole one */
+    size_t in_count;
+
+    request *queue;           /* [queue_first, queue_end) wait, some of them cancelled */
+    uint32_t queue_first, queue_end, queue_live;
+
+    ff_get_panorama panorama; /* the one being served, if panorama_on */
+    int panorama_on, job_out, job_stale;
+    uint8_t next_face;        /* index into panorama.face */
+    int64_t panorama_credit_us, credit_time_us;
+
+    uint8_t *out;             /* [out_first, out_end) waits to be sent */
+    size_t out_first, out_end, out_capacity;
+};
+
+static uint32_t or_default(uint32_t value, uint32_t instead) { return value ? value : instead; }
+
+static ff_session_desc desc_with_defaults(const ff_session_desc *desc)
+{
+    ff_session_desc full = *desc;
+    full.out_bytes_max = or_default(desc->out_bytes_max, 256u << 10);
+    full.requests_max = or_default(desc->requests_max, 256);
+    full.panoramas_per_minute = or_default(desc->panoramas_per_minute, 120);
+    full.idle_ms_max = or_default(desc->idle_ms_max, 10u * 60u * 1000u);
+    return full;
+}
+
+ff_session *ff_session_create(const ff_session_desc *desc)
+{
+    ff_session *session = calloc(1, sizeof *session);
+    if (!session)
+        return NULL;
+    session->desc = desc_with_defaults(desc);
+    session->out_capacity = (size_t)session->desc.out_bytes_max + FACE_BYTES + SHORT_ANSWERS_BYTES + SHORT_ANSWER_BYTES;
+    session->queue = calloc(session->desc.requests_max, sizeof *session->queue);
+    session->out = malloc(session->out_capacity); /* large: the system hands out its pages as they are used */
+    if (!session->queue || !session->out) {
+        ff_session_destroy(session);
+        return NULL;
+    }
+    session->now_us = session->last_message_us = session->credit_time_us = desc->now_us;
+    session->panorama_credit_us = MINUTE_US;
+    return session;
+}
+
+void ff_session_destroy(ff_session *session)
+{
+    if (!session)
+        return;
+    free(session->queue);
+    free(session->out);
+    free(session);
+}
+
+/* ---- answers ---- */
+
+static size_t out_pending(const ff_session *session) { return session->out_end - session->out_first; }
+
+/* Room for `bytes` at the end of the buffer; the caller has checked that they fit. */
+static uint8_t *out_room(ff_session *session, size_t bytes)
+{
+    assert(out_pending(session) + bytes <= session->out_capacity);
+    if (session->out_end + bytes > session->out_capacity) {
+        memmove(session->out, session->out + session->out_first, out_pending(session));
+        session->out_end = out_pending(session);
+        session->out_first = 0;
+    }
+    return session->out + session->out_end;
+}
+
+static void answer_short(ff_session *session, const ff_message *message)
+{
+    size_t room = message->type == FF_MSG_WELCOME ? WELCOME_BYTES : SHORT_ANSWER_BYTES;
+    int bytes = ff_message_encode(message, out_room(session, room), room);
+    assert(bytes > 0);
+    session->out_end += (size_t)bytes;
+}
+
+static void answer_failed(ff_session *session, uint16_t id, int error)
+{
+    ff_message message = { .type = FF_MSG_FAILED, .u.failed = { .id = id, .error = (int8_t)error } };
+    session->stats.failed++;
+    answer_short(session, &message);
+}
+
+static void answer_cancelled(ff_session *session, uint16_t id)
+{
+    ff_message message = { .type = FF_MSG_CANCELLED, .u.cancel = { .id = id } };
+    session->stats.cancelled++;
+    answer_short(session, &message);
+}
+
+/* Whether any single client message can be taken: one may need two short answers (a panorama that supersedes and is refused), and
+ * the GOODBYE after it its own room. */
+static int short_answers_fit(const ff_session *session)
+{
+    return out_pending(session) + WELCOME_BYTES + 2 * SHORT_ANSWER_BYTES <= session->out_capacity - FACE_BYTES;
+}
+
+static int end_session(ff_session *session, int error)
+{
+    ff_message message = { .type = FF_MSG_GOODBYE, .u.failed = { .id = 0, .error = (int8_t)error } };
+    session->error = error;
+    answer_short(session, &message);
+    return error;
+}
+
+/* ---- nodes and textures ---- */
+
+static int fetch(const ff_session *session, const request *wanted, ff_message *message)
+{
+    enum ff_section_kind kind = FF_SECTION_TEXTURE;
+    if (wanted->type == FF_MSG_GET_NODE)
+        kind = wanted->get.what == FF_GET_ROOT ? FF_SECTION_ROOT : FF_SECTION_REFINEMENT;
+    message->type = wanted->type == FF_MSG_GET_NODE ? FF_MSG_NODE : FF_MSG_TEXTURE;
+    message->u.data.id = wanted->get.id;
+    int bytes = ff_pack_record(session->desc.pack, kind, wanted->get.key, &message->u.data.bytes);
+    if (bytes < 0)
+        return bytes;
+    message->u.data.byte_count = (uint32_t)bytes;
+    return ff_message_bytes_max(message) <= FACE_BYTES ? FF_OK : FF_ERR_FULL;
+}
+
+/* 1 when answered, 0 when the buffer has no room for it yet. */
+static int serve(ff_session *session, const request *wanted)
+{
+    ff_message message;
+    int rc = fetch(session, wanted, &message);
+    if (rc == FF_OK) {
+        size_t room = ff_message_bytes_max(&message);
+        int alone = out_pending(session) == 0 && !session->job_out;
+        if (out_pending(session) + room > session->desc.out_bytes_max && !alone)
+            return 0;
+        rc = ff_message_encode(&message, out_room(session, room), room);
+    }
+    if (rc < 0) {
+        if (!short_answers_fit(session))
+            return 0;
+        answer_failed(session, wanted->get.id, rc);
+        return 1;
+    }
+    session->out_end += (size_t)rc;
+    if (message.type == FF_MSG_NODE)
+        session->stats.nodes++;
+    else
+        session->stats.textures++;
+    return 1;
+}
+
+static void serve_queue(ff_session *session)
+{
+    while (session->queue_first < session->queue_end) {
+        const request *wanted = &session->queue[session->queue_first];
+        if (wanted->type) {
+            if (!serve(session, wanted))
+                return;
+            session->queue_live--;
+        }
+        session->queue_first++;
+    }
+    session->queue_first = session->queue_end = 0;
+}
+
+static void queue_compact(ff_session *session)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = session->queue_first; i < session->queue_end; i++)
+        if (session->queue[i].type)
+            session->queue[kept++] = session->queue[i];
+    session->queue_first = 0;
+    session->queue_end = kept;
+}
+
+static int queue_add(ff_session *session, uint8_t type, const ff_get *get)
+{
+    if (session->queue_live == session->desc.requests_max)
+        return end_session(session, FF_ERR_FULL);
+    if (session->queue_end == session->desc.requests_max)
+        queue_compact(session);
+    session->queue[session->queue_end++] = (request){ .type = type, .get = *get };
+    session->queue_live++;
+    serve_queue(session);
+    return FF_OK;
+}
+
+/* ---- panoramas ---- */
+
+static void panorama_drop(ff_session *session)
+{
+    session->panorama_on = 0;
+    session->job_stale = session->job_out;
+}
+
+static int panorama_allowed(ff_session *session)
+{
+    int64_t cost_us = MINUTE_US / session->desc.panoramas_per_minute;
+    int64_t gained_us = session->now_us - session->credit_time_us;
+    session->credit_time_us = session->now_us;
+    if (gained_us > 0)
+        session->panorama_credit_us = gained_us >= MINUTE_US - session->panorama_credit_us
+                                          ? MINUTE_US : session->panorama_credit_us + gained_us;
+    if (session->panorama_credit_us < cost_us)
+        return 0;
+    session->panorama_credit_us -= cost_us;
+    return 1;
+}
+
+static void panorama_request(ff_session *session, const ff_get_panorama *wanted)
+{
+    if (!panorama_allowed(session)) {
+        answer_failed(session, wanted->id, FF_ERR_FULL);
+        return;
+    }
+    if (session->panorama_on) {
+        answer_cancelled(session, session->panorama.id);
+        panorama_drop(session);
+    }
+    session->stats.panoramas++;
+    session->panorama = *wanted;
+    session->panorama_on = 1;
+    session->next_face = 0;
+}
+
+int ff_session_next_face(ff_session *session, ff_face_job *job)
+{
+    if (session->error || !session->panorama_on || session->job_out || out_pending(session) > session->desc.out_bytes_max)
+        return 0;
+    job->request = session->panorama;
+    job->face = session->panorama.face[session->next_face];
+    job->last = session->next_face + 1 == session->panorama.face_count;
+    session->job_out = 1;
+    session->job_stale = 0;
+    return 1;
+}
+
+void ff_session_face_done(ff_session *session, const ff_face_job *job, const uint8_t *message, int bytes_or_error)
+{
+    assert(session->job_out);
+    session->job_out = 0;
+    if (session->error || session->job_stale)
+        return;
+    assert(session->panorama_on && session->panorama.id == job->request.id);
+    if (bytes_or_error > (int)FACE_BYTES || bytes_or_error == 0)
+        bytes_or_error = FF_ERR_RANGE;
+    if (bytes_or_error < 0) {
+        session->panorama_on = 0;
+        answer_failed(session, session->panorama.id, bytes_or_error);
+        return;
+    }
+    memcpy(out_room(session, (size_t)bytes_or_error), message, (size_t)bytes_or_error);
+    session->out_end += (size_t)bytes_or_error;
+    session->stats.faces++;
+    session->next_face++;
+    if (job->last)
+        session->panorama_on = 0;
+    serve_queue(session);
+}
+
+/* ---- messages ---- */
+
+static void cancel(ff_session *session, uint16_t id)
+{
+    if (session->panorama_on && session->panorama.id == id) {
+        panorama_drop(session);
+        answer_cancelled(session, id);
+        return;
+    }
+    for (uint32_t i = session->queue_first; i < session->queue_end; i++) {
+        request *waiting = &session->queue[i];
+        if (waiting->type && waiting->get.id == id) {
+            waiting->type = 0;
+            session->queue_live--;
+            answer_cancelled(session, id);
+            serve_queue(session); /* it may have been the one that found no room */
+            return;
+        }
+    }
+    /* Answered already: the answer is under way, and is all the client needs. */
+}
+
+static int hello(ff_session *session, const ff_hello *greeting)
+{
+    if (session->welcomed)
+        return end_session(session, FF_ERR_FORMAT);
+    if (greeting->version != FF_PROTOCOL_VERSION)
+        return end_session(session, FF_ERR_VERSION);
+    ff_message welcome = { .type = FF_MSG_WELCOME };
+    welcome.u.welcome.version = FF_PROTOCOL_VERSION;
+    welcome.u.welcome.info = session->desc.pack->header.info;
+    session->welcomed = 1;
+    answer_short(session, &welcome);
+    return FF_OK;
+}
+
+static int handle(ff_session *session, const ff_message *message)
+{
+    if (message->type == FF_MSG_HELLO)
+        return hello(session, &message->u.hello);
+    if (!session->welcomed)
+        return end_session(session, FF_ERR_FORMAT);
+    switch (message->type) {
+    case FF_MSG_GET_NODE:
+    case FF_MSG_GET_TEXTURE:
+        return queue_add(session, (uint8_t)message->type, &message->u.get);
+    case FF_MSG_GET_PANORAMA:
+        panorama_request(session, &message->u.panorama);
+        return FF_OK;
+    case FF_MSG_CANCEL:
+        cancel(session, message->u.cancel.id);
+        return FF_OK;
+    case FF_MSG_PING:
+        answer_short(session, &(ff_message){ .type = FF_MSG_PONG, .u.ping = message->u.ping });
+        return FF_OK;
+    default: /* the server's own messages */
+        return end_session(session, FF_ERR_FORMAT);
+    }
+}
+
+/* Takes one message out of `in` and the bytes after it. Returns how many of `bytes` were taken or a negative error; *complete tells
+ * whether there was a whole message. */
+static int take_message(ff_session *session, const uint8_t *bytes, size_t count, int *complete)
+{
+    size_t held = session->in_count;
+    size_t added = count < IN_BYTES - held ? count : IN_BYTES - held;
+    memcpy(session->in + held, bytes, added);
+    ff_message message;
+    int used = ff_message_decode(session->in, held + added, &message);
+    *complete = used > 0;
+    if (used < 0)
+        return end_session(session, used);
+    if (used == 0) {
+        if (held + added == IN_BYTES) /* no client message is that long */
+            return end_session(session, FF_ERR_FORMAT);
+        session->in_count = held + added;
+        return (int)added;
+    }
+    assert((size_t)used > held);
+    session->in_count = 0;
+    session->last_message_us = session->now_us;
+    int rc = handle(session, &message);
+    return rc < 0 ? rc : used - (int)held;
+}
+
+int ff_session_receive(ff_session *session, const uint8_t *bytes, size_t count, int64_t now_us)
+{
+    size_t taken = 0;
+    int complete = 1;
+    if (now_us > session->now_us)
+        session->now_us = now_us;
+    if (count > INT32_MAX)
+        count = INT32_MAX;
+    while (!session->error && complete && taken < count && short_answers_fit(session)) {
+        int rc = take_message(session, bytes + taken, count - taken, &complete);
+        if (rc >= 0)
+            taken += (size_t)rc;
+    }
+    session->stats.bytes_in += taken;
+    return session->error ? session->error : (int)taken;
+}
+
+size_t ff_session_output(ff_session *session, const uint8_t **bytes)
+{
+    *bytes = session->out + session->out_first;
+    return out_pending(session);
+}
+
+void ff_session_sent(ff_session *session, size_t count)
+{
+    assert(count <= out_pending(session));
+    session->out_first += count;
+    session->stats.bytes_out += count;
+    if (session->out_first == session->out_end)
+        session->out_first = session->out_end = 0;
+    if (!session->error)
+        serve_queue(session);
+}
+
+int ff_session_idle(const ff_session *session, int64_t now_us)
+{
+    return now_us - session->last_message_us > (int64_t)session->desc.idle_ms_max * 1000;
+}
+
+void ff_session_get_stats(const ff_session *session, ff_session_stats *stats) { *stats = session->stats; }
