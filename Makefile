@@ -44,7 +44,7 @@ LIBS := $(LIB)/libffsim.a $(LIB)/libffserver.a $(LIB)/libfftools.a $(LIB)/libffc
 LINK_LIBS = -Wl,--start-group $(LIBS) -Wl,--end-group $(LDLIBS_core) $(LDLIBS_surface) $(LDLIBS_host)
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps server emulator flyover demo test check install clean lib fuzz FORCE
+.PHONY: all help deps server emulator flyover demo test test-build check man install uninstall clean lib fuzz FORCE
 
 all: $(PROGRAMS) lib ## build all programs and libraries into build/
 
@@ -103,16 +103,61 @@ $(LIB)/libfarfield.so: $(LIBFARFIELD_OBJS)
 
 # ---- tests: tests/test_*.c are cmocka programs, tests/*.sh scripts; tests/run.sh counts ----
 TESTS := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
-TEST_LIB_SRC := $(filter-out tests/test_% tests/fuzz_%,$(wildcard tests/*.c))
+FUZZERS := $(patsubst tests/%.c,$(BUILD)/tests/%-replay,$(wildcard tests/fuzz_*.c))
+TEST_LIB_SRC := $(filter-out tests/test_% tests/fuzz_% tests/replay.c,$(wildcard tests/*.c))
 $(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(call obj,$(TEST_LIB_SRC)) $(LIBS)
 	@mkdir -p $(@D)
 	$(CC) $(OPT) $(LDFLAGS) $(filter %.o,$^) $(LINK_LIBS) $(GDAL_LIBS) -lcmocka -o $@
-test-build: $(TESTS)
+test-build: $(TESTS) $(FUZZERS)
+
+test: deps ## build and run every test (sanitized, with script tests); the last line counts
+	@MAKE="$(MAKE)" tests/run.sh
+
+check: all $(TESTS) ## quick subset: layer checks and unit tests, without sanitizers
+	@BUILD=$(BUILD) tests/run.sh --quick
 
 # ---- fuzz targets: each tests/fuzz_*.c has LLVMFuzzerTestOneInput; saved inputs in tests/corpus/NAME run in `make test` ----
-FUZZERS := $(patsubst tests/%.c,$(BUILD)/tests/%-replay,$(wildcard tests/fuzz_*.c))
 $(BUILD)/tests/fuzz_%-replay: $(BUILD)/obj/tests/fuzz_%.o $(BUILD)/obj/tests/replay.o $(LIBS)
 	@mkdir -p $(@D)
 	$(CC) $(OPT) $(LDFLAGS) $(filter %.o,$^) $(LINK_LIBS) -o $@
 
+# ---- installing: programs, libfarfield with its headers and farfield.pc, man pages ----
+BINDIR ?= $(PREFIX)/bin
+LIBDIR ?= $(PREFIX)/lib
+INCLUDEDIR ?= $(PREFIX)/include
+MANDIR ?= $(PREFIX)/share/man
+HEADERS = $(shell $(CC) -MM -DFF_ENCODER=1 -x c client/farfield.h | tr -d '\\' | tr ' ' '\n' | grep '\.h$$' | \
+            xargs realpath --relative-to=. | sort -u)
+MANPAGES = $(patsubst $(BUILD)/bin/%,$(BUILD)/man/%.1,$(PROGRAMS))
+
+man: $(MANPAGES) ## manual pages from --help, into build/man
+$(BUILD)/man/%.1: $(BUILD)/bin/% tools/man.sh
+	@mkdir -p $(@D)
+	tools/man.sh $< $@
+
+$(BUILD)/farfield.pc: tools/farfield.pc.in Makefile FORCE
+	@mkdir -p $(@D)
+	@sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@INCLUDEDIR@|$(INCLUDEDIR)|; s|@VERSION@|$(VERSION)|' \
+	     -e 's|@LIBS_PRIVATE@|$(LDLIBS_core) -lpng16|' $< > $@
+
+install: all man $(BUILD)/farfield.pc ## install into PREFIX (default /usr/local); DESTDIR goes before it
+	install -d $(addprefix $(DESTDIR),$(BINDIR) $(LIBDIR)/pkgconfig $(MANDIR)/man1)
+	install -m 755 $(PROGRAMS) $(DESTDIR)$(BINDIR)
+	install -m 644 $(LIB)/libfarfield.a $(DESTDIR)$(LIBDIR)
+	install -m 755 $(LIB)/libfarfield.so $(DESTDIR)$(LIBDIR)/libfarfield.so.$(VERSION)
+	ln -sf libfarfield.so.$(VERSION) $(DESTDIR)$(LIBDIR)/libfarfield.so.0
+	ln -sf libfarfield.so.0 $(DESTDIR)$(LIBDIR)/libfarfield.so
+	for h in $(HEADERS); do install -D -m 644 $$h $(DESTDIR)$(INCLUDEDIR)/farfield/$$h || exit 1; done
+	install -m 644 $(BUILD)/farfield.pc $(DESTDIR)$(LIBDIR)/pkgconfig
+	install -m 644 $(MANPAGES) $(DESTDIR)$(MANDIR)/man1
+
+uninstall: ## remove what install put there (same PREFIX and DESTDIR)
+	rm -f $(addprefix $(DESTDIR)$(BINDIR)/,$(notdir $(PROGRAMS))) $(addprefix $(DESTDIR)$(MANDIR)/man1/,$(notdir $(MANPAGES)))
+	rm -f $(DESTDIR)$(LIBDIR)/libfarfield.* $(DESTDIR)$(LIBDIR)/pkgconfig/farfield.pc
+	rm -rf $(DESTDIR)$(INCLUDEDIR)/farfield
+
+clean: ## remove everything built
+	rm -rf build
+
+.SECONDARY:
 -include $(shell find $(BUILD)/obj -name '*.d' 2>/dev/null)
