@@ -1,0 +1,41 @@
+#include "ff_texture_map.h"
+
+#include <assert.h>
+
+ff_key ff_texture_key(const ff_terrain_info *info, ff_key node)
+{
+    if (info->texture_log2 == 0 || info->texture_levels == 0)
+        return FF_KEY_NONE;
+    while (ff_key_level(node) >= info->texture_levels)
+        node = ff_key_parent(node);
+    return node;
+}
+
+/* s = (u*(T-1) + 1/2) / T for the fraction u of the textured node's edge; u = (place + vertex/2^k) / 2^depth. */
+static void map_axis(const ff_terrain_info *info, uint32_t place, uint32_t depth, int32_t *scale_q16, int32_t *offset_q16)
+{
+    int64_t texels = (int64_t)1 << info->texture_log2;
+    int64_t span_q16 = (texels - 1) << 16;
+    int64_t divisor = texels << depth;
+    *scale_q16 = (int32_t)(((span_q16 >> info->node_log2) + divisor / 2) / divisor);
+    *offset_q16 = (int32_t)((span_q16 * place + divisor / 2) / divisor + (1 << 15) / texels);
+}
+
+void ff_texture_map(const ff_terrain_info *info, ff_key node, ff_key texture, int32_t scale_q16[2], int32_t offset_q16[2])
+{
+    assert(ff_key_level(texture) <= ff_key_level(node));
+    uint32_t depth = ff_key_level(node) - ff_key_level(texture);
+    uint32_t within = (1u << depth) - 1; /* the bits of the place below the textured node */
+    map_axis(info, ff_morton_x(ff_key_code(node)) & within, depth, &scale_q16[0], &offset_q16[0]);
+    map_axis(info, ff_morton_y(ff_key_code(node)) & within, depth, &scale_q16[1], &offset_q16[1]);
+}
+
+void ff_texture_texels(const ff_terrain_info *info, const uint8_t *rgb, uint16_t *texels)
+{
+    uint32_t size = 1u << info->texture_log2;
+    for (uint32_t row = 0; row < size; row++) {
+        const uint8_t *from = rgb + (size_t)3 * size * (size - 1 - row);
+        for (uint32_t i = 0; i < size; i++, from += 3)
+            *texels++ = (uint16_t)((from[0] >> 3) << 11 | (from[1] >> 2) << 5 | from[2] >> 3);
+    }
+}
