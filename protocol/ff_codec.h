@@ -48,7 +48,7 @@ typedef struct ff_residuals {
 int ff_decode_root(ff_decoder *dec, const uint8_t *payload, size_t bytes, ff_residuals *out);
 int ff_decode_refinement(ff_decoder *dec, const uint8_t *payload, size_t bytes, ff_residuals *out);
 
-/* Second half: prediction plus residual, clamped to 0..65535. `heights` receives ff_node_side()^2 values. */
+/* Second half: prediction plus residual times step, clamped to 0..65535 (lossless: modulo 2^16, so that 16 bits hold any residual). `heights` receives ff_node_side()^2 values. */
 void ff_reconstruct_root(const ff_terrain_info *info, const ff_residuals *res, uint16_t *heights);
 /* `parent` ff_node_side()^2 values, `refined` receives ff_refined_side()^2 values. */
 void ff_reconstruct_refinement(const ff_terrain_info *info, const uint16_t *parent, const ff_residuals *res,
@@ -58,7 +58,7 @@ void ff_refined_child(const ff_terrain_info *info, const uint16_t *refined, uint
 
 /* Encoder, for tools. `source` is the true grid (ff_node_side()^2, ff_refined_side()^2); `parent` the *decoded* parent;
  * `decoded` receives what every decoder will see. Returns payload bytes written to `out` (capacity at least
- * FF_PAYLOAD_BYTES_MAX) or a negative error. Uses zlib, which allocates: not for devices (build switch FF_ENCODER). */
+ * FF_PAYLOAD_BYTES_MAX) or FF_ERR_RANGE for an error code above 208. Uses zlib, which allocates: not for devices (build switch FF_ENCODER). */
 int ff_encode_root(const ff_terrain_info *info, const uint16_t *source, uint8_t error_code, uint8_t *out,
                    uint16_t *decoded);
 int ff_encode_refinement(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *source,

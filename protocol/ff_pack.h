@@ -18,10 +18,11 @@ enum ff_section_kind { FF_SECTION_ROOT = 1, FF_SECTION_REFINEMENT = 2, FF_SECTIO
 typedef struct ff_pack_section {
     uint16_t kind;          /* enum ff_section_kind */
     uint16_t level;         /* of the node refined, or textured */
-    uint32_t index_crc;
+    uint32_t index_crc;     /* CRC-32 of the index bytes */
+    uint32_t records_crc;   /* CRC-32 of the records' own CRC words, in order, as stored: stands for the section's contents */
     uint64_t record_count;  /* tiles * 4^level */
     uint64_t index_offset;  /* from file start: record_count + 1 offsets, 8 bytes each, little-endian, from data_offset */
-    uint64_t data_offset, data_bytes;
+    uint64_t data_offset, data_bytes; /* a record: CRC-32 of its payload (4 bytes, LE), payload; no bytes at all: no such record */
 } ff_pack_section;
 
 typedef struct ff_pack_header {
@@ -48,7 +49,8 @@ int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key, c
 /* Checks indexes and every record of every section; *bad receives the number of damaged records. FF_OK or error. */
 int ff_pack_verify(const ff_pack *pack, uint64_t *bad);
 
-/* Header to bytes, for writers; `out` has FF_PACK_HEADER_BYTES. FF_OK or FF_ERR_RANGE. */
+/* Header to bytes, for writers; `out` has FF_PACK_HEADER_BYTES. Works out info.checksum itself (whatever is in `header`): a CRC over
+ * the header, and so, by index_crc and records_crc, over everything in the pack. FF_OK or FF_ERR_RANGE. */
 int ff_pack_header_encode(const ff_pack_header *header, uint8_t *out);
 
 /* CRC-32 (zlib's polynomial), crc 0 to start. */

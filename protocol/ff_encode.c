@@ -1,0 +1,180 @@
+/* Encoder half of the height codec, for tools: closed loop, so it makes every height just as the decoders will. */
+#ifdef FF_ENCODER
+
+#include "ff_codec_local.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+typedef struct quantisation {
+    const uint16_t *source;
+    int32_t *next;
+    int32_t quantum;
+} quantisation;
+
+static uint16_t take_residual(void *context, uint32_t at, int32_t predicted)
+{
+    quantisation *q = context;
+    int32_t difference = q->source[at] - predicted, half = q->quantum / 2;
+    int32_t residual;
+
+    if (q->quantum == 1) /* modulo 2^16: the shorter way round */
+        residual = difference > INT16_MAX ? difference - 65536 : difference < INT16_MIN ? difference + 65536 : difference;
+    else
+        residual = difference >= 0 ? (difference + half) / q->quantum : -((half - difference) / q->quantum);
+    *q->next++ = residual;
+    return ff_dequantise(q->quantum, predicted, residual);
+}
+
+/* ---- residuals to payload ---- */
+
+static uint32_t zigzag(int32_t v) { return v < 0 ? ~((uint32_t)v << 1) : (uint32_t)v << 1; }
+
+static uint32_t packed_width(const int32_t *value, uint32_t count)
+{
+    uint32_t all = 0, width = 0;
+
+    for (uint32_t i = 0; i < count; i++)
+        all |= zigzag(value[i]);
+    while (all >> width)
+        width++;
+    return width;
+}
+
+static uint8_t *put_packed(const int32_t *value, uint32_t count, uint32_t width, uint8_t *out)
+{
+    uint32_t bits = 0, held = 0;
+
+    for (uint32_t i = 0; i < count; i++) {
+        bits |= zigzag(value[i]) << held;
+        for (held += width; held >= 8; held -= 8, bits >>= 8)
+            *out++ = (uint8_t)bits;
+    }
+    if (held > 0)
+        *out++ = (uint8_t)bits;
+    return out;
+}
+
+/* Bytes written, or 0 when they would not be fewer than `limit`. */
+static size_t deflate_planes(const uint8_t *planes, uint32_t bytes, int window_bits, int strategy, uint8_t *out, size_t limit)
+{
+    z_stream z;
+    size_t written = 0;
+
+    memset(&z, 0, sizeof(z));
+    /* The least memory level whose symbol buffer holds the planes whole: one block, and little to allocate and clear. */
+    if (deflateInit2(&z, 9, Z_DEFLATED, -window_bits, bytes < 1000 ? 4 : 8, strategy) != Z_OK)
+        abort();
+    z.next_in = (z_const Bytef *)planes;
+    z.avail_in = bytes;
+    z.next_out = out;
+    z.avail_out = (uInt)limit - 1;
+    if (deflate(&z, Z_FINISH) == Z_STREAM_END)
+        written = (size_t)(z.next_out - out);
+    deflateEnd(&z);
+    return written;
+}
+
+/* Tries the strategies of zlib against the packed form, whose size is `limit`. Bytes in `out` or 0 when packed is smaller. */
+static size_t put_deflated(const ff_terrain_info *info, const int32_t *value, uint32_t count, int two_planes, size_t limit,
+                           uint8_t *out)
+{
+    static const int strategies[] = {Z_DEFAULT_STRATEGY, Z_FIXED, Z_HUFFMAN_ONLY};
+    uint8_t planes[2 * FF_REFINED_HEIGHTS_MAX], trial[2 * FF_REFINED_HEIGHTS_MAX];
+    size_t best = 0;
+
+    for (uint32_t i = 0; i < count; i++) {
+        planes[i] = (uint8_t)zigzag(value[i]);
+        planes[count + i] = (uint8_t)(zigzag(value[i]) >> 8);
+    }
+    for (size_t s = 0; s < sizeof(strategies) / sizeof(strategies[0]) && limit > 1; s++) {
+        size_t bytes = deflate_planes(planes, two_planes ? 2 * count : count, ff_window_bits(info), strategies[s], trial, limit);
+        if (bytes > 0) {
+            memcpy(out, trial, bytes);
+            best = limit = bytes;
+        }
+    }
+    return best;
+}
+
+static int encode_raw(const uint8_t *error, uint32_t errors, const int32_t *value, uint32_t count, uint8_t *out)
+{
+    uint8_t *at = out + errors;
+
+    memcpy(out, error, errors);
+    for (uint32_t i = 0; i < count; i++) {
+        *at++ = (uint8_t)((uint32_t)value[i] & 0xffu);
+        *at++ = (uint8_t)(((uint32_t)value[i] >> 8) & 0xffu);
+    }
+    return (int)(at - out);
+}
+
+static enum ff_errors_form errors_form(const uint8_t *error, uint32_t errors)
+{
+    int same = 1;
+
+    for (uint32_t i = 1; i < errors; i++)
+        same &= error[i] == error[0];
+    return !same ? FF_ERRORS_EACH : error[0] == 0 ? FF_ERRORS_ZERO : FF_ERRORS_SAME;
+}
+
+static int encode_payload(const ff_terrain_info *info, const uint8_t *error, uint32_t errors, const int32_t *value,
+                          uint32_t absolute, uint32_t count, uint8_t *out)
+{
+    enum ff_errors_form form = errors_form(error, errors);
+    uint32_t error_bytes = form == FF_ERRORS_EACH ? errors : form == FF_ERRORS_SAME;
+    uint32_t width = packed_width(value + absolute, count - absolute);
+    size_t bytes;
+    uint8_t *at = out + 1;
+
+    if (info->codec == FF_CODEC_RAW)
+        return encode_raw(error, errors, value, count, out);
+    out[0] = (uint8_t)(form << 2);
+    at += encode_raw(error, error_bytes, value, absolute, at);
+    if (width == 0)
+        return (int)(at - out);
+    value += absolute;
+    count -= absolute;
+    bytes = put_deflated(info, value, count, width > 8, ((size_t)count * width + 7) / 8, at);
+    if (bytes > 0) {
+        out[0] |= (uint8_t)(FF_BODY_DEFLATE | (unsigned)(width > 8) << FF_HEAD_DETAIL_SHIFT);
+        return (int)(at - out + (ptrdiff_t)bytes);
+    }
+    out[0] |= (uint8_t)(FF_BODY_PACKED | (width - 1) << FF_HEAD_DETAIL_SHIFT);
+    return (int)(put_packed(value, count, width, at) - out);
+}
+
+int ff_encode_root(const ff_terrain_info *info, const uint16_t *source, uint8_t error_code, uint8_t *out,
+                   uint16_t *decoded)
+{
+    int32_t value[FF_NODE_HEIGHTS_MAX];
+    quantisation q = {source, value, ff_quantum(info)};
+
+    if (error_code > FF_ERROR_CODE_MAX)
+        return FF_ERR_RANGE;
+    for (uint32_t corner = 0; corner < FF_CORNERS; corner++) {
+        uint32_t at = ff_corner_at(info, corner);
+        *q.next = (source[at] + info->max_error) / q.quantum;
+        decoded[at] = ff_dequantise(q.quantum, 0, *q.next++);
+    }
+    ff_predict_root(info, decoded, take_residual, &q);
+    return encode_payload(info, &error_code, 1, value, FF_CORNERS, ff_root_count(info), out);
+}
+
+int ff_encode_refinement(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *source,
+                         const uint8_t child_error[4], uint8_t *out, uint16_t *decoded)
+{
+    int32_t value[FF_REFINED_HEIGHTS_MAX];
+    quantisation q = {source, value, ff_quantum(info)};
+
+    for (int i = 0; i < 4; i++)
+        if (child_error[i] > FF_ERROR_CODE_MAX)
+            return FF_ERR_RANGE;
+    ff_predict_refinement(info, parent, decoded, take_residual, &q);
+    return encode_payload(info, child_error, 4, value, 0, ff_refinement_count(info), out);
+}
+
+#else
+typedef int ff_encode_not_built; /* ISO C wants a declaration in every file */
+#endif
