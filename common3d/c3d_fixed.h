@@ -10,6 +10,7 @@
 
 int32_t c3d_sin_q30(int32_t angle_brad16); /* within 2 units of 2^-30 */
 int32_t c3d_cos_q30(int32_t angle_brad16);
+int32_t c3d_sin_turn32_q30(uint32_t angle); /* the same of angles in 2^-32 turn: no steps between neighbouring angles */
 uint32_t c3d_isqrt64(uint64_t value);       /* floor of the square root */
 /* a * b >> shift with 64-bit intermediate, rounding towards minus infinity; |a*b| must be below 2^63 */
 static inline int32_t c3d_mul_q30(int32_t a, int32_t b) { return (int32_t)(((int64_t)a * b) >> 30); }

@@ -35,14 +35,14 @@ static void egl_release(void)
 
 static int egl_make_current(sys_surface *surface)
 {
-    sys_surface_take(egl_release);
+    sys_surface_take(surface, egl_release);
     eglBindAPI(surface->api);
     return eglMakeCurrent(surface->display, surface->pbuffer, surface->pbuffer, surface->context) ? FF_OK : FF_ERR_SYSTEM;
 }
 
 static void egl_close(sys_surface *surface)
 {
-    sys_surface_take(NULL);
+    sys_surface_drop(surface);
     if (surface->pbuffer != EGL_NO_SURFACE) eglDestroySurface(surface->display, surface->pbuffer);
     if (surface->context != EGL_NO_CONTEXT) eglDestroyContext(surface->display, surface->context);
     free(surface);

@@ -88,14 +88,14 @@ static void glfw_release(void) { glfwMakeContextCurrent(NULL); }
 
 static int surface_make_current(sys_surface *surface)
 {
-    sys_surface_take(glfw_release);
+    sys_surface_take(surface, glfw_release);
     glfwMakeContextCurrent(surface->window);
     return glfwGetCurrentContext() == surface->window ? FF_OK : FF_ERR_SYSTEM;
 }
 
 static void surface_close(sys_surface *surface)
 {
-    sys_surface_take(NULL);
+    sys_surface_drop(surface);
     if (surface->window) glfwDestroyWindow(surface->window);
     free(surface);
     if (--open_windows == 0) glfwTerminate();

@@ -15,7 +15,7 @@ static void osmesa_release(void) { OSMesaMakeCurrent(NULL, NULL, 0, 0, 0); }
 
 static int osmesa_make_current(sys_surface *surface)
 {
-    sys_surface_take(osmesa_release);
+    sys_surface_take(surface, osmesa_release);
     return OSMesaMakeCurrent(surface->context, surface->pixels, GL_UNSIGNED_BYTE, surface->width, surface->height)
                ? FF_OK
                : FF_ERR_SYSTEM;
@@ -23,7 +23,7 @@ static int osmesa_make_current(sys_surface *surface)
 
 static void osmesa_close(sys_surface *surface)
 {
-    sys_surface_take(NULL);
+    sys_surface_drop(surface);
     if (surface->context) OSMesaDestroyContext(surface->context);
     free(surface->pixels);
     free(surface);

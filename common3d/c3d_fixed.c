@@ -1,0 +1,114 @@
+#include "c3d_fixed.h"
+
+#include <assert.h>
+
+#define EIGHTH_TURN (UINT32_C(1) << 29)
+#define PI_Q32 UINT64_C(13493037705)
+
+static int64_t round_q31(int64_t product) { return (product + (INT64_C(1) << 30)) >> 31; }
+
+/* Taylor's polynomials over an eighth of a turn: x up to 0.786, so the first term left out is below 2^-33 (sine: x^13/13!,
+ * cosine: x^12/12!). Coefficients are the reciprocal factorials in Q31; no product exceeds 2^62. */
+static int64_t polynomial(const int32_t *coefficient, int count, int64_t x2_q31)
+{
+    int64_t sum = coefficient[0];
+    for (int i = 1; i < count; i++) sum = coefficient[i] + round_q31(sum * x2_q31);
+    return sum;
+}
+
+/* Angle at most an eighth of a turn, in 2^-32 turn, to radians: times 2 pi, and from Q32 to Q31 on the way. */
+static int64_t radians_q31(uint32_t angle) { return (int64_t)((angle * PI_Q32 + (UINT64_C(1) << 31)) >> 32); }
+
+static int64_t sine_q31(uint32_t angle)
+{
+    static const int32_t coefficient[] = {-54, 5918, -426089, 17895697, -357913941};
+    int64_t x = radians_q31(angle), x2 = round_q31(x * x);
+    return x + round_q31(x * round_q31(polynomial(coefficient, 5, x2) * x2));
+}
+
+static int64_t cosine_q31(uint32_t angle)
+{
+    static const int32_t coefficient[] = {-592, 53261, -2982616, 89478485, -1073741824};
+    int64_t x = radians_q31(angle), x2 = round_q31(x * x);
+    return (INT64_C(1) << 31) + round_q31(polynomial(coefficient, 5, x2) * x2);
+}
+
+int32_t c3d_sin_turn32_q30(uint32_t angle)
+{
+    uint32_t octant = angle >> 29, within = angle & (EIGHTH_TURN - 1);
+    if (octant & 1) within = EIGHTH_TURN - within;
+    int use_cosine = (octant + 1) & 2; /* octants 1, 2 and 5, 6 */
+    int64_t value = ((use_cosine ? cosine_q31(within) : sine_q31(within)) + 1) >> 1;
+    return (int32_t)(octant & 4 ? -value : value);
+}
+
+int32_t c3d_sin_q30(int32_t angle_brad16) { return c3d_sin_turn32_q30((uint32_t)angle_brad16 << 16); }
+
+int32_t c3d_cos_q30(int32_t angle_brad16) { return c3d_sin_turn32_q30(((uint32_t)angle_brad16 + 16384u) << 16); }
+
+uint32_t c3d_isqrt64(uint64_t value)
+{
+    uint64_t root = 0;
+    for (uint64_t bit = UINT64_C(1) << 62; bit; bit >>= 2) {
+        if (value >= root + bit) {
+            value -= root + bit;
+            root = (root >> 1) + bit;
+        } else {
+            root >>= 1;
+        }
+    }
+    return (uint32_t)root;
+}
+
+static uint64_t magnitude(int64_t value) { return value < 0 ? 0 - (uint64_t)value : (uint64_t)value; }
+
+static void multiply128(uint64_t a, uint64_t b, uint64_t *high, uint64_t *low)
+{
+    uint64_t a0 = a & UINT32_MAX, a1 = a >> 32, b0 = b & UINT32_MAX, b1 = b >> 32;
+    uint64_t middle = a1 * b0 + (a0 * b0 >> 32); /* at most (2^32-1)^2 + 2^32-1: no overflow */
+    uint64_t middle2 = a0 * b1 + (middle & UINT32_MAX);
+    *low = a * b;
+    *high = a1 * b1 + (middle >> 32) + (middle2 >> 32);
+}
+
+/* (high:low) / divisor by long division; high < divisor, so the quotient has 64 bits. */
+static uint64_t divide128(uint64_t high, uint64_t low, uint64_t divisor)
+{
+    uint64_t quotient = 0;
+    for (int bit = 63; bit >= 0; bit--) {
+        uint64_t carry = high >> 63;
+        high = high << 1 | (low >> bit & 1);
+        if (carry || high >= divisor) {
+            high -= divisor;
+            quotient |= UINT64_C(1) << bit;
+        }
+    }
+    return quotient;
+}
+
+int64_t c3d_muldiv64(int64_t a, int64_t b, int64_t c)
+{
+    assert(c != 0);
+    int negative = (a < 0) ^ (b < 0) ^ (c < 0);
+    uint64_t high, low, divisor = magnitude(c), quotient;
+    multiply128(magnitude(a), magnitude(b), &high, &low);
+    if (high >= divisor)
+        quotient = UINT64_MAX;
+    else
+        quotient = high ? divide128(high, low, divisor) : low / divisor;
+    if (quotient > INT64_MAX) return negative ? INT64_MIN : INT64_MAX;
+    return negative ? -(int64_t)quotient : (int64_t)quotient;
+}
+
+int64_t c3d_length64(int64_t x, int64_t y, int64_t z)
+{
+    uint64_t a = magnitude(x), b = magnitude(y), c = magnitude(z), all = a | b | c;
+    int shift = 0;
+    while (all >> shift >= UINT64_C(1) << 31) shift++; /* three squares of 31 bits fit 64; 30 bits of precision stay */
+    a >>= shift;
+    b >>= shift;
+    c >>= shift;
+    uint64_t length = (uint64_t)c3d_isqrt64(a * a + b * b + c * c);
+    if (length > (UINT64_C(1) << 62) >> shift) return INT64_C(1) << 62;
+    return (int64_t)(length << shift);
+}
