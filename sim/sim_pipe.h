@@ -1,0 +1,55 @@
+/* One direction of a link: a byte queue, a transmitter of exact rate, a wire with delay, and what has arrived.
+ *
+ *      send ──▶ [ queue ] ──transmitter──▶ [ wire: delay, jitter ] ──▶ [ arrived ] ──▶ recv
+ *
+ * The transmitter takes what is queued in packets of up to SIM_PIPE_PACKET_BYTES. Which bytes share a packet depends only on when
+ * they were sent, never on when the pipe is looked at. Times are microseconds since the link's start and never go back.
+ */
+#ifndef SIM_PIPE_H
+#define SIM_PIPE_H
+
+#include "sim_link.h"
+#include "sim_trace.h"
+
+#define SIM_PIPE_PACKET_BYTES 512 /* a common packet size of 2.5G links; the jitter is drawn for each */
+#define SIM_PIPE_SPANS 4096       /* most sends waiting, and packets under way; more hold the sender back */
+
+/* The stalls of a link in order of time; both directions make the same ones from the same seed. */
+typedef struct sim_stalls {
+    sys_random random;
+    uint32_t every_ms, ms_min, ms_max, bytes_s;
+    int64_t start_us, end_us;     /* of the present or next one */
+} sim_stalls;
+
+void sim_stalls_init(sim_stalls *stalls, const sim_link_desc *desc, uint64_t seed);
+/* The rate at time_us (never earlier than last asked) given the rate without stalls, and until when it holds. */
+uint32_t sim_stalls_rate(sim_stalls *stalls, uint32_t bytes_s, int64_t time_us, int64_t *until_us);
+
+typedef struct sim_span { int64_t us; uint32_t count; } sim_span;
+typedef struct sim_spans { sim_span item[SIM_PIPE_SPANS]; uint32_t first, count; } sim_spans;
+
+typedef struct sim_pipe {
+    sim_link_way desc;
+    sim_stalls stalls;
+    sim_trace trace;
+    sys_random jitter;
+    uint8_t *ring;
+    size_t ring_bytes, ring_first, stored;  /* arrived, under way and queued bytes, in order */
+    size_t queued;                          /* the last ones of them */
+    sim_spans queue, wire;                  /* us: when sent; when it arrives */
+    int64_t free_us;                        /* the transmitter is busy until then */
+    uint64_t surplus;                       /* part of a byte already paid for, in millionths of a byte */
+    uint64_t opportunity;                   /* trace: first one not used up */
+    int64_t arrival_us;                     /* of the last packet: order is kept */
+} sim_pipe;
+
+/* FF_OK, FF_ERR_MEMORY, or an error of the trace. */
+int sim_pipe_init(sim_pipe *pipe, const sim_link_desc *desc, enum sim_direction way, uint64_t seed);
+void sim_pipe_free(sim_pipe *pipe);
+/* Loses all bytes stored. */
+void sim_pipe_flush(sim_pipe *pipe, int64_t now_us);
+int sim_pipe_send(sim_pipe *pipe, const uint8_t *bytes, size_t count, int64_t now_us);
+int sim_pipe_recv(sim_pipe *pipe, uint8_t *bytes, size_t capacity, int64_t now_us);
+int64_t sim_pipe_next_us(const sim_pipe *pipe);
+
+#endif
