@@ -11,7 +11,20 @@
 
 typedef struct ff_panorama_renderer ff_panorama_renderer;
 
-/* Opens its own surface and device. FF_OK or a negative error. */
+/* What it has done since it was opened. */
+typedef struct ff_panorama_render_stats {
+    uint32_t faces;
+    uint32_t empty_by_bounds; /* found empty from bounds of terrain or nodes, without drawing */
+    uint32_t empty_drawn;     /* found empty in the picture */
+    uint32_t nodes_read;      /* roots and refinements taken from the pack, damaged ones not counted */
+    uint32_t nodes_damaged;   /* drawn coarser instead */
+    uint32_t nodes_drawn;
+    uint64_t triangles, bytes;
+    int64_t time_us;          /* by sys_time_us */
+} ff_panorama_render_stats;
+
+/* Opens its own surface and device; every rendering makes its context current and leaves it so. The pack must outlive it. FF_OK or a
+ * negative error. */
 int ff_panorama_renderer_open(const ff_pack *pack, const sys_surface_api *surface_api, const struct c3d_backend *backend,
                               ff_panorama_renderer **renderer);
 void ff_panorama_renderer_close(ff_panorama_renderer *renderer);
@@ -20,5 +33,7 @@ void ff_panorama_renderer_close(ff_panorama_renderer *renderer);
  * ground is found empty from the tree alone, without drawing. */
 int ff_panorama_render_face(ff_panorama_renderer *renderer, const ff_get_panorama *request, uint8_t face, int last, uint8_t *out,
                             size_t capacity);
+
+void ff_panorama_renderer_get_stats(const ff_panorama_renderer *renderer, ff_panorama_render_stats *stats);
 
 #endif
