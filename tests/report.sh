@@ -1,0 +1,84 @@
+#!/bin/bash
+# farfield-report: the page and the table from CSV files, and one clear error for each kind of bad CSV.
+set -u
+cd "$(dirname "$0")/.." || exit 2
+report=${BIN:-build/bin}/farfield-report
+work=build/tests/report
+failures=0
+result() { # STATUS WHAT
+    if [ "$1" = 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failures=$((failures + 1)); fi
+}
+rm -rf "$work"
+mkdir -p "$work/fly"
+
+header="t_s, x_m, y_m, z_m, triangles, nodes_drawn, nodes_held, bytes_down, bytes_up, requests, in_flight, panoramas, err_px_rms, err_px_p95, err_px_max, frame_hash, extra"
+flight() { # ERROR_AT_START
+    echo "$header"
+    awk -v error="$1" 'BEGIN {
+        for (t = 0; t <= 90; t++)
+            printf "%d, %d, 0, 500, %d, %d, %d, %d, %d, %d, 4, %d, %s, %s, %s, %08x, word\n", t, t * 41, 100 + 40 * t, 5 + t,
+                20 + 2 * t, 1000 * t, 50 * t, 3 * t, t / 30, error == "" ? "" : error / (t + 1), error == "" ? "" : 2 * error / (t + 1),
+                error == "" ? "" : 5 * error / (t + 1), t
+    }'
+}
+flight 60 >"$work/umts <&> on.csv"
+flight "" >"$work/blind.csv"
+printf 'not really a picture' >"$work/fly/one & two.png"
+
+"$report" "$work/umts <&> on.csv" "$work/blind.csv" -o "$work/deep/out" --title 'Ground & "far" <ground>' \
+    --picture "$work/fly/one & two.png" >"$work/said" 2>"$work/error"
+result $? "makes a report"
+page=$work/deep/out/index.html
+table=$work/deep/out/REPORT.md
+[ "$(cat "$work/said")" = "$page
+$table" ]; result $? "names the files it made"
+[ "$(grep -c '<svg' "$page")" = 10 ]; result $? "ten plots: four for a flight, three without auditor, three for all"
+! grep -q -E '(src|href)="?https?:|url\(http' "$page"; result $? "nothing comes from a network"
+grep -q '<h1>Ground &amp; &quot;far&quot; &lt;ground&gt;</h1>' "$page"; result $? "the title is escaped"
+grep -q '<h2>umts &lt;&amp;&gt; on</h2>' "$page"; result $? "a flight's name is escaped"
+cmp -s "$work/fly/one & two.png" "$work/deep/out/01-fly-one & two.png"; result $? "the picture is copied"
+grep -q 'src="01-fly-one%20%26%20two.png"' "$page"; result $? "and linked"
+[ "$(ls "$work/deep/out" | wc -l)" = 3 ]; result $? "no temporary files stay"
+# Means of 100 + 40 t and of 60/(t+1) for t = 0..90; 1000 bytes a second down.
+grep -q -F '| umts \<&\> on | 90 | 1900 | 3700 | 50 | 200 | 60.0 | 90.0 | 4.5 | 270 | 3 | 3.36 | 6.72 | 300.0 |' "$table"
+result $? "the numbers of the table"
+grep -q -F '| blind | 90 | 1900 | 3700 | 50 | 200 | 60.0 | 90.0 | 4.5 | 270 | 3 | – | – | – |' "$table"
+result $? "a flight without auditor has no error"
+if command -v python3 >/dev/null; then
+    "$report" --json "$work/blind.csv" -o "$work/json" |
+        python3 -c 'import json, sys; f = json.load(sys.stdin)[0]; sys.exit(f["kb_down_60s"] != 60 or f["err_px_max"] is not None)'
+    result $? "--json can be read"
+    python3 - "$page" <<'END'
+import re, sys, xml.dom.minidom
+for svg in re.findall(r"<svg.*?</svg>", open(sys.argv[1], encoding="utf-8").read(), re.S):
+    curves = re.findall(r"d='M[^']{300,}'", svg) + re.findall(r'd="M[^"]{300,}"', svg)
+    xml.dom.minidom.parseString(svg)
+    if not curves:
+        sys.exit("a plot without a curve")
+END
+    result $? "every plot is well-formed and has a curve"
+fi
+
+refuses() { # WHAT MESSAGE, CSV on stdin
+    cat >"$work/bad.csv"
+    "$report" "$work/bad.csv" -o "$work/bad" >"$work/said" 2>"$work/error"
+    [ $? = 1 ] && [ "$(cat "$work/error")" = "farfield-report: $2" ] && [ ! -s "$work/said" ] && [ ! -e "$work/bad" ]
+    result $? "refuses $1"
+}
+refuses "an empty file" "$work/bad.csv: empty file" </dev/null
+refuses "a file without rows" "$work/bad.csv:1: no rows" <<<"$header"
+refuses "a foreign header" "$work/bad.csv:1: no column t_s: not the CSV of a flight" <<<"a,b,c"
+refuses "a short row" "$work/bad.csv:5: 16 fields where the header has 17" < <(flight 1 | sed '5s/, 0, 500/, 500/')
+refuses "a word for a number" "$work/bad.csv:5: t_s is not a number: three" < <(flight 1 | sed '5s/^3, /three, /')
+refuses "NaN" "$work/bad.csv:5: t_s is out of range: nan" < <(flight 1 | sed '5s/^3, /nan, /')
+refuses "time that goes back" "$work/bad.csv:5: t_s goes back" < <(flight 1 | sed '5s/^3, /0, /')
+refuses "binary data" "$work/bad.csv:11: not text" < <(flight 1 | sed '11s/9/9\x00/')
+"$report" "$work/none.csv" -o "$work/bad" 2>"$work/error"
+[ "$(cat "$work/error")" = "farfield-report: $work/none.csv: No such file or directory" ]; result $? "names a missing file"
+"$report" "$work/blind.csv" -o "$work/blind.csv/x" 2>"$work/error"
+[ $? = 1 ] && [ "$(wc -l <"$work/error")" = 1 ]; result $? "a folder that cannot be made"
+PATH=/nonexistent "$report" "$work/blind.csv" -o "$work/bad" 2>"$work/error"
+[ $? = 1 ] && grep -q 'cannot run gnuplot' "$work/error"; result $? "says when gnuplot is missing"
+"$report" --help | grep -q '^Usage: farfield-report' && "$report" --version | grep -q '^farfield-report [0-9]'
+result $? "--help and --version"
+exit $((failures > 0))

@@ -1,0 +1,41 @@
+/* One flight's CSV (farfield-fly --csv): columns found by the names in its header line, read whole into memory. */
+#ifndef REPORT_CSV_H
+#define REPORT_CSV_H
+
+#include <stddef.h>
+
+/* Columns the report uses; a file may have more, in any order. Errors may be missing (flight without auditor): NAN. */
+#define REPORT_COLUMN_LIST(X) \
+    X(T_S, "t_s", 1) X(TRIANGLES, "triangles", 1) X(NODES_DRAWN, "nodes_drawn", 1) X(NODES_HELD, "nodes_held", 1) \
+    X(BYTES_DOWN, "bytes_down", 1) X(BYTES_UP, "bytes_up", 1) X(REQUESTS, "requests", 1) X(PANORAMAS, "panoramas", 1) \
+    X(ERR_RMS, "err_px_rms", 0) X(ERR_P95, "err_px_p95", 0) X(ERR_MAX, "err_px_max", 0)
+enum report_column {
+#define X(id, name, required) REPORT_##id,
+    REPORT_COLUMN_LIST(X)
+#undef X
+    REPORT_COLUMN_COUNT
+};
+
+typedef struct report_row { double value[REPORT_COLUMN_COUNT]; } report_row;
+
+typedef struct report_flight {
+    char *name;          /* the file's name without folder and ".csv" */
+    report_row *row;
+    size_t row_count;    /* at least 1 */
+} report_flight;
+
+/* Means over all rows, NAN where a flight has none. */
+typedef struct report_summary {
+    double seconds, triangles_mean, triangles_max, nodes_drawn_mean, nodes_held_max;
+    double kb_down_60s, kb_down, kb_up, requests, panoramas; /* 60 s: NAN when the flight is shorter */
+    double err_rms_mean, err_p95_mean, err_max;
+} report_summary;
+
+/* 0, or -1 with the reason in `why` ("FILE: ..." or "FILE:LINE: ..."). */
+int report_flight_load(report_flight *flight, const char *path, char *why, size_t why_bytes);
+void report_flight_free(report_flight *flight);
+void report_summarise(const report_flight *flight, report_summary *summary);
+/* 1 when any row has the column. */
+int report_flight_has(const report_flight *flight, enum report_column column);
+
+#endif

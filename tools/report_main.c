@@ -1,0 +1,154 @@
+/* farfield-report: flights' CSV files become an HTML page with plots and a Markdown table. */
+#include "report_page.h"
+
+#include "../client/farfield.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#define PATH_BYTES 4096
+#define WHY_BYTES 8192
+
+static const char usage[] =
+    "Usage: farfield-report [OPTION]... CSV... -o DIR\n"
+    "Make a report of flights: DIR/index.html with plots, and DIR/REPORT.md.\n"
+    "\n"
+    "Each CSV comes from farfield-fly; the page can be read without a network.\n"
+    "\n"
+    "  -o, --output DIR     folder for the report, made if missing\n"
+    "      --title TITLE    heading of the report\n"
+    "      --picture FILE   copy a picture into DIR and show it; may be repeated, and\n"
+    "                       several files may follow until the next option\n"
+    "      --json           print the summaries as JSON\n"
+    "      --help           show this help and exit\n"
+    "      --version        show the version and exit\n";
+
+typedef struct options {
+    const char *title, *folder;
+    const char **csv, **picture; /* argc entries each */
+    size_t csv_count, picture_count;
+    int json;
+} options;
+
+static int fail(const char *format, ...) __attribute__((format(printf, 1, 2)));
+static int fail(const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    fputs("farfield-report: ", stderr);
+    vfprintf(stderr, format, args);
+    fputc('\n', stderr);
+    va_end(args);
+    return -1;
+}
+
+/* 0: go on, 1: answered, -1: wrong. Arguments in order ("-"): those after --picture are pictures until another option comes. */
+static int parse(options *o, int argc, char **argv)
+{
+    static const struct option list[] = {
+        {"output", required_argument, NULL, 'o'}, {"title", required_argument, NULL, 't'},
+        {"picture", required_argument, NULL, 'p'}, {"json", no_argument, NULL, 'j'},
+        {"help", no_argument, NULL, 'h'}, {"version", no_argument, NULL, 'v'}, {NULL, 0, NULL, 0}};
+    int c, pictures = 0;
+    while ((c = getopt_long(argc, argv, "-o:", list, NULL)) != -1) {
+        if (c == 1 && !pictures) o->csv[o->csv_count++] = optarg;
+        else if (c == 'p' || c == 1) o->picture[o->picture_count++] = optarg;
+        else if (c == 'o') o->folder = optarg;
+        else if (c == 't') o->title = optarg;
+        else if (c == 'j') o->json = 1;
+        else if (c == 'h') return fputs(usage, stdout), 1;
+        else if (c == 'v') return puts("farfield-report " FARFIELD_VERSION), 1;
+        else return fail("try --help");
+        if (c != 1) pictures = c == 'p';
+    }
+    while (optind < argc) o->csv[o->csv_count++] = argv[optind++];
+    if (!o->csv_count) return fail("no CSV given; try --help");
+    if (!o->folder) return fail("no folder given; use -o DIR");
+    return 0;
+}
+
+static int make_folder(const char *path)
+{
+    char part[PATH_BYTES];
+    if ((size_t)snprintf(part, sizeof part, "%s", path) >= sizeof part) return fail("path too long: %s", path);
+    for (char *slash = strchr(part + 1, '/'); slash; slash = strchr(slash + 1, '/')) {
+        *slash = 0;
+        if (mkdir(part, 0777) && errno != EEXIST) return fail("%s: %s", part, strerror(errno));
+        *slash = '/';
+    }
+    if (mkdir(part, 0777) && errno != EEXIST) return fail("%s: %s", part, strerror(errno));
+    return 0;
+}
+
+static int copy_file(const char *from, const char *to)
+{
+    sys_mapping mapping;
+    int rc = sys_map_file(from, &mapping);
+    if (rc < 0) return fail("%s: %s", from, ff_error_text(rc));
+    rc = sys_write_file(to, mapping.bytes, (size_t)mapping.size);
+    sys_unmap_file(&mapping);
+    return rc < 0 ? fail("%s: %s", to, ff_error_text(rc)) : 0;
+}
+
+/* Pictures of several flights often share a name: the copy is called FOLDER-NAME, and numbered. */
+static char *picture_name(const char *path, size_t number)
+{
+    const char *base = strrchr(path, '/'), *folder = base;
+    char name[PATH_BYTES];
+    base = base ? base + 1 : path;
+    while (folder && folder > path && folder[-1] != '/') folder--;
+    int folder_length = folder ? (int)(base - 1 - folder) : 0;
+    snprintf(name, sizeof name, "%02zu-%.*s%s%s", number + 1, folder_length, folder ? folder : "", folder_length ? "-" : "", base);
+    return strdup(name);
+}
+
+static int copy_pictures(const options *o, char **names)
+{
+    for (size_t i = 0; i < o->picture_count; i++) {
+        char to[PATH_BYTES];
+        if (!(names[i] = picture_name(o->picture[i], i))) return fail("out of memory");
+        if ((size_t)snprintf(to, sizeof to, "%s/%s", o->folder, names[i]) >= sizeof to) return fail("path too long: %s", names[i]);
+        if (copy_file(o->picture[i], to)) return -1;
+    }
+    return 0;
+}
+
+static int make_report(const options *o, report_flight *flight, char **picture)
+{
+    char why[WHY_BYTES];
+    report_content content = {.title = o->title, .folder = o->folder, .flight = flight, .flight_count = o->csv_count,
+                              .picture = (const char *const *)picture, .picture_count = o->picture_count};
+    for (size_t i = 0; i < o->csv_count; i++)
+        if (report_flight_load(&flight[i], o->csv[i], why, sizeof why)) return fail("%s", why);
+    if (make_folder(o->folder) || copy_pictures(o, picture)) return -1;
+    if (report_page_html(&content, why, sizeof why) || report_page_markdown(&content, why, sizeof why)) return fail("%s", why);
+    if (o->json) report_page_json(&content);
+    else printf("%s/index.html\n%s/REPORT.md\n", o->folder, o->folder);
+    return 0;
+}
+
+int main(int argc, char **argv)
+{
+    size_t room = (size_t)argc;
+    options o = {.title = "Farfield flights"};
+    o.csv = calloc(room, sizeof *o.csv);
+    o.picture = calloc(room, sizeof *o.picture);
+    report_flight *flight = calloc(room, sizeof *flight);
+    char **picture = calloc(room, sizeof *picture);
+    int rc = o.csv && o.picture && flight && picture ? parse(&o, argc, argv) : fail("out of memory");
+    if (rc == 0) rc = make_report(&o, flight, picture);
+    for (size_t i = 0; i < room; i++) {
+        if (flight) report_flight_free(&flight[i]);
+        if (picture) free(picture[i]);
+    }
+    free(o.csv);
+    free(o.picture);
+    free(flight);
+    free(picture);
+    return rc < 0 ? 1 : 0;
+}

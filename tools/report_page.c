@@ -1,0 +1,279 @@
+#include "report_page.h"
+
+#include "report_plot.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PATH_BYTES 4096
+
+/* The summary table: heading, name in --json, decimals, place in report_summary. */
+typedef struct summary_column {
+    const char *heading, *json;
+    int decimals;
+    size_t offset;
+} summary_column;
+
+#define AT(field) offsetof(report_summary, field)
+static const summary_column summary_columns[] = {
+    {"seconds", "seconds", 0, AT(seconds)},
+    {"triangles, mean", "triangles_mean", 0, AT(triangles_mean)},
+    {"triangles, most", "triangles_max", 0, AT(triangles_max)},
+    {"nodes drawn, mean", "nodes_drawn_mean", 0, AT(nodes_drawn_mean)},
+    {"nodes held, most", "nodes_held_max", 0, AT(nodes_held_max)},
+    {"kB down in 60 s", "kb_down_60s", 1, AT(kb_down_60s)},
+    {"kB down", "kb_down", 1, AT(kb_down)},
+    {"kB up", "kb_up", 1, AT(kb_up)},
+    {"requests", "requests", 0, AT(requests)},
+    {"panoramas", "panoramas", 0, AT(panoramas)},
+    {"error px, rms", "err_px_rms_mean", 2, AT(err_rms_mean)},
+    {"error px, 95 %", "err_px_p95_mean", 2, AT(err_p95_mean)},
+    {"error px, most", "err_px_max", 1, AT(err_max)},
+};
+enum { SUMMARY_COLUMNS = sizeof summary_columns / sizeof *summary_columns };
+
+static double summary_value(const report_summary *summary, const summary_column *column)
+{
+    double value;
+    memcpy(&value, (const char *)summary + column->offset, sizeof value);
+    return value;
+}
+
+static void put_html(FILE *out, const char *text)
+{
+    for (; *text; text++) {
+        if (*text == '&') fputs("&amp;", out);
+        else if (*text == '<') fputs("&lt;", out);
+        else if (*text == '>') fputs("&gt;", out);
+        else if (*text == '"') fputs("&quot;", out);
+        else fputc(*text, out);
+    }
+}
+
+static void put_markdown(FILE *out, const char *text)
+{
+    for (; *text; text++) {
+        if (strchr("|\\`*_<>[]#", *text)) fputc('\\', out);
+        fputc(*text, out);
+    }
+}
+
+/* A relative link: what is not plain goes as %XX. */
+static void put_link(FILE *out, const char *name)
+{
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._~";
+    for (; *name; name++) {
+        if (strchr(plain, *name)) fputc(*name, out);
+        else fprintf(out, "%%%02X", (unsigned)(unsigned char)*name);
+    }
+}
+
+static FILE *open_page(const report_content *content, const char *name, char *why, size_t why_bytes)
+{
+    char path[PATH_BYTES];
+    snprintf(path, sizeof path, "%s/%s", content->folder, name);
+    FILE *out = fopen(path, "w");
+    if (!out) snprintf(why, why_bytes, "%s: %s", path, strerror(errno));
+    return out;
+}
+
+static int close_page(FILE *out, const report_content *content, const char *name, char *why, size_t why_bytes)
+{
+    int bad = ferror(out);
+    if (fclose(out) || bad) {
+        snprintf(why, why_bytes, "%s/%s: cannot be written", content->folder, name);
+        return -1;
+    }
+    return 0;
+}
+
+/* ---- HTML ---- */
+static void put_html_table(FILE *out, const report_content *content)
+{
+    fputs("<div class=\"wide\"><table>\n<tr><th>flight</th>", out);
+    for (int c = 0; c < SUMMARY_COLUMNS; c++) fprintf(out, "<th>%s</th>", summary_columns[c].heading);
+    fputs("</tr>\n", out);
+    for (size_t i = 0; i < content->flight_count; i++) {
+        report_summary summary;
+        report_summarise(&content->flight[i], &summary);
+        fputs("<tr><td>", out);
+        put_html(out, content->flight[i].name);
+        fputs("</td>", out);
+        for (int c = 0; c < SUMMARY_COLUMNS; c++) {
+            double value = summary_value(&summary, &summary_columns[c]);
+            if (isnan(value)) fputs("<td>–</td>", out);
+            else fprintf(out, "<td>%.*f</td>", summary_columns[c].decimals, value);
+        }
+        fputs("</tr>\n", out);
+    }
+    fputs("</table></div>\n", out);
+}
+
+static int put_plot(FILE *out, const report_content *content, const report_plot *plot, char *why, size_t why_bytes)
+{
+    char *svg;
+    if (!plot->curve_count) return 0;
+    if (report_plot_draw(plot, content->folder, &svg, why, why_bytes)) return -1;
+    fprintf(out, "<figure>%s</figure>\n", svg);
+    free(svg);
+    return 0;
+}
+
+static void add_curve(report_plot *plot, const report_flight *flight, enum report_column x, enum report_column y,
+                      const char *title)
+{
+    static const double kilo = 1e-3;
+    if (plot->curve_count == REPORT_CURVES_MAX || !report_flight_has(flight, y)) return;
+    plot->curve[plot->curve_count++] = (report_curve){
+        .flight = flight, .x = x, .y = y, .title = title,
+        .x_scale = x == REPORT_BYTES_DOWN ? kilo : 1,
+        .y_scale = y == REPORT_BYTES_DOWN || y == REPORT_BYTES_UP ? kilo : 1,
+    };
+}
+
+static int put_flight(FILE *out, const report_content *content, const report_flight *flight, char *why, size_t why_bytes)
+{
+    report_plot triangles = {.title = "Triangles drawn", .x_label = "seconds", .y_label = "triangles"};
+    report_plot bytes = {.title = "Bytes since the start", .x_label = "seconds", .y_label = "kB"};
+    report_plot nodes = {.title = "Nodes", .x_label = "seconds", .y_label = "nodes"};
+    report_plot error = {.title = "Error of the picture", .x_label = "seconds", .y_label = "pixels", .logarithmic_y = 1};
+    add_curve(&triangles, flight, REPORT_T_S, REPORT_TRIANGLES, "triangles");
+    add_curve(&bytes, flight, REPORT_T_S, REPORT_BYTES_DOWN, "down");
+    add_curve(&bytes, flight, REPORT_T_S, REPORT_BYTES_UP, "up");
+    add_curve(&nodes, flight, REPORT_T_S, REPORT_NODES_HELD, "held");
+    add_curve(&nodes, flight, REPORT_T_S, REPORT_NODES_DRAWN, "drawn");
+    add_curve(&error, flight, REPORT_T_S, REPORT_ERR_RMS, "rms");
+    add_curve(&error, flight, REPORT_T_S, REPORT_ERR_P95, "95 %");
+    fputs("<h2>", out);
+    put_html(out, flight->name);
+    fputs("</h2>\n<div class=\"plots\">\n", out);
+    if (put_plot(out, content, &triangles, why, why_bytes) || put_plot(out, content, &bytes, why, why_bytes) ||
+        put_plot(out, content, &nodes, why, why_bytes) || put_plot(out, content, &error, why, why_bytes))
+        return -1;
+    fputs("</div>\n", out);
+    return 0;
+}
+
+static int put_comparison(FILE *out, const report_content *content, char *why, size_t why_bytes)
+{
+    report_plot bytes = {.title = "Bytes down", .x_label = "seconds", .y_label = "kB"};
+    report_plot error = {.title = "Error over time", .x_label = "seconds", .y_label = "pixels rms", .logarithmic_y = 1};
+    report_plot work = {.title = "Error against bytes", .x_label = "kB down", .y_label = "pixels rms", .logarithmic_y = 1};
+    for (size_t i = 0; i < content->flight_count; i++) {
+        const report_flight *flight = &content->flight[i];
+        add_curve(&bytes, flight, REPORT_T_S, REPORT_BYTES_DOWN, flight->name);
+        add_curve(&error, flight, REPORT_T_S, REPORT_ERR_RMS, flight->name);
+        add_curve(&work, flight, REPORT_BYTES_DOWN, REPORT_ERR_RMS, flight->name);
+    }
+    fputs("<h2>All flights</h2>\n<div class=\"plots\">\n", out);
+    if (put_plot(out, content, &bytes, why, why_bytes) || put_plot(out, content, &error, why, why_bytes) ||
+        put_plot(out, content, &work, why, why_bytes))
+        return -1;
+    fputs("</div>\n", out);
+    return 0;
+}
+
+static void put_pictures(FILE *out, const report_content *content)
+{
+    if (!content->picture_count) return;
+    fputs("<h2>Pictures</h2>\n<div class=\"plots\">\n", out);
+    for (size_t i = 0; i < content->picture_count; i++) {
+        fputs("<figure><img src=\"", out);
+        put_link(out, content->picture[i]);
+        fputs("\" alt=\"\"><figcaption>", out);
+        put_html(out, content->picture[i]);
+        fputs("</figcaption></figure>\n", out);
+    }
+    fputs("</div>\n", out);
+}
+
+int report_page_html(const report_content *content, char *why, size_t why_bytes)
+{
+    FILE *out = open_page(content, "index.html", why, why_bytes);
+    int rc = 0;
+    if (!out) return -1;
+    fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>", out);
+    put_html(out, content->title);
+    fputs("</title>\n<style>\n"
+          "body{font:15px/1.5 sans-serif;margin:2em auto;max-width:1340px;padding:0 1em;color:#222}\n"
+          "table{border-collapse:collapse}td,th{padding:.2em .7em;border-bottom:1px solid #ddd;text-align:right}\n"
+          "th{vertical-align:bottom}td:first-child,th:first-child{text-align:left}.wide{overflow-x:auto}\n"
+          ".plots{display:flex;flex-wrap:wrap;gap:1em}figure{margin:0}figure svg{width:640px;height:300px}\n"
+          "figcaption{color:#666;font-size:13px}\n</style></head><body>\n<h1>", out);
+    put_html(out, content->title);
+    fputs("</h1>\n", out);
+    put_html_table(out, content);
+    if (content->flight_count > 1) rc = put_comparison(out, content, why, why_bytes);
+    put_pictures(out, content);
+    for (size_t i = 0; i < content->flight_count && !rc; i++)
+        rc = put_flight(out, content, &content->flight[i], why, why_bytes);
+    fputs("</body></html>\n", out);
+    if (rc) fclose(out);
+    else rc = close_page(out, content, "index.html", why, why_bytes);
+    return rc;
+}
+
+/* ---- Markdown and JSON ---- */
+int report_page_markdown(const report_content *content, char *why, size_t why_bytes)
+{
+    FILE *out = open_page(content, "REPORT.md", why, why_bytes);
+    if (!out) return -1;
+    fputs("# ", out);
+    put_markdown(out, content->title);
+    fputs("\n\n| flight |", out);
+    for (int c = 0; c < SUMMARY_COLUMNS; c++) fprintf(out, " %s |", summary_columns[c].heading);
+    fputs("\n| :-- |", out);
+    for (int c = 0; c < SUMMARY_COLUMNS; c++) fputs(" --: |", out);
+    for (size_t i = 0; i < content->flight_count; i++) {
+        report_summary summary;
+        report_summarise(&content->flight[i], &summary);
+        fputs("\n| ", out);
+        put_markdown(out, content->flight[i].name);
+        fputs(" |", out);
+        for (int c = 0; c < SUMMARY_COLUMNS; c++) {
+            double value = summary_value(&summary, &summary_columns[c]);
+            if (isnan(value)) fputs(" – |", out);
+            else fprintf(out, " %.*f |", summary_columns[c].decimals, value);
+        }
+    }
+    fputs("\n", out);
+    for (size_t i = 0; i < content->picture_count; i++) {
+        fputs("\n![](", out);
+        put_link(out, content->picture[i]);
+        fputs(")\n", out);
+    }
+    return close_page(out, content, "REPORT.md", why, why_bytes);
+}
+
+static void put_json_text(const char *text)
+{
+    putchar('"');
+    for (; *text; text++) {
+        if (*text == '"' || *text == '\\') printf("\\%c", *text);
+        else if ((unsigned char)*text < ' ') printf("\\u%04x", (unsigned)*text);
+        else putchar(*text);
+    }
+    putchar('"');
+}
+
+void report_page_json(const report_content *content)
+{
+    putchar('[');
+    for (size_t i = 0; i < content->flight_count; i++) {
+        report_summary summary;
+        report_summarise(&content->flight[i], &summary);
+        printf("%s{\"flight\": ", i ? ",\n " : "");
+        put_json_text(content->flight[i].name);
+        for (int c = 0; c < SUMMARY_COLUMNS; c++) {
+            double value = summary_value(&summary, &summary_columns[c]);
+            printf(", \"%s\": ", summary_columns[c].json);
+            if (isnan(value)) fputs("null", stdout);
+            else printf("%.9g", value);
+        }
+        putchar('}');
+    }
+    puts("]");
+}

@@ -1,0 +1,21 @@
+/* The report itself: index.html (readable without a network) and REPORT.md in one folder. */
+#ifndef REPORT_PAGE_H
+#define REPORT_PAGE_H
+
+#include "report_csv.h"
+
+typedef struct report_content {
+    const char *title, *folder;
+    const report_flight *flight;
+    size_t flight_count;
+    const char *const *picture; /* file names inside `folder` */
+    size_t picture_count;
+} report_content;
+
+/* Each 0, or -1 with the reason in `why`. */
+int report_page_html(const report_content *content, char *why, size_t why_bytes);
+int report_page_markdown(const report_content *content, char *why, size_t why_bytes);
+/* An array of summaries on stdout. */
+void report_page_json(const report_content *content);
+
+#endif

@@ -1,0 +1,29 @@
+/* Plots of flights: gnuplot draws SVG, which is then part of the page. */
+#ifndef REPORT_PLOT_H
+#define REPORT_PLOT_H
+
+#include "report_csv.h"
+
+#define REPORT_CURVES_MAX 16
+
+/* A column over time, or over another column; value = column * scale. */
+typedef struct report_curve {
+    const report_flight *flight;
+    enum report_column x, y;
+    double x_scale, y_scale;
+    const char *title;
+} report_curve;
+
+typedef struct report_plot {
+    const char *title, *x_label, *y_label;
+    int logarithmic_y;
+    report_curve curve[REPORT_CURVES_MAX];
+    size_t curve_count;
+} report_plot;
+
+/* Runs gnuplot; *svg receives the picture as text (no XML declaration), to be freed. `folder` takes temporary files.
+ * 0, or -1 with the reason in `why`. Values NAN leave gaps; each curve needs one that is not.
+ * A logarithmic axis draws what lies below 0.01 at 0.01. */
+int report_plot_draw(const report_plot *plot, const char *folder, char **svg, char *why, size_t why_bytes);
+
+#endif
