@@ -50,8 +50,8 @@ static int write_script(const report_plot *plot, const char *script, const char 
     if (!out) return -1;
     fputs("set terminal svg size 640,300 dynamic font 'sans-serif,12' linewidth 1.2\nset output ", out);
     put_quoted(out, picture);
-    fputs("\nset grid linecolor rgb '#dddddd'\nset border 3 linecolor rgb '#888888'\nset tics nomirror\n"
-          "set key outside top right noenhanced\nset rmargin 2\n", out);
+    fputs("\nset grid linetype 1 linecolor rgb '#dddddd'\nset border 3 linecolor rgb '#888888'\nset tics nomirror\n"
+          "set key below center horizontal noenhanced\n", out);
     put_label(out, "title", plot->title);
     put_label(out, "xlabel", plot->x_label);
     put_label(out, "ylabel", plot->y_label);
