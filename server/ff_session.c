@@ -341,7 +341,7 @@ static int handle(ff_session *session, const ff_message *message)
     case FF_MSG_PING:
         answer_short(session, &(ff_message){ .type = FF_MSG_PONG, .u.ping = message->u.ping });
         return FF_OK;
-    default: /* the server's own messages */
+    default: /* kept out by take_message */
         return end_session(session, FF_ERR_FORMAT);
     }
 }
@@ -354,7 +354,8 @@ static int take_message(ff_session *session, const uint8_t *bytes, size_t count,
     size_t added = count < IN_BYTES - held ? count : IN_BYTES - held;
     memcpy(session->in + held, bytes, added);
     ff_message message;
-    int used = ff_message_decode(session->in, held + added, &message);
+    /* The server's own types are refused by their first byte: another protocol's talk need not be heard out. */
+    int used = session->in[0] > FF_MSG_PING ? FF_ERR_FORMAT : ff_message_decode(session->in, held + added, &message);
     *complete = used > 0;
     if (used < 0)
         return end_session(session, used);
