@@ -1,0 +1,273 @@
+/* Fixed-function drawing shared by both GL back ends. */
+#include "c3d_gl_local.h"
+
+#include <string.h>
+
+static const void *offset_pointer(const void *base, size_t offset) { return (const void *)((uintptr_t)base + offset); }
+
+static void bind_array(c3d_gl_state *state, uint32_t buffer)
+{
+    if (!state->buffers || state->array_buffer == buffer) return;
+    state->gl.BindBuffer(GL_ARRAY_BUFFER, buffer);
+    state->array_buffer = buffer;
+}
+
+static void bind_elements(c3d_gl_state *state, uint32_t buffer)
+{
+    if (!state->buffers || state->element_buffer == buffer) return;
+    state->gl.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffer);
+    state->element_buffer = buffer;
+}
+
+static void bind_texture(c3d_gl_state *state, uint32_t texture)
+{
+    if (state->texture == texture) return;
+    state->gl.BindTexture(GL_TEXTURE_2D, texture);
+    state->texture = texture;
+}
+
+static void enable(c3d_gl_state *state, unsigned capability, int on)
+{
+    if (on)
+        state->gl.Enable(capability);
+    else
+        state->gl.Disable(capability);
+}
+
+static void enable_array(c3d_gl_state *state, unsigned array, int on)
+{
+    if (on)
+        state->gl.EnableClientState(array);
+    else
+        state->gl.DisableClientState(array);
+}
+
+int c3d_gl_version(const char *text)
+{
+    if (text[0] < '0' || text[0] > '9' || text[1] != '.' || text[2] < '0' || text[2] > '9') return 0;
+    return (text[0] - '0') * 10 + text[2] - '0';
+}
+
+void c3d_gl_setup(c3d_gl_state *state)
+{
+    c3d_gl_api *gl = &state->gl;
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    gl->PixelStorei(GL_PACK_ALIGNMENT, 1);
+    gl->Disable(GL_DITHER);
+    gl->Disable(GL_CULL_FACE);
+    gl->Disable(GL_LIGHTING);
+    gl->DepthFunc(GL_LEQUAL);
+    gl->AlphaFunc(GL_GEQUAL, 0.5f);
+    gl->BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    gl->Fogf(GL_FOG_MODE, (float)GL_LINEAR);
+    gl->TexEnvf(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, (float)GL_MODULATE);
+    gl->EnableClientState(GL_VERTEX_ARRAY);
+}
+
+void c3d_gl_close(void *opaque)
+{
+    c3d_gl_state *state = opaque;
+    bind_array(state, 0);
+    bind_elements(state, 0);
+    state->gl.DisableClientState(GL_VERTEX_ARRAY);
+    state->gl.Finish();
+}
+
+/* ---- what the library holds ---- */
+
+static uint32_t upload(c3d_gl_state *state, unsigned target, const void *data, size_t bytes)
+{
+    uint32_t buffer = 0;
+    while (state->gl.GetError()) {
+    }
+    state->gl.GenBuffers(1, &buffer);
+    if (target == GL_ARRAY_BUFFER)
+        bind_array(state, buffer);
+    else
+        bind_elements(state, buffer);
+    state->gl.BufferData(target, (ptrdiff_t)bytes, data, GL_STATIC_DRAW);
+    if (state->gl.GetError()) { /* out of memory */
+        c3d_gl_buffer_free(state, buffer);
+        return 0;
+    }
+    return buffer;
+}
+
+uint32_t c3d_gl_mesh_upload(void *state, const c3d_vertex *vertices, uint32_t count)
+{
+    return upload(state, GL_ARRAY_BUFFER, vertices, count * sizeof *vertices);
+}
+
+uint32_t c3d_gl_strip_upload(void *state, const uint16_t *indices, uint32_t count)
+{
+    return upload(state, GL_ELEMENT_ARRAY_BUFFER, indices, count * sizeof *indices);
+}
+
+void c3d_gl_buffer_free(void *opaque, uint32_t buffer)
+{
+    c3d_gl_state *state = opaque;
+    if (state->array_buffer == buffer) state->array_buffer = 0; /* deleting unbinds */
+    if (state->element_buffer == buffer) state->element_buffer = 0;
+    state->gl.DeleteBuffers(1, &buffer);
+}
+
+uint32_t c3d_gl_texture_upload(void *opaque, enum c3d_texture_format format, uint32_t width, uint32_t height,
+                               const void *pixels)
+{
+    static const struct { unsigned format, type; } formats[] = {
+        [C3D_RGB565] = {GL_RGB, GL_UNSIGNED_SHORT_5_6_5},
+        [C3D_RGBA5551] = {GL_RGBA, GL_UNSIGNED_SHORT_5_5_5_1},
+        [C3D_RGBA8888] = {GL_RGBA, GL_UNSIGNED_BYTE}};
+    c3d_gl_state *state = opaque;
+    c3d_gl_api *gl = &state->gl;
+    uint32_t texture = 0;
+    while (gl->GetError()) {
+    }
+    gl->GenTextures(1, &texture);
+    bind_texture(state, texture);
+    gl->TexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, (float)GL_LINEAR);
+    gl->TexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, (float)GL_LINEAR);
+    gl->TexParameterf(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, (float)GL_CLAMP_TO_EDGE);
+    gl->TexParameterf(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, (float)GL_CLAMP_TO_EDGE);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, (int)formats[format].format, (int)width, (int)height, 0, formats[format].format,
+                   formats[format].type, pixels);
+    if (gl->GetError()) {
+        c3d_gl_texture_free(state, texture);
+        return 0;
+    }
+    return texture;
+}
+
+void c3d_gl_texture_free(void *opaque, uint32_t texture)
+{
+    c3d_gl_state *state = opaque;
+    if (state->texture == texture) state->texture = 0;
+    state->gl.DeleteTextures(1, &texture);
+}
+
+/* ---- a frame ---- */
+
+void c3d_gl_begin(void *opaque, const c3d_frame *frame, const c3d_rotation *rotation)
+{
+    c3d_gl_state *state = opaque;
+    c3d_gl_api *gl = &state->gl;
+    float clear[4], fog[4];
+    state->rotation = *rotation;
+    state->width = frame->camera.width;
+    state->height = frame->camera.height;
+    state->fog = frame->fog_end_wu > 0;
+    state->flags = UINT32_MAX;
+    c3d_gl_projection(state->projection, &frame->camera);
+    c3d_gl_backdrop_projection(state->backdrop_projection, &frame->camera);
+    c3d_gl_colour(clear, frame->clear_colour);
+    c3d_gl_colour(fog, frame->fog_colour);
+    gl->Viewport(0, 0, state->width, state->height);
+    gl->ClearColor(clear[0], clear[1], clear[2], clear[3]);
+    gl->DepthMask(1);
+    gl->Clear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    gl->Fogf(GL_FOG_START, (float)frame->fog_start_wu * (1.0f / 256.0f));
+    gl->Fogf(GL_FOG_END, (float)frame->fog_end_wu * (1.0f / 256.0f));
+    gl->Fogfv(GL_FOG_COLOR, fog);
+}
+
+static void set_flags(c3d_gl_state *state, uint32_t flags)
+{
+    c3d_gl_api *gl = &state->gl;
+    if (state->flags == flags) return;
+    int backdrop = (flags & C3D_DRAW_BACKDROP) != 0;
+    enable(state, GL_DEPTH_TEST, !backdrop);
+    gl->DepthMask((unsigned char)!backdrop);
+    enable(state, GL_FOG, state->fog && !backdrop);
+    enable(state, GL_ALPHA_TEST, (flags & C3D_DRAW_ALPHA_TEST) != 0);
+    gl->Disable(GL_BLEND);
+    enable(state, GL_TEXTURE_2D, (flags & C3D_DRAW_TEXTURED) != 0);
+    enable_array(state, GL_TEXTURE_COORD_ARRAY, (flags & C3D_DRAW_TEXTURED) != 0);
+    enable_array(state, GL_COLOR_ARRAY, (flags & C3D_DRAW_COLOURED) != 0);
+    gl->MatrixMode(GL_PROJECTION);
+    gl->LoadMatrixf(backdrop ? state->backdrop_projection : state->projection);
+    gl->MatrixMode(GL_MODELVIEW);
+    state->flags = flags;
+}
+
+static void set_texture(c3d_gl_state *state, const c3d_resolved_draw *resolved)
+{
+    float matrix[16];
+    bind_texture(state, resolved->texture);
+    c3d_gl_texture_matrix(matrix, resolved->draw);
+    state->gl.MatrixMode(GL_TEXTURE);
+    state->gl.LoadMatrixf(matrix);
+    state->gl.MatrixMode(GL_MODELVIEW);
+}
+
+void c3d_gl_draw(void *opaque, const c3d_resolved_draw *resolved)
+{
+    c3d_gl_state *state = opaque;
+    c3d_gl_api *gl = &state->gl;
+    const c3d_draw *draw = resolved->draw;
+    const c3d_vertex *base = resolved->mesh->vertices; /* NULL with a buffer: pointers are offsets then */
+    float matrix[16];
+    set_flags(state, draw->flags);
+    c3d_gl_modelview(matrix, resolved, &state->rotation);
+    gl->LoadMatrixf(matrix);
+    bind_array(state, resolved->mesh->buffer);
+    gl->VertexPointer(3, GL_SHORT, (int)sizeof *base, base);
+    if (draw->flags & C3D_DRAW_TEXTURED) {
+        set_texture(state, resolved);
+        gl->TexCoordPointer(2, GL_SHORT, (int)sizeof *base, base);
+    }
+    if (draw->flags & C3D_DRAW_COLOURED) {
+        gl->ColorPointer(4, GL_UNSIGNED_BYTE, (int)sizeof *base, offset_pointer(base, offsetof(c3d_vertex, rgba)));
+    } else {
+        float rgba[4];
+        c3d_gl_colour(rgba, draw->colour);
+        gl->Color4f(rgba[0], rgba[1], rgba[2], rgba[3]);
+    }
+    const c3d_strip_data *strip = resolved->strip;
+    bind_elements(state, strip->buffer);
+    if (draw->flags & C3D_DRAW_WIREFRAME)
+        gl->DrawElements(GL_LINES, (int)strip->edge_count, GL_UNSIGNED_SHORT,
+                         offset_pointer(strip->indices, strip->count * sizeof *strip->indices));
+    else
+        gl->DrawElements(GL_TRIANGLE_STRIP, (int)strip->count, GL_UNSIGNED_SHORT, strip->indices);
+}
+
+/* A rectangle in clip coordinates; t = 0 is the picture's first row, at the top. */
+void c3d_gl_overlay(void *opaque, uint32_t texture, int x, int y, int width, int height)
+{
+    static const float corners[8] = {0, 0, 0, 1, 1, 0, 1, 1};
+    c3d_gl_state *state = opaque;
+    c3d_gl_api *gl = &state->gl;
+    float across = 2.0f / state->width, down = -2.0f / state->height;
+    float place[16] = {(float)width * across, 0, 0, 0, 0, (float)height * down, 0, 0, 0, 0, 1, 0,
+                       (float)x * across - 1.0f, (float)y * down + 1.0f, 0, 1};
+    set_flags(state, C3D_DRAW_TEXTURED | C3D_DRAW_BACKDROP);
+    state->flags = UINT32_MAX; /* blending and the projection below belong to the overlay alone */
+    gl->Enable(GL_BLEND);
+    gl->MatrixMode(GL_PROJECTION);
+    gl->LoadIdentity();
+    gl->MatrixMode(GL_TEXTURE);
+    gl->LoadIdentity();
+    gl->MatrixMode(GL_MODELVIEW);
+    gl->LoadMatrixf(place);
+    gl->Color4f(1, 1, 1, 1);
+    bind_texture(state, texture);
+    bind_array(state, 0);
+    gl->VertexPointer(2, GL_FLOAT, 0, corners);
+    gl->TexCoordPointer(2, GL_FLOAT, 0, corners);
+    gl->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+void c3d_gl_end(void *opaque)
+{
+    c3d_gl_state *state = opaque;
+    state->gl.Finish();
+}
+
+int c3d_gl_read_rows(void *opaque, uint32_t width, uint32_t first_row, uint32_t rows, uint8_t *rgba)
+{
+    c3d_gl_state *state = opaque;
+    while (state->gl.GetError()) {
+    }
+    state->gl.ReadPixels(0, (int)first_row, (int)width, (int)rows, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
+    return state->gl.GetError() ? FF_ERR_SYSTEM : FF_OK;
+}
