@@ -7,7 +7,7 @@
 /* First byte of a FF_CODEC_DEFLATE payload (SPEC.md, "Payload"). */
 #define FF_HEAD_BODY 0x03u         /* enum ff_body */
 #define FF_HEAD_ERRORS 0x0cu       /* enum ff_errors_form, shifted by 2 */
-#define FF_HEAD_DETAIL_SHIFT 4     /* DEFLATE: 1 when a high-byte plane follows; PACKED: bits a value, less one */
+#define FF_HEAD_DETAIL_SHIFT 4     /* low bits of every value that are stored plainly; PACKED: less one */
 
 enum ff_body { FF_BODY_ZERO, FF_BODY_PACKED, FF_BODY_DEFLATE };
 enum ff_errors_form { FF_ERRORS_ZERO, FF_ERRORS_SAME, FF_ERRORS_EACH };
@@ -27,6 +27,9 @@ void ff_predict_refinement(const ff_terrain_info *info, const uint16_t *parent, 
                            void *context);
 /* Grid index of root corner 0..3: south-west, south-east, north-west, north-east. */
 uint32_t ff_corner_at(const ff_terrain_info *info, uint32_t corner);
+
+/* Bytes of `count` values of `bits` bits each, packed. */
+static inline size_t ff_packed_bytes(uint32_t count, uint32_t bits) { return ((size_t)count * bits + 7) / 8; }
 
 /* Number of residuals in a payload, root corners included. */
 static inline uint32_t ff_root_count(const ff_terrain_info *info) { return ff_node_side(info) * ff_node_side(info); }
@@ -49,12 +52,12 @@ static inline uint16_t ff_dequantise(int32_t quantum, int32_t predicted, int32_t
     return (uint16_t)(height < 0 ? 0 : height > UINT16_MAX ? UINT16_MAX : height);
 }
 
-/* Window of the deflate streams: the smallest that covers both byte planes. */
+/* Window of the deflate streams: the smallest that covers a payload's plane of high parts, one byte a value. */
 static inline int ff_window_bits(const ff_terrain_info *info)
 {
     int bits = 9;
 
-    while ((1u << bits) < 2u * ff_refinement_count(info))
+    while ((1u << bits) < ff_refinement_count(info))
         bits++;
     return bits;
 }

@@ -12,7 +12,7 @@
 struct ff_decoder {
     ff_terrain_info info;
     z_stream stream;
-    uint8_t *planes;           /* both byte planes of a payload */
+    uint8_t *plane;            /* high parts of a payload's values */
     uint8_t *arena;            /* what zlib allocates, once */
     size_t arena_bytes, arena_used;
 };
@@ -38,11 +38,11 @@ uint8_t ff_geometric_error_encode(uint32_t steps)
 
 static size_t align_up(size_t bytes) { return (bytes + ALIGNMENT - 1) & ~(size_t)(ALIGNMENT - 1); }
 
-static size_t planes_bytes(const ff_terrain_info *info) { return align_up(2 * (size_t)ff_refinement_count(info)); }
+static size_t plane_bytes(const ff_terrain_info *info) { return align_up(ff_refinement_count(info)); }
 
 size_t ff_decoder_bytes(const ff_terrain_info *info)
 {
-    return align_up(sizeof(ff_decoder)) + planes_bytes(info) + INFLATE_STATE_BYTES + ((size_t)1 << ff_window_bits(info));
+    return align_up(sizeof(ff_decoder)) + plane_bytes(info) + INFLATE_STATE_BYTES + ((size_t)1 << ff_window_bits(info));
 }
 
 static voidpf arena_take(voidpf opaque, uInt items, uInt size)
@@ -67,13 +67,13 @@ static void arena_give(voidpf opaque, voidpf address)
 ff_decoder *ff_decoder_create(const ff_terrain_info *info, void *memory, size_t bytes)
 {
     ff_decoder *dec = memory;
-    size_t head_bytes = align_up(sizeof(ff_decoder)) + planes_bytes(info);
+    size_t head_bytes = align_up(sizeof(ff_decoder)) + plane_bytes(info);
 
     if (bytes < ff_decoder_bytes(info))
         return NULL;
     memset(dec, 0, sizeof(*dec));
     dec->info = *info;
-    dec->planes = (uint8_t *)memory + align_up(sizeof(ff_decoder));
+    dec->plane = (uint8_t *)memory + align_up(sizeof(ff_decoder));
     dec->arena = (uint8_t *)memory + head_bytes;
     dec->arena_bytes = bytes - head_bytes;
     dec->stream.zalloc = arena_take;
@@ -109,58 +109,61 @@ static int take_errors(cursor *in, unsigned form, uint32_t count, uint8_t error[
 /* 0, -1, 1, -2, ... from 0, 1, 2, 3, ... */
 static int32_t unzigzag(uint32_t v) { return (int32_t)(v >> 1) ^ -(int32_t)(v & 1u); }
 
-static int take_packed(cursor *in, uint32_t width, int32_t *value, uint32_t count)
+/* Low parts: `width` bits of every value, packed low bit first. */
+static int take_low(cursor *in, uint32_t width, int32_t *value, uint32_t count)
 {
     uint32_t bits = 0, held = 0;
 
-    if (left(in) != ((size_t)count * width + 7) / 8)
-        return left(in) < ((size_t)count * width + 7) / 8 ? FF_ERR_TRUNCATED : FF_ERR_FORMAT;
+    if (left(in) < ff_packed_bytes(count, width))
+        return FF_ERR_TRUNCATED;
     for (uint32_t i = 0; i < count; i++) {
         for (; held < width; held += 8)
             bits |= (uint32_t)*in->at++ << held;
-        value[i] = unzigzag(bits & ((1u << width) - 1));
+        value[i] = (int32_t)(bits & ((1u << width) - 1));
         bits >>= width;
         held -= width;
     }
     return FF_OK;
 }
 
-static int take_deflated(ff_decoder *dec, cursor *in, int two_planes, int32_t *value, uint32_t count)
+/* High parts: one byte a value, through raw deflate; all that is left of the payload. */
+static int take_high(ff_decoder *dec, cursor *in, uint32_t width, int32_t *value, uint32_t count)
 {
     z_stream *z = &dec->stream;
+    uint32_t all = 0;
     int rc;
 
-    memset(dec->planes + count, 0, count);
     inflateReset(z);
     z->next_in = (z_const Bytef *)in->at;
     z->avail_in = (uInt)left(in);
-    z->next_out = dec->planes;
-    z->avail_out = two_planes ? 2 * count : count;
+    z->next_out = dec->plane;
+    z->avail_out = count;
     rc = inflate(z, Z_FINISH);
     if (rc == Z_BUF_ERROR && z->avail_in == 0)
         return FF_ERR_TRUNCATED;
     if (rc != Z_STREAM_END || z->avail_out != 0 || z->avail_in != 0)
         return FF_ERR_FORMAT;
-    for (uint32_t i = 0; i < count; i++)
-        value[i] = unzigzag(dec->planes[i] | (uint32_t)dec->planes[count + i] << 8);
-    return FF_OK;
+    for (uint32_t i = 0; i < count; i++) {
+        value[i] |= (int32_t)dec->plane[i] << width;
+        all |= (uint32_t)value[i];
+    }
+    in->at = in->end;
+    return all > UINT16_MAX ? FF_ERR_RANGE : FF_OK;
 }
 
 static int take_body(ff_decoder *dec, cursor *in, uint8_t head, int32_t *value, uint32_t count)
 {
-    unsigned detail = head >> FF_HEAD_DETAIL_SHIFT;
+    uint32_t detail = head >> FF_HEAD_DETAIL_SHIFT, body = head & FF_HEAD_BODY;
+    int rc;
 
-    switch (head & FF_HEAD_BODY) {
-    case FF_BODY_ZERO:
-        memset(value, 0, count * sizeof(*value));
-        return detail == 0 && left(in) == 0 ? FF_OK : FF_ERR_FORMAT;
-    case FF_BODY_PACKED:
-        return take_packed(in, detail + 1, value, count);
-    case FF_BODY_DEFLATE:
-        return detail > 1 ? FF_ERR_FORMAT : take_deflated(dec, in, (int)detail, value, count);
-    default:
+    if (body > FF_BODY_DEFLATE || (body == FF_BODY_ZERO && detail != 0))
         return FF_ERR_FORMAT;
-    }
+    rc = take_low(in, body == FF_BODY_PACKED ? detail + 1 : detail, value, count);
+    if (rc == FF_OK && body == FF_BODY_DEFLATE)
+        rc = take_high(dec, in, detail, value, count);
+    for (uint32_t i = 0; rc == FF_OK && i < count; i++)
+        value[i] = unzigzag((uint32_t)value[i]);
+    return rc == FF_OK && left(in) > 0 ? FF_ERR_FORMAT : rc;
 }
 
 static int take_raw(cursor *in, uint32_t absolute, int32_t *value, uint32_t count)

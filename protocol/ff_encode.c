@@ -42,31 +42,33 @@ static uint32_t packed_width(const int32_t *value, uint32_t count)
     return width;
 }
 
-static uint8_t *put_packed(const int32_t *value, uint32_t count, uint32_t width, uint8_t *out)
+/* The lowest `width` bits of every value; bytes written. */
+static size_t put_low(const int32_t *value, uint32_t count, uint32_t width, uint8_t *out)
 {
-    uint32_t bits = 0, held = 0;
+    uint32_t bits = 0, held = 0, mask = (1u << width) - 1;
+    uint8_t *at = out;
 
     for (uint32_t i = 0; i < count; i++) {
-        bits |= zigzag(value[i]) << held;
+        bits |= (zigzag(value[i]) & mask) << held;
         for (held += width; held >= 8; held -= 8, bits >>= 8)
-            *out++ = (uint8_t)bits;
+            *at++ = (uint8_t)bits;
     }
     if (held > 0)
-        *out++ = (uint8_t)bits;
-    return out;
+        *at++ = (uint8_t)bits;
+    return (size_t)(at - out);
 }
 
 /* Bytes written, or 0 when they would not be fewer than `limit`. */
-static size_t deflate_planes(const uint8_t *planes, uint32_t bytes, int window_bits, int strategy, uint8_t *out, size_t limit)
+static size_t deflate_plane(const uint8_t *plane, uint32_t bytes, int window_bits, int strategy, uint8_t *out, size_t limit)
 {
     z_stream z;
     size_t written = 0;
 
     memset(&z, 0, sizeof(z));
-    /* The least memory level whose symbol buffer holds the planes whole: one block, and little to allocate and clear. */
+    /* The least memory level whose symbol buffer holds the plane whole: one block, and little to allocate and clear. */
     if (deflateInit2(&z, 9, Z_DEFLATED, -window_bits, bytes < 1000 ? 4 : 8, strategy) != Z_OK)
         abort();
-    z.next_in = (z_const Bytef *)planes;
+    z.next_in = (z_const Bytef *)plane;
     z.avail_in = bytes;
     z.next_out = out;
     z.avail_out = (uInt)limit - 1;
@@ -76,26 +78,48 @@ static size_t deflate_planes(const uint8_t *planes, uint32_t bytes, int window_b
     return written;
 }
 
-/* Tries the strategies of zlib against the packed form, whose size is `limit`. Bytes in `out` or 0 when packed is smaller. */
-static size_t put_deflated(const ff_terrain_info *info, const int32_t *value, uint32_t count, int two_planes, size_t limit,
-                           uint8_t *out)
+/* Deflates the parts of all values above their lowest `low` bits. Bytes in `out`, or 0 when not fewer than `limit`. */
+static size_t put_high(const ff_terrain_info *info, const int32_t *value, uint32_t count, uint32_t low, uint8_t *out,
+                       size_t limit)
 {
     static const int strategies[] = {Z_DEFAULT_STRATEGY, Z_FIXED, Z_HUFFMAN_ONLY};
-    uint8_t planes[2 * FF_REFINED_HEIGHTS_MAX], trial[2 * FF_REFINED_HEIGHTS_MAX];
+    uint8_t plane[FF_REFINED_HEIGHTS_MAX], trial[2 * FF_REFINED_HEIGHTS_MAX];
     size_t best = 0;
 
-    for (uint32_t i = 0; i < count; i++) {
-        planes[i] = (uint8_t)zigzag(value[i]);
-        planes[count + i] = (uint8_t)(zigzag(value[i]) >> 8);
-    }
+    for (uint32_t i = 0; i < count; i++)
+        plane[i] = (uint8_t)(zigzag(value[i]) >> low);
     for (size_t s = 0; s < sizeof(strategies) / sizeof(strategies[0]) && limit > 1; s++) {
-        size_t bytes = deflate_planes(planes, two_planes ? 2 * count : count, ff_window_bits(info), strategies[s], trial, limit);
+        size_t bytes = deflate_plane(plane, count, ff_window_bits(info), strategies[s], trial, limit);
         if (bytes > 0) {
             memcpy(out, trial, bytes);
             best = limit = bytes;
         }
     }
     return best;
+}
+
+/* Tries where to cut the values into plain low bits and deflated high parts. Bytes of the body; its kind goes into *head. */
+static size_t put_body(const ff_terrain_info *info, const int32_t *value, uint32_t count, uint8_t *head, uint8_t *out)
+{
+    uint32_t width = packed_width(value, count), cut = width;
+    uint8_t high[2 * FF_REFINED_HEIGHTS_MAX];
+    size_t best = ff_packed_bytes(count, width), high_bytes = 0;
+
+    if (width == 0)
+        return 0;
+    for (uint32_t low = width > 8 ? width - 8 : 0; low < width; low++) {
+        size_t low_bytes = ff_packed_bytes(count, low);
+        size_t bytes = low_bytes >= best ? 0 : put_high(info, value, count, low, high, best - low_bytes);
+        if (bytes > 0) {
+            memcpy(out + low_bytes, high, bytes);
+            best = low_bytes + bytes;
+            high_bytes = bytes;
+            cut = low;
+        }
+    }
+    *head |= (uint8_t)(high_bytes > 0 ? FF_BODY_DEFLATE | cut << FF_HEAD_DETAIL_SHIFT
+                                      : FF_BODY_PACKED | (cut - 1) << FF_HEAD_DETAIL_SHIFT);
+    return put_low(value, count, cut, out) + high_bytes;
 }
 
 static int encode_raw(const uint8_t *error, uint32_t errors, const int32_t *value, uint32_t count, uint8_t *out)
@@ -124,25 +148,14 @@ static int encode_payload(const ff_terrain_info *info, const uint8_t *error, uin
 {
     enum ff_errors_form form = errors_form(error, errors);
     uint32_t error_bytes = form == FF_ERRORS_EACH ? errors : form == FF_ERRORS_SAME;
-    uint32_t width = packed_width(value + absolute, count - absolute);
-    size_t bytes;
     uint8_t *at = out + 1;
 
     if (info->codec == FF_CODEC_RAW)
         return encode_raw(error, errors, value, count, out);
     out[0] = (uint8_t)(form << 2);
     at += encode_raw(error, error_bytes, value, absolute, at);
-    if (width == 0)
-        return (int)(at - out);
-    value += absolute;
-    count -= absolute;
-    bytes = put_deflated(info, value, count, width > 8, ((size_t)count * width + 7) / 8, at);
-    if (bytes > 0) {
-        out[0] |= (uint8_t)(FF_BODY_DEFLATE | (unsigned)(width > 8) << FF_HEAD_DETAIL_SHIFT);
-        return (int)(at - out + (ptrdiff_t)bytes);
-    }
-    out[0] |= (uint8_t)(FF_BODY_PACKED | (width - 1) << FF_HEAD_DETAIL_SHIFT);
-    return (int)(put_packed(value, count, width, at) - out);
+    at += put_body(info, value + absolute, count - absolute, out, at);
+    return (int)(at - out);
 }
 
 int ff_encode_root(const ff_terrain_info *info, const uint16_t *source, uint8_t error_code, uint8_t *out,

@@ -18,9 +18,9 @@ static int32_t predict_middle(const uint16_t *known, uint32_t step, uint32_t i, 
     if (cells == 1)
         return (a + b + 1) >> 1;
     if (i == 0)
-        return clamp_height(3 * a + 6 * b - known[2 * step] + 4, 3);
+        return clamp_height(7 * a + 10 * b - known[2 * step] + 8, 4);
     if (i == cells - 1)
-        return clamp_height(3 * b + 6 * a - known[(i - 1) * step] + 4, 3);
+        return clamp_height(7 * b + 10 * a - known[(i - 1) * step] + 8, 4);
     return clamp_height(9 * (a + b) - known[(i - 1) * step] - known[(i + 2) * step] + 8, 4);
 }
 
