@@ -64,6 +64,7 @@ typedef struct ff_tree_stats {
     uint32_t pool_full;                /* refinements that found no room */
     uint32_t orphans;                  /* refinements that arrived for a node no longer held */
     uint32_t selects, selects_skipped;
+    uint32_t flat;                     /* nodes of the last selection near enough to split but exact already: not asked for */
     uint32_t error_px_q8;              /* the tree's own estimate: largest projected geometric error of a drawn node */
 } ff_tree_stats;
 

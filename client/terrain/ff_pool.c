@@ -1,0 +1,95 @@
+/* Node slots: a free list, a hash from key to slot, links from parents to children and a list of roots. */
+#include "ff_tree_local.h"
+
+#include <assert.h>
+#include <string.h>
+
+static uint32_t hash_of(const ff_tree *tree, ff_key key)
+{
+    uint32_t mixed = (uint32_t)(key >> 32) * 0x9E3779B1u ^ (uint32_t)key * 0x85EBCA77u;
+    mixed ^= mixed >> 15;
+    return (mixed * 0xC2B2AE3Du >> 7) & tree->hash_mask;
+}
+
+uint32_t ff_tree_find(const ff_tree *tree, ff_key key)
+{
+    uint32_t slot = tree->hash[hash_of(tree, key)];
+    while (slot != FF_SLOT_NONE && tree->node[slot].key != key)
+        slot = tree->node[slot].hash_next;
+    return slot;
+}
+
+uint32_t ff_tree_find_nearest(const ff_tree *tree, ff_key key)
+{
+    for (;;) {
+        uint32_t slot = ff_tree_find(tree, key);
+        if (slot != FF_SLOT_NONE || ff_key_level(key) == 0)
+            return slot;
+        key = ff_key_parent(key);
+    }
+}
+
+uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent)
+{
+    uint32_t slot = tree->free_head, bucket = hash_of(tree, key);
+    assert(slot != FF_SLOT_NONE);
+    ff_node *node = &tree->node[slot];
+    tree->free_head = node->hash_next;
+    tree->free_count--;
+
+    memset(node, 0, sizeof *node);
+    node->key = key;
+    node->parent = parent;
+    node->flags = FF_NODE_HELD;
+    for (unsigned q = 0; q < 4; q++)
+        node->child[q] = FF_SLOT_NONE;
+    ff_node_origin_wu(&tree->info, key, &node->x_wu, &node->y_wu);
+    node->hash_next = tree->hash[bucket];
+    tree->hash[bucket] = slot;
+    if (parent == FF_SLOT_NONE) {
+        node->list_next = tree->root_head;
+        tree->root_head = slot;
+        tree->root_count++;
+    }
+    uint32_t held = tree->node_count - tree->free_count;
+    if (held > tree->stats.nodes_high)
+        tree->stats.nodes_high = held;
+    return slot;
+}
+
+static void give_slot(ff_tree *tree, uint32_t slot)
+{
+    ff_node *node = &tree->node[slot];
+    assert(node->flags & FF_NODE_HELD && !ff_node_has_children(node));
+    if (node->user && tree->on_evict)
+        tree->on_evict(tree->evict_context, node->user);
+    uint32_t *link = &tree->hash[hash_of(tree, node->key)];
+    while (*link != slot)
+        link = &tree->node[*link].hash_next;
+    *link = node->hash_next;
+    node->flags = 0;
+    node->user = 0;
+    node->hash_next = tree->free_head;
+    tree->free_head = slot;
+    tree->free_count++;
+    tree->dirty = 1;
+}
+
+void ff_tree_drop_children(ff_tree *tree, ff_node *parent)
+{
+    for (unsigned q = 0; q < 4; q++) {
+        give_slot(tree, parent->child[q]);
+        parent->child[q] = FF_SLOT_NONE;
+    }
+    parent->flags &= (uint8_t)~FF_NODE_SPLIT;
+}
+
+void ff_tree_drop_root(ff_tree *tree, ff_node *root)
+{
+    uint32_t *link = &tree->root_head;
+    while (*link != ff_slot_of(tree, root))
+        link = &tree->node[*link].list_next;
+    *link = root->list_next;
+    tree->root_count--;
+    give_slot(tree, ff_slot_of(tree, root));
+}

@@ -1,0 +1,68 @@
+/* The restricted cut: edge neighbours differ by at most one level. Desire flows downward (a node that wants to split makes its
+ * coarser neighbours want to), and a node splits only beside neighbours that have come as far as itself. */
+#include "ff_tree_local.h"
+
+/* The node of the same level beyond `side` when it belongs to another parent in ground that is drawn, else FF_KEY_NONE. */
+static ff_key stranger_beside(const ff_tree *tree, const ff_node *node, enum ff_side side)
+{
+    ff_key beside = ff_key_neighbour(tree->info.tiles_x, tree->info.tiles_y, node->key, side);
+    if (beside == FF_KEY_NONE || ff_key_level(beside) == 0)
+        return FF_KEY_NONE;
+    if (ff_key_parent(beside) == ff_key_parent(node->key))
+        return FF_KEY_NONE;
+    uint32_t tile = ff_key_tile(beside);
+    if (tile != ff_key_tile(node->key)
+        && (!ff_tile_active(tree, tile) || ff_tree_find(tree, ff_key_make(tile, 0, 0)) == FF_SLOT_NONE))
+        return FF_KEY_NONE;
+    return beside;
+}
+
+int ff_side_coarser(const ff_tree *tree, const ff_node *node, enum ff_side side)
+{
+    ff_key beside = stranger_beside(tree, node, side);
+    if (beside == FF_KEY_NONE)
+        return 0;
+    uint32_t parent = ff_tree_find(tree, ff_key_parent(beside));
+    return parent == FF_SLOT_NONE || !(tree->node[parent].flags & FF_NODE_SPLIT);
+}
+
+unsigned ff_coarser_mask(const ff_tree *tree, const ff_node *node)
+{
+    unsigned mask = 0;
+    for (unsigned side = 0; side < FF_SIDE_COUNT; side++)
+        mask |= (unsigned)ff_side_coarser(tree, node, (enum ff_side)side) << side;
+    return mask;
+}
+
+void ff_want(ff_tree *tree, uint32_t slot, uint32_t value)
+{
+    ff_node *node = &tree->node[slot];
+    if (node->flags & FF_NODE_WANTED) {
+        if (value > node->value)
+            node->value = value;
+        return;
+    }
+    uint32_t level = ff_key_level(node->key);
+    node->flags |= FF_NODE_WANTED;
+    node->value = value;
+    node->want_next = tree->want_head[level];
+    tree->want_head[level] = slot;
+}
+
+/* From the finest level up: what a level adds concerns coarser levels only. */
+void ff_want_close(ff_tree *tree)
+{
+    for (uint32_t level = FF_LEVELS_MAX; level-- > 1;) {
+        for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE; slot = tree->node[slot].want_next) {
+            const ff_node *node = &tree->node[slot];
+            for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
+                ff_key beside = stranger_beside(tree, node, (enum ff_side)side);
+                if (beside == FF_KEY_NONE)
+                    continue;
+                uint32_t nearest = ff_tree_find_nearest(tree, ff_key_parent(beside));
+                if (nearest != FF_SLOT_NONE)
+                    ff_want(tree, nearest, node->value);
+            }
+        }
+    }
+}

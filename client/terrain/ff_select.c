@@ -1,0 +1,185 @@
+/* Selection: which nodes want to split, which may, and which of the resulting cut can be seen. */
+#include "ff_tree_local.h"
+#include "ff_strips.h"
+
+#define C_Q8_MAX (1 << 24)
+#define UNSEEN ((uint64_t)1 << 63) /* sorts behind everything seen */
+
+static int same_view(const ff_view *a, const ff_view *b)
+{
+    const c3d_camera *ca = &a->camera, *cb = &b->camera;
+    for (unsigned axis = 0; axis < 3; axis++) {
+        if (ca->pos_wu[axis] != cb->pos_wu[axis] || a->centre_wu[axis] != b->centre_wu[axis])
+            return 0;
+    }
+    return ca->yaw == cb->yaw && ca->pitch == cb->pitch && ca->roll == cb->roll && ca->focal_q8 == cb->focal_q8
+           && ca->width == cb->width && ca->height == cb->height;
+}
+
+static int same_quality(const ff_quality *a, const ff_quality *b)
+{
+    return a->measure == b->measure && a->c_q8 == b->c_q8 && a->error_px_q8 == b->error_px_q8
+           && a->depth_max == b->depth_max && a->sigma_q8 == b->sigma_q8 && a->view_wu == b->view_wu;
+}
+
+static int32_t within(int32_t value, int32_t lo, int32_t hi) { return value < lo ? lo : value > hi ? hi : value; }
+
+/* Settings come from outside: brought into the range the arithmetic is made for. */
+static void set_view(ff_tree *tree, const ff_view *view, const ff_quality *quality)
+{
+    tree->view = *view;
+    tree->view.camera.focal_q8 = within(view->camera.focal_q8, 1, INT32_MAX);
+    tree->quality = *quality;
+    tree->quality.c_q8 = within(quality->c_q8, 0, C_Q8_MAX);
+    tree->quality.error_px_q8 = within(quality->error_px_q8, 1, INT32_MAX);
+    tree->quality.view_wu = within(quality->view_wu, 0, INT32_MAX);
+    ff_window_make(tree);
+    ff_pyramid_make(tree);
+}
+
+static uint32_t push_active_roots(ff_tree *tree)
+{
+    uint32_t count = 0;
+    for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
+        if (ff_tile_active(tree, ff_key_tile(tree->node[slot].key)))
+            tree->order[count++] = slot;
+    }
+    return count;
+}
+
+static uint32_t push_children(ff_tree *tree, const ff_node *node, uint32_t count)
+{
+    for (unsigned q = 0; q < 4; q++)
+        tree->order[count++] = node->child[q];
+    return count;
+}
+
+/* The measure alone, without regard to neighbours: above FF_VALUE_ONE the node wants to split. */
+static uint32_t own_value(ff_tree *tree, const ff_node *node)
+{
+    uint32_t next = ff_key_level(node->key) + 1;
+    if (next >= ff_terrain_levels(&tree->info) || (tree->quality.depth_max && next >= tree->quality.depth_max))
+        return 0;
+    uint32_t value = ff_value_of_split(tree, node);
+    if (value <= FF_VALUE_ONE)
+        return 0;
+    if (node->error_code == 0) { /* already exact: finer nodes would show the same */
+        tree->stats.flat++;
+        return 0;
+    }
+    ff_box box;
+    ff_node_box(tree, node, &box);
+    return ff_box_beyond_view(tree, &box) ? 0 : value;
+}
+
+static void want_by_measure(ff_tree *tree)
+{
+    for (uint32_t slot = 0; slot < tree->node_count; slot++)
+        tree->node[slot].flags &= FF_NODE_HELD;
+    for (uint32_t level = 0; level < FF_LEVELS_MAX; level++)
+        tree->want_head[level] = FF_SLOT_NONE;
+    tree->stats.flat = 0;
+    uint32_t count = push_active_roots(tree);
+    for (uint32_t i = 0; i < count; i++) {
+        const ff_node *node = &tree->node[tree->order[i]];
+        uint32_t value = own_value(tree, node);
+        if (value == 0)
+            continue;
+        ff_want(tree, tree->order[i], value);
+        if (ff_node_has_children(node))
+            count = push_children(tree, node, count);
+    }
+}
+
+/* Level by level from the roots, so that all decisions about a level are made before the next one looks at them.
+ * Leaves the leaves of the cut in `order`. */
+static void split_cut(ff_tree *tree)
+{
+    uint32_t count = push_active_roots(tree), leaves = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        ff_node *node = &tree->node[tree->order[i]];
+        if (node->flags & FF_NODE_WANTED && ff_node_has_children(node) && ff_coarser_mask(tree, node) == 0) {
+            node->flags |= FF_NODE_SPLIT;
+            count = push_children(tree, node, count);
+        }
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        if (!(tree->node[tree->order[i]].flags & FF_NODE_SPLIT))
+            tree->order[leaves++] = tree->order[i];
+    }
+    tree->cut_count = leaves;
+}
+
+static void fill_drawn(const ff_tree *tree, uint32_t slot, ff_drawn *drawn)
+{
+    const ff_node *node = &tree->node[slot];
+    drawn->key = node->key;
+    drawn->node = node;
+    drawn->heights = tree->heights + slot * ff_heights_per_node(tree);
+    drawn->coarser = (uint8_t)ff_coarser_mask(tree, node);
+    drawn->origin_wu[0] = node->x_wu;
+    drawn->origin_wu[1] = node->y_wu;
+    drawn->origin_wu[2] = ff_height_wu(&tree->info, 32768);
+    drawn->cell_wu = ff_node_cell_wu(&tree->info, ff_key_level(node->key));
+}
+
+/* Triangles of a node's strips (ff_strips.h), degenerate ones not counted. */
+static uint32_t triangles_of(const ff_tree *tree, unsigned coarser)
+{
+    uint32_t n = 1u << tree->info.node_log2, count = 2 * n * n;
+    for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
+        if (coarser >> side & 1u)
+            count -= n / 2;
+    }
+    return count;
+}
+
+static void count_drawn(ff_tree *tree, const ff_drawn *drawn)
+{
+    ff_box box;
+    ff_node_box(tree, drawn->node, &box);
+    uint64_t error_q8 = ff_projected_error_q8(tree, drawn->node, &box);
+    if (error_q8 > tree->stats.error_px_q8)
+        tree->stats.error_px_q8 = error_q8 > UINT32_MAX ? UINT32_MAX : (uint32_t)error_q8;
+    tree->stats.triangles += triangles_of(tree, drawn->coarser);
+    tree->stats.stitched += drawn->coarser != 0;
+}
+
+static void list_cut(ff_tree *tree)
+{
+    tree->drawn_count = 0;
+    for (uint32_t i = 0; i < tree->cut_count; i++) {
+        ff_box box;
+        ff_node_box(tree, &tree->node[tree->order[i]], &box);
+        int seen = !ff_box_beyond_view(tree, &box) && ff_box_in_view(tree, &box);
+        tree->drawn_count += (uint32_t)seen;
+        tree->sort[i] = (uint64_t)ff_box_distance(&box) << FF_SLOT_BITS | tree->order[i] | (seen ? 0 : UNSEEN);
+    }
+    ff_sort_keys(tree->sort, tree->cut_count);
+    tree->stats.triangles = tree->stats.stitched = tree->stats.error_px_q8 = 0;
+    for (uint32_t i = 0; i < tree->cut_count; i++) {
+        fill_drawn(tree, (uint32_t)tree->sort[i] & (FF_NODES_MAX - 1), &tree->drawn[i]);
+        if (i < tree->drawn_count)
+            count_drawn(tree, &tree->drawn[i]);
+    }
+}
+
+int ff_tree_select(ff_tree *tree, const ff_view *view, const ff_quality *quality)
+{
+    if (tree->has_view && !tree->dirty && same_view(view, &tree->asked_view) && same_quality(quality, &tree->asked_quality)) {
+        tree->stats.selects_skipped++;
+        return 0;
+    }
+    tree->asked_view = *view;
+    tree->asked_quality = *quality;
+    set_view(tree, view, quality);
+    tree->has_view = 1;
+    tree->dirty = 0;
+    tree->stats.selects++;
+    want_by_measure(tree);
+    ff_want_close(tree);
+    split_cut(tree);
+    list_cut(tree);
+    ff_wish_make(tree);
+    return 1;
+}

@@ -1,0 +1,189 @@
+/* The tree as its users see it: creation in one block, arrival of nodes, answers to questions. */
+#include "ff_tree_local.h"
+
+#include <assert.h>
+#include <string.h>
+
+#define BLOCK_ALIGN 16u
+
+/* Hands out parts of a block; with base NULL it only counts. */
+typedef struct block { uint8_t *base; size_t used; } block;
+
+static void *take(block *from, size_t bytes)
+{
+    void *part = from->base ? from->base + from->used : NULL;
+    from->used += (bytes + BLOCK_ALIGN - 1) & ~(size_t)(BLOCK_ALIGN - 1);
+    return part;
+}
+
+static uint32_t hash_size(uint32_t node_count)
+{
+    uint32_t size = 8;
+    while (size < node_count)
+        size *= 2;
+    return size;
+}
+
+static ff_tree *carve(const ff_tree_desc *desc, block *from)
+{
+    size_t n = desc->node_count, side = ff_node_side(&desc->info), refined = ff_refined_side(&desc->info);
+    ff_tree *tree = take(from, sizeof *tree);
+    ff_tree parts = {0};
+    parts.node = take(from, n * sizeof *parts.node);
+    parts.heights = take(from, n * side * side * sizeof *parts.heights);
+    parts.hash = take(from, hash_size(desc->node_count) * sizeof *parts.hash);
+    parts.order = take(from, n * sizeof *parts.order);
+    parts.sort = take(from, 2 * n * sizeof *parts.sort);
+    parts.drawn = take(from, n * sizeof *parts.drawn);
+    parts.wish = take(from, desc->wish_count * sizeof *parts.wish);
+    parts.refined = take(from, refined * refined * sizeof *parts.refined);
+    if (tree)
+        *tree = parts;
+    return tree;
+}
+
+static int desc_ok(const ff_tree_desc *desc)
+{
+    return desc->node_count >= 8 && desc->node_count <= FF_NODES_MAX && desc->wish_count <= FF_NODES_MAX
+           && ff_terrain_check(&desc->info) >= 0;
+}
+
+size_t ff_tree_bytes(const ff_tree_desc *desc)
+{
+    block count = {NULL, BLOCK_ALIGN}; /* room to align a block that is not */
+    if (!desc_ok(desc))
+        return 0;
+    carve(desc, &count);
+    return count.used;
+}
+
+ff_tree *ff_tree_create(const ff_tree_desc *desc, void *memory, size_t bytes)
+{
+    if (!memory || !desc_ok(desc) || bytes < ff_tree_bytes(desc))
+        return NULL;
+    block from = {memory, (BLOCK_ALIGN - (uintptr_t)memory % BLOCK_ALIGN) % BLOCK_ALIGN};
+    ff_tree *tree = carve(desc, &from);
+    tree->info = desc->info;
+    tree->node_count = tree->free_count = desc->node_count;
+    tree->wish_capacity = desc->wish_count;
+    tree->hash_mask = hash_size(desc->node_count) - 1;
+    memset(tree->hash, 0xFF, (tree->hash_mask + 1) * sizeof *tree->hash);
+    memset(tree->node, 0, tree->node_count * sizeof *tree->node);
+    for (uint32_t slot = 0; slot < tree->node_count; slot++)
+        tree->node[slot].hash_next = slot + 1 < tree->node_count ? slot + 1 : FF_SLOT_NONE;
+    tree->root_head = FF_SLOT_NONE;
+    memset(tree->want_head, 0xFF, sizeof tree->want_head);
+    tree->stats.nodes_capacity = tree->node_count;
+    return tree;
+}
+
+static uint16_t *heights_of(const ff_tree *tree, uint32_t slot)
+{
+    return tree->heights + slot * ff_heights_per_node(tree);
+}
+
+static void measure_heights(ff_tree *tree, uint32_t slot, uint8_t error_code)
+{
+    const uint16_t *height = heights_of(tree, slot);
+    size_t count = ff_heights_per_node(tree);
+    uint32_t sum = 0;
+    uint16_t lowest = UINT16_MAX, highest = 0;
+    for (size_t i = 0; i < count; i++) {
+        lowest = height[i] < lowest ? height[i] : lowest;
+        highest = height[i] > highest ? height[i] : highest;
+        sum += height[i];
+    }
+    ff_node *node = &tree->node[slot];
+    node->height_min = lowest;
+    node->height_max = highest;
+    node->height_mean = (uint16_t)(sum / count);
+    node->error_code = error_code;
+}
+
+int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, const ff_residuals *residuals)
+{
+    ff_key key = ff_key_make(tile, 0, 0);
+    if (!ff_terrain_has_node(&tree->info, key))
+        return FF_ERR_RANGE;
+    if (ff_tree_find(tree, key) != FF_SLOT_NONE)
+        return FF_OK;
+    if (!ff_evict_for_root(tree, tile)) {
+        tree->stats.pool_full++;
+        return FF_ERR_FULL;
+    }
+    uint32_t slot = ff_tree_take_slot(tree, key, FF_SLOT_NONE);
+    ff_reconstruct_root(&tree->info, residuals, heights_of(tree, slot));
+    measure_heights(tree, slot, residuals->child_error[0]);
+    tree->dirty = 1;
+    return FF_OK;
+}
+
+int ff_tree_deliver_children(ff_tree *tree, ff_key key, const ff_residuals *residuals)
+{
+    if (!ff_terrain_has_node(&tree->info, key) || ff_key_level(key) + 1 >= ff_terrain_levels(&tree->info))
+        return FF_ERR_RANGE;
+    uint32_t slot = ff_tree_find(tree, key);
+    if (slot == FF_SLOT_NONE) {
+        tree->stats.orphans++;
+        return FF_ERR_NOT_FOUND;
+    }
+    if (ff_node_has_children(&tree->node[slot]))
+        return FF_OK;
+    if (!ff_evict_for_children(tree, slot)) {
+        tree->stats.pool_full++;
+        return FF_ERR_FULL;
+    }
+    ff_reconstruct_refinement(&tree->info, heights_of(tree, slot), residuals, tree->refined);
+    for (uint32_t q = 0; q < 4; q++) {
+        uint32_t child = ff_tree_take_slot(tree, ff_key_child(key, q), slot);
+        ff_refined_child(&tree->info, tree->refined, q, heights_of(tree, child));
+        measure_heights(tree, child, residuals->child_error[q]);
+        tree->node[slot].child[q] = child;
+    }
+    tree->dirty = 1;
+    return FF_OK;
+}
+
+uint32_t ff_tree_drawn(const ff_tree *tree, const ff_drawn **list)
+{
+    *list = tree->drawn;
+    return tree->drawn_count;
+}
+
+uint32_t ff_tree_cut(ff_tree *tree, const ff_drawn **list)
+{
+    *list = tree->drawn;
+    return tree->cut_count;
+}
+
+uint32_t ff_tree_wishes(const ff_tree *tree, const ff_wish **list)
+{
+    *list = tree->wish;
+    return tree->wish_count;
+}
+
+int ff_tree_still_wanted(const ff_tree *tree, ff_key key, int refinement)
+{
+    if (!tree->has_view || !ff_terrain_has_node(&tree->info, key))
+        return 0;
+    uint32_t slot = ff_tree_find(tree, key);
+    if (!refinement)
+        return slot == FF_SLOT_NONE && ff_key_level(key) == 0 && ff_tile_active(tree, ff_key_tile(key));
+    return slot != FF_SLOT_NONE && tree->node[slot].flags & FF_NODE_WANTED && !ff_node_has_children(&tree->node[slot]);
+}
+
+uint32_t *ff_tree_user(ff_tree *tree, const ff_node *node) { return &tree->node[ff_slot_of(tree, node)].user; }
+
+void ff_tree_on_evict(ff_tree *tree, void (*on_evict)(void *context, uint32_t user), void *context)
+{
+    tree->on_evict = on_evict;
+    tree->evict_context = context;
+}
+
+void ff_tree_get_stats(const ff_tree *tree, ff_tree_stats *stats)
+{
+    *stats = tree->stats;
+    stats->nodes_held = tree->node_count - tree->free_count;
+    stats->nodes_cut = tree->cut_count;
+    stats->nodes_drawn = tree->drawn_count;
+}

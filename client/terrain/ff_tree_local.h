@@ -1,0 +1,128 @@
+/* Inside of the terrain tree: structures shared by the files of client/terrain only. */
+#ifndef FF_TREE_LOCAL_H
+#define FF_TREE_LOCAL_H
+
+#include "ff_tree.h"
+
+#define FF_SLOT_NONE UINT32_MAX
+#define FF_NODES_MAX (1u << 20)  /* slot numbers share a 64-bit sort key with a 40-bit distance */
+#define FF_SLOT_BITS 20
+#define FF_LEVELS_MAX (FF_KEY_LEVEL_MAX + 1u)
+
+/* Value of splitting a node, Q16: 1/f, above 1.0 the measure asks for it. Saturates. */
+#define FF_VALUE_ONE 65536u
+#define FF_VALUE_MAX UINT32_MAX
+
+enum ff_node_flags {
+    FF_NODE_HELD = 1,
+    FF_NODE_ACTIVE = 2,  /* a root inside the window (as of the last selection) */
+    FF_NODE_WANTED = 4,  /* its children are desired, by itself or by a neighbour that may not be two levels finer */
+    FF_NODE_SPLIT = 8    /* the cut runs below it */
+};
+
+struct ff_node {
+    ff_key key;
+    uint32_t hash_next;      /* next in the hash chain, or in the list of free slots */
+    uint32_t list_next;      /* roots: next root */
+    uint32_t want_next;      /* next wanted node of the same level */
+    uint32_t parent;
+    uint32_t child[4];       /* all four or, child[0] being FF_SLOT_NONE, none */
+    int32_t x_wu, y_wu;      /* south-west corner */
+    uint32_t value;          /* valid while FF_NODE_WANTED */
+    uint32_t user;
+    uint16_t height_min, height_max, height_mean;
+    uint8_t error_code;
+    uint8_t flags;
+};
+
+/* Tiles x0..x1, y0..y1 touch the window; x1 < x0: none does. */
+typedef struct ff_window { int64_t x0, x1, y0, y1; } ff_window;
+typedef struct ff_box { int64_t lo[3], hi[3]; } ff_box; /* wu, relative to the camera */
+#define FF_PLANES 5
+
+struct ff_tree {
+    ff_terrain_info info;
+    uint32_t node_count, wish_capacity, hash_mask;
+    ff_node *node;
+    uint16_t *heights;       /* node_count grids */
+    uint32_t *hash;
+    uint32_t *order;         /* node_count slots: queue of a selection */
+    uint64_t *sort;          /* 2 * node_count */
+    ff_drawn *drawn;         /* node_count: the cut, its visible part first */
+    ff_wish *wish;
+    uint16_t *refined;       /* grid of four children */
+    uint32_t free_head, root_head, root_count, free_count;
+    uint32_t cut_count, drawn_count, wish_count;
+
+    ff_view asked_view, view;         /* of the last selection: as given, and brought into range */
+    ff_quality asked_quality, quality;
+    uint8_t has_view, dirty;
+    ff_window window;
+    int32_t plane[FF_PLANES][3];      /* inward normals of the view pyramid, largest component below 2^28 */
+    uint32_t want_head[FF_LEVELS_MAX];
+
+    void (*on_evict)(void *context, uint32_t user);
+    void *evict_context;
+    ff_tree_stats stats;
+};
+
+static inline uint32_t ff_slot_of(const ff_tree *tree, const ff_node *node) { return (uint32_t)(node - tree->node); }
+static inline size_t ff_heights_per_node(const ff_tree *tree)
+{
+    return (size_t)ff_node_side(&tree->info) * ff_node_side(&tree->info);
+}
+static inline int ff_node_has_children(const ff_node *node) { return node->child[0] != FF_SLOT_NONE; }
+
+/* ff_pool.c */
+uint32_t ff_tree_find(const ff_tree *tree, ff_key key);
+/* The node itself or its nearest held ancestor, or FF_SLOT_NONE. */
+uint32_t ff_tree_find_nearest(const ff_tree *tree, ff_key key);
+uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent);
+void ff_tree_drop_children(ff_tree *tree, ff_node *parent);
+void ff_tree_drop_root(ff_tree *tree, ff_node *root);
+
+/* ff_evict.c */
+/* Makes `slots` slots free by dropping what is worth less than `below`; `keep` and its siblings stay. 1 when there is room. */
+int ff_evict_for_children(ff_tree *tree, uint32_t keep);
+int ff_evict_for_root(ff_tree *tree, uint32_t tile);
+/* Sort keys (value << FF_SLOT_BITS | slot) of all that may be dropped, unsorted: parents of leaf families, idle roots. */
+uint32_t ff_evict_candidates(const ff_tree *tree, uint64_t *keys);
+/* Children wanted by the cut give way to more valuable ones only; others also to any wanted ones. */
+uint32_t ff_evict_limit(const ff_tree *tree, const ff_node *node);
+
+/* ff_measure.c */
+void ff_window_make(ff_tree *tree);
+int ff_tile_active(const ff_tree *tree, uint32_t tile);
+/* Largest of |dx|, |dy| from the window's middle to a tile's square. */
+int64_t ff_tile_distance(const ff_tree *tree, uint32_t tile);
+void ff_node_box(const ff_tree *tree, const ff_node *node, ff_box *box);
+void ff_tile_box(const ff_tree *tree, uint32_t tile, ff_box *box);
+/* 1 when no point of the box is within view_wu of the window's middle. */
+int ff_box_beyond_view(const ff_tree *tree, const ff_box *box);
+int64_t ff_box_distance(const ff_box *box);
+/* Geometric error of a node as seen from the nearest point of its box, pixels Q8. */
+uint64_t ff_projected_error_q8(const ff_tree *tree, const ff_node *node, const ff_box *box);
+uint32_t ff_value_of_split(const ff_tree *tree, const ff_node *node);
+
+/* ff_view_cull.c */
+void ff_pyramid_make(ff_tree *tree);
+int ff_box_in_view(const ff_tree *tree, const ff_box *box);
+
+/* ff_restrict.c */
+int ff_side_coarser(const ff_tree *tree, const ff_node *node, enum ff_side side);
+unsigned ff_coarser_mask(const ff_tree *tree, const ff_node *node);
+void ff_want(ff_tree *tree, uint32_t slot, uint32_t value);
+/* Makes everything wanted that wanted nodes need beside them. */
+void ff_want_close(ff_tree *tree);
+
+/* ff_wish.c */
+void ff_wish_make(ff_tree *tree);
+
+/* ff_sort.c */
+void ff_sort_keys(uint64_t *keys, uint32_t count);
+
+/* ff_strips.c: triangles of one side, vertex = row * (n+1) + column, from its one end to the other, counter-clockwise;
+ * the first vertex of a triangle is the one the next has not. Returns how many (at most 2n). */
+unsigned ff_side_triangles(unsigned node_log2, enum ff_side side, unsigned difference, uint16_t triangle[][3]);
+
+#endif
