@@ -44,9 +44,9 @@ LIBS := $(LIB)/libffsim.a $(LIB)/libffserver.a $(LIB)/libfftools.a $(LIB)/libffc
 LINK_LIBS = -Wl,--start-group $(LIBS) -Wl,--end-group $(LDLIBS_core) $(LDLIBS_surface) $(LDLIBS_host)
 
 .DEFAULT_GOAL := all
-.PHONY: all help deps server emulator flyover demo test test-build check man install uninstall clean lib fuzz FORCE
+.PHONY: all help null deps server emulator flyover demo test test-build check man install uninstall clean lib fuzz FORCE
 
-all: $(PROGRAMS) lib ## build all programs and libraries into build/
+all: $(PROGRAMS) lib null ## build all programs and libraries into build/
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1|\2/p' $(firstword $(MAKEFILE_LIST)) | awk -F'|' '{printf "%-18s %s\n",$$1,$$2}'
@@ -66,6 +66,7 @@ deps: $(DEPS_STAMP) ## install what is missing (Debian packages; says so first)
 $(BUILD)/obj/tools/%.o: CFLAGS_LAYER = $(STD_host) $(GDAL_CFLAGS)
 $(BUILD)/obj/server/%.o $(BUILD)/obj/sim/%.o $(BUILD)/obj/tests/%.o $(BUILD)/obj/platform/%.o: CFLAGS_LAYER = $(STD_host)
 CFLAGS_LAYER = $(STD_core)
+$(BUILD)/obj/platform/null/%.o: CFLAGS_LAYER = $(STD_core)
 $(BUILD)/obj/%.o: %.c | $(DEPS_STAMP)
 	@mkdir -p $(@D)
 	$(CC) $(CFLAGS_BASE) $(CFLAGS_LAYER) $(CFLAGS) -fPIC -c $< -o $@
@@ -100,6 +101,13 @@ lib: $(LIB)/libfarfield.a $(LIB)/libfarfield.so
 $(LIB)/libfarfield.a: $(LIBFARFIELD_OBJS); $(archive)
 $(LIB)/libfarfield.so: $(LIBFARFIELD_OBJS)
 	$(CC) $(OPT) -shared -Wl,-soname,libfarfield.so.0 $^ $(LDLIBS_core) -lpng16 -o $@
+
+# ---- the blank port: all of the core over platform/null ----
+NULL_OBJS = $(call obj,$(call srcs,platform/null) platform/random.c platform/events.c)
+null: $(BUILD)/null-check ## check that the core builds over the blank port
+	$<
+$(BUILD)/null-check: $(NULL_OBJS) $(LIB)/libffcore.a
+	$(CC) $(OPT) $(LDFLAGS) $(NULL_OBJS) -Wl,--whole-archive $(LIB)/libffcore.a -Wl,--no-whole-archive -lz -o $@
 
 # ---- tests: tests/test_*.c are cmocka programs, tests/*.sh scripts; tests/run.sh counts ----
 TESTS := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))

@@ -213,7 +213,7 @@ void c3d_gl_draw(void *opaque, const c3d_resolved_draw *resolved)
     gl->VertexPointer(3, GL_SHORT, (int)sizeof *base, base);
     if (draw->flags & C3D_DRAW_TEXTURED) {
         set_texture(state, resolved);
-        gl->TexCoordPointer(2, GL_SHORT, (int)sizeof *base, base);
+        gl->TexCoordPointer(3, GL_SHORT, (int)sizeof *base, base);
     }
     if (draw->flags & C3D_DRAW_COLOURED) {
         gl->ColorPointer(4, GL_UNSIGNED_BYTE, (int)sizeof *base, offset_pointer(base, offsetof(c3d_vertex, rgba)));

@@ -56,12 +56,15 @@ void c3d_gl_modelview(float matrix[16], const c3d_resolved_draw *resolved, const
     matrix[15] = 1.0f;
 }
 
+/* Texture coordinates are the vertex itself, x, y and z: the matrix takes s and t from two of the axes. */
 void c3d_gl_texture_matrix(float matrix[16], const c3d_draw *draw)
 {
+    const int axis[2] = {draw->flags & C3D_DRAW_TEX_YZ ? 1 : 0,
+                         draw->flags & (C3D_DRAW_TEX_XZ | C3D_DRAW_TEX_YZ) ? 2 : 1};
     memset(matrix, 0, 16 * sizeof *matrix);
     for (int i = 0; i < 2; i++) {
-        matrix[i * 5] = (float)draw->tex_scale_q16[i] * (1.0f / 65536.0f);
+        matrix[axis[i] * 4 + i] = (float)draw->tex_scale_q16[i] * (1.0f / 65536.0f);
         matrix[12 + i] = (float)draw->tex_offset_q16[i] * (1.0f / 65536.0f);
     }
-    matrix[10] = matrix[15] = 1.0f;
+    matrix[15] = 1.0f;
 }

@@ -1,0 +1,131 @@
+/* A blank port: every function of sys.h that an operating system must answer, answering as one that has nothing would. It builds with
+ * any C99 compiler and no header of a system; a port to a new system starts as a copy, one function after the other made real.
+ * Randomness and injected events (platform/random.c, platform/events.c) ask nothing of a system and are shared by all ports.
+ *
+ * What works: the clock steps a millisecond at every look, so that loops waiting for time end; locks do nothing, as there are no
+ * threads. Everything else says FF_ERR_UNSUPPORTED.
+ */
+#include "../sys.h"
+
+#define STEP_US 1000
+
+static int64_t (*replaced_now_us)(void *context);
+static void *replaced_context;
+static int64_t stepped_us;
+
+int64_t sys_time_us(void)
+{
+    if (replaced_now_us) return replaced_now_us(replaced_context);
+    return stepped_us += STEP_US;
+}
+
+void sys_sleep_us(int64_t us)
+{
+    if (!replaced_now_us && us > 0) stepped_us += us;
+}
+
+void sys_clock_replace(int64_t (*now_us)(void *context), void *context)
+{
+    replaced_now_us = now_us;
+    replaced_context = context;
+}
+
+int sys_mutex_init(sys_mutex *mutex) { return (void)mutex, FF_OK; }
+void sys_mutex_destroy(sys_mutex *mutex) { (void)mutex; }
+void sys_mutex_lock(sys_mutex *mutex) { (void)mutex; }
+void sys_mutex_unlock(sys_mutex *mutex) { (void)mutex; }
+
+int sys_thread_start(sys_thread *thread, void (*run)(void *arg), void *arg)
+{
+    (void)thread, (void)run, (void)arg;
+    return FF_ERR_UNSUPPORTED;
+}
+
+void sys_thread_join(sys_thread *thread) { (void)thread; }
+
+static int no_send(void *state, const uint8_t *bytes, size_t count)
+{
+    (void)state, (void)bytes, (void)count;
+    return FF_ERR_CLOSED;
+}
+
+static int no_recv(void *state, uint8_t *bytes, size_t capacity)
+{
+    (void)state, (void)bytes, (void)capacity;
+    return FF_ERR_CLOSED;
+}
+
+static void no_close(void *state) { (void)state; }
+static int no_reconnect(void *state) { return (void)state, FF_ERR_UNSUPPORTED; }
+
+int sys_tcp_client(sys_tcp *tcp, const char *address, sys_stream *stream)
+{
+    (void)address;
+    sys_tcp_adopt(tcp, -1, stream);
+    stream->reconnect = no_reconnect;
+    return FF_ERR_UNSUPPORTED;
+}
+
+int sys_tcp_listen(const char *address, int reuse_port, uint16_t *port)
+{
+    (void)address, (void)reuse_port, (void)port;
+    return FF_ERR_UNSUPPORTED;
+}
+
+int sys_tcp_accept(int listen_fd) { return (void)listen_fd, FF_ERR_UNSUPPORTED; }
+
+void sys_tcp_adopt(sys_tcp *tcp, int fd, sys_stream *stream)
+{
+    tcp->fd = fd;
+    tcp->connecting = 0;
+    tcp->address[0] = 0;
+    stream->state = tcp;
+    stream->send = no_send;
+    stream->recv = no_recv;
+    stream->close = no_close;
+    stream->reconnect = NULL;
+}
+
+int sys_map_file(const char *path, sys_mapping *mapping)
+{
+    (void)path;
+    mapping->bytes = NULL;
+    mapping->size = 0;
+    return FF_ERR_UNSUPPORTED;
+}
+
+void sys_unmap_file(sys_mapping *mapping) { mapping->bytes = NULL; }
+
+int sys_write_file(const char *path, const void *bytes, size_t count)
+{
+    (void)path, (void)bytes, (void)count;
+    return FF_ERR_UNSUPPORTED;
+}
+
+int sys_jpeg_decode(const uint8_t *bytes, size_t byte_count, uint32_t width, uint32_t height, uint8_t *rgb)
+{
+    (void)bytes, (void)byte_count, (void)width, (void)height, (void)rgb;
+    return FF_ERR_UNSUPPORTED;
+}
+
+int sys_jpeg_size(const uint8_t *bytes, size_t byte_count, uint32_t *width, uint32_t *height)
+{
+    (void)bytes, (void)byte_count, (void)width, (void)height;
+    return FF_ERR_UNSUPPORTED;
+}
+
+int sys_jpeg_encode(const uint8_t *rgb, uint32_t width, uint32_t height, int quality, uint8_t *out, size_t capacity)
+{
+    (void)rgb, (void)width, (void)height, (void)quality, (void)out, (void)capacity;
+    return FF_ERR_UNSUPPORTED;
+}
+
+int sys_png_write(const char *path, const uint8_t *rgb, uint32_t width, uint32_t height)
+{
+    (void)path, (void)rgb, (void)width, (void)height;
+    return FF_ERR_UNSUPPORTED;
+}
+
+const sys_surface_api *sys_surface_glfw(void) { return NULL; }
+const sys_surface_api *sys_surface_egl(void) { return NULL; }
+const sys_surface_api *sys_surface_osmesa(void) { return NULL; }
