@@ -146,6 +146,7 @@ static void section(writer *w, enum ff_section_kind kind, uint32_t level, const 
             return;
         }
         put_le(out, ff_crc32(0, payload, (size_t)bytes), 4);
+        s->records_crc = ff_crc32(s->records_crc, out, 4);
         memcpy(out + 4, payload, (size_t)bytes);
         put_le(w->bytes + s->index_offset + 8 * (r + 1), w->count - s->data_offset, 8);
     }
