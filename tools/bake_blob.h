@@ -1,0 +1,21 @@
+/* Records of one tile in one section, waiting for their turn to be written. */
+#ifndef BAKE_BLOB_H
+#define BAKE_BLOB_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct bake_blob {
+    uint8_t *bytes;
+    size_t byte_count, byte_capacity;
+    uint32_t *length; /* of each record */
+    size_t record_count, record_capacity;
+} bake_blob;
+
+/* Appends one record. 0 or -1 (said). */
+int bake_blob_add(bake_blob *blob, const uint8_t *payload, size_t count);
+/* Empty again, memory kept. */
+void bake_blob_clear(bake_blob *blob);
+void bake_blob_free(bake_blob *blob);
+
+#endif

@@ -1,0 +1,118 @@
+#include "bake_tile.h"
+
+#include "bake_error.h"
+#include "bake_say.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static size_t pitch_of(const ff_terrain_info *info) { return ((size_t)1 << info->tile_log2) + 1; }
+
+int bake_tile_open(bake_tile *tile, const ff_terrain_info *info)
+{
+    size_t samples = pitch_of(info) * pitch_of(info);
+    *tile = (bake_tile){.info = info, .plain = *info};
+    tile->plain.codec = FF_CODEC_RAW;
+    tile->source = malloc(samples * sizeof *tile->source);
+    tile->decoded = malloc(samples * sizeof *tile->decoded);
+    if (tile->source && tile->decoded) return 0;
+    bake_tile_close(tile);
+    return bake_fail("out of memory");
+}
+
+void bake_tile_close(bake_tile *tile)
+{
+    free(tile->source);
+    free(tile->decoded);
+    for (int i = 0; i < BAKE_LEVELS_MAX; i++) bake_blob_free(&tile->level[i]);
+    *tile = (bake_tile){0};
+}
+
+int bake_tile_load(bake_tile *tile, const bake_grid *grid, uint32_t number)
+{
+    const ff_terrain_info *info = tile->info;
+    size_t pitch = pitch_of(info);
+    uint32_t first_column = (number % info->tiles_x) << info->tile_log2;
+    uint32_t first_row = (number / info->tiles_x) << info->tile_log2;
+    /* ff_terrain_info: tiles beyond the last sample do not exist, so at least one column and row is there. */
+    uint32_t columns = grid->width - first_column < pitch ? grid->width - first_column : (uint32_t)pitch;
+    for (size_t row = 0; row < pitch; row++) {
+        uint16_t *to = tile->source + row * pitch;
+        if (first_row + row >= grid->height) {
+            memcpy(to, to - pitch, pitch * sizeof *to);
+            continue;
+        }
+        if (bake_grid_read(grid, first_row + (uint32_t)row, first_column, columns, to)) return -1;
+        for (size_t i = columns; i < pitch; i++) to[i] = to[columns - 1];
+    }
+    return 0;
+}
+
+/* A square of `side` samples, `stride` apart, from a tile's grid; and back. */
+static void gather(const uint16_t *grid, size_t pitch, uint32_t side, size_t stride, uint16_t *out)
+{
+    for (uint32_t j = 0; j < side; j++)
+        for (uint32_t i = 0; i < side; i++) *out++ = grid[j * stride * pitch + i * stride];
+}
+
+static void scatter(const uint16_t *in, size_t pitch, uint32_t side, size_t stride, uint16_t *grid)
+{
+    for (uint32_t j = 0; j < side; j++)
+        for (uint32_t i = 0; i < side; i++) grid[j * stride * pitch + i * stride] = *in++;
+}
+
+static uint8_t error_code(const bake_tile *tile, size_t at, uint32_t cell)
+{
+    uint32_t cells = 1u << tile->info->node_log2;
+    return ff_geometric_error_encode(
+        bake_node_error(tile->source + at, tile->decoded + at, pitch_of(tile->info), cells, cell));
+}
+
+static int encode_root(bake_tile *tile)
+{
+    const ff_terrain_info *info = tile->info;
+    uint16_t source[FF_NODE_HEIGHTS_MAX], decoded[FF_NODE_HEIGHTS_MAX];
+    uint8_t payload[FF_PAYLOAD_BYTES_MAX];
+    uint32_t side = ff_node_side(info), cell = 1u << (info->tile_log2 - info->node_log2);
+    gather(tile->source, pitch_of(info), side, cell, source);
+    if (ff_encode_root(&tile->plain, source, 0, payload, decoded) < 0) return bake_fail("cannot encode a root");
+    scatter(decoded, pitch_of(info), side, cell, tile->decoded);
+    int bytes = ff_encode_root(info, source, error_code(tile, 0, cell), payload, decoded);
+    if (bytes < 0) return bake_fail("cannot encode a root: %s", ff_error_text(bytes));
+    return bake_blob_add(&tile->level[0], payload, (size_t)bytes);
+}
+
+/* Encodes the refinement of the node whose south-west sample is `at`, its cells `cell` samples wide. */
+static int encode_refinement(bake_tile *tile, uint32_t level, size_t at, uint32_t cell)
+{
+    const ff_terrain_info *info = tile->info;
+    uint16_t parent[FF_NODE_HEIGHTS_MAX], source[FF_REFINED_HEIGHTS_MAX], decoded[FF_REFINED_HEIGHTS_MAX];
+    uint8_t payload[FF_PAYLOAD_BYTES_MAX], code[4];
+    size_t pitch = pitch_of(info), edge = (size_t)(cell / 2) << info->node_log2;
+    gather(tile->decoded + at, pitch, ff_node_side(info), cell, parent);
+    gather(tile->source + at, pitch, ff_refined_side(info), cell / 2, source);
+    memset(code, 0, sizeof code);
+    if (ff_encode_refinement(&tile->plain, parent, source, code, payload, decoded) < 0)
+        return bake_fail("cannot encode a node");
+    scatter(decoded, pitch, ff_refined_side(info), cell / 2, tile->decoded + at);
+    for (uint32_t q = 0; q < 4; q++) code[q] = error_code(tile, at + (q & 1) * edge + (q >> 1) * edge * pitch, cell / 2);
+    int bytes = ff_encode_refinement(info, parent, source, code, payload, decoded);
+    if (bytes < 0) return bake_fail("cannot encode a node: %s", ff_error_text(bytes));
+    return bake_blob_add(&tile->level[level + 1], payload, (size_t)bytes);
+}
+
+int bake_tile_encode(bake_tile *tile)
+{
+    const ff_terrain_info *info = tile->info;
+    for (uint32_t l = 0; l < BAKE_LEVELS_MAX; l++) bake_blob_clear(&tile->level[l]);
+    if (encode_root(tile)) return -1;
+    for (uint32_t level = 0; level + 1 < ff_terrain_levels(info); level++) {
+        size_t edge = (size_t)1 << (info->tile_log2 - level);
+        uint32_t cell = (uint32_t)(edge >> info->node_log2);
+        for (uint32_t code = 0; code >> (2 * level) == 0; code++) {
+            size_t at = ff_morton_y(code) * edge * pitch_of(info) + ff_morton_x(code) * edge;
+            if (encode_refinement(tile, level, at, cell)) return -1;
+        }
+    }
+    return 0;
+}
