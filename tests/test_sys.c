@@ -1,0 +1,541 @@
+/* The Common System API on this machine: clock, events, chance, threads, sockets, files and pictures. */
+#include "../platform/sim/sys_sim.h"
+#include "../platform/sys.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define SCRATCH "build/tests/sys-scratch"
+
+/* ---- clock and events ---- */
+
+static void clock_can_be_replaced(void **state)
+{
+    (void)state;
+    int64_t real_us = sys_time_us();
+    sys_sim_clock clock = {123};
+    sys_sim_clock_use(&clock);
+    assert_int_equal(sys_time_us(), 123);
+    sys_sleep_us(INT64_C(1) << 60); /* would never end on a real clock */
+    assert_int_equal(sys_time_us(), 123);
+    sys_sim_clock_advance(&clock, 1000);
+    assert_int_equal(sys_time_us(), 1123);
+    sys_sim_clock_use(NULL);
+    assert_true(sys_time_us() >= real_us);
+}
+
+static void real_clock_sleeps_at_least_as_long(void **state)
+{
+    (void)state;
+    int64_t before_us = sys_time_us();
+    sys_sleep_us(2000);
+    assert_true(sys_time_us() - before_us >= 2000);
+    sys_sleep_us(-5);
+}
+
+static void events_come_out_in_order(void **state)
+{
+    (void)state;
+    sys_event event = {.type = SYS_EVENT_POSITION}, taken;
+    uint32_t injected = 0;
+    while (sys_event_inject(&event) == FF_OK) event.u.position.x_wu = (int32_t)++injected;
+    assert_int_equal(sys_event_inject(&event), FF_ERR_FULL);
+    assert_true(injected >= 16);
+    for (uint32_t i = 0; i < injected; i++) {
+        assert_int_equal(sys_event_take(&taken), 1);
+        assert_int_equal(taken.u.position.x_wu, i);
+    }
+    assert_int_equal(sys_event_take(&taken), 0);
+}
+
+static void scripts_inject_what_is_due(void **state)
+{
+    (void)state;
+    const sys_event events[] = {{.type = SYS_EVENT_BATTERY, .time_us = 10, .u.battery = {5, 1}},
+                                {.type = SYS_EVENT_INTERRUPTION, .time_us = 20, .u.interruption = {1}},
+                                {.type = SYS_EVENT_INTERRUPTION, .time_us = 20, .u.interruption = {0}}};
+    sys_sim_script script = {events, 3, 0};
+    sys_event taken;
+    assert_int_equal(sys_sim_script_run(&script, 9), 0);
+    assert_int_equal(sys_sim_script_run(&script, 10), 1);
+    assert_int_equal(sys_sim_script_run(&script, 19), 0);
+    assert_int_equal(sys_sim_script_run(&script, 1000), 2);
+    assert_int_equal(sys_sim_script_run(&script, 1001), 0);
+    assert_int_equal(sys_event_take(&taken), 1);
+    assert_int_equal(taken.type, SYS_EVENT_BATTERY);
+    assert_int_equal(taken.u.battery.percent, 5);
+    assert_int_equal(sys_event_take(&taken), 1);
+    assert_int_equal(taken.u.interruption.begins, 1);
+    assert_int_equal(sys_event_take(&taken), 1);
+    assert_int_equal(taken.u.interruption.begins, 0);
+    assert_int_equal(sys_event_take(&taken), 0);
+}
+
+static void random_numbers_are_those_of_pcg32(void **state)
+{
+    (void)state;
+    /* The demonstration output of the reference implementation: seed 42, stream 54. */
+    static const uint32_t expected[] = {0xa15c02b7, 0x7b47f409, 0xba1d3330, 0x83d2f293, 0xbfa4784b, 0xcbed606e};
+    sys_random random;
+    sys_random_seed(&random, 42, 54);
+    for (size_t i = 0; i < 6; i++) assert_int_equal(sys_random_u32(&random), expected[i]);
+    uint32_t seen[7] = {0};
+    for (int i = 0; i < 70000; i++) {
+        uint32_t value = sys_random_below(&random, 7);
+        assert_true(value < 7);
+        seen[value]++;
+    }
+    for (int i = 0; i < 7; i++) assert_in_range(seen[i], 9500, 10500);
+}
+
+/* ---- threads ---- */
+
+struct counter {
+    sys_mutex mutex;
+    int value;
+};
+
+static void count_up(void *arg)
+{
+    struct counter *counter = arg;
+    for (int i = 0; i < 20000; i++) {
+        sys_mutex_lock(&counter->mutex);
+        counter->value++;
+        sys_mutex_unlock(&counter->mutex);
+    }
+}
+
+static void threads_take_turns(void **state)
+{
+    (void)state;
+    struct counter counter = {.value = 0};
+    sys_thread threads[3];
+    assert_int_equal(sys_mutex_init(&counter.mutex), FF_OK);
+    for (int i = 0; i < 3; i++) assert_int_equal(sys_thread_start(&threads[i], count_up, &counter), FF_OK);
+    for (int i = 0; i < 3; i++) sys_thread_join(&threads[i]);
+    assert_int_equal(counter.value, 60000);
+    sys_mutex_destroy(&counter.mutex);
+}
+
+/* ---- sockets ---- */
+
+typedef struct pair {
+    int listener;
+    sys_tcp client, peer;
+    sys_stream out, in; /* the client's and the peer's ends */
+} pair;
+
+static const char *local_address(char text[32], const char *host, uint16_t port)
+{
+    snprintf(text, 32, "%s:%u", host, port);
+    return text;
+}
+
+static int accept_soon(int listener)
+{
+    int fd = FF_ERR_AGAIN;
+    for (int i = 0; i < 5000 && fd == FF_ERR_AGAIN; i++) {
+        fd = sys_tcp_accept(listener);
+        if (fd == FF_ERR_AGAIN) sys_sleep_us(1000);
+    }
+    return fd;
+}
+
+static int reconnect_soon(sys_stream *stream)
+{
+    int rc = FF_ERR_AGAIN;
+    for (int i = 0; i < 5000 && rc == FF_ERR_AGAIN; i++) {
+        rc = stream->reconnect(stream->state);
+        if (rc == FF_ERR_AGAIN) sys_sleep_us(1000);
+    }
+    return rc;
+}
+
+/* Receives into the void until something else than "nothing yet" comes. */
+static int recv_soon(sys_stream *stream, uint8_t *bytes, size_t capacity)
+{
+    int got = 0;
+    for (int i = 0; i < 5000 && got == 0; i++) {
+        got = stream->recv(stream->state, bytes, capacity);
+        if (got == 0) sys_sleep_us(1000);
+    }
+    return got;
+}
+
+static void open_pair(pair *p)
+{
+    char text[32];
+    uint16_t port = 0;
+    p->listener = sys_tcp_listen("127.0.0.1:0", 1, &port);
+    assert_true(p->listener >= 0 && port != 0);
+    assert_int_equal(sys_tcp_accept(p->listener), FF_ERR_AGAIN);
+    assert_int_equal(sys_tcp_client(&p->client, local_address(text, "127.0.0.1", port), &p->out), FF_OK);
+    int fd = accept_soon(p->listener);
+    assert_true(fd >= 0);
+    sys_tcp_adopt(&p->peer, fd, &p->in);
+    assert_null(p->in.reconnect);
+    assert_int_equal(reconnect_soon(&p->out), FF_OK);
+}
+
+static void close_pair(pair *p)
+{
+    p->out.close(p->out.state);
+    p->in.close(p->in.state);
+    close(p->listener);
+}
+
+static void bytes_go_both_ways(void **state)
+{
+    (void)state;
+    pair p;
+    uint8_t bytes[8];
+    open_pair(&p);
+    assert_int_equal(p.in.recv(p.in.state, bytes, 8), 0);
+    assert_int_equal(p.out.send(p.out.state, (const uint8_t *)"hello", 5), 5);
+    assert_int_equal(recv_soon(&p.in, bytes, 8), 5);
+    assert_memory_equal(bytes, "hello", 5);
+    assert_int_equal(p.in.send(p.in.state, (const uint8_t *)"yes", 3), 3);
+    assert_int_equal(p.out.recv(p.out.state, bytes, 0), 0);
+    assert_int_equal(recv_soon(&p.out, bytes, 8), 3);
+    close_pair(&p);
+}
+
+static void a_slow_reader_makes_sends_partial(void **state)
+{
+    (void)state;
+    pair p;
+    static uint8_t block[1 << 20], back[1 << 16];
+    uint64_t sent = 0, received = 0;
+    uint32_t sum_out = 0, sum_in = 0;
+    sys_random random;
+    sys_random_seed(&random, 5, 5);
+    for (size_t i = 0; i < sizeof block; i++) block[i] = (uint8_t)sys_random_u32(&random);
+    open_pair(&p);
+    int partial = 0, taken;
+    do {
+        taken = p.out.send(p.out.state, block, sizeof block);
+        assert_true(taken >= 0);
+        for (int i = 0; i < taken; i++) sum_out = sum_out * 31 + block[i];
+        sent += (uint64_t)taken;
+        if (taken > 0 && taken < (int)sizeof block) partial = 1;
+    } while (taken > 0);
+    assert_true(partial);
+    p.out.close(p.out.state); /* what was taken still arrives, then the end */
+    int got;
+    while ((got = recv_soon(&p.in, back, sizeof back)) > 0) {
+        for (int i = 0; i < got; i++) sum_in = sum_in * 31 + back[i];
+        received += (uint64_t)got;
+    }
+    assert_int_equal(got, FF_ERR_CLOSED);
+    assert_true(sent == received);
+    assert_int_equal(sum_out, sum_in);
+    close_pair(&p);
+}
+
+static void a_vanished_peer_is_closed_and_reconnects(void **state)
+{
+    (void)state;
+    pair p;
+    uint8_t bytes[4] = {1, 2, 3, 4};
+    open_pair(&p);
+    p.in.close(p.in.state);
+    assert_int_equal(recv_soon(&p.out, bytes, 4), FF_ERR_CLOSED);
+    assert_int_equal(p.out.recv(p.out.state, bytes, 4), FF_ERR_CLOSED);
+    assert_int_equal(p.out.send(p.out.state, bytes, 4), FF_ERR_CLOSED); /* and no SIGPIPE */
+    assert_int_equal(reconnect_soon(&p.out), FF_OK);
+    int fd = accept_soon(p.listener);
+    assert_true(fd >= 0);
+    sys_tcp_adopt(&p.peer, fd, &p.in);
+    assert_int_equal(p.out.send(p.out.state, bytes, 4), 4);
+    assert_int_equal(recv_soon(&p.in, bytes, 4), 4);
+    assert_int_equal(p.in.send(p.in.state, bytes, 4), 4);
+    assert_int_equal(recv_soon(&p.out, bytes, 4), 4);
+    /* The client's own decision: close, and connect anew. */
+    p.out.close(p.out.state);
+    assert_int_equal(recv_soon(&p.in, bytes, 4), FF_ERR_CLOSED);
+    assert_int_equal(reconnect_soon(&p.out), FF_OK);
+    close_pair(&p);
+}
+
+static void sending_to_a_vanished_peer_ends(void **state)
+{
+    (void)state;
+    pair p;
+    uint8_t bytes[256] = {0};
+    open_pair(&p);
+    p.in.close(p.in.state);
+    int rc = 0;
+    for (int i = 0; i < 5000 && rc >= 0; i++) {
+        rc = p.out.send(p.out.state, bytes, sizeof bytes);
+        sys_sleep_us(100);
+    }
+    assert_int_equal(rc, FF_ERR_CLOSED);
+    close_pair(&p);
+}
+
+static void a_refused_connection_is_closed(void **state)
+{
+    (void)state;
+    char text[32];
+    uint16_t port = 0;
+    sys_tcp tcp;
+    sys_stream stream;
+    uint8_t byte;
+    int listener = sys_tcp_listen("127.0.0.1:0", 0, &port);
+    assert_true(listener >= 0);
+    close(listener);
+    assert_int_equal(sys_tcp_client(&tcp, local_address(text, "127.0.0.1", port), &stream), FF_OK);
+    assert_int_equal(recv_soon(&stream, &byte, 1), FF_ERR_CLOSED);
+    assert_true(reconnect_soon(&stream) < 0);
+    assert_int_equal(stream.send(stream.state, &byte, 1), FF_ERR_CLOSED);
+    stream.close(stream.state);
+}
+
+static void ports_are_shared_only_when_asked(void **state)
+{
+    (void)state;
+    char text[32];
+    uint16_t port = 0, same = 0;
+    int first = sys_tcp_listen("127.0.0.1:0", 1, &port);
+    local_address(text, "127.0.0.1", port);
+    int second = sys_tcp_listen(text, 1, &same);
+    assert_true(first >= 0 && second >= 0);
+    assert_int_equal(port, same);
+    assert_int_equal(sys_tcp_listen(text, 0, &same), FF_ERR_SYSTEM);
+    close(first);
+    close(second);
+}
+
+static void ipv6_addresses_have_brackets(void **state)
+{
+    (void)state;
+    char text[32];
+    uint16_t port = 0;
+    sys_tcp tcp;
+    sys_stream stream;
+    int listener = sys_tcp_listen("[::1]:0", 0, &port);
+    if (listener < 0) skip(); /* a machine without IPv6 */
+    assert_int_equal(sys_tcp_client(&tcp, local_address(text, "[::1]", port), &stream), FF_OK);
+    assert_int_equal(reconnect_soon(&stream), FF_OK);
+    stream.close(stream.state);
+    close(listener);
+}
+
+static void bad_addresses_are_told(void **state)
+{
+    (void)state;
+    static const char *const bad[] = {"", "host", ":", "host:", "host:x", "host:65536", "host:123456", "::1:80",
+                                      "[::1:80", "[]:80", "host:-1", "host: 1", ":80"};
+    sys_tcp tcp;
+    sys_stream stream;
+    uint16_t port;
+    char endless[400];
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++)
+        assert_int_equal(sys_tcp_client(&tcp, bad[i], &stream), FF_ERR_ARGUMENT);
+    memset(endless, 'a', sizeof endless);
+    memcpy(endless + sizeof endless - 4, ":80", 4);
+    assert_int_equal(sys_tcp_client(&tcp, endless, &stream), FF_ERR_ARGUMENT);
+    assert_int_equal(sys_tcp_listen("nonsense", 0, &port), FF_ERR_ARGUMENT);
+    assert_int_equal(sys_tcp_listen("192.0.2.1:0", 0, &port), FF_ERR_SYSTEM); /* not an address of ours */
+    int any = sys_tcp_listen(":0", 0, &port);
+    assert_true(any >= 0);
+    close(any);
+}
+
+/* ---- files ---- */
+
+static void files_are_written_whole(void **state)
+{
+    (void)state;
+    sys_mapping mapping;
+    struct stat status;
+    static uint8_t big[300000];
+    memset(big, 7, sizeof big);
+    assert_int_equal(sys_write_file(SCRATCH "/file", "old", 3), FF_OK);
+    assert_int_equal(sys_map_file(SCRATCH "/file", &mapping), FF_OK);
+    assert_int_equal(sys_write_file(SCRATCH "/file", big, sizeof big), FF_OK);
+    assert_int_equal(mapping.size, 3); /* the old file lives on for who has it */
+    assert_memory_equal(mapping.bytes, "old", 3);
+    sys_unmap_file(&mapping);
+    assert_null(mapping.bytes);
+    assert_int_equal(sys_map_file(SCRATCH "/file", &mapping), FF_OK);
+    assert_int_equal(mapping.size, sizeof big);
+    assert_memory_equal(mapping.bytes, big, sizeof big);
+    sys_unmap_file(&mapping);
+    assert_int_equal(stat(SCRATCH "/file", &status), 0);
+    assert_int_equal(status.st_mode & 0400, 0400);
+    assert_int_equal(sys_write_file(SCRATCH "/file", "", 0), FF_OK);
+    assert_int_equal(sys_map_file(SCRATCH "/file", &mapping), FF_OK);
+    assert_int_equal(mapping.size, 0);
+    sys_unmap_file(&mapping);
+}
+
+static void a_write_that_fails_leaves_nothing(void **state)
+{
+    (void)state;
+    sys_mapping mapping;
+    assert_int_equal(sys_write_file(SCRATCH "/none/file", "x", 1), FF_ERR_SYSTEM);
+    assert_int_equal(mkdir(SCRATCH "/directory", 0777), 0);
+    assert_int_equal(sys_write_file(SCRATCH "/directory", "x", 1), FF_ERR_SYSTEM); /* the rename fails */
+    assert_int_equal(system("test -z \"$(ls " SCRATCH " | grep directory.)\""), 0);
+    assert_int_equal(sys_map_file(SCRATCH "/directory", &mapping), FF_ERR_SYSTEM);
+    assert_int_equal(sys_map_file(SCRATCH "/absent", &mapping), FF_ERR_NOT_FOUND);
+    assert_int_equal(sys_map_file(SCRATCH "/file/absent", &mapping), FF_ERR_NOT_FOUND);
+}
+
+/* ---- pictures ---- */
+
+#define SIDE 64
+
+static void paint(uint8_t rgb[SIDE * SIDE * 3])
+{
+    for (int y = 0; y < SIDE; y++)
+        for (int x = 0; x < SIDE; x++) {
+            uint8_t *pixel = rgb + (y * SIDE + x) * 3;
+            pixel[0] = (uint8_t)(x * 4);
+            pixel[1] = (uint8_t)(y * 4);
+            pixel[2] = (uint8_t)((x ^ y) & 32 ? 200 : 40);
+        }
+}
+
+static int encode(uint8_t *out, size_t capacity, int quality)
+{
+    static uint8_t rgb[SIDE * SIDE * 3];
+    paint(rgb);
+    return sys_jpeg_encode(rgb, SIDE, SIDE, quality, out, capacity);
+}
+
+static void jpeg_round_trip(void **state)
+{
+    (void)state;
+    static uint8_t bytes[65536], rgb[SIDE * SIDE * 3], back[SIDE * SIDE * 3];
+    uint32_t width, height;
+    paint(rgb);
+    int best = encode(bytes, sizeof bytes, 100), count = encode(bytes, sizeof bytes, 70);
+    assert_true(count > 100 && count < best);
+    assert_int_equal(sys_jpeg_size(bytes, (size_t)count, &width, &height), FF_OK);
+    assert_int_equal(width, SIDE);
+    assert_int_equal(height, SIDE);
+    assert_int_equal(sys_jpeg_decode(bytes, (size_t)count, SIDE, SIDE, back), FF_OK);
+    uint64_t error = 0;
+    for (size_t i = 0; i < sizeof rgb; i++) error += (uint64_t)((rgb[i] - back[i]) * (rgb[i] - back[i]));
+    assert_true(error / sizeof rgb < 300); /* chroma at half resolution across hard edges */
+    assert_true(abs(back[0] - 0) < 40 && back[(SIDE - 1) * 3] > 200); /* red grows to the right, */
+    assert_true(back[1] < 40 && back[(SIDE - 1) * SIDE * 3 + 1] > 200); /* green downwards: top row first */
+    assert_int_equal(sys_jpeg_decode(bytes, (size_t)count, SIDE, SIDE - 1, back), FF_ERR_RANGE);
+    assert_int_equal(sys_jpeg_decode(bytes, (size_t)count, SIDE * 2, SIDE, back), FF_ERR_RANGE);
+}
+
+static void jpeg_encoder_knows_its_limits(void **state)
+{
+    (void)state;
+    static uint8_t bytes[65536];
+    int count = encode(bytes, sizeof bytes, 70);
+    assert_int_equal(encode(bytes, (size_t)count + 1, 70), count); /* libjpeg gives up when the buffer is full, needed or not */
+    for (int capacity = 0; capacity < count; capacity += 37) {
+        memset(bytes, 0xEE, sizeof bytes);
+        assert_int_equal(encode(bytes, (size_t)capacity, 70), FF_ERR_FULL);
+        assert_int_equal(bytes[capacity], 0xEE);
+    }
+    assert_int_equal(sys_jpeg_encode(bytes, 0, 8, 70, bytes, 8), FF_ERR_ARGUMENT);
+    assert_int_equal(sys_jpeg_encode(bytes, 8, 70000, 70, bytes, 8), FF_ERR_ARGUMENT);
+    assert_int_equal(sys_jpeg_encode(bytes, 8, 8, 0, bytes, 8), FF_ERR_ARGUMENT);
+}
+
+static void truncated_jpegs_are_errors(void **state)
+{
+    (void)state;
+    static uint8_t bytes[65536], back[SIDE * SIDE * 3];
+    int count = encode(bytes, sizeof bytes, 80);
+    uint32_t width, height;
+    for (int length = 0; length < count; length += length + 16 < count ? 16 : 1) {
+        uint8_t *exact = malloc((size_t)length + 1); /* so that reading past the end is seen */
+        memcpy(exact, bytes, (size_t)length);
+        assert_int_equal(sys_jpeg_decode(exact, (size_t)length, SIDE, SIDE, back), FF_ERR_FORMAT);
+        int rc = sys_jpeg_size(exact, (size_t)length, &width, &height);
+        assert_true(rc == FF_OK || rc == FF_ERR_FORMAT);
+        free(exact);
+    }
+    assert_int_equal(sys_jpeg_decode((const uint8_t *)"not a picture", 13, 8, 8, back), FF_ERR_FORMAT);
+    assert_int_equal(sys_jpeg_decode(NULL, 0, 8, 8, back), FF_ERR_FORMAT);
+}
+
+static void damaged_jpegs_never_end_the_program(void **state)
+{
+    (void)state;
+    static uint8_t bytes[65536], back[SIDE * SIDE * 3];
+    int count = encode(bytes, sizeof bytes, 80), refused = 0, tried = 0;
+    sys_random random;
+    sys_random_seed(&random, 6, 6);
+    for (int i = 0; i < count * 2; i++) {
+        uint32_t at = sys_random_below(&random, (uint32_t)count), flip = 1u << sys_random_below(&random, 8);
+        bytes[at] ^= (uint8_t)flip;
+        int rc = sys_jpeg_decode(bytes, (size_t)count, SIDE, SIDE, back);
+        assert_true(rc == FF_OK || rc == FF_ERR_FORMAT || rc == FF_ERR_RANGE);
+        refused += rc != FF_OK;
+        tried++;
+        bytes[at] ^= (uint8_t)flip;
+    }
+    assert_true(refused > 0 && refused < tried); /* bits of pixels may flip unseen: messages have checksums for that */
+    assert_int_equal(sys_jpeg_decode(bytes, (size_t)count, SIDE, SIDE, back), FF_OK);
+}
+
+static void png_files_are_pngs(void **state)
+{
+    (void)state;
+    static uint8_t rgb[SIDE * SIDE * 3];
+    static const uint8_t head[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n', 0, 0, 0, 13, 'I', 'H', 'D', 'R',
+                                   0, 0, 0, SIDE, 0, 0, 0, SIDE, 8, 2};
+    sys_mapping mapping;
+    paint(rgb);
+    assert_int_equal(sys_png_write(SCRATCH "/a.png", rgb, SIDE, SIDE), FF_OK);
+    assert_int_equal(sys_map_file(SCRATCH "/a.png", &mapping), FF_OK);
+    assert_true(mapping.size > sizeof head);
+    assert_memory_equal(mapping.bytes, head, sizeof head);
+    sys_unmap_file(&mapping);
+    assert_int_equal(sys_png_write(SCRATCH "/none/a.png", rgb, SIDE, SIDE), FF_ERR_SYSTEM);
+    assert_int_equal(sys_png_write(SCRATCH "/a.png", rgb, 0, SIDE), FF_ERR_ARGUMENT);
+}
+
+static int make_scratch(void **state)
+{
+    (void)state;
+    return system("rm -rf " SCRATCH " && mkdir -p " SCRATCH) == 0 ? 0 : -1;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(clock_can_be_replaced),
+        cmocka_unit_test(real_clock_sleeps_at_least_as_long),
+        cmocka_unit_test(events_come_out_in_order),
+        cmocka_unit_test(scripts_inject_what_is_due),
+        cmocka_unit_test(random_numbers_are_those_of_pcg32),
+        cmocka_unit_test(threads_take_turns),
+        cmocka_unit_test(bytes_go_both_ways),
+        cmocka_unit_test(a_slow_reader_makes_sends_partial),
+        cmocka_unit_test(a_vanished_peer_is_closed_and_reconnects),
+        cmocka_unit_test(sending_to_a_vanished_peer_ends),
+        cmocka_unit_test(a_refused_connection_is_closed),
+        cmocka_unit_test(ports_are_shared_only_when_asked),
+        cmocka_unit_test(ipv6_addresses_have_brackets),
+        cmocka_unit_test(bad_addresses_are_told),
+        cmocka_unit_test(files_are_written_whole),
+        cmocka_unit_test(a_write_that_fails_leaves_nothing),
+        cmocka_unit_test(jpeg_round_trip),
+        cmocka_unit_test(jpeg_encoder_knows_its_limits),
+        cmocka_unit_test(truncated_jpegs_are_errors),
+        cmocka_unit_test(damaged_jpegs_never_end_the_program),
+        cmocka_unit_test(png_files_are_pngs),
+    };
+    return cmocka_run_group_tests(tests, make_scratch, NULL);
+}
