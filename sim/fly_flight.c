@@ -1,0 +1,296 @@
+#include "fly_flight.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define TICK_US 2000   /* of the simulated network; a real server is looked after at the same pace */
+#define FNV_START 14695981039346656037u
+#define FNV_PRIME 1099511628211u
+
+static int fail(const char *what, const char *why)
+{
+    fprintf(stderr, "farfield-fly: %s: %s\n", what, why);
+    return -1;
+}
+
+static uint64_t fnv(uint64_t hash, const uint8_t *bytes, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        hash = (hash ^ bytes[i]) * FNV_PRIME;
+    return hash;
+}
+
+/* ---- time ---- */
+
+/* Server and client until `until_us`, by ticks. */
+static int advance(fly_flight *flight, int64_t until_us)
+{
+    fly_world *world = flight->world;
+    if (flight->options->server) {
+        while ((world->now_us = sys_time_us()) < until_us)
+            sys_sleep_us(until_us - world->now_us < TICK_US ? until_us - world->now_us : TICK_US);
+        return 0;
+    }
+    while (world->now_us < until_us) {
+        world->now_us = until_us - world->now_us < TICK_US ? until_us : world->now_us + TICK_US;
+        int rc = sim_server_step(&world->server);
+        if (rc != FF_OK)
+            return fail("server", ff_error_text(rc));
+        (void)ff_client_work(world->client, world->now_us);
+    }
+    if (world->surface && world->server.faces_rendered != flight->faces_seen) {
+        flight->faces_seen = world->server.faces_rendered;
+        (void)world->surface_api->make_current(world->surface);
+    }
+    return 0;
+}
+
+static int64_t flight_clock(void *context)
+{
+    return ((const fly_world *)context)->now_us;
+}
+
+/* ---- events ---- */
+
+static void apply_event(fly_flight *flight, enum fly_event_kind kind)
+{
+    fly_world *world = flight->world;
+    sys_event event = { .time_us = world->now_us };
+    ff_panorama_desc panorama = flight->options->panorama;
+    switch (kind) {
+    case FLY_LOW_BATTERY:
+    case FLY_BATTERY_OK:
+        event.type = SYS_EVENT_BATTERY;
+        event.u.battery.low = kind == FLY_LOW_BATTERY;
+        event.u.battery.percent = kind == FLY_LOW_BATTERY ? 5 : 80;
+        (void)sys_event_inject(&event);
+        break;
+    case FLY_INTERRUPTION:
+    case FLY_RESUME:
+        event.type = SYS_EVENT_INTERRUPTION;
+        event.u.interruption.begins = kind == FLY_INTERRUPTION;
+        (void)sys_event_inject(&event);
+        break;
+    case FLY_CUT:
+        if (world->link)
+            sim_link_cut(world->link, world->now_us);
+        break;
+    case FLY_PANORAMA_ON:
+    case FLY_PANORAMA_OFF:
+        panorama.enabled = kind == FLY_PANORAMA_ON;
+        ff_client_set_panorama(world->client, &panorama);
+        break;
+    }
+}
+
+static void events(fly_flight *flight, double t_s)
+{
+    sys_event event;
+    for (unsigned i = 0; i < flight->options->event_count; i++)
+        if (!(flight->events_done >> i & 1u) && t_s >= flight->options->event[i].at_s) {
+            flight->events_done |= (uint64_t)1 << i;
+            apply_event(flight, flight->options->event[i].kind);
+        }
+    while (sys_event_take(&event))
+        ff_client_event(flight->world->client, &event);
+}
+
+/* ---- rows ---- */
+
+static int audit(fly_flight *flight, fly_sample *sample)
+{
+    fly_world *world = flight->world;
+    const ff_tree *tree = ff_client_tree(world->client);
+    const ff_panorama_desc *panorama = &flight->options->panorama;
+    int32_t back_plane_wu = panorama->back_plane_wu ? panorama->back_plane_wu : 7500 * FF_WU_PER_METRE;
+    sim_audit_view view = { .camera = flight->camera, .front_wu = back_plane_wu - back_plane_wu / 8,
+                            .back_wu = panorama->server_back_wu ? panorama->server_back_wu : 100000 * FF_WU_PER_METRE };
+    sim_audit_result result;
+    sample->err_px_rms = sample->err_px_p95 = sample->err_px_max = NAN;
+    sample->undrawn_px_percent = sample->panorama_px_percent = NAN;
+    if (!world->auditor)
+        return 0;
+    if (tree)
+        view.drawn_count = ff_tree_drawn(tree, &view.drawn);
+    view.panorama = ff_client_panorama(world->client, view.panorama_pos_wu, &view.faces);
+    int rc = sim_audit_frame(world->auditor, &view, &result);
+    if (rc != FF_OK)
+        return fail("auditor", ff_error_text(rc));
+    uint32_t all = result.ground_pixels + result.panorama_pixels + result.undrawn_pixels;
+    sample->undrawn_px_percent = result.undrawn_percent;
+    sample->panorama_px_percent = all ? 100.0 * result.panorama_pixels / all : 0;
+    if (result.ground_pixels + result.panorama_pixels) {
+        sample->err_px_rms = result.err_px_rms;
+        sample->err_px_p95 = result.err_px_p95;
+        sample->err_px_max = result.err_px_max;
+    }
+    return 0;
+}
+
+static void fill_stats(const fly_flight *flight, fly_sample *sample)
+{
+    ff_client_stats stats;
+    ff_client_get_stats(flight->world->client, &stats);
+    sample->x_m = (double)flight->camera.pos_wu[0] / FF_WU_PER_METRE;
+    sample->y_m = (double)flight->camera.pos_wu[1] / FF_WU_PER_METRE;
+    sample->z_m = (double)flight->camera.pos_wu[2] / FF_WU_PER_METRE;
+    sample->triangles = stats.tree.triangles;
+    sample->nodes_drawn = stats.tree.nodes_drawn;
+    sample->nodes_held = stats.tree.nodes_held;
+    sample->bytes_down = (double)stats.bytes_down;
+    sample->bytes_up = (double)stats.bytes_up;
+    sample->requests = stats.requests_sent;
+    sample->in_flight = stats.in_flight;
+    sample->queued = stats.queued;
+    sample->panoramas = stats.panorama_requests;
+    sample->panorama_faces = stats.panorama_faces;
+    sample->panorama_faces_empty = stats.panorama_faces_empty;
+    sample->panorama_bytes = stats.panorama_bytes;
+    sample->requests_dropped = stats.requests_dropped;
+    sample->requests_cancelled = stats.requests_cancelled;
+    sample->tree_err_px = stats.tree.error_px_q8 / 256.0;
+    sample->stitched = stats.tree.stitched;
+    sample->textures_held = stats.textures_held;
+    sample->pool_full = stats.tree.pool_full;
+    sample->reconnects = stats.reconnects;
+    sample->link_up = stats.link == FF_LINK_UP;
+    sample->low_power = stats.low_power;
+    sample->frames_drawn = stats.frames_updated;
+    sample->geometry_hash = ff_client_geometry_hash(flight->world->client);
+    sample->request_hash = ff_client_request_hash(flight->world->client);
+}
+
+/* The picture as it stands, in flight->rgb; drawn once more, because a frame in which nothing changed was not drawn at all. */
+static int read_picture(fly_flight *flight)
+{
+    if (!flight->world->surface)
+        return 0;
+    ff_client_draw(flight->world->client);
+    int rc = c3d_read_rgb(ff_client_device(flight->world->client), flight->rgb);
+    return rc == FF_OK ? 0 : fail("picture", ff_error_text(rc));
+}
+
+static int take_row(fly_flight *flight, double t_s)
+{
+    if (flight->sample_count == flight->sample_capacity) {
+        size_t more = flight->sample_capacity ? flight->sample_capacity * 2 : 512;
+        fly_sample *grown = realloc(flight->sample, more * sizeof *grown);
+        if (!grown)
+            return fail("rows", ff_error_text(FF_ERR_MEMORY));
+        flight->sample = grown;
+        flight->sample_capacity = more;
+    }
+    fly_sample *sample = &flight->sample[flight->sample_count++];
+    memset(sample, 0, sizeof *sample);
+    sample->t_s = t_s;
+    fill_stats(flight, sample);
+    if (audit(flight, sample) || read_picture(flight))
+        return -1;
+    if (flight->world->surface)
+        sample->frame_hash = fnv(FNV_START, flight->rgb, (size_t)flight->options->width * flight->options->height * 3);
+    flight->totals.frame_hash = fnv(flight->totals.frame_hash, (const uint8_t *)&sample->frame_hash, sizeof sample->frame_hash);
+    if (flight->csv)
+        fly_csv_row(flight->csv, sample);
+    return 0;
+}
+
+static int take_picture(fly_flight *flight, double t_s)
+{
+    char path[4096];
+    const fly_options *options = flight->options;
+    if (snprintf(path, sizeof path, "%s/frame-%07.2f.png", options->png_dir, t_s) >= (int)sizeof path)
+        return fail("--png", "path too long");
+    if (read_picture(flight))
+        return -1;
+    int rc = sys_png_write(path, flight->rgb, options->width, options->height);
+    return rc == FF_OK ? 0 : fail(path, ff_error_text(rc));
+}
+
+/* ---- frames ---- */
+
+static int one_frame(fly_flight *flight, double t_s)
+{
+    fly_world *world = flight->world;
+    ff_client_stats stats;
+    events(flight, t_s);
+    fly_path_at(&world->path, t_s, &flight->camera);
+    if (ff_client_update(world->client, world->now_us, &flight->camera) && world->surface) {
+        ff_client_draw(world->client);
+        (void)world->surface_api->present(world->surface);
+    }
+    ff_client_get_stats(world->client, &stats);
+    flight->totals.frames++;
+    flight->totals.stitched_frames += stats.tree.stitched > 0;
+    return 0;
+}
+
+static int begin(fly_flight *flight, fly_world *world, FILE *csv)
+{
+    const fly_options *options = world->options;
+    *flight = (fly_flight){ .world = world, .options = options, .csv = csv, .totals = { .frame_hash = FNV_START } };
+    flight->camera = (c3d_camera){ .width = options->width, .height = options->height,
+        .focal_q8 = c3d_focal_q8((int32_t)(options->fov_degrees * 65536 / 360 + 0.5), options->width) };
+    flight->rgb = malloc((size_t)options->width * options->height * 3);
+    if (!flight->rgb)
+        return fail("picture", ff_error_text(FF_ERR_MEMORY));
+    if (options->png_dir && mkdir(options->png_dir, 0777) && errno != EEXIST)
+        return fail(options->png_dir, strerror(errno));
+    if (csv)
+        fly_csv_header(csv);
+    if (options->server)
+        world->now_us = sys_time_us();
+    else
+        sys_clock_replace(flight_clock, world);
+    flight->start_us = world->now_us;
+    return 0;
+}
+
+static void finish(fly_flight *flight)
+{
+    ff_client_stats stats;
+    ff_client_get_stats(flight->world->client, &stats);
+    flight->totals.bytes_down_all = (double)stats.bytes_down;
+    flight->totals.bytes_up_all = (double)stats.bytes_up;
+    flight->totals.memory_used = stats.memory_used;
+    sys_clock_replace(NULL, NULL);
+}
+
+int fly_flight_run(fly_flight *flight, fly_world *world, FILE *csv)
+{
+    const fly_options *options = world->options;
+    double total_s = options->settle_s + options->seconds;
+    int64_t next_row_us = 0, next_png_us = 0, shown_s = -1;
+    int rc = begin(flight, world, csv), show = isatty(STDERR_FILENO);
+    for (int64_t frame = 0; !rc && frame <= (int64_t)floor(total_s * options->fps); frame++) {
+        int64_t t_us = frame * 1000000 / options->fps;
+        double t_s = (double)t_us / 1e6;
+        rc = advance(flight, flight->start_us + t_us) || one_frame(flight, t_s);
+        if (!rc && t_us >= next_row_us) {
+            rc = take_row(flight, t_s);
+            next_row_us += (int64_t)(options->sample_s * 1e6);
+        }
+        if (!rc && options->png_dir && t_us >= next_png_us) {
+            rc = take_picture(flight, t_s);
+            next_png_us += (int64_t)(options->every_s * 1e6);
+        }
+        if (show && t_us / 1000000 != shown_s) {
+            shown_s = t_us / 1000000;
+            fprintf(stderr, "\r%lld of %.0f s ", (long long)shown_s, total_s);
+        }
+    }
+    if (show)
+        fputc('\n', stderr);
+    finish(flight);
+    return rc;
+}
+
+void fly_flight_free(fly_flight *flight)
+{
+    free(flight->rgb);
+    free(flight->sample);
+    memset(flight, 0, sizeof *flight);
+}

@@ -1,0 +1,37 @@
+/* farfield-fly: a flight over a pack, simulated (server, link and client in this process) or against a real server. */
+#include "fly_flight.h"
+
+#include <errno.h>
+#include <string.h>
+
+int main(int argc, char **argv)
+{
+    static fly_options options;
+    static fly_world world;
+    fly_flight flight = { 0 };
+    FILE *csv = NULL;
+    int rc = fly_options_parse(&options, argc, argv);
+    if (rc)
+        return rc < 0 ? 2 : 0;
+    fly_options_print(&options);
+    rc = fly_world_open(&world, &options);
+    if (!rc && options.csv_path && !(csv = fopen(options.csv_path, "w"))) {
+        fprintf(stderr, "farfield-fly: %s: %s\n", options.csv_path, strerror(errno));
+        rc = -1;
+    }
+    if (!rc)
+        rc = fly_flight_run(&flight, &world, csv);
+    if (!rc && options.json)
+        fly_json(stdout, &options, flight.sample, flight.sample_count, &flight.totals);
+    if (csv && fclose(csv) && !rc) {
+        fprintf(stderr, "farfield-fly: %s: %s\n", options.csv_path, strerror(errno));
+        rc = -1;
+    }
+    if (!rc && flight.totals.crack_frames) {
+        fprintf(stderr, "farfield-fly: %u of %u frames have cracks\n", flight.totals.crack_frames, flight.totals.frames);
+        rc = -1;
+    }
+    fly_flight_free(&flight);
+    fly_world_close(&world);
+    return rc ? 1 : 0;
+}

@@ -1,0 +1,317 @@
+#include "fly_options.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char help[] =
+    "usage: farfield-fly --pack PACK [options]\n"
+    "\n"
+    "Flies over a pack: server, link and client in one process over simulated time. The same options give the same bytes, the same\n"
+    "CSV and the same pictures every time. With --server the same flight goes against a real server in real time.\n"
+    "\n"
+    "  --pack PACK           the terrain, also with --server (the true ground the flight keeps above)\n"
+    "  --csv FILE            one row per --sample seconds\n"
+    "  --json                a summary on stdout: means and totals after settling\n"
+    "\n"
+    " the flight\n"
+    "  --path KIND           diagonal (default): from a quarter of the terrain's diagonal towards its north-east corner, turning back\n"
+    "                        in a half circle before the border; circle; hover: in one place, turning 6 degrees a second\n"
+    "  --speed KMH           default 150\n"
+    "  --height M            above the highest ground within 150 m along the path, smoothed; default 100\n"
+    "  --seconds S           in flight, default 300\n"
+    "  --settle S            standing still before, default 15\n"
+    "  --seed N              default 1\n"
+    "  --event T:WHAT        at T seconds: low-battery battery-ok interruption resume cut panorama-on panorama-off; may be repeated\n"
+    "\n"
+    " the link\n"
+    "  --link SPEC           default umts. " SIM_LINK_SPEC_HELP "\n"
+    "  --down-trace FILE, --up-trace FILE  recorded link in Mahimahi's format in place of the rate\n"
+    "  --server ADDR:PORT    a real server, real sockets and real time; --link and the traces are not used\n"
+    "\n"
+    " the client\n"
+    "  --quality Q           low (C 3, depth 4: default), high (C 9, depth 8), C:DEPTH, or px:E for E pixels of error\n"
+    "  --panorama on|off     default on\n"
+    "  --back-plane M        where the panorama takes over, default 7500\n"
+    "  --view M              how far ground is drawn without panorama, default 30000\n"
+    "  --memory BYTES        of the client, with K or M; default 4M\n"
+    "  --plain-arrays        no vertex buffers\n"
+    "\n"
+    " the picture\n"
+    "  --backend KIND        gles1 (EGL), gl (OSMesa, default), none (geometry only)\n"
+    "  --size WxH            default 240x320\n"
+    "  --fov DEGREES         across the width, default 60\n"
+    "  --fps N               frames a second, default 30\n"
+    "  --png DIR             pictures every --every seconds (default 10) into DIR\n"
+    "  --every S\n"
+    "  --wireframe           the strips as lines, stitching strips in another colour\n"
+    "\n"
+    " checking\n"
+    "  --audit on|off        err_px against the whole true ground, default off\n"
+    "  --check on|off        every frame searched for cracks on integer vertices; default: as --audit\n"
+    "  --sample S            time between rows, default 1\n";
+
+enum option_id {
+    OPT_PACK = 256, OPT_CSV, OPT_JSON, OPT_PATH, OPT_SPEED, OPT_HEIGHT, OPT_SECONDS, OPT_SETTLE, OPT_SEED, OPT_EVENT, OPT_LINK,
+    OPT_DOWN_TRACE, OPT_UP_TRACE, OPT_SERVER, OPT_QUALITY, OPT_PANORAMA, OPT_BACK_PLANE, OPT_VIEW, OPT_MEMORY, OPT_PLAIN, OPT_BACKEND,
+    OPT_SIZE, OPT_FOV, OPT_FPS, OPT_PNG, OPT_EVERY, OPT_WIREFRAME, OPT_AUDIT, OPT_CHECK, OPT_SAMPLE, OPT_HELP, OPT_VERSION
+};
+
+static const struct option long_options[] = {
+    { "pack", 1, NULL, OPT_PACK },         { "csv", 1, NULL, OPT_CSV },           { "json", 0, NULL, OPT_JSON },
+    { "path", 1, NULL, OPT_PATH },         { "speed", 1, NULL, OPT_SPEED },       { "height", 1, NULL, OPT_HEIGHT },
+    { "seconds", 1, NULL, OPT_SECONDS },   { "settle", 1, NULL, OPT_SETTLE },     { "seed", 1, NULL, OPT_SEED },
+    { "event", 1, NULL, OPT_EVENT },       { "link", 1, NULL, OPT_LINK },         { "down-trace", 1, NULL, OPT_DOWN_TRACE },
+    { "up-trace", 1, NULL, OPT_UP_TRACE }, { "server", 1, NULL, OPT_SERVER },     { "quality", 1, NULL, OPT_QUALITY },
+    { "panorama", 1, NULL, OPT_PANORAMA }, { "back-plane", 1, NULL, OPT_BACK_PLANE }, { "view", 1, NULL, OPT_VIEW },
+    { "memory", 1, NULL, OPT_MEMORY },     { "plain-arrays", 0, NULL, OPT_PLAIN },{ "backend", 1, NULL, OPT_BACKEND },
+    { "size", 1, NULL, OPT_SIZE },         { "fov", 1, NULL, OPT_FOV },           { "fps", 1, NULL, OPT_FPS },
+    { "png", 1, NULL, OPT_PNG },           { "every", 1, NULL, OPT_EVERY },       { "wireframe", 0, NULL, OPT_WIREFRAME },
+    { "audit", 1, NULL, OPT_AUDIT },       { "check", 1, NULL, OPT_CHECK },       { "sample", 1, NULL, OPT_SAMPLE },
+    { "help", 0, NULL, OPT_HELP },         { "version", 0, NULL, OPT_VERSION },   { NULL, 0, NULL, 0 }
+};
+
+static int fail(const char *format, ...)
+{
+    va_list list;
+    va_start(list, format);
+    fputs("farfield-fly: ", stderr);
+    vfprintf(stderr, format, list);
+    fputc('\n', stderr);
+    va_end(list);
+    return -1;
+}
+
+static int parse_number(const char *name, const char *text, double low, double high, double *value)
+{
+    char *end;
+    errno = 0;
+    double number = strtod(text, &end);
+    if (end == text || *end || errno || !(number >= low && number <= high))
+        return fail("--%s: %s is not a number from %g to %g", name, text, low, high);
+    *value = number;
+    return 0;
+}
+
+/* Index of `text` among `count` words, or -1 with a line on stderr. */
+static int parse_word(const char *name, const char *text, const char *const *word, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (!strcmp(word[i], text))
+            return i;
+    return fail("--%s: unknown word %s", name, text);
+}
+
+static int parse_switch(const char *name, const char *text, int *value)
+{
+    static const char *const word[] = { "off", "on" };
+    int index = parse_word(name, text, word, 2);
+    *value = index;
+    return index < 0 ? -1 : 0;
+}
+
+static int parse_quality(fly_options *options, const char *text)
+{
+    double a, b;
+    char rest;
+    ff_quality *quality = &options->quality;
+    if (!strcmp(text, "low"))
+        text = "3:4";
+    else if (!strcmp(text, "high"))
+        text = "9:8";
+    if (sscanf(text, "px:%lf%c", &a, &rest) == 1 && a >= 0.01 && a <= 1000) {
+        quality->measure = FF_MEASURE_PIXELS;
+        quality->error_px_q8 = (int32_t)(a * 256 + 0.5);
+        quality->depth_max = 0;
+    } else if (sscanf(text, "%lf:%lf%c", &a, &b, &rest) == 2 && a > 0 && a <= 1000 && b >= 1 && b <= 15) {
+        quality->measure = FF_MEASURE_DISTANCE;
+        quality->c_q8 = (int32_t)(a * 256 + 0.5);
+        quality->depth_max = (uint8_t)b;
+    } else {
+        return fail("--quality: %s is not low, high, C:DEPTH or px:E", text);
+    }
+    return 0;
+}
+
+static int parse_size(fly_options *options, const char *text)
+{
+    unsigned width, height;
+    char rest;
+    if (sscanf(text, "%4ux%4u%c", &width, &height, &rest) != 2 || width < 16 || height < 16 || width > 4096 || height > 4096)
+        return fail("--size: %s is not WIDTHxHEIGHT, each 16 to 4096", text);
+    options->width = (uint16_t)width;
+    options->height = (uint16_t)height;
+    return 0;
+}
+
+static int parse_memory(fly_options *options, const char *text)
+{
+    char *end;
+    double number = strtod(text, &end);
+    if (*end == 'K' || *end == 'M')
+        number *= *end++ == 'K' ? 1024.0 : 1048576.0;
+    if (*end || !(number >= 1 && number <= 4294967295.0))
+        return fail("--memory: %s is not a number of bytes", text);
+    options->memory_bytes = (size_t)number;
+    return 0;
+}
+
+static int parse_event(fly_options *options, const char *text)
+{
+    static const char *const word[] = { "low-battery", "battery-ok", "interruption", "resume", "cut", "panorama-on", "panorama-off" };
+    char *what;
+    double at_s = strtod(text, &what);
+    if (what == text || *what != ':' || !(at_s >= 0 && at_s <= 1e6))
+        return fail("--event: %s is not T:WHAT", text);
+    if (options->event_count == FLY_EVENTS_MAX)
+        return fail("--event: more than %d", FLY_EVENTS_MAX);
+    int kind = parse_word("event", what + 1, word, 7);
+    if (kind < 0)
+        return -1;
+    options->event[options->event_count++] = (fly_event){ at_s, (enum fly_event_kind)kind };
+    return 0;
+}
+
+static int parse_link(fly_options *options, const char *text)
+{
+    options->link_text = text;
+    const char *down = options->link.way[SIM_DOWN].trace, *up = options->link.way[SIM_UP].trace;
+    int rc = sim_link_parse(text, &options->link);
+    options->link.way[SIM_DOWN].trace = down;
+    options->link.way[SIM_UP].trace = up;
+    if (rc == FF_OK)
+        return 0;
+    return rc == FF_ERR_NOT_FOUND ? fail("--link: no profile %s", text) : fail("--link: %s is not NAME[,KEY=VALUE...]", text);
+}
+
+static int parse_backend(fly_options *options, const char *text)
+{
+    static const char *const word[] = { "gles1", "gl", "none" };
+    if (!strcmp(text, "soft"))
+        return fail("--backend: soft is %s", ff_error_text(FF_ERR_UNSUPPORTED));
+    int kind = parse_word("backend", text, word, 3);
+    options->backend = (enum fly_backend)kind;
+    return kind < 0 ? -1 : 0;
+}
+
+static int parse_path(fly_options *options, const char *text)
+{
+    static const char *const word[] = { "diagonal", "circle", "hover" };
+    int kind = parse_word("path", text, word, 3);
+    options->path = (enum fly_path_kind)kind;
+    return kind < 0 ? -1 : 0;
+}
+
+static int parse_metres_wu(const char *name, const char *text, int32_t *value_wu)
+{
+    double metres;
+    if (parse_number(name, text, 1, 8000000, &metres))
+        return -1;
+    *value_wu = (int32_t)(metres * FF_WU_PER_METRE);
+    return 0;
+}
+
+static int parse_one_number(fly_options *options, int id, const char *text)
+{
+    double number;
+    switch (id) {
+    case OPT_SPEED: return parse_number("speed", text, 0, 1e5, &options->speed_kmh);
+    case OPT_HEIGHT: return parse_number("height", text, 0.01, 1e6, &options->height_m);
+    case OPT_SECONDS: return parse_number("seconds", text, 0, 1e6, &options->seconds);
+    case OPT_SETTLE: return parse_number("settle", text, 0, 1e6, &options->settle_s);
+    case OPT_FOV: return parse_number("fov", text, 0.1, 170, &options->fov_degrees);
+    case OPT_EVERY: return parse_number("every", text, 0.01, 1e6, &options->every_s);
+    case OPT_SAMPLE: return parse_number("sample", text, 0.01, 1e6, &options->sample_s);
+    case OPT_SEED:
+        if (parse_number("seed", text, 0, 9007199254740992.0, &number))
+            return -1;
+        options->seed = (uint64_t)number;
+        return 0;
+    default: /* OPT_FPS */
+        if (parse_number("fps", text, 1, 1000, &number))
+            return -1;
+        options->fps = (uint32_t)number;
+        return 0;
+    }
+}
+
+static int parse_one(fly_options *options, int id, const char *text)
+{
+    int on = 0;
+    switch (id) {
+    case OPT_PACK: options->pack_path = text; return 0;
+    case OPT_CSV: options->csv_path = text; return 0;
+    case OPT_PNG: options->png_dir = text; return 0;
+    case OPT_SERVER: options->server = text; return 0;
+    case OPT_DOWN_TRACE: options->link.way[SIM_DOWN].trace = text; return 0;
+    case OPT_UP_TRACE: options->link.way[SIM_UP].trace = text; return 0;
+    case OPT_JSON: options->json = 1; return 0;
+    case OPT_WIREFRAME: options->wireframe = 1; return 0;
+    case OPT_PLAIN: options->plain_arrays = 1; return 0;
+    case OPT_LINK: return parse_link(options, text);
+    case OPT_QUALITY: options->quality_text = text; return parse_quality(options, text);
+    case OPT_BACK_PLANE: return parse_metres_wu("back-plane", text, &options->panorama.back_plane_wu);
+    case OPT_VIEW: return parse_metres_wu("view", text, &options->quality.view_wu);
+    case OPT_MEMORY: return parse_memory(options, text);
+    case OPT_SIZE: return parse_size(options, text);
+    case OPT_EVENT: return parse_event(options, text);
+    case OPT_BACKEND: return parse_backend(options, text);
+    case OPT_PATH: return parse_path(options, text);
+    case OPT_AUDIT: return parse_switch("audit", text, &options->audit);
+    case OPT_CHECK: return parse_switch("check", text, &options->check);
+    case OPT_PANORAMA:
+        if (parse_switch("panorama", text, &on))
+            return -1;
+        options->panorama.enabled = (uint8_t)on;
+        return 0;
+    default: return parse_one_number(options, id, text);
+    }
+}
+
+int fly_options_parse(fly_options *options, int argc, char **argv)
+{
+    *options = (fly_options){ .link_text = "umts", .speed_kmh = 150, .seconds = 300, .settle_s = 15, .height_m = 100,
+                              .quality_text = "low", .panorama = { .enabled = 1 }, .seed = 1, .fps = 30, .width = 240, .height = 320,
+                              .fov_degrees = 60, .backend = FLY_GL, .check = -1, .every_s = 10, .sample_s = 1,
+                              .memory_bytes = 4u << 20, .quality = { .sigma_q8 = 320, .view_wu = 30000 * FF_WU_PER_METRE } };
+    options->link = *sim_link_profile("umts");
+    (void)parse_quality(options, "low");
+    for (int id; (id = getopt_long(argc, argv, "", long_options, NULL)) != -1;) {
+        if (id == OPT_HELP || id == OPT_VERSION) {
+            fputs(id == OPT_HELP ? help : "farfield-fly " FARFIELD_VERSION "\n", stdout);
+            return 1;
+        }
+        if (id == '?' || parse_one(options, id, optarg))
+            return -1;
+    }
+    if (optind < argc)
+        return fail("unexpected argument %s", argv[optind]);
+    if (!options->pack_path)
+        return fail("--pack is missing (see --help)");
+    if (options->check < 0)
+        options->check = options->audit;
+    if (options->png_dir && options->backend == FLY_NONE)
+        return fail("--png needs --backend gl or gles1");
+    return 0;
+}
+
+const char *fly_backend_name(enum fly_backend backend)
+{
+    return backend == FLY_GLES1 ? "gles1" : backend == FLY_GL ? "gl" : "none";
+}
+
+void fly_options_print(const fly_options *options)
+{
+    static const char *const path[] = { "diagonal", "circle", "hover" };
+    fprintf(stderr,
+            "farfield-fly: seed %llu, pack %s, %s %s, %g km/h, %g s after %g s, %s, %g m up, quality %s, panorama %s, "
+            "%ux%u at %g degrees, %u fps, backend %s, %zu bytes, audit %s\n",
+            (unsigned long long)options->seed, options->pack_path, options->server ? "server" : "link",
+            options->server ? options->server : options->link_text, options->speed_kmh, options->seconds, options->settle_s,
+            path[options->path], options->height_m, options->quality_text, options->panorama.enabled ? "on" : "off", options->width,
+            options->height, options->fov_degrees, options->fps, fly_backend_name(options->backend), options->memory_bytes,
+            options->audit ? "on" : "off");
+}

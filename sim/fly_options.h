@@ -1,0 +1,46 @@
+/* What farfield-fly is told on its command line. */
+#ifndef FLY_OPTIONS_H
+#define FLY_OPTIONS_H
+
+#include "../client/farfield.h"
+#include "sim_link.h"
+
+#define FLY_EVENTS_MAX 64
+
+enum fly_backend { FLY_GLES1, FLY_GL, FLY_NONE };
+enum fly_path_kind { FLY_DIAGONAL, FLY_CIRCLE, FLY_HOVER };
+enum fly_event_kind { FLY_LOW_BATTERY, FLY_BATTERY_OK, FLY_INTERRUPTION, FLY_RESUME, FLY_CUT, FLY_PANORAMA_ON, FLY_PANORAMA_OFF };
+
+typedef struct fly_event { double at_s; enum fly_event_kind kind; } fly_event;
+
+typedef struct fly_options {
+    const char *pack_path;
+    const char *server;       /* ADDR:PORT: real sockets in real time; NULL: simulated */
+    const char *link_text;
+    sim_link_desc link;
+    double speed_kmh, seconds, settle_s, height_m;
+    const char *quality_text;
+    ff_quality quality;
+    ff_panorama_desc panorama;
+    uint64_t seed;
+    uint32_t fps;
+    uint16_t width, height;   /* of the picture, pixels */
+    double fov_degrees;       /* across the width */
+    enum fly_backend backend;
+    enum fly_path_kind path;
+    int audit, check, json, wireframe, plain_arrays;
+    const char *csv_path, *png_dir;
+    double every_s, sample_s; /* between pictures; between rows */
+    size_t memory_bytes;
+    fly_event event[FLY_EVENTS_MAX];
+    unsigned event_count;
+} fly_options;
+
+/* 0: fly; 1: --help or --version was answered; -1: an error, said in one line on stderr. */
+int fly_options_parse(fly_options *options, int argc, char **argv);
+/* All options in one line on stderr, the seed first: what it takes to fly the same again. */
+void fly_options_print(const fly_options *options);
+
+const char *fly_backend_name(enum fly_backend backend);
+
+#endif

@@ -1,0 +1,24 @@
+/* Flight paths: where the camera is at a time of the flight. Always inside the terrain's source, always above the true ground. */
+#ifndef FLY_PATH_H
+#define FLY_PATH_H
+
+#include "fly_options.h"
+#include "sim_ground.h"
+
+typedef struct fly_path {
+    enum fly_path_kind kind;
+    const sim_ground *ground;
+    double settle_s, speed_ms, height_m;
+    double start_m[2];        /* of the straight part, or the circle's centre */
+    double direction[2];      /* of the straight part, unit */
+    double length_m;          /* of the straight part */
+    double radius_m;          /* of the half circles at its ends, or of the circle */
+    double from_m;            /* arc length where the flight begins */
+} fly_path;
+
+/* `ground` must outlive the path. */
+void fly_path_init(fly_path *path, const fly_options *options, const ff_terrain_info *info, const sim_ground *ground);
+/* Position and yaw after t_s seconds; pitch is slightly down. Sets pos_wu, yaw, pitch, roll. */
+void fly_path_at(const fly_path *path, double t_s, c3d_camera *camera);
+
+#endif

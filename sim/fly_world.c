@@ -1,0 +1,123 @@
+#include "fly_world.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PATH_SAMPLES_MAX (4097u * 4097u) /* 34 MB: the level of ground that paths keep above */
+#define AUDIT_STEP_PX 8
+
+static int fail(const char *what, int rc)
+{
+    fprintf(stderr, "farfield-fly: %s: %s\n", what, ff_error_text(rc));
+    return -1;
+}
+
+static int open_ground(fly_world *world)
+{
+    const fly_options *options = world->options;
+    int rc = sys_map_file(options->pack_path, &world->mapping);
+    if (rc == FF_OK)
+        rc = ff_pack_open(&world->pack, world->mapping.bytes, world->mapping.size);
+    if (rc == FF_OK)
+        rc = sim_ground_load(&world->path_ground, &world->pack, PATH_SAMPLES_MAX);
+    if (rc == FF_OK && options->audit)
+        rc = sim_ground_load(&world->true_ground, &world->pack, UINT64_MAX);
+    if (rc != FF_OK)
+        return fail(options->pack_path, rc);
+    const ff_terrain_info *info = &world->pack.header.info;
+    fly_path_init(&world->path, options, info, &world->path_ground);
+    if (options->audit) {
+        world->auditor = sim_auditor_create(&world->true_ground, info, AUDIT_STEP_PX);
+        if (!world->auditor)
+            return fail("auditor", FF_ERR_MEMORY);
+    }
+    return 0;
+}
+
+static int open_link(fly_world *world)
+{
+    const fly_options *options = world->options;
+    if (options->server) {
+        int rc = sys_tcp_client(&world->tcp, options->server, &world->stream);
+        return rc == FF_OK ? 0 : fail(options->server, rc);
+    }
+    world->link = sim_link_create(&options->link, options->seed);
+    if (!world->link)
+        return fail("link", options->link.way[SIM_DOWN].trace || options->link.way[SIM_UP].trace ? FF_ERR_FORMAT : FF_ERR_MEMORY);
+    sim_stream_client(&world->client_end, world->link, &world->now_us, &world->stream);
+    int rc = sim_server_init(&world->server, &world->pack, world->link, &world->now_us);
+    return rc == FF_OK ? 0 : fail("server", rc);
+}
+
+static int open_surface(fly_world *world)
+{
+    const fly_options *options = world->options;
+    sys_surface_desc desc = { "farfield-fly", options->width, options->height, SYS_GL_DESKTOP };
+    if (options->backend == FLY_NONE)
+        return 0;
+    world->surface_api = sys_surface_osmesa();
+    if (options->backend == FLY_GLES1) {
+        world->surface_api = sys_surface_egl();
+        desc.gl = SYS_GL_ES1;
+    }
+    int rc = world->surface_api ? world->surface_api->open(&desc, &world->surface) : FF_ERR_UNSUPPORTED;
+    if (rc == FF_OK)
+        return 0;
+    world->surface = NULL;
+    return fail(fly_backend_name(options->backend), rc);
+}
+
+static int open_client(fly_world *world)
+{
+    const fly_options *options = world->options;
+    world->memory = malloc(options->memory_bytes);
+    if (!world->memory)
+        return fail("client", FF_ERR_MEMORY);
+    ff_client_desc desc = { .memory = world->memory, .memory_bytes = options->memory_bytes, .stream = &world->stream,
+                            .surface_api = world->surface_api, .width = options->width, .height = options->height,
+                            .quality = options->quality, .panorama = options->panorama, .use_thread = options->server != NULL,
+                            .use_plain_arrays = (uint8_t)options->plain_arrays };
+    if (options->backend != FLY_NONE)
+        desc.backend = options->backend == FLY_GLES1 ? c3d_backend_gles1() : c3d_backend_gl();
+    int rc = ff_client_create(&desc, &world->client);
+    if (rc != FF_OK) {
+        world->client = NULL;
+        return fail("client", rc);
+    }
+    if (options->wireframe)
+        ff_client_set_show(world->client, FF_SHOW_WIREFRAME);
+    return 0;
+}
+
+int fly_world_open(fly_world *world, const fly_options *options)
+{
+    memset(world, 0, sizeof *world);
+    world->options = options;
+    if (open_ground(world) || open_link(world) || open_surface(world) || open_client(world))
+        return -1;
+    return 0;
+}
+
+void fly_world_close(fly_world *world)
+{
+    if (world->surface)
+        (void)world->surface_api->make_current(world->surface);
+    if (world->client)
+        ff_client_destroy(world->client);
+    if (world->options->server && world->stream.close)
+        world->stream.close(world->stream.state);
+    if (world->link)
+        sim_server_free(&world->server);
+    if (world->surface) {
+        (void)world->surface_api->make_current(world->surface);
+        world->surface_api->close(world->surface);
+    }
+    sim_link_destroy(world->link);
+    sim_auditor_destroy(world->auditor);
+    sim_ground_free(&world->true_ground);
+    sim_ground_free(&world->path_ground);
+    if (world->mapping.bytes)
+        sys_unmap_file(&world->mapping);
+    free(world->memory);
+}

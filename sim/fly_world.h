@@ -1,0 +1,33 @@
+/* All that a flight needs, opened and closed: pack, true ground, link, server, surface and client. */
+#ifndef FLY_WORLD_H
+#define FLY_WORLD_H
+
+#include "fly_options.h"
+#include "fly_path.h"
+#include "sim_audit.h"
+#include "sim_server.h"
+
+typedef struct fly_world {
+    const fly_options *options;
+    int64_t now_us;             /* the clock of the flight */
+    sys_mapping mapping;
+    ff_pack pack;
+    sim_ground path_ground, true_ground; /* moderate level for the path; the whole, with an audit */
+    sim_auditor *auditor;
+    fly_path path;
+    sim_link *link;             /* NULL with a real server */
+    sim_stream client_end;
+    sim_server server;
+    sys_tcp tcp;                /* with a real server */
+    sys_stream stream;
+    const sys_surface_api *surface_api;
+    sys_surface *surface;
+    void *memory;
+    ff_client *client;
+} fly_world;
+
+/* 0, or -1 with one line on stderr. Call close in both cases. `options` must outlive the world. */
+int fly_world_open(fly_world *world, const fly_options *options);
+void fly_world_close(fly_world *world);
+
+#endif

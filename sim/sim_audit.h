@@ -1,0 +1,43 @@
+/* The auditor: how wrong is a picture, in pixels, judged from the whole true ground in double precision (DESIGN, "Judging the picture").
+ *
+ * For a grid of pixels it finds the true visible ground point P, then what the client draws for P:
+ *   ground    P's (x, y) lies under a drawn triangle: P at the drawn height is projected again; the distance to P's own pixel is the error.
+ *   panorama  no triangle, but a panorama in use shows P: it shows it in the direction from O, where the panorama was taken; that
+ *             direction seen from the camera is projected; the distance to P's pixel is the (parallax) error. The renderer's own
+ *             error (a pixel of the face, by its rules) and what O could not see are not counted.
+ *   nothing   neither: counted in undrawn_percent, not in the error.
+ * Independent of the client's estimates: triangles are made anew from the drawn list's heights and border masks.
+ */
+#ifndef SIM_AUDIT_H
+#define SIM_AUDIT_H
+
+#include "../client/terrain/ff_tree.h"
+#include "sim_ground.h"
+
+typedef struct sim_audit_view {
+    c3d_camera camera;           /* near and far are not looked at */
+    const ff_drawn *drawn;       /* what is drawn */
+    uint32_t drawn_count;
+    int panorama;                /* 1: one is in use, and: */
+    int32_t panorama_pos_wu[3];
+    unsigned faces;              /* bit per enum ff_face_name held */
+    int32_t front_wu, back_wu;   /* it shows ground whose largest coordinate difference to its position lies between */
+} sim_audit_view;
+
+typedef struct sim_audit_result {
+    uint32_t ground_pixels, panorama_pixels, undrawn_pixels; /* that truly show ground, by who draws it */
+    double err_px_rms, err_px_p95, err_px_max;               /* over the first two; 0 without any */
+    double undrawn_percent;                                  /* of all pixels that truly show ground */
+} sim_audit_result;
+
+typedef struct sim_auditor sim_auditor;
+/* step_px: every step-th pixel in x and y is looked at. `ground` must outlive the auditor. NULL when out of memory. */
+sim_auditor *sim_auditor_create(const sim_ground *ground, const ff_terrain_info *info, unsigned step_px);
+void sim_auditor_destroy(sim_auditor *auditor);
+/* FF_OK or FF_ERR_MEMORY. */
+int sim_audit_frame(sim_auditor *auditor, const sim_audit_view *view, sim_audit_result *result);
+
+/* World point (metres) to pixels as c3d.h projects; 0 when it is not in front of the eye. */
+int sim_audit_project(const c3d_camera *camera, const double point_m[3], double pixel[2]);
+
+#endif
