@@ -61,7 +61,7 @@ ff_session *ff_session_create(const ff_session_desc *desc)
     if (!session)
         return NULL;
     session->desc = desc_with_defaults(desc);
-    session->out_capacity = (size_t)session->desc.out_bytes_max + FACE_BYTES + SHORT_ANSWERS_BYTES + SHORT_ANSWER_BYTES;
+    session->out_capacity = (size_t)session->desc.out_bytes_max + FACE_BYTES + SHORT_ANSWERS_BYTES + 2 * SHORT_ANSWER_BYTES;
     session->queue = calloc(session->desc.requests_max, sizeof *session->queue);
     session->out = malloc(session->out_capacity); /* large: the system hands out its pages as they are used */
     if (!session->queue || !session->out) {
@@ -124,7 +124,7 @@ static void answer_cancelled(ff_session *session, uint16_t id)
  * the GOODBYE after it its own room. */
 static int short_answers_fit(const ff_session *session)
 {
-    return out_pending(session) + WELCOME_BYTES + 2 * SHORT_ANSWER_BYTES <= session->out_capacity - FACE_BYTES;
+    return out_pending(session) + WELCOME_BYTES + 3 * SHORT_ANSWER_BYTES <= session->out_capacity - FACE_BYTES;
 }
 
 static int end_session(ff_session *session, int error)
@@ -404,6 +404,12 @@ void ff_session_sent(ff_session *session, size_t count)
         session->out_first = session->out_end = 0;
     if (!session->error)
         serve_queue(session);
+}
+
+void ff_session_end(ff_session *session, int reason)
+{
+    if (!session->error)
+        end_session(session, reason);
 }
 
 int ff_session_idle(const ff_session *session, int64_t now_us)

@@ -30,6 +30,8 @@ int ff_session_receive(ff_session *session, const uint8_t *bytes, size_t count, 
 /* Pending output: count and *bytes. After sending n of them call ff_session_sent(n). */
 size_t ff_session_output(ff_session *session, const uint8_t **bytes);
 void ff_session_sent(ff_session *session, size_t count);
+/* Ends the session from the server's side: GOODBYE with `reason` (a negative error), then as after an error of ff_session_receive. */
+void ff_session_end(ff_session *session, int reason);
 /* 1 when idle for too long. */
 int ff_session_idle(const ff_session *session, int64_t now_us);
 

@@ -1,0 +1,101 @@
+#include "server_say.h"
+
+#include <inttypes.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/wait.h>
+
+/* ADDR as given, with the port that was bound. */
+static void bound_address(const server *shared, char *out, size_t capacity)
+{
+    const char *listen = shared->options.listen, *colon = strrchr(listen, ':');
+    snprintf(out, capacity, "%.*s:%u", (int)(colon - listen), listen, shared->port);
+}
+
+static const char *gl_name(const server *shared)
+{
+    static const char *const names[] = { "osmesa", "egl", "egl-gles1" };
+    return names[shared->options.gl];
+}
+
+void server_say_listening(const server *shared)
+{
+    char address[256];
+    const ff_terrain_info *info = &shared->pack.header.info;
+    bound_address(shared, address, sizeof address);
+    if (shared->options.json)
+        printf("{\"event\":\"listening\",\"address\":\"%s\",\"port\":%u,\"workers\":%u,\"renderers\":%u,\"gl\":\"%s\"}\n", address,
+               shared->port, shared->options.workers, shared->options.renderers, gl_name(shared));
+    else if (!shared->options.quiet)
+        printf("farfield-server: listening on %s, %" PRIu32 "x%" PRIu32 " samples, %u workers, %u renderers (%s)\n", address,
+               info->samples_x, info->samples_y, shared->options.workers, shared->options.renderers, gl_name(shared));
+    fflush(stdout);
+}
+
+void server_say_child(const server *shared, int renderer, unsigned number, int pid)
+{
+    if (shared->options.json)
+        printf("{\"event\":\"started\",\"process\":\"%s\",\"number\":%u,\"pid\":%d}\n", renderer ? "renderer" : "worker", number, pid);
+    fflush(stdout);
+}
+
+static void cause(int status, char *out, size_t capacity)
+{
+    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGBUS)
+        snprintf(out, capacity, "could not read the pack any more (SIGBUS: the file was cut short, or its disk fails)");
+    else if (WIFSIGNALED(status))
+        snprintf(out, capacity, "was killed by signal %d", WTERMSIG(status));
+    else
+        snprintf(out, capacity, "exited with status %d", WEXITSTATUS(status));
+}
+
+void server_say_death(const server *shared, int renderer, unsigned number, int pid, int status)
+{
+    char why[128];
+    const char *process = renderer ? "renderer" : "worker";
+    cause(status, why, sizeof why);
+    server_complain("%s %u (pid %d) %s", process, number, pid, why);
+    if (shared->options.json)
+        printf("{\"event\":\"died\",\"process\":\"%s\",\"number\":%u,\"pid\":%d,\"why\":\"%s\"}\n", process, number, pid, why);
+    fflush(stdout);
+}
+
+static void add(server_counters *sum, const server_counters *one)
+{
+    sum->clients += one->clients;
+    sum->bytes_in += one->bytes_in;
+    sum->bytes_out += one->bytes_out;
+    sum->nodes += one->nodes;
+    sum->textures += one->textures;
+    sum->panoramas += one->panoramas;
+    sum->faces += one->faces;
+    sum->failed += one->failed;
+    sum->face_bytes += one->face_bytes;
+    sum->face_us += one->face_us;
+    sum->faces_empty += one->faces_empty;
+}
+
+void server_say_stopped(const server *shared)
+{
+    server_counters workers = { 0 }, renderers = { 0 };
+    for (unsigned i = 0; i < shared->options.workers; i++)
+        add(&workers, &shared->worker_counters[i]);
+    for (unsigned i = 0; i < shared->options.renderers; i++)
+        add(&renderers, &shared->renderer_counters[i]);
+    uint64_t drawn = renderers.faces > renderers.faces_empty ? renderers.faces - renderers.faces_empty : 0;
+    uint64_t us_a_face = renderers.faces ? renderers.face_us / renderers.faces : 0;
+    uint64_t bytes_a_face = drawn ? renderers.face_bytes / drawn : 0;
+    const char *format =
+        shared->options.json
+            ? "{\"event\":\"stopped\",\"clients\":%" PRIu64 ",\"bytes_in\":%" PRIu64 ",\"bytes_out\":%" PRIu64 ",\"nodes\":%" PRIu64
+              ",\"textures\":%" PRIu64 ",\"panoramas\":%" PRIu64 ",\"faces\":%" PRIu64 ",\"faces_empty\":%" PRIu64
+              ",\"failed\":%" PRIu64 ",\"us_a_face\":%" PRIu64 ",\"bytes_a_face\":%" PRIu64 "}\n"
+            : "farfield-server: stopped: %" PRIu64 " clients, %" PRIu64 " bytes in, %" PRIu64 " out, %" PRIu64 " nodes, %" PRIu64
+              " textures, %" PRIu64 " panoramas, %" PRIu64 " faces (%" PRIu64 " empty), %" PRIu64 " failed, %" PRIu64
+              " us and %" PRIu64 " bytes a face\n";
+    if (shared->options.json || !shared->options.quiet)
+        printf(format, workers.clients, workers.bytes_in, workers.bytes_out, workers.nodes, workers.textures, workers.panoramas,
+               renderers.faces, renderers.faces_empty, workers.failed, us_a_face, bytes_a_face);
+    fflush(stdout);
+}
