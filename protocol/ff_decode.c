@@ -28,12 +28,13 @@ uint8_t ff_geometric_error_encode(uint32_t steps)
 
     if (steps < 32)
         return (uint8_t)steps;
+    if (steps >= 65536)
+        return FF_ERROR_CODE_MAX;
     while (shift < 12 && steps > (31u << shift)) {
         code += 16;
         shift++;
     }
-    code += ((steps + (1u << shift) - 1) >> shift) - 16;
-    return (uint8_t)(code < FF_ERROR_CODE_MAX ? code : FF_ERROR_CODE_MAX);
+    return (uint8_t)(code + ((steps + (1u << shift) - 1) >> shift) - 16);
 }
 
 static size_t align_up(size_t bytes) { return (bytes + ALIGNMENT - 1) & ~(size_t)(ALIGNMENT - 1); }
