@@ -108,7 +108,7 @@ static uint32_t serve_wishes(panorama_ground *ground)
 void panorama_ground_load(panorama_ground *ground, const ff_get_panorama *request, enum ff_face_name face)
 {
     ff_quality quality = { .measure = FF_MEASURE_PIXELS, .c_q8 = 256, .error_px_q8 = ERROR_PX_Q8, .sigma_q8 = SIGMA_Q8,
-                           .view_wu = request->back_wu };
+                           .view_wu = request->back_wu, .hole_wu = ff_face_near_wu(request) };
     ff_view view;
     ff_face_camera(request, face, &view.camera);
     memcpy(view.centre_wu, request->position_wu, sizeof view.centre_wu);

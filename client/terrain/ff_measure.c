@@ -97,6 +97,16 @@ int ff_box_beyond_view(const ff_tree *tree, const ff_box *box)
     return 0;
 }
 
+int ff_box_in_hole(const ff_tree *tree, const ff_box *box)
+{
+    for (unsigned axis = 0; axis < 3; axis++) {
+        int64_t middle = (int64_t)tree->view.centre_wu[axis] - tree->view.camera.pos_wu[axis];
+        if (middle - box->lo[axis] >= tree->quality.hole_wu || box->hi[axis] - middle >= tree->quality.hole_wu)
+            return 0;
+    }
+    return 1;
+}
+
 int64_t ff_box_distance(const ff_box *box)
 {
     return c3d_length64(outside(0, box->lo[0], box->hi[0]), outside(0, box->lo[1], box->hi[1]),

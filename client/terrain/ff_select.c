@@ -19,7 +19,8 @@ static int same_view(const ff_view *a, const ff_view *b)
 static int same_quality(const ff_quality *a, const ff_quality *b)
 {
     return a->measure == b->measure && a->c_q8 == b->c_q8 && a->error_px_q8 == b->error_px_q8
-           && a->depth_max == b->depth_max && a->sigma_q8 == b->sigma_q8 && a->view_wu == b->view_wu;
+           && a->depth_max == b->depth_max && a->sigma_q8 == b->sigma_q8 && a->view_wu == b->view_wu
+           && a->hole_wu == b->hole_wu;
 }
 
 static int32_t within(int32_t value, int32_t lo, int32_t hi) { return value < lo ? lo : value > hi ? hi : value; }
@@ -69,7 +70,7 @@ static uint32_t own_value(ff_tree *tree, const ff_node *node)
     }
     ff_box box;
     ff_node_box(tree, node, &box);
-    return ff_box_beyond_view(tree, &box) ? 0 : value;
+    return ff_box_beyond_view(tree, &box) || ff_box_in_hole(tree, &box) ? 0 : value;
 }
 
 static void want_by_measure(ff_tree *tree)

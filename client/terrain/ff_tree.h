@@ -32,6 +32,7 @@ typedef struct ff_quality {
     uint8_t depth_max;     /* levels used, 1: roots only; 0: all the terrain has */
     int32_t sigma_q8;      /* children of a node are kept until f exceeds sigma (> 1.0); Listing 1's caching threshold */
     int32_t view_wu;       /* ground further than this (largest of |dx|,|dy|,|dz| to `centre_wu`) is neither drawn nor asked for */
+    int32_t hole_wu;       /* ground nearer than this (measured alike) is not split for its own sake: a panorama leaves it out; 0: none */
 } ff_quality;
 
 typedef struct ff_view {

@@ -99,6 +99,8 @@ void ff_node_box(const ff_tree *tree, const ff_node *node, ff_box *box);
 void ff_tile_box(const ff_tree *tree, uint32_t tile, ff_box *box);
 /* 1 when no point of the box is within view_wu of the window's middle. */
 int ff_box_beyond_view(const ff_tree *tree, const ff_box *box);
+/* 1 when all of the box is nearer than hole_wu. */
+int ff_box_in_hole(const ff_tree *tree, const ff_box *box);
 int64_t ff_box_distance(const ff_box *box);
 /* Geometric error of a node as seen from the nearest point of its box, pixels Q8. */
 uint64_t ff_projected_error_q8(const ff_tree *tree, const ff_node *node, const ff_box *box);
