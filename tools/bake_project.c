@@ -1,6 +1,7 @@
 #include "bake_project.h"
 
 #include "../protocol/ff_terrain.h"
+#include "bake_grid_gdal.h"
 #include "bake_say.h"
 
 #include <math.h>

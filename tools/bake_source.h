@@ -24,8 +24,4 @@ typedef struct bake_ground {
 int bake_source_read(const bake_options *options, bake_ground *ground);
 void bake_ground_close(bake_ground *ground);
 
-/* A GDAL data set over a grid's temporary file (valid while the grid is open): `type` per band, bands interleaved by cell.
- * NULL after saying why. */
-GDALDatasetH bake_grid_dataset(const bake_grid *grid, GDALDataType type, int band_count);
-
 #endif
