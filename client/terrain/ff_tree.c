@@ -150,7 +150,7 @@ uint32_t ff_tree_drawn(const ff_tree *tree, const ff_drawn **list)
     return tree->drawn_count;
 }
 
-uint32_t ff_tree_cut(ff_tree *tree, const ff_drawn **list)
+uint32_t ff_tree_cut(const ff_tree *tree, const ff_drawn **list)
 {
     *list = tree->drawn;
     return tree->cut_count;

@@ -88,7 +88,7 @@ int ff_tree_select(ff_tree *tree, const ff_view *view, const ff_quality *quality
 /* Nodes of the cut inside the view pyramid, nearest first; valid until the next call that changes the tree. */
 uint32_t ff_tree_drawn(const ff_tree *tree, const ff_drawn **list);
 /* All nodes of the cut, seen or not, for checks: same rules. */
-uint32_t ff_tree_cut(ff_tree *tree, const ff_drawn **list);
+uint32_t ff_tree_cut(const ff_tree *tree, const ff_drawn **list);
 /* What would make the picture better, most urgent first. The tree does not remember asking: the caller does. */
 uint32_t ff_tree_wishes(const ff_tree *tree, const ff_wish **list);
 /* 1 when what `wish` asks for would still be used by the present cut (requests that lost their point are dropped). */
