@@ -1,0 +1,326 @@
+/* Life of a client: the block, the worker, settings and what can be read of it. Frames are in client_update.c. */
+#include "ff_client_local.h"
+
+#include <string.h>
+
+#define CLIENT_BYTES_MIN ((size_t)512 << 10)
+#define RECV_BYTES_MIN (20u << 10)  /* any node fits, and common images */
+#define RECV_BYTES_MAX (FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX)
+#define WORKER_SLEEP_US 2000
+#define METRES FF_WU_PER_METRE
+
+size_t ff_client_bytes_min(void)
+{
+    return CLIENT_BYTES_MIN;
+}
+
+static void default_quality(ff_quality *quality)
+{
+    int untouched = quality->measure == FF_MEASURE_DISTANCE && !quality->c_q8 && !quality->error_px_q8 && !quality->depth_max &&
+                    !quality->sigma_q8 && !quality->view_wu;
+    if (untouched)
+        quality->depth_max = 4;
+    if (quality->c_q8 <= 0)
+        quality->c_q8 = 3 * 256;
+    if (quality->error_px_q8 <= 0)
+        quality->error_px_q8 = 2 * 256;
+    if (quality->sigma_q8 <= 256)
+        quality->sigma_q8 = 320;
+    if (quality->view_wu <= 0)
+        quality->view_wu = 30000 * METRES;
+}
+
+static void default_panorama(ff_panorama_desc *panorama, unsigned width)
+{
+    if (panorama->back_plane_wu <= 0)
+        panorama->back_plane_wu = 7500 * METRES;
+    if (panorama->server_back_wu <= panorama->back_plane_wu)
+        panorama->server_back_wu = panorama->back_plane_wu < 100000 * METRES ? 100000 * METRES : INT32_MAX;
+    if (panorama->error_px_q8 <= 0)
+        panorama->error_px_q8 = (int32_t)width * 128 / 20;
+    if (!panorama->face_size)
+        panorama->face_size = 256;
+    if (!panorama->jpeg_quality || panorama->jpeg_quality > 100)
+        panorama->jpeg_quality = 70;
+}
+
+static void default_desc(ff_client_desc *desc)
+{
+    if (!desc->width)
+        desc->width = 240;
+    if (!desc->height)
+        desc->height = 320;
+    if (!desc->in_flight_max)
+        desc->in_flight_max = 32;
+    if (!desc->answer_timeout_ms)
+        desc->answer_timeout_ms = 60000;
+    default_quality(&desc->quality);
+    default_panorama(&desc->panorama, desc->width);
+}
+
+static int check_desc(const ff_client_desc *desc)
+{
+    if (!desc->memory || (desc->stream != NULL) == (desc->pack != NULL) || desc->width > 4096 || desc->height > 4096 ||
+        desc->in_flight_max > 1024 || desc->panorama.jpeg_quality > 100 || (desc->panorama.face_size && desc->panorama.face_size < 64))
+        return FF_ERR_ARGUMENT;
+    if (desc->backend && !desc->surface_api)
+        return FF_ERR_ARGUMENT;
+    return desc->memory_bytes < CLIENT_BYTES_MIN ? FF_ERR_MEMORY : FF_OK;
+}
+
+static void worker_main(void *context)
+{
+    ff_client *client = context;
+    for (;;) {
+        int moved = ff_client_work(client, sys_time_us());
+        sys_mutex_lock(&client->gate);
+        int stop = client->stop;
+        sys_mutex_unlock(&client->gate);
+        if (stop)
+            return;
+        if (!moved)
+            sys_sleep_us(WORKER_SLEEP_US);
+    }
+}
+
+/* The part of the block that does not depend on the terrain. */
+static int make_fixed_part(ff_client *client)
+{
+    size_t recv = client->desc.memory_bytes / 32;
+    client->recv_bytes = recv < RECV_BYTES_MIN ? RECV_BYTES_MIN : recv > RECV_BYTES_MAX ? RECV_BYTES_MAX : (uint32_t)recv;
+    client->recv = client->desc.stream ? ff_arena_take(&client->arena, client->recv_bytes) : NULL;
+    void *slots = ff_arena_take(&client->arena, ff_requests_bytes(client->desc.in_flight_max));
+    if (!slots || (client->desc.stream && !client->recv))
+        return FF_ERR_MEMORY;
+    client->fixed_bytes = client->arena.used;
+    ff_requests_init(&client->requests, client->desc.in_flight_max, slots);
+    sys_mutex_init(&client->news.mutex);
+    sys_mutex_init(&client->gate);
+    client->intake.requests = &client->requests;
+    client->intake.news = &client->news;
+    if (client->desc.stream)
+        ff_stream_init(&client->stream, client->desc.stream, &client->intake, client->desc.in_flight_max,
+                       client->desc.answer_timeout_ms, client->recv, client->recv_bytes);
+    return FF_OK;
+}
+
+static void destroy_locks(ff_client *client)
+{
+    sys_mutex_destroy(&client->gate);
+    sys_mutex_destroy(&client->news.mutex);
+    sys_mutex_destroy(&client->requests.mutex);
+}
+
+int ff_client_create(const ff_client_desc *desc, ff_client **result)
+{
+    *result = NULL;
+    int rc = check_desc(desc);
+    if (rc != FF_OK)
+        return rc;
+    ff_arena arena;
+    ff_arena_init(&arena, desc->memory, desc->memory_bytes);
+    ff_client *client = ff_arena_take(&arena, sizeof *client);
+    if (!client)
+        return FF_ERR_MEMORY;
+    client->desc = *desc;
+    default_desc(&client->desc);
+    client->arena = arena;
+    client->geometry_hash = FF_TERRAIN_VIEW_HASH_START;
+    rc = make_fixed_part(client);
+    if (rc != FF_OK)
+        return rc;
+    if (desc->pack) {
+        client->info = desc->pack->header.info;
+        rc = ff_client_carve(client);
+    }
+    if (rc == FF_OK && desc->use_thread) {
+        rc = sys_thread_start(&client->thread, worker_main, client);
+        client->threaded = rc == FF_OK;
+    }
+    if (rc != FF_OK) {
+        ff_client_uncarve(client);
+        destroy_locks(client);
+        return rc;
+    }
+    *result = client;
+    return FF_OK;
+}
+
+void ff_client_destroy(ff_client *client)
+{
+    if (!client)
+        return;
+    if (client->threaded) {
+        sys_mutex_lock(&client->gate);
+        client->stop = 1;
+        sys_mutex_unlock(&client->gate);
+        sys_thread_join(&client->thread);
+    }
+    if (client->desc.stream)
+        ff_stream_close(&client->stream);
+    ff_client_uncarve(client);
+    destroy_locks(client);
+}
+
+int ff_client_work(ff_client *client, int64_t now_us)
+{
+    sys_mutex_lock(&client->gate);
+    int moved = 0;
+    if (client->desc.stream)
+        moved = ff_stream_step(&client->stream, now_us);
+    else if (client->have_terrain && !client->interrupted)
+        moved = ff_local_step(&client->intake, client->desc.pack, !ff_client_low_power(client), now_us);
+    sys_mutex_unlock(&client->gate);
+    return moved;
+}
+
+/* ---- settings ---- */
+
+void ff_client_event(ff_client *client, const sys_event *event)
+{
+    sys_mutex_lock(&client->gate);
+    if (event->type == SYS_EVENT_BATTERY)
+        client->battery_low = event->u.battery.low != 0;
+    else if (event->type == SYS_EVENT_INTERRUPTION)
+        client->interrupted = event->u.interruption.begins != 0;
+    client->dirty = 1;
+    sys_mutex_unlock(&client->gate);
+    if (client->desc.stream)
+        ff_stream_say(&client->stream, client->interrupted, ff_client_low_power(client));
+}
+
+void ff_client_set_quality(ff_client *client, const ff_quality *quality)
+{
+    client->desc.quality = *quality;
+    default_quality(&client->desc.quality);
+    client->dirty = 1;
+}
+
+void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama)
+{
+    unsigned face_size = client->panorama.face_size;
+    client->desc.panorama = *panorama;
+    default_panorama(&client->desc.panorama, client->desc.width);
+    client->dirty = 1;
+    if (!client->have_terrain)
+        return;
+    if (panorama->enabled && !face_size && client->desc.stream) {
+        /* the block was shared out without panoramas: share it out anew, with the terrain asked for again */
+        sys_mutex_lock(&client->gate);
+        ff_client_uncarve(client);
+        ff_stream_restart(&client->stream);
+        sys_mutex_unlock(&client->gate);
+        return;
+    }
+    ff_requests_cancel_panoramas(&client->requests);
+    ff_panorama_drop(&client->panorama);
+    client->panorama.desc = client->desc.panorama;
+}
+
+void ff_client_set_show(ff_client *client, unsigned show)
+{
+    client->dirty |= client->show != show;
+    client->show = show;
+}
+
+/* ---- what can be read ---- */
+
+const ff_terrain_info *ff_client_terrain(const ff_client *client)
+{
+    return client->have_terrain ? &client->info : NULL;
+}
+
+const ff_tree *ff_client_tree(const ff_client *client)
+{
+    return client->tree;
+}
+
+c3d_device *ff_client_device(ff_client *client)
+{
+    return client->device;
+}
+
+int ff_client_ground(const ff_client *client, int32_t x_wu, int32_t y_wu, int32_t *z_wu)
+{
+    return client->tree ? ff_tree_drawn_height(client->tree, x_wu, y_wu, z_wu) : 0;
+}
+
+int ff_client_panorama(const ff_client *client, int32_t position_wu[3], unsigned *faces)
+{
+    if (!client->have_terrain || client->panorama.active < 0)
+        return 0;
+    const ff_panorama_set *set = &client->panorama.set[client->panorama.active];
+    memcpy(position_wu, set->position_wu, sizeof set->position_wu);
+    *faces = (unsigned)set->held | set->empty;
+    return 1;
+}
+
+uint64_t ff_client_geometry_hash(const ff_client *client)
+{
+    return client->geometry_hash;
+}
+
+uint64_t ff_client_request_hash(const ff_client *client)
+{
+    ff_request_counts counts;
+    uint64_t hash;
+    ff_requests_get_counts((ff_requests *)&client->requests, &counts, &hash); /* only its lock is written */
+    return hash;
+}
+
+static void link_stats(const ff_client *client, ff_client_stats *stats)
+{
+    static const enum ff_link_state link[] = {
+        [FF_STREAM_CONNECTING] = FF_LINK_CONNECTING, [FF_STREAM_GREETING] = FF_LINK_CONNECTING, [FF_STREAM_WELCOMED] = FF_LINK_UP,
+        [FF_STREAM_UP] = FF_LINK_UP, [FF_STREAM_DOWN] = FF_LINK_DOWN, [FF_STREAM_DEAD] = FF_LINK_DOWN
+    };
+    ff_stream_shared shared;
+    ff_stream_get_shared((ff_stream *)&client->stream, &shared);
+    stats->link = link[shared.state];
+    stats->bytes_down = shared.bytes_down;
+    stats->bytes_up = shared.bytes_up;
+    stats->panorama_bytes = (uint32_t)shared.panorama_bytes;
+    stats->protocol_errors = shared.protocol_errors;
+    stats->reconnects = shared.reconnects;
+    stats->rtt_ms = shared.rtt_us / 1000;
+    stats->bandwidth_bytes_s = shared.bytes_s;
+}
+
+static void request_stats(const ff_client *client, ff_client_stats *stats)
+{
+    ff_request_counts counts;
+    ff_requests_get_counts((ff_requests *)&client->requests, &counts, NULL);
+    stats->requests_sent = counts.sent;
+    stats->requests_done = counts.done;
+    stats->requests_failed = counts.failed;
+    stats->requests_cancelled = counts.cancelled;
+    stats->requests_dropped = counts.dropped;
+    stats->in_flight = counts.in_flight;
+    stats->in_flight_high = counts.in_flight_high;
+    stats->queued = counts.queued;
+    stats->queued_high = counts.queued_high;
+    stats->panorama_requests = counts.panoramas_sent;
+}
+
+void ff_client_get_stats(const ff_client *client, ff_client_stats *stats)
+{
+    memset(stats, 0, sizeof *stats);
+    if (client->tree)
+        ff_tree_get_stats(client->tree, &stats->tree);
+    if (client->device)
+        c3d_get_stats(client->device, &stats->c3d);
+    if (client->desc.stream)
+        link_stats(client, stats);
+    request_stats(client, stats);
+    stats->have_terrain = client->have_terrain;
+    stats->low_power = (uint8_t)ff_client_low_power(client);
+    stats->panorama_faces = client->panorama.faces;
+    stats->panorama_faces_empty = client->panorama.faces_empty;
+    stats->textures_held = client->textures.held;
+    stats->textures_high = client->textures.high;
+    stats->textures_full = client->textures.full;
+    stats->frames_updated = client->frames_updated;
+    stats->frames_skipped = client->frames_skipped;
+    stats->memory_used = client->arena.used;
+    stats->memory_bytes = client->desc.memory_bytes;
+}

@@ -1,0 +1,41 @@
+/* What to ask for next, most urgent first:
+ *   FIRST        roots in view, panorama faces in view
+ *   IN_VIEW      refinements and images in view: pixels of error removed for each byte expected
+ *   OUT_OF_VIEW  the same outside the view, panorama faces outside it
+ *   PREFETCH     ground ahead on the predicted path; leaves only while the link has room and nothing else waits
+ * The queue's contents are replaced each time; what is no longer wanted is dropped. */
+#include "ff_client_local.h"
+
+static void want_tree(ff_client *client)
+{
+    const ff_wish *list;
+    uint32_t count = ff_tree_wishes(client->tree, &list);
+    for (uint32_t i = 0; i < count; i++) {
+        const ff_wish *wish = &list[i];
+        enum ff_request_kind kind = wish->refinement ? FF_WANT_REFINEMENT : FF_WANT_ROOT;
+        enum ff_request_class rank = !wish->in_view ? FF_CLASS_OUT_OF_VIEW : wish->refinement ? FF_CLASS_IN_VIEW : FF_CLASS_FIRST;
+        if (!ff_refusals_final(&client->refusals, kind, wish->key))
+            ff_requests_want(&client->requests, kind, wish->key, rank, wish->priority, NULL);
+    }
+}
+
+static void want_textures(ff_client *client, const ff_view *view, const ff_quality *quality)
+{
+    ff_texture_wish wish[FF_TEXTURE_WISHES];
+    const ff_drawn *drawn;
+    uint32_t drawn_count = ff_tree_drawn(client->tree, &drawn);
+    uint32_t count = ff_textures_wishes(&client->textures, drawn, drawn_count, view, quality, wish, FF_TEXTURE_WISHES);
+    for (uint32_t i = 0; i < count; i++)
+        if (!ff_refusals_final(&client->refusals, FF_WANT_TEXTURE, wish[i].key))
+            ff_requests_want(&client->requests, FF_WANT_TEXTURE, wish[i].key, FF_CLASS_IN_VIEW, wish[i].priority, NULL);
+}
+
+void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality, int64_t now_us)
+{
+    ff_requests_rank_begin(&client->requests);
+    ff_panorama_want(&client->panorama, &client->requests, &view->camera, now_us);
+    want_tree(client);
+    if (client->has_textures)
+        want_textures(client, view, quality);
+    ff_requests_rank_end(&client->requests);
+}

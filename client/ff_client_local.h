@@ -1,0 +1,71 @@
+/* Inside of a client: shared by client*.c only.
+ *
+ * The block:   [ ff_client | requests | receive buffer ]            from ff_client_create on
+ *              [ decoder | new-data items, images | scratch |       carved once the terrain is known (WELCOME, or the pack),
+ *                c3d device | view entries | textures | HUD | tree ] given back and carved anew for another terrain
+ * The tree's pool takes what is left, up to NODES_MAX. Then the block is sealed. */
+#ifndef FF_CLIENT_LOCAL_H
+#define FF_CLIENT_LOCAL_H
+
+#include "farfield.h"
+#include "ff_arena.h"
+#include "ff_hud.h"
+#include "ff_local.h"
+#include "ff_motion.h"
+#include "ff_panorama.h"
+#include "ff_refusals.h"
+#include "ff_sky.h"
+#include "ff_stream.h"
+#include "ff_terrain_view.h"
+#include "ff_textures.h"
+
+#define FF_TREE_WISHES 96u
+#define FF_TEXTURE_WISHES 24u
+#define FF_PREFETCH_WISHES 8u
+
+struct ff_client {
+    ff_client_desc desc;     /* defaults filled in */
+    ff_arena arena;
+    size_t fixed_bytes;      /* of the arena: what outlives a terrain */
+    sys_mutex gate;          /* held while the worker steps, and while the pools are carved */
+    sys_thread thread;
+    uint8_t threaded, stop;  /* stop: under the gate */
+
+    ff_requests requests;
+    ff_new_data news;
+    ff_intake intake;
+    ff_stream stream;
+    uint8_t *recv;
+    uint32_t recv_bytes;
+
+    uint8_t have_terrain, unusable; /* unusable: the terrain WELCOMEd does not fit this block */
+    ff_terrain_info info;
+    ff_tree *tree;
+    c3d_device *device;
+    ff_terrain_view view;
+    ff_textures textures;
+    ff_panorama panorama;
+    ff_sky sky;
+    ff_hud hud;
+    ff_motion motion;
+    ff_refusals refusals;
+
+    uint8_t has_camera, dirty, battery_low, interrupted, has_textures;
+    unsigned show;
+    c3d_camera camera;       /* of the last update, as given */
+    ff_view last_view;
+    uint32_t losses_seen;
+    uint64_t frame_hash, geometry_hash;
+    uint32_t frames_updated, frames_skipped;
+};
+
+/* client_carve.c: pools for client->info; under the gate (or before the worker runs). FF_OK, FF_ERR_MEMORY, FF_ERR_UNSUPPORTED. */
+int ff_client_carve(ff_client *client);
+void ff_client_uncarve(ff_client *client);
+/* client_rank.c: the request queue anew from what tree, textures, panorama and prediction want. */
+void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality, int64_t now_us);
+/* client_update.c: what quality is in force: as set, or coarser while power is low. */
+ff_quality ff_client_quality(const ff_client *client);
+static inline int ff_client_low_power(const ff_client *client) { return client->battery_low || client->interrupted; }
+
+#endif

@@ -1,0 +1,87 @@
+#include "ff_new_data.h"
+
+#include <assert.h>
+#include <string.h>
+
+size_t ff_new_data_item_bytes(unsigned item_slots, unsigned values)
+{
+    return item_slots * (sizeof(ff_new_item) + values * sizeof(int32_t));
+}
+
+void ff_new_data_init(ff_new_data *list, unsigned item_slots, unsigned values, void *items, unsigned image_slots,
+                      size_t image_bytes, void *images)
+{
+    list->item = items;
+    list->item_slots = (uint16_t)item_slots;
+    list->images = images;
+    list->image_slots = (uint16_t)image_slots;
+    list->image_bytes = image_bytes;
+    int32_t *value = (int32_t *)(void *)(list->item + item_slots);
+    for (unsigned i = 0; i < item_slots; i++)
+        list->item[i].residuals.value = value + (size_t)i * values;
+    ff_new_data_clear(list);
+}
+
+void ff_new_data_clear(ff_new_data *list)
+{
+    sys_mutex_lock(&list->mutex);
+    list->head = list->count = list->image_head = list->image_count = 0;
+    sys_mutex_unlock(&list->mutex);
+}
+
+int ff_new_data_room(ff_new_data *list, int image)
+{
+    sys_mutex_lock(&list->mutex);
+    int room = list->count < list->item_slots && (!image || list->image_count < list->image_slots);
+    sys_mutex_unlock(&list->mutex);
+    return room;
+}
+
+ff_new_item *ff_new_data_begin(ff_new_data *list, int image)
+{
+    if (!ff_new_data_room(list, image))
+        return NULL; /* the other side only ever makes room: still true below */
+    sys_mutex_lock(&list->mutex);
+    unsigned place = (list->head + list->count) % list->item_slots;
+    unsigned image_place = list->image_slots ? (list->image_head + list->image_count) % list->image_slots : 0;
+    sys_mutex_unlock(&list->mutex);
+    ff_new_item *item = &list->item[place];
+    int32_t *value = item->residuals.value;
+    memset(item, 0, sizeof *item);
+    item->residuals.value = value;
+    if (image)
+        item->pixels = (uint16_t *)(void *)(list->images + image_place * list->image_bytes);
+    return item;
+}
+
+void ff_new_data_put(ff_new_data *list, ff_new_item *item)
+{
+    sys_mutex_lock(&list->mutex);
+    assert(item == &list->item[(list->head + list->count) % list->item_slots]);
+    list->count++;
+    list->image_count = (uint16_t)(list->image_count + (item->pixels != NULL));
+    if (list->count > list->high)
+        list->high = list->count;
+    sys_mutex_unlock(&list->mutex);
+}
+
+ff_new_item *ff_new_data_first(ff_new_data *list)
+{
+    sys_mutex_lock(&list->mutex);
+    ff_new_item *item = list->count ? &list->item[list->head] : NULL;
+    sys_mutex_unlock(&list->mutex);
+    return item;
+}
+
+void ff_new_data_release(ff_new_data *list)
+{
+    sys_mutex_lock(&list->mutex);
+    assert(list->count > 0);
+    if (list->item[list->head].pixels) {
+        list->image_head = (uint16_t)((list->image_head + 1) % list->image_slots);
+        list->image_count--;
+    }
+    list->head = (uint16_t)((list->head + 1) % list->item_slots);
+    list->count--;
+    sys_mutex_unlock(&list->mutex);
+}

@@ -1,0 +1,230 @@
+#include "ff_panorama.h"
+#include "ff_panorama_rules.h"
+
+#include <string.h>
+
+#define ALL_FACES ((1u << FF_FACE_COUNT) - 1)
+#define RETRY_US 2000000          /* the server was busy */
+#define RETRY_LATER_US 30000000   /* and again and again */
+#define REFUSALS_IN_A_ROW 3
+#define PRIORITY_FACE 0x10000u    /* among the first: before refinements, beside roots */
+
+void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panorama_desc *desc, unsigned face_size)
+{
+    uint32_t serial = panorama->serial;
+    memset(panorama, 0, sizeof *panorama);
+    panorama->serial = serial;
+    panorama->device = device;
+    panorama->desc = *desc;
+    panorama->face_size = (uint16_t)face_size;
+    panorama->active = panorama->next = -1;
+    panorama->retry_us = INT64_MIN;
+    static const uint16_t quad[4] = {0, 1, 2, 3};
+    if (device && face_size)
+        panorama->quad = c3d_strip_make(device, quad, 4);
+}
+
+static void drop_set(ff_panorama *panorama, int index)
+{
+    ff_panorama_set *set = &panorama->set[index];
+    for (unsigned face = 0; face < FF_FACE_COUNT; face++) {
+        if (set->texture[face].id)
+            c3d_texture_free(panorama->device, set->texture[face]);
+        if (set->mesh[face].id)
+            c3d_mesh_free(panorama->device, set->mesh[face]);
+    }
+    memset(set, 0, sizeof *set);
+}
+
+void ff_panorama_drop(ff_panorama *panorama)
+{
+    drop_set(panorama, 0);
+    drop_set(panorama, 1);
+    panorama->active = panorama->next = -1;
+}
+
+static unsigned known(const ff_panorama_set *set)
+{
+    return (unsigned)set->held | set->empty | set->failed;
+}
+
+static void begin_set(ff_panorama *panorama, const c3d_camera *camera)
+{
+    int index = panorama->active == 0 ? 1 : 0;
+    drop_set(panorama, index);
+    memcpy(panorama->set[index].position_wu, camera->pos_wu, sizeof camera->pos_wu);
+    panorama->set[index].key = ++panorama->serial;
+    panorama->next = (int8_t)index;
+}
+
+/* The set that is coming has all that is in view: it takes over. */
+static int take_over(ff_panorama *panorama, unsigned in_view)
+{
+    if (panorama->next < 0 || (in_view & ~known(&panorama->set[panorama->next])) != 0)
+        return 0;
+    if (panorama->active >= 0)
+        drop_set(panorama, panorama->active);
+    panorama->active = panorama->next;
+    panorama->next = -1;
+    return 1;
+}
+
+int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int hold, int64_t now_us)
+{
+    if (!panorama->desc.enabled || !panorama->face_size)
+        return 0;
+    int changed = take_over(panorama, ff_panorama_faces_in_view(camera));
+    int newest = panorama->next >= 0 ? panorama->next : panorama->active;
+    if (hold || now_us < panorama->retry_us)
+        return changed;
+    if (panorama->retry_us != INT64_MIN) { /* the wait is over: want again */
+        panorama->retry_us = INT64_MIN;
+        changed = 1;
+    }
+    if (newest >= 0 && !ff_panorama_outdated(camera, panorama->set[newest].position_wu, panorama->desc.back_plane_wu,
+                                             panorama->desc.error_px_q8))
+        return changed;
+    if (panorama->next >= 0 && !panorama->desc.hold_back)
+        return changed; /* one set outstanding at most */
+    if (newest >= 0 && ff_requests_cancel(requests, panorama->set[newest].key) && !panorama->desc.hold_back)
+        return changed; /* the old set's last faces are still on their way: wait for the answer to the cancellation */
+    begin_set(panorama, camera);
+    return 1;
+}
+
+/* Faces of `missing`, the one nearest the view's axis first: found by narrowing the view to its middle. */
+static void list_faces(ff_get_panorama *request, unsigned missing, const c3d_camera *camera)
+{
+    c3d_camera narrow = *camera;
+    narrow.width = narrow.height = 1;
+    narrow.focal_q8 = 1 << 20;
+    unsigned middle = ff_panorama_faces_in_view(&narrow) & missing;
+    for (int pass = 0; pass < 2; pass++)
+        for (unsigned face = 0; face < FF_FACE_COUNT; face++)
+            if ((pass ? missing & ~middle : middle) >> face & 1u)
+                request->face[request->face_count++] = (uint8_t)face;
+}
+
+void ff_panorama_want(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int64_t now_us)
+{
+    int newest = panorama->next >= 0 ? panorama->next : panorama->active;
+    if (!panorama->desc.enabled || newest < 0 || now_us < panorama->retry_us)
+        return;
+    const ff_panorama_set *set = &panorama->set[newest];
+    unsigned missing = ALL_FACES & ~known(set), in_view = missing & ff_panorama_faces_in_view(camera);
+    if (!missing)
+        return;
+    ff_get_panorama request = {.front_wu = panorama->desc.back_plane_wu, .back_wu = panorama->desc.server_back_wu,
+                               .face_size = panorama->face_size, .quality = panorama->desc.jpeg_quality};
+    memcpy(request.position_wu, set->position_wu, sizeof request.position_wu);
+    list_faces(&request, in_view ? in_view : missing, camera);
+    ff_requests_want(requests, FF_WANT_PANORAMA, set->key, in_view ? FF_CLASS_FIRST : FF_CLASS_OUT_OF_VIEW,
+                     in_view ? PRIORITY_FACE : 1, &request);
+}
+
+/* ---- faces ---- */
+
+/* Corners of a face's quad and where its image lies, in units of half a texel: the cube reaches from -size to size. Side faces:
+ * columns run along x or y, rows along z. UP and DOWN: columns along x, rows along y. */
+static void make_quad(ff_panorama_set *set, unsigned face, int size, int top_row, int rows, c3d_vertex quad[4])
+{
+    int high = size - 2 * top_row, low = high - 2 * rows;
+    if (face == FF_FACE_UP) { /* its image's top edge looks south */
+        int swap = high;
+        high = -low;
+        low = -swap;
+    }
+    for (int corner = 0; corner < 4; corner++) {
+        int across = corner & 1 ? size : -size, along = corner & 2 ? high : low;
+        c3d_vertex *vertex = &quad[corner];
+        memset(vertex, 0, sizeof *vertex);
+        memset(vertex->rgba, 255, sizeof vertex->rgba);
+        int forward = face == FF_FACE_NORTH || face == FF_FACE_EAST || face == FF_FACE_UP ? size : -size;
+        int x = face == FF_FACE_EAST || face == FF_FACE_WEST ? forward : across;
+        int y = face == FF_FACE_NORTH || face == FF_FACE_SOUTH ? forward : face == FF_FACE_EAST || face == FF_FACE_WEST ? across
+                                                                                                                        : along;
+        vertex->x = (int16_t)x;
+        vertex->y = (int16_t)y;
+        vertex->z = (int16_t)(face == FF_FACE_UP || face == FF_FACE_DOWN ? forward : along);
+    }
+    set->low[face] = (int16_t)(face == FF_FACE_UP ? high : low);
+}
+
+static void take_image(ff_panorama *panorama, ff_panorama_set *set, const ff_new_item *item)
+{
+    unsigned face = item->face;
+    set->held |= (uint8_t)(1u << face);
+    panorama->faces++;
+    if (!panorama->device)
+        return;
+    c3d_vertex quad[4];
+    make_quad(set, face, item->width, item->face_top_row, item->face_row_count, quad);
+    set->height[face] = item->height;
+    set->texture[face] = c3d_texture_make(panorama->device, C3D_RGBA5551, item->width, item->height, item->pixels);
+    set->mesh[face] = c3d_mesh_make(panorama->device, quad, 4);
+}
+
+static void take_refusal(ff_panorama *panorama, int64_t now_us)
+{
+    if (panorama->refusals < REFUSALS_IN_A_ROW)
+        panorama->refusals++;
+    panorama->retry_us = now_us + (panorama->refusals < REFUSALS_IN_A_ROW ? RETRY_US : RETRY_LATER_US);
+}
+
+int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now_us)
+{
+    int whole = item->error == FF_OK || item->bytes != 0; /* a face message, decodable or not */
+    for (int i = 0; i < 2; i++) {
+        ff_panorama_set *set = &panorama->set[i];
+        unsigned bit = 1u << item->face;
+        if (set->key != item->key || !set->key)
+            continue;
+        if (!whole) {
+            if (item->error != FF_ERR_CLOSED)
+                take_refusal(panorama, now_us);
+            return 1;
+        }
+        if (known(set) & bit)
+            return 0;
+        panorama->refusals = 0;
+        if (item->error != FF_OK)
+            set->failed |= (uint8_t)bit;
+        else if (item->face_empty) {
+            set->empty |= (uint8_t)bit;
+            panorama->faces_empty++;
+        } else {
+            take_image(panorama, set, item);
+        }
+        return 1;
+    }
+    return 0;
+}
+
+static void draw_face(const ff_panorama *panorama, const ff_panorama_set *set, unsigned face, int32_t scale_wu)
+{
+    int along = 32768 / set->height[face], across = 32768 / panorama->face_size;
+    int s_backward = face == FF_FACE_SOUTH || face == FF_FACE_EAST, t_backward = face == FF_FACE_UP;
+    c3d_draw draw = {.mesh = set->mesh[face], .strip = panorama->quad, .xy_scale_wu = scale_wu,
+                     .z_scale_q16 = (uint32_t)scale_wu << 16, .texture = set->texture[face], .colour = 0xFFFFFFFFu,
+                     .flags = C3D_DRAW_TEXTURED | C3D_DRAW_BACKDROP | C3D_DRAW_ALPHA_TEST};
+    if (face == FF_FACE_NORTH || face == FF_FACE_SOUTH)
+        draw.flags |= C3D_DRAW_TEX_XZ;
+    else if (face == FF_FACE_EAST || face == FF_FACE_WEST)
+        draw.flags |= C3D_DRAW_TEX_YZ;
+    draw.tex_scale_q16[0] = s_backward ? -across : across;
+    draw.tex_offset_q16[0] = 32768;
+    draw.tex_scale_q16[1] = t_backward ? -along : along;
+    draw.tex_offset_q16[1] = t_backward ? set->low[face] * along : -set->low[face] * along;
+    c3d_draw_strip(panorama->device, &draw);
+}
+
+void ff_panorama_draw(const ff_panorama *panorama, int32_t near_wu)
+{
+    if (panorama->active < 0 || !panorama->desc.enabled)
+        return;
+    const ff_panorama_set *set = &panorama->set[panorama->active];
+    int32_t scale_wu = 2 * (near_wu / panorama->face_size + 1); /* the cube's faces lie two near planes away */
+    for (unsigned face = 0; face < FF_FACE_COUNT; face++)
+        if (set->texture[face].id && set->mesh[face].id)
+            draw_face(panorama, set, face, scale_wu);
+}

@@ -1,0 +1,49 @@
+/* Far ground as pictures: at most two sets of cube faces, the one drawn and the one that is coming (Hybrid, section 6.2).
+ *
+ * A set is taken at one point O. The set that is coming replaces the drawn one only when all of its faces in view are here, so no
+ * picture ever mixes two O. Faces in view are asked for first, the others when nothing in view is missing; a face the server
+ * found without far ground is never asked for again for that O. Unless hold_back says otherwise at most one panorama request
+ * is out, and no newer O is asked for while one is coming. A superseded request is cancelled. */
+#ifndef FF_PANORAMA_H
+#define FF_PANORAMA_H
+
+#include "farfield.h"
+#include "ff_new_data.h"
+
+#define FF_PANORAMA_MESHES (2 * FF_FACE_COUNT)
+
+typedef struct ff_panorama_set {
+    int32_t position_wu[3];
+    ff_key key;                       /* of its requests */
+    uint8_t held, empty, failed;      /* bit per enum ff_face_name */
+    c3d_texture texture[FF_FACE_COUNT];
+    c3d_mesh mesh[FF_FACE_COUNT];
+    uint16_t height[FF_FACE_COUNT];   /* rows of the texture */
+    int16_t low[FF_FACE_COUNT];       /* lowest (UP: southernmost) coordinate of the image, face units */
+} ff_panorama_set;
+
+typedef struct ff_panorama {
+    c3d_device *device;
+    c3d_strip quad;
+    ff_panorama_desc desc;
+    uint16_t face_size;               /* what memory allows; 0: no panoramas in this block */
+    int8_t active, next;              /* of set[]; -1: none */
+    uint8_t refusals;                 /* in a row */
+    ff_panorama_set set[2];
+    uint32_t serial;
+    int64_t retry_us;                 /* not before */
+    uint32_t faces, faces_empty;
+} ff_panorama;
+
+void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panorama_desc *desc, unsigned face_size);
+/* Frees what the device holds. */
+void ff_panorama_drop(ff_panorama *panorama);
+/* Applies the refresh rules; `hold`: ask for nothing new. 1 when the drawn set or what is wanted changed. */
+int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int hold, int64_t now_us);
+/* Puts what is missing into the ranking under way. */
+void ff_panorama_want(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int64_t now_us);
+/* Takes in a face or a refusal; 1 when it belongs to a set still wanted. */
+int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now_us);
+void ff_panorama_draw(const ff_panorama *panorama, int32_t near_wu);
+
+#endif

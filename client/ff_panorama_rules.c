@@ -1,0 +1,112 @@
+#include "ff_panorama_rules.h"
+
+#include "../protocol/ff_message.h"
+
+int64_t ff_panorama_sideways_max(int64_t error_px_q8, int64_t z_wu, int64_t focal_q8)
+{
+    return c3d_muldiv64(error_px_q8, z_wu, focal_q8);
+}
+
+int64_t ff_panorama_forwards_max(int64_t error_px_q8, int64_t z_wu, int64_t half_width_px_q8)
+{
+    if (error_px_q8 <= 0)
+        return 0;
+    return c3d_muldiv64(error_px_q8, z_wu, error_px_q8 + half_width_px_q8);
+}
+
+static int64_t magnitude(int64_t value)
+{
+    return value < 0 ? -value : value;
+}
+
+int ff_panorama_outdated(const c3d_camera *camera, const int32_t taken_wu[3], int32_t z_wu, int32_t error_px_q8)
+{
+    int64_t moved_wu[3], eye_wu[3];
+    for (int i = 0; i < 3; i++)
+        moved_wu[i] = (int64_t)camera->pos_wu[i] - taken_wu[i];
+    if (!moved_wu[0] && !moved_wu[1] && !moved_wu[2])
+        return 0;
+    if (c3d_length64(moved_wu[0], moved_wu[1], moved_wu[2]) >= z_wu)
+        return 1;
+    c3d_rotation rotation;
+    c3d_rotation_from_camera(camera, &rotation);
+    c3d_to_eye(&rotation, moved_wu, eye_wu);
+    int64_t sideways_max = ff_panorama_sideways_max(error_px_q8, z_wu, camera->focal_q8);
+    int64_t forwards_max = ff_panorama_forwards_max(error_px_q8, z_wu, (int64_t)camera->width * 128);
+    return magnitude(eye_wu[0]) > sideways_max || magnitude(eye_wu[1]) > sideways_max || magnitude(eye_wu[2]) >= forwards_max;
+}
+
+/* Cones with their tip in the camera, as four rays: world directions of any length below 2^33. */
+typedef struct view_rays { int64_t ray[4][3]; } view_rays;
+
+static void make_rays(const c3d_camera *camera, const c3d_rotation *rotation, view_rays *rays)
+{
+    int64_t half_x_q8 = (int64_t)camera->width * 128, half_y_q8 = (int64_t)camera->height * 128;
+    for (int corner = 0; corner < 4; corner++) {
+        int64_t x = corner == 0 || corner == 3 ? -half_x_q8 : half_x_q8; /* round the rim */
+        int64_t y = corner < 2 ? -half_y_q8 : half_y_q8;
+        for (int axis = 0; axis < 3; axis++)
+            rays->ray[corner][axis] = (x * rotation->m[0][axis] + y * rotation->m[1][axis] +
+                                       (int64_t)camera->focal_q8 * rotation->m[2][axis]) >> 24;
+    }
+}
+
+/* A face's pyramid is |right| <= forward, |up| <= forward along its axes: the view touches it unless all its rays lie beyond one of
+ * those four planes. */
+static int view_outside_face(const view_rays *rays, int forward_axis, int sign)
+{
+    for (int other = 0; other < 3; other++) {
+        if (other == forward_axis)
+            continue;
+        for (int side = -1; side <= 1; side += 2) {
+            int outside = 0;
+            for (int corner = 0; corner < 4; corner++)
+                outside += sign * rays->ray[corner][forward_axis] < side * rays->ray[corner][other];
+            if (outside == 4)
+                return 1;
+        }
+    }
+    return 0;
+}
+
+/* The view's own planes: |x| * d <= z * half etc. in eye space; the face is outside when its four corner rays are beyond one. */
+static int face_outside_view(const c3d_camera *camera, const c3d_rotation *rotation, int forward_axis, int sign)
+{
+    int64_t half_q8[2] = {(int64_t)camera->width * 128, (int64_t)camera->height * 128};
+    unsigned beyond_all = 0xf; /* bit per plane: every corner so far is beyond it */
+    for (int corner = 0; corner < 4; corner++) {
+        int64_t eye[3];
+        int ray[3];
+        ray[forward_axis] = sign;
+        ray[(forward_axis + 1) % 3] = corner & 1 ? 1 : -1;
+        ray[(forward_axis + 2) % 3] = corner & 2 ? 1 : -1;
+        for (int row = 0; row < 3; row++)
+            eye[row] = ((int64_t)ray[0] * rotation->m[row][0] + (int64_t)ray[1] * rotation->m[row][1] +
+                        (int64_t)ray[2] * rotation->m[row][2]) >> 8;
+        unsigned beyond = 0;
+        for (int i = 0; i < 2; i++) {
+            int64_t reach = eye[2] * half_q8[i], off = eye[i] * camera->focal_q8;
+            beyond |= (unsigned)(off > reach) << (2 * i) | (unsigned)(-off > reach) << (2 * i + 1);
+        }
+        beyond_all &= beyond;
+    }
+    return beyond_all != 0;
+}
+
+unsigned ff_panorama_faces_in_view(const c3d_camera *camera)
+{
+    static const struct { int8_t axis, sign; } face[FF_FACE_COUNT] = {
+        [FF_FACE_NORTH] = {1, 1}, [FF_FACE_EAST] = {0, 1}, [FF_FACE_SOUTH] = {1, -1},
+        [FF_FACE_WEST] = {0, -1}, [FF_FACE_UP] = {2, 1}, [FF_FACE_DOWN] = {2, -1}
+    };
+    c3d_rotation rotation;
+    view_rays rays;
+    unsigned faces = 0;
+    c3d_rotation_from_camera(camera, &rotation);
+    make_rays(camera, &rotation, &rays);
+    for (unsigned i = 0; i < FF_FACE_COUNT; i++)
+        if (!view_outside_face(&rays, face[i].axis, face[i].sign) &&
+            !face_outside_view(camera, &rotation, face[i].axis, face[i].sign))
+            faces |= 1u << i;
+    return faces;
+}

@@ -1,0 +1,356 @@
+#include "ff_request.h"
+
+#include <assert.h>
+#include <string.h>
+
+#define HASH_START UINT64_C(0xcbf29ce484222325)
+#define HASH_PRIME UINT64_C(0x100000001b3)
+#define ANSWER_BYTES_START 200u /* before the first answer of a kind: Hybrid's 9x9 node is 182 */
+#define IN_FLIGHT_ALWAYS 2u
+
+static size_t slots_for(unsigned in_flight_max)
+{
+    return (size_t)in_flight_max + FF_REQUESTS_QUEUED_MAX;
+}
+
+size_t ff_requests_bytes(unsigned in_flight_max)
+{
+    return slots_for(in_flight_max) * sizeof(ff_request);
+}
+
+void ff_requests_init(ff_requests *requests, unsigned in_flight_max, void *memory)
+{
+    memset(requests, 0, sizeof *requests);
+    sys_mutex_init(&requests->mutex);
+    requests->slot = memory;
+    requests->slot_count = (uint16_t)slots_for(in_flight_max);
+    requests->queued_max = FF_REQUESTS_QUEUED_MAX;
+    requests->hash = HASH_START;
+    memset(requests->slot, 0, ff_requests_bytes(in_flight_max));
+    for (unsigned kind = 0; kind < FF_WANT_KINDS; kind++)
+        for (unsigned level = 0; level < 16; level++)
+            requests->answer_q4[kind][level] = ANSWER_BYTES_START << (kind >= FF_WANT_TEXTURE ? 7 : 4);
+}
+
+static unsigned level_of(const ff_request *request)
+{
+    return request->kind == FF_WANT_PANORAMA ? 0 : ff_key_level(request->key);
+}
+
+/* Every way out of QUEUED, SENT and ARRIVING passes here or free_slot: counts stay true. */
+static void leave_state(ff_requests *requests, const ff_request *request)
+{
+    ff_request_counts *counts = &requests->counts;
+    if (request->state == FF_REQUEST_QUEUED)
+        counts->queued--;
+    else if (request->state == FF_REQUEST_SENT) {
+        counts->in_flight--;
+        counts->bytes_in_flight -= request->bytes_expected;
+    } else if (request->state == FF_REQUEST_ARRIVING)
+        counts->arriving--;
+}
+
+static void free_slot(ff_requests *requests, ff_request *request, uint32_t *final_count)
+{
+    leave_state(requests, request);
+    request->state = FF_REQUEST_FREE;
+    ++*final_count;
+}
+
+static void enqueue(ff_requests *requests, ff_request *request)
+{
+    ff_request_counts *counts = &requests->counts;
+    request->state = FF_REQUEST_QUEUED;
+    if (++counts->queued > counts->queued_high)
+        counts->queued_high = counts->queued;
+}
+
+void ff_requests_clear(ff_requests *requests)
+{
+    sys_mutex_lock(&requests->mutex);
+    for (unsigned i = 0; i < requests->slot_count; i++) {
+        ff_request *request = &requests->slot[i];
+        if (request->state == FF_REQUEST_QUEUED)
+            free_slot(requests, request, &requests->counts.dropped);
+        else if (request->state != FF_REQUEST_FREE)
+            free_slot(requests, request, &requests->counts.cancelled);
+    }
+    sys_mutex_unlock(&requests->mutex);
+}
+
+static ff_request *find(ff_requests *requests, unsigned kind, ff_key key)
+{
+    for (unsigned i = 0; i < requests->slot_count; i++) {
+        ff_request *request = &requests->slot[i];
+        if (request->state != FF_REQUEST_FREE && request->kind == kind && request->key == key)
+            return request;
+    }
+    return NULL;
+}
+
+static ff_request *find_free(ff_requests *requests)
+{
+    for (unsigned i = 0; i < requests->slot_count; i++)
+        if (requests->slot[i].state == FF_REQUEST_FREE)
+            return &requests->slot[i];
+    return NULL;
+}
+
+void ff_requests_rank_begin(ff_requests *requests)
+{
+    sys_mutex_lock(&requests->mutex);
+    for (unsigned i = 0; i < requests->slot_count; i++)
+        requests->slot[i].marked = 0;
+    sys_mutex_unlock(&requests->mutex);
+}
+
+static uint32_t value_of(const ff_requests *requests, unsigned kind, unsigned level, uint32_t priority)
+{
+    uint64_t value = ((uint64_t)priority << 12) / (requests->answer_q4[kind][level] + 1u);
+    return value > UINT32_MAX ? UINT32_MAX : (uint32_t)value;
+}
+
+/* A free slot for a new request while the queue has room. What an earlier ranking left unmarked makes room first. */
+static ff_request *slot_for_new(ff_requests *requests)
+{
+    if (requests->counts.queued >= requests->queued_max) {
+        for (unsigned i = 0; i < requests->slot_count; i++) {
+            ff_request *request = &requests->slot[i];
+            if (request->state == FF_REQUEST_QUEUED && !request->marked) {
+                free_slot(requests, request, &requests->counts.dropped);
+                return request;
+            }
+        }
+        return NULL;
+    }
+    return find_free(requests);
+}
+
+int ff_requests_want(ff_requests *requests, enum ff_request_kind kind, ff_key key, enum ff_request_class rank, uint32_t priority,
+                     const ff_get_panorama *panorama)
+{
+    sys_mutex_lock(&requests->mutex);
+    ff_request *request = find(requests, kind, key);
+    if (!request) {
+        request = slot_for_new(requests);
+        if (!request) {
+            requests->counts.queue_full++;
+            sys_mutex_unlock(&requests->mutex);
+            return 0;
+        }
+        memset(request, 0, sizeof *request);
+        request->key = key;
+        request->kind = (uint8_t)kind;
+        request->id = (uint16_t)(request - requests->slot + 1);
+        request->sequence = requests->sequence++;
+        requests->counts.made++;
+        enqueue(requests, request);
+    }
+    request->marked = 1;
+    if (request->state == FF_REQUEST_QUEUED) {
+        request->rank = (uint8_t)rank;
+        request->value = value_of(requests, kind, level_of(request), priority);
+        if (panorama)
+            request->panorama = *panorama;
+    }
+    sys_mutex_unlock(&requests->mutex);
+    return 1;
+}
+
+void ff_requests_rank_end(ff_requests *requests)
+{
+    sys_mutex_lock(&requests->mutex);
+    for (unsigned i = 0; i < requests->slot_count; i++) {
+        ff_request *request = &requests->slot[i];
+        if (request->state == FF_REQUEST_QUEUED && !request->marked)
+            free_slot(requests, request, &requests->counts.dropped);
+    }
+    sys_mutex_unlock(&requests->mutex);
+}
+
+/* 1 when it is still under way. */
+static int cancel(ff_requests *requests, ff_request *request)
+{
+    if (request->state == FF_REQUEST_QUEUED) {
+        free_slot(requests, request, &requests->counts.dropped);
+        return 0;
+    }
+    if (request->state == FF_REQUEST_SENT && !request->cancel)
+        request->cancel = 1;
+    return 1;
+}
+
+int ff_requests_cancel(ff_requests *requests, ff_key key)
+{
+    sys_mutex_lock(&requests->mutex);
+    ff_request *request = find(requests, FF_WANT_PANORAMA, key);
+    int under_way = request ? cancel(requests, request) : 0;
+    sys_mutex_unlock(&requests->mutex);
+    return under_way;
+}
+
+void ff_requests_cancel_panoramas(ff_requests *requests)
+{
+    sys_mutex_lock(&requests->mutex);
+    for (unsigned i = 0; i < requests->slot_count; i++)
+        if (requests->slot[i].state != FF_REQUEST_FREE && requests->slot[i].kind == FF_WANT_PANORAMA)
+            (void)cancel(requests, &requests->slot[i]);
+    sys_mutex_unlock(&requests->mutex);
+}
+
+enum ff_request_state ff_requests_state(ff_requests *requests, enum ff_request_kind kind, ff_key key)
+{
+    sys_mutex_lock(&requests->mutex);
+    const ff_request *request = find(requests, kind, key);
+    enum ff_request_state state = request ? (enum ff_request_state)request->state : FF_REQUEST_FREE;
+    sys_mutex_unlock(&requests->mutex);
+    return state;
+}
+
+void ff_requests_finish(ff_requests *requests, uint16_t id, enum ff_request_state final)
+{
+    sys_mutex_lock(&requests->mutex);
+    assert(id >= 1 && id <= requests->slot_count);
+    ff_request *request = &requests->slot[id - 1];
+    assert(request->state == FF_REQUEST_ARRIVING);
+    ff_request_counts *counts = &requests->counts;
+    free_slot(requests, request, final == FF_REQUEST_DONE ? &counts->done
+                               : final == FF_REQUEST_FAILED ? &counts->failed : &counts->cancelled);
+    sys_mutex_unlock(&requests->mutex);
+}
+
+/* ---- worker ---- */
+
+static int goes_before(const ff_request *a, const ff_request *b)
+{
+    if (a->rank != b->rank)
+        return a->rank < b->rank;
+    if (a->value != b->value)
+        return a->value > b->value;
+    return a->sequence < b->sequence;
+}
+
+static void hash_word(uint64_t *hash, uint64_t word)
+{
+    *hash = (*hash ^ word) * HASH_PRIME;
+}
+
+static void count_sent(ff_requests *requests, const ff_request *request)
+{
+    ff_request_counts *counts = &requests->counts;
+    counts->sent++;
+    counts->panoramas_sent += request->kind == FF_WANT_PANORAMA;
+    counts->textures_sent += request->kind == FF_WANT_TEXTURE;
+    if (++counts->in_flight > counts->in_flight_high)
+        counts->in_flight_high = counts->in_flight;
+    counts->bytes_in_flight += request->bytes_expected;
+    hash_word(&requests->hash, request->kind);
+    if (request->kind != FF_WANT_PANORAMA) {
+        hash_word(&requests->hash, request->key);
+        return;
+    }
+    const ff_get_panorama *panorama = &request->panorama;
+    for (int i = 0; i < 3; i++)
+        hash_word(&requests->hash, (uint32_t)panorama->position_wu[i]);
+    for (int i = 0; i < panorama->face_count; i++)
+        hash_word(&requests->hash, panorama->face[i]);
+}
+
+int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_max, uint32_t bytes_in_flight_max, int prefetch,
+                     ff_request *copy)
+{
+    ff_request *best = NULL;
+    sys_mutex_lock(&requests->mutex);
+    const ff_request_counts *counts = &requests->counts;
+    int room = counts->in_flight < IN_FLIGHT_ALWAYS ||
+               (counts->in_flight < in_flight_max && counts->bytes_in_flight < bytes_in_flight_max);
+    for (unsigned i = 0; room && i < requests->slot_count; i++) {
+        ff_request *request = &requests->slot[i];
+        if (request->state == FF_REQUEST_QUEUED && (prefetch || request->rank != FF_CLASS_PREFETCH) &&
+            (!best || goes_before(request, best)))
+            best = request;
+    }
+    if (best) {
+        leave_state(requests, best);
+        best->state = FF_REQUEST_SENT;
+        best->sent_us = now_us;
+        best->cancel = 0;
+        best->panorama.id = best->id;
+        best->bytes_expected = requests->answer_q4[best->kind][level_of(best)] >> 4;
+        if (best->kind == FF_WANT_PANORAMA)
+            best->bytes_expected *= best->panorama.face_count;
+        count_sent(requests, best);
+        *copy = *best;
+    }
+    sys_mutex_unlock(&requests->mutex);
+    return best != NULL;
+}
+
+uint16_t ff_requests_next_cancel(ff_requests *requests)
+{
+    uint16_t id = 0;
+    sys_mutex_lock(&requests->mutex);
+    for (unsigned i = 0; !id && i < requests->slot_count; i++) {
+        ff_request *request = &requests->slot[i];
+        if (request->state == FF_REQUEST_SENT && request->cancel == 1) {
+            request->cancel = 2;
+            id = request->id;
+        }
+    }
+    sys_mutex_unlock(&requests->mutex);
+    return id;
+}
+
+int ff_requests_answered(ff_requests *requests, uint16_t id, ff_request *copy)
+{
+    int known = 0;
+    sys_mutex_lock(&requests->mutex);
+    if (id >= 1 && id <= requests->slot_count && requests->slot[id - 1].state == FF_REQUEST_SENT) {
+        *copy = requests->slot[id - 1];
+        known = 1;
+    }
+    sys_mutex_unlock(&requests->mutex);
+    return known;
+}
+
+void ff_requests_arrived(ff_requests *requests, uint16_t id, uint32_t bytes)
+{
+    sys_mutex_lock(&requests->mutex);
+    ff_request *request = &requests->slot[id - 1];
+    assert(request->state == FF_REQUEST_SENT);
+    leave_state(requests, request);
+    request->state = FF_REQUEST_ARRIVING;
+    requests->counts.arriving++;
+    if (bytes) {
+        uint32_t *mean_q4 = &requests->answer_q4[request->kind][level_of(request)];
+        *mean_q4 -= *mean_q4 >> 3;
+        *mean_q4 += bytes * 16u >> 3;
+    }
+    sys_mutex_unlock(&requests->mutex);
+}
+
+void ff_requests_lost(ff_requests *requests)
+{
+    sys_mutex_lock(&requests->mutex);
+    for (unsigned i = 0; i < requests->slot_count; i++) {
+        ff_request *request = &requests->slot[i];
+        if (request->state != FF_REQUEST_SENT)
+            continue;
+        if (request->cancel)
+            free_slot(requests, request, &requests->counts.cancelled);
+        else {
+            leave_state(requests, request);
+            enqueue(requests, request);
+        }
+    }
+    sys_mutex_unlock(&requests->mutex);
+}
+
+void ff_requests_get_counts(ff_requests *requests, ff_request_counts *counts, uint64_t *hash)
+{
+    sys_mutex_lock(&requests->mutex);
+    *counts = requests->counts;
+    if (hash)
+        *hash = requests->hash;
+    sys_mutex_unlock(&requests->mutex);
+}

@@ -1,0 +1,65 @@
+#include "ff_sky.h"
+
+#include <string.h>
+
+#define COLUMNS 8
+#define RINGS 3
+#define RADIUS 256
+
+/* Rings at 0, about 20 and about 55 degrees, then the zenith: height and distance from the axis in vertex units. */
+static const struct { int16_t radius, z; uint8_t rgb[3]; } ring[RINGS + 1] = {
+    {256, 0, {200, 216, 232}}, {240, 90, {150, 186, 222}}, {150, 210, {104, 152, 206}}, {0, 256, {84, 134, 194}}
+};
+static const int8_t circle[COLUMNS][2] = {{0, 64}, {45, 45}, {64, 0}, {45, -45}, {0, -64}, {-45, -45}, {-64, 0}, {-45, 45}};
+
+static void set_vertex(c3d_vertex *vertex, int level, int column)
+{
+    memset(vertex, 0, sizeof *vertex);
+    vertex->x = (int16_t)(circle[column][0] * ring[level].radius / 64);
+    vertex->y = (int16_t)(circle[column][1] * ring[level].radius / 64);
+    vertex->z = ring[level].z;
+    memcpy(vertex->rgba, ring[level].rgb, 3);
+    vertex->rgba[3] = 255;
+}
+
+/* Bands of quads between neighbouring rings as one strip, rows joined by degenerate triangles. */
+static uint32_t make_indices(uint16_t *index)
+{
+    uint32_t count = 0;
+    for (int level = 0; level < RINGS; level++) {
+        for (int i = 0; i <= COLUMNS; i++) {
+            uint16_t low = (uint16_t)(level * COLUMNS + i % COLUMNS);
+            uint16_t high = level + 1 == RINGS ? RINGS * COLUMNS : (uint16_t)(low + COLUMNS);
+            if (i == 0 && count) {
+                index[count] = index[count - 1];
+                count++;
+                index[count++] = low;
+            }
+            index[count++] = low;
+            index[count++] = high;
+        }
+    }
+    return count;
+}
+
+void ff_sky_make(ff_sky *sky, c3d_device *device)
+{
+    c3d_vertex vertex[RINGS * COLUMNS + 1];
+    uint16_t index[RINGS * (2 * COLUMNS + 4)];
+    for (int level = 0; level < RINGS; level++)
+        for (int column = 0; column < COLUMNS; column++)
+            set_vertex(&vertex[level * COLUMNS + column], level, column);
+    set_vertex(&vertex[RINGS * COLUMNS], RINGS, 0);
+    sky->mesh = c3d_mesh_make(device, vertex, RINGS * COLUMNS + 1);
+    sky->strip = c3d_strip_make(device, index, make_indices(index));
+}
+
+void ff_sky_draw(const ff_sky *sky, c3d_device *device, int32_t near_wu)
+{
+    if (!sky->mesh.id || !sky->strip.id)
+        return;
+    int32_t scale_wu = 4 * (near_wu / RADIUS + 1);
+    c3d_draw draw = {.mesh = sky->mesh, .strip = sky->strip, .xy_scale_wu = scale_wu, .z_scale_q16 = (uint32_t)scale_wu << 16,
+                     .flags = C3D_DRAW_COLOURED | C3D_DRAW_BACKDROP};
+    c3d_draw_strip(device, &draw);
+}

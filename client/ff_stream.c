@@ -1,0 +1,305 @@
+/* Connection, sending and time-outs; what comes in is in ff_receive.c. */
+#include "ff_stream.h"
+#include "ff_receive.h"
+
+#include <string.h>
+
+#define CONNECT_US_MAX 30000000
+#define PING_AFTER_US 60000000 /* far below the server's idle limit */
+#define RECEIVE_ROUNDS_MAX 16  /* a step stays short, whatever the link brings */
+
+void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsigned in_flight_max, uint32_t answer_timeout_ms,
+                    uint8_t *recv, uint32_t recv_bytes)
+{
+    memset(stream, 0, sizeof *stream);
+    stream->io = io;
+    stream->intake = intake;
+    stream->in_flight_max = (uint16_t)in_flight_max;
+    stream->answer_timeout_us = (int64_t)answer_timeout_ms * 1000;
+    stream->recv = recv;
+    stream->recv_bytes = recv_bytes;
+    stream->backoff_us = FF_BACKOFF_US_MIN;
+    stream->connect_us = stream->heard_us = stream->sent_us = INT64_MIN;
+    ff_link_estimate_reset(&stream->link);
+}
+
+static void publish(ff_stream *stream)
+{
+    ff_stream_shared *shared = &stream->shared;
+    sys_mutex_lock(&stream->intake->requests->mutex);
+    shared->state = stream->state;
+    shared->bytes_down = stream->bytes_down;
+    shared->bytes_up = stream->bytes_up;
+    shared->panorama_bytes = stream->panorama_bytes;
+    shared->protocol_errors = stream->protocol_errors;
+    shared->reconnects = stream->reconnects;
+    shared->losses = stream->losses;
+    shared->rtt_us = stream->link.rtt_us;
+    shared->bytes_s = stream->link.bytes_s;
+    sys_mutex_unlock(&stream->intake->requests->mutex);
+}
+
+void ff_stream_get_shared(ff_stream *stream, ff_stream_shared *shared)
+{
+    sys_mutex_lock(&stream->intake->requests->mutex);
+    *shared = stream->shared;
+    sys_mutex_unlock(&stream->intake->requests->mutex);
+}
+
+void ff_stream_say(ff_stream *stream, int quiet, int no_prefetch)
+{
+    sys_mutex_lock(&stream->intake->requests->mutex);
+    stream->shared.quiet = (uint8_t)quiet;
+    stream->shared.no_prefetch = (uint8_t)no_prefetch;
+    sys_mutex_unlock(&stream->intake->requests->mutex);
+}
+
+/* The connection is of no more use. Half-received messages and unsent bytes are dropped, what was asked is queued again. */
+static void give_up(ff_stream *stream, int64_t now_us)
+{
+    stream->io->close(stream->io->state);
+    ff_requests_lost(stream->intake->requests);
+    stream->recv_count = stream->send_count = stream->skip = 0;
+    stream->awaiting = stream->blocked = 0;
+    stream->losses++;
+    stream->link.since_us = INT64_MIN;
+    stream->state = stream->io->reconnect ? FF_STREAM_DOWN : FF_STREAM_DEAD;
+    stream->retry_us = now_us + stream->backoff_us;
+    stream->backoff_us = stream->backoff_us * 2 > FF_BACKOFF_US_MAX ? FF_BACKOFF_US_MAX : stream->backoff_us * 2;
+}
+
+void ff_stream_accept(ff_stream *stream, int ok)
+{
+    stream->has_terrain = (uint8_t)ok;
+    stream->held = stream->shared.welcome;
+    if (ok) {
+        stream->state = FF_STREAM_UP;
+    } else {
+        stream->io->close(stream->io->state);
+        stream->state = FF_STREAM_DEAD;
+    }
+    publish(stream);
+}
+
+void ff_stream_restart(ff_stream *stream)
+{
+    stream->has_terrain = 0;
+    if (stream->state == FF_STREAM_DEAD || stream->state == FF_STREAM_DOWN)
+        return;
+    stream->backoff_us = FF_BACKOFF_US_MIN;
+    give_up(stream, 0);
+    stream->retry_us = INT64_MIN; /* at once */
+    publish(stream);
+}
+
+void ff_stream_close(ff_stream *stream)
+{
+    if (stream->state != FF_STREAM_DOWN && stream->state != FF_STREAM_DEAD)
+        stream->io->close(stream->io->state);
+    stream->state = FF_STREAM_DEAD;
+}
+
+static void append(ff_stream *stream, const ff_message *message)
+{
+    int count = ff_message_encode(message, stream->send + stream->send_count, sizeof stream->send - stream->send_count);
+    if (count > 0)
+        stream->send_count += (uint32_t)count;
+}
+
+static int has_send_room(const ff_stream *stream)
+{
+    return stream->send_count + FF_REQUEST_BYTES_MAX <= sizeof stream->send;
+}
+
+static void greet(ff_stream *stream, int64_t now_us)
+{
+    ff_message hello = {.type = FF_MSG_HELLO};
+    hello.u.hello.version = FF_PROTOCOL_VERSION;
+    hello.u.hello.known_checksum = stream->has_terrain ? stream->held.checksum : 0;
+    append(stream, &hello);
+    stream->state = FF_STREAM_GREETING;
+    stream->heard_us = stream->sent_us = now_us;
+    stream->awaiting = 1;
+}
+
+static int connect_step(ff_stream *stream, int64_t now_us)
+{
+    if (stream->state == FF_STREAM_DOWN) {
+        if (now_us < stream->retry_us)
+            return 0;
+        stream->state = FF_STREAM_CONNECTING;
+        stream->attempt = 1;
+        stream->connect_us = now_us;
+        stream->reconnects++;
+    }
+    if (!stream->attempt) { /* the stream was handed over connected, or connecting: then it takes no bytes yet */
+        greet(stream, now_us);
+        return 1;
+    }
+    int rc = stream->io->reconnect(stream->io->state);
+    if (rc == FF_OK)
+        greet(stream, now_us);
+    else if (rc != FF_ERR_AGAIN || now_us - stream->connect_us > CONNECT_US_MAX)
+        give_up(stream, now_us);
+    else
+        return 0;
+    return 1;
+}
+
+static void encode_request(ff_stream *stream, const ff_request *request)
+{
+    ff_message message = {.type = FF_MSG_GET_NODE};
+    if (request->kind == FF_WANT_PANORAMA) {
+        message.type = FF_MSG_GET_PANORAMA;
+        message.u.panorama = request->panorama;
+    } else {
+        message.type = request->kind == FF_WANT_TEXTURE ? FF_MSG_GET_TEXTURE : FF_MSG_GET_NODE;
+        message.u.get.id = request->id;
+        message.u.get.what = request->kind == FF_WANT_REFINEMENT ? FF_GET_REFINEMENT : FF_GET_ROOT;
+        message.u.get.key = request->key;
+    }
+    append(stream, &message);
+}
+
+/* Requests into the send buffer, as many as window and buffer take: they leave in one piece. */
+static int ask(ff_stream *stream, int64_t now_us)
+{
+    ff_requests *requests = stream->intake->requests;
+    sys_mutex_lock(&requests->mutex);
+    int quiet = stream->shared.quiet;
+    int prefetch = !stream->shared.no_prefetch && requests->counts.in_flight < stream->in_flight_max / 2u;
+    sys_mutex_unlock(&requests->mutex);
+    uint32_t window = ff_link_estimate_window(&stream->link);
+    int moved = 0;
+    ff_request request;
+    while (has_send_room(stream)) {
+        uint16_t id = ff_requests_next_cancel(requests);
+        if (id) {
+            ff_message cancel = {.type = FF_MSG_CANCEL};
+            cancel.u.cancel.id = id;
+            append(stream, &cancel);
+        } else if (!quiet && ff_requests_next(requests, now_us, stream->in_flight_max, window, prefetch, &request)) {
+            encode_request(stream, &request);
+            ff_link_estimate_sent(&stream->link, now_us);
+        } else {
+            break;
+        }
+        moved = 1;
+    }
+    return moved;
+}
+
+static void keep_alive(ff_stream *stream, int64_t now_us)
+{
+    if (stream->awaiting || stream->send_count || now_us - stream->sent_us < PING_AFTER_US)
+        return;
+    ff_message ping = {.type = FF_MSG_PING};
+    ping.u.ping.stamp = (uint32_t)(now_us / 1000);
+    append(stream, &ping);
+    stream->awaiting = 1;
+}
+
+/* Bytes of the send buffer onto the link. FF_OK or FF_ERR_CLOSED. */
+static int flush(ff_stream *stream, int64_t now_us, int *moved)
+{
+    if (!stream->send_count)
+        return FF_OK;
+    int count = stream->io->send(stream->io->state, stream->send, stream->send_count);
+    if (count < 0)
+        return FF_ERR_CLOSED;
+    if (count > 0) {
+        stream->send_count -= (uint32_t)count;
+        memmove(stream->send, stream->send + count, stream->send_count);
+        stream->bytes_up += (uint32_t)count;
+        /* silence is counted from the first bytes that can be answered */
+        if (!ff_stream_outstanding(stream))
+            stream->heard_us = now_us;
+        stream->sent_us = now_us;
+        *moved = 1;
+    }
+    return FF_OK;
+}
+
+static int receive(ff_stream *stream, int64_t now_us, int *moved)
+{
+    for (int round = 0; round < RECEIVE_ROUNDS_MAX; round++) {
+        int rc = ff_receive_messages(stream, now_us); /* what could not be put on the list last time comes first */
+        if (rc < 0)
+            return rc;
+        if (stream->blocked || stream->state == FF_STREAM_WELCOMED)
+            return FF_OK;
+        int count = stream->io->recv(stream->io->state, stream->recv + stream->recv_count,
+                                     stream->recv_bytes - stream->recv_count);
+        if (count < 0)
+            return FF_ERR_CLOSED;
+        if (count == 0)
+            return FF_OK;
+        stream->recv_count += (uint32_t)count;
+        stream->bytes_down += (uint32_t)count;
+        stream->heard_us = now_us;
+        *moved = 1;
+        ff_link_estimate_received(&stream->link, (uint32_t)count, ff_stream_outstanding(stream), now_us);
+    }
+    return FF_OK;
+}
+
+static int silent_too_long(ff_stream *stream, int64_t now_us)
+{
+    if (stream->blocked || stream->state == FF_STREAM_WELCOMED || (!stream->awaiting && !ff_stream_outstanding(stream)))
+        return 0;
+    return now_us - stream->heard_us > stream->answer_timeout_us;
+}
+
+int ff_stream_outstanding(ff_stream *stream)
+{
+    ff_request_counts counts;
+    ff_requests_get_counts(stream->intake->requests, &counts, NULL);
+    return counts.in_flight != 0;
+}
+
+static int link_step(ff_stream *stream, int64_t now_us)
+{
+    int moved = 0;
+    int rc = receive(stream, now_us, &moved);
+    if (rc == FF_OK && stream->state == FF_STREAM_UP) {
+        if (!ff_stream_outstanding(stream) && !stream->awaiting)
+            stream->heard_us = now_us; /* nothing was owed until now */
+        moved |= ask(stream, now_us);
+        keep_alive(stream, now_us);
+    }
+    if (rc == FF_OK)
+        rc = flush(stream, now_us, &moved);
+    if (rc == FF_OK && silent_too_long(stream, now_us))
+        rc = FF_ERR_CLOSED;
+    if (rc != FF_OK) {
+        stream->protocol_errors += rc != FF_ERR_CLOSED;
+        give_up(stream, now_us);
+        return 1;
+    }
+    return moved;
+}
+
+int ff_stream_step(ff_stream *stream, int64_t now_us)
+{
+    int moved = 0;
+    switch (stream->state) {
+    case FF_STREAM_CONNECTING:
+    case FF_STREAM_DOWN:
+        moved = connect_step(stream, now_us);
+        break;
+    case FF_STREAM_GREETING:
+    case FF_STREAM_UP:
+        moved = link_step(stream, now_us);
+        break;
+    case FF_STREAM_WELCOMED:
+    case FF_STREAM_DEAD:
+        return 0;
+    }
+    if (stream->state == FF_STREAM_GREETING && stream->send_count) {
+        int ignored = 0;
+        if (flush(stream, now_us, &ignored) != FF_OK)
+            give_up(stream, now_us);
+    }
+    publish(stream);
+    return moved;
+}
