@@ -1,5 +1,7 @@
 #include "fly_flight.h"
 
+#include "sim_watertight.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
@@ -212,20 +214,36 @@ static int take_picture(fly_flight *flight, double t_s)
 
 /* ---- frames ---- */
 
-static int one_frame(fly_flight *flight, double t_s)
+/* Searches the whole cut for cracks. The first one is told. */
+static void check_cracks(fly_flight *flight, double t_s)
+{
+    char why[256];
+    const ff_drawn *list;
+    const ff_tree *tree = ff_client_tree(flight->world->client);
+    uint32_t count = tree ? ff_tree_cut(tree, &list) : 0;
+    if (!count || sim_watertight_check(&flight->world->pack.header.info, list, count, why, sizeof why))
+        return;
+    if (!flight->totals.crack_frames++)
+        fprintf(stderr, "farfield-fly: crack at %.3f s: %s\n", t_s, why);
+}
+
+static void one_frame(fly_flight *flight, double t_s)
 {
     fly_world *world = flight->world;
     ff_client_stats stats;
     events(flight, t_s);
     fly_path_at(&world->path, t_s, &flight->camera);
-    if (ff_client_update(world->client, world->now_us, &flight->camera) && world->surface) {
-        ff_client_draw(world->client);
-        (void)world->surface_api->present(world->surface);
+    if (ff_client_update(world->client, world->now_us, &flight->camera)) {
+        if (flight->options->check)
+            check_cracks(flight, t_s);
+        if (world->surface) {
+            ff_client_draw(world->client);
+            (void)world->surface_api->present(world->surface);
+        }
     }
     ff_client_get_stats(world->client, &stats);
     flight->totals.frames++;
     flight->totals.stitched_frames += stats.tree.stitched > 0;
-    return 0;
 }
 
 static int begin(fly_flight *flight, fly_world *world, FILE *csv)
@@ -268,7 +286,9 @@ int fly_flight_run(fly_flight *flight, fly_world *world, FILE *csv)
     for (int64_t frame = 0; !rc && frame <= (int64_t)floor(total_s * options->fps); frame++) {
         int64_t t_us = frame * 1000000 / options->fps;
         double t_s = (double)t_us / 1e6;
-        rc = advance(flight, flight->start_us + t_us) || one_frame(flight, t_s);
+        rc = advance(flight, flight->start_us + t_us);
+        if (!rc)
+            one_frame(flight, t_s);
         if (!rc && t_us >= next_row_us) {
             rc = take_row(flight, t_s);
             next_row_us += (int64_t)(options->sample_s * 1e6);

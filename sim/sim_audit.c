@@ -155,15 +155,14 @@ static int node_height(const sim_auditor *auditor, const ff_drawn *drawn, double
     return 0;
 }
 
-static int drawn_height(const sim_auditor *auditor, const sim_audit_view *view, const double point_m[3], double *z_m)
+int sim_audit_drawn_height(const sim_auditor *auditor, const ff_drawn *drawn, uint32_t count, double x_m, double y_m, double *z_m)
 {
     double side = (double)(1u << auditor->info.node_log2);
-    for (uint32_t i = 0; i < view->drawn_count; i++) {
-        const ff_drawn *drawn = &view->drawn[i];
-        double cell_m = (double)drawn->cell_wu / FF_WU_PER_METRE;
-        double x = (point_m[0] - (double)drawn->origin_wu[0] / FF_WU_PER_METRE) / cell_m;
-        double y = (point_m[1] - (double)drawn->origin_wu[1] / FF_WU_PER_METRE) / cell_m;
-        if (x >= 0 && y >= 0 && x <= side && y <= side && node_height(auditor, drawn, x, y, z_m))
+    for (uint32_t i = 0; i < count; i++) {
+        double cell_m = (double)drawn[i].cell_wu / FF_WU_PER_METRE;
+        double x = (x_m - (double)drawn[i].origin_wu[0] / FF_WU_PER_METRE) / cell_m;
+        double y = (y_m - (double)drawn[i].origin_wu[1] / FF_WU_PER_METRE) / cell_m;
+        if (x >= 0 && y >= 0 && x <= side && y <= side && node_height(auditor, &drawn[i], x, y, z_m))
             return 1;
     }
     return 0;
@@ -194,7 +193,7 @@ static double pixel_error(const sim_auditor *auditor, const sim_audit_view *view
                           const double point_m[3], sim_audit_result *result)
 {
     double shown[3], shown_px[2], z_m, most = hypot(e->centre_px[0], e->centre_px[1]) * 2;
-    if (drawn_height(auditor, view, point_m, &z_m)) {
+    if (sim_audit_drawn_height(auditor, view->drawn, view->drawn_count, point_m[0], point_m[1], &z_m)) {
         result->ground_pixels++;
         for (int i = 0; i < 3; i++)
             shown[i] = (i == 2 ? z_m : point_m[i]) - e->pos_m[i];

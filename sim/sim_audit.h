@@ -37,6 +37,8 @@ void sim_auditor_destroy(sim_auditor *auditor);
 /* FF_OK or FF_ERR_MEMORY. */
 int sim_audit_frame(sim_auditor *auditor, const sim_audit_view *view, sim_audit_result *result);
 
+/* Height of the triangles drawn at (x, y): 1 and *z_m, or 0 where there is none. */
+int sim_audit_drawn_height(const sim_auditor *auditor, const ff_drawn *drawn, uint32_t count, double x_m, double y_m, double *z_m);
 /* World point (metres) to pixels as c3d.h projects; 0 when it is not in front of the eye. */
 int sim_audit_project(const c3d_camera *camera, const double point_m[3], double pixel[2]);
 
