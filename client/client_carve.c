@@ -82,7 +82,7 @@ static c3d_desc device_desc(const ff_client *client, unsigned entries, unsigned 
     c3d_desc desc = {.surface_api = client->desc.surface_api, .use_vertex_buffers = !client->desc.use_plain_arrays};
     desc.mesh_count = (uint16_t)(entries + 1 + 1 + (face_size ? FF_PANORAMA_MESHES : 0)); /* one spare, the sky */
     desc.strip_count = FF_STRIP_COUNT_MAX + EXTRA_STRIPS;
-    desc.texture_count = (uint16_t)(texture_share + 1 + (face_size ? FF_PANORAMA_MESHES : 0));
+    desc.texture_count = (uint16_t)(texture_share + 1 /* the caller's text */ + (face_size ? FF_PANORAMA_MESHES : 0));
     desc.mesh_vertices_max = (uint16_t)(side * side > FF_SKY_VERTICES ? side * side : FF_SKY_VERTICES);
     desc.strip_indices_max = STRIP_INDICES_MAX;
     return desc;
@@ -127,9 +127,6 @@ static int carve_view(ff_client *client, unsigned entries)
     int rc = view->vertices && strips ? ff_terrain_view_strips(view, client->info.node_log2, strips) : FF_ERR_MEMORY;
     ff_arena_back_to(&client->arena, mark);
     ff_sky_make(&client->sky, client->device);
-#if FF_HUD
-    client->hud.rgba = ff_arena_take(&client->arena, ff_hud_bytes());
-#endif
     return rc;
 }
 
@@ -191,7 +188,6 @@ void ff_client_uncarve(ff_client *client)
     client->device = NULL;
     client->tree = NULL;
     client->have_terrain = 0;
-    memset(&client->hud, 0, sizeof client->hud);
     memset(&client->sky, 0, sizeof client->sky);
     memset(&client->view, 0, sizeof client->view);
     ff_arena_back_to(&client->arena, client->fixed_bytes);

@@ -197,12 +197,5 @@ void ff_client_draw(ff_client *client)
     ff_panorama_draw(&client->panorama, frame.camera.near_wu);
     ff_terrain_view_draw(&client->view, client->tree, &client->info, &frame.camera, client->has_textures ? &client->textures : NULL,
                          client->show);
-#if FF_HUD
-    if (client->show & FF_SHOW_HUD) {
-        ff_client_stats stats;
-        ff_client_get_stats(client, &stats);
-        ff_hud_draw(&client->hud, client->device, &stats);
-    }
-#endif
     c3d_end(client->device);
 }

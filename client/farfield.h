@@ -93,7 +93,7 @@ void ff_client_event(ff_client *client, const sys_event *event);
 /* Settings that may change between frames. */
 void ff_client_set_quality(ff_client *client, const ff_quality *quality);
 void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama);
-enum ff_show { FF_SHOW_WIREFRAME = 1, FF_SHOW_NODE_BORDERS = 2, FF_SHOW_NO_FOG = 4, FF_SHOW_HUD = 8 /* a few numbers as text */ };
+enum ff_show { FF_SHOW_WIREFRAME = 1, FF_SHOW_NODE_BORDERS = 2, FF_SHOW_NO_FOG = 4 };
 void ff_client_set_show(ff_client *client, unsigned show);
 
 /* NULL until the terrain is known. */

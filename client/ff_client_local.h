@@ -2,14 +2,13 @@
  *
  * The block:   [ ff_client | requests | receive buffer ]            from ff_client_create on
  *              [ decoder | new-data items, images | scratch |       carved once the terrain is known (WELCOME, or the pack),
- *                c3d device | view entries | textures | HUD | tree ] given back and carved anew for another terrain
+ *                c3d device | view entries | textures | tree ] given back and carved anew for another terrain
  * The tree's pool takes what is left, up to NODES_MAX. Then the block is sealed. */
 #ifndef FF_CLIENT_LOCAL_H
 #define FF_CLIENT_LOCAL_H
 
 #include "farfield.h"
 #include "ff_arena.h"
-#include "ff_hud.h"
 #include "ff_local.h"
 #include "ff_motion.h"
 #include "ff_panorama.h"
@@ -46,7 +45,6 @@ struct ff_client {
     ff_textures textures;
     ff_panorama panorama;
     ff_sky sky;
-    ff_hud hud;
     ff_motion motion;
     ff_refusals refusals;
 

@@ -1,25 +1,21 @@
-/* A few lines of text over the picture: numbers for people who tune. Build switch FF_HUD (default 1); 0 leaves no code and no bytes. */
+/* Text over the picture, for people who tune: a small font of our own, drawn into an RGBA8888 buffer that c3d_overlay shows.
+ * Build switch FF_HUD (default 1); 0 leaves no code and no bytes. */
 #ifndef FF_HUD_H
 #define FF_HUD_H
 
-#include "../common3d/c3d.h"
+#include <stdint.h>
 
 #ifndef FF_HUD
 #define FF_HUD 1
 #endif
 
-struct ff_client_stats;
+#define FF_HUD_CHAR_PX 6  /* from one character to the next */
+#define FF_HUD_LINE_PX 10 /* from one line to the next */
 
-#define FF_HUD_WIDTH 128
-#define FF_HUD_HEIGHT 64
-
-typedef struct ff_hud {
-    uint8_t *rgba;           /* FF_HUD_WIDTH x FF_HUD_HEIGHT, top row first; NULL: no HUD */
-    c3d_texture texture;
-    uint64_t shown;          /* hash of the text in the texture */
-} ff_hud;
-
-size_t ff_hud_bytes(void);
-void ff_hud_draw(ff_hud *hud, c3d_device *device, const struct ff_client_stats *stats);
+#if FF_HUD
+/* Writes `text` (ASCII; lower case shows as capitals, unknown characters as blanks; '\n' starts a line) white and opaque into the
+ * image of width by height pixels, top row first, with its top left corner at (x, y). What lies outside is cut off. */
+void ff_hud_text(uint8_t *rgba, int width, int height, int x, int y, const char *text);
+#endif
 
 #endif
