@@ -172,7 +172,12 @@ static int read_picture(fly_flight *flight)
     if (!flight->world->surface)
         return 0;
     ff_client_draw(flight->world->client);
-    int rc = c3d_read_rgb(ff_client_device(flight->world->client), flight->rgb);
+    c3d_device *device = ff_client_device(flight->world->client);
+    if (!device) { /* the terrain is not known yet: a black picture */
+        memset(flight->rgb, 0, (size_t)flight->options->width * flight->options->height * 3);
+        return 0;
+    }
+    int rc = c3d_read_rgb(device, flight->rgb);
     return rc == FF_OK ? 0 : fail("picture", ff_error_text(rc));
 }
 
