@@ -1,0 +1,243 @@
+#include "view_app.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define FRAME_US 16667
+#define FRAME_US_LOW_POWER 100000
+#define SCRIPT_STEP_US 33333      /* a scripted frame flies this long, whatever the clock says */
+#define IDLE_SLEEP_US 10000
+#define HUD_EVERY_US 250000
+#define SETTLE_FRAMES 25          /* this many frames without news: settled */
+#define SETTLE_US_MAX 60000000
+#define DT_US_MAX 250000
+#define JITTER_WAIT_US 2000
+
+/* ---- opening ---- */
+static const sys_surface_api *surface_for(const view_options *o, enum sys_gl_kind gl)
+{
+    if (!o->headless) return sys_surface_glfw();
+    return gl == SYS_GL_ES1 ? sys_surface_egl() : sys_surface_osmesa();
+}
+
+static int open_surface(view_app *app, const char *backend)
+{
+    enum sys_gl_kind gl = strcmp(backend, "gl") ? SYS_GL_ES1 : SYS_GL_DESKTOP;
+    sys_surface_desc desc = {.title = "Farfield", .width = app->options->width, .height = app->options->height, .gl = gl};
+    app->surface_api = surface_for(app->options, gl);
+    return app->surface_api ? app->surface_api->open(&desc, &app->surface) : FF_ERR_UNSUPPORTED;
+}
+
+static int create_client(view_app *app, const char *backend)
+{
+    const view_options *o = app->options;
+    ff_client_desc desc = {
+        .memory = app->memory, .memory_bytes = o->memory_bytes,
+        .stream = app->link ? &app->stream : NULL, .pack = app->link ? NULL : &app->pack,
+        .backend = strcmp(backend, "gl") ? c3d_backend_gles1() : c3d_backend_gl(), .surface_api = app->surface_api,
+        .width = (uint16_t)o->width, .height = (uint16_t)o->height,
+        .quality = app->quality, .panorama = app->panorama,
+        .use_thread = 1, .use_plain_arrays = (uint8_t)o->plain_arrays};
+    return ff_client_create(&desc, &app->client);
+}
+
+static int open_with(view_app *app, const char *backend)
+{
+    int rc = open_surface(app, backend);
+    if (rc < 0) return rc;
+    rc = create_client(app, backend);
+    if (rc == FF_OK) return FF_OK;
+    app->surface_api->close(app->surface);
+    app->surface = NULL;
+    return rc;
+}
+
+static int open_picture(view_app *app)
+{
+    const char *backend = app->options->backend ? app->options->backend : "gles1";
+    int rc = open_with(app, backend);
+    if (rc == FF_ERR_UNSUPPORTED && !app->options->backend) rc = open_with(app, backend = "gl");
+    if (rc == FF_ERR_MEMORY) return view_fail("--memory: the client needs at least %zu MB", (ff_client_bytes_min() >> 20) + 1);
+    if (rc < 0) return view_fail("no picture with %s%s: %s", backend, app->options->headless ? " (headless)" : "", ff_error_text(rc));
+    return 0;
+}
+
+static int open_pack(view_app *app)
+{
+    const char *path = app->options->target;
+    int rc = sys_map_file(path, &app->mapping);
+    if (rc == FF_OK) rc = ff_pack_open(&app->pack, app->mapping.bytes, app->mapping.size);
+    return rc < 0 ? view_fail("%s: %s", path, ff_error_text(rc)) : 0;
+}
+
+/* A file is a pack, all else an address. A pack behind a link, or with panoramas, is served from inside this process. */
+static int open_terrain(view_app *app)
+{
+    const view_options *o = app->options;
+    FILE *file = fopen(o->target, "rb");
+    int is_pack = file || !strchr(o->target, ':'), rc;
+    if (file) fclose(file);
+    if (is_pack && open_pack(app)) return -1;
+    app->panorama.enabled = o->panorama < 0 ? !is_pack : (uint8_t)o->panorama;
+    if (is_pack && !o->link && !app->panorama.enabled) return 0;
+    rc = view_link_create(is_pack ? NULL : o->target, &app->pack, o->link, &app->link, &app->stream);
+    if (rc == FF_ERR_NOT_FOUND) return view_fail("--link %s: no such profile", o->link);
+    if (rc == FF_ERR_ARGUMENT && !is_pack) return view_fail("%s: neither a pack nor ADDR:PORT%s", o->target, o->link ? ", or --link is wrong" : "");
+    return rc < 0 ? view_fail("--link %s: %s", o->link ? o->link : "none", ff_error_text(rc)) : 0;
+}
+
+static int open_files(view_app *app)
+{
+    const view_options *o = app->options;
+    char why[2048];
+    int rc = o->script ? view_script_load(&app->script, o->script, why, sizeof why)
+             : o->keys ? view_script_keys(&app->script, o->keys, why, sizeof why) : 0;
+    if (rc) return view_fail("%s", why);
+    if (!o->events) return 0;
+    app->events = strcmp(o->events, "-") ? fopen(o->events, "w") : stdout;
+    return app->events ? 0 : view_fail("%s: %s", o->events, strerror(errno));
+}
+
+int view_app_open(view_app *app, const view_options *options)
+{
+    memset(app, 0, sizeof *app);
+    app->options = options;
+    app->quality = options->quality;
+    app->show_hud = !options->no_hud;
+    app->memory = malloc(options->memory_bytes);
+    if (!app->memory) return view_fail("out of memory");
+    view_fly_init(&app->fly, options->width, options->height, options->fov_brad16);
+    app->fly.camera.yaw = options->yaw_brad16;
+    if (open_files(app) || open_terrain(app) || open_picture(app)) return -1;
+    app->show = (options->wireframe ? FF_SHOW_WIREFRAME : 0u) | (options->borders ? FF_SHOW_NODE_BORDERS : 0u);
+    ff_client_set_show(app->client, app->show);
+    return 0;
+}
+
+void view_app_close(view_app *app)
+{
+    view_hud_close(&app->hud, app->client);
+    if (app->client) ff_client_destroy(app->client);
+    if (app->surface) app->surface_api->close(app->surface);
+    view_link_destroy(app->link);
+    if (app->mapping.bytes) sys_unmap_file(&app->mapping);
+    if (app->events && app->events != stdout) fclose(app->events);
+    view_script_free(&app->script);
+    free(app->memory);
+}
+
+/* ---- one frame ---- */
+static int write_screenshot(view_app *app)
+{
+    const c3d_camera *camera = &app->fly.camera;
+    const char *path = app->screenshot;
+    uint8_t *rgb = malloc((size_t)camera->width * camera->height * 3);
+    int rc = rgb ? c3d_read_rgb(ff_client_device(app->client), rgb) : FF_ERR_MEMORY;
+    if (rc >= 0) rc = sys_png_write(path, rgb, camera->width, camera->height);
+    free(rgb);
+    app->screenshot = NULL;
+    return rc < 0 ? view_fail("%s: %s", path, ff_error_text(rc)) : 0;
+}
+
+static int draw(view_app *app)
+{
+    ff_client_draw(app->client);
+    if (app->show_hud || app->show_help) view_hud_draw(&app->hud, app);
+    app->redraw = 0;
+    app->drawn++;
+    int rc = app->screenshot ? write_screenshot(app) : 0;
+    app->surface_api->present(app->surface);
+    return rc;
+}
+
+/* Script steps due now. While settling the script waits. */
+static void run_script(view_app *app)
+{
+    const view_step *step;
+    while (!app->settling && !app->quit && !app->screenshot && (step = view_script_next(&app->script, app->frame))) {
+        switch (step->kind) {
+        case VIEW_STEP_EVENT: {
+            sys_event event = step->event;
+            event.time_us = sys_time_us();
+            if (sys_event_inject(&event) < 0) app->script.next--; /* the queue is full: next frame */
+            return;                                              /* one event a frame at most: a screenshot sees what came before */
+        }
+        case VIEW_STEP_SETTLE:
+            app->settling = 1;
+            app->still_frames = 0;
+            app->settle_until_us = sys_time_us() + SETTLE_US_MAX;
+            break;
+        case VIEW_STEP_SCREENSHOT: app->screenshot = step->path; break;
+        case VIEW_STEP_QUIT: app->quit = 1; break;
+        }
+    }
+}
+
+static void watch_settling(view_app *app, int changed)
+{
+    ff_client_stats stats;
+    ff_client_get_stats(app->client, &stats);
+    int busy = changed || !stats.have_terrain || stats.in_flight || stats.queued;
+    app->still_frames = busy ? 0 : app->still_frames + 1;
+    if (app->still_frames < SETTLE_FRAMES && sys_time_us() < app->settle_until_us) return;
+    if (busy) view_fail("still busy after %d s, going on", SETTLE_US_MAX / 1000000);
+    app->settling = 0;
+}
+
+static void place_pilot(view_app *app)
+{
+    const view_options *o = app->options;
+    const ff_terrain_info *info = ff_client_terrain(app->client);
+    if (!app->fly.placed && info) view_fly_place(&app->fly, info, !o->has_place, o->at_x_wu, o->at_y_wu, o->above_wu);
+}
+
+/* 1 when the text on the picture would now be another one; looked at a few times a second. */
+static int hud_changed(view_app *app, int64_t now_us)
+{
+    if (!app->show_hud || now_us < app->hud_us) return 0;
+    app->hud_us = now_us + HUD_EVERY_US;
+    return view_hud_update(&app->hud, app);
+}
+
+/* One turn of the loop; -1 on an error already said. */
+static int turn(view_app *app, int64_t now_us, int64_t dt_us)
+{
+    sys_event event;
+    run_script(app);
+    while (app->surface_api->poll(app->surface, &event)) view_handle(app, &event);
+    place_pilot(app);
+    if (!app->interrupted && !app->settling) view_fly_step(&app->fly, dt_us, app->client);
+    int changed = ff_client_update(app->client, now_us, &app->fly.camera);
+    if (app->settling) watch_settling(app, changed);
+    /* During an interruption the screen is not ours: the last picture stays. */
+    int wanted = (changed && !app->interrupted) || app->redraw || app->screenshot || hud_changed(app, now_us);
+    if (wanted) return draw(app) < 0 ? -1 : 1;
+    return 0;
+}
+
+static int script_done(const view_app *app)
+{
+    const view_options *o = app->options;
+    if (app->settling || app->screenshot) return 0;
+    if (o->frames && app->frame >= o->frames) return 1;
+    return !o->frames && (o->script || o->keys) && app->script.next == app->script.count;
+}
+
+int view_app_run(view_app *app)
+{
+    int scripted = app->options->script || app->options->keys, rc = 0;
+    int64_t last_us = sys_time_us();
+    while (!app->quit && !script_done(app)) {
+        int64_t now_us = sys_time_us(), dt_us = now_us - last_us;
+        last_us = now_us;
+        if ((rc = turn(app, now_us, scripted ? SCRIPT_STEP_US : dt_us < DT_US_MAX ? dt_us : DT_US_MAX)) < 0) return -1;
+        int64_t frame_us = app->battery_low || app->interrupted ? FRAME_US_LOW_POWER : rc ? FRAME_US : IDLE_SLEEP_US;
+        int64_t left_us = frame_us - (sys_time_us() - now_us);
+        if (left_us > 0) sys_sleep_us(left_us);
+        if (!app->settling) app->frame++;
+    }
+    if (!app->options->screenshot) return 0;
+    app->screenshot = app->options->screenshot;
+    return draw(app);
+}

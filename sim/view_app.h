@@ -1,0 +1,49 @@
+/* The emulator put together: a window (or a surface without one), a client, a pilot, and what the keys have switched. */
+#ifndef VIEW_APP_H
+#define VIEW_APP_H
+
+#include "view_fly.h"
+#include "view_hud.h"
+#include "view_link.h"
+#include "view_options.h"
+#include "view_script.h"
+
+#include <stdio.h>
+
+typedef struct view_app {
+    const view_options *options;
+    const sys_surface_api *surface_api;
+    sys_surface *surface;
+    sys_mapping mapping;          /* the pack's; bytes NULL: a server */
+    ff_pack pack;
+    sys_stream stream;
+    view_link *link;              /* NULL: the pack without a link */
+    void *memory;
+    ff_client *client;
+    view_fly fly;
+    view_hud hud;
+    view_script script;
+    FILE *events;
+    /* switched by keys and events */
+    unsigned show;                /* enum ff_show */
+    ff_panorama_desc panorama;
+    ff_quality quality;
+    uint8_t show_hud, show_help, battery_low, interrupted, tilted;
+    uint8_t redraw, quit;
+    const char *screenshot;       /* asked for: written after the next drawing */
+    unsigned screenshots;         /* taken by key */
+    /* the loop */
+    uint32_t frame, drawn, events_handled;
+    int settling, still_frames;
+    int64_t settle_until_us, hud_us;
+} view_app;
+
+/* Each 0, or -1 having said why. */
+int view_app_open(view_app *app, const view_options *options);
+int view_app_run(view_app *app);
+void view_app_close(view_app *app);
+
+/* view_input.c: one event from the window, the script or a function key. */
+void view_handle(view_app *app, const sys_event *event);
+
+#endif
