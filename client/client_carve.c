@@ -75,17 +75,33 @@ static int carve_textures(ff_client *client)
     return textures->slot ? FF_OK : FF_ERR_MEMORY;
 }
 
-static c3d_desc device_desc(const ff_client *client, unsigned entries, unsigned face_size)
+static c3d_desc device_desc(const ff_client *client, unsigned entries, unsigned face_size, int buffers)
 {
     unsigned side = ff_node_side(&client->info);
     unsigned texture_share = client->has_textures ? client->textures.slot_count : 0;
-    c3d_desc desc = {.surface_api = client->desc.surface_api, .use_vertex_buffers = !client->desc.use_plain_arrays};
+    c3d_desc desc = {.surface_api = client->desc.surface_api, .use_vertex_buffers = (uint8_t)buffers};
     desc.mesh_count = (uint16_t)(entries + 1 + 1 + (face_size ? FF_PANORAMA_MESHES : 0)); /* one spare, the sky */
     desc.strip_count = FF_STRIP_COUNT_MAX + EXTRA_STRIPS;
     desc.texture_count = (uint16_t)(texture_share + 1 /* the caller's text */ + (face_size ? FF_PANORAMA_MESHES : 0));
     desc.mesh_vertices_max = (uint16_t)(side * side > FF_SKY_VERTICES ? side * side : FF_SKY_VERTICES);
     desc.strip_indices_max = STRIP_INDICES_MAX;
     return desc;
+}
+
+/* As many meshes as `share` bytes hold, at most *entries. FF_ERR_MEMORY when buffers were asked for and the library has none. */
+static int open_device(ff_client *client, unsigned face_size, unsigned *entries, size_t share, int buffers)
+{
+    c3d_desc desc = device_desc(client, *entries, face_size, buffers);
+    while (*entries > VIEW_ENTRIES_MIN && c3d_bytes(client->desc.backend, &desc) > share) {
+        *entries /= 2;
+        desc = device_desc(client, *entries, face_size, buffers);
+    }
+    size_t bytes = c3d_bytes(client->desc.backend, &desc), mark = client->arena.used;
+    void *memory = ff_arena_take(&client->arena, bytes);
+    int rc = memory ? c3d_open(client->desc.backend, &desc, memory, bytes, &client->device) : FF_ERR_MEMORY;
+    if (rc != FF_OK)
+        ff_arena_back_to(&client->arena, mark);
+    return rc;
 }
 
 /* Meshes get a third of what is left at most. */
@@ -98,14 +114,8 @@ static int carve_device(ff_client *client, unsigned face_size, unsigned *entries
             *entries /= 2;
         return FF_OK;
     }
-    c3d_desc desc = device_desc(client, *entries, face_size);
-    while (*entries > VIEW_ENTRIES_MIN && c3d_bytes(client->desc.backend, &desc) > share) {
-        *entries /= 2;
-        desc = device_desc(client, *entries, face_size);
-    }
-    size_t bytes = c3d_bytes(client->desc.backend, &desc);
-    void *memory = ff_arena_take(&client->arena, bytes);
-    return memory ? c3d_open(client->desc.backend, &desc, memory, bytes, &client->device) : FF_ERR_MEMORY;
+    int rc = client->desc.use_plain_arrays ? FF_ERR_MEMORY : open_device(client, face_size, entries, share, 1);
+    return rc == FF_ERR_MEMORY ? open_device(client, face_size, entries, share, 0) : rc;
 }
 
 static int carve_view(ff_client *client, unsigned entries)

@@ -99,7 +99,8 @@ void ff_client_set_show(ff_client *client, unsigned show);
 /* NULL until the terrain is known. */
 const ff_terrain_info *ff_client_terrain(const ff_client *client);
 const ff_tree *ff_client_tree(const ff_client *client);
-/* For checks and the emulator: the c3d device (NULL without a back end). */
+/* For checks and the emulator: the c3d device; NULL without a back end and until the terrain is known, another one after another
+ * terrain. */
 c3d_device *ff_client_device(ff_client *client);
 /* Ground height at (x, y) as drawn now: 1 and *z_wu, or 0. */
 int ff_client_ground(const ff_client *client, int32_t x_wu, int32_t y_wu, int32_t *z_wu);
