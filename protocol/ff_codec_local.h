@@ -9,7 +9,7 @@
 #define FF_HEAD_ERRORS 0x0cu       /* enum ff_errors_form, shifted by 2 */
 #define FF_HEAD_DETAIL_SHIFT 4     /* low bits of every value that are stored plainly; PACKED: less one */
 
-enum ff_body { FF_BODY_ZERO, FF_BODY_PACKED, FF_BODY_DEFLATE };
+enum ff_body { FF_BODY_ZERO, FF_BODY_PACKED, FF_BODY_DEFLATE, FF_BODY_UNARY };
 enum ff_errors_form { FF_ERRORS_ZERO, FF_ERRORS_SAME, FF_ERRORS_EACH };
 
 #define FF_CORNERS 4

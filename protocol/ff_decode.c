@@ -128,7 +128,7 @@ static int take_low(cursor *in, uint32_t width, int32_t *value, uint32_t count)
 }
 
 /* High parts: one byte a value, through raw deflate; all that is left of the payload. */
-static int take_high(ff_decoder *dec, cursor *in, uint32_t width, int32_t *value, uint32_t count)
+static int take_deflated(ff_decoder *dec, cursor *in, uint32_t width, int32_t *value, uint32_t count)
 {
     z_stream *z = &dec->stream;
     uint32_t all = 0;
@@ -152,16 +152,40 @@ static int take_high(ff_decoder *dec, cursor *in, uint32_t width, int32_t *value
     return all > UINT16_MAX ? FF_ERR_RANGE : FF_OK;
 }
 
+/* High parts as that many one bits and a zero bit, low bit first: with the low parts a Golomb-Rice code. */
+static int take_unary(cursor *in, uint32_t width, int32_t *value, uint32_t count)
+{
+    uint32_t high_max = (uint32_t)UINT16_MAX >> width, bit = 0;
+
+    for (uint32_t i = 0; i < count; i++) {
+        for (uint32_t high = 0, more = 1; more; high++) {
+            if (in->at == in->end)
+                return FF_ERR_TRUNCATED;
+            if (high > high_max)
+                return FF_ERR_RANGE;
+            more = *in->at >> bit & 1u;
+            in->at += bit == 7;
+            bit = (bit + 1) & 7u;
+            if (!more)
+                value[i] |= (int32_t)(high << width);
+        }
+    }
+    in->at += bit > 0;
+    return FF_OK;
+}
+
 static int take_body(ff_decoder *dec, cursor *in, uint8_t head, int32_t *value, uint32_t count)
 {
     uint32_t detail = head >> FF_HEAD_DETAIL_SHIFT, body = head & FF_HEAD_BODY;
     int rc;
 
-    if (body > FF_BODY_DEFLATE || (body == FF_BODY_ZERO && detail != 0))
+    if (body == FF_BODY_ZERO && detail != 0)
         return FF_ERR_FORMAT;
     rc = take_low(in, body == FF_BODY_PACKED ? detail + 1 : detail, value, count);
     if (rc == FF_OK && body == FF_BODY_DEFLATE)
-        rc = take_high(dec, in, detail, value, count);
+        rc = take_deflated(dec, in, detail, value, count);
+    if (rc == FF_OK && body == FF_BODY_UNARY)
+        rc = take_unary(in, detail, value, count);
     for (uint32_t i = 0; rc == FF_OK && i < count; i++)
         value[i] = unzigzag((uint32_t)value[i]);
     return rc == FF_OK && left(in) > 0 ? FF_ERR_FORMAT : rc;

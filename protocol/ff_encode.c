@@ -42,8 +42,8 @@ static uint32_t packed_width(const int32_t *value, uint32_t count)
     return width;
 }
 
-/* The lowest `width` bits of every value; bytes written. */
-static size_t put_low(const int32_t *value, uint32_t count, uint32_t width, uint8_t *out)
+/* The lowest `width` bits of every value. */
+static void put_low(const int32_t *value, uint32_t count, uint32_t width, uint8_t *out)
 {
     uint32_t bits = 0, held = 0, mask = (1u << width) - 1;
     uint8_t *at = out;
@@ -54,8 +54,7 @@ static size_t put_low(const int32_t *value, uint32_t count, uint32_t width, uint
             *at++ = (uint8_t)bits;
     }
     if (held > 0)
-        *at++ = (uint8_t)bits;
-    return (size_t)(at - out);
+        *at = (uint8_t)bits;
 }
 
 /* Bytes written, or 0 when they would not be fewer than `limit`. */
@@ -78,8 +77,26 @@ static size_t deflate_plane(const uint8_t *plane, uint32_t bytes, int window_bit
     return written;
 }
 
+/* High parts in unary, as the decoder's take_unary reads them; bytes written, or (`out` NULL) what they would be. */
+static size_t put_unary(const int32_t *value, uint32_t count, uint32_t low, uint8_t *out)
+{
+    size_t bit = 0;
+
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t high = zigzag(value[i]) >> low;
+        for (uint32_t one = 0; out && one <= high; one++) {
+            size_t at = bit + one;
+            if (at % 8 == 0)
+                out[at / 8] = 0;
+            out[at / 8] |= (uint8_t)((one < high) << at % 8);
+        }
+        bit += high + 1;
+    }
+    return (bit + 7) / 8;
+}
+
 /* Deflates the parts of all values above their lowest `low` bits. Bytes in `out`, or 0 when not fewer than `limit`. */
-static size_t put_high(const ff_terrain_info *info, const int32_t *value, uint32_t count, uint32_t low, uint8_t *out,
+static size_t put_deflated(const ff_terrain_info *info, const int32_t *value, uint32_t count, uint32_t low, uint8_t *out,
                        size_t limit)
 {
     static const int strategies[] = {Z_DEFAULT_STRATEGY, Z_FIXED, Z_HUFFMAN_ONLY};
@@ -98,28 +115,47 @@ static size_t put_high(const ff_terrain_info *info, const int32_t *value, uint32
     return best;
 }
 
-/* Tries where to cut the values into plain low bits and deflated high parts. Bytes of the body; its kind goes into *head. */
+/* The form of a body, as chosen: its kind, low bits and bytes in all. */
+typedef struct body_form {
+    enum ff_body kind;
+    uint32_t low;
+    size_t bytes;
+} body_form;
+
+static body_form cheapest_plain_form(const int32_t *value, uint32_t count, uint32_t width)
+{
+    body_form best = {FF_BODY_PACKED, width, ff_packed_bytes(count, width)};
+
+    for (uint32_t low = 0; low < width; low++) {
+        size_t bytes = ff_packed_bytes(count, low) + put_unary(value, count, low, NULL);
+        if (bytes < best.bytes)
+            best = (body_form){FF_BODY_UNARY, low, bytes};
+    }
+    return best;
+}
+
+/* Tries all forms, and where to cut the values into low bits and high parts. Bytes of the body; its form goes into *head. */
 static size_t put_body(const ff_terrain_info *info, const int32_t *value, uint32_t count, uint8_t *head, uint8_t *out)
 {
-    uint32_t width = packed_width(value, count), cut = width;
+    uint32_t width = packed_width(value, count);
     uint8_t high[2 * FF_REFINED_HEIGHTS_MAX];
-    size_t best = ff_packed_bytes(count, width), high_bytes = 0;
+    body_form best = cheapest_plain_form(value, count, width);
 
     if (width == 0)
         return 0;
     for (uint32_t low = width > 8 ? width - 8 : 0; low < width; low++) {
         size_t low_bytes = ff_packed_bytes(count, low);
-        size_t bytes = low_bytes >= best ? 0 : put_high(info, value, count, low, high, best - low_bytes);
+        size_t bytes = low_bytes >= best.bytes ? 0 : put_deflated(info, value, count, low, high, best.bytes - low_bytes);
         if (bytes > 0) {
             memcpy(out + low_bytes, high, bytes);
-            best = low_bytes + bytes;
-            high_bytes = bytes;
-            cut = low;
+            best = (body_form){FF_BODY_DEFLATE, low, low_bytes + bytes};
         }
     }
-    *head |= (uint8_t)(high_bytes > 0 ? FF_BODY_DEFLATE | cut << FF_HEAD_DETAIL_SHIFT
-                                      : FF_BODY_PACKED | (cut - 1) << FF_HEAD_DETAIL_SHIFT);
-    return put_low(value, count, cut, out) + high_bytes;
+    put_low(value, count, best.low, out);
+    if (best.kind == FF_BODY_UNARY)
+        put_unary(value, count, best.low, out + ff_packed_bytes(count, best.low));
+    *head |= (uint8_t)(best.kind | (best.kind == FF_BODY_PACKED ? best.low - 1 : best.low) << FF_HEAD_DETAIL_SHIFT);
+    return best.bytes;
 }
 
 static int encode_raw(const uint8_t *error, uint32_t errors, const int32_t *value, uint32_t count, uint8_t *out)

@@ -107,20 +107,41 @@ static int inflate_all(const uint8_t *from, size_t bytes, uint8_t *to, size_t ex
     return rc == Z_STREAM_END && z.avail_in == 0 && z.avail_out == 0 ? 0 : -1;
 }
 
+/* High parts of kind 3: runs of ones, each ended by a zero. Bytes used, or -1. */
+static long unary_all(const uint8_t *bytes, long left, long *high, int count)
+{
+    long bit = 0;
+
+    for (int i = 0; i < count; i++) {
+        for (high[i] = 0; bit < 8 * left && bits_at(bytes, bit, 1) == 1; bit++)
+            high[i]++;
+        if (bit++ >= 8 * left)
+            return -1;
+    }
+    return (bit + 7) / 8;
+}
+
 static int body(int head, const uint8_t *bytes, long left, long *residual, int count)
 {
-    static uint8_t high[SIDE_MAX * SIDE_MAX];
+    static uint8_t deflated[SIDE_MAX * SIDE_MAX];
+    static long high[SIDE_MAX * SIDE_MAX];
     int kind = head & 3, detail = head >> 4;
     int low_bits = kind == 1 ? detail + 1 : detail;
     long low_bytes = ((long)count * low_bits + 7) / 8;
 
-    if (kind == 3 || (kind == 0 && detail != 0) || left < low_bytes || (kind != 2 && left != low_bytes))
+    if ((kind == 0 && detail != 0) || left < low_bytes || (kind < 2 && left != low_bytes))
         return -1;
     memset(high, 0, sizeof(high));
-    if (kind == 2 && inflate_all(bytes + low_bytes, (size_t)(left - low_bytes), high, (size_t)count) != 0)
+    if (kind == 2) {
+        if (inflate_all(bytes + low_bytes, (size_t)(left - low_bytes), deflated, (size_t)count) != 0)
+            return -1;
+        for (int i = 0; i < count; i++)
+            high[i] = deflated[i];
+    }
+    if (kind == 3 && unary_all(bytes + low_bytes, left - low_bytes, high, count) != left - low_bytes)
         return -1;
     for (int i = 0; i < count; i++) {
-        long value = ((long)high[i] << low_bits) + bits_at(bytes, (long)i * low_bits, low_bits);
+        long value = (high[i] << low_bits) + bits_at(bytes, (long)i * low_bits, low_bits);
         if (value > 65535)
             return -1;
         residual[i] = value % 2 ? -(value + 1) / 2 : value / 2;
