@@ -192,6 +192,7 @@ uint32_t fixture_settle(terrain_fixture *fx, const ff_view *view, const ff_quali
         for (uint32_t i = 0; i < count; i++)
             delivered += fixture_deliver(fx, wish[i].key, wish[i].refinement) == FF_OK;
     }
+    ff_tree_select(fx->tree, view, quality);
     return delivered;
 }
 
@@ -239,6 +240,12 @@ ff_view fixture_view(int32_t x_m, int32_t y_m, int32_t z_m, int32_t yaw_deg, int
                                .focal_q8 = 53209 /* 120 / tan(30 degrees) */, .width = 240, .height = 320}};
     memcpy(view.centre_wu, view.camera.pos_wu, sizeof view.centre_wu);
     return view;
+}
+
+ff_view fixture_view_above(const terrain_fixture *fx, int32_t x_m, int32_t y_m, int32_t above_m, int32_t yaw_deg,
+                           int32_t pitch_deg)
+{
+    return fixture_view(x_m, y_m, fx->height((uint32_t)x_m / 10, (uint32_t)y_m / 10) + above_m, yaw_deg, pitch_deg);
 }
 
 ff_quality fixture_quality(enum ff_measure measure)

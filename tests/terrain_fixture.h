@@ -31,7 +31,7 @@ void fixture_free(terrain_fixture *fx);
 void fixture_decoded(const terrain_fixture *fx, ff_key key, uint16_t *heights);
 /* Encodes, decodes and delivers one wish; the tree's answer. */
 int fixture_deliver(terrain_fixture *fx, ff_key key, int refinement);
-/* Selects and delivers until the tree wishes for nothing more (or `rounds` are over); number of deliveries. */
+/* Selects and delivers until the tree wishes for nothing more (or `rounds` are over), then selects; number of deliveries. */
 uint32_t fixture_settle(terrain_fixture *fx, const ff_view *view, const ff_quality *quality, uint32_t rounds);
 
 /* A link that loses, delays and reorders: wishes wait in a bag and are taken out at random. */
@@ -49,6 +49,9 @@ void fixture_assert_whole(terrain_fixture *fx);
 
 /* A camera at (x, y, z) metres, degrees, 240 by 320, 60 degrees wide; and Hybrid's low quality. */
 ff_view fixture_view(int32_t x_m, int32_t y_m, int32_t z_m, int32_t yaw_deg, int32_t pitch_deg);
+/* The same, above_m over the (metre-step, 10 m) ground. */
+ff_view fixture_view_above(const terrain_fixture *fx, int32_t x_m, int32_t y_m, int32_t above_m, int32_t yaw_deg,
+                           int32_t pitch_deg);
 ff_quality fixture_quality(enum ff_measure measure);
 
 #endif
