@@ -64,6 +64,13 @@ static int choose_target(const bake_options *o, const bake_ground *ground, OGRSp
     return bake_fail("EPSG:%d is no projection in metres", epsg);
 }
 
+/* To whole world units, also after --densify has divided it. */
+static double round_spacing(const bake_options *o, double spacing_m)
+{
+    double units = fmax(1, nearbyint(spacing_m * FF_WU_PER_METRE / o->densify));
+    return units * o->densify / FF_WU_PER_METRE;
+}
+
 /* What the warped grid will be: `gt`, `width`, `height`. The south-west sample lies on whole metres. */
 static int plan_output(const bake_options *o, GDALDatasetH source, void *transform, double *gt, int *width, int *height)
 {
@@ -71,7 +78,7 @@ static int plan_output(const bake_options *o, GDALDatasetH source, void *transfo
     if (GDALSuggestedWarpOutput2(source, GDALGenImgProjTransform, transform, suggested, width, height, extent, 0) != CE_None)
         return bake_fail_gdal("cannot project the raster");
     double spacing = o->spacing_m > 0 ? o->spacing_m : suggested[1];
-    spacing = fmax(1, nearbyint(spacing * FF_WU_PER_METRE)) / FF_WU_PER_METRE;
+    spacing = round_spacing(o, spacing);
     double west = ceil(extent[0] + spacing / 2), south = ceil(extent[1] + spacing / 2);
     double columns = floor((extent[2] - spacing / 2 - west) / spacing) + 1;
     double rows = floor((extent[3] - spacing / 2 - south) / spacing) + 1;
@@ -204,8 +211,9 @@ static int keep_samples(const bake_options *o, const bake_ground *ground, double
     else if (ground->is_geographic) return bake_fail("degrees are no spacing: with --no-project give --spacing too");
     else *spacing_m = fabs(ground->geotransform[1]);
     double exact = *spacing_m * FF_WU_PER_METRE;
-    if (exact < 0.5) return bake_fail("a spacing of %g m is finer than the 1/256 m of world units", *spacing_m);
-    *spacing_m = fmax(1, nearbyint(exact)) / FF_WU_PER_METRE;
+    if (exact < 0.5 * o->densify)
+        return bake_fail("a spacing of %g m is finer than the 1/256 m of world units", *spacing_m / o->densify);
+    *spacing_m = round_spacing(o, *spacing_m);
     double drift_m = fabs(*spacing_m - exact / FF_WU_PER_METRE) * ground->grid.width;
     if (drift_m > *spacing_m / 2) bake_note("the spacing is rounded to %.8g m: %.1f m over the whole width", *spacing_m, drift_m);
     return 0;

@@ -1,6 +1,7 @@
 #include "bake_run.h"
 
 #include "../platform/sys.h"
+#include "bake_densify.h"
 #include "bake_fill.h"
 #include "bake_image.h"
 #include "bake_jobs.h"
@@ -57,9 +58,12 @@ static int make_ground(bake *b)
     if (bake_project(b->options, &b->ground, &spacing_m)) return -1;
     if (fill(&b->ground, b->ground.outside)) return -1;
     say_filled(&b->ground);
-    b->info.spacing_wu = (uint32_t)nearbyint(spacing_m * FF_WU_PER_METRE);
+    if (bake_densify(&b->ground, b->options->densify)) return -1;
+    b->info.spacing_wu = (uint32_t)nearbyint(spacing_m * FF_WU_PER_METRE / b->options->densify);
     if (bake_steps_choose(b->options, &b->ground, &b->steps)) return -1;
-    return bake_quantise(b->options, &b->ground, &b->steps, &b->info, &b->heights);
+    if (bake_quantise(b->options, &b->ground, &b->steps, &b->info, &b->heights)) return -1;
+    bake_grid_close(&b->ground.grid); /* its size and place are still wanted, its samples not */
+    return 0;
 }
 
 /* ---- the terrain's description ---- */
