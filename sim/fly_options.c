@@ -18,8 +18,9 @@ static const char help[] =
     "  --json                a summary on stdout: means and totals after settling\n"
     "\n"
     " the flight\n"
-    "  --path KIND           diagonal (default): from a quarter of the terrain's diagonal towards its north-east corner, turning back\n"
-    "                        in a half circle before the border; circle; hover: in one place, turning 6 degrees a second\n"
+    "  --path KIND           diagonal (default): along the terrain's diagonal towards its north-east corner, turning back in a half\n"
+    "                        circle before the border; circle; hover: in one place, turning 6 degrees a second\n"
+    "  --start F             where on the diagonal, 0 to 1, default 0.4\n"
     "  --speed KMH           default 150\n"
     "  --height M            above the highest ground within 150 m along the path, smoothed; default 100\n"
     "  --seconds S           in flight, default 300\n"
@@ -55,13 +56,14 @@ static const char help[] =
     "  --sample S            time between rows, default 1\n";
 
 enum option_id {
-    OPT_PACK = 256, OPT_CSV, OPT_JSON, OPT_PATH, OPT_SPEED, OPT_HEIGHT, OPT_SECONDS, OPT_SETTLE, OPT_SEED, OPT_EVENT, OPT_LINK,
+    OPT_PACK = 256, OPT_CSV, OPT_JSON, OPT_PATH, OPT_START, OPT_SPEED, OPT_HEIGHT, OPT_SECONDS, OPT_SETTLE, OPT_SEED, OPT_EVENT, OPT_LINK,
     OPT_DOWN_TRACE, OPT_UP_TRACE, OPT_SERVER, OPT_QUALITY, OPT_PANORAMA, OPT_BACK_PLANE, OPT_VIEW, OPT_MEMORY, OPT_PLAIN, OPT_BACKEND,
     OPT_SIZE, OPT_FOV, OPT_FPS, OPT_PNG, OPT_EVERY, OPT_WIREFRAME, OPT_AUDIT, OPT_CHECK, OPT_SAMPLE, OPT_HELP, OPT_VERSION
 };
 
 static const struct option long_options[] = {
     { "pack", 1, NULL, OPT_PACK },         { "csv", 1, NULL, OPT_CSV },           { "json", 0, NULL, OPT_JSON },
+    { "start", 1, NULL, OPT_START },
     { "path", 1, NULL, OPT_PATH },         { "speed", 1, NULL, OPT_SPEED },       { "height", 1, NULL, OPT_HEIGHT },
     { "seconds", 1, NULL, OPT_SECONDS },   { "settle", 1, NULL, OPT_SETTLE },     { "seed", 1, NULL, OPT_SEED },
     { "event", 1, NULL, OPT_EVENT },       { "link", 1, NULL, OPT_LINK },         { "down-trace", 1, NULL, OPT_DOWN_TRACE },
@@ -218,6 +220,7 @@ static int parse_one_number(fly_options *options, int id, const char *text)
 {
     double number;
     switch (id) {
+    case OPT_START: return parse_number("start", text, 0, 1, &options->start);
     case OPT_SPEED: return parse_number("speed", text, 0, 1e5, &options->speed_kmh);
     case OPT_HEIGHT: return parse_number("height", text, 0.01, 1e6, &options->height_m);
     case OPT_SECONDS: return parse_number("seconds", text, 0, 1e6, &options->seconds);
@@ -273,7 +276,7 @@ static int parse_one(fly_options *options, int id, const char *text)
 
 int fly_options_parse(fly_options *options, int argc, char **argv)
 {
-    *options = (fly_options){ .link_text = "umts", .speed_kmh = 150, .seconds = 300, .settle_s = 15, .height_m = 100,
+    *options = (fly_options){ .link_text = "umts", .speed_kmh = 150, .seconds = 300, .settle_s = 15, .height_m = 100, .start = 0.4,
                               .quality_text = "low", .panorama = { .enabled = 1 }, .seed = 1, .fps = 30, .width = 240, .height = 320,
                               .fov_degrees = 60, .backend = FLY_GL, .check = -1, .every_s = 10, .sample_s = 1,
                               .memory_bytes = 4u << 20, .quality = { .sigma_q8 = 320, .view_wu = 30000 * FF_WU_PER_METRE } };
@@ -307,11 +310,12 @@ void fly_options_print(const fly_options *options)
 {
     static const char *const path[] = { "diagonal", "circle", "hover" };
     fprintf(stderr,
-            "farfield-fly: seed %llu, pack %s, %s %s, %g km/h, %g s after %g s, %s, %g m up, quality %s, panorama %s, "
+            "farfield-fly: seed %llu, pack %s, %s %s, %g km/h, %g s after %g s, %s from %g, %g m up, quality %s, panorama %s, "
             "%ux%u at %g degrees, %u fps, backend %s, %zu bytes, audit %s\n",
             (unsigned long long)options->seed, options->pack_path, options->server ? "server" : "link",
             options->server ? options->server : options->link_text, options->speed_kmh, options->seconds, options->settle_s,
-            path[options->path], options->height_m, options->quality_text, options->panorama.enabled ? "on" : "off", options->width,
+            path[options->path], options->start, options->height_m, options->quality_text,
+            options->panorama.enabled ? "on" : "off", options->width,
             options->height, options->fov_degrees, options->fps, fly_backend_name(options->backend), options->memory_bytes,
             options->audit ? "on" : "off");
 }

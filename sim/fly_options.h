@@ -19,6 +19,7 @@ typedef struct fly_options {
     const char *link_text;
     sim_link_desc link;
     double speed_kmh, seconds, settle_s, height_m;
+    double start;             /* where on the diagonal, 0..1 */
     const char *quality_text;
     ff_quality quality;
     ff_panorama_desc panorama;

@@ -30,7 +30,7 @@ void fly_path_init(fly_path *path, const fly_options *options, const ff_terrain_
     path->start_m[0] = path->start_m[1] = inset;
     path->direction[0] = run_x / path->length_m;
     path->direction[1] = run_y / path->length_m;
-    path->from_m = path->length_m / 4;
+    path->from_m = path->length_m * options->start;
 }
 
 /* Position and direction of flight at an arc length. */
