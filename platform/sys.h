@@ -63,6 +63,10 @@ int sys_map_file(const char *path, sys_mapping *mapping);   /* read-only; FF_ERR
 void sys_unmap_file(sys_mapping *mapping);
 /* Writes a whole file by way of a temporary one and a rename: the old or the new content, never half of it. */
 int sys_write_file(const char *path, const void *bytes, size_t count);
+/* Makes a folder; FF_OK also when it is there already, else FF_ERR_SYSTEM. */
+int sys_make_folder(const char *path);
+/* 1 when stderr is a terminal: progress is shown there and nowhere else. */
+int sys_stderr_is_terminal(void);
 
 /* ---- images (libjpeg-turbo, libpng behind it; allocate inside) ---- */
 /* Decodes a JPEG of exactly width x height to tightly packed RGB888, top row first. FF_OK, FF_ERR_FORMAT (damaged, cut short or

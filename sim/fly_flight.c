@@ -2,12 +2,9 @@
 
 #include "sim_watertight.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #define TICK_US 2000   /* of the simulated network; a real server is looked after at the same pace */
 #define FNV_START 14695981039346656037u
@@ -260,8 +257,8 @@ static int begin(fly_flight *flight, fly_world *world, FILE *csv)
     flight->rgb = malloc((size_t)options->width * options->height * 3);
     if (!flight->rgb)
         return fail("picture", ff_error_text(FF_ERR_MEMORY));
-    if (options->png_dir && mkdir(options->png_dir, 0777) && errno != EEXIST)
-        return fail(options->png_dir, strerror(errno));
+    if (options->png_dir && sys_make_folder(options->png_dir) != FF_OK)
+        return fail(options->png_dir, "cannot make this folder");
     if (csv)
         fly_csv_header(csv);
     if (options->server)
@@ -287,7 +284,7 @@ int fly_flight_run(fly_flight *flight, fly_world *world, FILE *csv)
     const fly_options *options = world->options;
     double total_s = options->settle_s + options->seconds;
     int64_t next_row_us = 0, next_png_us = 0, shown_s = -1;
-    int rc = begin(flight, world, csv), show = isatty(STDERR_FILENO);
+    int rc = begin(flight, world, csv), show = sys_stderr_is_terminal();
     for (int64_t frame = 0; !rc && frame <= (int64_t)floor(total_s * options->fps); frame++) {
         int64_t t_us = frame * 1000000 / options->fps;
         double t_s = (double)t_us / 1e6;

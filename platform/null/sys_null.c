@@ -102,6 +102,17 @@ int sys_write_file(const char *path, const void *bytes, size_t count)
     return FF_ERR_UNSUPPORTED;
 }
 
+int sys_make_folder(const char *path)
+{
+    (void)path;
+    return FF_ERR_UNSUPPORTED;
+}
+
+int sys_stderr_is_terminal(void)
+{
+    return 0;
+}
+
 int sys_jpeg_decode(const uint8_t *bytes, size_t byte_count, uint32_t width, uint32_t height, uint8_t *rgb)
 {
     (void)bytes, (void)byte_count, (void)width, (void)height, (void)rgb;
