@@ -6,6 +6,8 @@
  * The queue's contents are replaced each time; what is no longer wanted is dropped. */
 #include "ff_client_local.h"
 
+#define AHEAD_US 5000000
+
 static void want_tree(ff_client *client)
 {
     const ff_wish *list;
@@ -30,6 +32,24 @@ static void want_textures(ff_client *client, const ff_view *view, const ff_quali
             ff_requests_want(&client->requests, FF_WANT_TEXTURE, wish[i].key, FF_CLASS_IN_VIEW, wish[i].priority, NULL);
 }
 
+/* Ground ahead: as far as the viewer gets while an answer is on its way, and some seconds more. */
+static void want_ahead(ff_client *client)
+{
+    ff_stream_shared shared = {.rtt_us = 0};
+    if (client->desc.stream)
+        ff_stream_get_shared(&client->stream, &shared);
+    int32_t pos_wu[3];
+    if (!ff_motion_predict(&client->motion, AHEAD_US + 2 * (int64_t)shared.rtt_us, pos_wu))
+        return;
+    ff_wish wish[FF_PREFETCH_WISHES];
+    uint32_t count = ff_tree_foresee(client->tree, pos_wu, wish, FF_PREFETCH_WISHES);
+    for (uint32_t i = 0; i < count; i++) {
+        enum ff_request_kind kind = wish[i].refinement ? FF_WANT_REFINEMENT : FF_WANT_ROOT;
+        if (!ff_refusals_final(&client->refusals, kind, wish[i].key))
+            ff_requests_want(&client->requests, kind, wish[i].key, FF_CLASS_PREFETCH, wish[i].priority, NULL);
+    }
+}
+
 void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality, int64_t now_us)
 {
     ff_requests_rank_begin(&client->requests);
@@ -37,5 +57,7 @@ void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *qu
     want_tree(client);
     if (client->has_textures)
         want_textures(client, view, quality);
+    if (!client->desc.no_prefetch && !ff_client_low_power(client))
+        want_ahead(client);
     ff_requests_rank_end(&client->requests);
 }

@@ -113,11 +113,10 @@ int64_t ff_box_distance(const ff_box *box)
                         outside(0, box->lo[2], box->hi[2]));
 }
 
-uint64_t ff_projected_error_q8(const ff_tree *tree, const ff_node *node, const ff_box *box)
+uint64_t ff_projected_error_q8(const ff_tree *tree, const ff_node *node, uint64_t distance)
 {
     uint64_t error = (uint64_t)ff_steps_wu(&tree->info, ff_geometric_error_decode(node->error_code));
-    uint64_t distance = (uint64_t)ff_box_distance(box), focal = (uint64_t)tree->view.camera.focal_q8;
-    return error * focal / (distance ? distance : 1);
+    return error * (uint64_t)tree->view.camera.focal_q8 / (distance ? distance : 1);
 }
 
 static uint32_t saturated(uint64_t value) { return value > FF_VALUE_MAX ? FF_VALUE_MAX : (uint32_t)value; }
@@ -139,7 +138,7 @@ uint32_t ff_value_of_split(const ff_tree *tree, const ff_node *node)
         return value_by_distance(tree, node);
     ff_box box;
     ff_node_box(tree, node, &box);
-    uint64_t error_q8 = ff_projected_error_q8(tree, node, &box);
+    uint64_t error_q8 = ff_projected_error_q8(tree, node, (uint64_t)ff_box_distance(&box));
     if (error_q8 >> 40)
         return FF_VALUE_MAX;
     return saturated((error_q8 << 16) / (uint64_t)tree->quality.error_px_q8);

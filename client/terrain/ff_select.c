@@ -135,11 +135,9 @@ static uint32_t triangles_of(const ff_tree *tree, unsigned coarser)
     return count;
 }
 
-static void count_drawn(ff_tree *tree, const ff_drawn *drawn)
+static void count_drawn(ff_tree *tree, const ff_drawn *drawn, uint64_t distance)
 {
-    ff_box box;
-    ff_node_box(tree, drawn->node, &box);
-    uint64_t error_q8 = ff_projected_error_q8(tree, drawn->node, &box);
+    uint64_t error_q8 = ff_projected_error_q8(tree, drawn->node, distance);
     if (error_q8 > tree->stats.error_px_q8)
         tree->stats.error_px_q8 = error_q8 > UINT32_MAX ? UINT32_MAX : (uint32_t)error_q8;
     tree->stats.triangles += triangles_of(tree, drawn->coarser);
@@ -154,14 +152,15 @@ static void list_cut(ff_tree *tree)
         ff_node_box(tree, &tree->node[tree->order[i]], &box);
         int seen = !ff_box_beyond_view(tree, &box) && ff_box_in_view(tree, &box);
         tree->drawn_count += (uint32_t)seen;
-        tree->sort[i] = (uint64_t)ff_box_distance(&box) << FF_SLOT_BITS | tree->order[i] | (seen ? 0 : UNSEEN);
+        uint64_t distance = seen ? (uint64_t)ff_box_distance(&box) << FF_SLOT_BITS : UNSEEN;
+        tree->sort[i] = distance | tree->order[i];
     }
     ff_sort_keys(tree->sort, tree->cut_count);
     tree->stats.triangles = tree->stats.stitched = tree->stats.error_px_q8 = 0;
     for (uint32_t i = 0; i < tree->cut_count; i++) {
         fill_drawn(tree, (uint32_t)tree->sort[i] & (FF_NODES_MAX - 1), &tree->drawn[i]);
         if (i < tree->drawn_count)
-            count_drawn(tree, &tree->drawn[i]);
+            count_drawn(tree, &tree->drawn[i], tree->sort[i] >> FF_SLOT_BITS);
     }
 }
 

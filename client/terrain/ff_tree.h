@@ -94,6 +94,10 @@ uint32_t ff_tree_wishes(const ff_tree *tree, const ff_wish **list);
 /* 1 when what `wish` asks for would still be used by the present cut (requests that lost their point are dropped). */
 int ff_tree_still_wanted(const ff_tree *tree, ff_key key, int refinement);
 
+/* What a viewer at `pos_wu` would wish for and this one does not: for prefetch, most urgent first, at most `capacity`. Only what the
+ * pool would find room for. */
+uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], ff_wish *list, uint32_t capacity);
+
 /* Vertices of a node for c3d: x, y = column, row (0..2^k), z = height - 32768, colour from height and slope (ff_shade.h) or white
  * when `shaded` is 0. `out` has ff_node_side()^2 entries. Draw with origin ff_drawn.origin_wu - camera, xy_scale cell_wu,
  * z_scale_q16 = hscale_q24. */

@@ -82,12 +82,12 @@ void ff_tree_drop_children(ff_tree *tree, ff_node *parent);
 void ff_tree_drop_root(ff_tree *tree, ff_node *root);
 
 /* ff_evict.c */
-/* Makes `slots` slots free by dropping what is worth less than `below`; `keep` and its siblings stay. 1 when there is room. */
+/* Make room for four children of `keep`, or for a root, by dropping what is worth less. 1 when there is room. */
 int ff_evict_for_children(ff_tree *tree, uint32_t keep);
 int ff_evict_for_root(ff_tree *tree, uint32_t tile);
 /* Sort keys (value << FF_SLOT_BITS | slot) of all that may be dropped, unsorted: parents of leaf families, idle roots. */
 uint32_t ff_evict_candidates(const ff_tree *tree, uint64_t *keys);
-/* Children wanted by the cut give way to more valuable ones only; others also to any wanted ones. */
+/* What children of `node` may drive out: all that is worth less than this. Not wanted ones spare the cache, up to sigma. */
 uint32_t ff_evict_limit(const ff_tree *tree, const ff_node *node);
 
 /* ff_measure.c */
@@ -102,8 +102,8 @@ int ff_box_beyond_view(const ff_tree *tree, const ff_box *box);
 /* 1 when all of the box is nearer than hole_wu. */
 int ff_box_in_hole(const ff_tree *tree, const ff_box *box);
 int64_t ff_box_distance(const ff_box *box);
-/* Geometric error of a node as seen from the nearest point of its box, pixels Q8. */
-uint64_t ff_projected_error_q8(const ff_tree *tree, const ff_node *node, const ff_box *box);
+/* Geometric error of a node as seen from a distance (its box's, usually), pixels Q8. */
+uint64_t ff_projected_error_q8(const ff_tree *tree, const ff_node *node, uint64_t distance);
 uint32_t ff_value_of_split(const ff_tree *tree, const ff_node *node);
 
 /* ff_view_cull.c */

@@ -1,0 +1,95 @@
+/* Prefetch: what a viewer further along the path would wish for, found without moving the cut (Shared: prefetch from predicted
+ * motion). The measures are asked as if the camera stood there; the tree itself stays as it is. */
+#include "ff_tree_local.h"
+
+#define TILES_LOOKED_AT 256 /* of a window's new tiles: tiny tiles would otherwise cost more than they bring */
+
+typedef struct foresight { ff_tree ahead; ff_wish *list; uint32_t capacity, count; uint32_t victims, next_victim, free; } foresight;
+
+static void note(foresight *f, ff_key key, int refinement, uint32_t priority)
+{
+    uint32_t at = f->count;
+    if (at == f->capacity) {
+        if (f->list[--at].priority >= priority)
+            return;
+    } else {
+        f->count++;
+    }
+    for (; at > 0 && f->list[at - 1].priority < priority; at--)
+        f->list[at] = f->list[at - 1];
+    f->list[at] = (ff_wish){.key = key, .refinement = (uint8_t)refinement, .priority = priority};
+}
+
+/* Tiles of the window there that the window here does not reach. */
+static void foresee_roots(const ff_tree *tree, foresight *f)
+{
+    const ff_window *window = &f->ahead.window;
+    unsigned looked_at = 0;
+    for (int64_t y = window->y0; y <= window->y1; y++)
+        for (int64_t x = window->x0; x <= window->x1; x++) {
+            uint32_t tile = (uint32_t)(y * tree->info.tiles_x + x);
+            if (ff_tile_active(tree, tile)) {
+                x = tree->window.x1; /* the rest of the row here is known */
+                continue;
+            }
+            if (++looked_at > TILES_LOOKED_AT)
+                return;
+            if (ff_tree_find(tree, ff_key_make(tile, 0, 0)) == FF_SLOT_NONE)
+                note(f, ff_key_make(tile, 0, 0), 0, FF_VALUE_ONE);
+        }
+}
+
+/* As many victims as the pool would give up for a family worth `limit`: see ff_evict.c. */
+static int takes_room(const ff_tree *tree, foresight *f, const ff_node *node)
+{
+    if (f->free >= 4) {
+        f->free -= 4;
+        return 1;
+    }
+    if (f->next_victim == f->victims || tree->sort[f->next_victim] >> FF_SLOT_BITS >= ff_evict_limit(tree, node))
+        return 0;
+    f->next_victim++;
+    return 1;
+}
+
+static void foresee_children(const ff_tree *tree, foresight *f)
+{
+    for (uint32_t i = 0; i < tree->cut_count; i++) {
+        const ff_node *node = tree->drawn[i].node;
+        uint32_t next = ff_key_level(node->key) + 1;
+        if (next >= ff_terrain_levels(&tree->info) || (tree->quality.depth_max && next >= tree->quality.depth_max) ||
+            ff_node_has_children(node) || node->flags & FF_NODE_WANTED)
+            continue;
+        ff_box box;
+        ff_node_box(&f->ahead, node, &box);
+        uint32_t value = ff_value_of_split(&f->ahead, node);
+        if (value >= FF_VALUE_ONE && !ff_box_beyond_view(&f->ahead, &box))
+            note(f, node->key, 1, value);
+    }
+}
+
+uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], ff_wish *list, uint32_t capacity)
+{
+    foresight f = {.ahead = *tree, .list = list, .capacity = capacity};
+    if (!tree->has_view || !capacity)
+        return 0;
+    for (int axis = 0; axis < 3; axis++)
+        f.ahead.view.camera.pos_wu[axis] = f.ahead.view.centre_wu[axis] = pos_wu[axis];
+    ff_window_make(&f.ahead);
+    foresee_roots(tree, &f);
+    foresee_children(tree, &f);
+
+    f.free = tree->free_count;
+    if (f.free < 4 * f.count) {
+        f.victims = ff_evict_candidates(tree, tree->sort);
+        ff_sort_keys(tree->sort, f.victims);
+    }
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < f.count; i++) {
+        const ff_wish *wish = &list[i];
+        int room = wish->refinement ? takes_room(tree, &f, &tree->node[ff_tree_find(tree, wish->key)]) : f.free > 0;
+        if (room)
+            list[kept++] = *wish;
+    }
+    return kept;
+}
