@@ -2,7 +2,8 @@
  *
  * Conventions
  *   World: x east, y north, z up, in wu (1/256 m). Eye: x right, y up, z forward (towards the scene).
- *   Camera angles: yaw 0 looks north, grows clockwise (east is 16384); pitch grows upwards; roll grows clockwise.
+ *   Camera angles: yaw 0 looks north, grows clockwise (east is 16384); pitch grows upwards; roll grows clockwise as the viewer
+ *   sees the device turn, so the picture turns the other way.
  *   Screen: pixel (0,0) is top left, its centre at (0.5, 0.5); the principal point is (width/2, height/2).
  *   Projection: x_px = width/2 + x_eye*d/z_eye, y_px = height/2 - y_eye*d/z_eye, d = focal distance in pixels (Hybrid, eq. 1).
  *   Front faces are counter-clockwise seen from outside; back faces are drawn too (terrain is never seen from below by rule).
@@ -43,6 +44,7 @@ typedef struct { uint32_t id; } c3d_mesh;
 typedef struct { uint32_t id; } c3d_strip;   /* 16-bit indices of one triangle strip */
 typedef struct { uint32_t id; } c3d_texture;
 
+/* 16-bit formats have red in the highest bits; C3D_RGBA5551 alpha in the lowest. */
 enum c3d_texture_format { C3D_RGB565, C3D_RGBA5551, C3D_RGBA8888 };
 
 enum c3d_draw_flags {
@@ -51,7 +53,7 @@ enum c3d_draw_flags {
     C3D_DRAW_WIREFRAME = 4, /* the strip's edges as lines */
     C3D_DRAW_BACKDROP = 8,  /* no depth test or write, no fog: skybox */
     C3D_DRAW_ALPHA_TEST = 16,/* texels with alpha below one half are not drawn */
-    C3D_DRAW_ON_TOP = 32,    /* depth test with a small bias towards the viewer: wireframe over ground */
+    C3D_DRAW_ON_TOP = 32,    /* depth test with a bias of 1/256 of the distance towards the viewer: wireframe over ground */
     /* For upright quads (a panorama's side faces): texture coordinates come from other axes than x and y. */
     C3D_DRAW_TEX_XZ = 64,    /* s from x, t from z */
     C3D_DRAW_TEX_YZ = 128    /* s from y, t from z */
@@ -87,8 +89,8 @@ typedef struct c3d_desc {
 
 /* Counters since c3d_open, and of the frame being drawn (or last drawn). */
 typedef struct c3d_stats {
-    uint32_t frame_triangles, frame_draws;
-    uint32_t stale_handles;
+    uint32_t frame_triangles, frame_draws; /* triangles: neither degenerate ones nor those of wireframes */
+    uint32_t stale_handles;                /* uses of stale or zero handles, and strips that reach beyond their mesh */
     uint32_t mesh_high, strip_high, texture_high;
     uint8_t vertex_buffers_used;
 } c3d_stats;
@@ -98,8 +100,11 @@ struct c3d_backend;
 const struct c3d_backend *c3d_backend_gl(void);
 const struct c3d_backend *c3d_backend_gles1(void);
 
+/* With vertex buffers the GL holds meshes and strips; without, copies of them lie in the block. */
 size_t c3d_bytes(const struct c3d_backend *backend, const c3d_desc *desc);
-/* FF_OK, FF_ERR_MEMORY, FF_ERR_UNSUPPORTED (a GL function is missing). The block must outlive the device. */
+/* FF_OK, FF_ERR_MEMORY, FF_ERR_UNSUPPORTED (the context is of another kind, or a GL function is missing). When buffers are wanted
+ * and missing, a block that also holds the copies makes plain arrays step in; a smaller one is FF_ERR_MEMORY. The block must
+ * outlive the device, and the device's context must be current in every call. */
 int c3d_open(const struct c3d_backend *backend, const c3d_desc *desc, void *memory, size_t bytes, c3d_device **device);
 void c3d_close(c3d_device *device);
 
