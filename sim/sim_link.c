@@ -77,6 +77,12 @@ int sim_link_send(sim_link *link, enum sim_direction way, const uint8_t *bytes, 
     return link->state == LINK_UP ? sim_pipe_send(&link->pipe[way], bytes, count, time_us) : FF_ERR_CLOSED;
 }
 
+size_t sim_link_room(sim_link *link, enum sim_direction way, int64_t now_us)
+{
+    int64_t time_us = link_time(link, now_us);
+    return link->state == LINK_UP ? sim_pipe_room(&link->pipe[way], time_us) : 0;
+}
+
 int sim_link_recv(sim_link *link, enum sim_direction way, uint8_t *bytes, size_t capacity, int64_t now_us)
 {
     int64_t time_us = link_time(link, now_us);

@@ -48,6 +48,8 @@ void sim_link_destroy(sim_link *link);
 
 /* Bytes taken now at `now_us` (times never go back); 0 when the queue is full; FF_ERR_CLOSED after a cut. */
 int sim_link_send(sim_link *link, enum sim_direction way, const uint8_t *bytes, size_t count, int64_t now_us);
+/* Bytes that send() would take now. */
+size_t sim_link_room(sim_link *link, enum sim_direction way, int64_t now_us);
 /* Bytes that have arrived by now_us; 0: none; FF_ERR_CLOSED after a cut. */
 int sim_link_recv(sim_link *link, enum sim_direction way, uint8_t *bytes, size_t capacity, int64_t now_us);
 /* When the next bytes arrive or the next cut happens: for sleeping. INT64_MAX: nothing under way. */

@@ -212,14 +212,18 @@ static void advance(sim_pipe *pipe, int64_t now_us)
     }
 }
 
-int sim_pipe_send(sim_pipe *pipe, const uint8_t *bytes, size_t count, int64_t now_us)
+size_t sim_pipe_room(sim_pipe *pipe, int64_t now_us)
 {
     advance(pipe, now_us);
     size_t room = pipe->desc.queue_bytes - pipe->queued;
     if (room > pipe->ring_bytes - pipe->stored)
         room = pipe->ring_bytes - pipe->stored;
-    if (pipe->queue.count == SIM_PIPE_SPANS)
-        room = 0;
+    return pipe->queue.count == SIM_PIPE_SPANS ? 0 : room;
+}
+
+int sim_pipe_send(sim_pipe *pipe, const uint8_t *bytes, size_t count, int64_t now_us)
+{
+    size_t room = sim_pipe_room(pipe, now_us);
     if (count > room)
         count = room;
     if (count > INT_MAX)

@@ -48,6 +48,7 @@ int sim_pipe_init(sim_pipe *pipe, const sim_link_desc *desc, enum sim_direction 
 void sim_pipe_free(sim_pipe *pipe);
 /* Loses all bytes stored. */
 void sim_pipe_flush(sim_pipe *pipe, int64_t now_us);
+size_t sim_pipe_room(sim_pipe *pipe, int64_t now_us);
 int sim_pipe_send(sim_pipe *pipe, const uint8_t *bytes, size_t count, int64_t now_us);
 int sim_pipe_recv(sim_pipe *pipe, uint8_t *bytes, size_t capacity, int64_t now_us);
 int64_t sim_pipe_next_us(const sim_pipe *pipe);

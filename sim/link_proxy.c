@@ -1,0 +1,183 @@
+#include "link_proxy.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define CONNECTIONS_MAX 64
+#define PIECE_BYTES 16384
+#define BUSY_US 1000   /* pace with a connection open: the finest grain of arrivals */
+#define IDLE_US 10000
+
+/* One accepted connection: WAITING for the model's connect time, then OPEN.
+ *   client socket ──▶ link (up) ──▶ held[UP] ──▶ server socket, and the same down. */
+enum pass_state { PASS_FREE, PASS_WAITING, PASS_OPEN };
+
+typedef struct held { uint8_t bytes[PIECE_BYTES]; size_t first, count; } held;
+
+typedef struct pass {
+    enum pass_state state;
+    int64_t open_us;          /* WAITING until then */
+    sim_link *link;
+    sys_tcp client_tcp, server_tcp;
+    sys_stream client, server;
+    held out[2];              /* left the link, not yet taken by the socket */
+    int closed[2];            /* no more bytes come from: [UP] the client, [DOWN] the server */
+    uint64_t pending[2];      /* bytes in the link */
+} pass;
+
+struct link_proxy {
+    sim_link_desc desc;
+    uint64_t seed;
+    int listen_fd;
+    const char *connect;
+    link_proxy_totals totals;
+    pass pass[CONNECTIONS_MAX];
+};
+
+link_proxy *link_proxy_create(const sim_link_desc *desc, uint64_t seed, int listen_fd, const char *connect)
+{
+    link_proxy *proxy = calloc(1, sizeof *proxy);
+    sim_link *trial = sim_link_create(desc, seed); /* so that a bad trace is told at the start */
+    sim_link_destroy(trial);
+    if (!proxy || !trial) {
+        free(proxy);
+        return NULL;
+    }
+    proxy->desc = *desc;
+    proxy->seed = seed;
+    proxy->listen_fd = listen_fd;
+    proxy->connect = connect;
+    return proxy;
+}
+
+static void drop(link_proxy *proxy, pass *p)
+{
+    p->client.close(p->client.state);
+    if (p->server.close)
+        p->server.close(p->server.state);
+    sim_link_destroy(p->link);
+    memset(p, 0, sizeof *p);
+    proxy->totals.open--;
+}
+
+void link_proxy_destroy(link_proxy *proxy)
+{
+    if (!proxy)
+        return;
+    for (int i = 0; i < CONNECTIONS_MAX; i++)
+        if (proxy->pass[i].state != PASS_FREE)
+            drop(proxy, &proxy->pass[i]);
+    free(proxy);
+}
+
+static pass *free_pass(link_proxy *proxy)
+{
+    for (int i = 0; i < CONNECTIONS_MAX; i++)
+        if (proxy->pass[i].state == PASS_FREE)
+            return &proxy->pass[i];
+    return NULL;
+}
+
+/* While all passes are taken, connections wait in the listening socket's own queue. */
+static void accept_new(link_proxy *proxy, int64_t now_us)
+{
+    pass *p;
+    while ((p = free_pass(proxy)) != NULL) {
+        int fd = sys_tcp_accept(proxy->listen_fd);
+        if (fd < 0)
+            return;
+        proxy->totals.accepted++;
+        proxy->totals.open++;
+        p->state = PASS_WAITING;
+        p->open_us = now_us + (int64_t)proxy->desc.connect_ms * 1000;
+        sys_tcp_adopt(&p->client_tcp, fd, &p->client);
+        p->link = sim_link_create(&proxy->desc, proxy->seed + proxy->totals.accepted - 1);
+        if (!p->link)
+            drop(proxy, p);
+    }
+}
+
+/* From a socket into the link. No more is received than the link takes: its full queue holds the sender back, as TCP would. */
+static int fill_link(pass *p, enum sim_direction way, int64_t now_us)
+{
+    uint8_t bytes[PIECE_BYTES];
+    sys_stream *from = way == SIM_UP ? &p->client : &p->server;
+    while (!p->closed[way]) {
+        size_t room = sim_link_room(p->link, way, now_us);
+        int got = room ? from->recv(from->state, bytes, room < sizeof bytes ? room : sizeof bytes) : 0;
+        if (got < 0)
+            p->closed[way] = 1;
+        if (got <= 0)
+            return FF_OK;
+        int sent = sim_link_send(p->link, way, bytes, (size_t)got, now_us);
+        if (sent < 0)
+            return sent;
+        p->pending[way] += (uint64_t)sent;
+    }
+    return FF_OK;
+}
+
+/* From the link into a socket. */
+static int drain_link(link_proxy *proxy, pass *p, enum sim_direction way, int64_t now_us)
+{
+    held *out = &p->out[way];
+    sys_stream *to = way == SIM_UP ? &p->server : &p->client;
+    for (;;) {
+        if (!out->count) {
+            int got = sim_link_recv(p->link, way, out->bytes, sizeof out->bytes, now_us);
+            if (got <= 0)
+                return got;
+            out->first = 0;
+            out->count = (size_t)got;
+        }
+        int sent = to->send(to->state, out->bytes + out->first, out->count);
+        if (sent <= 0)
+            return sent;
+        out->first += (size_t)sent;
+        out->count -= (size_t)sent;
+        p->pending[way] -= (uint64_t)sent;
+        proxy->totals.bytes[way] += (uint64_t)sent;
+    }
+}
+
+/* A side that is closed and whose bytes have all been delivered ends the connection. */
+static int finished(const pass *p)
+{
+    return (p->closed[SIM_UP] && !p->pending[SIM_UP]) || (p->closed[SIM_DOWN] && !p->pending[SIM_DOWN]);
+}
+
+static void step_pass(link_proxy *proxy, pass *p, int64_t now_us)
+{
+    if (p->state == PASS_WAITING) {
+        if (now_us < p->open_us)
+            return;
+        if (sys_tcp_client(&p->server_tcp, proxy->connect, &p->server) != FF_OK) {
+            drop(proxy, p);
+            return;
+        }
+        p->state = PASS_OPEN;
+    }
+    int rc = FF_OK;
+    for (int way = 0; way < 2 && rc >= 0; way++)
+        rc = fill_link(p, way, now_us);
+    for (int way = 0; way < 2 && rc >= 0; way++)
+        rc = drain_link(proxy, p, way, now_us);
+    if (rc < 0 && !p->closed[SIM_UP] && !p->closed[SIM_DOWN])
+        proxy->totals.cut++;
+    if (rc < 0 || finished(p))
+        drop(proxy, p);
+}
+
+int64_t link_proxy_step(link_proxy *proxy, int64_t now_us)
+{
+    accept_new(proxy, now_us);
+    for (int i = 0; i < CONNECTIONS_MAX; i++)
+        if (proxy->pass[i].state != PASS_FREE)
+            step_pass(proxy, &proxy->pass[i], now_us);
+    return now_us + (proxy->totals.open ? BUSY_US : IDLE_US);
+}
+
+void link_proxy_get_totals(const link_proxy *proxy, link_proxy_totals *totals)
+{
+    *totals = proxy->totals;
+}
