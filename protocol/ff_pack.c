@@ -145,6 +145,8 @@ int ff_pack_open(ff_pack *pack, const void *bytes, uint64_t size)
     int rc;
 
     memset(pack, 0, sizeof(*pack));
+    if (size == 0) /* an empty file maps to no address at all */
+        return FF_ERR_TRUNCATED;
     if (size < sizeof(magic) || memcmp(file, magic, sizeof(magic)) != 0)
         return size < sizeof(magic) && memcmp(file, magic, (size_t)size) == 0 ? FF_ERR_TRUNCATED : FF_ERR_FORMAT;
     if (size < FF_PACK_HEADER_BYTES)
