@@ -146,13 +146,13 @@ static void halve_geotransform(double *gt)
     gt[5] /= 2;
 }
 
-static int densify_once(bake_ground *ground, uint32_t number, float *shrink)
+static int densify_once(bake_grid *grid, uint32_t number, float *shrink)
 {
-    doubling d = {.coarse = ground->grid, .roughness = BAKE_GRID_CLOSED, .fine = BAKE_GRID_CLOSED, .number = number};
-    if (ground->grid.width > 1u << 28 || ground->grid.height > 1u << 28) return bake_fail("--densify: too many samples");
-    d.memory = malloc(12 * (size_t)ground->grid.width * sizeof *d.memory);
+    doubling d = {.coarse = *grid, .roughness = BAKE_GRID_CLOSED, .fine = BAKE_GRID_CLOSED, .number = number};
+    if (grid->width > 1u << 28 || grid->height > 1u << 28) return bake_fail("--densify: too many samples");
+    d.memory = malloc(12 * (size_t)grid->width * sizeof *d.memory);
     int rc = d.memory ? 0 : bake_fail("out of memory");
-    if (!rc && number == 0) rc = measure_shrink(&ground->grid, d.memory, shrink);
+    if (!rc && number == 0) rc = measure_shrink(grid, d.memory, shrink);
     d.shrink = *shrink;
     if (!rc) rc = double_grid(&d);
     free(d.memory);
@@ -161,17 +161,18 @@ static int densify_once(bake_ground *ground, uint32_t number, float *shrink)
         bake_grid_close(&d.fine);
         return rc;
     }
-    bake_grid_close(&ground->grid);
-    ground->grid = d.fine;
-    halve_geotransform(ground->geotransform);
+    bake_grid_close(grid);
+    *grid = d.fine;
     return 0;
 }
 
-int bake_densify(bake_ground *ground, uint32_t factor)
+int bake_densify(bake_grid *grid, double *geotransform, uint32_t factor)
 {
     float shrink = SHRINK_DEFAULT;
     uint32_t number = 0;
-    for (; factor > 1; factor /= 2, number++)
-        if (densify_once(ground, number, &shrink)) return -1;
+    for (; factor > 1; factor /= 2, number++) {
+        if (densify_once(grid, number, &shrink)) return -1;
+        halve_geotransform(geotransform);
+    }
     return 0;
 }

@@ -9,10 +9,10 @@
 #ifndef BAKE_DENSIFY_H
 #define BAKE_DENSIFY_H
 
-#include "bake_source.h"
+#include "bake_grid.h"
 
-/* Densifies the ground's grid (without voids) `factor` times along each axis, a power of two; sets its geotransform.
- * 0 or -1 (said). */
-int bake_densify(bake_ground *ground, uint32_t factor);
+/* Densifies a float grid without voids `factor` times along each axis, a power of two; `geotransform` (GDAL's, of the grid)
+ * follows. 0 or -1 (said). */
+int bake_densify(bake_grid *grid, double *geotransform, uint32_t factor);
 
 #endif

@@ -58,7 +58,7 @@ static int make_ground(bake *b)
     if (bake_project(b->options, &b->ground, &spacing_m)) return -1;
     if (fill(&b->ground, b->ground.outside)) return -1;
     say_filled(&b->ground);
-    if (bake_densify(&b->ground, b->options->densify)) return -1;
+    if (bake_densify(&b->ground.grid, b->ground.geotransform, b->options->densify)) return -1;
     b->info.spacing_wu = (uint32_t)nearbyint(spacing_m * FF_WU_PER_METRE / b->options->densify);
     if (bake_steps_choose(b->options, &b->ground, &b->steps)) return -1;
     if (bake_quantise(b->options, &b->ground, &b->steps, &b->info, &b->heights)) return -1;
