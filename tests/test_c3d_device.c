@@ -250,6 +250,33 @@ static void every_way_to_draw_gives_the_same_picture(void **state)
     for (int i = 0; i < 5; i++) picture_close(&kits[i]);
 }
 
+static void devices_share_a_context(void **state)
+{
+    (void)state;
+    static uint8_t alone[PIXELS * 3], shared[PIXELS * 3];
+    picture_kit kit, second;
+    c3d_camera camera = hill_camera(5000, 0, 0);
+    open_hills(&kit, PICTURE_GL, 1);
+    render_hills(&kit, &camera, C3D_DRAW_COLOURED, alone);
+    c3d_desc desc = {kit.api, 4, 4, 4, SIDE * SIDE, 4096, 0}; /* plain arrays beside buffers */
+    size_t bytes = c3d_bytes(c3d_backend_gl(), &desc);
+    second = kit;
+    second.memory = malloc(bytes);
+    assert_int_equal(c3d_open(c3d_backend_gl(), &desc, second.memory, bytes, &second.device), FF_OK);
+    second.square[0] = hills(second.device, 0);
+    second.square[1] = hills(second.device, 1);
+    second.strip = grid_strip(second.device);
+    for (int i = 0; i < 4; i++) {
+        render_hills(i & 1 ? &kit : &second, &camera, C3D_DRAW_COLOURED, shared);
+        assert_memory_equal(alone, shared, sizeof alone);
+    }
+    c3d_close(second.device);
+    free(second.memory);
+    render_hills(&kit, &camera, C3D_DRAW_COLOURED, shared);
+    assert_memory_equal(alone, shared, sizeof alone);
+    picture_close(&kit);
+}
+
 /* Low over the common edge, from everywhere: through no pixel of it may the clear colour be seen. */
 static void neighbours_meet_without_a_crack(void **state)
 {
@@ -287,6 +314,7 @@ int main(void)
         cmocka_unit_test(triangles_are_those_with_area),
         cmocka_unit_test(devices_need_their_memory_and_their_gl),
         cmocka_unit_test(every_way_to_draw_gives_the_same_picture),
+        cmocka_unit_test(devices_share_a_context),
         cmocka_unit_test(neighbours_meet_without_a_crack),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

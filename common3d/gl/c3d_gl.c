@@ -11,7 +11,6 @@ static int gl_open(void *opaque, const sys_surface_api *surface_api, int *buffer
     if (version < 12) return FF_ERR_UNSUPPORTED;
     *buffers = *buffers && version >= 15;
     state->buffers = *buffers;
-    c3d_gl_setup(state);
     return FF_OK;
 }
 

@@ -48,11 +48,17 @@ int c3d_gl_version(const char *text)
     return (text[0] - '0') * 10 + text[2] - '0';
 }
 
-void c3d_gl_setup(c3d_gl_state *state)
+/* Everything a frame relies on, whoever drew in this context before: another device may share it. */
+static void set_up(c3d_gl_state *state)
 {
     c3d_gl_api *gl = &state->gl;
-    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    gl->PixelStorei(GL_PACK_ALIGNMENT, 1);
+    if (gl->BindBuffer) {
+        gl->BindBuffer(GL_ARRAY_BUFFER, 0);
+        gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
+    }
+    state->array_buffer = state->element_buffer = 0;
+    state->texture = UINT32_MAX;
+    state->flags = UINT32_MAX;
     gl->Disable(GL_DITHER);
     gl->Disable(GL_CULL_FACE);
     gl->Disable(GL_LIGHTING);
@@ -67,9 +73,6 @@ void c3d_gl_setup(c3d_gl_state *state)
 void c3d_gl_close(void *opaque)
 {
     c3d_gl_state *state = opaque;
-    bind_array(state, 0);
-    bind_elements(state, 0);
-    state->gl.DisableClientState(GL_VERTEX_ARRAY);
     state->gl.Finish();
 }
 
@@ -125,6 +128,7 @@ uint32_t c3d_gl_texture_upload(void *opaque, enum c3d_texture_format format, uin
     }
     gl->GenTextures(1, &texture);
     bind_texture(state, texture);
+    gl->PixelStorei(GL_UNPACK_ALIGNMENT, 1);
     gl->TexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, (float)GL_LINEAR);
     gl->TexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, (float)GL_LINEAR);
     gl->TexParameterf(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, (float)GL_CLAMP_TO_EDGE);
@@ -156,7 +160,7 @@ void c3d_gl_begin(void *opaque, const c3d_frame *frame, const c3d_rotation *rota
     state->width = frame->camera.width;
     state->height = frame->camera.height;
     state->fog = frame->fog_end_wu > 0;
-    state->flags = UINT32_MAX;
+    set_up(state);
     c3d_gl_projection(state->projection, &frame->camera);
     c3d_gl_backdrop_projection(state->backdrop_projection, &frame->camera);
     c3d_gl_colour(clear, frame->clear_colour);
@@ -268,6 +272,7 @@ int c3d_gl_read_rows(void *opaque, uint32_t width, uint32_t first_row, uint32_t 
     c3d_gl_state *state = opaque;
     while (state->gl.GetError()) {
     }
+    state->gl.PixelStorei(GL_PACK_ALIGNMENT, 1);
     state->gl.ReadPixels(0, (int)first_row, (int)width, (int)rows, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
     return state->gl.GetError() ? FF_ERR_SYSTEM : FF_OK;
 }

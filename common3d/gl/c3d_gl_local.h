@@ -15,9 +15,6 @@ typedef struct c3d_gl_state {
     float projection[16], backdrop_projection[16];
 } c3d_gl_state;
 
-/* Finishes opening a context whose functions are loaded: state that never changes. */
-void c3d_gl_setup(c3d_gl_state *state);
-
 /* "M.N" at `text` as 10*M + N, 0 when there is none. */
 int c3d_gl_version(const char *text);
 

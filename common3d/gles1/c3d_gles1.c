@@ -15,7 +15,6 @@ static int gles1_open(void *opaque, const sys_surface_api *surface_api, int *buf
     if (version / 10 != 1) return FF_ERR_UNSUPPORTED;
     *buffers = *buffers && version >= 11;
     state->buffers = *buffers;
-    c3d_gl_setup(state);
     return FF_OK;
 }
 
