@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
+#include <zlib.h>
 
 #define FIELD_MAX 129 /* samples a side of the largest ground here */
 
@@ -384,6 +385,63 @@ static void damaged_payloads_do_no_harm(void **state)
     }
 }
 
+/* ---- deflate bodies, made here: the encoder takes them for repetitive ground only ---- */
+
+/* A refinement payload of 2^3 nodes: high parts through zlib, low bits all ones. Bytes. */
+static size_t deflate_payload(uint32_t low, const uint8_t *high, uint32_t count, uint8_t *out)
+{
+    size_t low_bytes = (208 * low + 7) / 8;
+    z_stream z = {0};
+
+    out[0] = (uint8_t)(2u | low << 4);
+    memset(out + 1, 0xff, low_bytes);
+    assert_int_equal(deflateInit2(&z, 9, Z_DEFLATED, -9, 8, Z_DEFAULT_STRATEGY), Z_OK);
+    z.next_in = (z_const Bytef *)high;
+    z.avail_in = count;
+    z.next_out = out + 1 + low_bytes;
+    z.avail_out = 1000;
+    assert_int_equal(deflate(&z, Z_FINISH), Z_STREAM_END);
+    deflateEnd(&z);
+    return (size_t)(z.next_out - out);
+}
+
+static void deflate_bodies_are_held_to_their_length(void **state)
+{
+    static int32_t value[FF_REFINED_HEIGHTS_MAX];
+    static uint16_t parent[FF_NODE_HEIGHTS_MAX];
+    ff_terrain_info info = terrain(3, 2, FF_CODEC_DEFLATE, 0);
+    ff_residuals residuals = {.value = value};
+    ff_decoder *dec = decoder_for(&info);
+    uint8_t payload[2000], high[300];
+
+    (void)state;
+    for (uint32_t i = 0; i < 300; i++)
+        high[i] = (uint8_t)(i * i);
+    for (uint32_t low = 0; low <= 8; low++) {
+        size_t bytes = deflate_payload(low, high, 208, payload);
+        assert_int_equal(ff_decode_refinement(dec, payload, bytes, &residuals), FF_OK);
+        for (uint32_t i = 0; i < 208; i++) {
+            int32_t v = high[i] << low | ((1 << low) - 1);
+            assert_int_equal(value[i], v % 2 ? -(v + 1) / 2 : v / 2);
+        }
+        check_damaged(&info, dec, parent, payload, bytes);
+        assert_int_equal(ff_decode_refinement(dec, payload, bytes + 1, &residuals), FF_ERR_FORMAT);
+        assert_int_equal(ff_decode_refinement(dec, payload, bytes - 1, &residuals), FF_ERR_TRUNCATED);
+        for (uint32_t count = 207; count <= 209; count += 2) {
+            bytes = deflate_payload(low, high, count, payload);
+            assert_int_equal(ff_decode_refinement(dec, payload, bytes, &residuals), FF_ERR_FORMAT);
+        }
+        for (size_t bit = 0; bit < 8 * bytes; bit++) {
+            payload[bit / 8] ^= (uint8_t)(1u << bit % 8);
+            check_damaged(&info, dec, parent, payload, bytes);
+            payload[bit / 8] ^= (uint8_t)(1u << bit % 8);
+        }
+    }
+    size_t bytes = deflate_payload(9, high, 208, payload); /* 255 << 9 needs 17 bits */
+    assert_int_equal(ff_decode_refinement(dec, payload, bytes, &residuals), FF_ERR_RANGE);
+    free(dec);
+}
+
 /* ---- memory ---- */
 
 #ifdef __SANITIZE_ADDRESS__
@@ -449,6 +507,7 @@ int main(void)
         cmocka_unit_test(error_codes_never_understate),
         cmocka_unit_test(bad_error_codes_are_refused),
         cmocka_unit_test(damaged_payloads_do_no_harm),
+        cmocka_unit_test(deflate_bodies_are_held_to_their_length),
         cmocka_unit_test(decoding_allocates_nothing),
     };
 

@@ -153,6 +153,14 @@ static void terrain_ranges(void **state)
     BAD(hscale_q24, 1u << 31);
     BAD(hoffset_wu, INT32_MAX);
 #undef BAD
+    t = good;
+    t.tiles_x = 1;
+    t.samples_x = 1025;
+    t.tiles_y = 1u << 12;
+    t.spacing_wu = 511;
+    assert_int_equal(ff_terrain_check(&t), FF_OK);
+    t.spacing_wu = 512; /* northern end at 2^31 wu */
+    assert_int_equal(ff_terrain_check(&t), FF_ERR_RANGE);
 }
 
 static void positions_of_nodes(void **state)

@@ -308,6 +308,7 @@ static void lengths_and_headers(void **state)
     assert_decode("\x42\xff\xff\xff", 4, FF_ERR_RANGE);     /* a fourth length byte */
     assert_decode("\x05\x82\x00\x01\x02", 5, FF_ERR_RANGE); /* overlong */
     assert_decode("\x01\x0c" "HTTP12345678", 14, FF_ERR_FORMAT);
+    assert_decode("\x02\x09\x01\x00\x01\x80\x80\x80\x80\x01\x00", 11, FF_ERR_RANGE); /* tile 2^28 */
     assert_decode("\x41\x04\x02\x00\x00\x00", 6, FF_ERR_VERSION);
 }
 
@@ -411,6 +412,29 @@ static void level_horizon_is_a_few_bytes(void **state)
     assert_int_equal(ff_face_columns_encode(top, bottom, 1024, packed, sizeof(packed)), FF_ERR_RANGE);
 }
 
+static void assert_columns(const char *bytes, size_t count, int expected)
+{
+    uint16_t top[17] = {0}, bottom[17] = {0};
+
+    top[16] = bottom[16] = 4711; /* 16 columns: these must stay */
+    assert_int_equal(ff_face_columns_decode((const uint8_t *)bytes, count, 16, 5, top, bottom), expected);
+    assert_int_equal(top[16], 4711);
+    assert_int_equal(bottom[16], 4711);
+}
+
+static void bad_columns_are_refused(void **state)
+{
+    (void)state;
+    assert_columns("\xfb\xfb", 2, FF_OK);                /* 16 times 0, twice */
+    assert_columns("\xfb\x0c\x00", 3, FF_ERR_RANGE);     /* a run of 17 */
+    assert_columns("\xfb\x0a\xb2\x0d", 4, FF_ERR_RANGE); /* 5, then 6 */
+    assert_columns("\xfb\xba\x0e", 3, FF_OK);            /* 5, then 15 times again */
+    assert_columns("\xfb\x01\xeb", 3, FF_ERR_RANGE);     /* -1 */
+    assert_columns("\xfb\x0e", 2, FF_ERR_RANGE);         /* reserved */
+    assert_columns("\xba\xbe\x0f", 3, FF_ERR_RANGE);     /* top 5, bottom 0 */
+    assert_columns("\xfb\xfb\x00", 3, FF_ERR_RANGE);     /* left over */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -423,6 +447,7 @@ int main(void)
         cmocka_unit_test(lengths_and_headers),
         cmocka_unit_test(ranges_hold_both_ways),
         cmocka_unit_test(columns_there_and_back),
+        cmocka_unit_test(bad_columns_are_refused),
         cmocka_unit_test(level_horizon_is_a_few_bytes),
     };
 

@@ -217,6 +217,19 @@ static void damaged_records_are_counted_and_refused(void **state)
     assert_int_equal(bad, 1);
 }
 
+/* Sound records, but not those the header was made for. */
+static void exchanged_records_are_found_by_verify(void **state)
+{
+    fixture *f = *state;
+    uint64_t bad;
+    ff_pack pack;
+
+    assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
+    pack.header.section[1].records_crc ^= 1;
+    assert_int_equal(ff_pack_verify(&pack, &bad), FF_ERR_CHECKSUM);
+    assert_int_equal(bad, 0);
+}
+
 static void wild_indexes_are_out_of_range(void **state)
 {
     static const uint64_t wild[][2] = {{8, 4}, {0, UINT64_MAX}, {UINT64_MAX, UINT64_MAX}, {0, 3}, {UINT64_MAX - 3, 0}};
@@ -312,6 +325,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(every_flipped_header_bit_is_noticed, make, drop),
         cmocka_unit_test_setup_teardown(every_flipped_body_bit_is_found_by_verify, make, drop),
         cmocka_unit_test_setup_teardown(damaged_records_are_counted_and_refused, make, drop),
+        cmocka_unit_test_setup_teardown(exchanged_records_are_found_by_verify, make, drop),
         cmocka_unit_test_setup_teardown(wild_indexes_are_out_of_range, make, drop),
         cmocka_unit_test_setup_teardown(lying_section_tables_are_refused, make, drop),
         cmocka_unit_test_setup_teardown(bad_headers_are_not_written, make, drop),
