@@ -127,15 +127,16 @@ check: all $(TESTS) ## quick subset: layer checks and unit tests, without saniti
 # ---- fuzz targets: each tests/fuzz_*.c has LLVMFuzzerTestOneInput; saved inputs in tests/corpus/NAME run in `make test` ----
 $(BUILD)/tests/fuzz_%-replay: $(BUILD)/obj/tests/fuzz_%.o $(BUILD)/obj/tests/replay.o $(call obj,$(TEST_LIB_SRC)) $(LIBS)
 	@mkdir -p $(@D)
-	$(CC) $(OPT) $(LDFLAGS) $(filter %.o,$^) $(LINK_LIBS) $(GDAL_LIBS) -o $@
+	$(CC) $(OPT) $(LDFLAGS) $(filter %.o,$^) $(LINK_LIBS) $(GDAL_LIBS) -lcmocka -o $@
 
 # With clang there is libFuzzer: build/fuzz/fuzz_message -max_total_time=60 build/fuzz/new-message tests/corpus/message
 FUZZ_CFLAGS = -O1 -g -std=c11 -D_GNU_SOURCE -DFF_ENCODER=1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined
 fuzz: $(patsubst tests/%.c,build/fuzz/%,$(wildcard tests/fuzz_*.c)) ## libFuzzer targets into build/fuzz (needs clang)
-build/fuzz/fuzz_%: tests/fuzz_%.c tests/slow_decoder.c $(filter protocol/%,$(SRC_core)) $(wildcard protocol/*.h)
+FUZZ_SRC = tests/slow_decoder.c tests/pack_fixture.c server/ff_session.c platform/posix/jpeg.c
+build/fuzz/fuzz_%: tests/fuzz_%.c $(FUZZ_SRC) $(filter protocol/%,$(SRC_core)) $(wildcard protocol/*.h)
 	@command -v clang >/dev/null || { echo "make fuzz: clang is not installed" >&2; exit 1; }
 	@mkdir -p $(@D)
-	clang $(FUZZ_CFLAGS) $(filter %.c,$^) -lz -o $@
+	clang $(FUZZ_CFLAGS) $(filter %.c,$^) -lz -ljpeg -o $@
 
 # ---- installing: programs, libfarfield with its headers and farfield.pc, man pages ----
 BINDIR ?= $(PREFIX)/bin

@@ -90,7 +90,7 @@ static int take_option(server_options *o, int option, const char *arg)
     case OPT_QUIET: o->quiet = 1; return 0;
     case OPT_HELP: fputs(usage, stdout); return 1;
     case OPT_VERSION: puts("farfield-server " FARFIELD_VERSION); return 1;
-    default: fputs("farfield-server: see --help\n", stderr); return -1;
+    default: return -1;
     }
 }
 
@@ -98,13 +98,17 @@ int server_options_parse(server_options *options, int argc, char **argv)
 {
     *options = (server_options){ .listen = "127.0.0.1:7788", .workers = 2, .renderers = 1, .max_clients = 256, .idle_s = 600,
                                  .panoramas_per_minute = 120, .render_timeout_s = 10 };
-    for (int option; (option = getopt_long(argc, argv, "", long_options, NULL)) != -1;) {
+    opterr = 0;
+    for (int option; (option = getopt_long(argc, argv, ":", long_options, NULL)) != -1;) {
         int rc = take_option(options, option, optarg);
+        if (option == ':' || option == '?')
+            fprintf(stderr, "farfield-server: %s \"%s\"; see --help\n", option == ':' ? "a value is missing after" : "what is",
+                    argv[optind - 1]);
         if (rc)
             return rc;
     }
     if (optind < argc) {
-        fprintf(stderr, "farfield-server: what is \"%s\"? See --help\n", argv[optind]);
+        fprintf(stderr, "farfield-server: what is \"%s\"; see --help\n", argv[optind]);
         return -1;
     }
     if (!options->pack) {
