@@ -57,18 +57,33 @@ uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent)
     return slot;
 }
 
+static void forget_user(ff_tree *tree, ff_node *node)
+{
+    if (node->user && tree->on_evict)
+        tree->on_evict(tree->evict_context, node->user);
+    node->user = 0;
+}
+
+void ff_tree_reshade_beside(ff_tree *tree, ff_key key)
+{
+    for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
+        ff_key beside = ff_key_neighbour(tree->info.tiles_x, tree->info.tiles_y, key, (enum ff_side)side);
+        uint32_t slot = beside == FF_KEY_NONE ? FF_SLOT_NONE : ff_tree_find(tree, beside);
+        if (slot != FF_SLOT_NONE)
+            forget_user(tree, &tree->node[slot]);
+    }
+}
+
 static void give_slot(ff_tree *tree, uint32_t slot)
 {
     ff_node *node = &tree->node[slot];
     assert(node->flags & FF_NODE_HELD && !ff_node_has_children(node));
-    if (node->user && tree->on_evict)
-        tree->on_evict(tree->evict_context, node->user);
+    forget_user(tree, node);
     uint32_t *link = &tree->hash[hash_of(tree, node->key)];
     while (*link != slot)
         link = &tree->node[*link].hash_next;
     *link = node->hash_next;
     node->flags = 0;
-    node->user = 0;
     node->hash_next = tree->free_head;
     tree->free_head = slot;
     tree->free_count++;

@@ -17,18 +17,7 @@ static const uint8_t ramp[][3] = {
 static const uint8_t rock[3] = {128, 120, 112};
 static const uint8_t water[3] = {62, 106, 150};
 
-/* Twice the height difference per cell along a row or column of `side` samples; second order everywhere, one-sided at its ends,
- * so that both sides of a node border come to nearly the same slope. */
-static int32_t doubled_difference(const uint16_t *sample, uint32_t stride, uint32_t at, uint32_t side)
-{
-    const uint16_t *here = sample + (size_t)at * stride;
-    if (at == 0)
-        return -3 * here[0] + 4 * here[stride] - here[2 * stride];
-    if (at == side - 1)
-        return 3 * here[0] - 4 * *(here - stride) + *(here - 2 * stride);
-    return here[stride] - *(here - stride);
-}
-
+/* Rise over run from twice the height difference per cell. */
 static int32_t slope_q8(const ff_terrain_info *info, int32_t doubled, int32_t cell_wu)
 {
     int64_t rise_wu = (int64_t)doubled * (int64_t)info->hscale_q24 / 65536;
@@ -71,15 +60,16 @@ static int32_t light_q8(int32_t east_q8, int32_t north_q8)
     return (int32_t)(90 + cosine_q8 * 166 / 181);
 }
 
-void ff_shade(const ff_terrain_info *info, const uint16_t *heights, int32_t cell_wu, uint32_t i, uint32_t j, uint8_t rgba[4])
+void ff_shade(const ff_terrain_info *info, const uint16_t *framed, int32_t cell_wu, uint32_t i, uint32_t j, uint8_t rgba[4])
 {
-    uint32_t side = ff_node_side(info), height = heights[j * side + i];
-    int32_t east = slope_q8(info, doubled_difference(heights + (size_t)j * side, 1, i, side), cell_wu);
-    int32_t north = slope_q8(info, doubled_difference(heights + i, side, j, side), cell_wu);
+    size_t stride = ff_node_side(info) + 2;
+    const uint16_t *here = framed + (j + 1) * stride + i + 1;
+    int32_t east = slope_q8(info, here[1] - *(here - 1), cell_wu);
+    int32_t north = slope_q8(info, here[stride] - *(here - stride), cell_wu);
     int32_t colour[3] = {water[0], water[1], water[2]};
-    if (!is_water(info, height)) {
+    if (!is_water(info, *here)) {
         int64_t steep_square = (int64_t)east * east + (int64_t)north * north;
-        ground_colour(info, height, c3d_isqrt64((uint64_t)steep_square), colour);
+        ground_colour(info, *here, c3d_isqrt64((uint64_t)steep_square), colour);
     }
     int32_t light = light_q8(east, north);
     for (unsigned c = 0; c < 3; c++) {

@@ -5,9 +5,55 @@
 #include <assert.h>
 #include <string.h>
 
+#define FRAMED_MAX (((1 << FF_NODE_LOG2_MAX) + 3) * ((1 << FF_NODE_LOG2_MAX) + 3))
+
+/* Index of the sample `along` a side and `depth` samples inside it, in a grid with `stride` samples a row and `last` the last one. */
+static size_t side_index(enum ff_side side, uint32_t along, uint32_t depth, uint32_t last, size_t stride)
+{
+    switch (side) {
+    case FF_SIDE_EAST: return along * stride + last - depth;
+    case FF_SIDE_NORTH: return (last - depth) * stride + along;
+    case FF_SIDE_WEST: return along * stride + depth;
+    default: return depth * stride + along;
+    }
+}
+
+/* One more row beyond a side: the neighbour's where one of the same level is held, else so that the slope at the rim becomes that
+ * of the first two cells. */
+static void frame_side(const ff_tree *tree, const ff_drawn *drawn, enum ff_side side, uint16_t *framed)
+{
+    uint32_t samples = ff_node_side(&tree->info), last = samples - 1;
+    ff_key beside = ff_key_neighbour(tree->info.tiles_x, tree->info.tiles_y, drawn->key, side);
+    uint32_t slot = beside == FF_KEY_NONE ? FF_SLOT_NONE : ff_tree_find(tree, beside);
+    for (uint32_t along = 0; along < samples; along++) {
+        uint16_t *out = &framed[side_index(side, along + 1, 0, last + 2, samples + 2)];
+        if (slot != FF_SLOT_NONE) {
+            const uint16_t *other = tree->heights + slot * ff_heights_per_node(tree);
+            *out = other[side_index(side, along, last - 1, last, samples)];
+            continue;
+        }
+        int32_t beyond = drawn->heights[side_index(side, along, 0, last, samples)]
+                         + drawn->heights[side_index(side, along, 1, last, samples)]
+                         - drawn->heights[side_index(side, along, 2, last, samples)];
+        *out = (uint16_t)(beyond < 0 ? 0 : beyond > UINT16_MAX ? UINT16_MAX : beyond);
+    }
+}
+
+static void frame_heights(const ff_tree *tree, const ff_drawn *drawn, uint16_t *framed)
+{
+    uint32_t samples = ff_node_side(&tree->info);
+    for (uint32_t row = 0; row < samples; row++)
+        memcpy(framed + (row + 1) * (samples + 2) + 1, drawn->heights + row * samples, samples * sizeof *framed);
+    for (unsigned side = 0; side < FF_SIDE_COUNT; side++)
+        frame_side(tree, drawn, (enum ff_side)side, framed);
+}
+
 void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3d_vertex *out)
 {
+    uint16_t framed[FRAMED_MAX];
     uint32_t side = ff_node_side(&tree->info);
+    if (shaded)
+        frame_heights(tree, drawn, framed);
     for (uint32_t row = 0; row < side; row++) {
         for (uint32_t column = 0; column < side; column++, out++) {
             out->x = (int16_t)column;
@@ -15,7 +61,7 @@ void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3
             out->z = (int16_t)(drawn->heights[row * side + column] - 32768);
             out->pad = 0;
             if (shaded)
-                ff_shade(&tree->info, drawn->heights, drawn->cell_wu, column, row, out->rgba);
+                ff_shade(&tree->info, framed, drawn->cell_wu, column, row, out->rgba);
             else
                 memset(out->rgba, 255, sizeof out->rgba);
         }

@@ -114,6 +114,7 @@ int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, const ff_residuals *resid
     uint32_t slot = ff_tree_take_slot(tree, key, FF_SLOT_NONE);
     ff_reconstruct_root(&tree->info, residuals, heights_of(tree, slot));
     measure_heights(tree, slot, residuals->child_error[0]);
+    ff_tree_reshade_beside(tree, key);
     tree->dirty = 1;
     return FF_OK;
 }
@@ -139,6 +140,7 @@ int ff_tree_deliver_children(ff_tree *tree, ff_key key, const ff_residuals *resi
         ff_refined_child(&tree->info, tree->refined, q, heights_of(tree, child));
         measure_heights(tree, child, residuals->child_error[q]);
         tree->node[slot].child[q] = child;
+        ff_tree_reshade_beside(tree, ff_key_child(key, q));
     }
     tree->dirty = 1;
     return FF_OK;

@@ -103,7 +103,8 @@ uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], ff_wish *
  * z_scale_q16 = hscale_q24. */
 void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3d_vertex *out);
 
-/* A caller's word per node slot (mesh handle, say), zeroed when the slot is given to another node. `on_evict` is called first. */
+/* A caller's word per node slot (mesh handle, say), zeroed when the slot is given to another node, or when the node's shaded
+ * vertices have changed because a neighbour arrived. `on_evict` is called first, for words that are not 0. */
 uint32_t *ff_tree_user(ff_tree *tree, const ff_node *node);
 void ff_tree_on_evict(ff_tree *tree, void (*on_evict)(void *context, uint32_t user), void *context);
 

@@ -78,6 +78,8 @@ uint32_t ff_tree_find(const ff_tree *tree, ff_key key);
 /* The node itself or its nearest held ancestor, or FF_SLOT_NONE. */
 uint32_t ff_tree_find_nearest(const ff_tree *tree, ff_key key);
 uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent);
+/* The colours of nodes beside a new one change: what their users made of them is made anew. */
+void ff_tree_reshade_beside(ff_tree *tree, ff_key key);
 void ff_tree_drop_children(ff_tree *tree, ff_node *parent);
 void ff_tree_drop_root(ff_tree *tree, ff_node *root);
 
