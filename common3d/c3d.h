@@ -53,7 +53,7 @@ enum c3d_draw_flags {
     C3D_DRAW_WIREFRAME = 4, /* the strip's edges as lines */
     C3D_DRAW_BACKDROP = 8,  /* no depth test or write, no fog: skybox */
     C3D_DRAW_ALPHA_TEST = 16,/* texels with alpha below one half are not drawn */
-    C3D_DRAW_ON_TOP = 32,    /* depth test with a bias of 1/256 of the distance towards the viewer: wireframe over ground */
+    C3D_DRAW_ON_TOP = 32,    /* depth test with a bias of 1/64 of the distance towards the viewer: wireframe over ground */
     /* For upright quads (a panorama's side faces): texture coordinates come from other axes than x and y. */
     C3D_DRAW_TEX_XZ = 64,    /* s from x, t from z */
     C3D_DRAW_TEX_YZ = 128    /* s from y, t from z */

@@ -336,6 +336,30 @@ static void wireframes_are_the_edges(void **state)
     }
 }
 
+/* Lines over slanting ground lose no pixel to it, but are hidden by what stands before them. */
+static void lines_on_top_keep_their_pixels(void **state)
+{
+    (void)state;
+    EACH_KIT(kit)
+    {
+        kit->frame.camera.pitch = -8192;
+        kit->frame.camera.focal_q8 = 128 * 256; /* as for a picture 16 times as wide: depth grows 0.8 % a row */
+        for (int32_t roll = 0; roll < 65536; roll += 3001) {
+            uint8_t alone[WIDTH * HEIGHT * 3], over[WIDTH * HEIGHT * 3];
+            kit->frame.camera.roll = roll;
+            c3d_draw draws[3] = {picture_square(kit, PICTURE_LEVEL, -M / 2, 8 * M - M / 2, -8 * M, M, PICTURE_BLUE),
+                                 picture_square(kit, PICTURE_LEVEL, -M / 2, 8 * M - M / 2, -8 * M, M, PICTURE_WHITE),
+                                 picture_square(kit, PICTURE_LEVEL, -32 * M, -32 * M, -7 * M, 64 * M, PICTURE_RED)};
+            draws[1].flags = C3D_DRAW_WIREFRAME | C3D_DRAW_ON_TOP;
+            picture_render(kit, draws + 1, 1, alone);
+            picture_render(kit, draws, 2, over);
+            for (int i = 0; i < WIDTH * HEIGHT; i++) assert_int_equal(alone[i * 3], over[i * 3]);
+            picture_render(kit, draws, 3, over);
+            for (int i = 0; i < WIDTH * HEIGHT; i++) assert_memory_equal(over + i * 3, "\377\0\0", 3);
+        }
+    }
+}
+
 static void overlays_lie_on_top(void **state)
 {
     (void)state;
@@ -394,6 +418,7 @@ int main(void)
         PICTURE_TEST(depth_hides_at_any_ratio),
         PICTURE_TEST(backdrops_are_behind_everything),
         PICTURE_TEST(wireframes_are_the_edges),
+        PICTURE_TEST(lines_on_top_keep_their_pixels),
         PICTURE_TEST(overlays_lie_on_top),
         PICTURE_TEST(wireframe_only_leaves_textures_out),
     };

@@ -56,6 +56,17 @@ static void many_surfaces_live_together(void **state)
     }
 }
 
+/* Nothing but two contexts of two libraries, back and forth: each library would take its context for still current. */
+static void two_libraries_take_turns(void **state)
+{
+    (void)state;
+    picture_kit kits[2];
+    assert_int_equal(picture_open(&kits[0], PICTURE_GL, 16, 12, 1), FF_OK);
+    assert_int_equal(picture_open(&kits[1], PICTURE_GLES1, 12, 16, 1), FF_OK);
+    for (uint32_t i = 0; i < 12; i++) clear_and_check(&kits[i & 1], 0xFF000000u | i * 0x0A0B0Cu);
+    for (int i = 0; i < 2; i++) picture_close(&kits[i]);
+}
+
 static void opening_and_closing_many_times(void **state)
 {
     (void)state;
@@ -174,6 +185,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sizes_and_kinds_out_of_range_are_errors),
         cmocka_unit_test(many_surfaces_live_together),
+        cmocka_unit_test(two_libraries_take_turns),
         cmocka_unit_test(opening_and_closing_many_times),
         cmocka_unit_test(threads_have_contexts_of_their_own),
         cmocka_unit_test(surfaces_hand_out_injected_events),

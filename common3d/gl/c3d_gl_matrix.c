@@ -6,7 +6,7 @@
 #define METRES_PER_WU (1.0f / 256.0f)
 /* Bias of C3D_DRAW_ON_TOP: points move this part of the way to the eye, which leaves their place in the picture as it is. Unlike
  * glPolygonOffset this works for lines, and grows with distance as the steps of the depth buffer do. */
-#define ON_TOP_BIAS (1.0f / 256.0f)
+#define ON_TOP_BIAS (1.0f / 64.0f)
 
 void c3d_gl_colour(float rgba[4], uint32_t colour)
 {
