@@ -2,6 +2,7 @@
 
 #include "../platform/sys.h"
 #include "bake_image_local.h"
+#include "bake_nearest.h"
 #include "bake_say.h"
 
 #include <math.h>
@@ -10,10 +11,11 @@
 
 #define COARSEST_TEXEL_PX 1.25 /* the finest level's texels are at most this many image pixels wide */
 #define RGB 3
+#define RGBA 4
 
 /* Source rows already filtered along x, kept while the window slides south. */
 typedef struct row_ring {
-    float *row;      /* slots x width x RGB */
+    float *row;      /* slots x width x RGBA, colours weighted by how much is covered (alpha, 0..1) */
     int64_t *held;   /* source row in each slot, -1: none */
     uint32_t slots, width;
     uint8_t *source; /* one row of the image */
@@ -28,37 +30,61 @@ static void footprint(double centre, double wide, uint32_t size, double *from, d
 }
 
 /* Mean of the pixels from..to of a row, each weighted by how much of it is covered. */
-static void mean_pixels(const uint8_t *rgb, double from, double to, float *out)
+static void mean_pixels(const uint8_t *rgba, double from, double to, float *out)
 {
-    double sum[RGB] = {0}, all = to - from;
+    double sum[RGBA] = {0}, all = (to - from) * 255;
     for (uint32_t px = (uint32_t)from; px < to; px++) {
-        double weight = fmin(px + 1, to) - fmax(px, from);
-        for (int c = 0; c < RGB; c++) sum[c] += weight * rgb[(size_t)RGB * px + c];
+        const uint8_t *pixel = rgba + (size_t)RGBA * px;
+        double weight = (fmin(px + 1, to) - fmax(px, from)) * pixel[RGB];
+        for (int c = 0; c < RGB; c++) sum[c] += weight * pixel[c];
+        sum[RGB] += weight;
     }
-    for (int c = 0; c < RGB; c++) out[c] = (float)(sum[c] / all);
+    for (int c = 0; c < RGBA; c++) out[c] = (float)(sum[c] / all);
 }
 
 static const float *filtered_row(const bake_picture *picture, row_ring *ring, uint32_t row, double texel_samples,
                                  double last_sample)
 {
-    float *out = ring->row + (size_t)(row % ring->slots) * ring->width * RGB;
+    float *out = ring->row + (size_t)(row % ring->slots) * ring->width * RGBA;
     if (ring->held[row % ring->slots] == row) return out;
     if (bake_picture_row(picture, row, ring->source)) return NULL;
     double px_per_sample = picture->width / (picture->east - picture->west);
     for (uint32_t i = 0; i < ring->width; i++) {
         double from, to, x = fmin(i * texel_samples, last_sample);
         footprint((x - picture->west) * px_per_sample, texel_samples * px_per_sample, picture->width, &from, &to);
-        mean_pixels(ring->source, from, to, out + (size_t)i * RGB);
+        mean_pixels(ring->source, from, to, out + (size_t)i * RGBA);
     }
     ring->held[row % ring->slots] = row;
     return out;
 }
 
-/* One row of the finest lattice: rows of the image under it, weighted. */
-static int sample_row(const bake_picture *picture, row_ring *ring, double from, double to, double texel_samples,
-                      double last_sample, float *sum, uint8_t *rgb)
+/* What one row of the finest lattice is made in. */
+typedef struct lattice_row {
+    float *sum;         /* RGBA */
+    uint8_t *rgb;
+    uint32_t *distance; /* to the nearest covered texel: bake_nearest.h */
+} lattice_row;
+
+/* Weighted sums to colours; counts the texels that the image covers. */
+static uint64_t finish_row(const lattice_row *out, uint32_t width)
 {
-    size_t values = (size_t)ring->width * RGB;
+    uint64_t covered = 0;
+    for (size_t i = 0; i < width; i++) {
+        const float *texel = out->sum + i * RGBA;
+        int is_covered = texel[RGB] > 1e-4f;
+        for (size_t c = 0; c < RGB; c++)
+            out->rgb[i * RGB + c] = is_covered ? (uint8_t)fminf(texel[c] / texel[RGB] + 0.5f, 255) : 0;
+        out->distance[i] = is_covered ? 0 : BAKE_NEAREST_FAR;
+        covered += (uint64_t)is_covered;
+    }
+    return covered;
+}
+
+/* Rows from..to of the image, weighted, into one row of the finest lattice. */
+static int sample_row(const bake_picture *picture, row_ring *ring, double from, double to, double texel_samples,
+                      double last_sample, float *sum)
+{
+    size_t values = (size_t)ring->width * RGBA;
     memset(sum, 0, values * sizeof *sum);
     for (uint32_t row = (uint32_t)from; row < to; row++) {
         const float *filtered = filtered_row(picture, ring, row, texel_samples, last_sample);
@@ -66,27 +92,25 @@ static int sample_row(const bake_picture *picture, row_ring *ring, double from, 
         float weight = (float)((fmin(row + 1, to) - fmax(row, from)) / (to - from));
         for (size_t i = 0; i < values; i++) sum[i] += weight * filtered[i];
     }
-    for (size_t i = 0; i < values; i++) rgb[i] = (uint8_t)fminf(fmaxf(sum[i] + 0.5f, 0), 255);
     return 0;
 }
 
 static int sample_rows(const bake_picture *picture, const bake_ground *ground, row_ring *ring, double texel_samples,
-                       const bake_grid *lattice)
+                       const bake_grid *lattice, const bake_grid *distance, const lattice_row *out)
 {
     double px_per_sample = picture->height / (picture->north - picture->south);
-    float *sum = malloc((size_t)ring->width * RGB * sizeof *sum);
-    uint8_t *rgb = malloc((size_t)ring->width * RGB);
-    int rc = sum && rgb ? 0 : bake_fail("out of memory");
-    for (uint32_t j = lattice->height; !rc && j-- > 0;) {
+    uint64_t covered = 0;
+    for (uint32_t j = lattice->height; j-- > 0;) {
         double from, to, y = fmin(j * texel_samples, ground->grid.height - 1.0);
         footprint((picture->north - y) * px_per_sample, texel_samples * px_per_sample, picture->height, &from, &to);
-        rc = sample_row(picture, ring, from, to, texel_samples, ground->grid.width - 1.0, sum, rgb);
-        if (!rc) rc = bake_grid_write(lattice, j, 0, lattice->width, rgb);
+        if (sample_row(picture, ring, from, to, texel_samples, ground->grid.width - 1.0, out->sum)) return -1;
+        covered += finish_row(out, lattice->width);
+        if (bake_grid_write(lattice, j, 0, lattice->width, out->rgb)) return -1;
+        if (bake_grid_write(distance, j, 0, lattice->width, out->distance)) return -1;
         bake_progress("colour", lattice->height - j, lattice->height);
     }
-    free(sum);
-    free(rgb);
-    return rc;
+    if (covered == 0) return bake_fail("the image shows nothing of this ground");
+    return covered < (uint64_t)lattice->width * lattice->height ? bake_nearest_fill(lattice, distance) : 0;
 }
 
 static int sample_image(const bake_picture *picture, const bake_ground *ground, double texel_samples,
@@ -94,12 +118,20 @@ static int sample_image(const bake_picture *picture, const bake_ground *ground, 
 {
     double px_per_sample = picture->height / (picture->north - picture->south);
     row_ring ring = {.slots = (uint32_t)ceil(fmax(1, texel_samples * px_per_sample)) + 2, .width = lattice->width};
-    ring.row = malloc((size_t)ring.slots * ring.width * RGB * sizeof *ring.row);
+    lattice_row out = {malloc((size_t)ring.width * RGBA * sizeof(float)), malloc((size_t)ring.width * RGB),
+                       malloc(ring.width * sizeof(uint32_t))};
+    bake_grid distance;
+    ring.row = malloc((size_t)ring.slots * ring.width * RGBA * sizeof *ring.row);
     ring.held = malloc(ring.slots * sizeof *ring.held);
-    ring.source = malloc((size_t)picture->width * RGB);
-    int rc = ring.row && ring.held && ring.source ? 0 : bake_fail("out of memory");
+    ring.source = malloc((size_t)picture->width * RGBA);
+    int rc = bake_grid_open(&distance, lattice->width, lattice->height, sizeof(uint32_t));
+    if (!rc && !(ring.row && ring.held && ring.source && out.sum && out.rgb && out.distance)) rc = bake_fail("out of memory");
     for (uint32_t i = 0; !rc && i < ring.slots; i++) ring.held[i] = -1;
-    if (!rc) rc = sample_rows(picture, ground, &ring, texel_samples, lattice);
+    if (!rc) rc = sample_rows(picture, ground, &ring, texel_samples, lattice, &distance, &out);
+    bake_grid_close(&distance);
+    free(out.sum);
+    free(out.rgb);
+    free(out.distance);
     free(ring.row);
     free(ring.held);
     free(ring.source);

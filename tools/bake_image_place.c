@@ -72,6 +72,7 @@ static GDALDatasetH warp_onto_ground(const bake_ground *ground, GDALDatasetH set
     double area[4] = {gt[0], fmin(y0, y1), gt[0] + gt[1] * ground->grid.width, fmax(y0, y1)};
     char **list = CSLAddString(CSLAddString(NULL, "-of"), "VRT");
     list = CSLAddString(CSLAddString(list, "-r"), "bilinear");
+    list = CSLAddString(list, "-dstalpha");
     list = add_reference(list, "-t_srs", ground->srs);
     list = add_numbers(list, "-te", area, 4);
     GDALWarpAppOptions *options = GDALWarpAppOptionsNew(list, NULL);
@@ -136,6 +137,7 @@ static int lay_picture(const bake_ground *ground, const char *path, bake_picture
     }
     if (!own_place && stack_view(picture, lay_over_source(ground, picture->set), path)) return -1;
     if (stack_view(picture, warp_onto_ground(ground, picture->set), path)) return -1;
+    picture->has_alpha = 1;
     GDALGetGeoTransform(picture->set, gt);
     place(ground, picture, gt[0], gt[3], gt[0] + gt[1] * GDALGetRasterXSize(picture->set),
           gt[3] + gt[5] * GDALGetRasterYSize(picture->set));
@@ -164,12 +166,14 @@ void bake_picture_close(bake_picture *picture)
     *picture = (bake_picture){0};
 }
 
-int bake_picture_row(const bake_picture *picture, uint32_t row, uint8_t *rgb)
+int bake_picture_row(const bake_picture *picture, uint32_t row, uint8_t *rgba)
 {
-    int grey[3] = {1, 1, 1}, colour[3] = {1, 2, 3}, width = (int)picture->width;
+    int bands = GDALGetRasterCount(picture->set), is_colour = bands - picture->has_alpha >= 3, width = (int)picture->width;
+    int from[4] = {1, is_colour ? 2 : 1, is_colour ? 3 : 1, bands};
+    if (!picture->has_alpha) memset(rgba, 255, (size_t)width * 4);
     CPLErrorReset();
-    if (GDALDatasetRasterIO(picture->set, GF_Read, 0, (int)row, width, 1, rgb, width, 1, GDT_Byte, 3,
-                            GDALGetRasterCount(picture->set) >= 3 ? colour : grey, 3, 3 * width, 1)
+    if (GDALDatasetRasterIO(picture->set, GF_Read, 0, (int)row, width, 1, rgba, width, 1, GDT_Byte, picture->has_alpha ? 4 : 3,
+                            from, 4, 4 * width, 1)
         != CE_None)
         return bake_fail_gdal("cannot read row %u of the image", row);
     return 0;
