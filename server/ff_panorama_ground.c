@@ -227,19 +227,34 @@ static void draw_node(panorama_ground *ground, const ff_drawn *drawn, const c3d_
     }
 }
 
+static int by_key(const void *a, const void *b)
+{
+    ff_key ka = (*(const ff_drawn *const *)a)->key, kb = (*(const ff_drawn *const *)b)->key;
+    return ka < kb ? -1 : ka > kb;
+}
+
+/* In an order that does not depend on what was drawn before: where two triangles are equally deep, the first one stays. */
+static uint32_t list_seen(panorama_ground *ground, const ff_get_panorama *request, enum ff_face_name face)
+{
+    const ff_drawn *list;
+    uint32_t count = ff_tree_drawn(ground->tree, &list), seen = 0;
+    for (uint32_t i = 0; i < count; i++)
+        if (node_seen(ground, &list[i], request, face))
+            ground->seen[seen++] = &list[i];
+    qsort(ground->seen, seen, sizeof *ground->seen, by_key);
+    return seen;
+}
+
 void panorama_ground_draw(panorama_ground *ground, const ff_get_panorama *request, enum ff_face_name face)
 {
     c3d_frame frame = { .clear_colour = FF_FACE_KEY_ABGR };
     c3d_stats stats;
-    const ff_drawn *list;
-    uint32_t count = ff_tree_drawn(ground->tree, &list);
+    uint32_t count = list_seen(ground, request, face);
     ff_face_camera(request, face, &frame.camera);
     c3d_begin(ground->device, &frame);
     for (uint32_t i = 0; i < count; i++)
-        if (node_seen(ground, &list[i], request, face)) {
-            draw_node(ground, &list[i], &frame.camera);
-            ground->stats->nodes_drawn++;
-        }
+        draw_node(ground, ground->seen[i], &frame.camera);
+    ground->stats->nodes_drawn += count;
     c3d_end(ground->device);
     c3d_get_stats(ground->device, &stats);
     ground->stats->triangles += stats.frame_triangles;

@@ -23,6 +23,7 @@ typedef struct panorama_ground {
     void *tree_memory, *decoder_memory;
     int32_t values[FF_REFINED_HEIGHTS_MAX];
     ff_wish wishes[FF_PANORAMA_WISHES];
+    const ff_drawn *seen[FF_PANORAMA_NODES]; /* of the face being drawn */
     ff_strips strips;
     c3d_strip strip[32];
     panorama_texture texture[FF_PANORAMA_TEXTURES];

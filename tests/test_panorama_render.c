@@ -223,37 +223,49 @@ static void test_absurd_requests_are_refused(void **state)
     }
 }
 
-static void test_same_face_twice(void **state)
+/* The same ground whatever was drawn before; colours may differ a little where a node's neighbour is held now and was not then. */
+static void test_same_ground_whatever_was_drawn_before(void **state)
 {
     (void)state;
-    static uint8_t first[sizeof message_bytes];
     ff_get_panorama request = request_at(1800, 400, 100000), elsewhere = request;
-    render_with(renderer, &request, FF_FACE_WEST, &picture);
-    int bytes = picture.bytes;
-    memcpy(first, message_bytes, (size_t)bytes);
-    elsewhere.position_wu[0] /= 2;
-    render_with(renderer, &elsewhere, FF_FACE_WEST, &picture);
-    render_with(renderer, &request, FF_FACE_WEST, &picture);
-    assert_int_equal(picture.bytes, bytes);
-    assert_memory_equal(message_bytes, first, (size_t)bytes);
-}
-
-/* A larger face needs a surface of its own. Nodes come in another order then: where two are equally deep the other may win a pixel. */
-static void test_same_face_after_another_size(void **state)
-{
-    (void)state;
-    ff_get_panorama request = request_at(1800, 400, 100000), large = request;
     uint32_t off = 0;
     render_with(renderer, &request, FF_FACE_WEST, &picture);
-    large.face_size = 512;
-    assert_true(ff_panorama_render_face(renderer, &large, FF_FACE_WEST, 0, message_bytes, sizeof message_bytes) > picture.bytes);
+    elsewhere.position_wu[0] /= 2;
+    elsewhere.front_wu /= 4;
+    render_with(renderer, &elsewhere, FF_FACE_WEST, &other);
+    elsewhere.face_size = 512; /* a surface of its own, everything read again in another order */
+    assert_true(ff_panorama_render_face(renderer, &elsewhere, FF_FACE_EAST, 0, message_bytes, sizeof message_bytes) > 0);
     render_with(renderer, &request, FF_FACE_WEST, &other);
+    assert_int_equal(picture.face.top_row, other.face.top_row);
     assert_int_equal(picture.face.row_count, other.face.row_count);
     assert_memory_equal(picture.top, other.top, sizeof picture.top);
     assert_memory_equal(picture.bottom, other.bottom, sizeof picture.bottom);
     for (size_t i = 0; i < (size_t)3 * SIZE * picture.face.row_count; i++)
-        off += abs(picture.rgb[i] - other.rgb[i]) > 16;
+        off += abs(picture.rgb[i] - other.rgb[i]) > 48;
     assert_true(off < SIZE);
+}
+
+/* The same requests in the same order give the same bytes: the simulator relies on it. */
+static void test_same_requests_same_bytes(void **state)
+{
+    (void)state;
+    static uint8_t first[2][sizeof message_bytes];
+    int bytes[2][2];
+    for (int round = 0; round < 2; round++) {
+        ff_panorama_renderer *with;
+        ff_get_panorama request = request_at(1800, 400, 100000);
+        assert_int_equal(ff_panorama_renderer_open(&hills, sys_surface_osmesa(), c3d_backend_gl(), &with), FF_OK);
+        for (int i = 0; i < 2; i++) {
+            bytes[round][i] = ff_panorama_render_face(with, &request, FF_FACE_WEST, 0, message_bytes, sizeof message_bytes);
+            assert_true(bytes[round][i] > 0);
+            if (round == 0)
+                memcpy(first[i], message_bytes, (size_t)bytes[0][i]);
+            assert_int_equal(bytes[round][i], bytes[0][i]);
+            assert_memory_equal(message_bytes, first[i], (size_t)bytes[0][i]);
+            request.position_wu[0] /= 2;
+        }
+        ff_panorama_renderer_close(with);
+    }
 }
 
 static void test_largest_face_at_best_quality_fits_a_message(void **state)
@@ -360,8 +372,8 @@ int main(void)
         cmocka_unit_test(test_faces_without_far_ground_are_empty),
         cmocka_unit_test(test_back_plane_cuts),
         cmocka_unit_test(test_absurd_requests_are_refused),
-        cmocka_unit_test(test_same_face_twice),
-        cmocka_unit_test(test_same_face_after_another_size),
+        cmocka_unit_test(test_same_ground_whatever_was_drawn_before),
+        cmocka_unit_test(test_same_requests_same_bytes),
         cmocka_unit_test(test_largest_face_at_best_quality_fits_a_message),
         cmocka_unit_test(test_egl_agrees_with_osmesa),
         cmocka_unit_test(test_gles1_agrees_with_osmesa),
