@@ -212,6 +212,27 @@ textured() {
 }
 check "an image becomes textures" textured
 
+right_way_up() { # the root's texture: red grows to the east, green to the north
+    "$BAKE" plain.r16 --raw 150x131 --spacing 10 --color image.ppm --tile-log2 8 --texture-quality 95 --quiet -o up.ffp \
+        && python3 -c 'd=open("up.ffp","rb").read(); open("up.jpg","wb").write(d[d.find(b"\xff\xd8\xff"):])' \
+        && gdal_translate -q -of PNM up.jpg up.ppm && python3 -c '
+d=open("up.ppm","rb").read()[-64*64*3:]
+px=lambda row,column: d[(row*64+column)*3:(row*64+column)*3+3]
+edge=(149*63)//256  # the image ends with the ground; beyond it the rim is repeated
+assert px(63,0)[0]<16 and px(63,edge)[0]>235 and px(63,63)[0]>235, [px(63,i)[0] for i in (0,edge,63)]
+assert px(63,0)[1]<16 and px(0,0)[1]>239 and px(63-(130*63)//256,0)[1]>232, [px(i,0)[1] for i in (63,0)]'
+}
+check "textures lie as their ground does" right_way_up
+
+no_black() { # a placed image over half of the ground colours all of it
+    gdal_translate -q -of GTiff -a_srs EPSG:4326 -a_ullr -70.09 -33.01 -70.04 -33.09 image.ppm half.tif \
+        && "$BAKE" south.asc --color half.tif --texture-levels 1 --texture-quality 95 --quiet -o half.ffp \
+        && python3 -c 'd=open("half.ffp","rb").read(); open("half.jpg","wb").write(d[d.find(b"\xff\xd8\xff"):])' \
+        && gdal_translate -q -of PNM half.jpg half.ppm \
+        && python3 -c 'd=open("half.ppm","rb").read()[-64*64*3:]; assert min(d[2::3])>20, min(d[2::3])'
+}
+check "ground that an image does not cover takes its nearest colour" no_black
+
 # ---- what must be refused ----
 refuses "one row" "at least 2 rows" "$BAKE" row.asc -o OUT.ffp
 refuses "voids only" "not one valid height" "$BAKE" void.asc -o OUT.ffp
@@ -229,6 +250,8 @@ refuses "spacing that is not a number" "number from" "$BAKE" metric.asc --spacin
 refuses "too coarse a spacing" "too coarse" "$BAKE" metric.asc --spacing 5000 -o OUT.ffp
 refuses "too fine a step" "span more than 65536 steps" "$BAKE" metric.asc --hscale 0.001 -o OUT.ffp
 refuses "a missing image" "cannot read" "$BAKE" metric.asc --color nowhere.png -o OUT.ffp
+gdal_translate -q -of GTiff -a_srs EPSG:4326 -a_ullr 10 50 11 49 image.ppm far.tif
+refuses "an image of other ground" "image" "$BAKE" south.asc --color far.tif --quiet -o OUT.ffp
 refuses "densify by three" "power of two" "$BAKE" metric.asc --densify 3 -o OUT.ffp
 refuses "an unknown ending" "ending must be" "$EXPORT" jobs1.ffp -o OUT.ffp
 refuses "a level the pack has not" "has levels 0 to" "$EXPORT" jobs1.ffp --level 12 -o OUT.tif
