@@ -31,16 +31,22 @@ static int open_listening(server *shared)
     return shared->listen_fd;
 }
 
+typedef struct shared_memory {
+    server_counters worker[SERVER_WORKERS_MAX], renderer[SERVER_RENDERERS_MAX];
+    server_job renderer_job[SERVER_RENDERERS_MAX];
+} shared_memory;
+
 static int open_shared(server *shared)
 {
-    size_t counters = SERVER_WORKERS_MAX + SERVER_RENDERERS_MAX;
     struct rlimit files;
-    shared->worker_counters = mmap(NULL, counters * sizeof(server_counters), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (shared->worker_counters == MAP_FAILED || server_channels_open(&shared->channels, shared->options.workers) < 0) {
+    shared_memory *memory = mmap(NULL, sizeof *memory, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED || server_channels_open(&shared->channels, shared->options.workers) < 0) {
         server_complain("cannot start: %s", strerror(errno));
         return FF_ERR_SYSTEM;
     }
-    shared->renderer_counters = shared->worker_counters + SERVER_WORKERS_MAX;
+    shared->worker_counters = memory->worker;
+    shared->renderer_counters = memory->renderer;
+    shared->renderer_job = memory->renderer_job;
     /* Where the system allows fewer, accepting stops at its limit. */
     if (getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur < shared->options.max_clients + OTHER_FILES) {
         rlim_t wanted = shared->options.max_clients + OTHER_FILES;

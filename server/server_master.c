@@ -78,6 +78,16 @@ static void schedule(child *c, int64_t now_us)
     c->pid = 0;
 }
 
+/* What a dead renderer was at has failed: its worker need not wait for it. */
+static void fail_job(master *m, unsigned renderer)
+{
+    static const uint8_t no_message[1];
+    server_job *job = &m->shared->renderer_job[renderer];
+    if (job->serial && job->worker < m->shared->options.workers)
+        server_result_send(&m->shared->channels, job, renderer, no_message, FF_ERR_SYSTEM, 0);
+    job->serial = 0;
+}
+
 static void bury(master *m, pid_t pid, int status)
 {
     for (unsigned i = 0; i < m->count; i++) {
@@ -85,6 +95,8 @@ static void bury(master *m, pid_t pid, int status)
         if (c->pid != pid)
             continue;
         server_say_death(m->shared, c->renderer, c->number, (int)pid, status);
+        if (c->renderer)
+            fail_job(m, c->number);
         schedule(c, sys_time_us());
         if (!m->started)
             m->failed = 1;

@@ -40,8 +40,10 @@ static void serve_jobs(server *shared, unsigned number, ff_panorama_renderer *re
             continue;
         if (job.worker >= shared->options.workers || sys_time_us() > job.deadline_us)
             continue;
+        shared->renderer_job[number] = job;
         int rc = server_renderer_face(renderer, &job.face, &shared->renderer_counters[number], face, SERVER_FACE_BYTES);
         server_result_send(&shared->channels, &job, number, face, rc, RESULT_WAIT_MS);
+        shared->renderer_job[number].serial = 0; /* not before it is sent: killed in between, the master speaks for it */
     }
 }
 

@@ -130,6 +130,42 @@ static void test_killed_renderers_cost_their_panorama_only(void **state)
     close_all(clients, count);
 }
 
+/* A renderer killed while it has the job: its panorama fails though the timeout is far away; then another draws. */
+static void test_panorama_of_a_killed_renderer_fails_at_once(void **state)
+{
+    (void)state;
+    pid_t child[HARNESS_CHILDREN_MAX];
+    ff_message message = { .type = FF_MSG_GET_PANORAMA };
+    message.u.panorama = (ff_get_panorama){ .id = 1, .position_wu = { 500000, 500000, 400000 }, .front_wu = 50000, .back_wu = 10000000,
+                                            .face_size = FF_FACE_SIZE_MAX, .quality = 100, .face_count = 4, .face = { 0, 1, 2, 3 } };
+    assert_true(harness_start(&server, "--workers 1 --renderers 1 --render-timeout 20 --panoramas-per-minute 6000"));
+    harness_client *client = harness_connect(&server, 1);
+    assert_non_null(client);
+    assert_int_equal(harness_children(&server, child), 2);
+    pid_t worker = harness_served_by(&server, client), renderer = child[0] == worker ? child[1] : child[0];
+    int failed = 0;
+    for (uint16_t id = 1; id < 50 && !failed; id++) { /* now and then the kill falls between two faces: their successor draws them */
+        message.type = FF_MSG_GET_PANORAMA;
+        message.u.panorama.id = id;
+        ff_get_panorama again = message.u.panorama;
+        assert_true(harness_tell(client, &message));
+        assert_int_equal(harness_hear(client, &message), 1); /* the first face: it is at the second now */
+        kill(renderer, SIGKILL);
+        while (message.type == FF_MSG_FACE && !(message.u.face.flags & FF_FACE_LAST))
+            assert_int_equal(harness_hear(client, &message), 1);
+        failed = message.type == FF_MSG_FAILED && message.u.failed.error == FF_ERR_SYSTEM;
+        assert_true(message.type == FF_MSG_FAILED || message.type == FF_MSG_FACE);
+        assert_true(harness_wait_children(&server, 2, renderer));
+        assert_int_equal(harness_children(&server, child), 2);
+        renderer = child[0] == worker ? child[1] : child[0];
+        message.u.panorama = again;
+    }
+    assert_true(failed);
+    assert_int_equal(harness_panorama_comes(client, 99), 1);
+    harness_close(client);
+    assert_int_equal(harness_stop(&server), 0);
+}
+
 static void test_nonsense_closes_its_own_connection_only(void **state)
 {
     (void)state;
@@ -284,6 +320,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_a_crowd, start, stop),
         cmocka_unit_test_setup_teardown(test_a_reader_that_does_not_read, start, stop),
         cmocka_unit_test_setup_teardown(test_truncated_pack_is_survived, start, stop),
+        cmocka_unit_test(test_panorama_of_a_killed_renderer_fails_at_once),
         cmocka_unit_test(test_stop_leaves_no_process_and_says_goodbye),
         cmocka_unit_test(test_children_die_with_a_killed_master),
         cmocka_unit_test(test_idle_clients_are_sent_away),
