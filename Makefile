@@ -95,6 +95,9 @@ server: $(BUILD)/bin/farfield-server ## the panorama server
 emulator: $(BUILD)/bin/farfield-view ## the desktop emulator
 flyover: $(BUILD)/bin/farfield-fly $(BUILD)/bin/farfield-link ## flights over emulated links
 
+demo: $(PROGRAMS) ## fetch real terrain, bake it, serve it, fly over it: pictures and a report in build/demo
+	@tools/demo.sh $(BUILD)/bin build/demo
+
 # ---- libfarfield: what an embedding program links ----
 LIBFARFIELD_OBJS = $(call obj,$(SRC_core) $(call srcs,platform) $(call srcs,platform/posix))
 lib: $(LIB)/libfarfield.a $(LIB)/libfarfield.so
@@ -129,14 +132,13 @@ $(BUILD)/tests/fuzz_%-replay: $(BUILD)/obj/tests/fuzz_%.o $(BUILD)/obj/tests/rep
 	@mkdir -p $(@D)
 	$(CC) $(OPT) $(LDFLAGS) $(filter %.o,$^) $(LINK_LIBS) $(GDAL_LIBS) -lcmocka -o $@
 
-# With clang there is libFuzzer: build/fuzz/fuzz_message -max_total_time=60 build/fuzz/new-message tests/corpus/message
-FUZZ_CFLAGS = -O1 -g -std=c11 -D_GNU_SOURCE -DFF_ENCODER=1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined
-fuzz: $(patsubst tests/%.c,build/fuzz/%,$(wildcard tests/fuzz_*.c)) ## libFuzzer targets into build/fuzz (needs clang)
-FUZZ_SRC = tests/slow_decoder.c tests/pack_fixture.c server/ff_session.c platform/posix/jpeg.c
-build/fuzz/fuzz_%: tests/fuzz_%.c $(FUZZ_SRC) $(filter protocol/%,$(SRC_core)) $(wildcard protocol/*.h)
+# With clang there is libFuzzer: build/fuzz/fuzz_message -max_total_time=60 NEW-INPUTS-DIR tests/corpus/message
+FUZZ_OPT := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined
+fuzz: ## libFuzzer targets into build/fuzz (needs clang)
 	@command -v clang >/dev/null || { echo "make fuzz: clang is not installed" >&2; exit 1; }
-	@mkdir -p $(@D)
-	clang $(FUZZ_CFLAGS) $(filter %.c,$^) -lz -ljpeg -o $@
+	@$(MAKE) CC=clang BUILD=build/fuzz OPT="$(FUZZ_OPT)" $(patsubst tests/%.c,build/fuzz/%,$(wildcard tests/fuzz_*.c))
+build/fuzz/fuzz_%: $(BUILD)/obj/tests/fuzz_%.o $(call obj,$(TEST_LIB_SRC)) $(LIBS)
+	clang $(FUZZ_OPT) -fsanitize=fuzzer $(LDFLAGS) $(filter %.o,$^) $(LINK_LIBS) $(GDAL_LIBS) -o $@
 
 # ---- installing: programs, libfarfield with its headers and farfield.pc, man pages ----
 BINDIR ?= $(PREFIX)/bin

@@ -118,7 +118,9 @@ static int prepare(const link_options *options, sim_link_desc *desc, int *listen
     *listen_fd = sys_tcp_listen(options->listen, 0, &port);
     if (*listen_fd < 0)
         return fail(options->listen, ff_error_text(*listen_fd));
-    fprintf(stderr, "farfield-link: %s on port %u, to %s, seed %" PRIu64 "\n", options->profile, port, options->connect, options->seed);
+    fprintf(stderr, "farfield-link: listening on %.*s:%u, %s to %s, seed %" PRIu64 "\n",
+            (int)(strrchr(options->listen, ':') - options->listen), options->listen, port, options->profile, options->connect,
+            options->seed);
     return 0;
 }
 

@@ -74,8 +74,8 @@ start_link() { # NAME ARGUMENTS...: sets $port and $link_pid
     "$link" --listen 127.0.0.1:0 --connect "127.0.0.1:$echo_port" --json "$@" >"$work/$name.json" 2>"$work/$name.err" &
     link_pid=$!
     pids+=("$link_pid")
-    wait_for "$work/$name.err" "on port"
-    port=$(sed -n 's/.* on port \([0-9]*\),.*/\1/p' "$work/$name.err")
+    wait_for "$work/$name.err" "listening on"
+    port=$(sed -n 's/.* listening on [^ ]*:\([0-9]*\),.*/\1/p' "$work/$name.err")
 }
 stop_link() { # WHAT
     kill -TERM "$link_pid"

@@ -53,7 +53,7 @@ say "terrain: Trinidad, Colorado (USGS, public domain) from Debian's $dem_packag
 fetch
 
 say "bake: $dem"
-"$bin/farfield-bake" "$dem" --scale 0.3048780488 -o "$pack"
+"$bin/farfield-bake" "$dem" --scale 0.3048780488 --tile-log2 7 -o "$pack"
 "$bin/farfield-info" "$pack"
 
 say "server and a UMTS link, real sockets, real time: 25 seconds"
@@ -63,7 +63,7 @@ server=$(address_of "$out/server.log" farfield-server)
 "$bin/farfield-link" --profile umts --listen 127.0.0.1:0 --connect "$server" --seed 1 >"$out/link.log" 2>&1 &
 link_pid=$!
 link=$(address_of "$out/link.log" farfield-link)
-fly live-umts none 25 on 240x320 --settle 10 --backend gles1 --every 5 --server "$link"
+fly live-umts umts 25 on 240x320 --settle 10 --backend gles1 --every 5 --server "$link"
 stop
 server_pid="" link_pid=""
 
