@@ -207,7 +207,7 @@ static int turn(view_app *app, int64_t now_us, int64_t dt_us)
     run_script(app);
     while (app->surface_api->poll(app->surface, &event)) view_handle(app, &event);
     place_pilot(app);
-    if (!app->interrupted && !app->settling) view_fly_step(&app->fly, dt_us, app->client);
+    if (!app->interrupted) view_fly_step(&app->fly, app->settling ? 0 : dt_us, app->client);
     int changed = ff_client_update(app->client, now_us, &app->fly.camera);
     if (app->settling) watch_settling(app, changed);
     /* During an interruption the screen is not ours: the last picture stays. */

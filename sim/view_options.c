@@ -151,7 +151,7 @@ static int take_value(view_options *o, int option, const char *text)
         o->yaw_brad16 = (int32_t)(value * 65536 / 360) & 65535;
         return 0;
     case OPT_MEMORY:
-        if (read_number(text, 1, 4096, &value)) return -1;
+        if (read_number(text, 0.01, 4096, &value)) return -1;
         o->memory_bytes = (size_t)(value * 1048576);
         return 0;
     default: /* OPT_FRAMES */
