@@ -138,7 +138,7 @@ fuzz: ## libFuzzer targets into build/fuzz (needs clang)
 	@command -v clang >/dev/null || { echo "make fuzz: clang is not installed" >&2; exit 1; }
 	@$(MAKE) CC=clang BUILD=build/fuzz OPT="$(FUZZ_OPT)" $(patsubst tests/%.c,build/fuzz/%,$(wildcard tests/fuzz_*.c))
 build/fuzz/fuzz_%: $(BUILD)/obj/tests/fuzz_%.o $(call obj,$(TEST_LIB_SRC)) $(LIBS)
-	clang $(FUZZ_OPT) -fsanitize=fuzzer $(LDFLAGS) $(filter %.o,$^) $(LINK_LIBS) $(GDAL_LIBS) -o $@
+	clang $(FUZZ_OPT) -fsanitize=fuzzer $(LDFLAGS) $(filter %.o,$^) $(LINK_LIBS) $(GDAL_LIBS) -lcmocka -o $@
 
 # ---- installing: programs, libfarfield with its headers and farfield.pc, man pages ----
 BINDIR ?= $(PREFIX)/bin
