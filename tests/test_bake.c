@@ -1,5 +1,6 @@
 /* The pieces of farfield-bake that hold promises by themselves: geometric error, void filling, densifying, tile choice, ordered
  * jobs, and a tile's records seen by a decoder. */
+#include "../platform/sys.h"
 #include "../protocol/ff_codec.h"
 #include "../tools/bake_densify.h"
 #include "../tools/bake_error.h"
@@ -209,6 +210,13 @@ static void check_records(uint16_t max_error)
     for (int i = 0; i < 25; i++) assert_int_equal(node[i], tile.decoded[i / 5 * 8 * 33 + i % 5 * 8]);
     assert_int_equal(residuals.child_error[0], ff_geometric_error_encode(bake_node_error(tile.source, tile.decoded, 33, 4, 8)));
     for (uint32_t l = 1; l < ff_terrain_levels(&info); l++) assert_int_equal(tile.level[l].record_count, 1u << (2 * (l - 1)));
+    const bake_blob *middle = &tile.level[2]; /* first refinement of level 1: children of 8 x 8 samples at the south-west */
+    assert_int_equal(ff_decode_refinement(decoder, middle->bytes, middle->length[0], &residuals), FF_OK);
+    for (int q = 0; q < 4; q++) {
+        int at = (q & 1) * 8 + (q >> 1) * 8 * 33;
+        uint32_t steps = bake_node_error(tile.source + at, tile.decoded + at, 33, 4, 2);
+        assert_int_equal(residuals.child_error[q], ff_geometric_error_encode(steps));
+    }
     const bake_blob *finest = &tile.level[3]; /* refinements of level 2: their children are the data itself */
     assert_int_equal(ff_decode_refinement(decoder, finest->bytes, finest->length[0], &residuals), FF_OK);
     for (int q = 0; q < 4; q++) assert_true(ff_geometric_error_decode(residuals.child_error[q]) <= max_error);
@@ -235,6 +243,7 @@ static int make_job(void *context, int worker, uint32_t job)
 {
     ledger *l = context;
     l->made[worker] = job;
+    if (job % 3 == 0) sys_sleep_us(200); /* others overtake it */
     return job == l->fail_at ? -1 : 0;
 }
 
