@@ -19,6 +19,8 @@ int main(int argc, char **argv)
         fprintf(stderr, "farfield-fly: %s: %s\n", options.csv_path, strerror(errno));
         rc = -1;
     }
+    if (csv)
+        setvbuf(csv, NULL, _IOLBF, 1024); /* rows can be followed while they are made */
     if (!rc)
         rc = fly_flight_run(&flight, &world, csv);
     if (!rc && options.json)
