@@ -28,15 +28,14 @@ static uint16_t wall_height(void *context, uint32_t x, uint32_t y)
     return y >= 88 ? 1000 : 100;
 }
 
-/* West half red, east half green. */
-static void halves_colour(void *context, int64_t x_wu, int64_t y_wu, uint8_t rgb[3])
+/* West half red, east half green; blue in the north. */
+static void quarters_colour(void *context, int64_t x_wu, int64_t y_wu, uint8_t rgb[3])
 {
     (void)context;
-    (void)y_wu;
     int west = x_wu < (int64_t)64 * 32 * METRE;
     rgb[0] = west ? 220 : 20;
     rgb[1] = west ? 20 : 200;
-    rgb[2] = 30;
+    rgb[2] = y_wu < (int64_t)64 * 32 * METRE ? 20 : 210;
 }
 
 static uint8_t *make_pack(ff_pack *pack, pack_fixture_desc desc)
@@ -49,7 +48,7 @@ static uint8_t *make_pack(ff_pack *pack, pack_fixture_desc desc)
 static int setup(void **state)
 {
     (void)state;
-    pack_fixture_desc images_desc = { .info = pack_fixture_info(6, 2, 2), .height = wall_height, .colour = halves_colour };
+    pack_fixture_desc images_desc = { .info = pack_fixture_info(6, 2, 2), .height = wall_height, .colour = quarters_colour };
     images_desc.info.texture_log2 = 5;
     images_desc.info.texture_levels = 3;
     hills_bytes = make_pack(&hills, (pack_fixture_desc){ .info = pack_fixture_info(6, 2, 2), .height = pack_fixture_hills });
@@ -164,10 +163,14 @@ static void test_down_face_has_north_at_its_top(void **state)
     int top = SIZE / 2 - 2048 * (SIZE / 2) / 5000, bottom = SIZE / 2 + 2048 * (SIZE / 2) / 5900;
     assert_in_range(picture.face.top_row, top - 1, top + 1);
     assert_in_range(picture.face.top_row + picture.face.row_count, bottom - 1, bottom + 1);
-    /* West is left, and red; east green. */
-    const uint8_t *row = picture.rgb + 3 * SIZE * (picture.face.row_count / 2);
-    assert_true(row[3 * 55] > 150 && row[3 * 55 + 1] < 90);
-    assert_true(row[3 * 73] < 90 && row[3 * 73 + 1] > 130);
+    /* West is left, and red; east green; north is up, and blue. */
+    for (int quarter = 0; quarter < 4; quarter++) {
+        int west = quarter & 1, north = quarter >> 1;
+        int row = SIZE / 2 + (north ? -7 : 7) - picture.face.top_row, column = SIZE / 2 + (west ? -9 : 9);
+        const uint8_t *pixel = picture.rgb + 3 * (SIZE * row + column);
+        assert_true(west ? pixel[0] > 150 && pixel[1] < 90 : pixel[0] < 90 && pixel[1] > 130);
+        assert_true(north ? pixel[2] > 150 : pixel[2] < 90);
+    }
     ff_panorama_renderer_close(with);
 }
 
