@@ -154,8 +154,10 @@ int ff_receive_messages(ff_stream *stream, int64_t now_us)
     stream->blocked = 0;
     while (rc == FF_OK && stream->state != FF_STREAM_WELCOMED) {
         at = skip_front(stream, at);
+        if (at == stream->recv_count)
+            break;
         ff_message message;
-        int count = at < stream->recv_count ? ff_message_decode(stream->recv + at, stream->recv_count - at, &message) : 0;
+        int count = ff_message_decode(stream->recv + at, stream->recv_count - at, &message);
         if (count < 0)
             return count;
         if (count == 0) {
