@@ -106,6 +106,30 @@ static void test_cache_serves_a_return(void **state)
     fixture_free(&fx);
 }
 
+/* A family that was not asked for finds no room by dropping the node it would refine, whatever sigma says. */
+static void test_own_family_is_spared(void **state)
+{
+    (void)state;
+    for (int32_t sigma = 257; sigma < 100000; sigma *= 300) {
+        terrain_fixture fx;
+        fixture_make(&fx, 3, 5, 1, 1, fixture_hills);
+        fixture_tree(&fx, 8, 8);
+        ff_view view = fixture_view(40, 40, 1000, 0, -90);
+        ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
+        quality.sigma_q8 = sigma;
+        quality.c_q8 = 128; /* nothing wants to split */
+        ff_tree_select(fx.tree, &view, &quality);
+        fixture_deliver(&fx, ff_key_make(0, 0, 0), 0);
+        ff_tree_select(fx.tree, &view, &quality);
+        assert_int_equal(fixture_deliver(&fx, ff_key_make(0, 0, 0), 1), FF_OK);
+        ff_tree_select(fx.tree, &view, &quality);
+        assert_int_equal(fixture_deliver(&fx, ff_key_make(0, 1, 3), 1), FF_ERR_FULL); /* its own family is not dropped for it */
+        assert_int_equal(stats_of(&fx).nodes_held, 5);
+        assert_int_equal(stats_of(&fx).pool_full, 1);
+        fixture_free(&fx);
+    }
+}
+
 static uint32_t evicted_users;
 static void note_eviction(void *context, uint32_t user)
 {
@@ -193,6 +217,7 @@ int main(void)
         cmocka_unit_test(test_full_pool_stays_still_for_10000_frames),
         cmocka_unit_test(test_more_roots_than_slots),
         cmocka_unit_test(test_cache_serves_a_return),
+        cmocka_unit_test(test_own_family_is_spared),
         cmocka_unit_test(test_user_words),
         cmocka_unit_test(test_largest_terrain_and_farthest_cameras),
         cmocka_unit_test(test_a_long_thin_world_of_many_tiles),

@@ -69,11 +69,10 @@ static void test_culling_never_drops_what_is_visible(void **state)
     terrain_fixture fx;
     make_usual(&fx, 3000);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
-    quality.c_q8 = 300;
+    quality.c_q8 = 600;
     quality.view_wu = INT32_MAX;
     ff_view home = fixture_view(1500, 1000, 300, 0, 0);
     fixture_settle(&fx, &home, &quality, 200);
-    quality.depth_max = 3;
     sys_random random;
     sys_random_seed(&random, 9, 9);
     uint32_t seen = 0, culled = 0;
@@ -85,6 +84,8 @@ static void test_culling_never_drops_what_is_visible(void **state)
         view.camera.pitch = i % 7 == 0 ? -16384 : (int32_t)sys_random_below(&random, 32768) - 16384;
         view.camera.roll = (int32_t)sys_random_below(&random, 65536);
         const int32_t tenths[] = {1, 10, 600, 1200, 1700};
+        if (i % 3 == 0) /* a steep look at one spot from above it: many node borders at the screen's edge */
+            view.camera.pitch = -14000;
         view.camera.focal_q8 = c3d_focal_q8((int32_t)((int64_t)tenths[i % 5] * 65536 / 3600), 240);
         ff_tree_select(fx.tree, &view, &quality);
         assert_nothing_visible_culled(&fx, &view, &seen);
@@ -202,11 +203,34 @@ static void test_height_has_no_steps(void **state)
     fixture_free(&fx);
 }
 
+static void test_nothing_drawn_beyond_view(void **state)
+{
+    (void)state;
+    terrain_fixture fx;
+    make_usual(&fx, 3000);
+    ff_view view = fixture_view_above(&fx, 1920, 1280, 200, 0, -10);
+    ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
+    quality.view_wu = 400 * M;
+    fixture_settle(&fx, &view, &quality, 200);
+    const ff_drawn *drawn;
+    uint32_t count = ff_tree_drawn(fx.tree, &drawn);
+    assert_true(count > 5);
+    for (uint32_t i = 0; i < count; i++)
+        assert_true(drawn[i].origin_wu[1] <= view.centre_wu[1] + 400 * M);
+    uint32_t cut = ff_tree_cut(fx.tree, &drawn);
+    for (uint32_t i = 0; i < cut; i++) { /* far ground is as coarse as its neighbours allow */
+        int far = drawn[i].origin_wu[1] > view.centre_wu[1] + 1000 * M;
+        assert_true(!far || ff_key_level(drawn[i].key) <= 2);
+    }
+    fixture_free(&fx);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_culling_never_drops_what_is_visible),
         cmocka_unit_test(test_culling_is_of_use),
+        cmocka_unit_test(test_nothing_drawn_beyond_view),
         cmocka_unit_test(test_drawn_nearest_first),
         cmocka_unit_test(test_vertices_and_height_agree),
         cmocka_unit_test(test_height_has_no_steps),

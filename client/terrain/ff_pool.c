@@ -49,7 +49,6 @@ uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent)
     if (parent == FF_SLOT_NONE) {
         node->list_next = tree->root_head;
         tree->root_head = slot;
-        tree->root_count++;
     }
     uint32_t held = tree->node_count - tree->free_count;
     if (held > tree->stats.nodes_high)
@@ -105,6 +104,5 @@ void ff_tree_drop_root(ff_tree *tree, ff_node *root)
     while (*link != ff_slot_of(tree, root))
         link = &tree->node[*link].list_next;
     *link = root->list_next;
-    tree->root_count--;
     give_slot(tree, ff_slot_of(tree, root));
 }

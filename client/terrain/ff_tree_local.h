@@ -51,7 +51,7 @@ struct ff_tree {
     ff_drawn *drawn;         /* node_count: the cut, its visible part first */
     ff_wish *wish;
     uint16_t *refined;       /* grid of four children */
-    uint32_t free_head, root_head, root_count, free_count;
+    uint32_t free_head, root_head, free_count;
     uint32_t cut_count, drawn_count, wish_count;
 
     ff_view asked_view, view;         /* of the last selection: as given, and brought into range */
