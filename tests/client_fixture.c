@@ -223,10 +223,12 @@ void rig_close(client_rig *rig)
 
 void rig_step(client_rig *rig, int64_t us)
 {
-    rig->now_us += us;
-    if (!rig->desc.use_thread)
+    rig->frame_us += us;
+    if (!rig->desc.use_thread) { /* else the server's time stands still: it belongs to the worker's thread */
+        rig->now_us += us;
         ff_client_work(rig->client, rig->now_us);
-    rig->updates += (unsigned)ff_client_update(rig->client, rig->now_us, &rig->camera);
+    }
+    rig->updates += (unsigned)ff_client_update(rig->client, rig->frame_us, &rig->camera);
 }
 
 ff_client_stats rig_stats(const client_rig *rig)

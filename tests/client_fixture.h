@@ -25,7 +25,7 @@ typedef struct client_rig {
     uint64_t bytes_down;
     unsigned connections;
     uint32_t asked[256];       /* messages from the client, by type */
-    int64_t now_us;
+    int64_t now_us, frame_us;  /* of server and worker; of the frames */
 
     void *memory;
     size_t memory_bytes;
