@@ -65,6 +65,7 @@ grid('holes.asc', 90, 70, place, lambda x, y: -9999 if 20 <= x < 31 and 30 <= y 
 grid('void.asc', 20, 20, place, lambda x, y: -9999)
 grid('row.asc', 20, 1, place, h)
 grid('float.asc', 64, 50, place, lambda x, y: '%.3f' % (h(x, y) / 7.0))
+grid('absurd.asc', 40, 30, place, lambda x, y: 'nan' if x == 5 else '1e30' if x == 7 else '-inf' if x == 9 else '%.1f' % (100 + x / 2))
 grid('south.asc', 120, 100, 'xllcorner -70.1\nyllcorner -33.1\ncellsize 0.001\nNODATA_value -9999\n', h)
 grid('world.asc', 360, 180, 'xllcorner -180\nyllcorner -90\ncellsize 1\n', h)
 open('world.prj', 'w').write('GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]]')
@@ -150,6 +151,22 @@ voids() {
         && grep -q "110 of 6300 samples are void" holes.err && [ "$(field height_min_m holes.json | cut -d. -f1)" -gt 0 ]
 }
 check "voids are filled and counted" voids
+
+absurd() {
+    "$BAKE" absurd.asc --json -o absurd.ffp >absurd.json 2>/dev/null && [ "$(field voids absurd.json)" = 90 ] \
+        && [ "$(field height_max_m absurd.json)" = 119.5 ] && [ "$(field height_min_m absurd.json)" = 100 ]
+}
+check "NaN, infinite and absurd heights are voids" absurd
+
+upside_down() { # a raster whose first row is the southern one comes out north-up
+    gdal_translate -q -of VRT -a_srs EPSG:32613 -a_ullr 500000 4002100 502700 4000000 metric.asc up.vrt \
+        && sed 's/4.002100[0-9e+]*, *0.0[0-9e+]*, *-3.0*[0-9e+]*/4.0000000000000000e+06, 0.0, 30.0/' up.vrt >down.vrt \
+        && "$BAKE" down.vrt --quiet -o down.ffp && "$EXPORT" down.ffp -o down.r16 && "$BAKE" up.vrt --quiet -o up.ffp \
+        && "$EXPORT" up.ffp -o up.r16 && python3 -c '
+a,b=(open(n,"rb").read() for n in ("up.r16","down.r16"))
+assert a==b"".join(b[180*y:180*y+180] for y in reversed(range(70)))'
+}
+check "rasters with their first row south come out the right way" upside_down
 
 filled_well() { # known samples stay, filled ones lie within the range of the rest
     "$EXPORT" holes.ffp -o holes.r16 && "$BAKE" metric.asc --quiet -o whole.ffp && "$EXPORT" whole.ffp -o whole.r16 && python3 -c '
@@ -243,6 +260,8 @@ refuses "a foreign file as raster" "cannot read" "$BAKE" t.json -o OUT.ffp
 refuses "a world in one UTM zone" "too wide for a UTM zone" "$BAKE" world.asc -o OUT.ffp
 refuses "an unwritable output" "cannot write" "$BAKE" metric.asc -o nowhere/OUT.ffp
 refuses "a directory as output" "not a plain file" "$BAKE" metric.asc -o .
+cp metric.asc same.asc
+refuses "its own input as output" "is the input" "$BAKE" same.asc -o ./same.asc
 refuses "no output" "no output given" "$BAKE" metric.asc
 refuses "an unknown option" "unknown or incomplete" "$BAKE" metric.asc --frobnicate -o OUT.ffp
 refuses "an absurd spacing" "number from" "$BAKE" metric.asc --spacing 1e9 -o OUT.ffp

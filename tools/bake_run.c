@@ -15,6 +15,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 
 #define TILE_LOG2_DEFAULT 10
 #define PADDING_MAX 1.5 /* padded samples to samples, for the default tile size */
@@ -199,10 +200,18 @@ static int make_pack(bake *b)
     return 0;
 }
 
+static int is_same_file(const char *path, const char *other)
+{
+    struct stat a, b;
+    return path && !stat(path, &a) && !stat(other, &b) && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
 int bake_run(const bake_options *options)
 {
     bake b = {.options = options, .heights = BAKE_GRID_CLOSED, .started_us = sys_time_us()};
     b.ground.grid = BAKE_GRID_CLOSED;
+    if (is_same_file(options->heights_path, options->out_path) || is_same_file(options->color_path, options->out_path))
+        return bake_fail("%s is the input: not overwritten", options->out_path);
     bake_temp_setup(options->out_path);
     if (pack_writer_prepare(options->out_path)) return -1;
     GDALAllRegister();
