@@ -306,6 +306,11 @@ static void test_still_wanted(void **state)
     ff_tree_select(fx.tree, &view, &quality);
     assert_int_equal(ff_tree_still_wanted(fx.tree, root, 0), 0);
     assert_int_equal(ff_tree_still_wanted(fx.tree, root, 1), 1);
+    ff_quality none = quality;
+    none.c_q8 = 0;
+    ff_tree_select(fx.tree, &view, &none);
+    assert_int_equal(ff_tree_still_wanted(fx.tree, root, 1), 0); /* held, not wanted finer */
+    ff_tree_select(fx.tree, &view, &quality);
     fixture_deliver(&fx, root, 1);
     assert_int_equal(ff_tree_still_wanted(fx.tree, root, 1), 0);
     fixture_settle(&fx, &view, &quality, 3);

@@ -114,10 +114,10 @@ static void test_own_family_is_spared(void **state)
         terrain_fixture fx;
         fixture_make(&fx, 3, 5, 1, 1, fixture_hills);
         fixture_tree(&fx, 8, 8);
-        ff_view view = fixture_view(40, 40, 1000, 0, -90);
+        ff_view view = fixture_view_above(&fx, 240, 240, 20, 0, -90); /* the child is nearer than its parent's middle */
         ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
         quality.sigma_q8 = sigma;
-        quality.c_q8 = 128; /* nothing wants to split */
+        quality.c_q8 = 8; /* nothing wants to split */
         ff_tree_select(fx.tree, &view, &quality);
         fixture_deliver(&fx, ff_key_make(0, 0, 0), 0);
         ff_tree_select(fx.tree, &view, &quality);
