@@ -35,6 +35,23 @@ void ff_face_find_spans(const uint8_t *rgb, uint32_t size, ff_face_spans *spans)
         }
 }
 
+void ff_face_lower(ff_face_spans *spans, uint32_t size)
+{
+    if (spans->row_count == 0)
+        return;
+    if (spans->top_row + spans->row_count < (int)size)
+        spans->row_count++;
+    uint16_t before = 0; /* of the column to the left, as it was */
+    for (uint32_t c = 0; c < size; c++) {
+        uint16_t here = spans->bottom[c], after = c + 1 < size ? spans->bottom[c + 1] : 0;
+        uint16_t lowest = before > here ? before : here;
+        lowest = (uint16_t)((after > lowest ? after : lowest) + 1);
+        before = here;
+        if (spans->top[c] < here)
+            spans->bottom[c] = lowest < spans->row_count ? lowest : spans->row_count;
+    }
+}
+
 /* The nearest column with ground; there is one. */
 static uint32_t nearest_column(const ff_face_spans *spans, uint32_t size, uint32_t column)
 {

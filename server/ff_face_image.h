@@ -21,6 +21,10 @@ typedef struct ff_face_spans {
 /* Spans of ground in a size by size picture, RGB888, top row first. */
 void ff_face_find_spans(const uint8_t *rgb, uint32_t size, ff_face_spans *spans);
 
+/* Lowers the spans' lower ends by a pixel, and to those beside them: there the near plane cuts ground that the client draws itself, in
+ * front, and rounding must not leave a gap between the two. */
+void ff_face_lower(ff_face_spans *spans, uint32_t size);
+
 /* Paints over all that is not ground within the spans' rows: ground is continued up, down, into holes and sideways, so that neither
  * JPEG nor filtering brings a foreign colour to its edge. */
 void ff_face_fill(uint8_t *rgb, uint32_t size, const ff_face_spans *spans);

@@ -168,6 +168,7 @@ static int draw_face(ff_panorama_renderer *renderer, const ff_get_panorama *requ
         renderer->stats.empty_drawn++;
         return FF_OK;
     }
+    ff_face_lower(&renderer->spans, request->face_size);
     ff_face_fill(renderer->rgb, request->face_size, &renderer->spans);
     int image_bytes = encode_image(renderer, request->face_size, request->quality);
     if (image_bytes < 0)

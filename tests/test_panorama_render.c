@@ -344,6 +344,21 @@ static void test_fill_continues_ground(void **state)
     assert_memory_equal(rgb, key, 3);                   /* above the rows nothing matters */
 }
 
+static void test_spans_are_lowered_by_a_pixel(void **state)
+{
+    (void)state;
+    static ff_face_spans spans;
+    spans = (ff_face_spans){ .top_row = 3, .row_count = 4, .top = { 0, 1, 0, 0, 2 }, .bottom = { 4, 2, 0, 0, 3 } };
+    ff_face_lower(&spans, 8);
+    static const uint16_t lowered[] = { 5, 5, 0, 0, 4, 0 };
+    assert_memory_equal(spans.bottom, lowered, sizeof lowered);
+    assert_int_equal(spans.row_count, 5);
+    spans = (ff_face_spans){ .top_row = 4, .row_count = 4, .top = { 0, 1 }, .bottom = { 4, 2 } };
+    ff_face_lower(&spans, 8); /* the face ends there */
+    assert_int_equal(spans.bottom[0], 4);
+    assert_int_equal(spans.row_count, 4);
+}
+
 static void test_boxes_in_faces(void **state)
 {
     (void)state;
@@ -381,6 +396,7 @@ int main(void)
         cmocka_unit_test(test_egl_agrees_with_osmesa),
         cmocka_unit_test(test_gles1_agrees_with_osmesa),
         cmocka_unit_test(test_fill_continues_ground),
+        cmocka_unit_test(test_spans_are_lowered_by_a_pixel),
         cmocka_unit_test(test_boxes_in_faces),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
