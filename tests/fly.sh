@@ -5,8 +5,7 @@ set -u
 cd "$(dirname "$0")/.." || exit 2
 bin=${BIN:-build/bin}
 fly=$bin/farfield-fly
-work=build/tests/fly
-rm -rf "$work"
+work=build/tests/fly.$$ # runs may go on side by side; left behind only after a failure
 mkdir -p "$work"
 failures=0
 server_pid=
@@ -180,4 +179,5 @@ refused "too little memory" --pack "$work/hills.ffp" --memory 1K --backend none
 refused "a CSV that cannot be written" --pack "$work/hills.ffp" --csv "$work/missing/x.csv" --backend none
 "$fly" --help | grep -q -- --pack && "$fly" --version | grep -q "^farfield-fly [0-9]"
 result $? "--help and --version"
+[ $failures = 0 ] && rm -rf "$work"
 exit $((failures > 0))

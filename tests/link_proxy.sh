@@ -4,8 +4,7 @@
 set -u
 cd "$(dirname "$0")/.." || exit 2
 link=${BIN:-build/bin}/farfield-link
-work=build/tests/link_proxy
-rm -rf "$work"
+work=build/tests/link_proxy.$$ # runs may go on side by side; left behind only after a failure
 mkdir -p "$work"
 failures=0
 pids=()
@@ -131,4 +130,5 @@ refused "a port in use" --profile lan --listen "127.0.0.1:$echo_port" --connect 
 result $? "--help and --version"
 "$link" --list | grep -q "^gprs "
 result $? "--list"
+[ $failures = 0 ] && rm -rf "$work"
 exit $((failures > 0))
