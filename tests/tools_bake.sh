@@ -133,9 +133,10 @@ same_bytes() {
     for jobs in 1 2 5; do
         "$BAKE" plain.r16 --raw 150x131 --spacing 10 --color image.ppm --tile-log2 5 --jobs $jobs --quiet -o jobs$jobs.ffp || return 1
     done
-    cmp jobs1.ffp jobs2.ffp && cmp jobs1.ffp jobs5.ffp
+    "$BAKE" south.asc --jobs 1 --quiet -o south1.ffp && "$BAKE" south.asc --jobs 4 --quiet -o south4.ffp || return 1
+    cmp jobs1.ffp jobs2.ffp && cmp jobs1.ffp jobs5.ffp && cmp south1.ffp south4.ffp
 }
-check "same bytes for 1, 2 and 5 jobs" same_bytes
+check "same bytes for any number of jobs, projected or not" same_bytes
 
 levels() {
     "$EXPORT" jobs1.ffp --level 0 -o l0.r16 && [ "$(wc -c <l0.r16)" -eq $((2 * 38 * 33)) ] \
