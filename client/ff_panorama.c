@@ -19,6 +19,7 @@ void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panora
     panorama->face_size = (uint16_t)face_size;
     panorama->active = panorama->next = -1;
     panorama->retry_us = INT64_MIN;
+    panorama->rest_us = INT64_MAX;
     static const uint16_t quad[4] = {0, 1, 2, 3};
     if (device && face_size)
         panorama->quad = c3d_strip_make(device, quad, 4);
@@ -48,17 +49,18 @@ static unsigned known(const ff_panorama_set *set)
     return (unsigned)set->held | set->empty | set->failed;
 }
 
-static void begin_set(ff_panorama *panorama, const c3d_camera *camera)
+static void begin_set(ff_panorama *panorama, const c3d_camera *camera, int64_t now_us)
 {
     int index = panorama->active == 0 ? 1 : 0;
     drop_set(panorama, index);
     memcpy(panorama->set[index].position_wu, camera->pos_wu, sizeof camera->pos_wu);
     panorama->set[index].key = ++panorama->serial;
+    panorama->set[index].asked_us = now_us;
     panorama->next = (int8_t)index;
 }
 
 /* The set that is coming has all that is in view: it takes over. */
-static int take_over(ff_panorama *panorama, unsigned in_view)
+static int take_over(ff_panorama *panorama, unsigned in_view, int64_t now_us)
 {
     if (panorama->next < 0 || (in_view & ~known(&panorama->set[panorama->next])) != 0)
         return 0;
@@ -66,6 +68,7 @@ static int take_over(ff_panorama *panorama, unsigned in_view)
         drop_set(panorama, panorama->active);
     panorama->active = panorama->next;
     panorama->next = -1;
+    panorama->rest_us = now_us + (now_us - panorama->set[panorama->active].asked_us);
     return 1;
 }
 
@@ -73,7 +76,11 @@ int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_c
 {
     if (!panorama->desc.enabled || !panorama->face_size)
         return 0;
-    int changed = take_over(panorama, ff_panorama_faces_in_view(camera));
+    int changed = take_over(panorama, ff_panorama_faces_in_view(camera), now_us);
+    if (panorama->rest_us <= now_us) { /* time to want the rest */
+        panorama->rest_us = INT64_MAX;
+        changed = 1;
+    }
     int newest = panorama->next >= 0 ? panorama->next : panorama->active;
     if (hold || now_us < panorama->retry_us)
         return changed;
@@ -88,7 +95,7 @@ int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_c
         return changed; /* one set outstanding at most */
     if (newest >= 0 && ff_requests_cancel(requests, panorama->set[newest].key) && !panorama->desc.hold_back)
         return changed; /* the old set's last faces are still on their way: wait for the answer to the cancellation */
-    begin_set(panorama, camera);
+    begin_set(panorama, camera, now_us);
     return 1;
 }
 
@@ -105,14 +112,14 @@ static void list_faces(ff_get_panorama *request, unsigned missing, const c3d_cam
                 request->face[request->face_count++] = (uint8_t)face;
 }
 
-void ff_panorama_want(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int64_t now_us)
+void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int64_t now_us)
 {
     int newest = panorama->next >= 0 ? panorama->next : panorama->active;
     if (!panorama->desc.enabled || newest < 0 || now_us < panorama->retry_us)
         return;
     const ff_panorama_set *set = &panorama->set[newest];
     unsigned missing = ALL_FACES & ~known(set), in_view = missing & ff_panorama_faces_in_view(camera);
-    if (!missing)
+    if (!missing || (!in_view && panorama->rest_us != INT64_MAX))
         return;
     ff_get_panorama request = {.front_wu = panorama->desc.back_plane_wu, .back_wu = panorama->desc.server_back_wu,
                                .face_size = panorama->face_size, .quality = panorama->desc.jpeg_quality};

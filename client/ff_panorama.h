@@ -1,8 +1,9 @@
 /* Far ground as pictures: at most two sets of cube faces, the one drawn and the one that is coming (Hybrid, section 6.2).
  *
  * A set is taken at one point O. The set that is coming replaces the drawn one only when all of its faces in view are here, so no
- * picture ever mixes two O. Faces in view are asked for first, the others when nothing in view is missing; a face the server
- * found without far ground is never asked for again for that O. Unless hold_back says otherwise at most one panorama request
+ * picture ever mixes two O. Faces in view are asked for first; the others when nothing in view is missing and the set has been
+ * in use for as long as it took to come: on a link so slow that sets are outdated before that, they are never asked for. A face
+ * the server found without far ground is not asked for again for that O. Unless hold_back says otherwise at most one panorama request
  * is out, and no newer O is asked for while one is coming. A superseded request is cancelled. */
 #ifndef FF_PANORAMA_H
 #define FF_PANORAMA_H
@@ -15,6 +16,7 @@
 typedef struct ff_panorama_set {
     int32_t position_wu[3];
     ff_key key;                       /* of its requests */
+    int64_t asked_us;
     uint8_t held, empty, failed;      /* bit per enum ff_face_name */
     c3d_texture texture[FF_FACE_COUNT];
     c3d_mesh mesh[FF_FACE_COUNT];
@@ -32,6 +34,7 @@ typedef struct ff_panorama {
     ff_panorama_set set[2];
     uint32_t serial;
     int64_t retry_us;                 /* not before */
+    int64_t rest_us;                  /* faces out of view not before; INT64_MAX: none are due */
     uint32_t faces, faces_empty;
 } ff_panorama;
 
@@ -41,7 +44,7 @@ void ff_panorama_drop(ff_panorama *panorama);
 /* Applies the refresh rules; `hold`: ask for nothing new. 1 when the drawn set or what is wanted changed. */
 int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int hold, int64_t now_us);
 /* Puts what is missing into the ranking under way. */
-void ff_panorama_want(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int64_t now_us);
+void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int64_t now_us);
 /* Takes in a face or a refusal; 1 when it belongs to a set still wanted. */
 int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now_us);
 void ff_panorama_draw(const ff_panorama *panorama, int32_t near_wu);

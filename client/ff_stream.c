@@ -186,6 +186,9 @@ static int ask(ff_stream *stream, int64_t now_us)
         }
         moved = 1;
     }
+    sys_mutex_lock(&requests->mutex);
+    stream->link.window_full |= requests->counts.queued != 0; /* more would have gone */
+    sys_mutex_unlock(&requests->mutex);
     return moved;
 }
 
