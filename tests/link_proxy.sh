@@ -21,11 +21,11 @@ with open(sys.argv[1], "w") as file:
     file.write(str(listener.getsockname()[1]) + "\n")
 def serve(connection):
     with connection:
-        while True:
-            data = connection.recv(65536)
-            if not data:
-                return
-            connection.sendall(data)
+        try:
+            while data := connection.recv(65536):
+                connection.sendall(data)
+        except OSError:
+            pass # cut
 while True:
     threading.Thread(target=serve, args=(listener.accept()[0],), daemon=True).start()
 END
