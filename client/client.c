@@ -204,7 +204,7 @@ void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama)
     client->dirty = 1;
     if (!client->have_terrain)
         return;
-    if (panorama->enabled && !face_size && client->desc.stream) {
+    if (panorama->enabled && !face_size && !client->economy && client->desc.stream) {
         /* the block was shared out without panoramas: share it out anew, with the terrain asked for again */
         sys_mutex_lock(&client->gate);
         ff_client_uncarve(client);

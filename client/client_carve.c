@@ -5,27 +5,41 @@
 
 #define NODES_MAX 16384u
 #define NODES_MIN 8u
-#define VIEW_ENTRIES_MIN 16u
+#define VIEW_ENTRIES_MIN 4u
 #define VIEW_ENTRIES_MAX 4096u
 #define ITEMS_MAX 24u
 #define ITEMS_MIN 4u
 #define FACE_SIZE_MIN 64u
-#define STRIP_INDICES_MAX 24576u /* the masks of the largest nodes, sky and faces */
+#define EXTRA_INDICES 96u /* sky and faces */
+#define IMAGE_SHARE 5u    /* of the block, at most one in so many bytes are images on their way in */
 #define EXTRA_STRIPS 4
+#define ECONOMY_STEPS 3
 #define TEXTURES_MIN 8u
 #define TEXTURES_MAX 512u
+
+/* An image of side * side texels, once as RGB888 and once as 16 bit. */
+static int image_fits(const ff_client *client, size_t side)
+{
+    return side * side * 5 <= client->arena.bytes / IMAGE_SHARE;
+}
 
 /* Largest power of two up to `size` whose images take at most a fifth of the block. */
 static unsigned fit_face_size(const ff_client *client)
 {
     unsigned size = FF_FACE_SIZE_MAX;
-    if (!client->desc.panorama.enabled || client->desc.pack)
+    if (!client->desc.panorama.enabled || client->desc.pack || client->economy >= 1)
         return 0;
     while (size > client->desc.panorama.face_size)
         size /= 2;
-    while (size > FACE_SIZE_MIN && (size_t)size * size * 5 > client->arena.bytes / 5)
+    while (size > FACE_SIZE_MIN && !image_fits(client, size))
         size /= 2;
     return size;
+}
+
+static int can_have_textures(const ff_client *client)
+{
+    return client->info.texture_log2 && client->info.texture_levels && !client->desc.no_textures && client->economy < 2 &&
+           image_fits(client, (size_t)1 << client->info.texture_log2);
 }
 
 static int carve_images(ff_client *client, unsigned face_size)
@@ -84,8 +98,21 @@ static c3d_desc device_desc(const ff_client *client, unsigned entries, unsigned 
     desc.strip_count = FF_STRIP_COUNT_MAX + EXTRA_STRIPS;
     desc.texture_count = (uint16_t)(texture_share + 1 /* the caller's text */ + (face_size ? FF_PANORAMA_MESHES : 0));
     desc.mesh_vertices_max = (uint16_t)(side * side > FF_SKY_VERTICES ? side * side : FF_SKY_VERTICES);
-    desc.strip_indices_max = STRIP_INDICES_MAX;
+    desc.strip_indices_max = client->view.strip_indices + EXTRA_INDICES;
     return desc;
+}
+
+/* How many indices the strips of this terrain's nodes have. */
+static int count_indices(ff_client *client)
+{
+    size_t mark = client->arena.used;
+    ff_strips *strips = ff_arena_take(&client->arena, sizeof *strips);
+    int rc = strips ? ff_strips_make(strips, client->info.node_log2) : FF_ERR_MEMORY;
+    client->view.strip_indices = 0;
+    for (unsigned i = 0; rc == FF_OK && i < strips->count; i++)
+        client->view.strip_indices += strips->length[i];
+    ff_arena_back_to(&client->arena, mark);
+    return rc;
 }
 
 /* As many meshes as `share` bytes hold, at most *entries. FF_ERR_MEMORY when buffers were asked for and the library has none. */
@@ -114,7 +141,10 @@ static int carve_device(ff_client *client, unsigned face_size, unsigned *entries
             *entries /= 2;
         return FF_OK;
     }
-    int rc = client->desc.use_plain_arrays ? FF_ERR_MEMORY : open_device(client, face_size, entries, share, 1);
+    int rc = count_indices(client);
+    if (rc != FF_OK)
+        return rc;
+    rc = client->desc.use_plain_arrays ? FF_ERR_MEMORY : open_device(client, face_size, entries, share, 1);
     return rc == FF_ERR_MEMORY ? open_device(client, face_size, entries, share, 0) : rc;
 }
 
@@ -161,10 +191,10 @@ static int carve_tree(ff_client *client)
     return client->tree ? FF_OK : FF_ERR_MEMORY;
 }
 
-int ff_client_carve(ff_client *client)
+static int carve_all(ff_client *client)
 {
     unsigned entries = 0, face_size = fit_face_size(client);
-    client->has_textures = client->info.texture_log2 && client->info.texture_levels && !client->desc.no_textures;
+    client->has_textures = (uint8_t)can_have_textures(client);
     int rc = carve_decoder(client);
     if (rc == FF_OK)
         rc = carve_images(client, face_size);
@@ -181,11 +211,23 @@ int ff_client_carve(ff_client *client)
         ff_client_uncarve(client);
         return rc;
     }
-    ff_arena_seal(&client->arena);
     ff_terrain_view_attach(&client->view, client->tree);
     ff_panorama_init(&client->panorama, client->device, &client->desc.panorama, face_size);
     ff_motion_reset(&client->motion);
     memset(&client->refusals, 0, sizeof client->refusals);
+    return FF_OK;
+}
+
+/* Where memory is short for this terrain, panoramas are left out, then images: coarser, never wrong. */
+int ff_client_carve(ff_client *client)
+{
+    int rc = FF_ERR_MEMORY;
+    for (client->economy = 0; rc == FF_ERR_MEMORY && client->economy < ECONOMY_STEPS; client->economy++)
+        rc = carve_all(client);
+    client->economy--;
+    if (rc != FF_OK)
+        return rc;
+    ff_arena_seal(&client->arena);
     client->have_terrain = client->dirty = 1;
     return FF_OK;
 }

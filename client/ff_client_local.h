@@ -37,7 +37,8 @@ struct ff_client {
     uint8_t *recv;
     uint32_t recv_bytes;
 
-    uint8_t have_terrain, unusable; /* unusable: the terrain WELCOMEd does not fit this block */
+    uint8_t have_terrain;
+    uint8_t economy;         /* left out for want of memory: 1 panoramas, 2 images too */
     ff_terrain_info info;
     ff_tree *tree;
     c3d_device *device;

@@ -21,7 +21,7 @@ typedef struct ff_terrain_view {
     c3d_device *device;      /* NULL: geometry only */
     ff_view_node *entry;
     uint32_t entry_count, hand, stamp;
-    uint32_t held, held_high, heights_per_node;
+    uint32_t held, held_high, heights_per_node, strip_indices;
     c3d_vertex *vertices;    /* scratch for one node */
     c3d_strip strip[FF_STRIP_COUNT_MAX];
 } ff_terrain_view;

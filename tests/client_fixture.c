@@ -177,6 +177,11 @@ void rig_open(client_rig *rig, unsigned texture_log2)
     rig->now_us = 1000000;
 }
 
+void rig_use_node_log2(client_rig *rig, unsigned node_log2, unsigned texture_log2)
+{
+    open_pack(rig, texture_log2, node_log2, 0);
+}
+
 void rig_change_terrain(client_rig *rig)
 {
     if (rig->session)

@@ -37,6 +37,8 @@ typedef struct client_rig {
 
 /* The usual pack of hills, with images when texture_log2 is not 0; no client yet. */
 void rig_open(client_rig *rig, unsigned texture_log2);
+/* The same ground in nodes of another size. */
+void rig_use_node_log2(client_rig *rig, unsigned node_log2, unsigned texture_log2);
 /* Another terrain for all further connections. */
 void rig_change_terrain(client_rig *rig);
 /* A client of `bytes` over the stream; rig->desc's other fields are the test's to set before. */

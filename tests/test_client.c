@@ -67,6 +67,7 @@ static void still_camera_means_stillness(void **state)
     assert_int_equal(after.requests_sent, before.requests_sent);
     assert_int_equal(after.frames_skipped, before.frames_skipped + 200);
     assert_int_equal(after.bytes_up, before.bytes_up);
+    assert_int_equal(after.tree.selects + after.tree.selects_skipped, before.tree.selects + before.tree.selects_skipped);
     assert_int_equal(ff_client_geometry_hash(rig.client), hash);
     rig_close(&rig);
 }
@@ -193,8 +194,21 @@ static void one_set_outstanding_at_most(void **state)
     }
     assert_int_equal(rig.asked[FF_MSG_GET_PANORAMA], 1);
     assert_true(rig_stats(&rig).tree.nodes_drawn > 5);
+    int32_t taken_wu[3], old_wu[3];
+    unsigned faces;
+    assert_false(ff_client_panorama(rig.client, taken_wu, &faces)); /* nothing to show is not shown */
     rig.no_faces = 0;
     assert_true(rig_settle(&rig, 400));
+    assert_true(ff_client_panorama(rig.client, old_wu, &faces));
+    assert_int_equal(faces, 0x3f);
+
+    rig.no_faces = 1; /* a new set is due and does not come: the old one stays whole */
+    rig.camera.pos_wu[1] -= 200 * METRE;
+    for (int i = 0; i < 20; i++)
+        rig_step(&rig, 50000);
+    assert_true(ff_client_panorama(rig.client, taken_wu, &faces));
+    assert_memory_equal(taken_wu, old_wu, sizeof taken_wu);
+    assert_int_equal(faces, 0x3f);
     assert_requests_add_up(&rig);
     rig_close(&rig);
 }
