@@ -9,6 +9,7 @@ set -u
 cd "$(dirname "$0")/.." || exit 2
 : "${BUILD:=build/san}" "${JOBS:=$(nproc)}" "${SUITE_TIMEOUT_S:=600}"
 logs=$BUILD/test-logs
+mkdir -p build/tests "$logs"
 
 # Runs suite KIND:NAME, leaves its output and counts in $logs and prints one line of progress.
 run_suite() {
