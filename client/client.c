@@ -178,10 +178,12 @@ int ff_client_work(ff_client *client, int64_t now_us)
 
 void ff_client_event(ff_client *client, const sys_event *event)
 {
+    if (event->type != SYS_EVENT_BATTERY && event->type != SYS_EVENT_INTERRUPTION)
+        return;
     sys_mutex_lock(&client->gate);
     if (event->type == SYS_EVENT_BATTERY)
         client->battery_low = event->u.battery.low != 0;
-    else if (event->type == SYS_EVENT_INTERRUPTION)
+    else
         client->interrupted = event->u.interruption.begins != 0;
     client->dirty = 1;
     sys_mutex_unlock(&client->gate);

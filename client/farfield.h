@@ -87,10 +87,12 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera
 /* Draws the last update through the back end (no present). */
 void ff_client_draw(ff_client *client);
 
-/* Device events (battery, interruption): what does not concern the client is ignored. */
+/* Device events; what does not concern the client is ignored. Battery low or an interruption (a call): C halved or pixels of error
+ * doubled, no prefetch, no new panoramas; an interruption also asks for nothing new, the link is just kept alive. Restored after. */
 void ff_client_event(ff_client *client, const sys_event *event);
 
-/* Settings that may change between frames. */
+/* Settings that may change between frames. Panoramas switched on in a block shared out without them: the terrain is given up, the
+ * block shared out anew and the ground asked for again. */
 void ff_client_set_quality(ff_client *client, const ff_quality *quality);
 void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama);
 enum ff_show { FF_SHOW_WIREFRAME = 1, FF_SHOW_NODE_BORDERS = 2, FF_SHOW_NO_FOG = 4 };

@@ -292,6 +292,11 @@ static void low_power_is_coarser_and_recovers(void **state)
     rig_client(&rig, 2 * MB);
     assert_true(rig_settle(&rig, 400));
     uint32_t triangles = rig_stats(&rig).tree.triangles;
+    sys_event touch = {.type = SYS_EVENT_POINTER};
+    unsigned updates = rig.updates;
+    ff_client_event(rig.client, &touch); /* of no concern */
+    rig_step(&rig, 50000);
+    assert_int_equal(rig.updates, updates);
     sys_event event = {.type = SYS_EVENT_BATTERY};
     event.u.battery.low = 1;
     ff_client_event(rig.client, &event);
