@@ -131,7 +131,7 @@ done
 "$bin/farfield-server" --pack "$work/hills.ffp" --listen 127.0.0.1:0 >"$work/server.log" 2>&1 &
 server_pid=$!
 for _ in $(seq 200); do
-    grep -q "listening on" "$work/server.log" && break
+    grep -q "listening on.*renderers" "$work/server.log" && break
     sleep 0.05
 done
 port=$(sed -n 's/.*listening on [^ ]*:\([0-9]*\).*/\1/p' "$work/server.log")
