@@ -7,7 +7,8 @@
 #define NEAR_WU_MAX (1 << 20)
 #define LOW_POWER_DIVISOR 2       /* C halved, pixels of error doubled */
 
-ff_quality ff_client_quality(const ff_client *client)
+/* What is in force: as set, or coarser while power is low. */
+static ff_quality quality_in_force(const ff_client *client)
 {
     ff_quality quality = client->desc.quality;
     if (client->panorama.desc.enabled && client->panorama.face_size)
@@ -119,7 +120,7 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera
     }
     unsigned taken = take_new_data(client, now_us, &pictures_changed);
     int moved = !client->has_camera || !same_camera(&client->camera, camera);
-    ff_quality quality = ff_client_quality(client);
+    ff_quality quality = quality_in_force(client);
     ff_view view;
     make_view(client, camera, &quality, &view);
     ff_motion_feed(&client->motion, now_us, camera->pos_wu);
@@ -177,7 +178,7 @@ static void fit_planes(const ff_client *client, c3d_camera *camera)
 
 static void set_fog(const ff_client *client, c3d_frame *frame)
 {
-    ff_quality quality = ff_client_quality(client);
+    ff_quality quality = quality_in_force(client);
     if (client->panorama.active >= 0 || (client->show & FF_SHOW_NO_FOG))
         return; /* the join with the panorama must not show */
     frame->fog_start_wu = quality.view_wu / 2;

@@ -63,8 +63,6 @@ int ff_client_carve(ff_client *client);
 void ff_client_uncarve(ff_client *client);
 /* client_rank.c: the request queue anew from what tree, textures, panorama and prediction want. */
 void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality, int64_t now_us);
-/* client_update.c: what quality is in force: as set, or coarser while power is low. */
-ff_quality ff_client_quality(const ff_client *client);
 static inline int ff_client_low_power(const ff_client *client) { return client->battery_low || client->interrupted; }
 
 #endif

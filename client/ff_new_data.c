@@ -19,11 +19,6 @@ void ff_new_data_init(ff_new_data *list, unsigned item_slots, unsigned values, v
     int32_t *value = (int32_t *)(void *)(list->item + item_slots);
     for (unsigned i = 0; i < item_slots; i++)
         list->item[i].residuals.value = value + (size_t)i * values;
-    ff_new_data_clear(list);
-}
-
-void ff_new_data_clear(ff_new_data *list)
-{
     sys_mutex_lock(&list->mutex);
     list->head = list->count = list->image_head = list->image_count = 0;
     sys_mutex_unlock(&list->mutex);

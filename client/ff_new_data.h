@@ -36,7 +36,6 @@ typedef struct ff_new_data {
 size_t ff_new_data_item_bytes(unsigned item_slots, unsigned values);
 void ff_new_data_init(ff_new_data *list, unsigned item_slots, unsigned values, void *items, unsigned image_slots,
                       size_t image_bytes, void *images);
-void ff_new_data_clear(ff_new_data *list);
 
 /* Worker: the next free item (with an image slot in pixels when `image`), or NULL: full. Nothing is visible until _put. */
 ff_new_item *ff_new_data_begin(ff_new_data *list, int image);

@@ -198,15 +198,6 @@ void ff_requests_cancel_panoramas(ff_requests *requests)
     sys_mutex_unlock(&requests->mutex);
 }
 
-enum ff_request_state ff_requests_state(ff_requests *requests, enum ff_request_kind kind, ff_key key)
-{
-    sys_mutex_lock(&requests->mutex);
-    const ff_request *request = find(requests, kind, key);
-    enum ff_request_state state = request ? (enum ff_request_state)request->state : FF_REQUEST_FREE;
-    sys_mutex_unlock(&requests->mutex);
-    return state;
-}
-
 void ff_requests_finish(ff_requests *requests, uint16_t id, enum ff_request_state final)
 {
     sys_mutex_lock(&requests->mutex);

@@ -81,8 +81,6 @@ void ff_requests_rank_end(ff_requests *requests);
 int ff_requests_cancel(ff_requests *requests, ff_key key);
 /* The same for all panoramas. */
 void ff_requests_cancel_panoramas(ff_requests *requests);
-/* State of the request of this kind and key; FF_REQUEST_FREE: none. */
-enum ff_request_state ff_requests_state(ff_requests *requests, enum ff_request_kind kind, ff_key key);
 /* Ends an ARRIVING request in a final state. */
 void ff_requests_finish(ff_requests *requests, uint16_t id, enum ff_request_state final);
 
