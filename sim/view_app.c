@@ -32,10 +32,11 @@ static int open_surface(view_app *app, const char *backend)
 static int create_client(view_app *app, const char *backend)
 {
     const view_options *o = app->options;
+    app->backend = strcmp(backend, "gl") ? c3d_backend_gles1() : c3d_backend_gl();
     ff_client_desc desc = {
         .memory = app->memory, .memory_bytes = o->memory_bytes,
         .stream = app->link ? &app->stream : NULL, .pack = app->link ? NULL : &app->pack,
-        .backend = strcmp(backend, "gl") ? c3d_backend_gles1() : c3d_backend_gl(), .surface_api = app->surface_api,
+        .backend = app->backend, .surface_api = app->surface_api,
         .width = (uint16_t)o->width, .height = (uint16_t)o->height,
         .quality = app->quality, .panorama = app->panorama,
         .use_thread = 1, .use_plain_arrays = (uint8_t)o->plain_arrays};
@@ -117,7 +118,7 @@ int view_app_open(view_app *app, const view_options *options)
 
 void view_app_close(view_app *app)
 {
-    view_hud_close(&app->hud, app->client);
+    view_wait_close(&app->wait);
     if (app->client) ff_client_destroy(app->client);
     if (app->surface) app->surface_api->close(app->surface);
     view_link_destroy(app->link);
@@ -128,25 +129,36 @@ void view_app_close(view_app *app)
 }
 
 /* ---- one frame ---- */
-static int write_screenshot(view_app *app)
+static int write_screenshot(view_app *app, c3d_device *device)
 {
     const c3d_camera *camera = &app->fly.camera;
     const char *path = app->screenshot;
     uint8_t *rgb = malloc((size_t)camera->width * camera->height * 3);
-    int rc = rgb ? c3d_read_rgb(ff_client_device(app->client), rgb) : FF_ERR_MEMORY;
+    int rc = rgb ? c3d_read_rgb(device, rgb) : FF_ERR_MEMORY;
     if (rc >= 0) rc = sys_png_write(path, rgb, camera->width, camera->height);
     free(rgb);
     app->screenshot = NULL;
     return rc < 0 ? view_fail("%s: %s", path, ff_error_text(rc)) : 0;
 }
 
+/* The picture without text, and the device it was drawn with; NULL: none. */
+static c3d_device *draw_ground(view_app *app)
+{
+    c3d_device *device = ff_client_device(app->client);
+    if (!device) return view_wait_draw(&app->wait, app->backend, app->surface_api, &app->fly.camera);
+    view_wait_close(&app->wait);
+    ff_client_draw(app->client);
+    return device;
+}
+
 static int draw(view_app *app)
 {
-    ff_client_draw(app->client);
-    if (app->show_hud || app->show_help) view_hud_draw(&app->hud, app);
+    c3d_device *device = draw_ground(app);
     app->redraw = 0;
     app->drawn++;
-    int rc = app->screenshot ? write_screenshot(app) : 0;
+    if (!device) return view_fail("cannot draw with this graphics library");
+    if (app->show_hud || app->show_help) view_hud_draw(&app->hud, app, device);
+    int rc = app->screenshot ? write_screenshot(app, device) : 0;
     app->surface_api->present(app->surface);
     return rc;
 }

@@ -7,11 +7,13 @@
 #include "view_link.h"
 #include "view_options.h"
 #include "view_script.h"
+#include "view_wait.h"
 
 #include <stdio.h>
 
 typedef struct view_app {
     const view_options *options;
+    const struct c3d_backend *backend;
     const sys_surface_api *surface_api;
     sys_surface *surface;
     sys_mapping mapping;          /* the pack's; bytes NULL: a server */
@@ -20,6 +22,7 @@ typedef struct view_app {
     view_link *link;              /* NULL: the pack without a link */
     void *memory;
     ff_client *client;
+    view_wait wait;               /* until the terrain is known */
     view_fly fly;
     view_hud hud;
     view_script script;

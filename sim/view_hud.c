@@ -75,7 +75,9 @@ int view_hud_update(view_hud *hud, const view_app *app)
     ff_client_get_stats(app->client, &stats);
     hud->text[0] = 0;
     if (app->show_hud) {
-        put(hud, "%u triangles  %u/%u nodes\n", stats.tree.triangles, stats.tree.nodes_drawn, stats.tree.nodes_held);
+        if (!stats.have_terrain) put(hud, "%s\n", app->options->target);
+        else put(hud, "%u triangles  %u/%u nodes\n", stats.tree.triangles, stats.tree.nodes_drawn,
+                 stats.tree.nodes_held);
         put_link(hud, app, &stats);
         put_quality(hud, app, &stats);
         put(hud, "%.2f %.2f km  %d m  %d deg\n", camera->pos_wu[0] / 256000.0, camera->pos_wu[1] / 256000.0,
@@ -99,11 +101,14 @@ static void paint(view_hud *hud)
     memcpy(hud->shown, hud->text, sizeof hud->shown);
 }
 
-void view_hud_draw(view_hud *hud, const view_app *app)
+void view_hud_draw(view_hud *hud, const view_app *app, c3d_device *device)
 {
-    c3d_device *device = ff_client_device(app->client);
+    const ff_terrain_info *info = ff_client_terrain(app->client);
+    uint32_t checksum = info ? info->checksum : 0;
     int size = app->fly.camera.height >= LARGE_PX ? 2 * VIEW_HUD_SIZE : VIEW_HUD_SIZE;
-    if (!device) return;
+    if (device != hud->device || checksum != hud->checksum) hud->texture.id = 0; /* another terrain, another device: gone with the old */
+    hud->device = device;
+    hud->checksum = checksum;
     if (view_hud_update(hud, app) || !hud->texture.id) {
         if (hud->texture.id) c3d_texture_free(device, hud->texture);
         paint(hud);
@@ -111,11 +116,4 @@ void view_hud_draw(view_hud *hud, const view_app *app)
     }
     c3d_overlay(device, hud->texture, 0, 0, size, size);
     c3d_end(device);
-}
-
-void view_hud_close(view_hud *hud, ff_client *client)
-{
-    c3d_device *device = client ? ff_client_device(client) : NULL;
-    if (device && hud->texture.id) c3d_texture_free(device, hud->texture);
-    hud->texture.id = 0;
 }

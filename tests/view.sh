@@ -257,8 +257,8 @@ result $? "over a link to a server" && [ ! -s "$work/error" ] || cat "$work/erro
 "$view" "$address" --headless --panorama on --script "$work/toggles.txt" --json >"$work/said" 2>"$work/error"
 [ $? = 0 ] && [ "$(value panoramas)" -ge 1 ]; result $? "panoramas come from the server"
 stop_server
-"$view" "$address" --headless --frames 30 --json >"$work/said" 2>"$work/error"
-[ $? = 0 ] && [ ! -s "$work/error" ] && [ "$(value nodes_held)" = 0 ]; result $? "a server that is not there is waited for"
+"$view" "$address" --headless --frames 30 --screenshot "$work/waiting.png" --json >"$work/said" 2>"$work/error"
+[ $? = 0 ] && [ -s "$work/waiting.png" ] && [ ! -s "$work/error" ] && [ "$(value nodes_held)" = 0 ]; result $? "a server that is not there is waited for"
 "$view" "$pack" --headless --link umts --panorama on --script "$work/toggles.txt" --json >"$work/said" 2>"$work/error"
 [ $? = 0 ] && [ "$(value bytes_down)" -gt 1000 ] && [ "$(value panoramas)" -ge 1 ]; result $? "a pack behind a link of its own, with panoramas"
 
