@@ -39,6 +39,8 @@ static int advance(fly_flight *flight, int64_t until_us)
         int rc = sim_server_step(&world->server);
         if (rc != FF_OK)
             return fail("server", ff_error_text(rc));
+        if (world->tape.file)
+            sim_tape_work(&world->tape, world->now_us);
         (void)ff_client_work(world->client, world->now_us);
     }
     if (world->surface && world->server.faces_rendered != flight->faces_seen) {
@@ -235,6 +237,8 @@ static void one_frame(fly_flight *flight, double t_s)
     ff_client_stats stats;
     events(flight, t_s);
     fly_path_at(&world->path, t_s, &flight->camera);
+    if (world->tape.file)
+        sim_tape_frame(&world->tape, world->now_us, &flight->camera, t_s > flight->options->settle_s);
     if (ff_client_update(world->client, world->now_us, &flight->camera)) {
         if (flight->options->check)
             check_cracks(flight, t_s);
@@ -269,7 +273,7 @@ static int begin(fly_flight *flight, fly_world *world, FILE *csv)
     return 0;
 }
 
-static void finish(fly_flight *flight)
+static int finish(fly_flight *flight)
 {
     ff_client_stats stats;
     ff_client_get_stats(flight->world->client, &stats);
@@ -277,6 +281,11 @@ static void finish(fly_flight *flight)
     flight->totals.bytes_up_all = (double)stats.bytes_up;
     flight->totals.memory_used = stats.memory_used;
     sys_clock_replace(NULL, NULL);
+    if (!flight->world->tape.file)
+        return 0;
+    const ff_client *client = flight->world->client;
+    int rc = sim_tape_finish(&flight->world->tape, ff_client_geometry_hash(client), ff_client_request_hash(client));
+    return rc == FF_OK ? 0 : fail(flight->options->tape_path, ff_error_text(rc));
 }
 
 int fly_flight_run(fly_flight *flight, fly_world *world, FILE *csv)
@@ -306,7 +315,8 @@ int fly_flight_run(fly_flight *flight, fly_world *world, FILE *csv)
     }
     if (show)
         fputc('\n', stderr);
-    finish(flight);
+    if (finish(flight))
+        rc = -1;
     return rc;
 }
 

@@ -53,12 +53,13 @@ static const char help[] =
     " checking\n"
     "  --audit on|off        err_px against the whole true ground, default off\n"
     "  --check on|off        every frame searched for cracks on integer vertices; default: as --audit\n"
-    "  --sample S            time between rows, default 1\n";
+    "  --sample S            time between rows, default 1\n"
+    "  --tape FILE           records all that comes to the client, for farfield-handheld --tape (not with --server or --event)\n";
 
 enum option_id {
     OPT_PACK = 256, OPT_CSV, OPT_JSON, OPT_PATH, OPT_START, OPT_SPEED, OPT_HEIGHT, OPT_SECONDS, OPT_SETTLE, OPT_SEED, OPT_EVENT, OPT_LINK,
     OPT_DOWN_TRACE, OPT_UP_TRACE, OPT_SERVER, OPT_QUALITY, OPT_PANORAMA, OPT_BACK_PLANE, OPT_VIEW, OPT_MEMORY, OPT_PLAIN, OPT_BACKEND,
-    OPT_SIZE, OPT_FOV, OPT_FPS, OPT_PNG, OPT_EVERY, OPT_WIREFRAME, OPT_AUDIT, OPT_CHECK, OPT_SAMPLE, OPT_HELP, OPT_VERSION
+    OPT_SIZE, OPT_FOV, OPT_FPS, OPT_PNG, OPT_EVERY, OPT_WIREFRAME, OPT_AUDIT, OPT_CHECK, OPT_SAMPLE, OPT_TAPE, OPT_HELP, OPT_VERSION
 };
 
 static const struct option long_options[] = {
@@ -73,6 +74,7 @@ static const struct option long_options[] = {
     { "size", 1, NULL, OPT_SIZE },         { "fov", 1, NULL, OPT_FOV },           { "fps", 1, NULL, OPT_FPS },
     { "png", 1, NULL, OPT_PNG },           { "every", 1, NULL, OPT_EVERY },       { "wireframe", 0, NULL, OPT_WIREFRAME },
     { "audit", 1, NULL, OPT_AUDIT },       { "check", 1, NULL, OPT_CHECK },       { "sample", 1, NULL, OPT_SAMPLE },
+    { "tape", 1, NULL, OPT_TAPE },
     { "help", 0, NULL, OPT_HELP },         { "version", 0, NULL, OPT_VERSION },   { NULL, 0, NULL, 0 }
 };
 
@@ -248,6 +250,7 @@ static int parse_one(fly_options *options, int id, const char *text)
     case OPT_PACK: options->pack_path = text; return 0;
     case OPT_CSV: options->csv_path = text; return 0;
     case OPT_PNG: options->png_dir = text; return 0;
+    case OPT_TAPE: options->tape_path = text; return 0;
     case OPT_SERVER: options->server = text; return 0;
     case OPT_DOWN_TRACE: options->link.way[SIM_DOWN].trace = text; return 0;
     case OPT_UP_TRACE: options->link.way[SIM_UP].trace = text; return 0;
@@ -296,6 +299,8 @@ int fly_options_parse(fly_options *options, int argc, char **argv)
         return fail("--pack is missing (see --help)");
     if (options->check < 0)
         options->check = options->audit;
+    if (options->tape_path && (options->server || options->event_count))
+        return fail("--tape records simulated flights without events");
     if (options->png_dir && options->backend == FLY_NONE)
         return fail("--png needs --backend gl or gles1");
     return 0;

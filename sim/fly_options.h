@@ -31,6 +31,7 @@ typedef struct fly_options {
     enum fly_path_kind path;
     int audit, check, json, wireframe, plain_arrays;
     const char *csv_path, *png_dir;
+    const char *tape_path;    /* all that comes to the client, for farfield-handheld; NULL: not recorded */
     double every_s, sample_s; /* between pictures; between rows */
     size_t memory_bytes;
     fly_event event[FLY_EVENTS_MAX];

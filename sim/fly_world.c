@@ -50,6 +50,16 @@ static int open_link(fly_world *world)
     return rc == FF_OK ? 0 : fail("server", rc);
 }
 
+/* From here on the stream records. */
+static int open_tape(fly_world *world)
+{
+    const fly_options *options = world->options;
+    sim_tape_head head = { .memory_bytes = (uint32_t)options->memory_bytes, .width = options->width, .height = options->height,
+                           .quality = options->quality, .panorama = options->panorama };
+    int rc = options->tape_path ? sim_tape_record(&world->tape, options->tape_path, &head, &world->stream) : FF_OK;
+    return rc == FF_OK ? 0 : fail(options->tape_path, rc);
+}
+
 static int open_surface(fly_world *world)
 {
     const fly_options *options = world->options;
@@ -94,7 +104,7 @@ int fly_world_open(fly_world *world, const fly_options *options)
 {
     memset(world, 0, sizeof *world);
     world->options = options;
-    if (open_ground(world) || open_link(world) || open_surface(world) || open_client(world))
+    if (open_ground(world) || open_link(world) || open_tape(world) || open_surface(world) || open_client(world))
         return -1;
     return 0;
 }

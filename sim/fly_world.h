@@ -6,6 +6,7 @@
 #include "fly_path.h"
 #include "sim_audit.h"
 #include "sim_server.h"
+#include "sim_tape.h"
 
 typedef struct fly_world {
     const fly_options *options;
@@ -20,6 +21,7 @@ typedef struct fly_world {
     sim_server server;
     sys_tcp tcp;                /* with a real server */
     sys_stream stream;
+    sim_tape_recorder tape;     /* file NULL: none is recorded */
     const sys_surface_api *surface_api;
     sys_surface *surface;
     void *memory;

@@ -1,0 +1,208 @@
+#include "handheld.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define FRAME_US 33333
+#define WORK_STEPS_MAX 64       /* between two frames, without a link */
+#define WAIT_US 2000
+#define HERE 2 / 5              /* where the flight begins, of the diagonal */
+#define PITCH_BRAD16 (-1092)    /* 6 degrees down */
+#define FOV_BRAD16 10923        /* 60 degrees */
+#define MEMORY_BYTES (4u << 20)
+#define SETTLE_FRAMES_MAX 3000  /* of a pack's flight, before it starts: until the ground stands */
+
+static int fail(const char *what, int rc)
+{
+    fprintf(stderr, "farfield-handheld: %s: %s\n", what, ff_error_text(rc));
+    return -1;
+}
+
+/* ---- opening ---- */
+
+static int open_source(handheld *device)
+{
+    const handheld_options *options = device->options;
+    const char *path = options->pack_path ? options->pack_path : options->tape_path;
+    int rc;
+    if (options->server) {
+        rc = sys_tcp_client(&device->tcp, options->server, &device->stream);
+        return rc == FF_OK ? 0 : fail(options->server, rc);
+    }
+    rc = sys_map_file(path, &device->mapping);
+    if (rc == FF_OK && options->pack_path)
+        rc = ff_pack_open(&device->pack, device->mapping.bytes, device->mapping.size);
+    else if (rc == FF_OK)
+        rc = sim_tape_open(&device->tape, device->mapping.bytes, device->mapping.size, &device->stream);
+    return rc == FF_OK ? 0 : fail(path, rc);
+}
+
+static int open_client(handheld *device)
+{
+    const handheld_options *options = device->options;
+    const sim_tape_head *head = options->tape_path ? &device->tape.head : NULL;
+    ff_client_desc desc = { .width = device->width, .height = device->height, .quality = head ? head->quality : options->quality,
+                            .panorama = head ? head->panorama : options->panorama, .surface_api = device->surface_api,
+                            .use_plain_arrays = 1, .no_textures = (uint8_t)options->no_textures };
+    device->memory_bytes = options->memory_bytes ? options->memory_bytes : head ? head->memory_bytes : MEMORY_BYTES;
+    device->memory = malloc(device->memory_bytes);
+    if (!device->memory)
+        return fail("memory", FF_ERR_MEMORY);
+    desc.memory = device->memory;
+    desc.memory_bytes = device->memory_bytes;
+    desc.pack = options->pack_path ? &device->pack : NULL;
+    desc.stream = options->pack_path ? NULL : &device->stream;
+    int rc = ff_client_create(&desc, &device->client);
+    if (rc == FF_OK)
+        return 0;
+    device->client = NULL;
+    return fail("client", rc);
+}
+
+int handheld_open(handheld *device, const handheld_options *options)
+{
+    memset(device, 0, sizeof *device);
+    device->options = options;
+    if (open_source(device))
+        return -1;
+    device->width = options->tape_path ? device->tape.head.width : options->width;
+    device->height = options->tape_path ? device->tape.head.height : options->height;
+    return open_client(device);
+}
+
+void handheld_close(handheld *device)
+{
+    if (device->client)
+        ff_client_destroy(device->client);
+    if (device->options->server && device->stream.close)
+        device->stream.close(device->stream.state);
+    if (device->mapping.bytes)
+        sys_unmap_file(&device->mapping);
+    free(device->memory);
+}
+
+/* ---- frames ---- */
+
+static int work(handheld *device, int64_t now_us)
+{
+    handheld_mark_work();
+    int moved = ff_client_work(device->client, now_us);
+    handheld_mark_outside();
+    return moved;
+}
+
+static int one_frame(handheld *device, int64_t now_us, const c3d_camera *camera, int flying)
+{
+    ff_client_stats stats;
+    handheld_mark_update();
+    int changed = ff_client_update(device->client, now_us, camera);
+    if (changed && device->surface) {
+        handheld_mark_draw();
+        ff_client_draw(device->client);
+        handheld_mark_outside();
+        if (device->options->hud)
+            handheld_hud(device);
+        (void)device->surface_api->present(device->surface);
+    }
+    handheld_mark_outside();
+    if (!flying)
+        return changed;
+    ff_client_get_stats(device->client, &stats);
+    device->totals.frames++;
+    if (!changed)
+        return 0;
+    device->totals.drawn++;
+    device->totals.triangles += stats.tree.triangles;
+    if (stats.tree.triangles > device->totals.triangles_max)
+        device->totals.triangles_max = stats.tree.triangles;
+    handheld_mark_frame();
+    return 1;
+}
+
+static int fly_tape(handheld *device)
+{
+    sim_tape_step step;
+    int flying = 0;
+    for (;;) {
+        int rc = sim_tape_next(&device->tape, &step);
+        if (rc != FF_OK)
+            return fail(device->tape.differs ? "tape: this client does something else than the one recorded" : "tape", rc);
+        if (step.kind == SIM_TAPE_END)
+            break;
+        if (step.kind == SIM_TAPE_WORK) {
+            (void)work(device, step.now_us);
+            continue;
+        }
+        if (step.flying && !flying)
+            handheld_mark_start();
+        flying = step.flying;
+        (void)one_frame(device, step.now_us, &step.camera, flying);
+    }
+    device->totals.same_flight = step.geometry_hash == ff_client_geometry_hash(device->client) &&
+                                 step.request_hash == ff_client_request_hash(device->client);
+    return device->totals.same_flight ? 0 : fail("tape: another flight than the one recorded", FF_ERR_FORMAT);
+}
+
+/* Straight along the terrain's diagonal, above the ground as drawn. */
+static void place(const handheld *device, uint32_t frame, c3d_camera *camera)
+{
+    const ff_terrain_info *info = ff_client_terrain(device->client);
+    int64_t flown_wu = (int64_t)frame * FRAME_US * device->options->speed_kmh / 3600 * FF_WU_PER_METRE / 1000;
+    int64_t size_wu[2] = { 0, 0 }, diagonal_wu = 1;
+    int32_t ground_wu = 0;
+    *camera = (c3d_camera){ .yaw = 8192, .pitch = PITCH_BRAD16, .width = device->width, .height = device->height,
+                            .focal_q8 = c3d_focal_q8(FOV_BRAD16, device->width) };
+    if (!info)
+        return;
+    size_wu[0] = (int64_t)(info->samples_x - 1) * info->spacing_wu;
+    size_wu[1] = (int64_t)(info->samples_y - 1) * info->spacing_wu;
+    diagonal_wu = c3d_length64(size_wu[0], size_wu[1], 0);
+    for (int axis = 0; axis < 2; axis++)
+        camera->pos_wu[axis] = (int32_t)(size_wu[axis] * HERE + flown_wu * size_wu[axis] / diagonal_wu);
+    if (!ff_client_ground(device->client, camera->pos_wu[0], camera->pos_wu[1], &ground_wu))
+        ground_wu = ff_height_wu(info, info->height_max);
+    camera->pos_wu[2] = ground_wu + device->options->height_m * FF_WU_PER_METRE;
+}
+
+/* Frame `frame` of the flight; time is real with a server, else counted. */
+static int step_frame(handheld *device, uint32_t frame, int64_t now_us, int flying)
+{
+    c3d_camera camera;
+    int moved = 1, steps = 0, any = 0;
+    while (moved && steps++ < WORK_STEPS_MAX)
+        any |= moved = work(device, now_us);
+    place(device, frame, &camera);
+    return any | one_frame(device, now_us, &camera, flying);
+}
+
+static int fly_pack(handheld *device)
+{
+    int64_t now_us = 0;
+    for (unsigned still = 0, i = 0; still < 2 && i < SETTLE_FRAMES_MAX; i++, now_us += FRAME_US)
+        still = step_frame(device, 0, now_us, 0) ? 0 : still + 1;
+    handheld_mark_start();
+    for (uint32_t frame = 1; frame <= device->options->frames; frame++, now_us += FRAME_US)
+        (void)step_frame(device, frame, now_us, 1);
+    return 0;
+}
+
+static int fly_server(handheld *device)
+{
+    int64_t start_us = sys_time_us();
+    handheld_mark_start();
+    for (uint32_t frame = 1; frame <= device->options->frames; frame++) {
+        int64_t due_us = start_us + (int64_t)frame * FRAME_US;
+        for (int64_t now_us; (now_us = sys_time_us()) < due_us;)
+            if (!work(device, now_us))
+                sys_sleep_us(WAIT_US);
+        (void)step_frame(device, frame, due_us, 1);
+    }
+    return ff_client_terrain(device->client) ? 0 : fail(device->options->server, FF_ERR_CLOSED);
+}
+
+int handheld_fly(handheld *device)
+{
+    if (device->options->tape_path)
+        return fly_tape(device);
+    return device->options->server ? fly_server(device) : fly_pack(device);
+}
