@@ -10,7 +10,7 @@
 #define ITEMS_MAX 24u
 #define ITEMS_MIN 4u
 #define FACE_SIZE_MIN 64u
-#define EXTRA_INDICES 96u /* sky and faces */
+#define EXTRA_INDICES (FF_SKY_INDICES + 36u) /* and faces */
 #define IMAGE_SHARE 5u    /* of the block, at most one in so many bytes are images on their way in */
 #define EXTRA_STRIPS 4
 #define ECONOMY_STEPS 3

@@ -1,14 +1,18 @@
 #include "ff_sky.h"
 
+#include <assert.h>
 #include <string.h>
 
 #define COLUMNS 8
-#define RINGS 3
+#define LEVELS 7
 #define RADIUS 256
 
-/* Rings at 0, about 20 and about 55 degrees, then the zenith: height and distance from the axis in vertex units. */
-static const struct { int16_t radius, z; uint8_t rgb[3]; } ring[RINGS + 1] = {
-    {256, 0, {200, 216, 232}}, {240, 90, {150, 186, 222}}, {150, 210, {104, 152, 206}}, {0, 256, {84, 134, 194}}
+/* Rings of vertices from nadir to zenith: height and distance from the axis in vertex units. Below the horizon the backdrop
+ * turns to the colour of bare ground by 11 degrees down: two nodes' rounding of one shared border may leave a pixel open there, and it
+ * should not sparkle. */
+static const struct { int16_t radius, z; uint8_t rgb[3]; } ring[LEVELS] = {
+    {0, -256, {138, 126, 102}}, {251, -50, {138, 126, 102}}, {255, -18, {200, 216, 232}}, {256, 0, {200, 216, 232}},
+    {240, 90, {150, 186, 222}}, {150, 210, {104, 152, 206}}, {0, 256, {84, 134, 194}}
 };
 static const int8_t circle[COLUMNS][2] = {{0, 64}, {45, 45}, {64, 0}, {45, -45}, {0, -64}, {-45, -45}, {-64, 0}, {-45, 45}};
 
@@ -22,21 +26,20 @@ static void set_vertex(c3d_vertex *vertex, int level, int column)
     vertex->rgba[3] = 255;
 }
 
-/* Bands of quads between neighbouring rings as one strip, rows joined by degenerate triangles. */
+/* Bands of quads between neighbouring rings as one strip, bands joined by degenerate triangles. */
 static uint32_t make_indices(uint16_t *index)
 {
     uint32_t count = 0;
-    for (int level = 0; level < RINGS; level++) {
+    for (int level = 0; level + 1 < LEVELS; level++) {
         for (int i = 0; i <= COLUMNS; i++) {
             uint16_t low = (uint16_t)(level * COLUMNS + i % COLUMNS);
-            uint16_t high = level + 1 == RINGS ? RINGS * COLUMNS : (uint16_t)(low + COLUMNS);
             if (i == 0 && count) {
                 index[count] = index[count - 1];
                 count++;
                 index[count++] = low;
             }
             index[count++] = low;
-            index[count++] = high;
+            index[count++] = (uint16_t)(low + COLUMNS);
         }
     }
     return count;
@@ -44,14 +47,14 @@ static uint32_t make_indices(uint16_t *index)
 
 void ff_sky_make(ff_sky *sky, c3d_device *device)
 {
-    c3d_vertex vertex[RINGS * COLUMNS + 1];
-    uint16_t index[RINGS * (2 * COLUMNS + 4)];
-    for (int level = 0; level < RINGS; level++)
-        for (int column = 0; column < COLUMNS; column++)
-            set_vertex(&vertex[level * COLUMNS + column], level, column);
-    set_vertex(&vertex[RINGS * COLUMNS], RINGS, 0);
-    sky->mesh = c3d_mesh_make(device, vertex, RINGS * COLUMNS + 1);
-    sky->strip = c3d_strip_make(device, index, make_indices(index));
+    c3d_vertex vertex[FF_SKY_VERTICES];
+    uint16_t index[FF_SKY_INDICES];
+    for (int i = 0; i < FF_SKY_VERTICES; i++)
+        set_vertex(&vertex[i], i / COLUMNS, i % COLUMNS);
+    uint32_t count = make_indices(index);
+    assert(LEVELS * COLUMNS == FF_SKY_VERTICES && count == FF_SKY_INDICES);
+    sky->mesh = c3d_mesh_make(device, vertex, FF_SKY_VERTICES);
+    sky->strip = c3d_strip_make(device, index, count);
 }
 
 void ff_sky_draw(const ff_sky *sky, c3d_device *device, int32_t near_wu)

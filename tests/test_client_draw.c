@@ -13,7 +13,7 @@
 #define METRE FF_WU_PER_METRE
 #define WIDTH 240
 #define HEIGHT 320
-#define SKY_TRIANGLES_MAX 48
+#define SKY_TRIANGLES_MAX 110
 
 static sys_surface *surface;
 
@@ -93,6 +93,24 @@ static void plain_arrays_draw_the_same(void **state)
     assert_int_equal(hash[0], hash[1]);
     free(picture[0]);
     free(picture[1]);
+}
+
+/* Nothing bright shines through where rounding leaves a pixel between two nodes: below the horizon the backdrop is like ground. */
+static void no_sky_below_the_horizon(void **state)
+{
+    (void)state;
+    client_rig rig;
+    open_rig(&rig, 0);
+    rig_client(&rig, 4 * MB);
+    assert_true(rig_settle(&rig, 600));
+    rig.camera.pos_wu[0] = rig.camera.pos_wu[1] = -1000 * METRE; /* the terrain is behind */
+    rig.camera.yaw = 5 * 65536 / 8;
+    rig.camera.pitch = -65536 / 6;
+    rig_settle(&rig, 20);
+    uint8_t *rgb = draw(&rig);
+    assert_int_equal(count_colour(rgb, 138, 126, 102, 2), WIDTH * HEIGHT);
+    free(rgb);
+    rig_close(&rig);
 }
 
 /* The least memory is enough for any terrain, with everything on. */
@@ -196,7 +214,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_of_the_cut_is_drawn), cmocka_unit_test(plain_arrays_draw_the_same),
         cmocka_unit_test(a_full_mesh_pool_leaves_no_hole), cmocka_unit_test(least_memory_is_true),
-        cmocka_unit_test(faces_stand_behind_the_ground),
+        cmocka_unit_test(faces_stand_behind_the_ground), cmocka_unit_test(no_sky_below_the_horizon),
         cmocka_unit_test(meshes_show_stitching_in_another_colour)
     };
     return cmocka_run_group_tests(tests, open_surface, close_surface);
