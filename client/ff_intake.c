@@ -1,6 +1,7 @@
 #include "ff_intake.h"
 #include "terrain/ff_texture_map.h"
 
+#include <stddef.h>
 #include <string.h>
 
 static ff_new_item *begin(ff_intake *intake, const ff_request *request, int image, uint32_t bytes)
@@ -73,7 +74,8 @@ static unsigned texture_rows(unsigned rows)
     return height;
 }
 
-/* The face's rows to RGBA5551, lowest row first, padded upwards; only texels within the column spans are opaque. */
+/* The face's rows to RGBA5551, lowest row first, padded upwards; only texels within the column spans are opaque. The padding's first
+ * row keeps the colours of the image's top row: filtering mixes them, and black would draw a dark line along the horizon. */
 static void to_rgba5551(const uint8_t *rgb, unsigned width, unsigned rows, const uint16_t *top, const uint16_t *bottom,
                         unsigned height, uint16_t *out)
 {
@@ -85,7 +87,10 @@ static void to_rgba5551(const uint8_t *rgb, unsigned width, unsigned rows, const
             *out++ = (uint16_t)((from[0] >> 3 << 11) | (from[1] >> 3 << 6) | (from[2] >> 3 << 1) | opaque);
         }
     }
-    memset(out, 0, (size_t)(height - rows) * width * sizeof *out);
+    for (unsigned i = 0; rows < height && i < width; i++, out++)
+        *out = (uint16_t)(out[-(ptrdiff_t)width] & ~1u);
+    if (rows + 1 < height)
+        memset(out, 0, (size_t)(height - rows - 1) * width * sizeof *out);
 }
 
 static int decode_face(ff_intake *intake, const ff_face *face, ff_new_item *item)

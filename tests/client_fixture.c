@@ -5,7 +5,7 @@
 #include <string.h>
 
 #define METRE FF_WU_PER_METRE
-#define FACE_ROWS 16
+#define FACE_ROWS 20
 
 /* ---- the server's end ---- */
 
@@ -40,7 +40,7 @@ static int make_face(const ff_face_job *job, uint8_t *out, size_t capacity)
         return ff_message_encode(&message, out, capacity);
     }
     for (unsigned i = 0; i < size; i++) {
-        top[i] = (uint16_t)(i % FACE_ROWS);
+        top[i] = (uint16_t)(i / 8 % FACE_ROWS);
         bottom[i] = FACE_ROWS;
     }
     memset(rgb, 40 * (job->face + 1), sizeof rgb);
