@@ -108,10 +108,20 @@ uint64_t ff_terrain_view_hash(ff_terrain_view *view, ff_tree *tree)
     return hash;
 }
 
-static c3d_mesh make_mesh(ff_terrain_view *view, ff_tree *tree, const ff_drawn *drawn)
+static c3d_mesh make_mesh(ff_terrain_view *view, ff_tree *tree, const ff_terrain_info *info, const ff_drawn *drawn)
 {
     ff_tree_vertices(tree, drawn, 1, view->vertices);
+    ff_ground_frame_vertices(&view->frame, info, drawn, view->vertices, view->heights_per_node);
     return c3d_mesh_make(view->device, view->vertices, view->heights_per_node);
+}
+
+static void free_meshes(ff_terrain_view *view)
+{
+    for (uint32_t i = 0; i < view->entry_count; i++) {
+        if (view->entry[i].mesh.id)
+            c3d_mesh_free(view->device, view->entry[i].mesh);
+        view->entry[i].mesh.id = 0;
+    }
 }
 
 /* Some node's mesh that this frame does not need gives way. 1 when one was found. */
@@ -164,16 +174,17 @@ void ff_terrain_view_draw(ff_terrain_view *view, ff_tree *tree, const ff_terrain
 {
     const ff_drawn *list;
     uint32_t count = ff_tree_drawn(tree, &list);
+    if (ff_ground_frame_follow(&view->frame, info, camera))
+        free_meshes(view);
     for (uint32_t i = 0; i < count; i++) {
         const ff_drawn *drawn = &list[i];
         ff_view_node *entry = entry_of(view, tree, drawn);
-        c3d_draw draw = {.xy_scale_wu = drawn->cell_wu, .z_scale_q16 = info->hscale_q24, .flags = C3D_DRAW_COLOURED};
+        c3d_draw draw = {.flags = C3D_DRAW_COLOURED};
         ff_key texture_key;
-        for (int axis = 0; axis < 3; axis++)
-            draw.origin_wu[axis] = (int64_t)drawn->origin_wu[axis] - camera->pos_wu[axis];
-        draw.mesh = entry && entry->mesh.id ? entry->mesh : make_mesh(view, tree, drawn);
+        ff_ground_frame_draw(&view->frame, info, drawn, camera, &draw);
+        draw.mesh = entry && entry->mesh.id ? entry->mesh : make_mesh(view, tree, info, drawn);
         if (!draw.mesh.id && free_one_mesh(view))
-            draw.mesh = make_mesh(view, tree, drawn);
+            draw.mesh = make_mesh(view, tree, info, drawn);
         if (entry)
             entry->mesh = draw.mesh;
         if (textures && ff_textures_find(textures, drawn->key, &texture_key, &draw.texture)) {

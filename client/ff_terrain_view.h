@@ -4,6 +4,7 @@
 #ifndef FF_TERRAIN_VIEW_H
 #define FF_TERRAIN_VIEW_H
 
+#include "terrain/ff_ground_frame.h"
 #include "terrain/ff_strips.h"
 #include "terrain/ff_tree.h"
 
@@ -22,6 +23,7 @@ typedef struct ff_terrain_view {
     ff_view_node *entry;
     uint32_t entry_count, hand, stamp;
     uint32_t held, held_high, heights_per_node, strip_indices;
+    ff_ground_frame frame;   /* of all meshes */
     c3d_vertex *vertices;    /* scratch for one node */
     c3d_strip strip[FF_STRIP_COUNT_MAX];
 } ff_terrain_view;

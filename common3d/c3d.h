@@ -10,8 +10,8 @@
  *   Colours are 0xAABBGGRR words, i.e. bytes r, g, b, a in memory.
  *   Mesh origins are given relative to the camera, subtracted in 64-bit integers by the caller: no jitter far from the origin.
  * Handles: slot and generation in 32 bits, 0 is never valid; using a stale or zero handle draws nothing and is counted.
- * Back ends: common3d/gl (desktop GL 1.5), common3d/gles1 (GL ES 1.1), behind one table (c3d_backend.h); all memory of a device
- * comes from the block given at c3d_open.
+ * Back ends: common3d/gl (desktop GL 1.5), common3d/gles1 (GL ES 1.1), common3d/soft (integers, no GL), behind one table
+ * (c3d_backend.h); all memory of a device comes from the block given at c3d_open.
  */
 #ifndef C3D_H
 #define C3D_H
@@ -68,7 +68,10 @@ typedef struct c3d_draw {
     uint32_t flags;         /* enum c3d_draw_flags */
     uint32_t colour;        /* 0xAABBGGRR, when not C3D_DRAW_COLOURED */
     c3d_texture texture;
-    int32_t tex_scale_q16[2], tex_offset_q16[2]; /* s = x*scale + offset in texture widths; t grows with y (row 0 = south) */
+    /* s = (x - tex_origin)/2^tex_shift * scale + offset in texture widths; t grows with y (row 0 = south) */
+    int32_t tex_scale_q16[2], tex_offset_q16[2];
+    int32_t tex_origin[2];
+    uint8_t tex_shift;
 } c3d_draw;
 
 typedef struct c3d_frame {
@@ -85,6 +88,10 @@ typedef struct c3d_desc {
     uint16_t mesh_vertices_max;  /* of one mesh */
     uint32_t strip_indices_max;  /* of all strips together */
     uint8_t use_vertex_buffers;  /* 1: buffers when the GL has them; 0: plain arrays (the fallback) */
+    /* For back ends that hold the picture themselves (soft); the others leave these alone. */
+    uint8_t frame_format;        /* C3D_RGB565 (0, default) or C3D_RGBA8888 */
+    uint16_t width, height;      /* largest viewport, default 240x320; in a larger one nothing is drawn */
+    uint32_t texture_bytes;      /* of all textures together, with a rim of one texel each; default 16 KB a texture */
 } c3d_desc;
 
 /* Counters since c3d_open, and of the frame being drawn (or last drawn). */
@@ -99,6 +106,7 @@ typedef struct c3d_device c3d_device;
 struct c3d_backend;
 const struct c3d_backend *c3d_backend_gl(void);
 const struct c3d_backend *c3d_backend_gles1(void);
+const struct c3d_backend *c3d_backend_soft(void); /* integers only, no GL: common3d/soft/c3d_soft.h */
 
 /* With vertex buffers the GL holds meshes and strips; without, copies of them lie in the block. */
 size_t c3d_bytes(const struct c3d_backend *backend, const c3d_desc *desc);
@@ -124,6 +132,9 @@ void c3d_overlay(c3d_device *device, c3d_texture texture, int x, int y, int widt
 void c3d_end(c3d_device *device);
 /* The finished frame as RGB888, top row first, width*height*3 bytes; before present(). */
 int c3d_read_rgb(c3d_device *device, uint8_t *rgb);
+/* The finished frame where the back end has it, top row first, rows packed (RGBA8888: bytes r, g, b, a); NULL: in a GL. Valid until
+ * the next c3d_begin. */
+const void *c3d_frame_pixels(c3d_device *device, enum c3d_texture_format *format);
 void c3d_get_stats(const c3d_device *device, c3d_stats *stats);
 
 #endif

@@ -1,0 +1,128 @@
+/* No gap between nodes in the picture: seen upright, a column of pixels has sky above and ground below, and no sky within the ground,
+ * on any back end. The integer mesh is whole (test_watertight); this asks whether vertices that are shared stay shared once a
+ * graphics library has projected them. */
+#include "../client/farfield.h"
+#include "pack_fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+enum { WIDTH = 1024, HEIGHT = 256, VIEWS = 300, BLOCK = 4 << 20 };
+
+typedef struct gap_rig {
+    const sys_surface_api *api;
+    sys_surface *surface;
+    uint8_t *pack_bytes, *block, *rgb;
+    ff_pack pack;
+    ff_client *client;
+} gap_rig;
+
+static void open_rig(gap_rig *rig, const sys_surface_api *api, enum sys_gl_kind gl, const struct c3d_backend *backend)
+{
+    size_t bytes;
+    sys_surface_desc surface = {"test", WIDTH, HEIGHT, gl};
+    pack_fixture_desc pack = {.info = pack_fixture_info(6, 8, 8), .height = pack_fixture_hills};
+    pack.info.spacing_wu = 19913; /* not a power of two: products round */
+    pack.info.hoffset_wu = 200 * FF_WU_PER_METRE; /* no ground at zero: no water, the only blue is the sky's */
+    memset(rig, 0, sizeof *rig);
+    rig->api = api;
+    assert_int_equal(api->open(&surface, &rig->surface), FF_OK);
+    rig->pack_bytes = pack_fixture_make(&pack, &bytes);
+    assert_int_equal(ff_pack_open(&rig->pack, rig->pack_bytes, bytes), FF_OK);
+    rig->block = malloc(BLOCK);
+    rig->rgb = malloc(WIDTH * HEIGHT * 3);
+    ff_client_desc desc = {.memory = rig->block, .memory_bytes = BLOCK, .pack = &rig->pack, .backend = backend,
+                           .surface_api = api, .width = WIDTH, .height = HEIGHT};
+    desc.quality = (ff_quality){.measure = FF_MEASURE_PIXELS, .error_px_q8 = 256, .sigma_q8 = 320,
+                                .view_wu = 30000 * FF_WU_PER_METRE};
+    assert_int_equal(ff_client_create(&desc, &rig->client), FF_OK);
+    ff_client_set_show(rig->client, FF_SHOW_NO_FOG);
+}
+
+static void close_rig(gap_rig *rig)
+{
+    ff_client_destroy(rig->client);
+    rig->api->close(rig->surface);
+    free(rig->pack_bytes);
+    free(rig->block);
+    free(rig->rgb);
+}
+
+/* Low over the middle of the terrain, looking in any direction: far ground is seen at grazing angles. */
+static c3d_camera camera_at(sys_random *random)
+{
+    c3d_camera camera = {.yaw = (int32_t)sys_random_below(random, 65536), .pitch = -(int32_t)sys_random_below(random, 800),
+                         .width = WIDTH, .height = HEIGHT, .focal_q8 = c3d_focal_q8(10923, WIDTH)};
+    for (int axis = 0; axis < 2; axis++)
+        camera.pos_wu[axis] = (17000 + (int32_t)sys_random_below(random, 6000)) * FF_WU_PER_METRE;
+    camera.pos_wu[2] = (1700 + (int32_t)sys_random_below(random, 300)) * FF_WU_PER_METRE;
+    return camera;
+}
+
+static int is_sky(const uint8_t *rgb) { return rgb[2] > rgb[0] + 8; }
+
+/* Sky with ground above it. */
+static unsigned gaps_in(const uint8_t *rgb)
+{
+    unsigned count = 0;
+    for (unsigned column = 0; column < WIDTH; column++) {
+        int ground = 0;
+        for (unsigned row = 0; row < HEIGHT; row++) {
+            int sky = is_sky(rgb + 3 * (row * WIDTH + column));
+            count += (unsigned)(sky && ground);
+            ground |= !sky;
+        }
+    }
+    return count;
+}
+
+static void count_gaps(const sys_surface_api *api, enum sys_gl_kind gl, const struct c3d_backend *backend)
+{
+    gap_rig rig;
+    sys_random random;
+    unsigned gaps = 0, stitched = 0;
+    int64_t now_us = 0;
+    sys_random_seed(&random, 7, 1);
+    open_rig(&rig, api, gl, backend);
+    for (int i = 0; i < VIEWS; i++) {
+        c3d_camera camera = camera_at(&random);
+        for (int step = 0; step < 12; step++, now_us += 33000) {
+            ff_client_work(rig.client, now_us);
+            ff_client_update(rig.client, now_us, &camera);
+        }
+        ff_client_stats stats;
+        ff_client_draw(rig.client);
+        ff_client_get_stats(rig.client, &stats);
+        stitched += stats.tree.stitched;
+        assert_int_equal(c3d_read_rgb(ff_client_device(rig.client), rig.rgb), FF_OK);
+        gaps += gaps_in(rig.rgb);
+    }
+    print_message("# %s: %u views, %u stitched nodes, %u gaps\n", backend == c3d_backend_gl() ? "gl" : "gles1", VIEWS, stitched,
+                  gaps);
+    assert_true(stitched > VIEWS);
+    assert_int_equal(gaps, 0);
+    close_rig(&rig);
+}
+
+static void no_gap_with_gl(void **state)
+{
+    (void)state;
+    count_gaps(sys_surface_osmesa(), SYS_GL_DESKTOP, c3d_backend_gl());
+}
+
+static void no_gap_with_gles1(void **state)
+{
+    (void)state;
+    count_gaps(sys_surface_egl(), SYS_GL_ES1, c3d_backend_gles1());
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(no_gap_with_gl), cmocka_unit_test(no_gap_with_gles1)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
