@@ -8,10 +8,10 @@
 #define RADIUS 256
 
 /* Rings of vertices from nadir to zenith: height and distance from the axis in vertex units. Below the horizon the backdrop
- * turns to the colour of bare ground by 11 degrees down: two nodes' rounding of one shared border may leave a pixel open there, and it
- * should not sparkle. */
+ * turns to the colour of bare ground, 10 to 20 degrees down (distant ground above that ends in fog): where two nodes' rounding of a
+ * shared border leaves a pixel open, it should not sparkle. */
 static const struct { int16_t radius, z; uint8_t rgb[3]; } ring[LEVELS] = {
-    {0, -256, {138, 126, 102}}, {251, -50, {138, 126, 102}}, {255, -18, {200, 216, 232}}, {256, 0, {200, 216, 232}},
+    {0, -256, {138, 126, 102}}, {240, -90, {138, 126, 102}}, {252, -45, {200, 216, 232}}, {256, 0, {200, 216, 232}},
     {240, 90, {150, 186, 222}}, {150, 210, {104, 152, 206}}, {0, 256, {84, 134, 194}}
 };
 static const int8_t circle[COLUMNS][2] = {{0, 64}, {45, 45}, {64, 0}, {45, -45}, {0, -64}, {-45, -45}, {-64, 0}, {-45, 45}};

@@ -37,12 +37,13 @@ static const char help[] =
     "  --quality Q           low (C 3, depth 4: default), high (C 9, depth 8), C:DEPTH, or px:E for E pixels of error\n"
     "  --panorama on|off     default on\n"
     "  --back-plane M        where the panorama takes over, default 7500\n"
+    "  --face N              texels of a panorama's face each way, 64 to 1024, default 256; a larger one needs more --memory\n"
     "  --view M              how far ground is drawn without panorama, default 30000\n"
     "  --memory BYTES        of the client, with K or M; default 4M\n"
     "  --plain-arrays        no vertex buffers\n"
     "\n"
     " the picture\n"
-    "  --backend KIND        gles1 (EGL), gl (OSMesa, default), none (geometry only)\n"
+    "  --backend KIND        gles1 (EGL), gl (OSMesa, default), soft (integers, RGBA8888), soft565, none (geometry only)\n"
     "  --size WxH            default 240x320\n"
     "  --fov DEGREES         across the width, default 60\n"
     "  --fps N               frames a second, default 30\n"
@@ -58,7 +59,7 @@ static const char help[] =
 
 enum option_id {
     OPT_PACK = 256, OPT_CSV, OPT_JSON, OPT_PATH, OPT_START, OPT_SPEED, OPT_HEIGHT, OPT_SECONDS, OPT_SETTLE, OPT_SEED, OPT_EVENT, OPT_LINK,
-    OPT_DOWN_TRACE, OPT_UP_TRACE, OPT_SERVER, OPT_QUALITY, OPT_PANORAMA, OPT_BACK_PLANE, OPT_VIEW, OPT_MEMORY, OPT_PLAIN, OPT_BACKEND,
+    OPT_DOWN_TRACE, OPT_UP_TRACE, OPT_SERVER, OPT_QUALITY, OPT_PANORAMA, OPT_BACK_PLANE, OPT_FACE, OPT_VIEW, OPT_MEMORY, OPT_PLAIN, OPT_BACKEND,
     OPT_SIZE, OPT_FOV, OPT_FPS, OPT_PNG, OPT_EVERY, OPT_WIREFRAME, OPT_AUDIT, OPT_CHECK, OPT_SAMPLE, OPT_TAPE, OPT_HELP, OPT_VERSION
 };
 
@@ -71,6 +72,7 @@ static const struct option long_options[] = {
     { "up-trace", 1, NULL, OPT_UP_TRACE }, { "server", 1, NULL, OPT_SERVER },     { "quality", 1, NULL, OPT_QUALITY },
     { "panorama", 1, NULL, OPT_PANORAMA }, { "back-plane", 1, NULL, OPT_BACK_PLANE }, { "view", 1, NULL, OPT_VIEW },
     { "memory", 1, NULL, OPT_MEMORY },     { "plain-arrays", 0, NULL, OPT_PLAIN },{ "backend", 1, NULL, OPT_BACKEND },
+    { "face", 1, NULL, OPT_FACE },
     { "size", 1, NULL, OPT_SIZE },         { "fov", 1, NULL, OPT_FOV },           { "fps", 1, NULL, OPT_FPS },
     { "png", 1, NULL, OPT_PNG },           { "every", 1, NULL, OPT_EVERY },       { "wireframe", 0, NULL, OPT_WIREFRAME },
     { "audit", 1, NULL, OPT_AUDIT },       { "check", 1, NULL, OPT_CHECK },       { "sample", 1, NULL, OPT_SAMPLE },
@@ -191,12 +193,11 @@ static int parse_link(fly_options *options, const char *text)
     return rc == FF_ERR_NOT_FOUND ? fail("--link: no profile %s", text) : fail("--link: %s is not NAME[,KEY=VALUE...]", text);
 }
 
+static const char *const backend_word[] = { "gles1", "gl", "soft", "soft565", "none" };
+
 static int parse_backend(fly_options *options, const char *text)
 {
-    static const char *const word[] = { "gles1", "gl", "none" };
-    if (!strcmp(text, "soft"))
-        return fail("--backend: soft is %s", ff_error_text(FF_ERR_UNSUPPORTED));
-    int kind = parse_word("backend", text, word, 3);
+    int kind = parse_word("backend", text, backend_word, sizeof backend_word / sizeof *backend_word);
     options->backend = (enum fly_backend)kind;
     return kind < 0 ? -1 : 0;
 }
@@ -234,6 +235,11 @@ static int parse_one_number(fly_options *options, int id, const char *text)
         if (parse_number("seed", text, 0, 9007199254740992.0, &number))
             return -1;
         options->seed = (uint64_t)number;
+        return 0;
+    case OPT_FACE:
+        if (parse_number("face", text, 64, 1024, &number))
+            return -1;
+        options->panorama.face_size = (uint16_t)number;
         return 0;
     default: /* OPT_FPS */
         if (parse_number("fps", text, 1, 1000, &number))
@@ -302,13 +308,13 @@ int fly_options_parse(fly_options *options, int argc, char **argv)
     if (options->tape_path && (options->server || options->event_count))
         return fail("--tape records simulated flights without events");
     if (options->png_dir && options->backend == FLY_NONE)
-        return fail("--png needs --backend gl or gles1");
+        return fail("--png needs a --backend other than none");
     return 0;
 }
 
 const char *fly_backend_name(enum fly_backend backend)
 {
-    return backend == FLY_GLES1 ? "gles1" : backend == FLY_GL ? "gl" : "none";
+    return backend_word[backend];
 }
 
 void fly_options_print(const fly_options *options)

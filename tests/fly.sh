@@ -54,6 +54,9 @@ is 'r[0]["x_m"] == r[12]["x_m"] != r[14]["x_m"]' "it stands still before"
 is 'len({row["frame_hash"] for row in r}) > 10' "pictures change"
 head -1 "$work/first.csv" | grep -q '^t_s,x_m,y_m,z_m,triangles,nodes_drawn,nodes_held,bytes_down,bytes_up,requests,in_flight,panoramas,err_px_rms,err_px_p95,err_px_max,frame_hash,'
 result $? "the CSV's columns stand as promised"
+flies faces $usual --backend none --audit off --seconds 1 --face 128
+is "0 < s['panorama_bytes'] and r[12]['panorama_bytes'] < 0.7 * $(python3 -c "
+import csv; print(list(csv.DictReader(open('$work/first.csv')))[12]['panorama_bytes'])")" "smaller faces cost fewer bytes"
 [ "$(ls "$work/pictures")" = "frame-0000.00.png
 frame-0006.00.png
 frame-0012.00.png" ]
@@ -174,6 +177,7 @@ refused "an unknown link" --pack "$work/hills.ffp" --link telex
 refused "an unknown quality" --pack "$work/hills.ffp" --quality superb
 refused "an unknown event" --pack "$work/hills.ffp" --event 3:earthquake
 refused "an impossible size" --pack "$work/hills.ffp" --size 0x0
+refused "faces too large" --pack "$work/hills.ffp" --face 2048
 refused "a missing trace" --pack "$work/hills.ffp" --down-trace "$work/missing"
 refused "too little memory" --pack "$work/hills.ffp" --memory 1K --backend none
 refused "a CSV that cannot be written" --pack "$work/hills.ffp" --csv "$work/missing/x.csv" --backend none

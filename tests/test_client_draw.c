@@ -105,7 +105,7 @@ static void no_sky_below_the_horizon(void **state)
     assert_true(rig_settle(&rig, 600));
     rig.camera.pos_wu[0] = rig.camera.pos_wu[1] = -1000 * METRE; /* the terrain is behind */
     rig.camera.yaw = 5 * 65536 / 8;
-    rig.camera.pitch = -65536 / 6;
+    rig.camera.pitch = -65536 / 5;
     rig_settle(&rig, 20);
     uint8_t *rgb = draw(&rig);
     assert_int_equal(count_colour(rgb, 138, 126, 102, 2), WIDTH * HEIGHT);

@@ -39,13 +39,14 @@ fetch() {
     [ -f "$dem" ] || fail "the package $dem_package holds no trinidad.nc"
 }
 
-# fly NAME LINK SECONDS PANORAMA SIZE [OPTION...]: one flight; its CSV, summary and pictures are named NAME.
+# fly NAME LINK SECONDS PANORAMA SIZE [OPTION...]: one flight towards the Culebra range; its CSV, summary and pictures are named NAME.
 fly() {
     name=$1 link=$2 seconds=$3 panorama=$4 size=$5
     shift 5
     mkdir -p "$out/$name"
-    "$bin/farfield-fly" --pack "$pack" --link "$link" --speed 150 --quality low --panorama "$panorama" --seconds "$seconds" \
+    "$bin/farfield-fly" --pack "$pack" --link "$link" --start 0.35 --speed 150 --quality low --panorama "$panorama" --seconds "$seconds" \
         --seed 1 --size "$size" --csv "$out/$name.csv" --png "$out/$name" --json "$@" >"$out/$name.json"
+    rm -f "$out/$name/frame-0000.00.png" # nothing has arrived yet
 }
 
 mkdir -p "$out"
@@ -70,13 +71,13 @@ server_pid="" link_pid=""
 for profile in umts gprs; do
     for panorama in on off; do
         say "simulated: $profile, panorama $panorama, 60 seconds"
-        fly "$profile-panorama-$panorama" "$profile" 60 "$panorama" 240x320 --every 15
+        fly "$profile-panorama-$panorama" "$profile" 60 "$panorama" 240x320 --every 15 --audit on
     done
 done
-say "pictures at 640x480, and the wireframe"
-fly large-panorama umts 10 on 640x480 --every 5
-fly large umts 10 off 640x480 --every 5
-fly wireframe umts 10 off 640x480 --every 5 --wireframe --audit off
+say "pictures at 640x480 in high quality, and the wireframe"
+fly large-panorama umts 10 on 640x480 --every 5 --quality high --memory 8M --face 512
+fly large umts 10 off 640x480 --every 5 --quality high --memory 8M
+fly wireframe umts 10 off 640x480 --every 5 --wireframe --quality 2:4 --height 1500
 
 say "report"
 pictures=""
