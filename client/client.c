@@ -42,6 +42,7 @@ static void default_panorama(ff_panorama_desc *panorama, unsigned width)
         panorama->face_size = 256;
     if (!panorama->jpeg_quality || panorama->jpeg_quality > 100)
         panorama->jpeg_quality = 70;
+    panorama->enabled &= ff_panorama_built;
 }
 
 static void default_desc(ff_client_desc *desc)
@@ -56,6 +57,7 @@ static void default_desc(ff_client_desc *desc)
         desc->answer_timeout_ms = 60000;
     default_quality(&desc->quality);
     default_panorama(&desc->panorama, desc->width);
+    desc->no_textures |= !ff_textures_built;
 }
 
 static int check_desc(const ff_client_desc *desc)
@@ -65,6 +67,8 @@ static int check_desc(const ff_client_desc *desc)
         return FF_ERR_ARGUMENT;
     if (desc->backend && !desc->surface_api)
         return FF_ERR_ARGUMENT;
+    if (desc->stream && !ff_link_built)
+        return FF_ERR_UNSUPPORTED;
     return desc->memory_bytes < CLIENT_BYTES_MIN ? FF_ERR_MEMORY : FF_OK;
 }
 

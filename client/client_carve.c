@@ -68,6 +68,8 @@ static int carve_images(ff_client *client, unsigned face_size)
 
 static int carve_decoder(ff_client *client)
 {
+    if (!ff_codec_supported(client->info.codec))
+        return FF_ERR_UNSUPPORTED;
     client->intake.info = client->info;
     size_t bytes = ff_decoder_bytes(&client->info);
     void *memory = ff_arena_take(&client->arena, bytes);

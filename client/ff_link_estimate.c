@@ -3,6 +3,8 @@
 #define INTERVAL_US_MIN 100000
 #define WINDOW_BYTES_MAX (1u << 24)
 
+const uint8_t ff_link_built = 1;
+
 void ff_link_estimate_reset(ff_link_estimate *link)
 {
     link->bytes_s = link->rtt_us = 0;

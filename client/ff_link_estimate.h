@@ -14,6 +14,8 @@
 
 #define FF_WINDOW_BYTES_MIN 2048u
 
+extern const uint8_t ff_link_built; /* 0: all that concerns the network is left out of this build */
+
 typedef struct ff_link_estimate {
     uint32_t bytes_s, rtt_us;   /* 0: not known */
     int64_t since_us;           /* start of the interval; INT64_MIN: none */

@@ -9,6 +9,8 @@
 #define REFUSALS_IN_A_ROW 3
 #define PRIORITY_FACE 0x10000u    /* among the first: before refinements, beside roots */
 
+const uint8_t ff_panorama_built = 1;
+
 void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panorama_desc *desc, unsigned face_size)
 {
     uint32_t serial = panorama->serial;

@@ -11,6 +11,8 @@
 #include "farfield.h"
 #include "ff_new_data.h"
 
+extern const uint8_t ff_panorama_built; /* 0: left out of this build */
+
 #define FF_PANORAMA_MESHES (2 * FF_FACE_COUNT)
 
 typedef struct ff_panorama_set {

@@ -2,6 +2,8 @@
 
 #include "terrain/ff_texture_map.h"
 
+const uint8_t ff_textures_built = 1;
+
 static unsigned bucket_of(ff_key key)
 {
     return (unsigned)((key * UINT64_C(0x9E3779B97F4A7C15)) >> 56) & (FF_TEXTURE_HASH - 1);

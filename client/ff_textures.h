@@ -6,6 +6,8 @@
 #include "ff_new_data.h"
 #include "terrain/ff_tree.h"
 
+extern const uint8_t ff_textures_built; /* 0: left out of this build */
+
 #define FF_TEXTURE_HASH 256u
 
 typedef struct ff_texture_slot {

@@ -33,7 +33,9 @@ uint32_t ff_geometric_error_decode(uint8_t code);
 /* The decoder's working memory (inflate state and scratch): a caller-owned block, nothing else is ever allocated. */
 typedef struct ff_decoder ff_decoder;
 size_t ff_decoder_bytes(const ff_terrain_info *info);
-/* NULL when `bytes` is too small. `memory` aligned for any type. */
+/* 1 when this build decodes payloads of the codec (enum ff_codec_id); without zlib it does not decode FF_CODEC_DEFLATE. */
+int ff_codec_supported(int codec);
+/* NULL when `bytes` is too small or the codec not supported. `memory` aligned for any type. */
 ff_decoder *ff_decoder_create(const ff_terrain_info *info, void *memory, size_t bytes);
 
 /* Residuals of one payload, entropy-decoded but not yet added to a prediction: this half needs no parent and runs on

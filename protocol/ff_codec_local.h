@@ -4,7 +4,7 @@
 
 #include "ff_codec.h"
 
-/* First byte of a FF_CODEC_DEFLATE payload (SPEC.md, "Payload"). */
+/* First byte of a FF_CODEC_DEFLATE or FF_CODEC_RICE payload (SPEC.md, "Payload"). */
 #define FF_HEAD_BODY 0x03u         /* enum ff_body */
 #define FF_HEAD_ERRORS 0x0cu       /* enum ff_errors_form, shifted by 2 */
 #define FF_HEAD_DETAIL_SHIFT 4     /* low bits of every value that are stored plainly; PACKED: less one */

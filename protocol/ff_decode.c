@@ -1,20 +1,16 @@
 /* Decoder half of the height codec: payload to residuals (network worker), residuals to heights (main thread). */
 #include "ff_codec_local.h"
+#include "ff_inflate.h"
 
 #include <assert.h>
 #include <string.h>
-#include <zlib.h>
 
-/* zlib keeps about 7 kB for an inflate stream, its forks up to twice that; the window comes on top. */
-#define INFLATE_STATE_BYTES (20u * 1024u)
 #define ALIGNMENT 16u
 
 struct ff_decoder {
     ff_terrain_info info;
-    z_stream stream;
-    uint8_t *plane;            /* high parts of a payload's values */
-    uint8_t *arena;            /* what zlib allocates, once */
-    size_t arena_bytes, arena_used;
+    ff_inflate *inflater;      /* NULL: the codec has no use for one */
+    uint8_t *plane;            /* high parts of a payload's values, for it */
 };
 
 uint32_t ff_geometric_error_decode(uint8_t code)
@@ -41,28 +37,16 @@ static size_t align_up(size_t bytes) { return (bytes + ALIGNMENT - 1) & ~(size_t
 
 static size_t plane_bytes(const ff_terrain_info *info) { return align_up(ff_refinement_count(info)); }
 
+int ff_codec_supported(int codec)
+{
+    return codec >= 0 && codec < FF_CODEC_COUNT && (codec != FF_CODEC_DEFLATE || ff_inflate_built);
+}
+
 size_t ff_decoder_bytes(const ff_terrain_info *info)
 {
-    return align_up(sizeof(ff_decoder)) + plane_bytes(info) + INFLATE_STATE_BYTES + ((size_t)1 << ff_window_bits(info));
-}
+    size_t head_bytes = align_up(sizeof(ff_decoder));
 
-static voidpf arena_take(voidpf opaque, uInt items, uInt size)
-{
-    ff_decoder *dec = opaque;
-    size_t bytes = align_up((size_t)items * size);
-    voidpf taken = dec->arena + dec->arena_used;
-
-    if (bytes > dec->arena_bytes - dec->arena_used)
-        return Z_NULL;
-    dec->arena_used += bytes;
-    return taken;
-}
-
-/* The block goes away as a whole. */
-static void arena_give(voidpf opaque, voidpf address)
-{
-    (void)opaque;
-    (void)address;
+    return info->codec == FF_CODEC_DEFLATE ? head_bytes + plane_bytes(info) + ff_inflate_bytes(ff_window_bits(info)) : head_bytes;
 }
 
 ff_decoder *ff_decoder_create(const ff_terrain_info *info, void *memory, size_t bytes)
@@ -70,17 +54,15 @@ ff_decoder *ff_decoder_create(const ff_terrain_info *info, void *memory, size_t 
     ff_decoder *dec = memory;
     size_t head_bytes = align_up(sizeof(ff_decoder)) + plane_bytes(info);
 
-    if (bytes < ff_decoder_bytes(info))
+    if (bytes < ff_decoder_bytes(info) || !ff_codec_supported(info->codec))
         return NULL;
     memset(dec, 0, sizeof(*dec));
     dec->info = *info;
+    if (info->codec != FF_CODEC_DEFLATE)
+        return dec;
     dec->plane = (uint8_t *)memory + align_up(sizeof(ff_decoder));
-    dec->arena = (uint8_t *)memory + head_bytes;
-    dec->arena_bytes = bytes - head_bytes;
-    dec->stream.zalloc = arena_take;
-    dec->stream.zfree = arena_give;
-    dec->stream.opaque = dec;
-    return inflateInit2(&dec->stream, -ff_window_bits(info)) == Z_OK ? dec : NULL;
+    dec->inflater = ff_inflate_create(ff_window_bits(info), (uint8_t *)memory + head_bytes, bytes - head_bytes);
+    return dec->inflater ? dec : NULL;
 }
 
 /* ---- payload to residuals ---- */
@@ -130,20 +112,11 @@ static int take_low(cursor *in, uint32_t width, int32_t *value, uint32_t count)
 /* High parts: one byte a value, through raw deflate; all that is left of the payload. */
 static int take_deflated(ff_decoder *dec, cursor *in, uint32_t width, int32_t *value, uint32_t count)
 {
-    z_stream *z = &dec->stream;
     uint32_t all = 0;
-    int rc;
+    int rc = dec->inflater ? ff_inflate_all(dec->inflater, in->at, left(in), dec->plane, count) : FF_ERR_FORMAT;
 
-    inflateReset(z);
-    z->next_in = (z_const Bytef *)in->at;
-    z->avail_in = (uInt)left(in);
-    z->next_out = dec->plane;
-    z->avail_out = count;
-    rc = inflate(z, Z_FINISH);
-    if (rc == Z_BUF_ERROR && z->avail_in == 0)
-        return FF_ERR_TRUNCATED;
-    if (rc != Z_STREAM_END || z->avail_out != 0 || z->avail_in != 0)
-        return FF_ERR_FORMAT;
+    if (rc != FF_OK)
+        return rc;
     for (uint32_t i = 0; i < count; i++) {
         value[i] |= (int32_t)dec->plane[i] << width;
         all |= (uint32_t)value[i];

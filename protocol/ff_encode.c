@@ -143,7 +143,7 @@ static size_t put_body(const ff_terrain_info *info, const int32_t *value, uint32
 
     if (width == 0)
         return 0;
-    for (uint32_t low = width > 8 ? width - 8 : 0; low < width; low++) {
+    for (uint32_t low = width > 8 ? width - 8 : 0; low < width && info->codec == FF_CODEC_DEFLATE; low++) {
         size_t low_bytes = ff_packed_bytes(count, low);
         size_t bytes = low_bytes >= best.bytes ? 0 : put_deflated(info, value, count, low, high, best.bytes - low_bytes);
         if (bytes > 0) {

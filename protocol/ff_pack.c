@@ -6,23 +6,12 @@
 
 #include <limits.h>
 #include <string.h>
-#include <zlib.h>
 
 static const uint8_t magic[8] = {0x89, 'F', 'F', 'P', '\r', '\n', 0x1a, '\n'};
 
 #define CHECKSUM_AT (8 + 4 + FF_TERRAIN_BYTES - 4) /* info.checksum is the last field of the terrain */
 #define HEADER_CRC_AT (FF_PACK_HEADER_BYTES - 4)
 #define RECORD_CRC_BYTES 4
-
-uint32_t ff_crc32(uint32_t crc, const void *bytes, size_t count)
-{
-    const uint8_t *at = bytes;
-    uLong sum = crc;
-
-    for (; count > UINT_MAX; count -= UINT_MAX, at += UINT_MAX)
-        sum = crc32(sum, at, UINT_MAX);
-    return (uint32_t)(count > 0 ? crc32(sum, at, (uInt)count) : sum);
-}
 
 static uint64_t load(const uint8_t *bytes, unsigned count)
 {

@@ -17,6 +17,7 @@
 enum ff_codec_id {
     FF_CODEC_RAW = 0,     /* residuals as 16-bit values, for tests and as the floor of every comparison */
     FF_CODEC_DEFLATE = 1, /* residuals cut into low bits and high parts, these by raw deflate (zlib) or in unary */
+    FF_CODEC_RICE = 2,    /* as DEFLATE, but high parts always in unary (Golomb-Rice): for devices without zlib */
     FF_CODEC_COUNT
 };
 

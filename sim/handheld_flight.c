@@ -42,7 +42,7 @@ static int open_client(handheld *device)
     const handheld_options *options = device->options;
     const sim_tape_head *head = options->tape_path ? &device->tape.head : NULL;
     ff_client_desc desc = { .width = device->width, .height = device->height, .quality = head ? head->quality : options->quality,
-                            .panorama = head ? head->panorama : options->panorama, .surface_api = device->surface_api,
+                            .panorama = head ? head->panorama : options->panorama,
                             .use_plain_arrays = 1, .no_textures = (uint8_t)options->no_textures };
     device->memory_bytes = options->memory_bytes ? options->memory_bytes : head ? head->memory_bytes : MEMORY_BYTES;
     device->memory = malloc(device->memory_bytes);
@@ -96,13 +96,12 @@ static int one_frame(handheld *device, int64_t now_us, const c3d_camera *camera,
     ff_client_stats stats;
     handheld_mark_update();
     int changed = ff_client_update(device->client, now_us, camera);
-    if (changed && device->surface) {
+    if (changed && ff_client_device(device->client)) {
         handheld_mark_draw();
         ff_client_draw(device->client);
         handheld_mark_outside();
         if (device->options->hud)
             handheld_hud(device);
-        (void)device->surface_api->present(device->surface);
     }
     handheld_mark_outside();
     if (!flying)

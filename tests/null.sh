@@ -12,7 +12,7 @@ result() { # STATUS WHAT
 result $? "the core over the blank port"
 
 sed -e 's|/\*.*\*/||' platform/sys.h | grep -oE '\bsys_[a-z0-9_]+\(' | tr -d '(' | sort -u >"$build/sys-declared"
-nm --defined-only "$build"/obj/platform/{null/sys_null,random,events}.o | awk '$2 == "T" { print $3 }' | sort -u >"$build/sys-null"
+nm --defined-only "$build"/obj/platform/{null/{sys_null,null_tcp,null_jpeg},random,events}.o | awk '$2 == "T" { print $3 }' | sort -u >"$build/sys-null"
 missing=$(comm -23 "$build/sys-declared" "$build/sys-null" | tr '\n' ' ')
 [ -n "$missing" ] && echo "# missing: $missing"
 [ -s "$build/sys-declared" ] && [ -z "$missing" ]

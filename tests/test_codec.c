@@ -136,7 +136,7 @@ static void bound_holds_on_every_ground(void **state)
     (void)state;
     for (int run = 0; run < GROUND_COUNT * FF_NODE_LOG2_MAX * FF_CODEC_COUNT * 5; run++) {
         int k = run % 5 + 1, kind = run / 5 % GROUND_COUNT, codec = run / 30 % FF_CODEC_COUNT;
-        ff_terrain_info info = terrain(k, 2, (enum ff_codec_id)codec, max_errors[run / 60]);
+        ff_terrain_info info = terrain(k, 2, (enum ff_codec_id)codec, max_errors[run / (30 * FF_CODEC_COUNT)]);
         make_ground(&g, kind, (2u << k) + 1);
         cut(&g, 0, 0, 2, ff_node_side(&info), source);
         there_and_back(&info, NULL, source, payload, root);

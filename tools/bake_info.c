@@ -6,7 +6,7 @@
 #define INDEX_ENTRY_BYTES 8
 #define RECORD_CRC_BYTES 4
 
-static const char *codec_name(int codec) { return codec == FF_CODEC_DEFLATE ? "deflate" : "raw"; }
+static const char *codec_name(int codec) { return codec == FF_CODEC_DEFLATE ? "deflate" : codec == FF_CODEC_RICE ? "rice" : "raw"; }
 
 /* Distinct heights of the whole terrain at a level, neighbours' shared rims counted once. */
 static uint64_t lattice_samples(const ff_terrain_info *info, uint32_t level)

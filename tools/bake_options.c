@@ -34,7 +34,7 @@ static const char help_text[] =
     "  --texture-log2 T     textures of (2^T)^2 texels, 4..8 (default 6)\n"
     "  --texture-levels L   levels with textures (default: down to the image's resolution)\n"
     "  --texture-quality Q  JPEG quality, 1..100 (default 75)\n"
-    "  --codec raw|deflate  entropy coder (default deflate)\n"
+    "  --codec deflate|rice|raw  entropy coder (default deflate); rice: for devices without zlib\n"
     "Run\n"
     "  --jobs N             threads (default: the processors, at most 16); any N gives the same bytes\n"
     "  --json               a summary on stdout\n"
@@ -118,7 +118,8 @@ static int take_codec(const char *text, int *codec)
 {
     if (!strcmp(text, "raw")) *codec = FF_CODEC_RAW;
     else if (!strcmp(text, "deflate")) *codec = FF_CODEC_DEFLATE;
-    else return bake_fail("--codec %s: raw or deflate is wanted", text);
+    else if (!strcmp(text, "rice")) *codec = FF_CODEC_RICE;
+    else return bake_fail("--codec %s: deflate, rice or raw is wanted", text);
     return 0;
 }
 

@@ -43,49 +43,6 @@ int sys_thread_start(sys_thread *thread, void (*run)(void *arg), void *arg)
 
 void sys_thread_join(sys_thread *thread) { (void)thread; }
 
-static int no_send(void *state, const uint8_t *bytes, size_t count)
-{
-    (void)state, (void)bytes, (void)count;
-    return FF_ERR_CLOSED;
-}
-
-static int no_recv(void *state, uint8_t *bytes, size_t capacity)
-{
-    (void)state, (void)bytes, (void)capacity;
-    return FF_ERR_CLOSED;
-}
-
-static void no_close(void *state) { (void)state; }
-static int no_reconnect(void *state) { return (void)state, FF_ERR_UNSUPPORTED; }
-
-int sys_tcp_client(sys_tcp *tcp, const char *address, sys_stream *stream)
-{
-    (void)address;
-    sys_tcp_adopt(tcp, -1, stream);
-    stream->reconnect = no_reconnect;
-    return FF_ERR_UNSUPPORTED;
-}
-
-int sys_tcp_listen(const char *address, int reuse_port, uint16_t *port)
-{
-    (void)address, (void)reuse_port, (void)port;
-    return FF_ERR_UNSUPPORTED;
-}
-
-int sys_tcp_accept(int listen_fd) { return (void)listen_fd, FF_ERR_UNSUPPORTED; }
-
-void sys_tcp_adopt(sys_tcp *tcp, int fd, sys_stream *stream)
-{
-    tcp->fd = fd;
-    tcp->connecting = 0;
-    tcp->address[0] = 0;
-    stream->state = tcp;
-    stream->send = no_send;
-    stream->recv = no_recv;
-    stream->close = no_close;
-    stream->reconnect = NULL;
-}
-
 int sys_map_file(const char *path, sys_mapping *mapping)
 {
     (void)path;
@@ -111,24 +68,6 @@ int sys_make_folder(const char *path)
 int sys_stderr_is_terminal(void)
 {
     return 0;
-}
-
-int sys_jpeg_decode(const uint8_t *bytes, size_t byte_count, uint32_t width, uint32_t height, uint8_t *rgb)
-{
-    (void)bytes, (void)byte_count, (void)width, (void)height, (void)rgb;
-    return FF_ERR_UNSUPPORTED;
-}
-
-int sys_jpeg_size(const uint8_t *bytes, size_t byte_count, uint32_t *width, uint32_t *height)
-{
-    (void)bytes, (void)byte_count, (void)width, (void)height;
-    return FF_ERR_UNSUPPORTED;
-}
-
-int sys_jpeg_encode(const uint8_t *rgb, uint32_t width, uint32_t height, int quality, uint8_t *out, size_t capacity)
-{
-    (void)rgb, (void)width, (void)height, (void)quality, (void)out, (void)capacity;
-    return FF_ERR_UNSUPPORTED;
 }
 
 int sys_png_write(const char *path, const uint8_t *rgb, uint32_t width, uint32_t height)
