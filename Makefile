@@ -24,13 +24,13 @@ GDAL_CFLAGS = $(shell $(PKG_CONFIG) --cflags gdal 2>/dev/null)
 GDAL_LIBS = $(shell $(PKG_CONFIG) --libs gdal 2>/dev/null)
 
 # ---- sources, by layer ----
-CORE_DIRS := protocol client client/terrain common3d common3d/gl common3d/gles1
-HOST_DIRS := platform platform/posix platform/egl platform/osmesa platform/glfw platform/sim server tools sim
+CORE_DIRS := protocol client client/terrain common3d common3d/gl common3d/gles1 common3d/soft
+HOST_DIRS := platform platform/posix platform/egl platform/osmesa platform/glfw platform/memory platform/sim server tools sim
 srcs = $(filter-out %_main.c,$(wildcard $(1)/*.c))
 obj = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
 
 SRC_core := $(foreach d,$(CORE_DIRS),$(call srcs,$d))
-SRC_platform := $(foreach d,platform platform/posix platform/sim,$(call srcs,$d))
+SRC_platform := $(foreach d,platform platform/posix platform/memory platform/sim,$(call srcs,$d))
 SRC_surface := $(foreach d,platform/egl platform/osmesa platform/glfw,$(call srcs,$d))
 SRC_server := $(call srcs,server)
 SRC_tools := $(call srcs,tools)
@@ -99,7 +99,7 @@ demo: $(PROGRAMS) ## fetch real terrain, bake it, serve it, fly over it: picture
 	@tools/demo.sh $(BUILD)/bin build/demo
 
 # ---- libfarfield: what an embedding program links ----
-LIBFARFIELD_OBJS = $(call obj,$(SRC_core) $(call srcs,platform) $(call srcs,platform/posix))
+LIBFARFIELD_OBJS = $(call obj,$(SRC_core) $(foreach d,platform platform/posix platform/memory,$(call srcs,$d)))
 lib: $(LIB)/libfarfield.a $(LIB)/libfarfield.so
 $(LIB)/libfarfield.a: $(LIBFARFIELD_OBJS); $(archive)
 $(LIB)/libfarfield.so: $(LIBFARFIELD_OBJS)

@@ -16,6 +16,8 @@
 #define ECONOMY_STEPS 3
 #define TEXTURES_MIN 8u
 #define TEXTURES_MAX 512u
+#define TEXTURE_ROUNDING 256u
+#define TEXT_BYTES (16u << 10)
 
 /* An image of side * side texels, once as RGB888 and once as 16 bit. */
 static int image_fits(const ff_client *client, size_t side)
@@ -91,6 +93,16 @@ static int carve_textures(ff_client *client)
     return textures->slot ? FF_OK : FF_ERR_MEMORY;
 }
 
+/* What a back end without a GL keeps of images: each with a rim of a texel, rounded up; faces and the caller's text by their share. */
+static uint32_t texture_bytes(const ff_client *client, unsigned face_size)
+{
+    size_t side = ((size_t)1 << client->info.texture_log2) + 2, face = (size_t)face_size + 2, share = client->arena.bytes / 8;
+    size_t ground = client->has_textures ? client->textures.slot_count * (side * side * 2 + TEXTURE_ROUNDING) : 0;
+    size_t faces = FF_PANORAMA_MESHES * (face * face * 2 + TEXTURE_ROUNDING);
+    faces = !face_size ? 0 : faces < share ? faces : share;
+    return (uint32_t)(ground + faces + client->arena.bytes / 16 + TEXT_BYTES);
+}
+
 static c3d_desc device_desc(const ff_client *client, unsigned entries, unsigned face_size, int buffers)
 {
     unsigned side = ff_node_side(&client->info);
@@ -101,6 +113,10 @@ static c3d_desc device_desc(const ff_client *client, unsigned entries, unsigned 
     desc.texture_count = (uint16_t)(texture_share + 1 /* the caller's text */ + (face_size ? FF_PANORAMA_MESHES : 0));
     desc.mesh_vertices_max = (uint16_t)(side * side > FF_SKY_VERTICES ? side * side : FF_SKY_VERTICES);
     desc.strip_indices_max = client->view.strip_indices + EXTRA_INDICES;
+    desc.width = client->desc.width;
+    desc.height = client->desc.height;
+    desc.frame_format = client->desc.frame_format;
+    desc.texture_bytes = texture_bytes(client, face_size);
     return desc;
 }
 
@@ -133,10 +149,10 @@ static int open_device(ff_client *client, unsigned face_size, unsigned *entries,
     return rc;
 }
 
-/* Meshes get a third of what is left at most. */
+/* Meshes get a third of what is left at most, besides what the device needs without any. */
 static int carve_device(ff_client *client, unsigned face_size, unsigned *entries)
 {
-    size_t share = ff_arena_left(&client->arena) / 3;
+    size_t left = ff_arena_left(&client->arena), share = left / 3;
     *entries = VIEW_ENTRIES_MAX;
     if (!client->desc.backend) {
         while (*entries > VIEW_ENTRIES_MIN && *entries * sizeof(ff_view_node) > share / 8)
@@ -146,6 +162,9 @@ static int carve_device(ff_client *client, unsigned face_size, unsigned *entries
     int rc = count_indices(client);
     if (rc != FF_OK)
         return rc;
+    c3d_desc bare = device_desc(client, 0, face_size, 0);
+    size_t fixed = c3d_bytes(client->desc.backend, &bare);
+    share = fixed < left ? fixed + (left - fixed) / 3 : left;
     rc = client->desc.use_plain_arrays ? FF_ERR_MEMORY : open_device(client, face_size, entries, share, 1);
     return rc == FF_ERR_MEMORY ? open_device(client, face_size, entries, share, 0) : rc;
 }

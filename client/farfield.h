@@ -4,7 +4,7 @@
  *   ff_client_desc desc = {0};                    // zero means the default, see each field
  *   desc.memory = block; desc.memory_bytes = sizeof block;
  *   desc.stream = &stream;                        // or desc.pack = &pack for a terrain on this device
- *   desc.backend = c3d_backend_gles1(); desc.surface_api = sys_surface_egl();  // NULL: geometry only, no pictures
+ *   desc.backend = c3d_backend_gles1(); desc.surface_api = sys_surface_egl();  // or soft, memory; NULL: geometry only, no pictures
  *   ff_client *client; int rc = ff_client_create(&desc, &client);
  *   each frame:
  *       ff_client_work(client, now_us);           // or desc.use_thread = 1, and a thread does it
@@ -45,7 +45,8 @@ typedef struct ff_client_desc {
     const ff_pack *pack;      /* a pack in memory instead; or NULL */
     const struct c3d_backend *backend;       /* NULL: no pictures */
     const sys_surface_api *surface_api;      /* its context is current */
-    uint16_t width, height;   /* viewport, default 240x320 */
+    uint16_t width, height;   /* viewport, default 240x320; a back end without a GL draws nothing in a larger one */
+    uint8_t frame_format;     /* of a back end without a GL: C3D_RGB565 (0, default) or C3D_RGBA8888 */
     ff_quality quality;       /* all zero: DISTANCE, C = 3, depth 4, sigma 1.25, view 30 km */
     ff_panorama_desc panorama;
     uint8_t use_thread;       /* 1: ff_client_create starts a thread that calls ff_client_work */

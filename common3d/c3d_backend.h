@@ -16,6 +16,7 @@ typedef struct c3d_mesh_data {
     uint32_t buffer;            /* the back end's name of its copy; 0: none, use `vertices` */
     const c3d_vertex *vertices; /* copy in the pool, NULL when `buffer` has it */
     uint32_t count;
+    uint16_t reach[3];          /* largest |x|, |y|, |z| */
 } c3d_mesh_data;
 
 /* A strip's triangles and its edges (pairs of indices: lines), one after the other in one array or buffer. */
@@ -38,10 +39,12 @@ typedef struct c3d_resolved_draw {
 struct c3d_backend {
     const char *name;
     size_t state_bytes;
+    size_t (*state_bytes_for)(const c3d_desc *desc); /* in place of state_bytes when it depends on the pools; or NULL */
     /* The surface's context is current. *buffers: in, wanted; out, 1 when vertex buffers will be used. FF_ERR_UNSUPPORTED. */
-    int (*open)(void *state, const sys_surface_api *surface_api, int *buffers);
+    int (*open)(void *state, const c3d_desc *desc, int *buffers);
     void (*close)(void *state);
-    /* Copies into a buffer object; its name, or 0 when the library has no room. Called only when buffers are in use. */
+    /* Copies into a buffer object; its name, or 0 when the library has no room. Called only when buffers are in use;
+     * NULL: this back end never has any. */
     uint32_t (*mesh_upload)(void *state, const c3d_vertex *vertices, uint32_t count);
     uint32_t (*strip_upload)(void *state, const uint16_t *indices, uint32_t count);
     void (*buffer_free)(void *state, uint32_t buffer);
@@ -54,6 +57,7 @@ struct c3d_backend {
     void (*end)(void *state);
     /* Rows first_row .. first_row + rows - 1 from the bottom as RGBA8888, bottom row first. */
     int (*read_rows)(void *state, uint32_t width, uint32_t first_row, uint32_t rows, uint8_t *rgba);
+    const void *(*pixels)(void *state, enum c3d_texture_format *format); /* see c3d_frame_pixels; or NULL */
 };
 
 /* c3d_to_eye with C3D_EYE_SHIFT fraction bits. */

@@ -59,7 +59,7 @@ static void *take(block_part *block, size_t bytes)
 static c3d_device *lay_out(block_part *block, const struct c3d_backend *backend, const c3d_desc *desc, int plain)
 {
     c3d_device *device = take(block, sizeof *device);
-    void *state = take(block, backend->state_bytes);
+    void *state = take(block, backend->state_bytes_for ? backend->state_bytes_for(desc) : backend->state_bytes);
     void *meshes = take(block, desc->mesh_count * sizeof(mesh_slot));
     void *strips = take(block, desc->strip_count * sizeof(strip_slot));
     void *textures = take(block, desc->texture_count * sizeof(texture_slot));
@@ -91,19 +91,23 @@ static size_t bytes_for(const struct c3d_backend *backend, const c3d_desc *desc,
     return measure.used + 15; /* for a block that is not aligned */
 }
 
+static int wants_buffers(const struct c3d_backend *backend, const c3d_desc *desc)
+{
+    return desc->use_vertex_buffers && backend->mesh_upload;
+}
+
 size_t c3d_bytes(const struct c3d_backend *backend, const c3d_desc *desc)
 {
-    return bytes_for(backend, desc, !desc->use_vertex_buffers);
+    return bytes_for(backend, desc, !wants_buffers(backend, desc));
 }
 
 int c3d_open(const struct c3d_backend *backend, const c3d_desc *desc, void *memory, size_t bytes, c3d_device **device)
 {
     if (bytes < c3d_bytes(backend, desc)) return FF_ERR_MEMORY;
     block_part block = {(uint8_t *)memory + (-(uintptr_t)memory & 15), 0};
-    int plain = !desc->use_vertex_buffers || bytes >= bytes_for(backend, desc, 1);
+    int buffers = wants_buffers(backend, desc), plain = !buffers || bytes >= bytes_for(backend, desc, 1);
     c3d_device *opened = lay_out(&block, backend, desc, plain);
-    int buffers = desc->use_vertex_buffers;
-    int rc = backend->open(opened->state, desc->surface_api, &buffers);
+    int rc = backend->open(opened->state, desc, &buffers);
     if (rc < 0) return rc;
     if (!buffers && !plain) {
         backend->close(opened->state);
@@ -133,6 +137,21 @@ void c3d_close(c3d_device *device)
     device->backend->close(device->state);
 }
 
+static void widen(uint16_t *reach, int16_t value)
+{
+    uint16_t size = (uint16_t)(value < 0 ? -value : value);
+    if (size > *reach) *reach = size;
+}
+
+static void measure_reach(const c3d_vertex *vertices, uint32_t count, uint16_t reach[3])
+{
+    for (uint32_t i = 0; i < count; i++) {
+        widen(&reach[0], vertices[i].x);
+        widen(&reach[1], vertices[i].y);
+        widen(&reach[2], vertices[i].z);
+    }
+}
+
 c3d_mesh c3d_mesh_make(c3d_device *device, const c3d_vertex *vertices, uint32_t count)
 {
     c3d_mesh none = {0};
@@ -140,7 +159,8 @@ c3d_mesh c3d_mesh_make(c3d_device *device, const c3d_vertex *vertices, uint32_t 
     uint32_t id = c3d_pool_take(&device->meshes);
     mesh_slot *mesh = c3d_pool_get(&device->meshes, id);
     if (!mesh) return none;
-    mesh->data = (c3d_mesh_data){0, NULL, count};
+    mesh->data = (c3d_mesh_data){.count = count};
+    measure_reach(vertices, count, mesh->data.reach);
     if (device->vertices) {
         c3d_vertex *copy = device->vertices + (size_t)c3d_pool_index(id) * device->desc.mesh_vertices_max;
         memcpy(copy, vertices, count * sizeof *vertices);
@@ -283,6 +303,11 @@ int c3d_read_rgb(c3d_device *device, uint8_t *rgb)
         }
     }
     return FF_OK;
+}
+
+const void *c3d_frame_pixels(c3d_device *device, enum c3d_texture_format *format)
+{
+    return device->backend->pixels ? device->backend->pixels(device->state, format) : NULL;
 }
 
 void c3d_get_stats(const c3d_device *device, c3d_stats *stats)

@@ -102,12 +102,12 @@ typedef struct sys_event {
 enum sys_key { SYS_KEY_LEFT = 256, SYS_KEY_RIGHT, SYS_KEY_UP, SYS_KEY_DOWN, SYS_KEY_PAGE_UP, SYS_KEY_PAGE_DOWN,
                SYS_KEY_ESCAPE, SYS_KEY_ENTER, SYS_KEY_SPACE, SYS_KEY_F1 /* .. F12 = F1 + 11 */, SYS_KEY_SHIFT = 300 };
 
-enum sys_gl_kind { SYS_GL_ES1, SYS_GL_DESKTOP };
+enum sys_gl_kind { SYS_GL_ES1, SYS_GL_DESKTOP, SYS_GL_NONE };
 typedef struct sys_surface sys_surface;
 typedef struct sys_surface_desc { const char *title; int width, height; enum sys_gl_kind gl; } sys_surface_desc;
 /* A place to draw with its GL context. Several kinds may live in one process; the table says which. */
 typedef struct sys_surface_api {
-    const char *name; /* "glfw", "egl", "osmesa" */
+    const char *name; /* "glfw", "egl", "osmesa", "memory" */
     int (*open)(const sys_surface_desc *desc, sys_surface **surface); /* makes current; FF_ERR_UNSUPPORTED, FF_ERR_SYSTEM */
     void (*close)(sys_surface *surface);
     int (*make_current)(sys_surface *surface);
@@ -118,6 +118,7 @@ typedef struct sys_surface_api {
 const sys_surface_api *sys_surface_glfw(void);   /* NULL when not built in */
 const sys_surface_api *sys_surface_egl(void);
 const sys_surface_api *sys_surface_osmesa(void);
+const sys_surface_api *sys_surface_memory(void); /* no GL: for back ends that hold the picture themselves */
 
 /* Injected device events (emulator, simulator): poll() of any surface hands them out too, first in first out; FF_ERR_FULL. */
 int sys_event_inject(const sys_event *event);

@@ -60,6 +60,11 @@ static int open_tape(fly_world *world)
     return rc == FF_OK ? 0 : fail(options->tape_path, rc);
 }
 
+static int is_soft(enum fly_backend backend)
+{
+    return backend == FLY_SOFT || backend == FLY_SOFT_565;
+}
+
 static int open_surface(fly_world *world)
 {
     const fly_options *options = world->options;
@@ -70,6 +75,9 @@ static int open_surface(fly_world *world)
     if (options->backend == FLY_GLES1) {
         world->surface_api = sys_surface_egl();
         desc.gl = SYS_GL_ES1;
+    } else if (is_soft(options->backend)) {
+        world->surface_api = sys_surface_memory();
+        desc.gl = SYS_GL_NONE;
     }
     int rc = world->surface_api ? world->surface_api->open(&desc, &world->surface) : FF_ERR_UNSUPPORTED;
     if (rc == FF_OK)
@@ -89,7 +97,9 @@ static int open_client(fly_world *world)
                             .quality = options->quality, .panorama = options->panorama, .use_thread = options->server != NULL,
                             .use_plain_arrays = (uint8_t)options->plain_arrays };
     if (options->backend != FLY_NONE)
-        desc.backend = options->backend == FLY_GLES1 ? c3d_backend_gles1() : c3d_backend_gl();
+        desc.backend = is_soft(options->backend) ? c3d_backend_soft()
+                       : options->backend == FLY_GLES1 ? c3d_backend_gles1() : c3d_backend_gl();
+    desc.frame_format = options->backend == FLY_SOFT ? C3D_RGBA8888 : C3D_RGB565;
     int rc = ff_client_create(&desc, &world->client);
     if (rc != FF_OK) {
         world->client = NULL;

@@ -22,10 +22,16 @@ static void make_squares(picture_kit *kit)
     kit->strip = c3d_strip_make(kit->device, strip, 4);
 }
 
+static int is_soft(enum picture_kind kind) { return kind == PICTURE_SOFT || kind == PICTURE_SOFT_565; }
+
 static int open_device(picture_kit *kit, int use_vertex_buffers)
 {
-    const struct c3d_backend *backend = kit->kind == PICTURE_GLES1 ? c3d_backend_gles1() : c3d_backend_gl();
-    c3d_desc desc = {kit->api, 64, 8, 8, 1089, 8192, (uint8_t)use_vertex_buffers};
+    const struct c3d_backend *backend = is_soft(kit->kind) ? c3d_backend_soft()
+                                        : kit->kind == PICTURE_GLES1 ? c3d_backend_gles1() : c3d_backend_gl();
+    c3d_desc desc = {.surface_api = kit->api, .mesh_count = 64, .strip_count = 8, .texture_count = 8, .mesh_vertices_max = 1089,
+                     .strip_indices_max = 8192, .use_vertex_buffers = (uint8_t)use_vertex_buffers,
+                     .frame_format = kit->kind == PICTURE_SOFT ? C3D_RGBA8888 : C3D_RGB565,
+                     .width = (uint16_t)kit->width, .height = (uint16_t)kit->height};
     size_t bytes = c3d_bytes(backend, &desc);
     kit->memory = malloc(bytes);
     return kit->memory ? c3d_open(backend, &desc, kit->memory, bytes, &kit->device) : FF_ERR_MEMORY;
@@ -37,7 +43,7 @@ int picture_open(picture_kit *kit, enum picture_kind kind, int width, int height
     kit->kind = kind;
     kit->width = width;
     kit->height = height;
-    kit->api = kind == PICTURE_GL ? sys_surface_osmesa() : sys_surface_egl();
+    kit->api = is_soft(kind) ? sys_surface_memory() : kind == PICTURE_GL ? sys_surface_osmesa() : sys_surface_egl();
     sys_surface_desc desc = {"picture", width, height, kind == PICTURE_GLES1 ? SYS_GL_ES1 : SYS_GL_DESKTOP};
     int rc = kit->api->open(&desc, &kit->surface);
     if (rc == FF_OK) rc = open_device(kit, use_vertex_buffers);

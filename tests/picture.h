@@ -4,7 +4,8 @@
 
 #include "../common3d/c3d.h"
 
-enum picture_kind { PICTURE_GL /* OSMesa, desktop GL */, PICTURE_GLES1 /* EGL, GL ES 1.1 */, PICTURE_EGL_GL, PICTURE_KINDS };
+enum picture_kind { PICTURE_GL /* OSMesa, desktop GL */, PICTURE_GLES1 /* EGL, GL ES 1.1 */, PICTURE_EGL_GL,
+                    PICTURE_SOFT /* RGBA8888 */, PICTURE_SOFT_565, PICTURE_KINDS };
 
 /* Squares of PICTURE_UNITS vertex units from the origin: level (x to the east, y to the north), or upright and facing south or west. */
 #define PICTURE_UNITS 64

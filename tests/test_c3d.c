@@ -13,13 +13,13 @@
 #define M PICTURE_M
 #define EACH_KIT(kit) for (picture_kit *kit = kits; kit < kits + KITS; kit++)
 
-enum { KITS = 4, WIDTH = 16, HEIGHT = 12 };
-static picture_kit kits[KITS]; /* desktop GL, GL ES, desktop GL by EGL; desktop GL with plain arrays */
+enum { KITS = 5, WIDTH = 16, HEIGHT = 12 };
+static picture_kit kits[KITS]; /* desktop GL, GL ES, desktop GL by EGL; desktop GL with plain arrays; integers */
 
 static int open_kits(void **state)
 {
     (void)state;
-    static const enum picture_kind kinds[KITS] = {PICTURE_GL, PICTURE_GLES1, PICTURE_EGL_GL, PICTURE_GL};
+    static const enum picture_kind kinds[KITS] = {PICTURE_GL, PICTURE_GLES1, PICTURE_EGL_GL, PICTURE_GL, PICTURE_SOFT};
     for (int i = 0; i < KITS; i++)
         if (picture_open(&kits[i], kinds[i], WIDTH, HEIGHT, i != 3) < 0) return -1;
     return 0;

@@ -129,7 +129,8 @@ static void devices_need_their_memory_and_their_gl(void **state)
     sys_surface_desc surface_desc = {"device", 16, 12, SYS_GL_DESKTOP};
     const struct c3d_backend *gl = c3d_backend_gl();
     sys_surface_api poor = *sys_surface_osmesa();
-    c3d_desc desc = {sys_surface_osmesa(), 4, 4, 4, 100, 100, 1}, plain = desc;
+    c3d_desc desc = {.surface_api = sys_surface_osmesa(), .mesh_count = 4, .strip_count = 4, .texture_count = 4,
+                     .mesh_vertices_max = 100, .strip_indices_max = 100, .use_vertex_buffers = 1}, plain = desc;
     plain.use_vertex_buffers = 0;
     c3d_device *device;
     c3d_stats stats;
@@ -258,7 +259,8 @@ static void devices_share_a_context(void **state)
     c3d_camera camera = hill_camera(5000, 0, 0);
     open_hills(&kit, PICTURE_GL, 1);
     render_hills(&kit, &camera, C3D_DRAW_COLOURED, alone);
-    c3d_desc desc = {kit.api, 4, 4, 4, SIDE * SIDE, 4096, 0}; /* plain arrays beside buffers */
+    c3d_desc desc = {.surface_api = kit.api, .mesh_count = 4, .strip_count = 4, .texture_count = 4,
+                     .mesh_vertices_max = SIDE * SIDE, .strip_indices_max = 4096}; /* plain arrays beside buffers */
     size_t bytes = c3d_bytes(c3d_backend_gl(), &desc);
     second = kit;
     second.memory = malloc(bytes);

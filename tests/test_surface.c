@@ -142,7 +142,8 @@ static void render_window(enum sys_gl_kind gl, uint8_t *rgb, const char *png)
     const struct c3d_backend *backend = gl == SYS_GL_ES1 ? c3d_backend_gles1() : c3d_backend_gl();
     picture_kit kit = {.api = sys_surface_glfw(), .width = 64, .height = 48};
     sys_surface_desc surface_desc = {"window", 64, 48, gl};
-    c3d_desc desc = {kit.api, 4, 4, 4, 16, 64, 1};
+    c3d_desc desc = {.surface_api = kit.api, .mesh_count = 4, .strip_count = 4, .texture_count = 4, .mesh_vertices_max = 16,
+                     .strip_indices_max = 64, .use_vertex_buffers = 1};
     static const uint16_t strip[4] = {0, 1, 2, 3};
     static const c3d_vertex corners[4] = {{0, 0, 0, 0, {255, 0, 0, 255}}, {1, 0, 0, 0, {0, 255, 0, 255}},
                                           {0, 1, 0, 0, {0, 0, 255, 255}}, {1, 1, 0, 0, {255, 255, 255, 255}}};

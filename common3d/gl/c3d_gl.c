@@ -1,10 +1,10 @@
 /* Desktop GL, compatibility profile: vertex buffers from 1.5 on, plain arrays from 1.2 on. */
 #include "c3d_gl_local.h"
 
-static int gl_open(void *opaque, const sys_surface_api *surface_api, int *buffers)
+static int gl_open(void *opaque, const c3d_desc *desc, int *buffers)
 {
     c3d_gl_state *state = opaque;
-    int rc = c3d_gl_load(&state->gl, surface_api, buffers);
+    int rc = c3d_gl_load(&state->gl, desc->surface_api, buffers);
     if (rc < 0) return rc;
     const unsigned char *text = state->gl.GetString(GL_VERSION);
     int version = text ? c3d_gl_version((const char *)text) : 0; /* that of ES begins with a word */

@@ -3,11 +3,11 @@
 
 #include <string.h>
 
-static int gles1_open(void *opaque, const sys_surface_api *surface_api, int *buffers)
+static int gles1_open(void *opaque, const c3d_desc *desc, int *buffers)
 {
     static const char prefix[] = "OpenGL ES-CM ";
     c3d_gl_state *state = opaque;
-    int rc = c3d_gl_load(&state->gl, surface_api, buffers);
+    int rc = c3d_gl_load(&state->gl, desc->surface_api, buffers);
     if (rc < 0) return rc;
     const char *text = (const char *)state->gl.GetString(GL_VERSION);
     if (!text || strncmp(text, prefix, sizeof prefix - 1) != 0) return FF_ERR_UNSUPPORTED;

@@ -79,3 +79,4 @@ int sys_png_write(const char *path, const uint8_t *rgb, uint32_t width, uint32_t
 const sys_surface_api *sys_surface_glfw(void) { return NULL; }
 const sys_surface_api *sys_surface_egl(void) { return NULL; }
 const sys_surface_api *sys_surface_osmesa(void) { return NULL; }
+const sys_surface_api *sys_surface_memory(void) { return NULL; }

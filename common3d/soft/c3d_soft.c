@@ -1,0 +1,216 @@
+/* The back end's table: memory, frames, draws in their order. */
+#include "soft_local.h"
+
+#include <string.h>
+
+#define WIDTH_DEFAULT 240
+#define HEIGHT_DEFAULT 320
+#define TEXTURE_BYTES_DEFAULT 16384 /* for each texture */
+#define WHITE 0xFFFFFFFFu
+
+/* ---- memory: state | vertices | textures | colour | depth | used units | texels ---- */
+
+typedef struct soft_sizes { size_t vertices, textures, colour, depth, used, heap, pixels; } soft_sizes;
+
+static size_t aligned(size_t bytes) { return (bytes + 15) & ~(size_t)15; }
+
+static void measure(const c3d_desc *desc, soft_sizes *sizes)
+{
+    size_t texture_bytes = desc->texture_bytes ? desc->texture_bytes : (size_t)desc->texture_count * TEXTURE_BYTES_DEFAULT;
+    size_t units = texture_bytes / SOFT_HEAP_UNIT;
+    sizes->pixels = (size_t)(desc->width ? desc->width : WIDTH_DEFAULT) * (desc->height ? desc->height : HEIGHT_DEFAULT);
+    sizes->vertices = aligned(desc->mesh_vertices_max * sizeof(soft_vertex));
+    sizes->textures = aligned(desc->texture_count * sizeof(soft_texture));
+    sizes->colour = aligned(sizes->pixels * (desc->frame_format == C3D_RGBA8888 ? 4 : 2));
+    sizes->depth = aligned(sizes->pixels * 4);
+    sizes->used = aligned(units);
+    sizes->heap = units * SOFT_HEAP_UNIT;
+}
+
+static size_t soft_state_bytes(const c3d_desc *desc)
+{
+    soft_sizes sizes;
+    measure(desc, &sizes);
+    return aligned(sizeof(soft_state)) + sizes.vertices + sizes.textures + sizes.colour + sizes.depth + sizes.used + sizes.heap;
+}
+
+static int soft_open(void *opaque, const c3d_desc *desc, int *buffers)
+{
+    soft_state *state = opaque;
+    soft_sizes sizes;
+    measure(desc, &sizes);
+    uint8_t *at = (uint8_t *)opaque + aligned(sizeof *state);
+    *buffers = 0; /* meshes stay where c3d_device has them */
+    state->vertices = (soft_vertex *)(void *)at;
+    state->textures = (soft_texture *)(void *)(at += sizes.vertices);
+    state->colour = at += sizes.textures;
+    state->depth = (uint32_t *)(void *)(at += sizes.colour);
+    state->heap_used = at += sizes.depth;
+    state->heap = at + sizes.used;
+    state->heap_units = (uint32_t)(sizes.heap / SOFT_HEAP_UNIT);
+    state->pixels_max = (uint32_t)sizes.pixels;
+    state->texture_count = desc->texture_count;
+    state->wide = desc->frame_format == C3D_RGBA8888;
+    for (uint32_t i = 0; i < 512; i++) /* 2^61/n in the middle of the step */
+        state->reciprocal[i] = (uint32_t)(((UINT64_C(1) << 61) / (((uint64_t)(i + 512) << 21) + (1 << 20))));
+    for (int32_t i = 1; i < SOFT_EDGE_TABLE; i++) state->edge_reciprocal[i] = INT32_MAX / i;
+    return FF_OK;
+}
+
+static void soft_close(void *state) { (void)state; }
+
+/* ---- a frame ---- */
+
+static void clear(soft_state *state, uint32_t colour)
+{
+    uint32_t pixels = (uint32_t)state->width * state->height;
+    memset(state->depth, 0, pixels * sizeof *state->depth);
+    if (!pixels) return;
+    soft_put(state, 0, (int32_t)(colour & 255), (int32_t)(colour >> 8 & 255), (int32_t)(colour >> 16 & 255));
+    size_t pixel_bytes = state->wide ? 4 : 2, bytes = pixels * pixel_bytes;
+    for (size_t done = pixel_bytes; done < bytes; done *= 2) /* each copy doubles what there is */
+        memcpy(state->colour + done, state->colour, done < bytes - done ? done : bytes - done);
+}
+
+static void soft_begin(void *opaque, const c3d_frame *frame, const c3d_rotation *rotation)
+{
+    soft_state *state = opaque;
+    const c3d_camera *camera = &frame->camera;
+    state->frame = *frame;
+    state->rotation = *rotation;
+    state->blank = (uint32_t)camera->width * camera->height > state->pixels_max;
+    state->width = state->blank ? 0 : camera->width;
+    state->height = state->blank ? 0 : camera->height;
+    state->painted = 0;
+    state->deferred_count = 0;
+    state->cached_mesh = NULL;
+    state->centre_x = state->width * SOFT_HALF;
+    state->centre_y = state->height * SOFT_HALF;
+    state->right_q4 = state->width * SOFT_ONE - SOFT_HALF;
+    state->below_q4 = state->height * SOFT_ONE - SOFT_HALF;
+    state->focal_shift = soft_leading_zeros((uint32_t)camera->focal_q8) - 1;
+    state->focal_norm = camera->focal_q8 << state->focal_shift;
+    state->frame_shift = 14; /* the far plane below 2^28 world units */
+    while (soft_scale64(camera->far_wu, state->frame_shift) >= 1 << 28) state->frame_shift--;
+    clear(state, frame->clear_colour);
+}
+
+static void set_paint(soft_state *state, const c3d_resolved_draw *resolved, enum soft_depth depth)
+{
+    const c3d_draw *draw = resolved->draw;
+    uint32_t flags = draw->flags;
+    int wireframe = (flags & C3D_DRAW_WIREFRAME) != 0, backdrop = (flags & C3D_DRAW_BACKDROP) != 0;
+    soft_paint *paint = &state->paint;
+    paint->texture = (flags & C3D_DRAW_TEXTURED) && !wireframe ? &state->textures[resolved->texture - 1] : NULL;
+    paint->depth = depth;
+    paint->coloured = (flags & C3D_DRAW_COLOURED) != 0;
+    paint->white = !paint->coloured && (draw->colour & 0xFFFFFFu) == (WHITE & 0xFFFFFFu);
+    paint->alpha_test = (flags & C3D_DRAW_ALPHA_TEST) != 0;
+    paint->fog = state->frame.fog_end_wu > 0 && !backdrop;
+    paint->on_top = (flags & C3D_DRAW_ON_TOP) != 0;
+    paint->axis[0] = flags & C3D_DRAW_TEX_YZ ? 1 : 0;
+    paint->axis[1] = flags & (C3D_DRAW_TEX_XZ | C3D_DRAW_TEX_YZ) ? 2 : 1;
+}
+
+static void draw_now(soft_state *state, const c3d_resolved_draw *resolved, enum soft_depth depth)
+{
+    const c3d_strip_data *strip = resolved->strip;
+    set_paint(state, resolved, depth);
+    soft_transform(state, resolved);
+    if (resolved->draw->flags & C3D_DRAW_WIREFRAME)
+        soft_lines(state, strip->indices + strip->count, strip->edge_count);
+    else
+        soft_strip(state, strip->indices, strip->count);
+}
+
+/* Keeps a backdrop for the end of the frame; 0 when there is no room. */
+static int defer(soft_state *state, const c3d_resolved_draw *resolved)
+{
+    if (state->painted || state->deferred_count == C3D_SOFT_BACKDROPS || resolved->mesh->count > C3D_SOFT_BACKDROP_VERTICES)
+        return 0;
+    soft_deferred *deferred = &state->deferred[state->deferred_count++];
+    deferred->draw = *resolved->draw;
+    deferred->mesh = *resolved->mesh;
+    deferred->resolved = *resolved;
+    memcpy(deferred->vertices, resolved->mesh->vertices, resolved->mesh->count * sizeof *deferred->vertices);
+    deferred->mesh.vertices = deferred->vertices;
+    deferred->resolved.draw = &deferred->draw;
+    deferred->resolved.mesh = &deferred->mesh;
+    return 1;
+}
+
+/* The last one first: it hides the others. */
+static void draw_deferred(soft_state *state)
+{
+    while (state->deferred_count) draw_now(state, &state->deferred[--state->deferred_count].resolved, SOFT_DEPTH_UNCOVERED);
+    state->painted = 1;
+}
+
+static void soft_draw(void *opaque, const c3d_resolved_draw *resolved)
+{
+    soft_state *state = opaque;
+    int backdrop = (resolved->draw->flags & C3D_DRAW_BACKDROP) != 0;
+    if (state->blank || (backdrop && defer(state, resolved))) return;
+    if (backdrop) draw_deferred(state);
+    if (!backdrop) state->painted = 1;
+    draw_now(state, resolved, backdrop ? SOFT_DEPTH_NONE : SOFT_DEPTH_TEST);
+}
+
+/* A texture of a deferred backdrop goes away: what waits is drawn while it is there. */
+static void soft_texture_drop(void *opaque, uint32_t texture)
+{
+    soft_state *state = opaque;
+    draw_deferred(state);
+    state->cached_mesh = NULL;
+    soft_texture_free(state, texture);
+}
+
+static void soft_overlay(void *opaque, uint32_t name, int x, int y, int width, int height)
+{
+    soft_state *state = opaque;
+    const soft_texture *texture = &state->textures[name - 1];
+    if (width < 1 || height < 1) return;
+    draw_deferred(state);
+    for (int row = y < 0 ? -y : 0; row < height && y + row < state->height; row++)
+        for (int column = x < 0 ? -x : 0; column < width && x + column < state->width; column++) {
+            int32_t texel[4];
+            uint8_t under[3];
+            uint32_t at = (uint32_t)((y + row) * state->width + x + column);
+            soft_sample(texture, (int32_t)((2 * (int64_t)column + 1) * texture->width * 32768 / width) - 32768,
+                        (int32_t)((2 * (int64_t)row + 1) * texture->height * 32768 / height) - 32768, texel);
+            if (!texel[3]) continue;
+            soft_get(state, at, under);
+            for (int i = 0; i < 3; i++) texel[i] = (texel[i] * texel[3] + under[i] * (255 - texel[3]) + 127) / 255;
+            soft_put(state, at, texel[0], texel[1], texel[2]);
+        }
+}
+
+static void soft_end(void *state) { draw_deferred(state); }
+
+static int soft_read_rows(void *opaque, uint32_t width, uint32_t first_row, uint32_t rows, uint8_t *rgba)
+{
+    const soft_state *state = opaque;
+    for (uint32_t row = first_row; row < first_row + rows; row++)
+        for (uint32_t x = 0; x < width; x++, rgba += 4) {
+            for (int i = 0; i < 3; i++) rgba[i] = (uint8_t)(state->frame.clear_colour >> (8 * i));
+            if (!state->blank) soft_get(state, (state->height - 1 - row) * width + x, rgba);
+            rgba[3] = 255;
+        }
+    return FF_OK;
+}
+
+static const void *soft_pixels(void *opaque, enum c3d_texture_format *format)
+{
+    const soft_state *state = opaque;
+    *format = state->wide ? C3D_RGBA8888 : C3D_RGB565;
+    return state->blank || !state->width ? NULL : state->colour;
+}
+
+const struct c3d_backend *c3d_backend_soft(void)
+{
+    static const struct c3d_backend backend = {
+        .name = "soft", .state_bytes_for = soft_state_bytes, .open = soft_open, .close = soft_close,
+        .texture_upload = soft_texture_upload, .texture_free = soft_texture_drop, .begin = soft_begin, .draw = soft_draw,
+        .overlay = soft_overlay, .end = soft_end, .read_rows = soft_read_rows, .pixels = soft_pixels};
+    return &backend;
+}

@@ -1,0 +1,30 @@
+/* The integer-only back end of the Common 3D API, for devices without GPU and FPU. Callers use c3d.h; this says what it does exactly.
+ *
+ * Conventions
+ *   Pixels: a pixel is covered when its centre (x + 1/2, y + 1/2) lies inside a triangle; of centres on an edge those on a left or an
+ *   upper edge belong to it (top-left rule). Edges are walked exactly, not to some precision: two triangles with a common edge share
+ *   no pixel and leave none out, so every pixel of a closed surface is written once.
+ *   Screen: vertices are rounded to 1/16 pixel. They may lie up to 4096 pixels from the principal point; what reaches further,
+ *   and what crosses the near or far plane, is clipped in eye space first.
+ *   Eye space: 32 bits in a unit of its own for each frame (2^k to a wu), so that the far plane lies below 2^26 units. A vertex is
+ *   rotated from its exact place relative to the camera: meshes that share a vertex get the same pixel for it, whatever their origins.
+ *   Depth: near/z, 30 fraction bits, 32 bits a pixel; the greater hides the smaller, of equals the later is drawn. It is linear over
+ *   the screen. 0: nothing was drawn here, 1: a backdrop.
+ *   Textures: bilinear, clamped to the edge, with 5-bit weights where a pixel takes its colour from the texture alone into RGB565,
+ *   8-bit ones elsewhere. Each is stored with a rim one texel wide, so that no pixel of a span needs a test.
+ *   Perspective: triangles over which the error of linear interpolation stays below 1/8 texel (1/32 of the colours' range) are
+ *   interpolated linearly; all others are divided exactly every 16 pixels (8 where depth changes by more than a sixteenth).
+ *   Colours: fog and vertex colours are interpolated with 16 fraction bits and rounded to the frame's format.
+ *   Backdrops drawn before everything else wait until the end of the frame and then fill, the last one first, what nothing has covered:
+ *   the picture is the same and no pixel is painted twice. Their meshes are copied meanwhile (up to C3D_SOFT_BACKDROP_VERTICES).
+ * The frame's format is C3D_RGB565 or C3D_RGBA8888 (c3d_desc.frame_format); c3d_frame_pixels gives the finished picture.
+ */
+#ifndef C3D_SOFT_H
+#define C3D_SOFT_H
+
+#include "../c3d_backend.h"
+
+#define C3D_SOFT_BACKDROPS 8           /* drawn later in one frame; further ones are drawn at once */
+#define C3D_SOFT_BACKDROP_VERTICES 32
+
+#endif

@@ -1,0 +1,92 @@
+/* Exact edges. At the centre of a row an edge is at x = x0 + dx * k/dy, in sixteenths of a pixel; needed is the first pixel whose centre is
+ * not left of it. `at` holds x with 32 fraction bits, too small by less than 1/dy, plus 1 - 2^-32: its upper word is x rounded up
+ * exactly, because x itself is a multiple of 1/dy.
+ *   Small edges (dy <= 512, |dx| < 8192): dx times floor(2^31/dy), or the next greater number for negative dx, is too small by at
+ *   most |dx| units of 2^-31 for each sixteenth of a row: over the edge by less than 2^13 * 2^9 / 2^31 = 2^-9 <= 1/dy.
+ *   Other edges: two quotients rounded down, too small by at most 2^-32 a row: 2^13 rows * 2^-32 < 2^-17 <= 1/dy. */
+#ifndef SOFT_EDGE_H
+#define SOFT_EDGE_H
+
+#include "soft_local.h"
+
+typedef struct soft_edge {
+    int64_t at, step; /* x in the row, Q4 with 32 more fraction bits; from row to row */
+} soft_edge;
+
+static inline int64_t soft_floor_divide(int64_t a, int32_t b) /* b > 0 */
+{
+    int64_t quotient = a / b;
+    return quotient - (a - quotient * b < 0);
+}
+
+/* From a down to b, at row `row`, whose centre lies between them. */
+static inline void soft_edge_begin(const soft_state *state, soft_edge *edge, const soft_vertex *a, const soft_vertex *b, int32_t row)
+{
+    int32_t dx = b->x - a->x, dy = b->y - a->y, k = row * SOFT_ONE + SOFT_HALF - a->y;
+    if (dy < SOFT_EDGE_TABLE && dx > -8192 && dx < 8192) {
+        int64_t slope = (int64_t)dx * (state->edge_reciprocal[dy] + (dx < 0)); /* 2^13 * 2^31 */
+        edge->step = slope * (2 * SOFT_ONE);
+        edge->at = ((int64_t)a->x * 2 + 1) * ((int64_t)1 << 31) + ((int64_t)1 << 31) - 1 + slope * (2 * k);
+    } else {
+        edge->step = soft_floor_divide((int64_t)dx * ((int64_t)1 << (32 + SOFT_SUB)), dy); /* 2^17 * 2^36 */
+        edge->at = ((int64_t)a->x + 1) * ((int64_t)1 << 32) - 1 + (k >> SOFT_SUB) * edge->step +
+                   soft_floor_divide((int64_t)dx * (k & (SOFT_ONE - 1)) * ((int64_t)1 << 32), dy);
+    }
+}
+
+/* First pixel whose centre is at the edge or right of it. */
+static inline int32_t soft_edge_pixel(const soft_edge *edge)
+{
+    return ((int32_t)(edge->at >> 32) + SOFT_HALF - 1) >> SOFT_SUB;
+}
+
+static inline int32_t soft_first_row(int32_t y) { return (y + SOFT_HALF - 1) >> SOFT_SUB; }
+
+/* Rows of a triangle (a.y <= b.y <= c.y), top to bottom; clipped to the frame. */
+typedef struct soft_walk {
+    soft_edge left, right;
+    int32_t row, middle, end;
+    int32_t from, to;           /* the row's pixels */
+    int bend_left;              /* b is on the left side */
+    const soft_vertex *b, *c;
+} soft_walk;
+
+/* 0 when there is no row. */
+static inline int soft_walk_begin(const soft_state *state, soft_walk *walk, const soft_vertex *a, const soft_vertex *b,
+                                  const soft_vertex *c, int bend_left)
+{
+    walk->row = soft_first_row(a->y);
+    walk->middle = soft_first_row(b->y);
+    walk->end = soft_first_row(c->y);
+    if (walk->row < 0) walk->row = 0;
+    if (walk->end > state->height) walk->end = state->height;
+    if (walk->row >= walk->end) return 0;
+    walk->bend_left = bend_left;
+    walk->b = b;
+    walk->c = c;
+    soft_edge_begin(state, bend_left ? &walk->right : &walk->left, a, c, walk->row);
+    if (walk->row < walk->middle) soft_edge_begin(state, bend_left ? &walk->left : &walk->right, a, b, walk->row);
+    else soft_edge_begin(state, bend_left ? &walk->left : &walk->right, b, c, walk->row);
+    return 1;
+}
+
+static inline void soft_walk_row(const soft_state *state, soft_walk *walk)
+{
+    walk->from = soft_edge_pixel(&walk->left);
+    walk->to = soft_edge_pixel(&walk->right);
+    if (walk->from < 0) walk->from = 0;
+    if (walk->to > state->width) walk->to = state->width;
+}
+
+/* On to the next row; 0 after the last. */
+static inline int soft_walk_next(const soft_state *state, soft_walk *walk)
+{
+    if (++walk->row >= walk->end) return 0;
+    walk->left.at += walk->left.step;
+    walk->right.at += walk->right.step;
+    if (walk->row == walk->middle)
+        soft_edge_begin(state, walk->bend_left ? &walk->left : &walk->right, walk->b, walk->c, walk->row);
+    return 1;
+}
+
+#endif

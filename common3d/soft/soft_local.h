@@ -1,0 +1,164 @@
+/* Inside common3d/soft only. */
+#ifndef SOFT_LOCAL_H
+#define SOFT_LOCAL_H
+
+#include "c3d_soft.h"
+
+#define SOFT_SUB 4                 /* fraction bits of screen coordinates */
+#define SOFT_ONE (1 << SOFT_SUB)
+#define SOFT_HALF (SOFT_ONE / 2)
+#define SOFT_GUARD_Q4 65536        /* screen coordinates stay this close to the principal point */
+#define SOFT_GUARD_CLIP_PX 4000    /* and are clipped here */
+#define SOFT_EDGE_TABLE 513        /* heights of edges, Q4, with a reciprocal at hand: up to 32 pixels */
+#define SOFT_HEAP_UNIT 256
+
+/* Where a vertex lies: of the screen (by pixel centres), or for the clipper. */
+enum { SOFT_LEFT = 1, SOFT_RIGHT = 2, SOFT_ABOVE = 4, SOFT_BELOW = 8, SOFT_NEAR = 16, SOFT_FAR = 32, SOFT_GUARD = 64 };
+#define SOFT_MUST_CLIP (SOFT_NEAR | SOFT_FAR | SOFT_GUARD)
+
+typedef struct soft_vertex {
+    int32_t x, y;        /* pixels, Q4 */
+    uint32_t w;          /* near/z, Q30 */
+    int32_t s, t;        /* texels less one half, Q16; below 2^28 */
+    int32_t fog_q8;      /* 256: clear, 0: all fog; beyond both ends within +-2^14 */
+    uint8_t rgba[4];
+    uint32_t out;
+    int32_t eye[3];
+} soft_vertex;
+
+typedef struct soft_texture {
+    uint8_t *texels;     /* of texel (-1, -1): the rim */
+    uint32_t first_unit, units; /* of the heap; units 0: free slot */
+    uint16_t width, height, stride; /* stride: width + 2 */
+    uint8_t format, width_log2, height_log2;
+} soft_texture;
+
+/* What a draw asks of its pixels. */
+enum soft_depth { SOFT_DEPTH_TEST, SOFT_DEPTH_UNCOVERED, SOFT_DEPTH_NONE };
+typedef struct soft_paint {
+    const soft_texture *texture; /* NULL: untextured */
+    enum soft_depth depth;
+    uint8_t coloured;    /* vertices differ in colour */
+    uint8_t white;       /* all vertices are white: the texture as it is */
+    uint8_t alpha_test, fog, on_top;
+    uint8_t axis[2];     /* of the vertex, for s and t */
+} soft_paint;
+
+/* Attributes of a pixel, Q16: s, t, red, green, blue, fog (256: clear). */
+enum { SOFT_S, SOFT_T, SOFT_R, SOFT_G, SOFT_B, SOFT_F, SOFT_ATTRIBUTES };
+
+/* Pixels of a row over which everything changes linearly. */
+typedef struct soft_segment {
+    uint32_t first, count;       /* of the frame's pixels */
+    uint32_t w, dw;              /* wraps */
+    int32_t value[SOFT_ATTRIBUTES], step[SOFT_ATTRIBUTES];
+} soft_segment;
+
+/* From vertices to eye space, for one draw. World units: 2^shift to a wu; eye units are 4 times as long. */
+typedef struct soft_space {
+    int shift;
+    int64_t origin_wu[3];
+    int32_t scale_wu;
+    uint32_t z_scale_q16;
+    int32_t near_eye, far_eye;
+    int32_t near_norm;           /* near plane, shifted into bits 30.. */
+    int near_shift;              /* by so much in eye units */
+} soft_space;
+
+typedef struct soft_deferred {
+    c3d_draw draw;
+    c3d_resolved_draw resolved;
+    c3d_mesh_data mesh;
+    c3d_vertex vertices[C3D_SOFT_BACKDROP_VERTICES];
+} soft_deferred;
+
+typedef struct soft_state {
+    /* memory, in the block */
+    uint8_t *colour;             /* 2 or 4 bytes a pixel, top row first */
+    uint32_t *depth;
+    soft_vertex *vertices;       /* of the mesh transformed last */
+    soft_texture *textures;
+    uint8_t *heap, *heap_used;   /* texels; one byte a unit */
+    uint32_t heap_units, pixels_max;
+    uint16_t texture_count;
+    uint8_t wide;                /* 1: RGBA8888, 0: RGB565 */
+
+    uint32_t reciprocal[512];    /* of n/512, n = 512 .. 1023, see soft_reciprocal */
+    int32_t edge_reciprocal[SOFT_EDGE_TABLE]; /* floor((2^31 - 1) / n) */
+
+    /* the frame */
+    uint16_t width, height;
+    uint8_t blank;               /* the viewport is larger than the memory: nothing is drawn */
+    uint8_t painted;             /* something other than deferred backdrops was drawn */
+    c3d_frame frame;
+    c3d_rotation rotation;
+    int32_t centre_x, centre_y;  /* Q4 */
+    int32_t focal_norm;          /* focal_q8 shifted into bits 30.. */
+    int focal_shift;
+    int frame_shift;             /* soft_space.shift of ordinary draws */
+    int32_t right_q4, below_q4;  /* last pixel centres */
+
+    /* the draw */
+    soft_paint paint;
+    soft_space space;
+    c3d_draw cached;             /* whose vertices are in `vertices` */
+    const c3d_vertex *cached_mesh;
+    uint32_t deferred_count;
+    soft_deferred deferred[C3D_SOFT_BACKDROPS];
+} soft_state;
+
+/* n in 2^30 .. 2^31 - 1: 2^61 / n within 2^-19 of it. */
+static inline uint32_t soft_reciprocal(const soft_state *state, uint32_t n)
+{
+    uint32_t r = state->reciprocal[(n >> 21) & 511];
+    uint32_t error = (uint32_t)(((uint64_t)n * r) >> 32);              /* 2^29 when exact */
+    return (uint32_t)(((uint64_t)r * ((UINT32_C(1) << 30) - error)) >> 29);
+}
+
+static inline int soft_leading_zeros(uint32_t n) /* n > 0 */
+{
+#if defined(__GNUC__)
+    return __builtin_clz(n);
+#else
+    int count = 0;
+    while (!(n & 0x80000000u)) n <<= 1, count++;
+    return count;
+#endif
+}
+
+static inline int64_t soft_scale64(int64_t value, int shift) /* times 2^shift */
+{
+    return shift >= 0 ? value * ((int64_t)1 << shift) : value >> -shift;
+}
+
+/* soft_texture.c */
+uint32_t soft_texture_upload(void *state, enum c3d_texture_format format, uint32_t width, uint32_t height, const void *pixels);
+void soft_texture_free(void *state, uint32_t texture);
+/* Bilinear, all four channels 0..255. s, t as in soft_vertex, any value. */
+void soft_sample(const soft_texture *texture, int32_t s, int32_t t, int32_t rgba[4]);
+
+/* soft_transform.c */
+void soft_begin_space(soft_state *state, const c3d_resolved_draw *resolved);
+void soft_transform(soft_state *state, const c3d_resolved_draw *resolved);
+void soft_project(const soft_state *state, soft_vertex *vertex); /* x, y, w and out from eye */
+
+/* soft_clip.c: cuts the triangle at the planes and draws what is left. */
+void soft_clip(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c);
+/* Cuts a line; 0 when nothing is left. */
+int soft_clip_line(soft_state *state, soft_vertex *a, soft_vertex *b);
+
+/* soft_triangle.c */
+void soft_strip(soft_state *state, const uint16_t *indices, uint32_t count);
+void soft_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c); /* clipped */
+/* soft_perspective.c: any triangle; a.y <= b.y <= c.y, twice its area in Q8. */
+void soft_perspective(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c, int64_t area);
+
+/* soft_line.c */
+void soft_lines(soft_state *state, const uint16_t *indices, uint32_t count);
+
+/* soft_pixels.c: any paint, any format. */
+void soft_segment_paint(soft_state *state, const soft_segment *segment);
+void soft_put(soft_state *state, uint32_t at, int32_t red, int32_t green, int32_t blue);
+void soft_get(const soft_state *state, uint32_t at, uint8_t rgb[3]);
+
+#endif

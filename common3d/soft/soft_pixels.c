@@ -1,0 +1,90 @@
+/* Pixels one by one: any paint into any format. What is drawn most has faster ways (soft_small.c). */
+#include "soft_local.h"
+
+static int32_t to_byte(int32_t value_q16)
+{
+    int32_t value = (value_q16 + 32768) >> 16;
+    return value < 0 ? 0 : value > 255 ? 255 : value;
+}
+
+/* Rounds to the format: 0..255 to 0..31 and 0..63. */
+void soft_put(soft_state *state, uint32_t at, int32_t red, int32_t green, int32_t blue)
+{
+    if (state->wide) {
+        uint8_t *pixel = state->colour + (size_t)at * 4;
+        pixel[0] = (uint8_t)red;
+        pixel[1] = (uint8_t)green;
+        pixel[2] = (uint8_t)blue;
+        pixel[3] = 255;
+    } else {
+        ((uint16_t *)(void *)state->colour)[at] =
+            (uint16_t)(((red * 31 + 128) >> 8) << 11 | ((green * 63 + 128) >> 8) << 5 | ((blue * 31 + 128) >> 8));
+    }
+}
+
+void soft_get(const soft_state *state, uint32_t at, uint8_t rgb[3])
+{
+    if (state->wide) {
+        for (int i = 0; i < 3; i++) rgb[i] = state->colour[(size_t)at * 4 + (size_t)i];
+    } else {
+        uint32_t pixel = ((const uint16_t *)(const void *)state->colour)[at];
+        uint32_t red = pixel >> 11, green = pixel >> 5 & 63, blue = pixel & 31;
+        rgb[0] = (uint8_t)(red << 3 | red >> 2);
+        rgb[1] = (uint8_t)(green << 2 | green >> 4);
+        rgb[2] = (uint8_t)(blue << 3 | blue >> 2);
+    }
+}
+
+/* Tests depth and takes the pixel when it passes. */
+static int take_pixel(const soft_state *state, uint32_t at, uint32_t w)
+{
+    switch (state->paint.depth) {
+    case SOFT_DEPTH_TEST:
+        return w >= state->depth[at];
+    case SOFT_DEPTH_UNCOVERED:
+        return state->depth[at] == 0;
+    default:
+        return 1;
+    }
+}
+
+static void mark_pixel(soft_state *state, uint32_t at, uint32_t w)
+{
+    if (state->paint.depth == SOFT_DEPTH_TEST)
+        state->depth[at] = w;
+    else if (state->paint.depth == SOFT_DEPTH_UNCOVERED)
+        state->depth[at] = 1;
+}
+
+/* The pixel's colour before fog; 0 when the alpha test leaves it out. */
+static int shade(const soft_paint *paint, const int32_t value[SOFT_ATTRIBUTES], int32_t rgb[3])
+{
+    for (int i = 0; i < 3; i++) rgb[i] = to_byte(value[SOFT_R + i]);
+    if (!paint->texture) return 1;
+    int32_t texel[4];
+    soft_sample(paint->texture, value[SOFT_S], value[SOFT_T], texel);
+    if (paint->alpha_test && texel[3] < 128) return 0;
+    for (int i = 0; i < 3; i++) rgb[i] = paint->white ? texel[i] : (texel[i] * rgb[i] * 257 + 32768) >> 16;
+    return 1;
+}
+
+void soft_segment_paint(soft_state *state, const soft_segment *segment)
+{
+    const soft_paint *paint = &state->paint;
+    int32_t value[SOFT_ATTRIBUTES], rgb[3];
+    uint32_t w = segment->w, fog_colour = state->frame.fog_colour;
+    for (int i = 0; i < SOFT_ATTRIBUTES; i++) value[i] = segment->value[i];
+    for (uint32_t at = segment->first, end = at + segment->count; at < end; at++, w += segment->dw) {
+        if (take_pixel(state, at, w) && shade(paint, value, rgb)) {
+            int32_t clear = value[SOFT_F] >> 8; /* Q16: 65536 is clear */
+            clear = clear < 0 ? 0 : clear > 65536 ? 65536 : clear;
+            for (int i = 0; paint->fog && i < 3; i++) {
+                int32_t fog = (int32_t)(fog_colour >> (8 * i) & 255);
+                rgb[i] = fog + (((rgb[i] - fog) * clear + 32768) >> 16);
+            }
+            mark_pixel(state, at, w);
+            soft_put(state, at, rgb[0], rgb[1], rgb[2]);
+        }
+        for (int i = 0; i < SOFT_ATTRIBUTES; i++) value[i] = (int32_t)((uint32_t)value[i] + (uint32_t)segment->step[i]);
+    }
+}

@@ -1,0 +1,154 @@
+/* From vertices to the screen, once for each vertex of a mesh.
+ *
+ * World units: 2^shift to a wu, chosen so that every coordinate relative to the camera stays below 2^30. Rotation: three products of
+ * 30 + 31 bits, their sum below 2^62, of which the upper word is kept: eye units are 4 world units and stay below 2^29 * sqrt 3.
+ * Projection: 1/z as a 31-bit mantissa r and an exponent, so that x * focal/z is one product of 30 and 31 bits. */
+#include "soft_local.h"
+
+#include <string.h>
+
+#define WORLD_MAX ((int64_t)1 << 30)
+
+/* Largest offset of a vertex from the camera along any axis, wu. */
+static int64_t reach_wu(const c3d_resolved_draw *resolved)
+{
+    const c3d_draw *draw = resolved->draw;
+    const uint16_t *reach = resolved->mesh->reach;
+    int64_t most = 0;
+    for (int i = 0; i < 3; i++) {
+        int64_t origin = draw->origin_wu[i] < 0 ? -draw->origin_wu[i] : draw->origin_wu[i];
+        int64_t size = i < 2 ? (int64_t)reach[i] * (draw->xy_scale_wu < 0 ? -(int64_t)draw->xy_scale_wu : draw->xy_scale_wu)
+                             : (int64_t)(((uint64_t)reach[2] * draw->z_scale_q16) >> 16) + 1;
+        most = origin + size > most ? origin + size : most;
+    }
+    return most;
+}
+
+void soft_begin_space(soft_state *state, const c3d_resolved_draw *resolved)
+{
+    const c3d_draw *draw = resolved->draw;
+    soft_space *space = &state->space;
+    int backdrop = (draw->flags & C3D_DRAW_BACKDROP) != 0;
+    int64_t reach = reach_wu(resolved);
+    int32_t near_wu = backdrop ? 1 : state->frame.camera.near_wu;
+    space->shift = backdrop ? 14 : state->frame_shift;
+    while (soft_scale64(reach, space->shift) >= WORLD_MAX) space->shift--;
+    memcpy(space->origin_wu, draw->origin_wu, sizeof space->origin_wu);
+    space->scale_wu = draw->xy_scale_wu;
+    space->z_scale_q16 = draw->z_scale_q16;
+    int64_t near_eye = soft_scale64(near_wu, space->shift - 2), far_eye = soft_scale64(state->frame.camera.far_wu, space->shift - 2);
+    int leading = soft_leading_zeros((uint32_t)near_wu) - 1;
+    space->near_norm = near_wu << leading;
+    space->near_shift = leading - (space->shift - 2);
+    space->near_eye = near_eye < 1 ? 1 : (int32_t)near_eye;
+    space->far_eye = backdrop || far_eye > INT32_MAX ? INT32_MAX : (int32_t)far_eye;
+}
+
+static int64_t multiply_shift(int32_t a, int32_t b, int shift) /* rounded; shift 1 .. 62 */
+{
+    return ((int64_t)a * b + ((int64_t)1 << (shift - 1))) >> shift;
+}
+
+static void project_xy(const soft_state *state, soft_vertex *vertex, int32_t reciprocal_focal, int shift)
+{
+    int64_t x = multiply_shift(vertex->eye[0], reciprocal_focal, shift);
+    int64_t y = -multiply_shift(vertex->eye[1], reciprocal_focal, shift);
+    if (x >= SOFT_GUARD_Q4 || x <= -SOFT_GUARD_Q4 || y >= SOFT_GUARD_Q4 || y <= -SOFT_GUARD_Q4) vertex->out |= SOFT_GUARD;
+    x = x > SOFT_GUARD_Q4 ? SOFT_GUARD_Q4 : x < -SOFT_GUARD_Q4 ? -SOFT_GUARD_Q4 : x;
+    y = y > SOFT_GUARD_Q4 ? SOFT_GUARD_Q4 : y < -SOFT_GUARD_Q4 ? -SOFT_GUARD_Q4 : y;
+    vertex->x = state->centre_x + (int32_t)x;
+    vertex->y = state->centre_y + (int32_t)y;
+    vertex->out |= (vertex->x <= SOFT_HALF ? SOFT_LEFT : 0) | (vertex->x > state->right_q4 ? SOFT_RIGHT : 0) |
+                   (vertex->y <= SOFT_HALF ? SOFT_ABOVE : 0) | (vertex->y > state->below_q4 ? SOFT_BELOW : 0);
+}
+
+/* z = zn / 2^lead with zn in 2^30 .. 2^31; r = 2^61/zn. p = r * focal_norm / 2^31 < 2^31, and x * focal * 16/z is
+ * x * p / 2^(34 + focal_shift - lead): |x| < 2^30 keeps the product below 2^61. */
+void soft_project(const soft_state *state, soft_vertex *vertex)
+{
+    const soft_space *space = &state->space;
+    int32_t z = vertex->eye[2];
+    vertex->out = 0;
+    if (z < space->near_eye) {
+        vertex->out = SOFT_NEAR;
+        return;
+    }
+    if (z > space->far_eye) vertex->out = SOFT_FAR;
+    int lead = soft_leading_zeros((uint32_t)z) - 1;
+    uint32_t r = soft_reciprocal(state, (uint32_t)z << lead);
+    uint32_t p = (uint32_t)(((uint64_t)r * (uint32_t)state->focal_norm) >> 31);
+    int shift = 34 + state->focal_shift - lead, w_shift = space->near_shift - lead;
+    uint32_t w = (uint32_t)(((uint64_t)r * (uint32_t)space->near_norm) >> 31);
+    w = w_shift <= 0 ? w : w_shift > 30 ? 0 : w >> w_shift;
+    if (state->paint.on_top) w += w >> 6;
+    vertex->w = w < 16 ? 16 : w;
+    project_xy(state, vertex, (int32_t)(p > INT32_MAX ? INT32_MAX : p), shift);
+}
+
+static void rotate(const soft_state *state, const int32_t world[3], int32_t eye[3])
+{
+    for (int row = 0; row < 3; row++) {
+        const int32_t *m = state->rotation.m[row];
+        eye[row] = (int32_t)(((int64_t)m[0] * world[0] + (int64_t)m[1] * world[1] + (int64_t)m[2] * world[2]) >> 32);
+    }
+}
+
+static int32_t texel_q16(const c3d_draw *draw, int axis, int32_t vertex, int size_log2)
+{
+    int64_t at = (((int64_t)vertex - draw->tex_origin[axis]) * draw->tex_scale_q16[axis]) * ((int64_t)1 << size_log2);
+    at = (at >> draw->tex_shift) + draw->tex_offset_q16[axis] * ((int64_t)1 << size_log2) - 32768;
+    int64_t limit = ((int64_t)1 << 28) - 1;
+    return (int32_t)(at > limit ? limit : at < -limit ? -limit : at);
+}
+
+/* Fog is linear between its start and end. */
+static int32_t fog_q8(const soft_state *state, int32_t z_eye)
+{
+    const c3d_frame *frame = &state->frame;
+    int64_t z_wu = soft_scale64(z_eye, 2 - state->space.shift), length = (int64_t)frame->fog_end_wu - frame->fog_start_wu;
+    int64_t clear = ((int64_t)frame->fog_end_wu - z_wu) * 256 / (length > 0 ? length : 1);
+    return (int32_t)(clear > 1 << 14 ? 1 << 14 : clear < -(1 << 14) ? -(1 << 14) : clear);
+}
+
+static void transform_vertex(const soft_state *state, const c3d_draw *draw, const c3d_vertex *in, soft_vertex *out)
+{
+    const soft_space *space = &state->space;
+    const soft_paint *paint = &state->paint;
+    const int32_t world[3] = {
+        (int32_t)soft_scale64(space->origin_wu[0] + (int64_t)in->x * space->scale_wu, space->shift),
+        (int32_t)soft_scale64(space->origin_wu[1] + (int64_t)in->y * space->scale_wu, space->shift),
+        (int32_t)(soft_scale64(space->origin_wu[2] * 65536 + (int64_t)in->z * space->z_scale_q16, space->shift - 16))};
+    rotate(state, world, out->eye);
+    soft_project(state, out);
+    if (paint->texture) {
+        const int16_t at[3] = {in->x, in->y, in->z};
+        out->s = texel_q16(draw, 0, at[paint->axis[0]], paint->texture->width_log2);
+        out->t = texel_q16(draw, 1, at[paint->axis[1]], paint->texture->height_log2);
+    }
+    if (paint->coloured) memcpy(out->rgba, in->rgba, 4);
+    if (paint->fog) out->fog_q8 = fog_q8(state, out->eye[2]);
+}
+
+static int same_vertices(const c3d_draw *a, const c3d_draw *b)
+{
+    return a->mesh.id == b->mesh.id && memcmp(a->origin_wu, b->origin_wu, sizeof a->origin_wu) == 0 &&
+           a->xy_scale_wu == b->xy_scale_wu && a->z_scale_q16 == b->z_scale_q16 && a->flags == b->flags && a->colour == b->colour &&
+           a->texture.id == b->texture.id && memcmp(a->tex_scale_q16, b->tex_scale_q16, sizeof a->tex_scale_q16) == 0 &&
+           memcmp(a->tex_offset_q16, b->tex_offset_q16, sizeof a->tex_offset_q16) == 0 &&
+           memcmp(a->tex_origin, b->tex_origin, sizeof a->tex_origin) == 0 && a->tex_shift == b->tex_shift;
+}
+
+/* The strips of a node share its mesh: its vertices are transformed with the first. */
+void soft_transform(soft_state *state, const c3d_resolved_draw *resolved)
+{
+    const c3d_draw *draw = resolved->draw;
+    if (state->cached_mesh == resolved->mesh->vertices && same_vertices(&state->cached, draw)) return;
+    state->cached = *draw;
+    state->cached_mesh = resolved->mesh->vertices;
+    soft_begin_space(state, resolved);
+    for (uint32_t i = 0; i < resolved->mesh->count; i++) {
+        soft_vertex *vertex = &state->vertices[i];
+        for (int c = 0; c < 4; c++) vertex->rgba[c] = (uint8_t)(draw->colour >> (8 * c));
+        transform_vertex(state, draw, &resolved->mesh->vertices[i], vertex);
+    }
+}

@@ -1,0 +1,32 @@
+/* Strips to triangles, and what can be said of a triangle before its pixels. */
+#include "soft_edge.h"
+
+/* Twice the area, Q8, positive when b lies left of the edge from a to c (y grows downwards). */
+static int64_t area_of(const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
+{
+    return (int64_t)(c->x - a->x) * (b->y - a->y) - (int64_t)(b->x - a->x) * (c->y - a->y);
+}
+
+void soft_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
+{
+    const soft_vertex *swap;
+    if (b->y < a->y) swap = a, a = b, b = swap;
+    if (c->y < b->y) swap = b, b = c, c = swap;
+    if (b->y < a->y) swap = a, a = b, b = swap;
+    if (soft_first_row(a->y) == soft_first_row(c->y)) return; /* between two rows of centres */
+    int64_t area = area_of(a, b, c);
+    if (area != 0) soft_perspective(state, a, b, c, area);
+}
+
+void soft_strip(soft_state *state, const uint16_t *indices, uint32_t count)
+{
+    for (uint32_t i = 2; i < count; i++) {
+        const soft_vertex *a = &state->vertices[indices[i - 2]], *b = &state->vertices[indices[i - 1]],
+                          *c = &state->vertices[indices[i]];
+        if (a == b || b == c || a == c || (a->out & b->out & c->out)) continue;
+        if ((a->out | b->out | c->out) & SOFT_MUST_CLIP)
+            soft_clip(state, a, b, c);
+        else
+            soft_triangle(state, a, b, c);
+    }
+}
