@@ -41,7 +41,7 @@ static void look_at_link(ff_client *client)
         settle_welcome(client, &shared);
     if (shared.losses != client->losses_seen) {
         client->losses_seen = shared.losses;
-        client->dirty = 1; /* what was asked is queued again: is it still wanted? */
+        client->unranked = 1; /* what was asked is queued again: is it still wanted? */
     }
 }
 
@@ -125,7 +125,7 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera
     make_view(client, camera, &quality, &view);
     ff_motion_feed(&client->motion, now_us, camera->pos_wu);
     int turned = ff_panorama_update(&client->panorama, &client->requests, &view.camera, ff_client_low_power(client), now_us);
-    if (!taken && !moved && !turned && !client->dirty) {
+    if (!taken && !moved && !turned && !client->dirty && !client->unranked) {
         client->frames_skipped++;
         return 0;
     }
@@ -137,7 +137,7 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera
     client->camera = *camera;
     client->last_view = view;
     client->has_camera = 1;
-    client->dirty = 0;
+    client->dirty = client->unranked = 0;
     client->frame_hash = hash;
     if (!changed) {
         client->frames_skipped++;

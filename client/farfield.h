@@ -54,7 +54,9 @@ typedef struct ff_client_desc {
     uint8_t no_textures;      /* 1: images of the terrain are not asked for */
     uint8_t no_prefetch;
     uint16_t in_flight_max;   /* requests sent and unanswered at most, default 32 */
-    uint32_t answer_timeout_ms; /* a connection silent this long with requests out is closed and made anew, default 60000 */
+    /* A connection silent this long with requests out is closed and made anew, default 60000. Never shorter than four round trips,
+     * and doubled up to four times while no answer has ever come. */
+    uint32_t answer_timeout_ms;
 } ff_client_desc;
 
 enum ff_link_state { FF_LINK_NONE /* local pack */, FF_LINK_CONNECTING, FF_LINK_UP, FF_LINK_DOWN /* retrying */ };

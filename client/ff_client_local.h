@@ -49,7 +49,9 @@ struct ff_client {
     ff_motion motion;
     ff_refusals refusals;
 
-    uint8_t has_camera, dirty, battery_low, interrupted, has_textures;
+    uint8_t has_camera, battery_low, interrupted, has_textures;
+    uint8_t dirty;           /* the picture has to be made anew */
+    uint8_t unranked;        /* only what is asked for has to be: the connection was lost */
     unsigned show;
     c3d_camera camera;       /* of the last update, as given */
     ff_view last_view;

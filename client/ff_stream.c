@@ -7,6 +7,8 @@
 #define CONNECT_US_MAX 30000000
 #define PING_AFTER_US 60000000 /* far below the server's idle limit */
 #define RECEIVE_ROUNDS_MAX 16  /* a step stays short, whatever the link brings */
+#define PATIENCE_MAX 4         /* time-outs double so often while no answer has ever come: the link may be slower than thought */
+#define PATIENCE_ROUND_TRIPS 4 /* and are at least so long when one has */
 
 void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsigned in_flight_max, uint32_t answer_timeout_ms,
                     uint8_t *recv, uint32_t recv_bytes)
@@ -248,9 +250,17 @@ static int receive(ff_stream *stream, int64_t now_us, int *moved)
 
 static int silent_too_long(ff_stream *stream, int64_t now_us)
 {
+    int64_t limit_us = stream->answer_timeout_us << stream->patience, round_trips_us = PATIENCE_ROUND_TRIPS * (int64_t)stream->link.rtt_us;
     if (stream->blocked || stream->state == FF_STREAM_WELCOMED || (!stream->awaiting && !ff_stream_outstanding(stream)))
         return 0;
-    return now_us - stream->heard_us > stream->answer_timeout_us;
+    if (stream->link.rtt_us) {
+        stream->patience = 0;
+        limit_us = round_trips_us > stream->answer_timeout_us ? round_trips_us : stream->answer_timeout_us;
+    }
+    if (now_us - stream->heard_us <= limit_us)
+        return 0;
+    stream->patience += !stream->link.rtt_us && stream->patience < PATIENCE_MAX;
+    return 1;
 }
 
 int ff_stream_outstanding(ff_stream *stream)

@@ -48,6 +48,7 @@ typedef struct ff_stream {
     uint32_t send_count;
     int64_t retry_us, backoff_us, connect_us, heard_us, sent_us;
     uint8_t awaiting;         /* HELLO or PING unanswered */
+    uint8_t patience;         /* how often the time-out has been doubled */
     ff_link_estimate link;
     uint64_t bytes_down, bytes_up, panorama_bytes;
     uint32_t protocol_errors, reconnects, losses;
