@@ -44,7 +44,7 @@ LIBS := $(LIB)/libffsim.a $(LIB)/libffserver.a $(LIB)/libfftools.a $(LIB)/libffc
 LINK_LIBS = -Wl,--start-group $(LIBS) -Wl,--end-group $(LDLIBS_core) $(LDLIBS_surface) $(LDLIBS_host)
 
 .DEFAULT_GOAL := all
-.PHONY: all help null deps server emulator flyover demo test test-build check man install uninstall clean lib fuzz FORCE
+.PHONY: all help null deps server emulator flyover demo test test-build check extremes man install uninstall clean lib fuzz FORCE
 
 all: $(PROGRAMS) lib null ## build all programs and libraries into build/
 
@@ -126,6 +126,9 @@ test: deps ## build and run every test (sanitized, with script tests); the last 
 
 check: all $(TESTS) ## quick subset: layer checks and unit tests, without sanitizers
 	@BUILD=$(BUILD) tests/run.sh --quick
+
+extremes: $(BUILD)/tests/test_extremes ## fly every stiff and extreme case and show the table of largest errors
+	@EXTREMES=$(BUILD)/extremes.md $< >$(BUILD)/extremes.log 2>&1; rc=$$?; cat $(BUILD)/extremes.md; exit $$rc
 
 # ---- fuzz targets: each tests/fuzz_*.c has LLVMFuzzerTestOneInput; saved inputs in tests/corpus/NAME run in `make test` ----
 $(BUILD)/tests/fuzz_%-replay: $(BUILD)/obj/tests/fuzz_%.o $(BUILD)/obj/tests/replay.o $(call obj,$(TEST_LIB_SRC)) $(LIBS)
