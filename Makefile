@@ -49,7 +49,7 @@ LINK_LIBS = -Wl,--start-group $(LIBS) -Wl,--end-group $(LDLIBS_core) $(LDLIBS_su
 all: $(PROGRAMS) lib null ## build all programs and libraries into build/
 
 help: ## this list
-	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1|\2/p' $(firstword $(MAKEFILE_LIST)) | awk -F'|' '{printf "%-18s %s\n",$$1,$$2}'
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/  make \1|\2/p' Makefile cross.mk | awk -F'|' '{printf "%-18s %s\n",$$1,$$2}'
 
 # ---- what Debian 12 must have ----
 DEPS := gcc make pkg-config zlib1g-dev libjpeg62-turbo-dev libpng-dev libosmesa6-dev libegl-dev libegl1 libgl1-mesa-dri \
@@ -142,6 +142,8 @@ fuzz: ## libFuzzer targets into build/fuzz (needs clang)
 	@$(MAKE) CC=clang BUILD=build/fuzz OPT="$(FUZZ_OPT)" $(patsubst tests/%.c,build/fuzz/%,$(wildcard tests/fuzz_*.c))
 build/fuzz/fuzz_%: $(BUILD)/obj/tests/fuzz_%.o $(call obj,$(TEST_LIB_SRC)) $(LIBS)
 	clang $(FUZZ_OPT) -fsanitize=fuzzer $(LDFLAGS) $(filter %.o,$^) $(LINK_LIBS) $(GDAL_LIBS) -lcmocka -o $@
+
+include cross.mk
 
 # ---- installing: programs, libfarfield with its headers and farfield.pc, man pages ----
 BINDIR ?= $(PREFIX)/bin

@@ -36,6 +36,8 @@ typedef struct handheld {
     sys_tcp tcp;
     sys_stream stream;
     sim_tape_player tape;
+    const sys_surface_api *surface_api;
+    sys_surface *surface;       /* NULL: no pictures */
     uint16_t width, height;
     void *memory;               /* the block: the one allocation */
     size_t memory_bytes;

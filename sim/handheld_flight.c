@@ -37,13 +37,23 @@ static int open_source(handheld *device)
     return rc == FF_OK ? 0 : fail(path, rc);
 }
 
+static int open_surface(handheld *device)
+{
+    sys_surface_desc desc = { "farfield-handheld", device->width, device->height, SYS_GL_ES1 };
+    if (device->options->no_pictures)
+        return 0;
+    device->surface_api = sys_surface_memory();
+    int rc = device->surface_api->open(&desc, &device->surface);
+    return rc == FF_OK ? 0 : fail("picture", rc);
+}
+
 static int open_client(handheld *device)
 {
     const handheld_options *options = device->options;
     const sim_tape_head *head = options->tape_path ? &device->tape.head : NULL;
     ff_client_desc desc = { .width = device->width, .height = device->height, .quality = head ? head->quality : options->quality,
-                            .panorama = head ? head->panorama : options->panorama,
-                            .use_plain_arrays = 1, .no_textures = (uint8_t)options->no_textures };
+                            .panorama = head ? head->panorama : options->panorama, .surface_api = device->surface_api,
+                            .backend = device->surface ? c3d_backend_soft() : NULL, .use_plain_arrays = 1, .no_textures = (uint8_t)options->no_textures };
     device->memory_bytes = options->memory_bytes ? options->memory_bytes : head ? head->memory_bytes : MEMORY_BYTES;
     device->memory = malloc(device->memory_bytes);
     if (!device->memory)
@@ -67,7 +77,7 @@ int handheld_open(handheld *device, const handheld_options *options)
         return -1;
     device->width = options->tape_path ? device->tape.head.width : options->width;
     device->height = options->tape_path ? device->tape.head.height : options->height;
-    return open_client(device);
+    return open_surface(device) ? -1 : open_client(device);
 }
 
 void handheld_close(handheld *device)
@@ -76,6 +86,8 @@ void handheld_close(handheld *device)
         ff_client_destroy(device->client);
     if (device->options->server && device->stream.close)
         device->stream.close(device->stream.state);
+    if (device->surface)
+        device->surface_api->close(device->surface);
     if (device->mapping.bytes)
         sys_unmap_file(&device->mapping);
     free(device->memory);
@@ -102,6 +114,7 @@ static int one_frame(handheld *device, int64_t now_us, const c3d_camera *camera,
         handheld_mark_outside();
         if (device->options->hud)
             handheld_hud(device);
+        (void)device->surface_api->present(device->surface);
     }
     handheld_mark_outside();
     if (!flying)

@@ -1,0 +1,71 @@
+# Builds for other machines, included by the Makefile: the handheld (armv6, soft float), bare metal (Cortex-M, no system), the unit tests on
+# 32-bit ARM and on a big-endian machine, instruction counts and sizes.
+#
+# Features left out: make handheld NO="panorama textures network jpeg hud deflate", any of them. Whole files go; client/without and its
+# like hold the few lines that stand in for them.
+
+# ---- packages: compilers and qemu are installed; libraries for other machines are unpacked under build/cross, see tools/cross-libs.sh ----
+CROSS_DEPS := gcc-arm-linux-gnueabi libc6-dev-armel-cross gcc-s390x-linux-gnu libc6-dev-s390x-cross gcc-arm-none-eabi \
+              libnewlib-arm-none-eabi qemu-user
+CROSS_LIBS := zlib1g-dev libjpeg62-turbo-dev zlib1g libjpeg62-turbo libcmocka-dev libcmocka0 src:zlib
+CROSS := build/cross
+CROSS_STAMP := $(CROSS)/.fetched
+
+$(CROSS_STAMP): tools/cross-libs.sh
+	@tools/install-deps.sh $(CROSS_DEPS)
+	@tools/cross-libs.sh $(CROSS) armel,s390x $(CROSS_LIBS)
+	@touch $@
+
+# ---- what runs on the handheld, and what a feature left out takes away ----
+FEATURES := panorama textures network jpeg hud deflate
+NO ?=
+$(if $(filter-out $(FEATURES),$(NO)),$(error NO=$(NO): the features are $(FEATURES)))
+
+DEVICE_CORE := $(filter-out protocol/ff_encode.c,$(foreach d,protocol client client/terrain common3d common3d/soft,$(call srcs,$d)))
+DEVICE_PLATFORM := platform/events.c platform/random.c platform/surfaces.c $(filter-out platform/posix/png.c,$(call srcs,platform/posix)) \
+                   $(call srcs,platform/memory)
+DEVICE_PROGRAM := $(filter sim/handheld_% sim/sim_tape.c,$(call srcs,sim)) sim/handheld_main.c
+
+WITHOUT_panorama := client/ff_panorama.c client/ff_panorama_rules.c client/ff_intake_face.c protocol/ff_face_columns.c
+INSTEAD_panorama := client/without/ff_no_panorama.c
+WITHOUT_textures := client/ff_textures.c client/ff_intake_texture.c
+INSTEAD_textures := client/without/ff_no_textures.c
+WITHOUT_network := client/ff_stream.c client/ff_receive.c client/ff_link_estimate.c protocol/ff_message.c platform/posix/tcp.c
+INSTEAD_network := client/without/ff_no_stream.c platform/null/null_tcp.c
+WITHOUT_jpeg := platform/posix/jpeg.c
+INSTEAD_jpeg := platform/null/null_jpeg.c
+WITHOUT_hud := sim/handheld_hud.c common3d/c3d_text.c
+INSTEAD_hud := sim/without/handheld_no_hud.c
+WITHOUT_deflate := protocol/ff_inflate.c protocol/ff_crc.c
+INSTEAD_deflate := protocol/without/ff_no_inflate.c protocol/without/ff_crc_small.c
+# $(call device,SOURCES,FEATURES LEFT OUT)
+device = $(filter-out $(foreach f,$(2),$(WITHOUT_$f)),$(1)) $(foreach f,$(2),$(INSTEAD_$f))
+
+# ---- make handheld ----
+ARM := arm-linux-gnueabi-
+ARM_CPU := -march=armv6 -mtune=arm1136jf-s -mfloat-abi=soft -marm
+ARM_FLAGS = -O2 $(WARN) $(if $(WERROR),-Werror) -D_GNU_SOURCE $(ARM_CPU) -ffunction-sections -fdata-sections -fstack-usage -MMD -MP \
+            -isystem $(CROSS)/armel/usr/include -isystem $(CROSS)/armel/usr/include/arm-linux-gnueabi
+ARM_LIBS := $(CROSS)/armel/usr/lib/arm-linux-gnueabi
+HAND_OBJ := build/handheld/obj
+space := $(subst ,, )
+HAND = build/handheld/farfield-handheld$(if $(NO),-no-$(subst $(space),-,$(strip $(NO))))
+HAND_SRC = $(call device,$(DEVICE_CORE) $(DEVICE_PLATFORM) $(DEVICE_PROGRAM),$(NO))
+HAND_LIBS = $(if $(filter jpeg,$(NO)),,$(ARM_LIBS)/libjpeg.a) $(if $(filter deflate,$(NO)),,$(ARM_LIBS)/libz.a)
+
+.PHONY: handheld
+handheld: $(HAND) ## cross-build the client for an armv6 without FPU; fly it under qemu-arm (NO="..." leaves features out)
+	@tools/handheld.sh $(HAND) $(BUILD)/bin $(HAND_OBJ) $(NO)
+handheld: $(patsubst %,$(BUILD)/bin/farfield-%,bake server fly handheld)
+
+$(HAND_OBJ)/platform/%.o $(HAND_OBJ)/sim/%.o: HAND_STD = $(STD_host)
+HAND_STD = $(STD_core)
+$(HAND_OBJ)/%.o: %.c | $(CROSS_STAMP)
+	@mkdir -p $(@D)
+	$(ARM)gcc $(ARM_FLAGS) $(HAND_STD) -c $< -o $@
+
+# Linked anew when the list of files is another one.
+$(HAND): $(HAND_SRC:%.c=$(HAND_OBJ)/%.o)
+	$(ARM)gcc $(ARM_CPU) -static -Wl,--gc-sections -Wl,--no-warnings -Wl,-Map=$@.map $^ $(HAND_LIBS) -lpthread -o $@
+
+-include $(shell find build/handheld -name '*.d' 2>/dev/null)
