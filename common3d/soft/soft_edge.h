@@ -24,7 +24,7 @@ static inline void soft_edge_begin(const soft_state *state, soft_edge *edge, con
 {
     int32_t dx = b->x - a->x, dy = b->y - a->y, k = row * SOFT_ONE + SOFT_HALF - a->y;
     if (dy < SOFT_EDGE_TABLE && dx > -8192 && dx < 8192) {
-        int64_t slope = (int64_t)dx * (state->edge_reciprocal[dy] + (dx < 0)); /* 2^13 * 2^31 */
+        int64_t slope = (int64_t)dx * state->edge_reciprocal[dy] + (dx < 0 ? dx : 0); /* 2^13 * 2^31 */
         edge->step = slope * (2 * SOFT_ONE);
         edge->at = ((int64_t)a->x * 2 + 1) * ((int64_t)1 << 31) + ((int64_t)1 << 31) - 1 + slope * (2 * k);
     } else {
