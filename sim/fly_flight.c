@@ -231,7 +231,16 @@ static void check_cracks(fly_flight *flight, double t_s)
         fprintf(stderr, "farfield-fly: crack at %.3f s: %s\n", t_s, why);
 }
 
-static void one_frame(fly_flight *flight, double t_s)
+/* The path, the auditor and the search for cracks look at --pack: a server of other ground makes them meaningless. */
+static int check_terrain(const fly_flight *flight)
+{
+    const ff_terrain_info *info = ff_client_terrain(flight->world->client);
+    if (!info || info->checksum == flight->world->pack.header.info.checksum)
+        return 0;
+    return fail(flight->options->server ? flight->options->server : flight->options->pack_path, "serves another terrain than --pack");
+}
+
+static int one_frame(fly_flight *flight, double t_s)
 {
     fly_world *world = flight->world;
     ff_client_stats stats;
@@ -239,7 +248,10 @@ static void one_frame(fly_flight *flight, double t_s)
     fly_path_at(&world->path, t_s, &flight->camera);
     if (world->tape.file)
         sim_tape_frame(&world->tape, world->now_us, &flight->camera, t_s > flight->options->settle_s);
-    if (ff_client_update(world->client, world->now_us, &flight->camera)) {
+    int changed = ff_client_update(world->client, world->now_us, &flight->camera);
+    if (check_terrain(flight))
+        return -1;
+    if (changed) {
         if (flight->options->check)
             check_cracks(flight, t_s);
         if (world->surface) {
@@ -250,6 +262,7 @@ static void one_frame(fly_flight *flight, double t_s)
     ff_client_get_stats(world->client, &stats);
     flight->totals.frames++;
     flight->totals.stitched_frames += stats.tree.stitched > 0;
+    return 0;
 }
 
 static int begin(fly_flight *flight, fly_world *world, FILE *csv)
@@ -273,18 +286,34 @@ static int begin(fly_flight *flight, fly_world *world, FILE *csv)
     return 0;
 }
 
+/* What went wrong at the server's end: an error when the flight says nothing about the pack, else a word about it. */
+static int judge_server(const fly_flight *flight, const ff_client_stats *stats)
+{
+    const char *name = flight->options->server ? flight->options->server : flight->options->pack_path;
+    if (flight->options->server && !stats->have_terrain)
+        return fail(name, stats->protocol_errors
+                    ? "does not speak Farfield's protocol, or another version of it"
+                    : "no terrain came from there");
+    if (stats->protocol_errors)
+        fprintf(stderr, "farfield-fly: %s: warning: sent nonsense %u times\n", name, stats->protocol_errors);
+    if (stats->requests_failed)
+        fprintf(stderr, "farfield-fly: %s: warning: could not answer %u of %u requests\n", name, stats->requests_failed,
+                stats->requests_sent);
+    return 0;
+}
+
 static int finish(fly_flight *flight)
 {
     ff_client_stats stats;
     ff_client_get_stats(flight->world->client, &stats);
+    int rc = judge_server(flight, &stats);
     flight->totals.bytes_down_all = (double)stats.bytes_down;
     flight->totals.bytes_up_all = (double)stats.bytes_up;
     flight->totals.memory_used = stats.memory_used;
-    sys_clock_replace(NULL, NULL);
-    if (!flight->world->tape.file)
-        return 0;
+    if (rc || !flight->world->tape.file)
+        return rc;
     const ff_client *client = flight->world->client;
-    int rc = sim_tape_finish(&flight->world->tape, ff_client_geometry_hash(client), ff_client_request_hash(client));
+    rc = sim_tape_finish(&flight->world->tape, ff_client_geometry_hash(client), ff_client_request_hash(client));
     return rc == FF_OK ? 0 : fail(flight->options->tape_path, ff_error_text(rc));
 }
 
@@ -299,7 +328,7 @@ int fly_flight_run(fly_flight *flight, fly_world *world, FILE *csv)
         double t_s = (double)t_us / 1e6;
         rc = advance(flight, flight->start_us + t_us);
         if (!rc)
-            one_frame(flight, t_s);
+            rc = one_frame(flight, t_s);
         if (!rc && t_us >= next_row_us) {
             rc = take_row(flight, t_s);
             next_row_us += (int64_t)(options->sample_s * 1e6);
@@ -315,8 +344,9 @@ int fly_flight_run(fly_flight *flight, fly_world *world, FILE *csv)
     }
     if (show)
         fputc('\n', stderr);
-    if (finish(flight))
-        rc = -1;
+    if (!rc)
+        rc = finish(flight);
+    sys_clock_replace(NULL, NULL);
     return rc;
 }
 

@@ -138,6 +138,9 @@ for _ in $(seq 200); do
     sleep 0.05
 done
 port=$(sed -n 's/.*listening on [^ ]*:\([0-9]*\).*/\1/p' "$work/server.log")
+timeout 60 "$fly" --pack "$work/dense.ffp" --server "127.0.0.1:$port" --backend none --seconds 0 --settle 3 2>"$work/err"
+[ $? = 1 ] && grep -q "^farfield-fly: 127.0.0.1:$port: serves another terrain than --pack$" "$work/err"
+result $? "a server with another terrain than the pack's is an error"
 flies real --server "127.0.0.1:$port" --backend none --quality px:2 --back-plane 1500 --seconds 2 --settle 3 --audit on
 result $? "a flight against a real server"
 is 's["crack_frames"] == 0 and r[-1]["link_up"] == 1 and r[-1]["bytes_down"] > 2000 and r[-1]["nodes_drawn"] > 0' "it sees the ground"
@@ -172,12 +175,13 @@ refused "a missing pack" --pack "$work/missing.ffp"
 refused "a truncated pack" --pack "$work/short.ffp"
 refused "a foreign file" --pack "$work/noise.ffp"
 refused "a damaged pack" --pack "$work/flipped.ffp" --backend none
-refused "the software back end, not built yet" --pack "$work/hills.ffp" --backend soft
+refused "an unknown back end" --pack "$work/hills.ffp" --backend vulkan
 refused "an unknown link" --pack "$work/hills.ffp" --link telex
 refused "an unknown quality" --pack "$work/hills.ffp" --quality superb
 refused "an unknown event" --pack "$work/hills.ffp" --event 3:earthquake
 refused "an impossible size" --pack "$work/hills.ffp" --size 0x0
 refused "faces too large" --pack "$work/hills.ffp" --face 2048
+refused "a server that is not there" --pack "$work/hills.ffp" --server 127.0.0.1:9 --backend none --seconds 0 --settle 1
 refused "a missing trace" --pack "$work/hills.ffp" --down-trace "$work/missing"
 refused "too little memory" --pack "$work/hills.ffp" --memory 1K --backend none
 refused "a CSV that cannot be written" --pack "$work/hills.ffp" --csv "$work/missing/x.csv" --backend none
