@@ -10,6 +10,7 @@
 #define PITCH_BRAD16 (-1092)    /* 6 degrees down */
 #define FOV_BRAD16 10923        /* 60 degrees */
 #define MEMORY_BYTES (4u << 20)
+#define BLOCK_ALIGN 64          /* so that no byte of the block is lost to alignment, on any machine */
 #define SETTLE_FRAMES_MAX 3000  /* of a pack's flight, before it starts: until the ground stands */
 
 static int fail(const char *what, int rc)
@@ -55,7 +56,8 @@ static int open_client(handheld *device)
                             .panorama = head ? head->panorama : options->panorama, .surface_api = device->surface_api,
                             .backend = device->surface ? c3d_backend_soft() : NULL, .use_plain_arrays = 1, .no_textures = (uint8_t)options->no_textures };
     device->memory_bytes = options->memory_bytes ? options->memory_bytes : head ? head->memory_bytes : MEMORY_BYTES;
-    device->memory = malloc(device->memory_bytes);
+    device->memory_bytes -= device->memory_bytes % BLOCK_ALIGN;
+    device->memory = aligned_alloc(BLOCK_ALIGN, device->memory_bytes);
     if (!device->memory)
         return fail("memory", FF_ERR_MEMORY);
     desc.memory = device->memory;
