@@ -116,6 +116,8 @@ static void draw_now(soft_state *state, const c3d_resolved_draw *resolved, enum 
 {
     const c3d_strip_data *strip = resolved->strip;
     set_paint(state, resolved, depth);
+    memset(&state->segment, 0, sizeof state->segment);
+    soft_choose_span(state);
     soft_transform(state, resolved);
     if (resolved->draw->flags & C3D_DRAW_WIREFRAME)
         soft_lines(state, strip->indices + strip->count, strip->edge_count);

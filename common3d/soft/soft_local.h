@@ -72,7 +72,8 @@ typedef struct soft_deferred {
     c3d_vertex vertices[C3D_SOFT_BACKDROP_VERTICES];
 } soft_deferred;
 
-typedef struct soft_state {
+typedef struct soft_state soft_state;
+struct soft_state {
     /* memory, in the block */
     uint8_t *colour;             /* 2 or 4 bytes a pixel, top row first */
     uint32_t *depth;
@@ -100,18 +101,28 @@ typedef struct soft_state {
 
     /* the draw */
     soft_paint paint;
+    soft_segment segment; /* of the row under way */
+    void (*span)(struct soft_state *state, const soft_segment *segment); /* of this paint where there is no fog */
     soft_space space;
     c3d_draw cached;             /* whose vertices are in `vertices` */
     const c3d_vertex *cached_mesh;
     uint32_t deferred_count;
     soft_deferred deferred[C3D_SOFT_BACKDROPS];
-} soft_state;
+};
 
 /* n in 2^30 .. 2^31 - 1: 2^61 / n within 2^-19 of it. */
 static inline uint32_t soft_reciprocal(const soft_state *state, uint32_t n)
 {
     uint32_t r = state->reciprocal[(n >> 21) & 511];
     uint32_t error = (uint32_t)(((uint64_t)n * r) >> 32);              /* 2^29 when exact */
+    return (uint32_t)(((uint64_t)r * ((UINT32_C(1) << 30) - error)) >> 29);
+}
+
+/* The same within 2^-29 of it. */
+static inline uint32_t soft_fine_reciprocal(const soft_state *state, uint32_t n)
+{
+    uint32_t r = soft_reciprocal(state, n);
+    uint32_t error = (uint32_t)(((uint64_t)n * r) >> 32);
     return (uint32_t)(((uint64_t)r * ((UINT32_C(1) << 30) - error)) >> 29);
 }
 
@@ -152,6 +163,12 @@ void soft_strip(soft_state *state, const uint16_t *indices, uint32_t count);
 void soft_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c); /* clipped */
 /* soft_perspective.c: any triangle; a.y <= b.y <= c.y, twice its area in Q8. */
 void soft_perspective(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c, int64_t area);
+
+/* soft_small.c: 0 when it is not small or not flat enough; otherwise drawn. a.y <= b.y <= c.y. */
+int soft_small(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c);
+
+/* soft_spans.c */
+void soft_choose_span(soft_state *state);
 
 /* soft_line.c */
 void soft_lines(soft_state *state, const uint16_t *indices, uint32_t count);

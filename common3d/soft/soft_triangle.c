@@ -14,6 +14,11 @@ void soft_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b
     if (c->y < b->y) swap = b, b = c, c = swap;
     if (b->y < a->y) swap = a, a = b, b = swap;
     if (soft_first_row(a->y) == soft_first_row(c->y)) return; /* between two rows of centres */
+    int32_t left = a->x < b->x ? a->x : b->x, right = a->x < b->x ? b->x : a->x;
+    if (c->x < left) left = c->x;
+    if (c->x > right) right = c->x;
+    if (soft_first_row(left) == soft_first_row(right)) return; /* or columns */
+    if (soft_small(state, a, b, c)) return;
     int64_t area = area_of(a, b, c);
     if (area != 0) soft_perspective(state, a, b, c, area);
 }

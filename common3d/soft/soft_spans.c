@@ -1,0 +1,136 @@
+/* The spans drawn most, into RGB565: a texture as it is, the same with holes, and colours. Everything else: soft_segment_paint.
+ *
+ * Bilinear in 16 bits: a texel's fields are spread over 32 bits, 00000gggggg00000rrrrr000000bbbbb, so that each has five bits of room
+ * above it: four texels times weights that add up to 32 need four multiplications for all three colours. Weights of fields below
+ * 2^6 * 2^5 never reach the next field. */
+#include "soft_local.h"
+
+#define SPREAD 0x07E0F81Fu
+#define SPREAD_HALF 0x02008010u /* half of the last place of each field, times 32 */
+
+static inline uint32_t spread(uint32_t texel) { return (texel | texel << 16) & SPREAD; }
+
+/* The weighted sum of four spread texels, as a pixel. */
+static inline uint32_t blend(uint32_t a, uint32_t b, uint32_t c, uint32_t d, uint32_t x, uint32_t y)
+{
+    uint32_t xy = x * y >> 5;
+    uint32_t sum = a * (32 - x - y + xy) + b * (x - xy) + c * (y - xy) + d * xy + SPREAD_HALF;
+    sum = sum >> 5 & SPREAD;
+    return (sum | sum >> 16) & 0xFFFF;
+}
+
+/* 1 when both ends of the segment lie on the texture and its rim: then all between does. */
+static int on_texture(const soft_texture *texture, const soft_segment *segment)
+{
+    int32_t pixels = (int32_t)segment->count - 1;
+    uint32_t s = (uint32_t)segment->value[SOFT_S] + 65536, t = (uint32_t)segment->value[SOFT_T] + 65536;
+    uint32_t s_end = s + (uint32_t)(segment->step[SOFT_S] * pixels), t_end = t + (uint32_t)(segment->step[SOFT_T] * pixels);
+    uint32_t width = ((uint32_t)texture->width + 1) << 16, height = ((uint32_t)texture->height + 1) << 16;
+    return s < width && s_end < width && t < height && t_end < height;
+}
+
+static const uint16_t *texel_zero(const soft_texture *texture)
+{
+    return (const uint16_t *)(const void *)texture->texels + texture->stride + 1;
+}
+
+static inline int hidden(uint32_t *depth, uint32_t w, enum soft_depth mode)
+{
+    if (mode == SOFT_DEPTH_TEST ? w < *depth : *depth != 0) return 1;
+    return 0;
+}
+
+/* RGB565. An inner loop: inlined with `mode` constant. */
+static inline void texture_loop(soft_state *state, const soft_segment *segment, enum soft_depth mode)
+{
+    const soft_texture *texture = state->paint.texture;
+    const uint16_t *texels = texel_zero(texture);
+    int32_t stride = texture->stride, s = segment->value[SOFT_S], t = segment->value[SOFT_T];
+    int32_t ds = segment->step[SOFT_S], dt = segment->step[SOFT_T];
+    uint32_t *depth = state->depth + segment->first, *end = depth + segment->count, w = segment->w, dw = segment->dw;
+    uint16_t *pixel = (uint16_t *)(void *)state->colour + segment->first;
+    for (; depth < end; depth++, pixel++, w += dw, s += ds, t += dt) {
+        if (hidden(depth, w, mode)) continue;
+        const uint16_t *at = texels + (t >> 16) * stride + (s >> 16);
+        *depth = mode == SOFT_DEPTH_TEST ? w : 1;
+        *pixel = (uint16_t)blend(spread(at[0]), spread(at[1]), spread(at[stride]), spread(at[stride + 1]), (uint32_t)s >> 11 & 31,
+                                 (uint32_t)t >> 11 & 31);
+    }
+}
+
+static void span_texture(soft_state *state, const soft_segment *segment)
+{
+    if (!on_texture(state->paint.texture, segment))
+        soft_segment_paint(state, segment);
+    else if (state->paint.depth == SOFT_DEPTH_TEST)
+        texture_loop(state, segment, SOFT_DEPTH_TEST);
+    else
+        texture_loop(state, segment, SOFT_DEPTH_UNCOVERED);
+}
+
+/* RGBA5551 to the green of RGB565 with its highest bit repeated; the bit of alpha falls away. */
+static inline uint32_t spread_5551(uint32_t texel)
+{
+    uint32_t colour = (texel & 0xFFC0) | (texel >> 5 & 0x20) | (texel >> 1 & 0x1F);
+    return spread(colour);
+}
+
+/* RGBA5551 with the alpha test, where nothing was drawn: a panorama. Between four clear texels nothing is drawn at all. */
+static void span_holes(soft_state *state, const soft_segment *segment)
+{
+    const soft_texture *texture = state->paint.texture;
+    const uint16_t *texels = texel_zero(texture);
+    int32_t stride = texture->stride, s = segment->value[SOFT_S], t = segment->value[SOFT_T];
+    int32_t ds = segment->step[SOFT_S], dt = segment->step[SOFT_T];
+    if (!on_texture(texture, segment) || state->paint.depth != SOFT_DEPTH_UNCOVERED) {
+        soft_segment_paint(state, segment);
+        return;
+    }
+    for (uint32_t at = segment->first, end = at + segment->count; at < end; at++, s += ds, t += dt) {
+        if (state->depth[at]) continue;
+        const uint16_t *texel = texels + (t >> 16) * stride + (s >> 16);
+        uint32_t a = texel[0], b = texel[1], c = texel[stride], d = texel[stride + 1];
+        if (!((a | b | c | d) & 1)) continue;
+        uint32_t x = (uint32_t)s >> 11 & 31, y = (uint32_t)t >> 11 & 31, xy = x * y >> 5;
+        uint32_t alpha = (a & 1) * (32 - x - y + xy) + (b & 1) * (x - xy) + (c & 1) * (y - xy) + (d & 1) * xy;
+        if (alpha < 16) continue;
+        state->depth[at] = 1;
+        ((uint16_t *)(void *)state->colour)[at] =
+            (uint16_t)blend(spread_5551(a), spread_5551(b), spread_5551(c), spread_5551(d), x, y);
+    }
+}
+
+/* Colours rounded as soft_put does: v * 31/256 + 1/2, and 63/256 for green. */
+static inline void colour_loop(soft_state *state, const soft_segment *segment, enum soft_depth mode)
+{
+    const int32_t *value = segment->value, *step = segment->step;
+    int32_t red = value[SOFT_R] - (value[SOFT_R] >> 5) + (4 << 16), dr = step[SOFT_R] - (step[SOFT_R] >> 5);
+    int32_t green = value[SOFT_G] - (value[SOFT_G] >> 6) + (2 << 16), dg = step[SOFT_G] - (step[SOFT_G] >> 6);
+    int32_t blue = value[SOFT_B] - (value[SOFT_B] >> 5) + (4 << 16), db = step[SOFT_B] - (step[SOFT_B] >> 5);
+    uint32_t *depth = state->depth + segment->first, *end = depth + segment->count, w = segment->w, dw = segment->dw;
+    uint16_t *pixel = (uint16_t *)(void *)state->colour + segment->first;
+    for (; depth < end; depth++, pixel++, w += dw, red += dr, green += dg, blue += db) {
+        if (hidden(depth, w, mode)) continue;
+        *depth = mode == SOFT_DEPTH_TEST ? w : 1;
+        *pixel = (uint16_t)((red >> 8 & 0xF800) | (green >> 13 & 0x7E0) | (blue >> 19 & 0x1F));
+    }
+}
+
+static void span_colour(soft_state *state, const soft_segment *segment)
+{
+    if (state->paint.depth == SOFT_DEPTH_TEST)
+        colour_loop(state, segment, SOFT_DEPTH_TEST);
+    else
+        colour_loop(state, segment, SOFT_DEPTH_UNCOVERED);
+}
+
+void soft_choose_span(soft_state *state)
+{
+    const soft_paint *paint = &state->paint;
+    const soft_texture *texture = paint->texture;
+    state->span = soft_segment_paint;
+    if (state->wide || paint->depth == SOFT_DEPTH_NONE) return;
+    if (!texture) state->span = span_colour;
+    if (texture && paint->white && texture->format == C3D_RGB565) state->span = span_texture;
+    if (texture && paint->white && paint->alpha_test && texture->format == C3D_RGBA5551) state->span = span_holes;
+}
