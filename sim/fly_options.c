@@ -8,7 +8,7 @@
 #include <string.h>
 
 static const char help[] =
-    "usage: farfield-fly --pack PACK [options]\n"
+    "Usage: farfield-fly --pack PACK [options]\n"
     "\n"
     "Flies over a pack: server, link and client in one process over simulated time. The same options give the same bytes, the same\n"
     "CSV and the same pictures every time. With --server the same flight goes against a real server in real time.\n"

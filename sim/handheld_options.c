@@ -6,7 +6,7 @@
 #include <string.h>
 
 static const char help[] =
-    "usage: farfield-handheld --pack PACK | --server ADDR:PORT | --tape FILE [options]\n"
+    "Usage: farfield-handheld --pack PACK | --server ADDR:PORT | --tape FILE [options]\n"
     "\n"
     "The client as it runs on a handheld: integers only, no GPU, one block of memory. Ends with its statistics on stdout.\n"
     "\n"

@@ -11,7 +11,7 @@
 #include <string.h>
 
 static const char help[] =
-    "usage: farfield-link --profile SPEC --listen ADDR:PORT --connect ADDR:PORT [options]\n"
+    "Usage: farfield-link --profile SPEC --listen ADDR:PORT --connect ADDR:PORT [options]\n"
     "\n"
     "Passes TCP connections on from --listen to --connect as if a slow link lay between. Every connection has a link of its own: they\n"
     "do not share one rate. Ends cleanly on SIGTERM or SIGINT.\n"

@@ -19,7 +19,8 @@ result $installed "make install"
 [ -z "$(find "$root" -mindepth 1 -maxdepth 1 ! -name opt)" ]; result $? "nothing lies outside PREFIX"
 for program in build/bin/farfield-*; do
     name=$(basename "$program")
-    [ -x "$root/opt/ff/bin/$name" ] && [ -s "$root/opt/ff/share/man/man1/$name.1" ]
+    page=$root/opt/ff/share/man/man1/$name.1
+    [ -x "$root/opt/ff/bin/$name" ] && grep -q '^.SH SYNOPSIS' "$page" && ! sed -n '/^.SH NAME/{n;p;}' "$page" | grep -q '\. '
     result $? "$name and its manual page"
 done
 [ "$(readlink "$root/opt/ff/lib/libfarfield.so")" = libfarfield.so.0 ] && [ -e "$root/opt/ff/lib/libfarfield.so.0" ] &&

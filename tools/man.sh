@@ -5,6 +5,6 @@ set -eu
 program=$1
 page=$2
 name=$(basename "$program")
-about=$("$program" --help | grep -v -i '^ *\(usage\|or\):' | grep -v "^ *$name " | sed -n '/[a-z]/{s/^ *//;p;q;}' | sed 's/[.:]$//')
+about=$("$program" --help | grep -v -i '^ *\(usage\|or\):' | grep -v "^ *$name " | sed -n '/[a-z]/{s/^ *//;p;q;}' | sed 's/\. .*//; s/[.:]$//')
 help2man --no-info --name "$about" --output "$page.new" "$program"
 mv "$page.new" "$page"
