@@ -19,14 +19,17 @@ static const char help[] =
     "\n"
     " the flight\n"
     "  --path KIND           diagonal (default): along the terrain's diagonal towards its north-east corner, turning back in a half\n"
-    "                        circle before the border; circle; hover: in one place, turning 6 degrees a second\n"
+    "                        circle before the border; circle; hover: in one place, turning 6 degrees a second; turn: along\n"
+    "                        the diagonal for 20 s, round on the spot within 2 s, back, and so on\n"
     "  --start F             where on the diagonal, 0 to 1, default 0.4\n"
     "  --speed KMH           default 150\n"
     "  --height M            above the highest ground within 150 m along the path, smoothed; default 100\n"
     "  --seconds S           in flight, default 300\n"
     "  --settle S            standing still before, default 15\n"
     "  --seed N              default 1\n"
-    "  --event T:WHAT        at T seconds: low-battery battery-ok interruption resume cut panorama-on panorama-off; may be repeated\n"
+    "  --event T:WHAT        at T seconds: low-battery battery-ok interruption resume cut panorama-on panorama-off, link=SPEC (the link\n"
+    "                        is another one from now on), teleport=X,Y (shares of the terrain's width and height, each 0 to 1; the\n"
+    "                        path goes on from there and stays at a border that it would cross); may be repeated\n"
     "\n"
     " the link\n"
     "  --link SPEC           default umts. " SIM_LINK_SPEC_HELP "\n"
@@ -53,6 +56,8 @@ static const char help[] =
     "\n"
     " checking\n"
     "  --audit on|off        err_px against the whole true ground, default off\n"
+    "  --audit-step N        every N-th pixel each way is looked at, default 8\n"
+    "  --ground-cache FILE   keeps the decoded true ground there for further flights over this pack\n"
     "  --check on|off        every frame searched for cracks on integer vertices; default: as --audit\n"
     "  --sample S            time between rows, default 1\n"
     "  --tape FILE           records all that comes to the client, for farfield-handheld --tape (not with --server or --event)\n";
@@ -60,7 +65,7 @@ static const char help[] =
 enum option_id {
     OPT_PACK = 256, OPT_CSV, OPT_JSON, OPT_PATH, OPT_START, OPT_SPEED, OPT_HEIGHT, OPT_SECONDS, OPT_SETTLE, OPT_SEED, OPT_EVENT, OPT_LINK,
     OPT_DOWN_TRACE, OPT_UP_TRACE, OPT_SERVER, OPT_QUALITY, OPT_PANORAMA, OPT_BACK_PLANE, OPT_FACE, OPT_VIEW, OPT_MEMORY, OPT_PLAIN, OPT_BACKEND,
-    OPT_SIZE, OPT_FOV, OPT_FPS, OPT_PNG, OPT_EVERY, OPT_WIREFRAME, OPT_AUDIT, OPT_CHECK, OPT_SAMPLE, OPT_TAPE, OPT_HELP, OPT_VERSION
+    OPT_SIZE, OPT_FOV, OPT_FPS, OPT_PNG, OPT_EVERY, OPT_WIREFRAME, OPT_AUDIT, OPT_CHECK, OPT_SAMPLE, OPT_TAPE, OPT_AUDIT_STEP, OPT_GROUND_CACHE, OPT_HELP, OPT_VERSION
 };
 
 static const struct option long_options[] = {
@@ -76,7 +81,8 @@ static const struct option long_options[] = {
     { "size", 1, NULL, OPT_SIZE },         { "fov", 1, NULL, OPT_FOV },           { "fps", 1, NULL, OPT_FPS },
     { "png", 1, NULL, OPT_PNG },           { "every", 1, NULL, OPT_EVERY },       { "wireframe", 0, NULL, OPT_WIREFRAME },
     { "audit", 1, NULL, OPT_AUDIT },       { "check", 1, NULL, OPT_CHECK },       { "sample", 1, NULL, OPT_SAMPLE },
-    { "tape", 1, NULL, OPT_TAPE },
+    { "tape", 1, NULL, OPT_TAPE },         { "audit-step", 1, NULL, OPT_AUDIT_STEP },
+    { "ground-cache", 1, NULL, OPT_GROUND_CACHE },
     { "help", 0, NULL, OPT_HELP },         { "version", 0, NULL, OPT_VERSION },   { NULL, 0, NULL, 0 }
 };
 
@@ -165,19 +171,40 @@ static int parse_memory(fly_options *options, const char *text)
     return 0;
 }
 
+/* "link=SPEC", "teleport=X,Y": 1 and all but the time; 0 when `what` is neither; -1 with a line on stderr. */
+static int parse_event_value(const char *what, fly_event *event)
+{
+    char rest;
+    if (!strncmp(what, "link=", 5)) {
+        event->kind = FLY_LINK;
+        return sim_link_parse(what + 5, &event->link) == FF_OK ? 1 : fail("--event: no link %s", what + 5);
+    }
+    if (strncmp(what, "teleport=", 9))
+        return 0;
+    event->kind = FLY_TELEPORT;
+    if (sscanf(what + 9, "%lf,%lf%c", &event->place[0], &event->place[1], &rest) == 2 && event->place[0] >= 0 && event->place[0] <= 1 &&
+        event->place[1] >= 0 && event->place[1] <= 1)
+        return 1;
+    return fail("--event: %s is not teleport=X,Y, each 0 to 1", what);
+}
+
 static int parse_event(fly_options *options, const char *text)
 {
     static const char *const word[] = { "low-battery", "battery-ok", "interruption", "resume", "cut", "panorama-on", "panorama-off" };
+    fly_event event = { 0 };
     char *what;
     double at_s = strtod(text, &what);
     if (what == text || *what != ':' || !(at_s >= 0 && at_s <= 1e6))
         return fail("--event: %s is not T:WHAT", text);
     if (options->event_count == FLY_EVENTS_MAX)
         return fail("--event: more than %d", FLY_EVENTS_MAX);
-    int kind = parse_word("event", what + 1, word, 7);
-    if (kind < 0)
+    int rc = parse_event_value(what + 1, &event), kind = rc ? 0 : parse_word("event", what + 1, word, 7);
+    if (rc < 0 || kind < 0)
         return -1;
-    options->event[options->event_count++] = (fly_event){ at_s, (enum fly_event_kind)kind };
+    if (!rc)
+        event.kind = (enum fly_event_kind)kind;
+    event.at_s = at_s;
+    options->event[options->event_count++] = event;
     return 0;
 }
 
@@ -202,10 +229,11 @@ static int parse_backend(fly_options *options, const char *text)
     return kind < 0 ? -1 : 0;
 }
 
+static const char *const path_word[] = { "diagonal", "circle", "hover", "turn" };
+
 static int parse_path(fly_options *options, const char *text)
 {
-    static const char *const word[] = { "diagonal", "circle", "hover" };
-    int kind = parse_word("path", text, word, 3);
+    int kind = parse_word("path", text, path_word, sizeof path_word / sizeof *path_word);
     options->path = (enum fly_path_kind)kind;
     return kind < 0 ? -1 : 0;
 }
@@ -241,6 +269,11 @@ static int parse_one_number(fly_options *options, int id, const char *text)
             return -1;
         options->panorama.face_size = (uint16_t)number;
         return 0;
+    case OPT_AUDIT_STEP:
+        if (parse_number("audit-step", text, 1, 64, &number))
+            return -1;
+        options->audit_step_px = (uint32_t)number;
+        return 0;
     default: /* OPT_FPS */
         if (parse_number("fps", text, 1, 1000, &number))
             return -1;
@@ -257,6 +290,7 @@ static int parse_one(fly_options *options, int id, const char *text)
     case OPT_CSV: options->csv_path = text; return 0;
     case OPT_PNG: options->png_dir = text; return 0;
     case OPT_TAPE: options->tape_path = text; return 0;
+    case OPT_GROUND_CACHE: options->ground_cache = text; return 0;
     case OPT_SERVER: options->server = text; return 0;
     case OPT_DOWN_TRACE: options->link.way[SIM_DOWN].trace = text; return 0;
     case OPT_UP_TRACE: options->link.way[SIM_UP].trace = text; return 0;
@@ -287,7 +321,7 @@ int fly_options_parse(fly_options *options, int argc, char **argv)
 {
     *options = (fly_options){ .link_text = "umts", .speed_kmh = 150, .seconds = 300, .settle_s = 15, .height_m = 100, .start = 0.4,
                               .quality_text = "low", .panorama = { .enabled = 1 }, .seed = 1, .fps = 30, .width = 240, .height = 320,
-                              .fov_degrees = 60, .backend = FLY_GL, .check = -1, .every_s = 10, .sample_s = 1,
+                              .fov_degrees = 60, .backend = FLY_GL, .check = -1, .audit_step_px = 8, .every_s = 10, .sample_s = 1,
                               .memory_bytes = 4u << 20, .quality = { .sigma_q8 = 320, .view_wu = 30000 * FF_WU_PER_METRE } };
     options->link = *sim_link_profile("umts");
     (void)parse_quality(options, "low");
@@ -319,13 +353,12 @@ const char *fly_backend_name(enum fly_backend backend)
 
 void fly_options_print(const fly_options *options)
 {
-    static const char *const path[] = { "diagonal", "circle", "hover" };
     fprintf(stderr,
             "farfield-fly: seed %llu, pack %s, %s %s, %g km/h, %g s after %g s, %s from %g, %g m up, quality %s, panorama %s, "
             "%ux%u at %g degrees, %u fps, backend %s, %zu bytes, audit %s\n",
             (unsigned long long)options->seed, options->pack_path, options->server ? "server" : "link",
             options->server ? options->server : options->link_text, options->speed_kmh, options->seconds, options->settle_s,
-            path[options->path], options->start, options->height_m, options->quality_text,
+            path_word[options->path], options->start, options->height_m, options->quality_text,
             options->panorama.enabled ? "on" : "off", options->width,
             options->height, options->fov_degrees, options->fps, fly_backend_name(options->backend), options->memory_bytes,
             options->audit ? "on" : "off");

@@ -8,10 +8,17 @@
 #define FLY_EVENTS_MAX 64
 
 enum fly_backend { FLY_GLES1, FLY_GL, FLY_SOFT, FLY_SOFT_565, FLY_NONE };
-enum fly_path_kind { FLY_DIAGONAL, FLY_CIRCLE, FLY_HOVER };
-enum fly_event_kind { FLY_LOW_BATTERY, FLY_BATTERY_OK, FLY_INTERRUPTION, FLY_RESUME, FLY_CUT, FLY_PANORAMA_ON, FLY_PANORAMA_OFF };
+enum fly_path_kind { FLY_DIAGONAL, FLY_CIRCLE, FLY_HOVER, FLY_TURN };
+enum fly_event_kind {
+    FLY_LOW_BATTERY, FLY_BATTERY_OK, FLY_INTERRUPTION, FLY_RESUME, FLY_CUT, FLY_PANORAMA_ON, FLY_PANORAMA_OFF, FLY_LINK, FLY_TELEPORT
+};
 
-typedef struct fly_event { double at_s; enum fly_event_kind kind; } fly_event;
+typedef struct fly_event {
+    double at_s;
+    enum fly_event_kind kind;
+    sim_link_desc link;       /* of FLY_LINK */
+    double place[2];          /* of FLY_TELEPORT: share of the terrain's size from its south-west corner, 0..1 */
+} fly_event;
 
 typedef struct fly_options {
     const char *pack_path;
@@ -29,6 +36,8 @@ typedef struct fly_options {
     double fov_degrees;       /* across the width */
     enum fly_backend backend;
     enum fly_path_kind path;
+    const char *ground_cache; /* decoded heights of the pack, for the audit; NULL: decoded for this flight alone */
+    uint32_t audit_step_px;
     int audit, check, json, wireframe, plain_arrays;
     const char *csv_path, *png_dir;
     const char *tape_path;    /* all that comes to the client, for farfield-handheld; NULL: not recorded */

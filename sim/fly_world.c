@@ -5,7 +5,6 @@
 #include <string.h>
 
 #define PATH_SAMPLES_MAX (4097u * 4097u) /* 34 MB: the level of ground that paths keep above */
-#define AUDIT_STEP_PX 8
 
 static int fail(const char *what, int rc)
 {
@@ -22,13 +21,13 @@ static int open_ground(fly_world *world)
     if (rc == FF_OK)
         rc = sim_ground_load(&world->path_ground, &world->pack, PATH_SAMPLES_MAX);
     if (rc == FF_OK && options->audit)
-        rc = sim_ground_load(&world->true_ground, &world->pack, UINT64_MAX);
+        rc = sim_ground_load_cached(&world->true_ground, &world->pack, UINT64_MAX, options->ground_cache);
     if (rc != FF_OK)
         return fail(options->pack_path, rc);
     const ff_terrain_info *info = &world->pack.header.info;
     fly_path_init(&world->path, options, info, &world->path_ground);
     if (options->audit) {
-        world->auditor = sim_auditor_create(&world->true_ground, info, AUDIT_STEP_PX);
+        world->auditor = sim_auditor_create(&world->true_ground, info, options->audit_step_px);
         if (!world->auditor)
             return fail("auditor", FF_ERR_MEMORY);
     }

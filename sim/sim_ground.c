@@ -1,4 +1,4 @@
-#include "sim_ground.h"
+#include "sim_ground_local.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,7 +7,8 @@
 /* ---- decoding ---- */
 
 typedef struct loader {
-    sim_ground *ground;
+    const sim_ground *ground;
+    uint16_t *height;          /* of `ground`, being written */
     const ff_pack *pack;
     ff_decoder *decoder;
     int32_t *residual;
@@ -21,7 +22,7 @@ static void place(loader *load, ff_key key, const uint16_t *heights)
     size_t column = ((size_t)(tile % info->tiles_x) * along + ff_morton_x(code)) * cells;
     size_t row = ((size_t)(tile / info->tiles_x) * along + ff_morton_y(code)) * cells;
     for (uint32_t j = 0; j < side; j++)
-        memcpy(load->ground->height + (row + j) * load->ground->columns + column, heights + (size_t)j * side, side * sizeof *heights);
+        memcpy(load->height + (row + j) * load->ground->columns + column, heights + (size_t)j * side, side * sizeof *heights);
 }
 
 static int refine(loader *load, ff_key key, const uint16_t *heights)
@@ -66,9 +67,15 @@ static int decode_tile(loader *load, uint32_t tile)
 static int decode_all(sim_ground *ground, const ff_pack *pack)
 {
     const ff_terrain_info *info = &pack->header.info;
-    loader load = { .ground = ground, .pack = pack };
     size_t bytes = ff_decoder_bytes(info);
     void *memory = malloc(bytes);
+    ground->block = malloc(sizeof(sim_ground_head) + (size_t)ground->columns * ground->rows * sizeof *ground->height);
+    if (!ground->block) {
+        free(memory);
+        return FF_ERR_MEMORY;
+    }
+    loader load = { .ground = ground, .pack = pack, .height = (uint16_t *)((uint8_t *)ground->block + sizeof(sim_ground_head)) };
+    ground->height = load.height;
     load.residual = malloc(FF_REFINED_HEIGHTS_MAX * sizeof *load.residual);
     load.decoder = memory ? ff_decoder_create(info, memory, bytes) : NULL;
     int rc = load.decoder && load.residual ? FF_OK : FF_ERR_MEMORY;
@@ -127,7 +134,7 @@ static int build_pyramid(sim_ground *ground)
     return FF_OK;
 }
 
-int sim_ground_load(sim_ground *ground, const ff_pack *pack, uint64_t samples_max)
+int sim_ground_load_cached(sim_ground *ground, const ff_pack *pack, uint64_t samples_max, const char *cache_path)
 {
     const ff_terrain_info *info = &pack->header.info;
     uint32_t level = 0;
@@ -145,8 +152,12 @@ int sim_ground_load(sim_ground *ground, const ff_pack *pack, uint64_t samples_ma
     ground->cell_m = (double)ff_node_cell_wu(info, level) / FF_WU_PER_METRE;
     ground->hscale_m = (double)info->hscale_q24 / (1 << 24);
     ground->hoffset_m = (double)info->hoffset_wu / FF_WU_PER_METRE;
-    ground->height = malloc((size_t)ground->columns * ground->rows * sizeof *ground->height);
-    int rc = ground->height ? decode_all(ground, pack) : FF_ERR_MEMORY;
+    int rc = FF_OK;
+    if (!cache_path || !sim_ground_cache_open(ground, info->checksum, cache_path)) {
+        rc = decode_all(ground, pack);
+        if (rc == FF_OK && cache_path)
+            rc = sim_ground_cache_write(ground, info->checksum, cache_path);
+    }
     if (rc == FF_OK)
         rc = build_pyramid(ground);
     if (rc != FF_OK)
@@ -154,11 +165,18 @@ int sim_ground_load(sim_ground *ground, const ff_pack *pack, uint64_t samples_ma
     return rc;
 }
 
+int sim_ground_load(sim_ground *ground, const ff_pack *pack, uint64_t samples_max)
+{
+    return sim_ground_load_cached(ground, pack, samples_max, NULL);
+}
+
 void sim_ground_free(sim_ground *ground)
 {
     for (unsigned i = 0; i < SIM_GROUND_PYRAMID_MAX; i++)
         free(ground->pyramid[i].max);
-    free(ground->height);
+    free(ground->block);
+    if (ground->mapping.bytes)
+        sys_unmap_file(&ground->mapping);
     memset(ground, 0, sizeof *ground);
 }
 

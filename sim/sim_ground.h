@@ -6,6 +6,7 @@
 #ifndef SIM_GROUND_H
 #define SIM_GROUND_H
 
+#include "../platform/sys.h"
 #include "../protocol/ff_pack.h"
 
 #define SIM_GROUND_PYRAMID_FIRST 2 /* log2 of the cells along the finest block's side */
@@ -16,7 +17,9 @@ typedef struct sim_ground {
     uint32_t columns, rows;    /* of heights */
     double cell_m;
     double hscale_m, hoffset_m;
-    uint16_t *height;
+    const uint16_t *height;
+    void *block;               /* behind `height`, or */
+    sys_mapping mapping;       /* a file mapped, shared by all that fly over this ground */
     unsigned top;              /* one block of 2^top cells a side covers everything */
     struct { uint32_t columns, rows; uint16_t *max; } pyramid[SIM_GROUND_PYRAMID_MAX]; /* by log2 of the block's cells */
 } sim_ground;
@@ -24,6 +27,9 @@ typedef struct sim_ground {
 /* Decodes the finest level that has at most samples_max heights (level 0 whatever its size). FF_OK, FF_ERR_MEMORY or an error of the
  * pack's records. */
 int sim_ground_load(sim_ground *ground, const ff_pack *pack, uint64_t samples_max);
+/* The same through a file, when cache_path is not NULL: taken from there when it is of this pack and level, else decoded and left
+ * there. FF_ERR_SYSTEM: it cannot be written. */
+int sim_ground_load_cached(sim_ground *ground, const ff_pack *pack, uint64_t samples_max, const char *cache_path);
 void sim_ground_free(sim_ground *ground);
 
 /* Height at (x, y), clamped to the rim. */
