@@ -306,6 +306,7 @@ static void request_stats(const ff_client *client, ff_client_stats *stats)
     stats->queued = counts.queued;
     stats->queued_high = counts.queued_high;
     stats->panorama_requests = counts.panoramas_sent;
+    stats->panoramas_in_flight_high = counts.panoramas_in_flight_high;
 }
 
 void ff_client_get_stats(const ff_client *client, ff_client_stats *stats)

@@ -71,6 +71,7 @@ typedef struct ff_client_stats {
     uint32_t requests_sent, requests_done, requests_failed, requests_cancelled, requests_dropped;
     uint32_t in_flight, in_flight_high, queued, queued_high;
     uint32_t panorama_requests, panorama_faces, panorama_faces_empty, panorama_bytes;
+    uint32_t panoramas_in_flight_high; /* requests sent and unanswered at once; 1 at most unless hold_back is 1 */
     uint32_t textures_held, textures_high, textures_full;
     uint32_t protocol_errors, reconnects;
     uint32_t frames_updated, frames_skipped; /* skipped: nothing changed, nothing to redraw */

@@ -45,6 +45,7 @@ static void leave_state(ff_requests *requests, const ff_request *request)
         counts->queued--;
     else if (request->state == FF_REQUEST_SENT) {
         counts->in_flight--;
+        counts->panoramas_in_flight -= request->kind == FF_WANT_PANORAMA;
         counts->bytes_in_flight -= request->bytes_expected;
     } else if (request->state == FF_REQUEST_ARRIVING)
         counts->arriving--;
@@ -230,7 +231,11 @@ static void count_sent(ff_requests *requests, const ff_request *request)
 {
     ff_request_counts *counts = &requests->counts;
     counts->sent++;
-    counts->panoramas_sent += request->kind == FF_WANT_PANORAMA;
+    if (request->kind == FF_WANT_PANORAMA) {
+        counts->panoramas_sent++;
+        if (++counts->panoramas_in_flight > counts->panoramas_in_flight_high)
+            counts->panoramas_in_flight_high = counts->panoramas_in_flight;
+    }
     counts->textures_sent += request->kind == FF_WANT_TEXTURE;
     if (++counts->in_flight > counts->in_flight_high)
         counts->in_flight_high = counts->in_flight;

@@ -51,7 +51,7 @@ typedef struct ff_request {
 typedef struct ff_request_counts {
     uint32_t made, sent, done, failed, cancelled, dropped, queue_full;
     uint32_t queued, queued_high, in_flight, in_flight_high, arriving;
-    uint32_t panoramas_sent, textures_sent;
+    uint32_t panoramas_sent, textures_sent, panoramas_in_flight, panoramas_in_flight_high;
     uint32_t bytes_in_flight; /* expected */
 } ff_request_counts;
 

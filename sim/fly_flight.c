@@ -57,23 +57,23 @@ static int64_t flight_clock(void *context)
 
 /* ---- events ---- */
 
-static void apply_event(fly_flight *flight, enum fly_event_kind kind)
+static int apply_event(fly_flight *flight, const fly_event *what, double t_s)
 {
     fly_world *world = flight->world;
     sys_event event = { .time_us = world->now_us };
     ff_panorama_desc panorama = flight->options->panorama;
-    switch (kind) {
+    switch (what->kind) {
     case FLY_LOW_BATTERY:
     case FLY_BATTERY_OK:
         event.type = SYS_EVENT_BATTERY;
-        event.u.battery.low = kind == FLY_LOW_BATTERY;
-        event.u.battery.percent = kind == FLY_LOW_BATTERY ? 5 : 80;
+        event.u.battery.low = what->kind == FLY_LOW_BATTERY;
+        event.u.battery.percent = what->kind == FLY_LOW_BATTERY ? 5 : 80;
         (void)sys_event_inject(&event);
         break;
     case FLY_INTERRUPTION:
     case FLY_RESUME:
         event.type = SYS_EVENT_INTERRUPTION;
-        event.u.interruption.begins = kind == FLY_INTERRUPTION;
+        event.u.interruption.begins = what->kind == FLY_INTERRUPTION;
         (void)sys_event_inject(&event);
         break;
     case FLY_CUT:
@@ -82,22 +82,32 @@ static void apply_event(fly_flight *flight, enum fly_event_kind kind)
         break;
     case FLY_PANORAMA_ON:
     case FLY_PANORAMA_OFF:
-        panorama.enabled = kind == FLY_PANORAMA_ON;
+        panorama.enabled = what->kind == FLY_PANORAMA_ON;
         ff_client_set_panorama(world->client, &panorama);
         break;
+    case FLY_LINK:
+        if (world->link && sim_link_change(world->link, &what->link, world->now_us) != FF_OK)
+            return fail("link", ff_error_text(FF_ERR_MEMORY));
+        break;
+    case FLY_TELEPORT:
+        fly_path_teleport(&world->path, t_s, what->place[0], what->place[1]);
+        break;
     }
+    return 0;
 }
 
-static void events(fly_flight *flight, double t_s)
+static int events(fly_flight *flight, double t_s)
 {
     sys_event event;
-    for (unsigned i = 0; i < flight->options->event_count; i++)
+    int rc = 0;
+    for (unsigned i = 0; !rc && i < flight->options->event_count; i++)
         if (!(flight->events_done >> i & 1u) && t_s >= flight->options->event[i].at_s) {
             flight->events_done |= (uint64_t)1 << i;
-            apply_event(flight, flight->options->event[i].kind);
+            rc = apply_event(flight, &flight->options->event[i], t_s);
         }
     while (sys_event_take(&event))
         ff_client_event(flight->world->client, &event);
+    return rc;
 }
 
 /* ---- rows ---- */
@@ -231,6 +241,16 @@ static void check_cracks(fly_flight *flight, double t_s)
         fprintf(stderr, "farfield-fly: crack at %.3f s: %s\n", t_s, why);
 }
 
+/* From the first ground on there is always some: all of it, however coarse. */
+static void check_ground(fly_flight *flight)
+{
+    const ff_drawn *list;
+    const ff_tree *tree = ff_client_tree(flight->world->client);
+    int ground = tree && ff_tree_cut(tree, &list) > 0;
+    flight->totals.empty_frames += flight->had_ground && !ground;
+    flight->had_ground |= ground;
+}
+
 /* The path, the auditor and the search for cracks look at --pack: a server of other ground makes them meaningless. */
 static int check_terrain(const fly_flight *flight)
 {
@@ -244,7 +264,8 @@ static int one_frame(fly_flight *flight, double t_s)
 {
     fly_world *world = flight->world;
     ff_client_stats stats;
-    events(flight, t_s);
+    if (events(flight, t_s))
+        return -1;
     fly_path_at(&world->path, t_s, &flight->camera);
     if (world->tape.file)
         sim_tape_frame(&world->tape, world->now_us, &flight->camera, t_s > flight->options->settle_s);
@@ -259,6 +280,7 @@ static int one_frame(fly_flight *flight, double t_s)
             (void)world->surface_api->present(world->surface);
         }
     }
+    check_ground(flight);
     ff_client_get_stats(world->client, &stats);
     flight->totals.frames++;
     flight->totals.stitched_frames += stats.tree.stitched > 0;
@@ -310,6 +332,7 @@ static int finish(fly_flight *flight)
     flight->totals.bytes_down_all = (double)stats.bytes_down;
     flight->totals.bytes_up_all = (double)stats.bytes_up;
     flight->totals.memory_used = stats.memory_used;
+    flight->totals.panoramas_in_flight_high = stats.panoramas_in_flight_high;
     if (rc || !flight->world->tape.file)
         return rc;
     const ff_client *client = flight->world->client;

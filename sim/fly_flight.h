@@ -12,6 +12,7 @@ typedef struct fly_flight {
     c3d_camera camera;
     int64_t start_us;          /* the clock at t = 0 */
     uint32_t faces_seen;       /* of the server, rendered: after each the client's GL context is made current again */
+    int had_ground;            /* in a frame so far */
     uint64_t events_done;      /* bit per event */
     uint8_t *rgb;
     fly_sample *sample;

@@ -5,6 +5,8 @@
 #define PI 3.14159265358979323846
 #define PITCH_DEGREES (-6.0)
 #define HOVER_DEGREES_S 6.0
+#define TURN_EVERY_S 20.0
+#define TURN_S 2.0
 #define SMOOTH_M 150.0  /* the height follows the highest ground within this distance along the path, averaged over it */
 #define SMOOTH_STEPS 15 /* on each side */
 
@@ -14,7 +16,7 @@ void fly_path_init(fly_path *path, const fly_options *options, const ff_terrain_
     double size_x = (info->samples_x - 1) * spacing_m, size_y = (info->samples_y - 1) * spacing_m;
     double shorter = fmin(size_x, size_y);
     *path = (fly_path){ .kind = options->path, .ground = ground, .settle_s = options->settle_s, .speed_ms = options->speed_kmh / 3.6,
-                        .height_m = options->height_m };
+                        .height_m = options->height_m, .size_m = { size_x, size_y } };
     if (options->path == FLY_CIRCLE) {
         path->start_m[0] = size_x / 2;
         path->start_m[1] = size_y / 2;
@@ -33,8 +35,8 @@ void fly_path_init(fly_path *path, const fly_options *options, const ff_terrain_
     path->from_m = path->length_m * options->start;
 }
 
-/* Position and direction of flight at an arc length. */
-static void place(const fly_path *path, double arc_m, double pos_m[2], double heading[2])
+/* Position and direction of flight at an arc length, before teleports. */
+static void place_unmoved(const fly_path *path, double arc_m, double pos_m[2], double heading[2])
 {
     if (path->kind == FLY_CIRCLE) {
         double angle = arc_m / path->radius_m;
@@ -69,6 +71,35 @@ static void place(const fly_path *path, double arc_m, double pos_m[2], double he
     }
 }
 
+static void place(const fly_path *path, double arc_m, double pos_m[2], double heading[2])
+{
+    place_unmoved(path, arc_m, pos_m, heading);
+    for (int i = 0; i < 2; i++)
+        pos_m[i] = fmin(fmax(pos_m[i] + path->moved_m[i], 0), path->size_m[i]);
+}
+
+/* Arc length at a time. */
+static double arc_at(const fly_path *path, double flown_s)
+{
+    double leg_s = fmod(flown_s, 2 * TURN_EVERY_S);
+    if (path->kind == FLY_HOVER)
+        return path->from_m;
+    if (path->kind == FLY_TURN)
+        return path->from_m + path->speed_ms * fmin(leg_s, 2 * TURN_EVERY_S - leg_s);
+    return path->from_m + flown_s * path->speed_ms;
+}
+
+/* Turned by so much from the path's direction at a time. */
+static double turned_at(const fly_path *path, double flown_s)
+{
+    if (path->kind == FLY_HOVER)
+        return flown_s * HOVER_DEGREES_S / 360;
+    if (path->kind != FLY_TURN || flown_s < TURN_EVERY_S)
+        return 0;
+    double legs = floor(flown_s / TURN_EVERY_S), in_leg_s = flown_s - legs * TURN_EVERY_S;
+    return 0.5 * (legs - 1 + fmin(1, in_leg_s / TURN_S));
+}
+
 /* The highest ground within SMOOTH_M along the path, averaged over SMOOTH_M on both sides: calm, and never below the ground. */
 static double smooth_ground_m(const fly_path *path, double arc_m)
 {
@@ -89,11 +120,9 @@ static double smooth_ground_m(const fly_path *path, double arc_m)
 void fly_path_at(const fly_path *path, double t_s, c3d_camera *camera)
 {
     double pos_m[2], heading[2], flown_s = fmax(0, t_s - path->settle_s);
-    double arc_m = path->from_m + (path->kind == FLY_HOVER ? 0 : flown_s * path->speed_ms);
+    double arc_m = arc_at(path, flown_s);
     place(path, arc_m, pos_m, heading);
-    double yaw_turns = atan2(heading[0], heading[1]) / (2 * PI);
-    if (path->kind == FLY_HOVER)
-        yaw_turns += flown_s * HOVER_DEGREES_S / 360;
+    double yaw_turns = atan2(heading[0], heading[1]) / (2 * PI) + turned_at(path, flown_s);
     double z_m = smooth_ground_m(path, arc_m) + path->height_m;
     camera->pos_wu[0] = (int32_t)floor(pos_m[0] * FF_WU_PER_METRE + 0.5);
     camera->pos_wu[1] = (int32_t)floor(pos_m[1] * FF_WU_PER_METRE + 0.5);
@@ -101,4 +130,12 @@ void fly_path_at(const fly_path *path, double t_s, c3d_camera *camera)
     camera->yaw = (int32_t)floor(yaw_turns * 65536 + 0.5) & 65535;
     camera->pitch = (int32_t)floor(PITCH_DEGREES / 360 * 65536 + 0.5);
     camera->roll = 0;
+}
+
+void fly_path_teleport(fly_path *path, double t_s, double x, double y)
+{
+    double pos_m[2], heading[2];
+    place_unmoved(path, arc_at(path, fmax(0, t_s - path->settle_s)), pos_m, heading);
+    path->moved_m[0] = x * path->size_m[0] - pos_m[0];
+    path->moved_m[1] = y * path->size_m[1] - pos_m[1];
 }

@@ -14,11 +14,16 @@ typedef struct fly_path {
     double length_m;          /* of the straight part */
     double radius_m;          /* of the half circles at its ends, or of the circle */
     double from_m;            /* arc length where the flight begins */
+    double size_m[2];         /* of the terrain's source */
+    double moved_m[2];        /* by teleports */
 } fly_path;
 
 /* `ground` must outlive the path. */
 void fly_path_init(fly_path *path, const fly_options *options, const ff_terrain_info *info, const sim_ground *ground);
 /* Position and yaw after t_s seconds; pitch is slightly down. Sets pos_wu, yaw, pitch, roll. */
 void fly_path_at(const fly_path *path, double t_s, c3d_camera *camera);
+
+/* Moves the path so that it is at (x, y), shares 0..1 of the source's size, at t_s. From then on it stays where a border stops it. */
+void fly_path_teleport(fly_path *path, double t_s, double x, double y);
 
 #endif

@@ -124,7 +124,9 @@ void fly_json(FILE *file, const fly_options *options, const fly_sample *sample, 
             options->panorama.enabled ? "true" : "false");
     json_columns(file, first_column, FIRST_COUNT, sample, from, count);
     json_columns(file, last_column, LAST_COUNT, sample, from, count);
-    fprintf(file, ",\n  \"stitched_frames\": %" PRIu32 ",\n  \"crack_frames\": %" PRIu32, totals->stitched_frames, totals->crack_frames);
+    fprintf(file, ",\n  \"stitched_frames\": %" PRIu32 ",\n  \"crack_frames\": %" PRIu32
+            ",\n  \"empty_frames\": %" PRIu32 ",\n  \"panoramas_in_flight_high\": %" PRIu32, totals->stitched_frames,
+            totals->crack_frames, totals->empty_frames, totals->panoramas_in_flight_high);
     fprintf(file, ",\n  \"bytes_down_all\": %.0f,\n  \"bytes_up_all\": %.0f,\n  \"memory_used\": %" PRIu64, totals->bytes_down_all,
             totals->bytes_up_all, totals->memory_used);
     fprintf(file, ",\n  \"frame_hash\": \"%016" PRIx64 "\",\n  \"geometry_hash\": \"%016" PRIx64 "\",\n  \"request_hash\": \"%016" PRIx64

@@ -16,7 +16,8 @@ struct sim_link {
     int64_t epoch_us;     /* the first time given; all times below count from it */
     int64_t cut_us;       /* of the next cut */
     int64_t connected_us; /* when the connection under way is there */
-    unsigned connections;
+    unsigned connections, changes;
+    uint64_t seed;
 };
 
 static void plan_cut(sim_link *link, int64_t time_us)
@@ -49,6 +50,7 @@ sim_link *sim_link_create(const sim_link_desc *desc, uint64_t seed)
     link->desc = *desc;
     link->cut_us = INT64_MAX;
     link->connections = 1;
+    link->seed = seed;
     sys_random_seed(&link->cuts, seed, STREAM_CUTS);
     if (sim_pipe_init(&link->pipe[SIM_DOWN], desc, SIM_DOWN, seed) != FF_OK) {
         free(link);
@@ -101,6 +103,21 @@ int64_t sim_link_next_us(const sim_link *link)
                 next = sim_pipe_next_us(&link->pipe[way]);
     }
     return next == INT64_MAX ? next : next + link->epoch_us;
+}
+
+int sim_link_change(sim_link *link, const sim_link_desc *desc, int64_t now_us)
+{
+    int64_t time_us = link_time(link, now_us);
+    for (int way = 0; way < 2; way++)
+        if (sim_pipe_widen(&link->pipe[way], desc->way[way].queue_bytes) != FF_OK)
+            return FF_ERR_MEMORY;
+    link->changes++;
+    for (int way = 0; way < 2; way++)
+        sim_pipe_change(&link->pipe[way], desc, (enum sim_direction)way, link->seed + link->changes, time_us);
+    link->desc = *desc;
+    if (link->state == LINK_UP)
+        plan_cut(link, time_us);
+    return FF_OK;
 }
 
 void sim_link_cut(sim_link *link, int64_t now_us)

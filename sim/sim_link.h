@@ -54,6 +54,9 @@ size_t sim_link_room(sim_link *link, enum sim_direction way, int64_t now_us);
 int sim_link_recv(sim_link *link, enum sim_direction way, uint8_t *bytes, size_t capacity, int64_t now_us);
 /* When the next bytes arrive or the next cut happens: for sleeping. INT64_MAX: nothing under way. */
 int64_t sim_link_next_us(const sim_link *link);
+/* From now on the link is as `desc` says, as when a phone changes from one radio network to another: what is queued or under way
+ * arrives later, in order; a trace ends, and desc's traces are not used. FF_OK or FF_ERR_MEMORY (the link is as before). */
+int sim_link_change(sim_link *link, const sim_link_desc *desc, int64_t now_us);
 /* Loses the connection now. */
 void sim_link_cut(sim_link *link, int64_t now_us);
 /* Connections made so far, the first included: the server's end notices a new one by it. */

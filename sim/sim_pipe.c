@@ -40,9 +40,9 @@ static void next_stall(sim_stalls *stalls)
     stalls->end_us = stalls->start_us + (int64_t)length_ms * 1000;
 }
 
-void sim_stalls_init(sim_stalls *stalls, const sim_link_desc *desc, uint64_t seed)
+void sim_stalls_init(sim_stalls *stalls, const sim_link_desc *desc, uint64_t seed, int64_t from_us)
 {
-    *stalls = (sim_stalls){ .every_ms = desc->stall_every_ms, .ms_min = desc->stall_ms_min, .ms_max = desc->stall_ms_max,
+    *stalls = (sim_stalls){ .end_us = from_us, .every_ms = desc->stall_every_ms, .ms_min = desc->stall_ms_min, .ms_max = desc->stall_ms_max,
                             .bytes_s = desc->stall_bytes_s };
     if (stalls->ms_max < stalls->ms_min)
         stalls->ms_max = stalls->ms_min;
@@ -101,7 +101,7 @@ int sim_pipe_init(sim_pipe *pipe, const sim_link_desc *desc, enum sim_direction 
     pipe->desc = desc->way[way];
     if (!pipe->desc.queue_bytes)
         pipe->desc.queue_bytes = 1;
-    sim_stalls_init(&pipe->stalls, desc, seed);
+    sim_stalls_init(&pipe->stalls, desc, seed, 0);
     sys_random_seed(&pipe->jitter, seed, STREAM_JITTER + (uint64_t)way);
     if (pipe->desc.trace) {
         int rc = sim_trace_read(&pipe->trace, pipe->desc.trace);
@@ -215,10 +215,52 @@ static void advance(sim_pipe *pipe, int64_t now_us)
 size_t sim_pipe_room(sim_pipe *pipe, int64_t now_us)
 {
     advance(pipe, now_us);
-    size_t room = pipe->desc.queue_bytes - pipe->queued;
+    size_t room = pipe->desc.queue_bytes > pipe->queued ? pipe->desc.queue_bytes - pipe->queued : 0; /* more after a change */
     if (room > pipe->ring_bytes - pipe->stored)
         room = pipe->ring_bytes - pipe->stored;
     return pipe->queue.count == SIM_PIPE_SPANS ? 0 : room;
+}
+
+int sim_pipe_widen(sim_pipe *pipe, uint32_t queue_bytes)
+{
+    size_t ring_bytes = (size_t)queue_bytes + SIM_LINK_WINDOW_BYTES, straight = pipe->ring_bytes - pipe->ring_first;
+    if (ring_bytes <= pipe->ring_bytes)
+        return FF_OK;
+    uint8_t *ring = malloc(ring_bytes);
+    if (!ring)
+        return FF_ERR_MEMORY;
+    if (straight > pipe->stored)
+        straight = pipe->stored;
+    memcpy(ring, pipe->ring + pipe->ring_first, straight);
+    memcpy(ring + straight, pipe->ring, pipe->stored - straight);
+    free(pipe->ring);
+    pipe->ring = ring;
+    pipe->ring_bytes = ring_bytes;
+    pipe->ring_first = 0;
+    return FF_OK;
+}
+
+void sim_pipe_change(sim_pipe *pipe, const sim_link_desc *desc, enum sim_direction way, uint64_t seed, int64_t now_us)
+{
+    advance(pipe, now_us);
+    assert((size_t)desc->way[way].queue_bytes + SIM_LINK_WINDOW_BYTES <= pipe->ring_bytes);
+    sim_trace_free(&pipe->trace);
+    pipe->trace = (sim_trace){ 0 };
+    pipe->desc = desc->way[way];
+    pipe->desc.trace = NULL;
+    if (!pipe->desc.queue_bytes)
+        pipe->desc.queue_bytes = 1;
+    sim_stalls_init(&pipe->stalls, desc, seed, now_us);
+    pipe->surplus = 0;
+    if (pipe->free_us <= now_us)
+        return;
+    /* The last packet on the wire is still being sent, perhaps for the rest of a long stall of before. */
+    sim_span *last = span_at(&pipe->wire, pipe->wire.count - 1);
+    int64_t before_us = pipe->wire.count > 1 ? span_at(&pipe->wire, pipe->wire.count - 2)->us : now_us;
+    pipe->free_us = now_us;
+    pipe->free_us = transmit(pipe, last->count, now_us);
+    last->us = pipe->free_us + pipe->desc.delay_us > before_us ? pipe->free_us + pipe->desc.delay_us : before_us;
+    pipe->arrival_us = last->us;
 }
 
 int sim_pipe_send(sim_pipe *pipe, const uint8_t *bytes, size_t count, int64_t now_us)

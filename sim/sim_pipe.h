@@ -21,7 +21,8 @@ typedef struct sim_stalls {
     int64_t start_us, end_us;     /* of the present or next one */
 } sim_stalls;
 
-void sim_stalls_init(sim_stalls *stalls, const sim_link_desc *desc, uint64_t seed);
+/* None begins before `from_us`. */
+void sim_stalls_init(sim_stalls *stalls, const sim_link_desc *desc, uint64_t seed, int64_t from_us);
 /* The rate at time_us (never earlier than last asked) given the rate without stalls, and until when it holds. */
 uint32_t sim_stalls_rate(sim_stalls *stalls, uint32_t bytes_s, int64_t time_us, int64_t *until_us);
 
@@ -48,6 +49,10 @@ int sim_pipe_init(sim_pipe *pipe, const sim_link_desc *desc, enum sim_direction 
 void sim_pipe_free(sim_pipe *pipe);
 /* Loses all bytes stored. */
 void sim_pipe_flush(sim_pipe *pipe, int64_t now_us);
+/* Makes place for a queue of so many bytes, if there is less. FF_OK or FF_ERR_MEMORY (nothing happened). */
+int sim_pipe_widen(sim_pipe *pipe, uint32_t queue_bytes);
+/* Another rate, delay, jitter, queue (sim_pipe_widen first) and stalls from now on; the packet being sent starts again. */
+void sim_pipe_change(sim_pipe *pipe, const sim_link_desc *desc, enum sim_direction way, uint64_t seed, int64_t now_us);
 size_t sim_pipe_room(sim_pipe *pipe, int64_t now_us);
 int sim_pipe_send(sim_pipe *pipe, const uint8_t *bytes, size_t count, int64_t now_us);
 int sim_pipe_recv(sim_pipe *pipe, uint8_t *bytes, size_t capacity, int64_t now_us);
