@@ -233,7 +233,7 @@ static int carve_all(ff_client *client)
         return rc;
     }
     ff_terrain_view_attach(&client->view, client->tree);
-    ff_panorama_init(&client->panorama, client->device, &client->desc.panorama, face_size);
+    ff_panorama_init(&client->panorama, client->device, &client->desc.panorama, &client->info, face_size);
     ff_motion_reset(&client->motion);
     memset(&client->refusals, 0, sizeof client->refusals);
     return FF_OK;

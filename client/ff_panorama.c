@@ -11,7 +11,8 @@
 
 const uint8_t ff_panorama_built = 1;
 
-void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panorama_desc *desc, unsigned face_size)
+void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panorama_desc *desc, const ff_terrain_info *info,
+                      unsigned face_size)
 {
     uint32_t serial = panorama->serial;
     memset(panorama, 0, sizeof *panorama);
@@ -19,6 +20,8 @@ void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panora
     panorama->device = device;
     panorama->desc = *desc;
     panorama->face_size = (uint16_t)face_size;
+    panorama->ground_wu[0] = ff_height_wu(info, info->height_min) - ff_steps_wu(info, info->max_error);
+    panorama->ground_wu[1] = ff_height_wu(info, info->height_max) + ff_steps_wu(info, info->max_error);
     panorama->active = panorama->next = -1;
     panorama->retry_us = INT64_MIN;
     panorama->rest_us = INT64_MAX;
@@ -90,8 +93,8 @@ int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_c
         panorama->retry_us = INT64_MIN;
         changed = 1;
     }
-    if (newest >= 0 && !ff_panorama_outdated(camera, panorama->set[newest].position_wu, panorama->desc.back_plane_wu,
-                                             panorama->desc.error_px_q8))
+    if (newest >= 0 && !ff_panorama_outdated(camera, panorama->set[newest].position_wu, panorama->ground_wu,
+                                             panorama->desc.back_plane_wu, panorama->desc.error_px_q8))
         return changed;
     if (panorama->next >= 0 && !panorama->desc.hold_back)
         return changed; /* one set outstanding at most */

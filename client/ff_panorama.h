@@ -31,6 +31,7 @@ typedef struct ff_panorama {
     c3d_strip quad;
     ff_panorama_desc desc;
     uint16_t face_size;               /* what memory allows; 0: no panoramas in this block */
+    int32_t ground_wu[2];             /* lowest and highest of the terrain */
     int8_t active, next;              /* of set[]; -1: none */
     uint8_t refusals;                 /* in a row */
     ff_panorama_set set[2];
@@ -40,7 +41,8 @@ typedef struct ff_panorama {
     uint32_t faces, faces_empty;
 } ff_panorama;
 
-void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panorama_desc *desc, unsigned face_size);
+void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panorama_desc *desc, const ff_terrain_info *info,
+                      unsigned face_size);
 /* Frees what the device holds. */
 void ff_panorama_drop(ff_panorama *panorama);
 /* Applies the refresh rules; `hold`: ask for nothing new. 1 when the drawn set or what is wanted changed. */

@@ -14,28 +14,6 @@ int64_t ff_panorama_forwards_max(int64_t error_px_q8, int64_t z_wu, int64_t half
     return c3d_muldiv64(error_px_q8, z_wu, error_px_q8 + half_width_px_q8);
 }
 
-static int64_t magnitude(int64_t value)
-{
-    return value < 0 ? -value : value;
-}
-
-int ff_panorama_outdated(const c3d_camera *camera, const int32_t taken_wu[3], int32_t z_wu, int32_t error_px_q8)
-{
-    int64_t moved_wu[3], eye_wu[3];
-    for (int i = 0; i < 3; i++)
-        moved_wu[i] = (int64_t)camera->pos_wu[i] - taken_wu[i];
-    if (!moved_wu[0] && !moved_wu[1] && !moved_wu[2])
-        return 0;
-    if (c3d_length64(moved_wu[0], moved_wu[1], moved_wu[2]) >= z_wu)
-        return 1;
-    c3d_rotation rotation;
-    c3d_rotation_from_camera(camera, &rotation);
-    c3d_to_eye(&rotation, moved_wu, eye_wu);
-    int64_t sideways_max = ff_panorama_sideways_max(error_px_q8, z_wu, camera->focal_q8);
-    int64_t forwards_max = ff_panorama_forwards_max(error_px_q8, z_wu, (int64_t)camera->width * 128);
-    return magnitude(eye_wu[0]) > sideways_max || magnitude(eye_wu[1]) > sideways_max || magnitude(eye_wu[2]) >= forwards_max;
-}
-
 /* Cones with their tip in the camera, as four rays: world directions of any length below 2^33. */
 typedef struct view_rays { int64_t ray[4][3]; } view_rays;
 

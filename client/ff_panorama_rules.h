@@ -16,9 +16,11 @@
 int64_t ff_panorama_sideways_max(int64_t error_px_q8, int64_t z_wu, int64_t focal_q8);
 int64_t ff_panorama_forwards_max(int64_t error_px_q8, int64_t z_wu, int64_t half_width_px_q8);
 
-/* 1 when the panorama taken at `taken_wu` shows more than `error_px_q8` of error to this camera. Motion is taken apart along the
- * camera's axes: right and up by the sideways rule, forward (and, being the milder case, backward) by the forward rule. */
-int ff_panorama_outdated(const c3d_camera *camera, const int32_t taken_wu[3], int32_t z_wu, int32_t error_px_q8);
+/* 1 when the panorama taken at `taken_wu` may show a point more than `error_px_q8` from its place to this camera, in any direction of
+ * motion and for any point in the window: the two rules above tested one by one would let their errors add up, and take the depth of
+ * ground to be z, which it is only where the camera looks along an axis of the cube. ground_wu: lowest and highest of the terrain. */
+int ff_panorama_outdated(const c3d_camera *camera, const int32_t taken_wu[3], const int32_t ground_wu[2], int32_t z_wu,
+                         int32_t error_px_q8);
 
 /* Bit per enum ff_face_name the view pyramid touches: conservative, a face too many at most. */
 unsigned ff_panorama_faces_in_view(const c3d_camera *camera);

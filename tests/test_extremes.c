@@ -425,20 +425,20 @@ static void limits_of_the_rules(void **state)
         extreme_row_value(row, fabs((double)ff_panorama_sideways_max(error, z, 53209) - ref_sideways_max((double)error, z, 53209)));
     }
     c3d_camera camera = {.width = 240, .height = 320, .focal_q8 = 53209};
-    const int32_t taken[3] = {0, 0, 0};
+    const int32_t taken[3] = {0, 0, 0}, any_ground[2] = {INT32_MIN, INT32_MAX};
     camera.pos_wu[1] = 1;
-    extreme_row_expect(row, ff_panorama_outdated(&camera, taken, (int32_t)z, 0), "motion without any error allowed");
+    extreme_row_expect(row, ff_panorama_outdated(&camera, taken, any_ground, (int32_t)z, 0), "motion without any error allowed");
     camera.pos_wu[1] = 0;
-    extreme_row_expect(row, !ff_panorama_outdated(&camera, taken, (int32_t)z, 0), "asks again without any motion");
+    extreme_row_expect(row, !ff_panorama_outdated(&camera, taken, any_ground, (int32_t)z, 0), "asks again without any motion");
     end_row(row);
     row = extreme_row_begin("OO' to z and beyond", "sets kept although OO' >= z", "", 0);
     for (int32_t error = 1; error > 0; error = error < INT32_MAX / 2 ? error * 2 : error < INT32_MAX ? INT32_MAX : -1)
         for (int32_t more = -1; more <= 1; more++) {
             camera.pos_wu[1] = (int32_t)z + more;
-            int outdated = ff_panorama_outdated(&camera, taken, (int32_t)z, error);
+            int outdated = ff_panorama_outdated(&camera, taken, any_ground, (int32_t)z, error);
             extreme_row_value(row, more >= 0 && !outdated);
             camera.pos_wu[1] = INT32_MIN;
-            extreme_row_value(row, !ff_panorama_outdated(&camera, taken, (int32_t)z, error));
+            extreme_row_value(row, !ff_panorama_outdated(&camera, taken, any_ground, (int32_t)z, error));
         }
     end_row(row);
 }

@@ -43,26 +43,31 @@ static c3d_camera camera_at(int32_t x_m, int32_t y_m, int32_t z_m, int32_t yaw, 
     return camera;
 }
 
+static const int32_t level_ground[2] = {-100 * METRE, 100 * METRE}, any_ground[2] = {INT32_MIN, INT32_MAX};
+
 static int outdated(int32_t x_m, int32_t y_m, int32_t z_m, int32_t yaw)
 {
     static const int32_t origin[3] = {0, 0, 0};
     c3d_camera camera = camera_at(x_m, y_m, z_m, yaw, 0);
-    return ff_panorama_outdated(&camera, origin, Z_WU, 120 * 256 / 20);
+    return ff_panorama_outdated(&camera, origin, level_ground, Z_WU, 120 * 256 / 20);
 }
 
-static void motion_is_taken_apart_along_the_view(void **state)
+static void motion_in_any_direction(void **state)
 {
     (void)state;
     assert_false(outdated(0, 0, 0, 0));
-    assert_false(outdated(374, 0, 0, 0)); /* sideways, looking north */
+    assert_false(outdated(320, 0, 0, 0)); /* sideways, looking north: Hybrid has 375 m; whole patches cost some of it */
     assert_true(outdated(376, 0, 0, 0));
     assert_true(outdated(-376, 0, 0, 0));
-    assert_false(outdated(0, 356, 0, 0)); /* forwards */
+    assert_false(outdated(0, 300, 0, 0)); /* forwards: 357 m */
     assert_true(outdated(0, 358, 0, 0));
-    assert_true(outdated(0, -358, 0, 0));
-    assert_false(outdated(0, 0, 374, 0)); /* upwards */
+    assert_false(outdated(0, -300, 0, 0));
+    assert_true(outdated(0, -380, 0, 0));
+    assert_false(outdated(0, 0, 320, 0)); /* upwards */
     assert_true(outdated(0, 0, 376, 0));
-    assert_true(outdated(366, 0, 0, 16384)); /* looking east, the same way is forwards */
+    assert_false(outdated(300, 0, 0, 16384)); /* looking east, the same way is forwards */
+    assert_true(outdated(366, 0, 0, 16384));
+    assert_true(outdated(300, 300, 0, 0)); /* each alone would do, together they add up */
     assert_true(outdated(7500, 0, 0, 0));
     assert_true(outdated(1000000, 0, 0, 0));
 }
@@ -72,12 +77,12 @@ static void no_error_allowed_means_no_motion_allowed(void **state)
     (void)state;
     static const int32_t origin[3] = {0, 0, 0};
     c3d_camera camera = camera_at(0, 0, 0, 0, 0);
-    assert_false(ff_panorama_outdated(&camera, origin, Z_WU, 0));
+    assert_false(ff_panorama_outdated(&camera, origin, any_ground, Z_WU, 0));
     camera.pos_wu[0] = 1;
-    assert_true(ff_panorama_outdated(&camera, origin, Z_WU, 0));
+    assert_true(ff_panorama_outdated(&camera, origin, any_ground, Z_WU, 0));
     camera.pos_wu[0] = INT32_MAX; /* the far end of the world */
     int32_t far_west[3] = {INT32_MIN, 0, 0};
-    assert_true(ff_panorama_outdated(&camera, far_west, Z_WU, INT32_MAX));
+    assert_true(ff_panorama_outdated(&camera, far_west, any_ground, Z_WU, INT32_MAX));
 }
 
 /* Faces hit by a fine grid of rays over the picture. */
@@ -144,7 +149,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(figures_of_the_paper), cmocka_unit_test(limits_do_not_blow_up),
-        cmocka_unit_test(motion_is_taken_apart_along_the_view), cmocka_unit_test(no_error_allowed_means_no_motion_allowed),
+        cmocka_unit_test(motion_in_any_direction), cmocka_unit_test(no_error_allowed_means_no_motion_allowed),
         cmocka_unit_test(faces_in_view_miss_none), cmocka_unit_test(straight_ahead_is_one_face)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -6,9 +6,10 @@
 
 const uint8_t ff_panorama_built = 0;
 
-void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panorama_desc *desc, unsigned face_size)
+void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panorama_desc *desc, const ff_terrain_info *info,
+                      unsigned face_size)
 {
-    (void)device, (void)face_size;
+    (void)device, (void)info, (void)face_size;
     memset(panorama, 0, sizeof *panorama);
     panorama->desc = *desc;
     panorama->active = panorama->next = -1;
