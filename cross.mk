@@ -70,3 +70,21 @@ $(HAND): $(HAND_SRC:%.c=$(HAND_OBJ)/%.o)
 	$(ARM)gcc $(ARM_CPU) -static -Wl,--gc-sections -Wl,--no-warnings -Wl,-Map=$@.map $^ $(HAND_LIBS) -lpthread -o $@
 
 -include $(shell find build/handheld -name '*.d' 2>/dev/null)
+
+# ---- make bench-handheld: instructions by a plugin of qemu's translator; PACK=... flies over another terrain ----
+BENCH := build/bench
+BENCH_TILE := 7
+PACK ?= $(BENCH)/ground.ffp
+TCG_COUNT := build/handheld/libtcg_count.so
+$(TCG_COUNT): tools/tcg/tcg_count.c
+	@mkdir -p $(@D)
+	$(CC) -std=c11 -O2 $(WARN) -fvisibility=hidden -fPIC -shared $< -o $@
+$(BENCH)/ground.ffp: tools/bench_terrain.py $(BUILD)/bin/farfield-bake
+	@mkdir -p $(@D)
+	tools/bench_terrain.py $(@D)
+	$(BUILD)/bin/farfield-bake $(@D)/ground.raw --raw 2049x2049 --scale 0.1 --spacing 40 --tile-log2 $(BENCH_TILE) --quiet \
+	    --color $(@D)/ground.ppm --texture-levels 3 -o $@
+
+.PHONY: bench-handheld
+bench-handheld: build/handheld/farfield-handheld $(TCG_COUNT) $(BUILD)/bin/farfield-fly $(PACK) ## ARM instructions a frame, by phase, and the work-precision curve: build/bench/handheld.md
+	@tools/bench_handheld.py $(BUILD)/bin build/handheld/farfield-handheld $(TCG_COUNT) $(PACK) $(BENCH)

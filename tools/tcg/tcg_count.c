@@ -174,7 +174,7 @@ static void print_blocks(void)
     free(list);
 }
 
-static void on_exit(qemu_plugin_id_t id, void *context)
+static void write_counts(qemu_plugin_id_t id, void *context)
 {
     (void)id, (void)context;
     print_blocks();
@@ -206,6 +206,6 @@ int qemu_plugin_install(qemu_plugin_id_t id, const qemu_info_t *info, int argc, 
     }
     start();
     qemu_plugin_register_vcpu_tb_trans_cb(id, on_translation);
-    qemu_plugin_register_atexit_cb(id, on_exit, NULL);
+    qemu_plugin_register_atexit_cb(id, write_counts, NULL);
     return 0;
 }
