@@ -166,6 +166,7 @@ static int serve(ff_session *session, const request *wanted)
     if (rc < 0) {
         if (!short_answers_fit(session))
             return 0;
+        session->stats.damaged += rc == FF_ERR_CHECKSUM;
         answer_failed(session, wanted->get.id, rc);
         return 1;
     }

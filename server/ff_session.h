@@ -19,7 +19,11 @@ typedef struct ff_session_desc {
     int64_t now_us;               /* time of the connection: idle counts from here until the first message */
 } ff_session_desc;
 
-typedef struct ff_session_stats { uint64_t bytes_in, bytes_out; uint32_t nodes, textures, panoramas, faces, failed, cancelled; } ff_session_stats;
+typedef struct ff_session_stats {
+    uint64_t bytes_in, bytes_out;
+    uint32_t nodes, textures, panoramas, faces, failed, cancelled;
+    uint32_t damaged; /* of the failed: records whose checksum is wrong */
+} ff_session_stats;
 
 ff_session *ff_session_create(const ff_session_desc *desc); /* malloc; NULL when out of memory */
 void ff_session_destroy(ff_session *session);

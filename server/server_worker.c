@@ -40,6 +40,9 @@ static void count_session(worker *w, const server_client *client)
     w->counters->panoramas += stats.panoramas;
     w->counters->faces += stats.faces;
     w->counters->failed += stats.failed;
+    if (stats.damaged)
+        server_complain("%s is damaged: %u answers to a client were lost (farfield-info --verify shows where)",
+                        w->shared->options.pack, stats.damaged);
 }
 
 static void remove_closed(worker *w)

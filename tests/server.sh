@@ -80,6 +80,30 @@ for child in $children; do [ -e "/proc/$child" ] && left=1; done
 [ -n "$children" ] && [ "$left" = 0 ]
 result $? "no process is left"
 
+# HELLO, and GET_NODE of tile 0's root, whose record is damaged (the server does not read records before they are asked for)
+cp "$work/hills.ffp" "$work/good.ffp"
+python3 - "$work/hills.ffp" <<'END'
+import struct, sys
+file = bytearray(open(sys.argv[1], "rb").read())
+index, data = struct.unpack_from("<QQ", file, 80 + 20)
+file[data + struct.unpack_from("<Q", file, index)[0] + 6] ^= 1
+open(sys.argv[1], "wb").write(file)
+END
+ask_root() {
+    python3 -c '
+import socket, sys
+s = socket.create_connection(("127.0.0.1", int(sys.argv[1])))
+s.sendall(b"\1\x0cFFLD\1\0\0\0\0\0\0\0" + b"\2\5\1\0\0\0\0")
+answer = b""
+while len(answer) < 70 + 5:
+    answer += s.recv(4096)
+' "$port"
+}
+with_server ask_root
+[ "$status" = 0 ] && grep -q "^farfield-server: $work/hills.ffp is damaged: 1 answers" "$work/err"
+result $? "a damaged record is told to the operator"
+mv "$work/good.ffp" "$work/hills.ffp"
+
 nothing() { :; }
 with_server nothing --json --gl egl
 [ "$(grep -c '^{.*}$' "$work/log")" = "$(wc -l <"$work/log")" ] && grep -q '"event":"listening"' "$work/log" &&

@@ -173,6 +173,9 @@ static void test_damaged_record_fails(void **state)
     ff_session *session = welcomed();
     get_root(session, 1, 1);
     expect_failed(session, 1, FF_ERR_CHECKSUM);
+    ff_session_stats stats;
+    ff_session_get_stats(session, &stats);
+    assert_int_equal(stats.damaged, 1);
     *victim ^= 1;
     get_root(session, 2, 1);
     assert_int_equal(heard(session).type, FF_MSG_NODE);
