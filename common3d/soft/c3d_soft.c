@@ -6,11 +6,12 @@
 #define WIDTH_DEFAULT 240
 #define HEIGHT_DEFAULT 320
 #define TEXTURE_BYTES_DEFAULT 16384 /* for each texture */
+#define ROWS_MAX 4096
 #define WHITE 0xFFFFFFFFu
 
-/* ---- memory: state | vertices | textures | colour | depth | used units | texels ---- */
+/* ---- memory: state | vertices | textures | colour | depth | open parts of rows | used units | texels ---- */
 
-typedef struct soft_sizes { size_t vertices, textures, colour, depth, used, heap, pixels; } soft_sizes;
+typedef struct soft_sizes { size_t vertices, textures, colour, depth, rows, used, heap, pixels; } soft_sizes;
 
 static size_t aligned(size_t bytes) { return (bytes + 15) & ~(size_t)15; }
 
@@ -23,6 +24,7 @@ static void measure(const c3d_desc *desc, soft_sizes *sizes)
     sizes->textures = aligned(desc->texture_count * sizeof(soft_texture));
     sizes->colour = aligned(sizes->pixels * (desc->frame_format == C3D_RGBA8888 ? 4 : 2));
     sizes->depth = aligned(sizes->pixels * 4);
+    sizes->rows = aligned(ROWS_MAX * 2 * sizeof(uint16_t));
     sizes->used = aligned(units);
     sizes->heap = units * SOFT_HEAP_UNIT;
 }
@@ -31,7 +33,7 @@ static size_t soft_state_bytes(const c3d_desc *desc)
 {
     soft_sizes sizes;
     measure(desc, &sizes);
-    return aligned(sizeof(soft_state)) + sizes.vertices + sizes.textures + sizes.colour + sizes.depth + sizes.used + sizes.heap;
+    return aligned(sizeof(soft_state)) + sizes.vertices + sizes.textures + sizes.colour + sizes.depth + sizes.rows + sizes.used + sizes.heap;
 }
 
 static int soft_open(void *opaque, const c3d_desc *desc, int *buffers)
@@ -45,12 +47,15 @@ static int soft_open(void *opaque, const c3d_desc *desc, int *buffers)
     state->textures = (soft_texture *)(void *)(at += sizes.vertices);
     state->colour = at += sizes.textures;
     state->depth = (uint32_t *)(void *)(at += sizes.colour);
-    state->heap_used = at += sizes.depth;
+    state->open_from = (uint16_t *)(void *)(at += sizes.depth);
+    state->open_to = state->open_from + ROWS_MAX;
+    state->heap_used = at += sizes.rows;
     state->heap = at + sizes.used;
     state->heap_units = (uint32_t)(sizes.heap / SOFT_HEAP_UNIT);
     state->pixels_max = (uint32_t)sizes.pixels;
     state->texture_count = desc->texture_count;
     state->wide = desc->frame_format == C3D_RGBA8888;
+    state->fast_textures = desc->fast_textures;
     for (uint32_t i = 0; i < 512; i++) /* 2^61/n in the middle of the step */
         state->reciprocal[i] = (uint32_t)(((UINT64_C(1) << 61) / (((uint64_t)(i + 512) << 21) + (1 << 20))));
     for (int32_t i = 1; i < SOFT_EDGE_TABLE; i++) state->edge_reciprocal[i] = INT32_MAX / i;
@@ -82,7 +87,7 @@ static void soft_begin(void *opaque, const c3d_frame *frame, const c3d_rotation 
     state->width = state->blank ? 0 : camera->width;
     state->height = state->blank ? 0 : camera->height;
     state->painted = 0;
-    state->deferred_count = 0;
+    state->deferred_count = state->deferred_vertices = 0;
     state->cached_mesh = NULL;
     state->centre_x = state->width * SOFT_HALF;
     state->centre_y = state->height * SOFT_HALF;
@@ -117,8 +122,8 @@ static void draw_now(soft_state *state, const c3d_resolved_draw *resolved, enum 
     const c3d_strip_data *strip = resolved->strip;
     set_paint(state, resolved, depth);
     memset(&state->segment, 0, sizeof state->segment);
-    soft_choose_span(state);
     soft_transform(state, resolved);
+    soft_choose_span(state);
     if (resolved->draw->flags & C3D_DRAW_WIREFRAME)
         soft_lines(state, strip->indices + strip->count, strip->edge_count);
     else
@@ -128,22 +133,38 @@ static void draw_now(soft_state *state, const c3d_resolved_draw *resolved, enum 
 /* Keeps a backdrop for the end of the frame; 0 when there is no room. */
 static int defer(soft_state *state, const c3d_resolved_draw *resolved)
 {
-    if (state->painted || state->deferred_count == C3D_SOFT_BACKDROPS || resolved->mesh->count > C3D_SOFT_BACKDROP_VERTICES)
-        return 0;
+    uint32_t room = C3D_SOFT_BACKDROP_VERTICES - state->deferred_vertices, count = resolved->mesh->count;
+    if (state->painted || state->deferred_count == C3D_SOFT_BACKDROPS || count > room) return 0;
+    c3d_vertex *vertices = state->deferred_vertex + state->deferred_vertices;
     soft_deferred *deferred = &state->deferred[state->deferred_count++];
     deferred->draw = *resolved->draw;
     deferred->mesh = *resolved->mesh;
     deferred->resolved = *resolved;
-    memcpy(deferred->vertices, resolved->mesh->vertices, resolved->mesh->count * sizeof *deferred->vertices);
-    deferred->mesh.vertices = deferred->vertices;
+    memcpy(vertices, resolved->mesh->vertices, count * sizeof *vertices);
+    deferred->mesh.vertices = vertices;
+    state->deferred_vertices += count;
     deferred->resolved.draw = &deferred->draw;
     deferred->resolved.mesh = &deferred->mesh;
     return 1;
 }
 
+/* Where each row has pixels that nothing covers; most rows of ground have none. */
+static void find_open_parts(soft_state *state)
+{
+    const uint32_t *depth = state->depth;
+    for (int32_t row = 0; row < state->height; row++, depth += state->width) {
+        int32_t from = 0, to = state->width;
+        while (from < to && depth[from]) from++;
+        while (to > from && depth[to - 1]) to--;
+        state->open_from[row] = (uint16_t)from;
+        state->open_to[row] = (uint16_t)to;
+    }
+}
+
 /* The last one first: it hides the others. */
 static void draw_deferred(soft_state *state)
 {
+    if (state->deferred_count) find_open_parts(state);
     while (state->deferred_count) draw_now(state, &state->deferred[--state->deferred_count].resolved, SOFT_DEPTH_UNCOVERED);
     state->painted = 1;
 }

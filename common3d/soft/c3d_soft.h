@@ -16,7 +16,7 @@
  *   interpolated linearly; all others are divided exactly every 16 pixels (8 where depth changes by more than a sixteenth).
  *   Colours: fog and vertex colours are interpolated with 16 fraction bits and rounded to the frame's format.
  *   Backdrops drawn before everything else wait until the end of the frame and then fill, the last one first, what nothing has covered:
- *   the picture is the same and no pixel is painted twice. Their meshes are copied meanwhile (up to C3D_SOFT_BACKDROP_VERTICES).
+ *   the picture is the same and no pixel is painted twice. Their meshes are copied meanwhile.
  * The frame's format is C3D_RGB565 or C3D_RGBA8888 (c3d_desc.frame_format); c3d_frame_pixels gives the finished picture.
  */
 #ifndef C3D_SOFT_H
@@ -25,6 +25,6 @@
 #include "../c3d_backend.h"
 
 #define C3D_SOFT_BACKDROPS 8           /* drawn later in one frame; further ones are drawn at once */
-#define C3D_SOFT_BACKDROP_VERTICES 32
+#define C3D_SOFT_BACKDROP_VERTICES 128 /* of all of them */
 
 #endif

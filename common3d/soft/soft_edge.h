@@ -76,6 +76,9 @@ static inline void soft_walk_row(const soft_state *state, soft_walk *walk)
     walk->to = soft_edge_pixel(&walk->right);
     if (walk->from < 0) walk->from = 0;
     if (walk->to > state->width) walk->to = state->width;
+    if (state->paint.depth != SOFT_DEPTH_UNCOVERED) return;
+    if (walk->from < state->open_from[walk->row]) walk->from = state->open_from[walk->row];
+    if (walk->to > state->open_to[walk->row]) walk->to = state->open_to[walk->row];
 }
 
 /* On to the next row; 0 after the last. */

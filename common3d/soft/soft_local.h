@@ -60,6 +60,8 @@ typedef struct soft_space {
     int64_t origin_wu[3];
     int32_t scale_wu;
     uint32_t z_scale_q16;
+    int32_t near_origin[2], near_scale; /* x and y in world units; scale 0: too large for 32 bits */
+    int64_t near_z;              /* wu, Q16 */
     int32_t near_eye, far_eye;
     int32_t near_norm;           /* near plane, shifted into bits 30.. */
     int near_shift;              /* by so much in eye units */
@@ -69,7 +71,6 @@ typedef struct soft_deferred {
     c3d_draw draw;
     c3d_resolved_draw resolved;
     c3d_mesh_data mesh;
-    c3d_vertex vertices[C3D_SOFT_BACKDROP_VERTICES];
 } soft_deferred;
 
 typedef struct soft_state soft_state;
@@ -79,10 +80,12 @@ struct soft_state {
     uint32_t *depth;
     soft_vertex *vertices;       /* of the mesh transformed last */
     soft_texture *textures;
+    uint16_t *open_from, *open_to; /* of each row, while backdrops fill: the pixels nothing has covered lie between */
     uint8_t *heap, *heap_used;   /* texels; one byte a unit */
     uint32_t heap_units, pixels_max;
     uint16_t texture_count;
     uint8_t wide;                /* 1: RGBA8888, 0: RGB565 */
+    uint8_t fast_textures;       /* small triangles take the nearest texel */
 
     uint32_t reciprocal[512];    /* of n/512, n = 512 .. 1023, see soft_reciprocal */
     int32_t edge_reciprocal[SOFT_EDGE_TABLE]; /* floor((2^31 - 1) / n) */
@@ -106,8 +109,12 @@ struct soft_state {
     soft_space space;
     c3d_draw cached;             /* whose vertices are in `vertices` */
     const c3d_vertex *cached_mesh;
+    uint8_t off_texture;         /* some vertex lies beyond its edges */
+    uint8_t texture_rows;        /* the texture alone, on it, into RGB565 with the depth test */
     uint32_t deferred_count;
     soft_deferred deferred[C3D_SOFT_BACKDROPS];
+    uint32_t deferred_vertices;
+    c3d_vertex deferred_vertex[C3D_SOFT_BACKDROP_VERTICES];
 };
 
 /* n in 2^30 .. 2^31 - 1: 2^61 / n within 2^-19 of it. */
@@ -167,7 +174,7 @@ void soft_perspective(soft_state *state, const soft_vertex *a, const soft_vertex
 /* soft_small.c: 0 when it is not small or not flat enough; otherwise drawn. a.y <= b.y <= c.y. */
 int soft_small(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c);
 
-/* soft_spans.c */
+/* soft_spans.c: after soft_transform */
 void soft_choose_span(soft_state *state);
 
 /* soft_line.c */

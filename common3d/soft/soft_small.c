@@ -4,6 +4,7 @@
  * below 2^19 after a shift: a numerator is two products below 2^29 + ... < 2^31. The area is below 2^23; a slope is a numerator times
  * the reciprocal of the area, in 64 bits. Values walk in 32 bits and wrap: at pixels inside they are right again. */
 #include "soft_edge.h"
+#include "soft_sample.h"
 
 #define SIZE_MAX_Q4 2048
 #define TEXELS_MAX (63 << 16)
@@ -58,7 +59,7 @@ static int is_flat(const soft_state *state, const soft_shape *shape, int32_t dw)
     if (state->paint.texture) {
         int32_t texels = larger(larger(b->s - a->s, c->s - a->s), larger(b->t - a->t, c->t - a->t));
         if (texels > TEXELS_MAX) return 0;
-        range = texels >> 12;
+        range = texels >> 13;
     }
     if ((!state->paint.texture || !state->paint.white || state->paint.fog) && range < COLOUR_RANGE) range = COLOUR_RANGE;
     return (uint32_t)(dw >> 3) * (uint32_t)range <= least;
@@ -84,6 +85,45 @@ static void make_slopes(const soft_state *state, const soft_shape *shape, soft_s
     }
     if (!state->paint.texture || !state->paint.white || fog) colour_slopes(shape, slopes);
     if (fog) attribute(shape, slopes, SOFT_F, a->fog_q8 << 16, (b->fog_q8 - a->fog_q8) * 16, (c->fog_q8 - a->fog_q8) * 16, 12);
+}
+
+/* One row of a texture as it is, into RGB565; an inner loop. Its vertices lie on the texture, and its pixels within a rim of them. */
+static inline void texture_row(soft_state *state, uint32_t first, uint32_t count, uint32_t w, uint32_t dw, const int32_t at[2],
+                               const int32_t step[2], int nearest)
+{
+    const soft_texture *texture = state->paint.texture;
+    const uint16_t *texels = soft_texel_zero(texture);
+    int32_t stride = texture->stride, s = at[0], t = at[1], ds = step[0], dt = step[1];
+    uint32_t *depth = state->depth + first, *end = depth + count;
+    uint16_t *pixel = (uint16_t *)(void *)state->colour + first;
+    for (; depth < end; depth++, pixel++, w += dw, s += ds, t += dt) {
+        if (w < *depth) continue;
+        *depth = w;
+        *pixel = nearest ? texels[(t >> 16) * stride + (s >> 16)] : soft_pixel_of(soft_sample_565(texels, stride, s, t));
+    }
+}
+
+/* The texture alone, small triangles of the terrain: everything in one function. */
+static void texture_rows(soft_state *state, soft_walk *walk, soft_slopes *slopes)
+{
+    uint32_t w = slopes->at[W], s = slopes->at[SOFT_S], t = slopes->at[SOFT_T];
+    uint32_t dw = (uint32_t)slopes->across[W], ds = (uint32_t)slopes->across[SOFT_S], dt = (uint32_t)slopes->across[SOFT_T];
+    int nearest = state->fast_textures;
+    if (nearest) s += 32768, t += 32768; /* the texel that the pixel lies in */
+    do {
+        soft_walk_row(state, walk);
+        if (walk->from < walk->to) {
+            uint32_t from = (uint32_t)walk->from, first = (uint32_t)walk->row * state->width + from;
+            const int32_t at[2] = {(int32_t)(s + ds * from), (int32_t)(t + dt * from)}, step[2] = {(int32_t)ds, (int32_t)dt};
+            if (nearest)
+                texture_row(state, first, (uint32_t)walk->to - from, w + dw * from, dw, at, step, 1);
+            else
+                texture_row(state, first, (uint32_t)walk->to - from, w + dw * from, dw, at, step, 0);
+        }
+        w += (uint32_t)slopes->down[W];
+        s += (uint32_t)slopes->down[SOFT_S];
+        t += (uint32_t)slopes->down[SOFT_T];
+    } while (soft_walk_next(state, walk));
 }
 
 static void paint_rows(soft_state *state, soft_walk *walk, soft_slopes *slopes, int first, int last)
@@ -149,6 +189,9 @@ int soft_small(soft_state *state, const soft_vertex *a, const soft_vertex *b, co
     make_slopes(state, &shape, &slopes, dw, fog);
     state->segment.value[SOFT_F] = 256 << 16; /* clear */
     state->segment.step[SOFT_F] = 0;
-    paint_rows(state, &walk, &slopes, textured ? SOFT_S : SOFT_R, fog ? SOFT_F : textured && paint->white ? SOFT_T : SOFT_B);
+    if (!fog && state->texture_rows)
+        texture_rows(state, &walk, &slopes);
+    else
+        paint_rows(state, &walk, &slopes, textured ? SOFT_S : SOFT_R, fog ? SOFT_F : textured && paint->white ? SOFT_T : SOFT_B);
     return 1;
 }

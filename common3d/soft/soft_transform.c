@@ -36,6 +36,11 @@ void soft_begin_space(soft_state *state, const c3d_resolved_draw *resolved)
     memcpy(space->origin_wu, draw->origin_wu, sizeof space->origin_wu);
     space->scale_wu = draw->xy_scale_wu;
     space->z_scale_q16 = draw->z_scale_q16;
+    int64_t near_scale = soft_scale64(draw->xy_scale_wu, space->shift);
+    int near = space->shift >= 0 && near_scale * INT16_MAX < INT32_MAX && near_scale * INT16_MAX > -INT32_MAX;
+    space->near_scale = near ? (int32_t)near_scale : 0;
+    for (int i = 0; near && i < 2; i++) space->near_origin[i] = (int32_t)soft_scale64(draw->origin_wu[i], space->shift);
+    space->near_z = draw->origin_wu[2] * 65536;
     int64_t near_eye = soft_scale64(near_wu, space->shift - 2), far_eye = soft_scale64(state->frame.camera.far_wu, space->shift - 2);
     int leading = soft_leading_zeros((uint32_t)near_wu) - 1;
     space->near_norm = near_wu << leading;
@@ -44,22 +49,29 @@ void soft_begin_space(soft_state *state, const c3d_resolved_draw *resolved)
     space->far_eye = backdrop || far_eye > INT32_MAX ? INT32_MAX : (int32_t)far_eye;
 }
 
-static int64_t multiply_shift(int32_t a, int32_t b, int shift) /* rounded; shift 1 .. 62 */
+/* a * b / 2^shift, rounded, within +-(SOFT_GUARD_Q4); shift 2 .. 62. */
+static inline int32_t multiply_shift(int32_t a, int32_t b, int shift)
 {
-    return ((int64_t)a * b + ((int64_t)1 << (shift - 1))) >> shift;
+    int64_t product = (int64_t)a * b;
+    int64_t twice = shift > 32 ? (int32_t)(product >> 32) >> (shift - 33) : product >> (shift - 1);
+    twice = twice > 2 * SOFT_GUARD_Q4 ? 2 * SOFT_GUARD_Q4 : twice < -2 * SOFT_GUARD_Q4 ? -2 * SOFT_GUARD_Q4 : twice;
+    return ((int32_t)twice + 1) >> 1;
 }
 
-static void project_xy(const soft_state *state, soft_vertex *vertex, int32_t reciprocal_focal, int shift)
+static inline int out_of_guard(int32_t at) { return (uint32_t)(at + SOFT_GUARD_Q4 - 1) > 2 * SOFT_GUARD_Q4 - 2; }
+
+static inline void project_xy(const soft_state *state, soft_vertex *vertex, int32_t reciprocal_focal, int shift)
 {
-    int64_t x = multiply_shift(vertex->eye[0], reciprocal_focal, shift);
-    int64_t y = -multiply_shift(vertex->eye[1], reciprocal_focal, shift);
-    if (x >= SOFT_GUARD_Q4 || x <= -SOFT_GUARD_Q4 || y >= SOFT_GUARD_Q4 || y <= -SOFT_GUARD_Q4) vertex->out |= SOFT_GUARD;
-    x = x > SOFT_GUARD_Q4 ? SOFT_GUARD_Q4 : x < -SOFT_GUARD_Q4 ? -SOFT_GUARD_Q4 : x;
-    y = y > SOFT_GUARD_Q4 ? SOFT_GUARD_Q4 : y < -SOFT_GUARD_Q4 ? -SOFT_GUARD_Q4 : y;
-    vertex->x = state->centre_x + (int32_t)x;
-    vertex->y = state->centre_y + (int32_t)y;
-    vertex->out |= (vertex->x <= SOFT_HALF ? SOFT_LEFT : 0) | (vertex->x > state->right_q4 ? SOFT_RIGHT : 0) |
-                   (vertex->y <= SOFT_HALF ? SOFT_ABOVE : 0) | (vertex->y > state->below_q4 ? SOFT_BELOW : 0);
+    int32_t x = multiply_shift(vertex->eye[0], reciprocal_focal, shift), y = -multiply_shift(vertex->eye[1], reciprocal_focal, shift);
+    uint32_t out = vertex->out;
+    if (out_of_guard(x) || out_of_guard(y)) out |= SOFT_GUARD;
+    vertex->x = x += state->centre_x;
+    vertex->y = y += state->centre_y;
+    if (x <= SOFT_HALF) out |= SOFT_LEFT;
+    if (x > state->right_q4) out |= SOFT_RIGHT;
+    if (y <= SOFT_HALF) out |= SOFT_ABOVE;
+    if (y > state->below_q4) out |= SOFT_BELOW;
+    vertex->out = out;
 }
 
 /* z = zn / 2^lead with zn in 2^30 .. 2^31; r = 2^61/zn. p = r * focal_norm / 2^31 < 2^31, and x * focal * 16/z is
@@ -93,12 +105,32 @@ static void rotate(const soft_state *state, const int32_t world[3], int32_t eye[
     }
 }
 
-static int32_t texel_q16(const c3d_draw *draw, int axis, int32_t vertex, int size_log2)
+/* s or t: (at * scale + offset) >> shift, texels Q16. */
+typedef struct texel_axis {
+    int32_t scale;
+    int shift, axis;
+    int64_t offset;
+    int32_t high; /* of the texture with half a texel of its rim */
+} texel_axis;
+
+static void make_axis(const soft_state *state, const c3d_draw *draw, int i, texel_axis *axis)
 {
-    int64_t at = (((int64_t)vertex - draw->tex_origin[axis]) * draw->tex_scale_q16[axis]) * ((int64_t)1 << size_log2);
-    at = (at >> draw->tex_shift) + draw->tex_offset_q16[axis] * ((int64_t)1 << size_log2) - 32768;
+    int size_log2 = i ? state->paint.texture->height_log2 : state->paint.texture->width_log2;
+    int64_t scale = draw->tex_scale_q16[i] * ((int64_t)1 << size_log2);
+    int64_t offset = draw->tex_offset_q16[i] * ((int64_t)1 << size_log2) - 32768;
+    int64_t limit = INT32_MAX; /* 2^15 texture widths for one vertex unit */
+    axis->scale = (int32_t)(scale > limit ? limit : scale < -limit ? -limit : scale);
+    axis->shift = draw->tex_shift;
+    axis->axis = state->paint.axis[i];
+    axis->offset = offset * ((int64_t)1 << axis->shift) - (int64_t)draw->tex_origin[i] * axis->scale;
+    axis->high = (1 << (size_log2 + 16)) - 32768;
+}
+
+static inline int32_t texel_q16(const texel_axis *axis, const int16_t at[3])
+{
+    int64_t texels = ((int64_t)at[axis->axis] * axis->scale + axis->offset) >> axis->shift;
     int64_t limit = ((int64_t)1 << 28) - 1;
-    return (int32_t)(at > limit ? limit : at < -limit ? -limit : at);
+    return (int32_t)(texels > limit ? limit : texels < -limit ? -limit : texels);
 }
 
 /* Fog is linear between its start and end. */
@@ -110,23 +142,58 @@ static int32_t fog_q8(const soft_state *state, int32_t z_eye)
     return (int32_t)(clear > 1 << 14 ? 1 << 14 : clear < -(1 << 14) ? -(1 << 14) : clear);
 }
 
-static void transform_vertex(const soft_state *state, const c3d_draw *draw, const c3d_vertex *in, soft_vertex *out)
+/* Exact, and the same for every mesh that shares the point. */
+static void place_far(const soft_space *space, const c3d_vertex *in, int32_t world[3])
+{
+    world[0] = (int32_t)soft_scale64(space->origin_wu[0] + (int64_t)in->x * space->scale_wu, space->shift);
+    world[1] = (int32_t)soft_scale64(space->origin_wu[1] + (int64_t)in->y * space->scale_wu, space->shift);
+    world[2] = (int32_t)soft_scale64(space->origin_wu[2] * 65536 + (int64_t)in->z * space->z_scale_q16, space->shift - 16);
+}
+
+/* The same where a unit is at most a wu: sums of 32 bits do. */
+static inline void place_near(const soft_space *space, const c3d_vertex *in, int32_t world[3])
+{
+    world[0] = space->near_origin[0] + in->x * space->near_scale;
+    world[1] = space->near_origin[1] + in->y * space->near_scale;
+    world[2] = (int32_t)((space->near_z + in->z * (int64_t)space->z_scale_q16) >> (16 - space->shift));
+}
+
+static void transform_textured(soft_state *state, const c3d_draw *draw, const c3d_mesh_data *mesh)
+{
+    texel_axis s, t;
+    make_axis(state, draw, 0, &s);
+    make_axis(state, draw, 1, &t);
+    for (uint32_t i = 0; i < mesh->count; i++) {
+        soft_vertex *vertex = &state->vertices[i];
+        const c3d_vertex *in = &mesh->vertices[i];
+        const int16_t at[3] = {in->x, in->y, in->z};
+        vertex->s = texel_q16(&s, at);
+        vertex->t = texel_q16(&t, at);
+        if (vertex->s < -32768 || vertex->s > s.high || vertex->t < -32768 || vertex->t > t.high) state->off_texture = 1;
+    }
+}
+
+static void transform_places(soft_state *state, const c3d_mesh_data *mesh)
 {
     const soft_space *space = &state->space;
-    const soft_paint *paint = &state->paint;
-    const int32_t world[3] = {
-        (int32_t)soft_scale64(space->origin_wu[0] + (int64_t)in->x * space->scale_wu, space->shift),
-        (int32_t)soft_scale64(space->origin_wu[1] + (int64_t)in->y * space->scale_wu, space->shift),
-        (int32_t)(soft_scale64(space->origin_wu[2] * 65536 + (int64_t)in->z * space->z_scale_q16, space->shift - 16))};
-    rotate(state, world, out->eye);
-    soft_project(state, out);
-    if (paint->texture) {
-        const int16_t at[3] = {in->x, in->y, in->z};
-        out->s = texel_q16(draw, 0, at[paint->axis[0]], paint->texture->width_log2);
-        out->t = texel_q16(draw, 1, at[paint->axis[1]], paint->texture->height_log2);
+    int near = space->near_scale != 0;
+    for (uint32_t i = 0; i < mesh->count; i++) {
+        int32_t world[3];
+        soft_vertex *vertex = &state->vertices[i];
+        if (near)
+            place_near(space, &mesh->vertices[i], world);
+        else
+            place_far(space, &mesh->vertices[i], world);
+        rotate(state, world, vertex->eye);
+        soft_project(state, vertex);
     }
-    if (paint->coloured) memcpy(out->rgba, in->rgba, 4);
-    if (paint->fog) out->fog_q8 = fog_q8(state, out->eye[2]);
+}
+
+static void transform_colours(soft_state *state, const c3d_draw *draw, const c3d_mesh_data *mesh)
+{
+    for (uint32_t i = 0; i < mesh->count; i++)
+        for (int c = 0; c < 4; c++)
+            state->vertices[i].rgba[c] = state->paint.coloured ? mesh->vertices[i].rgba[c] : (uint8_t)(draw->colour >> (8 * c));
 }
 
 static int same_vertices(const c3d_draw *a, const c3d_draw *b)
@@ -146,9 +213,10 @@ void soft_transform(soft_state *state, const c3d_resolved_draw *resolved)
     state->cached = *draw;
     state->cached_mesh = resolved->mesh->vertices;
     soft_begin_space(state, resolved);
-    for (uint32_t i = 0; i < resolved->mesh->count; i++) {
-        soft_vertex *vertex = &state->vertices[i];
-        for (int c = 0; c < 4; c++) vertex->rgba[c] = (uint8_t)(draw->colour >> (8 * c));
-        transform_vertex(state, draw, &resolved->mesh->vertices[i], vertex);
-    }
+    state->off_texture = 0;
+    transform_places(state, resolved->mesh);
+    if (state->paint.texture) transform_textured(state, draw, resolved->mesh);
+    if (!state->paint.texture || !state->paint.white || state->paint.fog) transform_colours(state, draw, resolved->mesh);
+    for (uint32_t i = 0; state->paint.fog && i < resolved->mesh->count; i++)
+        state->vertices[i].fog_q8 = fog_q8(state, state->vertices[i].eye[2]);
 }

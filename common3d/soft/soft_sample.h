@@ -1,0 +1,33 @@
+/* Bilinear samples of 16-bit textures: a texel's fields are spread over 32 bits, 00000gggggg00000rrrrr000000bbbbb, so that each has five
+ * bits of room above it. Four texels times weights that add up to 32 take four multiplications for all three colours; sums of fields
+ * below 2^6 * 2^5 never reach the next field. */
+#ifndef SOFT_SAMPLE_H
+#define SOFT_SAMPLE_H
+
+#include "soft_local.h"
+
+#define SOFT_SPREAD 0x07E0F81Fu
+#define SOFT_SPREAD_HALF 0x02008010u /* half of the last place of each field, times 32 */
+
+static inline uint32_t soft_spread(uint32_t texel) { return (texel | texel << 16) & SOFT_SPREAD; }
+
+static inline const uint16_t *soft_texel_zero(const soft_texture *texture)
+{
+    return (const uint16_t *)(const void *)texture->texels + texture->stride + 1;
+}
+
+static inline uint32_t soft_sample_565(const uint16_t *texels, int32_t stride, int32_t s, int32_t t)
+{
+    const uint16_t *at = texels + (t >> 16) * stride + (s >> 16);
+    uint32_t x = (uint32_t)s << 16 >> 27, y = (uint32_t)t << 16 >> 27, xy = x * y >> 5;
+    uint32_t sum = soft_spread(at[0]) * (32 - x - y + xy) + SOFT_SPREAD_HALF;
+    sum += soft_spread(at[1]) * (x - xy);
+    at += stride;
+    sum += soft_spread(at[0]) * (y - xy);
+    sum += soft_spread(at[1]) * xy;
+    return sum >> 5 & SOFT_SPREAD;
+}
+
+static inline uint16_t soft_pixel_of(uint32_t spread_pixel) { return (uint16_t)(spread_pixel | spread_pixel >> 16); }
+
+#endif
