@@ -5,6 +5,7 @@
 #include "../client/terrain/ff_tree_local.h"
 #include "../common3d/c3d_backend.h"
 #include "../common3d/gl/c3d_gl_local.h"
+#include "../common3d/soft/soft_local.h"
 #include "reference.h"
 #include "terrain_fixture.h"
 
@@ -19,6 +20,9 @@
 
 #define M FF_WU_PER_METRE
 #define QUARTER_PX 0.25
+/* Vertices nearer than this are more than 1/4 px off in both back ends: a vertex's offset of up to 32 km from its node's origin costs
+ * GL's single precision some millimetres, and eye units of the integer back end are 2 mm where the far plane is 100 km away. */
+#define NEAR_M 16
 
 static uint32_t views(uint32_t share)
 {
@@ -156,13 +160,74 @@ static void projection_of_vertices_by_gl(void **state)
         double depth = 0;
         for (int axis = 0; axis < 3; axis++)
             depth += (point[axis] - ref.pos_wu[axis]) * ref.forward[axis];
-        if (depth < 16 * M) /* nearer, the vertex's own 32 km of z offset costs single precision its last bits */
+        if (depth < NEAR_M * M)
             continue;
         worst = fmax(worst, apart(expected, got));
         compared++;
     }
     print_message("# projection, GL's matrices in single precision: %u views, worst %.6f px\n", compared, worst);
     assert_true(compared > views(16));
+    assert_true(worst <= QUARTER_PX);
+}
+
+/* The integer back end: every vertex of a node's mesh that it puts on the screen, in sixteenths of a pixel. */
+static uint32_t compare_soft(soft_state *state, sys_random *random, double *worst)
+{
+    static c3d_vertex vertex[81];
+    c3d_camera camera = ordinary_camera(random);
+    c3d_frame frame = {.camera = camera};
+    c3d_rotation rotation;
+    ref_camera ref;
+    double point[3];
+    ref_camera_of(&camera, &ref);
+    point_in_view(random, &ref, point);
+    int32_t base = between(random, -32768, 27000);
+    for (int i = 0; i < 81; i++)
+        vertex[i] = (c3d_vertex){.x = (int16_t)(i % 9), .y = (int16_t)(i / 9), .z = (int16_t)(base + between(random, 0, 400))};
+    c3d_draw draw = {.xy_scale_wu = between(random, 1, 8) * M << sys_random_below(random, 5), .z_scale_q16 = 1u << 24, .flags = C3D_DRAW_COLOURED};
+    const int32_t local[3] = {4 * draw.xy_scale_wu, 4 * draw.xy_scale_wu, (base + 200) * M};
+    for (int axis = 0; axis < 3; axis++)
+        draw.origin_wu[axis] = (int64_t)point[axis] - local[axis] - camera.pos_wu[axis];
+    c3d_mesh_data mesh = {.vertices = vertex, .count = 81, .reach = {8, 8, (uint16_t)(base < -200 ? -base : base + 400)}};
+    c3d_resolved_draw resolved = {.draw = &draw, .mesh = &mesh};
+    c3d_rotation_from_camera(&camera, &rotation);
+    c3d_backend_soft()->begin(state, &frame, &rotation);
+    soft_transform(state, &resolved);
+    uint32_t compared = 0;
+    for (int i = 0; i < 81; i++) {
+        const soft_vertex *got = &state->vertices[i];
+        const double at[3] = {(double)draw.origin_wu[0] + (double)vertex[i].x * draw.xy_scale_wu,
+                              (double)draw.origin_wu[1] + (double)vertex[i].y * draw.xy_scale_wu,
+                              (double)draw.origin_wu[2] + (double)vertex[i].z * M};
+        double expected[2], px[2] = {got->x / (double)SOFT_ONE, got->y / (double)SOFT_ONE};
+        double eye[3];
+        ref_to_eye(&ref, at, eye);
+        if ((got->out & SOFT_MUST_CLIP) || eye[2] < NEAR_M * M || !ref_project_direction(&ref, at, expected) ||
+            !ref_in_window(&ref, expected, 0))
+            continue;
+        *worst = fmax(*worst, apart(expected, px));
+        compared++;
+    }
+    return compared;
+}
+
+static void projection_of_vertices_by_soft(void **state)
+{
+    (void)state;
+    c3d_desc desc = {.mesh_count = 1, .strip_count = 1, .texture_count = 1, .mesh_vertices_max = 81, .strip_indices_max = 64,
+                     .width = 640, .height = 480};
+    int buffers = 0;
+    double worst = 0;
+    uint32_t compared = 0;
+    sys_random random;
+    sys_random_seed(&random, 11, 61);
+    soft_state *soft = calloc(1, c3d_backend_soft()->state_bytes_for(&desc));
+    assert_int_equal(c3d_backend_soft()->open(soft, &desc, &buffers), FF_OK);
+    for (uint32_t i = views(50); i > 0; i--)
+        compared += compare_soft(soft, &random, &worst);
+    free(soft);
+    print_message("# projection, the integer back end: %u vertices in %u views, worst %.6f px\n", compared, views(50), worst);
+    assert_true(compared > views(4));
     assert_true(worst <= QUARTER_PX);
 }
 
@@ -433,6 +498,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(projection_of_the_eye_path), cmocka_unit_test(projection_of_vertices_by_gl),
+        cmocka_unit_test(projection_of_vertices_by_soft),
         cmocka_unit_test(culling_drops_nothing_seen), cmocka_unit_test(node_choice_by_distance),
         cmocka_unit_test(node_choice_by_pixels), cmocka_unit_test(limits_of_motion),
         cmocka_unit_test(interpolation_of_the_codec), cmocka_unit_test(height_of_the_drawn_surface), cmocka_unit_test(functions)
