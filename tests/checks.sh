@@ -10,6 +10,15 @@ result() { # STATUS WHAT
 tools/check-layers.sh . build/obj
 result $? "layers, core words, sizes and symbols"
 
+# What the documents link to is there.
+missing=$(git ls-files '*.md' 2>/dev/null | while read -r page; do
+    grep -o '](\([^)#]*\))' "$page" | sed 's/^](//; s/)$//' | grep -v '^[a-z]*:' | while read -r target; do
+        [ -e "$(dirname "$page")/$target" ] || echo "$page: $target"
+    done
+done)
+[ -z "$missing" ]
+result $? "links in documents lead somewhere $missing"
+
 # A copy of a tiny tree with one violation of every kind: each must be named.
 planted=build/tests/checks
 rm -rf "$planted"
