@@ -253,9 +253,9 @@ int ff_client_ground(const ff_client *client, int32_t x_wu, int32_t y_wu, int32_
 
 int ff_client_panorama(const ff_client *client, int32_t position_wu[3], unsigned *faces)
 {
-    if (!client->have_terrain || client->panorama.active < 0)
+    if (!client->have_terrain || client->panorama.shown < 0)
         return 0;
-    const ff_panorama_set *set = &client->panorama.set[client->panorama.active];
+    const ff_panorama_set *set = &client->panorama.set[client->panorama.shown];
     memcpy(position_wu, set->position_wu, sizeof set->position_wu);
     *faces = (unsigned)set->held | set->empty;
     return 1;
@@ -320,6 +320,7 @@ void ff_client_get_stats(const ff_client *client, ff_client_stats *stats)
         link_stats(client, stats);
     request_stats(client, stats);
     stats->have_terrain = client->have_terrain;
+    stats->terrain_error = client->terrain_error;
     stats->low_power = (uint8_t)ff_client_low_power(client);
     stats->panorama_faces = client->panorama.faces;
     stats->panorama_faces_empty = client->panorama.faces_empty;

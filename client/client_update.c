@@ -27,6 +27,7 @@ static void settle_welcome(ff_client *client, const ff_stream_shared *shared)
     ff_client_uncarve(client);
     client->info = shared->welcome;
     int rc = ff_client_carve(client);
+    client->terrain_error = rc;
     ff_stream_accept(&client->stream, rc == FF_OK);
     sys_mutex_unlock(&client->gate);
 }
@@ -106,8 +107,8 @@ static void make_view(const ff_client *client, const c3d_camera *camera, const f
     if (view->camera.far_wu <= view->camera.near_wu) /* the box of ground to draw reaches sqrt(3) times as far; and O is not here */
         view->camera.far_wu = quality->view_wu > INT32_MAX / 3 ? INT32_MAX : 3 * quality->view_wu;
     memcpy(view->centre_wu, camera->pos_wu, sizeof view->centre_wu);
-    if (client->panorama.desc.enabled && client->panorama.active >= 0)
-        memcpy(view->centre_wu, client->panorama.set[client->panorama.active].position_wu, sizeof view->centre_wu);
+    if (client->panorama.desc.enabled && client->panorama.shown >= 0)
+        memcpy(view->centre_wu, client->panorama.set[client->panorama.shown].position_wu, sizeof view->centre_wu);
 }
 
 int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera)
@@ -179,7 +180,7 @@ static void fit_planes(const ff_client *client, c3d_camera *camera)
 static void set_fog(const ff_client *client, c3d_frame *frame)
 {
     ff_quality quality = quality_in_force(client);
-    if (client->panorama.active >= 0 || (client->show & FF_SHOW_NO_FOG))
+    if (client->panorama.shown >= 0 || (client->show & FF_SHOW_NO_FOG))
         return; /* the join with the panorama must not show */
     frame->fog_start_wu = quality.view_wu / 2;
     frame->fog_end_wu = quality.view_wu;

@@ -66,6 +66,7 @@ typedef struct ff_client_stats {
     c3d_stats c3d;
     enum ff_link_state link;
     uint8_t have_terrain;        /* WELCOME has come */
+    int terrain_error;           /* why the terrain that has come is not shown: FF_ERR_MEMORY, the block is too small for it; or FF_OK */
     uint8_t low_power;           /* battery low or interrupted: slower, coarser, no prefetch */
     uint64_t bytes_down, bytes_up;
     uint32_t requests_sent, requests_done, requests_failed, requests_cancelled, requests_dropped;

@@ -38,6 +38,7 @@ struct ff_client {
     uint32_t recv_bytes;
 
     uint8_t have_terrain;
+    int terrain_error;                /* of the terrain met last */
     uint8_t economy;         /* left out for want of memory: 1 panoramas, 2 images too */
     ff_terrain_info info;
     ff_tree *tree;

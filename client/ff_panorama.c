@@ -22,7 +22,7 @@ void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panora
     panorama->face_size = (uint16_t)face_size;
     panorama->ground_wu[0] = ff_height_wu(info, info->height_min) - ff_steps_wu(info, info->max_error);
     panorama->ground_wu[1] = ff_height_wu(info, info->height_max) + ff_steps_wu(info, info->max_error);
-    panorama->active = panorama->next = -1;
+    panorama->active = panorama->next = panorama->shown = -1;
     panorama->retry_us = INT64_MIN;
     panorama->rest_us = INT64_MAX;
     static const uint16_t quad[4] = {0, 1, 2, 3};
@@ -46,7 +46,7 @@ void ff_panorama_drop(ff_panorama *panorama)
 {
     drop_set(panorama, 0);
     drop_set(panorama, 1);
-    panorama->active = panorama->next = -1;
+    panorama->active = panorama->next = panorama->shown = -1;
 }
 
 static unsigned known(const ff_panorama_set *set)
@@ -77,10 +77,13 @@ static int take_over(ff_panorama *panorama, unsigned in_view, int64_t now_us)
     return 1;
 }
 
-int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int hold, int64_t now_us)
+static int left_behind(const ff_panorama *panorama, const c3d_camera *camera, int index)
 {
-    if (!panorama->desc.enabled || !panorama->face_size)
-        return 0;
+    return index >= 0 && ff_panorama_left_behind(camera->pos_wu, panorama->set[index].position_wu, panorama->desc.back_plane_wu);
+}
+
+static int refresh(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int hold, int64_t now_us)
+{
     int changed = take_over(panorama, ff_panorama_faces_in_view(camera), now_us);
     if (panorama->rest_us <= now_us) { /* time to want the rest */
         panorama->rest_us = INT64_MAX;
@@ -96,12 +99,28 @@ int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_c
     if (newest >= 0 && !ff_panorama_outdated(camera, panorama->set[newest].position_wu, panorama->ground_wu,
                                              panorama->desc.back_plane_wu, panorama->desc.error_px_q8))
         return changed;
+    if (left_behind(panorama, camera, panorama->next) && !ff_requests_cancel(requests, panorama->set[panorama->next].key)) {
+        drop_set(panorama, panorama->next); /* it was not yet asked for, or its cancellation was answered */
+        panorama->next = -1;
+    }
     if (panorama->next >= 0 && !panorama->desc.hold_back)
         return changed; /* one set outstanding at most */
+    newest = panorama->next >= 0 ? panorama->next : panorama->active;
     if (newest >= 0 && ff_requests_cancel(requests, panorama->set[newest].key) && !panorama->desc.hold_back)
         return changed; /* the old set's last faces are still on their way: wait for the answer to the cancellation */
     begin_set(panorama, camera, now_us);
     return 1;
+}
+
+int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int hold, int64_t now_us)
+{
+    if (!panorama->desc.enabled || !panorama->face_size)
+        return 0;
+    int changed = refresh(panorama, requests, camera, hold, now_us);
+    int8_t shown = left_behind(panorama, camera, panorama->active) ? -1 : panorama->active;
+    changed |= shown != panorama->shown;
+    panorama->shown = shown;
+    return changed;
 }
 
 /* Faces of `missing`, the one nearest the view's axis first: found by narrowing the view to its middle. */
@@ -232,9 +251,9 @@ static void draw_face(const ff_panorama *panorama, const ff_panorama_set *set, u
 
 void ff_panorama_draw(const ff_panorama *panorama, int32_t near_wu)
 {
-    if (panorama->active < 0 || !panorama->desc.enabled)
+    if (panorama->shown < 0 || !panorama->desc.enabled)
         return;
-    const ff_panorama_set *set = &panorama->set[panorama->active];
+    const ff_panorama_set *set = &panorama->set[panorama->shown];
     int32_t scale_wu = 2 * (near_wu / panorama->face_size + 1); /* the cube's faces lie two near planes away */
     for (unsigned face = 0; face < FF_FACE_COUNT; face++)
         if (set->texture[face].id && set->mesh[face].id)

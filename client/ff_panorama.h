@@ -4,7 +4,8 @@
  * picture ever mixes two O. Faces in view are asked for first; the others when nothing in view is missing and the set has been
  * in use for as long as it took to come: on a link so slow that sets are outdated before that, they are never asked for. A face
  * the server found without far ground is not asked for again for that O. Unless hold_back says otherwise at most one panorama request
- * is out, and no newer O is asked for while one is coming. A superseded request is cancelled. */
+ * is out, and no newer O is asked for while one is coming. A superseded request is cancelled. A set left behind is neither drawn nor
+ * waited for: until there is another one the client draws its own ground round the viewer. */
 #ifndef FF_PANORAMA_H
 #define FF_PANORAMA_H
 
@@ -33,6 +34,7 @@ typedef struct ff_panorama {
     uint16_t face_size;               /* what memory allows; 0: no panoramas in this block */
     int32_t ground_wu[2];             /* lowest and highest of the terrain */
     int8_t active, next;              /* of set[]; -1: none */
+    int8_t shown;                     /* the active one, -1: none or left behind, as after a long flight without a link */
     uint8_t refusals;                 /* in a row */
     ff_panorama_set set[2];
     uint32_t serial;

@@ -14,6 +14,17 @@ int64_t ff_panorama_forwards_max(int64_t error_px_q8, int64_t z_wu, int64_t half
     return c3d_muldiv64(error_px_q8, z_wu, error_px_q8 + half_width_px_q8);
 }
 
+int ff_panorama_left_behind(const int32_t viewer_wu[3], const int32_t taken_wu[3], int32_t z_wu)
+{
+    int64_t most_wu = z_wu / 2;
+    for (int axis = 0; axis < 3; axis++) {
+        int64_t away_wu = (int64_t)viewer_wu[axis] - taken_wu[axis];
+        if (away_wu > most_wu || away_wu < -most_wu)
+            return 1;
+    }
+    return 0;
+}
+
 /* Cones with their tip in the camera, as four rays: world directions of any length below 2^33. */
 typedef struct view_rays { int64_t ray[4][3]; } view_rays;
 

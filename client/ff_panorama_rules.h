@@ -22,6 +22,11 @@ int64_t ff_panorama_forwards_max(int64_t error_px_q8, int64_t z_wu, int64_t half
 int ff_panorama_outdated(const c3d_camera *camera, const int32_t taken_wu[3], const int32_t ground_wu[2], int32_t z_wu,
                          int32_t error_px_q8);
 
+/* 1 when the viewer has left a panorama behind, and with it the client's own ground, the box of z round `taken_wu`: more than half
+ * of z along an axis. By then what comes nearer is half the window from its place (forwards, |OO'| = z / 2), and half of the box ahead
+ * is gone: ground round the viewer alone is better. */
+int ff_panorama_left_behind(const int32_t viewer_wu[3], const int32_t taken_wu[3], int32_t z_wu);
+
 /* Bit per enum ff_face_name the view pyramid touches: conservative, a face too many at most. */
 unsigned ff_panorama_faces_in_view(const c3d_camera *camera);
 

@@ -241,16 +241,6 @@ static void check_cracks(fly_flight *flight, double t_s)
         fprintf(stderr, "farfield-fly: crack at %.3f s: %s\n", t_s, why);
 }
 
-/* From the first ground on there is always some: all of it, however coarse. */
-static void check_ground(fly_flight *flight)
-{
-    const ff_drawn *list;
-    const ff_tree *tree = ff_client_tree(flight->world->client);
-    int ground = tree && ff_tree_cut(tree, &list) > 0;
-    flight->totals.empty_frames += flight->had_ground && !ground;
-    flight->had_ground |= ground;
-}
-
 /* The path, the auditor and the search for cracks look at --pack: a server of other ground makes them meaningless. */
 static int check_terrain(const fly_flight *flight)
 {
@@ -280,8 +270,9 @@ static int one_frame(fly_flight *flight, double t_s)
             (void)world->surface_api->present(world->surface);
         }
     }
-    check_ground(flight);
     ff_client_get_stats(world->client, &stats);
+    flight->totals.empty_frames += flight->had_ground && !stats.tree.nodes_drawn;
+    flight->had_ground |= stats.tree.nodes_drawn > 0;
     flight->totals.frames++;
     flight->totals.stitched_frames += stats.tree.stitched > 0;
     return 0;
@@ -312,6 +303,8 @@ static int begin(fly_flight *flight, fly_world *world, FILE *csv)
 static int judge_server(const fly_flight *flight, const ff_client_stats *stats)
 {
     const char *name = flight->options->server ? flight->options->server : flight->options->pack_path;
+    if (stats->terrain_error != FF_OK)
+        return fail("this terrain does not fit into --memory", ff_error_text(stats->terrain_error));
     if (flight->options->server && !stats->have_terrain)
         return fail(name, stats->protocol_errors
                     ? "does not speak Farfield's protocol, or another version of it"

@@ -32,7 +32,7 @@ typedef struct fly_sample {
 /* Of the whole flight. */
 typedef struct fly_totals {
     uint32_t frames, stitched_frames, crack_frames;
-    uint32_t empty_frames;   /* without any ground, after one with */
+    uint32_t empty_frames;   /* without a node drawn, after one with */
     uint32_t panoramas_in_flight_high;
     uint64_t frame_hash;     /* over the rows' hashes */
     double bytes_down_all, bytes_up_all;

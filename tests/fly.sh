@@ -184,6 +184,7 @@ refused "faces too large" --pack "$work/hills.ffp" --face 2048
 refused "a server that is not there" --pack "$work/hills.ffp" --server 127.0.0.1:9 --backend none --seconds 0 --settle 1
 refused "a missing trace" --pack "$work/hills.ffp" --down-trace "$work/missing"
 refused "too little memory" --pack "$work/hills.ffp" --memory 1K --backend none
+refused "memory too little for the terrain" --pack "$work/hills.ffp" --memory 256K --backend none --seconds 0 --settle 5
 refused "a CSV that cannot be written" --pack "$work/hills.ffp" --csv "$work/missing/x.csv" --backend none
 "$fly" --help | grep -q -- --pack && "$fly" --version | grep -q "^farfield-fly [0-9]"
 result $? "--help and --version"

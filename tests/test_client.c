@@ -188,11 +188,18 @@ static void one_set_outstanding_at_most(void **state)
     rig.desc.panorama.enabled = 1;
     rig.desc.panorama.back_plane_wu = 1500 * METRE;
     rig_client(&rig, 4 * MB);
-    for (int i = 0; i < 200; i++) {
+    for (int i = 0; i < 140; i++) {
         rig.camera.pos_wu[1] += 5 * METRE;
         rig_step(&rig, 50000);
     }
     assert_int_equal(rig.asked[FF_MSG_GET_PANORAMA], 1);
+    for (int i = 0; i < 60; i++) { /* further than half the back plane: left behind, cancelled, another one instead */
+        rig.camera.pos_wu[1] += 5 * METRE;
+        rig_step(&rig, 50000);
+    }
+    assert_int_equal(rig.asked[FF_MSG_GET_PANORAMA], 2);
+    assert_int_equal(rig_stats(&rig).requests_cancelled, 1);
+    assert_int_equal(rig_stats(&rig).panoramas_in_flight_high, 1);
     assert_true(rig_stats(&rig).tree.nodes_drawn > 5);
     int32_t taken_wu[3], old_wu[3];
     unsigned faces;
@@ -209,6 +216,13 @@ static void one_set_outstanding_at_most(void **state)
     assert_true(ff_client_panorama(rig.client, taken_wu, &faces));
     assert_memory_equal(taken_wu, old_wu, sizeof taken_wu);
     assert_int_equal(faces, 0x3f);
+
+    for (int i = 0; i < 160; i++) { /* 800 m on: too far for it, the ground is the client's own, all round the viewer */
+        rig.camera.pos_wu[1] -= 5 * METRE;
+        rig_step(&rig, 50000);
+    }
+    assert_false(ff_client_panorama(rig.client, taken_wu, &faces));
+    assert_true(rig_stats(&rig).tree.nodes_drawn > 5);
     assert_requests_add_up(&rig);
     rig_close(&rig);
 }

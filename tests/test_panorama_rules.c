@@ -145,12 +145,29 @@ static void straight_ahead_is_one_face(void **state)
     }
 }
 
+static void left_behind_beyond_half(void **state)
+{
+    (void)state;
+    const int32_t taken[3] = { 5, -7, INT32_MIN };
+    for (int axis = 0; axis < 3; axis++) {
+        int32_t viewer[3] = { 5, -7, INT32_MIN };
+        viewer[axis] += Z_WU / 2;
+        assert_false(ff_panorama_left_behind(viewer, taken, Z_WU));
+        viewer[axis]++;
+        assert_true(ff_panorama_left_behind(viewer, taken, Z_WU));
+        assert_true(ff_panorama_left_behind(taken, viewer, Z_WU));
+    }
+    const int32_t far_up[3] = { 5, -7, INT32_MAX };
+    assert_true(ff_panorama_left_behind(far_up, taken, INT32_MAX));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(figures_of_the_paper), cmocka_unit_test(limits_do_not_blow_up),
         cmocka_unit_test(motion_in_any_direction), cmocka_unit_test(no_error_allowed_means_no_motion_allowed),
-        cmocka_unit_test(faces_in_view_miss_none), cmocka_unit_test(straight_ahead_is_one_face)
+        cmocka_unit_test(faces_in_view_miss_none), cmocka_unit_test(straight_ahead_is_one_face),
+        cmocka_unit_test(left_behind_beyond_half)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

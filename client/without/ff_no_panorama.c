@@ -12,7 +12,7 @@ void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panora
     (void)device, (void)info, (void)face_size;
     memset(panorama, 0, sizeof *panorama);
     panorama->desc = *desc;
-    panorama->active = panorama->next = -1;
+    panorama->active = panorama->next = panorama->shown = -1;
 }
 
 void ff_panorama_drop(ff_panorama *panorama) { (void)panorama; }
