@@ -19,27 +19,27 @@ static int64_t distance(const soft_state *state, const soft_vertex *vertex, int 
     }
 }
 
-static int32_t between(int32_t inner, int32_t outer, int32_t part, int32_t whole)
+static int32_t between(int32_t inner, int32_t outer, int32_t part_q30)
 {
-    return inner + (int32_t)(((int64_t)outer - inner) * part / whole);
+    return inner + (int32_t)((((int64_t)outer - inner) * part_q30) >> 30);
 }
 
 /* The point of the edge on the plane: as far from `inner` as its distance is of the sum of both. */
 static void cut(const soft_state *state, int plane, const soft_vertex *inner, const soft_vertex *outer, soft_vertex *at)
 {
     int64_t part = distance(state, inner, plane), whole = part - distance(state, outer, plane);
-    while (whole > INT32_MAX) {
+    while (whole >= INT32_MAX) {
         whole >>= 1;
         part >>= 1;
     }
-    int32_t p = (int32_t)part, n = (int32_t)whole;
-    for (int i = 0; i < 3; i++) at->eye[i] = between(inner->eye[i], outer->eye[i], p, n);
+    int32_t p = (int32_t)(part * ((int64_t)1 << 30) / whole); /* the one division */
+    for (int i = 0; i < 3; i++) at->eye[i] = between(inner->eye[i], outer->eye[i], p);
     if (plane == 0) at->eye[2] = state->space.near_eye;
     if (plane == 1) at->eye[2] = state->space.far_eye;
-    at->s = between(inner->s, outer->s, p, n);
-    at->t = between(inner->t, outer->t, p, n);
-    at->fog_q8 = between(inner->fog_q8, outer->fog_q8, p, n);
-    for (int i = 0; i < 4; i++) at->rgba[i] = (uint8_t)between(inner->rgba[i], outer->rgba[i], p, n);
+    at->s = between(inner->s, outer->s, p);
+    at->t = between(inner->t, outer->t, p);
+    at->fog_q8 = between(inner->fog_q8, outer->fog_q8, p);
+    for (int i = 0; i < 4; i++) at->rgba[i] = (uint8_t)between(inner->rgba[i], outer->rgba[i], p);
     soft_project(state, at);
 }
 

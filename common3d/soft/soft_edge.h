@@ -13,10 +13,19 @@ typedef struct soft_edge {
     int64_t at, step; /* x in the row, Q4 with 32 more fraction bits; from row to row */
 } soft_edge;
 
-static inline int64_t soft_floor_divide(int64_t a, int32_t b) /* b > 0 */
+/* n/d rounded down, exactly; |n| < 2^53, d > 0. A first quotient from 31 bits of n, a second one from what is left (below 2^26), and at
+ * most a step more: a fraction of what a division of 64 bits costs where the processor has none. */
+static inline int64_t soft_floor_divide(const soft_state *state, int64_t n, int32_t d)
 {
-    int64_t quotient = a / b;
-    return quotient - (a - quotient * b < 0);
+    int lead = soft_leading_zeros((uint32_t)d) - 1;
+    int32_t reciprocal = (int32_t)(soft_fine_reciprocal(state, (uint32_t)d << lead) >> 1); /* 2^60 / (d << lead) */
+    int64_t quotient = ((n >> 22) * reciprocal) >> (38 - lead), left = n - quotient * d;
+    int64_t more = (left * reciprocal) >> (60 - lead);
+    quotient += more;
+    left -= more * d;
+    for (; left < 0; left += d) quotient--;
+    for (; left >= d; left -= d) quotient++;
+    return quotient;
 }
 
 /* From a down to b, at row `row`, whose centre lies between them. */
@@ -26,11 +35,11 @@ static inline void soft_edge_begin(const soft_state *state, soft_edge *edge, con
     if (dy < SOFT_EDGE_TABLE && dx > -8192 && dx < 8192) {
         int64_t slope = (int64_t)dx * state->edge_reciprocal[dy] + (dx < 0 ? dx : 0); /* 2^13 * 2^31 */
         edge->step = slope * (2 * SOFT_ONE);
-        edge->at = ((int64_t)a->x * 2 + 1) * ((int64_t)1 << 31) + ((int64_t)1 << 31) - 1 + slope * (2 * k);
+        edge->at = ((int64_t)a->x + 1) * ((int64_t)1 << 32) - 1 + slope * (2 * k);
     } else {
-        edge->step = soft_floor_divide((int64_t)dx * ((int64_t)1 << (32 + SOFT_SUB)), dy); /* 2^17 * 2^36 */
+        edge->step = soft_floor_divide(state, (int64_t)dx * ((int64_t)1 << (32 + SOFT_SUB)), dy); /* 2^17 * 2^36 */
         edge->at = ((int64_t)a->x + 1) * ((int64_t)1 << 32) - 1 + (k >> SOFT_SUB) * edge->step +
-                   soft_floor_divide((int64_t)dx * (k & (SOFT_ONE - 1)) * ((int64_t)1 << 32), dy);
+                   soft_floor_divide(state, (int64_t)dx * (k & (SOFT_ONE - 1)) * ((int64_t)1 << 32), dy);
     }
 }
 

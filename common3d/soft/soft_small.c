@@ -41,8 +41,8 @@ static inline int32_t slope(const soft_shape *shape, int32_t n)
 /* `lift`: the differences were shifted down by so much. */
 static inline void attribute(const soft_shape *shape, soft_slopes *slopes, int i, int32_t value, int32_t d1, int32_t d2, int lift)
 {
-    int32_t across = slope(shape, d2 * shape->dy1 - d1 * shape->dy2) * (1 << lift);
-    int32_t down = slope(shape, d1 * shape->dx2 - d2 * shape->dx1) * (1 << lift);
+    int32_t across = (int32_t)((uint32_t)slope(shape, d2 * shape->dy1 - d1 * shape->dy2) << lift);
+    int32_t down = (int32_t)((uint32_t)slope(shape, d1 * shape->dx2 - d2 * shape->dx1) << lift);
     slopes->across[i] = across;
     slopes->down[i] = down;
     slopes->at[i] = (uint32_t)value + (uint32_t)(((int64_t)across * shape->to_x + (int64_t)down * shape->to_y) >> SOFT_SUB);
@@ -84,7 +84,7 @@ static void make_slopes(const soft_state *state, const soft_shape *shape, soft_s
         attribute(shape, slopes, SOFT_T, a->t, (b->t - a->t) >> 4, (c->t - a->t) >> 4, 4);
     }
     if (!state->paint.texture || !state->paint.white || fog) colour_slopes(shape, slopes);
-    if (fog) attribute(shape, slopes, SOFT_F, a->fog_q8 << 16, (b->fog_q8 - a->fog_q8) * 16, (c->fog_q8 - a->fog_q8) * 16, 12);
+    if (fog) attribute(shape, slopes, SOFT_F, a->fog_q8 * 65536, (b->fog_q8 - a->fog_q8) * 16, (c->fog_q8 - a->fog_q8) * 16, 12);
 }
 
 /* One row of a texture as it is, into RGB565; an inner loop. Its vertices lie on the texture, and its pixels within a rim of them. */

@@ -30,7 +30,8 @@ void soft_begin_space(soft_state *state, const c3d_resolved_draw *resolved)
     soft_space *space = &state->space;
     int backdrop = (draw->flags & C3D_DRAW_BACKDROP) != 0;
     int64_t reach = reach_wu(resolved);
-    int32_t near_wu = backdrop ? 1 : state->frame.camera.near_wu;
+    /* Backdrops surround the eye: what is closer than 1/4096 of their reach only costs bits of depth. */
+    int32_t near_wu = !backdrop ? state->frame.camera.near_wu : reach < 8192 ? 1 : reach >> 12 < INT32_MAX ? (int32_t)(reach >> 12) : INT32_MAX;
     space->shift = backdrop ? 14 : state->frame_shift;
     while (soft_scale64(reach, space->shift) >= WORLD_MAX) space->shift--;
     memcpy(space->origin_wu, draw->origin_wu, sizeof space->origin_wu);
