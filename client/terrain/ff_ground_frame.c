@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#define HEIGHT_RANGE_MAX 60000 /* leaves room for what lossy decoding adds */
 #define FOLLOW_WU (512 * FF_WU_PER_METRE)
 
 /* Samples from the frame to the node's south-west corner, and samples a cell as a power of two; 0 when out of 16 bits' reach. */
@@ -18,6 +19,19 @@ static int place_node(const ff_ground_frame *frame, const ff_terrain_info *info,
         place->base[axis] = base;
     }
     return 1;
+}
+
+/* The height that becomes z = 0: in the middle of the terrain's, so that the call's origin is near its ground. Terrains that need
+ * nearly all 16 bits keep ff_tree_vertices' own. */
+static int32_t base_height(const ff_terrain_info *info)
+{
+    uint32_t range = (uint32_t)(info->height_max - info->height_min);
+    return range > HEIGHT_RANGE_MAX ? 32768 : info->height_min + (int32_t)(range / 2);
+}
+
+static int16_t to_int16(int32_t value)
+{
+    return (int16_t)(value < INT16_MIN ? INT16_MIN : value > INT16_MAX ? INT16_MAX : value);
 }
 
 int ff_ground_frame_follow(ff_ground_frame *frame, const ff_terrain_info *info, const c3d_camera *camera)
@@ -40,6 +54,9 @@ void ff_ground_frame_vertices(const ff_ground_frame *frame, const ff_terrain_inf
                               c3d_vertex *vertices, uint32_t count)
 {
     node_place place;
+    int32_t lift = 32768 - base_height(info);
+    for (uint32_t i = 0; i < count; i++)
+        vertices[i].z = to_int16(vertices[i].z + lift);
     if (!place_node(frame, info, drawn, &place))
         return;
     for (uint32_t i = 0; i < count; i++) {
@@ -59,7 +76,7 @@ void ff_ground_frame_draw(const ff_ground_frame *frame, const ff_terrain_info *i
         draw->origin_wu[axis] = (int64_t)(placed ? frame->origin_wu[axis] : drawn->origin_wu[axis]) - camera->pos_wu[axis];
         draw->tex_origin[axis] = (int32_t)place.base[axis];
     }
-    draw->origin_wu[2] = (int64_t)drawn->origin_wu[2] - camera->pos_wu[2];
+    draw->origin_wu[2] = (int64_t)ff_height_wu(info, (uint32_t)base_height(info)) - camera->pos_wu[2];
     draw->tex_shift = place.shift;
     draw->xy_scale_wu = placed ? (int32_t)info->spacing_wu : drawn->cell_wu;
     draw->z_scale_q16 = info->hscale_q24;

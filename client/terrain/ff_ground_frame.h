@@ -3,7 +3,7 @@
  * A renderer multiplies each vertex with its draw call's matrix and rounds. Two nodes with matrices of their own round their
  * common rim differently, and now and then a pixel between them stays empty, however whole the mesh is. Vertices are therefore
  * moved into one frame: units of the finest samples, counted from a sample near the camera. All nodes then use the same matrix,
- * equal vertices give equal pixels, and the numbers stay small enough for single precision (no jitter far from the origin).
+ * equal vertices give equal pixels, and the numbers stay small enough for single precision (no jitter far from the origin). Heights, too, count from one near those of the terrain.
  */
 #ifndef FF_GROUND_FRAME_H
 #define FF_GROUND_FRAME_H
