@@ -20,6 +20,10 @@
 #ifndef FARFIELD_H
 #define FARFIELD_H
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #include "terrain/ff_tree.h"
 #include "../protocol/ff_pack.h"
 
@@ -120,5 +124,9 @@ int ff_client_panorama(const ff_client *client, int32_t position_wu[3], unsigned
  * the same on every back end. */
 uint64_t ff_client_geometry_hash(const ff_client *client);
 uint64_t ff_client_request_hash(const ff_client *client);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
