@@ -88,3 +88,70 @@ $(BENCH)/ground.ffp: tools/bench_terrain.py $(BUILD)/bin/farfield-bake
 .PHONY: bench-handheld
 bench-handheld: build/handheld/farfield-handheld $(TCG_COUNT) $(BUILD)/bin/farfield-fly $(PACK) ## ARM instructions a frame, by phase, and the work-precision curve: build/bench/handheld.md
 	@tools/bench_handheld.py $(BUILD)/bin build/handheld/farfield-handheld $(TCG_COUNT) $(PACK) $(BENCH)
+
+# ---- make test-cross: the unit tests that need no graphics library, on 32-bit ARM and on a big-endian machine ----
+CROSS_TESTS := key codec message pack fixed predict panorama_rules shade strips texture_map tree tree_pools tree_view watertight link \
+               stream client
+CROSS_SRC := $(foreach d,protocol client client/terrain common3d common3d/soft platform platform/memory platform/sim,$(call srcs,$d)) \
+             $(filter-out platform/posix/png.c,$(call srcs,platform/posix)) server/ff_session.c \
+             $(filter sim/sim_%,$(filter-out sim/sim_server.c,$(call srcs,sim))) \
+             $(foreach t,client_fixture pack_fixture slow_decoder terrain_fixture,tests/$t.c)
+# test_fixed checks against 128-bit numbers, which compilers for 32 bits do not have.
+CROSS_CASES := $(patsubst %,build/s390x/%.tap,$(CROSS_TESTS)) $(patsubst %,build/arm/%.tap,$(filter-out fixed,$(CROSS_TESTS)))
+# $(call cross_tests,NAME,COMPILER,DEBIAN ARCHITECTURE,TRIPLET,QEMU)
+define cross_tests
+build/$(1)/obj/%.o: %.c | $(CROSS_STAMP)
+	@mkdir -p $$(@D)
+	$(2) -O2 $(WARN) -D_GNU_SOURCE -DFF_ENCODER=1 -std=c11 -MMD -MP -isystem $(CROSS)/$(3)/usr/include \
+	    -isystem $(CROSS)/$(3)/usr/include/$(4) -c $$< -o $$@
+build/$(1)/libtested.a: $(CROSS_SRC:%.c=build/$(1)/obj/%.o)
+	@rm -f $$@
+	$(AR) rcsD $$@ $$^
+build/$(1)/test_%: build/$(1)/obj/tests/test_%.o build/$(1)/libtested.a
+	$(2) $$^ $(CROSS)/$(3)/usr/lib/$(4)/libjpeg.a $(CROSS)/$(3)/usr/lib/$(4)/libz.a $(CROSS)/$(3)/usr/lib/$(4)/libcmocka.so \
+	    -lpthread -lm -o $$@
+build/$(1)/%.tap: build/$(1)/test_%
+	@CMOCKA_MESSAGE_OUTPUT=TAP $(5) -L /usr/$(4) -E LD_LIBRARY_PATH=$(CROSS)/$(3)/usr/lib/$(4) $$< >$$@ 2>&1 || { cat $$@; rm $$@; exit 1; }
+	@echo "ok - $(1): test_$$* ($$$$(grep -c '^ok' $$@) cases)"
+.PRECIOUS: build/$(1)/test_%
+-include $(shell find build/$(1)/obj -name '*.d' 2>/dev/null)
+endef
+$(eval $(call cross_tests,arm,$(ARM)gcc $(ARM_CPU),armel,arm-linux-gnueabi,qemu-arm -cpu arm1136))
+$(eval $(call cross_tests,s390x,s390x-linux-gnu-gcc,s390x,s390x-linux-gnu,qemu-s390x))
+
+.PHONY: test-cross
+test-cross: $(CROSS_CASES) ## unit tests on 32-bit ARM and on big-endian s390x, under qemu
+
+# ---- make baremetal: the core over platform/null, for a Cortex-M without any operating system; zlib from Debian's source package ----
+BARE := arm-none-eabi-
+BARE_CPU := -mcpu=cortex-m3 -mthumb
+BARE_FLAGS = -Os $(WARN) $(BARE_CPU) -std=c99 -ffunction-sections -fdata-sections -MMD -MP -isystem $(CROSS)/src/zlib
+BARE_ZLIB := inflate inftrees inffast zutil adler32 crc32
+BARE_SRC = $(sort $(call device,$(DEVICE_CORE) $(call srcs,platform/null) platform/random.c platform/events.c,$(filter-out hud,$(NO))))
+BARE_ELF = build/baremetal/farfield$(if $(NO),-no-$(subst $(space),-,$(strip $(NO)))).elf
+build/baremetal/%.o: %.c | $(CROSS_STAMP)
+	@mkdir -p $(@D)
+	$(BARE)gcc $(BARE_FLAGS) -c $< -o $@
+build/baremetal/zlib/%.o: | $(CROSS_STAMP)
+	@mkdir -p $(@D)
+	$(BARE)gcc -Os $(BARE_CPU) -DNO_GZIP -ffunction-sections -c $(CROSS)/src/zlib/$*.c -o $@
+$(BARE_ELF): $(BARE_SRC:%.c=build/baremetal/%.o) $(if $(filter deflate,$(NO)),,$(BARE_ZLIB:%=build/baremetal/zlib/%.o))
+	$(BARE)gcc $(BARE_CPU) --specs=nano.specs --specs=nosys.specs -Wl,--no-warnings -Wl,-Map=$@.map $^ -o $@
+
+.PHONY: baremetal
+baremetal: $(BARE_ELF) ## link the core for a Cortex-M without a system, over the blank port; sizes (NO="..." as for handheld)
+	@! $(BARE)nm -u $< | grep . || { echo "baremetal: missing symbols" >&2; exit 1; }
+	@tools/check-no-float.sh $(BARE) $(filter build/baremetal/protocol/% build/baremetal/client/% build/baremetal/common3d/%,$(BARE_SRC:%.c=build/baremetal/%.o))
+	@$(BARE)size $<
+-include $(shell find build/baremetal -name '*.d' 2>/dev/null)
+
+# ---- make size: code by part and by feature, worst stack, and what stays resident in a flight ----
+NO_ALL := panorama textures network jpeg hud deflate
+.PHONY: size
+size: build/handheld/farfield-handheld $(TCG_COUNT) build/handheld/size.tape ## code size by part and feature, stack, memory touched: build/bench/size.md
+	@for f in $(NO_ALL) "$(NO_ALL)"; do $(MAKE) -s NO="$$f" handheld-program || exit 1; done
+	@tools/size_handheld.py build/handheld $(TCG_COUNT) build/bench
+build/handheld/size.tape: build/handheld/farfield-handheld $(BUILD)/bin/farfield-fly $(PACK)
+	$(BUILD)/bin/farfield-fly --pack $(PACK) --backend none --link umts --settle 15 --seconds 5 --tape $@ 2>/dev/null
+.PHONY: handheld-program
+handheld-program: $(HAND)
