@@ -44,7 +44,7 @@ LIBS := $(LIB)/libffsim.a $(LIB)/libffserver.a $(LIB)/libfftools.a $(LIB)/libffc
 LINK_LIBS = -Wl,--start-group $(LIBS) -Wl,--end-group $(LDLIBS_core) $(LDLIBS_surface) $(LDLIBS_host)
 
 .DEFAULT_GOAL := all
-.PHONY: all help null deps server emulator flyover demo test test-build check extremes man install uninstall clean lib fuzz FORCE
+.PHONY: all help null deps server emulator flyover demo test test-build check extremes soak man install uninstall clean lib fuzz FORCE
 
 all: $(PROGRAMS) lib null ## build all programs and libraries into build/
 
@@ -93,7 +93,8 @@ $(foreach m,$(MAINS),$(eval $(call program_rule,$m)))
 
 server: $(BUILD)/bin/farfield-server ## the panorama server
 emulator: $(BUILD)/bin/farfield-view ## the desktop emulator
-flyover: $(BUILD)/bin/farfield-fly $(BUILD)/bin/farfield-link ## flights over emulated links
+flyover: $(PROGRAMS) ## fly all of Hybrid's Table 3 over emulated links; report in build/flyover (QUICK=1: a few short flights)
+	@QUICK=$(QUICK) $(if $(DATA),FARFIELD_DATA=$(DATA)) tools/flyover.sh $(BUILD)/bin build/flyover
 
 demo: $(PROGRAMS) ## fetch real terrain, bake it, serve it, fly over it: pictures and a report in build/demo
 	@tools/demo.sh $(BUILD)/bin build/demo
@@ -129,6 +130,12 @@ check: all $(TESTS) ## quick subset: layer checks and unit tests, without saniti
 
 extremes: $(BUILD)/tests/test_extremes ## fly every stiff and extreme case and show the table of largest errors
 	@EXTREMES=$(BUILD)/extremes.md $< >$(BUILD)/extremes.log 2>&1; rc=$$?; cat $(BUILD)/extremes.md; exit $$rc
+
+# PACKS="a.ffp b.ffp": instead of three small ones; SEEDS=0: until interrupted; SOAK: more options of tests/soak.py
+SEEDS ?= 100
+FIRST ?= 1
+soak: $(BUILD)/bin/farfield-fly $(BUILD)/bin/farfield-bake ## random flights over random links (SEEDS=100 FIRST=1 PACKS=...); a failure tells the command that repeats it
+	@tests/soak.py --first $(FIRST) --seeds $(SEEDS) --bin $(BUILD)/bin --work $(BUILD)/soak $(SOAK) $(PACKS)
 
 # ---- fuzz targets: each tests/fuzz_*.c has LLVMFuzzerTestOneInput; saved inputs in tests/corpus/NAME run in `make test` ----
 $(BUILD)/tests/fuzz_%-replay: $(BUILD)/obj/tests/fuzz_%.o $(BUILD)/obj/tests/replay.o $(call obj,$(TEST_LIB_SRC)) $(LIBS)

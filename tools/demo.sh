@@ -4,8 +4,6 @@
 set -eu
 bin=$1
 out=$2
-dem_package=libncarg-data
-dem=$out/data/usr/share/ncarg/data/cdf/trinidad.nc
 pack=$out/trinidad.ffp
 server_pid=""
 link_pid=""
@@ -30,15 +28,6 @@ address_of() {
     printf '%s\n' "$address"
 }
 
-fetch() {
-    [ -f "$dem" ] && return
-    mkdir -p "$out/data"
-    (cd "$out/data" && apt-get download -qq "$dem_package" 2>/dev/null) || fail "cannot download the package $dem_package"
-    dpkg-deb -x "$out"/data/${dem_package}_*.deb "$out/data"
-    rm -f "$out"/data/${dem_package}_*.deb
-    [ -f "$dem" ] || fail "the package $dem_package holds no trinidad.nc"
-}
-
 # fly NAME LINK SECONDS PANORAMA SIZE [OPTION...]: one flight towards the Culebra range; its CSV, summary and pictures are named NAME.
 fly() {
     name=$1 link=$2 seconds=$3 panorama=$4 size=$5
@@ -50,8 +39,8 @@ fly() {
 }
 
 mkdir -p "$out"
-say "terrain: Trinidad, Colorado (USGS, public domain) from Debian's $dem_package"
-fetch
+say "terrain: Trinidad, Colorado (USGS, public domain) from Debian's libncarg-data"
+dem=$("$(dirname "$0")/trinidad.sh" "$out") || fail "no terrain"
 
 say "bake: $dem"
 "$bin/farfield-bake" "$dem" --scale 0.3048780488 --tile-log2 7 -o "$pack"

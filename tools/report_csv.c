@@ -43,8 +43,7 @@ static int refuse(reader *in, const char *format, ...)
     return -1;
 }
 
-/* Splits a line at its commas, blanks around fields dropped. Number of fields, more than FIELDS_MAX when there are too many. */
-static size_t split(char *line, char *field[FIELDS_MAX])
+size_t report_csv_split(char *line, char **field, size_t most)
 {
     size_t count = 0;
     char *end;
@@ -54,7 +53,7 @@ static size_t split(char *line, char *field[FIELDS_MAX])
         if (end) *end++ = 0;
         at += strspn(at, " \t");
         for (size_t n = strlen(at); n && (at[n - 1] == ' ' || at[n - 1] == '\t'); n--) at[n - 1] = 0;
-        if (count == FIELDS_MAX) return FIELDS_MAX + 1;
+        if (count == most) return most + 1;
         field[count++] = at;
     }
     return count;
@@ -77,7 +76,7 @@ static int read_header(reader *in)
     int got = next_line(in);
     if (got < 0) return -1;
     if (!got) return refuse(in, "empty file");
-    in->field_count = split(in->line, field);
+    in->field_count = report_csv_split(in->line, field, FIELDS_MAX);
     if (in->field_count > FIELDS_MAX) return refuse(in, "more than %d columns", FIELDS_MAX);
     for (int c = 0; c < REPORT_COLUMN_COUNT; c++) {
         in->field_of[c] = -1;
@@ -105,7 +104,7 @@ static int read_value(reader *in, char *const *field, int column, double *value)
 static int read_row(reader *in, report_row *row)
 {
     char *field[FIELDS_MAX];
-    size_t count = split(in->line, field);
+    size_t count = report_csv_split(in->line, field, FIELDS_MAX);
     if (count != in->field_count) return refuse(in, "%zu fields where the header has %zu", count, in->field_count);
     for (int c = 0; c < REPORT_COLUMN_COUNT; c++)
         if (read_value(in, field, c, &row->value[c])) return -1;
@@ -163,13 +162,13 @@ void report_flight_free(report_flight *flight)
     memset(flight, 0, sizeof *flight);
 }
 
-static double mean(const report_flight *flight, enum report_column column)
+double report_flight_mean(const report_flight *flight, enum report_column column, double from_s)
 {
     double sum = 0;
     size_t count = 0;
     for (size_t i = 0; i < flight->row_count; i++) {
         double value = flight->row[i].value[column];
-        if (isnan(value)) continue;
+        if (isnan(value) || flight->row[i].value[REPORT_T_S] < from_s) continue;
         sum += value;
         count++;
     }
@@ -190,17 +189,17 @@ void report_summarise(const report_flight *flight, report_summary *summary)
     const double *last = flight->row[flight->row_count - 1].value;
     *summary = (report_summary){
         .seconds = last[REPORT_T_S],
-        .triangles_mean = mean(flight, REPORT_TRIANGLES),
+        .triangles_mean = report_flight_mean(flight, REPORT_TRIANGLES, 0),
         .triangles_max = largest(flight, REPORT_TRIANGLES),
-        .nodes_drawn_mean = mean(flight, REPORT_NODES_DRAWN),
+        .nodes_drawn_mean = report_flight_mean(flight, REPORT_NODES_DRAWN, 0),
         .nodes_held_max = largest(flight, REPORT_NODES_HELD),
         .kb_down_60s = NAN,
         .kb_down = last[REPORT_BYTES_DOWN] / 1000,
         .kb_up = last[REPORT_BYTES_UP] / 1000,
         .requests = last[REPORT_REQUESTS],
         .panoramas = last[REPORT_PANORAMAS],
-        .err_rms_mean = mean(flight, REPORT_ERR_RMS),
-        .err_p95_mean = mean(flight, REPORT_ERR_P95),
+        .err_rms_mean = report_flight_mean(flight, REPORT_ERR_RMS, 0),
+        .err_p95_mean = report_flight_mean(flight, REPORT_ERR_P95, 0),
         .err_max = largest(flight, REPORT_ERR_MAX),
     };
     for (size_t i = 0; i < flight->row_count && summary->seconds >= 60; i++)

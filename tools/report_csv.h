@@ -8,7 +8,7 @@
 #define REPORT_COLUMN_LIST(X) \
     X(T_S, "t_s", 1) X(TRIANGLES, "triangles", 1) X(NODES_DRAWN, "nodes_drawn", 1) X(NODES_HELD, "nodes_held", 1) \
     X(BYTES_DOWN, "bytes_down", 1) X(BYTES_UP, "bytes_up", 1) X(REQUESTS, "requests", 1) X(PANORAMAS, "panoramas", 1) \
-    X(ERR_RMS, "err_px_rms", 0) X(ERR_P95, "err_px_p95", 0) X(ERR_MAX, "err_px_max", 0)
+    X(ERR_RMS, "err_px_rms", 0) X(ERR_P95, "err_px_p95", 0) X(ERR_MAX, "err_px_max", 0) X(UNDRAWN, "undrawn_px_percent", 0)
 enum report_column {
 #define X(id, name, required) REPORT_##id,
     REPORT_COLUMN_LIST(X)
@@ -34,6 +34,10 @@ typedef struct report_summary {
 /* 0, or -1 with the reason in `why` ("FILE: ..." or "FILE:LINE: ..."). */
 int report_flight_load(report_flight *flight, const char *path, char *why, size_t why_bytes);
 void report_flight_free(report_flight *flight);
+/* Splits a line of commas in place, blanks around fields dropped. Number of fields, more than `most` when there are too many. */
+size_t report_csv_split(char *line, char **field, size_t most);
+/* Mean over the rows from from_s on, NAN where none has the column. */
+double report_flight_mean(const report_flight *flight, enum report_column column, double from_s);
 void report_summarise(const report_flight *flight, report_summary *summary);
 /* 1 when any row has the column. */
 int report_flight_has(const report_flight *flight, enum report_column column);

@@ -24,6 +24,10 @@ static const char usage[] =
     "      --title TITLE    heading of the report\n"
     "      --picture FILE   copy a picture into DIR and show it; may be repeated, and\n"
     "                       several files may follow until the next option\n"
+    "      --paper TABLE        put flights named LINK-SPEED-QUALITY-PANORAMA beside those of\n"
+    "                       a paper (tools/hybrid_table3.csv), and draw the error of\n"
+    "                       flights named sweep-SERIES-VALUE against their work\n"
+    "      --settle S       seconds of standing still before a flight, default 15\n"
     "      --json           print the summaries as JSON\n"
     "      --help           show this help and exit\n"
     "      --version        show the version and exit\n";
@@ -32,6 +36,8 @@ typedef struct options {
     const char *title, *folder;
     const char **csv, **picture; /* argc entries each */
     size_t csv_count, picture_count;
+    const char *paper; /* NULL: none */
+    double settle_s;
     int json;
 } options;
 
@@ -53,6 +59,7 @@ static int parse(options *o, int argc, char **argv)
     static const struct option list[] = {
         {"output", required_argument, NULL, 'o'}, {"title", required_argument, NULL, 't'},
         {"picture", required_argument, NULL, 'p'}, {"json", no_argument, NULL, 'j'},
+        {"paper", required_argument, NULL, 'P'}, {"settle", required_argument, NULL, 'S'},
         {"help", no_argument, NULL, 'h'}, {"version", no_argument, NULL, 'v'}, {NULL, 0, NULL, 0}};
     int c, pictures = 0;
     while ((c = getopt_long(argc, argv, "-o:", list, NULL)) != -1) {
@@ -60,6 +67,12 @@ static int parse(options *o, int argc, char **argv)
         else if (c == 'p' || c == 1) o->picture[o->picture_count++] = optarg;
         else if (c == 'o') o->folder = optarg;
         else if (c == 't') o->title = optarg;
+        else if (c == 'P') o->paper = optarg;
+        else if (c == 'S') {
+            char *end;
+            o->settle_s = strtod(optarg, &end);
+            if (end == optarg || *end || !(o->settle_s >= 0 && o->settle_s < 1e6)) return fail("--settle: %s is not a number of seconds", optarg);
+        }
         else if (c == 'j') o->json = 1;
         else if (c == 'h') return fputs(usage, stdout), 1;
         else if (c == 'v') return puts("farfield-report " FARFIELD_VERSION), 1;
@@ -122,7 +135,11 @@ static int make_report(const options *o, report_flight *flight, char **picture)
 {
     char why[WHY_BYTES];
     report_content content = {.title = o->title, .folder = o->folder, .flight = flight, .flight_count = o->csv_count,
-                              .picture = (const char *const *)picture, .picture_count = o->picture_count};
+                              .picture = (const char *const *)picture, .picture_count = o->picture_count,
+                              .settle_s = o->settle_s};
+    report_paper paper;
+    if (o->paper && report_paper_load(&paper, o->paper, why, sizeof why)) return fail("%s", why);
+    if (o->paper) content.paper = &paper;
     for (size_t i = 0; i < o->csv_count; i++)
         if (report_flight_load(&flight[i], o->csv[i], why, sizeof why)) return fail("%s", why);
     if (make_folder(o->folder) || copy_pictures(o, picture)) return -1;
@@ -135,7 +152,7 @@ static int make_report(const options *o, report_flight *flight, char **picture)
 int main(int argc, char **argv)
 {
     size_t room = (size_t)argc;
-    options o = {.title = "Farfield flights"};
+    options o = {.title = "Farfield flights", .settle_s = 15};
     o.csv = calloc(room, sizeof *o.csv);
     o.picture = calloc(room, sizeof *o.picture);
     report_flight *flight = calloc(room, sizeof *flight);

@@ -1,5 +1,6 @@
 #include "report_page.h"
 
+#include "report_matrix.h"
 #include "report_plot.h"
 
 #include <errno.h>
@@ -112,16 +113,6 @@ static void put_html_table(FILE *out, const report_content *content)
     fputs("</table></div>\n", out);
 }
 
-static int put_plot(FILE *out, const report_content *content, const report_plot *plot, char *why, size_t why_bytes)
-{
-    char *svg;
-    if (!plot->curve_count) return 0;
-    if (report_plot_draw(plot, content->folder, &svg, why, why_bytes)) return -1;
-    fprintf(out, "<figure>%s</figure>\n", svg);
-    free(svg);
-    return 0;
-}
-
 static void add_curve(report_plot *plot, const report_flight *flight, enum report_column x, enum report_column y,
                       const char *title)
 {
@@ -150,8 +141,8 @@ static int put_flight(FILE *out, const report_content *content, const report_fli
     fputs("<h2>", out);
     put_html(out, flight->name);
     fputs("</h2>\n<div class=\"plots\">\n", out);
-    if (put_plot(out, content, &triangles, why, why_bytes) || put_plot(out, content, &bytes, why, why_bytes) ||
-        put_plot(out, content, &nodes, why, why_bytes) || put_plot(out, content, &error, why, why_bytes))
+    if (report_plot_put(out, content->folder, &triangles, why, why_bytes) || report_plot_put(out, content->folder, &bytes, why, why_bytes) ||
+        report_plot_put(out, content->folder, &nodes, why, why_bytes) || report_plot_put(out, content->folder, &error, why, why_bytes))
         return -1;
     fputs("</div>\n", out);
     return 0;
@@ -169,8 +160,8 @@ static int put_comparison(FILE *out, const report_content *content, char *why, s
         add_curve(&work, flight, REPORT_BYTES_DOWN, REPORT_ERR_RMS, flight->name);
     }
     fputs("<h2>All flights</h2>\n<div class=\"plots\">\n", out);
-    if (put_plot(out, content, &bytes, why, why_bytes) || put_plot(out, content, &error, why, why_bytes) ||
-        put_plot(out, content, &work, why, why_bytes))
+    if (report_plot_put(out, content->folder, &bytes, why, why_bytes) || report_plot_put(out, content->folder, &error, why, why_bytes) ||
+        report_plot_put(out, content->folder, &work, why, why_bytes))
         return -1;
     fputs("</div>\n", out);
     return 0;
@@ -205,8 +196,10 @@ int report_page_html(const report_content *content, char *why, size_t why_bytes)
           "figcaption{color:#666;font-size:13px}\n</style></head><body>\n<h1>", out);
     put_html(out, content->title);
     fputs("</h1>\n", out);
+    if (content->paper) rc = report_matrix_html(out, content, why, why_bytes);
+    if (content->paper) fputs("<h2>All flights</h2>\n", out);
     put_html_table(out, content);
-    if (content->flight_count > 1) rc = put_comparison(out, content, why, why_bytes);
+    if (!content->paper && content->flight_count > 1) rc = put_comparison(out, content, why, why_bytes);
     put_pictures(out, content);
     for (size_t i = 0; i < content->flight_count && !rc; i++)
         rc = put_flight(out, content, &content->flight[i], why, why_bytes);
@@ -223,7 +216,10 @@ int report_page_markdown(const report_content *content, char *why, size_t why_by
     if (!out) return -1;
     fputs("# ", out);
     put_markdown(out, content->title);
-    fputs("\n\n| flight |", out);
+    fputs("\n", out);
+    if (content->paper) report_matrix_markdown(out, content);
+    else fputs("\n", out);
+    fputs("| flight |", out);
     for (int c = 0; c < SUMMARY_COLUMNS; c++) fprintf(out, " %s |", summary_columns[c].heading);
     fputs("\n| :-- |", out);
     for (int c = 0; c < SUMMARY_COLUMNS; c++) fputs(" --: |", out);

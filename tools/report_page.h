@@ -3,6 +3,7 @@
 #define REPORT_PAGE_H
 
 #include "report_csv.h"
+#include "report_paper.h"
 
 typedef struct report_content {
     const char *title, *folder;
@@ -10,6 +11,8 @@ typedef struct report_content {
     size_t flight_count;
     const char *const *picture; /* file names inside `folder` */
     size_t picture_count;
+    const report_paper *paper; /* NULL: flights stand for themselves */
+    double settle_s;           /* with a paper: seconds before the flight begins */
 } report_content;
 
 /* Each 0, or -1 with the reason in `why`. */

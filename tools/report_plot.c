@@ -56,9 +56,11 @@ static int write_script(const report_plot *plot, const char *script, const char 
     put_label(out, "xlabel", plot->x_label);
     put_label(out, "ylabel", plot->y_label);
     fputs(plot->logarithmic_y ? "set logscale y\n" : "set yrange [0:*<1e15]\n", out);
+    if (plot->x_most > 0) fprintf(out, "set xrange [0:%g]\n", plot->x_most);
     for (size_t i = 0; i < plot->curve_count; i++) put_data(out, &plot->curve[i], i, plot->logarithmic_y);
     for (size_t i = 0; i < plot->curve_count; i++) {
-        fprintf(out, "%s$curve%zu using 1:2 with lines linecolor rgb '%s' title ", i ? ", " : "plot ", i,
+        fprintf(out, "%s$curve%zu using 1:2 with %s linecolor rgb '%s' title ", i ? ", " : "plot ", i,
+                plot->points ? "linespoints pointtype 7 pointsize 0.5" : "lines",
                 colours[i % (sizeof colours / sizeof *colours)]);
         put_quoted(out, plot->curve[i].title);
     }
@@ -101,7 +103,7 @@ static char *read_svg(const char *picture)
     return svg;
 }
 
-int report_plot_draw(const report_plot *plot, const char *folder, char **svg, char *why, size_t why_bytes)
+static int draw(const report_plot *plot, const char *folder, char **svg, char *why, size_t why_bytes)
 {
     char script[PATH_BYTES], picture[PATH_BYTES];
     int status, rc = -1;
@@ -116,4 +118,14 @@ int report_plot_draw(const report_plot *plot, const char *folder, char **svg, ch
     remove(script);
     remove(picture);
     return rc;
+}
+
+int report_plot_put(FILE *out, const char *folder, const report_plot *plot, char *why, size_t why_bytes)
+{
+    char *svg;
+    if (!plot->curve_count) return 0;
+    if (draw(plot, folder, &svg, why, why_bytes)) return -1;
+    fprintf(out, "<figure>%s</figure>\n", svg);
+    free(svg);
+    return 0;
 }

@@ -4,6 +4,8 @@
 
 #include "report_csv.h"
 
+#include <stdio.h>
+
 #define REPORT_CURVES_MAX 16
 
 /* A column over time, or over another column; value = column * scale. */
@@ -16,14 +18,15 @@ typedef struct report_curve {
 
 typedef struct report_plot {
     const char *title, *x_label, *y_label;
-    int logarithmic_y;
+    int logarithmic_y, points; /* points: each row marked */
+    double x_most;             /* 0: all */
     report_curve curve[REPORT_CURVES_MAX];
     size_t curve_count;
 } report_plot;
 
-/* Runs gnuplot; *svg receives the picture as text (no XML declaration), to be freed. `folder` takes temporary files.
+/* Runs gnuplot; the picture goes into a page as a figure, nothing does for a plot without curves. `folder` takes temporary files.
  * 0, or -1 with the reason in `why`. Values NAN leave gaps; each curve needs one that is not.
  * A logarithmic axis draws what lies below 0.01 at 0.01. */
-int report_plot_draw(const report_plot *plot, const char *folder, char **svg, char *why, size_t why_bytes);
+int report_plot_put(FILE *out, const char *folder, const report_plot *plot, char *why, size_t why_bytes);
 
 #endif

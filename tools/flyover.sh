@@ -1,0 +1,115 @@
+#!/bin/bash
+# The flights of Hybrid's Table 3 in simulated time, and a report beside its numbers. Usage: flyover.sh BIN_DIR OUT_DIR.
+#   QUICK=1             few flights of 60 s
+#   FARFIELD_DATA=DIR   holds puget-sound-gatech/; without it the ground is Trinidad, Colorado, from a Debian package
+#   FLYOVER_PACK=PACK   flies over this pack instead
+#   JOBS=N              flights side by side (default: one per processor)
+#   SECONDS_EACH=S      in the air (default 300)
+# A finished flight is not flown again unless its pack, its options or the program changed.
+set -euo pipefail
+here=$(dirname "$0")
+bin=$1
+out=$2
+: "${FARFIELD_DATA:=../shared/data}" "${JOBS:=$(nproc)}" "${QUICK:=}" "${FLYOVER_PACK:=}"
+: "${SECONDS_EACH:=$([ -n "$QUICK" ] && echo 60 || echo 300)}"
+settle_s=15
+
+say() { printf '== %s\n' "$*"; }
+
+# bake PACK SOURCE OPTION...: unless this very pack is there already.
+bake() {
+    local pack=$1 key
+    shift
+    key="$* $(cksum <"$1")"
+    [ -f "$pack" ] && [ "$(cat "$pack.key" 2>/dev/null)" = "$key" ] && "$bin/farfield-info" "$pack" >/dev/null 2>&1 && return
+    say "bake $pack (once; some minutes)"
+    rm -f "$pack.key"
+    "$bin/farfield-bake" "$@" -o "$pack"
+    printf '%s\n' "$key" >"$pack.key"
+}
+
+# The paper's ground in size and structure: 16385 x 16385 heights at 10 m, 16 x 16 tiles of 1025 x 1025, nodes of 9 x 9, textures of
+# 64 x 64 on the first five levels. Else Trinidad, 2401 x 1201, densified to about the same spacing.
+find_ground() {
+    local puget=$FARFIELD_DATA/puget-sound-gatech dem
+    if [ -n "$FLYOVER_PACK" ]; then
+        pack=$FLYOVER_PACK ground="$(basename "$FLYOVER_PACK" .ffp)"
+    elif [ -f "$puget/ps_height_1k.png" ]; then
+        pack=$out/puget-16k.ffp ground="Puget Sound, densified 16 times to 16385 x 16385 at 10 m"
+        bake "$pack" "$puget/ps_height_1k.png" --hscale 0.1 --spacing 160 --densify 16 --tile-log2 10 \
+            --color "$puget/ps_texture_1k.png" --texture-levels 5
+    else
+        pack=$out/trinidad.ffp ground="Trinidad, Colorado, densified 8 times to about 10 m"
+        dem=$("$here/trinidad.sh" "$out")
+        bake "$pack" "$dem" --scale 0.3048780488 --densify 8 --tile-log2 10
+    fi
+}
+
+# Lines "NAME OPTION...": a flight each. Those over a LAN are references: the picture that a link without limits gives.
+list_flights() {
+    local link speed quality panorama
+    if [ -n "$QUICK" ]; then
+        for link in umts gprs lan; do echo "$link-150-low-on --link $link --speed 150 --quality low --panorama on"; done
+        printf '%s\n' "px-8 px:8" "px-4 px:4" "C-2 2:8" "C-3 3:8" | list_sweep
+        return
+    fi
+    for quality in low high; do
+        for speed in 1000 750 150 25; do
+            for panorama in off on; do
+                for link in umts gprs lan; do
+                    echo "$link-$speed-$quality-$panorama --link $link --speed $speed --quality $quality --panorama $panorama"
+                done
+            done
+        done
+    done
+    printf '%s\n' "px-8 px:8" "px-4 px:4" "px-2 px:2" "px-1 px:1" "C-2 2:8" "C-3 3:8" "C-5 5:8" "C-9 9:8" | list_sweep
+}
+
+# Quality against work, on one flight: "SERIES-VALUE QUALITY" each.
+list_sweep() {
+    while read -r name quality; do
+        echo "sweep-$name --link umts --speed 150 --quality $quality --panorama on"
+    done
+}
+
+# fly NAME OPTION...
+fly_one() {
+    local name=$1 key started=$SECONDS
+    shift
+    set -- --start 0.4 --height 100 --seconds "$SECONDS_EACH" --settle $settle_s --seed 1 --backend none --audit on --check off "$@"
+    key="$flyover_key $*"
+    if [ -f "$out/$name.csv" ] && [ "$(cat "$out/$name.key" 2>/dev/null)" = "$key" ]; then
+        echo "$name: flown before"
+        return
+    fi
+    rm -f "$out/$name.key"
+    "$bin/farfield-fly" --pack "$pack" --ground-cache "$out/truth.ground" --csv "$out/$name.csv.part" --json "$@" \
+        >"$out/$name.json" 2>"$out/$name.log" || { tail -n 1 "$out/$name.log" >&2; return 255; } # 255: xargs stops
+    mv "$out/$name.csv.part" "$out/$name.csv"
+    printf '%s\n' "$key" >"$out/$name.key"
+    echo "$name: $((SECONDS - started)) s ($(find "$out" -maxdepth 1 -name '*.csv' | wc -l) of $(wc -l <"$out/flights") finished)"
+}
+
+fly_all() {
+    flyover_key=$(cat "$bin/farfield-fly" "$pack" | sha256sum | cut -d' ' -f1)
+    export flyover_key pack out bin settle_s SECONDS_EACH
+    "$bin/farfield-fly" --pack "$pack" --ground-cache "$out/truth.ground" --audit on --backend none --seconds 0 --settle 0 2>"$out/truth.log" ||
+        { tail -n 1 "$out/truth.log" >&2; exit 1; }
+    export -f fly_one
+    list_flights >"$out/flights"
+    # shellcheck disable=SC2016
+    xargs -P "$JOBS" -L 1 bash -c 'set -euo pipefail; fly_one "$@"' fly <"$out/flights"
+}
+
+main() {
+    local -a csv
+    mkdir -p "$out"
+    find_ground
+    say "$(basename "$pack"): flights of $SECONDS_EACH s, $JOBS side by side"
+    fly_all
+    mapfile -t csv < <(sed "s|^\([^ ]*\).*|$out/\1.csv|" "$out/flights")
+    "$bin/farfield-report" --paper "$here/hybrid_table3.csv" --settle $settle_s --title "The flights of Hybrid's Table 3 over $ground" \
+        "${csv[@]}" -o "$out/report"
+}
+
+main

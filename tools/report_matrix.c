@@ -1,0 +1,288 @@
+#include "report_matrix.h"
+
+#include "report_plot.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define CONVERGENCE_S 120
+#define STABLE_FACTOR 1.1
+#define STABLE_PX 0.1
+#define STABLE_UNDRAWN_PERCENT 1
+#define STABLE_ROWS 3
+#define REFERENCE_LINK "lan"
+#define SWEEP "sweep-"
+#define SERIES_MAX 8
+#define SERIES_NAME_BYTES 32
+
+/* ---- figures ---- */
+
+/* Is row i of the flight as good as the reference's row of its time? */
+static int is_stable(const report_flight *flight, const report_flight *reference, double settle_s, size_t i)
+{
+    const double *value = flight->row[i].value;
+    double t_s = fmax(value[REPORT_T_S], settle_s);
+    size_t at = 0;
+    while (at < reference->row_count && reference->row[at].value[REPORT_T_S] < t_s) at++;
+    if (at == reference->row_count || !(value[REPORT_NODES_DRAWN] > 0)) return 0;
+    const double *best = reference->row[at].value;
+    return value[REPORT_ERR_P95] <= STABLE_FACTOR * best[REPORT_ERR_P95] + STABLE_PX &&
+           !(value[REPORT_UNDRAWN] > best[REPORT_UNDRAWN] + STABLE_UNDRAWN_PERCENT);
+}
+
+double report_stable_s(const report_flight *flight, const report_flight *reference, double settle_s)
+{
+    size_t together = 0;
+    for (size_t i = 0; reference && i < flight->row_count; i++) {
+        together = is_stable(flight, reference, settle_s, i) ? together + 1 : 0;
+        if (together == STABLE_ROWS) return flight->row[i + 1 - STABLE_ROWS].value[REPORT_T_S];
+    }
+    return NAN;
+}
+
+void report_figures_of(const report_flight *flight, const report_flight *reference, double settle_s, report_figures *figures)
+{
+    *figures = (report_figures){
+        .triangles = report_flight_mean(flight, REPORT_TRIANGLES, settle_s),
+        .kilobytes = flight->row[flight->row_count - 1].value[REPORT_BYTES_DOWN] / 1000,
+        .stable_s = report_stable_s(flight, reference, settle_s),
+        .err_p95 = report_flight_mean(flight, REPORT_ERR_P95, settle_s),
+        .undrawn = report_flight_mean(flight, REPORT_UNDRAWN, settle_s),
+    };
+}
+
+static const report_flight *find(const report_content *content, const char *name)
+{
+    for (size_t i = 0; i < content->flight_count; i++)
+        if (!strcmp(content->flight[i].name, name)) return &content->flight[i];
+    return NULL;
+}
+
+/* The flight of this name over a link without limits: only what comes before the first dash differs. */
+static const report_flight *find_reference(const report_content *content, const char *name)
+{
+    char reference[sizeof REFERENCE_LINK + sizeof content->paper->row[0].name];
+    const char *rest = strchr(name, '-');
+    snprintf(reference, sizeof reference, "%s%s", REFERENCE_LINK, rest ? rest : "");
+    return find(content, reference);
+}
+
+/* ---- tables: the same rows as HTML and as Markdown ---- */
+
+typedef struct style { const char *row_open, *row_close, *cell_open, *cell_close, *head_open, *head_close; } style;
+static const style html = {"<tr>", "</tr>\n", "<td>", "</td>", "<th>", "</th>"};
+static const style markdown = {"|", "\n", " ", " |", " ", " |"};
+
+static void put_word(FILE *out, const style *s, const char *word) { fprintf(out, "%s%s%s", s->cell_open, word, s->cell_close); }
+
+static void put_number(FILE *out, const style *s, int decimals, double value)
+{
+    if (isfinite(value)) fprintf(out, "%s%.*f%s", s->cell_open, decimals, value, s->cell_close);
+    else put_word(out, s, "–");
+}
+
+static void put_range(FILE *out, const style *s, double from, double to)
+{
+    if (isnan(from)) put_word(out, s, "–");
+    else if (from < to) fprintf(out, "%s%.0f–%.0f%s", s->cell_open, from, to, s->cell_close);
+    else put_number(out, s, 0, from);
+}
+
+static void put_head(FILE *out, const style *s, const char *const *head, size_t count)
+{
+    fputs(s->row_open, out);
+    for (size_t i = 0; i < count; i++) fprintf(out, "%s%s%s", s->head_open, head[i], s->head_close);
+    fputs(s->row_close, out);
+    if (s != &markdown) return;
+    fputs("|", out);
+    for (size_t i = 0; i < count; i++) fputs(" --: |", out);
+    fputs("\n", out);
+}
+
+/* One row for each flight of the paper that is among ours. */
+static void put_paper(FILE *out, const style *s, const report_content *content)
+{
+    static const char *const head[] = {"link", "km/h", "quality", "panorama", "triangles, paper", "triangles", "ratio", "kB, paper", "kB",
+                                       "ratio", "stable after s, paper", "stable after s", "error px, 95 %", "undrawn %"};
+    put_head(out, s, head, sizeof head / sizeof *head);
+    for (size_t i = 0; i < content->paper->row_count; i++) {
+        const report_paper_row *paper = &content->paper->row[i];
+        const report_flight *flight = find(content, paper->name);
+        report_figures ours;
+        if (!flight) continue;
+        report_figures_of(flight, find_reference(content, paper->name), content->settle_s, &ours);
+        fputs(s->row_open, out);
+        put_word(out, s, paper->link);
+        put_word(out, s, paper->speed_kmh);
+        put_word(out, s, paper->quality);
+        put_word(out, s, paper->panorama);
+        put_number(out, s, 0, paper->triangles);
+        put_number(out, s, 0, ours.triangles);
+        put_number(out, s, 2, ours.triangles / paper->triangles);
+        put_number(out, s, 0, paper->kilobytes);
+        put_number(out, s, 1, ours.kilobytes);
+        put_number(out, s, 2, ours.kilobytes / paper->kilobytes);
+        put_range(out, s, paper->stable_from_s, paper->stable_to_s);
+        put_number(out, s, 0, ours.stable_s);
+        put_number(out, s, 2, ours.err_p95);
+        put_number(out, s, 1, ours.undrawn);
+        fputs(s->row_close, out);
+    }
+}
+
+static int is_sweep(const report_flight *flight) { return !strncmp(flight->name, SWEEP, strlen(SWEEP)); }
+
+static size_t count_sweep(const report_content *content)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < content->flight_count; i++) count += (size_t)is_sweep(&content->flight[i]);
+    return count;
+}
+
+static void put_sweep(FILE *out, const style *s, const report_content *content)
+{
+    static const char *const head[] = {"quality", "triangles", "kB", "error px, 95 %", "undrawn %"};
+    put_head(out, s, head, sizeof head / sizeof *head);
+    for (size_t i = 0; i < content->flight_count; i++) {
+        const report_flight *flight = &content->flight[i];
+        report_figures ours;
+        if (!is_sweep(flight)) continue;
+        report_figures_of(flight, NULL, content->settle_s, &ours);
+        fputs(s->row_open, out);
+        put_word(out, s, flight->name + strlen(SWEEP));
+        put_number(out, s, 0, ours.triangles);
+        put_number(out, s, 1, ours.kilobytes);
+        put_number(out, s, 2, ours.err_p95);
+        put_number(out, s, 1, ours.undrawn);
+        fputs(s->row_close, out);
+    }
+}
+
+/* ---- plots ---- */
+
+/* The flights of one link and quality with panoramas, from the first second on. */
+static int put_convergence(FILE *out, const report_content *content, const report_paper_row *group, char *why, size_t why_bytes)
+{
+    char title[128];
+    snprintf(title, sizeof title, "%s, %s quality, with panoramas", group->link, group->quality);
+    report_plot plot = {.title = title, .x_label = "seconds since the start", .y_label = "error px, 95 %", .logarithmic_y = 1,
+                        .x_most = CONVERGENCE_S};
+    for (size_t i = 0; i < content->paper->row_count && plot.curve_count < REPORT_CURVES_MAX; i++) {
+        const report_paper_row *row = &content->paper->row[i];
+        const report_flight *flight = find(content, row->name);
+        if (!flight || strcmp(row->link, group->link) || strcmp(row->quality, group->quality) || strcmp(row->panorama, "on") ||
+            !report_flight_has(flight, REPORT_ERR_P95))
+            continue;
+        plot.curve[plot.curve_count++] = (report_curve){.flight = flight, .x = REPORT_T_S, .y = REPORT_ERR_P95, .x_scale = 1, .y_scale = 1,
+                                                        .title = flight->name};
+    }
+    return report_plot_put(out, content->folder, &plot, why, why_bytes);
+}
+
+static int is_first_of_group(const report_paper *paper, size_t at)
+{
+    for (size_t i = 0; i < at; i++)
+        if (!strcmp(paper->row[i].link, paper->row[at].link) && !strcmp(paper->row[i].quality, paper->row[at].quality)) return 0;
+    return 1;
+}
+
+/* A series of the sweep as one curve: a row for each of its flights, by triangles. */
+typedef struct series { char name[SERIES_NAME_BYTES]; report_flight points; } series;
+
+static int by_triangles(const void *a, const void *b)
+{
+    double x = ((const report_row *)a)->value[REPORT_TRIANGLES], y = ((const report_row *)b)->value[REPORT_TRIANGLES];
+    return (x > y) - (x < y);
+}
+
+static series *series_of(series *list, size_t *count, const char *name, size_t flights)
+{
+    const char *from = name + strlen(SWEEP), *end = strrchr(from, '-');
+    size_t length = end ? (size_t)(end - from) : strlen(from);
+    if (length >= SERIES_NAME_BYTES) length = SERIES_NAME_BYTES - 1;
+    for (size_t i = 0; i < *count; i++)
+        if (strlen(list[i].name) == length && !strncmp(list[i].name, from, length)) return &list[i];
+    if (*count == SERIES_MAX) return NULL;
+    series *added = &list[*count];
+    added->points.row = calloc(flights, sizeof *added->points.row);
+    if (!added->points.row) return NULL;
+    memcpy(added->name, from, length);
+    ++*count;
+    return added;
+}
+
+static size_t collect_series(series *list, const report_content *content)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < content->flight_count; i++) {
+        const report_flight *flight = &content->flight[i];
+        report_figures ours;
+        series *s = is_sweep(flight) ? series_of(list, &count, flight->name, content->flight_count) : NULL;
+        if (!s) continue;
+        report_figures_of(flight, NULL, content->settle_s, &ours);
+        if (isnan(ours.err_p95)) continue;
+        double *value = s->points.row[s->points.row_count++].value;
+        value[REPORT_TRIANGLES] = ours.triangles;
+        value[REPORT_BYTES_DOWN] = ours.kilobytes;
+        value[REPORT_ERR_P95] = ours.err_p95;
+    }
+    for (size_t i = 0; i < count; i++) qsort(list[i].points.row, list[i].points.row_count, sizeof *list[i].points.row, by_triangles);
+    return count;
+}
+
+static int put_work(FILE *out, const report_content *content, char *why, size_t why_bytes)
+{
+    series list[SERIES_MAX] = {{{0}, {0}}};
+    size_t count = collect_series(list, content);
+    report_plot plots[2] = {
+        {.title = "Error against triangles", .x_label = "triangles", .y_label = "error px, 95 %", .logarithmic_y = 1, .points = 1},
+        {.title = "Error against bytes", .x_label = "kB down", .y_label = "error px, 95 %", .logarithmic_y = 1, .points = 1}};
+    static const enum report_column work[2] = {REPORT_TRIANGLES, REPORT_BYTES_DOWN};
+    int rc = 0;
+    for (int p = 0; p < 2 && !rc; p++) {
+        for (size_t i = 0; i < count; i++)
+            if (list[i].points.row_count)
+                plots[p].curve[plots[p].curve_count++] = (report_curve){.flight = &list[i].points, .x = work[p], .y = REPORT_ERR_P95,
+                                                                        .x_scale = 1, .y_scale = 1, .title = list[i].name};
+        rc = report_plot_put(out, content->folder, &plots[p], why, why_bytes);
+    }
+    for (size_t i = 0; i < count; i++) free(list[i].points.row);
+    return rc;
+}
+
+/* ---- pages ---- */
+
+static const char about_paper[] =
+    "Triangles and errors are means in flight; kilobytes are all that came down, from the first second on. Stable: the error's 95th "
+    "percentile is at most 10 % and 0.1 px above that of the same flight over a LAN, with as much ground drawn, for three rows; the paper "
+    "watched its triangles.";
+
+int report_matrix_html(FILE *out, const report_content *content, char *why, size_t why_bytes)
+{
+    int rc = 0;
+    fprintf(out, "<h2>Beside the paper</h2>\n<p>%s</p>\n<div class=\"wide\"><table>\n", about_paper);
+    put_paper(out, &html, content);
+    fputs("</table></div>\n<h2>Error since the start</h2>\n<div class=\"plots\">\n", out);
+    for (size_t i = 0; i < content->paper->row_count && !rc; i++)
+        if (is_first_of_group(content->paper, i)) rc = put_convergence(out, content, &content->paper->row[i], why, why_bytes);
+    fputs("</div>\n", out);
+    if (rc || !count_sweep(content)) return rc;
+    fputs("<h2>Error against work</h2>\n<p>One flight in several qualities: px is the error allowed in pixels, C the paper's.</p>\n<table>\n", out);
+    put_sweep(out, &html, content);
+    fputs("</table>\n<div class=\"plots\">\n", out);
+    rc = put_work(out, content, why, why_bytes);
+    fputs("</div>\n", out);
+    return rc;
+}
+
+void report_matrix_markdown(FILE *out, const report_content *content)
+{
+    fprintf(out, "\n## Beside the paper\n\n%s\n\n", about_paper);
+    put_paper(out, &markdown, content);
+    if (count_sweep(content)) {
+        fputs("\n## Error against work\n\n", out);
+        put_sweep(out, &markdown, content);
+    }
+    fputs("\n## All flights\n\n", out);
+}
