@@ -10,7 +10,7 @@ fail() { printf 'trinidad: %s\n' "$*" >&2; exit 1; }
 
 if [ ! -f "$dem" ]; then
     mkdir -p "$out/data"
-    (cd "$out/data" && apt-get download -qq "$package" >&2) || fail "cannot download the package $package"
+    (cd "$out/data" && apt-get download -qq "$package" >/dev/null 2>&1) || fail "cannot download the package $package"
     dpkg-deb -x "$out"/data/${package}_*.deb "$out/data"
     rm -f "$out"/data/${package}_*.deb
     [ -f "$dem" ] || fail "the package $package holds no trinidad.nc"
