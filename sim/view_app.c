@@ -15,29 +15,53 @@
 #define JITTER_WAIT_US 2000
 
 /* ---- opening ---- */
+static int is_soft(const char *backend) { return !strcmp(backend, "soft"); }
+
 static const sys_surface_api *surface_for(const view_options *o, enum sys_gl_kind gl)
 {
     if (!o->headless) return sys_surface_glfw();
+    if (gl == SYS_GL_NONE) return sys_surface_memory();
     return gl == SYS_GL_ES1 ? sys_surface_egl() : sys_surface_osmesa();
 }
 
-static int open_surface(view_app *app, const char *backend)
+static int open_surface_of(view_app *app, enum sys_gl_kind gl)
 {
-    enum sys_gl_kind gl = strcmp(backend, "gl") ? SYS_GL_ES1 : SYS_GL_DESKTOP;
     sys_surface_desc desc = {.title = "Farfield", .width = app->options->width, .height = app->options->height, .gl = gl};
     app->surface_api = surface_for(app->options, gl);
     return app->surface_api ? app->surface_api->open(&desc, &app->surface) : FF_ERR_UNSUPPORTED;
 }
 
+/* A window for the soft back end has a GL all the same, whichever it can have: to show the picture with. */
+static int open_soft_window(view_app *app)
+{
+    static const enum sys_gl_kind kinds[2] = {SYS_GL_ES1, SYS_GL_DESKTOP};
+    int rc = FF_ERR_UNSUPPORTED;
+    for (int i = 0; i < 2 && rc == FF_ERR_UNSUPPORTED; i++) {
+        const struct c3d_backend *backend = kinds[i] == SYS_GL_ES1 ? c3d_backend_gles1() : c3d_backend_gl();
+        if ((rc = open_surface_of(app, kinds[i])) < 0) continue;
+        rc = view_blit_open(&app->blit, backend, app->surface_api, app->options->width, app->options->height);
+        if (rc == FF_OK) return FF_OK;
+        app->surface_api->close(app->surface);
+        app->surface = NULL;
+    }
+    return rc;
+}
+
+static int open_surface(view_app *app, const char *backend)
+{
+    if (!is_soft(backend)) return open_surface_of(app, strcmp(backend, "gl") ? SYS_GL_ES1 : SYS_GL_DESKTOP);
+    return app->options->headless ? open_surface_of(app, SYS_GL_NONE) : open_soft_window(app);
+}
+
 static int create_client(view_app *app, const char *backend)
 {
     const view_options *o = app->options;
-    app->backend = strcmp(backend, "gl") ? c3d_backend_gles1() : c3d_backend_gl();
+    app->backend = is_soft(backend) ? c3d_backend_soft() : strcmp(backend, "gl") ? c3d_backend_gles1() : c3d_backend_gl();
     ff_client_desc desc = {
         .memory = app->memory, .memory_bytes = o->memory_bytes,
         .stream = app->link ? &app->stream : NULL, .pack = app->link ? NULL : &app->pack,
         .backend = app->backend, .surface_api = app->surface_api,
-        .width = (uint16_t)o->width, .height = (uint16_t)o->height,
+        .width = (uint16_t)o->width, .height = (uint16_t)o->height, .frame_format = C3D_RGBA8888,
         .quality = app->quality, .panorama = app->panorama,
         .use_thread = 1, .use_plain_arrays = (uint8_t)o->plain_arrays};
     return ff_client_create(&desc, &app->client);
@@ -49,6 +73,7 @@ static int open_with(view_app *app, const char *backend)
     if (rc < 0) return rc;
     rc = create_client(app, backend);
     if (rc == FF_OK) return FF_OK;
+    view_blit_close(&app->blit);
     app->surface_api->close(app->surface);
     app->surface = NULL;
     return rc;
@@ -120,6 +145,7 @@ void view_app_close(view_app *app)
 {
     view_wait_close(&app->wait);
     if (app->client) ff_client_destroy(app->client);
+    view_blit_close(&app->blit);
     if (app->surface) app->surface_api->close(app->surface);
     view_link_destroy(app->link);
     if (app->mapping.bytes) sys_unmap_file(&app->mapping);
@@ -159,6 +185,7 @@ static int draw(view_app *app)
     if (!device) return view_fail("cannot draw with this graphics library");
     if (app->show_hud || app->show_help) view_hud_draw(&app->hud, app, device);
     int rc = app->screenshot ? write_screenshot(app, device) : 0;
+    if (app->blit.device && view_blit_show(&app->blit, device) < 0) return view_fail("cannot show the picture in the window");
     app->surface_api->present(app->surface);
     return rc;
 }

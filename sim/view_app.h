@@ -2,6 +2,7 @@
 #ifndef VIEW_APP_H
 #define VIEW_APP_H
 
+#include "view_blit.h"
 #include "view_fly.h"
 #include "view_hud.h"
 #include "view_link.h"
@@ -23,6 +24,7 @@ typedef struct view_app {
     void *memory;
     ff_client *client;
     view_wait wait;               /* until the terrain is known */
+    view_blit blit;               /* with --backend soft: its picture into the window */
     view_fly fly;
     view_hud hud;
     view_script script;

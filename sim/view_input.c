@@ -160,7 +160,12 @@ void view_handle(view_app *app, const sys_event *event)
     switch (event->type) {
     case SYS_EVENT_QUIT: app->quit = 1; break;
     case SYS_EVENT_RESIZE:
-        view_fly_resize(&app->fly, event->u.resize.width, event->u.resize.height);
+        if (app->backend == c3d_backend_soft()) { /* its memory is for one size: the picture is stretched over the window */
+            app->blit.window_width = event->u.resize.width;
+            app->blit.window_height = event->u.resize.height;
+        } else {
+            view_fly_resize(&app->fly, event->u.resize.width, event->u.resize.height);
+        }
         app->redraw = 1;
         break;
     case SYS_EVENT_KEY:

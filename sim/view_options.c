@@ -17,7 +17,7 @@ static const char usage[] =
     "Fly over terrain from a server or a pack: the desktop emulator.\n"
     "\n"
     "Display:\n"
-    "      --backend gles1|gl    graphics library (default: gles1, else gl)\n"
+    "      --backend gles1|gl|soft  graphics library, or integers alone (default: gles1, else gl)\n"
     "      --size WxH            window in pixels (default 240x320)\n"
     "      --fov DEGREES         horizontal field of view, 0.1 to 170 (default 60)\n"
     "      --headless            no window: draw off screen\n"
@@ -137,7 +137,7 @@ static int take_value(view_options *o, int option, const char *text)
 {
     double value;
     switch (option) {
-    case OPT_BACKEND: o->backend = text; return strcmp(text, "gles1") && strcmp(text, "gl") ? -1 : 0;
+    case OPT_BACKEND: o->backend = text; return strcmp(text, "gles1") && strcmp(text, "gl") && strcmp(text, "soft") ? -1 : 0;
     case OPT_SIZE: return read_size(text, o);
     case OPT_QUALITY: return read_quality(text, &o->quality);
     case OPT_PANORAMA: return (o->panorama = read_switch(text)) < 0 ? -1 : 0;

@@ -8,7 +8,7 @@
 
 typedef struct view_options {
     const char *target;         /* ADDR:PORT or PACK */
-    const char *backend;        /* "gles1", "gl"; NULL: the first that works */
+    const char *backend;        /* "gles1", "gl", "soft"; NULL: the first that works */
     int width, height;
     const char *link;           /* spec for sim_link_parse; NULL: none */
     ff_quality quality;

@@ -68,12 +68,17 @@ result $? "the same seed gives the same CSV, byte for byte"
 flies seed2 $usual --backend none --seed 2
 ! cmp -s <(cut -d, -f8-12 "$work/first.csv") <(cut -d, -f8-12 "$work/seed2.csv")
 result $? "another seed gives other arrivals"
-for backend in gles1 none; do
+for backend in gles1 soft none; do
     flies "$backend" $usual --backend $backend
     cmp -s <(cut -d, -f1-15,17- "$work/first.csv") <(cut -d, -f1-15,17- "$work/$backend.csv")
     result $? "all but the pixels is the same with backend $backend"
 done
 is 'all(row["frame_hash"] == "0" * 16 for row in r)' "without a back end there are no pixels"
+flies narrow $usual --backend soft565
+cp "$work/narrow.csv" "$work/narrow1.csv"
+flies narrow $usual --backend soft565
+cmp -s "$work/narrow.csv" "$work/narrow1.csv" && ! cmp -s "$work/narrow.csv" "$work/soft.csv"
+result $? "RGB565 gives the same pixels twice, and others than RGBA8888"
 flies plain $usual --backend gl --plain-arrays
 cmp -s "$work/first.csv" "$work/plain.csv"
 result $? "plain arrays draw the same picture as vertex buffers"

@@ -114,6 +114,8 @@ toggles "window, gles1" "$windowed" --backend gles1
 toggles "window, gl" "$windowed" --backend gl
 toggles "headless, gles1" "" --headless --backend gles1
 toggles "headless, gl" "" --headless --backend gl
+toggles "window, soft" "$windowed" --backend soft
+toggles "headless, soft" "" --headless --backend soft
 
 # ---- events ----
 cat >"$work/events.txt" <<END
