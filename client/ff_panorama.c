@@ -108,6 +108,10 @@ static int refresh(ff_panorama *panorama, ff_requests *requests, const c3d_camer
     newest = panorama->next >= 0 ? panorama->next : panorama->active;
     if (newest >= 0 && ff_requests_cancel(requests, panorama->set[newest].key) && !panorama->desc.hold_back)
         return changed; /* the old set's last faces are still on their way: wait for the answer to the cancellation */
+    ff_request_counts counts;
+    ff_requests_get_counts(requests, &counts, NULL);
+    if (counts.panoramas_in_flight && !panorama->desc.hold_back)
+        return changed; /* of a set dropped when panoramas were switched off */
     begin_set(panorama, camera, now_us);
     return 1;
 }

@@ -227,6 +227,31 @@ static void one_set_outstanding_at_most(void **state)
     rig_close(&rig);
 }
 
+/* Switched off and on again at once: the request of before is cancelled, and answered before there is another one. */
+static void switched_panoramas_do_not_queue_up(void **state)
+{
+    (void)state;
+    client_rig rig;
+    rig_open(&rig, 0);
+    rig.no_faces = 1;
+    rig.desc.panorama.enabled = 1;
+    rig.desc.panorama.back_plane_wu = 1500 * METRE;
+    rig_client(&rig, 4 * MB);
+    ff_panorama_desc panorama = rig.desc.panorama;
+    for (int i = 0; i < 100; i++) {
+        rig_step(&rig, 50000);
+        for (int on = 0; i % 20 == 19 && on < 2; on++) {
+            panorama.enabled = (uint8_t)on;
+            ff_client_set_panorama(rig.client, &panorama);
+        }
+        rig.updates += (unsigned)ff_client_update(rig.client, rig.frame_us, &rig.camera); /* before the worker hears of it */
+    }
+    assert_true(rig.asked[FF_MSG_GET_PANORAMA] > 2);
+    assert_int_equal(rig_stats(&rig).panoramas_in_flight_high, 1);
+    assert_requests_add_up(&rig);
+    rig_close(&rig);
+}
+
 static void panorama_can_be_switched(void **state)
 {
     (void)state;
@@ -379,6 +404,7 @@ int main(void)
         cmocka_unit_test(same_script_same_hashes), cmocka_unit_test(what_is_off_costs_nothing),
         cmocka_unit_test(images_come_from_coarse_to_fine), cmocka_unit_test(panorama_follows_the_rules),
         cmocka_unit_test(one_set_outstanding_at_most), cmocka_unit_test(panorama_can_be_switched),
+        cmocka_unit_test(switched_panoramas_do_not_queue_up),
         cmocka_unit_test(little_memory_draws_coarser), cmocka_unit_test(wrong_descriptions_are_refused),
         cmocka_unit_test(low_power_is_coarser_and_recovers), cmocka_unit_test(interruption_asks_for_nothing),
         cmocka_unit_test(prefetch_asks_ahead_only_in_motion)
