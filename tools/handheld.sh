@@ -76,8 +76,9 @@ if has network; then
         [ "$(value protocol_errors "$work/live.txt")" = 0 ]
     result $? "ground comes over the socket"
     if has panorama && has jpeg; then
-        [ "$(value panorama_faces "$work/live.txt")" -gt 0 ]
-        result $? "and panoramas ($(value panorama_faces "$work/live.txt") faces)"
+        faces=$(($(value panorama_faces "$work/live.txt") + $(value panorama_faces_empty "$work/live.txt")))
+        [ "$faces" -gt 0 ]
+        result $? "and faces of panoramas ($faces)"
     fi
 else
     ! "${qemu[@]}" "$program" --server 127.0.0.1:1 >/dev/null 2>"$work/err.txt" && grep -q "not supported" "$work/err.txt"
