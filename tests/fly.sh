@@ -184,6 +184,8 @@ refused "an unknown back end" --pack "$work/hills.ffp" --backend vulkan
 refused "an unknown link" --pack "$work/hills.ffp" --link telex
 refused "an unknown quality" --pack "$work/hills.ffp" --quality superb
 refused "an unknown event" --pack "$work/hills.ffp" --event 3:earthquake
+refused "a link unknown in flight" --pack "$work/hills.ffp" --event 3:link=telex
+refused "a teleport to nowhere" --pack "$work/hills.ffp" --event 3:teleport=0.5,2
 refused "an impossible size" --pack "$work/hills.ffp" --size 0x0
 refused "faces too large" --pack "$work/hills.ffp" --face 2048
 refused "a server that is not there" --pack "$work/hills.ffp" --server 127.0.0.1:9 --backend none --seconds 0 --settle 1

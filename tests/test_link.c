@@ -362,6 +362,33 @@ static void test_cut_and_reconnect(void **state)
     sim_link_destroy(link);
 }
 
+/* What is under way arrives later, in order and whole, at the new rate and delay; the queue may grow and shrink; a stall ends. */
+static void test_change(void **state)
+{
+    (void)state;
+    sim_link_desc slow = plain(100, 1000, 0), fast = plain(10000, 5000, 0), narrow = plain(10000, 5000, 0);
+    slow.way[SIM_DOWN].queue_bytes = 2000;
+    slow.stall_every_ms = 1;
+    slow.stall_ms_min = slow.stall_ms_max = 1000000;
+    fast.way[SIM_DOWN].queue_bytes = 1 << 22;
+    narrow.way[SIM_DOWN].queue_bytes = 10;
+    static uint8_t sent[10000], got[10000];
+    for (size_t i = 0; i < sizeof sent; i++)
+        sent[i] = (uint8_t)(i * 7 + i / 256);
+    sim_link *link = sim_link_create(&slow, 1);
+    assert_int_equal(sim_link_send(link, SIM_DOWN, sent, sizeof sent, 0), 2000);
+    assert_int_equal(sim_link_recv(link, SIM_DOWN, got, sizeof got, 100 * SECOND), 0); /* stalled */
+    assert_int_equal(sim_link_change(link, &fast, 100 * SECOND), FF_OK);
+    assert_int_equal(sim_link_send(link, SIM_DOWN, sent + 2000, sizeof sent - 2000, 100 * SECOND), 8000);
+    assert_int_equal(sim_link_change(link, &narrow, 100 * SECOND), FF_OK);
+    assert_int_equal(sim_link_room(link, SIM_DOWN, 100 * SECOND), 0); /* more waits than may */
+    assert_int_equal(sim_link_recv(link, SIM_DOWN, got, sizeof got, 101 * SECOND + 4999), 9728); /* whole packets of 512 */
+    assert_int_equal(sim_link_recv(link, SIM_DOWN, got + 9728, sizeof got - 9728, 101 * SECOND + 5000), 272);
+    assert_memory_equal(sent, got, sizeof sent);
+    assert_int_equal(sim_link_room(link, SIM_DOWN, 102 * SECOND), 10);
+    sim_link_destroy(link);
+}
+
 static void test_streams(void **state)
 {
     (void)state;
@@ -396,7 +423,7 @@ int main(void)
         cmocka_unit_test(test_queue_limit),    cmocka_unit_test(test_stalls),      cmocka_unit_test(test_stall_rate),
         cmocka_unit_test(test_trace_replay),   cmocka_unit_test(test_trace_rate),  cmocka_unit_test(test_trace_errors),
         cmocka_unit_test(test_profiles),       cmocka_unit_test(test_parse),       cmocka_unit_test(test_cut_and_reconnect),
-        cmocka_unit_test(test_streams),
+        cmocka_unit_test(test_change),         cmocka_unit_test(test_streams),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
