@@ -91,7 +91,6 @@ typedef struct c3d_desc {
     /* For back ends that hold the picture themselves (soft); the others leave these alone. */
     uint8_t frame_format;        /* C3D_RGB565 (0, default) or C3D_RGBA8888 */
     uint16_t width, height;      /* largest viewport, default 240x320; in a larger one nothing is drawn */
-    uint8_t fast_textures;       /* 1: triangles that look flat take the nearest texel where others are bilinear (RGB565 only) */
     uint32_t texture_bytes;      /* of all textures together, with a rim of one texel each; default 16 KB a texture */
 } c3d_desc;
 

@@ -55,7 +55,6 @@ static int soft_open(void *opaque, const c3d_desc *desc, int *buffers)
     state->pixels_max = (uint32_t)sizes.pixels;
     state->texture_count = desc->texture_count;
     state->wide = desc->frame_format == C3D_RGBA8888;
-    state->fast_textures = desc->fast_textures;
     for (uint32_t i = 0; i < 512; i++) /* 2^61/n in the middle of the step */
         state->reciprocal[i] = (uint32_t)(((UINT64_C(1) << 61) / (((uint64_t)(i + 512) << 21) + (1 << 20))));
     for (int32_t i = 1; i < SOFT_EDGE_TABLE; i++) state->edge_reciprocal[i] = INT32_MAX / i;

@@ -12,7 +12,7 @@
  *   the screen. 0: nothing was drawn here, 1: a backdrop.
  *   Textures: bilinear, clamped to the edge, with 5-bit weights where a pixel takes its colour from the texture alone into RGB565,
  *   8-bit ones elsewhere. In long RGB565 spans over which a texel is as wide as 4 (8) pixels every 4th (8th) pixel is sampled and those
- *   between are blended. With c3d_desc.fast_textures small triangles take the nearest texel. Each texture is stored with a rim one texel wide, so that no pixel of a span needs a test.
+ *   between are blended. Each texture is stored with a rim one texel wide, so that no pixel of a span needs a test.
  *   Perspective: triangles up to 128 pixels over which linear interpolation is off by at most 1/4 texel (1/16 of the colours'
  *   difference) are interpolated linearly; all others are divided exactly every 8 to 64 pixels, by how fast depth changes: at one
  *   texel a pixel the error between is 1/4 texel, too.

@@ -85,7 +85,6 @@ struct soft_state {
     uint32_t heap_units, pixels_max;
     uint16_t texture_count;
     uint8_t wide;                /* 1: RGBA8888, 0: RGB565 */
-    uint8_t fast_textures;       /* small triangles take the nearest texel */
 
     uint32_t reciprocal[512];    /* of n/512, n = 512 .. 1023, see soft_reciprocal */
     int32_t edge_reciprocal[SOFT_EDGE_TABLE]; /* floor((2^31 - 1) / n) */

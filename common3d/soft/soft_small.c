@@ -89,7 +89,7 @@ static void make_slopes(const soft_state *state, const soft_shape *shape, soft_s
 
 /* One row of a texture as it is, into RGB565; an inner loop. Its vertices lie on the texture, and its pixels within a rim of them. */
 static inline void texture_row(soft_state *state, uint32_t first, uint32_t count, uint32_t w, uint32_t dw, const int32_t at[2],
-                               const int32_t step[2], int nearest)
+                               const int32_t step[2])
 {
     const soft_texture *texture = state->paint.texture;
     const uint16_t *texels = soft_texel_zero(texture);
@@ -99,7 +99,7 @@ static inline void texture_row(soft_state *state, uint32_t first, uint32_t count
     for (; depth < end; depth++, pixel++, w += dw, s += ds, t += dt) {
         if (w < *depth) continue;
         *depth = w;
-        *pixel = nearest ? texels[(t >> 16) * stride + (s >> 16)] : soft_pixel_of(soft_sample_565(texels, stride, s, t));
+        *pixel = soft_pixel_of(soft_sample_565(texels, stride, s, t));
     }
 }
 
@@ -108,17 +108,12 @@ static void texture_rows(soft_state *state, soft_walk *walk, soft_slopes *slopes
 {
     uint32_t w = slopes->at[W], s = slopes->at[SOFT_S], t = slopes->at[SOFT_T];
     uint32_t dw = (uint32_t)slopes->across[W], ds = (uint32_t)slopes->across[SOFT_S], dt = (uint32_t)slopes->across[SOFT_T];
-    int nearest = state->fast_textures;
-    if (nearest) s += 32768, t += 32768; /* the texel that the pixel lies in */
     do {
         soft_walk_row(state, walk);
         if (walk->from < walk->to) {
             uint32_t from = (uint32_t)walk->from, first = (uint32_t)walk->row * state->width + from;
             const int32_t at[2] = {(int32_t)(s + ds * from), (int32_t)(t + dt * from)}, step[2] = {(int32_t)ds, (int32_t)dt};
-            if (nearest)
-                texture_row(state, first, (uint32_t)walk->to - from, w + dw * from, dw, at, step, 1);
-            else
-                texture_row(state, first, (uint32_t)walk->to - from, w + dw * from, dw, at, step, 0);
+            texture_row(state, first, (uint32_t)walk->to - from, w + dw * from, dw, at, step);
         }
         w += (uint32_t)slopes->down[W];
         s += (uint32_t)slopes->down[SOFT_S];
