@@ -160,6 +160,7 @@ def main():
     parse.add_argument("pack", nargs="*", help="instead of three small ones made here")
     given = parse.parse_args()
     os.makedirs(given.work, exist_ok=True)
+    os.environ.setdefault("LSAN_OPTIONS", f"suppressions={os.path.dirname(os.path.abspath(__file__))}/lsan.supp:print_suppressions=0")
     packs, failed, flown, seed = given.pack or own_packs(given), 0, 0, given.first
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
         waiting = set()
