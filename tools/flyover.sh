@@ -1,6 +1,6 @@
 #!/bin/bash
 # The flights of Hybrid's Table 3 in simulated time, and a report beside its numbers. Usage: flyover.sh BIN_DIR OUT_DIR.
-#   QUICK=1             few flights of 60 s
+#   QUICK=1             few flights of 60 s, into OUT_DIR/quick
 #   FARFIELD_DATA=DIR   holds puget-sound-gatech/; without it the ground is Trinidad, Colorado, from a Debian package
 #   FLYOVER_PACK=PACK   flies over this pack instead
 #   JOBS=N              flights side by side (default: one per processor)
@@ -12,6 +12,7 @@ bin=$1
 out=$2
 : "${FARFIELD_DATA:=../shared/data}" "${JOBS:=$(nproc)}" "${QUICK:=}" "${FLYOVER_PACK:=}"
 : "${SECONDS_EACH:=$([ -n "$QUICK" ] && echo 60 || echo 300)}"
+flights=$out${QUICK:+/quick} # their rows and the report; packs and the decoded ground are shared
 settle_s=15
 
 say() { printf '== %s\n' "$*"; }
@@ -78,38 +79,38 @@ fly_one() {
     shift
     set -- --start 0.4 --height 100 --seconds "$SECONDS_EACH" --settle $settle_s --seed 1 --backend none --audit on --check off "$@"
     key="$flyover_key $*"
-    if [ -f "$out/$name.csv" ] && [ "$(cat "$out/$name.key" 2>/dev/null)" = "$key" ]; then
+    if [ -f "$flights/$name.csv" ] && [ "$(cat "$flights/$name.key" 2>/dev/null)" = "$key" ]; then
         echo "$name: flown before"
         return
     fi
-    rm -f "$out/$name.key"
-    "$bin/farfield-fly" --pack "$pack" --ground-cache "$out/truth.ground" --csv "$out/$name.csv.part" --json "$@" \
-        >"$out/$name.json" 2>"$out/$name.log" || { tail -n 1 "$out/$name.log" >&2; return 255; } # 255: xargs stops
-    mv "$out/$name.csv.part" "$out/$name.csv"
-    printf '%s\n' "$key" >"$out/$name.key"
-    echo "$name: $((SECONDS - started)) s ($(find "$out" -maxdepth 1 -name '*.csv' | wc -l) of $(wc -l <"$out/flights") finished)"
+    rm -f "$flights/$name.key"
+    "$bin/farfield-fly" --pack "$pack" --ground-cache "$out/truth.ground" --csv "$flights/$name.csv.part" --json "$@" \
+        >"$flights/$name.json" 2>"$flights/$name.log" || { tail -n 1 "$flights/$name.log" >&2; return 255; } # 255: xargs stops
+    mv "$flights/$name.csv.part" "$flights/$name.csv"
+    printf '%s\n' "$key" >"$flights/$name.key"
+    echo "$name: $((SECONDS - started)) s ($(find "$flights" -maxdepth 1 -name '*.csv' | wc -l) of $(wc -l <"$flights/list") finished)"
 }
 
 fly_all() {
     flyover_key=$(cat "$bin/farfield-fly" "$pack" | sha256sum | cut -d' ' -f1)
-    export flyover_key pack out bin settle_s SECONDS_EACH
+    export flyover_key pack out flights bin settle_s SECONDS_EACH
     "$bin/farfield-fly" --pack "$pack" --ground-cache "$out/truth.ground" --audit on --backend none --seconds 0 --settle 0 2>"$out/truth.log" ||
         { tail -n 1 "$out/truth.log" >&2; exit 1; }
     export -f fly_one
-    list_flights >"$out/flights"
+    list_flights >"$flights/list"
     # shellcheck disable=SC2016
-    xargs -P "$JOBS" -L 1 bash -c 'set -euo pipefail; fly_one "$@"' fly <"$out/flights"
+    xargs -P "$JOBS" -L 1 bash -c 'set -euo pipefail; fly_one "$@"' fly <"$flights/list"
 }
 
 main() {
     local -a csv
-    mkdir -p "$out"
+    mkdir -p "$flights"
     find_ground
     say "$(basename "$pack"): flights of $SECONDS_EACH s, $JOBS side by side"
     fly_all
-    mapfile -t csv < <(sed "s|^\([^ ]*\).*|$out/\1.csv|" "$out/flights")
+    mapfile -t csv < <(sed "s|^\([^ ]*\).*|$flights/\1.csv|" "$flights/list")
     "$bin/farfield-report" --paper "$here/hybrid_table3.csv" --settle $settle_s --title "The flights of Hybrid's Table 3 over $ground" \
-        "${csv[@]}" -o "$out/report"
+        "${csv[@]}" -o "$flights/report"
 }
 
 main
