@@ -81,7 +81,7 @@ static int set_up(const soft_state *state, soft_planes *planes, const soft_verte
     int fog = paint->fog && (a->fog_q8 < 256 || b->fog_q8 < 256 || c->fog_q8 < 256);
     planes->first = paint->texture ? SOFT_S : SOFT_R;
     planes->last = fog ? SOFT_F : paint->texture && paint->white ? SOFT_T : SOFT_B;
-    int down = 12 + 2 - soft_leading_zeros(w); /* of Q42: w below 2^30, 2^31 with the bias of lines on top */
+    int down = 12 + 2 - soft_leading_zeros(w); /* of Q42: w below 2^30 */
     planes->w_shift = 12 - down;
     return down;
 }

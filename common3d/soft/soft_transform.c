@@ -8,6 +8,7 @@
 #include <string.h>
 
 #define WORLD_MAX ((int64_t)1 << 30)
+#define W_MAX ((1u << 30) - 1) /* near/z in Q30: at the near plane rounding, and ON_TOP anywhere near, would pass it */
 
 /* Largest offset of a vertex from the camera along any axis, wu. */
 static int64_t reach_wu(const c3d_resolved_draw *resolved)
@@ -94,7 +95,7 @@ void soft_project(const soft_state *state, soft_vertex *vertex)
     uint32_t w = (uint32_t)(((uint64_t)r * (uint32_t)space->near_norm) >> 31);
     w = w_shift <= 0 ? w : w_shift > 30 ? 0 : w >> w_shift;
     if (state->paint.on_top) w += w >> 6;
-    vertex->w = w < 16 ? 16 : w;
+    vertex->w = w < 16 ? 16 : w > W_MAX ? W_MAX : w;
     project_xy(state, vertex, (int32_t)(p > INT32_MAX ? INT32_MAX : p), shift);
 }
 
