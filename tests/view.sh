@@ -256,12 +256,12 @@ printf '0 settle\n0 screenshot %s\n1 key l\n2 key l\n30 settle\n' "$work/server.
 result $? "over a link to a server" && [ ! -s "$work/error" ] || cat "$work/error"
 [ "$(value nodes_held)" -gt 20 ] && [ "$(value bytes_down)" -gt 1000 ]; result $? "the ground came from the server"
 [ "$(value reconnects)" -ge 1 ]; result $? "another link profile: connected anew"
-"$view" "$address" --headless --panorama on --script "$work/toggles.txt" --json >"$work/said" 2>"$work/error"
+"$view" "$address" --headless --panorama on --at 3840,300,900 --script "$work/toggles.txt" --json >"$work/said" 2>"$work/error"
 [ $? = 0 ] && [ "$(value panoramas)" -ge 1 ]; result $? "panoramas come from the server"
 stop_server
 "$view" "$address" --headless --frames 30 --screenshot "$work/waiting.png" --json >"$work/said" 2>"$work/error"
 [ $? = 0 ] && [ -s "$work/waiting.png" ] && [ ! -s "$work/error" ] && [ "$(value nodes_held)" = 0 ]; result $? "a server that is not there is waited for"
-"$view" "$pack" --headless --link umts --panorama on --script "$work/toggles.txt" --json >"$work/said" 2>"$work/error"
+"$view" "$pack" --headless --link umts --panorama on --at 3840,300,900 --script "$work/toggles.txt" --json >"$work/said" 2>"$work/error"
 [ $? = 0 ] && [ "$(value bytes_down)" -gt 1000 ] && [ "$(value panoramas)" -ge 1 ]; result $? "a pack behind a link of its own, with panoramas"
 
 # ---- wrong words ----
