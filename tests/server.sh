@@ -52,6 +52,7 @@ refused "a stray argument" "stray" --pack "$work/hills.ffp" stray
 with_server() { # FUNCTION ARGUMENTS
     local check=$1 pid line
     shift
+    : >"$work/log" # the line looked for below is not the last server's
     "$BIN/farfield-server" --pack "$work/hills.ffp" --listen 127.0.0.1:0 "$@" >"$work/log" 2>"$work/err" </dev/null &
     pid=$!
     for ((tries = 0; tries < 1000; tries++)); do

@@ -20,7 +20,7 @@ trap 'exit 130' INT TERM
 # The address in a program's "listening on ADDR:PORT" line, once it is there.
 address_of() {
     tries=0
-    until address=$(sed -n 's/.*listening on \([^ ,]*\).*/\1/p' "$1") && [ -n "$address" ]; do
+    until address=$(sed -n 's/.*listening on \([^ ,]*\).*/\1/p' "$1" 2>/dev/null) && [ -n "$address" ]; do
         tries=$((tries + 1))
         [ $tries -lt 100 ] || fail "$2 did not start: $(cat "$1")"
         sleep 0.1
@@ -39,6 +39,7 @@ fly() {
 }
 
 mkdir -p "$out"
+rm -f "$out/server.log" "$out/link.log" # an earlier run's addresses
 say "terrain: Trinidad, Colorado (USGS, public domain) from Debian's libncarg-data"
 dem=$("$(dirname "$0")/trinidad.sh" "$out") || fail "no terrain"
 
