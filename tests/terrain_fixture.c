@@ -253,3 +253,16 @@ ff_quality fixture_quality(enum ff_measure measure)
     return (ff_quality){.measure = measure, .c_q8 = 3 * 256, .error_px_q8 = 2 * 256, .depth_max = 0, .sigma_q8 = 320,
                         .view_wu = 30000 * FF_WU_PER_METRE};
 }
+
+ff_tree_stats fixture_stats(const terrain_fixture *fx)
+{
+    ff_tree_stats stats;
+    ff_tree_get_stats(fx->tree, &stats);
+    return stats;
+}
+
+void fixture_usual(terrain_fixture *fx, uint32_t nodes)
+{
+    fixture_make(fx, 3, 7, 3, 2, fixture_hills);
+    fixture_tree(fx, nodes, 64);
+}

@@ -26,6 +26,9 @@ void fixture_make(terrain_fixture *fx, unsigned node_log2, unsigned tile_log2, u
 /* (Re)makes the tree, and the decoder for fx->info. */
 void fixture_tree(terrain_fixture *fx, uint32_t node_count, uint32_t wish_count);
 void fixture_free(terrain_fixture *fx);
+/* Both at once for what most tests fly over: 3 x 2 tiles of 1280 m, hills, nodes of 8 cells, 5 levels. */
+void fixture_usual(terrain_fixture *fx, uint32_t node_count);
+ff_tree_stats fixture_stats(const terrain_fixture *fx);
 
 /* What every decoder holds for a node. */
 void fixture_decoded(const terrain_fixture *fx, ff_key key, uint16_t *heights);

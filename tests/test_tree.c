@@ -12,20 +12,6 @@
 
 #define M FF_WU_PER_METRE
 
-static ff_tree_stats stats_of(const terrain_fixture *fx)
-{
-    ff_tree_stats stats;
-    ff_tree_get_stats(fx->tree, &stats);
-    return stats;
-}
-
-/* 3 x 2 tiles of 1280 m, nodes of 8 cells, 5 levels. */
-static void make_usual(terrain_fixture *fx, uint32_t nodes)
-{
-    fixture_make(fx, 3, 7, 3, 2, fixture_hills);
-    fixture_tree(fx, nodes, 64);
-}
-
 /* ---- measures ---- */
 
 static double node_f(const terrain_fixture *fx, const ff_drawn *drawn, const ff_view *view, const ff_quality *quality)
@@ -44,7 +30,7 @@ static void test_distance_measure(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    make_usual(&fx, 3000);
+    fixture_usual(&fx, 3000);
     ff_view view = fixture_view_above(&fx, 1500, 1100, 100, 0, -30);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     quality.c_q8 = 400;
@@ -72,7 +58,7 @@ static void test_pixel_measure(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    make_usual(&fx, 3000);
+    fixture_usual(&fx, 3000);
     ff_view view = fixture_view(1900, 600, 900, 0, -30);
     ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
     uint32_t last = 0;
@@ -80,7 +66,7 @@ static void test_pixel_measure(void **state)
         quality.error_px_q8 = pixels * 256;
         fixture_settle(&fx, &view, &quality, 200);
         fixture_assert_whole(&fx);
-        ff_tree_stats stats = stats_of(&fx);
+        ff_tree_stats stats = fixture_stats(&fx);
         assert_true(stats.error_px_q8 <= (uint32_t)quality.error_px_q8);
         assert_true(stats.nodes_cut > last);
         last = stats.nodes_cut;
@@ -98,7 +84,7 @@ static void test_settled_cut_does_not_depend_on_order(void **state)
         uint64_t expected = 0;
         for (uint64_t seed = 0; seed < 6; seed++) {
             terrain_fixture fx;
-            make_usual(&fx, 4000);
+            fixture_usual(&fx, 4000);
             fixture_link link = {.loss_percent = (uint32_t)seed * 10, .per_frame = 5};
             sys_random_seed(&link.random, seed, 3);
             for (unsigned frame = 0; frame < 2000; frame++) {
@@ -144,7 +130,7 @@ static void test_window_of_tiles(void **state)
         assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 1);
         assert_int_equal(ff_tree_wishes(fx.tree, &wish), cases[i].tiles);
         fixture_settle(&fx, &view, &quality, 10);
-        assert_int_equal(stats_of(&fx).nodes_cut, cases[i].tiles);
+        assert_int_equal(fixture_stats(&fx).nodes_cut, cases[i].tiles);
         fixture_assert_whole(&fx);
     }
     /* A thousand kilometres up nothing is within view: nothing is asked for. */
@@ -165,9 +151,9 @@ static void test_one_node_world(void **state)
     ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
     assert_int_equal(fixture_settle(&fx, &view, &quality, 10), 1);
     fixture_assert_whole(&fx);
-    assert_int_equal(stats_of(&fx).triangles, 128);
+    assert_int_equal(fixture_stats(&fx).triangles, 128);
     assert_int_equal(fixture_deliver(&fx, ff_key_make(0, 0, 0), 0), FF_OK); /* again: no harm */
-    assert_int_equal(stats_of(&fx).nodes_held, 1);
+    assert_int_equal(fixture_stats(&fx).nodes_held, 1);
     fixture_free(&fx);
 }
 
@@ -177,7 +163,7 @@ static void test_refinement_of_one_spot_pulls_its_neighbours(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    make_usual(&fx, 3000);
+    fixture_usual(&fx, 3000);
     ff_view view = fixture_view_above(&fx, 1285, 1275, 30, 0, -30); /* beside a corner of four tiles */
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     quality.c_q8 = 300;
@@ -188,7 +174,7 @@ static void test_refinement_of_one_spot_pulls_its_neighbours(void **state)
     for (uint32_t i = 0; i < count; i++)
         finest = ff_key_level(cut[i].key) > finest ? ff_key_level(cut[i].key) : finest;
     assert_int_equal(finest, 4);
-    assert_true(stats_of(&fx).stitched > 0);
+    assert_true(fixture_stats(&fx).stitched > 0);
     fixture_free(&fx);
 }
 
@@ -202,7 +188,7 @@ static void test_flat_ground_asks_for_nothing_below(void **state)
         ff_view view = fixture_view(1280, 1280, 130, 0, -5);
         ff_quality quality = fixture_quality((enum ff_measure)measure);
         assert_int_equal(fixture_settle(&fx, &view, &quality, 100), 4);
-        ff_tree_stats stats = stats_of(&fx);
+        ff_tree_stats stats = fixture_stats(&fx);
         assert_int_equal(stats.nodes_held, 4);
         assert_int_equal(stats.error_px_q8, 0);
         assert_int_equal(stats.flat, measure == FF_MEASURE_DISTANCE ? 4 : 0);
@@ -231,7 +217,7 @@ static void test_flat_ground_beside_rough(void **state)
     }
     assert_int_equal(rough_and_coarse, 0);
     assert_true(flat_and_coarse > 0);
-    assert_true(stats_of(&fx).flat > 0);
+    assert_true(fixture_stats(&fx).flat > 0);
     fixture_free(&fx);
 }
 
@@ -241,7 +227,7 @@ static void test_wishes_come_in_order(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    make_usual(&fx, 3000);
+    fixture_usual(&fx, 3000);
     ff_view view = fixture_view(640, 640, 300, 90, -10);
     ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
     const ff_wish *wish;
@@ -291,7 +277,7 @@ static void test_still_wanted(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    make_usual(&fx, 3000);
+    fixture_usual(&fx, 3000);
     ff_view view = fixture_view(640, 640, 300, 0, -30);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     quality.view_wu = 1500 * M;
@@ -329,14 +315,14 @@ static void test_bad_deliveries(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    make_usual(&fx, 100);
+    fixture_usual(&fx, 100);
     int32_t value[FF_REFINED_HEIGHTS_MAX] = {0};
     ff_residuals residuals = {.count = 81, .value = value};
     assert_int_equal(ff_tree_deliver_root(fx.tree, 6, &residuals), FF_ERR_RANGE);
     assert_int_equal(ff_tree_deliver_children(fx.tree, ff_key_make(0, 4, 0), &residuals), FF_ERR_RANGE);
     assert_int_equal(ff_tree_deliver_children(fx.tree, ff_key_make(0, 1, 7), &residuals), FF_ERR_RANGE);
     assert_int_equal(ff_tree_deliver_children(fx.tree, ff_key_make(0, 1, 3), &residuals), FF_ERR_NOT_FOUND);
-    assert_int_equal(stats_of(&fx).orphans, 1);
+    assert_int_equal(fixture_stats(&fx).orphans, 1);
     fixture_free(&fx);
 }
 
@@ -364,14 +350,14 @@ static void test_select_skips_when_nothing_changed(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    make_usual(&fx, 3000);
+    fixture_usual(&fx, 3000);
     ff_view view = fixture_view(640, 640, 300, 0, -30);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 1);
     assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 0);
     view.camera.near_wu = 17; /* does not concern the ground */
     assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 0);
-    assert_int_equal(stats_of(&fx).selects_skipped, 2);
+    assert_int_equal(fixture_stats(&fx).selects_skipped, 2);
     fixture_deliver(&fx, ff_key_make(1, 0, 0), 0);
     assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 1);
     fixture_deliver(&fx, ff_key_make(1, 0, 0), 0); /* held already */

@@ -9,20 +9,6 @@
 
 #define M FF_WU_PER_METRE
 
-static ff_tree_stats stats_of(const terrain_fixture *fx)
-{
-    ff_tree_stats stats;
-    ff_tree_get_stats(fx->tree, &stats);
-    return stats;
-}
-
-/* 3 x 2 tiles of 1280 m, nodes of 8 cells, 5 levels. */
-static void make_usual(terrain_fixture *fx, uint32_t nodes)
-{
-    fixture_make(fx, 3, 7, 3, 2, fixture_hills);
-    fixture_tree(fx, nodes, 64);
-}
-
 /* ---- pools ---- */
 
 /* A still camera and every pool size: after a while nothing is wished for, evicted or redrawn any more. */
@@ -32,18 +18,18 @@ static void test_pools_settle(void **state)
     for (uint32_t nodes = 8; nodes < 500; nodes += nodes < 40 ? 1 : 37) {
         for (int measure = FF_MEASURE_DISTANCE; measure <= FF_MEASURE_PIXELS; measure++) {
             terrain_fixture fx;
-            make_usual(&fx, nodes);
+            fixture_usual(&fx, nodes);
             ff_view view = fixture_view_above(&fx, 1400, 1100, 50, 20, -15);
             ff_quality quality = fixture_quality((enum ff_measure)measure);
             fixture_settle(&fx, &view, &quality, 1000);
-            ff_tree_stats settled = stats_of(&fx);
+            ff_tree_stats settled = fixture_stats(&fx);
             fixture_assert_whole(&fx);
             for (unsigned frame = 0; frame < 300; frame++) {
                 const ff_wish *wish;
                 assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 0);
                 assert_int_equal(ff_tree_wishes(fx.tree, &wish), 0);
             }
-            assert_int_equal(stats_of(&fx).nodes_held, settled.nodes_held);
+            assert_int_equal(fixture_stats(&fx).nodes_held, settled.nodes_held);
             if (nodes < 200)
                 assert_true(settled.nodes_held > nodes - 4);
             fixture_free(&fx);
@@ -55,7 +41,7 @@ static void test_full_pool_stays_still_for_10000_frames(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    make_usual(&fx, 90);
+    fixture_usual(&fx, 90);
     fixture_link link = {.per_frame = 3};
     sys_random_seed(&link.random, 5, 5);
     ff_view view = fixture_view_above(&fx, 1400, 1100, 50, 20, -15);
@@ -67,7 +53,7 @@ static void test_full_pool_stays_still_for_10000_frames(void **state)
         fixture_link_step(&fx, &link);
     }
     assert_true(changed_last < 200);
-    assert_true(stats_of(&fx).nodes_held > 86);
+    assert_true(fixture_stats(&fx).nodes_held > 86);
     fixture_free(&fx);
 }
 
@@ -85,7 +71,7 @@ static void test_more_roots_than_slots(void **state)
         fixture_assert_whole(&fx);
         const ff_wish *wish;
         assert_int_equal(ff_tree_wishes(fx.tree, &wish), 0);
-        assert_int_equal(stats_of(&fx).nodes_cut, 8);
+        assert_int_equal(fixture_stats(&fx).nodes_cut, 8);
         int32_t z;
         assert_int_equal(ff_tree_drawn_height(fx.tree, x * M, 3300 * M, &z), 1);
     }
@@ -96,7 +82,7 @@ static void test_cache_serves_a_return(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    make_usual(&fx, 4000);
+    fixture_usual(&fx, 4000);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     quality.c_q8 = 256;
     ff_view here = fixture_view(600, 600, 300, 0, -30), there = fixture_view(3000, 1900, 300, 0, -30);
@@ -124,8 +110,8 @@ static void test_own_family_is_spared(void **state)
         assert_int_equal(fixture_deliver(&fx, ff_key_make(0, 0, 0), 1), FF_OK);
         ff_tree_select(fx.tree, &view, &quality);
         assert_int_equal(fixture_deliver(&fx, ff_key_make(0, 1, 3), 1), FF_ERR_FULL); /* its own family is not dropped for it */
-        assert_int_equal(stats_of(&fx).nodes_held, 5);
-        assert_int_equal(stats_of(&fx).pool_full, 1);
+        assert_int_equal(fixture_stats(&fx).nodes_held, 5);
+        assert_int_equal(fixture_stats(&fx).pool_full, 1);
         fixture_free(&fx);
     }
 }
@@ -142,7 +128,7 @@ static void test_user_words(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    make_usual(&fx, 40);
+    fixture_usual(&fx, 40);
     ff_tree_on_evict(fx.tree, note_eviction, &evicted_users);
     evicted_users = 0;
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
@@ -205,7 +191,7 @@ static void test_a_long_thin_world_of_many_tiles(void **state)
         view.camera.pos_wu[1] = view.centre_wu[1] = y * M;
         fixture_settle(&fx, &view, &quality, 30);
         fixture_assert_whole(&fx);
-        assert_true(stats_of(&fx).nodes_cut > 60);
+        assert_true(fixture_stats(&fx).nodes_cut > 60);
     }
     fixture_free(&fx);
 }

@@ -11,20 +11,6 @@
 
 #define M FF_WU_PER_METRE
 
-static ff_tree_stats stats_of(const terrain_fixture *fx)
-{
-    ff_tree_stats stats;
-    ff_tree_get_stats(fx->tree, &stats);
-    return stats;
-}
-
-/* 3 x 2 tiles of 1280 m, nodes of 8 cells, 5 levels. */
-static void make_usual(terrain_fixture *fx, uint32_t nodes)
-{
-    fixture_make(fx, 3, 7, 3, 2, fixture_hills);
-    fixture_tree(fx, nodes, 64);
-}
-
 /* ---- culling, against a reference in double precision ---- */
 
 static int projects_inside(const c3d_camera *camera, const double point[3])
@@ -67,7 +53,7 @@ static void test_culling_never_drops_what_is_visible(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    make_usual(&fx, 3000);
+    fixture_usual(&fx, 3000);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     quality.c_q8 = 600;
     quality.view_wu = INT32_MAX;
@@ -89,7 +75,7 @@ static void test_culling_never_drops_what_is_visible(void **state)
         view.camera.focal_q8 = c3d_focal_q8((int32_t)((int64_t)tenths[i % 5] * 65536 / 3600), 240);
         ff_tree_select(fx.tree, &view, &quality);
         assert_nothing_visible_culled(&fx, &view, &seen);
-        culled += stats_of(&fx).nodes_cut - stats_of(&fx).nodes_drawn;
+        culled += fixture_stats(&fx).nodes_cut - fixture_stats(&fx).nodes_drawn;
     }
     assert_true(seen > 1000 && culled > 1000);
     fixture_free(&fx);
@@ -99,11 +85,11 @@ static void test_culling_is_of_use(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    make_usual(&fx, 3000);
+    fixture_usual(&fx, 3000);
     ff_view view = fixture_view(1920, 1280, 500, 0, 0);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     fixture_settle(&fx, &view, &quality, 200);
-    ff_tree_stats stats = stats_of(&fx);
+    ff_tree_stats stats = fixture_stats(&fx);
     assert_true(stats.nodes_drawn * 3 < stats.nodes_cut); /* 60 degrees of 360, and the nearest */
     const ff_drawn *drawn;
     uint32_t count = ff_tree_drawn(fx.tree, &drawn);
@@ -116,7 +102,7 @@ static void test_drawn_nearest_first(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    make_usual(&fx, 3000);
+    fixture_usual(&fx, 3000);
     ff_view view = fixture_view(300, 300, 700, 45, -10);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     fixture_settle(&fx, &view, &quality, 200);
@@ -150,7 +136,7 @@ static void test_vertices_and_height_agree(void **state)
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     quality.c_q8 = 300;
     fixture_settle(&fx, &view, &quality, 200);
-    assert_true(stats_of(&fx).stitched > 0);
+    assert_true(fixture_stats(&fx).stitched > 0);
     const ff_drawn *cut;
     c3d_vertex vertex[81];
     uint32_t count = ff_tree_cut(fx.tree, &cut);
@@ -181,7 +167,7 @@ static void test_height_has_no_steps(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    make_usual(&fx, 3000);
+    fixture_usual(&fx, 3000);
     ff_view view = fixture_view(1500, 1100, 700, 45, -10);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     quality.c_q8 = 250;
@@ -207,7 +193,7 @@ static void test_nothing_drawn_beyond_view(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    make_usual(&fx, 3000);
+    fixture_usual(&fx, 3000);
     ff_view view = fixture_view_above(&fx, 1920, 1280, 200, 0, -10);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     quality.view_wu = 400 * M;
