@@ -8,8 +8,8 @@
 #define RADIUS 256
 
 /* Rings of vertices from nadir to zenith: height and distance from the axis in vertex units. Below the horizon the backdrop
- * turns to the colour of bare ground, 10 to 20 degrees down (distant ground above that ends in fog): where two nodes' rounding of a
- * shared border leaves a pixel open, it should not sparkle. */
+ * turns to the colour of bare ground, 10 to 20 degrees down (distant ground above that ends in fog): what shows there is ground
+ * that has not come, or a pixel beside a node too far away for the common frame (ff_ground_frame.h), and should not sparkle. */
 static const struct { int16_t radius, z; uint8_t rgb[3]; } ring[LEVELS] = {
     {0, -256, {138, 126, 102}}, {240, -90, {138, 126, 102}}, {252, -45, {200, 216, 232}}, {256, 0, {200, 216, 232}},
     {240, 90, {150, 186, 222}}, {150, 210, {104, 152, 206}}, {0, 256, {84, 134, 194}}

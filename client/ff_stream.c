@@ -7,7 +7,7 @@
 #define CONNECT_US_MAX 30000000
 #define PING_AFTER_US 60000000 /* far below the server's idle limit */
 #define RECEIVE_ROUNDS_MAX 16  /* a step stays short, whatever the link brings */
-#define PATIENCE_MAX 4         /* time-outs double so often while no answer has ever come: the link may be slower than thought */
+#define PATIENCE_MAX 4         /* time-outs grow twofold so often while no answer has ever come: the link may be slower than thought */
 #define PATIENCE_ROUND_TRIPS 4 /* and are at least so long when one has */
 
 void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsigned in_flight_max, uint32_t answer_timeout_ms,

@@ -79,7 +79,6 @@ typedef struct c3d_frame {
     uint32_t clear_colour;
     int32_t fog_start_wu, fog_end_wu; /* linear, by eye depth; end 0: no fog */
     uint32_t fog_colour;
-    int wireframe_only;     /* reserved for the emulator: clear and draw nothing textured */
 } c3d_frame;
 
 typedef struct c3d_desc {

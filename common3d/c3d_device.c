@@ -261,7 +261,6 @@ void c3d_begin(c3d_device *device, const c3d_frame *frame)
 void c3d_draw_strip(c3d_device *device, const c3d_draw *draw)
 {
     int textured = (draw->flags & C3D_DRAW_TEXTURED) != 0;
-    if (textured && device->frame.wireframe_only) return;
     const mesh_slot *mesh = c3d_pool_get(&device->meshes, draw->mesh.id);
     const strip_slot *strip = c3d_pool_get(&device->strips, draw->strip.id);
     const texture_slot *texture = textured ? c3d_pool_get(&device->textures, draw->texture.id) : NULL;

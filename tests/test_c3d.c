@@ -384,24 +384,6 @@ static void overlays_lie_on_top(void **state)
     }
 }
 
-static void wireframe_only_leaves_textures_out(void **state)
-{
-    (void)state;
-    EACH_KIT(kit)
-    {
-        c3d_stats stats;
-        c3d_texture texture = quarters(kit);
-        uint8_t rgb[WIDTH * HEIGHT * 3];
-        c3d_draw draw = picture_square(kit, PICTURE_SOUTH, -4 * M, 8 * M, -4 * M, 8 * M, PICTURE_WHITE);
-        draw_textured(&draw, texture, C3D_DRAW_TEX_XZ);
-        kit->frame.wireframe_only = 1;
-        picture_render(kit, &draw, 1, rgb);
-        c3d_get_stats(kit->device, &stats);
-        assert_int_equal(stats.frame_draws, 0);
-        c3d_texture_free(kit->device, texture);
-    }
-}
-
 int main(void)
 {
 #define PICTURE_TEST(name) cmocka_unit_test_setup(name, keep_frame)
@@ -420,7 +402,6 @@ int main(void)
         PICTURE_TEST(wireframes_are_the_edges),
         PICTURE_TEST(lines_on_top_keep_their_pixels),
         PICTURE_TEST(overlays_lie_on_top),
-        PICTURE_TEST(wireframe_only_leaves_textures_out),
     };
     return cmocka_run_group_tests(tests, open_kits, close_kits);
 }
