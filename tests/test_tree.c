@@ -273,44 +273,6 @@ static void test_wish_list_is_bounded_and_keeps_the_best(void **state)
     fixture_free(&fx);
 }
 
-static void test_still_wanted(void **state)
-{
-    (void)state;
-    terrain_fixture fx;
-    fixture_usual(&fx, 3000);
-    ff_view view = fixture_view(640, 640, 300, 0, -30);
-    ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
-    quality.view_wu = 1500 * M;
-    ff_key root = ff_key_make(0, 0, 0);
-    assert_int_equal(ff_tree_still_wanted(fx.tree, root, 0), 0); /* no view yet */
-    ff_tree_select(fx.tree, &view, &quality);
-    assert_int_equal(ff_tree_still_wanted(fx.tree, root, 0), 1);
-    assert_int_equal(ff_tree_still_wanted(fx.tree, root, 1), 0); /* not held */
-    assert_int_equal(ff_tree_still_wanted(fx.tree, ff_key_make(2, 0, 0), 0), 0); /* out of the window */
-    assert_int_equal(ff_tree_still_wanted(fx.tree, ff_key_make(99, 0, 0), 0), 0);
-    fixture_deliver(&fx, root, 0);
-    ff_tree_select(fx.tree, &view, &quality);
-    assert_int_equal(ff_tree_still_wanted(fx.tree, root, 0), 0);
-    assert_int_equal(ff_tree_still_wanted(fx.tree, root, 1), 1);
-    ff_quality none = quality;
-    none.c_q8 = 0;
-    ff_tree_select(fx.tree, &view, &none);
-    assert_int_equal(ff_tree_still_wanted(fx.tree, root, 1), 0); /* held, not wanted finer */
-    ff_tree_select(fx.tree, &view, &quality);
-    fixture_deliver(&fx, root, 1);
-    assert_int_equal(ff_tree_still_wanted(fx.tree, root, 1), 0);
-    fixture_settle(&fx, &view, &quality, 3);
-    ff_view away = fixture_view(640, 640, 300 + 1400, 0, -30);
-    quality.c_q8 = 16;
-    ff_tree_select(fx.tree, &away, &quality);
-    const ff_drawn *cut;
-    uint32_t count = ff_tree_cut(fx.tree, &cut);
-    assert_true(count > 0);
-    for (uint32_t i = 0; i < count; i++)
-        assert_int_equal(ff_tree_still_wanted(fx.tree, cut[i].key, 1), 0); /* lost their point */
-    fixture_free(&fx);
-}
-
 static void test_bad_deliveries(void **state)
 {
     (void)state;
@@ -387,7 +349,6 @@ int main(void)
         cmocka_unit_test(test_flat_ground_beside_rough),
         cmocka_unit_test(test_wishes_come_in_order),
         cmocka_unit_test(test_wish_list_is_bounded_and_keeps_the_best),
-        cmocka_unit_test(test_still_wanted),
         cmocka_unit_test(test_bad_deliveries),
         cmocka_unit_test(test_create),
         cmocka_unit_test(test_select_skips_when_nothing_changed),

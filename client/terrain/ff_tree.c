@@ -164,16 +164,6 @@ uint32_t ff_tree_wishes(const ff_tree *tree, const ff_wish **list)
     return tree->wish_count;
 }
 
-int ff_tree_still_wanted(const ff_tree *tree, ff_key key, int refinement)
-{
-    if (!tree->has_view || !ff_terrain_has_node(&tree->info, key))
-        return 0;
-    uint32_t slot = ff_tree_find(tree, key);
-    if (!refinement)
-        return slot == FF_SLOT_NONE && ff_key_level(key) == 0 && ff_tile_active(tree, ff_key_tile(key));
-    return slot != FF_SLOT_NONE && tree->node[slot].flags & FF_NODE_WANTED && !ff_node_has_children(&tree->node[slot]);
-}
-
 uint32_t *ff_tree_user(ff_tree *tree, const ff_node *node) { return &tree->node[ff_slot_of(tree, node)].user; }
 
 void ff_tree_on_evict(ff_tree *tree, void (*on_evict)(void *context, uint32_t user), void *context)

@@ -91,8 +91,6 @@ uint32_t ff_tree_drawn(const ff_tree *tree, const ff_drawn **list);
 uint32_t ff_tree_cut(const ff_tree *tree, const ff_drawn **list);
 /* What would make the picture better, most urgent first. The tree does not remember asking: the caller does. */
 uint32_t ff_tree_wishes(const ff_tree *tree, const ff_wish **list);
-/* 1 when what `wish` asks for would still be used by the present cut (requests that lost their point are dropped). */
-int ff_tree_still_wanted(const ff_tree *tree, ff_key key, int refinement);
 
 /* What a viewer at `pos_wu` would wish for and this one does not: for prefetch, most urgent first, at most `capacity`. Only what the
  * pool would find room for. */
