@@ -71,7 +71,8 @@ $(HAND): $(HAND_SRC:%.c=$(HAND_OBJ)/%.o)
 
 -include $(shell find build/handheld -name '*.d' 2>/dev/null)
 
-# ---- make bench-handheld: instructions by a plugin of qemu's translator; PACK=... flies over another terrain ----
+# ---- make bench-handheld: instructions by a plugin of qemu's translator; PACK=... flies over another terrain;
+# BENCH_OPTIONS=--functions prints the functions that cost most ----
 BENCH := build/bench
 BENCH_TILE := 7
 PACK ?= $(BENCH)/ground.ffp
@@ -87,7 +88,7 @@ $(BENCH)/ground.ffp: tools/bench_terrain.py $(BUILD)/bin/farfield-bake
 
 .PHONY: bench-handheld
 bench-handheld: build/handheld/farfield-handheld $(TCG_COUNT) $(BUILD)/bin/farfield-fly $(PACK) ## ARM instructions a frame, by phase, and the work-precision curve: build/bench/handheld.md
-	@tools/bench_handheld.py $(BUILD)/bin build/handheld/farfield-handheld $(TCG_COUNT) $(PACK) $(BENCH)
+	@tools/bench_handheld.py $(BUILD)/bin build/handheld/farfield-handheld $(TCG_COUNT) $(PACK) $(BENCH) $(BENCH_OPTIONS)
 
 # ---- make test-cross: the unit tests that need no graphics library, on 32-bit ARM and on a big-endian machine ----
 CROSS_TESTS := key codec message pack fixed predict panorama_rules shade strips texture_map tree tree_pools tree_view watertight link \

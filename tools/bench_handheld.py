@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""bench_handheld.py BIN HANDHELD PLUGIN PACK OUT [--quick]: what a frame costs on the handheld, in ARM instructions, counted exactly.
+"""What a frame costs on the handheld, in ARM instructions, counted exactly.
 
 Each flight is flown twice: by farfield-fly on this machine (audited against the true ground, and recorded on tape), then from the tape by
 the cross-built farfield-handheld under qemu-arm with the counting plugin; it ends with an error unless both did the very same. Writes
@@ -7,16 +7,16 @@ OUT/handheld.md, OUT/handheld.json and OUT/work-precision.csv.
 
 Bins of the phase table: the program's marks cut a frame into work (link, decoding), update and draw; within these, the linker map says
 which object file an instruction belongs to."""
-import bisect
+import argparse
 import csv
 import json
 import os
 import re
-import subprocess
-import sys
 
-SECONDS, SWEEP_SECONDS = "20", "6"
-FLIGHT = ["--backend", "none", "--link", "umts", "--settle", "20", "--sample", "0.5", "--audit", "on", "--check", "off"]
+from handheld_counts import Counts, Program, die, run
+
+SECONDS, SWEEP_SECONDS, SETTLE = "20", "6", 20
+FLIGHT = ["--backend", "none", "--link", "umts", "--settle", str(SETTLE), "--sample", "0.5", "--audit", "on", "--check", "off"]
 SWEEP = ["2:4", "3:4", "4:5", "6:5", "px:4", "px:2", "px:1"]
 TARGET = 4.0e6
 BINS = [  # first match counts: row of the table, pattern of the object's path
@@ -35,28 +35,6 @@ BINS = [  # first match counts: row of the table, pattern of the object's path
 ]
 
 
-def die(text):
-    sys.exit("bench_handheld: " + text)
-
-
-def run(command, **more):
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more)
-    if done.returncode:
-        die("%s: %s" % (command[0], done.stderr.strip().splitlines()[-1] if done.stderr.strip() else done.returncode))
-    return done.stdout
-
-
-def read_map(path):
-    """Start addresses and object paths of all code, from a linker map."""
-    text = re.sub(r"\n {16,}0x", " 0x", open(path).read().split("Linker script and memory map")[1])
-    found = []
-    for at, size, obj in re.findall(r"^ \.(?:text|init|fini|plt|iplt)\S*\s+0x([0-9a-f]+)\s+0x([0-9a-f]+)\s+(\S+)", text, re.M):
-        if int(size, 16):
-            found.append((int(at, 16), obj))
-    found.sort()
-    return [a for a, _ in found], [o for _, o in found]
-
-
 def row_of(obj):
     for name, pattern in BINS:
         if re.search(pattern, obj):
@@ -65,43 +43,41 @@ def row_of(obj):
 
 
 class Bench:
-    def __init__(self, bin_dir, handheld, plugin, pack, out):
-        self.bin, self.handheld, self.plugin, self.pack, self.out = bin_dir, handheld, plugin, pack, out
-        self.addresses, self.objects = read_map(handheld + ".map")
+    def __init__(self, options):
+        self.bin, self.handheld, self.plugin, self.pack, self.out = options.bin, options.handheld, options.plugin, options.pack, options.out
+        self.program = Program(self.handheld)
 
-    def count(self, name, tape, more=()):
-        """Instructions of a flight on tape: frames as [work, update, draw], and by phase and row of the table."""
-        counts = "%s/%s.counts" % (self.out, name)
-        figures = json.loads(run(["qemu-arm", "-cpu", "arm1136", "-plugin", "%s,out=%s" % (self.plugin, counts), self.handheld,
-                                  "--tape", tape, "--json", "--fb", "%s/%s.ppm" % (self.out, name), *more]))
-        frames, rows = [], {}
-        for line in open(counts):
-            word = line.split()
-            if word[0] == "frame":
-                frames.append([int(w) for w in word[2:5]])
-            elif word[0] == "at":
-                place = bisect.bisect_right(self.addresses, int(word[1], 16)) - 1
-                row = row_of(self.objects[place]) if place >= 0 else "other"
-                for phase, n in zip(("work", "update", "draw"), word[3:6]):
-                    rows[phase, row] = rows.get((phase, row), 0) + int(n)
-        os.remove(counts)
-        return figures, frames, rows
+    def count(self, name, arguments):
+        return Counts(self.plugin, self.handheld, arguments, "%s/%s.counts" % (self.out, name))
 
-    def fly(self, name, quality, panorama, seconds):
+    def tape(self, name, quality, panorama, seconds):
+        """A flight on this machine, on tape; its path and the auditor's rows after settling."""
         tape, table = "%s/%s.tape" % (self.out, name), "%s/%s.csv" % (self.out, name)
         run([self.bin + "/farfield-fly", "--pack", self.pack, *FLIGHT, "--seconds", seconds, "--quality", quality, "--panorama", panorama, "--tape", tape,
              "--csv", table])
-        rows = [r for r in csv.DictReader(open(table)) if float(r["t_s"]) > 20 and r["err_px_rms"] not in ("", "nan")]
-        figures, frames, by_row = self.count(name, tape)
-        n = len(frames)
+        return tape, [r for r in csv.DictReader(open(table)) if float(r["t_s"]) > SETTLE and r["err_px_rms"] not in ("", "nan")]
+
+    def rows(self, counts):
+        """Instructions by phase and row of the table."""
+        sums = {}
+        for address, length, executions in counts.blocks:
+            row = row_of(self.program.object_of(address))
+            for phase in ("work", "update", "draw"):
+                sums[phase, row] = sums.get((phase, row), 0) + length * executions[phase]
+        return sums
+
+    def fly(self, name, quality, panorama, seconds):
+        tape, rows = self.tape(name, quality, panorama, seconds)
+        counts = self.count(name, ["--tape", tape, "--fb", "%s/%s.ppm" % (self.out, name)])
+        figures, frames, by_row, n = counts.figures, counts.frames, self.rows(counts), len(counts.frames)
         if not n or not rows:
             die("%s: nothing was drawn" % name)
-        cost = sorted(f[1] + f[2] for f in frames)
+        cost = sorted(counts.costs())
         mean = lambda key: sum(float(r[key]) for r in rows) / len(rows)
         return {"quality": quality, "panorama": panorama, "frames": n,
                 "triangles": figures["triangles_mean"], "triangles_max": figures["triangles_max"],
                 "instructions": sum(cost) / n, "instructions_p95": cost[min(n - 1, n * 95 // 100)], "instructions_max": cost[-1],
-                "update": sum(f[1] for f in frames) / n, "draw": sum(f[2] for f in frames) / n, "work": sum(f[0] for f in frames) / n,
+                "update": sum(f["update"] for f in frames) / n, "draw": sum(f["draw"] for f in frames) / n, "work": sum(f["work"] for f in frames) / n,
                 "err_px_rms": (sum(float(r["err_px_rms"]) ** 2 for r in rows) / len(rows)) ** 0.5, "err_px_p95": mean("err_px_p95"),
                 "panorama_px_percent": mean("panorama_px_percent"), "undrawn_px_percent": mean("undrawn_px_percent"),
                 "bytes_down": figures["bytes_down"], "high_water": {k: figures[k] for k in figures if "high" in k or "memory" in k},
@@ -144,33 +120,55 @@ def memory_rows(bench):
     """The same local flight in blocks of several sizes."""
     rows = []
     for size in ("8M", "4M", "2M", "1M", "768K"):
-        counts = bench.out + "/memory.counts"
-        text = run(["qemu-arm", "-cpu", "arm1136", "-plugin", "%s,out=%s" % (bench.plugin, counts), bench.handheld, "--pack", bench.pack,
-                    "--frames", "60", "--memory", size, "--json"])
-        f = json.loads(text)
-        frames = [[int(w) for w in line.split()[2:5]] for line in open(counts) if line.startswith("frame")]
-        os.remove(counts)
+        counts = bench.count("memory", ["--pack", bench.pack, "--frames", "60", "--memory", size])
+        f = counts.figures
         rows.append((size, "%d of 60 frames, %d of %d nodes | %d | %s | %d | %.1f" % (
             f["frames_drawn"], f["nodes_high"], f["nodes_capacity"], f["pool_full"],
-            million(sum(x[1] + x[2] for x in frames) / max(1, len(frames))), f["triangles_mean"], f["tree_err_px_q8"] / 256)))
+            million(sum(counts.costs()) / max(1, len(counts.frames))), f["triangles_mean"], f["tree_err_px_q8"] / 256)))
     return rows
 
 
-def main(argv):
-    quick = "--quick" in argv
-    bin_dir, handheld, plugin, pack, out = [a for a in argv[1:] if a != "--quick"]
-    os.makedirs(out, exist_ok=True)
-    bench = Bench(bin_dir, handheld, plugin, pack, out)
+def functions(bench, most):
+    """The functions that cost most, in the low-quality flight."""
+    counts = bench.count("functions", ["--tape", bench.tape("functions", "low", "on", SECONDS)[0]])
+    n, sums = len(counts.frames), {}
+    for address, length, executions in counts.blocks:
+        name, entry = bench.program.function_of(address)
+        s = sums.setdefault((name, os.path.basename(bench.program.object_of(address))), {"calls": 0, "work": 0, "update": 0, "draw": 0})
+        for phase in ("work", "update", "draw"):
+            s[phase] += length * executions[phase]
+            s["calls"] += executions[phase] * entry
+    whole = sum(counts.costs()) / n
+    print("%.4f M a frame (p95 %.4f, max %.4f), %d triangles; work apart %.4f. Inlined functions count where they are inlined." % (
+          whole / 1e6, sorted(counts.costs())[n * 95 // 100] / 1e6, max(counts.costs()) / 1e6, counts.figures["triangles_mean"],
+          sum(s["work"] for s in sums.values()) / n / 1e6))
+    print("%9s %6s %9s %9s %9s %9s  %s" % ("a frame", "%", "update", "draw", "(work)", "calls", "function, object"))
+    for (name, obj), s in sorted(sums.items(), key=lambda i: -i[1]["update"] - i[1]["draw"])[:most]:
+        cost = s["update"] + s["draw"]
+        print("%9d %6.2f %9d %9d %9d %9.1f  %s, %s" % (cost / n, 100 * cost / n / whole, s["update"] / n, s["draw"] / n, s["work"] / n, s["calls"] / n, name, obj))
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="bench_handheld.py", description=__doc__.split("\n\n")[0])
+    for name in ("bin", "handheld", "plugin", "pack", "out"):
+        parser.add_argument(name)
+    parser.add_argument("--quick", action="store_true", help="the low-quality flight only")
+    parser.add_argument("--functions", nargs="?", type=int, const=40, metavar="N", help="print the N functions that cost most, and nothing else")
+    options = parser.parse_args()
+    os.makedirs(options.out, exist_ok=True)
+    bench = Bench(options)
+    if options.functions:
+        functions(bench, options.functions)
+        return
     low = bench.fly("low", "low", "on", SECONDS)
-    again = bench.count("low", out + "/low.tape")[1]
-    if sum(f[1] + f[2] for f in again) / len(again) != low["instructions"]:
+    if sum(bench.count("low", ["--tape", options.out + "/low.tape"]).costs()) / low["frames"] != low["instructions"]:
         die("counted twice, different numbers")
-    sweep = [] if quick else [bench.fly("sweep", quality, panorama, SWEEP_SECONDS) for panorama in ("on", "off") for quality in SWEEP]
-    memory = [] if quick else memory_rows(bench)
+    sweep = [] if options.quick else [bench.fly("sweep", quality, panorama, SWEEP_SECONDS) for panorama in ("on", "off") for quality in SWEEP]
+    memory = [] if options.quick else memory_rows(bench)
     text = report(low, sweep, memory)
-    open(out + "/handheld.md", "w").write(text)
-    json.dump({"low": low, "sweep": sweep, "memory": memory, "target": TARGET}, open(out + "/handheld.json", "w"), indent=1)
-    with open(out + "/work-precision.csv", "w", newline="") as f:
+    open(options.out + "/handheld.md", "w").write(text)
+    json.dump({"low": low, "sweep": sweep, "memory": memory, "target": TARGET}, open(options.out + "/handheld.json", "w"), indent=1)
+    with open(options.out + "/work-precision.csv", "w", newline="") as f:
         keys = ["quality", "panorama", "instructions", "triangles", "err_px_rms", "err_px_p95", "work", "update", "draw"]
         table = csv.DictWriter(f, keys, extrasaction="ignore")
         table.writeheader()
@@ -179,4 +177,4 @@ def main(argv):
 
 
 if __name__ == "__main__":
-    main(sys.argv)
+    main()

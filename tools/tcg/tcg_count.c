@@ -3,12 +3,12 @@
  *   qemu-arm -cpu arm1136 -plugin build/handheld/libtcg_count.so,out=counts.txt[,pages=1] farfield-handheld ...
  *
  * The program calls functions named handheld_mark_*: they cut its run into phases. At handheld_mark_start counting begins anew (what
- * was counted before is settling); at handheld_mark_frame a frame ends. Every translated block counts its instructions to the phase
- * in force, under the block's address: a linker map tells later which file that was. With pages=1 every 4 KiB page of the program's
- * memory that is executed, read or written is noted: what a system with demand paging would keep resident.
+ * was counted before is settling); at handheld_mark_frame a frame ends. Every translated block counts its executions to the phase in
+ * force, under the block's address: linker map and symbols tell later which file and function that was. With pages=1 every 4 KiB page
+ * of the program's memory that is executed, read or written is noted: what a system with demand paging would keep resident.
  *
- * Output, one record a line:  phase NAME...  |  frame INSTRUCTIONS-BY-PHASE...  |  at HEX-ADDRESS INSTRUCTIONS-BY-PHASE...  |
- * page FIRST-HEX LAST-HEX.
+ * Output, one record a line:  phase NAME...  |  frame INSTRUCTIONS-BY-PHASE...  |  at HEX-ADDRESS LENGTH EXECUTIONS-BY-PHASE... (of a
+ * block of LENGTH instructions)  |  page FIRST-HEX LAST-HEX.
  *
  * Packages of qemu 7.2 carry no header for plugins; its API, version 1, is declared here, as far as it is used. Guests of one thread. */
 #include <stdbool.h>
@@ -57,7 +57,7 @@ typedef struct block {
     uint64_t address;
     uint32_t instructions;
     enum phase mark;
-    uint64_t count[PHASES];
+    uint64_t count[PHASES]; /* of executions */
 } block;
 
 #define BUCKETS 65536u
@@ -114,7 +114,7 @@ static void on_block(unsigned vcpu, void *context)
         print_counts(frame_count);
         memset(frame_count, 0, sizeof frame_count);
     }
-    b->count[phase_now] += b->instructions;
+    b->count[phase_now]++;
     frame_count[phase_now] += b->instructions;
 }
 
@@ -168,7 +168,7 @@ static void print_blocks(void)
     if (count)
         qsort(list, count, sizeof *list, by_address);
     for (size_t i = 0; i < count; i++) {
-        fprintf(out, "at %llx", (unsigned long long)list[i]->address);
+        fprintf(out, "at %llx %u", (unsigned long long)list[i]->address, (unsigned)list[i]->instructions);
         print_counts(list[i]->count);
     }
     free(list);
