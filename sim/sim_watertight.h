@@ -1,11 +1,15 @@
 /* Is the drawn ground whole? An exact check on integer vertices, made for every simulated frame.
  *
- * For a list of drawn nodes (all of a cut, or only what the view sees) it forms the triangles their strips draw and checks that
+ * For a list of drawn nodes (all of a cut, or only what the view sees) it checks that
  *   - keys, origins and cells agree, and no node covers another one: each ground point is drawn at most once;
- *   - every triangle is counter-clockwise from above, inside its node, and together they cover each node exactly;
- *   - every edge between triangles is used once in each direction, so there is neither a gap nor a T-junction; an edge used only
- *     once is allowed on a node's border with no listed ground beyond it (the terrain's border, the end of the cut or of the view);
- *   - all triangles that share a vertex agree on its height, bit for bit.
+ *   - the strips of each kind of node in the list draw triangles that are counter-clockwise from above, inside the node, and
+ *     together cover it exactly; every edge inside is used once in each direction; what is used once lies on the node's border;
+ *   - where two listed nodes touch along a side, whatever their levels, both draw the very same vertices there, and those have the
+ *     same heights, bit for bit: neither a gap nor a T-junction. Nodes that touch in a corner agree on its height.
+ * A side with no listed ground beyond it may look as it likes: the terrain's border, the end of the cut or of the view.
+ *
+ * Triangles are looked at once for each kind of node, nodes by their rims alone. tests/slow_watertight.c forms all triangles of all
+ * nodes and must come to the same verdict.
  */
 #ifndef SIM_WATERTIGHT_H
 #define SIM_WATERTIGHT_H

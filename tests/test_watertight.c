@@ -1,6 +1,7 @@
 /* The drawn ground is whole whatever arrives, in whatever order, however the camera jumps: flights over made-up ground with
  * random links, qualities and pools, every frame judged exactly. And the judge finds faults put in on purpose. */
 #include "../sim/sim_watertight.h"
+#include "slow_watertight.h"
 #include "terrain_fixture.h"
 
 #include <setjmp.h>
@@ -151,14 +152,19 @@ static void make_spoilt(spoilt *s)
     assert_true(sim_watertight_check(&s->fx.info, s->list, s->count, s->why, sizeof s->why));
 }
 
+static void free_spoilt(spoilt *s)
+{
+    fixture_free(&s->fx);
+    free(s->list);
+    free(s->heights);
+}
+
 static void assert_found(spoilt *s, const char *what)
 {
     assert_false(sim_watertight_check(&s->fx.info, s->list, s->count, s->why, sizeof s->why));
     if (!strstr(s->why, what))
         fail_msg("expected \"%s\" in: %s", what, s->why);
-    fixture_free(&s->fx);
-    free(s->list);
-    free(s->heights);
+    free_spoilt(s);
 }
 
 static uint32_t first_stitched(const spoilt *s)
@@ -228,6 +234,94 @@ static void test_judge_accepts_parts(void **state)
     assert_found(&s, "not of this terrain");
 }
 
+/* ---- two judges ---- */
+
+/* One fault, or what may look like one, at a random place. */
+static void spoil(spoilt *s, sys_random *random)
+{
+    uint32_t i = sys_random_below(random, s->count), side = ff_node_side(&s->fx.info), grid = side * side;
+    uint32_t rim = sys_random_below(random, side), row = sys_random_below(random, 2) ? 0 : side - 1;
+    ff_drawn *drawn = &s->list[i];
+    switch (sys_random_below(random, 7)) {
+    case 0: s->heights[(drawn->heights - s->heights) + sys_random_below(random, grid)] ^= 1; break;
+    case 1: s->heights[(drawn->heights - s->heights) + (sys_random_below(random, 2) ? rim * side + row : row * side + rim)] ^= 4; break;
+    case 2: drawn->coarser ^= (uint8_t)(1u << sys_random_below(random, 4)); break;
+    case 3: /* one gone */
+        *drawn = s->list[--s->count];
+        break;
+    case 4: /* many gone: only a part is left */
+        while (s->count > 3 && sys_random_below(random, 40))
+            s->list[sys_random_below(random, s->count)] = s->list[s->count - 1], s->count--;
+        break;
+    case 5: /* its parent, or its child, in its place */
+        if (ff_key_level(drawn->key) && sys_random_below(random, 2))
+            drawn->key = ff_key_parent(drawn->key);
+        else if (ff_key_level(drawn->key) < (uint32_t)(s->fx.info.tile_log2 - s->fx.info.node_log2))
+            drawn->key = ff_key_child(drawn->key, sys_random_below(random, 4));
+        ff_node_origin_wu(&s->fx.info, drawn->key, &drawn->origin_wu[0], &drawn->origin_wu[1]);
+        drawn->cell_wu = ff_node_cell_wu(&s->fx.info, ff_key_level(drawn->key));
+        break;
+    default: drawn->heights = s->list[sys_random_below(random, s->count)].heights; break;
+    }
+}
+
+/* The quick judge and the slow one, who looks at every triangle, agree on cuts with up to three faults of any kind. */
+static void test_judges_agree(void **state)
+{
+    (void)state;
+    spoilt s, original;
+    sys_random random;
+    char slow_why[160];
+    unsigned whole = 0, broken = 0;
+    make_spoilt(&original);
+    size_t heights = original.count * (size_t)ff_node_side(&original.fx.info) * ff_node_side(&original.fx.info);
+    sys_random_seed(&random, 77, 1);
+    s = original;
+    s.list = malloc(original.count * sizeof *s.list);
+    s.heights = malloc(heights * sizeof *s.heights);
+    for (unsigned trial = 0; trial < 3000; trial++) {
+        s.count = original.count;
+        memcpy(s.list, original.list, s.count * sizeof *s.list);
+        memcpy(s.heights, original.heights, heights * sizeof *s.heights);
+        for (uint32_t i = 0; i < s.count; i++)
+            s.list[i].heights = s.heights + (original.list[i].heights - original.heights);
+        for (uint32_t faults = sys_random_below(&random, 4); faults > 0; faults--)
+            spoil(&s, &random);
+        int quick = sim_watertight_check(&s.fx.info, s.list, s.count, s.why, sizeof s.why);
+        int slow = slow_watertight_check(&s.fx.info, s.list, s.count, slow_why, sizeof slow_why);
+        if (quick != slow)
+            fail_msg("trial %u: quick %d (%s), slow %d (%s)", trial, quick, quick ? "" : s.why, slow, slow ? "" : slow_why);
+        whole += (unsigned)quick;
+        broken += (unsigned)!quick;
+    }
+    assert_true(whole > 500 && broken > 500);
+    free(s.list);
+    free(s.heights);
+    free_spoilt(&original);
+}
+
+/* Nodes that touch in a corner alone agree on its height. */
+static void test_judge_finds_wrong_corner(void **state)
+{
+    (void)state;
+    spoilt s;
+    make_spoilt(&s);
+    uint32_t side = ff_node_side(&s.fx.info), pair[2] = {0, 0};
+    for (uint32_t i = 0; i < s.count && !pair[1]; i++)
+        for (uint32_t j = 0; j < s.count; j++)
+            if (s.list[j].cell_wu == s.list[i].cell_wu && s.list[j].origin_wu[0] == s.list[i].origin_wu[0] + s.list[i].cell_wu * 8
+                && s.list[j].origin_wu[1] == s.list[i].origin_wu[1] + s.list[i].cell_wu * 8)
+                pair[0] = i, pair[1] = j;
+    assert_true(pair[1]);
+    ff_drawn two[2] = {s.list[pair[0]], s.list[pair[1]]};
+    memcpy(s.list, two, sizeof two);
+    s.count = 2;
+    assert_true(sim_watertight_check(&s.fx.info, s.list, s.count, NULL, 0));
+    s.heights[(s.list[0].heights - s.heights) + side * side - 1] ^= 1;
+    assert_false(slow_watertight_check(&s.fx.info, s.list, s.count, NULL, 0));
+    assert_found(&s, "corner");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -241,6 +335,8 @@ int main(void)
         cmocka_unit_test(test_judge_finds_doubled_ground),
         cmocka_unit_test(test_judge_finds_wrong_place),
         cmocka_unit_test(test_judge_accepts_parts),
+        cmocka_unit_test(test_judge_finds_wrong_corner),
+        cmocka_unit_test(test_judges_agree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -77,7 +77,7 @@ list_sweep() {
 fly_one() {
     local name=$1 key started=$SECONDS
     shift
-    set -- --start 0.4 --height 100 --seconds "$SECONDS_EACH" --settle $settle_s --seed 1 --backend none --audit on --check off "$@"
+    set -- --start 0.4 --height 100 --seconds "$SECONDS_EACH" --settle $settle_s --seed 1 --backend none --audit on "$@"
     key="$flyover_key $*"
     if [ -f "$flights/$name.csv" ] && [ "$(cat "$flights/$name.key" 2>/dev/null)" = "$key" ]; then
         echo "$name: flown before"
