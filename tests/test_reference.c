@@ -1,6 +1,7 @@
 /* The integer core against the double-precision reference over random views of ordinary scenes, all from one seed.
  * VIEWS views (default 1,000,000) for each part; where a part looks at a share of them, it says how many. */
 #include "../client/ff_panorama_rules.h"
+#include "../client/terrain/ff_ground_frame.h"
 #include "../client/terrain/ff_strips.h"
 #include "../client/terrain/ff_tree_local.h"
 #include "../common3d/c3d_backend.h"
@@ -20,9 +21,10 @@
 
 #define M FF_WU_PER_METRE
 #define QUARTER_PX 0.25
-/* Vertices nearer than this are more than 1/4 px off in both back ends: a vertex's offset of up to 32 km from its node's origin costs
- * GL's single precision some millimetres, and eye units of the integer back end are 2 mm where the far plane is 100 km away. */
-#define NEAR_M 16
+/* What is nearer may be more than 1/4 px off where a pixel is as narrow as here (20 degrees over 640 px): GL's single precision costs
+ * up to half a millimetre, the units of the integer back end a whole one where the far plane is 100 km away. */
+#define NEAR_M 8
+#define HEIGHTS_M 9000 /* between the lowest and the highest of ordinary terrains, at most */
 
 static uint32_t views(uint32_t share)
 {
@@ -104,13 +106,92 @@ static void projection_of_the_eye_path(void **state)
     assert_true(worst <= QUARTER_PX);
 }
 
-/* The GL back ends: matrices of single precision, a node's vertex through both of them. */
-static int project_by_matrices(const c3d_camera *camera, const c3d_draw *draw, const c3d_vertex *vertex, double px[2])
+/* Ground as the client draws it: samples of an ordinary terrain, counted from the frame that follows the camera. */
+typedef struct ground_view {
+    c3d_camera camera;
+    ref_camera ref;
+    c3d_draw draw;
+    int32_t vertex[3]; /* of a sample that shows in the window, or a little beyond */
+} ground_view;
+
+/* A terrain under the camera, and the sample nearest to a random point in view; 0 when there is none. The camera moves to a fitting
+ * height, and by the way from the point to the sample. */
+static int try_ordinary_ground(sys_random *random, const c3d_camera *camera, ground_view *view)
+{
+    ff_terrain_info info = {.node_log2 = 3, .tile_log2 = 10, .tiles_x = 4096, .tiles_y = 4096, .spacing_wu = (uint32_t)between(random, 1, 30) * M,
+                            .hscale_q24 = (uint32_t)between(random, 1 << 20, 1 << 24), .hoffset_wu = between(random, -400, 3000) * M};
+    int64_t most = (int64_t)HEIGHTS_M * M * 65536 / info.hscale_q24;
+    info.height_max = (uint16_t)between(random, 1000, most < 60000 ? (int32_t)most : 60000);
+    const double unit_wu[3] = {info.spacing_wu, info.spacing_wu, info.hscale_q24 / 65536.0};
+    view->camera = *camera;
+    view->camera.pos_wu[2] = between(random, info.hoffset_wu, info.hoffset_wu + (int32_t)(info.height_max * unit_wu[2]) + 500 * M);
+    c3d_camera earlier = view->camera; /* the frame still follows it */
+    for (int axis = 0; axis < 2; axis++)
+        earlier.pos_wu[axis] += between(random, -500 * M, 500 * M);
+    ff_ground_frame frame = {.set = 0};
+    ff_ground_frame_follow(&frame, &info, &earlier);
+    const ff_drawn node = {.key = ff_key_make(0, 7, 0), .origin_wu = {frame.origin_wu[0], frame.origin_wu[1]}};
+    double point[3];
+    ref_camera_of(&view->camera, &view->ref);
+    point_in_view(random, &view->ref, point);
+    view->draw = (c3d_draw){.flags = C3D_DRAW_COLOURED};
+    ff_ground_frame_draw(&frame, &info, &node, &view->camera, &view->draw);
+    for (int axis = 0; axis < 3; axis++) {
+        double from_wu = (double)view->draw.origin_wu[axis] + view->ref.pos_wu[axis], at = floor((point[axis] - from_wu) / unit_wu[axis] + 0.5);
+        if (fabs(at) > (axis < 2 ? 32000 : info.height_max / 2))
+            return 0;
+        view->vertex[axis] = (int32_t)at;
+        view->camera.pos_wu[axis] += (int32_t)floor(from_wu + at * unit_wu[axis] - point[axis] + 0.5);
+    }
+    ff_ground_frame_draw(&frame, &info, &node, &view->camera, &view->draw);
+    ref_camera_of(&view->camera, &view->ref);
+    return 1;
+}
+
+static void ordinary_ground(sys_random *random, const c3d_camera *camera, ground_view *view)
+{
+    while (!try_ordinary_ground(random, camera, view))
+        ;
+}
+
+/* Largest distance to the true pixel, by depth: what is nearer than 1 m, 2 m, 4 m ... and beyond. */
+typedef struct by_depth { double worst[8]; uint32_t compared; } by_depth;
+
+/* Vertex `at` of the draw is shown at px. */
+static void compare_vertex(const ground_view *view, const int32_t at[3], const double px[2], by_depth *result)
+{
+    const double unit[3] = {view->draw.xy_scale_wu, view->draw.xy_scale_wu, view->draw.z_scale_q16 / 65536.0};
+    double way[3], eye[3], expected[2];
+    for (int axis = 0; axis < 3; axis++)
+        way[axis] = (double)view->draw.origin_wu[axis] + at[axis] * unit[axis];
+    ref_to_eye(&view->ref, way, eye);
+    if (!ref_project_direction(&view->ref, way, expected) || !ref_in_window(&view->ref, expected, 0))
+        return;
+    int bin = 0;
+    while (bin < 7 && eye[2] >= M << bin)
+        bin++;
+    result->worst[bin] = fmax(result->worst[bin], apart(expected, px));
+    result->compared++;
+}
+
+static void assert_near_enough(const by_depth *result, const char *who, uint32_t least)
+{
+    print_message("# projection, %s: %u vertices; worst px nearer than 1 m %.2f, 2 m %.2f, 4 m %.2f, 8 m %.2f, 16 m %.2f, 32 m %.2f, 64 m %.2f, "
+                  "beyond %.2f\n", who, result->compared, result->worst[0], result->worst[1], result->worst[2], result->worst[3],
+                  result->worst[4], result->worst[5], result->worst[6], result->worst[7]);
+    assert_true(result->compared > least);
+    for (int bin = 0; bin < 8; bin++)
+        if (M << bin > NEAR_M * M)
+            assert_true(result->worst[bin] <= QUARTER_PX);
+}
+
+/* The GL back ends: matrices of single precision, a vertex through both of them. */
+static int project_by_matrices(const c3d_camera *camera, const c3d_draw *draw, const int32_t vertex[3], double px[2])
 {
     c3d_rotation rotation;
     c3d_resolved_draw resolved = {.draw = draw};
     float modelview[16], projection[16], eye[4], clip[4];
-    const float at[4] = {vertex->x, vertex->y, vertex->z, 1};
+    const float at[4] = {(float)vertex[0], (float)vertex[1], (float)vertex[2], 1};
     c3d_rotation_from_camera(camera, &rotation);
     c3d_to_eye_q14(&rotation, draw->origin_wu, resolved.eye_q14);
     c3d_gl_modelview(modelview, &resolved, &rotation);
@@ -132,83 +213,44 @@ static int project_by_matrices(const c3d_camera *camera, const c3d_draw *draw, c
     return 1;
 }
 
-/* A node that contains the point: any size, the point at one of its vertices. */
 static void projection_of_vertices_by_gl(void **state)
 {
     (void)state;
-    double worst = 0;
+    by_depth result = {.compared = 0};
     sys_random random;
     sys_random_seed(&random, 2, 61);
-    uint32_t compared = 0;
-    for (uint32_t i = views(4); i > 0; i--) {
+    for (uint32_t i = views(1); i > 0; i--) {
+        ground_view view;
+        double px[2];
         c3d_camera camera = ordinary_camera(&random);
-        ref_camera ref;
-        double point[3], exact[3], expected[2], got[2] = {0};
-        ref_camera_of(&camera, &ref);
-        point_in_view(&random, &ref, point);
-        c3d_vertex vertex = {.x = (int16_t)between(&random, 0, 8), .y = (int16_t)between(&random, 0, 8),
-                             .z = (int16_t)between(&random, -32768, -28000)};
-        c3d_draw draw = {.xy_scale_wu = between(&random, 1, 8) * M << sys_random_below(&random, 5), .z_scale_q16 = 1u << 24};
-        const int32_t local[3] = {vertex.x * draw.xy_scale_wu, vertex.y * draw.xy_scale_wu, vertex.z * M};
-        for (int axis = 0; axis < 3; axis++) {
-            draw.origin_wu[axis] = (int64_t)point[axis] - local[axis] - camera.pos_wu[axis];
-            exact[axis] = point[axis];
-        }
-        if (!ref_project(&ref, exact, expected) || !ref_in_window(&ref, expected, 0) ||
-            !project_by_matrices(&camera, &draw, &vertex, got))
-            continue;
-        double depth = 0;
-        for (int axis = 0; axis < 3; axis++)
-            depth += (point[axis] - ref.pos_wu[axis]) * ref.forward[axis];
-        if (depth < NEAR_M * M)
-            continue;
-        worst = fmax(worst, apart(expected, got));
-        compared++;
+        ordinary_ground(&random, &camera, &view);
+        if (project_by_matrices(&view.camera, &view.draw, view.vertex, px))
+            compare_vertex(&view, view.vertex, px, &result);
     }
-    print_message("# projection, GL's matrices in single precision: %u views, worst %.6f px\n", compared, worst);
-    assert_true(compared > views(16));
-    assert_true(worst <= QUARTER_PX);
+    assert_near_enough(&result, "GL's matrices in single precision", views(2));
 }
 
-/* The integer back end: every vertex of a node's mesh that it puts on the screen, in sixteenths of a pixel. */
-static uint32_t compare_soft(soft_state *state, sys_random *random, double *worst)
+/* The integer back end: every vertex of the mesh round the sample that it puts on the screen, in sixteenths of a pixel. */
+static void compare_soft(soft_state *state, sys_random *random, const ground_view *view, by_depth *result)
 {
-    static c3d_vertex vertex[81];
-    c3d_camera camera = ordinary_camera(random);
-    c3d_frame frame = {.camera = camera};
-    c3d_rotation rotation;
-    ref_camera ref;
-    double point[3];
-    ref_camera_of(&camera, &ref);
-    point_in_view(random, &ref, point);
-    int32_t base = between(random, -32768, 27000);
-    for (int i = 0; i < 81; i++)
-        vertex[i] = (c3d_vertex){.x = (int16_t)(i % 9), .y = (int16_t)(i / 9), .z = (int16_t)(base + between(random, 0, 400))};
-    c3d_draw draw = {.xy_scale_wu = between(random, 1, 8) * M << sys_random_below(random, 5), .z_scale_q16 = 1u << 24, .flags = C3D_DRAW_COLOURED};
-    const int32_t local[3] = {4 * draw.xy_scale_wu, 4 * draw.xy_scale_wu, (base + 200) * M};
-    for (int axis = 0; axis < 3; axis++)
-        draw.origin_wu[axis] = (int64_t)point[axis] - local[axis] - camera.pos_wu[axis];
-    c3d_mesh_data mesh = {.vertices = vertex, .count = 81, .reach = {8, 8, (uint16_t)(base < -200 ? -base : base + 400)}};
-    c3d_resolved_draw resolved = {.draw = &draw, .mesh = &mesh};
-    c3d_rotation_from_camera(&camera, &rotation);
-    c3d_backend_soft()->begin(state, &frame, &rotation);
-    soft_transform(state, &resolved);
-    uint32_t compared = 0;
-    for (int i = 0; i < 81; i++) {
-        const soft_vertex *got = &state->vertices[i];
-        const double at[3] = {(double)draw.origin_wu[0] + (double)vertex[i].x * draw.xy_scale_wu,
-                              (double)draw.origin_wu[1] + (double)vertex[i].y * draw.xy_scale_wu,
-                              (double)draw.origin_wu[2] + (double)vertex[i].z * M};
-        double expected[2], px[2] = {got->x / (double)SOFT_ONE, got->y / (double)SOFT_ONE};
-        double eye[3];
-        ref_to_eye(&ref, at, eye);
-        if ((got->out & SOFT_MUST_CLIP) || eye[2] < NEAR_M * M || !ref_project_direction(&ref, at, expected) ||
-            !ref_in_window(&ref, expected, 0))
-            continue;
-        *worst = fmax(*worst, apart(expected, px));
-        compared++;
+    static c3d_vertex vertex[9];
+    c3d_mesh_data mesh = {.vertices = vertex, .count = 9};
+    c3d_resolved_draw resolved = {.draw = &view->draw, .mesh = &mesh};
+    for (int i = 0; i < 9; i++) {
+        const int32_t at[3] = {view->vertex[0] + (i % 3) - 1, view->vertex[1] + i / 3 - 1, view->vertex[2] + (i == 4 ? 0 : between(random, -20, 20))};
+        vertex[i] = (c3d_vertex){.x = (int16_t)at[0], .y = (int16_t)at[1], .z = (int16_t)at[2]};
+        for (int axis = 0; axis < 3; axis++)
+            mesh.reach[axis] = (uint16_t)fmax(mesh.reach[axis], abs(at[axis]));
     }
-    return compared;
+    state->cached_mesh = NULL;
+    soft_transform(state, &resolved);
+    for (int i = 0; i < 9; i++) {
+        const soft_vertex *got = &state->vertices[i];
+        const double px[2] = {got->x / (double)SOFT_ONE, got->y / (double)SOFT_ONE};
+        const int32_t at[3] = {vertex[i].x, vertex[i].y, vertex[i].z};
+        if (!(got->out & SOFT_MUST_CLIP))
+            compare_vertex(view, at, px, result);
+    }
 }
 
 static void projection_of_vertices_by_soft(void **state)
@@ -217,18 +259,24 @@ static void projection_of_vertices_by_soft(void **state)
     c3d_desc desc = {.mesh_count = 1, .strip_count = 1, .texture_count = 1, .mesh_vertices_max = 81, .strip_indices_max = 64,
                      .width = 640, .height = 480};
     int buffers = 0;
-    double worst = 0;
-    uint32_t compared = 0;
+    by_depth result = {.compared = 0};
     sys_random random;
     sys_random_seed(&random, 11, 61);
     soft_state *soft = calloc(1, c3d_backend_soft()->state_bytes_for(&desc));
     assert_int_equal(c3d_backend_soft()->open(soft, &desc, &buffers), FF_OK);
-    for (uint32_t i = views(50); i > 0; i--)
-        compared += compare_soft(soft, &random, &worst);
+    for (uint32_t i = views(10); i > 0; i--) { /* beginning a frame takes longer than all else */
+        c3d_frame frame = {.camera = ordinary_camera(&random)};
+        c3d_rotation rotation;
+        c3d_rotation_from_camera(&frame.camera, &rotation);
+        c3d_backend_soft()->begin(soft, &frame, &rotation);
+        for (int k = 0; k < 10; k++) {
+            ground_view view;
+            ordinary_ground(&random, &frame.camera, &view);
+            compare_soft(soft, &random, &view, &result);
+        }
+    }
     free(soft);
-    print_message("# projection, the integer back end: %u vertices in %u views, worst %.6f px\n", compared, views(50), worst);
-    assert_true(compared > views(4));
-    assert_true(worst <= QUARTER_PX);
+    assert_near_enough(&result, "the integer back end", views(1));
 }
 
 /* ---- culling ---- */

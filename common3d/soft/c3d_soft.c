@@ -81,7 +81,10 @@ static void soft_begin(void *opaque, const c3d_frame *frame, const c3d_rotation 
     soft_state *state = opaque;
     const c3d_camera *camera = &frame->camera;
     state->frame = *frame;
-    state->rotation = *rotation;
+    for (int i = 0; i < 9; i++) { /* Q31: eye units half as long, at no cost */
+        int32_t part = rotation->m[i / 3][i % 3];
+        state->rotation.m[i / 3][i % 3] = part >= 1 << 30 ? INT32_MAX : part <= -(1 << 30) ? -INT32_MAX : part * 2;
+    }
     state->blank = (uint32_t)camera->width * camera->height > state->pixels_max;
     state->width = state->blank ? 0 : camera->width;
     state->height = state->blank ? 0 : camera->height;
@@ -94,8 +97,8 @@ static void soft_begin(void *opaque, const c3d_frame *frame, const c3d_rotation 
     state->below_q4 = state->height * SOFT_ONE - SOFT_HALF;
     state->focal_shift = soft_leading_zeros((uint32_t)camera->focal_q8) - 1;
     state->focal_norm = camera->focal_q8 << state->focal_shift;
-    state->frame_shift = 14; /* the far plane below 2^28 world units */
-    while (soft_scale64(camera->far_wu, state->frame_shift) >= 1 << 28) state->frame_shift--;
+    state->frame_shift = 14; /* the far plane below 2^29 world units */
+    while (soft_scale64(camera->far_wu, state->frame_shift) >= 1 << 29) state->frame_shift--;
     clear(state, frame->clear_colour);
 }
 

@@ -54,13 +54,13 @@ typedef struct soft_segment {
     int32_t value[SOFT_ATTRIBUTES], step[SOFT_ATTRIBUTES];
 } soft_segment;
 
-/* From vertices to eye space, for one draw. World units: 2^shift to a wu; eye units are 4 times as long. */
+/* From vertices to eye space, for one draw. World units: 2^shift to a wu; eye units are twice as long. */
 typedef struct soft_space {
     int shift;
     int64_t origin_wu[3];
     int32_t scale_wu;
     uint32_t z_scale_q16;
-    int32_t near_origin[2], near_scale; /* x and y in world units; scale 0: too large for 32 bits */
+    int32_t near_origin[2], near_scale; /* x and y in world units; scale 0: not in 32 bits */
     int64_t near_z;              /* wu, Q16 */
     int32_t near_eye, far_eye;
     int32_t near_norm;           /* near plane, shifted into bits 30.. */
@@ -94,7 +94,7 @@ struct soft_state {
     uint8_t blank;               /* the viewport is larger than the memory: nothing is drawn */
     uint8_t painted;             /* something other than deferred backdrops was drawn */
     c3d_frame frame;
-    c3d_rotation rotation;
+    c3d_rotation rotation;       /* Q31 */
     int32_t centre_x, centre_y;  /* Q4 */
     int32_t focal_norm;          /* focal_q8 shifted into bits 30.. */
     int focal_shift;

@@ -1,7 +1,7 @@
 /* From vertices to the screen, once for each vertex of a mesh.
  *
  * World units: 2^shift to a wu, chosen so that every coordinate relative to the camera stays below 2^30. Rotation: three products of
- * 30 + 31 bits, their sum below 2^62, of which the upper word is kept: eye units are 4 world units and stay below 2^29 * sqrt 3.
+ * 31 + 30 bits, their sum below 2^62, of which the upper word is kept: eye units are 2 world units and stay below 2^29 * sqrt 3.
  * Projection: 1/z as a 31-bit mantissa r and an exponent, so that x * focal/z is one product of 30 and 31 bits. */
 #include "soft_local.h"
 
@@ -39,14 +39,14 @@ void soft_begin_space(soft_state *state, const c3d_resolved_draw *resolved)
     space->scale_wu = draw->xy_scale_wu;
     space->z_scale_q16 = draw->z_scale_q16;
     int64_t near_scale = soft_scale64(draw->xy_scale_wu, space->shift);
-    int near = space->shift >= 0 && near_scale * INT16_MAX < INT32_MAX && near_scale * INT16_MAX > -INT32_MAX;
+    int near = space->shift >= 0 && near_scale < WORLD_MAX && near_scale > -WORLD_MAX;
     space->near_scale = near ? (int32_t)near_scale : 0;
     for (int i = 0; near && i < 2; i++) space->near_origin[i] = (int32_t)soft_scale64(draw->origin_wu[i], space->shift);
     space->near_z = draw->origin_wu[2] * 65536;
-    int64_t near_eye = soft_scale64(near_wu, space->shift - 2), far_eye = soft_scale64(state->frame.camera.far_wu, space->shift - 2);
+    int64_t near_eye = soft_scale64(near_wu, space->shift - 1), far_eye = soft_scale64(state->frame.camera.far_wu, space->shift - 1);
     int leading = soft_leading_zeros((uint32_t)near_wu) - 1;
     space->near_norm = near_wu << leading;
-    space->near_shift = leading - (space->shift - 2);
+    space->near_shift = leading - (space->shift - 1);
     space->near_eye = near_eye < 1 ? 1 : (int32_t)near_eye;
     space->far_eye = backdrop || far_eye > INT32_MAX ? INT32_MAX : (int32_t)far_eye;
 }
@@ -139,7 +139,7 @@ static inline int32_t texel_q16(const texel_axis *axis, const int16_t at[3])
 static int32_t fog_q8(const soft_state *state, int32_t z_eye)
 {
     const c3d_frame *frame = &state->frame;
-    int64_t z_wu = soft_scale64(z_eye, 2 - state->space.shift), length = (int64_t)frame->fog_end_wu - frame->fog_start_wu;
+    int64_t z_wu = soft_scale64(z_eye, 1 - state->space.shift), length = (int64_t)frame->fog_end_wu - frame->fog_start_wu;
     int64_t clear = ((int64_t)frame->fog_end_wu - z_wu) * 256 / (length > 0 ? length : 1);
     return (int32_t)(clear > 1 << 14 ? 1 << 14 : clear < -(1 << 14) ? -(1 << 14) : clear);
 }
@@ -152,7 +152,7 @@ static void place_far(const soft_space *space, const c3d_vertex *in, int32_t wor
     world[2] = (int32_t)soft_scale64(space->origin_wu[2] * 65536 + (int64_t)in->z * space->z_scale_q16, space->shift - 16);
 }
 
-/* The same where a unit is at most a wu: sums of 32 bits do. */
+/* The same where a unit is at most a wu: sums of 32 bits do, for no vertex is out of reach. */
 static inline void place_near(const soft_space *space, const c3d_vertex *in, int32_t world[3])
 {
     world[0] = space->near_origin[0] + in->x * space->near_scale;
