@@ -112,17 +112,19 @@ static int events(fly_flight *flight, double t_s)
 
 /* ---- rows ---- */
 
-static int audit(fly_flight *flight, fly_sample *sample)
+static int fill_audit(fly_flight *flight, fly_sample *sample)
 {
     fly_world *world = flight->world;
     const ff_tree *tree = ff_client_tree(world->client);
     const ff_panorama_desc *panorama = &flight->options->panorama;
     int32_t back_plane_wu = panorama->back_plane_wu ? panorama->back_plane_wu : 7500 * FF_WU_PER_METRE;
-    sim_audit_view view = { .camera = flight->camera, .front_wu = back_plane_wu - back_plane_wu / 8,
+    sim_audit_view view = { .camera = flight->camera, .quality = flight->options->quality, .front_wu = back_plane_wu - back_plane_wu / 8,
                             .back_wu = panorama->server_back_wu ? panorama->server_back_wu : 100000 * FF_WU_PER_METRE };
     sim_audit_result result;
     sample->err_px_rms = sample->err_px_p95 = sample->err_px_max = NAN;
     sample->undrawn_px_percent = sample->panorama_px_percent = NAN;
+    sample->square_px_waiting = sample->square_px_depth = sample->square_px_quality = NAN;
+    sample->square_px_panorama = sample->square_px_undrawn = NAN;
     if (!world->auditor)
         return 0;
     if (tree)
@@ -134,11 +136,38 @@ static int audit(fly_flight *flight, fly_sample *sample)
     uint32_t all = result.ground_pixels + result.panorama_pixels + result.undrawn_pixels;
     sample->undrawn_px_percent = result.undrawn_percent;
     sample->panorama_px_percent = all ? 100.0 * result.panorama_pixels / all : 0;
-    if (result.ground_pixels + result.panorama_pixels) {
+    if (all) {
         sample->err_px_rms = result.err_px_rms;
         sample->err_px_p95 = result.err_px_p95;
         sample->err_px_max = result.err_px_max;
+        sample->square_px_waiting = result.square_px[SIM_CAUSE_WAITING];
+        sample->square_px_depth = result.square_px[SIM_CAUSE_DEPTH];
+        sample->square_px_quality = result.square_px[SIM_CAUSE_QUALITY];
+        sample->square_px_panorama = result.square_px[SIM_CAUSE_PANORAMA];
+        sample->square_px_undrawn = result.square_px[SIM_CAUSE_UNDRAWN];
     }
+    return 0;
+}
+
+static int fill_relevance(fly_flight *flight, fly_sample *sample)
+{
+    sim_relevance_figures f;
+    sample->bytes_heights = sample->bytes_images = sample->bytes_faces = sample->bytes_overhead = sample->bytes_judged = NAN;
+    sample->unused_heights = sample->unused_images = sample->unused_faces = sample->relevance_percent = NAN;
+    if (!flight->world->relevance)
+        return 0;
+    int rc = sim_relevance_get(flight->world->relevance, &f);
+    if (rc != FF_OK)
+        return fail("relevance", ff_error_text(rc));
+    sample->bytes_heights = f.came[SIM_ANSWER_HEIGHTS];
+    sample->bytes_images = f.came[SIM_ANSWER_IMAGE];
+    sample->bytes_faces = f.came[SIM_ANSWER_FACE];
+    sample->bytes_overhead = f.overhead;
+    sample->bytes_judged = f.judged[SIM_ANSWER_HEIGHTS] + f.judged[SIM_ANSWER_IMAGE] + f.judged[SIM_ANSWER_FACE] + f.overhead;
+    sample->unused_heights = f.unused[SIM_ANSWER_HEIGHTS];
+    sample->unused_images = f.unused[SIM_ANSWER_IMAGE];
+    sample->unused_faces = f.unused[SIM_ANSWER_FACE];
+    sample->relevance_percent = f.percent;
     return 0;
 }
 
@@ -204,7 +233,7 @@ static int take_row(fly_flight *flight, double t_s)
     memset(sample, 0, sizeof *sample);
     sample->t_s = t_s;
     fill_stats(flight, sample);
-    if (audit(flight, sample) || read_picture(flight))
+    if (fill_audit(flight, sample) || fill_relevance(flight, sample) || read_picture(flight))
         return -1;
     if (flight->world->surface)
         sample->frame_hash = fnv(FNV_START, flight->rgb, (size_t)flight->options->width * flight->options->height * 3);
@@ -250,6 +279,19 @@ static int check_terrain(const fly_flight *flight)
     return fail(flight->options->server ? flight->options->server : flight->options->pack_path, "serves another terrain than --pack");
 }
 
+/* What the frame draws, for the relevance of what came. */
+static void tell_relevance(fly_flight *flight)
+{
+    const ff_tree *tree = ff_client_tree(flight->world->client);
+    sim_relevance_view view = { .camera = flight->camera };
+    unsigned faces;
+    if (!flight->world->relevance || !tree)
+        return;
+    view.drawn_count = ff_tree_drawn(tree, &view.drawn);
+    view.panorama = ff_client_panorama(flight->world->client, view.panorama_pos_wu, &faces);
+    sim_relevance_frame(flight->world->relevance, &view);
+}
+
 static int one_frame(fly_flight *flight, double t_s)
 {
     fly_world *world = flight->world;
@@ -270,6 +312,7 @@ static int one_frame(fly_flight *flight, double t_s)
             (void)world->surface_api->present(world->surface);
         }
     }
+    tell_relevance(flight);
     ff_client_get_stats(world->client, &stats);
     flight->totals.empty_frames += flight->had_ground && !stats.tree.nodes_drawn;
     flight->had_ground |= stats.tree.nodes_drawn > 0;

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stddef.h>
 
-enum column_kind { PLACE, MEAN, TOTAL, MOST };
+enum column_kind { PLACE, MEAN, TOTAL, MOST, LAST };
 typedef struct column { const char *name, *format; enum column_kind kind; size_t offset; } column;
 
 #define X(name, format, kind) { #name, format, kind, offsetof(fly_sample, name) },
@@ -73,6 +73,8 @@ static double summarise(const column *c, const fly_sample *sample, size_t from, 
         return NAN;
     if (c->kind == TOTAL)
         return value(&sample[count - 1], c) - (from ? value(&sample[from - 1], c) : 0);
+    if (c->kind == LAST)
+        return value(&sample[count - 1], c);
     for (size_t i = from; i < count; i++) {
         sum += value(&sample[i], c);
         most = fmax(most, value(&sample[i], c));

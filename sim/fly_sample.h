@@ -7,7 +7,9 @@
 #include <stdio.h>
 
 /* X(name, printf format, kind): the CSV's columns before and after the three hashes. How the summary treats a column: PLACE left
- * out, MEAN over the rows after settling, TOTAL gained after settling, MOST of them. Columns without a value are nan. */
+ * out, MEAN over the rows after settling, TOTAL gained after settling, MOST of them, LAST of all. Columns without a value are nan.
+ * square_px_*: mean squared error by cause (sim_audit.h); bytes_*, unused_*: by kind (sim_relevance.h), bytes_judged with the overhead;
+ * relevance_percent: since the start. */
 #define FLY_COLUMNS_FIRST(X) \
     X(t_s, "%.3f", PLACE) X(x_m, "%.2f", PLACE) X(y_m, "%.2f", PLACE) X(z_m, "%.2f", PLACE) \
     X(triangles, "%.0f", MEAN) X(nodes_drawn, "%.0f", MEAN) X(nodes_held, "%.0f", MEAN) \
@@ -18,7 +20,11 @@
     X(queued, "%.0f", MEAN) X(panorama_faces, "%.0f", TOTAL) X(panorama_faces_empty, "%.0f", TOTAL) X(panorama_bytes, "%.0f", TOTAL) \
     X(requests_dropped, "%.0f", TOTAL) X(requests_cancelled, "%.0f", TOTAL) X(textures_held, "%.0f", MEAN) \
     X(pool_full, "%.0f", TOTAL) X(reconnects, "%.0f", TOTAL) X(link_up, "%.0f", MEAN) X(low_power, "%.0f", MEAN) \
-    X(frames_drawn, "%.0f", TOTAL)
+    X(frames_drawn, "%.0f", TOTAL) X(square_px_waiting, "%.4f", MEAN) X(square_px_depth, "%.4f", MEAN) \
+    X(square_px_quality, "%.4f", MEAN) X(square_px_panorama, "%.4f", MEAN) X(square_px_undrawn, "%.4f", MEAN) \
+    X(bytes_heights, "%.0f", TOTAL) X(bytes_images, "%.0f", TOTAL) X(bytes_faces, "%.0f", TOTAL) X(bytes_overhead, "%.0f", TOTAL) \
+    X(bytes_judged, "%.0f", TOTAL) X(unused_heights, "%.0f", TOTAL) X(unused_images, "%.0f", TOTAL) X(unused_faces, "%.0f", TOTAL) \
+    X(relevance_percent, "%.2f", LAST)
 
 typedef struct fly_sample {
 #define X(name, format, kind) double name;

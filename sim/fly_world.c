@@ -45,6 +45,9 @@ static int open_link(fly_world *world)
     if (!world->link)
         return fail("link", options->link.way[SIM_DOWN].trace || options->link.way[SIM_UP].trace ? FF_ERR_FORMAT : FF_ERR_MEMORY);
     sim_stream_client(&world->client_end, world->link, &world->now_us, &world->stream);
+    world->relevance = sim_relevance_create(&world->stream, &world->pack.header.info, &world->now_us);
+    if (!world->relevance)
+        return fail("relevance", FF_ERR_MEMORY);
     int rc = sim_server_init(&world->server, &world->pack, world->link, &world->now_us);
     return rc == FF_OK ? 0 : fail("server", rc);
 }
@@ -133,6 +136,7 @@ void fly_world_close(fly_world *world)
         world->surface_api->close(world->surface);
     }
     sim_link_destroy(world->link);
+    sim_relevance_destroy(world->relevance);
     sim_auditor_destroy(world->auditor);
     sim_ground_free(&world->true_ground);
     sim_ground_free(&world->path_ground);

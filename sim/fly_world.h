@@ -5,6 +5,7 @@
 #include "fly_options.h"
 #include "fly_path.h"
 #include "sim_audit.h"
+#include "sim_relevance.h"
 #include "sim_server.h"
 #include "sim_tape.h"
 
@@ -19,6 +20,7 @@ typedef struct fly_world {
     sim_link *link;             /* NULL with a real server */
     sim_stream client_end;
     sim_server server;
+    sim_relevance *relevance;   /* NULL with a real server */
     sys_tcp tcp;                /* with a real server */
     sys_stream stream;
     sim_tape_recorder tape;     /* file NULL: none is recorded */

@@ -2,13 +2,14 @@
 
 #include "../client/terrain/ff_strips.h"
 #include "../protocol/ff_message.h"
+#include "sim_eye.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
-#define NEAREST_M 0.01 /* points nearer to the eye plane have no pixel */
+#define NEAREST_M 0.01 /* points nearer to the eye have no pixel */
+#define EDGE_PX 0.5    /* the drawn ground's edge is found to this */
 
 typedef struct triangles { uint32_t count; uint16_t (*vertex)[3]; } triangles;
 
@@ -18,7 +19,8 @@ struct sim_auditor {
     unsigned step_px;
     triangles strip[32];      /* by strip id, degenerate ones left out */
     double *error;            /* of one frame */
-    size_t error_capacity;
+    struct look *look;
+    size_t capacity;          /* of both */
 };
 
 /* ---- strips as triangles ---- */
@@ -66,53 +68,18 @@ void sim_auditor_destroy(sim_auditor *auditor)
     for (size_t i = 0; i < sizeof auditor->strip / sizeof auditor->strip[0]; i++)
         free(auditor->strip[i].vertex);
     free(auditor->error);
+    free(auditor->look);
     free(auditor);
 }
 
 /* ---- projection ---- */
 
-typedef struct eye { double pos_m[3], right[3], up[3], forward[3], focal_px, centre_px[2]; } eye;
-
-static void eye_of(const c3d_camera *camera, eye *e)
-{
-    double yaw = camera->yaw * (PI / 32768), pitch = camera->pitch * (PI / 32768), roll = camera->roll * (PI / 32768);
-    double level_right[3] = { cos(yaw), -sin(yaw), 0 };
-    double level_up[3] = { -sin(yaw) * sin(pitch), -cos(yaw) * sin(pitch), cos(pitch) };
-    e->forward[0] = sin(yaw) * cos(pitch);
-    e->forward[1] = cos(yaw) * cos(pitch);
-    e->forward[2] = sin(pitch);
-    for (int i = 0; i < 3; i++) { /* roll clockwise: the right hand sinks */
-        e->pos_m[i] = (double)camera->pos_wu[i] / FF_WU_PER_METRE;
-        e->right[i] = level_right[i] * cos(roll) - level_up[i] * sin(roll);
-        e->up[i] = level_up[i] * cos(roll) + level_right[i] * sin(roll);
-    }
-    e->focal_px = camera->focal_q8 / 256.0;
-    e->centre_px[0] = camera->width / 2.0;
-    e->centre_px[1] = camera->height / 2.0;
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* Pixel of a direction from the eye. */
-static int project_direction(const eye *e, const double direction[3], double pixel[2])
-{
-    double depth = dot(direction, e->forward);
-    if (depth < NEAREST_M)
-        return 0;
-    pixel[0] = e->centre_px[0] + dot(direction, e->right) * e->focal_px / depth;
-    pixel[1] = e->centre_px[1] - dot(direction, e->up) * e->focal_px / depth;
-    return 1;
-}
-
 int sim_audit_project(const c3d_camera *camera, const double point_m[3], double pixel[2])
 {
-    eye e;
-    eye_of(camera, &e);
+    sim_eye e;
+    sim_eye_of(camera, &e);
     const double direction[3] = { point_m[0] - e.pos_m[0], point_m[1] - e.pos_m[1], point_m[2] - e.pos_m[2] };
-    return project_direction(&e, direction, pixel);
+    return sim_eye_project(&e, direction, pixel);
 }
 
 /* ---- what the client draws ---- */
@@ -155,7 +122,8 @@ static int node_height(const sim_auditor *auditor, const ff_drawn *drawn, double
     return 0;
 }
 
-int sim_audit_drawn_height(const sim_auditor *auditor, const ff_drawn *drawn, uint32_t count, double x_m, double y_m, double *z_m)
+/* The node drawn at (x, y) and its height there, or NULL. */
+static const ff_drawn *drawn_at(const sim_auditor *auditor, const ff_drawn *drawn, uint32_t count, double x_m, double y_m, double *z_m)
 {
     double side = (double)(1u << auditor->info.node_log2);
     for (uint32_t i = 0; i < count; i++) {
@@ -163,9 +131,33 @@ int sim_audit_drawn_height(const sim_auditor *auditor, const ff_drawn *drawn, ui
         double x = (x_m - (double)drawn[i].origin_wu[0] / FF_WU_PER_METRE) / cell_m;
         double y = (y_m - (double)drawn[i].origin_wu[1] / FF_WU_PER_METRE) / cell_m;
         if (x >= 0 && y >= 0 && x <= side && y <= side && node_height(auditor, &drawn[i], x, y, z_m))
-            return 1;
+            return &drawn[i];
     }
-    return 0;
+    return NULL;
+}
+
+int sim_audit_drawn_height(const sim_auditor *auditor, const ff_drawn *drawn, uint32_t count, double x_m, double y_m, double *z_m)
+{
+    return drawn_at(auditor, drawn, count, x_m, y_m, z_m) != NULL;
+}
+
+/* Why is the ground no finer here? Asked in the terms of the quality, not of the client's selection. */
+static enum sim_audit_cause cause_of(const sim_auditor *auditor, const sim_audit_view *view, const sim_eye *e, const ff_drawn *drawn,
+                                     double error_px)
+{
+    const ff_quality *quality = &view->quality;
+    uint32_t next = ff_key_level(drawn->key) + 1;
+    double edge_m = (double)drawn->cell_wu * (1u << auditor->info.node_log2) / FF_WU_PER_METRE;
+    int splits = error_px > quality->error_px_q8 / 256.0;
+    if (quality->measure == FF_MEASURE_DISTANCE) {
+        double d[3] = { (double)drawn->origin_wu[0] / FF_WU_PER_METRE + edge_m / 2 - e->pos_m[0],
+                        (double)drawn->origin_wu[1] / FF_WU_PER_METRE + edge_m / 2 - e->pos_m[1], 0 };
+        d[2] = sim_ground_height_m(auditor->ground, e->pos_m[0] + d[0], e->pos_m[1] + d[1]) - e->pos_m[2];
+        splits = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) < edge_m * quality->c_q8 / 256.0;
+    }
+    if (!splits || next >= ff_terrain_levels(&auditor->info))
+        return SIM_CAUSE_QUALITY;
+    return quality->depth_max && next >= quality->depth_max ? SIM_CAUSE_DEPTH : SIM_CAUSE_WAITING;
 }
 
 /* The direction in which the panorama shows a point: 1, or 0 when it does not. */
@@ -188,24 +180,68 @@ static int panorama_direction(const sim_audit_view *view, const double point_m[3
 
 /* ---- a frame ---- */
 
-/* Error of a pixel, or -1 when nothing is drawn there. */
-static double pixel_error(const sim_auditor *auditor, const sim_audit_view *view, const eye *e, const double pixel[2],
-                          const double point_m[3], sim_audit_result *result)
+/* A pixel of the grid: what it truly shows and what is drawn there. */
+typedef struct look { double pixel[2], error_px; int ground, drawn; enum sim_audit_cause cause; } look;
+
+/* The true ground a pixel shows: 1 and the point, or 0. */
+static int true_point(const sim_auditor *auditor, const sim_eye *e, const double pixel[2], double point_m[3])
 {
-    double shown[3], shown_px[2], z_m, most = hypot(e->centre_px[0], e->centre_px[1]) * 2;
-    if (sim_audit_drawn_height(auditor, view->drawn, view->drawn_count, point_m[0], point_m[1], &z_m)) {
-        result->ground_pixels++;
+    double along[3], t, reach_m = 4.0 * auditor->ground->cell_m * ((double)auditor->ground->columns + auditor->ground->rows);
+    sim_eye_ray(e, pixel, along);
+    if (!sim_ground_cast(auditor->ground, e->pos_m, along, reach_m, &t) || t <= NEAREST_M)
+        return 0;
+    for (int i = 0; i < 3; i++)
+        point_m[i] = e->pos_m[i] + t * along[i];
+    return 1;
+}
+
+/* Looks at one pixel; where nothing is drawn the error is left for later. */
+static void look_at(const sim_auditor *auditor, const sim_audit_view *view, const sim_eye *e, look *at)
+{
+    double point_m[3], shown[3], shown_px[2], z_m, most = hypot(e->centre_px[0], e->centre_px[1]) * 2;
+    at->drawn = 0;
+    at->ground = true_point(auditor, e, at->pixel, point_m);
+    if (!at->ground)
+        return;
+    const ff_drawn *node = drawn_at(auditor, view->drawn, view->drawn_count, point_m[0], point_m[1], &z_m);
+    if (node) {
         for (int i = 0; i < 3; i++)
             shown[i] = (i == 2 ? z_m : point_m[i]) - e->pos_m[i];
-    } else if (panorama_direction(view, point_m, shown)) {
-        result->panorama_pixels++;
-    } else {
-        result->undrawn_pixels++;
-        return -1;
+    } else if (!panorama_direction(view, point_m, shown)) {
+        at->cause = SIM_CAUSE_UNDRAWN;
+        return;
     }
-    if (!project_direction(e, shown, shown_px))
-        return most; /* shown behind the eye: as wrong as the picture is large */
-    return fmin(most, hypot(shown_px[0] - pixel[0], shown_px[1] - pixel[1]));
+    at->drawn = 1;
+    at->error_px = most; /* shown behind the eye: as wrong as the picture is large */
+    if (sim_eye_project(e, shown, shown_px))
+        at->error_px = fmin(most, hypot(shown_px[0] - at->pixel[0], shown_px[1] - at->pixel[1]));
+    at->cause = node ? cause_of(auditor, view, e, node, at->error_px) : SIM_CAUSE_PANORAMA;
+}
+
+/* Ground that is not drawn is as wrong as the drawn ground's edge is far: halving towards the nearest pixel that shows it. */
+static double undrawn_error(const sim_auditor *auditor, const sim_audit_view *view, const sim_eye *e, const look *list, size_t count,
+                            const look *at)
+{
+    double nearest = hypot(e->centre_px[0], e->centre_px[1]) * 2, low = 0, high = 1;
+    const look *other = NULL;
+    for (size_t i = 0; i < count; i++) {
+        double distance = hypot(list[i].pixel[0] - at->pixel[0], list[i].pixel[1] - at->pixel[1]);
+        if (list[i].drawn && distance < nearest) {
+            nearest = distance;
+            other = &list[i];
+        }
+    }
+    while (other && (high - low) * nearest > EDGE_PX) {
+        double middle = (low + high) / 2;
+        look between = { .pixel = { at->pixel[0] + middle * (other->pixel[0] - at->pixel[0]),
+                                    at->pixel[1] + middle * (other->pixel[1] - at->pixel[1]) } };
+        look_at(auditor, view, e, &between);
+        if (between.drawn)
+            high = middle;
+        else
+            low = middle;
+    }
+    return high * nearest;
 }
 
 static int by_value(const void *a, const void *b)
@@ -214,51 +250,66 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static void summarise(double *error, size_t count, sim_audit_result *result)
+static void summarise(const look *list, size_t looks, double *error, sim_audit_result *result)
 {
-    uint32_t all = result->ground_pixels + result->panorama_pixels + result->undrawn_pixels;
+    size_t count = 0;
     double sum = 0;
-    result->undrawn_percent = all ? 100.0 * result->undrawn_pixels / all : 0;
+    for (size_t i = 0; i < looks; i++) {
+        if (!list[i].ground)
+            continue;
+        error[count++] = list[i].error_px;
+        sum += list[i].error_px * list[i].error_px;
+        result->square_px[list[i].cause] += list[i].error_px * list[i].error_px;
+        result->undrawn_pixels += list[i].cause == SIM_CAUSE_UNDRAWN;
+        result->panorama_pixels += list[i].cause == SIM_CAUSE_PANORAMA;
+    }
+    result->ground_pixels = (uint32_t)count - result->undrawn_pixels - result->panorama_pixels;
     if (!count)
         return;
     qsort(error, count, sizeof *error, by_value);
-    for (size_t i = 0; i < count; i++)
-        sum += error[i] * error[i];
+    for (int cause = 0; cause < SIM_CAUSES; cause++)
+        result->square_px[cause] /= (double)count;
+    result->undrawn_percent = 100.0 * result->undrawn_pixels / (double)count;
     result->err_px_rms = sqrt(sum / (double)count);
     result->err_px_p95 = error[(count - 1) * 95 / 100];
     result->err_px_max = error[count - 1];
+}
+
+static int make_room(sim_auditor *auditor, size_t most)
+{
+    if (most <= auditor->capacity)
+        return FF_OK;
+    double *error = realloc(auditor->error, most * sizeof *error);
+    if (error)
+        auditor->error = error;
+    look *list = realloc(auditor->look, most * sizeof *list);
+    if (list)
+        auditor->look = list;
+    if (!error || !list)
+        return FF_ERR_MEMORY;
+    auditor->capacity = most;
+    return FF_OK;
 }
 
 int sim_audit_frame(sim_auditor *auditor, const sim_audit_view *view, sim_audit_result *result)
 {
     const c3d_camera *camera = &view->camera;
     unsigned step = auditor->step_px;
-    size_t most = ((size_t)camera->width / step + 1) * ((size_t)camera->height / step + 1), count = 0;
-    eye e;
-    eye_of(camera, &e);
+    size_t count = 0;
+    sim_eye e;
+    sim_eye_of(camera, &e);
     memset(result, 0, sizeof *result);
-    if (most > auditor->error_capacity) {
-        double *grown = realloc(auditor->error, most * sizeof *grown);
-        if (!grown)
-            return FF_ERR_MEMORY;
-        auditor->error = grown;
-        auditor->error_capacity = most;
-    }
-    double reach_m = 4.0 * auditor->ground->cell_m * ((double)auditor->ground->columns + auditor->ground->rows);
+    if (make_room(auditor, ((size_t)camera->width / step + 1) * ((size_t)camera->height / step + 1)) != FF_OK)
+        return FF_ERR_MEMORY;
     for (unsigned y = step / 2; y < camera->height; y += step)
         for (unsigned x = step / 2; x < camera->width; x += step) {
-            double pixel[2] = { x + 0.5, y + 0.5 }, along[3], point_m[3], t;
-            for (int i = 0; i < 3; i++)
-                along[i] = e.forward[i] + e.right[i] * (pixel[0] - e.centre_px[0]) / e.focal_px
-                         + e.up[i] * (e.centre_px[1] - pixel[1]) / e.focal_px;
-            if (!sim_ground_cast(auditor->ground, e.pos_m, along, reach_m, &t) || t <= NEAREST_M)
-                continue;
-            for (int i = 0; i < 3; i++)
-                point_m[i] = e.pos_m[i] + t * along[i];
-            double error = pixel_error(auditor, view, &e, pixel, point_m, result);
-            if (error >= 0)
-                auditor->error[count++] = error;
+            look *at = &auditor->look[count++];
+            *at = (look){ .pixel = { x + 0.5, y + 0.5 } };
+            look_at(auditor, view, &e, at);
         }
-    summarise(auditor->error, count, result);
+    for (size_t i = 0; i < count; i++)
+        if (auditor->look[i].ground && !auditor->look[i].drawn)
+            auditor->look[i].error_px = undrawn_error(auditor, view, &e, auditor->look, count, &auditor->look[i]);
+    summarise(auditor->look, count, auditor->error, result);
     return FF_OK;
 }

@@ -5,7 +5,10 @@
  *   panorama  no triangle, but a panorama in use shows P: it shows it in the direction from O, where the panorama was taken; that
  *             direction seen from the camera is projected; the distance to P's pixel is the (parallax) error. The renderer's own
  *             error (a pixel of the face, by its rules) and what O could not see are not counted.
- *   nothing   neither: counted in undrawn_percent, not in the error.
+ *   nothing   neither: the distance to the nearest pixel at which something is drawn for the ground there is the error (one-sided
+ *             Hausdorff: how far the drawn ground's edge would have to come), the picture's diagonal where there is none. Counted in
+ *             undrawn_percent too.
+ * Each pixel's error has one cause (enum sim_audit_cause), found from the quality asked for, not from the client's selection.
  * Independent of the client's estimates: triangles are made anew from the drawn list's heights and border masks.
  */
 #ifndef SIM_AUDIT_H
@@ -14,8 +17,18 @@
 #include "../client/terrain/ff_tree.h"
 #include "sim_ground.h"
 
+enum sim_audit_cause {
+    SIM_CAUSE_WAITING,           /* the quality asks for finer ground here, and there is some: it has not come */
+    SIM_CAUSE_DEPTH,             /* it would, but its depth_max forbids */
+    SIM_CAUSE_QUALITY,           /* fine enough for the quality, or as fine as the terrain is */
+    SIM_CAUSE_PANORAMA,          /* parallax */
+    SIM_CAUSE_UNDRAWN,           /* nothing is drawn there */
+    SIM_CAUSES
+};
+
 typedef struct sim_audit_view {
     c3d_camera camera;           /* near and far are not looked at */
+    ff_quality quality;          /* for the causes alone: measure, c, error_px, depth_max */
     const ff_drawn *drawn;       /* what is drawn */
     uint32_t drawn_count;
     int panorama;                /* 1: one is in use, and: */
@@ -26,7 +39,8 @@ typedef struct sim_audit_view {
 
 typedef struct sim_audit_result {
     uint32_t ground_pixels, panorama_pixels, undrawn_pixels; /* that truly show ground, by who draws it */
-    double err_px_rms, err_px_p95, err_px_max;               /* over the first two; 0 without any */
+    double err_px_rms, err_px_p95, err_px_max;               /* over all three; 0 without any */
+    double square_px[SIM_CAUSES];                            /* mean squares by cause: their sum is err_px_rms squared */
     double undrawn_percent;                                  /* of all pixels that truly show ground */
 } sim_audit_result;
 

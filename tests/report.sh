@@ -25,7 +25,7 @@ flight 60 >"$work/umts <&> on.csv"
 flight "" >"$work/blind.csv"
 printf 'not really a picture' >"$work/fly/one & two.png"
 
-"$report" "$work/umts <&> on.csv" "$work/blind.csv" -o "$work/deep/out" --title 'Ground & "far" <ground>' \
+"$report" "$work/umts <&> on.csv" "$work/blind.csv" -o "$work/deep/out" --settle 0 --title 'Ground & "far" <ground>' \
     --picture "$work/fly/one & two.png" >"$work/said" 2>"$work/error"
 result $? "makes a report"
 page=$work/deep/out/index.html

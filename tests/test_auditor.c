@@ -133,6 +133,7 @@ static void test_ground_above_the_eye(void **state)
     free_scene(&s);
 }
 
+/* No edge to come from anywhere: as wrong as the picture is large. */
 static void test_nothing_drawn(void **state)
 {
     (void)state;
@@ -142,13 +143,81 @@ static void test_nothing_drawn(void **state)
     assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
     assert_true(result.undrawn_pixels > 100);
     assert_near(result.undrawn_percent, 100);
-    assert_near(result.err_px_max, 0);
+    assert_near(result.err_px_max, hypot(240, 320));
+    assert_near(result.err_px_rms, hypot(240, 320));
+    assert_near(result.square_px[SIM_CAUSE_UNDRAWN], result.err_px_rms * result.err_px_rms);
     draw_at(&s, 0);
     uint32_t all = result.undrawn_pixels;
     s.drawn[10] = s.drawn[0]; /* the tile ahead on the right is missing */
     assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
     assert_int_equal(result.undrawn_pixels + result.ground_pixels, all);
     assert_true(result.undrawn_pixels > 0 && result.ground_pixels > 0);
+    free_scene(&s);
+}
+
+/* Seen from 2 km up, the farthest row of tiles is missing: the drawn ground ends in a level line, and each pixel above it is off by
+ * its distance to that line. */
+static void test_ground_not_yet_drawn(void **state)
+{
+    (void)state;
+    static scene s;
+    sim_audit_result result;
+    double sum = 0, most = 0;
+    uint32_t undrawn = 0, all = 0;
+    flat_scene(&s);
+    draw_at(&s, 0);
+    s.view.camera.pos_wu[2] = 2000 * 256;
+    s.view.drawn_count = 12;
+    double focal = s.view.camera.focal_q8 / 256.0, border = 2000 * focal / 8192, edge = 2000 * focal / 4096;
+    for (unsigned y = STEP_PX / 2; y < 320; y += STEP_PX) {
+        double below = y + 0.5 - 160;
+        all += below > border ? 240 / STEP_PX : 0;
+        if (below <= border || below >= edge)
+            continue;
+        undrawn += 240 / STEP_PX;
+        sum += (edge - below) * (edge - below) * (240 / STEP_PX);
+        most = fmax(most, edge - below);
+    }
+    assert_true(undrawn > 100);
+    assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
+    assert_int_equal(result.undrawn_pixels, undrawn);
+    assert_int_equal(result.ground_pixels + result.undrawn_pixels, all);
+    assert_true(result.err_px_max >= most - 1e-6 && result.err_px_max <= most + 0.5); /* the edge is found to half a pixel */
+    assert_true(result.err_px_rms >= sqrt(sum / all) - 1e-6 && result.err_px_rms <= sqrt(sum / all) + 0.5);
+    assert_near(result.square_px[SIM_CAUSE_UNDRAWN], result.err_px_rms * result.err_px_rms);
+    free_scene(&s);
+}
+
+/* The same wrong ground under several qualities: whose fault is it? */
+static void test_causes(void **state)
+{
+    (void)state;
+    static const struct { ff_quality quality; uint8_t levels; enum sim_audit_cause cause; } row[] = {
+        { { .measure = FF_MEASURE_DISTANCE, .c_q8 = 9 * 256 }, 3, SIM_CAUSE_WAITING },
+        { { .measure = FF_MEASURE_DISTANCE, .c_q8 = 9 * 256, .depth_max = 2 }, 3, SIM_CAUSE_WAITING },
+        { { .measure = FF_MEASURE_DISTANCE, .c_q8 = 9 * 256, .depth_max = 1 }, 3, SIM_CAUSE_DEPTH },
+        { { .measure = FF_MEASURE_DISTANCE, .c_q8 = 9 * 256 }, 1, SIM_CAUSE_QUALITY },
+        { { .measure = FF_MEASURE_DISTANCE, .c_q8 = 8 }, 3, SIM_CAUSE_QUALITY },
+        { { .measure = FF_MEASURE_PIXELS, .error_px_q8 = 1 }, 3, SIM_CAUSE_WAITING },
+        { { .measure = FF_MEASURE_PIXELS, .error_px_q8 = 1, .depth_max = 1 }, 3, SIM_CAUSE_DEPTH },
+        { { .measure = FF_MEASURE_PIXELS, .error_px_q8 = 400 * 256 }, 3, SIM_CAUSE_QUALITY },
+    };
+    static scene s;
+    sim_audit_result result;
+    flat_scene(&s);
+    draw_at(&s, 50);
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        ff_terrain_info info = s.pack.header.info;
+        info.tile_log2 = (uint8_t)(info.node_log2 + row[i].levels - 1); /* as if there were so many levels */
+        sim_auditor *auditor = sim_auditor_create(&s.ground, &info, STEP_PX);
+        assert_non_null(auditor);
+        s.view.quality = row[i].quality;
+        assert_int_equal(sim_audit_frame(auditor, &s.view, &result), FF_OK);
+        assert_true(result.err_px_rms > 1);
+        for (int cause = 0; cause < SIM_CAUSES; cause++)
+            assert_near(result.square_px[cause], cause == (int)row[i].cause ? result.err_px_rms * result.err_px_rms : 0);
+        sim_auditor_destroy(auditor);
+    }
     free_scene(&s);
 }
 
@@ -176,6 +245,7 @@ static void test_parallax(void **state)
         assert_int_equal(result.panorama_pixels, e.count);
         assert_near(result.err_px_max, e.most);
         assert_near(result.err_px_rms, sqrt(e.sum_squares / e.count));
+        assert_near(result.square_px[SIM_CAUSE_PANORAMA], e.sum_squares / e.count);
         free_scene(&s);
     }
 }
@@ -351,7 +421,7 @@ int main(void)
         cmocka_unit_test(test_flat_ground_too_high), cmocka_unit_test(test_ground_above_the_eye), cmocka_unit_test(test_nothing_drawn),
         cmocka_unit_test(test_parallax),             cmocka_unit_test(test_panorama_limits),      cmocka_unit_test(test_ground_is_the_source),
         cmocka_unit_test(test_cast_against_steps),   cmocka_unit_test(test_projection_is_the_renderers),
-        cmocka_unit_test(test_drawn_height_of_a_cut),
+        cmocka_unit_test(test_drawn_height_of_a_cut),   cmocka_unit_test(test_ground_not_yet_drawn), cmocka_unit_test(test_causes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

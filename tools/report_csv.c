@@ -175,32 +175,33 @@ double report_flight_mean(const report_flight *flight, enum report_column column
     return count ? sum / (double)count : NAN;
 }
 
-static double largest(const report_flight *flight, enum report_column column)
+static double largest(const report_flight *flight, enum report_column column, double from_s)
 {
     double most = NAN;
-    for (size_t i = 0; i < flight->row_count; i++) most = fmax(most, flight->row[i].value[column]);
+    for (size_t i = 0; i < flight->row_count; i++)
+        if (flight->row[i].value[REPORT_T_S] >= from_s) most = fmax(most, flight->row[i].value[column]);
     return most;
 }
 
-int report_flight_has(const report_flight *flight, enum report_column column) { return !isnan(largest(flight, column)); }
+int report_flight_has(const report_flight *flight, enum report_column column) { return !isnan(largest(flight, column, 0)); }
 
-void report_summarise(const report_flight *flight, report_summary *summary)
+void report_summarise(const report_flight *flight, double settle_s, report_summary *summary)
 {
     const double *last = flight->row[flight->row_count - 1].value;
     *summary = (report_summary){
         .seconds = last[REPORT_T_S],
         .triangles_mean = report_flight_mean(flight, REPORT_TRIANGLES, 0),
-        .triangles_max = largest(flight, REPORT_TRIANGLES),
+        .triangles_max = largest(flight, REPORT_TRIANGLES, 0),
         .nodes_drawn_mean = report_flight_mean(flight, REPORT_NODES_DRAWN, 0),
-        .nodes_held_max = largest(flight, REPORT_NODES_HELD),
+        .nodes_held_max = largest(flight, REPORT_NODES_HELD, 0),
         .kb_down_60s = NAN,
         .kb_down = last[REPORT_BYTES_DOWN] / 1000,
         .kb_up = last[REPORT_BYTES_UP] / 1000,
         .requests = last[REPORT_REQUESTS],
         .panoramas = last[REPORT_PANORAMAS],
-        .err_rms_mean = report_flight_mean(flight, REPORT_ERR_RMS, 0),
-        .err_p95_mean = report_flight_mean(flight, REPORT_ERR_P95, 0),
-        .err_max = largest(flight, REPORT_ERR_MAX),
+        .err_rms_mean = report_flight_mean(flight, REPORT_ERR_RMS, settle_s),
+        .err_p95_mean = report_flight_mean(flight, REPORT_ERR_P95, settle_s),
+        .err_max = largest(flight, REPORT_ERR_MAX, settle_s),
     };
     for (size_t i = 0; i < flight->row_count && summary->seconds >= 60; i++)
         if (flight->row[i].value[REPORT_T_S] <= 60) summary->kb_down_60s = flight->row[i].value[REPORT_BYTES_DOWN] / 1000;

@@ -24,7 +24,7 @@ typedef struct report_flight {
     size_t row_count;    /* at least 1 */
 } report_flight;
 
-/* Means over all rows, NAN where a flight has none. */
+/* Means over all rows, of errors over those from settle_s on (before, nothing may be drawn yet); NAN where a flight has none. */
 typedef struct report_summary {
     double seconds, triangles_mean, triangles_max, nodes_drawn_mean, nodes_held_max;
     double kb_down_60s, kb_down, kb_up, requests, panoramas; /* 60 s: NAN when the flight is shorter */
@@ -38,7 +38,7 @@ void report_flight_free(report_flight *flight);
 size_t report_csv_split(char *line, char **field, size_t most);
 /* Mean over the rows from from_s on, NAN where none has the column. */
 double report_flight_mean(const report_flight *flight, enum report_column column, double from_s);
-void report_summarise(const report_flight *flight, report_summary *summary);
+void report_summarise(const report_flight *flight, double settle_s, report_summary *summary);
 /* 1 when any row has the column. */
 int report_flight_has(const report_flight *flight, enum report_column column);
 

@@ -99,7 +99,7 @@ static void put_html_table(FILE *out, const report_content *content)
     fputs("</tr>\n", out);
     for (size_t i = 0; i < content->flight_count; i++) {
         report_summary summary;
-        report_summarise(&content->flight[i], &summary);
+        report_summarise(&content->flight[i], content->settle_s, &summary);
         fputs("<tr><td>", out);
         put_html(out, content->flight[i].name);
         fputs("</td>", out);
@@ -225,7 +225,7 @@ int report_page_markdown(const report_content *content, char *why, size_t why_by
     for (int c = 0; c < SUMMARY_COLUMNS; c++) fputs(" --: |", out);
     for (size_t i = 0; i < content->flight_count; i++) {
         report_summary summary;
-        report_summarise(&content->flight[i], &summary);
+        report_summarise(&content->flight[i], content->settle_s, &summary);
         fputs("\n| ", out);
         put_markdown(out, content->flight[i].name);
         fputs(" |", out);
@@ -260,7 +260,7 @@ void report_page_json(const report_content *content)
     putchar('[');
     for (size_t i = 0; i < content->flight_count; i++) {
         report_summary summary;
-        report_summarise(&content->flight[i], &summary);
+        report_summarise(&content->flight[i], content->settle_s, &summary);
         printf("%s{\"flight\": ", i ? ",\n " : "");
         put_json_text(content->flight[i].name);
         for (int c = 0; c < SUMMARY_COLUMNS; c++) {

@@ -12,7 +12,7 @@ typedef struct report_content {
     const char *const *picture; /* file names inside `folder` */
     size_t picture_count;
     const report_paper *paper; /* NULL: flights stand for themselves */
-    double settle_s;           /* with a paper: seconds before the flight begins */
+    double settle_s;           /* seconds before the flights begin */
 } report_content;
 
 /* Each 0, or -1 with the reason in `why`. */
