@@ -71,11 +71,11 @@ $(HAND): $(HAND_SRC:%.c=$(HAND_OBJ)/%.o)
 
 -include $(shell find build/handheld -name '*.d' 2>/dev/null)
 
-# ---- make bench-handheld: instructions by a plugin of qemu's translator; PACK=... flies over another terrain;
-# BENCH_OPTIONS=--functions prints the functions that cost most ----
+# ---- make bench-handheld: instructions by a plugin of qemu's translator. DATA=DIR (with puget-sound-gatech/, see flyover) flies over Puget
+# Sound, PACK=... over any pack; BENCH_OPTIONS=--functions prints the functions that cost most, --quick leaves out the sweep ----
 BENCH := build/bench
 BENCH_TILE := 7
-PACK ?= $(BENCH)/ground.ffp
+PACK ?= $(BENCH)/$(if $(DATA),puget,ground).ffp
 TCG_COUNT := build/handheld/libtcg_count.so
 $(TCG_COUNT): tools/tcg/tcg_count.c
 	@mkdir -p $(@D)
@@ -85,6 +85,12 @@ $(BENCH)/ground.ffp: tools/bench_terrain.py $(BUILD)/bin/farfield-bake
 	tools/bench_terrain.py $(@D)
 	$(BUILD)/bin/farfield-bake $(@D)/ground.raw --raw 2049x2049 --scale 0.1 --spacing 40 --tile-log2 $(BENCH_TILE) --quiet \
 	    --color $(@D)/ground.ppm --texture-levels 3 -o $@
+# As tools/flyover.sh has it: minutes, once.
+PUGET := $(DATA)/puget-sound-gatech
+$(BENCH)/puget.ffp: | $(BUILD)/bin/farfield-bake
+	@mkdir -p $(@D)
+	$(BUILD)/bin/farfield-bake $(PUGET)/ps_height_1k.png --hscale 0.1 --spacing 160 --densify 16 --tile-log2 10 \
+	    --color $(PUGET)/ps_texture_1k.png --texture-levels 5 -o $@
 
 .PHONY: bench-handheld
 bench-handheld: build/handheld/farfield-handheld $(TCG_COUNT) $(BUILD)/bin/farfield-fly $(PACK) ## ARM instructions a frame, by phase, and the work-precision curve: build/bench/handheld.md

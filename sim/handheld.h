@@ -15,7 +15,7 @@ typedef struct handheld_options {
     int32_t speed_kmh, height_m;
     ff_quality quality;
     ff_panorama_desc panorama;
-    int json, hud, no_pictures, no_textures;
+    int json, hud, hash, no_pictures, no_textures;
 } handheld_options;
 
 /* 0: fly; 1: --help or --version was answered; -1: an error, said in one line on stderr. */
@@ -24,8 +24,9 @@ int handheld_options_parse(handheld_options *options, int argc, char **argv);
 /* Sums over the frames flown (a tape's settling not counted), and what had to hold. */
 typedef struct handheld_totals {
     uint32_t frames, drawn;
-    uint64_t triangles;
+    uint64_t triangles, submitted; /* of the ground, and all that the back end was given */
     uint32_t triangles_max;
+    uint64_t pictures_hash;     /* FNV-1a over the pixels of every frame drawn, with --hash */
     int same_flight;            /* of a tape: 1 when both hashes at the end are those recorded */
 } handheld_totals;
 

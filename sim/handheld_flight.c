@@ -105,6 +105,22 @@ static int work(handheld *device, int64_t now_us)
     return moved;
 }
 
+/* Of values, not bytes: the same on every machine. */
+static void hash_picture(handheld *device)
+{
+    enum c3d_texture_format format;
+    const void *pixels = c3d_frame_pixels(ff_client_device(device->client), &format);
+    uint64_t hash = device->totals.pictures_hash ? device->totals.pictures_hash : UINT64_C(14695981039346656037);
+    uint32_t count = pixels ? (uint32_t)device->width * device->height : 0;
+    if (format == C3D_RGB565)
+        for (uint32_t i = 0; i < count; i++)
+            hash = (hash ^ ((const uint16_t *)pixels)[i]) * UINT64_C(1099511628211);
+    else
+        for (uint32_t i = 0; i < 4 * count; i++)
+            hash = (hash ^ ((const uint8_t *)pixels)[i]) * UINT64_C(1099511628211);
+    device->totals.pictures_hash = hash;
+}
+
 static int one_frame(handheld *device, int64_t now_us, const c3d_camera *camera, int flying)
 {
     ff_client_stats stats;
@@ -116,6 +132,8 @@ static int one_frame(handheld *device, int64_t now_us, const c3d_camera *camera,
         handheld_mark_outside();
         if (device->options->hud)
             handheld_hud(device);
+        if (device->options->hash && flying)
+            hash_picture(device);
         (void)device->surface_api->present(device->surface);
     }
     handheld_mark_outside();
@@ -127,6 +145,7 @@ static int one_frame(handheld *device, int64_t now_us, const c3d_camera *camera,
         return 0;
     device->totals.drawn++;
     device->totals.triangles += stats.tree.triangles;
+    device->totals.submitted += stats.c3d.frame_triangles;
     if (stats.tree.triangles > device->totals.triangles_max)
         device->totals.triangles_max = stats.tree.triangles;
     handheld_mark_frame();

@@ -23,13 +23,14 @@ static const char help[] =
     "  --no-textures         images of the ground are not asked for\n"
     "  --no-pictures         geometry only, nothing is drawn\n"
     "  --hud                 figures over the picture\n"
+    "  --hash                a hash over the pixels of all frames, among the statistics\n"
     "  --fb FILE             the last frame as PPM\n"
     "  --json                statistics as JSON\n"
     "  --help, --version\n";
 
 enum option_id {
     OPT_PACK = 256, OPT_SERVER, OPT_TAPE, OPT_FRAMES, OPT_SIZE, OPT_QUALITY, OPT_PANORAMA, OPT_SPEED, OPT_HEIGHT, OPT_MEMORY,
-    OPT_NO_TEXTURES, OPT_NO_PICTURES, OPT_HUD, OPT_FB, OPT_JSON, OPT_HELP, OPT_VERSION
+    OPT_NO_TEXTURES, OPT_NO_PICTURES, OPT_HUD, OPT_HASH, OPT_FB, OPT_JSON, OPT_HELP, OPT_VERSION
 };
 
 static const struct option long_options[] = {
@@ -37,9 +38,9 @@ static const struct option long_options[] = {
     { "frames", 1, NULL, OPT_FRAMES },   { "size", 1, NULL, OPT_SIZE },         { "quality", 1, NULL, OPT_QUALITY },
     { "panorama", 1, NULL, OPT_PANORAMA }, { "speed", 1, NULL, OPT_SPEED },     { "height", 1, NULL, OPT_HEIGHT },
     { "memory", 1, NULL, OPT_MEMORY },   { "no-textures", 0, NULL, OPT_NO_TEXTURES },
-    { "no-pictures", 0, NULL, OPT_NO_PICTURES }, { "hud", 0, NULL, OPT_HUD },   { "fb", 1, NULL, OPT_FB },
-    { "json", 0, NULL, OPT_JSON },       { "help", 0, NULL, OPT_HELP },         { "version", 0, NULL, OPT_VERSION },
-    { NULL, 0, NULL, 0 }
+    { "no-pictures", 0, NULL, OPT_NO_PICTURES }, { "hud", 0, NULL, OPT_HUD },   { "hash", 0, NULL, OPT_HASH },
+    { "fb", 1, NULL, OPT_FB },           { "json", 0, NULL, OPT_JSON },         { "help", 0, NULL, OPT_HELP },
+    { "version", 0, NULL, OPT_VERSION }, { NULL, 0, NULL, 0 }
 };
 
 static int fail(const char *format, ...)
@@ -133,6 +134,7 @@ static int parse_one(handheld_options *options, int id, const char *text)
     case OPT_FB: options->fb_path = text; break;
     case OPT_JSON: options->json = 1; break;
     case OPT_HUD: options->hud = 1; break;
+    case OPT_HASH: options->hash = 1; break;
     case OPT_NO_PICTURES: options->no_pictures = 1; break;
     case OPT_NO_TEXTURES: options->no_textures = 1; break;
     case OPT_SIZE: rc = parse_size(options, text); break;
@@ -172,7 +174,7 @@ int handheld_options_parse(handheld_options *options, int argc, char **argv)
         return fail("unexpected argument %s", argv[optind]);
     if ((options->pack_path != NULL) + (options->server != NULL) + (options->tape_path != NULL) != 1)
         return fail("one of --pack, --server and --tape is wanted (see --help)");
-    if (options->fb_path && options->no_pictures)
-        return fail("--fb: there are no pictures with --no-pictures");
+    if ((options->fb_path || options->hash) && options->no_pictures)
+        return fail("--fb and --hash: there are no pictures with --no-pictures");
     return 0;
 }

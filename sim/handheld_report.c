@@ -8,14 +8,28 @@ typedef struct figure { const char *name; uint64_t value; } figure;
 
 #define FIGURES_MAX 40
 
+/* Where the back end has the finished frame, for counters of memory accesses; NULL: no picture. */
+static const void *pixels_of(const handheld *device, uint64_t *bytes)
+{
+    c3d_device *c3d = ff_client_device(device->client);
+    enum c3d_texture_format format;
+    const void *pixels = c3d ? c3d_frame_pixels(c3d, &format) : NULL;
+    if (pixels)
+        *bytes = (uint64_t)device->width * device->height * (format == C3D_RGB565 ? 2 : 4);
+    return pixels;
+}
+
 static unsigned collect(const handheld *device, figure *list)
 {
     ff_client_stats s;
     ff_client_get_stats(device->client, &s);
     const handheld_totals *t = &device->totals;
+    uint64_t pixels_bytes = 0;
+    const void *pixels = pixels_of(device, &pixels_bytes);
     const figure all[] = {
         { "frames", t->frames }, { "frames_drawn", t->drawn },
         { "triangles_mean", t->drawn ? t->triangles / t->drawn : 0 }, { "triangles_max", t->triangles_max },
+        { "triangles_submitted_mean", t->drawn ? t->submitted / t->drawn : 0 },
         { "nodes_held", s.tree.nodes_held }, { "nodes_high", s.tree.nodes_high }, { "nodes_capacity", s.tree.nodes_capacity },
         { "pool_full", s.tree.pool_full }, { "orphans", s.tree.orphans },
         { "meshes_high", s.c3d.mesh_high }, { "strips_high", s.c3d.strip_high }, { "device_textures_high", s.c3d.texture_high },
@@ -27,6 +41,7 @@ static unsigned collect(const handheld *device, figure *list)
         { "bytes_down", s.bytes_down }, { "bytes_up", s.bytes_up }, { "tree_err_px_q8", s.tree.error_px_q8 },
         { "memory_used", s.memory_used }, { "memory_bytes", s.memory_bytes },
         { "mapping_at", (uint64_t)(uintptr_t)device->mapping.bytes }, { "mapping_bytes", device->mapping.size },
+        { "pixels_at", (uint64_t)(uintptr_t)pixels }, { "pixels_bytes", pixels_bytes }, { "pictures_hash", t->pictures_hash },
         { "geometry_hash", ff_client_geometry_hash(device->client) }, { "request_hash", ff_client_request_hash(device->client) },
     };
     memcpy(list, all, sizeof all);

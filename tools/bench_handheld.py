@@ -5,8 +5,8 @@ Each flight is flown twice: by farfield-fly on this machine (audited against the
 the cross-built farfield-handheld under qemu-arm with the counting plugin; it ends with an error unless both did the very same. Writes
 OUT/handheld.md, OUT/handheld.json and OUT/work-precision.csv.
 
-Bins of the phase table: the program's marks cut a frame into work (link, decoding), update and draw; within these, the linker map says
-which object file an instruction belongs to."""
+The program's marks cut a frame into work (link, decoding), update and draw; within these, the linker map says which object file an
+instruction belongs to. Helpers (division, memset, ...) count to the file that called them."""
 import argparse
 import csv
 import json
@@ -18,28 +18,35 @@ from handheld_counts import Counts, Program, die, run
 SECONDS, SWEEP_SECONDS, SETTLE = "20", "6", 20
 FLIGHT = ["--backend", "none", "--link", "umts", "--settle", str(SETTLE), "--sample", "0.5", "--audit", "on", "--check", "off"]
 SWEEP = ["2:4", "3:4", "4:5", "6:5", "px:4", "px:2", "px:1"]
+BLOCKS = ("8M", "4M", "2M", "1M", "768K")
 TARGET = 4.0e6
-BINS = [  # first match counts: row of the table, pattern of the object's path
-    ("inflate and residuals", r"ff_decode|ff_inflate|libz"),
-    ("JPEG", r"libjpeg|/jpeg\.o|ff_intake_(face|texture)|ff_face_columns"),
-    ("link and messages", r"ff_stream|ff_receive|ff_message|ff_bytes|ff_link|ff_intake|sim_tape|ff_local|ff_pack"),
-    ("take in: prediction, pool", r"ff_predict|ff_pool|ff_evict|ff_new_data|ff_tree\.o|ff_terrain\.o|ff_key"),
-    ("select: measure, restrict, cull", r"ff_select|ff_restrict|ff_measure|ff_view_cull|ff_sort"),
-    ("rank: wishes, queue, prefetch", r"ff_wish|ff_request|ff_foresee|ff_motion|ff_refusals|client_rank"),
-    ("panorama rules and faces", r"ff_panorama"),
-    ("images: find, wish", r"ff_texture"),
-    ("stitch and draw set-up", r"ff_terrain_view|ff_surface|ff_shade|ff_strips|ff_ground_frame|ff_sky|client_update|client\.o|client_carve"),
-    ("transform", r"soft_(transform|clip|line)|c3d_camera|c3d_device|c3d_pool|c3d_edges|c3d_fixed"),
-    ("rasterise", r"/soft/"),
-    ("division, memory (libgcc, libc)", r"libgcc|libc\.a|libpthread"),
+ROWS = [  # the first match counts: mark, pattern of the object's path, phase, what
+    ("work", r"libjpeg|/jpeg\.o|ff_intake_(face|texture)|ff_face_columns", "decode", "JPEG: images and faces"),
+    ("work", r"ff_decode|ff_inflate|libz|ff_crc", "decode", "inflate and residuals"),
+    ("work", r".", "decode", "link, messages, queue"),
+    ("update", r"ff_decode|ff_new_data|ff_intake|ff_predict|ff_evict|ff_face_columns|ff_tree\.o|/soft/|c3d_device|c3d_pool|ff_inflate|libz", "take in", ""),
+    ("update", r"ff_panorama|client_carve", "select", "panorama rules"),
+    ("update", r"ff_wish|ff_request|ff_foresee|ff_motion|ff_refusals|client_rank|ff_stream|ff_local", "select", "wishes, queue, prefetch"),
+    ("update", r"ff_texture", "select", "images"),
+    ("update", r".", "select", "measure, restrict, cull, order"),
+    ("draw", r"soft_transform|soft_clip", "transform", ""),
+    ("draw", r"soft_perspective", "rasterise", "triangles in perspective"),
+    ("draw", r"soft_small", "rasterise", "small triangles"),
+    ("draw", r"soft_(spans|pixels|line)", "rasterise", "spans"),
+    ("draw", r"/soft/", "rasterise", "strips, clearing, backdrops"),
+    ("draw", r".", "stitch", "strips chosen, draws set up"),
 ]
+PHASES = ("take in", "select", "stitch", "transform", "rasterise", "decode")
+RASTERISED = "soft_small"       # called for each triangle left after culling and clipping
+CLEARING = ("memcpy", "memset")
 
 
-def row_of(obj):
-    for name, pattern in BINS:
-        if re.search(pattern, obj):
-            return name
-    return "other"
+def row_of(mark, obj):
+    return next((phase, what) for m, pattern, phase, what in ROWS if m == mark and re.search(pattern, obj))
+
+
+def million(value):
+    return "%.3f" % (value / 1e6)
 
 
 class Bench:
@@ -47,84 +54,125 @@ class Bench:
         self.bin, self.handheld, self.plugin, self.pack, self.out = options.bin, options.handheld, options.plugin, options.pack, options.out
         self.program = Program(self.handheld)
 
-    def count(self, name, arguments):
-        return Counts(self.plugin, self.handheld, arguments, "%s/%s.counts" % (self.out, name))
+    def count(self, name, arguments, options=""):
+        return Counts(self.plugin, self.program, arguments, "%s/%s.counts" % (self.out, name), options)
 
     def tape(self, name, quality, panorama, seconds):
         """A flight on this machine, on tape; its path and the auditor's rows after settling."""
         tape, table = "%s/%s.tape" % (self.out, name), "%s/%s.csv" % (self.out, name)
-        run([self.bin + "/farfield-fly", "--pack", self.pack, *FLIGHT, "--seconds", seconds, "--quality", quality, "--panorama", panorama, "--tape", tape,
-             "--csv", table])
+        run([self.bin + "/farfield-fly", "--pack", self.pack, *FLIGHT, "--seconds", seconds, "--quality", quality, "--panorama", panorama,
+             "--tape", tape, "--csv", table])
         return tape, [r for r in csv.DictReader(open(table)) if float(r["t_s"]) > SETTLE and r["err_px_rms"] not in ("", "nan")]
 
-    def rows(self, counts):
-        """Instructions by phase and row of the table."""
+    def phases(self, counts):
+        """Instructions a frame by row of the table."""
         sums = {}
-        for address, length, executions in counts.blocks:
-            row = row_of(self.program.object_of(address))
-            for phase in ("work", "update", "draw"):
-                sums[phase, row] = sums.get((phase, row), 0) + length * executions[phase]
+        for address, length, executions, helped in counts.blocks:
+            obj = self.program.object_of(address)
+            for mark in ("work", "update", "draw"):
+                cost = helped[mark] + (0 if self.program.is_helper(address) else length * executions[mark])
+                if cost:
+                    row = row_of(mark, obj)
+                    sums[row] = sums.get(row, 0) + cost / len(counts.frames)
         return sums
 
     def fly(self, name, quality, panorama, seconds):
         tape, rows = self.tape(name, quality, panorama, seconds)
         counts = self.count(name, ["--tape", tape, "--fb", "%s/%s.ppm" % (self.out, name)])
-        figures, frames, by_row, n = counts.figures, counts.frames, self.rows(counts), len(counts.frames)
+        figures, frames, n = counts.figures, counts.frames, len(counts.frames)
         if not n or not rows:
             die("%s: nothing was drawn" % name)
         cost = sorted(counts.costs())
         mean = lambda key: sum(float(r[key]) for r in rows) / len(rows)
-        return {"quality": quality, "panorama": panorama, "frames": n,
-                "triangles": figures["triangles_mean"], "triangles_max": figures["triangles_max"],
-                "instructions": sum(cost) / n, "instructions_p95": cost[min(n - 1, n * 95 // 100)], "instructions_max": cost[-1],
-                "update": sum(f["update"] for f in frames) / n, "draw": sum(f["draw"] for f in frames) / n, "work": sum(f["work"] for f in frames) / n,
-                "err_px_rms": (sum(float(r["err_px_rms"]) ** 2 for r in rows) / len(rows)) ** 0.5, "err_px_p95": mean("err_px_p95"),
-                "panorama_px_percent": mean("panorama_px_percent"), "undrawn_px_percent": mean("undrawn_px_percent"),
-                "bytes_down": figures["bytes_down"], "high_water": {k: figures[k] for k in figures if "high" in k or "memory" in k},
-                "phases": [{"phase": p, "what": r, "per_frame": c / n} for (p, r), c in sorted(by_row.items(), key=lambda i: -i[1]) if c]}
+        flown = {"quality": quality, "panorama": panorama, "frames": n,
+                 "triangles": figures["triangles_mean"], "triangles_max": figures["triangles_max"],
+                 "triangles_submitted": figures["triangles_submitted_mean"], "triangles_rasterised": self.calls(counts, RASTERISED) / n,
+                 "instructions": sum(cost) / n, "instructions_p95": cost[min(n - 1, n * 95 // 100)], "instructions_max": cost[-1],
+                 "err_px_rms": (sum(float(r["err_px_rms"]) ** 2 for r in rows) / len(rows)) ** 0.5, "err_px_p95": mean("err_px_p95"),
+                 "panorama_px_percent": mean("panorama_px_percent"), "undrawn_px_percent": mean("undrawn_px_percent"),
+                 "bytes_down": figures["bytes_down"], "high_water": {k: figures[k] for k in figures if "high" in k or "memory" in k},
+                 "phases": [{"phase": p, "what": w, "per_frame": c} for (p, w), c in sorted(self.phases(counts).items(), key=lambda i: -i[1])]}
+        flown.update({mark: sum(f[mark] for f in frames) / n for mark in ("work", "update", "draw")})
+        return flown
+
+    def calls(self, counts, name):
+        return sum(e["draw"] for address, _, e, _ in counts.blocks if self.program.function_of(address) == (name, True))
+
+    def pixels(self, tape):
+        """Pixels a frame, from every access to the picture and to the depths behind it (see c3d_soft.c) while drawing: written; tested:
+        depths read by functions that write pixels; cleared. The pictures must be those that this machine draws from the tape."""
+        flight = ["--tape", tape, "--hash"]
+        here = json.loads(run([self.bin + "/farfield-handheld", *flight, "--json"]))
+        at, size = (self.count("pixels", flight).figures[k] for k in ("pixels_at", "pixels_bytes"))
+        counts = self.count("pixels", flight, ",watch=%x:%d,watch=%x:%d" % (at, size, at + size, 2 * size))
+        if counts.figures["pictures_hash"] != here["pictures_hash"]:
+            die("the pictures differ from those drawn by this machine")
+        if counts.figures["pixels_at"] != at:
+            die("the picture lies elsewhere in every run: its pixels cannot be counted")
+        sums, n = {}, len(counts.frames)
+        for area, address, read, written in counts.watched:
+            s = sums.setdefault(self.program.function_of(address)[0], {"written": 0, "read": 0, "marked": 0})
+            s["written" if area == 0 else "marked"] += written / (2, 4)[area] / n
+            s["read"] += read / 4 / n if area == 1 else 0
+        drawing = [s for name, s in sums.items() if name not in CLEARING and s["written"]]
+        written, marked = sum(s["written"] for s in drawing), sum(s["marked"] for s in drawing)
+        return {"written": written, "cleared": sum(s["written"] for name, s in sums.items() if name in CLEARING),
+                "tested": sum(s["read"] for s in drawing) if abs(marked - written) < written / 50 else None,
+                "pictures_hash": here["pictures_hash"]}
 
 
-def million(value):
-    return "%.3f" % (value / 1e6)
+def phase_table(low):
+    out = ["| phase | what | M a frame | share of a frame |", "|---|---|--:|--:|"]
+    for phase in PHASES:
+        rows = [r for r in low["phases"] if r["phase"] == phase]
+        whole = sum(r["per_frame"] for r in rows)
+        share = lambda cost: "apart" if phase == "decode" else "%.1f %%" % (100 * cost / low["instructions"])
+        out.append("| **%s** | | **%s** | %s |" % (phase, million(whole), share(whole)))
+        if len(rows) > 1:
+            out += ["| | %s | %s | %s |" % (r["what"], million(r["per_frame"]), share(r["per_frame"])) for r in rows if r["per_frame"] >= 500]
+    return out
 
 
-def report(low, sweep, memory):
+def report(bench, low, sweep, memory):
+    pixels, known = low["pixels"], lambda n: "%d" % n if n else "not known"
     out = ["# A frame on the handheld, in ARM instructions", "",
-           "armv6, soft float, `-O2`, counted exactly under qemu-arm; 240x320, RGB565; 150 km/h over 20 s after settling. A frame is",
-           "update and draw; work is link and decoding, reported apart.", "",
+           "armv6, soft float, `-O2`, counted exactly under qemu-arm; 240x320, RGB565, over %s; UMTS, 150 km/h, %s s after %d s of settling." %
+           (os.path.basename(bench.pack), SECONDS, SETTLE),
+           "A frame is update and draw; decode (link, messages, decoding) is apart.", "",
            "| low quality (C 3, depth 4), textured, panorama | |", "|---|---|",
            "| instructions a frame, mean (M) | **%s** (target %s) |" % (million(low["instructions"]), million(TARGET)),
            "| 95th percentile, maximum (M) | %s, %s |" % (million(low["instructions_p95"]), million(low["instructions_max"])),
-           "| link and decoding, a frame (M) | %s |" % million(low["work"]),
-           "| triangles a frame, mean (max) | %d (%d) |" % (low["triangles"], low["triangles_max"]),
-           "| pixels filled a frame | %d (all of the picture, each once) |" % (240 * 320),
+           "| decode, a frame (M) | %s |" % million(low["work"]),
+           "| triangles of the ground a frame, mean (max) | %d (%d) |" % (low["triangles"], low["triangles_max"]),
+           "| triangles submitted; rasterised after culling and clipping | %d; %s |" % (low["triangles_submitted"], known(low["triangles_rasterised"])),
+           "| pixels of the picture | %d |" % (240 * 320),
+           "| pixels written; tested for depth; cleared first | %d; %s; %d |" % (pixels["written"], known(pixels["tested"]), pixels["cleared"]),
            "| err_px RMS, 95th percentile | %.3f, %.3f |" % (low["err_px_rms"], low["err_px_p95"]),
            "| of the picture's ground from the panorama | %.1f %% |" % low["panorama_px_percent"],
-           "| at 332 MHz and 1.6 cycles an instruction | %.1f frames/s |" % (332e6 / 1.6 / low["instructions"]), "",
-           "## Where it goes", "", "| phase | what | M a frame | share of update and draw |", "|---|---|---|---|"]
-    for row in low["phases"]:
-        if row["per_frame"] >= 500:
-            share = "apart" if row["phase"] == "work" else "%.1f %%" % (100 * row["per_frame"] / low["instructions"])
-            out.append("| %s | %s | %s | %s |" % (row["phase"], row["what"], million(row["per_frame"]), share))
-    out += ["", "## Work and precision", "", "| quality | panorama | M a frame | triangles | err_px RMS | err_px p95 | not drawn % |",
-            "|---|---|---|---|---|---|---|"]
+           "| at 332 MHz and 1.6 cycles an instruction | %.1f frames/s |" % (332e6 / 1.6 / low["instructions"]),
+           "| all %d pictures, here and there | hash %s |" % (low["frames"], pixels["pictures_hash"]), "",
+           "## Where it goes", "", *phase_table(low)]
+    if sweep:
+        out += ["", "## Work and precision", "", "| quality | panorama | M a frame | p95 | triangles | err_px RMS | err_px p95 | not drawn % |",
+                "|---|---|--:|--:|--:|--:|--:|--:|"]
     for s in sweep:
-        out.append("| %s | %s | %s | %d | %.3f | %.3f | %.2f |" % (s["quality"], s["panorama"], million(s["instructions"]), s["triangles"],
-                   s["err_px_rms"], s["err_px_p95"], s["undrawn_px_percent"]))
-    out += ["", "## Memory", "", "| block | flown | pool full | M a frame | triangles | err_px as seen by the tree |", "|---|---|---|---|---|---|"]
-    out += ["| %s | %s |" % (name, text) for name, text in memory]
+        out.append("| %s | %s | %s | %s | %d | %.3f | %.3f | %.2f |" % (s["quality"], s["panorama"], million(s["instructions"]),
+                   million(s["instructions_p95"]), s["triangles"], s["err_px_rms"], s["err_px_p95"], s["undrawn_px_percent"]))
+    if memory:
+        out += ["", "## Memory", "", "| block | frames drawn | nodes, of capacity | pool full | M a frame | triangles | err_px as seen by the tree |",
+                "|---|---|---|--:|--:|--:|--:|", *memory]
     return "\n".join(out) + "\n"
 
 
 def memory_rows(bench):
-    """The same local flight in blocks of several sizes."""
+    """The same flight over the pack in blocks of several sizes."""
     rows = []
-    for size in ("8M", "4M", "2M", "1M", "768K"):
+    for size in BLOCKS:
         counts = bench.count("memory", ["--pack", bench.pack, "--frames", "60", "--memory", size])
         f = counts.figures
-        rows.append((size, "%d of 60 frames, %d of %d nodes | %d | %s | %d | %.1f" % (
-            f["frames_drawn"], f["nodes_high"], f["nodes_capacity"], f["pool_full"],
-            million(sum(counts.costs()) / max(1, len(counts.frames))), f["triangles_mean"], f["tree_err_px_q8"] / 256)))
+        rows.append("| %s | %d of 60 | %d of %d | %d | %s | %d | %.1f |" % (
+            size, f["frames_drawn"], f["nodes_high"], f["nodes_capacity"], f["pool_full"],
+            million(sum(counts.costs()) / max(1, len(counts.frames))), f["triangles_mean"], f["tree_err_px_q8"] / 256))
     return rows
 
 
@@ -132,20 +180,24 @@ def functions(bench, most):
     """The functions that cost most, in the low-quality flight."""
     counts = bench.count("functions", ["--tape", bench.tape("functions", "low", "on", SECONDS)[0]])
     n, sums = len(counts.frames), {}
-    for address, length, executions in counts.blocks:
+    for address, length, executions, helped in counts.blocks:
         name, entry = bench.program.function_of(address)
-        s = sums.setdefault((name, os.path.basename(bench.program.object_of(address))), {"calls": 0, "work": 0, "update": 0, "draw": 0})
-        for phase in ("work", "update", "draw"):
-            s[phase] += length * executions[phase]
-            s["calls"] += executions[phase] * entry
-    whole = sum(counts.costs()) / n
+        s = sums.setdefault((name, os.path.basename(bench.program.object_of(address))),
+                            {"calls": 0, "helped": 0, "work": 0, "update": 0, "draw": 0})
+        s["helped"] += helped["update"] + helped["draw"]
+        for mark in ("work", "update", "draw"):
+            s[mark] += length * executions[mark]
+            s["calls"] += executions[mark] * entry
+    cost = counts.costs()
     print("%.4f M a frame (p95 %.4f, max %.4f), %d triangles; work apart %.4f. Inlined functions count where they are inlined." % (
-          whole / 1e6, sorted(counts.costs())[n * 95 // 100] / 1e6, max(counts.costs()) / 1e6, counts.figures["triangles_mean"],
+          sum(cost) / n / 1e6, sorted(cost)[n * 95 // 100] / 1e6, max(cost) / 1e6, counts.figures["triangles_mean"],
           sum(s["work"] for s in sums.values()) / n / 1e6))
-    print("%9s %6s %9s %9s %9s %9s  %s" % ("a frame", "%", "update", "draw", "(work)", "calls", "function, object"))
+    print("%9s %6s %9s %9s %9s %9s %9s  %s" % ("a frame", "%", "update", "draw", "(helpers", "(work)", "calls", "function, object"))
+    print("%9s %6s %9s %9s %9s" % ("", "", "", "", "called)"))
     for (name, obj), s in sorted(sums.items(), key=lambda i: -i[1]["update"] - i[1]["draw"])[:most]:
-        cost = s["update"] + s["draw"]
-        print("%9d %6.2f %9d %9d %9d %9.1f  %s, %s" % (cost / n, 100 * cost / n / whole, s["update"] / n, s["draw"] / n, s["work"] / n, s["calls"] / n, name, obj))
+        whole = s["update"] + s["draw"]
+        print("%9d %6.2f %9d %9d %9d %9d %9.1f  %s, %s" % (whole / n, 100 * whole / sum(cost), s["update"] / n, s["draw"] / n, s["helped"] / n,
+                                                         s["work"] / n, s["calls"] / n, name, obj))
 
 
 def main():
@@ -161,15 +213,16 @@ def main():
         functions(bench, options.functions)
         return
     low = bench.fly("low", "low", "on", SECONDS)
+    low["pixels"] = bench.pixels(options.out + "/low.tape")
     if sum(bench.count("low", ["--tape", options.out + "/low.tape"]).costs()) / low["frames"] != low["instructions"]:
         die("counted twice, different numbers")
     sweep = [] if options.quick else [bench.fly("sweep", quality, panorama, SWEEP_SECONDS) for panorama in ("on", "off") for quality in SWEEP]
     memory = [] if options.quick else memory_rows(bench)
-    text = report(low, sweep, memory)
+    text = report(bench, low, sweep, memory)
     open(options.out + "/handheld.md", "w").write(text)
     json.dump({"low": low, "sweep": sweep, "memory": memory, "target": TARGET}, open(options.out + "/handheld.json", "w"), indent=1)
     with open(options.out + "/work-precision.csv", "w", newline="") as f:
-        keys = ["quality", "panorama", "instructions", "triangles", "err_px_rms", "err_px_p95", "work", "update", "draw"]
+        keys = ["quality", "panorama", "instructions", "instructions_p95", "triangles", "err_px_rms", "err_px_p95", "work", "update", "draw"]
         table = csv.DictWriter(f, keys, extrasaction="ignore")
         table.writeheader()
         table.writerows(sweep)

@@ -11,6 +11,7 @@ NM = "arm-linux-gnueabi-nm"
 QEMU = ["qemu-arm", "-cpu", "arm1136"]
 PHASES = ("outside", "work", "update", "draw")
 LAYOUT = "Linker script and memory map"
+HELPERS = r"libgcc\.a|libc\.a\(mem|c3d_fixed\.o|ff_key\.o|ff_bytes\.o"  # objects that work for their callers
 
 
 def die(text):
@@ -36,7 +37,8 @@ class Program:
 
     def __init__(self, path):
         self.path = path
-        code = sorted((at, obj) for kind, at, _, obj in map_sections(path + ".map") if kind not in ("rodata", "data", "bss"))
+        sections = [s for s in map_sections(path + ".map") if s[0] not in ("rodata", "data", "bss")]
+        code = sorted((at, obj) for _, at, _, obj in sections)
         self.starts, self.objects = [a for a, _ in code], [o for _, o in code]
         names = {}
         for line in run([NM, path]).splitlines():
@@ -45,6 +47,11 @@ class Program:
                 names.setdefault(int(word[0], 16), word[2])
         self.entries = sorted(names)
         self.names = [names[a] for a in self.entries]
+
+        self.helpers = sorted((at, size) for kind, at, size, obj in sections if re.search(HELPERS, obj))
+
+    def is_helper(self, address):
+        return re.search(HELPERS, self.object_of(address)) is not None
 
     def object_of(self, address):
         place = bisect.bisect_right(self.starts, address) - 1
@@ -57,18 +64,24 @@ class Program:
 
 
 class Counts:
-    """One run under the plugin. frames: instructions by phase of each; blocks: (address, instructions of it, executions by phase);
-    pages: (first, last) touched; figures: what the program said."""
+    """One run under the plugin, see tcg_count.c. figures: what the program said; frames: instructions of each, by phase; blocks:
+    (address, instructions of it, executions by phase, instructions by phase of helpers it called); pages: (first, last) touched;
+    watched: (number of the area, address of the instruction, bytes read, bytes written)."""
 
     def __init__(self, plugin, program, arguments, scratch, options=""):
-        self.figures = json.loads(run([*QEMU, "-plugin", "%s,out=%s%s" % (plugin, scratch, options), program, *arguments, "--json"]))
-        self.frames, self.blocks, self.pages = [], [], []
+        helpers = "".join(",helper=%x:%d" % at for at in program.helpers)
+        self.figures = json.loads(run([*QEMU, "-plugin", "%s,out=%s%s%s" % (plugin, scratch, helpers, options), program.path, *arguments, "--json"]))
+        self.frames, self.blocks, self.pages, self.watched = [], [], [], []
         for line in open(scratch):
             word = line.split()
             if word[0] == "frame":
                 self.frames.append(dict(zip(PHASES, map(int, word[1:]))))
             elif word[0] == "at":
-                self.blocks.append((int(word[1], 16), int(word[2]), dict(zip(PHASES, map(int, word[3:])))))
+                self.blocks.append((int(word[1], 16), int(word[2]), dict(zip(PHASES, map(int, word[3:]))), {}))
+            elif word[0] == "helped":
+                self.blocks[-1][3].update(zip(PHASES, map(int, word[2:])))
+            elif word[0] == "watch":
+                self.watched.append((int(word[1]), int(word[2], 16), int(word[3]), int(word[4])))
             elif word[0] == "page":
                 self.pages.append((int(word[1], 16), int(word[2], 16)))
         os.remove(scratch)
