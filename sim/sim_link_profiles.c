@@ -1,10 +1,20 @@
-/* Real links as constants. Where a number has no source it says "assumed" and why; `source` names the papers:
- *   Hybrid                 Noguera, Segura, Ogayar, Joan-Arinyo 2010, section 9.4: GPRS and UMTS as they measured them
- *   Chakravorty & Pratt    Performance issues with general packet radio service, J. of Communications and Networks 4(4), 2002
- *   ARCchart 2009          round trips of EDGE (200-600 ms) and UMTS (336 ms), rate of EDGE
- *   3GPP TS 45.003         9.05 kbit/s a slot with coding scheme CS-1
- *   FFI 20/01338           Iridium Certus IP performance in the Arctic, Norwegian Defence Research Establishment 2020
- * A round trip R with spread S is split evenly: each way half of the smallest R and up to half of S on top, uniform.
+/* Real links as constants. `source` and the comments name:
+ *   Hybrid       Noguera, Segura, Ogayar, Joan-Arinyo 2010, section 9.4: GPRS and UMTS as they measured them
+ *   C&P          Chakravorty, Pratt: Performance issues with general packet radio service, J. of Communications and Networks 4(4), 2002,
+ *                doi 10.1109/JCN.2002.6596651; with Cartwright: Practical experience with TCP over GPRS, IEEE Globecom 2002
+ *   ARCchart     report of September 2009 on millions of speed tests from phones, as told in
+ *                wirevolution.com/2009/10/01/3g-network-performance-test-results-blackberries-awful
+ *   45.002/.003  3GPP TS 45.002 table B.1: multislot class 10, the usual one, receives on 4 slots and sends on 2, 5 at once;
+ *                TS 45.003: 9.05 kbit/s a slot with coding scheme CS-1
+ *   Sprout       Winstein, Sivaraman, Balakrishnan: Stochastic forecasts achieve high throughput and low delay over cellular networks,
+ *                NSDI 2013: 3G and LTE gateways build up queues of several seconds
+ *   tcp(7)       Linux: a socket's send buffer is 16 kB by default (tcp_wmem)
+ *   Release 13   3GPP's categories M1 and NB1: peak rates of half-duplex devices
+ *   Arduino      docs.arduino.cc, Cat.M1 and NB-IoT with the Portenta: Cat-M1 has a latency of 50 to 100 ms
+ *   Ugwuanyi     Ugwuanyi, Paul, Irvine: Survey of IoT for developing countries, Electronics 10(18) 2224, 2021: NB-IoT measured
+ *   FFI          Berg, Mjelde: Iridium Certus IP performance in the Arctic, FFI-Report 20/01338, 2020, hdl.handle.net/20.500.12242/2717
+ * What has no source says "assumed", and why. A round trip R with spread S is split evenly: each way half of the smallest R and up to
+ * half of S on top, uniform. connect_ms is a TCP handshake: one round trip.
  */
 #include "sim_link.h"
 
@@ -15,32 +25,33 @@
 static const sim_link_desc profile[] = {
     {
         .name = "gprs",
-        .source = "Hybrid 9.4; Chakravorty & Pratt 2002; 3GPP TS 45.003",
+        .source = "Hybrid 9.4; Chakravorty & Pratt 2002; 3GPP TS 45.002 and 45.003",
         .way = {
-            [SIM_DOWN] = { .bytes_s = 5500,        /* Hybrid: best TCP rate down, 5.5 kB/s */
-                           .delay_us = 300000,     /* Chakravorty & Pratt: round trips of 600 ms to more than 1000 ms */
+            [SIM_DOWN] = { .bytes_s = 5500,        /* Hybrid: best TCP rate down, 5.5 kB/s (ARCchart's mean: 50 kbit/s) */
+                           .delay_us = 300000,     /* C&P: round trips of 600 ms to more than 1000 ms */
                            .jitter_us = 200000,
-                           .queue_bytes = 110000 },/* the same: queues of tens of seconds; 20 s at 5.5 kB/s */
-            [SIM_UP] = { .bytes_s = 2262,          /* two slots of CS-1, 2 * 9.05 kbit/s: multislot class 10 sends on two */
+                           .queue_bytes = 110000 },/* C&P: round trips grow to tens of seconds; 20 s at 5.5 kB/s */
+            [SIM_UP] = { .bytes_s = 2262,          /* 45.002/.003: two slots of CS-1, 2 * 9.05 kbit/s */
                          .delay_us = 300000, .jitter_us = 200000,
-                         .queue_bytes = 16384 },   /* assumed: a phone's send buffer */
+                         .queue_bytes = 16384 },   /* tcp(7) */
         },
-        .stall_every_ms = 120000, /* assumed: Hybrid figures 43 and 48 show a few in 300 s */
-        .stall_ms_min = 4000,     /* Chakravorty & Pratt: 4 to 40 s, also standing still; Hybrid saw up to 30 s */
+        .stall_every_ms = 120000, /* assumed, on the hard side: Hybrid shows stalls in two of its 14 flights (figures 43 and 48), C&P tell
+                                     lengths only; so every flight of 300 s meets one or two */
+        .stall_ms_min = 4000,     /* C&P: 4 to 40 s, also standing still; Hybrid saw up to 30 s */
         .stall_ms_max = 40000,
         .stall_bytes_s = 5,       /* Hybrid: "a few bytes per second" */
-        .connect_ms = 1000,       /* a TCP handshake is one round trip */
+        .connect_ms = 1000,
     },
     {
         .name = "edge",
-        .source = "ARCchart 2009",
+        .source = "ARCchart 2009; 3GPP TS 45.002",
         .way = {
-            [SIM_DOWN] = { .bytes_s = 20000,       /* 160 kbit/s */
-                           .delay_us = 100000,     /* round trip 200 to 600 ms */
+            [SIM_DOWN] = { .bytes_s = 20000,       /* ARCchart: 160 kbit/s */
+                           .delay_us = 100000,     /* ARCchart: round trips of 200 to 600 ms */
                            .jitter_us = 200000,
-                           .queue_bytes = 65536 }, /* assumed: 3 s */
-            [SIM_UP] = { .bytes_s = 10000,         /* assumed: half the slots of the way down */
-                         .delay_us = 100000, .jitter_us = 200000, .queue_bytes = 16384 },
+                           .queue_bytes = 65536 }, /* assumed: 3 s, of the several seconds of Sprout's 3G */
+            [SIM_UP] = { .bytes_s = 10000,         /* 45.002: two slots of the way down's four */
+                         .delay_us = 100000, .jitter_us = 200000, .queue_bytes = 16384 }, /* tcp(7) */
         },
         .connect_ms = 400,
     },
@@ -48,53 +59,54 @@ static const sim_link_desc profile[] = {
         .name = "umts",
         .source = "ARCchart 2009; Hybrid 9.4",
         .way = {
-            [SIM_DOWN] = { .bytes_s = 48000,       /* 384 kbit/s nominal */
-                           .delay_us = 148000,     /* with the jitter's mean of 20 ms: 336 ms round trip */
+            [SIM_DOWN] = { .bytes_s = 48000,       /* 384 kbit/s, the bearer of release 99 in Hybrid's year (ARCchart's mean: 1 Mbit/s) */
+                           .delay_us = 148000,     /* ARCchart: 336 ms round trip in the mean; jitter of 40 ms assumed, 20 in the mean */
                            .jitter_us = 40000,
-                           .queue_bytes = 65536 }, /* assumed: 1.4 s */
-            [SIM_UP] = { .bytes_s = 8000,          /* assumed: the usual 64 kbit/s bearer beside 384 down */
-                         .delay_us = 148000, .jitter_us = 40000, .queue_bytes = 16384 },
+                           .queue_bytes = 65536 }, /* assumed: 1.4 s, at the lower end of Sprout's queues */
+            [SIM_UP] = { .bytes_s = 8000,          /* 64 kbit/s, the bearer that goes with 384 down (ARCchart's means: 62 to 155 kbit/s) */
+                         .delay_us = 148000, .jitter_us = 40000, .queue_bytes = 16384 }, /* tcp(7) */
         },
         .connect_ms = 336,                         /* Hybrid saw no stalls on UMTS */
     },
     {
         .name = "ltem",
-        .source = "3GPP release 13, category M1 half duplex: peak rates 300 / 375 kbit/s, 10-15 ms nominal",
+        .source = "3GPP release 13, category M1 half duplex: peak rates 300 / 375 kbit/s; latency 50 to 100 ms (Arduino)",
         .way = {
-            [SIM_DOWN] = { .bytes_s = 37500, .delay_us = 5000, .jitter_us = 2500, .queue_bytes = 65536 },
-            [SIM_UP] = { .bytes_s = 46875, .delay_us = 5000, .jitter_us = 2500, .queue_bytes = 65536 },
+            [SIM_DOWN] = { .bytes_s = 37500, .delay_us = 25000, .jitter_us = 25000, .queue_bytes = 65536 }, /* assumed queue: 1.7 s */
+            [SIM_UP] = { .bytes_s = 46875, .delay_us = 25000, .jitter_us = 25000, .queue_bytes = 16384 },   /* tcp(7) */
         },
-        .connect_ms = 15,
+        .connect_ms = 100,
     },
     {
         .name = "nbiot",
-        .source = "3GPP release 13, category NB1: peak rates 26 / 62 kbit/s; latency 1.6 to 10 s (3GPP TR 45.820's goal)",
-        .way = {
-            [SIM_DOWN] = { .bytes_s = 3250, .delay_us = 800000, .jitter_us = 4200000, .queue_bytes = 65536 },
-            [SIM_UP] = { .bytes_s = 7750, .delay_us = 800000, .jitter_us = 4200000, .queue_bytes = 16384 },
+        .source = "3GPP release 13, category NB1: peak rates 26.15 / 62.5 kbit/s; latency 1.6 to 10 s (3GPP TR 45.820's goal)",
+        .way = {                                   /* The hard side: Ugwuanyi measured 837 ms in good coverage */
+            [SIM_DOWN] = { .bytes_s = 3268, .delay_us = 800000, .jitter_us = 4200000, .queue_bytes = 65536 }, /* assumed: 20 s, as GPRS */
+            [SIM_UP] = { .bytes_s = 7812, .delay_us = 800000, .jitter_us = 4200000, .queue_bytes = 16384 },   /* tcp(7) */
         },
         .connect_ms = 1600,
     },
     {
         .name = "iridium",
-        .source = "Iridium Certus midband 88 kbit/s down; FFI 20/01338",
+        .source = "Iridium Certus midband (class 100): 88 kbit/s down, 22 up; FFI 20/01338",
         .way = {
-            [SIM_DOWN] = { .bytes_s = 11000,       /* 88 kbit/s */
-                           .delay_us = 300000,     /* assumed: 600 to 800 ms round trip by way of the gateway */
-                           .jitter_us = 100000, .queue_bytes = 65536 },
-            [SIM_UP] = { .bytes_s = 2750,          /* assumed: a quarter, 22 kbit/s */
-                         .delay_us = 300000, .jitter_us = 100000, .queue_bytes = 16384 },
+            [SIM_DOWN] = { .bytes_s = 11000,       /* 88 kbit/s (Certus 350, for ships: 352, reached in 45 % of FFI's experiments) */
+                           .delay_us = 300000,     /* assumed: 600 to 800 ms round trip; several satellites, then one of few gateways */
+                           .jitter_us = 100000,
+                           .queue_bytes = 65536 }, /* assumed: 6 s, as Sprout's queues */
+            [SIM_UP] = { .bytes_s = 2750,          /* 22 kbit/s */
+                         .delay_us = 300000, .jitter_us = 100000, .queue_bytes = 16384 }, /* tcp(7) */
         },
-        .stall_every_ms = 300000, /* assumed: FFI says often, without a number */
-        .stall_ms_min = 2000, /* assumed */
-        .stall_ms_max = 70000,/* FFI: "up to 70 seconds" in which no packet is served */
+        .stall_every_ms = 300000, /* assumed: FFI says frequent, without a number; one in a flight of 300 s */
+        .stall_ms_min = 2000,     /* assumed: shorter ones do not show beside the round trip */
+        .stall_ms_max = 70000,    /* FFI: "up to 70 seconds" in which no packet is served */
         .stall_bytes_s = 0,
         .connect_ms = 800,
     },
     {
         .name = "lan",
-        .source = "100 Mbit/s Ethernet; delay assumed",
-        .way = {
+        .source = "100 Mbit/s Ethernet (IEEE 802.3u); delay assumed",
+        .way = { /* assumed: half a millisecond there and back over a switch; 20 ms of queue */
             [SIM_DOWN] = { .bytes_s = 12500000, .delay_us = 250, .queue_bytes = 262144 },
             [SIM_UP] = { .bytes_s = 12500000, .delay_us = 250, .queue_bytes = 262144 },
         },
