@@ -46,7 +46,8 @@ typedef struct sys_stream {
     int (*reconnect)(void *state);
 } sys_stream;
 
-/* TCP, non-blocking, no delay. `address` is HOST:PORT ([HOST]:PORT for IPv6). */
+/* TCP, non-blocking, no delay. `address` is HOST:PORT ([HOST]:PORT for IPv6). One thing does block: a host's *name* is looked up by the
+ * system when connecting starts, and at every reconnect; where DNS may be slow or gone, give an address. */
 typedef struct sys_tcp { int fd; int connecting; char address[128]; } sys_tcp;
 /* Sets `tcp` up and starts connecting; `stream` drives it. `tcp` must stay where it is. FF_ERR_ARGUMENT for a bad address. */
 int sys_tcp_client(sys_tcp *tcp, const char *address, sys_stream *stream);
@@ -56,6 +57,10 @@ int sys_tcp_listen(const char *address, int reuse_port, uint16_t *port);
 int sys_tcp_accept(int listen_fd);
 /* A stream over an accepted fd; reconnect is NULL. */
 void sys_tcp_adopt(sys_tcp *tcp, int fd, sys_stream *stream);
+/* Sleeps until one of the sockets is ready for what it is listed with, a signal comes, or `us` of real time have passed. */
+enum { SYS_READY_RECV = 1, SYS_READY_SEND = 2, SYS_READY_MAX = 256 /* sockets in a list, at most */ };
+typedef struct sys_ready { int fd, events; } sys_ready;
+void sys_wait_ready(const sys_ready *list, unsigned count, int64_t us);
 
 /* ---- files ---- */
 typedef struct sys_mapping { const void *bytes; uint64_t size; } sys_mapping;

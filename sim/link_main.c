@@ -149,9 +149,9 @@ int main(int argc, char **argv)
     signal(SIGTERM, on_signal);
     signal(SIGINT, on_signal);
     while (!stop) {
-        int64_t next_us = link_proxy_step(proxy, sys_time_us()), now_us = sys_time_us();
-        if (next_us > now_us)
-            sys_sleep_us(next_us - now_us);
+        int64_t now_us = sys_time_us();
+        link_proxy_step(proxy, now_us);
+        link_proxy_wait(proxy, now_us);
     }
     link_proxy_get_totals(proxy, &totals);
     if (options.json)

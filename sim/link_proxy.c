@@ -5,8 +5,8 @@
 
 #define CONNECTIONS_MAX 64
 #define PIECE_BYTES 16384
-#define BUSY_US 1000   /* pace with a connection open: the finest grain of arrivals */
-#define IDLE_US 10000
+#define HELD_US 1000   /* pace while a socket takes no more of what has arrived */
+#define IDLE_US 100000 /* a signal between a look at its flag and the wait is seen so late */
 
 /* One accepted connection: WAITING for the model's connect time, then OPEN.
  *   client socket ──▶ link (up) ──▶ held[UP] ──▶ server socket, and the same down. */
@@ -168,13 +168,51 @@ static void step_pass(link_proxy *proxy, pass *p, int64_t now_us)
         drop(proxy, p);
 }
 
-int64_t link_proxy_step(link_proxy *proxy, int64_t now_us)
+void link_proxy_step(link_proxy *proxy, int64_t now_us)
 {
     accept_new(proxy, now_us);
     for (int i = 0; i < CONNECTIONS_MAX; i++)
         if (proxy->pass[i].state != PASS_FREE)
             step_pass(proxy, &proxy->pass[i], now_us);
-    return now_us + (proxy->totals.open ? BUSY_US : IDLE_US);
+}
+
+/* Lists the sockets that `p` waits for (two at most) and returns when its link or its state has something new. */
+static int64_t wait_for(pass *p, int64_t now_us, sys_ready *list, unsigned *count)
+{
+    if (p->state == PASS_WAITING)
+        return p->open_us;
+    sys_ready ready[2] = { [SIM_UP] = { .fd = p->client_tcp.fd }, [SIM_DOWN] = { .fd = p->server_tcp.fd } };
+    for (int way = 0; way < 2; way++) {
+        if (!p->closed[way] && sim_link_room(p->link, (enum sim_direction)way, now_us))
+            ready[way].events |= SYS_READY_RECV;
+        if (p->out[!way].count)
+            ready[way].events |= SYS_READY_SEND;
+    }
+    if (p->server_tcp.connecting)
+        ready[SIM_DOWN].events = SYS_READY_SEND;
+    for (int way = 0; way < 2; way++)
+        if (ready[way].fd >= 0 && ready[way].events)
+            list[(*count)++] = ready[way];
+    int64_t next_us = sim_link_next_us(p->link);
+    if ((p->out[SIM_UP].count || p->out[SIM_DOWN].count) && next_us < now_us + HELD_US)
+        return now_us + HELD_US;
+    return next_us;
+}
+
+void link_proxy_wait(link_proxy *proxy, int64_t now_us)
+{
+    sys_ready list[2 * CONNECTIONS_MAX + 1];
+    unsigned count = 0;
+    int64_t until_us = now_us + IDLE_US;
+    for (int i = 0; i < CONNECTIONS_MAX; i++) {
+        if (proxy->pass[i].state == PASS_FREE)
+            continue;
+        int64_t next_us = wait_for(&proxy->pass[i], now_us, list, &count);
+        until_us = next_us < until_us ? next_us : until_us;
+    }
+    if (free_pass(proxy))
+        list[count++] = (sys_ready){ proxy->listen_fd, SYS_READY_RECV };
+    sys_wait_ready(list, count, until_us - sys_time_us());
 }
 
 void link_proxy_get_totals(const link_proxy *proxy, link_proxy_totals *totals)

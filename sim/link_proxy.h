@@ -15,8 +15,10 @@ typedef struct link_proxy_totals {
  * (ADDR:PORT) must outlive the proxy. NULL when out of memory or when desc's trace cannot be read. */
 link_proxy *link_proxy_create(const sim_link_desc *desc, uint64_t seed, int listen_fd, const char *connect);
 void link_proxy_destroy(link_proxy *proxy);
-/* Accepts, receives and sends what is due at now_us; never blocks. Returns when it should be called again at the latest. */
-int64_t link_proxy_step(link_proxy *proxy, int64_t now_us);
+/* Accepts, receives and sends what is due at now_us; never blocks. */
+void link_proxy_step(link_proxy *proxy, int64_t now_us);
+/* Sleeps until there is something to do: a socket is ready, bytes arrive from a link, a signal comes, or 0.1 s has passed. */
+void link_proxy_wait(link_proxy *proxy, int64_t now_us);
 void link_proxy_get_totals(const link_proxy *proxy, link_proxy_totals *totals);
 
 #endif

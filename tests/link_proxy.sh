@@ -105,6 +105,22 @@ python3 "$work/ask.py" "$port" 1 30000
 result $? "30 kB over a recorded link come back unchanged"
 stop_link "the recorded link"
 
+# ---- asleep while nothing happens ----
+start_link idle --profile gprs
+python3 - "$port" "$link_pid" <<'END'
+import re, socket, sys, time
+def wake_ups():
+    return int(re.search(r"^voluntary_ctxt_switches:\s*(\d+)", open(f"/proc/{sys.argv[2]}/status").read(), re.M)[1])
+connections = [socket.create_connection(("127.0.0.1", int(sys.argv[1]))) for _ in range(3)]
+time.sleep(1.5)
+before, since = wake_ups(), time.monotonic()
+time.sleep(1)
+rate = (wake_ups() - before) / (time.monotonic() - since)
+sys.exit(f"{rate:.0f} wake-ups a second" if rate > 40 else 0)
+END
+result $? "three open connections without traffic wake it 40 times a second at most"
+stop_link "the idle link"
+
 start_link cut --profile "lan,cut_every_ms=200,down.bytes_s=20000,up.bytes_s=20000"
 python3 "$work/ask.py" "$port" 1 200000
 result $(($? != 3)) "a cut ends the connection, with nothing wrong before it"

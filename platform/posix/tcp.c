@@ -9,6 +9,7 @@
 #include <poll.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <time.h>
 #include <unistd.h>
 
 #define LISTEN_BACKLOG 128
@@ -205,4 +206,18 @@ int sys_tcp_accept(int listen_fd)
         return fd;
     }
     return would_block(errno) || errno == ECONNABORTED ? FF_ERR_AGAIN : FF_ERR_SYSTEM;
+}
+
+void sys_wait_ready(const sys_ready *list, unsigned count, int64_t us)
+{
+    struct pollfd fds[SYS_READY_MAX];
+    if (count > SYS_READY_MAX) count = SYS_READY_MAX;
+    if (us < 0) us = 0;
+    for (unsigned i = 0; i < count; i++) {
+        fds[i] = (struct pollfd){.fd = list[i].fd};
+        if (list[i].events & SYS_READY_RECV) fds[i].events |= POLLIN;
+        if (list[i].events & SYS_READY_SEND) fds[i].events |= POLLOUT;
+    }
+    struct timespec time = {.tv_sec = (time_t)(us / 1000000), .tv_nsec = (long)(us % 1000000) * 1000};
+    (void)ppoll(fds, count, &time, NULL);
 }
