@@ -83,6 +83,8 @@ int sys_jpeg_size(const uint8_t *bytes, size_t byte_count, uint32_t *width, uint
 int sys_jpeg_encode(const uint8_t *rgb, uint32_t width, uint32_t height, int quality, uint8_t *out, size_t capacity);
 /* Writes RGB888, top row first, as a PNG file. */
 int sys_png_write(const char *path, const uint8_t *rgb, uint32_t width, uint32_t height);
+/* Any PNG of at most 2^26 pixels as RGB888, top row first; *rgb is the caller's to free(). FF_ERR_FORMAT: damaged, FF_ERR_RANGE: larger. */
+int sys_png_read(const char *path, uint8_t **rgb, uint32_t *width, uint32_t *height);
 
 /* ---- window, GL context and device events ---- */
 enum sys_event_type {

@@ -44,6 +44,56 @@ grep -q -F '| umts \<&\> on | 90 | 1900 | 3700 | 50 | 200 | 60.0 | 90.0 | 4.5 | 
 result $? "the numbers of the table"
 grep -q -F '| blind | 90 | 1900 | 3700 | 50 | 200 | 60.0 | 90.0 | 4.5 | 270 | 3 | – | – | – |' "$table"
 result $? "a flight without auditor has no error"
+# Pictures of two flights: three of the same names, one that only one of them has, one that differs everywhere by 2.
+if command -v python3 >/dev/null; then
+    python3 - "$work" <<'END'
+import os, struct, sys, zlib
+def png(path, grey, side=20):
+    chunk = lambda kind, data: struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    rows = b"".join(b"\0" + bytes([grey] * side) for _ in range(side))
+    open(path, "wb").write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", side, side, 8, 0, 0, 0, 0)) +
+                           chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+for folder in ("one", "two", "odd"):
+    os.makedirs(sys.argv[1] + "/" + folder)
+for t, grey in ((1, 10), (2, 20), (3, 30), (4, 40)):
+    png("%s/one/frame-%07.2f.png" % (sys.argv[1], t), grey)
+for t, grey in ((1, 10), (2, 22), (4, 80)):
+    png("%s/two/frame-%07.2f.png" % (sys.argv[1], t), grey)
+png(sys.argv[1] + "/odd/frame-0001.00.png", 10, 21)
+END
+    beside() { "$report" "$work/blind.csv" -o "$work/beside" "$@" >"$work/said" 2>"$work/error"; }
+    beside --beside soft="$work/one" --beside gles1="$work/two"; result $? "two flights side by side"
+    grep -q 'src="side-by-side.png"' "$work/beside/index.html" && grep -q 'At most 100.00 % of a picture' "$work/beside/REPORT.md"
+    result $? "with the largest share that differs"
+    python3 - "$work/beside/side-by-side.png" <<'END'
+import struct, sys, zlib
+data = open(sys.argv[1], "rb").read()
+width, height = struct.unpack(">II", data[16:24])
+body, at = b"", 8
+while at < len(data):
+    length, kind = struct.unpack(">I4s", data[at:at + 8])
+    body += data[at + 8:at + 8 + length] if kind == b"IDAT" else b""
+    at += 12 + length
+raw, rows = zlib.decompress(body), []
+for y in range(height):
+    line, kind = bytearray(raw[y * (3 * width + 1) + 1:(y + 1) * (3 * width + 1)]), raw[y * (3 * width + 1)]
+    for x in range(3 * width):
+        left, up = line[x - 3] if x > 2 else 0, rows[-1][x] if rows else 0
+        corner = rows[-1][x - 3] if rows and x > 2 else 0
+        guess = min((abs(up - corner), 0, left), (abs(left - corner), 1, up), (abs(left + up - 2 * corner), 2, corner))[2]
+        line[x] = line[x] + (0, left, up, (left + up) // 2, guess)[kind] & 255
+    rows.append(line)
+centre = [[rows[24 + 10 + row * 44][3 * (8 + 10 + column * 28)] for column in range(3)] for row in range(3)]
+sys.exit(centre != [[10, 20, 40], [10, 22, 80], [0, 64, 255]] and "pixels %s" % centre)
+END
+    result $? "pictures, pictures, and differences 32 times as large"
+    ! beside --beside soft="$work/one" && grep -q '^farfield-report: --beside: give two folders$' "$work/error"
+    result $? "one folder alone is an error"
+    ! beside --beside a="$work/one" --beside b="$work/odd" && grep -q '^farfield-report: --beside: .*frame-0001.00.png' "$work/error" &&
+        [ "$(wc -l <"$work/error")" = 1 ]; result $? "pictures of another size are one clear error"
+    ! beside --beside a="$work/one" --beside b="$work/deep" && grep -q 'no picture of the same name' "$work/error"
+    result $? "folders without a common picture are an error"
+fi
 if command -v python3 >/dev/null; then
     "$report" --json "$work/blind.csv" -o "$work/json" |
         python3 -c 'import json, sys; f = json.load(sys.stdin)[0]; sys.exit(f["kb_down_60s"] != 60 or f["err_px_max"] is not None)'

@@ -276,6 +276,18 @@ static void png_files_are_pngs(void **state)
     assert_memory_equal(mapping.bytes, head, sizeof head);
     sys_unmap_file(&mapping);
     assert_int_equal(sys_png_write(SCRATCH "/none/a.png", rgb, SIDE, SIDE), FF_ERR_SYSTEM);
+    uint8_t *again;
+    uint32_t width, height;
+    assert_int_equal(sys_png_read(SCRATCH "/a.png", &again, &width, &height), FF_OK);
+    assert_int_equal(width, SIDE);
+    assert_int_equal(height, SIDE);
+    assert_memory_equal(again, rgb, sizeof rgb);
+    free(again);
+    assert_int_equal(sys_map_file(SCRATCH "/a.png", &mapping), FF_OK);
+    assert_int_equal(sys_write_file(SCRATCH "/cut.png", mapping.bytes, (size_t)mapping.size - 20), FF_OK);
+    sys_unmap_file(&mapping);
+    assert_int_equal(sys_png_read(SCRATCH "/cut.png", &again, &width, &height), FF_ERR_FORMAT);
+    assert_int_equal(sys_png_read(SCRATCH "/none.png", &again, &width, &height), FF_ERR_NOT_FOUND);
     assert_int_equal(sys_png_write(SCRATCH "/a.png", rgb, 0, SIDE), FF_ERR_ARGUMENT);
 }
 

@@ -69,6 +69,9 @@ fly large-panorama umts 10 on 640x480 --every 5 --quality high --memory 8M --fac
 fly large umts 10 off 640x480 --every 5 --quality high --memory 8M
 fly wireframe umts 10 off 640x480 --every 5 --wireframe --quality 2:4 --height 1500
 
+say "integers beside GL ES: the same minute twice"
+"$(dirname "$0")/look.sh" "$bin" "$pack" "$out/look" --start 0.35 --speed 900 --height 300 --quality high --memory 8M
+
 say "report"
 pictures=""
 for name in live-umts umts-panorama-on gprs-panorama-on umts-panorama-off large-panorama large wireframe; do
@@ -77,7 +80,7 @@ for name in live-umts umts-panorama-on gprs-panorama-on umts-panorama-off large-
 done
 # shellcheck disable=SC2086
 "$bin/farfield-report" "$out"/live-umts.csv "$out"/umts-*.csv "$out"/gprs-*.csv -o "$out/report" \
-    --title "Trinidad, Colorado: 150 km/h, low quality" $pictures
+    --beside soft="$out/look/soft" --beside gles1="$out/look/gles1" --title "Trinidad, Colorado: 150 km/h, low quality" $pictures
 
 say "done"
 echo "report:   $out/report/index.html (text: $out/report/REPORT.md)"

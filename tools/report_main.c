@@ -1,5 +1,6 @@
 /* farfield-report: flights' CSV files become an HTML page with plots and a Markdown table. */
 #include "report_page.h"
+#include "report_sheet.h"
 
 #include "../client/farfield.h"
 
@@ -24,6 +25,9 @@ static const char usage[] =
     "      --title TITLE    heading of the report\n"
     "      --picture FILE   copy a picture into DIR and show it; may be repeated, and\n"
     "                       several files may follow until the next option\n"
+    "      --beside NAME=DIR    given twice, for folders of farfield-fly --png: up to five\n"
+    "                       pictures of the same moments from both and their difference\n"
+    "                       become one, DIR/side-by-side.png\n"
     "      --paper TABLE        put flights named LINK-SPEED-QUALITY-PANORAMA beside those of\n"
     "                       a paper (tools/hybrid_table3.csv), and draw the error of\n"
     "                       flights named sweep-SERIES-VALUE against their work\n"
@@ -36,6 +40,8 @@ typedef struct options {
     const char *title, *folder;
     const char **csv, **picture; /* argc entries each */
     size_t csv_count, picture_count;
+    report_series beside[2];
+    size_t beside_count;
     const char *paper; /* NULL: none */
     double settle_s;
     int json;
@@ -53,12 +59,24 @@ static int fail(const char *format, ...)
     return -1;
 }
 
+/* NAME=DIR; the argument's text is cut in two. */
+static int parse_beside(options *o, char *text)
+{
+    char *equals = strchr(text, '=');
+    if (!equals || equals == text || !equals[1]) return fail("--beside: %s is not NAME=DIR", text);
+    if (o->beside_count == 2) return fail("--beside: two folders, not more");
+    *equals = 0;
+    o->beside[o->beside_count++] = (report_series){text, equals + 1};
+    return 0;
+}
+
 /* 0: go on, 1: answered, -1: wrong. Arguments in order ("-"): those after --picture are pictures until another option comes. */
 static int parse(options *o, int argc, char **argv)
 {
     static const struct option list[] = {
         {"output", required_argument, NULL, 'o'}, {"title", required_argument, NULL, 't'},
         {"picture", required_argument, NULL, 'p'}, {"json", no_argument, NULL, 'j'},
+        {"beside", required_argument, NULL, 'b'},
         {"paper", required_argument, NULL, 'P'}, {"settle", required_argument, NULL, 'S'},
         {"help", no_argument, NULL, 'h'}, {"version", no_argument, NULL, 'v'}, {NULL, 0, NULL, 0}};
     int c, pictures = 0;
@@ -67,6 +85,9 @@ static int parse(options *o, int argc, char **argv)
         else if (c == 'p' || c == 1) o->picture[o->picture_count++] = optarg;
         else if (c == 'o') o->folder = optarg;
         else if (c == 't') o->title = optarg;
+        else if (c == 'b') {
+            if (parse_beside(o, optarg)) return -1;
+        }
         else if (c == 'P') o->paper = optarg;
         else if (c == 'S') {
             char *end;
@@ -82,6 +103,7 @@ static int parse(options *o, int argc, char **argv)
     while (optind < argc) o->csv[o->csv_count++] = argv[optind++];
     if (!o->csv_count) return fail("no CSV given; try --help");
     if (!o->folder) return fail("no folder given; use -o DIR");
+    if (o->beside_count == 1) return fail("--beside: give two folders");
     return 0;
 }
 
@@ -131,6 +153,13 @@ static int copy_pictures(const options *o, char **names)
     return 0;
 }
 
+static int make_sheet(const options *o, report_sheet *sheet)
+{
+    char path[PATH_BYTES], why[WHY_BYTES];
+    if ((size_t)snprintf(path, sizeof path, "%s/" REPORT_SHEET_FILE, o->folder) >= sizeof path) return fail("path too long: %s", o->folder);
+    return report_sheet_write(o->beside, path, sheet, why, sizeof why) ? fail("--beside: %s", why) : 0;
+}
+
 static int make_report(const options *o, report_flight *flight, char **picture)
 {
     char why[WHY_BYTES];
@@ -138,11 +167,14 @@ static int make_report(const options *o, report_flight *flight, char **picture)
                               .picture = (const char *const *)picture, .picture_count = o->picture_count,
                               .settle_s = o->settle_s};
     report_paper paper;
+    report_sheet sheet;
     if (o->paper && report_paper_load(&paper, o->paper, why, sizeof why)) return fail("%s", why);
     if (o->paper) content.paper = &paper;
     for (size_t i = 0; i < o->csv_count; i++)
         if (report_flight_load(&flight[i], o->csv[i], why, sizeof why)) return fail("%s", why);
     if (make_folder(o->folder) || copy_pictures(o, picture)) return -1;
+    if (o->beside_count && make_sheet(o, &sheet)) return -1;
+    if (o->beside_count) content.sheet = &sheet;
     if (report_page_html(&content, why, sizeof why) || report_page_markdown(&content, why, sizeof why)) return fail("%s", why);
     if (o->json) report_page_json(&content);
     else printf("%s/index.html\n%s/REPORT.md\n", o->folder, o->folder);

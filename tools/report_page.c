@@ -181,6 +181,24 @@ static void put_pictures(FILE *out, const report_content *content)
     fputs("</div>\n", out);
 }
 
+static double most_different(const report_sheet *sheet)
+{
+    double most = 0;
+    for (size_t i = 0; i < sheet->moments; i++) most = fmax(most, sheet->differ_percent[i]);
+    return most;
+}
+
+#define SHEET_CAPTION "below each other, then the difference, %d times as large. At most %.2f %% of a picture's pixels differ by more than %d/255."
+
+static void put_sheet(FILE *out, const report_sheet *sheet)
+{
+    fputs("<h2>Side by side</h2>\n<figure class=\"wide\"><img src=\"" REPORT_SHEET_FILE "\" alt=\"\"><figcaption>", out);
+    put_html(out, sheet->name[0]);
+    fputs(" and ", out);
+    put_html(out, sheet->name[1]);
+    fprintf(out, " " SHEET_CAPTION "</figcaption></figure>\n", REPORT_SHEET_AMPLIFIED, most_different(sheet), REPORT_SHEET_VISIBLE);
+}
+
 int report_page_html(const report_content *content, char *why, size_t why_bytes)
 {
     FILE *out = open_page(content, "index.html", why, why_bytes);
@@ -200,6 +218,7 @@ int report_page_html(const report_content *content, char *why, size_t why_bytes)
     if (content->paper) fputs("<h2>All flights</h2>\n", out);
     put_html_table(out, content);
     if (!content->paper && content->flight_count > 1) rc = put_comparison(out, content, why, why_bytes);
+    if (content->sheet) put_sheet(out, content->sheet);
     put_pictures(out, content);
     for (size_t i = 0; i < content->flight_count && !rc; i++)
         rc = put_flight(out, content, &content->flight[i], why, why_bytes);
@@ -236,6 +255,13 @@ int report_page_markdown(const report_content *content, char *why, size_t why_by
         }
     }
     fputs("\n", out);
+    if (content->sheet) {
+        fputs("\n![](" REPORT_SHEET_FILE ")\n\n", out);
+        put_markdown(out, content->sheet->name[0]);
+        fputs(" and ", out);
+        put_markdown(out, content->sheet->name[1]);
+        fprintf(out, " " SHEET_CAPTION "\n", REPORT_SHEET_AMPLIFIED, most_different(content->sheet), REPORT_SHEET_VISIBLE);
+    }
     for (size_t i = 0; i < content->picture_count; i++) {
         fputs("\n![](", out);
         put_link(out, content->picture[i]);

@@ -4,6 +4,7 @@
 
 #include "report_csv.h"
 #include "report_paper.h"
+#include "report_sheet.h"
 
 typedef struct report_content {
     const char *title, *folder;
@@ -11,6 +12,7 @@ typedef struct report_content {
     size_t flight_count;
     const char *const *picture; /* file names inside `folder` */
     size_t picture_count;
+    const report_sheet *sheet; /* NULL: none; else its file lies in `folder` */
     const report_paper *paper; /* NULL: flights stand for themselves */
     double settle_s;           /* seconds before the flights begin */
 } report_content;

@@ -76,6 +76,12 @@ int sys_png_write(const char *path, const uint8_t *rgb, uint32_t width, uint32_t
     return FF_ERR_UNSUPPORTED;
 }
 
+int sys_png_read(const char *path, uint8_t **rgb, uint32_t *width, uint32_t *height)
+{
+    (void)path, (void)rgb, (void)width, (void)height;
+    return FF_ERR_UNSUPPORTED;
+}
+
 const sys_surface_api *sys_surface_glfw(void) { return NULL; }
 const sys_surface_api *sys_surface_egl(void) { return NULL; }
 const sys_surface_api *sys_surface_osmesa(void) { return NULL; }
