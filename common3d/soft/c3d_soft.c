@@ -65,15 +65,24 @@ static void soft_close(void *state) { (void)state; }
 
 /* ---- a frame ---- */
 
-static void clear(soft_state *state, uint32_t colour)
+/* The first `done` bytes again and again; each copy doubles what there is. */
+static void repeat(void *start, size_t done, size_t bytes)
 {
-    uint32_t pixels = (uint32_t)state->width * state->height;
-    memset(state->depth, 0, pixels * sizeof *state->depth);
+    for (uint8_t *at = start; done < bytes; done *= 2) memcpy(at + done, at, done < bytes - done ? done : bytes - done);
+}
+
+/* Depth only where the frame before left any. */
+static void clear(soft_state *state, uint32_t colour, int32_t first_row)
+{
+    size_t row_pixels = state->width, pixels = row_pixels * state->height, pixel_bytes = state->wide ? 4 : 2;
     if (!pixels) return;
+    if (first_row < state->height) {
+        uint32_t *depth = state->depth + (size_t)first_row * row_pixels;
+        memset(depth, 0, row_pixels * sizeof *depth);
+        repeat(depth, row_pixels * sizeof *depth, (size_t)(state->height - first_row) * row_pixels * sizeof *depth);
+    }
     soft_put(state, 0, (int32_t)(colour & 255), (int32_t)(colour >> 8 & 255), (int32_t)(colour >> 16 & 255));
-    size_t pixel_bytes = state->wide ? 4 : 2, bytes = pixels * pixel_bytes;
-    for (size_t done = pixel_bytes; done < bytes; done *= 2) /* each copy doubles what there is */
-        memcpy(state->colour + done, state->colour, done < bytes - done ? done : bytes - done);
+    repeat(state->colour, pixel_bytes, pixels * pixel_bytes);
 }
 
 static void soft_begin(void *opaque, const c3d_frame *frame, const c3d_rotation *rotation)
@@ -86,6 +95,7 @@ static void soft_begin(void *opaque, const c3d_frame *frame, const c3d_rotation 
         state->rotation.m[i / 3][i % 3] = part >= 1 << 30 ? INT32_MAX : part <= -(1 << 30) ? -INT32_MAX : part * 2;
     }
     state->blank = (uint32_t)camera->width * camera->height > state->pixels_max;
+    int32_t marked = camera->width == state->width && camera->height == state->height && state->top_row > 0 ? state->top_row : 0;
     state->width = state->blank ? 0 : camera->width;
     state->height = state->blank ? 0 : camera->height;
     state->painted = 0;
@@ -99,7 +109,8 @@ static void soft_begin(void *opaque, const c3d_frame *frame, const c3d_rotation 
     state->focal_norm = camera->focal_q8 << state->focal_shift;
     state->frame_shift = 14; /* the far plane below 2^29 world units */
     while (soft_scale64(camera->far_wu, state->frame_shift) >= 1 << 29) state->frame_shift--;
-    clear(state, frame->clear_colour);
+    clear(state, frame->clear_colour, marked);
+    state->top_row = state->height;
 }
 
 static void set_paint(soft_state *state, const c3d_resolved_draw *resolved, enum soft_depth depth)
@@ -115,6 +126,7 @@ static void set_paint(soft_state *state, const c3d_resolved_draw *resolved, enum
     paint->alpha_test = (flags & C3D_DRAW_ALPHA_TEST) != 0;
     paint->fog = state->frame.fog_end_wu > 0 && !backdrop;
     paint->on_top = (flags & C3D_DRAW_ON_TOP) != 0;
+    paint->unmarked = depth == SOFT_DEPTH_UNCOVERED && !state->deferred_count;
     paint->axis[0] = flags & C3D_DRAW_TEX_YZ ? 1 : 0;
     paint->axis[1] = flags & (C3D_DRAW_TEX_XZ | C3D_DRAW_TEX_YZ) ? 2 : 1;
 }
@@ -150,24 +162,16 @@ static int defer(soft_state *state, const c3d_resolved_draw *resolved)
     return 1;
 }
 
-/* Where each row has pixels that nothing covers; most rows of ground have none. */
-static void find_open_parts(soft_state *state)
-{
-    const uint32_t *depth = state->depth;
-    for (int32_t row = 0; row < state->height; row++, depth += state->width) {
-        int32_t from = 0, to = state->width;
-        while (from < to && depth[from]) from++;
-        while (to > from && depth[to - 1]) to--;
-        state->open_from[row] = (uint16_t)from;
-        state->open_to[row] = (uint16_t)to;
-    }
-}
-
 /* The last one first: it hides the others. */
 static void draw_deferred(soft_state *state)
 {
-    if (state->deferred_count) find_open_parts(state);
-    while (state->deferred_count) draw_now(state, &state->deferred[--state->deferred_count].resolved, SOFT_DEPTH_UNCOVERED);
+    if (state->deferred_count) soft_find_open_parts(state);
+    while (state->deferred_count) {
+        state->open_rows = state->top_row;
+        draw_now(state, &state->deferred[--state->deferred_count].resolved, SOFT_DEPTH_UNCOVERED);
+    }
+    if (state->paint.unmarked) state->top_row = state->open_rows;
+    state->paint.unmarked = 0;
     state->painted = 1;
 }
 

@@ -38,6 +38,7 @@ static void draw_line(soft_state *state, const soft_vertex *a, const soft_vertex
 
 void soft_lines(soft_state *state, const uint16_t *indices, uint32_t count)
 {
+    state->top_row = 0;
     for (uint32_t i = 0; i + 1 < count; i += 2) {
         soft_vertex a = state->vertices[indices[i]], b = state->vertices[indices[i + 1]];
         if (a.out & b.out) continue;

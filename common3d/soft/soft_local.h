@@ -41,6 +41,7 @@ typedef struct soft_paint {
     uint8_t coloured;    /* vertices differ in colour */
     uint8_t white;       /* all vertices are white: the texture as it is */
     uint8_t alpha_test, fog, on_top;
+    uint8_t unmarked;    /* the last backdrop: nothing comes after it that asks what it covered */
     uint8_t axis[2];     /* of the vertex, for s and t */
 } soft_paint;
 
@@ -93,6 +94,8 @@ struct soft_state {
     uint16_t width, height;
     uint8_t blank;               /* the viewport is larger than the memory: nothing is drawn */
     uint8_t painted;             /* something other than deferred backdrops was drawn */
+    int32_t top_row;             /* no depth was marked in rows above it; whatever paints a triangle keeps it */
+    int32_t open_rows;           /* while backdrops fill: nothing covers the rows above this one */
     c3d_frame frame;
     c3d_rotation rotation;       /* Q31 */
     int32_t centre_x, centre_y;  /* Q4 */
@@ -175,6 +178,11 @@ int soft_small(soft_state *state, const soft_vertex *a, const soft_vertex *b, co
 
 /* soft_spans.c: after soft_transform */
 void soft_choose_span(soft_state *state);
+
+/* soft_backdrop.c: what nothing has covered. open_from and open_to of all rows; then spans into RGB565. */
+void soft_find_open_parts(soft_state *state);
+void soft_span_backdrop(soft_state *state, const soft_segment *segment); /* colours: the sky */
+void soft_span_holes(soft_state *state, const soft_segment *segment);    /* RGBA5551 with the alpha test: a panorama */
 
 /* soft_line.c */
 void soft_lines(soft_state *state, const uint16_t *indices, uint32_t count);

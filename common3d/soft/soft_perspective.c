@@ -171,7 +171,10 @@ void soft_perspective(soft_state *state, const soft_vertex *a, const soft_vertex
     state->segment.step[SOFT_F] = 0;
     do {
         soft_walk_row(state, &walk);
-        if (walk.from < walk.to) paint_row(state, &planes, &walk);
+        if (walk.from < walk.to) {
+            if (walk.row < state->top_row) state->top_row = walk.row;
+            paint_row(state, &planes, &walk);
+        }
         for (int i = planes.first; i <= planes.last; i++) planes.value[i] += planes.down[i];
         planes.value[PLANE_W] += planes.down[PLANE_W];
     } while (soft_walk_next(state, &walk));

@@ -52,7 +52,7 @@ static void mark_pixel(soft_state *state, uint32_t at, uint32_t w)
 {
     if (state->paint.depth == SOFT_DEPTH_TEST)
         state->depth[at] = w;
-    else if (state->paint.depth == SOFT_DEPTH_UNCOVERED)
+    else if (state->paint.depth == SOFT_DEPTH_UNCOVERED && !state->paint.unmarked)
         state->depth[at] = 1;
 }
 

@@ -30,4 +30,14 @@ static inline uint32_t soft_sample_565(const uint16_t *texels, int32_t stride, i
 
 static inline uint16_t soft_pixel_of(uint32_t spread_pixel) { return (uint16_t)(spread_pixel | spread_pixel >> 16); }
 
+/* 1 when both ends of the segment lie on the texture and its rim: then all between does. */
+static inline int soft_on_texture(const soft_texture *texture, const soft_segment *segment)
+{
+    int32_t pixels = (int32_t)segment->count - 1;
+    uint32_t s = (uint32_t)segment->value[SOFT_S] + 65536, t = (uint32_t)segment->value[SOFT_T] + 65536;
+    uint32_t s_end = s + (uint32_t)(segment->step[SOFT_S] * pixels), t_end = t + (uint32_t)(segment->step[SOFT_T] * pixels);
+    uint32_t width = ((uint32_t)texture->width + 1) << 16, height = ((uint32_t)texture->height + 1) << 16;
+    return s < width && s_end < width && t < height && t_end < height;
+}
+
 #endif

@@ -177,6 +177,7 @@ int soft_small(soft_state *state, const soft_vertex *a, const soft_vertex *b, co
     if (fog && larger(b->fog_q8 - a->fog_q8, c->fog_q8 - a->fog_q8) > FOG_MAX) return 0;
     int32_t area = shape.dx2 * shape.dy1 - shape.dx1 * shape.dy2;
     if (area == 0 || !soft_walk_begin(state, &walk, a, b, c, area > 0)) return 1;
+    if (walk.row < state->top_row) state->top_row = walk.row;
     if (is_sliver(&shape, area))
         shape.reciprocal = shape.shift = shape.to_x = shape.to_y = 0;
     else

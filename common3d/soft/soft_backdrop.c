@@ -1,0 +1,157 @@
+/* Backdrops: pixels that nothing has covered, and the spans that fill them, into RGB565 (inner loops: long functions of few branches). */
+#include "soft_ramp.h"
+#include "soft_sample.h"
+
+#include <string.h>
+
+#define STEADY_LOG2 6 /* pixels of one colour, at most 64 */
+
+/* ---- open parts of rows ---- */
+
+/* 1 when one of eight pixels may be open: depths are below 2^31. */
+static inline int may_be_open(const uint32_t *depth)
+{
+    uint32_t open = (depth[0] - 1) | (depth[1] - 1) | (depth[2] - 1) | (depth[3] - 1);
+    return ((open | (depth[4] - 1) | (depth[5] - 1) | (depth[6] - 1) | (depth[7] - 1)) >> 31) != 0;
+}
+
+static const uint32_t *first_open(const uint32_t *depth, const uint32_t *end)
+{
+    for (;;) {
+        while (end - depth >= 8 && !may_be_open(depth)) depth += 8;
+        const uint32_t *stop = end - depth < 8 ? end : depth + 8;
+        while (depth < stop && *depth) depth++;
+        if (depth < stop || depth == end) return depth;
+    }
+}
+
+/* Most rows of ground have none. */
+void soft_find_open_parts(soft_state *state)
+{
+    const uint32_t *depth = state->depth;
+    int32_t width = state->width;
+    for (int32_t row = 0; row < state->height; row++, depth += width) {
+        const uint32_t *from = depth, *to = depth + width;
+        if (row >= state->top_row) {
+            from = first_open(from, to);
+            while (to > from && to[-1]) to--;
+        }
+        state->open_from[row] = (uint16_t)(from - depth);
+        state->open_to[row] = (uint16_t)(to - depth);
+    }
+}
+
+/* ---- the sky ---- */
+
+/* Two pixels of one colour a word. */
+static void fill(uint16_t *pixel, const uint16_t *end, uint32_t colour)
+{
+    uint32_t pair = colour | colour << 16;
+    if (pixel < end && (uintptr_t)pixel & 2) *pixel++ = (uint16_t)colour;
+    for (; end - pixel >= 8; pixel += 8) {
+        memcpy(pixel, &pair, 4);
+        memcpy(pixel + 2, &pair, 4);
+        memcpy(pixel + 4, &pair, 4);
+        memcpy(pixel + 6, &pair, 4);
+    }
+    while (pixel < end) *pixel++ = (uint16_t)colour;
+}
+
+/* The same where nothing was drawn; four at a time as long as nothing was. */
+static void fill_open(const soft_state *state, uint32_t first, uint32_t count, uint32_t colour)
+{
+    uint32_t *depth = state->depth + first, *end = depth + count, mark = !state->paint.unmarked;
+    uint16_t *pixel = (uint16_t *)(void *)state->colour + first;
+    for (; depth < end; depth++, pixel++) {
+        if (*depth) continue;
+        *depth = mark;
+        *pixel = (uint16_t)colour;
+    }
+}
+
+/* Pixels, as a power of two, over which no colour changes by more than half a step of its own: red and blue have 32, green 64. */
+static int steady_log2(const soft_ramp *ramp)
+{
+    uint32_t change = (uint32_t)(ramp->dr < 0 ? -ramp->dr : ramp->dr) | (uint32_t)(ramp->db < 0 ? -ramp->db : ramp->db);
+    change |= (uint32_t)(ramp->dg < 0 ? -ramp->dg : ramp->dg) << 1;
+    int log2 = soft_leading_zeros(change | 1) - 14; /* change below 2^(18 - log2): half a step is 2^18 */
+    return log2 > STEADY_LOG2 ? STEADY_LOG2 : log2;
+}
+
+static void ramp_open(const soft_state *state, const soft_segment *segment, const soft_ramp *ramp)
+{
+    int32_t red = ramp->red, green = ramp->green, blue = ramp->blue;
+    uint32_t *depth = state->depth + segment->first, *end = depth + segment->count, mark = !state->paint.unmarked;
+    uint16_t *pixel = (uint16_t *)(void *)state->colour + segment->first;
+    for (; depth < end; depth++, pixel++, red += ramp->dr, green += ramp->dg, blue += ramp->db) {
+        if (*depth) continue;
+        *depth = mark;
+        *pixel = soft_colour_565(red, green, blue);
+    }
+}
+
+/* Its colours hardly change along a row. */
+void soft_span_backdrop(soft_state *state, const soft_segment *segment)
+{
+    soft_ramp ramp;
+    soft_make_ramp(&ramp, segment);
+    int log2 = steady_log2(&ramp);
+    if (log2 < 2) {
+        ramp_open(state, segment, &ramp);
+        return;
+    }
+    int open = state->paint.unmarked && segment->first < (uint32_t)state->open_rows * state->width;
+    uint16_t *pixels = (uint16_t *)(void *)state->colour;
+    for (uint32_t at = segment->first, left = segment->count, count; left; at += count, left -= count) {
+        count = left >> log2 ? 1u << log2 : left;
+        int32_t half = (int32_t)count / 2;
+        uint32_t colour = soft_colour_565(ramp.red + ramp.dr * half, ramp.green + ramp.dg * half, ramp.blue + ramp.db * half);
+        if (open) fill(pixels + at, pixels + at + count, colour);
+        else fill_open(state, at, count, colour);
+        ramp.red += ramp.dr * (int32_t)count, ramp.green += ramp.dg * (int32_t)count, ramp.blue += ramp.db * (int32_t)count;
+    }
+}
+
+/* ---- a panorama ---- */
+
+/* The weighted sum of four spread texels, as a pixel. */
+static inline uint32_t blend(uint32_t a, uint32_t b, uint32_t c, uint32_t d, uint32_t x, uint32_t y)
+{
+    uint32_t xy = x * y >> 5;
+    uint32_t sum = a * (32 - x - y + xy) + b * (x - xy) + c * (y - xy) + d * xy + SOFT_SPREAD_HALF;
+    sum = sum >> 5 & SOFT_SPREAD;
+    return (sum | sum >> 16) & 0xFFFF;
+}
+
+/* RGBA5551 to the green of RGB565 with its highest bit repeated; the bit of alpha falls away. */
+static inline uint32_t spread_5551(uint32_t texel)
+{
+    uint32_t colour = (texel & 0xFFC0) | (texel >> 5 & 0x20) | (texel >> 1 & 0x1F);
+    return soft_spread(colour);
+}
+
+/* Between four clear texels nothing is drawn at all. */
+void soft_span_holes(soft_state *state, const soft_segment *segment)
+{
+    const soft_texture *texture = state->paint.texture;
+    const uint16_t *texels = soft_texel_zero(texture);
+    int32_t stride = texture->stride, s = segment->value[SOFT_S], t = segment->value[SOFT_T];
+    int32_t ds = segment->step[SOFT_S], dt = segment->step[SOFT_T];
+    if (!soft_on_texture(texture, segment) || state->paint.depth != SOFT_DEPTH_UNCOVERED) {
+        soft_segment_paint(state, segment);
+        return;
+    }
+    uint32_t mark = !state->paint.unmarked;
+    for (uint32_t at = segment->first, end = at + segment->count; at < end; at++, s += ds, t += dt) {
+        if (state->depth[at]) continue;
+        const uint16_t *texel = texels + (t >> 16) * stride + (s >> 16);
+        uint32_t a = texel[0], b = texel[1], c = texel[stride], d = texel[stride + 1];
+        if (!((a | b | c | d) & 1)) continue;
+        uint32_t x = (uint32_t)s >> 11 & 31, y = (uint32_t)t >> 11 & 31, xy = x * y >> 5;
+        uint32_t alpha = (a & 1) * (32 - x - y + xy) + (b & 1) * (x - xy) + (c & 1) * (y - xy) + (d & 1) * xy;
+        if (alpha < 16) continue;
+        state->depth[at] = mark;
+        ((uint16_t *)(void *)state->colour)[at] =
+            (uint16_t)blend(spread_5551(a), spread_5551(b), spread_5551(c), spread_5551(d), x, y);
+    }
+}
