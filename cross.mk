@@ -45,7 +45,7 @@ device = $(filter-out $(foreach f,$(2),$(WITHOUT_$f)),$(1)) $(foreach f,$(2),$(I
 # ---- make handheld ----
 ARM := arm-linux-gnueabi-
 ARM_CPU := -march=armv6 -mtune=arm1136jf-s -mfloat-abi=soft -marm
-ARM_FLAGS = -O2 $(WARN) $(if $(WERROR),-Werror) -D_GNU_SOURCE $(ARM_CPU) -ffunction-sections -fdata-sections -fstack-usage -MMD -MP \
+ARM_FLAGS = -O2 $(WARN) $(if $(WERROR),-Werror) -D_GNU_SOURCE $(ARM_CPU) -ffunction-sections -fdata-sections -fcallgraph-info=su -MMD -MP \
             -isystem $(CROSS)/armel/usr/include -isystem $(CROSS)/armel/usr/include/arm-linux-gnueabi
 ARM_LIBS := $(CROSS)/armel/usr/lib/arm-linux-gnueabi
 HAND_OBJ := build/handheld/obj
