@@ -11,8 +11,10 @@ int main(int argc, char **argv)
     fly_flight flight = { 0 };
     FILE *csv = NULL;
     int rc = fly_options_parse(&options, argc, argv);
-    if (rc)
+    if (rc) {
+        fly_options_free(&options);
         return rc < 0 ? 2 : 0;
+    }
     fly_options_print(&options);
     rc = fly_world_open(&world, &options);
     if (!rc && options.csv_path && !(csv = fopen(options.csv_path, "w"))) {
@@ -35,5 +37,6 @@ int main(int argc, char **argv)
     }
     fly_flight_free(&flight);
     fly_world_close(&world);
+    fly_options_free(&options);
     return rc ? 1 : 0;
 }

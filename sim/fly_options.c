@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <getopt.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,6 +22,9 @@ static const char help[] =
     "  --path KIND           diagonal (default): along the terrain's diagonal towards its north-east corner, turning back in a half\n"
     "                        circle before the border; circle; hover: in one place, turning 6 degrees a second; turn: along\n"
     "                        the diagonal for 20 s, round on the spot within 2 s, back, and so on\n"
+    "  --path FILE           a recorded flight: CSV whose first line names columns t_s, x_m, y_m, z_m (above the terrain's zero) or h_m\n"
+    "                        (above ground), heading_deg and pitch_deg (may be missing); its times count from the start, --settle\n"
+    "                        included, and --seconds ends with it. The CSV of an earlier flight is one\n"
     "  --start F             where on the diagonal, 0 to 1, default 0.4\n"
     "  --speed KMH           default 150\n"
     "  --height M            above the highest ground within 150 m along the path, smoothed; default 100\n"
@@ -30,6 +34,7 @@ static const char help[] =
     "  --event T:WHAT        at T seconds: low-battery battery-ok interruption resume cut panorama-on panorama-off, link=SPEC (the link\n"
     "                        is another one from now on), teleport=X,Y (shares of the terrain's width and height, each 0 to 1; the\n"
     "                        path goes on from there and stays at a border that it would cross); may be repeated\n"
+    "  --events FILE         such events, one on a line; what follows a # is a comment\n"
     "\n"
     " the link\n"
     "  --link SPEC           default umts. " SIM_LINK_SPEC_HELP "\n"
@@ -63,7 +68,8 @@ static const char help[] =
     "  --tape FILE           records all that comes to the client, for farfield-handheld --tape (not with --server or --event)\n";
 
 enum option_id {
-    OPT_PACK = 256, OPT_CSV, OPT_JSON, OPT_PATH, OPT_START, OPT_SPEED, OPT_HEIGHT, OPT_SECONDS, OPT_SETTLE, OPT_SEED, OPT_EVENT, OPT_LINK,
+    OPT_PACK = 256, OPT_CSV, OPT_JSON, OPT_PATH, OPT_START, OPT_SPEED, OPT_HEIGHT, OPT_SECONDS, OPT_SETTLE, OPT_SEED, OPT_EVENT, OPT_EVENTS,
+    OPT_LINK,
     OPT_DOWN_TRACE, OPT_UP_TRACE, OPT_SERVER, OPT_QUALITY, OPT_PANORAMA, OPT_BACK_PLANE, OPT_FACE, OPT_VIEW, OPT_MEMORY, OPT_PLAIN, OPT_BACKEND,
     OPT_SIZE, OPT_FOV, OPT_FPS, OPT_PNG, OPT_EVERY, OPT_WIREFRAME, OPT_AUDIT, OPT_CHECK, OPT_SAMPLE, OPT_TAPE, OPT_AUDIT_STEP, OPT_GROUND_CACHE, OPT_HELP, OPT_VERSION
 };
@@ -73,7 +79,7 @@ static const struct option long_options[] = {
     { "start", 1, NULL, OPT_START },
     { "path", 1, NULL, OPT_PATH },         { "speed", 1, NULL, OPT_SPEED },       { "height", 1, NULL, OPT_HEIGHT },
     { "seconds", 1, NULL, OPT_SECONDS },   { "settle", 1, NULL, OPT_SETTLE },     { "seed", 1, NULL, OPT_SEED },
-    { "event", 1, NULL, OPT_EVENT },       { "link", 1, NULL, OPT_LINK },         { "down-trace", 1, NULL, OPT_DOWN_TRACE },
+    { "event", 1, NULL, OPT_EVENT },       { "events", 1, NULL, OPT_EVENTS },     { "link", 1, NULL, OPT_LINK },         { "down-trace", 1, NULL, OPT_DOWN_TRACE },
     { "up-trace", 1, NULL, OPT_UP_TRACE }, { "server", 1, NULL, OPT_SERVER },     { "quality", 1, NULL, OPT_QUALITY },
     { "panorama", 1, NULL, OPT_PANORAMA }, { "back-plane", 1, NULL, OPT_BACK_PLANE }, { "view", 1, NULL, OPT_VIEW },
     { "memory", 1, NULL, OPT_MEMORY },     { "plain-arrays", 0, NULL, OPT_PLAIN },{ "backend", 1, NULL, OPT_BACKEND },
@@ -208,6 +214,25 @@ static int parse_event(fly_options *options, const char *text)
     return 0;
 }
 
+/* An event on each line. */
+static int parse_events(fly_options *options, const char *path)
+{
+    char line[1024];
+    FILE *file = fopen(path, "r");
+    int rc = file ? 0 : fail("--events: %s: %s", path, strerror(errno));
+    while (!rc && fgets(line, sizeof line, file)) {
+        line[strcspn(line, "#\r\n")] = '\0';
+        char *first = line + strspn(line, " \t"), *last = first + strlen(first);
+        while (last > first && (last[-1] == ' ' || last[-1] == '\t'))
+            *--last = '\0';
+        if (*first)
+            rc = parse_event(options, first);
+    }
+    if (file)
+        fclose(file);
+    return rc;
+}
+
 static int parse_link(fly_options *options, const char *text)
 {
     options->link_text = text;
@@ -233,9 +258,15 @@ static const char *const path_word[] = { "diagonal", "circle", "hover", "turn" }
 
 static int parse_path(fly_options *options, const char *text)
 {
-    int kind = parse_word("path", text, path_word, sizeof path_word / sizeof *path_word);
-    options->path = (enum fly_path_kind)kind;
-    return kind < 0 ? -1 : 0;
+    fly_recording_free(&options->recording);
+    options->path_text = text;
+    for (unsigned i = 0; i < sizeof path_word / sizeof *path_word; i++)
+        if (!strcmp(path_word[i], text)) {
+            options->path = (enum fly_path_kind)i;
+            return 0;
+        }
+    options->path = FLY_RECORDED;
+    return fly_recording_read(&options->recording, text);
 }
 
 static int parse_metres_wu(const char *name, const char *text, int32_t *value_wu)
@@ -304,6 +335,7 @@ static int parse_one(fly_options *options, int id, const char *text)
     case OPT_MEMORY: return parse_memory(options, text);
     case OPT_SIZE: return parse_size(options, text);
     case OPT_EVENT: return parse_event(options, text);
+    case OPT_EVENTS: return parse_events(options, text);
     case OPT_BACKEND: return parse_backend(options, text);
     case OPT_PATH: return parse_path(options, text);
     case OPT_AUDIT: return parse_switch("audit", text, &options->audit);
@@ -319,9 +351,9 @@ static int parse_one(fly_options *options, int id, const char *text)
 
 int fly_options_parse(fly_options *options, int argc, char **argv)
 {
-    *options = (fly_options){ .link_text = "umts", .speed_kmh = 150, .seconds = 300, .settle_s = 15, .height_m = 100, .start = 0.4,
+    *options = (fly_options){ .link_text = "umts", .speed_kmh = 150, .seconds = -1, .settle_s = 15, .height_m = 100, .start = 0.4,
                               .quality_text = "low", .panorama = { .enabled = 1 }, .seed = 1, .fps = 30, .width = 240, .height = 320,
-                              .fov_degrees = 60, .backend = FLY_GL, .check = -1, .audit_step_px = 8, .every_s = 10, .sample_s = 1,
+                              .fov_degrees = 60, .backend = FLY_GL, .path_text = "diagonal", .check = -1, .audit_step_px = 8, .every_s = 10, .sample_s = 1,
                               .memory_bytes = 4u << 20, .quality = { .sigma_q8 = 320, .view_wu = 30000 * FF_WU_PER_METRE } };
     options->link = *sim_link_profile("umts");
     (void)parse_quality(options, "low");
@@ -337,6 +369,10 @@ int fly_options_parse(fly_options *options, int argc, char **argv)
         return fail("unexpected argument %s", argv[optind]);
     if (!options->pack_path)
         return fail("--pack is missing (see --help)");
+    if (options->seconds < 0 && options->path == FLY_RECORDED)
+        options->seconds = fmax(0, options->recording.fix[options->recording.count - 1].t_s - options->settle_s);
+    if (options->seconds < 0)
+        options->seconds = 300;
     if (options->check < 0)
         options->check = options->audit;
     if (options->tape_path && (options->server || options->event_count))
@@ -344,6 +380,11 @@ int fly_options_parse(fly_options *options, int argc, char **argv)
     if (options->png_dir && options->backend == FLY_NONE)
         return fail("--png needs a --backend other than none");
     return 0;
+}
+
+void fly_options_free(fly_options *options)
+{
+    fly_recording_free(&options->recording);
 }
 
 const char *fly_backend_name(enum fly_backend backend)
@@ -358,7 +399,7 @@ void fly_options_print(const fly_options *options)
             "%ux%u at %g degrees, %u fps, backend %s, %zu bytes, audit %s\n",
             (unsigned long long)options->seed, options->pack_path, options->server ? "server" : "link",
             options->server ? options->server : options->link_text, options->speed_kmh, options->seconds, options->settle_s,
-            path_word[options->path], options->start, options->height_m, options->quality_text,
+            options->path_text, options->start, options->height_m, options->quality_text,
             options->panorama.enabled ? "on" : "off", options->width,
             options->height, options->fov_degrees, options->fps, fly_backend_name(options->backend), options->memory_bytes,
             options->audit ? "on" : "off");

@@ -3,12 +3,13 @@
 #define FLY_OPTIONS_H
 
 #include "../client/farfield.h"
+#include "fly_recording.h"
 #include "sim_link.h"
 
 #define FLY_EVENTS_MAX 64
 
 enum fly_backend { FLY_GLES1, FLY_GL, FLY_SOFT, FLY_SOFT_565, FLY_NONE };
-enum fly_path_kind { FLY_DIAGONAL, FLY_CIRCLE, FLY_HOVER, FLY_TURN };
+enum fly_path_kind { FLY_DIAGONAL, FLY_CIRCLE, FLY_HOVER, FLY_TURN, FLY_RECORDED };
 enum fly_event_kind {
     FLY_LOW_BATTERY, FLY_BATTERY_OK, FLY_INTERRUPTION, FLY_RESUME, FLY_CUT, FLY_PANORAMA_ON, FLY_PANORAMA_OFF, FLY_LINK, FLY_TELEPORT
 };
@@ -36,6 +37,8 @@ typedef struct fly_options {
     double fov_degrees;       /* across the width */
     enum fly_backend backend;
     enum fly_path_kind path;
+    const char *path_text;
+    fly_recording recording;  /* of FLY_RECORDED */
     const char *ground_cache; /* decoded heights of the pack, for the audit; NULL: decoded for this flight alone */
     uint32_t audit_step_px;
     int audit, check, json, wireframe, plain_arrays;
@@ -51,6 +54,8 @@ typedef struct fly_options {
 int fly_options_parse(fly_options *options, int argc, char **argv);
 /* All options in one line on stderr, the seed first: what it takes to fly the same again. */
 void fly_options_print(const fly_options *options);
+
+void fly_options_free(fly_options *options);
 
 const char *fly_backend_name(enum fly_backend backend);
 

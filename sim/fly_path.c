@@ -4,6 +4,7 @@
 
 #define PI 3.14159265358979323846
 #define PITCH_DEGREES (-6.0)
+#define ABOVE_M 1.0     /* ground that a recorded flight keeps below */
 #define HOVER_DEGREES_S 6.0
 #define TURN_EVERY_S 20.0
 #define TURN_S 2.0
@@ -15,8 +16,10 @@ void fly_path_init(fly_path *path, const fly_options *options, const ff_terrain_
     double spacing_m = (double)info->spacing_wu / FF_WU_PER_METRE;
     double size_x = (info->samples_x - 1) * spacing_m, size_y = (info->samples_y - 1) * spacing_m;
     double shorter = fmin(size_x, size_y);
-    *path = (fly_path){ .kind = options->path, .ground = ground, .settle_s = options->settle_s, .speed_ms = options->speed_kmh / 3.6,
+    *path = (fly_path){ .kind = options->path, .ground = ground, .recording = &options->recording, .settle_s = options->settle_s, .speed_ms = options->speed_kmh / 3.6,
                         .height_m = options->height_m, .size_m = { size_x, size_y } };
+    if (options->path == FLY_RECORDED)
+        return;
     if (options->path == FLY_CIRCLE) {
         path->start_m[0] = size_x / 2;
         path->start_m[1] = size_y / 2;
@@ -71,11 +74,17 @@ static void place_unmoved(const fly_path *path, double arc_m, double pos_m[2], d
     }
 }
 
+/* After teleports; a border stops it. */
+static void move(const fly_path *path, double pos_m[2])
+{
+    for (int i = 0; i < 2; i++)
+        pos_m[i] = fmin(fmax(pos_m[i] + path->moved_m[i], 0), path->size_m[i]);
+}
+
 static void place(const fly_path *path, double arc_m, double pos_m[2], double heading[2])
 {
     place_unmoved(path, arc_m, pos_m, heading);
-    for (int i = 0; i < 2; i++)
-        pos_m[i] = fmin(fmax(pos_m[i] + path->moved_m[i], 0), path->size_m[i]);
+    move(path, pos_m);
 }
 
 /* Arc length at a time. */
@@ -117,25 +126,51 @@ static double smooth_ground_m(const fly_path *path, double arc_m)
     return sum / (2 * SMOOTH_STEPS + 1);
 }
 
-void fly_path_at(const fly_path *path, double t_s, c3d_camera *camera)
+static void set_camera(c3d_camera *camera, const double pos_m[2], double z_m, double yaw_turns, double pitch_degrees)
 {
-    double pos_m[2], heading[2], flown_s = fmax(0, t_s - path->settle_s);
-    double arc_m = arc_at(path, flown_s);
-    place(path, arc_m, pos_m, heading);
-    double yaw_turns = atan2(heading[0], heading[1]) / (2 * PI) + turned_at(path, flown_s);
-    double z_m = smooth_ground_m(path, arc_m) + path->height_m;
     camera->pos_wu[0] = (int32_t)floor(pos_m[0] * FF_WU_PER_METRE + 0.5);
     camera->pos_wu[1] = (int32_t)floor(pos_m[1] * FF_WU_PER_METRE + 0.5);
     camera->pos_wu[2] = (int32_t)floor(z_m * FF_WU_PER_METRE + 0.5);
     camera->yaw = (int32_t)floor(yaw_turns * 65536 + 0.5) & 65535;
-    camera->pitch = (int32_t)floor(PITCH_DEGREES / 360 * 65536 + 0.5);
+    camera->pitch = (int32_t)floor(pitch_degrees / 360 * 65536 + 0.5);
     camera->roll = 0;
+}
+
+static void recorded_at(const fly_path *path, double t_s, c3d_camera *camera)
+{
+    fly_fix fix;
+    fly_recording_at(path->recording, t_s, &fix);
+    double pos_m[2] = { fix.x_m, fix.y_m };
+    move(path, pos_m);
+    double ground_m = sim_ground_height_m(path->ground, pos_m[0], pos_m[1]);
+    double z_m = fmax(ground_m + ABOVE_M, path->recording->above_ground ? ground_m + fix.up_m : fix.up_m);
+    set_camera(camera, pos_m, z_m, fix.heading_deg / 360, fmin(fmax(fix.pitch_deg, -90), 90));
+}
+
+void fly_path_at(const fly_path *path, double t_s, c3d_camera *camera)
+{
+    double pos_m[2], heading[2], flown_s = fmax(0, t_s - path->settle_s);
+    if (path->kind == FLY_RECORDED) {
+        recorded_at(path, t_s, camera);
+        return;
+    }
+    double arc_m = arc_at(path, flown_s);
+    place(path, arc_m, pos_m, heading);
+    double yaw_turns = atan2(heading[0], heading[1]) / (2 * PI) + turned_at(path, flown_s);
+    set_camera(camera, pos_m, smooth_ground_m(path, arc_m) + path->height_m, yaw_turns, PITCH_DEGREES);
 }
 
 void fly_path_teleport(fly_path *path, double t_s, double x, double y)
 {
     double pos_m[2], heading[2];
-    place_unmoved(path, arc_at(path, fmax(0, t_s - path->settle_s)), pos_m, heading);
+    fly_fix fix;
+    if (path->kind == FLY_RECORDED) {
+        fly_recording_at(path->recording, t_s, &fix);
+        pos_m[0] = fix.x_m;
+        pos_m[1] = fix.y_m;
+    } else {
+        place_unmoved(path, arc_at(path, fmax(0, t_s - path->settle_s)), pos_m, heading);
+    }
     path->moved_m[0] = x * path->size_m[0] - pos_m[0];
     path->moved_m[1] = y * path->size_m[1] - pos_m[1];
 }

@@ -121,6 +121,28 @@ for path in circle hover; do
     flies $path $quick --path $path
     is 's["crack_frames"] == 0 and r[-1]["err_px_p95"] < 10' "path $path"
 done
+cat >"$work/walk.csv" <<'END'
+pitch_deg,t_s,note,x_m,y_m,h_m,heading_deg
+-10,1,start,4000,4000,50,350
+-10,3,turn,4100,4000,50,10
+-30,5,fall,4100,4200,-1000,90
+END
+flies walk $quick --path "$work/walk.csv" --settle 1
+is 'len(r) == 6 and s["crack_frames"] == 0 and s["settle_s"] <= 5' "a recorded path lasts as long as it was recorded"
+is '[(a["x_m"], a["y_m"]) for a in r] == [(4000, 4000), (4000, 4000), (4050, 4000), (4100, 4000), (4100, 4100), (4100, 4200)]' "and leads where it led"
+is 'abs(r[0]["z_m"] - 50 - (r[5]["z_m"] - 1)) < 500 and r[5]["z_m"] > 300' "above the ground, whatever was recorded"
+flies flown $quick --path diagonal
+flies reflown $quick --path "$work/flown.csv" --seconds 4
+is "all(abs(a['x_m'] - float(b['x_m'])) < 0.1 and abs(a['z_m'] - float(b['z_m'])) < 0.1 for a, b in zip(r, csv.DictReader(open('$work/flown.csv'))))" \
+    "the CSV of a flight is a recorded path"
+printf '# a bad day\n  2:low-battery # comment\n\n4:battery-ok\n3:teleport=0.5,0.5\n' >"$work/day"
+flies listed $quick --events "$work/day"
+cp "$work/listed.csv" "$work/listed1.csv"
+flies listed $quick --event 2:low-battery --event 3:teleport=0.5,0.5 --event 4:battery-ok
+cmp -s "$work/listed.csv" "$work/listed1.csv"
+result $? "events from a file are those given one by one"
+flies away $quick --path "$work/walk.csv" --event 2:teleport=0.75,0.25
+is 'r[1]["x_m"] == 4000 and abs(r[2]["x_m"] - 7680) < 1 and abs(r[-1]["y_m"] - r[2]["y_m"] - 200) < 1' "a recorded path goes on from where it is teleported to"
 flies around $quick --speed 10000
 is 's["crack_frames"] == 0 and all(0 < row["x_m"] < 10240 and 0 < row["y_m"] < 10240 for row in r)' "10 000 km/h turn round before the border"
 flies node --pack "$work/node.ffp" $quick
@@ -186,6 +208,19 @@ refused "an unknown quality" --pack "$work/hills.ffp" --quality superb
 refused "an unknown event" --pack "$work/hills.ffp" --event 3:earthquake
 refused "a link unknown in flight" --pack "$work/hills.ffp" --event 3:link=telex
 refused "a teleport to nowhere" --pack "$work/hills.ffp" --event 3:teleport=0.5,2
+printf 't_s,x_m,y_m\n1,2,3\n' >"$work/flat.csv"
+printf 't_s,x_m,y_m,z_m\n1,2,3,4\n1,2,3,4\n' >"$work/again.path"
+printf 't_s,x_m,y_m,z_m\n1,2,3\n' >"$work/narrow.path"
+printf 't_s,x_m,y_m,z_m\n1,2,nan,4\n' >"$work/nan.path"
+printf '3:earthquake\n' >"$work/quake"
+refused "a path that is neither word nor file" --pack "$work/hills.ffp" --path spiral
+refused "a recorded path without heights" --pack "$work/hills.ffp" --path "$work/flat.csv"
+refused "a recorded path whose time stands" --pack "$work/hills.ffp" --path "$work/again.path"
+refused "a recorded path with a short line" --pack "$work/hills.ffp" --path "$work/narrow.path"
+refused "a recorded path that is no number" --pack "$work/hills.ffp" --path "$work/nan.path"
+refused "a pack as a recorded path" --pack "$work/hills.ffp" --path "$work/hills.ffp"
+refused "missing events" --pack "$work/hills.ffp" --events "$work/missing"
+refused "an unknown event in a file" --pack "$work/hills.ffp" --events "$work/quake"
 refused "an impossible size" --pack "$work/hills.ffp" --size 0x0
 refused "faces too large" --pack "$work/hills.ffp" --face 2048
 refused "a server that is not there" --pack "$work/hills.ffp" --server 127.0.0.1:9 --backend none --seconds 0 --settle 1
