@@ -13,9 +13,9 @@
  *   Textures: bilinear, clamped to the edge, with 5-bit weights where a pixel takes its colour from the texture alone into RGB565,
  *   8-bit ones elsewhere. In long RGB565 spans over which a texel is as wide as 4 (8) pixels every 4th (8th) pixel is sampled and those
  *   between are blended. Each texture is stored with a rim one texel wide, so that no pixel of a span needs a test.
- *   Perspective: triangles up to 128 pixels over which linear interpolation is off by at most 1/4 texel (1/16 of the colours'
- *   difference) are interpolated linearly; all others are divided exactly every 8 to 64 pixels, by how fast depth changes: at one
- *   texel a pixel the error between is 1/4 texel, too.
+ *   Perspective: triangles up to 16 pixels, white and textured, over which depth changes by at most 1/8, and others up to 128 pixels over
+ *   which linear interpolation is off by at most 1/4 texel (1/16 of the colours' difference), are interpolated linearly; all the rest is
+ *   divided exactly every 8 to 64 pixels, by how fast depth changes: at one texel a pixel the error between is 1/4 texel, too.
  *   Colours: fog and vertex colours are interpolated with 16 fraction bits and rounded to the frame's format.
  *   Backdrops drawn before everything else wait until the end of the frame and then fill, the last one first, what nothing has covered:
  *   the picture is the same and no pixel is painted twice. Their meshes are copied meanwhile.

@@ -10,6 +10,7 @@
 #define SOFT_GUARD_Q4 65536        /* screen coordinates stay this close to the principal point */
 #define SOFT_GUARD_CLIP_PX 4000    /* and are clipped here */
 #define SOFT_EDGE_TABLE 513        /* heights of edges, Q4, with a reciprocal at hand: up to 32 pixels */
+#define SOFT_TINY_TEXELS 64      /* each way: they fit into 7 bits with the rim */
 #define SOFT_HEAP_UNIT 256
 
 /* Where a vertex lies: of the screen (by pixel centres), or for the clipper. */
@@ -112,6 +113,7 @@ struct soft_state {
     c3d_draw cached;             /* whose vertices are in `vertices` */
     const c3d_vertex *cached_mesh;
     uint8_t off_texture;         /* some vertex lies beyond its edges */
+    uint8_t tiny_rows;           /* and a texture small enough for soft_tiny */
     uint8_t texture_rows;        /* the texture alone, on it, into RGB565 with the depth test */
     uint32_t deferred_count;
     soft_deferred deferred[C3D_SOFT_BACKDROPS];
@@ -175,6 +177,9 @@ void soft_perspective(soft_state *state, const soft_vertex *a, const soft_vertex
 
 /* soft_small.c: 0 when it is not small or not flat enough; otherwise drawn. a.y <= b.y <= c.y. */
 int soft_small(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c);
+
+/* soft_tiny.c: the same for a few pixels, where state->tiny_rows; clips to the frame. */
+int soft_tiny(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c);
 
 /* soft_spans.c: after soft_transform */
 void soft_choose_span(soft_state *state);

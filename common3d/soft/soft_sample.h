@@ -16,16 +16,21 @@ static inline const uint16_t *soft_texel_zero(const soft_texture *texture)
     return (const uint16_t *)(const void *)texture->texels + texture->stride + 1;
 }
 
-static inline uint32_t soft_sample_565(const uint16_t *texels, int32_t stride, int32_t s, int32_t t)
+/* Between four texels, from the upper left one; x and y in 1/32 texel. */
+static inline uint32_t soft_blend_565(const uint16_t *at, uint32_t stride, uint32_t x, uint32_t y)
 {
-    const uint16_t *at = texels + (t >> 16) * stride + (s >> 16);
-    uint32_t x = (uint32_t)s << 16 >> 27, y = (uint32_t)t << 16 >> 27, xy = x * y >> 5;
+    uint32_t xy = x * y >> 5;
     uint32_t sum = soft_spread(at[0]) * (32 - x - y + xy) + SOFT_SPREAD_HALF;
     sum += soft_spread(at[1]) * (x - xy);
     at += stride;
     sum += soft_spread(at[0]) * (y - xy);
     sum += soft_spread(at[1]) * xy;
     return sum >> 5 & SOFT_SPREAD;
+}
+
+static inline uint32_t soft_sample_565(const uint16_t *texels, int32_t stride, int32_t s, int32_t t)
+{
+    return soft_blend_565(texels + (t >> 16) * stride + (s >> 16), (uint32_t)stride, (uint32_t)s << 16 >> 27, (uint32_t)t << 16 >> 27);
 }
 
 static inline uint16_t soft_pixel_of(uint32_t spread_pixel) { return (uint16_t)(spread_pixel | spread_pixel >> 16); }

@@ -1,4 +1,4 @@
-/* Triangles small enough that linear interpolation shows no difference: nearly all of a terrain. 32-bit throughout.
+/* Triangles small enough that linear interpolation shows no difference. 32-bit throughout.
  *
  * Within 128 pixels each way: differences of coordinates below 2^11 (Q4), of attributes below 2^18 (texels Q12: 64; colours Q10), of w
  * below 2^19 after a shift: a numerator is two products below 2^29 + ... < 2^31. The area is below 2^23; a slope is a numerator times

@@ -77,13 +77,14 @@ void soft_choose_span(soft_state *state)
     const soft_paint *paint = &state->paint;
     const soft_texture *texture = paint->texture;
     state->span = soft_segment_paint;
-    state->texture_rows = 0;
+    state->texture_rows = state->tiny_rows = 0;
     if (state->wide || paint->depth == SOFT_DEPTH_NONE) return;
     int test = paint->depth == SOFT_DEPTH_TEST;
     if (!texture) state->span = test ? span_colour : soft_span_backdrop;
     if (texture && paint->white && texture->format == C3D_RGB565 && test) {
         state->span = span_texture;
         state->texture_rows = !state->off_texture;
+        state->tiny_rows = state->texture_rows && texture->width <= SOFT_TINY_TEXELS && texture->height <= SOFT_TINY_TEXELS && !paint->fog;
     }
     if (texture && paint->white && paint->alpha_test && texture->format == C3D_RGBA5551) state->span = soft_span_holes;
 }

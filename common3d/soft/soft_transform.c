@@ -85,6 +85,7 @@ void soft_project(const soft_state *state, soft_vertex *vertex)
     vertex->out = 0;
     if (z < space->near_eye) {
         vertex->out = SOFT_NEAR;
+        vertex->y = INT32_MIN; /* in no row of those in front */
         return;
     }
     if (z > space->far_eye) vertex->out = SOFT_FAR;

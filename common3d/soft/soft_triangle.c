@@ -23,15 +23,26 @@ void soft_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b
     if (area != 0) soft_perspective(state, a, b, c, area);
 }
 
+static void draw(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
+{
+    if (a == b || b == c || a == c || (a->out & b->out & c->out)) return;
+    if ((a->out | b->out | c->out) & SOFT_MUST_CLIP)
+        soft_clip(state, a, b, c);
+    else if (!state->tiny_rows || !soft_tiny(state, a, b, c))
+        soft_triangle(state, a, b, c);
+}
+
 void soft_strip(soft_state *state, const uint16_t *indices, uint32_t count)
 {
-    for (uint32_t i = 2; i < count; i++) {
-        const soft_vertex *a = &state->vertices[indices[i - 2]], *b = &state->vertices[indices[i - 1]],
-                          *c = &state->vertices[indices[i]];
-        if (a == b || b == c || a == c || (a->out & b->out & c->out)) continue;
-        if ((a->out | b->out | c->out) & SOFT_MUST_CLIP)
-            soft_clip(state, a, b, c);
-        else
-            soft_triangle(state, a, b, c);
+    const soft_vertex *vertices = state->vertices, *a, *b, *c;
+    const uint16_t *end = indices + count;
+    if (count < 3) return;
+    b = &vertices[*indices++], c = &vertices[*indices++];
+    int32_t row_a, row_b = soft_first_row(b->y), row_c = soft_first_row(c->y);
+    for (int odd = 1; indices < end; odd ^= 1) {
+        a = b, b = c, c = &vertices[*indices++];
+        row_a = row_b, row_b = row_c, row_c = soft_first_row(c->y);
+        if (row_a == row_b && row_b == row_c) continue; /* between two rows of centres: a third of a terrain's triangles */
+        if (odd) draw(state, b, a, c); else draw(state, a, b, c);
     }
 }
