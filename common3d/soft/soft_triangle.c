@@ -23,10 +23,12 @@ void soft_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b
     if (area != 0) soft_perspective(state, a, b, c, area);
 }
 
-static void draw(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
+/* a, b and c turn the same way all along a strip: most of a terrain's triangles have a positive area for soft_tiny. */
+static inline void draw(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
 {
-    if (a == b || b == c || a == c || (a->out & b->out & c->out)) return;
-    if ((a->out | b->out | c->out) & SOFT_MUST_CLIP)
+    uint32_t any = a->out | b->out | c->out;
+    if (a->out & b->out & c->out) return;
+    if (any & SOFT_MUST_CLIP)
         soft_clip(state, a, b, c);
     else if (!state->tiny_rows || !soft_tiny(state, a, b, c))
         soft_triangle(state, a, b, c);
@@ -34,15 +36,13 @@ static void draw(soft_state *state, const soft_vertex *a, const soft_vertex *b, 
 
 void soft_strip(soft_state *state, const uint16_t *indices, uint32_t count)
 {
-    const soft_vertex *vertices = state->vertices, *a, *b, *c;
-    const uint16_t *end = indices + count;
-    if (count < 3) return;
-    b = &vertices[*indices++], c = &vertices[*indices++];
+    const soft_vertex *vertices = state->vertices, *a, *b = &vertices[indices[0]], *c = &vertices[indices[1]];
     int32_t row_a, row_b = soft_first_row(b->y), row_c = soft_first_row(c->y);
-    for (int odd = 1; indices < end; odd ^= 1) {
-        a = b, b = c, c = &vertices[*indices++];
+    for (uint32_t i = 2; i < count; i++) {
+        a = b, b = c, c = &vertices[indices[i]];
         row_a = row_b, row_b = row_c, row_c = soft_first_row(c->y);
         if (row_a == row_b && row_b == row_c) continue; /* between two rows of centres: a third of a terrain's triangles */
-        if (odd) draw(state, b, a, c); else draw(state, a, b, c);
+        if (a == b || b == c || a == c) continue;
+        draw(state, i & 1 ? a : b, i & 1 ? b : a, c);
     }
 }
