@@ -17,6 +17,7 @@ typedef struct c3d_mesh_data {
     const c3d_vertex *vertices; /* copy in the pool, NULL when `buffer` has it */
     uint32_t count;
     uint16_t reach[3];          /* largest |x|, |y|, |z| */
+    int16_t least[3], most[3];  /* x, y, z */
 } c3d_mesh_data;
 
 /* A strip's triangles and its edges (pairs of indices: lines), one after the other in one array or buffer. */

@@ -137,19 +137,17 @@ void c3d_close(c3d_device *device)
     device->backend->close(device->state);
 }
 
-static void widen(uint16_t *reach, int16_t value)
+static void measure_extent(c3d_mesh_data *mesh, const c3d_vertex *vertices)
 {
-    uint16_t size = (uint16_t)(value < 0 ? -value : value);
-    if (size > *reach) *reach = size;
-}
-
-static void measure_reach(const c3d_vertex *vertices, uint32_t count, uint16_t reach[3])
-{
-    for (uint32_t i = 0; i < count; i++) {
-        widen(&reach[0], vertices[i].x);
-        widen(&reach[1], vertices[i].y);
-        widen(&reach[2], vertices[i].z);
+    for (uint32_t i = 0; i < mesh->count; i++) {
+        const int16_t at[3] = {vertices[i].x, vertices[i].y, vertices[i].z};
+        for (int axis = 0; axis < 3; axis++) {
+            if (i == 0 || at[axis] < mesh->least[axis]) mesh->least[axis] = at[axis];
+            if (i == 0 || at[axis] > mesh->most[axis]) mesh->most[axis] = at[axis];
+        }
     }
+    for (int axis = 0; axis < 3; axis++)
+        mesh->reach[axis] = (uint16_t)(-mesh->least[axis] > mesh->most[axis] ? -mesh->least[axis] : mesh->most[axis]);
 }
 
 c3d_mesh c3d_mesh_make(c3d_device *device, const c3d_vertex *vertices, uint32_t count)
@@ -160,7 +158,7 @@ c3d_mesh c3d_mesh_make(c3d_device *device, const c3d_vertex *vertices, uint32_t 
     mesh_slot *mesh = c3d_pool_get(&device->meshes, id);
     if (!mesh) return none;
     mesh->data = (c3d_mesh_data){.count = count};
-    measure_reach(vertices, count, mesh->data.reach);
+    measure_extent(&mesh->data, vertices);
     if (device->vertices) {
         c3d_vertex *copy = device->vertices + (size_t)c3d_pool_index(id) * device->desc.mesh_vertices_max;
         memcpy(copy, vertices, count * sizeof *vertices);

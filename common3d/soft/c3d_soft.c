@@ -90,10 +90,6 @@ static void soft_begin(void *opaque, const c3d_frame *frame, const c3d_rotation 
     soft_state *state = opaque;
     const c3d_camera *camera = &frame->camera;
     state->frame = *frame;
-    for (int i = 0; i < 9; i++) { /* Q31: eye units half as long, at no cost */
-        int32_t part = rotation->m[i / 3][i % 3];
-        state->rotation.m[i / 3][i % 3] = part >= 1 << 30 ? INT32_MAX : part <= -(1 << 30) ? -INT32_MAX : part * 2;
-    }
     state->blank = (uint32_t)camera->width * camera->height > state->pixels_max;
     int32_t marked = camera->width == state->width && camera->height == state->height && state->top_row > 0 ? state->top_row : 0;
     state->width = state->blank ? 0 : camera->width;
@@ -101,14 +97,7 @@ static void soft_begin(void *opaque, const c3d_frame *frame, const c3d_rotation 
     state->painted = 0;
     state->deferred_count = state->deferred_vertices = 0;
     state->cached_mesh = NULL;
-    state->centre_x = state->width * SOFT_HALF;
-    state->centre_y = state->height * SOFT_HALF;
-    state->right_q4 = state->width * SOFT_ONE - SOFT_HALF;
-    state->below_q4 = state->height * SOFT_ONE - SOFT_HALF;
-    state->focal_shift = soft_leading_zeros((uint32_t)camera->focal_q8) - 1;
-    state->focal_norm = camera->focal_q8 << state->focal_shift;
-    state->frame_shift = 14; /* the far plane below 2^29 world units */
-    while (soft_scale64(camera->far_wu, state->frame_shift) >= 1 << 29) state->frame_shift--;
+    soft_begin_view(state, rotation);
     clear(state, frame->clear_colour, marked);
     state->top_row = state->height;
 }

@@ -6,8 +6,9 @@
  *   no pixel and leave none out, so every pixel of a closed surface is written once.
  *   Screen: vertices are rounded to 1/16 pixel. They may lie up to 4096 pixels from the principal point; what reaches further,
  *   and what crosses the near or far plane, is clipped in eye space first.
- *   Eye space: 32 bits in a unit of its own for each frame (2^k to a wu), so that the far plane lies below 2^26 units. A vertex is
- *   rotated from its exact place relative to the camera: meshes that share a vertex get the same pixel for it, whatever their origins.
+ *   Eye space: 32 bits in a unit of its own for each frame (2^k to a wu), so that the far plane lies below 2^28 units: 0.5 mm at
+ *   100 km. A vertex is rotated from its exact place relative to the camera: meshes that share a vertex get the same pixel for it,
+ *   whatever their origins.
  *   Depth: near/z, 30 fraction bits, 32 bits a pixel; the greater hides the smaller, of equals the later is drawn. It is linear over
  *   the screen. 0: nothing was drawn here, 1: a backdrop.
  *   Textures: bilinear, clamped to the edge, with 5-bit weights where a pixel takes its colour from the texture alone into RGB565,

@@ -2,58 +2,91 @@
  * A new vertex is always computed from the inner end of its edge to the outer one: triangles that share the edge get the same. */
 #include "soft_local.h"
 
-enum { PLANES = 6, CORNERS_MAX = 3 + PLANES };
+enum { NEAR_PLANE, FAR_PLANE, GUARD_PLANES, PLANES = 6, CORNERS_MAX = 3 + PLANES };
 
-/* Inside is positive. |x| * focal_q8 < 2^30 * 2^31; guard: 4000 * 256 * 2^30 < 2^51. */
-static int64_t distance(const soft_state *state, const soft_vertex *vertex, int plane)
+typedef struct corner {
+    soft_vertex at;
+    int32_t eye[3];
+} corner;
+
+/* Inside is positive. */
+static int64_t distance(const soft_state *state, const corner *from, int plane)
 {
-    const int32_t *eye = vertex->eye;
-    int64_t wide = (int64_t)eye[2] * (SOFT_GUARD_CLIP_PX * 256);
-    switch (plane) {
-    case 0: return (int64_t)eye[2] - state->space.near_eye;
-    case 1: return (int64_t)state->space.far_eye - eye[2];
-    case 2: return wide - (int64_t)eye[0] * state->frame.camera.focal_q8;
-    case 3: return wide + (int64_t)eye[0] * state->frame.camera.focal_q8;
-    case 4: return wide - (int64_t)eye[1] * state->frame.camera.focal_q8;
-    default: return wide + (int64_t)eye[1] * state->frame.camera.focal_q8;
-    }
+    const int32_t *eye = from->eye;
+    if (plane == NEAR_PLANE) return (int64_t)eye[2] - state->space.near_eye;
+    if (plane == FAR_PLANE) return (int64_t)state->space.far_eye - eye[2];
+    int64_t wide = (int64_t)eye[2] * (SOFT_GUARD_CLIP_PX * SOFT_ONE), side = soft_scale64(eye[(plane - GUARD_PLANES) >> 1], 27 - state->view.focal_shift);
+    return plane & 1 ? wide + side : wide - side; /* 2^30 * 2^16, 2^30 * 2^27 */
 }
 
 static int32_t between(int32_t inner, int32_t outer, int32_t part_q30)
 {
-    return inner + (int32_t)((((int64_t)outer - inner) * part_q30) >> 30);
+    return inner + (int32_t)(((int64_t)(outer - inner) * part_q30) >> 30);
 }
 
-/* The point of the edge on the plane: as far from `inner` as its distance is of the sum of both. */
-static void cut(const soft_state *state, int plane, const soft_vertex *inner, const soft_vertex *outer, soft_vertex *at)
+/* part/whole, Q30; 0 <= part <= whole. */
+static int32_t part_q30(const soft_state *state, int64_t part, int64_t whole)
 {
-    int64_t part = distance(state, inner, plane), whole = part - distance(state, outer, plane);
     while (whole >= INT32_MAX) {
         whole >>= 1;
         part >>= 1;
     }
-    int32_t p = (int32_t)(part * ((int64_t)1 << 30) / whole); /* the one division */
-    for (int i = 0; i < 3; i++) at->eye[i] = between(inner->eye[i], outer->eye[i], p);
-    if (plane == 0) at->eye[2] = state->space.near_eye;
-    if (plane == 1) at->eye[2] = state->space.far_eye;
-    at->s = between(inner->s, outer->s, p);
-    at->t = between(inner->t, outer->t, p);
-    at->fog_q8 = between(inner->fog_q8, outer->fog_q8, p);
-    for (int i = 0; i < 4; i++) at->rgba[i] = (uint8_t)between(inner->rgba[i], outer->rgba[i], p);
-    soft_project(state, at);
+    int lead = soft_leading_zeros((uint32_t)whole) - 1;
+    uint64_t part_q61 = (uint64_t)part * soft_fine_reciprocal(state, (uint32_t)whole << lead); /* below 2^(31 - lead) * 2^31 */
+    uint32_t q30 = (uint32_t)(part_q61 >> (31 - lead));
+    return (int32_t)(q30 < UINT32_C(1) << 30 ? q30 : UINT32_C(1) << 30);
 }
 
-static int clip_plane(const soft_state *state, int plane, const soft_vertex *in, int count, soft_vertex *out)
+/* The point of the edge on the plane: as far from `inner` as its distance is of the sum of both. */
+static void cut(const soft_state *state, int plane, const corner *inner, const corner *outer, corner *new)
 {
-    int kept = 0;
+    int64_t part = distance(state, inner, plane);
+    int32_t p = part_q30(state, part, part - distance(state, outer, plane));
+    for (int i = 0; i < 3; i++) new->eye[i] = between(inner->eye[i], outer->eye[i], p);
+    if (plane == NEAR_PLANE) new->eye[2] = state->space.near_eye;
+    if (plane == FAR_PLANE) new->eye[2] = state->space.far_eye;
+    new->at.s = between(inner->at.s, outer->at.s, p);
+    new->at.t = between(inner->at.t, outer->at.t, p);
+    new->at.fog_q8 = between(inner->at.fog_q8, outer->at.fog_q8, p);
+    for (int i = 0; i < 4; i++) new->at.rgba[i] = (uint8_t)between(inner->at.rgba[i], outer->at.rgba[i], p);
+    soft_project(state, new->eye, &new->at);
+}
+
+static void take(const soft_state *state, const soft_vertex *vertex, corner *new)
+{
+    new->at = *vertex;
+    soft_eye(state, vertex, new->eye);
+}
+
+static int clip_plane(const soft_state *state, int plane, const corner *in, int count, corner *out)
+{
+    int kept = 0, inside = distance(state, &in[0], plane) >= 0;
     for (int i = 0; i < count; i++) {
-        const soft_vertex *here = &in[i], *next = &in[i + 1 < count ? i + 1 : 0];
-        int inside = distance(state, here, plane) >= 0, next_inside = distance(state, next, plane) >= 0;
+        const corner *here = &in[i], *next = &in[i + 1 < count ? i + 1 : 0];
+        int next_inside = distance(state, next, plane) >= 0;
         if (inside) out[kept++] = *here;
         if (inside && !next_inside) cut(state, plane, here, next, &out[kept++]);
         if (!inside && next_inside) cut(state, plane, next, here, &out[kept++]);
+        inside = next_inside;
     }
     return kept;
+}
+
+/* Bits that some corner has; *all: that all have. */
+static uint32_t out_of(const corner *in, int count, uint32_t *all)
+{
+    uint32_t some = *all = in[0].at.out;
+    for (int i = 1; i < count; i++) {
+        some |= in[i].at.out;
+        *all &= in[i].at.out;
+    }
+    return some;
+}
+
+/* Which planes the corners may be beyond: what is behind the near plane is known to lie beyond that one only. */
+static int beyond(uint32_t out, int plane)
+{
+    return (out & (plane == NEAR_PLANE ? SOFT_NEAR : plane == FAR_PLANE ? SOFT_FAR : SOFT_GUARD)) != 0;
 }
 
 static int64_t area_of(const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
@@ -62,38 +95,51 @@ static int64_t area_of(const soft_vertex *a, const soft_vertex *b, const soft_ve
 }
 
 /* A fan from the first corner. Rounding may fold a flat corner over: what turns the other way than most of it is left out. */
-static void draw_fan(soft_state *state, const soft_vertex *corner, int count)
+static void draw_fan(soft_state *state, const corner *in, int count)
 {
     int64_t all = 0;
-    for (int i = 2; i < count; i++) all += area_of(&corner[0], &corner[i - 1], &corner[i]);
+    for (int i = 2; i < count; i++) all += area_of(&in[0].at, &in[i - 1].at, &in[i].at);
     for (int i = 2; i < count; i++) {
-        int64_t area = area_of(&corner[0], &corner[i - 1], &corner[i]);
-        if (all > 0 ? area > 0 : area < 0) soft_triangle(state, &corner[0], &corner[i - 1], &corner[i]);
+        int64_t area = area_of(&in[0].at, &in[i - 1].at, &in[i].at);
+        if (all > 0 ? area > 0 : area < 0) soft_triangle(state, &in[0].at, &in[i - 1].at, &in[i].at);
     }
 }
 
 void soft_clip(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
 {
-    soft_vertex corner[2][CORNERS_MAX] = {{*a, *b, *c}};
-    int count = 3, from = 0;
-    for (int plane = 0; plane < PLANES && count >= 3; plane++, from ^= 1)
-        count = clip_plane(state, plane, corner[from], count, corner[from ^ 1]);
-    if (count >= 3) draw_fan(state, corner[from], count);
+    corner corners[2][CORNERS_MAX], *now = corners[0], *then = corners[1];
+    int count = 3;
+    uint32_t all, some = a->out | b->out | c->out;
+    take(state, a, &now[0]);
+    take(state, b, &now[1]);
+    take(state, c, &now[2]);
+    for (int plane = 0; plane < PLANES; plane++) {
+        if (!beyond(some, plane)) continue;
+        count = clip_plane(state, plane, now, count, then);
+        if (count < 3) return;
+        some = out_of(then, count, &all);
+        if (all) return; /* beside the screen */
+        corner *swap = now;
+        now = then;
+        then = swap;
+    }
+    draw_fan(state, now, count);
 }
 
-int soft_clip_line(soft_state *state, soft_vertex *a, soft_vertex *b)
+int soft_clip_line(const soft_state *state, const soft_vertex *a, const soft_vertex *b, soft_vertex cut_line[2])
 {
+    corner end[2], new;
+    take(state, a, &end[0]);
+    take(state, b, &end[1]);
     for (int plane = 0; plane < PLANES; plane++) {
-        int a_inside = distance(state, a, plane) >= 0, b_inside = distance(state, b, plane) >= 0;
-        soft_vertex at = *a;
-        if (!a_inside && !b_inside) return 0;
-        if (a_inside && !b_inside) {
-            cut(state, plane, a, b, &at);
-            *b = at;
-        } else if (!a_inside && b_inside) {
-            cut(state, plane, b, a, &at);
-            *a = at;
-        }
+        if (!beyond(end[0].at.out | end[1].at.out, plane)) continue;
+        int inside[2] = {distance(state, &end[0], plane) >= 0, distance(state, &end[1], plane) >= 0};
+        if (!inside[0] && !inside[1]) return 0;
+        if (inside[0] && inside[1]) continue;
+        cut(state, plane, &end[inside[0]? 0 : 1], &end[inside[0] ? 1 : 0], &new);
+        end[inside[0] ? 1 : 0] = new;
     }
+    cut_line[0] = end[0].at;
+    cut_line[1] = end[1].at;
     return 1;
 }

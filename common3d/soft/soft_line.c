@@ -40,9 +40,12 @@ void soft_lines(soft_state *state, const uint16_t *indices, uint32_t count)
 {
     state->top_row = 0;
     for (uint32_t i = 0; i + 1 < count; i += 2) {
-        soft_vertex a = state->vertices[indices[i]], b = state->vertices[indices[i + 1]];
-        if (a.out & b.out) continue;
-        if (((a.out | b.out) & SOFT_MUST_CLIP) && !soft_clip_line(state, &a, &b)) continue;
-        draw_line(state, &a, &b);
+        const soft_vertex *a = &state->vertices[indices[i]], *b = &state->vertices[indices[i + 1]];
+        soft_vertex cut[2];
+        if (a->out & b->out) continue;
+        if (!((a->out | b->out) & SOFT_MUST_CLIP))
+            draw_line(state, a, b);
+        else if (soft_clip_line(state, a, b, cut))
+            draw_line(state, &cut[0], &cut[1]);
     }
 }

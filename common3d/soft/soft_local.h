@@ -18,13 +18,12 @@ enum { SOFT_LEFT = 1, SOFT_RIGHT = 2, SOFT_ABOVE = 4, SOFT_BELOW = 8, SOFT_NEAR 
 #define SOFT_MUST_CLIP (SOFT_NEAR | SOFT_FAR | SOFT_GUARD)
 
 typedef struct soft_vertex {
-    int32_t x, y;        /* pixels, Q4 */
-    uint32_t w;          /* near/z, Q30 */
+    int32_t x, y;        /* pixels, Q4; undefined where `out` says near */
+    uint32_t w;          /* near/z, Q30; below 2^30 */
     int32_t s, t;        /* texels less one half, Q16; below 2^28 */
+    uint32_t out;
     int32_t fog_q8;      /* 256: clear, 0: all fog; beyond both ends within +-2^14 */
     uint8_t rgba[4];
-    uint32_t out;
-    int32_t eye[3];
 } soft_vertex;
 
 typedef struct soft_texture {
@@ -56,18 +55,26 @@ typedef struct soft_segment {
     int32_t value[SOFT_ATTRIBUTES], step[SOFT_ATTRIBUTES];
 } soft_segment;
 
-/* From vertices to eye space, for one draw. World units: 2^shift to a wu; eye units are twice as long. */
+/* From vertices to eye space, for one draw. World units: 2^shift to a wu; eye units are two of them. */
 typedef struct soft_space {
     int shift;
+    uint8_t near;                /* 32 bits do: the next four are valid */
+    int32_t origin[3], scale;    /* world units */
     int64_t origin_wu[3];
     int32_t scale_wu;
-    uint32_t z_scale_q16;
-    int32_t near_origin[2], near_scale; /* x and y in world units; scale 0: not in 32 bits */
-    int64_t near_z;              /* wu, Q16 */
+    uint32_t z_scale_q16;        /* wu */
     int32_t near_eye, far_eye;
-    int32_t near_norm;           /* near plane, shifted into bits 30.. */
-    int near_shift;              /* by so much in eye units */
+    uint32_t near_norm;          /* near plane, shifted into bit 31, */
+    int near_shift;              /* and how far 1/z of a z in bit 30 is shifted to be near/z in Q30 */
 } soft_space;
+
+/* From eye space to the screen, for one frame. */
+typedef struct soft_view {
+    int32_t row[3][3];           /* right and up times the focal distance, forward times 2: Q30, see soft_transform.c */
+    int focal_shift;             /* the focal distance times 2^focal_shift is that of the rows, Q30 */
+    int32_t centre[2];           /* Q4, twice */
+    int32_t right_q4, below_q4;  /* last pixel centres */
+} soft_view;
 
 typedef struct soft_deferred {
     c3d_draw draw;
@@ -98,12 +105,8 @@ struct soft_state {
     int32_t top_row;             /* no depth was marked in rows above it; whatever paints a triangle keeps it */
     int32_t open_rows;           /* while backdrops fill: nothing covers the rows above this one */
     c3d_frame frame;
-    c3d_rotation rotation;       /* Q31 */
-    int32_t centre_x, centre_y;  /* Q4 */
-    int32_t focal_norm;          /* focal_q8 shifted into bits 30.. */
-    int focal_shift;
+    soft_view view;
     int frame_shift;             /* soft_space.shift of ordinary draws */
-    int32_t right_q4, below_q4;  /* last pixel centres */
 
     /* the draw */
     soft_paint paint;
@@ -137,6 +140,13 @@ static inline uint32_t soft_fine_reciprocal(const soft_state *state, uint32_t n)
     return (uint32_t)(((uint64_t)r * ((UINT32_C(1) << 30) - error)) >> 29);
 }
 
+/* For inner loops, which are worth their size. */
+#if defined(__GNUC__)
+#define SOFT_INLINE inline __attribute__((always_inline))
+#else
+#define SOFT_INLINE inline
+#endif
+
 static inline int soft_leading_zeros(uint32_t n) /* n > 0 */
 {
 #if defined(__GNUC__)
@@ -160,14 +170,16 @@ void soft_texture_free(void *state, uint32_t texture);
 void soft_sample(const soft_texture *texture, int32_t s, int32_t t, int32_t rgba[4]);
 
 /* soft_transform.c */
-void soft_begin_space(soft_state *state, const c3d_resolved_draw *resolved);
+void soft_begin_view(soft_state *state, const c3d_rotation *rotation); /* for a frame; width and height are known */
 void soft_transform(soft_state *state, const c3d_resolved_draw *resolved);
-void soft_project(const soft_state *state, soft_vertex *vertex); /* x, y, w and out from eye */
+/* Where a vertex of the mesh transformed last lies; and x, y, w and out of any place. */
+void soft_eye(const soft_state *state, const soft_vertex *vertex, int32_t eye[3]);
+void soft_project(const soft_state *state, const int32_t eye[3], soft_vertex *vertex);
 
-/* soft_clip.c: cuts the triangle at the planes and draws what is left. */
+/* soft_clip.c, for vertices of the mesh transformed last: cuts the triangle at the planes and draws what is left. */
 void soft_clip(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c);
-/* Cuts a line; 0 when nothing is left. */
-int soft_clip_line(soft_state *state, soft_vertex *a, soft_vertex *b);
+/* Cuts a line; 0 when nothing is left of it. */
+int soft_clip_line(const soft_state *state, const soft_vertex *a, const soft_vertex *b, soft_vertex cut[2]);
 
 /* soft_triangle.c */
 void soft_strip(soft_state *state, const uint16_t *indices, uint32_t count);

@@ -1,14 +1,41 @@
 /* From vertices to the screen, once for each vertex of a mesh.
  *
- * World units: 2^shift to a wu, chosen so that every coordinate relative to the camera stays below 2^30. Rotation: three products of
- * 31 + 30 bits, their sum below 2^62, of which the upper word is kept: eye units are 2 world units and stay below 2^29 * sqrt 3.
- * Projection: 1/z as a 31-bit mantissa r and an exponent, so that x * focal/z is one product of 30 and 31 bits. */
+ * World units: 2^shift to a wu, chosen so that every coordinate relative to the camera stays below 2^30; a vertex's place is exact in
+ * them (its height rounded down), so that meshes that share it get the same, whatever their origins.
+ * Rotation: three products of 30 + 31 bits, of which the upper word is kept. The rows have at most the length 2^31, so sums stay
+ * below 2^62 and eye coordinates below 2^29 * sqrt 3. The row of depth is the forward direction: eye units are 2 world units. Those
+ * of x and y are multiplied with the focal distance beforehand.
+ * Projection: 1/z as a mantissa r of 30 bits and an exponent, so that x/z is one product of which again the upper word is kept. */
 #include "soft_local.h"
 
 #include <string.h>
 
 #define WORLD_MAX ((int64_t)1 << 30)
-#define W_MAX ((1u << 30) - 1) /* near/z in Q30: at the near plane rounding, and ON_TOP anywhere near, would pass it */
+#define W_MIN 16 /* of what is drawn; less means that nothing was */
+#define W_ERROR_LOG2 18 /* 1/z is within 2^-19 of itself */
+
+void soft_begin_view(soft_state *state, const c3d_rotation *rotation)
+{
+    const c3d_camera *camera = &state->frame.camera;
+    soft_view *view = &state->view;
+    int lead = soft_leading_zeros((uint32_t)camera->focal_q8) - 1;
+    int64_t focal_norm = (int64_t)camera->focal_q8 << lead; /* below 2^31: times a row of 2^30 at most, Q31 */
+    view->focal_shift = lead;
+    for (int i = 0; i < 3; i++) {
+        view->row[0][i] = (int32_t)((rotation->m[0][i] * focal_norm) >> 30);
+        view->row[1][i] = (int32_t)((rotation->m[1][i] * focal_norm) >> 30);
+        int64_t forward = 2 * (int64_t)rotation->m[2][i];
+        view->row[2][i] = (int32_t)(forward > INT32_MAX ? INT32_MAX : forward < -INT32_MAX ? -INT32_MAX : forward);
+    }
+    view->centre[0] = state->width * SOFT_ONE;
+    view->centre[1] = state->height * SOFT_ONE;
+    view->right_q4 = state->width * SOFT_ONE - SOFT_HALF;
+    view->below_q4 = state->height * SOFT_ONE - SOFT_HALF;
+    state->frame_shift = 14; /* the far plane below 2^29 world units */
+    while (soft_scale64(camera->far_wu, state->frame_shift) >= 1 << 29) state->frame_shift--;
+}
+
+/* ---- the space of a draw ---- */
 
 /* Largest offset of a vertex from the camera along any axis, wu. */
 static int64_t reach_wu(const c3d_resolved_draw *resolved)
@@ -25,7 +52,32 @@ static int64_t reach_wu(const c3d_resolved_draw *resolved)
     return most;
 }
 
-void soft_begin_space(soft_state *state, const c3d_resolved_draw *resolved)
+static int fits(int64_t value) { return value <= INT32_MAX && value >= -INT32_MAX; }
+
+/* Places in 32 bits, where a unit is at most a wu: what WORLD_MAX bounds, and so every term of it. */
+static void set_near_places(soft_space *space)
+{
+    int64_t scale = soft_scale64(space->scale_wu, space->shift);
+    space->near = space->shift >= 0 && fits(scale) && space->z_scale_q16 <= INT32_MAX;
+    if (!space->near) return;
+    for (int i = 0; i < 3; i++) space->origin[i] = (int32_t)soft_scale64(space->origin_wu[i], space->shift);
+    space->scale = (int32_t)scale;
+}
+
+/* The near plane in eye units, rounded up so that near/z never exceeds 1; and near/z as a product of mantissas: see soft_project. */
+static void set_planes(soft_space *space, int32_t near_wu, int32_t far_wu)
+{
+    int64_t near_eye = -soft_scale64(-(int64_t)near_wu, space->shift - 1), far_eye = soft_scale64(far_wu, space->shift - 1);
+    int lead = soft_leading_zeros((uint32_t)near_wu);
+    space->near_eye = near_eye > INT32_MAX ? INT32_MAX : (int32_t)near_eye;
+    space->far_eye = far_eye > INT32_MAX ? INT32_MAX : (int32_t)far_eye;
+    space->near_norm = (uint32_t)near_wu << lead;
+    space->near_norm -= space->near_norm >> W_ERROR_LOG2;
+    space->near_shift = lead - space->shift;
+    for (; space->near_shift > 31; space->near_shift--) space->near_norm >>= 1; /* shifts of 32 bits do */
+}
+
+static void begin_space(soft_state *state, const c3d_resolved_draw *resolved)
 {
     const c3d_draw *draw = resolved->draw;
     soft_space *space = &state->space;
@@ -38,85 +90,150 @@ void soft_begin_space(soft_state *state, const c3d_resolved_draw *resolved)
     memcpy(space->origin_wu, draw->origin_wu, sizeof space->origin_wu);
     space->scale_wu = draw->xy_scale_wu;
     space->z_scale_q16 = draw->z_scale_q16;
-    int64_t near_scale = soft_scale64(draw->xy_scale_wu, space->shift);
-    int near = space->shift >= 0 && near_scale < WORLD_MAX && near_scale > -WORLD_MAX;
-    space->near_scale = near ? (int32_t)near_scale : 0;
-    for (int i = 0; near && i < 2; i++) space->near_origin[i] = (int32_t)soft_scale64(draw->origin_wu[i], space->shift);
-    space->near_z = draw->origin_wu[2] * 65536;
-    int64_t near_eye = soft_scale64(near_wu, space->shift - 1), far_eye = soft_scale64(state->frame.camera.far_wu, space->shift - 1);
-    int leading = soft_leading_zeros((uint32_t)near_wu) - 1;
-    space->near_norm = near_wu << leading;
-    space->near_shift = leading - (space->shift - 1);
-    space->near_eye = near_eye < 1 ? 1 : (int32_t)near_eye;
-    space->far_eye = backdrop || far_eye > INT32_MAX ? INT32_MAX : (int32_t)far_eye;
+    set_near_places(space);
+    set_planes(space, near_wu, state->frame.camera.far_wu);
+    if (backdrop) space->far_eye = INT32_MAX;
 }
 
-/* a * b / 2^shift, rounded, within +-(SOFT_GUARD_Q4); shift 2 .. 62. */
-static inline int32_t multiply_shift(int32_t a, int32_t b, int shift)
+/* ---- eye space ---- */
+
+static SOFT_INLINE int32_t along(const int32_t row[3], int32_t x, int32_t y, int32_t z)
 {
-    int64_t product = (int64_t)a * b;
-    int64_t twice = shift > 32 ? (int32_t)(product >> 32) >> (shift - 33) : product >> (shift - 1);
-    twice = twice > 2 * SOFT_GUARD_Q4 ? 2 * SOFT_GUARD_Q4 : twice < -2 * SOFT_GUARD_Q4 ? -2 * SOFT_GUARD_Q4 : twice;
-    return ((int32_t)twice + 1) >> 1;
+    return (int32_t)(((int64_t)row[0] * x + (int64_t)row[1] * y + (int64_t)row[2] * z) >> 32);
 }
 
-static inline int out_of_guard(int32_t at) { return (uint32_t)(at + SOFT_GUARD_Q4 - 1) > 2 * SOFT_GUARD_Q4 - 2; }
-
-static inline void project_xy(const soft_state *state, soft_vertex *vertex, int32_t reciprocal_focal, int shift)
+static SOFT_INLINE void rotate(const soft_view *view, int32_t x, int32_t y, int32_t z, int32_t eye[3])
 {
-    int32_t x = multiply_shift(vertex->eye[0], reciprocal_focal, shift), y = -multiply_shift(vertex->eye[1], reciprocal_focal, shift);
-    uint32_t out = vertex->out;
-    if (out_of_guard(x) || out_of_guard(y)) out |= SOFT_GUARD;
-    vertex->x = x += state->centre_x;
-    vertex->y = y += state->centre_y;
-    if (x <= SOFT_HALF) out |= SOFT_LEFT;
-    if (x > state->right_q4) out |= SOFT_RIGHT;
-    if (y <= SOFT_HALF) out |= SOFT_ABOVE;
-    if (y > state->below_q4) out |= SOFT_BELOW;
-    vertex->out = out;
+    eye[0] = along(view->row[0], x, y, z);
+    eye[1] = along(view->row[1], x, y, z);
+    eye[2] = along(view->row[2], x, y, z);
 }
 
-/* z = zn / 2^lead with zn in 2^30 .. 2^31; r = 2^61/zn. p = r * focal_norm / 2^31 < 2^31, and x * focal * 16/z is
- * x * p / 2^(34 + focal_shift - lead): |x| < 2^30 keeps the product below 2^61. */
-void soft_project(const soft_state *state, soft_vertex *vertex)
+static SOFT_INLINE void eye_near(const soft_space *space, const soft_view *view, const c3d_vertex *in, int32_t eye[3])
 {
-    const soft_space *space = &state->space;
-    int32_t z = vertex->eye[2];
-    vertex->out = 0;
+    int64_t height = (int64_t)(int32_t)space->z_scale_q16 * in->z;
+    int down = 16 - space->shift; /* 2 .. 16 */
+    uint32_t z = (uint32_t)height >> down | (uint32_t)(height >> 32) << (32 - down);
+    rotate(view, space->origin[0] + in->x * space->scale, space->origin[1] + in->y * space->scale, space->origin[2] + (int32_t)z, eye);
+}
+
+/* The same place where 32 bits do not suffice on the way to it. */
+static void eye_far(const soft_space *space, const soft_view *view, const c3d_vertex *in, int32_t eye[3])
+{
+    rotate(view, (int32_t)soft_scale64(space->origin_wu[0] + (int64_t)in->x * space->scale_wu, space->shift),
+           (int32_t)soft_scale64(space->origin_wu[1] + (int64_t)in->y * space->scale_wu, space->shift),
+           (int32_t)soft_scale64(space->origin_wu[2] * 65536 + (int64_t)in->z * space->z_scale_q16, space->shift - 16), eye);
+}
+
+void soft_eye(const soft_state *state, const soft_vertex *vertex, int32_t eye[3])
+{
+    const c3d_vertex *in = &state->cached_mesh[vertex - state->vertices];
+    (state->space.near ? eye_near : eye_far)(&state->space, &state->view, in, eye);
+}
+
+/* ---- the screen ---- */
+
+/* 2^60/n within 2^-19 of it; n in 2^30 .. 2^31 - 1. */
+static SOFT_INLINE int32_t reciprocal(const uint32_t table[512], uint32_t n)
+{
+    uint32_t r = table[n >> 21 ^ 512];
+    uint32_t error = (uint32_t)(((uint64_t)n * r) >> 32); /* 2^29 when exact */
+    return (int32_t)(((uint64_t)r * ~(error << 2)) >> 32);
+}
+
+/* Of a vertex beside the screen along one axis. */
+static inline uint32_t beside(int32_t at, int32_t centre2, uint32_t low, uint32_t high)
+{
+    int32_t away = at - (centre2 >> 1);
+    uint32_t guard = away >= SOFT_GUARD_Q4 || away <= -SOFT_GUARD_Q4 ? SOFT_GUARD : 0;
+    return guard | (at <= SOFT_HALF ? low : high);
+}
+
+/* Twice x/z on the screen, Q4: x * r * 2^(lead - focal_shift - 32) with z = n / 2^lead and r = 2^60/n. |x * r| < 2^60. */
+static inline int32_t twice_on_screen(int32_t x, int32_t r, int shift)
+{
+    int64_t product = (int64_t)x * r;
+    if (shift >= 0) return (int32_t)(product >> 32) >> shift;
+    product >>= 32 + shift; /* nearer than a metre or so */
+    return (int32_t)(product > 1 << 28 ? 1 << 28 : product < -(1 << 28) ? -(1 << 28) : product);
+}
+
+/* near/z: near_norm * r * 2^(lead - near_shift - 31), a product below 2^62; rows of pixels and columns. */
+static SOFT_INLINE void project(const soft_space *space, const soft_view *view, const uint32_t table[512], const int32_t eye[3], soft_vertex *vertex)
+{
+    int32_t z = eye[2];
     if (z < space->near_eye) {
         vertex->out = SOFT_NEAR;
         vertex->y = INT32_MIN; /* in no row of those in front */
         return;
     }
-    if (z > space->far_eye) vertex->out = SOFT_FAR;
-    int lead = soft_leading_zeros((uint32_t)z) - 1;
-    uint32_t r = soft_reciprocal(state, (uint32_t)z << lead);
-    uint32_t p = (uint32_t)(((uint64_t)r * (uint32_t)state->focal_norm) >> 31);
-    int shift = 34 + state->focal_shift - lead, w_shift = space->near_shift - lead;
-    uint32_t w = (uint32_t)(((uint64_t)r * (uint32_t)space->near_norm) >> 31);
-    w = w_shift <= 0 ? w : w_shift > 30 ? 0 : w >> w_shift;
-    if (state->paint.on_top) w += w >> 6;
-    vertex->w = w < 16 ? 16 : w > W_MAX ? W_MAX : w;
-    project_xy(state, vertex, (int32_t)(p > INT32_MAX ? INT32_MAX : p), shift);
+    int lead = soft_leading_zeros((uint32_t)z) - 1, shift = view->focal_shift - lead;
+    int32_t r = reciprocal(table, (uint32_t)z << lead);
+    uint32_t out = z > space->far_eye ? SOFT_FAR : 0;
+    int32_t x = (view->centre[0] + 1 + twice_on_screen(eye[0], r, shift)) >> 1;
+    int32_t y = (view->centre[1] - twice_on_screen(eye[1], r, shift)) >> 1;
+    uint32_t w = (uint32_t)(((uint64_t)space->near_norm * (uint32_t)r) >> 32) << 1 >> (space->near_shift - lead);
+    vertex->w = w < W_MIN ? W_MIN : w;
+    vertex->x = x;
+    vertex->y = y;
+    if ((uint32_t)(x - SOFT_HALF - 1) >= (uint32_t)(view->right_q4 - SOFT_HALF)) out |= beside(x, view->centre[0], SOFT_LEFT, SOFT_RIGHT);
+    if ((uint32_t)(y - SOFT_HALF - 1) >= (uint32_t)(view->below_q4 - SOFT_HALF)) out |= beside(y, view->centre[1], SOFT_ABOVE, SOFT_BELOW);
+    vertex->out = out;
 }
 
-static void rotate(const soft_state *state, const int32_t world[3], int32_t eye[3])
+/* Nearer by 1/64. */
+static void put_on_top(soft_vertex *vertex)
 {
-    for (int row = 0; row < 3; row++) {
-        const int32_t *m = state->rotation.m[row];
-        eye[row] = (int32_t)(((int64_t)m[0] * world[0] + (int64_t)m[1] * world[1] + (int64_t)m[2] * world[2]) >> 32);
+    uint32_t w = vertex->w + (vertex->w >> 6), most = (UINT32_C(1) << 30) - 1;
+    vertex->w = w > most ? most : w;
+}
+
+void soft_project(const soft_state *state, const int32_t eye[3], soft_vertex *vertex)
+{
+    project(&state->space, &state->view, state->reciprocal, eye, vertex);
+    if (state->paint.on_top) put_on_top(vertex);
+}
+
+static void transform_near(soft_state *state, const c3d_mesh_data *mesh)
+{
+    const soft_space space = state->space;
+    const soft_view view = state->view;
+    const uint32_t *table = state->reciprocal;
+    const c3d_vertex *in = mesh->vertices, *end = in + mesh->count;
+    for (soft_vertex *vertex = state->vertices; in < end; in++, vertex++) {
+        int32_t eye[3];
+        eye_near(&space, &view, in, eye);
+        project(&space, &view, table, eye, vertex);
     }
 }
 
+static void transform_far(soft_state *state, const c3d_mesh_data *mesh)
+{
+    for (uint32_t i = 0; i < mesh->count; i++) {
+        int32_t eye[3];
+        eye_far(&state->space, &state->view, &mesh->vertices[i], eye);
+        project(&state->space, &state->view, state->reciprocal, eye, &state->vertices[i]);
+    }
+}
+
+/* ---- textures, colours, fog ---- */
+
 /* s or t: (at * scale + offset) >> shift, texels Q16. */
 typedef struct texel_axis {
+    int64_t offset;
     int32_t scale;
     int shift, axis;
-    int64_t offset;
-    int32_t high; /* of the texture with half a texel of its rim */
+    uint8_t wide;  /* 32 bits do not suffice, or it goes beyond what a vertex can hold */
 } texel_axis;
 
-static void make_axis(const soft_state *state, const c3d_draw *draw, int i, texel_axis *axis)
+static int32_t texel_q16(const texel_axis *axis, int32_t at)
+{
+    int64_t texels = (at * (int64_t)axis->scale + axis->offset) >> axis->shift, limit = ((int64_t)1 << 28) - 1;
+    return (int32_t)(texels > limit ? limit : texels < -limit ? -limit : texels);
+}
+
+/* What the mesh's least and greatest coordinate give is the range of all. */
+static void make_axis(soft_state *state, const c3d_draw *draw, const c3d_mesh_data *mesh, int i, texel_axis *axis)
 {
     int size_log2 = i ? state->paint.texture->height_log2 : state->paint.texture->width_log2;
     int64_t scale = draw->tex_scale_q16[i] * ((int64_t)1 << size_log2);
@@ -126,69 +243,45 @@ static void make_axis(const soft_state *state, const c3d_draw *draw, int i, texe
     axis->shift = draw->tex_shift;
     axis->axis = state->paint.axis[i];
     axis->offset = offset * ((int64_t)1 << axis->shift) - (int64_t)draw->tex_origin[i] * axis->scale;
-    axis->high = (1 << (size_log2 + 16)) - 32768;
+    axis->wide = 0;
+    for (int end = 0; end < 2; end++) {
+        int32_t at = end ? mesh->most[axis->axis] : mesh->least[axis->axis], texels = texel_q16(axis, at);
+        int64_t exact = at * (int64_t)axis->scale + axis->offset;
+        axis->wide |= !fits(exact) || exact >> axis->shift != texels;
+        state->off_texture |= texels < -32768 || texels > (1 << (size_log2 + 16)) - 32768; /* the texture with half of its rim */
+    }
 }
 
-static inline int32_t texel_q16(const texel_axis *axis, const int16_t at[3])
+static inline int32_t coordinate(const c3d_vertex *in, int axis) { return axis == 0 ? in->x : axis == 1 ? in->y : in->z; }
+
+/* 32 bits wrap on the way to what fits them. */
+static inline int32_t texel_narrow(int32_t at, uint32_t scale, uint32_t offset, int shift)
 {
-    int64_t texels = ((int64_t)at[axis->axis] * axis->scale + axis->offset) >> axis->shift;
-    int64_t limit = ((int64_t)1 << 28) - 1;
-    return (int32_t)(texels > limit ? limit : texels < -limit ? -limit : texels);
+    return (int32_t)((uint32_t)at * scale + offset) >> shift;
 }
 
-/* Fog is linear between its start and end. */
-static int32_t fog_q8(const soft_state *state, int32_t z_eye)
+static void texture_plane(soft_vertex *vertex, const c3d_mesh_data *mesh, const texel_axis *s, const texel_axis *t)
 {
-    const c3d_frame *frame = &state->frame;
-    int64_t z_wu = soft_scale64(z_eye, 1 - state->space.shift), length = (int64_t)frame->fog_end_wu - frame->fog_start_wu;
-    int64_t clear = ((int64_t)frame->fog_end_wu - z_wu) * 256 / (length > 0 ? length : 1);
-    return (int32_t)(clear > 1 << 14 ? 1 << 14 : clear < -(1 << 14) ? -(1 << 14) : clear);
-}
-
-/* Exact, and the same for every mesh that shares the point. */
-static void place_far(const soft_space *space, const c3d_vertex *in, int32_t world[3])
-{
-    world[0] = (int32_t)soft_scale64(space->origin_wu[0] + (int64_t)in->x * space->scale_wu, space->shift);
-    world[1] = (int32_t)soft_scale64(space->origin_wu[1] + (int64_t)in->y * space->scale_wu, space->shift);
-    world[2] = (int32_t)soft_scale64(space->origin_wu[2] * 65536 + (int64_t)in->z * space->z_scale_q16, space->shift - 16);
-}
-
-/* The same where a unit is at most a wu: sums of 32 bits do, for no vertex is out of reach. */
-static inline void place_near(const soft_space *space, const c3d_vertex *in, int32_t world[3])
-{
-    world[0] = space->near_origin[0] + in->x * space->near_scale;
-    world[1] = space->near_origin[1] + in->y * space->near_scale;
-    world[2] = (int32_t)((space->near_z + in->z * (int64_t)space->z_scale_q16) >> (16 - space->shift));
+    uint32_t s_scale = (uint32_t)s->scale, s_offset = (uint32_t)s->offset, t_scale = (uint32_t)t->scale, t_offset = (uint32_t)t->offset;
+    int shift = s->shift;
+    for (const c3d_vertex *in = mesh->vertices, *end = in + mesh->count; in < end; in++, vertex++) {
+        vertex->s = texel_narrow(in->x, s_scale, s_offset, shift);
+        vertex->t = texel_narrow(in->y, t_scale, t_offset, shift);
+    }
 }
 
 static void transform_textured(soft_state *state, const c3d_draw *draw, const c3d_mesh_data *mesh)
 {
     texel_axis s, t;
-    make_axis(state, draw, 0, &s);
-    make_axis(state, draw, 1, &t);
-    for (uint32_t i = 0; i < mesh->count; i++) {
-        soft_vertex *vertex = &state->vertices[i];
-        const c3d_vertex *in = &mesh->vertices[i];
-        const int16_t at[3] = {in->x, in->y, in->z};
-        vertex->s = texel_q16(&s, at);
-        vertex->t = texel_q16(&t, at);
-        if (vertex->s < -32768 || vertex->s > s.high || vertex->t < -32768 || vertex->t > t.high) state->off_texture = 1;
+    make_axis(state, draw, mesh, 0, &s);
+    make_axis(state, draw, mesh, 1, &t);
+    if (!s.wide && !t.wide && s.axis == 0 && t.axis == 1) {
+        texture_plane(state->vertices, mesh, &s, &t);
+        return;
     }
-}
-
-static void transform_places(soft_state *state, const c3d_mesh_data *mesh)
-{
-    const soft_space *space = &state->space;
-    int near = space->near_scale != 0;
     for (uint32_t i = 0; i < mesh->count; i++) {
-        int32_t world[3];
-        soft_vertex *vertex = &state->vertices[i];
-        if (near)
-            place_near(space, &mesh->vertices[i], world);
-        else
-            place_far(space, &mesh->vertices[i], world);
-        rotate(state, world, vertex->eye);
-        soft_project(state, vertex);
+        state->vertices[i].s = texel_q16(&s, coordinate(&mesh->vertices[i], s.axis));
+        state->vertices[i].t = texel_q16(&t, coordinate(&mesh->vertices[i], t.axis));
     }
 }
 
@@ -197,6 +290,22 @@ static void transform_colours(soft_state *state, const c3d_draw *draw, const c3d
     for (uint32_t i = 0; i < mesh->count; i++)
         for (int c = 0; c < 4; c++)
             state->vertices[i].rgba[c] = state->paint.coloured ? mesh->vertices[i].rgba[c] : (uint8_t)(draw->colour >> (8 * c));
+}
+
+/* Fog is linear between its start and end. */
+static void transform_fog(soft_state *state, uint32_t count)
+{
+    const c3d_frame *frame = &state->frame;
+    int64_t length = (int64_t)frame->fog_end_wu - frame->fog_start_wu;
+    if (length < 1) length = 1;
+    int64_t per_wu_q24 = ((int64_t)1 << 32) / length, most = 64 * length;
+    for (uint32_t i = 0; i < count; i++) {
+        int32_t eye[3];
+        soft_eye(state, &state->vertices[i], eye);
+        int64_t clear = frame->fog_end_wu - soft_scale64(eye[2], 1 - state->space.shift);
+        clear = clear > most ? most : clear < -most ? -most : clear;
+        state->vertices[i].fog_q8 = (int32_t)((clear * per_wu_q24) >> 24);
+    }
 }
 
 static int same_vertices(const c3d_draw *a, const c3d_draw *b)
@@ -212,14 +321,15 @@ static int same_vertices(const c3d_draw *a, const c3d_draw *b)
 void soft_transform(soft_state *state, const c3d_resolved_draw *resolved)
 {
     const c3d_draw *draw = resolved->draw;
-    if (state->cached_mesh == resolved->mesh->vertices && same_vertices(&state->cached, draw)) return;
+    const c3d_mesh_data *mesh = resolved->mesh;
+    if (state->cached_mesh == mesh->vertices && same_vertices(&state->cached, draw)) return;
     state->cached = *draw;
-    state->cached_mesh = resolved->mesh->vertices;
-    soft_begin_space(state, resolved);
+    state->cached_mesh = mesh->vertices;
+    begin_space(state, resolved);
     state->off_texture = 0;
-    transform_places(state, resolved->mesh);
-    if (state->paint.texture) transform_textured(state, draw, resolved->mesh);
-    if (!state->paint.texture || !state->paint.white || state->paint.fog) transform_colours(state, draw, resolved->mesh);
-    for (uint32_t i = 0; state->paint.fog && i < resolved->mesh->count; i++)
-        state->vertices[i].fog_q8 = fog_q8(state, state->vertices[i].eye[2]);
+    (state->space.near ? transform_near : transform_far)(state, mesh);
+    for (uint32_t i = 0; state->paint.on_top && i < mesh->count; i++) put_on_top(&state->vertices[i]);
+    if (state->paint.texture) transform_textured(state, draw, mesh);
+    if (!state->paint.texture || !state->paint.white || state->paint.fog) transform_colours(state, draw, mesh);
+    if (state->paint.fog) transform_fog(state, mesh->count);
 }
