@@ -44,7 +44,7 @@ LIBS := $(LIB)/libffsim.a $(LIB)/libffserver.a $(LIB)/libfftools.a $(LIB)/libffc
 LINK_LIBS = -Wl,--start-group $(LIBS) -Wl,--end-group $(LDLIBS_core) $(LDLIBS_surface) $(LDLIBS_host)
 
 .DEFAULT_GOAL := all
-.PHONY: all help null deps server emulator flyover demo test test-build check extremes soak man install uninstall clean lib fuzz FORCE
+.PHONY: all help null deps server emulator flyover demo test test-build check extremes numbers soak man install uninstall clean lib fuzz FORCE
 
 all: $(PROGRAMS) lib null ## build all programs and libraries into build/
 
@@ -130,6 +130,17 @@ check: all $(TESTS) ## quick subset: layer checks and unit tests, without saniti
 
 extremes: $(BUILD)/tests/test_extremes ## fly every stiff and extreme case and show the table of largest errors
 	@EXTREMES=$(BUILD)/extremes.md $< >$(BUILD)/extremes.log 2>&1; rc=$$?; cat $(BUILD)/extremes.md; exit $$rc
+
+# Undefined behaviour (overflow, shifts, division by zero, misaligned access) ends the run: no AddressSanitizer here, it has none of them.
+UBSAN := -O1 -g -fsanitize=undefined -fno-sanitize-recover=undefined
+NUMBERS := fixed reference join panorama_rules extremes
+numbers: ## the integers against the double-precision reference and the extreme cases, an overflow anywhere ends it (VIEWS=1000000)
+	@$(MAKE) -s BUILD=build/ubsan OPT="$(UBSAN)" $(NUMBERS:%=build/ubsan/tests/test_%)
+	@for t in $(NUMBERS); do \
+	    EXTREMES=build/ubsan/extremes.md $(if $(VIEWS),VIEWS=$(VIEWS)) build/ubsan/tests/test_$$t >build/ubsan/$$t.log 2>&1 || \
+	        { tail -n 20 build/ubsan/$$t.log; echo "numbers: test_$$t failed" >&2; exit 1; }; \
+	    grep '^# ' build/ubsan/$$t.log; \
+	done; cat build/ubsan/extremes.md
 
 # PACKS="a.ffp b.ffp": instead of three small ones; SEEDS=0: until interrupted; SOAK: more options of tests/soak.py
 SEEDS ?= 100

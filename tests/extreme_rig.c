@@ -8,10 +8,11 @@
 #include <string.h>
 
 #define M FF_WU_PER_METRE
-#define MEMORY_BYTES (2u << 20)
+#define MEMORY_BYTES (4u << 20)
 #define AUDIT_STEP_PX 8
 #define CALM_FRAMES 40
 #define SETTLED_FRAMES 10
+#define TIMED_EVERY 3 /* frames; prime to the periods in the cases */
 
 uint16_t extreme_cliffs(void *context, uint32_t x, uint32_t y)
 {
@@ -63,6 +64,13 @@ void extreme_start(extreme_rig *rig, const sim_link_desc *link)
         sim_stream_client(&rig->end, rig->link, &rig->now_us, &rig->stream);
         rig->desc.stream = &rig->stream;
     }
+    if (!rig->desc.backend) {
+        sys_surface_desc surface = {"extremes", rig->desc.width, rig->desc.height, SYS_GL_DESKTOP};
+        rig->desc.backend = c3d_backend_soft();
+        rig->desc.surface_api = sys_surface_memory();
+        if (rig->desc.surface_api->open(&surface, &rig->surface) != FF_OK)
+            abort();
+    }
     int rc = ff_client_create(&rig->desc, &rig->client);
     if (!extreme_row_expect(rig->row, rc == FF_OK, "the client could not be made"))
         abort();
@@ -75,6 +83,7 @@ void extreme_close(extreme_rig *rig)
     rig->row->work.selects += stats.tree.selects;
     rig->row->work.requests += stats.requests_sent;
     rig->row->work.bytes += stats.bytes_down;
+    extreme_row_expect(rig->row, stats.c3d.stale_handles == 0, "stale handles drawn");
     ff_client_destroy(rig->client);
     if (rig->link) {
         sim_server_free(&rig->server);
@@ -112,16 +121,79 @@ static void check_whole(extreme_rig *rig)
         extreme_row_expect(rig->row, 0, why);
 }
 
+/* The client's own part of a frame; 1 when the picture changed. */
+static int client_frame(extreme_rig *rig, int draw)
+{
+    int changed = ff_client_update(rig->client, rig->now_us, &rig->camera);
+    if (changed && draw)
+        ff_client_draw(rig->client);
+    return changed;
+}
+
+/* ---- the ordinary case ---- */
+
+static extreme_rig *ordinary; /* made when first needed */
+static extreme_row ordinary_row;
+
+static void ordinary_open(void)
+{
+    ordinary = malloc(sizeof *ordinary);
+    if (!ordinary)
+        abort();
+    extreme_open(ordinary, &ordinary_row, NULL, pack_fixture_hills);
+    ordinary->untimed = 1;
+    extreme_start(ordinary, NULL);
+    extreme_settle(ordinary, 33000, 600);
+}
+
+void extreme_ordinary_close(void)
+{
+    if (ordinary)
+        extreme_close(ordinary);
+    free(ordinary);
+    ordinary = NULL;
+}
+
+static void time_ordinary(extreme_cost *cost)
+{
+    if (!ordinary)
+        ordinary_open();
+    ordinary->camera.pos_wu[0] += cost->ordinary_times & 1 ? -M : M;
+    ordinary->now_us += 33000;
+    double begin_s = extreme_processor_s();
+    (void)ff_client_work(ordinary->client, ordinary->now_us);
+    cost->ordinary_times += (uint64_t)client_frame(ordinary, 1);
+    cost->ordinary_s += extreme_processor_s() - begin_s;
+}
+
+/* ---- frames of a case ---- */
+
+static void serve_link(extreme_rig *rig, int64_t until_us)
+{
+    rig->now_us = until_us - rig->now_us < rig->tick_us ? until_us : rig->now_us + rig->tick_us;
+    if (rig->link)
+        extreme_row_expect(rig->row, sim_server_step(&rig->server) == FF_OK, "the server has no memory");
+}
+
 int extreme_frame(extreme_rig *rig, int64_t step_us)
 {
     int64_t until_us = rig->now_us + step_us;
+    int timed = !rig->untimed && rig->row->work.frames % TIMED_EVERY == 0;
+    double own_s = 0, begin_s;
     do {
-        rig->now_us = until_us - rig->now_us < rig->tick_us ? until_us : rig->now_us + rig->tick_us;
-        if (rig->link)
-            extreme_row_expect(rig->row, sim_server_step(&rig->server) == FF_OK, "the server has no memory");
+        serve_link(rig, until_us);
+        begin_s = extreme_processor_s();
         (void)ff_client_work(rig->client, rig->now_us);
+        own_s += extreme_processor_s() - begin_s;
     } while (rig->now_us < until_us);
-    int changed = ff_client_update(rig->client, rig->now_us, &rig->camera);
+    begin_s = extreme_processor_s();
+    int changed = client_frame(rig, timed);
+    own_s += extreme_processor_s() - begin_s;
+    if (timed) {
+        rig->row->cost.own_s += own_s;
+        rig->row->cost.own_times += (uint64_t)changed;
+        time_ordinary(&rig->row->cost);
+    }
     ff_client_stats stats;
     ff_client_get_stats(rig->client, &stats);
     rig->row->work.frames++;

@@ -22,12 +22,13 @@ typedef struct extreme_rig {
     sim_stream end;
     sys_stream stream;
     sim_server server;
-    sys_surface *surface;
+    sys_surface *surface;      /* of desc.surface_api; without one nothing is drawn */
     void *memory;
     ff_client_desc desc;       /* may be changed between extreme_open and extreme_start */
     ff_client *client;
     c3d_camera camera;         /* 240 x 320, 60 degrees wide, 200 m above the middle, looking north and down a little */
     uint32_t changes;          /* frames that said: draw */
+    uint8_t untimed;           /* 1: the case takes its run time itself */
 } extreme_rig;
 
 /* Ground for pack_fixture: 0 or 65535 in blocks of eight samples, 120 everywhere. */
@@ -36,7 +37,7 @@ uint16_t extreme_flat(void *context, uint32_t x, uint32_t y);
 
 /* info 0: 2 by 2 tiles of 64 cells of 32 m. */
 void extreme_open(extreme_rig *rig, extreme_row *row, const ff_terrain_info *info, uint16_t (*height)(void *, uint32_t, uint32_t));
-/* Makes the client; `link` a description for sim_link_create, NULL: local. */
+/* Makes the client, which draws by integers unless a back end is set; `link` a description for sim_link_create, NULL: local. */
 void extreme_start(extreme_rig *rig, const sim_link_desc *link);
 /* Adds the work done to the row. */
 void extreme_close(extreme_rig *rig);
@@ -44,7 +45,7 @@ void extreme_close(extreme_rig *rig);
 double extreme_ground_m(const extreme_rig *rig, double x_m, double y_m);
 void extreme_place(extreme_rig *rig, double x_m, double y_m, double z_m);
 
-/* A frame step_us later. A crack, too many requests in flight or a protocol error fail the row. 1 when the picture changed. */
+/* A frame step_us later; every third is drawn and timed, an ordinary one with it. A crack, too many requests in flight or a protocol error fail the row. 1 when the picture changed. */
 int extreme_frame(extreme_rig *rig, int64_t step_us);
 /* Frames until nothing is out or queued for ten of them; fails the row after frames_max. */
 void extreme_settle(extreme_rig *rig, int64_t step_us, unsigned frames_max);
@@ -58,6 +59,8 @@ double extreme_audit(extreme_rig *rig);
 double extreme_error_bound(const c3d_camera *camera);
 /* All three: settle, audit into the row, calm. */
 void extreme_judge(extreme_rig *rig);
+/* At the end of all cases: gives back the ordinary one. */
+void extreme_ordinary_close(void);
 /* 1 when both show the same nodes and heights. */
 int extreme_same_picture(const extreme_rig *a, const extreme_rig *b);
 

@@ -105,6 +105,22 @@ static double error_near(const terrain_fixture *fx, const ff_view *view, sys_ran
     return worst;
 }
 
+/* Selections at the same place of both terrains in turns. */
+static void time_selections(terrain_fixture *own, terrain_fixture *ordinary, ff_view view, const ff_quality *quality, extreme_cost *cost)
+{
+    for (int i = 0; i < 100; i++) {
+        view.camera.pos_wu[0] += 10 * M;
+        double begin_s = extreme_processor_s();
+        (void)ff_tree_select(own->tree, &view, quality);
+        double middle_s = extreme_processor_s();
+        (void)ff_tree_select(ordinary->tree, &view, quality);
+        cost->ordinary_s += extreme_processor_s() - middle_s;
+        cost->own_s += middle_s - begin_s;
+    }
+    cost->own_times += 100;
+    cost->ordinary_times += 100;
+}
+
 /* 2 x 2 tiles of 2^15 cells, encoded as they are asked for; the tree alone. */
 static void terrain_of_64k(void **state)
 {
@@ -133,6 +149,14 @@ static void terrain_of_64k(void **state)
     row->work.selects = stats.selects;
     row->work.triangles = stats.triangles;
     extreme_row_expect(row, row->work.requests < 8000, "requests without end");
+    terrain_fixture small;
+    fixture_make(&small, 3, 9, 2, 2, fixture_hills);
+    fixture_tree(&small, 4000, 64);
+    ff_view view = fixture_view_above(&fx, 5000, 5000, 150, 30, -8);
+    fixture_settle(&fx, &view, &quality, 100);
+    fixture_settle(&small, &view, &quality, 100);
+    time_selections(&fx, &small, view, &quality, &row->cost);
+    fixture_free(&small);
     fixture_free(&fx);
     end_row(row);
 }
@@ -209,32 +233,39 @@ static void world_limits(void **state)
 
 /* ---- near and far ---- */
 
-static void render(extreme_rig *rig, int32_t near_wu, int32_t far_wu, uint8_t *rgb)
+/* Seconds that drawing and reading back take. */
+static double render(extreme_rig *rig, int32_t near_wu, int32_t far_wu, uint8_t *rgb)
 {
     rig->camera.near_wu = near_wu;
     rig->camera.far_wu = far_wu;
     extreme_frame(rig, FRAME_US);
+    double begin_s = extreme_processor_s();
     ff_client_draw(rig->client);
     extreme_row_expect(rig->row, c3d_read_rgb(ff_client_device(rig->client), rgb) == FF_OK, "no picture");
+    return extreme_processor_s() - begin_s;
 }
 
-static void near_far_ratio(void **state)
+static void judge_near_far(const char *name, const struct c3d_backend *backend, const sys_surface_api *api)
 {
-    (void)state;
     static uint8_t wide[240 * 320 * 3], narrow[240 * 320 * 3];
     extreme_rig rig;
-    extreme_row *row = extreme_row_begin("near/far ratio 10^6", "pixels unlike those of ratio 10^3", "%", 2);
+    extreme_row *row = extreme_row_begin(name, "pixels unlike those of ratio 10^3", "%", 2);
     extreme_open(&rig, row, NULL, pack_fixture_hills);
     sys_surface_desc surface = {"extremes", 240, 320, SYS_GL_DESKTOP};
-    rig.desc.surface_api = sys_surface_osmesa();
-    if (!rig.desc.surface_api || rig.desc.surface_api->open(&surface, &rig.surface) != FF_OK)
+    rig.desc.surface_api = api;
+    if (!api || api->open(&surface, &rig.surface) != FF_OK)
         abort();
-    rig.desc.backend = c3d_backend_gl();
+    rig.desc.backend = backend;
+    rig.untimed = 1;
     extreme_start(&rig, NULL);
     extreme_settle(&rig, FRAME_US, 600);
     extreme_calm(&rig);
-    render(&rig, 8 * M, 8000 * M, narrow);
-    render(&rig, 64, 64000000, wide);
+    for (int i = 0; i < 8; i++) { /* the first is not counted */
+        double narrow_s = render(&rig, 8 * M, 8000 * M, narrow), wide_s = render(&rig, 64, 64000000, wide);
+        row->cost.ordinary_s += i ? narrow_s : 0;
+        row->cost.own_s += i ? wide_s : 0;
+    }
+    row->cost.own_times = row->cost.ordinary_times = 7;
     uint32_t unlike = 0;
     for (uint32_t i = 0; i < 240 * 320; i++)
         unlike += abs(wide[3 * i] - narrow[3 * i]) > 8 || abs(wide[3 * i + 1] - narrow[3 * i + 1]) > 8;
@@ -243,6 +274,13 @@ static void near_far_ratio(void **state)
     ff_client_get_stats(rig.client, &stats);
     extreme_row_expect(row, stats.c3d.stale_handles == 0 && stats.c3d.frame_triangles > 1000, "not drawn");
     end_case(&rig);
+}
+
+static void near_far_ratio(void **state)
+{
+    (void)state;
+    judge_near_far("near/far ratio 10^6, GL", c3d_backend_gl(), sys_surface_osmesa());
+    judge_near_far("near/far ratio 10^6, integers", c3d_backend_soft(), sys_surface_memory());
 }
 
 /* ---- time and motion ---- */
@@ -411,35 +449,86 @@ static void links(void **state)
 
 /* ---- limits of the panorama's rules ---- */
 
-static void limits_of_the_rules(void **state)
+#define RULE_Z_WU (7500 * M)
+#define RULE_TIMES 2000
+static const int32_t any_ground[2] = {INT32_MIN, INT32_MAX};
+
+/* A limit's evaluation against an ordinary one's. */
+static void time_limit(extreme_cost *cost, int64_t error, int64_t w)
+{
+    static volatile int64_t kept;
+    double begin_s = extreme_processor_s();
+    for (int i = 0; i < RULE_TIMES; i++)
+        kept = ff_panorama_forwards_max(error, RULE_Z_WU, w);
+    double middle_s = extreme_processor_s();
+    for (int i = 0; i < RULE_TIMES; i++)
+        kept = ff_panorama_forwards_max(256, RULE_Z_WU, 30720);
+    (void)kept;
+    cost->ordinary_s += extreme_processor_s() - middle_s;
+    cost->own_s += middle_s - begin_s;
+    cost->own_times += RULE_TIMES;
+    cost->ordinary_times += RULE_TIMES;
+}
+
+static void width_to_zero(void **state)
 {
     (void)state;
-    const int64_t z = 7500 * M;
     extreme_row *row = extreme_row_begin("w to 0 (1 px ... 1/256 px, 0)", "forward limit off the reference", "wu", 1.001);
-    for (int64_t w = 256; w >= 0; w = w ? w / 2 : -1)
-        extreme_row_value(row, fabs((double)ff_panorama_forwards_max(256, z, w) - ref_forwards_max(256, z, (double)w)));
-    end_row(row);
-    row = extreme_row_begin("error allowed to 0 (64 px ... 1/256 px, 0)", "limits of motion off the reference", "wu", 1.001);
-    for (int64_t error = 64 * 256; error >= 0; error = error ? error / 2 : -1) {
-        extreme_row_value(row, fabs((double)ff_panorama_forwards_max(error, z, 30720) - ref_forwards_max((double)error, z, 30720)));
-        extreme_row_value(row, fabs((double)ff_panorama_sideways_max(error, z, 53209) - ref_sideways_max((double)error, z, 53209)));
+    for (int64_t w = 256; w >= 0; w = w ? w / 2 : -1) {
+        extreme_row_value(row, fabs((double)ff_panorama_forwards_max(256, RULE_Z_WU, w) - ref_forwards_max(256, RULE_Z_WU, (double)w)));
+        time_limit(&row->cost, 256, w);
     }
-    c3d_camera camera = {.width = 240, .height = 320, .focal_q8 = 53209};
-    const int32_t taken[3] = {0, 0, 0}, any_ground[2] = {INT32_MIN, INT32_MAX};
-    camera.pos_wu[1] = 1;
-    extreme_row_expect(row, ff_panorama_outdated(&camera, taken, any_ground, (int32_t)z, 0), "motion without any error allowed");
-    camera.pos_wu[1] = 0;
-    extreme_row_expect(row, !ff_panorama_outdated(&camera, taken, any_ground, (int32_t)z, 0), "asks again without any motion");
     end_row(row);
-    row = extreme_row_begin("OO' to z and beyond", "sets kept although OO' >= z", "", 0);
-    for (int32_t error = 1; error > 0; error = error < INT32_MAX / 2 ? error * 2 : error < INT32_MAX ? INT32_MAX : -1)
-        for (int32_t more = -1; more <= 1; more++) {
-            camera.pos_wu[1] = (int32_t)z + more;
-            int outdated = ff_panorama_outdated(&camera, taken, any_ground, (int32_t)z, error);
-            extreme_row_value(row, more >= 0 && !outdated);
-            camera.pos_wu[1] = INT32_MIN;
-            extreme_row_value(row, !ff_panorama_outdated(&camera, taken, any_ground, (int32_t)z, error));
-        }
+}
+
+static c3d_camera rule_camera(int64_t moved_wu)
+{
+    return (c3d_camera){.pos_wu = {0, (int32_t)moved_wu, 0}, .width = 240, .height = 320, .focal_q8 = 53209};
+}
+
+static void allowed_error_to_zero(void **state)
+{
+    (void)state;
+    static const int32_t taken[3] = {0, 0, 0};
+    extreme_row *row = extreme_row_begin("error allowed to 0 (64 px ... 1/256 px, 0)", "limits of motion off the reference", "wu", 1.001);
+    for (int64_t error = 64 * 256; error >= 0; error = error ? error / 2 : -1) {
+        double ahead = ref_forwards_max((double)error, RULE_Z_WU, 30720), aside = ref_sideways_max((double)error, RULE_Z_WU, 53209);
+        extreme_row_value(row, fabs((double)ff_panorama_forwards_max(error, RULE_Z_WU, 30720) - ahead));
+        extreme_row_value(row, fabs((double)ff_panorama_sideways_max(error, RULE_Z_WU, 53209) - aside));
+        time_limit(&row->cost, error, 30720);
+    }
+    c3d_camera camera = rule_camera(1);
+    extreme_row_expect(row, ff_panorama_outdated(&camera, taken, any_ground, RULE_Z_WU, 0), "motion without any error allowed");
+    camera = rule_camera(0);
+    extreme_row_expect(row, !ff_panorama_outdated(&camera, taken, any_ground, RULE_Z_WU, 0), "asks again without any motion");
+    end_row(row);
+}
+
+/* 1 when the joint rule keeps a set of O after this motion; timed against half a pixel's motion with a pixel allowed. */
+static int set_is_kept(extreme_cost *cost, int64_t moved_wu, int32_t error)
+{
+    static const int32_t taken[3] = {0, 0, 0};
+    c3d_camera far_off = rule_camera(moved_wu), near_by = rule_camera(RULE_Z_WU / 416);
+    double begin_s = extreme_processor_s();
+    int outdated = ff_panorama_outdated(&far_off, taken, any_ground, RULE_Z_WU, error);
+    double middle_s = extreme_processor_s();
+    (void)ff_panorama_outdated(&near_by, taken, any_ground, RULE_Z_WU, 256);
+    cost->ordinary_s += extreme_processor_s() - middle_s;
+    cost->own_s += middle_s - begin_s;
+    cost->own_times++;
+    cost->ordinary_times++;
+    return !outdated;
+}
+
+static void motion_to_z(void **state)
+{
+    (void)state;
+    extreme_row *row = extreme_row_begin("OO' to z and beyond", "sets kept although OO' >= z", "", 0);
+    for (int32_t error = 1; error > 0; error = error < INT32_MAX / 2 ? error * 2 : error < INT32_MAX ? INT32_MAX : -1) {
+        for (int64_t more = -1; more <= 1; more++)
+            extreme_row_value(row, set_is_kept(&row->cost, RULE_Z_WU + more, error) && more >= 0);
+        extreme_row_value(row, set_is_kept(&row->cost, INT32_MIN, error));
+    }
     end_row(row);
 }
 
@@ -448,6 +537,7 @@ static int write_table(void **state)
     (void)state;
     const char *path = getenv("EXTREMES");
     (void)sys_make_folder("build");
+    extreme_ordinary_close();
     return extreme_table_write(path ? path : "build/extremes.md") == FF_OK ? 0 : -1;
 }
 
@@ -457,7 +547,8 @@ int main(void)
         cmocka_unit_test(cliffs), cmocka_unit_test(flat), cmocka_unit_test(one_node), cmocka_unit_test(terrain_of_64k),
         cmocka_unit_test(camera_places), cmocka_unit_test(world_limits), cmocka_unit_test(near_far_ratio),
         cmocka_unit_test(frames_of_no_time), cmocka_unit_test(frames_of_ten_seconds), cmocka_unit_test(teleports),
-        cmocka_unit_test(gps_noise), cmocka_unit_test(links), cmocka_unit_test(limits_of_the_rules)
+        cmocka_unit_test(gps_noise), cmocka_unit_test(links), cmocka_unit_test(width_to_zero),
+        cmocka_unit_test(allowed_error_to_zero), cmocka_unit_test(motion_to_z)
     };
     return cmocka_run_group_tests(tests, NULL, write_table);
 }

@@ -1,5 +1,5 @@
 /* The join between ground and panorama is off by no more pixels than were allowed while the set in use is fresh: over random views
- * (as many as VIEWS says, 300,000 by default), and in flights over simulated links, where it is told how far off it gets when the
+ * (as many as VIEWS says, 1,000,000 by default), and in flights over simulated links, where it is told how far off it gets when the
  * link holds newer sets back. Judged in double precision; a face's own texel (half of one, see below) comes on top. */
 #include "../client/farfield.h"
 #include "../client/ff_panorama_rules.h"
@@ -52,7 +52,7 @@ static void random_views(void **state)
 {
     (void)state;
     const char *text = getenv("VIEWS");
-    uint32_t views = text ? (uint32_t)strtoul(text, NULL, 10) : 300000, fresh = 0, points = 0, near_limit = 0;
+    uint32_t views = text ? (uint32_t)strtoul(text, NULL, 10) : 1000000, fresh = 0, points = 0, near_limit = 0;
     double worst = 0;
     sys_random random;
     sys_random_seed(&random, 7, 61);
