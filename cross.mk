@@ -26,8 +26,8 @@ DEVICE_PLATFORM := platform/events.c platform/random.c platform/surfaces.c $(fil
                    $(call srcs,platform/memory)
 DEVICE_PROGRAM := $(filter sim/handheld_% sim/sim_tape.c,$(call srcs,sim)) sim/handheld_main.c
 
-WITHOUT_panorama := client/ff_panorama.c client/ff_panorama_join.c client/ff_panorama_rules.c client/ff_panorama_join.c client/ff_intake_face.c \
-                    protocol/ff_face_columns.c
+WITHOUT_panorama := client/ff_panorama.c client/ff_panorama_join.c client/ff_panorama_plan.c client/ff_panorama_rules.c \
+                    client/ff_intake_face.c protocol/ff_face_columns.c
 INSTEAD_panorama := client/without/ff_no_panorama.c
 WITHOUT_textures := client/ff_textures.c client/ff_intake_texture.c
 INSTEAD_textures := client/without/ff_no_textures.c

@@ -125,7 +125,8 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera
     ff_view view;
     make_view(client, camera, &quality, &view);
     ff_motion_feed(&client->motion, now_us, camera->pos_wu);
-    int turned = ff_panorama_update(&client->panorama, &client->requests, &view.camera, ff_client_low_power(client), now_us);
+    int turned = ff_panorama_update(&client->panorama, &client->requests, &view.camera, &client->motion, ff_client_low_power(client),
+                                    now_us);
     if (!taken && !moved && !turned && !client->dirty && !client->unranked) {
         client->frames_skipped++;
         return 0;

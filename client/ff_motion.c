@@ -87,21 +87,39 @@ static int64_t clamp(int64_t value, int64_t limit)
     return value > limit ? limit : value < -limit ? -limit : value;
 }
 
-int ff_motion_predict(const ff_motion *motion, int64_t ahead_us, int32_t pos_wu[3])
+/* The way made in that time at the mean velocity of the last bins; its length, 0 when there is none. */
+static int64_t straight_way(const ff_motion *motion, int64_t ahead_ms, int64_t way_wu[3])
 {
     if (motion->count < 2)
         return 0;
-    if (ahead_us > AHEAD_US_MAX)
-        ahead_us = AHEAD_US_MAX;
-    int64_t straight[3], ahead_ms = ahead_us / 1000;
     for (int i = 0; i < 3; i++)
-        straight[i] = clamp(velocity(motion, 0, motion->count - 1, i), SPEED_WU_S_MAX) * ahead_ms / 1000;
-    int64_t way = c3d_length64(straight[0], straight[1], straight[2]);
-    if (way < STILL_WU)
+        way_wu[i] = clamp(velocity(motion, 0, motion->count - 1, i), SPEED_WU_S_MAX) * ahead_ms / 1000;
+    int64_t length_wu = c3d_length64(way_wu[0], way_wu[1], way_wu[2]);
+    return length_wu < STILL_WU ? 0 : length_wu;
+}
+
+static int32_t position(int64_t to_wu)
+{
+    return to_wu > INT32_MAX ? INT32_MAX : to_wu < INT32_MIN ? INT32_MIN : (int32_t)to_wu;
+}
+
+int ff_motion_predict(const ff_motion *motion, int64_t ahead_us, int32_t pos_wu[3])
+{
+    int64_t way[3], ahead_ms = (ahead_us > AHEAD_US_MAX ? AHEAD_US_MAX : ahead_us) / 1000;
+    int64_t length = straight_way(motion, ahead_ms, way);
+    if (!length)
         return 0;
-    for (int i = 0; i < 3; i++) {
-        int64_t to = motion->last_wu[i] + straight[i] + clamp(curve(motion, i, ahead_ms), way / 2);
-        pos_wu[i] = to > INT32_MAX ? INT32_MAX : to < INT32_MIN ? INT32_MIN : (int32_t)to;
-    }
+    for (int i = 0; i < 3; i++)
+        pos_wu[i] = position(motion->last_wu[i] + way[i] + clamp(curve(motion, i, ahead_ms), length / 2));
+    return 1;
+}
+
+int ff_motion_level(const ff_motion *motion, int64_t ahead_us, int32_t pos_wu[3])
+{
+    int64_t way[3], ahead_ms = (ahead_us > AHEAD_US_MAX ? AHEAD_US_MAX : ahead_us) / 1000;
+    if (!straight_way(motion, ahead_ms, way))
+        return 0;
+    for (int i = 0; i < 3; i++)
+        pos_wu[i] = position(motion->last_wu[i] + (i < 2 ? way[i] : 0));
     return 1;
 }

@@ -1,5 +1,4 @@
 #include "ff_panorama.h"
-#include "ff_panorama_rules.h"
 
 #include <string.h>
 
@@ -7,6 +6,11 @@
 #define RETRY_US 2000000          /* the server was busy */
 #define RETRY_LATER_US 30000000   /* and again and again */
 #define REFUSALS_IN_A_ROW 3
+#define STAYS_US 30000000         /* in use for so long: all faces are wanted */
+#define TURNS_US 60000000         /* and for so long after a turn */
+#define TURN 8192                 /* an eighth of a circle */
+#define TURN_WITHIN_US 10000000
+#define LEAD_US_MAX 10000000
 #define PRIORITY_FACE 0x10000u    /* among the first: before refinements, beside roots */
 
 const uint8_t ff_panorama_built = 1;
@@ -24,7 +28,7 @@ void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panora
     panorama->ground_wu[1] = ff_height_wu(info, info->height_max) + ff_steps_wu(info, info->max_error);
     panorama->active = panorama->next = panorama->shown = -1;
     panorama->retry_us = INT64_MIN;
-    panorama->rest_us = INT64_MAX;
+    panorama->reach_us = INT64_MAX;
     static const uint16_t quad[4] = {0, 1, 2, 3};
     if (device && face_size)
         panorama->quad = c3d_strip_make(device, quad, 4);
@@ -54,26 +58,68 @@ static unsigned known(const ff_panorama_set *set)
     return (unsigned)set->held | set->empty | set->failed;
 }
 
-static void begin_set(ff_panorama *panorama, const c3d_camera *camera, int64_t now_us)
+static void begin_set(ff_panorama *panorama, const c3d_camera *camera, const ff_motion *motion, int64_t now_us)
 {
     int index = panorama->active == 0 ? 1 : 0;
+    ff_panorama_set *set = &panorama->set[index];
     drop_set(panorama, index);
-    memcpy(panorama->set[index].position_wu, camera->pos_wu, sizeof camera->pos_wu);
-    panorama->set[index].key = ++panorama->serial;
-    panorama->set[index].asked_us = now_us;
+    ff_panorama_plan(panorama, camera, motion, set);
+    set->key = ++panorama->serial;
+    set->asked_us = now_us;
     panorama->next = (int8_t)index;
 }
 
-/* The set that is coming has all that is in view: it takes over. */
-static int take_over(ff_panorama *panorama, unsigned in_view, int64_t now_us)
+static void measure_lead(ff_panorama *panorama, ff_panorama_set *set, int64_t now_us)
 {
-    if (panorama->next < 0 || (in_view & ~known(&panorama->set[panorama->next])) != 0)
+    int64_t took_us = now_us - set->asked_us < LEAD_US_MAX ? now_us - set->asked_us : LEAD_US_MAX;
+    set->ready = 1;
+    set->took_us = took_us;
+    panorama->lead_us = panorama->lead_us ? (panorama->lead_us + took_us) / 2 : took_us;
+}
+
+/* The set that is coming has all that is in view: it takes over, unless the drawn one is still good and it not yet. */
+static int take_over(ff_panorama *panorama, const c3d_camera *camera, int64_t now_us)
+{
+    if (panorama->next < 0)
         return 0;
+    ff_panorama_set *next = &panorama->set[panorama->next];
+    if ((ff_panorama_faces_in_view(camera) & ~known(next)) != 0)
+        return 0;
+    if (!next->ready)
+        measure_lead(panorama, next, now_us);
+    if (panorama->active >= 0 && ff_panorama_set_outdated(panorama, next, camera) &&
+        !ff_panorama_set_outdated(panorama, &panorama->set[panorama->active], camera))
+        return 0;
+    for (unsigned face = 0; face < FF_FACE_COUNT; face++) /* no longer expected: not there */
+        if (!(next->held >> face & 1u))
+            ff_panorama_sight_face(&next->sight, face, 1, 0, 0, panorama->desc.back_plane_wu);
     if (panorama->active >= 0)
         drop_set(panorama, panorama->active);
     panorama->active = panorama->next;
     panorama->next = -1;
-    panorama->rest_us = now_us + (now_us - panorama->set[panorama->active].asked_us);
+    panorama->reach = FF_PANORAMA_IN_VIEW;
+    panorama->reach_us = now_us + next->took_us;
+    return 1;
+}
+
+static void look_for_turns(ff_panorama *panorama, const c3d_camera *camera, int64_t now_us)
+{
+    uint32_t turned = (uint32_t)(camera->yaw - panorama->yaw + TURN) & 65535u;
+    if (turned > 2 * TURN && panorama->active >= 0) /* the first direction of all is no turn */
+        panorama->turns_until_us = now_us + TURNS_US;
+    if (turned > 2 * TURN || now_us - panorama->yaw_us > TURN_WITHIN_US) {
+        panorama->yaw = camera->yaw;
+        panorama->yaw_us = now_us;
+    }
+}
+
+static int reach_further(ff_panorama *panorama, int64_t now_us)
+{
+    int turns = panorama->reach == FF_PANORAMA_SOON && now_us < panorama->turns_until_us;
+    if (panorama->reach_us > now_us && !turns)
+        return 0;
+    panorama->reach_us = panorama->reach == FF_PANORAMA_IN_VIEW ? now_us + STAYS_US : INT64_MAX;
+    panorama->reach++;
     return 1;
 }
 
@@ -82,22 +128,20 @@ static int left_behind(const ff_panorama *panorama, const c3d_camera *camera, in
     return index >= 0 && ff_panorama_left_behind(camera->pos_wu, panorama->set[index].position_wu, panorama->desc.back_plane_wu);
 }
 
-static int refresh(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int hold, int64_t now_us)
+static int refresh(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, const ff_motion *motion, int hold,
+                   int64_t now_us)
 {
-    int changed = take_over(panorama, ff_panorama_faces_in_view(camera), now_us);
-    if (panorama->rest_us <= now_us) { /* time to want the rest */
-        panorama->rest_us = INT64_MAX;
-        changed = 1;
-    }
-    int newest = panorama->next >= 0 ? panorama->next : panorama->active;
+    int changed = take_over(panorama, camera, now_us);
+    look_for_turns(panorama, camera, now_us);
+    changed |= reach_further(panorama, now_us);
     if (hold || now_us < panorama->retry_us)
         return changed;
     if (panorama->retry_us != INT64_MIN) { /* the wait is over: want again */
         panorama->retry_us = INT64_MIN;
         changed = 1;
     }
-    if (newest >= 0 && !ff_panorama_outdated(camera, panorama->set[newest].position_wu, panorama->ground_wu,
-                                             panorama->desc.back_plane_wu, panorama->desc.error_px_q8))
+    if (panorama->next >= 0 ? !ff_panorama_set_outdated(panorama, &panorama->set[panorama->next], camera)
+                            : !ff_panorama_outdated_soon(panorama, camera, motion))
         return changed;
     if (left_behind(panorama, camera, panorama->next) && !ff_requests_cancel(requests, panorama->set[panorama->next].key)) {
         drop_set(panorama, panorama->next); /* it was not yet asked for, or its cancellation was answered */
@@ -105,22 +149,23 @@ static int refresh(ff_panorama *panorama, ff_requests *requests, const c3d_camer
     }
     if (panorama->next >= 0 && !panorama->desc.hold_back)
         return changed; /* one set outstanding at most */
-    newest = panorama->next >= 0 ? panorama->next : panorama->active;
+    int newest = panorama->next >= 0 ? panorama->next : panorama->active;
     if (newest >= 0 && ff_requests_cancel(requests, panorama->set[newest].key) && !panorama->desc.hold_back)
         return changed; /* the old set's last faces are still on their way: wait for the answer to the cancellation */
     ff_request_counts counts;
     ff_requests_get_counts(requests, &counts, NULL);
     if (counts.panoramas_in_flight && !panorama->desc.hold_back)
         return changed; /* of a set dropped when panoramas were switched off */
-    begin_set(panorama, camera, now_us);
+    begin_set(panorama, camera, motion, now_us);
     return 1;
 }
 
-int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int hold, int64_t now_us)
+int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, const ff_motion *motion, int hold,
+                       int64_t now_us)
 {
     if (!panorama->desc.enabled || !panorama->face_size)
         return 0;
-    int changed = refresh(panorama, requests, camera, hold, now_us);
+    int changed = refresh(panorama, requests, camera, motion, hold, now_us);
     int8_t shown = left_behind(panorama, camera, panorama->active) ? -1 : panorama->active;
     changed |= shown != panorama->shown;
     panorama->shown = shown;
@@ -140,19 +185,29 @@ static void list_faces(ff_get_panorama *request, unsigned missing, const c3d_cam
                 request->face[request->face_count++] = (uint8_t)face;
 }
 
+/* Faces touched by a view half as wide again: who turns mostly turns level. */
+static unsigned faces_soon(const c3d_camera *camera)
+{
+    c3d_camera wide = *camera;
+    wide.width = (uint16_t)(camera->width < UINT16_MAX / 3 * 2 ? camera->width * 3 / 2 : UINT16_MAX);
+    return ff_panorama_faces_in_view(&wide);
+}
+
 void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int64_t now_us)
 {
     int newest = panorama->next >= 0 ? panorama->next : panorama->active;
     if (!panorama->desc.enabled || newest < 0 || now_us < panorama->retry_us)
         return;
     const ff_panorama_set *set = &panorama->set[newest];
-    unsigned missing = ALL_FACES & ~known(set), in_view = missing & ff_panorama_faces_in_view(camera);
-    if (!missing || (!in_view && panorama->rest_us != INT64_MAX))
+    unsigned in_view = ff_panorama_faces_in_view(camera) & ~known(set), missing = in_view;
+    if (!in_view && panorama->next < 0 && panorama->reach != FF_PANORAMA_IN_VIEW)
+        missing = (panorama->reach == FF_PANORAMA_ALL ? ALL_FACES : faces_soon(camera)) & ~known(set);
+    if (!missing)
         return;
     ff_get_panorama request = {.front_wu = panorama->desc.back_plane_wu, .back_wu = panorama->desc.server_back_wu,
                                .face_size = panorama->face_size, .quality = panorama->desc.jpeg_quality};
     memcpy(request.position_wu, set->position_wu, sizeof request.position_wu);
-    list_faces(&request, in_view ? in_view : missing, camera);
+    list_faces(&request, missing, camera);
     ff_requests_want(requests, FF_WANT_PANORAMA, set->key, in_view ? FF_CLASS_FIRST : FF_CLASS_OUT_OF_VIEW,
                      in_view ? PRIORITY_FACE : 1, &request);
 }
@@ -189,6 +244,7 @@ static void take_image(ff_panorama *panorama, ff_panorama_set *set, const ff_new
 {
     unsigned face = item->face;
     set->held |= (uint8_t)(1u << face);
+    ff_panorama_sight_face(&set->sight, face, item->width, item->face_top_row, item->face_row_count, panorama->desc.back_plane_wu);
     panorama->faces++;
     if (!panorama->device)
         return;
@@ -226,6 +282,7 @@ int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now
             set->failed |= (uint8_t)bit;
         else if (item->face_empty) {
             set->empty |= (uint8_t)bit;
+            ff_panorama_sight_face(&set->sight, item->face, 1, 0, 0, panorama->desc.back_plane_wu);
             panorama->faces_empty++;
         } else {
             take_image(panorama, set, item);

@@ -1,16 +1,23 @@
 /* Far ground as pictures: at most two sets of cube faces, the one drawn and the one that is coming (Hybrid, section 6.2).
  *
  * A set is taken at one point O. The set that is coming replaces the drawn one only when all of its faces in view are here, so no
- * picture ever mixes two O. Faces in view are asked for first; the others when nothing in view is missing and the set has been
- * in use for as long as it took to come: on a link so slow that sets are outdated before that, they are never asked for. A face
- * the server found without far ground is not asked for again for that O. Unless hold_back says otherwise at most one panorama request
- * is out, and no newer O is asked for while one is coming. A superseded request is cancelled. A set left behind is neither drawn nor
- * waited for: until there is another one the client draws its own ground round the viewer. */
+ * picture ever mixes two O, and only when it is good here or the drawn one is not. O lies ahead on the viewer's path, so far that the set
+ * is just good when it comes: so it serves twice as long as one taken where the viewer is. It is asked for as long before the drawn one
+ * is outdated as it will need to come.
+ *
+ * Faces in view are asked for first; those soon in view when nothing in view is missing and the set has been in use for as long as
+ * it took to come: on a link so slow that sets are outdated before that, they are never asked for; the others for a viewer who stays
+ * (the set has been in use for half a minute) or turns (by an eighth of a circle within seconds, a minute ago at most). A face the
+ * server found without far ground is not asked for again for that O. Unless hold_back says otherwise at most one panorama request is
+ * out, and no newer O is asked for while one is coming. A superseded request is cancelled. A set left behind is neither drawn nor waited
+ * for: until there is another one the client draws its own ground round the viewer. */
 #ifndef FF_PANORAMA_H
 #define FF_PANORAMA_H
 
 #include "farfield.h"
+#include "ff_motion.h"
 #include "ff_new_data.h"
+#include "ff_panorama_rules.h"
 
 extern const uint8_t ff_panorama_built; /* 0: left out of this build */
 
@@ -19,13 +26,17 @@ extern const uint8_t ff_panorama_built; /* 0: left out of this build */
 typedef struct ff_panorama_set {
     int32_t position_wu[3];
     ff_key key;                       /* of its requests */
-    int64_t asked_us;
+    int64_t asked_us, took_us;        /* until its faces in view were here: `ready` */
+    uint8_t ready;
     uint8_t held, empty, failed;      /* bit per enum ff_face_name */
     c3d_texture texture[FF_FACE_COUNT];
     c3d_mesh mesh[FF_FACE_COUNT];
     uint16_t height[FF_FACE_COUNT];   /* rows of the texture */
     int16_t low[FF_FACE_COUNT];       /* lowest (UP: southernmost) coordinate of the image, face units */
+    ff_panorama_sight sight;          /* of the faces here; on its way: what is expected */
 } ff_panorama_set;
+
+enum ff_panorama_reach { FF_PANORAMA_IN_VIEW, FF_PANORAMA_SOON, FF_PANORAMA_ALL };
 
 typedef struct ff_panorama {
     c3d_device *device;
@@ -39,7 +50,12 @@ typedef struct ff_panorama {
     ff_panorama_set set[2];
     uint32_t serial;
     int64_t retry_us;                 /* not before */
-    int64_t rest_us;                  /* faces out of view not before; INT64_MAX: none are due */
+    uint8_t reach;                    /* enum ff_panorama_reach: which faces are wanted */
+    int64_t reach_us;                 /* when more of them will be */
+    int64_t lead_us;                  /* mean time that a set needs to come */
+    int32_t yaw;                      /* the camera's at yaw_us: some seconds ago, or at its last turn */
+    int64_t yaw_us;
+    int64_t turns_until_us;           /* who turned lately may turn again */
     uint32_t faces, faces_empty;
 } ff_panorama;
 
@@ -48,11 +64,18 @@ void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panora
 /* Frees what the device holds. */
 void ff_panorama_drop(ff_panorama *panorama);
 /* Applies the refresh rules; `hold`: ask for nothing new. 1 when the drawn set or what is wanted changed. */
-int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int hold, int64_t now_us);
+int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, const ff_motion *motion, int hold,
+                       int64_t now_us);
 /* Puts what is missing into the ranking under way. */
 void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int64_t now_us);
 /* Takes in a face or a refusal; 1 when it belongs to a set still wanted. */
 int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now_us);
+/* ff_panorama_plan.c. Whether a set is outdated for this camera. */
+int ff_panorama_set_outdated(const ff_panorama *panorama, const ff_panorama_set *set, const c3d_camera *camera);
+/* Whether the set that is drawn will be when another one could be here. */
+int ff_panorama_outdated_soon(const ff_panorama *panorama, const c3d_camera *camera, const ff_motion *motion);
+/* Where a set asked for now is best taken, and what it will show there. */
+void ff_panorama_plan(const ff_panorama *panorama, const c3d_camera *camera, const ff_motion *motion, ff_panorama_set *set);
 void ff_panorama_draw(const ff_panorama *panorama, int32_t near_wu);
 
 #endif

@@ -1,6 +1,6 @@
 /* How far off is the join between ground and panorama? The far ground that a set taken at O can show begins on the four upright faces
- * of a cube of half-edge z round O, between the heights that the terrain has (and on the lower or upper face when these reach
- * beyond). Farther ground in the same direction is off by less. In eye space, with P - O = (X, Y, D), m the way from O to O' and
+ * of a cube of half-edge z round O, between the heights that the set's images show or the terrain has (and on the lower or upper face
+ * when these reach beyond). Farther ground in the same direction is off by less. In eye space, with P - O = (X, Y, D), m the way from O to O' and
  * d the focal distance, a point is shown at d X/D and truly is at d (X - mx)/(D - mz): it is off by
  *
  *     | (X mz - mx D, Y mz - my D) | d / (D (D - mz))          pixels.
@@ -116,27 +116,28 @@ static int face_is_off(const join *j, int axis, int sign, int up, int64_t low, i
     return 0;
 }
 
-static int64_t within(int64_t value, int64_t low, int64_t high)
+static int join_is_off(const join *j, const ff_panorama_sight *sight)
 {
-    return value < low ? low : value > high ? high : value;
-}
-
-static int join_is_off(const join *j, const int32_t taken_wu[3], const int32_t ground_wu[2])
-{
-    /* Farther away, any ground comes closer to the level of O. */
-    int64_t low = within((int64_t)ground_wu[0] - taken_wu[2], -j->z_wu, 0), high = within((int64_t)ground_wu[1] - taken_wu[2], 0, j->z_wu);
-    for (int axis = 0; axis < 2; axis++)
-        for (int sign = -1; sign <= 1; sign += 2)
-            if (face_is_off(j, axis, sign, 2, low, high))
+    for (unsigned face = 0; face < FF_FACE_COUNT; face++) {
+        ff_face_axis at = ff_face_axes[face];
+        int64_t low = sight->low_wu[face], high = sight->high_wu[face];
+        if (low > high)
+            continue;
+        if (at.axis < 2 && face_is_off(j, at.axis, at.sign, 2, low, high))
+            return 1;
+        for (int i = 0; at.axis == 2 && i < PATCHES; i++)
+            if (face_is_off(j, 2, at.sign, 1, j->z_wu * (2 * i - PATCHES) / PATCHES, j->z_wu * (2 * i + 2 - PATCHES) / PATCHES))
                 return 1;
-    for (int sign = -1; sign <= 1; sign += 2)
-        for (int i = 0; (sign < 0 ? low == -j->z_wu : high == j->z_wu) && i < PATCHES; i++)
-            if (face_is_off(j, 2, sign, 1, j->z_wu * (2 * i - PATCHES) / PATCHES, j->z_wu * (2 * i + 2 - PATCHES) / PATCHES))
-                return 1;
+    }
     return 0;
 }
 
-int ff_panorama_outdated(const c3d_camera *camera, const int32_t taken_wu[3], const int32_t ground_wu[2], int32_t z_wu,
+static int32_t kept_wu(int32_t z_wu)
+{
+    return z_wu < Z_WU_MAX ? z_wu : Z_WU_MAX;
+}
+
+int ff_panorama_outdated(const c3d_camera *camera, const int32_t taken_wu[3], const ff_panorama_sight *sight, int32_t z_wu,
                          int32_t error_px_q8)
 {
     int64_t moved_wu[3], most_wu = 0;
@@ -149,9 +150,35 @@ int ff_panorama_outdated(const c3d_camera *camera, const int32_t taken_wu[3], co
     if (error_px_q8 <= 0 || c3d_length64(moved_wu[0], moved_wu[1], moved_wu[2]) >= z_wu)
         return 1;
     join j = {.camera = camera, .half_q8 = {camera->width * 128, camera->height * 128}, .error_q8 = error_px_q8,
-              .z_wu = z_wu < Z_WU_MAX ? z_wu : Z_WU_MAX};
+              .z_wu = kept_wu(z_wu)};
     c3d_rotation_from_camera(camera, &j.rotation);
     c3d_to_eye(&j.rotation, moved_wu, j.moved_eye_wu);
     j.least_wu = least_depth_wu(&j, most_wu);
-    return j.least_wu <= 0 || join_is_off(&j, taken_wu, ground_wu);
+    return j.least_wu <= 0 || join_is_off(&j, sight);
+}
+
+static int64_t within(int64_t value, int64_t low, int64_t high)
+{
+    return value < low ? low : value > high ? high : value;
+}
+
+void ff_panorama_sight_terrain(ff_panorama_sight *sight, const int32_t taken_wu[3], const int32_t ground_wu[2], int32_t z_wu)
+{
+    z_wu = kept_wu(z_wu);
+    /* Farther away, any ground comes closer to the level of O. */
+    int32_t low = (int32_t)within((int64_t)ground_wu[0] - taken_wu[2], -z_wu, 0);
+    int32_t high = (int32_t)within((int64_t)ground_wu[1] - taken_wu[2], 0, z_wu);
+    for (unsigned face = 0; face < FF_FACE_COUNT; face++) {
+        int there = face == FF_FACE_UP ? high == z_wu : face == FF_FACE_DOWN ? low == -z_wu : 1;
+        sight->low_wu[face] = there ? low : 1;
+        sight->high_wu[face] = there ? high : 0;
+    }
+}
+
+void ff_panorama_sight_face(ff_panorama_sight *sight, unsigned face, unsigned face_size, unsigned top_row, unsigned row_count,
+                            int32_t z_wu)
+{
+    int64_t z = kept_wu(z_wu), size = face_size, top = top_row ? top_row - 1 : 0, bottom = top_row + row_count;
+    sight->high_wu[face] = row_count ? (int32_t)(z - z * 2 * top / size) : 0;
+    sight->low_wu[face] = row_count ? (int32_t)(z - (z * 2 * bottom + size - 1) / size) : 1;
 }

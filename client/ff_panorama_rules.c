@@ -1,6 +1,9 @@
 #include "ff_panorama_rules.h"
 
-#include "../protocol/ff_message.h"
+const ff_face_axis ff_face_axes[FF_FACE_COUNT] = {
+    [FF_FACE_NORTH] = {1, 1}, [FF_FACE_EAST] = {0, 1}, [FF_FACE_SOUTH] = {1, -1},
+    [FF_FACE_WEST] = {0, -1}, [FF_FACE_UP] = {2, 1}, [FF_FACE_DOWN] = {2, -1}
+};
 
 int64_t ff_panorama_sideways_max(int64_t error_px_q8, int64_t z_wu, int64_t focal_q8)
 {
@@ -84,18 +87,14 @@ static int face_outside_view(const c3d_camera *camera, const c3d_rotation *rotat
 
 unsigned ff_panorama_faces_in_view(const c3d_camera *camera)
 {
-    static const struct { int8_t axis, sign; } face[FF_FACE_COUNT] = {
-        [FF_FACE_NORTH] = {1, 1}, [FF_FACE_EAST] = {0, 1}, [FF_FACE_SOUTH] = {1, -1},
-        [FF_FACE_WEST] = {0, -1}, [FF_FACE_UP] = {2, 1}, [FF_FACE_DOWN] = {2, -1}
-    };
     c3d_rotation rotation;
     view_rays rays;
     unsigned faces = 0;
     c3d_rotation_from_camera(camera, &rotation);
     make_rays(camera, &rotation, &rays);
     for (unsigned i = 0; i < FF_FACE_COUNT; i++)
-        if (!view_outside_face(&rays, face[i].axis, face[i].sign) &&
-            !face_outside_view(camera, &rotation, face[i].axis, face[i].sign))
+        if (!view_outside_face(&rays, ff_face_axes[i].axis, ff_face_axes[i].sign) &&
+            !face_outside_view(camera, &rotation, ff_face_axes[i].axis, ff_face_axes[i].sign))
             faces |= 1u << i;
     return faces;
 }

@@ -11,6 +11,14 @@
 #define FF_PANORAMA_RULES_H
 
 #include "../common3d/c3d.h"
+#include "../protocol/ff_message.h"
+
+typedef struct ff_face_axis { int8_t axis, sign; } ff_face_axis;
+extern const ff_face_axis ff_face_axes[FF_FACE_COUNT]; /* by enum ff_face_name: the world axis a face looks along */
+
+/* Between which heights above O, on the cube of half-edge z round it, a set shows ground: by enum ff_face_name; low > high: in none.
+ * Of the upper and the lower face only whether: they are taken whole. */
+typedef struct ff_panorama_sight { int32_t low_wu[FF_FACE_COUNT], high_wu[FF_FACE_COUNT]; } ff_panorama_sight;
 
 /* All lengths in wu, pixels in Q8; z, d >= 1; w, error >= 0. Rounded down: never more than allowed. */
 int64_t ff_panorama_sideways_max(int64_t error_px_q8, int64_t z_wu, int64_t focal_q8);
@@ -18,9 +26,16 @@ int64_t ff_panorama_forwards_max(int64_t error_px_q8, int64_t z_wu, int64_t half
 
 /* 1 when the panorama taken at `taken_wu` may show a point more than `error_px_q8` from its place to this camera, in any direction of
  * motion and for any point in the window: the two rules above tested one by one would let their errors add up, and take the depth of
- * ground to be z, which it is only where the camera looks along an axis of the cube. ground_wu: lowest and highest of the terrain. */
-int ff_panorama_outdated(const c3d_camera *camera, const int32_t taken_wu[3], const int32_t ground_wu[2], int32_t z_wu,
+ * ground to be z, which it is only where the camera looks along an axis of the cube. */
+int ff_panorama_outdated(const c3d_camera *camera, const int32_t taken_wu[3], const ff_panorama_sight *sight, int32_t z_wu,
                          int32_t error_px_q8);
+
+/* What a set may show of a terrain whose lowest and highest ground is ground_wu. */
+void ff_panorama_sight_terrain(ff_panorama_sight *sight, const int32_t taken_wu[3], const int32_t ground_wu[2], int32_t z_wu);
+/* What a face shows whose image is these rows of it; row_count 0: nothing. All ground beyond z is seen from O between the image's
+ * uppermost and lowest texel, what is hidden behind other ground too; one row is added for a summit between two texels. */
+void ff_panorama_sight_face(ff_panorama_sight *sight, unsigned face, unsigned face_size, unsigned top_row, unsigned row_count,
+                            int32_t z_wu);
 
 /* 1 when the viewer has left a panorama behind, and with it the client's own ground, the box of z round `taken_wu`: more than half
  * of z along an axis. By then what comes nearer is half the window from its place (forwards, |OO'| = z / 2), and half of the box ahead

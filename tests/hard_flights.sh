@@ -92,13 +92,14 @@ hard silence calm 15 45 50 6 0 0 --seconds 60 --event 15:link=$slow --event 45:l
 hard stalls calm 20 50 50 6 0 2 --seconds 60 --link gprs,stall_every_ms=6000,stall_ms_min=4000,stall_ms_max=15000 --event 50:link=umts
 hard cuts calm 20 50 12 4 0 0 --seconds 60 --link umts,cut_every_ms=10000 --event 50:link=umts
 hard handover calm 15 50 12 4 0 0 --seconds 60 --event 15:link=gprs --event 30:link=umts --event 35:link=gprs --event 50:link=umts
-hard trace calm 15 50 25 4 0 1 --seconds 60 --down-trace "$work/trace" --up-trace "$work/trace" --event 50:link=umts
+hard trace calm 15 50 25 4 0 0 --seconds 60 --down-trace "$work/trace" --up-trace "$work/trace" --event 50:link=umts
 
 # ---- the client ----
-hard turn calm-turn 20 50 25 4 0 0 --seconds 60 --path turn --link gprs --event 50:link=umts
+# The first turn of all waits a round trip of GPRS for the far ground behind it.
+hard turn calm-turn 20 50 90 4 0 0 --seconds 60 --path turn --link gprs --event 50:link=umts
 hard circle calm-circle 20 50 85 4 0 0 --seconds 60 --path circle --speed 300 --link gprs --event 50:link=umts
 hard hover calm-hover 20 20 4 4 0 0 --seconds 60 --path hover --link gprs
-hard teleport calm-teleport 20 20 4 6 1 1 --seconds 40 --event 20:teleport=0.85,0.15
+hard teleport calm-teleport 20 20 4 6 1 0 --seconds 40 --event 20:teleport=0.85,0.15
 hard teleport-near calm-near 20 20 35 6 0 0 --seconds 40 --event 20:teleport=0.5,0.45
 
 # ---- recorded links, where there are some ----

@@ -160,11 +160,17 @@ static void panorama_follows_the_rules(void **state)
     assert_true(rig_settle(&rig, 400));
     assert_true(ff_client_panorama(rig.client, taken_wu, &faces));
     assert_memory_equal(taken_wu, rig.camera.pos_wu, sizeof taken_wu);
+    assert_true((faces & ff_panorama_faces_in_view(&rig.camera)) == ff_panorama_faces_in_view(&rig.camera));
+    assert_int_not_equal(faces, 0x3f); /* behind the viewer is asked for when he stays */
+    for (int i = 0; i < 62; i++)
+        rig_step(&rig, 500000);
+    assert_true(rig_settle(&rig, 400));
+    assert_true(ff_client_panorama(rig.client, taken_wu, &faces));
     assert_int_equal(faces, 0x3f);
     assert_int_equal(rig_stats(&rig).panorama_faces, 4);
     assert_int_equal(rig_stats(&rig).panorama_faces_empty, 2);
     unsigned asked = rig.asked[FF_MSG_GET_PANORAMA];
-    assert_in_range(asked, 1, 2); /* in view first, then the rest */
+    assert_in_range(asked, 2, 3); /* in view first, then the neighbours, then the rest */
 
     rig.camera.pos_wu[2] += 20 * METRE; /* within the error */
     rig_settle(&rig, 100);
@@ -175,6 +181,41 @@ static void panorama_follows_the_rules(void **state)
     ff_client_panorama(rig.client, taken_wu, &faces);
     assert_memory_equal(taken_wu, rig.camera.pos_wu, sizeof taken_wu);
     assert_requests_add_up(&rig);
+    rig_close(&rig);
+}
+
+/* Flying straight on: a set is taken ahead, serves as long before its O as behind it, and the next one is there in time. */
+static void panorama_is_taken_ahead(void **state)
+{
+    (void)state;
+    client_rig rig;
+    unsigned sets = 0, faces, late = 0, frames = 400;
+    int32_t taken_wu[3], last_y_wu = 0, longest_ahead_wu = 0, started_y_wu = 0;
+    rig_open(&rig, 0);
+    rig.desc.panorama.enabled = 1;
+    rig.desc.panorama.back_plane_wu = 1500 * METRE;
+    rig_client(&rig, 4 * MB);
+    assert_true(rig_settle(&rig, 400));
+    rig.camera.pos_wu[1] -= 600 * METRE;
+    for (unsigned i = 0; i < frames; i++) {
+        rig.camera.pos_wu[1] += 3 * METRE;
+        rig_step(&rig, 50000);
+        if (i < 60 || !ff_client_panorama(rig.client, taken_wu, &faces))
+            continue; /* until the motion is known */
+        const ff_panorama *panorama = &rig.client->panorama;
+        late += (unsigned)ff_panorama_set_outdated(panorama, &panorama->set[panorama->shown], &rig.camera);
+        int32_t ahead_wu = taken_wu[1] - rig.camera.pos_wu[1];
+        longest_ahead_wu = ahead_wu > longest_ahead_wu ? ahead_wu : longest_ahead_wu;
+        if (taken_wu[1] != last_y_wu && sets++ == 0)
+            started_y_wu = taken_wu[1];
+        last_y_wu = taken_wu[1];
+        assert_int_equal(taken_wu[0], rig.camera.pos_wu[0]);
+    }
+    assert_in_range(sets, 4, 20);
+    int32_t each_wu = (last_y_wu - started_y_wu) / (int32_t)(sets - 1);
+    assert_in_range(longest_ahead_wu, 20 * METRE, 375 * METRE);
+    assert_true(each_wu > longest_ahead_wu * 3 / 2); /* it is good on both sides */
+    assert_true(late * 20 < frames);
     rig_close(&rig);
 }
 
@@ -202,12 +243,12 @@ static void one_set_outstanding_at_most(void **state)
     assert_int_equal(rig_stats(&rig).panoramas_in_flight_high, 1);
     assert_true(rig_stats(&rig).tree.nodes_drawn > 5);
     int32_t taken_wu[3], old_wu[3];
-    unsigned faces;
+    unsigned faces, old_faces;
     assert_false(ff_client_panorama(rig.client, taken_wu, &faces)); /* nothing to show is not shown */
     rig.no_faces = 0;
     assert_true(rig_settle(&rig, 400));
-    assert_true(ff_client_panorama(rig.client, old_wu, &faces));
-    assert_int_equal(faces, 0x3f);
+    assert_true(ff_client_panorama(rig.client, old_wu, &old_faces));
+    assert_int_equal(ff_panorama_faces_in_view(&rig.camera) & ~old_faces, 0);
 
     rig.no_faces = 1; /* a new set is due and does not come: the old one stays whole */
     rig.camera.pos_wu[1] -= 200 * METRE;
@@ -215,7 +256,7 @@ static void one_set_outstanding_at_most(void **state)
         rig_step(&rig, 50000);
     assert_true(ff_client_panorama(rig.client, taken_wu, &faces));
     assert_memory_equal(taken_wu, old_wu, sizeof taken_wu);
-    assert_int_equal(faces, 0x3f);
+    assert_int_equal(faces, old_faces);
 
     for (int i = 0; i < 160; i++) { /* 800 m on: too far for it, the ground is the client's own, all round the viewer */
         rig.camera.pos_wu[1] -= 5 * METRE;
@@ -403,7 +444,7 @@ int main(void)
         cmocka_unit_test(same_picture_over_stream_and_pack), cmocka_unit_test(still_camera_means_stillness),
         cmocka_unit_test(same_script_same_hashes), cmocka_unit_test(what_is_off_costs_nothing),
         cmocka_unit_test(images_come_from_coarse_to_fine), cmocka_unit_test(panorama_follows_the_rules),
-        cmocka_unit_test(one_set_outstanding_at_most), cmocka_unit_test(panorama_can_be_switched),
+        cmocka_unit_test(panorama_is_taken_ahead), cmocka_unit_test(one_set_outstanding_at_most), cmocka_unit_test(panorama_can_be_switched),
         cmocka_unit_test(switched_panoramas_do_not_queue_up),
         cmocka_unit_test(little_memory_draws_coarser), cmocka_unit_test(wrong_descriptions_are_refused),
         cmocka_unit_test(low_power_is_coarser_and_recovers), cmocka_unit_test(interruption_asks_for_nothing),

@@ -453,6 +453,13 @@ static void links(void **state)
 #define RULE_TIMES 2000
 static const int32_t any_ground[2] = {INT32_MIN, INT32_MAX};
 
+static int outdated(const c3d_camera *camera, const int32_t taken_wu[3], int32_t error_px_q8)
+{
+    ff_panorama_sight sight;
+    ff_panorama_sight_terrain(&sight, taken_wu, any_ground, RULE_Z_WU);
+    return ff_panorama_outdated(camera, taken_wu, &sight, RULE_Z_WU, error_px_q8);
+}
+
 /* A limit's evaluation against an ordinary one's. */
 static void time_limit(extreme_cost *cost, int64_t error, int64_t w)
 {
@@ -498,9 +505,9 @@ static void allowed_error_to_zero(void **state)
         time_limit(&row->cost, error, 30720);
     }
     c3d_camera camera = rule_camera(1);
-    extreme_row_expect(row, ff_panorama_outdated(&camera, taken, any_ground, RULE_Z_WU, 0), "motion without any error allowed");
+    extreme_row_expect(row, outdated(&camera, taken, 0), "motion without any error allowed");
     camera = rule_camera(0);
-    extreme_row_expect(row, !ff_panorama_outdated(&camera, taken, any_ground, RULE_Z_WU, 0), "asks again without any motion");
+    extreme_row_expect(row, !outdated(&camera, taken, 0), "asks again without any motion");
     end_row(row);
 }
 
@@ -510,14 +517,14 @@ static int set_is_kept(extreme_cost *cost, int64_t moved_wu, int32_t error)
     static const int32_t taken[3] = {0, 0, 0};
     c3d_camera far_off = rule_camera(moved_wu), near_by = rule_camera(RULE_Z_WU / 416);
     double begin_s = extreme_processor_s();
-    int outdated = ff_panorama_outdated(&far_off, taken, any_ground, RULE_Z_WU, error);
+    int far_outdated = outdated(&far_off, taken, error);
     double middle_s = extreme_processor_s();
-    (void)ff_panorama_outdated(&near_by, taken, any_ground, RULE_Z_WU, 256);
+    (void)outdated(&near_by, taken, 256);
     cost->ordinary_s += extreme_processor_s() - middle_s;
     cost->own_s += middle_s - begin_s;
     cost->own_times++;
     cost->ordinary_times++;
-    return !outdated;
+    return !far_outdated;
 }
 
 static void motion_to_z(void **state)

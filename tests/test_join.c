@@ -1,8 +1,7 @@
 /* The join between ground and panorama is off by no more pixels than were allowed while the set in use is fresh: over random views
  * (as many as VIEWS says, 1,000,000 by default), and in flights over simulated links, where it is told how far off it gets when the
  * link holds newer sets back. Judged in double precision; a face's own texel (half of one, see below) comes on top. */
-#include "../client/farfield.h"
-#include "../client/ff_panorama_rules.h"
+#include "../client/ff_client_local.h"
 #include "../sim/sim_ground.h"
 #include "../sim/sim_server.h"
 #include "pack_fixture.h"
@@ -38,6 +37,28 @@ static int point_at_join(sys_random *random, const double taken[3], double z, co
     return fabs(point[2] - taken[2]) <= reach && point[2] >= ground[0] && point[2] <= ground[1];
 }
 
+/* The same where a set's images show ground. */
+static int point_in_sight(sys_random *random, const double taken[3], double z, const ff_panorama_sight *sight, double point[3])
+{
+    unsigned face = sys_random_below(random, FF_FACE_UP);
+    int forward = ff_face_axes[face].axis;
+    double beyond = sys_random_below(random, 2) ? 1 : 1 + sys_random_below(random, 1000) / 4000.0;
+    if (sight->low_wu[face] > sight->high_wu[face])
+        return 0;
+    point[forward] = taken[forward] + beyond * ff_face_axes[face].sign * z;
+    point[1 - forward] = taken[1 - forward] + beyond * z * between(random, -100000, 100000) / 100000;
+    point[2] = taken[2] + beyond * between(random, sight->low_wu[face], sight->high_wu[face]);
+    return 1;
+}
+
+static void random_sight(sys_random *random, int32_t z_wu, ff_panorama_sight *sight)
+{
+    for (unsigned face = 0; face < FF_FACE_COUNT; face++) {
+        unsigned size = 16u << sys_random_below(random, 6), top = sys_random_below(random, size), rows = sys_random_below(random, size - top);
+        ff_panorama_sight_face(sight, face, size, top, face < FF_FACE_UP ? rows : 0, z_wu);
+    }
+}
+
 static c3d_camera random_camera(sys_random *random)
 {
     c3d_camera camera = {.yaw = between(random, 0, 65535), .width = (uint16_t)between(random, 240, 640),
@@ -62,17 +83,22 @@ static void random_views(void **state)
         int32_t ground[2] = {between(&random, -500 * M, 1000 * M), between(&random, 1000 * M, 4000 * M)};
         double taken_wu[3], point[3];
         int32_t reach = (int32_t)fmin(z, z * (error_q8 / (double)camera.focal_q8));
+        ff_panorama_sight sight;
         ref_camera ref;
         for (int axis = 0; axis < 3; axis++) {
             camera.pos_wu[axis] = between(&random, 0, axis < 2 ? 100000 * M : 6000 * M);
             taken_wu[axis] = taken[axis] = camera.pos_wu[axis] + between(&random, -reach, reach);
         }
-        if (ff_panorama_outdated(&camera, taken, ground, z, error_q8))
+        if (i & 1)
+            random_sight(&random, z, &sight);
+        else
+            ff_panorama_sight_terrain(&sight, taken, ground, z);
+        if (ff_panorama_outdated(&camera, taken, &sight, z, error_q8))
             continue;
         fresh++;
         ref_camera_of(&camera, &ref);
         for (int j = 0; j < 32; j++) {
-            if (!point_at_join(&random, taken_wu, z, ground, point))
+            if (!(i & 1 ? point_in_sight(&random, taken_wu, z, &sight, point) : point_at_join(&random, taken_wu, z, ground, point)))
                 continue;
             double part = ref_panorama_error_px(&ref, taken_wu, point) / (error_q8 / 256.0);
             points += part >= 0;
@@ -92,7 +118,9 @@ static void asks_not_much_too_soon(void **state)
     (void)state;
     const int32_t taken[3] = {0, 0, 0}, ground[2] = {-600 * M, 1000 * M}, z = 7500 * M, error_q8 = 6 * 256;
     const double origin[3] = {0, 0, 0};
+    ff_panorama_sight sight;
     double mean = 0;
+    ff_panorama_sight_terrain(&sight, taken, ground, z);
     for (int32_t yaw = 0; yaw < 16384; yaw += 1000) {
         c3d_camera camera = {.yaw = yaw, .pitch = -1092, .width = 240, .height = 320, .focal_q8 = c3d_focal_q8(10923, 240)};
         int32_t way_m = 0;
@@ -100,7 +128,7 @@ static void asks_not_much_too_soon(void **state)
             way_m += 2;
             camera.pos_wu[0] = (int32_t)(way_m * M * sin(yaw * REF_PI / 32768));
             camera.pos_wu[1] = (int32_t)(way_m * M * cos(yaw * REF_PI / 32768));
-        } while (!ff_panorama_outdated(&camera, taken, ground, z, error_q8));
+        } while (!ff_panorama_outdated(&camera, taken, &sight, z, error_q8));
         ref_camera ref;
         double worst = 0;
         ref_camera_of(&camera, &ref);
@@ -136,7 +164,6 @@ typedef struct flight {
     void *memory;
     ff_client *client;
     c3d_camera camera;
-    int32_t range_wu[2];
 } flight;
 
 #define MEMORY_BYTES (4u << 20)
@@ -158,8 +185,6 @@ static void open_flight(flight *f, const char *link)
     assert_non_null(f->bytes);
     assert_int_equal(ff_pack_open(&f->pack, f->bytes, count), FF_OK);
     assert_int_equal(sim_ground_load(&f->ground, &f->pack, UINT64_MAX), FF_OK);
-    f->range_wu[0] = ff_height_wu(&desc.info, desc.info.height_min);
-    f->range_wu[1] = ff_height_wu(&desc.info, desc.info.height_max);
     f->now_us = 1000000;
     f->link = sim_link_create(sim_link_profile(link), 3);
     assert_non_null(f->link);
@@ -232,7 +257,8 @@ static void fly(const char *link, double speed_ms, unsigned seconds, double leas
         if (!ff_client_panorama(f.client, taken, &faces))
             continue;
         double off_px = join_error_px(&f, taken);
-        if (ff_panorama_outdated(&f.camera, taken, f.range_wu, BACK_PLANE_M * M, 6 * 256)) {
+        const ff_panorama *panorama = &f.client->panorama;
+        if (ff_panorama_set_outdated(panorama, &panorama->set[panorama->shown], &f.camera)) {
             held_px = fmax(held_px, off_px); /* the newer set is on its way */
             held++;
         } else {

@@ -45,11 +45,18 @@ static c3d_camera camera_at(int32_t x_m, int32_t y_m, int32_t z_m, int32_t yaw, 
 
 static const int32_t level_ground[2] = {-100 * METRE, 100 * METRE}, any_ground[2] = {INT32_MIN, INT32_MAX};
 
+static int outdated_over(const c3d_camera *camera, const int32_t taken_wu[3], const int32_t ground_wu[2], int32_t error_px_q8)
+{
+    ff_panorama_sight sight;
+    ff_panorama_sight_terrain(&sight, taken_wu, ground_wu, Z_WU);
+    return ff_panorama_outdated(camera, taken_wu, &sight, Z_WU, error_px_q8);
+}
+
 static int outdated(int32_t x_m, int32_t y_m, int32_t z_m, int32_t yaw)
 {
     static const int32_t origin[3] = {0, 0, 0};
     c3d_camera camera = camera_at(x_m, y_m, z_m, yaw, 0);
-    return ff_panorama_outdated(&camera, origin, level_ground, Z_WU, 120 * 256 / 20);
+    return outdated_over(&camera, origin, level_ground, 120 * 256 / 20);
 }
 
 static void motion_in_any_direction(void **state)
@@ -77,12 +84,34 @@ static void no_error_allowed_means_no_motion_allowed(void **state)
     (void)state;
     static const int32_t origin[3] = {0, 0, 0};
     c3d_camera camera = camera_at(0, 0, 0, 0, 0);
-    assert_false(ff_panorama_outdated(&camera, origin, any_ground, Z_WU, 0));
+    assert_false(outdated_over(&camera, origin, any_ground, 0));
     camera.pos_wu[0] = 1;
-    assert_true(ff_panorama_outdated(&camera, origin, any_ground, Z_WU, 0));
+    assert_true(outdated_over(&camera, origin, any_ground, 0));
     camera.pos_wu[0] = INT32_MAX; /* the far end of the world */
     int32_t far_west[3] = {INT32_MIN, 0, 0};
-    assert_true(ff_panorama_outdated(&camera, far_west, any_ground, Z_WU, INT32_MAX));
+    assert_true(outdated_over(&camera, far_west, any_ground, INT32_MAX));
+}
+
+/* What the images show decides: ground high up in the window's corners that no face has does not count. */
+static void only_what_is_shown_counts(void **state)
+{
+    (void)state;
+    const int32_t origin[3] = {0, 0, 0}, mountains[2] = {-100 * METRE, 4000 * METRE};
+    ff_panorama_sight sight;
+    c3d_camera camera = camera_at(0, 300, 0, 0, 0);
+    assert_true(outdated_over(&camera, origin, mountains, 120 * 256 / 20));
+    for (unsigned face = 0; face < FF_FACE_COUNT; face++)
+        ff_panorama_sight_face(&sight, face, 256, 0, 0, Z_WU);
+    assert_false(ff_panorama_outdated(&camera, origin, &sight, Z_WU, 256));
+    ff_panorama_sight_face(&sight, FF_FACE_SOUTH, 256, 0, 256, Z_WU); /* behind the viewer */
+    assert_false(ff_panorama_outdated(&camera, origin, &sight, Z_WU, 256));
+    ff_panorama_sight_face(&sight, FF_FACE_NORTH, 256, 126, 5, Z_WU);
+    assert_true(sight.high_wu[FF_FACE_NORTH] == Z_WU * 3 / 128 && sight.low_wu[FF_FACE_NORTH] == -Z_WU * 3 / 128);
+    assert_false(ff_panorama_outdated(&camera, origin, &sight, Z_WU, 120 * 256 / 20));
+    assert_true(ff_panorama_outdated(&camera, origin, &sight, Z_WU, 4 * 256));
+    ff_panorama_sight_face(&sight, FF_FACE_NORTH, 256, 0, 256, Z_WU);
+    assert_true(sight.high_wu[FF_FACE_NORTH] == Z_WU && sight.low_wu[FF_FACE_NORTH] == -Z_WU);
+    assert_true(ff_panorama_outdated(&camera, origin, &sight, Z_WU, 120 * 256 / 20));
 }
 
 /* Faces hit by a fine grid of rays over the picture. */
@@ -166,7 +195,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(figures_of_the_paper), cmocka_unit_test(limits_do_not_blow_up),
         cmocka_unit_test(motion_in_any_direction), cmocka_unit_test(no_error_allowed_means_no_motion_allowed),
-        cmocka_unit_test(faces_in_view_miss_none), cmocka_unit_test(straight_ahead_is_one_face),
+        cmocka_unit_test(only_what_is_shown_counts), cmocka_unit_test(faces_in_view_miss_none),
+        cmocka_unit_test(straight_ahead_is_one_face),
         cmocka_unit_test(left_behind_beyond_half)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -17,9 +17,10 @@ void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panora
 
 void ff_panorama_drop(ff_panorama *panorama) { (void)panorama; }
 
-int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int hold, int64_t now_us)
+int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, const ff_motion *motion, int hold,
+                       int64_t now_us)
 {
-    (void)panorama, (void)requests, (void)camera, (void)hold, (void)now_us;
+    (void)panorama, (void)requests, (void)camera, (void)motion, (void)hold, (void)now_us;
     return 0;
 }
 
