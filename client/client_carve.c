@@ -87,7 +87,7 @@ static int carve_textures(ff_client *client)
     textures->device = client->device;
     if (!client->has_textures)
         return FF_OK;
-    size_t bytes = (size_t)2 << (2 * client->info.texture_log2), count = client->arena.bytes / 4 / bytes;
+    size_t bytes = (size_t)4 << (2 * client->info.texture_log2), count = client->arena.bytes / 8 * 3 / bytes;
     textures->slot_count = (uint16_t)(count < TEXTURES_MIN ? TEXTURES_MIN : count > TEXTURES_MAX ? TEXTURES_MAX : count);
     textures->slot = ff_arena_take(&client->arena, textures->slot_count * sizeof *textures->slot);
     return textures->slot ? FF_OK : FF_ERR_MEMORY;
@@ -97,7 +97,7 @@ static int carve_textures(ff_client *client)
 static uint32_t texture_bytes(const ff_client *client, unsigned face_size)
 {
     size_t side = ((size_t)1 << client->info.texture_log2) + 2, face = (size_t)face_size + 2, share = client->arena.bytes / 8;
-    size_t ground = client->has_textures ? client->textures.slot_count * (side * side * 2 + TEXTURE_ROUNDING) : 0;
+    size_t ground = client->has_textures ? client->textures.slot_count * (side * side * 4 + TEXTURE_ROUNDING) : 0;
     size_t faces = FF_PANORAMA_MESHES * (face * face * 2 + TEXTURE_ROUNDING);
     faces = !face_size ? 0 : faces < share ? faces : share;
     return (uint32_t)(ground + faces + client->arena.bytes / 16 + TEXT_BYTES);

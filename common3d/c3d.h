@@ -90,7 +90,7 @@ typedef struct c3d_desc {
     /* For back ends that hold the picture themselves (soft); the others leave these alone. */
     uint8_t frame_format;        /* C3D_RGB565 (0, default) or C3D_RGBA8888 */
     uint16_t width, height;      /* largest viewport, default 240x320; in a larger one nothing is drawn */
-    uint32_t texture_bytes;      /* of all textures together, with a rim of one texel each; default 16 KB a texture */
+    uint32_t texture_bytes;      /* of all textures together, with a rim of one texel each; 4 bytes a texel, RGBA5551 2; default 32 KB each */
 } c3d_desc;
 
 /* Counters since c3d_open, and of the frame being drawn (or last drawn). */

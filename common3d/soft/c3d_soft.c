@@ -5,7 +5,7 @@
 
 #define WIDTH_DEFAULT 240
 #define HEIGHT_DEFAULT 320
-#define TEXTURE_BYTES_DEFAULT 16384 /* for each texture */
+#define TEXTURE_BYTES_DEFAULT 32768 /* for each texture */
 #define ROWS_MAX 4096
 #define WHITE 0xFFFFFFFFu
 

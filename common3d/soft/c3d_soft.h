@@ -11,9 +11,10 @@
  *   whatever their origins.
  *   Depth: near/z, 30 fraction bits, 32 bits a pixel; the greater hides the smaller, of equals the later is drawn. It is linear over
  *   the screen. 0: nothing was drawn here, 1: a backdrop.
- *   Textures: bilinear, clamped to the edge, with 5-bit weights where a pixel takes its colour from the texture alone into RGB565,
+ *   Textures: bilinear, clamped to the edge, with 4-bit weights where a pixel takes its colour from the texture alone into RGB565,
  *   8-bit ones elsewhere. In long RGB565 spans over which a texel is as wide as 4 (8) pixels every 4th (8th) pixel is sampled and those
- *   between are blended. Each texture is stored with a rim one texel wide, so that no pixel of a span needs a test.
+ *   between are blended. Each texture is kept with a rim one texel wide, so that no pixel of a span needs a test;
+ *   RGB565 in 32 bits a texel, its fields apart (soft_sample.h).
  *   Perspective: triangles up to 16 pixels, white and textured, over which depth changes by at most 1/8, and others up to 128 pixels over
  *   which linear interpolation is off by at most 1/4 texel (1/16 of the colours' difference), are interpolated linearly; all the rest is
  *   divided exactly every 8 to 64 pixels, by how fast depth changes: at one texel a pixel the error between is 1/4 texel, too.

@@ -118,7 +118,7 @@ void soft_span_backdrop(soft_state *state, const soft_segment *segment)
 static inline uint32_t blend(uint32_t a, uint32_t b, uint32_t c, uint32_t d, uint32_t x, uint32_t y)
 {
     uint32_t xy = x * y >> 5;
-    uint32_t sum = a * (32 - x - y + xy) + b * (x - xy) + c * (y - xy) + d * xy + SOFT_SPREAD_HALF;
+    uint32_t sum = a * (32 - x - y + xy) + b * (x - xy) + c * (y - xy) + d * xy + 16 * SOFT_SPREAD_ONE;
     sum = sum >> 5 & SOFT_SPREAD;
     return (sum | sum >> 16) & 0xFFFF;
 }
@@ -134,7 +134,7 @@ static inline uint32_t spread_5551(uint32_t texel)
 void soft_span_holes(soft_state *state, const soft_segment *segment)
 {
     const soft_texture *texture = state->paint.texture;
-    const uint16_t *texels = soft_texel_zero(texture);
+    const uint16_t *texels = (const uint16_t *)(const void *)texture->texels + texture->stride + 1;
     int32_t stride = texture->stride, s = segment->value[SOFT_S], t = segment->value[SOFT_T];
     int32_t ds = segment->step[SOFT_S], dt = segment->step[SOFT_T];
     if (!soft_on_texture(texture, segment) || state->paint.depth != SOFT_DEPTH_UNCOVERED) {

@@ -1,36 +1,39 @@
-/* Bilinear samples of 16-bit textures: a texel's fields are spread over 32 bits, 00000gggggg00000rrrrr000000bbbbb, so that each has five
- * bits of room above it. Four texels times weights that add up to 32 take four multiplications for all three colours; sums of fields
- * below 2^6 * 2^5 never reach the next field. */
+/* Bilinear samples of RGB565 textures. A texel's fields are spread over 32 bits: 00000gggggg00000rrrrr000000bbbbb. They are kept twice as
+ * large and with a half, 0000ggggggG0000rrrrrR00000bbbbbB, each with four bits of room above it: four texels times weights that add up
+ * to 16 take four multiplications for all three colours, never reach the next field and come out rounded. */
 #ifndef SOFT_SAMPLE_H
 #define SOFT_SAMPLE_H
 
 #include "soft_local.h"
 
 #define SOFT_SPREAD 0x07E0F81Fu
-#define SOFT_SPREAD_HALF 0x02008010u /* half of the last place of each field, times 32 */
+#define SOFT_SPREAD_ONE 0x00200801u /* the last place of each field */
 
 static inline uint32_t soft_spread(uint32_t texel) { return (texel | texel << 16) & SOFT_SPREAD; }
 
-static inline const uint16_t *soft_texel_zero(const soft_texture *texture)
+static inline uint32_t soft_kept(uint32_t texel) { return 2 * soft_spread(texel) + SOFT_SPREAD_ONE; }
+
+/* Of a texture in RGB565. */
+static inline const uint32_t *soft_texel_zero(const soft_texture *texture)
 {
-    return (const uint16_t *)(const void *)texture->texels + texture->stride + 1;
+    return (const uint32_t *)(const void *)texture->texels + texture->stride + 1;
 }
 
-/* Between four texels, from the upper left one; x and y in 1/32 texel. */
-static inline uint32_t soft_blend_565(const uint16_t *at, uint32_t stride, uint32_t x, uint32_t y)
+/* Between four texels, from the upper left one; x and y in 1/16 texel. */
+static inline uint32_t soft_blend_565(const uint32_t *at, uint32_t stride, uint32_t x, uint32_t y)
 {
-    uint32_t xy = x * y >> 5;
-    uint32_t sum = soft_spread(at[0]) * (32 - x - y + xy) + SOFT_SPREAD_HALF;
-    sum += soft_spread(at[1]) * (x - xy);
+    uint32_t xy = x * y >> 4, right = x - xy, below = y - xy;
+    uint32_t sum = at[0] * (16 - x - below);
+    sum += at[1] * right;
     at += stride;
-    sum += soft_spread(at[0]) * (y - xy);
-    sum += soft_spread(at[1]) * xy;
+    sum += at[0] * below;
+    sum += at[1] * xy;
     return sum >> 5 & SOFT_SPREAD;
 }
 
-static inline uint32_t soft_sample_565(const uint16_t *texels, int32_t stride, int32_t s, int32_t t)
+static inline uint32_t soft_sample_565(const uint32_t *texels, int32_t stride, int32_t s, int32_t t)
 {
-    return soft_blend_565(texels + (t >> 16) * stride + (s >> 16), (uint32_t)stride, (uint32_t)s << 16 >> 27, (uint32_t)t << 16 >> 27);
+    return soft_blend_565(texels + (t >> 16) * stride + (s >> 16), (uint32_t)stride, (uint32_t)s << 16 >> 28, (uint32_t)t << 16 >> 28);
 }
 
 static inline uint16_t soft_pixel_of(uint32_t spread_pixel) { return (uint16_t)(spread_pixel | spread_pixel >> 16); }

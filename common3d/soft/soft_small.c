@@ -92,7 +92,7 @@ static inline void texture_row(soft_state *state, uint32_t first, uint32_t count
                                const int32_t step[2])
 {
     const soft_texture *texture = state->paint.texture;
-    const uint16_t *texels = soft_texel_zero(texture);
+    const uint32_t *texels = soft_texel_zero(texture);
     int32_t stride = texture->stride, s = at[0], t = at[1], ds = step[0], dt = step[1];
     uint32_t *depth = state->depth + first, *end = depth + count;
     uint16_t *pixel = (uint16_t *)(void *)state->colour + first;

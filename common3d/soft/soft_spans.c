@@ -2,19 +2,18 @@
 #include "soft_ramp.h"
 #include "soft_sample.h"
 
-#define SPREAD_ONE 0x00200801u  /* the last place of each field */
 #define MAGNIFIED 16384         /* texels a pixel, Q16 */
 
 /* Where 2^log2 pixels lie within a texel only the first of them is sampled; those up to the next sample are blended of both, by adding
  * the same difference again and again. Leaves 1 to 2^log2 pixels. */
-static inline uint16_t *magnified_run(const uint16_t *texels, int32_t stride, uint16_t *pixel, const uint16_t *end,
+static inline uint16_t *magnified_run(const uint32_t *texels, int32_t stride, uint16_t *pixel, const uint16_t *end,
                                       const int32_t from[2], const int32_t step[2], int log2)
 {
     int32_t s = from[0], t = from[1], ds = step[0] * (1 << log2), dt = step[1] * (1 << log2);
     uint32_t last = soft_sample_565(texels, stride, s, t);
     while (end - pixel > 1 << log2) {
         uint32_t next = soft_sample_565(texels, stride, s += ds, t += dt);
-        uint32_t sum = (last << log2) + (SPREAD_ONE << log2 >> 1), change = next - last;
+        uint32_t sum = (last << log2) + (SOFT_SPREAD_ONE << log2 >> 1), change = next - last;
         for (int i = 0; i < 1 << log2; i++, sum += change) *pixel++ = soft_pixel_of(sum >> log2 & SOFT_SPREAD);
         last = next;
     }
@@ -28,7 +27,7 @@ static int slower_than(const int32_t step[2], int32_t limit)
 
 static void texture_run(const soft_texture *texture, uint16_t *pixel, const uint16_t *end, const int32_t from[2], const int32_t step[2])
 {
-    const uint16_t *texels = soft_texel_zero(texture);
+    const uint32_t *texels = soft_texel_zero(texture);
     uint16_t *left = pixel;
     int32_t stride = texture->stride;
     if (end - pixel > 8 && slower_than(step, MAGNIFIED / 2))

@@ -1,9 +1,12 @@
 /* Textures in the block: a heap of units, first fit, and the bilinear sample of any format. */
-#include "soft_local.h"
+#include "soft_sample.h"
 
 #include <string.h>
 
 static uint32_t texel_bytes(enum c3d_texture_format format) { return format == C3D_RGBA8888 ? 4 : 2; }
+
+/* RGB565 is kept spread. */
+static uint32_t kept_bytes(enum c3d_texture_format format) { return format == C3D_RGBA5551 ? 2 : 4; }
 
 static int log2_of(uint32_t power) { return 31 - soft_leading_zeros(power); }
 
@@ -21,17 +24,22 @@ static uint32_t find_units(const soft_state *state, uint32_t units)
     return state->heap_units;
 }
 
-static void copy_row(uint8_t *out, const uint8_t *in, uint32_t width, uint32_t bytes)
+/* With a texel of rim on either side. */
+static void copy_row(uint8_t *out, const uint8_t *in, uint32_t width, enum c3d_texture_format format)
 {
-    memcpy(out, in, bytes);
-    memcpy(out + bytes, in, width * bytes);
-    memcpy(out + (width + 1) * bytes, in + (width - 1) * bytes, bytes);
+    uint32_t bytes = kept_bytes(format);
+    if (format == C3D_RGB565)
+        for (uint32_t x = 0; x < width; x++) ((uint32_t *)(void *)out)[x + 1] = soft_kept(((const uint16_t *)(const void *)in)[x]);
+    else
+        memcpy(out + bytes, in, width * bytes);
+    memcpy(out, out + bytes, bytes);
+    memcpy(out + (width + 1) * bytes, out + width * bytes, bytes);
 }
 
 uint32_t soft_texture_upload(void *opaque, enum c3d_texture_format format, uint32_t width, uint32_t height, const void *pixels)
 {
     soft_state *state = opaque;
-    uint32_t slot = 0, bytes = texel_bytes(format), row_bytes = (width + 2) * bytes;
+    uint32_t slot = 0, in_bytes = texel_bytes(format), row_bytes = (width + 2) * kept_bytes(format);
     uint32_t units = (row_bytes * (height + 2) + SOFT_HEAP_UNIT - 1) / SOFT_HEAP_UNIT;
     while (slot < state->texture_count && state->textures[slot].units) slot++;
     uint32_t first = slot < state->texture_count ? find_units(state, units) : state->heap_units;
@@ -44,7 +52,7 @@ uint32_t soft_texture_upload(void *opaque, enum c3d_texture_format format, uint3
     memset(state->heap_used + first, 1, units);
     for (uint32_t row = 0; row < height + 2; row++) {
         uint32_t from = row == 0 ? 0 : row > height ? height - 1 : row - 1;
-        copy_row(texture->texels + row * row_bytes, (const uint8_t *)pixels + (size_t)from * width * bytes, width, bytes);
+        copy_row(texture->texels + row * row_bytes, (const uint8_t *)pixels + (size_t)from * width * in_bytes, width, format);
     }
     return slot + 1;
 }
@@ -57,6 +65,8 @@ void soft_texture_free(void *opaque, uint32_t name)
     texture->units = 0;
 }
 
+static int32_t widened(uint32_t value, int bits) { return (int32_t)(value << (8 - bits) | value >> (2 * bits - 8)); }
+
 /* Adds a texel times a weight of at most 2^16. */
 static void add_texel(const soft_texture *texture, int32_t column, int32_t row, int32_t weight, int32_t sum[4])
 {
@@ -64,15 +74,14 @@ static void add_texel(const soft_texture *texture, int32_t column, int32_t row, 
     int32_t channel[4];
     if (texture->format == C3D_RGBA8888) {
         for (int i = 0; i < 4; i++) channel[i] = texture->texels[at * 4 + (size_t)i];
+    } else if (texture->format == C3D_RGB565) {
+        uint32_t texel = soft_pixel_of(((const uint32_t *)(const void *)texture->texels)[at] >> 1 & SOFT_SPREAD);
+        channel[0] = widened(texel >> 11, 5), channel[1] = widened(texel >> 5 & 63, 6), channel[2] = widened(texel & 31, 5);
+        channel[3] = 255;
     } else {
         uint32_t texel = ((const uint16_t *)(const void *)texture->texels)[at];
-        int green_bits = texture->format == C3D_RGB565 ? 6 : 5;
-        int32_t red = (int32_t)(texel >> 11), green = (int32_t)(texel >> (11 - green_bits)) & ((1 << green_bits) - 1);
-        int32_t blue = (int32_t)(texture->format == C3D_RGB565 ? texel : texel >> 1) & 31;
-        channel[0] = red << 3 | red >> 2;
-        channel[1] = green_bits == 6 ? green << 2 | green >> 4 : green << 3 | green >> 2;
-        channel[2] = blue << 3 | blue >> 2;
-        channel[3] = texture->format == C3D_RGB565 || (texel & 1) ? 255 : 0;
+        for (int i = 0; i < 3; i++) channel[i] = widened(texel >> (11 - 5 * i) & 31, 5);
+        channel[3] = texel & 1 ? 255 : 0;
     }
     for (int i = 0; i < 4; i++) sum[i] += channel[i] * weight;
 }

@@ -74,15 +74,15 @@ static inline int32_t part_of(const slopes *slope, int32_t weight)
 
 static inline void paint_span(soft_state *state, const span *at, uint32_t w, uint32_t dw, uint32_t st, uint32_t dst)
 {
-    const uint16_t *texels = (const uint16_t *)(const void *)state->paint.texture->texels;
+    const uint32_t *texels = (const uint32_t *)(const void *)state->paint.texture->texels;
     uint32_t stride = state->paint.texture->stride;
     uint32_t *depth = state->depth + at->first, *end = depth + at->count;
     uint16_t *pixel = (uint16_t *)(void *)state->colour + at->first;
     do {
         if (w >= *depth) {
             *depth = w;
-            const uint16_t *texel = texels + (st << 16 >> 25) * stride + (st >> 25);
-            *pixel = soft_pixel_of(soft_blend_565(texel, stride, st << 7 >> 27, st << 23 >> 27));
+            const uint32_t *texel = texels + (st << 16 >> 25) * stride + (st >> 25);
+            *pixel = soft_pixel_of(soft_blend_565(texel, stride, st << 7 >> 28, st << 23 >> 28));
         }
         depth++, pixel++, w += dw, st += dst;
     } while (depth < end);
