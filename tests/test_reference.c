@@ -22,7 +22,7 @@
 #define M FF_WU_PER_METRE
 #define QUARTER_PX 0.25
 /* What is nearer may be more than 1/4 px off where a pixel is as narrow as here (20 degrees over 640 px): GL's single precision costs
- * up to half a millimetre, the units of the integer back end a whole one where the far plane is 100 km away. */
+ * up to half a millimetre, the units of the integer back end one and a half where the far plane is 100 km away. */
 #define NEAR_M 8
 #define HEIGHTS_M 9000 /* between the lowest and the highest of ordinary terrains, at most */
 
