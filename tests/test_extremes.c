@@ -504,6 +504,7 @@ static void allowed_error_to_zero(void **state)
         extreme_row_value(row, fabs((double)ff_panorama_sideways_max(error, RULE_Z_WU, 53209) - aside));
         time_limit(&row->cost, error, 30720);
     }
+    extreme_row_expect(row, ff_panorama_forwards_max(0, RULE_Z_WU, 0) == 0, "motion with neither error nor width");
     c3d_camera camera = rule_camera(1);
     extreme_row_expect(row, outdated(&camera, taken, 0), "motion without any error allowed");
     camera = rule_camera(0);
