@@ -64,11 +64,29 @@ static void square_root_is_the_floor(void **state)
     assert_int_equal(c3d_isqrt64(UINT64_MAX), UINT32_MAX);
 }
 
-__extension__ typedef __int128 wide;
+/* 128 bits, for machines that have none. */
+typedef struct wide { uint64_t high, low; } wide;
 
-static int64_t saturate(wide value)
+static wide product(uint64_t a, uint64_t b)
 {
-    return value > INT64_MAX ? INT64_MAX : value < INT64_MIN ? INT64_MIN : (int64_t)value;
+    uint64_t a0 = a & UINT32_MAX, a1 = a >> 32, b0 = b & UINT32_MAX, b1 = b >> 32;
+    uint64_t middle = a1 * b0 + (a0 * b0 >> 32), carried = a0 * b1 + (middle & UINT32_MAX);
+    return (wide){a1 * b1 + (middle >> 32) + (carried >> 32), a * b};
+}
+
+static int is_less(wide a, wide b) { return a.high < b.high || (a.high == b.high && a.low < b.low); }
+
+static uint64_t magnitude(int64_t value) { return value < 0 ? 0 - (uint64_t)value : (uint64_t)value; }
+
+/* a * b / c, rounded towards zero and held within 64 bits. */
+static int is_quotient(int64_t quotient, int64_t a, int64_t b, int64_t c)
+{
+    wide whole = product(magnitude(a), magnitude(b));
+    uint64_t divisor = magnitude(c), size = magnitude(quotient);
+    int negative = ((a < 0) ^ (b < 0) ^ (c < 0)) && (whole.high || whole.low);
+    uint64_t limit = (uint64_t)INT64_MAX + (unsigned)negative;
+    if (!is_less(whole, product(limit + 1, divisor))) return quotient == (negative ? INT64_MIN : INT64_MAX);
+    return (size == 0 || (quotient < 0) == negative) && !is_less(whole, product(size, divisor)) && is_less(whole, product(size + 1, divisor));
 }
 
 static void muldiv_equals_128_bits(void **state)
@@ -80,7 +98,7 @@ static void muldiv_equals_128_bits(void **state)
     for (size_t a = 0; a < edges; a++)
         for (size_t b = 0; b < edges; b++)
             for (size_t c = 1; c < edges; c++)
-                assert_true(c3d_muldiv64(edge[a], edge[b], edge[c]) == saturate((wide)edge[a] * edge[b] / edge[c]));
+                assert_true(is_quotient(c3d_muldiv64(edge[a], edge[b], edge[c]), edge[a], edge[b], edge[c]));
     sys_random random;
     sys_random_seed(&random, 2, 1);
     for (uint32_t i = 0; i < 200000; i++) {
@@ -90,7 +108,7 @@ static void muldiv_equals_128_bits(void **state)
             word[j] = (int64_t)bits >> sys_random_below(&random, 63);
         }
         if (word[2] == 0) word[2] = 1;
-        assert_true(c3d_muldiv64(word[0], word[1], word[2]) == saturate((wide)word[0] * word[1] / word[2]));
+        assert_true(is_quotient(c3d_muldiv64(word[0], word[1], word[2]), word[0], word[1], word[2]));
     }
 }
 
@@ -187,10 +205,15 @@ static void eye_space_of_far_points(void **state)
         c3d_to_eye(&r, offset, eye);
         c3d_to_eye_q14(&r, offset, fine);
         for (int row = 0; row < 3; row++) {
-            wide exact = 0;
-            for (int i = 0; i < 3; i++) exact += (wide)r.m[row][i] * offset[i];
-            assert_true(llabs(eye[row] - (int64_t)(exact >> 30)) <= 1);
-            assert_true(llabs(fine[row] - (int64_t)(exact >> 16)) <= 1);
+            int64_t high = 0, low = 0; /* of the sum, in parts of 2^16: exact */
+            for (int i = 0; i < 3; i++) {
+                int64_t rest = offset[i] & 0xFFFF;
+                high += r.m[row][i] * ((offset[i] - rest) / 65536);
+                low += r.m[row][i] * rest;
+            }
+            int64_t exact = high + (low >> 16);
+            assert_true(llabs(eye[row] - (exact >> 14)) <= 1);
+            assert_true(llabs(fine[row] - exact) <= 1);
         }
     }
 }
