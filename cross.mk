@@ -1,7 +1,7 @@
 # Builds for other machines, included by the Makefile: the handheld (armv6, soft float), bare metal (Cortex-M, no system), the unit tests on
 # 32-bit ARM and on a big-endian machine, instruction counts and sizes.
 #
-# Features left out: make handheld NO="panorama textures network jpeg hud deflate", any of them. Whole files go; client/without and its
+# Features left out: make handheld NO="panorama textures network jpeg hud deflate balance", any of them. Whole files go; client/without and its
 # like hold the few lines that stand in for them.
 
 # ---- packages: compilers and qemu are installed; libraries for other machines are unpacked under build/cross, see tools/cross-libs.sh ----
@@ -17,7 +17,7 @@ $(CROSS_STAMP): tools/cross-libs.sh
 	@touch $@
 
 # ---- what runs on the handheld, and what a feature left out takes away ----
-FEATURES := panorama textures network jpeg hud deflate
+FEATURES := panorama textures network jpeg hud deflate balance
 NO ?=
 $(if $(filter-out $(FEATURES),$(NO)),$(error NO=$(NO): the features are $(FEATURES)))
 
@@ -39,6 +39,8 @@ WITHOUT_hud := sim/handheld_hud.c common3d/c3d_text.c
 INSTEAD_hud := sim/without/handheld_no_hud.c
 WITHOUT_deflate := protocol/ff_inflate.c protocol/ff_crc.c
 INSTEAD_deflate := protocol/without/ff_no_inflate.c protocol/without/ff_crc_small.c
+WITHOUT_balance := client/ff_balance.c client/client_balance.c
+INSTEAD_balance := client/without/ff_no_balance.c
 # $(call device,SOURCES,FEATURES LEFT OUT)
 device = $(filter-out $(foreach f,$(2),$(WITHOUT_$f)),$(1)) $(foreach f,$(2),$(INSTEAD_$f))
 
@@ -152,7 +154,7 @@ baremetal: $(BARE_ELF) ## link the core for a Cortex-M without a system, over th
 -include $(shell find build/baremetal -name '*.d' 2>/dev/null)
 
 # ---- make size: code by part and by feature, worst stack, and what stays resident in a flight ----
-NO_ALL := panorama textures network jpeg hud deflate
+NO_ALL := panorama textures network jpeg hud deflate balance
 .PHONY: size
 size: build/handheld/farfield-handheld $(TCG_COUNT) build/handheld/size.tape ## code size by part and feature, stack, memory touched: build/bench/size.md
 	@for f in $(NO_ALL) "$(NO_ALL)"; do $(MAKE) -s NO="$$f" handheld-program || exit 1; done

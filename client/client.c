@@ -200,6 +200,7 @@ void ff_client_set_quality(ff_client *client, const ff_quality *quality)
     client->desc.quality = *quality;
     default_quality(&client->desc.quality);
     client->dirty = 1;
+    ff_client_balance_begin(client, 0);
 }
 
 void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama)
@@ -221,6 +222,7 @@ void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama)
     ff_requests_cancel_panoramas(&client->requests);
     ff_panorama_drop(&client->panorama);
     client->panorama.desc = client->desc.panorama;
+    ff_client_balance_begin(client, 0);
 }
 
 void ff_client_set_show(ff_client *client, unsigned show)
@@ -331,4 +333,9 @@ void ff_client_get_stats(const ff_client *client, ff_client_stats *stats)
     stats->frames_skipped = client->frames_skipped;
     stats->memory_used = client->arena.used;
     stats->memory_bytes = client->desc.memory_bytes;
+    stats->quality = ff_client_quality(client);
+    if (client->panorama.desc.enabled && client->panorama.face_size && !client->all_client)
+        stats->back_plane_wu = stats->quality.view_wu;
+    stats->panorama_error_q8 = client->panorama.desc.error_px_q8;
+    ff_client_balance_stats(client, &stats->balance);
 }

@@ -250,6 +250,7 @@ int ff_client_carve(ff_client *client)
         return rc;
     ff_arena_seal(&client->arena);
     client->have_terrain = client->dirty = 1;
+    ff_client_balance_begin(client, 1);
     return FF_OK;
 }
 

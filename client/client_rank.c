@@ -53,7 +53,8 @@ static void want_ahead(ff_client *client)
 void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality, int64_t now_us)
 {
     ff_requests_rank_begin(&client->requests);
-    ff_panorama_want(&client->panorama, &client->requests, &view->camera, now_us);
+    if (!client->all_client)
+        ff_panorama_want(&client->panorama, &client->requests, &view->camera, now_us);
     want_tree(client);
     if (client->has_textures)
         want_textures(client, view, quality);

@@ -7,12 +7,12 @@
 #define NEAR_WU_MAX (1 << 20)
 #define LOW_POWER_DIVISOR 2       /* C halved, pixels of error doubled */
 
-/* What is in force: as set, or coarser while power is low. */
-static ff_quality quality_in_force(const ff_client *client)
+ff_quality ff_client_quality(const ff_client *client)
 {
     ff_quality quality = client->desc.quality;
-    if (client->panorama.desc.enabled && client->panorama.face_size)
-        quality.view_wu = client->desc.panorama.back_plane_wu;
+    ff_client_balance_quality(client, &quality);
+    if (client->panorama.desc.enabled && client->panorama.face_size && !client->all_client)
+        quality.view_wu = ff_panorama_front_wu(&client->panorama);
     if (ff_client_low_power(client)) {
         quality.c_q8 /= LOW_POWER_DIVISOR;
         quality.error_px_q8 *= LOW_POWER_DIVISOR;
@@ -107,7 +107,7 @@ static void make_view(const ff_client *client, const c3d_camera *camera, const f
     if (view->camera.far_wu <= view->camera.near_wu) /* the box of ground to draw reaches sqrt(3) times as far; and O is not here */
         view->camera.far_wu = quality->view_wu > INT32_MAX / 3 ? INT32_MAX : 3 * quality->view_wu;
     memcpy(view->centre_wu, camera->pos_wu, sizeof view->centre_wu);
-    if (client->panorama.desc.enabled && client->panorama.shown >= 0)
+    if (client->panorama.desc.enabled && client->panorama.shown >= 0 && !client->all_client)
         memcpy(view->centre_wu, client->panorama.set[client->panorama.shown].position_wu, sizeof view->centre_wu);
 }
 
@@ -121,17 +121,19 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera
     }
     unsigned taken = take_new_data(client, now_us, &pictures_changed);
     int moved = !client->has_camera || !same_camera(&client->camera, camera);
-    ff_quality quality = quality_in_force(client);
+    ff_quality quality = ff_client_quality(client);
     ff_view view;
     make_view(client, camera, &quality, &view);
+    ff_client_balance_step(client, &view.camera, now_us);
     ff_motion_feed(&client->motion, now_us, camera->pos_wu);
-    int turned = ff_panorama_update(&client->panorama, &client->requests, &view.camera, &client->motion, ff_client_low_power(client),
-                                    now_us);
+    int hold = ff_client_low_power(client) || client->all_client;
+    int turned = ff_panorama_update(&client->panorama, &client->requests, &view.camera, &client->motion, hold, now_us);
     if (!taken && !moved && !turned && !client->dirty && !client->unranked) {
         client->frames_skipped++;
         return 0;
     }
-    make_view(client, camera, &quality, &view); /* the panorama's centre may be another one now */
+    quality = ff_client_quality(client);
+    make_view(client, camera, &quality, &view); /* the panorama's centre and front may be others now */
     ff_tree_select(client->tree, &view, &quality);
     ff_client_rank(client, &view, &quality, now_us);
     uint64_t hash = ff_terrain_view_hash(&client->view, client->tree);
@@ -180,7 +182,7 @@ static void fit_planes(const ff_client *client, c3d_camera *camera)
 
 static void set_fog(const ff_client *client, c3d_frame *frame)
 {
-    ff_quality quality = quality_in_force(client);
+    ff_quality quality = ff_client_quality(client);
     if (client->panorama.shown >= 0 || (client->show & FF_SHOW_NO_FOG))
         return; /* the join with the panorama must not show */
     frame->fog_start_wu = quality.view_wu / 2;

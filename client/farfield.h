@@ -42,6 +42,35 @@ typedef struct ff_panorama_desc {
     uint8_t hold_back;        /* Hybrid's congestion flag: 0 default (one set outstanding at most), 1 never hold back */
 } ff_panorama_desc;
 
+/* Server and client share the work at run time (client/ff_balance.h): detail, depth, back plane and the panorama's error follow a frame
+ * budget and the link, between the limits given here (coarsest, nearest) and the quality and panorama set (finest). Zero in any field
+ * takes the default given. */
+enum ff_balance_mode {
+    FF_BALANCE_OFF,
+    FF_BALANCE_ON,
+    FF_BALANCE_ALL_SERVER,    /* stays at that end: coarsest ground up to the nearest back plane, the rest is panorama */
+    FF_BALANCE_ALL_CLIENT     /* stays at that end: the finest ground as far as quality.view_wu, no panoramas */
+};
+
+typedef struct ff_balance_desc {
+    enum ff_balance_mode mode;
+    uint32_t frame_budget;    /* what a frame may cost: triangles, or the unit of ff_client_frame_cost; 0: no limit */
+    uint32_t link_bytes_s;    /* what may come in a second, and never more than link_percent of what the link is found to carry; 0: that alone */
+    uint8_t link_percent;     /* also of the time in which something in view may have to wait for the link; default 60 */
+    int32_t c_min_q8;         /* FF_MEASURE_DISTANCE; default a quarter of quality.c_q8 */
+    int32_t error_px_max_q8;  /* FF_MEASURE_PIXELS; default eight times quality.error_px_q8 */
+    uint8_t depth_min;        /* default: quality.depth_max less 3, at least 2; of no effect where depth_max is 0 */
+    int32_t back_plane_min_wu;      /* default a quarter of panorama.back_plane_wu; the furthest is quality.view_wu */
+    int32_t panorama_error_max_q8;  /* default four times panorama.error_px_q8 */
+} ff_balance_desc;
+
+typedef struct ff_balance_stats {
+    uint8_t share_percent;    /* 0 all server, 100 all client */
+    uint8_t fidelity_percent; /* 100 as set, less to spare the link */
+    int32_t frame_load_q8, link_load_q8; /* log2(cost / budget) as last measured; above 0: over budget */
+    uint32_t moves, turns;    /* levels changed; of those, against the direction of the change before */
+} ff_balance_stats;
+
 typedef struct ff_client_desc {
     void *memory;
     size_t memory_bytes;      /* at least ff_client_bytes_min(); more memory holds finer ground */
@@ -53,6 +82,7 @@ typedef struct ff_client_desc {
     uint8_t frame_format;     /* of a back end without a GL: C3D_RGB565 (0, default) or C3D_RGBA8888 */
     ff_quality quality;       /* all zero: DISTANCE, C = 3, depth 4, sigma 1.25, view 30 km */
     ff_panorama_desc panorama;
+    ff_balance_desc balance;
     uint8_t use_thread;       /* 1: ff_client_create starts a thread that calls ff_client_work */
     uint8_t use_plain_arrays; /* 1: no vertex buffers */
     uint8_t no_textures;      /* 1: images of the terrain are not asked for */
@@ -82,6 +112,10 @@ typedef struct ff_client_stats {
     uint32_t frames_updated, frames_skipped; /* skipped: nothing changed, nothing to redraw */
     uint32_t rtt_ms, bandwidth_bytes_s;      /* as measured by the worker */
     size_t memory_used, memory_bytes;
+    ff_quality quality;                      /* in force: as set, by the balance, halved when power is low */
+    int32_t back_plane_wu;                   /* in force; 0: no panoramas */
+    int32_t panorama_error_q8;               /* in force */
+    ff_balance_stats balance;                /* zero without */
 } ff_client_stats;
 
 size_t ff_client_bytes_min(void);
@@ -104,6 +138,11 @@ void ff_client_event(ff_client *client, const sys_event *event);
  * block shared out anew and the ground asked for again. */
 void ff_client_set_quality(ff_client *client, const ff_quality *quality);
 void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama);
+/* New budgets and limits, or on and off. The shares stay where they are on their ladders and move from there. */
+void ff_client_set_balance(ff_client *client, const ff_balance_desc *balance);
+/* What the frame just drawn cost, in the unit of balance.frame_budget: microseconds, instructions. From the first call on it stands in
+ * for the triangles counted by the client. 0: triangles again. */
+void ff_client_frame_cost(ff_client *client, uint32_t cost);
 enum ff_show { FF_SHOW_WIREFRAME = 1, FF_SHOW_NODE_BORDERS = 2, FF_SHOW_NO_FOG = 4 };
 void ff_client_set_show(ff_client *client, unsigned show);
 

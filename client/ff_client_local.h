@@ -9,6 +9,7 @@
 
 #include "farfield.h"
 #include "ff_arena.h"
+#include "ff_balance.h"
 #include "ff_local.h"
 #include "ff_motion.h"
 #include "ff_panorama.h"
@@ -46,6 +47,9 @@ struct ff_client {
     ff_terrain_view view;
     ff_textures textures;
     ff_panorama panorama;
+    ff_balance balance;
+    uint32_t frame_cost;     /* as reported; 0: triangles count */
+    uint8_t all_client;      /* by the balance: no panoramas are wanted; one still shown is a backdrop until the ground is here */
     ff_sky sky;
     ff_motion motion;
     ff_refusals refusals;
@@ -66,6 +70,14 @@ int ff_client_carve(ff_client *client);
 void ff_client_uncarve(ff_client *client);
 /* client_rank.c: the request queue anew from what tree, textures, panorama and prediction want. */
 void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality, int64_t now_us);
+/* client_balance.c. begin: for a terrain just met, or after settings changed; `fresh`: from the start. step: once an update, under a
+ * terrain. quality: what the balance changes of the quality as set. */
+void ff_client_balance_begin(ff_client *client, int fresh);
+void ff_client_balance_step(ff_client *client, const c3d_camera *camera, int64_t now_us);
+void ff_client_balance_quality(const ff_client *client, ff_quality *quality);
+void ff_client_balance_stats(const ff_client *client, ff_balance_stats *stats);
+/* client_update.c: what is in force, as set, by the balance, or coarser while power is low. */
+ff_quality ff_client_quality(const ff_client *client);
 static inline int ff_client_low_power(const ff_client *client) { return client->battery_low || client->interrupted; }
 
 #endif

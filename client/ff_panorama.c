@@ -63,6 +63,7 @@ static void begin_set(ff_panorama *panorama, const c3d_camera *camera, const ff_
     int index = panorama->active == 0 ? 1 : 0;
     ff_panorama_set *set = &panorama->set[index];
     drop_set(panorama, index);
+    set->front_wu = panorama->desc.back_plane_wu;
     ff_panorama_plan(panorama, camera, motion, set);
     set->key = ++panorama->serial;
     set->asked_us = now_us;
@@ -92,7 +93,7 @@ static int take_over(ff_panorama *panorama, const c3d_camera *camera, int64_t no
         return 0;
     for (unsigned face = 0; face < FF_FACE_COUNT; face++) /* no longer expected: not there */
         if (!(next->held >> face & 1u))
-            ff_panorama_sight_face(&next->sight, face, 1, 0, 0, panorama->desc.back_plane_wu);
+            ff_panorama_sight_face(&next->sight, face, 1, 0, 0, next->front_wu);
     if (panorama->active >= 0)
         drop_set(panorama, panorama->active);
     panorama->active = panorama->next;
@@ -125,7 +126,7 @@ static int reach_further(ff_panorama *panorama, int64_t now_us)
 
 static int left_behind(const ff_panorama *panorama, const c3d_camera *camera, int index)
 {
-    return index >= 0 && ff_panorama_left_behind(camera->pos_wu, panorama->set[index].position_wu, panorama->desc.back_plane_wu);
+    return index >= 0 && ff_panorama_left_behind(camera->pos_wu, panorama->set[index].position_wu, panorama->set[index].front_wu);
 }
 
 static int refresh(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, const ff_motion *motion, int hold,
@@ -172,6 +173,13 @@ int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_c
     return changed;
 }
 
+int ff_panorama_late(const ff_panorama *panorama, const c3d_camera *camera)
+{
+    const ff_panorama_set *set = &panorama->set[panorama->active >= 0 ? panorama->active : 0];
+    return panorama->next >= 0 && panorama->active >= 0 && set->front_wu == panorama->desc.back_plane_wu &&
+           ff_panorama_set_outdated(panorama, set, camera);
+}
+
 /* Faces of `missing`, the one nearest the view's axis first: found by narrowing the view to its middle. */
 static void list_faces(ff_get_panorama *request, unsigned missing, const c3d_camera *camera)
 {
@@ -204,7 +212,7 @@ void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const 
         missing = (panorama->reach == FF_PANORAMA_ALL ? ALL_FACES : faces_soon(camera)) & ~known(set);
     if (!missing)
         return;
-    ff_get_panorama request = {.front_wu = panorama->desc.back_plane_wu, .back_wu = panorama->desc.server_back_wu,
+    ff_get_panorama request = {.front_wu = set->front_wu, .back_wu = panorama->desc.server_back_wu,
                                .face_size = panorama->face_size, .quality = panorama->desc.jpeg_quality};
     memcpy(request.position_wu, set->position_wu, sizeof request.position_wu);
     list_faces(&request, missing, camera);
@@ -244,7 +252,7 @@ static void take_image(ff_panorama *panorama, ff_panorama_set *set, const ff_new
 {
     unsigned face = item->face;
     set->held |= (uint8_t)(1u << face);
-    ff_panorama_sight_face(&set->sight, face, item->width, item->face_top_row, item->face_row_count, panorama->desc.back_plane_wu);
+    ff_panorama_sight_face(&set->sight, face, item->width, item->face_top_row, item->face_row_count, set->front_wu);
     panorama->faces++;
     if (!panorama->device)
         return;
@@ -282,7 +290,7 @@ int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now
             set->failed |= (uint8_t)bit;
         else if (item->face_empty) {
             set->empty |= (uint8_t)bit;
-            ff_panorama_sight_face(&set->sight, item->face, 1, 0, 0, panorama->desc.back_plane_wu);
+            ff_panorama_sight_face(&set->sight, item->face, 1, 0, 0, set->front_wu);
             panorama->faces_empty++;
         } else {
             take_image(panorama, set, item);

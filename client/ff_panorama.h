@@ -25,6 +25,7 @@ extern const uint8_t ff_panorama_built; /* 0: left out of this build */
 
 typedef struct ff_panorama_set {
     int32_t position_wu[3];
+    int32_t front_wu;                 /* z_front_s it was asked with */
     ff_key key;                       /* of its requests */
     int64_t asked_us, took_us;        /* until its faces in view were here: `ready` */
     uint8_t ready;
@@ -63,6 +64,12 @@ void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panora
                       unsigned face_size);
 /* Frees what the device holds. */
 void ff_panorama_drop(ff_panorama *panorama);
+/* z_back_c in force: where the set shown begins, or where one asked for now would. desc.back_plane_wu and desc.error_px_q8 may change at any
+ * time: a set taken for another back plane is outdated. */
+static inline int32_t ff_panorama_front_wu(const ff_panorama *panorama)
+{
+    return panorama->shown >= 0 ? panorama->set[panorama->shown].front_wu : panorama->desc.back_plane_wu;
+}
 /* Applies the refresh rules; `hold`: ask for nothing new. 1 when the drawn set or what is wanted changed. */
 int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, const ff_motion *motion, int hold,
                        int64_t now_us);
@@ -70,7 +77,9 @@ int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_c
 void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int64_t now_us);
 /* Takes in a face or a refusal; 1 when it belongs to a set still wanted. */
 int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now_us);
-/* ff_panorama_plan.c. Whether a set is outdated for this camera. */
+/* The set drawn is outdated, the next one still coming: more panoramas are wanted than come. */
+int ff_panorama_late(const ff_panorama *panorama, const c3d_camera *camera);
+/* ff_panorama_plan.c. Whether a set is outdated for this camera, or was taken for another back plane. */
 int ff_panorama_set_outdated(const ff_panorama *panorama, const ff_panorama_set *set, const c3d_camera *camera);
 /* Whether the set that is drawn will be when another one could be here. */
 int ff_panorama_outdated_soon(const ff_panorama *panorama, const c3d_camera *camera, const ff_motion *motion);

@@ -10,7 +10,8 @@
 
 int ff_panorama_set_outdated(const ff_panorama *panorama, const ff_panorama_set *set, const c3d_camera *camera)
 {
-    return ff_panorama_outdated(camera, set->position_wu, &set->sight, panorama->desc.back_plane_wu, panorama->desc.error_px_q8);
+    return set->front_wu != panorama->desc.back_plane_wu ||
+           ff_panorama_outdated(camera, set->position_wu, &set->sight, set->front_wu, panorama->desc.error_px_q8);
 }
 
 /* The camera where the viewer will be when a set asked for now is here. */
@@ -33,9 +34,9 @@ int ff_panorama_outdated_soon(const ff_panorama *panorama, const c3d_camera *cam
 /* What another set will show: on every side as much as the drawn one does on any; without one, all that the terrain has. */
 static void expect(const ff_panorama *panorama, ff_panorama_set *set)
 {
-    int32_t z_wu = panorama->desc.back_plane_wu, low_wu = INT32_MAX, high_wu = INT32_MIN;
+    int32_t z_wu = set->front_wu, low_wu = INT32_MAX, high_wu = INT32_MIN;
     ff_panorama_sight_terrain(&set->sight, set->position_wu, panorama->ground_wu, z_wu);
-    if (panorama->active < 0)
+    if (panorama->active < 0 || panorama->set[panorama->active].front_wu != z_wu)
         return;
     const ff_panorama_sight *drawn = &panorama->set[panorama->active].sight;
     for (unsigned face = 0; face < FF_FACE_UP; face++)
@@ -58,7 +59,7 @@ static int is_good(const ff_panorama *panorama, const c3d_camera *camera, const 
         return 0;
     for (int axis = 0; axis < 2; axis++) {
         int64_t away_wu = (int64_t)set->position_wu[axis] - camera->pos_wu[axis];
-        if (away_wu > panorama->desc.back_plane_wu / 4 || away_wu < -panorama->desc.back_plane_wu / 4)
+        if (away_wu > set->front_wu / 4 || away_wu < -set->front_wu / 4)
             return 0; /* the client's own ground lies round it */
     }
     expect(panorama, set);

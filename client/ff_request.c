@@ -342,6 +342,16 @@ void ff_requests_lost(ff_requests *requests)
     sys_mutex_unlock(&requests->mutex);
 }
 
+int ff_requests_waiting(ff_requests *requests)
+{
+    int waiting = 0;
+    sys_mutex_lock(&requests->mutex);
+    for (unsigned i = 0; !waiting && i < requests->slot_count; i++)
+        waiting = requests->slot[i].state == FF_REQUEST_QUEUED && requests->slot[i].rank <= FF_CLASS_IN_VIEW;
+    sys_mutex_unlock(&requests->mutex);
+    return waiting;
+}
+
 void ff_requests_get_counts(ff_requests *requests, ff_request_counts *counts, uint64_t *hash)
 {
     sys_mutex_lock(&requests->mutex);

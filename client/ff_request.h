@@ -77,6 +77,8 @@ void ff_requests_rank_begin(ff_requests *requests);
 int ff_requests_want(ff_requests *requests, enum ff_request_kind kind, ff_key key, enum ff_request_class rank, uint32_t priority,
                      const ff_get_panorama *panorama);
 void ff_requests_rank_end(ff_requests *requests);
+/* Something in view is queued: wanted and not yet sent. */
+int ff_requests_waiting(ff_requests *requests);
 /* Asks for cancellation of a panorama: dropped when queued. 1 when it is still under way. */
 int ff_requests_cancel(ff_requests *requests, ff_key key);
 /* The same for all panoramas. */

@@ -62,6 +62,7 @@ static int apply_event(fly_flight *flight, const fly_event *what, double t_s)
     fly_world *world = flight->world;
     sys_event event = { .time_us = world->now_us };
     ff_panorama_desc panorama = flight->options->panorama;
+    ff_balance_desc balance = flight->options->balance;
     switch (what->kind) {
     case FLY_LOW_BATTERY:
     case FLY_BATTERY_OK:
@@ -88,6 +89,10 @@ static int apply_event(fly_flight *flight, const fly_event *what, double t_s)
     case FLY_LINK:
         if (world->link && sim_link_change(world->link, &what->link, world->now_us) != FF_OK)
             return fail("link", ff_error_text(FF_ERR_MEMORY));
+        break;
+    case FLY_BUDGET:
+        balance.frame_budget = what->budget;
+        ff_client_set_balance(world->client, &balance);
         break;
     case FLY_TELEPORT:
         fly_path_teleport(&world->path, t_s, what->place[0], what->place[1]);
@@ -117,8 +122,9 @@ static int fill_audit(fly_flight *flight, fly_sample *sample)
     fly_world *world = flight->world;
     const ff_tree *tree = ff_client_tree(world->client);
     const ff_panorama_desc *panorama = &flight->options->panorama;
-    int32_t back_plane_wu = panorama->back_plane_wu ? panorama->back_plane_wu : 7500 * FF_WU_PER_METRE;
-    sim_audit_view view = { .camera = flight->camera, .quality = flight->options->quality, .front_wu = back_plane_wu - back_plane_wu / 8,
+    ff_client_stats stats;
+    ff_client_get_stats(world->client, &stats);
+    sim_audit_view view = { .camera = flight->camera, .quality = stats.quality, .front_wu = stats.back_plane_wu - stats.back_plane_wu / 8,
                             .back_wu = panorama->server_back_wu ? panorama->server_back_wu : 100000 * FF_WU_PER_METRE };
     sim_audit_result result;
     sample->err_px_rms = sample->err_px_p95 = sample->err_px_max = NAN;
@@ -199,6 +205,17 @@ static void fill_stats(const fly_flight *flight, fly_sample *sample)
     sample->reconnects = stats.reconnects;
     sample->link_up = stats.link == FF_LINK_UP;
     sample->low_power = stats.low_power;
+    sample->share_percent = stats.balance.share_percent;
+    sample->fidelity_percent = stats.balance.fidelity_percent;
+    sample->frame_load = stats.balance.frame_load_q8 / 256.0;
+    sample->link_load = stats.balance.link_load_q8 / 256.0;
+    sample->balance_moves = stats.balance.moves;
+    sample->balance_turns = stats.balance.turns;
+    sample->c = stats.quality.c_q8 / 256.0;
+    sample->error_px = stats.quality.error_px_q8 / 256.0;
+    sample->depth = stats.quality.depth_max;
+    sample->back_plane_m = (double)stats.back_plane_wu / FF_WU_PER_METRE;
+    sample->panorama_error_px = stats.panorama_error_q8 / 256.0;
     sample->frames_drawn = stats.frames_updated;
     sample->geometry_hash = ff_client_geometry_hash(flight->world->client);
     sample->request_hash = ff_client_request_hash(flight->world->client);

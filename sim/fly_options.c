@@ -33,7 +33,8 @@ static const char help[] =
     "  --seed N              default 1\n"
     "  --event T:WHAT        at T seconds: low-battery battery-ok interruption resume cut panorama-on panorama-off, link=SPEC (the link\n"
     "                        is another one from now on), teleport=X,Y (shares of the terrain's width and height, each 0 to 1; the\n"
-    "                        path goes on from there and stays at a border that it would cross); may be repeated\n"
+    "                        path goes on from there and stays at a border that it would cross), budget=TRIANGLES (a frame, with\n"
+    "                        --balance); may be repeated\n"
     "  --events FILE         such events, one on a line; what follows a # is a comment\n"
     "\n"
     " the link\n"
@@ -47,9 +48,14 @@ static const char help[] =
     "  --back-plane M        where the panorama takes over, default 7500\n"
     "  --face N              texels of a panorama's face each way, 64 to 1024, default 256; a larger one needs more --memory\n"
     "  --view M              how far ground is drawn without panorama, default 30000\n"
+    "  --balance SPEC        the client's share of the work follows budgets, --quality and --panorama are the finest: TRIANGLES a frame\n"
+    "                        (0: as many as it takes), or TRIANGLES,BYTES with the bytes that may come a second. Of what the link carries it is 60 % at most;\n"
+    "                        server or client: stays at that end. Default: off, all as set\n"
     "  --memory BYTES        of the client, with K or M; default 4M\n"
     "  --plain-arrays        no vertex buffers\n"
-    "\n"
+    "\n";
+
+static const char help_picture[] = /* compilers need not take longer strings */
     " the picture\n"
     "  --backend KIND        gles1 (EGL), gl (OSMesa, default), soft (integers, RGBA8888), soft565, none (geometry only)\n"
     "  --size WxH            default 240x320\n"
@@ -65,13 +71,13 @@ static const char help[] =
     "  --ground-cache FILE   keeps the decoded true ground there for further flights over this pack\n"
     "  --check on|off        every frame searched for cracks on integer vertices; default: as --audit\n"
     "  --sample S            time between rows, default 1\n"
-    "  --tape FILE           records all that comes to the client, for farfield-handheld --tape (not with --server or --event)\n";
+    "  --tape FILE           records all that comes to the client, for farfield-handheld --tape (not with --server, --event, --balance)\n";
 
 enum option_id {
     OPT_PACK = 256, OPT_CSV, OPT_JSON, OPT_PATH, OPT_START, OPT_SPEED, OPT_HEIGHT, OPT_SECONDS, OPT_SETTLE, OPT_SEED, OPT_EVENT, OPT_EVENTS,
     OPT_LINK,
     OPT_DOWN_TRACE, OPT_UP_TRACE, OPT_SERVER, OPT_QUALITY, OPT_PANORAMA, OPT_BACK_PLANE, OPT_FACE, OPT_VIEW, OPT_MEMORY, OPT_PLAIN, OPT_BACKEND,
-    OPT_SIZE, OPT_FOV, OPT_FPS, OPT_PNG, OPT_EVERY, OPT_WIREFRAME, OPT_AUDIT, OPT_CHECK, OPT_SAMPLE, OPT_TAPE, OPT_AUDIT_STEP, OPT_GROUND_CACHE, OPT_HELP, OPT_VERSION
+    OPT_SIZE, OPT_FOV, OPT_FPS, OPT_PNG, OPT_EVERY, OPT_WIREFRAME, OPT_AUDIT, OPT_CHECK, OPT_SAMPLE, OPT_TAPE, OPT_AUDIT_STEP, OPT_GROUND_CACHE, OPT_BALANCE, OPT_HELP, OPT_VERSION
 };
 
 static const struct option long_options[] = {
@@ -89,6 +95,7 @@ static const struct option long_options[] = {
     { "audit", 1, NULL, OPT_AUDIT },       { "check", 1, NULL, OPT_CHECK },       { "sample", 1, NULL, OPT_SAMPLE },
     { "tape", 1, NULL, OPT_TAPE },         { "audit-step", 1, NULL, OPT_AUDIT_STEP },
     { "ground-cache", 1, NULL, OPT_GROUND_CACHE },
+    { "balance", 1, NULL, OPT_BALANCE },
     { "help", 0, NULL, OPT_HELP },         { "version", 0, NULL, OPT_VERSION },   { NULL, 0, NULL, 0 }
 };
 
@@ -154,6 +161,27 @@ static int parse_quality(fly_options *options, const char *text)
     return 0;
 }
 
+static int parse_balance(fly_options *options, const char *text)
+{
+    double triangles, bytes_s = 0;
+    char rest;
+    ff_balance_desc *balance = &options->balance;
+    *balance = (ff_balance_desc){ .mode = FF_BALANCE_ON };
+    options->balance_text = text;
+    if (!strcmp(text, "off"))
+        balance->mode = FF_BALANCE_OFF;
+    else if (!strcmp(text, "server"))
+        balance->mode = FF_BALANCE_ALL_SERVER;
+    else if (!strcmp(text, "client"))
+        balance->mode = FF_BALANCE_ALL_CLIENT;
+    else if ((sscanf(text, "%lf%c", &triangles, &rest) != 1 && sscanf(text, "%lf,%lf%c", &triangles, &bytes_s, &rest) != 2) ||
+             !(triangles >= 0 && triangles <= 1e9) || !(bytes_s >= 0 && bytes_s <= 1e9))
+        return fail("--balance: %s is not off, server, client or TRIANGLES[,BYTES]", text);
+    else
+        balance->frame_budget = (uint32_t)triangles, balance->link_bytes_s = (uint32_t)bytes_s;
+    return 0;
+}
+
 static int parse_size(fly_options *options, const char *text)
 {
     unsigned width, height;
@@ -177,13 +205,17 @@ static int parse_memory(fly_options *options, const char *text)
     return 0;
 }
 
-/* "link=SPEC", "teleport=X,Y": 1 and all but the time; 0 when `what` is neither; -1 with a line on stderr. */
+/* "link=SPEC", "teleport=X,Y", "budget=N": 1 and all but the time; 0 when `what` is neither; -1 with a line on stderr. */
 static int parse_event_value(const char *what, fly_event *event)
 {
     char rest;
     if (!strncmp(what, "link=", 5)) {
         event->kind = FLY_LINK;
         return sim_link_parse(what + 5, &event->link) == FF_OK ? 1 : fail("--event: no link %s", what + 5);
+    }
+    if (!strncmp(what, "budget=", 7)) {
+        event->kind = FLY_BUDGET;
+        return sscanf(what + 7, "%9u%c", &event->budget, &rest) == 1 ? 1 : fail("--event: %s is not budget=TRIANGLES", what);
     }
     if (strncmp(what, "teleport=", 9))
         return 0;
@@ -330,6 +362,7 @@ static int parse_one(fly_options *options, int id, const char *text)
     case OPT_PLAIN: options->plain_arrays = 1; return 0;
     case OPT_LINK: return parse_link(options, text);
     case OPT_QUALITY: options->quality_text = text; return parse_quality(options, text);
+    case OPT_BALANCE: return parse_balance(options, text);
     case OPT_BACK_PLANE: return parse_metres_wu("back-plane", text, &options->panorama.back_plane_wu);
     case OPT_VIEW: return parse_metres_wu("view", text, &options->quality.view_wu);
     case OPT_MEMORY: return parse_memory(options, text);
@@ -352,7 +385,7 @@ static int parse_one(fly_options *options, int id, const char *text)
 int fly_options_parse(fly_options *options, int argc, char **argv)
 {
     *options = (fly_options){ .link_text = "umts", .speed_kmh = 150, .seconds = -1, .settle_s = 15, .height_m = 100, .start = 0.4,
-                              .quality_text = "low", .panorama = { .enabled = 1 }, .seed = 1, .fps = 30, .width = 240, .height = 320,
+                              .quality_text = "low", .balance_text = "off", .panorama = { .enabled = 1 }, .seed = 1, .fps = 30, .width = 240, .height = 320,
                               .fov_degrees = 60, .backend = FLY_GL, .path_text = "diagonal", .check = -1, .audit_step_px = 8, .every_s = 10, .sample_s = 1,
                               .memory_bytes = 4u << 20, .quality = { .sigma_q8 = 320, .view_wu = 30000 * FF_WU_PER_METRE } };
     options->link = *sim_link_profile("umts");
@@ -360,6 +393,7 @@ int fly_options_parse(fly_options *options, int argc, char **argv)
     for (int id; (id = getopt_long(argc, argv, "", long_options, NULL)) != -1;) {
         if (id == OPT_HELP || id == OPT_VERSION) {
             fputs(id == OPT_HELP ? help : "farfield-fly " FARFIELD_VERSION "\n", stdout);
+            fputs(id == OPT_HELP ? help_picture : "", stdout);
             return 1;
         }
         if (id == '?' || parse_one(options, id, optarg))
@@ -375,8 +409,8 @@ int fly_options_parse(fly_options *options, int argc, char **argv)
         options->seconds = 300;
     if (options->check < 0)
         options->check = options->audit;
-    if (options->tape_path && (options->server || options->event_count))
-        return fail("--tape records simulated flights without events");
+    if (options->tape_path && (options->server || options->event_count || options->balance.mode != FF_BALANCE_OFF))
+        return fail("--tape records simulated flights without events and without --balance");
     if (options->png_dir && options->backend == FLY_NONE)
         return fail("--png needs a --backend other than none");
     return 0;
@@ -395,12 +429,12 @@ const char *fly_backend_name(enum fly_backend backend)
 void fly_options_print(const fly_options *options)
 {
     fprintf(stderr,
-            "farfield-fly: seed %llu, pack %s, %s %s, %g km/h, %g s after %g s, %s from %g, %g m up, quality %s, panorama %s, "
+            "farfield-fly: seed %llu, pack %s, %s %s, %g km/h, %g s after %g s, %s from %g, %g m up, quality %s, panorama %s, balance %s, "
             "%ux%u at %g degrees, %u fps, backend %s, %zu bytes, audit %s\n",
             (unsigned long long)options->seed, options->pack_path, options->server ? "server" : "link",
             options->server ? options->server : options->link_text, options->speed_kmh, options->seconds, options->settle_s,
             options->path_text, options->start, options->height_m, options->quality_text,
-            options->panorama.enabled ? "on" : "off", options->width,
+            options->panorama.enabled ? "on" : "off", options->balance_text, options->width,
             options->height, options->fov_degrees, options->fps, fly_backend_name(options->backend), options->memory_bytes,
             options->audit ? "on" : "off");
 }

@@ -11,13 +11,15 @@
 enum fly_backend { FLY_GLES1, FLY_GL, FLY_SOFT, FLY_SOFT_565, FLY_NONE };
 enum fly_path_kind { FLY_DIAGONAL, FLY_CIRCLE, FLY_HOVER, FLY_TURN, FLY_RECORDED };
 enum fly_event_kind {
-    FLY_LOW_BATTERY, FLY_BATTERY_OK, FLY_INTERRUPTION, FLY_RESUME, FLY_CUT, FLY_PANORAMA_ON, FLY_PANORAMA_OFF, FLY_LINK, FLY_TELEPORT
+    FLY_LOW_BATTERY, FLY_BATTERY_OK, FLY_INTERRUPTION, FLY_RESUME, FLY_CUT, FLY_PANORAMA_ON, FLY_PANORAMA_OFF, FLY_LINK, FLY_TELEPORT,
+    FLY_BUDGET
 };
 
 typedef struct fly_event {
     double at_s;
     enum fly_event_kind kind;
     sim_link_desc link;       /* of FLY_LINK */
+    uint32_t budget;          /* of FLY_BUDGET */
     double place[2];          /* of FLY_TELEPORT: share of the terrain's size from its south-west corner, 0..1 */
 } fly_event;
 
@@ -31,6 +33,8 @@ typedef struct fly_options {
     const char *quality_text;
     ff_quality quality;
     ff_panorama_desc panorama;
+    const char *balance_text;
+    ff_balance_desc balance;
     uint64_t seed;
     uint32_t fps;
     uint16_t width, height;   /* of the picture, pixels */

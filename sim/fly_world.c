@@ -96,7 +96,7 @@ static int open_client(fly_world *world)
         return fail("client", FF_ERR_MEMORY);
     ff_client_desc desc = { .memory = world->memory, .memory_bytes = options->memory_bytes, .stream = &world->stream,
                             .surface_api = world->surface_api, .width = options->width, .height = options->height,
-                            .quality = options->quality, .panorama = options->panorama, .use_thread = options->server != NULL,
+                            .quality = options->quality, .panorama = options->panorama, .balance = options->balance, .use_thread = options->server != NULL,
                             .use_plain_arrays = (uint8_t)options->plain_arrays };
     if (options->backend != FLY_NONE)
         desc.backend = is_soft(options->backend) ? c3d_backend_soft()

@@ -15,6 +15,7 @@ typedef struct handheld_options {
     int32_t speed_kmh, height_m;
     ff_quality quality;
     ff_panorama_desc panorama;
+    ff_balance_desc balance;
     int json, hud, hash, no_pictures, no_textures;
 } handheld_options;
 

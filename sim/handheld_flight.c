@@ -54,7 +54,8 @@ static int open_client(handheld *device)
     const sim_tape_head *head = options->tape_path ? &device->tape.head : NULL;
     ff_client_desc desc = { .width = device->width, .height = device->height, .quality = head ? head->quality : options->quality,
                             .panorama = head ? head->panorama : options->panorama, .surface_api = device->surface_api,
-                            .backend = device->surface ? c3d_backend_soft() : NULL, .use_plain_arrays = 1, .no_textures = (uint8_t)options->no_textures };
+                            .backend = device->surface ? c3d_backend_soft() : NULL, .use_plain_arrays = 1, .no_textures = (uint8_t)options->no_textures,
+                            .balance = options->balance };
     device->memory_bytes = options->memory_bytes ? options->memory_bytes : head ? head->memory_bytes : MEMORY_BYTES;
     device->memory_bytes -= device->memory_bytes % BLOCK_ALIGN;
     device->memory = aligned_alloc(BLOCK_ALIGN, device->memory_bytes);

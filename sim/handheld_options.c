@@ -17,6 +17,8 @@ static const char help[] =
     "  --size WxH            default 240x320 (a tape has its own)\n"
     "  --quality Q           low (C 3, depth 4: default), high (C 9, depth 8), C:DEPTH, or px:E for E pixels of error, all whole numbers\n"
     "  --panorama on|off     default on with --server; a tape has its own\n"
+    "  --balance TRIANGLES   the client's share of the work follows the link and this budget for a frame, 0: as many as it takes; --quality\n"
+    "                        and the panorama's usual error are the finest (not with --tape); default: all as set\n"
     "  --speed KMH           default 150\n"
     "  --height M            above the ground drawn, default 100\n"
     "  --memory BYTES        of the client's block, with K or M; default 4M, or what the tape says\n"
@@ -30,7 +32,7 @@ static const char help[] =
 
 enum option_id {
     OPT_PACK = 256, OPT_SERVER, OPT_TAPE, OPT_FRAMES, OPT_SIZE, OPT_QUALITY, OPT_PANORAMA, OPT_SPEED, OPT_HEIGHT, OPT_MEMORY,
-    OPT_NO_TEXTURES, OPT_NO_PICTURES, OPT_HUD, OPT_HASH, OPT_FB, OPT_JSON, OPT_HELP, OPT_VERSION
+    OPT_NO_TEXTURES, OPT_NO_PICTURES, OPT_BALANCE, OPT_HUD, OPT_HASH, OPT_FB, OPT_JSON, OPT_HELP, OPT_VERSION
 };
 
 static const struct option long_options[] = {
@@ -38,6 +40,7 @@ static const struct option long_options[] = {
     { "frames", 1, NULL, OPT_FRAMES },   { "size", 1, NULL, OPT_SIZE },         { "quality", 1, NULL, OPT_QUALITY },
     { "panorama", 1, NULL, OPT_PANORAMA }, { "speed", 1, NULL, OPT_SPEED },     { "height", 1, NULL, OPT_HEIGHT },
     { "memory", 1, NULL, OPT_MEMORY },   { "no-textures", 0, NULL, OPT_NO_TEXTURES },
+    { "balance", 1, NULL, OPT_BALANCE },
     { "no-pictures", 0, NULL, OPT_NO_PICTURES }, { "hud", 0, NULL, OPT_HUD },   { "hash", 0, NULL, OPT_HASH },
     { "fb", 1, NULL, OPT_FB },           { "json", 0, NULL, OPT_JSON },         { "help", 0, NULL, OPT_HELP },
     { "version", 0, NULL, OPT_VERSION }, { NULL, 0, NULL, 0 }
@@ -141,6 +144,10 @@ static int parse_one(handheld_options *options, int id, const char *text)
     case OPT_QUALITY: rc = parse_quality(&options->quality, text); break;
     case OPT_PANORAMA: rc = parse_panorama(options, text); break;
     case OPT_MEMORY: rc = parse_memory(options, text); break;
+    case OPT_BALANCE:
+        rc = parse_number("balance", text, 0, 1000000, &number);
+        options->balance = (ff_balance_desc){ .mode = FF_BALANCE_ON, .frame_budget = (uint32_t)number };
+        break;
     case OPT_FRAMES:
         rc = parse_number("frames", text, 1, 1000000, &number);
         options->frames = (uint32_t)number;
@@ -174,6 +181,8 @@ int handheld_options_parse(handheld_options *options, int argc, char **argv)
         return fail("unexpected argument %s", argv[optind]);
     if ((options->pack_path != NULL) + (options->server != NULL) + (options->tape_path != NULL) != 1)
         return fail("one of --pack, --server and --tape is wanted (see --help)");
+    if (options->tape_path && options->balance.mode != FF_BALANCE_OFF)
+        return fail("--balance: not with --tape");
     if ((options->fb_path || options->hash) && options->no_pictures)
         return fail("--fb and --hash: there are no pictures with --no-pictures");
     return 0;

@@ -6,7 +6,7 @@
 
 typedef struct figure { const char *name; uint64_t value; } figure;
 
-#define FIGURES_MAX 40
+#define FIGURES_MAX 48
 
 /* Where the back end has the finished frame, for counters of memory accesses; NULL: no picture. */
 static const void *pixels_of(const handheld *device, uint64_t *bytes)
@@ -38,7 +38,8 @@ static unsigned collect(const handheld *device, figure *list)
         { "panorama_faces_empty", s.panorama_faces_empty }, { "panorama_bytes", s.panorama_bytes },
         { "requests_sent", s.requests_sent }, { "requests_done", s.requests_done }, { "requests_failed", s.requests_failed },
         { "in_flight_high", s.in_flight_high }, { "queued_high", s.queued_high }, { "protocol_errors", s.protocol_errors },
-        { "bytes_down", s.bytes_down }, { "bytes_up", s.bytes_up }, { "tree_err_px_q8", s.tree.error_px_q8 },
+        { "bytes_down", s.bytes_down }, { "bytes_up", s.bytes_up }, { "share_percent", s.balance.share_percent },
+        { "fidelity_percent", s.balance.fidelity_percent }, { "balance_moves", s.balance.moves }, { "tree_err_px_q8", s.tree.error_px_q8 },
         { "memory_used", s.memory_used }, { "memory_bytes", s.memory_bytes },
         { "mapping_at", (uint64_t)(uintptr_t)device->mapping.bytes }, { "mapping_bytes", device->mapping.size },
         { "pixels_at", (uint64_t)(uintptr_t)pixels }, { "pixels_bytes", pixels_bytes }, { "pictures_hash", t->pictures_hash },

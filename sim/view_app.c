@@ -62,7 +62,7 @@ static int create_client(view_app *app, const char *backend)
         .stream = app->link ? &app->stream : NULL, .pack = app->link ? NULL : &app->pack,
         .backend = app->backend, .surface_api = app->surface_api,
         .width = (uint16_t)o->width, .height = (uint16_t)o->height, .frame_format = C3D_RGBA8888,
-        .quality = app->quality, .panorama = app->panorama,
+        .quality = app->quality, .panorama = app->panorama, .balance = o->balance,
         .use_thread = 1, .use_plain_arrays = (uint8_t)o->plain_arrays};
     return ff_client_create(&desc, &app->client);
 }

@@ -54,8 +54,11 @@ static void put_quality(view_hud *hud, const view_app *app, const ff_client_stat
 {
     int32_t position_wu[3];
     unsigned faces = 0, count = 0;
-    if (app->quality.measure == FF_MEASURE_PIXELS) put(hud, "px %.2f", app->quality.error_px_q8 / 256.0);
-    else put(hud, "c %.2f depth %u", app->quality.c_q8 / 256.0, app->quality.depth_max);
+    if (app->options->balance.mode != FF_BALANCE_OFF)
+        put(hud, "share %u%% fidelity %u%% to %.1f km\n", stats->balance.share_percent, stats->balance.fidelity_percent,
+            (stats->back_plane_wu ? stats->back_plane_wu : stats->quality.view_wu) / 256000.0);
+    if (app->quality.measure == FF_MEASURE_PIXELS) put(hud, "px %.2f", stats->quality.error_px_q8 / 256.0);
+    else put(hud, "c %.2f depth %u", stats->quality.c_q8 / 256.0, stats->quality.depth_max);
     /* The eye inside a node's box makes its bound endless. */
     put(hud, stats->tree.error_px_q8 < ERROR_PX_MAX * 256 ? "  error %.1f px\n" : "  error over %.0f px\n",
         fmin(stats->tree.error_px_q8 / 256.0, ERROR_PX_MAX));

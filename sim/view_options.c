@@ -29,6 +29,9 @@ static const char usage[] =
     "Terrain:\n"
     "      --quality Q           low (default), high, C:DEPTH, or px:E for E pixels of error\n"
     "      --panorama on|off     far ground as panoramas (default: on for a server)\n"
+    "      --balance TRIANGLES   the client's share of the work follows the link and this\n"
+    "                            budget for a frame (0: as many as it takes); quality and\n"
+    "                            panorama as set are the finest (default: all as set)\n"
     "      --link SPEC           link model between client and server: none, gprs, umts,\n"
     "                            ... or NAME,KEY=VALUE,...; with PACK the server's logic\n"
     "                            runs inside this program\n"
@@ -53,7 +56,7 @@ static const char usage[] =
 enum option_id {
     OPT_BACKEND = 256, OPT_SIZE, OPT_FOV, OPT_HEADLESS, OPT_PLAIN, OPT_WIREFRAME, OPT_BORDERS, OPT_NO_HUD, OPT_QUALITY,
     OPT_PANORAMA, OPT_LINK, OPT_MEMORY, OPT_AT, OPT_YAW, OPT_SCRIPT, OPT_KEYS, OPT_FRAMES, OPT_SCREENSHOT, OPT_EVENTS,
-    OPT_JSON, OPT_HELP, OPT_VERSION
+    OPT_JSON, OPT_BALANCE, OPT_HELP, OPT_VERSION
 };
 
 static const struct option long_options[] = {
@@ -67,6 +70,7 @@ static const struct option long_options[] = {
     {"script", required_argument, NULL, OPT_SCRIPT}, {"keys", required_argument, NULL, OPT_KEYS},
     {"frames", required_argument, NULL, OPT_FRAMES}, {"screenshot", required_argument, NULL, OPT_SCREENSHOT},
     {"events", required_argument, NULL, OPT_EVENTS}, {"json", no_argument, NULL, OPT_JSON},
+    {"balance", required_argument, NULL, OPT_BALANCE},
     {"help", no_argument, NULL, OPT_HELP}, {"version", no_argument, NULL, OPT_VERSION}, {NULL, 0, NULL, 0}};
 
 int view_fail(const char *format, ...)
@@ -149,6 +153,10 @@ static int take_value(view_options *o, int option, const char *text)
     case OPT_YAW:
         if (read_number(text, -360, 360, &value)) return -1;
         o->yaw_brad16 = (int32_t)(value * 65536 / 360) & 65535;
+        return 0;
+    case OPT_BALANCE:
+        if (read_number(text, 0, 1e9, &value)) return -1;
+        o->balance = (ff_balance_desc){.mode = FF_BALANCE_ON, .frame_budget = (uint32_t)value};
         return 0;
     case OPT_MEMORY:
         if (read_number(text, 0.01, 4096, &value)) return -1;

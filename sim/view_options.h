@@ -12,6 +12,7 @@ typedef struct view_options {
     int width, height;
     const char *link;           /* spec for sim_link_parse; NULL: none */
     ff_quality quality;
+    ff_balance_desc balance;
     int panorama;               /* 1 on, 0 off, -1 on for servers */
     int32_t fov_brad16;
     size_t memory_bytes;

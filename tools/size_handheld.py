@@ -11,7 +11,7 @@ import sys
 import stack_handheld
 from handheld_counts import Counts, Program, die, map_sections, run
 
-FEATURES = ["panorama", "textures", "network", "jpeg", "hud", "deflate"]
+FEATURES = ["panorama", "textures", "network", "jpeg", "hud", "deflate", "balance"]
 KINDS = ("text", "rodata", "data", "bss")
 PARTS = [("protocol", r"obj/protocol/"), ("client/terrain", r"obj/client/terrain/"), ("client", r"obj/client/"),
          ("common3d/soft", r"obj/common3d/soft/"), ("common3d", r"obj/common3d/"), ("platform", r"obj/platform/"),
