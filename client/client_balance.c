@@ -68,7 +68,7 @@ void ff_client_balance_step(ff_client *client, const c3d_camera *camera, int64_t
         ff_panorama_drop(&client->panorama);
         client->dirty = 1;
     }
-    if (ff_client_low_power(client) || !tree.nodes_drawn)
+    if (ff_client_low_power(client) || !tree.nodes_held)
         ff_balance_pause(&client->balance);
     else if (ff_balance_feed(&client->balance, &sample))
         apply(client);

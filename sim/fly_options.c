@@ -49,8 +49,8 @@ static const char help[] =
     "  --face N              texels of a panorama's face each way, 64 to 1024, default 256; a larger one needs more --memory\n"
     "  --view M              how far ground is drawn without panorama, default 30000\n"
     "  --balance SPEC        the client's share of the work follows budgets, --quality and --panorama are the finest: TRIANGLES a frame\n"
-    "                        (0: as many as it takes), or TRIANGLES,BYTES with the bytes that may come a second. Of what the link carries it is 60 % at most;\n"
-    "                        server or client: stays at that end. Default: off, all as set\n"
+    "                        (0: as many as it takes), or TRIANGLES,BYTES with the bytes that may come a second (at most 60 % of what the\n"
+    "                        link carries). server or client: stays at that end. Default: off, all as set\n"
     "  --memory BYTES        of the client, with K or M; default 4M\n"
     "  --plain-arrays        no vertex buffers\n"
     "\n";

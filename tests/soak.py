@@ -64,6 +64,9 @@ def random_flight(seed, packs, given):
     args += ["--view", str(view), "--back-plane", str(back_plane), "--height", str(height)]
     if rand.random() < 0.2:
         args += ["--plain-arrays"]
+    balance = random.Random(f"balance {seed}").choice(("off", "off", "0", "2000", "20000", "3000,1500", "server", "client"))
+    if balance != "off":
+        args += ["--balance", balance]
     unknown = [0.0] + [at for at, what in events if what.startswith(("teleport", "panorama-on"))]
     for what in ("resume", "battery-ok", "link=lan"):
         events.append((heal, what))
