@@ -235,6 +235,7 @@ static int carve_all(ff_client *client)
     ff_terrain_view_attach(&client->view, client->tree);
     ff_panorama_init(&client->panorama, client->device, &client->desc.panorama, &client->info, face_size);
     ff_motion_reset(&client->motion);
+    ff_turn_reset(&client->turn);
     memset(&client->refusals, 0, sizeof client->refusals);
     return FF_OK;
 }

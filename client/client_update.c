@@ -126,6 +126,7 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera
     make_view(client, camera, &quality, &view);
     ff_client_balance_step(client, &view.camera, now_us);
     ff_motion_feed(&client->motion, now_us, camera->pos_wu);
+    ff_turn_feed(&client->turn, now_us, camera->yaw, camera->pitch);
     int hold = ff_client_low_power(client) || client->all_client;
     int turned = ff_panorama_update(&client->panorama, &client->requests, &view.camera, &client->motion, hold, now_us);
     if (!taken && !moved && !turned && !client->dirty && !client->unranked) {

@@ -12,6 +12,7 @@
 #include "ff_balance.h"
 #include "ff_local.h"
 #include "ff_motion.h"
+#include "ff_turn.h"
 #include "ff_panorama.h"
 #include "ff_refusals.h"
 #include "ff_sky.h"
@@ -52,6 +53,7 @@ struct ff_client {
     uint8_t all_client;      /* by the balance: no panoramas are wanted; one still shown is a backdrop until the ground is here */
     ff_sky sky;
     ff_motion motion;
+    ff_turn turn;
     ff_refusals refusals;
 
     uint8_t has_camera, battery_low, interrupted, has_textures;

@@ -6,8 +6,7 @@
 #define RETRY_US 2000000          /* the server was busy */
 #define RETRY_LATER_US 30000000   /* and again and again */
 #define REFUSALS_IN_A_ROW 3
-#define STAYS_US 30000000         /* in use for so long: all faces are wanted */
-#define TURNS_US 60000000         /* and for so long after a turn */
+#define TURNS_US 60000000         /* after a turn all faces are wanted for so long */
 #define TURN 8192                 /* an eighth of a circle */
 #define TURN_WITHIN_US 10000000
 #define LEAD_US_MAX 10000000
@@ -28,7 +27,6 @@ void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panora
     panorama->ground_wu[1] = ff_height_wu(info, info->height_max) + ff_steps_wu(info, info->max_error);
     panorama->active = panorama->next = panorama->shown = -1;
     panorama->retry_us = INT64_MIN;
-    panorama->reach_us = INT64_MAX;
     static const uint16_t quad[4] = {0, 1, 2, 3};
     if (device && face_size)
         panorama->quad = c3d_strip_make(device, quad, 4);
@@ -74,7 +72,6 @@ static void measure_lead(ff_panorama *panorama, ff_panorama_set *set, int64_t no
 {
     int64_t took_us = now_us - set->asked_us < LEAD_US_MAX ? now_us - set->asked_us : LEAD_US_MAX;
     set->ready = 1;
-    set->took_us = took_us;
     panorama->lead_us = panorama->lead_us ? (panorama->lead_us + took_us) / 2 : took_us;
 }
 
@@ -98,8 +95,6 @@ static int take_over(ff_panorama *panorama, const c3d_camera *camera, int64_t no
         drop_set(panorama, panorama->active);
     panorama->active = panorama->next;
     panorama->next = -1;
-    panorama->reach = FF_PANORAMA_IN_VIEW;
-    panorama->reach_us = now_us + next->took_us;
     return 1;
 }
 
@@ -114,16 +109,6 @@ static void look_for_turns(ff_panorama *panorama, const c3d_camera *camera, int6
     }
 }
 
-static int reach_further(ff_panorama *panorama, int64_t now_us)
-{
-    int turns = panorama->reach == FF_PANORAMA_SOON && now_us < panorama->turns_until_us;
-    if (panorama->reach_us > now_us && !turns)
-        return 0;
-    panorama->reach_us = panorama->reach == FF_PANORAMA_IN_VIEW ? now_us + STAYS_US : INT64_MAX;
-    panorama->reach++;
-    return 1;
-}
-
 static int left_behind(const ff_panorama *panorama, const c3d_camera *camera, int index)
 {
     return index >= 0 && ff_panorama_left_behind(camera->pos_wu, panorama->set[index].position_wu, panorama->set[index].front_wu);
@@ -134,7 +119,6 @@ static int refresh(ff_panorama *panorama, ff_requests *requests, const c3d_camer
 {
     int changed = take_over(panorama, camera, now_us);
     look_for_turns(panorama, camera, now_us);
-    changed |= reach_further(panorama, now_us);
     if (hold || now_us < panorama->retry_us)
         return changed;
     if (panorama->retry_us != INT64_MIN) { /* the wait is over: want again */
@@ -193,30 +177,22 @@ static void list_faces(ff_get_panorama *request, unsigned missing, const c3d_cam
                 request->face[request->face_count++] = (uint8_t)face;
 }
 
-/* Faces touched by a view half as wide again: who turns mostly turns level. */
-static unsigned faces_soon(const c3d_camera *camera)
-{
-    c3d_camera wide = *camera;
-    wide.width = (uint16_t)(camera->width < UINT16_MAX / 3 * 2 ? camera->width * 3 / 2 : UINT16_MAX);
-    return ff_panorama_faces_in_view(&wide);
-}
-
-void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int64_t now_us)
+void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, unsigned soon, int64_t now_us)
 {
     int newest = panorama->next >= 0 ? panorama->next : panorama->active;
     if (!panorama->desc.enabled || newest < 0 || now_us < panorama->retry_us)
         return;
     const ff_panorama_set *set = &panorama->set[newest];
     unsigned in_view = ff_panorama_faces_in_view(camera) & ~known(set), missing = in_view;
-    if (!in_view && panorama->next < 0 && panorama->reach != FF_PANORAMA_IN_VIEW)
-        missing = (panorama->reach == FF_PANORAMA_ALL ? ALL_FACES : faces_soon(camera)) & ~known(set);
+    if (!in_view && panorama->next < 0)
+        missing = (now_us < panorama->turns_until_us ? ALL_FACES : soon) & ~known(set);
     if (!missing)
         return;
     ff_get_panorama request = {.front_wu = set->front_wu, .back_wu = panorama->desc.server_back_wu,
                                .face_size = panorama->face_size, .quality = panorama->desc.jpeg_quality};
     memcpy(request.position_wu, set->position_wu, sizeof request.position_wu);
     list_faces(&request, missing, camera);
-    ff_requests_want(requests, FF_WANT_PANORAMA, set->key, in_view ? FF_CLASS_FIRST : FF_CLASS_OUT_OF_VIEW,
+    ff_requests_want(requests, FF_WANT_PANORAMA, set->key, in_view ? FF_CLASS_FIRST : FF_CLASS_PREFETCH,
                      in_view ? PRIORITY_FACE : 1, &request);
 }
 

@@ -5,9 +5,8 @@
  * is just good when it comes: so it serves twice as long as one taken where the viewer is. It is asked for as long before the drawn one
  * is outdated as it will need to come.
  *
- * Faces in view are asked for first; those soon in view when nothing in view is missing and the set has been in use for as long as
- * it took to come: on a link so slow that sets are outdated before that, they are never asked for; the others for a viewer who stays
- * (the set has been in use for half a minute) or turns (by an eighth of a circle within seconds, a minute ago at most). A face the
+ * Faces in view are asked for first; when none of them is missing those that a viewer who turns will soon see, and all for one who has
+ * turned (by an eighth of a circle within seconds, a minute ago at most). A face the
  * server found without far ground is not asked for again for that O. Unless hold_back says otherwise at most one panorama request is
  * out, and no newer O is asked for while one is coming. A superseded request is cancelled. A set left behind is neither drawn nor waited
  * for: until there is another one the client draws its own ground round the viewer. */
@@ -27,8 +26,8 @@ typedef struct ff_panorama_set {
     int32_t position_wu[3];
     int32_t front_wu;                 /* z_front_s it was asked with */
     ff_key key;                       /* of its requests */
-    int64_t asked_us, took_us;        /* until its faces in view were here: `ready` */
-    uint8_t ready;
+    int64_t asked_us;
+    uint8_t ready;                    /* its faces in view are here, or were */
     uint8_t held, empty, failed;      /* bit per enum ff_face_name */
     c3d_texture texture[FF_FACE_COUNT];
     c3d_mesh mesh[FF_FACE_COUNT];
@@ -36,8 +35,6 @@ typedef struct ff_panorama_set {
     int16_t low[FF_FACE_COUNT];       /* lowest (UP: southernmost) coordinate of the image, face units */
     ff_panorama_sight sight;          /* of the faces here; on its way: what is expected */
 } ff_panorama_set;
-
-enum ff_panorama_reach { FF_PANORAMA_IN_VIEW, FF_PANORAMA_SOON, FF_PANORAMA_ALL };
 
 typedef struct ff_panorama {
     c3d_device *device;
@@ -51,8 +48,6 @@ typedef struct ff_panorama {
     ff_panorama_set set[2];
     uint32_t serial;
     int64_t retry_us;                 /* not before */
-    uint8_t reach;                    /* enum ff_panorama_reach: which faces are wanted */
-    int64_t reach_us;                 /* when more of them will be */
     int64_t lead_us;                  /* mean time that a set needs to come */
     int32_t yaw;                      /* the camera's at yaw_us: some seconds ago, or at its last turn */
     int64_t yaw_us;
@@ -73,8 +68,8 @@ static inline int32_t ff_panorama_front_wu(const ff_panorama *panorama)
 /* Applies the refresh rules; `hold`: ask for nothing new. 1 when the drawn set or what is wanted changed. */
 int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, const ff_motion *motion, int hold,
                        int64_t now_us);
-/* Puts what is missing into the ranking under way. */
-void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, int64_t now_us);
+/* Puts what is missing into the ranking under way; soon: bit per face that will soon be in view. */
+void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, unsigned soon, int64_t now_us);
 /* Takes in a face or a refusal; 1 when it belongs to a set still wanted. */
 int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now_us);
 /* The set drawn is outdated, the next one still coming: more panoramas are wanted than come. */

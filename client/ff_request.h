@@ -33,7 +33,7 @@ enum ff_request_state {
     FF_REQUEST_DONE, FF_REQUEST_FAILED, FF_REQUEST_CANCELLED
 };
 /* A request of a lower class goes first, whatever its value. */
-enum ff_request_class { FF_CLASS_FIRST, FF_CLASS_IN_VIEW, FF_CLASS_OUT_OF_VIEW, FF_CLASS_PREFETCH };
+enum ff_request_class { FF_CLASS_FIRST, FF_CLASS_IN_VIEW, FF_CLASS_PREFETCH };
 
 typedef struct ff_request {
     ff_key key;               /* panoramas: a number of the client's own */

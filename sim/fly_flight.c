@@ -159,7 +159,8 @@ static int fill_relevance(fly_flight *flight, fly_sample *sample)
 {
     sim_relevance_figures f;
     sample->bytes_heights = sample->bytes_images = sample->bytes_faces = sample->bytes_overhead = sample->bytes_judged = NAN;
-    sample->unused_heights = sample->unused_images = sample->unused_faces = sample->relevance_percent = NAN;
+    sample->unused_heights = sample->unused_images = sample->unused_faces = sample->unused_supporting = NAN;
+    sample->relevance_percent = NAN;
     if (!flight->world->relevance)
         return 0;
     int rc = sim_relevance_get(flight->world->relevance, &f);
@@ -173,6 +174,7 @@ static int fill_relevance(fly_flight *flight, fly_sample *sample)
     sample->unused_heights = f.unused[SIM_ANSWER_HEIGHTS];
     sample->unused_images = f.unused[SIM_ANSWER_IMAGE];
     sample->unused_faces = f.unused[SIM_ANSWER_FACE];
+    sample->unused_supporting = f.supporting;
     sample->relevance_percent = f.percent;
     return 0;
 }

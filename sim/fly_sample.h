@@ -24,7 +24,7 @@
     X(square_px_quality, "%.4f", MEAN) X(square_px_panorama, "%.4f", MEAN) X(square_px_undrawn, "%.4f", MEAN) \
     X(bytes_heights, "%.0f", TOTAL) X(bytes_images, "%.0f", TOTAL) X(bytes_faces, "%.0f", TOTAL) X(bytes_overhead, "%.0f", TOTAL) \
     X(bytes_judged, "%.0f", TOTAL) X(unused_heights, "%.0f", TOTAL) X(unused_images, "%.0f", TOTAL) X(unused_faces, "%.0f", TOTAL) \
-    X(relevance_percent, "%.2f", LAST) \
+    X(unused_supporting, "%.0f", TOTAL) X(relevance_percent, "%.2f", LAST) \
     X(share_percent, "%.0f", MEAN) X(fidelity_percent, "%.0f", MEAN) X(frame_load, "%.3f", MEAN) X(link_load, "%.3f", MEAN) \
     X(balance_moves, "%.0f", TOTAL) X(balance_turns, "%.0f", TOTAL) X(c, "%.3f", MEAN) X(error_px, "%.3f", MEAN) X(depth, "%.0f", MEAN) \
     X(back_plane_m, "%.0f", MEAN) X(panorama_error_px, "%.3f", MEAN)

@@ -23,7 +23,7 @@ typedef struct answer {
     unsigned face, face_size, top_row, row_count; /* row_count 0: empty */
     uint32_t bytes;
     int64_t came_us;
-    int drawn;
+    int drawn, supports;
     uint64_t frame;           /* last looked at in */
     size_t next;              /* in its bucket */
 } answer;
@@ -235,12 +235,25 @@ static void mark(sim_relevance *relevance, answer *a)
     a->frame = relevance->frame;
 }
 
+/* A node is there only where those beside its parent are as fine as the parent. */
+static void mark_support(sim_relevance *relevance, ff_key parent)
+{
+    for (unsigned side = 0; side < FF_SIDE_COUNT && ff_key_level(parent) > 0; side++) {
+        ff_key beside = ff_key_neighbour(relevance->info.tiles_x, relevance->info.tiles_y, parent, (enum ff_side)side);
+        answer *a = beside == FF_KEY_NONE ? NULL : find(relevance, SIM_ANSWER_HEIGHTS, ff_key_parent(beside), 1);
+        if (a)
+            a->supports |= *relevance->now_us - a->came_us <= SIM_RELEVANCE_US;
+    }
+}
+
 static void mark_heights(sim_relevance *relevance, ff_key node)
 {
     for (;;) {
         int refinement = ff_key_level(node) > 0;
-        if (refinement)
+        if (refinement) {
             node = ff_key_parent(node);
+            mark_support(relevance, node);
+        }
         answer *a = find(relevance, SIM_ANSWER_HEIGHTS, node, refinement);
         if (a && a->frame == relevance->frame)
             return; /* and all above it */
@@ -251,15 +264,19 @@ static void mark_heights(sim_relevance *relevance, ff_key node)
     }
 }
 
+/* Images come from coarse to fine: the last one to come over a node is the one it is drawn with. */
 static void mark_image(sim_relevance *relevance, ff_key node)
 {
+    answer *last = NULL;
     for (ff_key key = ff_texture_key(&relevance->info, node); key != FF_KEY_NONE; key = ff_key_parent(key)) {
         answer *a = find(relevance, SIM_ANSWER_IMAGE, key, 0);
-        if (a)
-            mark(relevance, a);
-        if (a || ff_key_level(key) == 0)
-            return;
+        if (a && (!last || a > last))
+            last = a;
+        if (ff_key_level(key) == 0)
+            break;
     }
+    if (last)
+        mark(relevance, last);
 }
 
 /* Face of a direction and the row of its whole image, counted from its top. */
@@ -326,6 +343,7 @@ int sim_relevance_get(sim_relevance *relevance, sim_relevance_figures *figures)
             break;
         sum->judged[a->kind] += a->bytes;
         sum->unused[a->kind] += a->drawn ? 0 : a->bytes;
+        sum->supporting += !a->drawn && a->supports ? a->bytes : 0;
     }
     double judged = sum->overhead, unused = sum->overhead;
     for (int kind = 0; kind < SIM_ANSWER_KINDS; kind++) {

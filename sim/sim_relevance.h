@@ -3,9 +3,9 @@
  *
  * An answer (its whole message, header included) is of use when a frame within SIM_RELEVANCE_US of its arrival draws it:
  *   heights   a node whose heights it brought, or one built on them, lies in the window: a refinement's residuals add to the heights of
- *             all nodes above it, so a drawn node draws the answers of its whole line of ancestors. Nodes that only let a neighbour
- *             split (the cut is restricted), and lie outside the window, are not drawn.
- *   image     it is the finest that has come over a drawn node.
+ *             all nodes above it, so a drawn node draws the answers of its whole line of ancestors. Nodes outside the window that only
+ *             let a drawn neighbour be as fine as it is (the cut is restricted) are not drawn; they are told apart as `supporting`.
+ *   image     it is the last that has come over a drawn node: they come from coarse to fine.
  *   face      its set is the one in use and a row of it lies in the window; of an empty face: any direction of it.
  * Overhead is all else that came: greetings, pongs, refusals, cancellations and what a cut left incomplete. It counts as never drawn.
  */
@@ -24,6 +24,7 @@ typedef struct sim_relevance_figures {
     double came[SIM_ANSWER_KINDS], overhead;
     double judged[SIM_ANSWER_KINDS]; /* came at least SIM_RELEVANCE_US ago */
     double unused[SIM_ANSWER_KINDS]; /* and were not drawn in time */
+    double supporting;               /* of unused heights: a drawn node could not have been without them */
     double percent;                  /* of judged and overhead that was drawn in time; NAN before anything was judged */
 } sim_relevance_figures;
 

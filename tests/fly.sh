@@ -147,11 +147,11 @@ flies around $quick --speed 10000
 is 's["crack_frames"] == 0 and all(0 < row["x_m"] < 10240 and 0 < row["y_m"] < 10240 for row in r)' "10 000 km/h turn round before the border"
 flies node --pack "$work/node.ffp" $quick
 is 's["crack_frames"] == 0 and r[-1]["nodes_drawn"] == 1' "a terrain of one node"
-flies tight --pack "$work/dense.ffp" $quick --memory 640K --quality px:0.1 --view 20000 --panorama off
-is 's["crack_frames"] == 0 and 50 < r[-1]["nodes_drawn"] < r[-1]["nodes_held"] < 2500' "little memory: whole"
+flies tight --pack "$work/dense.ffp" $quick --memory 512K --fov 100 --quality px:0.1 --view 20000 --panorama off
+is 's["crack_frames"] == 0 and 50 < r[-1]["nodes_drawn"] < r[-1]["nodes_held"] < 1500' "little memory: whole"
 little=$(python3 -c "import json; print(json.load(open('$work/tight.json'))['err_px_rms'])")
-flies roomy --pack "$work/dense.ffp" $quick --memory 8M --quality px:0.1 --view 20000 --panorama off
-is "r[-1]['nodes_held'] > 2500 and s['err_px_rms'] < $little" "more memory: finer"
+flies roomy --pack "$work/dense.ffp" $quick --memory 8M --fov 100 --quality px:0.1 --view 20000 --panorama off
+is "r[-1]['nodes_held'] > 1800 and s['err_px_rms'] < $little" "more memory: finer"
 for fov in 0.1 170; do
     flies fov $quick --fov $fov --backend gl
     is 's["crack_frames"] == 0' "a field of view of $fov degrees"

@@ -1,5 +1,6 @@
 /* Motion prediction: right on steady paths, calm on noise, irregular times, pauses and jumps. */
 #include "../client/ff_motion.h"
+#include "../client/ff_turn.h"
 #include "../platform/sys.h"
 
 #include <setjmp.h>
@@ -129,12 +130,55 @@ static void extremes_do_not_overflow(void **state)
         assert_int_equal(at[0], INT32_MIN);
 }
 
+/* Yaw at a steady rate, through north; the prediction falls into steps of at most 45 degrees, half a turn in all. */
+static void turning_is_continued(void **state)
+{
+    (void)state;
+    ff_turn turn;
+    int32_t yaw, pitch, start = 65536 - 400;
+    ff_turn_reset(&turn);
+    assert_int_equal(ff_turn_predict(&turn, 3000000, &yaw, &pitch), 0);
+    for (int i = 0; i < 60; i++)
+        ff_turn_feed(&turn, i * 33333, start + i * 36, -1000 - i * 4);
+    assert_int_equal(ff_turn_predict(&turn, 3000000, &yaw, &pitch), 1);
+    assert_in_range(yaw, 3 * 1080 - 2, 3 * 1080 + 2); /* 36 in 33 ms */
+    assert_in_range(-pitch, 3 * 120 - 2, 3 * 120 + 2);
+    assert_int_equal(ff_turn_predict(&turn, 10000000, &yaw, &pitch), 2);
+    assert_int_equal(ff_turn_predict(&turn, INT64_MAX, &yaw, &pitch), FF_TURN_VIEWS_MAX);
+    assert_in_range(yaw, 32000, 32768);
+    for (int i = 60; i < 90; i++) /* it stops */
+        ff_turn_feed(&turn, i * 33333, start, -1000);
+    assert_int_equal(ff_turn_predict(&turn, 3000000, &yaw, &pitch), 0);
+    for (int i = 90; i < 120; i++)
+        ff_turn_feed(&turn, i * 33333, start - i * 36, 0);
+    assert_int_not_equal(ff_turn_predict(&turn, 3000000, &yaw, &pitch), 0);
+    assert_true(yaw < 0);
+    ff_turn_feed(&turn, 120 * 33333 + 5000000, start, 0); /* a pause */
+    assert_int_equal(ff_turn_predict(&turn, 3000000, &yaw, &pitch), 0);
+}
+
+/* Any angles, many at once: nothing overflows, the prediction stays within its bounds. */
+static void wild_turning_stays_bounded(void **state)
+{
+    (void)state;
+    ff_turn turn;
+    int32_t yaw, pitch;
+    ff_turn_reset(&turn);
+    for (int i = 0; i < 200000; i++)
+        ff_turn_feed(&turn, i / 100000, i & 1 ? INT32_MAX : INT32_MIN, (i & 3) * 32768);
+    ff_turn_feed(&turn, 250000, INT32_MIN, INT32_MAX);
+    assert_in_range(ff_turn_predict(&turn, INT64_MAX, &yaw, &pitch), 0, FF_TURN_VIEWS_MAX);
+    assert_in_range(yaw + 32768, 0, 65536);
+    assert_in_range(pitch + 16384, 0, 32768);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(straight_line_is_continued), cmocka_unit_test(acceleration_bends_the_way_by_half_at_most),
         cmocka_unit_test(standing_still_predicts_nothing), cmocka_unit_test(noise_keeps_it_calm),
-        cmocka_unit_test(jumps_and_pauses_start_anew), cmocka_unit_test(extremes_do_not_overflow)
+        cmocka_unit_test(jumps_and_pauses_start_anew), cmocka_unit_test(extremes_do_not_overflow),
+        cmocka_unit_test(turning_is_continued), cmocka_unit_test(wild_turning_stays_bounded)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

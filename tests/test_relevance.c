@@ -141,6 +141,25 @@ static void test_line_of_ancestors(void **state)
     sim_relevance_destroy(w.relevance);
 }
 
+/* Beside a drawn node: what lets it be so fine is not drawn, but told apart. */
+static void test_supporting(void **state)
+{
+    (void)state;
+    static wire w;
+    start(&w);
+    ff_key root = ff_key_make(0, 0, 0), child = ff_key_child(root, 1), leaf = ff_key_child(child, 0);
+    (void)node(&w, root, FF_GET_ROOT);
+    (void)node(&w, root, FF_GET_REFINEMENT);
+    (void)node(&w, child, FF_GET_REFINEMENT);
+    size_t beside = node(&w, ff_key_make(1, 0, 0), FF_GET_REFINEMENT), away = node(&w, ff_key_make(3, 0, 0), FF_GET_REFINEMENT);
+    receive(&w, 1024);
+    draw(&w, 1, 1, &leaf); /* its parent's eastern neighbour is a child of the next tile's root */
+    sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
+    assert_int_equal(f.unused[SIM_ANSWER_HEIGHTS], beside + away);
+    assert_int_equal(f.supporting, beside);
+    sim_relevance_destroy(w.relevance);
+}
+
 static void test_too_late(void **state)
 {
     (void)state;
@@ -160,7 +179,7 @@ static void test_too_late(void **state)
     sim_relevance_destroy(w.relevance);
 }
 
-/* An image under a finer one is not drawn where the finer one is. */
+/* An image under a finer one is not drawn where the finer one is, unless it comes again: then the finer one is gone. */
 static void test_finest_image(void **state)
 {
     (void)state;
@@ -179,6 +198,12 @@ static void test_finest_image(void **state)
     draw(&w, 1, 2, others);
     sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
     assert_int_equal(f.judged[SIM_ANSWER_IMAGE], coarse + fine);
+    assert_int_equal(f.unused[SIM_ANSWER_IMAGE], 0);
+    (void)image(&w, root);
+    receive(&w, 1024);
+    draw(&w, SIM_RELEVANCE_US + 2, 1, others);
+    f = figures(&w, 3 * SIM_RELEVANCE_US);
+    assert_int_equal(f.judged[SIM_ANSWER_IMAGE], 2 * coarse + fine);
     assert_int_equal(f.unused[SIM_ANSWER_IMAGE], 0);
     sim_relevance_destroy(w.relevance);
 }
@@ -251,7 +276,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_line_of_ancestors), cmocka_unit_test(test_too_late), cmocka_unit_test(test_finest_image),
-        cmocka_unit_test(test_faces),             cmocka_unit_test(test_overhead),
+        cmocka_unit_test(test_faces),             cmocka_unit_test(test_overhead),   cmocka_unit_test(test_supporting),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

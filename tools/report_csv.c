@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FIELDS_MAX 64
+#define FIELDS_MAX 128
 
 static const char *const column_names[REPORT_COLUMN_COUNT] = {
 #define X(id, name, required) name,

@@ -1,4 +1,4 @@
-/* Prefetch: what a viewer further along the path would wish for, found without moving the cut (Shared: prefetch from predicted
+/* Prefetch: what a viewer further along the path, or turned further round, would see and wish for, found without moving the cut (Shared: prefetch from predicted
  * motion). The measures are asked as if the camera stood there; the tree itself stays as it is. */
 #include "ff_tree_local.h"
 
@@ -20,7 +20,13 @@ static void note(foresight *f, ff_key key, int refinement, uint32_t priority)
     f->list[at] = (ff_wish){.key = key, .refinement = (uint8_t)refinement, .priority = priority};
 }
 
-/* Tiles of the window there that the window here does not reach. */
+/* Seen from there, and not from here. */
+static int comes_into_view(const ff_tree *tree, const foresight *f, const ff_box *here, const ff_box *there)
+{
+    return ff_box_in_view(&f->ahead, there) && (ff_box_beyond_view(tree, here) || !ff_box_in_view(tree, here));
+}
+
+/* Tiles that the window there will see. */
 static void foresee_roots(const ff_tree *tree, foresight *f)
 {
     const ff_window *window = &f->ahead.window;
@@ -28,13 +34,12 @@ static void foresee_roots(const ff_tree *tree, foresight *f)
     for (int64_t y = window->y0; y <= window->y1; y++)
         for (int64_t x = window->x0; x <= window->x1; x++) {
             uint32_t tile = (uint32_t)(y * tree->info.tiles_x + x);
-            if (ff_tile_active(tree, tile)) {
-                x = tree->window.x1; /* the rest of the row here is known */
-                continue;
-            }
             if (++looked_at > TILES_LOOKED_AT)
                 return;
-            if (ff_tree_find(tree, ff_key_make(tile, 0, 0)) == FF_SLOT_NONE)
+            ff_box here, there;
+            ff_tile_box(tree, tile, &here);
+            ff_tile_box(&f->ahead, tile, &there);
+            if (comes_into_view(tree, f, &here, &there) && ff_tree_find(tree, ff_key_make(tile, 0, 0)) == FF_SLOT_NONE)
                 note(f, ff_key_make(tile, 0, 0), 0, FF_VALUE_ONE);
         }
 }
@@ -58,24 +63,30 @@ static void foresee_children(const ff_tree *tree, foresight *f)
         const ff_node *node = tree->drawn[i].node;
         uint32_t next = ff_key_level(node->key) + 1;
         if (next >= ff_terrain_levels(&tree->info) || (tree->quality.depth_max && next >= tree->quality.depth_max) ||
-            ff_node_has_children(node) || node->flags & FF_NODE_WANTED)
+            ff_node_has_children(node) || node->flags & FF_NODE_NEEDED || node->error_code == 0)
             continue;
-        ff_box box;
-        ff_node_box(&f->ahead, node, &box);
+        ff_box here, there;
+        ff_node_box(tree, node, &here);
+        ff_node_box(&f->ahead, node, &there);
+        if (node->flags & FF_NODE_WANTED ? !comes_into_view(tree, f, &here, &there) : !ff_box_in_view(&f->ahead, &there))
+            continue;
         uint32_t value = ff_value_of_split(&f->ahead, node);
-        if (value >= FF_VALUE_ONE && !ff_box_beyond_view(&f->ahead, &box))
+        if (value >= FF_VALUE_ONE && !ff_box_beyond_view(&f->ahead, &there))
             note(f, node->key, 1, value);
     }
 }
 
-uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], ff_wish *list, uint32_t capacity)
+uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], int32_t yaw, int32_t pitch, ff_wish *list, uint32_t capacity)
 {
     foresight f = {.ahead = *tree, .list = list, .capacity = capacity};
     if (!tree->has_view || !capacity)
         return 0;
     for (int axis = 0; axis < 3; axis++)
         f.ahead.view.camera.pos_wu[axis] = f.ahead.view.centre_wu[axis] = pos_wu[axis];
+    f.ahead.view.camera.yaw = (f.ahead.view.camera.yaw + yaw) & 0xFFFF;
+    f.ahead.view.camera.pitch = (f.ahead.view.camera.pitch + pitch) & 0xFFFF;
     ff_window_make(&f.ahead);
+    ff_pyramid_make(&f.ahead);
     foresee_roots(tree, &f);
     foresee_children(tree, &f);
 

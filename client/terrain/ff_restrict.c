@@ -49,6 +49,16 @@ void ff_want(ff_tree *tree, uint32_t slot, uint32_t value)
     tree->want_head[level] = slot;
 }
 
+/* Is a wanted node in view, or needed by one that is? */
+static int is_needed(const ff_tree *tree, const ff_node *node)
+{
+    ff_box box;
+    if (node->flags & FF_NODE_NEEDED)
+        return 1;
+    ff_node_box(tree, node, &box);
+    return ff_box_in_view(tree, &box);
+}
+
 /* From the finest level up: what a level adds concerns coarser levels only. */
 void ff_want_close(ff_tree *tree)
 {
@@ -60,8 +70,11 @@ void ff_want_close(ff_tree *tree)
                 if (beside == FF_KEY_NONE)
                     continue;
                 uint32_t nearest = ff_tree_find_nearest(tree, ff_key_parent(beside));
-                if (nearest != FF_SLOT_NONE)
-                    ff_want(tree, nearest, node->value);
+                if (nearest == FF_SLOT_NONE)
+                    continue;
+                ff_want(tree, nearest, node->value);
+                if (!ff_node_has_children(&tree->node[nearest]) && is_needed(tree, node))
+                    tree->node[nearest].flags |= FF_NODE_NEEDED;
             }
         }
     }

@@ -44,7 +44,7 @@ typedef struct ff_view {
 typedef struct ff_wish {
     ff_key key;
     uint8_t refinement;
-    uint8_t in_view;
+    uint8_t in_view;       /* or a neighbour without which something in view may not split */
     uint32_t priority;     /* of the same class: pixels of error removed, Q8 (DISTANCE: Q8 of 1/f) */
 } ff_wish;
 
@@ -92,9 +92,9 @@ uint32_t ff_tree_cut(const ff_tree *tree, const ff_drawn **list);
 /* What would make the picture better, most urgent first. The tree does not remember asking: the caller does. */
 uint32_t ff_tree_wishes(const ff_tree *tree, const ff_wish **list);
 
-/* What a viewer at `pos_wu` would wish for and this one does not: for prefetch, most urgent first, at most `capacity`. Only what the
- * pool would find room for. */
-uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], ff_wish *list, uint32_t capacity);
+/* What the viewer would wish for in view if it were at pos_wu and looked yaw, pitch further (brad16), and does not wish for in view now:
+ * for prefetch, most urgent first, at most `capacity`. Only what the pool would find room for. */
+uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], int32_t yaw, int32_t pitch, ff_wish *list, uint32_t capacity);
 
 /* Vertices of a node for c3d: x, y = column, row (0..2^k), z = height - 32768, colour from height and slope (ff_shade.h) or white
  * when `shaded` is 0. `out` has ff_node_side()^2 entries. Draw with origin ff_drawn.origin_wu - camera, xy_scale cell_wu,

@@ -17,7 +17,8 @@ enum ff_node_flags {
     FF_NODE_HELD = 1,
     FF_NODE_ACTIVE = 2,  /* a root inside the window (as of the last selection) */
     FF_NODE_WANTED = 4,  /* its children are desired, by itself or by a neighbour that may not be two levels finer */
-    FF_NODE_SPLIT = 8    /* the cut runs below it */
+    FF_NODE_SPLIT = 8,   /* the cut runs below it */
+    FF_NODE_NEEDED = 16  /* something in view cannot split before its children are here */
 };
 
 struct ff_node {

@@ -1,5 +1,5 @@
 /* Wishes: what would make the picture better and would find room. Roots first, nearest first, then refinements by value; of
- * either kind what the view sees comes first. A wish that the pool would refuse is not made: a full tree asks for nothing. */
+ * either kind what the view sees, or needs beside it to split, comes first. A wish that the pool would refuse is not made: a full tree asks for nothing. */
 #include "ff_tree_local.h"
 
 #define SLOT_MASK (FF_NODES_MAX - 1)
@@ -133,7 +133,7 @@ static uint32_t missing_children(ff_tree *tree)
                 continue;
             ff_box box;
             ff_node_box(tree, node, &box);
-            uint64_t unseen = ff_box_in_view(tree, &box) ? 0 : OUT_OF_VIEW;
+            uint64_t unseen = node->flags & FF_NODE_NEEDED || ff_box_in_view(tree, &box) ? 0 : OUT_OF_VIEW;
             tree->sort[count++] = unseen | (uint64_t)(FF_VALUE_MAX - node->value) << FF_SLOT_BITS | slot;
         }
     }
