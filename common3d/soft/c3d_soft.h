@@ -15,7 +15,7 @@
  *   8-bit ones elsewhere. In long RGB565 spans over which a texel is as wide as 4 (8) pixels every 4th (8th) pixel is sampled and those
  *   between are blended. Each texture is kept with a rim one texel wide, so that no pixel of a span needs a test;
  *   RGB565 in 32 bits a texel, its fields apart (soft_sample.h).
- *   Perspective: triangles up to 16 pixels, white and textured, over which depth changes by at most 1/8, and others up to 128 pixels over
+ *   Perspective: triangles up to 8 rows and 32 pixels, white and textured, over which depth changes by 1/8 at most, and others up to 128 over
  *   which linear interpolation is off by at most 1/4 texel (1/16 of the colours' difference), are interpolated linearly; all the rest is
  *   divided exactly every 8 to 64 pixels, by how fast depth changes: at one texel a pixel the error between is 1/4 texel, too.
  *   Colours: fog and vertex colours are interpolated with 16 fraction bits and rounded to the frame's format.

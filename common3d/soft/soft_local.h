@@ -190,7 +190,7 @@ void soft_perspective(soft_state *state, const soft_vertex *a, const soft_vertex
 /* soft_small.c: 0 when it is not small or not flat enough; otherwise drawn. a.y <= b.y <= c.y. */
 int soft_small(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c);
 
-/* soft_tiny.c: the same for a few pixels, where state->tiny_rows; clips to the frame. */
+/* soft_tiny.c: the same for a few rows, where state->tiny_rows; any order of corners. */
 int soft_tiny(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c);
 
 /* soft_spans.c: after soft_transform */

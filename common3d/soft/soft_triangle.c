@@ -23,7 +23,6 @@ void soft_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b
     if (area != 0) soft_perspective(state, a, b, c, area);
 }
 
-/* a, b and c turn the same way all along a strip: most of a terrain's triangles have a positive area for soft_tiny. */
 static inline void draw(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
 {
     uint32_t any = a->out | b->out | c->out;
@@ -43,6 +42,6 @@ void soft_strip(soft_state *state, const uint16_t *indices, uint32_t count)
         row_a = row_b, row_b = row_c, row_c = soft_first_row(c->y);
         if (row_a == row_b && row_b == row_c) continue; /* between two rows of centres: a third of a terrain's triangles */
         if (a == b || b == c || a == c) continue;
-        draw(state, i & 1 ? a : b, i & 1 ? b : a, c);
+        draw(state, a, b, c);
     }
 }
