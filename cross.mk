@@ -95,8 +95,12 @@ $(BENCH)/puget.ffp: | $(BUILD)/bin/farfield-bake
 	    --color $(PUGET)/ps_texture_1k.png --texture-levels 5 -o $@
 
 .PHONY: bench-handheld
-bench-handheld: build/handheld/farfield-handheld $(TCG_COUNT) $(BUILD)/bin/farfield-fly $(BUILD)/bin/farfield-handheld $(PACK) ## ARM instructions a frame, by phase, and the work-precision curve: build/bench/handheld.md
+bench-handheld: build/handheld/farfield-handheld $(TCG_COUNT) $(BUILD)/bin/farfield-fly $(BUILD)/bin/farfield-handheld $(BUILD)/bin/farfield-report $(PACK) ## ARM instructions a frame, by phase, and the work-precision curve: build/bench/handheld.md
 	@tools/bench_handheld.py $(BUILD)/bin build/handheld/farfield-handheld $(TCG_COUNT) $(PACK) $(BENCH) $(BENCH_OPTIONS)
+	@tools/look.sh $(BUILD)/bin $(PACK) $(BENCH)/look --start 0.3 --speed 900 --height 600
+	@$(BUILD)/bin/farfield-report $(BENCH)/look/soft.csv $(BENCH)/look/gles1.csv -o $(BENCH)/look --title "Integers beside GL ES" \
+	    --beside soft=$(BENCH)/look/soft --beside gles1=$(BENCH)/look/gles1
+	@printf '\n## Look\n\n![The same flight by integers and by GL ES](look/side-by-side.png)\n' >>$(BENCH)/handheld.md
 
 # ---- make test-cross: the unit tests that need no graphics library, on 32-bit ARM and on a big-endian machine ----
 CROSS_TESTS := key codec message pack fixed predict panorama_rules shade strips texture_map tree tree_pools tree_view watertight link \
