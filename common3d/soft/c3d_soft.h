@@ -12,12 +12,13 @@
  *   Depth: near/z, 30 fraction bits, 32 bits a pixel; the greater hides the smaller, of equals the later is drawn. It is linear over
  *   the screen. 0: nothing was drawn here, 1: a backdrop.
  *   Textures: bilinear, clamped to the edge, with 4-bit weights where a pixel takes its colour from the texture alone into RGB565,
- *   8-bit ones elsewhere. In long RGB565 spans over which a texel is as wide as 4 (8) pixels every 4th (8th) pixel is sampled and those
- *   between are blended. Each texture is kept with a rim one texel wide, so that no pixel of a span needs a test;
+ *   8-bit ones elsewhere. In RGB565 spans over which a texel is as wide as 4 (8) pixels every 4th (8th) pixel of the frame is sampled and
+ *   those between are blended. Each texture is kept with a rim one texel wide, so that no pixel of a span needs a test;
  *   RGB565 in 32 bits a texel, its fields apart (soft_sample.h).
  *   Perspective: triangles up to 8 rows and 32 pixels, white and textured, over which depth changes by 1/8 at most, and others up to 128 over
- *   which linear interpolation is off by at most 1/4 texel (1/16 of the colours' difference), are interpolated linearly; all the rest is
- *   divided exactly every 8 to 64 pixels, by how fast depth changes: at one texel a pixel the error between is 1/4 texel, too.
+ *   which linear interpolation is off by at most 1/4 texel (1/16 of the colours' difference), are interpolated linearly; so is a row of a
+ *   larger one under a texture alone. All the rest is divided exactly every 8 to 64 pixels, by how fast depth changes: at one texel a
+ *   pixel the error between is 1/4 texel, too.
  *   Colours: fog and vertex colours are interpolated with 16 fraction bits and rounded to the frame's format.
  *   Backdrops drawn before everything else wait until the end of the frame and then fill, the last one first, what nothing has covered:
  *   the picture is the same and no pixel is painted twice. Their meshes are copied meanwhile.

@@ -30,12 +30,14 @@ void soft_find_open_parts(soft_state *state)
 {
     const uint32_t *depth = state->depth;
     int32_t width = state->width;
+    state->open_end = 0;
     for (int32_t row = 0; row < state->height; row++, depth += width) {
         const uint32_t *from = depth, *to = depth + width;
         if (row >= state->top_row) {
             from = first_open(from, to);
             while (to > from && to[-1]) to--;
         }
+        if (from < to) state->open_end = row + 1;
         state->open_from[row] = (uint16_t)(from - depth);
         state->open_to[row] = (uint16_t)(to - depth);
     }

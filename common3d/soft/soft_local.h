@@ -103,6 +103,7 @@ struct soft_state {
     uint8_t blank;               /* the viewport is larger than the memory: nothing is drawn */
     uint8_t painted;             /* something other than deferred backdrops was drawn */
     int32_t top_row;             /* no depth was marked in rows above it; whatever paints a triangle keeps it */
+    int32_t open_end;            /* and nothing is open from this row on */
     int32_t open_rows;           /* while backdrops fill: nothing covers the rows above this one */
     c3d_frame frame;
     soft_view view;

@@ -3,26 +3,16 @@
  * Slopes in 64 bits. w: Q42 (below 2^43). An attribute in Q16 below 2^28 times w, Q14: below 2^43 too. Differences of two, times 2^17
  * sixteenths, two of these: below 2^62. Then all is shifted down so that the nearest w takes 30 bits: over 2^9 pixels and for depths
  * 2^10 times the nearest one, rounding moves the quotient by less than 2^-11. Values wrap: at pixels inside they are right again. */
-#include "soft_edge.h"
+#include "soft_planes.h"
 
-#define PLANES (SOFT_ATTRIBUTES + 1)
-#define PLANE_W SOFT_ATTRIBUTES
-
-typedef struct soft_planes {
-    int first, last;                 /* attributes in use; w always is */
-    int w_shift;                     /* of w to Q30 */
-    uint32_t value[PLANES];          /* at the first pixel of the frame in this row */
-    uint32_t across[PLANES], down[PLANES]; /* from pixel to pixel */
-} soft_planes;
-
-static void vertex_values(const soft_vertex *vertex, int64_t value[PLANES])
+static void vertex_values(const soft_vertex *vertex, int64_t value[SOFT_PLANES])
 {
     int64_t w = vertex->w;
     value[SOFT_S] = (vertex->s * w) >> 16;
     value[SOFT_T] = (vertex->t * w) >> 16;
     for (int i = 0; i < 3; i++) value[SOFT_R + i] = vertex->rgba[i] * w;
     value[SOFT_F] = (vertex->fog_q8 * w) >> 6; /* Q10: within 2^24 */
-    value[PLANE_W] = w * 4096;
+    value[SOFT_PLANE_W] = w * 4096;
 }
 
 static int log2_of(uint64_t n) /* n > 0 */
@@ -56,19 +46,20 @@ static uint32_t scaled(uint64_t value, int down) { return (uint32_t)soft_scale64
 /* Through three points; `planes` knows which and at what scale. */
 static void make_planes(const soft_state *state, soft_planes *planes, const soft_vertex *const vertex[3], int64_t area, int32_t row, int down)
 {
-    int64_t value[3][PLANES];
+    int64_t value[3][SOFT_PLANES];
     quotient per_area = one_over(state, area);
     int64_t dx1 = vertex[1]->x - vertex[0]->x, dy1 = vertex[1]->y - vertex[0]->y;
     int64_t dx2 = vertex[2]->x - vertex[0]->x, dy2 = vertex[2]->y - vertex[0]->y;
     uint64_t to_x = (uint64_t)(int64_t)(SOFT_HALF - vertex[0]->x), to_y = (uint64_t)(int64_t)(row * SOFT_ONE + SOFT_HALF - vertex[0]->y);
     for (int i = 0; i < 3; i++) vertex_values(vertex[i], value[i]);
-    for (int i = planes->first; i < PLANES; i++) {
+    for (int i = planes->first; i < SOFT_PLANES; i++) {
         int64_t d1 = value[1][i] - value[0][i], d2 = value[2][i] - value[0][i];
         uint64_t across = (uint64_t)over_area(d2 * dy1 - d1 * dy2, per_area), below = (uint64_t)over_area(d1 * dx2 - d2 * dx1, per_area);
-        planes->value[i] = scaled((uint64_t)value[0][i] + across * to_x + below * to_y, down);
-        planes->across[i] = scaled(across * SOFT_ONE, down);
-        planes->down[i] = scaled(below * SOFT_ONE, down);
-        if (i == planes->last) i = PLANE_W - 1;
+        soft_plane *plane = &planes->of[i];
+        plane->across = scaled(across * SOFT_ONE, down);
+        plane->down = scaled(below * SOFT_ONE, down);
+        plane->origin = scaled((uint64_t)value[0][i] + across * to_x + below * to_y, down) - plane->down * (uint32_t)row;
+        if (i == planes->last) i = SOFT_PLANE_W - 1;
     }
 }
 
@@ -87,23 +78,14 @@ static int set_up(const soft_state *state, soft_planes *planes, const soft_verte
 }
 
 /* Attributes where planes are `value`: each divided by w. Below 2^28, Q16. */
-static inline void divide(const soft_state *state, const soft_planes *planes, const uint32_t value[PLANES], int32_t out[SOFT_ATTRIBUTES])
+static void divide(const soft_state *state, const soft_planes *planes, const uint32_t value[SOFT_PLANES], int32_t out[SOFT_ATTRIBUTES])
 {
-    int32_t w = (int32_t)value[PLANE_W];
-    if (w < 1) w = 1;
-    int lead = soft_leading_zeros((uint32_t)w) - 1;
-    int32_t r = (int32_t)(soft_reciprocal(state, (uint32_t)w << lead) >> 1);
+    int lead;
+    int32_t w = (int32_t)value[SOFT_PLANE_W] < 1 ? 1 : (int32_t)value[SOFT_PLANE_W], reciprocal = soft_one_over_w(state, (uint32_t)w, &lead);
     for (int i = planes->first; i <= planes->last; i++) {
         int32_t part = (int32_t)value[i];
-        part = part > w ? w : part < -w ? -w : part;
-        out[i] = (int32_t)(((int64_t)(part * (1 << lead)) * r) >> 32);
+        out[i] = soft_quotient((uint32_t)(part > w ? w : part < -w ? -w : part), reciprocal, lead);
     }
-}
-
-/* 65536/n: what is lost is below 1/65536 of the change over the segment. */
-static int32_t per_pixel(const soft_state *state, int32_t change, int pixels)
-{
-    return pixels ? (int32_t)(((int64_t)change * state->edge_reciprocal[pixels]) >> 31) : 0;
 }
 
 /* Pixels after which to divide again. Linear interpolation between is off by a quarter of the change of w, as a part of w, times that of
@@ -121,7 +103,7 @@ static void paint_segment(soft_state *state, const soft_planes *planes, const in
     soft_segment *segment = &state->segment;
     for (int i = planes->first; i <= planes->last; i++) {
         segment->value[i] = from[i];
-        segment->step[i] = per_pixel(state, to[i] - from[i], apart);
+        segment->step[i] = soft_per_pixel(state, to[i] - from[i], apart);
     }
     if (planes->last == SOFT_F) {
         segment->value[SOFT_F] *= 64;
@@ -132,24 +114,22 @@ static void paint_segment(soft_state *state, const soft_planes *planes, const in
     }
 }
 
-static void paint_row(soft_state *state, const soft_planes *planes, const soft_walk *walk)
+void soft_segments(soft_state *state, const soft_planes *planes, const soft_walk *walk)
 {
-    uint32_t value[PLANES];
-    int32_t attribute[2][SOFT_ATTRIBUTES];
-    int32_t left = walk->to - walk->from;
+    uint32_t value[SOFT_PLANES], w_across = planes->of[SOFT_PLANE_W].across;
+    int32_t attribute[2][SOFT_ATTRIBUTES], left = walk->to - walk->from;
     int now = 0;
-    for (int i = planes->first; i <= planes->last; i++) value[i] = planes->value[i] + planes->across[i] * (uint32_t)walk->from;
-    value[PLANE_W] = planes->value[PLANE_W] + planes->across[PLANE_W] * (uint32_t)walk->from;
+    for (int i = planes->first; i <= planes->last; i++) value[i] = soft_plane_at(&planes->of[i], walk->row, walk->from);
+    value[SOFT_PLANE_W] = soft_plane_at(&planes->of[SOFT_PLANE_W], walk->row, walk->from);
     state->segment.first = (uint32_t)(walk->row * state->width + walk->from);
     divide(state, planes, value, attribute[0]);
     while (left > 0) {
-        int32_t w = (int32_t)value[PLANE_W];
-        int length = segment_length(state, w, (int32_t)planes->across[PLANE_W]);
+        int length = segment_length(state, (int32_t)value[SOFT_PLANE_W], (int32_t)w_across);
         int last = left <= length, apart = last ? left - 1 : length; /* the last segment ends on a pixel of the triangle */
-        state->segment.w = w < 2 << planes->w_shift ? 2 : (uint32_t)w >> planes->w_shift;
+        state->segment.w = soft_depth_of(value[SOFT_PLANE_W], planes->w_shift);
         state->segment.count = (uint32_t)(last ? left : length);
-        for (int i = planes->first; i <= planes->last; i++) value[i] += planes->across[i] * (uint32_t)apart;
-        value[PLANE_W] += planes->across[PLANE_W] * (uint32_t)apart;
+        for (int i = planes->first; i <= planes->last; i++) value[i] += planes->of[i].across * (uint32_t)apart;
+        value[SOFT_PLANE_W] += w_across * (uint32_t)apart;
         divide(state, planes, value, attribute[now ^ 1]);
         paint_segment(state, planes, attribute[now], attribute[now ^ 1], apart);
         state->segment.first += state->segment.count;
@@ -164,18 +144,18 @@ void soft_perspective(soft_state *state, const soft_vertex *a, const soft_vertex
     soft_walk walk;
     soft_planes planes;
     if (!soft_walk_begin(state, &walk, a, b, c, area > 0)) return;
+    if (state->paint.depth == SOFT_DEPTH_UNCOVERED && walk.end > state->open_end) walk.end = state->open_end;
+    if (walk.row >= walk.end || !soft_walk_to_pixels(state, &walk, 0)) return;
     int down = set_up(state, &planes, a, b, c);
     make_planes(state, &planes, vertex, area, walk.row, down);
-    state->segment.dw = (uint32_t)((int32_t)planes.across[PLANE_W] >> planes.w_shift);
+    state->segment.dw = (uint32_t)((int32_t)planes.of[SOFT_PLANE_W].across >> planes.w_shift);
     state->segment.value[SOFT_F] = 256 << 16; /* clear */
     state->segment.step[SOFT_F] = 0;
-    do {
-        soft_walk_row(state, &walk);
-        if (walk.from < walk.to) {
-            if (walk.row < state->top_row) state->top_row = walk.row;
-            paint_row(state, &planes, &walk);
-        }
-        for (int i = planes.first; i <= planes.last; i++) planes.value[i] += planes.down[i];
-        planes.value[PLANE_W] += planes.down[PLANE_W];
-    } while (soft_walk_next(state, &walk));
+    if (walk.row < state->top_row) state->top_row = walk.row;
+    if (planes.last == SOFT_T) {
+        soft_texture_rows(state, &planes, &walk);
+        return;
+    }
+    do soft_segments(state, &planes, &walk);
+    while (soft_walk_next(state, &walk) && soft_walk_to_pixels(state, &walk, 1));
 }

@@ -8,6 +8,7 @@
 
 #define SOFT_SPREAD 0x07E0F81Fu
 #define SOFT_SPREAD_ONE 0x00200801u /* the last place of each field */
+#define SOFT_MAGNIFIED_LOG2 3       /* at most 8 pixels between samples */
 
 static inline uint32_t soft_spread(uint32_t texel) { return (texel | texel << 16) & SOFT_SPREAD; }
 
@@ -19,16 +20,20 @@ static inline const uint32_t *soft_texel_zero(const soft_texture *texture)
     return (const uint32_t *)(const void *)texture->texels + texture->stride + 1;
 }
 
-/* Between four texels, from the upper left one; x and y in 1/16 texel. */
-static inline uint32_t soft_blend_565(const uint32_t *at, uint32_t stride, uint32_t x, uint32_t y)
+/* Between four texels, from the upper left one; x and y in 1/16 texel. Fields are 32 times the colour's, and a half. */
+static inline uint32_t soft_blend_sum(const uint32_t *at, uint32_t stride, uint32_t x, uint32_t y)
 {
     uint32_t xy = x * y >> 4, right = x - xy, below = y - xy;
     uint32_t sum = at[0] * (16 - x - below);
     sum += at[1] * right;
     at += stride;
     sum += at[0] * below;
-    sum += at[1] * xy;
-    return sum >> 5 & SOFT_SPREAD;
+    return sum + at[1] * xy;
+}
+
+static inline uint32_t soft_blend_565(const uint32_t *at, uint32_t stride, uint32_t x, uint32_t y)
+{
+    return soft_blend_sum(at, stride, x, y) >> 5 & SOFT_SPREAD;
 }
 
 static inline uint32_t soft_sample_565(const uint32_t *texels, int32_t stride, int32_t s, int32_t t)
@@ -47,5 +52,15 @@ static inline int soft_on_texture(const soft_texture *texture, const soft_segmen
     uint32_t width = ((uint32_t)texture->width + 1) << 16, height = ((uint32_t)texture->height + 1) << 16;
     return s < width && s_end < width && t < height && t_end < height;
 }
+
+/* Pixels from one sample to the next, as a power of two: within a texel, and where that is less than 4 pixels, each is sampled. */
+static inline int soft_sample_spacing(const int32_t step[2])
+{
+    uint32_t most = (uint32_t)((step[0] ^ step[0] >> 31) | (step[1] ^ step[1] >> 31) | 1);
+    int log2 = soft_leading_zeros(most) - 16;
+    return log2 > SOFT_MAGNIFIED_LOG2 ? SOFT_MAGNIFIED_LOG2 : log2 < 2 ? 0 : log2;
+}
+
+static inline int32_t soft_within(int32_t at, int32_t end) { return at < -65536 ? -65536 : at >= end ? end - 1 : at; }
 
 #endif

@@ -1,0 +1,96 @@
+/* Planes of w and of attributes times w over the screen, and the rows of a triangle that lies partly beyond its sides. */
+#ifndef SOFT_PLANES_H
+#define SOFT_PLANES_H
+
+#include "soft_edge.h"
+
+#define SOFT_PLANES (SOFT_ATTRIBUTES + 1)
+#define SOFT_PLANE_W SOFT_ATTRIBUTES
+
+typedef struct soft_plane { uint32_t origin, across, down; } soft_plane; /* at the frame's first pixel; from pixel to pixel */
+typedef struct soft_planes {
+    int first, last;                 /* attributes in use; w always is */
+    int w_shift;                     /* of w to Q30 */
+    soft_plane of[SOFT_PLANES];
+} soft_planes;
+
+static inline uint32_t soft_plane_at(const soft_plane *plane, int32_t row, int32_t column)
+{
+    return plane->origin + plane->down * (uint32_t)row + plane->across * (uint32_t)column;
+}
+
+/* 2^60 / (w * 2^*lead), *lead such that the product takes 31 bits. w is 1 .. 2^30; of others nothing is said. */
+static inline int32_t soft_one_over_w(const soft_state *state, uint32_t w, int *lead)
+{
+    int zeros = soft_leading_zeros(w | 1);
+    *lead = (zeros - 1) & 31;
+    return (int32_t)(soft_reciprocal(state, w << zeros >> 1) >> 1);
+}
+
+/* An attribute times w, divided by w: Q16. What lies beyond +-2^28 wraps. */
+static inline int32_t soft_quotient(uint32_t part, int32_t reciprocal, int lead)
+{
+    return (int32_t)(((int64_t)(int32_t)(part << lead) * reciprocal) >> 32);
+}
+
+/* 65536/n: what is lost is below 1/65536 of the change over the segment. */
+static inline int32_t soft_per_pixel(const soft_state *state, int32_t change, int pixels)
+{
+    return pixels ? (int32_t)(((int64_t)change * state->edge_reciprocal[pixels]) >> 31) : 0;
+}
+
+static inline uint32_t soft_depth_of(uint32_t w, int w_shift) { return (int32_t)w < 2 << w_shift ? 2 : w >> w_shift; }
+
+/* Rows after this one that lie as this one does beyond the left (to <= 0) or the right side of the frame: an edge is straight up to the
+ * next bend, so what holds at both ends of a number of rows holds between. */
+static inline int32_t soft_rows_beyond(const soft_state *state, const soft_walk *walk, int32_t to)
+{
+    soft_edge edge = to <= 0 ? walk->right : walk->left;
+    int32_t rest = (walk->row < walk->middle && walk->middle < walk->end ? walk->middle : walk->end) - walk->row - 1, rows = 0;
+    for (int32_t step = 64; step >= 4; step /= 2)
+        while (rows + step <= rest) {
+            soft_edge next = {edge.at + edge.step * step, edge.step};
+            int32_t pixel = soft_edge_pixel(&next);
+            if (to <= 0 ? pixel > 0 : pixel < state->width) break;
+            edge = next;
+            rows += step;
+        }
+    return rows;
+}
+
+static inline void soft_skip_rows(soft_walk *walk, int32_t rows)
+{
+    walk->row += rows;
+    walk->left.at += walk->left.step * rows;
+    walk->right.at += walk->right.step * rows;
+}
+
+/* Goes on from this row to one that has pixels; 0 when there is none. `painted`: rows before had. */
+static inline int soft_walk_to_pixels(const soft_state *state, soft_walk *walk, int painted)
+{
+    do {
+        int32_t from = soft_edge_pixel(&walk->left), to = soft_edge_pixel(&walk->right);
+        if (to <= 0 || from >= state->width) {
+            if (painted) return 0; /* once left, the frame is never entered again */
+            soft_skip_rows(walk, soft_rows_beyond(state, walk, to));
+            continue;
+        }
+        if (from < 0) from = 0;
+        if (to > state->width) to = state->width;
+        if (state->paint.depth == SOFT_DEPTH_UNCOVERED) {
+            if (from < state->open_from[walk->row]) from = state->open_from[walk->row];
+            if (to > state->open_to[walk->row]) to = state->open_to[walk->row];
+        }
+        walk->from = from;
+        walk->to = to;
+        if (from < to) return 1;
+    } while (soft_walk_next(state, walk));
+    return 0;
+}
+
+/* soft_perspective.c: a row divided at the ends of segments. */
+void soft_segments(soft_state *state, const soft_planes *planes, const soft_walk *walk);
+/* soft_texture_rows.c: the rest of a triangle under a texture alone. */
+void soft_texture_rows(soft_state *state, const soft_planes *planes, soft_walk *walk);
+
+#endif

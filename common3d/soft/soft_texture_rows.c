@@ -1,0 +1,36 @@
+/* Large triangles under a texture alone: rows of one segment each wherever linear interpolation will do. */
+#include "soft_planes.h"
+
+/* Linear where that is off by a quarter of a texel at most, see soft_perspective.c; 0 where it is off by more. */
+static int measure_row(soft_state *state, const soft_planes *planes, const soft_walk *walk)
+{
+    soft_segment *segment = &state->segment;
+    int32_t apart = walk->to - walk->from - 1;
+    int lead;
+    uint32_t w = soft_plane_at(&planes->of[SOFT_PLANE_W], walk->row, walk->from), w_end = w + planes->of[SOFT_PLANE_W].across * (uint32_t)apart;
+    uint32_t s_part = soft_plane_at(&planes->of[SOFT_S], walk->row, walk->from), t_part = soft_plane_at(&planes->of[SOFT_T], walk->row, walk->from);
+    int32_t reciprocal = soft_one_over_w(state, w, &lead);
+    int32_t s = soft_quotient(s_part, reciprocal, lead), t = soft_quotient(t_part, reciprocal, lead);
+    reciprocal = soft_one_over_w(state, w_end, &lead);
+    int32_t s_change = soft_quotient(s_part + planes->of[SOFT_S].across * (uint32_t)apart, reciprocal, lead) - s;
+    int32_t t_change = soft_quotient(t_part + planes->of[SOFT_T].across * (uint32_t)apart, reciprocal, lead) - t;
+    int32_t least = (int32_t)(w < w_end ? w : w_end), w_change = (int32_t)(w_end - w);
+    int32_t far = (s_change ^ s_change >> 31) | (t_change ^ t_change >> 31); /* at most twice the larger one */
+    if (apart >= SOFT_EDGE_TABLE || ((int64_t)far * (w_change ^ w_change >> 31)) >> 16 > least) return 0;
+    segment->first = (uint32_t)(walk->row * state->width + walk->from);
+    segment->count = (uint32_t)(apart + 1);
+    segment->w = soft_depth_of(w, planes->w_shift);
+    segment->value[SOFT_S] = s;
+    segment->value[SOFT_T] = t;
+    segment->step[SOFT_S] = soft_per_pixel(state, s_change, apart);
+    segment->step[SOFT_T] = soft_per_pixel(state, t_change, apart);
+    return 1;
+}
+
+void soft_texture_rows(soft_state *state, const soft_planes *planes, soft_walk *walk)
+{
+    do {
+        if (measure_row(state, planes, walk)) state->span(state, &state->segment);
+        else soft_segments(state, planes, walk);
+    } while (soft_walk_next(state, walk) && soft_walk_to_pixels(state, walk, 1));
+}
