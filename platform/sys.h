@@ -74,12 +74,11 @@ int sys_make_folder(const char *path);
 int sys_stderr_is_terminal(void);
 
 /* ---- images (libjpeg-turbo, libpng behind it; allocate inside) ---- */
-/* Decodes a JPEG of exactly width x height to tightly packed RGB888, top row first. FF_OK, FF_ERR_FORMAT (damaged, cut short or
- * progressive: the memory of one row of blocks is enough here), FF_ERR_RANGE (another size). */
+/* Images travel as bare JPEGs (protocol/SPEC.md, "Images"): a byte of quality and the scan of a baseline JPEG, without headers and tables. */
+/* Decodes one to tightly packed RGB888, top row first, width and height 1..65500. FF_OK, FF_ERR_FORMAT (damaged, cut short, not bare),
+ * FF_ERR_ARGUMENT. The memory of one row of blocks is enough here. */
 int sys_jpeg_decode(const uint8_t *bytes, size_t byte_count, uint32_t width, uint32_t height, uint8_t *rgb);
-/* Width and height of a JPEG without decoding it. */
-int sys_jpeg_size(const uint8_t *bytes, size_t byte_count, uint32_t *width, uint32_t *height);
-/* Encodes RGB888, top row first, quality 1..100; bytes written (fewer than capacity) or FF_ERR_FULL. */
+/* Encodes RGB888, top row first, quality 1..100; bytes written or FF_ERR_FULL: needs up to 64 bytes more than it keeps. */
 int sys_jpeg_encode(const uint8_t *rgb, uint32_t width, uint32_t height, int quality, uint8_t *out, size_t capacity);
 /* Writes RGB888, top row first, as a PNG file. */
 int sys_png_write(const char *path, const uint8_t *rgb, uint32_t width, uint32_t height);

@@ -9,7 +9,7 @@
 
 #include "ff_codec.h"
 
-#define FF_PROTOCOL_VERSION 1
+#define FF_PROTOCOL_VERSION 2
 #define FF_MESSAGE_BODY_MAX (1u << 18)   /* a longer length is a protocol error */
 #define FF_MESSAGE_HEADER_MAX 4
 #define FF_REQUEST_BYTES_MAX 48          /* any client message but HELLO fits */
@@ -27,7 +27,7 @@ enum ff_message_type {
     /* server to client */
     FF_MSG_WELCOME = 65,   /* ff_welcome: the terrain */
     FF_MSG_NODE = 66,      /* ff_data: payload of ff_decode_root / ff_decode_refinement */
-    FF_MSG_TEXTURE = 67,   /* ff_data: a JPEG */
+    FF_MSG_TEXTURE = 67,   /* ff_data: a bare JPEG (SPEC.md) */
     FF_MSG_FACE = 68,      /* ff_face: one face of a panorama */
     FF_MSG_FAILED = 69,    /* ff_failed: this request has no answer */
     FF_MSG_CANCELLED = 70, /* ff_cancel */
@@ -71,7 +71,7 @@ typedef struct ff_face {
     uint16_t top_row, row_count;
     const uint8_t *columns; /* packed column spans, see ff_face_columns_encode */
     uint32_t columns_bytes;
-    const uint8_t *image;   /* JPEG of face_size by row_count texels */
+    const uint8_t *image;   /* bare JPEG of face_size by row_count texels */
     uint32_t image_bytes;
 } ff_face;
 

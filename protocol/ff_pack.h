@@ -9,7 +9,7 @@
 
 #include "ff_codec.h"
 
-#define FF_PACK_VERSION 1
+#define FF_PACK_VERSION 2
 #define FF_PACK_HEADER_BYTES 4096 /* header and section directory; the first section's index follows */
 #define FF_PACK_SECTIONS_MAX 48
 

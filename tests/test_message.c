@@ -309,7 +309,7 @@ static void lengths_and_headers(void **state)
     assert_decode("\x05\x82\x00\x01\x02", 5, FF_ERR_RANGE); /* overlong */
     assert_decode("\x01\x0c" "HTTP12345678", 14, FF_ERR_FORMAT);
     assert_decode("\x02\x09\x01\x00\x01\x80\x80\x80\x80\x01\x00", 11, FF_ERR_RANGE); /* tile 2^28 */
-    assert_decode("\x41\x04\x02\x00\x00\x00", 6, FF_ERR_VERSION);
+    assert_decode("\x41\x04\x03\x00\x00\x00", 6, FF_ERR_VERSION);
 }
 
 static void ranges_hold_both_ways(void **state)

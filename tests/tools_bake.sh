@@ -5,6 +5,7 @@ set -u
 BIN=${BIN:-build/bin}
 BIN=$(cd "$BIN" && pwd) || exit 1
 BAKE=$BIN/farfield-bake INFO=$BIN/farfield-info EXPORT=$BIN/farfield-export
+here=$(cd "$(dirname "$0")" && pwd)
 DIR=$(pwd)/build/tests/tools_bake.$$
 mkdir -p "$DIR" && cd "$DIR" || exit 1
 trap 'rm -rf "$DIR"' EXIT
@@ -232,7 +233,7 @@ check "an image becomes textures" textured
 
 right_way_up() { # the root's texture: red grows to the east, green to the north
     "$BAKE" plain.r16 --raw 150x131 --spacing 10 --color image.ppm --tile-log2 8 --texture-quality 95 --quiet -o up.ffp \
-        && python3 -c 'd=open("up.ffp","rb").read(); open("up.jpg","wb").write(d[d.find(b"\xff\xd8\xff"):])' \
+        && python3 "$here/whole_jpeg.py" up.ffp up.jpg \
         && gdal_translate -q -of PNM up.jpg up.ppm && python3 -c '
 d=open("up.ppm","rb").read()[-64*64*3:]
 px=lambda row,column: d[(row*64+column)*3:(row*64+column)*3+3]
@@ -245,7 +246,7 @@ check "textures lie as their ground does" right_way_up
 no_black() { # a placed image over half of the ground colours all of it
     gdal_translate -q -of GTiff -a_srs EPSG:4326 -a_ullr -70.09 -33.01 -70.04 -33.09 image.ppm half.tif \
         && "$BAKE" south.asc --color half.tif --texture-levels 1 --texture-quality 95 --quiet -o half.ffp \
-        && python3 -c 'd=open("half.ffp","rb").read(); open("half.jpg","wb").write(d[d.find(b"\xff\xd8\xff"):])' \
+        && python3 "$here/whole_jpeg.py" half.ffp half.jpg \
         && gdal_translate -q -of PNM half.jpg half.ppm \
         && python3 -c 'd=open("half.ppm","rb").read()[-64*64*3:]; assert min(d[2::3])>20, min(d[2::3])'
 }
