@@ -24,7 +24,7 @@ static void measure(const c3d_desc *desc, soft_sizes *sizes)
     sizes->textures = aligned(desc->texture_count * sizeof(soft_texture));
     sizes->colour = aligned(sizes->pixels * (desc->frame_format == C3D_RGBA8888 ? 4 : 2));
     sizes->depth = aligned(sizes->pixels * 4);
-    sizes->rows = aligned(ROWS_MAX * 2 * sizeof(uint16_t));
+    sizes->rows = aligned(ROWS_MAX * (2 * sizeof(uint16_t) + sizeof(soft_part)));
     sizes->used = aligned(units);
     sizes->heap = units * SOFT_HEAP_UNIT;
 }
@@ -49,6 +49,7 @@ static int soft_open(void *opaque, const c3d_desc *desc, int *buffers)
     state->depth = (uint32_t *)(void *)(at += sizes.colour);
     state->open_from = (uint16_t *)(void *)(at += sizes.depth);
     state->open_to = state->open_from + ROWS_MAX;
+    state->covered = (soft_part *)(void *)(state->open_to + ROWS_MAX);
     state->heap_used = at += sizes.rows;
     state->heap = at + sizes.used;
     state->heap_units = (uint32_t)(sizes.heap / SOFT_HEAP_UNIT);
@@ -100,6 +101,7 @@ static void soft_begin(void *opaque, const c3d_frame *frame, const c3d_rotation 
     soft_begin_view(state, rotation);
     clear(state, frame->clear_colour, marked);
     state->top_row = state->height;
+    memset(state->covered, 0, state->height * sizeof *state->covered);
 }
 
 static void set_paint(soft_state *state, const c3d_resolved_draw *resolved, enum soft_depth depth)

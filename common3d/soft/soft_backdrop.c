@@ -34,7 +34,9 @@ void soft_find_open_parts(soft_state *state)
     for (int32_t row = 0; row < state->height; row++, depth += width) {
         const uint32_t *from = depth, *to = depth + width;
         if (row >= state->top_row) {
-            from = first_open(from, to);
+            const soft_part *covered = &state->covered[row];
+            from = first_open(from, from + covered->from);
+            if (from == depth + covered->from) from = first_open(depth + covered->to, to);
             while (to > from && to[-1]) to--;
         }
         if (from < to) state->open_end = row + 1;
@@ -116,22 +118,6 @@ void soft_span_backdrop(soft_state *state, const soft_segment *segment)
 
 /* ---- a panorama ---- */
 
-/* The weighted sum of four spread texels, as a pixel. */
-static inline uint32_t blend(uint32_t a, uint32_t b, uint32_t c, uint32_t d, uint32_t x, uint32_t y)
-{
-    uint32_t xy = x * y >> 5;
-    uint32_t sum = a * (32 - x - y + xy) + b * (x - xy) + c * (y - xy) + d * xy + 16 * SOFT_SPREAD_ONE;
-    sum = sum >> 5 & SOFT_SPREAD;
-    return (sum | sum >> 16) & 0xFFFF;
-}
-
-/* RGBA5551 to the green of RGB565 with its highest bit repeated; the bit of alpha falls away. */
-static inline uint32_t spread_5551(uint32_t texel)
-{
-    uint32_t colour = (texel & 0xFFC0) | (texel >> 5 & 0x20) | (texel >> 1 & 0x1F);
-    return soft_spread(colour);
-}
-
 /* Between four clear texels nothing is drawn at all. */
 void soft_span_holes(soft_state *state, const soft_segment *segment)
 {
@@ -147,13 +133,10 @@ void soft_span_holes(soft_state *state, const soft_segment *segment)
     for (uint32_t at = segment->first, end = at + segment->count; at < end; at++, s += ds, t += dt) {
         if (state->depth[at]) continue;
         const uint16_t *texel = texels + (t >> 16) * stride + (s >> 16);
-        uint32_t a = texel[0], b = texel[1], c = texel[stride], d = texel[stride + 1];
-        if (!((a | b | c | d) & 1)) continue;
-        uint32_t x = (uint32_t)s >> 11 & 31, y = (uint32_t)t >> 11 & 31, xy = x * y >> 5;
-        uint32_t alpha = (a & 1) * (32 - x - y + xy) + (b & 1) * (x - xy) + (c & 1) * (y - xy) + (d & 1) * xy;
-        if (alpha < 16) continue;
+        if (!((texel[0] | texel[1] | texel[stride] | texel[stride + 1]) & 1)) continue;
+        uint32_t pixel = soft_blend_5551(texel, (uint32_t)stride, (uint32_t)s >> 11 & 31, (uint32_t)t >> 11 & 31);
+        if (pixel == SOFT_CLEAR) continue;
         state->depth[at] = mark;
-        ((uint16_t *)(void *)state->colour)[at] =
-            (uint16_t)blend(spread_5551(a), spread_5551(b), spread_5551(c), spread_5551(d), x, y);
+        ((uint16_t *)(void *)state->colour)[at] = (uint16_t)pixel;
     }
 }

@@ -82,6 +82,8 @@ typedef struct soft_deferred {
     c3d_mesh_data mesh;
 } soft_deferred;
 
+typedef struct soft_part { uint16_t from, to; } soft_part; /* of a row: pixels from .. to - 1 */
+
 typedef struct soft_state soft_state;
 struct soft_state {
     /* memory, in the block */
@@ -90,6 +92,7 @@ struct soft_state {
     soft_vertex *vertices;       /* of the mesh transformed last */
     soft_texture *textures;
     uint16_t *open_from, *open_to; /* of each row, while backdrops fill: the pixels nothing has covered lie between */
+    soft_part *covered;          /* of each row, a run of pixels that something other than a backdrop covers */
     uint8_t *heap, *heap_used;   /* texels; one byte a unit */
     uint32_t heap_units, pixels_max;
     uint16_t texture_count;
@@ -207,6 +210,9 @@ void soft_lines(soft_state *state, const uint16_t *indices, uint32_t count);
 
 /* soft_pixels.c: any paint, any format. */
 void soft_segment_paint(soft_state *state, const soft_segment *segment);
+/* Between four texels of RGBA5551, from the upper left one, x and y in 1/32 texel: RGB565, or clear. */
+#define SOFT_CLEAR 0x10000u
+uint32_t soft_blend_5551(const uint16_t *texel, uint32_t stride, uint32_t x, uint32_t y);
 void soft_put(soft_state *state, uint32_t at, int32_t red, int32_t green, int32_t blue);
 void soft_get(const soft_state *state, uint32_t at, uint8_t rgb[3]);
 

@@ -1,5 +1,5 @@
 /* Pixels one by one: any paint into any format. What is drawn most has faster ways (soft_small.c). */
-#include "soft_local.h"
+#include "soft_sample.h"
 
 static int32_t to_byte(int32_t value_q16)
 {
@@ -87,4 +87,20 @@ void soft_segment_paint(soft_state *state, const soft_segment *segment)
         }
         for (int i = 0; i < SOFT_ATTRIBUTES; i++) value[i] = (int32_t)((uint32_t)value[i] + (uint32_t)segment->step[i]);
     }
+}
+
+/* RGBA5551 to the green of RGB565 with its highest bit repeated; the bit of alpha falls away. */
+static inline uint32_t spread_5551(uint32_t texel)
+{
+    uint32_t colour = (texel & 0xFFC0) | (texel >> 5 & 0x20) | (texel >> 1 & 0x1F);
+    return soft_spread(colour);
+}
+
+uint32_t soft_blend_5551(const uint16_t *texel, uint32_t stride, uint32_t x, uint32_t y)
+{
+    uint32_t a = texel[0], b = texel[1], c = texel[stride], d = texel[stride + 1];
+    uint32_t xy = x * y >> 5, right = x - xy, below = y - xy, upper = 32 - x - below;
+    if ((a & 1) * upper + (b & 1) * right + (c & 1) * below + (d & 1) * xy < 16) return SOFT_CLEAR;
+    uint32_t sum = spread_5551(a) * upper + spread_5551(b) * right + spread_5551(c) * below + spread_5551(d) * xy + 16 * SOFT_SPREAD_ONE;
+    return soft_pixel_of(sum >> 5 & SOFT_SPREAD);
 }

@@ -27,9 +27,25 @@ static int measure_row(soft_state *state, const soft_planes *planes, const soft_
     return 1;
 }
 
+/* The longest run of a row that is known to be covered, as far as one was found: nobody needs to look for open pixels there. */
+static inline void note_covered(soft_state *state, const soft_walk *walk)
+{
+    soft_part *covered = &state->covered[walk->row];
+    int32_t from = walk->from, to = walk->to;
+    if (from <= covered->to && to >= covered->from) {
+        if (from < covered->from) covered->from = (uint16_t)from;
+        if (to > covered->to) covered->to = (uint16_t)to;
+    } else if (to - from > covered->to - covered->from) {
+        covered->from = (uint16_t)from;
+        covered->to = (uint16_t)to;
+    }
+}
+
 void soft_texture_rows(soft_state *state, const soft_planes *planes, soft_walk *walk)
 {
+    int covers = state->paint.depth == SOFT_DEPTH_TEST && !state->paint.alpha_test;
     do {
+        if (covers) note_covered(state, walk);
         if (measure_row(state, planes, walk)) state->span(state, &state->segment);
         else soft_segments(state, planes, walk);
     } while (soft_walk_next(state, walk) && soft_walk_to_pixels(state, walk, 1));
