@@ -16,6 +16,8 @@ uint32_t c3d_isqrt64(uint64_t value);       /* floor of the square root */
 static inline int32_t c3d_mul_q30(int32_t a, int32_t b) { return (int32_t)(((int64_t)a * b) >> 30); }
 /* a * b / c, rounded towards zero, 128-bit safe intermediate, saturated to int64; c != 0 */
 int64_t c3d_muldiv64(int64_t a, int64_t b, int64_t c);
+/* a / b rounded down, at most UINT32_MAX; b = 0 counts as infinitely small. Fast where b fits 32 bits. */
+uint32_t c3d_divide_saturated(uint64_t a, uint64_t b);
 /* Length of a vector of int64 components, each |.| < 2^40; saturates at 2^62. */
 int64_t c3d_length64(int64_t x, int64_t y, int64_t z);
 

@@ -89,6 +89,23 @@ static int is_quotient(int64_t quotient, int64_t a, int64_t b, int64_t c)
     return (size == 0 || (quotient < 0) == negative) && !is_less(whole, product(size, divisor)) && is_less(whole, product(size + 1, divisor));
 }
 
+/* Any sizes, and quotients that are just reached or just missed. */
+static void division_is_the_floor(void **state)
+{
+    (void)state;
+    sys_random random;
+    sys_random_seed(&random, 3, 1);
+    for (uint32_t i = 0; i < 400000; i++) {
+        uint64_t a = ((uint64_t)sys_random_u32(&random) << 32 | sys_random_u32(&random)) >> (i % 61);
+        uint64_t b = ((uint64_t)sys_random_u32(&random) << 32 | sys_random_u32(&random)) >> (i % 64), by_one = i % 3;
+        if (i & 1) a = (b >> 32 ? b : b * sys_random_u32(&random)) + by_one - 1;
+        uint64_t exact = b ? a / b : UINT64_MAX;
+        assert_int_equal(c3d_divide_saturated(a, b), exact > UINT32_MAX ? UINT32_MAX : exact);
+    }
+    assert_int_equal(c3d_divide_saturated(0, 0), UINT32_MAX);
+    assert_int_equal(c3d_divide_saturated((UINT64_C(1) << 63) - 1, UINT64_C(1) << 31), UINT32_MAX);
+}
+
 static void muldiv_equals_128_bits(void **state)
 {
     (void)state;
@@ -248,6 +265,7 @@ int main(void)
         cmocka_unit_test(sine_of_fine_angles),
         cmocka_unit_test(sine_is_exact_on_the_axes),
         cmocka_unit_test(square_root_is_the_floor),
+        cmocka_unit_test(division_is_the_floor),
         cmocka_unit_test(muldiv_equals_128_bits),
         cmocka_unit_test(length_is_near),
         cmocka_unit_test(focal_distance_of_all_fields_of_view),

@@ -113,13 +113,11 @@ int64_t ff_box_distance(const ff_box *box)
                         outside(0, box->lo[2], box->hi[2]));
 }
 
-uint64_t ff_projected_error_q8(const ff_tree *tree, const ff_node *node, uint64_t distance)
+uint32_t ff_projected_error_q8(const ff_tree *tree, const ff_node *node, uint64_t distance)
 {
     uint64_t error = (uint64_t)ff_steps_wu(&tree->info, ff_geometric_error_decode(node->error_code));
-    return error * (uint64_t)tree->view.camera.focal_q8 / (distance ? distance : 1);
+    return c3d_divide_saturated(error * (uint64_t)tree->view.camera.focal_q8, distance ? distance : 1);
 }
-
-static uint32_t saturated(uint64_t value) { return value > FF_VALUE_MAX ? FF_VALUE_MAX : (uint32_t)value; }
 
 /* Hybrid, eq. 3: f = d / (e * C), from the viewer to the middle of the node at its mean height. */
 static uint32_t value_by_distance(const ff_tree *tree, const ff_node *node)
@@ -129,7 +127,7 @@ static uint32_t value_by_distance(const ff_tree *tree, const ff_node *node)
     uint64_t d = (uint64_t)c3d_length64((int64_t)node->x_wu + edge / 2 - eye[0], (int64_t)node->y_wu + edge / 2 - eye[1],
                                         (int64_t)ff_height_wu(&tree->info, node->height_mean) - eye[2]);
     uint64_t reach = (uint64_t)edge * (uint64_t)tree->quality.c_q8; /* below 2^31 * 2^24 */
-    return saturated((reach << 8) / (d ? d : 1));
+    return c3d_divide_saturated(reach << 8, d ? d : 1);
 }
 
 uint32_t ff_value_of_split(const ff_tree *tree, const ff_node *node)
@@ -139,7 +137,5 @@ uint32_t ff_value_of_split(const ff_tree *tree, const ff_node *node)
     ff_box box;
     ff_node_box(tree, node, &box);
     uint64_t error_q8 = ff_projected_error_q8(tree, node, (uint64_t)ff_box_distance(&box));
-    if (error_q8 >> 40)
-        return FF_VALUE_MAX;
-    return saturated((error_q8 << 16) / (uint64_t)tree->quality.error_px_q8);
+    return c3d_divide_saturated(error_q8 << 16, (uint64_t)tree->quality.error_px_q8);
 }

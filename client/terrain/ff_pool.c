@@ -86,7 +86,7 @@ static void give_slot(ff_tree *tree, uint32_t slot)
     node->hash_next = tree->free_head;
     tree->free_head = slot;
     tree->free_count++;
-    tree->dirty = 1;
+    tree->dirty = tree->dropped = 1;
 }
 
 void ff_tree_drop_children(ff_tree *tree, ff_node *parent)

@@ -2,27 +2,27 @@
  * coarser neighbours want to), and a node splits only beside neighbours that have come as far as itself. */
 #include "ff_tree_local.h"
 
-/* The node of the same level beyond `side` when it belongs to another parent in ground that is drawn, else FF_KEY_NONE. */
-static ff_key stranger_beside(const ff_tree *tree, const ff_node *node, enum ff_side side)
+/* The parent of the node of the same level beyond `side`, when it is another one than the node's own and in ground that is drawn, else
+ * FF_KEY_NONE. */
+static ff_key parent_beside(const ff_tree *tree, const ff_node *node, enum ff_side side)
 {
-    ff_key beside = ff_key_neighbour(tree->info.tiles_x, tree->info.tiles_y, node->key, side);
-    if (beside == FF_KEY_NONE || ff_key_level(beside) == 0)
+    static const uint8_t towards[FF_SIDE_COUNT] = {/* quadrants at that side, a bit each */
+        [FF_SIDE_SOUTH] = 0x3, [FF_SIDE_EAST] = 0xa, [FF_SIDE_NORTH] = 0xc, [FF_SIDE_WEST] = 0x5};
+    if (ff_key_level(node->key) == 0 || !(towards[side] >> ff_key_quadrant(node->key) & 1u))
         return FF_KEY_NONE;
-    if (ff_key_parent(beside) == ff_key_parent(node->key))
-        return FF_KEY_NONE;
-    uint32_t tile = ff_key_tile(beside);
-    if (tile != ff_key_tile(node->key)
-        && (!ff_tile_active(tree, tile) || ff_tree_find(tree, ff_key_make(tile, 0, 0)) == FF_SLOT_NONE))
-        return FF_KEY_NONE;
-    return beside;
+    ff_key beside = ff_key_neighbour(tree->info.tiles_x, tree->info.tiles_y, ff_key_parent(node->key), side);
+    if (beside == FF_KEY_NONE || ff_key_tile(beside) == ff_key_tile(node->key))
+        return beside;
+    uint32_t root = ff_tree_find(tree, ff_key_make(ff_key_tile(beside), 0, 0));
+    return root != FF_SLOT_NONE && tree->node[root].flags & FF_NODE_ACTIVE ? beside : FF_KEY_NONE;
 }
 
 int ff_side_coarser(const ff_tree *tree, const ff_node *node, enum ff_side side)
 {
-    ff_key beside = stranger_beside(tree, node, side);
+    ff_key beside = parent_beside(tree, node, side);
     if (beside == FF_KEY_NONE)
         return 0;
-    uint32_t parent = ff_tree_find(tree, ff_key_parent(beside));
+    uint32_t parent = ff_tree_find(tree, beside);
     return parent == FF_SLOT_NONE || !(tree->node[parent].flags & FF_NODE_SPLIT);
 }
 
@@ -66,10 +66,10 @@ void ff_want_close(ff_tree *tree)
         for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE; slot = tree->node[slot].want_next) {
             const ff_node *node = &tree->node[slot];
             for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
-                ff_key beside = stranger_beside(tree, node, (enum ff_side)side);
+                ff_key beside = parent_beside(tree, node, (enum ff_side)side);
                 if (beside == FF_KEY_NONE)
                     continue;
-                uint32_t nearest = ff_tree_find_nearest(tree, ff_key_parent(beside));
+                uint32_t nearest = ff_tree_find_nearest(tree, beside);
                 if (nearest == FF_SLOT_NONE)
                     continue;
                 ff_want(tree, nearest, node->value);

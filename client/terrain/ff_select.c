@@ -3,7 +3,6 @@
 #include "ff_strips.h"
 
 #define C_Q8_MAX (1 << 24)
-#define UNSEEN ((uint64_t)1 << 63) /* sorts behind everything seen */
 
 static int same_view(const ff_view *a, const ff_view *b)
 {
@@ -38,11 +37,32 @@ static void set_view(ff_tree *tree, const ff_view *view, const ff_quality *quali
     ff_pyramid_make(tree);
 }
 
+/* Flags as they were before any selection. */
+static void forget_flags(ff_tree *tree)
+{
+    for (uint32_t slot = 0; tree->dropped && slot < tree->node_count; slot++)
+        tree->node[slot].flags &= FF_NODE_HELD;
+    for (uint32_t level = 0; level < FF_LEVELS_MAX; level++) {
+        for (uint32_t slot = tree->want_head[level]; !tree->dropped && slot != FF_SLOT_NONE; slot = tree->node[slot].want_next)
+            tree->node[slot].flags = FF_NODE_HELD;
+        tree->want_head[level] = FF_SLOT_NONE;
+    }
+    tree->dropped = 0;
+}
+
+static void mark_active_roots(ff_tree *tree)
+{
+    for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
+        ff_node *root = &tree->node[slot];
+        root->flags = FF_NODE_HELD | (ff_tile_active(tree, ff_key_tile(root->key)) ? FF_NODE_ACTIVE : 0);
+    }
+}
+
 static uint32_t push_active_roots(ff_tree *tree)
 {
     uint32_t count = 0;
     for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
-        if (ff_tile_active(tree, ff_key_tile(tree->node[slot].key)))
+        if (tree->node[slot].flags & FF_NODE_ACTIVE)
             tree->order[count++] = slot;
     }
     return count;
@@ -75,10 +95,8 @@ static uint32_t own_value(ff_tree *tree, const ff_node *node)
 
 static void want_by_measure(ff_tree *tree)
 {
-    for (uint32_t slot = 0; slot < tree->node_count; slot++)
-        tree->node[slot].flags &= FF_NODE_HELD;
-    for (uint32_t level = 0; level < FF_LEVELS_MAX; level++)
-        tree->want_head[level] = FF_SLOT_NONE;
+    forget_flags(tree);
+    mark_active_roots(tree);
     tree->stats.flat = 0;
     uint32_t count = push_active_roots(tree);
     for (uint32_t i = 0; i < count; i++) {
@@ -111,13 +129,13 @@ static void split_cut(ff_tree *tree)
     tree->cut_count = leaves;
 }
 
-static void fill_drawn(const ff_tree *tree, uint32_t slot, ff_drawn *drawn)
+static void fill_drawn(const ff_tree *tree, uint32_t slot, unsigned coarser, ff_drawn *drawn)
 {
     const ff_node *node = &tree->node[slot];
     drawn->key = node->key;
     drawn->node = node;
     drawn->heights = tree->heights + slot * ff_heights_per_node(tree);
-    drawn->coarser = (uint8_t)ff_coarser_mask(tree, node);
+    drawn->coarser = (uint8_t)coarser;
     drawn->origin_wu[0] = node->x_wu;
     drawn->origin_wu[1] = node->y_wu;
     drawn->origin_wu[2] = ff_height_wu(&tree->info, 32768);
@@ -137,31 +155,36 @@ static uint32_t triangles_of(const ff_tree *tree, unsigned coarser)
 
 static void count_drawn(ff_tree *tree, const ff_drawn *drawn, uint64_t distance)
 {
-    uint64_t error_q8 = ff_projected_error_q8(tree, drawn->node, distance);
+    uint32_t error_q8 = ff_projected_error_q8(tree, drawn->node, distance);
     if (error_q8 > tree->stats.error_px_q8)
-        tree->stats.error_px_q8 = error_q8 > UINT32_MAX ? UINT32_MAX : (uint32_t)error_q8;
+        tree->stats.error_px_q8 = error_q8;
     tree->stats.triangles += triangles_of(tree, drawn->coarser);
     tree->stats.stitched += drawn->coarser != 0;
 }
 
+/* What is seen, nearest first; then what is not. */
 static void list_cut(ff_tree *tree)
 {
-    tree->drawn_count = 0;
+    uint32_t seen = 0, unseen = 0;
     for (uint32_t i = 0; i < tree->cut_count; i++) {
+        uint32_t slot = tree->order[i];
         ff_box box;
-        ff_node_box(tree, &tree->node[tree->order[i]], &box);
-        int seen = !ff_box_beyond_view(tree, &box) && ff_box_in_view(tree, &box);
-        tree->drawn_count += (uint32_t)seen;
-        uint64_t distance = seen ? (uint64_t)ff_box_distance(&box) << FF_SLOT_BITS : UNSEEN;
-        tree->sort[i] = distance | tree->order[i];
+        ff_node_box(tree, &tree->node[slot], &box);
+        if (!ff_box_beyond_view(tree, &box) && ff_box_in_view(tree, &box))
+            tree->sort[seen++] = (uint64_t)ff_box_distance(&box) << FF_SLOT_BITS | slot;
+        else
+            tree->order[unseen++] = slot;
     }
-    ff_sort_keys(tree->sort, tree->cut_count);
+    ff_sort_keys(tree->sort, seen);
+    tree->drawn_count = seen;
     tree->stats.triangles = tree->stats.stitched = tree->stats.error_px_q8 = 0;
-    for (uint32_t i = 0; i < tree->cut_count; i++) {
-        fill_drawn(tree, (uint32_t)tree->sort[i] & (FF_NODES_MAX - 1), &tree->drawn[i]);
-        if (i < tree->drawn_count)
-            count_drawn(tree, &tree->drawn[i], tree->sort[i] >> FF_SLOT_BITS);
+    for (uint32_t i = 0; i < seen; i++) {
+        uint32_t slot = (uint32_t)tree->sort[i] & (FF_NODES_MAX - 1);
+        fill_drawn(tree, slot, ff_coarser_mask(tree, &tree->node[slot]), &tree->drawn[i]);
+        count_drawn(tree, &tree->drawn[i], tree->sort[i] >> FF_SLOT_BITS);
     }
+    for (uint32_t i = 0; i < unseen; i++)
+        fill_drawn(tree, tree->order[i], FF_COARSER_UNKNOWN, &tree->drawn[seen + i]);
 }
 
 int ff_tree_select(ff_tree *tree, const ff_view *view, const ff_quality *quality)

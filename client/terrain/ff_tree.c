@@ -154,6 +154,10 @@ uint32_t ff_tree_drawn(const ff_tree *tree, const ff_drawn **list)
 
 uint32_t ff_tree_cut(const ff_tree *tree, const ff_drawn **list)
 {
+    for (uint32_t i = tree->drawn_count; i < tree->cut_count; i++) {
+        if (tree->drawn[i].coarser == FF_COARSER_UNKNOWN)
+            tree->drawn[i].coarser = (uint8_t)ff_coarser_mask(tree, tree->drawn[i].node);
+    }
     *list = tree->drawn;
     return tree->cut_count;
 }

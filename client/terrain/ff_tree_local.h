@@ -49,7 +49,7 @@ struct ff_tree {
     uint32_t *hash;
     uint32_t *order;         /* node_count slots: queue of a selection */
     uint64_t *sort;          /* 2 * node_count */
-    ff_drawn *drawn;         /* node_count: the cut, its visible part first */
+    ff_drawn *drawn;         /* node_count: the cut, its visible part first; the rest without `coarser` until someone asks */
     ff_wish *wish;
     uint16_t *refined;       /* grid of four children */
     uint32_t free_head, root_head, free_count;
@@ -58,6 +58,7 @@ struct ff_tree {
     ff_view asked_view, view;         /* of the last selection: as given, and brought into range */
     ff_quality asked_quality, quality;
     uint8_t has_view, dirty;
+    uint8_t dropped;                  /* nodes have gone since the last selection: lists of wanted ones are broken */
     ff_window window;
     int32_t plane[FF_PLANES][3];      /* inward normals of the view pyramid, largest component below 2^28 */
     uint32_t want_head[FF_LEVELS_MAX];
@@ -73,6 +74,8 @@ static inline size_t ff_heights_per_node(const ff_tree *tree)
     return (size_t)ff_node_side(&tree->info) * ff_node_side(&tree->info);
 }
 static inline int ff_node_has_children(const ff_node *node) { return node->child[0] != FF_SLOT_NONE; }
+
+#define FF_COARSER_UNKNOWN 0xFFu /* of ff_drawn.coarser, for what is not seen */
 
 /* ff_pool.c */
 uint32_t ff_tree_find(const ff_tree *tree, ff_key key);
@@ -105,8 +108,8 @@ int ff_box_beyond_view(const ff_tree *tree, const ff_box *box);
 /* 1 when all of the box is nearer than hole_wu. */
 int ff_box_in_hole(const ff_tree *tree, const ff_box *box);
 int64_t ff_box_distance(const ff_box *box);
-/* Geometric error of a node as seen from a distance (its box's, usually), pixels Q8. */
-uint64_t ff_projected_error_q8(const ff_tree *tree, const ff_node *node, uint64_t distance);
+/* Geometric error of a node as seen from a distance (its box's, usually), pixels Q8, saturated. */
+uint32_t ff_projected_error_q8(const ff_tree *tree, const ff_node *node, uint64_t distance);
 uint32_t ff_value_of_split(const ff_tree *tree, const ff_node *node);
 
 /* ff_view_cull.c */

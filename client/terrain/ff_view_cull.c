@@ -41,17 +41,34 @@ void ff_pyramid_make(ff_tree *tree)
 
 static int64_t magnitude(int64_t value) { return value < 0 ? -value : value; }
 
+static int64_t larger(int64_t a, int64_t b) { return a > b ? a : b; }
+
+/* The nearest corner to the inside, or one beyond it, is outside by more than `slack`. */
+static int beyond_plane(const int32_t plane[3], const ff_box *box, int64_t slack)
+{
+    int64_t height = 0;
+    for (unsigned axis = 0; axis < 3; axis++)
+        height += plane[axis] * (plane[axis] >= 0 ? box->hi[axis] : box->lo[axis]);
+    return height < -slack;
+}
+
+/* The same where corners have 32 bits: sums of three products below 2^60. */
+static int narrow_beyond_plane(const int32_t plane[3], const ff_box *box, int64_t slack)
+{
+    int64_t height = 0;
+    for (unsigned axis = 0; axis < 3; axis++)
+        height += (int64_t)plane[axis] * (int32_t)(plane[axis] >= 0 ? box->hi[axis] : box->lo[axis]);
+    return height < -slack;
+}
+
 int ff_box_in_view(const ff_tree *tree, const ff_box *box)
 {
+    int64_t size = 1;
+    for (unsigned axis = 0; axis < 3; axis++)
+        size += larger(magnitude(box->lo[axis]), magnitude(box->hi[axis]));
+    int narrow = size <= INT32_MAX;
     for (unsigned i = 0; i < FF_PLANES; i++) {
-        const int32_t *plane = tree->plane[i];
-        int64_t height = 0, size = 1;
-        for (unsigned axis = 0; axis < 3; axis++) {
-            int64_t corner = plane[axis] >= 0 ? box->hi[axis] : box->lo[axis];
-            height += plane[axis] * corner;
-            size += magnitude(corner);
-        }
-        if (height < -PLANE_SLACK * size)
+        if ((narrow ? narrow_beyond_plane : beyond_plane)(tree->plane[i], box, PLANE_SLACK * size))
             return 0;
     }
     return 1;
