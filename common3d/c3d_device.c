@@ -36,6 +36,7 @@ struct c3d_device {
     uint32_t indices_used;   /* of strip_indices_max */
     c3d_frame frame;
     c3d_rotation rotation;
+    int64_t origin_wu[3], eye_q14[3]; /* of the last draw: those of a ground's nodes are one */
     c3d_stats stats;
     uint8_t read[READ_BYTES];
 };
@@ -253,7 +254,16 @@ void c3d_begin(c3d_device *device, const c3d_frame *frame)
     device->stats.frame_triangles = 0;
     device->stats.frame_draws = 0;
     c3d_rotation_from_camera(&frame->camera, &device->rotation);
+    c3d_to_eye_q14(&device->rotation, device->origin_wu, device->eye_q14);
     device->backend->begin(device->state, frame, &device->rotation);
+}
+
+static void find_origin(c3d_device *device, const int64_t origin_wu[3])
+{
+    int64_t *last = device->origin_wu;
+    if (last[0] == origin_wu[0] && last[1] == origin_wu[1] && last[2] == origin_wu[2]) return;
+    memcpy(last, origin_wu, sizeof device->origin_wu);
+    c3d_to_eye_q14(&device->rotation, last, device->eye_q14);
 }
 
 void c3d_draw_strip(c3d_device *device, const c3d_draw *draw)
@@ -266,8 +276,9 @@ void c3d_draw_strip(c3d_device *device, const c3d_draw *draw)
         device->stats.stale_handles++;
         return;
     }
-    c3d_resolved_draw resolved = {draw, &mesh->data, &strip->data, texture ? texture->texture : 0, {0, 0, 0}};
-    c3d_to_eye_q14(&device->rotation, draw->origin_wu, resolved.eye_q14);
+    find_origin(device, draw->origin_wu);
+    c3d_resolved_draw resolved = {draw, &mesh->data, &strip->data, texture ? texture->texture : 0,
+                                  {device->eye_q14[0], device->eye_q14[1], device->eye_q14[2]}};
     device->backend->draw(device->state, &resolved);
     device->stats.frame_draws++;
     if (!(draw->flags & C3D_DRAW_WIREFRAME)) device->stats.frame_triangles += strip->data.triangles;

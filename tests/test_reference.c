@@ -230,6 +230,13 @@ static void projection_of_vertices_by_gl(void **state)
     assert_near_enough(&result, "GL's matrices in single precision", views(2));
 }
 
+static void widen(c3d_mesh_data *mesh, int axis, int32_t at, int first)
+{
+    mesh->reach[axis] = (uint16_t)fmax(mesh->reach[axis], abs(at));
+    if (first || at < mesh->least[axis]) mesh->least[axis] = (int16_t)at;
+    if (first || at > mesh->most[axis]) mesh->most[axis] = (int16_t)at;
+}
+
 /* The integer back end: every vertex of the mesh round the sample that it puts on the screen, in sixteenths of a pixel. */
 static void compare_soft(soft_state *state, sys_random *random, const ground_view *view, by_depth *result)
 {
@@ -240,7 +247,7 @@ static void compare_soft(soft_state *state, sys_random *random, const ground_vie
         const int32_t at[3] = {view->vertex[0] + (i % 3) - 1, view->vertex[1] + i / 3 - 1, view->vertex[2] + (i == 4 ? 0 : between(random, -20, 20))};
         vertex[i] = (c3d_vertex){.x = (int16_t)at[0], .y = (int16_t)at[1], .z = (int16_t)at[2]};
         for (int axis = 0; axis < 3; axis++)
-            mesh.reach[axis] = (uint16_t)fmax(mesh.reach[axis], abs(at[axis]));
+            widen(&mesh, axis, at[axis], i == 0);
     }
     state->cached_mesh = NULL;
     soft_transform(state, &resolved);

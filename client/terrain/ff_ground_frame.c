@@ -12,7 +12,9 @@ static int place_node(const ff_ground_frame *frame, const ff_terrain_info *info,
 {
     place->shift = (uint8_t)(info->tile_log2 - info->node_log2 - ff_key_level(drawn->key));
     for (int axis = 0; axis < 2; axis++) {
-        int64_t base = ((int64_t)drawn->origin_wu[axis] - frame->origin_wu[axis]) / (int64_t)info->spacing_wu;
+        int64_t away_wu = (int64_t)drawn->origin_wu[axis] - frame->origin_wu[axis];
+        int64_t samples = c3d_divide_saturated((uint64_t)(away_wu < 0 ? -away_wu : away_wu), info->spacing_wu);
+        int64_t base = away_wu < 0 ? -samples : samples;
         int64_t end = base + ((int64_t)1 << (info->node_log2 + place->shift));
         if (base < INT16_MIN || end > INT16_MAX)
             return 0;

@@ -14,11 +14,11 @@ ff_key ff_texture_key(const ff_terrain_info *info, ff_key node)
 /* s = (u*(T-1) + 1/2) / T for the fraction u of the textured node's edge; u = (place + vertex/2^k) / 2^depth. */
 static void map_axis(const ff_terrain_info *info, uint32_t place, uint32_t depth, int32_t *scale_q16, int32_t *offset_q16)
 {
-    int64_t texels = (int64_t)1 << info->texture_log2;
-    int64_t span_q16 = (texels - 1) << 16;
-    int64_t divisor = texels << depth;
-    *scale_q16 = (int32_t)(((span_q16 >> info->node_log2) + divisor / 2) / divisor);
-    *offset_q16 = (int32_t)((span_q16 * place + divisor / 2) / divisor + (1 << 15) / texels);
+    int64_t span_q16 = (((int64_t)1 << info->texture_log2) - 1) << 16;
+    uint32_t shift = info->texture_log2 + depth; /* divides by 2^shift, rounded */
+    int64_t half = (int64_t)1 << shift >> 1;
+    *scale_q16 = (int32_t)(((span_q16 >> info->node_log2) + half) >> shift);
+    *offset_q16 = (int32_t)((span_q16 * place + half) >> shift) + ((1 << 15) >> info->texture_log2);
 }
 
 void ff_texture_map(const ff_terrain_info *info, ff_key node, ff_key texture, int32_t scale_q16[2], int32_t offset_q16[2])

@@ -73,6 +73,7 @@ typedef struct soft_view {
     int32_t row[3][3];           /* right and up times the focal distance, forward times 2: Q30, see soft_transform.c */
     int focal_shift;             /* the focal distance times 2^focal_shift is that of the rows, Q30 */
     int32_t centre[2];           /* Q4, twice */
+    int32_t guard_from[2];       /* least coordinates that need no clipping */
     int32_t right_q4, below_q4;  /* last pixel centres */
 } soft_view;
 

@@ -12,6 +12,7 @@
 
 #define WORLD_MAX ((int64_t)1 << 30)
 #define W_MIN 16 /* of what is drawn; less means that nothing was */
+#define W_PLAIN_LOG2 25 /* how many times as far as the near plane w is certainly above that */
 #define W_ERROR_LOG2 18 /* 1/z is within 2^-19 of itself */
 
 void soft_begin_view(soft_state *state, const c3d_rotation *rotation)
@@ -29,6 +30,7 @@ void soft_begin_view(soft_state *state, const c3d_rotation *rotation)
     }
     view->centre[0] = state->width * SOFT_ONE;
     view->centre[1] = state->height * SOFT_ONE;
+    for (int i = 0; i < 2; i++) view->guard_from[i] = view->centre[i] / 2 - SOFT_GUARD_Q4 + 1;
     view->right_q4 = state->width * SOFT_ONE - SOFT_HALF;
     view->below_q4 = state->height * SOFT_ONE - SOFT_HALF;
     state->frame_shift = 14; /* the far plane below 2^29 world units */
@@ -99,7 +101,8 @@ static void begin_space(soft_state *state, const c3d_resolved_draw *resolved)
 
 static SOFT_INLINE int32_t along(const int32_t row[3], int32_t x, int32_t y, int32_t z)
 {
-    return (int32_t)(((int64_t)row[0] * x + (int64_t)row[1] * y + (int64_t)row[2] * z) >> 32);
+    uint64_t sum = (uint64_t)((int64_t)row[0] * x + (int64_t)row[1] * y + (int64_t)row[2] * z);
+    return (int32_t)(uint32_t)(sum >> 32); /* unsigned, so that compilers see: 32 bits are multiplied next */
 }
 
 static SOFT_INLINE void rotate(const soft_view *view, int32_t x, int32_t y, int32_t z, int32_t eye[3])
@@ -109,12 +112,20 @@ static SOFT_INLINE void rotate(const soft_view *view, int32_t x, int32_t y, int3
     eye[2] = along(view->row[2], x, y, z);
 }
 
-static SOFT_INLINE void eye_near(const soft_space *space, const soft_view *view, const c3d_vertex *in, int32_t eye[3])
+static SOFT_INLINE void place_near(const soft_space *space, const c3d_vertex *in, int32_t world[3])
 {
     int64_t height = (int64_t)(int32_t)space->z_scale_q16 * in->z;
     int down = 16 - space->shift; /* 2 .. 16 */
-    uint32_t z = (uint32_t)height >> down | (uint32_t)(height >> 32) << (32 - down);
-    rotate(view, space->origin[0] + in->x * space->scale, space->origin[1] + in->y * space->scale, space->origin[2] + (int32_t)z, eye);
+    world[0] = space->origin[0] + in->x * space->scale;
+    world[1] = space->origin[1] + in->y * space->scale;
+    world[2] = space->origin[2] + (int32_t)((uint32_t)height >> down | (uint32_t)(height >> 32) << (32 - down));
+}
+
+static SOFT_INLINE void eye_near(const soft_space *space, const soft_view *view, const c3d_vertex *in, int32_t eye[3])
+{
+    int32_t world[3];
+    place_near(space, in, world);
+    rotate(view, world[0], world[1], world[2], eye);
 }
 
 /* The same place where 32 bits do not suffice on the way to it. */
@@ -142,42 +153,62 @@ static SOFT_INLINE int32_t reciprocal(const uint32_t table[512], uint32_t n)
 }
 
 /* Of a vertex beside the screen along one axis. */
-static inline uint32_t beside(int32_t at, int32_t centre2, uint32_t low, uint32_t high)
+static inline uint32_t beside(int32_t at, int32_t guard_from, uint32_t low, uint32_t high)
 {
-    int32_t away = at - (centre2 >> 1);
-    uint32_t guard = away >= SOFT_GUARD_Q4 || away <= -SOFT_GUARD_Q4 ? SOFT_GUARD : 0;
+    uint32_t guard = (uint32_t)(at - guard_from) > 2 * SOFT_GUARD_Q4 - 2 ? SOFT_GUARD : 0;
     return guard | (at <= SOFT_HALF ? low : high);
 }
 
 /* Twice x/z on the screen, Q4: x * r * 2^(lead - focal_shift - 32) with z = n / 2^lead and r = 2^60/n. |x * r| < 2^60. */
-static inline int32_t twice_on_screen(int32_t x, int32_t r, int shift)
+static inline int32_t twice_on_screen(int32_t x, int32_t r, int shift, int plain)
 {
     int64_t product = (int64_t)x * r;
-    if (shift >= 0) return (int32_t)(product >> 32) >> shift;
+    if (plain || shift >= 0) return (int32_t)(product >> 32) >> shift;
     product >>= 32 + shift; /* nearer than a metre or so */
     return (int32_t)(product > 1 << 28 ? 1 << 28 : product < -(1 << 28) ? -(1 << 28) : product);
 }
 
+/* Nothing of the mesh is too near or too far, so near that a product takes 64 bits, or so far that near/z vanishes. Sums of three
+ * products are least and greatest in corners of its box, and stay in order when their upper word is kept. */
+static int is_plain(const soft_space *space, const soft_view *view, const c3d_mesh_data *mesh)
+{
+    const c3d_vertex corner[2] = {{.x = mesh->least[0], .y = mesh->least[1], .z = mesh->least[2]},
+                                  {.x = mesh->most[0], .y = mesh->most[1], .z = mesh->most[2]}};
+    int32_t world[2][3];
+    int64_t least = 0, most = 0;
+    place_near(space, &corner[0], world[0]);
+    place_near(space, &corner[1], world[1]);
+    for (int i = 0; i < 3; i++) {
+        int64_t a = (int64_t)view->row[2][i] * world[0][i], b = (int64_t)view->row[2][i] * world[1][i];
+        least += a < b ? a : b;
+        most += a < b ? b : a;
+    }
+    int32_t nearest = (int32_t)(least >> 32), farthest = (int32_t)(most >> 32);
+    return nearest >= space->near_eye && nearest >= 1 << (30 - view->focal_shift) && farthest <= space->far_eye &&
+           farthest >> W_PLAIN_LOG2 < space->near_eye;
+}
+
 /* near/z: near_norm * r * 2^(lead - near_shift - 31), a product below 2^62; rows of pixels and columns. */
-static SOFT_INLINE void project(const soft_space *space, const soft_view *view, const uint32_t table[512], const int32_t eye[3], soft_vertex *vertex)
+static SOFT_INLINE void project(const soft_space *space, const soft_view *view, const uint32_t table[512], int plain, const int32_t eye[3],
+                                soft_vertex *vertex)
 {
     int32_t z = eye[2];
-    if (z < space->near_eye) {
+    if (!plain && z < space->near_eye) {
         vertex->out = SOFT_NEAR;
         vertex->y = INT32_MIN; /* in no row of those in front */
         return;
     }
     int lead = soft_leading_zeros((uint32_t)z) - 1, shift = view->focal_shift - lead;
     int32_t r = reciprocal(table, (uint32_t)z << lead);
-    uint32_t out = z > space->far_eye ? SOFT_FAR : 0;
-    int32_t x = (view->centre[0] + 1 + twice_on_screen(eye[0], r, shift)) >> 1;
-    int32_t y = (view->centre[1] - twice_on_screen(eye[1], r, shift)) >> 1;
+    uint32_t out = !plain && z > space->far_eye ? SOFT_FAR : 0;
+    int32_t x = (view->centre[0] + 1 + twice_on_screen(eye[0], r, shift, plain)) >> 1;
+    int32_t y = (view->centre[1] - twice_on_screen(eye[1], r, shift, plain)) >> 1;
     uint32_t w = (uint32_t)(((uint64_t)space->near_norm * (uint32_t)r) >> 32) << 1 >> (space->near_shift - lead);
-    vertex->w = w < W_MIN ? W_MIN : w;
+    vertex->w = !plain && w < W_MIN ? W_MIN : w;
     vertex->x = x;
     vertex->y = y;
-    if ((uint32_t)(x - SOFT_HALF - 1) >= (uint32_t)(view->right_q4 - SOFT_HALF)) out |= beside(x, view->centre[0], SOFT_LEFT, SOFT_RIGHT);
-    if ((uint32_t)(y - SOFT_HALF - 1) >= (uint32_t)(view->below_q4 - SOFT_HALF)) out |= beside(y, view->centre[1], SOFT_ABOVE, SOFT_BELOW);
+    if ((uint32_t)(x - SOFT_HALF - 1) >= (uint32_t)(view->right_q4 - SOFT_HALF)) out |= beside(x, view->guard_from[0], SOFT_LEFT, SOFT_RIGHT);
+    if ((uint32_t)(y - SOFT_HALF - 1) >= (uint32_t)(view->below_q4 - SOFT_HALF)) out |= beside(y, view->guard_from[1], SOFT_ABOVE, SOFT_BELOW);
     vertex->out = out;
 }
 
@@ -190,11 +221,11 @@ static void put_on_top(soft_vertex *vertex)
 
 void soft_project(const soft_state *state, const int32_t eye[3], soft_vertex *vertex)
 {
-    project(&state->space, &state->view, state->reciprocal, eye, vertex);
+    project(&state->space, &state->view, state->reciprocal, 0, eye, vertex);
     if (state->paint.on_top) put_on_top(vertex);
 }
 
-static void transform_near(soft_state *state, const c3d_mesh_data *mesh)
+static SOFT_INLINE void transform_each(soft_state *state, const c3d_mesh_data *mesh, int plain)
 {
     const soft_space space = state->space;
     const soft_view view = state->view;
@@ -203,8 +234,16 @@ static void transform_near(soft_state *state, const c3d_mesh_data *mesh)
     for (soft_vertex *vertex = state->vertices; in < end; in++, vertex++) {
         int32_t eye[3];
         eye_near(&space, &view, in, eye);
-        project(&space, &view, table, eye, vertex);
+        project(&space, &view, table, plain, eye, vertex);
     }
+}
+
+static void transform_near(soft_state *state, const c3d_mesh_data *mesh)
+{
+    if (is_plain(&state->space, &state->view, mesh))
+        transform_each(state, mesh, 1);
+    else
+        transform_each(state, mesh, 0);
 }
 
 static void transform_far(soft_state *state, const c3d_mesh_data *mesh)
@@ -212,7 +251,7 @@ static void transform_far(soft_state *state, const c3d_mesh_data *mesh)
     for (uint32_t i = 0; i < mesh->count; i++) {
         int32_t eye[3];
         eye_far(&state->space, &state->view, &mesh->vertices[i], eye);
-        project(&state->space, &state->view, state->reciprocal, eye, &state->vertices[i]);
+        project(&state->space, &state->view, state->reciprocal, 0, eye, &state->vertices[i]);
     }
 }
 
@@ -310,11 +349,13 @@ static void transform_fog(soft_state *state, uint32_t count)
 
 static int same_vertices(const c3d_draw *a, const c3d_draw *b)
 {
-    return a->mesh.id == b->mesh.id && memcmp(a->origin_wu, b->origin_wu, sizeof a->origin_wu) == 0 &&
-           a->xy_scale_wu == b->xy_scale_wu && a->z_scale_q16 == b->z_scale_q16 && a->flags == b->flags && a->colour == b->colour &&
-           a->texture.id == b->texture.id && memcmp(a->tex_scale_q16, b->tex_scale_q16, sizeof a->tex_scale_q16) == 0 &&
-           memcmp(a->tex_offset_q16, b->tex_offset_q16, sizeof a->tex_offset_q16) == 0 &&
-           memcmp(a->tex_origin, b->tex_origin, sizeof a->tex_origin) == 0 && a->tex_shift == b->tex_shift;
+    for (int i = 0; i < 3; i++)
+        if (a->origin_wu[i] != b->origin_wu[i]) return 0;
+    for (int i = 0; i < 2; i++)
+        if (a->tex_scale_q16[i] != b->tex_scale_q16[i] || a->tex_offset_q16[i] != b->tex_offset_q16[i] || a->tex_origin[i] != b->tex_origin[i])
+            return 0;
+    return a->mesh.id == b->mesh.id && a->xy_scale_wu == b->xy_scale_wu && a->z_scale_q16 == b->z_scale_q16 && a->flags == b->flags &&
+           a->colour == b->colour && a->texture.id == b->texture.id && a->tex_shift == b->tex_shift;
 }
 
 /* The strips of a node share its mesh: its vertices are transformed with the first. */
