@@ -87,7 +87,10 @@ fi
 if has network && has panorama && has textures && has jpeg; then
     "$host/farfield-fly" --pack "$work/hills.ffp" --back-plane 1500 --seconds 4 --settle 6 --backend none --tape "$work/flight.tape" 2>"$work/fly.err"
     result $? "a flight recorded on tape"
-    "${qemu[@]}" "$program" --tape "$work/flight.tape" >"$work/tape.txt"
+    "${qemu[@]}" "$program" --tape "$work/flight.tape" --hash >"$work/tape.txt"
     result $? "flown again: the same requests, the same geometry"
+    "$host/farfield-handheld" --tape "$work/flight.tape" --hash >"$work/tape-host.txt" &&
+        [ "$(value pictures_hash "$work/tape.txt")" = "$(value pictures_hash "$work/tape-host.txt")" ]
+    result $? "every picture of it is the one this machine draws"
 fi
 exit $((failures > 0))
