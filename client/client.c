@@ -65,6 +65,8 @@ static int check_desc(const ff_client_desc *desc)
     if (!desc->memory || (desc->stream != NULL) == (desc->pack != NULL) || desc->width > 4096 || desc->height > 4096 ||
         desc->in_flight_max > 1024 || desc->panorama.jpeg_quality > 100 || (desc->panorama.face_size && desc->panorama.face_size < 64))
         return FF_ERR_ARGUMENT;
+    if ((unsigned)desc->balance.mode > FF_BALANCE_ALL_CLIENT)
+        return FF_ERR_ARGUMENT;
     if (desc->backend && !desc->surface_api)
         return FF_ERR_ARGUMENT;
     if (desc->stream && !ff_link_built)

@@ -18,6 +18,8 @@
 #define ERROR_QUARTERS 2       /* the panorama's error changes by half an octave */
 #define RELIEF_STEP_Q8 64      /* as much as a step down is taken to spare: a quarter of an octave */
 #define GAIN_Q8(gain_q4) ((int32_t)(gain_q4) * 16)
+#define BULGE_Q8 88
+#define TOLERANCE_Q8 GAIN_Q8(FF_BALANCE_NOISE_Q4)
 
 int32_t ff_balance_log2_q8(uint64_t value)
 {
@@ -26,8 +28,8 @@ int32_t ff_balance_log2_q8(uint64_t value)
         return 0;
     for (uint64_t rest = value; rest >>= 1;)
         whole++;
-    uint64_t fraction = whole >= 8 ? value >> (whole - 8) : value << (8 - whole);
-    return whole * 256 + (int32_t)(fraction - 256);
+    int32_t part = (int32_t)((whole >= 8 ? value >> (whole - 8) : value << (8 - whole)) - 256);
+    return whole * 256 + part + (part * (256 - part) * BULGE_Q8 >> 16); /* log2(1 + p) is about p + 0.344 p (1 - p) */
 }
 
 /* ---- the ladders ---- */
@@ -127,7 +129,7 @@ static void complete(ff_balance_desc *desc, const ff_quality *finest, const ff_p
 static void forget(ff_balance *balance)
 {
     memset(balance->gain_q4, FF_BALANCE_GAIN_Q4, sizeof balance->gain_q4);
-    balance->raised = 0;
+    balance->raised = balance->lowered = 0;
 }
 
 void ff_balance_set(ff_balance *balance, const ff_balance_desc *desc, const ff_quality *quality, const ff_panorama_desc *panorama,
@@ -164,6 +166,7 @@ void ff_balance_set(ff_balance *balance, const ff_balance_desc *desc, const ff_q
 void ff_balance_pause(ff_balance *balance)
 {
     balance->moved_us = INT64_MIN;
+    balance->raised = balance->lowered = 0;
 }
 
 static void begin_frame_window(ff_balance *balance, const ff_balance_sample *sample)
@@ -249,12 +252,13 @@ static int gains_q8(const ff_balance *balance, int which, int load, int from, in
     return sum;
 }
 
-/* The raise added more than its steps were known to: now they are known to add as much, in equal parts. */
-static void learn(ff_balance *balance, int which, int from, int to, int load)
+/* Between two levels a load has changed by so much. If that is more than the steps were known to add, now they are known to add as much,
+ * in equal parts. */
+static void learn(ff_balance *balance, int which, int low, int high, int load, int change_q8)
 {
-    int missing_q8 = balance->load_q8[load] - balance->before_q8[load] - gains_q8(balance, which, load, from, to);
-    int more_q4 = missing_q8 > 0 ? missing_q8 / (16 * (to - from)) + 1 : 1;
-    for (int step = from; step < to; step++) {
+    int missing_q8 = change_q8 - gains_q8(balance, which, load, low, high);
+    int more_q4 = missing_q8 > 0 ? missing_q8 / (16 * (high - low)) + 1 : 0;
+    for (int step = low; step < high; step++) {
         int gain_q4 = balance->gain_q4[which][load][step] + more_q4;
         balance->gain_q4[which][load][step] = (uint8_t)(gain_q4 > UINT8_MAX ? UINT8_MAX : gain_q4);
     }
@@ -262,20 +266,22 @@ static void learn(ff_balance *balance, int which, int from, int to, int load)
 
 static int relieve(ff_balance *balance, int load, int64_t now_us)
 {
-    int to_blame = balance->raised && now_us - balance->moved_us < BLAME_US;
-    if (to_blame) {
+    if (balance->raised && now_us - balance->moved_us < BLAME_US) {
         int which = balance->raised - 1;
-        learn(balance, which, balance->raised_from, balance->level[which], load);
+        learn(balance, which, balance->moved_from, balance->level[which], load, balance->load_q8[load] - balance->before_q8[load]);
         balance->raised = 0;
-        move(balance, which, balance->raised_from, now_us);
+        move(balance, which, balance->moved_from, now_us);
         return 1;
     }
     int level = balance->level[load], steps = 1 + balance->load_q8[load] / RELIEF_STEP_Q8;
     if (!level)
         return 0;
     forget(balance);
-    steps = steps > level ? level : steps;
-    move(balance, load, level - steps, now_us);
+    balance->raised = 0;
+    balance->lowered = (uint8_t)(load + 1);
+    balance->moved_from = (uint8_t)level;
+    balance->before_q8[load] = balance->load_q8[load];
+    move(balance, load, steps > level ? 0 : level - steps, now_us);
     return 1;
 }
 
@@ -290,7 +296,8 @@ static int raise_level(ff_balance *balance, int which, int64_t now_us)
         return 0;
     memcpy(balance->before_q8, balance->load_q8, sizeof balance->before_q8);
     balance->raised = (uint8_t)(which + 1);
-    balance->raised_from = (uint8_t)from;
+    balance->moved_from = (uint8_t)from;
+    balance->lowered = 0;
     move(balance, which, to, now_us);
     return 1;
 }
@@ -301,7 +308,12 @@ static int decide(ff_balance *balance, const ff_balance_sample *sample)
     int told = link_load(balance, sample, &balance->load_q8[FF_BALANCE_FIDELITY]);
     int32_t last_q8 = balance->load_q8[FF_BALANCE_SHARE];
     int moved = 0;
-    if (told && balance->load_q8[FF_BALANCE_FIDELITY] > 0) {
+    if (told && balance->lowered) { /* what the relief spared, a raise would add */
+        int which = balance->lowered - 1, now_q8 = which == FF_BALANCE_SHARE ? balance->frame_most_q8 : balance->load_q8[which];
+        learn(balance, which, balance->level[which], balance->moved_from, which, balance->before_q8[which] - now_q8);
+        balance->lowered = 0;
+    }
+    if (told && balance->load_q8[FF_BALANCE_FIDELITY] > TOLERANCE_Q8) {
         moved = relieve(balance, FF_BALANCE_FIDELITY, sample->now_us);
     } else if (told && balance->frame_most_q8 != INT32_MIN) {
         balance->load_q8[FF_BALANCE_SHARE] = balance->frame_most_q8;
@@ -335,7 +347,7 @@ int ff_balance_feed(ff_balance *balance, const ff_balance_sample *sample)
         if (load_q8 > balance->frame_most_q8)
             balance->frame_most_q8 = load_q8;
         begin_frame_window(balance, sample);
-        if (load_q8 > 0 && relieve(balance, FF_BALANCE_SHARE, sample->now_us))
+        if (load_q8 > TOLERANCE_Q8 && relieve(balance, FF_BALANCE_SHARE, sample->now_us))
             return 1;
     }
     return sample->now_us - balance->link_since_us >= LINK_WINDOW_US ? decide(balance, sample) : 0;

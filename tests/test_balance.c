@@ -16,7 +16,8 @@
 #define SECOND_US 1000000
 #define STEP_US 50000
 #define DECISION_S 20           /* settling at most 10 s, the link's window 8, a second of the frame's */
-#define NOISE 0.08              /* below FF_BALANCE_NOISE_Q4 */
+#define NOISE 0.12              /* below 1.5 FF_BALANCE_NOISE_Q4 */
+#define TOLERANCE 0.14          /* FF_BALANCE_NOISE_Q4 in octaves, and what is lost by whole numbers */
 
 static const ff_quality finest = {.measure = FF_MEASURE_DISTANCE, .c_q8 = 9 * 256, .error_px_q8 = 512, .depth_max = 8, .sigma_q8 = 320,
                                   .view_wu = 30000 * METRE};
@@ -124,21 +125,22 @@ static unsigned all_steps(const plant *p)
     return (unsigned)p->balance.top[0] + p->balance.top[1];
 }
 
-/* Within the stated number of decisions it stands still, each level having turned once at most, no load above its budget that could be
+/* Within the stated number of decisions it stands still, each level having turned once at most (twice when the input changed on the way: a
+ * change may turn it, and its answer once more), no load above its budget that could be
  * lowered; and it stays so. */
-static void assert_settles(plant *p)
+static void assert_settles(plant *p, uint32_t turns_most)
 {
     uint32_t turns = p->balance.turns, moves = p->balance.moves;
     plant_run(p, 2.0 * all_steps(p) * DECISION_S);
     assert_true(p->balance.moves - moves <= 2 * all_steps(p));
-    assert_true(p->balance.turns - turns <= 4); /* a change of the input may turn a level itself, its answer once more */
+    assert_true(p->balance.turns - turns <= turns_most);
     moves = p->balance.moves;
     turns = p->balance.turns;
     plant_run(p, 3600);
     assert_int_equal(p->balance.turns, turns);
-    assert_true(p->balance.moves - moves <= (p->noise > 0 ? 2 : 0)); /* a load next to a threshold may cross it late */
+    assert_true(p->balance.moves - moves <= (p->noise > 0 ? 4 : 0)); /* a load next to a threshold may cross it late */
     for (int load = 0; load < 2; load++)
-        assert_true(p->balance.level[load] == 0 || load_now(p, load) <= log2(1 + NOISE));
+        assert_true(p->balance.level[load] == 0 || load_now(p, load) <= log2(1 + p->noise) + TOLERANCE);
 }
 
 /* ---- ladders ---- */
@@ -207,7 +209,7 @@ static void limits_are_kept(void **state)
     int32_t before = -1;
     for (uint64_t value = 1; value < UINT64_C(1) << 40; value += value / 7 + 1) {
         int32_t q8 = ff_balance_log2_q8(value);
-        assert_true(q8 >= before && fabs(q8 - 256 * log2((double)value)) <= 24);
+        assert_true(q8 >= before && fabs(q8 - 256 * log2((double)value)) <= 5);
         before = q8;
     }
 }
@@ -227,7 +229,7 @@ static void over_plants(double noise, double delay_s)
                     p.gain[DETAIL][1] = p.gain[PICTURE][1] = own[l];
                     p.gain[PLANE][1] = cross[c];
                     plant_open(&p);
-                    assert_settles(&p);
+                    assert_settles(&p, 2);
                 }
 }
 
@@ -260,7 +262,7 @@ static void settles_after_steps_of_the_input(void **state)
         for (size_t i = 0; i < sizeof budget / sizeof *budget; i++) {
             memcpy(p.budget, budget[i], sizeof p.budget);
             plant_set(&p, 0);
-            assert_settles(&p);
+            assert_settles(&p, 4);
             int frame_used = load_now(&p, 0) > -1 || p.balance.level[0] == p.balance.top[0];
             assert_true(frame_used || load_now(&p, 1) > -1); /* what holds it down is a budget */
             if (budget[i][1] > 13 && i < 5)
@@ -275,11 +277,11 @@ static void frame_overload_is_relieved_quickly(void **state)
     (void)state;
     plant p = {.base = {8, 6}, .gain = {{0.22, 0.1}, {0.22, 0}, {0, 0.1}}, .budget = {13, 14}, .delay_s = 0.5};
     plant_open(&p);
-    assert_settles(&p);
+    assert_settles(&p, 4);
     p.budget[0] = 11;
     plant_set(&p, 0);
     plant_run(&p, 10);
-    assert_true(load_now(&p, 0) <= 0);
+    assert_true(load_now(&p, 0) <= TOLERANCE);
 }
 
 /* A link with a sixteenth of what is asked of it. That it is taken to carry more does not matter: waiting tells. Detail waits for the link, and
@@ -290,21 +292,21 @@ static void a_link_much_too_slow_is_spared(void **state)
     for (int overrated = 0; overrated < 5; overrated += 4) {
         plant p = {.base = {4, 9}, .gain = {{0.1, 0.3}, {0.1, 0}, {0, 0.4}}, .budget = {14, 16}, .overrated = overrated};
         plant_open(&p);
-        assert_settles(&p);
+        assert_settles(&p, 4);
         assert_int_equal(p.balance.level[0], p.balance.top[0]);
         p.budget[1] = 10;
         plant_set(&p, 0);
         plant_run(&p, 100);
-        assert_true(load_now(&p, 1) <= 0);
-        assert_settles(&p);
+        assert_true(load_now(&p, 1) <= TOLERANCE);
+        assert_settles(&p, 4);
         p.base[1] = 7; /* less is asked for */
         plant_set(&p, 0);
         p.balance.level[0] = 0;
-        assert_settles(&p);
+        assert_settles(&p, 4);
         assert_true(p.balance.level[0] < p.balance.top[0] && p.knobs.depth_max < finest.depth_max);
         p.budget[1] = 16;
         plant_set(&p, 0);
-        assert_settles(&p);
+        assert_settles(&p, 4);
         assert_int_equal(p.balance.level[0], p.balance.top[0]);
         assert_int_equal(p.balance.level[1], p.balance.top[1]);
     }
@@ -325,9 +327,32 @@ static void a_step_too_high_is_learned(void **state)
         assert_int_equal(p.knobs.depth_max, 6);
         p.budget[0] = 14; /* room for it */
         plant_set(&p, 0);
-        assert_settles(&p);
+        assert_settles(&p, 4);
         assert_true(p.knobs.depth_max > 6);
     }
+}
+
+/* Rough ground every forty seconds, a fifth dearer: the level that passes the budget then is left once, and not gone back to. What relief
+ * taught is forgotten when the input changes. */
+static void a_regular_input_does_not_drag_it_along(void **state)
+{
+    (void)state;
+    plant p = {.base = {6, 6}, .gain = {{0.2, 0}, {0.2, 0}, {0, 0.1}}, .jump = 1, .budget = {10, 14}};
+    plant_open(&p);
+    plant_run(&p, 200);
+    assert_int_equal(p.knobs.depth_max, 7);
+    for (int i = 0; i < 100; i++) {
+        p.base[0] += i % 2 ? -0.6 : 0.6;
+        plant_run(&p, 20);
+    }
+    assert_true(p.balance.turns <= 4);
+    assert_true(load_now(&p, 0) <= TOLERANCE);
+    p.jump = 0;
+    p.base[0] += 3;
+    assert_settles(&p, 4);
+    p.base[0] -= 3;
+    assert_settles(&p, 4);
+    assert_true(p.knobs.depth_max >= 7);
 }
 
 /* Nothing comes: asking for less would not help. Pauses measure nothing. */
@@ -336,7 +361,7 @@ static void silence_and_pauses_move_nothing(void **state)
     (void)state;
     plant p = {.base = {8, 6}, .gain = {{0.2, 0}, {0.2, 0}, {0, 0.2}}, .budget = {12, 14}};
     plant_open(&p);
-    assert_settles(&p);
+    assert_settles(&p, 4);
     ff_balance_sample sample = {.now_us = p.now_us, .bytes_down = (uint64_t)p.bytes, .rate_bytes_s = 20000, .waiting = 1, .in_force = 1};
     sample.frame_cost = 3000;
     for (int i = 0; i < 200; i++, sample.now_us += STEP_US)
@@ -460,7 +485,7 @@ int main(void)
         cmocka_unit_test(settles_on_a_constant_input), cmocka_unit_test(settles_in_noise),
         cmocka_unit_test(settles_when_moves_come_into_force_late), cmocka_unit_test(settles_after_steps_of_the_input),
         cmocka_unit_test(frame_overload_is_relieved_quickly), cmocka_unit_test(a_link_much_too_slow_is_spared),
-        cmocka_unit_test(a_step_too_high_is_learned),
+        cmocka_unit_test(a_regular_input_does_not_drag_it_along), cmocka_unit_test(a_step_too_high_is_learned),
         cmocka_unit_test(silence_and_pauses_move_nothing), cmocka_unit_test(a_client_follows_its_frame_budget),
         cmocka_unit_test(the_ends_and_off), cmocka_unit_test(the_back_plane_waits_for_its_panorama)
     };
