@@ -56,7 +56,7 @@ typedef struct ff_balance_desc {
     enum ff_balance_mode mode;
     uint32_t frame_budget;    /* what a frame may cost: triangles, or the unit of ff_client_frame_cost; 0: no limit */
     uint32_t link_bytes_s;    /* what may come in a second, and never more than link_percent of what the link is found to carry; 0: that alone */
-    uint8_t link_percent;     /* also of the time in which something in view may have to wait for the link; default 60 */
+    uint8_t link_percent;     /* also of the time in which something in view may have to wait for the link; default 80 */
     int32_t c_min_q8;         /* FF_MEASURE_DISTANCE; default a quarter of quality.c_q8 */
     int32_t error_px_max_q8;  /* FF_MEASURE_PIXELS; default eight times quality.error_px_q8 */
     uint8_t depth_min;        /* default: quality.depth_max less 3, at least 2; of no effect where depth_max is 0 */

@@ -9,7 +9,7 @@
 #define BLAME_US 30000000      /* relief sooner than this after a raise is laid to it */
 #define SATURATED_PERCENT 90   /* of the time something waits */
 #define SILENT_SHARE 32        /* less than one in so many of the bytes a link can carry: it is silent, and asking for less does not help */
-#define PERCENT_DEFAULT 60
+#define PERCENT_DEFAULT 80
 #define DEPTH_LESS 3
 #define DEPTH_LEAST 2
 #define C_STEPS_MAX 16

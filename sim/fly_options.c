@@ -49,7 +49,7 @@ static const char help[] =
     "  --face N              texels of a panorama's face each way, 64 to 1024, default 256; a larger one needs more --memory\n"
     "  --view M              how far ground is drawn without panorama, default 30000\n"
     "  --balance SPEC        the client's share of the work follows budgets, --quality and --panorama are the finest: TRIANGLES a frame\n"
-    "                        (0: as many as it takes), or TRIANGLES,BYTES with the bytes that may come a second (at most 60 % of what the\n"
+    "                        (0: as many as it takes), or TRIANGLES,BYTES with the bytes that may come a second (at most 80 % of what the\n"
     "                        link carries). server or client: stays at that end. Default: off, all as set\n"
     "  --memory BYTES        of the client, with K or M; default 4M\n"
     "  --plain-arrays        no vertex buffers\n"
