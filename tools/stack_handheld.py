@@ -24,6 +24,7 @@ THROUGH_POINTERS = [
     (r"^soft_|soft/soft_[a-z]+\.c:", r"soft_spans\.c:span_|^soft_segment_paint$"),
     (r"ff_predict\.c:|^ff_predict_", r"ff_decode\.c:add_residual$"),
     (r"ff_pool\.c:|^ff_tree_reshade_beside$", r"ff_terrain_view\.c:on_evict$"),
+    (r"^ff_box_in_view$", r"ff_view_cull\.c:(narrow_)?beyond_plane$"),
     (r"ff_stream\.c:|^ff_stream_", r"posix/tcp\.c:tcp_|sim_tape\.c:play_"),
     (r"^inflate|^updatewindow$", r"ff_inflate\.c:arena_"),
 ]
