@@ -262,16 +262,25 @@ static int take_row(fly_flight *flight, double t_s)
     return 0;
 }
 
-static int take_picture(fly_flight *flight, double t_s)
+static int write_picture(const fly_flight *flight, const char *folder, double t_s)
 {
     char path[4096];
-    const fly_options *options = flight->options;
-    if (snprintf(path, sizeof path, "%s/frame-%07.2f.png", options->png_dir, t_s) >= (int)sizeof path)
-        return fail("--png", "path too long");
-    if (read_picture(flight))
-        return -1;
-    int rc = sys_png_write(path, flight->rgb, options->width, options->height);
+    if (snprintf(path, sizeof path, "%s/frame-%07.2f.png", folder, t_s) >= (int)sizeof path)
+        return fail(folder, "path too long");
+    int rc = sys_png_write(path, flight->rgb, flight->options->width, flight->options->height);
     return rc == FF_OK ? 0 : fail(path, ff_error_text(rc));
+}
+
+static int take_picture(fly_flight *flight, double t_s)
+{
+    fly_world *world = flight->world;
+    if (read_picture(flight) || write_picture(flight, flight->options->png_dir, t_s))
+        return -1;
+    if (!world->reference.client)
+        return 0;
+    int rc = fly_reference_draw(&world->reference, &flight->camera, flight->rgb);
+    (void)world->surface_api->make_current(world->surface);
+    return rc == FF_OK ? write_picture(flight, flight->options->reference_dir, t_s) : fail("reference", ff_error_text(rc));
 }
 
 /* ---- frames ---- */
@@ -351,6 +360,8 @@ static int begin(fly_flight *flight, fly_world *world, FILE *csv)
         return fail("picture", ff_error_text(FF_ERR_MEMORY));
     if (options->png_dir && sys_make_folder(options->png_dir) != FF_OK)
         return fail(options->png_dir, "cannot make this folder");
+    if (options->reference_dir && sys_make_folder(options->reference_dir) != FF_OK)
+        return fail(options->reference_dir, "cannot make this folder");
     if (csv)
         fly_csv_header(csv);
     if (options->server)

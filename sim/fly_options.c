@@ -63,6 +63,8 @@ static const char help_picture[] = /* compilers need not take longer strings */
     "  --fps N               frames a second, default 30\n"
     "  --png DIR             pictures every --every seconds (default 10) into DIR\n"
     "  --every S\n"
+    "  --reference DIR       with --png: the same moments into DIR as they should look, drawn from the pack without a link, to a quarter\n"
+    "                        of a pixel and with all images\n"
     "  --wireframe           the strips as lines, stitching strips in another colour\n"
     "\n"
     " checking\n"
@@ -77,7 +79,7 @@ enum option_id {
     OPT_PACK = 256, OPT_CSV, OPT_JSON, OPT_PATH, OPT_START, OPT_SPEED, OPT_HEIGHT, OPT_SECONDS, OPT_SETTLE, OPT_SEED, OPT_EVENT, OPT_EVENTS,
     OPT_LINK,
     OPT_DOWN_TRACE, OPT_UP_TRACE, OPT_SERVER, OPT_QUALITY, OPT_PANORAMA, OPT_BACK_PLANE, OPT_FACE, OPT_VIEW, OPT_MEMORY, OPT_PLAIN, OPT_BACKEND,
-    OPT_SIZE, OPT_FOV, OPT_FPS, OPT_PNG, OPT_EVERY, OPT_WIREFRAME, OPT_AUDIT, OPT_CHECK, OPT_SAMPLE, OPT_TAPE, OPT_AUDIT_STEP, OPT_GROUND_CACHE, OPT_BALANCE, OPT_HELP, OPT_VERSION
+    OPT_SIZE, OPT_FOV, OPT_FPS, OPT_PNG, OPT_REFERENCE, OPT_EVERY, OPT_WIREFRAME, OPT_AUDIT, OPT_CHECK, OPT_SAMPLE, OPT_TAPE, OPT_AUDIT_STEP, OPT_GROUND_CACHE, OPT_BALANCE, OPT_HELP, OPT_VERSION
 };
 
 static const struct option long_options[] = {
@@ -91,6 +93,7 @@ static const struct option long_options[] = {
     { "memory", 1, NULL, OPT_MEMORY },     { "plain-arrays", 0, NULL, OPT_PLAIN },{ "backend", 1, NULL, OPT_BACKEND },
     { "face", 1, NULL, OPT_FACE },
     { "size", 1, NULL, OPT_SIZE },         { "fov", 1, NULL, OPT_FOV },           { "fps", 1, NULL, OPT_FPS },
+    { "reference", 1, NULL, OPT_REFERENCE },
     { "png", 1, NULL, OPT_PNG },           { "every", 1, NULL, OPT_EVERY },       { "wireframe", 0, NULL, OPT_WIREFRAME },
     { "audit", 1, NULL, OPT_AUDIT },       { "check", 1, NULL, OPT_CHECK },       { "sample", 1, NULL, OPT_SAMPLE },
     { "tape", 1, NULL, OPT_TAPE },         { "audit-step", 1, NULL, OPT_AUDIT_STEP },
@@ -352,6 +355,7 @@ static int parse_one(fly_options *options, int id, const char *text)
     case OPT_PACK: options->pack_path = text; return 0;
     case OPT_CSV: options->csv_path = text; return 0;
     case OPT_PNG: options->png_dir = text; return 0;
+    case OPT_REFERENCE: options->reference_dir = text; return 0;
     case OPT_TAPE: options->tape_path = text; return 0;
     case OPT_GROUND_CACHE: options->ground_cache = text; return 0;
     case OPT_SERVER: options->server = text; return 0;
@@ -411,6 +415,8 @@ int fly_options_parse(fly_options *options, int argc, char **argv)
         options->check = options->audit;
     if (options->tape_path && (options->server || options->event_count || options->balance.mode != FF_BALANCE_OFF))
         return fail("--tape records simulated flights without events and without --balance");
+    if (options->reference_dir && !options->png_dir)
+        return fail("--reference needs --png");
     if (options->png_dir && options->backend == FLY_NONE)
         return fail("--png needs a --backend other than none");
     return 0;

@@ -48,6 +48,7 @@ typedef struct fly_options {
     int audit, check, json, wireframe, plain_arrays;
     const char *csv_path, *png_dir;
     const char *tape_path;    /* all that comes to the client, for farfield-handheld; NULL: not recorded */
+    const char *reference_dir; /* the same moments as they should look; NULL: not drawn */
     double every_s, sample_s; /* between pictures; between rows */
     size_t memory_bytes;
     fly_event event[FLY_EVENTS_MAX];

@@ -67,6 +67,22 @@ static int is_soft(enum fly_backend backend)
     return backend == FLY_SOFT || backend == FLY_SOFT_565;
 }
 
+static const struct c3d_backend *backend_of(enum fly_backend backend)
+{
+    if (backend == FLY_NONE)
+        return NULL;
+    return is_soft(backend) ? c3d_backend_soft() : backend == FLY_GLES1 ? c3d_backend_gles1() : c3d_backend_gl();
+}
+
+/* Before the flight's own surface, whose context is to be the current one. */
+static int open_reference(fly_world *world, const sys_surface_desc *desc)
+{
+    const fly_options *options = world->options;
+    int rc = world->surface_api ? fly_reference_open(&world->reference, options, &world->pack, world->surface_api, desc,
+                                                     backend_of(options->backend)) : FF_ERR_UNSUPPORTED;
+    return rc == FF_OK ? 0 : fail("reference", rc);
+}
+
 static int open_surface(fly_world *world)
 {
     const fly_options *options = world->options;
@@ -81,6 +97,8 @@ static int open_surface(fly_world *world)
         world->surface_api = sys_surface_memory();
         desc.gl = SYS_GL_NONE;
     }
+    if (options->reference_dir && open_reference(world, &desc))
+        return -1;
     int rc = world->surface_api ? world->surface_api->open(&desc, &world->surface) : FF_ERR_UNSUPPORTED;
     if (rc == FF_OK)
         return 0;
@@ -98,9 +116,7 @@ static int open_client(fly_world *world)
                             .surface_api = world->surface_api, .width = options->width, .height = options->height,
                             .quality = options->quality, .panorama = options->panorama, .balance = options->balance, .use_thread = options->server != NULL,
                             .use_plain_arrays = (uint8_t)options->plain_arrays };
-    if (options->backend != FLY_NONE)
-        desc.backend = is_soft(options->backend) ? c3d_backend_soft()
-                       : options->backend == FLY_GLES1 ? c3d_backend_gles1() : c3d_backend_gl();
+    desc.backend = backend_of(options->backend);
     desc.frame_format = options->backend == FLY_SOFT ? C3D_RGBA8888 : C3D_RGB565;
     int rc = ff_client_create(&desc, &world->client);
     if (rc != FF_OK) {
@@ -123,6 +139,7 @@ int fly_world_open(fly_world *world, const fly_options *options)
 
 void fly_world_close(fly_world *world)
 {
+    fly_reference_close(&world->reference);
     if (world->surface)
         (void)world->surface_api->make_current(world->surface);
     if (world->client)

@@ -4,6 +4,7 @@
 
 #include "fly_options.h"
 #include "fly_path.h"
+#include "fly_reference.h"
 #include "sim_audit.h"
 #include "sim_relevance.h"
 #include "sim_server.h"
@@ -26,6 +27,7 @@ typedef struct fly_world {
     sim_tape_recorder tape;     /* file NULL: none is recorded */
     const sys_surface_api *surface_api;
     sys_surface *surface;
+    fly_reference reference;    /* client NULL: none is drawn */
     void *memory;
     ff_client *client;
 } fly_world;

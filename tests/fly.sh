@@ -99,6 +99,23 @@ is 'r[-1]["err_px_max"] < 2 and r[-1]["undrawn_px_percent"] == 0' "half a pixel 
 flies toggled $quick --event 2:panorama-off
 is 'r[1]["panoramas"] > 0 and r[-1]["panoramas"] == r[3]["panoramas"] and r[-1]["panorama_px_percent"] == 0' "the panorama can be switched off in flight"
 
+# ---- as it should look ----
+flies settled $usual --backend gl --link lan --panorama off --quality px:0.25 --view 200000 --memory 16M --seconds 0 --png "$work/settled" \
+    --reference "$work/true" --every 6
+cmp -s "$work/settled/frame-0006.00.png" "$work/true/frame-0006.00.png"
+result $? "a picture with all that it needs is its reference, bit for bit"
+flies coarse $usual --backend gl --link lan --quality 1:1 --seconds 0 --png "$work/coarse" --reference "$work/true2" --every 6
+! cmp -s "$work/coarse/frame-0006.00.png" "$work/true2/frame-0006.00.png" && cmp -s "$work/true/frame-0006.00.png" "$work/true2/frame-0006.00.png"
+result $? "a coarse one is not, and has the same"
+! "$bin/farfield-fly" --pack "$work/hills.ffp" --reference "$work/true" 2>"$work/error" &&
+    [ "$(cat "$work/error")" = "farfield-fly: --reference needs --png" ]
+result $? "--reference without --png is an error"
+
+# ---- relevance ----
+flies still $usual --backend none --speed 0 --seconds 20
+is '85 < s["relevance_percent"] <= 100 and r[-1]["unused_heights"] == r[-1]["unused_supporting"] and abs(r[-1]["bytes_heights"] + r[-1]["bytes_images"] + r[-1]["bytes_faces"] + r[-1]["bytes_overhead"] - r[-1]["bytes_down"]) < 1' \
+    "standing still all that comes is drawn, or lets what is drawn be so fine; the kinds of bytes add up"
+
 # ---- events ----
 flies events $quick --event 2:low-battery --event 4:battery-ok --event 5:interruption
 is '[row["low_power"] for row in r] == [0, 0, 1, 1, 0, 1, 1]' "low battery and interruption save power, and end"

@@ -32,7 +32,7 @@ page=$work/deep/out/index.html
 table=$work/deep/out/REPORT.md
 [ "$(cat "$work/said")" = "$page
 $table" ]; result $? "names the files it made"
-[ "$(grep -c '<svg' "$page")" = 10 ]; result $? "ten plots: four for a flight, three without auditor, three for all"
+[ "$(grep -c '<svg' "$page")" = 12 ]; result $? "twelve plots: five for a flight, four without auditor, three for all"
 ! grep -q -E '(src|href)="?https?:|url\(http' "$page"; result $? "nothing comes from a network"
 grep -q '<h1>Ground &amp; &quot;far&quot; &lt;ground&gt;</h1>' "$page"; result $? "the title is escaped"
 grep -q '<h2>umts &lt;&amp;&gt; on</h2>' "$page"; result $? "a flight's name is escaped"
@@ -62,6 +62,9 @@ for t, grey in ((1, 10), (2, 22), (4, 80)):
 png(sys.argv[1] + "/odd/frame-0001.00.png", 10, 21)
 END
     beside() { "$report" "$work/blind.csv" -o "$work/beside" "$@" >"$work/said" 2>"$work/error"; }
+    beside --against "$work/one=$work/two" && grep -q 'src="reference-1.png"' "$work/beside/index.html" && [ -s "$work/beside/reference-1.png" ]
+    result $? "pictures beside what they should be"
+    ! beside --against "$work/one" && grep -q '^farfield-report: --against: .* is not DIR=DIR$' "$work/error"; result $? "--against wants two folders"
     beside --beside soft="$work/one" --beside gles1="$work/two"; result $? "two flights side by side"
     grep -q 'src="side-by-side.png"' "$work/beside/index.html" && grep -q 'At most 100.00 % of a picture' "$work/beside/REPORT.md"
     result $? "with the largest share that differs"
@@ -108,6 +111,31 @@ for svg in re.findall(r"<svg.*?</svg>", open(sys.argv[1], encoding="utf-8").read
 END
     result $? "every plot is well-formed and has a curve"
 fi
+
+# ---- findings ----
+mkdir -p "$work/found"
+found() { # NAME RELEVANCE
+    echo "t_s,triangles,nodes_drawn,nodes_held,bytes_down,bytes_up,requests,panoramas,err_px_rms,err_px_p95,err_px_max,undrawn_px_percent,square_px_waiting,square_px_depth,square_px_quality,square_px_panorama,square_px_undrawn,bytes_heights,bytes_images,bytes_faces,bytes_overhead,bytes_judged,unused_heights,unused_images,unused_faces,unused_supporting,relevance_percent"
+    for t in 0 15 20 315; do echo "$t,4000,10,20,$((t * 1000)),100,9,1,4,5,6,0,1,12,0,3,0,$((t * 300)),$((t * 600)),$((t * 90)),$((t * 10)),$((t * 1000)),300,0,0,250,$2"; done
+}
+for name in umts-150-low-on lan-150-low-on gprs-150-low-on umts-0-low-on; do found $name 96.5 >"$work/found/$name.csv"; done
+printf 'quality,panorama,instructions,err_px_p95,more\npx:2,on,5000000,0.5,x\n3:4,on,4000000,5,x\npx:4,on,3000000,1,x\n' >"$work/work.csv"
+"$report" --paper tools/hybrid_table3.csv --instructions "$work/work.csv" "$work"/found/*.csv -o "$work/findings" >/dev/null 2>"$work/error"
+result $? "a report with findings"
+table=$work/findings/REPORT.md page=$work/findings/index.html
+grep -q -F '| umts-150-low-on: kB of the paper'"'"'s | 0.50 | 0.73 | missed by 0.234 | most of it: images, 60 % |' "$table"; result $? "a target missed, by how much and why"
+grep -q -F '| umts-150-low-on: triangles of the paper'"'"'s | 1.00 | 0.78 | hit |' "$table"; result $? "a target hit"
+grep -q -F '| gprs-150-low-on: seconds to a stable picture | 15.00 | 0.00 | hit |' "$table"; result $? "stable from the start"
+grep -q -F '| umts-0-low-on: relevance % | 99.50 | 96.50 | missed by 3 | never drawn: 0.2 kB of neighbours' "$table" &&
+    grep -q -F '| umts-150-low-on: relevance % | 95.00 | 96.50 | hit |' "$table"
+result $? "relevance, standing still and in flight"
+grep -q -F '| images | 60.0 |' "$table" && grep -q -F '| depth limit of the quality | 75.0 |' "$table" && grep -q -F '| parallax of the panorama | 18.8 |' "$table"
+result $? "where bytes go and error comes from"
+grep -q 'Error against instructions' "$page" && grep -q '<td>px:2</td><td>on</td><td>5.00</td><td>0.50</td>' "$page"; result $? "the error against instructions"
+sed '2s/5000000/many/' "$work/work.csv" >"$work/bad.work"
+! "$report" --instructions "$work/bad.work" "$work/blind.csv" -o "$work/bad" 2>"$work/error" &&
+    [ "$(cat "$work/error")" = "farfield-report: $work/bad.work:2: not a table of instructions and errors" ] && [ ! -e "$work/bad" ]
+result $? "refuses a bad table of instructions"
 
 refuses() { # WHAT MESSAGE, CSV on stdin
     cat >"$work/bad.csv"

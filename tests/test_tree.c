@@ -263,13 +263,17 @@ static void test_wish_list_is_bounded_and_keeps_the_best(void **state)
     (void)state;
     terrain_fixture fx;
     fixture_make(&fx, 3, 5, 30, 30, fixture_hills);
-    fixture_tree(&fx, 3000, 5);
+    fixture_tree(&fx, 3000, 20);
     ff_view view = fixture_view(15 * 320 + 160, 15 * 320 + 160, 200, 0, -90);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     const ff_wish *wish;
     ff_tree_select(fx.tree, &view, &quality);
-    assert_int_equal(ff_tree_wishes(fx.tree, &wish), 5);
+    assert_int_equal(ff_tree_wishes(fx.tree, &wish), 5); /* roots out of view take a quarter of the list */
     assert_int_equal(ff_key_tile(wish[0].key), 15 * 30 + 15);
+    fixture_deliver(&fx, wish[0].key, 0);
+    ff_tree_select(fx.tree, &view, &quality);
+    assert_int_equal(ff_tree_wishes(fx.tree, &wish), 6);
+    assert_true(wish[5].refinement && ff_key_tile(wish[5].key) == 15 * 30 + 15);
     fixture_free(&fx);
 }
 

@@ -61,7 +61,8 @@ server_pid="" link_pid=""
 for profile in umts gprs; do
     for panorama in on off; do
         say "simulated: $profile, panorama $panorama, 60 seconds"
-        fly "$profile-panorama-$panorama" "$profile" 60 "$panorama" 240x320 --every 15 --audit on
+        fly "$profile-panorama-$panorama" "$profile" 60 "$panorama" 240x320 --every 15 --audit on \
+            --reference "$out/$profile-panorama-$panorama.true"
     done
 done
 say "pictures at 640x480 in high quality, and the wireframe"
@@ -74,13 +75,15 @@ say "integers beside GL ES: the same minute twice"
 
 say "report"
 pictures=""
+against=""
+for name in umts-panorama-on gprs-panorama-on umts-panorama-off; do against="$against --against $out/$name=$out/$name.true"; done
 for name in live-umts umts-panorama-on gprs-panorama-on umts-panorama-off large-panorama large wireframe; do
     last=$(ls "$out/$name"/*.png | tail -n 1)
     pictures="$pictures --picture $last"
 done
 # shellcheck disable=SC2086
 "$bin/farfield-report" "$out"/live-umts.csv "$out"/umts-*.csv "$out"/gprs-*.csv -o "$out/report" \
-    --beside soft="$out/look/soft" --beside gles1="$out/look/gles1" --title "Trinidad, Colorado: 150 km/h, low quality" $pictures
+    --beside soft="$out/look/soft" --beside gles1="$out/look/gles1" --title "Trinidad, Colorado: 150 km/h, low quality" $against $pictures
 
 say "done"
 echo "report:   $out/report/index.html (text: $out/report/REPORT.md)"

@@ -51,6 +51,7 @@ list_flights() {
     local link speed quality panorama
     if [ -n "$QUICK" ]; then
         for link in umts gprs lan; do echo "$link-150-low-on --link $link --speed 150 --quality low --panorama on"; done
+        echo "umts-0-low-on --link umts --speed 0 --quality low --panorama on"
         printf '%s\n' "px-8 px:8" "px-4 px:4" "C-2 2:8" "C-3 3:8" | list_sweep
         return
     fi
@@ -62,6 +63,9 @@ list_flights() {
                 done
             done
         done
+    done
+    for link in umts gprs; do # standing still, for relevance
+        for panorama in off on; do echo "$link-0-low-$panorama --link $link --speed 0 --quality low --panorama $panorama"; done
     done
     printf '%s\n' "px-8 px:8" "px-4 px:4" "px-2 px:2" "px-1 px:1" "C-2 2:8" "C-3 3:8" "C-5 5:8" "C-9 9:8" | list_sweep
     printf '%s\n' "share-server 9:8 server" "share-2500 9:8 2500" "share-5000 9:8 5000" "share-10000 9:8 10000" "share-20000 9:8 20000" \
@@ -104,15 +108,37 @@ fly_all() {
     xargs -P "$JOBS" -L 1 bash -c 'set -euo pipefail; fly_one "$@"' fly <"$flights/list"
 }
 
+# look NAME OPTION...: the beginning of that flight once more, in pictures, and how they should look.
+look() {
+    local name=$1 folder=$flights/look/$1 key
+    shift
+    key="$flyover_key $*"
+    [ "$(cat "$folder.key" 2>/dev/null)" = "$key" ] && return
+    rm -rf "$folder" "$folder.true"
+    mkdir -p "$flights/look"
+    "$bin/farfield-fly" --pack "$pack" --start 0.4 --height 100 --seconds "$(awk -v s="$SECONDS_EACH" 'BEGIN { print s < 60 ? s : 60 }')" \
+        --settle $settle_s --seed 1 --backend soft --png "$folder" --reference "$folder.true" --every 15 "$@" 2>"$folder.log" ||
+        { tail -n 1 "$folder.log" >&2; exit 1; }
+    rm -f "$folder/frame-0000.00.png" # nothing has arrived yet
+    printf '%s\n' "$key" >"$folder.key"
+}
+
 main() {
-    local -a csv
+    local -a csv more=()
+    local instructions=build/bench/work-precision.csv
     mkdir -p "$flights"
     find_ground
     say "$(basename "$pack"): flights of $SECONDS_EACH s, $JOBS side by side"
     fly_all
+    say "pictures beside what they should be"
+    look umts-150-low-on --link umts --speed 150 --quality low --panorama on
+    look gprs-150-high-on --link gprs --speed 150 --quality high --panorama on
+    [ ! -s "$instructions" ] || more=(--instructions "$instructions")
     mapfile -t csv < <(sed "s|^\([^ ]*\).*|$flights/\1.csv|" "$flights/list")
     "$bin/farfield-report" --paper "$here/hybrid_table3.csv" --settle $settle_s --title "The flights of Hybrid's Table 3 over $ground" \
-        "${csv[@]}" -o "$flights/report"
+        --against "$flights/look/umts-150-low-on=$flights/look/umts-150-low-on.true" \
+        --against "$flights/look/gprs-150-high-on=$flights/look/gprs-150-high-on.true" \
+        "${more[@]}" "${csv[@]}" -o "$flights/report"
 }
 
 main

@@ -4,11 +4,17 @@
 
 #include <stddef.h>
 
-/* Columns the report uses; a file may have more, in any order. Errors may be missing (flight without auditor): NAN. */
+/* Columns the report uses; a file may have more, in any order. Errors may be missing (flight without auditor), kinds of
+ * bytes too (over real sockets): NAN. */
 #define REPORT_COLUMN_LIST(X) \
     X(T_S, "t_s", 1) X(TRIANGLES, "triangles", 1) X(NODES_DRAWN, "nodes_drawn", 1) X(NODES_HELD, "nodes_held", 1) \
     X(BYTES_DOWN, "bytes_down", 1) X(BYTES_UP, "bytes_up", 1) X(REQUESTS, "requests", 1) X(PANORAMAS, "panoramas", 1) \
-    X(ERR_RMS, "err_px_rms", 0) X(ERR_P95, "err_px_p95", 0) X(ERR_MAX, "err_px_max", 0) X(UNDRAWN, "undrawn_px_percent", 0)
+    X(ERR_RMS, "err_px_rms", 0) X(ERR_P95, "err_px_p95", 0) X(ERR_MAX, "err_px_max", 0) X(UNDRAWN, "undrawn_px_percent", 0) \
+    X(WAITING, "square_px_waiting", 0) X(DEPTH, "square_px_depth", 0) X(QUALITY, "square_px_quality", 0) \
+    X(PARALLAX, "square_px_panorama", 0) X(MISSING, "square_px_undrawn", 0) \
+    X(HEIGHTS, "bytes_heights", 0) X(IMAGES, "bytes_images", 0) X(FACES, "bytes_faces", 0) X(OVERHEAD, "bytes_overhead", 0) \
+    X(JUDGED, "bytes_judged", 0) X(UNUSED_HEIGHTS, "unused_heights", 0) X(UNUSED_IMAGES, "unused_images", 0) \
+    X(UNUSED_FACES, "unused_faces", 0) X(SUPPORTING, "unused_supporting", 0) X(RELEVANCE, "relevance_percent", 0)
 enum report_column {
 #define X(id, name, required) REPORT_##id,
     REPORT_COLUMN_LIST(X)

@@ -14,6 +14,9 @@
 
 #define PATH_BYTES 4096
 #define WHY_BYTES 8192
+#define AGAINST_MAX 8
+#define BESIDE_AMPLIFIED 32
+#define AGAINST_AMPLIFIED 2
 
 static const char usage[] =
     "Usage: farfield-report [OPTION]... CSV... -o DIR\n"
@@ -28,6 +31,11 @@ static const char usage[] =
     "      --beside NAME=DIR    given twice, for folders of farfield-fly --png: up to five\n"
     "                       pictures of the same moments from both and their difference\n"
     "                       become one, DIR/side-by-side.png\n"
+    "      --against DIR=DIR    pictures of a flight and, by the same names, how they should\n"
+    "                       look (farfield-fly --png, --reference): a sheet of both\n"
+    "                       and where they differ; up to eight times\n"
+    "      --instructions TABLE draw the error against instructions: work-precision.csv of\n"
+    "                       make bench-handheld\n"
     "      --paper TABLE        put flights named LINK-SPEED-QUALITY-PANORAMA beside those of\n"
     "                       a paper (tools/hybrid_table3.csv), and draw the error of\n"
     "                       flights named sweep-SERIES-VALUE against their work\n"
@@ -42,6 +50,9 @@ typedef struct options {
     size_t csv_count, picture_count;
     report_series beside[2];
     size_t beside_count;
+    report_series against[AGAINST_MAX][2];
+    size_t against_count;
+    const char *instructions; /* NULL: none */
     const char *paper; /* NULL: none */
     double settle_s;
     int json;
@@ -70,13 +81,27 @@ static int parse_beside(options *o, char *text)
     return 0;
 }
 
+/* DIR=DIR; the flight's folder names it. */
+static int parse_against(options *o, char *text)
+{
+    char *equals = strchr(text, '='), *slash;
+    if (!equals || equals == text || !equals[1]) return fail("--against: %s is not DIR=DIR", text);
+    if (o->against_count == AGAINST_MAX) return fail("--against: more than %d", AGAINST_MAX);
+    *equals = 0;
+    slash = strrchr(text, '/');
+    o->against[o->against_count][0] = (report_series){slash && slash[1] ? slash + 1 : text, text};
+    o->against[o->against_count++][1] = (report_series){"as it should be", equals + 1};
+    return 0;
+}
+
 /* 0: go on, 1: answered, -1: wrong. Arguments in order ("-"): those after --picture are pictures until another option comes. */
 static int parse(options *o, int argc, char **argv)
 {
     static const struct option list[] = {
         {"output", required_argument, NULL, 'o'}, {"title", required_argument, NULL, 't'},
         {"picture", required_argument, NULL, 'p'}, {"json", no_argument, NULL, 'j'},
-        {"beside", required_argument, NULL, 'b'},
+        {"beside", required_argument, NULL, 'b'}, {"against", required_argument, NULL, 'a'},
+        {"instructions", required_argument, NULL, 'i'},
         {"paper", required_argument, NULL, 'P'}, {"settle", required_argument, NULL, 'S'},
         {"help", no_argument, NULL, 'h'}, {"version", no_argument, NULL, 'v'}, {NULL, 0, NULL, 0}};
     int c, pictures = 0;
@@ -88,6 +113,10 @@ static int parse(options *o, int argc, char **argv)
         else if (c == 'b') {
             if (parse_beside(o, optarg)) return -1;
         }
+        else if (c == 'a') {
+            if (parse_against(o, optarg)) return -1;
+        }
+        else if (c == 'i') o->instructions = optarg;
         else if (c == 'P') o->paper = optarg;
         else if (c == 'S') {
             char *end;
@@ -153,11 +182,21 @@ static int copy_pictures(const options *o, char **names)
     return 0;
 }
 
-static int make_sheet(const options *o, report_sheet *sheet)
+/* Number of sheets made, or -1. */
+static int make_sheets(const options *o, report_sheet sheet[AGAINST_MAX + 1])
 {
-    char path[PATH_BYTES], why[WHY_BYTES];
-    if ((size_t)snprintf(path, sizeof path, "%s/" REPORT_SHEET_FILE, o->folder) >= sizeof path) return fail("path too long: %s", o->folder);
-    return report_sheet_write(o->beside, path, sheet, why, sizeof why) ? fail("--beside: %s", why) : 0;
+    char why[WHY_BYTES];
+    int count = 0;
+    if (o->beside_count) {
+        sheet[count] = (report_sheet){.heading = "Side by side", .file = "side-by-side.png", .amplified = BESIDE_AMPLIFIED};
+        if (report_sheet_write(o->beside, o->folder, &sheet[count++], why, sizeof why)) return fail("--beside: %s", why);
+    }
+    for (size_t i = 0; i < o->against_count; i++) {
+        sheet[count] = (report_sheet){.heading = "As it is and as it should be", .amplified = AGAINST_AMPLIFIED};
+        snprintf(sheet[count].file, sizeof sheet[count].file, "reference-%zu.png", i + 1);
+        if (report_sheet_write(o->against[i], o->folder, &sheet[count++], why, sizeof why)) return fail("--against: %s", why);
+    }
+    return count;
 }
 
 static int make_report(const options *o, report_flight *flight, char **picture)
@@ -167,14 +206,19 @@ static int make_report(const options *o, report_flight *flight, char **picture)
                               .picture = (const char *const *)picture, .picture_count = o->picture_count,
                               .settle_s = o->settle_s};
     report_paper paper;
-    report_sheet sheet;
+    report_sheet sheet[AGAINST_MAX + 1];
+    report_work work;
+    if (o->instructions && report_work_load(&work, o->instructions, why, sizeof why)) return fail("%s", why);
+    if (o->instructions) content.work = &work;
     if (o->paper && report_paper_load(&paper, o->paper, why, sizeof why)) return fail("%s", why);
     if (o->paper) content.paper = &paper;
     for (size_t i = 0; i < o->csv_count; i++)
         if (report_flight_load(&flight[i], o->csv[i], why, sizeof why)) return fail("%s", why);
     if (make_folder(o->folder) || copy_pictures(o, picture)) return -1;
-    if (o->beside_count && make_sheet(o, &sheet)) return -1;
-    if (o->beside_count) content.sheet = &sheet;
+    int sheets = make_sheets(o, sheet);
+    if (sheets < 0) return -1;
+    content.sheet = sheet;
+    content.sheet_count = (size_t)sheets;
     if (report_page_html(&content, why, sizeof why) || report_page_markdown(&content, why, sizeof why)) return fail("%s", why);
     if (o->json) report_page_json(&content);
     else printf("%s/index.html\n%s/REPORT.md\n", o->folder, o->folder);

@@ -1,6 +1,7 @@
 #include "report_matrix.h"
 
 #include "report_plot.h"
+#include "report_table.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -41,6 +42,17 @@ double report_stable_s(const report_flight *flight, const report_flight *referen
     return NAN;
 }
 
+double report_stable_percent(const report_flight *flight, const report_flight *reference, double settle_s)
+{
+    size_t rows = 0, stable = 0;
+    for (size_t i = 0; reference && i < flight->row_count; i++) {
+        if (flight->row[i].value[REPORT_T_S] < settle_s) continue;
+        rows++;
+        stable += (size_t)is_stable(flight, reference, settle_s, i);
+    }
+    return rows ? 100.0 * (double)stable / (double)rows : NAN;
+}
+
 void report_figures_of(const report_flight *flight, const report_flight *reference, double settle_s, report_figures *figures)
 {
     *figures = (report_figures){
@@ -52,83 +64,60 @@ void report_figures_of(const report_flight *flight, const report_flight *referen
     };
 }
 
-static const report_flight *find(const report_content *content, const char *name)
+const report_flight *report_find(const report_content *content, const char *name)
 {
     for (size_t i = 0; i < content->flight_count; i++)
         if (!strcmp(content->flight[i].name, name)) return &content->flight[i];
     return NULL;
 }
 
-/* The flight of this name over a link without limits: only what comes before the first dash differs. */
-static const report_flight *find_reference(const report_content *content, const char *name)
+const report_flight *report_find_reference(const report_content *content, const char *name)
 {
     char reference[sizeof REFERENCE_LINK + sizeof content->paper->row[0].name];
     const char *rest = strchr(name, '-');
     snprintf(reference, sizeof reference, "%s%s", REFERENCE_LINK, rest ? rest : "");
-    return find(content, reference);
+    return report_find(content, reference);
 }
 
-/* ---- tables: the same rows as HTML and as Markdown ---- */
+/* ---- tables ---- */
 
-typedef struct style { const char *row_open, *row_close, *cell_open, *cell_close, *head_open, *head_close; } style;
-static const style html = {"<tr>", "</tr>\n", "<td>", "</td>", "<th>", "</th>"};
-static const style markdown = {"|", "\n", " ", " |", " ", " |"};
-
-static void put_word(FILE *out, const style *s, const char *word) { fprintf(out, "%s%s%s", s->cell_open, word, s->cell_close); }
-
-static void put_number(FILE *out, const style *s, int decimals, double value)
+static void put_range(FILE *out, const report_style *s, double from, double to)
 {
-    if (isfinite(value)) fprintf(out, "%s%.*f%s", s->cell_open, decimals, value, s->cell_close);
-    else put_word(out, s, "–");
-}
-
-static void put_range(FILE *out, const style *s, double from, double to)
-{
-    if (isnan(from)) put_word(out, s, "–");
+    if (isnan(from)) report_table_word(out, s, "–");
     else if (from < to) fprintf(out, "%s%.0f–%.0f%s", s->cell_open, from, to, s->cell_close);
-    else put_number(out, s, 0, from);
-}
-
-static void put_head(FILE *out, const style *s, const char *const *head, size_t count)
-{
-    fputs(s->row_open, out);
-    for (size_t i = 0; i < count; i++) fprintf(out, "%s%s%s", s->head_open, head[i], s->head_close);
-    fputs(s->row_close, out);
-    if (s != &markdown) return;
-    fputs("|", out);
-    for (size_t i = 0; i < count; i++) fputs(" --: |", out);
-    fputs("\n", out);
+    else report_table_number(out, s, 0, from);
 }
 
 /* One row for each flight of the paper that is among ours. */
-static void put_paper(FILE *out, const style *s, const report_content *content)
+static void put_paper(FILE *out, const report_style *s, const report_content *content)
 {
     static const char *const head[] = {"link", "km/h", "quality", "panorama", "triangles, paper", "triangles", "ratio", "kB, paper", "kB",
                                        "ratio", "stable after s, paper", "stable after s", "error px, 95 %", "undrawn %"};
-    put_head(out, s, head, sizeof head / sizeof *head);
+    report_table_head(out, s, head, sizeof head / sizeof *head);
     for (size_t i = 0; i < content->paper->row_count; i++) {
         const report_paper_row *paper = &content->paper->row[i];
-        const report_flight *flight = find(content, paper->name);
+        const report_flight *flight = report_find(content, paper->name);
         report_figures ours;
         if (!flight) continue;
-        report_figures_of(flight, find_reference(content, paper->name), content->settle_s, &ours);
-        fputs(s->row_open, out);
-        put_word(out, s, paper->link);
-        put_word(out, s, paper->speed_kmh);
-        put_word(out, s, paper->quality);
-        put_word(out, s, paper->panorama);
-        put_number(out, s, 0, paper->triangles);
-        put_number(out, s, 0, ours.triangles);
-        put_number(out, s, 2, ours.triangles / paper->triangles);
-        put_number(out, s, 0, paper->kilobytes);
-        put_number(out, s, 1, ours.kilobytes);
-        put_number(out, s, 2, ours.kilobytes / paper->kilobytes);
+        report_figures_of(flight, report_find_reference(content, paper->name), content->settle_s, &ours);
+        report_table_row(out, s);
+        report_table_word(out, s, paper->link);
+        report_table_word(out, s, paper->speed_kmh);
+        report_table_word(out, s, paper->quality);
+        report_table_word(out, s, paper->panorama);
+        report_table_number(out, s, 0, paper->triangles);
+        report_table_number(out, s, 0, ours.triangles);
+        report_table_number(out, s, 2, ours.triangles / paper->triangles);
+        report_table_number(out, s, 0, paper->kilobytes);
+        report_table_number(out, s, 1, ours.kilobytes);
+        report_table_number(out, s, 2, ours.kilobytes / paper->kilobytes);
         put_range(out, s, paper->stable_from_s, paper->stable_to_s);
-        put_number(out, s, 0, ours.stable_s);
-        put_number(out, s, 2, ours.err_p95);
-        put_number(out, s, 1, ours.undrawn);
-        fputs(s->row_close, out);
+        report_table_number(out, s, 0, ours.stable_s);
+        report_table_number(out, s, 2, ours.err_p95);
+        report_table_number(out, s, 1, ours.undrawn);
+        report_table_row_end(out, s);
     }
+    report_table_end(out, s);
 }
 
 static int is_sweep(const report_flight *flight) { return !strncmp(flight->name, SWEEP, strlen(SWEEP)); }
@@ -140,23 +129,24 @@ static size_t count_sweep(const report_content *content)
     return count;
 }
 
-static void put_sweep(FILE *out, const style *s, const report_content *content)
+static void put_sweep(FILE *out, const report_style *s, const report_content *content)
 {
     static const char *const head[] = {"quality", "triangles", "kB", "error px, 95 %", "undrawn %"};
-    put_head(out, s, head, sizeof head / sizeof *head);
+    report_table_head(out, s, head, sizeof head / sizeof *head);
     for (size_t i = 0; i < content->flight_count; i++) {
         const report_flight *flight = &content->flight[i];
         report_figures ours;
         if (!is_sweep(flight)) continue;
         report_figures_of(flight, NULL, content->settle_s, &ours);
-        fputs(s->row_open, out);
-        put_word(out, s, flight->name + strlen(SWEEP));
-        put_number(out, s, 0, ours.triangles);
-        put_number(out, s, 1, ours.kilobytes);
-        put_number(out, s, 2, ours.err_p95);
-        put_number(out, s, 1, ours.undrawn);
-        fputs(s->row_close, out);
+        report_table_row(out, s);
+        report_table_word(out, s, flight->name + strlen(SWEEP));
+        report_table_number(out, s, 0, ours.triangles);
+        report_table_number(out, s, 1, ours.kilobytes);
+        report_table_number(out, s, 2, ours.err_p95);
+        report_table_number(out, s, 1, ours.undrawn);
+        report_table_row_end(out, s);
     }
+    report_table_end(out, s);
 }
 
 /* ---- plots ---- */
@@ -170,7 +160,7 @@ static int put_convergence(FILE *out, const report_content *content, const repor
                         .x_most = CONVERGENCE_S};
     for (size_t i = 0; i < content->paper->row_count && plot.curve_count < REPORT_CURVES_MAX; i++) {
         const report_paper_row *row = &content->paper->row[i];
-        const report_flight *flight = find(content, row->name);
+        const report_flight *flight = report_find(content, row->name);
         if (!flight || strcmp(row->link, group->link) || strcmp(row->quality, group->quality) || strcmp(row->panorama, "on") ||
             !report_flight_has(flight, REPORT_ERR_P95))
             continue;
@@ -251,6 +241,65 @@ static int put_work(FILE *out, const report_content *content, char *why, size_t 
     return rc;
 }
 
+/* ---- instructions ---- */
+
+/* "px" of px:E, "C" of C:DEPTH, low and high; and whether panoramas are on. */
+static void work_series_name(const report_work_row *row, char name[SERIES_NAME_BYTES])
+{
+    snprintf(name, SERIES_NAME_BYTES, "%s, panorama %s", strncmp(row->quality, "px", 2) ? "C" : "px", row->panorama);
+}
+
+/* Rows of one series: instructions in the place of triangles. */
+static size_t collect_work(series *list, const report_work *work)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < work->row_count; i++) {
+        char name[SERIES_NAME_BYTES];
+        size_t at = 0;
+        work_series_name(&work->row[i], name);
+        while (at < count && strcmp(list[at].name, name)) at++;
+        if (at == SERIES_MAX) continue;
+        if (at == count) {
+            list[at].points.row = calloc(work->row_count, sizeof *list[at].points.row);
+            if (!list[at].points.row) continue;
+            strcpy(list[count++].name, name);
+        }
+        double *value = list[at].points.row[list[at].points.row_count++].value;
+        value[REPORT_TRIANGLES] = work->row[i].instructions / 1e6;
+        value[REPORT_ERR_P95] = work->row[i].err_px_p95;
+    }
+    for (size_t i = 0; i < count; i++) qsort(list[i].points.row, list[i].points.row_count, sizeof *list[i].points.row, by_triangles);
+    return count;
+}
+
+int report_work_html(FILE *out, const report_content *content, char *why, size_t why_bytes)
+{
+    static const char *const head[] = {"quality", "panorama", "million instructions a frame", "error px, 95 %"};
+    series list[SERIES_MAX] = {{{0}, {0}}};
+    size_t count = collect_work(list, content->work);
+    report_plot plot = {.title = "Error against instructions", .x_label = "million instructions a frame", .y_label = "error px, 95 %",
+                        .logarithmic_y = 1, .points = 1};
+    for (size_t i = 0; i < count; i++)
+        plot.curve[plot.curve_count++] = (report_curve){.flight = &list[i].points, .x = REPORT_TRIANGLES, .y = REPORT_ERR_P95, .x_scale = 1,
+                                                        .y_scale = 1, .title = list[i].name};
+    fputs("<h2>Error against instructions</h2>\n<p>Counted on an armv6 (make bench-handheld).</p>\n<div class=\"plots\">\n", out);
+    int rc = report_plot_put(out, content->folder, &plot, why, why_bytes);
+    fputs("</div>\n", out);
+    report_table_head(out, &report_style_html, head, sizeof head / sizeof *head);
+    for (size_t i = 0; i < content->work->row_count; i++) {
+        const report_work_row *row = &content->work->row[i];
+        report_table_row(out, &report_style_html);
+        report_table_name(out, &report_style_html, row->quality);
+        report_table_name(out, &report_style_html, row->panorama);
+        report_table_number(out, &report_style_html, 2, row->instructions / 1e6);
+        report_table_number(out, &report_style_html, 2, row->err_px_p95);
+        report_table_row_end(out, &report_style_html);
+    }
+    report_table_end(out, &report_style_html);
+    for (size_t i = 0; i < count; i++) free(list[i].points.row);
+    return rc;
+}
+
 /* ---- pages ---- */
 
 static const char about_paper[] =
@@ -261,16 +310,16 @@ static const char about_paper[] =
 int report_matrix_html(FILE *out, const report_content *content, char *why, size_t why_bytes)
 {
     int rc = 0;
-    fprintf(out, "<h2>Beside the paper</h2>\n<p>%s</p>\n<div class=\"wide\"><table>\n", about_paper);
-    put_paper(out, &html, content);
-    fputs("</table></div>\n<h2>Error since the start</h2>\n<div class=\"plots\">\n", out);
+    fprintf(out, "<h2>Beside the paper</h2>\n<p>%s</p>\n", about_paper);
+    put_paper(out, &report_style_html, content);
+    fputs("<h2>Error since the start</h2>\n<div class=\"plots\">\n", out);
     for (size_t i = 0; i < content->paper->row_count && !rc; i++)
         if (is_first_of_group(content->paper, i)) rc = put_convergence(out, content, &content->paper->row[i], why, why_bytes);
     fputs("</div>\n", out);
     if (rc || !count_sweep(content)) return rc;
-    fputs("<h2>Error against work</h2>\n<p>One flight in several qualities: px is the error allowed in pixels, C the paper's.</p>\n<table>\n", out);
-    put_sweep(out, &html, content);
-    fputs("</table>\n<div class=\"plots\">\n", out);
+    fputs("<h2>Error against work</h2>\n<p>One flight in several qualities: px is the error allowed in pixels, C the paper's.</p>\n", out);
+    put_sweep(out, &report_style_html, content);
+    fputs("<div class=\"plots\">\n", out);
     rc = put_work(out, content, why, why_bytes);
     fputs("</div>\n", out);
     return rc;
@@ -279,10 +328,9 @@ int report_matrix_html(FILE *out, const report_content *content, char *why, size
 void report_matrix_markdown(FILE *out, const report_content *content)
 {
     fprintf(out, "\n## Beside the paper\n\n%s\n\n", about_paper);
-    put_paper(out, &markdown, content);
+    put_paper(out, &report_style_markdown, content);
     if (count_sweep(content)) {
         fputs("\n## Error against work\n\n", out);
-        put_sweep(out, &markdown, content);
+        put_sweep(out, &report_style_markdown, content);
     }
-    fputs("\n## All flights\n\n", out);
 }

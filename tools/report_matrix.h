@@ -20,9 +20,18 @@ void report_figures_of(const report_flight *flight, const report_flight *referen
  * time; while both stand still, at settle_s. NAN: never, not audited, or no reference (NULL, or a shorter flight). */
 double report_stable_s(const report_flight *flight, const report_flight *reference, double settle_s);
 
+/* Share of the rows in flight as good as the reference's. NAN without a reference. */
+double report_stable_percent(const report_flight *flight, const report_flight *reference, double settle_s);
+/* A flight by its name, and the one of this name over a link without limits (only what comes before the first dash differs); or NULL. */
+const report_flight *report_find(const report_content *content, const char *name);
+const report_flight *report_find_reference(const report_content *content, const char *name);
+
 /* content->paper is not NULL. Flights are found by name: those of the paper's rows, the same over link lan as their references, and
  * sweep-SERIES-VALUE. */
 int report_matrix_html(FILE *out, const report_content *content, char *why, size_t why_bytes);
 void report_matrix_markdown(FILE *out, const report_content *content);
+
+/* The error against instructions, content->work is not NULL: a plot and a table. */
+int report_work_html(FILE *out, const report_content *content, char *why, size_t why_bytes);
 
 #endif

@@ -1,7 +1,9 @@
 #include "report_page.h"
 
+#include "report_findings.h"
 #include "report_matrix.h"
 #include "report_plot.h"
+#include "report_table.h"
 
 #include <errno.h>
 #include <math.h>
@@ -43,25 +45,6 @@ static double summary_value(const report_summary *summary, const summary_column 
     return value;
 }
 
-static void put_html(FILE *out, const char *text)
-{
-    for (; *text; text++) {
-        if (*text == '&') fputs("&amp;", out);
-        else if (*text == '<') fputs("&lt;", out);
-        else if (*text == '>') fputs("&gt;", out);
-        else if (*text == '"') fputs("&quot;", out);
-        else fputc(*text, out);
-    }
-}
-
-static void put_markdown(FILE *out, const char *text)
-{
-    for (; *text; text++) {
-        if (strchr("|\\`*_<>[]#", *text)) fputc('\\', out);
-        fputc(*text, out);
-    }
-}
-
 /* A relative link: what is not plain goes as %XX. */
 static void put_link(FILE *out, const char *name)
 {
@@ -101,7 +84,7 @@ static void put_html_table(FILE *out, const report_content *content)
         report_summary summary;
         report_summarise(&content->flight[i], content->settle_s, &summary);
         fputs("<tr><td>", out);
-        put_html(out, content->flight[i].name);
+        report_put_html(out, content->flight[i].name);
         fputs("</td>", out);
         for (int c = 0; c < SUMMARY_COLUMNS; c++) {
             double value = summary_value(&summary, &summary_columns[c]);
@@ -130,19 +113,23 @@ static int put_flight(FILE *out, const report_content *content, const report_fli
     report_plot triangles = {.title = "Triangles drawn", .x_label = "seconds", .y_label = "triangles"};
     report_plot bytes = {.title = "Bytes since the start", .x_label = "seconds", .y_label = "kB"};
     report_plot nodes = {.title = "Nodes", .x_label = "seconds", .y_label = "nodes"};
+    report_plot panoramas = {.title = "Panoramas asked for", .x_label = "seconds", .y_label = "panoramas"};
     report_plot error = {.title = "Error of the picture", .x_label = "seconds", .y_label = "pixels", .logarithmic_y = 1};
     add_curve(&triangles, flight, REPORT_T_S, REPORT_TRIANGLES, "triangles");
     add_curve(&bytes, flight, REPORT_T_S, REPORT_BYTES_DOWN, "down");
     add_curve(&bytes, flight, REPORT_T_S, REPORT_BYTES_UP, "up");
     add_curve(&nodes, flight, REPORT_T_S, REPORT_NODES_HELD, "held");
     add_curve(&nodes, flight, REPORT_T_S, REPORT_NODES_DRAWN, "drawn");
+    if (flight->row[flight->row_count - 1].value[REPORT_PANORAMAS] > 0)
+        add_curve(&panoramas, flight, REPORT_T_S, REPORT_PANORAMAS, "panoramas");
     add_curve(&error, flight, REPORT_T_S, REPORT_ERR_RMS, "rms");
     add_curve(&error, flight, REPORT_T_S, REPORT_ERR_P95, "95 %");
     fputs("<h2>", out);
-    put_html(out, flight->name);
+    report_put_html(out, flight->name);
     fputs("</h2>\n<div class=\"plots\">\n", out);
     if (report_plot_put(out, content->folder, &triangles, why, why_bytes) || report_plot_put(out, content->folder, &bytes, why, why_bytes) ||
-        report_plot_put(out, content->folder, &nodes, why, why_bytes) || report_plot_put(out, content->folder, &error, why, why_bytes))
+        report_plot_put(out, content->folder, &nodes, why, why_bytes) || report_plot_put(out, content->folder, &panoramas, why, why_bytes) ||
+        report_plot_put(out, content->folder, &error, why, why_bytes))
         return -1;
     fputs("</div>\n", out);
     return 0;
@@ -175,7 +162,7 @@ static void put_pictures(FILE *out, const report_content *content)
         fputs("<figure><img src=\"", out);
         put_link(out, content->picture[i]);
         fputs("\" alt=\"\"><figcaption>", out);
-        put_html(out, content->picture[i]);
+        report_put_html(out, content->picture[i]);
         fputs("</figcaption></figure>\n", out);
     }
     fputs("</div>\n", out);
@@ -192,11 +179,11 @@ static double most_different(const report_sheet *sheet)
 
 static void put_sheet(FILE *out, const report_sheet *sheet)
 {
-    fputs("<h2>Side by side</h2>\n<figure class=\"wide\"><img src=\"" REPORT_SHEET_FILE "\" alt=\"\"><figcaption>", out);
-    put_html(out, sheet->name[0]);
+    fprintf(out, "<h2>%s</h2>\n<figure class=\"wide\"><img src=\"%s\" alt=\"\"><figcaption>", sheet->heading, sheet->file);
+    report_put_html(out, sheet->name[0]);
     fputs(" and ", out);
-    put_html(out, sheet->name[1]);
-    fprintf(out, " " SHEET_CAPTION "</figcaption></figure>\n", REPORT_SHEET_AMPLIFIED, most_different(sheet), REPORT_SHEET_VISIBLE);
+    report_put_html(out, sheet->name[1]);
+    fprintf(out, " " SHEET_CAPTION "</figcaption></figure>\n", sheet->amplified, most_different(sheet), REPORT_SHEET_VISIBLE);
 }
 
 int report_page_html(const report_content *content, char *why, size_t why_bytes)
@@ -205,20 +192,22 @@ int report_page_html(const report_content *content, char *why, size_t why_bytes)
     int rc = 0;
     if (!out) return -1;
     fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>", out);
-    put_html(out, content->title);
+    report_put_html(out, content->title);
     fputs("</title>\n<style>\n"
           "body{font:15px/1.5 sans-serif;margin:2em auto;max-width:1340px;padding:0 1em;color:#222}\n"
           "table{border-collapse:collapse}td,th{padding:.2em .7em;border-bottom:1px solid #ddd;text-align:right}\n"
           "th{vertical-align:bottom}td:first-child,th:first-child{text-align:left}.wide{overflow-x:auto}\n"
           ".plots{display:flex;flex-wrap:wrap;gap:1em}figure{margin:0}figure svg{width:640px;height:300px}\n"
           "figcaption{color:#666;font-size:13px}\n</style></head><body>\n<h1>", out);
-    put_html(out, content->title);
+    report_put_html(out, content->title);
     fputs("</h1>\n", out);
     if (content->paper) rc = report_matrix_html(out, content, why, why_bytes);
+    if (!rc && content->work) rc = report_work_html(out, content, why, why_bytes);
+    report_findings(out, content, 1);
     if (content->paper) fputs("<h2>All flights</h2>\n", out);
     put_html_table(out, content);
     if (!content->paper && content->flight_count > 1) rc = put_comparison(out, content, why, why_bytes);
-    if (content->sheet) put_sheet(out, content->sheet);
+    for (size_t i = 0; i < content->sheet_count; i++) put_sheet(out, &content->sheet[i]);
     put_pictures(out, content);
     for (size_t i = 0; i < content->flight_count && !rc; i++)
         rc = put_flight(out, content, &content->flight[i], why, why_bytes);
@@ -234,10 +223,12 @@ int report_page_markdown(const report_content *content, char *why, size_t why_by
     FILE *out = open_page(content, "REPORT.md", why, why_bytes);
     if (!out) return -1;
     fputs("# ", out);
-    put_markdown(out, content->title);
+    report_put_markdown(out, content->title);
     fputs("\n", out);
     if (content->paper) report_matrix_markdown(out, content);
-    else fputs("\n", out);
+    report_findings(out, content, 0);
+    if (content->paper) fputs("\n## All flights\n", out);
+    fputs("\n", out);
     fputs("| flight |", out);
     for (int c = 0; c < SUMMARY_COLUMNS; c++) fprintf(out, " %s |", summary_columns[c].heading);
     fputs("\n| :-- |", out);
@@ -246,7 +237,7 @@ int report_page_markdown(const report_content *content, char *why, size_t why_by
         report_summary summary;
         report_summarise(&content->flight[i], content->settle_s, &summary);
         fputs("\n| ", out);
-        put_markdown(out, content->flight[i].name);
+        report_put_markdown(out, content->flight[i].name);
         fputs(" |", out);
         for (int c = 0; c < SUMMARY_COLUMNS; c++) {
             double value = summary_value(&summary, &summary_columns[c]);
@@ -255,12 +246,13 @@ int report_page_markdown(const report_content *content, char *why, size_t why_by
         }
     }
     fputs("\n", out);
-    if (content->sheet) {
-        fputs("\n![](" REPORT_SHEET_FILE ")\n\n", out);
-        put_markdown(out, content->sheet->name[0]);
+    for (size_t i = 0; i < content->sheet_count; i++) {
+        const report_sheet *sheet = &content->sheet[i];
+        fprintf(out, "\n![](%s)\n\n", sheet->file);
+        report_put_markdown(out, sheet->name[0]);
         fputs(" and ", out);
-        put_markdown(out, content->sheet->name[1]);
-        fprintf(out, " " SHEET_CAPTION "\n", REPORT_SHEET_AMPLIFIED, most_different(content->sheet), REPORT_SHEET_VISIBLE);
+        report_put_markdown(out, sheet->name[1]);
+        fprintf(out, " " SHEET_CAPTION "\n", sheet->amplified, most_different(sheet), REPORT_SHEET_VISIBLE);
     }
     for (size_t i = 0; i < content->picture_count; i++) {
         fputs("\n![](", out);

@@ -5,6 +5,7 @@
 #include "report_csv.h"
 #include "report_paper.h"
 #include "report_sheet.h"
+#include "report_work.h"
 
 typedef struct report_content {
     const char *title, *folder;
@@ -12,7 +13,9 @@ typedef struct report_content {
     size_t flight_count;
     const char *const *picture; /* file names inside `folder` */
     size_t picture_count;
-    const report_sheet *sheet; /* NULL: none; else its file lies in `folder` */
+    const report_sheet *sheet; /* their files lie in `folder` */
+    size_t sheet_count;
+    const report_work *work;   /* NULL: instructions are not known */
     const report_paper *paper; /* NULL: flights stand for themselves */
     double settle_s;           /* seconds before the flights begin */
 } report_content;

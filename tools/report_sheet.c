@@ -114,7 +114,7 @@ static void put_text(const canvas *c, size_t column, size_t row, const char *tex
 }
 
 /* The third row of a column; percent of the pixels that differ visibly. */
-static double put_difference(const canvas *c, size_t column, const uint8_t *a, const uint8_t *b)
+static double put_difference(const canvas *c, size_t column, int amplified, const uint8_t *a, const uint8_t *b)
 {
     size_t apart = 0, at = 0;
     for (uint32_t y = 0; y < c->picture_px[1]; y++) {
@@ -124,7 +124,7 @@ static double put_difference(const canvas *c, size_t column, const uint8_t *a, c
             for (int channel = 0; channel < 3; channel++, at++, to++) {
                 int off = abs(a[at] - b[at]);
                 most = off > most ? off : most;
-                *to = (uint8_t)(off * REPORT_SHEET_AMPLIFIED > 255 ? 255 : off * REPORT_SHEET_AMPLIFIED);
+                *to = (uint8_t)(off * amplified > 255 ? 255 : off * amplified);
             }
             apart += most > REPORT_SHEET_VISIBLE;
         }
@@ -162,8 +162,8 @@ static int put_moment(const report_series series[2], const char *name, canvas *c
             put_text(c, column, row, text);
             put_picture(c, column, row, rgb[row]);
         }
-        sheet->differ_percent[column] = put_difference(c, column, rgb[0], rgb[1]);
-        snprintf(text, sizeof text, "X%d %.2f %% > %d/255", REPORT_SHEET_AMPLIFIED, sheet->differ_percent[column], REPORT_SHEET_VISIBLE);
+        sheet->differ_percent[column] = put_difference(c, column, sheet->amplified, rgb[0], rgb[1]);
+        snprintf(text, sizeof text, "X%d %.2f %% > %d/255", sheet->amplified, sheet->differ_percent[column], REPORT_SHEET_VISIBLE);
         put_text(c, column, 2, text);
     }
     free(rgb[0]);
@@ -171,13 +171,14 @@ static int put_moment(const report_series series[2], const char *name, canvas *c
     return rc;
 }
 
-int report_sheet_write(const report_series series[2], const char *path, report_sheet *sheet, char *why, size_t why_bytes)
+int report_sheet_write(const report_series series[2], const char *folder, report_sheet *sheet, char *why, size_t why_bytes)
 {
     size_t count;
     canvas c = {.rgb = NULL};
     struct dirent **name = shared_names(series, &count);
     int rc = 0;
-    *sheet = (report_sheet){.name = {series[0].name, series[1].name}};
+    char path[PATH_BYTES];
+    for (int i = 0; i < 2; i++) sheet->name[i] = series[i].name;
     sheet->moments = c.columns = count < REPORT_SHEET_MOMENTS ? count : REPORT_SHEET_MOMENTS;
     if (!count) {
         snprintf(why, why_bytes, "%s and %s have no picture of the same name", series[0].folder, series[1].folder);
@@ -185,6 +186,10 @@ int report_sheet_write(const report_series series[2], const char *path, report_s
     }
     for (size_t i = 0; i < c.columns && !rc; i++)
         rc = put_moment(series, name[c.columns < 2 ? 0 : i * (count - 1) / (c.columns - 1)]->d_name, &c, i, sheet, why, why_bytes);
+    if (!rc && !join_path(path, folder, sheet->file)) {
+        snprintf(why, why_bytes, "%s: path too long", folder);
+        rc = -1;
+    }
     if (!rc && (rc = sys_png_write(path, c.rgb, c.width, c.height)) != FF_OK)
         snprintf(why, why_bytes, "%s: %s", path, ff_error_text(rc));
     for (size_t i = 0; i < count; i++)

@@ -6,6 +6,7 @@
 #define OUT_OF_VIEW ((uint64_t)1 << 60)
 #define TILE_BITS 28
 #define ONE_Q8 256u
+#define UNSEEN_SHARE 4 /* of the list, at most, for roots out of view */
 
 static uint32_t times_q16(uint32_t value_q16, uint32_t factor)
 {
@@ -110,6 +111,8 @@ static void wish_roots(ff_tree *tree)
     uint32_t held = active_roots(tree, &farthest), missing = missing_roots(tree);
     for (uint32_t i = 0; i < missing && tree->wish_count < tree->wish_capacity; i++) {
         uint32_t tile = (uint32_t)(tree->sort[i] & (FF_KEY_TILES_MAX - 1));
+        if (tree->sort[i] & OUT_OF_VIEW && tree->wish_count >= tree->wish_capacity / UNSEEN_SHARE)
+            break; /* refinements in view need the rest */
         if (held + tree->wish_count >= tree->node_count && ff_tile_distance(tree, tile) >= farthest)
             continue;
         ff_wish *wish = &tree->wish[tree->wish_count++];
