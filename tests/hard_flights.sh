@@ -88,7 +88,7 @@ END
 # ---- the link ----
 slow="umts,down.bytes_s=5,up.bytes_s=5"
 hard outage calm 15 45 50 6 0 1 --seconds 60 --event 15:link=umts,connect_ms=30000 --event 15:cut
-hard outage-fast calm-fast 15 45 90 6 0 8 --seconds 60 --speed 450 --start 0.3 --event 15:link=umts,connect_ms=30000 --event 15:cut
+hard outage-fast calm-fast 15 45 90 6 0 5 --seconds 60 --speed 450 --start 0.3 --event 15:link=umts,connect_ms=30000 --event 15:cut
 hard silence calm 15 45 50 6 0 0 --seconds 60 --event 15:link=$slow --event 45:link=umts
 hard stalls calm 20 50 50 6 0 0 --seconds 60 --link gprs,stall_every_ms=6000,stall_ms_min=4000,stall_ms_max=15000 --event 50:link=umts
 hard cuts calm 20 50 12 4 0 0 --seconds 60 --link umts,cut_every_ms=10000 --event 50:link=umts
