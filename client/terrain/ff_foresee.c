@@ -1,5 +1,5 @@
-/* Prefetch: what a viewer further along the path, or turned further round, would see and wish for, found without moving the cut (Shared: prefetch from predicted
- * motion). The measures are asked as if the camera stood there; the tree itself stays as it is. */
+/* Prefetch: what a viewer further along the path, or turned further round, would see and wish for, found without moving the cut (Shared:
+ * prefetch from predicted motion). The measures are asked as if the camera stood there; the tree itself stays as it is. */
 #include "ff_tree_local.h"
 
 #define TILES_LOOKED_AT 256 /* of a window's new tiles: tiny tiles would otherwise cost more than they bring */
@@ -57,22 +57,46 @@ static int takes_room(const ff_tree *tree, foresight *f, const ff_node *node)
     return 1;
 }
 
-static void foresee_children(const ff_tree *tree, foresight *f)
+static void foresee_children_of(const ff_tree *tree, foresight *f, const ff_node *node)
 {
-    for (uint32_t i = 0; i < tree->cut_count; i++) {
-        const ff_node *node = tree->drawn[i].node;
-        uint32_t next = ff_key_level(node->key) + 1;
-        if (next >= ff_terrain_levels(&tree->info) || (tree->quality.depth_max && next >= tree->quality.depth_max) ||
-            ff_node_has_children(node) || node->flags & FF_NODE_NEEDED || node->error_code == 0)
+    uint32_t next = ff_key_level(node->key) + 1;
+    if (next >= ff_terrain_levels(&tree->info) || (tree->quality.depth_max && next >= tree->quality.depth_max) ||
+        node->flags & FF_NODE_NEEDED || node->error_code == 0)
+        return;
+    ff_box here, there;
+    ff_node_box(tree, node, &here);
+    ff_node_box(&f->ahead, node, &there);
+    if (node->flags & FF_NODE_WANTED ? !comes_into_view(tree, f, &here, &there) : !ff_box_in_view(&f->ahead, &there))
+        return;
+    uint32_t value = ff_value_of_split(&f->ahead, node);
+    if (value >= FF_VALUE_ONE && !ff_box_beyond_view(&f->ahead, &there))
+        note(f, node->key, 1, value);
+}
+
+static void foresee_cut(const ff_tree *tree, foresight *f)
+{
+    for (uint32_t i = 0; i < tree->cut_count; i++)
+        if (!ff_node_has_children(tree->drawn[i].node))
+            foresee_children_of(tree, f, tree->drawn[i].node);
+}
+
+/* Tiles held that will come into the window. As bare roots they would keep the ground beside them coarse until they are refined. */
+static void foresee_tiles(const ff_tree *tree, foresight *f)
+{
+    uint32_t stack[3 * FF_LEVELS_MAX + 1];
+    for (uint32_t root = tree->root_head; root != FF_SLOT_NONE; root = tree->node[root].list_next) {
+        uint32_t tile = ff_key_tile(tree->node[root].key), depth = 0;
+        if (ff_tile_active(tree, tile) || !ff_tile_active(&f->ahead, tile))
             continue;
-        ff_box here, there;
-        ff_node_box(tree, node, &here);
-        ff_node_box(&f->ahead, node, &there);
-        if (node->flags & FF_NODE_WANTED ? !comes_into_view(tree, f, &here, &there) : !ff_box_in_view(&f->ahead, &there))
-            continue;
-        uint32_t value = ff_value_of_split(&f->ahead, node);
-        if (value >= FF_VALUE_ONE && !ff_box_beyond_view(&f->ahead, &there))
-            note(f, node->key, 1, value);
+        for (stack[depth++] = root; depth > 0;) {
+            const ff_node *node = &tree->node[stack[--depth]];
+            if (!ff_node_has_children(node)) {
+                foresee_children_of(tree, f, node);
+                continue;
+            }
+            for (unsigned q = 0; q < 4; q++)
+                stack[depth++] = node->child[q];
+        }
     }
 }
 
@@ -88,7 +112,8 @@ uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], int32_t y
     ff_window_make(&f.ahead);
     ff_pyramid_make(&f.ahead);
     foresee_roots(tree, &f);
-    foresee_children(tree, &f);
+    foresee_cut(tree, &f);
+    foresee_tiles(tree, &f);
 
     f.free = tree->free_count;
     if (f.free < 4 * f.count) {
