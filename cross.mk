@@ -87,9 +87,9 @@ $(BENCH)/ground.ffp: tools/bench_terrain.py $(BUILD)/bin/farfield-bake
 	tools/bench_terrain.py $(@D)
 	$(BUILD)/bin/farfield-bake $(@D)/ground.raw --raw 2049x2049 --scale 0.1 --spacing 40 --tile-log2 $(BENCH_TILE) --quiet \
 	    --color $(@D)/ground.ppm --texture-levels 3 -o $@
-# As tools/flyover.sh has it: minutes, once.
+# As tools/flyover.sh has it: minutes, once for a version of packs (ff_pack.h).
 PUGET := $(DATA)/puget-sound-gatech
-$(BENCH)/puget.ffp: | $(BUILD)/bin/farfield-bake
+$(BENCH)/puget.ffp: protocol/ff_pack.h | $(BUILD)/bin/farfield-bake
 	@mkdir -p $(@D)
 	$(BUILD)/bin/farfield-bake $(PUGET)/ps_height_1k.png --hscale 0.1 --spacing 160 --densify 16 --tile-log2 10 \
 	    --color $(PUGET)/ps_texture_1k.png --texture-levels 5 -o $@

@@ -133,7 +133,7 @@ def one_seed(given, packs, seed):
 
 
 def own_packs(given):
-    """Small ground of three shapes, baked once: hills, a narrow strip in small tiles, steep noise."""
+    """Small ground of three shapes, baked anew by the programs under test: hills, a narrow strip in small tiles, steep noise."""
     packs = []
     shapes = {"hills": (257, 257, 40, 6, lambda x, y: 700 + 350 * math.sin(x / 23) * math.cos(y / 31) + 120 * math.sin(x / 5 + y / 9)),
               "strip": (513, 65, 20, 4, lambda x, y: 300 + 200 * math.sin(x / 40) + 100 * math.sin(y / 7)),
@@ -141,8 +141,6 @@ def own_packs(given):
     for name, (width, height, spacing, tile, shape) in shapes.items():
         raw, pack = os.path.join(given.work, name + ".raw"), os.path.join(given.work, name + ".ffp")
         packs.append(pack)
-        if os.path.exists(pack):
-            continue
         with open(raw, "wb") as file:
             file.write(b"".join(struct.pack("<H", int(shape(x, y))) for y in range(height) for x in range(width)))
         subprocess.run([os.path.join(given.bin, "farfield-bake"), raw, "--raw", f"{width}x{height}", "--spacing", str(spacing),
