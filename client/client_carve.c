@@ -87,7 +87,7 @@ static int carve_textures(ff_client *client)
     textures->device = client->device;
     if (!client->has_textures)
         return FF_OK;
-    size_t bytes = (size_t)4 << (2 * client->info.texture_log2), count = client->arena.bytes / 8 * 3 / bytes;
+    size_t bytes = (size_t)4 << (2 * client->info.texture_log2), count = client->arena.bytes / 16 * 5 / bytes;
     textures->slot_count = (uint16_t)(count < TEXTURES_MIN ? TEXTURES_MIN : count > TEXTURES_MAX ? TEXTURES_MAX : count);
     textures->slot = ff_arena_take(&client->arena, textures->slot_count * sizeof *textures->slot);
     return textures->slot ? FF_OK : FF_ERR_MEMORY;

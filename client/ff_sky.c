@@ -4,7 +4,7 @@
 #include <string.h>
 
 #define COLUMNS 8
-#define LEVELS 7
+#define LEVELS 10
 #define RADIUS 256
 
 /* Rings of vertices from nadir to zenith: height and distance from the axis in vertex units. Below the horizon the backdrop
@@ -12,7 +12,8 @@
  * that has not come, or a pixel beside a node too far away for the common frame (ff_ground_frame.h), and should not sparkle. */
 static const struct { int16_t radius, z; uint8_t rgb[3]; } ring[LEVELS] = {
     {0, -256, {138, 126, 102}}, {240, -90, {138, 126, 102}}, {252, -45, {200, 216, 232}}, {256, 0, {200, 216, 232}},
-    {240, 90, {150, 186, 222}}, {150, 210, {104, 152, 206}}, {0, 256, {84, 134, 194}}
+    {252, 45, {175, 201, 227}}, {240, 90, {150, 186, 222}}, {201, 158, {127, 169, 214}}, {150, 210, {104, 152, 206}},
+    {78, 244, {94, 143, 200}}, {0, 256, {84, 134, 194}}
 };
 static const int8_t circle[COLUMNS][2] = {{0, 64}, {45, 45}, {64, 0}, {45, -45}, {0, -64}, {-45, -45}, {-64, 0}, {-45, 45}};
 

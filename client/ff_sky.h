@@ -9,8 +9,8 @@
 
 typedef struct ff_sky { c3d_mesh mesh; c3d_strip strip; } ff_sky;
 
-#define FF_SKY_VERTICES 56
-#define FF_SKY_INDICES 118
+#define FF_SKY_VERTICES 80
+#define FF_SKY_INDICES 178
 /* Without room on the device there is just the clear colour. */
 void ff_sky_make(ff_sky *sky, c3d_device *device);
 void ff_sky_draw(const ff_sky *sky, c3d_device *device, int32_t near_wu);

@@ -13,7 +13,7 @@
 #define METRE FF_WU_PER_METRE
 #define WIDTH 240
 #define HEIGHT 320
-#define SKY_TRIANGLES_MAX 110
+#define SKY_TRIANGLES_MAX 165
 
 static sys_surface *surface;
 

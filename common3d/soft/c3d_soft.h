@@ -19,6 +19,7 @@
  *   which linear interpolation is off by at most 1/4 texel (1/16 of the colours' difference), are interpolated linearly; so is a row of a
  *   larger one under a texture alone. All the rest is divided exactly every 8 to 64 pixels, by how fast depth changes: at one texel a
  *   pixel the error between is 1/4 texel, too.
+ *   Triangles of any size in colours alone are linear, too, where that is off by 4/255 at most.
  *   Colours: fog and vertex colours are interpolated with 16 fraction bits and rounded to the frame's format.
  *   Backdrops drawn before everything else wait until the end of the frame and then fill, the last one first, what nothing has covered:
  *   the picture is the same and no pixel is painted twice. Their meshes are copied meanwhile.

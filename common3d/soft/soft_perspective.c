@@ -5,14 +5,16 @@
  * 2^10 times the nearest one, rounding moves the quotient by less than 2^-11. Values wrap: at pixels inside they are right again. */
 #include "soft_planes.h"
 
-static void vertex_values(const soft_vertex *vertex, int64_t value[SOFT_PLANES])
+static void vertex_values(const soft_vertex *vertex, int linear, int64_t value[SOFT_PLANES])
 {
     int64_t w = vertex->w;
+    value[SOFT_PLANE_W] = w * 4096;
+    for (int i = 0; linear && i < 3; i++) value[SOFT_R + i] = vertex->rgba[i] * 65536;
+    if (linear) return;
     value[SOFT_S] = (vertex->s * w) >> 16;
     value[SOFT_T] = (vertex->t * w) >> 16;
     for (int i = 0; i < 3; i++) value[SOFT_R + i] = vertex->rgba[i] * w;
     value[SOFT_F] = (vertex->fog_q8 * w) >> 6; /* Q10: within 2^24 */
-    value[SOFT_PLANE_W] = w * 4096;
 }
 
 static int log2_of(uint64_t n) /* n > 0 */
@@ -51,16 +53,34 @@ static void make_planes(const soft_state *state, soft_planes *planes, const soft
     int64_t dx1 = vertex[1]->x - vertex[0]->x, dy1 = vertex[1]->y - vertex[0]->y;
     int64_t dx2 = vertex[2]->x - vertex[0]->x, dy2 = vertex[2]->y - vertex[0]->y;
     uint64_t to_x = (uint64_t)(int64_t)(SOFT_HALF - vertex[0]->x), to_y = (uint64_t)(int64_t)(row * SOFT_ONE + SOFT_HALF - vertex[0]->y);
-    for (int i = 0; i < 3; i++) vertex_values(vertex[i], value[i]);
+    for (int i = 0; i < 3; i++) vertex_values(vertex[i], planes->linear, value[i]);
     for (int i = planes->first; i < SOFT_PLANES; i++) {
         int64_t d1 = value[1][i] - value[0][i], d2 = value[2][i] - value[0][i];
         uint64_t across = (uint64_t)over_area(d2 * dy1 - d1 * dy2, per_area), below = (uint64_t)over_area(d1 * dx2 - d2 * dx1, per_area);
+        int shift = planes->linear && i != SOFT_PLANE_W ? 0 : down;
         soft_plane *plane = &planes->of[i];
-        plane->across = scaled(across * SOFT_ONE, down);
-        plane->down = scaled(below * SOFT_ONE, down);
-        plane->origin = scaled((uint64_t)value[0][i] + across * to_x + below * to_y, down) - plane->down * (uint32_t)row;
+        plane->across = scaled(across * SOFT_ONE, shift);
+        plane->down = scaled(below * SOFT_ONE, shift);
+        plane->origin = scaled((uint64_t)value[0][i] + across * to_x + below * to_y, shift) - plane->down * (uint32_t)row;
         if (i == planes->last) i = SOFT_PLANE_W - 1;
     }
+}
+
+/* Colours alone may run linearly over the whole triangle where that is off by 4/255 at most, half a step of red in RGB565: by
+ * (r - 1)/4 of their largest difference, r being the ratio of the nearest w to the farthest. */
+static int colours_are_linear(const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
+{
+    uint32_t near = a->w > b->w ? a->w : b->w, far = a->w < b->w ? a->w : b->w;
+    if (c->w > near) near = c->w;
+    if (c->w < far) far = c->w;
+    int range = 0;
+    for (int i = 0; i < 3; i++) {
+        int low = a->rgba[i] < b->rgba[i] ? a->rgba[i] : b->rgba[i], high = a->rgba[i] + b->rgba[i] - low;
+        if (c->rgba[i] < low) low = c->rgba[i];
+        if (c->rgba[i] > high) high = c->rgba[i];
+        if (high - low > range) range = high - low;
+    }
+    return (uint64_t)(near - far) * (uint32_t)range <= (uint64_t)far * 16;
 }
 
 /* What is interpolated, and the nearest w in 30 bits. */
@@ -72,6 +92,7 @@ static int set_up(const soft_state *state, soft_planes *planes, const soft_verte
     int fog = paint->fog && (a->fog_q8 < 256 || b->fog_q8 < 256 || c->fog_q8 < 256);
     planes->first = paint->texture ? SOFT_S : SOFT_R;
     planes->last = fog ? SOFT_F : paint->texture && paint->white ? SOFT_T : SOFT_B;
+    planes->linear = planes->last == SOFT_B && !paint->texture && colours_are_linear(a, b, c);
     int down = 12 + 2 - soft_leading_zeros(w); /* of Q42: w below 2^30 */
     planes->w_shift = 12 - down;
     return down;
@@ -138,6 +159,19 @@ void soft_segments(soft_state *state, const soft_planes *planes, const soft_walk
     }
 }
 
+static void linear_row(soft_state *state, const soft_planes *planes, const soft_walk *walk)
+{
+    soft_segment *segment = &state->segment;
+    segment->first = (uint32_t)(walk->row * state->width + walk->from);
+    segment->count = (uint32_t)(walk->to - walk->from);
+    segment->w = soft_depth_of(soft_plane_at(&planes->of[SOFT_PLANE_W], walk->row, walk->from), planes->w_shift);
+    for (int i = SOFT_R; i <= SOFT_B; i++) {
+        segment->value[i] = (int32_t)soft_plane_at(&planes->of[i], walk->row, walk->from);
+        segment->step[i] = (int32_t)planes->of[i].across;
+    }
+    state->span(state, segment);
+}
+
 void soft_perspective(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c, int64_t area)
 {
     const soft_vertex *const vertex[3] = {a, b, c};
@@ -156,6 +190,8 @@ void soft_perspective(soft_state *state, const soft_vertex *a, const soft_vertex
         soft_texture_rows(state, &planes, &walk);
         return;
     }
-    do soft_segments(state, &planes, &walk);
-    while (soft_walk_next(state, &walk) && soft_walk_to_pixels(state, &walk, 1));
+    do {
+        if (planes.linear) linear_row(state, &planes, &walk);
+        else soft_segments(state, &planes, &walk);
+    } while (soft_walk_next(state, &walk) && soft_walk_to_pixels(state, &walk, 1));
 }

@@ -11,6 +11,7 @@ typedef struct soft_plane { uint32_t origin, across, down; } soft_plane; /* at t
 typedef struct soft_planes {
     int first, last;                 /* attributes in use; w always is */
     int w_shift;                     /* of w to Q30 */
+    int linear;                      /* colours are not times w: nothing to divide, Q16 */
     soft_plane of[SOFT_PLANES];
 } soft_planes;
 
