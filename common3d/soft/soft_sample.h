@@ -43,24 +43,25 @@ static inline uint32_t soft_sample_565(const uint32_t *texels, int32_t stride, i
 
 static inline uint16_t soft_pixel_of(uint32_t spread_pixel) { return (uint16_t)(spread_pixel | spread_pixel >> 16); }
 
-/* 1 when both ends of the segment lie on the texture and its rim: then all between does. */
+/* 1 when both ends of a straight line lie on the texture and its rim: then all between does. */
+static inline int soft_between_on_texture(const soft_texture *texture, int32_t s, int32_t t, int32_t s_end, int32_t t_end)
+{
+    uint32_t width = ((uint32_t)texture->width + 1) << 16, height = ((uint32_t)texture->height + 1) << 16;
+    return (uint32_t)s + 65536 < width && (uint32_t)s_end + 65536 < width && (uint32_t)t + 65536 < height && (uint32_t)t_end + 65536 < height;
+}
+
 static inline int soft_on_texture(const soft_texture *texture, const soft_segment *segment)
 {
-    int32_t pixels = (int32_t)segment->count - 1;
-    uint32_t s = (uint32_t)segment->value[SOFT_S] + 65536, t = (uint32_t)segment->value[SOFT_T] + 65536;
-    uint32_t s_end = s + (uint32_t)(segment->step[SOFT_S] * pixels), t_end = t + (uint32_t)(segment->step[SOFT_T] * pixels);
-    uint32_t width = ((uint32_t)texture->width + 1) << 16, height = ((uint32_t)texture->height + 1) << 16;
-    return s < width && s_end < width && t < height && t_end < height;
+    int32_t pixels = (int32_t)segment->count - 1, s = segment->value[SOFT_S], t = segment->value[SOFT_T];
+    return soft_between_on_texture(texture, s, t, s + segment->step[SOFT_S] * pixels, t + segment->step[SOFT_T] * pixels);
 }
 
 /* Pixels from one sample to the next, as a power of two: within a texel, and where that is less than 4 pixels, each is sampled. */
-static inline int soft_sample_spacing(const int32_t step[2])
+static inline int soft_sample_spacing(int32_t ds, int32_t dt)
 {
-    uint32_t most = (uint32_t)((step[0] ^ step[0] >> 31) | (step[1] ^ step[1] >> 31) | 1);
+    uint32_t most = (uint32_t)((ds ^ ds >> 31) | (dt ^ dt >> 31) | 1);
     int log2 = soft_leading_zeros(most) - 16;
     return log2 > SOFT_MAGNIFIED_LOG2 ? SOFT_MAGNIFIED_LOG2 : log2 < 2 ? 0 : log2;
 }
-
-static inline int32_t soft_within(int32_t at, int32_t end) { return at < -65536 ? -65536 : at >= end ? end - 1 : at; }
 
 #endif
