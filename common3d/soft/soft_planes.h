@@ -20,24 +20,28 @@ static inline uint32_t soft_plane_at(const soft_plane *plane, int32_t row, int32
     return plane->origin + plane->down * (uint32_t)row + plane->across * (uint32_t)column;
 }
 
-/* 2^60 / (w * 2^*lead), *lead such that the product takes 31 bits. w is 1 .. 2^30; of others nothing is said. */
+/* The upper word of the product: one instruction. */
+static inline int32_t soft_high(int32_t a, int32_t b) { return (int32_t)(((int64_t)a * b) >> 32); }
+
+/* 2^59 / (w * 2^*lead), *lead such that the product takes 31 bits. w is 1 .. 2^31 - 1; of others nothing is said. */
 static inline int32_t soft_one_over_w(const soft_state *state, uint32_t w, int *lead)
 {
-    int zeros = soft_leading_zeros(w | 1);
-    *lead = (zeros - 1) & 31;
-    return (int32_t)(soft_reciprocal(state, w << zeros >> 1) >> 1);
+    *lead = soft_leading_zeros(w << 1 | 1);
+    uint32_t n = w << *lead;
+    int32_t first = (int32_t)state->reciprocal[(n >> 21) & 511], error = soft_high((int32_t)n, first); /* 2^29 when exact */
+    return soft_high((int32_t)((UINT32_C(1) << 31) - 2 * (uint32_t)error), first);
 }
 
-/* An attribute times w, divided by w: Q16. What lies beyond +-2^28 wraps. */
+/* An attribute times w, divided by w: Q16, even. What lies beyond +-2^28 wraps. */
 static inline int32_t soft_quotient(uint32_t part, int32_t reciprocal, int lead)
 {
-    return (int32_t)(((int64_t)(int32_t)(part << lead) * reciprocal) >> 32);
+    return 2 * soft_high((int32_t)(part << lead), reciprocal);
 }
 
 /* 65536/n: what is lost is below 1/65536 of the change over the segment. */
 static inline int32_t soft_per_pixel(const soft_state *state, int32_t change, int pixels)
 {
-    return pixels ? (int32_t)(((int64_t)change * state->edge_reciprocal[pixels]) >> 31) : 0;
+    return pixels ? 2 * soft_high(change, state->edge_reciprocal[pixels]) : 0;
 }
 
 static inline uint32_t soft_depth_of(uint32_t w, int w_shift) { return (int32_t)w < 2 << w_shift ? 2 : w >> w_shift; }

@@ -16,7 +16,7 @@ static int measure_row(soft_state *state, const soft_planes *planes, const soft_
     int32_t t_change = soft_quotient(t_part + planes->of[SOFT_T].across * (uint32_t)apart, reciprocal, lead) - t;
     int32_t least = (int32_t)(w < w_end ? w : w_end), w_change = (int32_t)(w_end - w);
     int32_t far = (s_change ^ s_change >> 31) | (t_change ^ t_change >> 31); /* at most twice the larger one */
-    if (apart >= SOFT_EDGE_TABLE || ((int64_t)far * (w_change ^ w_change >> 31)) >> 16 > least) return 0;
+    if (apart >= SOFT_EDGE_TABLE || soft_high(far, w_change ^ w_change >> 31) > least >> 16) return 0;
     segment->first = (uint32_t)(walk->row * state->width + walk->from);
     segment->count = (uint32_t)(apart + 1);
     segment->w = soft_depth_of(w, planes->w_shift);
