@@ -87,22 +87,6 @@ static void make_slopes(const soft_state *state, const soft_shape *shape, soft_s
     if (fog) attribute(shape, slopes, SOFT_F, a->fog_q8 * 65536, (b->fog_q8 - a->fog_q8) * 16, (c->fog_q8 - a->fog_q8) * 16, 12);
 }
 
-/* One row of a texture as it is, into RGB565; an inner loop. Its vertices lie on the texture, and its pixels within a rim of them. */
-static inline void texture_row(soft_state *state, uint32_t first, uint32_t count, uint32_t w, uint32_t dw, const int32_t at[2],
-                               const int32_t step[2])
-{
-    const soft_texture *texture = state->paint.texture;
-    const uint32_t *texels = soft_texel_zero(texture);
-    int32_t stride = texture->stride, s = at[0], t = at[1], ds = step[0], dt = step[1];
-    uint32_t *depth = state->depth + first, *end = depth + count;
-    uint16_t *pixel = (uint16_t *)(void *)state->colour + first;
-    for (; depth < end; depth++, pixel++, w += dw, s += ds, t += dt) {
-        if (w < *depth) continue;
-        *depth = w;
-        *pixel = soft_pixel_of(soft_sample_565(texels, stride, s, t));
-    }
-}
-
 /* The texture alone, small triangles of the terrain: everything in one function. */
 static void texture_rows(soft_state *state, soft_walk *walk, soft_slopes *slopes)
 {
@@ -113,7 +97,7 @@ static void texture_rows(soft_state *state, soft_walk *walk, soft_slopes *slopes
         if (walk->from < walk->to) {
             uint32_t from = (uint32_t)walk->from, first = (uint32_t)walk->row * state->width + from;
             const int32_t at[2] = {(int32_t)(s + ds * from), (int32_t)(t + dt * from)}, step[2] = {(int32_t)ds, (int32_t)dt};
-            texture_row(state, first, (uint32_t)walk->to - from, w + dw * from, dw, at, step);
+            soft_sample_row(state, first, (uint32_t)walk->to - from, w + dw * from, dw, at, step);
         }
         w += (uint32_t)slopes->down[W];
         s += (uint32_t)slopes->down[SOFT_S];
