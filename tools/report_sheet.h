@@ -9,7 +9,7 @@
 
 typedef struct report_series { const char *name, *folder; } report_series; /* folder: of farfield-fly --png */
 
-#define REPORT_SHEET_FILE_BYTES 32
+#define REPORT_SHEET_FILE_BYTES 40
 
 typedef struct report_sheet {
     const char *heading;            /* plain words */
