@@ -3,7 +3,7 @@
 #include "soft_sample.h"
 
 /* A sample of a texture magnified: it keeps 5 - log2 bits below its last place, which with 2^log2 steps fill the room above each field,
- * and the half that rounds the sum of both. */
+ * and the half that rounds the sum of both. s and t are counted from the rim. */
 static inline uint32_t magnified_sample(const uint32_t *texels, uint32_t stride, int32_t s, int32_t t, const int log2)
 {
     const uint32_t fields = (SOFT_SPREAD << (5 - log2)) | ((SOFT_SPREAD_ONE << (5 - log2)) - SOFT_SPREAD_ONE);
@@ -33,20 +33,22 @@ static inline uint32_t mark_four(uint32_t depth[4], uint32_t w, uint32_t dw)
 /* A row of a texture magnified. Every 2^log2-th pixel of the frame is sampled (2 or 3); those between are blended of two samples, by adding
  * the same difference again and again. Columns of samples keep their places from row to row: neither edges of triangles nor rows show.
  * Pixels from one to the next are drawn together where all of them are nearer than what is there, as on ground not yet drawn: the bits
- * of their depths together are no less than the greatest. */
-static SOFT_INLINE void magnified_row(const soft_state *state, const soft_segment *segment, const int log2)
+ * of their depths together are no less than the greatest. 0: some sample would lie beyond the texture. */
+static SOFT_INLINE int magnified_row(const soft_state *state, const soft_segment *segment, const int log2)
 {
     const soft_texture *texture = state->paint.texture;
-    const uint32_t *texels = soft_texel_zero(texture);
     const uint32_t size = 1u << log2, before = segment->first & (size - 1), stride = texture->stride;
+    const int32_t ds = segment->step[SOFT_S] * (int32_t)size, dt = segment->step[SOFT_T] * (int32_t)size;
+    int32_t s = segment->value[SOFT_S] - segment->step[SOFT_S] * (int32_t)before, t = segment->value[SOFT_T] - segment->step[SOFT_T] * (int32_t)before;
+    int32_t blocks = (int32_t)((before + segment->count + size - 1) >> log2);
+    if (!soft_between_on_texture(texture, s, t, s + ds * blocks, t + dt * blocks)) return 0;
+    const uint32_t *texels = (const uint32_t *)(const void *)texture->texels;
     uint32_t *first = state->depth + segment->first, *end = first + segment->count, *depth = first - before;
     uint16_t *pixel = (uint16_t *)(void *)state->colour + segment->first - before;
     uint32_t dw = segment->dw, w = segment->w - dw * before, least = segment->w + dw * (segment->count - 1);
-    int32_t ds = segment->step[SOFT_S], dt = segment->step[SOFT_T];
-    int32_t s = segment->value[SOFT_S] - ds * (int32_t)before, t = segment->value[SOFT_T] - dt * (int32_t)before;
+    s += 65536, t += 65536; /* from the rim */
     uint32_t last = magnified_sample(texels, stride, s, t, log2);
     if (least > segment->w) least = segment->w;
-    ds *= 1 << log2, dt *= 1 << log2;
     do {
         s += ds, t += dt;
         uint32_t next = magnified_sample(texels, stride, s, t, log2), sum = last << log2, change = next - last;
@@ -68,30 +70,19 @@ static SOFT_INLINE void magnified_row(const soft_state *state, const soft_segmen
         }
         depth += size, pixel += size, last = next;
     } while (depth < end);
-}
-
-/* Pixels between samples, as a power of two; -1 where pixels lie beyond the texture. All samples lie on it. */
-static inline int sample_spacing(const soft_texture *texture, const soft_segment *segment)
-{
-    int32_t s = segment->value[SOFT_S], t = segment->value[SOFT_T], ds = segment->step[SOFT_S], dt = segment->step[SOFT_T];
-    int32_t pixels = (int32_t)segment->count - 1;
-    int log2 = pixels < 2 ? 0 : soft_sample_spacing(ds, dt);
-    if (log2) {
-        int32_t before = (int32_t)(segment->first & ((1u << log2) - 1)), all = (before + pixels) | ((1 << log2) - 1);
-        int32_t s_first = s - ds * before, t_first = t - dt * before;
-        if (soft_between_on_texture(texture, s_first, t_first, s_first + ds * (all + 1), t_first + dt * (all + 1))) return log2;
-    }
-    return soft_between_on_texture(texture, s, t, s + ds * pixels, t + dt * pixels) ? 0 : -1;
+    return 1;
 }
 
 /* RGB565 with the depth test. */
 static void span_texture(soft_state *state, const soft_segment *segment)
 {
-    int log2 = sample_spacing(state->paint.texture, segment);
-    if (log2 == 3) magnified_row(state, segment, 3);
-    else if (log2 == 2) magnified_row(state, segment, 2);
-    else if (log2 == 0) soft_sample_row(state, segment->first, segment->count, segment->w, segment->dw, segment->value, segment->step);
-    else soft_segment_paint(state, segment);
+    int log2 = segment->count > 2 ? soft_sample_spacing(segment->step[SOFT_S], segment->step[SOFT_T]) : 0;
+    if (log2 == 3 && magnified_row(state, segment, 3)) return;
+    if (log2 == 2 && magnified_row(state, segment, 2)) return;
+    if (soft_on_texture(state->paint.texture, segment))
+        soft_sample_row(state, segment->first, segment->count, segment->w, segment->dw, segment->value, segment->step); /* s and t come first */
+    else
+        soft_segment_paint(state, segment);
 }
 
 static void span_colour(soft_state *state, const soft_segment *segment)
