@@ -43,15 +43,15 @@ static inline uint32_t soft_sample_565(const uint32_t *texels, int32_t stride, i
 
 static inline uint16_t soft_pixel_of(uint32_t spread_pixel) { return (uint16_t)(spread_pixel | spread_pixel >> 16); }
 
-/* A row of a texture as it is, into RGB565 with the depth test; an inner loop. All pixels lie on the texture and its rim. s and t. */
-static inline void soft_sample_row(const soft_state *state, uint32_t first, uint32_t count, uint32_t w, uint32_t dw, const int32_t at[2],
-                                   const int32_t step[2])
+/* A row of a texture as it is, into RGB565 with the depth test; an inner loop. All pixels lie on the texture and its rim. */
+static inline void soft_sample_row(const soft_state *state, const soft_segment *segment)
 {
     const soft_texture *texture = state->paint.texture;
     const uint32_t *texels = soft_texel_zero(texture);
-    int32_t stride = texture->stride, s = at[0], t = at[1], ds = step[0], dt = step[1];
-    uint32_t *depth = state->depth + first, *end = depth + count;
-    uint16_t *pixel = (uint16_t *)(void *)state->colour + first;
+    int32_t stride = texture->stride, s = segment->value[SOFT_S], t = segment->value[SOFT_T];
+    int32_t ds = segment->step[SOFT_S], dt = segment->step[SOFT_T];
+    uint32_t *depth = state->depth + segment->first, *end = depth + segment->count, w = segment->w, dw = segment->dw;
+    uint16_t *pixel = (uint16_t *)(void *)state->colour + segment->first;
     for (; depth < end; depth++, pixel++, w += dw, s += ds, t += dt) {
         if (w < *depth) continue;
         *depth = w;

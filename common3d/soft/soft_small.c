@@ -11,6 +11,7 @@
 #define AREA_MIN 64 /* an eighth of a pixel */
 #define COLOUR_RANGE 32
 #define FOG_MAX 256
+#define PLAIN_PIXELS 8 /* in shorter rows every pixel is sampled */
 #define W SOFT_ATTRIBUTES
 
 typedef struct soft_slopes {
@@ -87,17 +88,22 @@ static void make_slopes(const soft_state *state, const soft_shape *shape, soft_s
     if (fog) attribute(shape, slopes, SOFT_F, a->fog_q8 * 65536, (b->fog_q8 - a->fog_q8) * 16, (c->fog_q8 - a->fog_q8) * 16, 12);
 }
 
-/* The texture alone, small triangles of the terrain: everything in one function. */
+/* The texture alone, small triangles of the terrain: everything in one function. Long rows may be magnified. */
 static void texture_rows(soft_state *state, soft_walk *walk, soft_slopes *slopes)
 {
+    soft_segment *segment = &state->segment;
     uint32_t w = slopes->at[W], s = slopes->at[SOFT_S], t = slopes->at[SOFT_T];
     uint32_t dw = (uint32_t)slopes->across[W], ds = (uint32_t)slopes->across[SOFT_S], dt = (uint32_t)slopes->across[SOFT_T];
+    uint32_t plain = soft_sample_spacing((int32_t)ds, (int32_t)dt) ? PLAIN_PIXELS : UINT32_MAX;
+    segment->dw = dw, segment->step[SOFT_S] = (int32_t)ds, segment->step[SOFT_T] = (int32_t)dt;
     do {
         soft_walk_row(state, walk);
         if (walk->from < walk->to) {
-            uint32_t from = (uint32_t)walk->from, first = (uint32_t)walk->row * state->width + from;
-            const int32_t at[2] = {(int32_t)(s + ds * from), (int32_t)(t + dt * from)}, step[2] = {(int32_t)ds, (int32_t)dt};
-            soft_sample_row(state, first, (uint32_t)walk->to - from, w + dw * from, dw, at, step);
+            uint32_t from = (uint32_t)walk->from;
+            segment->first = (uint32_t)walk->row * state->width + from, segment->count = (uint32_t)walk->to - from;
+            segment->w = w + dw * from, segment->value[SOFT_S] = (int32_t)(s + ds * from), segment->value[SOFT_T] = (int32_t)(t + dt * from);
+            if (segment->count < plain) soft_sample_row(state, segment);
+            else state->span(state, segment);
         }
         w += (uint32_t)slopes->down[W];
         s += (uint32_t)slopes->down[SOFT_S];

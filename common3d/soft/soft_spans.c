@@ -80,7 +80,7 @@ static void span_texture(soft_state *state, const soft_segment *segment)
     if (log2 == 3 && magnified_row(state, segment, 3)) return;
     if (log2 == 2 && magnified_row(state, segment, 2)) return;
     if (soft_on_texture(state->paint.texture, segment))
-        soft_sample_row(state, segment->first, segment->count, segment->w, segment->dw, segment->value, segment->step); /* s and t come first */
+        soft_sample_row(state, segment);
     else
         soft_segment_paint(state, segment);
 }
