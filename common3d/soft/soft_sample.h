@@ -20,11 +20,12 @@ static inline const uint32_t *soft_texel_zero(const soft_texture *texture)
     return (const uint32_t *)(const void *)texture->texels + texture->stride + 1;
 }
 
-/* Between four texels, from the upper left one; x and y in 1/16 texel. Fields are 32 times the colour's, and a half. */
-static inline uint32_t soft_blend_sum(const uint32_t *at, uint32_t stride, uint32_t x, uint32_t y)
+/* Between four texels, from the upper left one; x, y and x * y in 1/16 texel, x * y no greater than either. Fields are 32 times the
+ * colour's, and a half. */
+static inline uint32_t soft_blend_sum(const uint32_t *at, uint32_t stride, uint32_t x, uint32_t y, uint32_t xy)
 {
-    uint32_t xy = x * y >> 4, right = x - xy, below = y - xy;
-    uint32_t sum = at[0] * (16 - x - below);
+    uint32_t right = x - xy, below = y - xy;
+    uint32_t sum = at[0] * (16 - right - y);
     sum += at[1] * right;
     at += stride;
     sum += at[0] * below;
@@ -33,12 +34,14 @@ static inline uint32_t soft_blend_sum(const uint32_t *at, uint32_t stride, uint3
 
 static inline uint32_t soft_blend_565(const uint32_t *at, uint32_t stride, uint32_t x, uint32_t y)
 {
-    return soft_blend_sum(at, stride, x, y) >> 5 & SOFT_SPREAD;
+    return soft_blend_sum(at, stride, x, y, x * y >> 4) >> 5 & SOFT_SPREAD;
 }
 
-static inline uint32_t soft_sample_565(const uint32_t *texels, int32_t stride, int32_t s, int32_t t)
+/* `texels`: where s and t are 0. */
+static inline uint32_t soft_sample_sum(const uint32_t *texels, uint32_t stride, int32_t s, int32_t t)
 {
-    return soft_blend_565(texels + (t >> 16) * stride + (s >> 16), (uint32_t)stride, (uint32_t)s << 16 >> 28, (uint32_t)t << 16 >> 28);
+    uint32_t x = (uint16_t)s, y = (uint16_t)t;
+    return soft_blend_sum(texels + (t >> 16) * (int32_t)stride + (s >> 16), stride, x >> 12, y >> 12, x * y >> 28);
 }
 
 static inline uint16_t soft_pixel_of(uint32_t spread_pixel) { return (uint16_t)(spread_pixel | spread_pixel >> 16); }
@@ -48,14 +51,14 @@ static inline void soft_sample_row(const soft_state *state, const soft_segment *
 {
     const soft_texture *texture = state->paint.texture;
     const uint32_t *texels = soft_texel_zero(texture);
-    int32_t stride = texture->stride, s = segment->value[SOFT_S], t = segment->value[SOFT_T];
-    int32_t ds = segment->step[SOFT_S], dt = segment->step[SOFT_T];
+    uint32_t stride = texture->stride;
+    int32_t s = segment->value[SOFT_S], t = segment->value[SOFT_T], ds = segment->step[SOFT_S], dt = segment->step[SOFT_T];
     uint32_t *depth = state->depth + segment->first, *end = depth + segment->count, w = segment->w, dw = segment->dw;
     uint16_t *pixel = (uint16_t *)(void *)state->colour + segment->first;
     for (; depth < end; depth++, pixel++, w += dw, s += ds, t += dt) {
         if (w < *depth) continue;
         *depth = w;
-        *pixel = soft_pixel_of(soft_sample_565(texels, stride, s, t));
+        *pixel = soft_pixel_of(soft_sample_sum(texels, stride, s, t) >> 5 & SOFT_SPREAD);
     }
 }
 

@@ -7,8 +7,7 @@
 static inline uint32_t magnified_sample(const uint32_t *texels, uint32_t stride, int32_t s, int32_t t, const int log2)
 {
     const uint32_t fields = (SOFT_SPREAD << (5 - log2)) | ((SOFT_SPREAD_ONE << (5 - log2)) - SOFT_SPREAD_ONE);
-    const uint32_t *at = texels + (t >> 16) * (int32_t)stride + (s >> 16);
-    return soft_blend_sum(at, stride, (uint32_t)s << 16 >> 28, (uint32_t)t << 16 >> 28) >> log2 & fields;
+    return soft_sample_sum(texels, stride, s, t) >> log2 & fields;
 }
 
 static inline void ramp_four(uint16_t pixel[4], uint32_t sum, uint32_t change)
