@@ -5,14 +5,15 @@
  * 2^10 times the nearest one, rounding moves the quotient by less than 2^-11. Values wrap: at pixels inside they are right again. */
 #include "soft_planes.h"
 
-static void vertex_values(const soft_vertex *vertex, int linear, int64_t value[SOFT_PLANES])
+static void vertex_values(const soft_vertex *vertex, const soft_planes *planes, int64_t value[SOFT_PLANES])
 {
     int64_t w = vertex->w;
     value[SOFT_PLANE_W] = w * 4096;
-    for (int i = 0; linear && i < 3; i++) value[SOFT_R + i] = vertex->rgba[i] * 65536;
-    if (linear) return;
+    for (int i = 0; planes->linear && i < 3; i++) value[SOFT_R + i] = vertex->rgba[i] * 65536;
+    if (planes->linear) return;
     value[SOFT_S] = (vertex->s * w) >> 16;
     value[SOFT_T] = (vertex->t * w) >> 16;
+    if (planes->last == SOFT_T) return;
     for (int i = 0; i < 3; i++) value[SOFT_R + i] = vertex->rgba[i] * w;
     value[SOFT_F] = (vertex->fog_q8 * w) >> 6; /* Q10: within 2^24 */
 }
@@ -39,7 +40,7 @@ static int64_t over_area(int64_t value, quotient per_area)
     if (value == 0) return 0;
     int down = log2_of((uint64_t)(value < 0 ? -value : value)) - 30;
     int shift = down + per_area.exponent;
-    int64_t product = soft_scale64(value, -down) * per_area.mantissa;
+    int64_t product = (int64_t)(int32_t)soft_scale64(value, -down) * per_area.mantissa;
     return shift <= -63 ? 0 : soft_scale64(product, shift);
 }
 
@@ -53,7 +54,7 @@ static void make_planes(const soft_state *state, soft_planes *planes, const soft
     int64_t dx1 = vertex[1]->x - vertex[0]->x, dy1 = vertex[1]->y - vertex[0]->y;
     int64_t dx2 = vertex[2]->x - vertex[0]->x, dy2 = vertex[2]->y - vertex[0]->y;
     uint64_t to_x = (uint64_t)(int64_t)(SOFT_HALF - vertex[0]->x), to_y = (uint64_t)(int64_t)(row * SOFT_ONE + SOFT_HALF - vertex[0]->y);
-    for (int i = 0; i < 3; i++) vertex_values(vertex[i], planes->linear, value[i]);
+    for (int i = 0; i < 3; i++) vertex_values(vertex[i], planes, value[i]);
     for (int i = planes->first; i < SOFT_PLANES; i++) {
         int64_t d1 = value[1][i] - value[0][i], d2 = value[2][i] - value[0][i];
         uint64_t across = (uint64_t)over_area(d2 * dy1 - d1 * dy2, per_area), below = (uint64_t)over_area(d1 * dx2 - d2 * dx1, per_area);
