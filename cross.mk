@@ -85,7 +85,7 @@ $(TCG_COUNT): tools/tcg/tcg_count.c
 $(BENCH)/ground.ffp: tools/bench_terrain.py $(BUILD)/bin/farfield-bake
 	@mkdir -p $(@D)
 	tools/bench_terrain.py $(@D)
-	$(BUILD)/bin/farfield-bake $(@D)/ground.raw --raw 2049x2049 --scale 0.1 --spacing 40 --tile-log2 $(BENCH_TILE) --quiet \
+	$(BUILD)/bin/farfield-bake $(@D)/ground.raw --raw 2049x2049 --scale 0.1 --spacing 50 --tile-log2 $(BENCH_TILE) --quiet \
 	    --color $(@D)/ground.ppm --texture-levels 3 -o $@
 # As tools/flyover.sh has it: minutes, once for a version of packs (ff_pack.h).
 PUGET := $(DATA)/puget-sound-gatech

@@ -85,8 +85,9 @@ static int patch_is_off(const join *j, const corner at[4])
         depth_wu = p[2] - m[2] < depth_wu ? p[2] - m[2] : depth_wu;
     }
     for (int i = 0; i < 4; i++)
-        off = larger(off, way[i] / (deep ? at[i].eye_wu[2] : j->least_wu) + 1);
-    return c3d_muldiv64(off, j->camera->focal_q8, j->error_q8) + 1 > larger(depth_wu, j->least_wu) - 4;
+        off = larger(off, c3d_divide_saturated((uint64_t)way[i], (uint64_t)(deep ? at[i].eye_wu[2] : j->least_wu)));
+    int64_t depth_least_wu = larger(depth_wu, j->least_wu) - 4;
+    return depth_least_wu <= 0 || (off + 1) * j->camera->focal_q8 >= depth_least_wu * j->error_q8; /* 2^32 * 2^31, 2^32 * 2^30 */
 }
 
 /* The face forward along an axis, from low to high along `up` and all of it along the third axis. */
@@ -149,7 +150,7 @@ int ff_panorama_outdated(const c3d_camera *camera, const int32_t taken_wu[3], co
         return 0;
     if (error_px_q8 <= 0 || c3d_length64(moved_wu[0], moved_wu[1], moved_wu[2]) >= z_wu)
         return 1;
-    join j = {.camera = camera, .half_q8 = {camera->width * 128, camera->height * 128}, .error_q8 = error_px_q8,
+    join j = {.camera = camera, .half_q8 = {camera->width * 128, camera->height * 128}, .error_q8 = error_px_q8 < 1 << 30 ? error_px_q8 : 1 << 30,
               .z_wu = kept_wu(z_wu)};
     c3d_rotation_from_camera(camera, &j.rotation);
     c3d_to_eye(&j.rotation, moved_wu, j.moved_eye_wu);

@@ -15,7 +15,8 @@ import re
 
 from handheld_counts import Counts, Program, die, run
 
-SECONDS, SWEEP_SECONDS, SETTLE = "20", "6", 20
+SECONDS, PLACE_SECONDS, SWEEP_SECONDS, SETTLE = "20", "10", "6", 20
+START, PLACES = "0.4", ("0.2", "0.3", "0.4", "0.5", "0.6")  # parts of the diagonal
 FLIGHT = ["--backend", "none", "--link", "umts", "--settle", str(SETTLE), "--sample", "0.5", "--audit", "on", "--check", "off"]
 SWEEP = ["2:4", "3:4", "4:5", "6:5", "px:4", "px:2", "px:1"]
 SWEEP_MEMORY = "16M"  # where a pool is full the flight depends on its capacity, which differs between machines
@@ -59,11 +60,11 @@ class Bench:
     def count(self, name, arguments, options=""):
         return Counts(self.plugin, self.program, arguments, "%s/%s.counts" % (self.out, name), options)
 
-    def tape(self, name, quality, panorama, seconds, memory="4M"):
+    def tape(self, name, quality, panorama, seconds, memory="4M", start=START):
         """A flight on this machine, on tape; its path and the auditor's rows after settling."""
         tape, table = "%s/%s.tape" % (self.out, name), "%s/%s.csv" % (self.out, name)
         run([self.bin + "/farfield-fly", "--pack", self.pack, *FLIGHT, "--seconds", seconds, "--quality", quality, "--panorama", panorama,
-             "--memory", memory, "--tape", tape, "--csv", table])
+             "--start", start, "--memory", memory, "--tape", tape, "--csv", table])
         return tape, [r for r in csv.DictReader(open(table)) if float(r["t_s"]) > SETTLE and r["err_px_rms"] not in ("", "nan")]
 
     def phases(self, counts):
@@ -78,8 +79,8 @@ class Bench:
                     sums[row] = sums.get(row, 0) + cost / len(counts.frames)
         return sums
 
-    def fly(self, name, quality, panorama, seconds, memory="4M"):
-        tape, rows = self.tape(name, quality, panorama, seconds, memory)
+    def fly(self, name, quality, panorama, seconds, memory="4M", start=START):
+        tape, rows = self.tape(name, quality, panorama, seconds, memory, start)
         counts = self.count(name, ["--tape", tape, "--fb", "%s/%s.ppm" % (self.out, name)])
         figures, frames, n = counts.figures, counts.frames, len(counts.frames)
         if not n or not rows:
@@ -88,7 +89,7 @@ class Bench:
             die("%s: the pool is full" % name)
         cost = sorted(counts.costs())
         mean = lambda key: sum(float(r[key]) for r in rows) / len(rows)
-        flown = {"quality": quality, "panorama": panorama, "frames": n,
+        flown = {"quality": quality, "panorama": panorama, "start": start, "frames": n,
                  "triangles": figures["triangles_mean"], "triangles_max": figures["triangles_max"],
                  "triangles_submitted": figures["triangles_submitted_mean"], "triangles_rasterised": {name: self.calls(counts, name) / n for name in FILLERS},
                  "instructions": sum(cost) / n, "instructions_p95": cost[min(n - 1, n * 95 // 100)], "instructions_max": cost[-1],
@@ -138,14 +139,24 @@ def phase_table(low):
     return out
 
 
-def report(bench, low, sweep, memory):
+def place_table(places):
+    row = lambda name, p: "| %s | %s | %s | %d | %.3f | %.3f |" % (
+        name, million(p["instructions"]), million(p["instructions_p95"]), p["triangles"], p["err_px_rms"], p["err_px_p95"])
+    mean = {key: sum(p[key] for p in places) / len(places) for key in ("instructions", "instructions_p95", "triangles", "err_px_rms", "err_px_p95")}
+    return ["## Low quality (C 3, depth 4), textured, with panorama, at %d places, %s s each" % (len(places), PLACE_SECONDS), "",
+            "| from, of the diagonal | M a frame | p95 | triangles | err_px RMS | err_px p95 |", "|---|--:|--:|--:|--:|--:|",
+            *[row(p["start"], p) for p in places], row("**mean** (target %s at 5000 triangles)" % million(TARGET), mean), ""]
+
+
+def report(bench, low, places, sweep, memory):
     pixels, known = low["pixels"], lambda n: "%d" % n if n else "not known"
     out = ["# A frame on the handheld, in ARM instructions", "",
-           "armv6, soft float, `-O2`, counted exactly under qemu-arm; 240x320, RGB565, over %s; UMTS, 150 km/h, %s s after %d s of settling." %
-           (os.path.basename(bench.pack), SECONDS, SETTLE),
+           "armv6, soft float, `-O2`, counted exactly under qemu-arm; 240x320, RGB565, over %s; UMTS, 150 km/h, after %d s of settling." %
+           (os.path.basename(bench.pack), SETTLE),
            "A frame is update and draw; decode (link, messages, decoding) is apart.", "",
-           "| low quality (C 3, depth 4), textured, panorama | |", "|---|---|",
-           "| instructions a frame, mean (M) | **%s** (target %s) |" % (million(low["instructions"]), million(TARGET)),
+           *place_table(places),
+           "| from %s on, %s s | |" % (low["start"], SECONDS), "|---|---|",
+           "| instructions a frame, mean (M) | %s |" % million(low["instructions"]),
            "| 95th percentile, maximum (M) | %s, %s |" % (million(low["instructions_p95"]), million(low["instructions_max"])),
            "| decode, a frame (M) | %s |" % million(low["work"]),
            "| triangles of the ground a frame, mean (max) | %d (%d) |" % (low["triangles"], low["triangles_max"]),
@@ -220,14 +231,15 @@ def main():
         functions(bench, options.functions)
         return
     low = bench.fly("low", "low", "on", SECONDS)
+    places = [bench.fly("place", "low", "on", PLACE_SECONDS, start=start) for start in PLACES]
     low["pixels"] = bench.pixels(options.out + "/low.tape")
     if sum(bench.count("low", ["--tape", options.out + "/low.tape"]).costs()) / low["frames"] != low["instructions"]:
         die("counted twice, different numbers")
     sweep = [] if options.quick else [bench.fly("sweep", quality, panorama, SWEEP_SECONDS, SWEEP_MEMORY) for panorama in ("on", "off") for quality in SWEEP]
     memory = [] if options.quick else memory_rows(bench)
-    text = report(bench, low, sweep, memory)
+    text = report(bench, low, places, sweep, memory)
     open(options.out + "/handheld.md", "w").write(text)
-    json.dump({"low": low, "sweep": sweep, "memory": memory, "target": TARGET}, open(options.out + "/handheld.json", "w"), indent=1)
+    json.dump({"low": low, "places": places, "sweep": sweep, "memory": memory, "target": TARGET}, open(options.out + "/handheld.json", "w"), indent=1)
     with open(options.out + "/work-precision.csv", "w", newline="") as f:
         keys = ["quality", "panorama", "instructions", "instructions_p95", "triangles", "err_px_rms", "err_px_p95", "work", "update", "draw"]
         table = csv.DictWriter(f, keys, extrasaction="ignore")

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """bench_terrain.py DIR: the terrain that farfield-handheld is measured over, from integers alone: the same bytes everywhere.
 
-DIR/ground.raw: 2049 x 2049 heights of 16 bits, decimetres, 40 m apart: a mountain range from six octaves of value noise.
+DIR/ground.raw: 2049 x 2049 heights of 16 bits, decimetres, 50 m apart: a mountain range from six octaves of value noise.
 DIR/ground.ppm: its image, one pixel a sample: rock, forest, meadow and water by height and slope, with grain."""
 import array
 import sys

@@ -32,11 +32,6 @@ static inline uint32_t soft_blend_sum(const uint32_t *at, uint32_t stride, uint3
     return sum + at[1] * xy;
 }
 
-static inline uint32_t soft_blend_565(const uint32_t *at, uint32_t stride, uint32_t x, uint32_t y)
-{
-    return soft_blend_sum(at, stride, x, y, x * y >> 4) >> 5 & SOFT_SPREAD;
-}
-
 /* `texels`: where s and t are 0. */
 static inline uint32_t soft_sample_sum(const uint32_t *texels, uint32_t stride, int32_t s, int32_t t)
 {
