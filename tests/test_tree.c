@@ -258,6 +258,44 @@ static void test_wishes_come_in_order(void **state)
     fixture_free(&fx);
 }
 
+/* Delivers the first wish until there is none; unseen 0: of those that count as in view. */
+static uint32_t deliver_wishes(terrain_fixture *fx, const ff_view *view, const ff_quality *quality, int unseen)
+{
+    for (uint32_t delivered = 0;; delivered++) {
+        const ff_wish *wish;
+        ff_tree_select(fx->tree, view, quality);
+        uint32_t count = ff_tree_wishes(fx->tree, &wish), at = 0;
+        while (at < count && !unseen && !wish[at].in_view)
+            at++;
+        if (at == count)
+            return delivered;
+        fixture_deliver(fx, wish[at].key, wish[at].refinement);
+    }
+}
+
+/* What is in view, and what lets it split, is enough: the same nodes are drawn as when all has come, of less. */
+static void test_wishes_in_view_are_enough(void **state)
+{
+    (void)state;
+    terrain_fixture part, whole;
+    ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
+    for (int yaw = 0; yaw < 360; yaw += 30) {
+        const ff_drawn *a, *b;
+        fixture_make(&part, 3, 7, 2, 2, fixture_hills);
+        fixture_tree(&part, 3000, 200);
+        fixture_make(&whole, 3, 7, 2, 2, fixture_hills);
+        fixture_tree(&whole, 3000, 200);
+        ff_view view = fixture_view(900, 1000, 300, yaw, -10);
+        assert_true(deliver_wishes(&part, &view, &quality, 0) < deliver_wishes(&whole, &view, &quality, 1));
+        uint32_t count = ff_tree_drawn(part.tree, &a);
+        assert_int_equal(count, ff_tree_drawn(whole.tree, &b));
+        for (uint32_t i = 0; i < count; i++)
+            assert_true(a[i].key == b[i].key); /* a rim may be coarser, beside a neighbour out of view */
+        fixture_free(&part);
+        fixture_free(&whole);
+    }
+}
+
 static void test_wish_list_is_bounded_and_keeps_the_best(void **state)
 {
     (void)state;
@@ -352,7 +390,7 @@ int main(void)
         cmocka_unit_test(test_flat_ground_asks_for_nothing_below),
         cmocka_unit_test(test_flat_ground_beside_rough),
         cmocka_unit_test(test_wishes_come_in_order),
-        cmocka_unit_test(test_wish_list_is_bounded_and_keeps_the_best),
+        cmocka_unit_test(test_wishes_in_view_are_enough), cmocka_unit_test(test_wish_list_is_bounded_and_keeps_the_best),
         cmocka_unit_test(test_bad_deliveries),
         cmocka_unit_test(test_create),
         cmocka_unit_test(test_select_skips_when_nothing_changed),
