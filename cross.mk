@@ -67,9 +67,10 @@ $(HAND_OBJ)/%.o: %.c | $(CROSS_STAMP)
 	@mkdir -p $(@D)
 	$(ARM)gcc $(ARM_FLAGS) $(HAND_STD) -c $< -o $@
 
-# Linked anew when the list of files is another one.
+# Linked anew when the list of files is another one. Without its warnings (static getaddrinfo) this linker is silent about missing symbols, too.
 $(HAND): $(HAND_SRC:%.c=$(HAND_OBJ)/%.o)
 	$(ARM)gcc $(ARM_CPU) -static -Wl,--gc-sections -Wl,--no-warnings -Wl,-Map=$@.map $^ $(HAND_LIBS) -lpthread -o $@
+	@! $(ARM)nm $@ | grep ' U ' || { rm $@; echo "$@: missing symbols" >&2; exit 1; }
 
 -include $(shell find build/handheld -name '*.d' 2>/dev/null)
 

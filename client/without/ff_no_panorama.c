@@ -1,6 +1,7 @@
 /* Stands in for ff_panorama.c in builds without panoramas. */
 #include "../ff_intake.h"
 #include "../ff_panorama.h"
+#include "../ff_panorama_rules.h"
 
 #include <string.h>
 
@@ -23,6 +24,8 @@ int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_c
     (void)panorama, (void)requests, (void)camera, (void)motion, (void)hold, (void)now_us;
     return 0;
 }
+
+unsigned ff_panorama_faces_in_view(const c3d_camera *camera) { return (void)camera, 0; }
 
 int ff_panorama_late(const ff_panorama *panorama, const c3d_camera *camera) { return (void)panorama, (void)camera, 0; }
 
