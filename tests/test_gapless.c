@@ -2,6 +2,7 @@
  * on any back end. The integer mesh is whole (test_watertight); this asks whether vertices that are shared stay shared once a
  * graphics library has projected them. */
 #include "../client/ff_client_local.h"
+#include "../common3d/c3d_backend.h"
 #include "pack_fixture.h"
 
 #include <setjmp.h>
@@ -23,12 +24,21 @@ typedef struct gap_rig {
     ff_client *client;
 } gap_rig;
 
-static void open_rig(gap_rig *rig, const sys_surface_api *api, enum sys_gl_kind gl, const struct c3d_backend *backend)
+static void meadow(void *context, int64_t x_wu, int64_t y_wu, uint8_t rgb[3])
+{
+    (void)context, (void)x_wu, (void)y_wu;
+    rgb[0] = 60, rgb[1] = 150, rgb[2] = 40;
+}
+
+static void open_rig(gap_rig *rig, const sys_surface_api *api, enum sys_gl_kind gl, const struct c3d_backend *backend, int images)
 {
     size_t bytes;
     sys_surface_desc surface = {"test", WIDTH, HEIGHT, gl};
     pack_fixture_desc pack = {.info = pack_fixture_info(6, 8, 8), .height = pack_fixture_hills};
     pack.info.spacing_wu = 19913; /* not a power of two: products round */
+    pack.info.texture_log2 = images ? 5 : 0;
+    pack.info.texture_levels = images ? 1 : 0;
+    pack.colour = meadow;
     memset(rig, 0, sizeof *rig);
     rig->api = api;
     assert_int_equal(api->open(&surface, &rig->surface), FF_OK);
@@ -92,14 +102,14 @@ static unsigned gaps_in(const uint8_t *rgb)
     return count;
 }
 
-static void count_gaps(const sys_surface_api *api, enum sys_gl_kind gl, const struct c3d_backend *backend)
+static void count_gaps(const sys_surface_api *api, enum sys_gl_kind gl, const struct c3d_backend *backend, int images)
 {
     gap_rig rig;
     sys_random random;
     unsigned gaps = 0, stitched = 0;
     int64_t now_us = 0;
     sys_random_seed(&random, 7, 1);
-    open_rig(&rig, api, gl, backend);
+    open_rig(&rig, api, gl, backend, images);
     for (int i = 0; i < VIEWS; i++) {
         c3d_camera camera = camera_at(&random);
         for (int step = 0; step < 12; step++, now_us += 33000) {
@@ -112,8 +122,7 @@ static void count_gaps(const sys_surface_api *api, enum sys_gl_kind gl, const st
         stitched += stats.tree.stitched;
         gaps += gaps_in(rig.rgb);
     }
-    print_message("# %s: %u views, %u stitched nodes, %u gaps\n", backend == c3d_backend_gl() ? "gl" : "gles1", VIEWS, stitched,
-                  gaps);
+    print_message("# %s%s: %u views, %u stitched nodes, %u gaps\n", backend->name, images ? " under images" : "", VIEWS, stitched, gaps);
     assert_true(stitched > VIEWS);
     assert_int_equal(gaps, 0);
     close_rig(&rig);
@@ -122,17 +131,25 @@ static void count_gaps(const sys_surface_api *api, enum sys_gl_kind gl, const st
 static void no_gap_with_gl(void **state)
 {
     (void)state;
-    count_gaps(sys_surface_osmesa(), SYS_GL_DESKTOP, c3d_backend_gl());
+    count_gaps(sys_surface_osmesa(), SYS_GL_DESKTOP, c3d_backend_gl(), 0);
 }
 
 static void no_gap_with_gles1(void **state)
 {
     (void)state;
-    count_gaps(sys_surface_egl(), SYS_GL_ES1, c3d_backend_gles1());
+    count_gaps(sys_surface_egl(), SYS_GL_ES1, c3d_backend_gles1(), 0);
+}
+
+static void no_gap_with_integers(void **state)
+{
+    (void)state;
+    count_gaps(sys_surface_memory(), SYS_GL_NONE, c3d_backend_soft(), 0);
+    count_gaps(sys_surface_memory(), SYS_GL_NONE, c3d_backend_soft(), 1); /* which have ways of their own */
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(no_gap_with_gl), cmocka_unit_test(no_gap_with_gles1)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(no_gap_with_gl), cmocka_unit_test(no_gap_with_gles1),
+                                       cmocka_unit_test(no_gap_with_integers)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
