@@ -7,7 +7,5 @@
 /* Takes in what the receive buffer holds. FF_OK (stream->blocked tells whether the new-data list is full), FF_ERR_CLOSED when the
  * server says goodbye, or another error: the peer speaks nonsense. */
 int ff_receive_messages(ff_stream *stream, int64_t now_us);
-/* 1 while requests wait for answers. */
-int ff_stream_outstanding(ff_stream *stream);
 
 #endif

@@ -204,6 +204,14 @@ static void keep_alive(ff_stream *stream, int64_t now_us)
     stream->awaiting = 1;
 }
 
+/* 1 while requests wait for answers. */
+static int outstanding(ff_stream *stream)
+{
+    ff_request_counts counts;
+    ff_requests_get_counts(stream->intake->requests, &counts, NULL);
+    return counts.in_flight != 0;
+}
+
 /* Bytes of the send buffer onto the link. FF_OK or FF_ERR_CLOSED. */
 static int flush(ff_stream *stream, int64_t now_us, int *moved)
 {
@@ -217,7 +225,7 @@ static int flush(ff_stream *stream, int64_t now_us, int *moved)
         memmove(stream->send, stream->send + count, stream->send_count);
         stream->bytes_up += (uint32_t)count;
         /* silence is counted from the first bytes that can be answered */
-        if (!ff_stream_outstanding(stream))
+        if (!outstanding(stream))
             stream->heard_us = now_us;
         stream->sent_us = now_us;
         *moved = 1;
@@ -243,7 +251,7 @@ static int receive(ff_stream *stream, int64_t now_us, int *moved)
         stream->bytes_down += (uint32_t)count;
         stream->heard_us = now_us;
         *moved = 1;
-        ff_link_estimate_received(&stream->link, (uint32_t)count, ff_stream_outstanding(stream), now_us);
+        ff_link_estimate_received(&stream->link, (uint32_t)count, outstanding(stream), now_us);
     }
     return FF_OK;
 }
@@ -251,7 +259,7 @@ static int receive(ff_stream *stream, int64_t now_us, int *moved)
 static int silent_too_long(ff_stream *stream, int64_t now_us)
 {
     int64_t limit_us = stream->answer_timeout_us << stream->patience, round_trips_us = PATIENCE_ROUND_TRIPS * (int64_t)stream->link.rtt_us;
-    if (stream->blocked || stream->state == FF_STREAM_WELCOMED || (!stream->awaiting && !ff_stream_outstanding(stream)))
+    if (stream->blocked || stream->state == FF_STREAM_WELCOMED || (!stream->awaiting && !outstanding(stream)))
         return 0;
     if (stream->link.rtt_us) {
         stream->patience = 0;
@@ -263,19 +271,12 @@ static int silent_too_long(ff_stream *stream, int64_t now_us)
     return 1;
 }
 
-int ff_stream_outstanding(ff_stream *stream)
-{
-    ff_request_counts counts;
-    ff_requests_get_counts(stream->intake->requests, &counts, NULL);
-    return counts.in_flight != 0;
-}
-
 static int link_step(ff_stream *stream, int64_t now_us)
 {
     int moved = 0;
     int rc = receive(stream, now_us, &moved);
     if (rc == FF_OK && stream->state == FF_STREAM_UP) {
-        if (!ff_stream_outstanding(stream) && !stream->awaiting)
+        if (!outstanding(stream) && !stream->awaiting)
             stream->heard_us = now_us; /* nothing was owed until now */
         moved |= ask(stream, now_us);
         keep_alive(stream, now_us);

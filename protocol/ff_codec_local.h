@@ -18,8 +18,6 @@ enum ff_errors_form { FF_ERRORS_ZERO, FF_ERRORS_SAME, FF_ERRORS_EACH };
 /* Called once for every new sample, in coding order; returns its decoded height. `at` is its index in the grid. */
 typedef uint16_t (*ff_sample_fn)(void *context, uint32_t at, int32_t predicted);
 
-/* One doubling of resolution in place: grid points at even multiples of `stride` are known, those at odd ones are made. */
-void ff_predict_doubling(uint16_t *grid, uint32_t side, uint32_t stride, ff_sample_fn sample, void *context);
 /* A root from its corners (already in the grid): node_log2 doublings. */
 void ff_predict_root(const ff_terrain_info *info, uint16_t *grid, ff_sample_fn sample, void *context);
 /* Spreads a parent over the even points of a refined grid, then one doubling. */

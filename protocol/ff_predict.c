@@ -43,7 +43,8 @@ static int32_t predict_centre(const uint16_t *p, uint32_t dx, uint32_t dy)
     return clamp_height(7 * cross - 3 * corners + 8, 4);
 }
 
-void ff_predict_doubling(uint16_t *grid, uint32_t side, uint32_t stride, ff_sample_fn sample, void *context)
+/* One doubling of resolution in place: grid points at even multiples of `stride` are known, those at odd ones are made. */
+static void predict_doubling(uint16_t *grid, uint32_t side, uint32_t stride, ff_sample_fn sample, void *context)
 {
     uint32_t cells = (side - 1) / (2 * stride), row = side * stride;
 
@@ -62,7 +63,7 @@ void ff_predict_doubling(uint16_t *grid, uint32_t side, uint32_t stride, ff_samp
 void ff_predict_root(const ff_terrain_info *info, uint16_t *grid, ff_sample_fn sample, void *context)
 {
     for (uint32_t stride = 1u << info->node_log2; stride > 1; stride /= 2)
-        ff_predict_doubling(grid, ff_node_side(info), stride / 2, sample, context);
+        predict_doubling(grid, ff_node_side(info), stride / 2, sample, context);
 }
 
 void ff_predict_refinement(const ff_terrain_info *info, const uint16_t *parent, uint16_t *grid, ff_sample_fn sample,
@@ -73,7 +74,7 @@ void ff_predict_refinement(const ff_terrain_info *info, const uint16_t *parent, 
     for (uint32_t j = 0; j < node_side; j++)
         for (uint32_t i = 0; i < node_side; i++)
             grid[2 * j * side + 2 * i] = parent[j * node_side + i];
-    ff_predict_doubling(grid, side, 1, sample, context);
+    predict_doubling(grid, side, 1, sample, context);
 }
 
 uint32_t ff_corner_at(const ff_terrain_info *info, uint32_t corner)

@@ -50,7 +50,8 @@ void fly_csv_row(FILE *file, const fly_sample *sample)
     fputc('\n', file);
 }
 
-double fly_settle_s(const fly_sample *sample, size_t count)
+/* Seconds until err_px_p95 first comes within 10 % of (or below) its mean over the last half of the rows; -1 without an audit. */
+static double settle_s(const fly_sample *sample, size_t count)
 {
     double sum = 0;
     size_t half = count / 2;
@@ -117,7 +118,7 @@ void fly_json(FILE *file, const fly_options *options, const fly_sample *sample, 
     if (from + 1 < count && sample[from].t_s <= options->settle_s) /* the row at the end of settling is where totals start */
         from++;
     fprintf(file, "{\n  \"seed\": %" PRIu64 ",\n  \"frames\": %" PRIu32 ",\n  \"settle_s\": %.3f", options->seed, totals->frames,
-            fly_settle_s(sample, count));
+            settle_s(sample, count));
     json_text(file, "pack", options->pack_path);
     json_text(file, "link", options->server ? options->server : options->link_text);
     json_text(file, "quality", options->quality_text);

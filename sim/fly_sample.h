@@ -50,8 +50,6 @@ typedef struct fly_totals {
 
 void fly_csv_header(FILE *file);
 void fly_csv_row(FILE *file, const fly_sample *sample);
-/* Seconds until err_px_p95 first comes within 10 % of (or below) its mean over the last half of the rows; -1 without an audit. */
-double fly_settle_s(const fly_sample *sample, size_t count);
 void fly_json(FILE *file, const fly_options *options, const fly_sample *sample, size_t count, const fly_totals *totals);
 
 #endif

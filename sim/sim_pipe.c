@@ -40,7 +40,8 @@ static void next_stall(sim_stalls *stalls)
     stalls->end_us = stalls->start_us + (int64_t)length_ms * 1000;
 }
 
-void sim_stalls_init(sim_stalls *stalls, const sim_link_desc *desc, uint64_t seed, int64_t from_us)
+/* None begins before `from_us`. */
+static void stalls_init(sim_stalls *stalls, const sim_link_desc *desc, uint64_t seed, int64_t from_us)
 {
     *stalls = (sim_stalls){ .end_us = from_us, .every_ms = desc->stall_every_ms, .ms_min = desc->stall_ms_min, .ms_max = desc->stall_ms_max,
                             .bytes_s = desc->stall_bytes_s };
@@ -53,7 +54,8 @@ void sim_stalls_init(sim_stalls *stalls, const sim_link_desc *desc, uint64_t see
         next_stall(stalls);
 }
 
-uint32_t sim_stalls_rate(sim_stalls *stalls, uint32_t bytes_s, int64_t time_us, int64_t *until_us)
+/* The rate at time_us (never earlier than last asked) given the rate without stalls, and until when it holds. */
+static uint32_t stalls_rate(sim_stalls *stalls, uint32_t bytes_s, int64_t time_us, int64_t *until_us)
 {
     *until_us = INT64_MAX;
     if (!stalls->every_ms)
@@ -101,7 +103,7 @@ int sim_pipe_init(sim_pipe *pipe, const sim_link_desc *desc, enum sim_direction 
     pipe->desc = desc->way[way];
     if (!pipe->desc.queue_bytes)
         pipe->desc.queue_bytes = 1;
-    sim_stalls_init(&pipe->stalls, desc, seed, 0);
+    stalls_init(&pipe->stalls, desc, seed, 0);
     sys_random_seed(&pipe->jitter, seed, STREAM_JITTER + (uint64_t)way);
     if (pipe->desc.trace) {
         int rc = sim_trace_read(&pipe->trace, pipe->desc.trace);
@@ -177,7 +179,7 @@ static int64_t transmit(sim_pipe *pipe, uint32_t count, int64_t time_us)
     need -= pipe->surplus;
     for (;;) {
         int64_t until_us;
-        uint64_t rate = sim_stalls_rate(&pipe->stalls, pipe->desc.bytes_s, time_us, &until_us);
+        uint64_t rate = stalls_rate(&pipe->stalls, pipe->desc.bytes_s, time_us, &until_us);
         uint64_t long_us = rate ? (need + rate - 1) / rate : UINT64_MAX;
         if (long_us <= (uint64_t)(until_us - time_us)) {
             pipe->surplus = long_us * rate - need;
@@ -250,7 +252,7 @@ void sim_pipe_change(sim_pipe *pipe, const sim_link_desc *desc, enum sim_directi
     pipe->desc.trace = NULL;
     if (!pipe->desc.queue_bytes)
         pipe->desc.queue_bytes = 1;
-    sim_stalls_init(&pipe->stalls, desc, seed, now_us);
+    stalls_init(&pipe->stalls, desc, seed, now_us);
     pipe->surplus = 0;
     if (pipe->free_us <= now_us)
         return;

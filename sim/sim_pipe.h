@@ -21,11 +21,6 @@ typedef struct sim_stalls {
     int64_t start_us, end_us;     /* of the present or next one */
 } sim_stalls;
 
-/* None begins before `from_us`. */
-void sim_stalls_init(sim_stalls *stalls, const sim_link_desc *desc, uint64_t seed, int64_t from_us);
-/* The rate at time_us (never earlier than last asked) given the rate without stalls, and until when it holds. */
-uint32_t sim_stalls_rate(sim_stalls *stalls, uint32_t bytes_s, int64_t time_us, int64_t *until_us);
-
 typedef struct sim_span { int64_t us; uint32_t count; } sim_span;
 typedef struct sim_spans { sim_span item[SIM_PIPE_SPANS]; uint32_t first, count; } sim_spans;
 

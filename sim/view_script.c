@@ -16,7 +16,8 @@ static const struct { const char *name; int code; } named_keys[] = {
     {"space", SYS_KEY_SPACE}, {"shift", SYS_KEY_SHIFT}};
 enum { NAMED_KEYS = sizeof named_keys / sizeof *named_keys };
 
-int view_key_code(const char *name)
+/* Key code of a name, 0 unknown. */
+static int key_code(const char *name)
 {
     int number, used = 0;
     if (name[0] > ' ' && name[0] < 127 && !name[1]) return name[0];
@@ -156,7 +157,7 @@ static int read_key(view_script *script, uint32_t frame, const char *command, co
 {
     int pressed = !strcmp(command, "key") || !strcmp(command, "down"), released = !strcmp(command, "up"), code;
     if (!pressed && !released) return 0;
-    if (!(code = view_key_code(arguments))) return -1;
+    if (!(code = key_code(arguments))) return -1;
     if (add_key(script, frame, code, pressed)) return -1;
     if (!strcmp(command, "key") && add_key(script, frame, code, 0)) return -1;
     return 1;

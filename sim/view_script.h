@@ -39,8 +39,7 @@ void view_script_free(view_script *script);
 /* The next step due at `frame`, or NULL. */
 const view_step *view_script_next(view_script *script, uint32_t frame);
 
-/* Key code of a name, 0 unknown; name of a code (static memory, "?" unknown). */
-int view_key_code(const char *name);
+/* Name of a key code (static memory, "?" unknown). */
 const char *view_key_name(int code);
 
 #endif

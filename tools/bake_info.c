@@ -23,11 +23,18 @@ static uint64_t offset_of(const ff_pack *pack, const ff_pack_section *section, u
     return offset;
 }
 
-bake_section_sum bake_section_sum_up(const ff_pack *pack, uint32_t number)
+typedef struct section_sum {
+    uint64_t records;        /* that exist */
+    uint64_t payload_bytes;  /* CRCs and index not counted */
+    uint64_t new_samples;    /* heights first told here; 0 for textures */
+} section_sum;
+
+/* New heights per level count every lattice point of the padded terrain once. */
+static section_sum sum_up(const ff_pack *pack, uint32_t number)
 {
     const ff_pack_section *section = &pack->header.section[number];
     const ff_terrain_info *info = &pack->header.info;
-    bake_section_sum sum = {0};
+    section_sum sum = {0};
     for (uint64_t r = 0; r < section->record_count; r++)
         sum.records += offset_of(pack, section, r) != offset_of(pack, section, r + 1);
     sum.payload_bytes = section->data_bytes - RECORD_CRC_BYTES * sum.records;
@@ -71,13 +78,13 @@ static const char *kind_name(int kind)
 
 void bake_info_print(const ff_pack *pack, const char *path)
 {
-    bake_section_sum heights = {0}, textures = {0};
+    section_sum heights = {0}, textures = {0};
     printf("%s: Farfield pack, version %d, %" PRIu64 " bytes\n", path, FF_PACK_VERSION, pack->size);
     print_terrain(&pack->header.info);
     printf("section     level    records        bytes  bytes/record  bits/new sample\n");
     for (uint32_t i = 0; i < pack->header.section_count; i++) {
         const ff_pack_section *section = &pack->header.section[i];
-        bake_section_sum sum = bake_section_sum_up(pack, i), *total = sum.new_samples ? &heights : &textures;
+        section_sum sum = sum_up(pack, i), *total = sum.new_samples ? &heights : &textures;
         total->records += sum.records;
         total->payload_bytes += sum.payload_bytes;
         total->new_samples += sum.new_samples;
@@ -117,7 +124,7 @@ void bake_info_print_json(const ff_pack *pack)
     printf("\"sections\": [");
     for (uint32_t i = 0; i < pack->header.section_count; i++) {
         const ff_pack_section *section = &pack->header.section[i];
-        bake_section_sum sum = bake_section_sum_up(pack, i);
+        section_sum sum = sum_up(pack, i);
         *(sum.new_samples ? &height_bytes : &texture_bytes) += sum.payload_bytes;
         printf("%s{\"kind\": \"%s\", \"level\": %u, \"records\": %" PRIu64 ", \"bytes\": %" PRIu64 ", \"new_samples\": %" PRIu64
                ", \"bits_per_new_sample\": %.4f}",

@@ -17,7 +17,7 @@ static ff_key parent_beside(const ff_tree *tree, const ff_node *node, enum ff_si
     return root != FF_SLOT_NONE && tree->node[root].flags & FF_NODE_ACTIVE ? beside : FF_KEY_NONE;
 }
 
-int ff_side_coarser(const ff_tree *tree, const ff_node *node, enum ff_side side)
+static int side_coarser(const ff_tree *tree, const ff_node *node, enum ff_side side)
 {
     ff_key beside = parent_beside(tree, node, side);
     if (beside == FF_KEY_NONE)
@@ -30,7 +30,7 @@ unsigned ff_coarser_mask(const ff_tree *tree, const ff_node *node)
 {
     unsigned mask = 0;
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++)
-        mask |= (unsigned)ff_side_coarser(tree, node, (enum ff_side)side) << side;
+        mask |= (unsigned)side_coarser(tree, node, (enum ff_side)side) << side;
     return mask;
 }
 

@@ -117,7 +117,6 @@ void ff_pyramid_make(ff_tree *tree);
 int ff_box_in_view(const ff_tree *tree, const ff_box *box);
 
 /* ff_restrict.c */
-int ff_side_coarser(const ff_tree *tree, const ff_node *node, enum ff_side side);
 unsigned ff_coarser_mask(const ff_tree *tree, const ff_node *node);
 void ff_want(ff_tree *tree, uint32_t slot, uint32_t value);
 /* Makes everything wanted that wanted nodes need beside them. */
