@@ -10,7 +10,7 @@
 #define SOFT_GUARD_Q4 65536        /* screen coordinates stay this close to the principal point */
 #define SOFT_GUARD_CLIP_PX 4000    /* and are clipped here */
 #define SOFT_EDGE_TABLE 513        /* heights of edges, Q4, with a reciprocal at hand: up to 32 pixels */
-#define SOFT_TINY_TEXELS 64      /* each way: they fit into 7 bits with the rim */
+#define SOFT_TINY_TEXELS 64      /* each way: what soft_tiny multiplies stays below 2^28 */
 #define SOFT_HEAP_UNIT 256
 
 /* Where a vertex lies: of the screen (by pixel centres), or for the clipper. */
