@@ -44,7 +44,7 @@ LIBS := $(LIB)/libffsim.a $(LIB)/libffserver.a $(LIB)/libfftools.a $(LIB)/libffc
 LINK_LIBS = -Wl,--start-group $(LIBS) -Wl,--end-group $(LDLIBS_core) $(LDLIBS_surface) $(LDLIBS_host)
 
 .DEFAULT_GOAL := all
-.PHONY: all help null deps server emulator flyover demo test test-build check extremes numbers soak man install uninstall clean lib fuzz FORCE
+.PHONY: all help null deps format server emulator flyover demo test test-build check extremes numbers soak man install uninstall clean lib fuzz FORCE
 
 all: $(PROGRAMS) lib null ## build all programs and libraries into build/
 
@@ -53,7 +53,8 @@ help: ## this list
 
 # ---- what Debian 12 must have ----
 DEPS := gcc make pkg-config zlib1g-dev libjpeg62-turbo-dev libpng-dev libosmesa6-dev libegl-dev libegl1 libgl1-mesa-dri \
-        libglfw3-dev libgdal-dev gdal-bin libcmocka-dev xvfb xauth python3 help2man gnuplot-nox man-db
+        libglfw3-dev libgdal-dev gdal-bin libcmocka-dev xvfb xauth python3 help2man gnuplot-nox man-db \
+        clang-format
 DEPS_STAMP := build/.deps
 
 $(DEPS_STAMP): Makefile
@@ -127,6 +128,9 @@ test: deps ## build and run every test (sanitized, with script tests); the last 
 
 check: all $(TESTS) ## quick subset: layer checks and unit tests, without sanitizers
 	@BUILD=$(BUILD) tests/run.sh --quick
+
+format: deps ## lay out all C by .clang-format (tests/checks.sh holds the tree to it)
+	@git ls-files '*.[ch]' | xargs clang-format -i
 
 extremes: $(BUILD)/tests/test_extremes ## fly every stiff and extreme case and show the table of largest errors
 	@EXTREMES=$(BUILD)/extremes.md $< >$(BUILD)/extremes.log 2>&1; rc=$$?; cat $(BUILD)/extremes.md; exit $$rc

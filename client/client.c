@@ -1,60 +1,47 @@
-/* Life of a client: the block, the worker, settings and what can be read of it. Frames are in client_update.c. */
+/* Life of a client: the block, the worker, settings and what can be read of it. Frames are in
+ * client_update.c. */
 #include "ff_client_local.h"
 
 #include <string.h>
 
 #define CLIENT_BYTES_MIN ((size_t)512 << 10)
-#define RECV_BYTES_MIN (20u << 10)  /* any node fits, and common images */
-#define RECV_BYTES_MAX (FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX)
-#define WORKER_SLEEP_US 2000
-#define METRES FF_WU_PER_METRE
+#define RECV_BYTES_MIN   (20u << 10) /* any node fits, and common images */
+#define RECV_BYTES_MAX   (FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX)
+#define WORKER_SLEEP_US  2000
+#define METRES           FF_WU_PER_METRE
 
-size_t ff_client_bytes_min(void)
-{
-    return CLIENT_BYTES_MIN;
-}
+size_t ff_client_bytes_min(void) { return CLIENT_BYTES_MIN; }
 
 static void default_quality(ff_quality *quality)
 {
-    int untouched = quality->measure == FF_MEASURE_DISTANCE && !quality->c_q8 && !quality->error_px_q8 && !quality->depth_max &&
-                    !quality->sigma_q8 && !quality->view_wu;
-    if (untouched)
-        quality->depth_max = 4;
-    if (quality->c_q8 <= 0)
-        quality->c_q8 = 3 * 256;
-    if (quality->error_px_q8 <= 0)
-        quality->error_px_q8 = 2 * 256;
-    if (quality->sigma_q8 <= 256)
-        quality->sigma_q8 = 320;
-    if (quality->view_wu <= 0)
-        quality->view_wu = 30000 * METRES;
+    int untouched = quality->measure == FF_MEASURE_DISTANCE && !quality->c_q8 &&
+                    !quality->error_px_q8 && !quality->depth_max && !quality->sigma_q8 &&
+                    !quality->view_wu;
+    if (untouched) quality->depth_max = 4;
+    if (quality->c_q8 <= 0) quality->c_q8 = 3 * 256;
+    if (quality->error_px_q8 <= 0) quality->error_px_q8 = 2 * 256;
+    if (quality->sigma_q8 <= 256) quality->sigma_q8 = 320;
+    if (quality->view_wu <= 0) quality->view_wu = 30000 * METRES;
 }
 
 static void default_panorama(ff_panorama_desc *panorama, unsigned width)
 {
-    if (panorama->back_plane_wu <= 0)
-        panorama->back_plane_wu = 7500 * METRES;
+    if (panorama->back_plane_wu <= 0) panorama->back_plane_wu = 7500 * METRES;
     if (panorama->server_back_wu <= panorama->back_plane_wu)
-        panorama->server_back_wu = panorama->back_plane_wu < 100000 * METRES ? 100000 * METRES : INT32_MAX;
-    if (panorama->error_px_q8 <= 0)
-        panorama->error_px_q8 = (int32_t)width * 128 / 20;
-    if (!panorama->face_size)
-        panorama->face_size = 256;
-    if (!panorama->jpeg_quality || panorama->jpeg_quality > 100)
-        panorama->jpeg_quality = 70;
+        panorama->server_back_wu = panorama->back_plane_wu < 100000 * METRES ? 100000 * METRES
+                                                                             : INT32_MAX;
+    if (panorama->error_px_q8 <= 0) panorama->error_px_q8 = (int32_t)width * 128 / 20;
+    if (!panorama->face_size) panorama->face_size = 256;
+    if (!panorama->jpeg_quality || panorama->jpeg_quality > 100) panorama->jpeg_quality = 70;
     panorama->enabled &= ff_panorama_built;
 }
 
 static void default_desc(ff_client_desc *desc)
 {
-    if (!desc->width)
-        desc->width = 240;
-    if (!desc->height)
-        desc->height = 320;
-    if (!desc->in_flight_max)
-        desc->in_flight_max = 32;
-    if (!desc->answer_timeout_ms)
-        desc->answer_timeout_ms = 60000;
+    if (!desc->width) desc->width = 240;
+    if (!desc->height) desc->height = 320;
+    if (!desc->in_flight_max) desc->in_flight_max = 32;
+    if (!desc->answer_timeout_ms) desc->answer_timeout_ms = 60000;
     default_quality(&desc->quality);
     default_panorama(&desc->panorama, desc->width);
     desc->no_textures |= !ff_textures_built;
@@ -62,15 +49,13 @@ static void default_desc(ff_client_desc *desc)
 
 static int check_desc(const ff_client_desc *desc)
 {
-    if (!desc->memory || (desc->stream != NULL) == (desc->pack != NULL) || desc->width > 4096 || desc->height > 4096 ||
-        desc->in_flight_max > 1024 || desc->panorama.jpeg_quality > 100 || (desc->panorama.face_size && desc->panorama.face_size < 64))
+    if (!desc->memory || (desc->stream != NULL) == (desc->pack != NULL) || desc->width > 4096 ||
+        desc->height > 4096 || desc->in_flight_max > 1024 || desc->panorama.jpeg_quality > 100 ||
+        (desc->panorama.face_size && desc->panorama.face_size < 64))
         return FF_ERR_ARGUMENT;
-    if ((unsigned)desc->balance.mode > FF_BALANCE_ALL_CLIENT)
-        return FF_ERR_ARGUMENT;
-    if (desc->backend && !desc->surface_api)
-        return FF_ERR_ARGUMENT;
-    if (desc->stream && !ff_link_built)
-        return FF_ERR_UNSUPPORTED;
+    if ((unsigned)desc->balance.mode > FF_BALANCE_ALL_CLIENT) return FF_ERR_ARGUMENT;
+    if (desc->backend && !desc->surface_api) return FF_ERR_ARGUMENT;
+    if (desc->stream && !ff_link_built) return FF_ERR_UNSUPPORTED;
     return desc->memory_bytes < CLIENT_BYTES_MIN ? FF_ERR_MEMORY : FF_OK;
 }
 
@@ -82,10 +67,8 @@ static void worker_main(void *context)
         sys_mutex_lock(&client->gate);
         int stop = client->stop;
         sys_mutex_unlock(&client->gate);
-        if (stop)
-            return;
-        if (!moved)
-            sys_sleep_us(WORKER_SLEEP_US);
+        if (stop) return;
+        if (!moved) sys_sleep_us(WORKER_SLEEP_US);
     }
 }
 
@@ -93,11 +76,12 @@ static void worker_main(void *context)
 static int make_fixed_part(ff_client *client)
 {
     size_t recv = client->desc.memory_bytes / 32;
-    client->recv_bytes = recv < RECV_BYTES_MIN ? RECV_BYTES_MIN : recv > RECV_BYTES_MAX ? RECV_BYTES_MAX : (uint32_t)recv;
+    client->recv_bytes = recv < RECV_BYTES_MIN   ? RECV_BYTES_MIN
+                         : recv > RECV_BYTES_MAX ? RECV_BYTES_MAX
+                                                 : (uint32_t)recv;
     client->recv = client->desc.stream ? ff_arena_take(&client->arena, client->recv_bytes) : NULL;
     void *slots = ff_arena_take(&client->arena, ff_requests_bytes(client->desc.in_flight_max));
-    if (!slots || (client->desc.stream && !client->recv))
-        return FF_ERR_MEMORY;
+    if (!slots || (client->desc.stream && !client->recv)) return FF_ERR_MEMORY;
     client->fixed_bytes = client->arena.used;
     ff_requests_init(&client->requests, client->desc.in_flight_max, slots);
     sys_mutex_init(&client->news.mutex);
@@ -105,8 +89,9 @@ static int make_fixed_part(ff_client *client)
     client->intake.requests = &client->requests;
     client->intake.news = &client->news;
     if (client->desc.stream)
-        ff_stream_init(&client->stream, client->desc.stream, &client->intake, client->desc.in_flight_max,
-                       client->desc.answer_timeout_ms, client->recv, client->recv_bytes);
+        ff_stream_init(&client->stream, client->desc.stream, &client->intake,
+                       client->desc.in_flight_max, client->desc.answer_timeout_ms, client->recv,
+                       client->recv_bytes);
     return FF_OK;
 }
 
@@ -121,20 +106,17 @@ int ff_client_create(const ff_client_desc *desc, ff_client **result)
 {
     *result = NULL;
     int rc = check_desc(desc);
-    if (rc != FF_OK)
-        return rc;
+    if (rc != FF_OK) return rc;
     ff_arena arena;
     ff_arena_init(&arena, desc->memory, desc->memory_bytes);
     ff_client *client = ff_arena_take(&arena, sizeof *client);
-    if (!client)
-        return FF_ERR_MEMORY;
+    if (!client) return FF_ERR_MEMORY;
     client->desc = *desc;
     default_desc(&client->desc);
     client->arena = arena;
     client->geometry_hash = FF_TERRAIN_VIEW_HASH_START;
     rc = make_fixed_part(client);
-    if (rc != FF_OK)
-        return rc;
+    if (rc != FF_OK) return rc;
     if (desc->pack) {
         client->info = desc->pack->header.info;
         rc = ff_client_carve(client);
@@ -154,16 +136,14 @@ int ff_client_create(const ff_client_desc *desc, ff_client **result)
 
 void ff_client_destroy(ff_client *client)
 {
-    if (!client)
-        return;
+    if (!client) return;
     if (client->threaded) {
         sys_mutex_lock(&client->gate);
         client->stop = 1;
         sys_mutex_unlock(&client->gate);
         sys_thread_join(&client->thread);
     }
-    if (client->desc.stream)
-        ff_stream_close(&client->stream);
+    if (client->desc.stream) ff_stream_close(&client->stream);
     ff_client_uncarve(client);
     destroy_locks(client);
 }
@@ -175,7 +155,8 @@ int ff_client_work(ff_client *client, int64_t now_us)
     if (client->desc.stream)
         moved = ff_stream_step(&client->stream, now_us);
     else if (client->have_terrain && !client->interrupted)
-        moved = ff_local_step(&client->intake, client->desc.pack, !ff_client_low_power(client), now_us);
+        moved = ff_local_step(&client->intake, client->desc.pack, !ff_client_low_power(client),
+                              now_us);
     sys_mutex_unlock(&client->gate);
     return moved;
 }
@@ -184,8 +165,7 @@ int ff_client_work(ff_client *client, int64_t now_us)
 
 void ff_client_event(ff_client *client, const sys_event *event)
 {
-    if (event->type != SYS_EVENT_BATTERY && event->type != SYS_EVENT_INTERRUPTION)
-        return;
+    if (event->type != SYS_EVENT_BATTERY && event->type != SYS_EVENT_INTERRUPTION) return;
     sys_mutex_lock(&client->gate);
     if (event->type == SYS_EVENT_BATTERY)
         client->battery_low = event->u.battery.low != 0;
@@ -211,10 +191,10 @@ void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama)
     client->desc.panorama = *panorama;
     default_panorama(&client->desc.panorama, client->desc.width);
     client->dirty = 1;
-    if (!client->have_terrain)
-        return;
+    if (!client->have_terrain) return;
     if (panorama->enabled && !face_size && !client->economy && client->desc.stream) {
-        /* the block was shared out without panoramas: share it out anew, with the terrain asked for again */
+        /* the block was shared out without panoramas: share it out anew, with the terrain asked for
+         * again */
         sys_mutex_lock(&client->gate);
         ff_client_uncarve(client);
         ff_stream_restart(&client->stream);
@@ -240,15 +220,9 @@ const ff_terrain_info *ff_client_terrain(const ff_client *client)
     return client->have_terrain ? &client->info : NULL;
 }
 
-const ff_tree *ff_client_tree(const ff_client *client)
-{
-    return client->tree;
-}
+const ff_tree *ff_client_tree(const ff_client *client) { return client->tree; }
 
-c3d_device *ff_client_device(ff_client *client)
-{
-    return client->device;
-}
+c3d_device *ff_client_device(ff_client *client) { return client->device; }
 
 int ff_client_ground(const ff_client *client, int32_t x_wu, int32_t y_wu, int32_t *z_wu)
 {
@@ -257,33 +231,32 @@ int ff_client_ground(const ff_client *client, int32_t x_wu, int32_t y_wu, int32_
 
 int ff_client_panorama(const ff_client *client, int32_t position_wu[3], unsigned *faces)
 {
-    if (!client->have_terrain || client->panorama.shown < 0)
-        return 0;
+    if (!client->have_terrain || client->panorama.shown < 0) return 0;
     const ff_panorama_set *set = &client->panorama.set[client->panorama.shown];
     memcpy(position_wu, set->position_wu, sizeof set->position_wu);
     *faces = (unsigned)set->held | set->empty;
     return 1;
 }
 
-uint64_t ff_client_geometry_hash(const ff_client *client)
-{
-    return client->geometry_hash;
-}
+uint64_t ff_client_geometry_hash(const ff_client *client) { return client->geometry_hash; }
 
 uint64_t ff_client_request_hash(const ff_client *client)
 {
     ff_request_counts counts;
     uint64_t hash;
-    ff_requests_get_counts((ff_requests *)&client->requests, &counts, &hash); /* only its lock is written */
+    /* only its lock is written */
+    ff_requests_get_counts((ff_requests *)&client->requests, &counts, &hash);
     return hash;
 }
 
 static void link_stats(const ff_client *client, ff_client_stats *stats)
 {
-    static const enum ff_link_state link[] = {
-        [FF_STREAM_CONNECTING] = FF_LINK_CONNECTING, [FF_STREAM_GREETING] = FF_LINK_CONNECTING, [FF_STREAM_WELCOMED] = FF_LINK_UP,
-        [FF_STREAM_UP] = FF_LINK_UP, [FF_STREAM_DOWN] = FF_LINK_DOWN, [FF_STREAM_DEAD] = FF_LINK_DOWN
-    };
+    static const enum ff_link_state link[] = { [FF_STREAM_CONNECTING] = FF_LINK_CONNECTING,
+                                               [FF_STREAM_GREETING] = FF_LINK_CONNECTING,
+                                               [FF_STREAM_WELCOMED] = FF_LINK_UP,
+                                               [FF_STREAM_UP] = FF_LINK_UP,
+                                               [FF_STREAM_DOWN] = FF_LINK_DOWN,
+                                               [FF_STREAM_DEAD] = FF_LINK_DOWN };
     ff_stream_shared shared;
     ff_stream_get_shared((ff_stream *)&client->stream, &shared);
     stats->link = link[shared.state];
@@ -316,12 +289,9 @@ static void request_stats(const ff_client *client, ff_client_stats *stats)
 void ff_client_get_stats(const ff_client *client, ff_client_stats *stats)
 {
     memset(stats, 0, sizeof *stats);
-    if (client->tree)
-        ff_tree_get_stats(client->tree, &stats->tree);
-    if (client->device)
-        c3d_get_stats(client->device, &stats->c3d);
-    if (client->desc.stream)
-        link_stats(client, stats);
+    if (client->tree) ff_tree_get_stats(client->tree, &stats->tree);
+    if (client->device) c3d_get_stats(client->device, &stats->c3d);
+    if (client->desc.stream) link_stats(client, stats);
     request_stats(client, stats);
     stats->have_terrain = client->have_terrain;
     stats->terrain_error = client->terrain_error;

@@ -1,21 +1,21 @@
 /* What to ask for next, most urgent first:
  *   FIRST        roots in view, panorama faces in view
  *   IN_VIEW      refinements and images in view: pixels of error removed for each byte expected
- *   PREFETCH     ground and panorama faces that a viewer who goes on as it flies and turns will see; leaves only while the link has
- *                room and nothing else waits
- * What is not in view and will not soon be is never asked for: most of it would never be drawn.
- * The queue's contents are replaced each time; what is no longer wanted is dropped. */
+ *   PREFETCH     ground and panorama faces that a viewer who goes on as it flies and turns will
+ *                see; leaves only while the link has room and nothing else waits
+ * What is not in view and will not soon be is never asked for: most of it would never be drawn. The
+ * queue's contents are replaced each time; what is no longer wanted is dropped. */
 #include "ff_client_local.h"
 #include "ff_panorama_rules.h"
 
 #include <string.h>
 
-/* How far ahead, besides the time of round trips: one for what is next to come on a straight way; a turn shows ground that has to come
- * level after level. */
-#define AHEAD_US 3000000
+/* How far ahead, besides the time of round trips: one for what is next to come on a straight way; a
+ * turn shows ground that has to come level after level. */
+#define AHEAD_US          3000000
 #define AHEAD_ROUND_TRIPS 2
-#define TURN_US 5000000
-#define TURN_ROUND_TRIPS 6
+#define TURN_US           5000000
+#define TURN_ROUND_TRIPS  6
 
 static void want_tree(ff_client *client)
 {
@@ -35,26 +35,34 @@ static void want_textures(ff_client *client, const ff_view *view, const ff_quali
     ff_texture_wish wish[FF_TEXTURE_WISHES];
     const ff_drawn *drawn;
     uint32_t drawn_count = ff_tree_drawn(client->tree, &drawn);
-    uint32_t count = ff_textures_wishes(&client->textures, drawn, drawn_count, view, quality, wish, FF_TEXTURE_WISHES);
+    uint32_t count = ff_textures_wishes(&client->textures, drawn, drawn_count, view, quality, wish,
+                                        FF_TEXTURE_WISHES);
     for (uint32_t i = 0; i < count; i++)
         if (!ff_refusals_final(&client->refusals, FF_WANT_TEXTURE, wish[i].key))
-            ff_requests_want(&client->requests, FF_WANT_TEXTURE, wish[i].key, FF_CLASS_IN_VIEW, wish[i].priority, NULL);
+            ff_requests_want(&client->requests, FF_WANT_TEXTURE, wish[i].key, FF_CLASS_IN_VIEW,
+                             wish[i].priority, NULL);
 }
 
-/* Where the viewer will be and look while an answer is on its way, and some seconds more: several views when it turns far. */
-typedef struct ahead { unsigned views; int32_t pos_wu[FF_TURN_VIEWS_MAX][3], yaw[FF_TURN_VIEWS_MAX], pitch[FF_TURN_VIEWS_MAX]; } ahead;
+/* Where the viewer will be and look while an answer is on its way, and some seconds more: several
+ * views when it turns far. */
+typedef struct ahead {
+    unsigned views;
+    int32_t pos_wu[FF_TURN_VIEWS_MAX][3], yaw[FF_TURN_VIEWS_MAX], pitch[FF_TURN_VIEWS_MAX];
+} ahead;
 
 static void look_ahead(const ff_client *client, const ff_view *view, int64_t rtt_us, ahead *a)
 {
     int32_t yaw, pitch;
-    unsigned turns = ff_turn_predict(&client->turn, TURN_US + TURN_ROUND_TRIPS * rtt_us, &yaw, &pitch), views = turns ? turns : 1, i;
-    int64_t ahead_us = turns ? TURN_US + TURN_ROUND_TRIPS * rtt_us : AHEAD_US + AHEAD_ROUND_TRIPS * rtt_us;
+    unsigned turns = ff_turn_predict(&client->turn, TURN_US + TURN_ROUND_TRIPS * rtt_us, &yaw,
+                                     &pitch),
+             views = turns ? turns : 1, i;
+    int64_t ahead_us = turns ? TURN_US + TURN_ROUND_TRIPS * rtt_us
+                             : AHEAD_US + AHEAD_ROUND_TRIPS * rtt_us;
     a->views = 0;
     for (i = 0; i < views; i++) {
         int64_t at_us = ahead_us * (i + 1) / views;
         memcpy(a->pos_wu[i], view->camera.pos_wu, sizeof a->pos_wu[i]);
-        if (!ff_motion_predict(&client->motion, at_us, a->pos_wu[i]) && !turns)
-            return;
+        if (!ff_motion_predict(&client->motion, at_us, a->pos_wu[i]) && !turns) return;
         a->yaw[i] = yaw * (int32_t)(i + 1) / (int32_t)views;
         a->pitch[i] = pitch * (int32_t)(i + 1) / (int32_t)views;
     }
@@ -65,11 +73,13 @@ static void want_ahead(ff_client *client, const ahead *a)
 {
     ff_wish wish[FF_PREFETCH_WISHES];
     for (unsigned v = 0; v < a->views; v++) {
-        uint32_t count = ff_tree_foresee(client->tree, a->pos_wu[v], a->yaw[v], a->pitch[v], wish, FF_PREFETCH_WISHES);
+        uint32_t count = ff_tree_foresee(client->tree, a->pos_wu[v], a->yaw[v], a->pitch[v], wish,
+                                         FF_PREFETCH_WISHES);
         for (uint32_t i = 0; i < count; i++) {
             enum ff_request_kind kind = wish[i].refinement ? FF_WANT_REFINEMENT : FF_WANT_ROOT;
             if (!ff_refusals_final(&client->refusals, kind, wish[i].key))
-                ff_requests_want(&client->requests, kind, wish[i].key, FF_CLASS_PREFETCH, wish[i].priority, NULL);
+                ff_requests_want(&client->requests, kind, wish[i].key, FF_CLASS_PREFETCH,
+                                 wish[i].priority, NULL);
         }
     }
 }
@@ -87,20 +97,20 @@ static unsigned faces_ahead(const ff_view *view, const ahead *a)
     return faces;
 }
 
-void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality, int64_t now_us)
+void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality,
+                    int64_t now_us)
 {
-    ff_stream_shared shared = {.rtt_us = 0};
-    ahead a = {.views = 0};
-    if (client->desc.stream)
-        ff_stream_get_shared(&client->stream, &shared);
+    ff_stream_shared shared = { .rtt_us = 0 };
+    ahead a = { .views = 0 };
+    if (client->desc.stream) ff_stream_get_shared(&client->stream, &shared);
     if (!client->desc.no_prefetch && !ff_client_low_power(client))
         look_ahead(client, view, shared.rtt_us, &a);
     ff_requests_rank_begin(&client->requests);
     if (!client->all_client)
-        ff_panorama_want(&client->panorama, &client->requests, &view->camera, faces_ahead(view, &a), now_us);
+        ff_panorama_want(&client->panorama, &client->requests, &view->camera, faces_ahead(view, &a),
+                         now_us);
     want_tree(client);
-    if (client->has_textures)
-        want_textures(client, view, quality);
+    if (client->has_textures) want_textures(client, view, quality);
     want_ahead(client, &a);
     ff_requests_rank_end(&client->requests);
 }

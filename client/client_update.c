@@ -1,11 +1,12 @@
-/* A frame: take in new data, apply the panorama's rules, choose the cut, rank what is missing; then draw. */
+/* A frame: take in new data, apply the panorama's rules, choose the cut, rank what is missing; then
+ * draw. */
 #include "ff_client_local.h"
 
 #include <string.h>
 
-#define NEAR_WU_MIN 64            /* 0.25 m */
-#define NEAR_WU_MAX (1 << 20)
-#define LOW_POWER_DIVISOR 2       /* C halved, pixels of error doubled */
+#define NEAR_WU_MIN       64 /* 0.25 m */
+#define NEAR_WU_MAX       (1 << 20)
+#define LOW_POWER_DIVISOR 2 /* C halved, pixels of error doubled */
 
 ff_quality ff_client_quality(const ff_client *client)
 {
@@ -34,12 +35,10 @@ static void settle_welcome(ff_client *client, const ff_stream_shared *shared)
 
 static void look_at_link(ff_client *client)
 {
-    if (!client->desc.stream)
-        return;
+    if (!client->desc.stream) return;
     ff_stream_shared shared;
     ff_stream_get_shared(&client->stream, &shared);
-    if (shared.state == FF_STREAM_WELCOMED)
-        settle_welcome(client, &shared);
+    if (shared.state == FF_STREAM_WELCOMED) settle_welcome(client, &shared);
     if (shared.losses != client->losses_seen) {
         client->losses_seen = shared.losses;
         client->unranked = 1; /* what was asked is queued again: is it still wanted? */
@@ -49,15 +48,13 @@ static void look_at_link(ff_client *client)
 /* 1 when the picture may have changed. */
 static int take_item(ff_client *client, const ff_new_item *item, int64_t now_us)
 {
-    if (item->kind == FF_WANT_PANORAMA)
-        return ff_panorama_take(&client->panorama, item, now_us);
+    if (item->kind == FF_WANT_PANORAMA) return ff_panorama_take(&client->panorama, item, now_us);
     if (item->error != FF_OK) {
         ff_refusals_note(&client->refusals, item->kind, item->key);
         return 0;
     }
     int rc;
-    if (item->kind == FF_WANT_TEXTURE)
-        return ff_textures_take(&client->textures, item);
+    if (item->kind == FF_WANT_TEXTURE) return ff_textures_take(&client->textures, item);
     if (item->kind == FF_WANT_ROOT)
         rc = ff_tree_deliver_root(client->tree, ff_key_tile(item->key), &item->residuals);
     else
@@ -65,21 +62,20 @@ static int take_item(ff_client *client, const ff_new_item *item, int64_t now_us)
     return rc == FF_OK;
 }
 
-/* Number of items taken in; *changed: pictures other than heights changed (the tree tells of heights itself). */
+/* Number of items taken in; *changed: pictures other than heights changed (the tree tells of
+ * heights itself). */
 static unsigned take_new_data(ff_client *client, int64_t now_us, int *changed)
 {
     unsigned taken = 0;
     ff_new_item *item;
     while (taken < client->news.item_slots && (item = ff_new_data_first(&client->news)) != NULL) {
         int any = take_item(client, item, now_us);
-        if (any && item->kind >= FF_WANT_TEXTURE)
-            *changed = 1;
+        if (any && item->kind >= FF_WANT_TEXTURE) *changed = 1;
         if (item->last) {
-            enum ff_request_state final = item->error == FF_OK || item->bytes ? FF_REQUEST_DONE : FF_REQUEST_FAILED;
-            if (item->error != FF_OK && item->kind != FF_WANT_PANORAMA)
-                final = FF_REQUEST_FAILED;
-            if (item->error == FF_ERR_CLOSED)
-                final = FF_REQUEST_CANCELLED;
+            enum ff_request_state final = item->error == FF_OK || item->bytes ? FF_REQUEST_DONE
+                                                                              : FF_REQUEST_FAILED;
+            if (item->error != FF_OK && item->kind != FF_WANT_PANORAMA) final = FF_REQUEST_FAILED;
+            if (item->error == FF_ERR_CLOSED) final = FF_REQUEST_CANCELLED;
             ff_requests_finish(&client->requests, item->id, final);
         }
         ff_new_data_release(&client->news);
@@ -90,25 +86,28 @@ static unsigned take_new_data(ff_client *client, int64_t now_us, int *changed)
 
 static int same_camera(const c3d_camera *a, const c3d_camera *b)
 {
-    return memcmp(a->pos_wu, b->pos_wu, sizeof a->pos_wu) == 0 && a->yaw == b->yaw && a->pitch == b->pitch && a->roll == b->roll &&
-           a->focal_q8 == b->focal_q8 && a->width == b->width && a->height == b->height && a->near_wu == b->near_wu &&
+    return memcmp(a->pos_wu, b->pos_wu, sizeof a->pos_wu) == 0 && a->yaw == b->yaw &&
+           a->pitch == b->pitch && a->roll == b->roll && a->focal_q8 == b->focal_q8 &&
+           a->width == b->width && a->height == b->height && a->near_wu == b->near_wu &&
            a->far_wu == b->far_wu;
 }
 
-static void make_view(const ff_client *client, const c3d_camera *camera, const ff_quality *quality, ff_view *view)
+static void make_view(const ff_client *client, const c3d_camera *camera, const ff_quality *quality,
+                      ff_view *view)
 {
     view->camera = *camera;
     if (!view->camera.width || !view->camera.height) {
         view->camera.width = client->desc.width;
         view->camera.height = client->desc.height;
     }
-    if (view->camera.near_wu <= 0)
-        view->camera.near_wu = NEAR_WU_MIN;
-    if (view->camera.far_wu <= view->camera.near_wu) /* the box of ground to draw reaches sqrt(3) times as far; and O is not here */
+    if (view->camera.near_wu <= 0) view->camera.near_wu = NEAR_WU_MIN;
+    /* the box of ground to draw reaches sqrt(3) times as far; and O is not here */
+    if (view->camera.far_wu <= view->camera.near_wu)
         view->camera.far_wu = quality->view_wu > INT32_MAX / 3 ? INT32_MAX : 3 * quality->view_wu;
     memcpy(view->centre_wu, camera->pos_wu, sizeof view->centre_wu);
     if (client->panorama.desc.enabled && client->panorama.shown >= 0 && !client->all_client)
-        memcpy(view->centre_wu, client->panorama.set[client->panorama.shown].position_wu, sizeof view->centre_wu);
+        memcpy(view->centre_wu, client->panorama.set[client->panorama.shown].position_wu,
+               sizeof view->centre_wu);
 }
 
 int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera)
@@ -128,17 +127,20 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera
     ff_motion_feed(&client->motion, now_us, camera->pos_wu);
     ff_turn_feed(&client->turn, now_us, camera->yaw, camera->pitch);
     int hold = ff_client_low_power(client) || client->all_client;
-    int turned = ff_panorama_update(&client->panorama, &client->requests, &view.camera, &client->motion, hold, now_us);
+    int turned = ff_panorama_update(&client->panorama, &client->requests, &view.camera,
+                                    &client->motion, hold, now_us);
     if (!taken && !moved && !turned && !client->dirty && !client->unranked) {
         client->frames_skipped++;
         return 0;
     }
     quality = ff_client_quality(client);
-    make_view(client, camera, &quality, &view); /* the panorama's centre and front may be others now */
+    /* the panorama's centre and front may be others now */
+    make_view(client, camera, &quality, &view);
     ff_tree_select(client->tree, &view, &quality);
     ff_client_rank(client, &view, &quality, now_us);
     uint64_t hash = ff_terrain_view_hash(&client->view, client->tree);
-    int changed = moved || turned || pictures_changed || client->dirty || hash != client->frame_hash;
+    int changed = moved || turned || pictures_changed || client->dirty ||
+                  hash != client->frame_hash;
     client->camera = *camera;
     client->last_view = view;
     client->has_camera = 1;
@@ -155,7 +157,8 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera
 
 /* ---- drawing ---- */
 
-/* Near and far planes where the camera leaves them open: an eighth of the height above ground, and the farthest node drawn. */
+/* Near and far planes where the camera leaves them open: an eighth of the height above ground, and
+ * the farthest node drawn. */
 static void fit_planes(const ff_client *client, c3d_camera *camera)
 {
     int32_t ground_wu;
@@ -164,18 +167,22 @@ static void fit_planes(const ff_client *client, c3d_camera *camera)
         if (ff_client_ground(client, camera->pos_wu[0], camera->pos_wu[1], &ground_wu))
             clearance_wu = (int64_t)camera->pos_wu[2] - ground_wu;
         int64_t near_wu = clearance_wu / 8;
-        camera->near_wu = near_wu < NEAR_WU_MIN ? NEAR_WU_MIN : near_wu > NEAR_WU_MAX ? NEAR_WU_MAX : (int32_t)near_wu;
+        camera->near_wu = near_wu < NEAR_WU_MIN   ? NEAR_WU_MIN
+                          : near_wu > NEAR_WU_MAX ? NEAR_WU_MAX
+                                                  : (int32_t)near_wu;
     }
-    if (client->camera.far_wu > camera->near_wu)
-        return;
+    if (client->camera.far_wu > camera->near_wu) return;
     const ff_drawn *list;
     uint32_t count = ff_tree_drawn(client->tree, &list);
     int64_t far_wu = 16 * (int64_t)camera->near_wu; /* sky and panorama lie within */
     for (uint32_t i = 0; i < count; i++) {
         int64_t edge_wu = ff_node_edge_wu(&client->info, ff_key_level(list[i].key));
-        int64_t reach = c3d_length64((int64_t)list[i].origin_wu[0] + edge_wu / 2 - camera->pos_wu[0],
-                                     (int64_t)list[i].origin_wu[1] + edge_wu / 2 - camera->pos_wu[1],
-                                     (int64_t)ff_height_wu(&client->info, client->info.height_min) - camera->pos_wu[2]) + edge_wu;
+        int64_t reach = c3d_length64(
+                            (int64_t)list[i].origin_wu[0] + edge_wu / 2 - camera->pos_wu[0],
+                            (int64_t)list[i].origin_wu[1] + edge_wu / 2 - camera->pos_wu[1],
+                            (int64_t)ff_height_wu(&client->info, client->info.height_min) -
+                                camera->pos_wu[2]) +
+                        edge_wu;
         far_wu = reach > far_wu ? reach : far_wu;
     }
     camera->far_wu = far_wu > INT32_MAX ? INT32_MAX : (int32_t)far_wu;
@@ -193,15 +200,14 @@ static void set_fog(const ff_client *client, c3d_frame *frame)
 
 void ff_client_draw(ff_client *client)
 {
-    if (!client->device || !client->has_camera)
-        return;
-    c3d_frame frame = {.camera = client->last_view.camera, .clear_colour = FF_SKY_HORIZON_COLOUR};
+    if (!client->device || !client->has_camera) return;
+    c3d_frame frame = { .camera = client->last_view.camera, .clear_colour = FF_SKY_HORIZON_COLOUR };
     fit_planes(client, &frame.camera);
     set_fog(client, &frame);
     c3d_begin(client->device, &frame);
     ff_sky_draw(&client->sky, client->device, frame.camera.near_wu);
     ff_panorama_draw(&client->panorama, frame.camera.near_wu);
-    ff_terrain_view_draw(&client->view, client->tree, &client->info, &frame.camera, client->has_textures ? &client->textures : NULL,
-                         client->show);
+    ff_terrain_view_draw(&client->view, client->tree, &client->info, &frame.camera,
+                         client->has_textures ? &client->textures : NULL, client->show);
     c3d_end(client->device);
 }

@@ -3,18 +3,22 @@
  *   static unsigned char block[4 << 20];
  *   ff_client_desc desc = {0};                    // zero means the default, see each field
  *   desc.memory = block; desc.memory_bytes = sizeof block;
- *   desc.stream = &stream;                        // or desc.pack = &pack for a terrain on this device
- *   desc.backend = c3d_backend_gles1(); desc.surface_api = sys_surface_egl();  // or soft, memory; NULL: geometry only, no pictures
+ *   desc.stream = &stream;               // or desc.pack = &pack: a terrain on this device
+ *   desc.backend = c3d_backend_gles1();  // or soft; NULL: geometry only, no pictures
+ *   desc.surface_api = sys_surface_egl();
  *   ff_client *client; int rc = ff_client_create(&desc, &client);
  *   each frame:
  *       ff_client_work(client, now_us);           // or desc.use_thread = 1, and a thread does it
  *       if (ff_client_update(client, now_us, &camera)) ff_client_draw(client);   // then present
  *
  * Rules
- *   1. Everything lives in the block; nothing is allocated after ff_client_create, except by zlib/libjpeg inside platform/ calls.
- *   2. All calls come from one thread (the one that owns the GL context); only ff_client_work may come from another one.
- *   3. Time is the caller's: microseconds that never go back. Camera as in common3d/c3d.h: position in 1/256 m from the terrain's
- *      south-west corner, angles in 1/65536 turn. near_wu and far_wu of the camera may be 0: fitted to what is drawn.
+ *   1. Everything lives in the block; nothing is allocated after ff_client_create, except by
+ *      zlib/libjpeg inside platform/ calls.
+ *   2. All calls come from one thread (the one that owns the GL context); only ff_client_work may
+ *      come from another one.
+ *   3. Time is the caller's: microseconds that never go back. Camera as in common3d/c3d.h: position
+ *      in 1/256 m from the terrain's south-west corner, angles in 1/65536 turn. near_wu and far_wu
+ *      of the camera may be 0: fitted to what is drawn.
  *   4. The picture may lag behind the link, never break: what has not arrived is drawn coarser.
  */
 #ifndef FARFIELD_H
@@ -33,89 +37,113 @@ typedef struct ff_client ff_client;
 
 /* Zero in any field takes the default given. */
 typedef struct ff_panorama_desc {
-    uint8_t enabled;          /* 0: the client draws all ground up to quality.view_wu itself */
-    int32_t back_plane_wu;    /* z_back_c = z_front_s, default 7500 m: ground up to here is the client's */
-    int32_t server_back_wu;   /* z_back_s, default 100 km */
-    int32_t error_px_q8;      /* epsilon of Hybrid eq. 6, 7 and 13 in pixels of the screen, default 5 % of its half-width */
-    uint16_t face_size;       /* default 256 */
-    uint8_t jpeg_quality;     /* default 70 */
-    uint8_t hold_back;        /* Hybrid's congestion flag: 0 default (one set outstanding at most), 1 never hold back */
+    uint8_t enabled; /* 0: the client draws all ground up to quality.view_wu itself */
+    /* z_back_c = z_front_s, default 7500 m: ground up to here is the client's */
+    int32_t back_plane_wu;
+    int32_t server_back_wu; /* z_back_s, default 100 km */
+    /* epsilon of Hybrid eq. 6, 7 and 13 in pixels of the screen, default 5 % of its half-width */
+    int32_t error_px_q8;
+    uint16_t face_size;   /* default 256 */
+    uint8_t jpeg_quality; /* default 70 */
+    /* Hybrid's congestion flag: 0 default (one set outstanding at most), 1 never hold back */
+    uint8_t hold_back;
 } ff_panorama_desc;
 
-/* Server and client share the work at run time (client/ff_balance.h): detail, depth, back plane and the panorama's error follow a frame
- * budget and the link, between the limits given here (coarsest, nearest) and the quality and panorama set (finest). Zero in any field
- * takes the default given. */
+/* Server and client share the work at run time (client/ff_balance.h): detail, depth, back plane and
+ * the panorama's error follow a frame budget and the link, between the limits given here (coarsest,
+ * nearest) and the quality and panorama set (finest). Zero in any field takes the default given. */
 enum ff_balance_mode {
     FF_BALANCE_OFF,
     FF_BALANCE_ON,
-    FF_BALANCE_ALL_SERVER,    /* stays at that end: coarsest ground up to the nearest back plane, the rest is panorama */
-    FF_BALANCE_ALL_CLIENT     /* stays at that end: the finest ground as far as quality.view_wu, no panoramas */
+    /* stays at that end: coarsest ground up to the nearest back plane, the rest is panorama */
+    FF_BALANCE_ALL_SERVER,
+    /* stays at that end: the finest ground as far as quality.view_wu, no panoramas */
+    FF_BALANCE_ALL_CLIENT
 };
 
 typedef struct ff_balance_desc {
     enum ff_balance_mode mode;
-    uint32_t frame_budget;    /* what a frame may cost: triangles, or the unit of ff_client_frame_cost; 0: no limit */
-    uint32_t link_bytes_s;    /* what may come in a second, and never more than link_percent of what the link is found to carry; 0: that alone */
-    uint8_t link_percent;     /* also of the time in which something in view may have to wait for the link; default 80 */
-    int32_t c_min_q8;         /* FF_MEASURE_DISTANCE; default a quarter of quality.c_q8 */
-    int32_t error_px_max_q8;  /* FF_MEASURE_PIXELS; default eight times quality.error_px_q8 */
-    uint8_t depth_min;        /* default: quality.depth_max less 3, at least 2; of no effect where depth_max is 0 */
-    int32_t back_plane_min_wu;      /* default a quarter of panorama.back_plane_wu; the furthest is quality.view_wu */
-    int32_t panorama_error_max_q8;  /* default four times panorama.error_px_q8 */
+    /* what a frame may cost: triangles, or the unit of ff_client_frame_cost; 0: no limit */
+    uint32_t frame_budget;
+    /* what may come in a second, and never more than link_percent of what the link is found to
+     * carry; 0: that alone */
+    uint32_t link_bytes_s;
+    /* also of the time in which something in view may have to wait for the link; default 80 */
+    uint8_t link_percent;
+    int32_t c_min_q8;        /* FF_MEASURE_DISTANCE; default a quarter of quality.c_q8 */
+    int32_t error_px_max_q8; /* FF_MEASURE_PIXELS; default eight times quality.error_px_q8 */
+    /* default: quality.depth_max less 3, at least 2; of no effect where depth_max is 0 */
+    uint8_t depth_min;
+    /* default a quarter of panorama.back_plane_wu; the furthest is quality.view_wu */
+    int32_t back_plane_min_wu;
+    int32_t panorama_error_max_q8; /* default four times panorama.error_px_q8 */
 } ff_balance_desc;
 
 typedef struct ff_balance_stats {
     uint8_t share_percent;    /* 0 all server, 100 all client */
     uint8_t fidelity_percent; /* 100 as set, less to spare the link */
-    int32_t frame_load_q8, link_load_q8; /* log2(cost / budget) as last measured; above 0: over budget */
-    uint32_t moves, turns;    /* levels changed; of those, against the direction of the change before */
+    /* log2(cost / budget) as last measured; above 0: over budget */
+    int32_t frame_load_q8, link_load_q8;
+    /* levels changed; of those, against the direction of the change before */
+    uint32_t moves, turns;
 } ff_balance_stats;
 
 typedef struct ff_client_desc {
     void *memory;
-    size_t memory_bytes;      /* at least ff_client_bytes_min(); more memory holds finer ground */
-    sys_stream *stream;       /* to a server; or NULL */
-    const ff_pack *pack;      /* a pack in memory instead; or NULL */
-    const struct c3d_backend *backend;       /* NULL: no pictures */
-    const sys_surface_api *surface_api;      /* its context is current */
-    uint16_t width, height;   /* viewport, default 240x320; a back end without a GL draws nothing in a larger one */
-    uint8_t frame_format;     /* of a back end without a GL: C3D_RGB565 (0, default) or C3D_RGBA8888 */
-    ff_quality quality;       /* all zero: DISTANCE, C = 3, depth 4, sigma 1.25, view 30 km */
+    size_t memory_bytes; /* at least ff_client_bytes_min(); more memory holds finer ground */
+    sys_stream *stream;  /* to a server; or NULL */
+    const ff_pack *pack; /* a pack in memory instead; or NULL */
+    const struct c3d_backend *backend;  /* NULL: no pictures */
+    const sys_surface_api *surface_api; /* its context is current */
+    /* viewport, default 240x320; a back end without a GL draws nothing in a larger one */
+    uint16_t width, height;
+    /* of a back end without a GL: C3D_RGB565 (0, default) or C3D_RGBA8888 */
+    uint8_t frame_format;
+    ff_quality quality; /* all zero: DISTANCE, C = 3, depth 4, sigma 1.25, view 30 km */
     ff_panorama_desc panorama;
     ff_balance_desc balance;
     uint8_t use_thread;       /* 1: ff_client_create starts a thread that calls ff_client_work */
     uint8_t use_plain_arrays; /* 1: no vertex buffers */
     uint8_t no_textures;      /* 1: images of the terrain are not asked for */
     uint8_t no_prefetch;
-    uint16_t in_flight_max;   /* requests sent and unanswered at most, default 32 */
-    /* A connection silent this long with requests out is closed and made anew, default 60000. Never shorter than four round trips,
-     * and doubled up to four times while no answer has ever come. */
+    /* requests sent and unanswered at most, default 32 */
+    uint16_t in_flight_max;
+    /* A connection silent this long with requests out is closed and made anew, default 60000. Never
+     * shorter than four round trips, and doubled up to four times while no answer has ever come. */
     uint32_t answer_timeout_ms;
 } ff_client_desc;
 
-enum ff_link_state { FF_LINK_NONE /* local pack */, FF_LINK_CONNECTING, FF_LINK_UP, FF_LINK_DOWN /* retrying */ };
+enum ff_link_state {
+    FF_LINK_NONE, /* local pack */
+    FF_LINK_CONNECTING,
+    FF_LINK_UP,
+    FF_LINK_DOWN /* retrying */
+};
 
 typedef struct ff_client_stats {
     ff_tree_stats tree;
     c3d_stats c3d;
     enum ff_link_state link;
-    uint8_t have_terrain;        /* WELCOME has come */
-    int terrain_error;           /* why the terrain that has come is not shown: FF_ERR_MEMORY, the block is too small for it; or FF_OK */
-    uint8_t low_power;           /* battery low or interrupted: slower, coarser, no prefetch */
+    uint8_t have_terrain; /* WELCOME has come */
+    /* why the terrain that has come is not shown: FF_ERR_MEMORY, the block is too small for it; or
+     * FF_OK */
+    int terrain_error;
+    uint8_t low_power; /* battery low or interrupted: slower, coarser, no prefetch */
     uint64_t bytes_down, bytes_up;
     uint32_t requests_sent, requests_done, requests_failed, requests_cancelled, requests_dropped;
     uint32_t in_flight, in_flight_high, queued, queued_high;
     uint32_t panorama_requests, panorama_faces, panorama_faces_empty, panorama_bytes;
-    uint32_t panoramas_in_flight_high; /* requests sent and unanswered at once; 1 at most unless hold_back is 1 */
+    /* requests sent and unanswered at once; 1 at most unless hold_back is 1 */
+    uint32_t panoramas_in_flight_high;
     uint32_t textures_held, textures_high, textures_full;
     uint32_t protocol_errors, reconnects;
     uint32_t frames_updated, frames_skipped; /* skipped: nothing changed, nothing to redraw */
     uint32_t rtt_ms, bandwidth_bytes_s;      /* as measured by the worker */
     size_t memory_used, memory_bytes;
-    ff_quality quality;                      /* in force: as set, by the balance, halved when power is low */
-    int32_t back_plane_wu;                   /* in force; 0: no panoramas */
-    int32_t panorama_error_q8;               /* in force */
-    ff_balance_stats balance;                /* zero without */
+    ff_quality quality;        /* in force: as set, by the balance, halved when power is low */
+    int32_t back_plane_wu;     /* in force; 0: no panoramas */
+    int32_t panorama_error_q8; /* in force */
+    ff_balance_stats balance;  /* zero without */
 } ff_client_stats;
 
 size_t ff_client_bytes_min(void);
@@ -123,25 +151,30 @@ size_t ff_client_bytes_min(void);
 int ff_client_create(const ff_client_desc *desc, ff_client **client);
 void ff_client_destroy(ff_client *client);
 
-/* The network worker's step: sends, receives, decodes; never blocks. Returns 1 when it did something, 0 when idle. */
+/* The network worker's step: sends, receives, decodes; never blocks. Returns 1 when it did
+ * something, 0 when idle. */
 int ff_client_work(ff_client *client, int64_t now_us);
-/* Takes in new data and selects for this camera. 1: the picture changed, draw; 0: same picture as before. */
+/* Takes in new data and selects for this camera. 1: the picture changed, draw; 0: same picture as
+ * before. */
 int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera);
 /* Draws the last update through the back end (no present). */
 void ff_client_draw(ff_client *client);
 
-/* Device events; what does not concern the client is ignored. Battery low or an interruption (a call): C halved or pixels of error
- * doubled, no prefetch, no new panoramas; an interruption also asks for nothing new, the link is just kept alive. Restored after. */
+/* Device events; what does not concern the client is ignored. Battery low or an interruption (a
+ * call): C halved or pixels of error doubled, no prefetch, no new panoramas; an interruption also
+ * asks for nothing new, the link is just kept alive. Restored after. */
 void ff_client_event(ff_client *client, const sys_event *event);
 
-/* Settings that may change between frames. Panoramas switched on in a block shared out without them: the terrain is given up, the
- * block shared out anew and the ground asked for again. */
+/* Settings that may change between frames. Panoramas switched on in a block shared out without
+ * them: the terrain is given up, the block shared out anew and the ground asked for again. */
 void ff_client_set_quality(ff_client *client, const ff_quality *quality);
 void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama);
-/* New budgets and limits, or on and off. The shares stay where they are on their ladders and move from there. */
+/* New budgets and limits, or on and off. The shares stay where they are on their ladders and move
+ * from there. */
 void ff_client_set_balance(ff_client *client, const ff_balance_desc *balance);
-/* What the frame just drawn cost, in the unit of balance.frame_budget: microseconds, instructions. From the first call on it stands in
- * for the triangles counted by the client. 0: triangles again. */
+/* What the frame just drawn cost, in the unit of balance.frame_budget: microseconds, instructions.
+ * From the first call on it stands in for the triangles counted by the client. 0: triangles
+ * again. */
 void ff_client_frame_cost(ff_client *client, uint32_t cost);
 enum ff_show { FF_SHOW_WIREFRAME = 1, FF_SHOW_NODE_BORDERS = 2, FF_SHOW_NO_FOG = 4 };
 void ff_client_set_show(ff_client *client, unsigned show);
@@ -149,18 +182,19 @@ void ff_client_set_show(ff_client *client, unsigned show);
 /* NULL until the terrain is known. */
 const ff_terrain_info *ff_client_terrain(const ff_client *client);
 const ff_tree *ff_client_tree(const ff_client *client);
-/* For checks and the emulator: the c3d device; NULL without a back end and until the terrain is known, another one after another
- * terrain. */
+/* For checks and the emulator: the c3d device; NULL without a back end and until the terrain is
+ * known, another one after another terrain. */
 c3d_device *ff_client_device(ff_client *client);
 /* Ground height at (x, y) as drawn now: 1 and *z_wu, or 0. */
 int ff_client_ground(const ff_client *client, int32_t x_wu, int32_t y_wu, int32_t *z_wu);
 void ff_client_get_stats(const ff_client *client, ff_client_stats *stats);
 
-/* The panorama in use: 1 and where it was taken, or 0. *faces: bit per enum ff_face_name held (empty ones included). */
+/* The panorama in use: 1 and where it was taken, or 0. *faces: bit per enum ff_face_name held
+ * (empty ones included). */
 int ff_client_panorama(const ff_client *client, int32_t position_wu[3], unsigned *faces);
 
-/* FNV-1a hash over what is drawn (keys, border masks, heights, origins) and another one over requests made, since the start:
- * the same on every back end. */
+/* FNV-1a hash over what is drawn (keys, border masks, heights, origins) and another one over
+ * requests made, since the start: the same on every back end. */
 uint64_t ff_client_geometry_hash(const ff_client *client);
 uint64_t ff_client_request_hash(const ff_client *client);
 

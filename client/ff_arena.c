@@ -10,35 +10,28 @@ size_t ff_arena_cost(size_t bytes)
 
 void ff_arena_init(ff_arena *arena, void *memory, size_t bytes)
 {
-    size_t skip = (FF_ARENA_ALIGN - ((uintptr_t)memory & (FF_ARENA_ALIGN - 1))) & (FF_ARENA_ALIGN - 1);
-    if (skip > bytes)
-        skip = bytes;
+    size_t skip = (FF_ARENA_ALIGN - ((uintptr_t)memory & (FF_ARENA_ALIGN - 1))) &
+                  (FF_ARENA_ALIGN - 1);
+    if (skip > bytes) skip = bytes;
     arena->base = (uint8_t *)memory + skip;
     arena->bytes = bytes - skip;
     arena->used = 0;
     arena->sealed = 0;
 }
 
-size_t ff_arena_left(const ff_arena *arena)
-{
-    return arena->bytes - arena->used;
-}
+size_t ff_arena_left(const ff_arena *arena) { return arena->bytes - arena->used; }
 
 void *ff_arena_take(ff_arena *arena, size_t bytes)
 {
     assert(!arena->sealed);
     size_t cost = ff_arena_cost(bytes);
-    if (cost < bytes || cost > ff_arena_left(arena))
-        return NULL;
+    if (cost < bytes || cost > ff_arena_left(arena)) return NULL;
     void *place = arena->base + arena->used;
     arena->used += cost;
     return memset(place, 0, cost);
 }
 
-void ff_arena_seal(ff_arena *arena)
-{
-    arena->sealed = 1;
-}
+void ff_arena_seal(ff_arena *arena) { arena->sealed = 1; }
 
 void ff_arena_back_to(ff_arena *arena, size_t used)
 {

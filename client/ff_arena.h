@@ -1,5 +1,5 @@
-/* The one block of memory of a client, carved from its start. After sealing nothing may be taken any more; going back to a
- * mark (a new terrain in the same block) opens it again. */
+/* The one block of memory of a client, carved from its start. After sealing nothing may be taken
+ * any more; going back to a mark (a new terrain in the same block) opens it again. */
 #ifndef FF_ARENA_H
 #define FF_ARENA_H
 

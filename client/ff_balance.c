@@ -2,34 +2,35 @@
 
 #include <string.h>
 
-#define SETTLE_US 500000       /* after a move, besides two round trips */
-#define SETTLE_US_MAX 10000000
-#define FRAME_WINDOW_US 1000000
-#define LINK_WINDOW_US 8000000
-#define BLAME_US 30000000      /* relief sooner than this after a raise is laid to it */
-#define SATURATED_PERCENT 90   /* of the time something waits */
-#define SILENT_SHARE 32        /* less than one in so many of the bytes a link can carry: it is silent, and asking for less does not help */
-#define PERCENT_DEFAULT 80
-#define DEPTH_LESS 3
-#define DEPTH_LEAST 2
-#define C_STEPS_MAX 16
-#define PLANE_STEPS_MAX 24
-#define ERROR_STEPS_MAX 12
-#define ERROR_QUARTERS 2       /* the panorama's error changes by half an octave */
-#define RELIEF_STEP_Q8 64      /* as much as a step down is taken to spare: a quarter of an octave */
-#define GAIN_Q8(gain_q4) ((int32_t)(gain_q4) * 16)
-#define BULGE_Q8 88
-#define TOLERANCE_Q8 GAIN_Q8(FF_BALANCE_NOISE_Q4)
+#define SETTLE_US         500000 /* after a move, besides two round trips */
+#define SETTLE_US_MAX     10000000
+#define FRAME_WINDOW_US   1000000
+#define LINK_WINDOW_US    8000000
+#define BLAME_US          30000000 /* relief sooner than this after a raise is laid to it */
+#define SATURATED_PERCENT 90       /* of the time something waits */
+#define SILENT_SHARE                                                                           \
+    32 /* less than one in so many of the bytes a link can carry: it is silent, and asking for \
+          less does not help */
+#define PERCENT_DEFAULT  80
+#define DEPTH_LESS       3
+#define DEPTH_LEAST      2
+#define C_STEPS_MAX      16
+#define PLANE_STEPS_MAX  24
+#define ERROR_STEPS_MAX  12
+#define ERROR_QUARTERS   2  /* the panorama's error changes by half an octave */
+#define RELIEF_STEP_Q8   64 /* as much as a step down is taken to spare: a quarter of an octave */
+#define GAIN_Q8(gain_q4) ((int32_t)(gain_q4)*16)
+#define BULGE_Q8         88
+#define TOLERANCE_Q8     GAIN_Q8(FF_BALANCE_NOISE_Q4)
 
 int32_t ff_balance_log2_q8(uint64_t value)
 {
     int32_t whole = 0;
-    if (!value)
-        return 0;
-    for (uint64_t rest = value; rest >>= 1;)
-        whole++;
+    if (!value) return 0;
+    for (uint64_t rest = value; rest >>= 1;) whole++;
     int32_t part = (int32_t)((whole >= 8 ? value >> (whole - 8) : value << (8 - whole)) - 256);
-    return whole * 256 + part + (part * (256 - part) * BULGE_Q8 >> 16); /* log2(1 + p) is about p + 0.344 p (1 - p) */
+    /* log2(1 + p) is about p + 0.344 p (1 - p) */
+    return whole * 256 + part + (part * (256 - part) * BULGE_Q8 >> 16);
 }
 
 /* ---- the ladders ---- */
@@ -37,26 +38,27 @@ int32_t ff_balance_log2_q8(uint64_t value)
 /* value / 2^(quarters / 4) */
 static int64_t lessened(int64_t value, unsigned quarters)
 {
-    static const int32_t root_q16[4] = {65536, 55109, 46341, 38968};
+    static const int32_t root_q16[4] = { 65536, 55109, 46341, 38968 };
     return (value >> quarters / 4) * root_q16[quarters % 4] >> 16;
 }
 
 static uint8_t steps_between(int64_t high, int64_t low, unsigned quarters, unsigned most)
 {
     unsigned steps = 0;
-    while (steps < most && lessened(high, steps * quarters) > low)
-        steps++;
+    while (steps < most && lessened(high, steps * quarters) > low) steps++;
     return (uint8_t)steps;
 }
 
 /* The value `below` steps under the top of so many, whose bottom is `low`. */
-static int32_t on_ladder(int64_t high, int64_t low, unsigned below, unsigned steps, unsigned quarters)
+static int32_t on_ladder(int64_t high, int64_t low, unsigned below, unsigned steps,
+                         unsigned quarters)
 {
     int64_t value = lessened(high, below * quarters);
     return (int32_t)(below && (below == steps || value < low) ? low : value);
 }
 
-/* How many of `level` steps are of the first of two kinds, spread evenly: each step up changes one of the two by one. */
+/* How many of `level` steps are of the first of two kinds, spread evenly: each step up changes one
+ * of the two by one. */
 static unsigned first_kind(unsigned level, unsigned first, unsigned second)
 {
     unsigned all = first + second;
@@ -69,12 +71,14 @@ static unsigned detail_steps(const ff_balance *balance)
 }
 
 /* Which steps of the ladders' kinds two levels stand for. */
-typedef struct place { unsigned detail, cap, plane, error; } place;
+typedef struct place {
+    unsigned detail, cap, plane, error;
+} place;
 
 static place place_of(const ff_balance *balance, unsigned share, unsigned fidelity)
 {
-    place at = {.detail = first_kind(share, detail_steps(balance), balance->plane_steps),
-                .cap = first_kind(fidelity, detail_steps(balance), balance->error_steps)};
+    place at = { .detail = first_kind(share, detail_steps(balance), balance->plane_steps),
+                 .cap = first_kind(fidelity, detail_steps(balance), balance->error_steps) };
     at.plane = share - at.detail;
     at.error = fidelity - at.cap;
     return at;
@@ -84,42 +88,49 @@ void ff_balance_get(const ff_balance *balance, ff_balance_knobs *knobs)
 {
     const ff_balance_desc *desc = &balance->desc;
     const ff_quality *finest = &balance->finest;
-    place at = place_of(balance, balance->level[FF_BALANCE_SHARE], balance->level[FF_BALANCE_FIDELITY]);
-    unsigned detail = at.detail < at.cap ? at.detail : at.cap, c = first_kind(detail, balance->c_steps, balance->depth_steps);
+    place at = place_of(balance, balance->level[FF_BALANCE_SHARE],
+                        balance->level[FF_BALANCE_FIDELITY]);
+    unsigned detail = at.detail < at.cap ? at.detail : at.cap,
+             c = first_kind(detail, balance->c_steps, balance->depth_steps);
     knobs->c_q8 = finest->c_q8;
     knobs->error_px_q8 = finest->error_px_q8;
     if (finest->measure == FF_MEASURE_DISTANCE)
-        knobs->c_q8 = on_ladder(finest->c_q8, desc->c_min_q8, balance->c_steps - c, balance->c_steps, 1);
+        knobs->c_q8 = on_ladder(finest->c_q8, desc->c_min_q8, balance->c_steps - c,
+                                balance->c_steps, 1);
     else /* a ladder of errors stands on its head */
-        knobs->error_px_q8 = on_ladder(desc->error_px_max_q8, finest->error_px_q8, c, balance->c_steps, 1);
+        knobs->error_px_q8 = on_ladder(desc->error_px_max_q8, finest->error_px_q8, c,
+                                       balance->c_steps, 1);
     knobs->depth_max = (uint8_t)(finest->depth_max - (balance->depth_steps - (detail - c)));
-    knobs->back_plane_wu = at.plane == balance->plane_steps ? 0
-                           : on_ladder(finest->view_wu, desc->back_plane_min_wu, balance->plane_steps - at.plane, balance->plane_steps, 1);
-    knobs->panorama_error_q8 = on_ladder(desc->panorama_error_max_q8, balance->panorama_error_q8, at.error, balance->error_steps,
-                                         ERROR_QUARTERS);
+    knobs->back_plane_wu = at.plane == balance->plane_steps
+                               ? 0
+                               : on_ladder(finest->view_wu, desc->back_plane_min_wu,
+                                           balance->plane_steps - at.plane, balance->plane_steps,
+                                           1);
+    knobs->panorama_error_q8 = on_ladder(desc->panorama_error_max_q8, balance->panorama_error_q8,
+                                         at.error, balance->error_steps, ERROR_QUARTERS);
 }
 
 /* Limits that were left out, and limits on the wrong side of the finest. */
-static void complete(ff_balance_desc *desc, const ff_quality *finest, const ff_panorama_desc *panorama)
+static void complete(ff_balance_desc *desc, const ff_quality *finest,
+                     const ff_panorama_desc *panorama)
 {
-    if (!desc->link_percent || desc->link_percent > 100)
-        desc->link_percent = PERCENT_DEFAULT;
-    if (desc->c_min_q8 <= 0)
-        desc->c_min_q8 = finest->c_q8 / 4;
-    if (desc->c_min_q8 > finest->c_q8 || desc->c_min_q8 <= 0)
-        desc->c_min_q8 = finest->c_q8;
+    if (!desc->link_percent || desc->link_percent > 100) desc->link_percent = PERCENT_DEFAULT;
+    if (desc->c_min_q8 <= 0) desc->c_min_q8 = finest->c_q8 / 4;
+    if (desc->c_min_q8 > finest->c_q8 || desc->c_min_q8 <= 0) desc->c_min_q8 = finest->c_q8;
     if (desc->error_px_max_q8 <= 0)
-        desc->error_px_max_q8 = finest->error_px_q8 > INT32_MAX / 8 ? INT32_MAX : finest->error_px_q8 * 8;
-    if (desc->error_px_max_q8 < finest->error_px_q8)
-        desc->error_px_max_q8 = finest->error_px_q8;
+        desc->error_px_max_q8 = finest->error_px_q8 > INT32_MAX / 8 ? INT32_MAX
+                                                                    : finest->error_px_q8 * 8;
+    if (desc->error_px_max_q8 < finest->error_px_q8) desc->error_px_max_q8 = finest->error_px_q8;
     if (!desc->depth_min)
-        desc->depth_min = (uint8_t)(finest->depth_max > DEPTH_LESS + DEPTH_LEAST ? finest->depth_max - DEPTH_LESS : DEPTH_LEAST);
-    if (desc->depth_min > finest->depth_max)
-        desc->depth_min = finest->depth_max;
-    if (desc->back_plane_min_wu <= 0)
-        desc->back_plane_min_wu = panorama->back_plane_wu / 4 + 1;
+        desc->depth_min = (uint8_t)(finest->depth_max > DEPTH_LESS + DEPTH_LEAST
+                                        ? finest->depth_max - DEPTH_LESS
+                                        : DEPTH_LEAST);
+    if (desc->depth_min > finest->depth_max) desc->depth_min = finest->depth_max;
+    if (desc->back_plane_min_wu <= 0) desc->back_plane_min_wu = panorama->back_plane_wu / 4 + 1;
     if (desc->panorama_error_max_q8 <= 0)
-        desc->panorama_error_max_q8 = panorama->error_px_q8 > INT32_MAX / 4 ? INT32_MAX : panorama->error_px_q8 * 4;
+        desc->panorama_error_max_q8 = panorama->error_px_q8 > INT32_MAX / 4
+                                          ? INT32_MAX
+                                          : panorama->error_px_q8 * 4;
     if (desc->panorama_error_max_q8 < panorama->error_px_q8)
         desc->panorama_error_max_q8 = panorama->error_px_q8;
 }
@@ -132,27 +143,33 @@ static void forget(ff_balance *balance)
     balance->raised = balance->lowered = 0;
 }
 
-void ff_balance_set(ff_balance *balance, const ff_balance_desc *desc, const ff_quality *quality, const ff_panorama_desc *panorama,
-                    int can_panorama, int fresh)
+void ff_balance_set(ff_balance *balance, const ff_balance_desc *desc, const ff_quality *quality,
+                    const ff_panorama_desc *panorama, int can_panorama, int fresh)
 {
-    if (fresh)
-        memset(balance, 0, sizeof *balance);
+    if (fresh) memset(balance, 0, sizeof *balance);
     balance->desc = *desc;
     balance->finest = *quality;
     balance->panorama_error_q8 = panorama->error_px_q8;
     complete(&balance->desc, quality, panorama);
     desc = &balance->desc;
-    balance->c_steps = quality->measure == FF_MEASURE_DISTANCE ? steps_between(quality->c_q8, desc->c_min_q8, 1, C_STEPS_MAX)
-                                                               : steps_between(desc->error_px_max_q8, quality->error_px_q8, 1, C_STEPS_MAX);
+    balance->c_steps = quality->measure == FF_MEASURE_DISTANCE
+                           ? steps_between(quality->c_q8, desc->c_min_q8, 1, C_STEPS_MAX)
+                           : steps_between(desc->error_px_max_q8, quality->error_px_q8, 1,
+                                           C_STEPS_MAX);
     balance->depth_steps = (uint8_t)(quality->depth_max - desc->depth_min);
-    balance->plane_steps = can_panorama ? steps_between(quality->view_wu, desc->back_plane_min_wu, 1, PLANE_STEPS_MAX) : 0;
-    balance->error_steps = can_panorama ? steps_between(desc->panorama_error_max_q8, panorama->error_px_q8, ERROR_QUARTERS, ERROR_STEPS_MAX)
+    balance->plane_steps = can_panorama ? steps_between(quality->view_wu, desc->back_plane_min_wu,
+                                                        1, PLANE_STEPS_MAX)
                                         : 0;
-    unsigned old[FF_BALANCE_LEVELS] = {balance->top[0], balance->top[1]};
+    balance->error_steps = can_panorama
+                               ? steps_between(desc->panorama_error_max_q8, panorama->error_px_q8,
+                                               ERROR_QUARTERS, ERROR_STEPS_MAX)
+                               : 0;
+    unsigned old[FF_BALANCE_LEVELS] = { balance->top[0], balance->top[1] };
     balance->top[FF_BALANCE_SHARE] = (uint8_t)(detail_steps(balance) + balance->plane_steps);
     balance->top[FF_BALANCE_FIDELITY] = (uint8_t)(detail_steps(balance) + balance->error_steps);
     for (int i = 0; i < FF_BALANCE_LEVELS; i++)
-        balance->level[i] = (uint8_t)(old[i] ? balance->level[i] * balance->top[i] / old[i] : balance->top[i] / (2u - (unsigned)i));
+        balance->level[i] = (uint8_t)(old[i] ? balance->level[i] * balance->top[i] / old[i]
+                                             : balance->top[i] / (2u - (unsigned)i));
     if (desc->mode == FF_BALANCE_ALL_SERVER)
         balance->level[FF_BALANCE_SHARE] = 0;
     else if (desc->mode == FF_BALANCE_ALL_CLIENT)
@@ -185,10 +202,11 @@ static void begin_link_window(ff_balance *balance, const ff_balance_sample *samp
 
 static int is_settled(ff_balance *balance, const ff_balance_sample *sample)
 {
-    if (balance->settled)
-        return 1;
+    if (balance->settled) return 1;
     int64_t age_us = sample->now_us - balance->moved_us;
-    balance->settled = age_us >= SETTLE_US_MAX || (sample->in_force && !sample->waiting && age_us >= SETTLE_US + 2 * (int64_t)sample->rtt_us);
+    balance->settled = age_us >= SETTLE_US_MAX ||
+                       (sample->in_force && !sample->waiting &&
+                        age_us >= SETTLE_US + 2 * (int64_t)sample->rtt_us);
     return 0;
 }
 
@@ -199,13 +217,16 @@ static int32_t load_of(uint64_t cost, uint64_t budget)
 
 static int32_t frame_load(const ff_balance *balance)
 {
-    return balance->desc.frame_budget ? load_of(balance->frame_sum / balance->frame_samples, balance->desc.frame_budget) : INT16_MIN;
+    return balance->desc.frame_budget
+               ? load_of(balance->frame_sum / balance->frame_samples, balance->desc.frame_budget)
+               : INT16_MIN;
 }
 
 /* 0 when the link says nothing now. */
 static int link_load(const ff_balance *balance, const ff_balance_sample *sample, int32_t *load_q8)
 {
-    uint64_t age_us = (uint64_t)(sample->now_us - balance->link_since_us), percent = balance->desc.link_percent;
+    uint64_t age_us = (uint64_t)(sample->now_us - balance->link_since_us),
+             percent = balance->desc.link_percent;
     uint64_t waited_percent = (uint64_t)balance->waited_us * 100 / age_us;
     uint64_t bytes_s = (sample->bytes_down - balance->bytes_since) * 1000000u / age_us;
     uint64_t budget = sample->rate_bytes_s * percent / 100;
@@ -213,8 +234,7 @@ static int link_load(const ff_balance *balance, const ff_balance_sample *sample,
         budget = balance->desc.link_bytes_s;
     int32_t wait_q8 = load_of(waited_percent, percent);
     *load_q8 = budget ? load_of(bytes_s, budget) : INT16_MIN;
-    if (wait_q8 > *load_q8)
-        *load_q8 = wait_q8;
+    if (wait_q8 > *load_q8) *load_q8 = wait_q8;
     return waited_percent < SATURATED_PERCENT || bytes_s * SILENT_SHARE >= sample->rate_bytes_s;
 }
 
@@ -231,15 +251,15 @@ static void move(ff_balance *balance, int which, int level, int64_t now_us)
     balance->settled = 0;
 }
 
-/* The most that a step up adds to a load: nothing where it lifts a cap that does not bind, or to a frame where it is the panorama's. */
+/* The most that a step up adds to a load: nothing where it lifts a cap that does not bind, or to a
+ * frame where it is the panorama's. */
 static int gain_q8(const ff_balance *balance, int which, int load, int step)
 {
     if (which == FF_BALANCE_FIDELITY) {
         place low = place_of(balance, balance->level[FF_BALANCE_SHARE], (unsigned)step);
         place high = place_of(balance, balance->level[FF_BALANCE_SHARE], (unsigned)step + 1);
         int finer = high.cap > low.cap && low.cap < low.detail;
-        if (!finer && (load == FF_BALANCE_SHARE || high.error == low.error))
-            return 0;
+        if (!finer && (load == FF_BALANCE_SHARE || high.error == low.error)) return 0;
     }
     return GAIN_Q8(balance->gain_q4[which][load][step]);
 }
@@ -247,13 +267,12 @@ static int gain_q8(const ff_balance *balance, int which, int load, int step)
 static int gains_q8(const ff_balance *balance, int which, int load, int from, int to)
 {
     int sum = 0;
-    for (int step = from; step < to; step++)
-        sum += gain_q8(balance, which, load, step);
+    for (int step = from; step < to; step++) sum += gain_q8(balance, which, load, step);
     return sum;
 }
 
-/* Between two levels a load has changed by so much. If that is more than the steps were known to add, now they are known to add as much,
- * in equal parts. */
+/* Between two levels a load has changed by so much. If that is more than the steps were known to
+ * add, now they are known to add as much, in equal parts. */
 static void learn(ff_balance *balance, int which, int low, int high, int load, int change_q8)
 {
     int missing_q8 = change_q8 - gains_q8(balance, which, load, low, high);
@@ -268,14 +287,14 @@ static int relieve(ff_balance *balance, int load, int64_t now_us)
 {
     if (balance->raised && now_us - balance->moved_us < BLAME_US) {
         int which = balance->raised - 1;
-        learn(balance, which, balance->moved_from, balance->level[which], load, balance->load_q8[load] - balance->before_q8[load]);
+        learn(balance, which, balance->moved_from, balance->level[which], load,
+              balance->load_q8[load] - balance->before_q8[load]);
         balance->raised = 0;
         move(balance, which, balance->moved_from, now_us);
         return 1;
     }
     int level = balance->level[load], steps = 1 + balance->load_q8[load] / RELIEF_STEP_Q8;
-    if (!level)
-        return 0;
+    if (!level) return 0;
     forget(balance);
     balance->raised = 0;
     balance->lowered = (uint8_t)(load + 1);
@@ -291,9 +310,10 @@ static int raise_level(ff_balance *balance, int which, int64_t now_us)
     int from = balance->level[which], to = from;
     for (int fits = 1; fits && to < balance->top[which]; to += fits)
         for (int load = 0; load < FF_BALANCE_LEVELS; load++)
-            fits &= balance->load_q8[load] + gains_q8(balance, which, load, from, to + 1) + 2 * GAIN_Q8(FF_BALANCE_NOISE_Q4) <= 0;
-    if (to == from)
-        return 0;
+            fits &= balance->load_q8[load] + gains_q8(balance, which, load, from, to + 1) +
+                        2 * GAIN_Q8(FF_BALANCE_NOISE_Q4) <=
+                    0;
+    if (to == from) return 0;
     memcpy(balance->before_q8, balance->load_q8, sizeof balance->before_q8);
     balance->raised = (uint8_t)(which + 1);
     balance->moved_from = (uint8_t)from;
@@ -309,15 +329,18 @@ static int decide(ff_balance *balance, const ff_balance_sample *sample)
     int32_t last_q8 = balance->load_q8[FF_BALANCE_SHARE];
     int moved = 0;
     if (told && balance->lowered) { /* what the relief spared, a raise would add */
-        int which = balance->lowered - 1, now_q8 = which == FF_BALANCE_SHARE ? balance->frame_most_q8 : balance->load_q8[which];
-        learn(balance, which, balance->level[which], balance->moved_from, which, balance->before_q8[which] - now_q8);
+        int which = balance->lowered - 1,
+            now_q8 = which == FF_BALANCE_SHARE ? balance->frame_most_q8 : balance->load_q8[which];
+        learn(balance, which, balance->level[which], balance->moved_from, which,
+              balance->before_q8[which] - now_q8);
         balance->lowered = 0;
     }
     if (told && balance->load_q8[FF_BALANCE_FIDELITY] > TOLERANCE_Q8) {
         moved = relieve(balance, FF_BALANCE_FIDELITY, sample->now_us);
     } else if (told && balance->frame_most_q8 != INT32_MIN) {
         balance->load_q8[FF_BALANCE_SHARE] = balance->frame_most_q8;
-        moved = raise_level(balance, FF_BALANCE_FIDELITY, sample->now_us) || raise_level(balance, FF_BALANCE_SHARE, sample->now_us);
+        moved = raise_level(balance, FF_BALANCE_FIDELITY, sample->now_us) ||
+                raise_level(balance, FF_BALANCE_SHARE, sample->now_us);
         balance->load_q8[FF_BALANCE_SHARE] = last_q8;
     }
     begin_link_window(balance, sample);
@@ -326,8 +349,7 @@ static int decide(ff_balance *balance, const ff_balance_sample *sample)
 
 int ff_balance_feed(ff_balance *balance, const ff_balance_sample *sample)
 {
-    if (balance->desc.mode != FF_BALANCE_ON)
-        return 0;
+    if (balance->desc.mode != FF_BALANCE_ON) return 0;
     if (balance->moved_us == INT64_MIN) {
         balance->moved_us = sample->now_us;
         balance->settled = 0;
@@ -344,11 +366,9 @@ int ff_balance_feed(ff_balance *balance, const ff_balance_sample *sample)
     balance->last_us = sample->now_us;
     if (sample->now_us - balance->frame_since_us >= FRAME_WINDOW_US) {
         int32_t load_q8 = balance->load_q8[FF_BALANCE_SHARE] = frame_load(balance);
-        if (load_q8 > balance->frame_most_q8)
-            balance->frame_most_q8 = load_q8;
+        if (load_q8 > balance->frame_most_q8) balance->frame_most_q8 = load_q8;
         begin_frame_window(balance, sample);
-        if (load_q8 > TOLERANCE_Q8 && relieve(balance, FF_BALANCE_SHARE, sample->now_us))
-            return 1;
+        if (load_q8 > TOLERANCE_Q8 && relieve(balance, FF_BALANCE_SHARE, sample->now_us)) return 1;
     }
     return sample->now_us - balance->link_since_us >= LINK_WINDOW_US ? decide(balance, sample) : 0;
 }

@@ -1,8 +1,10 @@
 /* Inside of a client: shared by client*.c only.
  *
  * The block:   [ ff_client | requests | receive buffer ]            from ff_client_create on
- *              [ decoder | new-data items, images | scratch |       carved once the terrain is known (WELCOME, or the pack),
- *                c3d device | view entries | textures | tree ] given back and carved anew for another terrain
+ *              [ decoder | new-data items, images | scratch |       carved once the terrain is
+ *                  known (WELCOME, or the pack),
+ *                c3d device | view entries | textures | tree ] given back and carved anew for
+ *                    another terrain
  * The tree's pool takes what is left, up to NODES_MAX. Then the block is sealed. */
 #ifndef FF_CLIENT_LOCAL_H
 #define FF_CLIENT_LOCAL_H
@@ -20,17 +22,17 @@
 #include "ff_terrain_view.h"
 #include "ff_textures.h"
 
-#define FF_TREE_WISHES 96u
-#define FF_TEXTURE_WISHES 24u
+#define FF_TREE_WISHES     96u
+#define FF_TEXTURE_WISHES  24u
 #define FF_PREFETCH_WISHES 8u
 
 struct ff_client {
-    ff_client_desc desc;     /* defaults filled in */
+    ff_client_desc desc; /* defaults filled in */
     ff_arena arena;
-    size_t fixed_bytes;      /* of the arena: what outlives a terrain */
-    sys_mutex gate;          /* held while the worker steps, and while the pools are carved */
+    size_t fixed_bytes; /* of the arena: what outlives a terrain */
+    sys_mutex gate;     /* held while the worker steps, and while the pools are carved */
     sys_thread thread;
-    uint8_t threaded, stop;  /* stop: under the gate */
+    uint8_t threaded, stop; /* stop: under the gate */
 
     ff_requests requests;
     ff_new_data news;
@@ -40,8 +42,8 @@ struct ff_client {
     uint32_t recv_bytes;
 
     uint8_t have_terrain;
-    int terrain_error;                /* of the terrain met last */
-    uint8_t economy;         /* left out for want of memory: 1 panoramas, 2 images too */
+    int terrain_error; /* of the terrain met last */
+    uint8_t economy;   /* left out for want of memory: 1 panoramas, 2 images too */
     ff_terrain_info info;
     ff_tree *tree;
     c3d_device *device;
@@ -49,37 +51,45 @@ struct ff_client {
     ff_textures textures;
     ff_panorama panorama;
     ff_balance balance;
-    uint32_t frame_cost;     /* as reported; 0: triangles count */
-    uint8_t all_client;      /* by the balance: no panoramas are wanted; one still shown is a backdrop until the ground is here */
+    uint32_t frame_cost; /* as reported; 0: triangles count */
+    /* by the balance: no panoramas are wanted; one still shown is a backdrop until the ground is
+     * here */
+    uint8_t all_client;
     ff_sky sky;
     ff_motion motion;
     ff_turn turn;
     ff_refusals refusals;
 
     uint8_t has_camera, battery_low, interrupted, has_textures;
-    uint8_t dirty;           /* the picture has to be made anew */
-    uint8_t unranked;        /* only what is asked for has to be: the connection was lost */
+    uint8_t dirty;    /* the picture has to be made anew */
+    uint8_t unranked; /* only what is asked for has to be: the connection was lost */
     unsigned show;
-    c3d_camera camera;       /* of the last update, as given */
+    c3d_camera camera; /* of the last update, as given */
     ff_view last_view;
     uint32_t losses_seen;
     uint64_t frame_hash, geometry_hash;
     uint32_t frames_updated, frames_skipped;
 };
 
-/* client_carve.c: pools for client->info; under the gate (or before the worker runs). FF_OK, FF_ERR_MEMORY, FF_ERR_UNSUPPORTED. */
+/* client_carve.c: pools for client->info; under the gate (or before the worker runs). FF_OK,
+ * FF_ERR_MEMORY, FF_ERR_UNSUPPORTED. */
 int ff_client_carve(ff_client *client);
 void ff_client_uncarve(ff_client *client);
 /* client_rank.c: the request queue anew from what tree, textures, panorama and prediction want. */
-void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality, int64_t now_us);
-/* client_balance.c. begin: for a terrain just met, or after settings changed; `fresh`: from the start. step: once an update, under a
- * terrain. quality: what the balance changes of the quality as set. */
+void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality,
+                    int64_t now_us);
+/* client_balance.c. begin: for a terrain just met, or after settings changed; `fresh`: from the
+ * start. step: once an update, under a terrain. quality: what the balance changes of the quality as
+ * set. */
 void ff_client_balance_begin(ff_client *client, int fresh);
 void ff_client_balance_step(ff_client *client, const c3d_camera *camera, int64_t now_us);
 void ff_client_balance_quality(const ff_client *client, ff_quality *quality);
 void ff_client_balance_stats(const ff_client *client, ff_balance_stats *stats);
 /* client_update.c: what is in force, as set, by the balance, or coarser while power is low. */
 ff_quality ff_client_quality(const ff_client *client);
-static inline int ff_client_low_power(const ff_client *client) { return client->battery_low || client->interrupted; }
+static inline int ff_client_low_power(const ff_client *client)
+{
+    return client->battery_low || client->interrupted;
+}
 
 #endif

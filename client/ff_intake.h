@@ -1,5 +1,5 @@
-/* Payloads to new data: entropy decoding of heights and JPEG decoding of images, on the worker's side.
- * Used by the stream (bytes from a link) and by the local pack alike. */
+/* Payloads to new data: entropy decoding of heights and JPEG decoding of images, on the worker's
+ * side. Used by the stream (bytes from a link) and by the local pack alike. */
 #ifndef FF_INTAKE_H
 #define FF_INTAKE_H
 
@@ -10,17 +10,20 @@ typedef struct ff_intake {
     ff_new_data *news;
     ff_decoder *decoder;
     ff_terrain_info info;
-    uint8_t *rgb;         /* scratch of one image, RGB888 */
+    uint8_t *rgb; /* scratch of one image, RGB888 */
     size_t rgb_bytes;
-    uint16_t *columns;    /* scratch: tops and bottoms of a face's columns, 2 * face_size_max */
+    uint16_t *columns; /* scratch: tops and bottoms of a face's columns, 2 * face_size_max */
     uint16_t face_size_max;
 } ff_intake;
 
-/* Each puts one item on the list and moves the request on. FF_OK (an undecodable payload too: the item says so), or
- * FF_ERR_AGAIN: the list is full, nothing happened, try later. */
-int ff_intake_node(ff_intake *intake, const ff_request *request, const uint8_t *payload, uint32_t bytes);
-int ff_intake_texture(ff_intake *intake, const ff_request *request, const uint8_t *jpeg, uint32_t bytes);
-int ff_intake_face(ff_intake *intake, const ff_request *request, const ff_face *face, uint32_t bytes);
+/* Each puts one item on the list and moves the request on. FF_OK (an undecodable payload too: the
+ * item says so), or FF_ERR_AGAIN: the list is full, nothing happened, try later. */
+int ff_intake_node(ff_intake *intake, const ff_request *request, const uint8_t *payload,
+                   uint32_t bytes);
+int ff_intake_texture(ff_intake *intake, const ff_request *request, const uint8_t *jpeg,
+                      uint32_t bytes);
+int ff_intake_face(ff_intake *intake, const ff_request *request, const ff_face *face,
+                   uint32_t bytes);
 /* No answer will come: FF_ERR_CLOSED stands for cancelled. */
 int ff_intake_failed(ff_intake *intake, const ff_request *request, int error);
 

@@ -4,11 +4,11 @@
 
 #include <stddef.h>
 
-int ff_intake_texture(ff_intake *intake, const ff_request *request, const uint8_t *jpeg, uint32_t bytes)
+int ff_intake_texture(ff_intake *intake, const ff_request *request, const uint8_t *jpeg,
+                      uint32_t bytes)
 {
     ff_new_item *item = ff_intake_begin(intake, request, 1, bytes);
-    if (!item)
-        return FF_ERR_AGAIN;
+    if (!item) return FF_ERR_AGAIN;
     unsigned side = 1u << intake->info.texture_log2;
     item->width = item->height = (uint16_t)side;
     if ((size_t)side * side * 3 > intake->rgb_bytes)

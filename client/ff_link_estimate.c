@@ -1,6 +1,6 @@
 #include "ff_link_estimate.h"
 
-#define INTERVAL_US_MIN 100000
+#define INTERVAL_US_MIN  100000
 #define WINDOW_BYTES_MAX (1u << 24)
 
 const uint8_t ff_link_built = 1;
@@ -15,8 +15,7 @@ void ff_link_estimate_reset(ff_link_estimate *link)
 
 void ff_link_estimate_sent(ff_link_estimate *link, int64_t now_us)
 {
-    if (link->since_us != INT64_MIN)
-        return;
+    if (link->since_us != INT64_MIN) return;
     link->since_us = now_us;
     link->interval_bytes = 0;
     link->window_full = 0;
@@ -25,8 +24,7 @@ void ff_link_estimate_sent(ff_link_estimate *link, int64_t now_us)
 static void take_sample(ff_link_estimate *link, int64_t interval_us)
 {
     uint64_t sample = (uint64_t)link->interval_bytes * 1000000u / (uint64_t)interval_us;
-    if (sample > UINT32_MAX / 2)
-        sample = UINT32_MAX / 2;
+    if (sample > UINT32_MAX / 2) sample = UINT32_MAX / 2;
     if (link->bytes_s == 0)
         link->bytes_s = (uint32_t)sample;
     else if (sample > link->bytes_s)
@@ -35,10 +33,10 @@ static void take_sample(ff_link_estimate *link, int64_t interval_us)
         link->bytes_s -= (link->bytes_s - (uint32_t)sample) / 8;
 }
 
-void ff_link_estimate_received(ff_link_estimate *link, uint32_t bytes, int outstanding, int64_t now_us)
+void ff_link_estimate_received(ff_link_estimate *link, uint32_t bytes, int outstanding,
+                               int64_t now_us)
 {
-    if (link->since_us == INT64_MIN)
-        return;
+    if (link->since_us == INT64_MIN) return;
     link->interval_bytes += bytes;
     int64_t interval_us = now_us - link->since_us;
     int64_t wanted_us = link->rtt_us > INTERVAL_US_MIN ? link->rtt_us : INTERVAL_US_MIN;
@@ -48,17 +46,14 @@ void ff_link_estimate_received(ff_link_estimate *link, uint32_t bytes, int outst
         link->interval_bytes = 0;
         link->window_full = 0;
     }
-    if (!outstanding)
-        link->since_us = INT64_MIN;
+    if (!outstanding) link->since_us = INT64_MIN;
 }
 
 void ff_link_estimate_answer(ff_link_estimate *link, int64_t sent_us, int64_t now_us)
 {
     int64_t sample = now_us - sent_us;
-    if (sample < 1)
-        sample = 1;
-    if (sample > INT32_MAX)
-        sample = INT32_MAX;
+    if (sample < 1) sample = 1;
+    if (sample > INT32_MAX) sample = INT32_MAX;
     if (link->rtt_us == 0 || sample < link->rtt_us)
         link->rtt_us = (uint32_t)sample;
     else
@@ -68,7 +63,6 @@ void ff_link_estimate_answer(ff_link_estimate *link, int64_t sent_us, int64_t no
 uint32_t ff_link_estimate_window(const ff_link_estimate *link)
 {
     uint64_t bytes = 2 * ((uint64_t)link->bytes_s * link->rtt_us / 1000000u);
-    if (bytes > WINDOW_BYTES_MAX)
-        bytes = WINDOW_BYTES_MAX;
+    if (bytes > WINDOW_BYTES_MAX) bytes = WINDOW_BYTES_MAX;
     return bytes > FF_WINDOW_BYTES_MIN ? (uint32_t)bytes : FF_WINDOW_BYTES_MIN;
 }

@@ -5,14 +5,15 @@
 static int answer(ff_intake *intake, const ff_pack *pack, const ff_request *request)
 {
     static const enum ff_section_kind section[FF_WANT_KINDS] = {
-        [FF_WANT_ROOT] = FF_SECTION_ROOT, [FF_WANT_REFINEMENT] = FF_SECTION_REFINEMENT, [FF_WANT_TEXTURE] = FF_SECTION_TEXTURE
+        [FF_WANT_ROOT] = FF_SECTION_ROOT,
+        [FF_WANT_REFINEMENT] = FF_SECTION_REFINEMENT,
+        [FF_WANT_TEXTURE] = FF_SECTION_TEXTURE
     };
     if (request->kind == FF_WANT_PANORAMA) /* nobody here draws them */
         return ff_intake_failed(intake, request, FF_ERR_UNSUPPORTED);
     const uint8_t *payload;
     int bytes = ff_pack_record(pack, section[request->kind], request->key, &payload);
-    if (bytes < 0)
-        return ff_intake_failed(intake, request, bytes);
+    if (bytes < 0) return ff_intake_failed(intake, request, bytes);
     if (request->kind == FF_WANT_TEXTURE)
         return ff_intake_texture(intake, request, payload, (uint32_t)bytes);
     return ff_intake_node(intake, request, payload, (uint32_t)bytes);
@@ -23,10 +24,8 @@ int ff_local_step(ff_intake *intake, const ff_pack *pack, int prefetch, int64_t 
     int moved = 0;
     for (int i = 0; i < ANSWERS_A_STEP; i++) {
         ff_request request;
-        if (!ff_new_data_room(intake->news, intake->rgb_bytes != 0))
-            break;
-        if (!ff_requests_next(intake->requests, now_us, 1, 0, prefetch, &request))
-            break;
+        if (!ff_new_data_room(intake->news, intake->rgb_bytes != 0)) break;
+        if (!ff_requests_next(intake->requests, now_us, 1, 0, prefetch, &request)) break;
         (void)answer(intake, pack, &request); /* there is room: it cannot fail */
         moved = 1;
     }

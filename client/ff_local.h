@@ -5,7 +5,8 @@
 #include "ff_intake.h"
 #include "../protocol/ff_pack.h"
 
-/* Answers queued requests, the most urgent first, until the new-data list is full. 1 when any was answered. */
+/* Answers queued requests, the most urgent first, until the new-data list is full. 1 when any was
+ * answered. */
 int ff_local_step(ff_intake *intake, const ff_pack *pack, int prefetch, int64_t now_us);
 
 #endif

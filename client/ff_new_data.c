@@ -8,8 +8,8 @@ size_t ff_new_data_item_bytes(unsigned item_slots, unsigned values)
     return item_slots * (sizeof(ff_new_item) + values * sizeof(int32_t));
 }
 
-void ff_new_data_init(ff_new_data *list, unsigned item_slots, unsigned values, void *items, unsigned image_slots,
-                      size_t image_bytes, void *images)
+void ff_new_data_init(ff_new_data *list, unsigned item_slots, unsigned values, void *items,
+                      unsigned image_slots, size_t image_bytes, void *images)
 {
     list->item = items;
     list->item_slots = (uint16_t)item_slots;
@@ -38,14 +38,15 @@ ff_new_item *ff_new_data_begin(ff_new_data *list, int image)
         return NULL; /* the other side only ever makes room: still true below */
     sys_mutex_lock(&list->mutex);
     unsigned place = (list->head + list->count) % list->item_slots;
-    unsigned image_place = list->image_slots ? (list->image_head + list->image_count) % list->image_slots : 0;
+    unsigned image_place = list->image_slots
+                               ? (list->image_head + list->image_count) % list->image_slots
+                               : 0;
     sys_mutex_unlock(&list->mutex);
     ff_new_item *item = &list->item[place];
     int32_t *value = item->residuals.value;
     memset(item, 0, sizeof *item);
     item->residuals.value = value;
-    if (image)
-        item->pixels = (uint16_t *)(void *)(list->images + image_place * list->image_bytes);
+    if (image) item->pixels = (uint16_t *)(void *)(list->images + image_place * list->image_bytes);
     return item;
 }
 
@@ -55,8 +56,7 @@ void ff_new_data_put(ff_new_data *list, ff_new_item *item)
     assert(item == &list->item[(list->head + list->count) % list->item_slots]);
     list->count++;
     list->image_count = (uint16_t)(list->image_count + (item->pixels != NULL));
-    if (list->count > list->high)
-        list->high = list->count;
+    if (list->count > list->high) list->high = list->count;
     sys_mutex_unlock(&list->mutex);
 }
 

@@ -2,20 +2,20 @@
 
 #include <string.h>
 
-#define ALL_FACES ((1u << FF_FACE_COUNT) - 1)
-#define RETRY_US 2000000          /* the server was busy */
-#define RETRY_LATER_US 30000000   /* and again and again */
+#define ALL_FACES         ((1u << FF_FACE_COUNT) - 1)
+#define RETRY_US          2000000  /* the server was busy */
+#define RETRY_LATER_US    30000000 /* and again and again */
 #define REFUSALS_IN_A_ROW 3
-#define TURNS_US 60000000         /* after a turn all faces are wanted for so long */
-#define TURN 8192                 /* an eighth of a circle */
-#define TURN_WITHIN_US 10000000
-#define LEAD_US_MAX 10000000
-#define PRIORITY_FACE 0x10000u    /* among the first: before refinements, beside roots */
+#define TURNS_US          60000000 /* after a turn all faces are wanted for so long */
+#define TURN              8192     /* an eighth of a circle */
+#define TURN_WITHIN_US    10000000
+#define LEAD_US_MAX       10000000
+#define PRIORITY_FACE     0x10000u /* among the first: before refinements, beside roots */
 
 const uint8_t ff_panorama_built = 1;
 
-void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panorama_desc *desc, const ff_terrain_info *info,
-                      unsigned face_size)
+void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panorama_desc *desc,
+                      const ff_terrain_info *info, unsigned face_size)
 {
     uint32_t serial = panorama->serial;
     memset(panorama, 0, sizeof *panorama);
@@ -23,23 +23,22 @@ void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panora
     panorama->device = device;
     panorama->desc = *desc;
     panorama->face_size = (uint16_t)face_size;
-    panorama->ground_wu[0] = ff_height_wu(info, info->height_min) - ff_steps_wu(info, info->max_error);
-    panorama->ground_wu[1] = ff_height_wu(info, info->height_max) + ff_steps_wu(info, info->max_error);
+    panorama->ground_wu[0] = ff_height_wu(info, info->height_min) -
+                             ff_steps_wu(info, info->max_error);
+    panorama->ground_wu[1] = ff_height_wu(info, info->height_max) +
+                             ff_steps_wu(info, info->max_error);
     panorama->active = panorama->next = panorama->shown = -1;
     panorama->retry_us = INT64_MIN;
-    static const uint16_t quad[4] = {0, 1, 2, 3};
-    if (device && face_size)
-        panorama->quad = c3d_strip_make(device, quad, 4);
+    static const uint16_t quad[4] = { 0, 1, 2, 3 };
+    if (device && face_size) panorama->quad = c3d_strip_make(device, quad, 4);
 }
 
 static void drop_set(ff_panorama *panorama, int index)
 {
     ff_panorama_set *set = &panorama->set[index];
     for (unsigned face = 0; face < FF_FACE_COUNT; face++) {
-        if (set->texture[face].id)
-            c3d_texture_free(panorama->device, set->texture[face]);
-        if (set->mesh[face].id)
-            c3d_mesh_free(panorama->device, set->mesh[face]);
+        if (set->texture[face].id) c3d_texture_free(panorama->device, set->texture[face]);
+        if (set->mesh[face].id) c3d_mesh_free(panorama->device, set->mesh[face]);
     }
     memset(set, 0, sizeof *set);
 }
@@ -56,7 +55,8 @@ static unsigned known(const ff_panorama_set *set)
     return (unsigned)set->held | set->empty | set->failed;
 }
 
-static void begin_set(ff_panorama *panorama, const c3d_camera *camera, const ff_motion *motion, int64_t now_us)
+static void begin_set(ff_panorama *panorama, const c3d_camera *camera, const ff_motion *motion,
+                      int64_t now_us)
 {
     int index = panorama->active == 0 ? 1 : 0;
     ff_panorama_set *set = &panorama->set[index];
@@ -75,24 +75,21 @@ static void measure_lead(ff_panorama *panorama, ff_panorama_set *set, int64_t no
     panorama->lead_us = panorama->lead_us ? (panorama->lead_us + took_us) / 2 : took_us;
 }
 
-/* The set that is coming has all that is in view: it takes over, unless the drawn one is still good and it not yet. */
+/* The set that is coming has all that is in view: it takes over, unless the drawn one is still good
+ * and it not yet. */
 static int take_over(ff_panorama *panorama, const c3d_camera *camera, int64_t now_us)
 {
-    if (panorama->next < 0)
-        return 0;
+    if (panorama->next < 0) return 0;
     ff_panorama_set *next = &panorama->set[panorama->next];
-    if ((ff_panorama_faces_in_view(camera) & ~known(next)) != 0)
-        return 0;
-    if (!next->ready)
-        measure_lead(panorama, next, now_us);
+    if ((ff_panorama_faces_in_view(camera) & ~known(next)) != 0) return 0;
+    if (!next->ready) measure_lead(panorama, next, now_us);
     if (panorama->active >= 0 && ff_panorama_set_outdated(panorama, next, camera) &&
         !ff_panorama_set_outdated(panorama, &panorama->set[panorama->active], camera))
         return 0;
     for (unsigned face = 0; face < FF_FACE_COUNT; face++) /* no longer expected: not there */
         if (!(next->held >> face & 1u))
             ff_panorama_sight_face(&next->sight, face, 1, 0, 0, next->front_wu);
-    if (panorama->active >= 0)
-        drop_set(panorama, panorama->active);
+    if (panorama->active >= 0) drop_set(panorama, panorama->active);
     panorama->active = panorama->next;
     panorama->next = -1;
     return 1;
@@ -111,32 +108,38 @@ static void look_for_turns(ff_panorama *panorama, const c3d_camera *camera, int6
 
 static int left_behind(const ff_panorama *panorama, const c3d_camera *camera, int index)
 {
-    return index >= 0 && ff_panorama_left_behind(camera->pos_wu, panorama->set[index].position_wu, panorama->set[index].front_wu);
+    return index >= 0 && ff_panorama_left_behind(camera->pos_wu, panorama->set[index].position_wu,
+                                                 panorama->set[index].front_wu);
 }
 
-static int refresh(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, const ff_motion *motion, int hold,
-                   int64_t now_us)
+static int refresh(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera,
+                   const ff_motion *motion, int hold, int64_t now_us)
 {
     int changed = take_over(panorama, camera, now_us);
     look_for_turns(panorama, camera, now_us);
-    if (hold || now_us < panorama->retry_us)
-        return changed;
+    if (hold || now_us < panorama->retry_us) return changed;
     if (panorama->retry_us != INT64_MIN) { /* the wait is over: want again */
         panorama->retry_us = INT64_MIN;
         changed = 1;
     }
-    if (panorama->next >= 0 ? !ff_panorama_set_outdated(panorama, &panorama->set[panorama->next], camera)
-                            : !ff_panorama_outdated_soon(panorama, camera, motion))
+    if (panorama->next >= 0
+            ? !ff_panorama_set_outdated(panorama, &panorama->set[panorama->next], camera)
+            : !ff_panorama_outdated_soon(panorama, camera, motion))
         return changed;
-    if (left_behind(panorama, camera, panorama->next) && !ff_requests_cancel(requests, panorama->set[panorama->next].key)) {
-        drop_set(panorama, panorama->next); /* it was not yet asked for, or its cancellation was answered */
+    if (left_behind(panorama, camera, panorama->next) &&
+        !ff_requests_cancel(requests, panorama->set[panorama->next].key)) {
+        /* it was not yet asked for, or its cancellation was answered */
+        drop_set(panorama, panorama->next);
         panorama->next = -1;
     }
     if (panorama->next >= 0 && !panorama->desc.hold_back)
         return changed; /* one set outstanding at most */
     int newest = panorama->next >= 0 ? panorama->next : panorama->active;
-    if (newest >= 0 && ff_requests_cancel(requests, panorama->set[newest].key) && !panorama->desc.hold_back)
-        return changed; /* the old set's last faces are still on their way: wait for the answer to the cancellation */
+    if (newest >= 0 && ff_requests_cancel(requests, panorama->set[newest].key) &&
+        !panorama->desc.hold_back)
+        /* the old set's last faces are still on their way: wait for the answer to the
+         * cancellation */
+        return changed;
     ff_request_counts counts;
     ff_requests_get_counts(requests, &counts, NULL);
     if (counts.panoramas_in_flight && !panorama->desc.hold_back)
@@ -145,11 +148,10 @@ static int refresh(ff_panorama *panorama, ff_requests *requests, const c3d_camer
     return 1;
 }
 
-int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, const ff_motion *motion, int hold,
-                       int64_t now_us)
+int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera,
+                       const ff_motion *motion, int hold, int64_t now_us)
 {
-    if (!panorama->desc.enabled || !panorama->face_size)
-        return 0;
+    if (!panorama->desc.enabled || !panorama->face_size) return 0;
     int changed = refresh(panorama, requests, camera, motion, hold, now_us);
     int8_t shown = left_behind(panorama, camera, panorama->active) ? -1 : panorama->active;
     changed |= shown != panorama->shown;
@@ -160,11 +162,13 @@ int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_c
 int ff_panorama_late(const ff_panorama *panorama, const c3d_camera *camera)
 {
     const ff_panorama_set *set = &panorama->set[panorama->active >= 0 ? panorama->active : 0];
-    return panorama->next >= 0 && panorama->active >= 0 && set->front_wu == panorama->desc.back_plane_wu &&
+    return panorama->next >= 0 && panorama->active >= 0 &&
+           set->front_wu == panorama->desc.back_plane_wu &&
            ff_panorama_set_outdated(panorama, set, camera);
 }
 
-/* Faces of `missing`, the one nearest the view's axis first: found by narrowing the view to its middle. */
+/* Faces of `missing`, the one nearest the view's axis first: found by narrowing the view to its
+ * middle. */
 static void list_faces(ff_get_panorama *request, unsigned missing, const c3d_camera *camera)
 {
     c3d_camera narrow = *camera;
@@ -177,30 +181,34 @@ static void list_faces(ff_get_panorama *request, unsigned missing, const c3d_cam
                 request->face[request->face_count++] = (uint8_t)face;
 }
 
-void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera, unsigned soon, int64_t now_us)
+void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera,
+                      unsigned soon, int64_t now_us)
 {
     int newest = panorama->next >= 0 ? panorama->next : panorama->active;
-    if (!panorama->desc.enabled || newest < 0 || now_us < panorama->retry_us)
-        return;
+    if (!panorama->desc.enabled || newest < 0 || now_us < panorama->retry_us) return;
     const ff_panorama_set *set = &panorama->set[newest];
     unsigned in_view = ff_panorama_faces_in_view(camera) & ~known(set), missing = in_view;
     if (!in_view && panorama->next < 0)
         missing = (now_us < panorama->turns_until_us ? ALL_FACES : soon) & ~known(set);
-    if (!missing)
-        return;
-    ff_get_panorama request = {.front_wu = set->front_wu, .back_wu = panorama->desc.server_back_wu,
-                               .face_size = panorama->face_size, .quality = panorama->desc.jpeg_quality};
+    if (!missing) return;
+    ff_get_panorama request = { .front_wu = set->front_wu,
+                                .back_wu = panorama->desc.server_back_wu,
+                                .face_size = panorama->face_size,
+                                .quality = panorama->desc.jpeg_quality };
     memcpy(request.position_wu, set->position_wu, sizeof request.position_wu);
     list_faces(&request, missing, camera);
-    ff_requests_want(requests, FF_WANT_PANORAMA, set->key, in_view ? FF_CLASS_FIRST : FF_CLASS_PREFETCH,
-                     in_view ? PRIORITY_FACE : 1, &request);
+    ff_requests_want(requests, FF_WANT_PANORAMA, set->key,
+                     in_view ? FF_CLASS_FIRST : FF_CLASS_PREFETCH, in_view ? PRIORITY_FACE : 1,
+                     &request);
 }
 
 /* ---- faces ---- */
 
-/* Corners of a face's quad and where its image lies, in units of half a texel: the cube reaches from -size to size. Side faces:
- * columns run along x or y, rows along z. UP and DOWN: columns along x, rows along y. */
-static void make_quad(ff_panorama_set *set, unsigned face, int size, int top_row, int rows, c3d_vertex quad[4])
+/* Corners of a face's quad and where its image lies, in units of half a texel: the cube reaches
+ * from -size to size. Side faces: columns run along x or y, rows along z. UP and DOWN: columns
+ * along x, rows along y. */
+static void make_quad(ff_panorama_set *set, unsigned face, int size, int top_row, int rows,
+                      c3d_vertex quad[4])
 {
     int high = size - 2 * top_row, low = high - 2 * rows;
     if (face == FF_FACE_UP) { /* its image's top edge looks south */
@@ -213,10 +221,12 @@ static void make_quad(ff_panorama_set *set, unsigned face, int size, int top_row
         c3d_vertex *vertex = &quad[corner];
         memset(vertex, 0, sizeof *vertex);
         memset(vertex->rgba, 255, sizeof vertex->rgba);
-        int forward = face == FF_FACE_NORTH || face == FF_FACE_EAST || face == FF_FACE_UP ? size : -size;
+        int forward = face == FF_FACE_NORTH || face == FF_FACE_EAST || face == FF_FACE_UP ? size
+                                                                                          : -size;
         int x = face == FF_FACE_EAST || face == FF_FACE_WEST ? forward : across;
-        int y = face == FF_FACE_NORTH || face == FF_FACE_SOUTH ? forward : face == FF_FACE_EAST || face == FF_FACE_WEST ? across
-                                                                                                                        : along;
+        int y = face == FF_FACE_NORTH || face == FF_FACE_SOUTH ? forward
+                : face == FF_FACE_EAST || face == FF_FACE_WEST ? across
+                                                               : along;
         vertex->x = (int16_t)x;
         vertex->y = (int16_t)y;
         vertex->z = (int16_t)(face == FF_FACE_UP || face == FF_FACE_DOWN ? forward : along);
@@ -228,22 +238,23 @@ static void take_image(ff_panorama *panorama, ff_panorama_set *set, const ff_new
 {
     unsigned face = item->face;
     set->held |= (uint8_t)(1u << face);
-    ff_panorama_sight_face(&set->sight, face, item->width, item->face_top_row, item->face_row_count, set->front_wu);
+    ff_panorama_sight_face(&set->sight, face, item->width, item->face_top_row, item->face_row_count,
+                           set->front_wu);
     panorama->faces++;
-    if (!panorama->device)
-        return;
+    if (!panorama->device) return;
     c3d_vertex quad[4];
     make_quad(set, face, item->width, item->face_top_row, item->face_row_count, quad);
     set->height[face] = item->height;
-    set->texture[face] = c3d_texture_make(panorama->device, C3D_RGBA5551, item->width, item->height, item->pixels);
+    set->texture[face] = c3d_texture_make(panorama->device, C3D_RGBA5551, item->width, item->height,
+                                          item->pixels);
     set->mesh[face] = c3d_mesh_make(panorama->device, quad, 4);
 }
 
 static void take_refusal(ff_panorama *panorama, int64_t now_us)
 {
-    if (panorama->refusals < REFUSALS_IN_A_ROW)
-        panorama->refusals++;
-    panorama->retry_us = now_us + (panorama->refusals < REFUSALS_IN_A_ROW ? RETRY_US : RETRY_LATER_US);
+    if (panorama->refusals < REFUSALS_IN_A_ROW) panorama->refusals++;
+    panorama->retry_us = now_us +
+                         (panorama->refusals < REFUSALS_IN_A_ROW ? RETRY_US : RETRY_LATER_US);
 }
 
 int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now_us)
@@ -252,15 +263,12 @@ int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now
     for (int i = 0; i < 2; i++) {
         ff_panorama_set *set = &panorama->set[i];
         unsigned bit = 1u << item->face;
-        if (set->key != item->key || !set->key)
-            continue;
+        if (set->key != item->key || !set->key) continue;
         if (!whole) {
-            if (item->error != FF_ERR_CLOSED)
-                take_refusal(panorama, now_us);
+            if (item->error != FF_ERR_CLOSED) take_refusal(panorama, now_us);
             return 1;
         }
-        if (known(set) & bit)
-            return 0;
+        if (known(set) & bit) return 0;
         panorama->refusals = 0;
         if (item->error != FF_OK)
             set->failed |= (uint8_t)bit;
@@ -276,13 +284,18 @@ int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now
     return 0;
 }
 
-static void draw_face(const ff_panorama *panorama, const ff_panorama_set *set, unsigned face, int32_t scale_wu)
+static void draw_face(const ff_panorama *panorama, const ff_panorama_set *set, unsigned face,
+                      int32_t scale_wu)
 {
     int along = 32768 / set->height[face], across = 32768 / panorama->face_size;
     int s_backward = face == FF_FACE_SOUTH || face == FF_FACE_EAST, t_backward = face == FF_FACE_UP;
-    c3d_draw draw = {.mesh = set->mesh[face], .strip = panorama->quad, .xy_scale_wu = scale_wu,
-                     .z_scale_q16 = (uint32_t)scale_wu << 16, .texture = set->texture[face], .colour = 0xFFFFFFFFu,
-                     .flags = C3D_DRAW_TEXTURED | C3D_DRAW_BACKDROP | C3D_DRAW_ALPHA_TEST};
+    c3d_draw draw = { .mesh = set->mesh[face],
+                      .strip = panorama->quad,
+                      .xy_scale_wu = scale_wu,
+                      .z_scale_q16 = (uint32_t)scale_wu << 16,
+                      .texture = set->texture[face],
+                      .colour = 0xFFFFFFFFu,
+                      .flags = C3D_DRAW_TEXTURED | C3D_DRAW_BACKDROP | C3D_DRAW_ALPHA_TEST };
     if (face == FF_FACE_NORTH || face == FF_FACE_SOUTH)
         draw.flags |= C3D_DRAW_TEX_XZ;
     else if (face == FF_FACE_EAST || face == FF_FACE_WEST)
@@ -296,11 +309,10 @@ static void draw_face(const ff_panorama *panorama, const ff_panorama_set *set, u
 
 void ff_panorama_draw(const ff_panorama *panorama, int32_t near_wu)
 {
-    if (panorama->shown < 0 || !panorama->desc.enabled)
-        return;
+    if (panorama->shown < 0 || !panorama->desc.enabled) return;
     const ff_panorama_set *set = &panorama->set[panorama->shown];
-    int32_t scale_wu = 2 * (near_wu / panorama->face_size + 1); /* the cube's faces lie two near planes away */
+    /* the cube's faces lie two near planes away */
+    int32_t scale_wu = 2 * (near_wu / panorama->face_size + 1);
     for (unsigned face = 0; face < FF_FACE_COUNT; face++)
-        if (set->texture[face].id && set->mesh[face].id)
-            draw_face(panorama, set, face, scale_wu);
+        if (set->texture[face].id && set->mesh[face].id) draw_face(panorama, set, face, scale_wu);
 }

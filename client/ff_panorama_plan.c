@@ -1,43 +1,48 @@
-/* Where is the next set taken, and when is it asked for? Both by the motion: Hybrid takes it where the viewer is when the old one is
- * outdated, but then half of the ground over which it is good lies behind, and it is too late by the time of a round trip. */
+/* Where is the next set taken, and when is it asked for? Both by the motion: Hybrid takes it where
+ * the viewer is when the old one is outdated, but then half of the ground over which it is good
+ * lies behind, and it is too late by the time of a round trip. */
 #include "ff_panorama.h"
 
 #include <string.h>
 
-#define HALVINGS 7
-#define TRUST_OF_8 7 /* of the way that would do: the path may bend */
+#define HALVINGS     7
+#define TRUST_OF_8   7 /* of the way that would do: the path may bend */
 #define AHEAD_US_MAX 30000000
 
-int ff_panorama_set_outdated(const ff_panorama *panorama, const ff_panorama_set *set, const c3d_camera *camera)
+int ff_panorama_set_outdated(const ff_panorama *panorama, const ff_panorama_set *set,
+                             const c3d_camera *camera)
 {
     return set->front_wu != panorama->desc.back_plane_wu ||
-           ff_panorama_outdated(camera, set->position_wu, &set->sight, set->front_wu, panorama->desc.error_px_q8);
+           ff_panorama_outdated(camera, set->position_wu, &set->sight, set->front_wu,
+                                panorama->desc.error_px_q8);
 }
 
 /* The camera where the viewer will be when a set asked for now is here. */
-static c3d_camera camera_then(const ff_panorama *panorama, const c3d_camera *camera, const ff_motion *motion)
+static c3d_camera camera_then(const ff_panorama *panorama, const c3d_camera *camera,
+                              const ff_motion *motion)
 {
     c3d_camera then = *camera;
     (void)ff_motion_level(motion, panorama->lead_us, then.pos_wu);
     return then;
 }
 
-int ff_panorama_outdated_soon(const ff_panorama *panorama, const c3d_camera *camera, const ff_motion *motion)
+int ff_panorama_outdated_soon(const ff_panorama *panorama, const c3d_camera *camera,
+                              const ff_motion *motion)
 {
-    if (panorama->active < 0)
-        return 1;
+    if (panorama->active < 0) return 1;
     const ff_panorama_set *set = &panorama->set[panorama->active];
     c3d_camera then = camera_then(panorama, camera, motion);
-    return ff_panorama_set_outdated(panorama, set, camera) || ff_panorama_set_outdated(panorama, set, &then);
+    return ff_panorama_set_outdated(panorama, set, camera) ||
+           ff_panorama_set_outdated(panorama, set, &then);
 }
 
-/* What another set will show: on every side as much as the drawn one does on any; without one, all that the terrain has. */
+/* What another set will show: on every side as much as the drawn one does on any; without one, all
+ * that the terrain has. */
 static void expect(const ff_panorama *panorama, ff_panorama_set *set)
 {
     int32_t z_wu = set->front_wu, low_wu = INT32_MAX, high_wu = INT32_MIN;
     ff_panorama_sight_terrain(&set->sight, set->position_wu, panorama->ground_wu, z_wu);
-    if (panorama->active < 0 || panorama->set[panorama->active].front_wu != z_wu)
-        return;
+    if (panorama->active < 0 || panorama->set[panorama->active].front_wu != z_wu) return;
     const ff_panorama_sight *drawn = &panorama->set[panorama->active].sight;
     for (unsigned face = 0; face < FF_FACE_UP; face++)
         if (drawn->low_wu[face] <= drawn->high_wu[face]) {
@@ -51,12 +56,12 @@ static void expect(const ff_panorama *panorama, ff_panorama_set *set)
     }
 }
 
-/* 1 when a set taken where the viewer will be `ahead_us` from now is good from the time on when it is here. */
-static int is_good(const ff_panorama *panorama, const c3d_camera *camera, const c3d_camera *then, const ff_motion *motion,
-                   int64_t ahead_us, ff_panorama_set *set)
+/* 1 when a set taken where the viewer will be `ahead_us` from now is good from the time on when it
+ * is here. */
+static int is_good(const ff_panorama *panorama, const c3d_camera *camera, const c3d_camera *then,
+                   const ff_motion *motion, int64_t ahead_us, ff_panorama_set *set)
 {
-    if (!ff_motion_level(motion, ahead_us, set->position_wu))
-        return 0;
+    if (!ff_motion_level(motion, ahead_us, set->position_wu)) return 0;
     for (int axis = 0; axis < 2; axis++) {
         int64_t away_wu = (int64_t)set->position_wu[axis] - camera->pos_wu[axis];
         if (away_wu > set->front_wu / 4 || away_wu < -set->front_wu / 4)
@@ -66,7 +71,8 @@ static int is_good(const ff_panorama *panorama, const c3d_camera *camera, const 
     return !ff_panorama_set_outdated(panorama, set, then);
 }
 
-void ff_panorama_plan(const ff_panorama *panorama, const c3d_camera *camera, const ff_motion *motion, ff_panorama_set *set)
+void ff_panorama_plan(const ff_panorama *panorama, const c3d_camera *camera,
+                      const ff_motion *motion, ff_panorama_set *set)
 {
     c3d_camera then = camera_then(panorama, camera, motion);
     int64_t good_us = 0, bad_us = AHEAD_US_MAX;

@@ -5,18 +5,17 @@
 /* The same ground, sample for sample: what is held stays valid. */
 static int same_terrain(const ff_terrain_info *a, const ff_terrain_info *b)
 {
-    return a->checksum == b->checksum && a->node_log2 == b->node_log2 && a->tile_log2 == b->tile_log2 && a->codec == b->codec &&
-           a->tiles_x == b->tiles_x && a->tiles_y == b->tiles_y && a->spacing_wu == b->spacing_wu &&
-           a->hscale_q24 == b->hscale_q24 && a->hoffset_wu == b->hoffset_wu && a->texture_log2 == b->texture_log2 &&
-           a->texture_levels == b->texture_levels;
+    return a->checksum == b->checksum && a->node_log2 == b->node_log2 &&
+           a->tile_log2 == b->tile_log2 && a->codec == b->codec && a->tiles_x == b->tiles_x &&
+           a->tiles_y == b->tiles_y && a->spacing_wu == b->spacing_wu &&
+           a->hscale_q24 == b->hscale_q24 && a->hoffset_wu == b->hoffset_wu &&
+           a->texture_log2 == b->texture_log2 && a->texture_levels == b->texture_levels;
 }
 
 static int take_welcome(ff_stream *stream, const ff_welcome *welcome)
 {
-    if (stream->state != FF_STREAM_GREETING)
-        return FF_ERR_FORMAT;
-    if (welcome->version != FF_PROTOCOL_VERSION)
-        return FF_ERR_VERSION;
+    if (stream->state != FF_STREAM_GREETING) return FF_ERR_FORMAT;
+    if (welcome->version != FF_PROTOCOL_VERSION) return FF_ERR_VERSION;
     stream->awaiting = 0;
     stream->backoff_us = FF_BACKOFF_US_MIN;
     if (stream->has_terrain && same_terrain(&stream->held, &welcome->info)) {
@@ -33,7 +32,8 @@ static int take_welcome(ff_stream *stream, const ff_welcome *welcome)
 /* An answer must belong to a request of its kind that waits for it. */
 static int find_request(ff_stream *stream, uint16_t id, unsigned kinds, ff_request *request)
 {
-    if (!ff_requests_answered(stream->intake->requests, id, request) || !(kinds >> request->kind & 1u))
+    if (!ff_requests_answered(stream->intake->requests, id, request) ||
+        !(kinds >> request->kind & 1u))
         return FF_ERR_FORMAT;
     return FF_OK;
 }
@@ -43,22 +43,20 @@ static int take_data(ff_stream *stream, const ff_message *message, int64_t now_u
     int texture = message->type == FF_MSG_TEXTURE;
     ff_request request;
     const ff_data *data = &message->u.data;
-    int rc = find_request(stream, data->id, texture ? 1u << FF_WANT_TEXTURE : 1u << FF_WANT_ROOT | 1u << FF_WANT_REFINEMENT,
-                          &request);
-    if (rc != FF_OK)
-        return rc;
+    int rc = find_request(
+        stream, data->id,
+        texture ? 1u << FF_WANT_TEXTURE : 1u << FF_WANT_ROOT | 1u << FF_WANT_REFINEMENT, &request);
+    if (rc != FF_OK) return rc;
     rc = texture ? ff_intake_texture(stream->intake, &request, data->bytes, data->byte_count)
                  : ff_intake_node(stream->intake, &request, data->bytes, data->byte_count);
-    if (rc == FF_OK)
-        ff_link_estimate_answer(&stream->link, request.sent_us, now_us);
+    if (rc == FF_OK) ff_link_estimate_answer(&stream->link, request.sent_us, now_us);
     return rc;
 }
 
 static int asked_for(const ff_get_panorama *panorama, unsigned face)
 {
     for (unsigned i = 0; i < panorama->face_count; i++)
-        if (panorama->face[i] == face)
-            return 1;
+        if (panorama->face[i] == face) return 1;
     return 0;
 }
 
@@ -66,12 +64,9 @@ static int take_face(ff_stream *stream, const ff_face *face, uint32_t bytes)
 {
     ff_request request;
     int rc = find_request(stream, face->id, 1u << FF_WANT_PANORAMA, &request);
-    if (rc == FF_OK && !asked_for(&request.panorama, face->face))
-        rc = FF_ERR_FORMAT;
-    if (rc == FF_OK)
-        rc = ff_intake_face(stream->intake, &request, face, bytes);
-    if (rc == FF_OK)
-        stream->panorama_bytes += bytes;
+    if (rc == FF_OK && !asked_for(&request.panorama, face->face)) rc = FF_ERR_FORMAT;
+    if (rc == FF_OK) rc = ff_intake_face(stream->intake, &request, face, bytes);
+    if (rc == FF_OK) stream->panorama_bytes += bytes;
     return rc;
 }
 
@@ -85,51 +80,38 @@ static int take_failed(ff_stream *stream, uint16_t id, int error)
 /* FF_OK, FF_ERR_AGAIN when the new-data list is full, or what is wrong. */
 static int take(ff_stream *stream, const ff_message *message, uint32_t bytes, int64_t now_us)
 {
-    if (message->type == FF_MSG_GOODBYE)
-        return FF_ERR_CLOSED;
-    if (message->type == FF_MSG_WELCOME)
-        return take_welcome(stream, &message->u.welcome);
-    if (stream->state != FF_STREAM_UP)
-        return FF_ERR_FORMAT;
+    if (message->type == FF_MSG_GOODBYE) return FF_ERR_CLOSED;
+    if (message->type == FF_MSG_WELCOME) return take_welcome(stream, &message->u.welcome);
+    if (stream->state != FF_STREAM_UP) return FF_ERR_FORMAT;
     switch (message->type) {
-    case FF_MSG_NODE:
-    case FF_MSG_TEXTURE:
-        return take_data(stream, message, now_us);
-    case FF_MSG_FACE:
-        return take_face(stream, &message->u.face, bytes);
-    case FF_MSG_FAILED:
-        return take_failed(stream, message->u.failed.id, message->u.failed.error);
-    case FF_MSG_CANCELLED:
-        return take_failed(stream, message->u.cancel.id, FF_ERR_CLOSED);
-    case FF_MSG_PONG:
-        stream->awaiting = 0;
-        return FF_OK;
-    default:
-        return FF_ERR_FORMAT; /* a client's message */
+        case FF_MSG_NODE:
+        case FF_MSG_TEXTURE: return take_data(stream, message, now_us);
+        case FF_MSG_FACE: return take_face(stream, &message->u.face, bytes);
+        case FF_MSG_FAILED:
+            return take_failed(stream, message->u.failed.id, message->u.failed.error);
+        case FF_MSG_CANCELLED: return take_failed(stream, message->u.cancel.id, FF_ERR_CLOSED);
+        case FF_MSG_PONG: stream->awaiting = 0; return FF_OK;
+        default: return FF_ERR_FORMAT; /* a client's message */
     }
 }
 
-/* A legal message too long for our buffer: its request fails, its bytes pass by unread. FF_OK when it is not that. */
+/* A legal message too long for our buffer: its request fails, its bytes pass by unread. FF_OK when
+ * it is not that. */
 static int take_oversize(ff_stream *stream, uint32_t at)
 {
     const uint8_t *bytes = stream->recv + at;
     uint32_t count = stream->recv_count - at, body = 0, header = 1;
     for (unsigned shift = 0;; shift += 7, header++) {
-        if (header >= count || header >= FF_MESSAGE_HEADER_MAX)
-            return FF_OK;
+        if (header >= count || header >= FF_MESSAGE_HEADER_MAX) return FF_OK;
         body |= (uint32_t)(bytes[header] & 0x7f) << shift;
-        if (!(bytes[header] & 0x80))
-            break;
+        if (!(bytes[header] & 0x80)) break;
     }
     header++;
-    if (header + body <= stream->recv_bytes || count < header + 2)
-        return FF_OK;
+    if (header + body <= stream->recv_bytes || count < header + 2) return FF_OK;
     int type = bytes[0];
-    if (type != FF_MSG_NODE && type != FF_MSG_TEXTURE && type != FF_MSG_FACE)
-        return FF_ERR_RANGE;
+    if (type != FF_MSG_NODE && type != FF_MSG_TEXTURE && type != FF_MSG_FACE) return FF_ERR_RANGE;
     int rc = take_failed(stream, (uint16_t)(bytes[header] | bytes[header + 1] << 8), FF_ERR_FULL);
-    if (rc == FF_OK)
-        stream->skip = header + body;
+    if (rc == FF_OK) stream->skip = header + body;
     return rc;
 }
 
@@ -154,21 +136,17 @@ int ff_receive_messages(ff_stream *stream, int64_t now_us)
     stream->blocked = 0;
     while (rc == FF_OK && stream->state != FF_STREAM_WELCOMED) {
         at = skip_front(stream, at);
-        if (at == stream->recv_count)
-            break;
+        if (at == stream->recv_count) break;
         ff_message message;
         int count = ff_message_decode(stream->recv + at, stream->recv_count - at, &message);
-        if (count < 0)
-            return count;
+        if (count < 0) return count;
         if (count == 0) {
             rc = take_oversize(stream, at);
-            if (rc != FF_OK || !stream->skip)
-                break;
+            if (rc != FF_OK || !stream->skip) break;
             continue;
         }
         rc = take(stream, &message, (uint32_t)count, now_us);
-        if (rc == FF_OK)
-            at += (uint32_t)count;
+        if (rc == FF_OK) at += (uint32_t)count;
     }
     drop_front(stream, at);
     if (rc == FF_ERR_AGAIN) {

@@ -3,7 +3,8 @@
 static int find(const ff_refusals *refusals, unsigned kind, ff_key key)
 {
     for (unsigned i = 0; i < FF_REFUSALS_KEPT; i++)
-        if (refusals->entry[i].tries && refusals->entry[i].kind == kind && refusals->entry[i].key == key)
+        if (refusals->entry[i].tries && refusals->entry[i].kind == kind &&
+            refusals->entry[i].key == key)
             return (int)i;
     return -1;
 }
@@ -14,10 +15,9 @@ void ff_refusals_note(ff_refusals *refusals, unsigned kind, ff_key key)
     if (at < 0) {
         at = refusals->next;
         refusals->next = (uint8_t)((refusals->next + 1) % FF_REFUSALS_KEPT);
-        refusals->entry[at] = (ff_refusal){.key = key, .kind = (uint8_t)kind};
+        refusals->entry[at] = (ff_refusal){ .key = key, .kind = (uint8_t)kind };
     }
-    if (refusals->entry[at].tries < FF_REFUSALS_TRIES)
-        refusals->entry[at].tries++;
+    if (refusals->entry[at].tries < FF_REFUSALS_TRIES) refusals->entry[at].tries++;
 }
 
 int ff_refusals_final(const ff_refusals *refusals, unsigned kind, ff_key key)

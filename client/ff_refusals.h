@@ -1,14 +1,21 @@
-/* Requests that were refused: asked for again a few times, then left alone. A short memory, the oldest entry gives way. */
+/* Requests that were refused: asked for again a few times, then left alone. A short memory, the
+ * oldest entry gives way. */
 #ifndef FF_REFUSALS_H
 #define FF_REFUSALS_H
 
 #include "ff_request.h"
 
-#define FF_REFUSALS_KEPT 32u
+#define FF_REFUSALS_KEPT  32u
 #define FF_REFUSALS_TRIES 3u
 
-typedef struct ff_refusal { ff_key key; uint8_t kind, tries; } ff_refusal;
-typedef struct ff_refusals { ff_refusal entry[FF_REFUSALS_KEPT]; uint8_t next; } ff_refusals;
+typedef struct ff_refusal {
+    ff_key key;
+    uint8_t kind, tries;
+} ff_refusal;
+typedef struct ff_refusals {
+    ff_refusal entry[FF_REFUSALS_KEPT];
+    uint8_t next;
+} ff_refusals;
 
 void ff_refusals_note(ff_refusals *refusals, unsigned kind, ff_key key);
 /* 1 when it was refused FF_REFUSALS_TRIES times: not to be asked for again. */

@@ -3,10 +3,10 @@
 #include <assert.h>
 #include <string.h>
 
-#define HASH_START UINT64_C(0xcbf29ce484222325)
-#define HASH_PRIME UINT64_C(0x100000001b3)
+#define HASH_START         UINT64_C(0xcbf29ce484222325)
+#define HASH_PRIME         UINT64_C(0x100000001b3)
 #define ANSWER_BYTES_START 200u /* before the first answer of a kind: Hybrid's 9x9 node is 182 */
-#define IN_FLIGHT_ALWAYS 2u
+#define IN_FLIGHT_ALWAYS   2u
 
 static size_t slots_for(unsigned in_flight_max)
 {
@@ -29,7 +29,8 @@ void ff_requests_init(ff_requests *requests, unsigned in_flight_max, void *memor
     memset(requests->slot, 0, ff_requests_bytes(in_flight_max));
     for (unsigned kind = 0; kind < FF_WANT_KINDS; kind++)
         for (unsigned level = 0; level < 16; level++)
-            requests->answer_q4[kind][level] = ANSWER_BYTES_START << (kind >= FF_WANT_TEXTURE ? 7 : 4);
+            requests->answer_q4[kind][level] = ANSWER_BYTES_START
+                                               << (kind >= FF_WANT_TEXTURE ? 7 : 4);
 }
 
 static unsigned level_of(const ff_request *request)
@@ -62,8 +63,7 @@ static void enqueue(ff_requests *requests, ff_request *request)
 {
     ff_request_counts *counts = &requests->counts;
     request->state = FF_REQUEST_QUEUED;
-    if (++counts->queued > counts->queued_high)
-        counts->queued_high = counts->queued;
+    if (++counts->queued > counts->queued_high) counts->queued_high = counts->queued;
 }
 
 void ff_requests_clear(ff_requests *requests)
@@ -92,26 +92,26 @@ static ff_request *find(ff_requests *requests, unsigned kind, ff_key key)
 static ff_request *find_free(ff_requests *requests)
 {
     for (unsigned i = 0; i < requests->slot_count; i++)
-        if (requests->slot[i].state == FF_REQUEST_FREE)
-            return &requests->slot[i];
+        if (requests->slot[i].state == FF_REQUEST_FREE) return &requests->slot[i];
     return NULL;
 }
 
 void ff_requests_rank_begin(ff_requests *requests)
 {
     sys_mutex_lock(&requests->mutex);
-    for (unsigned i = 0; i < requests->slot_count; i++)
-        requests->slot[i].marked = 0;
+    for (unsigned i = 0; i < requests->slot_count; i++) requests->slot[i].marked = 0;
     sys_mutex_unlock(&requests->mutex);
 }
 
-static uint32_t value_of(const ff_requests *requests, unsigned kind, unsigned level, uint32_t priority)
+static uint32_t value_of(const ff_requests *requests, unsigned kind, unsigned level,
+                         uint32_t priority)
 {
     uint64_t value = ((uint64_t)priority << 12) / (requests->answer_q4[kind][level] + 1u);
     return value > UINT32_MAX ? UINT32_MAX : (uint32_t)value;
 }
 
-/* A free slot for a new request while the queue has room. What an earlier ranking left unmarked makes room first. */
+/* A free slot for a new request while the queue has room. What an earlier ranking left unmarked
+ * makes room first. */
 static ff_request *slot_for_new(ff_requests *requests)
 {
     if (requests->counts.queued >= requests->queued_max) {
@@ -127,8 +127,8 @@ static ff_request *slot_for_new(ff_requests *requests)
     return find_free(requests);
 }
 
-int ff_requests_want(ff_requests *requests, enum ff_request_kind kind, ff_key key, enum ff_request_class rank, uint32_t priority,
-                     const ff_get_panorama *panorama)
+int ff_requests_want(ff_requests *requests, enum ff_request_kind kind, ff_key key,
+                     enum ff_request_class rank, uint32_t priority, const ff_get_panorama *panorama)
 {
     sys_mutex_lock(&requests->mutex);
     ff_request *request = find(requests, kind, key);
@@ -151,8 +151,7 @@ int ff_requests_want(ff_requests *requests, enum ff_request_kind kind, ff_key ke
     if (request->state == FF_REQUEST_QUEUED) {
         request->rank = (uint8_t)rank;
         request->value = value_of(requests, kind, level_of(request), priority);
-        if (panorama)
-            request->panorama = *panorama;
+        if (panorama) request->panorama = *panorama;
     }
     sys_mutex_unlock(&requests->mutex);
     return 1;
@@ -176,8 +175,7 @@ static int cancel(ff_requests *requests, ff_request *request)
         free_slot(requests, request, &requests->counts.dropped);
         return 0;
     }
-    if (request->state == FF_REQUEST_SENT && !request->cancel)
-        request->cancel = 1;
+    if (request->state == FF_REQUEST_SENT && !request->cancel) request->cancel = 1;
     return 1;
 }
 
@@ -194,7 +192,8 @@ void ff_requests_cancel_panoramas(ff_requests *requests)
 {
     sys_mutex_lock(&requests->mutex);
     for (unsigned i = 0; i < requests->slot_count; i++)
-        if (requests->slot[i].state != FF_REQUEST_FREE && requests->slot[i].kind == FF_WANT_PANORAMA)
+        if (requests->slot[i].state != FF_REQUEST_FREE &&
+            requests->slot[i].kind == FF_WANT_PANORAMA)
             (void)cancel(requests, &requests->slot[i]);
     sys_mutex_unlock(&requests->mutex);
 }
@@ -206,8 +205,10 @@ void ff_requests_finish(ff_requests *requests, uint16_t id, enum ff_request_stat
     ff_request *request = &requests->slot[id - 1];
     assert(request->state == FF_REQUEST_ARRIVING);
     ff_request_counts *counts = &requests->counts;
-    free_slot(requests, request, final == FF_REQUEST_DONE ? &counts->done
-                               : final == FF_REQUEST_FAILED ? &counts->failed : &counts->cancelled);
+    free_slot(requests, request,
+              final == FF_REQUEST_DONE     ? &counts->done
+              : final == FF_REQUEST_FAILED ? &counts->failed
+                                           : &counts->cancelled);
     sys_mutex_unlock(&requests->mutex);
 }
 
@@ -215,17 +216,12 @@ void ff_requests_finish(ff_requests *requests, uint16_t id, enum ff_request_stat
 
 static int goes_before(const ff_request *a, const ff_request *b)
 {
-    if (a->rank != b->rank)
-        return a->rank < b->rank;
-    if (a->value != b->value)
-        return a->value > b->value;
+    if (a->rank != b->rank) return a->rank < b->rank;
+    if (a->value != b->value) return a->value > b->value;
     return a->sequence < b->sequence;
 }
 
-static void hash_word(uint64_t *hash, uint64_t word)
-{
-    *hash = (*hash ^ word) * HASH_PRIME;
-}
+static void hash_word(uint64_t *hash, uint64_t word) { *hash = (*hash ^ word) * HASH_PRIME; }
 
 static void count_sent(ff_requests *requests, const ff_request *request)
 {
@@ -237,8 +233,7 @@ static void count_sent(ff_requests *requests, const ff_request *request)
             counts->panoramas_in_flight_high = counts->panoramas_in_flight;
     }
     counts->textures_sent += request->kind == FF_WANT_TEXTURE;
-    if (++counts->in_flight > counts->in_flight_high)
-        counts->in_flight_high = counts->in_flight;
+    if (++counts->in_flight > counts->in_flight_high) counts->in_flight_high = counts->in_flight;
     counts->bytes_in_flight += request->bytes_expected;
     hash_word(&requests->hash, request->kind);
     if (request->kind != FF_WANT_PANORAMA) {
@@ -246,14 +241,12 @@ static void count_sent(ff_requests *requests, const ff_request *request)
         return;
     }
     const ff_get_panorama *panorama = &request->panorama;
-    for (int i = 0; i < 3; i++)
-        hash_word(&requests->hash, (uint32_t)panorama->position_wu[i]);
-    for (int i = 0; i < panorama->face_count; i++)
-        hash_word(&requests->hash, panorama->face[i]);
+    for (int i = 0; i < 3; i++) hash_word(&requests->hash, (uint32_t)panorama->position_wu[i]);
+    for (int i = 0; i < panorama->face_count; i++) hash_word(&requests->hash, panorama->face[i]);
 }
 
-int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_max, uint32_t bytes_in_flight_max, int prefetch,
-                     ff_request *copy)
+int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_max,
+                     uint32_t bytes_in_flight_max, int prefetch, ff_request *copy)
 {
     ff_request *best = NULL;
     sys_mutex_lock(&requests->mutex);
@@ -262,7 +255,8 @@ int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_m
                (counts->in_flight < in_flight_max && counts->bytes_in_flight < bytes_in_flight_max);
     for (unsigned i = 0; room && i < requests->slot_count; i++) {
         ff_request *request = &requests->slot[i];
-        if (request->state == FF_REQUEST_QUEUED && (prefetch || request->rank != FF_CLASS_PREFETCH) &&
+        if (request->state == FF_REQUEST_QUEUED &&
+            (prefetch || request->rank != FF_CLASS_PREFETCH) &&
             (!best || goes_before(request, best)))
             best = request;
     }
@@ -273,8 +267,7 @@ int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_m
         best->cancel = 0;
         best->panorama.id = best->id;
         best->bytes_expected = requests->answer_q4[best->kind][level_of(best)] >> 4;
-        if (best->kind == FF_WANT_PANORAMA)
-            best->bytes_expected *= best->panorama.face_count;
+        if (best->kind == FF_WANT_PANORAMA) best->bytes_expected *= best->panorama.face_count;
         count_sent(requests, best);
         *copy = *best;
     }
@@ -330,8 +323,7 @@ void ff_requests_lost(ff_requests *requests)
     sys_mutex_lock(&requests->mutex);
     for (unsigned i = 0; i < requests->slot_count; i++) {
         ff_request *request = &requests->slot[i];
-        if (request->state != FF_REQUEST_SENT)
-            continue;
+        if (request->state != FF_REQUEST_SENT) continue;
         if (request->cancel)
             free_slot(requests, request, &requests->counts.cancelled);
         else {
@@ -347,7 +339,8 @@ int ff_requests_waiting(ff_requests *requests)
     int waiting = 0;
     sys_mutex_lock(&requests->mutex);
     for (unsigned i = 0; !waiting && i < requests->slot_count; i++)
-        waiting = requests->slot[i].state == FF_REQUEST_QUEUED && requests->slot[i].rank <= FF_CLASS_IN_VIEW;
+        waiting = requests->slot[i].state == FF_REQUEST_QUEUED &&
+                  requests->slot[i].rank <= FF_CLASS_IN_VIEW;
     sys_mutex_unlock(&requests->mutex);
     return waiting;
 }
@@ -356,7 +349,6 @@ void ff_requests_get_counts(ff_requests *requests, ff_request_counts *counts, ui
 {
     sys_mutex_lock(&requests->mutex);
     *counts = requests->counts;
-    if (hash)
-        *hash = requests->hash;
+    if (hash) *hash = requests->hash;
     sys_mutex_unlock(&requests->mutex);
 }

@@ -4,18 +4,23 @@
 #include <string.h>
 
 #define COLUMNS 8
-#define LEVELS 10
-#define RADIUS 256
+#define LEVELS  10
+#define RADIUS  256
 
-/* Rings of vertices from nadir to zenith: height and distance from the axis in vertex units. Below the horizon the backdrop
- * turns to the colour of bare ground, 10 to 20 degrees down (distant ground above that ends in fog): what shows there is ground
- * that has not come, or a pixel beside a node too far away for the common frame (ff_ground_frame.h), and should not sparkle. */
-static const struct { int16_t radius, z; uint8_t rgb[3]; } ring[LEVELS] = {
-    {0, -256, {138, 126, 102}}, {240, -90, {138, 126, 102}}, {252, -45, {200, 216, 232}}, {256, 0, {200, 216, 232}},
-    {252, 45, {175, 201, 227}}, {240, 90, {150, 186, 222}}, {201, 158, {127, 169, 214}}, {150, 210, {104, 152, 206}},
-    {78, 244, {94, 143, 200}}, {0, 256, {84, 134, 194}}
-};
-static const int8_t circle[COLUMNS][2] = {{0, 64}, {45, 45}, {64, 0}, {45, -45}, {0, -64}, {-45, -45}, {-64, 0}, {-45, 45}};
+/* Rings of vertices from nadir to zenith: height and distance from the axis in vertex units. Below
+ * the horizon the backdrop turns to the colour of bare ground, 10 to 20 degrees down (distant
+ * ground above that ends in fog): what shows there is ground that has not come, or a pixel beside a
+ * node too far away for the common frame (ff_ground_frame.h), and should not sparkle. */
+static const struct {
+    int16_t radius, z;
+    uint8_t rgb[3];
+} ring[LEVELS] = { { 0, -256, { 138, 126, 102 } },  { 240, -90, { 138, 126, 102 } },
+                   { 252, -45, { 200, 216, 232 } }, { 256, 0, { 200, 216, 232 } },
+                   { 252, 45, { 175, 201, 227 } },  { 240, 90, { 150, 186, 222 } },
+                   { 201, 158, { 127, 169, 214 } }, { 150, 210, { 104, 152, 206 } },
+                   { 78, 244, { 94, 143, 200 } },   { 0, 256, { 84, 134, 194 } } };
+static const int8_t circle[COLUMNS][2] = { { 0, 64 },  { 45, 45 },   { 64, 0 },  { 45, -45 },
+                                           { 0, -64 }, { -45, -45 }, { -64, 0 }, { -45, 45 } };
 
 static void set_vertex(c3d_vertex *vertex, int level, int column)
 {
@@ -50,8 +55,7 @@ void ff_sky_make(ff_sky *sky, c3d_device *device)
 {
     c3d_vertex vertex[FF_SKY_VERTICES];
     uint16_t index[FF_SKY_INDICES];
-    for (int i = 0; i < FF_SKY_VERTICES; i++)
-        set_vertex(&vertex[i], i / COLUMNS, i % COLUMNS);
+    for (int i = 0; i < FF_SKY_VERTICES; i++) set_vertex(&vertex[i], i / COLUMNS, i % COLUMNS);
     uint32_t count = make_indices(index);
     assert(LEVELS * COLUMNS == FF_SKY_VERTICES && count == FF_SKY_INDICES);
     sky->mesh = c3d_mesh_make(device, vertex, FF_SKY_VERTICES);
@@ -60,10 +64,12 @@ void ff_sky_make(ff_sky *sky, c3d_device *device)
 
 void ff_sky_draw(const ff_sky *sky, c3d_device *device, int32_t near_wu)
 {
-    if (!sky->mesh.id || !sky->strip.id)
-        return;
+    if (!sky->mesh.id || !sky->strip.id) return;
     int32_t scale_wu = 4 * (near_wu / RADIUS + 1);
-    c3d_draw draw = {.mesh = sky->mesh, .strip = sky->strip, .xy_scale_wu = scale_wu, .z_scale_q16 = (uint32_t)scale_wu << 16,
-                     .flags = C3D_DRAW_COLOURED | C3D_DRAW_BACKDROP};
+    c3d_draw draw = { .mesh = sky->mesh,
+                      .strip = sky->strip,
+                      .xy_scale_wu = scale_wu,
+                      .z_scale_q16 = (uint32_t)scale_wu << 16,
+                      .flags = C3D_DRAW_COLOURED | C3D_DRAW_BACKDROP };
     c3d_draw_strip(device, &draw);
 }

@@ -4,14 +4,16 @@
 
 #include <string.h>
 
-#define CONNECT_US_MAX 30000000
-#define PING_AFTER_US 60000000 /* far below the server's idle limit */
-#define RECEIVE_ROUNDS_MAX 16  /* a step stays short, whatever the link brings */
-#define PATIENCE_MAX 4         /* time-outs grow twofold so often while no answer has ever come: the link may be slower than thought */
+#define CONNECT_US_MAX     30000000
+#define PING_AFTER_US      60000000 /* far below the server's idle limit */
+#define RECEIVE_ROUNDS_MAX 16       /* a step stays short, whatever the link brings */
+#define PATIENCE_MAX                                                                           \
+    4 /* time-outs grow twofold so often while no answer has ever come: the link may be slower \
+         than thought */
 #define PATIENCE_ROUND_TRIPS 4 /* and are at least so long when one has */
 
-void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsigned in_flight_max, uint32_t answer_timeout_ms,
-                    uint8_t *recv, uint32_t recv_bytes)
+void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsigned in_flight_max,
+                    uint32_t answer_timeout_ms, uint8_t *recv, uint32_t recv_bytes)
 {
     memset(stream, 0, sizeof *stream);
     stream->io = io;
@@ -56,7 +58,8 @@ void ff_stream_say(ff_stream *stream, int quiet, int no_prefetch)
     sys_mutex_unlock(&stream->intake->requests->mutex);
 }
 
-/* The connection is of no more use. Half-received messages and unsent bytes are dropped, what was asked is queued again. */
+/* The connection is of no more use. Half-received messages and unsent bytes are dropped, what was
+ * asked is queued again. */
 static void give_up(ff_stream *stream, int64_t now_us)
 {
     stream->io->close(stream->io->state);
@@ -67,7 +70,8 @@ static void give_up(ff_stream *stream, int64_t now_us)
     stream->link.since_us = INT64_MIN;
     stream->state = stream->io->reconnect ? FF_STREAM_DOWN : FF_STREAM_DEAD;
     stream->retry_us = now_us + stream->backoff_us;
-    stream->backoff_us = stream->backoff_us * 2 > FF_BACKOFF_US_MAX ? FF_BACKOFF_US_MAX : stream->backoff_us * 2;
+    stream->backoff_us = stream->backoff_us * 2 > FF_BACKOFF_US_MAX ? FF_BACKOFF_US_MAX
+                                                                    : stream->backoff_us * 2;
 }
 
 void ff_stream_accept(ff_stream *stream, int ok)
@@ -86,8 +90,7 @@ void ff_stream_accept(ff_stream *stream, int ok)
 void ff_stream_restart(ff_stream *stream)
 {
     stream->has_terrain = 0;
-    if (stream->state == FF_STREAM_DEAD || stream->state == FF_STREAM_DOWN)
-        return;
+    if (stream->state == FF_STREAM_DEAD || stream->state == FF_STREAM_DOWN) return;
     stream->backoff_us = FF_BACKOFF_US_MIN;
     give_up(stream, 0);
     stream->retry_us = INT64_MIN; /* at once */
@@ -103,9 +106,9 @@ void ff_stream_close(ff_stream *stream)
 
 static void append(ff_stream *stream, const ff_message *message)
 {
-    int count = ff_message_encode(message, stream->send + stream->send_count, sizeof stream->send - stream->send_count);
-    if (count > 0)
-        stream->send_count += (uint32_t)count;
+    int count = ff_message_encode(message, stream->send + stream->send_count,
+                                  sizeof stream->send - stream->send_count);
+    if (count > 0) stream->send_count += (uint32_t)count;
 }
 
 static int has_send_room(const ff_stream *stream)
@@ -115,7 +118,7 @@ static int has_send_room(const ff_stream *stream)
 
 static void greet(ff_stream *stream, int64_t now_us)
 {
-    ff_message hello = {.type = FF_MSG_HELLO};
+    ff_message hello = { .type = FF_MSG_HELLO };
     hello.u.hello.version = FF_PROTOCOL_VERSION;
     hello.u.hello.known_checksum = stream->has_terrain ? stream->held.checksum : 0;
     append(stream, &hello);
@@ -127,14 +130,14 @@ static void greet(ff_stream *stream, int64_t now_us)
 static int connect_step(ff_stream *stream, int64_t now_us)
 {
     if (stream->state == FF_STREAM_DOWN) {
-        if (now_us < stream->retry_us)
-            return 0;
+        if (now_us < stream->retry_us) return 0;
         stream->state = FF_STREAM_CONNECTING;
         stream->attempt = 1;
         stream->connect_us = now_us;
         stream->reconnects++;
     }
-    if (!stream->attempt) { /* the stream was handed over connected, or connecting: then it takes no bytes yet */
+    /* the stream was handed over connected, or connecting: then it takes no bytes yet */
+    if (!stream->attempt) {
         greet(stream, now_us);
         return 1;
     }
@@ -150,7 +153,7 @@ static int connect_step(ff_stream *stream, int64_t now_us)
 
 static void encode_request(ff_stream *stream, const ff_request *request)
 {
-    ff_message message = {.type = FF_MSG_GET_NODE};
+    ff_message message = { .type = FF_MSG_GET_NODE };
     if (request->kind == FF_WANT_PANORAMA) {
         message.type = FF_MSG_GET_PANORAMA;
         message.u.panorama = request->panorama;
@@ -169,7 +172,8 @@ static int ask(ff_stream *stream, int64_t now_us)
     ff_requests *requests = stream->intake->requests;
     sys_mutex_lock(&requests->mutex);
     int quiet = stream->shared.quiet;
-    int prefetch = !stream->shared.no_prefetch && requests->counts.in_flight < stream->in_flight_max / 2u;
+    int prefetch = !stream->shared.no_prefetch &&
+                   requests->counts.in_flight < stream->in_flight_max / 2u;
     sys_mutex_unlock(&requests->mutex);
     uint32_t window = ff_link_estimate_window(&stream->link);
     int moved = 0;
@@ -177,10 +181,11 @@ static int ask(ff_stream *stream, int64_t now_us)
     while (has_send_room(stream)) {
         uint16_t id = ff_requests_next_cancel(requests);
         if (id) {
-            ff_message cancel = {.type = FF_MSG_CANCEL};
+            ff_message cancel = { .type = FF_MSG_CANCEL };
             cancel.u.cancel.id = id;
             append(stream, &cancel);
-        } else if (!quiet && ff_requests_next(requests, now_us, stream->in_flight_max, window, prefetch, &request)) {
+        } else if (!quiet && ff_requests_next(requests, now_us, stream->in_flight_max, window,
+                                              prefetch, &request)) {
             encode_request(stream, &request);
             ff_link_estimate_sent(&stream->link, now_us);
         } else {
@@ -196,9 +201,8 @@ static int ask(ff_stream *stream, int64_t now_us)
 
 static void keep_alive(ff_stream *stream, int64_t now_us)
 {
-    if (stream->awaiting || stream->send_count || now_us - stream->sent_us < PING_AFTER_US)
-        return;
-    ff_message ping = {.type = FF_MSG_PING};
+    if (stream->awaiting || stream->send_count || now_us - stream->sent_us < PING_AFTER_US) return;
+    ff_message ping = { .type = FF_MSG_PING };
     ping.u.ping.stamp = (uint32_t)(now_us / 1000);
     append(stream, &ping);
     stream->awaiting = 1;
@@ -215,18 +219,15 @@ static int outstanding(ff_stream *stream)
 /* Bytes of the send buffer onto the link. FF_OK or FF_ERR_CLOSED. */
 static int flush(ff_stream *stream, int64_t now_us, int *moved)
 {
-    if (!stream->send_count)
-        return FF_OK;
+    if (!stream->send_count) return FF_OK;
     int count = stream->io->send(stream->io->state, stream->send, stream->send_count);
-    if (count < 0)
-        return FF_ERR_CLOSED;
+    if (count < 0) return FF_ERR_CLOSED;
     if (count > 0) {
         stream->send_count -= (uint32_t)count;
         memmove(stream->send, stream->send + count, stream->send_count);
         stream->bytes_up += (uint32_t)count;
         /* silence is counted from the first bytes that can be answered */
-        if (!outstanding(stream))
-            stream->heard_us = now_us;
+        if (!outstanding(stream)) stream->heard_us = now_us;
         stream->sent_us = now_us;
         *moved = 1;
     }
@@ -236,17 +237,14 @@ static int flush(ff_stream *stream, int64_t now_us, int *moved)
 static int receive(ff_stream *stream, int64_t now_us, int *moved)
 {
     for (int round = 0; round < RECEIVE_ROUNDS_MAX; round++) {
-        int rc = ff_receive_messages(stream, now_us); /* what could not be put on the list last time comes first */
-        if (rc < 0)
-            return rc;
-        if (stream->blocked || stream->state == FF_STREAM_WELCOMED)
-            return FF_OK;
+        /* what could not be put on the list last time comes first */
+        int rc = ff_receive_messages(stream, now_us);
+        if (rc < 0) return rc;
+        if (stream->blocked || stream->state == FF_STREAM_WELCOMED) return FF_OK;
         int count = stream->io->recv(stream->io->state, stream->recv + stream->recv_count,
                                      stream->recv_bytes - stream->recv_count);
-        if (count < 0)
-            return FF_ERR_CLOSED;
-        if (count == 0)
-            return FF_OK;
+        if (count < 0) return FF_ERR_CLOSED;
+        if (count == 0) return FF_OK;
         stream->recv_count += (uint32_t)count;
         stream->bytes_down += (uint32_t)count;
         stream->heard_us = now_us;
@@ -258,15 +256,17 @@ static int receive(ff_stream *stream, int64_t now_us, int *moved)
 
 static int silent_too_long(ff_stream *stream, int64_t now_us)
 {
-    int64_t limit_us = stream->answer_timeout_us << stream->patience, round_trips_us = PATIENCE_ROUND_TRIPS * (int64_t)stream->link.rtt_us;
-    if (stream->blocked || stream->state == FF_STREAM_WELCOMED || (!stream->awaiting && !outstanding(stream)))
+    int64_t limit_us = stream->answer_timeout_us << stream->patience,
+            round_trips_us = PATIENCE_ROUND_TRIPS * (int64_t)stream->link.rtt_us;
+    if (stream->blocked || stream->state == FF_STREAM_WELCOMED ||
+        (!stream->awaiting && !outstanding(stream)))
         return 0;
     if (stream->link.rtt_us) {
         stream->patience = 0;
-        limit_us = round_trips_us > stream->answer_timeout_us ? round_trips_us : stream->answer_timeout_us;
+        limit_us = round_trips_us > stream->answer_timeout_us ? round_trips_us
+                                                              : stream->answer_timeout_us;
     }
-    if (now_us - stream->heard_us <= limit_us)
-        return 0;
+    if (now_us - stream->heard_us <= limit_us) return 0;
     stream->patience += !stream->link.rtt_us && stream->patience < PATIENCE_MAX;
     return 1;
 }
@@ -281,10 +281,8 @@ static int link_step(ff_stream *stream, int64_t now_us)
         moved |= ask(stream, now_us);
         keep_alive(stream, now_us);
     }
-    if (rc == FF_OK)
-        rc = flush(stream, now_us, &moved);
-    if (rc == FF_OK && silent_too_long(stream, now_us))
-        rc = FF_ERR_CLOSED;
+    if (rc == FF_OK) rc = flush(stream, now_us, &moved);
+    if (rc == FF_OK && silent_too_long(stream, now_us)) rc = FF_ERR_CLOSED;
     if (rc != FF_OK) {
         stream->protocol_errors += rc != FF_ERR_CLOSED;
         give_up(stream, now_us);
@@ -297,22 +295,16 @@ int ff_stream_step(ff_stream *stream, int64_t now_us)
 {
     int moved = 0;
     switch (stream->state) {
-    case FF_STREAM_CONNECTING:
-    case FF_STREAM_DOWN:
-        moved = connect_step(stream, now_us);
-        break;
-    case FF_STREAM_GREETING:
-    case FF_STREAM_UP:
-        moved = link_step(stream, now_us);
-        break;
-    case FF_STREAM_WELCOMED:
-    case FF_STREAM_DEAD:
-        return 0;
+        case FF_STREAM_CONNECTING:
+        case FF_STREAM_DOWN: moved = connect_step(stream, now_us); break;
+        case FF_STREAM_GREETING:
+        case FF_STREAM_UP: moved = link_step(stream, now_us); break;
+        case FF_STREAM_WELCOMED:
+        case FF_STREAM_DEAD: return 0;
     }
     if (stream->state == FF_STREAM_GREETING && stream->send_count) {
         int ignored = 0;
-        if (flush(stream, now_us, &ignored) != FF_OK)
-            give_up(stream, now_us);
+        if (flush(stream, now_us, &ignored) != FF_OK) give_up(stream, now_us);
     }
     publish(stream);
     return moved;

@@ -12,8 +12,7 @@ static unsigned bucket_of(ff_key key)
 static ff_texture_slot *find(const ff_textures *textures, ff_key key)
 {
     for (unsigned i = textures->bucket[bucket_of(key)]; i; i = textures->slot[i - 1].next)
-        if (textures->slot[i - 1].key == key)
-            return &textures->slot[i - 1];
+        if (textures->slot[i - 1].key == key) return &textures->slot[i - 1];
     return NULL;
 }
 
@@ -22,8 +21,7 @@ static ff_texture_slot *find_nearest(const ff_textures *textures, ff_key node)
     ff_key key = ff_texture_key(&textures->info, node);
     while (key != FF_KEY_NONE) {
         ff_texture_slot *slot = find(textures, key);
-        if (slot || ff_key_level(key) == 0)
-            return slot;
+        if (slot || ff_key_level(key) == 0) return slot;
         key = ff_key_parent(key);
     }
     return NULL;
@@ -32,8 +30,7 @@ static ff_texture_slot *find_nearest(const ff_textures *textures, ff_key node)
 int ff_textures_find(const ff_textures *textures, ff_key node, ff_key *key, c3d_texture *texture)
 {
     const ff_texture_slot *slot = find_nearest(textures, node);
-    if (!slot || !slot->texture.id)
-        return 0;
+    if (!slot || !slot->texture.id) return 0;
     *key = slot->key;
     *texture = slot->texture;
     return 1;
@@ -43,13 +40,13 @@ int ff_textures_find(const ff_textures *textures, ff_key node, ff_key *key, c3d_
 static ff_key next_finer(const ff_texture_slot *held, ff_key finest)
 {
     uint32_t level = held ? ff_key_level(held->key) + 1 : 0;
-    while (ff_key_level(finest) > level)
-        finest = ff_key_parent(finest);
+    while (ff_key_level(finest) > level) finest = ff_key_parent(finest);
     return finest;
 }
 
 /* 1/f of Hybrid eq. 3 for the ground the image covers, Q8: the scale of the tree's wishes. */
-static uint32_t priority_of(const ff_textures *textures, ff_key key, const ff_view *view, const ff_quality *quality)
+static uint32_t priority_of(const ff_textures *textures, ff_key key, const ff_view *view,
+                            const ff_quality *quality)
 {
     int32_t x_wu, y_wu, edge_wu = ff_node_edge_wu(&textures->info, ff_key_level(key));
     ff_node_origin_wu(&textures->info, key, &x_wu, &y_wu);
@@ -64,11 +61,9 @@ static uint32_t priority_of(const ff_textures *textures, ff_key key, const ff_vi
 static void insert(ff_texture_wish *list, uint32_t *count, uint32_t capacity, ff_texture_wish wish)
 {
     for (uint32_t i = 0; i < *count; i++)
-        if (list[i].key == wish.key)
-            return;
+        if (list[i].key == wish.key) return;
     uint32_t at = *count;
-    if (at == capacity && (!capacity || list[at - 1].priority >= wish.priority))
-        return;
+    if (at == capacity && (!capacity || list[at - 1].priority >= wish.priority)) return;
     if (*count < capacity)
         ++*count;
     else
@@ -80,27 +75,27 @@ static void insert(ff_texture_wish *list, uint32_t *count, uint32_t capacity, ff
     list[at] = wish;
 }
 
-uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32_t drawn_count, const ff_view *view,
-                            const ff_quality *quality, ff_texture_wish *list, uint32_t capacity)
+uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32_t drawn_count,
+                            const ff_view *view, const ff_quality *quality, ff_texture_wish *list,
+                            uint32_t capacity)
 {
     uint32_t count = 0, in_use = 0;
     textures->stamp++;
     for (uint32_t i = 0; i < drawn_count; i++) {
         ff_key finest = ff_texture_key(&textures->info, drawn[i].key);
-        if (finest == FF_KEY_NONE)
-            continue;
+        if (finest == FF_KEY_NONE) continue;
         ff_texture_slot *held = find_nearest(textures, drawn[i].key);
         if (held && held->used != textures->stamp) {
             held->used = textures->stamp;
             in_use++;
         }
-        if (held && held->key == finest)
-            continue;
-        ff_texture_wish wish = {.key = next_finer(held, finest)};
+        if (held && held->key == finest) continue;
+        ff_texture_wish wish = { .key = next_finer(held, finest) };
         wish.priority = priority_of(textures, wish.key, view, quality);
         insert(list, &count, capacity, wish);
     }
-    uint32_t room = textures->slot_count - in_use; /* what would find no place is not asked for */
+    /* what would find no place is not asked for */
+    uint32_t room = textures->slot_count - in_use;
     return count < room ? count : room;
 }
 
@@ -108,8 +103,7 @@ static void unlink_slot(ff_textures *textures, ff_texture_slot *slot)
 {
     uint16_t *link = &textures->bucket[bucket_of(slot->key)];
     uint16_t number = (uint16_t)(slot - textures->slot + 1);
-    while (*link != number)
-        link = &textures->slot[*link - 1].next;
+    while (*link != number) link = &textures->slot[*link - 1].next;
     *link = slot->next;
 }
 
@@ -119,16 +113,14 @@ static ff_texture_slot *take_slot(ff_textures *textures)
     ff_texture_slot *oldest = NULL;
     for (unsigned i = 0; i < textures->slot_count; i++) {
         ff_texture_slot *slot = &textures->slot[i];
-        if (!slot->held)
-            return slot;
-        if (slot->used != textures->stamp && (!oldest || textures->stamp - slot->used > textures->stamp - oldest->used))
+        if (!slot->held) return slot;
+        if (slot->used != textures->stamp &&
+            (!oldest || textures->stamp - slot->used > textures->stamp - oldest->used))
             oldest = slot;
     }
-    if (!oldest)
-        return NULL;
+    if (!oldest) return NULL;
     unlink_slot(textures, oldest);
-    if (oldest->texture.id)
-        c3d_texture_free(textures->device, oldest->texture);
+    if (oldest->texture.id) c3d_texture_free(textures->device, oldest->texture);
     oldest->held = 0;
     textures->held--;
     return oldest;
@@ -136,8 +128,7 @@ static ff_texture_slot *take_slot(ff_textures *textures)
 
 int ff_textures_take(ff_textures *textures, const ff_new_item *item)
 {
-    if (find(textures, item->key))
-        return 0;
+    if (find(textures, item->key)) return 0;
     ff_texture_slot *slot = take_slot(textures);
     if (!slot) {
         textures->full++;
@@ -145,7 +136,8 @@ int ff_textures_take(ff_textures *textures, const ff_new_item *item)
     }
     slot->texture.id = 0;
     if (textures->device) {
-        slot->texture = c3d_texture_make(textures->device, C3D_RGB565, item->width, item->height, item->pixels);
+        slot->texture = c3d_texture_make(textures->device, C3D_RGB565, item->width, item->height,
+                                         item->pixels);
         if (!slot->texture.id) {
             textures->full++;
             return 0;
@@ -156,7 +148,6 @@ int ff_textures_take(ff_textures *textures, const ff_new_item *item)
     slot->used = textures->stamp;
     slot->next = textures->bucket[bucket_of(item->key)];
     textures->bucket[bucket_of(item->key)] = (uint16_t)(slot - textures->slot + 1);
-    if (++textures->held > textures->high)
-        textures->high = textures->held;
+    if (++textures->held > textures->high) textures->high = textures->held;
     return 1;
 }

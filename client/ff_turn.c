@@ -2,19 +2,16 @@
 
 #include <string.h>
 
-#define BIN_US 200000
-#define PAUSE_US_MAX 2000000
-#define STILL_BRAD 128           /* a smaller turn is none: 0.7 degrees */
-#define STEP_BRAD 8192
-#define YAW_BRAD_MAX (FF_TURN_VIEWS_MAX * STEP_BRAD)
+#define BIN_US         200000
+#define PAUSE_US_MAX   2000000
+#define STILL_BRAD     128 /* a smaller turn is none: 0.7 degrees */
+#define STEP_BRAD      8192
+#define YAW_BRAD_MAX   (FF_TURN_VIEWS_MAX * STEP_BRAD)
 #define PITCH_BRAD_MAX 16384
-#define AHEAD_US_MAX 30000000
-#define RATE_BRAD_MAX (1 << 24)  /* a second: 256 turns */
+#define AHEAD_US_MAX   30000000
+#define RATE_BRAD_MAX  (1 << 24) /* a second: 256 turns */
 
-void ff_turn_reset(ff_turn *turn)
-{
-    memset(turn, 0, sizeof *turn);
-}
+void ff_turn_reset(ff_turn *turn) { memset(turn, 0, sizeof *turn); }
 
 static int32_t within(int64_t value, int32_t limit)
 {
@@ -34,25 +31,22 @@ void ff_turn_feed(ff_turn *turn, int64_t now_us, int32_t yaw, int32_t pitch)
     yaw &= 0xFFFF; /* angles come from outside */
     pitch &= 0xFFFF;
     if (!turn->has_last || elapsed_us < 0 || elapsed_us > PAUSE_US_MAX) {
-        *turn = (ff_turn){.since_us = now_us, .last_yaw = yaw, .last_pitch = pitch, .has_last = 1};
+        *turn =
+            (ff_turn){ .since_us = now_us, .last_yaw = yaw, .last_pitch = pitch, .has_last = 1 };
         return;
     }
     turn->yaw_sum += turned(turn->last_yaw, yaw);
     turn->pitch_sum += turned(turn->last_pitch, pitch);
     turn->last_yaw = yaw;
     turn->last_pitch = pitch;
-    if (elapsed_us < BIN_US)
-        return;
+    if (elapsed_us < BIN_US) return;
     turn->yaw_rate = within(turn->yaw_sum * 1000000 / elapsed_us, RATE_BRAD_MAX);
     turn->pitch_rate = within(turn->pitch_sum * 1000000 / elapsed_us, RATE_BRAD_MAX);
     turn->yaw_sum = turn->pitch_sum = 0;
     turn->since_us = now_us;
 }
 
-static int32_t size_of(int32_t value)
-{
-    return value < 0 ? -value : value;
-}
+static int32_t size_of(int32_t value) { return value < 0 ? -value : value; }
 
 unsigned ff_turn_predict(const ff_turn *turn, int64_t ahead_us, int32_t *yaw, int32_t *pitch)
 {

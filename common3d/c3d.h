@@ -1,17 +1,24 @@
 /* Common 3D API: what the terrain needs of a renderer, in integers (Hybrid, section 4.2).
  *
  * Conventions
- *   World: x east, y north, z up, in wu (1/256 m). Eye: x right, y up, z forward (towards the scene).
- *   Camera angles: yaw 0 looks north, grows clockwise (east is 16384); pitch grows upwards; roll grows clockwise as the viewer
+ *   World: x east, y north, z up, in wu (1/256 m). Eye: x right, y up, z forward (towards the
+ *       scene).
+ *   Camera angles: yaw 0 looks north, grows clockwise (east is 16384); pitch grows upwards; roll
+ *       grows clockwise as the viewer
  *   sees the device turn, so the picture turns the other way.
- *   Screen: pixel (0,0) is top left, its centre at (0.5, 0.5); the principal point is (width/2, height/2).
- *   Projection: x_px = width/2 + x_eye*d/z_eye, y_px = height/2 - y_eye*d/z_eye, d = focal distance in pixels (Hybrid, eq. 1).
- *   Front faces are counter-clockwise seen from outside; back faces are drawn too (terrain is never seen from below by rule).
+ *   Screen: pixel (0,0) is top left, its centre at (0.5, 0.5); the principal point is (width/2,
+ *       height/2).
+ *   Projection: x_px = width/2 + x_eye*d/z_eye, y_px = height/2 - y_eye*d/z_eye, d = focal distance
+ *       in pixels (Hybrid, eq. 1).
+ *   Front faces are counter-clockwise seen from outside; back faces are drawn too (terrain is never
+ *       seen from below by rule).
  *   Colours are 0xAABBGGRR words, i.e. bytes r, g, b, a in memory.
- *   Mesh origins are given relative to the camera, subtracted in 64-bit integers by the caller: no jitter far from the origin.
- * Handles: slot and generation in 32 bits, 0 is never valid; using a stale or zero handle draws nothing and is counted.
- * Back ends: common3d/gl (desktop GL 1.5), common3d/gles1 (GL ES 1.1), common3d/soft (integers, no GL), behind one table
- * (c3d_backend.h); all memory of a device comes from the block given at c3d_open.
+ *   Mesh origins are given relative to the camera, subtracted in 64-bit integers by the caller: no
+ *       jitter far from the origin.
+ * Handles: slot and generation in 32 bits, 0 is never valid; using a stale or zero handle draws
+ * nothing and is counted. Back ends: common3d/gl (desktop GL 1.5), common3d/gles1 (GL ES 1.1),
+ * common3d/soft (integers, no GL), behind one table (c3d_backend.h); all memory of a device comes
+ * from the block given at c3d_open.
  */
 #ifndef C3D_H
 #define C3D_H
@@ -21,54 +28,68 @@
 
 typedef struct c3d_camera {
     int32_t pos_wu[3];
-    int32_t yaw, pitch, roll;   /* brad16 */
-    int32_t focal_q8;           /* d in pixels, Q8; at least 256 */
-    uint16_t width, height;     /* viewport in pixels, 1..4096 */
-    int32_t near_wu, far_wu;    /* 0 < near < far */
+    int32_t yaw, pitch, roll; /* brad16 */
+    int32_t focal_q8;         /* d in pixels, Q8; at least 256 */
+    uint16_t width, height;   /* viewport in pixels, 1..4096 */
+    int32_t near_wu, far_wu;  /* 0 < near < far */
 } c3d_camera;
 
 /* Rows: right, up, forward; orthonormal, Q30. */
-typedef struct c3d_rotation { int32_t m[3][3]; } c3d_rotation;
+typedef struct c3d_rotation {
+    int32_t m[3][3];
+} c3d_rotation;
 void c3d_rotation_from_camera(const c3d_camera *camera, c3d_rotation *rotation);
-/* Focal distance for a full horizontal field of view in brad16 (0.1 to 170 degrees) over width pixels. */
+/* Focal distance for a full horizontal field of view in brad16 (0.1 to 170 degrees) over width
+ * pixels. */
 int32_t c3d_focal_q8(int32_t fov_brad16, int32_t width_px);
 /* World offset from the camera (|each| < 2^33 wu) to eye space, wu. */
 void c3d_to_eye(const c3d_rotation *rotation, const int64_t offset_wu[3], int64_t eye_wu[3]);
 
-typedef struct c3d_vertex {     /* 12 bytes */
+typedef struct c3d_vertex { /* 12 bytes */
     int16_t x, y, z, pad;
     uint8_t rgba[4];
 } c3d_vertex;
 
-typedef struct { uint32_t id; } c3d_mesh;
-typedef struct { uint32_t id; } c3d_strip;   /* 16-bit indices of one triangle strip */
-typedef struct { uint32_t id; } c3d_texture;
+typedef struct {
+    uint32_t id;
+} c3d_mesh;
+typedef struct {
+    uint32_t id;
+} c3d_strip; /* 16-bit indices of one triangle strip */
+typedef struct {
+    uint32_t id;
+} c3d_texture;
 
 /* 16-bit formats have red in the highest bits; C3D_RGBA5551 alpha in the lowest. */
 enum c3d_texture_format { C3D_RGB565, C3D_RGBA5551, C3D_RGBA8888 };
 
 enum c3d_draw_flags {
-    C3D_DRAW_TEXTURED = 1,  /* texture times vertex colour; coordinates are x,y of the vertex through tex_scale/tex_offset */
-    C3D_DRAW_COLOURED = 2,  /* use vertex colours, else `colour` */
-    C3D_DRAW_WIREFRAME = 4, /* the strip's edges as lines */
-    C3D_DRAW_BACKDROP = 8,  /* no depth test or write, no fog: skybox */
-    C3D_DRAW_ALPHA_TEST = 16,/* texels with alpha below one half are not drawn */
-    C3D_DRAW_ON_TOP = 32,    /* depth test with a bias of 1/64 of the distance towards the viewer: wireframe over ground */
-    /* For upright quads (a panorama's side faces): texture coordinates come from other axes than x and y. */
-    C3D_DRAW_TEX_XZ = 64,    /* s from x, t from z */
-    C3D_DRAW_TEX_YZ = 128    /* s from y, t from z */
+    /* texture times vertex colour; coordinates are x,y of the vertex through
+     * tex_scale/tex_offset */
+    C3D_DRAW_TEXTURED = 1,
+    C3D_DRAW_COLOURED = 2,    /* use vertex colours, else `colour` */
+    C3D_DRAW_WIREFRAME = 4,   /* the strip's edges as lines */
+    C3D_DRAW_BACKDROP = 8,    /* no depth test or write, no fog: skybox */
+    C3D_DRAW_ALPHA_TEST = 16, /* texels with alpha below one half are not drawn */
+    /* depth test with a bias of 1/64 of the distance towards the viewer: wireframe over ground */
+    C3D_DRAW_ON_TOP = 32,
+    /* For upright quads (a panorama's side faces): texture coordinates come from other axes than x
+     * and y. */
+    C3D_DRAW_TEX_XZ = 64, /* s from x, t from z */
+    C3D_DRAW_TEX_YZ = 128 /* s from y, t from z */
 };
 
 typedef struct c3d_draw {
     c3d_mesh mesh;
     c3d_strip strip;
-    int64_t origin_wu[3];   /* of vertex (0,0,0), relative to the camera */
-    int32_t xy_scale_wu;    /* wu per vertex unit in x and y */
-    uint32_t z_scale_q16;   /* wu per vertex unit in z, Q16 */
-    uint32_t flags;         /* enum c3d_draw_flags */
-    uint32_t colour;        /* 0xAABBGGRR, when not C3D_DRAW_COLOURED */
+    int64_t origin_wu[3]; /* of vertex (0,0,0), relative to the camera */
+    int32_t xy_scale_wu;  /* wu per vertex unit in x and y */
+    uint32_t z_scale_q16; /* wu per vertex unit in z, Q16 */
+    uint32_t flags;       /* enum c3d_draw_flags */
+    uint32_t colour;      /* 0xAABBGGRR, when not C3D_DRAW_COLOURED */
     c3d_texture texture;
-    /* s = (x - tex_origin)/2^tex_shift * scale + offset in texture widths; t grows with y (row 0 = south) */
+    /* s = (x - tex_origin)/2^tex_shift * scale + offset in texture widths; t grows with y (row 0 =
+     * south) */
     int32_t tex_scale_q16[2], tex_offset_q16[2];
     int32_t tex_origin[2];
     uint8_t tex_shift;
@@ -84,19 +105,25 @@ typedef struct c3d_frame {
 typedef struct c3d_desc {
     const sys_surface_api *surface_api; /* the context is current when c3d_open is called */
     uint16_t mesh_count, strip_count, texture_count; /* pool sizes */
-    uint16_t mesh_vertices_max;  /* of one mesh */
-    uint32_t strip_indices_max;  /* of all strips together */
-    uint8_t use_vertex_buffers;  /* 1: buffers when the GL has them; 0: plain arrays (the fallback) */
+    uint16_t mesh_vertices_max;                      /* of one mesh */
+    uint32_t strip_indices_max;                      /* of all strips together */
+    /* 1: buffers when the GL has them; 0: plain arrays (the fallback) */
+    uint8_t use_vertex_buffers;
     /* For back ends that hold the picture themselves (soft); the others leave these alone. */
-    uint8_t frame_format;        /* C3D_RGB565 (0, default) or C3D_RGBA8888 */
-    uint16_t width, height;      /* largest viewport, default 240x320; in a larger one nothing is drawn */
-    uint32_t texture_bytes;      /* of all textures together, with a rim of one texel each; 4 bytes a texel, RGBA5551 2; default 32 KB each */
+    uint8_t frame_format; /* C3D_RGB565 (0, default) or C3D_RGBA8888 */
+    /* largest viewport, default 240x320; in a larger one nothing is drawn */
+    uint16_t width, height;
+    /* of all textures together, with a rim of one texel each; 4 bytes a texel, RGBA5551 2; default
+     * 32 KB each */
+    uint32_t texture_bytes;
 } c3d_desc;
 
 /* Counters since c3d_open, and of the frame being drawn (or last drawn). */
 typedef struct c3d_stats {
-    uint32_t frame_triangles, frame_draws; /* triangles: neither degenerate ones nor those of wireframes */
-    uint32_t stale_handles;                /* uses of stale or zero handles, and strips that reach beyond their mesh */
+    /* triangles: neither degenerate ones nor those of wireframes */
+    uint32_t frame_triangles, frame_draws;
+    /* uses of stale or zero handles, and strips that reach beyond their mesh */
+    uint32_t stale_handles;
     uint32_t mesh_high, strip_high, texture_high;
     uint8_t vertex_buffers_used;
 } c3d_stats;
@@ -105,34 +132,40 @@ typedef struct c3d_device c3d_device;
 struct c3d_backend;
 const struct c3d_backend *c3d_backend_gl(void);
 const struct c3d_backend *c3d_backend_gles1(void);
-const struct c3d_backend *c3d_backend_soft(void); /* integers only, no GL: common3d/soft/c3d_soft.h */
+/* integers only, no GL: common3d/soft/c3d_soft.h */
+const struct c3d_backend *c3d_backend_soft(void);
 
 /* With vertex buffers the GL holds meshes and strips; without, copies of them lie in the block. */
 size_t c3d_bytes(const struct c3d_backend *backend, const c3d_desc *desc);
-/* FF_OK, FF_ERR_MEMORY, FF_ERR_UNSUPPORTED (the context is of another kind, or a GL function is missing). When buffers are wanted
- * and missing, a block that also holds the copies makes plain arrays step in; a smaller one is FF_ERR_MEMORY. The block must
- * outlive the device, and the device's context must be current in every call. */
-int c3d_open(const struct c3d_backend *backend, const c3d_desc *desc, void *memory, size_t bytes, c3d_device **device);
+/* FF_OK, FF_ERR_MEMORY, FF_ERR_UNSUPPORTED (the context is of another kind, or a GL function is
+ * missing). When buffers are wanted and missing, a block that also holds the copies makes plain
+ * arrays step in; a smaller one is FF_ERR_MEMORY. The block must outlive the device, and the
+ * device's context must be current in every call. */
+int c3d_open(const struct c3d_backend *backend, const c3d_desc *desc, void *memory, size_t bytes,
+             c3d_device **device);
 void c3d_close(c3d_device *device);
 
-/* A handle, or id 0 when the pool is full (counted by the caller as coarser picture, never an error). Data is copied. */
+/* A handle, or id 0 when the pool is full (counted by the caller as coarser picture, never an
+ * error). Data is copied. */
 c3d_mesh c3d_mesh_make(c3d_device *device, const c3d_vertex *vertices, uint32_t count);
 void c3d_mesh_free(c3d_device *device, c3d_mesh mesh);
 c3d_strip c3d_strip_make(c3d_device *device, const uint16_t *indices, uint32_t count);
-/* Pixels tightly packed, row 0 first = south / bottom (t = 0). Width and height powers of two. Bilinear, clamped to edge. */
-c3d_texture c3d_texture_make(c3d_device *device, enum c3d_texture_format format, uint32_t width, uint32_t height,
-                             const void *pixels);
+/* Pixels tightly packed, row 0 first = south / bottom (t = 0). Width and height powers of two.
+ * Bilinear, clamped to edge. */
+c3d_texture c3d_texture_make(c3d_device *device, enum c3d_texture_format format, uint32_t width,
+                             uint32_t height, const void *pixels);
 void c3d_texture_free(c3d_device *device, c3d_texture texture);
 
 void c3d_begin(c3d_device *device, const c3d_frame *frame);
 void c3d_draw_strip(c3d_device *device, const c3d_draw *draw);
-/* RGBA8888 image (top row first, powers of two) over the picture, its top left corner at (x, y) pixels: the HUD. */
+/* RGBA8888 image (top row first, powers of two) over the picture, its top left corner at (x, y)
+ * pixels: the HUD. */
 void c3d_overlay(c3d_device *device, c3d_texture texture, int x, int y, int width, int height);
 void c3d_end(c3d_device *device);
 /* The finished frame as RGB888, top row first, width*height*3 bytes; before present(). */
 int c3d_read_rgb(c3d_device *device, uint8_t *rgb);
-/* The finished frame where the back end has it, top row first, rows packed (RGBA8888: bytes r, g, b, a); NULL: in a GL. Valid until
- * the next c3d_begin. */
+/* The finished frame where the back end has it, top row first, rows packed (RGBA8888: bytes r, g,
+ * b, a); NULL: in a GL. Valid until the next c3d_begin. */
 const void *c3d_frame_pixels(c3d_device *device, enum c3d_texture_format *format);
 void c3d_get_stats(const c3d_device *device, c3d_stats *stats);
 

@@ -5,15 +5,18 @@ static int32_t clamp32(int64_t value, int32_t low, int32_t high)
     return (int32_t)(value < low ? low : value > high ? high : value);
 }
 
-/* The unrolled camera looks along (sin yaw cos pitch, cos yaw cos pitch, sin pitch); rolling turns right and up about it. */
+/* The unrolled camera looks along (sin yaw cos pitch, cos yaw cos pitch, sin pitch); rolling turns
+ * right and up about it. */
 void c3d_rotation_from_camera(const c3d_camera *camera, c3d_rotation *rotation)
 {
     int32_t sin_yaw = c3d_sin_q30(camera->yaw), cos_yaw = c3d_cos_q30(camera->yaw);
     int32_t sin_pitch = c3d_sin_q30(camera->pitch), cos_pitch = c3d_cos_q30(camera->pitch);
     int32_t sin_roll = c3d_sin_q30(camera->roll), cos_roll = c3d_cos_q30(camera->roll);
-    const int32_t right[3] = {cos_yaw, -sin_yaw, 0};
-    const int32_t up[3] = {-c3d_mul_q30(sin_yaw, sin_pitch), -c3d_mul_q30(cos_yaw, sin_pitch), cos_pitch};
-    const int32_t forward[3] = {c3d_mul_q30(sin_yaw, cos_pitch), c3d_mul_q30(cos_yaw, cos_pitch), sin_pitch};
+    const int32_t right[3] = { cos_yaw, -sin_yaw, 0 };
+    const int32_t up[3] = { -c3d_mul_q30(sin_yaw, sin_pitch), -c3d_mul_q30(cos_yaw, sin_pitch),
+                            cos_pitch };
+    const int32_t forward[3] = { c3d_mul_q30(sin_yaw, cos_pitch), c3d_mul_q30(cos_yaw, cos_pitch),
+                                 sin_pitch };
     for (int i = 0; i < 3; i++) {
         rotation->m[0][i] = c3d_mul_q30(right[i], cos_roll) - c3d_mul_q30(up[i], sin_roll);
         rotation->m[1][i] = c3d_mul_q30(right[i], sin_roll) + c3d_mul_q30(up[i], cos_roll);
@@ -21,17 +24,20 @@ void c3d_rotation_from_camera(const c3d_camera *camera, c3d_rotation *rotation)
     }
 }
 
-/* d = width/2 / tan(fov/2) with tan from an angle of 2^-32 turn: half of an odd brad16 counts at 0.1 degrees. */
+/* d = width/2 / tan(fov/2) with tan from an angle of 2^-32 turn: half of an odd brad16 counts at
+ * 0.1 degrees. */
 int32_t c3d_focal_q8(int32_t fov_brad16, int32_t width_px)
 {
     uint32_t half = (uint32_t)clamp32(fov_brad16, 18, 30948) << 15;
-    int32_t sine = c3d_sin_turn32_q30(half), cosine = c3d_sin_turn32_q30(half + (UINT32_C(1) << 30));
+    int32_t sine = c3d_sin_turn32_q30(half),
+            cosine = c3d_sin_turn32_q30(half + (UINT32_C(1) << 30));
     int64_t focal = ((int64_t)width_px * 128 * cosine + sine / 2) / sine;
     return clamp32(focal, 256, INT32_MAX);
 }
 
-/* Offsets of 34 bits times 31 bits of rotation exceed 64 bits: taken in two halves of which the lower has 16 bits.
- * high: 3 * 2^17 * 2^30 < 2^49, and is in 2^16 wu with 30 fraction bits, that is wu with 14. */
+/* Offsets of 34 bits times 31 bits of rotation exceed 64 bits: taken in two halves of which the
+ * lower has 16 bits. high: 3 * 2^17 * 2^30 < 2^49, and is in 2^16 wu with 30 fraction bits, that is
+ * wu with 14. */
 void c3d_to_eye_q14(const c3d_rotation *rotation, const int64_t offset_wu[3], int64_t eye_q14[3])
 {
     for (int row = 0; row < 3; row++) {
@@ -48,5 +54,6 @@ void c3d_to_eye(const c3d_rotation *rotation, const int64_t offset_wu[3], int64_
 {
     int64_t eye_q14[3];
     c3d_to_eye_q14(rotation, offset_wu, eye_q14);
-    for (int i = 0; i < 3; i++) eye_wu[i] = (eye_q14[i] + (1 << (C3D_EYE_SHIFT - 1))) >> C3D_EYE_SHIFT;
+    for (int i = 0; i < 3; i++)
+        eye_wu[i] = (eye_q14[i] + (1 << (C3D_EYE_SHIFT - 1))) >> C3D_EYE_SHIFT;
 }

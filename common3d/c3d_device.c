@@ -1,7 +1,8 @@
 /* Handles, pools and counters of a device; everything about graphics is behind its back end.
  *
- * The block:  device | back end's state | mesh slots | strip slots | texture slots | edge scratch | [vertex copies | index copies]
- * The copies in brackets are for plain arrays only: with vertex buffers the graphics library has the data.
+ * The block:  device | back end's state | mesh slots | strip slots | texture slots | edge scratch |
+ * [vertex copies | index copies] The copies in brackets are for plain arrays only: with vertex
+ * buffers the graphics library has the data.
  */
 #include "c3d_pool.h"
 
@@ -30,10 +31,10 @@ struct c3d_device {
     void *state;
     c3d_desc desc;
     c3d_pool meshes, strips, textures;
-    uint16_t *scratch;       /* a strip and its edges, before they are uploaded */
-    c3d_vertex *vertices;    /* mesh_vertices_max for each mesh slot; NULL with vertex buffers */
-    uint16_t *indices;       /* INDEX_WORDS for each index; NULL with vertex buffers */
-    uint32_t indices_used;   /* of strip_indices_max */
+    uint16_t *scratch;     /* a strip and its edges, before they are uploaded */
+    c3d_vertex *vertices;  /* mesh_vertices_max for each mesh slot; NULL with vertex buffers */
+    uint16_t *indices;     /* INDEX_WORDS for each index; NULL with vertex buffers */
+    uint32_t indices_used; /* of strip_indices_max */
     c3d_frame frame;
     c3d_rotation rotation;
     int64_t origin_wu[3], eye_q14[3]; /* of the last draw: those of a ground's nodes are one */
@@ -56,19 +57,24 @@ static void *take(block_part *block, size_t bytes)
     return part;
 }
 
-/* Lays the device out in the block, or only measures when there is no memory. `plain`: with room for copies. */
-static c3d_device *lay_out(block_part *block, const struct c3d_backend *backend, const c3d_desc *desc, int plain)
+/* Lays the device out in the block, or only measures when there is no memory. `plain`: with room
+ * for copies. */
+static c3d_device *lay_out(block_part *block, const struct c3d_backend *backend,
+                           const c3d_desc *desc, int plain)
 {
     c3d_device *device = take(block, sizeof *device);
-    void *state = take(block, backend->state_bytes_for ? backend->state_bytes_for(desc) : backend->state_bytes);
+    void *state = take(block, backend->state_bytes_for ? backend->state_bytes_for(desc)
+                                                       : backend->state_bytes);
     void *meshes = take(block, desc->mesh_count * sizeof(mesh_slot));
     void *strips = take(block, desc->strip_count * sizeof(strip_slot));
     void *textures = take(block, desc->texture_count * sizeof(texture_slot));
-    uint16_t *scratch = take(block, (size_t)desc->strip_indices_max * INDEX_WORDS * sizeof(uint16_t));
+    uint16_t *scratch = take(block,
+                             (size_t)desc->strip_indices_max * INDEX_WORDS * sizeof(uint16_t));
     c3d_vertex *vertices = NULL;
     uint16_t *indices = NULL;
     if (plain) {
-        vertices = take(block, (size_t)desc->mesh_count * desc->mesh_vertices_max * sizeof(c3d_vertex));
+        vertices = take(block,
+                        (size_t)desc->mesh_count * desc->mesh_vertices_max * sizeof(c3d_vertex));
         indices = take(block, (size_t)desc->strip_indices_max * INDEX_WORDS * sizeof(uint16_t));
     }
     if (!device) return NULL;
@@ -87,7 +93,7 @@ static c3d_device *lay_out(block_part *block, const struct c3d_backend *backend,
 
 static size_t bytes_for(const struct c3d_backend *backend, const c3d_desc *desc, int plain)
 {
-    block_part measure = {NULL, 0};
+    block_part measure = { NULL, 0 };
     lay_out(&measure, backend, desc, plain);
     return measure.used + 15; /* for a block that is not aligned */
 }
@@ -102,11 +108,13 @@ size_t c3d_bytes(const struct c3d_backend *backend, const c3d_desc *desc)
     return bytes_for(backend, desc, !wants_buffers(backend, desc));
 }
 
-int c3d_open(const struct c3d_backend *backend, const c3d_desc *desc, void *memory, size_t bytes, c3d_device **device)
+int c3d_open(const struct c3d_backend *backend, const c3d_desc *desc, void *memory, size_t bytes,
+             c3d_device **device)
 {
     if (bytes < c3d_bytes(backend, desc)) return FF_ERR_MEMORY;
-    block_part block = {(uint8_t *)memory + (-(uintptr_t)memory & 15), 0};
-    int buffers = wants_buffers(backend, desc), plain = !buffers || bytes >= bytes_for(backend, desc, 1);
+    block_part block = { (uint8_t *)memory + (-(uintptr_t)memory & 15), 0 };
+    int buffers = wants_buffers(backend, desc),
+        plain = !buffers || bytes >= bytes_for(backend, desc, 1);
     c3d_device *opened = lay_out(&block, backend, desc, plain);
     int rc = backend->open(opened->state, desc, &buffers);
     if (rc < 0) return rc;
@@ -141,27 +149,29 @@ void c3d_close(c3d_device *device)
 static void measure_extent(c3d_mesh_data *mesh, const c3d_vertex *vertices)
 {
     for (uint32_t i = 0; i < mesh->count; i++) {
-        const int16_t at[3] = {vertices[i].x, vertices[i].y, vertices[i].z};
+        const int16_t at[3] = { vertices[i].x, vertices[i].y, vertices[i].z };
         for (int axis = 0; axis < 3; axis++) {
             if (i == 0 || at[axis] < mesh->least[axis]) mesh->least[axis] = at[axis];
             if (i == 0 || at[axis] > mesh->most[axis]) mesh->most[axis] = at[axis];
         }
     }
     for (int axis = 0; axis < 3; axis++)
-        mesh->reach[axis] = (uint16_t)(-mesh->least[axis] > mesh->most[axis] ? -mesh->least[axis] : mesh->most[axis]);
+        mesh->reach[axis] = (uint16_t)(-mesh->least[axis] > mesh->most[axis] ? -mesh->least[axis]
+                                                                             : mesh->most[axis]);
 }
 
 c3d_mesh c3d_mesh_make(c3d_device *device, const c3d_vertex *vertices, uint32_t count)
 {
-    c3d_mesh none = {0};
+    c3d_mesh none = { 0 };
     if (count == 0 || count > device->desc.mesh_vertices_max) return none;
     uint32_t id = c3d_pool_take(&device->meshes);
     mesh_slot *mesh = c3d_pool_get(&device->meshes, id);
     if (!mesh) return none;
-    mesh->data = (c3d_mesh_data){.count = count};
+    mesh->data = (c3d_mesh_data){ .count = count };
     measure_extent(&mesh->data, vertices);
     if (device->vertices) {
-        c3d_vertex *copy = device->vertices + (size_t)c3d_pool_index(id) * device->desc.mesh_vertices_max;
+        c3d_vertex *copy = device->vertices +
+                           (size_t)c3d_pool_index(id) * device->desc.mesh_vertices_max;
         memcpy(copy, vertices, count * sizeof *vertices);
         mesh->data.vertices = copy;
     } else {
@@ -171,7 +181,7 @@ c3d_mesh c3d_mesh_make(c3d_device *device, const c3d_vertex *vertices, uint32_t 
             return none;
         }
     }
-    return (c3d_mesh){id};
+    return (c3d_mesh){ id };
 }
 
 void c3d_mesh_free(c3d_device *device, c3d_mesh mesh)
@@ -183,20 +193,21 @@ void c3d_mesh_free(c3d_device *device, c3d_mesh mesh)
         return;
     }
     if (slot->data.buffer) device->backend->buffer_free(device->state, slot->data.buffer);
-    slot->data = (c3d_mesh_data){0};
+    slot->data = (c3d_mesh_data){ 0 };
     c3d_pool_give(&device->meshes, mesh.id);
 }
 
 c3d_strip c3d_strip_make(c3d_device *device, const uint16_t *indices, uint32_t count)
 {
-    c3d_strip none = {0};
+    c3d_strip none = { 0 };
     if (count < 3 || count > device->desc.strip_indices_max - device->indices_used) return none;
     uint32_t id = c3d_pool_take(&device->strips);
     strip_slot *strip = c3d_pool_get(&device->strips, id);
     if (!strip) return none;
     c3d_strip_data *data = &strip->data;
-    *data = (c3d_strip_data){.count = count};
-    uint16_t *words = device->indices ? device->indices + (size_t)device->indices_used * INDEX_WORDS : device->scratch;
+    *data = (c3d_strip_data){ .count = count };
+    uint16_t *words = device->indices ? device->indices + (size_t)device->indices_used * INDEX_WORDS
+                                      : device->scratch;
     memcpy(words, indices, count * sizeof *indices);
     data->edge_count = c3d_strip_edges(indices, count, words + count, &data->triangles);
     for (uint32_t i = 0; i < count; i++)
@@ -204,32 +215,35 @@ c3d_strip c3d_strip_make(c3d_device *device, const uint16_t *indices, uint32_t c
     if (device->indices) {
         data->indices = words;
     } else {
-        data->buffer = device->backend->strip_upload(device->state, words, count + data->edge_count);
+        data->buffer = device->backend->strip_upload(device->state, words,
+                                                     count + data->edge_count);
         if (!data->buffer) {
             c3d_pool_give(&device->strips, id);
             return none;
         }
     }
     device->indices_used += count;
-    return (c3d_strip){id};
+    return (c3d_strip){ id };
 }
 
 static int is_power_of_two(uint32_t value) { return value != 0 && (value & (value - 1)) == 0; }
 
-c3d_texture c3d_texture_make(c3d_device *device, enum c3d_texture_format format, uint32_t width, uint32_t height,
-                             const void *pixels)
+c3d_texture c3d_texture_make(c3d_device *device, enum c3d_texture_format format, uint32_t width,
+                             uint32_t height, const void *pixels)
 {
-    c3d_texture none = {0};
-    if (!is_power_of_two(width) || !is_power_of_two(height) || width > 4096 || height > 4096) return none;
+    c3d_texture none = { 0 };
+    if (!is_power_of_two(width) || !is_power_of_two(height) || width > 4096 || height > 4096)
+        return none;
     uint32_t id = c3d_pool_take(&device->textures);
     texture_slot *texture = c3d_pool_get(&device->textures, id);
     if (!texture) return none;
-    texture->texture = device->backend->texture_upload(device->state, format, width, height, pixels);
+    texture->texture = device->backend->texture_upload(device->state, format, width, height,
+                                                       pixels);
     if (!texture->texture) {
         c3d_pool_give(&device->textures, id);
         return none;
     }
-    return (c3d_texture){id};
+    return (c3d_texture){ id };
 }
 
 void c3d_texture_free(c3d_device *device, c3d_texture texture)
@@ -271,14 +285,18 @@ void c3d_draw_strip(c3d_device *device, const c3d_draw *draw)
     int textured = (draw->flags & C3D_DRAW_TEXTURED) != 0;
     const mesh_slot *mesh = c3d_pool_get(&device->meshes, draw->mesh.id);
     const strip_slot *strip = c3d_pool_get(&device->strips, draw->strip.id);
-    const texture_slot *texture = textured ? c3d_pool_get(&device->textures, draw->texture.id) : NULL;
+    const texture_slot *texture = textured ? c3d_pool_get(&device->textures, draw->texture.id)
+                                           : NULL;
     if (!mesh || !strip || (textured && !texture) || strip->data.index_max >= mesh->data.count) {
         device->stats.stale_handles++;
         return;
     }
     find_origin(device, draw->origin_wu);
-    c3d_resolved_draw resolved = {draw, &mesh->data, &strip->data, texture ? texture->texture : 0,
-                                  {device->eye_q14[0], device->eye_q14[1], device->eye_q14[2]}};
+    c3d_resolved_draw resolved = { draw,
+                                   &mesh->data,
+                                   &strip->data,
+                                   texture ? texture->texture : 0,
+                                   { device->eye_q14[0], device->eye_q14[1], device->eye_q14[2] } };
     device->backend->draw(device->state, &resolved);
     device->stats.frame_draws++;
     if (!(draw->flags & C3D_DRAW_WIREFRAME)) device->stats.frame_triangles += strip->data.triangles;

@@ -1,6 +1,7 @@
 #include "c3d_backend.h"
 
-uint32_t c3d_strip_edges(const uint16_t *indices, uint32_t count, uint16_t *edges, uint32_t *triangles)
+uint32_t c3d_strip_edges(const uint16_t *indices, uint32_t count, uint16_t *edges,
+                         uint32_t *triangles)
 {
     uint32_t written = 0;
     int previous_drawn = 0; /* then its last edge is this triangle's first */
@@ -8,7 +9,7 @@ uint32_t c3d_strip_edges(const uint16_t *indices, uint32_t count, uint16_t *edge
     for (uint32_t i = 2; i < count; i++) {
         uint16_t a = indices[i - 2], b = indices[i - 1], c = indices[i];
         int drawn = a != b && b != c && a != c;
-        const uint16_t pairs[6] = {a, b, b, c, a, c};
+        const uint16_t pairs[6] = { a, b, b, c, a, c };
         for (int j = previous_drawn ? 2 : 0; drawn && j < 6; j++) edges[written++] = pairs[j];
         *triangles += (uint32_t)drawn;
         previous_drawn = drawn;

@@ -3,12 +3,13 @@
 #include <assert.h>
 
 #define EIGHTH_TURN (UINT32_C(1) << 29)
-#define PI_Q32 UINT64_C(13493037705)
+#define PI_Q32      UINT64_C(13493037705)
 
 static int64_t round_q31(int64_t product) { return (product + (INT64_C(1) << 30)) >> 31; }
 
-/* Taylor's polynomials over an eighth of a turn: x up to 0.786, so the first term left out is below 2^-33 (sine: x^13/13!,
- * cosine: x^12/12!). Coefficients are the reciprocal factorials in Q31; no product exceeds 2^62. */
+/* Taylor's polynomials over an eighth of a turn: x up to 0.786, so the first term left out is below
+ * 2^-33 (sine: x^13/13!, cosine: x^12/12!). Coefficients are the reciprocal factorials in Q31; no
+ * product exceeds 2^62. */
 static int64_t polynomial(const int32_t *coefficient, int count, int64_t x2_q31)
 {
     int64_t sum = coefficient[0];
@@ -16,19 +17,23 @@ static int64_t polynomial(const int32_t *coefficient, int count, int64_t x2_q31)
     return sum;
 }
 
-/* Angle at most an eighth of a turn, in 2^-32 turn, to radians: times 2 pi, and from Q32 to Q31 on the way. */
-static int64_t radians_q31(uint32_t angle) { return (int64_t)((angle * PI_Q32 + (UINT64_C(1) << 31)) >> 32); }
+/* Angle at most an eighth of a turn, in 2^-32 turn, to radians: times 2 pi, and from Q32 to Q31 on
+ * the way. */
+static int64_t radians_q31(uint32_t angle)
+{
+    return (int64_t)((angle * PI_Q32 + (UINT64_C(1) << 31)) >> 32);
+}
 
 static int64_t sine_q31(uint32_t angle)
 {
-    static const int32_t coefficient[] = {-54, 5918, -426089, 17895697, -357913941};
+    static const int32_t coefficient[] = { -54, 5918, -426089, 17895697, -357913941 };
     int64_t x = radians_q31(angle), x2 = round_q31(x * x);
     return x + round_q31(x * round_q31(polynomial(coefficient, 5, x2) * x2));
 }
 
 static int64_t cosine_q31(uint32_t angle)
 {
-    static const int32_t coefficient[] = {-592, 53261, -2982616, 89478485, -1073741824};
+    static const int32_t coefficient[] = { -592, 53261, -2982616, 89478485, -1073741824 };
     int64_t x = radians_q31(angle), x2 = round_q31(x * x);
     return (INT64_C(1) << 31) + round_q31(polynomial(coefficient, 5, x2) * x2);
 }
@@ -42,9 +47,15 @@ int32_t c3d_sin_turn32_q30(uint32_t angle)
     return (int32_t)(octant & 4 ? -value : value);
 }
 
-int32_t c3d_sin_q30(int32_t angle_brad16) { return c3d_sin_turn32_q30((uint32_t)angle_brad16 << 16); }
+int32_t c3d_sin_q30(int32_t angle_brad16)
+{
+    return c3d_sin_turn32_q30((uint32_t)angle_brad16 << 16);
+}
 
-int32_t c3d_cos_q30(int32_t angle_brad16) { return c3d_sin_turn32_q30(((uint32_t)angle_brad16 + 16384u) << 16); }
+int32_t c3d_cos_q30(int32_t angle_brad16)
+{
+    return c3d_sin_turn32_q30(((uint32_t)angle_brad16 + 16384u) << 16);
+}
 
 static int leading_zeros(uint64_t n) /* n > 0 */
 {
@@ -59,15 +70,18 @@ static int leading_zeros(uint64_t n) /* n > 0 */
 
 static uint32_t upper(uint32_t a, uint32_t b) { return (uint32_t)(((uint64_t)a * b) >> 32); }
 
-/* 1/sqrt(t), Q30, for t in 1/4 .. 1, Q32: a line within 9 %, then three steps of Newton's, from below: to 2^-13, 2^-24 and about 2^-26. */
+/* 1/sqrt(t), Q30, for t in 1/4 .. 1, Q32: a line within 9 %, then three steps of Newton's, from
+ * below: to 2^-13, 2^-24 and about 2^-26. */
 static uint32_t reciprocal_root_q30(uint32_t t)
 {
     uint32_t y = 2290055000u - upper(t, 1308600000u);
-    for (int i = 0; i < 3; i++) y = (uint32_t)(((uint64_t)y * ((3u << 28) - upper(t, upper(y, y)))) >> 29);
+    for (int i = 0; i < 3; i++)
+        y = (uint32_t)(((uint64_t)y * ((3u << 28) - upper(t, upper(y, y)))) >> 29);
     return y;
 }
 
-/* n * 1/sqrt(n) is off by about 2^7; what is left of n corrects that to a unit or two; the last steps make it exact. */
+/* n * 1/sqrt(n) is off by about 2^7; what is left of n corrects that to a unit or two; the last
+ * steps make it exact. */
 uint32_t c3d_isqrt64(uint64_t value)
 {
     if (value == 0) return 0;
@@ -83,7 +97,8 @@ uint32_t c3d_isqrt64(uint64_t value)
     return (uint32_t)root;
 }
 
-/* 1/d for d in 1/2 .. 1, Q32, as Q31: a line within 1/17, then three steps of Newton's, from below: within 2^-29. */
+/* 1/d for d in 1/2 .. 1, Q32, as Q31: a line within 1/17, then three steps of Newton's, from below:
+ * within 2^-29. */
 static uint32_t reciprocal_q31(uint32_t d)
 {
     uint32_t x = (3031741620u - upper(d, 2021161080u)) << 1;
@@ -97,12 +112,16 @@ uint32_t c3d_divide_saturated(uint64_t a, uint64_t b)
     if (b >> 32) return (uint32_t)(a / b);
     int lead = leading_zeros(b) - 32;
     uint32_t reciprocal = reciprocal_q31((uint32_t)b << lead);
-    uint64_t quotient = ((a << lead >> 32) * reciprocal) >> 31, left = a - quotient * b; /* too small by a few */
+    /* too small by a few */
+    uint64_t quotient = ((a << lead >> 32) * reciprocal) >> 31, left = a - quotient * b;
     for (; left >= b; left -= b) quotient++;
     return (uint32_t)quotient;
 }
 
-static uint64_t magnitude(int64_t value) { return value < 0 ? 0 - (uint64_t)value : (uint64_t)value; }
+static uint64_t magnitude(int64_t value)
+{
+    return value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
+}
 
 static void multiply128(uint64_t a, uint64_t b, uint64_t *high, uint64_t *low)
 {
@@ -146,7 +165,8 @@ int64_t c3d_length64(int64_t x, int64_t y, int64_t z)
 {
     uint64_t a = magnitude(x), b = magnitude(y), c = magnitude(z), all = a | b | c;
     int shift = 0;
-    while (all >> shift >= UINT64_C(1) << 31) shift++; /* three squares of 31 bits fit 64; 30 bits of precision stay */
+    /* three squares of 31 bits fit 64; 30 bits of precision stay */
+    while (all >> shift >= UINT64_C(1) << 31) shift++;
     a >>= shift;
     b >>= shift;
     c >>= shift;

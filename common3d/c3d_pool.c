@@ -2,14 +2,17 @@
 
 #include <assert.h>
 
-void *c3d_pool_at(c3d_pool *pool, uint32_t index) { return pool->slots + (size_t)index * pool->slot_bytes; }
+void *c3d_pool_at(c3d_pool *pool, uint32_t index)
+{
+    return pool->slots + (size_t)index * pool->slot_bytes;
+}
 
 void c3d_pool_init(c3d_pool *pool, void *slots, size_t slot_bytes, uint32_t count)
 {
-    *pool = (c3d_pool){slots, slot_bytes, count, 0, 0, 0};
+    *pool = (c3d_pool){ slots, slot_bytes, count, 0, 0, 0 };
     for (uint32_t i = 0; i < count; i++) {
         c3d_slot *slot = c3d_pool_at(pool, i);
-        *slot = (c3d_slot){1, 0, i + 1};
+        *slot = (c3d_slot){ 1, 0, i + 1 };
     }
 }
 

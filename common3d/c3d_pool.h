@@ -1,4 +1,5 @@
-/* Slots addressed by handles: slot number and generation in 32 bits, 0 never valid. Inside common3d only. */
+/* Slots addressed by handles: slot number and generation in 32 bits, 0 never valid. Inside common3d
+ * only. */
 #ifndef C3D_POOL_H
 #define C3D_POOL_H
 
@@ -8,7 +9,7 @@
 typedef struct c3d_slot {
     uint16_t generation; /* of the next or present owner, never 0 */
     uint16_t used;
-    uint32_t next_free;  /* slot number, count: none */
+    uint32_t next_free; /* slot number, count: none */
 } c3d_slot;
 
 typedef struct c3d_pool {

@@ -1,4 +1,5 @@
-/* Ring of injected device events. Any thread may inject or take: a spin lock guards it, held for one copy only. */
+/* Ring of injected device events. Any thread may inject or take: a spin lock guards it, held for
+ * one copy only. */
 #include "sys.h"
 
 #include <stdatomic.h>

@@ -8,10 +8,8 @@ const uint8_t *ff_read_span(ff_reader *in, size_t count)
 {
     const uint8_t *span = in->at;
 
-    if (in->error == FF_OK && (size_t)(in->end - in->at) < count)
-        in->error = FF_ERR_TRUNCATED;
-    if (in->error != FF_OK)
-        return NULL;
+    if (in->error == FF_OK && (size_t)(in->end - in->at) < count) in->error = FF_ERR_TRUNCATED;
+    if (in->error != FF_OK) return NULL;
     in->at += count;
     return span;
 }
@@ -21,8 +19,7 @@ uint64_t ff_read_bytes(ff_reader *in, unsigned count)
     const uint8_t *bytes = ff_read_span(in, count);
     uint64_t value = 0;
 
-    for (unsigned i = 0; bytes && i < count; i++)
-        value |= (uint64_t)bytes[i] << (8 * i);
+    for (unsigned i = 0; bytes && i < count; i++) value |= (uint64_t)bytes[i] << (8 * i);
     return value;
 }
 
@@ -39,13 +36,10 @@ uint32_t ff_read_varint(ff_reader *in)
 
     for (unsigned shift = 0; shift < 35; shift += 7) {
         uint32_t byte = (uint32_t)ff_read_bytes(in, 1);
-        if (in->error != FF_OK)
-            return 0;
-        if ((shift == 28 && byte > 15) || (shift > 0 && byte == 0))
-            break;
+        if (in->error != FF_OK) return 0;
+        if ((shift == 28 && byte > 15) || (shift > 0 && byte == 0)) break;
         value |= (byte & 127u) << shift;
-        if (byte < 128)
-            return value;
+        if (byte < 128) return value;
     }
     in->error = FF_ERR_RANGE;
     return 0;
@@ -53,10 +47,8 @@ uint32_t ff_read_varint(ff_reader *in)
 
 void ff_write_span(ff_writer *out, const uint8_t *bytes, size_t count)
 {
-    if (out->error == FF_OK && (size_t)(out->end - out->at) < count)
-        out->error = FF_ERR_FULL;
-    if (out->error != FF_OK || count == 0)
-        return;
+    if (out->error == FF_OK && (size_t)(out->end - out->at) < count) out->error = FF_ERR_FULL;
+    if (out->error != FF_OK || count == 0) return;
     memcpy(out->at, bytes, count);
     out->at += count;
 }
@@ -65,15 +57,13 @@ void ff_write_bytes(ff_writer *out, uint64_t value, unsigned count)
 {
     uint8_t bytes[8];
 
-    for (unsigned i = 0; i < count; i++)
-        bytes[i] = (uint8_t)(value >> (8 * i));
+    for (unsigned i = 0; i < count; i++) bytes[i] = (uint8_t)(value >> (8 * i));
     ff_write_span(out, bytes, count);
 }
 
 void ff_write_varint(ff_writer *out, uint32_t value)
 {
-    for (; value > 127; value >>= 7)
-        ff_write_bytes(out, value | 128u, 1);
+    for (; value > 127; value >>= 7) ff_write_bytes(out, value | 128u, 1);
     ff_write_bytes(out, value, 1);
 }
 
@@ -81,8 +71,7 @@ unsigned ff_varint_bytes(uint32_t value)
 {
     unsigned count = 1;
 
-    for (; value > 127; value >>= 7)
-        count++;
+    for (; value > 127; value >>= 7) count++;
     return count;
 }
 
@@ -108,8 +97,7 @@ void ff_read_terrain(ff_reader *in, ff_terrain_info *info)
     info->origin_x_mm = ff_read_signed(in, 8);
     info->origin_y_mm = ff_read_signed(in, 8);
     info->checksum = (uint32_t)ff_read_bytes(in, 4);
-    if (in->error == FF_OK)
-        in->error = ff_terrain_check(info);
+    if (in->error == FF_OK) in->error = ff_terrain_check(info);
 }
 
 void ff_write_terrain(ff_writer *out, const ff_terrain_info *info)

@@ -1,4 +1,5 @@
-/* Private to protocol/: reading and writing little-endian fields with one sticky error (read all, check once). */
+/* Private to protocol/: reading and writing little-endian fields with one sticky error (read all,
+ * check once). */
 #ifndef FF_BYTES_H
 #define FF_BYTES_H
 
@@ -16,9 +17,10 @@ typedef struct ff_writer {
     int error;
 } ff_writer;
 
-uint64_t ff_read_bytes(ff_reader *in, unsigned count);   /* 0..8 bytes, unsigned */
-int64_t ff_read_signed(ff_reader *in, unsigned count);   /* 1..8 bytes, two's complement */
-/* LEB128 below 2^32: 7 bits a byte, low first, top bit: more follows. An overlong one (last byte 0) is FF_ERR_RANGE. */
+uint64_t ff_read_bytes(ff_reader *in, unsigned count); /* 0..8 bytes, unsigned */
+int64_t ff_read_signed(ff_reader *in, unsigned count); /* 1..8 bytes, two's complement */
+/* LEB128 below 2^32: 7 bits a byte, low first, top bit: more follows. An overlong one (last byte 0)
+ * is FF_ERR_RANGE. */
 uint32_t ff_read_varint(ff_reader *in);
 /* The next `count` bytes, not copied; NULL on error. */
 const uint8_t *ff_read_span(ff_reader *in, size_t count);

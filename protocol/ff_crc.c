@@ -9,7 +9,6 @@ uint32_t ff_crc32(uint32_t crc, const void *bytes, size_t count)
     const uint8_t *at = bytes;
     uLong sum = crc;
 
-    for (; count > UINT_MAX; count -= UINT_MAX, at += UINT_MAX)
-        sum = crc32(sum, at, UINT_MAX);
+    for (; count > UINT_MAX; count -= UINT_MAX, at += UINT_MAX) sum = crc32(sum, at, UINT_MAX);
     return (uint32_t)(count > 0 ? crc32(sum, at, (uInt)count) : sum);
 }

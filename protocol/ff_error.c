@@ -4,11 +4,9 @@ const char *ff_error_text(int error)
 {
     switch (error) {
 #define X(name, number, text) \
-    case name: \
-        return text;
+    case name: return text;
         FF_ERROR_LIST(X)
 #undef X
-    default:
-        return error >= 0 ? "ok" : "unknown error";
+        default: return error >= 0 ? "ok" : "unknown error";
     }
 }

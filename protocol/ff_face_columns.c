@@ -1,23 +1,23 @@
-/* Packed column spans of a panorama face (SPEC.md, "Columns"): skylines move by a row or two from column to column and are often
- * level, so each list is written as steps and runs, four bits at a time. */
+/* Packed column spans of a panorama face (SPEC.md, "Columns"): skylines move by a row or two from
+ * column to column and are often level, so each list is written as steps and runs, four bits at a
+ * time. */
 #include "ff_message.h"
 
-#define SMALL_MAX 5        /* steps of -5..5 are one nibble, 0..10, zigzag */
-#define NIBBLE_RUN 11      /* the last value 1..16 times again: one more nibble */
+#define SMALL_MAX       5  /* steps of -5..5 are one nibble, 0..10, zigzag */
+#define NIBBLE_RUN      11 /* the last value 1..16 times again: one more nibble */
 #define NIBBLE_LONG_RUN 12 /* 17..272 times: two more */
-#define NIBBLE_STEP 13     /* any step: three more, zigzag */
+#define NIBBLE_STEP     13 /* any step: three more, zigzag */
 
 typedef struct nibbles {
-    uint8_t *out;       /* one of the two */
+    uint8_t *out; /* one of the two */
     const uint8_t *in;
-    size_t at, limit;   /* in nibbles */
+    size_t at, limit; /* in nibbles */
 } nibbles;
 
 static void put(nibbles *n, uint32_t value)
 {
     if (n->at < n->limit) {
-        if (n->at % 2 == 0)
-            n->out[n->at / 2] = 0;
+        if (n->at % 2 == 0) n->out[n->at / 2] = 0;
         n->out[n->at / 2] |= (uint8_t)(value << (n->at % 2 * 4));
     }
     n->at++;
@@ -38,8 +38,7 @@ static uint32_t run_length(const uint16_t *list, uint32_t i, uint32_t count, uin
 {
     uint32_t length = 0;
 
-    while (i + length < count && length < 272 && list[i + length] == value)
-        length++;
+    while (i + length < count && length < 272 && list[i + length] == value) length++;
     return length;
 }
 
@@ -52,8 +51,7 @@ static void put_step(nibbles *n, int32_t step)
         return;
     }
     put(n, NIBBLE_STEP);
-    for (int shift = 0; shift < 12; shift += 4)
-        put(n, zigzag >> shift & 15u);
+    for (int shift = 0; shift < 12; shift += 4) put(n, zigzag >> shift & 15u);
 }
 
 static void put_list(nibbles *n, const uint16_t *list, uint32_t count)
@@ -78,13 +76,13 @@ static void put_list(nibbles *n, const uint16_t *list, uint32_t count)
     }
 }
 
-int ff_face_columns_encode(const uint16_t *top, const uint16_t *bottom, uint32_t count, uint8_t *out, size_t capacity)
+int ff_face_columns_encode(const uint16_t *top, const uint16_t *bottom, uint32_t count,
+                           uint8_t *out, size_t capacity)
 {
-    nibbles n = {out, NULL, 0, 2 * capacity};
+    nibbles n = { out, NULL, 0, 2 * capacity };
 
     for (uint32_t i = 0; i < count; i++)
-        if (top[i] > bottom[i] || bottom[i] > FF_FACE_SIZE_MAX)
-            return FF_ERR_RANGE;
+        if (top[i] > bottom[i] || bottom[i] > FF_FACE_SIZE_MAX) return FF_ERR_RANGE;
     put_list(&n, top, count);
     put_list(&n, bottom, count);
     return n.at <= n.limit ? (int)((n.at + 1) / 2) : FF_ERR_FULL;
@@ -106,28 +104,22 @@ static int take_list(nibbles *n, uint16_t *list, uint32_t count, uint32_t row_co
         } else {
             return FF_ERR_RANGE;
         }
-        if (n->at > n->limit)
-            return FF_ERR_TRUNCATED;
-        if (value < 0 || value > (int32_t)row_count || run > count - i)
-            return FF_ERR_RANGE;
-        for (; run > 0; run--)
-            list[i++] = (uint16_t)value;
+        if (n->at > n->limit) return FF_ERR_TRUNCATED;
+        if (value < 0 || value > (int32_t)row_count || run > count - i) return FF_ERR_RANGE;
+        for (; run > 0; run--) list[i++] = (uint16_t)value;
     }
     return FF_OK;
 }
 
-int ff_face_columns_decode(const uint8_t *bytes, size_t byte_count, uint32_t count, uint32_t row_count, uint16_t *top,
-                           uint16_t *bottom)
+int ff_face_columns_decode(const uint8_t *bytes, size_t byte_count, uint32_t count,
+                           uint32_t row_count, uint16_t *top, uint16_t *bottom)
 {
-    nibbles n = {NULL, bytes, 0, 2 * byte_count};
+    nibbles n = { NULL, bytes, 0, 2 * byte_count };
     int rc = take_list(&n, top, count, row_count);
 
-    if (rc == FF_OK)
-        rc = take_list(&n, bottom, count, row_count);
-    if (rc == FF_OK && (n.at + 1) / 2 != byte_count)
-        return FF_ERR_RANGE;
+    if (rc == FF_OK) rc = take_list(&n, bottom, count, row_count);
+    if (rc == FF_OK && (n.at + 1) / 2 != byte_count) return FF_ERR_RANGE;
     for (uint32_t i = 0; rc == FF_OK && i < count; i++)
-        if (top[i] > bottom[i])
-            return FF_ERR_RANGE;
+        if (top[i] > bottom[i]) return FF_ERR_RANGE;
     return rc;
 }

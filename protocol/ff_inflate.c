@@ -3,13 +3,14 @@
 #include <string.h>
 #include <zlib.h>
 
-/* zlib keeps about 7 kB for an inflate stream, its forks up to twice that; the window comes on top. */
+/* zlib keeps about 7 kB for an inflate stream, its forks up to twice that; the window comes on
+ * top. */
 #define INFLATE_STATE_BYTES (20u * 1024u)
-#define ALIGNMENT 16u
+#define ALIGNMENT           16u
 
 struct ff_inflate {
     z_stream stream;
-    uint8_t *arena;            /* what zlib allocates, once */
+    uint8_t *arena; /* what zlib allocates, once */
     size_t arena_bytes, arena_used;
 };
 
@@ -28,8 +29,7 @@ static voidpf arena_take(voidpf opaque, uInt items, uInt size)
     size_t bytes = align_up((size_t)items * size);
     voidpf taken = inflater->arena + inflater->arena_used;
 
-    if (bytes > inflater->arena_bytes - inflater->arena_used)
-        return Z_NULL;
+    if (bytes > inflater->arena_bytes - inflater->arena_used) return Z_NULL;
     inflater->arena_used += bytes;
     return taken;
 }
@@ -45,8 +45,7 @@ ff_inflate *ff_inflate_create(int window_bits, void *memory, size_t bytes)
 {
     ff_inflate *inflater = memory;
 
-    if (bytes < ff_inflate_bytes(window_bits))
-        return NULL;
+    if (bytes < ff_inflate_bytes(window_bits)) return NULL;
     memset(inflater, 0, sizeof(*inflater));
     inflater->arena = (uint8_t *)memory + align_up(sizeof(ff_inflate));
     inflater->arena_bytes = bytes - align_up(sizeof(ff_inflate));
@@ -56,7 +55,8 @@ ff_inflate *ff_inflate_create(int window_bits, void *memory, size_t bytes)
     return inflateInit2(&inflater->stream, -window_bits) == Z_OK ? inflater : NULL;
 }
 
-int ff_inflate_all(ff_inflate *inflater, const uint8_t *in, size_t bytes, uint8_t *out, uint32_t count)
+int ff_inflate_all(ff_inflate *inflater, const uint8_t *in, size_t bytes, uint8_t *out,
+                   uint32_t count)
 {
     z_stream *z = &inflater->stream;
     int rc;
@@ -67,7 +67,6 @@ int ff_inflate_all(ff_inflate *inflater, const uint8_t *in, size_t bytes, uint8_
     z->next_out = out;
     z->avail_out = count;
     rc = inflate(z, Z_FINISH);
-    if (rc == Z_BUF_ERROR && z->avail_in == 0)
-        return FF_ERR_TRUNCATED;
+    if (rc == Z_BUF_ERROR && z->avail_in == 0) return FF_ERR_TRUNCATED;
     return rc == Z_STREAM_END && z->avail_out == 0 && z->avail_in == 0 ? FF_OK : FF_ERR_FORMAT;
 }

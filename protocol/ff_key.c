@@ -26,9 +26,10 @@ uint32_t ff_morton_encode(uint32_t x, uint32_t y) { return spread(x) | (spread(y
 uint32_t ff_morton_x(uint32_t code) { return gather(code); }
 uint32_t ff_morton_y(uint32_t code) { return gather(code >> 1); }
 
-/* The coordinate in `own` bits one up or down, the other one untouched. Filling the foreign bits with ones lets a carry run
- * through them, clearing them lets a borrow: dilated integers are added without being taken apart. `level_bits` cuts the
- * result, so that a step over the border comes in at the other end. */
+/* The coordinate in `own` bits one up or down, the other one untouched. Filling the foreign bits
+ * with ones lets a carry run through them, clearing them lets a borrow: dilated integers are added
+ * without being taken apart. `level_bits` cuts the result, so that a step over the border comes in
+ * at the other end. */
 static uint32_t step(uint32_t code, uint32_t own, uint32_t level_bits, int up)
 {
     uint32_t moved = up ? (code | ~own) + 1u : (code & own) - 1u;
@@ -42,18 +43,10 @@ static int next_tile(uint32_t tiles_x, uint32_t tiles_y, enum ff_side side, uint
     uint32_t tx = *tile % tiles_x, ty = *tile / tiles_x;
 
     switch (side) {
-    case FF_SIDE_SOUTH:
-        *tile -= tiles_x;
-        return ty > 0;
-    case FF_SIDE_EAST:
-        *tile += 1;
-        return tx + 1 < tiles_x;
-    case FF_SIDE_NORTH:
-        *tile += tiles_x;
-        return ty + 1 < tiles_y;
-    default:
-        *tile -= 1;
-        return tx > 0;
+        case FF_SIDE_SOUTH: *tile -= tiles_x; return ty > 0;
+        case FF_SIDE_EAST: *tile += 1; return tx + 1 < tiles_x;
+        case FF_SIDE_NORTH: *tile += tiles_x; return ty + 1 < tiles_y;
+        default: *tile -= 1; return tx > 0;
     }
 }
 
@@ -63,9 +56,9 @@ ff_key ff_key_neighbour(uint32_t tiles_x, uint32_t tiles_y, ff_key key, enum ff_
     uint32_t level_bits = (1u << (2 * level)) - 1u;
     uint32_t own = (side == FF_SIDE_EAST || side == FF_SIDE_WEST) ? X_BITS : Y_BITS;
     int up = side == FF_SIDE_EAST || side == FF_SIDE_NORTH;
-    uint32_t border = up ? own & level_bits : 0; /* the coordinate's value in the last node before the border */
+    /* the coordinate's value in the last node before the border */
+    uint32_t border = up ? own & level_bits : 0;
 
-    if ((code & own) == border && !next_tile(tiles_x, tiles_y, side, &tile))
-        return FF_KEY_NONE;
+    if ((code & own) == border && !next_tile(tiles_x, tiles_y, side, &tile)) return FF_KEY_NONE;
     return ff_key_make(tile, level, step(code, own, level_bits, up));
 }

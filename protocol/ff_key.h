@@ -1,9 +1,11 @@
-/* Node keys: tile, level of detail and Morton code in one 64-bit integer (Hybrid, section 6.1.1, figure 11).
+/* Node keys: tile, level of detail and Morton code in one 64-bit integer (Hybrid, section 6.1.1,
+ * figure 11).
  *
- * The terrain is a grid of tiles_x by tiles_y tiles, tile number = ty * tiles_x + tx, tx to the east, ty to the
- * north. Every tile is the root (level 0) of a quadtree; level l of a tile holds 2^l by 2^l nodes. The Morton code
- * of node (x, y) interleaves the bits of x (even bits) and y (odd bits), so the two lowest bits are the quadrant
- * within the parent: 0 south-west, 1 south-east, 2 north-west, 3 north-east.
+ * The terrain is a grid of tiles_x by tiles_y tiles, tile number = ty * tiles_x + tx, tx to the
+ * east, ty to the north. Every tile is the root (level 0) of a quadtree; level l of a tile holds
+ * 2^l by 2^l nodes. The Morton code of node (x, y) interleaves the bits of x (even bits) and y (odd
+ * bits), so the two lowest bits are the quadrant within the parent: 0 south-west, 1 south-east, 2
+ * north-west, 3 north-east.
  *
  *   bit 63       36 35    32 31              0
  *       tile (28)   level(4)  Morton code (2*level bits used)
@@ -15,7 +17,7 @@
 
 typedef uint64_t ff_key;
 
-#define FF_KEY_NONE UINT64_MAX
+#define FF_KEY_NONE      UINT64_MAX
 #define FF_KEY_TILES_MAX (1u << 28)
 #define FF_KEY_LEVEL_MAX 15u
 
@@ -31,7 +33,8 @@ static inline uint32_t ff_key_level(ff_key key) { return (uint32_t)(key >> 32) &
 static inline uint32_t ff_key_code(ff_key key) { return (uint32_t)key; }
 static inline uint32_t ff_key_quadrant(ff_key key) { return (uint32_t)key & 3u; }
 
-/* The child in `quadrant` (0..3) of a node above FF_KEY_LEVEL_MAX; the parent of a node below level 0. */
+/* The child in `quadrant` (0..3) of a node above FF_KEY_LEVEL_MAX; the parent of a node below level
+ * 0. */
 static inline ff_key ff_key_child(ff_key key, uint32_t quadrant)
 {
     return ff_key_make(ff_key_tile(key), ff_key_level(key) + 1, (ff_key_code(key) << 2) | quadrant);
@@ -46,8 +49,8 @@ uint32_t ff_morton_encode(uint32_t x, uint32_t y);
 uint32_t ff_morton_x(uint32_t code);
 uint32_t ff_morton_y(uint32_t code);
 
-/* The node of the same level across `side` by arithmetic on the interleaved bits alone; over a tile's border it
- * continues in the next tile; FF_KEY_NONE over the terrain's border. */
+/* The node of the same level across `side` by arithmetic on the interleaved bits alone; over a
+ * tile's border it continues in the next tile; FF_KEY_NONE over the terrain's border. */
 ff_key ff_key_neighbour(uint32_t tiles_x, uint32_t tiles_y, ff_key key, enum ff_side side);
 
 #endif

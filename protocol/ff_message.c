@@ -5,12 +5,11 @@
 
 #include <string.h>
 
-static const uint8_t hello_magic[4] = {'F', 'F', 'L', 'D'};
+static const uint8_t hello_magic[4] = { 'F', 'F', 'L', 'D' };
 
 static void require(int *error, int condition)
 {
-    if (!condition && *error == FF_OK)
-        *error = FF_ERR_RANGE;
+    if (!condition && *error == FF_OK) *error = FF_ERR_RANGE;
 }
 
 /* ---- ranges, the same for both directions ---- */
@@ -19,10 +18,8 @@ static int get_ok(const ff_get *get, enum ff_message_type type)
 {
     uint32_t level = ff_key_level(get->key);
 
-    if ((uint64_t)ff_key_code(get->key) >> (2 * level) != 0)
-        return 0;
-    if (type == FF_MSG_GET_TEXTURE)
-        return get->what == 0;
+    if ((uint64_t)ff_key_code(get->key) >> (2 * level) != 0) return 0;
+    if (type == FF_MSG_GET_TEXTURE) return get->what == 0;
     return get->what == FF_GET_REFINEMENT || (get->what == FF_GET_ROOT && level == 0);
 }
 
@@ -30,13 +27,13 @@ static int panorama_ok(const ff_get_panorama *panorama)
 {
     unsigned seen = 0;
 
-    if (panorama->front_wu < 0 || panorama->back_wu <= panorama->front_wu || panorama->face_size < 16 ||
-        panorama->face_size > FF_FACE_SIZE_MAX || panorama->quality < 1 || panorama->quality > 100 ||
-        panorama->face_count < 1 || panorama->face_count > FF_FACE_COUNT)
+    if (panorama->front_wu < 0 || panorama->back_wu <= panorama->front_wu ||
+        panorama->face_size < 16 || panorama->face_size > FF_FACE_SIZE_MAX ||
+        panorama->quality < 1 || panorama->quality > 100 || panorama->face_count < 1 ||
+        panorama->face_count > FF_FACE_COUNT)
         return 0;
     for (unsigned i = 0; i < panorama->face_count; i++) {
-        if (panorama->face[i] >= FF_FACE_COUNT || (seen >> panorama->face[i] & 1u))
-            return 0;
+        if (panorama->face[i] >= FF_FACE_COUNT || (seen >> panorama->face[i] & 1u)) return 0;
         seen |= 1u << panorama->face[i];
     }
     return 1;
@@ -46,10 +43,12 @@ static int face_ok(const ff_face *face)
 {
     int empty = (face->flags & FF_FACE_EMPTY) != 0;
 
-    if (face->face >= FF_FACE_COUNT || (face->flags & ~(FF_FACE_EMPTY | FF_FACE_LAST)) != 0 || face->face_size < 16 ||
-        face->face_size > FF_FACE_SIZE_MAX || (uint32_t)face->top_row + face->row_count > face->face_size)
+    if (face->face >= FF_FACE_COUNT || (face->flags & ~(FF_FACE_EMPTY | FF_FACE_LAST)) != 0 ||
+        face->face_size < 16 || face->face_size > FF_FACE_SIZE_MAX ||
+        (uint32_t)face->top_row + face->row_count > face->face_size)
         return 0;
-    return empty ? face->top_row == 0 && face->row_count == 0 && face->columns_bytes == 0 && face->image_bytes == 0
+    return empty ? face->top_row == 0 && face->row_count == 0 && face->columns_bytes == 0 &&
+                       face->image_bytes == 0
                  : face->row_count > 0 && face->columns_bytes > 0 && face->image_bytes > 0;
 }
 
@@ -75,8 +74,7 @@ static void write_panorama(ff_writer *out, const ff_get_panorama *panorama)
     ff_write_bytes(out, panorama->face_size, 2);
     ff_write_bytes(out, panorama->quality, 1);
     ff_write_bytes(out, panorama->face_count, 1);
-    if (out->error == FF_OK)
-        ff_write_span(out, panorama->face, panorama->face_count);
+    if (out->error == FF_OK) ff_write_span(out, panorama->face, panorama->face_count);
 }
 
 static void write_face(ff_writer *out, const ff_face *face)
@@ -85,8 +83,7 @@ static void write_face(ff_writer *out, const ff_face *face)
     ff_write_bytes(out, face->id, 2);
     ff_write_bytes(out, face->face | (uint32_t)face->flags << 4, 1);
     ff_write_bytes(out, face->face_size, 2);
-    if (face->flags & FF_FACE_EMPTY)
-        return;
+    if (face->flags & FF_FACE_EMPTY) return;
     ff_write_bytes(out, face->top_row, 2);
     ff_write_bytes(out, face->row_count, 2);
     ff_write_varint(out, face->columns_bytes);
@@ -103,7 +100,8 @@ static void write_failed(ff_writer *out, const ff_failed *failed, enum ff_messag
 
 static void write_welcome(ff_writer *out, const ff_welcome *welcome)
 {
-    require(&out->error, welcome->version == FF_PROTOCOL_VERSION && ff_terrain_check(&welcome->info) == FF_OK);
+    require(&out->error,
+            welcome->version == FF_PROTOCOL_VERSION && ff_terrain_check(&welcome->info) == FF_OK);
     ff_write_bytes(out, welcome->version, 4);
     ff_write_terrain(out, &welcome->info);
 }
@@ -111,77 +109,58 @@ static void write_welcome(ff_writer *out, const ff_welcome *welcome)
 static void write_body(ff_writer *out, const ff_message *message)
 {
     switch (message->type) {
-    case FF_MSG_HELLO:
-        ff_write_span(out, hello_magic, sizeof(hello_magic));
-        ff_write_bytes(out, message->u.hello.version, 4);
-        ff_write_bytes(out, message->u.hello.known_checksum, 4);
-        break;
-    case FF_MSG_GET_NODE:
-    case FF_MSG_GET_TEXTURE:
-        write_get(out, &message->u.get, message->type);
-        break;
-    case FF_MSG_GET_PANORAMA:
-        write_panorama(out, &message->u.panorama);
-        break;
-    case FF_MSG_CANCEL:
-    case FF_MSG_CANCELLED:
-        ff_write_bytes(out, message->u.cancel.id, 2);
-        break;
-    case FF_MSG_PING:
-    case FF_MSG_PONG:
-        ff_write_bytes(out, message->u.ping.stamp, 4);
-        break;
-    case FF_MSG_WELCOME:
-        write_welcome(out, &message->u.welcome);
-        break;
-    case FF_MSG_NODE:
-    case FF_MSG_TEXTURE:
-        ff_write_bytes(out, message->u.data.id, 2);
-        ff_write_span(out, message->u.data.bytes, message->u.data.byte_count);
-        break;
-    case FF_MSG_FACE:
-        write_face(out, &message->u.face);
-        break;
-    case FF_MSG_FAILED:
-    case FF_MSG_GOODBYE:
-        write_failed(out, &message->u.failed, message->type);
-        break;
-    default:
-        require(&out->error, 0);
+        case FF_MSG_HELLO:
+            ff_write_span(out, hello_magic, sizeof(hello_magic));
+            ff_write_bytes(out, message->u.hello.version, 4);
+            ff_write_bytes(out, message->u.hello.known_checksum, 4);
+            break;
+        case FF_MSG_GET_NODE:
+        case FF_MSG_GET_TEXTURE: write_get(out, &message->u.get, message->type); break;
+        case FF_MSG_GET_PANORAMA: write_panorama(out, &message->u.panorama); break;
+        case FF_MSG_CANCEL:
+        case FF_MSG_CANCELLED: ff_write_bytes(out, message->u.cancel.id, 2); break;
+        case FF_MSG_PING:
+        case FF_MSG_PONG: ff_write_bytes(out, message->u.ping.stamp, 4); break;
+        case FF_MSG_WELCOME: write_welcome(out, &message->u.welcome); break;
+        case FF_MSG_NODE:
+        case FF_MSG_TEXTURE:
+            ff_write_bytes(out, message->u.data.id, 2);
+            ff_write_span(out, message->u.data.bytes, message->u.data.byte_count);
+            break;
+        case FF_MSG_FACE: write_face(out, &message->u.face); break;
+        case FF_MSG_FAILED:
+        case FF_MSG_GOODBYE: write_failed(out, &message->u.failed, message->type); break;
+        default: require(&out->error, 0);
     }
 }
 
 size_t ff_message_bytes_max(const ff_message *message)
 {
     switch (message->type) {
-    case FF_MSG_WELCOME:
-        return FF_MESSAGE_HEADER_MAX + 4 + FF_TERRAIN_BYTES;
-    case FF_MSG_NODE:
-    case FF_MSG_TEXTURE:
-        return FF_MESSAGE_HEADER_MAX + 2 + (size_t)message->u.data.byte_count;
-    case FF_MSG_FACE:
-        return FF_MESSAGE_HEADER_MAX + 14 + (size_t)message->u.face.columns_bytes + message->u.face.image_bytes;
-    default:
-        return FF_REQUEST_BYTES_MAX;
+        case FF_MSG_WELCOME: return FF_MESSAGE_HEADER_MAX + 4 + FF_TERRAIN_BYTES;
+        case FF_MSG_NODE:
+        case FF_MSG_TEXTURE: return FF_MESSAGE_HEADER_MAX + 2 + (size_t)message->u.data.byte_count;
+        case FF_MSG_FACE:
+            return FF_MESSAGE_HEADER_MAX + 14 + (size_t)message->u.face.columns_bytes +
+                   message->u.face.image_bytes;
+        default: return FF_REQUEST_BYTES_MAX;
     }
 }
 
 int ff_message_encode(const ff_message *message, uint8_t *out, size_t capacity)
 {
-    /* Most bodies are short, so the body is written where a one-byte length puts it, and moved when that was too little. */
+    /* Most bodies are short, so the body is written where a one-byte length puts it, and moved when
+     * that was too little. */
     size_t room = capacity < 2 ? capacity : 2, body_bytes, header_bytes;
-    ff_writer body = {out + room, out + capacity, FF_OK};
-    ff_writer head = {out, out + capacity, FF_OK};
+    ff_writer body = { out + room, out + capacity, FF_OK };
+    ff_writer head = { out, out + capacity, FF_OK };
 
     write_body(&body, message);
-    if (body.error != FF_OK)
-        return body.error;
+    if (body.error != FF_OK) return body.error;
     body_bytes = (size_t)(body.at - (out + room));
-    if (body_bytes > FF_MESSAGE_BODY_MAX)
-        return FF_ERR_RANGE;
+    if (body_bytes > FF_MESSAGE_BODY_MAX) return FF_ERR_RANGE;
     header_bytes = 1 + ff_varint_bytes((uint32_t)body_bytes);
-    if (header_bytes + body_bytes > capacity)
-        return FF_ERR_FULL;
+    if (header_bytes + body_bytes > capacity) return FF_ERR_FULL;
     memmove(out + header_bytes, out + room, body_bytes);
     ff_write_bytes(&head, message->type, 1);
     ff_write_varint(&head, (uint32_t)body_bytes);
@@ -194,8 +173,7 @@ static void read_hello(ff_reader *in, ff_hello *hello)
 {
     const uint8_t *magic = ff_read_span(in, sizeof(hello_magic));
 
-    if (magic && memcmp(magic, hello_magic, sizeof(hello_magic)) != 0)
-        in->error = FF_ERR_FORMAT;
+    if (magic && memcmp(magic, hello_magic, sizeof(hello_magic)) != 0) in->error = FF_ERR_FORMAT;
     hello->version = (uint32_t)ff_read_bytes(in, 4);
     hello->known_checksum = (uint32_t)ff_read_bytes(in, 4);
 }
@@ -228,16 +206,14 @@ static void read_panorama(ff_reader *in, ff_get_panorama *panorama)
     panorama->face_count = (uint8_t)ff_read_bytes(in, 1);
     require(&in->error, panorama->face_count <= FF_FACE_COUNT);
     face = ff_read_span(in, panorama->face_count);
-    if (face)
-        memcpy(panorama->face, face, panorama->face_count);
+    if (face) memcpy(panorama->face, face, panorama->face_count);
     require(&in->error, face && panorama_ok(panorama));
 }
 
 static void read_welcome(ff_reader *in, ff_welcome *welcome)
 {
     welcome->version = (uint32_t)ff_read_bytes(in, 4);
-    if (in->error == FF_OK && welcome->version != FF_PROTOCOL_VERSION)
-        in->error = FF_ERR_VERSION;
+    if (in->error == FF_OK && welcome->version != FF_PROTOCOL_VERSION) in->error = FF_ERR_VERSION;
     ff_read_terrain(in, &welcome->info);
 }
 
@@ -276,70 +252,53 @@ static void read_failed(ff_reader *in, ff_failed *failed, enum ff_message_type t
 static void read_body(ff_reader *in, ff_message *out)
 {
     switch (out->type) {
-    case FF_MSG_HELLO:
-        read_hello(in, &out->u.hello);
-        break;
-    case FF_MSG_GET_NODE:
-    case FF_MSG_GET_TEXTURE:
-        read_get(in, &out->u.get, out->type);
-        break;
-    case FF_MSG_GET_PANORAMA:
-        read_panorama(in, &out->u.panorama);
-        break;
-    case FF_MSG_CANCEL:
-    case FF_MSG_CANCELLED:
-        out->u.cancel.id = (uint16_t)ff_read_bytes(in, 2);
-        break;
-    case FF_MSG_PING:
-    case FF_MSG_PONG:
-        out->u.ping.stamp = (uint32_t)ff_read_bytes(in, 4);
-        break;
-    case FF_MSG_WELCOME:
-        read_welcome(in, &out->u.welcome);
-        break;
-    case FF_MSG_NODE:
-    case FF_MSG_TEXTURE:
-        out->u.data.id = (uint16_t)ff_read_bytes(in, 2);
-        read_rest(in, &out->u.data.bytes, &out->u.data.byte_count);
-        break;
-    case FF_MSG_FACE:
-        read_face(in, &out->u.face);
-        break;
-    case FF_MSG_FAILED:
-    case FF_MSG_GOODBYE:
-        read_failed(in, &out->u.failed, out->type);
-        break;
+        case FF_MSG_HELLO: read_hello(in, &out->u.hello); break;
+        case FF_MSG_GET_NODE:
+        case FF_MSG_GET_TEXTURE: read_get(in, &out->u.get, out->type); break;
+        case FF_MSG_GET_PANORAMA: read_panorama(in, &out->u.panorama); break;
+        case FF_MSG_CANCEL:
+        case FF_MSG_CANCELLED: out->u.cancel.id = (uint16_t)ff_read_bytes(in, 2); break;
+        case FF_MSG_PING:
+        case FF_MSG_PONG: out->u.ping.stamp = (uint32_t)ff_read_bytes(in, 4); break;
+        case FF_MSG_WELCOME: read_welcome(in, &out->u.welcome); break;
+        case FF_MSG_NODE:
+        case FF_MSG_TEXTURE:
+            out->u.data.id = (uint16_t)ff_read_bytes(in, 2);
+            read_rest(in, &out->u.data.bytes, &out->u.data.byte_count);
+            break;
+        case FF_MSG_FACE: read_face(in, &out->u.face); break;
+        case FF_MSG_FAILED:
+        case FF_MSG_GOODBYE: read_failed(in, &out->u.failed, out->type); break;
     }
 }
 
 static int type_known(uint8_t type)
 {
-    return (type >= FF_MSG_HELLO && type <= FF_MSG_PING) || (type >= FF_MSG_WELCOME && type <= FF_MSG_GOODBYE);
+    return (type >= FF_MSG_HELLO && type <= FF_MSG_PING) ||
+           (type >= FF_MSG_WELCOME && type <= FF_MSG_GOODBYE);
 }
 
 int ff_message_decode(const uint8_t *bytes, size_t byte_count, ff_message *out)
 {
-    ff_reader head = {bytes, bytes + (byte_count < FF_MESSAGE_HEADER_MAX ? byte_count : FF_MESSAGE_HEADER_MAX), FF_OK};
-    ff_reader body = {NULL, NULL, FF_OK};
+    ff_reader head = {
+        bytes, bytes + (byte_count < FF_MESSAGE_HEADER_MAX ? byte_count : FF_MESSAGE_HEADER_MAX),
+        FF_OK
+    };
+    ff_reader body = { NULL, NULL, FF_OK };
     uint32_t body_bytes;
 
-    if (byte_count < 1)
-        return 0;
+    if (byte_count < 1) return 0;
     memset(out, 0, sizeof(*out));
-    if (!type_known(bytes[0]))
-        return FF_ERR_FORMAT;
+    if (!type_known(bytes[0])) return FF_ERR_FORMAT;
     out->type = (enum ff_message_type)ff_read_bytes(&head, 1);
     body_bytes = ff_read_varint(&head);
     if (head.error == FF_ERR_TRUNCATED)
         return byte_count < FF_MESSAGE_HEADER_MAX ? 0 : FF_ERR_RANGE;
-    if (head.error != FF_OK || body_bytes > FF_MESSAGE_BODY_MAX)
-        return FF_ERR_RANGE;
-    if ((size_t)(bytes + byte_count - head.at) < body_bytes)
-        return 0;
+    if (head.error != FF_OK || body_bytes > FF_MESSAGE_BODY_MAX) return FF_ERR_RANGE;
+    if ((size_t)(bytes + byte_count - head.at) < body_bytes) return 0;
     body.at = head.at;
     body.end = head.at + body_bytes;
     read_body(&body, out);
-    if (body.error == FF_OK && body.at != body.end)
-        body.error = FF_ERR_FORMAT;
+    if (body.error == FF_OK && body.at != body.end) body.error = FF_ERR_FORMAT;
     return body.error != FF_OK ? body.error : (int)(body.end - bytes);
 }

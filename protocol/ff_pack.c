@@ -1,5 +1,6 @@
-/* Pack reader, and the header's encoder. Everything read here may be damaged or hostile: sizes are compared as quotients or
- * differences that cannot overflow, and a record is looked at only after its place was checked. */
+/* Pack reader, and the header's encoder. Everything read here may be damaged or hostile: sizes are
+ * compared as quotients or differences that cannot overflow, and a record is looked at only after
+ * its place was checked. */
 #include "ff_pack.h"
 
 #include "ff_bytes.h"
@@ -7,15 +8,16 @@
 #include <limits.h>
 #include <string.h>
 
-static const uint8_t magic[8] = {0x89, 'F', 'F', 'P', '\r', '\n', 0x1a, '\n'};
+static const uint8_t magic[8] = { 0x89, 'F', 'F', 'P', '\r', '\n', 0x1a, '\n' };
 
-#define CHECKSUM_AT (8 + 4 + FF_TERRAIN_BYTES - 4) /* info.checksum is the last field of the terrain */
-#define HEADER_CRC_AT (FF_PACK_HEADER_BYTES - 4)
+#define CHECKSUM_AT \
+    (8 + 4 + FF_TERRAIN_BYTES - 4) /* info.checksum is the last field of the terrain */
+#define HEADER_CRC_AT    (FF_PACK_HEADER_BYTES - 4)
 #define RECORD_CRC_BYTES 4
 
 static uint64_t load(const uint8_t *bytes, unsigned count)
 {
-    ff_reader in = {bytes, bytes + count, FF_OK};
+    ff_reader in = { bytes, bytes + count, FF_OK };
 
     return ff_read_bytes(&in, count);
 }
@@ -32,8 +34,10 @@ static int inside(uint64_t offset, uint64_t bytes, uint64_t size)
     return offset >= FF_PACK_HEADER_BYTES && offset <= size && bytes <= size - offset;
 }
 
-/* Sections come in one order only: roots, refinements by level, textures by level; none missing, none twice. */
-static int section_expected(const ff_terrain_info *info, uint32_t number, uint16_t *kind, uint16_t *level)
+/* Sections come in one order only: roots, refinements by level, textures by level; none missing,
+ * none twice. */
+static int section_expected(const ff_terrain_info *info, uint32_t number, uint16_t *kind,
+                            uint16_t *level)
 {
     uint32_t refinements = ff_terrain_levels(info) - 1;
 
@@ -59,8 +63,8 @@ static int check_sections(const ff_pack_header *header)
     for (uint32_t i = 0; i < header->section_count; i++) {
         const ff_pack_section *section = &header->section[i];
         uint16_t kind, level;
-        if (!section_expected(info, i, &kind, &level) || section->kind != kind || section->level != level ||
-            section->record_count != records_expected(info, level))
+        if (!section_expected(info, i, &kind, &level) || section->kind != kind ||
+            section->level != level || section->record_count != records_expected(info, level))
             return FF_ERR_RANGE;
     }
     return FF_OK;
@@ -92,7 +96,7 @@ static void write_section(ff_writer *out, const ff_pack_section *section)
 
 int ff_pack_header_encode(const ff_pack_header *header, uint8_t *out)
 {
-    ff_writer writer = {out, out + HEADER_CRC_AT, FF_OK};
+    ff_writer writer = { out, out + HEADER_CRC_AT, FF_OK };
     uint32_t checksum;
 
     if (ff_terrain_check(&header->info) != FF_OK || check_sections(header) != FF_OK)
@@ -117,12 +121,11 @@ int ff_pack_header_encode(const ff_pack_header *header, uint8_t *out)
 
 static int read_header(ff_pack_header *header, const uint8_t *bytes)
 {
-    ff_reader in = {bytes + sizeof(magic) + 4, bytes + HEADER_CRC_AT, FF_OK};
+    ff_reader in = { bytes + sizeof(magic) + 4, bytes + HEADER_CRC_AT, FF_OK };
 
     ff_read_terrain(&in, &header->info);
     header->section_count = (uint32_t)ff_read_bytes(&in, 4);
-    if (in.error == FF_OK && header->section_count > FF_PACK_SECTIONS_MAX)
-        return FF_ERR_RANGE;
+    if (in.error == FF_OK && header->section_count > FF_PACK_SECTIONS_MAX) return FF_ERR_RANGE;
     for (uint32_t i = 0; in.error == FF_OK && i < header->section_count; i++)
         read_section(&in, &header->section[i]);
     return in.error != FF_OK ? in.error : check_sections(header);
@@ -137,13 +140,11 @@ int ff_pack_open(ff_pack *pack, const void *bytes, uint64_t size)
     if (size == 0) /* an empty file maps to no address at all */
         return FF_ERR_TRUNCATED;
     if (size < sizeof(magic) || memcmp(file, magic, sizeof(magic)) != 0)
-        return size < sizeof(magic) && memcmp(file, magic, (size_t)size) == 0 ? FF_ERR_TRUNCATED : FF_ERR_FORMAT;
-    if (size < FF_PACK_HEADER_BYTES)
-        return FF_ERR_TRUNCATED;
-    if (load(file + sizeof(magic), 4) != FF_PACK_VERSION)
-        return FF_ERR_VERSION;
-    if (load(file + HEADER_CRC_AT, 4) != ff_crc32(0, file, HEADER_CRC_AT))
-        return FF_ERR_CHECKSUM;
+        return size < sizeof(magic) && memcmp(file, magic, (size_t)size) == 0 ? FF_ERR_TRUNCATED
+                                                                              : FF_ERR_FORMAT;
+    if (size < FF_PACK_HEADER_BYTES) return FF_ERR_TRUNCATED;
+    if (load(file + sizeof(magic), 4) != FF_PACK_VERSION) return FF_ERR_VERSION;
+    if (load(file + HEADER_CRC_AT, 4) != ff_crc32(0, file, HEADER_CRC_AT)) return FF_ERR_CHECKSUM;
     rc = read_header(&pack->header, file);
     for (uint32_t i = 0; rc == FF_OK && i < pack->header.section_count; i++) {
         const ff_pack_section *section = &pack->header.section[i];
@@ -158,33 +159,35 @@ int ff_pack_open(ff_pack *pack, const void *bytes, uint64_t size)
 
 /* ---- records ---- */
 
-static int read_record(const ff_pack *pack, const ff_pack_section *section, uint64_t number, const uint8_t **payload)
+static int read_record(const ff_pack *pack, const ff_pack_section *section, uint64_t number,
+                       const uint8_t **payload)
 {
     const uint8_t *entry = pack->bytes + section->index_offset + 8 * number;
     uint64_t first = load(entry, 8), end = load(entry + 8, 8);
     const uint8_t *record;
 
-    if (first > end || end > section->data_bytes)
-        return FF_ERR_RANGE;
-    if (first == end)
-        return FF_ERR_NOT_FOUND;
+    if (first > end || end > section->data_bytes) return FF_ERR_RANGE;
+    if (first == end) return FF_ERR_NOT_FOUND;
     if (end - first < RECORD_CRC_BYTES || end - first - RECORD_CRC_BYTES > INT_MAX)
         return FF_ERR_RANGE;
     record = pack->bytes + section->data_offset + first;
     *payload = record + RECORD_CRC_BYTES;
-    if (load(record, RECORD_CRC_BYTES) != ff_crc32(0, *payload, (size_t)(end - first) - RECORD_CRC_BYTES))
+    if (load(record, RECORD_CRC_BYTES) !=
+        ff_crc32(0, *payload, (size_t)(end - first) - RECORD_CRC_BYTES))
         return FF_ERR_CHECKSUM;
     return (int)(end - first - RECORD_CRC_BYTES);
 }
 
-int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key, const uint8_t **payload)
+int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
+                   const uint8_t **payload)
 {
     uint32_t level = ff_key_level(key);
 
     for (uint32_t i = 0; i < pack->header.section_count; i++) {
         const ff_pack_section *section = &pack->header.section[i];
         if (section->kind == kind && section->level == level) {
-            if ((uint64_t)ff_key_code(key) >> (2 * level) != 0 || ff_pack_record_number(key) >= section->record_count)
+            if ((uint64_t)ff_key_code(key) >> (2 * level) != 0 ||
+                ff_pack_record_number(key) >= section->record_count)
                 return FF_ERR_NOT_FOUND;
             return read_record(pack, section, ff_pack_record_number(key), payload);
         }
@@ -192,7 +195,8 @@ int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key, c
     return FF_ERR_NOT_FOUND;
 }
 
-/* Damaged records of one section; *whole is cleared when its index or its list of CRCs is not what the header says. */
+/* Damaged records of one section; *whole is cleared when its index or its list of CRCs is not what
+ * the header says. */
 static uint64_t verify_section(const ff_pack *pack, const ff_pack_section *section, int *whole)
 {
     const uint8_t *index = pack->bytes + section->index_offset, *payload;
@@ -209,8 +213,7 @@ static uint64_t verify_section(const ff_pack *pack, const ff_pack_section *secti
         else if (rc != FF_ERR_NOT_FOUND || section->kind != FF_SECTION_TEXTURE)
             bad++;
     }
-    if (bad == 0 && records_crc != section->records_crc)
-        *whole = 0;
+    if (bad == 0 && records_crc != section->records_crc) *whole = 0;
     return bad;
 }
 

@@ -1,8 +1,10 @@
-/* Pack format: one file, one terrain (protocol/SPEC.md, "Pack"). Pure bytes: the caller maps or reads the file.
+/* Pack format: one file, one terrain (protocol/SPEC.md, "Pack"). Pure bytes: the caller maps or
+ * reads the file.
  *
- * Sections: heights level 0 (roots), refinements of level 0, of level 1, ..., textures of level 0, 1, ... Within a section
- * records lie in order of tile, then Morton code; the section's index gives any record's place in constant time.
- * Every record is preceded by its CRC-32, checked whenever it is read.
+ * Sections: heights level 0 (roots), refinements of level 0, of level 1, ..., textures of level 0,
+ * 1, ... Within a section records lie in order of tile, then Morton code; the section's index gives
+ * any record's place in constant time. Every record is preceded by its CRC-32, checked whenever it
+ * is read.
  */
 #ifndef FF_PACK_H
 #define FF_PACK_H
@@ -10,19 +12,24 @@
 #include "ff_codec.h"
 
 #define FF_PACK_VERSION 2
-#define FF_PACK_HEADER_BYTES 4096 /* header and section directory; the first section's index follows */
+#define FF_PACK_HEADER_BYTES \
+    4096 /* header and section directory; the first section's index follows */
 #define FF_PACK_SECTIONS_MAX 48
 
 enum ff_section_kind { FF_SECTION_ROOT = 1, FF_SECTION_REFINEMENT = 2, FF_SECTION_TEXTURE = 3 };
 
 typedef struct ff_pack_section {
-    uint16_t kind;          /* enum ff_section_kind */
-    uint16_t level;         /* of the node refined, or textured */
-    uint32_t index_crc;     /* CRC-32 of the index bytes */
-    uint32_t records_crc;   /* CRC-32 of the records' own CRC words, in order, as stored: stands for the section's contents */
-    uint64_t record_count;  /* tiles * 4^level */
-    uint64_t index_offset;  /* from file start: record_count + 1 offsets, 8 bytes each, little-endian, from data_offset */
-    uint64_t data_offset, data_bytes; /* a record: CRC-32 of its payload (4 bytes, LE), payload; no bytes at all: no such record */
+    uint16_t kind;      /* enum ff_section_kind */
+    uint16_t level;     /* of the node refined, or textured */
+    uint32_t index_crc; /* CRC-32 of the index bytes */
+    /* CRC-32 of the records' own CRC words, in order, as stored: stands for the section's
+     * contents */
+    uint32_t records_crc;
+    uint64_t record_count; /* tiles * 4^level */
+    /* from file start: record_count + 1 offsets, 8 bytes each, little-endian, from data_offset */
+    uint64_t index_offset;
+    /* a record: CRC-32 of its payload (4 bytes, LE), payload; no bytes at all: no such record */
+    uint64_t data_offset, data_bytes;
 } ff_pack_section;
 
 typedef struct ff_pack_header {
@@ -31,26 +38,30 @@ typedef struct ff_pack_header {
     ff_pack_section section[FF_PACK_SECTIONS_MAX];
 } ff_pack_header;
 
-/* A view on a mapped pack; plain data, no ownership: the mapping must outlive it; any number of readers at once. */
+/* A view on a mapped pack; plain data, no ownership: the mapping must outlive it; any number of
+ * readers at once. */
 typedef struct ff_pack {
     const uint8_t *bytes;
     uint64_t size;
     ff_pack_header header;
 } ff_pack;
 
-/* Checks header, version, checksum, ranges and that all sections lie inside `size`. FF_OK or a negative error:
- * FORMAT (foreign), VERSION, TRUNCATED, CHECKSUM, RANGE. */
+/* Checks header, version, checksum, ranges and that all sections lie inside `size`. FF_OK or a
+ * negative error: FORMAT (foreign), VERSION, TRUNCATED, CHECKSUM, RANGE. */
 int ff_pack_open(ff_pack *pack, const void *bytes, uint64_t size);
 
-/* Reads record `key` of a kind; *payload points into the mapping. Payload bytes (0 or more) or NOT_FOUND, CHECKSUM,
- * RANGE. Root: key level 0. Refinement: key of the node to refine. */
-int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key, const uint8_t **payload);
+/* Reads record `key` of a kind; *payload points into the mapping. Payload bytes (0 or more) or
+ * NOT_FOUND, CHECKSUM, RANGE. Root: key level 0. Refinement: key of the node to refine. */
+int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
+                   const uint8_t **payload);
 
-/* Checks indexes and every record of every section; *bad receives the number of damaged records. FF_OK or error. */
+/* Checks indexes and every record of every section; *bad receives the number of damaged records.
+ * FF_OK or error. */
 int ff_pack_verify(const ff_pack *pack, uint64_t *bad);
 
-/* Header to bytes, for writers; `out` has FF_PACK_HEADER_BYTES. Works out info.checksum itself (whatever is in `header`): a CRC over
- * the header, and so, by index_crc and records_crc, over everything in the pack. FF_OK or FF_ERR_RANGE. */
+/* Header to bytes, for writers; `out` has FF_PACK_HEADER_BYTES. Works out info.checksum itself
+ * (whatever is in `header`): a CRC over the header, and so, by index_crc and records_crc, over
+ * everything in the pack. FF_OK or FF_ERR_RANGE. */
 int ff_pack_header_encode(const ff_pack_header *header, uint8_t *out);
 
 /* CRC-32 (zlib's polynomial), crc 0 to start. */

@@ -1,31 +1,30 @@
-/* Prediction, shared by both halves of the codec: integers only, the same on every machine (SPEC.md, "Prediction"). */
+/* Prediction, shared by both halves of the codec: integers only, the same on every machine
+ * (SPEC.md, "Prediction"). */
 #include "ff_codec_local.h"
 
 static int32_t clamp_height(int32_t sum, int shift)
 {
-    if (sum < 0)
-        return 0;
+    if (sum < 0) return 0;
     sum >>= shift;
     return sum > UINT16_MAX ? UINT16_MAX : sum;
 }
 
-/* The sample half-way between known[i] and known[i+1] of a line of `cells`+1 known samples, `step` apart in memory. Read
- * backwards the line gives the same value: neighbours whose axes run against each other agree. */
+/* The sample half-way between known[i] and known[i+1] of a line of `cells`+1 known samples, `step`
+ * apart in memory. Read backwards the line gives the same value: neighbours whose axes run against
+ * each other agree. */
 static int32_t predict_middle(const uint16_t *known, uint32_t step, uint32_t i, uint32_t cells)
 {
     int32_t a = known[i * step], b = known[(i + 1) * step];
 
-    if (cells == 1)
-        return (a + b + 1) >> 1;
-    if (i == 0)
-        return clamp_height(7 * a + 10 * b - known[2 * step] + 8, 4);
-    if (i == cells - 1)
-        return clamp_height(7 * b + 10 * a - known[(i - 1) * step] + 8, 4);
+    if (cells == 1) return (a + b + 1) >> 1;
+    if (i == 0) return clamp_height(7 * a + 10 * b - known[2 * step] + 8, 4);
+    if (i == cells - 1) return clamp_height(7 * b + 10 * a - known[(i - 1) * step] + 8, 4);
     return clamp_height(9 * (a + b) - known[(i - 1) * step] - known[(i + 2) * step] + 8, 4);
 }
 
 /* Makes the odd points of one line; `stride` is the distance of its points in memory. */
-static void predict_line(uint16_t *grid, uint32_t first, uint32_t stride, uint32_t cells, ff_sample_fn sample, void *context)
+static void predict_line(uint16_t *grid, uint32_t first, uint32_t stride, uint32_t cells,
+                         ff_sample_fn sample, void *context)
 {
     for (uint32_t i = 0; i < cells; i++) {
         uint32_t at = first + (2 * i + 1) * stride;
@@ -33,7 +32,8 @@ static void predict_line(uint16_t *grid, uint32_t first, uint32_t stride, uint32
     }
 }
 
-/* Three parts Coons patch (2 * cross - corners) / 4 to one part mean of the cross: on three DEMs the cheapest of eight mixes. */
+/* Three parts Coons patch (2 * cross - corners) / 4 to one part mean of the cross: on three DEMs
+ * the cheapest of eight mixes. */
 static int32_t predict_centre(const uint16_t *p, uint32_t dx, uint32_t dy)
 {
     const uint16_t *south = p - dy, *north = p + dy;
@@ -43,8 +43,10 @@ static int32_t predict_centre(const uint16_t *p, uint32_t dx, uint32_t dy)
     return clamp_height(7 * cross - 3 * corners + 8, 4);
 }
 
-/* One doubling of resolution in place: grid points at even multiples of `stride` are known, those at odd ones are made. */
-static void predict_doubling(uint16_t *grid, uint32_t side, uint32_t stride, ff_sample_fn sample, void *context)
+/* One doubling of resolution in place: grid points at even multiples of `stride` are known, those
+ * at odd ones are made. */
+static void predict_doubling(uint16_t *grid, uint32_t side, uint32_t stride, ff_sample_fn sample,
+                             void *context)
 {
     uint32_t cells = (side - 1) / (2 * stride), row = side * stride;
 
@@ -60,14 +62,15 @@ static void predict_doubling(uint16_t *grid, uint32_t side, uint32_t stride, ff_
     }
 }
 
-void ff_predict_root(const ff_terrain_info *info, uint16_t *grid, ff_sample_fn sample, void *context)
+void ff_predict_root(const ff_terrain_info *info, uint16_t *grid, ff_sample_fn sample,
+                     void *context)
 {
     for (uint32_t stride = 1u << info->node_log2; stride > 1; stride /= 2)
         predict_doubling(grid, ff_node_side(info), stride / 2, sample, context);
 }
 
-void ff_predict_refinement(const ff_terrain_info *info, const uint16_t *parent, uint16_t *grid, ff_sample_fn sample,
-                           void *context)
+void ff_predict_refinement(const ff_terrain_info *info, const uint16_t *parent, uint16_t *grid,
+                           ff_sample_fn sample, void *context)
 {
     uint32_t node_side = ff_node_side(info), side = ff_refined_side(info);
 

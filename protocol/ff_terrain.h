@@ -1,9 +1,10 @@
 /* What a terrain is: sizes and units, as written in a pack's header and in the WELCOME message.
  *
- * World axes: x east, y north, z up; the south-west sample of the terrain lies at x = y = 0.
- * World unit (wu): 1/256 metre. Positions are int32_t wu (+-8388 km), differences of positions are int64_t wu.
- * Heights: uint16_t steps; z_wu = hoffset_wu + (h * hscale_q24 >> 16), with hscale_q24 in metres a step, Q24.
- * Grids of heights are stored row by row from south to north, each row from west to east.
+ * World axes: x east, y north, z up; the south-west sample of the terrain lies at x = y = 0. World
+ * unit (wu): 1/256 metre. Positions are int32_t wu (+-8388 km), differences of positions are
+ * int64_t wu. Heights: uint16_t steps; z_wu = hoffset_wu + (h * hscale_q24 >> 16), with hscale_q24
+ * in metres a step, Q24. Grids of heights are stored row by row from south to north, each row from
+ * west to east.
  */
 #ifndef FF_TERRAIN_H
 #define FF_TERRAIN_H
@@ -15,9 +16,12 @@
 #define FF_WU_PER_METRE 256
 
 enum ff_codec_id {
-    FF_CODEC_RAW = 0,     /* residuals as 16-bit values, for tests and as the floor of every comparison */
-    FF_CODEC_DEFLATE = 1, /* residuals cut into low bits and high parts, these by raw deflate (zlib) or in unary */
-    FF_CODEC_RICE = 2,    /* as DEFLATE, but high parts always in unary (Golomb-Rice): for devices without zlib */
+    /* residuals as 16-bit values, for tests and as the floor of every comparison */
+    FF_CODEC_RAW = 0,
+    /* residuals cut into low bits and high parts, these by raw deflate (zlib) or in unary */
+    FF_CODEC_DEFLATE = 1,
+    /* as DEFLATE, but high parts always in unary (Golomb-Rice): for devices without zlib */
+    FF_CODEC_RICE = 2,
     FF_CODEC_COUNT
 };
 
@@ -27,25 +31,30 @@ enum ff_terrain_flags {
 };
 
 typedef struct ff_terrain_info {
-    uint8_t node_log2;      /* k: a node holds (2^k+1)^2 heights; 1..5 */
-    uint8_t tile_log2;      /* n: a tile holds (2^n+1)^2 heights; k..k+15, at most 15 */
-    uint8_t codec;          /* enum ff_codec_id */
-    uint8_t flags;          /* enum ff_terrain_flags */
-    uint8_t texture_log2;   /* a texture holds (2^t)^2 texels, t 4..8; 0: the terrain has no images */
-    uint8_t texture_levels; /* levels 0..texture_levels-1 carry textures */
+    uint8_t node_log2; /* k: a node holds (2^k+1)^2 heights; 1..5 */
+    uint8_t tile_log2; /* n: a tile holds (2^n+1)^2 heights; k..k+15, at most 15 */
+    uint8_t codec;     /* enum ff_codec_id */
+    uint8_t flags;     /* enum ff_terrain_flags */
+    /* a texture holds (2^t)^2 texels, t 4..8; 0: the terrain has no images */
+    uint8_t texture_log2;
+    uint8_t texture_levels;          /* levels 0..texture_levels-1 carry textures */
     uint16_t height_min, height_max; /* of the source, in height steps */
-    uint16_t max_error;     /* no decoded height is further from its source than this, in height steps */
-    uint32_t tiles_x, tiles_y;     /* at least 1 each, product at most FF_KEY_TILES_MAX */
-    uint32_t samples_x, samples_y; /* of the source; the tiles' rest repeats the rim; at least 2 each */
-    uint32_t spacing_wu;    /* between neighbouring samples of the finest level; at least 1 */
-    uint32_t hscale_q24;    /* metres a height step, Q24; at least 1 */
-    int32_t hoffset_wu;     /* z of height step 0 */
-    int32_t epsg;           /* coordinate reference of the origin below; 0: none */
+    /* no decoded height is further from its source than this, in height steps */
+    uint16_t max_error;
+    uint32_t tiles_x, tiles_y; /* at least 1 each, product at most FF_KEY_TILES_MAX */
+    /* of the source; the tiles' rest repeats the rim; at least 2 each */
+    uint32_t samples_x, samples_y;
+    uint32_t spacing_wu; /* between neighbouring samples of the finest level; at least 1 */
+    uint32_t hscale_q24; /* metres a height step, Q24; at least 1 */
+    int32_t hoffset_wu;  /* z of height step 0 */
+    int32_t epsg;        /* coordinate reference of the origin below; 0: none */
     int64_t origin_x_mm, origin_y_mm; /* where x = y = 0 lies in it, millimetres */
-    uint32_t checksum;      /* of the pack's contents: a client's cache of another pack is of no use */
+    /* of the pack's contents: a client's cache of another pack is of no use */
+    uint32_t checksum;
 } ff_terrain_info;
 
-/* 0 when every field is in range and the terrain's far corner fits int32_t wu; else a negative ff_error. */
+/* 0 when every field is in range and the terrain's far corner fits int32_t wu; else a negative
+ * ff_error. */
 int ff_terrain_check(const ff_terrain_info *info);
 
 /* Number of levels of every tile: n - k + 1. */
@@ -54,8 +63,14 @@ static inline uint32_t ff_terrain_levels(const ff_terrain_info *info)
     return (uint32_t)info->tile_log2 - info->node_log2 + 1u;
 }
 /* Heights along a node's side: 2^k + 1; along the grid of its four children: 2^(k+1) + 1. */
-static inline uint32_t ff_node_side(const ff_terrain_info *info) { return (1u << info->node_log2) + 1u; }
-static inline uint32_t ff_refined_side(const ff_terrain_info *info) { return (2u << info->node_log2) + 1u; }
+static inline uint32_t ff_node_side(const ff_terrain_info *info)
+{
+    return (1u << info->node_log2) + 1u;
+}
+static inline uint32_t ff_refined_side(const ff_terrain_info *info)
+{
+    return (2u << info->node_log2) + 1u;
+}
 /* Edge of a node and of one of its cells at a level, in wu. */
 static inline int32_t ff_node_edge_wu(const ff_terrain_info *info, uint32_t level)
 {

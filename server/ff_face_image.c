@@ -3,7 +3,10 @@
 #include <assert.h>
 #include <string.h>
 
-static int is_ground(const uint8_t *pixel) { return !(pixel[0] == 255 && pixel[1] == 0 && pixel[2] == 255); }
+static int is_ground(const uint8_t *pixel)
+{
+    return !(pixel[0] == 255 && pixel[1] == 0 && pixel[2] == 255);
+}
 
 static uint8_t *pixel_at(uint8_t *rgb, uint32_t size, uint32_t column, uint32_t row)
 {
@@ -18,14 +21,12 @@ void ff_face_find_spans(const uint8_t *rgb, uint32_t size, ff_face_spans *spans)
     for (uint32_t row = 0; row < size; row++)
         for (uint32_t c = 0; c < size; c++)
             if (is_ground(rgb + 3 * ((size_t)row * size + c))) {
-                if (spans->bottom[c] == 0)
-                    spans->top[c] = (uint16_t)row;
+                if (spans->bottom[c] == 0) spans->top[c] = (uint16_t)row;
                 spans->bottom[c] = (uint16_t)(row + 1);
                 first = row < first ? row : first;
                 end = row + 1;
             }
-    if (end == 0)
-        return;
+    if (end == 0) return;
     spans->top_row = (uint16_t)first;
     spans->row_count = (uint16_t)(end - first);
     for (uint32_t c = 0; c < size; c++)
@@ -37,10 +38,8 @@ void ff_face_find_spans(const uint8_t *rgb, uint32_t size, ff_face_spans *spans)
 
 void ff_face_lower(ff_face_spans *spans, uint32_t size)
 {
-    if (spans->row_count == 0)
-        return;
-    if (spans->top_row + spans->row_count < (int)size)
-        spans->row_count++;
+    if (spans->row_count == 0) return;
+    if (spans->top_row + spans->row_count < (int)size) spans->row_count++;
     uint16_t before = 0; /* of the column to the left, as it was */
     for (uint32_t c = 0; c < size; c++) {
         uint16_t here = spans->bottom[c], after = c + 1 < size ? spans->bottom[c + 1] : 0;
@@ -80,16 +79,14 @@ static void fill_column(uint8_t *rgb, uint32_t size, const ff_face_spans *spans,
 
 void ff_face_fill(uint8_t *rgb, uint32_t size, const ff_face_spans *spans)
 {
-    if (spans->row_count == 0)
-        return;
+    if (spans->row_count == 0) return;
     for (uint32_t c = 0; c < size; c++)
-        if (spans->top[c] < spans->bottom[c])
-            fill_column(rgb, size, spans, c);
+        if (spans->top[c] < spans->bottom[c]) fill_column(rgb, size, spans, c);
     for (uint32_t c = 0; c < size; c++) {
-        if (spans->top[c] < spans->bottom[c])
-            continue;
+        if (spans->top[c] < spans->bottom[c]) continue;
         uint32_t from = nearest_column(spans, size, c);
-        for (uint32_t row = spans->top_row; row < (uint32_t)spans->top_row + spans->row_count; row++)
+        for (uint32_t row = spans->top_row; row < (uint32_t)spans->top_row + spans->row_count;
+             row++)
             memcpy(pixel_at(rgb, size, c, row), pixel_at(rgb, size, from, row), 3);
     }
 }

@@ -2,7 +2,11 @@
 
 #include <string.h>
 
-typedef struct face_axis { int32_t yaw, pitch; uint8_t axis; int8_t sign; } face_axis;
+typedef struct face_axis {
+    int32_t yaw, pitch;
+    uint8_t axis;
+    int8_t sign;
+} face_axis;
 
 static const face_axis face_axes[FF_FACE_COUNT] = {
     [FF_FACE_NORTH] = { 0, 0, 1, 1 },      [FF_FACE_EAST] = { 16384, 0, 0, 1 },
@@ -22,7 +26,8 @@ void ff_face_camera(const ff_get_panorama *request, enum ff_face_name face, c3d_
     camera->far_wu = request->back_wu;
 }
 
-int ff_face_sees_box(const ff_get_panorama *request, enum ff_face_name face, const int64_t low_wu[3], const int64_t high_wu[3])
+int ff_face_sees_box(const ff_get_panorama *request, enum ff_face_name face,
+                     const int64_t low_wu[3], const int64_t high_wu[3])
 {
     const face_axis *forward = &face_axes[face];
     int64_t low[3], high[3];
@@ -32,13 +37,11 @@ int ff_face_sees_box(const ff_get_panorama *request, enum ff_face_name face, con
     }
     int64_t nearest = forward->sign > 0 ? low[forward->axis] : -high[forward->axis];
     int64_t farthest = forward->sign > 0 ? high[forward->axis] : -low[forward->axis];
-    if (farthest > request->back_wu)
-        farthest = request->back_wu;
-    if (nearest > request->back_wu || farthest < ff_face_near_wu(request))
-        return 0;
-    /* The pyramid is widest where the box is farthest: there it reaches `farthest` to every side. */
+    if (farthest > request->back_wu) farthest = request->back_wu;
+    if (nearest > request->back_wu || farthest < ff_face_near_wu(request)) return 0;
+    /* The pyramid is widest where the box is farthest: there it reaches `farthest` to every
+     * side. */
     for (int i = 0; i < 3; i++)
-        if (i != forward->axis && (low[i] > farthest || high[i] < -farthest))
-            return 0;
+        if (i != forward->axis && (low[i] > farthest || high[i] < -farthest)) return 0;
     return 1;
 }

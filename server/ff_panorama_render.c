@@ -8,11 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FACE_SIZE_MIN 16
+#define FACE_SIZE_MIN      16
 #define SURFACE_SIZE_FIRST 256
-#define COLUMNS_BYTES_MAX (4 * FF_FACE_SIZE_MAX + 8)
-#define IMAGE_BYTES_MAX (FF_MESSAGE_BODY_MAX - COLUMNS_BYTES_MAX - 64)
-#define QUALITY_STEP 15
+#define COLUMNS_BYTES_MAX  (4 * FF_FACE_SIZE_MAX + 8)
+#define IMAGE_BYTES_MAX    (FF_MESSAGE_BODY_MAX - COLUMNS_BYTES_MAX - 64)
+#define QUALITY_STEP       15
 
 struct ff_panorama_renderer {
     const ff_pack *pack;
@@ -28,7 +28,7 @@ struct ff_panorama_renderer {
     panorama_ground ground;
 
     ff_face_spans spans;
-    uint8_t *rgb;    /* surface_size^2 pixels */
+    uint8_t *rgb; /* surface_size^2 pixels */
     uint8_t columns[COLUMNS_BYTES_MAX];
     uint8_t image[IMAGE_BYTES_MAX];
 };
@@ -37,13 +37,10 @@ struct ff_panorama_renderer {
 
 static void stage_close(ff_panorama_renderer *renderer)
 {
-    if (renderer->surface)
-        renderer->surface_api->make_current(renderer->surface);
+    if (renderer->surface) renderer->surface_api->make_current(renderer->surface);
     panorama_ground_close(&renderer->ground);
-    if (renderer->device)
-        c3d_close(renderer->device);
-    if (renderer->surface)
-        renderer->surface_api->close(renderer->surface);
+    if (renderer->device) c3d_close(renderer->device);
+    if (renderer->surface) renderer->surface_api->close(renderer->surface);
     free(renderer->device_memory);
     free(renderer->rgb);
     renderer->device = NULL;
@@ -56,7 +53,9 @@ static void stage_close(ff_panorama_renderer *renderer)
 static int stage_try_open(ff_panorama_renderer *renderer, uint16_t size)
 {
     enum sys_gl_kind gl = renderer->backend == c3d_backend_gles1() ? SYS_GL_ES1 : SYS_GL_DESKTOP;
-    sys_surface_desc surface_desc = { .title = "panorama", .width = size, .height = size, .gl = gl };
+    sys_surface_desc surface_desc = {
+        .title = "panorama", .width = size, .height = size, .gl = gl
+    };
     c3d_desc device_desc;
     int rc = renderer->surface_api->open(&surface_desc, &renderer->surface);
     if (rc < 0) {
@@ -67,22 +66,22 @@ static int stage_try_open(ff_panorama_renderer *renderer, uint16_t size)
     size_t bytes = c3d_bytes(renderer->backend, &device_desc);
     renderer->device_memory = malloc(bytes);
     renderer->rgb = malloc((size_t)3 * size * size);
-    if (!renderer->device_memory || !renderer->rgb)
-        return FF_ERR_MEMORY;
-    rc = c3d_open(renderer->backend, &device_desc, renderer->device_memory, bytes, &renderer->device);
+    if (!renderer->device_memory || !renderer->rgb) return FF_ERR_MEMORY;
+    rc = c3d_open(renderer->backend, &device_desc, renderer->device_memory, bytes,
+                  &renderer->device);
     if (rc < 0) {
         renderer->device = NULL;
         return rc;
     }
     renderer->surface_size = size;
-    return panorama_ground_open(&renderer->ground, renderer->pack, renderer->device, &renderer->stats);
+    return panorama_ground_open(&renderer->ground, renderer->pack, renderer->device,
+                                &renderer->stats);
 }
 
 static int stage_open(ff_panorama_renderer *renderer, uint16_t size)
 {
     int rc = stage_try_open(renderer, size);
-    if (rc < 0)
-        stage_close(renderer);
+    if (rc < 0) stage_close(renderer);
     return rc;
 }
 
@@ -91,21 +90,18 @@ static int stage_fit(ff_panorama_renderer *renderer, uint16_t size)
     if (size <= renderer->surface_size)
         return renderer->surface_api->make_current(renderer->surface);
     uint16_t grown = SURFACE_SIZE_FIRST;
-    while (grown < size)
-        grown *= 2;
+    while (grown < size) grown *= 2;
     stage_close(renderer);
     return stage_open(renderer, grown);
 }
 
-int ff_panorama_renderer_open(const ff_pack *pack, const sys_surface_api *surface_api, const struct c3d_backend *backend,
-                              ff_panorama_renderer **renderer)
+int ff_panorama_renderer_open(const ff_pack *pack, const sys_surface_api *surface_api,
+                              const struct c3d_backend *backend, ff_panorama_renderer **renderer)
 {
     *renderer = NULL;
-    if (!surface_api || !backend)
-        return FF_ERR_UNSUPPORTED;
+    if (!surface_api || !backend) return FF_ERR_UNSUPPORTED;
     ff_panorama_renderer *opened = calloc(1, sizeof *opened);
-    if (!opened)
-        return FF_ERR_MEMORY;
+    if (!opened) return FF_ERR_MEMORY;
     opened->pack = pack;
     opened->surface_api = surface_api;
     opened->backend = backend;
@@ -120,13 +116,13 @@ int ff_panorama_renderer_open(const ff_pack *pack, const sys_surface_api *surfac
 
 void ff_panorama_renderer_close(ff_panorama_renderer *renderer)
 {
-    if (!renderer)
-        return;
+    if (!renderer) return;
     stage_close(renderer);
     free(renderer);
 }
 
-void ff_panorama_renderer_get_stats(const ff_panorama_renderer *renderer, ff_panorama_render_stats *stats)
+void ff_panorama_renderer_get_stats(const ff_panorama_renderer *renderer,
+                                    ff_panorama_render_stats *stats)
 {
     *stats = renderer->stats;
 }
@@ -134,13 +130,17 @@ void ff_panorama_renderer_get_stats(const ff_panorama_renderer *renderer, ff_pan
 /* ---- a face ---- */
 
 /* Whether any ground of the terrain can lie in the face: its box alone, nothing read. */
-static int terrain_seen(const ff_terrain_info *info, const ff_get_panorama *request, enum ff_face_name face)
+static int terrain_seen(const ff_terrain_info *info, const ff_get_panorama *request,
+                        enum ff_face_name face)
 {
     int64_t edge = ff_node_edge_wu(info, 0);
     uint32_t top = (uint32_t)info->height_max + info->max_error;
-    uint32_t bottom = info->height_min > info->max_error ? (uint32_t)info->height_min - info->max_error : 0;
+    uint32_t bottom = info->height_min > info->max_error
+                          ? (uint32_t)info->height_min - info->max_error
+                          : 0;
     int64_t low[3] = { 0, 0, ff_height_wu(info, bottom) };
-    int64_t high[3] = { info->tiles_x * edge, info->tiles_y * edge, ff_height_wu(info, top > UINT16_MAX ? UINT16_MAX : top) };
+    int64_t high[3] = { info->tiles_x * edge, info->tiles_y * edge,
+                        ff_height_wu(info, top > UINT16_MAX ? UINT16_MAX : top) };
     return ff_face_sees_box(request, face, low, high);
 }
 
@@ -149,10 +149,10 @@ static int encode_image(ff_panorama_renderer *renderer, uint16_t size, int quali
 {
     const uint8_t *rows = renderer->rgb + (size_t)3 * size * renderer->spans.top_row;
     for (;; quality -= QUALITY_STEP) {
-        int bytes = sys_jpeg_encode(rows, size, renderer->spans.row_count, quality < 1 ? 1 : quality, renderer->image,
+        int bytes = sys_jpeg_encode(rows, size, renderer->spans.row_count,
+                                    quality < 1 ? 1 : quality, renderer->image,
                                     sizeof renderer->image);
-        if (bytes != FF_ERR_FULL || quality < 1)
-            return bytes;
+        if (bytes != FF_ERR_FULL || quality < 1) return bytes;
     }
 }
 
@@ -161,8 +161,7 @@ static int draw_face(ff_panorama_renderer *renderer, const ff_get_panorama *requ
 {
     panorama_ground_draw(&renderer->ground, request, face->face);
     int rc = c3d_read_rgb(renderer->device, renderer->rgb);
-    if (rc < 0)
-        return rc;
+    if (rc < 0) return rc;
     ff_face_find_spans(renderer->rgb, request->face_size, &renderer->spans);
     if (renderer->spans.row_count == 0) {
         renderer->stats.empty_drawn++;
@@ -171,12 +170,11 @@ static int draw_face(ff_panorama_renderer *renderer, const ff_get_panorama *requ
     ff_face_lower(&renderer->spans, request->face_size);
     ff_face_fill(renderer->rgb, request->face_size, &renderer->spans);
     int image_bytes = encode_image(renderer, request->face_size, request->quality);
-    if (image_bytes < 0)
-        return image_bytes;
-    int columns_bytes = ff_face_columns_encode(renderer->spans.top, renderer->spans.bottom, request->face_size, renderer->columns,
+    if (image_bytes < 0) return image_bytes;
+    int columns_bytes = ff_face_columns_encode(renderer->spans.top, renderer->spans.bottom,
+                                               request->face_size, renderer->columns,
                                                sizeof renderer->columns);
-    if (columns_bytes < 0)
-        return columns_bytes;
+    if (columns_bytes < 0) return columns_bytes;
     face->flags &= (uint8_t)~FF_FACE_EMPTY;
     face->top_row = renderer->spans.top_row;
     face->row_count = renderer->spans.row_count;
@@ -187,15 +185,15 @@ static int draw_face(ff_panorama_renderer *renderer, const ff_get_panorama *requ
     return FF_OK;
 }
 
-static int render_face(ff_panorama_renderer *renderer, const ff_get_panorama *request, ff_face *face)
+static int render_face(ff_panorama_renderer *renderer, const ff_get_panorama *request,
+                       ff_face *face)
 {
     if (!terrain_seen(&renderer->pack->header.info, request, face->face)) {
         renderer->stats.empty_by_bounds++;
         return FF_OK;
     }
     int rc = stage_fit(renderer, request->face_size);
-    if (rc < 0)
-        return rc;
+    if (rc < 0) return rc;
     panorama_ground_load(&renderer->ground, request, face->face);
     if (!panorama_ground_seen(&renderer->ground, request, face->face)) {
         renderer->stats.empty_by_bounds++;
@@ -204,22 +202,23 @@ static int render_face(ff_panorama_renderer *renderer, const ff_get_panorama *re
     return draw_face(renderer, request, face);
 }
 
-int ff_panorama_render_face(ff_panorama_renderer *renderer, const ff_get_panorama *request, uint8_t face, int last, uint8_t *out,
-                            size_t capacity)
+int ff_panorama_render_face(ff_panorama_renderer *renderer, const ff_get_panorama *request,
+                            uint8_t face, int last, uint8_t *out, size_t capacity)
 {
-    if (face >= FF_FACE_COUNT || request->face_size < FACE_SIZE_MIN || request->face_size > FF_FACE_SIZE_MAX ||
-        request->front_wu < 8 || request->back_wu <= request->front_wu)
+    if (face >= FF_FACE_COUNT || request->face_size < FACE_SIZE_MIN ||
+        request->face_size > FF_FACE_SIZE_MAX || request->front_wu < 8 ||
+        request->back_wu <= request->front_wu)
         return FF_ERR_RANGE;
     ff_message message = { .type = FF_MSG_FACE };
-    message.u.face = (ff_face){ .id = request->id, .face = face, .face_size = request->face_size,
+    message.u.face = (ff_face){ .id = request->id,
+                                .face = face,
+                                .face_size = request->face_size,
                                 .flags = (uint8_t)(FF_FACE_EMPTY | (last ? FF_FACE_LAST : 0)) };
     int64_t start_us = sys_time_us();
     int rc = render_face(renderer, request, &message.u.face);
-    if (rc == FF_OK)
-        rc = ff_message_encode(&message, out, capacity);
+    if (rc == FF_OK) rc = ff_message_encode(&message, out, capacity);
     renderer->stats.faces++;
     renderer->stats.time_us += sys_time_us() - start_us;
-    if (rc > 0)
-        renderer->stats.bytes += (uint64_t)rc;
+    if (rc > 0) renderer->stats.bytes += (uint64_t)rc;
     return rc;
 }

@@ -1,7 +1,8 @@
 /* One client's session: a small parser, a queue of requests and a buffer of answers.
  *
- * Room in the buffer: nodes and textures up to out_bytes_max, above that one face of a panorama, above that short answers (FAILED,
- * CANCELLED, PONG), and a last reserve for the GOODBYE. So a slow reader costs a fixed amount of memory, and says itself when to go on.
+ * Room in the buffer: nodes and textures up to out_bytes_max, above that one face of a panorama,
+ * above that short answers (FAILED, CANCELLED, PONG), and a last reserve for the GOODBYE. So a slow
+ * reader costs a fixed amount of memory, and says itself when to go on.
  */
 #include "ff_session.h"
 
@@ -9,37 +10,37 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define IN_BYTES 128              /* the longest client message, with room for longer HELLOs to come */
-#define SHORT_ANSWER_BYTES 64     /* WELCOME aside, more than any answer without a payload needs */
-#define WELCOME_BYTES 256
-#define SHORT_ANSWERS_BYTES 4096  /* reserve for them */
-#define FACE_BYTES (FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX)
-#define MINUTE_US 60000000
+#define IN_BYTES            128 /* the longest client message, with room for longer HELLOs to come */
+#define SHORT_ANSWER_BYTES  64  /* WELCOME aside, more than any answer without a payload needs */
+#define WELCOME_BYTES       256
+#define SHORT_ANSWERS_BYTES 4096 /* reserve for them */
+#define FACE_BYTES          (FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX)
+#define MINUTE_US           60000000
 
 typedef struct request {
-    uint8_t type;  /* FF_MSG_GET_NODE, FF_MSG_GET_TEXTURE; 0: cancelled */
+    uint8_t type; /* FF_MSG_GET_NODE, FF_MSG_GET_TEXTURE; 0: cancelled */
     ff_get get;
 } request;
 
 struct ff_session {
     ff_session_desc desc;
     ff_session_stats stats;
-    int error;                /* not 0: the session is over */
+    int error; /* not 0: the session is over */
     int welcomed;
     int64_t now_us, last_message_us;
 
-    uint8_t in[IN_BYTES];     /* the beginning of one message, never a whole one */
+    uint8_t in[IN_BYTES]; /* the beginning of one message, never a whole one */
     size_t in_count;
 
-    request *queue;           /* [queue_first, queue_end) wait, some of them cancelled */
+    request *queue; /* [queue_first, queue_end) wait, some of them cancelled */
     uint32_t queue_first, queue_end, queue_live;
 
     ff_get_panorama panorama; /* the one being served, if panorama_on */
     int panorama_on, job_out, job_stale;
-    uint8_t next_face;        /* index into panorama.face */
+    uint8_t next_face; /* index into panorama.face */
     int64_t panorama_credit_us, credit_time_us;
 
-    uint8_t *out;             /* [out_first, out_end) waits to be sent */
+    uint8_t *out; /* [out_first, out_end) waits to be sent */
     size_t out_first, out_end, out_capacity;
 };
 
@@ -58,12 +59,13 @@ static ff_session_desc desc_with_defaults(const ff_session_desc *desc)
 ff_session *ff_session_create(const ff_session_desc *desc)
 {
     ff_session *session = calloc(1, sizeof *session);
-    if (!session)
-        return NULL;
+    if (!session) return NULL;
     session->desc = desc_with_defaults(desc);
-    session->out_capacity = (size_t)session->desc.out_bytes_max + FACE_BYTES + SHORT_ANSWERS_BYTES + 2 * SHORT_ANSWER_BYTES;
+    session->out_capacity = (size_t)session->desc.out_bytes_max + FACE_BYTES + SHORT_ANSWERS_BYTES +
+                            2 * SHORT_ANSWER_BYTES;
     session->queue = calloc(session->desc.requests_max, sizeof *session->queue);
-    session->out = malloc(session->out_capacity); /* large: the system hands out its pages as they are used */
+    /* large: the system hands out its pages as they are used */
+    session->out = malloc(session->out_capacity);
     if (!session->queue || !session->out) {
         ff_session_destroy(session);
         return NULL;
@@ -75,8 +77,7 @@ ff_session *ff_session_create(const ff_session_desc *desc)
 
 void ff_session_destroy(ff_session *session)
 {
-    if (!session)
-        return;
+    if (!session) return;
     free(session->queue);
     free(session->out);
     free(session);
@@ -84,7 +85,10 @@ void ff_session_destroy(ff_session *session)
 
 /* ---- answers ---- */
 
-static size_t out_pending(const ff_session *session) { return session->out_end - session->out_first; }
+static size_t out_pending(const ff_session *session)
+{
+    return session->out_end - session->out_first;
+}
 
 /* Room for `bytes` at the end of the buffer; the caller has checked that they fit. */
 static uint8_t *out_room(ff_session *session, size_t bytes)
@@ -108,7 +112,8 @@ static void answer_short(ff_session *session, const ff_message *message)
 
 static void answer_failed(ff_session *session, uint16_t id, int error)
 {
-    ff_message message = { .type = FF_MSG_FAILED, .u.failed = { .id = id, .error = (int8_t)error } };
+    ff_message message = { .type = FF_MSG_FAILED,
+                           .u.failed = { .id = id, .error = (int8_t)error } };
     session->stats.failed++;
     answer_short(session, &message);
 }
@@ -120,16 +125,18 @@ static void answer_cancelled(ff_session *session, uint16_t id)
     answer_short(session, &message);
 }
 
-/* Whether any single client message can be taken: one may need two short answers (a panorama that supersedes and is refused), and
- * the GOODBYE after it its own room. */
+/* Whether any single client message can be taken: one may need two short answers (a panorama that
+ * supersedes and is refused), and the GOODBYE after it its own room. */
 static int short_answers_fit(const ff_session *session)
 {
-    return out_pending(session) + WELCOME_BYTES + 3 * SHORT_ANSWER_BYTES <= session->out_capacity - FACE_BYTES;
+    return out_pending(session) + WELCOME_BYTES + 3 * SHORT_ANSWER_BYTES <=
+           session->out_capacity - FACE_BYTES;
 }
 
 static int end_session(ff_session *session, int error)
 {
-    ff_message message = { .type = FF_MSG_GOODBYE, .u.failed = { .id = 0, .error = (int8_t)error } };
+    ff_message message = { .type = FF_MSG_GOODBYE,
+                           .u.failed = { .id = 0, .error = (int8_t)error } };
     session->error = error;
     answer_short(session, &message);
     return error;
@@ -145,8 +152,7 @@ static int fetch(const ff_session *session, const request *wanted, ff_message *m
     message->type = wanted->type == FF_MSG_GET_NODE ? FF_MSG_NODE : FF_MSG_TEXTURE;
     message->u.data.id = wanted->get.id;
     int bytes = ff_pack_record(session->desc.pack, kind, wanted->get.key, &message->u.data.bytes);
-    if (bytes < 0)
-        return bytes;
+    if (bytes < 0) return bytes;
     message->u.data.byte_count = (uint32_t)bytes;
     return ff_message_bytes_max(message) <= FACE_BYTES ? FF_OK : FF_ERR_FULL;
 }
@@ -159,13 +165,11 @@ static int serve(ff_session *session, const request *wanted)
     if (rc == FF_OK) {
         size_t room = ff_message_bytes_max(&message);
         int alone = out_pending(session) == 0 && !session->job_out;
-        if (out_pending(session) + room > session->desc.out_bytes_max && !alone)
-            return 0;
+        if (out_pending(session) + room > session->desc.out_bytes_max && !alone) return 0;
         rc = ff_message_encode(&message, out_room(session, room), room);
     }
     if (rc < 0) {
-        if (!short_answers_fit(session))
-            return 0;
+        if (!short_answers_fit(session)) return 0;
         session->stats.damaged += rc == FF_ERR_CHECKSUM;
         answer_failed(session, wanted->get.id, rc);
         return 1;
@@ -183,8 +187,7 @@ static void serve_queue(ff_session *session)
     while (session->queue_first < session->queue_end) {
         const request *wanted = &session->queue[session->queue_first];
         if (wanted->type) {
-            if (!serve(session, wanted))
-                return;
+            if (!serve(session, wanted)) return;
             session->queue_live--;
         }
         session->queue_first++;
@@ -196,18 +199,15 @@ static void queue_compact(ff_session *session)
 {
     uint32_t kept = 0;
     for (uint32_t i = session->queue_first; i < session->queue_end; i++)
-        if (session->queue[i].type)
-            session->queue[kept++] = session->queue[i];
+        if (session->queue[i].type) session->queue[kept++] = session->queue[i];
     session->queue_first = 0;
     session->queue_end = kept;
 }
 
 static int queue_add(ff_session *session, uint8_t type, const ff_get *get)
 {
-    if (session->queue_live == session->desc.requests_max)
-        return end_session(session, FF_ERR_FULL);
-    if (session->queue_end == session->desc.requests_max)
-        queue_compact(session);
+    if (session->queue_live == session->desc.requests_max) return end_session(session, FF_ERR_FULL);
+    if (session->queue_end == session->desc.requests_max) queue_compact(session);
     session->queue[session->queue_end++] = (request){ .type = type, .get = *get };
     session->queue_live++;
     serve_queue(session);
@@ -229,9 +229,9 @@ static int panorama_allowed(ff_session *session)
     session->credit_time_us = session->now_us;
     if (gained_us > 0)
         session->panorama_credit_us = gained_us >= MINUTE_US - session->panorama_credit_us
-                                          ? MINUTE_US : session->panorama_credit_us + gained_us;
-    if (session->panorama_credit_us < cost_us)
-        return 0;
+                                          ? MINUTE_US
+                                          : session->panorama_credit_us + gained_us;
+    if (session->panorama_credit_us < cost_us) return 0;
     session->panorama_credit_us -= cost_us;
     return 1;
 }
@@ -254,7 +254,8 @@ static void panorama_request(ff_session *session, const ff_get_panorama *wanted)
 
 int ff_session_next_face(ff_session *session, ff_face_job *job)
 {
-    if (session->error || !session->panorama_on || session->job_out || out_pending(session) > session->desc.out_bytes_max)
+    if (session->error || !session->panorama_on || session->job_out ||
+        out_pending(session) > session->desc.out_bytes_max)
         return 0;
     job->request = session->panorama;
     job->face = session->panorama.face[session->next_face];
@@ -264,15 +265,14 @@ int ff_session_next_face(ff_session *session, ff_face_job *job)
     return 1;
 }
 
-void ff_session_face_done(ff_session *session, const ff_face_job *job, const uint8_t *message, int bytes_or_error)
+void ff_session_face_done(ff_session *session, const ff_face_job *job, const uint8_t *message,
+                          int bytes_or_error)
 {
     assert(session->job_out);
     session->job_out = 0;
-    if (session->error || session->job_stale)
-        return;
+    if (session->error || session->job_stale) return;
     assert(session->panorama_on && session->panorama.id == job->request.id);
-    if (bytes_or_error > (int)FACE_BYTES || bytes_or_error == 0)
-        bytes_or_error = FF_ERR_RANGE;
+    if (bytes_or_error > (int)FACE_BYTES || bytes_or_error == 0) bytes_or_error = FF_ERR_RANGE;
     if (bytes_or_error < 0) {
         session->panorama_on = 0;
         answer_failed(session, session->panorama.id, bytes_or_error);
@@ -282,8 +282,7 @@ void ff_session_face_done(ff_session *session, const ff_face_job *job, const uin
     session->out_end += (size_t)bytes_or_error;
     session->stats.faces++;
     session->next_face++;
-    if (job->last)
-        session->panorama_on = 0;
+    if (job->last) session->panorama_on = 0;
     serve_queue(session);
 }
 
@@ -311,10 +310,8 @@ static void cancel(ff_session *session, uint16_t id)
 
 static int hello(ff_session *session, const ff_hello *greeting)
 {
-    if (session->welcomed)
-        return end_session(session, FF_ERR_FORMAT);
-    if (greeting->version != FF_PROTOCOL_VERSION)
-        return end_session(session, FF_ERR_VERSION);
+    if (session->welcomed) return end_session(session, FF_ERR_FORMAT);
+    if (greeting->version != FF_PROTOCOL_VERSION) return end_session(session, FF_ERR_VERSION);
     ff_message welcome = { .type = FF_MSG_WELCOME };
     welcome.u.welcome.version = FF_PROTOCOL_VERSION;
     welcome.u.welcome.info = session->desc.pack->header.info;
@@ -325,41 +322,35 @@ static int hello(ff_session *session, const ff_hello *greeting)
 
 static int handle(ff_session *session, const ff_message *message)
 {
-    if (message->type == FF_MSG_HELLO)
-        return hello(session, &message->u.hello);
-    if (!session->welcomed)
-        return end_session(session, FF_ERR_FORMAT);
+    if (message->type == FF_MSG_HELLO) return hello(session, &message->u.hello);
+    if (!session->welcomed) return end_session(session, FF_ERR_FORMAT);
     switch (message->type) {
-    case FF_MSG_GET_NODE:
-    case FF_MSG_GET_TEXTURE:
-        return queue_add(session, (uint8_t)message->type, &message->u.get);
-    case FF_MSG_GET_PANORAMA:
-        panorama_request(session, &message->u.panorama);
-        return FF_OK;
-    case FF_MSG_CANCEL:
-        cancel(session, message->u.cancel.id);
-        return FF_OK;
-    case FF_MSG_PING:
-        answer_short(session, &(ff_message){ .type = FF_MSG_PONG, .u.ping = message->u.ping });
-        return FF_OK;
-    default: /* kept out by take_message */
-        return end_session(session, FF_ERR_FORMAT);
+        case FF_MSG_GET_NODE:
+        case FF_MSG_GET_TEXTURE: return queue_add(session, (uint8_t)message->type, &message->u.get);
+        case FF_MSG_GET_PANORAMA: panorama_request(session, &message->u.panorama); return FF_OK;
+        case FF_MSG_CANCEL: cancel(session, message->u.cancel.id); return FF_OK;
+        case FF_MSG_PING:
+            answer_short(session, &(ff_message){ .type = FF_MSG_PONG, .u.ping = message->u.ping });
+            return FF_OK;
+        default: /* kept out by take_message */ return end_session(session, FF_ERR_FORMAT);
     }
 }
 
-/* Takes one message out of `in` and the bytes after it. Returns how many of `bytes` were taken or a negative error; *complete tells
- * whether there was a whole message. */
+/* Takes one message out of `in` and the bytes after it. Returns how many of `bytes` were taken or a
+ * negative error; *complete tells whether there was a whole message. */
 static int take_message(ff_session *session, const uint8_t *bytes, size_t count, int *complete)
 {
     size_t held = session->in_count;
     size_t added = count < IN_BYTES - held ? count : IN_BYTES - held;
     memcpy(session->in + held, bytes, added);
     ff_message message;
-    /* The server's own types are refused by their first byte: another protocol's talk need not be heard out. */
-    int used = session->in[0] > FF_MSG_PING ? FF_ERR_FORMAT : ff_message_decode(session->in, held + added, &message);
+    /* The server's own types are refused by their first byte: another protocol's talk need not be
+     * heard out. */
+    int used = session->in[0] > FF_MSG_PING
+                   ? FF_ERR_FORMAT
+                   : ff_message_decode(session->in, held + added, &message);
     *complete = used > 0;
-    if (used < 0)
-        return end_session(session, used);
+    if (used < 0) return end_session(session, used);
     if (used == 0) {
         if (held + added == IN_BYTES) /* no client message is that long */
             return end_session(session, FF_ERR_FORMAT);
@@ -377,14 +368,11 @@ int ff_session_receive(ff_session *session, const uint8_t *bytes, size_t count, 
 {
     size_t taken = 0;
     int complete = 1;
-    if (now_us > session->now_us)
-        session->now_us = now_us;
-    if (count > INT32_MAX)
-        count = INT32_MAX;
+    if (now_us > session->now_us) session->now_us = now_us;
+    if (count > INT32_MAX) count = INT32_MAX;
     while (!session->error && complete && taken < count && short_answers_fit(session)) {
         int rc = take_message(session, bytes + taken, count - taken, &complete);
-        if (rc >= 0)
-            taken += (size_t)rc;
+        if (rc >= 0) taken += (size_t)rc;
     }
     session->stats.bytes_in += taken;
     return session->error ? session->error : (int)taken;
@@ -401,16 +389,13 @@ void ff_session_sent(ff_session *session, size_t count)
     assert(count <= out_pending(session));
     session->out_first += count;
     session->stats.bytes_out += count;
-    if (session->out_first == session->out_end)
-        session->out_first = session->out_end = 0;
-    if (!session->error)
-        serve_queue(session);
+    if (session->out_first == session->out_end) session->out_first = session->out_end = 0;
+    if (!session->error) serve_queue(session);
 }
 
 void ff_session_end(ff_session *session, int reason)
 {
-    if (!session->error)
-        end_session(session, reason);
+    if (!session->error) end_session(session, reason);
 }
 
 int ff_session_idle(const ff_session *session, int64_t now_us)
@@ -418,4 +403,7 @@ int ff_session_idle(const ff_session *session, int64_t now_us)
     return now_us - session->last_message_us > (int64_t)session->desc.idle_ms_max * 1000;
 }
 
-void ff_session_get_stats(const ff_session *session, ff_session_stats *stats) { *stats = session->stats; }
+void ff_session_get_stats(const ff_session *session, ff_session_stats *stats)
+{
+    *stats = session->stats;
+}

@@ -20,7 +20,7 @@ typedef struct server {
     server_channels channels;
     server_counters *worker_counters, *renderer_counters;
     server_job *renderer_job; /* shared memory: what each renderer is at; serial 0: nothing */
-    int ready_fd;            /* a child writes one byte when it is at work */
+    int ready_fd;             /* a child writes one byte when it is at work */
     int master_pid;
 } server;
 

@@ -43,32 +43,31 @@ int server_job_send(const server_channels *channels, const server_job *job)
 
 int server_job_recv(const server_channels *channels, server_job *job)
 {
-    return datagram_recv(channels->job_recv, job, sizeof *job) == sizeof *job ? FF_OK : FF_ERR_AGAIN;
+    return datagram_recv(channels->job_recv, job, sizeof *job) == sizeof *job ? FF_OK
+                                                                              : FF_ERR_AGAIN;
 }
 
 static int chunk_send(int fd, const server_chunk *chunk, int wait_ms)
 {
     size_t bytes = offsetof(server_chunk, bytes) + chunk->count;
-    if (datagram_send(fd, chunk, bytes) == FF_OK)
-        return FF_OK;
+    if (datagram_send(fd, chunk, bytes) == FF_OK) return FF_OK;
     struct pollfd room = { .fd = fd, .events = POLLOUT };
-    if (poll(&room, 1, wait_ms) <= 0)
-        return FF_ERR_AGAIN;
+    if (poll(&room, 1, wait_ms) <= 0) return FF_ERR_AGAIN;
     return datagram_send(fd, chunk, bytes);
 }
 
-int server_result_send(const server_channels *channels, const server_job *job, uint32_t renderer, const uint8_t *message,
-                       int bytes_or_error, int wait_ms)
+int server_result_send(const server_channels *channels, const server_job *job, uint32_t renderer,
+                       const uint8_t *message, int bytes_or_error, int wait_ms)
 {
     server_chunk chunk = { .serial = job->serial, .renderer = renderer, .total = bytes_or_error };
     uint32_t total = bytes_or_error > 0 ? (uint32_t)bytes_or_error : 0;
     int fd = channels->result_send[job->worker];
     do {
-        chunk.count = total - chunk.offset < SERVER_CHUNK_BYTES ? total - chunk.offset : SERVER_CHUNK_BYTES;
+        chunk.count = total - chunk.offset < SERVER_CHUNK_BYTES ? total - chunk.offset
+                                                                : SERVER_CHUNK_BYTES;
         memcpy(chunk.bytes, message + chunk.offset, chunk.count);
         int rc = chunk_send(fd, &chunk, wait_ms);
-        if (rc < 0)
-            return rc;
+        if (rc < 0) return rc;
         chunk.offset += chunk.count;
     } while (chunk.offset < total);
     return FF_OK;
@@ -77,22 +76,22 @@ int server_result_send(const server_channels *channels, const server_job *job, u
 int server_chunk_recv(const server_channels *channels, uint32_t worker, server_chunk *chunk)
 {
     size_t count = datagram_recv(channels->result_recv[worker], chunk, sizeof *chunk);
-    if (count == 0)
-        return FF_ERR_AGAIN;
-    if (count < offsetof(server_chunk, bytes) || count - offsetof(server_chunk, bytes) != chunk->count)
+    if (count == 0) return FF_ERR_AGAIN;
+    if (count < offsetof(server_chunk, bytes) ||
+        count - offsetof(server_chunk, bytes) != chunk->count)
         chunk->serial = chunk->count = 0; /* nobody's */
     return FF_OK;
 }
 
 int server_assemble(server_assembly *assembly, const server_chunk *chunk)
 {
-    if (chunk->total < 0)
-        return 1;
+    if (chunk->total < 0) return 1;
     if (chunk->offset == 0) {
         assembly->serial = chunk->serial;
         assembly->count = 0;
     }
-    if (chunk->serial != assembly->serial || chunk->offset != assembly->count || chunk->total > (int32_t)SERVER_FACE_BYTES ||
+    if (chunk->serial != assembly->serial || chunk->offset != assembly->count ||
+        chunk->total > (int32_t)SERVER_FACE_BYTES ||
         chunk->count > (uint32_t)chunk->total - assembly->count)
         return 0;
     memcpy(assembly->bytes + assembly->count, chunk->bytes, chunk->count);

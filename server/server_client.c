@@ -6,10 +6,10 @@
 #include <string.h>
 #include <sys/socket.h>
 
-#define FLUSH_US 5000000
-#define LINGER_US 1000000
+#define FLUSH_US     5000000
+#define LINGER_US    1000000
 #define UNSENT_BYTES 16384 /* more would only wait in the system, where no CANCEL reaches it */
-#define READS_MAX 16       /* in one step: others wait too */
+#define READS_MAX    16    /* in one step: others wait too */
 
 int server_client_open(server_client *client, int fd, const ff_session_desc *desc, int64_t now_us)
 {
@@ -39,9 +39,9 @@ short server_client_events(const server_client *client)
 {
     const uint8_t *bytes;
     short events = 0;
-    if (ff_session_output(client->session, &bytes) > 0)
-        events |= POLLOUT;
-    if (client->state == SERVER_CLIENT_LINGERING || (client->state == SERVER_CLIENT_OPEN && client->in_first == client->in_end))
+    if (ff_session_output(client->session, &bytes) > 0) events |= POLLOUT;
+    if (client->state == SERVER_CLIENT_LINGERING ||
+        (client->state == SERVER_CLIENT_OPEN && client->in_first == client->in_end))
         events |= POLLIN;
     return events;
 }
@@ -55,14 +55,14 @@ static void begin_flushing(server_client *client, int64_t now_us)
 /* Offers the session what has come; 1 when it took some. */
 static int offer(server_client *client, int64_t now_us)
 {
-    int taken = ff_session_receive(client->session, client->in + client->in_first, client->in_end - client->in_first, now_us);
+    int taken = ff_session_receive(client->session, client->in + client->in_first,
+                                   client->in_end - client->in_first, now_us);
     if (taken < 0) {
         begin_flushing(client, now_us);
         return 0;
     }
     client->in_first += (size_t)taken;
-    if (client->in_first == client->in_end)
-        client->in_first = client->in_end = 0;
+    if (client->in_first == client->in_end) client->in_first = client->in_end = 0;
     return taken > 0;
 }
 
@@ -73,10 +73,8 @@ static int send_pending(server_client *client)
     int any = 0;
     for (size_t count; (count = ff_session_output(client->session, &bytes)) > 0;) {
         int sent = client->stream.send(client->stream.state, bytes, count);
-        if (sent < 0)
-            client->state = SERVER_CLIENT_CLOSED;
-        if (sent <= 0)
-            break;
+        if (sent < 0) client->state = SERVER_CLIENT_CLOSED;
+        if (sent <= 0) break;
         ff_session_sent(client->session, (size_t)sent);
         any = 1;
     }
@@ -85,12 +83,11 @@ static int send_pending(server_client *client)
 
 static void receive(server_client *client, int64_t now_us)
 {
-    for (int reads = 0; reads < READS_MAX && client->state == SERVER_CLIENT_OPEN && client->in_end == 0; reads++) {
+    for (int reads = 0;
+         reads < READS_MAX && client->state == SERVER_CLIENT_OPEN && client->in_end == 0; reads++) {
         int got = client->stream.recv(client->stream.state, client->in, sizeof client->in);
-        if (got < 0)
-            client->state = SERVER_CLIENT_CLOSED;
-        if (got <= 0)
-            return;
+        if (got < 0) client->state = SERVER_CLIENT_CLOSED;
+        if (got <= 0) return;
         client->in_end = (size_t)got;
         offer(client, now_us);
     }
@@ -100,17 +97,16 @@ static void linger(server_client *client)
 {
     for (int reads = 0; reads < READS_MAX; reads++) {
         int got = client->stream.recv(client->stream.state, client->in, sizeof client->in);
-        if (got < 0)
-            client->state = SERVER_CLIENT_CLOSED;
-        if (got <= 0)
-            return;
+        if (got < 0) client->state = SERVER_CLIENT_CLOSED;
+        if (got <= 0) return;
     }
 }
 
 static void finish(server_client *client, int64_t now_us)
 {
     const uint8_t *bytes;
-    if (client->state == SERVER_CLIENT_FLUSHING && ff_session_output(client->session, &bytes) == 0) {
+    if (client->state == SERVER_CLIENT_FLUSHING &&
+        ff_session_output(client->session, &bytes) == 0) {
         shutdown(client->tcp.fd, SHUT_WR);
         client->state = SERVER_CLIENT_LINGERING;
         client->deadline_us = now_us + LINGER_US;
@@ -121,10 +117,8 @@ static void finish(server_client *client, int64_t now_us)
 
 void server_client_step(server_client *client, int readable, int64_t now_us)
 {
-    if (client->state == SERVER_CLIENT_OPEN && readable)
-        receive(client, now_us);
-    if (client->state == SERVER_CLIENT_LINGERING && readable)
-        linger(client);
+    if (client->state == SERVER_CLIENT_OPEN && readable) receive(client, now_us);
+    if (client->state == SERVER_CLIENT_LINGERING && readable) linger(client);
     if (client->state == SERVER_CLIENT_OPEN && ff_session_idle(client->session, now_us))
         server_client_end(client, FF_ERR_CLOSED, now_us);
     int moving = 1;
@@ -139,8 +133,7 @@ void server_client_step(server_client *client, int readable, int64_t now_us)
 
 void server_client_end(server_client *client, int reason, int64_t now_us)
 {
-    if (client->state != SERVER_CLIENT_OPEN)
-        return;
+    if (client->state != SERVER_CLIENT_OPEN) return;
     ff_session_end(client->session, reason);
     begin_flushing(client, now_us);
 }

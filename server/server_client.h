@@ -6,11 +6,16 @@
 
 enum server_client_state {
     SERVER_CLIENT_OPEN,
-    SERVER_CLIENT_FLUSHING,  /* the session is over: what is pending goes out, nothing comes in */
-    SERVER_CLIENT_LINGERING, /* all is sent: the peer's last bytes are thrown away, so that our GOODBYE is not reset away */
+    SERVER_CLIENT_FLUSHING, /* the session is over: what is pending goes out, nothing comes in */
+    /* all is sent: the peer's last bytes are thrown away, so that our GOODBYE is not reset away */
+    SERVER_CLIENT_LINGERING,
     SERVER_CLIENT_CLOSED
 };
-enum server_job_state { SERVER_JOB_NONE, SERVER_JOB_WAITING /* for room in the queue */, SERVER_JOB_SENT };
+enum server_job_state {
+    SERVER_JOB_NONE,
+    SERVER_JOB_WAITING, /* for room in the queue */
+    SERVER_JOB_SENT
+};
 
 #define SERVER_CLIENT_IN_BYTES 4096
 
@@ -19,8 +24,9 @@ typedef struct server_client {
     sys_tcp tcp;
     sys_stream stream;
     ff_session *session;
-    int64_t deadline_us;     /* of flushing and lingering */
-    uint8_t in[SERVER_CLIENT_IN_BYTES]; /* [in_first, in_end) received, not yet taken by the session */
+    int64_t deadline_us; /* of flushing and lingering */
+    /* [in_first, in_end) received, not yet taken by the session */
+    uint8_t in[SERVER_CLIENT_IN_BYTES];
     size_t in_first, in_end;
     enum server_job_state job_state;
     server_job job;
@@ -32,7 +38,8 @@ void server_client_close(server_client *client);
 
 /* poll()'s events it waits for. */
 short server_client_events(const server_client *client);
-/* Receives, answers and sends what can be, and notices silence and lateness; state CLOSED when it is done with. */
+/* Receives, answers and sends what can be, and notices silence and lateness; state CLOSED when it
+ * is done with. */
 void server_client_step(server_client *client, int readable, int64_t now_us);
 /* Says GOODBYE with `reason` and closes in a while. */
 void server_client_end(server_client *client, int reason, int64_t now_us);

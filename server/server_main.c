@@ -13,10 +13,10 @@
 static int open_pack(server *shared)
 {
     int rc = sys_map_file(shared->options.pack, &shared->mapping);
-    if (rc == FF_OK)
-        rc = ff_pack_open(&shared->pack, shared->mapping.bytes, shared->mapping.size);
+    if (rc == FF_OK) rc = ff_pack_open(&shared->pack, shared->mapping.bytes, shared->mapping.size);
     if (rc < 0)
-        server_complain("%s: %s", shared->options.pack, rc == FF_ERR_SYSTEM && errno ? strerror(errno) : ff_error_text(rc));
+        server_complain("%s: %s", shared->options.pack,
+                        rc == FF_ERR_SYSTEM && errno ? strerror(errno) : ff_error_text(rc));
     return rc;
 }
 
@@ -24,10 +24,10 @@ static int open_listening(server *shared)
 {
     errno = 0;
     shared->listen_fd = sys_tcp_listen(shared->options.listen, 0, &shared->port);
-    if (shared->listen_fd >= 0)
-        return FF_OK;
+    if (shared->listen_fd >= 0) return FF_OK;
     server_complain("cannot listen on %s: %s", shared->options.listen,
-                    shared->listen_fd == FF_ERR_SYSTEM && errno ? strerror(errno) : ff_error_text(shared->listen_fd));
+                    shared->listen_fd == FF_ERR_SYSTEM && errno ? strerror(errno)
+                                                                : ff_error_text(shared->listen_fd));
     return shared->listen_fd;
 }
 
@@ -39,8 +39,10 @@ typedef struct shared_memory {
 static int open_shared(server *shared)
 {
     struct rlimit files;
-    shared_memory *memory = mmap(NULL, sizeof *memory, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (memory == MAP_FAILED || server_channels_open(&shared->channels, shared->options.workers) < 0) {
+    shared_memory *memory = mmap(NULL, sizeof *memory, PROT_READ | PROT_WRITE,
+                                 MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (memory == MAP_FAILED ||
+        server_channels_open(&shared->channels, shared->options.workers) < 0) {
         server_complain("cannot start: %s", strerror(errno));
         return FF_ERR_SYSTEM;
     }
@@ -48,7 +50,8 @@ static int open_shared(server *shared)
     shared->renderer_counters = memory->renderer;
     shared->renderer_job = memory->renderer_job;
     /* Where the system allows fewer, accepting stops at its limit. */
-    if (getrlimit(RLIMIT_NOFILE, &files) == 0 && files.rlim_cur < shared->options.max_clients + OTHER_FILES) {
+    if (getrlimit(RLIMIT_NOFILE, &files) == 0 &&
+        files.rlim_cur < shared->options.max_clients + OTHER_FILES) {
         rlim_t wanted = shared->options.max_clients + OTHER_FILES;
         files.rlim_cur = files.rlim_max < wanted ? files.rlim_max : wanted;
         setrlimit(RLIMIT_NOFILE, &files);
@@ -64,8 +67,7 @@ static int run_single(server *shared)
     shared->ready_fd = -1;
     server_say_listening(shared);
     int status = server_worker_run(shared, 0);
-    if (status == 0)
-        server_say_stopped(shared);
+    if (status == 0) server_say_stopped(shared);
     return status == 0 ? 0 : 1;
 }
 
@@ -73,10 +75,8 @@ int main(int argc, char **argv)
 {
     static server shared;
     int rc = server_options_parse(&shared.options, argc, argv);
-    if (rc)
-        return rc < 0 ? 1 : 0;
+    if (rc) return rc < 0 ? 1 : 0;
     shared.master_pid = (int)getpid();
-    if (open_pack(&shared) < 0 || open_listening(&shared) < 0 || open_shared(&shared) < 0)
-        return 1;
+    if (open_pack(&shared) < 0 || open_listening(&shared) < 0 || open_shared(&shared) < 0) return 1;
     return shared.options.single ? run_single(&shared) : server_master_run(&shared);
 }

@@ -2,7 +2,7 @@
 #ifndef SERVER_OPTIONS_H
 #define SERVER_OPTIONS_H
 
-#define SERVER_WORKERS_MAX 64
+#define SERVER_WORKERS_MAX   64
 #define SERVER_RENDERERS_MAX 64
 
 enum server_gl { SERVER_GL_OSMESA, SERVER_GL_EGL, SERVER_GL_EGL_GLES1 };
@@ -11,9 +11,9 @@ typedef struct server_options {
     const char *pack, *listen;
     unsigned workers, renderers;
     enum server_gl gl;
-    unsigned max_clients;          /* of one worker */
+    unsigned max_clients; /* of one worker */
     unsigned idle_s, panoramas_per_minute;
-    unsigned render_timeout_s;     /* a face not back by then has failed */
+    unsigned render_timeout_s; /* a face not back by then has failed */
     int single, json, quiet;
 } server_options;
 

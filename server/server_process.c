@@ -1,4 +1,5 @@
-/* What every process of the server does: stop when told, die with its master, speak one line at a time. */
+/* What every process of the server does: stop when told, die with its master, speak one line at a
+ * time. */
 #include "server.h"
 
 #include <signal.h>

@@ -1,22 +1,25 @@
-/* A renderer process: takes jobs, draws, sends faces back. Its death costs the face it was drawing. */
+/* A renderer process: takes jobs, draws, sends faces back. Its death costs the face it was
+ * drawing. */
 #include "server_renderer.h"
 
 #include <poll.h>
 #include <stdlib.h>
 
-#define LOOK_AROUND_MS 500   /* how often it looks whether it should stop */
-#define RESULT_WAIT_MS 2000  /* for a worker that does not take its face */
+#define LOOK_AROUND_MS 500  /* how often it looks whether it should stop */
+#define RESULT_WAIT_MS 2000 /* for a worker that does not take its face */
 
 int server_renderer_open(const server *shared, ff_panorama_renderer **renderer)
 {
     enum server_gl gl = shared->options.gl;
-    const sys_surface_api *surface_api = gl == SERVER_GL_OSMESA ? sys_surface_osmesa() : sys_surface_egl();
-    const struct c3d_backend *backend = gl == SERVER_GL_EGL_GLES1 ? c3d_backend_gles1() : c3d_backend_gl();
+    const sys_surface_api *surface_api = gl == SERVER_GL_OSMESA ? sys_surface_osmesa()
+                                                                : sys_surface_egl();
+    const struct c3d_backend *backend = gl == SERVER_GL_EGL_GLES1 ? c3d_backend_gles1()
+                                                                  : c3d_backend_gl();
     return ff_panorama_renderer_open(&shared->pack, surface_api, backend, renderer);
 }
 
-int server_renderer_face(ff_panorama_renderer *renderer, const ff_face_job *job, server_counters *counters, uint8_t *out,
-                         size_t capacity)
+int server_renderer_face(ff_panorama_renderer *renderer, const ff_face_job *job,
+                         server_counters *counters, uint8_t *out, size_t capacity)
 {
     ff_panorama_render_stats before, after;
     ff_panorama_renderer_get_stats(renderer, &before);
@@ -26,24 +29,26 @@ int server_renderer_face(ff_panorama_renderer *renderer, const ff_face_job *job,
     counters->failed += rc < 0;
     counters->face_bytes += after.bytes - before.bytes;
     counters->face_us += (uint64_t)(after.time_us - before.time_us);
-    counters->faces_empty += after.empty_by_bounds + after.empty_drawn - before.empty_by_bounds - before.empty_drawn;
+    counters->faces_empty += after.empty_by_bounds + after.empty_drawn - before.empty_by_bounds -
+                             before.empty_drawn;
     return rc;
 }
 
-static void serve_jobs(server *shared, unsigned number, ff_panorama_renderer *renderer, uint8_t *face)
+static void serve_jobs(server *shared, unsigned number, ff_panorama_renderer *renderer,
+                       uint8_t *face)
 {
     server_job job;
     while (!server_stopping(shared)) {
         struct pollfd jobs = { .fd = shared->channels.job_recv, .events = POLLIN };
         poll(&jobs, 1, LOOK_AROUND_MS);
-        if (server_job_recv(&shared->channels, &job) != FF_OK)
-            continue;
-        if (job.worker >= shared->options.workers || sys_time_us() > job.deadline_us)
-            continue;
+        if (server_job_recv(&shared->channels, &job) != FF_OK) continue;
+        if (job.worker >= shared->options.workers || sys_time_us() > job.deadline_us) continue;
         shared->renderer_job[number] = job;
-        int rc = server_renderer_face(renderer, &job.face, &shared->renderer_counters[number], face, SERVER_FACE_BYTES);
+        int rc = server_renderer_face(renderer, &job.face, &shared->renderer_counters[number], face,
+                                      SERVER_FACE_BYTES);
         server_result_send(&shared->channels, &job, number, face, rc, RESULT_WAIT_MS);
-        shared->renderer_job[number].serial = 0; /* not before it is sent: killed in between, the master speaks for it */
+        /* not before it is sent: killed in between, the master speaks for it */
+        shared->renderer_job[number].serial = 0;
     }
 }
 

@@ -8,7 +8,7 @@
 /* FF_OK or a negative error. */
 int server_renderer_open(const server *shared, ff_panorama_renderer **renderer);
 /* Renders one face and counts it; as ff_panorama_render_face. */
-int server_renderer_face(ff_panorama_renderer *renderer, const ff_face_job *job, server_counters *counters, uint8_t *out,
-                         size_t capacity);
+int server_renderer_face(ff_panorama_renderer *renderer, const ff_face_job *job,
+                         server_counters *counters, uint8_t *out, size_t capacity);
 
 #endif

@@ -25,25 +25,32 @@ void server_say_listening(const server *shared)
     const ff_terrain_info *info = &shared->pack.header.info;
     bound_address(shared, address, sizeof address);
     if (shared->options.json)
-        printf("{\"event\":\"listening\",\"address\":\"%s\",\"port\":%u,\"workers\":%u,\"renderers\":%u,\"gl\":\"%s\"}\n", address,
-               shared->port, shared->options.workers, shared->options.renderers, gl_name(shared));
+        printf(
+            "{\"event\":\"listening\",\"address\":\"%s\",\"port\":%u,\"workers\":%u,\"renderers\":%u,\"gl\":\"%s\"}\n",
+            address, shared->port, shared->options.workers, shared->options.renderers,
+            gl_name(shared));
     else if (!shared->options.quiet)
-        printf("farfield-server: listening on %s, %" PRIu32 "x%" PRIu32 " samples, %u workers, %u renderers (%s)\n", address,
-               info->samples_x, info->samples_y, shared->options.workers, shared->options.renderers, gl_name(shared));
+        printf("farfield-server: listening on %s, %" PRIu32 "x%" PRIu32
+               " samples, %u workers, %u renderers (%s)\n",
+               address, info->samples_x, info->samples_y, shared->options.workers,
+               shared->options.renderers, gl_name(shared));
     fflush(stdout);
 }
 
 void server_say_child(const server *shared, int renderer, unsigned number, int pid)
 {
     if (shared->options.json)
-        printf("{\"event\":\"started\",\"process\":\"%s\",\"number\":%u,\"pid\":%d}\n", renderer ? "renderer" : "worker", number, pid);
+        printf("{\"event\":\"started\",\"process\":\"%s\",\"number\":%u,\"pid\":%d}\n",
+               renderer ? "renderer" : "worker", number, pid);
     fflush(stdout);
 }
 
 static void cause(int status, char *out, size_t capacity)
 {
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGBUS)
-        snprintf(out, capacity, "could not read the pack any more (SIGBUS: the file was cut short, or its disk fails)");
+        snprintf(
+            out, capacity,
+            "could not read the pack any more (SIGBUS: the file was cut short, or its disk fails)");
     else if (WIFSIGNALED(status))
         snprintf(out, capacity, "was killed by signal %d", WTERMSIG(status));
     else
@@ -57,7 +64,8 @@ void server_say_death(const server *shared, int renderer, unsigned number, int p
     cause(status, why, sizeof why);
     server_complain("%s %u (pid %d) %s", process, number, pid, why);
     if (shared->options.json)
-        printf("{\"event\":\"died\",\"process\":\"%s\",\"number\":%u,\"pid\":%d,\"why\":\"%s\"}\n", process, number, pid, why);
+        printf("{\"event\":\"died\",\"process\":\"%s\",\"number\":%u,\"pid\":%d,\"why\":\"%s\"}\n",
+               process, number, pid, why);
     fflush(stdout);
 }
 
@@ -83,19 +91,26 @@ void server_say_stopped(const server *shared)
         add(&workers, &shared->worker_counters[i]);
     for (unsigned i = 0; i < shared->options.renderers; i++)
         add(&renderers, &shared->renderer_counters[i]);
-    uint64_t drawn = renderers.faces > renderers.faces_empty ? renderers.faces - renderers.faces_empty : 0;
+    uint64_t drawn = renderers.faces > renderers.faces_empty
+                         ? renderers.faces - renderers.faces_empty
+                         : 0;
     uint64_t us_a_face = renderers.faces ? renderers.face_us / renderers.faces : 0;
     uint64_t bytes_a_face = drawn ? renderers.face_bytes / drawn : 0;
-    const char *format =
-        shared->options.json
-            ? "{\"event\":\"stopped\",\"clients\":%" PRIu64 ",\"bytes_in\":%" PRIu64 ",\"bytes_out\":%" PRIu64 ",\"nodes\":%" PRIu64
-              ",\"textures\":%" PRIu64 ",\"panoramas\":%" PRIu64 ",\"faces\":%" PRIu64 ",\"faces_empty\":%" PRIu64
-              ",\"failed\":%" PRIu64 ",\"us_a_face\":%" PRIu64 ",\"bytes_a_face\":%" PRIu64 "}\n"
-            : "farfield-server: stopped: %" PRIu64 " clients, %" PRIu64 " bytes in, %" PRIu64 " out, %" PRIu64 " nodes, %" PRIu64
-              " textures, %" PRIu64 " panoramas, %" PRIu64 " faces (%" PRIu64 " empty), %" PRIu64 " failed, %" PRIu64
-              " us and %" PRIu64 " bytes a face\n";
+    const char *format = shared->options.json
+                             ? "{\"event\":\"stopped\",\"clients\":%" PRIu64
+                               ",\"bytes_in\":%" PRIu64 ",\"bytes_out\":%" PRIu64
+                               ",\"nodes\":%" PRIu64 ",\"textures\":%" PRIu64
+                               ",\"panoramas\":%" PRIu64 ",\"faces\":%" PRIu64
+                               ",\"faces_empty\":%" PRIu64 ",\"failed\":%" PRIu64
+                               ",\"us_a_face\":%" PRIu64 ",\"bytes_a_face\":%" PRIu64 "}\n"
+                             : "farfield-server: stopped: %" PRIu64 " clients, %" PRIu64
+                               " bytes in, %" PRIu64 " out, %" PRIu64 " nodes, %" PRIu64
+                               " textures, %" PRIu64 " panoramas, %" PRIu64 " faces (%" PRIu64
+                               " empty), %" PRIu64 " failed, %" PRIu64 " us and %" PRIu64
+                               " bytes a face\n";
     if (shared->options.json || !shared->options.quiet)
-        printf(format, workers.clients, workers.bytes_in, workers.bytes_out, workers.nodes, workers.textures, workers.panoramas,
-               renderers.faces, renderers.faces_empty, workers.failed, us_a_face, bytes_a_face);
+        printf(format, workers.clients, workers.bytes_in, workers.bytes_out, workers.nodes,
+               workers.textures, workers.panoramas, renderers.faces, renderers.faces_empty,
+               workers.failed, us_a_face, bytes_a_face);
     fflush(stdout);
 }

@@ -1,4 +1,5 @@
-/* A worker process: one loop over the listening socket, its clients and the faces that come back from renderers. */
+/* A worker process: one loop over the listening socket, its clients and the faces that come back
+ * from renderers. */
 #include "server_client.h"
 #include "server_renderer.h"
 
@@ -7,22 +8,22 @@
 #include <string.h>
 #include <unistd.h>
 
-#define LOOK_AROUND_MS 250      /* for lateness, silence, and whether to stop */
-#define STOP_US 1500000         /* to say GOODBYE to everybody */
+#define LOOK_AROUND_MS  250     /* for lateness, silence, and whether to stop */
+#define STOP_US         1500000 /* to say GOODBYE to everybody */
 #define ACCEPT_PAUSE_US 100000  /* after the system had no room for another connection */
-#define POLL_FIXED 3            /* listening socket, results, room for jobs; clients follow */
+#define POLL_FIXED      3       /* listening socket, results, room for jobs; clients follow */
 
 typedef struct worker {
     server *shared;
     unsigned number;
     server_counters *counters;
-    server_client **client;     /* [0, count) */
+    server_client **client; /* [0, count) */
     unsigned count;
     struct pollfd *poll;
     uint64_t next_serial;
-    unsigned first_job;         /* whose turn it is */
+    unsigned first_job; /* whose turn it is */
     int64_t now_us, accept_again_us;
-    server_assembly *assembly;  /* of each renderer */
+    server_assembly *assembly;          /* of each renderer */
     ff_panorama_renderer *own_renderer; /* --single */
     uint8_t *own_face;
 } worker;
@@ -41,8 +42,9 @@ static void count_session(worker *w, const server_client *client)
     w->counters->faces += stats.faces;
     w->counters->failed += stats.failed;
     if (stats.damaged)
-        server_complain("%s is damaged: %u answers to a client were lost (farfield-info --verify shows where)",
-                        w->shared->options.pack, stats.damaged);
+        server_complain(
+            "%s is damaged: %u answers to a client were lost (farfield-info --verify shows where)",
+            w->shared->options.pack, stats.damaged);
 }
 
 static void remove_closed(worker *w)
@@ -63,14 +65,13 @@ static void remove_closed(worker *w)
 static void accept_clients(worker *w)
 {
     const server_options *o = &w->shared->options;
-    ff_session_desc desc = { .pack = &w->shared->pack, .idle_ms_max = o->idle_s * 1000u,
+    ff_session_desc desc = { .pack = &w->shared->pack,
+                             .idle_ms_max = o->idle_s * 1000u,
                              .panoramas_per_minute = o->panoramas_per_minute };
     while (w->count < o->max_clients) {
         int fd = sys_tcp_accept(w->shared->listen_fd);
-        if (fd == FF_ERR_SYSTEM)
-            w->accept_again_us = w->now_us + ACCEPT_PAUSE_US;
-        if (fd < 0)
-            return;
+        if (fd == FF_ERR_SYSTEM) w->accept_again_us = w->now_us + ACCEPT_PAUSE_US;
+        if (fd < 0) return;
         server_client *client = malloc(sizeof *client);
         if (!client) {
             close(fd);
@@ -97,13 +98,12 @@ static void take_results(worker *w)
 {
     server_chunk chunk;
     while (server_chunk_recv(&w->shared->channels, w->number, &chunk) == FF_OK) {
-        if (chunk.renderer >= w->shared->options.renderers)
-            continue;
+        if (chunk.renderer >= w->shared->options.renderers) continue;
         server_assembly *assembly = &w->assembly[chunk.renderer];
-        if (!server_assemble(assembly, &chunk))
-            continue;
+        if (!server_assemble(assembly, &chunk)) continue;
         for (unsigned i = 0; i < w->count; i++)
-            if (w->client[i]->job_state == SERVER_JOB_SENT && w->client[i]->job.serial == chunk.serial) {
+            if (w->client[i]->job_state == SERVER_JOB_SENT &&
+                w->client[i]->job.serial == chunk.serial) {
                 face_back(w->client[i], assembly->bytes, chunk.total);
                 break;
             }
@@ -113,30 +113,33 @@ static void take_results(worker *w)
 /* Finds the client's next face something to draw it. 0: the queue is full. */
 static int place_job(worker *w, server_client *client)
 {
-    if (client->job_state == SERVER_JOB_NONE && ff_session_next_face(client->session, &client->job.face)) {
+    if (client->job_state == SERVER_JOB_NONE &&
+        ff_session_next_face(client->session, &client->job.face)) {
         client->job.serial = w->next_serial++;
         client->job.worker = w->number;
-        client->job.deadline_us = w->now_us + (int64_t)w->shared->options.render_timeout_s * 1000000;
+        client->job.deadline_us = w->now_us +
+                                  (int64_t)w->shared->options.render_timeout_s * 1000000;
         client->job_state = SERVER_JOB_WAITING;
     }
-    if (client->job_state != SERVER_JOB_WAITING)
-        return 1;
+    if (client->job_state != SERVER_JOB_WAITING) return 1;
     if (w->own_renderer) {
-        face_back(client, w->own_face, server_renderer_face(w->own_renderer, &client->job.face, w->shared->renderer_counters,
-                                                            w->own_face, SERVER_FACE_BYTES));
+        face_back(client, w->own_face,
+                  server_renderer_face(w->own_renderer, &client->job.face,
+                                       w->shared->renderer_counters, w->own_face,
+                                       SERVER_FACE_BYTES));
         return 1;
     }
     if (w->shared->options.renderers == 0) {
         face_back(client, NULL, FF_ERR_UNSUPPORTED);
         return 1;
     }
-    if (server_job_send(&w->shared->channels, &client->job) != FF_OK)
-        return 0;
+    if (server_job_send(&w->shared->channels, &client->job) != FF_OK) return 0;
     client->job_state = SERVER_JOB_SENT;
     return 1;
 }
 
-/* In turn, so that one client's six faces do not go before another's first. Returns 0 when the queue is full. */
+/* In turn, so that one client's six faces do not go before another's first. Returns 0 when the
+ * queue is full. */
 static int place_jobs(worker *w)
 {
     for (unsigned i = 0; i < w->count; i++) {
@@ -160,12 +163,16 @@ static void fail_late_jobs(worker *w)
 
 static nfds_t watch(worker *w, int listening, int queue_full)
 {
-    int accepting = listening && w->count < w->shared->options.max_clients && w->now_us >= w->accept_again_us;
+    int accepting = listening && w->count < w->shared->options.max_clients &&
+                    w->now_us >= w->accept_again_us;
     w->poll[0] = (struct pollfd){ .fd = accepting ? w->shared->listen_fd : -1, .events = POLLIN };
-    w->poll[1] = (struct pollfd){ .fd = w->shared->channels.result_recv[w->number], .events = POLLIN };
-    w->poll[2] = (struct pollfd){ .fd = queue_full ? w->shared->channels.job_send : -1, .events = POLLOUT };
+    w->poll[1] = (struct pollfd){ .fd = w->shared->channels.result_recv[w->number],
+                                  .events = POLLIN };
+    w->poll[2] = (struct pollfd){ .fd = queue_full ? w->shared->channels.job_send : -1,
+                                  .events = POLLOUT };
     for (unsigned i = 0; i < w->count; i++)
-        w->poll[POLL_FIXED + i] = (struct pollfd){ .fd = w->client[i]->tcp.fd, .events = server_client_events(w->client[i]) };
+        w->poll[POLL_FIXED + i] = (struct pollfd){ .fd = w->client[i]->tcp.fd,
+                                                   .events = server_client_events(w->client[i]) };
     return POLL_FIXED + w->count;
 }
 
@@ -174,43 +181,42 @@ static void round_trip(worker *w, int listening)
 {
     int queue_full = !place_jobs(w);
     nfds_t watched = watch(w, listening, queue_full);
-    if (poll(w->poll, watched, LOOK_AROUND_MS) < 0)
-        memset(w->poll, 0, sizeof *w->poll * watched);
+    if (poll(w->poll, watched, LOOK_AROUND_MS) < 0) memset(w->poll, 0, sizeof *w->poll * watched);
     w->now_us = sys_time_us();
     take_results(w);
     fail_late_jobs(w);
     for (unsigned i = 0; i < w->count; i++)
-        server_client_step(w->client[i], (w->poll[POLL_FIXED + i].revents & (POLLIN | POLLHUP | POLLERR)) != 0, w->now_us);
-    if (w->poll[0].revents)
-        accept_clients(w);
+        server_client_step(w->client[i],
+                           (w->poll[POLL_FIXED + i].revents & (POLLIN | POLLHUP | POLLERR)) != 0,
+                           w->now_us);
+    if (w->poll[0].revents) accept_clients(w);
     remove_closed(w);
 }
 
 static void run(worker *w)
 {
-    while (!server_stopping(w->shared))
-        round_trip(w, 1);
+    while (!server_stopping(w->shared)) round_trip(w, 1);
     for (unsigned i = 0; i < w->count; i++)
         server_client_end(w->client[i], FF_ERR_CLOSED, w->now_us);
     for (int64_t until_us = w->now_us + STOP_US; w->count > 0 && w->now_us < until_us;)
         round_trip(w, 0);
-    for (unsigned i = 0; i < w->count; i++)
-        w->client[i]->state = SERVER_CLIENT_CLOSED;
+    for (unsigned i = 0; i < w->count; i++) w->client[i]->state = SERVER_CLIENT_CLOSED;
     remove_closed(w);
 }
 
 static int open_worker(worker *w, server *shared, unsigned number)
 {
     const server_options *o = &shared->options;
-    *w = (worker){ .shared = shared, .number = number, .counters = &shared->worker_counters[number], .now_us = sys_time_us(),
+    *w = (worker){ .shared = shared,
+                   .number = number,
+                   .counters = &shared->worker_counters[number],
+                   .now_us = sys_time_us(),
                    .next_serial = (uint64_t)getpid() << 32 | 1u };
     w->client = calloc(o->max_clients, sizeof *w->client);
     w->poll = calloc(POLL_FIXED + o->max_clients, sizeof *w->poll);
     w->assembly = calloc(o->renderers ? o->renderers : 1, sizeof *w->assembly);
-    if (!w->client || !w->poll || !w->assembly)
-        return FF_ERR_MEMORY;
-    if (!o->single || o->renderers == 0)
-        return FF_OK;
+    if (!w->client || !w->poll || !w->assembly) return FF_ERR_MEMORY;
+    if (!o->single || o->renderers == 0) return FF_OK;
     w->own_face = malloc(SERVER_FACE_BYTES);
     return w->own_face ? server_renderer_open(shared, &w->own_renderer) : FF_ERR_MEMORY;
 }

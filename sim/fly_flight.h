@@ -8,19 +8,21 @@
 typedef struct fly_flight {
     fly_world *world;
     const fly_options *options;
-    FILE *csv;                 /* or NULL */
+    FILE *csv; /* or NULL */
     c3d_camera camera;
-    int64_t start_us;          /* the clock at t = 0 */
-    uint32_t faces_seen;       /* of the server, rendered: after each the client's GL context is made current again */
-    int had_ground;            /* in a frame so far */
-    uint64_t events_done;      /* bit per event */
+    int64_t start_us; /* the clock at t = 0 */
+    /* of the server, rendered: after each the client's GL context is made current again */
+    uint32_t faces_seen;
+    int had_ground;       /* in a frame so far */
+    uint64_t events_done; /* bit per event */
     uint8_t *rgb;
     fly_sample *sample;
     size_t sample_count, sample_capacity;
     fly_totals totals;
 } fly_flight;
 
-/* Flies all of it. 0, or -1 with one line on stderr. Rows lie in `sample` afterwards; free with fly_flight_free. */
+/* Flies all of it. 0, or -1 with one line on stderr. Rows lie in `sample` afterwards; free with
+ * fly_flight_free. */
 int fly_flight_run(fly_flight *flight, fly_world *world, FILE *csv);
 void fly_flight_free(fly_flight *flight);
 

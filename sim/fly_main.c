@@ -1,4 +1,5 @@
-/* farfield-fly: a flight over a pack, simulated (server, link and client in this process) or against a real server. */
+/* farfield-fly: a flight over a pack, simulated (server, link and client in this process) or
+ * against a real server. */
 #include "fly_flight.h"
 
 #include <errno.h>
@@ -21,10 +22,8 @@ int main(int argc, char **argv)
         fprintf(stderr, "farfield-fly: %s: %s\n", options.csv_path, strerror(errno));
         rc = -1;
     }
-    if (csv)
-        setvbuf(csv, NULL, _IOLBF, 1024); /* rows can be followed while they are made */
-    if (!rc)
-        rc = fly_flight_run(&flight, &world, csv);
+    if (csv) setvbuf(csv, NULL, _IOLBF, 1024); /* rows can be followed while they are made */
+    if (!rc) rc = fly_flight_run(&flight, &world, csv);
     if (!rc && options.json)
         fly_json(stdout, &options, flight.sample, flight.sample_count, &flight.totals);
     if (csv && fclose(csv) && !rc) {
@@ -32,7 +31,8 @@ int main(int argc, char **argv)
         rc = -1;
     }
     if (!rc && flight.totals.crack_frames) {
-        fprintf(stderr, "farfield-fly: %u of %u frames have cracks\n", flight.totals.crack_frames, flight.totals.frames);
+        fprintf(stderr, "farfield-fly: %u of %u frames have cracks\n", flight.totals.crack_frames,
+                flight.totals.frames);
         rc = -1;
     }
     fly_flight_free(&flight);

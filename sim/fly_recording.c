@@ -7,10 +7,20 @@
 #include <string.h>
 
 #define PITCH_DEG (-6.0)
-#define STILL_M 0.1 /* nearer fixes tell no direction */
+#define STILL_M   0.1 /* nearer fixes tell no direction */
 #define FIXES_MAX 10000000u
 
-enum column { COLUMN_T, COLUMN_X, COLUMN_Y, COLUMN_Z, COLUMN_H, COLUMN_HEADING, COLUMN_PITCH, COLUMN_COUNT, COLUMN_OTHER };
+enum column {
+    COLUMN_T,
+    COLUMN_X,
+    COLUMN_Y,
+    COLUMN_Z,
+    COLUMN_H,
+    COLUMN_HEADING,
+    COLUMN_PITCH,
+    COLUMN_COUNT,
+    COLUMN_OTHER
+};
 enum { COLUMNS_MAX = 128 };
 
 typedef struct reader {
@@ -32,8 +42,7 @@ static int wrong(const reader *r, const char *why)
 static char *next_field(char **rest)
 {
     char *field = *rest;
-    if (!field)
-        return NULL;
+    if (!field) return NULL;
     char *end = field + strcspn(field, ",\r\n");
     *rest = *end == ',' ? end + 1 : NULL;
     *end = '\0';
@@ -42,19 +51,19 @@ static char *next_field(char **rest)
 
 static int read_header(reader *r, char *line)
 {
-    static const char *const name[COLUMN_COUNT] = { "t_s", "x_m", "y_m", "z_m", "h_m", "heading_deg", "pitch_deg" };
+    static const char *const name[COLUMN_COUNT] = { "t_s", "x_m",         "y_m",      "z_m",
+                                                    "h_m", "heading_deg", "pitch_deg" };
     for (char *field; (field = next_field(&line)) != NULL;) {
         enum column column = COLUMN_OTHER;
         for (int i = 0; i < COLUMN_COUNT; i++)
-            if (!strcmp(field, name[i]))
-                column = (enum column)i;
+            if (!strcmp(field, name[i])) column = (enum column)i;
         if (r->columns == COLUMNS_MAX || (column != COLUMN_OTHER && r->has[column]))
             return wrong(r, "too many columns, or one twice");
-        if (column != COLUMN_OTHER)
-            r->has[column] = 1;
+        if (column != COLUMN_OTHER) r->has[column] = 1;
         r->column[r->columns++] = column;
     }
-    if (!r->has[COLUMN_T] || !r->has[COLUMN_X] || !r->has[COLUMN_Y] || r->has[COLUMN_Z] + r->has[COLUMN_H] < 1)
+    if (!r->has[COLUMN_T] || !r->has[COLUMN_X] || !r->has[COLUMN_Y] ||
+        r->has[COLUMN_Z] + r->has[COLUMN_H] < 1)
         return wrong(r, "needs columns t_s, x_m, y_m and z_m or h_m");
     return 0;
 }
@@ -64,16 +73,15 @@ static int read_fix(const reader *r, char *line, fly_fix *fix)
     double value[COLUMN_COUNT] = { [COLUMN_HEADING] = NAN, [COLUMN_PITCH] = PITCH_DEG };
     for (unsigned i = 0; i < r->columns; i++) {
         char *field = next_field(&line), *end;
-        if (!field)
-            return wrong(r, "too few columns");
-        if (r->column[i] == COLUMN_OTHER)
-            continue;
+        if (!field) return wrong(r, "too few columns");
+        if (r->column[i] == COLUMN_OTHER) continue;
         double number = strtod(field, &end);
         if (end == field || *end || !(fabs(number) <= 8e6))
             return wrong(r, "not a number, or one beyond 8 000 000");
         value[r->column[i]] = number;
     }
-    *fix = (fly_fix){ value[COLUMN_T], value[COLUMN_X], value[COLUMN_Y], r->has[COLUMN_Z] ? value[COLUMN_Z] : value[COLUMN_H],
+    *fix = (fly_fix){ value[COLUMN_T],       value[COLUMN_X],
+                      value[COLUMN_Y],       r->has[COLUMN_Z] ? value[COLUMN_Z] : value[COLUMN_H],
                       value[COLUMN_HEADING], value[COLUMN_PITCH] };
     return line ? wrong(r, "too many columns") : 0;
 }
@@ -85,8 +93,7 @@ static int append(reader *r, fly_recording *recording, const fly_fix *fix)
     if (recording->count == r->capacity) {
         size_t more = r->capacity ? r->capacity * 2 : 256;
         fly_fix *grown = more <= FIXES_MAX ? realloc(recording->fix, more * sizeof *grown) : NULL;
-        if (!grown)
-            return wrong(r, "out of memory");
+        if (!grown) return wrong(r, "out of memory");
         recording->fix = grown;
         r->capacity = more;
     }
@@ -100,11 +107,10 @@ static void fill_headings(fly_recording *recording)
     double heading_deg = 0;
     for (size_t i = 0; i < recording->count; i++) {
         fly_fix *fix = &recording->fix[i];
-        double dx = i + 1 < recording->count ? fix[1].x_m - fix->x_m : 0, dy = i + 1 < recording->count ? fix[1].y_m - fix->y_m : 0;
-        if (hypot(dx, dy) >= STILL_M)
-            heading_deg = atan2(dx, dy) * 180 / 3.14159265358979323846;
-        if (isnan(fix->heading_deg))
-            fix->heading_deg = heading_deg;
+        double dx = i + 1 < recording->count ? fix[1].x_m - fix->x_m : 0,
+               dy = i + 1 < recording->count ? fix[1].y_m - fix->y_m : 0;
+        if (hypot(dx, dy) >= STILL_M) heading_deg = atan2(dx, dy) * 180 / 3.14159265358979323846;
+        if (isnan(fix->heading_deg)) fix->heading_deg = heading_deg;
     }
 }
 
@@ -114,15 +120,13 @@ static int read_lines(reader *r, fly_recording *recording, FILE *file)
     int rc = 0;
     for (r->line = 1; !rc && fgets(line, sizeof line, file); r->line++) {
         fly_fix fix;
-        if (strlen(line) == sizeof line - 1)
-            return wrong(r, "too long a line");
+        if (strlen(line) == sizeof line - 1) return wrong(r, "too long a line");
         if (r->line == 1)
             rc = read_header(r, line);
         else if (!(rc = read_fix(r, line, &fix)))
             rc = append(r, recording, &fix);
     }
-    if (rc)
-        return rc;
+    if (rc) return rc;
     return ferror(file) || !recording->count ? wrong(r, "nothing is recorded here") : 0;
 }
 
@@ -132,13 +136,15 @@ int fly_recording_read(fly_recording *recording, const char *path)
     *recording = (fly_recording){ 0 };
     FILE *file = fopen(path, "r");
     if (!file) {
-        fprintf(stderr, "farfield-fly: --path: %s is neither diagonal, circle, hover, turn nor a file: %s\n", path, strerror(errno));
+        fprintf(
+            stderr,
+            "farfield-fly: --path: %s is neither diagonal, circle, hover, turn nor a file: %s\n",
+            path, strerror(errno));
         return -1;
     }
     int rc = read_lines(&r, recording, file);
     fclose(file);
-    if (rc)
-        fly_recording_free(recording);
+    if (rc) fly_recording_free(recording);
     recording->above_ground = !r.has[COLUMN_Z];
     fill_headings(recording);
     return rc;
@@ -165,8 +171,12 @@ void fly_recording_at(const fly_recording *recording, double t_s, fly_fix *fix)
         return;
     }
     const fly_fix *a = &recording->fix[low - 1], *b = a + 1;
-    double share = (t_s - a->t_s) / (b->t_s - a->t_s), turn_deg = remainder(b->heading_deg - a->heading_deg, 360);
-    *fix = (fly_fix){ t_s, a->x_m + share * (b->x_m - a->x_m), a->y_m + share * (b->y_m - a->y_m),
-                      a->up_m + share * (b->up_m - a->up_m), a->heading_deg + share * turn_deg,
+    double share = (t_s - a->t_s) / (b->t_s - a->t_s),
+           turn_deg = remainder(b->heading_deg - a->heading_deg, 360);
+    *fix = (fly_fix){ t_s,
+                      a->x_m + share * (b->x_m - a->x_m),
+                      a->y_m + share * (b->y_m - a->y_m),
+                      a->up_m + share * (b->up_m - a->up_m),
+                      a->heading_deg + share * turn_deg,
                       a->pitch_deg + share * (b->pitch_deg - a->pitch_deg) };
 }

@@ -6,20 +6,23 @@
  *   z_m or h_m        metres above the terrain's zero, or above its ground
  *   heading_deg       0 north, 90 east; without it: where the next line lies
  *   pitch_deg         up; without it: -6
- * Others are passed over, so that the CSV of an earlier farfield-fly is a recording. Between two lines all values change evenly, the
- * heading by the shorter turn; before the first and after the last line the viewer stands.
+ * Others are passed over, so that the CSV of an earlier farfield-fly is a recording. Between two
+ * lines all values change evenly, the heading by the shorter turn; before the first and after the
+ * last line the viewer stands.
  */
 #ifndef FLY_RECORDING_H
 #define FLY_RECORDING_H
 
 #include <stddef.h>
 
-typedef struct fly_fix { double t_s, x_m, y_m, up_m, heading_deg, pitch_deg; } fly_fix;
+typedef struct fly_fix {
+    double t_s, x_m, y_m, up_m, heading_deg, pitch_deg;
+} fly_fix;
 
 typedef struct fly_recording {
     fly_fix *fix;
-    size_t count;      /* 0: no recording */
-    int above_ground;  /* up_m is h_m */
+    size_t count;     /* 0: no recording */
+    int above_ground; /* up_m is h_m */
 } fly_recording;
 
 /* 0, or -1 with one line on stderr. */

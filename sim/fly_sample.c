@@ -5,13 +5,20 @@
 #include <stddef.h>
 
 enum column_kind { PLACE, MEAN, TOTAL, MOST, LAST };
-typedef struct column { const char *name, *format; enum column_kind kind; size_t offset; } column;
+typedef struct column {
+    const char *name, *format;
+    enum column_kind kind;
+    size_t offset;
+} column;
 
 #define X(name, format, kind) { #name, format, kind, offsetof(fly_sample, name) },
 static const column first_column[] = { FLY_COLUMNS_FIRST(X) };
 static const column last_column[] = { FLY_COLUMNS_LAST(X) };
 #undef X
-enum { FIRST_COUNT = sizeof first_column / sizeof first_column[0], LAST_COUNT = sizeof last_column / sizeof last_column[0] };
+enum {
+    FIRST_COUNT = sizeof first_column / sizeof first_column[0],
+    LAST_COUNT = sizeof last_column / sizeof last_column[0]
+};
 
 static double value(const fly_sample *sample, const column *c)
 {
@@ -28,11 +35,9 @@ static void print_value(FILE *file, const column *c, double number)
 
 void fly_csv_header(FILE *file)
 {
-    for (int i = 0; i < FIRST_COUNT; i++)
-        fprintf(file, "%s,", first_column[i].name);
+    for (int i = 0; i < FIRST_COUNT; i++) fprintf(file, "%s,", first_column[i].name);
     fputs("frame_hash,geometry_hash,request_hash", file);
-    for (int i = 0; i < LAST_COUNT; i++)
-        fprintf(file, ",%s", last_column[i].name);
+    for (int i = 0; i < LAST_COUNT; i++) fprintf(file, ",%s", last_column[i].name);
     fputc('\n', file);
 }
 
@@ -42,7 +47,8 @@ void fly_csv_row(FILE *file, const fly_sample *sample)
         print_value(file, &first_column[i], value(sample, &first_column[i]));
         fputc(',', file);
     }
-    fprintf(file, "%016" PRIx64 ",%016" PRIx64 ",%016" PRIx64, sample->frame_hash, sample->geometry_hash, sample->request_hash);
+    fprintf(file, "%016" PRIx64 ",%016" PRIx64 ",%016" PRIx64, sample->frame_hash,
+            sample->geometry_hash, sample->request_hash);
     for (int i = 0; i < LAST_COUNT; i++) {
         fputc(',', file);
         print_value(file, &last_column[i], value(sample, &last_column[i]));
@@ -50,19 +56,17 @@ void fly_csv_row(FILE *file, const fly_sample *sample)
     fputc('\n', file);
 }
 
-/* Seconds until err_px_p95 first comes within 10 % of (or below) its mean over the last half of the rows; -1 without an audit. */
+/* Seconds until err_px_p95 first comes within 10 % of (or below) its mean over the last half of the
+ * rows; -1 without an audit. */
 static double settle_s(const fly_sample *sample, size_t count)
 {
     double sum = 0;
     size_t half = count / 2;
-    if (!count || isnan(sample[count - 1].err_px_p95))
-        return -1;
-    for (size_t i = half; i < count; i++)
-        sum += sample[i].err_px_p95;
+    if (!count || isnan(sample[count - 1].err_px_p95)) return -1;
+    for (size_t i = half; i < count; i++) sum += sample[i].err_px_p95;
     double final = sum / (double)(count - half);
     for (size_t i = 0; i < count; i++)
-        if (sample[i].nodes_drawn > 0 && sample[i].err_px_p95 <= final * 1.1)
-            return sample[i].t_s;
+        if (sample[i].nodes_drawn > 0 && sample[i].err_px_p95 <= final * 1.1) return sample[i].t_s;
     return -1;
 }
 
@@ -70,12 +74,10 @@ static double settle_s(const fly_sample *sample, size_t count)
 static double summarise(const column *c, const fly_sample *sample, size_t from, size_t count)
 {
     double sum = 0, most = -INFINITY;
-    if (from >= count)
-        return NAN;
+    if (from >= count) return NAN;
     if (c->kind == TOTAL)
         return value(&sample[count - 1], c) - (from ? value(&sample[from - 1], c) : 0);
-    if (c->kind == LAST)
-        return value(&sample[count - 1], c);
+    if (c->kind == LAST) return value(&sample[count - 1], c);
     for (size_t i = from; i < count; i++) {
         sum += value(&sample[i], c);
         most = fmax(most, value(&sample[i], c));
@@ -83,12 +85,12 @@ static double summarise(const column *c, const fly_sample *sample, size_t from, 
     return c->kind == MOST ? most : sum / (double)(count - from);
 }
 
-static void json_columns(FILE *file, const column *c, int columns, const fly_sample *sample, size_t from, size_t count)
+static void json_columns(FILE *file, const column *c, int columns, const fly_sample *sample,
+                         size_t from, size_t count)
 {
     for (int i = 0; i < columns; i++) {
         double number = summarise(&c[i], sample, from, count);
-        if (c[i].kind == PLACE)
-            continue;
+        if (c[i].kind == PLACE) continue;
         if (isfinite(number))
             fprintf(file, ",\n  \"%s\": %.*f", c[i].name, c[i].kind == TOTAL ? 0 : 3, number);
         else
@@ -110,28 +112,35 @@ static void json_text(FILE *file, const char *name, const char *text)
     fputc('"', file);
 }
 
-void fly_json(FILE *file, const fly_options *options, const fly_sample *sample, size_t count, const fly_totals *totals)
+void fly_json(FILE *file, const fly_options *options, const fly_sample *sample, size_t count,
+              const fly_totals *totals)
 {
     size_t from = 0;
-    while (from < count && sample[from].t_s < options->settle_s)
-        from++;
-    if (from + 1 < count && sample[from].t_s <= options->settle_s) /* the row at the end of settling is where totals start */
-        from++;
-    fprintf(file, "{\n  \"seed\": %" PRIu64 ",\n  \"frames\": %" PRIu32 ",\n  \"settle_s\": %.3f", options->seed, totals->frames,
-            settle_s(sample, count));
+    while (from < count && sample[from].t_s < options->settle_s) from++;
+    /* the row at the end of settling is where totals start */
+    if (from + 1 < count && sample[from].t_s <= options->settle_s) from++;
+    fprintf(file, "{\n  \"seed\": %" PRIu64 ",\n  \"frames\": %" PRIu32 ",\n  \"settle_s\": %.3f",
+            options->seed, totals->frames, settle_s(sample, count));
     json_text(file, "pack", options->pack_path);
     json_text(file, "link", options->server ? options->server : options->link_text);
     json_text(file, "quality", options->quality_text);
     json_text(file, "backend", fly_backend_name(options->backend));
-    fprintf(file, ",\n  \"speed_kmh\": %g,\n  \"seconds\": %g,\n  \"panorama\": %s", options->speed_kmh, options->seconds,
-            options->panorama.enabled ? "true" : "false");
+    fprintf(file, ",\n  \"speed_kmh\": %g,\n  \"seconds\": %g,\n  \"panorama\": %s",
+            options->speed_kmh, options->seconds, options->panorama.enabled ? "true" : "false");
     json_columns(file, first_column, FIRST_COUNT, sample, from, count);
     json_columns(file, last_column, LAST_COUNT, sample, from, count);
-    fprintf(file, ",\n  \"stitched_frames\": %" PRIu32 ",\n  \"crack_frames\": %" PRIu32
-            ",\n  \"empty_frames\": %" PRIu32 ",\n  \"panoramas_in_flight_high\": %" PRIu32, totals->stitched_frames,
-            totals->crack_frames, totals->empty_frames, totals->panoramas_in_flight_high);
-    fprintf(file, ",\n  \"bytes_down_all\": %.0f,\n  \"bytes_up_all\": %.0f,\n  \"memory_used\": %" PRIu64, totals->bytes_down_all,
-            totals->bytes_up_all, totals->memory_used);
-    fprintf(file, ",\n  \"frame_hash\": \"%016" PRIx64 "\",\n  \"geometry_hash\": \"%016" PRIx64 "\",\n  \"request_hash\": \"%016" PRIx64
-            "\"\n}\n", totals->frame_hash, count ? sample[count - 1].geometry_hash : 0, count ? sample[count - 1].request_hash : 0);
+    fprintf(file,
+            ",\n  \"stitched_frames\": %" PRIu32 ",\n  \"crack_frames\": %" PRIu32
+            ",\n  \"empty_frames\": %" PRIu32 ",\n  \"panoramas_in_flight_high\": %" PRIu32,
+            totals->stitched_frames, totals->crack_frames, totals->empty_frames,
+            totals->panoramas_in_flight_high);
+    fprintf(
+        file,
+        ",\n  \"bytes_down_all\": %.0f,\n  \"bytes_up_all\": %.0f,\n  \"memory_used\": %" PRIu64,
+        totals->bytes_down_all, totals->bytes_up_all, totals->memory_used);
+    fprintf(file,
+            ",\n  \"frame_hash\": \"%016" PRIx64 "\",\n  \"geometry_hash\": \"%016" PRIx64
+            "\",\n  \"request_hash\": \"%016" PRIx64 "\"\n}\n",
+            totals->frame_hash, count ? sample[count - 1].geometry_hash : 0,
+            count ? sample[count - 1].request_hash : 0);
 }

@@ -16,20 +16,17 @@ static int open_ground(fly_world *world)
 {
     const fly_options *options = world->options;
     int rc = sys_map_file(options->pack_path, &world->mapping);
-    if (rc == FF_OK)
-        rc = ff_pack_open(&world->pack, world->mapping.bytes, world->mapping.size);
-    if (rc == FF_OK)
-        rc = sim_ground_load(&world->path_ground, &world->pack, PATH_SAMPLES_MAX);
+    if (rc == FF_OK) rc = ff_pack_open(&world->pack, world->mapping.bytes, world->mapping.size);
+    if (rc == FF_OK) rc = sim_ground_load(&world->path_ground, &world->pack, PATH_SAMPLES_MAX);
     if (rc == FF_OK && options->audit)
-        rc = sim_ground_load_cached(&world->true_ground, &world->pack, UINT64_MAX, options->ground_cache);
-    if (rc != FF_OK)
-        return fail(options->pack_path, rc);
+        rc = sim_ground_load_cached(&world->true_ground, &world->pack, UINT64_MAX,
+                                    options->ground_cache);
+    if (rc != FF_OK) return fail(options->pack_path, rc);
     const ff_terrain_info *info = &world->pack.header.info;
     fly_path_init(&world->path, options, info, &world->path_ground);
     if (options->audit) {
         world->auditor = sim_auditor_create(&world->true_ground, info, options->audit_step_px);
-        if (!world->auditor)
-            return fail("auditor", FF_ERR_MEMORY);
+        if (!world->auditor) return fail("auditor", FF_ERR_MEMORY);
     }
     return 0;
 }
@@ -43,11 +40,13 @@ static int open_link(fly_world *world)
     }
     world->link = sim_link_create(&options->link, options->seed);
     if (!world->link)
-        return fail("link", options->link.way[SIM_DOWN].trace || options->link.way[SIM_UP].trace ? FF_ERR_FORMAT : FF_ERR_MEMORY);
+        return fail("link", options->link.way[SIM_DOWN].trace || options->link.way[SIM_UP].trace
+                                ? FF_ERR_FORMAT
+                                : FF_ERR_MEMORY);
     sim_stream_client(&world->client_end, world->link, &world->now_us, &world->stream);
-    world->relevance = sim_relevance_create(&world->stream, &world->pack.header.info, &world->now_us);
-    if (!world->relevance)
-        return fail("relevance", FF_ERR_MEMORY);
+    world->relevance = sim_relevance_create(&world->stream, &world->pack.header.info,
+                                            &world->now_us);
+    if (!world->relevance) return fail("relevance", FF_ERR_MEMORY);
     int rc = sim_server_init(&world->server, &world->pack, world->link, &world->now_us);
     return rc == FF_OK ? 0 : fail("server", rc);
 }
@@ -56,9 +55,14 @@ static int open_link(fly_world *world)
 static int open_tape(fly_world *world)
 {
     const fly_options *options = world->options;
-    sim_tape_head head = { .memory_bytes = (uint32_t)options->memory_bytes, .width = options->width, .height = options->height,
-                           .quality = options->quality, .panorama = options->panorama };
-    int rc = options->tape_path ? sim_tape_record(&world->tape, options->tape_path, &head, &world->stream) : FF_OK;
+    sim_tape_head head = { .memory_bytes = (uint32_t)options->memory_bytes,
+                           .width = options->width,
+                           .height = options->height,
+                           .quality = options->quality,
+                           .panorama = options->panorama };
+    int rc = options->tape_path
+                 ? sim_tape_record(&world->tape, options->tape_path, &head, &world->stream)
+                 : FF_OK;
     return rc == FF_OK ? 0 : fail(options->tape_path, rc);
 }
 
@@ -69,17 +73,20 @@ static int is_soft(enum fly_backend backend)
 
 static const struct c3d_backend *backend_of(enum fly_backend backend)
 {
-    if (backend == FLY_NONE)
-        return NULL;
-    return is_soft(backend) ? c3d_backend_soft() : backend == FLY_GLES1 ? c3d_backend_gles1() : c3d_backend_gl();
+    if (backend == FLY_NONE) return NULL;
+    return is_soft(backend)       ? c3d_backend_soft()
+           : backend == FLY_GLES1 ? c3d_backend_gles1()
+                                  : c3d_backend_gl();
 }
 
 /* Before the flight's own surface, whose context is to be the current one. */
 static int open_reference(fly_world *world, const sys_surface_desc *desc)
 {
     const fly_options *options = world->options;
-    int rc = world->surface_api ? fly_reference_open(&world->reference, options, &world->pack, world->surface_api, desc,
-                                                     backend_of(options->backend)) : FF_ERR_UNSUPPORTED;
+    int rc = world->surface_api
+                 ? fly_reference_open(&world->reference, options, &world->pack, world->surface_api,
+                                      desc, backend_of(options->backend))
+                 : FF_ERR_UNSUPPORTED;
     return rc == FF_OK ? 0 : fail("reference", rc);
 }
 
@@ -87,8 +94,7 @@ static int open_surface(fly_world *world)
 {
     const fly_options *options = world->options;
     sys_surface_desc desc = { "farfield-fly", options->width, options->height, SYS_GL_DESKTOP };
-    if (options->backend == FLY_NONE)
-        return 0;
+    if (options->backend == FLY_NONE) return 0;
     world->surface_api = sys_surface_osmesa();
     if (options->backend == FLY_GLES1) {
         world->surface_api = sys_surface_egl();
@@ -97,11 +103,10 @@ static int open_surface(fly_world *world)
         world->surface_api = sys_surface_memory();
         desc.gl = SYS_GL_NONE;
     }
-    if (options->reference_dir && open_reference(world, &desc))
-        return -1;
-    int rc = world->surface_api ? world->surface_api->open(&desc, &world->surface) : FF_ERR_UNSUPPORTED;
-    if (rc == FF_OK)
-        return 0;
+    if (options->reference_dir && open_reference(world, &desc)) return -1;
+    int rc = world->surface_api ? world->surface_api->open(&desc, &world->surface)
+                                : FF_ERR_UNSUPPORTED;
+    if (rc == FF_OK) return 0;
     world->surface = NULL;
     return fail(fly_backend_name(options->backend), rc);
 }
@@ -110,11 +115,17 @@ static int open_client(fly_world *world)
 {
     const fly_options *options = world->options;
     world->memory = malloc(options->memory_bytes);
-    if (!world->memory)
-        return fail("client", FF_ERR_MEMORY);
-    ff_client_desc desc = { .memory = world->memory, .memory_bytes = options->memory_bytes, .stream = &world->stream,
-                            .surface_api = world->surface_api, .width = options->width, .height = options->height,
-                            .quality = options->quality, .panorama = options->panorama, .balance = options->balance, .use_thread = options->server != NULL,
+    if (!world->memory) return fail("client", FF_ERR_MEMORY);
+    ff_client_desc desc = { .memory = world->memory,
+                            .memory_bytes = options->memory_bytes,
+                            .stream = &world->stream,
+                            .surface_api = world->surface_api,
+                            .width = options->width,
+                            .height = options->height,
+                            .quality = options->quality,
+                            .panorama = options->panorama,
+                            .balance = options->balance,
+                            .use_thread = options->server != NULL,
                             .use_plain_arrays = (uint8_t)options->plain_arrays };
     desc.backend = backend_of(options->backend);
     desc.frame_format = options->backend == FLY_SOFT ? C3D_RGBA8888 : C3D_RGB565;
@@ -123,8 +134,7 @@ static int open_client(fly_world *world)
         world->client = NULL;
         return fail("client", rc);
     }
-    if (options->wireframe)
-        ff_client_set_show(world->client, FF_SHOW_WIREFRAME);
+    if (options->wireframe) ff_client_set_show(world->client, FF_SHOW_WIREFRAME);
     return 0;
 }
 
@@ -132,7 +142,8 @@ int fly_world_open(fly_world *world, const fly_options *options)
 {
     memset(world, 0, sizeof *world);
     world->options = options;
-    if (open_ground(world) || open_link(world) || open_tape(world) || open_surface(world) || open_client(world))
+    if (open_ground(world) || open_link(world) || open_tape(world) || open_surface(world) ||
+        open_client(world))
         return -1;
     return 0;
 }
@@ -140,14 +151,10 @@ int fly_world_open(fly_world *world, const fly_options *options)
 void fly_world_close(fly_world *world)
 {
     fly_reference_close(&world->reference);
-    if (world->surface)
-        (void)world->surface_api->make_current(world->surface);
-    if (world->client)
-        ff_client_destroy(world->client);
-    if (world->options->server && world->stream.close)
-        world->stream.close(world->stream.state);
-    if (world->link)
-        sim_server_free(&world->server);
+    if (world->surface) (void)world->surface_api->make_current(world->surface);
+    if (world->client) ff_client_destroy(world->client);
+    if (world->options->server && world->stream.close) world->stream.close(world->stream.state);
+    if (world->link) sim_server_free(&world->server);
     if (world->surface) {
         (void)world->surface_api->make_current(world->surface);
         world->surface_api->close(world->surface);
@@ -157,7 +164,6 @@ void fly_world_close(fly_world *world)
     sim_auditor_destroy(world->auditor);
     sim_ground_free(&world->true_ground);
     sim_ground_free(&world->path_ground);
-    if (world->mapping.bytes)
-        sys_unmap_file(&world->mapping);
+    if (world->mapping.bytes) sys_unmap_file(&world->mapping);
     free(world->memory);
 }

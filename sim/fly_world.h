@@ -1,4 +1,5 @@
-/* All that a flight needs, opened and closed: pack, true ground, link, server, surface and client. */
+/* All that a flight needs, opened and closed: pack, true ground, link, server, surface and
+ * client. */
 #ifndef FLY_WORLD_H
 #define FLY_WORLD_H
 
@@ -12,22 +13,23 @@
 
 typedef struct fly_world {
     const fly_options *options;
-    int64_t now_us;             /* the clock of the flight */
+    int64_t now_us; /* the clock of the flight */
     sys_mapping mapping;
     ff_pack pack;
-    sim_ground path_ground, true_ground; /* moderate level for the path; the whole, with an audit */
+    /* moderate level for the path; the whole, with an audit */
+    sim_ground path_ground, true_ground;
     sim_auditor *auditor;
     fly_path path;
-    sim_link *link;             /* NULL with a real server */
+    sim_link *link; /* NULL with a real server */
     sim_stream client_end;
     sim_server server;
-    sim_relevance *relevance;   /* NULL with a real server */
-    sys_tcp tcp;                /* with a real server */
+    sim_relevance *relevance; /* NULL with a real server */
+    sys_tcp tcp;              /* with a real server */
     sys_stream stream;
-    sim_tape_recorder tape;     /* file NULL: none is recorded */
+    sim_tape_recorder tape; /* file NULL: none is recorded */
     const sys_surface_api *surface_api;
     sys_surface *surface;
-    fly_reference reference;    /* client NULL: none is drawn */
+    fly_reference reference; /* client NULL: none is drawn */
     void *memory;
     ff_client *client;
 } fly_world;

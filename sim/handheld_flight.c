@@ -3,15 +3,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FRAME_US 33333
-#define WORK_STEPS_MAX 64       /* between two frames, without a link */
-#define WAIT_US 2000
-#define HERE 2 / 5              /* where the flight begins, of the diagonal */
-#define PITCH_BRAD16 (-1092)    /* 6 degrees down */
-#define FOV_BRAD16 10923        /* 60 degrees */
-#define MEMORY_BYTES (4u << 20)
-#define BLOCK_ALIGN 64          /* so that no byte of the block is lost to alignment, on any machine */
-#define SETTLE_FRAMES_MAX 3000  /* of a pack's flight, before it starts: until the ground stands */
+#define FRAME_US          33333
+#define WORK_STEPS_MAX    64 /* between two frames, without a link */
+#define WAIT_US           2000
+#define HERE              2 / 5   /* where the flight begins, of the diagonal */
+#define PITCH_BRAD16      (-1092) /* 6 degrees down */
+#define FOV_BRAD16        10923   /* 60 degrees */
+#define MEMORY_BYTES      (4u << 20)
+#define BLOCK_ALIGN       64 /* so that no byte of the block is lost to alignment, on any machine */
+#define SETTLE_FRAMES_MAX 3000 /* of a pack's flight, before it starts: until the ground stands */
 
 static int fail(const char *what, int rc)
 {
@@ -34,15 +34,15 @@ static int open_source(handheld *device)
     if (rc == FF_OK && options->pack_path)
         rc = ff_pack_open(&device->pack, device->mapping.bytes, device->mapping.size);
     else if (rc == FF_OK)
-        rc = sim_tape_open(&device->tape, device->mapping.bytes, device->mapping.size, &device->stream);
+        rc = sim_tape_open(&device->tape, device->mapping.bytes, device->mapping.size,
+                           &device->stream);
     return rc == FF_OK ? 0 : fail(path, rc);
 }
 
 static int open_surface(handheld *device)
 {
     sys_surface_desc desc = { "farfield-handheld", device->width, device->height, SYS_GL_ES1 };
-    if (device->options->no_pictures)
-        return 0;
+    if (device->options->no_pictures) return 0;
     device->surface_api = sys_surface_memory();
     int rc = device->surface_api->open(&desc, &device->surface);
     return rc == FF_OK ? 0 : fail("picture", rc);
@@ -52,22 +52,27 @@ static int open_client(handheld *device)
 {
     const handheld_options *options = device->options;
     const sim_tape_head *head = options->tape_path ? &device->tape.head : NULL;
-    ff_client_desc desc = { .width = device->width, .height = device->height, .quality = head ? head->quality : options->quality,
-                            .panorama = head ? head->panorama : options->panorama, .surface_api = device->surface_api,
-                            .backend = device->surface ? c3d_backend_soft() : NULL, .use_plain_arrays = 1, .no_textures = (uint8_t)options->no_textures,
+    ff_client_desc desc = { .width = device->width,
+                            .height = device->height,
+                            .quality = head ? head->quality : options->quality,
+                            .panorama = head ? head->panorama : options->panorama,
+                            .surface_api = device->surface_api,
+                            .backend = device->surface ? c3d_backend_soft() : NULL,
+                            .use_plain_arrays = 1,
+                            .no_textures = (uint8_t)options->no_textures,
                             .balance = options->balance };
-    device->memory_bytes = options->memory_bytes ? options->memory_bytes : head ? head->memory_bytes : MEMORY_BYTES;
+    device->memory_bytes = options->memory_bytes ? options->memory_bytes
+                           : head                ? head->memory_bytes
+                                                 : MEMORY_BYTES;
     device->memory_bytes -= device->memory_bytes % BLOCK_ALIGN;
     device->memory = aligned_alloc(BLOCK_ALIGN, device->memory_bytes);
-    if (!device->memory)
-        return fail("memory", FF_ERR_MEMORY);
+    if (!device->memory) return fail("memory", FF_ERR_MEMORY);
     desc.memory = device->memory;
     desc.memory_bytes = device->memory_bytes;
     desc.pack = options->pack_path ? &device->pack : NULL;
     desc.stream = options->pack_path ? NULL : &device->stream;
     int rc = ff_client_create(&desc, &device->client);
-    if (rc == FF_OK)
-        return 0;
+    if (rc == FF_OK) return 0;
     device->client = NULL;
     return fail("client", rc);
 }
@@ -76,8 +81,7 @@ int handheld_open(handheld *device, const handheld_options *options)
 {
     memset(device, 0, sizeof *device);
     device->options = options;
-    if (open_source(device))
-        return -1;
+    if (open_source(device)) return -1;
     device->width = options->tape_path ? device->tape.head.width : options->width;
     device->height = options->tape_path ? device->tape.head.height : options->height;
     return open_surface(device) ? -1 : open_client(device);
@@ -85,14 +89,10 @@ int handheld_open(handheld *device, const handheld_options *options)
 
 void handheld_close(handheld *device)
 {
-    if (device->client)
-        ff_client_destroy(device->client);
-    if (device->options->server && device->stream.close)
-        device->stream.close(device->stream.state);
-    if (device->surface)
-        device->surface_api->close(device->surface);
-    if (device->mapping.bytes)
-        sys_unmap_file(&device->mapping);
+    if (device->client) ff_client_destroy(device->client);
+    if (device->options->server && device->stream.close) device->stream.close(device->stream.state);
+    if (device->surface) device->surface_api->close(device->surface);
+    if (device->mapping.bytes) sys_unmap_file(&device->mapping);
     free(device->memory);
 }
 
@@ -111,7 +111,8 @@ static void hash_picture(handheld *device)
 {
     enum c3d_texture_format format;
     const void *pixels = c3d_frame_pixels(ff_client_device(device->client), &format);
-    uint64_t hash = device->totals.pictures_hash ? device->totals.pictures_hash : UINT64_C(14695981039346656037);
+    uint64_t hash = device->totals.pictures_hash ? device->totals.pictures_hash
+                                                 : UINT64_C(14695981039346656037);
     uint32_t count = pixels ? (uint32_t)device->width * device->height : 0;
     if (format == C3D_RGB565)
         for (uint32_t i = 0; i < count; i++)
@@ -131,19 +132,15 @@ static int one_frame(handheld *device, int64_t now_us, const c3d_camera *camera,
         handheld_mark_draw();
         ff_client_draw(device->client);
         handheld_mark_outside();
-        if (device->options->hud)
-            handheld_hud(device);
-        if (device->options->hash && flying)
-            hash_picture(device);
+        if (device->options->hud) handheld_hud(device);
+        if (device->options->hash && flying) hash_picture(device);
         (void)device->surface_api->present(device->surface);
     }
     handheld_mark_outside();
-    if (!flying)
-        return changed;
+    if (!flying) return changed;
     ff_client_get_stats(device->client, &stats);
     device->totals.frames++;
-    if (!changed)
-        return 0;
+    if (!changed) return 0;
     device->totals.drawn++;
     device->totals.triangles += stats.tree.triangles;
     device->totals.submitted += stats.c3d.frame_triangles;
@@ -160,39 +157,46 @@ static int fly_tape(handheld *device)
     for (;;) {
         int rc = sim_tape_next(&device->tape, &step);
         if (rc != FF_OK)
-            return fail(device->tape.differs ? "tape: this client does something else than the one recorded" : "tape", rc);
-        if (step.kind == SIM_TAPE_END)
-            break;
+            return fail(device->tape.differs
+                            ? "tape: this client does something else than the one recorded"
+                            : "tape",
+                        rc);
+        if (step.kind == SIM_TAPE_END) break;
         if (step.kind == SIM_TAPE_WORK) {
             (void)work(device, step.now_us);
             continue;
         }
-        if (step.flying && !flying)
-            handheld_mark_start();
+        if (step.flying && !flying) handheld_mark_start();
         flying = step.flying;
         (void)one_frame(device, step.now_us, &step.camera, flying);
     }
     device->totals.same_flight = step.geometry_hash == ff_client_geometry_hash(device->client) &&
                                  step.request_hash == ff_client_request_hash(device->client);
-    return device->totals.same_flight ? 0 : fail("tape: another flight than the one recorded", FF_ERR_FORMAT);
+    return device->totals.same_flight
+               ? 0
+               : fail("tape: another flight than the one recorded", FF_ERR_FORMAT);
 }
 
 /* Straight along the terrain's diagonal, above the ground as drawn. */
 static void place(const handheld *device, uint32_t frame, c3d_camera *camera)
 {
     const ff_terrain_info *info = ff_client_terrain(device->client);
-    int64_t flown_wu = (int64_t)frame * FRAME_US * device->options->speed_kmh / 3600 * FF_WU_PER_METRE / 1000;
+    int64_t flown_wu = (int64_t)frame * FRAME_US * device->options->speed_kmh / 3600 *
+                       FF_WU_PER_METRE / 1000;
     int64_t size_wu[2] = { 0, 0 }, diagonal_wu = 1;
     int32_t ground_wu = 0;
-    *camera = (c3d_camera){ .yaw = 8192, .pitch = PITCH_BRAD16, .width = device->width, .height = device->height,
+    *camera = (c3d_camera){ .yaw = 8192,
+                            .pitch = PITCH_BRAD16,
+                            .width = device->width,
+                            .height = device->height,
                             .focal_q8 = c3d_focal_q8(FOV_BRAD16, device->width) };
-    if (!info)
-        return;
+    if (!info) return;
     size_wu[0] = (int64_t)(info->samples_x - 1) * info->spacing_wu;
     size_wu[1] = (int64_t)(info->samples_y - 1) * info->spacing_wu;
     diagonal_wu = c3d_length64(size_wu[0], size_wu[1], 0);
     for (int axis = 0; axis < 2; axis++)
-        camera->pos_wu[axis] = (int32_t)(size_wu[axis] * HERE + flown_wu * size_wu[axis] / diagonal_wu);
+        camera->pos_wu[axis] = (int32_t)(size_wu[axis] * HERE +
+                                         flown_wu * size_wu[axis] / diagonal_wu);
     if (!ff_client_ground(device->client, camera->pos_wu[0], camera->pos_wu[1], &ground_wu))
         ground_wu = ff_height_wu(info, info->height_max);
     camera->pos_wu[2] = ground_wu + device->options->height_m * FF_WU_PER_METRE;
@@ -203,8 +207,7 @@ static int step_frame(handheld *device, uint32_t frame, int64_t now_us, int flyi
 {
     c3d_camera camera;
     int moved = 1, steps = 0, any = 0;
-    while (moved && steps++ < WORK_STEPS_MAX)
-        any |= moved = work(device, now_us);
+    while (moved && steps++ < WORK_STEPS_MAX) any |= moved = work(device, now_us);
     place(device, frame, &camera);
     return any | one_frame(device, now_us, &camera, flying);
 }
@@ -227,8 +230,7 @@ static int fly_server(handheld *device)
     for (uint32_t frame = 1; frame <= device->options->frames; frame++) {
         int64_t due_us = start_us + (int64_t)frame * FRAME_US;
         for (int64_t now_us; (now_us = sys_time_us()) < due_us;)
-            if (!work(device, now_us))
-                sys_sleep_us(WAIT_US);
+            if (!work(device, now_us)) sys_sleep_us(WAIT_US);
         (void)step_frame(device, frame, due_us, 1);
     }
     return ff_client_terrain(device->client) ? 0 : fail(device->options->server, FF_ERR_CLOSED);
@@ -236,7 +238,6 @@ static int fly_server(handheld *device)
 
 int handheld_fly(handheld *device)
 {
-    if (device->options->tape_path)
-        return fly_tape(device);
+    if (device->options->tape_path) return fly_tape(device);
     return device->options->server ? fly_server(device) : fly_pack(device);
 }

@@ -6,13 +6,10 @@ int main(int argc, char **argv)
     static handheld_options options;
     static handheld device;
     int rc = handheld_options_parse(&options, argc, argv);
-    if (rc)
-        return rc < 0 ? 2 : 0;
+    if (rc) return rc < 0 ? 2 : 0;
     rc = handheld_open(&device, &options);
-    if (!rc)
-        rc = handheld_fly(&device);
-    if (!rc)
-        rc = handheld_report(&device);
+    if (!rc) rc = handheld_fly(&device);
+    if (!rc) rc = handheld_report(&device);
     handheld_close(&device);
     return rc ? 1 : 0;
 }

@@ -31,20 +31,47 @@ static const char help[] =
     "  --help, --version\n";
 
 enum option_id {
-    OPT_PACK = 256, OPT_SERVER, OPT_TAPE, OPT_FRAMES, OPT_SIZE, OPT_QUALITY, OPT_PANORAMA, OPT_SPEED, OPT_HEIGHT, OPT_MEMORY,
-    OPT_NO_TEXTURES, OPT_NO_PICTURES, OPT_BALANCE, OPT_HUD, OPT_HASH, OPT_FB, OPT_JSON, OPT_HELP, OPT_VERSION
+    OPT_PACK = 256,
+    OPT_SERVER,
+    OPT_TAPE,
+    OPT_FRAMES,
+    OPT_SIZE,
+    OPT_QUALITY,
+    OPT_PANORAMA,
+    OPT_SPEED,
+    OPT_HEIGHT,
+    OPT_MEMORY,
+    OPT_NO_TEXTURES,
+    OPT_NO_PICTURES,
+    OPT_BALANCE,
+    OPT_HUD,
+    OPT_HASH,
+    OPT_FB,
+    OPT_JSON,
+    OPT_HELP,
+    OPT_VERSION
 };
 
-static const struct option long_options[] = {
-    { "pack", 1, NULL, OPT_PACK },       { "server", 1, NULL, OPT_SERVER },     { "tape", 1, NULL, OPT_TAPE },
-    { "frames", 1, NULL, OPT_FRAMES },   { "size", 1, NULL, OPT_SIZE },         { "quality", 1, NULL, OPT_QUALITY },
-    { "panorama", 1, NULL, OPT_PANORAMA }, { "speed", 1, NULL, OPT_SPEED },     { "height", 1, NULL, OPT_HEIGHT },
-    { "memory", 1, NULL, OPT_MEMORY },   { "no-textures", 0, NULL, OPT_NO_TEXTURES },
-    { "balance", 1, NULL, OPT_BALANCE },
-    { "no-pictures", 0, NULL, OPT_NO_PICTURES }, { "hud", 0, NULL, OPT_HUD },   { "hash", 0, NULL, OPT_HASH },
-    { "fb", 1, NULL, OPT_FB },           { "json", 0, NULL, OPT_JSON },         { "help", 0, NULL, OPT_HELP },
-    { "version", 0, NULL, OPT_VERSION }, { NULL, 0, NULL, 0 }
-};
+static const struct option long_options[] = { { "pack", 1, NULL, OPT_PACK },
+                                              { "server", 1, NULL, OPT_SERVER },
+                                              { "tape", 1, NULL, OPT_TAPE },
+                                              { "frames", 1, NULL, OPT_FRAMES },
+                                              { "size", 1, NULL, OPT_SIZE },
+                                              { "quality", 1, NULL, OPT_QUALITY },
+                                              { "panorama", 1, NULL, OPT_PANORAMA },
+                                              { "speed", 1, NULL, OPT_SPEED },
+                                              { "height", 1, NULL, OPT_HEIGHT },
+                                              { "memory", 1, NULL, OPT_MEMORY },
+                                              { "no-textures", 0, NULL, OPT_NO_TEXTURES },
+                                              { "balance", 1, NULL, OPT_BALANCE },
+                                              { "no-pictures", 0, NULL, OPT_NO_PICTURES },
+                                              { "hud", 0, NULL, OPT_HUD },
+                                              { "hash", 0, NULL, OPT_HASH },
+                                              { "fb", 1, NULL, OPT_FB },
+                                              { "json", 0, NULL, OPT_JSON },
+                                              { "help", 0, NULL, OPT_HELP },
+                                              { "version", 0, NULL, OPT_VERSION },
+                                              { NULL, 0, NULL, 0 } };
 
 static int fail(const char *format, ...)
 {
@@ -57,12 +84,12 @@ static int fail(const char *format, ...)
     return -1;
 }
 
-/* The number at *text, and what comes after it in *text; -1 when there is none or it is out of range. */
+/* The number at *text, and what comes after it in *text; -1 when there is none or it is out of
+ * range. */
 static long number_at(const char **text, long low, long high)
 {
     char *end;
-    if (**text < '0' || **text > '9')
-        return -1;
+    if (**text < '0' || **text > '9') return -1;
     long number = strtol(*text, &end, 10);
     *text = end;
     return number >= low && number <= high ? number : -1;
@@ -72,7 +99,9 @@ static int parse_number(const char *name, const char *text, long low, long high,
 {
     const char *rest = text;
     *number = number_at(&rest, low, high);
-    return *number >= 0 && !*rest ? 0 : fail("--%s: %s is not a whole number from %ld to %ld", name, text, low, high);
+    return *number >= 0 && !*rest
+               ? 0
+               : fail("--%s: %s is not a whole number from %ld to %ld", name, text, low, high);
 }
 
 static int parse_quality(ff_quality *quality, const char *text)
@@ -110,7 +139,9 @@ static int parse_size(handheld_options *options, const char *text)
 static int parse_memory(handheld_options *options, const char *text)
 {
     const char *at = text;
-    long number = number_at(&at, 1, 1L << 30), unit = *at == 'M' ? 1 << 20 : *at == 'K' ? 1 << 10 : 1;
+    long number = number_at(&at, 1, 1L << 30), unit = *at == 'M'   ? 1 << 20
+                                                      : *at == 'K' ? 1 << 10
+                                                                   : 1;
     at += unit != 1;
     if (number < 0 || *at || number > (1L << 30) / unit)
         return fail("--memory: %s is not a number of bytes up to 1024M", text);
@@ -131,55 +162,60 @@ static int parse_one(handheld_options *options, int id, const char *text)
     long number = 0;
     int rc = 0;
     switch (id) {
-    case OPT_PACK: options->pack_path = text; break;
-    case OPT_SERVER: options->server = text; break;
-    case OPT_TAPE: options->tape_path = text; break;
-    case OPT_FB: options->fb_path = text; break;
-    case OPT_JSON: options->json = 1; break;
-    case OPT_HUD: options->hud = 1; break;
-    case OPT_HASH: options->hash = 1; break;
-    case OPT_NO_PICTURES: options->no_pictures = 1; break;
-    case OPT_NO_TEXTURES: options->no_textures = 1; break;
-    case OPT_SIZE: rc = parse_size(options, text); break;
-    case OPT_QUALITY: rc = parse_quality(&options->quality, text); break;
-    case OPT_PANORAMA: rc = parse_panorama(options, text); break;
-    case OPT_MEMORY: rc = parse_memory(options, text); break;
-    case OPT_BALANCE:
-        rc = parse_number("balance", text, 0, 1000000, &number);
-        options->balance = (ff_balance_desc){ .mode = FF_BALANCE_ON, .frame_budget = (uint32_t)number };
-        break;
-    case OPT_FRAMES:
-        rc = parse_number("frames", text, 1, 1000000, &number);
-        options->frames = (uint32_t)number;
-        break;
-    case OPT_SPEED:
-        rc = parse_number("speed", text, 0, 10000, &number);
-        options->speed_kmh = (int32_t)number;
-        break;
-    default:
-        rc = parse_number("height", text, 1, 100000, &number);
-        options->height_m = (int32_t)number;
+        case OPT_PACK: options->pack_path = text; break;
+        case OPT_SERVER: options->server = text; break;
+        case OPT_TAPE: options->tape_path = text; break;
+        case OPT_FB: options->fb_path = text; break;
+        case OPT_JSON: options->json = 1; break;
+        case OPT_HUD: options->hud = 1; break;
+        case OPT_HASH: options->hash = 1; break;
+        case OPT_NO_PICTURES: options->no_pictures = 1; break;
+        case OPT_NO_TEXTURES: options->no_textures = 1; break;
+        case OPT_SIZE: rc = parse_size(options, text); break;
+        case OPT_QUALITY: rc = parse_quality(&options->quality, text); break;
+        case OPT_PANORAMA: rc = parse_panorama(options, text); break;
+        case OPT_MEMORY: rc = parse_memory(options, text); break;
+        case OPT_BALANCE:
+            rc = parse_number("balance", text, 0, 1000000, &number);
+            options->balance = (ff_balance_desc){ .mode = FF_BALANCE_ON,
+                                                  .frame_budget = (uint32_t)number };
+            break;
+        case OPT_FRAMES:
+            rc = parse_number("frames", text, 1, 1000000, &number);
+            options->frames = (uint32_t)number;
+            break;
+        case OPT_SPEED:
+            rc = parse_number("speed", text, 0, 10000, &number);
+            options->speed_kmh = (int32_t)number;
+            break;
+        default:
+            rc = parse_number("height", text, 1, 100000, &number);
+            options->height_m = (int32_t)number;
     }
     return rc;
 }
 
 int handheld_options_parse(handheld_options *options, int argc, char **argv)
 {
-    *options = (handheld_options){ .frames = 300, .width = 240, .height = 320, .speed_kmh = 150, .height_m = 100,
-                                   .panorama = { .enabled = 1 },
-                                   .quality = { .sigma_q8 = 320, .view_wu = 30000 * FF_WU_PER_METRE } };
+    *options =
+        (handheld_options){ .frames = 300,
+                            .width = 240,
+                            .height = 320,
+                            .speed_kmh = 150,
+                            .height_m = 100,
+                            .panorama = { .enabled = 1 },
+                            .quality = { .sigma_q8 = 320, .view_wu = 30000 * FF_WU_PER_METRE } };
     (void)parse_quality(&options->quality, "low");
     for (int id; (id = getopt_long(argc, argv, "", long_options, NULL)) != -1;) {
         if (id == OPT_HELP || id == OPT_VERSION) {
             fputs(id == OPT_HELP ? help : "farfield-handheld " FARFIELD_VERSION "\n", stdout);
             return 1;
         }
-        if (id == '?' || parse_one(options, id, optarg))
-            return -1;
+        if (id == '?' || parse_one(options, id, optarg)) return -1;
     }
-    if (optind < argc)
-        return fail("unexpected argument %s", argv[optind]);
-    if ((options->pack_path != NULL) + (options->server != NULL) + (options->tape_path != NULL) != 1)
+    if (optind < argc) return fail("unexpected argument %s", argv[optind]);
+    if ((options->pack_path != NULL) + (options->server != NULL) + (options->tape_path != NULL) !=
+        1)
         return fail("one of --pack, --server and --tape is wanted (see --help)");
     if (options->tape_path && options->balance.mode != FF_BALANCE_OFF)
         return fail("--balance: not with --tape");

@@ -4,12 +4,13 @@
 
 #include <math.h>
 
-#define PI 3.14159265358979323846
+#define PI        3.14159265358979323846
 #define NEAREST_M 0.01 /* points nearer to the eye plane have no pixel */
 
 void sim_eye_of(const c3d_camera *camera, sim_eye *e)
 {
-    double yaw = camera->yaw * (PI / 32768), pitch = camera->pitch * (PI / 32768), roll = camera->roll * (PI / 32768);
+    double yaw = camera->yaw * (PI / 32768), pitch = camera->pitch * (PI / 32768),
+           roll = camera->roll * (PI / 32768);
     double level_right[3] = { cos(yaw), -sin(yaw), 0 };
     double level_up[3] = { -sin(yaw) * sin(pitch), -cos(yaw) * sin(pitch), cos(pitch) };
     e->forward[0] = sin(yaw) * cos(pitch);
@@ -28,8 +29,8 @@ void sim_eye_of(const c3d_camera *camera, sim_eye *e)
 void sim_eye_ray(const sim_eye *e, const double pixel[2], double along[3])
 {
     for (int i = 0; i < 3; i++)
-        along[i] = e->forward[i] + e->right[i] * (pixel[0] - e->centre_px[0]) / e->focal_px
-                 + e->up[i] * (e->centre_px[1] - pixel[1]) / e->focal_px;
+        along[i] = e->forward[i] + e->right[i] * (pixel[0] - e->centre_px[0]) / e->focal_px +
+                   e->up[i] * (e->centre_px[1] - pixel[1]) / e->focal_px;
 }
 
 static double dot(const double a[3], const double b[3])
@@ -40,8 +41,7 @@ static double dot(const double a[3], const double b[3])
 int sim_eye_project(const sim_eye *e, const double direction[3], double pixel[2])
 {
     double depth = dot(direction, e->forward);
-    if (depth < NEAREST_M)
-        return 0;
+    if (depth < NEAREST_M) return 0;
     pixel[0] = e->centre_px[0] + dot(direction, e->right) * e->focal_px / depth;
     pixel[1] = e->centre_px[1] - dot(direction, e->up) * e->focal_px / depth;
     return 1;

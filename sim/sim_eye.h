@@ -1,10 +1,13 @@
-/* A camera in double precision, for all that judges pictures from outside: rays through pixels, points to pixels, as c3d.h projects. */
+/* A camera in double precision, for all that judges pictures from outside: rays through pixels,
+ * points to pixels, as c3d.h projects. */
 #ifndef SIM_EYE_H
 #define SIM_EYE_H
 
 #include "../common3d/c3d.h"
 
-typedef struct sim_eye { double pos_m[3], right[3], up[3], forward[3], focal_px, centre_px[2]; } sim_eye;
+typedef struct sim_eye {
+    double pos_m[3], right[3], up[3], forward[3], focal_px, centre_px[2];
+} sim_eye;
 
 void sim_eye_of(const c3d_camera *camera, sim_eye *eye);
 /* Direction through a pixel; its depth along the view is 1. */

@@ -1,5 +1,6 @@
-/* A ground's heights on disk, so that decoding a large pack is done once for many flights: a head, then the rows as they lie in memory.
- * The file is of this machine only. What does not fit the pack is not an error: it is decoded and written again. */
+/* A ground's heights on disk, so that decoding a large pack is done once for many flights: a head,
+ * then the rows as they lie in memory. The file is of this machine only. What does not fit the pack
+ * is not an error: it is decoded and written again. */
 #include "sim_ground_local.h"
 
 #include <string.h>
@@ -22,7 +23,8 @@ int sim_ground_cache_open(sim_ground *ground, uint32_t checksum, const char *pat
         return 0;
     }
     make_head(ground, checksum, &head);
-    uint64_t bytes = sizeof head + (uint64_t)ground->columns * ground->rows * sizeof *ground->height;
+    uint64_t bytes = sizeof head +
+                     (uint64_t)ground->columns * ground->rows * sizeof *ground->height;
     if (ground->mapping.size == bytes && !memcmp(ground->mapping.bytes, &head, sizeof head)) {
         ground->height = (const uint16_t *)((const uint8_t *)ground->mapping.bytes + sizeof head);
         return 1;
@@ -36,5 +38,7 @@ int sim_ground_cache_write(const sim_ground *ground, uint32_t checksum, const ch
 {
     sim_ground_head *head = ground->block;
     make_head(ground, checksum, head);
-    return sys_write_file(path, ground->block, sizeof *head + (size_t)ground->columns * ground->rows * sizeof *ground->height);
+    return sys_write_file(path, ground->block,
+                          sizeof *head +
+                              (size_t)ground->columns * ground->rows * sizeof *ground->height);
 }

@@ -9,13 +9,13 @@ enum random_stream { STREAM_STALLS = 1, STREAM_JITTER = 2 /* + direction */ };
 
 /* ---- stalls ---- */
 
-/* -ln((r + 1) / 2^32) in Q16, by squaring: integers, so that every machine draws the same stalls. */
+/* -ln((r + 1) / 2^32) in Q16, by squaring: integers, so that every machine draws the same
+ * stalls. */
 static uint32_t negative_ln_q16(uint32_t r)
 {
     uint64_t x = (uint64_t)r + 1, log2_q24 = 0;
     int whole = 31;
-    if (x > UINT32_MAX)
-        return 0;
+    if (x > UINT32_MAX) return 0;
     while (x < (1u << 31)) {
         x <<= 1;
         whole--;
@@ -33,35 +33,39 @@ static uint32_t negative_ln_q16(uint32_t r)
 
 static void next_stall(sim_stalls *stalls)
 {
-    uint64_t gap_us = ((uint64_t)stalls->every_ms * 1000u * negative_ln_q16(sys_random_u32(&stalls->random))) >> 16;
+    uint64_t gap_us = ((uint64_t)stalls->every_ms * 1000u *
+                       negative_ln_q16(sys_random_u32(&stalls->random))) >>
+                      16;
     uint32_t spread_ms = stalls->ms_max - stalls->ms_min;
-    uint32_t length_ms = stalls->ms_min + (spread_ms ? sys_random_below(&stalls->random, spread_ms) : 0);
+    uint32_t length_ms = stalls->ms_min +
+                         (spread_ms ? sys_random_below(&stalls->random, spread_ms) : 0);
     stalls->start_us = stalls->end_us + (int64_t)gap_us;
     stalls->end_us = stalls->start_us + (int64_t)length_ms * 1000;
 }
 
 /* None begins before `from_us`. */
-static void stalls_init(sim_stalls *stalls, const sim_link_desc *desc, uint64_t seed, int64_t from_us)
+static void stalls_init(sim_stalls *stalls, const sim_link_desc *desc, uint64_t seed,
+                        int64_t from_us)
 {
-    *stalls = (sim_stalls){ .end_us = from_us, .every_ms = desc->stall_every_ms, .ms_min = desc->stall_ms_min, .ms_max = desc->stall_ms_max,
+    *stalls = (sim_stalls){ .end_us = from_us,
+                            .every_ms = desc->stall_every_ms,
+                            .ms_min = desc->stall_ms_min,
+                            .ms_max = desc->stall_ms_max,
                             .bytes_s = desc->stall_bytes_s };
-    if (stalls->ms_max < stalls->ms_min)
-        stalls->ms_max = stalls->ms_min;
-    if (!stalls->ms_max)
-        stalls->every_ms = 0;
+    if (stalls->ms_max < stalls->ms_min) stalls->ms_max = stalls->ms_min;
+    if (!stalls->ms_max) stalls->every_ms = 0;
     sys_random_seed(&stalls->random, seed, STREAM_STALLS);
-    if (stalls->every_ms)
-        next_stall(stalls);
+    if (stalls->every_ms) next_stall(stalls);
 }
 
-/* The rate at time_us (never earlier than last asked) given the rate without stalls, and until when it holds. */
-static uint32_t stalls_rate(sim_stalls *stalls, uint32_t bytes_s, int64_t time_us, int64_t *until_us)
+/* The rate at time_us (never earlier than last asked) given the rate without stalls, and until when
+ * it holds. */
+static uint32_t stalls_rate(sim_stalls *stalls, uint32_t bytes_s, int64_t time_us,
+                            int64_t *until_us)
 {
     *until_us = INT64_MAX;
-    if (!stalls->every_ms)
-        return bytes_s;
-    while (time_us >= stalls->end_us)
-        next_stall(stalls);
+    if (!stalls->every_ms) return bytes_s;
+    while (time_us >= stalls->end_us) next_stall(stalls);
     int stalled = time_us >= stalls->start_us;
     *until_us = stalled ? stalls->end_us : stalls->start_us;
     return stalled ? stalls->bytes_s : bytes_s;
@@ -101,14 +105,12 @@ int sim_pipe_init(sim_pipe *pipe, const sim_link_desc *desc, enum sim_direction 
 {
     memset(pipe, 0, sizeof *pipe);
     pipe->desc = desc->way[way];
-    if (!pipe->desc.queue_bytes)
-        pipe->desc.queue_bytes = 1;
+    if (!pipe->desc.queue_bytes) pipe->desc.queue_bytes = 1;
     stalls_init(&pipe->stalls, desc, seed, 0);
     sys_random_seed(&pipe->jitter, seed, STREAM_JITTER + (uint64_t)way);
     if (pipe->desc.trace) {
         int rc = sim_trace_read(&pipe->trace, pipe->desc.trace);
-        if (rc != FF_OK)
-            return rc;
+        if (rc != FF_OK) return rc;
     }
     pipe->ring_bytes = (size_t)pipe->desc.queue_bytes + SIM_LINK_WINDOW_BYTES;
     pipe->ring = malloc(pipe->ring_bytes);
@@ -140,22 +142,20 @@ static int64_t start_us(const sim_pipe *pipe, uint64_t *opportunity)
     int64_t sent_us = pipe->queue.item[pipe->queue.first].us;
     int64_t start = sent_us > pipe->free_us ? sent_us : pipe->free_us;
     *opportunity = 0;
-    if (!pipe->trace.count)
-        return start;
+    if (!pipe->trace.count) return start;
     *opportunity = sim_trace_find(&pipe->trace, start);
-    if (*opportunity < pipe->opportunity)
-        *opportunity = pipe->opportunity;
+    if (*opportunity < pipe->opportunity) *opportunity = pipe->opportunity;
     return sim_trace_time_us(&pipe->trace, *opportunity);
 }
 
-/* Takes up to `most` queued bytes that were sent by time_us off the queue; they are now on the wire. */
+/* Takes up to `most` queued bytes that were sent by time_us off the queue; they are now on the
+ * wire. */
 static uint32_t take_packet(sim_pipe *pipe, uint32_t most, int64_t time_us)
 {
     uint32_t packet = 0;
     while (packet < most && pipe->queue.count && span_at(&pipe->queue, 0)->us <= time_us) {
         uint32_t part = span_at(&pipe->queue, 0)->count;
-        if (part > most - packet)
-            part = most - packet;
+        if (part > most - packet) part = most - packet;
         span_take(&pipe->queue, part);
         packet += part;
     }
@@ -163,15 +163,14 @@ static uint32_t take_packet(sim_pipe *pipe, uint32_t most, int64_t time_us)
     return packet;
 }
 
-/* When `count` bytes are out that the transmitter starts at time_us. Whole microseconds; what is paid for and not used is carried
- * over to the next packet, so that a long row of packets takes exactly its bytes divided by the rate. */
+/* When `count` bytes are out that the transmitter starts at time_us. Whole microseconds; what is
+ * paid for and not used is carried over to the next packet, so that a long row of packets takes
+ * exactly its bytes divided by the rate. */
 static int64_t transmit(sim_pipe *pipe, uint32_t count, int64_t time_us)
 {
     uint64_t need = (uint64_t)count * 1000000u;
-    if (!pipe->desc.bytes_s)
-        return time_us;
-    if (time_us > pipe->free_us)
-        pipe->surplus = 0;
+    if (!pipe->desc.bytes_s) return time_us;
+    if (time_us > pipe->free_us) pipe->surplus = 0;
     if (pipe->surplus >= need) {
         pipe->surplus -= need;
         return time_us;
@@ -190,26 +189,23 @@ static int64_t transmit(sim_pipe *pipe, uint32_t count, int64_t time_us)
     }
 }
 
-/* Moves all packets whose transmission starts before now_us to the wire. Strictly before: bytes sent at the same moment by several
- * calls go together. */
+/* Moves all packets whose transmission starts before now_us to the wire. Strictly before: bytes
+ * sent at the same moment by several calls go together. */
 static void advance(sim_pipe *pipe, int64_t now_us)
 {
     uint64_t opportunity;
     while (pipe->queue.count && pipe->wire.count < SIM_PIPE_SPANS) {
         int64_t time_us = start_us(pipe, &opportunity);
-        if (time_us >= now_us)
-            return;
+        if (time_us >= now_us) return;
         uint32_t most = pipe->trace.count ? SIM_TRACE_OPPORTUNITY_BYTES : SIM_PIPE_PACKET_BYTES;
-        if (!pipe->trace.count && !pipe->desc.bytes_s)
-            most = UINT32_MAX;
+        if (!pipe->trace.count && !pipe->desc.bytes_s) most = UINT32_MAX;
         uint32_t packet = take_packet(pipe, most, time_us);
         pipe->opportunity = opportunity + 1;
         pipe->free_us = pipe->trace.count ? time_us : transmit(pipe, packet, time_us);
         int64_t arrival_us = pipe->free_us + pipe->desc.delay_us;
         if (pipe->desc.jitter_us)
             arrival_us += sys_random_below(&pipe->jitter, pipe->desc.jitter_us);
-        if (arrival_us > pipe->arrival_us)
-            pipe->arrival_us = arrival_us;
+        if (arrival_us > pipe->arrival_us) pipe->arrival_us = arrival_us;
         span_push(&pipe->wire, pipe->arrival_us, packet);
     }
 }
@@ -217,22 +213,20 @@ static void advance(sim_pipe *pipe, int64_t now_us)
 size_t sim_pipe_room(sim_pipe *pipe, int64_t now_us)
 {
     advance(pipe, now_us);
-    size_t room = pipe->desc.queue_bytes > pipe->queued ? pipe->desc.queue_bytes - pipe->queued : 0; /* more after a change */
-    if (room > pipe->ring_bytes - pipe->stored)
-        room = pipe->ring_bytes - pipe->stored;
+    /* more after a change */
+    size_t room = pipe->desc.queue_bytes > pipe->queued ? pipe->desc.queue_bytes - pipe->queued : 0;
+    if (room > pipe->ring_bytes - pipe->stored) room = pipe->ring_bytes - pipe->stored;
     return pipe->queue.count == SIM_PIPE_SPANS ? 0 : room;
 }
 
 int sim_pipe_widen(sim_pipe *pipe, uint32_t queue_bytes)
 {
-    size_t ring_bytes = (size_t)queue_bytes + SIM_LINK_WINDOW_BYTES, straight = pipe->ring_bytes - pipe->ring_first;
-    if (ring_bytes <= pipe->ring_bytes)
-        return FF_OK;
+    size_t ring_bytes = (size_t)queue_bytes + SIM_LINK_WINDOW_BYTES,
+           straight = pipe->ring_bytes - pipe->ring_first;
+    if (ring_bytes <= pipe->ring_bytes) return FF_OK;
     uint8_t *ring = malloc(ring_bytes);
-    if (!ring)
-        return FF_ERR_MEMORY;
-    if (straight > pipe->stored)
-        straight = pipe->stored;
+    if (!ring) return FF_ERR_MEMORY;
+    if (straight > pipe->stored) straight = pipe->stored;
     memcpy(ring, pipe->ring + pipe->ring_first, straight);
     memcpy(ring + straight, pipe->ring, pipe->stored - straight);
     free(pipe->ring);
@@ -242,7 +236,8 @@ int sim_pipe_widen(sim_pipe *pipe, uint32_t queue_bytes)
     return FF_OK;
 }
 
-void sim_pipe_change(sim_pipe *pipe, const sim_link_desc *desc, enum sim_direction way, uint64_t seed, int64_t now_us)
+void sim_pipe_change(sim_pipe *pipe, const sim_link_desc *desc, enum sim_direction way,
+                     uint64_t seed, int64_t now_us)
 {
     advance(pipe, now_us);
     assert((size_t)desc->way[way].queue_bytes + SIM_LINK_WINDOW_BYTES <= pipe->ring_bytes);
@@ -250,30 +245,28 @@ void sim_pipe_change(sim_pipe *pipe, const sim_link_desc *desc, enum sim_directi
     pipe->trace = (sim_trace){ 0 };
     pipe->desc = desc->way[way];
     pipe->desc.trace = NULL;
-    if (!pipe->desc.queue_bytes)
-        pipe->desc.queue_bytes = 1;
+    if (!pipe->desc.queue_bytes) pipe->desc.queue_bytes = 1;
     stalls_init(&pipe->stalls, desc, seed, now_us);
     pipe->surplus = 0;
-    if (pipe->free_us <= now_us)
-        return;
-    /* The last packet on the wire is still being sent, perhaps for the rest of a long stall of before. */
+    if (pipe->free_us <= now_us) return;
+    /* The last packet on the wire is still being sent, perhaps for the rest of a long stall of
+     * before. */
     sim_span *last = span_at(&pipe->wire, pipe->wire.count - 1);
-    int64_t before_us = pipe->wire.count > 1 ? span_at(&pipe->wire, pipe->wire.count - 2)->us : now_us;
+    int64_t before_us = pipe->wire.count > 1 ? span_at(&pipe->wire, pipe->wire.count - 2)->us
+                                             : now_us;
     pipe->free_us = now_us;
     pipe->free_us = transmit(pipe, last->count, now_us);
-    last->us = pipe->free_us + pipe->desc.delay_us > before_us ? pipe->free_us + pipe->desc.delay_us : before_us;
+    last->us = pipe->free_us + pipe->desc.delay_us > before_us ? pipe->free_us + pipe->desc.delay_us
+                                                               : before_us;
     pipe->arrival_us = last->us;
 }
 
 int sim_pipe_send(sim_pipe *pipe, const uint8_t *bytes, size_t count, int64_t now_us)
 {
     size_t room = sim_pipe_room(pipe, now_us);
-    if (count > room)
-        count = room;
-    if (count > INT_MAX)
-        count = INT_MAX;
-    if (!count)
-        return 0;
+    if (count > room) count = room;
+    if (count > INT_MAX) count = INT_MAX;
+    if (!count) return 0;
     size_t last = (pipe->ring_first + pipe->stored) % pipe->ring_bytes;
     size_t straight = pipe->ring_bytes - last < count ? pipe->ring_bytes - last : count;
     memcpy(pipe->ring + last, bytes, straight);
@@ -287,13 +280,11 @@ int sim_pipe_send(sim_pipe *pipe, const uint8_t *bytes, size_t count, int64_t no
 int sim_pipe_recv(sim_pipe *pipe, uint8_t *bytes, size_t capacity, int64_t now_us)
 {
     size_t taken = 0;
-    if (capacity > INT_MAX)
-        capacity = INT_MAX;
+    if (capacity > INT_MAX) capacity = INT_MAX;
     advance(pipe, now_us);
     while (taken < capacity && pipe->wire.count && span_at(&pipe->wire, 0)->us <= now_us) {
         uint32_t part = span_at(&pipe->wire, 0)->count;
-        if (part > capacity - taken)
-            part = (uint32_t)(capacity - taken);
+        if (part > capacity - taken) part = (uint32_t)(capacity - taken);
         if (part > pipe->ring_bytes - pipe->ring_first)
             part = (uint32_t)(pipe->ring_bytes - pipe->ring_first);
         memcpy(bytes + taken, pipe->ring + pipe->ring_first, part);
@@ -309,8 +300,7 @@ int64_t sim_pipe_next_us(const sim_pipe *pipe)
 {
     uint64_t opportunity;
     int64_t next = INT64_MAX;
-    if (pipe->wire.count)
-        next = pipe->wire.item[pipe->wire.first].us;
+    if (pipe->wire.count) next = pipe->wire.item[pipe->wire.first].us;
     if (pipe->queue.count && start_us(pipe, &opportunity) + 1 < next)
         next = start_us(pipe, &opportunity) + 1;
     return next;

@@ -1,9 +1,11 @@
-/* One direction of a link: a byte queue, a transmitter of exact rate, a wire with delay, and what has arrived.
+/* One direction of a link: a byte queue, a transmitter of exact rate, a wire with delay, and what
+ * has arrived.
  *
  *      send ──▶ [ queue ] ──transmitter──▶ [ wire: delay, jitter ] ──▶ [ arrived ] ──▶ recv
  *
- * The transmitter takes what is queued in packets of up to SIM_PIPE_PACKET_BYTES. Which bytes share a packet depends only on when
- * they were sent, never on when the pipe is looked at. Times are microseconds since the link's start and never go back.
+ * The transmitter takes what is queued in packets of up to SIM_PIPE_PACKET_BYTES. Which bytes share
+ * a packet depends only on when they were sent, never on when the pipe is looked at. Times are
+ * microseconds since the link's start and never go back.
  */
 #ifndef SIM_PIPE_H
 #define SIM_PIPE_H
@@ -11,18 +13,26 @@
 #include "sim_link.h"
 #include "sim_trace.h"
 
-#define SIM_PIPE_PACKET_BYTES 512 /* a common packet size of 2.5G links; the jitter is drawn for each */
-#define SIM_PIPE_SPANS 4096       /* most sends waiting, and packets under way; more hold the sender back */
+#define SIM_PIPE_PACKET_BYTES \
+    512 /* a common packet size of 2.5G links; the jitter is drawn for each */
+#define SIM_PIPE_SPANS \
+    4096 /* most sends waiting, and packets under way; more hold the sender back */
 
 /* The stalls of a link in order of time; both directions make the same ones from the same seed. */
 typedef struct sim_stalls {
     sys_random random;
     uint32_t every_ms, ms_min, ms_max, bytes_s;
-    int64_t start_us, end_us;     /* of the present or next one */
+    int64_t start_us, end_us; /* of the present or next one */
 } sim_stalls;
 
-typedef struct sim_span { int64_t us; uint32_t count; } sim_span;
-typedef struct sim_spans { sim_span item[SIM_PIPE_SPANS]; uint32_t first, count; } sim_spans;
+typedef struct sim_span {
+    int64_t us;
+    uint32_t count;
+} sim_span;
+typedef struct sim_spans {
+    sim_span item[SIM_PIPE_SPANS];
+    uint32_t first, count;
+} sim_spans;
 
 typedef struct sim_pipe {
     sim_link_way desc;
@@ -30,13 +40,13 @@ typedef struct sim_pipe {
     sim_trace trace;
     sys_random jitter;
     uint8_t *ring;
-    size_t ring_bytes, ring_first, stored;  /* arrived, under way and queued bytes, in order */
-    size_t queued;                          /* the last ones of them */
-    sim_spans queue, wire;                  /* us: when sent; when it arrives */
-    int64_t free_us;                        /* the transmitter is busy until then */
-    uint64_t surplus;                       /* part of a byte already paid for, in millionths of a byte */
-    uint64_t opportunity;                   /* trace: first one not used up */
-    int64_t arrival_us;                     /* of the last packet: order is kept */
+    size_t ring_bytes, ring_first, stored; /* arrived, under way and queued bytes, in order */
+    size_t queued;                         /* the last ones of them */
+    sim_spans queue, wire;                 /* us: when sent; when it arrives */
+    int64_t free_us;                       /* the transmitter is busy until then */
+    uint64_t surplus;     /* part of a byte already paid for, in millionths of a byte */
+    uint64_t opportunity; /* trace: first one not used up */
+    int64_t arrival_us;   /* of the last packet: order is kept */
 } sim_pipe;
 
 /* FF_OK, FF_ERR_MEMORY, or an error of the trace. */
@@ -44,10 +54,13 @@ int sim_pipe_init(sim_pipe *pipe, const sim_link_desc *desc, enum sim_direction 
 void sim_pipe_free(sim_pipe *pipe);
 /* Loses all bytes stored. */
 void sim_pipe_flush(sim_pipe *pipe, int64_t now_us);
-/* Makes place for a queue of so many bytes, if there is less. FF_OK or FF_ERR_MEMORY (nothing happened). */
+/* Makes place for a queue of so many bytes, if there is less. FF_OK or FF_ERR_MEMORY (nothing
+ * happened). */
 int sim_pipe_widen(sim_pipe *pipe, uint32_t queue_bytes);
-/* Another rate, delay, jitter, queue (sim_pipe_widen first) and stalls from now on; the packet being sent starts again. */
-void sim_pipe_change(sim_pipe *pipe, const sim_link_desc *desc, enum sim_direction way, uint64_t seed, int64_t now_us);
+/* Another rate, delay, jitter, queue (sim_pipe_widen first) and stalls from now on; the packet
+ * being sent starts again. */
+void sim_pipe_change(sim_pipe *pipe, const sim_link_desc *desc, enum sim_direction way,
+                     uint64_t seed, int64_t now_us);
 size_t sim_pipe_room(sim_pipe *pipe, int64_t now_us);
 int sim_pipe_send(sim_pipe *pipe, const uint8_t *bytes, size_t count, int64_t now_us);
 int sim_pipe_recv(sim_pipe *pipe, uint8_t *bytes, size_t capacity, int64_t now_us);

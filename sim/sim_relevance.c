@@ -8,36 +8,43 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BUCKETS 4096u
-#define NONE SIZE_MAX
+#define BUCKETS     4096u
+#define NONE        SIZE_MAX
 #define RAY_STEP_PX 4
 
 /* What a request asked for, by its id. */
-typedef struct asked { enum ff_message_type type; ff_get get; int32_t position_wu[3]; } asked;
+typedef struct asked {
+    enum ff_message_type type;
+    ff_get get;
+    int32_t position_wu[3];
+} asked;
 
 typedef struct answer {
     enum sim_answer_kind kind;
-    ff_key key;               /* heights: the node made (roots) or refined; images */
+    ff_key key; /* heights: the node made (roots) or refined; images */
     int refinement;
-    int32_t position_wu[3];   /* faces */
+    int32_t position_wu[3];                       /* faces */
     unsigned face, face_size, top_row, row_count; /* row_count 0: empty */
     uint32_t bytes;
     int64_t came_us;
     int drawn, supports;
-    uint64_t frame;           /* last looked at in */
-    size_t next;              /* in its bucket */
+    uint64_t frame; /* last looked at in */
+    size_t next;    /* in its bucket */
 } answer;
 
 /* Bytes of one direction that do not make a whole message yet. */
-typedef struct half { uint8_t *bytes; size_t count, capacity; } half;
+typedef struct half {
+    uint8_t *bytes;
+    size_t count, capacity;
+} half;
 
 struct sim_relevance {
     sys_stream inner;
     ff_terrain_info info;
     const int64_t *now_us;
     half down, up;
-    asked *asked;             /* by id */
-    answer *answer;           /* in order of arrival */
+    asked *asked;   /* by id */
+    answer *answer; /* in order of arrival */
     size_t count, capacity, judged_count, first_young;
     size_t bucket[BUCKETS];
     uint64_t frame;
@@ -49,16 +56,18 @@ struct sim_relevance {
 
 static size_t bucket_of(enum sim_answer_kind kind, ff_key key, int refinement)
 {
-    return (size_t)((key * 4 + kind + (refinement ? 2u : 0u)) * UINT64_C(0x9E3779B97F4A7C15) >> 52) % BUCKETS;
+    return (size_t)((key * 4 + kind + (refinement ? 2u : 0u)) * UINT64_C(0x9E3779B97F4A7C15) >>
+                    52) %
+           BUCKETS;
 }
 
 /* The latest answer of this kind and key. */
 static answer *find(sim_relevance *relevance, enum sim_answer_kind kind, ff_key key, int refinement)
 {
-    for (size_t i = relevance->bucket[bucket_of(kind, key, refinement)]; i != NONE; i = relevance->answer[i].next) {
+    for (size_t i = relevance->bucket[bucket_of(kind, key, refinement)]; i != NONE;
+         i = relevance->answer[i].next) {
         answer *a = &relevance->answer[i];
-        if (a->kind == kind && a->key == key && a->refinement == refinement)
-            return a;
+        if (a->kind == kind && a->key == key && a->refinement == refinement) return a;
     }
     return NULL;
 }
@@ -91,25 +100,24 @@ static void take_down(sim_relevance *relevance, const ff_message *message, size_
     const ff_face *face = &message->u.face;
     const asked *q;
     switch (message->type) {
-    case FF_MSG_NODE:
-    case FF_MSG_TEXTURE:
-        q = &relevance->asked[message->u.data.id];
-        a.kind = message->type == FF_MSG_NODE ? SIM_ANSWER_HEIGHTS : SIM_ANSWER_IMAGE;
-        a.key = q->get.key;
-        a.refinement = q->type == FF_MSG_GET_NODE && q->get.what == FF_GET_REFINEMENT;
-        keep(relevance, a);
-        return;
-    case FF_MSG_FACE:
-        a.kind = SIM_ANSWER_FACE;
-        memcpy(a.position_wu, relevance->asked[face->id].position_wu, sizeof a.position_wu);
-        a.face = face->face;
-        a.face_size = face->face_size;
-        a.top_row = face->flags & FF_FACE_EMPTY ? 0 : face->top_row;
-        a.row_count = face->flags & FF_FACE_EMPTY ? 0 : face->row_count;
-        keep(relevance, a);
-        return;
-    default:
-        relevance->figures.overhead += (double)bytes;
+        case FF_MSG_NODE:
+        case FF_MSG_TEXTURE:
+            q = &relevance->asked[message->u.data.id];
+            a.kind = message->type == FF_MSG_NODE ? SIM_ANSWER_HEIGHTS : SIM_ANSWER_IMAGE;
+            a.key = q->get.key;
+            a.refinement = q->type == FF_MSG_GET_NODE && q->get.what == FF_GET_REFINEMENT;
+            keep(relevance, a);
+            return;
+        case FF_MSG_FACE:
+            a.kind = SIM_ANSWER_FACE;
+            memcpy(a.position_wu, relevance->asked[face->id].position_wu, sizeof a.position_wu);
+            a.face = face->face;
+            a.face_size = face->face_size;
+            a.top_row = face->flags & FF_FACE_EMPTY ? 0 : face->top_row;
+            a.row_count = face->flags & FF_FACE_EMPTY ? 0 : face->row_count;
+            keep(relevance, a);
+            return;
+        default: relevance->figures.overhead += (double)bytes;
     }
 }
 
@@ -144,7 +152,8 @@ static void take_bytes(sim_relevance *relevance, half *part, const uint8_t *byte
     }
     memcpy(part->bytes + part->count, bytes, count);
     part->count += count;
-    while (at < part->count && (used = ff_message_decode(part->bytes + at, part->count - at, &message)) > 0) {
+    while (at < part->count &&
+           (used = ff_message_decode(part->bytes + at, part->count - at, &message)) > 0) {
         if (part == &relevance->down)
             take_down(relevance, &message, (size_t)used);
         else
@@ -165,8 +174,7 @@ static int tap_send(void *state, const uint8_t *bytes, size_t count)
 {
     sim_relevance *relevance = state;
     int sent = relevance->inner.send(relevance->inner.state, bytes, count);
-    if (sent > 0)
-        take_bytes(relevance, &relevance->up, bytes, (size_t)sent);
+    if (sent > 0) take_bytes(relevance, &relevance->up, bytes, (size_t)sent);
     return sent;
 }
 
@@ -174,8 +182,7 @@ static int tap_recv(void *state, uint8_t *bytes, size_t capacity)
 {
     sim_relevance *relevance = state;
     int count = relevance->inner.recv(relevance->inner.state, bytes, capacity);
-    if (count > 0)
-        take_bytes(relevance, &relevance->down, bytes, (size_t)count);
+    if (count > 0) take_bytes(relevance, &relevance->down, bytes, (size_t)count);
     return count;
 }
 
@@ -193,18 +200,17 @@ static void tap_close(void *state)
     relevance->inner.close(relevance->inner.state);
 }
 
-sim_relevance *sim_relevance_create(sys_stream *stream, const ff_terrain_info *info, const int64_t *now_us)
+sim_relevance *sim_relevance_create(sys_stream *stream, const ff_terrain_info *info,
+                                    const int64_t *now_us)
 {
     sim_relevance *relevance = calloc(1, sizeof *relevance);
-    if (!relevance)
-        return NULL;
+    if (!relevance) return NULL;
     relevance->asked = calloc((size_t)UINT16_MAX + 1, sizeof *relevance->asked);
     if (!relevance->asked) {
         free(relevance);
         return NULL;
     }
-    for (size_t i = 0; i < BUCKETS; i++)
-        relevance->bucket[i] = NONE;
+    for (size_t i = 0; i < BUCKETS; i++) relevance->bucket[i] = NONE;
     relevance->info = *info;
     relevance->now_us = now_us;
     relevance->inner = *stream;
@@ -218,8 +224,7 @@ sim_relevance *sim_relevance_create(sys_stream *stream, const ff_terrain_info *i
 
 void sim_relevance_destroy(sim_relevance *relevance)
 {
-    if (!relevance)
-        return;
+    if (!relevance) return;
     free(relevance->down.bytes);
     free(relevance->up.bytes);
     free(relevance->asked);
@@ -239,10 +244,12 @@ static void mark(sim_relevance *relevance, answer *a)
 static void mark_support(sim_relevance *relevance, ff_key parent)
 {
     for (unsigned side = 0; side < FF_SIDE_COUNT && ff_key_level(parent) > 0; side++) {
-        ff_key beside = ff_key_neighbour(relevance->info.tiles_x, relevance->info.tiles_y, parent, (enum ff_side)side);
-        answer *a = beside == FF_KEY_NONE ? NULL : find(relevance, SIM_ANSWER_HEIGHTS, ff_key_parent(beside), 1);
-        if (a)
-            a->supports |= *relevance->now_us - a->came_us <= SIM_RELEVANCE_US;
+        ff_key beside = ff_key_neighbour(relevance->info.tiles_x, relevance->info.tiles_y, parent,
+                                         (enum ff_side)side);
+        answer *a = beside == FF_KEY_NONE
+                        ? NULL
+                        : find(relevance, SIM_ANSWER_HEIGHTS, ff_key_parent(beside), 1);
+        if (a) a->supports |= *relevance->now_us - a->came_us <= SIM_RELEVANCE_US;
     }
 }
 
@@ -255,12 +262,9 @@ static void mark_heights(sim_relevance *relevance, ff_key node)
             mark_support(relevance, node);
         }
         answer *a = find(relevance, SIM_ANSWER_HEIGHTS, node, refinement);
-        if (a && a->frame == relevance->frame)
-            return; /* and all above it */
-        if (a)
-            mark(relevance, a);
-        if (!refinement)
-            return;
+        if (a && a->frame == relevance->frame) return; /* and all above it */
+        if (a) mark(relevance, a);
+        if (!refinement) return;
     }
 }
 
@@ -268,15 +272,13 @@ static void mark_heights(sim_relevance *relevance, ff_key node)
 static void mark_image(sim_relevance *relevance, ff_key node)
 {
     answer *last = NULL;
-    for (ff_key key = ff_texture_key(&relevance->info, node); key != FF_KEY_NONE; key = ff_key_parent(key)) {
+    for (ff_key key = ff_texture_key(&relevance->info, node); key != FF_KEY_NONE;
+         key = ff_key_parent(key)) {
         answer *a = find(relevance, SIM_ANSWER_IMAGE, key, 0);
-        if (a && (!last || a > last))
-            last = a;
-        if (ff_key_level(key) == 0)
-            break;
+        if (a && (!last || a > last)) last = a;
+        if (ff_key_level(key) == 0) break;
     }
-    if (last)
-        mark(relevance, last);
+    if (last) mark(relevance, last);
 }
 
 /* Face of a direction and the row of its whole image, counted from its top. */
@@ -285,24 +287,27 @@ static unsigned face_of(const double d[3], unsigned size, double *row)
     static const unsigned positive[3] = { FF_FACE_EAST, FF_FACE_NORTH, FF_FACE_UP };
     static const unsigned negative[3] = { FF_FACE_WEST, FF_FACE_SOUTH, FF_FACE_DOWN };
     int axis = 0;
-    for (int i = 1; i < 3; i++)
-        axis = fabs(d[i]) > fabs(d[axis]) ? i : axis;
-    double up = axis < 2 ? d[2] : d[2] > 0 ? -d[1] : d[1]; /* the top edge of UP looks south, that of DOWN north */
+    for (int i = 1; i < 3; i++) axis = fabs(d[i]) > fabs(d[axis]) ? i : axis;
+    /* the top edge of UP looks south, that of DOWN north */
+    double up = axis < 2 ? d[2] : d[2] > 0 ? -d[1] : d[1];
     *row = (1 - up / fabs(d[axis])) / 2 * size;
     return d[axis] > 0 ? positive[axis] : negative[axis];
 }
 
 /* Marks the faces of the set in use that pixel (x, y) shows. */
-static void mark_faces_at(sim_relevance *relevance, const sim_relevance_view *view, const sim_eye *eye, double x, double y)
+static void mark_faces_at(sim_relevance *relevance, const sim_relevance_view *view,
+                          const sim_eye *eye, double x, double y)
 {
     const double pixel[2] = { x, y };
     double along[3], row;
     sim_eye_ray(eye, pixel, along);
     for (size_t i = relevance->first_young; i < relevance->count; i++) {
         answer *a = &relevance->answer[i];
-        if (a->kind != SIM_ANSWER_FACE || a->drawn || memcmp(a->position_wu, view->panorama_pos_wu, sizeof a->position_wu))
+        if (a->kind != SIM_ANSWER_FACE || a->drawn ||
+            memcmp(a->position_wu, view->panorama_pos_wu, sizeof a->position_wu))
             continue;
-        if (face_of(along, a->face_size, &row) == a->face && (!a->row_count || (row >= a->top_row && row < a->top_row + a->row_count)))
+        if (face_of(along, a->face_size, &row) == a->face &&
+            (!a->row_count || (row >= a->top_row && row < a->top_row + a->row_count)))
             mark(relevance, a);
     }
 }
@@ -313,8 +318,7 @@ static void mark_faces(sim_relevance *relevance, const sim_relevance_view *view)
     int any = 0;
     for (size_t i = relevance->first_young; i < relevance->count; i++)
         any |= relevance->answer[i].kind == SIM_ANSWER_FACE && !relevance->answer[i].drawn;
-    if (!any || !view->panorama)
-        return;
+    if (!any || !view->panorama) return;
     sim_eye_of(&view->camera, &eye);
     for (unsigned y = RAY_STEP_PX / 2; y < view->camera.height; y += RAY_STEP_PX)
         for (unsigned x = RAY_STEP_PX / 2; x < view->camera.width; x += RAY_STEP_PX)
@@ -324,8 +328,9 @@ static void mark_faces(sim_relevance *relevance, const sim_relevance_view *view)
 void sim_relevance_frame(sim_relevance *relevance, const sim_relevance_view *view)
 {
     relevance->frame++;
-    while (relevance->first_young < relevance->count &&
-           *relevance->now_us - relevance->answer[relevance->first_young].came_us > SIM_RELEVANCE_US)
+    while (relevance->first_young<relevance->count && * relevance->now_us -
+                                  relevance->answer[relevance->first_young].came_us>
+               SIM_RELEVANCE_US)
         relevance->first_young++;
     for (uint32_t i = 0; i < view->drawn_count; i++) {
         mark_heights(relevance, view->drawn[i].key);
@@ -339,8 +344,7 @@ int sim_relevance_get(sim_relevance *relevance, sim_relevance_figures *figures)
     sim_relevance_figures *sum = &relevance->figures;
     for (; relevance->judged_count < relevance->count; relevance->judged_count++) {
         const answer *a = &relevance->answer[relevance->judged_count];
-        if (*relevance->now_us - a->came_us <= SIM_RELEVANCE_US)
-            break;
+        if (*relevance->now_us - a->came_us <= SIM_RELEVANCE_US) break;
         sum->judged[a->kind] += a->bytes;
         sum->unused[a->kind] += a->drawn ? 0 : a->bytes;
         sum->supporting += !a->drawn && a->supports ? a->bytes : 0;

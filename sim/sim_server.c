@@ -16,10 +16,8 @@ int sim_server_init(sim_server *server, const ff_pack *pack, sim_link *link, con
 
 void sim_server_free(sim_server *server)
 {
-    if (server->session)
-        ff_session_destroy(server->session);
-    if (server->renderer)
-        ff_panorama_renderer_close(server->renderer);
+    if (server->session) ff_session_destroy(server->session);
+    if (server->renderer) ff_panorama_renderer_close(server->renderer);
     free(server->face);
     memset(server, 0, sizeof *server);
 }
@@ -28,10 +26,8 @@ void sim_server_free(sim_server *server)
 static int accept_connection(sim_server *server)
 {
     const ff_session_desc desc = { .pack = server->pack };
-    if (server->session && server->connection == sim_link_connections(server->link))
-        return FF_OK;
-    if (server->session)
-        ff_session_destroy(server->session);
+    if (server->session && server->connection == sim_link_connections(server->link)) return FF_OK;
+    if (server->session) ff_session_destroy(server->session);
     server->connection = sim_link_connections(server->link);
     server->closing = 0;
     server->input_count = 0;
@@ -45,15 +41,12 @@ static void receive(sim_server *server)
     while (!server->closing) {
         int got = server->stream.recv(server->stream.state, server->input + server->input_count,
                                       sizeof server->input - server->input_count);
-        if (got > 0)
-            server->input_count += (size_t)got;
-        if (!server->input_count)
-            return;
-        int taken = ff_session_receive(server->session, server->input, server->input_count, *server->now_us);
-        if (taken < 0)
-            server->closing = 1;
-        if (taken <= 0)
-            return;
+        if (got > 0) server->input_count += (size_t)got;
+        if (!server->input_count) return;
+        int taken = ff_session_receive(server->session, server->input, server->input_count,
+                                       *server->now_us);
+        if (taken < 0) server->closing = 1;
+        if (taken <= 0) return;
         server->input_count -= (size_t)taken;
         memmove(server->input, server->input + taken, server->input_count);
     }
@@ -63,8 +56,10 @@ static int open_renderer(sim_server *server)
 {
     if (!server->renderer && server->renderer_error == FF_OK) {
         const sys_surface_api *osmesa = sys_surface_osmesa();
-        server->renderer_error = osmesa
-            ? ff_panorama_renderer_open(server->pack, osmesa, c3d_backend_gl(), &server->renderer) : FF_ERR_UNSUPPORTED;
+        server->renderer_error = osmesa ? ff_panorama_renderer_open(server->pack, osmesa,
+                                                                    c3d_backend_gl(),
+                                                                    &server->renderer)
+                                        : FF_ERR_UNSUPPORTED;
     }
     return server->renderer_error;
 }
@@ -75,12 +70,12 @@ static void render(sim_server *server)
         ff_session_face_done(server->session, &server->job, server->face, server->face_bytes);
         server->job_done_us = 0;
     }
-    if (server->job_done_us || !ff_session_next_face(server->session, &server->job))
-        return;
+    if (server->job_done_us || !ff_session_next_face(server->session, &server->job)) return;
     server->face_bytes = open_renderer(server);
     if (server->face_bytes == FF_OK) {
-        server->face_bytes = ff_panorama_render_face(server->renderer, &server->job.request, server->job.face, server->job.last,
-                                                     server->face, FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX);
+        server->face_bytes = ff_panorama_render_face(
+            server->renderer, &server->job.request, server->job.face, server->job.last,
+            server->face, FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX);
         server->faces_rendered++;
     }
     server->job_done_us = *server->now_us + SIM_SERVER_FACE_US;
@@ -92,19 +87,16 @@ static void transmit(sim_server *server)
     size_t count;
     while ((count = ff_session_output(server->session, &bytes)) > 0) {
         int sent = server->stream.send(server->stream.state, bytes, count);
-        if (sent <= 0)
-            return;
+        if (sent <= 0) return;
         ff_session_sent(server->session, (size_t)sent);
     }
-    if (server->closing)
-        server->stream.close(server->stream.state);
+    if (server->closing) server->stream.close(server->stream.state);
 }
 
 int sim_server_step(sim_server *server)
 {
     int rc = accept_connection(server);
-    if (rc != FF_OK)
-        return rc;
+    if (rc != FF_OK) return rc;
     receive(server);
     render(server);
     transmit(server);

@@ -1,5 +1,6 @@
-/* The server's end of a simulated link, in the simulation's own process: server/ff_session and the panorama renderer, one client.
- * A face takes a stated constant time of the simulated clock, however long it takes here.
+/* The server's end of a simulated link, in the simulation's own process: server/ff_session and the
+ * panorama renderer, one client. A face takes a stated constant time of the simulated clock,
+ * however long it takes here.
  */
 #ifndef SIM_SERVER_H
 #define SIM_SERVER_H
@@ -8,7 +9,8 @@
 #include "../server/ff_session.h"
 #include "sim_stream.h"
 
-#define SIM_SERVER_FACE_US 120000 /* assumed render time of a 256 x 256 face on a server, JPEG included */
+#define SIM_SERVER_FACE_US \
+    120000 /* assumed render time of a 256 x 256 face on a server, JPEG included */
 #define SIM_SERVER_INPUT_BYTES 4096
 
 typedef struct sim_server {
@@ -17,18 +19,18 @@ typedef struct sim_server {
     const int64_t *now_us;
     sim_stream end;
     sys_stream stream;
-    unsigned connection;      /* of the link that `session` serves */
+    unsigned connection; /* of the link that `session` serves */
     ff_session *session;
-    int closing;              /* the session ended: what is pending goes out, then the link is cut */
+    int closing; /* the session ended: what is pending goes out, then the link is cut */
     uint8_t input[SIM_SERVER_INPUT_BYTES];
     size_t input_count;
     ff_panorama_renderer *renderer; /* opened at the first panorama */
     int renderer_error;
     ff_face_job job;
-    int64_t job_done_us;      /* 0: none under way */
+    int64_t job_done_us; /* 0: none under way */
     uint8_t *face;
     int face_bytes;
-    uint32_t faces_rendered;  /* each leaves the renderer's GL context current */
+    uint32_t faces_rendered; /* each leaves the renderer's GL context current */
 } sim_server;
 
 /* FF_OK or FF_ERR_MEMORY. All pointers must outlive the server. */

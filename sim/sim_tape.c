@@ -6,8 +6,7 @@
 static uint64_t take(sim_tape_player *player, unsigned bytes)
 {
     uint64_t value = 0;
-    for (unsigned i = 0; i < bytes; i++)
-        value |= (uint64_t)player->at[i] << (8 * i);
+    for (unsigned i = 0; i < bytes; i++) value |= (uint64_t)player->at[i] << (8 * i);
     player->at += bytes;
     return value;
 }
@@ -17,8 +16,7 @@ static int32_t take_i32(sim_tape_player *player) { return (int32_t)(uint32_t)tak
 /* 1 when a record of this letter and at least `bytes` more come next; the letter is taken. */
 static int begins(sim_tape_player *player, char letter, size_t bytes)
 {
-    if ((size_t)(player->end - player->at) < bytes + 1 || *player->at != (uint8_t)letter)
-        return 0;
+    if ((size_t)(player->end - player->at) < bytes + 1 || *player->at != (uint8_t)letter) return 0;
     player->at++;
     return 1;
 }
@@ -38,14 +36,11 @@ static int play_send(void *state, const uint8_t *bytes, size_t count)
 static int play_recv(void *state, uint8_t *bytes, size_t capacity)
 {
     sim_tape_player *player = state;
-    if (player->differs)
-        return FF_ERR_CLOSED;
+    if (player->differs) return FF_ERR_CLOSED;
     if (!player->left) {
-        if (!begins(player, 'R', 4))
-            return 0;
+        if (!begins(player, 'R', 4)) return 0;
         int32_t value = take_i32(player);
-        if (value < 0)
-            return value;
+        if (value < 0) return value;
         player->left = (uint32_t)value;
     }
     size_t count = player->left < capacity ? player->left : capacity;
@@ -62,8 +57,7 @@ static int play_recv(void *state, uint8_t *bytes, size_t capacity)
 static int play_reconnect(void *state)
 {
     sim_tape_player *player = state;
-    if (!player->differs && begins(player, 'C', 4))
-        return take_i32(player);
+    if (!player->differs && begins(player, 'C', 4)) return take_i32(player);
     player->differs = 1;
     return FF_ERR_CLOSED;
 }
@@ -76,19 +70,32 @@ static void take_head(sim_tape_player *player)
     ff_quality *q = &head->quality;
     ff_panorama_desc *p = &head->panorama;
     int32_t n[SIM_TAPE_HEAD];
-    for (unsigned i = 0; i < SIM_TAPE_HEAD; i++)
-        n[i] = take_i32(player);
-    *head = (sim_tape_head){ .memory_bytes = (uint32_t)n[0], .width = (uint16_t)n[1], .height = (uint16_t)n[2] };
-    *q = (ff_quality){ .measure = n[3] == FF_MEASURE_PIXELS ? FF_MEASURE_PIXELS : FF_MEASURE_DISTANCE, .c_q8 = n[4],
-                       .error_px_q8 = n[5], .depth_max = (uint8_t)n[6], .sigma_q8 = n[7], .view_wu = n[8], .hole_wu = n[9] };
-    *p = (ff_panorama_desc){ .enabled = n[10] != 0, .back_plane_wu = n[11], .server_back_wu = n[12], .error_px_q8 = n[13],
-                             .face_size = (uint16_t)n[14], .jpeg_quality = (uint8_t)n[15], .hold_back = (uint8_t)n[16] };
+    for (unsigned i = 0; i < SIM_TAPE_HEAD; i++) n[i] = take_i32(player);
+    *head = (sim_tape_head){ .memory_bytes = (uint32_t)n[0],
+                             .width = (uint16_t)n[1],
+                             .height = (uint16_t)n[2] };
+    *q = (ff_quality){ .measure = n[3] == FF_MEASURE_PIXELS ? FF_MEASURE_PIXELS
+                                                            : FF_MEASURE_DISTANCE,
+                       .c_q8 = n[4],
+                       .error_px_q8 = n[5],
+                       .depth_max = (uint8_t)n[6],
+                       .sigma_q8 = n[7],
+                       .view_wu = n[8],
+                       .hole_wu = n[9] };
+    *p = (ff_panorama_desc){ .enabled = n[10] != 0,
+                             .back_plane_wu = n[11],
+                             .server_back_wu = n[12],
+                             .error_px_q8 = n[13],
+                             .face_size = (uint16_t)n[14],
+                             .jpeg_quality = (uint8_t)n[15],
+                             .hold_back = (uint8_t)n[16] };
 }
 
 int sim_tape_open(sim_tape_player *player, const void *bytes, uint64_t count, sys_stream *stream)
 {
     memset(player, 0, sizeof *player);
-    if (count < SIM_TAPE_MAGIC_BYTES + 4 * SIM_TAPE_HEAD || memcmp(bytes, SIM_TAPE_MAGIC, SIM_TAPE_MAGIC_BYTES) != 0)
+    if (count < SIM_TAPE_MAGIC_BYTES + 4 * SIM_TAPE_HEAD ||
+        memcmp(bytes, SIM_TAPE_MAGIC, SIM_TAPE_MAGIC_BYTES) != 0)
         return FF_ERR_FORMAT;
     player->at = (const uint8_t *)bytes + SIM_TAPE_MAGIC_BYTES;
     player->end = (const uint8_t *)bytes + count;
@@ -100,8 +107,7 @@ int sim_tape_open(sim_tape_player *player, const void *bytes, uint64_t count, sy
 static void take_camera(sim_tape_player *player, sim_tape_step *step)
 {
     c3d_camera *camera = &step->camera;
-    for (unsigned axis = 0; axis < 3; axis++)
-        camera->pos_wu[axis] = take_i32(player);
+    for (unsigned axis = 0; axis < 3; axis++) camera->pos_wu[axis] = take_i32(player);
     camera->yaw = take_i32(player);
     camera->pitch = take_i32(player);
     camera->roll = take_i32(player);
@@ -114,8 +120,7 @@ static void take_camera(sim_tape_player *player, sim_tape_step *step)
 int sim_tape_next(sim_tape_player *player, sim_tape_step *step)
 {
     memset(step, 0, sizeof *step);
-    if (player->differs || player->left)
-        return FF_ERR_FORMAT;
+    if (player->differs || player->left) return FF_ERR_FORMAT;
     if (begins(player, 'W', 8)) {
         step->kind = SIM_TAPE_WORK;
         step->now_us = (int64_t)take(player, 8);

@@ -3,8 +3,7 @@
 
 static void put(FILE *file, uint64_t value, unsigned bytes)
 {
-    for (unsigned i = 0; i < bytes; i++)
-        fputc((int)(value >> (8 * i) & 0xFF), file);
+    for (unsigned i = 0; i < bytes; i++) fputc((int)(value >> (8 * i) & 0xFF), file);
 }
 
 static void put_record(FILE *file, char letter, int32_t value)
@@ -26,10 +25,8 @@ static int record_recv(void *state, uint8_t *bytes, size_t capacity)
 {
     sim_tape_recorder *recorder = state;
     int count = recorder->inner.recv(recorder->inner.state, bytes, capacity);
-    if (count != 0)
-        put_record(recorder->file, 'R', count);
-    if (count > 0)
-        fwrite(bytes, 1, (size_t)count, recorder->file);
+    if (count != 0) put_record(recorder->file, 'R', count);
+    if (count > 0) fwrite(bytes, 1, (size_t)count, recorder->file);
     return count;
 }
 
@@ -51,21 +48,32 @@ static void put_head(FILE *file, const sim_tape_head *head)
 {
     const ff_quality *q = &head->quality;
     const ff_panorama_desc *p = &head->panorama;
-    const int32_t number[SIM_TAPE_HEAD] = {
-        (int32_t)head->memory_bytes, head->width, head->height,
-        (int32_t)q->measure, q->c_q8, q->error_px_q8, q->depth_max, q->sigma_q8, q->view_wu, q->hole_wu,
-        p->enabled, p->back_plane_wu, p->server_back_wu, p->error_px_q8, p->face_size, p->jpeg_quality, p->hold_back
-    };
+    const int32_t number[SIM_TAPE_HEAD] = { (int32_t)head->memory_bytes,
+                                            head->width,
+                                            head->height,
+                                            (int32_t)q->measure,
+                                            q->c_q8,
+                                            q->error_px_q8,
+                                            q->depth_max,
+                                            q->sigma_q8,
+                                            q->view_wu,
+                                            q->hole_wu,
+                                            p->enabled,
+                                            p->back_plane_wu,
+                                            p->server_back_wu,
+                                            p->error_px_q8,
+                                            p->face_size,
+                                            p->jpeg_quality,
+                                            p->hold_back };
     fwrite(SIM_TAPE_MAGIC, 1, SIM_TAPE_MAGIC_BYTES, file);
-    for (unsigned i = 0; i < SIM_TAPE_HEAD; i++)
-        put(file, (uint32_t)number[i], 4);
+    for (unsigned i = 0; i < SIM_TAPE_HEAD; i++) put(file, (uint32_t)number[i], 4);
 }
 
-int sim_tape_record(sim_tape_recorder *recorder, const char *path, const sim_tape_head *head, sys_stream *stream)
+int sim_tape_record(sim_tape_recorder *recorder, const char *path, const sim_tape_head *head,
+                    sys_stream *stream)
 {
     recorder->file = fopen(path, "wb");
-    if (!recorder->file)
-        return FF_ERR_SYSTEM;
+    if (!recorder->file) return FF_ERR_SYSTEM;
     put_head(recorder->file, head);
     recorder->inner = *stream;
     stream->state = recorder;
@@ -82,14 +90,15 @@ void sim_tape_work(sim_tape_recorder *recorder, int64_t now_us)
     put(recorder->file, (uint64_t)now_us, 8);
 }
 
-void sim_tape_frame(sim_tape_recorder *recorder, int64_t now_us, const c3d_camera *camera, int flying)
+void sim_tape_frame(sim_tape_recorder *recorder, int64_t now_us, const c3d_camera *camera,
+                    int flying)
 {
-    const int32_t number[7] = { camera->pos_wu[0], camera->pos_wu[1], camera->pos_wu[2], camera->yaw, camera->pitch, camera->roll,
+    const int32_t number[7] = { camera->pos_wu[0], camera->pos_wu[1], camera->pos_wu[2],
+                                camera->yaw,       camera->pitch,     camera->roll,
                                 camera->focal_q8 };
     fputc('U', recorder->file);
     put(recorder->file, (uint64_t)now_us, 8);
-    for (unsigned i = 0; i < 7; i++)
-        put(recorder->file, (uint32_t)number[i], 4);
+    for (unsigned i = 0; i < 7; i++) put(recorder->file, (uint32_t)number[i], 4);
     put(recorder->file, flying != 0, 1);
 }
 

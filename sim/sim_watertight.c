@@ -1,4 +1,5 @@
-/* See sim_watertight.h. A table of keys holds the listed nodes and all that lie above one; what touches what is found there. */
+/* See sim_watertight.h. A table of keys holds the listed nodes and all that lie above one; what
+ * touches what is found there. */
 #include "sim_watertight.h"
 
 #include "sim_rim.h"
@@ -9,17 +10,25 @@
 
 #define ABOVE UINT32_MAX /* in place of an index: no listed node, but listed ones lie in it */
 
-typedef struct entry { ff_key key; uint32_t index; } entry;
-typedef struct corner { uint32_t x, y; uint16_t height; uint8_t used; } corner; /* in samples of the finest level */
+typedef struct entry {
+    ff_key key;
+    uint32_t index;
+} entry;
+/* in samples of the finest level */
+typedef struct corner {
+    uint32_t x, y;
+    uint16_t height;
+    uint8_t used;
+} corner;
 
 typedef struct check {
     const ff_terrain_info *info;
     const ff_drawn *list;
     uint32_t count;
-    unsigned n;                 /* cells of a node each way */
+    unsigned n; /* cells of a node each way */
     ff_strips strips;
-    sim_rim rim[16];            /* by mask of coarser sides */
-    unsigned rims_known;        /* bit: mask looked at */
+    sim_rim rim[16];     /* by mask of coarser sides */
+    unsigned rims_known; /* bit: mask looked at */
     entry *entries;
     corner *corners;
     uint32_t entry_mask, corner_mask;
@@ -31,8 +40,7 @@ static int fault(check *c, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    if (c->why && c->why_bytes)
-        vsnprintf(c->why, c->why_bytes, format, arguments);
+    if (c->why && c->why_bytes) vsnprintf(c->why, c->why_bytes, format, arguments);
     va_end(arguments);
     return 0;
 }
@@ -45,8 +53,7 @@ static uint32_t mixed(uint64_t value)
 static uint32_t table_size(uint64_t entries)
 {
     uint32_t size = 16;
-    while (size < 2 * entries)
-        size *= 2;
+    while (size < 2 * entries) size *= 2;
     return size;
 }
 
@@ -62,12 +69,11 @@ static entry *entry_place(const check *c, ff_key key)
 
 static int kind_ok(check *c, unsigned coarser)
 {
-    if (coarser > 15)
-        return fault(c, "a node has no such sides: %x", coarser);
-    if (c->rims_known >> coarser & 1u)
-        return 1;
+    if (coarser > 15) return fault(c, "a node has no such sides: %x", coarser);
+    if (c->rims_known >> coarser & 1u) return 1;
     c->rims_known |= 1u << coarser;
-    const char *wrong = sim_rim_of_strips(&c->strips, c->info->node_log2, coarser, &c->rim[coarser]);
+    const char *wrong = sim_rim_of_strips(&c->strips, c->info->node_log2, coarser,
+                                          &c->rim[coarser]);
     return !wrong || fault(c, "crack: strips of a node with coarser sides %x: %s", coarser, wrong);
 }
 
@@ -79,12 +85,12 @@ static int node_ok(check *c, uint32_t index)
     if (!ff_terrain_has_node(c->info, drawn->key))
         return fault(c, "key %llx is not of this terrain", key);
     ff_node_origin_wu(c->info, drawn->key, &x, &y);
-    if (drawn->origin_wu[0] != x || drawn->origin_wu[1] != y || drawn->origin_wu[2] != ff_height_wu(c->info, 32768)
-        || drawn->cell_wu != ff_node_cell_wu(c->info, ff_key_level(drawn->key)))
+    if (drawn->origin_wu[0] != x || drawn->origin_wu[1] != y ||
+        drawn->origin_wu[2] != ff_height_wu(c->info, 32768) ||
+        drawn->cell_wu != ff_node_cell_wu(c->info, ff_key_level(drawn->key)))
         return fault(c, "node %llx has a wrong origin or cell", key);
     entry *place = entry_place(c, drawn->key);
-    if (place->key == drawn->key)
-        return fault(c, "node %llx is listed twice", key);
+    if (place->key == drawn->key) return fault(c, "node %llx is listed twice", key);
     *place = (entry){ drawn->key, index };
     return kind_ok(c, drawn->coarser);
 }
@@ -96,9 +102,9 @@ static int enter_above(check *c, ff_key key)
         up = ff_key_parent(up);
         entry *place = entry_place(c, up);
         if (place->key == up && place->index != ABOVE)
-            return fault(c, "node %llx lies on listed node %llx", (unsigned long long)key, (unsigned long long)up);
-        if (place->key == up)
-            return 1;
+            return fault(c, "node %llx lies on listed node %llx", (unsigned long long)key,
+                         (unsigned long long)up);
+        if (place->key == up) return 1;
         *place = (entry){ up, ABOVE };
     }
     return 1;
@@ -106,41 +112,49 @@ static int enter_above(check *c, ff_key key)
 
 /* ---- nodes that touch ---- */
 
-/* Vertices from..to of one side of `drawn`, as drawn there, against those of the listed node across, `finer` levels coarser. */
-static int rims_agree(check *c, const ff_drawn *drawn, enum ff_side side, const ff_drawn *across, unsigned finer)
+/* Vertices from..to of one side of `drawn`, as drawn there, against those of the listed node
+ * across, `finer` levels coarser. */
+static int rims_agree(check *c, const ff_drawn *drawn, enum ff_side side, const ff_drawn *across,
+                      unsigned finer)
 {
     enum ff_side back = (enum ff_side)((side + 2) % FF_SIDE_COUNT);
     uint32_t code = ff_key_code(drawn->key), n = c->n;
-    uint32_t along = side == FF_SIDE_SOUTH || side == FF_SIDE_NORTH ? ff_morton_x(code) : ff_morton_y(code);
-    uint32_t from = (along & ((1u << finer) - 1)) * n; /* of the coarser side's length, in our cells */
-    uint64_t used = c->rim[drawn->coarser].used[side], missing = used, other = c->rim[across->coarser].used[back];
+    uint32_t along = side == FF_SIDE_SOUTH || side == FF_SIDE_NORTH ? ff_morton_x(code)
+                                                                    : ff_morton_y(code);
+    /* of the coarser side's length, in our cells */
+    uint32_t from = (along & ((1u << finer) - 1)) * n;
+    uint64_t used = c->rim[drawn->coarser].used[side], missing = used,
+             other = c->rim[across->coarser].used[back];
     for (uint32_t j = (from + (1u << finer) - 1) >> finer; j << finer <= from + n; j++) {
         uint32_t i = (j << finer) - from;
-        if (!(other >> j & 1u))
-            continue;
-        uint16_t here = drawn->heights[sim_rim_vertex(n, side, i)], there = across->heights[sim_rim_vertex(n, back, j)];
+        if (!(other >> j & 1u)) continue;
+        uint16_t here = drawn->heights[sim_rim_vertex(n, side, i)],
+                 there = across->heights[sim_rim_vertex(n, back, j)];
         if (!(used >> i & 1u))
-            return fault(c, "crack: vertex %u on side %u of node %llx is drawn by node %llx alone", i, side,
-                         (unsigned long long)drawn->key, (unsigned long long)across->key);
+            return fault(c, "crack: vertex %u on side %u of node %llx is drawn by node %llx alone",
+                         i, side, (unsigned long long)drawn->key, (unsigned long long)across->key);
         if (here != there)
-            return fault(c, "crack: vertex %u on side %u of node %llx has heights %u and %u (node %llx)", i, side,
-                         (unsigned long long)drawn->key, here, there, (unsigned long long)across->key);
+            return fault(
+                c, "crack: vertex %u on side %u of node %llx has heights %u and %u (node %llx)", i,
+                side, (unsigned long long)drawn->key, here, there, (unsigned long long)across->key);
         missing &= ~(UINT64_C(1) << i);
     }
-    return !missing || fault(c, "crack: node %llx draws vertices on side %u that node %llx does not", (unsigned long long)drawn->key,
-                             side, (unsigned long long)across->key);
+    return !missing ||
+           fault(c, "crack: node %llx draws vertices on side %u that node %llx does not",
+                 (unsigned long long)drawn->key, side, (unsigned long long)across->key);
 }
 
-/* The listed node across a side when it is coarser, or as coarse and to the north or east: each pair is looked at once. */
+/* The listed node across a side when it is coarser, or as coarse and to the north or east: each
+ * pair is looked at once. */
 static int side_ok(check *c, const ff_drawn *drawn, enum ff_side side)
 {
     ff_key key = ff_key_neighbour(c->info->tiles_x, c->info->tiles_y, drawn->key, side);
     for (unsigned finer = 0; key != FF_KEY_NONE; finer++) {
         const entry *place = entry_place(c, key);
-        if (place->key == key && (place->index == ABOVE || (!finer && (side == FF_SIDE_SOUTH || side == FF_SIDE_WEST))))
+        if (place->key == key &&
+            (place->index == ABOVE || (!finer && (side == FF_SIDE_SOUTH || side == FF_SIDE_WEST))))
             return 1;
-        if (place->key == key)
-            return rims_agree(c, drawn, side, &c->list[place->index], finer);
+        if (place->key == key) return rims_agree(c, drawn, side, &c->list[place->index], finer);
         key = ff_key_level(key) > 0 ? ff_key_parent(key) : FF_KEY_NONE;
     }
     return 1;
@@ -148,15 +162,19 @@ static int side_ok(check *c, const ff_drawn *drawn, enum ff_side side)
 
 static int corners_ok(check *c, const ff_drawn *drawn)
 {
-    uint32_t x = (uint32_t)drawn->origin_wu[0] / c->info->spacing_wu, y = (uint32_t)drawn->origin_wu[1] / c->info->spacing_wu;
+    uint32_t x = (uint32_t)drawn->origin_wu[0] / c->info->spacing_wu,
+             y = (uint32_t)drawn->origin_wu[1] / c->info->spacing_wu;
     uint32_t edge = 1u << (c->info->tile_log2 - ff_key_level(drawn->key));
     for (unsigned i = 0; i < 4; i++) {
-        corner at = { x + (i & 1) * edge, y + (i >> 1) * edge, drawn->heights[(i >> 1) * c->n * (c->n + 1) + (i & 1) * c->n], 1 };
+        corner at = { x + (i & 1) * edge, y + (i >> 1) * edge,
+                      drawn->heights[(i >> 1) * c->n * (c->n + 1) + (i & 1) * c->n], 1 };
         uint32_t place = mixed((uint64_t)at.x << 32 | at.y) & c->corner_mask;
-        while (c->corners[place].used && (c->corners[place].x != at.x || c->corners[place].y != at.y))
+        while (c->corners[place].used &&
+               (c->corners[place].x != at.x || c->corners[place].y != at.y))
             place = (place + 1) & c->corner_mask;
         if (c->corners[place].used && c->corners[place].height != at.height)
-            return fault(c, "crack: corner %u,%u has heights %u and %u", at.x, at.y, c->corners[place].height, at.height);
+            return fault(c, "crack: corner %u,%u has heights %u and %u", at.x, at.y,
+                         c->corners[place].height, at.height);
         c->corners[place] = at;
     }
     return 1;
@@ -165,28 +183,30 @@ static int corners_ok(check *c, const ff_drawn *drawn)
 static int all_ok(check *c)
 {
     for (uint32_t i = 0; i < c->count; i++)
-        if (!node_ok(c, i))
-            return 0;
+        if (!node_ok(c, i)) return 0;
     for (uint32_t i = 0; i < c->count; i++)
-        if (!enter_above(c, c->list[i].key))
-            return 0;
+        if (!enter_above(c, c->list[i].key)) return 0;
     for (uint32_t i = 0; i < c->count; i++) {
         for (unsigned side = 0; side < FF_SIDE_COUNT; side++)
-            if (!side_ok(c, &c->list[i], (enum ff_side)side))
-                return 0;
-        if (!corners_ok(c, &c->list[i]))
-            return 0;
+            if (!side_ok(c, &c->list[i], (enum ff_side)side)) return 0;
+        if (!corners_ok(c, &c->list[i])) return 0;
     }
     return 1;
 }
 
-int sim_watertight_check(const ff_terrain_info *info, const ff_drawn *list, uint32_t count, char *why, size_t why_bytes)
+int sim_watertight_check(const ff_terrain_info *info, const ff_drawn *list, uint32_t count,
+                         char *why, size_t why_bytes)
 {
     check *c = calloc(1, sizeof *c);
-    if (!c)
-        return 0;
-    *c = (check){ .info = info, .list = list, .count = count, .n = 1u << info->node_log2, .why = why, .why_bytes = why_bytes };
-    c->entry_mask = table_size((uint64_t)count * (info->tile_log2 - info->node_log2 + 1u)) - 1; /* with all that can lie above */
+    if (!c) return 0;
+    *c = (check){ .info = info,
+                  .list = list,
+                  .count = count,
+                  .n = 1u << info->node_log2,
+                  .why = why,
+                  .why_bytes = why_bytes };
+    /* with all that can lie above */
+    c->entry_mask = table_size((uint64_t)count * (info->tile_log2 - info->node_log2 + 1u)) - 1;
     c->corner_mask = table_size((uint64_t)count * 4) - 1;
     c->entries = malloc(((size_t)c->entry_mask + 1) * sizeof *c->entries);
     c->corners = calloc((size_t)c->corner_mask + 1, sizeof *c->corners);
@@ -196,8 +216,7 @@ int sim_watertight_check(const ff_terrain_info *info, const ff_drawn *list, uint
     } else if (ff_strips_make(&c->strips, info->node_log2) < 0) {
         fault(c, "terrain's nodes have no strips");
     } else {
-        for (uint32_t i = 0; i <= c->entry_mask; i++)
-            c->entries[i].key = FF_KEY_NONE;
+        for (uint32_t i = 0; i <= c->entry_mask; i++) c->entries[i].key = FF_KEY_NONE;
         ok = all_ok(c);
     }
     free(c->entries);

@@ -4,15 +4,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FRAME_US 16667
+#define FRAME_US           16667
 #define FRAME_US_LOW_POWER 100000
-#define SCRIPT_STEP_US 33333      /* a scripted frame flies this long, whatever the clock says */
-#define IDLE_SLEEP_US 10000
-#define HUD_EVERY_US 250000
-#define SETTLE_FRAMES 25          /* this many frames without news: settled */
-#define SETTLE_US_MAX 60000000
-#define DT_US_MAX 250000
-#define JITTER_WAIT_US 2000
+#define SCRIPT_STEP_US     33333 /* a scripted frame flies this long, whatever the clock says */
+#define IDLE_SLEEP_US      10000
+#define HUD_EVERY_US       250000
+#define SETTLE_FRAMES      25 /* this many frames without news: settled */
+#define SETTLE_US_MAX      60000000
+#define DT_US_MAX          250000
+#define JITTER_WAIT_US     2000
 
 /* ---- opening ---- */
 static int is_soft(const char *backend) { return !strcmp(backend, "soft"); }
@@ -26,20 +26,25 @@ static const sys_surface_api *surface_for(const view_options *o, enum sys_gl_kin
 
 static int open_surface_of(view_app *app, enum sys_gl_kind gl)
 {
-    sys_surface_desc desc = {.title = "Farfield", .width = app->options->width, .height = app->options->height, .gl = gl};
+    sys_surface_desc desc = {
+        .title = "Farfield", .width = app->options->width, .height = app->options->height, .gl = gl
+    };
     app->surface_api = surface_for(app->options, gl);
     return app->surface_api ? app->surface_api->open(&desc, &app->surface) : FF_ERR_UNSUPPORTED;
 }
 
-/* A window for the soft back end has a GL all the same, whichever it can have: to show the picture with. */
+/* A window for the soft back end has a GL all the same, whichever it can have: to show the picture
+ * with. */
 static int open_soft_window(view_app *app)
 {
-    static const enum sys_gl_kind kinds[2] = {SYS_GL_ES1, SYS_GL_DESKTOP};
+    static const enum sys_gl_kind kinds[2] = { SYS_GL_ES1, SYS_GL_DESKTOP };
     int rc = FF_ERR_UNSUPPORTED;
     for (int i = 0; i < 2 && rc == FF_ERR_UNSUPPORTED; i++) {
-        const struct c3d_backend *backend = kinds[i] == SYS_GL_ES1 ? c3d_backend_gles1() : c3d_backend_gl();
+        const struct c3d_backend *backend = kinds[i] == SYS_GL_ES1 ? c3d_backend_gles1()
+                                                                   : c3d_backend_gl();
         if ((rc = open_surface_of(app, kinds[i])) < 0) continue;
-        rc = view_blit_open(&app->blit, backend, app->surface_api, app->options->width, app->options->height);
+        rc = view_blit_open(&app->blit, backend, app->surface_api, app->options->width,
+                            app->options->height);
         if (rc == FF_OK) return FF_OK;
         app->surface_api->close(app->surface);
         app->surface = NULL;
@@ -49,21 +54,31 @@ static int open_soft_window(view_app *app)
 
 static int open_surface(view_app *app, const char *backend)
 {
-    if (!is_soft(backend)) return open_surface_of(app, strcmp(backend, "gl") ? SYS_GL_ES1 : SYS_GL_DESKTOP);
+    if (!is_soft(backend))
+        return open_surface_of(app, strcmp(backend, "gl") ? SYS_GL_ES1 : SYS_GL_DESKTOP);
     return app->options->headless ? open_surface_of(app, SYS_GL_NONE) : open_soft_window(app);
 }
 
 static int create_client(view_app *app, const char *backend)
 {
     const view_options *o = app->options;
-    app->backend = is_soft(backend) ? c3d_backend_soft() : strcmp(backend, "gl") ? c3d_backend_gles1() : c3d_backend_gl();
-    ff_client_desc desc = {
-        .memory = app->memory, .memory_bytes = o->memory_bytes,
-        .stream = app->link ? &app->stream : NULL, .pack = app->link ? NULL : &app->pack,
-        .backend = app->backend, .surface_api = app->surface_api,
-        .width = (uint16_t)o->width, .height = (uint16_t)o->height, .frame_format = C3D_RGBA8888,
-        .quality = app->quality, .panorama = app->panorama, .balance = o->balance,
-        .use_thread = 1, .use_plain_arrays = (uint8_t)o->plain_arrays};
+    app->backend = is_soft(backend)        ? c3d_backend_soft()
+                   : strcmp(backend, "gl") ? c3d_backend_gles1()
+                                           : c3d_backend_gl();
+    ff_client_desc desc = { .memory = app->memory,
+                            .memory_bytes = o->memory_bytes,
+                            .stream = app->link ? &app->stream : NULL,
+                            .pack = app->link ? NULL : &app->pack,
+                            .backend = app->backend,
+                            .surface_api = app->surface_api,
+                            .width = (uint16_t)o->width,
+                            .height = (uint16_t)o->height,
+                            .frame_format = C3D_RGBA8888,
+                            .quality = app->quality,
+                            .panorama = app->panorama,
+                            .balance = o->balance,
+                            .use_thread = 1,
+                            .use_plain_arrays = (uint8_t)o->plain_arrays };
     return ff_client_create(&desc, &app->client);
 }
 
@@ -84,8 +99,12 @@ static int open_picture(view_app *app)
     const char *backend = app->options->backend ? app->options->backend : "gles1";
     int rc = open_with(app, backend);
     if (rc == FF_ERR_UNSUPPORTED && !app->options->backend) rc = open_with(app, backend = "gl");
-    if (rc == FF_ERR_MEMORY) return view_fail("--memory: the client needs at least %zu MB", (ff_client_bytes_min() >> 20) + 1);
-    if (rc < 0) return view_fail("no picture with %s%s: %s", backend, app->options->headless ? " (headless)" : "", ff_error_text(rc));
+    if (rc == FF_ERR_MEMORY)
+        return view_fail("--memory: the client needs at least %zu MB",
+                         (ff_client_bytes_min() >> 20) + 1);
+    if (rc < 0)
+        return view_fail("no picture with %s%s: %s", backend,
+                         app->options->headless ? " (headless)" : "", ff_error_text(rc));
     return 0;
 }
 
@@ -97,7 +116,8 @@ static int open_pack(view_app *app)
     return rc < 0 ? view_fail("%s: %s", path, ff_error_text(rc)) : 0;
 }
 
-/* A file is a pack, all else an address. A pack behind a link, or with panoramas, is served from inside this process. */
+/* A file is a pack, all else an address. A pack behind a link, or with panoramas, is served from
+ * inside this process. */
 static int open_terrain(view_app *app)
 {
     const view_options *o = app->options;
@@ -107,9 +127,12 @@ static int open_terrain(view_app *app)
     if (is_pack && open_pack(app)) return -1;
     app->panorama.enabled = o->panorama < 0 ? !is_pack : (uint8_t)o->panorama;
     if (is_pack && !o->link && !app->panorama.enabled) return 0;
-    rc = view_link_create(is_pack ? NULL : o->target, &app->pack, o->link, &app->link, &app->stream);
+    rc = view_link_create(is_pack ? NULL : o->target, &app->pack, o->link, &app->link,
+                          &app->stream);
     if (rc == FF_ERR_NOT_FOUND) return view_fail("--link %s: no such profile", o->link);
-    if (rc == FF_ERR_ARGUMENT && !is_pack) return view_fail("%s: neither a pack nor ADDR:PORT%s", o->target, o->link ? ", or --link is wrong" : "");
+    if (rc == FF_ERR_ARGUMENT && !is_pack)
+        return view_fail("%s: neither a pack nor ADDR:PORT%s", o->target,
+                         o->link ? ", or --link is wrong" : "");
     return rc < 0 ? view_fail("--link %s: %s", o->link ? o->link : "none", ff_error_text(rc)) : 0;
 }
 
@@ -118,7 +141,8 @@ static int open_files(view_app *app)
     const view_options *o = app->options;
     char why[2048];
     int rc = o->script ? view_script_load(&app->script, o->script, why, sizeof why)
-             : o->keys ? view_script_keys(&app->script, o->keys, why, sizeof why) : 0;
+             : o->keys ? view_script_keys(&app->script, o->keys, why, sizeof why)
+                       : 0;
     if (rc) return view_fail("%s", why);
     if (!o->events) return 0;
     app->events = strcmp(o->events, "-") ? fopen(o->events, "w") : stdout;
@@ -136,7 +160,8 @@ int view_app_open(view_app *app, const view_options *options)
     view_fly_init(&app->fly, options->width, options->height, options->fov_brad16);
     app->fly.camera.yaw = options->yaw_brad16;
     if (open_files(app) || open_terrain(app) || open_picture(app)) return -1;
-    app->show = (options->wireframe ? FF_SHOW_WIREFRAME : 0u) | (options->borders ? FF_SHOW_NODE_BORDERS : 0u);
+    app->show = (options->wireframe ? FF_SHOW_WIREFRAME : 0u) |
+                (options->borders ? FF_SHOW_NODE_BORDERS : 0u);
     ff_client_set_show(app->client, app->show);
     return 0;
 }
@@ -171,7 +196,8 @@ static int write_screenshot(view_app *app, c3d_device *device)
 static c3d_device *draw_ground(view_app *app)
 {
     c3d_device *device = ff_client_device(app->client);
-    if (!device) return view_wait_draw(&app->wait, app->backend, app->surface_api, &app->fly.camera);
+    if (!device)
+        return view_wait_draw(&app->wait, app->backend, app->surface_api, &app->fly.camera);
     view_wait_close(&app->wait);
     ff_client_draw(app->client);
     return device;
@@ -185,7 +211,8 @@ static int draw(view_app *app)
     if (!device) return view_fail("cannot draw with this graphics library");
     if (app->show_hud || app->show_help) view_hud_draw(&app->hud, app, device);
     int rc = app->screenshot ? write_screenshot(app, device) : 0;
-    if (app->blit.device && view_blit_show(&app->blit, device) < 0) return view_fail("cannot show the picture in the window");
+    if (app->blit.device && view_blit_show(&app->blit, device) < 0)
+        return view_fail("cannot show the picture in the window");
     app->surface_api->present(app->surface);
     return rc;
 }
@@ -194,21 +221,23 @@ static int draw(view_app *app)
 static void run_script(view_app *app)
 {
     const view_step *step;
-    while (!app->settling && !app->quit && !app->screenshot && (step = view_script_next(&app->script, app->frame))) {
+    while (!app->settling && !app->quit && !app->screenshot &&
+           (step = view_script_next(&app->script, app->frame))) {
         switch (step->kind) {
-        case VIEW_STEP_EVENT: {
-            sys_event event = step->event;
-            event.time_us = sys_time_us();
-            if (sys_event_inject(&event) < 0) app->script.next--; /* the queue is full: next frame */
-            return;                                              /* one event a frame at most: a screenshot sees what came before */
-        }
-        case VIEW_STEP_SETTLE:
-            app->settling = 1;
-            app->still_frames = 0;
-            app->settle_until_us = sys_time_us() + SETTLE_US_MAX;
-            break;
-        case VIEW_STEP_SCREENSHOT: app->screenshot = step->path; break;
-        case VIEW_STEP_QUIT: app->quit = 1; break;
+            case VIEW_STEP_EVENT: {
+                sys_event event = step->event;
+                event.time_us = sys_time_us();
+                /* the queue is full: next frame */
+                if (sys_event_inject(&event) < 0) app->script.next--;
+                return; /* one event a frame at most: a screenshot sees what came before */
+            }
+            case VIEW_STEP_SETTLE:
+                app->settling = 1;
+                app->still_frames = 0;
+                app->settle_until_us = sys_time_us() + SETTLE_US_MAX;
+                break;
+            case VIEW_STEP_SCREENSHOT: app->screenshot = step->path; break;
+            case VIEW_STEP_QUIT: app->quit = 1; break;
         }
     }
 }
@@ -228,7 +257,8 @@ static void place_pilot(view_app *app)
 {
     const view_options *o = app->options;
     const ff_terrain_info *info = ff_client_terrain(app->client);
-    if (!app->fly.placed && info) view_fly_place(&app->fly, info, !o->has_place, o->at_x_wu, o->at_y_wu, o->above_wu);
+    if (!app->fly.placed && info)
+        view_fly_place(&app->fly, info, !o->has_place, o->at_x_wu, o->at_y_wu, o->above_wu);
 }
 
 /* 1 when the text on the picture would now be another one; looked at a few times a second. */
@@ -250,7 +280,8 @@ static int turn(view_app *app, int64_t now_us, int64_t dt_us)
     int changed = ff_client_update(app->client, now_us, &app->fly.camera);
     if (app->settling) watch_settling(app, changed);
     /* During an interruption the screen is not ours: the last picture stays. */
-    int wanted = (changed && !app->interrupted) || app->redraw || app->screenshot || hud_changed(app, now_us);
+    int wanted = (changed && !app->interrupted) || app->redraw || app->screenshot ||
+                 hud_changed(app, now_us);
     if (wanted) return draw(app) < 0 ? -1 : 1;
     return 0;
 }
@@ -270,8 +301,14 @@ int view_app_run(view_app *app)
     while (!app->quit && !script_done(app)) {
         int64_t now_us = sys_time_us(), dt_us = now_us - last_us;
         last_us = now_us;
-        if ((rc = turn(app, now_us, scripted ? SCRIPT_STEP_US : dt_us < DT_US_MAX ? dt_us : DT_US_MAX)) < 0) return -1;
-        int64_t frame_us = app->battery_low || app->interrupted ? FRAME_US_LOW_POWER : rc ? FRAME_US : IDLE_SLEEP_US;
+        if ((rc = turn(app, now_us,
+                       scripted            ? SCRIPT_STEP_US
+                       : dt_us < DT_US_MAX ? dt_us
+                                           : DT_US_MAX)) < 0)
+            return -1;
+        int64_t frame_us = app->battery_low || app->interrupted ? FRAME_US_LOW_POWER
+                           : rc                                 ? FRAME_US
+                                                                : IDLE_SLEEP_US;
         int64_t left_us = frame_us - (sys_time_us() - now_us);
         if (left_us > 0) sys_sleep_us(left_us);
         if (!app->settling) app->frame++;

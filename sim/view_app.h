@@ -1,4 +1,5 @@
-/* The emulator put together: a window (or a surface without one), a client, a pilot, and what the keys have switched. */
+/* The emulator put together: a window (or a surface without one), a client, a pilot, and what the
+ * keys have switched. */
 #ifndef VIEW_APP_H
 #define VIEW_APP_H
 
@@ -17,26 +18,26 @@ typedef struct view_app {
     const struct c3d_backend *backend;
     const sys_surface_api *surface_api;
     sys_surface *surface;
-    sys_mapping mapping;          /* the pack's; bytes NULL: a server */
+    sys_mapping mapping; /* the pack's; bytes NULL: a server */
     ff_pack pack;
     sys_stream stream;
-    view_link *link;              /* NULL: the pack without a link */
+    view_link *link; /* NULL: the pack without a link */
     void *memory;
     ff_client *client;
-    view_wait wait;               /* until the terrain is known */
-    view_blit blit;               /* with --backend soft: its picture into the window */
+    view_wait wait; /* until the terrain is known */
+    view_blit blit; /* with --backend soft: its picture into the window */
     view_fly fly;
     view_hud hud;
     view_script script;
     FILE *events;
     /* switched by keys and events */
-    unsigned show;                /* enum ff_show */
+    unsigned show; /* enum ff_show */
     ff_panorama_desc panorama;
     ff_quality quality;
     uint8_t show_hud, show_help, battery_low, interrupted, tilted;
     uint8_t redraw, quit;
-    const char *screenshot;       /* asked for: written after the next drawing */
-    unsigned screenshots;         /* taken by key */
+    const char *screenshot; /* asked for: written after the next drawing */
+    unsigned screenshots;   /* taken by key */
     /* the loop */
     uint32_t frame, drawn, events_handled;
     int settling, still_frames;

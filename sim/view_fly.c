@@ -4,18 +4,31 @@
 #include <string.h>
 
 #define ABOVE_GROUND_WU_MIN (2 * FF_WU_PER_METRE)
-#define TURN_BRAD16_S 8192          /* 45 degrees a second */
-#define PITCH_BRAD16_MAX 16000      /* a little less than straight up or down */
-#define DRAG_BRAD16_PX 40
-#define SPEED_WU_S_MIN 256
-#define SPEED_WU_S_MAX (20000 * FF_WU_PER_METRE)
-#define FAST_FACTOR 5
-#define BEYOND_WU (20000 * FF_WU_PER_METRE)  /* how far outside the terrain one may fly */
-#define HEIGHT_WU_MAX (1000000 * FF_WU_PER_METRE)
+#define TURN_BRAD16_S       8192  /* 45 degrees a second */
+#define PITCH_BRAD16_MAX    16000 /* a little less than straight up or down */
+#define DRAG_BRAD16_PX      40
+#define SPEED_WU_S_MIN      256
+#define SPEED_WU_S_MAX      (20000 * FF_WU_PER_METRE)
+#define FAST_FACTOR         5
+#define BEYOND_WU           (20000 * FF_WU_PER_METRE) /* how far outside the terrain one may fly */
+#define HEIGHT_WU_MAX       (1000000 * FF_WU_PER_METRE)
 
-enum flying_key { FORWARD = 1, BACK = 2, LEFT = 4, RIGHT = 8, TURN_LEFT = 16, TURN_RIGHT = 32, RISE = 64, SINK = 128, FAST = 256 };
+enum flying_key {
+    FORWARD = 1,
+    BACK = 2,
+    LEFT = 4,
+    RIGHT = 8,
+    TURN_LEFT = 16,
+    TURN_RIGHT = 32,
+    RISE = 64,
+    SINK = 128,
+    FAST = 256
+};
 
-static int32_t clamp(int64_t value, int64_t low, int64_t high) { return (int32_t)(value < low ? low : value > high ? high : value); }
+static int32_t clamp(int64_t value, int64_t low, int64_t high)
+{
+    return (int32_t)(value < low ? low : value > high ? high : value);
+}
 
 void view_fly_init(view_fly *fly, int width, int height, int32_t fov_brad16)
 {
@@ -33,10 +46,15 @@ void view_fly_resize(view_fly *fly, int width, int height)
     fly->camera.focal_q8 = c3d_focal_q8(fly->fov_brad16, fly->camera.width);
 }
 
-void view_fly_place(view_fly *fly, const ff_terrain_info *info, int anywhere, int32_t x_wu, int32_t y_wu, int32_t above_wu)
+void view_fly_place(view_fly *fly, const ff_terrain_info *info, int anywhere, int32_t x_wu,
+                    int32_t y_wu, int32_t above_wu)
 {
-    fly->camera.pos_wu[0] = anywhere ? (int32_t)((int64_t)(info->samples_x - 1) * info->spacing_wu / 2) : x_wu;
-    fly->camera.pos_wu[1] = anywhere ? (int32_t)((int64_t)(info->samples_y - 1) * info->spacing_wu / 2) : y_wu;
+    fly->camera.pos_wu[0] = anywhere
+                                ? (int32_t)((int64_t)(info->samples_x - 1) * info->spacing_wu / 2)
+                                : x_wu;
+    fly->camera.pos_wu[1] = anywhere
+                                ? (int32_t)((int64_t)(info->samples_y - 1) * info->spacing_wu / 2)
+                                : y_wu;
     fly->camera.pos_wu[2] = ff_height_wu(info, info->height_max) + above_wu;
     fly->camera.pitch = -1500;
     fly->above_wu = above_wu;
@@ -45,10 +63,20 @@ void view_fly_place(view_fly *fly, const ff_terrain_info *info, int anywhere, in
 
 int view_fly_key(view_fly *fly, int code, int down)
 {
-    static const struct { int code; unsigned bit; } keys[] = {
-        {'w', FORWARD}, {SYS_KEY_UP, FORWARD}, {'s', BACK}, {SYS_KEY_DOWN, BACK}, {'a', LEFT}, {'d', RIGHT},
-        {SYS_KEY_LEFT, TURN_LEFT}, {SYS_KEY_RIGHT, TURN_RIGHT}, {SYS_KEY_PAGE_UP, RISE}, {SYS_KEY_PAGE_DOWN, SINK},
-        {SYS_KEY_SHIFT, FAST}};
+    static const struct {
+        int code;
+        unsigned bit;
+    } keys[] = { { 'w', FORWARD },
+                 { SYS_KEY_UP, FORWARD },
+                 { 's', BACK },
+                 { SYS_KEY_DOWN, BACK },
+                 { 'a', LEFT },
+                 { 'd', RIGHT },
+                 { SYS_KEY_LEFT, TURN_LEFT },
+                 { SYS_KEY_RIGHT, TURN_RIGHT },
+                 { SYS_KEY_PAGE_UP, RISE },
+                 { SYS_KEY_PAGE_DOWN, SINK },
+                 { SYS_KEY_SHIFT, FAST } };
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         if (keys[i].code != code) continue;
         fly->pressed = down ? fly->pressed | keys[i].bit : fly->pressed & ~keys[i].bit;
@@ -60,22 +88,25 @@ int view_fly_key(view_fly *fly, int code, int down)
 static void look(view_fly *fly, int yaw, int pitch)
 {
     fly->camera.yaw = (fly->camera.yaw + yaw) & 65535;
-    fly->camera.pitch = clamp((int64_t)fly->camera.pitch + pitch, -PITCH_BRAD16_MAX, PITCH_BRAD16_MAX);
+    fly->camera.pitch = clamp((int64_t)fly->camera.pitch + pitch, -PITCH_BRAD16_MAX,
+                              PITCH_BRAD16_MAX);
 }
 
 void view_fly_pointer(view_fly *fly, enum sys_pointer_action action, int x, int y, int button)
 {
     switch (action) {
-    case SYS_POINTER_DOWN: fly->dragging = 1; break;
-    case SYS_POINTER_UP: fly->dragging = 0; break;
-    case SYS_POINTER_SCROLL: {
-        int64_t speed = button > 0 ? (int64_t)fly->speed_wu_s * 5 / 4 : (int64_t)fly->speed_wu_s * 4 / 5;
-        fly->speed_wu_s = clamp(speed, SPEED_WU_S_MIN, SPEED_WU_S_MAX);
-        return;
-    }
-    case SYS_POINTER_MOVE: /* the ground follows the finger */
-        if (fly->dragging) look(fly, (fly->drag_x - x) * DRAG_BRAD16_PX, (y - fly->drag_y) * DRAG_BRAD16_PX);
-        break;
+        case SYS_POINTER_DOWN: fly->dragging = 1; break;
+        case SYS_POINTER_UP: fly->dragging = 0; break;
+        case SYS_POINTER_SCROLL: {
+            int64_t speed = button > 0 ? (int64_t)fly->speed_wu_s * 5 / 4
+                                       : (int64_t)fly->speed_wu_s * 4 / 5;
+            fly->speed_wu_s = clamp(speed, SPEED_WU_S_MIN, SPEED_WU_S_MAX);
+            return;
+        }
+        case SYS_POINTER_MOVE: /* the ground follows the finger */
+            if (fly->dragging)
+                look(fly, (fly->drag_x - x) * DRAG_BRAD16_PX, (y - fly->drag_y) * DRAG_BRAD16_PX);
+            break;
     }
     fly->drag_x = x;
     fly->drag_y = y;
@@ -90,7 +121,10 @@ void view_fly_position(view_fly *fly, int32_t x_wu, int32_t y_wu, int32_t z_wu)
 }
 
 /* Angle of (x, y) from the positive y axis, positive towards x. */
-static int32_t angle_of(int32_t x, int32_t y) { return (int32_t)lround(atan2(x, y) * (32768 / acos(-1))); }
+static int32_t angle_of(int32_t x, int32_t y)
+{
+    return (int32_t)lround(atan2(x, y) * (32768 / acos(-1)));
+}
 
 void view_fly_tilt(view_fly *fly, int32_t x_mg, int32_t y_mg, int32_t z_mg)
 {
@@ -111,8 +145,10 @@ static void move(view_fly *fly, int64_t forward_wu, int64_t right_wu)
 static void stay_inside(view_fly *fly, const ff_terrain_info *info)
 {
     int64_t edge = ff_node_edge_wu(info, 0);
-    fly->camera.pos_wu[0] = clamp(fly->camera.pos_wu[0], -BEYOND_WU, edge * info->tiles_x + BEYOND_WU);
-    fly->camera.pos_wu[1] = clamp(fly->camera.pos_wu[1], -BEYOND_WU, edge * info->tiles_y + BEYOND_WU);
+    fly->camera.pos_wu[0] = clamp(fly->camera.pos_wu[0], -BEYOND_WU,
+                                  edge * info->tiles_x + BEYOND_WU);
+    fly->camera.pos_wu[1] = clamp(fly->camera.pos_wu[1], -BEYOND_WU,
+                                  edge * info->tiles_y + BEYOND_WU);
     fly->camera.pos_wu[2] = clamp(fly->camera.pos_wu[2], -HEIGHT_WU_MAX, HEIGHT_WU_MAX);
 }
 
@@ -126,7 +162,8 @@ int view_fly_step(view_fly *fly, int64_t dt_us, const ff_client *client)
     const ff_terrain_info *info = ff_client_terrain(client);
     if (!fly->placed || !info) return 0;
     look(fly, turn * (!!(pressed & TURN_RIGHT) - !!(pressed & TURN_LEFT)), 0);
-    move(fly, way * ((pressed & FORWARD || fly->cruise) - !!(pressed & BACK)), way * (!!(pressed & RIGHT) - !!(pressed & LEFT)));
+    move(fly, way * ((pressed & FORWARD || fly->cruise) - !!(pressed & BACK)),
+         way * (!!(pressed & RIGHT) - !!(pressed & LEFT)));
     if (pressed & (RISE | SINK)) {
         int64_t z_wu = fly->camera.pos_wu[2] + way * (!!(pressed & RISE) - !!(pressed & SINK));
         fly->camera.pos_wu[2] = clamp(z_wu, -HEIGHT_WU_MAX, HEIGHT_WU_MAX);
@@ -135,7 +172,8 @@ int view_fly_step(view_fly *fly, int64_t dt_us, const ff_client *client)
     stay_inside(fly, info);
     if (ff_client_ground(client, fly->camera.pos_wu[0], fly->camera.pos_wu[1], &ground_wu)) {
         if (fly->above_wu >= 0) fly->camera.pos_wu[2] = ground_wu + fly->above_wu;
-        if (fly->camera.pos_wu[2] < ground_wu + ABOVE_GROUND_WU_MIN) fly->camera.pos_wu[2] = ground_wu + ABOVE_GROUND_WU_MIN;
+        if (fly->camera.pos_wu[2] < ground_wu + ABOVE_GROUND_WU_MIN)
+            fly->camera.pos_wu[2] = ground_wu + ABOVE_GROUND_WU_MIN;
     }
     return memcmp(&before, &fly->camera, sizeof before) != 0;
 }

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #define RELAY_BYTES 4096
-#define SEED 1
+#define SEED        1
 
 typedef struct relay { /* bytes taken from one side that the other has not yet taken */
     uint8_t bytes[RELAY_BYTES];
@@ -12,17 +12,17 @@ typedef struct relay { /* bytes taken from one side that the other has not yet t
 } relay;
 
 struct view_link {
-    sys_mutex lock;        /* guards desc, next_profile and changed */
-    sim_link_desc desc;    /* the profile chosen */
+    sys_mutex lock;     /* guards desc, next_profile and changed */
+    sim_link_desc desc; /* the profile chosen */
     unsigned next_profile;
-    int changed;           /* the worker has not yet made a link of `desc` */
+    int changed; /* the worker has not yet made a link of `desc` */
     /* the worker's */
     int64_t now_us;
     sim_link *link;
     sim_stream end;
-    sys_stream client;     /* the client's end of `link` */
+    sys_stream client; /* the client's end of `link` */
     sys_tcp tcp;
-    sys_stream wire;       /* to a real server; state NULL: `server` instead */
+    sys_stream wire; /* to a real server; state NULL: `server` instead */
     sim_server server;
     int has_server;
     relay up, down;
@@ -30,7 +30,9 @@ struct view_link {
 };
 
 static const sim_link_desc no_limits = {
-    .name = "none", .way = {[SIM_DOWN] = {.queue_bytes = 1 << 16}, [SIM_UP] = {.queue_bytes = 1 << 16}}};
+    .name = "none",
+    .way = { [SIM_DOWN] = { .queue_bytes = 1 << 16 }, [SIM_UP] = { .queue_bytes = 1 << 16 } }
+};
 
 static void drop_link(view_link *link)
 {
@@ -70,10 +72,13 @@ static int has_changed(view_link *link)
 static int relay_up(view_link *link)
 {
     for (;;) {
-        int got = sim_link_recv(link->link, SIM_UP, link->up.bytes + link->up.count, RELAY_BYTES - link->up.count, link->now_us);
+        int got = sim_link_recv(link->link, SIM_UP, link->up.bytes + link->up.count,
+                                RELAY_BYTES - link->up.count, link->now_us);
         if (got < 0) return got;
         link->up.count += (size_t)got;
-        int sent = link->up.count ? link->wire.send(link->wire.state, link->up.bytes, link->up.count) : 0;
+        int sent = link->up.count
+                       ? link->wire.send(link->wire.state, link->up.bytes, link->up.count)
+                       : 0;
         if (sent < 0) return sent;
         memmove(link->up.bytes, link->up.bytes + sent, link->up.count -= (size_t)sent);
         if (sent == 0) return FF_OK;
@@ -84,10 +89,13 @@ static int relay_down(view_link *link)
 {
     for (;;) {
         int got = link->down.count < RELAY_BYTES
-                      ? link->wire.recv(link->wire.state, link->down.bytes + link->down.count, RELAY_BYTES - link->down.count) : 0;
+                      ? link->wire.recv(link->wire.state, link->down.bytes + link->down.count,
+                                        RELAY_BYTES - link->down.count)
+                      : 0;
         if (got < 0) return got;
         link->down.count += (size_t)got;
-        int sent = sim_link_send(link->link, SIM_DOWN, link->down.bytes, link->down.count, link->now_us);
+        int sent = sim_link_send(link->link, SIM_DOWN, link->down.bytes, link->down.count,
+                                 link->now_us);
         if (sent < 0) return sent;
         memmove(link->down.bytes, link->down.bytes + sent, link->down.count -= (size_t)sent);
         if (sent == 0) return FF_OK;
@@ -106,9 +114,12 @@ static int pump(view_link *link)
 {
     int rc;
     link->now_us = sys_time_us();
-    if (!link->link || has_changed(link)) rc = FF_ERR_CLOSED;
-    else if (link->has_server) rc = sim_server_step(&link->server);
-    else if ((rc = relay_up(link)) == FF_OK) rc = relay_down(link);
+    if (!link->link || has_changed(link))
+        rc = FF_ERR_CLOSED;
+    else if (link->has_server)
+        rc = sim_server_step(&link->server);
+    else if ((rc = relay_up(link)) == FF_OK)
+        rc = relay_down(link);
     if (rc == FF_OK) return FF_OK;
     link_close(link);
     return FF_ERR_CLOSED;
@@ -138,7 +149,8 @@ static int link_reconnect(void *state)
     link->now_us = sys_time_us();
     if (!link->link || has_changed(link)) {
         rc = make_link(link);
-        if (rc == FF_OK) sim_link_cut(link->link, link->now_us); /* connecting takes its time on the new link too */
+        /* connecting takes its time on the new link too */
+        if (rc == FF_OK) sim_link_cut(link->link, link->now_us);
     }
     if (rc == FF_OK && link->wire.state) rc = link->wire.reconnect(link->wire.state);
     if (rc == FF_OK) {
@@ -148,7 +160,8 @@ static int link_reconnect(void *state)
     return rc;
 }
 
-int view_link_create(const char *address, const ff_pack *pack, const char *spec, view_link **out, sys_stream *stream)
+int view_link_create(const char *address, const ff_pack *pack, const char *spec, view_link **out,
+                     sys_stream *stream)
 {
     view_link *link = calloc(1, sizeof *link);
     int rc = FF_OK;
@@ -164,7 +177,7 @@ int view_link_create(const char *address, const ff_pack *pack, const char *spec,
         view_link_destroy(link);
         return rc;
     }
-    *stream = (sys_stream){link, link_send, link_recv, link_close, link_reconnect};
+    *stream = (sys_stream){ link, link_send, link_recv, link_close, link_reconnect };
     *out = link;
     return FF_OK;
 }

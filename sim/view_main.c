@@ -5,13 +5,16 @@ static void print_counters(const view_app *app)
 {
     ff_client_stats stats;
     ff_client_get_stats(app->client, &stats);
-    printf("{\"frames\": %u, \"drawn\": %u, \"events\": %u, \"updates\": %u, \"updates_skipped\": %u, \"triangles\": %u, "
-           "\"nodes_drawn\": %u, \"nodes_held\": %u, \"bytes_down\": %llu, \"bytes_up\": %llu, \"requests\": %u, "
-           "\"panoramas\": %u, \"low_power\": %u, \"reconnects\": %u, \"x_m\": %.1f, \"y_m\": %.1f, \"z_m\": %.1f}\n",
-           app->frame, app->drawn, app->events_handled, stats.frames_updated, stats.frames_skipped, stats.tree.triangles,
-           stats.tree.nodes_drawn, stats.tree.nodes_held, (unsigned long long)stats.bytes_down, (unsigned long long)stats.bytes_up,
-           stats.requests_sent, stats.panorama_faces, stats.low_power, stats.reconnects, app->fly.camera.pos_wu[0] / 256.0,
-           app->fly.camera.pos_wu[1] / 256.0, app->fly.camera.pos_wu[2] / 256.0);
+    printf(
+        "{\"frames\": %u, \"drawn\": %u, \"events\": %u, \"updates\": %u, \"updates_skipped\": %u, \"triangles\": %u, "
+        "\"nodes_drawn\": %u, \"nodes_held\": %u, \"bytes_down\": %llu, \"bytes_up\": %llu, \"requests\": %u, "
+        "\"panoramas\": %u, \"low_power\": %u, \"reconnects\": %u, \"x_m\": %.1f, \"y_m\": %.1f, \"z_m\": %.1f}\n",
+        app->frame, app->drawn, app->events_handled, stats.frames_updated, stats.frames_skipped,
+        stats.tree.triangles, stats.tree.nodes_drawn, stats.tree.nodes_held,
+        (unsigned long long)stats.bytes_down, (unsigned long long)stats.bytes_up,
+        stats.requests_sent, stats.panorama_faces, stats.low_power, stats.reconnects,
+        app->fly.camera.pos_wu[0] / 256.0, app->fly.camera.pos_wu[1] / 256.0,
+        app->fly.camera.pos_wu[2] / 256.0);
 }
 
 int main(int argc, char **argv)

@@ -7,20 +7,20 @@
 #include <stddef.h>
 
 typedef struct view_options {
-    const char *target;         /* ADDR:PORT or PACK */
-    const char *backend;        /* "gles1", "gl", "soft"; NULL: the first that works */
+    const char *target;  /* ADDR:PORT or PACK */
+    const char *backend; /* "gles1", "gl", "soft"; NULL: the first that works */
     int width, height;
-    const char *link;           /* spec for sim_link_parse; NULL: none */
+    const char *link; /* spec for sim_link_parse; NULL: none */
     ff_quality quality;
     ff_balance_desc balance;
-    int panorama;               /* 1 on, 0 off, -1 on for servers */
+    int panorama; /* 1 on, 0 off, -1 on for servers */
     int32_t fov_brad16;
     size_t memory_bytes;
-    int has_place;              /* --at */
+    int has_place; /* --at */
     int32_t at_x_wu, at_y_wu, above_wu;
     int32_t yaw_brad16;
     const char *script, *keys, *events, *screenshot;
-    uint32_t frames;            /* 0: until quit */
+    uint32_t frames; /* 0: until quit */
     int headless, wireframe, borders, no_hud, plain_arrays, json;
 } view_options;
 

@@ -6,14 +6,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LINE_BYTES 1024
-#define METRES_MAX 8000000.0
+#define LINE_BYTES   1024
+#define METRES_MAX   8000000.0
 #define WU_PER_METRE 256
 
-static const struct { const char *name; int code; } named_keys[] = {
-    {"left", SYS_KEY_LEFT}, {"right", SYS_KEY_RIGHT}, {"up", SYS_KEY_UP}, {"down", SYS_KEY_DOWN},
-    {"pageup", SYS_KEY_PAGE_UP}, {"pagedown", SYS_KEY_PAGE_DOWN}, {"escape", SYS_KEY_ESCAPE}, {"enter", SYS_KEY_ENTER},
-    {"space", SYS_KEY_SPACE}, {"shift", SYS_KEY_SHIFT}};
+static const struct {
+    const char *name;
+    int code;
+} named_keys[] = { { "left", SYS_KEY_LEFT },      { "right", SYS_KEY_RIGHT },
+                   { "up", SYS_KEY_UP },          { "down", SYS_KEY_DOWN },
+                   { "pageup", SYS_KEY_PAGE_UP }, { "pagedown", SYS_KEY_PAGE_DOWN },
+                   { "escape", SYS_KEY_ESCAPE },  { "enter", SYS_KEY_ENTER },
+                   { "space", SYS_KEY_SPACE },    { "shift", SYS_KEY_SHIFT } };
 enum { NAMED_KEYS = sizeof named_keys / sizeof *named_keys };
 
 /* Key code of a name, 0 unknown. */
@@ -23,7 +27,8 @@ static int key_code(const char *name)
     if (name[0] > ' ' && name[0] < 127 && !name[1]) return name[0];
     for (int i = 0; i < NAMED_KEYS; i++)
         if (!strcmp(name, named_keys[i].name)) return named_keys[i].code;
-    if (sscanf(name, "f%d%n", &number, &used) == 1 && !name[used] && number >= 1 && number <= 12) return SYS_KEY_F1 + number - 1;
+    if (sscanf(name, "f%d%n", &number, &used) == 1 && !name[used] && number >= 1 && number <= 12)
+        return SYS_KEY_F1 + number - 1;
     return 0;
 }
 
@@ -32,9 +37,12 @@ const char *view_key_name(int code)
     static char name[8];
     for (int i = 0; i < NAMED_KEYS; i++)
         if (named_keys[i].code == code) return named_keys[i].name;
-    if (code > ' ' && code < 127) snprintf(name, sizeof name, "%c", code);
-    else if (code >= SYS_KEY_F1 && code < SYS_KEY_F1 + 12) snprintf(name, sizeof name, "f%d", code - SYS_KEY_F1 + 1);
-    else snprintf(name, sizeof name, "?");
+    if (code > ' ' && code < 127)
+        snprintf(name, sizeof name, "%c", code);
+    else if (code >= SYS_KEY_F1 && code < SYS_KEY_F1 + 12)
+        snprintf(name, sizeof name, "f%d", code - SYS_KEY_F1 + 1);
+    else
+        snprintf(name, sizeof name, "?");
     return name;
 }
 
@@ -49,7 +57,9 @@ static int add(view_script *script, const view_step *step)
 
 static int add_key(view_script *script, uint32_t frame, int code, int down)
 {
-    view_step step = {.frame = frame, .kind = VIEW_STEP_EVENT, .event = {.type = SYS_EVENT_KEY, .u.key = {code, down}}};
+    view_step step = { .frame = frame,
+                       .kind = VIEW_STEP_EVENT,
+                       .event = { .type = SYS_EVENT_KEY, .u.key = { code, down } } };
     return add(script, &step);
 }
 
@@ -58,10 +68,14 @@ typedef int (*reader)(const char *arguments, view_step *step);
 
 static int read_touch(const char *arguments, view_step *step)
 {
-    static const char *const actions[] = {[SYS_POINTER_DOWN] = "down", [SYS_POINTER_MOVE] = "move", [SYS_POINTER_UP] = "up"};
+    static const char *const actions[] = {
+        [SYS_POINTER_DOWN] = "down", [SYS_POINTER_MOVE] = "move", [SYS_POINTER_UP] = "up"
+    };
     char action[8];
     int x, y, end = 0;
-    if (sscanf(arguments, "%7s %d %d%n", action, &x, &y, &end) != 3 || arguments[end] || abs(x) > 32767 || abs(y) > 32767) return -1;
+    if (sscanf(arguments, "%7s %d %d%n", action, &x, &y, &end) != 3 || arguments[end] ||
+        abs(x) > 32767 || abs(y) > 32767)
+        return -1;
     step->event.type = SYS_EVENT_POINTER;
     for (int i = 0; i < 3; i++) {
         if (strcmp(action, actions[i])) continue;
@@ -74,7 +88,10 @@ static int read_touch(const char *arguments, view_step *step)
 }
 
 /* 1, 0 for the two words allowed, -1 otherwise. */
-static int either(const char *word, const char *yes, const char *no) { return !strcmp(word, yes) ? 1 : !strcmp(word, no) ? 0 : -1; }
+static int either(const char *word, const char *yes, const char *no)
+{
+    return !strcmp(word, yes) ? 1 : !strcmp(word, no) ? 0 : -1;
+}
 
 static int read_scroll(const char *arguments, view_step *step)
 {
@@ -89,7 +106,8 @@ static int read_position(const char *arguments, view_step *step)
 {
     double m[3];
     int end = 0;
-    if (sscanf(arguments, "%lf %lf %lf%n", &m[0], &m[1], &m[2], &end) != 3 || arguments[end]) return -1;
+    if (sscanf(arguments, "%lf %lf %lf%n", &m[0], &m[1], &m[2], &end) != 3 || arguments[end])
+        return -1;
     for (int i = 0; i < 3; i++)
         if (!(m[i] > -METRES_MAX && m[i] < METRES_MAX)) return -1;
     step->event.type = SYS_EVENT_POSITION;
@@ -147,15 +165,20 @@ static int read_screenshot(const char *arguments, view_step *step)
     return step->path ? 0 : -1;
 }
 
-static const struct { const char *name; reader read; } commands[] = {
-    {"touch", read_touch}, {"scroll", read_scroll}, {"position", read_position}, {"accelerometer", read_accelerometer},
-    {"battery", read_battery}, {"interruption", read_interruption}, {"settle", read_settle}, {"quit", read_quit},
-    {"screenshot", read_screenshot}};
+static const struct {
+    const char *name;
+    reader read;
+} commands[] = { { "touch", read_touch },          { "scroll", read_scroll },
+                 { "position", read_position },    { "accelerometer", read_accelerometer },
+                 { "battery", read_battery },      { "interruption", read_interruption },
+                 { "settle", read_settle },        { "quit", read_quit },
+                 { "screenshot", read_screenshot } };
 
 /* key, down, up NAME: 1 done, 0 not a key command, -1 unknown key. */
 static int read_key(view_script *script, uint32_t frame, const char *command, const char *arguments)
 {
-    int pressed = !strcmp(command, "key") || !strcmp(command, "down"), released = !strcmp(command, "up"), code;
+    int pressed = !strcmp(command, "key") || !strcmp(command, "down"),
+        released = !strcmp(command, "up"), code;
     if (!pressed && !released) return 0;
     if (!(code = key_code(arguments))) return -1;
     if (add_key(script, frame, code, pressed)) return -1;
@@ -168,9 +191,10 @@ static int read_line(view_script *script, char *line)
     unsigned frame;
     int end = 0;
     char command[16];
-    view_step step = {.kind = VIEW_STEP_EVENT};
+    view_step step = { .kind = VIEW_STEP_EVENT };
     line[strcspn(line, "#\r\n")] = 0;
-    for (size_t n = strlen(line); n && (line[n - 1] == ' ' || line[n - 1] == '\t'); n--) line[n - 1] = 0;
+    for (size_t n = strlen(line); n && (line[n - 1] == ' ' || line[n - 1] == '\t'); n--)
+        line[n - 1] = 0;
     if (!line[strspn(line, " \t")]) return 0;
     if (sscanf(line, "%u %15s %n", &frame, command, &end) != 2) return -1;
     if (script->count && frame < script->step[script->count - 1].frame) return -1;
@@ -215,7 +239,8 @@ int view_script_keys(view_script *script, const char *keys, char *why, size_t wh
     memset(script, 0, sizeof *script);
     for (; *keys; keys++) {
         int code = *keys == ' ' ? SYS_KEY_SPACE : *keys > ' ' && *keys < 127 ? *keys : 0;
-        if (!code || add_key(script, frame, code, 1) || add_key(script, frame + VIEW_KEY_FRAMES, code, 0)) {
+        if (!code || add_key(script, frame, code, 1) ||
+            add_key(script, frame + VIEW_KEY_FRAMES, code, 0)) {
             snprintf(why, why_bytes, "no key for character %d", *keys);
             view_script_free(script);
             return -1;

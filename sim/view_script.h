@@ -1,6 +1,8 @@
-/* Scripts drive the emulator as a person would: lines "FRAME COMMAND ARGUMENTS", frames not going back, # begins a comment.
+/* Scripts drive the emulator as a person would: lines "FRAME COMMAND ARGUMENTS", frames not going
+ * back, # begins a comment.
  *
- *   key NAME | down NAME | up NAME     a..z 0..9 + - left right up down pageup pagedown escape enter space shift f1..f12;
+ *   key NAME | down NAME | up NAME     a..z 0..9 + - left right up down pageup pagedown escape
+ *       enter space shift f1..f12;
  *                                      key lets go in the same frame: for toggles
  *   touch down|move|up X Y             scroll up|down
  *   position X Y Z                     metres from the south-west corner, height above sea
@@ -32,7 +34,8 @@ typedef struct view_script {
 
 /* 0, or -1 with the reason in `why`. */
 int view_script_load(view_script *script, const char *path, char *why, size_t why_bytes);
-/* A script of key presses, one for each character, held for VIEW_KEY_FRAMES, then the key after it. */
+/* A script of key presses, one for each character, held for VIEW_KEY_FRAMES, then the key after
+ * it. */
 #define VIEW_KEY_FRAMES 5
 int view_script_keys(view_script *script, const char *keys, char *why, size_t why_bytes);
 void view_script_free(view_script *script);

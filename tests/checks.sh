@@ -10,6 +10,9 @@ result() { # STATUS WHAT
 tools/check-layers.sh . build/obj
 result $? "layers, core words, sizes and symbols"
 
+git ls-files '*.[ch]' | xargs clang-format --dry-run --Werror >/dev/null 2>&1
+result $? "all C is laid out by .clang-format (make format)"
+
 # What the documents link to is there.
 missing=$(git ls-files '*.md' 2>/dev/null | while read -r page; do
     grep -o '](\([^)#]*\))' "$page" | sed 's/^](//; s/)$//' | grep -v '^[a-z]*:' | while read -r target; do

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define METRE FF_WU_PER_METRE
+#define METRE     FF_WU_PER_METRE
 #define FACE_ROWS 20
 
 /* ---- the server's end ---- */
@@ -18,7 +18,7 @@ static void end_session(client_rig *rig)
 
 static void begin_session(client_rig *rig)
 {
-    ff_session_desc desc = {.pack = &rig->pack};
+    ff_session_desc desc = { .pack = &rig->pack };
     rig->session = ff_session_create(&desc);
     assert(rig->session);
     rig->connections++;
@@ -26,10 +26,11 @@ static void begin_session(client_rig *rig)
 
 static int make_face(const ff_face_job *job, uint8_t *out, size_t capacity)
 {
-    static uint8_t rgb[FF_FACE_SIZE_MAX * FACE_ROWS * 3], jpeg[1 << 16], columns[4 * FF_FACE_SIZE_MAX + 8];
+    static uint8_t rgb[FF_FACE_SIZE_MAX * FACE_ROWS * 3], jpeg[1 << 16],
+        columns[4 * FF_FACE_SIZE_MAX + 8];
     uint16_t top[FF_FACE_SIZE_MAX], bottom[FF_FACE_SIZE_MAX];
     unsigned size = job->request.face_size;
-    ff_message message = {.type = FF_MSG_FACE};
+    ff_message message = { .type = FF_MSG_FACE };
     ff_face *face = &message.u.face;
     face->id = job->request.id;
     face->face = job->face;
@@ -47,24 +48,26 @@ static int make_face(const ff_face_job *job, uint8_t *out, size_t capacity)
     face->top_row = (uint16_t)(size / 2 - FACE_ROWS / 2);
     face->row_count = FACE_ROWS;
     face->columns = columns;
-    face->columns_bytes = (uint32_t)ff_face_columns_encode(top, bottom, size, columns, sizeof columns);
+    face->columns_bytes = (uint32_t)ff_face_columns_encode(top, bottom, size, columns,
+                                                           sizeof columns);
     face->image = jpeg;
-    face->image_bytes = (uint32_t)sys_jpeg_encode(rgb, size, FACE_ROWS, job->request.quality, jpeg, sizeof jpeg);
+    face->image_bytes = (uint32_t)sys_jpeg_encode(rgb, size, FACE_ROWS, job->request.quality, jpeg,
+                                                  sizeof jpeg);
     return ff_message_encode(&message, out, capacity);
 }
 
 static void count_messages(client_rig *rig, const uint8_t *bytes, size_t count)
 {
     ff_message message;
-    for (int used; count && (used = ff_message_decode(bytes, count, &message)) > 0; bytes += used, count -= (size_t)used)
+    for (int used; count && (used = ff_message_decode(bytes, count, &message)) > 0;
+         bytes += used, count -= (size_t)used)
         rig->asked[message.type]++;
 }
 
 static void serve(client_rig *rig)
 {
     static uint8_t face[1 << 17];
-    if (!rig->session)
-        return;
+    if (!rig->session) return;
     int taken = ff_session_receive(rig->session, rig->inbox, rig->inbox_count, rig->now_us);
     if (taken > 0) {
         rig->inbox_count -= (size_t)taken;
@@ -82,10 +85,8 @@ static void serve(client_rig *rig)
 static int rig_send(void *state, const uint8_t *bytes, size_t count)
 {
     client_rig *rig = state;
-    if (!rig->session)
-        return FF_ERR_CLOSED;
-    if (rig->inbox_count + count > sizeof rig->inbox)
-        return 0;
+    if (!rig->session) return FF_ERR_CLOSED;
+    if (rig->inbox_count + count > sizeof rig->inbox) return 0;
     count_messages(rig, bytes, count);
     memcpy(rig->inbox + rig->inbox_count, bytes, count);
     rig->inbox_count += count;
@@ -97,8 +98,7 @@ static int rig_recv(void *state, uint8_t *bytes, size_t capacity)
 {
     client_rig *rig = state;
     const uint8_t *output;
-    if (!rig->session)
-        return FF_ERR_CLOSED;
+    if (!rig->session) return FF_ERR_CLOSED;
     if (rig->bytes_down >= rig->cut_at) {
         rig->cut_at = UINT64_MAX;
         end_session(rig);
@@ -107,12 +107,9 @@ static int rig_recv(void *state, uint8_t *bytes, size_t capacity)
     serve(rig);
     size_t count = ff_session_output(rig->session, &output);
     uint64_t limit = rig->cut_at < rig->silent_at ? rig->cut_at : rig->silent_at;
-    if (count > capacity)
-        count = capacity;
-    if (rig->chop && count > rig->chop)
-        count = rig->chop;
-    if (count > limit - rig->bytes_down)
-        count = (size_t)(limit - rig->bytes_down);
+    if (count > capacity) count = capacity;
+    if (rig->chop && count > rig->chop) count = rig->chop;
+    if (count > limit - rig->bytes_down) count = (size_t)(limit - rig->bytes_down);
     for (size_t i = 0; i < count; i++)
         bytes[i] = rig->bytes_down + i >= rig->spoil_at ? rig->spoil_with : output[i];
     ff_session_sent(rig->session, count);
@@ -123,15 +120,13 @@ static int rig_recv(void *state, uint8_t *bytes, size_t capacity)
 static void rig_close_stream(void *state)
 {
     client_rig *rig = state;
-    if (rig->session)
-        end_session(rig);
+    if (rig->session) end_session(rig);
 }
 
 static int rig_reconnect(void *state)
 {
     client_rig *rig = state;
-    if (rig->refuse)
-        return FF_ERR_SYSTEM;
+    if (rig->refuse) return FF_ERR_SYSTEM;
     begin_session(rig);
     rig->spoil_at = rig->silent_at = UINT64_MAX; /* what went wrong went wrong once */
     return FF_OK;
@@ -149,7 +144,9 @@ static void colour(void *context, int64_t x_wu, int64_t y_wu, uint8_t rgb[3])
 
 static void open_pack(client_rig *rig, unsigned texture_log2, unsigned node_log2, int variant)
 {
-    pack_fixture_desc desc = {.info = pack_fixture_info(6, 2, 2), .height = pack_fixture_hills, .colour = colour};
+    pack_fixture_desc desc = { .info = pack_fixture_info(6, 2, 2),
+                               .height = pack_fixture_hills,
+                               .colour = colour };
     size_t bytes;
     desc.info.node_log2 = (uint8_t)node_log2;
     desc.info.texture_log2 = (uint8_t)texture_log2;
@@ -169,10 +166,17 @@ void rig_open(client_rig *rig, unsigned texture_log2)
     open_pack(rig, texture_log2, 3, 0);
     rig->cut_at = rig->silent_at = rig->spoil_at = UINT64_MAX;
     rig->spoil_with = 0xff;
-    rig->stream = (sys_stream){.state = rig, .send = rig_send, .recv = rig_recv, .close = rig_close_stream,
-                               .reconnect = rig_reconnect};
-    rig->camera = (c3d_camera){.pos_wu = {1500 * METRE, 700 * METRE, 1200 * METRE}, .yaw = 3000, .pitch = -2500, .width = 240,
-                               .height = 320, .focal_q8 = 208 * 256};
+    rig->stream = (sys_stream){ .state = rig,
+                                .send = rig_send,
+                                .recv = rig_recv,
+                                .close = rig_close_stream,
+                                .reconnect = rig_reconnect };
+    rig->camera = (c3d_camera){ .pos_wu = { 1500 * METRE, 700 * METRE, 1200 * METRE },
+                                .yaw = 3000,
+                                .pitch = -2500,
+                                .width = 240,
+                                .height = 320,
+                                .focal_q8 = 208 * 256 };
     rig->desc.no_prefetch = 1;
     rig->now_us = 1000000;
 }
@@ -184,8 +188,7 @@ void rig_use_node_log2(client_rig *rig, unsigned node_log2, unsigned texture_log
 
 void rig_change_terrain(client_rig *rig)
 {
-    if (rig->session)
-        end_session(rig);
+    if (rig->session) end_session(rig);
     open_pack(rig, 0, 3, 1);
 }
 
@@ -218,8 +221,7 @@ void rig_local_client(client_rig *rig, size_t bytes)
 void rig_close(client_rig *rig)
 {
     ff_client_destroy(rig->client);
-    if (rig->session)
-        end_session(rig);
+    if (rig->session) end_session(rig);
     free(rig->memory);
     free(rig->pack_bytes);
 }
@@ -229,7 +231,8 @@ void rig_close(client_rig *rig)
 void rig_step(client_rig *rig, int64_t us)
 {
     rig->frame_us += us;
-    if (!rig->desc.use_thread) { /* else the server's time stands still: it belongs to the worker's thread */
+    /* else the server's time stands still: it belongs to the worker's thread */
+    if (!rig->desc.use_thread) {
         rig->now_us += us;
         ff_client_work(rig->client, rig->now_us);
     }
@@ -249,8 +252,10 @@ int rig_settle(client_rig *rig, unsigned frames)
     for (unsigned i = 0; i < frames && calm < 5; i++) {
         rig_step(rig, 50000);
         ff_client_stats stats = rig_stats(rig);
-        calm = stats.have_terrain && (stats.link == FF_LINK_UP || stats.link == FF_LINK_NONE) && !stats.queued && !stats.in_flight
-                   ? calm + 1 : 0;
+        calm = stats.have_terrain && (stats.link == FF_LINK_UP || stats.link == FF_LINK_NONE) &&
+                       !stats.queued && !stats.in_flight
+                   ? calm + 1
+                   : 0;
     }
     return calm >= 5;
 }
@@ -259,12 +264,10 @@ int rig_same_picture(const client_rig *a, const client_rig *b)
 {
     const ff_drawn *list_a, *list_b;
     const ff_tree *tree_a = ff_client_tree(a->client), *tree_b = ff_client_tree(b->client);
-    if (!tree_a || !tree_b)
-        return 0;
+    if (!tree_a || !tree_b) return 0;
     uint32_t count = ff_tree_drawn(tree_a, &list_a), count_b = ff_tree_drawn(tree_b, &list_b);
     unsigned side = ff_node_side(ff_client_terrain(a->client));
-    if (!count || count != count_b)
-        return 0;
+    if (!count || count != count_b) return 0;
     for (uint32_t i = 0; i < count; i++)
         if (list_a[i].key != list_b[i].key || list_a[i].coarser != list_b[i].coarser ||
             memcmp(list_a[i].heights, list_b[i].heights, side * side * sizeof(uint16_t)) != 0)

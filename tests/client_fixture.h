@@ -1,5 +1,6 @@
-/* A client over a server in the same process: the stream between them is an array that can be cut, silenced, spoilt and chopped. Faces
- * are made up: side faces show a strip of ground, UP and DOWN are empty. Time is a number. */
+/* A client over a server in the same process: the stream between them is an array that can be cut,
+ * silenced, spoilt and chopped. Faces are made up: side faces show a strip of ground, UP and DOWN
+ * are empty. Time is a number. */
 #ifndef CLIENT_FIXTURE_H
 #define CLIENT_FIXTURE_H
 
@@ -10,29 +11,29 @@
 typedef struct client_rig {
     uint8_t *pack_bytes;
     ff_pack pack;
-    ff_session *session;       /* of the present connection; NULL: none */
+    ff_session *session; /* of the present connection; NULL: none */
     sys_stream stream;
-    uint8_t inbox[4096];       /* sent by the client, not taken by the session yet */
+    uint8_t inbox[4096]; /* sent by the client, not taken by the session yet */
     size_t inbox_count;
 
     /* what goes wrong; counted in bytes to the client since the start, UINT64_MAX: never */
     uint64_t cut_at, silent_at, spoil_at;
-    uint8_t spoil_with;        /* the byte at spoil_at is this, and all after it */
-    int refuse;                /* no new connection */
-    int no_faces;              /* the renderer never answers */
-    unsigned chop;             /* recv gives at most so many bytes; 0: all there is */
+    uint8_t spoil_with; /* the byte at spoil_at is this, and all after it */
+    int refuse;         /* no new connection */
+    int no_faces;       /* the renderer never answers */
+    unsigned chop;      /* recv gives at most so many bytes; 0: all there is */
 
     uint64_t bytes_down;
     unsigned connections;
-    uint32_t asked[256];       /* messages from the client, by type */
-    int64_t now_us, frame_us;  /* of server and worker; of the frames */
+    uint32_t asked[256];      /* messages from the client, by type */
+    int64_t now_us, frame_us; /* of server and worker; of the frames */
 
     void *memory;
     size_t memory_bytes;
     ff_client_desc desc;
     ff_client *client;
     c3d_camera camera;
-    unsigned updates;          /* that said: draw */
+    unsigned updates; /* that said: draw */
 } client_rig;
 
 /* The usual pack of hills, with images when texture_log2 is not 0; no client yet. */

@@ -1,5 +1,5 @@
-/* Any bytes as a payload. Byte 0: node_log2 - 1 (bits 0-2, modulo 5), raw codec (bit 3), refinement (bit 4); bytes 1-2: max_error.
- * What decodes is compared with the slow decoder. */
+/* Any bytes as a payload. Byte 0: node_log2 - 1 (bits 0-2, modulo 5), raw codec (bit 3), refinement
+ * (bit 4); bytes 1-2: max_error. What decodes is compared with the slow decoder. */
 #include "../protocol/ff_codec.h"
 #include "slow_decoder.h"
 
@@ -12,19 +12,18 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
     static int32_t value[FF_REFINED_HEIGHTS_MAX];
-    static uint16_t parent[FF_NODE_HEIGHTS_MAX], heights[FF_REFINED_HEIGHTS_MAX], slow[FF_REFINED_HEIGHTS_MAX];
-    ff_residuals residuals = {.value = value};
-    ff_terrain_info info = {.tile_log2 = 15};
+    static uint16_t parent[FF_NODE_HEIGHTS_MAX], heights[FF_REFINED_HEIGHTS_MAX],
+        slow[FF_REFINED_HEIGHTS_MAX];
+    ff_residuals residuals = { .value = value };
+    ff_terrain_info info = { .tile_log2 = 15 };
     int rc, slow_rc, refinement;
 
-    if (count < 3)
-        return 0;
+    if (count < 3) return 0;
     refinement = bytes[0] >> 4 & 1;
     info.node_log2 = (uint8_t)((bytes[0] & 7) % FF_NODE_LOG2_MAX + 1);
     info.codec = bytes[0] & 8 ? FF_CODEC_RAW : FF_CODEC_DEFLATE;
     info.max_error = (uint16_t)((bytes[1] | bytes[2] << 8) & INT16_MAX);
-    for (uint32_t i = 0; i < FF_NODE_HEIGHTS_MAX; i++)
-        parent[i] = (uint16_t)(i * i * 40503u >> 3);
+    for (uint32_t i = 0; i < FF_NODE_HEIGHTS_MAX; i++) parent[i] = (uint16_t)(i * i * 40503u >> 3);
 
     size_t memory_bytes = ff_decoder_bytes(&info);
     void *memory = malloc(memory_bytes);
@@ -32,7 +31,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     assert(dec != NULL);
     bytes += 3;
     count -= 3;
-    rc = refinement ? ff_decode_refinement(dec, bytes, count, &residuals) : ff_decode_root(dec, bytes, count, &residuals);
+    rc = refinement ? ff_decode_refinement(dec, bytes, count, &residuals)
+                    : ff_decode_root(dec, bytes, count, &residuals);
     slow_rc = slow_decode(&info, refinement ? parent : NULL, bytes, count, slow);
     assert((rc == FF_OK) == (slow_rc == 0));
     if (rc == FF_OK) {

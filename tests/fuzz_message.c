@@ -1,4 +1,5 @@
-/* Any bytes as a message stream. What decodes must encode to the same bytes again: every message has one form only. */
+/* Any bytes as a message stream. What decodes must encode to the same bytes again: every message
+ * has one form only. */
 #include "../protocol/ff_message.h"
 
 #include <assert.h>
@@ -9,17 +10,19 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
 static void check_columns(const ff_face *face)
 {
-    uint16_t top[FF_FACE_SIZE_MAX], bottom[FF_FACE_SIZE_MAX], top_again[FF_FACE_SIZE_MAX], bottom_again[FF_FACE_SIZE_MAX];
+    uint16_t top[FF_FACE_SIZE_MAX], bottom[FF_FACE_SIZE_MAX], top_again[FF_FACE_SIZE_MAX],
+        bottom_again[FF_FACE_SIZE_MAX];
     uint8_t packed[4 * FF_FACE_SIZE_MAX + 8];
-    int rc = ff_face_columns_decode(face->columns, face->columns_bytes, face->face_size, face->row_count, top, bottom);
+    int rc = ff_face_columns_decode(face->columns, face->columns_bytes, face->face_size,
+                                    face->row_count, top, bottom);
 
-    if (rc != FF_OK)
-        return;
+    if (rc != FF_OK) return;
     for (uint32_t c = 0; c < face->face_size; c++)
         assert(top[c] <= bottom[c] && bottom[c] <= face->row_count);
     rc = ff_face_columns_encode(top, bottom, face->face_size, packed, sizeof(packed));
     assert(rc > 0);
-    rc = ff_face_columns_decode(packed, (size_t)rc, face->face_size, face->row_count, top_again, bottom_again);
+    rc = ff_face_columns_decode(packed, (size_t)rc, face->face_size, face->row_count, top_again,
+                                bottom_again);
     assert(rc == FF_OK && memcmp(top, top_again, 2u * face->face_size) == 0 &&
            memcmp(bottom, bottom_again, 2u * face->face_size) == 0);
 }
@@ -29,8 +32,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     while (count > 0) {
         ff_message message;
         int used = ff_message_decode(bytes, count, &message);
-        if (used <= 0)
-            break;
+        if (used <= 0) break;
         assert((size_t)used <= count);
         if (message.type == FF_MSG_FACE && !(message.u.face.flags & FF_FACE_EMPTY))
             check_columns(&message.u.face);

@@ -1,6 +1,7 @@
 /* A session under any bytes, cut anyhow, read anyhow, with faces that come late, wrong or never.
  * Input: steps of one byte each: kind in the two lowest bits, amount n in the rest.
- *   0, 1: the next n bytes come from the client; 2: it reads 16*n bytes; 3: n/4 seconds pass, and a face is asked for or comes back.
+ *   0, 1: the next n bytes come from the client; 2: it reads 16*n bytes; 3: n/4 seconds pass, and a
+ *       face is asked for or comes back.
  */
 #include "pack_fixture.h"
 #include "../server/ff_session.h"
@@ -14,11 +15,11 @@ static const ff_pack *the_pack(void)
     static ff_pack pack;
     static uint8_t *bytes;
     if (!bytes) {
-        pack_fixture_desc desc = { .info = pack_fixture_info(5, 2, 1), .height = pack_fixture_hills };
+        pack_fixture_desc desc = { .info = pack_fixture_info(5, 2, 1),
+                                   .height = pack_fixture_hills };
         size_t size;
         bytes = pack_fixture_make(&desc, &size);
-        if (!bytes || ff_pack_open(&pack, bytes, size) != FF_OK)
-            abort();
+        if (!bytes || ff_pack_open(&pack, bytes, size) != FF_OK) abort();
     }
     return &pack;
 }
@@ -34,8 +35,7 @@ static void feed(fuzz_run *run, const uint8_t *bytes, size_t count)
 {
     while (count > 0) {
         int taken = ff_session_receive(run->session, bytes, count, run->now_us);
-        if (taken <= 0)
-            return; /* closed, or full: the rest is lost to this client */
+        if (taken <= 0) return; /* closed, or full: the rest is lost to this client */
         bytes += taken;
         count -= (size_t)taken;
     }
@@ -49,8 +49,7 @@ static void drain(fuzz_run *run, size_t most)
     size_t count = ff_session_output(run->session, &bytes), sent = 0;
     while (sent < count && sent < most) {
         int used = ff_message_decode(bytes + sent, count - sent, &message);
-        if (used <= 0)
-            abort();
+        if (used <= 0) abort();
         sent += (size_t)used;
     }
     ff_session_sent(run->session, sent);
@@ -66,8 +65,11 @@ static void face(fuzz_run *run, unsigned amount)
         run->job_out = ff_session_next_face(run->session, &run->job);
         return;
     }
-    message.u.face = (ff_face){ .id = run->job.request.id, .face = run->job.face, .face_size = run->job.request.face_size,
-                                .flags = (uint8_t)(FF_FACE_EMPTY | (run->job.last ? FF_FACE_LAST : 0)) };
+    message.u.face =
+        (ff_face){ .id = run->job.request.id,
+                   .face = run->job.face,
+                   .face_size = run->job.request.face_size,
+                   .flags = (uint8_t)(FF_FACE_EMPTY | (run->job.last ? FF_FACE_LAST : 0)) };
     int count = amount % 3 == 0 ? FF_ERR_SYSTEM : ff_message_encode(&message, bytes, sizeof bytes);
     run->job_out = 0;
     ff_session_face_done(run->session, &run->job, bytes, count);
@@ -76,14 +78,12 @@ static void face(fuzz_run *run, unsigned amount)
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
     ff_session_desc desc = { .pack = the_pack() };
-    if (count == 0)
-        return 0;
+    if (count == 0) return 0;
     desc.out_bytes_max = bytes[0] & 1 ? 0 : 1 + bytes[0] * 8u;
     desc.requests_max = bytes[0] & 2 ? 0 : 1 + bytes[0] / 16u;
     desc.panoramas_per_minute = bytes[0] & 4 ? 0 : 3;
     fuzz_run run = { .session = ff_session_create(&desc) };
-    if (!run.session)
-        abort();
+    if (!run.session) abort();
     for (size_t at = 1; at < count;) {
         unsigned kind = bytes[at] & 3, amount = bytes[at] >> 2;
         at++;

@@ -33,8 +33,7 @@ static uint8_t *grow(writer *w, size_t more)
 
 static void put_le(uint8_t *out, uint64_t value, unsigned bytes)
 {
-    for (unsigned i = 0; i < bytes; i++)
-        out[i] = (uint8_t)(value >> (8 * i));
+    for (unsigned i = 0; i < bytes; i++) out[i] = (uint8_t)(value >> (8 * i));
 }
 
 /* ---- the ground ---- */
@@ -57,11 +56,11 @@ static void source_grid(const pack_fixture_desc *desc, ff_key key, uint32_t cell
             *out++ = desc->height(desc->context, x + i * step, y + j * step);
 }
 
-/* Height of the drawn cell at fraction (fx, fy)/step, times step: two triangles with their common edge from south-west to north-east. */
+/* Height of the drawn cell at fraction (fx, fy)/step, times step: two triangles with their common
+ * edge from south-west to north-east. */
 static int64_t cell_height(const int64_t h[4], int64_t fx, int64_t fy, int64_t step)
 {
-    if (fx >= fy)
-        return h[0] * step + (h[1] - h[0]) * fx + (h[3] - h[1]) * fy;
+    if (fx >= fy) return h[0] * step + (h[1] - h[0]) * fx + (h[3] - h[1]) * fy;
     return h[0] * step + (h[2] - h[0]) * fy + (h[3] - h[2]) * fx;
 }
 
@@ -93,53 +92,60 @@ static int texture_payload(const pack_fixture_desc *desc, ff_key key, uint8_t *o
     int32_t x, y;
     ff_node_origin_wu(&desc->info, key, &x, &y);
     uint8_t *rgb = malloc((size_t)3 * texels * texels);
-    if (!rgb)
-        return FF_ERR_MEMORY;
+    if (!rgb) return FF_ERR_MEMORY;
     for (uint32_t row = 0; row < texels; row++)
         for (uint32_t i = 0; i < texels; i++)
-            desc->colour(desc->context, x + edge * i / (texels - 1), y + edge * (texels - 1 - row) / (texels - 1),
+            desc->colour(desc->context, x + edge * i / (texels - 1),
+                         y + edge * (texels - 1 - row) / (texels - 1),
                          rgb + 3 * (row * texels + i));
     int bytes = sys_jpeg_encode(rgb, texels, texels, JPEG_QUALITY, out, capacity);
     free(rgb);
     return bytes;
 }
 
-/* decoded[]: heights of all nodes of the section's level, replaced by those of the next one after a section of refinements. */
-static int node_payload(const pack_fixture_desc *desc, enum ff_section_kind kind, ff_key key, uint8_t *out, const uint16_t *decoded,
-                        uint16_t *next)
+/* decoded[]: heights of all nodes of the section's level, replaced by those of the next one after a
+ * section of refinements. */
+static int node_payload(const pack_fixture_desc *desc, enum ff_section_kind kind, ff_key key,
+                        uint8_t *out, const uint16_t *decoded, uint16_t *next)
 {
     uint32_t node_heights = ff_node_side(&desc->info) * ff_node_side(&desc->info);
     uint64_t number = ff_pack_record_number(key);
     uint16_t source[FF_REFINED_HEIGHTS_MAX], refined[FF_REFINED_HEIGHTS_MAX];
     if (kind == FF_SECTION_ROOT) {
         source_grid(desc, key, 1u << desc->info.node_log2, source);
-        return ff_encode_root(&desc->info, source, node_error(desc, key), out, next + number * node_heights);
+        return ff_encode_root(&desc->info, source, node_error(desc, key), out,
+                              next + number * node_heights);
     }
     uint8_t child_error[4];
-    for (uint32_t q = 0; q < 4; q++)
-        child_error[q] = node_error(desc, ff_key_child(key, q));
+    for (uint32_t q = 0; q < 4; q++) child_error[q] = node_error(desc, ff_key_child(key, q));
     source_grid(desc, key, 2u << desc->info.node_log2, source);
-    int bytes = ff_encode_refinement(&desc->info, decoded + number * node_heights, source, child_error, out, refined);
+    int bytes = ff_encode_refinement(&desc->info, decoded + number * node_heights, source,
+                                     child_error, out, refined);
     for (uint32_t q = 0; q < 4; q++)
         ff_refined_child(&desc->info, refined, q, next + (4 * number + q) * node_heights);
     return bytes;
 }
 
-static void section(writer *w, enum ff_section_kind kind, uint32_t level, const uint16_t *decoded, uint16_t *next)
+static void section(writer *w, enum ff_section_kind kind, uint32_t level, const uint16_t *decoded,
+                    uint16_t *next)
 {
     static uint8_t payload[1 << 18];
     const ff_terrain_info *info = &w->desc->info;
-    uint64_t per_tile = (uint64_t)1 << (2 * level), records = (uint64_t)info->tiles_x * info->tiles_y * per_tile;
+    uint64_t per_tile = (uint64_t)1 << (2 * level),
+             records = (uint64_t)info->tiles_x * info->tiles_y * per_tile;
     ff_pack_section *s = &w->header.section[w->header.section_count++];
-    *s = (ff_pack_section){ .kind = (uint16_t)kind, .level = (uint16_t)level, .record_count = records };
+    *s = (ff_pack_section){ .kind = (uint16_t)kind,
+                            .level = (uint16_t)level,
+                            .record_count = records };
     s->index_offset = w->count;
     size_t index_bytes = (size_t)(records + 1) * 8;
     grow(w, index_bytes);
     s->data_offset = w->count;
     for (uint64_t r = 0; r < records && !w->failed; r++) {
         ff_key key = ff_key_make((uint32_t)(r / per_tile), level, (uint32_t)(r % per_tile));
-        int bytes = kind == FF_SECTION_TEXTURE ? texture_payload(w->desc, key, payload, sizeof payload)
-                                               : node_payload(w->desc, kind, key, payload, decoded, next);
+        int bytes = kind == FF_SECTION_TEXTURE
+                        ? texture_payload(w->desc, key, payload, sizeof payload)
+                        : node_payload(w->desc, kind, key, payload, decoded, next);
         uint8_t *out = bytes >= 0 ? grow(w, 4 + (size_t)bytes) : NULL;
         if (!out) {
             w->failed = 1;
@@ -152,14 +158,16 @@ static void section(writer *w, enum ff_section_kind kind, uint32_t level, const 
     }
     s->data_bytes = w->count - s->data_offset;
     s->index_crc = ff_crc32(0, w->bytes + s->index_offset, index_bytes);
-    w->header.info.checksum = ff_crc32(w->header.info.checksum, w->bytes + s->index_offset, w->count - s->index_offset);
+    w->header.info.checksum = ff_crc32(w->header.info.checksum, w->bytes + s->index_offset,
+                                       w->count - s->index_offset);
 }
 
 static void sections(writer *w)
 {
     const ff_terrain_info *info = &w->desc->info;
     uint32_t levels = ff_terrain_levels(info);
-    size_t level_heights = (size_t)info->tiles_x * info->tiles_y * ff_node_side(info) * ff_node_side(info);
+    size_t level_heights = (size_t)info->tiles_x * info->tiles_y * ff_node_side(info) *
+                           ff_node_side(info);
     uint16_t *decoded = NULL;
     for (uint32_t level = 0; level < levels && !w->failed; level++) {
         uint16_t *next = malloc((level_heights << (2 * level)) * sizeof *next);
@@ -180,12 +188,10 @@ static void sections(writer *w)
 uint8_t *pack_fixture_make(const pack_fixture_desc *desc, size_t *bytes)
 {
     writer w = { .desc = desc, .header.info = desc->info };
-    if (ff_terrain_check(&desc->info) < 0)
-        return NULL;
+    if (ff_terrain_check(&desc->info) < 0) return NULL;
     grow(&w, FF_PACK_HEADER_BYTES);
     sections(&w);
-    if (!w.failed)
-        w.failed = ff_pack_header_encode(&w.header, w.bytes) != FF_OK;
+    if (!w.failed) w.failed = ff_pack_header_encode(&w.header, w.bytes) != FF_OK;
     if (w.failed) {
         free(w.bytes);
         return NULL;
@@ -198,8 +204,14 @@ uint8_t *pack_fixture_make(const pack_fixture_desc *desc, size_t *bytes)
 
 ff_terrain_info pack_fixture_info(uint8_t tile_log2, uint32_t tiles_x, uint32_t tiles_y)
 {
-    ff_terrain_info info = { .node_log2 = 3, .tile_log2 = tile_log2, .codec = FF_CODEC_DEFLATE, .tiles_x = tiles_x, .tiles_y = tiles_y,
-                             .spacing_wu = 32 * FF_WU_PER_METRE, .hscale_q24 = 1u << 24, .height_max = 1500 };
+    ff_terrain_info info = { .node_log2 = 3,
+                             .tile_log2 = tile_log2,
+                             .codec = FF_CODEC_DEFLATE,
+                             .tiles_x = tiles_x,
+                             .tiles_y = tiles_y,
+                             .spacing_wu = 32 * FF_WU_PER_METRE,
+                             .hscale_q24 = 1u << 24,
+                             .height_max = 1500 };
     info.samples_x = (tiles_x << tile_log2) + 1;
     info.samples_y = (tiles_y << tile_log2) + 1;
     return info;
@@ -216,9 +228,12 @@ static uint32_t hash2(uint32_t x, uint32_t y)
 /* Value noise of lattice width 2^log2 with range 0..range-1, interpolated bilinearly. */
 static uint32_t noise(uint32_t x, uint32_t y, uint32_t log2, uint32_t range)
 {
-    uint32_t cx = x >> log2, cy = y >> log2, size = 1u << log2, fx = x & (size - 1), fy = y & (size - 1);
-    uint64_t south = (uint64_t)(hash2(cx, cy) % range) * (size - fx) + (uint64_t)(hash2(cx + 1, cy) % range) * fx;
-    uint64_t north = (uint64_t)(hash2(cx, cy + 1) % range) * (size - fx) + (uint64_t)(hash2(cx + 1, cy + 1) % range) * fx;
+    uint32_t cx = x >> log2, cy = y >> log2, size = 1u << log2, fx = x & (size - 1),
+             fy = y & (size - 1);
+    uint64_t south = (uint64_t)(hash2(cx, cy) % range) * (size - fx) +
+                     (uint64_t)(hash2(cx + 1, cy) % range) * fx;
+    uint64_t north = (uint64_t)(hash2(cx, cy + 1) % range) * (size - fx) +
+                     (uint64_t)(hash2(cx + 1, cy + 1) % range) * fx;
     return (uint32_t)((south * (size - fy) + north * fy) >> (2 * log2));
 }
 

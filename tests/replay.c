@@ -1,4 +1,5 @@
-/* Feeds saved inputs to a fuzz target without a fuzzer: replay FILE|DIRECTORY ... One line a file; any crash is the failure. */
+/* Feeds saved inputs to a fuzz target without a fuzzer: replay FILE|DIRECTORY ... One line a file;
+ * any crash is the failure. */
 #include <dirent.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -13,11 +14,10 @@ static int replay_file(const char *path)
     uint8_t *bytes = NULL;
     long count = -1;
 
-    if (file && fseek(file, 0, SEEK_END) == 0)
-        count = ftell(file);
-    if (count >= 0)
-        bytes = malloc((size_t)count + 1);
-    if (!bytes || fseek(file, 0, SEEK_SET) != 0 || fread(bytes, 1, (size_t)count, file) != (size_t)count) {
+    if (file && fseek(file, 0, SEEK_END) == 0) count = ftell(file);
+    if (count >= 0) bytes = malloc((size_t)count + 1);
+    if (!bytes || fseek(file, 0, SEEK_SET) != 0 ||
+        fread(bytes, 1, (size_t)count, file) != (size_t)count) {
         printf("not ok - %s cannot be read\n", path);
         count = -1;
     } else {
@@ -29,8 +29,7 @@ static int replay_file(const char *path)
         printf("ok - %s\n", path);
     }
     free(bytes);
-    if (file)
-        fclose(file);
+    if (file) fclose(file);
     return count >= 0;
 }
 
@@ -40,8 +39,7 @@ static int replay_directory(DIR *directory, const char *path)
 
     for (struct dirent *entry; (entry = readdir(directory)) != NULL;) {
         char name[4096];
-        if (entry->d_name[0] == '.')
-            continue;
+        if (entry->d_name[0] == '.') continue;
         snprintf(name, sizeof(name), "%s/%s", path, entry->d_name);
         good &= replay_file(name);
     }

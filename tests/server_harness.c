@@ -22,8 +22,7 @@ static void own_folder(char out[512])
     ssize_t length = readlink("/proc/self/exe", out, 511);
     out[length > 0 ? length : 0] = 0;
     char *slash = strrchr(out, '/');
-    if (slash)
-        *slash = 0;
+    if (slash) *slash = 0;
 }
 
 static void program_path(char *out, size_t capacity)
@@ -39,16 +38,16 @@ static int write_pack(const char *path)
     uint8_t *bytes = pack_fixture_usual(&size);
     FILE *file = fopen(path, "wb");
     int ok = bytes && file && fwrite(bytes, 1, size, file) == size;
-    if (file)
-        ok &= fclose(file) == 0;
+    if (file) ok &= fclose(file) == 0;
     free(bytes);
     return ok;
 }
 
 static void run_server(const char *pack, const char *options, int out_fd)
 {
-    char program[640], copy[256], *argument[32] = { program, (char *)"--pack", (char *)(uintptr_t)pack, (char *)"--listen",
-                                                    (char *)"127.0.0.1:0" };
+    char program[640], copy[256],
+        *argument[32] = { program, (char *)"--pack", (char *)(uintptr_t)pack, (char *)"--listen",
+                          (char *)"127.0.0.1:0" };
     int count = 5;
     program_path(program, sizeof program);
     snprintf(copy, sizeof copy, "%s", options);
@@ -79,12 +78,11 @@ int harness_start(harness_server *server, const char *options)
     char folder[512];
     memset(server, 0, sizeof *server);
     own_folder(folder);
-    snprintf(server->pack_path, sizeof server->pack_path, "%s/server-%d.ffp", folder, (int)getpid());
-    if (!write_pack(server->pack_path) || pipe2(out, O_CLOEXEC) != 0)
-        return 0;
+    snprintf(server->pack_path, sizeof server->pack_path, "%s/server-%d.ffp", folder,
+             (int)getpid());
+    if (!write_pack(server->pack_path) || pipe2(out, O_CLOEXEC) != 0) return 0;
     server->pid = fork();
-    if (server->pid == 0)
-        run_server(server->pack_path, options, out[1]);
+    if (server->pid == 0) run_server(server->pack_path, options, out[1]);
     close(out[1]);
     server->out_fd = out[0];
     server->port = read_port(out[0]);
@@ -102,8 +100,7 @@ int harness_stop(harness_server *server)
         else
             usleep(HARNESS_LOOK_US);
     }
-    if (result == -1)
-        kill(server->pid, SIGKILL);
+    if (result == -1) kill(server->pid, SIGKILL);
     close(server->out_fd);
     unlink(server->pack_path);
     return result;
@@ -115,10 +112,8 @@ int harness_children(const harness_server *server, pid_t children[HARNESS_CHILDR
     int count = 0, pid;
     snprintf(path, sizeof path, "/proc/%d/task/%d/children", (int)server->pid, (int)server->pid);
     FILE *file = fopen(path, "r");
-    if (!file)
-        return 0;
-    while (count < HARNESS_CHILDREN_MAX && fscanf(file, "%d", &pid) == 1)
-        children[count++] = pid;
+    if (!file) return 0;
+    while (count < HARNESS_CHILDREN_MAX && fscanf(file, "%d", &pid) == 1) children[count++] = pid;
     fclose(file);
     return count;
 }
@@ -130,16 +125,14 @@ static int is_zombie(pid_t pid)
     snprintf(path, sizeof path, "/proc/%d/stat", (int)pid);
     FILE *file = fopen(path, "r");
     int found = file && fscanf(file, "%*d (%*[^)]) %c", &state) == 1;
-    if (file)
-        fclose(file);
+    if (file) fclose(file);
     return found && state == 'Z';
 }
 
 int harness_gone(pid_t pid)
 {
     for (int i = 0; i < HARNESS_TRIES; i++) {
-        if ((kill(pid, 0) != 0 && errno == ESRCH) || is_zombie(pid))
-            return 1;
+        if ((kill(pid, 0) != 0 && errno == ESRCH) || is_zombie(pid)) return 1;
         usleep(HARNESS_LOOK_US);
     }
     return 0;
@@ -150,10 +143,8 @@ int harness_wait_children(const harness_server *server, int count, pid_t not_thi
     for (int i = 0; i < HARNESS_TRIES; i++) {
         pid_t child[HARNESS_CHILDREN_MAX];
         int found = harness_children(server, child), stale = 0;
-        for (int c = 0; c < found; c++)
-            stale |= child[c] == not_this;
-        if (found == count && !stale)
-            return 1;
+        for (int c = 0; c < found; c++) stale |= child[c] == not_this;
+        if (found == count && !stale) return 1;
         usleep(HARNESS_LOOK_US);
     }
     return 0;
@@ -164,17 +155,17 @@ int harness_wait_children(const harness_server *server, int count, pid_t not_thi
 harness_client *harness_connect(const harness_server *server, int greet)
 {
     harness_client *client = calloc(1, sizeof *client);
-    struct sockaddr_in address = { .sin_family = AF_INET, .sin_port = htons((uint16_t)server->port) };
+    struct sockaddr_in address = { .sin_family = AF_INET,
+                                   .sin_port = htons((uint16_t)server->port) };
     ff_message message = { .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION, 0 } };
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    if (!client)
-        return NULL;
+    if (!client) return NULL;
     client->fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     int ok = connect(client->fd, (struct sockaddr *)&address, sizeof address) == 0;
     if (ok && greet)
-        ok = harness_tell(client, &message) && harness_hear(client, &message) == 1 && message.type == FF_MSG_WELCOME;
-    if (ok)
-        return client;
+        ok = harness_tell(client, &message) && harness_hear(client, &message) == 1 &&
+             message.type == FF_MSG_WELCOME;
+    if (ok) return client;
     harness_close(client);
     return NULL;
 }
@@ -213,9 +204,9 @@ int harness_hear(harness_client *client, ff_message *message)
             i++;
             continue;
         }
-        ssize_t got = recv(client->fd, client->bytes + client->count, sizeof client->bytes - client->count, 0);
-        if (got <= 0)
-            return 0;
+        ssize_t got = recv(client->fd, client->bytes + client->count,
+                           sizeof client->bytes - client->count, 0);
+        if (got <= 0) return 0;
         client->count += (size_t)got;
     }
     return -1;
@@ -229,12 +220,12 @@ static unsigned long server_inode(const harness_server *server, const harness_cl
     char line[512];
     unsigned long inode = 0;
     FILE *table = fopen("/proc/net/tcp", "r");
-    if (!table || getsockname(client->fd, (struct sockaddr *)&mine, &size) != 0)
-        return 0;
+    if (!table || getsockname(client->fd, (struct sockaddr *)&mine, &size) != 0) return 0;
     while (!inode && fgets(line, sizeof line, table)) {
         unsigned local_port, remote_port;
         unsigned long found;
-        if (sscanf(line, " %*d: %*x:%x %*x:%x %*x %*s %*s %*s %*d %*d %lu", &local_port, &remote_port, &found) == 3 &&
+        if (sscanf(line, " %*d: %*x:%x %*x:%x %*x %*s %*s %*s %*d %*d %lu", &local_port,
+                   &remote_port, &found) == 3 &&
             local_port == (unsigned)server->port && remote_port == ntohs(mine.sin_port))
             inode = found;
     }
@@ -255,8 +246,7 @@ static int holds_socket(pid_t pid, unsigned long inode)
         target[length > 0 ? length : 0] = 0;
         held = strcmp(target, wanted) == 0;
     }
-    if (files)
-        closedir(files);
+    if (files) closedir(files);
     return held;
 }
 
@@ -266,34 +256,35 @@ pid_t harness_served_by(const harness_server *server, const harness_client *clie
     unsigned long inode = server_inode(server, client);
     int count = harness_children(server, child);
     for (int i = 0; inode && i < count; i++)
-        if (holds_socket(child[i], inode))
-            return child[i];
+        if (holds_socket(child[i], inode)) return child[i];
     return 0;
 }
 
 int harness_root_comes(harness_client *client, uint16_t id)
 {
-    ff_message message = { .type = FF_MSG_GET_NODE, .u.get = { id, FF_GET_ROOT, ff_key_make(id % 4u, 0, 0) } };
-    return harness_tell(client, &message) && harness_hear(client, &message) == 1 && message.type == FF_MSG_NODE &&
-           message.u.data.id == id;
+    ff_message message = { .type = FF_MSG_GET_NODE,
+                           .u.get = { id, FF_GET_ROOT, ff_key_make(id % 4u, 0, 0) } };
+    return harness_tell(client, &message) && harness_hear(client, &message) == 1 &&
+           message.type == FF_MSG_NODE && message.u.data.id == id;
 }
 
 int harness_panorama_comes(harness_client *client, uint16_t id)
 {
     ff_message message = { .type = FF_MSG_GET_PANORAMA };
-    message.u.panorama = (ff_get_panorama){ .id = id, .position_wu = { 500000, 500000, 400000 }, .front_wu = 50000,
-                                            .back_wu = 10000000, .face_size = 128, .quality = 70, .face_count = 4,
+    message.u.panorama = (ff_get_panorama){ .id = id,
+                                            .position_wu = { 500000, 500000, 400000 },
+                                            .front_wu = 50000,
+                                            .back_wu = 10000000,
+                                            .face_size = 128,
+                                            .quality = 70,
+                                            .face_count = 4,
                                             .face = { 0, 1, 2, 3 } };
-    if (!harness_tell(client, &message))
-        return -1;
+    if (!harness_tell(client, &message)) return -1;
     for (int faces = 0;; faces++) {
-        if (harness_hear(client, &message) != 1)
-            return -1;
-        if (message.type == FF_MSG_FAILED && message.u.failed.id == id)
-            return 0;
+        if (harness_hear(client, &message) != 1) return -1;
+        if (message.type == FF_MSG_FAILED && message.u.failed.id == id) return 0;
         if (message.type != FF_MSG_FACE || message.u.face.id != id || message.u.face.face != faces)
             return -1;
-        if (message.u.face.flags & FF_FACE_LAST)
-            return faces == 3 ? 1 : -1;
+        if (message.u.face.flags & FF_FACE_LAST) return faces == 3 ? 1 : -1;
     }
 }

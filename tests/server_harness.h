@@ -7,13 +7,18 @@
 #include <sys/types.h>
 
 #define HARNESS_CHILDREN_MAX 16
-#define HARNESS_TRIES 1500 /* bounded waits: so many looks, HARNESS_LOOK_US apart */
-#define HARNESS_LOOK_US 20000
+#define HARNESS_TRIES        1500 /* bounded waits: so many looks, HARNESS_LOOK_US apart */
+#define HARNESS_LOOK_US      20000
 
-typedef struct harness_server { pid_t pid; int port; int out_fd; char pack_path[640]; } harness_server;
+typedef struct harness_server {
+    pid_t pid;
+    int port;
+    int out_fd;
+    char pack_path[640];
+} harness_server;
 
-/* Writes pack_fixture_usual() to a file and starts build's farfield-server on it with `options` (separated by blanks) on any port.
- * 1 when it listens. */
+/* Writes pack_fixture_usual() to a file and starts build's farfield-server on it with `options`
+ * (separated by blanks) on any port. 1 when it listens. */
 int harness_start(harness_server *server, const char *options);
 /* SIGTERM; exit status of the master (-1: killed or stuck). Removes the pack. */
 int harness_stop(harness_server *server);
@@ -37,7 +42,8 @@ void harness_close(harness_client *client);
 /* 1 when sent. */
 int harness_send(harness_client *client, const void *bytes, size_t count);
 int harness_tell(harness_client *client, const ff_message *message);
-/* The next message: 1; 0 when the connection has ended; -1 after HARNESS_TRIES looks without one. */
+/* The next message: 1; 0 when the connection has ended; -1 after HARNESS_TRIES looks without
+ * one. */
 int harness_hear(harness_client *client, ff_message *message);
 /* The child that serves this client, or 0. */
 pid_t harness_served_by(const harness_server *server, const harness_client *client);

@@ -17,12 +17,12 @@ static long rounded(long sum, long divisor)
 {
     long twice = 2 * sum + divisor;
 
-    if (twice < 0)
-        return 0;
+    if (twice < 0) return 0;
     return twice / (2 * divisor) > 65535 ? 65535 : twice / (2 * divisor);
 }
 
-/* Sample number t of the line through (x, y) in direction (dx, dy): t counts known samples from the line's south or west end. */
+/* Sample number t of the line through (x, y) in direction (dx, dy): t counts known samples from the
+ * line's south or west end. */
 static long on_line(const field *f, int x, int y, int dx, int dy, int gap, int t)
 {
     return f->height[dy ? t * gap : y][dx ? t * gap : x];
@@ -31,16 +31,17 @@ static long on_line(const field *f, int x, int y, int dx, int dy, int gap, int t
 static long line_prediction(const field *f, int x, int y, int dx, int dy, int gap)
 {
     int before = (dx ? x : y) / gap, last = f->last / gap;
-    long near_low = on_line(f, x, y, dx, dy, gap, before), near_high = on_line(f, x, y, dx, dy, gap, before + 1);
+    long near_low = on_line(f, x, y, dx, dy, gap, before),
+         near_high = on_line(f, x, y, dx, dy, gap, before + 1);
 
-    if (last == 1)
-        return rounded(near_low + near_high, 2);
+    if (last == 1) return rounded(near_low + near_high, 2);
     if (before == 0)
         return rounded(7 * near_low + 10 * near_high - on_line(f, x, y, dx, dy, gap, 2), 16);
     if (before == last - 1)
         return rounded(10 * near_low + 7 * near_high - on_line(f, x, y, dx, dy, gap, last - 2), 16);
     return rounded(9 * near_low + 9 * near_high - on_line(f, x, y, dx, dy, gap, before - 1) -
-                       on_line(f, x, y, dx, dy, gap, before + 2), 16);
+                       on_line(f, x, y, dx, dy, gap, before + 2),
+                   16);
 }
 
 static long centre_prediction(const field *f, int x, int y, int half)
@@ -61,8 +62,7 @@ static void add(field *f, int x, int y, long prediction)
 {
     long height = prediction + *f->residual++ * (2 * f->maximum_error + 1);
 
-    if (f->maximum_error == 0)
-        height = ((height % 65536) + 65536) % 65536;
+    if (f->maximum_error == 0) height = ((height % 65536) + 65536) % 65536;
     f->height[y][x] = height < 0 ? 0 : height > 65535 ? 65535 : height;
 }
 
@@ -77,8 +77,7 @@ static void double_resolution(field *f, int gap)
         for (int y = half; y <= f->last; y += gap)
             add(f, x, y, line_prediction(f, x, y, 0, 1, gap));
     for (int y = half; y <= f->last; y += gap)
-        for (int x = half; x <= f->last; x += gap)
-            add(f, x, y, centre_prediction(f, x, y, half));
+        for (int x = half; x <= f->last; x += gap) add(f, x, y, centre_prediction(f, x, y, half));
 }
 
 static long bits_at(const uint8_t *bytes, long first, int count)
@@ -96,8 +95,7 @@ static int inflate_all(const uint8_t *from, size_t bytes, uint8_t *to, size_t ex
     int rc;
 
     memset(&z, 0, sizeof(z));
-    if (inflateInit2(&z, -15) != Z_OK)
-        return -1;
+    if (inflateInit2(&z, -15) != Z_OK) return -1;
     z.next_in = (z_const Bytef *)from;
     z.avail_in = (uInt)bytes;
     z.next_out = to;
@@ -113,10 +111,8 @@ static long unary_all(const uint8_t *bytes, long left, long *high, int count)
     long bit = 0;
 
     for (int i = 0; i < count; i++) {
-        for (high[i] = 0; bit < 8 * left && bits_at(bytes, bit, 1) == 1; bit++)
-            high[i]++;
-        if (bit++ >= 8 * left)
-            return -1;
+        for (high[i] = 0; bit < 8 * left && bits_at(bytes, bit, 1) == 1; bit++) high[i]++;
+        if (bit++ >= 8 * left) return -1;
     }
     return (bit + 7) / 8;
 }
@@ -133,49 +129,49 @@ static int body(int head, const uint8_t *bytes, long left, long *residual, int c
         return -1;
     memset(high, 0, sizeof(high));
     if (kind == 2) {
-        if (inflate_all(bytes + low_bytes, (size_t)(left - low_bytes), deflated, (size_t)count) != 0)
+        if (inflate_all(bytes + low_bytes, (size_t)(left - low_bytes), deflated, (size_t)count) !=
+            0)
             return -1;
-        for (int i = 0; i < count; i++)
-            high[i] = deflated[i];
+        for (int i = 0; i < count; i++) high[i] = deflated[i];
     }
-    if (kind == 3 && unary_all(bytes + low_bytes, left - low_bytes, high, count) != left - low_bytes)
+    if (kind == 3 &&
+        unary_all(bytes + low_bytes, left - low_bytes, high, count) != left - low_bytes)
         return -1;
     for (int i = 0; i < count; i++) {
         long value = (high[i] << low_bits) + bits_at(bytes, (long)i * low_bits, low_bits);
-        if (value > 65535)
-            return -1;
+        if (value > 65535) return -1;
         residual[i] = value % 2 ? -(value + 1) / 2 : value / 2;
     }
     return 0;
 }
 
 /* All residuals of a payload, corners first. */
-static int residuals(const ff_terrain_info *info, int root, const uint8_t *at, long left, long *residual, int count)
+static int residuals(const ff_terrain_info *info, int root, const uint8_t *at, long left,
+                     long *residual, int count)
 {
     int errors = root ? 1 : 4, raw = info->codec == 0, head = 0, absolute = root ? 4 : 0, stored;
 
-    if (left < 1)
-        return -1;
+    if (left < 1) return -1;
     if (!raw) {
         head = *at++;
         left--;
     }
     stored = raw ? errors : (head >> 2 & 3) == 0 ? 0 : (head >> 2 & 3) == 1 ? 1 : errors;
-    if (((head >> 2) & 3) == 3 || left < stored + 2 * absolute || (raw && left != errors + 2 * count))
+    if (((head >> 2) & 3) == 3 || left < stored + 2 * absolute ||
+        (raw && left != errors + 2 * count))
         return -1;
     for (int i = 0; i < stored; i++)
-        if (*at++ > 208)
-            return -1;
+        if (*at++ > 208) return -1;
     left -= stored;
     for (int i = 0; i < (raw ? count : absolute); i++, at += 2, left -= 2) {
         residual[i] = at[0] + 256L * at[1];
-        if (i >= absolute && residual[i] >= 32768)
-            residual[i] -= 65536;
+        if (i >= absolute && residual[i] >= 32768) residual[i] -= 65536;
     }
     return raw ? 0 : body(head, at, left, residual + absolute, count - absolute);
 }
 
-int slow_decode(const ff_terrain_info *info, const uint16_t *parent, const uint8_t *payload, size_t bytes, uint16_t *heights)
+int slow_decode(const ff_terrain_info *info, const uint16_t *parent, const uint8_t *payload,
+                size_t bytes, uint16_t *heights)
 {
     static long residual[SIDE_MAX * SIDE_MAX];
     static field f;
@@ -184,17 +180,16 @@ int slow_decode(const ff_terrain_info *info, const uint16_t *parent, const uint8
     f.last = parent ? 2 * node : node;
     f.maximum_error = info->max_error;
     f.residual = residual;
-    if (residuals(info, !parent, payload, (long)bytes, residual, parent ? (2 * node + 1) * (2 * node + 1) - count : count) != 0)
+    if (residuals(info, !parent, payload, (long)bytes, residual,
+                  parent ? (2 * node + 1) * (2 * node + 1) - count : count) != 0)
         return -1;
     if (parent) {
         for (int i = 0; i < count; i++)
             f.height[2 * (i / (node + 1))][2 * (i % (node + 1))] = parent[i];
         double_resolution(&f, 2);
     } else {
-        for (int corner = 0; corner < 4; corner++)
-            add(&f, corner % 2 * node, corner / 2 * node, 0);
-        for (int gap = node; gap > 1; gap /= 2)
-            double_resolution(&f, gap);
+        for (int corner = 0; corner < 4; corner++) add(&f, corner % 2 * node, corner / 2 * node, 0);
+        for (int gap = node; gap > 1; gap /= 2) double_resolution(&f, gap);
     }
     for (int i = 0; i < (f.last + 1) * (f.last + 1); i++)
         heights[i] = (uint16_t)f.height[i / (f.last + 1)][i % (f.last + 1)];

@@ -1,5 +1,5 @@
-/* See slow_watertight.h. Points are counted in samples of the finest level, heights in steps; three hash tables with open
- * addressing hold nodes, vertices and edges. */
+/* See slow_watertight.h. Points are counted in samples of the finest level, heights in steps; three
+ * hash tables with open addressing hold nodes, vertices and edges. */
 #include "slow_watertight.h"
 
 #include "../client/terrain/ff_strips.h"
@@ -8,9 +8,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-typedef struct point { uint32_t x, y; } point;
-typedef struct vertex { point at; uint16_t height; uint8_t used; } vertex;
-typedef struct edge { point from, to; uint8_t used, forward, backward; } edge; /* from < to */
+typedef struct point {
+    uint32_t x, y;
+} point;
+typedef struct vertex {
+    point at;
+    uint16_t height;
+    uint8_t used;
+} vertex;
+typedef struct edge {
+    point from, to;
+    uint8_t used, forward, backward;
+} edge; /* from < to */
 
 typedef struct check {
     const ff_terrain_info *info;
@@ -21,7 +30,7 @@ typedef struct check {
     vertex *vertices;
     edge *edges;
     uint32_t node_mask, vertex_mask, edge_mask;
-    unsigned levels;      /* finest level listed */
+    unsigned levels; /* finest level listed */
     char *why;
     size_t why_bytes;
 } check;
@@ -30,8 +39,7 @@ static int fault(check *c, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
-    if (c->why && c->why_bytes)
-        vsnprintf(c->why, c->why_bytes, format, arguments);
+    if (c->why && c->why_bytes) vsnprintf(c->why, c->why_bytes, format, arguments);
     va_end(arguments);
     return 0;
 }
@@ -47,8 +55,7 @@ static uint64_t packed(point p) { return (uint64_t)p.x << 32 | p.y; }
 static uint32_t table_size(uint64_t entries)
 {
     uint32_t size = 16;
-    while (size < 2 * entries)
-        size *= 2;
+    while (size < 2 * entries) size *= 2;
     return size;
 }
 
@@ -57,8 +64,7 @@ static uint32_t table_size(uint64_t entries)
 static ff_key *node_place(const check *c, ff_key key)
 {
     uint32_t at = mixed(key, 0) & c->node_mask;
-    while (c->nodes[at] != FF_KEY_NONE && c->nodes[at] != key)
-        at = (at + 1) & c->node_mask;
+    while (c->nodes[at] != FF_KEY_NONE && c->nodes[at] != key) at = (at + 1) & c->node_mask;
     return &c->nodes[at];
 }
 
@@ -69,15 +75,14 @@ static int node_ok(check *c, const ff_drawn *drawn)
     if (!ff_terrain_has_node(c->info, drawn->key))
         return fault(c, "key %llx is not of this terrain", key);
     ff_node_origin_wu(c->info, drawn->key, &x, &y);
-    if (drawn->origin_wu[0] != x || drawn->origin_wu[1] != y || drawn->origin_wu[2] != ff_height_wu(c->info, 32768)
-        || drawn->cell_wu != ff_node_cell_wu(c->info, ff_key_level(drawn->key)))
+    if (drawn->origin_wu[0] != x || drawn->origin_wu[1] != y ||
+        drawn->origin_wu[2] != ff_height_wu(c->info, 32768) ||
+        drawn->cell_wu != ff_node_cell_wu(c->info, ff_key_level(drawn->key)))
         return fault(c, "node %llx has a wrong origin or cell", key);
     ff_key *place = node_place(c, drawn->key);
-    if (*place == drawn->key)
-        return fault(c, "node %llx is listed twice", key);
+    if (*place == drawn->key) return fault(c, "node %llx is listed twice", key);
     *place = drawn->key;
-    if (ff_key_level(drawn->key) > c->levels)
-        c->levels = ff_key_level(drawn->key);
+    if (ff_key_level(drawn->key) > c->levels) c->levels = ff_key_level(drawn->key);
     return 1;
 }
 
@@ -86,7 +91,8 @@ static int no_ancestor_listed(check *c, ff_key key)
     for (ff_key up = key; ff_key_level(up) > 0;) {
         up = ff_key_parent(up);
         if (*node_place(c, up) == up)
-            return fault(c, "node %llx lies on listed node %llx", (unsigned long long)key, (unsigned long long)up);
+            return fault(c, "node %llx lies on listed node %llx", (unsigned long long)key,
+                         (unsigned long long)up);
     }
     return 1;
 }
@@ -96,14 +102,13 @@ static int covered(const check *c, int64_t x, int64_t y)
 {
     unsigned n = c->info->tile_log2;
     int64_t tile_x = x >> n, tile_y = y >> n;
-    if (x < 0 || y < 0 || tile_x >= c->info->tiles_x || tile_y >= c->info->tiles_y)
-        return 0;
+    if (x < 0 || y < 0 || tile_x >= c->info->tiles_x || tile_y >= c->info->tiles_y) return 0;
     uint32_t tile = (uint32_t)(tile_y * c->info->tiles_x + tile_x);
     uint32_t in_x = (uint32_t)(x & ((1 << n) - 1)), in_y = (uint32_t)(y & ((1 << n) - 1));
     for (unsigned level = 0; level <= c->levels; level++) {
-        ff_key key = ff_key_make(tile, level, ff_morton_encode(in_x >> (n - level), in_y >> (n - level)));
-        if (*node_place(c, key) == key)
-            return 1;
+        ff_key key = ff_key_make(tile, level,
+                                 ff_morton_encode(in_x >> (n - level), in_y >> (n - level)));
+        if (*node_place(c, key) == key) return 1;
     }
     return 0;
 }
@@ -116,8 +121,9 @@ static int add_vertex(check *c, point at, uint16_t height)
     while (c->vertices[i].used && packed(c->vertices[i].at) != packed(at))
         i = (i + 1) & c->vertex_mask;
     if (c->vertices[i].used && c->vertices[i].height != height)
-        return fault(c, "crack: vertex %u,%u has heights %u and %u", at.x, at.y, c->vertices[i].height, height);
-    c->vertices[i] = (vertex){at, height, 1};
+        return fault(c, "crack: vertex %u,%u has heights %u and %u", at.x, at.y,
+                     c->vertices[i].height, height);
+    c->vertices[i] = (vertex){ at, height, 1 };
     return 1;
 }
 
@@ -126,7 +132,8 @@ static int add_edge(check *c, point from, point to)
     int forward = packed(from) < packed(to);
     point a = forward ? from : to, b = forward ? to : from;
     uint32_t i = mixed(packed(a), packed(b)) & c->edge_mask;
-    while (c->edges[i].used && (packed(c->edges[i].from) != packed(a) || packed(c->edges[i].to) != packed(b)))
+    while (c->edges[i].used &&
+           (packed(c->edges[i].from) != packed(a) || packed(c->edges[i].to) != packed(b)))
         i = (i + 1) & c->edge_mask;
     edge *e = &c->edges[i];
     e->used = 1;
@@ -148,17 +155,16 @@ static int64_t doubled_area(const point p[3])
 static int add_strip(check *c, const ff_drawn *drawn, unsigned id, int64_t *area)
 {
     uint32_t side = ff_node_side(c->info), cell = (uint32_t)drawn->cell_wu / c->info->spacing_wu;
-    uint32_t x = (uint32_t)drawn->origin_wu[0] / c->info->spacing_wu, y = (uint32_t)drawn->origin_wu[1] / c->info->spacing_wu;
+    uint32_t x = (uint32_t)drawn->origin_wu[0] / c->info->spacing_wu,
+             y = (uint32_t)drawn->origin_wu[1] / c->info->spacing_wu;
     const uint16_t *index = &c->strips.index[c->strips.first[id]];
     for (unsigned i = 0; i + 2 < c->strips.length[id]; i++) {
-        uint16_t v[3] = {index[i], index[i + 1 + (i & 1)], index[i + 2 - (i & 1)]};
-        if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0])
-            continue;
+        uint16_t v[3] = { index[i], index[i + 1 + (i & 1)], index[i + 2 - (i & 1)] };
+        if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
         point p[3];
         for (unsigned j = 0; j < 3; j++) {
-            if (v[j] >= side * side)
-                return fault(c, "strip %u runs out of its node", id);
-            p[j] = (point){x + v[j] % side * cell, y + v[j] / side * cell};
+            if (v[j] >= side * side) return fault(c, "strip %u runs out of its node", id);
+            p[j] = (point){ x + v[j] % side * cell, y + v[j] / side * cell };
         }
         int64_t doubled = doubled_area(p);
         if (doubled <= 0)
@@ -178,8 +184,7 @@ static int add_node(check *c, const ff_drawn *drawn)
     unsigned strips = ff_strips_for(drawn->coarser, strip);
     int64_t area = 0, edge_samples = (int64_t)1 << (c->info->tile_log2 - ff_key_level(drawn->key));
     for (unsigned i = 0; i < strips; i++) {
-        if (!add_strip(c, drawn, strip[i], &area))
-            return 0;
+        if (!add_strip(c, drawn, strip[i], &area)) return 0;
     }
     if (area != 2 * edge_samples * edge_samples)
         return fault(c, "node %llx is not covered exactly", (unsigned long long)drawn->key);
@@ -193,7 +198,8 @@ static int border_ok(check *c, const edge *e)
     point from = e->forward ? e->from : e->to, to = e->forward ? e->to : e->from;
     int64_t dx = (int64_t)to.x - from.x, dy = (int64_t)to.y - from.y;
     if (dx != 0 && dy != 0)
-        return fault(c, "crack: slanting edge %u,%u to %u,%u has no partner", from.x, from.y, to.x, to.y);
+        return fault(c, "crack: slanting edge %u,%u to %u,%u has no partner", from.x, from.y, to.x,
+                     to.y);
     /* The inside is on the left; the unit squares just to the right, at both ends, must be free. */
     int64_t x_first = from.x - (dy < 0) - (dx < 0), y_first = from.y - (dx > 0) - (dy < 0);
     int64_t x_last = to.x - (dy < 0) - (dx > 0), y_last = to.y - (dx > 0) - (dy > 0);
@@ -205,27 +211,24 @@ static int border_ok(check *c, const edge *e)
 static int all_ok(check *c)
 {
     for (uint32_t i = 0; i < c->count; i++) {
-        if (!node_ok(c, &c->list[i]))
-            return 0;
+        if (!node_ok(c, &c->list[i])) return 0;
     }
     for (uint32_t i = 0; i < c->count; i++) {
-        if (!no_ancestor_listed(c, c->list[i].key) || !add_node(c, &c->list[i]))
-            return 0;
+        if (!no_ancestor_listed(c, c->list[i].key) || !add_node(c, &c->list[i])) return 0;
     }
     for (uint32_t i = 0; i <= c->edge_mask; i++) {
-        if (c->edges[i].forward != c->edges[i].backward && !border_ok(c, &c->edges[i]))
-            return 0;
+        if (c->edges[i].forward != c->edges[i].backward && !border_ok(c, &c->edges[i])) return 0;
     }
     return 1;
 }
 
-int slow_watertight_check(const ff_terrain_info *info, const ff_drawn *list, uint32_t count, char *why, size_t why_bytes)
+int slow_watertight_check(const ff_terrain_info *info, const ff_drawn *list, uint32_t count,
+                          char *why, size_t why_bytes)
 {
     check *c = calloc(1, sizeof *c);
-    if (!c)
-        return 0;
+    if (!c) return 0;
     uint64_t side = ff_node_side(info), cells = (side - 1) * (side - 1);
-    *c = (check){.info = info, .list = list, .count = count, .why = why, .why_bytes = why_bytes};
+    *c = (check){ .info = info, .list = list, .count = count, .why = why, .why_bytes = why_bytes };
     c->node_mask = table_size(count) - 1;
     c->vertex_mask = table_size(count * side * side) - 1;
     c->edge_mask = table_size(count * (3 * cells + 2 * side)) - 1;
@@ -238,8 +241,7 @@ int slow_watertight_check(const ff_terrain_info *info, const ff_drawn *list, uin
     } else if (ff_strips_make(&c->strips, info->node_log2) < 0) {
         fault(c, "terrain's nodes have no strips");
     } else {
-        for (uint32_t i = 0; i <= c->node_mask; i++)
-            c->nodes[i] = FF_KEY_NONE;
+        for (uint32_t i = 0; i <= c->node_mask; i++) c->nodes[i] = FF_KEY_NONE;
         ok = all_ok(c);
     }
     free(c->nodes);

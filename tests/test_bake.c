@@ -1,5 +1,5 @@
-/* The pieces of farfield-bake that hold promises by themselves: geometric error, void filling, densifying, tile choice, ordered
- * jobs, and a tile's records seen by a decoder. */
+/* The pieces of farfield-bake that hold promises by themselves: geometric error, void filling,
+ * densifying, tile choice, ordered jobs, and a tile's records seen by a decoder. */
 #include "../platform/sys.h"
 #include "../protocol/ff_codec.h"
 #include "../tools/bake_densify.h"
@@ -24,7 +24,8 @@ static uint32_t next_random(uint32_t *state) { return *state = *state * 1664525u
 
 /* ---- geometric error against plain double precision over every sample ---- */
 
-static double drawn_at(const uint16_t *drawn, size_t pitch, uint32_t cell, uint32_t x, uint32_t y, uint32_t edge)
+static double drawn_at(const uint16_t *drawn, size_t pitch, uint32_t cell, uint32_t x, uint32_t y,
+                       uint32_t edge)
 {
     uint32_t i = x == edge ? x / cell - 1 : x / cell, j = y == edge ? y / cell - 1 : y / cell;
     const uint16_t *sw = drawn + j * cell * pitch + i * cell;
@@ -37,7 +38,8 @@ static void check_error(uint32_t cells, uint32_t cell, uint32_t seed)
 {
     uint32_t edge = cells * cell;
     size_t pitch = edge + 3;
-    uint16_t *source = test_malloc(pitch * (edge + 1) * sizeof *source), *drawn = test_malloc(pitch * (edge + 1) * sizeof *drawn);
+    uint16_t *source = test_malloc(pitch * (edge + 1) * sizeof *source),
+             *drawn = test_malloc(pitch * (edge + 1) * sizeof *drawn);
     for (size_t i = 0; i < pitch * (edge + 1); i++) {
         source[i] = (uint16_t)(next_random(&seed) >> 16);
         drawn[i] = (uint16_t)(source[i] ^ (seed >> 28));
@@ -45,8 +47,10 @@ static void check_error(uint32_t cells, uint32_t cell, uint32_t seed)
     double worst = 0;
     for (uint32_t y = 0; y <= edge; y++)
         for (uint32_t x = 0; x <= edge; x++)
-            worst = fmax(worst, fabs(drawn_at(drawn, pitch, cell, x, y, edge) - source[y * pitch + x]));
-    assert_int_equal(bake_node_error(source, drawn, pitch, cells, cell), (uint32_t)ceil(worst - 1e-6));
+            worst = fmax(worst,
+                         fabs(drawn_at(drawn, pitch, cell, x, y, edge) - source[y * pitch + x]));
+    assert_int_equal(bake_node_error(source, drawn, pitch, cells, cell),
+                     (uint32_t)ceil(worst - 1e-6));
     test_free(source);
     test_free(drawn);
 }
@@ -65,7 +69,8 @@ static void test_node_error_of_a_plane_is_nothing(void **state)
 {
     uint16_t plane[33 * 33];
     (void)state;
-    for (uint32_t i = 0; i < 33 * 33; i++) plane[i] = (uint16_t)(1000 + 17 * (i % 33) + 40 * (i / 33));
+    for (uint32_t i = 0; i < 33 * 33; i++)
+        plane[i] = (uint16_t)(1000 + 17 * (i % 33) + 40 * (i / 33));
     assert_int_equal(bake_node_error(plane, plane, 33, 4, 8), 0);
     plane[33 * 5 + 9] = (uint16_t)(plane[33 * 5 + 9] + 3);
     assert_int_equal(bake_node_error(plane, plane, 33, 4, 8), 3);
@@ -76,7 +81,8 @@ static void test_node_error_of_a_plane_is_nothing(void **state)
 static void write_grid(bake_grid *grid, uint32_t width, uint32_t height, const float *values)
 {
     assert_int_equal(bake_grid_open(grid, width, height, sizeof(float)), 0);
-    for (uint32_t j = 0; j < height; j++) assert_int_equal(bake_grid_write(grid, j, 0, width, values + (size_t)j * width), 0);
+    for (uint32_t j = 0; j < height; j++)
+        assert_int_equal(bake_grid_write(grid, j, 0, width, values + (size_t)j * width), 0);
 }
 
 static void test_fill_keeps_what_is_known(void **state)
@@ -86,12 +92,14 @@ static void test_fill_keeps_what_is_known(void **state)
     bake_grid grid;
     (void)state;
     for (int i = 0; i < W * H; i++) {
-        int x = i % W, y = i / W, is_void = (x > 15 && x < 40 && y > 8 && y < 30) || i == 0 || x == W - 1;
+        int x = i % W, y = i / W,
+            is_void = (x > 15 && x < 40 && y > 8 && y < 30) || i == 0 || x == W - 1;
         before[i] = is_void ? NAN : (float)(100 + 3 * x + 2 * y);
     }
     write_grid(&grid, W, H, before);
     assert_int_equal(bake_fill_voids(&grid), 0);
-    for (uint32_t j = 0; j < H; j++) assert_int_equal(bake_grid_read(&grid, j, 0, W, after + (size_t)j * W), 0);
+    for (uint32_t j = 0; j < H; j++)
+        assert_int_equal(bake_grid_read(&grid, j, 0, W, after + (size_t)j * W), 0);
     for (int i = 0; i < W * H; i++) {
         if (!isnan(before[i])) assert_true(after[i] == before[i]);
         /* a slope goes on through the hole, within a fraction of the rise across it */
@@ -108,7 +116,8 @@ static void test_fill_from_a_single_sample(void **state)
     for (int i = 0; i < 12; i++) values[i] = i == 7 ? 42.0f : NAN;
     write_grid(&grid, 4, 3, values);
     assert_int_equal(bake_fill_voids(&grid), 0);
-    for (uint32_t j = 0; j < 3; j++) assert_int_equal(bake_grid_read(&grid, j, 0, 4, out + 4 * j), 0);
+    for (uint32_t j = 0; j < 3; j++)
+        assert_int_equal(bake_grid_read(&grid, j, 0, 4, out + 4 * j), 0);
     for (int i = 0; i < 12; i++) assert_true(out[i] == 42.0f);
     bake_grid_close(&grid);
 }
@@ -120,10 +129,11 @@ static void test_densify_keeps_samples_and_flat_water(void **state)
     enum { W = 40, H = 30, N = 4, FINE = (W - 1) * N + 1 };
     static float values[W * H], row[FINE];
     uint32_t seed = 9;
-    double gt[6] = {100, 8, 0, 500, 0, -8};
+    double gt[6] = { 100, 8, 0, 500, 0, -8 };
     bake_grid grid;
     (void)state;
-    for (int i = 0; i < W * H; i++) values[i] = i % W < W / 2 ? 5.0f : (float)(5 + (next_random(&seed) >> 24));
+    for (int i = 0; i < W * H; i++)
+        values[i] = i % W < W / 2 ? 5.0f : (float)(5 + (next_random(&seed) >> 24));
     write_grid(&grid, W, H, values);
     assert_int_equal(bake_densify(&grid, gt, N), 0);
     assert_int_equal(grid.width, FINE);
@@ -132,7 +142,8 @@ static void test_densify_keeps_samples_and_flat_water(void **state)
     int invented = 0;
     for (uint32_t j = 0; j < grid.height; j++) {
         assert_int_equal(bake_grid_read(&grid, j, 0, FINE, row), 0);
-        for (uint32_t i = 0; j % N == 0 && i < FINE; i += N) assert_true(row[i] == values[j / N * W + i / N]);
+        for (uint32_t i = 0; j % N == 0 && i < FINE; i += N)
+            assert_true(row[i] == values[j / N * W + i / N]);
         for (uint32_t i = 0; i < (W / 2 - 8) * N; i++) assert_true(row[i] == 5.0f);
         invented += row[FINE - 2] != row[FINE - 1];
     }
@@ -155,18 +166,29 @@ static void test_tile_size_suits_the_raster(void **state)
 
 static ff_terrain_info small_info(uint16_t max_error)
 {
-    return (ff_terrain_info){.node_log2 = 2, .tile_log2 = 5, .codec = FF_CODEC_DEFLATE, .max_error = max_error, .height_max = 65535,
-                             .flags = max_error ? FF_TERRAIN_LOSSY : 0, .tiles_x = 2, .tiles_y = 1, .samples_x = 50,
-                             .samples_y = 20, .spacing_wu = 256, .hscale_q24 = 1 << 24};
+    return (ff_terrain_info){ .node_log2 = 2,
+                              .tile_log2 = 5,
+                              .codec = FF_CODEC_DEFLATE,
+                              .max_error = max_error,
+                              .height_max = 65535,
+                              .flags = max_error ? FF_TERRAIN_LOSSY : 0,
+                              .tiles_x = 2,
+                              .tiles_y = 1,
+                              .samples_x = 50,
+                              .samples_y = 20,
+                              .spacing_wu = 256,
+                              .hscale_q24 = 1 << 24 };
 }
 
-static void load_noise(bake_tile *tile, const ff_terrain_info *info, bake_grid *grid, uint32_t number)
+static void load_noise(bake_tile *tile, const ff_terrain_info *info, bake_grid *grid,
+                       uint32_t number)
 {
     uint16_t row[50];
     uint32_t seed = 77;
     assert_int_equal(bake_grid_open(grid, 50, 20, sizeof(uint16_t)), 0);
     for (uint32_t j = 0; j < 20; j++) {
-        for (int i = 0; i < 50; i++) row[i] = (uint16_t)(20000 + 40 * j + (next_random(&seed) >> 23));
+        for (int i = 0; i < 50; i++)
+            row[i] = (uint16_t)(20000 + 40 * j + (next_random(&seed) >> 23));
         assert_int_equal(bake_grid_write(grid, j, 0, 50, row), 0);
     }
     assert_int_equal(bake_tile_open(tile, info), 0);
@@ -189,7 +211,8 @@ static void test_tile_repeats_the_rim(void **state)
     bake_grid_close(&grid);
 }
 
-/* Decoding the records gives what the encoder says it gives, within the bound, and errors that were measured. */
+/* Decoding the records gives what the encoder says it gives, within the bound, and errors that were
+ * measured. */
 static void check_records(uint16_t max_error)
 {
     ff_terrain_info info = small_info(max_error);
@@ -197,29 +220,39 @@ static void check_records(uint16_t max_error)
     bake_grid grid;
     int32_t value[FF_REFINED_HEIGHTS_MAX];
     uint16_t node[FF_NODE_HEIGHTS_MAX];
-    ff_residuals residuals = {.value = value};
+    ff_residuals residuals = { .value = value };
     load_noise(&tile, &info, &grid, 0);
     assert_int_equal(bake_tile_encode(&tile), 0);
-    for (int i = 0; i < 33 * 33; i++) assert_true(abs(tile.decoded[i] - tile.source[i]) <= max_error);
+    for (int i = 0; i < 33 * 33; i++)
+        assert_true(abs(tile.decoded[i] - tile.source[i]) <= max_error);
     size_t bytes = ff_decoder_bytes(&info);
     void *memory = test_malloc(bytes);
     ff_decoder *decoder = ff_decoder_create(&info, memory, bytes);
     assert_non_null(decoder);
-    assert_int_equal(ff_decode_root(decoder, tile.level[0].bytes, tile.level[0].length[0], &residuals), FF_OK);
+    assert_int_equal(
+        ff_decode_root(decoder, tile.level[0].bytes, tile.level[0].length[0], &residuals), FF_OK);
     ff_reconstruct_root(&info, &residuals, node);
-    for (int i = 0; i < 25; i++) assert_int_equal(node[i], tile.decoded[i / 5 * 8 * 33 + i % 5 * 8]);
-    assert_int_equal(residuals.child_error[0], ff_geometric_error_encode(bake_node_error(tile.source, tile.decoded, 33, 4, 8)));
-    for (uint32_t l = 1; l < ff_terrain_levels(&info); l++) assert_int_equal(tile.level[l].record_count, 1u << (2 * (l - 1)));
-    const bake_blob *middle = &tile.level[2]; /* first refinement of level 1: children of 8 x 8 samples at the south-west */
-    assert_int_equal(ff_decode_refinement(decoder, middle->bytes, middle->length[0], &residuals), FF_OK);
+    for (int i = 0; i < 25; i++)
+        assert_int_equal(node[i], tile.decoded[i / 5 * 8 * 33 + i % 5 * 8]);
+    assert_int_equal(residuals.child_error[0], ff_geometric_error_encode(bake_node_error(
+                                                   tile.source, tile.decoded, 33, 4, 8)));
+    for (uint32_t l = 1; l < ff_terrain_levels(&info); l++)
+        assert_int_equal(tile.level[l].record_count, 1u << (2 * (l - 1)));
+    /* first refinement of level 1: children of 8 x 8 samples at the south-west */
+    const bake_blob *middle = &tile.level[2];
+    assert_int_equal(ff_decode_refinement(decoder, middle->bytes, middle->length[0], &residuals),
+                     FF_OK);
     for (int q = 0; q < 4; q++) {
         int at = (q & 1) * 8 + (q >> 1) * 8 * 33;
         uint32_t steps = bake_node_error(tile.source + at, tile.decoded + at, 33, 4, 2);
         assert_int_equal(residuals.child_error[q], ff_geometric_error_encode(steps));
     }
-    const bake_blob *finest = &tile.level[3]; /* refinements of level 2: their children are the data itself */
-    assert_int_equal(ff_decode_refinement(decoder, finest->bytes, finest->length[0], &residuals), FF_OK);
-    for (int q = 0; q < 4; q++) assert_true(ff_geometric_error_decode(residuals.child_error[q]) <= max_error);
+    /* refinements of level 2: their children are the data itself */
+    const bake_blob *finest = &tile.level[3];
+    assert_int_equal(ff_decode_refinement(decoder, finest->bytes, finest->length[0], &residuals),
+                     FF_OK);
+    for (int q = 0; q < 4; q++)
+        assert_true(ff_geometric_error_decode(residuals.child_error[q]) <= max_error);
     test_free(memory);
     bake_tile_close(&tile);
     bake_grid_close(&grid);
@@ -258,8 +291,8 @@ static void test_jobs_are_taken_in_order(void **state)
 {
     (void)state;
     for (int threads = 1; threads <= 8; threads++) {
-        ledger l = {.fail_at = UINT32_MAX};
-        bake_jobs jobs = {"test", JOBS, threads, &l, make_job, take_job};
+        ledger l = { .fail_at = UINT32_MAX };
+        bake_jobs jobs = { "test", JOBS, threads, &l, make_job, take_job };
         assert_int_equal(bake_jobs_run(&jobs), 0);
         assert_int_equal(l.count, JOBS);
         for (uint32_t i = 0; i < JOBS; i++) assert_int_equal(l.taken[i], i);
@@ -268,8 +301,8 @@ static void test_jobs_are_taken_in_order(void **state)
 
 static void test_a_failed_job_ends_all(void **state)
 {
-    ledger l = {.fail_at = 50};
-    bake_jobs jobs = {"test", JOBS, 4, &l, make_job, take_job};
+    ledger l = { .fail_at = 50 };
+    bake_jobs jobs = { "test", JOBS, 4, &l, make_job, take_job };
     (void)state;
     assert_int_equal(bake_jobs_run(&jobs), -1);
     assert_true(l.count <= 50);

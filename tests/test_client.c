@@ -1,4 +1,5 @@
-/* The client as a whole: pictures over a stream and over a pack, panoramas, images, memory, settings, stillness, sameness. */
+/* The client as a whole: pictures over a stream and over a pack, panoramas, images, memory,
+ * settings, stillness, sameness. */
 #include "client_fixture.h"
 #include "../client/ff_client_local.h"
 #include "../client/terrain/ff_texture_map.h"
@@ -10,7 +11,7 @@
 
 #include <cmocka.h>
 
-#define MB ((size_t)1 << 20)
+#define MB    ((size_t)1 << 20)
 #define METRE FF_WU_PER_METRE
 
 static ff_request_counts counts_of(client_rig *rig)
@@ -24,7 +25,8 @@ static ff_request_counts counts_of(client_rig *rig)
 static void assert_requests_add_up(client_rig *rig)
 {
     ff_request_counts c = counts_of(rig);
-    assert_int_equal(c.made, c.done + c.failed + c.cancelled + c.dropped + c.queued + c.in_flight + c.arriving);
+    assert_int_equal(c.made, c.done + c.failed + c.cancelled + c.dropped + c.queued + c.in_flight +
+                                 c.arriving);
 }
 
 static void same_picture_over_stream_and_pack(void **state)
@@ -60,14 +62,14 @@ static void still_camera_means_stillness(void **state)
     ff_client_stats before = rig_stats(&rig);
     uint64_t hash = ff_client_geometry_hash(rig.client);
     unsigned updates = rig.updates;
-    for (int i = 0; i < 200; i++)
-        rig_step(&rig, 50000);
+    for (int i = 0; i < 200; i++) rig_step(&rig, 50000);
     ff_client_stats after = rig_stats(&rig);
     assert_int_equal(rig.updates, updates);
     assert_int_equal(after.requests_sent, before.requests_sent);
     assert_int_equal(after.frames_skipped, before.frames_skipped + 200);
     assert_int_equal(after.bytes_up, before.bytes_up);
-    assert_int_equal(after.tree.selects + after.tree.selects_skipped, before.tree.selects + before.tree.selects_skipped);
+    assert_int_equal(after.tree.selects + after.tree.selects_skipped,
+                     before.tree.selects + before.tree.selects_skipped);
     assert_int_equal(ff_client_geometry_hash(rig.client), hash);
     rig_close(&rig);
 }
@@ -161,12 +163,13 @@ static void panorama_follows_the_rules(void **state)
     assert_true(rig_settle(&rig, 400));
     assert_true(ff_client_panorama(rig.client, taken_wu, &faces));
     assert_memory_equal(taken_wu, rig.camera.pos_wu, sizeof taken_wu);
-    assert_int_equal(faces, ff_panorama_faces_in_view(&rig.camera)); /* and no others, however long he stays */
-    for (int i = 0; i < 62; i++)
-        rig_step(&rig, 500000);
+    /* and no others, however long he stays */
+    assert_int_equal(faces, ff_panorama_faces_in_view(&rig.camera));
+    for (int i = 0; i < 62; i++) rig_step(&rig, 500000);
     assert_int_equal(rig.asked[FF_MSG_GET_PANORAMA], 1);
     unsigned seen = 0;
-    for (int i = 0; i < 200; i++) { /* 18 degrees a second: a face is there before it comes into view */
+    /* 18 degrees a second: a face is there before it comes into view */
+    for (int i = 0; i < 200; i++) {
         rig.camera.yaw = (rig.camera.yaw + 164) & 0xFFFF;
         seen |= ff_panorama_faces_in_view(&rig.camera);
         rig_step(&rig, 50000);
@@ -194,7 +197,8 @@ static void panorama_follows_the_rules(void **state)
     rig_close(&rig);
 }
 
-/* Flying straight on: a set is taken ahead, serves as long before its O as behind it, and the next one is there in time. */
+/* Flying straight on: a set is taken ahead, serves as long before its O as behind it, and the next
+ * one is there in time. */
 static void panorama_is_taken_ahead(void **state)
 {
     (void)state;
@@ -213,11 +217,11 @@ static void panorama_is_taken_ahead(void **state)
         if (i < 60 || !ff_client_panorama(rig.client, taken_wu, &faces))
             continue; /* until the motion is known */
         const ff_panorama *panorama = &rig.client->panorama;
-        late += (unsigned)ff_panorama_set_outdated(panorama, &panorama->set[panorama->shown], &rig.camera);
+        late += (unsigned)ff_panorama_set_outdated(panorama, &panorama->set[panorama->shown],
+                                                   &rig.camera);
         int32_t ahead_wu = taken_wu[1] - rig.camera.pos_wu[1];
         longest_ahead_wu = ahead_wu > longest_ahead_wu ? ahead_wu : longest_ahead_wu;
-        if (taken_wu[1] != last_y_wu && sets++ == 0)
-            started_y_wu = taken_wu[1];
+        if (taken_wu[1] != last_y_wu && sets++ == 0) started_y_wu = taken_wu[1];
         last_y_wu = taken_wu[1];
         assert_int_equal(taken_wu[0], rig.camera.pos_wu[0]);
     }
@@ -229,7 +233,8 @@ static void panorama_is_taken_ahead(void **state)
     rig_close(&rig);
 }
 
-/* The renderer stands still: the viewer flies on, one set stays outstanding, the ground comes all the same. */
+/* The renderer stands still: the viewer flies on, one set stays outstanding, the ground comes all
+ * the same. */
 static void one_set_outstanding_at_most(void **state)
 {
     (void)state;
@@ -244,7 +249,8 @@ static void one_set_outstanding_at_most(void **state)
         rig_step(&rig, 50000);
     }
     assert_int_equal(rig.asked[FF_MSG_GET_PANORAMA], 1);
-    for (int i = 0; i < 60; i++) { /* further than half the back plane: left behind, cancelled, another one instead */
+    /* further than half the back plane: left behind, cancelled, another one instead */
+    for (int i = 0; i < 60; i++) {
         rig.camera.pos_wu[1] += 5 * METRE;
         rig_step(&rig, 50000);
     }
@@ -254,7 +260,8 @@ static void one_set_outstanding_at_most(void **state)
     assert_true(rig_stats(&rig).tree.nodes_drawn > 5);
     int32_t taken_wu[3], old_wu[3];
     unsigned faces, old_faces;
-    assert_false(ff_client_panorama(rig.client, taken_wu, &faces)); /* nothing to show is not shown */
+    /* nothing to show is not shown */
+    assert_false(ff_client_panorama(rig.client, taken_wu, &faces));
     rig.no_faces = 0;
     assert_true(rig_settle(&rig, 400));
     assert_true(ff_client_panorama(rig.client, old_wu, &old_faces));
@@ -262,13 +269,13 @@ static void one_set_outstanding_at_most(void **state)
 
     rig.no_faces = 1; /* a new set is due and does not come: the old one stays whole */
     rig.camera.pos_wu[1] -= 200 * METRE;
-    for (int i = 0; i < 20; i++)
-        rig_step(&rig, 50000);
+    for (int i = 0; i < 20; i++) rig_step(&rig, 50000);
     assert_true(ff_client_panorama(rig.client, taken_wu, &faces));
     assert_memory_equal(taken_wu, old_wu, sizeof taken_wu);
     assert_int_equal(faces, old_faces);
 
-    for (int i = 0; i < 160; i++) { /* 800 m on: too far for it, the ground is the client's own, all round the viewer */
+    /* 800 m on: too far for it, the ground is the client's own, all round the viewer */
+    for (int i = 0; i < 160; i++) {
         rig.camera.pos_wu[1] -= 5 * METRE;
         rig_step(&rig, 50000);
     }
@@ -278,7 +285,8 @@ static void one_set_outstanding_at_most(void **state)
     rig_close(&rig);
 }
 
-/* Switched off and on again at once: the request of before is cancelled, and answered before there is another one. */
+/* Switched off and on again at once: the request of before is cancelled, and answered before there
+ * is another one. */
 static void switched_panoramas_do_not_queue_up(void **state)
 {
     (void)state;
@@ -295,7 +303,8 @@ static void switched_panoramas_do_not_queue_up(void **state)
             panorama.enabled = (uint8_t)on;
             ff_client_set_panorama(rig.client, &panorama);
         }
-        rig.updates += (unsigned)ff_client_update(rig.client, rig.frame_us, &rig.camera); /* before the worker hears of it */
+        /* before the worker hears of it */
+        rig.updates += (unsigned)ff_client_update(rig.client, rig.frame_us, &rig.camera);
     }
     assert_true(rig.asked[FF_MSG_GET_PANORAMA] > 2);
     assert_int_equal(rig_stats(&rig).panoramas_in_flight_high, 1);
@@ -312,8 +321,9 @@ static void panorama_can_be_switched(void **state)
     rig_open(&rig, 0);
     rig_client(&rig, 4 * MB);
     assert_true(rig_settle(&rig, 400));
-    ff_panorama_desc panorama = {.enabled = 1, .back_plane_wu = 1500 * METRE};
-    ff_client_set_panorama(rig.client, &panorama); /* shared out without: the block is shared out anew */
+    ff_panorama_desc panorama = { .enabled = 1, .back_plane_wu = 1500 * METRE };
+    /* shared out without: the block is shared out anew */
+    ff_client_set_panorama(rig.client, &panorama);
     assert_true(rig_settle(&rig, 400));
     assert_true(ff_client_panorama(rig.client, taken_wu, &faces));
     panorama.enabled = 0;
@@ -336,7 +346,7 @@ static void little_memory_draws_coarser(void **state)
     client_rig rig;
     rig_open(&rig, 6);
     rig.desc.panorama.enabled = 1;
-    rig.desc.quality = (ff_quality){.measure = FF_MEASURE_PIXELS, .error_px_q8 = 8};
+    rig.desc.quality = (ff_quality){ .measure = FF_MEASURE_PIXELS, .error_px_q8 = 8 };
     rig_client(&rig, ff_client_bytes_min());
     assert_true(rig_settle(&rig, 2000));
     ff_client_stats stats = rig_stats(&rig);
@@ -344,9 +354,9 @@ static void little_memory_draws_coarser(void **state)
     assert_true(stats.memory_used <= stats.memory_bytes);
     assert_true(stats.textures_high > 0);
     unsigned sent = stats.requests_sent;
-    for (int i = 0; i < 100; i++)
-        rig_step(&rig, 50000);
-    assert_int_equal(rig_stats(&rig).requests_sent, sent); /* a full pool asks for nothing over and over */
+    for (int i = 0; i < 100; i++) rig_step(&rig, 50000);
+    /* a full pool asks for nothing over and over */
+    assert_int_equal(rig_stats(&rig).requests_sent, sent);
     rig_close(&rig);
 }
 
@@ -357,8 +367,9 @@ static void wrong_descriptions_are_refused(void **state)
     client_rig rig;
     ff_client *client;
     rig_open(&rig, 0);
-    ff_client_desc desc = {.memory = block, .memory_bytes = sizeof block};
-    assert_int_equal(ff_client_create(&desc, &client), FF_ERR_ARGUMENT); /* neither stream nor pack */
+    ff_client_desc desc = { .memory = block, .memory_bytes = sizeof block };
+    /* neither stream nor pack */
+    assert_int_equal(ff_client_create(&desc, &client), FF_ERR_ARGUMENT);
     desc.stream = &rig.stream;
     desc.pack = &rig.pack;
     assert_int_equal(ff_client_create(&desc, &client), FF_ERR_ARGUMENT);
@@ -378,16 +389,16 @@ static void low_power_is_coarser_and_recovers(void **state)
     (void)state;
     client_rig rig;
     rig_open(&rig, 0);
-    rig.desc.quality = (ff_quality){.c_q8 = 5 * 256, .depth_max = 4};
+    rig.desc.quality = (ff_quality){ .c_q8 = 5 * 256, .depth_max = 4 };
     rig_client(&rig, 2 * MB);
     assert_true(rig_settle(&rig, 400));
     uint32_t triangles = rig_stats(&rig).tree.triangles;
-    sys_event touch = {.type = SYS_EVENT_POINTER};
+    sys_event touch = { .type = SYS_EVENT_POINTER };
     unsigned updates = rig.updates;
     ff_client_event(rig.client, &touch); /* of no concern */
     rig_step(&rig, 50000);
     assert_int_equal(rig.updates, updates);
-    sys_event event = {.type = SYS_EVENT_BATTERY};
+    sys_event event = { .type = SYS_EVENT_BATTERY };
     event.u.battery.low = 1;
     ff_client_event(rig.client, &event);
     assert_true(rig_settle(&rig, 400));
@@ -406,15 +417,13 @@ static void interruption_asks_for_nothing(void **state)
     client_rig rig;
     rig_open(&rig, 0);
     rig_client(&rig, 2 * MB);
-    for (int i = 0; i < 5; i++)
-        rig_step(&rig, 50000);
-    sys_event event = {.type = SYS_EVENT_INTERRUPTION};
+    for (int i = 0; i < 5; i++) rig_step(&rig, 50000);
+    sys_event event = { .type = SYS_EVENT_INTERRUPTION };
     event.u.interruption.begins = 1;
     ff_client_event(rig.client, &event);
     rig.camera.pos_wu[0] += 1000 * METRE;
     uint32_t sent = rig_stats(&rig).requests_sent;
-    for (int i = 0; i < 100; i++)
-        rig_step(&rig, 5000000); /* minutes: the link is kept alive */
+    for (int i = 0; i < 100; i++) rig_step(&rig, 5000000); /* minutes: the link is kept alive */
     assert_int_equal(rig_stats(&rig).requests_sent, sent);
     assert_true(rig.asked[FF_MSG_PING] > 2);
     assert_int_equal(rig_stats(&rig).link, FF_LINK_UP);
@@ -433,7 +442,7 @@ static void prefetch_asks_ahead_only_in_motion(void **state)
         client_rig rig;
         rig_open(&rig, 0);
         rig.desc.no_prefetch = (uint8_t)!i;
-        rig.desc.quality = (ff_quality){.c_q8 = 2 * 256, .depth_max = 0, .view_wu = 1000 * METRE};
+        rig.desc.quality = (ff_quality){ .c_q8 = 2 * 256, .depth_max = 0, .view_wu = 1000 * METRE };
         rig.camera.pos_wu[2] = 600 * METRE;
         rig_client(&rig, 2 * MB);
         assert_true(rig_settle(&rig, 400));
@@ -448,7 +457,8 @@ static void prefetch_asks_ahead_only_in_motion(void **state)
     assert_true(sent[1] > sent[0]);
 }
 
-/* Standing still: all that was asked for lies in view, or lets what does be as fine as it is; turning brings the rest. */
+/* Standing still: all that was asked for lies in view, or lets what does be as fine as it is;
+ * turning brings the rest. */
 static void only_what_is_in_view_is_asked_for(void **state)
 {
     (void)state;
@@ -461,8 +471,7 @@ static void only_what_is_in_view_is_asked_for(void **state)
     const ff_wish *wish;
     uint32_t count = ff_tree_wishes(rig.client->tree, &wish), sent = rig_stats(&rig).requests_sent;
     assert_true(count > 0); /* there is more that it could have */
-    for (uint32_t i = 0; i < count; i++)
-        assert_false(wish[i].in_view);
+    for (uint32_t i = 0; i < count; i++) assert_false(wish[i].in_view);
     for (int i = 0; i < 200; i++) {
         rig.camera.yaw = (rig.camera.yaw + 328) & 0xFFFF;
         rig_step(&rig, 50000);
@@ -475,15 +484,21 @@ static void only_what_is_in_view_is_asked_for(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(same_picture_over_stream_and_pack), cmocka_unit_test(still_camera_means_stillness),
-        cmocka_unit_test(same_script_same_hashes), cmocka_unit_test(what_is_off_costs_nothing),
-        cmocka_unit_test(images_come_from_coarse_to_fine), cmocka_unit_test(panorama_follows_the_rules),
-        cmocka_unit_test(panorama_is_taken_ahead), cmocka_unit_test(one_set_outstanding_at_most), cmocka_unit_test(panorama_can_be_switched),
-        cmocka_unit_test(switched_panoramas_do_not_queue_up),
-        cmocka_unit_test(little_memory_draws_coarser), cmocka_unit_test(wrong_descriptions_are_refused),
-        cmocka_unit_test(low_power_is_coarser_and_recovers), cmocka_unit_test(interruption_asks_for_nothing),
-        cmocka_unit_test(prefetch_asks_ahead_only_in_motion), cmocka_unit_test(only_what_is_in_view_is_asked_for)
-    };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(same_picture_over_stream_and_pack),
+                                        cmocka_unit_test(still_camera_means_stillness),
+                                        cmocka_unit_test(same_script_same_hashes),
+                                        cmocka_unit_test(what_is_off_costs_nothing),
+                                        cmocka_unit_test(images_come_from_coarse_to_fine),
+                                        cmocka_unit_test(panorama_follows_the_rules),
+                                        cmocka_unit_test(panorama_is_taken_ahead),
+                                        cmocka_unit_test(one_set_outstanding_at_most),
+                                        cmocka_unit_test(panorama_can_be_switched),
+                                        cmocka_unit_test(switched_panoramas_do_not_queue_up),
+                                        cmocka_unit_test(little_memory_draws_coarser),
+                                        cmocka_unit_test(wrong_descriptions_are_refused),
+                                        cmocka_unit_test(low_power_is_coarser_and_recovers),
+                                        cmocka_unit_test(interruption_asks_for_nothing),
+                                        cmocka_unit_test(prefetch_asks_ahead_only_in_motion),
+                                        cmocka_unit_test(only_what_is_in_view_is_asked_for) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

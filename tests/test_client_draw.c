@@ -1,4 +1,5 @@
-/* What the client draws: all of the cut, the panorama where it belongs, the same picture from buffers and from plain arrays. */
+/* What the client draws: all of the cut, the panorama where it belongs, the same picture from
+ * buffers and from plain arrays. */
 #include "client_fixture.h"
 #include "../client/ff_client_local.h"
 
@@ -9,10 +10,10 @@
 
 #include <cmocka.h>
 
-#define MB ((size_t)1 << 20)
-#define METRE FF_WU_PER_METRE
-#define WIDTH 240
-#define HEIGHT 320
+#define MB                ((size_t)1 << 20)
+#define METRE             FF_WU_PER_METRE
+#define WIDTH             240
+#define HEIGHT            320
 #define SKY_TRIANGLES_MAX 165
 
 static sys_surface *surface;
@@ -20,7 +21,7 @@ static sys_surface *surface;
 static int open_surface(void **state)
 {
     (void)state;
-    sys_surface_desc desc = {"test", WIDTH, HEIGHT, SYS_GL_DESKTOP};
+    sys_surface_desc desc = { "test", WIDTH, HEIGHT, SYS_GL_DESKTOP };
     return !sys_surface_osmesa() || sys_surface_osmesa()->open(&desc, &surface) != FF_OK;
 }
 
@@ -50,7 +51,8 @@ static unsigned count_colour(const uint8_t *rgb, int r, int g, int b, int within
 {
     unsigned count = 0;
     for (int i = 0; i < WIDTH * HEIGHT; i++, rgb += 3)
-        count += abs(rgb[0] - r) <= within && abs(rgb[1] - g) <= within && abs(rgb[2] - b) <= within;
+        count += abs(rgb[0] - r) <= within && abs(rgb[1] - g) <= within &&
+                 abs(rgb[2] - b) <= within;
     return count;
 }
 
@@ -65,7 +67,8 @@ static void all_of_the_cut_is_drawn(void **state)
     assert_true(rig_settle(&rig, 600));
     uint8_t *first = draw(&rig), *again = draw(&rig);
     ff_client_stats stats = rig_stats(&rig);
-    assert_in_range(stats.c3d.frame_triangles, stats.tree.triangles, stats.tree.triangles + SKY_TRIANGLES_MAX);
+    assert_in_range(stats.c3d.frame_triangles, stats.tree.triangles,
+                    stats.tree.triangles + SKY_TRIANGLES_MAX);
     assert_int_equal(stats.c3d.stale_handles, 0);
     assert_memory_equal(first, again, WIDTH * HEIGHT * 3);
     free(first);
@@ -95,7 +98,8 @@ static void plain_arrays_draw_the_same(void **state)
     free(picture[1]);
 }
 
-/* Nothing bright shines through where rounding leaves a pixel between two nodes: below the horizon the backdrop is like ground. */
+/* Nothing bright shines through where rounding leaves a pixel between two nodes: below the horizon
+ * the backdrop is like ground. */
 static void no_sky_below_the_horizon(void **state)
 {
     (void)state;
@@ -140,7 +144,7 @@ static void a_full_mesh_pool_leaves_no_hole(void **state)
     client_rig rig;
     open_rig(&rig, 0);
     rig.desc.use_plain_arrays = 1;
-    rig.desc.quality = (ff_quality){.c_q8 = 6 * 256};
+    rig.desc.quality = (ff_quality){ .c_q8 = 6 * 256 };
     rig.camera.focal_q8 /= 3; /* much in view */
     rig_client(&rig, ff_client_bytes_min());
     assert_true(rig_settle(&rig, 2000));
@@ -149,7 +153,8 @@ static void a_full_mesh_pool_leaves_no_hole(void **state)
         rig_settle(&rig, 100);
         free(draw(&rig));
         ff_client_stats stats = rig_stats(&rig);
-        assert_in_range(stats.c3d.frame_triangles, stats.tree.triangles, stats.tree.triangles + SKY_TRIANGLES_MAX);
+        assert_in_range(stats.c3d.frame_triangles, stats.tree.triangles,
+                        stats.tree.triangles + SKY_TRIANGLES_MAX);
         assert_int_equal(stats.c3d.stale_handles, 0);
     }
     assert_true(rig.client->view.held == rig.client->view.entry_count);
@@ -167,15 +172,20 @@ static void faces_stand_behind_the_ground(void **state)
     rig.desc.panorama.back_plane_wu = 500 * METRE;
     rig.camera.pos_wu[2] = 3000 * METRE; /* nothing of the ground within the back plane */
     rig.camera.pitch = 0;
-    static const struct { int32_t yaw; int grey; } look[] = {{0, 40}, {16384, 80}, {32768, 120}, {49152, 160}};
+    static const struct {
+        int32_t yaw;
+        int grey;
+    } look[] = { { 0, 40 }, { 16384, 80 }, { 32768, 120 }, { 49152, 160 } };
     rig_client(&rig, 4 * MB);
     for (unsigned i = 0; i < 4; i++) {
         rig.camera.yaw = look[i].yaw;
         rig.camera.pitch = 40 * (int32_t)i; /* other pixels of the faces meet the sky */
         assert_true(rig_settle(&rig, 400));
         uint8_t *rgb = draw(&rig);
-        /* 20 of 256 rows: 32 pixels high at 208 pixels of focal distance, all along the horizon, partly cut by the columns */
-        assert_in_range(count_colour(rgb, look[i].grey, look[i].grey, look[i].grey, 10), WIDTH * 16, WIDTH * 34);
+        /* 20 of 256 rows: 32 pixels high at 208 pixels of focal distance, all along the horizon,
+         * partly cut by the columns */
+        assert_in_range(count_colour(rgb, look[i].grey, look[i].grey, look[i].grey, 10), WIDTH * 16,
+                        WIDTH * 34);
         for (int p = 0; p < WIDTH * HEIGHT / 2; p++) /* no dark line where ground and sky meet */
             assert_true(rgb[3 * p + 2] > look[i].grey - 12);
         memset(rgb + 3 * WIDTH * (HEIGHT / 2 - 18), 0, 3 * WIDTH * 36);
@@ -215,11 +225,12 @@ static void meshes_show_stitching_in_another_colour(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(all_of_the_cut_is_drawn), cmocka_unit_test(plain_arrays_draw_the_same),
-        cmocka_unit_test(a_full_mesh_pool_leaves_no_hole), cmocka_unit_test(least_memory_is_true),
-        cmocka_unit_test(faces_stand_behind_the_ground), cmocka_unit_test(no_sky_below_the_horizon),
-        cmocka_unit_test(meshes_show_stitching_in_another_colour)
-    };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(all_of_the_cut_is_drawn),
+                                        cmocka_unit_test(plain_arrays_draw_the_same),
+                                        cmocka_unit_test(a_full_mesh_pool_leaves_no_hole),
+                                        cmocka_unit_test(least_memory_is_true),
+                                        cmocka_unit_test(faces_stand_behind_the_ground),
+                                        cmocka_unit_test(no_sky_below_the_horizon),
+                                        cmocka_unit_test(meshes_show_stitching_in_another_colour) };
     return cmocka_run_group_tests(tests, open_surface, close_surface);
 }

@@ -1,6 +1,7 @@
-/* Every stiff and extreme case of DESIGN.md (Judging the picture) with the real client: a row each in build/extremes.md
- * (or $EXTREMES). In each: no crack in any changed frame, nothing in sight undrawn, requests bounded, no oscillation, and the
- * largest error told. Overflow and division by zero end the sanitized run. */
+/* Every stiff and extreme case of DESIGN.md (Judging the picture) with the real client: a row each
+ * in build/extremes.md (or $EXTREMES). In each: no crack in any changed frame, nothing in sight
+ * undrawn, requests bounded, no oscillation, and the largest error told. Overflow and division by
+ * zero end the sanitized run. */
 #include "../client/ff_panorama_rules.h"
 #include "extreme_rig.h"
 #include "reference.h"
@@ -15,13 +16,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define M FF_WU_PER_METRE
+#define M        FF_WU_PER_METRE
 #define FRAME_US 33000
 
 static void end_row(const extreme_row *row)
 {
     if (row->failed)
-        fail_msg("%s: %s (largest %g %s, bound %g)", row->name, row->verdict, row->worst, row->unit, row->bound);
+        fail_msg("%s: %s (largest %g %s, bound %g)", row->name, row->verdict, row->worst, row->unit,
+                 row->bound);
 }
 
 static void end_case(extreme_rig *rig)
@@ -81,32 +83,14 @@ static void one_node(void **state)
     extreme_judge(&rig);
     ff_client_stats stats;
     ff_client_get_stats(rig.client, &stats);
-    extreme_row_expect(row, stats.requests_sent == 1 && stats.tree.nodes_held == 1, "more than one node");
+    extreme_row_expect(row, stats.requests_sent == 1 && stats.tree.nodes_held == 1,
+                       "more than one node");
     end_case(&rig);
 }
 
-/* Error of the drawn heights round the camera, in pixels, by the fixture's own function. */
-static double error_near(const terrain_fixture *fx, const ff_view *view, sys_random *random)
-{
-    double worst = 0;
-    for (int i = 0; i < 400; i++) {
-        int64_t reach = (int64_t)64 << sys_random_below(random, 9), x = view->camera.pos_wu[0] / (10 * M), y = view->camera.pos_wu[1] / (10 * M);
-        x += (int64_t)sys_random_below(random, (uint32_t)(2 * reach)) - reach;
-        y += (int64_t)sys_random_below(random, (uint32_t)(2 * reach)) - reach;
-        int32_t drawn;
-        if (x < 0 || y < 0 || x > 65535 || y > 65535 ||
-            !ff_tree_drawn_height(fx->tree, (int32_t)x * 10 * M, (int32_t)y * 10 * M, &drawn))
-            continue;
-        double truth = (double)fx->height((uint32_t)x, (uint32_t)y) * M;
-        double dx = (double)x * 10 * M - view->camera.pos_wu[0], dy = (double)y * 10 * M - view->camera.pos_wu[1];
-        double distance = sqrt(dx * dx + dy * dy + (truth - view->camera.pos_wu[2]) * (truth - view->camera.pos_wu[2]));
-        worst = fmax(worst, fabs(drawn - truth) * view->camera.focal_q8 / 256.0 / distance);
-    }
-    return worst;
-}
-
 /* Selections at the same place of both terrains in turns. */
-static void time_selections(terrain_fixture *own, terrain_fixture *ordinary, ff_view view, const ff_quality *quality, extreme_cost *cost)
+static void time_selections(terrain_fixture *own, terrain_fixture *ordinary, ff_view view,
+                            const ff_quality *quality, extreme_cost *cost)
 {
     for (int i = 0; i < 100; i++) {
         view.camera.pos_wu[0] += 10 * M;
@@ -127,8 +111,11 @@ static void terrain_of_64k(void **state)
     (void)state;
     terrain_fixture fx;
     /* The fixture samples the error of wide nodes: a little more than asked for may stay. */
-    extreme_row *row = extreme_row_begin("64k x 64k terrain, 655 km", "err_px round the camera", "px", 3);
-    static const int32_t at_m[][2] = {{327680, 327680}, {5, 5}, {655350, 655350}, {100000, 500000}};
+    extreme_row *row = extreme_row_begin("64k x 64k terrain, 655 km", "err_px round the camera",
+                                         "px", 3);
+    static const int32_t at_m[][2] = {
+        { 327680, 327680 }, { 5, 5 }, { 655350, 655350 }, { 100000, 500000 }
+    };
     sys_random random;
     sys_random_seed(&random, 64, 1);
     fixture_make(&fx, 3, 15, 2, 2, fixture_hills);
@@ -138,10 +125,11 @@ static void terrain_of_64k(void **state)
         ff_view view = fixture_view_above(&fx, at_m[i][0], at_m[i][1], 150, 30 + 90 * (int)i, -8);
         row->work.requests += fixture_settle(&fx, &view, &quality, 100);
         fixture_assert_whole(&fx);
-        extreme_row_value(row, error_near(&fx, &view, &random));
+        extreme_row_value(row, extreme_error_near(&fx, &view, &random));
         const ff_wish *wish;
         extreme_row_expect(row, ff_tree_wishes(fx.tree, &wish) == 0, "wishes remain");
-        extreme_row_expect(row, ff_tree_select(fx.tree, &view, &quality) == 0, "a still cut is made anew");
+        extreme_row_expect(row, ff_tree_select(fx.tree, &view, &quality) == 0,
+                           "a still cut is made anew");
         row->work.frames++;
     }
     ff_tree_stats stats;
@@ -165,7 +153,7 @@ static void terrain_of_64k(void **state)
 
 typedef struct place {
     const char *name;
-    double x_m, y_m, above_m;  /* x, y below 0: the middle */
+    double x_m, y_m, above_m; /* x, y below 0: the middle */
     int32_t pitch, yaw;
     double fov_deg;
 } place;
@@ -175,7 +163,8 @@ static void judge_place(const place *p, const ff_terrain_info *info)
     extreme_rig rig;
     extreme_row *row = extreme_row_begin(p->name, "err_px", "px", 0);
     extreme_open(&rig, row, info, pack_fixture_hills);
-    double x_m = p->x_m < 0 ? rig.camera.pos_wu[0] / (double)M : p->x_m, y_m = p->y_m < 0 ? rig.camera.pos_wu[1] / (double)M : p->y_m;
+    double x_m = p->x_m < 0 ? rig.camera.pos_wu[0] / (double)M : p->x_m,
+           y_m = p->y_m < 0 ? rig.camera.pos_wu[1] / (double)M : p->y_m;
     extreme_place(&rig, x_m, y_m, extreme_ground_m(&rig, x_m, y_m) + p->above_m);
     rig.camera.pitch = p->pitch;
     rig.camera.yaw = p->yaw;
@@ -191,20 +180,19 @@ static void camera_places(void **state)
 {
     (void)state;
     static const place list[] = {
-        {"camera on a vertex", 2048, 1024, 0, -1500, 0, 0},
-        {"camera on a tile corner", 2048, 2048, 0, -1500, 8192, 0},
-        {"camera 50 m below ground", -1, -1, -50, 1500, 0, 0},
-        {"camera 1 cm above ground", -1, -1, 0.01, -1500, 0, 0},
-        {"camera 1000 km above, straight down", -1, -1, 1e6, -16384, 0, 1},
-        {"straight down from 300 m", -1, -1, 300, -16384, 0, 0},
-        {"straight up", -1, -1, 300, 16384, 0, 0},
-        {"terrain's south-west corner", 0, 0, 2, -1000, 8192, 0},
-        {"terrain's north-east corner", 4096, 4096, 2, -1000, 40960, 0},
-        {"field of view 0.1 degrees", -1, -1, 200, -900, 3000, 0.1},
-        {"field of view 170 degrees", -1, -1, 200, -3000, 3000, 170},
+        { "camera on a vertex", 2048, 1024, 0, -1500, 0, 0 },
+        { "camera on a tile corner", 2048, 2048, 0, -1500, 8192, 0 },
+        { "camera 50 m below ground", -1, -1, -50, 1500, 0, 0 },
+        { "camera 1 cm above ground", -1, -1, 0.01, -1500, 0, 0 },
+        { "camera 1000 km above, straight down", -1, -1, 1e6, -16384, 0, 1 },
+        { "straight down from 300 m", -1, -1, 300, -16384, 0, 0 },
+        { "straight up", -1, -1, 300, 16384, 0, 0 },
+        { "terrain's south-west corner", 0, 0, 2, -1000, 8192, 0 },
+        { "terrain's north-east corner", 4096, 4096, 2, -1000, 40960, 0 },
+        { "field of view 0.1 degrees", -1, -1, 200, -900, 3000, 0.1 },
+        { "field of view 170 degrees", -1, -1, 200, -3000, 3000, 170 },
     };
-    for (unsigned i = 0; i < sizeof list / sizeof *list; i++)
-        judge_place(&list[i], NULL);
+    for (unsigned i = 0; i < sizeof list / sizeof *list; i++) judge_place(&list[i], NULL);
 }
 
 /* The widest terrain that fits the world: its far corner is 8388 km out. */
@@ -213,13 +201,18 @@ static void world_limits(void **state)
     (void)state;
     ff_terrain_info info = pack_fixture_info(5, 2, 2);
     info.spacing_wu = INT32_MAX / 64;
-    static const place corner = {"far corner of an 8388 km terrain", 8388607, 8388607, 1000, -1500, 40960, 0};
+    static const place corner = {
+        "far corner of an 8388 km terrain", 8388607, 8388607, 1000, -1500, 40960, 0
+    };
     judge_place(&corner, &info);
 
-    static const int32_t limit[][3] = {{INT32_MAX, INT32_MAX, INT32_MAX}, {INT32_MIN, INT32_MIN, INT32_MIN},
-                                       {INT32_MAX, INT32_MIN, 0}, {INT32_MIN, 0, INT32_MAX}};
+    static const int32_t limit[][3] = { { INT32_MAX, INT32_MAX, INT32_MAX },
+                                        { INT32_MIN, INT32_MIN, INT32_MIN },
+                                        { INT32_MAX, INT32_MIN, 0 },
+                                        { INT32_MIN, 0, INT32_MAX } };
     extreme_rig rig;
-    extreme_row *row = extreme_row_begin("camera at the world's limits", "err_px", "px", EXTREME_ERROR_PX + 2);
+    extreme_row *row = extreme_row_begin("camera at the world's limits", "err_px", "px",
+                                         EXTREME_ERROR_PX + 2);
     extreme_open(&rig, row, NULL, pack_fixture_hills);
     extreme_start(&rig, NULL);
     for (unsigned i = 0; i < sizeof limit / sizeof *limit; i++) {
@@ -241,38 +234,42 @@ static double render(extreme_rig *rig, int32_t near_wu, int32_t far_wu, uint8_t 
     extreme_frame(rig, FRAME_US);
     double begin_s = extreme_processor_s();
     ff_client_draw(rig->client);
-    extreme_row_expect(rig->row, c3d_read_rgb(ff_client_device(rig->client), rgb) == FF_OK, "no picture");
+    extreme_row_expect(rig->row, c3d_read_rgb(ff_client_device(rig->client), rgb) == FF_OK,
+                       "no picture");
     return extreme_processor_s() - begin_s;
 }
 
-static void judge_near_far(const char *name, const struct c3d_backend *backend, const sys_surface_api *api)
+static void judge_near_far(const char *name, const struct c3d_backend *backend,
+                           const sys_surface_api *api)
 {
     static uint8_t wide[240 * 320 * 3], narrow[240 * 320 * 3];
     extreme_rig rig;
     extreme_row *row = extreme_row_begin(name, "pixels unlike those of ratio 10^3", "%", 2);
     extreme_open(&rig, row, NULL, pack_fixture_hills);
-    sys_surface_desc surface = {"extremes", 240, 320, SYS_GL_DESKTOP};
+    sys_surface_desc surface = { "extremes", 240, 320, SYS_GL_DESKTOP };
     rig.desc.surface_api = api;
-    if (!api || api->open(&surface, &rig.surface) != FF_OK)
-        abort();
+    if (!api || api->open(&surface, &rig.surface) != FF_OK) abort();
     rig.desc.backend = backend;
     rig.untimed = 1;
     extreme_start(&rig, NULL);
     extreme_settle(&rig, FRAME_US, 600);
     extreme_calm(&rig);
     for (int i = 0; i < 8; i++) { /* the first is not counted */
-        double narrow_s = render(&rig, 8 * M, 8000 * M, narrow), wide_s = render(&rig, 64, 64000000, wide);
+        double narrow_s = render(&rig, 8 * M, 8000 * M, narrow),
+               wide_s = render(&rig, 64, 64000000, wide);
         row->cost.ordinary_s += i ? narrow_s : 0;
         row->cost.own_s += i ? wide_s : 0;
     }
     row->cost.own_times = row->cost.ordinary_times = 7;
     uint32_t unlike = 0;
     for (uint32_t i = 0; i < 240 * 320; i++)
-        unlike += abs(wide[3 * i] - narrow[3 * i]) > 8 || abs(wide[3 * i + 1] - narrow[3 * i + 1]) > 8;
+        unlike += abs(wide[3 * i] - narrow[3 * i]) > 8 ||
+                  abs(wide[3 * i + 1] - narrow[3 * i + 1]) > 8;
     extreme_row_value(row, unlike * 100.0 / (240 * 320));
     ff_client_stats stats;
     ff_client_get_stats(rig.client, &stats);
-    extreme_row_expect(row, stats.c3d.stale_handles == 0 && stats.c3d.frame_triangles > 1000, "not drawn");
+    extreme_row_expect(row, stats.c3d.stale_handles == 0 && stats.c3d.frame_triangles > 1000,
+                       "not drawn");
     end_case(&rig);
 }
 
@@ -293,7 +290,8 @@ static void expect_same_as_local(extreme_rig *rig)
     local.camera = rig->camera;
     extreme_start(&local, NULL);
     extreme_settle(&local, FRAME_US, 600);
-    extreme_row_expect(rig->row, extreme_same_picture(rig, &local), "ends with another picture than without a link");
+    extreme_row_expect(rig->row, extreme_same_picture(rig, &local),
+                       "ends with another picture than without a link");
     extreme_close(&local);
 }
 
@@ -348,9 +346,9 @@ static void teleports(void **state)
     for (int i = 0; i < 300; i++) {
         if (i % 5 == 0)
             for (int axis = 0; axis < 3; axis++)
-                rig.camera.pos_wu[axis] = (int32_t)sys_random_below(&random, (uint32_t)(axis < 2 ? 4096 : 3000) * M);
-        if (i == 150)
-            rig.camera.pos_wu[0] = INT32_MIN;
+                rig.camera.pos_wu[axis] = (int32_t)sys_random_below(
+                    &random, (uint32_t)(axis < 2 ? 4096 : 3000) * M);
+        if (i == 150) rig.camera.pos_wu[0] = INT32_MIN;
         extreme_frame(&rig, FRAME_US);
     }
     extreme_place(&rig, 1500, 1400, extreme_ground_m(&rig, 1500, 1400) + 100);
@@ -360,14 +358,15 @@ static void teleports(void **state)
     end_case(&rig);
 }
 
-/* Standing still with a receiver that is up to 8 m wrong, ten times a second: once all those places have been seen, nothing more
- * is asked for. */
+/* Standing still with a receiver that is up to 8 m wrong, ten times a second: once all those places
+ * have been seen, nothing more is asked for. */
 static void gps_noise(void **state)
 {
     (void)state;
     extreme_rig rig;
     sys_random random;
-    extreme_row *row = extreme_row_begin("GPS noise of 8 m, 10 Hz, 120 s", "requests in the second minute", "", 4);
+    extreme_row *row = extreme_row_begin("GPS noise of 8 m, 10 Hz, 120 s",
+                                         "requests in the second minute", "", 4);
     sys_random_seed(&random, 6, 5);
     begin_over(&rig, row, "umts");
     row->bound = 4;
@@ -375,10 +374,10 @@ static void gps_noise(void **state)
     ff_client_stats half, stats;
     for (int i = 0; i < 1200; i++) {
         for (int axis = 0; axis < 3; axis++)
-            rig.camera.pos_wu[axis] = home.pos_wu[axis] + (int32_t)sys_random_below(&random, 16 * M) - 8 * M;
+            rig.camera.pos_wu[axis] = home.pos_wu[axis] +
+                                      (int32_t)sys_random_below(&random, 16 * M) - 8 * M;
         extreme_frame(&rig, 100000);
-        if (i == 599)
-            ff_client_get_stats(rig.client, &half);
+        if (i == 599) ff_client_get_stats(rig.client, &half);
     }
     ff_client_get_stats(rig.client, &stats);
     extreme_row_value(row, stats.requests_sent - half.requests_sent);
@@ -390,8 +389,8 @@ static void gps_noise(void **state)
 
 typedef struct link_case {
     const char *name, *link;
-    unsigned seconds;          /* for a flight of 800 m, then it stops and settles within as many again */
-    int whole;                 /* it settles */
+    unsigned seconds; /* for a flight of 800 m, then it stops and settles within as many again */
+    int whole;        /* it settles */
 } link_case;
 
 static void fly_over_link(const link_case *c)
@@ -404,7 +403,8 @@ static void fly_over_link(const link_case *c)
     rig.camera.pos_wu[2] += 500 * M;
     const c3d_camera home = rig.camera;
     extreme_start(&rig, &desc);
-    int64_t frame_us = c->seconds < 600 ? 100000 : 1000000; /* on slow links a picture a second is plenty */
+    /* on slow links a picture a second is plenty */
+    int64_t frame_us = c->seconds < 600 ? 100000 : 1000000;
     rig.tick_us = frame_us / 10;
     unsigned frames = c->seconds * 10 / (unsigned)(frame_us / 100000);
     for (unsigned i = 0; i < frames; i++) {
@@ -421,13 +421,16 @@ static void fly_over_link(const link_case *c)
         row->bound = 400;
         ff_client_stats stats;
         ff_client_get_stats(rig.client, &stats);
-        extreme_row_expect(row, stats.have_terrain && stats.tree.nodes_held > 0, "nothing arrived at all");
+        extreme_row_expect(row, stats.have_terrain && stats.tree.nodes_held > 0,
+                           "nothing arrived at all");
         extreme_row_value(row, extreme_audit(&rig));
     }
     if (desc.way[SIM_DOWN].bytes_s) {
         ff_client_stats stats;
         ff_client_get_stats(rig.client, &stats);
-        extreme_row_expect(row, stats.bytes_down <= (uint64_t)desc.way[SIM_DOWN].bytes_s * (uint64_t)(rig.now_us / 1000000),
+        extreme_row_expect(row,
+                           stats.bytes_down <= (uint64_t)desc.way[SIM_DOWN].bytes_s *
+                                                   (uint64_t)(rig.now_us / 1000000),
                            "more bytes than the link carries");
     }
     end_case(&rig);
@@ -437,21 +440,21 @@ static void links(void **state)
 {
     (void)state;
     static const link_case list[] = {
-        {"link of 10 B/s", "lan,down.bytes_s=10,up.bytes_s=10", 600, 0},
-        {"link of 1 GB/s", "lan,down.bytes_s=1000000000,up.bytes_s=1000000000", 20, 1},
-        {"delay of 0", "ideal", 20, 1},
-        {"delay of 60 s each way", "umts,down.delay_us=60000000,up.delay_us=60000000", 1500, 1},
-        {"cut every second", "umts,down.delay_us=20000,up.delay_us=20000,connect_ms=100,cut_every_ms=1000", 120, 1},
+        { "link of 10 B/s", "lan,down.bytes_s=10,up.bytes_s=10", 600, 0 },
+        { "link of 1 GB/s", "lan,down.bytes_s=1000000000,up.bytes_s=1000000000", 20, 1 },
+        { "delay of 0", "ideal", 20, 1 },
+        { "delay of 60 s each way", "umts,down.delay_us=60000000,up.delay_us=60000000", 1500, 1 },
+        { "cut every second",
+          "umts,down.delay_us=20000,up.delay_us=20000,connect_ms=100,cut_every_ms=1000", 120, 1 },
     };
-    for (unsigned i = 0; i < sizeof list / sizeof *list; i++)
-        fly_over_link(&list[i]);
+    for (unsigned i = 0; i < sizeof list / sizeof *list; i++) fly_over_link(&list[i]);
 }
 
 /* ---- limits of the panorama's rules ---- */
 
-#define RULE_Z_WU (7500 * M)
+#define RULE_Z_WU  (7500 * M)
 #define RULE_TIMES 2000
-static const int32_t any_ground[2] = {INT32_MIN, INT32_MAX};
+static const int32_t any_ground[2] = { INT32_MIN, INT32_MAX };
 
 static int outdated(const c3d_camera *camera, const int32_t taken_wu[3], int32_t error_px_q8)
 {
@@ -465,11 +468,9 @@ static void time_limit(extreme_cost *cost, int64_t error, int64_t w)
 {
     static volatile int64_t kept;
     double begin_s = extreme_processor_s();
-    for (int i = 0; i < RULE_TIMES; i++)
-        kept = ff_panorama_forwards_max(error, RULE_Z_WU, w);
+    for (int i = 0; i < RULE_TIMES; i++) kept = ff_panorama_forwards_max(error, RULE_Z_WU, w);
     double middle_s = extreme_processor_s();
-    for (int i = 0; i < RULE_TIMES; i++)
-        kept = ff_panorama_forwards_max(256, RULE_Z_WU, 30720);
+    for (int i = 0; i < RULE_TIMES; i++) kept = ff_panorama_forwards_max(256, RULE_Z_WU, 30720);
     (void)kept;
     cost->ordinary_s += extreme_processor_s() - middle_s;
     cost->own_s += middle_s - begin_s;
@@ -480,9 +481,11 @@ static void time_limit(extreme_cost *cost, int64_t error, int64_t w)
 static void width_to_zero(void **state)
 {
     (void)state;
-    extreme_row *row = extreme_row_begin("w to 0 (1 px ... 1/256 px, 0)", "forward limit off the reference", "wu", 1.001);
+    extreme_row *row = extreme_row_begin("w to 0 (1 px ... 1/256 px, 0)",
+                                         "forward limit off the reference", "wu", 1.001);
     for (int64_t w = 256; w >= 0; w = w ? w / 2 : -1) {
-        extreme_row_value(row, fabs((double)ff_panorama_forwards_max(256, RULE_Z_WU, w) - ref_forwards_max(256, RULE_Z_WU, (double)w)));
+        extreme_row_value(row, fabs((double)ff_panorama_forwards_max(256, RULE_Z_WU, w) -
+                                    ref_forwards_max(256, RULE_Z_WU, (double)w)));
         time_limit(&row->cost, 256, w);
     }
     end_row(row);
@@ -490,21 +493,28 @@ static void width_to_zero(void **state)
 
 static c3d_camera rule_camera(int64_t moved_wu)
 {
-    return (c3d_camera){.pos_wu = {0, (int32_t)moved_wu, 0}, .width = 240, .height = 320, .focal_q8 = 53209};
+    return (c3d_camera){
+        .pos_wu = { 0, (int32_t)moved_wu, 0 }, .width = 240, .height = 320, .focal_q8 = 53209
+    };
 }
 
 static void allowed_error_to_zero(void **state)
 {
     (void)state;
-    static const int32_t taken[3] = {0, 0, 0};
-    extreme_row *row = extreme_row_begin("error allowed to 0 (64 px ... 1/256 px, 0)", "limits of motion off the reference", "wu", 1.001);
+    static const int32_t taken[3] = { 0, 0, 0 };
+    extreme_row *row = extreme_row_begin("error allowed to 0 (64 px ... 1/256 px, 0)",
+                                         "limits of motion off the reference", "wu", 1.001);
     for (int64_t error = 64 * 256; error >= 0; error = error ? error / 2 : -1) {
-        double ahead = ref_forwards_max((double)error, RULE_Z_WU, 30720), aside = ref_sideways_max((double)error, RULE_Z_WU, 53209);
-        extreme_row_value(row, fabs((double)ff_panorama_forwards_max(error, RULE_Z_WU, 30720) - ahead));
-        extreme_row_value(row, fabs((double)ff_panorama_sideways_max(error, RULE_Z_WU, 53209) - aside));
+        double ahead = ref_forwards_max((double)error, RULE_Z_WU, 30720),
+               aside = ref_sideways_max((double)error, RULE_Z_WU, 53209);
+        extreme_row_value(row,
+                          fabs((double)ff_panorama_forwards_max(error, RULE_Z_WU, 30720) - ahead));
+        extreme_row_value(row,
+                          fabs((double)ff_panorama_sideways_max(error, RULE_Z_WU, 53209) - aside));
         time_limit(&row->cost, error, 30720);
     }
-    extreme_row_expect(row, ff_panorama_forwards_max(0, RULE_Z_WU, 0) == 0, "motion with neither error nor width");
+    extreme_row_expect(row, ff_panorama_forwards_max(0, RULE_Z_WU, 0) == 0,
+                       "motion with neither error nor width");
     c3d_camera camera = rule_camera(1);
     extreme_row_expect(row, outdated(&camera, taken, 0), "motion without any error allowed");
     camera = rule_camera(0);
@@ -512,10 +522,11 @@ static void allowed_error_to_zero(void **state)
     end_row(row);
 }
 
-/* 1 when the joint rule keeps a set of O after this motion; timed against half a pixel's motion with a pixel allowed. */
+/* 1 when the joint rule keeps a set of O after this motion; timed against half a pixel's motion
+ * with a pixel allowed. */
 static int set_is_kept(extreme_cost *cost, int64_t moved_wu, int32_t error)
 {
-    static const int32_t taken[3] = {0, 0, 0};
+    static const int32_t taken[3] = { 0, 0, 0 };
     c3d_camera far_off = rule_camera(moved_wu), near_by = rule_camera(RULE_Z_WU / 416);
     double begin_s = extreme_processor_s();
     int far_outdated = outdated(&far_off, taken, error);
@@ -531,8 +542,11 @@ static int set_is_kept(extreme_cost *cost, int64_t moved_wu, int32_t error)
 static void motion_to_z(void **state)
 {
     (void)state;
-    extreme_row *row = extreme_row_begin("OO' to z and beyond", "sets kept although OO' >= z", "", 0);
-    for (int32_t error = 1; error > 0; error = error < INT32_MAX / 2 ? error * 2 : error < INT32_MAX ? INT32_MAX : -1) {
+    extreme_row *row = extreme_row_begin("OO' to z and beyond", "sets kept although OO' >= z", "",
+                                         0);
+    for (int32_t error = 1; error > 0; error = error < INT32_MAX / 2 ? error * 2
+                                               : error < INT32_MAX   ? INT32_MAX
+                                                                     : -1) {
         for (int64_t more = -1; more <= 1; more++)
             extreme_row_value(row, set_is_kept(&row->cost, RULE_Z_WU + more, error) && more >= 0);
         extreme_row_value(row, set_is_kept(&row->cost, INT32_MIN, error));
@@ -551,12 +565,20 @@ static int write_table(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cliffs), cmocka_unit_test(flat), cmocka_unit_test(one_node), cmocka_unit_test(terrain_of_64k),
-        cmocka_unit_test(camera_places), cmocka_unit_test(world_limits), cmocka_unit_test(near_far_ratio),
-        cmocka_unit_test(frames_of_no_time), cmocka_unit_test(frames_of_ten_seconds), cmocka_unit_test(teleports),
-        cmocka_unit_test(gps_noise), cmocka_unit_test(links), cmocka_unit_test(width_to_zero),
-        cmocka_unit_test(allowed_error_to_zero), cmocka_unit_test(motion_to_z)
-    };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(cliffs),
+                                        cmocka_unit_test(flat),
+                                        cmocka_unit_test(one_node),
+                                        cmocka_unit_test(terrain_of_64k),
+                                        cmocka_unit_test(camera_places),
+                                        cmocka_unit_test(world_limits),
+                                        cmocka_unit_test(near_far_ratio),
+                                        cmocka_unit_test(frames_of_no_time),
+                                        cmocka_unit_test(frames_of_ten_seconds),
+                                        cmocka_unit_test(teleports),
+                                        cmocka_unit_test(gps_noise),
+                                        cmocka_unit_test(links),
+                                        cmocka_unit_test(width_to_zero),
+                                        cmocka_unit_test(allowed_error_to_zero),
+                                        cmocka_unit_test(motion_to_z) };
     return cmocka_run_group_tests(tests, NULL, write_table);
 }

@@ -1,4 +1,5 @@
-/* Fixed-point maths against libm over dense sweeps, and at the ends of the ranges the header states. */
+/* Fixed-point maths against libm over dense sweeps, and at the ends of the ranges the header
+ * states. */
 #include "../common3d/c3d.h"
 #include "../common3d/c3d_backend.h"
 
@@ -12,7 +13,7 @@
 #include <string.h>
 
 #define TURN (2.0 * 3.14159265358979323846)
-#define ONE 1073741824.0
+#define ONE  1073741824.0
 
 static void sine_is_within_two_units(void **state)
 {
@@ -31,7 +32,8 @@ static void sine_of_fine_angles(void **state)
     (void)state;
     double worst = 0;
     for (uint64_t angle = 0; angle < UINT64_C(1) << 32; angle += 9973)
-        worst = fmax(worst, fabs(c3d_sin_turn32_q30((uint32_t)angle) - sin((double)angle * TURN / 4294967296.0) * ONE));
+        worst = fmax(worst, fabs(c3d_sin_turn32_q30((uint32_t)angle) -
+                                 sin((double)angle * TURN / 4294967296.0) * ONE));
     assert_true(worst <= 2.0);
 }
 
@@ -55,7 +57,8 @@ static void square_root_is_the_floor(void **state)
     sys_random random;
     sys_random_seed(&random, 1, 1);
     for (uint32_t i = 0; i < 200000; i++) {
-        uint64_t value = ((uint64_t)sys_random_u32(&random) << 32 | sys_random_u32(&random)) >> (i % 64);
+        uint64_t value = ((uint64_t)sys_random_u32(&random) << 32 | sys_random_u32(&random)) >>
+                         (i % 64);
         uint64_t root = c3d_isqrt64(value);
         assert_true(root * root <= value);
         assert_true(root == UINT32_MAX || (root + 1) * (root + 1) > value);
@@ -65,18 +68,26 @@ static void square_root_is_the_floor(void **state)
 }
 
 /* 128 bits, for machines that have none. */
-typedef struct wide { uint64_t high, low; } wide;
+typedef struct wide {
+    uint64_t high, low;
+} wide;
 
 static wide product(uint64_t a, uint64_t b)
 {
     uint64_t a0 = a & UINT32_MAX, a1 = a >> 32, b0 = b & UINT32_MAX, b1 = b >> 32;
     uint64_t middle = a1 * b0 + (a0 * b0 >> 32), carried = a0 * b1 + (middle & UINT32_MAX);
-    return (wide){a1 * b1 + (middle >> 32) + (carried >> 32), a * b};
+    return (wide){ a1 * b1 + (middle >> 32) + (carried >> 32), a * b };
 }
 
-static int is_less(wide a, wide b) { return a.high < b.high || (a.high == b.high && a.low < b.low); }
+static int is_less(wide a, wide b)
+{
+    return a.high < b.high || (a.high == b.high && a.low < b.low);
+}
 
-static uint64_t magnitude(int64_t value) { return value < 0 ? 0 - (uint64_t)value : (uint64_t)value; }
+static uint64_t magnitude(int64_t value)
+{
+    return value < 0 ? 0 - (uint64_t)value : (uint64_t)value;
+}
 
 /* a * b / c, rounded towards zero and held within 64 bits. */
 static int is_quotient(int64_t quotient, int64_t a, int64_t b, int64_t c)
@@ -85,8 +96,10 @@ static int is_quotient(int64_t quotient, int64_t a, int64_t b, int64_t c)
     uint64_t divisor = magnitude(c), size = magnitude(quotient);
     int negative = ((a < 0) ^ (b < 0) ^ (c < 0)) && (whole.high || whole.low);
     uint64_t limit = (uint64_t)INT64_MAX + (unsigned)negative;
-    if (!is_less(whole, product(limit + 1, divisor))) return quotient == (negative ? INT64_MIN : INT64_MAX);
-    return (size == 0 || (quotient < 0) == negative) && !is_less(whole, product(size, divisor)) && is_less(whole, product(size + 1, divisor));
+    if (!is_less(whole, product(limit + 1, divisor)))
+        return quotient == (negative ? INT64_MIN : INT64_MAX);
+    return (size == 0 || (quotient < 0) == negative) && !is_less(whole, product(size, divisor)) &&
+           is_less(whole, product(size + 1, divisor));
 }
 
 /* Any sizes, and quotients that are just reached or just missed. */
@@ -96,8 +109,11 @@ static void division_is_the_floor(void **state)
     sys_random random;
     sys_random_seed(&random, 3, 1);
     for (uint32_t i = 0; i < 400000; i++) {
-        uint64_t a = ((uint64_t)sys_random_u32(&random) << 32 | sys_random_u32(&random)) >> (i % 61);
-        uint64_t b = ((uint64_t)sys_random_u32(&random) << 32 | sys_random_u32(&random)) >> (i % 64), by_one = i % 3;
+        uint64_t a = ((uint64_t)sys_random_u32(&random) << 32 | sys_random_u32(&random)) >>
+                     (i % 61);
+        uint64_t b = ((uint64_t)sys_random_u32(&random) << 32 | sys_random_u32(&random)) >>
+                     (i % 64),
+                 by_one = i % 3;
         if (i & 1) a = (b >> 32 ? b : b * sys_random_u32(&random)) + by_one - 1;
         uint64_t exact = b ? a / b : UINT64_MAX;
         assert_int_equal(c3d_divide_saturated(a, b), exact > UINT32_MAX ? UINT32_MAX : exact);
@@ -109,13 +125,26 @@ static void division_is_the_floor(void **state)
 static void muldiv_equals_128_bits(void **state)
 {
     (void)state;
-    static const int64_t edge[] = {0, 1, -1, 2, -3, 65535, INT32_MAX, INT32_MIN, INT64_MAX, INT64_MIN, INT64_MIN + 1,
-                                   INT64_C(1) << 32, -(INT64_C(1) << 40), INT64_C(1) << 62};
+    static const int64_t edge[] = { 0,
+                                    1,
+                                    -1,
+                                    2,
+                                    -3,
+                                    65535,
+                                    INT32_MAX,
+                                    INT32_MIN,
+                                    INT64_MAX,
+                                    INT64_MIN,
+                                    INT64_MIN + 1,
+                                    INT64_C(1) << 32,
+                                    -(INT64_C(1) << 40),
+                                    INT64_C(1) << 62 };
     const size_t edges = sizeof edge / sizeof *edge;
     for (size_t a = 0; a < edges; a++)
         for (size_t b = 0; b < edges; b++)
             for (size_t c = 1; c < edges; c++)
-                assert_true(is_quotient(c3d_muldiv64(edge[a], edge[b], edge[c]), edge[a], edge[b], edge[c]));
+                assert_true(is_quotient(c3d_muldiv64(edge[a], edge[b], edge[c]), edge[a], edge[b],
+                                        edge[c]));
     sys_random random;
     sys_random_seed(&random, 2, 1);
     for (uint32_t i = 0; i < 200000; i++) {
@@ -125,7 +154,8 @@ static void muldiv_equals_128_bits(void **state)
             word[j] = (int64_t)bits >> sys_random_below(&random, 63);
         }
         if (word[2] == 0) word[2] = 1;
-        assert_true(is_quotient(c3d_muldiv64(word[0], word[1], word[2]), word[0], word[1], word[2]));
+        assert_true(
+            is_quotient(c3d_muldiv64(word[0], word[1], word[2]), word[0], word[1], word[2]));
     }
 }
 
@@ -137,10 +167,13 @@ static void length_is_near(void **state)
     for (uint32_t i = 0; i < 100000; i++) {
         int64_t v[3];
         for (int j = 0; j < 3; j++) {
-            int64_t bits = (int64_t)((uint64_t)sys_random_u32(&random) << 9 ^ sys_random_u32(&random)) & 0xFFFFFFFFFF;
+            int64_t bits = (int64_t)((uint64_t)sys_random_u32(&random) << 9 ^
+                                     sys_random_u32(&random)) &
+                           0xFFFFFFFFFF;
             v[j] = (bits >> sys_random_below(&random, 40)) * (sys_random_u32(&random) & 1 ? 1 : -1);
         }
-        double exact = sqrt((double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] + (double)v[2] * (double)v[2]);
+        double exact = sqrt((double)v[0] * (double)v[0] + (double)v[1] * (double)v[1] +
+                            (double)v[2] * (double)v[2]);
         double got = (double)c3d_length64(v[0], v[1], v[2]);
         assert_true(fabs(got - exact) <= 1.0 + exact * 4e-9);
     }
@@ -173,7 +206,7 @@ static void expect_row(const int32_t row[3], int x, int y, int z)
 static void rotations_of_the_compass(void **state)
 {
     (void)state;
-    c3d_camera camera = {0};
+    c3d_camera camera = { 0 };
     c3d_rotation rotation;
     c3d_rotation_from_camera(&camera, &rotation); /* north */
     expect_row(rotation.m[0], 1, 0, 0);
@@ -183,11 +216,11 @@ static void rotations_of_the_compass(void **state)
     c3d_rotation_from_camera(&camera, &rotation);
     expect_row(rotation.m[0], 0, -1, 0);
     expect_row(rotation.m[2], 1, 0, 0);
-    camera = (c3d_camera){.pitch = 16384}; /* zenith: the top of the picture is south */
+    camera = (c3d_camera){ .pitch = 16384 }; /* zenith: the top of the picture is south */
     c3d_rotation_from_camera(&camera, &rotation);
     expect_row(rotation.m[1], 0, -1, 0);
     expect_row(rotation.m[2], 0, 0, 1);
-    camera = (c3d_camera){.roll = 16384}; /* a quarter clockwise: the right side is down */
+    camera = (c3d_camera){ .roll = 16384 }; /* a quarter clockwise: the right side is down */
     c3d_rotation_from_camera(&camera, &rotation);
     expect_row(rotation.m[0], 0, 0, -1);
     expect_row(rotation.m[1], 1, 0, 0);
@@ -197,7 +230,7 @@ static void rotations_are_orthonormal(void **state)
 {
     (void)state;
     for (int32_t step = 0; step < 65536; step += 37) {
-        c3d_camera camera = {.yaw = step, .pitch = step * 5, .roll = step * 11};
+        c3d_camera camera = { .yaw = step, .pitch = step * 5, .roll = step * 11 };
         c3d_rotation r;
         c3d_rotation_from_camera(&camera, &r);
         for (int i = 0; i < 3; i++)
@@ -214,8 +247,8 @@ static void eye_space_of_far_points(void **state)
     (void)state;
     const int64_t limit = (INT64_C(1) << 33) - 1;
     for (int32_t step = 0; step < 65536; step += 131) {
-        c3d_camera camera = {.yaw = step * 3, .pitch = step * 7, .roll = step};
-        const int64_t offset[3] = {limit, -limit + step, step % 2 ? limit : -limit};
+        c3d_camera camera = { .yaw = step * 3, .pitch = step * 7, .roll = step };
+        const int64_t offset[3] = { limit, -limit + step, step % 2 ? limit : -limit };
         c3d_rotation r;
         int64_t eye[3], fine[3];
         c3d_rotation_from_camera(&camera, &r);
@@ -239,8 +272,10 @@ static void edges_of_strips(void **state)
 {
     (void)state;
     /* Two rows of one cell joined by degenerate triangles. */
-    static const uint16_t strip[] = {0, 1, 2, 3, 3, 2, 2, 3, 4, 5};
-    static const uint16_t expected[] = {0, 1, 1, 2, 0, 2, 2, 3, 1, 3, 2, 3, 3, 4, 2, 4, 4, 5, 3, 5};
+    static const uint16_t strip[] = { 0, 1, 2, 3, 3, 2, 2, 3, 4, 5 };
+    static const uint16_t expected[] = {
+        0, 1, 1, 2, 0, 2, 2, 3, 1, 3, 2, 3, 3, 4, 2, 4, 4, 5, 3, 5
+    };
     uint16_t edges[4 * sizeof strip / sizeof *strip];
     uint32_t triangles;
     uint32_t count = c3d_strip_edges(strip, sizeof strip / sizeof *strip, edges, &triangles);

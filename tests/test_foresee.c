@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-#define LIST 64
+#define LIST   64
 #define TILE_M 1280
 
 /* 6 x 6 tiles of 1280 m, seen 1000 m far from the middle of tile (2, 2). */
@@ -39,7 +39,8 @@ static uint32_t finest_drawn(const terrain_fixture *fx)
     return finest;
 }
 
-/* A tile that comes into the window as a bare root makes the ground beside it coarse; one that was foreseen does not. */
+/* A tile that comes into the window as a bare root makes the ground beside it coarse; one that was
+ * foreseen does not. */
 static void test_new_tiles_come_refined(void **state)
 {
     (void)state;

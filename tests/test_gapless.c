@@ -1,6 +1,6 @@
-/* No gap between nodes in the picture: ground drawn over magenta leaves none of it below the first ground of a column of pixels,
- * on any back end. The integer mesh is whole (test_watertight); this asks whether vertices that are shared stay shared once a
- * graphics library has projected them. */
+/* No gap between nodes in the picture: ground drawn over magenta leaves none of it below the first
+ * ground of a column of pixels, on any back end. The integer mesh is whole (test_watertight); this
+ * asks whether vertices that are shared stay shared once a graphics library has projected them. */
 #include "../client/ff_client_local.h"
 #include "../common3d/c3d_backend.h"
 #include "pack_fixture.h"
@@ -30,11 +30,12 @@ static void meadow(void *context, int64_t x_wu, int64_t y_wu, uint8_t rgb[3])
     rgb[0] = 60, rgb[1] = 150, rgb[2] = 40;
 }
 
-static void open_rig(gap_rig *rig, const sys_surface_api *api, enum sys_gl_kind gl, const struct c3d_backend *backend, int images)
+static void open_rig(gap_rig *rig, const sys_surface_api *api, enum sys_gl_kind gl,
+                     const struct c3d_backend *backend, int images)
 {
     size_t bytes;
-    sys_surface_desc surface = {"test", WIDTH, HEIGHT, gl};
-    pack_fixture_desc pack = {.info = pack_fixture_info(6, 8, 8), .height = pack_fixture_hills};
+    sys_surface_desc surface = { "test", WIDTH, HEIGHT, gl };
+    pack_fixture_desc pack = { .info = pack_fixture_info(6, 8, 8), .height = pack_fixture_hills };
     pack.info.spacing_wu = 19913; /* not a power of two: products round */
     pack.info.texture_log2 = images ? 5 : 0;
     pack.info.texture_levels = images ? 1 : 0;
@@ -46,10 +47,17 @@ static void open_rig(gap_rig *rig, const sys_surface_api *api, enum sys_gl_kind 
     assert_int_equal(ff_pack_open(&rig->pack, rig->pack_bytes, bytes), FF_OK);
     rig->block = malloc(BLOCK);
     rig->rgb = malloc(WIDTH * HEIGHT * 3);
-    ff_client_desc desc = {.memory = rig->block, .memory_bytes = BLOCK, .pack = &rig->pack, .backend = backend,
-                           .surface_api = api, .width = WIDTH, .height = HEIGHT};
-    desc.quality = (ff_quality){.measure = FF_MEASURE_PIXELS, .error_px_q8 = 256, .sigma_q8 = 320,
-                                .view_wu = 30000 * FF_WU_PER_METRE};
+    ff_client_desc desc = { .memory = rig->block,
+                            .memory_bytes = BLOCK,
+                            .pack = &rig->pack,
+                            .backend = backend,
+                            .surface_api = api,
+                            .width = WIDTH,
+                            .height = HEIGHT };
+    desc.quality = (ff_quality){ .measure = FF_MEASURE_PIXELS,
+                                 .error_px_q8 = 256,
+                                 .sigma_q8 = 320,
+                                 .view_wu = 30000 * FF_WU_PER_METRE };
     assert_int_equal(ff_client_create(&desc, &rig->client), FF_OK);
 }
 
@@ -62,11 +70,15 @@ static void close_rig(gap_rig *rig)
     free(rig->rgb);
 }
 
-/* Low over the middle of the terrain, looking in any direction: far ground is seen at grazing angles. */
+/* Low over the middle of the terrain, looking in any direction: far ground is seen at grazing
+ * angles. */
 static c3d_camera camera_at(sys_random *random)
 {
-    c3d_camera camera = {.yaw = (int32_t)sys_random_below(random, 65536), .pitch = -(int32_t)sys_random_below(random, 800),
-                         .width = WIDTH, .height = HEIGHT, .focal_q8 = c3d_focal_q8(10923, WIDTH)};
+    c3d_camera camera = { .yaw = (int32_t)sys_random_below(random, 65536),
+                          .pitch = -(int32_t)sys_random_below(random, 800),
+                          .width = WIDTH,
+                          .height = HEIGHT,
+                          .focal_q8 = c3d_focal_q8(10923, WIDTH) };
     for (int axis = 0; axis < 2; axis++)
         camera.pos_wu[axis] = (17000 + (int32_t)sys_random_below(random, 6000)) * FF_WU_PER_METRE;
     camera.pos_wu[2] = (1500 + (int32_t)sys_random_below(random, 300)) * FF_WU_PER_METRE;
@@ -76,7 +88,7 @@ static c3d_camera camera_at(sys_random *random)
 /* The client's ground, without sky or panorama behind it. */
 static void draw_ground(gap_rig *rig, const c3d_camera *camera)
 {
-    c3d_frame frame = {.camera = *camera, .clear_colour = MAGENTA};
+    c3d_frame frame = { .camera = *camera, .clear_colour = MAGENTA };
     frame.camera.near_wu = 16 * FF_WU_PER_METRE;
     frame.camera.far_wu = 100000 * FF_WU_PER_METRE;
     c3d_begin(rig->client->device, &frame);
@@ -103,7 +115,8 @@ static unsigned gaps_in(const uint8_t *rgb)
     return count;
 }
 
-static void count_gaps(const sys_surface_api *api, enum sys_gl_kind gl, const struct c3d_backend *backend, int images)
+static void count_gaps(const sys_surface_api *api, enum sys_gl_kind gl,
+                       const struct c3d_backend *backend, int images)
 {
     gap_rig rig;
     sys_random random;
@@ -123,7 +136,8 @@ static void count_gaps(const sys_surface_api *api, enum sys_gl_kind gl, const st
         stitched += stats.tree.stitched;
         gaps += gaps_in(rig.rgb);
     }
-    print_message("# %s%s: %u views, %u stitched nodes, %u gaps\n", backend->name, images ? " under images" : "", VIEWS, stitched, gaps);
+    print_message("# %s%s: %u views, %u stitched nodes, %u gaps\n", backend->name,
+                  images ? " under images" : "", VIEWS, stitched, gaps);
     assert_true(stitched > VIEWS && rig.client->has_textures == images);
     assert_int_equal(gaps, 0);
     close_rig(&rig);
@@ -145,12 +159,14 @@ static void no_gap_with_integers(void **state)
 {
     (void)state;
     count_gaps(sys_surface_memory(), SYS_GL_NONE, c3d_backend_soft(), 0);
-    count_gaps(sys_surface_memory(), SYS_GL_NONE, c3d_backend_soft(), 1); /* which have ways of their own */
+    /* which have ways of their own */
+    count_gaps(sys_surface_memory(), SYS_GL_NONE, c3d_backend_soft(), 1);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(no_gap_with_gl), cmocka_unit_test(no_gap_with_gles1),
-                                       cmocka_unit_test(no_gap_with_integers)};
+    const struct CMUnitTest tests[] = { cmocka_unit_test(no_gap_with_gl),
+                                        cmocka_unit_test(no_gap_with_gles1),
+                                        cmocka_unit_test(no_gap_with_integers) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -31,7 +31,7 @@ static void morton_is_interleaving(void **state)
 
 static void fields_survive(void **state)
 {
-    static const uint32_t tiles[] = {0, 1, 77, FF_KEY_TILES_MAX - 1};
+    static const uint32_t tiles[] = { 0, 1, 77, FF_KEY_TILES_MAX - 1 };
 
     (void)state;
     for (unsigned t = 0; t < 4; t++)
@@ -80,7 +80,8 @@ static void check_neighbours(uint32_t tiles_x, uint32_t tiles_y, ff_key key)
         ff_key found = ff_key_neighbour(tiles_x, tiles_y, key, (enum ff_side)side);
         assert_true(found == naive_neighbour(tiles_x, tiles_y, key, (enum ff_side)side));
         if (found != FF_KEY_NONE) /* sides 0..3 run round, so the opposite one is two away */
-            assert_true(ff_key_neighbour(tiles_x, tiles_y, found, (enum ff_side)((side + 2) % 4)) == key);
+            assert_true(ff_key_neighbour(tiles_x, tiles_y, found, (enum ff_side)((side + 2) % 4)) ==
+                        key);
     }
 }
 
@@ -114,9 +115,17 @@ static void neighbours_of_large_grids_sampled(void **state)
 
 static ff_terrain_info sound_terrain(void)
 {
-    return (ff_terrain_info){.node_log2 = 3, .tile_log2 = 10, .codec = FF_CODEC_DEFLATE, .tiles_x = 4, .tiles_y = 2,
-                             .samples_x = 4097, .samples_y = 2000, .spacing_wu = 2560, .hscale_q24 = 1677722,
-                             .hoffset_wu = -1000, .height_max = 43000};
+    return (ff_terrain_info){ .node_log2 = 3,
+                              .tile_log2 = 10,
+                              .codec = FF_CODEC_DEFLATE,
+                              .tiles_x = 4,
+                              .tiles_y = 2,
+                              .samples_x = 4097,
+                              .samples_y = 2000,
+                              .spacing_wu = 2560,
+                              .hscale_q24 = 1677722,
+                              .hoffset_wu = -1000,
+                              .height_max = 43000 };
 }
 
 static void terrain_ranges(void **state)
@@ -127,8 +136,8 @@ static void terrain_ranges(void **state)
     (void)state;
     assert_int_equal(ff_terrain_check(&good), FF_OK);
 #define BAD(field, value) \
-    t = good; \
-    t.field = value; \
+    t = good;             \
+    t.field = value;      \
     assert_int_equal(ff_terrain_check(&t), FF_ERR_RANGE)
     BAD(node_log2, 0);
     BAD(node_log2, 6);

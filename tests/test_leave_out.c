@@ -1,4 +1,5 @@
-/* What a scene does not need is not asked for, not held and not computed; and the codec that needs no zlib. */
+/* What a scene does not need is not asked for, not held and not computed; and the codec that needs
+ * no zlib. */
 #include "client_fixture.h"
 #include "../client/ff_client_local.h"
 #include "../protocol/ff_codec.h"
@@ -12,7 +13,8 @@
 
 #define BLOCK_BYTES (2u << 20)
 
-/* Nothing for images or panoramas: no request, no memory, no decoding scratch, no slot on the device. */
+/* Nothing for images or panoramas: no request, no memory, no decoding scratch, no slot on the
+ * device. */
 static void assert_heights_alone(client_rig *rig)
 {
     ff_client_stats stats = rig_stats(rig);
@@ -54,7 +56,8 @@ static void images_that_are_not_wanted(void **state)
     rig_close(&rig);
 }
 
-/* The same memory holds more ground when images and panoramas are not there; a pack on the device has no link's buffers. */
+/* The same memory holds more ground when images and panoramas are not there; a pack on the device
+ * has no link's buffers. */
 static void memory_goes_to_the_ground(void **state)
 {
     (void)state;
@@ -77,17 +80,18 @@ static void memory_goes_to_the_ground(void **state)
     rig_close(&without);
 }
 
-/* FF_CODEC_RICE: the decoder's memory has no inflate state, and the deflated form of a body is refused. */
+/* FF_CODEC_RICE: the decoder's memory has no inflate state, and the deflated form of a body is
+ * refused. */
 static void rice_needs_no_zlib(void **state)
 {
     static uint16_t source[FF_NODE_HEIGHTS_MAX], decoded[FF_NODE_HEIGHTS_MAX];
     static uint8_t payload[FF_PAYLOAD_BYTES_MAX];
     static max_align_t memory[4096];
     static int32_t value[FF_REFINED_HEIGHTS_MAX];
-    ff_residuals residuals = {.value = value};
+    ff_residuals residuals = { .value = value };
     (void)state;
-    for (unsigned i = 0; i < FF_NODE_HEIGHTS_MAX; i++)
-        source[i] = (uint16_t)(20000 + (i % 33 == 7) * 40); /* rare values: what deflate is best at */
+    for (unsigned i = 0; i < FF_NODE_HEIGHTS_MAX; i++) /* rare values: what deflate is best at */
+        source[i] = (uint16_t)(20000 + (i % 33 == 7) * 40);
     ff_terrain_info info = pack_fixture_info(7, 1, 1);
     info.node_log2 = 5;
     info.codec = FF_CODEC_DEFLATE;
@@ -105,14 +109,15 @@ static void rice_needs_no_zlib(void **state)
     assert_int_not_equal(payload[0] & 3, 2);
     assert_int_equal(ff_decode_root(decoder, payload, (size_t)rice, &residuals), FF_OK);
     ff_reconstruct_root(&info, &residuals, decoded);
-    assert_memory_equal(decoded, source, (size_t)ff_node_side(&info) * ff_node_side(&info) * sizeof *source);
+    assert_memory_equal(decoded, source,
+                        (size_t)ff_node_side(&info) * ff_node_side(&info) * sizeof *source);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_terrain_without_images), cmocka_unit_test(images_that_are_not_wanted),
-        cmocka_unit_test(memory_goes_to_the_ground), cmocka_unit_test(rice_needs_no_zlib)
-    };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(a_terrain_without_images),
+                                        cmocka_unit_test(images_that_are_not_wanted),
+                                        cmocka_unit_test(memory_goes_to_the_ground),
+                                        cmocka_unit_test(rice_needs_no_zlib) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

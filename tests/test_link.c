@@ -1,4 +1,5 @@
-/* The link models against their own descriptions: rate, delay, gaps, traces, cuts, determinism, and no byte lost or reordered. */
+/* The link models against their own descriptions: rate, delay, gaps, traces, cuts, determinism, and
+ * no byte lost or reordered. */
 #include "../sim/sim_link.h"
 #include "../sim/sim_stream.h"
 #include "../sim/sim_trace.h"
@@ -17,7 +18,9 @@
 
 static sim_link_desc plain(uint32_t bytes_s, uint32_t delay_us, uint32_t jitter_us)
 {
-    sim_link_way way = { .bytes_s = bytes_s, .delay_us = delay_us, .jitter_us = jitter_us, .queue_bytes = 1 << 20 };
+    sim_link_way way = {
+        .bytes_s = bytes_s, .delay_us = delay_us, .jitter_us = jitter_us, .queue_bytes = 1 << 20
+    };
     return (sim_link_desc){ .name = "test", .source = "test", .way = { way, way } };
 }
 
@@ -92,7 +95,8 @@ static void test_delay_and_jitter(void **state)
     }
     assert_true(least >= 300000 && least < 301000);
     assert_true(most < 500000 && most > 499000);
-    assert_true(llabs(sum / 2000 - 400000) < 5000); /* 200000 / sqrt(12 * 2000) = 1291: four times that */
+    /* 200000 / sqrt(12 * 2000) = 1291: four times that */
+    assert_true(llabs(sum / 2000 - 400000) < 5000);
     sim_link_destroy(link);
 }
 
@@ -110,7 +114,8 @@ static void test_queue_limit(void **state)
     sim_link_destroy(link);
 }
 
-/* A sender that never stops sees every stall as a gap: their number, lengths and spacing are those described. */
+/* A sender that never stops sees every stall as a gap: their number, lengths and spacing are those
+ * described. */
 static void test_stalls(void **state)
 {
     (void)state;
@@ -140,7 +145,8 @@ static void test_stalls(void **state)
         }
         now = sim_link_next_us(link);
     }
-    /* expected 400000 / (120 + 22) = 2817 stalls of 22 s; standard deviations about 46 stalls and 0.2 s */
+    /* expected 400000 / (120 + 22) = 2817 stalls of 22 s; standard deviations about 46 stalls and
+     * 0.2 s */
     assert_true(abs(stalls - 2817) < 180);
     assert_true(llabs(stalled / stalls - 22 * SECOND) < 800000);
     assert_true(abs(stalls - stalls_up) <= 1);
@@ -151,7 +157,7 @@ static void test_stall_rate(void **state)
 {
     (void)state;
     sim_link_desc desc = plain(1000, 0, 0); /* little before the first stall */
-    desc.stall_every_ms = 1; /* nearly always stalled */
+    desc.stall_every_ms = 1;                /* nearly always stalled */
     desc.stall_ms_min = desc.stall_ms_max = 1000000;
     desc.stall_bytes_s = 5;
     sim_link *link = sim_link_create(&desc, 3);
@@ -160,7 +166,8 @@ static void test_stall_rate(void **state)
     assert_int_equal(taken, 40000);
     for (int i = 0; i < 800; i++)
         received += sim_link_recv(link, SIM_DOWN, bytes, sizeof bytes, (i + 2) * SECOND);
-    assert_in_range(received, 4000 - 512, 4000 + 1); /* whole packets of 512 bytes, 5 bytes a second */
+    /* whole packets of 512 bytes, 5 bytes a second */
+    assert_in_range(received, 4000 - 512, 4000 + 1);
     sim_link_destroy(link);
 }
 
@@ -187,14 +194,18 @@ static void test_trace_replay(void **state)
     static uint8_t bytes[100000];
     assert_int_equal(sim_link_send(link, SIM_DOWN, bytes, 30000, 0), 30000);
     /* opportunities of 1500 bytes: 10 10 25 100 | 110 110 125 200 | ... */
-    static const struct { int ms, total; } expect[] = { { 9, 0 }, { 11, 3000 }, { 24, 3000 }, { 26, 4500 }, { 99, 4500 }, { 101, 6000 },
-        { 109, 6000 }, { 111, 9000 }, { 126, 10500 }, { 201, 12000 }, { 399, 22500 }, { 401, 24000 }, { 501, 30000 } };
+    static const struct {
+        int ms, total;
+    } expect[] = { { 9, 0 },       { 11, 3000 },   { 24, 3000 },  { 26, 4500 },   { 99, 4500 },
+                   { 101, 6000 },  { 109, 6000 },  { 111, 9000 }, { 126, 10500 }, { 201, 12000 },
+                   { 399, 22500 }, { 401, 24000 }, { 501, 30000 } };
     int total = 0;
     for (size_t i = 0; i < sizeof expect / sizeof expect[0]; i++) {
         total += sim_link_recv(link, SIM_DOWN, bytes, sizeof bytes, expect[i].ms * 1000);
         assert_int_equal(total, expect[i].total);
     }
-    /* what is not used is lost: nothing was queued at 510 and 510, so 2000 bytes sent at 511 leave at 525 and 600 */
+    /* what is not used is lost: nothing was queued at 510 and 510, so 2000 bytes sent at 511 leave
+     * at 525 and 600 */
     assert_int_equal(sim_link_send(link, SIM_DOWN, bytes, 2000, 511000), 2000);
     assert_int_equal(sim_link_recv(link, SIM_DOWN, bytes, sizeof bytes, 526000), 1500);
     assert_int_equal(sim_link_recv(link, SIM_DOWN, bytes, sizeof bytes, 599000), 0);
@@ -236,7 +247,8 @@ static void test_trace_rate(void **state)
 static void test_trace_errors(void **state)
 {
     (void)state;
-    static const char *const bad[] = { "", "x\n", "5\n4\n", "-1\n", "99999999999999999999\n", "1 2\n" };
+    static const char *const bad[] = { "",     "x\n", "5\n4\n", "-1\n", "99999999999999999999\n",
+                                       "1 2\n" };
     sim_trace trace;
     char path[64];
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -257,14 +269,17 @@ static void test_trace_errors(void **state)
 
 /* ---- any profile: bytes come whole, in order, the same for the same seed ---- */
 
-typedef struct run_result { uint64_t hash, received; } run_result;
+typedef struct run_result {
+    uint64_t hash, received;
+} run_result;
 
 static void mix(run_result *result, uint64_t value)
 {
     result->hash = (result->hash ^ value) * 1099511628211u;
 }
 
-/* Sends a counting byte sequence both ways in bursts; `looks` extra receive calls with no capacity must not change anything. */
+/* Sends a counting byte sequence both ways in bursts; `looks` extra receive calls with no capacity
+ * must not change anything. */
 static run_result run_profile(const sim_link_desc *desc, uint64_t seed, int looks)
 {
     run_result result = { 14695981039346656037u, 0 };
@@ -275,8 +290,7 @@ static run_result run_profile(const sim_link_desc *desc, uint64_t seed, int look
         int64_t now = step * 10000;
         for (int way = 0; way < 2; way++) {
             size_t burst = step % 7 == way ? (size_t)(step * 37 % 900) : 0;
-            for (size_t i = 0; i < burst; i++)
-                bytes[i] = (uint8_t)((sent[way] + i) * 31 >> 3);
+            for (size_t i = 0; i < burst; i++) bytes[i] = (uint8_t)((sent[way] + i) * 31 >> 3);
             sent[way] += (uint64_t)sim_link_send(link, way, bytes, burst, now);
             for (int look = 0; look < looks; look++)
                 (void)sim_link_recv(link, way, bytes, 0, now + look * 1000);
@@ -307,7 +321,8 @@ static void test_profiles(void **state)
         const sim_link_desc *desc = sim_link_profile_at(i);
         assert_ptr_equal(sim_link_profile(desc->name), desc);
         assert_true(strlen(desc->source) > 0);
-        run_result one = run_profile(desc, 7, 0), same = run_profile(desc, 7, 0), looked = run_profile(desc, 7, 3);
+        run_result one = run_profile(desc, 7, 0), same = run_profile(desc, 7, 0),
+                   looked = run_profile(desc, 7, 3);
         assert_true(one.received > 0);
         assert_int_equal(one.hash, same.hash);
         assert_int_equal(one.hash, looked.hash);
@@ -346,8 +361,7 @@ static void test_cut_and_reconnect(void **state)
     uint8_t bytes[256] = { 0 };
     assert_int_equal(sim_link_connections(link), 1);
     for (unsigned cut = 0; cut < 50; cut++) {
-        while (sim_link_send(link, SIM_UP, bytes, 1, now) >= 0)
-            now += 1000;
+        while (sim_link_send(link, SIM_UP, bytes, 1, now) >= 0) now += 1000;
         assert_in_range(now - up_since, 5 * SECOND, 15 * SECOND + 1000);
         assert_int_equal(sim_link_recv(link, SIM_DOWN, bytes, sizeof bytes, now), FF_ERR_CLOSED);
         assert_int_equal(sim_link_reconnect(link, now), FF_ERR_AGAIN);
@@ -357,33 +371,39 @@ static void test_cut_and_reconnect(void **state)
         up_since = now += 500000;
         assert_int_equal(sim_link_reconnect(link, now), FF_OK);
         assert_int_equal(sim_link_connections(link), cut + 2);
-        assert_int_equal(sim_link_recv(link, SIM_UP, bytes, sizeof bytes, now), 0); /* what was under way is lost */
+        /* what was under way is lost */
+        assert_int_equal(sim_link_recv(link, SIM_UP, bytes, sizeof bytes, now), 0);
     }
     sim_link_destroy(link);
 }
 
-/* What is under way arrives later, in order and whole, at the new rate and delay; the queue may grow and shrink; a stall ends. */
+/* What is under way arrives later, in order and whole, at the new rate and delay; the queue may
+ * grow and shrink; a stall ends. */
 static void test_change(void **state)
 {
     (void)state;
-    sim_link_desc slow = plain(100, 1000, 0), fast = plain(10000, 5000, 0), narrow = plain(10000, 5000, 0);
+    sim_link_desc slow = plain(100, 1000, 0), fast = plain(10000, 5000, 0),
+                  narrow = plain(10000, 5000, 0);
     slow.way[SIM_DOWN].queue_bytes = 2000;
     slow.stall_every_ms = 1;
     slow.stall_ms_min = slow.stall_ms_max = 1000000;
     fast.way[SIM_DOWN].queue_bytes = 1 << 22;
     narrow.way[SIM_DOWN].queue_bytes = 10;
     static uint8_t sent[10000], got[10000];
-    for (size_t i = 0; i < sizeof sent; i++)
-        sent[i] = (uint8_t)(i * 7 + i / 256);
+    for (size_t i = 0; i < sizeof sent; i++) sent[i] = (uint8_t)(i * 7 + i / 256);
     sim_link *link = sim_link_create(&slow, 1);
     assert_int_equal(sim_link_send(link, SIM_DOWN, sent, sizeof sent, 0), 2000);
-    assert_int_equal(sim_link_recv(link, SIM_DOWN, got, sizeof got, 100 * SECOND), 0); /* stalled */
+    /* stalled */
+    assert_int_equal(sim_link_recv(link, SIM_DOWN, got, sizeof got, 100 * SECOND), 0);
     assert_int_equal(sim_link_change(link, &fast, 100 * SECOND), FF_OK);
-    assert_int_equal(sim_link_send(link, SIM_DOWN, sent + 2000, sizeof sent - 2000, 100 * SECOND), 8000);
+    assert_int_equal(sim_link_send(link, SIM_DOWN, sent + 2000, sizeof sent - 2000, 100 * SECOND),
+                     8000);
     assert_int_equal(sim_link_change(link, &narrow, 100 * SECOND), FF_OK);
     assert_int_equal(sim_link_room(link, SIM_DOWN, 100 * SECOND), 0); /* more waits than may */
-    assert_int_equal(sim_link_recv(link, SIM_DOWN, got, sizeof got, 101 * SECOND + 4999), 9728); /* whole packets of 512 */
-    assert_int_equal(sim_link_recv(link, SIM_DOWN, got + 9728, sizeof got - 9728, 101 * SECOND + 5000), 272);
+    /* whole packets of 512 */
+    assert_int_equal(sim_link_recv(link, SIM_DOWN, got, sizeof got, 101 * SECOND + 4999), 9728);
+    assert_int_equal(
+        sim_link_recv(link, SIM_DOWN, got + 9728, sizeof got - 9728, 101 * SECOND + 5000), 272);
     assert_memory_equal(sent, got, sizeof sent);
     assert_int_equal(sim_link_room(link, SIM_DOWN, 102 * SECOND), 10);
     sim_link_destroy(link);
@@ -419,11 +439,20 @@ static void test_streams(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rate_exact),     cmocka_unit_test(test_no_drift),    cmocka_unit_test(test_delay_and_jitter),
-        cmocka_unit_test(test_queue_limit),    cmocka_unit_test(test_stalls),      cmocka_unit_test(test_stall_rate),
-        cmocka_unit_test(test_trace_replay),   cmocka_unit_test(test_trace_rate),  cmocka_unit_test(test_trace_errors),
-        cmocka_unit_test(test_profiles),       cmocka_unit_test(test_parse),       cmocka_unit_test(test_cut_and_reconnect),
-        cmocka_unit_test(test_change),         cmocka_unit_test(test_streams),
+        cmocka_unit_test(test_rate_exact),
+        cmocka_unit_test(test_no_drift),
+        cmocka_unit_test(test_delay_and_jitter),
+        cmocka_unit_test(test_queue_limit),
+        cmocka_unit_test(test_stalls),
+        cmocka_unit_test(test_stall_rate),
+        cmocka_unit_test(test_trace_replay),
+        cmocka_unit_test(test_trace_rate),
+        cmocka_unit_test(test_trace_errors),
+        cmocka_unit_test(test_profiles),
+        cmocka_unit_test(test_parse),
+        cmocka_unit_test(test_cut_and_reconnect),
+        cmocka_unit_test(test_change),
+        cmocka_unit_test(test_streams),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

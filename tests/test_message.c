@@ -9,20 +9,35 @@
 
 #define STREAM_MAX (1 << 16)
 
-static const uint8_t payload[300] = {0xff, 0xd8, 1, 2, 3};
+static const uint8_t payload[300] = { 0xff, 0xd8, 1, 2, 3 };
 
 static ff_terrain_info terrain(void)
 {
-    return (ff_terrain_info){.node_log2 = 5, .tile_log2 = 15, .codec = FF_CODEC_DEFLATE, .flags = 3, .texture_log2 = 8,
-                             .texture_levels = 16, .height_min = 1, .height_max = 65535, .max_error = 32767, .tiles_x = 3,
-                             .tiles_y = 2, .samples_x = 98305, .samples_y = 2, .spacing_wu = 21845, .hscale_q24 = INT32_MAX,
-                             .hoffset_wu = INT32_MIN, .epsg = -1, .origin_x_mm = INT64_MIN, .origin_y_mm = INT64_MAX,
-                             .checksum = UINT32_MAX};
+    return (ff_terrain_info){ .node_log2 = 5,
+                              .tile_log2 = 15,
+                              .codec = FF_CODEC_DEFLATE,
+                              .flags = 3,
+                              .texture_log2 = 8,
+                              .texture_levels = 16,
+                              .height_min = 1,
+                              .height_max = 65535,
+                              .max_error = 32767,
+                              .tiles_x = 3,
+                              .tiles_y = 2,
+                              .samples_x = 98305,
+                              .samples_y = 2,
+                              .spacing_wu = 21845,
+                              .hscale_q24 = INT32_MAX,
+                              .hoffset_wu = INT32_MIN,
+                              .epsg = -1,
+                              .origin_x_mm = INT64_MIN,
+                              .origin_y_mm = INT64_MAX,
+                              .checksum = UINT32_MAX };
 }
 
 static ff_message get(enum ff_message_type type, uint16_t id, uint8_t what, ff_key key)
 {
-    return (ff_message){.type = type, .u.get = {id, what, key}};
+    return (ff_message){ .type = type, .u.get = { id, what, key } };
 }
 
 /* Every type, with fields at their ends. */
@@ -32,45 +47,58 @@ static size_t samples(ff_message *list)
     static uint16_t top[64], bottom[64];
     size_t n = 0;
 
-    for (unsigned c = 0; c < 64; c++)
-        bottom[c] = (uint16_t)(c % 50);
-    uint32_t columns_bytes = (uint32_t)ff_face_columns_encode(top, bottom, 64, columns, sizeof(columns));
-    list[n++] = (ff_message){.type = FF_MSG_HELLO, .u.hello = {UINT32_MAX, 0x01020304}};
+    for (unsigned c = 0; c < 64; c++) bottom[c] = (uint16_t)(c % 50);
+    uint32_t columns_bytes = (uint32_t)ff_face_columns_encode(top, bottom, 64, columns,
+                                                              sizeof(columns));
+    list[n++] = (ff_message){ .type = FF_MSG_HELLO, .u.hello = { UINT32_MAX, 0x01020304 } };
     list[n++] = get(FF_MSG_GET_NODE, 0, FF_GET_ROOT, ff_key_make(0, 0, 0));
-    list[n++] = get(FF_MSG_GET_NODE, 65535, FF_GET_REFINEMENT, ff_key_make(FF_KEY_TILES_MAX - 1, 15, 0x3fffffff));
+    list[n++] = get(FF_MSG_GET_NODE, 65535, FF_GET_REFINEMENT,
+                    ff_key_make(FF_KEY_TILES_MAX - 1, 15, 0x3fffffff));
     list[n++] = get(FF_MSG_GET_TEXTURE, 7, 0, ff_key_make(127, 3, 63));
-    list[n++] = (ff_message){.type = FF_MSG_GET_PANORAMA,
-                             .u.panorama = {1, {INT32_MIN, INT32_MAX, -1}, 0, INT32_MAX, FF_FACE_SIZE_MAX, 100, 6, {5, 4, 3, 2, 1, 0}}};
-    list[n++] = (ff_message){.type = FF_MSG_GET_PANORAMA, .u.panorama = {2, {0, 0, 0}, 1, 2, 16, 1, 1, {3}}};
-    list[n++] = (ff_message){.type = FF_MSG_CANCEL, .u.cancel = {65535}};
-    list[n++] = (ff_message){.type = FF_MSG_PING, .u.ping = {UINT32_MAX}};
-    list[n++] = (ff_message){.type = FF_MSG_WELCOME, .u.welcome = {FF_PROTOCOL_VERSION, terrain()}};
-    list[n++] = (ff_message){.type = FF_MSG_NODE, .u.data = {1, payload, 1}};
-    list[n++] = (ff_message){.type = FF_MSG_NODE, .u.data = {1, payload, 125}};
-    list[n++] = (ff_message){.type = FF_MSG_NODE, .u.data = {1, payload, 126}};
-    list[n++] = (ff_message){.type = FF_MSG_TEXTURE, .u.data = {65535, payload, 300}};
-    list[n++] = (ff_message){.type = FF_MSG_TEXTURE, .u.data = {3, NULL, 0}};
-    list[n++] = (ff_message){.type = FF_MSG_FACE,
-                             .u.face = {9, FF_FACE_DOWN, FF_FACE_LAST, 64, 15, 49, columns, columns_bytes, payload, 299}};
-    list[n++] = (ff_message){.type = FF_MSG_FACE, .u.face = {9, FF_FACE_NORTH, FF_FACE_EMPTY, 1024, 0, 0, NULL, 0, NULL, 0}};
-    list[n++] = (ff_message){.type = FF_MSG_FAILED, .u.failed = {65535, -128}};
-    list[n++] = (ff_message){.type = FF_MSG_CANCELLED, .u.cancel = {1}};
-    list[n++] = (ff_message){.type = FF_MSG_PONG, .u.ping = {0}};
-    list[n++] = (ff_message){.type = FF_MSG_GOODBYE, .u.failed = {0, FF_ERR_FULL}};
+    list[n++] = (ff_message){ .type = FF_MSG_GET_PANORAMA,
+                              .u.panorama = { 1,
+                                              { INT32_MIN, INT32_MAX, -1 },
+                                              0,
+                                              INT32_MAX,
+                                              FF_FACE_SIZE_MAX,
+                                              100,
+                                              6,
+                                              { 5, 4, 3, 2, 1, 0 } } };
+    list[n++] = (ff_message){ .type = FF_MSG_GET_PANORAMA,
+                              .u.panorama = { 2, { 0, 0, 0 }, 1, 2, 16, 1, 1, { 3 } } };
+    list[n++] = (ff_message){ .type = FF_MSG_CANCEL, .u.cancel = { 65535 } };
+    list[n++] = (ff_message){ .type = FF_MSG_PING, .u.ping = { UINT32_MAX } };
+    list[n++] = (ff_message){ .type = FF_MSG_WELCOME,
+                              .u.welcome = { FF_PROTOCOL_VERSION, terrain() } };
+    list[n++] = (ff_message){ .type = FF_MSG_NODE, .u.data = { 1, payload, 1 } };
+    list[n++] = (ff_message){ .type = FF_MSG_NODE, .u.data = { 1, payload, 125 } };
+    list[n++] = (ff_message){ .type = FF_MSG_NODE, .u.data = { 1, payload, 126 } };
+    list[n++] = (ff_message){ .type = FF_MSG_TEXTURE, .u.data = { 65535, payload, 300 } };
+    list[n++] = (ff_message){ .type = FF_MSG_TEXTURE, .u.data = { 3, NULL, 0 } };
+    list[n++] = (ff_message){ .type = FF_MSG_FACE,
+                              .u.face = { 9, FF_FACE_DOWN, FF_FACE_LAST, 64, 15, 49, columns,
+                                          columns_bytes, payload, 299 } };
+    list[n++] =
+        (ff_message){ .type = FF_MSG_FACE,
+                      .u.face = { 9, FF_FACE_NORTH, FF_FACE_EMPTY, 1024, 0, 0, NULL, 0, NULL, 0 } };
+    list[n++] = (ff_message){ .type = FF_MSG_FAILED, .u.failed = { 65535, -128 } };
+    list[n++] = (ff_message){ .type = FF_MSG_CANCELLED, .u.cancel = { 1 } };
+    list[n++] = (ff_message){ .type = FF_MSG_PONG, .u.ping = { 0 } };
+    list[n++] = (ff_message){ .type = FF_MSG_GOODBYE, .u.failed = { 0, FF_ERR_FULL } };
     return n;
 }
 
 static void assert_bytes(const uint8_t *a, const uint8_t *b, uint32_t count)
 {
-    if (count > 0)
-        assert_memory_equal(a, b, count);
+    if (count > 0) assert_memory_equal(a, b, count);
 }
 
 static void assert_same_terrain(const ff_terrain_info *a, const ff_terrain_info *b)
 {
     assert_int_equal(a->node_log2 << 24 | a->tile_log2 << 16 | a->codec << 8 | a->flags,
                      b->node_log2 << 24 | b->tile_log2 << 16 | b->codec << 8 | b->flags);
-    assert_int_equal(a->texture_log2 << 8 | a->texture_levels, b->texture_log2 << 8 | b->texture_levels);
+    assert_int_equal(a->texture_log2 << 8 | a->texture_levels,
+                     b->texture_log2 << 8 | b->texture_levels);
     assert_int_equal(a->height_min, b->height_min);
     assert_int_equal(a->height_max, b->height_max);
     assert_int_equal(a->max_error, b->max_error);
@@ -115,43 +143,35 @@ static void assert_same(const ff_message *a, const ff_message *b)
 {
     assert_int_equal(a->type, b->type);
     switch (a->type) {
-    case FF_MSG_HELLO:
-        assert_int_equal(a->u.hello.version, b->u.hello.version);
-        assert_int_equal(a->u.hello.known_checksum, b->u.hello.known_checksum);
-        break;
-    case FF_MSG_GET_NODE:
-    case FF_MSG_GET_TEXTURE:
-        assert_int_equal(a->u.get.id, b->u.get.id);
-        assert_int_equal(a->u.get.what, b->u.get.what);
-        assert_true(a->u.get.key == b->u.get.key);
-        break;
-    case FF_MSG_GET_PANORAMA:
-        assert_same_panorama(&a->u.panorama, &b->u.panorama);
-        break;
-    case FF_MSG_CANCEL:
-    case FF_MSG_CANCELLED:
-        assert_int_equal(a->u.cancel.id, b->u.cancel.id);
-        break;
-    case FF_MSG_PING:
-    case FF_MSG_PONG:
-        assert_int_equal(a->u.ping.stamp, b->u.ping.stamp);
-        break;
-    case FF_MSG_WELCOME:
-        assert_int_equal(a->u.welcome.version, b->u.welcome.version);
-        assert_same_terrain(&a->u.welcome.info, &b->u.welcome.info);
-        break;
-    case FF_MSG_NODE:
-    case FF_MSG_TEXTURE:
-        assert_int_equal(a->u.data.id, b->u.data.id);
-        assert_int_equal(a->u.data.byte_count, b->u.data.byte_count);
-        assert_bytes(a->u.data.bytes, b->u.data.bytes, a->u.data.byte_count);
-        break;
-    case FF_MSG_FACE:
-        assert_same_face(&a->u.face, &b->u.face);
-        break;
-    default:
-        assert_int_equal(a->u.failed.id, b->u.failed.id);
-        assert_int_equal(a->u.failed.error, b->u.failed.error);
+        case FF_MSG_HELLO:
+            assert_int_equal(a->u.hello.version, b->u.hello.version);
+            assert_int_equal(a->u.hello.known_checksum, b->u.hello.known_checksum);
+            break;
+        case FF_MSG_GET_NODE:
+        case FF_MSG_GET_TEXTURE:
+            assert_int_equal(a->u.get.id, b->u.get.id);
+            assert_int_equal(a->u.get.what, b->u.get.what);
+            assert_true(a->u.get.key == b->u.get.key);
+            break;
+        case FF_MSG_GET_PANORAMA: assert_same_panorama(&a->u.panorama, &b->u.panorama); break;
+        case FF_MSG_CANCEL:
+        case FF_MSG_CANCELLED: assert_int_equal(a->u.cancel.id, b->u.cancel.id); break;
+        case FF_MSG_PING:
+        case FF_MSG_PONG: assert_int_equal(a->u.ping.stamp, b->u.ping.stamp); break;
+        case FF_MSG_WELCOME:
+            assert_int_equal(a->u.welcome.version, b->u.welcome.version);
+            assert_same_terrain(&a->u.welcome.info, &b->u.welcome.info);
+            break;
+        case FF_MSG_NODE:
+        case FF_MSG_TEXTURE:
+            assert_int_equal(a->u.data.id, b->u.data.id);
+            assert_int_equal(a->u.data.byte_count, b->u.data.byte_count);
+            assert_bytes(a->u.data.bytes, b->u.data.bytes, a->u.data.byte_count);
+            break;
+        case FF_MSG_FACE: assert_same_face(&a->u.face, &b->u.face); break;
+        default:
+            assert_int_equal(a->u.failed.id, b->u.failed.id);
+            assert_int_equal(a->u.failed.error, b->u.failed.error);
     }
 }
 
@@ -171,7 +191,8 @@ static void there_and_back_in_exact_room(void **state)
         assert_same(&list[i], &again);
         for (int room = 0; room <= used; room++) {
             uint8_t *exact = malloc(room > 0 ? (size_t)room : 1);
-            assert_int_equal(ff_message_encode(&list[i], exact, (size_t)room), room < used ? FF_ERR_FULL : used);
+            assert_int_equal(ff_message_encode(&list[i], exact, (size_t)room),
+                             room < used ? FF_ERR_FULL : used);
             free(exact);
         }
     }
@@ -247,12 +268,12 @@ static void bodies_of_wrong_length_are_errors(void **state)
 
     (void)state;
     for (size_t i = 0; i < count; i++) {
-        uint8_t bytes[512] = {0}, shorter[512] = {0};
+        uint8_t bytes[512] = { 0 }, shorter[512] = { 0 };
         int used = ff_message_encode(&list[i], bytes, sizeof(bytes) - 1);
         int header = bytes[1] < 128 ? 2 : 3;
-        int open_ended = list[i].type == FF_MSG_NODE || list[i].type == FF_MSG_TEXTURE || list[i].type == FF_MSG_FACE;
-        if (bytes[1] >= 127 || bytes[1] == 0 || open_ended)
-            continue;
+        int open_ended = list[i].type == FF_MSG_NODE || list[i].type == FF_MSG_TEXTURE ||
+                         list[i].type == FF_MSG_FACE;
+        if (bytes[1] >= 127 || bytes[1] == 0 || open_ended) continue;
         bytes[1]++;
         assert_true(ff_message_decode(bytes, (size_t)used + 1, &out) < 0);
         for (int body = used - header - 1; body >= 0; body--) {
@@ -276,13 +297,12 @@ static void flipped_bits_do_no_harm(void **state)
         stream[bit / 8] ^= (uint8_t)(1u << bit % 8);
         for (size_t at = 0; at < bytes && used > 0; at += (size_t)used) {
             used = ff_message_decode(stream + at, bytes - at, &out);
-            if (used <= 0)
-                break;
+            if (used <= 0) break;
             assert_int_equal(ff_message_encode(&out, again, sizeof(again)), used);
             assert_memory_equal(again, stream + at, (size_t)used);
             if (out.type == FF_MSG_FACE && out.u.face.columns_bytes > 0)
-                ff_face_columns_decode(out.u.face.columns, out.u.face.columns_bytes, out.u.face.face_size,
-                                       out.u.face.row_count, top, bottom);
+                ff_face_columns_decode(out.u.face.columns, out.u.face.columns_bytes,
+                                       out.u.face.face_size, out.u.face.row_count, top, bottom);
         }
         stream[bit / 8] ^= (uint8_t)(1u << bit % 8);
     }
@@ -307,21 +327,24 @@ static void lengths_and_headers(void **state)
     assert_decode("\x42\x80\x80\x10", 4, 0);                /* 2^18 bytes may come */
     assert_decode("\x42\xff\xff\xff", 4, FF_ERR_RANGE);     /* a fourth length byte */
     assert_decode("\x05\x82\x00\x01\x02", 5, FF_ERR_RANGE); /* overlong */
-    assert_decode("\x01\x0c" "HTTP12345678", 14, FF_ERR_FORMAT);
-    assert_decode("\x02\x09\x01\x00\x01\x80\x80\x80\x80\x01\x00", 11, FF_ERR_RANGE); /* tile 2^28 */
+    assert_decode("\x01\x0c"
+                  "HTTP12345678",
+                  14, FF_ERR_FORMAT);
+    /* tile 2^28 */
+    assert_decode("\x02\x09\x01\x00\x01\x80\x80\x80\x80\x01\x00", 11, FF_ERR_RANGE);
     assert_decode("\x41\x04\x03\x00\x00\x00", 6, FF_ERR_VERSION);
 }
 
 static void ranges_hold_both_ways(void **state)
 {
-    static const ff_get_panorama good = {1, {0, 0, 0}, 100, 200, 256, 70, 2, {0, 1}};
-    ff_message m = {.type = FF_MSG_GET_PANORAMA};
+    static const ff_get_panorama good = { 1, { 0, 0, 0 }, 100, 200, 256, 70, 2, { 0, 1 } };
+    ff_message m = { .type = FF_MSG_GET_PANORAMA };
     uint8_t bytes[512];
 
     (void)state;
 #define BAD(member, assignment) \
     m.u.member = good_##member; \
-    m.u.member.assignment; \
+    m.u.member.assignment;      \
     assert_int_equal(ff_message_encode(&m, bytes, sizeof(bytes)), FF_ERR_RANGE)
 #define good_panorama good
     BAD(panorama, front_wu = -1);
@@ -334,7 +357,7 @@ static void ranges_hold_both_ways(void **state)
     BAD(panorama, face_count = 7);
     BAD(panorama, face[1] = 0);
     BAD(panorama, face[1] = 6);
-    static const ff_face good_face = {1, 0, 0, 64, 10, 54, payload, 5, payload, 5};
+    static const ff_face good_face = { 1, 0, 0, 64, 10, 54, payload, 5, payload, 5 };
     m.type = FF_MSG_FACE;
     BAD(face, face = 6);
     BAD(face, flags = 4);
@@ -344,17 +367,17 @@ static void ranges_hold_both_ways(void **state)
     BAD(face, columns_bytes = 0);
     BAD(face, image_bytes = 0);
     BAD(face, face_size = 2000);
-    static const ff_get good_get = {1, FF_GET_REFINEMENT, 0};
+    static const ff_get good_get = { 1, FF_GET_REFINEMENT, 0 };
     m.type = FF_MSG_GET_NODE;
     BAD(get, what = 2);
     BAD(get, key = ff_key_make(0, 2, 16));
     m.type = FF_MSG_GET_TEXTURE;
     BAD(get, what = 1);
-    static const ff_failed good_failed = {0, -1};
+    static const ff_failed good_failed = { 0, -1 };
     m.type = FF_MSG_GOODBYE;
     BAD(failed, id = 1);
     BAD(failed, error = 0);
-    static const ff_data good_data = {0, payload, 1};
+    static const ff_data good_data = { 0, payload, 1 };
     static uint8_t room[FF_MESSAGE_BODY_MAX + 16];
     m.type = FF_MSG_NODE;
     m.u.data = good_data;
@@ -381,19 +404,28 @@ static void columns_there_and_back(void **state)
         for (uint32_t c = 0; c < count; c++) {
             random = random * 1664525u + 1013904223u;
             /* noise, then skylines of growing calm */
-            wander = run < 20 ? random >> 22 : (wander + (random >> 24) % (1 + 200 / run) + 1024 - 100 / run) % 1024;
+            wander = run < 20
+                         ? random >> 22
+                         : (wander + (random >> 24) % (1 + 200 / run) + 1024 - 100 / run) % 1024;
             top[c] = (uint16_t)(wander % (rows + 1));
             bottom[c] = (uint16_t)(random >> 20 & 1 || top[c] > rows ? rows : top[c]);
         }
         int bytes = ff_face_columns_encode(top, bottom, count, packed, 4 * count + 8);
         assert_true(bytes > 0);
-        assert_int_equal(ff_face_columns_decode(packed, (size_t)bytes, count, rows, top_again, bottom_again), FF_OK);
+        assert_int_equal(
+            ff_face_columns_decode(packed, (size_t)bytes, count, rows, top_again, bottom_again),
+            FF_OK);
         assert_memory_equal(top, top_again, count * sizeof(*top));
         assert_memory_equal(bottom, bottom_again, count * sizeof(*bottom));
         for (int cut = 0; cut < bytes; cut++)
-            assert_int_equal(ff_face_columns_decode(packed, (size_t)cut, count, rows, top_again, bottom_again), FF_ERR_TRUNCATED);
-        assert_int_equal(ff_face_columns_decode(packed, (size_t)bytes + 1, count, rows, top_again, bottom_again), FF_ERR_RANGE);
-        assert_int_equal(ff_face_columns_encode(top, bottom, count, packed, (size_t)bytes - 1), FF_ERR_FULL);
+            assert_int_equal(
+                ff_face_columns_decode(packed, (size_t)cut, count, rows, top_again, bottom_again),
+                FF_ERR_TRUNCATED);
+        assert_int_equal(
+            ff_face_columns_decode(packed, (size_t)bytes + 1, count, rows, top_again, bottom_again),
+            FF_ERR_RANGE);
+        assert_int_equal(ff_face_columns_encode(top, bottom, count, packed, (size_t)bytes - 1),
+                         FF_ERR_FULL);
     }
 }
 
@@ -409,15 +441,17 @@ static void level_horizon_is_a_few_bytes(void **state)
     }
     assert_in_range(ff_face_columns_encode(top, bottom, 1024, packed, sizeof(packed)), 1, 16);
     top[5] = 301;
-    assert_int_equal(ff_face_columns_encode(top, bottom, 1024, packed, sizeof(packed)), FF_ERR_RANGE);
+    assert_int_equal(ff_face_columns_encode(top, bottom, 1024, packed, sizeof(packed)),
+                     FF_ERR_RANGE);
 }
 
 static void assert_columns(const char *bytes, size_t count, int expected)
 {
-    uint16_t top[17] = {0}, bottom[17] = {0};
+    uint16_t top[17] = { 0 }, bottom[17] = { 0 };
 
     top[16] = bottom[16] = 4711; /* 16 columns: these must stay */
-    assert_int_equal(ff_face_columns_decode((const uint8_t *)bytes, count, 16, 5, top, bottom), expected);
+    assert_int_equal(ff_face_columns_decode((const uint8_t *)bytes, count, 16, 5, top, bottom),
+                     expected);
     assert_int_equal(top[16], 4711);
     assert_int_equal(bottom[16], 4711);
 }
@@ -425,14 +459,14 @@ static void assert_columns(const char *bytes, size_t count, int expected)
 static void bad_columns_are_refused(void **state)
 {
     (void)state;
-    assert_columns("\xfb\xfb", 2, FF_OK);                /* 16 times 0, twice */
-    assert_columns("\xfb\x0c\x00", 3, FF_ERR_RANGE);     /* a run of 17 */
+    assert_columns("\xfb\xfb", 2, FF_OK);            /* 16 times 0, twice */
+    assert_columns("\xfb\x0c\x00", 3, FF_ERR_RANGE); /* a run of 17 */
     assert_columns("\xfb\x2a\xdb", 3, FF_ERR_RANGE); /* 5, then 6 */
-    assert_columns("\xfb\xba\x0e", 3, FF_OK);            /* 5, then 15 times again */
-    assert_columns("\xfb\x01\xeb", 3, FF_ERR_RANGE);     /* -1 */
-    assert_columns("\xfb\x0e", 2, FF_ERR_RANGE);         /* reserved */
-    assert_columns("\xba\xbe\x0f", 3, FF_ERR_RANGE);     /* top 5, bottom 0 */
-    assert_columns("\xfb\xfb\x00", 3, FF_ERR_RANGE);     /* left over */
+    assert_columns("\xfb\xba\x0e", 3, FF_OK);        /* 5, then 15 times again */
+    assert_columns("\xfb\x01\xeb", 3, FF_ERR_RANGE); /* -1 */
+    assert_columns("\xfb\x0e", 2, FF_ERR_RANGE);     /* reserved */
+    assert_columns("\xba\xbe\x0f", 3, FF_ERR_RANGE); /* top 5, bottom 0 */
+    assert_columns("\xfb\xfb\x00", 3, FF_ERR_RANGE); /* left over */
 }
 
 int main(void)

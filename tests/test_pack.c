@@ -13,12 +13,15 @@ typedef struct fixture {
     size_t count;
 } fixture;
 
-static uint16_t other_hills(void *context, uint32_t x, uint32_t y) { return pack_fixture_hills(context, x + 1, y) ^ 1u; }
+static uint16_t other_hills(void *context, uint32_t x, uint32_t y)
+{
+    return pack_fixture_hills(context, x + 1, y) ^ 1u;
+}
 
 /* Two tiles of 2^4 cells, raw codec: every record of two such packs has the same length. */
 static fixture make_small(uint16_t (*height)(void *context, uint32_t x, uint32_t y))
 {
-    pack_fixture_desc desc = {.info = pack_fixture_info(4, 2, 1), .height = height};
+    pack_fixture_desc desc = { .info = pack_fixture_info(4, 2, 1), .height = height };
     fixture f;
 
     desc.info.node_log2 = 2;
@@ -46,8 +49,7 @@ static int drop(void **state)
 
 static void put(uint8_t *at, uint64_t value, unsigned bytes)
 {
-    for (unsigned i = 0; i < bytes; i++)
-        at[i] = (uint8_t)(value >> (8 * i));
+    for (unsigned i = 0; i < bytes; i++) at[i] = (uint8_t)(value >> (8 * i));
 }
 
 static void reseal(fixture *f)
@@ -72,22 +74,25 @@ static void crc_is_the_usual_one(void **state)
     assert_int_equal(ff_crc32(0, NULL, 0), 0);
 }
 
-static void walk(const ff_pack *pack, ff_decoder *dec, ff_key key, const uint16_t *heights, uint32_t *nodes)
+static void walk(const ff_pack *pack, ff_decoder *dec, ff_key key, const uint16_t *heights,
+                 uint32_t *nodes)
 {
     static int32_t value[FF_REFINED_HEIGHTS_MAX];
     const ff_terrain_info *info = &pack->header.info;
     uint16_t refined[FF_REFINED_HEIGHTS_MAX], child[FF_NODE_HEIGHTS_MAX];
-    uint32_t side = ff_node_side(info), step = 1u << (info->tile_log2 - info->node_log2 - ff_key_level(key));
-    uint32_t x0 = (ff_key_tile(key) << info->tile_log2) + (ff_morton_x(ff_key_code(key)) * step << info->node_log2);
+    uint32_t side = ff_node_side(info),
+             step = 1u << (info->tile_log2 - info->node_log2 - ff_key_level(key));
+    uint32_t x0 = (ff_key_tile(key) << info->tile_log2) +
+                  (ff_morton_x(ff_key_code(key)) * step << info->node_log2);
     uint32_t y0 = ff_morton_y(ff_key_code(key)) * step << info->node_log2;
-    ff_residuals residuals = {.value = value};
+    ff_residuals residuals = { .value = value };
     const uint8_t *payload;
 
     ++*nodes;
     for (uint32_t i = 0; i < side * side; i++)
-        assert_int_equal(heights[i], pack_fixture_hills(NULL, x0 + i % side * step, y0 + i / side * step));
-    if (ff_key_level(key) + 1 == ff_terrain_levels(info))
-        return;
+        assert_int_equal(heights[i],
+                         pack_fixture_hills(NULL, x0 + i % side * step, y0 + i / side * step));
+    if (ff_key_level(key) + 1 == ff_terrain_levels(info)) return;
     int bytes = ff_pack_record(pack, FF_SECTION_REFINEMENT, key, &payload);
     assert_true(bytes > 0);
     assert_int_equal(ff_decode_refinement(dec, payload, (size_t)bytes, &residuals), FF_OK);
@@ -102,7 +107,7 @@ static void whole_ground_comes_back(void **state)
 {
     const fixture *f = *state;
     static int32_t value[FF_REFINED_HEIGHTS_MAX];
-    ff_residuals residuals = {.value = value};
+    ff_residuals residuals = { .value = value };
     uint16_t root[FF_NODE_HEIGHTS_MAX];
     const uint8_t *payload;
     uint64_t bad = 99;
@@ -133,12 +138,18 @@ static void keys_without_record_are_not_found(void **state)
     ff_pack pack;
 
     assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
-    assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(2, 0, 0), &payload), FF_ERR_NOT_FOUND);
-    assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(0, 1, 0), &payload), FF_ERR_NOT_FOUND);
-    assert_int_equal(ff_pack_record(&pack, FF_SECTION_REFINEMENT, ff_key_make(0, 2, 0), &payload), FF_ERR_NOT_FOUND);
-    assert_int_equal(ff_pack_record(&pack, FF_SECTION_REFINEMENT, ff_key_make(0, 1, 4), &payload), FF_ERR_NOT_FOUND);
-    assert_int_equal(ff_pack_record(&pack, FF_SECTION_TEXTURE, ff_key_make(0, 0, 0), &payload), FF_ERR_NOT_FOUND);
-    assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, FF_KEY_NONE, &payload), FF_ERR_NOT_FOUND);
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(2, 0, 0), &payload),
+                     FF_ERR_NOT_FOUND);
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(0, 1, 0), &payload),
+                     FF_ERR_NOT_FOUND);
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_REFINEMENT, ff_key_make(0, 2, 0), &payload),
+                     FF_ERR_NOT_FOUND);
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_REFINEMENT, ff_key_make(0, 1, 4), &payload),
+                     FF_ERR_NOT_FOUND);
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_TEXTURE, ff_key_make(0, 0, 0), &payload),
+                     FF_ERR_NOT_FOUND);
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, FF_KEY_NONE, &payload),
+                     FF_ERR_NOT_FOUND);
 }
 
 /* Same terrain, same sizes, other heights: a cache of the one must not serve the other. */
@@ -165,7 +176,8 @@ static void every_truncation_is_noticed(void **state)
 {
     fixture *f = *state;
 
-    for (size_t count = 0; count < f->count; count += count < 16 || f->count - count < 64 ? 1 : 13) {
+    for (size_t count = 0; count < f->count;
+         count += count < 16 || f->count - count < 64 ? 1 : 13) {
         uint8_t *exact = malloc(count > 0 ? count : 1);
         ff_pack pack;
         memcpy(exact, f->bytes, count);
@@ -180,7 +192,9 @@ static void every_flipped_header_bit_is_noticed(void **state)
 
     for (size_t bit = 0; bit < 8 * FF_PACK_HEADER_BYTES; bit++) {
         f->bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
-        int rc = open_rc(f), expected = bit < 64 ? FF_ERR_FORMAT : bit < 96 ? FF_ERR_VERSION : FF_ERR_CHECKSUM;
+        int rc = open_rc(f), expected = bit < 64   ? FF_ERR_FORMAT
+                                        : bit < 96 ? FF_ERR_VERSION
+                                                   : FF_ERR_CHECKSUM;
         assert_int_equal(rc, expected);
         f->bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
     }
@@ -211,7 +225,8 @@ static void damaged_records_are_counted_and_refused(void **state)
     assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
     const ff_pack_section *roots = &pack.header.section[0];
     f->bytes[roots->data_offset + 6] ^= 1;
-    assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(0, 0, 0), &payload), FF_ERR_CHECKSUM);
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(0, 0, 0), &payload),
+                     FF_ERR_CHECKSUM);
     assert_true(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(1, 0, 0), &payload) > 0);
     assert_int_equal(ff_pack_verify(&pack, &bad), FF_ERR_CHECKSUM);
     assert_int_equal(bad, 1);
@@ -232,7 +247,9 @@ static void exchanged_records_are_found_by_verify(void **state)
 
 static void wild_indexes_are_out_of_range(void **state)
 {
-    static const uint64_t wild[][2] = {{8, 4}, {0, UINT64_MAX}, {UINT64_MAX, UINT64_MAX}, {0, 3}, {UINT64_MAX - 3, 0}};
+    static const uint64_t wild[][2] = {
+        { 8, 4 }, { 0, UINT64_MAX }, { UINT64_MAX, UINT64_MAX }, { 0, 3 }, { UINT64_MAX - 3, 0 }
+    };
     fixture *f = *state;
     const uint8_t *payload;
     ff_pack pack;
@@ -242,26 +259,43 @@ static void wild_indexes_are_out_of_range(void **state)
     for (unsigned i = 0; i < sizeof(wild) / sizeof(wild[0]); i++) {
         put(index, wild[i][0], 8);
         put(index + 8, wild[i][1], 8);
-        assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(0, 0, 0), &payload), FF_ERR_RANGE);
+        assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(0, 0, 0), &payload),
+                         FF_ERR_RANGE);
     }
     put(index, 4, 8);
     put(index + 8, 4, 8);
-    assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(0, 0, 0), &payload), FF_ERR_NOT_FOUND);
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(0, 0, 0), &payload),
+                     FF_ERR_NOT_FOUND);
 }
 
 #define SECTION_AT(number, field) (80 + 44 * (number) + (field))
 
-/* Headers that are sealed but lie: the section table's fields set to what a hostile writer would like. */
+/* Headers that are sealed but lie: the section table's fields set to what a hostile writer would
+ * like. */
 static void lying_section_tables_are_refused(void **state)
 {
-    static const struct { unsigned at, bytes; uint64_t value; int expected; } lies[] = {
-        {76, 4, 0, FF_ERR_RANGE}, {76, 4, 2, FF_ERR_RANGE}, {76, 4, 49, FF_ERR_RANGE}, {76, 4, UINT32_MAX, FF_ERR_RANGE},
-        {SECTION_AT(0, 0), 2, FF_SECTION_TEXTURE, FF_ERR_RANGE}, {SECTION_AT(1, 2), 2, 1, FF_ERR_RANGE},
-        {SECTION_AT(1, 12), 8, 3, FF_ERR_RANGE}, {SECTION_AT(1, 12), 8, UINT64_MAX, FF_ERR_RANGE},
-        {SECTION_AT(0, 20), 8, 0, FF_ERR_TRUNCATED}, {SECTION_AT(0, 20), 8, UINT64_MAX - 8, FF_ERR_TRUNCATED},
-        {SECTION_AT(0, 28), 8, UINT64_MAX, FF_ERR_TRUNCATED}, {SECTION_AT(0, 28), 8, 100, FF_ERR_TRUNCATED},
-        {SECTION_AT(2, 36), 8, UINT64_MAX, FF_ERR_TRUNCATED}, {12, 1, 9, FF_ERR_RANGE}, {24, 4, 0, FF_ERR_RANGE},
-        {24, 4, UINT32_MAX, FF_ERR_RANGE}, {24, 4, 3, FF_ERR_RANGE},
+    static const struct {
+        unsigned at, bytes;
+        uint64_t value;
+        int expected;
+    } lies[] = {
+        { 76, 4, 0, FF_ERR_RANGE },
+        { 76, 4, 2, FF_ERR_RANGE },
+        { 76, 4, 49, FF_ERR_RANGE },
+        { 76, 4, UINT32_MAX, FF_ERR_RANGE },
+        { SECTION_AT(0, 0), 2, FF_SECTION_TEXTURE, FF_ERR_RANGE },
+        { SECTION_AT(1, 2), 2, 1, FF_ERR_RANGE },
+        { SECTION_AT(1, 12), 8, 3, FF_ERR_RANGE },
+        { SECTION_AT(1, 12), 8, UINT64_MAX, FF_ERR_RANGE },
+        { SECTION_AT(0, 20), 8, 0, FF_ERR_TRUNCATED },
+        { SECTION_AT(0, 20), 8, UINT64_MAX - 8, FF_ERR_TRUNCATED },
+        { SECTION_AT(0, 28), 8, UINT64_MAX, FF_ERR_TRUNCATED },
+        { SECTION_AT(0, 28), 8, 100, FF_ERR_TRUNCATED },
+        { SECTION_AT(2, 36), 8, UINT64_MAX, FF_ERR_TRUNCATED },
+        { 12, 1, 9, FF_ERR_RANGE },
+        { 24, 4, 0, FF_ERR_RANGE },
+        { 24, 4, UINT32_MAX, FF_ERR_RANGE },
+        { 24, 4, 3, FF_ERR_RANGE },
     };
     fixture *f = *state;
     uint8_t keep[FF_PACK_HEADER_BYTES];
@@ -297,7 +331,8 @@ static void bad_headers_are_not_written(void **state)
     assert_int_equal(ff_pack_header_encode(&header, out), FF_ERR_RANGE);
 }
 
-/* Offsets beyond 32 bits, without a file of that size: the reader looks at nothing but the header when it opens. */
+/* Offsets beyond 32 bits, without a file of that size: the reader looks at nothing but the header
+ * when it opens. */
 static void large_packs_are_measured_in_64_bits(void **state)
 {
     const fixture *f = *state;
@@ -309,9 +344,12 @@ static void large_packs_are_measured_in_64_bits(void **state)
     header.section[2].data_offset = (uint64_t)1 << 40;
     header.section[2].data_bytes = (uint64_t)1 << 33;
     assert_int_equal(ff_pack_header_encode(&header, header_bytes), FF_OK);
-    assert_int_equal(ff_pack_open(&large, header_bytes, ((uint64_t)1 << 40) + ((uint64_t)1 << 33)), FF_OK);
+    assert_int_equal(ff_pack_open(&large, header_bytes, ((uint64_t)1 << 40) + ((uint64_t)1 << 33)),
+                     FF_OK);
     assert_true(large.header.section[2].data_offset == (uint64_t)1 << 40);
-    assert_int_equal(ff_pack_open(&large, header_bytes, ((uint64_t)1 << 40) + ((uint64_t)1 << 33) - 1), FF_ERR_TRUNCATED);
+    assert_int_equal(
+        ff_pack_open(&large, header_bytes, ((uint64_t)1 << 40) + ((uint64_t)1 << 33) - 1),
+        FF_ERR_TRUNCATED);
 }
 
 int main(void)

@@ -1,4 +1,5 @@
-/* Hybrid's refresh rules against the figures of the paper and at their limits; cube faces against a fine grid of rays. */
+/* Hybrid's refresh rules against the figures of the paper and at their limits; cube faces against a
+ * fine grid of rays. */
 #include "../client/ff_panorama_rules.h"
 #include "../protocol/ff_message.h"
 
@@ -10,7 +11,7 @@
 #include <cmocka.h>
 
 #define METRE 256
-#define Z_WU (7500 * METRE)
+#define Z_WU  (7500 * METRE)
 
 static void figures_of_the_paper(void **state)
 {
@@ -38,14 +39,20 @@ static void limits_do_not_blow_up(void **state)
 
 static c3d_camera camera_at(int32_t x_m, int32_t y_m, int32_t z_m, int32_t yaw, int32_t pitch)
 {
-    c3d_camera camera = {.pos_wu = {x_m * METRE, y_m * METRE, z_m * METRE}, .yaw = yaw, .pitch = pitch, .width = 240, .height = 240,
-                         .focal_q8 = 120 * 256};
+    c3d_camera camera = { .pos_wu = { x_m * METRE, y_m * METRE, z_m * METRE },
+                          .yaw = yaw,
+                          .pitch = pitch,
+                          .width = 240,
+                          .height = 240,
+                          .focal_q8 = 120 * 256 };
     return camera;
 }
 
-static const int32_t level_ground[2] = {-100 * METRE, 100 * METRE}, any_ground[2] = {INT32_MIN, INT32_MAX};
+static const int32_t level_ground[2] = { -100 * METRE, 100 * METRE },
+                     any_ground[2] = { INT32_MIN, INT32_MAX };
 
-static int outdated_over(const c3d_camera *camera, const int32_t taken_wu[3], const int32_t ground_wu[2], int32_t error_px_q8)
+static int outdated_over(const c3d_camera *camera, const int32_t taken_wu[3],
+                         const int32_t ground_wu[2], int32_t error_px_q8)
 {
     ff_panorama_sight sight;
     ff_panorama_sight_terrain(&sight, taken_wu, ground_wu, Z_WU);
@@ -54,7 +61,7 @@ static int outdated_over(const c3d_camera *camera, const int32_t taken_wu[3], co
 
 static int outdated(int32_t x_m, int32_t y_m, int32_t z_m, int32_t yaw)
 {
-    static const int32_t origin[3] = {0, 0, 0};
+    static const int32_t origin[3] = { 0, 0, 0 };
     c3d_camera camera = camera_at(x_m, y_m, z_m, yaw, 0);
     return outdated_over(&camera, origin, level_ground, 120 * 256 / 20);
 }
@@ -63,7 +70,8 @@ static void motion_in_any_direction(void **state)
 {
     (void)state;
     assert_false(outdated(0, 0, 0, 0));
-    assert_false(outdated(320, 0, 0, 0)); /* sideways, looking north: Hybrid has 375 m; whole patches cost some of it */
+    /* sideways, looking north: Hybrid has 375 m; whole patches cost some of it */
+    assert_false(outdated(320, 0, 0, 0));
     assert_true(outdated(376, 0, 0, 0));
     assert_true(outdated(-376, 0, 0, 0));
     assert_false(outdated(0, 300, 0, 0)); /* forwards: 357 m */
@@ -82,21 +90,22 @@ static void motion_in_any_direction(void **state)
 static void no_error_allowed_means_no_motion_allowed(void **state)
 {
     (void)state;
-    static const int32_t origin[3] = {0, 0, 0};
+    static const int32_t origin[3] = { 0, 0, 0 };
     c3d_camera camera = camera_at(0, 0, 0, 0, 0);
     assert_false(outdated_over(&camera, origin, any_ground, 0));
     camera.pos_wu[0] = 1;
     assert_true(outdated_over(&camera, origin, any_ground, 0));
     camera.pos_wu[0] = INT32_MAX; /* the far end of the world */
-    int32_t far_west[3] = {INT32_MIN, 0, 0};
+    int32_t far_west[3] = { INT32_MIN, 0, 0 };
     assert_true(outdated_over(&camera, far_west, any_ground, INT32_MAX));
 }
 
-/* What the images show decides: ground high up in the window's corners that no face has does not count. */
+/* What the images show decides: ground high up in the window's corners that no face has does not
+ * count. */
 static void only_what_is_shown_counts(void **state)
 {
     (void)state;
-    const int32_t origin[3] = {0, 0, 0}, mountains[2] = {-100 * METRE, 4000 * METRE};
+    const int32_t origin[3] = { 0, 0, 0 }, mountains[2] = { -100 * METRE, 4000 * METRE };
     ff_panorama_sight sight;
     c3d_camera camera = camera_at(0, 300, 0, 0, 0);
     assert_true(outdated_over(&camera, origin, mountains, 120 * 256 / 20));
@@ -106,7 +115,8 @@ static void only_what_is_shown_counts(void **state)
     ff_panorama_sight_face(&sight, FF_FACE_SOUTH, 256, 0, 256, Z_WU); /* behind the viewer */
     assert_false(ff_panorama_outdated(&camera, origin, &sight, Z_WU, 256));
     ff_panorama_sight_face(&sight, FF_FACE_NORTH, 256, 126, 5, Z_WU);
-    assert_true(sight.high_wu[FF_FACE_NORTH] == Z_WU * 3 / 128 && sight.low_wu[FF_FACE_NORTH] == -Z_WU * 3 / 128);
+    assert_true(sight.high_wu[FF_FACE_NORTH] == Z_WU * 3 / 128 &&
+                sight.low_wu[FF_FACE_NORTH] == -Z_WU * 3 / 128);
     assert_false(ff_panorama_outdated(&camera, origin, &sight, Z_WU, 120 * 256 / 20));
     assert_true(ff_panorama_outdated(&camera, origin, &sight, Z_WU, 4 * 256));
     ff_panorama_sight_face(&sight, FF_FACE_NORTH, 256, 0, 256, Z_WU);
@@ -122,12 +132,16 @@ static unsigned faces_by_rays(const c3d_camera *camera)
     c3d_rotation_from_camera(camera, &r);
     for (int j = 0; j <= 64; j++)
         for (int i = 0; i <= 64; i++) {
-            double eye[3] = {(i / 64.0 - 0.5) * camera->width, (j / 64.0 - 0.5) * camera->height, camera->focal_q8 / 256.0}, d[3];
+            double eye[3] = { (i / 64.0 - 0.5) * camera->width, (j / 64.0 - 0.5) * camera->height,
+                              camera->focal_q8 / 256.0 },
+                   d[3];
             for (int a = 0; a < 3; a++)
                 d[a] = eye[0] * r.m[0][a] + eye[1] * r.m[1][a] + eye[2] * r.m[2][a];
             double ax = fabs(d[0]), ay = fabs(d[1]), az = fabs(d[2]);
             unsigned face = az > ax && az > ay ? (d[2] > 0 ? FF_FACE_UP : FF_FACE_DOWN)
-                          : ax > ay ? (d[0] > 0 ? FF_FACE_EAST : FF_FACE_WEST) : d[1] > 0 ? FF_FACE_NORTH : FF_FACE_SOUTH;
+                            : ax > ay          ? (d[0] > 0 ? FF_FACE_EAST : FF_FACE_WEST)
+                            : d[1] > 0         ? FF_FACE_NORTH
+                                               : FF_FACE_SOUTH;
             faces |= 1u << face;
         }
     return faces;
@@ -136,8 +150,7 @@ static unsigned faces_by_rays(const c3d_camera *camera)
 static unsigned bits(unsigned set)
 {
     unsigned count = 0;
-    for (; set; set &= set - 1)
-        count++;
+    for (; set; set &= set - 1) count++;
     return count;
 }
 
@@ -163,10 +176,12 @@ static void faces_in_view_miss_none(void **state)
 static void straight_ahead_is_one_face(void **state)
 {
     (void)state;
-    static const struct { int32_t yaw, pitch; unsigned face; } look[] = {
-        {0, 0, FF_FACE_NORTH}, {16384, 0, FF_FACE_EAST}, {32768, 0, FF_FACE_SOUTH},
-        {49152, 0, FF_FACE_WEST}, {0, 16384, FF_FACE_UP}, {0, -16384, FF_FACE_DOWN}
-    };
+    static const struct {
+        int32_t yaw, pitch;
+        unsigned face;
+    } look[] = { { 0, 0, FF_FACE_NORTH },     { 16384, 0, FF_FACE_EAST },
+                 { 32768, 0, FF_FACE_SOUTH }, { 49152, 0, FF_FACE_WEST },
+                 { 0, 16384, FF_FACE_UP },    { 0, -16384, FF_FACE_DOWN } };
     for (unsigned i = 0; i < sizeof look / sizeof *look; i++) {
         c3d_camera camera = camera_at(0, 0, 0, look[i].yaw, look[i].pitch);
         camera.focal_q8 = 400 * 256;
@@ -192,12 +207,13 @@ static void left_behind_beyond_half(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(figures_of_the_paper), cmocka_unit_test(limits_do_not_blow_up),
-        cmocka_unit_test(motion_in_any_direction), cmocka_unit_test(no_error_allowed_means_no_motion_allowed),
-        cmocka_unit_test(only_what_is_shown_counts), cmocka_unit_test(faces_in_view_miss_none),
-        cmocka_unit_test(straight_ahead_is_one_face),
-        cmocka_unit_test(left_behind_beyond_half)
-    };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(figures_of_the_paper),
+                                        cmocka_unit_test(limits_do_not_blow_up),
+                                        cmocka_unit_test(motion_in_any_direction),
+                                        cmocka_unit_test(no_error_allowed_means_no_motion_allowed),
+                                        cmocka_unit_test(only_what_is_shown_counts),
+                                        cmocka_unit_test(faces_in_view_miss_none),
+                                        cmocka_unit_test(straight_ahead_is_one_face),
+                                        cmocka_unit_test(left_behind_beyond_half) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

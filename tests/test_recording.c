@@ -1,4 +1,5 @@
-/* Recorded flights: read, and where the viewer is between two lines. Errors are told by tests/fly.sh. */
+/* Recorded flights: read, and where the viewer is between two lines. Errors are told by
+ * tests/fly.sh. */
 #include "../sim/fly_recording.h"
 
 #include <setjmp.h>
@@ -29,7 +30,9 @@ static void test_between_lines(void **state)
     (void)state;
     fly_recording recording;
     fly_fix fix;
-    read_text(&recording, "t_s,x_m,y_m,z_m,heading_deg,pitch_deg\n10,100,200,50,350,-10\n14,300,200,70,10,10\n");
+    read_text(
+        &recording,
+        "t_s,x_m,y_m,z_m,heading_deg,pitch_deg\n10,100,200,50,350,-10\n14,300,200,70,10,10\n");
     assert_int_equal(recording.count, 2);
     assert_false(recording.above_ground);
     fly_recording_at(&recording, 11, &fix);
@@ -44,22 +47,26 @@ static void test_between_lines(void **state)
     fly_recording_free(&recording);
 }
 
-/* Columns in any order, others passed over; without headings it looks where it goes, and stands as it came. */
+/* Columns in any order, others passed over; without headings it looks where it goes, and stands as
+ * it came. */
 static void test_columns(void **state)
 {
     (void)state;
     fly_recording recording;
-    read_text(&recording, "y_m,name,h_m,t_s,x_m\r\n0,a b,5,0,0\r\n10,,5,1,0\r\n10,,5,2,-10\r\n10,,5,3,-10\r\n");
+    read_text(&recording,
+              "y_m,name,h_m,t_s,x_m\r\n0,a b,5,0,0\r\n10,,5,1,0\r\n10,,5,2,-10\r\n10,,5,3,-10\r\n");
     assert_int_equal(recording.count, 4);
     assert_true(recording.above_ground);
     static const double heading_deg[] = { 0, -90, -90, -90 };
     for (size_t i = 0; i < 4; i++)
-        assert_true(near(recording.fix[i].heading_deg, heading_deg[i]) && near(recording.fix[i].pitch_deg, -6));
+        assert_true(near(recording.fix[i].heading_deg, heading_deg[i]) &&
+                    near(recording.fix[i].pitch_deg, -6));
     fly_recording_free(&recording);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_between_lines), cmocka_unit_test(test_columns) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(test_between_lines),
+                                        cmocka_unit_test(test_columns) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
-/* Relevance on a wire of known messages and frames of known contents: what is drawn in time, too late, never; what hides in a line of
- * ancestors, behind a finer image, beside the window; bytes that come in pieces or not at all. */
+/* Relevance on a wire of known messages and frames of known contents: what is drawn in time, too
+ * late, never; what hides in a line of ancestors, behind a finer image, beside the window; bytes
+ * that come in pieces or not at all. */
 #include "../sim/sim_relevance.h"
 #include "../protocol/ff_message.h"
 #include "pack_fixture.h"
@@ -14,7 +15,7 @@
 #include <string.h>
 
 typedef struct wire {
-    uint8_t bytes[65536];     /* for recv */
+    uint8_t bytes[65536]; /* for recv */
     size_t count, at;
     int64_t now_us;
     sys_stream stream;
@@ -52,11 +53,14 @@ static void start(wire *w)
     ff_terrain_info info = pack_fixture_info(6, 2, 2);
     info.texture_log2 = 4;
     info.texture_levels = 3;
-    w->stream = (sys_stream){ .state = w, .send = wire_send, .recv = wire_recv, .reconnect = wire_reconnect };
+    w->stream = (sys_stream){
+        .state = w, .send = wire_send, .recv = wire_recv, .reconnect = wire_reconnect
+    };
     w->relevance = sim_relevance_create(&w->stream, &info, &w->now_us);
     assert_non_null(w->relevance);
     /* level, looking north: a window of the north face alone */
-    w->view.camera = (c3d_camera){ .width = 240, .height = 320, .focal_q8 = c3d_focal_q8(65536 / 6, 240) };
+    w->view.camera =
+        (c3d_camera){ .width = 240, .height = 320, .focal_q8 = c3d_focal_q8(65536 / 6, 240) };
     w->view.drawn = w->drawn;
 }
 
@@ -82,15 +86,15 @@ static size_t put(wire *w, const ff_message *message)
 static void receive(wire *w, size_t piece)
 {
     uint8_t bytes[1024];
-    while (w->stream.recv(w->stream.state, bytes, piece) > 0)
-        continue;
+    while (w->stream.recv(w->stream.state, bytes, piece) > 0) continue;
 }
 
 static size_t node(wire *w, ff_key key, int what)
 {
     static const uint8_t payload[40];
     ff_message get = { .type = FF_MSG_GET_NODE, .u.get = { ++w->id, (uint8_t)what, key } };
-    ff_message data = { .type = FF_MSG_NODE, .u.data = { w->id, payload, what == FF_GET_ROOT ? 20 : 40 } };
+    ff_message data = { .type = FF_MSG_NODE,
+                        .u.data = { w->id, payload, what == FF_GET_ROOT ? 20 : 40 } };
     ask(w, &get);
     return put(w, &data);
 }
@@ -108,8 +112,7 @@ static void draw(wire *w, int64_t now_us, uint32_t count, const ff_key *key)
 {
     w->now_us = now_us;
     w->view.drawn_count = count;
-    for (uint32_t i = 0; i < count; i++)
-        w->drawn[i].key = key[i];
+    for (uint32_t i = 0; i < count; i++) w->drawn[i].key = key[i];
     sim_relevance_frame(w->relevance, &w->view);
 }
 
@@ -121,15 +124,19 @@ static sim_relevance_figures figures(wire *w, int64_t now_us)
     return f;
 }
 
-/* A node two levels down draws its root, and both refinements above it; the root's neighbour is never drawn. */
+/* A node two levels down draws its root, and both refinements above it; the root's neighbour is
+ * never drawn. */
 static void test_line_of_ancestors(void **state)
 {
     (void)state;
     static wire w;
     start(&w);
-    ff_key root = ff_key_make(1, 0, 0), child = ff_key_child(root, 2), leaf = ff_key_child(child, 3);
-    size_t used = node(&w, root, FF_GET_ROOT) + node(&w, root, FF_GET_REFINEMENT) + node(&w, child, FF_GET_REFINEMENT);
-    size_t unused = node(&w, ff_key_child(root, 1), FF_GET_REFINEMENT) + node(&w, ff_key_make(2, 0, 0), FF_GET_ROOT);
+    ff_key root = ff_key_make(1, 0, 0), child = ff_key_child(root, 2),
+           leaf = ff_key_child(child, 3);
+    size_t used = node(&w, root, FF_GET_ROOT) + node(&w, root, FF_GET_REFINEMENT) +
+                  node(&w, child, FF_GET_REFINEMENT);
+    size_t unused = node(&w, ff_key_child(root, 1), FF_GET_REFINEMENT) +
+                    node(&w, ff_key_make(2, 0, 0), FF_GET_ROOT);
     receive(&w, 7);
     assert_true(isnan(figures(&w, SIM_RELEVANCE_US).percent)); /* too early to say */
     draw(&w, SIM_RELEVANCE_US, 1, &leaf);
@@ -147,13 +154,16 @@ static void test_supporting(void **state)
     (void)state;
     static wire w;
     start(&w);
-    ff_key root = ff_key_make(0, 0, 0), child = ff_key_child(root, 1), leaf = ff_key_child(child, 0);
+    ff_key root = ff_key_make(0, 0, 0), child = ff_key_child(root, 1),
+           leaf = ff_key_child(child, 0);
     (void)node(&w, root, FF_GET_ROOT);
     (void)node(&w, root, FF_GET_REFINEMENT);
     (void)node(&w, child, FF_GET_REFINEMENT);
-    size_t beside = node(&w, ff_key_make(1, 0, 0), FF_GET_REFINEMENT), away = node(&w, ff_key_make(3, 0, 0), FF_GET_REFINEMENT);
+    size_t beside = node(&w, ff_key_make(1, 0, 0), FF_GET_REFINEMENT),
+           away = node(&w, ff_key_make(3, 0, 0), FF_GET_REFINEMENT);
     receive(&w, 1024);
-    draw(&w, 1, 1, &leaf); /* its parent's eastern neighbour is a child of the next tile's root */
+    /* its parent's eastern neighbour is a child of the next tile's root */
+    draw(&w, 1, 1, &leaf);
     sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
     assert_int_equal(f.unused[SIM_ANSWER_HEIGHTS], beside + away);
     assert_int_equal(f.supporting, beside);
@@ -179,13 +189,15 @@ static void test_too_late(void **state)
     sim_relevance_destroy(w.relevance);
 }
 
-/* An image under a finer one is not drawn where the finer one is, unless it comes again: then the finer one is gone. */
+/* An image under a finer one is not drawn where the finer one is, unless it comes again: then the
+ * finer one is gone. */
 static void test_finest_image(void **state)
 {
     (void)state;
     static wire w;
     start(&w);
-    ff_key root = ff_key_make(3, 0, 0), child = ff_key_child(root, 0), others[2] = { ff_key_child(child, 1), ff_key_child(root, 3) };
+    ff_key root = ff_key_make(3, 0, 0), child = ff_key_child(root, 0),
+           others[2] = { ff_key_child(child, 1), ff_key_child(root, 3) };
     size_t coarse = image(&w, root), fine = image(&w, child);
     receive(&w, 1024);
     draw(&w, 1, 1, others);
@@ -209,16 +221,33 @@ static void test_finest_image(void **state)
 }
 
 /* Bytes of two faces, of which the window sees those of `row` rows from `top`. */
-static void check_face(enum ff_face_name name, unsigned top, unsigned rows, int32_t taken_wu, int drawn)
+static void check_face(enum ff_face_name name, unsigned top, unsigned rows, int32_t taken_wu,
+                       int drawn)
 {
     static wire w;
     static const uint8_t image_bytes[50], columns[4];
     start(&w);
-    ff_message get = { .type = FF_MSG_GET_PANORAMA, .u.panorama = { .id = 9, .position_wu = { taken_wu, 0, 0 }, .front_wu = 1, .back_wu = 2,
-                       .face_size = 256, .quality = 70, .face_count = 1, .face = { (uint8_t)name } } };
-    ff_message face = { .type = FF_MSG_FACE, .u.face = { .id = 9, .face = (uint8_t)name, .face_size = 256, .top_row = (uint16_t)top,
-                        .row_count = (uint16_t)rows, .columns = columns, .columns_bytes = rows ? sizeof columns : 0,
-                        .image = image_bytes, .image_bytes = rows ? sizeof image_bytes : 0, .flags = (uint8_t)(rows ? FF_FACE_LAST : FF_FACE_LAST | FF_FACE_EMPTY) } };
+    ff_message get = { .type = FF_MSG_GET_PANORAMA,
+                       .u.panorama = { .id = 9,
+                                       .position_wu = { taken_wu, 0, 0 },
+                                       .front_wu = 1,
+                                       .back_wu = 2,
+                                       .face_size = 256,
+                                       .quality = 70,
+                                       .face_count = 1,
+                                       .face = { (uint8_t)name } } };
+    ff_message face = { .type = FF_MSG_FACE,
+                        .u.face = { .id = 9,
+                                    .face = (uint8_t)name,
+                                    .face_size = 256,
+                                    .top_row = (uint16_t)top,
+                                    .row_count = (uint16_t)rows,
+                                    .columns = columns,
+                                    .columns_bytes = rows ? sizeof columns : 0,
+                                    .image = image_bytes,
+                                    .image_bytes = rows ? sizeof image_bytes : 0,
+                                    .flags = (uint8_t)(rows ? FF_FACE_LAST
+                                                            : FF_FACE_LAST | FF_FACE_EMPTY) } };
     ask(&w, &get);
     size_t bytes = put(&w, &face);
     receive(&w, 1024);
@@ -231,7 +260,8 @@ static void check_face(enum ff_face_name name, unsigned top, unsigned rows, int3
     sim_relevance_destroy(w.relevance);
 }
 
-/* 60 degrees across 240 pixels, 75 degrees across 320: rows 128 - 128 * 160 / 207.8 = 29.4 to 226.6 of the north face are in the window. */
+/* 60 degrees across 240 pixels, 75 degrees across 320: rows 128 - 128 * 160 / 207.8 = 29.4 to 226.6
+ * of the north face are in the window. */
 static void test_faces(void **state)
 {
     (void)state;
@@ -240,7 +270,8 @@ static void test_faces(void **state)
     check_face(FF_FACE_NORTH, 0, 29, 500, 0);
     check_face(FF_FACE_NORTH, 228, 28, 500, 0);
     check_face(FF_FACE_NORTH, 100, 40, 501, 0); /* of another set */
-    check_face(FF_FACE_NORTH, 0, 0, 500, 1);    /* empty: that nothing is there is what the window shows */
+    /* empty: that nothing is there is what the window shows */
+    check_face(FF_FACE_NORTH, 0, 0, 500, 1);
     check_face(FF_FACE_EAST, 100, 40, 500, 0);
     check_face(FF_FACE_UP, 0, 0, 500, 0);
 }
@@ -275,8 +306,9 @@ static void test_overhead(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_line_of_ancestors), cmocka_unit_test(test_too_late), cmocka_unit_test(test_finest_image),
-        cmocka_unit_test(test_faces),             cmocka_unit_test(test_overhead),   cmocka_unit_test(test_supporting),
+        cmocka_unit_test(test_line_of_ancestors), cmocka_unit_test(test_too_late),
+        cmocka_unit_test(test_finest_image),      cmocka_unit_test(test_faces),
+        cmocka_unit_test(test_overhead),          cmocka_unit_test(test_supporting),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

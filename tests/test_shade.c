@@ -1,4 +1,5 @@
-/* Colours of bare ground: the same on both sides of a node border, lit from the north-west, water only where it may be. */
+/* Colours of bare ground: the same on both sides of a node border, lit from the north-west, water
+ * only where it may be. */
 #include "../client/terrain/ff_shade.h"
 #include "terrain_fixture.h"
 
@@ -13,7 +14,9 @@
 /* A framed grid of 9 x 9 with the given rises per sample, in steps of 1 m; cells of 10 m. */
 static void slope_colour(int east, int north, uint8_t rgba[4])
 {
-    ff_terrain_info info = {.node_log2 = 3, .hscale_q24 = 1 << 24, .height_min = 10, .height_max = 3000};
+    ff_terrain_info info = {
+        .node_log2 = 3, .hscale_q24 = 1 << 24, .height_min = 10, .height_max = 3000
+    };
     uint16_t framed[11 * 11];
     for (int row = 0; row < 11; row++) {
         for (int column = 0; column < 11; column++)
@@ -34,7 +37,8 @@ static void test_light_from_north_west(void **state)
     slope_colour(-100, 100, wall);
     assert_true(brightness(lit) > brightness(level));
     assert_true(brightness(level) > brightness(away));
-    assert_true(brightness(away) > brightness(wall) && brightness(wall) > 60); /* shadows are not black */
+    /* shadows are not black */
+    assert_true(brightness(away) > brightness(wall) && brightness(wall) > 60);
     assert_int_equal(level[3], 255);
 }
 
@@ -54,7 +58,9 @@ static void test_water_at_zero_only(void **state)
     uint16_t framed[11 * 11];
     uint8_t sea[4], land[4];
     memset(framed, 0, sizeof framed);
-    ff_terrain_info info = {.node_log2 = 3, .hscale_q24 = 1 << 24, .height_min = 0, .height_max = 3000};
+    ff_terrain_info info = {
+        .node_log2 = 3, .hscale_q24 = 1 << 24, .height_min = 0, .height_max = 3000
+    };
     ff_shade(&info, framed, 2560, 0, 8, sea);
     assert_true(sea[2] > sea[0]);
     info.hoffset_wu = 100 * FF_WU_PER_METRE; /* the lowest ground lies 100 m high */
@@ -84,11 +90,10 @@ static void test_no_seams(void **state)
     for (uint32_t i = 0; i < count; i++) {
         ff_tree_vertices(fx.tree, &cut[i], 1, vertex);
         for (unsigned v = 0; v < 81; v++) {
-            int x = cut[i].origin_wu[0] / 2560 + vertex[v].x, y = cut[i].origin_wu[1] / 2560 + vertex[v].y;
-            if (seen[y][x])
-                assert_memory_equal(colour[y][x], vertex[v].rgba, 4);
-            if (x > 0 && y > 0 && x < EDGE - 1 && y < EDGE - 1)
-                shared += seen[y][x];
+            int x = cut[i].origin_wu[0] / 2560 + vertex[v].x,
+                y = cut[i].origin_wu[1] / 2560 + vertex[v].y;
+            if (seen[y][x]) assert_memory_equal(colour[y][x], vertex[v].rgba, 4);
+            if (x > 0 && y > 0 && x < EDGE - 1 && y < EDGE - 1) shared += seen[y][x];
             memcpy(colour[y][x], vertex[v].rgba, 4);
             seen[y][x] = 1;
         }
@@ -120,23 +125,23 @@ static void test_neighbours_are_coloured_anew(void **state)
     const ff_drawn *cut;
     uint32_t count = ff_tree_cut(fx.tree, &cut);
     assert_int_equal(count, 2);
-    for (uint32_t i = 0; i < count; i++)
-        *ff_tree_user(fx.tree, cut[i].node) = 1u << i;
+    for (uint32_t i = 0; i < count; i++) *ff_tree_user(fx.tree, cut[i].node) = 1u << i;
     forgotten = 0;
     fixture_deliver(&fx, ff_key_make(1, 0, 0), 0);
     assert_int_equal(forgotten, 3);
     ff_tree_select(fx.tree, &view, &quality);
     count = ff_tree_cut(fx.tree, &cut);
-    for (uint32_t i = 0; i < count; i++)
-        assert_int_equal(*ff_tree_user(fx.tree, cut[i].node), 0);
+    for (uint32_t i = 0; i < count; i++) assert_int_equal(*ff_tree_user(fx.tree, cut[i].node), 0);
     fixture_free(&fx);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_light_from_north_west), cmocka_unit_test(test_steep_ground_is_rock),
-        cmocka_unit_test(test_water_at_zero_only),    cmocka_unit_test(test_no_seams),
+        cmocka_unit_test(test_light_from_north_west),
+        cmocka_unit_test(test_steep_ground_is_rock),
+        cmocka_unit_test(test_water_at_zero_only),
+        cmocka_unit_test(test_no_seams),
         cmocka_unit_test(test_neighbours_are_coloured_anew),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

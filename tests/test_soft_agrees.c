@@ -1,5 +1,6 @@
-/* The integer back end against GL ES on real frames of a client: the same ground, sky, panoramas, images and fog. A pixel agrees when it is
- * within 8/255 of the other picture's, or of one of its eight neighbours there (edges may lie a pixel apart): at most 0.5 % do not. */
+/* The integer back end against GL ES on real frames of a client: the same ground, sky, panoramas,
+ * images and fog. A pixel agrees when it is within 8/255 of the other picture's, or of one of its
+ * eight neighbours there (edges may lie a pixel apart): at most 0.5 % do not. */
 #include "client_fixture.h"
 
 #include <setjmp.h>
@@ -10,13 +11,13 @@
 
 #include <cmocka.h>
 
-#define MB ((size_t)1 << 20)
+#define MB    ((size_t)1 << 20)
 #define METRE FF_WU_PER_METRE
 enum { WIDTH = 240, HEIGHT = 320, PIXELS = WIDTH * HEIGHT, HEADINGS = 6, TOLERANCE = 8 };
 #define PART_MAX 200 /* one in so many pixels may disagree */
 
 enum { GLES1, SOFT, SOFT_565, KINDS };
-static const char *const kind_name[KINDS] = {"gles1", "soft", "soft, RGB565"};
+static const char *const kind_name[KINDS] = { "gles1", "soft", "soft, RGB565" };
 
 typedef struct view {
     client_rig rig;
@@ -26,11 +27,15 @@ typedef struct view {
 } view;
 static view views[KINDS];
 
-typedef struct soft_scene { const char *name; unsigned texture_log2; int panorama, fog; } soft_scene;
+typedef struct soft_scene {
+    const char *name;
+    unsigned texture_log2;
+    int panorama, fog;
+} soft_scene;
 
 static void open_view(view *v, int kind, const soft_scene *scene)
 {
-    sys_surface_desc desc = {"agrees", WIDTH, HEIGHT, kind == GLES1 ? SYS_GL_ES1 : SYS_GL_NONE};
+    sys_surface_desc desc = { "agrees", WIDTH, HEIGHT, kind == GLES1 ? SYS_GL_ES1 : SYS_GL_NONE };
     v->api = kind == GLES1 ? sys_surface_egl() : sys_surface_memory();
     assert_int_equal(v->api->open(&desc, &v->surface), FF_OK);
     rig_open(&v->rig, scene->texture_log2);
@@ -39,7 +44,11 @@ static void open_view(view *v, int kind, const soft_scene *scene)
     v->rig.desc.frame_format = kind == SOFT_565 ? C3D_RGB565 : C3D_RGBA8888;
     v->rig.desc.panorama.enabled = (uint8_t)scene->panorama;
     v->rig.desc.panorama.back_plane_wu = 2000 * METRE;
-    v->rig.desc.quality = (ff_quality){.measure = FF_MEASURE_DISTANCE, .c_q8 = 6 * 256, .depth_max = 4, .sigma_q8 = 320, .view_wu = 4000 * METRE};
+    v->rig.desc.quality = (ff_quality){ .measure = FF_MEASURE_DISTANCE,
+                                        .c_q8 = 6 * 256,
+                                        .depth_max = 4,
+                                        .sigma_q8 = 320,
+                                        .view_wu = 4000 * METRE };
     rig_client(&v->rig, 16 * MB);
     ff_client_set_show(v->rig.client, scene->fog ? 0 : FF_SHOW_NO_FOG);
 }
@@ -75,7 +84,8 @@ static int has_near(const uint8_t *pixel, const uint8_t *rgb, int x, int y)
 {
     for (int row = y - 1; row <= y + 1; row++)
         for (int column = x - 1; column <= x + 1; column++)
-            if (row >= 0 && row < HEIGHT && column >= 0 && column < WIDTH && apart(pixel, rgb + (row * WIDTH + column) * 3) <= TOLERANCE)
+            if (row >= 0 && row < HEIGHT && column >= 0 && column < WIDTH &&
+                apart(pixel, rgb + (row * WIDTH + column) * 3) <= TOLERANCE)
                 return 1;
     return 0;
 }
@@ -98,7 +108,7 @@ static int disagreement(const uint8_t *a, const uint8_t *b, int *strict)
 /* A picture that shows next to nothing would agree with anything. */
 static int colours_in(const uint8_t *rgb)
 {
-    uint8_t seen[512] = {0};
+    uint8_t seen[512] = { 0 };
     int count = 0;
     for (int i = 0; i < PIXELS; i++, rgb += 3) {
         uint8_t *at = &seen[(rgb[0] >> 5) << 6 | (rgb[1] >> 5) << 3 | rgb[2] >> 5];
@@ -124,7 +134,7 @@ static void write_difference(const char *path, const view *a, const view *b)
 
 static void compare_scene(const soft_scene *scene)
 {
-    int worst[KINDS] = {0}, worst_strict[KINDS] = {0};
+    int worst[KINDS] = { 0 }, worst_strict[KINDS] = { 0 };
     for (int kind = 0; kind < KINDS; kind++) open_view(&views[kind], kind, scene);
     for (int heading = 0; heading < HEADINGS; heading++) {
         for (int kind = 0; kind < KINDS; kind++) draw(&views[kind], heading);
@@ -135,26 +145,29 @@ static void compare_scene(const soft_scene *scene)
             if (count >= worst[kind]) {
                 char path[128];
                 worst[kind] = count;
-                (void)snprintf(path, sizeof path, "build/tests/soft-agrees-%s-%d.png", scene->name, kind);
+                (void)snprintf(path, sizeof path, "build/tests/soft-agrees-%s-%d.png", scene->name,
+                               kind);
                 write_difference(path, &views[GLES1], &views[kind]);
             }
             if (strict > worst_strict[kind]) worst_strict[kind] = strict;
         }
     }
     for (int kind = SOFT; kind < KINDS; kind++) {
-        print_message("# %s, %s: at most %.3f %% of pixels disagree (%.3f %% without allowing for edges)\n", scene->name, kind_name[kind],
-                      100.0 * worst[kind] / PIXELS, 100.0 * worst_strict[kind] / PIXELS);
+        print_message(
+            "# %s, %s: at most %.3f %% of pixels disagree (%.3f %% without allowing for edges)\n",
+            scene->name, kind_name[kind], 100.0 * worst[kind] / PIXELS,
+            100.0 * worst_strict[kind] / PIXELS);
         assert_in_range(worst[kind], 0, PIXELS / PART_MAX);
     }
     for (int kind = 0; kind < KINDS; kind++) close_view(&views[kind]);
 }
 
-#define SCENE_TEST(test, ...) \
-    static void test(void **state) \
-    { \
-        static const soft_scene scene = {__VA_ARGS__}; \
-        (void)state; \
-        compare_scene(&scene); \
+#define SCENE_TEST(test, ...)                            \
+    static void test(void **state)                       \
+    {                                                    \
+        static const soft_scene scene = { __VA_ARGS__ }; \
+        (void)state;                                     \
+        compare_scene(&scene);                           \
     }
 SCENE_TEST(coloured_ground_agrees, "coloured", 0, 0, 0)
 SCENE_TEST(fogged_ground_agrees, "fogged", 0, 0, 1)
@@ -165,8 +178,9 @@ SCENE_TEST(panoramas_agree, "panorama", 5, 1, 0)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(coloured_ground_agrees), cmocka_unit_test(fogged_ground_agrees), cmocka_unit_test(images_agree),
-        cmocka_unit_test(fogged_images_agree), cmocka_unit_test(panoramas_agree),
+        cmocka_unit_test(coloured_ground_agrees), cmocka_unit_test(fogged_ground_agrees),
+        cmocka_unit_test(images_agree),           cmocka_unit_test(fogged_images_agree),
+        cmocka_unit_test(panoramas_agree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

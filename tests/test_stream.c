@@ -1,4 +1,5 @@
-/* The stream and its request queue: every way a link or a peer can fail, and that the picture comes all the same. */
+/* The stream and its request queue: every way a link or a peer can fail, and that the picture comes
+ * all the same. */
 #include "client_fixture.h"
 #include "../client/ff_client_local.h"
 
@@ -9,7 +10,7 @@
 
 #include <cmocka.h>
 
-#define MB ((size_t)1 << 20)
+#define MB    ((size_t)1 << 20)
 #define METRE FF_WU_PER_METRE
 #ifndef TEST_STRIDE
 #define TEST_STRIDE 1 /* tests under emulation try every fifth place alone (cross.mk) */
@@ -36,7 +37,8 @@ static void assert_adds_up(client_rig *rig)
 {
     ff_request_counts c;
     ff_requests_get_counts(&rig->client->requests, &c, NULL);
-    assert_int_equal(c.made, c.done + c.failed + c.cancelled + c.dropped + c.queued + c.in_flight + c.arriving);
+    assert_int_equal(c.made, c.done + c.failed + c.cancelled + c.dropped + c.queued + c.in_flight +
+                                 c.arriving);
 }
 
 static void assert_comes_whole(client_rig *rig)
@@ -56,8 +58,7 @@ static void connection_cut_after_any_byte(void **state)
         rig_client(&rig, 2 * MB);
         assert_comes_whole(&rig);
         assert_int_equal(rig_stats(&rig).protocol_errors, 0);
-        if (at <= whole.bytes_down - 40)
-            assert_int_equal(rig_stats(&rig).reconnects, 1);
+        if (at <= whole.bytes_down - 40) assert_int_equal(rig_stats(&rig).reconnects, 1);
         rig_close(&rig);
     }
 }
@@ -70,8 +71,7 @@ static void cut_again_and_again(void **state)
     rig_client(&rig, 2 * MB);
     for (int i = 0; i < 40; i++) {
         rig.cut_at = rig.bytes_down + 150;
-        for (int step = 0; step < 40; step++)
-            rig_step(&rig, 100000);
+        for (int step = 0; step < 40; step++) rig_step(&rig, 100000);
     }
     rig.cut_at = UINT64_MAX;
     assert_comes_whole(&rig);
@@ -90,12 +90,12 @@ static void bytes_in_crumbs(void **state)
     rig_close(&rig);
 }
 
-/* Nonsense from some byte on: noticed by its form, or it decodes by chance (payloads carry no checksum on the wire); either way the
- * client comes to rest with all requests accounted for. */
+/* Nonsense from some byte on: noticed by its form, or it decodes by chance (payloads carry no
+ * checksum on the wire); either way the client comes to rest with all requests accounted for. */
 static void nonsense_after_any_byte(void **state)
 {
     (void)state;
-    static const uint8_t with[] = {0xff, 0x00, 66, 69};
+    static const uint8_t with[] = { 0xff, 0x00, 66, 69 };
     unsigned noticed = 0, runs = 0;
     for (uint64_t at = 0; at < whole.bytes_down; at += TEST_STRIDE * (at < 100 ? 7 : 331)) {
         client_rig rig;
@@ -106,7 +106,8 @@ static void nonsense_after_any_byte(void **state)
         rig_client(&rig, 2 * MB);
         assert_true(rig_settle(&rig, 1000));
         assert_adds_up(&rig);
-        int believed = ff_client_terrain(rig.client)->checksum != whole.pack.header.info.checksum; /* a WELCOME to elsewhere */
+        /* a WELCOME to elsewhere */
+        int believed = ff_client_terrain(rig.client)->checksum != whole.pack.header.info.checksum;
         assert_true(believed || rig_stats(&rig).tree.nodes_drawn > 0);
         noticed += rig_stats(&rig).protocol_errors > 0;
         runs++;
@@ -142,8 +143,7 @@ static void silence_is_waited_out_for_its_time(void **state)
         rig_step(&rig, 100000);
     assert_int_equal(rig_stats(&rig).link, FF_LINK_UP);
     assert_int_equal(rig_stats(&rig).reconnects, 0);
-    for (int i = 0; i < 25; i++)
-        rig_step(&rig, 100000);
+    for (int i = 0; i < 25; i++) rig_step(&rig, 100000);
     assert_int_equal(rig_stats(&rig).reconnects, 1);
     assert_comes_whole(&rig);
     rig_close(&rig);
@@ -176,8 +176,7 @@ static void no_way_to_reconnect_keeps_the_picture(void **state)
     assert_true(rig_settle(&rig, 400));
     rig.cut_at = 0;
     rig.camera.yaw += 100;
-    for (int i = 0; i < 100; i++)
-        rig_step(&rig, 100000);
+    for (int i = 0; i < 100; i++) rig_step(&rig, 100000);
     assert_int_equal(rig_stats(&rig).link, FF_LINK_DOWN);
     assert_true(rig_stats(&rig).tree.nodes_drawn > 5);
     rig_close(&rig);
@@ -193,15 +192,13 @@ static void another_terrain_replaces_all(void **state)
     uint32_t requests = rig_stats(&rig).requests_sent;
     rig.cut_at = rig.bytes_down; /* the same terrain: nothing is asked again */
     assert_true(rig_settle(&rig, 400));
-    for (int i = 0; i < 40; i++)
-        rig_step(&rig, 100000);
+    for (int i = 0; i < 40; i++) rig_step(&rig, 100000);
     assert_int_equal(rig.connections, 2);
     assert_int_equal(rig_stats(&rig).requests_sent, requests);
     assert_true(rig_same_picture(&rig, &whole));
 
     rig_change_terrain(&rig);
-    for (int i = 0; i < 40; i++)
-        rig_step(&rig, 100000);
+    for (int i = 0; i < 40; i++) rig_step(&rig, 100000);
     assert_true(rig_settle(&rig, 400));
     assert_int_equal(rig.connections, 3);
     assert_int_equal(ff_client_terrain(rig.client)->hoffset_wu, 1000);
@@ -272,9 +269,9 @@ static void undecodable_payloads_are_tried_thrice(void **state)
     ff_decoder *decoder = rig.client->intake.decoder;
     ff_terrain_info other = rig.client->info;
     other.codec = FF_CODEC_RAW;
-    rig.client->intake.decoder = ff_decoder_create(&other, decoder, ff_decoder_bytes(&other)); /* reads another language */
-    for (int i = 0; i < 200; i++)
-        rig_step(&rig, 50000);
+    /* reads another language */
+    rig.client->intake.decoder = ff_decoder_create(&other, decoder, ff_decoder_bytes(&other));
+    for (int i = 0; i < 200; i++) rig_step(&rig, 50000);
     ff_client_stats stats = rig_stats(&rig);
     assert_true(stats.requests_failed > 0);
     assert_int_equal(stats.requests_failed % FF_REFUSALS_TRIES, 0);
@@ -300,12 +297,13 @@ static void queue_goes_by_class_then_value_then_age(void **state)
     ff_requests_want(&requests, FF_WANT_REFINEMENT, 4, FF_CLASS_IN_VIEW, 5000, NULL);
     ff_requests_want(&requests, FF_WANT_ROOT, 5, FF_CLASS_FIRST, 1, NULL);
     ff_requests_rank_end(&requests);
-    static const ff_key order[] = {5, 3, 4, 2};
+    static const ff_key order[] = { 5, 3, 4, 2 };
     for (unsigned i = 0; i < 4; i++) {
         assert_true(ff_requests_next(&requests, 0, 8, 1 << 20, 0, &out));
         assert_int_equal(out.key, order[i]);
     }
-    assert_false(ff_requests_next(&requests, 0, 8, 1 << 20, 0, &out)); /* prefetch only when allowed */
+    /* prefetch only when allowed */
+    assert_false(ff_requests_next(&requests, 0, 8, 1 << 20, 0, &out));
     assert_true(ff_requests_next(&requests, 0, 8, 1 << 20, 1, &out));
     sys_mutex_destroy(&requests.mutex);
 }
@@ -322,8 +320,7 @@ static void window_leaves_two_always(void **state)
     assert_true(ff_requests_next(&requests, 0, 1, 0, 1, &out));
     assert_true(ff_requests_next(&requests, 0, 1, 0, 1, &out));
     assert_false(ff_requests_next(&requests, 0, 1, 0, 1, &out));
-    for (int i = 2; i < 8; i++)
-        assert_true(ff_requests_next(&requests, 0, 8, 1 << 20, 1, &out));
+    for (int i = 2; i < 8; i++) assert_true(ff_requests_next(&requests, 0, 8, 1 << 20, 1, &out));
     assert_false(ff_requests_next(&requests, 0, 8, 1 << 20, 1, &out));
     ff_requests_lost(&requests);
     assert_int_equal(requests.counts.queued, 20);
@@ -351,7 +348,8 @@ static void estimate_finds_the_link(void **state)
     assert_in_range(link.bytes_s, 5400, 5600);
     assert_int_equal(link.rtt_us, 800000);
     assert_in_range(ff_link_estimate_window(&link), 8600, 9000);
-    ff_link_estimate_received(&link, 50, 1, now_us + 30000000); /* a stall: not forgotten what the link can do */
+    /* a stall: not forgotten what the link can do */
+    ff_link_estimate_received(&link, 50, 1, now_us + 30000000);
     assert_true(link.bytes_s > 4500);
 }
 
@@ -369,7 +367,8 @@ static void worker_thread_brings_the_same_picture(void **state)
         rig_step(&rig, 1000);
         sys_sleep_us(500);
         ff_client_stats stats = rig_stats(&rig);
-        same = stats.have_terrain && !stats.queued && !stats.in_flight && rig_same_picture(&rig, &whole);
+        same = stats.have_terrain && !stats.queued && !stats.in_flight &&
+               rig_same_picture(&rig, &whole);
     }
     assert_true(same);
     rig_close(&rig); /* joins */
@@ -377,15 +376,22 @@ static void worker_thread_brings_the_same_picture(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(connection_cut_after_any_byte), cmocka_unit_test(cut_again_and_again), cmocka_unit_test(bytes_in_crumbs),
-        cmocka_unit_test(nonsense_after_any_byte), cmocka_unit_test(peer_stops_in_mid_message),
-        cmocka_unit_test(silence_is_waited_out_for_its_time), cmocka_unit_test(backs_off_when_nobody_answers),
-        cmocka_unit_test(no_way_to_reconnect_keeps_the_picture), cmocka_unit_test(another_terrain_replaces_all),
-        cmocka_unit_test(requests_are_never_asked_twice), cmocka_unit_test(full_list_stops_receiving),
-        cmocka_unit_test(too_long_a_message_fails_alone), cmocka_unit_test(undecodable_payloads_are_tried_thrice),
-        cmocka_unit_test(queue_goes_by_class_then_value_then_age), cmocka_unit_test(window_leaves_two_always),
-        cmocka_unit_test(estimate_finds_the_link), cmocka_unit_test(worker_thread_brings_the_same_picture)
-    };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(connection_cut_after_any_byte),
+                                        cmocka_unit_test(cut_again_and_again),
+                                        cmocka_unit_test(bytes_in_crumbs),
+                                        cmocka_unit_test(nonsense_after_any_byte),
+                                        cmocka_unit_test(peer_stops_in_mid_message),
+                                        cmocka_unit_test(silence_is_waited_out_for_its_time),
+                                        cmocka_unit_test(backs_off_when_nobody_answers),
+                                        cmocka_unit_test(no_way_to_reconnect_keeps_the_picture),
+                                        cmocka_unit_test(another_terrain_replaces_all),
+                                        cmocka_unit_test(requests_are_never_asked_twice),
+                                        cmocka_unit_test(full_list_stops_receiving),
+                                        cmocka_unit_test(too_long_a_message_fails_alone),
+                                        cmocka_unit_test(undecodable_payloads_are_tried_thrice),
+                                        cmocka_unit_test(queue_goes_by_class_then_value_then_age),
+                                        cmocka_unit_test(window_leaves_two_always),
+                                        cmocka_unit_test(estimate_finds_the_link),
+                                        cmocka_unit_test(worker_thread_brings_the_same_picture) };
     return cmocka_run_group_tests(tests, make_whole, free_whole);
 }

@@ -1,4 +1,5 @@
-/* Strip masks: every combination covers a node exactly once, counter-clockwise, with rims that use every 2^d-th vertex. */
+/* Strip masks: every combination covers a node exactly once, counter-clockwise, with rims that use
+ * every 2^d-th vertex. */
 #include "../client/terrain/ff_strips.h"
 #include "../protocol/ff_codec.h"
 
@@ -9,8 +10,8 @@
 
 #include <string.h>
 
-#define FINE 8                 /* sample points a cell and axis */
-#define UNIT 1024              /* integer units a cell */
+#define FINE       8    /* sample points a cell and axis */
+#define UNIT       1024 /* integer units a cell */
 #define POINTS_MAX (32 * FINE)
 
 static ff_strips strips;
@@ -32,10 +33,12 @@ static void paint_triangle(unsigned n, const uint16_t v[3])
     assert_true(cross(corner[0], corner[1], corner[2]) > 0);
     for (unsigned row = 0; row < n * FINE; row++) {
         for (unsigned column = 0; column < n * FINE; column++) {
-            /* 37 and 64 keep the points off all edges: those run 1 cell across and at most 32 along. */
-            long p[2] = {(long)column * UNIT / FINE + 37, (long)row * UNIT / FINE + 64};
-            painted[row][column] += cross(corner[0], corner[1], p) > 0 && cross(corner[1], corner[2], p) > 0
-                                    && cross(corner[2], corner[0], p) > 0;
+            /* 37 and 64 keep the points off all edges: those run 1 cell across and at most 32
+             * along. */
+            long p[2] = { (long)column * UNIT / FINE + 37, (long)row * UNIT / FINE + 64 };
+            painted[row][column] += cross(corner[0], corner[1], p) > 0 &&
+                                    cross(corner[1], corner[2], p) > 0 &&
+                                    cross(corner[2], corner[0], p) > 0;
         }
     }
 }
@@ -46,7 +49,7 @@ static unsigned paint_strip(unsigned n, unsigned id)
     const uint16_t *index = strips.index + strips.first[id];
     unsigned triangles = 0;
     for (unsigned i = 0; i + 2 < strips.length[id]; i++) {
-        uint16_t v[3] = {index[i], index[i + 1 + (i & 1)], index[i + 2 - (i & 1)]};
+        uint16_t v[3] = { index[i], index[i + 1 + (i & 1)], index[i + 2 - (i & 1)] };
         if (v[0] != v[1] && v[1] != v[2] && v[2] != v[0]) {
             paint_triangle(n, v);
             triangles++;
@@ -68,7 +71,8 @@ static void assert_painted_once(unsigned n)
 /* Draws the picture once for the inside, adding one combination of sides at a time. */
 static void check_combinations(unsigned k)
 {
-    unsigned n = 1u << k, options = k > 3 ? 2 : k + 1, total = options * options * options * options;
+    unsigned n = 1u << k, options = k > 3 ? 2 : k + 1,
+             total = options * options * options * options;
     for (unsigned combination = 0; combination < total; combination++) {
         unsigned rest = combination, difference[4], sides = 0;
         for (unsigned side = 0; side < 4; side++, rest /= options)
@@ -77,8 +81,7 @@ static void check_combinations(unsigned k)
         for (unsigned side = 0; side < 4; side++)
             sides += paint_strip(n, FF_STRIP_SIDE(side, difference[side]));
         unsigned expected = 0;
-        for (unsigned side = 0; side < 4; side++)
-            expected += (n >> difference[side]) + n - 2;
+        for (unsigned side = 0; side < 4; side++) expected += (n >> difference[side]) + n - 2;
         assert_int_equal(sides, expected);
         assert_painted_once(n);
     }
@@ -105,13 +108,13 @@ static void test_rims_leave_out_vertices(void **state)
         assert_int_equal(ff_strips_make(&strips, k), FF_OK);
         for (unsigned side = 0; side < 4; side++) {
             for (unsigned difference = 0; difference <= k; difference++) {
-                unsigned id = FF_STRIP_SIDE(side, difference), seen[33] = {0};
+                unsigned id = FF_STRIP_SIDE(side, difference), seen[33] = { 0 };
                 for (unsigned i = 0; i < strips.length[id]; i++) {
-                    unsigned v = strips.index[strips.first[id] + i], x = v % (n + 1), y = v / (n + 1);
-                    unsigned across[4] = {y, n - x, n - y, x}, along[4] = {x, y, x, y};
+                    unsigned v = strips.index[strips.first[id] + i], x = v % (n + 1),
+                             y = v / (n + 1);
+                    unsigned across[4] = { y, n - x, n - y, x }, along[4] = { x, y, x, y };
                     assert_true(across[side] <= 1);
-                    if (across[side] == 0)
-                        seen[along[side]] = 1;
+                    if (across[side] == 0) seen[along[side]] = 1;
                 }
                 for (unsigned i = 0; i <= n; i++)
                     assert_int_equal(seen[i], i % (1u << difference) == 0);
@@ -132,7 +135,8 @@ static void test_diagonals_run_north_east(void **state)
                 least = index[i + j] < least ? index[i + j] : least;
                 most = index[i + j] > most ? index[i + j] : most;
             }
-            if (index[i] == index[i + 1] || index[i + 1] == index[i + 2] || index[i] == index[i + 2])
+            if (index[i] == index[i + 1] || index[i + 1] == index[i + 2] ||
+                index[i] == index[i + 2])
                 continue;
             has_south_west = least % 9 + 1 == most % 9;
             has_north_east = most == least + 10;
@@ -167,8 +171,10 @@ static void test_range(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_combination_covers_once), cmocka_unit_test(test_rims_leave_out_vertices),
-        cmocka_unit_test(test_diagonals_run_north_east),      cmocka_unit_test(test_strips_of_a_mask),
+        cmocka_unit_test(test_every_combination_covers_once),
+        cmocka_unit_test(test_rims_leave_out_vertices),
+        cmocka_unit_test(test_diagonals_run_north_east),
+        cmocka_unit_test(test_strips_of_a_mask),
         cmocka_unit_test(test_range),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

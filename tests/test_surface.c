@@ -1,5 +1,5 @@
-/* Surfaces: off-screen ones of several kinds and sizes in one process, and the window where there is a display (tests/window.sh
- * brings one). */
+/* Surfaces: off-screen ones of several kinds and sizes in one process, and the window where there
+ * is a display (tests/window.sh brings one). */
 #include "picture.h"
 
 #include <setjmp.h>
@@ -13,7 +13,7 @@
 static int opens(const sys_surface_api *api, int width, int height, enum sys_gl_kind gl)
 {
     sys_surface *surface;
-    sys_surface_desc desc = {"surface", width, height, gl};
+    sys_surface_desc desc = { "surface", width, height, gl };
     int rc = api->open(&desc, &surface);
     if (rc == FF_OK) api->close(surface);
     return rc;
@@ -45,18 +45,22 @@ static void clear_and_check(picture_kit *kit, uint32_t colour)
 static void many_surfaces_live_together(void **state)
 {
     (void)state;
-    static const enum picture_kind kinds[6] = {PICTURE_GL, PICTURE_GLES1, PICTURE_GL, PICTURE_EGL_GL, PICTURE_GLES1, PICTURE_GL};
+    static const enum picture_kind kinds[6] = { PICTURE_GL,     PICTURE_GLES1, PICTURE_GL,
+                                                PICTURE_EGL_GL, PICTURE_GLES1, PICTURE_GL };
     picture_kit kits[6];
-    for (int i = 0; i < 6; i++) assert_int_equal(picture_open(&kits[i], kinds[i], 8 + i * 4, 31 - i * 5, 1), FF_OK);
+    for (int i = 0; i < 6; i++)
+        assert_int_equal(picture_open(&kits[i], kinds[i], 8 + i * 4, 31 - i * 5, 1), FF_OK);
     for (uint32_t round = 0; round < 3; round++)
-        for (uint32_t i = 0; i < 6; i++) clear_and_check(&kits[i], 0xFF000000u | (round + 1) * 0x102030u * (i + 1));
+        for (uint32_t i = 0; i < 6; i++)
+            clear_and_check(&kits[i], 0xFF000000u | (round + 1) * 0x102030u * (i + 1));
     for (int closed = 0; closed < 6; closed++) {
         picture_close(&kits[(closed * 5 + 1) % 6]);
         for (int i = closed + 1; i < 6; i++) clear_and_check(&kits[(i * 5 + 1) % 6], 0xFF123456u);
     }
 }
 
-/* Nothing but two contexts of two libraries, back and forth: each library would take its context for still current. */
+/* Nothing but two contexts of two libraries, back and forth: each library would take its context
+ * for still current. */
 static void two_libraries_take_turns(void **state)
 {
     (void)state;
@@ -83,8 +87,8 @@ static void draw_in_a_thread(void *arg)
     picture_kit kit;
     int *drawn = arg;
     if (picture_open(&kit, *drawn ? PICTURE_GL : PICTURE_GLES1, 16, 12, 1) < 0) return;
-    const c3d_draw square = picture_square(&kit, PICTURE_SOUTH, -8 * PICTURE_M, 8 * PICTURE_M, -8 * PICTURE_M,
-                                           16 * PICTURE_M, PICTURE_RED);
+    const c3d_draw square = picture_square(&kit, PICTURE_SOUTH, -8 * PICTURE_M, 8 * PICTURE_M,
+                                           -8 * PICTURE_M, 16 * PICTURE_M, PICTURE_RED);
     uint8_t rgb[16 * 12 * 3];
     picture_render(&kit, &square, 1, rgb);
     *drawn = rgb[0] == 255 && rgb[1] == 0 ? 2 : 3;
@@ -96,9 +100,10 @@ static void threads_have_contexts_of_their_own(void **state)
     (void)state;
     picture_kit kit;
     sys_thread threads[2];
-    int drawn[2] = {0, 1};
+    int drawn[2] = { 0, 1 };
     assert_int_equal(picture_open(&kit, PICTURE_GL, 16, 12, 1), FF_OK);
-    for (int i = 0; i < 2; i++) assert_int_equal(sys_thread_start(&threads[i], draw_in_a_thread, &drawn[i]), FF_OK);
+    for (int i = 0; i < 2; i++)
+        assert_int_equal(sys_thread_start(&threads[i], draw_in_a_thread, &drawn[i]), FF_OK);
     for (int i = 0; i < 20; i++) clear_and_check(&kit, 0xFF000000u + (uint32_t)i);
     for (int i = 0; i < 2; i++) sys_thread_join(&threads[i]);
     assert_int_equal(drawn[0], 2);
@@ -110,10 +115,10 @@ static void threads_have_contexts_of_their_own(void **state)
 static void surfaces_hand_out_injected_events(void **state)
 {
     (void)state;
-    static const enum picture_kind kinds[2] = {PICTURE_GL, PICTURE_GLES1};
+    static const enum picture_kind kinds[2] = { PICTURE_GL, PICTURE_GLES1 };
     for (int i = 0; i < 2; i++) {
         picture_kit kit;
-        sys_event event = {.type = SYS_EVENT_BATTERY, .u.battery = {7, 1}}, taken;
+        sys_event event = { .type = SYS_EVENT_BATTERY, .u.battery = { 7, 1 } }, taken;
         assert_int_equal(picture_open(&kit, kinds[i], 16, 12, 1), FF_OK);
         assert_int_equal(kit.api->poll(kit.surface, &taken), 0);
         assert_int_equal(sys_event_inject(&event), FF_OK);
@@ -140,26 +145,39 @@ static void without_a_display_the_window_is_an_error(void **state)
 static void render_window(enum sys_gl_kind gl, uint8_t *rgb, const char *png)
 {
     const struct c3d_backend *backend = gl == SYS_GL_ES1 ? c3d_backend_gles1() : c3d_backend_gl();
-    picture_kit kit = {.api = sys_surface_glfw(), .width = 64, .height = 48};
-    sys_surface_desc surface_desc = {"window", 64, 48, gl};
-    c3d_desc desc = {.surface_api = kit.api, .mesh_count = 4, .strip_count = 4, .texture_count = 4, .mesh_vertices_max = 16,
-                     .strip_indices_max = 64, .use_vertex_buffers = 1};
-    static const uint16_t strip[4] = {0, 1, 2, 3};
-    static const c3d_vertex corners[4] = {{0, 0, 0, 0, {255, 0, 0, 255}}, {1, 0, 0, 0, {0, 255, 0, 255}},
-                                          {0, 1, 0, 0, {0, 0, 255, 255}}, {1, 1, 0, 0, {255, 255, 255, 255}}};
+    picture_kit kit = { .api = sys_surface_glfw(), .width = 64, .height = 48 };
+    sys_surface_desc surface_desc = { "window", 64, 48, gl };
+    c3d_desc desc = { .surface_api = kit.api,
+                      .mesh_count = 4,
+                      .strip_count = 4,
+                      .texture_count = 4,
+                      .mesh_vertices_max = 16,
+                      .strip_indices_max = 64,
+                      .use_vertex_buffers = 1 };
+    static const uint16_t strip[4] = { 0, 1, 2, 3 };
+    static const c3d_vertex corners[4] = { { 0, 0, 0, 0, { 255, 0, 0, 255 } },
+                                           { 1, 0, 0, 0, { 0, 255, 0, 255 } },
+                                           { 0, 1, 0, 0, { 0, 0, 255, 255 } },
+                                           { 1, 1, 0, 0, { 255, 255, 255, 255 } } };
     size_t bytes = c3d_bytes(backend, &desc);
     kit.memory = malloc(bytes);
     assert_int_equal(kit.api->open(&surface_desc, &kit.surface), FF_OK);
     assert_int_equal(c3d_open(backend, &desc, kit.memory, bytes, &kit.device), FF_OK);
-    kit.frame.camera = (c3d_camera){.focal_q8 = c3d_focal_q8(16384, 64), .width = 64, .height = 48, .near_wu = 64,
-                                    .far_wu = 65536};
+    kit.frame.camera = (c3d_camera){ .focal_q8 = c3d_focal_q8(16384, 64),
+                                     .width = 64,
+                                     .height = 48,
+                                     .near_wu = 64,
+                                     .far_wu = 65536 };
     kit.frame.clear_colour = 0xFF804020u;
-    c3d_draw draw = {.mesh = c3d_mesh_make(kit.device, corners, 4), .strip = c3d_strip_make(kit.device, strip, 4),
-                     .origin_wu = {-5 * PICTURE_M, 5 * PICTURE_M, -3 * PICTURE_M}, .xy_scale_wu = 10 * PICTURE_M,
-                     .z_scale_q16 = 65536, .flags = C3D_DRAW_COLOURED};
+    c3d_draw draw = { .mesh = c3d_mesh_make(kit.device, corners, 4),
+                      .strip = c3d_strip_make(kit.device, strip, 4),
+                      .origin_wu = { -5 * PICTURE_M, 5 * PICTURE_M, -3 * PICTURE_M },
+                      .xy_scale_wu = 10 * PICTURE_M,
+                      .z_scale_q16 = 65536,
+                      .flags = C3D_DRAW_COLOURED };
     picture_render(&kit, &draw, 1, rgb);
     assert_int_equal(sys_png_write(png, rgb, 64, 48), FF_OK);
-    sys_event event = {.type = SYS_EVENT_POSITION}, taken;
+    sys_event event = { .type = SYS_EVENT_POSITION }, taken;
     while (kit.api->poll(kit.surface, &taken)) assert_int_not_equal(taken.type, SYS_EVENT_POSITION);
     assert_int_equal(sys_event_inject(&event), FF_OK);
     assert_int_equal(kit.api->poll(kit.surface, &taken), 1);

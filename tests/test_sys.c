@@ -22,7 +22,7 @@ static void clock_can_be_replaced(void **state)
 {
     (void)state;
     int64_t real_us = sys_time_us();
-    sys_sim_clock clock = {123};
+    sys_sim_clock clock = { 123 };
     sys_sim_clock_use(&clock);
     assert_int_equal(sys_time_us(), 123);
     sys_sleep_us(INT64_C(1) << 60); /* would never end on a real clock */
@@ -45,7 +45,7 @@ static void real_clock_sleeps_at_least_as_long(void **state)
 static void events_come_out_in_order(void **state)
 {
     (void)state;
-    sys_event event = {.type = SYS_EVENT_POSITION}, taken;
+    sys_event event = { .type = SYS_EVENT_POSITION }, taken;
     uint32_t injected = 0;
     while (sys_event_inject(&event) == FF_OK) event.u.position.x_wu = (int32_t)++injected;
     assert_int_equal(sys_event_inject(&event), FF_ERR_FULL);
@@ -60,10 +60,12 @@ static void events_come_out_in_order(void **state)
 static void scripts_inject_what_is_due(void **state)
 {
     (void)state;
-    const sys_event events[] = {{.type = SYS_EVENT_BATTERY, .time_us = 10, .u.battery = {5, 1}},
-                                {.type = SYS_EVENT_INTERRUPTION, .time_us = 20, .u.interruption = {1}},
-                                {.type = SYS_EVENT_INTERRUPTION, .time_us = 20, .u.interruption = {0}}};
-    sys_sim_script script = {events, 3, 0};
+    const sys_event events[] = {
+        { .type = SYS_EVENT_BATTERY, .time_us = 10, .u.battery = { 5, 1 } },
+        { .type = SYS_EVENT_INTERRUPTION, .time_us = 20, .u.interruption = { 1 } },
+        { .type = SYS_EVENT_INTERRUPTION, .time_us = 20, .u.interruption = { 0 } }
+    };
+    sys_sim_script script = { events, 3, 0 };
     sys_event taken;
     assert_int_equal(sys_sim_script_run(&script, 9), 0);
     assert_int_equal(sys_sim_script_run(&script, 10), 1);
@@ -84,11 +86,12 @@ static void random_numbers_are_those_of_pcg32(void **state)
 {
     (void)state;
     /* The demonstration output of the reference implementation: seed 42, stream 54. */
-    static const uint32_t expected[] = {0xa15c02b7, 0x7b47f409, 0xba1d3330, 0x83d2f293, 0xbfa4784b, 0xcbed606e};
+    static const uint32_t expected[] = { 0xa15c02b7, 0x7b47f409, 0xba1d3330,
+                                         0x83d2f293, 0xbfa4784b, 0xcbed606e };
     sys_random random;
     sys_random_seed(&random, 42, 54);
     for (size_t i = 0; i < 6; i++) assert_int_equal(sys_random_u32(&random), expected[i]);
-    uint32_t seen[7] = {0};
+    uint32_t seen[7] = { 0 };
     for (int i = 0; i < 70000; i++) {
         uint32_t value = sys_random_below(&random, 7);
         assert_true(value < 7);
@@ -117,10 +120,11 @@ static void count_up(void *arg)
 static void threads_take_turns(void **state)
 {
     (void)state;
-    struct counter counter = {.value = 0};
+    struct counter counter = { .value = 0 };
     sys_thread threads[3];
     assert_int_equal(sys_mutex_init(&counter.mutex), FF_OK);
-    for (int i = 0; i < 3; i++) assert_int_equal(sys_thread_start(&threads[i], count_up, &counter), FF_OK);
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(sys_thread_start(&threads[i], count_up, &counter), FF_OK);
     for (int i = 0; i < 3; i++) sys_thread_join(&threads[i]);
     assert_int_equal(counter.value, 60000);
     sys_mutex_destroy(&counter.mutex);
@@ -160,7 +164,8 @@ static void a_write_that_fails_leaves_nothing(void **state)
     sys_mapping mapping;
     assert_int_equal(sys_write_file(SCRATCH "/none/file", "x", 1), FF_ERR_SYSTEM);
     assert_int_equal(mkdir(SCRATCH "/directory", 0777), 0);
-    assert_int_equal(sys_write_file(SCRATCH "/directory", "x", 1), FF_ERR_SYSTEM); /* the rename fails */
+    /* the rename fails */
+    assert_int_equal(sys_write_file(SCRATCH "/directory", "x", 1), FF_ERR_SYSTEM);
     assert_int_equal(system("test -z \"$(ls " SCRATCH " | grep directory.)\""), 0);
     assert_int_equal(sys_map_file(SCRATCH "/directory", &mapping), FF_ERR_SYSTEM);
     assert_int_equal(sys_map_file(SCRATCH "/absent", &mapping), FF_ERR_NOT_FOUND);
@@ -198,11 +203,15 @@ static void jpeg_round_trip(void **state)
     assert_true(count > 100 && count < best);
     assert_int_equal(sys_jpeg_decode(bytes, (size_t)count, SIDE, SIDE, back), FF_OK);
     uint64_t error = 0;
-    for (size_t i = 0; i < sizeof rgb; i++) error += (uint64_t)((rgb[i] - back[i]) * (rgb[i] - back[i]));
+    for (size_t i = 0; i < sizeof rgb; i++)
+        error += (uint64_t)((rgb[i] - back[i]) * (rgb[i] - back[i]));
     assert_true(error / sizeof rgb < 300); /* chroma at half resolution across hard edges */
-    assert_true(abs(back[0] - 0) < 40 && back[(SIDE - 1) * 3] > 200); /* red grows to the right, */
-    assert_true(back[1] < 40 && back[(SIDE - 1) * SIDE * 3 + 1] > 200); /* green downwards: top row first */
-    assert_int_equal(sys_jpeg_decode(bytes, (size_t)count, SIDE, SIDE / 2, back), FF_ERR_FORMAT); /* too long for that */
+    /* red grows to the right, */
+    assert_true(abs(back[0] - 0) < 40 && back[(SIDE - 1) * 3] > 200);
+    /* green downwards: top row first */
+    assert_true(back[1] < 40 && back[(SIDE - 1) * SIDE * 3 + 1] > 200);
+    /* too long for that */
+    assert_int_equal(sys_jpeg_decode(bytes, (size_t)count, SIDE, SIDE / 2, back), FF_ERR_FORMAT);
     assert_int_equal(sys_jpeg_decode(bytes, (size_t)count, 0, SIDE, back), FF_ERR_ARGUMENT);
     assert_int_equal(sys_jpeg_decode(bytes, (size_t)count, SIDE, 65501, back), FF_ERR_ARGUMENT);
 }
@@ -211,8 +220,8 @@ static void jpeg_round_trip(void **state)
 static size_t whole_jpeg(const uint8_t *rgb, int quality, uint8_t *back)
 {
     struct jpeg_error_mgr errors;
-    struct jpeg_compress_struct out = {.err = jpeg_std_error(&errors)};
-    struct jpeg_decompress_struct in = {.err = &errors};
+    struct jpeg_compress_struct out = { .err = jpeg_std_error(&errors) };
+    struct jpeg_decompress_struct in = { .err = &errors };
     unsigned char *bytes = NULL;
     unsigned long count = 0;
     jpeg_create_compress(&out);
@@ -247,7 +256,8 @@ static size_t whole_jpeg(const uint8_t *rgb, int quality, uint8_t *back)
 static void bare_jpegs_share_their_tables(void **state)
 {
     (void)state;
-    static uint8_t bytes[65536], rgb[SIDE * SIDE * 3], back[SIDE * SIDE * 3], whole[SIDE * SIDE * 3];
+    static uint8_t bytes[65536], rgb[SIDE * SIDE * 3], back[SIDE * SIDE * 3],
+        whole[SIDE * SIDE * 3];
     paint(rgb);
     for (int quality = 1; quality <= 100; quality += quality < 96 ? 7 : 1) {
         int count = encode(bytes, sizeof bytes, quality);
@@ -264,13 +274,15 @@ static void markers_in_bare_jpegs_are_errors(void **state)
 {
     (void)state;
     static uint8_t bytes[65536], back[SIDE * SIDE * 3];
-    static const uint8_t whole[] = {0xFF, 0xD8, 0xFF, 0xC0, 0, 17, 8, 0, SIDE, 0, SIDE, 3};
+    static const uint8_t whole[] = { 0xFF, 0xD8, 0xFF, 0xC0, 0, 17, 8, 0, SIDE, 0, SIDE, 3 };
     int count = encode(bytes, sizeof bytes, 70);
     for (int marker = 0x01; marker <= 0xFF; marker++) {
         bytes[count] = 0xFF;
         bytes[count + 1] = (uint8_t)marker;
-        assert_int_equal(sys_jpeg_decode(bytes, (size_t)count + 2, SIDE, SIDE, back), FF_ERR_FORMAT);
-        assert_int_equal(sys_jpeg_decode(bytes, (size_t)count + 1, SIDE, SIDE, back), FF_ERR_FORMAT);
+        assert_int_equal(sys_jpeg_decode(bytes, (size_t)count + 2, SIDE, SIDE, back),
+                         FF_ERR_FORMAT);
+        assert_int_equal(sys_jpeg_decode(bytes, (size_t)count + 1, SIDE, SIDE, back),
+                         FF_ERR_FORMAT);
     }
     assert_int_equal(sys_jpeg_decode(whole, sizeof whole, SIDE, SIDE, back), FF_ERR_FORMAT);
     bytes[0] = 0;
@@ -306,9 +318,11 @@ static void truncated_jpegs_are_errors(void **state)
         assert_int_equal(sys_jpeg_decode(exact, (size_t)length, SIDE, SIDE, back), FF_ERR_FORMAT);
         free(exact);
     }
-    memset(bytes + count, 0x55, 32); /* a few bytes too many may go unseen in libjpeg's bit buffer */
+    /* a few bytes too many may go unseen in libjpeg's bit buffer */
+    memset(bytes + count, 0x55, 32);
     assert_int_equal(sys_jpeg_decode(bytes, (size_t)count + 32, SIDE, SIDE, back), FF_ERR_FORMAT);
-    assert_int_equal(sys_jpeg_decode((const uint8_t *)"not a picture", 13, 8, 8, back), FF_ERR_FORMAT);
+    assert_int_equal(sys_jpeg_decode((const uint8_t *)"not a picture", 13, 8, 8, back),
+                     FF_ERR_FORMAT);
     assert_int_equal(sys_jpeg_decode(NULL, 0, 8, 8, back), FF_ERR_FORMAT);
 }
 
@@ -320,7 +334,8 @@ static void damaged_jpegs_never_end_the_program(void **state)
     sys_random random;
     sys_random_seed(&random, 6, 6);
     for (int i = 0; i < count * 2; i++) {
-        uint32_t at = sys_random_below(&random, (uint32_t)count), flip = 1u << sys_random_below(&random, 8);
+        uint32_t at = sys_random_below(&random, (uint32_t)count),
+                 flip = 1u << sys_random_below(&random, 8);
         bytes[at] ^= (uint8_t)flip;
         int rc = sys_jpeg_decode(bytes, (size_t)count, SIDE, SIDE, back);
         assert_true(rc == FF_OK || rc == FF_ERR_FORMAT);
@@ -328,7 +343,8 @@ static void damaged_jpegs_never_end_the_program(void **state)
         tried++;
         bytes[at] ^= (uint8_t)flip;
     }
-    assert_true(refused > 0 && refused < tried); /* bits of pixels may flip unseen: messages have checksums for that */
+    /* bits of pixels may flip unseen: messages have checksums for that */
+    assert_true(refused > 0 && refused < tried);
     assert_int_equal(sys_jpeg_decode(bytes, (size_t)count, SIDE, SIDE, back), FF_OK);
 }
 
@@ -336,8 +352,9 @@ static void png_files_are_pngs(void **state)
 {
     (void)state;
     static uint8_t rgb[SIDE * SIDE * 3];
-    static const uint8_t head[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n', 0, 0, 0, 13, 'I', 'H', 'D', 'R',
-                                   0, 0, 0, SIDE, 0, 0, 0, SIDE, 8, 2};
+    static const uint8_t head[] = { 0x89, 'P',  'N', 'G', '\r', '\n', 0x1A, '\n', 0,
+                                    0,    0,    13,  'I', 'H',  'D',  'R',  0,    0,
+                                    0,    SIDE, 0,   0,   0,    SIDE, 8,    2 };
     sys_mapping mapping;
     paint(rgb);
     assert_int_equal(sys_png_write(SCRATCH "/a.png", rgb, SIDE, SIDE), FF_OK);
@@ -354,7 +371,8 @@ static void png_files_are_pngs(void **state)
     assert_memory_equal(again, rgb, sizeof rgb);
     free(again);
     assert_int_equal(sys_map_file(SCRATCH "/a.png", &mapping), FF_OK);
-    assert_int_equal(sys_write_file(SCRATCH "/cut.png", mapping.bytes, (size_t)mapping.size - 20), FF_OK);
+    assert_int_equal(sys_write_file(SCRATCH "/cut.png", mapping.bytes, (size_t)mapping.size - 20),
+                     FF_OK);
     sys_unmap_file(&mapping);
     assert_int_equal(sys_png_read(SCRATCH "/cut.png", &again, &width, &height), FF_ERR_FORMAT);
     assert_int_equal(sys_png_read(SCRATCH "/none.png", &again, &width, &height), FF_ERR_NOT_FOUND);
@@ -378,7 +396,8 @@ int main(void)
         cmocka_unit_test(threads_take_turns),
         cmocka_unit_test(files_are_written_whole),
         cmocka_unit_test(a_write_that_fails_leaves_nothing),
-        cmocka_unit_test(jpeg_round_trip), cmocka_unit_test(bare_jpegs_share_their_tables),
+        cmocka_unit_test(jpeg_round_trip),
+        cmocka_unit_test(bare_jpegs_share_their_tables),
         cmocka_unit_test(markers_in_bare_jpegs_are_errors),
         cmocka_unit_test(jpeg_encoder_knows_its_limits),
         cmocka_unit_test(truncated_jpegs_are_errors),

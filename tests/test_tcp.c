@@ -1,4 +1,5 @@
-/* TCP streams of the Common System API: partial sends, refusal, peers that vanish, reconnection, addresses. */
+/* TCP streams of the Common System API: partial sends, refusal, peers that vanish, reconnection,
+ * addresses. */
 #include "../platform/sys.h"
 
 #include <setjmp.h>
@@ -60,7 +61,8 @@ static void open_pair(pair *p)
     p->listener = sys_tcp_listen("127.0.0.1:0", 1, &port);
     assert_true(p->listener >= 0 && port != 0);
     assert_int_equal(sys_tcp_accept(p->listener), FF_ERR_AGAIN);
-    assert_int_equal(sys_tcp_client(&p->client, local_address(text, "127.0.0.1", port), &p->out), FF_OK);
+    assert_int_equal(sys_tcp_client(&p->client, local_address(text, "127.0.0.1", port), &p->out),
+                     FF_OK);
     int fd = accept_soon(p->listener);
     assert_true(fd >= 0);
     sys_tcp_adopt(&p->peer, fd, &p->in);
@@ -127,7 +129,7 @@ static void a_vanished_peer_is_closed_and_reconnects(void **state)
 {
     (void)state;
     pair p;
-    uint8_t bytes[4] = {1, 2, 3, 4};
+    uint8_t bytes[4] = { 1, 2, 3, 4 };
     open_pair(&p);
     p.in.close(p.in.state);
     assert_int_equal(recv_soon(&p.out, bytes, 4), FF_ERR_CLOSED);
@@ -152,7 +154,7 @@ static void sending_to_a_vanished_peer_ends(void **state)
 {
     (void)state;
     pair p;
-    uint8_t bytes[256] = {0};
+    uint8_t bytes[256] = { 0 };
     open_pair(&p);
     p.in.close(p.in.state);
     int rc = 0;
@@ -215,8 +217,9 @@ static void ipv6_addresses_have_brackets(void **state)
 static void bad_addresses_are_told(void **state)
 {
     (void)state;
-    static const char *const bad[] = {"", "host", ":", "host:", "host:x", "host:65536", "host:123456", "::1:80",
-                                      "[::1:80", "[]:80", "host:-1", "host: 1", ":80"};
+    static const char *const bad[] = { "",           "host",        ":",      "host:",   "host:x",
+                                       "host:65536", "host:123456", "::1:80", "[::1:80", "[]:80",
+                                       "host:-1",    "host: 1",     ":80" };
     sys_tcp tcp;
     sys_stream stream;
     uint16_t port;
@@ -227,7 +230,8 @@ static void bad_addresses_are_told(void **state)
     memcpy(endless + sizeof endless - 4, ":80", 4);
     assert_int_equal(sys_tcp_client(&tcp, endless, &stream), FF_ERR_ARGUMENT);
     assert_int_equal(sys_tcp_listen("nonsense", 0, &port), FF_ERR_ARGUMENT);
-    assert_int_equal(sys_tcp_listen("192.0.2.1:0", 0, &port), FF_ERR_SYSTEM); /* not an address of ours */
+    /* not an address of ours */
+    assert_int_equal(sys_tcp_listen("192.0.2.1:0", 0, &port), FF_ERR_SYSTEM);
     int any = sys_tcp_listen(":0", 0, &port);
     assert_true(any >= 0);
     close(any);

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#define TEXELS 64
+#define TEXELS         64
 #define HALF_TEXEL_Q16 (32768 / TEXELS)
 
 static ff_terrain_info textured(void)
@@ -41,14 +41,19 @@ static void test_edges_meet_rim_texels(void **state)
         int32_t scale[2], offset[2], end_before = HALF_TEXEL_Q16;
         int32_t cells = 1 << info.node_log2, nodes = 1 << depth;
         for (int32_t place = 0; place < nodes; place++) {
-            uint32_t code = 2u << (2 * depth) | ff_morton_encode((uint32_t)place, (uint32_t)(nodes - 1 - place));
+            uint32_t code = 2u << (2 * depth) |
+                            ff_morton_encode((uint32_t)place, (uint32_t)(nodes - 1 - place));
             ff_texture_map(&info, ff_key_make(1, 1 + depth, code), texture, scale, offset);
-            assert_in_range(offset[0] - end_before + 8, 0, 16); /* within 8/65536 of the image: a hundredth of a texel */
+            /* within 8/65536 of the image: a hundredth of a texel */
+            assert_in_range(offset[0] - end_before + 8, 0, 16);
             end_before = offset[0] + cells * scale[0];
-            assert_in_range(scale[0] * cells * nodes - (65536 - 2 * HALF_TEXEL_Q16) + 4 * nodes, 0, 8 * nodes);
+            assert_in_range(scale[0] * cells * nodes - (65536 - 2 * HALF_TEXEL_Q16) + 4 * nodes, 0,
+                            8 * nodes);
             assert_int_equal(scale[1], scale[0]);
-            /* y runs the other way here: north places are late in the image's t, which grows to the north. */
-            int32_t expected = HALF_TEXEL_Q16 + (65536 - 2 * HALF_TEXEL_Q16) / nodes * (nodes - 1 - place);
+            /* y runs the other way here: north places are late in the image's t, which grows to the
+             * north. */
+            int32_t expected = HALF_TEXEL_Q16 +
+                               (65536 - 2 * HALF_TEXEL_Q16) / nodes * (nodes - 1 - place);
             assert_in_range(offset[1] - expected + nodes + 1, 0, 2 * nodes + 2);
         }
         assert_in_range(end_before - (65536 - HALF_TEXEL_Q16) + 8 + 4 * nodes, 0, 16 + 8 * nodes);
@@ -62,9 +67,9 @@ static void test_first_row_of_a_jpeg_is_north(void **state)
     static uint8_t rgb[TEXELS * TEXELS * 3];
     static uint16_t texels[TEXELS * TEXELS];
     memset(rgb, 0, sizeof rgb);
-    rgb[0] = 255;                                        /* north-west: red */
-    rgb[3 * (TEXELS - 1) + 1] = 255;                     /* north-east: green */
-    rgb[3 * ((TEXELS - 1) * TEXELS) + 2] = 255;          /* south-west: blue */
+    rgb[0] = 255;                               /* north-west: red */
+    rgb[3 * (TEXELS - 1) + 1] = 255;            /* north-east: green */
+    rgb[3 * ((TEXELS - 1) * TEXELS) + 2] = 255; /* south-west: blue */
     ff_texture_texels(&info, rgb, texels);
     assert_int_equal(texels[(TEXELS - 1) * TEXELS], 0xF800);
     assert_int_equal(texels[TEXELS * TEXELS - 1], 0x07E0);

@@ -14,15 +14,17 @@
 
 /* ---- measures ---- */
 
-static double node_f(const terrain_fixture *fx, const ff_drawn *drawn, const ff_view *view, const ff_quality *quality)
+static double node_f(const terrain_fixture *fx, const ff_drawn *drawn, const ff_view *view,
+                     const ff_quality *quality)
 {
-    double edge = ff_node_edge_wu(&fx->info, ff_key_level(drawn->key)), sum = 0, side = ff_node_side(&fx->info), d = 0;
-    for (int i = 0; i < side * side; i++)
-        sum += drawn->heights[i];
-    double middle[3] = {drawn->origin_wu[0] + edge / 2, drawn->origin_wu[1] + edge / 2,
-                        ff_height_wu(&fx->info, (uint32_t)(sum / (side * side)))};
+    double edge = ff_node_edge_wu(&fx->info, ff_key_level(drawn->key)), sum = 0,
+           side = ff_node_side(&fx->info), d = 0;
+    for (int i = 0; i < side * side; i++) sum += drawn->heights[i];
+    double middle[3] = { drawn->origin_wu[0] + edge / 2, drawn->origin_wu[1] + edge / 2,
+                         ff_height_wu(&fx->info, (uint32_t)(sum / (side * side))) };
     for (int axis = 0; axis < 3; axis++)
-        d += (middle[axis] - view->camera.pos_wu[axis]) * (middle[axis] - view->camera.pos_wu[axis]);
+        d += (middle[axis] - view->camera.pos_wu[axis]) *
+             (middle[axis] - view->camera.pos_wu[axis]);
     return sqrt(d) / (edge * quality->c_q8 / 256.0);
 }
 
@@ -36,7 +38,7 @@ static void test_distance_measure(void **state)
     quality.c_q8 = 400;
     fixture_settle(&fx, &view, &quality, 200);
     const ff_drawn *cut;
-    uint32_t count = ff_tree_cut(fx.tree, &cut), levels[16] = {0};
+    uint32_t count = ff_tree_cut(fx.tree, &cut), levels[16] = { 0 };
     for (uint32_t i = 0; i < count; i++) {
         levels[ff_key_level(cut[i].key)]++;
         if (ff_key_level(cut[i].key) + 1 < ff_terrain_levels(&fx.info) && cut[i].coarser == 0)
@@ -49,8 +51,7 @@ static void test_distance_measure(void **state)
     quality.depth_max = 3;
     ff_tree_select(fx.tree, &view, &quality);
     count = ff_tree_cut(fx.tree, &cut);
-    for (uint32_t i = 0; i < count; i++)
-        assert_true(ff_key_level(cut[i].key) <= 2);
+    for (uint32_t i = 0; i < count; i++) assert_true(ff_key_level(cut[i].key) <= 2);
     fixture_free(&fx);
 }
 
@@ -85,13 +86,12 @@ static void test_settled_cut_does_not_depend_on_order(void **state)
         for (uint64_t seed = 0; seed < 6; seed++) {
             terrain_fixture fx;
             fixture_usual(&fx, 4000);
-            fixture_link link = {.loss_percent = (uint32_t)seed * 10, .per_frame = 5};
+            fixture_link link = { .loss_percent = (uint32_t)seed * 10, .per_frame = 5 };
             sys_random_seed(&link.random, seed, 3);
             for (unsigned frame = 0; frame < 2000; frame++) {
                 const ff_wish *wish;
                 ff_tree_select(fx.tree, &view, &quality);
-                if (ff_tree_wishes(fx.tree, &wish) == 0)
-                    break;
+                if (ff_tree_wishes(fx.tree, &wish) == 0) break;
                 fixture_link_step(&fx, &link);
             }
             const ff_drawn *cut;
@@ -99,8 +99,7 @@ static void test_settled_cut_does_not_depend_on_order(void **state)
             uint32_t count = ff_tree_cut(fx.tree, &cut);
             for (uint32_t i = 0; i < count; i++)
                 sum += cut[i].key * UINT64_C(0x9E3779B97F4A7C15) + cut[i].coarser;
-            if (seed == 0)
-                expected = sum;
+            if (seed == 0) expected = sum;
             assert_int_equal(sum, expected);
             fixture_free(&fx);
         }
@@ -119,10 +118,20 @@ static void test_window_of_tiles(void **state)
     quality.c_q8 = 0;
     quality.view_wu = 100 * M;
     const ff_wish *wish;
-    /* On the corner of four tiles; in the middle of one; so far that the next ones are just touched; off the terrain. */
-    const struct { int32_t x, y; uint32_t tiles; } cases[] = {
-        {4 * 320, 4 * 320, 4}, {4 * 320 + 160, 4 * 320 + 160, 1}, {4 * 320 + 100, 4 * 320 + 160, 2}, {0, 0, 1},
-        {9 * 320 + 100, 9 * 320, 1}, {9 * 320 + 101, 9 * 320, 0}, {-100, 160, 1}, {-101, 160, 0},
+    /* On the corner of four tiles; in the middle of one; so far that the next ones are just
+     * touched; off the terrain. */
+    const struct {
+        int32_t x, y;
+        uint32_t tiles;
+    } cases[] = {
+        { 4 * 320, 4 * 320, 4 },
+        { 4 * 320 + 160, 4 * 320 + 160, 1 },
+        { 4 * 320 + 100, 4 * 320 + 160, 2 },
+        { 0, 0, 1 },
+        { 9 * 320 + 100, 9 * 320, 1 },
+        { 9 * 320 + 101, 9 * 320, 0 },
+        { -100, 160, 1 },
+        { -101, 160, 0 },
     };
     for (unsigned i = 0; i < sizeof cases / sizeof cases[0]; i++) {
         fixture_tree(&fx, 400, 100);
@@ -164,7 +173,8 @@ static void test_refinement_of_one_spot_pulls_its_neighbours(void **state)
     (void)state;
     terrain_fixture fx;
     fixture_usual(&fx, 3000);
-    ff_view view = fixture_view_above(&fx, 1285, 1275, 30, 0, -30); /* beside a corner of four tiles */
+    /* beside a corner of four tiles */
+    ff_view view = fixture_view_above(&fx, 1285, 1275, 30, 0, -30);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     quality.c_q8 = 300;
     fixture_settle(&fx, &view, &quality, 200);
@@ -196,7 +206,8 @@ static void test_flat_ground_asks_for_nothing_below(void **state)
     }
 }
 
-/* Beside rough ground flat ground is refined as far as the restriction needs, so that it does not hold its neighbour back. */
+/* Beside rough ground flat ground is refined as far as the restriction needs, so that it does not
+ * hold its neighbour back. */
 static void test_flat_ground_beside_rough(void **state)
 {
     (void)state;
@@ -241,8 +252,7 @@ static void test_wishes_come_in_order(void **state)
     for (unsigned round = 0; round < 40; round++) {
         ff_tree_select(fx.tree, &view, &quality);
         count = ff_tree_wishes(fx.tree, &wish);
-        for (uint32_t i = 0; i < count; i++)
-            unseen += wish[i].refinement && !wish[i].in_view;
+        for (uint32_t i = 0; i < count; i++) unseen += wish[i].refinement && !wish[i].in_view;
         for (uint32_t i = 1; i < count; i++) {
             assert_true(wish[i - 1].refinement <= wish[i].refinement);
             if (wish[i - 1].refinement == wish[i].refinement) {
@@ -251,29 +261,28 @@ static void test_wishes_come_in_order(void **state)
                     assert_true(wish[i - 1].priority >= wish[i].priority);
             }
         }
-        if (count)
-            fixture_deliver(&fx, wish[count - 1].key, wish[count - 1].refinement);
+        if (count) fixture_deliver(&fx, wish[count - 1].key, wish[count - 1].refinement);
     }
     assert_true(unseen > 0);
     fixture_free(&fx);
 }
 
 /* Delivers the first wish until there is none; unseen 0: of those that count as in view. */
-static uint32_t deliver_wishes(terrain_fixture *fx, const ff_view *view, const ff_quality *quality, int unseen)
+static uint32_t deliver_wishes(terrain_fixture *fx, const ff_view *view, const ff_quality *quality,
+                               int unseen)
 {
     for (uint32_t delivered = 0;; delivered++) {
         const ff_wish *wish;
         ff_tree_select(fx->tree, view, quality);
         uint32_t count = ff_tree_wishes(fx->tree, &wish), at = 0;
-        while (at < count && !unseen && !wish[at].in_view)
-            at++;
-        if (at == count)
-            return delivered;
+        while (at < count && !unseen && !wish[at].in_view) at++;
+        if (at == count) return delivered;
         fixture_deliver(fx, wish[at].key, wish[at].refinement);
     }
 }
 
-/* What is in view, and what lets it split, is enough: the same nodes are drawn as when all has come, of less. */
+/* What is in view, and what lets it split, is enough: the same nodes are drawn as when all has
+ * come, of less. */
 static void test_wishes_in_view_are_enough(void **state)
 {
     (void)state;
@@ -286,11 +295,13 @@ static void test_wishes_in_view_are_enough(void **state)
         fixture_make(&whole, 3, 7, 2, 2, fixture_hills);
         fixture_tree(&whole, 3000, 200);
         ff_view view = fixture_view(900, 1000, 300, yaw, -10);
-        assert_true(deliver_wishes(&part, &view, &quality, 0) < deliver_wishes(&whole, &view, &quality, 1));
+        assert_true(deliver_wishes(&part, &view, &quality, 0) <
+                    deliver_wishes(&whole, &view, &quality, 1));
         uint32_t count = ff_tree_drawn(part.tree, &a);
         assert_int_equal(count, ff_tree_drawn(whole.tree, &b));
         for (uint32_t i = 0; i < count; i++)
-            assert_true(a[i].key == b[i].key); /* a rim may be coarser, beside a neighbour out of view */
+            /* a rim may be coarser, beside a neighbour out of view */
+            assert_true(a[i].key == b[i].key);
         fixture_free(&part);
         fixture_free(&whole);
     }
@@ -306,7 +317,8 @@ static void test_wish_list_is_bounded_and_keeps_the_best(void **state)
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     const ff_wish *wish;
     ff_tree_select(fx.tree, &view, &quality);
-    assert_int_equal(ff_tree_wishes(fx.tree, &wish), 5); /* roots out of view take a quarter of the list */
+    /* roots out of view take a quarter of the list */
+    assert_int_equal(ff_tree_wishes(fx.tree, &wish), 5);
     assert_int_equal(ff_key_tile(wish[0].key), 15 * 30 + 15);
     fixture_deliver(&fx, wish[0].key, 0);
     ff_tree_select(fx.tree, &view, &quality);
@@ -320,12 +332,15 @@ static void test_bad_deliveries(void **state)
     (void)state;
     terrain_fixture fx;
     fixture_usual(&fx, 100);
-    int32_t value[FF_REFINED_HEIGHTS_MAX] = {0};
-    ff_residuals residuals = {.count = 81, .value = value};
+    int32_t value[FF_REFINED_HEIGHTS_MAX] = { 0 };
+    ff_residuals residuals = { .count = 81, .value = value };
     assert_int_equal(ff_tree_deliver_root(fx.tree, 6, &residuals), FF_ERR_RANGE);
-    assert_int_equal(ff_tree_deliver_children(fx.tree, ff_key_make(0, 4, 0), &residuals), FF_ERR_RANGE);
-    assert_int_equal(ff_tree_deliver_children(fx.tree, ff_key_make(0, 1, 7), &residuals), FF_ERR_RANGE);
-    assert_int_equal(ff_tree_deliver_children(fx.tree, ff_key_make(0, 1, 3), &residuals), FF_ERR_NOT_FOUND);
+    assert_int_equal(ff_tree_deliver_children(fx.tree, ff_key_make(0, 4, 0), &residuals),
+                     FF_ERR_RANGE);
+    assert_int_equal(ff_tree_deliver_children(fx.tree, ff_key_make(0, 1, 7), &residuals),
+                     FF_ERR_RANGE);
+    assert_int_equal(ff_tree_deliver_children(fx.tree, ff_key_make(0, 1, 3), &residuals),
+                     FF_ERR_NOT_FOUND);
     assert_int_equal(fixture_stats(&fx).orphans, 1);
     fixture_free(&fx);
 }
@@ -335,7 +350,7 @@ static void test_create(void **state)
     (void)state;
     terrain_fixture fx;
     fixture_make(&fx, 3, 7, 2, 2, fixture_hills);
-    ff_tree_desc desc = {fx.info, 7, 10};
+    ff_tree_desc desc = { fx.info, 7, 10 };
     assert_int_equal(ff_tree_bytes(&desc), 0);
     desc.node_count = 4096;
     size_t bytes = ff_tree_bytes(&desc), per_node = bytes / desc.node_count;
@@ -390,7 +405,8 @@ int main(void)
         cmocka_unit_test(test_flat_ground_asks_for_nothing_below),
         cmocka_unit_test(test_flat_ground_beside_rough),
         cmocka_unit_test(test_wishes_come_in_order),
-        cmocka_unit_test(test_wishes_in_view_are_enough), cmocka_unit_test(test_wish_list_is_bounded_and_keeps_the_best),
+        cmocka_unit_test(test_wishes_in_view_are_enough),
+        cmocka_unit_test(test_wish_list_is_bounded_and_keeps_the_best),
         cmocka_unit_test(test_bad_deliveries),
         cmocka_unit_test(test_create),
         cmocka_unit_test(test_select_skips_when_nothing_changed),

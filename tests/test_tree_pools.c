@@ -1,4 +1,5 @@
-/* Pools of every size, still cameras and moving ones, and the largest terrains and numbers there can be. */
+/* Pools of every size, still cameras and moving ones, and the largest terrains and numbers there
+ * can be. */
 #include "terrain_fixture.h"
 
 #include <setjmp.h>
@@ -6,12 +7,12 @@
 #include <stddef.h>
 #include <cmocka.h>
 
-
 #define M FF_WU_PER_METRE
 
 /* ---- pools ---- */
 
-/* A still camera and every pool size: after a while nothing is wished for, evicted or redrawn any more. */
+/* A still camera and every pool size: after a while nothing is wished for, evicted or redrawn any
+ * more. */
 static void test_pools_settle(void **state)
 {
     (void)state;
@@ -30,8 +31,7 @@ static void test_pools_settle(void **state)
                 assert_int_equal(ff_tree_wishes(fx.tree, &wish), 0);
             }
             assert_int_equal(fixture_stats(&fx).nodes_held, settled.nodes_held);
-            if (nodes < 200)
-                assert_true(settled.nodes_held > nodes - 4);
+            if (nodes < 200) assert_true(settled.nodes_held > nodes - 4);
             fixture_free(&fx);
         }
     }
@@ -42,14 +42,13 @@ static void test_full_pool_stays_still_for_10000_frames(void **state)
     (void)state;
     terrain_fixture fx;
     fixture_usual(&fx, 90);
-    fixture_link link = {.per_frame = 3};
+    fixture_link link = { .per_frame = 3 };
     sys_random_seed(&link.random, 5, 5);
     ff_view view = fixture_view_above(&fx, 1400, 1100, 50, 20, -15);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     uint32_t changed_last = 0;
     for (uint32_t frame = 0; frame < 10000; frame++) {
-        if (ff_tree_select(fx.tree, &view, &quality))
-            changed_last = frame;
+        if (ff_tree_select(fx.tree, &view, &quality)) changed_last = frame;
         fixture_link_step(&fx, &link);
     }
     assert_true(changed_last < 200);
@@ -85,14 +84,16 @@ static void test_cache_serves_a_return(void **state)
     fixture_usual(&fx, 4000);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     quality.c_q8 = 256;
-    ff_view here = fixture_view(600, 600, 300, 0, -30), there = fixture_view(3000, 1900, 300, 0, -30);
+    ff_view here = fixture_view(600, 600, 300, 0, -30),
+            there = fixture_view(3000, 1900, 300, 0, -30);
     fixture_settle(&fx, &here, &quality, 200);
     fixture_settle(&fx, &there, &quality, 200);
     assert_int_equal(fixture_settle(&fx, &here, &quality, 200), 0);
     fixture_free(&fx);
 }
 
-/* A family that was not asked for finds no room by dropping the node it would refine, whatever sigma says. */
+/* A family that was not asked for finds no room by dropping the node it would refine, whatever
+ * sigma says. */
 static void test_own_family_is_spared(void **state)
 {
     (void)state;
@@ -100,7 +101,8 @@ static void test_own_family_is_spared(void **state)
         terrain_fixture fx;
         fixture_make(&fx, 3, 5, 1, 1, fixture_hills);
         fixture_tree(&fx, 8, 8);
-        ff_view view = fixture_view_above(&fx, 240, 240, 20, 0, -90); /* the child is nearer than its parent's middle */
+        /* the child is nearer than its parent's middle */
+        ff_view view = fixture_view_above(&fx, 240, 240, 20, 0, -90);
         ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
         quality.sigma_q8 = sigma;
         quality.c_q8 = 8; /* nothing wants to split */
@@ -109,7 +111,8 @@ static void test_own_family_is_spared(void **state)
         ff_tree_select(fx.tree, &view, &quality);
         assert_int_equal(fixture_deliver(&fx, ff_key_make(0, 0, 0), 1), FF_OK);
         ff_tree_select(fx.tree, &view, &quality);
-        assert_int_equal(fixture_deliver(&fx, ff_key_make(0, 1, 3), 1), FF_ERR_FULL); /* its own family is not dropped for it */
+        /* its own family is not dropped for it */
+        assert_int_equal(fixture_deliver(&fx, ff_key_make(0, 1, 3), 1), FF_ERR_FULL);
         assert_int_equal(fixture_stats(&fx).nodes_held, 5);
         assert_int_equal(fixture_stats(&fx).pool_full, 1);
         fixture_free(&fx);
@@ -155,11 +158,12 @@ static void test_largest_terrain_and_farthest_cameras(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    fixture_make(&fx, 3, 15, 2, 2, fixture_hills); /* 65537 samples a side, 127 m apart: the edge of 32 bits */
+    /* 65537 samples a side, 127 m apart: the edge of 32 bits */
+    fixture_make(&fx, 3, 15, 2, 2, fixture_hills);
     fx.info.spacing_wu = INT32_MAX / 65536;
     fx.info.hscale_q24 = 1 << 22;
     fixture_tree(&fx, 600, 40);
-    const int32_t far[] = {INT32_MIN, -1, 0, 1 << 30, INT32_MAX};
+    const int32_t far[] = { INT32_MIN, -1, 0, 1 << 30, INT32_MAX };
     for (unsigned i = 0; i < 125; i++) {
         ff_view view = fixture_view(0, 0, 0, (int32_t)i * 37, -(int32_t)i % 90);
         for (unsigned axis = 0, rest = i; axis < 3; axis++, rest /= 5)

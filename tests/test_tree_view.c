@@ -1,4 +1,5 @@
-/* What is seen: culling against double precision, order, vertices, the height of the drawn surface. */
+/* What is seen: culling against double precision, order, vertices, the height of the drawn
+ * surface. */
 #include "terrain_fixture.h"
 
 #include <setjmp.h>
@@ -15,13 +16,13 @@
 
 static int projects_inside(const c3d_camera *camera, const double point[3])
 {
-    double turn = 2 * 3.14159265358979323846 / 65536, yaw = camera->yaw * turn, pitch = camera->pitch * turn;
+    double turn = 2 * 3.14159265358979323846 / 65536, yaw = camera->yaw * turn,
+           pitch = camera->pitch * turn;
     double roll = camera->roll * turn, d[3];
-    for (int axis = 0; axis < 3; axis++)
-        d[axis] = point[axis] - camera->pos_wu[axis];
-    double forward[3] = {sin(yaw) * cos(pitch), cos(yaw) * cos(pitch), sin(pitch)};
-    double level[3] = {cos(yaw), -sin(yaw), 0};
-    double over[3] = {-sin(yaw) * sin(pitch), -cos(yaw) * sin(pitch), cos(pitch)};
+    for (int axis = 0; axis < 3; axis++) d[axis] = point[axis] - camera->pos_wu[axis];
+    double forward[3] = { sin(yaw) * cos(pitch), cos(yaw) * cos(pitch), sin(pitch) };
+    double level[3] = { cos(yaw), -sin(yaw), 0 };
+    double over[3] = { -sin(yaw) * sin(pitch), -cos(yaw) * sin(pitch), cos(pitch) };
     double right = 0, up = 0, depth = 0;
     for (int axis = 0; axis < 3; axis++) {
         right += d[axis] * (level[axis] * cos(roll) - over[axis] * sin(roll));
@@ -29,22 +30,23 @@ static int projects_inside(const c3d_camera *camera, const double point[3])
         depth += d[axis] * forward[axis];
     }
     double focal = camera->focal_q8 / 256.0;
-    return depth > 0 && fabs(right) * focal <= depth * camera->width / 2 && fabs(up) * focal <= depth * camera->height / 2;
+    return depth > 0 && fabs(right) * focal <= depth * camera->width / 2 &&
+           fabs(up) * focal <= depth * camera->height / 2;
 }
 
 static void assert_nothing_visible_culled(terrain_fixture *fx, const ff_view *view, uint32_t *seen)
 {
     const ff_drawn *cut;
-    uint32_t drawn = ff_tree_drawn(fx->tree, &cut), count = ff_tree_cut(fx->tree, &cut), side = ff_node_side(&fx->info);
+    uint32_t drawn = ff_tree_drawn(fx->tree, &cut), count = ff_tree_cut(fx->tree, &cut),
+             side = ff_node_side(&fx->info);
     for (uint32_t i = 0; i < count; i++) {
         for (uint32_t v = 0; v < side * side; v++) {
-            double point[3] = {cut[i].origin_wu[0] + (double)(v % side) * cut[i].cell_wu,
-                               cut[i].origin_wu[1] + (double)(v / side) * cut[i].cell_wu,
-                               ff_height_wu(&fx->info, cut[i].heights[v])};
+            double point[3] = { cut[i].origin_wu[0] + (double)(v % side) * cut[i].cell_wu,
+                                cut[i].origin_wu[1] + (double)(v / side) * cut[i].cell_wu,
+                                ff_height_wu(&fx->info, cut[i].heights[v]) };
             int inside = projects_inside(&view->camera, point);
             *seen += (uint32_t)inside;
-            if (inside)
-                assert_true(i < drawn);
+            if (inside) assert_true(i < drawn);
         }
     }
 }
@@ -63,15 +65,17 @@ static void test_culling_never_drops_what_is_visible(void **state)
     sys_random_seed(&random, 9, 9);
     uint32_t seen = 0, culled = 0;
     for (unsigned i = 0; i < 600; i++) {
-        int32_t z = i % 5 == 0 ? -500 : i % 7 == 0 ? 1000 * 1000 : (int32_t)sys_random_below(&random, 3000);
+        int32_t z = i % 5 == 0   ? -500
+                    : i % 7 == 0 ? 1000 * 1000
+                                 : (int32_t)sys_random_below(&random, 3000);
         ff_view view = fixture_view((int32_t)sys_random_below(&random, 6000) - 1000,
                                     (int32_t)sys_random_below(&random, 5000) - 1000, z, 0, 0);
         view.camera.yaw = (int32_t)sys_random_below(&random, 65536);
         view.camera.pitch = i % 7 == 0 ? -16384 : (int32_t)sys_random_below(&random, 32768) - 16384;
         view.camera.roll = (int32_t)sys_random_below(&random, 65536);
-        const int32_t tenths[] = {1, 10, 600, 1200, 1700};
-        if (i % 3 == 0) /* a steep look at one spot from above it: many node borders at the screen's edge */
-            view.camera.pitch = -14000;
+        const int32_t tenths[] = { 1, 10, 600, 1200, 1700 };
+        /* a steep look at one spot from above it: many node borders at the screen's edge */
+        if (i % 3 == 0) view.camera.pitch = -14000;
         view.camera.focal_q8 = c3d_focal_q8((int32_t)((int64_t)tenths[i % 5] * 65536 / 3600), 240);
         ff_tree_select(fx.tree, &view, &quality);
         assert_nothing_visible_culled(&fx, &view, &seen);
@@ -90,7 +94,8 @@ static void test_culling_is_of_use(void **state)
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     fixture_settle(&fx, &view, &quality, 200);
     ff_tree_stats stats = fixture_stats(&fx);
-    assert_true(stats.nodes_drawn * 3 < stats.nodes_cut); /* 60 degrees of 360, and the nearest */
+    /* 60 degrees of 360, and the nearest */
+    assert_true(stats.nodes_drawn * 3 < stats.nodes_cut);
     const ff_drawn *drawn;
     uint32_t count = ff_tree_drawn(fx.tree, &drawn);
     for (uint32_t i = 0; i < count; i++)
@@ -162,7 +167,8 @@ static void test_vertices_and_height_agree(void **state)
     fixture_free(&fx);
 }
 
-/* Across every border of nodes the surface goes on without a step: the two sides' triangles meet. */
+/* Across every border of nodes the surface goes on without a step: the two sides' triangles
+ * meet. */
 static void test_height_has_no_steps(void **state)
 {
     (void)state;
@@ -177,9 +183,9 @@ static void test_height_has_no_steps(void **state)
     for (uint32_t i = 0; i < count; i++) {
         stitched += cut[i].coarser != 0;
         for (uint32_t step = 1; step < 64; step++) {
-            int32_t x = cut[i].origin_wu[0], y = cut[i].origin_wu[1] + (int32_t)step * cut[i].cell_wu / 8, a, b;
-            if (x == 0)
-                continue;
+            int32_t x = cut[i].origin_wu[0],
+                    y = cut[i].origin_wu[1] + (int32_t)step * cut[i].cell_wu / 8, a, b;
+            if (x == 0) continue;
             assert_int_equal(ff_tree_drawn_height(fx.tree, x - 1, y, &a), 1);
             assert_int_equal(ff_tree_drawn_height(fx.tree, x, y, &b), 1);
             assert_true(abs(a - b) <= 256 / 8); /* slopes here are below 8 */

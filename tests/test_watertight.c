@@ -1,5 +1,6 @@
-/* The drawn ground is whole whatever arrives, in whatever order, however the camera jumps: flights over made-up ground with
- * random links, qualities and pools, every frame judged exactly. And the judge finds faults put in on purpose. */
+/* The drawn ground is whole whatever arrives, in whatever order, however the camera jumps: flights
+ * over made-up ground with random links, qualities and pools, every frame judged exactly. And the
+ * judge finds faults put in on purpose. */
 #include "../sim/sim_watertight.h"
 #include "slow_watertight.h"
 #include "terrain_fixture.h"
@@ -21,7 +22,8 @@ static int32_t between(sys_random *random, int32_t lo, int32_t hi)
 
 static ff_quality random_quality(sys_random *random)
 {
-    ff_quality quality = fixture_quality(sys_random_below(random, 2) ? FF_MEASURE_PIXELS : FF_MEASURE_DISTANCE);
+    ff_quality quality = fixture_quality(sys_random_below(random, 2) ? FF_MEASURE_PIXELS
+                                                                     : FF_MEASURE_DISTANCE);
     quality.c_q8 = between(random, 128, 12 * 256);
     quality.error_px_q8 = between(random, 32, 20 * 256);
     quality.depth_max = (uint8_t)between(random, 0, 8);
@@ -33,23 +35,25 @@ static ff_quality random_quality(sys_random *random)
 static ff_view random_view(sys_random *random, const ff_terrain_info *info)
 {
     int32_t width_m = (int32_t)(info->samples_x * 10), depth_m = (int32_t)(info->samples_y * 10);
-    ff_view view = fixture_view(between(random, -500, width_m + 500), between(random, -500, depth_m + 500),
-                                between(random, -200, 4000), between(random, 0, 359), between(random, -90, 90));
+    ff_view view = fixture_view(between(random, -500, width_m + 500),
+                                between(random, -500, depth_m + 500), between(random, -200, 4000),
+                                between(random, 0, 359), between(random, -90, 90));
     view.camera.roll = between(random, -8000, 8000);
     if (sys_random_below(random, 4) == 0)
         view.centre_wu[0] += between(random, -500, 500) * FF_WU_PER_METRE;
     return view;
 }
 
-static void fly_randomly(uint64_t seed, unsigned node_log2, unsigned tile_log2, uint32_t tiles_x, uint32_t tiles_y,
-                         fixture_height height, uint32_t nodes)
+static void fly_randomly(uint64_t seed, unsigned node_log2, unsigned tile_log2, uint32_t tiles_x,
+                         uint32_t tiles_y, fixture_height height, uint32_t nodes)
 {
     sys_random random;
     sys_random_seed(&random, seed, 1);
     terrain_fixture fx;
     fixture_make(&fx, node_log2, tile_log2, tiles_x, tiles_y, height);
     fixture_tree(&fx, nodes, 40);
-    fixture_link link = {.loss_percent = sys_random_below(&random, 40), .per_frame = 1 + sys_random_below(&random, 12)};
+    fixture_link link = { .loss_percent = sys_random_below(&random, 40),
+                          .per_frame = 1 + sys_random_below(&random, 12) };
     sys_random_seed(&link.random, seed, 2);
     ff_quality quality = random_quality(&random);
     ff_view view = random_view(&random, &fx.info);
@@ -87,7 +91,8 @@ static void test_random_flights_every_node_size(void **state)
 static void test_random_flights_over_hard_ground(void **state)
 {
     (void)state;
-    const fixture_height ground[] = {fixture_cliffs, fixture_noise, fixture_flat, fixture_half_flat};
+    const fixture_height ground[] = { fixture_cliffs, fixture_noise, fixture_flat,
+                                      fixture_half_flat };
     for (unsigned i = 0; i < 4; i++) {
         for (uint64_t seed = 0; seed < 10; seed++)
             fly_randomly(2000 + seed, 3, 7, 2, 2, ground[i], 700);
@@ -129,7 +134,13 @@ static void test_lossy_ground(void **state)
 /* ---- the judge ---- */
 
 /* A settled, stitched cut, copied so that it may be spoilt. */
-typedef struct spoilt { terrain_fixture fx; ff_drawn *list; uint32_t count; uint16_t *heights; char why[160]; } spoilt;
+typedef struct spoilt {
+    terrain_fixture fx;
+    ff_drawn *list;
+    uint32_t count;
+    uint16_t *heights;
+    char why[160];
+} spoilt;
 
 static void make_spoilt(spoilt *s)
 {
@@ -162,16 +173,14 @@ static void free_spoilt(spoilt *s)
 static void assert_found(spoilt *s, const char *what)
 {
     assert_false(sim_watertight_check(&s->fx.info, s->list, s->count, s->why, sizeof s->why));
-    if (!strstr(s->why, what))
-        fail_msg("expected \"%s\" in: %s", what, s->why);
+    if (!strstr(s->why, what)) fail_msg("expected \"%s\" in: %s", what, s->why);
     free_spoilt(s);
 }
 
 static uint32_t first_stitched(const spoilt *s)
 {
     uint32_t i = 0;
-    while (i < s->count && s->list[i].coarser == 0)
-        i++;
+    while (i < s->count && s->list[i].coarser == 0) i++;
     assert_true(i < s->count);
     return i;
 }
@@ -206,7 +215,8 @@ static void test_judge_finds_doubled_ground(void **state)
     uint32_t fine = first_stitched(&s);
     s.list[s.count] = s.list[fine];
     s.list[s.count].key = ff_key_parent(s.list[fine].key);
-    ff_node_origin_wu(&s.fx.info, s.list[s.count].key, &s.list[s.count].origin_wu[0], &s.list[s.count].origin_wu[1]);
+    ff_node_origin_wu(&s.fx.info, s.list[s.count].key, &s.list[s.count].origin_wu[0],
+                      &s.list[s.count].origin_wu[1]);
     s.list[s.count].cell_wu *= 2;
     s.count++;
     assert_found(&s, "lies on");
@@ -239,33 +249,39 @@ static void test_judge_accepts_parts(void **state)
 /* One fault, or what may look like one, at a random place. */
 static void spoil(spoilt *s, sys_random *random)
 {
-    uint32_t i = sys_random_below(random, s->count), side = ff_node_side(&s->fx.info), grid = side * side;
+    uint32_t i = sys_random_below(random, s->count), side = ff_node_side(&s->fx.info),
+             grid = side * side;
     uint32_t rim = sys_random_below(random, side), row = sys_random_below(random, 2) ? 0 : side - 1;
     ff_drawn *drawn = &s->list[i];
     switch (sys_random_below(random, 7)) {
-    case 0: s->heights[(drawn->heights - s->heights) + sys_random_below(random, grid)] ^= 1; break;
-    case 1: s->heights[(drawn->heights - s->heights) + (sys_random_below(random, 2) ? rim * side + row : row * side + rim)] ^= 4; break;
-    case 2: drawn->coarser ^= (uint8_t)(1u << sys_random_below(random, 4)); break;
-    case 3: /* one gone */
-        *drawn = s->list[--s->count];
-        break;
-    case 4: /* many gone: only a part is left */
-        while (s->count > 3 && sys_random_below(random, 40))
-            s->list[sys_random_below(random, s->count)] = s->list[s->count - 1], s->count--;
-        break;
-    case 5: /* its parent, or its child, in its place */
-        if (ff_key_level(drawn->key) && sys_random_below(random, 2))
-            drawn->key = ff_key_parent(drawn->key);
-        else if (ff_key_level(drawn->key) < (uint32_t)(s->fx.info.tile_log2 - s->fx.info.node_log2))
-            drawn->key = ff_key_child(drawn->key, sys_random_below(random, 4));
-        ff_node_origin_wu(&s->fx.info, drawn->key, &drawn->origin_wu[0], &drawn->origin_wu[1]);
-        drawn->cell_wu = ff_node_cell_wu(&s->fx.info, ff_key_level(drawn->key));
-        break;
-    default: drawn->heights = s->list[sys_random_below(random, s->count)].heights; break;
+        case 0:
+            s->heights[(drawn->heights - s->heights) + sys_random_below(random, grid)] ^= 1;
+            break;
+        case 1:
+            s->heights[(drawn->heights - s->heights) +
+                       (sys_random_below(random, 2) ? rim * side + row : row * side + rim)] ^= 4;
+            break;
+        case 2: drawn->coarser ^= (uint8_t)(1u << sys_random_below(random, 4)); break;
+        case 3: /* one gone */ *drawn = s->list[--s->count]; break;
+        case 4: /* many gone: only a part is left */
+            while (s->count > 3 && sys_random_below(random, 40))
+                s->list[sys_random_below(random, s->count)] = s->list[s->count - 1], s->count--;
+            break;
+        case 5: /* its parent, or its child, in its place */
+            if (ff_key_level(drawn->key) && sys_random_below(random, 2))
+                drawn->key = ff_key_parent(drawn->key);
+            else if (ff_key_level(drawn->key) <
+                     (uint32_t)(s->fx.info.tile_log2 - s->fx.info.node_log2))
+                drawn->key = ff_key_child(drawn->key, sys_random_below(random, 4));
+            ff_node_origin_wu(&s->fx.info, drawn->key, &drawn->origin_wu[0], &drawn->origin_wu[1]);
+            drawn->cell_wu = ff_node_cell_wu(&s->fx.info, ff_key_level(drawn->key));
+            break;
+        default: drawn->heights = s->list[sys_random_below(random, s->count)].heights; break;
     }
 }
 
-/* The quick judge and the slow one, who looks at every triangle, agree on cuts with up to three faults of any kind. */
+/* The quick judge and the slow one, who looks at every triangle, agree on cuts with up to three
+ * faults of any kind. */
 static void test_judges_agree(void **state)
 {
     (void)state;
@@ -274,7 +290,8 @@ static void test_judges_agree(void **state)
     char slow_why[160];
     unsigned whole = 0, broken = 0;
     make_spoilt(&original);
-    size_t heights = original.count * (size_t)ff_node_side(&original.fx.info) * ff_node_side(&original.fx.info);
+    size_t heights = original.count * (size_t)ff_node_side(&original.fx.info) *
+                     ff_node_side(&original.fx.info);
     sys_random_seed(&random, 77, 1);
     s = original;
     s.list = malloc(original.count * sizeof *s.list);
@@ -290,7 +307,8 @@ static void test_judges_agree(void **state)
         int quick = sim_watertight_check(&s.fx.info, s.list, s.count, s.why, sizeof s.why);
         int slow = slow_watertight_check(&s.fx.info, s.list, s.count, slow_why, sizeof slow_why);
         if (quick != slow)
-            fail_msg("trial %u: quick %d (%s), slow %d (%s)", trial, quick, quick ? "" : s.why, slow, slow ? "" : slow_why);
+            fail_msg("trial %u: quick %d (%s), slow %d (%s)", trial, quick, quick ? "" : s.why,
+                     slow, slow ? "" : slow_why);
         whole += (unsigned)quick;
         broken += (unsigned)!quick;
     }
@@ -306,14 +324,15 @@ static void test_judge_finds_wrong_corner(void **state)
     (void)state;
     spoilt s;
     make_spoilt(&s);
-    uint32_t side = ff_node_side(&s.fx.info), pair[2] = {0, 0};
+    uint32_t side = ff_node_side(&s.fx.info), pair[2] = { 0, 0 };
     for (uint32_t i = 0; i < s.count && !pair[1]; i++)
         for (uint32_t j = 0; j < s.count; j++)
-            if (s.list[j].cell_wu == s.list[i].cell_wu && s.list[j].origin_wu[0] == s.list[i].origin_wu[0] + s.list[i].cell_wu * 8
-                && s.list[j].origin_wu[1] == s.list[i].origin_wu[1] + s.list[i].cell_wu * 8)
+            if (s.list[j].cell_wu == s.list[i].cell_wu &&
+                s.list[j].origin_wu[0] == s.list[i].origin_wu[0] + s.list[i].cell_wu * 8 &&
+                s.list[j].origin_wu[1] == s.list[i].origin_wu[1] + s.list[i].cell_wu * 8)
                 pair[0] = i, pair[1] = j;
     assert_true(pair[1]);
-    ff_drawn two[2] = {s.list[pair[0]], s.list[pair[1]]};
+    ff_drawn two[2] = { s.list[pair[0]], s.list[pair[1]] };
     memcpy(s.list, two, sizeof two);
     s.count = 2;
     assert_true(sim_watertight_check(&s.fx.info, s.list, s.count, NULL, 0));

@@ -18,7 +18,8 @@ static void *grow(void *array, size_t count, size_t more, size_t size, size_t *c
 
 int bake_blob_add(bake_blob *blob, const uint8_t *payload, size_t count)
 {
-    uint32_t *length = grow(blob->length, blob->record_count, 1, sizeof *length, &blob->record_capacity);
+    uint32_t *length = grow(blob->length, blob->record_count, 1, sizeof *length,
+                            &blob->record_capacity);
     if (!length) return bake_fail("out of memory");
     blob->length = length;
     uint8_t *bytes = grow(blob->bytes, blob->byte_count, count, 1, &blob->byte_capacity);
@@ -36,5 +37,5 @@ void bake_blob_free(bake_blob *blob)
 {
     free(blob->bytes);
     free(blob->length);
-    *blob = (bake_blob){0};
+    *blob = (bake_blob){ 0 };
 }

@@ -2,10 +2,13 @@
 
 static uint32_t distance(int64_t a, int64_t b) { return (uint32_t)(a > b ? a - b : b - a); }
 
-/* Largest distance in one cell, times `cell`: heights on a triangle are whole multiples of 1/cell. */
-static uint32_t cell_error(const uint16_t *source, const uint16_t *drawn, size_t pitch, uint32_t cell)
+/* Largest distance in one cell, times `cell`: heights on a triangle are whole multiples of
+ * 1/cell. */
+static uint32_t cell_error(const uint16_t *source, const uint16_t *drawn, size_t pitch,
+                           uint32_t cell)
 {
-    int64_t sw = drawn[0], se = drawn[cell], nw = drawn[cell * pitch], ne = drawn[cell * pitch + cell];
+    int64_t sw = drawn[0], se = drawn[cell], nw = drawn[cell * pitch],
+            ne = drawn[cell * pitch + cell];
     uint32_t worst = 0;
     for (uint32_t v = 0; v <= cell; v++) {
         const uint16_t *row = source + v * pitch;
@@ -18,7 +21,8 @@ static uint32_t cell_error(const uint16_t *source, const uint16_t *drawn, size_t
     return worst;
 }
 
-uint32_t bake_node_error(const uint16_t *source, const uint16_t *drawn, size_t pitch, uint32_t cells, uint32_t cell)
+uint32_t bake_node_error(const uint16_t *source, const uint16_t *drawn, size_t pitch,
+                         uint32_t cells, uint32_t cell)
 {
     uint32_t worst = 0;
     for (uint32_t j = 0; j < cells; j++)

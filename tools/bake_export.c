@@ -16,16 +16,20 @@
 static uint32_t thinned(uint32_t samples, uint32_t skip) { return ((samples - 1) >> skip) + 1; }
 
 /* One row of tiles, decoded side by side, into the raster (row 0 north). */
-static int export_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level, const bake_grid *raster, uint16_t *heights)
+static int export_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level,
+                       const bake_grid *raster, uint16_t *heights)
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
     uint32_t side = bake_unpack_side(info, level);
-    uint32_t column = (tile % info->tiles_x) * (side - 1), row = (tile / info->tiles_x) * (side - 1);
+    uint32_t column = (tile % info->tiles_x) * (side - 1),
+             row = (tile / info->tiles_x) * (side - 1);
     if (column >= raster->width || row >= raster->height) return 0;
     uint32_t columns = raster->width - column < side ? raster->width - column : side;
     if (bake_unpack_tile(unpack, tile, level, heights)) return -1;
     for (uint32_t j = 0; j < side && row + j < raster->height; j++)
-        if (bake_grid_write(raster, raster->height - 1 - row - j, column, columns, heights + (size_t)j * side)) return -1;
+        if (bake_grid_write(raster, raster->height - 1 - row - j, column, columns,
+                            heights + (size_t)j * side))
+            return -1;
     return 0;
 }
 
@@ -52,7 +56,8 @@ static int copy_raw(const bake_grid *raster, const char *path)
     for (uint64_t at = 0; !rc && at < count;) {
         size_t bytes = count - at < COPY_BYTES ? (size_t)(count - at) : COPY_BYTES;
         rc = bake_pread(raster->fd, buffer, bytes, at);
-        if (!rc && fwrite(buffer, 1, bytes, file) != bytes) rc = bake_fail("cannot write %s: %s", path, strerror(errno));
+        if (!rc && fwrite(buffer, 1, bytes, file) != bytes)
+            rc = bake_fail("cannot write %s: %s", path, strerror(errno));
         at += bytes;
     }
     if (file && fclose(file) && !rc) rc = bake_fail("cannot write %s: %s", path, strerror(errno));
@@ -60,16 +65,20 @@ static int copy_raw(const bake_grid *raster, const char *path)
     return rc;
 }
 
-static void set_reference(const ff_terrain_info *info, uint32_t skip, const bake_grid *raster, GDALDatasetH set)
+static void set_reference(const ff_terrain_info *info, uint32_t skip, const bake_grid *raster,
+                          GDALDatasetH set)
 {
     double spacing = (double)info->spacing_wu / FF_WU_PER_METRE * (double)(1u << skip);
-    double west = (double)info->origin_x_mm / 1000 - spacing / 2, south = (double)info->origin_y_mm / 1000 - spacing / 2;
-    double gt[6] = {west, spacing, 0, south + spacing * raster->height, 0, -spacing};
+    double west = (double)info->origin_x_mm / 1000 - spacing / 2,
+           south = (double)info->origin_y_mm / 1000 - spacing / 2;
+    double gt[6] = { west, spacing, 0, south + spacing * raster->height, 0, -spacing };
     GDALSetGeoTransform(set, gt);
     if (info->epsg) {
         OGRSpatialReferenceH srs = OSRNewSpatialReference(NULL);
-        if (OSRImportFromEPSG(srs, info->epsg) == OGRERR_NONE) GDALSetSpatialRef(set, srs);
-        else bake_note("EPSG:%d is not known here: the raster will not name it", info->epsg);
+        if (OSRImportFromEPSG(srs, info->epsg) == OGRERR_NONE)
+            GDALSetSpatialRef(set, srs);
+        else
+            bake_note("EPSG:%d is not known here: the raster will not name it", info->epsg);
         OSRDestroySpatialReference(srs);
     }
     GDALRasterBandH band = GDALGetRasterBand(set, 1);
@@ -78,7 +87,8 @@ static void set_reference(const ff_terrain_info *info, uint32_t skip, const bake
     GDALSetRasterUnitType(band, "m");
 }
 
-static int copy_image(const ff_terrain_info *info, uint32_t skip, const bake_grid *raster, const char *driver, const char *path)
+static int copy_image(const ff_terrain_info *info, uint32_t skip, const bake_grid *raster,
+                      const char *driver, const char *path)
 {
     GDALDatasetH set = bake_grid_dataset(raster, GDT_UInt16, 1);
     if (!set) return -1;
@@ -87,7 +97,8 @@ static int copy_image(const ff_terrain_info *info, uint32_t skip, const bake_gri
     char **settings = is_tiff ? CSLSetNameValue(NULL, "COMPRESS", "DEFLATE") : NULL;
     if (is_tiff) settings = CSLSetNameValue(settings, "PREDICTOR", "2");
     CPLErrorReset();
-    GDALDatasetH copy = GDALCreateCopy(GDALGetDriverByName(driver), path, set, 0, settings, NULL, NULL);
+    GDALDatasetH copy = GDALCreateCopy(GDALGetDriverByName(driver), path, set, 0, settings, NULL,
+                                       NULL);
     CSLDestroy(settings);
     if (copy) GDALClose(copy);
     GDALClose(set);
@@ -95,7 +106,8 @@ static int copy_image(const ff_terrain_info *info, uint32_t skip, const bake_gri
     return bake_fail_gdal("cannot write %s", path);
 }
 
-static int write_as(const ff_terrain_info *info, uint32_t skip, const bake_grid *raster, const char *ending, const char *path)
+static int write_as(const ff_terrain_info *info, uint32_t skip, const bake_grid *raster,
+                    const char *ending, const char *path)
 {
     if (!strcmp(ending, ".r16")) return copy_raw(raster, path);
     return copy_image(info, skip, raster, strcmp(ending, ".png") ? "GTiff" : "PNG", path);
@@ -113,7 +125,9 @@ int bake_export(const bake_unpack *unpack, uint32_t level, const char *path)
     uint32_t skip = ff_terrain_levels(info) - 1 - level;
     bake_grid raster;
     bake_temp_setup(path);
-    if (bake_grid_open(&raster, thinned(info->samples_x, skip), thinned(info->samples_y, skip), sizeof(uint16_t))) return -1;
+    if (bake_grid_open(&raster, thinned(info->samples_x, skip), thinned(info->samples_y, skip),
+                       sizeof(uint16_t)))
+        return -1;
     int rc = export_tiles(unpack, level, &raster);
     if (!rc) rc = write_as(info, skip, &raster, ending, temp);
     if (!rc && rename(temp, path)) rc = bake_fail("cannot rename to %s: %s", path, strerror(errno));

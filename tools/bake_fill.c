@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define LEVELS_MAX 32
+#define LEVELS_MAX  32
 #define RELAXATIONS 6
 
 typedef struct fill_rows { /* rows of working memory, each as wide as the finest level */
@@ -29,7 +29,8 @@ static float mean_known(const float *values, int count)
 }
 
 /* Pull: one coarser level. *voids receives how many of its samples are still void. */
-static int pull(const bake_grid *fine, const bake_grid *coarse, const fill_rows *rows, uint64_t *voids)
+static int pull(const bake_grid *fine, const bake_grid *coarse, const fill_rows *rows,
+                uint64_t *voids)
 {
     *voids = 0;
     for (uint32_t row = 0; row < coarse->height; row++) {
@@ -38,7 +39,7 @@ static int pull(const bake_grid *fine, const bake_grid *coarse, const fill_rows 
         if (bake_grid_read(fine, second, 0, fine->width, rows->b)) return -1;
         for (uint32_t i = 0; i < coarse->width; i++) {
             uint32_t east = 2 * i + 1 < fine->width ? 2 * i + 1 : 2 * i;
-            float four[4] = {rows->a[2 * i], rows->a[east], rows->b[2 * i], rows->b[east]};
+            float four[4] = { rows->a[2 * i], rows->a[east], rows->b[2 * i], rows->b[east] };
             rows->c[i] = mean_known(four, 4);
             *voids += isnan(rows->c[i]) != 0;
         }
@@ -47,8 +48,10 @@ static int pull(const bake_grid *fine, const bake_grid *coarse, const fill_rows 
     return 0;
 }
 
-/* Value of the coarse level at the centre of fine sample (column, row); near and far are the coarse rows around it. */
-static float bilinear(const float *near_row, const float *far_row, uint32_t column, uint32_t coarse_width)
+/* Value of the coarse level at the centre of fine sample (column, row); near and far are the coarse
+ * rows around it. */
+static float bilinear(const float *near_row, const float *far_row, uint32_t column,
+                      uint32_t coarse_width)
 {
     uint32_t i = column / 2, next = column % 2 ? i + 1 : i - 1;
     if (i == 0 && column % 2 == 0) next = 0;
@@ -58,8 +61,10 @@ static float bilinear(const float *near_row, const float *far_row, uint32_t colu
     return 0.75f * near_value + 0.25f * far_value;
 }
 
-/* Push: voids of `fine` from the complete `coarse`. `mask` (a byte a sample) remembers what was void. */
-static int push(const bake_grid *fine, const bake_grid *mask, const bake_grid *coarse, const fill_rows *rows)
+/* Push: voids of `fine` from the complete `coarse`. `mask` (a byte a sample) remembers what was
+ * void. */
+static int push(const bake_grid *fine, const bake_grid *mask, const bake_grid *coarse,
+                const fill_rows *rows)
 {
     uint8_t *was_void = (uint8_t *)rows->d;
     for (uint32_t row = 0; row < fine->height; row++) {
@@ -79,7 +84,8 @@ static int push(const bake_grid *fine, const bake_grid *mask, const bake_grid *c
     return 0;
 }
 
-static void relax_row(const float *above, float *row, const float *below, const uint8_t *was_void, uint32_t width)
+static void relax_row(const float *above, float *row, const float *below, const uint8_t *was_void,
+                      uint32_t width)
 {
     for (uint32_t i = 0; i < width; i++) {
         if (!was_void[i]) continue;
@@ -119,7 +125,8 @@ static int fill_levels(bake_grid *level, const fill_rows *rows)
 {
     int top = 0, rc = 0;
     for (uint64_t voids = 1; !rc && voids; top++) {
-        rc = bake_grid_open(&level[top + 1], halved(level[top].width), halved(level[top].height), sizeof(float));
+        rc = bake_grid_open(&level[top + 1], halved(level[top].width), halved(level[top].height),
+                            sizeof(float));
         if (!rc) rc = pull(&level[top], &level[top + 1], rows, &voids);
     }
     for (int i = top; i > 0; i--) {
@@ -132,12 +139,12 @@ static int fill_levels(bake_grid *level, const fill_rows *rows)
 
 int bake_fill_voids(bake_grid *grid)
 {
-    bake_grid level[LEVELS_MAX + 1] = {*grid};
+    bake_grid level[LEVELS_MAX + 1] = { *grid };
     size_t row_bytes = grid->width * sizeof(float);
     char *memory = malloc(4 * row_bytes);
     if (!memory) return bake_fail("out of memory");
-    fill_rows rows = {(float *)memory, (float *)(memory + row_bytes), (float *)(memory + 2 * row_bytes),
-                      (float *)(memory + 3 * row_bytes)};
+    fill_rows rows = { (float *)memory, (float *)(memory + row_bytes),
+                       (float *)(memory + 2 * row_bytes), (float *)(memory + 3 * row_bytes) };
     int rc = fill_levels(level, &rows);
     free(memory);
     return rc;

@@ -1,7 +1,8 @@
-/* Grids in unnamed temporary files, read and written by rows: what keeps the memory of a bake bounded.
+/* Grids in unnamed temporary files, read and written by rows: what keeps the memory of a bake
+ * bounded.
  *
- * The file has no name from the moment it exists, so nothing is left behind however the program ends.
- * Reads and writes may come from several threads at once.
+ * The file has no name from the moment it exists, so nothing is left behind however the program
+ * ends. Reads and writes may come from several threads at once.
  */
 #ifndef BAKE_GRID_H
 #define BAKE_GRID_H
@@ -15,9 +16,10 @@ typedef struct bake_grid {
     uint32_t cell_bytes;
 } bake_grid;
 
-#define BAKE_GRID_CLOSED ((bake_grid){.fd = -1})
+#define BAKE_GRID_CLOSED ((bake_grid){ .fd = -1 })
 
-/* Directory for temporary files, FARFIELD_TMP or TMPDIR or else the one of `near_path`; call once before the first open. */
+/* Directory for temporary files, FARFIELD_TMP or TMPDIR or else the one of `near_path`; call once
+ * before the first open. */
 void bake_temp_setup(const char *near_path);
 /* An unnamed temporary file: fd, or -1 after saying why. */
 int bake_temp_open(void);
@@ -26,8 +28,10 @@ int bake_temp_open(void);
 int bake_grid_open(bake_grid *grid, uint32_t width, uint32_t height, uint32_t cell_bytes);
 void bake_grid_close(bake_grid *grid);
 /* `count` cells of row `row` from column `column`. 0 or -1 (said). */
-int bake_grid_read(const bake_grid *grid, uint32_t row, uint32_t column, uint32_t count, void *cells);
-int bake_grid_write(const bake_grid *grid, uint32_t row, uint32_t column, uint32_t count, const void *cells);
+int bake_grid_read(const bake_grid *grid, uint32_t row, uint32_t column, uint32_t count,
+                   void *cells);
+int bake_grid_write(const bake_grid *grid, uint32_t row, uint32_t column, uint32_t count,
+                    const void *cells);
 
 /* Whole transfers at a file position, interrupted calls continued. 0 or -1 (said). */
 int bake_pread(int fd, void *bytes, size_t count, uint64_t at);

@@ -5,16 +5,19 @@
 #include "bake_image.h"
 
 typedef struct bake_picture {
-    GDALDatasetH set;          /* 8 bits a band; row 0 north */
-    GDALDatasetH behind[3];    /* what `set` reads from, to be closed after it, last one first */
+    GDALDatasetH set;       /* 8 bits a band; row 0 north */
+    GDALDatasetH behind[3]; /* what `set` reads from, to be closed after it, last one first */
     int behind_count;
-    int has_alpha;             /* its last band says what the image covers (0: nothing there) */
+    int has_alpha; /* its last band says what the image covers (0: nothing there) */
     uint32_t width, height;
-    double west, east, south, north; /* its edges, in samples from the ground's south-west sample */
+    /* its edges, in samples from the ground's south-west sample */
+    double west, east, south, north;
 } bake_picture;
 
-/* Opens --color and places it over the ground, through a warping VRT where needed. 0 or -1 (said). */
-int bake_picture_open(const bake_options *options, const bake_ground *ground, bake_picture *picture);
+/* Opens --color and places it over the ground, through a warping VRT where needed. 0 or -1
+ * (said). */
+int bake_picture_open(const bake_options *options, const bake_ground *ground,
+                      bake_picture *picture);
 void bake_picture_close(bake_picture *picture);
 /* One row of RGBA. 0 or -1 (said). */
 int bake_picture_row(const bake_picture *picture, uint32_t row, uint8_t *rgba);

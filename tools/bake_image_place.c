@@ -6,8 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Without georeference an image covers the heights' raster: all of its pixels' area, or, when it has one pixel per cell between
- * samples (or a multiple), from the first sample to the last. Edges of that rectangle in raster pixels. */
+/* Without georeference an image covers the heights' raster: all of its pixels' area, or, when it
+ * has one pixel per cell between samples (or a multiple), from the first sample to the last. Edges
+ * of that rectangle in raster pixels. */
 static void stretched_edges(uint32_t image_size, uint32_t raster_size, double *low, double *high)
 {
     int per_cell = image_size % raster_size != 0 && image_size % (raster_size - 1) == 0;
@@ -69,7 +70,7 @@ static GDALDatasetH warp_onto_ground(const bake_ground *ground, GDALDatasetH set
 {
     const double *gt = ground->geotransform;
     double y0 = gt[3], y1 = gt[3] + gt[5] * ground->grid.height;
-    double area[4] = {gt[0], fmin(y0, y1), gt[0] + gt[1] * ground->grid.width, fmax(y0, y1)};
+    double area[4] = { gt[0], fmin(y0, y1), gt[0] + gt[1] * ground->grid.width, fmax(y0, y1) };
     char **list = CSLAddString(CSLAddString(NULL, "-of"), "VRT");
     list = CSLAddString(CSLAddString(list, "-r"), "bilinear");
     list = CSLAddString(list, "-dstalpha");
@@ -104,7 +105,8 @@ static GDALDatasetH expand_palette(GDALDatasetH set)
     return expanded;
 }
 
-static void place(const bake_ground *ground, bake_picture *picture, double west, double north, double east, double south)
+static void place(const bake_ground *ground, bake_picture *picture, double west, double north,
+                  double east, double south)
 {
     const double *gt = ground->geotransform;
     double spacing = gt[1], south_edge = gt[5] < 0 ? gt[3] + gt[5] * ground->grid.height : gt[3];
@@ -147,7 +149,7 @@ static int lay_picture(const bake_ground *ground, const char *path, bake_picture
 int bake_picture_open(const bake_options *o, const bake_ground *ground, bake_picture *picture)
 {
     CPLErrorReset();
-    *picture = (bake_picture){.set = GDALOpen(o->color_path, GA_ReadOnly)};
+    *picture = (bake_picture){ .set = GDALOpen(o->color_path, GA_ReadOnly) };
     if (!picture->set) return bake_fail_gdal("cannot read %s", o->color_path);
     int rc = check_bands(o->color_path, picture->set);
     if (!rc && GDALGetRasterColorTable(GDALGetRasterBand(picture->set, 1))) {
@@ -163,18 +165,18 @@ void bake_picture_close(bake_picture *picture)
 {
     if (picture->set) GDALClose(picture->set);
     while (picture->behind_count > 0) GDALClose(picture->behind[--picture->behind_count]);
-    *picture = (bake_picture){0};
+    *picture = (bake_picture){ 0 };
 }
 
 int bake_picture_row(const bake_picture *picture, uint32_t row, uint8_t *rgba)
 {
-    int bands = GDALGetRasterCount(picture->set), is_colour = bands - picture->has_alpha >= 3, width = (int)picture->width;
-    int from[4] = {1, is_colour ? 2 : 1, is_colour ? 3 : 1, bands};
+    int bands = GDALGetRasterCount(picture->set), is_colour = bands - picture->has_alpha >= 3,
+        width = (int)picture->width;
+    int from[4] = { 1, is_colour ? 2 : 1, is_colour ? 3 : 1, bands };
     if (!picture->has_alpha) memset(rgba, 255, (size_t)width * 4);
     CPLErrorReset();
-    if (GDALDatasetRasterIO(picture->set, GF_Read, 0, (int)row, width, 1, rgba, width, 1, GDT_Byte, picture->has_alpha ? 4 : 3,
-                            from, 4, 4 * width, 1)
-        != CE_None)
+    if (GDALDatasetRasterIO(picture->set, GF_Read, 0, (int)row, width, 1, rgba, width, 1, GDT_Byte,
+                            picture->has_alpha ? 4 : 3, from, 4, 4 * width, 1) != CE_None)
         return bake_fail_gdal("cannot read row %u of the image", row);
     return 0;
 }

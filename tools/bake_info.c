@@ -4,15 +4,19 @@
 #include <stdio.h>
 
 #define INDEX_ENTRY_BYTES 8
-#define RECORD_CRC_BYTES 4
+#define RECORD_CRC_BYTES  4
 
-static const char *codec_name(int codec) { return codec == FF_CODEC_DEFLATE ? "deflate" : codec == FF_CODEC_RICE ? "rice" : "raw"; }
+static const char *codec_name(int codec)
+{
+    return codec == FF_CODEC_DEFLATE ? "deflate" : codec == FF_CODEC_RICE ? "rice" : "raw";
+}
 
 /* Distinct heights of the whole terrain at a level, neighbours' shared rims counted once. */
 static uint64_t lattice_samples(const ff_terrain_info *info, uint32_t level)
 {
     uint32_t cells_log2 = info->node_log2 + level;
-    return (((uint64_t)info->tiles_x << cells_log2) + 1) * (((uint64_t)info->tiles_y << cells_log2) + 1);
+    return (((uint64_t)info->tiles_x << cells_log2) + 1) *
+           (((uint64_t)info->tiles_y << cells_log2) + 1);
 }
 
 static uint64_t offset_of(const ff_pack *pack, const ff_pack_section *section, uint64_t record)
@@ -24,9 +28,9 @@ static uint64_t offset_of(const ff_pack *pack, const ff_pack_section *section, u
 }
 
 typedef struct section_sum {
-    uint64_t records;        /* that exist */
-    uint64_t payload_bytes;  /* CRCs and index not counted */
-    uint64_t new_samples;    /* heights first told here; 0 for textures */
+    uint64_t records;       /* that exist */
+    uint64_t payload_bytes; /* CRCs and index not counted */
+    uint64_t new_samples;   /* heights first told here; 0 for textures */
 } section_sum;
 
 /* New heights per level count every lattice point of the padded terrain once. */
@@ -34,38 +38,50 @@ static section_sum sum_up(const ff_pack *pack, uint32_t number)
 {
     const ff_pack_section *section = &pack->header.section[number];
     const ff_terrain_info *info = &pack->header.info;
-    section_sum sum = {0};
+    section_sum sum = { 0 };
     for (uint64_t r = 0; r < section->record_count; r++)
         sum.records += offset_of(pack, section, r) != offset_of(pack, section, r + 1);
     sum.payload_bytes = section->data_bytes - RECORD_CRC_BYTES * sum.records;
     if (section->kind == FF_SECTION_ROOT) sum.new_samples = lattice_samples(info, 0);
     if (section->kind == FF_SECTION_REFINEMENT)
-        sum.new_samples = lattice_samples(info, section->level + 1u) - lattice_samples(info, section->level);
+        sum.new_samples = lattice_samples(info, section->level + 1u) -
+                          lattice_samples(info, section->level);
     return sum;
 }
 
-static double per(uint64_t bytes, uint64_t count) { return count ? 8.0 * (double)bytes / (double)count : 0; }
+static double per(uint64_t bytes, uint64_t count)
+{
+    return count ? 8.0 * (double)bytes / (double)count : 0;
+}
 
 static double metres(int64_t wu) { return (double)wu / FF_WU_PER_METRE; }
 
 static void print_terrain(const ff_terrain_info *info)
 {
     double step = info->hscale_q24 / 16777216.0, spacing = metres(info->spacing_wu);
-    printf("samples         %u x %u, %.9g m apart (%.3f x %.3f km)\n", info->samples_x, info->samples_y, spacing,
-           (info->samples_x - 1) * spacing / 1000, (info->samples_y - 1) * spacing / 1000);
-    printf("tiles           %u x %u of (2^%u+1)^2 heights, nodes of (2^%u+1)^2, %u levels\n", info->tiles_x, info->tiles_y,
-           info->tile_log2, info->node_log2, ff_terrain_levels(info));
-    printf("heights         %.3f to %.3f m in steps of %.9g m above %.9g m\n", info->height_min * step + metres(info->hoffset_wu),
+    printf("samples         %u x %u, %.9g m apart (%.3f x %.3f km)\n", info->samples_x,
+           info->samples_y, spacing, (info->samples_x - 1) * spacing / 1000,
+           (info->samples_y - 1) * spacing / 1000);
+    printf("tiles           %u x %u of (2^%u+1)^2 heights, nodes of (2^%u+1)^2, %u levels\n",
+           info->tiles_x, info->tiles_y, info->tile_log2, info->node_log2, ff_terrain_levels(info));
+    printf("heights         %.3f to %.3f m in steps of %.9g m above %.9g m\n",
+           info->height_min * step + metres(info->hoffset_wu),
            info->height_max * step + metres(info->hoffset_wu), step, metres(info->hoffset_wu));
-    if (info->max_error) printf("error           at most %.9g m (%u steps)\n", info->max_error * step, info->max_error);
-    else printf("error           none (lossless)\n");
-    if (info->epsg) printf("reference       EPSG:%d, origin", info->epsg);
-    else printf("reference       none, origin");
+    if (info->max_error)
+        printf("error           at most %.9g m (%u steps)\n", info->max_error * step,
+               info->max_error);
+    else
+        printf("error           none (lossless)\n");
+    if (info->epsg)
+        printf("reference       EPSG:%d, origin", info->epsg);
+    else
+        printf("reference       none, origin");
     printf(" %.3f %.3f\n", (double)info->origin_x_mm / 1000, (double)info->origin_y_mm / 1000);
     if (info->texture_levels)
-        printf("textures        %u x %u texels on levels 0 to %u\n", 1u << info->texture_log2, 1u << info->texture_log2,
-               info->texture_levels - 1);
-    else printf("textures        none\n");
+        printf("textures        %u x %u texels on levels 0 to %u\n", 1u << info->texture_log2,
+               1u << info->texture_log2, info->texture_levels - 1);
+    else
+        printf("textures        none\n");
     printf("codec           %s%s\n", codec_name(info->codec),
            info->flags & FF_TERRAIN_DENSIFIED ? "; part of the detail is invented" : "");
     printf("checksum        %08x\n\n", info->checksum);
@@ -73,12 +89,14 @@ static void print_terrain(const ff_terrain_info *info)
 
 static const char *kind_name(int kind)
 {
-    return kind == FF_SECTION_ROOT ? "root" : kind == FF_SECTION_REFINEMENT ? "refinement" : "texture";
+    return kind == FF_SECTION_ROOT         ? "root"
+           : kind == FF_SECTION_REFINEMENT ? "refinement"
+                                           : "texture";
 }
 
 void bake_info_print(const ff_pack *pack, const char *path)
 {
-    section_sum heights = {0}, textures = {0};
+    section_sum heights = { 0 }, textures = { 0 };
     printf("%s: Farfield pack, version %d, %" PRIu64 " bytes\n", path, FF_PACK_VERSION, pack->size);
     print_terrain(&pack->header.info);
     printf("section     level    records        bytes  bytes/record  bits/new sample\n");
@@ -88,14 +106,15 @@ void bake_info_print(const ff_pack *pack, const char *path)
         total->records += sum.records;
         total->payload_bytes += sum.payload_bytes;
         total->new_samples += sum.new_samples;
-        printf("%-10s %6u %10" PRIu64 " %12" PRIu64 " %13.1f", kind_name(section->kind), section->level, sum.records,
-               sum.payload_bytes, per(sum.payload_bytes, sum.records) / 8);
+        printf("%-10s %6u %10" PRIu64 " %12" PRIu64 " %13.1f", kind_name(section->kind),
+               section->level, sum.records, sum.payload_bytes,
+               per(sum.payload_bytes, sum.records) / 8);
         if (sum.new_samples) printf(" %16.3f", per(sum.payload_bytes, sum.new_samples));
         putchar('\n');
     }
     uint64_t source = (uint64_t)pack->header.info.samples_x * pack->header.info.samples_y;
-    printf("\nheights   %12" PRIu64 " bytes, %.3f bits a sample of the source\n", heights.payload_bytes,
-           per(heights.payload_bytes, source));
+    printf("\nheights   %12" PRIu64 " bytes, %.3f bits a sample of the source\n",
+           heights.payload_bytes, per(heights.payload_bytes, source));
     printf("textures  %12" PRIu64 " bytes\n", textures.payload_bytes);
     printf("overhead  %12" PRIu64 " bytes (header, indexes, checksums)\n",
            pack->size - heights.payload_bytes - textures.payload_bytes);
@@ -104,15 +123,21 @@ void bake_info_print(const ff_pack *pack, const char *path)
 static void print_terrain_json(const ff_terrain_info *info)
 {
     double step = info->hscale_q24 / 16777216.0;
-    printf("\"version\": %d, \"node_log2\": %u, \"tile_log2\": %u, \"levels\": %u, \"codec\": \"%s\", \"flags\": %u, ",
-           FF_PACK_VERSION, info->node_log2, info->tile_log2, ff_terrain_levels(info), codec_name(info->codec), info->flags);
-    printf("\"tiles_x\": %u, \"tiles_y\": %u, \"samples_x\": %u, \"samples_y\": %u, \"spacing_m\": %.9g, ", info->tiles_x,
-           info->tiles_y, info->samples_x, info->samples_y, metres(info->spacing_wu));
-    printf("\"hscale_m\": %.9g, \"hoffset_m\": %.9g, \"height_min\": %u, \"height_max\": %u, \"max_error\": %u, ", step,
-           metres(info->hoffset_wu), info->height_min, info->height_max, info->max_error);
-    printf("\"epsg\": %d, \"origin_x_mm\": %" PRId64 ", \"origin_y_mm\": %" PRId64 ", \"texture_log2\": %u, "
+    printf(
+        "\"version\": %d, \"node_log2\": %u, \"tile_log2\": %u, \"levels\": %u, \"codec\": \"%s\", \"flags\": %u, ",
+        FF_PACK_VERSION, info->node_log2, info->tile_log2, ff_terrain_levels(info),
+        codec_name(info->codec), info->flags);
+    printf(
+        "\"tiles_x\": %u, \"tiles_y\": %u, \"samples_x\": %u, \"samples_y\": %u, \"spacing_m\": %.9g, ",
+        info->tiles_x, info->tiles_y, info->samples_x, info->samples_y, metres(info->spacing_wu));
+    printf(
+        "\"hscale_m\": %.9g, \"hoffset_m\": %.9g, \"height_min\": %u, \"height_max\": %u, \"max_error\": %u, ",
+        step, metres(info->hoffset_wu), info->height_min, info->height_max, info->max_error);
+    printf("\"epsg\": %d, \"origin_x_mm\": %" PRId64 ", \"origin_y_mm\": %" PRId64
+           ", \"texture_log2\": %u, "
            "\"texture_levels\": %u, \"checksum\": \"%08x\", ",
-           info->epsg, info->origin_x_mm, info->origin_y_mm, info->texture_log2, info->texture_levels, info->checksum);
+           info->epsg, info->origin_x_mm, info->origin_y_mm, info->texture_log2,
+           info->texture_levels, info->checksum);
 }
 
 void bake_info_print_json(const ff_pack *pack)
@@ -126,11 +151,12 @@ void bake_info_print_json(const ff_pack *pack)
         const ff_pack_section *section = &pack->header.section[i];
         section_sum sum = sum_up(pack, i);
         *(sum.new_samples ? &height_bytes : &texture_bytes) += sum.payload_bytes;
-        printf("%s{\"kind\": \"%s\", \"level\": %u, \"records\": %" PRIu64 ", \"bytes\": %" PRIu64 ", \"new_samples\": %" PRIu64
-               ", \"bits_per_new_sample\": %.4f}",
-               i ? ", " : "", kind_name(section->kind), section->level, sum.records, sum.payload_bytes, sum.new_samples,
-               per(sum.payload_bytes, sum.new_samples));
+        printf("%s{\"kind\": \"%s\", \"level\": %u, \"records\": %" PRIu64 ", \"bytes\": %" PRIu64
+               ", \"new_samples\": %" PRIu64 ", \"bits_per_new_sample\": %.4f}",
+               i ? ", " : "", kind_name(section->kind), section->level, sum.records,
+               sum.payload_bytes, sum.new_samples, per(sum.payload_bytes, sum.new_samples));
     }
-    printf("], \"height_bytes\": %" PRIu64 ", \"bits_per_sample\": %.4f, \"texture_bytes\": %" PRIu64 "}\n", height_bytes,
-           per(height_bytes, source), texture_bytes);
+    printf("], \"height_bytes\": %" PRIu64
+           ", \"bits_per_sample\": %.4f, \"texture_bytes\": %" PRIu64 "}\n",
+           height_bytes, per(height_bytes, source), texture_bytes);
 }

@@ -49,12 +49,17 @@ static void *work(void *argument)
 
 int bake_jobs_run(const bake_jobs *jobs)
 {
-    bake_crew crew = {.jobs = jobs, .lock = PTHREAD_MUTEX_INITIALIZER, .turn = PTHREAD_COND_INITIALIZER};
+    bake_crew crew = { .jobs = jobs,
+                       .lock = PTHREAD_MUTEX_INITIALIZER,
+                       .turn = PTHREAD_COND_INITIALIZER };
     bake_hand *hands = calloc((size_t)jobs->thread_count, sizeof *hands);
     if (!hands) return bake_fail("out of memory");
     int started = 1; /* hand 0 is this thread */
-    for (int i = 0; i < jobs->thread_count; i++) hands[i] = (bake_hand){.crew = &crew, .worker = i};
-    while (started < jobs->thread_count && !pthread_create(&hands[started].thread, NULL, work, &hands[started])) started++;
+    for (int i = 0; i < jobs->thread_count; i++)
+        hands[i] = (bake_hand){ .crew = &crew, .worker = i };
+    while (started < jobs->thread_count &&
+           !pthread_create(&hands[started].thread, NULL, work, &hands[started]))
+        started++;
     work(&hands[0]);
     for (int i = 1; i < started; i++) pthread_join(hands[i].thread, NULL);
     free(hands);

@@ -9,10 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define STRIP_ROWS 128             /* rows of a warped VRT's blocks */
-#define LONGITUDES_MAX 20.0        /* further from its middle a UTM zone shows another Earth */
+#define STRIP_ROWS         128  /* rows of a warped VRT's blocks */
+#define LONGITUDES_MAX     20.0 /* further from its middle a UTM zone shows another Earth */
 #define TRANSFORM_ERROR_PX 0.05
-#define SAMPLES_MAX 1e11
+#define SAMPLES_MAX        1e11
 
 /* The UTM zone (polar: UPS) round a place, as an EPSG code of WGS84. */
 static int local_zone(double longitude, double latitude)
@@ -41,7 +41,8 @@ static int middle_of(const bake_ground *ground, double *longitude, double *latit
     return ok ? 0 : bake_fail_gdal("cannot tell where on the Earth the raster lies");
 }
 
-static int choose_target(const bake_options *o, const bake_ground *ground, OGRSpatialReferenceH *target)
+static int choose_target(const bake_options *o, const bake_ground *ground,
+                         OGRSpatialReferenceH *target)
 {
     double longitude, latitude;
     int epsg = o->target_epsg;
@@ -49,15 +50,17 @@ static int choose_target(const bake_options *o, const bake_ground *ground, OGRSp
     if (!epsg) {
         double wide = fabs(ground->geotransform[1]) * ground->grid.width;
         if (ground->is_geographic && wide > LONGITUDES_MAX)
-            return bake_fail("%.0f degrees of longitude are too wide for a UTM zone: name a projection with --t-srs", wide);
+            return bake_fail(
+                "%.0f degrees of longitude are too wide for a UTM zone: name a projection with --t-srs",
+                wide);
         if (middle_of(ground, &longitude, &latitude)) return -1;
         epsg = local_zone(longitude, latitude);
     }
     *target = OSRNewSpatialReference(NULL);
     OSRSetAxisMappingStrategy(*target, OAMS_TRADITIONAL_GIS_ORDER);
     CPLErrorReset();
-    if (OSRImportFromEPSG(*target, epsg) == OGRERR_NONE && OSRIsProjected(*target)
-        && fabs(OSRGetLinearUnits(*target, NULL) - 1) < 1e-9)
+    if (OSRImportFromEPSG(*target, epsg) == OGRERR_NONE && OSRIsProjected(*target) &&
+        fabs(OSRGetLinearUnits(*target, NULL) - 1) < 1e-9)
         return 0;
     OSRDestroySpatialReference(*target);
     *target = NULL;
@@ -71,29 +74,36 @@ static double round_spacing(const bake_options *o, double spacing_m)
     return units * o->densify / FF_WU_PER_METRE;
 }
 
-/* What the warped grid will be: `gt`, `width`, `height`. The south-west sample lies on whole metres. */
-static int plan_output(const bake_options *o, GDALDatasetH source, void *transform, double *gt, int *width, int *height)
+/* What the warped grid will be: `gt`, `width`, `height`. The south-west sample lies on whole
+ * metres. */
+static int plan_output(const bake_options *o, GDALDatasetH source, void *transform, double *gt,
+                       int *width, int *height)
 {
     double extent[4], suggested[6];
-    if (GDALSuggestedWarpOutput2(source, GDALGenImgProjTransform, transform, suggested, width, height, extent, 0) != CE_None)
+    if (GDALSuggestedWarpOutput2(source, GDALGenImgProjTransform, transform, suggested, width,
+                                 height, extent, 0) != CE_None)
         return bake_fail_gdal("cannot project the raster");
     double spacing = o->spacing_m > 0 ? o->spacing_m : suggested[1];
     spacing = round_spacing(o, spacing);
     double west = ceil(extent[0] + spacing / 2), south = ceil(extent[1] + spacing / 2);
     double columns = floor((extent[2] - spacing / 2 - west) / spacing) + 1;
     double rows = floor((extent[3] - spacing / 2 - south) / spacing) + 1;
-    if (columns < 2 || rows < 2) return bake_fail("a spacing of %g m is too coarse for this raster", spacing);
+    if (columns < 2 || rows < 2)
+        return bake_fail("a spacing of %g m is too coarse for this raster", spacing);
     if (columns * rows > SAMPLES_MAX || columns > 1 << 28 || rows > 1 << 28)
-        return bake_fail("a spacing of %g m would make %.0f x %.0f samples: too many", spacing, columns, rows);
+        return bake_fail("a spacing of %g m would make %.0f x %.0f samples: too many", spacing,
+                         columns, rows);
     *width = (int)columns;
     *height = (int)rows;
-    double planned[6] = {west - spacing / 2, spacing, 0, south + (rows - 0.5) * spacing, 0, -spacing};
+    double planned[6] = {
+        west - spacing / 2, spacing, 0, south + (rows - 0.5) * spacing, 0, -spacing
+    };
     memcpy(gt, planned, sizeof planned);
     return 0;
 }
 
-static GDALDatasetH make_warped(const bake_options *o, GDALDatasetH source, void *transform, const double *gt, int width,
-                                int height)
+static GDALDatasetH make_warped(const bake_options *o, GDALDatasetH source, void *transform,
+                                const double *gt, int width, int height)
 {
     char threads[16];
     snprintf(threads, sizeof threads, "%d", o->jobs);
@@ -112,7 +122,8 @@ static GDALDatasetH make_warped(const bake_options *o, GDALDatasetH source, void
     warp->papszWarpOptions = CSLSetNameValue(warp->papszWarpOptions, "NUM_THREADS", threads);
     GDALSetGenImgProjTransformerDstGeoTransform(transform, gt);
     warp->pfnTransformer = GDALApproxTransform;
-    warp->pTransformerArg = GDALCreateApproxTransformer(GDALGenImgProjTransform, transform, TRANSFORM_ERROR_PX);
+    warp->pTransformerArg = GDALCreateApproxTransformer(GDALGenImgProjTransform, transform,
+                                                        TRANSFORM_ERROR_PX);
     GDALApproxTransformerOwnsSubtransformer(warp->pTransformerArg, 1);
     GDALDatasetH warped = GDALCreateWarpedVRT(source, width, height, (double *)gt, warp);
     GDALDestroyWarpOptions(warp);
@@ -127,21 +138,23 @@ static int copy_warped(GDALDatasetH warped, bake_grid *grid, uint64_t *outside)
     for (uint32_t top = 0; !rc && top < grid->height; top += STRIP_ROWS) {
         uint32_t count = grid->height - top < STRIP_ROWS ? grid->height - top : STRIP_ROWS;
         CPLErrorReset();
-        if (GDALRasterIO(GDALGetRasterBand(warped, 1), GF_Read, 0, (int)top, (int)grid->width, (int)count, rows,
-                         (int)grid->width, (int)count, GDT_Float32, 0, 0)
-            != CE_None)
+        if (GDALRasterIO(GDALGetRasterBand(warped, 1), GF_Read, 0, (int)top, (int)grid->width,
+                         (int)count, rows, (int)grid->width, (int)count, GDT_Float32, 0,
+                         0) != CE_None)
             rc = bake_fail_gdal("cannot project rows %u to %u", top, top + count - 1);
         size_t samples = (size_t)count * grid->width;
         for (size_t i = 0; i < samples; i++) *outside += isnan(rows[i]) != 0;
-        if (!rc) rc = bake_pwrite(grid->fd, rows, samples * sizeof *rows, (uint64_t)top * grid->width * sizeof *rows);
+        if (!rc)
+            rc = bake_pwrite(grid->fd, rows, samples * sizeof *rows,
+                             (uint64_t)top * grid->width * sizeof *rows);
         bake_progress("projecting", top + count, grid->height);
     }
     free(rows);
     return rc;
 }
 
-static int warp_from(const bake_options *o, GDALDatasetH source, OGRSpatialReferenceH target, bake_ground *ground,
-                     bake_grid *grid)
+static int warp_from(const bake_options *o, GDALDatasetH source, OGRSpatialReferenceH target,
+                     bake_ground *ground, bake_grid *grid)
 {
     char **settings = NULL;
     char *wkt = NULL;
@@ -199,30 +212,38 @@ static int warp_ground(const bake_options *o, OGRSpatialReferenceH target, bake_
 
 static int is_square(const double *gt)
 {
-    return fabs(gt[2]) < 1e-9 * fabs(gt[1]) && fabs(gt[4]) < 1e-9 * fabs(gt[5]) && fabs(fabs(gt[5] / gt[1]) - 1) < 1e-3
-           && gt[1] > 0;
+    return fabs(gt[2]) < 1e-9 * fabs(gt[1]) && fabs(gt[4]) < 1e-9 * fabs(gt[5]) &&
+           fabs(fabs(gt[5] / gt[1]) - 1) < 1e-3 && gt[1] > 0;
 }
 
 /* The samples stay as they are; what is their spacing? */
 static int keep_samples(const bake_options *o, const bake_ground *ground, double *spacing_m)
 {
-    if (o->spacing_m > 0) *spacing_m = o->spacing_m;
-    else if (!ground->has_place) return bake_fail("%s: no georeference: give --spacing", o->heights_path);
-    else if (ground->is_geographic) return bake_fail("degrees are no spacing: with --no-project give --spacing too");
-    else *spacing_m = fabs(ground->geotransform[1]);
+    if (o->spacing_m > 0)
+        *spacing_m = o->spacing_m;
+    else if (!ground->has_place)
+        return bake_fail("%s: no georeference: give --spacing", o->heights_path);
+    else if (ground->is_geographic)
+        return bake_fail("degrees are no spacing: with --no-project give --spacing too");
+    else
+        *spacing_m = fabs(ground->geotransform[1]);
     double exact = *spacing_m * FF_WU_PER_METRE;
     if (exact < 0.5 * o->densify)
-        return bake_fail("a spacing of %g m is finer than the 1/256 m of world units", *spacing_m / o->densify);
+        return bake_fail("a spacing of %g m is finer than the 1/256 m of world units",
+                         *spacing_m / o->densify);
     *spacing_m = round_spacing(o, *spacing_m);
     double drift_m = fabs(*spacing_m - exact / FF_WU_PER_METRE) * ground->grid.width;
-    if (drift_m > *spacing_m / 2) bake_note("the spacing is rounded to %.8g m: %.1f m over the whole width", *spacing_m, drift_m);
+    if (drift_m > *spacing_m / 2)
+        bake_note("the spacing is rounded to %.8g m: %.1f m over the whole width", *spacing_m,
+                  drift_m);
     return 0;
 }
 
 static int needs_target(const bake_options *o, const bake_ground *ground)
 {
     if (!ground->srs || o->no_project) return 0;
-    return ground->is_geographic || o->target_epsg || fabs(OSRGetLinearUnits(ground->srs, NULL) - 1) > 1e-9;
+    return ground->is_geographic || o->target_epsg ||
+           fabs(OSRGetLinearUnits(ground->srs, NULL) - 1) > 1e-9;
 }
 
 int bake_project(const bake_options *o, bake_ground *ground, double *spacing_m)
@@ -239,7 +260,8 @@ int bake_project(const bake_options *o, bake_ground *ground, double *spacing_m)
             target = NULL;
         }
     }
-    if (!target && same_spacing && is_square(ground->geotransform)) return keep_samples(o, ground, spacing_m);
+    if (!target && same_spacing && is_square(ground->geotransform))
+        return keep_samples(o, ground, spacing_m);
     if (warp_ground(o, target, ground)) return -1;
     *spacing_m = ground->geotransform[1];
     return 0;

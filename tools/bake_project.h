@@ -4,9 +4,10 @@
 
 #include "bake_source.h"
 
-/* Makes the spacing of `ground` square and metric: projects geographic rasters (local UTM zone, or as told), resamples
- * when --spacing asks for it, else keeps every sample. The ground must have no voids. Samples of the new grid outside
- * the source's area become NaN, counted in ground->outside. *spacing_m receives the spacing. 0 or -1 (said). */
+/* Makes the spacing of `ground` square and metric: projects geographic rasters (local UTM zone, or
+ * as told), resamples when --spacing asks for it, else keeps every sample. The ground must have no
+ * voids. Samples of the new grid outside the source's area become NaN, counted in ground->outside.
+ * *spacing_m receives the spacing. 0 or -1 (said). */
 int bake_project(const bake_options *options, bake_ground *ground, double *spacing_m);
 
 #endif

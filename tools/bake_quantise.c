@@ -5,10 +5,10 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define STEPS_MAX 65535.0
+#define STEPS_MAX       65535.0
 #define FINEST_CHOSEN_M 0.01
 #define MAX_ERROR_STEPS 32767.0 /* residuals are quantised by 2*max_error + 1 */
-#define Q24 16777216.0
+#define Q24             16777216.0
 
 static int find_range(const bake_grid *grid, bake_steps *steps)
 {
@@ -28,7 +28,8 @@ static int find_range(const bake_grid *grid, bake_steps *steps)
     return rc;
 }
 
-/* Step 0 lies at zero when all heights fit above it, else just below the lowest one, on a whole metre if there is room. */
+/* Step 0 lies at zero when all heights fit above it, else just below the lowest one, on a whole
+ * metre if there is room. */
 static double choose_first(double step_m, double low, double high)
 {
     if (low >= 0 && high <= STEPS_MAX) return 0;
@@ -61,22 +62,25 @@ int bake_steps_choose(const bake_options *o, const bake_ground *ground, bake_ste
     if (find_range(&ground->grid, steps)) return -1;
     if (o->hscale_m > 0) {
         if (set_step(steps, o->hscale_m)) return 0;
-        return bake_fail("--hscale %g: heights from %g to %g m span more than 65536 steps", o->hscale_m, steps->min_m,
-                         steps->max_m);
+        return bake_fail("--hscale %g: heights from %g to %g m span more than 65536 steps",
+                         o->hscale_m, steps->min_m, steps->max_m);
     }
     if (ground->step_m > 0) {
         /* Invented detail needs finer steps than the source's, as far as they fit. */
-        for (double step_m = o->densify > 1 ? ground->step_m / 8 : ground->step_m; step_m <= ground->step_m * 1.001; step_m *= 2)
+        for (double step_m = o->densify > 1 ? ground->step_m / 8 : ground->step_m;
+             step_m <= ground->step_m * 1.001; step_m *= 2)
             if (set_step(steps, step_m)) return 0;
-        bake_note("heights span more than 65536 of their own steps of %g m: coarser steps are chosen", ground->step_m);
+        bake_note(
+            "heights span more than 65536 of their own steps of %g m: coarser steps are chosen",
+            ground->step_m);
     }
     for (double step_m = FINEST_CHOSEN_M; step_m < 250; step_m = next_nice(step_m))
         if (set_step(steps, step_m)) return 0;
     return bake_fail("heights from %g to %g m do not fit a pack", steps->min_m, steps->max_m);
 }
 
-static void quantise_row(const bake_steps *steps, const float *metres, uint16_t *heights, uint32_t count,
-                         ff_terrain_info *info)
+static void quantise_row(const bake_steps *steps, const float *metres, uint16_t *heights,
+                         uint32_t count, ff_terrain_info *info)
 {
     for (uint32_t i = 0; i < count; i++) {
         double h = nearbyint((double)metres[i] / steps->step_m - steps->first_step);
@@ -89,19 +93,22 @@ static void quantise_row(const bake_steps *steps, const float *metres, uint16_t 
 static int set_units(const bake_options *o, const bake_steps *steps, ff_terrain_info *info)
 {
     double offset_wu = nearbyint(steps->first_step * steps->step_m * FF_WU_PER_METRE);
-    if (fabs(offset_wu) > INT32_MAX / 2) return bake_fail("heights of %g m lie outside the world", steps->min_m);
+    if (fabs(offset_wu) > INT32_MAX / 2)
+        return bake_fail("heights of %g m lie outside the world", steps->min_m);
     info->hscale_q24 = (uint32_t)(steps->step_m * Q24);
     info->hoffset_wu = (int32_t)offset_wu;
     double error_steps = floor(o->max_error_m / steps->step_m + 1e-6);
     info->max_error = (uint16_t)fmin(error_steps, MAX_ERROR_STEPS);
-    if (info->max_error) info->flags |= FF_TERRAIN_LOSSY;
+    if (info->max_error)
+        info->flags |= FF_TERRAIN_LOSSY;
     else if (o->max_error_m > 0)
-        bake_note("--max-error %g m is less than a height step of %g m: lossless", o->max_error_m, steps->step_m);
+        bake_note("--max-error %g m is less than a height step of %g m: lossless", o->max_error_m,
+                  steps->step_m);
     return 0;
 }
 
-int bake_quantise(const bake_options *o, const bake_ground *ground, const bake_steps *steps, ff_terrain_info *info,
-                  bake_grid *grid)
+int bake_quantise(const bake_options *o, const bake_ground *ground, const bake_steps *steps,
+                  ff_terrain_info *info, bake_grid *grid)
 {
     const bake_grid *from = &ground->grid;
     if (set_units(o, steps, info)) return -1;

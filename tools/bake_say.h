@@ -14,7 +14,8 @@ int bake_fail_gdal(const char *format, ...) __attribute__((format(printf, 1, 2))
 
 void bake_note(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* Draws "stage [####    ] 42 %" when stderr is a terminal and the percentage changed; done == total ends the line. */
+/* Draws "stage [####    ] 42 %" when stderr is a terminal and the percentage changed; done == total
+ * ends the line. */
 void bake_progress(const char *stage, uint64_t done, uint64_t total);
 
 #endif

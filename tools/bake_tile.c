@@ -11,7 +11,7 @@ static size_t pitch_of(const ff_terrain_info *info) { return ((size_t)1 << info-
 int bake_tile_open(bake_tile *tile, const ff_terrain_info *info)
 {
     size_t samples = pitch_of(info) * pitch_of(info);
-    *tile = (bake_tile){.info = info, .plain = *info};
+    *tile = (bake_tile){ .info = info, .plain = *info };
     tile->plain.codec = FF_CODEC_RAW;
     tile->source = malloc(samples * sizeof *tile->source);
     tile->decoded = malloc(samples * sizeof *tile->decoded);
@@ -25,7 +25,7 @@ void bake_tile_close(bake_tile *tile)
     free(tile->source);
     free(tile->decoded);
     for (int i = 0; i < BAKE_LEVELS_MAX; i++) bake_blob_free(&tile->level[i]);
-    *tile = (bake_tile){0};
+    *tile = (bake_tile){ 0 };
 }
 
 int bake_tile_load(bake_tile *tile, const bake_grid *grid, uint32_t number)
@@ -34,8 +34,10 @@ int bake_tile_load(bake_tile *tile, const bake_grid *grid, uint32_t number)
     size_t pitch = pitch_of(info);
     uint32_t first_column = (number % info->tiles_x) << info->tile_log2;
     uint32_t first_row = (number / info->tiles_x) << info->tile_log2;
-    /* ff_terrain_info: tiles beyond the last sample do not exist, so at least one column and row is there. */
-    uint32_t columns = grid->width - first_column < pitch ? grid->width - first_column : (uint32_t)pitch;
+    /* ff_terrain_info: tiles beyond the last sample do not exist, so at least one column and row is
+     * there. */
+    uint32_t columns = grid->width - first_column < pitch ? grid->width - first_column
+                                                          : (uint32_t)pitch;
     for (size_t row = 0; row < pitch; row++) {
         uint16_t *to = tile->source + row * pitch;
         if (first_row + row >= grid->height) {
@@ -75,18 +77,21 @@ static int encode_root(bake_tile *tile)
     uint8_t payload[FF_PAYLOAD_BYTES_MAX];
     uint32_t side = ff_node_side(info), cell = 1u << (info->tile_log2 - info->node_log2);
     gather(tile->source, pitch_of(info), side, cell, source);
-    if (ff_encode_root(&tile->plain, source, 0, payload, decoded) < 0) return bake_fail("cannot encode a root");
+    if (ff_encode_root(&tile->plain, source, 0, payload, decoded) < 0)
+        return bake_fail("cannot encode a root");
     scatter(decoded, pitch_of(info), side, cell, tile->decoded);
     int bytes = ff_encode_root(info, source, error_code(tile, 0, cell), payload, decoded);
     if (bytes < 0) return bake_fail("cannot encode a root: %s", ff_error_text(bytes));
     return bake_blob_add(&tile->level[0], payload, (size_t)bytes);
 }
 
-/* Encodes the refinement of the node whose south-west sample is `at`, its cells `cell` samples wide. */
+/* Encodes the refinement of the node whose south-west sample is `at`, its cells `cell` samples
+ * wide. */
 static int encode_refinement(bake_tile *tile, uint32_t level, size_t at, uint32_t cell)
 {
     const ff_terrain_info *info = tile->info;
-    uint16_t parent[FF_NODE_HEIGHTS_MAX], source[FF_REFINED_HEIGHTS_MAX], decoded[FF_REFINED_HEIGHTS_MAX];
+    uint16_t parent[FF_NODE_HEIGHTS_MAX], source[FF_REFINED_HEIGHTS_MAX],
+        decoded[FF_REFINED_HEIGHTS_MAX];
     uint8_t payload[FF_PAYLOAD_BYTES_MAX], code[4];
     size_t pitch = pitch_of(info), edge = (size_t)(cell / 2) << info->node_log2;
     gather(tile->decoded + at, pitch, ff_node_side(info), cell, parent);
@@ -95,7 +100,8 @@ static int encode_refinement(bake_tile *tile, uint32_t level, size_t at, uint32_
     if (ff_encode_refinement(&tile->plain, parent, source, code, payload, decoded) < 0)
         return bake_fail("cannot encode a node");
     scatter(decoded, pitch, ff_refined_side(info), cell / 2, tile->decoded + at);
-    for (uint32_t q = 0; q < 4; q++) code[q] = error_code(tile, at + (q & 1) * edge + (q >> 1) * edge * pitch, cell / 2);
+    for (uint32_t q = 0; q < 4; q++)
+        code[q] = error_code(tile, at + (q & 1) * edge + (q >> 1) * edge * pitch, cell / 2);
     int bytes = ff_encode_refinement(info, parent, source, code, payload, decoded);
     if (bytes < 0) return bake_fail("cannot encode a node: %s", ff_error_text(bytes));
     return bake_blob_add(&tile->level[level + 1], payload, (size_t)bytes);

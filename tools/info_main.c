@@ -25,24 +25,24 @@ typedef struct info_options {
 
 enum { OPT_JSON = 1000, OPT_VERIFY, OPT_HELP, OPT_VERSION };
 
-static const struct option long_options[] = {{"json", no_argument, 0, OPT_JSON},
-                                             {"verify", no_argument, 0, OPT_VERIFY},
-                                             {"help", no_argument, 0, OPT_HELP},
-                                             {"version", no_argument, 0, OPT_VERSION},
-                                             {0, 0, 0, 0}};
+static const struct option long_options[] = { { "json", no_argument, 0, OPT_JSON },
+                                              { "verify", no_argument, 0, OPT_VERIFY },
+                                              { "help", no_argument, 0, OPT_HELP },
+                                              { "version", no_argument, 0, OPT_VERSION },
+                                              { 0, 0, 0, 0 } };
 
 /* 0: go on; 1: answered; -1: wrong, said why. */
 static int parse(info_options *o, int argc, char **argv)
 {
-    *o = (info_options){0};
+    *o = (info_options){ 0 };
     opterr = 0;
     for (int option; (option = getopt_long(argc, argv, "", long_options, NULL)) != -1;) {
         switch (option) {
-        case OPT_JSON: o->json = 1; break;
-        case OPT_VERIFY: o->verify = 1; break;
-        case OPT_HELP: return fputs(help_text, stdout), 1;
-        case OPT_VERSION: return puts("farfield-info " FARFIELD_VERSION), 1;
-        default: return bake_fail("unknown option %s; try --help", argv[optind - 1]);
+            case OPT_JSON: o->json = 1; break;
+            case OPT_VERIFY: o->verify = 1; break;
+            case OPT_HELP: return fputs(help_text, stdout), 1;
+            case OPT_VERSION: return puts("farfield-info " FARFIELD_VERSION), 1;
+            default: return bake_fail("unknown option %s; try --help", argv[optind - 1]);
         }
     }
     if (optind + 1 != argc) return bake_fail("one pack is wanted; try --help");
@@ -76,8 +76,10 @@ int main(int argc, char **argv)
     if (rc) return rc < 0;
     if (bake_unpack_open(&unpack, options.path)) return 1;
     if (options.verify) rc = verify(&unpack);
-    if (!rc && options.json) bake_info_print_json(&unpack.pack);
-    else if (!rc) bake_info_print(&unpack.pack, options.path);
+    if (!rc && options.json)
+        bake_info_print_json(&unpack.pack);
+    else if (!rc)
+        bake_info_print(&unpack.pack, options.path);
     if (!rc && options.verify && !options.json) puts("verified: every record is whole and decodes");
     bake_unpack_close(&unpack);
     return rc ? 1 : 0;

@@ -13,10 +13,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define PATH_BYTES 4096
-#define COPY_BYTES (1u << 18)
+#define PATH_BYTES       4096
+#define COPY_BYTES       (1u << 18)
 #define RECORD_CRC_BYTES 4
-#define TEMP_MARK ".tmp-"
+#define TEMP_MARK        ".tmp-"
 
 static void put_le(uint8_t *out, uint64_t value, int bytes)
 {
@@ -50,7 +50,8 @@ int pack_writer_prepare(const char *path)
     char temp[PATH_BYTES];
     struct stat status;
     if (temp_name(path, temp)) return -1;
-    if (!stat(path, &status) && !S_ISREG(status.st_mode)) return bake_fail("%s: not a plain file", path);
+    if (!stat(path, &status) && !S_ISREG(status.st_mode))
+        return bake_fail("%s: not a plain file", path);
     int fd = open(temp, O_WRONLY | O_CREAT | O_EXCL, 0666);
     if (fd < 0) return bake_fail("cannot write %s: %s", path, strerror(errno));
     close(fd);
@@ -63,8 +64,10 @@ int pack_writer_prepare(const char *path)
 
 int pack_writer_open(pack_writer *writer, const ff_terrain_info *info)
 {
-    *writer = (pack_writer){.info = *info, .section_count = ff_terrain_levels(info) + info->texture_levels};
-    for (uint32_t i = 0; i < FF_PACK_SECTIONS_MAX; i++) writer->section[i].data_fd = writer->section[i].index_fd = -1;
+    *writer = (pack_writer){ .info = *info,
+                             .section_count = ff_terrain_levels(info) + info->texture_levels };
+    for (uint32_t i = 0; i < FF_PACK_SECTIONS_MAX; i++)
+        writer->section[i].data_fd = writer->section[i].index_fd = -1;
     for (uint32_t i = 0; i < writer->section_count; i++) {
         writer->section[i].data_fd = bake_temp_open();
         writer->section[i].index_fd = writer->section[i].data_fd < 0 ? -1 : bake_temp_open();
@@ -88,7 +91,8 @@ void pack_writer_close(pack_writer *writer)
 int pack_writer_add(pack_writer *writer, uint32_t number, const bake_blob *blob)
 {
     pack_section_file *section = &writer->section[number];
-    size_t index_bytes = blob->record_count * 8, data_bytes = blob->byte_count + blob->record_count * RECORD_CRC_BYTES;
+    size_t index_bytes = blob->record_count * 8,
+           data_bytes = blob->byte_count + blob->record_count * RECORD_CRC_BYTES;
     uint8_t *memory = malloc(index_bytes + data_bytes + 1);
     if (!memory) return bake_fail("out of memory");
     uint8_t *data = memory + index_bytes, *at = data;
@@ -131,8 +135,12 @@ static int copy_part(int from, int to, uint64_t count, uint64_t to_offset, uint3
 static void describe_section(const pack_writer *writer, uint32_t number, ff_pack_section *out)
 {
     uint32_t refinements = ff_terrain_levels(&writer->info) - 1;
-    out->kind = number == 0 ? FF_SECTION_ROOT : number <= refinements ? FF_SECTION_REFINEMENT : FF_SECTION_TEXTURE;
-    out->level = (uint16_t)(number == 0 ? 0 : number <= refinements ? number - 1 : number - 1 - refinements);
+    out->kind = number == 0             ? FF_SECTION_ROOT
+                : number <= refinements ? FF_SECTION_REFINEMENT
+                                        : FF_SECTION_TEXTURE;
+    out->level = (uint16_t)(number == 0             ? 0
+                            : number <= refinements ? number - 1
+                                                    : number - 1 - refinements);
 }
 
 static int write_sections(const pack_writer *writer, int fd, ff_pack_header *header, uint64_t *end)
@@ -150,10 +158,13 @@ static int write_sections(const pack_writer *writer, int fd, ff_pack_header *hea
         section->data_offset = *end + 8 * (from->records + 1);
         section->data_bytes = from->data_bytes;
         put_le(last, from->data_bytes, 8);
-        if (copy_part(from->index_fd, fd, 8 * from->records, section->index_offset, &section->index_crc)) return -1;
+        if (copy_part(from->index_fd, fd, 8 * from->records, section->index_offset,
+                      &section->index_crc))
+            return -1;
         if (bake_pwrite(fd, last, 8, section->data_offset - 8)) return -1;
         section->index_crc = ff_crc32(section->index_crc, last, 8);
-        if (copy_part(from->data_fd, fd, from->data_bytes, section->data_offset, &unused)) return -1;
+        if (copy_part(from->data_fd, fd, from->data_bytes, section->data_offset, &unused))
+            return -1;
         *end = section->data_offset + section->data_bytes;
         bake_progress("writing", i + 1, writer->section_count);
     }
@@ -164,7 +175,7 @@ static int write_file(const pack_writer *writer, int fd, uint64_t *file_bytes)
 {
     static ff_pack_header header;
     static uint8_t bytes[FF_PACK_HEADER_BYTES];
-    header = (ff_pack_header){.info = writer->info, .section_count = writer->section_count};
+    header = (ff_pack_header){ .info = writer->info, .section_count = writer->section_count };
     if (write_sections(writer, fd, &header, file_bytes)) return -1;
     int rc = ff_pack_header_encode(&header, bytes);
     if (rc) return bake_fail("the pack's header does not hold: %s", ff_error_text(rc));

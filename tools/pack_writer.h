@@ -1,7 +1,9 @@
-/* Writes a pack: sections grow in unnamed temporary files, the pack itself appears whole or not at all.
+/* Writes a pack: sections grow in unnamed temporary files, the pack itself appears whole or not at
+ * all.
  *
- * Memory does not depend on the pack's size. The final file is made under a temporary name beside its own
- * (OUT.tmp-PID), synced and renamed; leftovers of killed runs are removed at the next start.
+ * Memory does not depend on the pack's size. The final file is made under a temporary name beside
+ * its own (OUT.tmp-PID), synced and renamed; leftovers of killed runs are removed at the next
+ * start.
  */
 #ifndef PACK_WRITER_H
 #define PACK_WRITER_H

@@ -34,8 +34,9 @@ static int refuse(reader *in, const char *format, ...) __attribute__((format(pri
 static int refuse(reader *in, const char *format, ...)
 {
     va_list args;
-    int used = in->line_number ? snprintf(in->why, in->why_bytes, "%s:%zu: ", in->path, in->line_number)
-                               : snprintf(in->why, in->why_bytes, "%s: ", in->path);
+    int used = in->line_number
+                   ? snprintf(in->why, in->why_bytes, "%s:%zu: ", in->path, in->line_number)
+                   : snprintf(in->why, in->why_bytes, "%s: ", in->path);
     va_start(args, format);
     if (used >= 0 && (size_t)used < in->why_bytes)
         vsnprintf(in->why + used, in->why_bytes - (size_t)used, format, args);
@@ -52,7 +53,8 @@ size_t report_csv_split(char *line, char **field, size_t most)
         end = strchr(at, ',');
         if (end) *end++ = 0;
         at += strspn(at, " \t");
-        for (size_t n = strlen(at); n && (at[n - 1] == ' ' || at[n - 1] == '\t'); n--) at[n - 1] = 0;
+        for (size_t n = strlen(at); n && (at[n - 1] == ' ' || at[n - 1] == '\t'); n--)
+            at[n - 1] = 0;
         if (count == most) return most + 1;
         field[count++] = at;
     }
@@ -82,7 +84,8 @@ static int read_header(reader *in)
         in->field_of[c] = -1;
         for (size_t f = 0; f < in->field_count; f++)
             if (!strcmp(field[f], column_names[c])) in->field_of[c] = (int)f;
-        if (in->field_of[c] < 0 && column_required[c]) return refuse(in, "no column %s: not the CSV of a flight", column_names[c]);
+        if (in->field_of[c] < 0 && column_required[c])
+            return refuse(in, "no column %s: not the CSV of a flight", column_names[c]);
     }
     return 0;
 }
@@ -97,7 +100,8 @@ static int read_value(reader *in, char *const *field, int column, double *value)
         *value = NAN; /* not audited */
         return 0;
     }
-    if (!(*value >= 0 && *value < 1e15)) return refuse(in, "%s is out of range: %.40s", column_names[column], text);
+    if (!(*value >= 0 && *value < 1e15))
+        return refuse(in, "%s is out of range: %.40s", column_names[column], text);
     return 0;
 }
 
@@ -105,7 +109,8 @@ static int read_row(reader *in, report_row *row)
 {
     char *field[FIELDS_MAX];
     size_t count = report_csv_split(in->line, field, FIELDS_MAX);
-    if (count != in->field_count) return refuse(in, "%zu fields where the header has %zu", count, in->field_count);
+    if (count != in->field_count)
+        return refuse(in, "%zu fields where the header has %zu", count, in->field_count);
     for (int c = 0; c < REPORT_COLUMN_COUNT; c++)
         if (read_value(in, field, c, &row->value[c])) return -1;
     return 0;
@@ -124,7 +129,8 @@ static int read_rows(reader *in, report_flight *flight)
         }
         report_row *row = &flight->row[flight->row_count];
         if (read_row(in, row)) return -1;
-        if (flight->row_count && row->value[REPORT_T_S] < row[-1].value[REPORT_T_S]) return refuse(in, "t_s goes back");
+        if (flight->row_count && row->value[REPORT_T_S] < row[-1].value[REPORT_T_S])
+            return refuse(in, "t_s goes back");
         flight->row_count++;
     }
     if (got == 0 && !flight->row_count) return refuse(in, "no rows");
@@ -142,13 +148,15 @@ static char *flight_name(const char *path)
 
 int report_flight_load(report_flight *flight, const char *path, char *why, size_t why_bytes)
 {
-    reader in = {.path = path, .why = why, .why_bytes = why_bytes};
+    reader in = { .path = path, .why = why, .why_bytes = why_bytes };
     int rc;
     memset(flight, 0, sizeof *flight);
     flight->name = flight_name(path);
     in.file = fopen(path, "r");
-    if (!in.file) rc = refuse(&in, "%s", strerror(errno));
-    else rc = read_header(&in) || read_rows(&in, flight) ? -1 : 0;
+    if (!in.file)
+        rc = refuse(&in, "%s", strerror(errno));
+    else
+        rc = read_header(&in) || read_rows(&in, flight) ? -1 : 0;
     if (in.file) fclose(in.file);
     free(in.line);
     if (rc) report_flight_free(flight);
@@ -179,11 +187,15 @@ static double largest(const report_flight *flight, enum report_column column, do
 {
     double most = NAN;
     for (size_t i = 0; i < flight->row_count; i++)
-        if (flight->row[i].value[REPORT_T_S] >= from_s) most = fmax(most, flight->row[i].value[column]);
+        if (flight->row[i].value[REPORT_T_S] >= from_s)
+            most = fmax(most, flight->row[i].value[column]);
     return most;
 }
 
-int report_flight_has(const report_flight *flight, enum report_column column) { return !isnan(largest(flight, column, 0)); }
+int report_flight_has(const report_flight *flight, enum report_column column)
+{
+    return !isnan(largest(flight, column, 0));
+}
 
 void report_summarise(const report_flight *flight, double settle_s, report_summary *summary)
 {
@@ -204,5 +216,6 @@ void report_summarise(const report_flight *flight, double settle_s, report_summa
         .err_max = largest(flight, REPORT_ERR_MAX, settle_s),
     };
     for (size_t i = 0; i < flight->row_count && summary->seconds >= 60; i++)
-        if (flight->row[i].value[REPORT_T_S] <= 60) summary->kb_down_60s = flight->row[i].value[REPORT_BYTES_DOWN] / 1000;
+        if (flight->row[i].value[REPORT_T_S] <= 60)
+            summary->kb_down_60s = flight->row[i].value[REPORT_BYTES_DOWN] / 1000;
 }

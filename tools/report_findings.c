@@ -6,20 +6,35 @@
 #include <math.h>
 #include <string.h>
 
-#define WHY_BYTES 256
+#define WHY_BYTES      256
 #define PAPER_FLIGHT_S 300
 
 /* A kind of bytes or a cause of error: its column, its words. */
-typedef struct kind { enum report_column column; const char *name; } kind;
+typedef struct kind {
+    enum report_column column;
+    const char *name;
+} kind;
 
-static const kind bytes_kinds[] = {{REPORT_HEIGHTS, "heights"}, {REPORT_IMAGES, "images"}, {REPORT_FACES, "panorama faces"},
-                                   {REPORT_OVERHEAD, "greetings, pongs, refusals"}, {REPORT_BYTES_UP, "requests (up)"}};
-static const kind error_kinds[] = {{REPORT_DEPTH, "depth limit of the quality"}, {REPORT_QUALITY, "as coarse as the quality allows"},
-                                   {REPORT_PARALLAX, "parallax of the panorama"}, {REPORT_WAITING, "ground not come yet"},
-                                   {REPORT_MISSING, "ground not drawn"}};
-enum { BYTES_KINDS = sizeof bytes_kinds / sizeof *bytes_kinds, ERROR_KINDS = sizeof error_kinds / sizeof *error_kinds, KINDS_MAX = 5 };
+static const kind bytes_kinds[] = { { REPORT_HEIGHTS, "heights" },
+                                    { REPORT_IMAGES, "images" },
+                                    { REPORT_FACES, "panorama faces" },
+                                    { REPORT_OVERHEAD, "greetings, pongs, refusals" },
+                                    { REPORT_BYTES_UP, "requests (up)" } };
+static const kind error_kinds[] = { { REPORT_DEPTH, "depth limit of the quality" },
+                                    { REPORT_QUALITY, "as coarse as the quality allows" },
+                                    { REPORT_PARALLAX, "parallax of the panorama" },
+                                    { REPORT_WAITING, "ground not come yet" },
+                                    { REPORT_MISSING, "ground not drawn" } };
+enum {
+    BYTES_KINDS = sizeof bytes_kinds / sizeof *bytes_kinds,
+    ERROR_KINDS = sizeof error_kinds / sizeof *error_kinds,
+    KINDS_MAX = 5
+};
 
-static double last(const report_flight *flight, enum report_column column) { return flight->row[flight->row_count - 1].value[column]; }
+static double last(const report_flight *flight, enum report_column column)
+{
+    return flight->row[flight->row_count - 1].value[column];
+}
 
 static double zero_if_nan(double value) { return isnan(value) ? 0 : value; }
 
@@ -27,21 +42,28 @@ static int is_over_lan(const report_flight *flight) { return !strncmp(flight->na
 
 /* ---- sources of bytes and of error ---- */
 
-static void sum_kinds(const report_content *content, const kind *list, int count, int error, double sum[KINDS_MAX])
+static void sum_kinds(const report_content *content, const kind *list, int count, int error,
+                      double sum[KINDS_MAX])
 {
     for (int k = 0; k < count; k++) sum[k] = 0;
     for (size_t i = 0; i < content->flight_count; i++) {
         const report_flight *flight = &content->flight[i];
-        if (is_over_lan(flight) || !report_flight_has(flight, error ? REPORT_ERR_RMS : REPORT_HEIGHTS)) continue;
+        if (is_over_lan(flight) ||
+            !report_flight_has(flight, error ? REPORT_ERR_RMS : REPORT_HEIGHTS))
+            continue;
         for (int k = 0; k < count; k++)
-            sum[k] += zero_if_nan(error ? report_flight_mean(flight, list[k].column, content->settle_s) : last(flight, list[k].column));
+            sum[k] += zero_if_nan(
+                error ? report_flight_mean(flight, list[k].column, content->settle_s)
+                      : last(flight, list[k].column));
     }
 }
 
 /* The kinds from the largest on, each with its share. */
-static void put_sources(FILE *out, const report_style *style, const report_content *content, const kind *list, int count, int error)
+static void put_sources(FILE *out, const report_style *style, const report_content *content,
+                        const kind *list, int count, int error)
 {
-    static const char *const head[2][2] = {{"source of bytes", "% of all"}, {"source of error", "% of the squares"}};
+    static const char *const head[2][2] = { { "source of bytes", "% of all" },
+                                            { "source of error", "% of the squares" } };
     double sum[KINDS_MAX], all = 0;
     int order[KINDS_MAX];
     sum_kinds(content, list, count, error, sum);
@@ -67,10 +89,20 @@ static void put_sources(FILE *out, const report_style *style, const report_conte
 
 static void put_relevance(FILE *out, const report_style *style, const report_content *content)
 {
-    static const char *const head[] = {"flight", "relevance %", "kB heights", "kB images", "kB faces", "kB other", "never drawn: kB heights",
-                                       "of these beside drawn ones", "kB images", "kB faces"};
-    static const enum report_column column[] = {REPORT_HEIGHTS, REPORT_IMAGES, REPORT_FACES, REPORT_OVERHEAD, REPORT_UNUSED_HEIGHTS,
-                                                REPORT_SUPPORTING, REPORT_UNUSED_IMAGES, REPORT_UNUSED_FACES};
+    static const char *const head[] = { "flight",
+                                        "relevance %",
+                                        "kB heights",
+                                        "kB images",
+                                        "kB faces",
+                                        "kB other",
+                                        "never drawn: kB heights",
+                                        "of these beside drawn ones",
+                                        "kB images",
+                                        "kB faces" };
+    static const enum report_column column[] = { REPORT_HEIGHTS,        REPORT_IMAGES,
+                                                 REPORT_FACES,          REPORT_OVERHEAD,
+                                                 REPORT_UNUSED_HEIGHTS, REPORT_SUPPORTING,
+                                                 REPORT_UNUSED_IMAGES,  REPORT_UNUSED_FACES };
     report_table_head(out, style, head, sizeof head / sizeof *head);
     for (size_t i = 0; i < content->flight_count; i++) {
         const report_flight *flight = &content->flight[i];
@@ -78,7 +110,8 @@ static void put_relevance(FILE *out, const report_style *style, const report_con
         report_table_row(out, style);
         report_table_name(out, style, flight->name);
         report_table_number(out, style, 2, last(flight, REPORT_RELEVANCE));
-        for (size_t c = 0; c < sizeof column / sizeof *column; c++) report_table_number(out, style, 1, last(flight, column[c]) / 1000);
+        for (size_t c = 0; c < sizeof column / sizeof *column; c++)
+            report_table_number(out, style, 1, last(flight, column[c]) / 1000);
         report_table_row_end(out, style);
     }
     report_table_end(out, style);
@@ -88,12 +121,14 @@ static void put_relevance(FILE *out, const report_style *style, const report_con
 /* ---- targets ---- */
 
 /* The largest of some kinds in one flight, in words. */
-static void tell_largest(const report_flight *flight, const kind *list, int count, double from_s, int error, char why[WHY_BYTES])
+static void tell_largest(const report_flight *flight, const kind *list, int count, double from_s,
+                         int error, char why[WHY_BYTES])
 {
     double most = -1, all = 0;
     const char *name = "";
     for (int k = 0; k < count; k++) {
-        double value = zero_if_nan(error ? report_flight_mean(flight, list[k].column, from_s) : last(flight, list[k].column));
+        double value = zero_if_nan(error ? report_flight_mean(flight, list[k].column, from_s)
+                                         : last(flight, list[k].column));
         all += value;
         if (value > most) {
             most = value;
@@ -103,13 +138,17 @@ static void tell_largest(const report_flight *flight, const kind *list, int coun
     snprintf(why, WHY_BYTES, all > 0 ? "most of it: %s, %.0f %%" : "", name, 100 * most / all);
 }
 
-/* One line: `most` 1 when the measured value may be that large at most, 0 when it must be that large at least. */
-static void put_target(FILE *out, const report_style *style, const char *what, int most, double target, double measured, const char *why)
+/* One line: `most` 1 when the measured value may be that large at most, 0 when it must be that
+ * large at least. */
+static void put_target(FILE *out, const report_style *style, const char *what, int most,
+                       double target, double measured, const char *why)
 {
     char missed[64] = "hit";
     double by = most ? measured - target : target - measured;
-    if (isnan(measured)) snprintf(missed, sizeof missed, "missed: never");
-    else if (by > 0) snprintf(missed, sizeof missed, "missed by %.3g", by);
+    if (isnan(measured))
+        snprintf(missed, sizeof missed, "missed: never");
+    else if (by > 0)
+        snprintf(missed, sizeof missed, "missed by %.3g", by);
     report_table_row(out, style);
     report_table_word(out, style, what);
     report_table_number(out, style, 2, target);
@@ -126,7 +165,9 @@ static void put_paper_targets(FILE *out, const report_style *style, const report
         const report_flight *flight = report_find(content, paper->name);
         report_figures ours;
         char what[128], why[WHY_BYTES];
-        if (!flight || last(flight, REPORT_T_S) < PAPER_FLIGHT_S || strcmp(paper->link, "umts") || strcmp(paper->quality, "low") || strcmp(paper->panorama, "on")) continue;
+        if (!flight || last(flight, REPORT_T_S) < PAPER_FLIGHT_S || strcmp(paper->link, "umts") ||
+            strcmp(paper->quality, "low") || strcmp(paper->panorama, "on"))
+            continue;
         report_figures_of(flight, NULL, content->settle_s, &ours);
         tell_largest(flight, bytes_kinds, BYTES_KINDS, 0, 0, why);
         snprintf(what, sizeof what, "%s: kB of the paper's", paper->name);
@@ -138,27 +179,40 @@ static void put_paper_targets(FILE *out, const report_style *style, const report
 
 static void put_stable_targets(FILE *out, const report_style *style, const report_content *content)
 {
-    static const struct { const char *name; double seconds; } row[] = {{"gprs-150-low-on", 15}, {"gprs-150-low-off", 15},
-                                                                       {"gprs-150-high-on", 40}, {"gprs-150-high-off", 40}};
+    static const struct {
+        const char *name;
+        double seconds;
+    } row[] = { { "gprs-150-low-on", 15 },
+                { "gprs-150-low-off", 15 },
+                { "gprs-150-high-on", 40 },
+                { "gprs-150-high-off", 40 } };
     const report_flight *fast = report_find(content, "gprs-1000-low-on");
     char what[128], why[WHY_BYTES];
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
-        const report_flight *flight = report_find(content, row[i].name), *reference = report_find_reference(content, row[i].name);
+        const report_flight *flight = report_find(content, row[i].name),
+                            *reference = report_find_reference(content, row[i].name);
         if (!flight || !reference) continue;
         tell_largest(flight, error_kinds, ERROR_KINDS, 0, 1, why);
         snprintf(what, sizeof what, "%s: seconds to a stable picture", row[i].name);
-        put_target(out, style, what, 1, row[i].seconds, report_stable_s(flight, reference, content->settle_s), why);
+        put_target(out, style, what, 1, row[i].seconds,
+                   report_stable_s(flight, reference, content->settle_s), why);
     }
     if (!fast || !report_find_reference(content, fast->name)) return;
     tell_largest(fast, error_kinds, ERROR_KINDS, content->settle_s, 1, why);
-    put_target(out, style, "gprs-1000-low-on: % of rows as good as over a LAN (steady)", 0, 95,
-               report_stable_percent(fast, report_find_reference(content, fast->name), content->settle_s), why);
+    put_target(
+        out, style, "gprs-1000-low-on: % of rows as good as over a LAN (steady)", 0, 95,
+        report_stable_percent(fast, report_find_reference(content, fast->name), content->settle_s),
+        why);
 }
 
-static void put_relevance_targets(FILE *out, const report_style *style, const report_content *content)
+static void put_relevance_targets(FILE *out, const report_style *style,
+                                  const report_content *content)
 {
-    static const char *const link[] = {"umts", "gprs"}, *const panorama[] = {"on", "off"};
-    static const struct { const char *speed; double percent; } row[] = {{"0", 99.5}, {"150", 95}};
+    static const char *const link[] = { "umts", "gprs" }, *const panorama[] = { "on", "off" };
+    static const struct {
+        const char *speed;
+        double percent;
+    } row[] = { { "0", 99.5 }, { "150", 95 } };
     for (int r = 0; r < 2; r++)
         for (int l = 0; l < 2; l++)
             for (int p = 0; p < 2; p++) {
@@ -167,11 +221,17 @@ static void put_relevance_targets(FILE *out, const report_style *style, const re
                 const report_flight *flight = report_find(content, name);
                 if (!flight || !report_flight_has(flight, REPORT_RELEVANCE)) continue;
                 snprintf(what, sizeof what, "%s: relevance %%", name);
-                snprintf(why, sizeof why, "never drawn: %.1f kB of neighbours without which nodes in view could not split, %.1f kB others, "
-                         "%.2f kB greetings and pongs", last(flight, REPORT_SUPPORTING) / 1000,
-                         (last(flight, REPORT_UNUSED_HEIGHTS) - last(flight, REPORT_SUPPORTING) + last(flight, REPORT_UNUSED_IMAGES) +
-                          last(flight, REPORT_UNUSED_FACES)) / 1000, last(flight, REPORT_OVERHEAD) / 1000);
-                put_target(out, style, what, 0, row[r].percent, last(flight, REPORT_RELEVANCE), why);
+                snprintf(
+                    why, sizeof why,
+                    "never drawn: %.1f kB of neighbours without which nodes in view could not split, %.1f kB others, "
+                    "%.2f kB greetings and pongs",
+                    last(flight, REPORT_SUPPORTING) / 1000,
+                    (last(flight, REPORT_UNUSED_HEIGHTS) - last(flight, REPORT_SUPPORTING) +
+                     last(flight, REPORT_UNUSED_IMAGES) + last(flight, REPORT_UNUSED_FACES)) /
+                        1000,
+                    last(flight, REPORT_OVERHEAD) / 1000);
+                put_target(out, style, what, 0, row[r].percent, last(flight, REPORT_RELEVANCE),
+                           why);
             }
 }
 
@@ -180,13 +240,14 @@ static void put_relevance_targets(FILE *out, const report_style *style, const re
 static int any_has(const report_content *content, enum report_column column)
 {
     for (size_t i = 0; i < content->flight_count; i++)
-        if (!is_over_lan(&content->flight[i]) && report_flight_has(&content->flight[i], column)) return 1;
+        if (!is_over_lan(&content->flight[i]) && report_flight_has(&content->flight[i], column))
+            return 1;
     return 0;
 }
 
 void report_findings(FILE *out, const report_content *content, int html)
 {
-    static const char *const head[] = {"target", "asked", "measured", "", "why"};
+    static const char *const head[] = { "target", "asked", "measured", "", "why" };
     const report_style *style = html ? &report_style_html : &report_style_markdown;
     if (content->paper) {
         report_table_heading(out, style, "Targets");
@@ -198,13 +259,17 @@ void report_findings(FILE *out, const report_content *content, int html)
     }
     if (any_has(content, REPORT_HEIGHTS) || any_has(content, REPORT_WAITING)) {
         report_table_heading(out, style, "Where bytes go and error comes from");
-        report_table_text(out, style, "Over all flights but those over a LAN. Bytes from the first second on; of the error the squares, in flight.");
+        report_table_text(
+            out, style,
+            "Over all flights but those over a LAN. Bytes from the first second on; of the error the squares, in flight.");
         put_sources(out, style, content, bytes_kinds, BYTES_KINDS, 0);
         put_sources(out, style, content, error_kinds, ERROR_KINDS, 1);
     }
     if (!any_has(content, REPORT_HEIGHTS)) return;
     report_table_heading(out, style, "Relevance");
-    report_table_text(out, style, "The share of received bytes that a frame draws within 5 s of their arrival, since the start. A drawn node draws all "
-                      "it is built on; nodes out of view that only let a drawn one beside them be so fine are not drawn, but told apart.");
+    report_table_text(
+        out, style,
+        "The share of received bytes that a frame draws within 5 s of their arrival, since the start. A drawn node draws all "
+        "it is built on; nodes out of view that only let a drawn one beside them be so fine are not drawn, but told apart.");
     put_relevance(out, style, content);
 }

@@ -1,4 +1,5 @@
-/* What the flights found, computed from their rows: targets hit or missed, relevance, where the bytes went and the error came from. */
+/* What the flights found, computed from their rows: targets hit or missed, relevance, where the
+ * bytes went and the error came from. */
 #ifndef REPORT_FINDINGS_H
 #define REPORT_FINDINGS_H
 
@@ -6,7 +7,8 @@
 
 #include <stdio.h>
 
-/* As HTML (`html` 1) or Markdown. Targets need content->paper; what the flights do not tell is left out. */
+/* As HTML (`html` 1) or Markdown. Targets need content->paper; what the flights do not tell is left
+ * out. */
 void report_findings(FILE *out, const report_content *content, int html);
 
 #endif

@@ -7,20 +7,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CONVERGENCE_S 120
-#define STABLE_FACTOR 1.1
-#define STABLE_PX 0.1
+#define CONVERGENCE_S          120
+#define STABLE_FACTOR          1.1
+#define STABLE_PX              0.1
 #define STABLE_UNDRAWN_PERCENT 1
-#define STABLE_ROWS 3
-#define REFERENCE_LINK "lan"
-#define SWEEP "sweep-"
-#define SERIES_MAX 8
-#define SERIES_NAME_BYTES 32
+#define STABLE_ROWS            3
+#define REFERENCE_LINK         "lan"
+#define SWEEP                  "sweep-"
+#define SERIES_MAX             8
+#define SERIES_NAME_BYTES      32
 
 /* ---- figures ---- */
 
 /* Is row i of the flight as good as the reference's row of its time? */
-static int is_stable(const report_flight *flight, const report_flight *reference, double settle_s, size_t i)
+static int is_stable(const report_flight *flight, const report_flight *reference, double settle_s,
+                     size_t i)
 {
     const double *value = flight->row[i].value;
     double t_s = fmax(value[REPORT_T_S], settle_s);
@@ -42,7 +43,8 @@ double report_stable_s(const report_flight *flight, const report_flight *referen
     return NAN;
 }
 
-double report_stable_percent(const report_flight *flight, const report_flight *reference, double settle_s)
+double report_stable_percent(const report_flight *flight, const report_flight *reference,
+                             double settle_s)
 {
     size_t rows = 0, stable = 0;
     for (size_t i = 0; reference && i < flight->row_count; i++) {
@@ -53,7 +55,8 @@ double report_stable_percent(const report_flight *flight, const report_flight *r
     return rows ? 100.0 * (double)stable / (double)rows : NAN;
 }
 
-void report_figures_of(const report_flight *flight, const report_flight *reference, double settle_s, report_figures *figures)
+void report_figures_of(const report_flight *flight, const report_flight *reference, double settle_s,
+                       report_figures *figures)
 {
     *figures = (report_figures){
         .triangles = report_flight_mean(flight, REPORT_TRIANGLES, settle_s),
@@ -83,23 +86,39 @@ const report_flight *report_find_reference(const report_content *content, const 
 
 static void put_range(FILE *out, const report_style *s, double from, double to)
 {
-    if (isnan(from)) report_table_word(out, s, "–");
-    else if (from < to) fprintf(out, "%s%.0f–%.0f%s", s->cell_open, from, to, s->cell_close);
-    else report_table_number(out, s, 0, from);
+    if (isnan(from))
+        report_table_word(out, s, "–");
+    else if (from < to)
+        fprintf(out, "%s%.0f–%.0f%s", s->cell_open, from, to, s->cell_close);
+    else
+        report_table_number(out, s, 0, from);
 }
 
 /* One row for each flight of the paper that is among ours. */
 static void put_paper(FILE *out, const report_style *s, const report_content *content)
 {
-    static const char *const head[] = {"link", "km/h", "quality", "panorama", "triangles, paper", "triangles", "ratio", "kB, paper", "kB",
-                                       "ratio", "stable after s, paper", "stable after s", "error px, 95 %", "undrawn %"};
+    static const char *const head[] = { "link",
+                                        "km/h",
+                                        "quality",
+                                        "panorama",
+                                        "triangles, paper",
+                                        "triangles",
+                                        "ratio",
+                                        "kB, paper",
+                                        "kB",
+                                        "ratio",
+                                        "stable after s, paper",
+                                        "stable after s",
+                                        "error px, 95 %",
+                                        "undrawn %" };
     report_table_head(out, s, head, sizeof head / sizeof *head);
     for (size_t i = 0; i < content->paper->row_count; i++) {
         const report_paper_row *paper = &content->paper->row[i];
         const report_flight *flight = report_find(content, paper->name);
         report_figures ours;
         if (!flight) continue;
-        report_figures_of(flight, report_find_reference(content, paper->name), content->settle_s, &ours);
+        report_figures_of(flight, report_find_reference(content, paper->name), content->settle_s,
+                          &ours);
         report_table_row(out, s);
         report_table_word(out, s, paper->link);
         report_table_word(out, s, paper->speed_kmh);
@@ -120,18 +139,23 @@ static void put_paper(FILE *out, const report_style *s, const report_content *co
     report_table_end(out, s);
 }
 
-static int is_sweep(const report_flight *flight) { return !strncmp(flight->name, SWEEP, strlen(SWEEP)); }
+static int is_sweep(const report_flight *flight)
+{
+    return !strncmp(flight->name, SWEEP, strlen(SWEEP));
+}
 
 static size_t count_sweep(const report_content *content)
 {
     size_t count = 0;
-    for (size_t i = 0; i < content->flight_count; i++) count += (size_t)is_sweep(&content->flight[i]);
+    for (size_t i = 0; i < content->flight_count; i++)
+        count += (size_t)is_sweep(&content->flight[i]);
     return count;
 }
 
 static void put_sweep(FILE *out, const report_style *s, const report_content *content)
 {
-    static const char *const head[] = {"quality", "triangles", "kB", "error px, 95 %", "undrawn %"};
+    static const char *const head[] = { "quality", "triangles", "kB", "error px, 95 %",
+                                        "undrawn %" };
     report_table_head(out, s, head, sizeof head / sizeof *head);
     for (size_t i = 0; i < content->flight_count; i++) {
         const report_flight *flight = &content->flight[i];
@@ -152,20 +176,28 @@ static void put_sweep(FILE *out, const report_style *s, const report_content *co
 /* ---- plots ---- */
 
 /* The flights of one link and quality with panoramas, from the first second on. */
-static int put_convergence(FILE *out, const report_content *content, const report_paper_row *group, char *why, size_t why_bytes)
+static int put_convergence(FILE *out, const report_content *content, const report_paper_row *group,
+                           char *why, size_t why_bytes)
 {
     char title[128];
     snprintf(title, sizeof title, "%s, %s quality, with panoramas", group->link, group->quality);
-    report_plot plot = {.title = title, .x_label = "seconds since the start", .y_label = "error px, 95 %", .logarithmic_y = 1,
-                        .x_most = CONVERGENCE_S};
+    report_plot plot = { .title = title,
+                         .x_label = "seconds since the start",
+                         .y_label = "error px, 95 %",
+                         .logarithmic_y = 1,
+                         .x_most = CONVERGENCE_S };
     for (size_t i = 0; i < content->paper->row_count && plot.curve_count < REPORT_CURVES_MAX; i++) {
         const report_paper_row *row = &content->paper->row[i];
         const report_flight *flight = report_find(content, row->name);
-        if (!flight || strcmp(row->link, group->link) || strcmp(row->quality, group->quality) || strcmp(row->panorama, "on") ||
-            !report_flight_has(flight, REPORT_ERR_P95))
+        if (!flight || strcmp(row->link, group->link) || strcmp(row->quality, group->quality) ||
+            strcmp(row->panorama, "on") || !report_flight_has(flight, REPORT_ERR_P95))
             continue;
-        plot.curve[plot.curve_count++] = (report_curve){.flight = flight, .x = REPORT_T_S, .y = REPORT_ERR_P95, .x_scale = 1, .y_scale = 1,
-                                                        .title = flight->name};
+        plot.curve[plot.curve_count++] = (report_curve){ .flight = flight,
+                                                         .x = REPORT_T_S,
+                                                         .y = REPORT_ERR_P95,
+                                                         .x_scale = 1,
+                                                         .y_scale = 1,
+                                                         .title = flight->name };
     }
     return report_plot_put(out, content->folder, &plot, why, why_bytes);
 }
@@ -173,16 +205,22 @@ static int put_convergence(FILE *out, const report_content *content, const repor
 static int is_first_of_group(const report_paper *paper, size_t at)
 {
     for (size_t i = 0; i < at; i++)
-        if (!strcmp(paper->row[i].link, paper->row[at].link) && !strcmp(paper->row[i].quality, paper->row[at].quality)) return 0;
+        if (!strcmp(paper->row[i].link, paper->row[at].link) &&
+            !strcmp(paper->row[i].quality, paper->row[at].quality))
+            return 0;
     return 1;
 }
 
 /* A series of the sweep as one curve: a row for each of its flights, by triangles. */
-typedef struct series { char name[SERIES_NAME_BYTES]; report_flight points; } series;
+typedef struct series {
+    char name[SERIES_NAME_BYTES];
+    report_flight points;
+} series;
 
 static int by_triangles(const void *a, const void *b)
 {
-    double x = ((const report_row *)a)->value[REPORT_TRIANGLES], y = ((const report_row *)b)->value[REPORT_TRIANGLES];
+    double x = ((const report_row *)a)->value[REPORT_TRIANGLES],
+           y = ((const report_row *)b)->value[REPORT_TRIANGLES];
     return (x > y) - (x < y);
 }
 
@@ -208,7 +246,8 @@ static size_t collect_series(series *list, const report_content *content)
     for (size_t i = 0; i < content->flight_count; i++) {
         const report_flight *flight = &content->flight[i];
         report_figures ours;
-        series *s = is_sweep(flight) ? series_of(list, &count, flight->name, content->flight_count) : NULL;
+        series *s = is_sweep(flight) ? series_of(list, &count, flight->name, content->flight_count)
+                                     : NULL;
         if (!s) continue;
         report_figures_of(flight, NULL, content->settle_s, &ours);
         if (isnan(ours.err_p95)) continue;
@@ -217,24 +256,37 @@ static size_t collect_series(series *list, const report_content *content)
         value[REPORT_BYTES_DOWN] = ours.kilobytes;
         value[REPORT_ERR_P95] = ours.err_p95;
     }
-    for (size_t i = 0; i < count; i++) qsort(list[i].points.row, list[i].points.row_count, sizeof *list[i].points.row, by_triangles);
+    for (size_t i = 0; i < count; i++)
+        qsort(list[i].points.row, list[i].points.row_count, sizeof *list[i].points.row,
+              by_triangles);
     return count;
 }
 
 static int put_work(FILE *out, const report_content *content, char *why, size_t why_bytes)
 {
-    series list[SERIES_MAX] = {{{0}, {0}}};
+    series list[SERIES_MAX] = { { { 0 }, { 0 } } };
     size_t count = collect_series(list, content);
-    report_plot plots[2] = {
-        {.title = "Error against triangles", .x_label = "triangles", .y_label = "error px, 95 %", .logarithmic_y = 1, .points = 1},
-        {.title = "Error against bytes", .x_label = "kB down", .y_label = "error px, 95 %", .logarithmic_y = 1, .points = 1}};
-    static const enum report_column work[2] = {REPORT_TRIANGLES, REPORT_BYTES_DOWN};
+    report_plot plots[2] = { { .title = "Error against triangles",
+                               .x_label = "triangles",
+                               .y_label = "error px, 95 %",
+                               .logarithmic_y = 1,
+                               .points = 1 },
+                             { .title = "Error against bytes",
+                               .x_label = "kB down",
+                               .y_label = "error px, 95 %",
+                               .logarithmic_y = 1,
+                               .points = 1 } };
+    static const enum report_column work[2] = { REPORT_TRIANGLES, REPORT_BYTES_DOWN };
     int rc = 0;
     for (int p = 0; p < 2 && !rc; p++) {
         for (size_t i = 0; i < count; i++)
             if (list[i].points.row_count)
-                plots[p].curve[plots[p].curve_count++] = (report_curve){.flight = &list[i].points, .x = work[p], .y = REPORT_ERR_P95,
-                                                                        .x_scale = 1, .y_scale = 1, .title = list[i].name};
+                plots[p].curve[plots[p].curve_count++] = (report_curve){ .flight = &list[i].points,
+                                                                         .x = work[p],
+                                                                         .y = REPORT_ERR_P95,
+                                                                         .x_scale = 1,
+                                                                         .y_scale = 1,
+                                                                         .title = list[i].name };
         rc = report_plot_put(out, content->folder, &plots[p], why, why_bytes);
     }
     for (size_t i = 0; i < count; i++) free(list[i].points.row);
@@ -246,7 +298,8 @@ static int put_work(FILE *out, const report_content *content, char *why, size_t 
 /* "px" of px:E, "C" of C:DEPTH, low and high; and whether panoramas are on. */
 static void work_series_name(const report_work_row *row, char name[SERIES_NAME_BYTES])
 {
-    snprintf(name, SERIES_NAME_BYTES, "%s, panorama %s", strncmp(row->quality, "px", 2) ? "C" : "px", row->panorama);
+    snprintf(name, SERIES_NAME_BYTES, "%s, panorama %s",
+             strncmp(row->quality, "px", 2) ? "C" : "px", row->panorama);
 }
 
 /* Rows of one series: instructions in the place of triangles. */
@@ -268,21 +321,33 @@ static size_t collect_work(series *list, const report_work *work)
         value[REPORT_TRIANGLES] = work->row[i].instructions / 1e6;
         value[REPORT_ERR_P95] = work->row[i].err_px_p95;
     }
-    for (size_t i = 0; i < count; i++) qsort(list[i].points.row, list[i].points.row_count, sizeof *list[i].points.row, by_triangles);
+    for (size_t i = 0; i < count; i++)
+        qsort(list[i].points.row, list[i].points.row_count, sizeof *list[i].points.row,
+              by_triangles);
     return count;
 }
 
 int report_work_html(FILE *out, const report_content *content, char *why, size_t why_bytes)
 {
-    static const char *const head[] = {"quality", "panorama", "million instructions a frame", "error px, 95 %"};
-    series list[SERIES_MAX] = {{{0}, {0}}};
+    static const char *const head[] = { "quality", "panorama", "million instructions a frame",
+                                        "error px, 95 %" };
+    series list[SERIES_MAX] = { { { 0 }, { 0 } } };
     size_t count = collect_work(list, content->work);
-    report_plot plot = {.title = "Error against instructions", .x_label = "million instructions a frame", .y_label = "error px, 95 %",
-                        .logarithmic_y = 1, .points = 1};
+    report_plot plot = { .title = "Error against instructions",
+                         .x_label = "million instructions a frame",
+                         .y_label = "error px, 95 %",
+                         .logarithmic_y = 1,
+                         .points = 1 };
     for (size_t i = 0; i < count; i++)
-        plot.curve[plot.curve_count++] = (report_curve){.flight = &list[i].points, .x = REPORT_TRIANGLES, .y = REPORT_ERR_P95, .x_scale = 1,
-                                                        .y_scale = 1, .title = list[i].name};
-    fputs("<h2>Error against instructions</h2>\n<p>Counted on an armv6 (make bench-handheld).</p>\n<div class=\"plots\">\n", out);
+        plot.curve[plot.curve_count++] = (report_curve){ .flight = &list[i].points,
+                                                         .x = REPORT_TRIANGLES,
+                                                         .y = REPORT_ERR_P95,
+                                                         .x_scale = 1,
+                                                         .y_scale = 1,
+                                                         .title = list[i].name };
+    fputs(
+        "<h2>Error against instructions</h2>\n<p>Counted on an armv6 (make bench-handheld).</p>\n<div class=\"plots\">\n",
+        out);
     int rc = report_plot_put(out, content->folder, &plot, why, why_bytes);
     fputs("</div>\n", out);
     report_table_head(out, &report_style_html, head, sizeof head / sizeof *head);
@@ -314,10 +379,13 @@ int report_matrix_html(FILE *out, const report_content *content, char *why, size
     put_paper(out, &report_style_html, content);
     fputs("<h2>Error since the start</h2>\n<div class=\"plots\">\n", out);
     for (size_t i = 0; i < content->paper->row_count && !rc; i++)
-        if (is_first_of_group(content->paper, i)) rc = put_convergence(out, content, &content->paper->row[i], why, why_bytes);
+        if (is_first_of_group(content->paper, i))
+            rc = put_convergence(out, content, &content->paper->row[i], why, why_bytes);
     fputs("</div>\n", out);
     if (rc || !count_sweep(content)) return rc;
-    fputs("<h2>Error against work</h2>\n<p>One flight in several qualities: px is the error allowed in pixels, C the paper's.</p>\n", out);
+    fputs(
+        "<h2>Error against work</h2>\n<p>One flight in several qualities: px is the error allowed in pixels, C the paper's.</p>\n",
+        out);
     put_sweep(out, &report_style_html, content);
     fputs("<div class=\"plots\">\n", out);
     rc = put_work(out, content, why, why_bytes);

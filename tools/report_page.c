@@ -22,19 +22,19 @@ typedef struct summary_column {
 
 #define AT(field) offsetof(report_summary, field)
 static const summary_column summary_columns[] = {
-    {"seconds", "seconds", 0, AT(seconds)},
-    {"triangles, mean", "triangles_mean", 0, AT(triangles_mean)},
-    {"triangles, most", "triangles_max", 0, AT(triangles_max)},
-    {"nodes drawn, mean", "nodes_drawn_mean", 0, AT(nodes_drawn_mean)},
-    {"nodes held, most", "nodes_held_max", 0, AT(nodes_held_max)},
-    {"kB down in 60 s", "kb_down_60s", 1, AT(kb_down_60s)},
-    {"kB down", "kb_down", 1, AT(kb_down)},
-    {"kB up", "kb_up", 1, AT(kb_up)},
-    {"requests", "requests", 0, AT(requests)},
-    {"panoramas", "panoramas", 0, AT(panoramas)},
-    {"error px, rms", "err_px_rms_mean", 2, AT(err_rms_mean)},
-    {"error px, 95 %", "err_px_p95_mean", 2, AT(err_p95_mean)},
-    {"error px, most", "err_px_max", 1, AT(err_max)},
+    { "seconds", "seconds", 0, AT(seconds) },
+    { "triangles, mean", "triangles_mean", 0, AT(triangles_mean) },
+    { "triangles, most", "triangles_max", 0, AT(triangles_max) },
+    { "nodes drawn, mean", "nodes_drawn_mean", 0, AT(nodes_drawn_mean) },
+    { "nodes held, most", "nodes_held_max", 0, AT(nodes_held_max) },
+    { "kB down in 60 s", "kb_down_60s", 1, AT(kb_down_60s) },
+    { "kB down", "kb_down", 1, AT(kb_down) },
+    { "kB up", "kb_up", 1, AT(kb_up) },
+    { "requests", "requests", 0, AT(requests) },
+    { "panoramas", "panoramas", 0, AT(panoramas) },
+    { "error px, rms", "err_px_rms_mean", 2, AT(err_rms_mean) },
+    { "error px, 95 %", "err_px_p95_mean", 2, AT(err_p95_mean) },
+    { "error px, most", "err_px_max", 1, AT(err_max) },
 };
 enum { SUMMARY_COLUMNS = sizeof summary_columns / sizeof *summary_columns };
 
@@ -48,10 +48,13 @@ static double summary_value(const report_summary *summary, const summary_column 
 /* A relative link: what is not plain goes as %XX. */
 static void put_link(FILE *out, const char *name)
 {
-    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._~";
+    static const char plain[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-._~";
     for (; *name; name++) {
-        if (strchr(plain, *name)) fputc(*name, out);
-        else fprintf(out, "%%%02X", (unsigned)(unsigned char)*name);
+        if (strchr(plain, *name))
+            fputc(*name, out);
+        else
+            fprintf(out, "%%%02X", (unsigned)(unsigned char)*name);
     }
 }
 
@@ -64,7 +67,8 @@ static FILE *open_page(const report_content *content, const char *name, char *wh
     return out;
 }
 
-static int close_page(FILE *out, const report_content *content, const char *name, char *why, size_t why_bytes)
+static int close_page(FILE *out, const report_content *content, const char *name, char *why,
+                      size_t why_bytes)
 {
     int bad = ferror(out);
     if (fclose(out) || bad) {
@@ -78,7 +82,8 @@ static int close_page(FILE *out, const report_content *content, const char *name
 static void put_html_table(FILE *out, const report_content *content)
 {
     fputs("<div class=\"wide\"><table>\n<tr><th>flight</th>", out);
-    for (int c = 0; c < SUMMARY_COLUMNS; c++) fprintf(out, "<th>%s</th>", summary_columns[c].heading);
+    for (int c = 0; c < SUMMARY_COLUMNS; c++)
+        fprintf(out, "<th>%s</th>", summary_columns[c].heading);
     fputs("</tr>\n", out);
     for (size_t i = 0; i < content->flight_count; i++) {
         report_summary summary;
@@ -88,33 +93,46 @@ static void put_html_table(FILE *out, const report_content *content)
         fputs("</td>", out);
         for (int c = 0; c < SUMMARY_COLUMNS; c++) {
             double value = summary_value(&summary, &summary_columns[c]);
-            if (isnan(value)) fputs("<td>–</td>", out);
-            else fprintf(out, "<td>%.*f</td>", summary_columns[c].decimals, value);
+            if (isnan(value))
+                fputs("<td>–</td>", out);
+            else
+                fprintf(out, "<td>%.*f</td>", summary_columns[c].decimals, value);
         }
         fputs("</tr>\n", out);
     }
     fputs("</table></div>\n", out);
 }
 
-static void add_curve(report_plot *plot, const report_flight *flight, enum report_column x, enum report_column y,
-                      const char *title)
+static void add_curve(report_plot *plot, const report_flight *flight, enum report_column x,
+                      enum report_column y, const char *title)
 {
     static const double kilo = 1e-3;
     if (plot->curve_count == REPORT_CURVES_MAX || !report_flight_has(flight, y)) return;
     plot->curve[plot->curve_count++] = (report_curve){
-        .flight = flight, .x = x, .y = y, .title = title,
+        .flight = flight,
+        .x = x,
+        .y = y,
+        .title = title,
         .x_scale = x == REPORT_BYTES_DOWN ? kilo : 1,
         .y_scale = y == REPORT_BYTES_DOWN || y == REPORT_BYTES_UP ? kilo : 1,
     };
 }
 
-static int put_flight(FILE *out, const report_content *content, const report_flight *flight, char *why, size_t why_bytes)
+static int put_flight(FILE *out, const report_content *content, const report_flight *flight,
+                      char *why, size_t why_bytes)
 {
-    report_plot triangles = {.title = "Triangles drawn", .x_label = "seconds", .y_label = "triangles"};
-    report_plot bytes = {.title = "Bytes since the start", .x_label = "seconds", .y_label = "kB"};
-    report_plot nodes = {.title = "Nodes", .x_label = "seconds", .y_label = "nodes"};
-    report_plot panoramas = {.title = "Panoramas asked for", .x_label = "seconds", .y_label = "panoramas"};
-    report_plot error = {.title = "Error of the picture", .x_label = "seconds", .y_label = "pixels", .logarithmic_y = 1};
+    report_plot triangles = { .title = "Triangles drawn",
+                              .x_label = "seconds",
+                              .y_label = "triangles" };
+    report_plot bytes = { .title = "Bytes since the start", .x_label = "seconds", .y_label = "kB" };
+    report_plot nodes = { .title = "Nodes", .x_label = "seconds", .y_label = "nodes" };
+    report_plot panoramas = { .title = "Panoramas asked for",
+                              .x_label = "seconds",
+                              .y_label = "panoramas" };
+    report_plot error = { .title = "Error of the picture",
+                          .x_label = "seconds",
+                          .y_label = "pixels",
+                          .logarithmic_y = 1 };
     add_curve(&triangles, flight, REPORT_T_S, REPORT_TRIANGLES, "triangles");
     add_curve(&bytes, flight, REPORT_T_S, REPORT_BYTES_DOWN, "down");
     add_curve(&bytes, flight, REPORT_T_S, REPORT_BYTES_UP, "up");
@@ -127,8 +145,10 @@ static int put_flight(FILE *out, const report_content *content, const report_fli
     fputs("<h2>", out);
     report_put_html(out, flight->name);
     fputs("</h2>\n<div class=\"plots\">\n", out);
-    if (report_plot_put(out, content->folder, &triangles, why, why_bytes) || report_plot_put(out, content->folder, &bytes, why, why_bytes) ||
-        report_plot_put(out, content->folder, &nodes, why, why_bytes) || report_plot_put(out, content->folder, &panoramas, why, why_bytes) ||
+    if (report_plot_put(out, content->folder, &triangles, why, why_bytes) ||
+        report_plot_put(out, content->folder, &bytes, why, why_bytes) ||
+        report_plot_put(out, content->folder, &nodes, why, why_bytes) ||
+        report_plot_put(out, content->folder, &panoramas, why, why_bytes) ||
         report_plot_put(out, content->folder, &error, why, why_bytes))
         return -1;
     fputs("</div>\n", out);
@@ -137,9 +157,15 @@ static int put_flight(FILE *out, const report_content *content, const report_fli
 
 static int put_comparison(FILE *out, const report_content *content, char *why, size_t why_bytes)
 {
-    report_plot bytes = {.title = "Bytes down", .x_label = "seconds", .y_label = "kB"};
-    report_plot error = {.title = "Error over time", .x_label = "seconds", .y_label = "pixels rms", .logarithmic_y = 1};
-    report_plot work = {.title = "Error against bytes", .x_label = "kB down", .y_label = "pixels rms", .logarithmic_y = 1};
+    report_plot bytes = { .title = "Bytes down", .x_label = "seconds", .y_label = "kB" };
+    report_plot error = { .title = "Error over time",
+                          .x_label = "seconds",
+                          .y_label = "pixels rms",
+                          .logarithmic_y = 1 };
+    report_plot work = { .title = "Error against bytes",
+                         .x_label = "kB down",
+                         .y_label = "pixels rms",
+                         .logarithmic_y = 1 };
     for (size_t i = 0; i < content->flight_count; i++) {
         const report_flight *flight = &content->flight[i];
         add_curve(&bytes, flight, REPORT_T_S, REPORT_BYTES_DOWN, flight->name);
@@ -147,7 +173,8 @@ static int put_comparison(FILE *out, const report_content *content, char *why, s
         add_curve(&work, flight, REPORT_BYTES_DOWN, REPORT_ERR_RMS, flight->name);
     }
     fputs("<h2>All flights</h2>\n<div class=\"plots\">\n", out);
-    if (report_plot_put(out, content->folder, &bytes, why, why_bytes) || report_plot_put(out, content->folder, &error, why, why_bytes) ||
+    if (report_plot_put(out, content->folder, &bytes, why, why_bytes) ||
+        report_plot_put(out, content->folder, &error, why, why_bytes) ||
         report_plot_put(out, content->folder, &work, why, why_bytes))
         return -1;
     fputs("</div>\n", out);
@@ -175,15 +202,18 @@ static double most_different(const report_sheet *sheet)
     return most;
 }
 
-#define SHEET_CAPTION "below each other, then the difference, %d times as large. At most %.2f %% of a picture's pixels differ by more than %d/255."
+#define SHEET_CAPTION \
+    "below each other, then the difference, %d times as large. At most %.2f %% of a picture's pixels differ by more than %d/255."
 
 static void put_sheet(FILE *out, const report_sheet *sheet)
 {
-    fprintf(out, "<h2>%s</h2>\n<figure class=\"wide\"><img src=\"%s\" alt=\"\"><figcaption>", sheet->heading, sheet->file);
+    fprintf(out, "<h2>%s</h2>\n<figure class=\"wide\"><img src=\"%s\" alt=\"\"><figcaption>",
+            sheet->heading, sheet->file);
     report_put_html(out, sheet->name[0]);
     fputs(" and ", out);
     report_put_html(out, sheet->name[1]);
-    fprintf(out, " " SHEET_CAPTION "</figcaption></figure>\n", sheet->amplified, most_different(sheet), REPORT_SHEET_VISIBLE);
+    fprintf(out, " " SHEET_CAPTION "</figcaption></figure>\n", sheet->amplified,
+            most_different(sheet), REPORT_SHEET_VISIBLE);
 }
 
 int report_page_html(const report_content *content, char *why, size_t why_bytes)
@@ -193,12 +223,14 @@ int report_page_html(const report_content *content, char *why, size_t why_bytes)
     if (!out) return -1;
     fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>", out);
     report_put_html(out, content->title);
-    fputs("</title>\n<style>\n"
-          "body{font:15px/1.5 sans-serif;margin:2em auto;max-width:1340px;padding:0 1em;color:#222}\n"
-          "table{border-collapse:collapse}td,th{padding:.2em .7em;border-bottom:1px solid #ddd;text-align:right}\n"
-          "th{vertical-align:bottom}td:first-child,th:first-child{text-align:left}.wide{overflow-x:auto}\n"
-          ".plots{display:flex;flex-wrap:wrap;gap:1em}figure{margin:0}figure svg{width:640px;height:300px}\n"
-          "figcaption{color:#666;font-size:13px}\n</style></head><body>\n<h1>", out);
+    fputs(
+        "</title>\n<style>\n"
+        "body{font:15px/1.5 sans-serif;margin:2em auto;max-width:1340px;padding:0 1em;color:#222}\n"
+        "table{border-collapse:collapse}td,th{padding:.2em .7em;border-bottom:1px solid #ddd;text-align:right}\n"
+        "th{vertical-align:bottom}td:first-child,th:first-child{text-align:left}.wide{overflow-x:auto}\n"
+        ".plots{display:flex;flex-wrap:wrap;gap:1em}figure{margin:0}figure svg{width:640px;height:300px}\n"
+        "figcaption{color:#666;font-size:13px}\n</style></head><body>\n<h1>",
+        out);
     report_put_html(out, content->title);
     fputs("</h1>\n", out);
     if (content->paper) rc = report_matrix_html(out, content, why, why_bytes);
@@ -206,14 +238,17 @@ int report_page_html(const report_content *content, char *why, size_t why_bytes)
     report_findings(out, content, 1);
     if (content->paper) fputs("<h2>All flights</h2>\n", out);
     put_html_table(out, content);
-    if (!content->paper && content->flight_count > 1) rc = put_comparison(out, content, why, why_bytes);
+    if (!content->paper && content->flight_count > 1)
+        rc = put_comparison(out, content, why, why_bytes);
     for (size_t i = 0; i < content->sheet_count; i++) put_sheet(out, &content->sheet[i]);
     put_pictures(out, content);
     for (size_t i = 0; i < content->flight_count && !rc; i++)
         rc = put_flight(out, content, &content->flight[i], why, why_bytes);
     fputs("</body></html>\n", out);
-    if (rc) fclose(out);
-    else rc = close_page(out, content, "index.html", why, why_bytes);
+    if (rc)
+        fclose(out);
+    else
+        rc = close_page(out, content, "index.html", why, why_bytes);
     return rc;
 }
 
@@ -241,8 +276,10 @@ int report_page_markdown(const report_content *content, char *why, size_t why_by
         fputs(" |", out);
         for (int c = 0; c < SUMMARY_COLUMNS; c++) {
             double value = summary_value(&summary, &summary_columns[c]);
-            if (isnan(value)) fputs(" – |", out);
-            else fprintf(out, " %.*f |", summary_columns[c].decimals, value);
+            if (isnan(value))
+                fputs(" – |", out);
+            else
+                fprintf(out, " %.*f |", summary_columns[c].decimals, value);
         }
     }
     fputs("\n", out);
@@ -252,7 +289,8 @@ int report_page_markdown(const report_content *content, char *why, size_t why_by
         report_put_markdown(out, sheet->name[0]);
         fputs(" and ", out);
         report_put_markdown(out, sheet->name[1]);
-        fprintf(out, " " SHEET_CAPTION "\n", sheet->amplified, most_different(sheet), REPORT_SHEET_VISIBLE);
+        fprintf(out, " " SHEET_CAPTION "\n", sheet->amplified, most_different(sheet),
+                REPORT_SHEET_VISIBLE);
     }
     for (size_t i = 0; i < content->picture_count; i++) {
         fputs("\n![](", out);
@@ -266,9 +304,12 @@ static void put_json_text(const char *text)
 {
     putchar('"');
     for (; *text; text++) {
-        if (*text == '"' || *text == '\\') printf("\\%c", *text);
-        else if ((unsigned char)*text < ' ') printf("\\u%04x", (unsigned)*text);
-        else putchar(*text);
+        if (*text == '"' || *text == '\\')
+            printf("\\%c", *text);
+        else if ((unsigned char)*text < ' ')
+            printf("\\u%04x", (unsigned)*text);
+        else
+            putchar(*text);
     }
     putchar('"');
 }
@@ -284,8 +325,10 @@ void report_page_json(const report_content *content)
         for (int c = 0; c < SUMMARY_COLUMNS; c++) {
             double value = summary_value(&summary, &summary_columns[c]);
             printf(", \"%s\": ", summary_columns[c].json);
-            if (isnan(value)) fputs("null", stdout);
-            else printf("%.9g", value);
+            if (isnan(value))
+                fputs("null", stdout);
+            else
+                printf("%.9g", value);
         }
         putchar('}');
     }

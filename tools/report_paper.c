@@ -10,7 +10,8 @@
 
 #define LINE_BYTES 1024
 
-static const char header[] = "link,speed_kmh,quality,panorama,fps,triangles,kilobytes,stable_from_s,stable_to_s";
+static const char header[] =
+    "link,speed_kmh,quality,panorama,fps,triangles,kilobytes,stable_from_s,stable_to_s";
 enum { LINK, SPEED, QUALITY, PANORAMA, FPS, TRIANGLES, KILOBYTES, STABLE_FROM, STABLE_TO, FIELDS };
 
 static int read_word(const char *field, char *word)
@@ -29,7 +30,7 @@ static int read_number(const char *field, double *value)
 
 static void make_name(report_paper_row *row)
 {
-    const char *word[] = {row->link, row->speed_kmh, row->quality, row->panorama};
+    const char *word[] = { row->link, row->speed_kmh, row->quality, row->panorama };
     for (int i = 0; i < 4; i++) {
         if (i) strcat(row->name, "-");
         strcat(row->name, word[i]);
@@ -41,9 +42,11 @@ static int read_row(char *line, report_paper_row *row)
     char *field[FIELDS];
     double fps;
     if (report_csv_split(line, field, FIELDS) != FIELDS) return -1;
-    if (read_word(field[LINK], row->link) || read_word(field[SPEED], row->speed_kmh) || read_word(field[QUALITY], row->quality) ||
-        read_word(field[PANORAMA], row->panorama) || read_number(field[FPS], &fps) || read_number(field[TRIANGLES], &row->triangles) ||
-        read_number(field[KILOBYTES], &row->kilobytes) || read_number(field[STABLE_FROM], &row->stable_from_s) ||
+    if (read_word(field[LINK], row->link) || read_word(field[SPEED], row->speed_kmh) ||
+        read_word(field[QUALITY], row->quality) || read_word(field[PANORAMA], row->panorama) ||
+        read_number(field[FPS], &fps) || read_number(field[TRIANGLES], &row->triangles) ||
+        read_number(field[KILOBYTES], &row->kilobytes) ||
+        read_number(field[STABLE_FROM], &row->stable_from_s) ||
         read_number(field[STABLE_TO], &row->stable_to_s))
         return -1;
     make_name(row);
@@ -60,7 +63,8 @@ static int read_rows(report_paper *paper, FILE *in, size_t *number)
         if (!have_header) {
             if (strcmp(line, header)) return -1;
             have_header = 1;
-        } else if (paper->row_count == REPORT_PAPER_ROWS_MAX || read_row(line, &paper->row[paper->row_count++])) {
+        } else if (paper->row_count == REPORT_PAPER_ROWS_MAX ||
+                   read_row(line, &paper->row[paper->row_count++])) {
             return -1;
         }
     }

@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#define REPORT_PAPER_ROWS_MAX 64
+#define REPORT_PAPER_ROWS_MAX   64
 #define REPORT_PAPER_WORD_BYTES 16
 
 /* What the paper does not tell is NAN. */

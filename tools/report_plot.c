@@ -8,11 +8,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#define PATH_BYTES 4096
+#define PATH_BYTES      4096
 #define GNUPLOT_MISSING 127
 #define LOGARITHM_FLOOR 0.01
 
-static const char *const colours[] = {"#1b6ca8", "#c8553d", "#588b3a", "#7a4f9a", "#b8860b", "#3a8a8a", "#8a3a5e", "#555555"};
+static const char *const colours[] = { "#1b6ca8", "#c8553d", "#588b3a", "#7a4f9a",
+                                       "#b8860b", "#3a8a8a", "#8a3a5e", "#555555" };
 
 /* Text inside gnuplot's double quotes. */
 static void put_quoted(FILE *out, const char *text)
@@ -38,8 +39,10 @@ static void put_data(FILE *out, const report_curve *curve, size_t number, int lo
     for (size_t i = 0; i < curve->flight->row_count; i++) {
         double x = curve->flight->row[i].value[curve->x] * curve->x_scale;
         double y = curve->flight->row[i].value[curve->y] * curve->y_scale;
-        if (isnan(x) || isnan(y)) fputs("\n", out); /* a gap */
-        else fprintf(out, "%.9g %.9g\n", x, logarithmic_y ? fmax(y, LOGARITHM_FLOOR) : y);
+        if (isnan(x) || isnan(y))
+            fputs("\n", out); /* a gap */
+        else
+            fprintf(out, "%.9g %.9g\n", x, logarithmic_y ? fmax(y, LOGARITHM_FLOOR) : y);
     }
     fputs("END_OF_CURVE\n", out);
 }
@@ -48,19 +51,23 @@ static int write_script(const report_plot *plot, const char *script, const char 
 {
     FILE *out = fopen(script, "w");
     if (!out) return -1;
-    fputs("set terminal svg size 640,300 dynamic font 'sans-serif,12' linewidth 1.2\nset output ", out);
+    fputs("set terminal svg size 640,300 dynamic font 'sans-serif,12' linewidth 1.2\nset output ",
+          out);
     put_quoted(out, picture);
-    fputs("\nset grid linetype 1 linecolor rgb '#dddddd'\nset border 3 linecolor rgb '#888888'\nset tics nomirror\n"
-          "set key below center horizontal noenhanced\n", out);
+    fputs(
+        "\nset grid linetype 1 linecolor rgb '#dddddd'\nset border 3 linecolor rgb '#888888'\nset tics nomirror\n"
+        "set key below center horizontal noenhanced\n",
+        out);
     put_label(out, "title", plot->title);
     put_label(out, "xlabel", plot->x_label);
     put_label(out, "ylabel", plot->y_label);
     fputs(plot->logarithmic_y ? "set logscale y\n" : "set yrange [0:*<1e15]\n", out);
     if (plot->x_most > 0) fprintf(out, "set xrange [0:%g]\n", plot->x_most);
-    for (size_t i = 0; i < plot->curve_count; i++) put_data(out, &plot->curve[i], i, plot->logarithmic_y);
+    for (size_t i = 0; i < plot->curve_count; i++)
+        put_data(out, &plot->curve[i], i, plot->logarithmic_y);
     for (size_t i = 0; i < plot->curve_count; i++) {
-        fprintf(out, "%s$curve%zu using 1:2 with %s linecolor rgb '%s' title ", i ? ", " : "plot ", i,
-                plot->points ? "linespoints pointtype 7 pointsize 0.5" : "lines",
+        fprintf(out, "%s$curve%zu using 1:2 with %s linecolor rgb '%s' title ", i ? ", " : "plot ",
+                i, plot->points ? "linespoints pointtype 7 pointsize 0.5" : "lines",
                 colours[i % (sizeof colours / sizeof *colours)]);
         put_quoted(out, plot->curve[i].title);
     }
@@ -103,24 +110,29 @@ static char *read_svg(const char *picture)
     return svg;
 }
 
-static int draw(const report_plot *plot, const char *folder, char **svg, char *why, size_t why_bytes)
+static int draw(const report_plot *plot, const char *folder, char **svg, char *why,
+                size_t why_bytes)
 {
     char script[PATH_BYTES], picture[PATH_BYTES];
     int status, rc = -1;
     snprintf(script, sizeof script, "%s/plot.gp", folder);
     snprintf(picture, sizeof picture, "%s/plot.svg", folder);
     *svg = NULL;
-    if (write_script(plot, script, picture)) snprintf(why, why_bytes, "%s: %s", script, strerror(errno));
+    if (write_script(plot, script, picture))
+        snprintf(why, why_bytes, "%s: %s", script, strerror(errno));
     else if ((status = run_gnuplot(script)) == GNUPLOT_MISSING)
         snprintf(why, why_bytes, "cannot run gnuplot (Debian package gnuplot-nox)");
-    else if (status || !(*svg = read_svg(picture))) snprintf(why, why_bytes, "gnuplot failed (status %d) on %s", status, plot->title);
-    else rc = 0;
+    else if (status || !(*svg = read_svg(picture)))
+        snprintf(why, why_bytes, "gnuplot failed (status %d) on %s", status, plot->title);
+    else
+        rc = 0;
     remove(script);
     remove(picture);
     return rc;
 }
 
-int report_plot_put(FILE *out, const char *folder, const report_plot *plot, char *why, size_t why_bytes)
+int report_plot_put(FILE *out, const char *folder, const report_plot *plot, char *why,
+                    size_t why_bytes)
 {
     char *svg;
     if (!plot->curve_count) return 0;

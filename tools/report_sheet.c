@@ -8,19 +8,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PATH_BYTES 4096
-#define GAP_PX 8
-#define TEXT_TIMES 2 /* enlarged */
-#define BAND_PX 24   /* above each picture, for text */
-#define ROWS 3
-#define PAPER 0xF6
-#define INK 0xFF202020u
+#define PATH_BYTES  4096
+#define GAP_PX      8
+#define TEXT_TIMES  2  /* enlarged */
+#define BAND_PX     24 /* above each picture, for text */
+#define ROWS        3
+#define PAPER       0xF6
+#define INK         0xFF202020u
 #define SIDE_PX_MAX 4096
 
 typedef struct canvas {
     uint8_t *rgb;
-    uint32_t width, height;     /* of the sheet */
-    uint32_t picture_px[2];     /* of each picture */
+    uint32_t width, height; /* of the sheet */
+    uint32_t picture_px[2]; /* of each picture */
     size_t columns;
 } canvas;
 
@@ -43,12 +43,12 @@ static struct dirent **shared_names(const report_series series[2], size_t *count
     struct dirent **list;
     int found = scandir(series[0].folder, &list, is_picture, alphasort);
     *count = 0;
-    if (found < 0)
-        return NULL;
+    if (found < 0) return NULL;
     for (int i = 0; i < found; i++) {
         char path[PATH_BYTES];
         sys_mapping mapping;
-        if (join_path(path, series[1].folder, list[i]->d_name) && sys_map_file(path, &mapping) == FF_OK) {
+        if (join_path(path, series[1].folder, list[i]->d_name) &&
+            sys_map_file(path, &mapping) == FF_OK) {
             sys_unmap_file(&mapping);
             list[(*count)++] = list[i];
         } else {
@@ -78,21 +78,22 @@ static int canvas_make(canvas *c, uint32_t width, uint32_t height, size_t column
     c->width = (uint32_t)columns * (width + GAP_PX) + GAP_PX;
     c->height = ROWS * (height + BAND_PX) + GAP_PX;
     c->rgb = malloc((size_t)c->width * c->height * 3);
-    if (c->rgb)
-        memset(c->rgb, PAPER, (size_t)c->width * c->height * 3);
+    if (c->rgb) memset(c->rgb, PAPER, (size_t)c->width * c->height * 3);
     return c->rgb ? 0 : -1;
 }
 
 static uint8_t *cell(const canvas *c, size_t column, size_t row, uint32_t y)
 {
-    size_t at_x = GAP_PX + column * (c->picture_px[0] + GAP_PX), at_y = row * (c->picture_px[1] + BAND_PX) + BAND_PX + y;
+    size_t at_x = GAP_PX + column * (c->picture_px[0] + GAP_PX),
+           at_y = row * (c->picture_px[1] + BAND_PX) + BAND_PX + y;
     return c->rgb + 3 * (at_y * c->width + at_x);
 }
 
 static void put_picture(const canvas *c, size_t column, size_t row, const uint8_t *rgb)
 {
     for (uint32_t y = 0; y < c->picture_px[1]; y++)
-        memcpy(cell(c, column, row, y), rgb + 3 * (size_t)y * c->picture_px[0], 3 * (size_t)c->picture_px[0]);
+        memcpy(cell(c, column, row, y), rgb + 3 * (size_t)y * c->picture_px[0],
+               3 * (size_t)c->picture_px[0]);
 }
 
 /* Into the band above a picture. */
@@ -107,14 +108,14 @@ static void put_text(const canvas *c, size_t column, size_t row, const char *tex
         uint8_t *to = cell(c, column, row, 0) - 3 * ((size_t)c->width * (size_t)(BAND_PX - 5 - y));
         for (int x = 0; x < wide * TEXT_TIMES; x++) {
             const uint8_t *from = rgba + 4 * (y / TEXT_TIMES * wide + x / TEXT_TIMES);
-            if (from[3])
-                memcpy(to + 3 * x, from, 3);
+            if (from[3]) memcpy(to + 3 * x, from, 3);
         }
     }
 }
 
 /* The third row of a column; percent of the pixels that differ visibly. */
-static double put_difference(const canvas *c, size_t column, int amplified, const uint8_t *a, const uint8_t *b)
+static double put_difference(const canvas *c, size_t column, int amplified, const uint8_t *a,
+                             const uint8_t *b)
 {
     size_t apart = 0, at = 0;
     for (uint32_t y = 0; y < c->picture_px[1]; y++) {
@@ -134,27 +135,30 @@ static double put_difference(const canvas *c, size_t column, int amplified, cons
 
 /* ---- the sheet ---- */
 
-static int load(const report_series *series, const char *name, canvas *c, uint8_t **rgb, char *why, size_t why_bytes)
+static int load(const report_series *series, const char *name, canvas *c, uint8_t **rgb, char *why,
+                size_t why_bytes)
 {
     char path[PATH_BYTES];
     uint32_t width, height;
-    int rc = join_path(path, series->folder, name) ? sys_png_read(path, rgb, &width, &height) : FF_ERR_ARGUMENT;
+    int rc = join_path(path, series->folder, name) ? sys_png_read(path, rgb, &width, &height)
+                                                   : FF_ERR_ARGUMENT;
     if (rc == FF_OK && c->rgb && (width != c->picture_px[0] || height != c->picture_px[1]))
         rc = FF_ERR_RANGE;
     if (rc == FF_OK && !c->rgb)
-        rc = width > SIDE_PX_MAX || height > SIDE_PX_MAX ? FF_ERR_RANGE : canvas_make(c, width, height, c->columns) ? FF_ERR_MEMORY : FF_OK;
-    if (rc != FF_OK)
-        snprintf(why, why_bytes, "%s: %s", path, ff_error_text(rc));
+        rc = width > SIDE_PX_MAX || height > SIDE_PX_MAX ? FF_ERR_RANGE
+             : canvas_make(c, width, height, c->columns) ? FF_ERR_MEMORY
+                                                         : FF_OK;
+    if (rc != FF_OK) snprintf(why, why_bytes, "%s: %s", path, ff_error_text(rc));
     return rc == FF_OK ? 0 : -1;
 }
 
-static int put_moment(const report_series series[2], const char *name, canvas *c, size_t column, report_sheet *sheet, char *why, size_t why_bytes)
+static int put_moment(const report_series series[2], const char *name, canvas *c, size_t column,
+                      report_sheet *sheet, char *why, size_t why_bytes)
 {
-    uint8_t *rgb[2] = {NULL, NULL};
+    uint8_t *rgb[2] = { NULL, NULL };
     char text[128], moment[64];
     int rc = load(&series[0], name, c, &rgb[0], why, why_bytes);
-    if (!rc)
-        rc = load(&series[1], name, c, &rgb[1], why, why_bytes);
+    if (!rc) rc = load(&series[1], name, c, &rgb[1], why, why_bytes);
     if (!rc) {
         moment_text(name, moment, sizeof moment);
         for (size_t row = 0; row < 2; row++) {
@@ -163,7 +167,8 @@ static int put_moment(const report_series series[2], const char *name, canvas *c
             put_picture(c, column, row, rgb[row]);
         }
         sheet->differ_percent[column] = put_difference(c, column, sheet->amplified, rgb[0], rgb[1]);
-        snprintf(text, sizeof text, "X%d %.2f %% > %d/255", sheet->amplified, sheet->differ_percent[column], REPORT_SHEET_VISIBLE);
+        snprintf(text, sizeof text, "X%d %.2f %% > %d/255", sheet->amplified,
+                 sheet->differ_percent[column], REPORT_SHEET_VISIBLE);
         put_text(c, column, 2, text);
     }
     free(rgb[0]);
@@ -171,29 +176,31 @@ static int put_moment(const report_series series[2], const char *name, canvas *c
     return rc;
 }
 
-int report_sheet_write(const report_series series[2], const char *folder, report_sheet *sheet, char *why, size_t why_bytes)
+int report_sheet_write(const report_series series[2], const char *folder, report_sheet *sheet,
+                       char *why, size_t why_bytes)
 {
     size_t count;
-    canvas c = {.rgb = NULL};
+    canvas c = { .rgb = NULL };
     struct dirent **name = shared_names(series, &count);
     int rc = 0;
     char path[PATH_BYTES];
     for (int i = 0; i < 2; i++) sheet->name[i] = series[i].name;
     sheet->moments = c.columns = count < REPORT_SHEET_MOMENTS ? count : REPORT_SHEET_MOMENTS;
     if (!count) {
-        snprintf(why, why_bytes, "%s and %s have no picture of the same name", series[0].folder, series[1].folder);
+        snprintf(why, why_bytes, "%s and %s have no picture of the same name", series[0].folder,
+                 series[1].folder);
         rc = -1;
     }
     for (size_t i = 0; i < c.columns && !rc; i++)
-        rc = put_moment(series, name[c.columns < 2 ? 0 : i * (count - 1) / (c.columns - 1)]->d_name, &c, i, sheet, why, why_bytes);
+        rc = put_moment(series, name[c.columns < 2 ? 0 : i * (count - 1) / (c.columns - 1)]->d_name,
+                        &c, i, sheet, why, why_bytes);
     if (!rc && !join_path(path, folder, sheet->file)) {
         snprintf(why, why_bytes, "%s: path too long", folder);
         rc = -1;
     }
     if (!rc && (rc = sys_png_write(path, c.rgb, c.width, c.height)) != FF_OK)
         snprintf(why, why_bytes, "%s: %s", path, ff_error_text(rc));
-    for (size_t i = 0; i < count; i++)
-        free(name[i]);
+    for (size_t i = 0; i < count; i++) free(name[i]);
     free(name);
     free(c.rgb);
     return rc ? -1 : 0;

@@ -1,27 +1,34 @@
-/* The same flight drawn twice: pictures of the same moments one above the other, below them how they differ; one PNG. */
+/* The same flight drawn twice: pictures of the same moments one above the other, below them how
+ * they differ; one PNG. */
 #ifndef REPORT_SHEET_H
 #define REPORT_SHEET_H
 
 #include <stddef.h>
 
-#define REPORT_SHEET_MOMENTS 5    /* columns at most: the first, the last, and evenly between */
-#define REPORT_SHEET_VISIBLE 8    /* of 255 in a channel: pixels further apart are counted */
+#define REPORT_SHEET_MOMENTS 5 /* columns at most: the first, the last, and evenly between */
+#define REPORT_SHEET_VISIBLE 8 /* of 255 in a channel: pixels further apart are counted */
 
-typedef struct report_series { const char *name, *folder; } report_series; /* folder: of farfield-fly --png */
+/* folder: of farfield-fly --png */
+typedef struct report_series {
+    const char *name, *folder;
+} report_series;
 
 #define REPORT_SHEET_FILE_BYTES 40
 
 typedef struct report_sheet {
-    const char *heading;            /* plain words */
+    const char *heading; /* plain words */
     char file[REPORT_SHEET_FILE_BYTES];
-    int amplified;                  /* differences are shown so many times as large */
+    int amplified; /* differences are shown so many times as large */
     const char *name[2];
     size_t moments;
-    double differ_percent[REPORT_SHEET_MOMENTS]; /* of the pixels, by more than REPORT_SHEET_VISIBLE */
+    /* of the pixels, by more than REPORT_SHEET_VISIBLE */
+    double differ_percent[REPORT_SHEET_MOMENTS];
 } report_sheet;
 
-/* Pictures that both folders have by the same name, all of one size; into folder/sheet->file. heading, file and amplified are the caller's,
- * the rest is filled in. 0, or -1 with the reason in `why`. */
-int report_sheet_write(const report_series series[2], const char *folder, report_sheet *sheet, char *why, size_t why_bytes);
+/* Pictures that both folders have by the same name, all of one size; into folder/sheet->file.
+ * heading, file and amplified are the caller's, the rest is filled in. 0, or -1 with the reason in
+ * `why`. */
+int report_sheet_write(const report_series series[2], const char *folder, report_sheet *sheet,
+                       char *why, size_t why_bytes);
 
 #endif

@@ -5,7 +5,10 @@
 #include <stddef.h>
 #include <stdio.h>
 
-typedef struct report_style { const char *row_open, *row_close, *cell_open, *cell_close, *head_open, *head_close; int html; } report_style;
+typedef struct report_style {
+    const char *row_open, *row_close, *cell_open, *cell_close, *head_open, *head_close;
+    int html;
+} report_style;
 extern const report_style report_style_html, report_style_markdown;
 
 /* Between _head and _end lie rows: _row, cells, _row_end. Words are plain: no markup, no '|'. */

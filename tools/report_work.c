@@ -12,14 +12,16 @@
 #define FIELDS_MAX 64
 
 enum { QUALITY, PANORAMA, INSTRUCTIONS, ERROR, COLUMNS };
-static const char *const names[COLUMNS] = {"quality", "panorama", "instructions", "err_px_p95"};
+static const char *const names[COLUMNS] = { "quality", "panorama", "instructions", "err_px_p95" };
 
 static int read_header(char *line, size_t place[COLUMNS], size_t *fields)
 {
     char *field[FIELDS_MAX];
     *fields = report_csv_split(line, field, FIELDS_MAX);
     for (int c = 0; c < COLUMNS; c++) {
-        for (place[c] = 0; place[c] < *fields && place[c] < FIELDS_MAX && strcmp(field[place[c]], names[c]) != 0;) place[c]++;
+        for (place[c] = 0;
+             place[c] < *fields && place[c] < FIELDS_MAX && strcmp(field[place[c]], names[c]) != 0;)
+            place[c]++;
         if (place[c] >= *fields || place[c] >= FIELDS_MAX) return -1;
     }
     return *fields > FIELDS_MAX ? -1 : 0;
@@ -37,10 +39,15 @@ static int read_row(char *line, const size_t place[COLUMNS], size_t fields, repo
     char *field[FIELDS_MAX];
     if (report_csv_split(line, field, FIELDS_MAX) != fields) return -1;
     const char *quality = field[place[QUALITY]], *panorama = field[place[PANORAMA]];
-    if (!*quality || strlen(quality) >= sizeof row->quality || strlen(panorama) >= sizeof row->panorama) return -1;
+    if (!*quality || strlen(quality) >= sizeof row->quality ||
+        strlen(panorama) >= sizeof row->panorama)
+        return -1;
     strcpy(row->quality, quality);
     strcpy(row->panorama, panorama);
-    return read_number(field[place[INSTRUCTIONS]], &row->instructions) || read_number(field[place[ERROR]], &row->err_px_p95) ? -1 : 0;
+    return read_number(field[place[INSTRUCTIONS]], &row->instructions) ||
+                   read_number(field[place[ERROR]], &row->err_px_p95)
+               ? -1
+               : 0;
 }
 
 int report_work_load(report_work *work, const char *path, char *why, size_t why_bytes)
@@ -56,9 +63,12 @@ int report_work_load(report_work *work, const char *path, char *why, size_t why_
     int rc = 0;
     while (!rc && fgets(line, sizeof line, in)) {
         number++;
-        if (number == 1) rc = read_header(line, place, &fields);
-        else if (work->row_count == REPORT_WORK_ROWS_MAX) rc = -1;
-        else rc = read_row(line, place, fields, &work->row[work->row_count++]);
+        if (number == 1)
+            rc = read_header(line, place, &fields);
+        else if (work->row_count == REPORT_WORK_ROWS_MAX)
+            rc = -1;
+        else
+            rc = read_row(line, place, fields, &work->row[work->row_count++]);
     }
     fclose(in);
     if (!rc && work->row_count) return 0;

@@ -1,11 +1,12 @@
-/* Instructions and error over a sweep of quality, as make bench-handheld counts them (work-precision.csv): columns quality, panorama,
- * instructions (of a frame), err_px_p95; others are not looked at. */
+/* Instructions and error over a sweep of quality, as make bench-handheld counts them
+ * (work-precision.csv): columns quality, panorama, instructions (of a frame), err_px_p95; others
+ * are not looked at. */
 #ifndef REPORT_WORK_H
 #define REPORT_WORK_H
 
 #include <stddef.h>
 
-#define REPORT_WORK_ROWS_MAX 64
+#define REPORT_WORK_ROWS_MAX   64
 #define REPORT_WORK_WORD_BYTES 16
 
 typedef struct report_work_row {

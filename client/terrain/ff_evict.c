@@ -1,46 +1,44 @@
-/* Who makes room when the pool is full. Roots in the window come before all refinements, nearer before farther; refinements by the
- * value of their split. Something is dropped only for something strictly more valuable, so under a still camera every exchange
- * raises the value of what is held: a full pool settles. */
+/* Who makes room when the pool is full. Roots in the window come before all refinements, nearer
+ * before farther; refinements by the value of their split. Something is dropped only for something
+ * strictly more valuable, so under a still camera every exchange raises the value of what is held:
+ * a full pool settles. */
 #include "ff_tree_local.h"
 
 #define IDLE_SHIFT 8 /* outside the window children are worth 1/256 of what they are inside */
 
 static int is_idle_root(const ff_tree *tree, const ff_node *node)
 {
-    return node->parent == FF_SLOT_NONE && !ff_node_has_children(node)
-           && !ff_tile_active(tree, ff_key_tile(node->key));
+    return node->parent == FF_SLOT_NONE && !ff_node_has_children(node) &&
+           !ff_tile_active(tree, ff_key_tile(node->key));
 }
 
 static int has_leaf_family(const ff_tree *tree, const ff_node *node)
 {
-    if (!ff_node_has_children(node))
-        return 0;
+    if (!ff_node_has_children(node)) return 0;
     for (unsigned q = 0; q < 4; q++) {
-        if (ff_node_has_children(&tree->node[node->child[q]]))
-            return 0;
+        if (ff_node_has_children(&tree->node[node->child[q]])) return 0;
     }
     return 1;
 }
 
-/* What the children of `node` are worth now. Not wanted ones are cached: worth their own 1/f, never more than 1. */
+/* What the children of `node` are worth now. Not wanted ones are cached: worth their own 1/f, never
+ * more than 1. */
 static uint32_t split_worth(const ff_tree *tree, const ff_node *node)
 {
-    if (node->flags & FF_NODE_WANTED)
-        return node->value;
+    if (node->flags & FF_NODE_WANTED) return node->value;
     uint32_t value = ff_value_of_split(tree, node);
-    if (value > FF_VALUE_ONE)
-        value = FF_VALUE_ONE;
+    if (value > FF_VALUE_ONE) value = FF_VALUE_ONE;
     return ff_tile_active(tree, ff_key_tile(node->key)) ? value : value >> IDLE_SHIFT;
 }
 
-/* A leaf family is also worth what its members are wanted for: their refinements would be of no use without them. */
+/* A leaf family is also worth what its members are wanted for: their refinements would be of no use
+ * without them. */
 static uint32_t family_worth(const ff_tree *tree, const ff_node *parent)
 {
     uint32_t worth = split_worth(tree, parent);
     for (unsigned q = 0; q < 4; q++) {
         const ff_node *child = &tree->node[parent->child[q]];
-        if (child->flags & FF_NODE_WANTED && child->value > worth)
-            worth = child->value;
+        if (child->flags & FF_NODE_WANTED && child->value > worth) worth = child->value;
     }
     return worth;
 }
@@ -48,8 +46,7 @@ static uint32_t family_worth(const ff_tree *tree, const ff_node *parent)
 uint32_t ff_evict_limit(const ff_tree *tree, const ff_node *node)
 {
     uint32_t worth = split_worth(tree, node);
-    if (node->flags & FF_NODE_WANTED || tree->quality.sigma_q8 <= 256)
-        return worth;
+    if (node->flags & FF_NODE_WANTED || tree->quality.sigma_q8 <= 256) return worth;
     uint32_t cached = (uint32_t)((FF_VALUE_ONE << 8) / (uint32_t)tree->quality.sigma_q8);
     return worth < cached ? worth : cached;
 }
@@ -59,8 +56,7 @@ uint32_t ff_evict_candidates(const ff_tree *tree, uint64_t *keys)
     uint32_t count = 0;
     for (uint32_t slot = 0; slot < tree->node_count; slot++) {
         const ff_node *node = &tree->node[slot];
-        if (!(node->flags & FF_NODE_HELD))
-            continue;
+        if (!(node->flags & FF_NODE_HELD)) continue;
         if (is_idle_root(tree, node))
             keys[count++] = slot;
         else if (has_leaf_family(tree, node))
@@ -69,14 +65,15 @@ uint32_t ff_evict_candidates(const ff_tree *tree, uint64_t *keys)
     return count;
 }
 
-/* Drops the least valuable thing worth less than `below`, sparing `keep` and the family it is in. */
+/* Drops the least valuable thing worth less than `below`, sparing `keep` and the family it is
+ * in. */
 static int drop_one(ff_tree *tree, uint32_t keep, uint64_t below)
 {
-    uint32_t keep_parent = keep == FF_SLOT_NONE ? FF_SLOT_NONE : tree->node[keep].parent, victim = FF_SLOT_NONE;
+    uint32_t keep_parent = keep == FF_SLOT_NONE ? FF_SLOT_NONE : tree->node[keep].parent,
+             victim = FF_SLOT_NONE;
     for (uint32_t slot = 0; slot < tree->node_count; slot++) {
         const ff_node *node = &tree->node[slot];
-        if (!(node->flags & FF_NODE_HELD) || slot == keep || slot == keep_parent)
-            continue;
+        if (!(node->flags & FF_NODE_HELD) || slot == keep || slot == keep_parent) continue;
         uint64_t worth;
         if (is_idle_root(tree, node))
             worth = 0;
@@ -89,8 +86,7 @@ static int drop_one(ff_tree *tree, uint32_t keep, uint64_t below)
             victim = slot;
         }
     }
-    if (victim == FF_SLOT_NONE)
-        return 0;
+    if (victim == FF_SLOT_NONE) return 0;
     ff_node *node = &tree->node[victim];
     if (ff_node_has_children(node))
         ff_tree_drop_children(tree, node);
@@ -103,20 +99,16 @@ int ff_evict_for_children(ff_tree *tree, uint32_t keep)
 {
     uint32_t limit = ff_evict_limit(tree, &tree->node[keep]);
     while (tree->free_count < 4) {
-        if (!tree->has_view || !drop_one(tree, keep, limit))
-            return 0;
+        if (!tree->has_view || !drop_one(tree, keep, limit)) return 0;
     }
     return 1;
 }
 
 int ff_evict_for_root(ff_tree *tree, uint32_t tile)
 {
-    if (tree->free_count > 0)
-        return 1;
-    if (!tree->has_view || !ff_tile_active(tree, tile))
-        return 0;
-    if (drop_one(tree, FF_SLOT_NONE, UINT64_MAX))
-        return 1;
+    if (tree->free_count > 0) return 1;
+    if (!tree->has_view || !ff_tile_active(tree, tile)) return 0;
+    if (drop_one(tree, FF_SLOT_NONE, UINT64_MAX)) return 1;
     int64_t farthest = ff_tile_distance(tree, tile);
     uint32_t victim = FF_SLOT_NONE;
     for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
@@ -126,8 +118,7 @@ int ff_evict_for_root(ff_tree *tree, uint32_t tile)
             victim = slot;
         }
     }
-    if (victim == FF_SLOT_NONE)
-        return 0;
+    if (victim == FF_SLOT_NONE) return 0;
     ff_tree_drop_root(tree, &tree->node[victim]);
     return 1;
 }

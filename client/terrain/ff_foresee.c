@@ -1,29 +1,36 @@
-/* Prefetch: what a viewer further along the path, or turned further round, would see and wish for, found without moving the cut (Shared:
- * prefetch from predicted motion). The measures are asked as if the camera stood there; the tree itself stays as it is. */
+/* Prefetch: what a viewer further along the path, or turned further round, would see and wish for,
+ * found without moving the cut (Shared: prefetch from predicted motion). The measures are asked as
+ * if the camera stood there; the tree itself stays as it is. */
 #include "ff_tree_local.h"
 
-#define TILES_LOOKED_AT 256 /* of a window's new tiles: tiny tiles would otherwise cost more than they bring */
+#define TILES_LOOKED_AT \
+    256 /* of a window's new tiles: tiny tiles would otherwise cost more than they bring */
 
-typedef struct foresight { ff_tree ahead; ff_wish *list; uint32_t capacity, count; uint32_t victims, next_victim, free; } foresight;
+typedef struct foresight {
+    ff_tree ahead;
+    ff_wish *list;
+    uint32_t capacity, count;
+    uint32_t victims, next_victim, free;
+} foresight;
 
 static void note(foresight *f, ff_key key, int refinement, uint32_t priority)
 {
     uint32_t at = f->count;
     if (at == f->capacity) {
-        if (f->list[--at].priority >= priority)
-            return;
+        if (f->list[--at].priority >= priority) return;
     } else {
         f->count++;
     }
-    for (; at > 0 && f->list[at - 1].priority < priority; at--)
-        f->list[at] = f->list[at - 1];
-    f->list[at] = (ff_wish){.key = key, .refinement = (uint8_t)refinement, .priority = priority};
+    for (; at > 0 && f->list[at - 1].priority < priority; at--) f->list[at] = f->list[at - 1];
+    f->list[at] = (ff_wish){ .key = key, .refinement = (uint8_t)refinement, .priority = priority };
 }
 
 /* Seen from there, and not from here. */
-static int comes_into_view(const ff_tree *tree, const foresight *f, const ff_box *here, const ff_box *there)
+static int comes_into_view(const ff_tree *tree, const foresight *f, const ff_box *here,
+                           const ff_box *there)
 {
-    return ff_box_in_view(&f->ahead, there) && (ff_box_beyond_view(tree, here) || !ff_box_in_view(tree, here));
+    return ff_box_in_view(&f->ahead, there) &&
+           (ff_box_beyond_view(tree, here) || !ff_box_in_view(tree, here));
 }
 
 /* Tiles that the window there will see. */
@@ -34,12 +41,12 @@ static void foresee_roots(const ff_tree *tree, foresight *f)
     for (int64_t y = window->y0; y <= window->y1; y++)
         for (int64_t x = window->x0; x <= window->x1; x++) {
             uint32_t tile = (uint32_t)(y * tree->info.tiles_x + x);
-            if (++looked_at > TILES_LOOKED_AT)
-                return;
+            if (++looked_at > TILES_LOOKED_AT) return;
             ff_box here, there;
             ff_tile_box(tree, tile, &here);
             ff_tile_box(&f->ahead, tile, &there);
-            if (comes_into_view(tree, f, &here, &there) && ff_tree_find(tree, ff_key_make(tile, 0, 0)) == FF_SLOT_NONE)
+            if (comes_into_view(tree, f, &here, &there) &&
+                ff_tree_find(tree, ff_key_make(tile, 0, 0)) == FF_SLOT_NONE)
                 note(f, ff_key_make(tile, 0, 0), 0, FF_VALUE_ONE);
         }
 }
@@ -51,7 +58,8 @@ static int takes_room(const ff_tree *tree, foresight *f, const ff_node *node)
         f->free -= 4;
         return 1;
     }
-    if (f->next_victim == f->victims || tree->sort[f->next_victim] >> FF_SLOT_BITS >= ff_evict_limit(tree, node))
+    if (f->next_victim == f->victims ||
+        tree->sort[f->next_victim] >> FF_SLOT_BITS >= ff_evict_limit(tree, node))
         return 0;
     f->next_victim++;
     return 1;
@@ -60,13 +68,15 @@ static int takes_room(const ff_tree *tree, foresight *f, const ff_node *node)
 static void foresee_children_of(const ff_tree *tree, foresight *f, const ff_node *node)
 {
     uint32_t next = ff_key_level(node->key) + 1;
-    if (next >= ff_terrain_levels(&tree->info) || (tree->quality.depth_max && next >= tree->quality.depth_max) ||
+    if (next >= ff_terrain_levels(&tree->info) ||
+        (tree->quality.depth_max && next >= tree->quality.depth_max) ||
         node->flags & FF_NODE_NEEDED || node->error_code == 0)
         return;
     ff_box here, there;
     ff_node_box(tree, node, &here);
     ff_node_box(&f->ahead, node, &there);
-    if (node->flags & FF_NODE_WANTED ? !comes_into_view(tree, f, &here, &there) : !ff_box_in_view(&f->ahead, &there))
+    if (node->flags & FF_NODE_WANTED ? !comes_into_view(tree, f, &here, &there)
+                                     : !ff_box_in_view(&f->ahead, &there))
         return;
     uint32_t value = ff_value_of_split(&f->ahead, node);
     if (value >= FF_VALUE_ONE && !ff_box_beyond_view(&f->ahead, &there))
@@ -80,31 +90,30 @@ static void foresee_cut(const ff_tree *tree, foresight *f)
             foresee_children_of(tree, f, tree->drawn[i].node);
 }
 
-/* Tiles held that will come into the window. As bare roots they would keep the ground beside them coarse until they are refined. */
+/* Tiles held that will come into the window. As bare roots they would keep the ground beside them
+ * coarse until they are refined. */
 static void foresee_tiles(const ff_tree *tree, foresight *f)
 {
     uint32_t stack[3 * FF_LEVELS_MAX + 1];
     for (uint32_t root = tree->root_head; root != FF_SLOT_NONE; root = tree->node[root].list_next) {
         uint32_t tile = ff_key_tile(tree->node[root].key), depth = 0;
-        if (ff_tile_active(tree, tile) || !ff_tile_active(&f->ahead, tile))
-            continue;
+        if (ff_tile_active(tree, tile) || !ff_tile_active(&f->ahead, tile)) continue;
         for (stack[depth++] = root; depth > 0;) {
             const ff_node *node = &tree->node[stack[--depth]];
             if (!ff_node_has_children(node)) {
                 foresee_children_of(tree, f, node);
                 continue;
             }
-            for (unsigned q = 0; q < 4; q++)
-                stack[depth++] = node->child[q];
+            for (unsigned q = 0; q < 4; q++) stack[depth++] = node->child[q];
         }
     }
 }
 
-uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], int32_t yaw, int32_t pitch, ff_wish *list, uint32_t capacity)
+uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], int32_t yaw, int32_t pitch,
+                         ff_wish *list, uint32_t capacity)
 {
-    foresight f = {.ahead = *tree, .list = list, .capacity = capacity};
-    if (!tree->has_view || !capacity)
-        return 0;
+    foresight f = { .ahead = *tree, .list = list, .capacity = capacity };
+    if (!tree->has_view || !capacity) return 0;
     for (int axis = 0; axis < 3; axis++)
         f.ahead.view.camera.pos_wu[axis] = f.ahead.view.centre_wu[axis] = pos_wu[axis];
     f.ahead.view.camera.yaw = (f.ahead.view.camera.yaw + yaw) & 0xFFFF;
@@ -123,9 +132,10 @@ uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], int32_t y
     uint32_t kept = 0;
     for (uint32_t i = 0; i < f.count; i++) {
         const ff_wish *wish = &list[i];
-        int room = wish->refinement ? takes_room(tree, &f, &tree->node[ff_tree_find(tree, wish->key)]) : f.free > 0;
-        if (room)
-            list[kept++] = *wish;
+        int room = wish->refinement
+                       ? takes_room(tree, &f, &tree->node[ff_tree_find(tree, wish->key)])
+                       : f.free > 0;
+        if (room) list[kept++] = *wish;
     }
     return kept;
 }

@@ -1,4 +1,5 @@
-/* Node slots: a free list, a hash from key to slot, links from parents to children and a list of roots. */
+/* Node slots: a free list, a hash from key to slot, links from parents to children and a list of
+ * roots. */
 #include "ff_tree_local.h"
 
 #include <assert.h>
@@ -14,8 +15,7 @@ static uint32_t hash_of(const ff_tree *tree, ff_key key)
 uint32_t ff_tree_find(const ff_tree *tree, ff_key key)
 {
     uint32_t slot = tree->hash[hash_of(tree, key)];
-    while (slot != FF_SLOT_NONE && tree->node[slot].key != key)
-        slot = tree->node[slot].hash_next;
+    while (slot != FF_SLOT_NONE && tree->node[slot].key != key) slot = tree->node[slot].hash_next;
     return slot;
 }
 
@@ -23,8 +23,7 @@ uint32_t ff_tree_find_nearest(const ff_tree *tree, ff_key key)
 {
     for (;;) {
         uint32_t slot = ff_tree_find(tree, key);
-        if (slot != FF_SLOT_NONE || ff_key_level(key) == 0)
-            return slot;
+        if (slot != FF_SLOT_NONE || ff_key_level(key) == 0) return slot;
         key = ff_key_parent(key);
     }
 }
@@ -41,8 +40,7 @@ uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent)
     node->key = key;
     node->parent = parent;
     node->flags = FF_NODE_HELD;
-    for (unsigned q = 0; q < 4; q++)
-        node->child[q] = FF_SLOT_NONE;
+    for (unsigned q = 0; q < 4; q++) node->child[q] = FF_SLOT_NONE;
     ff_node_origin_wu(&tree->info, key, &node->x_wu, &node->y_wu);
     node->hash_next = tree->hash[bucket];
     tree->hash[bucket] = slot;
@@ -51,25 +49,23 @@ uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent)
         tree->root_head = slot;
     }
     uint32_t held = tree->node_count - tree->free_count;
-    if (held > tree->stats.nodes_high)
-        tree->stats.nodes_high = held;
+    if (held > tree->stats.nodes_high) tree->stats.nodes_high = held;
     return slot;
 }
 
 static void forget_user(ff_tree *tree, ff_node *node)
 {
-    if (node->user && tree->on_evict)
-        tree->on_evict(tree->evict_context, node->user);
+    if (node->user && tree->on_evict) tree->on_evict(tree->evict_context, node->user);
     node->user = 0;
 }
 
 void ff_tree_reshade_beside(ff_tree *tree, ff_key key)
 {
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
-        ff_key beside = ff_key_neighbour(tree->info.tiles_x, tree->info.tiles_y, key, (enum ff_side)side);
+        ff_key beside = ff_key_neighbour(tree->info.tiles_x, tree->info.tiles_y, key,
+                                         (enum ff_side)side);
         uint32_t slot = beside == FF_KEY_NONE ? FF_SLOT_NONE : ff_tree_find(tree, beside);
-        if (slot != FF_SLOT_NONE)
-            forget_user(tree, &tree->node[slot]);
+        if (slot != FF_SLOT_NONE) forget_user(tree, &tree->node[slot]);
     }
 }
 
@@ -79,8 +75,7 @@ static void give_slot(ff_tree *tree, uint32_t slot)
     assert(node->flags & FF_NODE_HELD && !ff_node_has_children(node));
     forget_user(tree, node);
     uint32_t *link = &tree->hash[hash_of(tree, node->key)];
-    while (*link != slot)
-        link = &tree->node[*link].hash_next;
+    while (*link != slot) link = &tree->node[*link].hash_next;
     *link = node->hash_next;
     node->flags = 0;
     node->hash_next = tree->free_head;
@@ -101,8 +96,7 @@ void ff_tree_drop_children(ff_tree *tree, ff_node *parent)
 void ff_tree_drop_root(ff_tree *tree, ff_node *root)
 {
     uint32_t *link = &tree->root_head;
-    while (*link != ff_slot_of(tree, root))
-        link = &tree->node[*link].list_next;
+    while (*link != ff_slot_of(tree, root)) link = &tree->node[*link].list_next;
     *link = root->list_next;
     give_slot(tree, ff_slot_of(tree, root));
 }

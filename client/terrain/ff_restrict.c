@@ -1,18 +1,23 @@
-/* The restricted cut: edge neighbours differ by at most one level. Desire flows downward (a node that wants to split makes its
- * coarser neighbours want to), and a node splits only beside neighbours that have come as far as itself. */
+/* The restricted cut: edge neighbours differ by at most one level. Desire flows downward (a node
+ * that wants to split makes its coarser neighbours want to), and a node splits only beside
+ * neighbours that have come as far as itself. */
 #include "ff_tree_local.h"
 
-/* The parent of the node of the same level beyond `side`, when it is another one than the node's own and in ground that is drawn, else
- * FF_KEY_NONE. */
+/* The parent of the node of the same level beyond `side`, when it is another one than the node's
+ * own and in ground that is drawn, else FF_KEY_NONE. */
 static ff_key parent_beside(const ff_tree *tree, const ff_node *node, enum ff_side side)
 {
-    static const uint8_t towards[FF_SIDE_COUNT] = {/* quadrants at that side, a bit each */
-        [FF_SIDE_SOUTH] = 0x3, [FF_SIDE_EAST] = 0xa, [FF_SIDE_NORTH] = 0xc, [FF_SIDE_WEST] = 0x5};
+    static const uint8_t towards[FF_SIDE_COUNT] = { /* quadrants at that side, a bit each */
+                                                    [FF_SIDE_SOUTH] = 0x3,
+                                                    [FF_SIDE_EAST] = 0xa,
+                                                    [FF_SIDE_NORTH] = 0xc,
+                                                    [FF_SIDE_WEST] = 0x5
+    };
     if (ff_key_level(node->key) == 0 || !(towards[side] >> ff_key_quadrant(node->key) & 1u))
         return FF_KEY_NONE;
-    ff_key beside = ff_key_neighbour(tree->info.tiles_x, tree->info.tiles_y, ff_key_parent(node->key), side);
-    if (beside == FF_KEY_NONE || ff_key_tile(beside) == ff_key_tile(node->key))
-        return beside;
+    ff_key beside = ff_key_neighbour(tree->info.tiles_x, tree->info.tiles_y,
+                                     ff_key_parent(node->key), side);
+    if (beside == FF_KEY_NONE || ff_key_tile(beside) == ff_key_tile(node->key)) return beside;
     uint32_t root = ff_tree_find(tree, ff_key_make(ff_key_tile(beside), 0, 0));
     return root != FF_SLOT_NONE && tree->node[root].flags & FF_NODE_ACTIVE ? beside : FF_KEY_NONE;
 }
@@ -20,8 +25,7 @@ static ff_key parent_beside(const ff_tree *tree, const ff_node *node, enum ff_si
 static int side_coarser(const ff_tree *tree, const ff_node *node, enum ff_side side)
 {
     ff_key beside = parent_beside(tree, node, side);
-    if (beside == FF_KEY_NONE)
-        return 0;
+    if (beside == FF_KEY_NONE) return 0;
     uint32_t parent = ff_tree_find(tree, beside);
     return parent == FF_SLOT_NONE || !(tree->node[parent].flags & FF_NODE_SPLIT);
 }
@@ -38,8 +42,7 @@ void ff_want(ff_tree *tree, uint32_t slot, uint32_t value)
 {
     ff_node *node = &tree->node[slot];
     if (node->flags & FF_NODE_WANTED) {
-        if (value > node->value)
-            node->value = value;
+        if (value > node->value) node->value = value;
         return;
     }
     uint32_t level = ff_key_level(node->key);
@@ -53,8 +56,7 @@ void ff_want(ff_tree *tree, uint32_t slot, uint32_t value)
 static int is_needed(const ff_tree *tree, const ff_node *node)
 {
     ff_box box;
-    if (node->flags & FF_NODE_NEEDED)
-        return 1;
+    if (node->flags & FF_NODE_NEEDED) return 1;
     ff_node_box(tree, node, &box);
     return ff_box_in_view(tree, &box);
 }
@@ -63,15 +65,14 @@ static int is_needed(const ff_tree *tree, const ff_node *node)
 void ff_want_close(ff_tree *tree)
 {
     for (uint32_t level = FF_LEVELS_MAX; level-- > 1;) {
-        for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE; slot = tree->node[slot].want_next) {
+        for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE;
+             slot = tree->node[slot].want_next) {
             const ff_node *node = &tree->node[slot];
             for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
                 ff_key beside = parent_beside(tree, node, (enum ff_side)side);
-                if (beside == FF_KEY_NONE)
-                    continue;
+                if (beside == FF_KEY_NONE) continue;
                 uint32_t nearest = ff_tree_find_nearest(tree, beside);
-                if (nearest == FF_SLOT_NONE)
-                    continue;
+                if (nearest == FF_SLOT_NONE) continue;
                 ff_want(tree, nearest, node->value);
                 if (!ff_node_has_children(&tree->node[nearest]) && is_needed(tree, node))
                     tree->node[nearest].flags |= FF_NODE_NEEDED;

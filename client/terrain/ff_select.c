@@ -11,18 +11,21 @@ static int same_view(const ff_view *a, const ff_view *b)
         if (ca->pos_wu[axis] != cb->pos_wu[axis] || a->centre_wu[axis] != b->centre_wu[axis])
             return 0;
     }
-    return ca->yaw == cb->yaw && ca->pitch == cb->pitch && ca->roll == cb->roll && ca->focal_q8 == cb->focal_q8
-           && ca->width == cb->width && ca->height == cb->height;
+    return ca->yaw == cb->yaw && ca->pitch == cb->pitch && ca->roll == cb->roll &&
+           ca->focal_q8 == cb->focal_q8 && ca->width == cb->width && ca->height == cb->height;
 }
 
 static int same_quality(const ff_quality *a, const ff_quality *b)
 {
-    return a->measure == b->measure && a->c_q8 == b->c_q8 && a->error_px_q8 == b->error_px_q8
-           && a->depth_max == b->depth_max && a->sigma_q8 == b->sigma_q8 && a->view_wu == b->view_wu
-           && a->hole_wu == b->hole_wu;
+    return a->measure == b->measure && a->c_q8 == b->c_q8 && a->error_px_q8 == b->error_px_q8 &&
+           a->depth_max == b->depth_max && a->sigma_q8 == b->sigma_q8 && a->view_wu == b->view_wu &&
+           a->hole_wu == b->hole_wu;
 }
 
-static int32_t within(int32_t value, int32_t lo, int32_t hi) { return value < lo ? lo : value > hi ? hi : value; }
+static int32_t within(int32_t value, int32_t lo, int32_t hi)
+{
+    return value < lo ? lo : value > hi ? hi : value;
+}
 
 /* Settings come from outside: brought into the range the arithmetic is made for. */
 static void set_view(ff_tree *tree, const ff_view *view, const ff_quality *quality)
@@ -43,7 +46,8 @@ static void forget_flags(ff_tree *tree)
     for (uint32_t slot = 0; tree->dropped && slot < tree->node_count; slot++)
         tree->node[slot].flags &= FF_NODE_HELD;
     for (uint32_t level = 0; level < FF_LEVELS_MAX; level++) {
-        for (uint32_t slot = tree->want_head[level]; !tree->dropped && slot != FF_SLOT_NONE; slot = tree->node[slot].want_next)
+        for (uint32_t slot = tree->want_head[level]; !tree->dropped && slot != FF_SLOT_NONE;
+             slot = tree->node[slot].want_next)
             tree->node[slot].flags = FF_NODE_HELD;
         tree->want_head[level] = FF_SLOT_NONE;
     }
@@ -54,7 +58,8 @@ static void mark_active_roots(ff_tree *tree)
 {
     for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
         ff_node *root = &tree->node[slot];
-        root->flags = FF_NODE_HELD | (ff_tile_active(tree, ff_key_tile(root->key)) ? FF_NODE_ACTIVE : 0);
+        root->flags = FF_NODE_HELD |
+                      (ff_tile_active(tree, ff_key_tile(root->key)) ? FF_NODE_ACTIVE : 0);
     }
 }
 
@@ -62,16 +67,14 @@ static uint32_t push_active_roots(ff_tree *tree)
 {
     uint32_t count = 0;
     for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
-        if (tree->node[slot].flags & FF_NODE_ACTIVE)
-            tree->order[count++] = slot;
+        if (tree->node[slot].flags & FF_NODE_ACTIVE) tree->order[count++] = slot;
     }
     return count;
 }
 
 static uint32_t push_children(ff_tree *tree, const ff_node *node, uint32_t count)
 {
-    for (unsigned q = 0; q < 4; q++)
-        tree->order[count++] = node->child[q];
+    for (unsigned q = 0; q < 4; q++) tree->order[count++] = node->child[q];
     return count;
 }
 
@@ -79,11 +82,11 @@ static uint32_t push_children(ff_tree *tree, const ff_node *node, uint32_t count
 static uint32_t own_value(ff_tree *tree, const ff_node *node)
 {
     uint32_t next = ff_key_level(node->key) + 1;
-    if (next >= ff_terrain_levels(&tree->info) || (tree->quality.depth_max && next >= tree->quality.depth_max))
+    if (next >= ff_terrain_levels(&tree->info) ||
+        (tree->quality.depth_max && next >= tree->quality.depth_max))
         return 0;
     uint32_t value = ff_value_of_split(tree, node);
-    if (value <= FF_VALUE_ONE)
-        return 0;
+    if (value <= FF_VALUE_ONE) return 0;
     if (node->error_code == 0) { /* already exact: finer nodes would show the same */
         tree->stats.flat++;
         return 0;
@@ -102,22 +105,21 @@ static void want_by_measure(ff_tree *tree)
     for (uint32_t i = 0; i < count; i++) {
         const ff_node *node = &tree->node[tree->order[i]];
         uint32_t value = own_value(tree, node);
-        if (value == 0)
-            continue;
+        if (value == 0) continue;
         ff_want(tree, tree->order[i], value);
-        if (ff_node_has_children(node))
-            count = push_children(tree, node, count);
+        if (ff_node_has_children(node)) count = push_children(tree, node, count);
     }
 }
 
-/* Level by level from the roots, so that all decisions about a level are made before the next one looks at them.
- * Leaves the leaves of the cut in `order`. */
+/* Level by level from the roots, so that all decisions about a level are made before the next one
+ * looks at them. Leaves the leaves of the cut in `order`. */
 static void split_cut(ff_tree *tree)
 {
     uint32_t count = push_active_roots(tree), leaves = 0;
     for (uint32_t i = 0; i < count; i++) {
         ff_node *node = &tree->node[tree->order[i]];
-        if (node->flags & FF_NODE_WANTED && ff_node_has_children(node) && ff_coarser_mask(tree, node) == 0) {
+        if (node->flags & FF_NODE_WANTED && ff_node_has_children(node) &&
+            ff_coarser_mask(tree, node) == 0) {
             node->flags |= FF_NODE_SPLIT;
             count = push_children(tree, node, count);
         }
@@ -147,8 +149,7 @@ static uint32_t triangles_of(const ff_tree *tree, unsigned coarser)
 {
     uint32_t n = 1u << tree->info.node_log2, count = 2 * n * n;
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
-        if (coarser >> side & 1u)
-            count -= n / 2;
+        if (coarser >> side & 1u) count -= n / 2;
     }
     return count;
 }
@@ -156,8 +157,7 @@ static uint32_t triangles_of(const ff_tree *tree, unsigned coarser)
 static void count_drawn(ff_tree *tree, const ff_drawn *drawn, uint64_t distance)
 {
     uint32_t error_q8 = ff_projected_error_q8(tree, drawn->node, distance);
-    if (error_q8 > tree->stats.error_px_q8)
-        tree->stats.error_px_q8 = error_q8;
+    if (error_q8 > tree->stats.error_px_q8) tree->stats.error_px_q8 = error_q8;
     tree->stats.triangles += triangles_of(tree, drawn->coarser);
     tree->stats.stitched += drawn->coarser != 0;
 }
@@ -189,7 +189,8 @@ static void list_cut(ff_tree *tree)
 
 int ff_tree_select(ff_tree *tree, const ff_view *view, const ff_quality *quality)
 {
-    if (tree->has_view && !tree->dirty && same_view(view, &tree->asked_view) && same_quality(quality, &tree->asked_quality)) {
+    if (tree->has_view && !tree->dirty && same_view(view, &tree->asked_view) &&
+        same_quality(quality, &tree->asked_quality)) {
         tree->stats.selects_skipped++;
         return 0;
     }

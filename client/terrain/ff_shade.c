@@ -6,37 +6,45 @@
 #include <stddef.h>
 
 #define SLOPE_MAX_Q8 (64 << 8)
-#define ROCK_FROM_Q8 160  /* steepness (rise over run) at which ground begins to turn to rock, and where it is all rock */
+#define ROCK_FROM_Q8                                                                             \
+    160 /* steepness (rise over run) at which ground begins to turn to rock, and where it is all \
+           rock */
 #define ROCK_TO_Q8 420
 
 static const uint8_t ramp[][3] = {
-    {86, 125, 70}, {118, 148, 82}, {164, 168, 100}, {196, 172, 112}, {178, 140, 96},
-    {150, 118, 92}, {148, 136, 126}, {184, 180, 176}, {232, 234, 238}, {250, 251, 253},
+    { 86, 125, 70 },  { 118, 148, 82 },  { 164, 168, 100 }, { 196, 172, 112 }, { 178, 140, 96 },
+    { 150, 118, 92 }, { 148, 136, 126 }, { 184, 180, 176 }, { 232, 234, 238 }, { 250, 251, 253 },
 };
 #define RAMP_STEPS (sizeof ramp / sizeof ramp[0] - 1)
-static const uint8_t rock[3] = {128, 120, 112};
-static const uint8_t water[3] = {62, 106, 150};
+static const uint8_t rock[3] = { 128, 120, 112 };
+static const uint8_t water[3] = { 62, 106, 150 };
 
 /* Rise over run from twice the height difference per cell. */
 static int32_t slope_q8(const ff_terrain_info *info, int32_t doubled, int32_t cell_wu)
 {
     int64_t rise_wu = (int64_t)doubled * (int64_t)info->hscale_q24 / 65536;
     int64_t slope = rise_wu * 128 / cell_wu;
-    return slope > SLOPE_MAX_Q8 ? SLOPE_MAX_Q8 : slope < -SLOPE_MAX_Q8 ? -SLOPE_MAX_Q8 : (int32_t)slope;
+    return slope > SLOPE_MAX_Q8    ? SLOPE_MAX_Q8
+           : slope < -SLOPE_MAX_Q8 ? -SLOPE_MAX_Q8
+                                   : (int32_t)slope;
 }
 
-static void ground_colour(const ff_terrain_info *info, uint32_t height, uint32_t steep_q8, int32_t colour[3])
+static void ground_colour(const ff_terrain_info *info, uint32_t height, uint32_t steep_q8,
+                          int32_t colour[3])
 {
     uint32_t lo = info->height_min, span = info->height_max > lo ? info->height_max - lo : 1u;
     uint32_t above = height > lo ? height - lo : 0;
-    uint32_t at_q8 = above >= span ? RAMP_STEPS << 8 : (uint32_t)(((uint64_t)above * RAMP_STEPS << 8) / span);
+    uint32_t at_q8 = above >= span ? RAMP_STEPS << 8
+                                   : (uint32_t)(((uint64_t)above * RAMP_STEPS << 8) / span);
     uint32_t step = at_q8 >> 8, part = at_q8 & 255u;
     if (step >= RAMP_STEPS) {
         step = RAMP_STEPS - 1;
         part = 256;
     }
-    uint32_t bare = steep_q8 <= ROCK_FROM_Q8 ? 0 : steep_q8 >= ROCK_TO_Q8 ? 256
-                    : (steep_q8 - ROCK_FROM_Q8) * 256 / (ROCK_TO_Q8 - ROCK_FROM_Q8);
+    uint32_t bare = steep_q8 <= ROCK_FROM_Q8 ? 0
+                    : steep_q8 >= ROCK_TO_Q8
+                        ? 256
+                        : (steep_q8 - ROCK_FROM_Q8) * 256 / (ROCK_TO_Q8 - ROCK_FROM_Q8);
     for (unsigned c = 0; c < 3; c++) {
         int32_t soil = (int32_t)(ramp[step][c] * (256 - part) + ramp[step + 1][c] * part) / 256;
         colour[c] = (soil * (int32_t)(256 - bare) + rock[c] * (int32_t)bare) / 256;
@@ -49,24 +57,27 @@ static int is_water(const ff_terrain_info *info, uint32_t height)
     return height <= info->height_min && lowest_wu > -step_wu && lowest_wu < step_wu;
 }
 
-/* Light from the north-west at 45 degrees: direction (-1/2, 1/2, 1/sqrt 2). Level ground gets 256. */
+/* Light from the north-west at 45 degrees: direction (-1/2, 1/2, 1/sqrt 2). Level ground gets
+ * 256. */
 static int32_t light_q8(int32_t east_q8, int32_t north_q8)
 {
-    int64_t length = c3d_isqrt64((uint64_t)(65536 + (int64_t)east_q8 * east_q8 + (int64_t)north_q8 * north_q8));
-    int64_t facing = (int64_t)(east_q8 - north_q8) * 128 + 181 * 256; /* Q16: slopes of 1/2, and 181/256 for 1/sqrt 2 */
+    int64_t length = c3d_isqrt64(
+        (uint64_t)(65536 + (int64_t)east_q8 * east_q8 + (int64_t)north_q8 * north_q8));
+    /* Q16: slopes of 1/2, and 181/256 for 1/sqrt 2 */
+    int64_t facing = (int64_t)(east_q8 - north_q8) * 128 + 181 * 256;
     int64_t cosine_q8 = facing / length;
-    if (cosine_q8 < 0)
-        cosine_q8 = 0;
+    if (cosine_q8 < 0) cosine_q8 = 0;
     return (int32_t)(90 + cosine_q8 * 166 / 181);
 }
 
-void ff_shade(const ff_terrain_info *info, const uint16_t *framed, int32_t cell_wu, uint32_t i, uint32_t j, uint8_t rgba[4])
+void ff_shade(const ff_terrain_info *info, const uint16_t *framed, int32_t cell_wu, uint32_t i,
+              uint32_t j, uint8_t rgba[4])
 {
     size_t stride = ff_node_side(info) + 2;
     const uint16_t *here = framed + (j + 1) * stride + i + 1;
     int32_t east = slope_q8(info, here[1] - *(here - 1), cell_wu);
     int32_t north = slope_q8(info, here[stride] - *(here - stride), cell_wu);
-    int32_t colour[3] = {water[0], water[1], water[2]};
+    int32_t colour[3] = { water[0], water[1], water[2] };
     if (!is_water(info, *here)) {
         int64_t steep_square = (int64_t)east * east + (int64_t)north * north;
         ground_colour(info, *here, c3d_isqrt64((uint64_t)steep_square), colour);

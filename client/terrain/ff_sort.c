@@ -6,12 +6,9 @@ static void sift_down(uint64_t *keys, uint32_t at, uint32_t count)
     uint64_t moved = keys[at];
     for (;;) {
         uint32_t child = 2 * at + 1;
-        if (child >= count)
-            break;
-        if (child + 1 < count && keys[child + 1] > keys[child])
-            child++;
-        if (keys[child] <= moved)
-            break;
+        if (child >= count) break;
+        if (child + 1 < count && keys[child + 1] > keys[child]) child++;
+        if (keys[child] <= moved) break;
         keys[at] = keys[child];
         at = child;
     }
@@ -20,8 +17,7 @@ static void sift_down(uint64_t *keys, uint32_t at, uint32_t count)
 
 void ff_sort_keys(uint64_t *keys, uint32_t count)
 {
-    for (uint32_t i = count / 2; i-- > 0;)
-        sift_down(keys, i, count);
+    for (uint32_t i = count / 2; i-- > 0;) sift_down(keys, i, count);
     for (uint32_t end = count; end-- > 1;) {
         uint64_t largest = keys[0];
         keys[0] = keys[end];

@@ -1,5 +1,6 @@
-/* Strip masks. A side is a band between two chains of vertices, the rim and the first row inside; both are walked from one
- * end to the other, each step closing one triangle, and the walk is written down as a triangle strip. */
+/* Strip masks. A side is a band between two chains of vertices, the rim and the first row inside;
+ * both are walked from one end to the other, each step closing one triangle, and the walk is
+ * written down as a triangle strip. */
 #include "ff_strips.h"
 
 #include "../../protocol/ff_codec.h"
@@ -7,22 +8,25 @@
 
 #include <assert.h>
 
-/* Grid index of (column, row) given in the frame of the south side, turned so that south becomes `side`. */
+/* Grid index of (column, row) given in the frame of the south side, turned so that south becomes
+ * `side`. */
 static uint16_t turned(unsigned n, enum ff_side side, unsigned column, unsigned row)
 {
     switch (side) {
-    case FF_SIDE_EAST: return (uint16_t)(column * (n + 1) + (n - row));
-    case FF_SIDE_NORTH: return (uint16_t)((n - row) * (n + 1) + (n - column));
-    case FF_SIDE_WEST: return (uint16_t)((n - column) * (n + 1) + row);
-    default: return (uint16_t)(row * (n + 1) + column);
+        case FF_SIDE_EAST: return (uint16_t)(column * (n + 1) + (n - row));
+        case FF_SIDE_NORTH: return (uint16_t)((n - row) * (n + 1) + (n - column));
+        case FF_SIDE_WEST: return (uint16_t)((n - column) * (n + 1) + row);
+        default: return (uint16_t)(row * (n + 1) + column);
     }
 }
 
-unsigned ff_side_triangles(unsigned node_log2, enum ff_side side, unsigned difference, uint16_t triangle[][3])
+unsigned ff_side_triangles(unsigned node_log2, enum ff_side side, unsigned difference,
+                           uint16_t triangle[][3])
 {
     unsigned n = 1u << node_log2, step = 1u << difference, outer = 0, inner = 1, count = 0;
     while (outer < n || inner < n - 1) {
-        /* Advance the chain whose next edge has its middle further west; equal middles: the inner one, diagonal to north-east. */
+        /* Advance the chain whose next edge has its middle further west; equal middles: the inner
+         * one, diagonal to north-east. */
         int advance_inner = outer == n || (inner < n - 1 && 2 * inner + 1 <= 2 * outer + step);
         uint16_t rim = turned(n, side, outer, 0), inside = turned(n, side, inner, 1);
         triangle[count][0] = advance_inner ? inside : rim;
@@ -46,8 +50,8 @@ static void append(ff_strips *strips, unsigned id, uint16_t vertex)
     strips->length[id]++;
 }
 
-/* Cells first..end-1 in both directions, row by row. A row is north-west, south-west, next north-west ...: an even number of
- * indices, so that every row starts with the same winding. */
+/* Cells first..end-1 in both directions, row by row. A row is north-west, south-west, next
+ * north-west ...: an even number of indices, so that every row starts with the same winding. */
 static void make_rows(ff_strips *strips, unsigned id, unsigned n, unsigned first, unsigned end)
 {
     for (unsigned row = first; row < end; row++) {
@@ -64,23 +68,24 @@ static void make_rows(ff_strips *strips, unsigned id, unsigned n, unsigned first
     }
 }
 
-static void make_side(ff_strips *strips, unsigned id, unsigned node_log2, enum ff_side side, unsigned difference)
+static void make_side(ff_strips *strips, unsigned id, unsigned node_log2, enum ff_side side,
+                      unsigned difference)
 {
     uint16_t triangle[2 << FF_NODE_LOG2_MAX][3];
     unsigned count = ff_side_triangles(node_log2, side, difference, triangle);
     strips->triangles[id] = (uint16_t)count;
 
-    /* A triangle replaces the older of the last two vertices. Where it should replace the younger, the older is repeated: a
-     * degenerate triangle that swaps them. Winding comes right by itself: an edge (rim, inside) is always at an odd place,
-     * (inside, rim) at an even one. */
-    uint16_t older = turned(1u << node_log2, side, 0, 0), younger = turned(1u << node_log2, side, 1, 1);
+    /* A triangle replaces the older of the last two vertices. Where it should replace the younger,
+     * the older is repeated: a degenerate triangle that swaps them. Winding comes right by itself:
+     * an edge (rim, inside) is always at an odd place, (inside, rim) at an even one. */
+    uint16_t older = turned(1u << node_log2, side, 0, 0),
+             younger = turned(1u << node_log2, side, 1, 1);
     append(strips, id, older);
     append(strips, id, older);
     append(strips, id, younger);
     for (unsigned i = 0; i < count; i++) {
         uint16_t kept = older == triangle[i][0] ? younger : older;
-        if (kept == older)
-            append(strips, id, older);
+        if (kept == older) append(strips, id, older);
         older = kept;
         younger = triangle[i][1] == kept ? triangle[i][2] : triangle[i][1];
         append(strips, id, younger);
@@ -96,8 +101,7 @@ static void begin_strip(ff_strips *strips, unsigned id)
 
 int ff_strips_make(ff_strips *strips, unsigned node_log2)
 {
-    if (node_log2 < 1 || node_log2 > FF_NODE_LOG2_MAX)
-        return FF_ERR_RANGE;
+    if (node_log2 < 1 || node_log2 > FF_NODE_LOG2_MAX) return FF_ERR_RANGE;
     unsigned n = 1u << node_log2;
     strips->count = (uint16_t)FF_STRIP_SIDE(0, node_log2 + 1);
     begin_strip(strips, FF_STRIP_FULL);

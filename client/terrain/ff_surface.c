@@ -7,20 +7,23 @@
 
 #define FRAMED_MAX (((1 << FF_NODE_LOG2_MAX) + 3) * ((1 << FF_NODE_LOG2_MAX) + 3))
 
-/* Index of the sample `along` a side and `depth` samples inside it, in a grid with `stride` samples a row and `last` the last one. */
-static size_t side_index(enum ff_side side, uint32_t along, uint32_t depth, uint32_t last, size_t stride)
+/* Index of the sample `along` a side and `depth` samples inside it, in a grid with `stride` samples
+ * a row and `last` the last one. */
+static size_t side_index(enum ff_side side, uint32_t along, uint32_t depth, uint32_t last,
+                         size_t stride)
 {
     switch (side) {
-    case FF_SIDE_EAST: return along * stride + last - depth;
-    case FF_SIDE_NORTH: return (last - depth) * stride + along;
-    case FF_SIDE_WEST: return along * stride + depth;
-    default: return depth * stride + along;
+        case FF_SIDE_EAST: return along * stride + last - depth;
+        case FF_SIDE_NORTH: return (last - depth) * stride + along;
+        case FF_SIDE_WEST: return along * stride + depth;
+        default: return depth * stride + along;
     }
 }
 
-/* One more row beyond a side: the neighbour's where one of the same level is held, else so that the slope at the rim becomes that
- * of the first two cells. */
-static void frame_side(const ff_tree *tree, const ff_drawn *drawn, enum ff_side side, uint16_t *framed)
+/* One more row beyond a side: the neighbour's where one of the same level is held, else so that the
+ * slope at the rim becomes that of the first two cells. */
+static void frame_side(const ff_tree *tree, const ff_drawn *drawn, enum ff_side side,
+                       uint16_t *framed)
 {
     uint32_t samples = ff_node_side(&tree->info), last = samples - 1;
     ff_key beside = ff_key_neighbour(tree->info.tiles_x, tree->info.tiles_y, drawn->key, side);
@@ -32,9 +35,9 @@ static void frame_side(const ff_tree *tree, const ff_drawn *drawn, enum ff_side 
             *out = other[side_index(side, along, last - 1, last, samples)];
             continue;
         }
-        int32_t beyond = drawn->heights[side_index(side, along, 0, last, samples)]
-                         + drawn->heights[side_index(side, along, 1, last, samples)]
-                         - drawn->heights[side_index(side, along, 2, last, samples)];
+        int32_t beyond = drawn->heights[side_index(side, along, 0, last, samples)] +
+                         drawn->heights[side_index(side, along, 1, last, samples)] -
+                         drawn->heights[side_index(side, along, 2, last, samples)];
         *out = (uint16_t)(beyond < 0 ? 0 : beyond > UINT16_MAX ? UINT16_MAX : beyond);
     }
 }
@@ -43,7 +46,8 @@ static void frame_heights(const ff_tree *tree, const ff_drawn *drawn, uint16_t *
 {
     uint32_t samples = ff_node_side(&tree->info);
     for (uint32_t row = 0; row < samples; row++)
-        memcpy(framed + (row + 1) * (samples + 2) + 1, drawn->heights + row * samples, samples * sizeof *framed);
+        memcpy(framed + (row + 1) * (samples + 2) + 1, drawn->heights + row * samples,
+               samples * sizeof *framed);
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++)
         frame_side(tree, drawn, (enum ff_side)side, framed);
 }
@@ -52,8 +56,7 @@ void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3
 {
     uint16_t framed[FRAMED_MAX];
     uint32_t side = ff_node_side(&tree->info);
-    if (shaded)
-        frame_heights(tree, drawn, framed);
+    if (shaded) frame_heights(tree, drawn, framed);
     for (uint32_t row = 0; row < side; row++) {
         for (uint32_t column = 0; column < side; column++, out++) {
             out->x = (int16_t)column;
@@ -69,11 +72,14 @@ void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3
 }
 
 /* A point in a node's grid, Q16 cells from its south-west corner. */
-typedef struct grid_point { int64_t x, y; } grid_point;
+typedef struct grid_point {
+    int64_t x, y;
+} grid_point;
 
-/* Heights of a triangle weighted by the areas opposite its vertices; 0 when the point lies outside. */
-static int height_in_triangle(const uint16_t *heights, unsigned side, const uint16_t triangle[3], grid_point at,
-                              uint64_t *height_q16)
+/* Heights of a triangle weighted by the areas opposite its vertices; 0 when the point lies
+ * outside. */
+static int height_in_triangle(const uint16_t *heights, unsigned side, const uint16_t triangle[3],
+                              grid_point at, uint64_t *height_q16)
 {
     grid_point corner[3];
     for (unsigned i = 0; i < 3; i++) {
@@ -84,8 +90,7 @@ static int height_in_triangle(const uint16_t *heights, unsigned side, const uint
     for (unsigned i = 0; i < 3; i++) {
         const grid_point *a = &corner[(i + 1) % 3], *b = &corner[(i + 2) % 3];
         int64_t weight = (a->x - at.x) * (b->y - at.y) - (b->x - at.x) * (a->y - at.y);
-        if (weight < 0)
-            return 0;
+        if (weight < 0) return 0;
         area += weight;
         sum += weight * heights[triangle[i]];
     }
@@ -94,25 +99,30 @@ static int height_in_triangle(const uint16_t *heights, unsigned side, const uint
 }
 
 /* Cells of FULL and INNER: two triangles, diagonal from south-west to north-east. */
-static uint64_t height_in_cell(const uint16_t *heights, unsigned side, unsigned column, unsigned row, grid_point at)
+static uint64_t height_in_cell(const uint16_t *heights, unsigned side, unsigned column,
+                               unsigned row, grid_point at)
 {
-    uint16_t south_west = (uint16_t)(row * side + column), north_east = (uint16_t)(south_west + side + 1);
-    uint16_t below[3] = {south_west, (uint16_t)(south_west + 1), north_east};
-    uint16_t above[3] = {south_west, north_east, (uint16_t)(south_west + side)};
+    uint16_t south_west = (uint16_t)(row * side + column),
+             north_east = (uint16_t)(south_west + side + 1);
+    uint16_t below[3] = { south_west, (uint16_t)(south_west + 1), north_east };
+    uint16_t above[3] = { south_west, north_east, (uint16_t)(south_west + side) };
     uint64_t height_q16 = 0;
     if (!height_in_triangle(heights, side, below, at, &height_q16))
         (void)height_in_triangle(heights, side, above, at, &height_q16);
     return height_q16;
 }
 
-static uint64_t height_in_sides(const ff_tree *tree, const uint16_t *heights, unsigned coarser, grid_point at)
+static uint64_t height_in_sides(const ff_tree *tree, const uint16_t *heights, unsigned coarser,
+                                grid_point at)
 {
     uint16_t triangle[2 << FF_NODE_LOG2_MAX][3];
     uint64_t height_q16 = 0;
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
-        unsigned count = ff_side_triangles(tree->info.node_log2, (enum ff_side)side, coarser >> side & 1u, triangle);
+        unsigned count = ff_side_triangles(tree->info.node_log2, (enum ff_side)side,
+                                           coarser >> side & 1u, triangle);
         for (unsigned i = 0; i < count; i++) {
-            if (height_in_triangle(heights, ff_node_side(&tree->info), triangle[i], at, &height_q16))
+            if (height_in_triangle(heights, ff_node_side(&tree->info), triangle[i], at,
+                                   &height_q16))
                 return height_q16;
         }
     }
@@ -125,33 +135,33 @@ static uint64_t height_in_node(const ff_tree *tree, const ff_node *node, int64_t
     unsigned side = ff_node_side(&tree->info), last = side - 2;
     const uint16_t *heights = tree->heights + ff_slot_of(tree, node) * ff_heights_per_node(tree);
     int64_t cell = ff_node_cell_wu(&tree->info, ff_key_level(node->key));
-    grid_point at = {((x_wu - node->x_wu) << 16) / cell, ((y_wu - node->y_wu) << 16) / cell};
+    grid_point at = { ((x_wu - node->x_wu) << 16) / cell, ((y_wu - node->y_wu) << 16) / cell };
     unsigned column = (unsigned)(at.x >> 16), row = (unsigned)(at.y >> 16);
     column = column > last ? last : column;
     row = row > last ? last : row;
 
     int on_rim = column == 0 || row == 0 || column == last || row == last;
     unsigned coarser = on_rim ? ff_coarser_mask(tree, node) : 0;
-    if (coarser)
-        return height_in_sides(tree, heights, coarser, at);
+    if (coarser) return height_in_sides(tree, heights, coarser, at);
     return height_in_cell(heights, side, column, row, at);
 }
 
 int ff_tree_drawn_height(const ff_tree *tree, int32_t x_wu, int32_t y_wu, int32_t *z_wu)
 {
     const ff_terrain_info *info = &tree->info;
-    int64_t edge = ff_node_edge_wu(info, 0), width = info->tiles_x * edge, depth = info->tiles_y * edge;
-    if (!tree->has_view || x_wu < 0 || y_wu < 0 || x_wu > width || y_wu > depth)
-        return 0;
+    int64_t edge = ff_node_edge_wu(info, 0), width = info->tiles_x * edge,
+            depth = info->tiles_y * edge;
+    if (!tree->has_view || x_wu < 0 || y_wu < 0 || x_wu > width || y_wu > depth) return 0;
     uint32_t tile_x = x_wu == width ? info->tiles_x - 1 : (uint32_t)(x_wu / edge);
     uint32_t tile_y = y_wu == depth ? info->tiles_y - 1 : (uint32_t)(y_wu / edge);
-    uint32_t tile = tile_y * info->tiles_x + tile_x, slot = ff_tree_find(tree, ff_key_make(tile, 0, 0));
-    if (slot == FF_SLOT_NONE || !ff_tile_active(tree, tile))
-        return 0;
+    uint32_t tile = tile_y * info->tiles_x + tile_x,
+             slot = ff_tree_find(tree, ff_key_make(tile, 0, 0));
+    if (slot == FF_SLOT_NONE || !ff_tile_active(tree, tile)) return 0;
     const ff_node *node = &tree->node[slot];
     while (node->flags & FF_NODE_SPLIT) {
         int32_t half = ff_node_edge_wu(info, ff_key_level(node->key)) / 2;
-        unsigned east = (int64_t)x_wu - node->x_wu >= half, north = (int64_t)y_wu - node->y_wu >= half;
+        unsigned east = (int64_t)x_wu - node->x_wu >= half,
+                 north = (int64_t)y_wu - node->y_wu >= half;
         node = &tree->node[node->child[2 * north + east]];
     }
     uint64_t height_q16 = height_in_node(tree, node, x_wu, y_wu);

@@ -4,15 +4,15 @@
 
 ff_key ff_texture_key(const ff_terrain_info *info, ff_key node)
 {
-    if (info->texture_log2 == 0 || info->texture_levels == 0)
-        return FF_KEY_NONE;
-    while (ff_key_level(node) >= info->texture_levels)
-        node = ff_key_parent(node);
+    if (info->texture_log2 == 0 || info->texture_levels == 0) return FF_KEY_NONE;
+    while (ff_key_level(node) >= info->texture_levels) node = ff_key_parent(node);
     return node;
 }
 
-/* s = (u*(T-1) + 1/2) / T for the fraction u of the textured node's edge; u = (place + vertex/2^k) / 2^depth. */
-static void map_axis(const ff_terrain_info *info, uint32_t place, uint32_t depth, int32_t *scale_q16, int32_t *offset_q16)
+/* s = (u*(T-1) + 1/2) / T for the fraction u of the textured node's edge; u = (place + vertex/2^k)
+ * / 2^depth. */
+static void map_axis(const ff_terrain_info *info, uint32_t place, uint32_t depth,
+                     int32_t *scale_q16, int32_t *offset_q16)
 {
     int64_t span_q16 = (((int64_t)1 << info->texture_log2) - 1) << 16;
     uint32_t shift = info->texture_log2 + depth; /* divides by 2^shift, rounded */
@@ -21,7 +21,8 @@ static void map_axis(const ff_terrain_info *info, uint32_t place, uint32_t depth
     *offset_q16 = (int32_t)((span_q16 * place + half) >> shift) + ((1 << 15) >> info->texture_log2);
 }
 
-void ff_texture_map(const ff_terrain_info *info, ff_key node, ff_key texture, int32_t scale_q16[2], int32_t offset_q16[2])
+void ff_texture_map(const ff_terrain_info *info, ff_key node, ff_key texture, int32_t scale_q16[2],
+                    int32_t offset_q16[2])
 {
     assert(ff_key_level(texture) <= ff_key_level(node));
     uint32_t depth = ff_key_level(node) - ff_key_level(texture);

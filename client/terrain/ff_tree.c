@@ -7,7 +7,10 @@
 #define BLOCK_ALIGN 16u
 
 /* Hands out parts of a block; with base NULL it only counts. */
-typedef struct block { uint8_t *base; size_t used; } block;
+typedef struct block {
+    uint8_t *base;
+    size_t used;
+} block;
 
 static void *take(block *from, size_t bytes)
 {
@@ -19,16 +22,16 @@ static void *take(block *from, size_t bytes)
 static uint32_t hash_size(uint32_t node_count)
 {
     uint32_t size = 8;
-    while (size < node_count)
-        size *= 2;
+    while (size < node_count) size *= 2;
     return size;
 }
 
 static ff_tree *carve(const ff_tree_desc *desc, block *from)
 {
-    size_t n = desc->node_count, side = ff_node_side(&desc->info), refined = ff_refined_side(&desc->info);
+    size_t n = desc->node_count, side = ff_node_side(&desc->info),
+           refined = ff_refined_side(&desc->info);
     ff_tree *tree = take(from, sizeof *tree);
-    ff_tree parts = {0};
+    ff_tree parts = { 0 };
     parts.node = take(from, n * sizeof *parts.node);
     parts.heights = take(from, n * side * side * sizeof *parts.heights);
     parts.hash = take(from, hash_size(desc->node_count) * sizeof *parts.hash);
@@ -37,31 +40,28 @@ static ff_tree *carve(const ff_tree_desc *desc, block *from)
     parts.drawn = take(from, n * sizeof *parts.drawn);
     parts.wish = take(from, desc->wish_count * sizeof *parts.wish);
     parts.refined = take(from, refined * refined * sizeof *parts.refined);
-    if (tree)
-        *tree = parts;
+    if (tree) *tree = parts;
     return tree;
 }
 
 static int desc_ok(const ff_tree_desc *desc)
 {
-    return desc->node_count >= 8 && desc->node_count <= FF_NODES_MAX && desc->wish_count <= FF_NODES_MAX
-           && ff_terrain_check(&desc->info) >= 0;
+    return desc->node_count >= 8 && desc->node_count <= FF_NODES_MAX &&
+           desc->wish_count <= FF_NODES_MAX && ff_terrain_check(&desc->info) >= 0;
 }
 
 size_t ff_tree_bytes(const ff_tree_desc *desc)
 {
-    block count = {NULL, BLOCK_ALIGN}; /* room to align a block that is not */
-    if (!desc_ok(desc))
-        return 0;
+    block count = { NULL, BLOCK_ALIGN }; /* room to align a block that is not */
+    if (!desc_ok(desc)) return 0;
     carve(desc, &count);
     return count.used;
 }
 
 ff_tree *ff_tree_create(const ff_tree_desc *desc, void *memory, size_t bytes)
 {
-    if (!memory || !desc_ok(desc) || bytes < ff_tree_bytes(desc))
-        return NULL;
-    block from = {memory, (BLOCK_ALIGN - (uintptr_t)memory % BLOCK_ALIGN) % BLOCK_ALIGN};
+    if (!memory || !desc_ok(desc) || bytes < ff_tree_bytes(desc)) return NULL;
+    block from = { memory, (BLOCK_ALIGN - (uintptr_t)memory % BLOCK_ALIGN) % BLOCK_ALIGN };
     ff_tree *tree = carve(desc, &from);
     tree->info = desc->info;
     tree->node_count = tree->free_count = desc->node_count;
@@ -103,10 +103,8 @@ static void measure_heights(ff_tree *tree, uint32_t slot, uint8_t error_code)
 int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, const ff_residuals *residuals)
 {
     ff_key key = ff_key_make(tile, 0, 0);
-    if (!ff_terrain_has_node(&tree->info, key))
-        return FF_ERR_RANGE;
-    if (ff_tree_find(tree, key) != FF_SLOT_NONE)
-        return FF_OK;
+    if (!ff_terrain_has_node(&tree->info, key)) return FF_ERR_RANGE;
+    if (ff_tree_find(tree, key) != FF_SLOT_NONE) return FF_OK;
     if (!ff_evict_for_root(tree, tile)) {
         tree->stats.pool_full++;
         return FF_ERR_FULL;
@@ -121,15 +119,15 @@ int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, const ff_residuals *resid
 
 int ff_tree_deliver_children(ff_tree *tree, ff_key key, const ff_residuals *residuals)
 {
-    if (!ff_terrain_has_node(&tree->info, key) || ff_key_level(key) + 1 >= ff_terrain_levels(&tree->info))
+    if (!ff_terrain_has_node(&tree->info, key) ||
+        ff_key_level(key) + 1 >= ff_terrain_levels(&tree->info))
         return FF_ERR_RANGE;
     uint32_t slot = ff_tree_find(tree, key);
     if (slot == FF_SLOT_NONE) {
         tree->stats.orphans++;
         return FF_ERR_NOT_FOUND;
     }
-    if (ff_node_has_children(&tree->node[slot]))
-        return FF_OK;
+    if (ff_node_has_children(&tree->node[slot])) return FF_OK;
     if (!ff_evict_for_children(tree, slot)) {
         tree->stats.pool_full++;
         return FF_ERR_FULL;
@@ -168,7 +166,10 @@ uint32_t ff_tree_wishes(const ff_tree *tree, const ff_wish **list)
     return tree->wish_count;
 }
 
-uint32_t *ff_tree_user(ff_tree *tree, const ff_node *node) { return &tree->node[ff_slot_of(tree, node)].user; }
+uint32_t *ff_tree_user(ff_tree *tree, const ff_node *node)
+{
+    return &tree->node[ff_slot_of(tree, node)].user;
+}
 
 void ff_tree_on_evict(ff_tree *tree, void (*on_evict)(void *context, uint32_t user), void *context)
 {

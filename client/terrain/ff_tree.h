@@ -1,15 +1,19 @@
-/* The terrain quadtree: what is held, what is drawn, what is wanted (Hybrid, sections 6.1.2, 7.1 and 7.3).
+/* The terrain quadtree: what is held, what is drawn, what is wanted (Hybrid, sections 6.1.2, 7.1
+ * and 7.3).
  *
- * One tree serves the client (nodes arrive from a link), the server's renderer and the tests (nodes are read from a pack):
- * behind it stands a `source` that is asked for roots and refinements and answers at once or later by ff_tree_deliver_*.
- * Geometry and requests only: nothing here knows a graphics API, a socket, a clock or a floating-point number.
+ * One tree serves the client (nodes arrive from a link), the server's renderer and the tests (nodes
+ * are read from a pack): behind it stands a `source` that is asked for roots and refinements and
+ * answers at once or later by ff_tree_deliver_*. Geometry and requests only: nothing here knows a
+ * graphics API, a socket, a clock or a floating-point number.
  *
- * A frame: ff_tree_select() walks the active tiles and chooses the cut; ff_tree_drawn() lists the nodes of the cut that
- * the view can see, with a border mask each. The cut is *restricted*: edge neighbours differ by at most one level. Where a
- * neighbour is coarser, the node's border strip on that side leaves out every second vertex (the finer side is lowered), so
- * both sides run through the same vertices: no crack and no T-junction, whatever has or has not arrived.
+ * A frame: ff_tree_select() walks the active tiles and chooses the cut; ff_tree_drawn() lists the
+ * nodes of the cut that the view can see, with a border mask each. The cut is *restricted*: edge
+ * neighbours differ by at most one level. Where a neighbour is coarser, the node's border strip on
+ * that side leaves out every second vertex (the finer side is lowered), so both sides run through
+ * the same vertices: no crack and no T-junction, whatever has or has not arrived.
  *
- * Memory: one block at ff_tree_create; `node_count` slots. Full pools make the ground coarser and are counted.
+ * Memory: one block at ff_tree_create; `node_count` slots. Full pools make the ground coarser and
+ * are counted.
  */
 #ifndef FF_TREE_H
 #define FF_TREE_H
@@ -21,88 +25,106 @@ typedef struct ff_tree ff_tree;
 typedef struct ff_node ff_node; /* defined in ff_tree_local.h for client/terrain only */
 
 enum ff_measure {
-    FF_MEASURE_DISTANCE, /* Hybrid eq. 3: split when f = d/(e*C) < 1; d viewer to node centre, e node edge */
-    FF_MEASURE_PIXELS    /* split when the node's geometric error projects to more than error_px_q8 pixels */
+    /* Hybrid eq. 3: split when f = d/(e*C) < 1; d viewer to node centre, e node edge */
+    FF_MEASURE_DISTANCE,
+    /* split when the node's geometric error projects to more than error_px_q8 pixels */
+    FF_MEASURE_PIXELS
 };
 
 typedef struct ff_quality {
     enum ff_measure measure;
-    int32_t c_q8;          /* C of eq. 3 */
-    int32_t error_px_q8;   /* for FF_MEASURE_PIXELS */
-    uint8_t depth_max;     /* levels used, 1: roots only; 0: all the terrain has */
-    int32_t sigma_q8;      /* children of a node are kept until f exceeds sigma (> 1.0); Listing 1's caching threshold */
-    int32_t view_wu;       /* ground further than this (largest of |dx|,|dy|,|dz| to `centre_wu`) is neither drawn nor asked for */
-    int32_t hole_wu;       /* ground nearer than this (measured alike) is not split for its own sake: a panorama leaves it out; 0: none */
+    int32_t c_q8;        /* C of eq. 3 */
+    int32_t error_px_q8; /* for FF_MEASURE_PIXELS */
+    uint8_t depth_max;   /* levels used, 1: roots only; 0: all the terrain has */
+    /* children of a node are kept until f exceeds sigma (> 1.0); Listing 1's caching threshold */
+    int32_t sigma_q8;
+    /* ground further than this (largest of |dx|,|dy|,|dz| to `centre_wu`) is neither drawn nor
+     * asked for */
+    int32_t view_wu;
+    /* ground nearer than this (measured alike) is not split for its own sake: a panorama leaves it
+     * out; 0: none */
+    int32_t hole_wu;
 } ff_quality;
 
 typedef struct ff_view {
     c3d_camera camera;
-    int32_t centre_wu[3];  /* middle of the square of ground to draw: the camera, or where the panorama in use was taken */
+    /* middle of the square of ground to draw: the camera, or where the panorama in use was taken */
+    int32_t centre_wu[3];
 } ff_view;
 
-/* One wish: a root (level 0, refinement 0) or the children of a node. priority: higher is more urgent. */
+/* One wish: a root (level 0, refinement 0) or the children of a node. priority: higher is more
+ * urgent. */
 typedef struct ff_wish {
     ff_key key;
     uint8_t refinement;
-    uint8_t in_view;       /* or a neighbour without which something in view may not split */
-    uint32_t priority;     /* of the same class: pixels of error removed, Q8 (DISTANCE: Q8 of 1/f) */
+    uint8_t in_view;   /* or a neighbour without which something in view may not split */
+    uint32_t priority; /* of the same class: pixels of error removed, Q8 (DISTANCE: Q8 of 1/f) */
 } ff_wish;
 
 typedef struct ff_drawn {
     ff_key key;
     const ff_node *node;
-    const uint16_t *heights;  /* ff_node_side()^2, decoded */
-    uint8_t coarser;          /* bit FF_SIDE_x: the neighbour there is one level coarser */
-    int32_t origin_wu[3];     /* world position of vertex (0,0,z=0); see ff_tree_vertices */
+    const uint16_t *heights; /* ff_node_side()^2, decoded */
+    uint8_t coarser;         /* bit FF_SIDE_x: the neighbour there is one level coarser */
+    int32_t origin_wu[3];    /* world position of vertex (0,0,z=0); see ff_tree_vertices */
     int32_t cell_wu;
 } ff_drawn;
 
 typedef struct ff_tree_stats {
     uint32_t nodes_held, nodes_high, nodes_capacity;
-    uint32_t nodes_cut, nodes_drawn;   /* of the last selection */
-    uint32_t triangles;                /* drawn, degenerate ones not counted */
-    uint32_t stitched;                 /* drawn nodes with at least one coarser neighbour */
-    uint32_t pool_full;                /* refinements that found no room */
-    uint32_t orphans;                  /* refinements that arrived for a node no longer held */
+    uint32_t nodes_cut, nodes_drawn; /* of the last selection */
+    uint32_t triangles;              /* drawn, degenerate ones not counted */
+    uint32_t stitched;               /* drawn nodes with at least one coarser neighbour */
+    uint32_t pool_full;              /* refinements that found no room */
+    uint32_t orphans;                /* refinements that arrived for a node no longer held */
     uint32_t selects, selects_skipped;
-    uint32_t flat;                     /* nodes of the last selection near enough to split but exact already: not asked for */
-    uint32_t error_px_q8;              /* the tree's own estimate: largest projected geometric error of a drawn node */
+    /* nodes of the last selection near enough to split but exact already: not asked for */
+    uint32_t flat;
+    /* the tree's own estimate: largest projected geometric error of a drawn node */
+    uint32_t error_px_q8;
 } ff_tree_stats;
 
 typedef struct ff_tree_desc {
     ff_terrain_info info;
-    uint32_t node_count;   /* slots; at least 8 */
-    uint32_t wish_count;   /* most wishes one selection lists */
+    uint32_t node_count; /* slots; at least 8 */
+    uint32_t wish_count; /* most wishes one selection lists */
 } ff_tree_desc;
 
 size_t ff_tree_bytes(const ff_tree_desc *desc);
 /* NULL when desc is out of range or the block too small. */
 ff_tree *ff_tree_create(const ff_tree_desc *desc, void *memory, size_t bytes);
 
-/* Results of a request. Residuals from ff_decode_*. FF_OK; FF_ERR_FULL (counted, coarser), FF_ERR_NOT_FOUND (node gone: counted). */
+/* Results of a request. Residuals from ff_decode_*. FF_OK; FF_ERR_FULL (counted, coarser),
+ * FF_ERR_NOT_FOUND (node gone: counted). */
 int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, const ff_residuals *residuals);
 int ff_tree_deliver_children(ff_tree *tree, ff_key key, const ff_residuals *residuals);
 
-/* Chooses the cut for a view. Returns 1 when anything changed (view, quality, nodes) and the cut was made anew, 0 when skipped. */
+/* Chooses the cut for a view. Returns 1 when anything changed (view, quality, nodes) and the cut
+ * was made anew, 0 when skipped. */
 int ff_tree_select(ff_tree *tree, const ff_view *view, const ff_quality *quality);
-/* Nodes of the cut inside the view pyramid, nearest first; valid until the next call that changes the tree. */
+/* Nodes of the cut inside the view pyramid, nearest first; valid until the next call that changes
+ * the tree. */
 uint32_t ff_tree_drawn(const ff_tree *tree, const ff_drawn **list);
 /* All nodes of the cut, seen or not, for checks: same rules. */
 uint32_t ff_tree_cut(const ff_tree *tree, const ff_drawn **list);
-/* What would make the picture better, most urgent first. The tree does not remember asking: the caller does. */
+/* What would make the picture better, most urgent first. The tree does not remember asking: the
+ * caller does. */
 uint32_t ff_tree_wishes(const ff_tree *tree, const ff_wish **list);
 
-/* What the viewer would wish for in view if it were at pos_wu and looked yaw, pitch further (brad16), and does not wish for in view now:
- * for prefetch, most urgent first, at most `capacity`. Only what the pool would find room for. */
-uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], int32_t yaw, int32_t pitch, ff_wish *list, uint32_t capacity);
+/* What the viewer would wish for in view if it were at pos_wu and looked yaw, pitch further
+ * (brad16), and does not wish for in view now: for prefetch, most urgent first, at most `capacity`.
+ * Only what the pool would find room for. */
+uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], int32_t yaw, int32_t pitch,
+                         ff_wish *list, uint32_t capacity);
 
-/* Vertices of a node for c3d: x, y = column, row (0..2^k), z = height - 32768, colour from height and slope (ff_shade.h) or white
- * when `shaded` is 0. `out` has ff_node_side()^2 entries. Draw with origin ff_drawn.origin_wu - camera, xy_scale cell_wu,
- * z_scale_q16 = hscale_q24. */
+/* Vertices of a node for c3d: x, y = column, row (0..2^k), z = height - 32768, colour from height
+ * and slope (ff_shade.h) or white when `shaded` is 0. `out` has ff_node_side()^2 entries. Draw with
+ * origin ff_drawn.origin_wu - camera, xy_scale cell_wu, z_scale_q16 = hscale_q24. */
 void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3d_vertex *out);
 
-/* A caller's word per node slot (mesh handle, say), zeroed when the slot is given to another node, or when the node's shaded
- * vertices have changed because a neighbour arrived. `on_evict` is called first, for words that are not 0. */
+/* A caller's word per node slot (mesh handle, say), zeroed when the slot is given to another node,
+ * or when the node's shaded vertices have changed because a neighbour arrived. `on_evict` is called
+ * first, for words that are not 0. */
 uint32_t *ff_tree_user(ff_tree *tree, const ff_node *node);
 void ff_tree_on_evict(ff_tree *tree, void (*on_evict)(void *context, uint32_t user), void *context);
 

@@ -4,9 +4,9 @@
 
 #include "ff_tree.h"
 
-#define FF_SLOT_NONE UINT32_MAX
-#define FF_NODES_MAX (1u << 20)  /* slot numbers share a 64-bit sort key with a 40-bit distance */
-#define FF_SLOT_BITS 20
+#define FF_SLOT_NONE  UINT32_MAX
+#define FF_NODES_MAX  (1u << 20) /* slot numbers share a 64-bit sort key with a 40-bit distance */
+#define FF_SLOT_BITS  20
 #define FF_LEVELS_MAX (FF_KEY_LEVEL_MAX + 1u)
 
 /* Value of splitting a node, Q16: 1/f, above 1.0 the measure asks for it. Saturates. */
@@ -15,21 +15,22 @@
 
 enum ff_node_flags {
     FF_NODE_HELD = 1,
-    FF_NODE_ACTIVE = 2,  /* a root inside the window (as of the last selection) */
-    FF_NODE_WANTED = 4,  /* its children are desired, by itself or by a neighbour that may not be two levels finer */
-    FF_NODE_SPLIT = 8,   /* the cut runs below it */
-    FF_NODE_NEEDED = 16  /* something in view cannot split before its children are here */
+    FF_NODE_ACTIVE = 2, /* a root inside the window (as of the last selection) */
+    /* its children are desired, by itself or by a neighbour that may not be two levels finer */
+    FF_NODE_WANTED = 4,
+    FF_NODE_SPLIT = 8,  /* the cut runs below it */
+    FF_NODE_NEEDED = 16 /* something in view cannot split before its children are here */
 };
 
 struct ff_node {
     ff_key key;
-    uint32_t hash_next;      /* next in the hash chain, or in the list of free slots */
-    uint32_t list_next;      /* roots: next root */
-    uint32_t want_next;      /* next wanted node of the same level */
+    uint32_t hash_next; /* next in the hash chain, or in the list of free slots */
+    uint32_t list_next; /* roots: next root */
+    uint32_t want_next; /* next wanted node of the same level */
     uint32_t parent;
-    uint32_t child[4];       /* all four or, child[0] being FF_SLOT_NONE, none */
-    int32_t x_wu, y_wu;      /* south-west corner */
-    uint32_t value;          /* valid while FF_NODE_WANTED */
+    uint32_t child[4];  /* all four or, child[0] being FF_SLOT_NONE, none */
+    int32_t x_wu, y_wu; /* south-west corner */
+    uint32_t value;     /* valid while FF_NODE_WANTED */
     uint32_t user;
     uint16_t height_min, height_max, height_mean;
     uint8_t error_code;
@@ -37,30 +38,37 @@ struct ff_node {
 };
 
 /* Tiles x0..x1, y0..y1 touch the window; x1 < x0: none does. */
-typedef struct ff_window { int64_t x0, x1, y0, y1; } ff_window;
-typedef struct ff_box { int64_t lo[3], hi[3]; } ff_box; /* wu, relative to the camera */
+typedef struct ff_window {
+    int64_t x0, x1, y0, y1;
+} ff_window;
+typedef struct ff_box {
+    int64_t lo[3], hi[3];
+} ff_box; /* wu, relative to the camera */
 #define FF_PLANES 5
 
 struct ff_tree {
     ff_terrain_info info;
     uint32_t node_count, wish_capacity, hash_mask;
     ff_node *node;
-    uint16_t *heights;       /* node_count grids */
+    uint16_t *heights; /* node_count grids */
     uint32_t *hash;
-    uint32_t *order;         /* node_count slots: queue of a selection */
-    uint64_t *sort;          /* 2 * node_count */
-    ff_drawn *drawn;         /* node_count: the cut, its visible part first; the rest without `coarser` until someone asks */
+    uint32_t *order; /* node_count slots: queue of a selection */
+    uint64_t *sort;  /* 2 * node_count */
+    /* node_count: the cut, its visible part first; the rest without `coarser` until someone asks */
+    ff_drawn *drawn;
     ff_wish *wish;
-    uint16_t *refined;       /* grid of four children */
+    uint16_t *refined; /* grid of four children */
     uint32_t free_head, root_head, free_count;
     uint32_t cut_count, drawn_count, wish_count;
 
-    ff_view asked_view, view;         /* of the last selection: as given, and brought into range */
+    ff_view asked_view, view; /* of the last selection: as given, and brought into range */
     ff_quality asked_quality, quality;
     uint8_t has_view, dirty;
-    uint8_t dropped;                  /* nodes have gone since the last selection: lists of wanted ones are broken */
+    /* nodes have gone since the last selection: lists of wanted ones are broken */
+    uint8_t dropped;
     ff_window window;
-    int32_t plane[FF_PLANES][3];      /* inward normals of the view pyramid, largest component below 2^28 */
+    /* inward normals of the view pyramid, largest component below 2^28 */
+    int32_t plane[FF_PLANES][3];
     uint32_t want_head[FF_LEVELS_MAX];
 
     void (*on_evict)(void *context, uint32_t user);
@@ -68,12 +76,18 @@ struct ff_tree {
     ff_tree_stats stats;
 };
 
-static inline uint32_t ff_slot_of(const ff_tree *tree, const ff_node *node) { return (uint32_t)(node - tree->node); }
+static inline uint32_t ff_slot_of(const ff_tree *tree, const ff_node *node)
+{
+    return (uint32_t)(node - tree->node);
+}
 static inline size_t ff_heights_per_node(const ff_tree *tree)
 {
     return (size_t)ff_node_side(&tree->info) * ff_node_side(&tree->info);
 }
-static inline int ff_node_has_children(const ff_node *node) { return node->child[0] != FF_SLOT_NONE; }
+static inline int ff_node_has_children(const ff_node *node)
+{
+    return node->child[0] != FF_SLOT_NONE;
+}
 
 #define FF_COARSER_UNKNOWN 0xFFu /* of ff_drawn.coarser, for what is not seen */
 
@@ -88,12 +102,15 @@ void ff_tree_drop_children(ff_tree *tree, ff_node *parent);
 void ff_tree_drop_root(ff_tree *tree, ff_node *root);
 
 /* ff_evict.c */
-/* Make room for four children of `keep`, or for a root, by dropping what is worth less. 1 when there is room. */
+/* Make room for four children of `keep`, or for a root, by dropping what is worth less. 1 when
+ * there is room. */
 int ff_evict_for_children(ff_tree *tree, uint32_t keep);
 int ff_evict_for_root(ff_tree *tree, uint32_t tile);
-/* Sort keys (value << FF_SLOT_BITS | slot) of all that may be dropped, unsorted: parents of leaf families, idle roots. */
+/* Sort keys (value << FF_SLOT_BITS | slot) of all that may be dropped, unsorted: parents of leaf
+ * families, idle roots. */
 uint32_t ff_evict_candidates(const ff_tree *tree, uint64_t *keys);
-/* What children of `node` may drive out: all that is worth less than this. Not wanted ones spare the cache, up to sigma. */
+/* What children of `node` may drive out: all that is worth less than this. Not wanted ones spare
+ * the cache, up to sigma. */
 uint32_t ff_evict_limit(const ff_tree *tree, const ff_node *node);
 
 /* ff_measure.c */
@@ -128,8 +145,10 @@ void ff_wish_make(ff_tree *tree);
 /* ff_sort.c */
 void ff_sort_keys(uint64_t *keys, uint32_t count);
 
-/* ff_strips.c: triangles of one side, vertex = row * (n+1) + column, from its one end to the other, counter-clockwise;
- * the first vertex of a triangle is the one the next has not. Returns how many (at most 2n). */
-unsigned ff_side_triangles(unsigned node_log2, enum ff_side side, unsigned difference, uint16_t triangle[][3]);
+/* ff_strips.c: triangles of one side, vertex = row * (n+1) + column, from its one end to the other,
+ * counter-clockwise; the first vertex of a triangle is the one the next has not. Returns how many
+ * (at most 2n). */
+unsigned ff_side_triangles(unsigned node_log2, enum ff_side side, unsigned difference,
+                           uint16_t triangle[][3]);
 
 #endif

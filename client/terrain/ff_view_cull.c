@@ -1,8 +1,8 @@
-/* The view pyramid against boxes. A box is left out only when all of it lies outside one plane by more than the planes' own
- * rounding could explain: what is visible is never left out. */
+/* The view pyramid against boxes. A box is left out only when all of it lies outside one plane by
+ * more than the planes' own rounding could explain: what is visible is never left out. */
 #include "ff_tree_local.h"
 
-#define PLANE_BITS 28
+#define PLANE_BITS  28
 #define PLANE_SLACK 16 /* units of 2^-28 by which a component of a normal may be off */
 
 static void plane_from(int32_t plane[3], const int64_t normal[3])
@@ -10,32 +10,31 @@ static void plane_from(int32_t plane[3], const int64_t normal[3])
     uint64_t largest = 1;
     for (unsigned axis = 0; axis < 3; axis++) {
         uint64_t size = normal[axis] < 0 ? 0 - (uint64_t)normal[axis] : (uint64_t)normal[axis];
-        if (size > largest)
-            largest = size;
+        if (size > largest) largest = size;
     }
     unsigned bits = 0;
-    while (largest >> bits >> PLANE_BITS)
-        bits++;
+    while (largest >> bits >> PLANE_BITS) bits++;
     for (unsigned axis = 0; axis < 3; axis++)
         plane[axis] = (int32_t)(normal[axis] / ((int64_t)1 << bits));
 }
 
-/* A point projects inside when |x_eye| * d <= z_eye * width/2 and the like for y (c3d.h); all planes run through the eye. */
+/* A point projects inside when |x_eye| * d <= z_eye * width/2 and the like for y (c3d.h); all
+ * planes run through the eye. */
 void ff_pyramid_make(ff_tree *tree)
 {
     const c3d_camera *camera = &tree->view.camera;
     c3d_rotation rotation;
     c3d_rotation_from_camera(camera, &rotation);
-    int64_t half_q8[2] = {camera->width * 128, camera->height * 128};
+    int64_t half_q8[2] = { camera->width * 128, camera->height * 128 };
     int64_t normal[3];
     for (unsigned side = 0; side < 4; side++) {
         int64_t lateral = side & 1 ? camera->focal_q8 : -(int64_t)camera->focal_q8;
         for (unsigned axis = 0; axis < 3; axis++)
-            normal[axis] = lateral * rotation.m[side >> 1][axis] + half_q8[side >> 1] * rotation.m[2][axis];
+            normal[axis] = lateral * rotation.m[side >> 1][axis] +
+                           half_q8[side >> 1] * rotation.m[2][axis];
         plane_from(tree->plane[side], normal);
     }
-    for (unsigned axis = 0; axis < 3; axis++)
-        normal[axis] = rotation.m[2][axis];
+    for (unsigned axis = 0; axis < 3; axis++) normal[axis] = rotation.m[2][axis];
     plane_from(tree->plane[4], normal);
 }
 
@@ -57,7 +56,8 @@ static int narrow_beyond_plane(const int32_t plane[3], const ff_box *box, int64_
 {
     int64_t height = 0;
     for (unsigned axis = 0; axis < 3; axis++)
-        height += (int64_t)plane[axis] * (int32_t)(plane[axis] >= 0 ? box->hi[axis] : box->lo[axis]);
+        height += (int64_t)plane[axis] *
+                  (int32_t)(plane[axis] >= 0 ? box->hi[axis] : box->lo[axis]);
     return height < -slack;
 }
 

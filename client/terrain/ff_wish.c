@@ -1,11 +1,12 @@
-/* Wishes: what would make the picture better and would find room. Roots first, nearest first, then refinements by value; of
- * either kind what the view sees, or needs beside it to split, comes first. A wish that the pool would refuse is not made: a full tree asks for nothing. */
+/* Wishes: what would make the picture better and would find room. Roots first, nearest first, then
+ * refinements by value; of either kind what the view sees, or needs beside it to split, comes
+ * first. A wish that the pool would refuse is not made: a full tree asks for nothing. */
 #include "ff_tree_local.h"
 
-#define SLOT_MASK (FF_NODES_MAX - 1)
-#define OUT_OF_VIEW ((uint64_t)1 << 60)
-#define TILE_BITS 28
-#define ONE_Q8 256u
+#define SLOT_MASK    (FF_NODES_MAX - 1)
+#define OUT_OF_VIEW  ((uint64_t)1 << 60)
+#define TILE_BITS    28
+#define ONE_Q8       256u
 #define UNSEEN_SHARE 4 /* of the list, at most, for roots out of view */
 
 static uint32_t times_q16(uint32_t value_q16, uint32_t factor)
@@ -16,17 +17,20 @@ static uint32_t times_q16(uint32_t value_q16, uint32_t factor)
 
 /* ---- roots ---- */
 
-typedef struct root_scan { ff_tree *tree; uint32_t found, limit; } root_scan;
+typedef struct root_scan {
+    ff_tree *tree;
+    uint32_t found, limit;
+} root_scan;
 
 static void scan_tile(root_scan *scan, int64_t x, int64_t y)
 {
     ff_tree *tree = scan->tree;
     const ff_window *window = &tree->window;
-    if (scan->found == scan->limit || x < window->x0 || x > window->x1 || y < window->y0 || y > window->y1)
+    if (scan->found == scan->limit || x < window->x0 || x > window->x1 || y < window->y0 ||
+        y > window->y1)
         return;
     uint32_t tile = (uint32_t)(y * tree->info.tiles_x + x);
-    if (ff_tree_find(tree, ff_key_make(tile, 0, 0)) != FF_SLOT_NONE)
-        return;
+    if (ff_tree_find(tree, ff_key_make(tile, 0, 0)) != FF_SLOT_NONE) return;
     ff_box box;
     ff_tile_box(tree, tile, &box);
     uint64_t unseen = ff_box_in_view(tree, &box) ? 0 : OUT_OF_VIEW;
@@ -34,36 +38,40 @@ static void scan_tile(root_scan *scan, int64_t x, int64_t y)
     scan->found++;
 }
 
-static int64_t clamp64(int64_t value, int64_t lo, int64_t hi) { return value < lo ? lo : value > hi ? hi : value; }
+static int64_t clamp64(int64_t value, int64_t lo, int64_t hi)
+{
+    return value < lo ? lo : value > hi ? hi : value;
+}
 
 static void scan_row(root_scan *scan, int64_t x_first, int64_t x_last, int64_t y)
 {
     const ff_window *window = &scan->tree->window;
-    if (y < window->y0 || y > window->y1)
-        return;
+    if (y < window->y0 || y > window->y1) return;
     x_last = x_last > window->x1 ? window->x1 : x_last;
-    for (int64_t x = x_first < window->x0 ? window->x0 : x_first; x <= x_last && scan->found < scan->limit; x++)
+    for (int64_t x = x_first < window->x0 ? window->x0 : x_first;
+         x <= x_last && scan->found < scan->limit; x++)
         scan_tile(scan, x, y);
 }
 
 static void scan_column(root_scan *scan, int64_t x, int64_t y_first, int64_t y_last)
 {
     const ff_window *window = &scan->tree->window;
-    if (x < window->x0 || x > window->x1)
-        return;
+    if (x < window->x0 || x > window->x1) return;
     y_last = y_last > window->y1 ? window->y1 : y_last;
-    for (int64_t y = y_first < window->y0 ? window->y0 : y_first; y <= y_last && scan->found < scan->limit; y++)
+    for (int64_t y = y_first < window->y0 ? window->y0 : y_first;
+         y <= y_last && scan->found < scan->limit; y++)
         scan_tile(scan, x, y);
 }
 
-/* Missing roots of the window in square rings round its middle, from the inside; into `sort`, those in view first. */
+/* Missing roots of the window in square rings round its middle, from the inside; into `sort`, those
+ * in view first. */
 static uint32_t missing_roots(ff_tree *tree)
 {
     const ff_window *window = &tree->window;
-    uint32_t limit = tree->wish_capacity < tree->node_count / 2 ? 4 * tree->wish_capacity : 2 * tree->node_count;
-    root_scan scan = {tree, 0, limit};
-    if (window->x1 < window->x0)
-        return 0;
+    uint32_t limit = tree->wish_capacity < tree->node_count / 2 ? 4 * tree->wish_capacity
+                                                                : 2 * tree->node_count;
+    root_scan scan = { tree, 0, limit };
+    if (window->x1 < window->x0) return 0;
     int64_t edge = ff_node_edge_wu(&tree->info, 0);
     int64_t x = clamp64(tree->view.centre_wu[0] / edge, window->x0, window->x1);
     int64_t y = clamp64(tree->view.centre_wu[1] / edge, window->y0, window->y1);
@@ -87,8 +95,7 @@ static uint32_t active_roots(const ff_tree *tree, int64_t *farthest)
     *farthest = 0;
     for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
         uint32_t tile = ff_key_tile(tree->node[slot].key);
-        if (!ff_tile_active(tree, tile))
-            continue;
+        if (!ff_tile_active(tree, tile)) continue;
         count++;
         int64_t distance = ff_tile_distance(tree, tile);
         *farthest = distance > *farthest ? distance : *farthest;
@@ -100,7 +107,8 @@ static uint32_t root_priority(const ff_tree *tree, uint32_t tile)
 {
     ff_box box;
     ff_tile_box(tree, tile, &box);
-    uint64_t distance = (uint64_t)ff_box_distance(&box), reach = (uint64_t)ff_node_edge_wu(&tree->info, 0) << 16;
+    uint64_t distance = (uint64_t)ff_box_distance(&box),
+             reach = (uint64_t)ff_node_edge_wu(&tree->info, 0) << 16;
     uint64_t priority = reach / (distance + 1);
     return priority > UINT32_MAX ? UINT32_MAX : (uint32_t)priority;
 }
@@ -130,22 +138,29 @@ static uint32_t missing_children(ff_tree *tree)
 {
     uint32_t count = 0;
     for (uint32_t level = 0; level < FF_LEVELS_MAX; level++) {
-        for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE; slot = tree->node[slot].want_next) {
+        for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE;
+             slot = tree->node[slot].want_next) {
             const ff_node *node = &tree->node[slot];
-            if (ff_node_has_children(node))
-                continue;
+            if (ff_node_has_children(node)) continue;
             ff_box box;
             ff_node_box(tree, node, &box);
-            uint64_t unseen = node->flags & FF_NODE_NEEDED || ff_box_in_view(tree, &box) ? 0 : OUT_OF_VIEW;
-            tree->sort[count++] = unseen | (uint64_t)(FF_VALUE_MAX - node->value) << FF_SLOT_BITS | slot;
+            uint64_t unseen = node->flags & FF_NODE_NEEDED || ff_box_in_view(tree, &box)
+                                  ? 0
+                                  : OUT_OF_VIEW;
+            tree->sort[count++] = unseen | (uint64_t)(FF_VALUE_MAX - node->value) << FF_SLOT_BITS |
+                                  slot;
         }
     }
     ff_sort_keys(tree->sort, count);
     return count;
 }
 
-/* Room that delivering the wishes in order would find: free slots, then what is worth less than they are. */
-typedef struct room { uint64_t *victim; uint32_t victims, next, free; } room;
+/* Room that delivering the wishes in order would find: free slots, then what is worth less than
+ * they are. */
+typedef struct room {
+    uint64_t *victim;
+    uint32_t victims, next, free;
+} room;
 
 static int find_room(const ff_tree *tree, room *in, uint32_t slot)
 {
@@ -154,8 +169,7 @@ static int find_room(const ff_tree *tree, room *in, uint32_t slot)
         const ff_node *victim = &tree->node[in->victim[in->next++] & SLOT_MASK];
         in->free += ff_node_has_children(victim) ? 4 : 1;
     }
-    if (in->free < 4)
-        return 0;
+    if (in->free < 4) return 0;
     in->free -= 4;
     return 1;
 }
@@ -163,22 +177,23 @@ static int find_room(const ff_tree *tree, room *in, uint32_t slot)
 static void wish_children(ff_tree *tree)
 {
     uint32_t missing = missing_children(tree), roots = tree->wish_count;
-    room in = {tree->sort + missing, 0, 0, tree->free_count > roots ? tree->free_count - roots : 0};
+    room in = { tree->sort + missing, 0, 0,
+                tree->free_count > roots ? tree->free_count - roots : 0 };
     if (in.free < 4 * (uint64_t)missing) {
         in.victims = ff_evict_candidates(tree, in.victim);
         ff_sort_keys(in.victim, in.victims);
     }
     for (uint32_t i = 0; i < missing && tree->wish_count < tree->wish_capacity; i++) {
         uint32_t slot = (uint32_t)(tree->sort[i] & SLOT_MASK);
-        if (!find_room(tree, &in, slot))
-            continue;
+        if (!find_room(tree, &in, slot)) continue;
         const ff_node *node = &tree->node[slot];
         ff_wish *wish = &tree->wish[tree->wish_count++];
         wish->key = node->key;
         wish->refinement = 1;
         wish->in_view = !(tree->sort[i] & OUT_OF_VIEW);
         wish->priority = times_q16(node->value, tree->quality.measure == FF_MEASURE_PIXELS
-                                                    ? (uint32_t)tree->quality.error_px_q8 : ONE_Q8);
+                                                    ? (uint32_t)tree->quality.error_px_q8
+                                                    : ONE_Q8);
     }
 }
 

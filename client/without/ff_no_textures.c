@@ -10,10 +10,12 @@ int ff_textures_find(const ff_textures *textures, ff_key node, ff_key *key, c3d_
     return 0;
 }
 
-uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32_t drawn_count, const ff_view *view,
-                            const ff_quality *quality, ff_texture_wish *list, uint32_t capacity)
+uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32_t drawn_count,
+                            const ff_view *view, const ff_quality *quality, ff_texture_wish *list,
+                            uint32_t capacity)
 {
-    (void)textures, (void)drawn, (void)drawn_count, (void)view, (void)quality, (void)list, (void)capacity;
+    (void)textures, (void)drawn, (void)drawn_count, (void)view, (void)quality, (void)list,
+        (void)capacity;
     return 0;
 }
 
@@ -24,7 +26,8 @@ int ff_textures_take(ff_textures *textures, const ff_new_item *item)
 }
 
 /* Never asked for: an answer is an error of the server. */
-int ff_intake_texture(ff_intake *intake, const ff_request *request, const uint8_t *jpeg, uint32_t bytes)
+int ff_intake_texture(ff_intake *intake, const ff_request *request, const uint8_t *jpeg,
+                      uint32_t bytes)
 {
     (void)intake, (void)request, (void)jpeg, (void)bytes;
     return FF_ERR_FORMAT;

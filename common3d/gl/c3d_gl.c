@@ -7,7 +7,8 @@ static int gl_open(void *opaque, const c3d_desc *desc, int *buffers)
     int rc = c3d_gl_load(&state->gl, desc->surface_api, buffers);
     if (rc < 0) return rc;
     const unsigned char *text = state->gl.GetString(GL_VERSION);
-    int version = text ? c3d_gl_version((const char *)text) : 0; /* that of ES begins with a word */
+    /* that of ES begins with a word */
+    int version = text ? c3d_gl_version((const char *)text) : 0;
     if (version < 12) return FF_ERR_UNSUPPORTED;
     *buffers = *buffers && version >= 15;
     state->buffers = *buffers;
@@ -16,6 +17,6 @@ static int gl_open(void *opaque, const c3d_desc *desc, int *buffers)
 
 const struct c3d_backend *c3d_backend_gl(void)
 {
-    static const struct c3d_backend backend = {.name = "gl", .open = gl_open, C3D_GL_TABLE};
+    static const struct c3d_backend backend = { .name = "gl", .open = gl_open, C3D_GL_TABLE };
     return &backend;
 }

@@ -3,7 +3,10 @@
 
 #include <string.h>
 
-static const void *offset_pointer(const void *base, size_t offset) { return (const void *)((uintptr_t)base + offset); }
+static const void *offset_pointer(const void *base, size_t offset)
+{
+    return (const void *)((uintptr_t)base + offset);
+}
 
 static void bind_array(c3d_gl_state *state, uint32_t buffer)
 {
@@ -44,11 +47,13 @@ static void enable_array(c3d_gl_state *state, unsigned array, int on)
 
 int c3d_gl_version(const char *text)
 {
-    if (text[0] < '0' || text[0] > '9' || text[1] != '.' || text[2] < '0' || text[2] > '9') return 0;
+    if (text[0] < '0' || text[0] > '9' || text[1] != '.' || text[2] < '0' || text[2] > '9')
+        return 0;
     return (text[0] - '0') * 10 + text[2] - '0';
 }
 
-/* Everything a frame relies on, whoever drew in this context before: another device may share it. */
+/* Everything a frame relies on, whoever drew in this context before: another device may share
+ * it. */
 static void set_up(c3d_gl_state *state)
 {
     c3d_gl_api *gl = &state->gl;
@@ -114,13 +119,14 @@ void c3d_gl_buffer_free(void *opaque, uint32_t buffer)
     state->gl.DeleteBuffers(1, &buffer);
 }
 
-uint32_t c3d_gl_texture_upload(void *opaque, enum c3d_texture_format format, uint32_t width, uint32_t height,
-                               const void *pixels)
+uint32_t c3d_gl_texture_upload(void *opaque, enum c3d_texture_format format, uint32_t width,
+                               uint32_t height, const void *pixels)
 {
-    static const struct { unsigned format, type; } formats[] = {
-        [C3D_RGB565] = {GL_RGB, GL_UNSIGNED_SHORT_5_6_5},
-        [C3D_RGBA5551] = {GL_RGBA, GL_UNSIGNED_SHORT_5_5_5_1},
-        [C3D_RGBA8888] = {GL_RGBA, GL_UNSIGNED_BYTE}};
+    static const struct {
+        unsigned format, type;
+    } formats[] = { [C3D_RGB565] = { GL_RGB, GL_UNSIGNED_SHORT_5_6_5 },
+                    [C3D_RGBA5551] = { GL_RGBA, GL_UNSIGNED_SHORT_5_5_5_1 },
+                    [C3D_RGBA8888] = { GL_RGBA, GL_UNSIGNED_BYTE } };
     c3d_gl_state *state = opaque;
     c3d_gl_api *gl = &state->gl;
     uint32_t texture = 0;
@@ -133,8 +139,8 @@ uint32_t c3d_gl_texture_upload(void *opaque, enum c3d_texture_format format, uin
     gl->TexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, (float)GL_LINEAR);
     gl->TexParameterf(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, (float)GL_CLAMP_TO_EDGE);
     gl->TexParameterf(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, (float)GL_CLAMP_TO_EDGE);
-    gl->TexImage2D(GL_TEXTURE_2D, 0, (int)formats[format].format, (int)width, (int)height, 0, formats[format].format,
-                   formats[format].type, pixels);
+    gl->TexImage2D(GL_TEXTURE_2D, 0, (int)formats[format].format, (int)width, (int)height, 0,
+                   formats[format].format, formats[format].type, pixels);
     if (gl->GetError()) {
         c3d_gl_texture_free(state, texture);
         return 0;
@@ -208,7 +214,8 @@ void c3d_gl_draw(void *opaque, const c3d_resolved_draw *resolved)
     c3d_gl_state *state = opaque;
     c3d_gl_api *gl = &state->gl;
     const c3d_draw *draw = resolved->draw;
-    const c3d_vertex *base = resolved->mesh->vertices; /* NULL with a buffer: pointers are offsets then */
+    /* NULL with a buffer: pointers are offsets then */
+    const c3d_vertex *base = resolved->mesh->vertices;
     float matrix[16];
     set_flags(state, draw->flags);
     c3d_gl_modelview(matrix, resolved, &state->rotation);
@@ -220,7 +227,8 @@ void c3d_gl_draw(void *opaque, const c3d_resolved_draw *resolved)
         gl->TexCoordPointer(3, GL_SHORT, (int)sizeof *base, base);
     }
     if (draw->flags & C3D_DRAW_COLOURED) {
-        gl->ColorPointer(4, GL_UNSIGNED_BYTE, (int)sizeof *base, offset_pointer(base, offsetof(c3d_vertex, rgba)));
+        gl->ColorPointer(4, GL_UNSIGNED_BYTE, (int)sizeof *base,
+                         offset_pointer(base, offsetof(c3d_vertex, rgba)));
     } else {
         float rgba[4];
         c3d_gl_colour(rgba, draw->colour);
@@ -238,14 +246,29 @@ void c3d_gl_draw(void *opaque, const c3d_resolved_draw *resolved)
 /* A rectangle in clip coordinates; t = 0 is the picture's first row, at the top. */
 void c3d_gl_overlay(void *opaque, uint32_t texture, int x, int y, int width, int height)
 {
-    static const float corners[8] = {0, 0, 0, 1, 1, 0, 1, 1};
+    static const float corners[8] = { 0, 0, 0, 1, 1, 0, 1, 1 };
     c3d_gl_state *state = opaque;
     c3d_gl_api *gl = &state->gl;
     float across = 2.0f / state->width, down = -2.0f / state->height;
-    float place[16] = {(float)width * across, 0, 0, 0, 0, (float)height * down, 0, 0, 0, 0, 1, 0,
-                       (float)x * across - 1.0f, (float)y * down + 1.0f, 0, 1};
+    float place[16] = { (float)width * across,
+                        0,
+                        0,
+                        0,
+                        0,
+                        (float)height * down,
+                        0,
+                        0,
+                        0,
+                        0,
+                        1,
+                        0,
+                        (float)x * across - 1.0f,
+                        (float)y * down + 1.0f,
+                        0,
+                        1 };
     set_flags(state, C3D_DRAW_TEXTURED | C3D_DRAW_BACKDROP);
-    state->flags = UINT32_MAX; /* blending and the projection below belong to the overlay alone */
+    /* blending and the projection below belong to the overlay alone */
+    state->flags = UINT32_MAX;
     gl->Enable(GL_BLEND);
     gl->MatrixMode(GL_PROJECTION);
     gl->LoadIdentity();

@@ -1,4 +1,5 @@
-/* What the two GL back ends share. They differ in the contexts they accept and in how a context tells its version. */
+/* What the two GL back ends share. They differ in the contexts they accept and in how a context
+ * tells its version. */
 #ifndef C3D_GL_LOCAL_H
 #define C3D_GL_LOCAL_H
 
@@ -7,7 +8,7 @@
 typedef struct c3d_gl_state {
     c3d_gl_api gl;
     int buffers;
-    uint32_t flags;             /* enum c3d_draw_flags that GL is set to; UINT32_MAX: unknown */
+    uint32_t flags; /* enum c3d_draw_flags that GL is set to; UINT32_MAX: unknown */
     uint32_t array_buffer, element_buffer, texture; /* bound now */
     int fog;
     uint16_t width, height;
@@ -22,8 +23,8 @@ void c3d_gl_close(void *state);
 uint32_t c3d_gl_mesh_upload(void *state, const c3d_vertex *vertices, uint32_t count);
 uint32_t c3d_gl_strip_upload(void *state, const uint16_t *indices, uint32_t count);
 void c3d_gl_buffer_free(void *state, uint32_t buffer);
-uint32_t c3d_gl_texture_upload(void *state, enum c3d_texture_format format, uint32_t width, uint32_t height,
-                               const void *pixels);
+uint32_t c3d_gl_texture_upload(void *state, enum c3d_texture_format format, uint32_t width,
+                               uint32_t height, const void *pixels);
 void c3d_gl_texture_free(void *state, uint32_t texture);
 void c3d_gl_begin(void *state, const c3d_frame *frame, const c3d_rotation *rotation);
 void c3d_gl_draw(void *state, const c3d_resolved_draw *resolved);
@@ -32,16 +33,18 @@ void c3d_gl_end(void *state);
 int c3d_gl_read_rows(void *state, uint32_t width, uint32_t first_row, uint32_t rows, uint8_t *rgba);
 
 /* The rest of a back end's table. */
-#define C3D_GL_TABLE \
+#define C3D_GL_TABLE                                                                               \
     .state_bytes = sizeof(c3d_gl_state), .close = c3d_gl_close, .mesh_upload = c3d_gl_mesh_upload, \
-    .strip_upload = c3d_gl_strip_upload, .buffer_free = c3d_gl_buffer_free, .texture_upload = c3d_gl_texture_upload, \
-    .texture_free = c3d_gl_texture_free, .begin = c3d_gl_begin, .draw = c3d_gl_draw, .overlay = c3d_gl_overlay, \
-    .end = c3d_gl_end, .read_rows = c3d_gl_read_rows
+    .strip_upload = c3d_gl_strip_upload, .buffer_free = c3d_gl_buffer_free,                        \
+    .texture_upload = c3d_gl_texture_upload, .texture_free = c3d_gl_texture_free,                  \
+    .begin = c3d_gl_begin, .draw = c3d_gl_draw, .overlay = c3d_gl_overlay, .end = c3d_gl_end,      \
+    .read_rows = c3d_gl_read_rows
 
 /* Matrices, column by column, in metres (c3d_gl_matrix.c). */
 void c3d_gl_projection(float matrix[16], const c3d_camera *camera);
 void c3d_gl_backdrop_projection(float matrix[16], const c3d_camera *camera);
-void c3d_gl_modelview(float matrix[16], const c3d_resolved_draw *resolved, const c3d_rotation *rotation);
+void c3d_gl_modelview(float matrix[16], const c3d_resolved_draw *resolved,
+                      const c3d_rotation *rotation);
 void c3d_gl_texture_matrix(float matrix[16], const c3d_draw *draw);
 void c3d_gl_colour(float rgba[4], uint32_t colour);
 

@@ -1,11 +1,13 @@
-/* From the device's integers to GL's matrices: the one place where geometry becomes floating point. */
+/* From the device's integers to GL's matrices: the one place where geometry becomes floating
+ * point. */
 #include "c3d_gl_local.h"
 
 #include <string.h>
 
 #define METRES_PER_WU (1.0f / 256.0f)
-/* Bias of C3D_DRAW_ON_TOP: points move this part of the way to the eye, which leaves their place in the picture as it is. Unlike
- * glPolygonOffset this works for lines, and grows with distance as the steps of the depth buffer do. */
+/* Bias of C3D_DRAW_ON_TOP: points move this part of the way to the eye, which leaves their place in
+ * the picture as it is. Unlike glPolygonOffset this works for lines, and grows with distance as the
+ * steps of the depth buffer do. */
 #define ON_TOP_BIAS (1.0f / 64.0f)
 
 void c3d_gl_colour(float rgba[4], uint32_t colour)
@@ -36,31 +38,37 @@ void c3d_gl_projection(float matrix[16], const c3d_camera *camera)
 void c3d_gl_backdrop_projection(float matrix[16], const c3d_camera *camera)
 {
     projection_xy(matrix, camera);
-    matrix[10] = -0.999999f; /* just inside the far side of the clip volume, whatever the rounding */
+    /* just inside the far side of the clip volume, whatever the rounding */
+    matrix[10] = -0.999999f;
     matrix[14] = -2.0f * METRES_PER_WU;
 }
 
-void c3d_gl_modelview(float matrix[16], const c3d_resolved_draw *resolved, const c3d_rotation *rotation)
+void c3d_gl_modelview(float matrix[16], const c3d_resolved_draw *resolved,
+                      const c3d_rotation *rotation)
 {
     const c3d_draw *draw = resolved->draw;
     float pull = draw->flags & C3D_DRAW_ON_TOP ? 1.0f - ON_TOP_BIAS : 1.0f;
-    float xy = (float)draw->xy_scale_wu * METRES_PER_WU, z = (float)draw->z_scale_q16 * (METRES_PER_WU / 65536.0f);
-    const float scale[3] = {xy, xy, z};
+    float xy = (float)draw->xy_scale_wu * METRES_PER_WU,
+          z = (float)draw->z_scale_q16 * (METRES_PER_WU / 65536.0f);
+    const float scale[3] = { xy, xy, z };
     for (int row = 0; row < 3; row++) {
         float sign = row == 2 ? -pull : pull; /* GL looks along -z */
         for (int column = 0; column < 3; column++)
-            matrix[column * 4 + row] = sign * (float)rotation->m[row][column] * (1.0f / C3D_ONE_Q30) * scale[column];
-        matrix[12 + row] = sign * (float)((double)resolved->eye_q14[row] / (256.0 * (1 << C3D_EYE_SHIFT)));
+            matrix[column * 4 + row] = sign * (float)rotation->m[row][column] *
+                                       (1.0f / C3D_ONE_Q30) * scale[column];
+        matrix[12 + row] = sign *
+                           (float)((double)resolved->eye_q14[row] / (256.0 * (1 << C3D_EYE_SHIFT)));
     }
     matrix[3] = matrix[7] = matrix[11] = 0.0f;
     matrix[15] = 1.0f;
 }
 
-/* Texture coordinates are the vertex itself, x, y and z: the matrix takes s and t from two of the axes. */
+/* Texture coordinates are the vertex itself, x, y and z: the matrix takes s and t from two of the
+ * axes. */
 void c3d_gl_texture_matrix(float matrix[16], const c3d_draw *draw)
 {
-    const int axis[2] = {draw->flags & C3D_DRAW_TEX_YZ ? 1 : 0,
-                         draw->flags & (C3D_DRAW_TEX_XZ | C3D_DRAW_TEX_YZ) ? 2 : 1};
+    const int axis[2] = { draw->flags & C3D_DRAW_TEX_YZ ? 1 : 0,
+                          draw->flags & (C3D_DRAW_TEX_XZ | C3D_DRAW_TEX_YZ) ? 2 : 1 };
     memset(matrix, 0, 16 * sizeof *matrix);
     for (int i = 0; i < 2; i++) {
         double scale = draw->tex_scale_q16[i] / (65536.0 * (double)(1u << draw->tex_shift));

@@ -20,6 +20,6 @@ static int gles1_open(void *opaque, const c3d_desc *desc, int *buffers)
 
 const struct c3d_backend *c3d_backend_gles1(void)
 {
-    static const struct c3d_backend backend = {.name = "gles1", .open = gles1_open, C3D_GL_TABLE};
+    static const struct c3d_backend backend = { .name = "gles1", .open = gles1_open, C3D_GL_TABLE };
     return &backend;
 }

@@ -3,23 +3,29 @@
 
 #include <string.h>
 
-#define WIDTH_DEFAULT 240
-#define HEIGHT_DEFAULT 320
+#define WIDTH_DEFAULT         240
+#define HEIGHT_DEFAULT        320
 #define TEXTURE_BYTES_DEFAULT 32768 /* for each texture */
-#define ROWS_MAX 4096
-#define WHITE 0xFFFFFFFFu
+#define ROWS_MAX              4096
+#define WHITE                 0xFFFFFFFFu
 
-/* ---- memory: state | vertices | textures | colour | depth | open parts of rows | used units | texels ---- */
+/* ---- memory: state | vertices | textures | colour | depth | open parts of rows | used units |
+ * texels ---- */
 
-typedef struct soft_sizes { size_t vertices, textures, colour, depth, rows, used, heap, pixels; } soft_sizes;
+typedef struct soft_sizes {
+    size_t vertices, textures, colour, depth, rows, used, heap, pixels;
+} soft_sizes;
 
 static size_t aligned(size_t bytes) { return (bytes + 15) & ~(size_t)15; }
 
 static void measure(const c3d_desc *desc, soft_sizes *sizes)
 {
-    size_t texture_bytes = desc->texture_bytes ? desc->texture_bytes : (size_t)desc->texture_count * TEXTURE_BYTES_DEFAULT;
+    size_t texture_bytes = desc->texture_bytes
+                               ? desc->texture_bytes
+                               : (size_t)desc->texture_count * TEXTURE_BYTES_DEFAULT;
     size_t units = texture_bytes / SOFT_HEAP_UNIT;
-    sizes->pixels = (size_t)(desc->width ? desc->width : WIDTH_DEFAULT) * (desc->height ? desc->height : HEIGHT_DEFAULT);
+    sizes->pixels = (size_t)(desc->width ? desc->width : WIDTH_DEFAULT) *
+                    (desc->height ? desc->height : HEIGHT_DEFAULT);
     sizes->vertices = aligned(desc->mesh_vertices_max * sizeof(soft_vertex));
     sizes->textures = aligned(desc->texture_count * sizeof(soft_texture));
     sizes->colour = aligned(sizes->pixels * (desc->frame_format == C3D_RGBA8888 ? 4 : 2));
@@ -33,7 +39,8 @@ static size_t soft_state_bytes(const c3d_desc *desc)
 {
     soft_sizes sizes;
     measure(desc, &sizes);
-    return aligned(sizeof(soft_state)) + sizes.vertices + sizes.textures + sizes.colour + sizes.depth + sizes.rows + sizes.used + sizes.heap;
+    return aligned(sizeof(soft_state)) + sizes.vertices + sizes.textures + sizes.colour +
+           sizes.depth + sizes.rows + sizes.used + sizes.heap;
 }
 
 static int soft_open(void *opaque, const c3d_desc *desc, int *buffers)
@@ -57,7 +64,8 @@ static int soft_open(void *opaque, const c3d_desc *desc, int *buffers)
     state->texture_count = desc->texture_count;
     state->wide = desc->frame_format == C3D_RGBA8888;
     for (uint32_t i = 0; i < 512; i++) /* 2^61/n in the middle of the step */
-        state->reciprocal[i] = (uint32_t)(((UINT64_C(1) << 61) / (((uint64_t)(i + 512) << 21) + (1 << 20))));
+        state->reciprocal[i] =
+            (uint32_t)(((UINT64_C(1) << 61) / (((uint64_t)(i + 512) << 21) + (1 << 20))));
     for (int32_t i = 1; i < SOFT_EDGE_TABLE; i++) state->edge_reciprocal[i] = INT32_MAX / i;
     return FF_OK;
 }
@@ -69,20 +77,24 @@ static void soft_close(void *state) { (void)state; }
 /* The first `done` bytes again and again; each copy doubles what there is. */
 static void repeat(void *start, size_t done, size_t bytes)
 {
-    for (uint8_t *at = start; done < bytes; done *= 2) memcpy(at + done, at, done < bytes - done ? done : bytes - done);
+    for (uint8_t *at = start; done < bytes; done *= 2)
+        memcpy(at + done, at, done < bytes - done ? done : bytes - done);
 }
 
 /* Depth only where the frame before left any. */
 static void clear(soft_state *state, uint32_t colour, int32_t first_row)
 {
-    size_t row_pixels = state->width, pixels = row_pixels * state->height, pixel_bytes = state->wide ? 4 : 2;
+    size_t row_pixels = state->width, pixels = row_pixels * state->height,
+           pixel_bytes = state->wide ? 4 : 2;
     if (!pixels) return;
     if (first_row < state->height) {
         uint32_t *depth = state->depth + (size_t)first_row * row_pixels;
         memset(depth, 0, row_pixels * sizeof *depth);
-        repeat(depth, row_pixels * sizeof *depth, (size_t)(state->height - first_row) * row_pixels * sizeof *depth);
+        repeat(depth, row_pixels * sizeof *depth,
+               (size_t)(state->height - first_row) * row_pixels * sizeof *depth);
     }
-    soft_put(state, 0, (int32_t)(colour & 255), (int32_t)(colour >> 8 & 255), (int32_t)(colour >> 16 & 255));
+    soft_put(state, 0, (int32_t)(colour & 255), (int32_t)(colour >> 8 & 255),
+             (int32_t)(colour >> 16 & 255));
     repeat(state->colour, pixel_bytes, pixels * pixel_bytes);
 }
 
@@ -92,7 +104,10 @@ static void soft_begin(void *opaque, const c3d_frame *frame, const c3d_rotation 
     const c3d_camera *camera = &frame->camera;
     state->frame = *frame;
     state->blank = (uint32_t)camera->width * camera->height > state->pixels_max;
-    int32_t marked = camera->width == state->width && camera->height == state->height && state->top_row > 0 ? state->top_row : 0;
+    int32_t marked = camera->width == state->width && camera->height == state->height &&
+                             state->top_row > 0
+                         ? state->top_row
+                         : 0;
     state->width = state->blank ? 0 : camera->width;
     state->height = state->blank ? 0 : camera->height;
     state->painted = 0;
@@ -110,7 +125,9 @@ static void set_paint(soft_state *state, const c3d_resolved_draw *resolved, enum
     uint32_t flags = draw->flags;
     int wireframe = (flags & C3D_DRAW_WIREFRAME) != 0, backdrop = (flags & C3D_DRAW_BACKDROP) != 0;
     soft_paint *paint = &state->paint;
-    paint->texture = (flags & C3D_DRAW_TEXTURED) && !wireframe ? &state->textures[resolved->texture - 1] : NULL;
+    paint->texture = (flags & C3D_DRAW_TEXTURED) && !wireframe
+                         ? &state->textures[resolved->texture - 1]
+                         : NULL;
     paint->depth = depth;
     paint->coloured = (flags & C3D_DRAW_COLOURED) != 0;
     paint->white = !paint->coloured && (draw->colour & 0xFFFFFFu) == (WHITE & 0xFFFFFFu);
@@ -138,7 +155,8 @@ static void draw_now(soft_state *state, const c3d_resolved_draw *resolved, enum 
 /* Keeps a backdrop for the end of the frame; 0 when there is no room. */
 static int defer(soft_state *state, const c3d_resolved_draw *resolved)
 {
-    uint32_t room = C3D_SOFT_BACKDROP_VERTICES - state->deferred_vertices, count = resolved->mesh->count;
+    uint32_t room = C3D_SOFT_BACKDROP_VERTICES - state->deferred_vertices,
+             count = resolved->mesh->count;
     if (state->painted || state->deferred_count == C3D_SOFT_BACKDROPS || count > room) return 0;
     c3d_vertex *vertices = state->deferred_vertex + state->deferred_vertices;
     soft_deferred *deferred = &state->deferred[state->deferred_count++];
@@ -196,18 +214,23 @@ static void soft_overlay(void *opaque, uint32_t name, int x, int y, int width, i
             int32_t texel[4];
             uint8_t under[3];
             uint32_t at = (uint32_t)((y + row) * state->width + x + column);
-            soft_sample(texture, (int32_t)((2 * (int64_t)column + 1) * texture->width * 32768 / width) - 32768,
-                        (int32_t)((2 * (int64_t)row + 1) * texture->height * 32768 / height) - 32768, texel);
+            soft_sample(
+                texture,
+                (int32_t)((2 * (int64_t)column + 1) * texture->width * 32768 / width) - 32768,
+                (int32_t)((2 * (int64_t)row + 1) * texture->height * 32768 / height) - 32768,
+                texel);
             if (!texel[3]) continue;
             soft_get(state, at, under);
-            for (int i = 0; i < 3; i++) texel[i] = (texel[i] * texel[3] + under[i] * (255 - texel[3]) + 127) / 255;
+            for (int i = 0; i < 3; i++)
+                texel[i] = (texel[i] * texel[3] + under[i] * (255 - texel[3]) + 127) / 255;
             soft_put(state, at, texel[0], texel[1], texel[2]);
         }
 }
 
 static void soft_end(void *state) { draw_deferred(state); }
 
-static int soft_read_rows(void *opaque, uint32_t width, uint32_t first_row, uint32_t rows, uint8_t *rgba)
+static int soft_read_rows(void *opaque, uint32_t width, uint32_t first_row, uint32_t rows,
+                          uint8_t *rgba)
 {
     const soft_state *state = opaque;
     for (uint32_t row = first_row; row < first_row + rows; row++)
@@ -228,9 +251,17 @@ static const void *soft_pixels(void *opaque, enum c3d_texture_format *format)
 
 const struct c3d_backend *c3d_backend_soft(void)
 {
-    static const struct c3d_backend backend = {
-        .name = "soft", .state_bytes_for = soft_state_bytes, .open = soft_open, .close = soft_close,
-        .texture_upload = soft_texture_upload, .texture_free = soft_texture_drop, .begin = soft_begin, .draw = soft_draw,
-        .overlay = soft_overlay, .end = soft_end, .read_rows = soft_read_rows, .pixels = soft_pixels};
+    static const struct c3d_backend backend = { .name = "soft",
+                                                .state_bytes_for = soft_state_bytes,
+                                                .open = soft_open,
+                                                .close = soft_close,
+                                                .texture_upload = soft_texture_upload,
+                                                .texture_free = soft_texture_drop,
+                                                .begin = soft_begin,
+                                                .draw = soft_draw,
+                                                .overlay = soft_overlay,
+                                                .end = soft_end,
+                                                .read_rows = soft_read_rows,
+                                                .pixels = soft_pixels };
     return &backend;
 }

@@ -1,4 +1,5 @@
-/* Backdrops: pixels that nothing has covered, and the spans that fill them, into RGB565 (inner loops: long functions of few branches). */
+/* Backdrops: pixels that nothing has covered, and the spans that fill them, into RGB565 (inner
+ * loops: long functions of few branches). */
 #include "soft_ramp.h"
 #include "soft_sample.h"
 
@@ -73,19 +74,23 @@ static void fill_open(const soft_state *state, uint32_t first, uint32_t count, u
     }
 }
 
-/* Pixels, as a power of two, over which no colour changes by more than half a step of its own: red and blue have 32, green 64. */
+/* Pixels, as a power of two, over which no colour changes by more than half a step of its own: red
+ * and blue have 32, green 64. */
 static int steady_log2(const soft_ramp *ramp)
 {
-    uint32_t change = (uint32_t)(ramp->dr < 0 ? -ramp->dr : ramp->dr) | (uint32_t)(ramp->db < 0 ? -ramp->db : ramp->db);
+    uint32_t change = (uint32_t)(ramp->dr < 0 ? -ramp->dr : ramp->dr) |
+                      (uint32_t)(ramp->db < 0 ? -ramp->db : ramp->db);
     change |= (uint32_t)(ramp->dg < 0 ? -ramp->dg : ramp->dg) << 1;
-    int log2 = soft_leading_zeros(change | 1) - 14; /* change below 2^(18 - log2): half a step is 2^18 */
+    /* change below 2^(18 - log2): half a step is 2^18 */
+    int log2 = soft_leading_zeros(change | 1) - 14;
     return log2 > STEADY_LOG2 ? STEADY_LOG2 : log2;
 }
 
 static void ramp_open(const soft_state *state, const soft_segment *segment, const soft_ramp *ramp)
 {
     int32_t red = ramp->red, green = ramp->green, blue = ramp->blue;
-    uint32_t *depth = state->depth + segment->first, *end = depth + segment->count, mark = !state->paint.unmarked;
+    uint32_t *depth = state->depth + segment->first, *end = depth + segment->count,
+             mark = !state->paint.unmarked;
     uint16_t *pixel = (uint16_t *)(void *)state->colour + segment->first;
     for (; depth < end; depth++, pixel++, red += ramp->dr, green += ramp->dg, blue += ramp->db) {
         if (*depth) continue;
@@ -106,13 +111,18 @@ void soft_span_backdrop(soft_state *state, const soft_segment *segment)
     }
     int open = state->paint.unmarked && segment->first < (uint32_t)state->open_rows * state->width;
     uint16_t *pixels = (uint16_t *)(void *)state->colour;
-    for (uint32_t at = segment->first, left = segment->count, count; left; at += count, left -= count) {
+    for (uint32_t at = segment->first, left = segment->count, count; left;
+         at += count, left -= count) {
         count = left >> log2 ? 1u << log2 : left;
         int32_t half = (int32_t)count / 2;
-        uint32_t colour = soft_colour_565(ramp.red + ramp.dr * half, ramp.green + ramp.dg * half, ramp.blue + ramp.db * half);
-        if (open) fill(pixels + at, pixels + at + count, colour);
-        else fill_open(state, at, count, colour);
-        ramp.red += ramp.dr * (int32_t)count, ramp.green += ramp.dg * (int32_t)count, ramp.blue += ramp.db * (int32_t)count;
+        uint32_t colour = soft_colour_565(ramp.red + ramp.dr * half, ramp.green + ramp.dg * half,
+                                          ramp.blue + ramp.db * half);
+        if (open)
+            fill(pixels + at, pixels + at + count, colour);
+        else
+            fill_open(state, at, count, colour);
+        ramp.red += ramp.dr * (int32_t)count, ramp.green += ramp.dg * (int32_t)count,
+            ramp.blue += ramp.db * (int32_t)count;
     }
 }
 
@@ -130,11 +140,13 @@ void soft_span_holes(soft_state *state, const soft_segment *segment)
         return;
     }
     uint32_t mark = !state->paint.unmarked;
-    for (uint32_t at = segment->first, end = at + segment->count; at < end; at++, s += ds, t += dt) {
+    for (uint32_t at = segment->first, end = at + segment->count; at < end;
+         at++, s += ds, t += dt) {
         if (state->depth[at]) continue;
         const uint16_t *texel = texels + (t >> 16) * stride + (s >> 16);
         if (!((texel[0] | texel[1] | texel[stride] | texel[stride + 1]) & 1)) continue;
-        uint32_t pixel = soft_blend_5551(texel, (uint32_t)stride, (uint32_t)s >> 11 & 31, (uint32_t)t >> 11 & 31);
+        uint32_t pixel = soft_blend_5551(texel, (uint32_t)stride, (uint32_t)s >> 11 & 31,
+                                         (uint32_t)t >> 11 & 31);
         if (pixel == SOFT_CLEAR) continue;
         state->depth[at] = mark;
         ((uint16_t *)(void *)state->colour)[at] = (uint16_t)pixel;

@@ -1,5 +1,6 @@
-/* Clipping in eye space, for the few triangles that cross the near or the far plane or reach out of the guard band.
- * A new vertex is always computed from the inner end of its edge to the outer one: triangles that share the edge get the same. */
+/* Clipping in eye space, for the few triangles that cross the near or the far plane or reach out of
+ * the guard band. A new vertex is always computed from the inner end of its edge to the outer one:
+ * triangles that share the edge get the same. */
 #include "soft_local.h"
 
 enum { NEAR_PLANE, FAR_PLANE, GUARD_PLANES, PLANES = 6, CORNERS_MAX = 3 + PLANES };
@@ -15,7 +16,8 @@ static int64_t distance(const soft_state *state, const corner *from, int plane)
     const int32_t *eye = from->eye;
     if (plane == NEAR_PLANE) return (int64_t)eye[2] - state->space.near_eye;
     if (plane == FAR_PLANE) return (int64_t)state->space.far_eye - eye[2];
-    int64_t wide = (int64_t)eye[2] * (SOFT_GUARD_CLIP_PX * SOFT_ONE), side = soft_scale64(eye[(plane - GUARD_PLANES) >> 1], 27 - state->view.focal_shift);
+    int64_t wide = (int64_t)eye[2] * (SOFT_GUARD_CLIP_PX * SOFT_ONE),
+            side = soft_scale64(eye[(plane - GUARD_PLANES) >> 1], 27 - state->view.focal_shift);
     return plane & 1 ? wide + side : wide - side; /* 2^30 * 2^16, 2^30 * 2^27 */
 }
 
@@ -32,13 +34,15 @@ static int32_t part_q30(const soft_state *state, int64_t part, int64_t whole)
         part >>= 1;
     }
     int lead = soft_leading_zeros((uint32_t)whole) - 1;
-    uint64_t part_q61 = (uint64_t)part * soft_fine_reciprocal(state, (uint32_t)whole << lead); /* below 2^(31 - lead) * 2^31 */
+    /* below 2^(31 - lead) * 2^31 */
+    uint64_t part_q61 = (uint64_t)part * soft_fine_reciprocal(state, (uint32_t)whole << lead);
     uint32_t q30 = (uint32_t)(part_q61 >> (31 - lead));
     return (int32_t)(q30 < UINT32_C(1) << 30 ? q30 : UINT32_C(1) << 30);
 }
 
 /* The point of the edge on the plane: as far from `inner` as its distance is of the sum of both. */
-static void cut(const soft_state *state, int plane, const corner *inner, const corner *outer, corner *new)
+static void cut(const soft_state *state, int plane, const corner *inner, const corner *outer,
+                corner *new)
 {
     int64_t part = distance(state, inner, plane);
     int32_t p = part_q30(state, part, part - distance(state, outer, plane));
@@ -48,7 +52,8 @@ static void cut(const soft_state *state, int plane, const corner *inner, const c
     new->at.s = between(inner->at.s, outer->at.s, p);
     new->at.t = between(inner->at.t, outer->at.t, p);
     new->at.fog_q8 = between(inner->at.fog_q8, outer->at.fog_q8, p);
-    for (int i = 0; i < 4; i++) new->at.rgba[i] = (uint8_t)between(inner->at.rgba[i], outer->at.rgba[i], p);
+    for (int i = 0; i < 4; i++)
+        new->at.rgba[i] = (uint8_t)between(inner->at.rgba[i], outer->at.rgba[i], p);
     soft_project(state, new->eye, &new->at);
 }
 
@@ -83,10 +88,13 @@ static uint32_t out_of(const corner *in, int count, uint32_t *all)
     return some;
 }
 
-/* Which planes the corners may be beyond: what is behind the near plane is known to lie beyond that one only. */
+/* Which planes the corners may be beyond: what is behind the near plane is known to lie beyond that
+ * one only. */
 static int beyond(uint32_t out, int plane)
 {
-    return (out & (plane == NEAR_PLANE ? SOFT_NEAR : plane == FAR_PLANE ? SOFT_FAR : SOFT_GUARD)) != 0;
+    return (out & (plane == NEAR_PLANE  ? SOFT_NEAR
+                   : plane == FAR_PLANE ? SOFT_FAR
+                                        : SOFT_GUARD)) != 0;
 }
 
 static int64_t area_of(const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
@@ -94,14 +102,16 @@ static int64_t area_of(const soft_vertex *a, const soft_vertex *b, const soft_ve
     return (int64_t)(b->x - a->x) * (c->y - a->y) - (int64_t)(c->x - a->x) * (b->y - a->y);
 }
 
-/* A fan from the first corner. Rounding may fold a flat corner over: what turns the other way than most of it is left out. */
+/* A fan from the first corner. Rounding may fold a flat corner over: what turns the other way than
+ * most of it is left out. */
 static void draw_fan(soft_state *state, const corner *in, int count)
 {
     int64_t all = 0;
     for (int i = 2; i < count; i++) all += area_of(&in[0].at, &in[i - 1].at, &in[i].at);
     for (int i = 2; i < count; i++) {
         int64_t area = area_of(&in[0].at, &in[i - 1].at, &in[i].at);
-        if (all > 0 ? area > 0 : area < 0) soft_triangle(state, &in[0].at, &in[i - 1].at, &in[i].at);
+        if (all > 0 ? area > 0 : area < 0)
+            soft_triangle(state, &in[0].at, &in[i - 1].at, &in[i].at);
     }
 }
 
@@ -126,17 +136,19 @@ void soft_clip(soft_state *state, const soft_vertex *a, const soft_vertex *b, co
     draw_fan(state, now, count);
 }
 
-int soft_clip_line(const soft_state *state, const soft_vertex *a, const soft_vertex *b, soft_vertex cut_line[2])
+int soft_clip_line(const soft_state *state, const soft_vertex *a, const soft_vertex *b,
+                   soft_vertex cut_line[2])
 {
     corner end[2], new;
     take(state, a, &end[0]);
     take(state, b, &end[1]);
     for (int plane = 0; plane < PLANES; plane++) {
         if (!beyond(end[0].at.out | end[1].at.out, plane)) continue;
-        int inside[2] = {distance(state, &end[0], plane) >= 0, distance(state, &end[1], plane) >= 0};
+        int inside[2] = { distance(state, &end[0], plane) >= 0,
+                          distance(state, &end[1], plane) >= 0 };
         if (!inside[0] && !inside[1]) return 0;
         if (inside[0] && inside[1]) continue;
-        cut(state, plane, &end[inside[0]? 0 : 1], &end[inside[0] ? 1 : 0], &new);
+        cut(state, plane, &end[inside[0] ? 0 : 1], &end[inside[0] ? 1 : 0], &new);
         end[inside[0] ? 1 : 0] = new;
     }
     cut_line[0] = end[0].at;

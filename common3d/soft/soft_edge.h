@@ -1,9 +1,13 @@
-/* Exact edges. At the centre of a row an edge is at x = x0 + dx * k/dy, in sixteenths of a pixel; needed is the first pixel whose centre is
- * not left of it. `at` holds x with 32 fraction bits, too small by less than 1/dy, plus 1 - 2^-32: its upper word is x rounded up
- * exactly, because x itself is a multiple of 1/dy.
- *   Small edges (dy <= 512, |dx| < 8192): dx times floor(2^31/dy), or the next greater number for negative dx, is too small by at
- *   most |dx| units of 2^-31 for each sixteenth of a row: over the edge by less than 2^13 * 2^9 / 2^31 = 2^-9 <= 1/dy.
- *   Other edges: two quotients rounded down, too small by at most 2^-32 a row: 2^13 rows * 2^-32 < 2^-17 <= 1/dy. */
+/* Exact edges. At the centre of a row an edge is at x = x0 + dx * k/dy, in sixteenths of a pixel;
+ * needed is the first pixel whose centre is not left of it. `at` holds x with 32 fraction bits, too
+ * small by less than 1/dy, plus 1 - 2^-32: its upper word is x rounded up exactly, because x itself
+ * is a multiple of 1/dy.
+ *   Small edges (dy <= 512, |dx| < 8192): dx times floor(2^31/dy), or the next greater number for
+ *       negative dx, is too small by at
+ *   most |dx| units of 2^-31 for each sixteenth of a row: over the edge by less than 2^13 * 2^9 /
+ *       2^31 = 2^-9 <= 1/dy.
+ *   Other edges: two quotients rounded down, too small by at most 2^-32 a row: 2^13 rows * 2^-32 <
+ *       2^-17 <= 1/dy. */
 #ifndef SOFT_EDGE_H
 #define SOFT_EDGE_H
 
@@ -13,12 +17,14 @@ typedef struct soft_edge {
     int64_t at, step; /* x in the row, Q4 with 32 more fraction bits; from row to row */
 } soft_edge;
 
-/* n/d rounded down, exactly; |n| < 2^53, d > 0. A first quotient from 31 bits of n, a second one from what is left (below 2^26), and at
- * most a step more: a fraction of what a division of 64 bits costs where the processor has none. */
+/* n/d rounded down, exactly; |n| < 2^53, d > 0. A first quotient from 31 bits of n, a second one
+ * from what is left (below 2^26), and at most a step more: a fraction of what a division of 64 bits
+ * costs where the processor has none. */
 static inline int64_t soft_floor_divide(const soft_state *state, int64_t n, int32_t d)
 {
     int lead = soft_leading_zeros((uint32_t)d) - 1;
-    int32_t reciprocal = (int32_t)(soft_fine_reciprocal(state, (uint32_t)d << lead) >> 1); /* 2^60 / (d << lead) */
+    /* 2^60 / (d << lead) */
+    int32_t reciprocal = (int32_t)(soft_fine_reciprocal(state, (uint32_t)d << lead) >> 1);
     int64_t quotient = ((n >> 22) * reciprocal) >> (38 - lead), left = n - quotient * d;
     int64_t more = (left * reciprocal) >> (60 - lead);
     quotient += more;
@@ -29,17 +35,21 @@ static inline int64_t soft_floor_divide(const soft_state *state, int64_t n, int3
 }
 
 /* From a down to b, at row `row`, whose centre lies between them. */
-static inline void soft_edge_begin(const soft_state *state, soft_edge *edge, const soft_vertex *a, const soft_vertex *b, int32_t row)
+static inline void soft_edge_begin(const soft_state *state, soft_edge *edge, const soft_vertex *a,
+                                   const soft_vertex *b, int32_t row)
 {
     int32_t dx = b->x - a->x, dy = b->y - a->y, k = row * SOFT_ONE + SOFT_HALF - a->y;
     if (dy < SOFT_EDGE_TABLE && dx > -8192 && dx < 8192) {
-        int64_t slope = (int64_t)dx * state->edge_reciprocal[dy] + (dx < 0 ? dx : 0); /* 2^13 * 2^31 */
+        /* 2^13 * 2^31 */
+        int64_t slope = (int64_t)dx * state->edge_reciprocal[dy] + (dx < 0 ? dx : 0);
         edge->step = slope * (2 * SOFT_ONE);
         edge->at = ((int64_t)a->x + 1) * ((int64_t)1 << 32) - 1 + slope * (2 * k);
     } else {
-        edge->step = soft_floor_divide(state, (int64_t)dx * ((int64_t)1 << (32 + SOFT_SUB)), dy); /* 2^17 * 2^36 */
+        /* 2^17 * 2^36 */
+        edge->step = soft_floor_divide(state, (int64_t)dx * ((int64_t)1 << (32 + SOFT_SUB)), dy);
         edge->at = ((int64_t)a->x + 1) * ((int64_t)1 << 32) - 1 + (k >> SOFT_SUB) * edge->step +
-                   soft_floor_divide(state, (int64_t)dx * (k & (SOFT_ONE - 1)) * ((int64_t)1 << 32), dy);
+                   soft_floor_divide(state, (int64_t)dx * (k & (SOFT_ONE - 1)) * ((int64_t)1 << 32),
+                                     dy);
     }
 }
 
@@ -55,14 +65,14 @@ static inline int32_t soft_first_row(int32_t y) { return (y + SOFT_HALF - 1) >> 
 typedef struct soft_walk {
     soft_edge left, right;
     int32_t row, middle, end;
-    int32_t from, to;           /* the row's pixels */
-    int bend_left;              /* b is on the left side */
+    int32_t from, to; /* the row's pixels */
+    int bend_left;    /* b is on the left side */
     const soft_vertex *b, *c;
 } soft_walk;
 
 /* 0 when there is no row. */
-static inline int soft_walk_begin(const soft_state *state, soft_walk *walk, const soft_vertex *a, const soft_vertex *b,
-                                  const soft_vertex *c, int bend_left)
+static inline int soft_walk_begin(const soft_state *state, soft_walk *walk, const soft_vertex *a,
+                                  const soft_vertex *b, const soft_vertex *c, int bend_left)
 {
     walk->row = soft_first_row(a->y);
     walk->middle = soft_first_row(b->y);
@@ -74,8 +84,10 @@ static inline int soft_walk_begin(const soft_state *state, soft_walk *walk, cons
     walk->b = b;
     walk->c = c;
     soft_edge_begin(state, bend_left ? &walk->right : &walk->left, a, c, walk->row);
-    if (walk->row < walk->middle) soft_edge_begin(state, bend_left ? &walk->left : &walk->right, a, b, walk->row);
-    else soft_edge_begin(state, bend_left ? &walk->left : &walk->right, b, c, walk->row);
+    if (walk->row < walk->middle)
+        soft_edge_begin(state, bend_left ? &walk->left : &walk->right, a, b, walk->row);
+    else
+        soft_edge_begin(state, bend_left ? &walk->left : &walk->right, b, c, walk->row);
     return 1;
 }
 
@@ -97,7 +109,8 @@ static inline int soft_walk_next(const soft_state *state, soft_walk *walk)
     walk->left.at += walk->left.step;
     walk->right.at += walk->right.step;
     if (walk->row == walk->middle)
-        soft_edge_begin(state, walk->bend_left ? &walk->left : &walk->right, walk->b, walk->c, walk->row);
+        soft_edge_begin(state, walk->bend_left ? &walk->left : &walk->right, walk->b, walk->c,
+                        walk->row);
     return 1;
 }
 

@@ -1,4 +1,5 @@
-/* Lines one pixel wide: along the longer direction one pixel for each centre from the first end up to, not including, the other. */
+/* Lines one pixel wide: along the longer direction one pixel for each centre from the first end up
+ * to, not including, the other. */
 #include "soft_local.h"
 
 static uint32_t w_between(uint32_t a, uint32_t b, int32_t part, int32_t whole)
@@ -6,13 +7,19 @@ static uint32_t w_between(uint32_t a, uint32_t b, int32_t part, int32_t whole)
     return (uint32_t)((int64_t)a + ((int64_t)b - (int64_t)a) * part / whole);
 }
 
-static void paint_pixel(soft_state *state, int32_t x, int32_t y, const soft_vertex *a, const soft_vertex *b, int32_t part, int32_t whole)
+static void paint_pixel(soft_state *state, int32_t x, int32_t y, const soft_vertex *a,
+                        const soft_vertex *b, int32_t part, int32_t whole)
 {
     if (x < 0 || y < 0 || x >= state->width || y >= state->height) return;
-    soft_segment segment = {.first = (uint32_t)(y * state->width + x), .count = 1, .w = w_between(a->w, b->w, part, whole)};
+    soft_segment segment = { .first = (uint32_t)(y * state->width + x),
+                             .count = 1,
+                             .w = w_between(a->w, b->w, part, whole) };
     for (int i = 0; i < 3; i++)
-        segment.value[SOFT_R + i] = (a->rgba[i] << 16) + (int32_t)((int64_t)(b->rgba[i] - a->rgba[i]) * 65536 * part / whole);
-    segment.value[SOFT_F] = (a->fog_q8 + (int32_t)((int64_t)(b->fog_q8 - a->fog_q8) * part / whole)) * 65536;
+        segment.value[SOFT_R + i] = (a->rgba[i] << 16) +
+                                    (int32_t)((int64_t)(b->rgba[i] - a->rgba[i]) * 65536 * part /
+                                              whole);
+    segment.value[SOFT_F] =
+        (a->fog_q8 + (int32_t)((int64_t)(b->fog_q8 - a->fog_q8) * part / whole)) * 65536;
     soft_segment_paint(state, &segment);
 }
 
@@ -25,14 +32,18 @@ static void draw_line(soft_state *state, const soft_vertex *a, const soft_vertex
         draw_line(state, b, a);
         return;
     }
-    int32_t start = steep ? a->y : a->x, whole = steep ? dy : dx, last = steep ? state->height : state->width;
-    int32_t first = (start + SOFT_HALF - 1) >> SOFT_SUB, end = (start + whole + SOFT_HALF - 1) >> SOFT_SUB;
+    int32_t start = steep ? a->y : a->x, whole = steep ? dy : dx,
+            last = steep ? state->height : state->width;
+    int32_t first = (start + SOFT_HALF - 1) >> SOFT_SUB,
+            end = (start + whole + SOFT_HALF - 1) >> SOFT_SUB;
     for (int32_t at = first < 0 ? 0 : first; at < end && at < last; at++) {
         int32_t part = at * SOFT_ONE + SOFT_HALF - start;
         if (steep)
-            paint_pixel(state, (a->x + (int32_t)((int64_t)dx * part / whole)) >> SOFT_SUB, at, a, b, part, whole);
+            paint_pixel(state, (a->x + (int32_t)((int64_t)dx * part / whole)) >> SOFT_SUB, at, a, b,
+                        part, whole);
         else
-            paint_pixel(state, at, (a->y + (int32_t)((int64_t)dy * part / whole)) >> SOFT_SUB, a, b, part, whole);
+            paint_pixel(state, at, (a->y + (int32_t)((int64_t)dy * part / whole)) >> SOFT_SUB, a, b,
+                        part, whole);
     }
 }
 

@@ -4,31 +4,39 @@
 
 #include "c3d_soft.h"
 
-#define SOFT_SUB 4                 /* fraction bits of screen coordinates */
-#define SOFT_ONE (1 << SOFT_SUB)
-#define SOFT_HALF (SOFT_ONE / 2)
-#define SOFT_GUARD_Q4 65536        /* screen coordinates stay this close to the principal point */
-#define SOFT_GUARD_CLIP_PX 4000    /* and are clipped here */
-#define SOFT_EDGE_TABLE 513        /* heights of edges, Q4, with a reciprocal at hand: up to 32 pixels */
-#define SOFT_TINY_TEXELS 64      /* each way: what soft_tiny multiplies stays below 2^28 */
-#define SOFT_HEAP_UNIT 256
+#define SOFT_SUB           4 /* fraction bits of screen coordinates */
+#define SOFT_ONE           (1 << SOFT_SUB)
+#define SOFT_HALF          (SOFT_ONE / 2)
+#define SOFT_GUARD_Q4      65536 /* screen coordinates stay this close to the principal point */
+#define SOFT_GUARD_CLIP_PX 4000  /* and are clipped here */
+#define SOFT_EDGE_TABLE    513 /* heights of edges, Q4, with a reciprocal at hand: up to 32 pixels */
+#define SOFT_TINY_TEXELS   64  /* each way: what soft_tiny multiplies stays below 2^28 */
+#define SOFT_HEAP_UNIT     256
 
 /* Where a vertex lies: of the screen (by pixel centres), or for the clipper. */
-enum { SOFT_LEFT = 1, SOFT_RIGHT = 2, SOFT_ABOVE = 4, SOFT_BELOW = 8, SOFT_NEAR = 16, SOFT_FAR = 32, SOFT_GUARD = 64 };
+enum {
+    SOFT_LEFT = 1,
+    SOFT_RIGHT = 2,
+    SOFT_ABOVE = 4,
+    SOFT_BELOW = 8,
+    SOFT_NEAR = 16,
+    SOFT_FAR = 32,
+    SOFT_GUARD = 64
+};
 #define SOFT_MUST_CLIP (SOFT_NEAR | SOFT_FAR | SOFT_GUARD)
 
 typedef struct soft_vertex {
-    int32_t x, y;        /* pixels, Q4; undefined where `out` says near */
-    uint32_t w;          /* near/z, Q30; below 2^30 */
-    int32_t s, t;        /* texels less one half, Q16; below 2^28 */
+    int32_t x, y; /* pixels, Q4; undefined where `out` says near */
+    uint32_t w;   /* near/z, Q30; below 2^30 */
+    int32_t s, t; /* texels less one half, Q16; below 2^28 */
     uint32_t out;
-    int32_t fog_q8;      /* 256: clear, 0: all fog; beyond both ends within +-2^14 */
+    int32_t fog_q8; /* 256: clear, 0: all fog; beyond both ends within +-2^14 */
     uint8_t rgba[4];
 } soft_vertex;
 
 typedef struct soft_texture {
-    uint8_t *texels;     /* of texel (-1, -1): the rim */
-    uint32_t first_unit, units; /* of the heap; units 0: free slot */
+    uint8_t *texels;                /* of texel (-1, -1): the rim */
+    uint32_t first_unit, units;     /* of the heap; units 0: free slot */
     uint16_t width, height, stride; /* stride: width + 2 */
     uint8_t format, width_log2, height_log2;
 } soft_texture;
@@ -38,11 +46,11 @@ enum soft_depth { SOFT_DEPTH_TEST, SOFT_DEPTH_UNCOVERED, SOFT_DEPTH_NONE };
 typedef struct soft_paint {
     const soft_texture *texture; /* NULL: untextured */
     enum soft_depth depth;
-    uint8_t coloured;    /* vertices differ in colour */
-    uint8_t white;       /* all vertices are white: the texture as it is */
+    uint8_t coloured; /* vertices differ in colour */
+    uint8_t white;    /* all vertices are white: the texture as it is */
     uint8_t alpha_test, fog, on_top;
-    uint8_t unmarked;    /* the last backdrop: nothing comes after it that asks what it covered */
-    uint8_t axis[2];     /* of the vertex, for s and t */
+    uint8_t unmarked; /* the last backdrop: nothing comes after it that asks what it covered */
+    uint8_t axis[2];  /* of the vertex, for s and t */
 } soft_paint;
 
 /* Attributes of a pixel, Q16: s, t, red, green, blue, fog (256: clear). */
@@ -50,31 +58,33 @@ enum { SOFT_S, SOFT_T, SOFT_R, SOFT_G, SOFT_B, SOFT_F, SOFT_ATTRIBUTES };
 
 /* Pixels of a row over which everything changes linearly. */
 typedef struct soft_segment {
-    uint32_t first, count;       /* of the frame's pixels */
-    uint32_t w, dw;              /* wraps */
+    uint32_t first, count; /* of the frame's pixels */
+    uint32_t w, dw;        /* wraps */
     int32_t value[SOFT_ATTRIBUTES], step[SOFT_ATTRIBUTES];
 } soft_segment;
 
-/* From vertices to eye space, for one draw. World units: 2^shift to a wu; eye units are two of them. */
+/* From vertices to eye space, for one draw. World units: 2^shift to a wu; eye units are two of
+ * them. */
 typedef struct soft_space {
     int shift;
-    uint8_t near;                /* 32 bits do: the next four are valid */
-    int32_t origin[3], scale;    /* world units */
+    uint8_t near;             /* 32 bits do: the next four are valid */
+    int32_t origin[3], scale; /* world units */
     int64_t origin_wu[3];
     int32_t scale_wu;
-    uint32_t z_scale_q16;        /* wu */
+    uint32_t z_scale_q16; /* wu */
     int32_t near_eye, far_eye;
-    uint32_t near_norm;          /* near plane, shifted into bit 31, */
-    int near_shift;              /* and how far 1/z of a z in bit 30 is shifted to be near/z in Q30 */
+    uint32_t near_norm; /* near plane, shifted into bit 31, */
+    int near_shift;     /* and how far 1/z of a z in bit 30 is shifted to be near/z in Q30 */
 } soft_space;
 
 /* From eye space to the screen, for one frame. */
 typedef struct soft_view {
-    int32_t row[3][3];           /* right and up times the focal distance, forward times 2: Q30, see soft_transform.c */
-    int focal_shift;             /* the focal distance times 2^focal_shift is that of the rows, Q30 */
-    int32_t centre[2];           /* Q4, twice */
-    int32_t guard_from[2];       /* least coordinates that need no clipping */
-    int32_t right_q4, below_q4;  /* last pixel centres */
+    /* right and up times the focal distance, forward times 2: Q30, see soft_transform.c */
+    int32_t row[3][3];
+    int focal_shift;       /* the focal distance times 2^focal_shift is that of the rows, Q30 */
+    int32_t centre[2];     /* Q4, twice */
+    int32_t guard_from[2]; /* least coordinates that need no clipping */
+    int32_t right_q4, below_q4; /* last pixel centres */
 } soft_view;
 
 typedef struct soft_deferred {
@@ -83,46 +93,52 @@ typedef struct soft_deferred {
     c3d_mesh_data mesh;
 } soft_deferred;
 
-typedef struct soft_part { uint16_t from, to; } soft_part; /* of a row: pixels from .. to - 1 */
+typedef struct soft_part {
+    uint16_t from, to;
+} soft_part; /* of a row: pixels from .. to - 1 */
 
 typedef struct soft_state soft_state;
 struct soft_state {
     /* memory, in the block */
-    uint8_t *colour;             /* 2 or 4 bytes a pixel, top row first */
+    uint8_t *colour; /* 2 or 4 bytes a pixel, top row first */
     uint32_t *depth;
-    soft_vertex *vertices;       /* of the mesh transformed last */
+    soft_vertex *vertices; /* of the mesh transformed last */
     soft_texture *textures;
-    uint16_t *open_from, *open_to; /* of each row, while backdrops fill: the pixels nothing has covered lie between */
-    soft_part *covered;          /* of each row, a run of pixels that something other than a backdrop covers */
-    uint8_t *heap, *heap_used;   /* texels; one byte a unit */
+    /* of each row, while backdrops fill: the pixels nothing has covered lie between */
+    uint16_t *open_from, *open_to;
+    /* of each row, a run of pixels that something other than a backdrop covers */
+    soft_part *covered;
+    uint8_t *heap, *heap_used; /* texels; one byte a unit */
     uint32_t heap_units, pixels_max;
     uint16_t texture_count;
-    uint8_t wide;                /* 1: RGBA8888, 0: RGB565 */
+    uint8_t wide; /* 1: RGBA8888, 0: RGB565 */
 
-    uint32_t reciprocal[512];    /* of n/512, n = 512 .. 1023, see soft_reciprocal */
+    uint32_t reciprocal[512];                 /* of n/512, n = 512 .. 1023, see soft_reciprocal */
     int32_t edge_reciprocal[SOFT_EDGE_TABLE]; /* floor((2^31 - 1) / n) */
 
     /* the frame */
     uint16_t width, height;
-    uint8_t blank;               /* the viewport is larger than the memory: nothing is drawn */
-    uint8_t painted;             /* something other than deferred backdrops was drawn */
-    int32_t top_row;             /* no depth was marked in rows above it; whatever paints a triangle keeps it */
-    int32_t open_end;            /* and nothing is open from this row on */
-    int32_t open_rows;           /* while backdrops fill: nothing covers the rows above this one */
+    uint8_t blank;   /* the viewport is larger than the memory: nothing is drawn */
+    uint8_t painted; /* something other than deferred backdrops was drawn */
+    /* no depth was marked in rows above it; whatever paints a triangle keeps it */
+    int32_t top_row;
+    int32_t open_end;  /* and nothing is open from this row on */
+    int32_t open_rows; /* while backdrops fill: nothing covers the rows above this one */
     c3d_frame frame;
     soft_view view;
-    int frame_shift;             /* soft_space.shift of ordinary draws */
+    int frame_shift; /* soft_space.shift of ordinary draws */
 
     /* the draw */
     soft_paint paint;
     soft_segment segment; /* of the row under way */
-    void (*span)(struct soft_state *state, const soft_segment *segment); /* of this paint where there is no fog */
+    /* of this paint where there is no fog */
+    void (*span)(struct soft_state *state, const soft_segment *segment);
     soft_space space;
-    c3d_draw cached;             /* whose vertices are in `vertices` */
+    c3d_draw cached; /* whose vertices are in `vertices` */
     const c3d_vertex *cached_mesh;
-    uint8_t off_texture;         /* some vertex lies beyond its edges */
-    uint8_t tiny_rows;           /* and a texture small enough for soft_tiny */
-    uint8_t texture_rows;        /* the texture alone, on it, into RGB565 with the depth test */
+    uint8_t off_texture;  /* some vertex lies beyond its edges */
+    uint8_t tiny_rows;    /* and a texture small enough for soft_tiny */
+    uint8_t texture_rows; /* the texture alone, on it, into RGB565 with the depth test */
     uint32_t deferred_count;
     soft_deferred deferred[C3D_SOFT_BACKDROPS];
     uint32_t deferred_vertices;
@@ -133,7 +149,7 @@ struct soft_state {
 static inline uint32_t soft_reciprocal(const soft_state *state, uint32_t n)
 {
     uint32_t r = state->reciprocal[(n >> 21) & 511];
-    uint32_t error = (uint32_t)(((uint64_t)n * r) >> 32);              /* 2^29 when exact */
+    uint32_t error = (uint32_t)(((uint64_t)n * r) >> 32); /* 2^29 when exact */
     return (uint32_t)(((uint64_t)r * ((UINT32_C(1) << 30) - error)) >> 29);
 }
 
@@ -169,28 +185,35 @@ static inline int64_t soft_scale64(int64_t value, int shift) /* times 2^shift */
 }
 
 /* soft_texture.c */
-uint32_t soft_texture_upload(void *state, enum c3d_texture_format format, uint32_t width, uint32_t height, const void *pixels);
+uint32_t soft_texture_upload(void *state, enum c3d_texture_format format, uint32_t width,
+                             uint32_t height, const void *pixels);
 void soft_texture_free(void *state, uint32_t texture);
 /* Bilinear, all four channels 0..255. s, t as in soft_vertex, any value. */
 void soft_sample(const soft_texture *texture, int32_t s, int32_t t, int32_t rgba[4]);
 
 /* soft_transform.c */
-void soft_begin_view(soft_state *state, const c3d_rotation *rotation); /* for a frame; width and height are known */
+/* for a frame; width and height are known */
+void soft_begin_view(soft_state *state, const c3d_rotation *rotation);
 void soft_transform(soft_state *state, const c3d_resolved_draw *resolved);
 /* Where a vertex of the mesh transformed last lies; and x, y, w and out of any place. */
 void soft_eye(const soft_state *state, const soft_vertex *vertex, int32_t eye[3]);
 void soft_project(const soft_state *state, const int32_t eye[3], soft_vertex *vertex);
 
-/* soft_clip.c, for vertices of the mesh transformed last: cuts the triangle at the planes and draws what is left. */
+/* soft_clip.c, for vertices of the mesh transformed last: cuts the triangle at the planes and draws
+ * what is left. */
 void soft_clip(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c);
 /* Cuts a line; 0 when nothing is left of it. */
-int soft_clip_line(const soft_state *state, const soft_vertex *a, const soft_vertex *b, soft_vertex cut[2]);
+int soft_clip_line(const soft_state *state, const soft_vertex *a, const soft_vertex *b,
+                   soft_vertex cut[2]);
 
 /* soft_triangle.c */
 void soft_strip(soft_state *state, const uint16_t *indices, uint32_t count);
-void soft_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c); /* clipped */
+/* clipped */
+void soft_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b,
+                   const soft_vertex *c);
 /* soft_perspective.c: any triangle; a.y <= b.y <= c.y, twice its area in Q8. */
-void soft_perspective(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c, int64_t area);
+void soft_perspective(soft_state *state, const soft_vertex *a, const soft_vertex *b,
+                      const soft_vertex *c, int64_t area);
 
 /* soft_small.c: 0 when it is not small or not flat enough; otherwise drawn. a.y <= b.y <= c.y. */
 int soft_small(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c);
@@ -201,17 +224,20 @@ int soft_tiny(soft_state *state, const soft_vertex *a, const soft_vertex *b, con
 /* soft_spans.c: after soft_transform */
 void soft_choose_span(soft_state *state);
 
-/* soft_backdrop.c: what nothing has covered. open_from and open_to of all rows; then spans into RGB565. */
+/* soft_backdrop.c: what nothing has covered. open_from and open_to of all rows; then spans into
+ * RGB565. */
 void soft_find_open_parts(soft_state *state);
 void soft_span_backdrop(soft_state *state, const soft_segment *segment); /* colours: the sky */
-void soft_span_holes(soft_state *state, const soft_segment *segment);    /* RGBA5551 with the alpha test: a panorama */
+/* RGBA5551 with the alpha test: a panorama */
+void soft_span_holes(soft_state *state, const soft_segment *segment);
 
 /* soft_line.c */
 void soft_lines(soft_state *state, const uint16_t *indices, uint32_t count);
 
 /* soft_pixels.c: any paint, any format. */
 void soft_segment_paint(soft_state *state, const soft_segment *segment);
-/* Between four texels of RGBA5551, from the upper left one, x and y in 1/32 texel: RGB565, or clear. */
+/* Between four texels of RGBA5551, from the upper left one, x and y in 1/32 texel: RGB565, or
+ * clear. */
 #define SOFT_CLEAR 0x10000u
 uint32_t soft_blend_5551(const uint16_t *texel, uint32_t stride, uint32_t x, uint32_t y);
 void soft_put(soft_state *state, uint32_t at, int32_t red, int32_t green, int32_t blue);

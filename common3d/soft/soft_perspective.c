@@ -1,11 +1,15 @@
-/* Any triangle, perspective-correct: planes of w and of every attribute times w, divided at the ends of segments.
+/* Any triangle, perspective-correct: planes of w and of every attribute times w, divided at the
+ * ends of segments.
  *
- * Slopes in 64 bits. w: Q42 (below 2^43). An attribute in Q16 below 2^28 times w, Q14: below 2^43 too. Differences of two, times 2^17
- * sixteenths, two of these: below 2^62. Then all is shifted down so that the nearest w takes 30 bits: over 2^9 pixels and for depths
- * 2^10 times the nearest one, rounding moves the quotient by less than 2^-11. Values wrap: at pixels inside they are right again. */
+ * Slopes in 64 bits. w: Q42 (below 2^43). An attribute in Q16 below 2^28 times w, Q14: below 2^43
+ * too. Differences of two, times 2^17 sixteenths, two of these: below 2^62. Then all is shifted
+ * down so that the nearest w takes 30 bits: over 2^9 pixels and for depths 2^10 times the nearest
+ * one, rounding moves the quotient by less than 2^-11. Values wrap: at pixels inside they are right
+ * again. */
 #include "soft_planes.h"
 
-static void vertex_values(const soft_vertex *vertex, const soft_planes *planes, int64_t value[SOFT_PLANES])
+static void vertex_values(const soft_vertex *vertex, const soft_planes *planes,
+                          int64_t value[SOFT_PLANES])
 {
     int64_t w = vertex->w;
     value[SOFT_PLANE_W] = w * 4096;
@@ -20,18 +24,24 @@ static void vertex_values(const soft_vertex *vertex, const soft_planes *planes, 
 
 static int log2_of(uint64_t n) /* n > 0 */
 {
-    return n >> 32 ? 63 - soft_leading_zeros((uint32_t)(n >> 32)) : 31 - soft_leading_zeros((uint32_t)n);
+    return n >> 32 ? 63 - soft_leading_zeros((uint32_t)(n >> 32))
+                   : 31 - soft_leading_zeros((uint32_t)n);
 }
 
-/* 1/area as a mantissa of 31 bits, 2^60 / (area scaled into bits 30..), and its exponent: a division costs hundreds of instructions. */
-typedef struct quotient { int32_t mantissa; int exponent; } quotient;
+/* 1/area as a mantissa of 31 bits, 2^60 / (area scaled into bits 30..), and its exponent: a
+ * division costs hundreds of instructions. */
+typedef struct quotient {
+    int32_t mantissa;
+    int exponent;
+} quotient;
 
 static quotient one_over(const soft_state *state, int64_t area)
 {
     int64_t size = area < 0 ? -area : area;
     int lead = 30 - log2_of((uint64_t)size);
-    int32_t mantissa = (int32_t)(soft_fine_reciprocal(state, (uint32_t)soft_scale64(size, lead)) >> 1);
-    return (quotient){area < 0 ? -mantissa : mantissa, lead - 60};
+    int32_t mantissa = (int32_t)(soft_fine_reciprocal(state, (uint32_t)soft_scale64(size, lead)) >>
+                                 1);
+    return (quotient){ area < 0 ? -mantissa : mantissa, lead - 60 };
 }
 
 /* value/area: value in 31 bits and an exponent, times that of 1/area; 2^-28 of it is the error. */
@@ -44,31 +54,39 @@ static int64_t over_area(int64_t value, quotient per_area)
     return shift <= -63 ? 0 : soft_scale64(product, shift);
 }
 
-static uint32_t scaled(uint64_t value, int down) { return (uint32_t)soft_scale64((int64_t)value, -down); }
+static uint32_t scaled(uint64_t value, int down)
+{
+    return (uint32_t)soft_scale64((int64_t)value, -down);
+}
 
 /* Through three points; `planes` knows which and at what scale. */
-static void make_planes(const soft_state *state, soft_planes *planes, const soft_vertex *const vertex[3], int64_t area, int32_t row, int down)
+static void make_planes(const soft_state *state, soft_planes *planes,
+                        const soft_vertex *const vertex[3], int64_t area, int32_t row, int down)
 {
     int64_t value[3][SOFT_PLANES];
     quotient per_area = one_over(state, area);
     int64_t dx1 = vertex[1]->x - vertex[0]->x, dy1 = vertex[1]->y - vertex[0]->y;
     int64_t dx2 = vertex[2]->x - vertex[0]->x, dy2 = vertex[2]->y - vertex[0]->y;
-    uint64_t to_x = (uint64_t)(int64_t)(SOFT_HALF - vertex[0]->x), to_y = (uint64_t)(int64_t)(row * SOFT_ONE + SOFT_HALF - vertex[0]->y);
+    uint64_t to_x = (uint64_t)(int64_t)(SOFT_HALF - vertex[0]->x),
+             to_y = (uint64_t)(int64_t)(row * SOFT_ONE + SOFT_HALF - vertex[0]->y);
     for (int i = 0; i < 3; i++) vertex_values(vertex[i], planes, value[i]);
     for (int i = planes->first; i < SOFT_PLANES; i++) {
         int64_t d1 = value[1][i] - value[0][i], d2 = value[2][i] - value[0][i];
-        uint64_t across = (uint64_t)over_area(d2 * dy1 - d1 * dy2, per_area), below = (uint64_t)over_area(d1 * dx2 - d2 * dx1, per_area);
+        uint64_t across = (uint64_t)over_area(d2 * dy1 - d1 * dy2, per_area),
+                 below = (uint64_t)over_area(d1 * dx2 - d2 * dx1, per_area);
         int shift = planes->linear && i != SOFT_PLANE_W ? 0 : down;
         soft_plane *plane = &planes->of[i];
         plane->across = scaled(across * SOFT_ONE, shift);
         plane->down = scaled(below * SOFT_ONE, shift);
-        plane->origin = scaled((uint64_t)value[0][i] + across * to_x + below * to_y, shift) - plane->down * (uint32_t)row;
+        plane->origin = scaled((uint64_t)value[0][i] + across * to_x + below * to_y, shift) -
+                        plane->down * (uint32_t)row;
         if (i == planes->last) i = SOFT_PLANE_W - 1;
     }
 }
 
-/* Colours alone may run linearly over the whole triangle where that is off by 4/255 at most, half a step of red in RGB565: by
- * (r - 1)/4 of their largest difference, r being the ratio of the nearest w to the farthest. */
+/* Colours alone may run linearly over the whole triangle where that is off by 4/255 at most, half a
+ * step of red in RGB565: by (r - 1)/4 of their largest difference, r being the ratio of the nearest
+ * w to the farthest. */
 static int colours_are_linear(const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
 {
     uint32_t near = a->w > b->w ? a->w : b->w, far = a->w < b->w ? a->w : b->w;
@@ -76,7 +94,8 @@ static int colours_are_linear(const soft_vertex *a, const soft_vertex *b, const 
     if (c->w < far) far = c->w;
     int range = 0;
     for (int i = 0; i < 3; i++) {
-        int low = a->rgba[i] < b->rgba[i] ? a->rgba[i] : b->rgba[i], high = a->rgba[i] + b->rgba[i] - low;
+        int low = a->rgba[i] < b->rgba[i] ? a->rgba[i] : b->rgba[i],
+            high = a->rgba[i] + b->rgba[i] - low;
         if (c->rgba[i] < low) low = c->rgba[i];
         if (c->rgba[i] > high) high = c->rgba[i];
         if (high - low > range) range = high - low;
@@ -85,7 +104,8 @@ static int colours_are_linear(const soft_vertex *a, const soft_vertex *b, const 
 }
 
 /* What is interpolated, and the nearest w in 30 bits. */
-static int set_up(const soft_state *state, soft_planes *planes, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
+static int set_up(const soft_state *state, soft_planes *planes, const soft_vertex *a,
+                  const soft_vertex *b, const soft_vertex *c)
 {
     const soft_paint *paint = &state->paint;
     uint32_t w = a->w > b->w ? a->w : b->w;
@@ -100,18 +120,21 @@ static int set_up(const soft_state *state, soft_planes *planes, const soft_verte
 }
 
 /* Attributes where planes are `value`: each divided by w. Below 2^28, Q16. */
-static void divide(const soft_state *state, const soft_planes *planes, const uint32_t value[SOFT_PLANES], int32_t out[SOFT_ATTRIBUTES])
+static void divide(const soft_state *state, const soft_planes *planes,
+                   const uint32_t value[SOFT_PLANES], int32_t out[SOFT_ATTRIBUTES])
 {
     int lead;
-    int32_t w = (int32_t)value[SOFT_PLANE_W] < 1 ? 1 : (int32_t)value[SOFT_PLANE_W], reciprocal = soft_one_over_w(state, (uint32_t)w, &lead);
+    int32_t w = (int32_t)value[SOFT_PLANE_W] < 1 ? 1 : (int32_t)value[SOFT_PLANE_W],
+            reciprocal = soft_one_over_w(state, (uint32_t)w, &lead);
     for (int i = planes->first; i <= planes->last; i++) {
         int32_t part = (int32_t)value[i];
         out[i] = soft_quotient((uint32_t)(part > w ? w : part < -w ? -w : part), reciprocal, lead);
     }
 }
 
-/* Pixels after which to divide again. Linear interpolation between is off by a quarter of the change of w, as a part of w, times that of
- * the attribute: by a quarter of a texel at most where a pixel is as large as a texel, and by 1/16 of the change of a colour. */
+/* Pixels after which to divide again. Linear interpolation between is off by a quarter of the
+ * change of w, as a part of w, times that of the attribute: by a quarter of a texel at most where a
+ * pixel is as large as a texel, and by 1/16 of the change of a colour. */
 static int segment_length(const soft_state *state, int32_t w, int32_t across)
 {
     int64_t change = across < 0 ? -(int64_t)across : across;
@@ -119,8 +142,9 @@ static int segment_length(const soft_state *state, int32_t w, int32_t across)
     return change * 4096 < w ? 64 : change * 1024 < w ? 32 : change * 256 < w ? 16 : 8;
 }
 
-static void paint_segment(soft_state *state, const soft_planes *planes, const int32_t from[SOFT_ATTRIBUTES],
-                          const int32_t to[SOFT_ATTRIBUTES], int apart)
+static void paint_segment(soft_state *state, const soft_planes *planes,
+                          const int32_t from[SOFT_ATTRIBUTES], const int32_t to[SOFT_ATTRIBUTES],
+                          int apart)
 {
     soft_segment *segment = &state->segment;
     for (int i = planes->first; i <= planes->last; i++) {
@@ -141,16 +165,19 @@ void soft_segments(soft_state *state, const soft_planes *planes, const soft_walk
     uint32_t value[SOFT_PLANES], w_across = planes->of[SOFT_PLANE_W].across;
     int32_t attribute[2][SOFT_ATTRIBUTES], left = walk->to - walk->from;
     int now = 0;
-    for (int i = planes->first; i <= planes->last; i++) value[i] = soft_plane_at(&planes->of[i], walk->row, walk->from);
+    for (int i = planes->first; i <= planes->last; i++)
+        value[i] = soft_plane_at(&planes->of[i], walk->row, walk->from);
     value[SOFT_PLANE_W] = soft_plane_at(&planes->of[SOFT_PLANE_W], walk->row, walk->from);
     state->segment.first = (uint32_t)(walk->row * state->width + walk->from);
     divide(state, planes, value, attribute[0]);
     while (left > 0) {
         int length = segment_length(state, (int32_t)value[SOFT_PLANE_W], (int32_t)w_across);
-        int last = left <= length, apart = last ? left - 1 : length; /* the last segment ends on a pixel of the triangle */
+        /* the last segment ends on a pixel of the triangle */
+        int last = left <= length, apart = last ? left - 1 : length;
         state->segment.w = soft_depth_of(value[SOFT_PLANE_W], planes->w_shift);
         state->segment.count = (uint32_t)(last ? left : length);
-        for (int i = planes->first; i <= planes->last; i++) value[i] += planes->of[i].across * (uint32_t)apart;
+        for (int i = planes->first; i <= planes->last; i++)
+            value[i] += planes->of[i].across * (uint32_t)apart;
         value[SOFT_PLANE_W] += w_across * (uint32_t)apart;
         divide(state, planes, value, attribute[now ^ 1]);
         paint_segment(state, planes, attribute[now], attribute[now ^ 1], apart);
@@ -165,7 +192,8 @@ static void linear_row(soft_state *state, const soft_planes *planes, const soft_
     soft_segment *segment = &state->segment;
     segment->first = (uint32_t)(walk->row * state->width + walk->from);
     segment->count = (uint32_t)(walk->to - walk->from);
-    segment->w = soft_depth_of(soft_plane_at(&planes->of[SOFT_PLANE_W], walk->row, walk->from), planes->w_shift);
+    segment->w = soft_depth_of(soft_plane_at(&planes->of[SOFT_PLANE_W], walk->row, walk->from),
+                               planes->w_shift);
     for (int i = SOFT_R; i <= SOFT_B; i++) {
         segment->value[i] = (int32_t)soft_plane_at(&planes->of[i], walk->row, walk->from);
         segment->step[i] = (int32_t)planes->of[i].across;
@@ -173,13 +201,15 @@ static void linear_row(soft_state *state, const soft_planes *planes, const soft_
     state->span(state, segment);
 }
 
-void soft_perspective(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c, int64_t area)
+void soft_perspective(soft_state *state, const soft_vertex *a, const soft_vertex *b,
+                      const soft_vertex *c, int64_t area)
 {
-    const soft_vertex *const vertex[3] = {a, b, c};
+    const soft_vertex *const vertex[3] = { a, b, c };
     soft_walk walk;
     soft_planes planes;
     if (!soft_walk_begin(state, &walk, a, b, c, area > 0)) return;
-    if (state->paint.depth == SOFT_DEPTH_UNCOVERED && walk.end > state->open_end) walk.end = state->open_end;
+    if (state->paint.depth == SOFT_DEPTH_UNCOVERED && walk.end > state->open_end)
+        walk.end = state->open_end;
     if (walk.row >= walk.end || !soft_walk_to_pixels(state, &walk, 0)) return;
     int down = set_up(state, &planes, a, b, c);
     make_planes(state, &planes, vertex, area, walk.row, down);
@@ -192,7 +222,9 @@ void soft_perspective(soft_state *state, const soft_vertex *a, const soft_vertex
         return;
     }
     do {
-        if (planes.linear) linear_row(state, &planes, &walk);
-        else soft_segments(state, &planes, &walk);
+        if (planes.linear)
+            linear_row(state, &planes, &walk);
+        else
+            soft_segments(state, &planes, &walk);
     } while (soft_walk_next(state, &walk) && soft_walk_to_pixels(state, &walk, 1));
 }

@@ -1,4 +1,5 @@
-/* Pixels one by one: any paint into any format. What is drawn most has faster ways (soft_small.c). */
+/* Pixels one by one: any paint into any format. What is drawn most has faster ways
+ * (soft_small.c). */
 #include "soft_sample.h"
 
 static int32_t to_byte(int32_t value_q16)
@@ -17,8 +18,9 @@ void soft_put(soft_state *state, uint32_t at, int32_t red, int32_t green, int32_
         pixel[2] = (uint8_t)blue;
         pixel[3] = 255;
     } else {
-        ((uint16_t *)(void *)state->colour)[at] =
-            (uint16_t)(((red * 31 + 128) >> 8) << 11 | ((green * 63 + 128) >> 8) << 5 | ((blue * 31 + 128) >> 8));
+        ((uint16_t *)(void *)state->colour)[at] = (uint16_t)(((red * 31 + 128) >> 8) << 11 |
+                                                             ((green * 63 + 128) >> 8) << 5 |
+                                                             ((blue * 31 + 128) >> 8));
     }
 }
 
@@ -39,12 +41,9 @@ void soft_get(const soft_state *state, uint32_t at, uint8_t rgb[3])
 static int take_pixel(const soft_state *state, uint32_t at, uint32_t w)
 {
     switch (state->paint.depth) {
-    case SOFT_DEPTH_TEST:
-        return w >= state->depth[at];
-    case SOFT_DEPTH_UNCOVERED:
-        return state->depth[at] == 0;
-    default:
-        return 1;
+        case SOFT_DEPTH_TEST: return w >= state->depth[at];
+        case SOFT_DEPTH_UNCOVERED: return state->depth[at] == 0;
+        default: return 1;
     }
 }
 
@@ -64,7 +63,8 @@ static int shade(const soft_paint *paint, const int32_t value[SOFT_ATTRIBUTES], 
     int32_t texel[4];
     soft_sample(paint->texture, value[SOFT_S], value[SOFT_T], texel);
     if (paint->alpha_test && texel[3] < 128) return 0;
-    for (int i = 0; i < 3; i++) rgb[i] = paint->white ? texel[i] : (texel[i] * rgb[i] * 257 + 32768) >> 16;
+    for (int i = 0; i < 3; i++)
+        rgb[i] = paint->white ? texel[i] : (texel[i] * rgb[i] * 257 + 32768) >> 16;
     return 1;
 }
 
@@ -74,7 +74,8 @@ void soft_segment_paint(soft_state *state, const soft_segment *segment)
     int32_t value[SOFT_ATTRIBUTES], rgb[3];
     uint32_t w = segment->w, fog_colour = state->frame.fog_colour;
     for (int i = 0; i < SOFT_ATTRIBUTES; i++) value[i] = segment->value[i];
-    for (uint32_t at = segment->first, end = at + segment->count; at < end; at++, w += segment->dw) {
+    for (uint32_t at = segment->first, end = at + segment->count; at < end;
+         at++, w += segment->dw) {
         if (take_pixel(state, at, w) && shade(paint, value, rgb)) {
             int32_t clear = value[SOFT_F] >> 8; /* Q16: 65536 is clear */
             clear = clear < 0 ? 0 : clear > 65536 ? 65536 : clear;
@@ -85,7 +86,8 @@ void soft_segment_paint(soft_state *state, const soft_segment *segment)
             mark_pixel(state, at, w);
             soft_put(state, at, rgb[0], rgb[1], rgb[2]);
         }
-        for (int i = 0; i < SOFT_ATTRIBUTES; i++) value[i] = (int32_t)((uint32_t)value[i] + (uint32_t)segment->step[i]);
+        for (int i = 0; i < SOFT_ATTRIBUTES; i++)
+            value[i] = (int32_t)((uint32_t)value[i] + (uint32_t)segment->step[i]);
     }
 }
 
@@ -101,6 +103,7 @@ uint32_t soft_blend_5551(const uint16_t *texel, uint32_t stride, uint32_t x, uin
     uint32_t a = texel[0], b = texel[1], c = texel[stride], d = texel[stride + 1];
     uint32_t xy = x * y >> 5, right = x - xy, below = y - xy, upper = 32 - x - below;
     if ((a & 1) * upper + (b & 1) * right + (c & 1) * below + (d & 1) * xy < 16) return SOFT_CLEAR;
-    uint32_t sum = spread_5551(a) * upper + spread_5551(b) * right + spread_5551(c) * below + spread_5551(d) * xy + 16 * SOFT_SPREAD_ONE;
+    uint32_t sum = spread_5551(a) * upper + spread_5551(b) * right + spread_5551(c) * below +
+                   spread_5551(d) * xy + 16 * SOFT_SPREAD_ONE;
     return soft_pixel_of(sum >> 5 & SOFT_SPREAD);
 }

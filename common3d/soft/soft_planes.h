@@ -1,17 +1,21 @@
-/* Planes of w and of attributes times w over the screen, and the rows of a triangle that lies partly beyond its sides. */
+/* Planes of w and of attributes times w over the screen, and the rows of a triangle that lies
+ * partly beyond its sides. */
 #ifndef SOFT_PLANES_H
 #define SOFT_PLANES_H
 
 #include "soft_edge.h"
 
-#define SOFT_PLANES (SOFT_ATTRIBUTES + 1)
+#define SOFT_PLANES  (SOFT_ATTRIBUTES + 1)
 #define SOFT_PLANE_W SOFT_ATTRIBUTES
 
-typedef struct soft_plane { uint32_t origin, across, down; } soft_plane; /* at the frame's first pixel; from pixel to pixel */
+/* at the frame's first pixel; from pixel to pixel */
+typedef struct soft_plane {
+    uint32_t origin, across, down;
+} soft_plane;
 typedef struct soft_planes {
-    int first, last;                 /* attributes in use; w always is */
-    int w_shift;                     /* of w to Q30 */
-    int linear;                      /* colours are not times w: nothing to divide, Q16 */
+    int first, last; /* attributes in use; w always is */
+    int w_shift;     /* of w to Q30 */
+    int linear;      /* colours are not times w: nothing to divide, Q16 */
     soft_plane of[SOFT_PLANES];
 } soft_planes;
 
@@ -23,12 +27,15 @@ static inline uint32_t soft_plane_at(const soft_plane *plane, int32_t row, int32
 /* The upper word of the product: one instruction. */
 static inline int32_t soft_high(int32_t a, int32_t b) { return (int32_t)(((int64_t)a * b) >> 32); }
 
-/* 2^59 / (w * 2^*lead), *lead such that the product takes 31 bits. w is 1 .. 2^31 - 1; of others nothing is said. */
+/* 2^59 / (w * 2^*lead), *lead such that the product takes 31 bits. w is 1 .. 2^31 - 1; of others
+ * nothing is said. */
 static inline int32_t soft_one_over_w(const soft_state *state, uint32_t w, int *lead)
 {
     *lead = soft_leading_zeros(w << 1 | 1);
     uint32_t n = w << *lead;
-    int32_t first = (int32_t)state->reciprocal[(n >> 21) & 511], error = soft_high((int32_t)n, first); /* 2^29 when exact */
+    /* 2^29 when exact */
+    int32_t first = (int32_t)state->reciprocal[(n >> 21) & 511],
+            error = soft_high((int32_t)n, first);
     return soft_high((int32_t)((UINT32_C(1) << 31) - 2 * (uint32_t)error), first);
 }
 
@@ -44,17 +51,24 @@ static inline int32_t soft_per_pixel(const soft_state *state, int32_t change, in
     return pixels ? 2 * soft_high(change, state->edge_reciprocal[pixels]) : 0;
 }
 
-static inline uint32_t soft_depth_of(uint32_t w, int w_shift) { return (int32_t)w < 2 << w_shift ? 2 : w >> w_shift; }
+static inline uint32_t soft_depth_of(uint32_t w, int w_shift)
+{
+    return (int32_t)w < 2 << w_shift ? 2 : w >> w_shift;
+}
 
-/* Rows after this one that lie as this one does beyond the left (to <= 0) or the right side of the frame: an edge is straight up to the
- * next bend, so what holds at both ends of a number of rows holds between. */
+/* Rows after this one that lie as this one does beyond the left (to <= 0) or the right side of the
+ * frame: an edge is straight up to the next bend, so what holds at both ends of a number of rows
+ * holds between. */
 static inline int32_t soft_rows_beyond(const soft_state *state, const soft_walk *walk, int32_t to)
 {
     soft_edge edge = to <= 0 ? walk->right : walk->left;
-    int32_t rest = (walk->row < walk->middle && walk->middle < walk->end ? walk->middle : walk->end) - walk->row - 1, rows = 0;
+    int32_t rest = (walk->row < walk->middle && walk->middle < walk->end ? walk->middle
+                                                                         : walk->end) -
+                   walk->row - 1,
+            rows = 0;
     for (int32_t step = 64; step >= 4; step /= 2)
         while (rows + step <= rest) {
-            soft_edge next = {edge.at + edge.step * step, edge.step};
+            soft_edge next = { edge.at + edge.step * step, edge.step };
             int32_t pixel = soft_edge_pixel(&next);
             if (to <= 0 ? pixel > 0 : pixel < state->width) break;
             edge = next;
@@ -70,7 +84,8 @@ static inline void soft_skip_rows(soft_walk *walk, int32_t rows)
     walk->right.at += walk->right.step * rows;
 }
 
-/* Goes on from this row to one that has pixels; 0 when there is none. `painted`: rows before had. */
+/* Goes on from this row to one that has pixels; 0 when there is none. `painted`: rows before
+ * had. */
 static inline int soft_walk_to_pixels(const soft_state *state, soft_walk *walk, int painted)
 {
     do {

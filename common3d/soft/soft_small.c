@@ -1,29 +1,31 @@
 /* Triangles small enough that linear interpolation shows no difference. 32-bit throughout.
  *
- * Within 128 pixels each way: differences of coordinates below 2^11 (Q4), of attributes below 2^18 (texels Q12: 64; colours Q10), of w
- * below 2^19 after a shift: a numerator is two products below 2^29 + ... < 2^31. The area is below 2^23; a slope is a numerator times
- * the reciprocal of the area, in 64 bits. Values walk in 32 bits and wrap: at pixels inside they are right again. */
+ * Within 128 pixels each way: differences of coordinates below 2^11 (Q4), of attributes below 2^18
+ * (texels Q12: 64; colours Q10), of w below 2^19 after a shift: a numerator is two products below
+ * 2^29 + ... < 2^31. The area is below 2^23; a slope is a numerator times the reciprocal of the
+ * area, in 64 bits. Values walk in 32 bits and wrap: at pixels inside they are right again. */
 #include "soft_edge.h"
 #include "soft_sample.h"
 
-#define SIZE_MAX_Q4 2048
-#define TEXELS_MAX (63 << 16)
-#define AREA_MIN 64 /* an eighth of a pixel */
+#define SIZE_MAX_Q4  2048
+#define TEXELS_MAX   (63 << 16)
+#define AREA_MIN     64 /* an eighth of a pixel */
 #define COLOUR_RANGE 32
-#define FOG_MAX 256
+#define FOG_MAX      256
 #define PLAIN_PIXELS 8 /* in shorter rows every pixel is sampled */
-#define W SOFT_ATTRIBUTES
+#define W            SOFT_ATTRIBUTES
 
 typedef struct soft_slopes {
     int32_t across[SOFT_ATTRIBUTES + 1], down[SOFT_ATTRIBUTES + 1]; /* from pixel to pixel */
-    uint32_t at[SOFT_ATTRIBUTES + 1];                               /* at the first pixel of the frame in this row */
+    uint32_t at[SOFT_ATTRIBUTES + 1]; /* at the first pixel of the frame in this row */
 } soft_slopes;
 
 typedef struct soft_shape {
     const soft_vertex *a, *b, *c;
     int32_t dx1, dy1, dx2, dy2;
     int32_t reciprocal, shift; /* 16/area = reciprocal / 2^(32 + shift), signed */
-    int32_t to_x, to_y;        /* from a to the centre of the frame's first pixel in the first row, Q4 */
+    /* from a to the centre of the frame's first pixel in the first row, Q4 */
+    int32_t to_x, to_y;
 } soft_shape;
 
 static int32_t larger(int32_t a, int32_t b)
@@ -40,16 +42,20 @@ static inline int32_t slope(const soft_shape *shape, int32_t n)
 }
 
 /* `lift`: the differences were shifted down by so much. */
-static inline void attribute(const soft_shape *shape, soft_slopes *slopes, int i, int32_t value, int32_t d1, int32_t d2, int lift)
+static inline void attribute(const soft_shape *shape, soft_slopes *slopes, int i, int32_t value,
+                             int32_t d1, int32_t d2, int lift)
 {
     int32_t across = (int32_t)((uint32_t)slope(shape, d2 * shape->dy1 - d1 * shape->dy2) << lift);
     int32_t down = (int32_t)((uint32_t)slope(shape, d1 * shape->dx2 - d2 * shape->dx1) << lift);
     slopes->across[i] = across;
     slopes->down[i] = down;
-    slopes->at[i] = (uint32_t)value + (uint32_t)(((int64_t)across * shape->to_x + (int64_t)down * shape->to_y) >> SOFT_SUB);
+    slopes->at[i] = (uint32_t)value +
+                    (uint32_t)(((int64_t)across * shape->to_x + (int64_t)down * shape->to_y) >>
+                               SOFT_SUB);
 }
 
-/* Differences in depth and in what is interpolated are small enough: (r - 1)/4 of the attribute's range is the largest error. */
+/* Differences in depth and in what is interpolated are small enough: (r - 1)/4 of the attribute's
+ * range is the largest error. */
 static int is_flat(const soft_state *state, const soft_shape *shape, int32_t dw)
 {
     const soft_vertex *a = shape->a, *b = shape->b, *c = shape->c;
@@ -62,7 +68,8 @@ static int is_flat(const soft_state *state, const soft_shape *shape, int32_t dw)
         if (texels > TEXELS_MAX) return 0;
         range = texels >> 13;
     }
-    if ((!state->paint.texture || !state->paint.white || state->paint.fog) && range < COLOUR_RANGE) range = COLOUR_RANGE;
+    if ((!state->paint.texture || !state->paint.white || state->paint.fog) && range < COLOUR_RANGE)
+        range = COLOUR_RANGE;
     return (uint32_t)(dw >> 3) * (uint32_t)range <= least;
 }
 
@@ -75,35 +82,45 @@ static void colour_slopes(const soft_shape *shape, soft_slopes *slopes)
     }
 }
 
-static void make_slopes(const soft_state *state, const soft_shape *shape, soft_slopes *slopes, int32_t dw, int fog)
+static void make_slopes(const soft_state *state, const soft_shape *shape, soft_slopes *slopes,
+                        int32_t dw, int fog)
 {
     const soft_vertex *a = shape->a, *b = shape->b, *c = shape->c;
     int lift = dw < 1 << 19 ? 0 : 4;
-    attribute(shape, slopes, W, (int32_t)a->w, ((int32_t)b->w - (int32_t)a->w) >> lift, ((int32_t)c->w - (int32_t)a->w) >> lift, lift);
+    attribute(shape, slopes, W, (int32_t)a->w, ((int32_t)b->w - (int32_t)a->w) >> lift,
+              ((int32_t)c->w - (int32_t)a->w) >> lift, lift);
     if (state->paint.texture) {
         attribute(shape, slopes, SOFT_S, a->s, (b->s - a->s) >> 4, (c->s - a->s) >> 4, 4);
         attribute(shape, slopes, SOFT_T, a->t, (b->t - a->t) >> 4, (c->t - a->t) >> 4, 4);
     }
     if (!state->paint.texture || !state->paint.white || fog) colour_slopes(shape, slopes);
-    if (fog) attribute(shape, slopes, SOFT_F, a->fog_q8 * 65536, (b->fog_q8 - a->fog_q8) * 16, (c->fog_q8 - a->fog_q8) * 16, 12);
+    if (fog)
+        attribute(shape, slopes, SOFT_F, a->fog_q8 * 65536, (b->fog_q8 - a->fog_q8) * 16,
+                  (c->fog_q8 - a->fog_q8) * 16, 12);
 }
 
-/* The texture alone, small triangles of the terrain: everything in one function. Long rows may be magnified. */
+/* The texture alone, small triangles of the terrain: everything in one function. Long rows may be
+ * magnified. */
 static void texture_rows(soft_state *state, soft_walk *walk, soft_slopes *slopes)
 {
     soft_segment *segment = &state->segment;
     uint32_t w = slopes->at[W], s = slopes->at[SOFT_S], t = slopes->at[SOFT_T];
-    uint32_t dw = (uint32_t)slopes->across[W], ds = (uint32_t)slopes->across[SOFT_S], dt = (uint32_t)slopes->across[SOFT_T];
+    uint32_t dw = (uint32_t)slopes->across[W], ds = (uint32_t)slopes->across[SOFT_S],
+             dt = (uint32_t)slopes->across[SOFT_T];
     uint32_t plain = soft_sample_spacing((int32_t)ds, (int32_t)dt) ? PLAIN_PIXELS : UINT32_MAX;
     segment->dw = dw, segment->step[SOFT_S] = (int32_t)ds, segment->step[SOFT_T] = (int32_t)dt;
     do {
         soft_walk_row(state, walk);
         if (walk->from < walk->to) {
             uint32_t from = (uint32_t)walk->from;
-            segment->first = (uint32_t)walk->row * state->width + from, segment->count = (uint32_t)walk->to - from;
-            segment->w = w + dw * from, segment->value[SOFT_S] = (int32_t)(s + ds * from), segment->value[SOFT_T] = (int32_t)(t + dt * from);
-            if (segment->count < plain) soft_sample_row(state, segment);
-            else state->span(state, segment);
+            segment->first = (uint32_t)walk->row * state->width + from,
+            segment->count = (uint32_t)walk->to - from;
+            segment->w = w + dw * from, segment->value[SOFT_S] = (int32_t)(s + ds * from),
+            segment->value[SOFT_T] = (int32_t)(t + dt * from);
+            if (segment->count < plain)
+                soft_sample_row(state, segment);
+            else
+                state->span(state, segment);
         }
         w += (uint32_t)slopes->down[W];
         s += (uint32_t)slopes->down[SOFT_S];
@@ -114,7 +131,8 @@ static void texture_rows(soft_state *state, soft_walk *walk, soft_slopes *slopes
 static void paint_rows(soft_state *state, soft_walk *walk, soft_slopes *slopes, int first, int last)
 {
     soft_segment *segment = &state->segment;
-    void (*span)(soft_state *, const soft_segment *) = last == SOFT_F ? soft_segment_paint : state->span;
+    void (*span)(soft_state *, const soft_segment *) = last == SOFT_F ? soft_segment_paint
+                                                                      : state->span;
     segment->dw = (uint32_t)slopes->across[W];
     for (int i = first; i <= last; i++) segment->step[i] = slopes->across[i];
     do {
@@ -124,7 +142,8 @@ static void paint_rows(soft_state *state, soft_walk *walk, soft_slopes *slopes, 
             segment->first = (uint32_t)walk->row * state->width + from;
             segment->count = (uint32_t)walk->to - from;
             segment->w = slopes->at[W] + (uint32_t)slopes->across[W] * from;
-            for (int i = first; i <= last; i++) segment->value[i] = (int32_t)(slopes->at[i] + (uint32_t)slopes->across[i] * from);
+            for (int i = first; i <= last; i++)
+                segment->value[i] = (int32_t)(slopes->at[i] + (uint32_t)slopes->across[i] * from);
             span(state, segment);
         }
         slopes->at[W] += (uint32_t)slopes->down[W];
@@ -143,27 +162,39 @@ static void measure(const soft_state *state, soft_shape *shape, int32_t area, in
     shape->to_y = row * SOFT_ONE + SOFT_HALF - shape->a->y;
 }
 
-/* Slivers have no slopes: across a width below half of 1/16 pixel they would exceed 32 bits. They take a's attributes. */
+/* Slivers have no slopes: across a width below half of 1/16 pixel they would exceed 32 bits. They
+ * take a's attributes. */
 static int is_sliver(const soft_shape *shape, int32_t area)
 {
-    int32_t size = area < 0 ? -area : area, length = larger(larger(shape->dx1, shape->dx2), shape->dy2);
+    int32_t size = area < 0 ? -area : area,
+            length = larger(larger(shape->dx1, shape->dx2), shape->dy2);
     return size < AREA_MIN || size < length / 2;
 }
 
 static int32_t largest_step(const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
 {
-    return larger(larger((int32_t)b->w - (int32_t)a->w, (int32_t)c->w - (int32_t)a->w), (int32_t)c->w - (int32_t)b->w);
+    return larger(larger((int32_t)b->w - (int32_t)a->w, (int32_t)c->w - (int32_t)a->w),
+                  (int32_t)c->w - (int32_t)b->w);
 }
 
 int soft_small(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
 {
-    soft_shape shape = {.a = a, .b = b, .c = c, .dx1 = b->x - a->x, .dy1 = b->y - a->y, .dx2 = c->x - a->x, .dy2 = c->y - a->y};
+    soft_shape shape = { .a = a,
+                         .b = b,
+                         .c = c,
+                         .dx1 = b->x - a->x,
+                         .dy1 = b->y - a->y,
+                         .dx2 = c->x - a->x,
+                         .dy2 = c->y - a->y };
     const soft_paint *paint = &state->paint;
-    int fog = paint->fog && (a->fog_q8 < 256 || b->fog_q8 < 256 || c->fog_q8 < 256), textured = paint->texture != NULL;
+    int fog = paint->fog && (a->fog_q8 < 256 || b->fog_q8 < 256 || c->fog_q8 < 256),
+        textured = paint->texture != NULL;
     int32_t dw = largest_step(a, b, c);
     soft_walk walk;
     soft_slopes slopes;
-    if (shape.dy2 >= SIZE_MAX_Q4 || larger(shape.dx1, shape.dx2) >= SIZE_MAX_Q4 || !is_flat(state, &shape, dw)) return 0;
+    if (shape.dy2 >= SIZE_MAX_Q4 || larger(shape.dx1, shape.dx2) >= SIZE_MAX_Q4 ||
+        !is_flat(state, &shape, dw))
+        return 0;
     if (fog && larger(b->fog_q8 - a->fog_q8, c->fog_q8 - a->fog_q8) > FOG_MAX) return 0;
     int32_t area = shape.dx2 * shape.dy1 - shape.dx1 * shape.dy2;
     if (area == 0 || !soft_walk_begin(state, &walk, a, b, c, area > 0)) return 1;
@@ -178,6 +209,9 @@ int soft_small(soft_state *state, const soft_vertex *a, const soft_vertex *b, co
     if (!fog && state->texture_rows)
         texture_rows(state, &walk, &slopes);
     else
-        paint_rows(state, &walk, &slopes, textured ? SOFT_S : SOFT_R, fog ? SOFT_F : textured && paint->white ? SOFT_T : SOFT_B);
+        paint_rows(state, &walk, &slopes, textured ? SOFT_S : SOFT_R,
+                   fog                        ? SOFT_F
+                   : textured && paint->white ? SOFT_T
+                                              : SOFT_B);
     return 1;
 }

@@ -1,12 +1,16 @@
-/* The spans drawn most, into RGB565: a texture as it is, the same with holes, and colours. Everything else: soft_segment_paint. */
+/* The spans drawn most, into RGB565: a texture as it is, the same with holes, and colours.
+ * Everything else: soft_segment_paint. */
 #include "soft_ramp.h"
 #include "soft_sample.h"
 
-/* A sample of a texture magnified: it keeps 5 - log2 bits below its last place, which with 2^log2 steps fill the room above each field,
- * and the half that rounds the sum of both. s and t are counted from the rim. */
-static inline uint32_t magnified_sample(const uint32_t *texels, uint32_t stride, int32_t s, int32_t t, const int log2)
+/* A sample of a texture magnified: it keeps 5 - log2 bits below its last place, which with 2^log2
+ * steps fill the room above each field, and the half that rounds the sum of both. s and t are
+ * counted from the rim. */
+static inline uint32_t magnified_sample(const uint32_t *texels, uint32_t stride, int32_t s,
+                                        int32_t t, const int log2)
 {
-    const uint32_t fields = (SOFT_SPREAD << (5 - log2)) | ((SOFT_SPREAD_ONE << (5 - log2)) - SOFT_SPREAD_ONE);
+    const uint32_t fields = (SOFT_SPREAD << (5 - log2)) |
+                            ((SOFT_SPREAD_ONE << (5 - log2)) - SOFT_SPREAD_ONE);
     return soft_sample_sum(texels, stride, s, t) >> log2 & fields;
 }
 
@@ -18,7 +22,10 @@ static inline void ramp_four(uint16_t pixel[4], uint32_t sum, uint32_t change)
     pixel[3] = soft_pixel_of(sum >> 5 & SOFT_SPREAD);
 }
 
-static inline uint32_t any_of_four(const uint32_t depth[4]) { return depth[0] | depth[1] | depth[2] | depth[3]; }
+static inline uint32_t any_of_four(const uint32_t depth[4])
+{
+    return depth[0] | depth[1] | depth[2] | depth[3];
+}
 
 static inline uint32_t mark_four(uint32_t depth[4], uint32_t w, uint32_t dw)
 {
@@ -29,35 +36,46 @@ static inline uint32_t mark_four(uint32_t depth[4], uint32_t w, uint32_t dw)
     return w + dw;
 }
 
-/* A row of a texture magnified. Every 2^log2-th pixel of the frame is sampled (2 or 3); those between are blended of two samples, by adding
- * the same difference again and again. Columns of samples keep their places from row to row: neither edges of triangles nor rows show.
- * Pixels from one to the next are drawn together where all of them are nearer than what is there, as on ground not yet drawn: the bits
- * of their depths together are no less than the greatest. 0: some sample would lie beyond the texture. */
-static SOFT_INLINE int magnified_row(const soft_state *state, const soft_segment *segment, const int log2)
+/* A row of a texture magnified. Every 2^log2-th pixel of the frame is sampled (2 or 3); those
+ * between are blended of two samples, by adding the same difference again and again. Columns of
+ * samples keep their places from row to row: neither edges of triangles nor rows show. Pixels from
+ * one to the next are drawn together where all of them are nearer than what is there, as on ground
+ * not yet drawn: the bits of their depths together are no less than the greatest. 0: some sample
+ * would lie beyond the texture. */
+static SOFT_INLINE int magnified_row(const soft_state *state, const soft_segment *segment,
+                                     const int log2)
 {
     const soft_texture *texture = state->paint.texture;
-    const uint32_t size = 1u << log2, before = segment->first & (size - 1), stride = texture->stride;
-    const int32_t ds = segment->step[SOFT_S] * (int32_t)size, dt = segment->step[SOFT_T] * (int32_t)size;
-    int32_t s = segment->value[SOFT_S] - segment->step[SOFT_S] * (int32_t)before, t = segment->value[SOFT_T] - segment->step[SOFT_T] * (int32_t)before;
+    const uint32_t size = 1u << log2, before = segment->first & (size - 1),
+                   stride = texture->stride;
+    const int32_t ds = segment->step[SOFT_S] * (int32_t)size,
+                  dt = segment->step[SOFT_T] * (int32_t)size;
+    int32_t s = segment->value[SOFT_S] - segment->step[SOFT_S] * (int32_t)before,
+            t = segment->value[SOFT_T] - segment->step[SOFT_T] * (int32_t)before;
     int32_t blocks = (int32_t)((before + segment->count + size - 1) >> log2);
     if (!soft_between_on_texture(texture, s, t, s + ds * blocks, t + dt * blocks)) return 0;
     const uint32_t *texels = (const uint32_t *)(const void *)texture->texels;
-    uint32_t *first = state->depth + segment->first, *end = first + segment->count, *depth = first - before;
+    uint32_t *first = state->depth + segment->first, *end = first + segment->count,
+             *depth = first - before;
     uint16_t *pixel = (uint16_t *)(void *)state->colour + segment->first - before;
-    uint32_t dw = segment->dw, w = segment->w - dw * before, least = segment->w + dw * (segment->count - 1);
+    uint32_t dw = segment->dw, w = segment->w - dw * before,
+             least = segment->w + dw * (segment->count - 1);
     s += 65536, t += 65536; /* from the rim */
     uint32_t last = magnified_sample(texels, stride, s, t, log2);
     if (least > segment->w) least = segment->w;
     do {
         s += ds, t += dt;
-        uint32_t next = magnified_sample(texels, stride, s, t, log2), sum = last << log2, change = next - last;
-        if (depth >= first && depth + size <= end && (any_of_four(depth) | any_of_four(depth + size - 4)) <= least) {
+        uint32_t next = magnified_sample(texels, stride, s, t, log2), sum = last << log2,
+                 change = next - last;
+        if (depth >= first && depth + size <= end &&
+            (any_of_four(depth) | any_of_four(depth + size - 4)) <= least) {
             w = mark_four(depth, w, dw);
             if (log2 > 2) w = mark_four(depth + 4, w, dw);
             ramp_four(pixel, sum, change);
             if (log2 > 2) ramp_four(pixel + 4, sum + 4 * change, change);
         } else {
-            int32_t i = depth < first ? (int32_t)before : 0, stop = depth + size <= end ? (int32_t)size : (int32_t)(end - depth);
+            int32_t i = depth < first ? (int32_t)before : 0,
+                    stop = depth + size <= end ? (int32_t)size : (int32_t)(end - depth);
             uint32_t w_here = w + dw * (uint32_t)i;
             sum += change * (uint32_t)i;
             for (; i < stop; i++, w_here += dw, sum += change) {
@@ -75,7 +93,9 @@ static SOFT_INLINE int magnified_row(const soft_state *state, const soft_segment
 /* RGB565 with the depth test. */
 static void span_texture(soft_state *state, const soft_segment *segment)
 {
-    int log2 = segment->count > 2 ? soft_sample_spacing(segment->step[SOFT_S], segment->step[SOFT_T]) : 0;
+    int log2 = segment->count > 2
+                   ? soft_sample_spacing(segment->step[SOFT_S], segment->step[SOFT_T])
+                   : 0;
     if (log2 == 3 && magnified_row(state, segment, 3)) return;
     if (log2 == 2 && magnified_row(state, segment, 2)) return;
     if (soft_on_texture(state->paint.texture, segment))
@@ -89,9 +109,11 @@ static void span_colour(soft_state *state, const soft_segment *segment)
     soft_ramp ramp;
     soft_make_ramp(&ramp, segment);
     int32_t red = ramp.red, green = ramp.green, blue = ramp.blue;
-    uint32_t *depth = state->depth + segment->first, *end = depth + segment->count, w = segment->w, dw = segment->dw;
+    uint32_t *depth = state->depth + segment->first, *end = depth + segment->count, w = segment->w,
+             dw = segment->dw;
     uint16_t *pixel = (uint16_t *)(void *)state->colour + segment->first;
-    for (; depth < end; depth++, pixel++, w += dw, red += ramp.dr, green += ramp.dg, blue += ramp.db) {
+    for (; depth < end;
+         depth++, pixel++, w += dw, red += ramp.dr, green += ramp.dg, blue += ramp.db) {
         if (w < *depth) continue;
         *depth = w;
         *pixel = soft_colour_565(red, green, blue);
@@ -110,7 +132,9 @@ void soft_choose_span(soft_state *state)
     if (texture && paint->white && texture->format == C3D_RGB565 && test) {
         state->span = span_texture;
         state->texture_rows = !state->off_texture;
-        state->tiny_rows = state->texture_rows && texture->width <= SOFT_TINY_TEXELS && texture->height <= SOFT_TINY_TEXELS && !paint->fog;
+        state->tiny_rows = state->texture_rows && texture->width <= SOFT_TINY_TEXELS &&
+                           texture->height <= SOFT_TINY_TEXELS && !paint->fog;
     }
-    if (texture && paint->white && paint->alpha_test && texture->format == C3D_RGBA5551) state->span = soft_span_holes;
+    if (texture && paint->white && paint->alpha_test && texture->format == C3D_RGBA5551)
+        state->span = soft_span_holes;
 }

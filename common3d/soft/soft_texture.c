@@ -3,10 +3,16 @@
 
 #include <string.h>
 
-static uint32_t texel_bytes(enum c3d_texture_format format) { return format == C3D_RGBA8888 ? 4 : 2; }
+static uint32_t texel_bytes(enum c3d_texture_format format)
+{
+    return format == C3D_RGBA8888 ? 4 : 2;
+}
 
 /* RGB565 is kept spread. */
-static uint32_t kept_bytes(enum c3d_texture_format format) { return format == C3D_RGBA5551 ? 2 : 4; }
+static uint32_t kept_bytes(enum c3d_texture_format format)
+{
+    return format == C3D_RGBA5551 ? 2 : 4;
+}
 
 static int log2_of(uint32_t power) { return 31 - soft_leading_zeros(power); }
 
@@ -25,18 +31,21 @@ static uint32_t find_units(const soft_state *state, uint32_t units)
 }
 
 /* With a texel of rim on either side. */
-static void copy_row(uint8_t *out, const uint8_t *in, uint32_t width, enum c3d_texture_format format)
+static void copy_row(uint8_t *out, const uint8_t *in, uint32_t width,
+                     enum c3d_texture_format format)
 {
     uint32_t bytes = kept_bytes(format);
     if (format == C3D_RGB565)
-        for (uint32_t x = 0; x < width; x++) ((uint32_t *)(void *)out)[x + 1] = soft_kept(((const uint16_t *)(const void *)in)[x]);
+        for (uint32_t x = 0; x < width; x++)
+            ((uint32_t *)(void *)out)[x + 1] = soft_kept(((const uint16_t *)(const void *)in)[x]);
     else
         memcpy(out + bytes, in, width * bytes);
     memcpy(out, out + bytes, bytes);
     memcpy(out + (width + 1) * bytes, out + width * bytes, bytes);
 }
 
-uint32_t soft_texture_upload(void *opaque, enum c3d_texture_format format, uint32_t width, uint32_t height, const void *pixels)
+uint32_t soft_texture_upload(void *opaque, enum c3d_texture_format format, uint32_t width,
+                             uint32_t height, const void *pixels)
 {
     soft_state *state = opaque;
     uint32_t slot = 0, in_bytes = texel_bytes(format), row_bytes = (width + 2) * kept_bytes(format);
@@ -45,14 +54,20 @@ uint32_t soft_texture_upload(void *opaque, enum c3d_texture_format format, uint3
     uint32_t first = slot < state->texture_count ? find_units(state, units) : state->heap_units;
     if (first == state->heap_units) return 0;
     soft_texture *texture = &state->textures[slot];
-    *texture = (soft_texture){.texels = state->heap + (size_t)first * SOFT_HEAP_UNIT, .first_unit = first, .units = units,
-                              .width = (uint16_t)width, .height = (uint16_t)height, .stride = (uint16_t)(width + 2),
-                              .format = (uint8_t)format, .width_log2 = (uint8_t)log2_of(width),
-                              .height_log2 = (uint8_t)log2_of(height)};
+    *texture = (soft_texture){ .texels = state->heap + (size_t)first * SOFT_HEAP_UNIT,
+                               .first_unit = first,
+                               .units = units,
+                               .width = (uint16_t)width,
+                               .height = (uint16_t)height,
+                               .stride = (uint16_t)(width + 2),
+                               .format = (uint8_t)format,
+                               .width_log2 = (uint8_t)log2_of(width),
+                               .height_log2 = (uint8_t)log2_of(height) };
     memset(state->heap_used + first, 1, units);
     for (uint32_t row = 0; row < height + 2; row++) {
         uint32_t from = row == 0 ? 0 : row > height ? height - 1 : row - 1;
-        copy_row(texture->texels + row * row_bytes, (const uint8_t *)pixels + (size_t)from * width * in_bytes, width, format);
+        copy_row(texture->texels + row * row_bytes,
+                 (const uint8_t *)pixels + (size_t)from * width * in_bytes, width, format);
     }
     return slot + 1;
 }
@@ -65,18 +80,24 @@ void soft_texture_free(void *opaque, uint32_t name)
     texture->units = 0;
 }
 
-static int32_t widened(uint32_t value, int bits) { return (int32_t)(value << (8 - bits) | value >> (2 * bits - 8)); }
+static int32_t widened(uint32_t value, int bits)
+{
+    return (int32_t)(value << (8 - bits) | value >> (2 * bits - 8));
+}
 
 /* Adds a texel times a weight of at most 2^16. */
-static void add_texel(const soft_texture *texture, int32_t column, int32_t row, int32_t weight, int32_t sum[4])
+static void add_texel(const soft_texture *texture, int32_t column, int32_t row, int32_t weight,
+                      int32_t sum[4])
 {
     size_t at = (size_t)(row + 1) * texture->stride + (size_t)(column + 1);
     int32_t channel[4];
     if (texture->format == C3D_RGBA8888) {
         for (int i = 0; i < 4; i++) channel[i] = texture->texels[at * 4 + (size_t)i];
     } else if (texture->format == C3D_RGB565) {
-        uint32_t texel = soft_pixel_of(((const uint32_t *)(const void *)texture->texels)[at] >> 1 & SOFT_SPREAD);
-        channel[0] = widened(texel >> 11, 5), channel[1] = widened(texel >> 5 & 63, 6), channel[2] = widened(texel & 31, 5);
+        uint32_t texel = soft_pixel_of(((const uint32_t *)(const void *)texture->texels)[at] >> 1 &
+                                       SOFT_SPREAD);
+        channel[0] = widened(texel >> 11, 5), channel[1] = widened(texel >> 5 & 63, 6),
+        channel[2] = widened(texel & 31, 5);
         channel[3] = 255;
     } else {
         uint32_t texel = ((const uint16_t *)(const void *)texture->texels)[at];
@@ -94,7 +115,7 @@ static int32_t clamp_coordinate(int32_t at, int32_t size)
 
 void soft_sample(const soft_texture *texture, int32_t s, int32_t t, int32_t rgba[4])
 {
-    int32_t sum[4] = {32768, 32768, 32768, 32768};
+    int32_t sum[4] = { 32768, 32768, 32768, 32768 };
     s = clamp_coordinate(s, texture->width);
     t = clamp_coordinate(t, texture->height);
     int32_t column = s >> 16, row = t >> 16, x = (s >> 8) & 255, y = (t >> 8) & 255;

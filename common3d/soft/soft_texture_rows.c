@@ -1,22 +1,31 @@
-/* Large triangles under a texture alone: rows of one segment each wherever linear interpolation will do. */
+/* Large triangles under a texture alone: rows of one segment each wherever linear interpolation
+ * will do. */
 #include "soft_planes.h"
 
-/* Linear where that is off by a quarter of a texel at most, see soft_perspective.c; 0 where it is off by more. */
+/* Linear where that is off by a quarter of a texel at most, see soft_perspective.c; 0 where it is
+ * off by more. */
 static int measure_row(soft_state *state, const soft_planes *planes, const soft_walk *walk)
 {
     soft_segment *segment = &state->segment;
     int32_t apart = walk->to - walk->from - 1;
     int lead;
-    uint32_t w = soft_plane_at(&planes->of[SOFT_PLANE_W], walk->row, walk->from), w_end = w + planes->of[SOFT_PLANE_W].across * (uint32_t)apart;
-    uint32_t s_part = soft_plane_at(&planes->of[SOFT_S], walk->row, walk->from), t_part = soft_plane_at(&planes->of[SOFT_T], walk->row, walk->from);
+    uint32_t w = soft_plane_at(&planes->of[SOFT_PLANE_W], walk->row, walk->from),
+             w_end = w + planes->of[SOFT_PLANE_W].across * (uint32_t)apart;
+    uint32_t s_part = soft_plane_at(&planes->of[SOFT_S], walk->row, walk->from),
+             t_part = soft_plane_at(&planes->of[SOFT_T], walk->row, walk->from);
     int32_t reciprocal = soft_one_over_w(state, w, &lead);
-    int32_t s = soft_quotient(s_part, reciprocal, lead), t = soft_quotient(t_part, reciprocal, lead);
+    int32_t s = soft_quotient(s_part, reciprocal, lead),
+            t = soft_quotient(t_part, reciprocal, lead);
     reciprocal = soft_one_over_w(state, w_end, &lead);
-    int32_t s_change = soft_quotient(s_part + planes->of[SOFT_S].across * (uint32_t)apart, reciprocal, lead) - s;
-    int32_t t_change = soft_quotient(t_part + planes->of[SOFT_T].across * (uint32_t)apart, reciprocal, lead) - t;
+    int32_t s_change =
+        soft_quotient(s_part + planes->of[SOFT_S].across * (uint32_t)apart, reciprocal, lead) - s;
+    int32_t t_change =
+        soft_quotient(t_part + planes->of[SOFT_T].across * (uint32_t)apart, reciprocal, lead) - t;
     int32_t least = (int32_t)(w < w_end ? w : w_end), w_change = (int32_t)(w_end - w);
-    int32_t far = (s_change ^ s_change >> 31) | (t_change ^ t_change >> 31); /* at most twice the larger one */
-    if (apart >= SOFT_EDGE_TABLE || soft_high(far, w_change ^ w_change >> 31) > least >> 16) return 0;
+    /* at most twice the larger one */
+    int32_t far = (s_change ^ s_change >> 31) | (t_change ^ t_change >> 31);
+    if (apart >= SOFT_EDGE_TABLE || soft_high(far, w_change ^ w_change >> 31) > least >> 16)
+        return 0;
     segment->first = (uint32_t)(walk->row * state->width + walk->from);
     segment->count = (uint32_t)(apart + 1);
     segment->w = soft_depth_of(w, planes->w_shift);
@@ -27,7 +36,8 @@ static int measure_row(soft_state *state, const soft_planes *planes, const soft_
     return 1;
 }
 
-/* The longest run of a row that is known to be covered, as far as one was found: nobody needs to look for open pixels there. */
+/* The longest run of a row that is known to be covered, as far as one was found: nobody needs to
+ * look for open pixels there. */
 static inline void note_covered(soft_state *state, const soft_walk *walk)
 {
     soft_part *covered = &state->covered[walk->row];
@@ -46,7 +56,9 @@ void soft_texture_rows(soft_state *state, const soft_planes *planes, soft_walk *
     int covers = state->paint.depth == SOFT_DEPTH_TEST && !state->paint.alpha_test;
     do {
         if (covers) note_covered(state, walk);
-        if (measure_row(state, planes, walk)) state->span(state, &state->segment);
-        else soft_segments(state, planes, walk);
+        if (measure_row(state, planes, walk))
+            state->span(state, &state->segment);
+        else
+            soft_segments(state, planes, walk);
     } while (soft_walk_next(state, walk) && soft_walk_to_pixels(state, walk, 1));
 }

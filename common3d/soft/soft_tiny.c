@@ -1,18 +1,21 @@
-/* Triangles of a few rows, white and textured, into RGB565: most of a terrain has one row and four pixels. They get no planes and no
- * walked edges: in each row two edges leave the corner that is alone above or below its line, and what is interpolated runs along
- * them to the line, then along the line from one to the other. Everything drawn lies so between the corners, on the texture, however
- * thin the triangle.
+/* Triangles of a few rows, white and textured, into RGB565: most of a terrain has one row and four
+ * pixels. They get no planes and no walked edges: in each row two edges leave the corner that is
+ * alone above or below its line, and what is interpolated runs along them to the line, then along
+ * the line from one to the other. Everything drawn lies so between the corners, on the texture,
+ * however thin the triangle.
  *
- * Exact edges: an edge meets the line dx * k/dy sixteenths right of its corner. With v = -dx * k, floor(v/dy) is the upper word of
- * (2v + 1) * floor((2^31 - 1)/dy): |v| < 2^17 and dy < 2^9 keep what the product lacks below 1/(2 dy), the half step it is ahead.
- * Perspective: w differs from a's by 1/8 at most. Linear interpolation moves the texture by (r - 1)/(r + 1) of an edge's length then,
- * r^2 = (9/8)/(7/8): by 2 pixels at worst, along 32 pixels; by a fraction of one where triangles are a few pixels large. */
+ * Exact edges: an edge meets the line dx * k/dy sixteenths right of its corner. With v = -dx * k,
+ * floor(v/dy) is the upper word of (2v + 1) * floor((2^31 - 1)/dy): |v| < 2^17 and dy < 2^9 keep
+ * what the product lacks below 1/(2 dy), the half step it is ahead. Perspective: w differs from a's
+ * by 1/8 at most. Linear interpolation moves the texture by (r - 1)/(r + 1) of an edge's length
+ * then, r^2 = (9/8)/(7/8): by 2 pixels at worst, along 32 pixels; by a fraction of one where
+ * triangles are a few pixels large. */
 #include "soft_edge.h"
 #include "soft_sample.h"
 
-#define ROWS 8         /* at most */
-#define REACH_Q4 256   /* of b and c from a, sideways */
-#define W_MAX (1u << 24)
+#define ROWS     8   /* at most */
+#define REACH_Q4 256 /* of b and c from a, sideways */
+#define W_MAX    (1u << 24)
 
 /* Where an edge from the corner that is alone meets the line. */
 typedef struct meeting {
@@ -39,7 +42,8 @@ static inline int32_t most(int32_t a, int32_t b, int32_t c)
 static inline int32_t high(int32_t a, int32_t b) { return (int32_t)(((int64_t)a * b) >> 32); }
 
 /* k: from the corner to the line, dy: to the end; both downwards or both upwards. */
-static inline void meet(const soft_state *state, const soft_vertex *alone, const soft_vertex *end, int32_t y, meeting *at)
+static inline void meet(const soft_state *state, const soft_vertex *alone, const soft_vertex *end,
+                        int32_t y, meeting *at)
 {
     int32_t k = y - alone->y, dy = end->y - alone->y;
     if (k < 0) k = -k, dy = -dy;
@@ -49,12 +53,20 @@ static inline void meet(const soft_state *state, const soft_vertex *alone, const
     at->x = alone->x - high(1 - 2 * k * (end->x - alone->x), reciprocal);
 }
 
-static inline int32_t along(int32_t from, int32_t to, int32_t part) { return from + 2 * high(to - from, part); }
+static inline int32_t along(int32_t from, int32_t to, int32_t part)
+{
+    return from + 2 * high(to - from, part);
+}
 
-/* s and t in one word: 8 bits and 8 of fraction each, counted from the rim. Steps are off by 1/512 texel: 1/16 after 32 pixels. */
-static inline uint32_t packed(int32_t s, int32_t t) { return ((uint32_t)((s + 128) >> 8) << 16) + (uint32_t)((t + 128) >> 8); }
+/* s and t in one word: 8 bits and 8 of fraction each, counted from the rim. Steps are off by 1/512
+ * texel: 1/16 after 32 pixels. */
+static inline uint32_t packed(int32_t s, int32_t t)
+{
+    return ((uint32_t)((s + 128) >> 8) << 16) + (uint32_t)((t + 128) >> 8);
+}
 
-static inline void paint(soft_state *state, uint32_t first, int32_t count, uint32_t w, uint32_t dw, uint32_t st, uint32_t dst)
+static inline void paint(soft_state *state, uint32_t first, int32_t count, uint32_t w, uint32_t dw,
+                         uint32_t st, uint32_t dst)
 {
     const uint32_t *texels = (const uint32_t *)(const void *)state->paint.texture->texels;
     uint32_t stride = state->paint.texture->stride;
@@ -65,34 +77,43 @@ static inline void paint(soft_state *state, uint32_t first, int32_t count, uint3
             *depth = w;
             const uint32_t *texel = texels + (st >> 8 & 255) * stride + (st >> 24);
             uint32_t x = st & 0xFF0000, y = st & 0xFF;
-            *pixel = soft_pixel_of(soft_blend_sum(texel, stride, x >> 20, y >> 4, x * y >> 28) >> 5 & SOFT_SPREAD);
+            *pixel = soft_pixel_of(
+                soft_blend_sum(texel, stride, x >> 20, y >> 4, x * y >> 28) >> 5 & SOFT_SPREAD);
         }
         depth++, pixel++, w += dw, st += dst;
     } while (depth < end);
 }
 
-static inline void paint_row(soft_state *state, const soft_vertex *alone, const meeting *left, const meeting *right, int32_t row)
+static inline void paint_row(soft_state *state, const soft_vertex *alone, const meeting *left,
+                             const meeting *right, int32_t row)
 {
     int32_t from = soft_first_row(left->x), to = soft_first_row(right->x);
     if (from < 0) from = 0;
     if (to > state->width) to = state->width;
     if (from >= to) return;
-    int32_t s = along(alone->s, left->end->s, left->part), t = along(alone->t, left->end->t, left->part);
+    int32_t s = along(alone->s, left->end->s, left->part),
+            t = along(alone->t, left->end->t, left->part);
     int32_t w = along((int32_t)alone->w, (int32_t)left->end->w, left->part);
-    int32_t reciprocal = state->edge_reciprocal[right->x - left->x], off = from * SOFT_ONE + SOFT_HALF - left->x;
+    int32_t reciprocal = state->edge_reciprocal[right->x - left->x],
+            off = from * SOFT_ONE + SOFT_HALF - left->x;
     int32_t ds = high((along(alone->s, right->end->s, right->part) - s) * 32, reciprocal);
     int32_t dt = high((along(alone->t, right->end->t, right->part) - t) * 32, reciprocal);
-    int32_t dw = high((along((int32_t)alone->w, (int32_t)right->end->w, right->part) - w) * 32, reciprocal);
-    s += (ds * off >> SOFT_SUB) + 65536, t += (dt * off >> SOFT_SUB) + 65536, w += dw * off >> SOFT_SUB;
-    paint(state, (uint32_t)(row * state->width + from), to - from, (uint32_t)w, (uint32_t)dw, packed(s, t), packed(ds, dt));
+    int32_t dw = high((along((int32_t)alone->w, (int32_t)right->end->w, right->part) - w) * 32,
+                      reciprocal);
+    s += (ds * off >> SOFT_SUB) + 65536, t += (dt * off >> SOFT_SUB) + 65536,
+        w += dw * off >> SOFT_SUB;
+    paint(state, (uint32_t)(row * state->width + from), to - from, (uint32_t)w, (uint32_t)dw,
+          packed(s, t), packed(ds, dt));
 }
 
 int soft_tiny(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
 {
-    int32_t row_a = soft_first_row(a->y), row_b = soft_first_row(b->y), row_c = soft_first_row(c->y);
+    int32_t row_a = soft_first_row(a->y), row_b = soft_first_row(b->y),
+            row_c = soft_first_row(c->y);
     int32_t row = least(row_a, row_b, row_c), bottom = most(row_a, row_b, row_c);
     uint32_t change = size_of((int32_t)(b->w - a->w)) | size_of((int32_t)(c->w - a->w));
-    if (bottom - row > ROWS || size_of(b->x - a->x) >= REACH_Q4 || size_of(c->x - a->x) >= REACH_Q4) return 0;
+    if (bottom - row > ROWS || size_of(b->x - a->x) >= REACH_Q4 || size_of(c->x - a->x) >= REACH_Q4)
+        return 0;
     if (change > a->w >> 3 || a->w >= W_MAX) return 0;
     if (row < 0) row = 0;
     if (bottom > state->height) bottom = state->height;
@@ -101,12 +122,16 @@ int soft_tiny(soft_state *state, const soft_vertex *a, const soft_vertex *b, con
         const soft_vertex *alone = a, *next = b, *last = c;
         int32_t under_a = row - row_a, under_b = row - row_b, under_c = row - row_c;
         meeting one, two;
-        if ((under_a ^ under_b) >= 0) alone = c, next = a, last = b;
-        else if ((under_a ^ under_c) >= 0) alone = b, next = c, last = a;
+        if ((under_a ^ under_b) >= 0)
+            alone = c, next = a, last = b;
+        else if ((under_a ^ under_c) >= 0)
+            alone = b, next = c, last = a;
         meet(state, alone, next, row * SOFT_ONE + SOFT_HALF, &one);
         meet(state, alone, last, row * SOFT_ONE + SOFT_HALF, &two);
-        if (one.x < two.x) paint_row(state, alone, &one, &two, row);
-        else if (two.x < one.x) paint_row(state, alone, &two, &one, row);
+        if (one.x < two.x)
+            paint_row(state, alone, &one, &two, row);
+        else if (two.x < one.x)
+            paint_row(state, alone, &two, &one, row);
     }
     return 1;
 }

@@ -1,17 +1,19 @@
 /* From vertices to the screen, once for each vertex of a mesh.
  *
- * World units: 2^shift to a wu, chosen so that every coordinate relative to the camera stays below 2^30; a vertex's place is exact in
- * them (its height rounded down), so that meshes that share it get the same, whatever their origins.
- * Rotation: three products of 30 + 31 bits, of which the upper word is kept. The rows have at most the length 2^31, so sums stay
- * below 2^62 and eye coordinates below 2^29 * sqrt 3. The row of depth is the forward direction: eye units are 2 world units. Those
- * of x and y are multiplied with the focal distance beforehand.
- * Projection: 1/z as a mantissa r of 30 bits and an exponent, so that x/z is one product of which again the upper word is kept. */
+ * World units: 2^shift to a wu, chosen so that every coordinate relative to the camera stays below
+ * 2^30; a vertex's place is exact in them (its height rounded down), so that meshes that share it
+ * get the same, whatever their origins. Rotation: three products of 30 + 31 bits, of which the
+ * upper word is kept. The rows have at most the length 2^31, so sums stay below 2^62 and eye
+ * coordinates below 2^29 * sqrt 3. The row of depth is the forward direction: eye units are 2 world
+ * units. Those of x and y are multiplied with the focal distance beforehand.
+ * Projection: 1/z as a mantissa r of 30 bits and an exponent, so that x/z is one product of which
+ * again the upper word is kept. */
 #include "soft_local.h"
 
 #include <string.h>
 
-#define WORLD_MAX ((int64_t)1 << 30)
-#define W_MIN 16 /* of what is drawn; less means that nothing was */
+#define WORLD_MAX    ((int64_t)1 << 30)
+#define W_MIN        16 /* of what is drawn; less means that nothing was */
 #define W_PLAIN_LOG2 25 /* how many times as far as the near plane w is certainly above that */
 #define W_ERROR_LOG2 18 /* 1/z is within 2^-19 of itself */
 
@@ -20,13 +22,16 @@ void soft_begin_view(soft_state *state, const c3d_rotation *rotation)
     const c3d_camera *camera = &state->frame.camera;
     soft_view *view = &state->view;
     int lead = soft_leading_zeros((uint32_t)camera->focal_q8) - 1;
-    int64_t focal_norm = (int64_t)camera->focal_q8 << lead; /* below 2^31: times a row of 2^30 at most, Q31 */
+    /* below 2^31: times a row of 2^30 at most, Q31 */
+    int64_t focal_norm = (int64_t)camera->focal_q8 << lead;
     view->focal_shift = lead;
     for (int i = 0; i < 3; i++) {
         view->row[0][i] = (int32_t)((rotation->m[0][i] * focal_norm) >> 30);
         view->row[1][i] = (int32_t)((rotation->m[1][i] * focal_norm) >> 30);
         int64_t forward = 2 * (int64_t)rotation->m[2][i];
-        view->row[2][i] = (int32_t)(forward > INT32_MAX ? INT32_MAX : forward < -INT32_MAX ? -INT32_MAX : forward);
+        view->row[2][i] = (int32_t)(forward > INT32_MAX    ? INT32_MAX
+                                    : forward < -INT32_MAX ? -INT32_MAX
+                                                           : forward);
     }
     view->centre[0] = state->width * SOFT_ONE;
     view->centre[1] = state->height * SOFT_ONE;
@@ -47,7 +52,9 @@ static int64_t reach_wu(const c3d_resolved_draw *resolved)
     int64_t most = 0;
     for (int i = 0; i < 3; i++) {
         int64_t origin = draw->origin_wu[i] < 0 ? -draw->origin_wu[i] : draw->origin_wu[i];
-        int64_t size = i < 2 ? (int64_t)reach[i] * (draw->xy_scale_wu < 0 ? -(int64_t)draw->xy_scale_wu : draw->xy_scale_wu)
+        int64_t size = i < 2 ? (int64_t)reach[i] * (draw->xy_scale_wu < 0
+                                                        ? -(int64_t)draw->xy_scale_wu
+                                                        : draw->xy_scale_wu)
                              : (int64_t)(((uint64_t)reach[2] * draw->z_scale_q16) >> 16) + 1;
         most = origin + size > most ? origin + size : most;
     }
@@ -56,27 +63,32 @@ static int64_t reach_wu(const c3d_resolved_draw *resolved)
 
 static int fits(int64_t value) { return value <= INT32_MAX && value >= -INT32_MAX; }
 
-/* Places in 32 bits, where a unit is at most a wu: what WORLD_MAX bounds, and so every term of it. */
+/* Places in 32 bits, where a unit is at most a wu: what WORLD_MAX bounds, and so every term of
+ * it. */
 static void set_near_places(soft_space *space)
 {
     int64_t scale = soft_scale64(space->scale_wu, space->shift);
     space->near = space->shift >= 0 && fits(scale) && space->z_scale_q16 <= INT32_MAX;
     if (!space->near) return;
-    for (int i = 0; i < 3; i++) space->origin[i] = (int32_t)soft_scale64(space->origin_wu[i], space->shift);
+    for (int i = 0; i < 3; i++)
+        space->origin[i] = (int32_t)soft_scale64(space->origin_wu[i], space->shift);
     space->scale = (int32_t)scale;
 }
 
-/* The near plane in eye units, rounded up so that near/z never exceeds 1; and near/z as a product of mantissas: see soft_project. */
+/* The near plane in eye units, rounded up so that near/z never exceeds 1; and near/z as a product
+ * of mantissas: see soft_project. */
 static void set_planes(soft_space *space, int32_t near_wu, int32_t far_wu)
 {
-    int64_t near_eye = -soft_scale64(-(int64_t)near_wu, space->shift - 1), far_eye = soft_scale64(far_wu, space->shift - 1);
+    int64_t near_eye = -soft_scale64(-(int64_t)near_wu, space->shift - 1),
+            far_eye = soft_scale64(far_wu, space->shift - 1);
     int lead = soft_leading_zeros((uint32_t)near_wu);
     space->near_eye = near_eye > INT32_MAX ? INT32_MAX : (int32_t)near_eye;
     space->far_eye = far_eye > INT32_MAX ? INT32_MAX : (int32_t)far_eye;
     space->near_norm = (uint32_t)near_wu << lead;
     space->near_norm -= space->near_norm >> W_ERROR_LOG2;
     space->near_shift = lead - space->shift;
-    for (; space->near_shift > 31; space->near_shift--) space->near_norm >>= 1; /* shifts of 32 bits do */
+    /* shifts of 32 bits do */
+    for (; space->near_shift > 31; space->near_shift--) space->near_norm >>= 1;
 }
 
 static void begin_space(soft_state *state, const c3d_resolved_draw *resolved)
@@ -85,8 +97,12 @@ static void begin_space(soft_state *state, const c3d_resolved_draw *resolved)
     soft_space *space = &state->space;
     int backdrop = (draw->flags & C3D_DRAW_BACKDROP) != 0;
     int64_t reach = reach_wu(resolved);
-    /* Backdrops surround the eye: what is closer than 1/4096 of their reach only costs bits of depth. */
-    int32_t near_wu = !backdrop ? state->frame.camera.near_wu : reach < 8192 ? 1 : reach >> 12 < INT32_MAX ? (int32_t)(reach >> 12) : INT32_MAX;
+    /* Backdrops surround the eye: what is closer than 1/4096 of their reach only costs bits of
+     * depth. */
+    int32_t near_wu = !backdrop                 ? state->frame.camera.near_wu
+                      : reach < 8192            ? 1
+                      : reach >> 12 < INT32_MAX ? (int32_t)(reach >> 12)
+                                                : INT32_MAX;
     space->shift = backdrop ? 14 : state->frame_shift;
     while (soft_scale64(reach, space->shift) >= WORLD_MAX) space->shift--;
     memcpy(space->origin_wu, draw->origin_wu, sizeof space->origin_wu);
@@ -102,10 +118,12 @@ static void begin_space(soft_state *state, const c3d_resolved_draw *resolved)
 static SOFT_INLINE int32_t along(const int32_t row[3], int32_t x, int32_t y, int32_t z)
 {
     uint64_t sum = (uint64_t)((int64_t)row[0] * x + (int64_t)row[1] * y + (int64_t)row[2] * z);
-    return (int32_t)(uint32_t)(sum >> 32); /* unsigned, so that compilers see: 32 bits are multiplied next */
+    /* unsigned, so that compilers see: 32 bits are multiplied next */
+    return (int32_t)(uint32_t)(sum >> 32);
 }
 
-static SOFT_INLINE void rotate(const soft_view *view, int32_t x, int32_t y, int32_t z, int32_t eye[3])
+static SOFT_INLINE void rotate(const soft_view *view, int32_t x, int32_t y, int32_t z,
+                               int32_t eye[3])
 {
     eye[0] = along(view->row[0], x, y, z);
     eye[1] = along(view->row[1], x, y, z);
@@ -118,10 +136,12 @@ static SOFT_INLINE void place_near(const soft_space *space, const c3d_vertex *in
     int down = 16 - space->shift; /* 2 .. 16 */
     world[0] = space->origin[0] + in->x * space->scale;
     world[1] = space->origin[1] + in->y * space->scale;
-    world[2] = space->origin[2] + (int32_t)((uint32_t)height >> down | (uint32_t)(height >> 32) << (32 - down));
+    world[2] = space->origin[2] +
+               (int32_t)((uint32_t)height >> down | (uint32_t)(height >> 32) << (32 - down));
 }
 
-static SOFT_INLINE void eye_near(const soft_space *space, const soft_view *view, const c3d_vertex *in, int32_t eye[3])
+static SOFT_INLINE void eye_near(const soft_space *space, const soft_view *view,
+                                 const c3d_vertex *in, int32_t eye[3])
 {
     int32_t world[3];
     place_near(space, in, world);
@@ -129,11 +149,16 @@ static SOFT_INLINE void eye_near(const soft_space *space, const soft_view *view,
 }
 
 /* The same place where 32 bits do not suffice on the way to it. */
-static void eye_far(const soft_space *space, const soft_view *view, const c3d_vertex *in, int32_t eye[3])
+static void eye_far(const soft_space *space, const soft_view *view, const c3d_vertex *in,
+                    int32_t eye[3])
 {
-    rotate(view, (int32_t)soft_scale64(space->origin_wu[0] + (int64_t)in->x * space->scale_wu, space->shift),
-           (int32_t)soft_scale64(space->origin_wu[1] + (int64_t)in->y * space->scale_wu, space->shift),
-           (int32_t)soft_scale64(space->origin_wu[2] * 65536 + (int64_t)in->z * space->z_scale_q16, space->shift - 16), eye);
+    rotate(
+        view,
+        (int32_t)soft_scale64(space->origin_wu[0] + (int64_t)in->x * space->scale_wu, space->shift),
+        (int32_t)soft_scale64(space->origin_wu[1] + (int64_t)in->y * space->scale_wu, space->shift),
+        (int32_t)soft_scale64(space->origin_wu[2] * 65536 + (int64_t)in->z * space->z_scale_q16,
+                              space->shift - 16),
+        eye);
 }
 
 void soft_eye(const soft_state *state, const soft_vertex *vertex, int32_t eye[3])
@@ -159,7 +184,8 @@ static inline uint32_t beside(int32_t at, int32_t guard_from, uint32_t low, uint
     return guard | (at <= SOFT_HALF ? low : high);
 }
 
-/* Twice x/z on the screen, Q4: x * r * 2^(lead - focal_shift - 32) with z = n / 2^lead and r = 2^60/n. |x * r| < 2^60. */
+/* Twice x/z on the screen, Q4: x * r * 2^(lead - focal_shift - 32) with z = n / 2^lead and r =
+ * 2^60/n. |x * r| < 2^60. */
 static inline int32_t twice_on_screen(int32_t x, int32_t r, int shift, int plain)
 {
     int64_t product = (int64_t)x * r;
@@ -168,28 +194,34 @@ static inline int32_t twice_on_screen(int32_t x, int32_t r, int shift, int plain
     return (int32_t)(product > 1 << 28 ? 1 << 28 : product < -(1 << 28) ? -(1 << 28) : product);
 }
 
-/* Nothing of the mesh is too near or too far, so near that a product takes 64 bits, or so far that near/z vanishes. Sums of three
- * products are least and greatest in corners of its box, and stay in order when their upper word is kept. */
+/* Nothing of the mesh is too near or too far, so near that a product takes 64 bits, or so far that
+ * near/z vanishes. Sums of three products are least and greatest in corners of its box, and stay in
+ * order when their upper word is kept. */
 static int is_plain(const soft_space *space, const soft_view *view, const c3d_mesh_data *mesh)
 {
-    const c3d_vertex corner[2] = {{.x = mesh->least[0], .y = mesh->least[1], .z = mesh->least[2]},
-                                  {.x = mesh->most[0], .y = mesh->most[1], .z = mesh->most[2]}};
+    const c3d_vertex corner[2] = {
+        { .x = mesh->least[0], .y = mesh->least[1], .z = mesh->least[2] },
+        { .x = mesh->most[0], .y = mesh->most[1], .z = mesh->most[2] }
+    };
     int32_t world[2][3];
     int64_t least = 0, most = 0;
     place_near(space, &corner[0], world[0]);
     place_near(space, &corner[1], world[1]);
     for (int i = 0; i < 3; i++) {
-        int64_t a = (int64_t)view->row[2][i] * world[0][i], b = (int64_t)view->row[2][i] * world[1][i];
+        int64_t a = (int64_t)view->row[2][i] * world[0][i],
+                b = (int64_t)view->row[2][i] * world[1][i];
         least += a < b ? a : b;
         most += a < b ? b : a;
     }
     int32_t nearest = (int32_t)(least >> 32), farthest = (int32_t)(most >> 32);
-    return nearest >= space->near_eye && nearest >= 1 << (30 - view->focal_shift) && farthest <= space->far_eye &&
-           farthest >> W_PLAIN_LOG2 < space->near_eye;
+    return nearest >= space->near_eye && nearest >= 1 << (30 - view->focal_shift) &&
+           farthest <= space->far_eye && farthest >> W_PLAIN_LOG2 < space->near_eye;
 }
 
-/* near/z: near_norm * r * 2^(lead - near_shift - 31), a product below 2^62; rows of pixels and columns. */
-static SOFT_INLINE void project(const soft_space *space, const soft_view *view, const uint32_t table[512], int plain, const int32_t eye[3],
+/* near/z: near_norm * r * 2^(lead - near_shift - 31), a product below 2^62; rows of pixels and
+ * columns. */
+static SOFT_INLINE void project(const soft_space *space, const soft_view *view,
+                                const uint32_t table[512], int plain, const int32_t eye[3],
                                 soft_vertex *vertex)
 {
     int32_t z = eye[2];
@@ -203,12 +235,15 @@ static SOFT_INLINE void project(const soft_space *space, const soft_view *view, 
     uint32_t out = !plain && z > space->far_eye ? SOFT_FAR : 0;
     int32_t x = (view->centre[0] + 1 + twice_on_screen(eye[0], r, shift, plain)) >> 1;
     int32_t y = (view->centre[1] - twice_on_screen(eye[1], r, shift, plain)) >> 1;
-    uint32_t w = (uint32_t)(((uint64_t)space->near_norm * (uint32_t)r) >> 32) << 1 >> (space->near_shift - lead);
+    uint32_t w = (uint32_t)(((uint64_t)space->near_norm * (uint32_t)r) >> 32) << 1 >>
+                 (space->near_shift - lead);
     vertex->w = !plain && w < W_MIN ? W_MIN : w;
     vertex->x = x;
     vertex->y = y;
-    if ((uint32_t)(x - SOFT_HALF - 1) >= (uint32_t)(view->right_q4 - SOFT_HALF)) out |= beside(x, view->guard_from[0], SOFT_LEFT, SOFT_RIGHT);
-    if ((uint32_t)(y - SOFT_HALF - 1) >= (uint32_t)(view->below_q4 - SOFT_HALF)) out |= beside(y, view->guard_from[1], SOFT_ABOVE, SOFT_BELOW);
+    if ((uint32_t)(x - SOFT_HALF - 1) >= (uint32_t)(view->right_q4 - SOFT_HALF))
+        out |= beside(x, view->guard_from[0], SOFT_LEFT, SOFT_RIGHT);
+    if ((uint32_t)(y - SOFT_HALF - 1) >= (uint32_t)(view->below_q4 - SOFT_HALF))
+        out |= beside(y, view->guard_from[1], SOFT_ABOVE, SOFT_BELOW);
     vertex->out = out;
 }
 
@@ -262,17 +297,19 @@ typedef struct texel_axis {
     int64_t offset;
     int32_t scale;
     int shift, axis;
-    uint8_t wide;  /* 32 bits do not suffice, or it goes beyond what a vertex can hold */
+    uint8_t wide; /* 32 bits do not suffice, or it goes beyond what a vertex can hold */
 } texel_axis;
 
 static int32_t texel_q16(const texel_axis *axis, int32_t at)
 {
-    int64_t texels = (at * (int64_t)axis->scale + axis->offset) >> axis->shift, limit = ((int64_t)1 << 28) - 1;
+    int64_t texels = (at * (int64_t)axis->scale + axis->offset) >> axis->shift,
+            limit = ((int64_t)1 << 28) - 1;
     return (int32_t)(texels > limit ? limit : texels < -limit ? -limit : texels);
 }
 
 /* What the mesh's least and greatest coordinate give is the range of all. */
-static void make_axis(soft_state *state, const c3d_draw *draw, const c3d_mesh_data *mesh, int i, texel_axis *axis)
+static void make_axis(soft_state *state, const c3d_draw *draw, const c3d_mesh_data *mesh, int i,
+                      texel_axis *axis)
 {
     int size_log2 = i ? state->paint.texture->height_log2 : state->paint.texture->width_log2;
     int64_t scale = draw->tex_scale_q16[i] * ((int64_t)1 << size_log2);
@@ -281,17 +318,23 @@ static void make_axis(soft_state *state, const c3d_draw *draw, const c3d_mesh_da
     axis->scale = (int32_t)(scale > limit ? limit : scale < -limit ? -limit : scale);
     axis->shift = draw->tex_shift;
     axis->axis = state->paint.axis[i];
-    axis->offset = offset * ((int64_t)1 << axis->shift) - (int64_t)draw->tex_origin[i] * axis->scale;
+    axis->offset = offset * ((int64_t)1 << axis->shift) -
+                   (int64_t)draw->tex_origin[i] * axis->scale;
     axis->wide = 0;
     for (int end = 0; end < 2; end++) {
-        int32_t at = end ? mesh->most[axis->axis] : mesh->least[axis->axis], texels = texel_q16(axis, at);
+        int32_t at = end ? mesh->most[axis->axis] : mesh->least[axis->axis],
+                texels = texel_q16(axis, at);
         int64_t exact = at * (int64_t)axis->scale + axis->offset;
         axis->wide |= !fits(exact) || exact >> axis->shift != texels;
-        state->off_texture |= texels < -32768 || texels > (1 << (size_log2 + 16)) - 32768; /* the texture with half of its rim */
+        /* the texture with half of its rim */
+        state->off_texture |= texels < -32768 || texels > (1 << (size_log2 + 16)) - 32768;
     }
 }
 
-static inline int32_t coordinate(const c3d_vertex *in, int axis) { return axis == 0 ? in->x : axis == 1 ? in->y : in->z; }
+static inline int32_t coordinate(const c3d_vertex *in, int axis)
+{
+    return axis == 0 ? in->x : axis == 1 ? in->y : in->z;
+}
 
 /* 32 bits wrap on the way to what fits them. */
 static inline int32_t texel_narrow(int32_t at, uint32_t scale, uint32_t offset, int shift)
@@ -299,9 +342,11 @@ static inline int32_t texel_narrow(int32_t at, uint32_t scale, uint32_t offset, 
     return (int32_t)((uint32_t)at * scale + offset) >> shift;
 }
 
-static void texture_plane(soft_vertex *vertex, const c3d_mesh_data *mesh, const texel_axis *s, const texel_axis *t)
+static void texture_plane(soft_vertex *vertex, const c3d_mesh_data *mesh, const texel_axis *s,
+                          const texel_axis *t)
 {
-    uint32_t s_scale = (uint32_t)s->scale, s_offset = (uint32_t)s->offset, t_scale = (uint32_t)t->scale, t_offset = (uint32_t)t->offset;
+    uint32_t s_scale = (uint32_t)s->scale, s_offset = (uint32_t)s->offset,
+             t_scale = (uint32_t)t->scale, t_offset = (uint32_t)t->offset;
     int shift = s->shift;
     for (const c3d_vertex *in = mesh->vertices, *end = in + mesh->count; in < end; in++, vertex++) {
         vertex->s = texel_narrow(in->x, s_scale, s_offset, shift);
@@ -328,7 +373,8 @@ static void transform_colours(soft_state *state, const c3d_draw *draw, const c3d
 {
     for (uint32_t i = 0; i < mesh->count; i++)
         for (int c = 0; c < 4; c++)
-            state->vertices[i].rgba[c] = state->paint.coloured ? mesh->vertices[i].rgba[c] : (uint8_t)(draw->colour >> (8 * c));
+            state->vertices[i].rgba[c] = state->paint.coloured ? mesh->vertices[i].rgba[c]
+                                                               : (uint8_t)(draw->colour >> (8 * c));
 }
 
 /* Fog is linear between its start and end. */
@@ -352,10 +398,12 @@ static int same_vertices(const c3d_draw *a, const c3d_draw *b)
     for (int i = 0; i < 3; i++)
         if (a->origin_wu[i] != b->origin_wu[i]) return 0;
     for (int i = 0; i < 2; i++)
-        if (a->tex_scale_q16[i] != b->tex_scale_q16[i] || a->tex_offset_q16[i] != b->tex_offset_q16[i] || a->tex_origin[i] != b->tex_origin[i])
+        if (a->tex_scale_q16[i] != b->tex_scale_q16[i] ||
+            a->tex_offset_q16[i] != b->tex_offset_q16[i] || a->tex_origin[i] != b->tex_origin[i])
             return 0;
-    return a->mesh.id == b->mesh.id && a->xy_scale_wu == b->xy_scale_wu && a->z_scale_q16 == b->z_scale_q16 && a->flags == b->flags &&
-           a->colour == b->colour && a->texture.id == b->texture.id && a->tex_shift == b->tex_shift;
+    return a->mesh.id == b->mesh.id && a->xy_scale_wu == b->xy_scale_wu &&
+           a->z_scale_q16 == b->z_scale_q16 && a->flags == b->flags && a->colour == b->colour &&
+           a->texture.id == b->texture.id && a->tex_shift == b->tex_shift;
 }
 
 /* The strips of a node share its mesh: its vertices are transformed with the first. */
@@ -369,8 +417,10 @@ void soft_transform(soft_state *state, const c3d_resolved_draw *resolved)
     begin_space(state, resolved);
     state->off_texture = 0;
     (state->space.near ? transform_near : transform_far)(state, mesh);
-    for (uint32_t i = 0; state->paint.on_top && i < mesh->count; i++) put_on_top(&state->vertices[i]);
+    for (uint32_t i = 0; state->paint.on_top && i < mesh->count; i++)
+        put_on_top(&state->vertices[i]);
     if (state->paint.texture) transform_textured(state, draw, mesh);
-    if (!state->paint.texture || !state->paint.white || state->paint.fog) transform_colours(state, draw, mesh);
+    if (!state->paint.texture || !state->paint.white || state->paint.fog)
+        transform_colours(state, draw, mesh);
     if (state->paint.fog) transform_fog(state, mesh->count);
 }

@@ -7,7 +7,8 @@ static int64_t area_of(const soft_vertex *a, const soft_vertex *b, const soft_ve
     return (int64_t)(c->x - a->x) * (b->y - a->y) - (int64_t)(b->x - a->x) * (c->y - a->y);
 }
 
-void soft_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
+void soft_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b,
+                   const soft_vertex *c)
 {
     const soft_vertex *swap;
     if (b->y < a->y) swap = a, a = b, b = swap;
@@ -23,7 +24,8 @@ void soft_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b
     if (area != 0) soft_perspective(state, a, b, c, area);
 }
 
-static inline void draw(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
+static inline void draw(soft_state *state, const soft_vertex *a, const soft_vertex *b,
+                        const soft_vertex *c)
 {
     uint32_t any = a->out | b->out | c->out;
     if (a->out & b->out & c->out) return;
@@ -35,12 +37,14 @@ static inline void draw(soft_state *state, const soft_vertex *a, const soft_vert
 
 void soft_strip(soft_state *state, const uint16_t *indices, uint32_t count)
 {
-    const soft_vertex *vertices = state->vertices, *a, *b = &vertices[indices[0]], *c = &vertices[indices[1]];
+    const soft_vertex *vertices = state->vertices, *a, *b = &vertices[indices[0]],
+                      *c = &vertices[indices[1]];
     int32_t row_a, row_b = soft_first_row(b->y), row_c = soft_first_row(c->y);
     for (uint32_t i = 2; i < count; i++) {
         a = b, b = c, c = &vertices[indices[i]];
         row_a = row_b, row_b = row_c, row_c = soft_first_row(c->y);
-        if (row_a == row_b && row_b == row_c) continue; /* between two rows of centres: a third of a terrain's triangles */
+        /* between two rows of centres: a third of a terrain's triangles */
+        if (row_a == row_b && row_b == row_c) continue;
         if (a == b || b == c || a == c) continue;
         draw(state, a, b, c);
     }

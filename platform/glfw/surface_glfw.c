@@ -1,4 +1,5 @@
-/* The desktop emulator's window: GLFW with GL ES 1.1 (through EGL) or desktop GL. GLFW wants one thread, the main one. */
+/* The desktop emulator's window: GLFW with GL ES 1.1 (through EGL) or desktop GL. GLFW wants one
+ * thread, the main one. */
 #include "../surface_local.h"
 #include "../sys.h"
 
@@ -21,16 +22,25 @@ static void put(GLFWwindow *window, sys_event event)
 {
     sys_surface *surface = glfwGetWindowUserPointer(window);
     event.time_us = sys_time_us();
-    if (surface->head - surface->tail < QUEUE_CAPACITY) surface->queue[surface->head++ % QUEUE_CAPACITY] = event;
+    if (surface->head - surface->tail < QUEUE_CAPACITY)
+        surface->queue[surface->head++ % QUEUE_CAPACITY] = event;
 }
 
 static int key_code(int key)
 {
-    static const struct { int glfw, sys; } named[] = {
-        {GLFW_KEY_LEFT, SYS_KEY_LEFT}, {GLFW_KEY_RIGHT, SYS_KEY_RIGHT}, {GLFW_KEY_UP, SYS_KEY_UP},
-        {GLFW_KEY_DOWN, SYS_KEY_DOWN}, {GLFW_KEY_PAGE_UP, SYS_KEY_PAGE_UP}, {GLFW_KEY_PAGE_DOWN, SYS_KEY_PAGE_DOWN},
-        {GLFW_KEY_ESCAPE, SYS_KEY_ESCAPE}, {GLFW_KEY_ENTER, SYS_KEY_ENTER}, {GLFW_KEY_SPACE, SYS_KEY_SPACE},
-        {GLFW_KEY_LEFT_SHIFT, SYS_KEY_SHIFT}, {GLFW_KEY_RIGHT_SHIFT, SYS_KEY_SHIFT}};
+    static const struct {
+        int glfw, sys;
+    } named[] = { { GLFW_KEY_LEFT, SYS_KEY_LEFT },
+                  { GLFW_KEY_RIGHT, SYS_KEY_RIGHT },
+                  { GLFW_KEY_UP, SYS_KEY_UP },
+                  { GLFW_KEY_DOWN, SYS_KEY_DOWN },
+                  { GLFW_KEY_PAGE_UP, SYS_KEY_PAGE_UP },
+                  { GLFW_KEY_PAGE_DOWN, SYS_KEY_PAGE_DOWN },
+                  { GLFW_KEY_ESCAPE, SYS_KEY_ESCAPE },
+                  { GLFW_KEY_ENTER, SYS_KEY_ENTER },
+                  { GLFW_KEY_SPACE, SYS_KEY_SPACE },
+                  { GLFW_KEY_LEFT_SHIFT, SYS_KEY_SHIFT },
+                  { GLFW_KEY_RIGHT_SHIFT, SYS_KEY_SHIFT } };
     for (size_t i = 0; i < sizeof named / sizeof *named; i++)
         if (named[i].glfw == key) return named[i].sys;
     if (key >= GLFW_KEY_F1 && key <= GLFW_KEY_F12) return SYS_KEY_F1 + key - GLFW_KEY_F1;
@@ -44,14 +54,15 @@ static void on_key(GLFWwindow *window, int key, int scancode, int action, int mo
     (void)mods;
     int code = key_code(key);
     if (code && action != GLFW_REPEAT)
-        put(window, (sys_event){.type = SYS_EVENT_KEY, .u.key = {code, action == GLFW_PRESS}});
+        put(window, (sys_event){ .type = SYS_EVENT_KEY, .u.key = { code, action == GLFW_PRESS } });
 }
 
 static void put_pointer(GLFWwindow *window, enum sys_pointer_action action, int button)
 {
     double x, y;
     glfwGetCursorPos(window, &x, &y);
-    put(window, (sys_event){.type = SYS_EVENT_POINTER, .u.pointer = {action, (int)x, (int)y, button}});
+    put(window,
+        (sys_event){ .type = SYS_EVENT_POINTER, .u.pointer = { action, (int)x, (int)y, button } });
 }
 
 static void on_button(GLFWwindow *window, int button, int action, int mods)
@@ -67,8 +78,9 @@ static void on_move(GLFWwindow *window, double x, double y)
 {
     sys_surface *surface = glfwGetWindowUserPointer(window);
     if (surface->pressed_button < 0) return;
-    put(window, (sys_event){.type = SYS_EVENT_POINTER,
-                            .u.pointer = {SYS_POINTER_MOVE, (int)x, (int)y, surface->pressed_button}});
+    put(window,
+        (sys_event){ .type = SYS_EVENT_POINTER,
+                     .u.pointer = { SYS_POINTER_MOVE, (int)x, (int)y, surface->pressed_button } });
 }
 
 static void on_scroll(GLFWwindow *window, double x, double y)
@@ -79,10 +91,11 @@ static void on_scroll(GLFWwindow *window, double x, double y)
 
 static void on_resize(GLFWwindow *window, int width, int height)
 {
-    if (width > 0 && height > 0) put(window, (sys_event){.type = SYS_EVENT_RESIZE, .u.resize = {width, height}});
+    if (width > 0 && height > 0)
+        put(window, (sys_event){ .type = SYS_EVENT_RESIZE, .u.resize = { width, height } });
 }
 
-static void on_close(GLFWwindow *window) { put(window, (sys_event){.type = SYS_EVENT_QUIT}); }
+static void on_close(GLFWwindow *window) { put(window, (sys_event){ .type = SYS_EVENT_QUIT }); }
 
 static void glfw_release(void) { glfwMakeContextCurrent(NULL); }
 
@@ -111,12 +124,14 @@ static GLFWwindow *create_window(const sys_surface_desc *desc)
         glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 1);
     }
     glfwWindowHint(GLFW_DEPTH_BITS, 24);
-    return glfwCreateWindow(desc->width, desc->height, desc->title ? desc->title : "Farfield", NULL, NULL);
+    return glfwCreateWindow(desc->width, desc->height, desc->title ? desc->title : "Farfield", NULL,
+                            NULL);
 }
 
 static int surface_open(const sys_surface_desc *desc, sys_surface **surface)
 {
-    if (desc->width < 1 || desc->height < 1 || desc->width > 4096 || desc->height > 4096) return FF_ERR_ARGUMENT;
+    if (desc->width < 1 || desc->height < 1 || desc->width > 4096 || desc->height > 4096)
+        return FF_ERR_ARGUMENT;
     if (!glfwInit()) return FF_ERR_SYSTEM;
     sys_surface *opened = calloc(1, sizeof *opened);
     if (!opened) return FF_ERR_MEMORY;
@@ -142,7 +157,10 @@ static int surface_open(const sys_surface_desc *desc, sys_surface **surface)
 
 static void *surface_proc(const char *name)
 {
-    union { GLFWglproc function; void *address; } proc = {glfwGetProcAddress(name)};
+    union {
+        GLFWglproc function;
+        void *address;
+    } proc = { glfwGetProcAddress(name) };
     return proc.address;
 }
 
@@ -162,7 +180,9 @@ static int surface_poll(sys_surface *surface, sys_event *event)
 
 const sys_surface_api *sys_surface_glfw(void)
 {
-    static const sys_surface_api api = {"glfw", surface_open, surface_close, surface_make_current,
-                                        surface_proc, surface_present, surface_poll};
+    static const sys_surface_api api = { "glfw",        surface_open,
+                                         surface_close, surface_make_current,
+                                         surface_proc,  surface_present,
+                                         surface_poll };
     return &api;
 }

@@ -1,4 +1,5 @@
-/* A surface without any graphics library: the back end keeps the picture in its own memory (common3d/soft). Events pass as elsewhere. */
+/* A surface without any graphics library: the back end keeps the picture in its own memory
+ * (common3d/soft). Events pass as elsewhere. */
 #include "../surface_local.h"
 #include "../sys.h"
 
@@ -24,10 +25,11 @@ static void memory_close(sys_surface *surface)
 
 static int memory_open(const sys_surface_desc *desc, sys_surface **surface)
 {
-    if (desc->width < 1 || desc->height < 1 || desc->width > 4096 || desc->height > 4096) return FF_ERR_ARGUMENT;
+    if (desc->width < 1 || desc->height < 1 || desc->width > 4096 || desc->height > 4096)
+        return FF_ERR_ARGUMENT;
     sys_surface *opened = malloc(sizeof *opened);
     if (!opened) return FF_ERR_MEMORY;
-    *opened = (sys_surface){desc->width, desc->height};
+    *opened = (sys_surface){ desc->width, desc->height };
     *surface = opened;
     return memory_make_current(opened);
 }
@@ -52,7 +54,9 @@ static int memory_poll(sys_surface *surface, sys_event *event)
 
 const sys_surface_api *sys_surface_memory(void)
 {
-    static const sys_surface_api api = {"memory", memory_open, memory_close, memory_make_current,
-                                        memory_proc, memory_present, memory_poll};
+    static const sys_surface_api api = { "memory",     memory_open,
+                                         memory_close, memory_make_current,
+                                         memory_proc,  memory_present,
+                                         memory_poll };
     return &api;
 }

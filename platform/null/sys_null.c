@@ -1,9 +1,10 @@
-/* A blank port: every function of sys.h that an operating system must answer, answering as one that has nothing would. It builds with
- * any C99 compiler and no header of a system; a port to a new system starts as a copy, one function after the other made real.
- * Randomness and injected events (platform/random.c, platform/events.c) ask nothing of a system and are shared by all ports.
+/* A blank port: every function of sys.h that an operating system must answer, answering as one that
+ * has nothing would. It builds with any C99 compiler and no header of a system; a port to a new
+ * system starts as a copy, one function after the other made real. Randomness and injected events
+ * (platform/random.c, platform/events.c) ask nothing of a system and are shared by all ports.
  *
- * What works: the clock steps a millisecond at every look, so that loops waiting for time end; locks do nothing, as there are no
- * threads. Everything else says FF_ERR_UNSUPPORTED.
+ * What works: the clock steps a millisecond at every look, so that loops waiting for time end;
+ * locks do nothing, as there are no threads. Everything else says FF_ERR_UNSUPPORTED.
  */
 #include "../sys.h"
 
@@ -65,10 +66,7 @@ int sys_make_folder(const char *path)
     return FF_ERR_UNSUPPORTED;
 }
 
-int sys_stderr_is_terminal(void)
-{
-    return 0;
-}
+int sys_stderr_is_terminal(void) { return 0; }
 
 int sys_png_write(const char *path, const uint8_t *rgb, uint32_t width, uint32_t height)
 {

@@ -12,16 +12,17 @@
 
 int sys_map_file(const char *path, sys_mapping *mapping)
 {
-    *mapping = (sys_mapping){0};
+    *mapping = (sys_mapping){ 0 };
     int fd = open(path, O_RDONLY | O_CLOEXEC);
     if (fd < 0) return errno == ENOENT || errno == ENOTDIR ? FF_ERR_NOT_FOUND : FF_ERR_SYSTEM;
     struct stat status;
     int rc = FF_ERR_SYSTEM;
     if (fstat(fd, &status) == 0 && S_ISREG(status.st_mode)) {
         void *bytes = NULL; /* an empty file cannot be mapped, and need not be */
-        if (status.st_size > 0) bytes = mmap(NULL, (size_t)status.st_size, PROT_READ, MAP_SHARED, fd, 0);
+        if (status.st_size > 0)
+            bytes = mmap(NULL, (size_t)status.st_size, PROT_READ, MAP_SHARED, fd, 0);
         if (bytes != MAP_FAILED) {
-            *mapping = (sys_mapping){bytes, (uint64_t)status.st_size};
+            *mapping = (sys_mapping){ bytes, (uint64_t)status.st_size };
             rc = FF_OK;
         }
     }
@@ -32,7 +33,7 @@ int sys_map_file(const char *path, sys_mapping *mapping)
 void sys_unmap_file(sys_mapping *mapping)
 {
     if (mapping->bytes) munmap((void *)(uintptr_t)mapping->bytes, (size_t)mapping->size);
-    *mapping = (sys_mapping){0};
+    *mapping = (sys_mapping){ 0 };
 }
 
 static int write_all(int fd, const uint8_t *bytes, size_t count)
@@ -54,7 +55,8 @@ int sys_write_file(const char *path, const void *bytes, size_t count)
     if (length < 0 || (size_t)length >= sizeof temporary) return FF_ERR_ARGUMENT;
     int fd = mkostemp(temporary, O_CLOEXEC);
     if (fd < 0) return FF_ERR_SYSTEM;
-    mode_t mask = umask(0); /* mkostemp makes 0600; a written file follows the umask as any other does */
+    /* mkostemp makes 0600; a written file follows the umask as any other does */
+    mode_t mask = umask(0);
     umask(mask);
     int rc = write_all(fd, bytes, count);
     if (fchmod(fd, 0666 & ~mask) != 0 || fsync(fd) != 0) rc = FF_ERR_SYSTEM;

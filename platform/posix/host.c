@@ -10,7 +10,4 @@ int sys_make_folder(const char *path)
     return stat(path, &found) == 0 && S_ISDIR(found.st_mode) ? FF_OK : FF_ERR_SYSTEM;
 }
 
-int sys_stderr_is_terminal(void)
-{
-    return isatty(STDERR_FILENO) != 0;
-}
+int sys_stderr_is_terminal(void) { return isatty(STDERR_FILENO) != 0; }

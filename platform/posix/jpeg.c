@@ -1,6 +1,7 @@
-/* Bare JPEGs (protocol/SPEC.md, "Images") through libjpeg's API: its abbreviated format, which leaves tables out, and the few headers left
- * stripped and put back. Errors leave by longjmp, never by exit; corrupt data that libjpeg would only warn of and paint
- * grey is an error too: a panorama that is wrong is worse than none. */
+/* Bare JPEGs (protocol/SPEC.md, "Images") through libjpeg's API: its abbreviated format, which
+ * leaves tables out, and the few headers left stripped and put back. Errors leave by longjmp, never
+ * by exit; corrupt data that libjpeg would only warn of and paint grey is an error too: a panorama
+ * that is wrong is worse than none. */
 #include "../sys.h"
 #include "jpeg_tables.h"
 
@@ -18,7 +19,10 @@ struct guard {
     jmp_buf leave;
 };
 
-static void leave_on_error(j_common_ptr common) { longjmp(((struct guard *)(void *)common->err)->leave, 1); }
+static void leave_on_error(j_common_ptr common)
+{
+    longjmp(((struct guard *)(void *)common->err)->leave, 1);
+}
 
 static void leave_on_warning(j_common_ptr common, int level)
 {
@@ -42,17 +46,20 @@ static struct jpeg_error_mgr *guard_init(struct guard *guard)
 
 struct pieces {
     struct jpeg_source_mgr manager; /* first: libjpeg knows this part */
-    struct { const uint8_t *bytes; size_t count; } piece[3];
+    struct {
+        const uint8_t *bytes;
+        size_t count;
+    } piece[3];
     unsigned next;
 };
 
 /* Start of image, frame and scan: what every bare image shares but for its size. */
 static void make_header(uint8_t header[HEADER_BYTES], uint32_t width, uint32_t height)
 {
-    static const uint8_t usual[HEADER_BYTES] = {
-        0xFF, 0xD8, 0xFF, 0xC0, 0, 17, 8, 0, 0, 0, 0, 3, 1, 0x22, 0, 2, 0x11, 1, 3, 0x11, 1,
-        0xFF, 0xDA, 0, 12, 3, 1, 0, 2, 0x11, 3, 0x11, 0, 63, 0
-    };
+    static const uint8_t usual[HEADER_BYTES] = { 0xFF, 0xD8, 0xFF, 0xC0, 0,    17, 8,  0,    0,
+                                                 0,    0,    3,    1,    0x22, 0,  2,  0x11, 1,
+                                                 3,    0x11, 1,    0xFF, 0xDA, 0,  12, 3,    1,
+                                                 0,    2,    0x11, 3,    0x11, 0,  63, 0 };
     memcpy(header, usual, sizeof usual);
     header[7] = (uint8_t)(height >> 8);
     header[8] = (uint8_t)height;
@@ -65,8 +72,7 @@ static void no_source(j_decompress_ptr jpeg) { (void)jpeg; }
 static boolean next_piece(j_decompress_ptr jpeg)
 {
     struct pieces *pieces = (struct pieces *)(void *)jpeg->src;
-    if (pieces->next == 3)
-        leave_on_error((j_common_ptr)jpeg);
+    if (pieces->next == 3) leave_on_error((j_common_ptr)jpeg);
     pieces->manager.next_input_byte = pieces->piece[pieces->next].bytes;
     pieces->manager.bytes_in_buffer = pieces->piece[pieces->next++].count;
     return TRUE;
@@ -78,11 +84,15 @@ static void skip_bytes(j_decompress_ptr jpeg, long count)
         leave_on_error((j_common_ptr)jpeg);
 }
 
-static void set_source(j_decompress_ptr jpeg, struct pieces *pieces, const uint8_t *header, const uint8_t *scan, size_t scan_bytes)
+static void set_source(j_decompress_ptr jpeg, struct pieces *pieces, const uint8_t *header,
+                       const uint8_t *scan, size_t scan_bytes)
 {
-    static const uint8_t end[2] = {0xFF, 0xD9};
-    pieces->manager = (struct jpeg_source_mgr){.init_source = no_source, .fill_input_buffer = next_piece, .skip_input_data = skip_bytes,
-                                               .resync_to_restart = jpeg_resync_to_restart, .term_source = no_source};
+    static const uint8_t end[2] = { 0xFF, 0xD9 };
+    pieces->manager = (struct jpeg_source_mgr){ .init_source = no_source,
+                                                .fill_input_buffer = next_piece,
+                                                .skip_input_data = skip_bytes,
+                                                .resync_to_restart = jpeg_resync_to_restart,
+                                                .term_source = no_source };
     pieces->piece[0].bytes = header;
     pieces->piece[0].count = HEADER_BYTES;
     pieces->piece[1].bytes = scan;
@@ -96,11 +106,9 @@ static void set_source(j_decompress_ptr jpeg, struct pieces *pieces, const uint8
 /* No markers: they could bring tables, restarts, other scans. */
 static int is_plain_scan(const uint8_t *bytes, size_t count)
 {
-    if (count == 0 || bytes[count - 1] == 0xFF)
-        return 0;
+    if (count == 0 || bytes[count - 1] == 0xFF) return 0;
     for (size_t i = 0; i + 1 < count; i++)
-        if (bytes[i] == 0xFF && bytes[i + 1] != 0)
-            return 0;
+        if (bytes[i] == 0xFF && bytes[i + 1] != 0) return 0;
     return 1;
 }
 
@@ -118,13 +126,14 @@ static void read_image(j_decompress_ptr jpeg, int quality, uint8_t *rgb)
     jpeg_finish_decompress(jpeg);
 }
 
-int sys_jpeg_decode(const uint8_t *bytes, size_t byte_count, uint32_t width, uint32_t height, uint8_t *rgb)
+int sys_jpeg_decode(const uint8_t *bytes, size_t byte_count, uint32_t width, uint32_t height,
+                    uint8_t *rgb)
 {
-    if (width == 0 || height == 0 || width > SIDE_MAX || height > SIDE_MAX)
-        return FF_ERR_ARGUMENT;
-    if (byte_count < 2 || bytes[0] < 1 || bytes[0] > 100 || !is_plain_scan(bytes + 1, byte_count - 1))
+    if (width == 0 || height == 0 || width > SIDE_MAX || height > SIDE_MAX) return FF_ERR_ARGUMENT;
+    if (byte_count < 2 || bytes[0] < 1 || bytes[0] > 100 ||
+        !is_plain_scan(bytes + 1, byte_count - 1))
         return FF_ERR_FORMAT;
-    struct jpeg_decompress_struct jpeg = {0};
+    struct jpeg_decompress_struct jpeg = { 0 };
     struct guard guard;
     struct pieces pieces;
     uint8_t header[HEADER_BYTES];
@@ -171,25 +180,25 @@ static size_t bare_scan(uint8_t *jpeg, size_t count)
     while (at + 4 <= count && jpeg[at] == 0xFF) {
         uint8_t marker = jpeg[at + 1];
         at += 2 + (size_t)(jpeg[at + 2] << 8 | jpeg[at + 3]);
-        if (marker != 0xDA)
-            continue;
-        if (at + 2 > count)
-            return 0;
+        if (marker != 0xDA) continue;
+        if (at + 2 > count) return 0;
         memmove(jpeg, jpeg + at, count - at - 2);
         return count - at - 2;
     }
     return 0;
 }
 
-int sys_jpeg_encode(const uint8_t *rgb, uint32_t width, uint32_t height, int quality, uint8_t *out, size_t capacity)
+int sys_jpeg_encode(const uint8_t *rgb, uint32_t width, uint32_t height, int quality, uint8_t *out,
+                    size_t capacity)
 {
-    if (width == 0 || height == 0 || width > SIDE_MAX || height > SIDE_MAX || quality < 1 || quality > 100)
+    if (width == 0 || height == 0 || width > SIDE_MAX || height > SIDE_MAX || quality < 1 ||
+        quality > 100)
         return FF_ERR_ARGUMENT;
     if (capacity < 2) return FF_ERR_FULL;
     if (capacity > INT_MAX) capacity = INT_MAX;
-    struct jpeg_compress_struct jpeg = {0};
+    struct jpeg_compress_struct jpeg = { 0 };
     struct guard guard;
-    struct bounded bounded = {{0}, out + 1, capacity - 1};
+    struct bounded bounded = { { 0 }, out + 1, capacity - 1 };
     volatile int rc = FF_ERR_FULL;
     jpeg.err = guard_init(&guard);
     if (setjmp(guard.leave) == 0) {

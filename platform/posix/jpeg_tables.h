@@ -6,7 +6,8 @@
 
 #include <jpeglib.h>
 
-/* Quantisation (tables K.1, K.2 scaled for quality 1..100) and Huffman tables (K.3 to K.6) of an image whose stream has none. */
+/* Quantisation (tables K.1, K.2 scaled for quality 1..100) and Huffman tables (K.3 to K.6) of an
+ * image whose stream has none. */
 void jpeg_tables_set(j_decompress_ptr jpeg, int quality);
 
 #endif

@@ -1,4 +1,5 @@
-/* PNG through libpng. Writing: encoded in memory, then written at once by sys_write_file, so no half picture stays behind. */
+/* PNG through libpng. Writing: encoded in memory, then written at once by sys_write_file, so no
+ * half picture stays behind. */
 #include "../sys.h"
 
 #include <png.h>
@@ -20,7 +21,8 @@ int sys_png_write(const char *path, const uint8_t *rgb, uint32_t width, uint32_t
     uint8_t *bytes = malloc(size);
     if (!bytes) return FF_ERR_MEMORY;
     int rc = FF_ERR_SYSTEM;
-    if (png_image_write_to_memory(&image, bytes, &size, 0, rgb, 0, NULL)) rc = sys_write_file(path, bytes, size);
+    if (png_image_write_to_memory(&image, bytes, &size, 0, rgb, 0, NULL))
+        rc = sys_write_file(path, bytes, size);
     png_image_free(&image);
     free(bytes);
     return rc;
@@ -28,12 +30,13 @@ int sys_png_write(const char *path, const uint8_t *rgb, uint32_t width, uint32_t
 
 static int read_mapped(const sys_mapping *mapping, png_image *image, uint8_t **rgb)
 {
-    if (!png_image_begin_read_from_memory(image, mapping->bytes, (size_t)mapping->size)) return FF_ERR_FORMAT;
+    if (!png_image_begin_read_from_memory(image, mapping->bytes, (size_t)mapping->size))
+        return FF_ERR_FORMAT;
     if ((uint64_t)image->width * image->height > READ_PIXELS_MAX) return FF_ERR_RANGE;
     image->format = PNG_FORMAT_RGB;
     uint8_t *bytes = malloc(PNG_IMAGE_SIZE(*image));
     if (!bytes) return FF_ERR_MEMORY;
-    const png_color black = {0, 0, 0};
+    const png_color black = { 0, 0, 0 };
     if (!png_image_finish_read(image, &black, bytes, 0, NULL)) {
         free(bytes);
         return FF_ERR_FORMAT;

@@ -1,5 +1,6 @@
-/* TCP as sys_stream: non-blocking, no delay, never SIGPIPE. A client walks through all addresses of its host, one after
- * the other: sys_tcp.connecting is the number (from 1) of the address being tried, 0 when connected or closed. */
+/* TCP as sys_stream: non-blocking, no delay, never SIGPIPE. A client walks through all addresses of
+ * its host, one after the other: sys_tcp.connecting is the number (from 1) of the address being
+ * tried, 0 when connected or closed. */
 #include "../sys.h"
 
 #include <errno.h>
@@ -14,7 +15,8 @@
 
 #define LISTEN_BACKLOG 128
 
-/* "HOST:PORT" or "[HOST]:PORT" taken apart; 1 when well formed. An empty host is allowed for listening. */
+/* "HOST:PORT" or "[HOST]:PORT" taken apart; 1 when well formed. An empty host is allowed for
+ * listening. */
 static int split_address(const char *address, char host[128], char port[8])
 {
     const char *colon = strrchr(address, ':');
@@ -34,7 +36,8 @@ static int split_address(const char *address, char host[128], char port[8])
     host[host_size] = 0;
     memcpy(port, colon + 1, port_size + 1);
     unsigned long number = 0;
-    for (const char *digit = port; *digit; digit++) number = number * 10 + (unsigned long)(*digit - '0');
+    for (const char *digit = port; *digit; digit++)
+        number = number * 10 + (unsigned long)(*digit - '0');
     return number <= 65535;
 }
 
@@ -42,7 +45,7 @@ static int resolve(const char *address, int flags, struct addrinfo **list)
 {
     char host[128], port[8];
     if (!split_address(address, host, port)) return FF_ERR_ARGUMENT;
-    struct addrinfo hints = {.ai_flags = flags | AI_NUMERICSERV, .ai_socktype = SOCK_STREAM};
+    struct addrinfo hints = { .ai_flags = flags | AI_NUMERICSERV, .ai_socktype = SOCK_STREAM };
     return getaddrinfo(*host ? host : NULL, port, &hints, list) ? FF_ERR_NOT_FOUND : FF_OK;
 }
 
@@ -89,7 +92,7 @@ static int check_connecting(sys_tcp *tcp)
 {
     if (tcp->fd < 0) return FF_ERR_CLOSED;
     if (!tcp->connecting) return FF_OK;
-    struct pollfd ready = {.fd = tcp->fd, .events = POLLOUT};
+    struct pollfd ready = { .fd = tcp->fd, .events = POLLOUT };
     if (poll(&ready, 1, 0) <= 0) return FF_ERR_AGAIN;
     int error = 0;
     socklen_t size = sizeof error;
@@ -103,7 +106,10 @@ static int check_connecting(sys_tcp *tcp)
     return start_connecting(tcp, next);
 }
 
-static int would_block(int error) { return error == EAGAIN || error == EWOULDBLOCK || error == EINTR; }
+static int would_block(int error)
+{
+    return error == EAGAIN || error == EWOULDBLOCK || error == EINTR;
+}
 
 static int tcp_send(void *state, const uint8_t *bytes, size_t count)
 {
@@ -150,12 +156,14 @@ static int tcp_reconnect(void *state)
 int sys_tcp_client(sys_tcp *tcp, const char *address, sys_stream *stream)
 {
     char host[128], port[8];
-    if (strlen(address) >= sizeof tcp->address || !split_address(address, host, port) || !*host) return FF_ERR_ARGUMENT;
+    if (strlen(address) >= sizeof tcp->address || !split_address(address, host, port) || !*host)
+        return FF_ERR_ARGUMENT;
     memset(tcp, 0, sizeof *tcp);
     tcp->fd = -1;
     memcpy(tcp->address, address, strlen(address) + 1);
-    *stream = (sys_stream){tcp, tcp_send, tcp_recv, tcp_close, tcp_reconnect};
-    start_connecting(tcp, 1); /* a failure shows as FF_ERR_CLOSED at the first use: the same path as a lost connection */
+    *stream = (sys_stream){ tcp, tcp_send, tcp_recv, tcp_close, tcp_reconnect };
+    /* a failure shows as FF_ERR_CLOSED at the first use: the same path as a lost connection */
+    start_connecting(tcp, 1);
     return FF_OK;
 }
 
@@ -163,7 +171,7 @@ void sys_tcp_adopt(sys_tcp *tcp, int fd, sys_stream *stream)
 {
     memset(tcp, 0, sizeof *tcp);
     tcp->fd = fd;
-    *stream = (sys_stream){tcp, tcp_send, tcp_recv, tcp_close, NULL};
+    *stream = (sys_stream){ tcp, tcp_send, tcp_recv, tcp_close, NULL };
 }
 
 static int bound_port(int fd, uint16_t *port)
@@ -214,10 +222,11 @@ void sys_wait_ready(const sys_ready *list, unsigned count, int64_t us)
     if (count > SYS_READY_MAX) count = SYS_READY_MAX;
     if (us < 0) us = 0;
     for (unsigned i = 0; i < count; i++) {
-        fds[i] = (struct pollfd){.fd = list[i].fd};
+        fds[i] = (struct pollfd){ .fd = list[i].fd };
         if (list[i].events & SYS_READY_RECV) fds[i].events |= POLLIN;
         if (list[i].events & SYS_READY_SEND) fds[i].events |= POLLOUT;
     }
-    struct timespec time = {.tv_sec = (time_t)(us / 1000000), .tv_nsec = (long)(us % 1000000) * 1000};
+    struct timespec time = { .tv_sec = (time_t)(us / 1000000),
+                             .tv_nsec = (long)(us % 1000000) * 1000 };
     (void)ppoll(fds, count, &time, NULL);
 }

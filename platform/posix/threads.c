@@ -15,7 +15,10 @@ struct start {
 static pthread_mutex_t *mutex_of(sys_mutex *mutex) { return (pthread_mutex_t *)(void *)&mutex->u; }
 static pthread_t *thread_of(sys_thread *thread) { return (pthread_t *)(void *)&thread->u; }
 
-int sys_mutex_init(sys_mutex *mutex) { return pthread_mutex_init(mutex_of(mutex), NULL) ? FF_ERR_SYSTEM : FF_OK; }
+int sys_mutex_init(sys_mutex *mutex)
+{
+    return pthread_mutex_init(mutex_of(mutex), NULL) ? FF_ERR_SYSTEM : FF_OK;
+}
 void sys_mutex_destroy(sys_mutex *mutex) { pthread_mutex_destroy(mutex_of(mutex)); }
 void sys_mutex_lock(sys_mutex *mutex) { pthread_mutex_lock(mutex_of(mutex)); }
 void sys_mutex_unlock(sys_mutex *mutex) { pthread_mutex_unlock(mutex_of(mutex)); }
@@ -32,7 +35,7 @@ int sys_thread_start(sys_thread *thread, void (*run)(void *arg), void *arg)
 {
     struct start *start = malloc(sizeof *start);
     if (!start) return FF_ERR_MEMORY;
-    *start = (struct start){run, arg};
+    *start = (struct start){ run, arg };
     if (pthread_create(thread_of(thread), NULL, trampoline, start) != 0) {
         free(start);
         return FF_ERR_SYSTEM;

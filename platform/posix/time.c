@@ -24,7 +24,8 @@ int64_t sys_time_us(void)
 void sys_sleep_us(int64_t us)
 {
     if (replaced_now_us || us <= 0) return;
-    struct timespec rest = {.tv_sec = (time_t)(us / 1000000), .tv_nsec = (long)(us % 1000000) * 1000};
+    struct timespec rest = { .tv_sec = (time_t)(us / 1000000),
+                             .tv_nsec = (long)(us % 1000000) * 1000 };
     while (nanosleep(&rest, &rest) != 0 && errno == EINTR) {
     }
 }

@@ -4,7 +4,10 @@
 
 static int64_t simulated_now_us(void *context) { return ((const sys_sim_clock *)context)->now_us; }
 
-void sys_sim_clock_use(sys_sim_clock *clock) { sys_clock_replace(clock ? simulated_now_us : NULL, clock); }
+void sys_sim_clock_use(sys_sim_clock *clock)
+{
+    sys_clock_replace(clock ? simulated_now_us : NULL, clock);
+}
 
 void sys_sim_clock_advance(sys_sim_clock *clock, int64_t us)
 {

@@ -11,7 +11,8 @@ ff_inflate *ff_inflate_create(int window_bits, void *memory, size_t bytes)
     return NULL;
 }
 
-int ff_inflate_all(ff_inflate *inflater, const uint8_t *in, size_t bytes, uint8_t *out, uint32_t count)
+int ff_inflate_all(ff_inflate *inflater, const uint8_t *in, size_t bytes, uint8_t *out,
+                   uint32_t count)
 {
     (void)inflater, (void)in, (void)bytes, (void)out, (void)count;
     return FF_ERR_UNSUPPORTED;

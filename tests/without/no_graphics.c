@@ -1,4 +1,5 @@
-/* What machines without graphics libraries and libpng are tested with: no GL, and pictures meant for looking at are not kept. */
+/* What machines without graphics libraries and libpng are tested with: no GL, and pictures meant
+ * for looking at are not kept. */
 #include "../../common3d/c3d.h"
 
 const sys_surface_api *sys_surface_glfw(void) { return NULL; }

@@ -1,20 +1,27 @@
-/* Instruction counter: a plugin of qemu's translator (TCG) for farfield-handheld. Counts exactly, the same in every run.
+/* Instruction counter: a plugin of qemu's translator (TCG) for farfield-handheld. Counts exactly,
+ * the same in every run.
  *
- *   qemu-arm -cpu arm1136 -plugin build/handheld/libtcg_count.so,out=counts.txt[,pages=1][,watch=HEX:BYTES]...[,helper=HEX:BYTES]... farfield-handheld ...
+ *   qemu-arm -cpu arm1136 -plugin
+ *       build/handheld/libtcg_count.so,out=counts.txt[,pages=1][,watch=HEX:BYTES]...[,helper=HEX:BYTES]...
+ *       farfield-handheld ...
  *
- * The program calls functions named handheld_mark_*: they cut its run into phases. At handheld_mark_start counting begins anew (what
- * was counted before is settling); at handheld_mark_frame a frame ends. Every translated block counts its executions to the phase in
- * force, under the block's address: linker map and symbols tell later which file and function that was. With pages=1 every 4 KiB page
- * of the program's memory that is executed, read or written is noted: what a system with demand paging would keep resident. Each
- * watch=FIRST-HEX:BYTES is an area of memory for which bytes read and written while drawing are counted, by instruction. Each
- * helper=FIRST-HEX:BYTES is code that works for its callers (division, memset): it is counted as usual, and once more to the block
- * outside all helpers that was executed before it.
+ * The program calls functions named handheld_mark_*: they cut its run into phases. At
+ * handheld_mark_start counting begins anew (what was counted before is settling); at
+ * handheld_mark_frame a frame ends. Every translated block counts its executions to the phase in
+ * force, under the block's address: linker map and symbols tell later which file and function that
+ * was. With pages=1 every 4 KiB page of the program's memory that is executed, read or written is
+ * noted: what a system with demand paging would keep resident. Each watch=FIRST-HEX:BYTES is an
+ * area of memory for which bytes read and written while drawing are counted, by instruction. Each
+ * helper=FIRST-HEX:BYTES is code that works for its callers (division, memset): it is counted as
+ * usual, and once more to the block outside all helpers that was executed before it.
  *
- * Output, one record a line:  phase NAME...  |  frame INSTRUCTIONS-BY-PHASE...  |  at HEX-ADDRESS LENGTH EXECUTIONS-BY-PHASE... (of a
- * block of LENGTH instructions)  |  helped HEX-ADDRESS INSTRUCTIONS-BY-PHASE... |
- * page FIRST-HEX LAST-HEX  |  watch NUMBER HEX-ADDRESS BYTES-READ BYTES-WRITTEN.
+ * Output, one record a line:  phase NAME...  |  frame INSTRUCTIONS-BY-PHASE...  |  at HEX-ADDRESS
+ * LENGTH EXECUTIONS-BY-PHASE... (of a block of LENGTH instructions)  |  helped HEX-ADDRESS
+ * INSTRUCTIONS-BY-PHASE... | page FIRST-HEX LAST-HEX  |  watch NUMBER HEX-ADDRESS BYTES-READ
+ * BYTES-WRITTEN.
  *
- * Packages of qemu 7.2 carry no header for plugins; its API, version 1, is declared here, as far as it is used. Guests of one thread. */
+ * Packages of qemu 7.2 carry no header for plugins; its API, version 1, is declared here, as far as
+ * it is used. Guests of one thread. */
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -28,9 +35,15 @@ struct qemu_plugin_insn;
 typedef uint32_t qemu_plugin_meminfo_t;
 typedef struct qemu_info_t {
     const char *target_name;
-    struct { int min, cur; } version;
+    struct {
+        int min, cur;
+    } version;
     bool system_emulation;
-    union { struct { int smp_vcpus, max_vcpus; } system; } u;
+    union {
+        struct {
+            int smp_vcpus, max_vcpus;
+        } system;
+    } u;
 } qemu_info_t;
 enum qemu_plugin_cb_flags { QEMU_PLUGIN_CB_NO_REGS };
 enum qemu_plugin_mem_rw { QEMU_PLUGIN_MEM_RW = 3 };
@@ -38,13 +51,19 @@ enum qemu_plugin_mem_rw { QEMU_PLUGIN_MEM_RW = 3 };
 #define EXPORT __attribute__((visibility("default")))
 EXPORT extern int qemu_plugin_version;
 EXPORT int qemu_plugin_install(qemu_plugin_id_t id, const qemu_info_t *info, int argc, char **argv);
-void qemu_plugin_register_vcpu_tb_trans_cb(qemu_plugin_id_t id, void (*cb)(qemu_plugin_id_t id, struct qemu_plugin_tb *tb));
-void qemu_plugin_register_vcpu_tb_exec_cb(struct qemu_plugin_tb *tb, void (*cb)(unsigned vcpu, void *context),
+void qemu_plugin_register_vcpu_tb_trans_cb(qemu_plugin_id_t id,
+                                           void (*cb)(qemu_plugin_id_t id,
+                                                      struct qemu_plugin_tb *tb));
+void qemu_plugin_register_vcpu_tb_exec_cb(struct qemu_plugin_tb *tb,
+                                          void (*cb)(unsigned vcpu, void *context),
                                           enum qemu_plugin_cb_flags flags, void *context);
 void qemu_plugin_register_vcpu_mem_cb(struct qemu_plugin_insn *insn,
-                                      void (*cb)(unsigned vcpu, qemu_plugin_meminfo_t info, uint64_t at, void *context),
-                                      enum qemu_plugin_cb_flags flags, enum qemu_plugin_mem_rw rw, void *context);
-void qemu_plugin_register_atexit_cb(qemu_plugin_id_t id, void (*cb)(qemu_plugin_id_t id, void *context), void *context);
+                                      void (*cb)(unsigned vcpu, qemu_plugin_meminfo_t info,
+                                                 uint64_t at, void *context),
+                                      enum qemu_plugin_cb_flags flags, enum qemu_plugin_mem_rw rw,
+                                      void *context);
+void qemu_plugin_register_atexit_cb(qemu_plugin_id_t id,
+                                    void (*cb)(qemu_plugin_id_t id, void *context), void *context);
 bool qemu_plugin_mem_is_store(qemu_plugin_meminfo_t info);
 unsigned int qemu_plugin_mem_size_shift(qemu_plugin_meminfo_t info);
 uint64_t qemu_plugin_insn_vaddr(const struct qemu_plugin_insn *insn);
@@ -56,11 +75,12 @@ int qemu_plugin_version = 1;
 
 /* ---- phases ---- */
 enum phase { OUTSIDE, WORK, UPDATE, DRAW, PHASES, FRAME = PHASES, START, NO_MARK };
-static const char *const mark_name[] = { "handheld_mark_outside", "handheld_mark_work", "handheld_mark_update", "handheld_mark_draw",
-                                         "handheld_mark_frame", "handheld_mark_start" };
+static const char *const mark_name[] = { "handheld_mark_outside", "handheld_mark_work",
+                                         "handheld_mark_update",  "handheld_mark_draw",
+                                         "handheld_mark_frame",   "handheld_mark_start" };
 
 typedef struct block {
-    struct block *next;   /* of its bucket */
+    struct block *next; /* of its bucket */
     uint64_t address;
     uint32_t instructions;
     enum phase mark;
@@ -72,7 +92,9 @@ typedef struct block {
 #define WATCHES 2
 #define HELPERS 128
 
-typedef struct area { uint64_t at, bytes; } area;
+typedef struct area {
+    uint64_t at, bytes;
+} area;
 
 /* An instruction that touches memory, when areas are watched. */
 typedef struct access {
@@ -81,8 +103,8 @@ typedef struct access {
     uint64_t bytes[WATCHES][2]; /* read, written */
 } access;
 
-#define BUCKETS 65536u
-#define PAGES (1u << 20)  /* of a 32-bit address space */
+#define BUCKETS    65536u
+#define PAGES      (1u << 20) /* of a 32-bit address space */
 #define PAGE_SHIFT 12
 
 static block *bucket[BUCKETS];
@@ -95,17 +117,17 @@ static uint64_t frame_count[PHASES];
 static uint8_t *page_touched; /* NULL: not asked for */
 static FILE *out;
 
-/* Translated anew, a block goes on counting where it was; blocks of another length at the same address count apart. */
+/* Translated anew, a block goes on counting where it was; blocks of another length at the same
+ * address count apart. */
 static block *find_block(uint64_t address, uint32_t instructions)
 {
     block **slot = &bucket[(address >> 2) % BUCKETS];
     for (block *b = *slot; b; b = b->next)
-        if (b->address == address && b->instructions == instructions)
-            return b;
+        if (b->address == address && b->instructions == instructions) return b;
     block *made = calloc(1, sizeof *made);
-    if (!made)
-        abort();
-    *made = (block){ .next = *slot, .address = address, .instructions = instructions, .mark = NO_MARK };
+    if (!made) abort();
+    *made =
+        (block){ .next = *slot, .address = address, .instructions = instructions, .mark = NO_MARK };
     return *slot = made;
 }
 
@@ -113,11 +135,9 @@ static access *find_access(uint64_t address)
 {
     access **slot = &access_bucket[(address >> 2) % BUCKETS];
     for (access *a = *slot; a; a = a->next)
-        if (a->address == address)
-            return a;
+        if (a->address == address) return a;
     access *made = calloc(1, sizeof *made);
-    if (!made)
-        abort();
+    if (!made) abort();
     *made = (access){ .next = *slot, .address = address };
     return *slot = made;
 }
@@ -128,8 +148,7 @@ static void start(void)
     for (unsigned i = 0; i < BUCKETS; i++) {
         for (block *b = bucket[i]; b; b = b->next)
             memset(b->count, 0, sizeof b->count), memset(b->helped, 0, sizeof b->helped);
-        for (access *a = access_bucket[i]; a; a = a->next)
-            memset(a->bytes, 0, sizeof a->bytes);
+        for (access *a = access_bucket[i]; a; a = a->next) memset(a->bytes, 0, sizeof a->bytes);
     }
     rewind(out);
     fputs("phase outside work update draw\n", out);
@@ -137,8 +156,7 @@ static void start(void)
 
 static void print_counts(const uint64_t count[PHASES])
 {
-    for (unsigned p = 0; p < PHASES; p++)
-        fprintf(out, " %llu", (unsigned long long)count[p]);
+    for (unsigned p = 0; p < PHASES; p++) fprintf(out, " %llu", (unsigned long long)count[p]);
     fputc('\n', out);
 }
 
@@ -167,19 +185,18 @@ static void on_access(unsigned vcpu, qemu_plugin_meminfo_t info, uint64_t at, vo
 {
     access *a = context;
     (void)vcpu;
-    if (page_touched)
-        page_touched[(at >> PAGE_SHIFT) % PAGES] = 1;
+    if (page_touched) page_touched[(at >> PAGE_SHIFT) % PAGES] = 1;
     for (unsigned i = 0; i < watches && phase_now == DRAW; i++)
         if (at - watch[i].at < watch[i].bytes)
-            a->bytes[i][qemu_plugin_mem_is_store(info)] += UINT64_C(1) << qemu_plugin_mem_size_shift(info);
+            a->bytes[i][qemu_plugin_mem_is_store(info)] += UINT64_C(1)
+                                                           << qemu_plugin_mem_size_shift(info);
 }
 
 static enum phase mark_of(const struct qemu_plugin_tb *tb)
 {
     const char *symbol = qemu_plugin_insn_symbol(qemu_plugin_tb_get_insn(tb, 0));
     for (unsigned i = 0; symbol && i < sizeof mark_name / sizeof mark_name[0]; i++)
-        if (!strcmp(symbol, mark_name[i]))
-            return (enum phase)i;
+        if (!strcmp(symbol, mark_name[i])) return (enum phase)i;
     return NO_MARK;
 }
 
@@ -190,14 +207,15 @@ static void on_translation(qemu_plugin_id_t id, struct qemu_plugin_tb *tb)
     block *b = find_block(at, (uint32_t)count);
     (void)id;
     b->mark = mark_of(tb);
-    for (unsigned i = 0; i < helpers; i++)
-        b->is_helper |= at - helper[i].at < helper[i].bytes;
+    for (unsigned i = 0; i < helpers; i++) b->is_helper |= at - helper[i].at < helper[i].bytes;
     qemu_plugin_register_vcpu_tb_exec_cb(tb, on_block, QEMU_PLUGIN_CB_NO_REGS, b);
     if (page_touched)
-        page_touched[(at >> PAGE_SHIFT) % PAGES] = page_touched[((at + 4 * count - 1) >> PAGE_SHIFT) % PAGES] = 1;
+        page_touched[(at >> PAGE_SHIFT) % PAGES] =
+            page_touched[((at + 4 * count - 1) >> PAGE_SHIFT) % PAGES] = 1;
     for (size_t i = 0; i < count && (page_touched || watches); i++) {
         struct qemu_plugin_insn *insn = qemu_plugin_tb_get_insn(tb, i);
-        qemu_plugin_register_vcpu_mem_cb(insn, on_access, QEMU_PLUGIN_CB_NO_REGS, QEMU_PLUGIN_MEM_RW,
+        qemu_plugin_register_vcpu_mem_cb(insn, on_access, QEMU_PLUGIN_CB_NO_REGS,
+                                         QEMU_PLUGIN_MEM_RW,
                                          find_access(qemu_plugin_insn_vaddr(insn)));
     }
 }
@@ -205,8 +223,9 @@ static void on_translation(qemu_plugin_id_t id, struct qemu_plugin_tb *tb)
 static int by_address(const void *a, const void *b)
 {
     const block *x = *(const block *const *)a, *y = *(const block *const *)b;
-    return x->address != y->address ? (x->address > y->address) - (x->address < y->address)
-                                    : (x->instructions > y->instructions) - (x->instructions < y->instructions);
+    return x->address != y->address
+               ? (x->address > y->address) - (x->address < y->address)
+               : (x->instructions > y->instructions) - (x->instructions < y->instructions);
 }
 
 static void print_blocks(void)
@@ -215,14 +234,15 @@ static void print_blocks(void)
     block **list = NULL;
     for (unsigned i = 0; i < BUCKETS; i++)
         for (block *b = bucket[i]; b; b = b->next) {
-            if (count == capacity && !(list = realloc(list, (capacity = capacity ? 2 * capacity : 4096) * sizeof *list)))
+            if (count == capacity &&
+                !(list = realloc(list, (capacity = capacity ? 2 * capacity : 4096) * sizeof *list)))
                 abort();
             list[count++] = b;
         }
-    if (count)
-        qsort(list, count, sizeof *list, by_address);
+    if (count) qsort(list, count, sizeof *list, by_address);
     for (size_t i = 0; i < count; i++) {
-        fprintf(out, "at %llx %u", (unsigned long long)list[i]->address, (unsigned)list[i]->instructions);
+        fprintf(out, "at %llx %u", (unsigned long long)list[i]->address,
+                (unsigned)list[i]->instructions);
         print_counts(list[i]->count);
         fprintf(out, "helped %llx", (unsigned long long)list[i]->address);
         print_counts(list[i]->helped);
@@ -236,16 +256,15 @@ static void print_accesses(void)
         for (unsigned i = 0; i < BUCKETS; i++)
             for (const access *a = access_bucket[i]; a; a = a->next)
                 if (a->bytes[w][0] || a->bytes[w][1])
-                    fprintf(out, "watch %u %llx %llu %llu\n", w, (unsigned long long)a->address, (unsigned long long)a->bytes[w][0],
-                            (unsigned long long)a->bytes[w][1]);
+                    fprintf(out, "watch %u %llx %llu %llu\n", w, (unsigned long long)a->address,
+                            (unsigned long long)a->bytes[w][0], (unsigned long long)a->bytes[w][1]);
 }
 
 static void print_pages(void)
 {
     for (uint32_t first = 0, last; page_touched && first < PAGES; first = last + 1) {
         last = first;
-        while (page_touched[first] && last + 1 < PAGES && page_touched[last + 1])
-            last++;
+        while (page_touched[first] && last + 1 < PAGES && page_touched[last + 1]) last++;
         if (page_touched[first])
             fprintf(out, "page %x000 %x000\n", (unsigned)first, (unsigned)last);
     }
@@ -257,8 +276,7 @@ static void write_counts(qemu_plugin_id_t id, void *context)
     print_blocks();
     print_accesses();
     print_pages();
-    if (fclose(out))
-        fputs("tcg_count: the counts could not be written\n", stderr);
+    if (fclose(out)) fputs("tcg_count: the counts could not be written\n", stderr);
 }
 
 static bool parse_area(const char *text, area *parsed)
