@@ -2,7 +2,7 @@
 #
 # Flavours: `make SAN=1` builds everything with AddressSanitizer and UndefinedBehaviorSanitizer under build/san.
 # Folders are layers; every folder is a static library, every *_main.c a program:
-#   tools/bake_main.c -> build/bin/farfield-bake
+#   tools/bake/bake_main.c -> build/bin/farfield-bake
 
 CC ?= cc
 AR ?= ar
@@ -23,20 +23,21 @@ LDLIBS_host := -lpng16 -lm
 GDAL_CFLAGS = $(shell $(PKG_CONFIG) --cflags gdal 2>/dev/null)
 GDAL_LIBS = $(shell $(PKG_CONFIG) --libs gdal 2>/dev/null)
 
-# ---- sources, by layer ----
-CORE_DIRS := protocol client client/terrain common3d common3d/gl common3d/gles1 common3d/soft
-HOST_DIRS := platform platform/posix platform/egl platform/osmesa platform/glfw platform/memory platform/sim server tools sim
-srcs = $(filter-out %_main.c,$(wildcard $(1)/*.c))
+# ---- sources, by layer: every folder of it, however deep. *_main.c are programs; *_none.c stand in for features left out (features.mk) ----
+tree = $(sort $(wildcard $(1)/*.c $(1)/*/*.c $(1)/*/*/*.c))
+srcs = $(filter-out %_main.c %_none.c,$(call tree,$(1)))
 obj = $(patsubst %.c,$(BUILD)/obj/%.o,$(1))
 
-SRC_core := $(foreach d,$(CORE_DIRS),$(call srcs,$d))
-SRC_platform := $(foreach d,platform platform/posix platform/memory platform/sim,$(call srcs,$d))
+SRC_core := $(foreach d,protocol client common3d,$(call srcs,$d))
 SRC_surface := $(foreach d,platform/egl platform/osmesa platform/glfw,$(call srcs,$d))
+SRC_null := $(call srcs,platform/null)
+SRC_platform := $(filter-out $(SRC_surface) $(SRC_null),$(call srcs,platform))
 SRC_server := $(call srcs,server)
-SRC_tools := $(call srcs,tools)
+SRC_tools := $(filter-out tools/scripts/%,$(call srcs,tools))
 SRC_sim := $(call srcs,sim)
-MAINS := $(wildcard tools/*_main.c server/*_main.c sim/*_main.c)
-PROGRAMS := $(sort $(patsubst %_main.c,$(BUILD)/bin/farfield-%,$(notdir $(MAINS))))
+MAINS := $(filter %_main.c,$(foreach d,tools server sim,$(call tree,$d)))
+program = $(patsubst %_main.c,$(BUILD)/bin/farfield-%,$(notdir $(1)))
+PROGRAMS := $(sort $(call program,$(MAINS)))
 
 LIB = $(BUILD)/lib
 LIBS := $(LIB)/libffsim.a $(LIB)/libffserver.a $(LIB)/libfftools.a $(LIB)/libffcore.a $(LIB)/libffsurface.a \
@@ -44,7 +45,7 @@ LIBS := $(LIB)/libffsim.a $(LIB)/libffserver.a $(LIB)/libfftools.a $(LIB)/libffc
 LINK_LIBS = -Wl,--start-group $(LIBS) -Wl,--end-group $(LDLIBS_core) $(LDLIBS_surface) $(LDLIBS_host)
 
 .DEFAULT_GOAL := all
-.PHONY: all help null deps format server emulator flyover demo test test-build check extremes numbers soak man install uninstall clean lib fuzz FORCE
+.PHONY: all help null deps format server emulator flyover hashes demo test test-build check extremes numbers soak man install uninstall clean lib fuzz FORCE
 
 all: $(PROGRAMS) lib null ## build all programs and libraries into build/
 
@@ -58,7 +59,7 @@ DEPS := gcc make pkg-config zlib1g-dev libjpeg62-turbo-dev libpng-dev libosmesa6
 DEPS_STAMP := build/.deps
 
 $(DEPS_STAMP): Makefile
-	@tools/install-deps.sh $(DEPS)
+	@tools/scripts/install-deps.sh $(DEPS)
 	@mkdir -p $(@D) && touch $@
 
 deps: $(DEPS_STAMP) ## install what is missing (Debian packages; says so first)
@@ -86,7 +87,7 @@ $(LIB)/libffsim.a: $(call obj,$(SRC_sim)); $(archive)
 
 # ---- programs ----
 define program_rule
-$(BUILD)/bin/farfield-$(patsubst %_main.c,%,$(notdir $(1))): $(call obj,$(1)) $(LIBS)
+$(call program,$(1)): $(call obj,$(1)) $(LIBS)
 	@mkdir -p $$(@D)
 	$$(CC) $$(OPT) $$(LDFLAGS) $$< $$(LINK_LIBS) $(if $(filter tools/%,$(1)),$$(GDAL_LIBS)) -o $$@
 endef
@@ -95,32 +96,45 @@ $(foreach m,$(MAINS),$(eval $(call program_rule,$m)))
 server: $(BUILD)/bin/farfield-server ## the panorama server
 emulator: $(BUILD)/bin/farfield-view ## the desktop emulator
 flyover: $(PROGRAMS) ## fly all of Hybrid's Table 3 over emulated links; report in build/flyover (QUICK=1: a few short flights)
-	@QUICK=$(QUICK) $(if $(DATA),FARFIELD_DATA=$(DATA)) tools/flyover.sh $(BUILD)/bin build/flyover
+	@QUICK=$(QUICK) $(if $(DATA),FARFIELD_DATA=$(DATA)) tools/scripts/flyover.sh $(BUILD)/bin build/flyover
+
+hashes: $(PROGRAMS) ## hashes of packs, requests, geometry and pictures of ten flights: the same before and after a change that changes nothing
+	@tools/scripts/hashes.sh $(BUILD)/bin build/hashes
 
 demo: $(PROGRAMS) ## fetch real terrain, bake it, serve it, fly over it: pictures and a report in build/demo
-	@tools/demo.sh $(BUILD)/bin build/demo
+	@tools/scripts/demo.sh $(BUILD)/bin build/demo
 
 # ---- libfarfield: what an embedding program links ----
-LIBFARFIELD_OBJS = $(call obj,$(SRC_core) $(foreach d,platform platform/posix platform/memory,$(call srcs,$d)))
+LIBFARFIELD_OBJS = $(call obj,$(SRC_core) $(filter-out platform/sim/%,$(SRC_platform)))
 lib: $(LIB)/libfarfield.a $(LIB)/libfarfield.so
 $(LIB)/libfarfield.a: $(LIBFARFIELD_OBJS); $(archive)
 $(LIB)/libfarfield.so: $(LIBFARFIELD_OBJS)
 	$(CC) $(OPT) -shared -Wl,-soname,libfarfield.so.0 $^ $(LDLIBS_core) -lpng16 -o $@
 
 # ---- the blank port: all of the core over platform/null ----
-NULL_OBJS = $(call obj,$(call srcs,platform/null) platform/random.c platform/events.c)
+NULL_OBJS = $(call obj,$(SRC_null) platform/random.c platform/events.c)
 null: $(BUILD)/null-check ## check that the core builds over the blank port
 	$<
 $(BUILD)/null-check: $(NULL_OBJS) $(LIB)/libffcore.a
 	$(CC) $(OPT) $(LDFLAGS) $(NULL_OBJS) -Wl,--whole-archive $(LIB)/libffcore.a -Wl,--no-whole-archive -lz -o $@
 
-# ---- tests: tests/test_*.c are cmocka programs, tests/*.sh scripts; tests/run.sh counts ----
-TESTS := $(patsubst tests/%.c,$(BUILD)/tests/%,$(wildcard tests/test_*.c))
-FUZZERS := $(patsubst tests/%.c,$(BUILD)/tests/%-replay,$(wildcard tests/fuzz_*.c))
-TEST_LIB_SRC := $(filter-out tests/test_% tests/fuzz_% tests/replay.c,$(wildcard tests/*.c))
-$(BUILD)/tests/%: $(BUILD)/obj/tests/%.o $(call obj,$(TEST_LIB_SRC)) $(LIBS)
-	@mkdir -p $(@D)
-	$(CC) $(OPT) $(LDFLAGS) $(filter %.o,$^) $(LINK_LIBS) $(GDAL_LIBS) -lcmocka -o $@
+# ---- tests: test_*.c are cmocka programs, fuzz_*.c fuzz targets, *.sh scripts, in the rooms of tests/; tests/run.sh counts ----
+SRC_tests := $(call tree,tests)
+TEST_MAINS := $(foreach f,$(SRC_tests),$(if $(filter test_%,$(notdir $f)),$f))
+FUZZ_MAINS := $(foreach f,$(SRC_tests),$(if $(filter fuzz_%,$(notdir $f)),$f))
+# What `make test-cross` has instead of GL and libpng, and the loop round a fuzz target, go into no other test.
+TEST_LIB_SRC := $(filter-out $(TEST_MAINS) $(FUZZ_MAINS) tests/rig/replay.c tests/rig/no_graphics.c,$(SRC_tests))
+built_test = $(patsubst %.c,$(BUILD)/tests/%,$(notdir $(1)))
+TESTS := $(call built_test,$(TEST_MAINS))
+FUZZERS := $(addsuffix -replay,$(call built_test,$(FUZZ_MAINS)))
+# $(call link_test,PROGRAM,SOURCES)
+define link_test
+$(1): $(call obj,$(2) $(TEST_LIB_SRC)) $(LIBS)
+	@mkdir -p $$(@D)
+	$$(CC) $$(OPT) $$(LDFLAGS) $$(filter %.o,$$^) $$(LINK_LIBS) $$(GDAL_LIBS) -lcmocka -o $$@
+endef
+$(foreach t,$(TEST_MAINS),$(eval $(call link_test,$(call built_test,$t),$t)))
+$(foreach t,$(FUZZ_MAINS),$(eval $(call link_test,$(call built_test,$t)-replay,$t tests/rig/replay.c)))
 test-build: $(TESTS) $(FUZZERS)
 
 test: deps ## build and run every test (sanitized, with script tests); the last line counts
@@ -129,7 +143,7 @@ test: deps ## build and run every test (sanitized, with script tests); the last 
 check: all $(TESTS) ## quick subset: layer checks and unit tests, without sanitizers
 	@BUILD=$(BUILD) tests/run.sh --quick
 
-format: deps ## lay out all C by .clang-format (tests/checks.sh holds the tree to it)
+format: deps ## lay out all C by .clang-format (tests/project/checks.sh holds the tree to it)
 	@git ls-files '*.[ch]' | xargs clang-format -i
 
 extremes: $(BUILD)/tests/test_extremes ## fly every stiff and extreme case and show the table of largest errors
@@ -146,26 +160,24 @@ numbers: ## the integers against the double-precision reference and the extreme 
 	    grep '^# ' build/ubsan/$$t.log; \
 	done; cat build/ubsan/extremes.md
 
-# PACKS="a.ffp b.ffp": instead of three small ones; SEEDS=0: until interrupted; SOAK: more options of tests/soak.py
+# PACKS="a.ffp b.ffp": instead of three small ones; SEEDS=0: until interrupted; SOAK: more options of tests/sim/soak.py
 SEEDS ?= 100
 FIRST ?= 1
 soak: $(BUILD)/bin/farfield-fly $(BUILD)/bin/farfield-bake ## random flights over random links (SEEDS=100 FIRST=1 PACKS=...); a failure tells the command that repeats it
-	@tests/soak.py --first $(FIRST) --seeds $(SEEDS) --bin $(BUILD)/bin --work $(BUILD)/soak $(SOAK) $(PACKS)
+	@tests/sim/soak.py --first $(FIRST) --seeds $(SEEDS) --bin $(BUILD)/bin --work $(BUILD)/soak $(SOAK) $(PACKS)
 
-# ---- fuzz targets: each tests/fuzz_*.c has LLVMFuzzerTestOneInput; saved inputs in tests/corpus/NAME run in `make test` ----
-$(BUILD)/tests/fuzz_%-replay: $(BUILD)/obj/tests/fuzz_%.o $(BUILD)/obj/tests/replay.o $(call obj,$(TEST_LIB_SRC)) $(LIBS)
-	@mkdir -p $(@D)
-	$(CC) $(OPT) $(LDFLAGS) $(filter %.o,$^) $(LINK_LIBS) $(GDAL_LIBS) -lcmocka -o $@
-
-# With clang there is libFuzzer: build/fuzz/fuzz_message -max_total_time=60 NEW-INPUTS-DIR tests/corpus/message
+# With clang there is libFuzzer: build/fuzz/fuzz_message -max_total_time=60 NEW-INPUTS-DIR tests/corpus/message. Saved inputs run in `make test`.
 FUZZ_OPT := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined
 fuzz: ## libFuzzer targets into build/fuzz (needs clang)
 	@command -v clang >/dev/null || { echo "make fuzz: clang is not installed" >&2; exit 1; }
-	@$(MAKE) CC=clang BUILD=build/fuzz OPT="$(FUZZ_OPT)" $(patsubst tests/%.c,build/fuzz/%,$(wildcard tests/fuzz_*.c))
-build/fuzz/fuzz_%: $(BUILD)/obj/tests/fuzz_%.o $(call obj,$(TEST_LIB_SRC)) $(LIBS)
-	clang $(FUZZ_OPT) -fsanitize=fuzzer $(LDFLAGS) $(filter %.o,$^) $(LINK_LIBS) $(GDAL_LIBS) -lcmocka -o $@
+	@$(MAKE) CC=clang BUILD=build/fuzz OPT="$(FUZZ_OPT)" $(patsubst %.c,build/fuzz/%,$(notdir $(FUZZ_MAINS)))
+define link_fuzzer
+build/fuzz/$(basename $(notdir $(1))): $(call obj,$(1) $(TEST_LIB_SRC)) $(LIBS)
+	clang $$(FUZZ_OPT) -fsanitize=fuzzer $$(LDFLAGS) $$(filter %.o,$$^) $$(LINK_LIBS) $$(GDAL_LIBS) -lcmocka -o $$@
+endef
+$(foreach t,$(FUZZ_MAINS),$(eval $(call link_fuzzer,$t)))
 
-include cross.mk
+include features.mk cross.mk
 
 # ---- installing: programs, libfarfield with its headers and farfield.pc, man pages ----
 BINDIR ?= $(PREFIX)/bin
@@ -177,11 +189,11 @@ HEADERS = $(shell $(CC) -MM -DFF_ENCODER=1 -x c client/farfield.h | tr -d '\\' |
 MANPAGES = $(patsubst $(BUILD)/bin/%,$(BUILD)/man/%.1,$(PROGRAMS))
 
 man: $(MANPAGES) ## manual pages from --help, into build/man
-$(BUILD)/man/%.1: $(BUILD)/bin/% tools/man.sh
+$(BUILD)/man/%.1: $(BUILD)/bin/% tools/scripts/man.sh
 	@mkdir -p $(@D)
-	tools/man.sh $< $@
+	tools/scripts/man.sh $< $@
 
-$(BUILD)/farfield.pc: tools/farfield.pc.in Makefile FORCE
+$(BUILD)/farfield.pc: tools/scripts/farfield.pc.in Makefile FORCE
 	@mkdir -p $(@D)
 	@sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(LIBDIR)|; s|@INCLUDEDIR@|$(INCLUDEDIR)|; s|@VERSION@|$(VERSION)|' \
 	     -e 's|@LIBS_PRIVATE@|$(LDLIBS_core) -lpng16|' $< > $@

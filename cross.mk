@@ -1,48 +1,27 @@
 # Builds for other machines, included by the Makefile: the handheld (armv6, soft float), bare metal (Cortex-M, no system), the unit tests on
 # 32-bit ARM and on a big-endian machine, instruction counts and sizes.
 #
-# Features left out: make handheld NO="panorama textures network jpeg hud deflate balance", any of them. Whole files go; client/without and its
-# like hold the few lines that stand in for them.
+# Features left out: make handheld NO="panorama textures", any of those in features.mk.
 
-# ---- packages: compilers and qemu are installed; libraries for other machines are unpacked under build/cross, see tools/cross-libs.sh ----
+# ---- packages: compilers and qemu are installed; libraries for other machines are unpacked under build/cross, see tools/scripts/cross-libs.sh ----
 CROSS_DEPS := gcc-arm-linux-gnueabi libc6-dev-armel-cross gcc-s390x-linux-gnu libc6-dev-s390x-cross gcc-arm-none-eabi \
               libnewlib-arm-none-eabi qemu-user
 CROSS_LIBS := zlib1g-dev libjpeg62-turbo-dev zlib1g libjpeg62-turbo libcmocka-dev libcmocka0 src:zlib
 CROSS := build/cross
 CROSS_STAMP := $(CROSS)/.fetched
 
-$(CROSS_STAMP): tools/cross-libs.sh
-	@tools/install-deps.sh $(CROSS_DEPS)
-	@tools/cross-libs.sh $(CROSS) armel,s390x $(CROSS_LIBS)
+$(CROSS_STAMP): tools/scripts/cross-libs.sh
+	@tools/scripts/install-deps.sh $(CROSS_DEPS)
+	@tools/scripts/cross-libs.sh $(CROSS) armel,s390x $(CROSS_LIBS)
 	@touch $@
 
 # ---- what runs on the handheld, and what a feature left out takes away ----
-FEATURES := panorama textures network jpeg hud deflate balance
 NO ?=
 $(if $(filter-out $(FEATURES),$(NO)),$(error NO=$(NO): the features are $(FEATURES)))
 
-DEVICE_CORE := $(filter-out protocol/ff_encode.c,$(foreach d,protocol client client/terrain common3d common3d/soft,$(call srcs,$d)))
-DEVICE_PLATFORM := platform/events.c platform/random.c platform/surfaces.c $(filter-out platform/posix/png.c,$(call srcs,platform/posix)) \
-                   $(call srcs,platform/memory)
-DEVICE_PROGRAM := $(filter sim/handheld_% sim/sim_tape.c,$(call srcs,sim)) sim/handheld_main.c
-
-WITHOUT_panorama := client/ff_panorama.c client/ff_panorama_join.c client/ff_panorama_plan.c client/ff_panorama_rules.c \
-                    client/ff_intake_face.c protocol/ff_face_columns.c
-INSTEAD_panorama := client/without/ff_no_panorama.c
-WITHOUT_textures := client/ff_textures.c client/ff_intake_texture.c
-INSTEAD_textures := client/without/ff_no_textures.c
-WITHOUT_network := client/ff_stream.c client/ff_receive.c client/ff_link_estimate.c protocol/ff_message.c platform/posix/tcp.c
-INSTEAD_network := client/without/ff_no_stream.c platform/null/null_tcp.c
-WITHOUT_jpeg := platform/posix/jpeg.c platform/posix/jpeg_tables.c
-INSTEAD_jpeg := platform/null/null_jpeg.c
-WITHOUT_hud := sim/handheld_hud.c common3d/c3d_text.c
-INSTEAD_hud := sim/without/handheld_no_hud.c
-WITHOUT_deflate := protocol/ff_inflate.c protocol/ff_crc.c
-INSTEAD_deflate := protocol/without/ff_no_inflate.c protocol/without/ff_crc_small.c
-WITHOUT_balance := client/ff_balance.c client/client_balance.c
-INSTEAD_balance := client/without/ff_no_balance.c
-# $(call device,SOURCES,FEATURES LEFT OUT)
-device = $(filter-out $(foreach f,$(2),$(WITHOUT_$f)),$(1)) $(foreach f,$(2),$(INSTEAD_$f))
+DEVICE_CORE := $(filter-out protocol/codec/ff_encode.c common3d/gl%,$(SRC_core))
+DEVICE_PLATFORM := $(filter-out platform/sim/% platform/posix/png.c,$(SRC_platform))
+DEVICE_PROGRAM := $(call srcs,sim/handheld) sim/tape/sim_tape.c sim/handheld/handheld_main.c
 
 # ---- make handheld ----
 ARM := arm-linux-gnueabi-
@@ -58,7 +37,7 @@ HAND_LIBS = $(if $(filter jpeg,$(NO)),,$(ARM_LIBS)/libjpeg.a) $(if $(filter defl
 
 .PHONY: handheld
 handheld: $(HAND) ## cross-build the client for an armv6 without FPU; fly it under qemu-arm (NO="..." leaves features out)
-	@tools/handheld.sh $(HAND) $(BUILD)/bin $(HAND_OBJ) $(NO)
+	@tools/scripts/handheld.sh $(HAND) $(BUILD)/bin $(HAND_OBJ) $(NO)
 handheld: $(patsubst %,$(BUILD)/bin/farfield-%,bake server fly handheld)
 
 $(HAND_OBJ)/platform/%.o $(HAND_OBJ)/sim/%.o: HAND_STD = $(STD_host)
@@ -80,15 +59,15 @@ BENCH := build/bench
 BENCH_TILE := 7
 PACK ?= $(BENCH)/$(if $(DATA),puget,ground).ffp
 TCG_COUNT := build/handheld/libtcg_count.so
-$(TCG_COUNT): tools/tcg/tcg_count.c
+$(TCG_COUNT): tools/scripts/tcg_count.c
 	@mkdir -p $(@D)
 	$(CC) -std=c11 -O2 $(WARN) -fvisibility=hidden -fPIC -shared $< -o $@
-$(BENCH)/ground.ffp: tools/bench_terrain.py $(BUILD)/bin/farfield-bake
+$(BENCH)/ground.ffp: tools/scripts/bench_terrain.py $(BUILD)/bin/farfield-bake
 	@mkdir -p $(@D)
-	tools/bench_terrain.py $(@D)
+	tools/scripts/bench_terrain.py $(@D)
 	$(BUILD)/bin/farfield-bake $(@D)/ground.raw --raw 2049x2049 --scale 0.1 --spacing 50 --tile-log2 $(BENCH_TILE) --quiet \
 	    --color $(@D)/ground.ppm --texture-levels 3 -o $@
-# As tools/flyover.sh has it: minutes, once for a version of packs (ff_pack.h).
+# As tools/scripts/flyover.sh has it: minutes, once for a version of packs (ff_pack.h).
 PUGET := $(DATA)/puget-sound-gatech
 $(BENCH)/puget.ffp: protocol/ff_pack.h | $(BUILD)/bin/farfield-bake
 	@mkdir -p $(@D)
@@ -97,8 +76,8 @@ $(BENCH)/puget.ffp: protocol/ff_pack.h | $(BUILD)/bin/farfield-bake
 
 .PHONY: bench-handheld
 bench-handheld: build/handheld/farfield-handheld $(TCG_COUNT) $(BUILD)/bin/farfield-fly $(BUILD)/bin/farfield-handheld $(BUILD)/bin/farfield-report $(PACK) ## ARM instructions a frame, by phase, and the work-precision curve: build/bench/handheld.md
-	@tools/bench_handheld.py $(BUILD)/bin build/handheld/farfield-handheld $(TCG_COUNT) $(PACK) $(BENCH) $(BENCH_OPTIONS)
-	@tools/look.sh $(BUILD)/bin $(PACK) $(BENCH)/look --start 0.3 --speed 900 --height 600
+	@tools/scripts/bench_handheld.py $(BUILD)/bin build/handheld/farfield-handheld $(TCG_COUNT) $(PACK) $(BENCH) $(BENCH_OPTIONS)
+	@tools/scripts/look.sh $(BUILD)/bin $(PACK) $(BENCH)/look --start 0.3 --speed 900 --height 600
 	@$(BUILD)/bin/farfield-report $(BENCH)/look/soft.csv $(BENCH)/look/gles1.csv -o $(BENCH)/look --title "Integers beside GL ES" \
 	    --beside soft=$(BENCH)/look/soft --beside gles1=$(BENCH)/look/gles1
 	@printf '\n## Look\n\n![The same flight by integers and by GL ES](look/side-by-side.png)\n' >>$(BENCH)/handheld.md
@@ -106,10 +85,10 @@ bench-handheld: build/handheld/farfield-handheld $(TCG_COUNT) $(BUILD)/bin/farfi
 # ---- make test-cross: the unit tests that need no graphics library, on 32-bit ARM and on a big-endian machine ----
 CROSS_TESTS := key codec message pack fixed predict panorama_rules shade strips texture_map tree tree_pools tree_view watertight link \
                stream client soft c3d
-CROSS_SRC := $(foreach d,protocol client client/terrain common3d common3d/soft platform platform/memory platform/sim,$(call srcs,$d)) \
-             $(filter-out platform/posix/png.c,$(call srcs,platform/posix)) server/ff_session.c \
-             $(filter sim/sim_%,$(filter-out sim/sim_server.c,$(call srcs,sim))) \
-             $(foreach t,client_fixture pack_fixture picture slow_decoder slow_watertight terrain_fixture without/no_graphics,tests/$t.c)
+CROSS_SRC := $(filter-out common3d/gl%,$(SRC_core)) $(filter-out platform/posix/png.c,$(SRC_platform)) server/session/ff_session.c \
+             $(filter-out sim/link/sim_server.c sim/link/link_%,$(foreach d,sim/link sim/judge sim/tape,$(call srcs,$d))) \
+             $(foreach t,client_fixture pack_fixture picture slow_decoder slow_watertight terrain_fixture no_graphics,tests/rig/$t.c)
+CROSS_MAINS := $(foreach t,$(CROSS_TESTS),$(filter %/test_$t.c,$(TEST_MAINS)))
 CROSS_CASES := $(patsubst %,build/s390x/%.tap,$(CROSS_TESTS)) $(patsubst %,build/arm/%.tap,$(CROSS_TESTS))
 # $(call cross_tests,NAME,COMPILER,DEBIAN ARCHITECTURE,TRIPLET,QEMU)
 define cross_tests
@@ -120,8 +99,9 @@ build/$(1)/obj/%.o: %.c | $(CROSS_STAMP)
 build/$(1)/libtested.a: $(CROSS_SRC:%.c=build/$(1)/obj/%.o) cross.mk
 	@rm -f $$@
 	$(AR) rcsD $$@ $$(filter %.o,$$^)
-build/$(1)/test_%: build/$(1)/obj/tests/test_%.o build/$(1)/libtested.a
-	$(2) $$^ $(CROSS)/$(3)/usr/lib/$(4)/libjpeg.a $(CROSS)/$(3)/usr/lib/$(4)/libz.a $(CROSS)/$(3)/usr/lib/$(4)/libcmocka.so \
+$(foreach t,$(CROSS_MAINS),$(eval build/$(1)/$(basename $(notdir $t)): build/$(1)/obj/$(t:.c=.o)))
+build/$(1)/test_%: build/$(1)/libtested.a
+	$(2) $$(filter %.o,$$^) $$< $(CROSS)/$(3)/usr/lib/$(4)/libjpeg.a $(CROSS)/$(3)/usr/lib/$(4)/libz.a $(CROSS)/$(3)/usr/lib/$(4)/libcmocka.so \
 	    -lpthread -lm -o $$@
 build/$(1)/%.tap: build/$(1)/test_%
 	@CMOCKA_MESSAGE_OUTPUT=TAP $(5) -L /usr/$(4) -E LD_LIBRARY_PATH=$(CROSS)/$(3)/usr/lib/$(4) $$< >$$@ 2>&1 || { cat $$@; rm $$@; exit 1; }
@@ -140,7 +120,7 @@ BARE := arm-none-eabi-
 BARE_CPU := -mcpu=cortex-m3 -mthumb
 BARE_FLAGS = -Os $(WARN) $(BARE_CPU) -std=c99 -ffunction-sections -fdata-sections -MMD -MP -isystem $(CROSS)/src/zlib
 BARE_ZLIB := inflate inftrees inffast zutil adler32 crc32
-BARE_SRC = $(sort $(call device,$(DEVICE_CORE) $(call srcs,platform/null) platform/random.c platform/events.c,$(filter-out hud,$(NO))))
+BARE_SRC = $(sort $(call device,$(DEVICE_CORE) $(SRC_null) platform/random.c platform/events.c,$(filter-out hud,$(NO))))
 BARE_ELF = build/baremetal/farfield$(if $(NO),-no-$(subst $(space),-,$(strip $(NO)))).elf
 build/baremetal/%.o: %.c | $(CROSS_STAMP)
 	@mkdir -p $(@D)
@@ -154,16 +134,15 @@ $(BARE_ELF): $(BARE_SRC:%.c=build/baremetal/%.o) $(if $(filter deflate,$(NO)),,$
 .PHONY: baremetal
 baremetal: $(BARE_ELF) ## link the core for a Cortex-M without a system, over the blank port; sizes (NO="..." as for handheld)
 	@! $(BARE)nm -u $< | grep . || { echo "baremetal: missing symbols" >&2; exit 1; }
-	@tools/check-no-float.sh $(BARE) $(filter build/baremetal/protocol/% build/baremetal/client/% build/baremetal/common3d/%,$(BARE_SRC:%.c=build/baremetal/%.o))
+	@tools/scripts/check-no-float.sh $(BARE) $(filter build/baremetal/protocol/% build/baremetal/client/% build/baremetal/common3d/%,$(BARE_SRC:%.c=build/baremetal/%.o))
 	@$(BARE)size $<
 -include $(shell find build/baremetal -name '*.d' 2>/dev/null)
 
 # ---- make size: code by part and by feature, worst stack, and what stays resident in a flight ----
-NO_ALL := panorama textures network jpeg hud deflate balance
 .PHONY: size
 size: build/handheld/farfield-handheld $(TCG_COUNT) build/handheld/size.tape ## code size by part and feature, stack, memory touched: build/bench/size.md
-	@for f in $(NO_ALL) "$(NO_ALL)"; do $(MAKE) -s NO="$$f" handheld-program || exit 1; done
-	@tools/size_handheld.py build/handheld $(TCG_COUNT) build/bench
+	@for f in $(FEATURES) "$(strip $(FEATURES))"; do $(MAKE) -s NO="$$f" handheld-program || exit 1; done
+	@tools/scripts/size_handheld.py build/handheld $(TCG_COUNT) build/bench $(FEATURES)
 build/handheld/size.tape: build/handheld/farfield-handheld $(BUILD)/bin/farfield-fly $(PACK)
 	$(BUILD)/bin/farfield-fly --pack $(PACK) --backend none --link umts --settle 15 --seconds 5 --tape $@ 2>/dev/null
 .PHONY: handheld-program

@@ -6,7 +6,7 @@
  * What is not in view and will not soon be is never asked for: most of it would never be drawn. The
  * queue's contents are replaced each time; what is no longer wanted is dropped. */
 #include "ff_client_local.h"
-#include "ff_panorama_rules.h"
+#include "panorama/ff_panorama_rules.h"
 
 #include <string.h>
 

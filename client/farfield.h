@@ -49,9 +49,10 @@ typedef struct ff_panorama_desc {
     uint8_t hold_back;
 } ff_panorama_desc;
 
-/* Server and client share the work at run time (client/ff_balance.h): detail, depth, back plane and
- * the panorama's error follow a frame budget and the link, between the limits given here (coarsest,
- * nearest) and the quality and panorama set (finest). Zero in any field takes the default given. */
+/* Server and client share the work at run time (client/balance/ff_balance.h): detail, depth, back
+ * plane and the panorama's error follow a frame budget and the link, between the limits given here
+ * (coarsest, nearest) and the quality and panorama set (finest). Zero in any field takes the
+ * default given. */
 enum ff_balance_mode {
     FF_BALANCE_OFF,
     FF_BALANCE_ON,

@@ -11,16 +11,16 @@
 
 #include "farfield.h"
 #include "ff_arena.h"
-#include "ff_balance.h"
-#include "ff_local.h"
-#include "ff_motion.h"
-#include "ff_turn.h"
-#include "ff_panorama.h"
-#include "ff_refusals.h"
+#include "balance/ff_balance.h"
+#include "source/ff_local.h"
+#include "ahead/ff_motion.h"
+#include "ahead/ff_turn.h"
+#include "panorama/ff_panorama.h"
+#include "ask/ff_refusals.h"
 #include "ff_sky.h"
-#include "ff_stream.h"
-#include "ff_terrain_view.h"
-#include "ff_textures.h"
+#include "source/link/ff_stream.h"
+#include "ground/ff_terrain_view.h"
+#include "images/ff_textures.h"
 
 #define FF_TREE_WISHES     96u
 #define FF_TEXTURE_WISHES  24u

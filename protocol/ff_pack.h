@@ -9,7 +9,7 @@
 #ifndef FF_PACK_H
 #define FF_PACK_H
 
-#include "ff_codec.h"
+#include "codec/ff_codec.h"
 
 #define FF_PACK_VERSION 2
 #define FF_PACK_HEADER_BYTES \

@@ -1,6 +1,6 @@
 #include "ff_terrain.h"
 
-#include "ff_codec.h"
+#include "codec/ff_codec.h"
 
 static int grid_ok(const ff_terrain_info *info)
 {

@@ -2,7 +2,7 @@
 #ifndef SERVER_H
 #define SERVER_H
 
-#include "server_channel.h"
+#include "net/server_channel.h"
 #include "../platform/sys.h"
 
 /* Counters in shared memory: written by one process (or its successors), read by the master. */

@@ -1,7 +1,7 @@
 #!/bin/bash
 # Builds and runs every test and counts the cases. Last line: "N passed, N failed".
-#   run.sh           sanitized build: unit tests (tests/test_*.c), fuzz targets over their saved inputs (tests/corpus), scripts
-#   run.sh --quick   tests already built in $BUILD: unit tests and tests/checks.sh
+#   run.sh           sanitized build: unit tests (test_*.c), fuzz targets over their saved inputs (tests/corpus), scripts
+#   run.sh --quick   tests already built in $BUILD: unit tests and tests/project/checks.sh
 #   run.sh --only PATTERN   suites whose name matches the shell pattern
 # JOBS suites run side by side (default: one per processor); SUITE_TIMEOUT_S stops one that hangs.
 # A case is a line "ok ..." or "not ok ..." (TAP); skips count as neither. A suite that crashes, hangs or has no case is a failure.
@@ -18,7 +18,7 @@ run_suite() {
     case $kind in
         unit) command=("$BUILD/tests/$name") ;;
         fuzz) command=("$BUILD/tests/$name-replay" "tests/corpus/${name#fuzz_}"/*) ;;
-        script) command=("tests/$name.sh") ;;
+        script) command=(tests/*/"$name.sh") ;;
     esac
     timeout --kill-after=10 "$SUITE_TIMEOUT_S" "${command[@]}" >"$log.log" 2>&1 </dev/null
     rc=$?
@@ -53,10 +53,10 @@ build_all() {
 
 list_suites() {
     local file quick=$1
-    for file in tests/test_*.c; do [ -e "$file" ] && echo "unit:$(basename "$file" .c)"; done
+    for file in tests/*/test_*.c; do [ -e "$file" ] && echo "unit:$(basename "$file" .c)"; done
     if [ "$quick" = 1 ]; then echo script:checks; return; fi
-    for file in tests/fuzz_*.c; do [ -e "$file" ] && echo "fuzz:$(basename "$file" .c)"; done
-    for file in tests/*.sh; do [ "$file" = tests/run.sh ] || echo "script:$(basename "$file" .sh)"; done
+    for file in tests/*/fuzz_*.c; do [ -e "$file" ] && echo "fuzz:$(basename "$file" .c)"; done
+    for file in tests/*/*.sh; do echo "script:$(basename "$file" .sh)"; done
 }
 
 show_failures() {

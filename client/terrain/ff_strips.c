@@ -3,7 +3,7 @@
  * written down as a triangle strip. */
 #include "ff_strips.h"
 
-#include "../../protocol/ff_codec.h"
+#include "../../protocol/codec/ff_codec.h"
 #include "ff_tree_local.h"
 
 #include <assert.h>

@@ -19,7 +19,7 @@
 #define FF_TREE_H
 
 #include "../../common3d/c3d.h"
-#include "../../protocol/ff_codec.h"
+#include "../../protocol/codec/ff_codec.h"
 
 typedef struct ff_tree ff_tree;
 typedef struct ff_node ff_node; /* defined in ff_tree_local.h for client/terrain only */

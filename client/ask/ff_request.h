@@ -1,0 +1,125 @@
+/* The request queue: one of the two places where the main thread and the network worker meet (the
+ * other: ff_new_data.h).
+ *
+ * A request is a state machine. Each state has one owner, the only one who may move the request on;
+ * every move happens under the pool's lock.
+ *
+ *   state      owner    meaning                                    next
+ *   FREE       main     the slot is unused                         QUEUED
+ *   QUEUED     worker   wanted, not sent yet                       SENT; CANCELLED ("dropped":
+ *                                                                  main, when no longer wanted)
+ *   SENT       worker   on its way or waiting for the answer       ARRIVING; QUEUED (the
+ *                                                                  connection was lost)
+ *   ARRIVING   main     the answer, refusal or last face lies on   DONE, FAILED, CANCELLED
+ *                       the new-data list
+ *   DONE       -        final: the answer was taken in             slot is FREE again
+ *   FAILED     -        final: the server or the decoder refused   slot is FREE again
+ *   CANCELLED  -        final: given up before an answer           slot is FREE again
+ *
+ * Every request ends in exactly one final state; `made` = done + failed + cancelled + dropped +
+ * those still in a slot. No two requests with the same kind and key exist at a time.
+ *
+ * Policy for requests that lost their point: not sent yet: dropped. Sent: let come, because an
+ * answer of some hundred bytes costs less than the message that cancels it; panoramas alone
+ * (kilobytes, and work for the server) are cancelled.
+ */
+#ifndef FF_REQUEST_H
+#define FF_REQUEST_H
+
+#include "../../platform/sys.h"
+#include "../../protocol/message/ff_message.h"
+
+#define FF_REQUESTS_QUEUED_MAX 128 /* queued at a time, besides those in flight */
+
+enum ff_request_kind {
+    FF_WANT_ROOT,
+    FF_WANT_REFINEMENT,
+    FF_WANT_TEXTURE,
+    FF_WANT_PANORAMA,
+    FF_WANT_KINDS
+};
+enum ff_request_state {
+    FF_REQUEST_FREE,
+    FF_REQUEST_QUEUED,
+    FF_REQUEST_SENT,
+    FF_REQUEST_ARRIVING,
+    FF_REQUEST_DONE,
+    FF_REQUEST_FAILED,
+    FF_REQUEST_CANCELLED
+};
+/* A request of a lower class goes first, whatever its value. */
+enum ff_request_class { FF_CLASS_FIRST, FF_CLASS_IN_VIEW, FF_CLASS_PREFETCH };
+
+typedef struct ff_request {
+    ff_key key;              /* panoramas: a number of the client's own */
+    uint32_t value;          /* within the class: priority per expected byte, higher first */
+    uint32_t sequence;       /* ties: older first */
+    uint32_t bytes_expected; /* of the answer */
+    int64_t sent_us;
+    uint16_t id;               /* on the wire: slot + 1 */
+    uint8_t kind, state, rank; /* rank: enum ff_request_class */
+    uint8_t marked;            /* wanted by the ranking under way */
+    uint8_t cancel;            /* 1: to be cancelled; 2: the cancellation was sent */
+    ff_get_panorama panorama;  /* of FF_WANT_PANORAMA */
+} ff_request;
+
+typedef struct ff_request_counts {
+    uint32_t made, sent, done, failed, cancelled, dropped, queue_full;
+    uint32_t queued, queued_high, in_flight, in_flight_high, arriving;
+    uint32_t panoramas_sent, textures_sent, panoramas_in_flight, panoramas_in_flight_high;
+    uint32_t bytes_in_flight; /* expected */
+} ff_request_counts;
+
+typedef struct ff_requests {
+    sys_mutex mutex; /* guards everything below */
+    ff_request *slot;
+    uint16_t slot_count, queued_max;
+    uint32_t sequence;
+    uint64_t hash; /* over requests as sent */
+    ff_request_counts counts;
+    /* bytes of an answer by kind and level, running mean, Q4 */
+    uint32_t answer_q4[FF_WANT_KINDS][16];
+} ff_requests;
+
+size_t ff_requests_bytes(unsigned in_flight_max);
+void ff_requests_init(ff_requests *requests, unsigned in_flight_max, void *memory);
+/* Forgets every request (another terrain); each one counts as cancelled or dropped. */
+void ff_requests_clear(ff_requests *requests);
+
+/* ---- main thread ---- */
+/* A ranking: begin, want everything worth having (most urgent first), end. What was queued and is
+ * not wanted is dropped. */
+void ff_requests_rank_begin(ff_requests *requests);
+/* 1 when queued or already under way, 0 when the queue is full. priority per byte decides within
+ * `rank`. */
+int ff_requests_want(ff_requests *requests, enum ff_request_kind kind, ff_key key,
+                     enum ff_request_class rank, uint32_t priority,
+                     const ff_get_panorama *panorama);
+void ff_requests_rank_end(ff_requests *requests);
+/* Something in view is queued: wanted and not yet sent. */
+int ff_requests_waiting(ff_requests *requests);
+/* Asks for cancellation of a panorama: dropped when queued. 1 when it is still under way. */
+int ff_requests_cancel(ff_requests *requests, ff_key key);
+/* The same for all panoramas. */
+void ff_requests_cancel_panoramas(ff_requests *requests);
+/* Ends an ARRIVING request in a final state. */
+void ff_requests_finish(ff_requests *requests, uint16_t id, enum ff_request_state final);
+
+/* ---- worker ---- */
+/* Takes the most urgent queued request while fewer than `in_flight_max` and `bytes_in_flight_max`
+ * are out (two are always allowed): moves it to SENT, *copy describes it. prefetch 0 leaves the
+ * lowest class alone. 1, or 0 when there is none. */
+int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_max,
+                     uint32_t bytes_in_flight_max, int prefetch, ff_request *copy);
+/* A sent request to be cancelled on the wire: its id, once, or 0. */
+uint16_t ff_requests_next_cancel(ff_requests *requests);
+/* A request waiting for an answer: 1 and *copy, or 0: unknown id (stale or nonsense). */
+int ff_requests_answered(ff_requests *requests, uint16_t id, ff_request *copy);
+/* SENT to ARRIVING once the answer lies on the new-data list; bytes: size of the answer, for the
+ * means. */
+void ff_requests_arrived(ff_requests *requests, uint16_t id, uint32_t bytes);
+/* The connection is lost: SENT requests are queued again; those being cancelled end. */
+void ff_requests_lost(ff_requests *requests);
+void ff_requests_get_counts(ff_requests *requests, ff_request_counts *counts, uint64_t *hash);
+
+#endif

@@ -1,0 +1,186 @@
+#include "ff_terrain_view.h"
+
+#include "../farfield.h"
+#include "../images/ff_textures.h"
+#include "../images/ff_texture_map.h"
+
+#define HASH_PRIME    UINT64_C(0x100000001b3)
+#define COLOUR_WHITE  0xFFFFFFFFu
+#define COLOUR_WIRE   0xFF202020u
+#define COLOUR_STITCH 0xFF2020FFu /* red */
+#define COLOUR_BORDER 0xFF00E0FFu /* yellow */
+
+int ff_terrain_view_strips(ff_terrain_view *view, unsigned node_log2, ff_strips *strips)
+{
+    int rc = ff_strips_make(strips, node_log2);
+    for (unsigned i = 0; rc == FF_OK && i < strips->count; i++) {
+        view->strip[i].id = 0;
+        if (strips->length[i] == 0) continue; /* INNER of the smallest nodes */
+        view->strip[i] = c3d_strip_make(view->device, strips->index + strips->first[i],
+                                        strips->length[i]);
+        if (!view->strip[i].id) rc = FF_ERR_MEMORY;
+    }
+    return rc;
+}
+
+static void release(ff_terrain_view *view, ff_view_node *entry)
+{
+    if (entry->mesh.id) c3d_mesh_free(view->device, entry->mesh);
+    entry->mesh.id = 0;
+    entry->user = NULL;
+    view->held--;
+}
+
+static void on_evict(void *context, uint32_t user)
+{
+    ff_terrain_view *view = context;
+    if (user) release(view, &view->entry[user - 1]);
+}
+
+void ff_terrain_view_attach(ff_terrain_view *view, ff_tree *tree)
+{
+    ff_tree_on_evict(tree, on_evict, view);
+}
+
+static uint64_t hash_word(uint64_t hash, uint64_t word) { return (hash ^ word) * HASH_PRIME; }
+
+static uint64_t hash_heights(const ff_drawn *drawn, uint32_t count)
+{
+    uint64_t hash = FF_TERRAIN_VIEW_HASH_START;
+    for (uint32_t i = 0; i < count; i++) hash = hash_word(hash, drawn->heights[i]);
+    return hash;
+}
+
+/* The drawn node's entry, made when it has none; NULL when every entry belongs to a node of this
+ * frame. */
+static ff_view_node *entry_of(ff_terrain_view *view, ff_tree *tree, const ff_drawn *drawn)
+{
+    uint32_t *user = ff_tree_user(tree, drawn->node);
+    if (*user) return &view->entry[*user - 1];
+    for (uint32_t tries = 0; tries < view->entry_count; tries++) {
+        uint32_t place = view->hand;
+        ff_view_node *entry = &view->entry[place];
+        view->hand = view->hand + 1 < view->entry_count ? view->hand + 1 : 0;
+        if (entry->user && entry->used == view->stamp) continue;
+        if (entry->user) {
+            *entry->user = 0;
+            release(view, entry);
+        }
+        entry->user = user;
+        entry->used = view->stamp;
+        entry->heights_hash = hash_heights(drawn, view->heights_per_node);
+        *user = place + 1;
+        if (++view->held > view->held_high) view->held_high = view->held;
+        return entry;
+    }
+    return NULL;
+}
+
+uint64_t ff_terrain_view_hash(ff_terrain_view *view, ff_tree *tree)
+{
+    const ff_drawn *list;
+    uint32_t count = ff_tree_drawn(tree, &list);
+    uint64_t hash = FF_TERRAIN_VIEW_HASH_START;
+    view->stamp++;
+    /* those that have an entry first: none of them may lose it below */
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t user = *ff_tree_user(tree, list[i].node);
+        if (user) view->entry[user - 1].used = view->stamp;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        const ff_drawn *drawn = &list[i];
+        const ff_view_node *entry = entry_of(view, tree, drawn);
+        hash = hash_word(hash, drawn->key);
+        hash = hash_word(hash, drawn->coarser);
+        for (int axis = 0; axis < 3; axis++)
+            hash = hash_word(hash, (uint32_t)drawn->origin_wu[axis]);
+        hash = hash_word(hash,
+                         entry ? entry->heights_hash : hash_heights(drawn, view->heights_per_node));
+    }
+    return hash;
+}
+
+static c3d_mesh make_mesh(ff_terrain_view *view, ff_tree *tree, const ff_terrain_info *info,
+                          const ff_drawn *drawn)
+{
+    ff_tree_vertices(tree, drawn, 1, view->vertices);
+    ff_ground_frame_vertices(&view->frame, info, drawn, view->vertices, view->heights_per_node);
+    return c3d_mesh_make(view->device, view->vertices, view->heights_per_node);
+}
+
+static void free_meshes(ff_terrain_view *view)
+{
+    for (uint32_t i = 0; i < view->entry_count; i++) {
+        if (view->entry[i].mesh.id) c3d_mesh_free(view->device, view->entry[i].mesh);
+        view->entry[i].mesh.id = 0;
+    }
+}
+
+/* Some node's mesh that this frame does not need gives way. 1 when one was found. */
+static int free_one_mesh(ff_terrain_view *view)
+{
+    for (uint32_t i = 0; i < view->entry_count; i++) {
+        ff_view_node *entry = &view->entry[i];
+        if (entry->user && entry->mesh.id && entry->used != view->stamp) {
+            c3d_mesh_free(view->device, entry->mesh);
+            entry->mesh.id = 0;
+            return 1;
+        }
+    }
+    return 0;
+}
+
+static void draw_lines(ff_terrain_view *view, c3d_draw draw, const uint8_t *strip, unsigned strips,
+                       unsigned show)
+{
+    draw.flags = C3D_DRAW_WIREFRAME | C3D_DRAW_ON_TOP;
+    for (unsigned i = 0; i < strips; i++) {
+        int stitch = strip[i] >= FF_STRIP_SIDE(0, 1);
+        if (!(show & FF_SHOW_WIREFRAME)) continue;
+        draw.strip = view->strip[strip[i]];
+        draw.colour = stitch ? COLOUR_STITCH : COLOUR_WIRE;
+        c3d_draw_strip(view->device, &draw);
+    }
+    for (unsigned side = 0; (show & FF_SHOW_NODE_BORDERS) && side < FF_SIDE_COUNT; side++) {
+        draw.strip = view->strip[FF_STRIP_SIDE(side, 0)];
+        draw.colour = COLOUR_BORDER;
+        c3d_draw_strip(view->device, &draw);
+    }
+}
+
+static void draw_node(ff_terrain_view *view, const ff_drawn *drawn, c3d_draw draw, unsigned show)
+{
+    uint8_t strip[5];
+    unsigned strips = ff_strips_for(drawn->coarser, strip);
+    for (unsigned i = 0; i < strips; i++) {
+        draw.strip = view->strip[strip[i]];
+        if (draw.strip.id) c3d_draw_strip(view->device, &draw);
+    }
+    if (show & (FF_SHOW_WIREFRAME | FF_SHOW_NODE_BORDERS))
+        draw_lines(view, draw, strip, strips, show);
+}
+
+void ff_terrain_view_draw(ff_terrain_view *view, ff_tree *tree, const ff_terrain_info *info,
+                          const c3d_camera *camera, struct ff_textures *textures, unsigned show)
+{
+    const ff_drawn *list;
+    uint32_t count = ff_tree_drawn(tree, &list);
+    if (ff_ground_frame_follow(&view->frame, info, camera)) free_meshes(view);
+    for (uint32_t i = 0; i < count; i++) {
+        const ff_drawn *drawn = &list[i];
+        ff_view_node *entry = entry_of(view, tree, drawn);
+        c3d_draw draw = { .flags = C3D_DRAW_COLOURED };
+        ff_key texture_key;
+        ff_ground_frame_draw(&view->frame, info, drawn, camera, &draw);
+        draw.mesh = entry && entry->mesh.id ? entry->mesh : make_mesh(view, tree, info, drawn);
+        if (!draw.mesh.id && free_one_mesh(view)) draw.mesh = make_mesh(view, tree, info, drawn);
+        if (entry) entry->mesh = draw.mesh;
+        if (textures && ff_textures_find(textures, drawn->key, &texture_key, &draw.texture)) {
+            draw.flags = C3D_DRAW_TEXTURED;
+            draw.colour = COLOUR_WHITE;
+            ff_texture_map(info, drawn->key, texture_key, draw.tex_scale_q16, draw.tex_offset_q16);
+        }
+        draw_node(view, drawn, draw, show);
+        if (!entry && draw.mesh.id) c3d_mesh_free(view->device, draw.mesh);
+    }
+}

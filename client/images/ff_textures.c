@@ -1,0 +1,153 @@
+#include "ff_textures.h"
+
+#include "ff_texture_map.h"
+
+const uint8_t ff_textures_built = 1;
+
+static unsigned bucket_of(ff_key key)
+{
+    return (unsigned)((key * UINT64_C(0x9E3779B97F4A7C15)) >> 56) & (FF_TEXTURE_HASH - 1);
+}
+
+static ff_texture_slot *find(const ff_textures *textures, ff_key key)
+{
+    for (unsigned i = textures->bucket[bucket_of(key)]; i; i = textures->slot[i - 1].next)
+        if (textures->slot[i - 1].key == key) return &textures->slot[i - 1];
+    return NULL;
+}
+
+static ff_texture_slot *find_nearest(const ff_textures *textures, ff_key node)
+{
+    ff_key key = ff_texture_key(&textures->info, node);
+    while (key != FF_KEY_NONE) {
+        ff_texture_slot *slot = find(textures, key);
+        if (slot || ff_key_level(key) == 0) return slot;
+        key = ff_key_parent(key);
+    }
+    return NULL;
+}
+
+int ff_textures_find(const ff_textures *textures, ff_key node, ff_key *key, c3d_texture *texture)
+{
+    const ff_texture_slot *slot = find_nearest(textures, node);
+    if (!slot || !slot->texture.id) return 0;
+    *key = slot->key;
+    *texture = slot->texture;
+    return 1;
+}
+
+/* The image one level below `held` (NULL: the root's) on the way to `finest`. */
+static ff_key next_finer(const ff_texture_slot *held, ff_key finest)
+{
+    uint32_t level = held ? ff_key_level(held->key) + 1 : 0;
+    while (ff_key_level(finest) > level) finest = ff_key_parent(finest);
+    return finest;
+}
+
+/* 1/f of Hybrid eq. 3 for the ground the image covers, Q8: the scale of the tree's wishes. */
+static uint32_t priority_of(const ff_textures *textures, ff_key key, const ff_view *view,
+                            const ff_quality *quality)
+{
+    int32_t x_wu, y_wu, edge_wu = ff_node_edge_wu(&textures->info, ff_key_level(key));
+    ff_node_origin_wu(&textures->info, key, &x_wu, &y_wu);
+    int64_t dx = (int64_t)x_wu + edge_wu / 2 - view->camera.pos_wu[0];
+    int64_t dy = (int64_t)y_wu + edge_wu / 2 - view->camera.pos_wu[1];
+    int64_t distance = c3d_length64(dx, dy, 0);
+    int64_t c_q8 = quality->c_q8 > 0 ? quality->c_q8 : 3 * 256;
+    int64_t value = (int64_t)edge_wu * c_q8 / (distance > edge_wu / 2 ? distance : edge_wu / 2 + 1);
+    return value > UINT32_MAX ? UINT32_MAX : (uint32_t)value;
+}
+
+static void insert(ff_texture_wish *list, uint32_t *count, uint32_t capacity, ff_texture_wish wish)
+{
+    for (uint32_t i = 0; i < *count; i++)
+        if (list[i].key == wish.key) return;
+    uint32_t at = *count;
+    if (at == capacity && (!capacity || list[at - 1].priority >= wish.priority)) return;
+    if (*count < capacity)
+        ++*count;
+    else
+        at--;
+    while (at > 0 && list[at - 1].priority < wish.priority) {
+        list[at] = list[at - 1];
+        at--;
+    }
+    list[at] = wish;
+}
+
+uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32_t drawn_count,
+                            const ff_view *view, const ff_quality *quality, ff_texture_wish *list,
+                            uint32_t capacity)
+{
+    uint32_t count = 0, in_use = 0;
+    textures->stamp++;
+    for (uint32_t i = 0; i < drawn_count; i++) {
+        ff_key finest = ff_texture_key(&textures->info, drawn[i].key);
+        if (finest == FF_KEY_NONE) continue;
+        ff_texture_slot *held = find_nearest(textures, drawn[i].key);
+        if (held && held->used != textures->stamp) {
+            held->used = textures->stamp;
+            in_use++;
+        }
+        if (held && held->key == finest) continue;
+        ff_texture_wish wish = { .key = next_finer(held, finest) };
+        wish.priority = priority_of(textures, wish.key, view, quality);
+        insert(list, &count, capacity, wish);
+    }
+    /* what would find no place is not asked for */
+    uint32_t room = textures->slot_count - in_use;
+    return count < room ? count : room;
+}
+
+static void unlink_slot(ff_textures *textures, ff_texture_slot *slot)
+{
+    uint16_t *link = &textures->bucket[bucket_of(slot->key)];
+    uint16_t number = (uint16_t)(slot - textures->slot + 1);
+    while (*link != number) link = &textures->slot[*link - 1].next;
+    *link = slot->next;
+}
+
+/* A free slot, or the one longest out of use; NULL when all are drawn. */
+static ff_texture_slot *take_slot(ff_textures *textures)
+{
+    ff_texture_slot *oldest = NULL;
+    for (unsigned i = 0; i < textures->slot_count; i++) {
+        ff_texture_slot *slot = &textures->slot[i];
+        if (!slot->held) return slot;
+        if (slot->used != textures->stamp &&
+            (!oldest || textures->stamp - slot->used > textures->stamp - oldest->used))
+            oldest = slot;
+    }
+    if (!oldest) return NULL;
+    unlink_slot(textures, oldest);
+    if (oldest->texture.id) c3d_texture_free(textures->device, oldest->texture);
+    oldest->held = 0;
+    textures->held--;
+    return oldest;
+}
+
+int ff_textures_take(ff_textures *textures, const ff_new_item *item)
+{
+    if (find(textures, item->key)) return 0;
+    ff_texture_slot *slot = take_slot(textures);
+    if (!slot) {
+        textures->full++;
+        return 0;
+    }
+    slot->texture.id = 0;
+    if (textures->device) {
+        slot->texture = c3d_texture_make(textures->device, C3D_RGB565, item->width, item->height,
+                                         item->pixels);
+        if (!slot->texture.id) {
+            textures->full++;
+            return 0;
+        }
+    }
+    slot->key = item->key;
+    slot->held = 1;
+    slot->used = textures->stamp;
+    slot->next = textures->bucket[bucket_of(item->key)];
+    textures->bucket[bucket_of(item->key)] = (uint16_t)(slot - textures->slot + 1);
+    if (++textures->held > textures->high) textures->high = textures->held;
+    return 1;
+}

@@ -1,0 +1,47 @@
+/* Images of the ground: a tree of its own depth over the same keys (Planet: linked height and
+ * texture trees). A node is drawn with its own image or its nearest held ancestor's; images come
+ * from coarse to fine. Least lately drawn ones make room. */
+#ifndef FF_TEXTURES_H
+#define FF_TEXTURES_H
+
+#include "../ask/ff_new_data.h"
+#include "../terrain/ff_tree.h"
+
+extern const uint8_t ff_textures_built; /* 0: left out of this build */
+
+#define FF_TEXTURE_HASH 256u
+
+typedef struct ff_texture_slot {
+    ff_key key;
+    c3d_texture texture; /* id 0 without a device */
+    uint32_t used;       /* stamp of the last frame it was of use in */
+    uint16_t next;       /* hash chain: slot + 1 */
+    uint8_t held;
+} ff_texture_slot;
+
+typedef struct ff_textures {
+    c3d_device *device;
+    ff_terrain_info info;
+    ff_texture_slot *slot;
+    uint16_t slot_count, held, high;
+    uint16_t bucket[FF_TEXTURE_HASH]; /* slot + 1 */
+    uint32_t stamp, full;
+} ff_textures;
+
+/* One thing wanted: the image that comes next on the way down to a drawn node. */
+typedef struct ff_texture_wish {
+    ff_key key;
+    uint32_t priority;
+} ff_texture_wish;
+
+/* The nearest held image over `node`: 1, or 0. */
+int ff_textures_find(const ff_textures *textures, ff_key node, ff_key *key, c3d_texture *texture);
+/* Marks what the drawn nodes use and lists what they lack, most urgent first; priorities are on the
+ * tree's scale. */
+uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32_t drawn_count,
+                            const ff_view *view, const ff_quality *quality, ff_texture_wish *list,
+                            uint32_t capacity);
+/* Takes an image in. 1 when the picture may have changed; 0: no room (counted). */
+int ff_textures_take(ff_textures *textures, const ff_new_item *item);
+
+#endif

@@ -1,0 +1,34 @@
+/* Stands in for ff_textures.c and ff_intake_texture.c in builds without images of the ground. */
+#include "../ask/ff_intake.h"
+#include "ff_textures.h"
+
+const uint8_t ff_textures_built = 0;
+
+int ff_textures_find(const ff_textures *textures, ff_key node, ff_key *key, c3d_texture *texture)
+{
+    (void)textures, (void)node, (void)key, (void)texture;
+    return 0;
+}
+
+uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32_t drawn_count,
+                            const ff_view *view, const ff_quality *quality, ff_texture_wish *list,
+                            uint32_t capacity)
+{
+    (void)textures, (void)drawn, (void)drawn_count, (void)view, (void)quality, (void)list,
+        (void)capacity;
+    return 0;
+}
+
+int ff_textures_take(ff_textures *textures, const ff_new_item *item)
+{
+    (void)textures, (void)item;
+    return 0;
+}
+
+/* Never asked for: an answer is an error of the server. */
+int ff_intake_texture(ff_intake *intake, const ff_request *request, const uint8_t *jpeg,
+                      uint32_t bytes)
+{
+    (void)intake, (void)request, (void)jpeg, (void)bytes;
+    return FF_ERR_FORMAT;
+}

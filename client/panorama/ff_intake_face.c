@@ -1,0 +1,66 @@
+/* Faces of a panorama, decoded. Left out with panoramas. */
+#include "../ask/ff_intake_local.h"
+
+#include <string.h>
+
+/* Power of two at least `rows`. */
+static unsigned texture_rows(unsigned rows)
+{
+    unsigned height = 1;
+    while (height < rows) height *= 2;
+    return height;
+}
+
+/* The face's rows to RGBA5551, lowest row first, padded upwards; only texels within the column
+ * spans are opaque. The padding's first row keeps the colours of the image's top row: filtering
+ * mixes them, and black would draw a dark line along the horizon. */
+static void to_rgba5551(const uint8_t *rgb, unsigned width, unsigned rows, const uint16_t *top,
+                        const uint16_t *bottom, unsigned height, uint16_t *out)
+{
+    for (unsigned r = 0; r < rows; r++) {
+        unsigned row = rows - 1 - r;
+        const uint8_t *from = rgb + (size_t)row * width * 3;
+        for (unsigned i = 0; i < width; i++, from += 3) {
+            unsigned opaque = row >= top[i] && row < bottom[i];
+            *out++ = (uint16_t)((from[0] >> 3 << 11) | (from[1] >> 3 << 6) | (from[2] >> 3 << 1) |
+                                opaque);
+        }
+    }
+    for (unsigned i = 0; rows < height && i < width; i++, out++)
+        *out = (uint16_t)(out[-(ptrdiff_t)width] & ~1u);
+    if (rows + 1 < height) memset(out, 0, (size_t)(height - rows - 1) * width * sizeof *out);
+}
+
+static int decode_face(ff_intake *intake, const ff_face *face, ff_new_item *item)
+{
+    unsigned size = face->face_size;
+    if (size > intake->face_size_max || (size & (size - 1)) != 0 || face->row_count == 0 ||
+        face->row_count > size || face->top_row + face->row_count > size)
+        return FF_ERR_RANGE;
+    uint16_t *top = intake->columns, *bottom = intake->columns + size;
+    int rc = ff_face_columns_decode(face->columns, face->columns_bytes, size, face->row_count, top,
+                                    bottom);
+    if (rc == FF_OK)
+        rc = sys_jpeg_decode(face->image, face->image_bytes, size, face->row_count, intake->rgb);
+    if (rc != FF_OK) return rc;
+    item->width = (uint16_t)size;
+    item->height = (uint16_t)texture_rows(face->row_count);
+    item->face_top_row = face->top_row;
+    item->face_row_count = face->row_count;
+    to_rgba5551(intake->rgb, size, face->row_count, top, bottom, item->height, item->pixels);
+    return FF_OK;
+}
+
+int ff_intake_face(ff_intake *intake, const ff_request *request, const ff_face *face,
+                   uint32_t bytes)
+{
+    int empty = (face->flags & FF_FACE_EMPTY) != 0;
+    ff_new_item *item = ff_intake_begin(intake, request, !empty, bytes);
+    if (!item) return FF_ERR_AGAIN;
+    item->face = face->face;
+    item->face_empty = (uint8_t)empty;
+    item->last = (face->flags & FF_FACE_LAST) != 0;
+    if (!empty) item->error = decode_face(intake, face, item);
+    if (item->error != FF_OK) item->pixels = NULL;
+    return ff_intake_put(intake, item);
+}

@@ -1,0 +1,58 @@
+/* Stands in for ff_panorama.c in builds without panoramas. */
+#include "../ask/ff_intake.h"
+#include "ff_panorama.h"
+#include "ff_panorama_rules.h"
+
+#include <string.h>
+
+const uint8_t ff_panorama_built = 0;
+
+void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panorama_desc *desc,
+                      const ff_terrain_info *info, unsigned face_size)
+{
+    (void)device, (void)info, (void)face_size;
+    memset(panorama, 0, sizeof *panorama);
+    panorama->desc = *desc;
+    panorama->active = panorama->next = panorama->shown = -1;
+}
+
+void ff_panorama_drop(ff_panorama *panorama) { (void)panorama; }
+
+int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera,
+                       const ff_motion *motion, int hold, int64_t now_us)
+{
+    (void)panorama, (void)requests, (void)camera, (void)motion, (void)hold, (void)now_us;
+    return 0;
+}
+
+unsigned ff_panorama_faces_in_view(const c3d_camera *camera) { return (void)camera, 0; }
+
+int ff_panorama_late(const ff_panorama *panorama, const c3d_camera *camera)
+{
+    return (void)panorama, (void)camera, 0;
+}
+
+void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera,
+                      unsigned soon, int64_t now_us)
+{
+    (void)panorama, (void)requests, (void)camera, (void)soon, (void)now_us;
+}
+
+int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now_us)
+{
+    (void)panorama, (void)item, (void)now_us;
+    return 0;
+}
+
+void ff_panorama_draw(const ff_panorama *panorama, int32_t near_wu)
+{
+    (void)panorama, (void)near_wu;
+}
+
+/* Never asked for: an answer is an error of the server. */
+int ff_intake_face(ff_intake *intake, const ff_request *request, const ff_face *face,
+                   uint32_t bytes)
+{
+    (void)intake, (void)request, (void)face, (void)bytes;
+    return FF_ERR_FORMAT;
+}

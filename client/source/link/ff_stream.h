@@ -1,0 +1,80 @@
+/* The network worker's half of the client: one connection, greeted, kept alive, made again when
+ * lost (Hybrid, section 8.2). A non-blocking step(); whoever calls it is the worker. Bytes come and
+ * go through a sys_stream, decoded answers leave through the new-data list, requests come out of
+ * the request queue. Nothing here knows the tree or a graphics API.
+ *
+ *   CONNECTING --connected--> GREETING --WELCOME of a new terrain--> WELCOMED --ff_stream_accept-->
+ *       UP
+ *                                      --WELCOME of the terrain
+ *                                          held-------------------------------> UP
+ *   any --closed, nonsense or silent too long--> DOWN --after 0.5, 1, 2 .. 30 s--> CONNECTING;  no
+ *       way to reconnect: DEAD
+ */
+#ifndef FF_STREAM_H
+#define FF_STREAM_H
+
+#include "../../ask/ff_intake.h"
+#include "ff_link_estimate.h"
+
+#define FF_STREAM_SEND_BYTES 2048
+#define FF_BACKOFF_US_MIN    500000
+#define FF_BACKOFF_US_MAX    30000000
+
+enum ff_stream_state {
+    FF_STREAM_CONNECTING,
+    FF_STREAM_GREETING,
+    FF_STREAM_WELCOMED,
+    FF_STREAM_UP,
+    FF_STREAM_DOWN,
+    FF_STREAM_DEAD
+};
+
+/* What the main thread may see and say; guarded by the request queue's lock. */
+typedef struct ff_stream_shared {
+    enum ff_stream_state state;
+    uint64_t bytes_down, bytes_up, panorama_bytes;
+    uint32_t protocol_errors, reconnects, rtt_us, bytes_s;
+    uint32_t losses;         /* connections lost: what was asked is to be ranked again */
+    ff_terrain_info welcome; /* valid in WELCOMED */
+    uint8_t quiet;           /* main: ask nothing new (interruption) */
+    uint8_t no_prefetch;
+} ff_stream_shared;
+
+typedef struct ff_stream {
+    sys_stream *io;
+    ff_intake *intake;
+    uint16_t in_flight_max;
+    int64_t answer_timeout_us;
+    /* worker only */
+    enum ff_stream_state state;
+    ff_terrain_info held; /* terrain the client's pools hold */
+    uint8_t has_terrain;
+    uint8_t attempt; /* CONNECTING: 1 when reconnect() has to be called */
+    uint8_t blocked; /* the new-data list is full */
+    uint8_t *recv;
+    uint32_t recv_bytes, recv_count, skip;
+    uint8_t send[FF_STREAM_SEND_BYTES];
+    uint32_t send_count;
+    int64_t retry_us, backoff_us, connect_us, heard_us, sent_us;
+    uint8_t awaiting; /* HELLO or PING unanswered */
+    uint8_t patience; /* how often the time-out has been doubled */
+    ff_link_estimate link;
+    uint64_t bytes_down, bytes_up, panorama_bytes;
+    uint32_t protocol_errors, reconnects, losses;
+    ff_stream_shared shared;
+} ff_stream;
+
+void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsigned in_flight_max,
+                    uint32_t answer_timeout_ms, uint8_t *recv, uint32_t recv_bytes);
+/* Sends, receives, decodes. 1 when anything moved. */
+int ff_stream_step(ff_stream *stream, int64_t now_us);
+/* The pools for the WELCOMEd terrain stand (ok), or it cannot be held: then the connection is given
+ * up. Not while stepping. */
+void ff_stream_accept(ff_stream *stream, int ok);
+/* Forgets the terrain held and connects anew at once. Not while stepping. */
+void ff_stream_restart(ff_stream *stream);
+void ff_stream_get_shared(ff_stream *stream, ff_stream_shared *shared);
+void ff_stream_say(ff_stream *stream, int quiet, int no_prefetch);
+void ff_stream_close(ff_stream *stream);
+
+#endif

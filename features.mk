@@ -1,0 +1,23 @@
+# What can be left out of the client: the one list, read by cross.mk, `make size` and tests/project/checks.sh (which holds README to it).
+# A feature is a room: its folders and files go, its *_none.c stands in for what the rest of the client calls. Nothing else in the code asks
+# whether a feature is there, but for constants like ff_panorama_built.
+#   $(call feature,NAME,FOLDERS AND FILES THAT GO,FILES THAT STAND IN)
+FEATURES :=
+define feature_row
+FEATURES += $(1)
+WITHOUT_$(1) := $(foreach f,$(2),$(if $(filter %.c,$f),$f,$(call srcs,$f)))
+INSTEAD_$(1) := $(3)
+endef
+feature = $(eval $(call feature_row,$(strip $(1)),$(2),$(strip $(3))))
+
+$(call feature,panorama, client/panorama protocol/message/ff_face_columns.c, client/panorama/ff_panorama_none.c)
+$(call feature,textures, client/images/ff_textures.c client/images/ff_intake_texture.c, client/images/ff_textures_none.c)
+$(call feature,network, client/source/link protocol/message/ff_message.c platform/posix/tcp.c, \
+    client/source/link/ff_stream_none.c platform/null/null_tcp.c)
+$(call feature,jpeg, platform/posix/jpeg.c platform/posix/jpeg_tables.c, platform/null/null_jpeg.c)
+$(call feature,hud, sim/handheld/handheld_hud.c common3d/c3d_text.c, sim/handheld/handheld_hud_none.c)
+$(call feature,deflate, protocol/zlib, protocol/zlib/ff_inflate_none.c protocol/zlib/ff_crc_none.c)
+$(call feature,balance, client/balance, client/balance/ff_balance_none.c)
+
+# $(call device,SOURCES,FEATURES LEFT OUT)
+device = $(filter-out $(foreach f,$(2),$(WITHOUT_$f)),$(1)) $(foreach f,$(2),$(INSTEAD_$f))

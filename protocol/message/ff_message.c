@@ -1,0 +1,304 @@
+/* Messages: one field list a type, each with its range; see SPEC.md, "Messages". */
+#include "ff_message.h"
+
+#include "../ff_bytes.h"
+
+#include <string.h>
+
+static const uint8_t hello_magic[4] = { 'F', 'F', 'L', 'D' };
+
+static void require(int *error, int condition)
+{
+    if (!condition && *error == FF_OK) *error = FF_ERR_RANGE;
+}
+
+/* ---- ranges, the same for both directions ---- */
+
+static int get_ok(const ff_get *get, enum ff_message_type type)
+{
+    uint32_t level = ff_key_level(get->key);
+
+    if ((uint64_t)ff_key_code(get->key) >> (2 * level) != 0) return 0;
+    if (type == FF_MSG_GET_TEXTURE) return get->what == 0;
+    return get->what == FF_GET_REFINEMENT || (get->what == FF_GET_ROOT && level == 0);
+}
+
+static int panorama_ok(const ff_get_panorama *panorama)
+{
+    unsigned seen = 0;
+
+    if (panorama->front_wu < 0 || panorama->back_wu <= panorama->front_wu ||
+        panorama->face_size < 16 || panorama->face_size > FF_FACE_SIZE_MAX ||
+        panorama->quality < 1 || panorama->quality > 100 || panorama->face_count < 1 ||
+        panorama->face_count > FF_FACE_COUNT)
+        return 0;
+    for (unsigned i = 0; i < panorama->face_count; i++) {
+        if (panorama->face[i] >= FF_FACE_COUNT || (seen >> panorama->face[i] & 1u)) return 0;
+        seen |= 1u << panorama->face[i];
+    }
+    return 1;
+}
+
+static int face_ok(const ff_face *face)
+{
+    int empty = (face->flags & FF_FACE_EMPTY) != 0;
+
+    if (face->face >= FF_FACE_COUNT || (face->flags & ~(FF_FACE_EMPTY | FF_FACE_LAST)) != 0 ||
+        face->face_size < 16 || face->face_size > FF_FACE_SIZE_MAX ||
+        (uint32_t)face->top_row + face->row_count > face->face_size)
+        return 0;
+    return empty ? face->top_row == 0 && face->row_count == 0 && face->columns_bytes == 0 &&
+                       face->image_bytes == 0
+                 : face->row_count > 0 && face->columns_bytes > 0 && face->image_bytes > 0;
+}
+
+/* ---- encode ---- */
+
+static void write_get(ff_writer *out, const ff_get *get, enum ff_message_type type)
+{
+    require(&out->error, get_ok(get, type));
+    ff_write_bytes(out, get->id, 2);
+    ff_write_bytes(out, get->what | ff_key_level(get->key) << 4, 1);
+    ff_write_varint(out, ff_key_tile(get->key));
+    ff_write_varint(out, ff_key_code(get->key));
+}
+
+static void write_panorama(ff_writer *out, const ff_get_panorama *panorama)
+{
+    require(&out->error, panorama_ok(panorama));
+    ff_write_bytes(out, panorama->id, 2);
+    for (int axis = 0; axis < 3; axis++)
+        ff_write_bytes(out, (uint32_t)panorama->position_wu[axis], 4);
+    ff_write_bytes(out, (uint32_t)panorama->front_wu, 4);
+    ff_write_bytes(out, (uint32_t)panorama->back_wu, 4);
+    ff_write_bytes(out, panorama->face_size, 2);
+    ff_write_bytes(out, panorama->quality, 1);
+    ff_write_bytes(out, panorama->face_count, 1);
+    if (out->error == FF_OK) ff_write_span(out, panorama->face, panorama->face_count);
+}
+
+static void write_face(ff_writer *out, const ff_face *face)
+{
+    require(&out->error, face_ok(face));
+    ff_write_bytes(out, face->id, 2);
+    ff_write_bytes(out, face->face | (uint32_t)face->flags << 4, 1);
+    ff_write_bytes(out, face->face_size, 2);
+    if (face->flags & FF_FACE_EMPTY) return;
+    ff_write_bytes(out, face->top_row, 2);
+    ff_write_bytes(out, face->row_count, 2);
+    ff_write_varint(out, face->columns_bytes);
+    ff_write_span(out, face->columns, face->columns_bytes);
+    ff_write_span(out, face->image, face->image_bytes);
+}
+
+static void write_failed(ff_writer *out, const ff_failed *failed, enum ff_message_type type)
+{
+    require(&out->error, failed->error < 0 && (type == FF_MSG_FAILED || failed->id == 0));
+    ff_write_bytes(out, failed->id, 2);
+    ff_write_bytes(out, (uint8_t)failed->error, 1);
+}
+
+static void write_welcome(ff_writer *out, const ff_welcome *welcome)
+{
+    require(&out->error,
+            welcome->version == FF_PROTOCOL_VERSION && ff_terrain_check(&welcome->info) == FF_OK);
+    ff_write_bytes(out, welcome->version, 4);
+    ff_write_terrain(out, &welcome->info);
+}
+
+static void write_body(ff_writer *out, const ff_message *message)
+{
+    switch (message->type) {
+        case FF_MSG_HELLO:
+            ff_write_span(out, hello_magic, sizeof(hello_magic));
+            ff_write_bytes(out, message->u.hello.version, 4);
+            ff_write_bytes(out, message->u.hello.known_checksum, 4);
+            break;
+        case FF_MSG_GET_NODE:
+        case FF_MSG_GET_TEXTURE: write_get(out, &message->u.get, message->type); break;
+        case FF_MSG_GET_PANORAMA: write_panorama(out, &message->u.panorama); break;
+        case FF_MSG_CANCEL:
+        case FF_MSG_CANCELLED: ff_write_bytes(out, message->u.cancel.id, 2); break;
+        case FF_MSG_PING:
+        case FF_MSG_PONG: ff_write_bytes(out, message->u.ping.stamp, 4); break;
+        case FF_MSG_WELCOME: write_welcome(out, &message->u.welcome); break;
+        case FF_MSG_NODE:
+        case FF_MSG_TEXTURE:
+            ff_write_bytes(out, message->u.data.id, 2);
+            ff_write_span(out, message->u.data.bytes, message->u.data.byte_count);
+            break;
+        case FF_MSG_FACE: write_face(out, &message->u.face); break;
+        case FF_MSG_FAILED:
+        case FF_MSG_GOODBYE: write_failed(out, &message->u.failed, message->type); break;
+        default: require(&out->error, 0);
+    }
+}
+
+size_t ff_message_bytes_max(const ff_message *message)
+{
+    switch (message->type) {
+        case FF_MSG_WELCOME: return FF_MESSAGE_HEADER_MAX + 4 + FF_TERRAIN_BYTES;
+        case FF_MSG_NODE:
+        case FF_MSG_TEXTURE: return FF_MESSAGE_HEADER_MAX + 2 + (size_t)message->u.data.byte_count;
+        case FF_MSG_FACE:
+            return FF_MESSAGE_HEADER_MAX + 14 + (size_t)message->u.face.columns_bytes +
+                   message->u.face.image_bytes;
+        default: return FF_REQUEST_BYTES_MAX;
+    }
+}
+
+int ff_message_encode(const ff_message *message, uint8_t *out, size_t capacity)
+{
+    /* Most bodies are short, so the body is written where a one-byte length puts it, and moved when
+     * that was too little. */
+    size_t room = capacity < 2 ? capacity : 2, body_bytes, header_bytes;
+    ff_writer body = { out + room, out + capacity, FF_OK };
+    ff_writer head = { out, out + capacity, FF_OK };
+
+    write_body(&body, message);
+    if (body.error != FF_OK) return body.error;
+    body_bytes = (size_t)(body.at - (out + room));
+    if (body_bytes > FF_MESSAGE_BODY_MAX) return FF_ERR_RANGE;
+    header_bytes = 1 + ff_varint_bytes((uint32_t)body_bytes);
+    if (header_bytes + body_bytes > capacity) return FF_ERR_FULL;
+    memmove(out + header_bytes, out + room, body_bytes);
+    ff_write_bytes(&head, message->type, 1);
+    ff_write_varint(&head, (uint32_t)body_bytes);
+    return (int)(header_bytes + body_bytes);
+}
+
+/* ---- decode ---- */
+
+static void read_hello(ff_reader *in, ff_hello *hello)
+{
+    const uint8_t *magic = ff_read_span(in, sizeof(hello_magic));
+
+    if (magic && memcmp(magic, hello_magic, sizeof(hello_magic)) != 0) in->error = FF_ERR_FORMAT;
+    hello->version = (uint32_t)ff_read_bytes(in, 4);
+    hello->known_checksum = (uint32_t)ff_read_bytes(in, 4);
+}
+
+static void read_get(ff_reader *in, ff_get *get, enum ff_message_type type)
+{
+    uint32_t tile, code, form;
+
+    get->id = (uint16_t)ff_read_bytes(in, 2);
+    form = (uint32_t)ff_read_bytes(in, 1);
+    tile = ff_read_varint(in);
+    code = ff_read_varint(in);
+    require(&in->error, tile < FF_KEY_TILES_MAX);
+    get->what = (uint8_t)(form & 15u);
+    get->key = ff_key_make(tile, form >> 4, code);
+    require(&in->error, get_ok(get, type));
+}
+
+static void read_panorama(ff_reader *in, ff_get_panorama *panorama)
+{
+    const uint8_t *face;
+
+    panorama->id = (uint16_t)ff_read_bytes(in, 2);
+    for (int axis = 0; axis < 3; axis++)
+        panorama->position_wu[axis] = (int32_t)ff_read_signed(in, 4);
+    panorama->front_wu = (int32_t)ff_read_signed(in, 4);
+    panorama->back_wu = (int32_t)ff_read_signed(in, 4);
+    panorama->face_size = (uint16_t)ff_read_bytes(in, 2);
+    panorama->quality = (uint8_t)ff_read_bytes(in, 1);
+    panorama->face_count = (uint8_t)ff_read_bytes(in, 1);
+    require(&in->error, panorama->face_count <= FF_FACE_COUNT);
+    face = ff_read_span(in, panorama->face_count);
+    if (face) memcpy(panorama->face, face, panorama->face_count);
+    require(&in->error, face && panorama_ok(panorama));
+}
+
+static void read_welcome(ff_reader *in, ff_welcome *welcome)
+{
+    welcome->version = (uint32_t)ff_read_bytes(in, 4);
+    if (in->error == FF_OK && welcome->version != FF_PROTOCOL_VERSION) in->error = FF_ERR_VERSION;
+    ff_read_terrain(in, &welcome->info);
+}
+
+static void read_rest(ff_reader *in, const uint8_t **bytes, uint32_t *count)
+{
+    *count = (uint32_t)(in->end - in->at);
+    *bytes = ff_read_span(in, *count);
+}
+
+static void read_face(ff_reader *in, ff_face *face)
+{
+    uint8_t form;
+
+    face->id = (uint16_t)ff_read_bytes(in, 2);
+    form = (uint8_t)ff_read_bytes(in, 1);
+    face->face = form & 15u;
+    face->flags = form >> 4;
+    face->face_size = (uint16_t)ff_read_bytes(in, 2);
+    if (!(face->flags & FF_FACE_EMPTY)) {
+        face->top_row = (uint16_t)ff_read_bytes(in, 2);
+        face->row_count = (uint16_t)ff_read_bytes(in, 2);
+        face->columns_bytes = ff_read_varint(in);
+        face->columns = ff_read_span(in, face->columns_bytes);
+        read_rest(in, &face->image, &face->image_bytes);
+    }
+    require(&in->error, face_ok(face));
+}
+
+static void read_failed(ff_reader *in, ff_failed *failed, enum ff_message_type type)
+{
+    failed->id = (uint16_t)ff_read_bytes(in, 2);
+    failed->error = (int8_t)ff_read_signed(in, 1);
+    require(&in->error, failed->error < 0 && (type == FF_MSG_FAILED || failed->id == 0));
+}
+
+static void read_body(ff_reader *in, ff_message *out)
+{
+    switch (out->type) {
+        case FF_MSG_HELLO: read_hello(in, &out->u.hello); break;
+        case FF_MSG_GET_NODE:
+        case FF_MSG_GET_TEXTURE: read_get(in, &out->u.get, out->type); break;
+        case FF_MSG_GET_PANORAMA: read_panorama(in, &out->u.panorama); break;
+        case FF_MSG_CANCEL:
+        case FF_MSG_CANCELLED: out->u.cancel.id = (uint16_t)ff_read_bytes(in, 2); break;
+        case FF_MSG_PING:
+        case FF_MSG_PONG: out->u.ping.stamp = (uint32_t)ff_read_bytes(in, 4); break;
+        case FF_MSG_WELCOME: read_welcome(in, &out->u.welcome); break;
+        case FF_MSG_NODE:
+        case FF_MSG_TEXTURE:
+            out->u.data.id = (uint16_t)ff_read_bytes(in, 2);
+            read_rest(in, &out->u.data.bytes, &out->u.data.byte_count);
+            break;
+        case FF_MSG_FACE: read_face(in, &out->u.face); break;
+        case FF_MSG_FAILED:
+        case FF_MSG_GOODBYE: read_failed(in, &out->u.failed, out->type); break;
+    }
+}
+
+static int type_known(uint8_t type)
+{
+    return (type >= FF_MSG_HELLO && type <= FF_MSG_PING) ||
+           (type >= FF_MSG_WELCOME && type <= FF_MSG_GOODBYE);
+}
+
+int ff_message_decode(const uint8_t *bytes, size_t byte_count, ff_message *out)
+{
+    ff_reader head = {
+        bytes, bytes + (byte_count < FF_MESSAGE_HEADER_MAX ? byte_count : FF_MESSAGE_HEADER_MAX),
+        FF_OK
+    };
+    ff_reader body = { NULL, NULL, FF_OK };
+    uint32_t body_bytes;
+
+    if (byte_count < 1) return 0;
+    memset(out, 0, sizeof(*out));
+    if (!type_known(bytes[0])) return FF_ERR_FORMAT;
+    out->type = (enum ff_message_type)ff_read_bytes(&head, 1);
+    body_bytes = ff_read_varint(&head);
+    if (head.error == FF_ERR_TRUNCATED)
+        return byte_count < FF_MESSAGE_HEADER_MAX ? 0 : FF_ERR_RANGE;
+    if (head.error != FF_OK || body_bytes > FF_MESSAGE_BODY_MAX) return FF_ERR_RANGE;
+    if ((size_t)(bytes + byte_count - head.at) < body_bytes) return 0;
+    body.at = head.at;
+    body.end = head.at + body_bytes;
+    read_body(&body, out);
+    if (body.error == FF_OK && body.at != body.end) body.error = FF_ERR_FORMAT;
+    return body.error != FF_OK ? body.error : (int)(body.end - bytes);
+}

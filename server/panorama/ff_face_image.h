@@ -1,0 +1,36 @@
+/* A drawn face as pixels: where its ground is, and an image that compresses well (Hybrid, section
+ * 6.2). Pure functions. */
+#ifndef FF_FACE_IMAGE_H
+#define FF_FACE_IMAGE_H
+
+#include "../../protocol/message/ff_message.h"
+
+/* Pixels of this colour show no ground: the sky is the client's own. Ground is kept clear of it by
+ * ff_face_not_key. */
+#define FF_FACE_KEY_RGB565 0xF81Fu
+#define FF_FACE_KEY_ABGR   0xFFFF00FFu
+
+static inline uint16_t ff_face_not_key(uint16_t rgb565)
+{
+    return rgb565 == FF_FACE_KEY_RGB565 ? (uint16_t)(rgb565 | 1u << 6) : rgb565;
+}
+
+typedef struct ff_face_spans {
+    uint16_t top_row, row_count; /* row_count 0: no ground at all */
+    /* relative to top_row; equal where a column has none */
+    uint16_t top[FF_FACE_SIZE_MAX], bottom[FF_FACE_SIZE_MAX];
+} ff_face_spans;
+
+/* Spans of ground in a size by size picture, RGB888, top row first. */
+void ff_face_find_spans(const uint8_t *rgb, uint32_t size, ff_face_spans *spans);
+
+/* Lowers the spans' lower ends by a pixel, and to those beside them: there the near plane cuts
+ * ground that the client draws itself, in front, and rounding must not leave a gap between the
+ * two. */
+void ff_face_lower(ff_face_spans *spans, uint32_t size);
+
+/* Paints over all that is not ground within the spans' rows: ground is continued up, down, into
+ * holes and sideways, so that neither JPEG nor filtering brings a foreign colour to its edge. */
+void ff_face_fill(uint8_t *rgb, uint32_t size, const ff_face_spans *spans);
+
+#endif

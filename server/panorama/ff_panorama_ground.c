@@ -1,0 +1,266 @@
+#include "ff_panorama_ground.h"
+#include "ff_face_image.h"
+#include "ff_face_view.h"
+#include "../../client/terrain/ff_pack_source.h"
+#include "../../client/images/ff_texture_map.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define ERROR_PX_Q8 256 /* one texel of the face */
+#define SIGMA_Q8    320
+#define LOAD_ROUNDS_MAX \
+    64 /* every round refines at least one level or stops: a bound for damaged packs */
+#define WHITE 0xFFFFFFFFu
+
+void panorama_ground_desc(const ff_pack *pack, const sys_surface_api *surface_api, c3d_desc *desc)
+{
+    uint32_t side = ff_node_side(&pack->header.info);
+    *desc = (c3d_desc){ .surface_api = surface_api,
+                        .mesh_count = FF_PANORAMA_NODES,
+                        .strip_count = 32,
+                        .texture_count = FF_PANORAMA_TEXTURES,
+                        .mesh_vertices_max = (uint16_t)(side * side),
+                        .strip_indices_max = sizeof((ff_strips *)0)->index / sizeof(uint16_t),
+                        .use_vertex_buffers = 1 };
+}
+
+static void node_evicted(void *context, uint32_t user)
+{
+    panorama_ground *ground = context;
+    if (user) c3d_mesh_free(ground->device, (c3d_mesh){ user });
+}
+
+static int make_strips(panorama_ground *ground)
+{
+    int rc = ff_strips_make(&ground->strips, ground->pack->header.info.node_log2);
+    for (unsigned i = 0; rc == FF_OK && i < ground->strips.count; i++) {
+        const ff_strips *s = &ground->strips;
+        if (s->length[i] == 0) continue;
+        ground->strip[i] = c3d_strip_make(ground->device, s->index + s->first[i], s->length[i]);
+        if (!ground->strip[i].id) rc = FF_ERR_FULL;
+    }
+    return rc;
+}
+
+static int make_texture_memory(panorama_ground *ground)
+{
+    size_t texels = (size_t)1 << (2 * ground->pack->header.info.texture_log2);
+    if (ground->pack->header.info.texture_log2 == 0) return FF_OK;
+    ground->texture_rgb = malloc(texels * 3);
+    ground->texture_texels = malloc(texels * sizeof *ground->texture_texels);
+    return ground->texture_rgb && ground->texture_texels ? FF_OK : FF_ERR_MEMORY;
+}
+
+int panorama_ground_open(panorama_ground *ground, const ff_pack *pack, c3d_device *device,
+                         ff_panorama_render_stats *stats)
+{
+    const ff_terrain_info *info = &pack->header.info;
+    ff_tree_desc desc = { .info = *info,
+                          .node_count = FF_PANORAMA_NODES,
+                          .wish_count = FF_PANORAMA_WISHES };
+    size_t tree_bytes = ff_tree_bytes(&desc), decoder_bytes = ff_decoder_bytes(info);
+    memset(ground, 0, sizeof *ground);
+    ground->pack = pack;
+    ground->stats = stats;
+    ground->device = device;
+    ground->tree_memory = malloc(tree_bytes);
+    ground->decoder_memory = malloc(decoder_bytes);
+    if (!ground->tree_memory || !ground->decoder_memory) return FF_ERR_MEMORY;
+    ground->tree = ff_tree_create(&desc, ground->tree_memory, tree_bytes);
+    ground->decoder = ff_decoder_create(info, ground->decoder_memory, decoder_bytes);
+    if (!ground->tree || !ground->decoder) return FF_ERR_MEMORY;
+    ff_tree_on_evict(ground->tree, node_evicted, ground);
+    int rc = make_texture_memory(ground);
+    return rc == FF_OK ? make_strips(ground) : rc;
+}
+
+void panorama_ground_close(panorama_ground *ground)
+{
+    free(ground->tree_memory);
+    free(ground->decoder_memory);
+    free(ground->texture_rgb);
+    free(ground->texture_texels);
+    memset(ground, 0, sizeof *ground);
+}
+
+/* ---- loading ---- */
+
+/* The tree's list may change as nodes come in: it is copied first. Returns how many were
+ * delivered. */
+static uint32_t serve_wishes(panorama_ground *ground)
+{
+    const ff_wish *list;
+    uint32_t count = ff_tree_wishes(ground->tree, &list), delivered = 0;
+    if (count > FF_PANORAMA_WISHES) count = FF_PANORAMA_WISHES;
+    memcpy(ground->wishes, list, count * sizeof *list);
+    for (uint32_t i = 0; i < count; i++) {
+        const ff_wish *wish = &ground->wishes[i];
+        int rc = ff_pack_source_serve(ground->pack, ground->decoder, ground->values, ground->tree,
+                                      wish->key, wish->refinement);
+        if (rc == FF_OK) {
+            ground->stats->nodes_read++;
+            delivered++;
+        } else if (rc != FF_ERR_FULL && rc != FF_ERR_NOT_FOUND) {
+            ground->stats->nodes_damaged++;
+        }
+    }
+    return delivered;
+}
+
+void panorama_ground_load(panorama_ground *ground, const ff_get_panorama *request,
+                          enum ff_face_name face)
+{
+    ff_quality quality = { .measure = FF_MEASURE_PIXELS,
+                           .c_q8 = 256,
+                           .error_px_q8 = ERROR_PX_Q8,
+                           .sigma_q8 = SIGMA_Q8,
+                           .view_wu = request->back_wu,
+                           .hole_wu = ff_face_near_wu(request) };
+    ff_view view;
+    ff_face_camera(request, face, &view.camera);
+    memcpy(view.centre_wu, request->position_wu, sizeof view.centre_wu);
+    for (int round = 0; round < LOAD_ROUNDS_MAX; round++) {
+        ff_tree_select(ground->tree, &view, &quality);
+        if (serve_wishes(ground) == 0) break;
+    }
+}
+
+/* ---- seeing ---- */
+
+/* Exact: what is drawn of a node lies between its lowest and highest vertex. */
+static int node_seen(const panorama_ground *ground, const ff_drawn *drawn,
+                     const ff_get_panorama *request, enum ff_face_name face)
+{
+    const ff_terrain_info *info = &ground->pack->header.info;
+    uint32_t count = ff_node_side(info) * ff_node_side(info);
+    uint16_t lowest = UINT16_MAX, highest = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        lowest = drawn->heights[i] < lowest ? drawn->heights[i] : lowest;
+        highest = drawn->heights[i] > highest ? drawn->heights[i] : highest;
+    }
+    int32_t x_wu, y_wu;
+    int64_t edge = ff_node_edge_wu(info, ff_key_level(drawn->key));
+    ff_node_origin_wu(info, drawn->key, &x_wu, &y_wu);
+    int64_t low[3] = { x_wu, y_wu, ff_height_wu(info, lowest) };
+    int64_t high[3] = { x_wu + edge, y_wu + edge, ff_height_wu(info, highest) };
+    return ff_face_sees_box(request, face, low, high);
+}
+
+int panorama_ground_seen(const panorama_ground *ground, const ff_get_panorama *request,
+                         enum ff_face_name face)
+{
+    const ff_drawn *list;
+    uint32_t count = ff_tree_drawn(ground->tree, &list);
+    for (uint32_t i = 0; i < count; i++)
+        if (node_seen(ground, &list[i], request, face)) return 1;
+    return 0;
+}
+
+/* ---- drawing ---- */
+
+static int load_texture(panorama_ground *ground, ff_key key, c3d_texture *handle)
+{
+    const ff_terrain_info *info = &ground->pack->header.info;
+    uint32_t size = 1u << info->texture_log2;
+    const uint8_t *jpeg;
+    int bytes = ff_pack_record(ground->pack, FF_SECTION_TEXTURE, key, &jpeg);
+    if (bytes < 0) return bytes;
+    int rc = sys_jpeg_decode(jpeg, (size_t)bytes, size, size, ground->texture_rgb);
+    if (rc < 0) return rc;
+    ff_texture_texels(info, ground->texture_rgb, ground->texture_texels);
+    for (uint32_t i = 0; i < size * size; i++)
+        ground->texture_texels[i] = ff_face_not_key(ground->texture_texels[i]);
+    *handle = c3d_texture_make(ground->device, C3D_RGB565, size, size, ground->texture_texels);
+    return handle->id ? FF_OK : FF_ERR_FULL;
+}
+
+/* The image over a node, the least recently used one making room; id 0: none, the ground is shaded.
+ * A damaged one is remembered as such until its slot is needed. */
+static c3d_texture node_texture(panorama_ground *ground, ff_key key)
+{
+    panorama_texture *oldest = &ground->texture[0];
+    ground->texture_clock++;
+    for (uint32_t i = 0; i < FF_PANORAMA_TEXTURES; i++) {
+        panorama_texture *texture = &ground->texture[i];
+        if (texture->used && texture->key == key) {
+            texture->used = ground->texture_clock;
+            return texture->handle;
+        }
+        if (texture->used < oldest->used) oldest = texture;
+    }
+    if (oldest->handle.id) c3d_texture_free(ground->device, oldest->handle);
+    *oldest = (panorama_texture){ .key = key, .used = ground->texture_clock };
+    if (load_texture(ground, key, &oldest->handle) < 0) ground->stats->nodes_damaged++;
+    return oldest->handle;
+}
+
+static c3d_mesh node_mesh(panorama_ground *ground, const ff_drawn *drawn)
+{
+    uint32_t *user = ff_tree_user(ground->tree, drawn->node);
+    if (*user == 0) {
+        c3d_vertex vertices[FF_NODE_HEIGHTS_MAX];
+        uint32_t side = ff_node_side(&ground->pack->header.info);
+        ff_tree_vertices(ground->tree, drawn, 1, vertices);
+        *user = c3d_mesh_make(ground->device, vertices, side * side).id;
+    }
+    return (c3d_mesh){ *user };
+}
+
+static void draw_node(panorama_ground *ground, const ff_drawn *drawn, const c3d_camera *camera)
+{
+    const ff_terrain_info *info = &ground->pack->header.info;
+    c3d_draw draw = { .mesh = node_mesh(ground, drawn),
+                      .xy_scale_wu = drawn->cell_wu,
+                      .z_scale_q16 = info->hscale_q24,
+                      .flags = C3D_DRAW_COLOURED,
+                      .colour = WHITE };
+    ff_key key = ff_texture_key(info, drawn->key);
+    for (int i = 0; i < 3; i++)
+        draw.origin_wu[i] = (int64_t)drawn->origin_wu[i] - camera->pos_wu[i];
+    if (key != FF_KEY_NONE) draw.texture = node_texture(ground, key);
+    if (draw.texture.id) {
+        draw.flags = C3D_DRAW_TEXTURED;
+        ff_texture_map(info, drawn->key, key, draw.tex_scale_q16, draw.tex_offset_q16);
+    }
+    uint8_t strip[5];
+    unsigned count = ff_strips_for(drawn->coarser, strip);
+    for (unsigned i = 0; i < count; i++) {
+        draw.strip = ground->strip[strip[i]];
+        if (draw.strip.id) c3d_draw_strip(ground->device, &draw);
+    }
+}
+
+static int by_key(const void *a, const void *b)
+{
+    ff_key ka = (*(const ff_drawn *const *)a)->key, kb = (*(const ff_drawn *const *)b)->key;
+    return ka < kb ? -1 : ka > kb;
+}
+
+/* In an order that does not depend on what was drawn before: where two triangles are equally deep,
+ * the first one stays. */
+static uint32_t list_seen(panorama_ground *ground, const ff_get_panorama *request,
+                          enum ff_face_name face)
+{
+    const ff_drawn *list;
+    uint32_t count = ff_tree_drawn(ground->tree, &list), seen = 0;
+    for (uint32_t i = 0; i < count; i++)
+        if (node_seen(ground, &list[i], request, face)) ground->seen[seen++] = &list[i];
+    qsort(ground->seen, seen, sizeof *ground->seen, by_key);
+    return seen;
+}
+
+void panorama_ground_draw(panorama_ground *ground, const ff_get_panorama *request,
+                          enum ff_face_name face)
+{
+    c3d_frame frame = { .clear_colour = FF_FACE_KEY_ABGR };
+    c3d_stats stats;
+    uint32_t count = list_seen(ground, request, face);
+    ff_face_camera(request, face, &frame.camera);
+    c3d_begin(ground->device, &frame);
+    for (uint32_t i = 0; i < count; i++) draw_node(ground, ground->seen[i], &frame.camera);
+    ground->stats->nodes_drawn += count;
+    c3d_end(ground->device);
+    c3d_get_stats(ground->device, &stats);
+    ground->stats->triangles += stats.frame_triangles;
+}

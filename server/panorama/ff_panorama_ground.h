@@ -1,0 +1,56 @@
+/* The ground a panorama shows: a tree fed from the pack and its meshes and textures on one 3D
+ * device. Kept warm between faces. Internal to the renderer.
+ */
+#ifndef FF_PANORAMA_GROUND_H
+#define FF_PANORAMA_GROUND_H
+
+#include "ff_panorama_render.h"
+#include "../../client/terrain/ff_strips.h"
+#include "../../client/terrain/ff_tree.h"
+
+#define FF_PANORAMA_NODES    4096 /* slots of the tree: bounds the renderer's memory */
+#define FF_PANORAMA_WISHES   1024
+#define FF_PANORAMA_TEXTURES 256
+
+typedef struct panorama_texture {
+    ff_key key;
+    c3d_texture handle;
+    uint32_t used;
+} panorama_texture;
+
+typedef struct panorama_ground {
+    const ff_pack *pack;
+    ff_panorama_render_stats *stats;
+    c3d_device *device;
+    ff_tree *tree;
+    ff_decoder *decoder;
+    void *tree_memory, *decoder_memory;
+    int32_t values[FF_REFINED_HEIGHTS_MAX];
+    ff_wish wishes[FF_PANORAMA_WISHES];
+    const ff_drawn *seen[FF_PANORAMA_NODES]; /* of the face being drawn */
+    ff_strips strips;
+    c3d_strip strip[32];
+    panorama_texture texture[FF_PANORAMA_TEXTURES];
+    uint32_t texture_clock;
+    uint8_t *texture_rgb; /* one decoded image, and the same as RGB565 */
+    uint16_t *texture_texels;
+} panorama_ground;
+
+/* What c3d_open must provide for it. */
+void panorama_ground_desc(const ff_pack *pack, const sys_surface_api *surface_api, c3d_desc *desc);
+/* FF_OK or a negative error; the device stays the caller's. Close also after a failed open. */
+int panorama_ground_open(panorama_ground *ground, const ff_pack *pack, c3d_device *device,
+                         ff_panorama_render_stats *stats);
+void panorama_ground_close(panorama_ground *ground);
+
+/* Reads what the face needs, within the pool. */
+void panorama_ground_load(panorama_ground *ground, const ff_get_panorama *request,
+                          enum ff_face_name face);
+/* 1 when the loaded ground can show in the face. */
+int panorama_ground_seen(const panorama_ground *ground, const ff_get_panorama *request,
+                         enum ff_face_name face);
+/* Draws it over FF_FACE_KEY. */
+void panorama_ground_draw(panorama_ground *ground, const ff_get_panorama *request,
+                          enum ff_face_name face);
+
+#endif

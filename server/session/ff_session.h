@@ -1,0 +1,63 @@
+/* One client as the server sees it: bytes in, bytes out, limits. No sockets, processes or clock:
+ * the worker process feeds it from a socket, sim/ from a simulated link, tests from arrays. Nothing
+ * a client sends can do more than end its own session.
+ */
+#ifndef FF_SESSION_H
+#define FF_SESSION_H
+
+#include "../../protocol/message/ff_message.h"
+#include "../../protocol/ff_pack.h"
+
+typedef struct ff_session ff_session;
+
+typedef struct ff_session_desc {
+    const ff_pack *pack;
+    uint32_t out_bytes_max; /* answers buffered (and one face); 0: 256 kB. While full, requests wait
+                               in the queue below, so that a CANCEL still reaches them; without room
+                               even for short answers, bytes wait unread */
+    /* requests waiting; 0: 256; more closes the session (GOODBYE, FULL) */
+    uint32_t requests_max;
+    uint32_t panoramas_per_minute; /* 0: 120; more are answered FAILED(FULL) */
+    uint32_t idle_ms_max;          /* no message for this long closes; 0: 10 minutes */
+    int64_t now_us; /* time of the connection: idle counts from here until the first message */
+} ff_session_desc;
+
+typedef struct ff_session_stats {
+    uint64_t bytes_in, bytes_out;
+    uint32_t nodes, textures, panoramas, faces, failed, cancelled;
+    uint32_t damaged; /* of the failed: records whose checksum is wrong */
+} ff_session_stats;
+
+ff_session *ff_session_create(const ff_session_desc *desc); /* malloc; NULL when out of memory */
+void ff_session_destroy(ff_session *session);
+
+/* Bytes from the client. Returns bytes taken (fewer while the out buffer is full: offer the rest
+ * again after ff_session_sent), or a negative error: send what is pending (a GOODBYE), then
+ * close. */
+int ff_session_receive(ff_session *session, const uint8_t *bytes, size_t count, int64_t now_us);
+/* Pending output: count and *bytes. After sending n of them call ff_session_sent(n). */
+size_t ff_session_output(ff_session *session, const uint8_t **bytes);
+void ff_session_sent(ff_session *session, size_t count);
+/* Ends the session from the server's side: GOODBYE with `reason` (a negative error), then as after
+ * an error of ff_session_receive. */
+void ff_session_end(ff_session *session, int reason);
+/* 1 when idle for too long. */
+int ff_session_idle(const ff_session *session, int64_t now_us);
+
+/* Panoramas are rendered elsewhere: the next face to render, 1 and the job, or 0. At most one face
+ * of a session is out at a time, and a newer panorama request supersedes the faces of an older one
+ * not yet rendered (its id is answered CANCELLED). */
+typedef struct ff_face_job {
+    ff_get_panorama request;
+    uint8_t face;
+    uint8_t last;
+} ff_face_job;
+int ff_session_next_face(ff_session *session, ff_face_job *job);
+/* The rendered face, complete FF_MSG_FACE bytes; or a negative error: answered FAILED. Superseded
+ * ones are thrown away here. */
+void ff_session_face_done(ff_session *session, const ff_face_job *job, const uint8_t *message,
+                          int bytes_or_error);
+
+void ff_session_get_stats(const ff_session *session, ff_session_stats *stats);
+
+#endif

@@ -1,0 +1,443 @@
+#include "fly_flight.h"
+
+#include "../judge/sim_watertight.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TICK_US                                                                      \
+    2000 /* of the simulated network; a real server is looked after at the same pace \
+          */
+#define FNV_START 14695981039346656037u
+#define FNV_PRIME 1099511628211u
+
+static int fail(const char *what, const char *why)
+{
+    fprintf(stderr, "farfield-fly: %s: %s\n", what, why);
+    return -1;
+}
+
+static uint64_t fnv(uint64_t hash, const uint8_t *bytes, size_t count)
+{
+    for (size_t i = 0; i < count; i++) hash = (hash ^ bytes[i]) * FNV_PRIME;
+    return hash;
+}
+
+/* ---- time ---- */
+
+/* Server and client until `until_us`, by ticks. */
+static int advance(fly_flight *flight, int64_t until_us)
+{
+    fly_world *world = flight->world;
+    if (flight->options->server) {
+        while ((world->now_us = sys_time_us()) < until_us)
+            sys_sleep_us(until_us - world->now_us < TICK_US ? until_us - world->now_us : TICK_US);
+        return 0;
+    }
+    while (world->now_us < until_us) {
+        world->now_us = until_us - world->now_us < TICK_US ? until_us : world->now_us + TICK_US;
+        int rc = sim_server_step(&world->server);
+        if (rc != FF_OK) return fail("server", ff_error_text(rc));
+        if (world->tape.file) sim_tape_work(&world->tape, world->now_us);
+        (void)ff_client_work(world->client, world->now_us);
+    }
+    if (world->surface && world->server.faces_rendered != flight->faces_seen) {
+        flight->faces_seen = world->server.faces_rendered;
+        (void)world->surface_api->make_current(world->surface);
+    }
+    return 0;
+}
+
+static int64_t flight_clock(void *context) { return ((const fly_world *)context)->now_us; }
+
+/* ---- events ---- */
+
+static int apply_event(fly_flight *flight, const fly_event *what, double t_s)
+{
+    fly_world *world = flight->world;
+    sys_event event = { .time_us = world->now_us };
+    ff_panorama_desc panorama = flight->options->panorama;
+    ff_balance_desc balance = flight->options->balance;
+    switch (what->kind) {
+        case FLY_LOW_BATTERY:
+        case FLY_BATTERY_OK:
+            event.type = SYS_EVENT_BATTERY;
+            event.u.battery.low = what->kind == FLY_LOW_BATTERY;
+            event.u.battery.percent = what->kind == FLY_LOW_BATTERY ? 5 : 80;
+            (void)sys_event_inject(&event);
+            break;
+        case FLY_INTERRUPTION:
+        case FLY_RESUME:
+            event.type = SYS_EVENT_INTERRUPTION;
+            event.u.interruption.begins = what->kind == FLY_INTERRUPTION;
+            (void)sys_event_inject(&event);
+            break;
+        case FLY_CUT:
+            if (world->link) sim_link_cut(world->link, world->now_us);
+            break;
+        case FLY_PANORAMA_ON:
+        case FLY_PANORAMA_OFF:
+            panorama.enabled = what->kind == FLY_PANORAMA_ON;
+            ff_client_set_panorama(world->client, &panorama);
+            break;
+        case FLY_LINK:
+            if (world->link && sim_link_change(world->link, &what->link, world->now_us) != FF_OK)
+                return fail("link", ff_error_text(FF_ERR_MEMORY));
+            break;
+        case FLY_BUDGET:
+            balance.frame_budget = what->budget;
+            ff_client_set_balance(world->client, &balance);
+            break;
+        case FLY_TELEPORT:
+            fly_path_teleport(&world->path, t_s, what->place[0], what->place[1]);
+            break;
+    }
+    return 0;
+}
+
+static int events(fly_flight *flight, double t_s)
+{
+    sys_event event;
+    int rc = 0;
+    for (unsigned i = 0; !rc && i < flight->options->event_count; i++)
+        if (!(flight->events_done >> i & 1u) && t_s >= flight->options->event[i].at_s) {
+            flight->events_done |= (uint64_t)1 << i;
+            rc = apply_event(flight, &flight->options->event[i], t_s);
+        }
+    while (sys_event_take(&event)) ff_client_event(flight->world->client, &event);
+    return rc;
+}
+
+/* ---- rows ---- */
+
+static int fill_audit(fly_flight *flight, fly_sample *sample)
+{
+    fly_world *world = flight->world;
+    const ff_tree *tree = ff_client_tree(world->client);
+    const ff_panorama_desc *panorama = &flight->options->panorama;
+    ff_client_stats stats;
+    ff_client_get_stats(world->client, &stats);
+    sim_audit_view view = { .camera = flight->camera,
+                            .quality = stats.quality,
+                            .front_wu = stats.back_plane_wu - stats.back_plane_wu / 8,
+                            .back_wu = panorama->server_back_wu ? panorama->server_back_wu
+                                                                : 100000 * FF_WU_PER_METRE };
+    sim_audit_result result;
+    sample->err_px_rms = sample->err_px_p95 = sample->err_px_max = NAN;
+    sample->undrawn_px_percent = sample->panorama_px_percent = NAN;
+    sample->square_px_waiting = sample->square_px_depth = sample->square_px_quality = NAN;
+    sample->square_px_panorama = sample->square_px_undrawn = NAN;
+    if (!world->auditor) return 0;
+    if (tree) view.drawn_count = ff_tree_drawn(tree, &view.drawn);
+    view.panorama = ff_client_panorama(world->client, view.panorama_pos_wu, &view.faces);
+    int rc = sim_audit_frame(world->auditor, &view, &result);
+    if (rc != FF_OK) return fail("auditor", ff_error_text(rc));
+    uint32_t all = result.ground_pixels + result.panorama_pixels + result.undrawn_pixels;
+    sample->undrawn_px_percent = result.undrawn_percent;
+    sample->panorama_px_percent = all ? 100.0 * result.panorama_pixels / all : 0;
+    if (all) {
+        sample->err_px_rms = result.err_px_rms;
+        sample->err_px_p95 = result.err_px_p95;
+        sample->err_px_max = result.err_px_max;
+        sample->square_px_waiting = result.square_px[SIM_CAUSE_WAITING];
+        sample->square_px_depth = result.square_px[SIM_CAUSE_DEPTH];
+        sample->square_px_quality = result.square_px[SIM_CAUSE_QUALITY];
+        sample->square_px_panorama = result.square_px[SIM_CAUSE_PANORAMA];
+        sample->square_px_undrawn = result.square_px[SIM_CAUSE_UNDRAWN];
+    }
+    return 0;
+}
+
+static int fill_relevance(fly_flight *flight, fly_sample *sample)
+{
+    sim_relevance_figures f;
+    sample->bytes_heights = sample->bytes_images = sample->bytes_faces = sample->bytes_overhead =
+        sample->bytes_judged = NAN;
+    sample->unused_heights = sample->unused_images = sample->unused_faces =
+        sample->unused_supporting = NAN;
+    sample->relevance_percent = NAN;
+    if (!flight->world->relevance) return 0;
+    int rc = sim_relevance_get(flight->world->relevance, &f);
+    if (rc != FF_OK) return fail("relevance", ff_error_text(rc));
+    sample->bytes_heights = f.came[SIM_ANSWER_HEIGHTS];
+    sample->bytes_images = f.came[SIM_ANSWER_IMAGE];
+    sample->bytes_faces = f.came[SIM_ANSWER_FACE];
+    sample->bytes_overhead = f.overhead;
+    sample->bytes_judged = f.judged[SIM_ANSWER_HEIGHTS] + f.judged[SIM_ANSWER_IMAGE] +
+                           f.judged[SIM_ANSWER_FACE] + f.overhead;
+    sample->unused_heights = f.unused[SIM_ANSWER_HEIGHTS];
+    sample->unused_images = f.unused[SIM_ANSWER_IMAGE];
+    sample->unused_faces = f.unused[SIM_ANSWER_FACE];
+    sample->unused_supporting = f.supporting;
+    sample->relevance_percent = f.percent;
+    return 0;
+}
+
+static void fill_stats(const fly_flight *flight, fly_sample *sample)
+{
+    ff_client_stats stats;
+    ff_client_get_stats(flight->world->client, &stats);
+    sample->x_m = (double)flight->camera.pos_wu[0] / FF_WU_PER_METRE;
+    sample->y_m = (double)flight->camera.pos_wu[1] / FF_WU_PER_METRE;
+    sample->z_m = (double)flight->camera.pos_wu[2] / FF_WU_PER_METRE;
+    sample->triangles = stats.tree.triangles;
+    sample->nodes_drawn = stats.tree.nodes_drawn;
+    sample->nodes_held = stats.tree.nodes_held;
+    sample->bytes_down = (double)stats.bytes_down;
+    sample->bytes_up = (double)stats.bytes_up;
+    sample->requests = stats.requests_sent;
+    sample->in_flight = stats.in_flight;
+    sample->queued = stats.queued;
+    sample->panoramas = stats.panorama_requests;
+    sample->panorama_faces = stats.panorama_faces;
+    sample->panorama_faces_empty = stats.panorama_faces_empty;
+    sample->panorama_bytes = stats.panorama_bytes;
+    sample->requests_dropped = stats.requests_dropped;
+    sample->requests_cancelled = stats.requests_cancelled;
+    sample->tree_err_px = stats.tree.error_px_q8 / 256.0;
+    sample->stitched = stats.tree.stitched;
+    sample->textures_held = stats.textures_held;
+    sample->pool_full = stats.tree.pool_full;
+    sample->reconnects = stats.reconnects;
+    sample->link_up = stats.link == FF_LINK_UP;
+    sample->low_power = stats.low_power;
+    sample->share_percent = stats.balance.share_percent;
+    sample->fidelity_percent = stats.balance.fidelity_percent;
+    sample->frame_load = stats.balance.frame_load_q8 / 256.0;
+    sample->link_load = stats.balance.link_load_q8 / 256.0;
+    sample->balance_moves = stats.balance.moves;
+    sample->balance_turns = stats.balance.turns;
+    sample->c = stats.quality.c_q8 / 256.0;
+    sample->error_px = stats.quality.error_px_q8 / 256.0;
+    sample->depth = stats.quality.depth_max;
+    sample->back_plane_m = (double)stats.back_plane_wu / FF_WU_PER_METRE;
+    sample->panorama_error_px = stats.panorama_error_q8 / 256.0;
+    sample->frames_drawn = stats.frames_updated;
+    sample->geometry_hash = ff_client_geometry_hash(flight->world->client);
+    sample->request_hash = ff_client_request_hash(flight->world->client);
+}
+
+/* The picture as it stands, in flight->rgb; drawn once more, because a frame in which nothing
+ * changed was not drawn at all. */
+static int read_picture(fly_flight *flight)
+{
+    if (!flight->world->surface) return 0;
+    ff_client_draw(flight->world->client);
+    c3d_device *device = ff_client_device(flight->world->client);
+    if (!device) { /* the terrain is not known yet: a black picture */
+        memset(flight->rgb, 0, (size_t)flight->options->width * flight->options->height * 3);
+        return 0;
+    }
+    int rc = c3d_read_rgb(device, flight->rgb);
+    return rc == FF_OK ? 0 : fail("picture", ff_error_text(rc));
+}
+
+static int take_row(fly_flight *flight, double t_s)
+{
+    if (flight->sample_count == flight->sample_capacity) {
+        size_t more = flight->sample_capacity ? flight->sample_capacity * 2 : 512;
+        fly_sample *grown = realloc(flight->sample, more * sizeof *grown);
+        if (!grown) return fail("rows", ff_error_text(FF_ERR_MEMORY));
+        flight->sample = grown;
+        flight->sample_capacity = more;
+    }
+    fly_sample *sample = &flight->sample[flight->sample_count++];
+    memset(sample, 0, sizeof *sample);
+    sample->t_s = t_s;
+    fill_stats(flight, sample);
+    if (fill_audit(flight, sample) || fill_relevance(flight, sample) || read_picture(flight))
+        return -1;
+    if (flight->world->surface)
+        sample->frame_hash = fnv(FNV_START, flight->rgb,
+                                 (size_t)flight->options->width * flight->options->height * 3);
+    flight->totals.frame_hash = fnv(flight->totals.frame_hash, (const uint8_t *)&sample->frame_hash,
+                                    sizeof sample->frame_hash);
+    if (flight->csv) fly_csv_row(flight->csv, sample);
+    return 0;
+}
+
+static int write_picture(const fly_flight *flight, const char *folder, double t_s)
+{
+    char path[4096];
+    if (snprintf(path, sizeof path, "%s/frame-%07.2f.png", folder, t_s) >= (int)sizeof path)
+        return fail(folder, "path too long");
+    int rc = sys_png_write(path, flight->rgb, flight->options->width, flight->options->height);
+    return rc == FF_OK ? 0 : fail(path, ff_error_text(rc));
+}
+
+static int take_picture(fly_flight *flight, double t_s)
+{
+    fly_world *world = flight->world;
+    if (read_picture(flight) || write_picture(flight, flight->options->png_dir, t_s)) return -1;
+    if (!world->reference.client) return 0;
+    int rc = fly_reference_draw(&world->reference, &flight->camera, flight->rgb);
+    (void)world->surface_api->make_current(world->surface);
+    return rc == FF_OK ? write_picture(flight, flight->options->reference_dir, t_s)
+                       : fail("reference", ff_error_text(rc));
+}
+
+/* ---- frames ---- */
+
+/* Searches the whole cut for cracks. The first one is told. */
+static void check_cracks(fly_flight *flight, double t_s)
+{
+    char why[256];
+    const ff_drawn *list;
+    const ff_tree *tree = ff_client_tree(flight->world->client);
+    uint32_t count = tree ? ff_tree_cut(tree, &list) : 0;
+    if (!count ||
+        sim_watertight_check(&flight->world->pack.header.info, list, count, why, sizeof why))
+        return;
+    if (!flight->totals.crack_frames++)
+        fprintf(stderr, "farfield-fly: crack at %.3f s: %s\n", t_s, why);
+}
+
+/* The path, the auditor and the search for cracks look at --pack: a server of other ground makes
+ * them meaningless. */
+static int check_terrain(const fly_flight *flight)
+{
+    const ff_terrain_info *info = ff_client_terrain(flight->world->client);
+    if (!info || info->checksum == flight->world->pack.header.info.checksum) return 0;
+    return fail(flight->options->server ? flight->options->server : flight->options->pack_path,
+                "serves another terrain than --pack");
+}
+
+/* What the frame draws, for the relevance of what came. */
+static void tell_relevance(fly_flight *flight)
+{
+    const ff_tree *tree = ff_client_tree(flight->world->client);
+    sim_relevance_view view = { .camera = flight->camera };
+    unsigned faces;
+    if (!flight->world->relevance || !tree) return;
+    view.drawn_count = ff_tree_drawn(tree, &view.drawn);
+    view.panorama = ff_client_panorama(flight->world->client, view.panorama_pos_wu, &faces);
+    sim_relevance_frame(flight->world->relevance, &view);
+}
+
+static int one_frame(fly_flight *flight, double t_s)
+{
+    fly_world *world = flight->world;
+    ff_client_stats stats;
+    if (events(flight, t_s)) return -1;
+    fly_path_at(&world->path, t_s, &flight->camera);
+    if (world->tape.file)
+        sim_tape_frame(&world->tape, world->now_us, &flight->camera,
+                       t_s > flight->options->settle_s);
+    int changed = ff_client_update(world->client, world->now_us, &flight->camera);
+    if (check_terrain(flight)) return -1;
+    if (changed) {
+        if (flight->options->check) check_cracks(flight, t_s);
+        if (world->surface) {
+            ff_client_draw(world->client);
+            (void)world->surface_api->present(world->surface);
+        }
+    }
+    tell_relevance(flight);
+    ff_client_get_stats(world->client, &stats);
+    flight->totals.empty_frames += flight->had_ground && !stats.tree.nodes_drawn;
+    flight->had_ground |= stats.tree.nodes_drawn > 0;
+    flight->totals.frames++;
+    flight->totals.stitched_frames += stats.tree.stitched > 0;
+    return 0;
+}
+
+static int begin(fly_flight *flight, fly_world *world, FILE *csv)
+{
+    const fly_options *options = world->options;
+    *flight = (fly_flight){
+        .world = world, .options = options, .csv = csv, .totals = { .frame_hash = FNV_START }
+    };
+    flight->camera =
+        (c3d_camera){ .width = options->width,
+                      .height = options->height,
+                      .focal_q8 = c3d_focal_q8((int32_t)(options->fov_degrees * 65536 / 360 + 0.5),
+                                               options->width) };
+    flight->rgb = malloc((size_t)options->width * options->height * 3);
+    if (!flight->rgb) return fail("picture", ff_error_text(FF_ERR_MEMORY));
+    if (options->png_dir && sys_make_folder(options->png_dir) != FF_OK)
+        return fail(options->png_dir, "cannot make this folder");
+    if (options->reference_dir && sys_make_folder(options->reference_dir) != FF_OK)
+        return fail(options->reference_dir, "cannot make this folder");
+    if (csv) fly_csv_header(csv);
+    if (options->server)
+        world->now_us = sys_time_us();
+    else
+        sys_clock_replace(flight_clock, world);
+    flight->start_us = world->now_us;
+    return 0;
+}
+
+/* What went wrong at the server's end: an error when the flight says nothing about the pack, else a
+ * word about it. */
+static int judge_server(const fly_flight *flight, const ff_client_stats *stats)
+{
+    const char *name = flight->options->server ? flight->options->server
+                                               : flight->options->pack_path;
+    if (stats->terrain_error != FF_OK)
+        return fail("this terrain does not fit into --memory", ff_error_text(stats->terrain_error));
+    if (flight->options->server && !stats->have_terrain)
+        return fail(name, stats->protocol_errors
+                              ? "does not speak Farfield's protocol, or another version of it"
+                              : "no terrain came from there");
+    if (stats->protocol_errors)
+        fprintf(stderr, "farfield-fly: %s: warning: sent nonsense %u times\n", name,
+                stats->protocol_errors);
+    if (stats->requests_failed)
+        fprintf(stderr, "farfield-fly: %s: warning: could not answer %u of %u requests\n", name,
+                stats->requests_failed, stats->requests_sent);
+    return 0;
+}
+
+static int finish(fly_flight *flight)
+{
+    ff_client_stats stats;
+    ff_client_get_stats(flight->world->client, &stats);
+    int rc = judge_server(flight, &stats);
+    flight->totals.bytes_down_all = (double)stats.bytes_down;
+    flight->totals.bytes_up_all = (double)stats.bytes_up;
+    flight->totals.memory_used = stats.memory_used;
+    flight->totals.panoramas_in_flight_high = stats.panoramas_in_flight_high;
+    if (rc || !flight->world->tape.file) return rc;
+    const ff_client *client = flight->world->client;
+    rc = sim_tape_finish(&flight->world->tape, ff_client_geometry_hash(client),
+                         ff_client_request_hash(client));
+    return rc == FF_OK ? 0 : fail(flight->options->tape_path, ff_error_text(rc));
+}
+
+int fly_flight_run(fly_flight *flight, fly_world *world, FILE *csv)
+{
+    const fly_options *options = world->options;
+    double total_s = options->settle_s + options->seconds;
+    int64_t next_row_us = 0, next_png_us = 0, shown_s = -1;
+    int rc = begin(flight, world, csv), show = sys_stderr_is_terminal();
+    for (int64_t frame = 0; !rc && frame <= (int64_t)floor(total_s * options->fps); frame++) {
+        int64_t t_us = frame * 1000000 / options->fps;
+        double t_s = (double)t_us / 1e6;
+        rc = advance(flight, flight->start_us + t_us);
+        if (!rc) rc = one_frame(flight, t_s);
+        if (!rc && t_us >= next_row_us) {
+            rc = take_row(flight, t_s);
+            next_row_us += (int64_t)(options->sample_s * 1e6);
+        }
+        if (!rc && options->png_dir && t_us >= next_png_us) {
+            rc = take_picture(flight, t_s);
+            next_png_us += (int64_t)(options->every_s * 1e6);
+        }
+        if (show && t_us / 1000000 != shown_s) {
+            shown_s = t_us / 1000000;
+            fprintf(stderr, "\r%lld of %.0f s ", (long long)shown_s, total_s);
+        }
+    }
+    if (show) fputc('\n', stderr);
+    if (!rc) rc = finish(flight);
+    sys_clock_replace(NULL, NULL);
+    return rc;
+}
+
+void fly_flight_free(fly_flight *flight)
+{
+    free(flight->rgb);
+    free(flight->sample);
+    memset(flight, 0, sizeof *flight);
+}

@@ -1,0 +1,34 @@
+/* Flight paths: where the camera is at a time of the flight. Always inside the terrain's source,
+ * always above the true ground (a recorded one at least a metre). */
+#ifndef FLY_PATH_H
+#define FLY_PATH_H
+
+#include "fly_options.h"
+#include "../judge/sim_ground.h"
+
+typedef struct fly_path {
+    enum fly_path_kind kind;
+    const sim_ground *ground;
+    const fly_recording *recording;
+    double settle_s, speed_ms, height_m;
+    double start_m[2];   /* of the straight part, or the circle's centre */
+    double direction[2]; /* of the straight part, unit */
+    double length_m;     /* of the straight part */
+    double radius_m;     /* of the half circles at its ends, or of the circle */
+    double from_m;       /* arc length where the flight begins */
+    double size_m[2];    /* of the terrain's source */
+    double moved_m[2];   /* by teleports */
+} fly_path;
+
+/* `ground` and `options` must outlive the path. */
+void fly_path_init(fly_path *path, const fly_options *options, const ff_terrain_info *info,
+                   const sim_ground *ground);
+/* Position and yaw after t_s seconds; pitch is slightly down, or as recorded. Sets pos_wu, yaw,
+ * pitch, roll. */
+void fly_path_at(const fly_path *path, double t_s, c3d_camera *camera);
+
+/* Moves the path so that it is at (x, y), shares 0..1 of the source's size, at t_s. From then on it
+ * stays where a border stops it. */
+void fly_path_teleport(fly_path *path, double t_s, double x, double y);
+
+#endif

@@ -1,0 +1,41 @@
+/* All that a flight needs, opened and closed: pack, true ground, link, server, surface and
+ * client. */
+#ifndef FLY_WORLD_H
+#define FLY_WORLD_H
+
+#include "fly_options.h"
+#include "fly_path.h"
+#include "fly_reference.h"
+#include "../judge/sim_audit.h"
+#include "../judge/sim_relevance.h"
+#include "../link/sim_server.h"
+#include "../tape/sim_tape.h"
+
+typedef struct fly_world {
+    const fly_options *options;
+    int64_t now_us; /* the clock of the flight */
+    sys_mapping mapping;
+    ff_pack pack;
+    /* moderate level for the path; the whole, with an audit */
+    sim_ground path_ground, true_ground;
+    sim_auditor *auditor;
+    fly_path path;
+    sim_link *link; /* NULL with a real server */
+    sim_stream client_end;
+    sim_server server;
+    sim_relevance *relevance; /* NULL with a real server */
+    sys_tcp tcp;              /* with a real server */
+    sys_stream stream;
+    sim_tape_recorder tape; /* file NULL: none is recorded */
+    const sys_surface_api *surface_api;
+    sys_surface *surface;
+    fly_reference reference; /* client NULL: none is drawn */
+    void *memory;
+    ff_client *client;
+} fly_world;
+
+/* 0, or -1 with one line on stderr. Call close in both cases. `options` must outlive the world. */
+int fly_world_open(fly_world *world, const fly_options *options);
+void fly_world_close(fly_world *world);
+
+#endif

@@ -1,0 +1,69 @@
+/* The auditor: how wrong is a picture, in pixels, judged from the whole true ground in double
+ * precision (DESIGN, "Judging the picture").
+ *
+ * For a grid of pixels it finds the true visible ground point P, then what the client draws for P:
+ *   ground    P's (x, y) lies under a drawn triangle: P at the drawn height is projected again; the
+ *             distance to P's own pixel is the error.
+ *   panorama  no triangle, but a panorama in use shows P: it shows it in the direction from O,
+ *             where the panorama was taken; that direction seen from the camera is projected; the
+ *             distance to P's pixel is the (parallax) error. The renderer's own error (a pixel of
+ *             the face, by its rules) and what O could not see are not counted.
+ *   nothing   neither: the distance to the nearest pixel at which something is drawn for the ground
+ *             there is the error (one-sided Hausdorff: how far the drawn ground's edge would have
+ *             to come), the picture's diagonal where there is none. Counted in undrawn_percent too.
+ * Each pixel's error has one cause (enum sim_audit_cause), found from the quality asked for, not
+ * from the client's selection. Independent of the client's estimates: triangles are made anew from
+ * the drawn list's heights and border masks.
+ */
+#ifndef SIM_AUDIT_H
+#define SIM_AUDIT_H
+
+#include "../../client/terrain/ff_tree.h"
+#include "sim_ground.h"
+
+enum sim_audit_cause {
+    /* the quality asks for finer ground here, and there is some: it has not come */
+    SIM_CAUSE_WAITING,
+    SIM_CAUSE_DEPTH,    /* it would, but its depth_max forbids */
+    SIM_CAUSE_QUALITY,  /* fine enough for the quality, or as fine as the terrain is */
+    SIM_CAUSE_PANORAMA, /* parallax */
+    SIM_CAUSE_UNDRAWN,  /* nothing is drawn there */
+    SIM_CAUSES
+};
+
+typedef struct sim_audit_view {
+    c3d_camera camera;     /* near and far are not looked at */
+    ff_quality quality;    /* for the causes alone: measure, c, error_px, depth_max */
+    const ff_drawn *drawn; /* what is drawn */
+    uint32_t drawn_count;
+    int panorama; /* 1: one is in use, and: */
+    int32_t panorama_pos_wu[3];
+    unsigned faces; /* bit per enum ff_face_name held */
+    /* it shows ground whose largest coordinate difference to its position lies between */
+    int32_t front_wu, back_wu;
+} sim_audit_view;
+
+typedef struct sim_audit_result {
+    /* that truly show ground, by who draws it */
+    uint32_t ground_pixels, panorama_pixels, undrawn_pixels;
+    double err_px_rms, err_px_p95, err_px_max; /* over all three; 0 without any */
+    double square_px[SIM_CAUSES]; /* mean squares by cause: their sum is err_px_rms squared */
+    double undrawn_percent;       /* of all pixels that truly show ground */
+} sim_audit_result;
+
+typedef struct sim_auditor sim_auditor;
+/* step_px: every step-th pixel in x and y is looked at. `ground` must outlive the auditor. NULL
+ * when out of memory. */
+sim_auditor *sim_auditor_create(const sim_ground *ground, const ff_terrain_info *info,
+                                unsigned step_px);
+void sim_auditor_destroy(sim_auditor *auditor);
+/* FF_OK or FF_ERR_MEMORY. */
+int sim_audit_frame(sim_auditor *auditor, const sim_audit_view *view, sim_audit_result *result);
+
+/* Height of the triangles drawn at (x, y): 1 and *z_m, or 0 where there is none. */
+int sim_audit_drawn_height(const sim_auditor *auditor, const ff_drawn *drawn, uint32_t count,
+                           double x_m, double y_m, double *z_m);
+/* World point (metres) to pixels as c3d.h projects; 0 when it is not in front of the eye. */
+int sim_audit_project(const c3d_camera *camera, const double point_m[3], double pixel[2]);
+
+#endif

@@ -1,0 +1,49 @@
+/* The whole ground of a pack in memory, in double precision metres: the truth that flights keep
+ * clear of and pictures are judged by.
+ *
+ * Heights lie row by row from the south-west; between samples the ground is two triangles a cell,
+ * the diagonal from south-west to north-east as in the drawn strips. A pyramid of block maxima
+ * makes ray casting fast: it starts at blocks of 4 x 4 cells.
+ */
+#ifndef SIM_GROUND_H
+#define SIM_GROUND_H
+
+#include "../../platform/sys.h"
+#include "../../protocol/ff_pack.h"
+
+#define SIM_GROUND_PYRAMID_FIRST 2 /* log2 of the cells along the finest block's side */
+#define SIM_GROUND_PYRAMID_MAX   32
+
+typedef struct sim_ground {
+    uint32_t level;         /* of the tiles' quadtrees, as decoded */
+    uint32_t columns, rows; /* of heights */
+    double cell_m;
+    double hscale_m, hoffset_m;
+    const uint16_t *height;
+    void *block;         /* behind `height`, or */
+    sys_mapping mapping; /* a file mapped, shared by all that fly over this ground */
+    unsigned top;        /* one block of 2^top cells a side covers everything */
+    /* by log2 of the block's cells */
+    struct {
+        uint32_t columns, rows;
+        uint16_t *max;
+    } pyramid[SIM_GROUND_PYRAMID_MAX];
+} sim_ground;
+
+/* Decodes the finest level that has at most samples_max heights (level 0 whatever its size). FF_OK,
+ * FF_ERR_MEMORY or an error of the pack's records. */
+int sim_ground_load(sim_ground *ground, const ff_pack *pack, uint64_t samples_max);
+/* The same through a file, when cache_path is not NULL: taken from there when it is of this pack
+ * and level, else decoded and left there. FF_ERR_SYSTEM: it cannot be written. */
+int sim_ground_load_cached(sim_ground *ground, const ff_pack *pack, uint64_t samples_max,
+                           const char *cache_path);
+void sim_ground_free(sim_ground *ground);
+
+/* Height at (x, y), clamped to the rim. */
+double sim_ground_height_m(const sim_ground *ground, double x_m, double y_m);
+/* First ground along from + t * direction, 0 < t <= t_max (direction of any length): 1 and *t_hit,
+ * or 0. */
+int sim_ground_cast(const sim_ground *ground, const double from_m[3], const double direction[3],
+                    double t_max, double *t_hit);
+
+#endif

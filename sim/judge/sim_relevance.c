@@ -1,0 +1,360 @@
+#include "sim_relevance.h"
+
+#include "../../client/images/ff_texture_map.h"
+#include "../../protocol/message/ff_message.h"
+#include "sim_eye.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define BUCKETS     4096u
+#define NONE        SIZE_MAX
+#define RAY_STEP_PX 4
+
+/* What a request asked for, by its id. */
+typedef struct asked {
+    enum ff_message_type type;
+    ff_get get;
+    int32_t position_wu[3];
+} asked;
+
+typedef struct answer {
+    enum sim_answer_kind kind;
+    ff_key key; /* heights: the node made (roots) or refined; images */
+    int refinement;
+    int32_t position_wu[3];                       /* faces */
+    unsigned face, face_size, top_row, row_count; /* row_count 0: empty */
+    uint32_t bytes;
+    int64_t came_us;
+    int drawn, supports;
+    uint64_t frame; /* last looked at in */
+    size_t next;    /* in its bucket */
+} answer;
+
+/* Bytes of one direction that do not make a whole message yet. */
+typedef struct half {
+    uint8_t *bytes;
+    size_t count, capacity;
+} half;
+
+struct sim_relevance {
+    sys_stream inner;
+    ff_terrain_info info;
+    const int64_t *now_us;
+    half down, up;
+    asked *asked;   /* by id */
+    answer *answer; /* in order of arrival */
+    size_t count, capacity, judged_count, first_young;
+    size_t bucket[BUCKETS];
+    uint64_t frame;
+    sim_relevance_figures figures;
+    int rc;
+};
+
+/* ---- what came ---- */
+
+static size_t bucket_of(enum sim_answer_kind kind, ff_key key, int refinement)
+{
+    return (size_t)((key * 4 + kind + (refinement ? 2u : 0u)) * UINT64_C(0x9E3779B97F4A7C15) >>
+                    52) %
+           BUCKETS;
+}
+
+/* The latest answer of this kind and key. */
+static answer *find(sim_relevance *relevance, enum sim_answer_kind kind, ff_key key, int refinement)
+{
+    for (size_t i = relevance->bucket[bucket_of(kind, key, refinement)]; i != NONE;
+         i = relevance->answer[i].next) {
+        answer *a = &relevance->answer[i];
+        if (a->kind == kind && a->key == key && a->refinement == refinement) return a;
+    }
+    return NULL;
+}
+
+static void keep(sim_relevance *relevance, answer a)
+{
+    relevance->figures.came[a.kind] += a.bytes;
+    if (relevance->count == relevance->capacity) {
+        size_t more = relevance->capacity ? 2 * relevance->capacity : 1024;
+        answer *grown = realloc(relevance->answer, more * sizeof *grown);
+        if (!grown) {
+            relevance->rc = FF_ERR_MEMORY;
+            return;
+        }
+        relevance->answer = grown;
+        relevance->capacity = more;
+    }
+    a.came_us = *relevance->now_us;
+    if (a.kind != SIM_ANSWER_FACE) {
+        size_t *bucket = &relevance->bucket[bucket_of(a.kind, a.key, a.refinement)];
+        a.next = *bucket;
+        *bucket = relevance->count;
+    }
+    relevance->answer[relevance->count++] = a;
+}
+
+static void take_down(sim_relevance *relevance, const ff_message *message, size_t bytes)
+{
+    answer a = { .bytes = (uint32_t)bytes };
+    const ff_face *face = &message->u.face;
+    const asked *q;
+    switch (message->type) {
+        case FF_MSG_NODE:
+        case FF_MSG_TEXTURE:
+            q = &relevance->asked[message->u.data.id];
+            a.kind = message->type == FF_MSG_NODE ? SIM_ANSWER_HEIGHTS : SIM_ANSWER_IMAGE;
+            a.key = q->get.key;
+            a.refinement = q->type == FF_MSG_GET_NODE && q->get.what == FF_GET_REFINEMENT;
+            keep(relevance, a);
+            return;
+        case FF_MSG_FACE:
+            a.kind = SIM_ANSWER_FACE;
+            memcpy(a.position_wu, relevance->asked[face->id].position_wu, sizeof a.position_wu);
+            a.face = face->face;
+            a.face_size = face->face_size;
+            a.top_row = face->flags & FF_FACE_EMPTY ? 0 : face->top_row;
+            a.row_count = face->flags & FF_FACE_EMPTY ? 0 : face->row_count;
+            keep(relevance, a);
+            return;
+        default: relevance->figures.overhead += (double)bytes;
+    }
+}
+
+static void take_up(sim_relevance *relevance, const ff_message *message)
+{
+    asked *q;
+    if (message->type == FF_MSG_GET_NODE || message->type == FF_MSG_GET_TEXTURE) {
+        q = &relevance->asked[message->u.get.id];
+        *q = (asked){ .type = message->type, .get = message->u.get };
+    } else if (message->type == FF_MSG_GET_PANORAMA) {
+        q = &relevance->asked[message->u.panorama.id];
+        *q = (asked){ .type = message->type };
+        memcpy(q->position_wu, message->u.panorama.position_wu, sizeof q->position_wu);
+    }
+}
+
+/* Adds bytes of one direction and takes whole messages off its front. */
+static void take_bytes(sim_relevance *relevance, half *part, const uint8_t *bytes, size_t count)
+{
+    ff_message message;
+    size_t at = 0;
+    int used = 0;
+    if (part->count + count > part->capacity) {
+        size_t more = 2 * (part->count + count);
+        uint8_t *grown = realloc(part->bytes, more);
+        if (!grown) {
+            relevance->rc = FF_ERR_MEMORY;
+            return;
+        }
+        part->bytes = grown;
+        part->capacity = more;
+    }
+    memcpy(part->bytes + part->count, bytes, count);
+    part->count += count;
+    while (at < part->count &&
+           (used = ff_message_decode(part->bytes + at, part->count - at, &message)) > 0) {
+        if (part == &relevance->down)
+            take_down(relevance, &message, (size_t)used);
+        else
+            take_up(relevance, &message);
+        at += (size_t)used;
+    }
+    if (used < 0) { /* nonsense: the client will close */
+        relevance->figures.overhead += part == &relevance->down ? (double)(part->count - at) : 0;
+        at = part->count;
+    }
+    memmove(part->bytes, part->bytes + at, part->count - at);
+    part->count -= at;
+}
+
+/* ---- the tap ---- */
+
+static int tap_send(void *state, const uint8_t *bytes, size_t count)
+{
+    sim_relevance *relevance = state;
+    int sent = relevance->inner.send(relevance->inner.state, bytes, count);
+    if (sent > 0) take_bytes(relevance, &relevance->up, bytes, (size_t)sent);
+    return sent;
+}
+
+static int tap_recv(void *state, uint8_t *bytes, size_t capacity)
+{
+    sim_relevance *relevance = state;
+    int count = relevance->inner.recv(relevance->inner.state, bytes, capacity);
+    if (count > 0) take_bytes(relevance, &relevance->down, bytes, (size_t)count);
+    return count;
+}
+
+static int tap_reconnect(void *state)
+{
+    sim_relevance *relevance = state;
+    relevance->figures.overhead += (double)relevance->down.count;
+    relevance->down.count = relevance->up.count = 0;
+    return relevance->inner.reconnect(relevance->inner.state);
+}
+
+static void tap_close(void *state)
+{
+    sim_relevance *relevance = state;
+    relevance->inner.close(relevance->inner.state);
+}
+
+sim_relevance *sim_relevance_create(sys_stream *stream, const ff_terrain_info *info,
+                                    const int64_t *now_us)
+{
+    sim_relevance *relevance = calloc(1, sizeof *relevance);
+    if (!relevance) return NULL;
+    relevance->asked = calloc((size_t)UINT16_MAX + 1, sizeof *relevance->asked);
+    if (!relevance->asked) {
+        free(relevance);
+        return NULL;
+    }
+    for (size_t i = 0; i < BUCKETS; i++) relevance->bucket[i] = NONE;
+    relevance->info = *info;
+    relevance->now_us = now_us;
+    relevance->inner = *stream;
+    stream->state = relevance;
+    stream->send = tap_send;
+    stream->recv = tap_recv;
+    stream->close = stream->close ? tap_close : NULL;
+    stream->reconnect = stream->reconnect ? tap_reconnect : NULL;
+    return relevance;
+}
+
+void sim_relevance_destroy(sim_relevance *relevance)
+{
+    if (!relevance) return;
+    free(relevance->down.bytes);
+    free(relevance->up.bytes);
+    free(relevance->asked);
+    free(relevance->answer);
+    free(relevance);
+}
+
+/* ---- what is drawn ---- */
+
+static void mark(sim_relevance *relevance, answer *a)
+{
+    a->drawn |= *relevance->now_us - a->came_us <= SIM_RELEVANCE_US;
+    a->frame = relevance->frame;
+}
+
+/* A node is there only where those beside its parent are as fine as the parent. */
+static void mark_support(sim_relevance *relevance, ff_key parent)
+{
+    for (unsigned side = 0; side < FF_SIDE_COUNT && ff_key_level(parent) > 0; side++) {
+        ff_key beside = ff_key_neighbour(relevance->info.tiles_x, relevance->info.tiles_y, parent,
+                                         (enum ff_side)side);
+        answer *a = beside == FF_KEY_NONE
+                        ? NULL
+                        : find(relevance, SIM_ANSWER_HEIGHTS, ff_key_parent(beside), 1);
+        if (a) a->supports |= *relevance->now_us - a->came_us <= SIM_RELEVANCE_US;
+    }
+}
+
+static void mark_heights(sim_relevance *relevance, ff_key node)
+{
+    for (;;) {
+        int refinement = ff_key_level(node) > 0;
+        if (refinement) {
+            node = ff_key_parent(node);
+            mark_support(relevance, node);
+        }
+        answer *a = find(relevance, SIM_ANSWER_HEIGHTS, node, refinement);
+        if (a && a->frame == relevance->frame) return; /* and all above it */
+        if (a) mark(relevance, a);
+        if (!refinement) return;
+    }
+}
+
+/* Images come from coarse to fine: the last one to come over a node is the one it is drawn with. */
+static void mark_image(sim_relevance *relevance, ff_key node)
+{
+    answer *last = NULL;
+    for (ff_key key = ff_texture_key(&relevance->info, node); key != FF_KEY_NONE;
+         key = ff_key_parent(key)) {
+        answer *a = find(relevance, SIM_ANSWER_IMAGE, key, 0);
+        if (a && (!last || a > last)) last = a;
+        if (ff_key_level(key) == 0) break;
+    }
+    if (last) mark(relevance, last);
+}
+
+/* Face of a direction and the row of its whole image, counted from its top. */
+static unsigned face_of(const double d[3], unsigned size, double *row)
+{
+    static const unsigned positive[3] = { FF_FACE_EAST, FF_FACE_NORTH, FF_FACE_UP };
+    static const unsigned negative[3] = { FF_FACE_WEST, FF_FACE_SOUTH, FF_FACE_DOWN };
+    int axis = 0;
+    for (int i = 1; i < 3; i++) axis = fabs(d[i]) > fabs(d[axis]) ? i : axis;
+    /* the top edge of UP looks south, that of DOWN north */
+    double up = axis < 2 ? d[2] : d[2] > 0 ? -d[1] : d[1];
+    *row = (1 - up / fabs(d[axis])) / 2 * size;
+    return d[axis] > 0 ? positive[axis] : negative[axis];
+}
+
+/* Marks the faces of the set in use that pixel (x, y) shows. */
+static void mark_faces_at(sim_relevance *relevance, const sim_relevance_view *view,
+                          const sim_eye *eye, double x, double y)
+{
+    const double pixel[2] = { x, y };
+    double along[3], row;
+    sim_eye_ray(eye, pixel, along);
+    for (size_t i = relevance->first_young; i < relevance->count; i++) {
+        answer *a = &relevance->answer[i];
+        if (a->kind != SIM_ANSWER_FACE || a->drawn ||
+            memcmp(a->position_wu, view->panorama_pos_wu, sizeof a->position_wu))
+            continue;
+        if (face_of(along, a->face_size, &row) == a->face &&
+            (!a->row_count || (row >= a->top_row && row < a->top_row + a->row_count)))
+            mark(relevance, a);
+    }
+}
+
+static void mark_faces(sim_relevance *relevance, const sim_relevance_view *view)
+{
+    sim_eye eye;
+    int any = 0;
+    for (size_t i = relevance->first_young; i < relevance->count; i++)
+        any |= relevance->answer[i].kind == SIM_ANSWER_FACE && !relevance->answer[i].drawn;
+    if (!any || !view->panorama) return;
+    sim_eye_of(&view->camera, &eye);
+    for (unsigned y = RAY_STEP_PX / 2; y < view->camera.height; y += RAY_STEP_PX)
+        for (unsigned x = RAY_STEP_PX / 2; x < view->camera.width; x += RAY_STEP_PX)
+            mark_faces_at(relevance, view, &eye, x, y);
+}
+
+void sim_relevance_frame(sim_relevance *relevance, const sim_relevance_view *view)
+{
+    relevance->frame++;
+    while (relevance->first_young<relevance->count && * relevance->now_us -
+                                  relevance->answer[relevance->first_young].came_us>
+               SIM_RELEVANCE_US)
+        relevance->first_young++;
+    for (uint32_t i = 0; i < view->drawn_count; i++) {
+        mark_heights(relevance, view->drawn[i].key);
+        mark_image(relevance, view->drawn[i].key);
+    }
+    mark_faces(relevance, view);
+}
+
+int sim_relevance_get(sim_relevance *relevance, sim_relevance_figures *figures)
+{
+    sim_relevance_figures *sum = &relevance->figures;
+    for (; relevance->judged_count < relevance->count; relevance->judged_count++) {
+        const answer *a = &relevance->answer[relevance->judged_count];
+        if (*relevance->now_us - a->came_us <= SIM_RELEVANCE_US) break;
+        sum->judged[a->kind] += a->bytes;
+        sum->unused[a->kind] += a->drawn ? 0 : a->bytes;
+        sum->supporting += !a->drawn && a->supports ? a->bytes : 0;
+    }
+    double judged = sum->overhead, unused = sum->overhead;
+    for (int kind = 0; kind < SIM_ANSWER_KINDS; kind++) {
+        judged += sum->judged[kind];
+        unused += sum->unused[kind];
+    }
+    sum->percent = judged > sum->overhead ? 100 * (1 - unused / judged) : NAN;
+    *figures = *sum;
+    return relevance->rc;
+}

@@ -1,0 +1,58 @@
+/* Relevance: how much of what came down was of use. Measured on the wire and on the picture alone:
+ * a tap on the client's stream reads every message both ways, and each frame tells what is drawn;
+ * neither asks the client what it meant to do.
+ *
+ * An answer (its whole message, header included) is of use when a frame within SIM_RELEVANCE_US of
+ * its arrival draws it:
+ *   heights   a node whose heights it brought, or one built on them, lies in the window: a
+ *             refinement's residuals add to the heights of all nodes above it, so a drawn node
+ *             draws the answers of its whole line of ancestors. Nodes outside the window that only
+ *             let a drawn neighbour be as fine as it is (the cut is restricted) are not drawn; they
+ *             are told apart as `supporting`.
+ *   image     it is the last that has come over a drawn node: they come from coarse to fine.
+ *   face      its set is the one in use and a row of it lies in the window; of an empty face: any
+ *             direction of it.
+ * Overhead is all else that came: greetings, pongs, refusals, cancellations and what a cut left
+ * incomplete. It counts as never drawn.
+ */
+#ifndef SIM_RELEVANCE_H
+#define SIM_RELEVANCE_H
+
+#include "../../client/terrain/ff_tree.h"
+#include "../../platform/sys.h"
+
+#define SIM_RELEVANCE_US 5000000
+
+enum sim_answer_kind { SIM_ANSWER_HEIGHTS, SIM_ANSWER_IMAGE, SIM_ANSWER_FACE, SIM_ANSWER_KINDS };
+
+/* Bytes since the start. */
+typedef struct sim_relevance_figures {
+    double came[SIM_ANSWER_KINDS], overhead;
+    double judged[SIM_ANSWER_KINDS]; /* came at least SIM_RELEVANCE_US ago */
+    double unused[SIM_ANSWER_KINDS]; /* and were not drawn in time */
+    double supporting; /* of unused heights: a drawn node could not have been without them */
+    /* of judged and overhead that was drawn in time; NAN before anything was judged */
+    double percent;
+} sim_relevance_figures;
+
+/* What a frame draws. */
+typedef struct sim_relevance_view {
+    c3d_camera camera;
+    const ff_drawn *drawn;
+    uint32_t drawn_count;
+    int panorama; /* 1: one is in use, taken at: */
+    int32_t panorama_pos_wu[3];
+} sim_relevance_view;
+
+typedef struct sim_relevance sim_relevance;
+
+/* Taps `stream` from here on; the object and *now_us must outlive it. One thread. NULL: out of
+ * memory. */
+sim_relevance *sim_relevance_create(sys_stream *stream, const ff_terrain_info *info,
+                                    const int64_t *now_us);
+void sim_relevance_destroy(sim_relevance *relevance);
+void sim_relevance_frame(sim_relevance *relevance, const sim_relevance_view *view);
+/* As of *now_us. FF_OK, or FF_ERR_MEMORY when not every answer could be kept. */
+int sim_relevance_get(sim_relevance *relevance, sim_relevance_figures *figures);
+
+#endif

@@ -1,0 +1,135 @@
+#include "view_hud.h"
+
+#include "../../common3d/c3d_text.h"
+#include "view_app.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#define MARGIN_PX    4
+#define SHADE        150 /* opacity of the ground behind the text, of 255 */
+#define TEXT_COLOUR  0xffffffffu
+#define ERROR_PX_MAX 999
+#define LARGE_PX     900 /* windows this high get text twice as large */
+
+static const char help[] = "w s a d   fly (or up, down)\n"
+                           "left right  turn\n"
+                           "pgup pgdn   height\n"
+                           "shift     five times faster\n"
+                           "enter     cruise   space stop\n"
+                           "drag      look     scroll speed\n"
+                           "+ -       quality\n"
+                           "m mesh    b node borders\n"
+                           "f fog     p panorama\n"
+                           "l link    h text\n"
+                           "r start   esc quit\n"
+                           "f1 help   f2 position fix\n"
+                           "f3 tilt   f4 touch\n"
+                           "f5 battery low / ok\n"
+                           "f6 interruption   f12 picture\n";
+
+static void put(view_hud *hud, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static void put(view_hud *hud, const char *format, ...)
+{
+    size_t used = strlen(hud->text);
+    va_list args;
+    va_start(args, format);
+    vsnprintf(hud->text + used, sizeof hud->text - used, format, args);
+    va_end(args);
+}
+
+static void put_link(view_hud *hud, const view_app *app, const ff_client_stats *stats)
+{
+    static const char *const state[] = { "local", "connecting", "up", "down" };
+    put(hud, "link %s%s%s", app->link ? view_link_name(app->link) : "", app->link ? " " : "",
+        state[stats->link]);
+    if (app->link)
+        put(hud, "  %.1f kB/s rtt %u ms", stats->bandwidth_bytes_s / 1000.0, stats->rtt_ms);
+    put(hud, "\n%.1f kB down %.1f kB up\nqueue %u in flight %u\n", (double)stats->bytes_down / 1000,
+        (double)stats->bytes_up / 1000, stats->queued, stats->in_flight);
+}
+
+static void put_quality(view_hud *hud, const view_app *app, const ff_client_stats *stats)
+{
+    int32_t position_wu[3];
+    unsigned faces = 0, count = 0;
+    if (app->options->balance.mode != FF_BALANCE_OFF)
+        put(hud, "share %u%% fidelity %u%% to %.1f km\n", stats->balance.share_percent,
+            stats->balance.fidelity_percent,
+            (stats->back_plane_wu ? stats->back_plane_wu : stats->quality.view_wu) / 256000.0);
+    if (app->quality.measure == FF_MEASURE_PIXELS)
+        put(hud, "px %.2f", stats->quality.error_px_q8 / 256.0);
+    else
+        put(hud, "c %.2f depth %u", stats->quality.c_q8 / 256.0, stats->quality.depth_max);
+    /* The eye inside a node's box makes its bound endless. */
+    put(hud,
+        stats->tree.error_px_q8 < ERROR_PX_MAX * 256 ? "  error %.1f px\n"
+                                                     : "  error over %.0f px\n",
+        fmin(stats->tree.error_px_q8 / 256.0, ERROR_PX_MAX));
+    if (!app->panorama.enabled) {
+        put(hud, "panorama off\n");
+        return;
+    }
+    if (ff_client_panorama(app->client, position_wu, &faces))
+        for (; faces; faces &= faces - 1) count++;
+    put(hud, "panorama %u faces %.1f kB\n", count, stats->panorama_bytes / 1000.0);
+}
+
+int view_hud_update(view_hud *hud, const view_app *app)
+{
+    ff_client_stats stats;
+    const c3d_camera *camera = &app->fly.camera;
+    ff_client_get_stats(app->client, &stats);
+    hud->text[0] = 0;
+    if (app->show_hud) {
+        if (!stats.have_terrain)
+            put(hud, "%s\n", app->options->target);
+        else
+            put(hud, "%u triangles  %u/%u nodes\n", stats.tree.triangles, stats.tree.nodes_drawn,
+                stats.tree.nodes_held);
+        put_link(hud, app, &stats);
+        put_quality(hud, app, &stats);
+        put(hud, "%.2f %.2f km  %d m  %d deg\n", camera->pos_wu[0] / 256000.0,
+            camera->pos_wu[1] / 256000.0, camera->pos_wu[2] / FF_WU_PER_METRE,
+            camera->yaw * 360 / 65536);
+        put(hud, "%d km/h%s\n", app->fly.speed_wu_s * 36 / (10 * FF_WU_PER_METRE),
+            app->fly.cruise ? " cruise" : "");
+        if (app->interrupted) put(hud, "interrupted\n");
+        if (stats.low_power) put(hud, "low power\n");
+    }
+    if (app->show_help) put(hud, "\n%s", help);
+    return strcmp(hud->text, hud->shown) != 0;
+}
+
+/* A dark ground as high as the text, then its lines. */
+static void paint(view_hud *hud)
+{
+    int rows = MARGIN_PX;
+    for (const char *c = hud->text; *c; c++) rows += *c == '\n' ? C3D_TEXT_LINE_PX : 0;
+    memset(hud->rgba, 0, sizeof hud->rgba);
+    for (int i = 0; i < rows * VIEW_HUD_SIZE && i < VIEW_HUD_SIZE * VIEW_HUD_SIZE; i++)
+        hud->rgba[4 * i + 3] = SHADE;
+    c3d_text(hud->rgba, VIEW_HUD_SIZE, VIEW_HUD_SIZE, MARGIN_PX, MARGIN_PX, TEXT_COLOUR, hud->text);
+    memcpy(hud->shown, hud->text, sizeof hud->shown);
+}
+
+void view_hud_draw(view_hud *hud, const view_app *app, c3d_device *device)
+{
+    const ff_terrain_info *info = ff_client_terrain(app->client);
+    uint32_t checksum = info ? info->checksum : 0;
+    int size = app->fly.camera.height >= LARGE_PX ? 2 * VIEW_HUD_SIZE : VIEW_HUD_SIZE;
+    /* another terrain, another device: gone with the old */
+    if (device != hud->device || checksum != hud->checksum) hud->texture.id = 0;
+    hud->device = device;
+    hud->checksum = checksum;
+    if (view_hud_update(hud, app) || !hud->texture.id) {
+        if (hud->texture.id) c3d_texture_free(device, hud->texture);
+        paint(hud);
+        hud->texture = c3d_texture_make(device, C3D_RGBA8888, VIEW_HUD_SIZE, VIEW_HUD_SIZE,
+                                        hud->rgba);
+    }
+    c3d_overlay(device, hud->texture, 0, 0, size, size);
+    c3d_end(device);
+}

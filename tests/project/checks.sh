@@ -1,0 +1,115 @@
+#!/bin/bash
+# The tree keeps its layers, its core pure and its files small (tools/scripts/check-layers.sh); and that check sees what it should see.
+set -u
+cd "$(dirname "$0")/../.." || exit 2
+failures=0
+result() { # STATUS WHAT
+    if [ "$1" = 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failures=$((failures + 1)); fi
+}
+
+tools/scripts/check-layers.sh . build/obj
+result $? "layers, core words, sizes and symbols"
+
+git ls-files '*.[ch]' | xargs clang-format --dry-run --Werror >/dev/null 2>&1
+result $? "all C is laid out by .clang-format (make format)"
+
+# What the documents link to is there.
+missing=$(git ls-files '*.md' 2>/dev/null | while read -r page; do
+    grep -o '](\([^)#]*\))' "$page" | sed 's/^](//; s/)$//' | grep -v '^[a-z]*:' | while read -r target; do
+        [ -e "$(dirname "$page")/$target" ] || echo "$page: $target"
+    done
+done)
+[ -z "$missing" ]
+result $? "links in documents lead somewhere $missing"
+
+# A copy of a tiny tree with one violation of every kind: each must be named.
+planted=build/tests/checks
+rm -rf "$planted"
+mkdir -p "$planted"/{protocol,client/{terrain,ask,cellar},common3d/gl,platform,server/session,tools/bake,sim/{judge,link,fly},tests,build/obj/protocol}
+
+plant() { cat >"$planted/$1"; }
+plant protocol/clean.c <<'END'
+#include <string.h>
+/* float malloc(1) time(0): words in comments and "strings" do not count */
+const char *clean_text = "double printf(";
+END
+cc -std=c99 -c "$planted/protocol/clean.c" -o "$planted/build/obj/protocol/clean.o"
+tools/scripts/check-layers.sh "$planted" >"$planted/found" 2>&1
+result $? "a clean tree passes"
+
+plant protocol/upward.c <<'END'
+#include "../platform/sys.h"
+#include <stdio.h>
+END
+plant client/words.c <<'END'
+#include "../server/session/ff_session.h"
+static float half(void) { return 0; }
+static void *take(void) { return malloc(1); }
+static void say(void) { printf("x"); }
+static long now(void) { return time(0); }
+END
+plant server/session/reach.c <<'END'
+#include "../../client/source/link/ff_stream.h"
+#include "../../protocol/message/ff_message.h"
+END
+plant client/ask/climb.c <<'END'
+#include "../ff_client_local.h"
+#include "../../protocol/ff_key.h"
+END
+plant client/cellar/dig.c <<'END'
+#include "../terrain/ff_tree.h"
+END
+plant sim/judge/partial.c <<'END'
+#include "../link/sim_link.h"
+#include "../fly/fly_options.h"
+#include "../../client/terrain/ff_tree.h"
+END
+plant sim/link/os.c <<'END'
+#include <unistd.h>
+#include "../../tests/helper.h"
+END
+plant common3d/gl/glue.c <<'END'
+#include <GL/gl.h>
+static float fine(void) { return 0; }
+END
+{ echo "int long_function(void)"; echo "{"; seq -f "    /* %g */" 80; echo "}"; } | plant tools/bake/long.c
+seq -f "/* %g */" 601 | plant sim/fly/big.c
+echo "/* TO""DO */" | plant platform/note.c
+plant tools/bake/clean.c </dev/null
+plant protocol/calls.c <<'END'
+extern void *malloc(unsigned long);
+extern int gettimeofday(void *, void *);
+double calls(double x);
+double calls(double x) { gettimeofday(malloc(1), 0); return x * 1.5; }
+END
+cc -std=c99 -fno-builtin -c "$planted/protocol/calls.c" -o "$planted/build/obj/protocol/calls.o"
+tools/scripts/check-layers.sh "$planted" >"$planted/found" 2>&1
+result $((! $?)) "a tree with violations fails"
+
+expect() { # WHAT LINE
+    grep -q -F -x "$2" "$planted/found"
+    result $? "finds $1"
+}
+expect "an include of a higher layer" "protocol/upward.c:1: protocol/ may not include platform/sys.h"
+expect "stdio in the core" "protocol/upward.c:2: <stdio.h> in the core"
+expect "the client including the server" "client/words.c:1: client/ may not include server/session/ff_session.h"
+expect "floating point" "client/words.c:2: floating point in the core"
+expect "allocation" "client/words.c:3: allocation in the core"
+expect "output" "client/words.c:4: input or output in the core"
+expect "a clock" "client/words.c:5: clock or chance in the core"
+expect "the server reaching into the client" "server/session/reach.c:1: server/session/ may not include client/source/link/ff_stream.h"
+expect "a room of the client that climbs" "client/ask/climb.c:1: client/ask/ may not include client/ff_client_local.h"
+expect "a room that nobody knows" "client/cellar/dig.c:1: client/cellar/ has no row in check-layers.sh"
+expect "a judge that knows the link" "sim/judge/partial.c:1: sim/judge/ may not include sim/link/sim_link.h"
+expect "a judge that knows the flight" "sim/judge/partial.c:2: sim/judge/ may not include sim/fly/fly_options.h"
+expect "an OS header outside platform" "sim/link/os.c:1: <unistd.h> belongs to platform/"
+expect "an include of tests" "sim/link/os.c:2: sim/link/ may not include tests/helper.h"
+expect "a long function" "tools/bake/long.c:2: function of 82 lines, more than 70"
+expect "a long file" "sim/fly/big.c:601: file longer than 600 lines"
+expect "a left-over note" "platform/note.c:1: note of unfinished work"
+expect "a file name used twice" "protocol/clean.c tools/bake/clean.c : file name used twice"
+expect "a call to malloc" "build/obj/protocol/calls.o:0: calls malloc"
+expect "a call to the clock" "build/obj/protocol/calls.o:0: calls gettimeofday"
+expect "floating-point instructions" "build/obj/protocol/calls.o:0: floating-point instructions"
+if grep -q -e glue.c -e 'reach.c:2' -e 'climb.c:2' -e 'partial.c:3' "$planted/found"; then result 1 "no false alarms"; else result 0 "no false alarms"; fi
+exit $((failures > 0))

@@ -1,0 +1,78 @@
+/* Any bytes as a pack: once as they are, once with the header's checksum put right, so that what
+ * lies behind it is reached. */
+#include "../../protocol/ff_pack.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define NODES_TRIED 64
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
+
+static int read_all(const uint8_t *bytes, int count)
+{
+    int sum = 0;
+
+    for (int i = 0; i < count; i++) sum += bytes[i];
+    return sum;
+}
+
+static void decode_payload(const ff_terrain_info *info, int refinement, const uint8_t *payload,
+                           int bytes)
+{
+    static int32_t value[FF_REFINED_HEIGHTS_MAX];
+    static uint16_t parent[FF_NODE_HEIGHTS_MAX], heights[FF_REFINED_HEIGHTS_MAX];
+    ff_residuals residuals = { .value = value };
+    size_t memory_bytes = ff_decoder_bytes(info);
+    void *memory = malloc(memory_bytes);
+    ff_decoder *dec = ff_decoder_create(info, memory, memory_bytes);
+
+    assert(dec != NULL);
+    if (refinement && ff_decode_refinement(dec, payload, (size_t)bytes, &residuals) == FF_OK)
+        ff_reconstruct_refinement(info, parent, &residuals, heights);
+    if (!refinement && ff_decode_root(dec, payload, (size_t)bytes, &residuals) == FF_OK)
+        ff_reconstruct_root(info, &residuals, heights);
+    free(memory);
+}
+
+static void use_pack(const uint8_t *bytes, size_t count)
+{
+    ff_pack pack;
+    uint64_t bad, records = 0;
+    volatile int sum = 0;
+
+    if (ff_pack_open(&pack, bytes, count) != FF_OK) return;
+    for (uint32_t s = 0; s < pack.header.section_count; s++) {
+        const ff_pack_section *section = &pack.header.section[s];
+        records += section->record_count;
+        for (uint32_t i = 0; i < NODES_TRIED; i++) {
+            const uint8_t *payload;
+            ff_key key = ff_key_make(i >> (2 * section->level), section->level,
+                                     section->level ? i : 0);
+            int rc = ff_pack_record(&pack, (enum ff_section_kind)section->kind, key, &payload);
+            if (rc < 0) continue;
+            sum += read_all(payload, rc);
+            if (section->kind != FF_SECTION_TEXTURE)
+                decode_payload(&pack.header.info, section->kind == FF_SECTION_REFINEMENT, payload,
+                               rc);
+        }
+    }
+    ff_pack_verify(&pack, &bad);
+    assert(bad <= records);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
+{
+    uint8_t *copy;
+
+    use_pack(bytes, count);
+    if (count < FF_PACK_HEADER_BYTES) return 0;
+    copy = malloc(count);
+    memcpy(copy, bytes, count);
+    for (uint32_t i = 0, crc = ff_crc32(0, copy, FF_PACK_HEADER_BYTES - 4); i < 4; i++)
+        copy[FF_PACK_HEADER_BYTES - 4 + i] = (uint8_t)(crc >> (8 * i));
+    use_pack(copy, count);
+    free(copy);
+    return 0;
+}

@@ -1,0 +1,374 @@
+/* Pack reader: every record found, every kind of damage named. */
+#include "../../protocol/ff_pack.h"
+#include "../rig/pack_fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+typedef struct fixture {
+    uint8_t *bytes;
+    size_t count;
+} fixture;
+
+static uint16_t other_hills(void *context, uint32_t x, uint32_t y)
+{
+    return pack_fixture_hills(context, x + 1, y) ^ 1u;
+}
+
+/* Two tiles of 2^4 cells, raw codec: every record of two such packs has the same length. */
+static fixture make_small(uint16_t (*height)(void *context, uint32_t x, uint32_t y))
+{
+    pack_fixture_desc desc = { .info = pack_fixture_info(4, 2, 1), .height = height };
+    fixture f;
+
+    desc.info.node_log2 = 2;
+    desc.info.codec = FF_CODEC_RAW;
+    f.bytes = pack_fixture_make(&desc, &f.count);
+    assert_non_null(f.bytes);
+    return f;
+}
+
+static int make(void **state)
+{
+    fixture *f = calloc(1, sizeof(*f));
+
+    *f = make_small(pack_fixture_hills);
+    *state = f;
+    return 0;
+}
+
+static int drop(void **state)
+{
+    free(((fixture *)*state)->bytes);
+    free(*state);
+    return 0;
+}
+
+static void put(uint8_t *at, uint64_t value, unsigned bytes)
+{
+    for (unsigned i = 0; i < bytes; i++) at[i] = (uint8_t)(value >> (8 * i));
+}
+
+static void reseal(fixture *f)
+{
+    put(f->bytes + FF_PACK_HEADER_BYTES - 4, ff_crc32(0, f->bytes, FF_PACK_HEADER_BYTES - 4), 4);
+}
+
+static int open_rc(const fixture *f)
+{
+    ff_pack pack;
+
+    return ff_pack_open(&pack, f->bytes, f->count);
+}
+
+/* ---- good packs ---- */
+
+static void crc_is_the_usual_one(void **state)
+{
+    (void)state;
+    assert_int_equal(ff_crc32(0, "123456789", 9), 0xcbf43926);
+    assert_int_equal(ff_crc32(ff_crc32(0, "1234", 4), "56789", 5), 0xcbf43926);
+    assert_int_equal(ff_crc32(0, NULL, 0), 0);
+}
+
+static void walk(const ff_pack *pack, ff_decoder *dec, ff_key key, const uint16_t *heights,
+                 uint32_t *nodes)
+{
+    static int32_t value[FF_REFINED_HEIGHTS_MAX];
+    const ff_terrain_info *info = &pack->header.info;
+    uint16_t refined[FF_REFINED_HEIGHTS_MAX], child[FF_NODE_HEIGHTS_MAX];
+    uint32_t side = ff_node_side(info),
+             step = 1u << (info->tile_log2 - info->node_log2 - ff_key_level(key));
+    uint32_t x0 = (ff_key_tile(key) << info->tile_log2) +
+                  (ff_morton_x(ff_key_code(key)) * step << info->node_log2);
+    uint32_t y0 = ff_morton_y(ff_key_code(key)) * step << info->node_log2;
+    ff_residuals residuals = { .value = value };
+    const uint8_t *payload;
+
+    ++*nodes;
+    for (uint32_t i = 0; i < side * side; i++)
+        assert_int_equal(heights[i],
+                         pack_fixture_hills(NULL, x0 + i % side * step, y0 + i / side * step));
+    if (ff_key_level(key) + 1 == ff_terrain_levels(info)) return;
+    int bytes = ff_pack_record(pack, FF_SECTION_REFINEMENT, key, &payload);
+    assert_true(bytes > 0);
+    assert_int_equal(ff_decode_refinement(dec, payload, (size_t)bytes, &residuals), FF_OK);
+    ff_reconstruct_refinement(info, heights, &residuals, refined);
+    for (uint32_t q = 0; q < 4; q++) {
+        ff_refined_child(info, refined, q, child);
+        walk(pack, dec, ff_key_child(key, q), child, nodes);
+    }
+}
+
+static void whole_ground_comes_back(void **state)
+{
+    const fixture *f = *state;
+    static int32_t value[FF_REFINED_HEIGHTS_MAX];
+    ff_residuals residuals = { .value = value };
+    uint16_t root[FF_NODE_HEIGHTS_MAX];
+    const uint8_t *payload;
+    uint64_t bad = 99;
+    uint32_t nodes = 0;
+    ff_pack pack;
+
+    assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
+    assert_int_equal(ff_pack_verify(&pack, &bad), FF_OK);
+    assert_int_equal(bad, 0);
+    size_t memory_bytes = ff_decoder_bytes(&pack.header.info);
+    void *memory = malloc(memory_bytes);
+    ff_decoder *dec = ff_decoder_create(&pack.header.info, memory, memory_bytes);
+    for (uint32_t tile = 0; tile < 2; tile++) {
+        int bytes = ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(tile, 0, 0), &payload);
+        assert_true(bytes > 0);
+        assert_int_equal(ff_decode_root(dec, payload, (size_t)bytes, &residuals), FF_OK);
+        ff_reconstruct_root(&pack.header.info, &residuals, root);
+        walk(&pack, dec, ff_key_make(tile, 0, 0), root, &nodes);
+    }
+    assert_int_equal(nodes, 2 * (1 + 4 + 16));
+    free(memory);
+}
+
+static void keys_without_record_are_not_found(void **state)
+{
+    const fixture *f = *state;
+    const uint8_t *payload;
+    ff_pack pack;
+
+    assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(2, 0, 0), &payload),
+                     FF_ERR_NOT_FOUND);
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(0, 1, 0), &payload),
+                     FF_ERR_NOT_FOUND);
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_REFINEMENT, ff_key_make(0, 2, 0), &payload),
+                     FF_ERR_NOT_FOUND);
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_REFINEMENT, ff_key_make(0, 1, 4), &payload),
+                     FF_ERR_NOT_FOUND);
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_TEXTURE, ff_key_make(0, 0, 0), &payload),
+                     FF_ERR_NOT_FOUND);
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, FF_KEY_NONE, &payload),
+                     FF_ERR_NOT_FOUND);
+}
+
+/* Same terrain, same sizes, other heights: a cache of the one must not serve the other. */
+static void checksum_tells_packs_apart(void **state)
+{
+    const fixture *f = *state;
+    fixture same = make_small(pack_fixture_hills), other = make_small(other_hills);
+    ff_pack pack, same_pack, other_pack;
+
+    assert_int_equal(other.count, f->count);
+    assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
+    assert_int_equal(ff_pack_open(&same_pack, same.bytes, same.count), FF_OK);
+    assert_int_equal(ff_pack_open(&other_pack, other.bytes, other.count), FF_OK);
+    assert_int_equal(pack.header.info.checksum, same_pack.header.info.checksum);
+    assert_int_not_equal(pack.header.info.checksum, other_pack.header.info.checksum);
+    assert_int_not_equal(pack.header.info.checksum, 0);
+    free(same.bytes);
+    free(other.bytes);
+}
+
+/* ---- damage ---- */
+
+static void every_truncation_is_noticed(void **state)
+{
+    fixture *f = *state;
+
+    for (size_t count = 0; count < f->count;
+         count += count < 16 || f->count - count < 64 ? 1 : 13) {
+        uint8_t *exact = malloc(count > 0 ? count : 1);
+        ff_pack pack;
+        memcpy(exact, f->bytes, count);
+        assert_int_equal(ff_pack_open(&pack, exact, count), FF_ERR_TRUNCATED);
+        free(exact);
+    }
+}
+
+static void every_flipped_header_bit_is_noticed(void **state)
+{
+    fixture *f = *state;
+
+    for (size_t bit = 0; bit < 8 * FF_PACK_HEADER_BYTES; bit++) {
+        f->bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
+        int rc = open_rc(f), expected = bit < 64   ? FF_ERR_FORMAT
+                                        : bit < 96 ? FF_ERR_VERSION
+                                                   : FF_ERR_CHECKSUM;
+        assert_int_equal(rc, expected);
+        f->bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
+    }
+    assert_int_equal(open_rc(f), FF_OK);
+}
+
+static void every_flipped_body_bit_is_found_by_verify(void **state)
+{
+    fixture *f = *state;
+    ff_pack pack;
+
+    assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
+    for (size_t bit = 8 * FF_PACK_HEADER_BYTES; bit < 8 * f->count; bit += 3) {
+        uint64_t bad;
+        f->bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
+        assert_int_equal(ff_pack_verify(&pack, &bad), FF_ERR_CHECKSUM);
+        f->bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
+    }
+}
+
+static void damaged_records_are_counted_and_refused(void **state)
+{
+    fixture *f = *state;
+    const uint8_t *payload;
+    uint64_t bad;
+    ff_pack pack;
+
+    assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
+    const ff_pack_section *roots = &pack.header.section[0];
+    f->bytes[roots->data_offset + 6] ^= 1;
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(0, 0, 0), &payload),
+                     FF_ERR_CHECKSUM);
+    assert_true(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(1, 0, 0), &payload) > 0);
+    assert_int_equal(ff_pack_verify(&pack, &bad), FF_ERR_CHECKSUM);
+    assert_int_equal(bad, 1);
+}
+
+/* Sound records, but not those the header was made for. */
+static void exchanged_records_are_found_by_verify(void **state)
+{
+    fixture *f = *state;
+    uint64_t bad;
+    ff_pack pack;
+
+    assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
+    pack.header.section[1].records_crc ^= 1;
+    assert_int_equal(ff_pack_verify(&pack, &bad), FF_ERR_CHECKSUM);
+    assert_int_equal(bad, 0);
+}
+
+static void wild_indexes_are_out_of_range(void **state)
+{
+    static const uint64_t wild[][2] = {
+        { 8, 4 }, { 0, UINT64_MAX }, { UINT64_MAX, UINT64_MAX }, { 0, 3 }, { UINT64_MAX - 3, 0 }
+    };
+    fixture *f = *state;
+    const uint8_t *payload;
+    ff_pack pack;
+
+    assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
+    uint8_t *index = f->bytes + pack.header.section[0].index_offset;
+    for (unsigned i = 0; i < sizeof(wild) / sizeof(wild[0]); i++) {
+        put(index, wild[i][0], 8);
+        put(index + 8, wild[i][1], 8);
+        assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(0, 0, 0), &payload),
+                         FF_ERR_RANGE);
+    }
+    put(index, 4, 8);
+    put(index + 8, 4, 8);
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(0, 0, 0), &payload),
+                     FF_ERR_NOT_FOUND);
+}
+
+#define SECTION_AT(number, field) (80 + 44 * (number) + (field))
+
+/* Headers that are sealed but lie: the section table's fields set to what a hostile writer would
+ * like. */
+static void lying_section_tables_are_refused(void **state)
+{
+    static const struct {
+        unsigned at, bytes;
+        uint64_t value;
+        int expected;
+    } lies[] = {
+        { 76, 4, 0, FF_ERR_RANGE },
+        { 76, 4, 2, FF_ERR_RANGE },
+        { 76, 4, 49, FF_ERR_RANGE },
+        { 76, 4, UINT32_MAX, FF_ERR_RANGE },
+        { SECTION_AT(0, 0), 2, FF_SECTION_TEXTURE, FF_ERR_RANGE },
+        { SECTION_AT(1, 2), 2, 1, FF_ERR_RANGE },
+        { SECTION_AT(1, 12), 8, 3, FF_ERR_RANGE },
+        { SECTION_AT(1, 12), 8, UINT64_MAX, FF_ERR_RANGE },
+        { SECTION_AT(0, 20), 8, 0, FF_ERR_TRUNCATED },
+        { SECTION_AT(0, 20), 8, UINT64_MAX - 8, FF_ERR_TRUNCATED },
+        { SECTION_AT(0, 28), 8, UINT64_MAX, FF_ERR_TRUNCATED },
+        { SECTION_AT(0, 28), 8, 100, FF_ERR_TRUNCATED },
+        { SECTION_AT(2, 36), 8, UINT64_MAX, FF_ERR_TRUNCATED },
+        { 12, 1, 9, FF_ERR_RANGE },
+        { 24, 4, 0, FF_ERR_RANGE },
+        { 24, 4, UINT32_MAX, FF_ERR_RANGE },
+        { 24, 4, 3, FF_ERR_RANGE },
+    };
+    fixture *f = *state;
+    uint8_t keep[FF_PACK_HEADER_BYTES];
+
+    memcpy(keep, f->bytes, sizeof(keep));
+    for (unsigned i = 0; i < sizeof(lies) / sizeof(lies[0]); i++) {
+        put(f->bytes + lies[i].at, lies[i].value, lies[i].bytes);
+        reseal(f);
+        assert_int_equal(open_rc(f), lies[i].expected);
+        memcpy(f->bytes, keep, sizeof(keep));
+    }
+    assert_int_equal(open_rc(f), FF_OK);
+}
+
+static void bad_headers_are_not_written(void **state)
+{
+    const fixture *f = *state;
+    uint8_t out[FF_PACK_HEADER_BYTES];
+    ff_pack pack;
+
+    assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
+    ff_pack_header header = pack.header;
+    header.info.checksum = 12345; /* worked out anew */
+    assert_int_equal(ff_pack_header_encode(&header, out), FF_OK);
+    assert_memory_equal(out, f->bytes, sizeof(out));
+    header.section[1].level = 7;
+    assert_int_equal(ff_pack_header_encode(&header, out), FF_ERR_RANGE);
+    header = pack.header;
+    header.section_count--;
+    assert_int_equal(ff_pack_header_encode(&header, out), FF_ERR_RANGE);
+    header = pack.header;
+    header.info.node_log2 = 0;
+    assert_int_equal(ff_pack_header_encode(&header, out), FF_ERR_RANGE);
+}
+
+/* Offsets beyond 32 bits, without a file of that size: the reader looks at nothing but the header
+ * when it opens. */
+static void large_packs_are_measured_in_64_bits(void **state)
+{
+    const fixture *f = *state;
+    uint8_t header_bytes[FF_PACK_HEADER_BYTES];
+    ff_pack pack, large;
+
+    assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
+    ff_pack_header header = pack.header;
+    header.section[2].data_offset = (uint64_t)1 << 40;
+    header.section[2].data_bytes = (uint64_t)1 << 33;
+    assert_int_equal(ff_pack_header_encode(&header, header_bytes), FF_OK);
+    assert_int_equal(ff_pack_open(&large, header_bytes, ((uint64_t)1 << 40) + ((uint64_t)1 << 33)),
+                     FF_OK);
+    assert_true(large.header.section[2].data_offset == (uint64_t)1 << 40);
+    assert_int_equal(
+        ff_pack_open(&large, header_bytes, ((uint64_t)1 << 40) + ((uint64_t)1 << 33) - 1),
+        FF_ERR_TRUNCATED);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(crc_is_the_usual_one),
+        cmocka_unit_test_setup_teardown(whole_ground_comes_back, make, drop),
+        cmocka_unit_test_setup_teardown(keys_without_record_are_not_found, make, drop),
+        cmocka_unit_test_setup_teardown(checksum_tells_packs_apart, make, drop),
+        cmocka_unit_test_setup_teardown(every_truncation_is_noticed, make, drop),
+        cmocka_unit_test_setup_teardown(every_flipped_header_bit_is_noticed, make, drop),
+        cmocka_unit_test_setup_teardown(every_flipped_body_bit_is_found_by_verify, make, drop),
+        cmocka_unit_test_setup_teardown(damaged_records_are_counted_and_refused, make, drop),
+        cmocka_unit_test_setup_teardown(exchanged_records_are_found_by_verify, make, drop),
+        cmocka_unit_test_setup_teardown(wild_indexes_are_out_of_range, make, drop),
+        cmocka_unit_test_setup_teardown(lying_section_tables_are_refused, make, drop),
+        cmocka_unit_test_setup_teardown(bad_headers_are_not_written, make, drop),
+        cmocka_unit_test_setup_teardown(large_packs_are_measured_in_64_bits, make, drop),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,59 @@
+/* A client over a server in the same process: the stream between them is an array that can be cut,
+ * silenced, spoilt and chopped. Faces are made up: side faces show a strip of ground, UP and DOWN
+ * are empty. Time is a number. */
+#ifndef CLIENT_FIXTURE_H
+#define CLIENT_FIXTURE_H
+
+#include "pack_fixture.h"
+#include "../../client/farfield.h"
+#include "../../server/session/ff_session.h"
+
+typedef struct client_rig {
+    uint8_t *pack_bytes;
+    ff_pack pack;
+    ff_session *session; /* of the present connection; NULL: none */
+    sys_stream stream;
+    uint8_t inbox[4096]; /* sent by the client, not taken by the session yet */
+    size_t inbox_count;
+
+    /* what goes wrong; counted in bytes to the client since the start, UINT64_MAX: never */
+    uint64_t cut_at, silent_at, spoil_at;
+    uint8_t spoil_with; /* the byte at spoil_at is this, and all after it */
+    int refuse;         /* no new connection */
+    int no_faces;       /* the renderer never answers */
+    unsigned chop;      /* recv gives at most so many bytes; 0: all there is */
+
+    uint64_t bytes_down;
+    unsigned connections;
+    uint32_t asked[256];      /* messages from the client, by type */
+    int64_t now_us, frame_us; /* of server and worker; of the frames */
+
+    void *memory;
+    size_t memory_bytes;
+    ff_client_desc desc;
+    ff_client *client;
+    c3d_camera camera;
+    unsigned updates; /* that said: draw */
+} client_rig;
+
+/* The usual pack of hills, with images when texture_log2 is not 0; no client yet. */
+void rig_open(client_rig *rig, unsigned texture_log2);
+/* The same ground in nodes of another size. */
+void rig_use_node_log2(client_rig *rig, unsigned node_log2, unsigned texture_log2);
+/* Another terrain for all further connections. */
+void rig_change_terrain(client_rig *rig);
+/* A client of `bytes` over the stream; rig->desc's other fields are the test's to set before. */
+void rig_client(client_rig *rig, size_t bytes);
+/* The same over the pack itself. */
+void rig_local_client(client_rig *rig, size_t bytes);
+void rig_close(client_rig *rig);
+
+/* One frame: server, worker, update. `us` later. */
+void rig_step(client_rig *rig, int64_t us);
+/* Frames of 50 ms until nothing is out and queued for a while, `frames` at most. 1 when settled. */
+int rig_settle(client_rig *rig, unsigned frames);
+ff_client_stats rig_stats(const client_rig *rig);
+/* 1 when both show the same nodes, borders and heights. */
+int rig_same_picture(const client_rig *a, const client_rig *b);
+
+#endif

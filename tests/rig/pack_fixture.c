@@ -1,0 +1,250 @@
+#include "pack_fixture.h"
+#include "../../platform/sys.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define JPEG_QUALITY 92
+
+typedef struct writer {
+    const pack_fixture_desc *desc;
+    ff_pack_header header;
+    uint8_t *bytes;
+    size_t count, capacity;
+    int failed;
+} writer;
+
+static uint8_t *grow(writer *w, size_t more)
+{
+    if (w->count + more > w->capacity) {
+        size_t capacity = 2 * (w->count + more);
+        uint8_t *bytes = realloc(w->bytes, capacity);
+        if (!bytes) {
+            w->failed = 1;
+            return NULL;
+        }
+        w->bytes = bytes;
+        w->capacity = capacity;
+    }
+    memset(w->bytes + w->count, 0, more);
+    w->count += more;
+    return w->bytes + w->count - more;
+}
+
+static void put_le(uint8_t *out, uint64_t value, unsigned bytes)
+{
+    for (unsigned i = 0; i < bytes; i++) out[i] = (uint8_t)(value >> (8 * i));
+}
+
+/* ---- the ground ---- */
+
+/* First finest sample of a node, and its extent in finest cells. */
+static uint32_t node_place(const ff_terrain_info *info, ff_key key, uint32_t *x, uint32_t *y)
+{
+    uint32_t extent = 1u << (info->tile_log2 - ff_key_level(key));
+    uint32_t tile = ff_key_tile(key), code = ff_key_code(key);
+    *x = ((tile % info->tiles_x) << info->tile_log2) + ff_morton_x(code) * extent;
+    *y = ((tile / info->tiles_x) << info->tile_log2) + ff_morton_y(code) * extent;
+    return extent;
+}
+
+static void source_grid(const pack_fixture_desc *desc, ff_key key, uint32_t cells, uint16_t *out)
+{
+    uint32_t x, y, step = node_place(&desc->info, key, &x, &y) / cells;
+    for (uint32_t j = 0; j <= cells; j++)
+        for (uint32_t i = 0; i <= cells; i++)
+            *out++ = desc->height(desc->context, x + i * step, y + j * step);
+}
+
+/* Height of the drawn cell at fraction (fx, fy)/step, times step: two triangles with their common
+ * edge from south-west to north-east. */
+static int64_t cell_height(const int64_t h[4], int64_t fx, int64_t fy, int64_t step)
+{
+    if (fx >= fy) return h[0] * step + (h[1] - h[0]) * fx + (h[3] - h[1]) * fy;
+    return h[0] * step + (h[2] - h[0]) * fy + (h[3] - h[2]) * fx;
+}
+
+static uint8_t node_error(const pack_fixture_desc *desc, ff_key key)
+{
+    uint32_t x0, y0, cells = 1u << desc->info.node_log2;
+    uint32_t extent = node_place(&desc->info, key, &x0, &y0), step = extent / cells;
+    int64_t worst = 0;
+    for (uint32_t y = 0; y < extent; y++)
+        for (uint32_t x = 0; x < extent; x++) {
+            uint32_t cx = x0 + x / step * step, cy = y0 + y / step * step;
+            int64_t corner[4];
+            for (uint32_t c = 0; c < 4; c++)
+                corner[c] = desc->height(desc->context, cx + (c & 1) * step, cy + (c >> 1) * step);
+            int64_t drawn = cell_height(corner, x0 + x - cx, y0 + y - cy, step);
+            int64_t off = drawn - (int64_t)step * desc->height(desc->context, x0 + x, y0 + y);
+            off = (off < 0 ? -off : off) + step - 1;
+            worst = off / step > worst ? off / step : worst;
+        }
+    return ff_geometric_error_encode((uint32_t)worst + desc->info.max_error);
+}
+
+/* ---- records ---- */
+
+static int texture_payload(const pack_fixture_desc *desc, ff_key key, uint8_t *out, size_t capacity)
+{
+    uint32_t texels = 1u << desc->info.texture_log2;
+    int64_t edge = ff_node_edge_wu(&desc->info, ff_key_level(key));
+    int32_t x, y;
+    ff_node_origin_wu(&desc->info, key, &x, &y);
+    uint8_t *rgb = malloc((size_t)3 * texels * texels);
+    if (!rgb) return FF_ERR_MEMORY;
+    for (uint32_t row = 0; row < texels; row++)
+        for (uint32_t i = 0; i < texels; i++)
+            desc->colour(desc->context, x + edge * i / (texels - 1),
+                         y + edge * (texels - 1 - row) / (texels - 1),
+                         rgb + 3 * (row * texels + i));
+    int bytes = sys_jpeg_encode(rgb, texels, texels, JPEG_QUALITY, out, capacity);
+    free(rgb);
+    return bytes;
+}
+
+/* decoded[]: heights of all nodes of the section's level, replaced by those of the next one after a
+ * section of refinements. */
+static int node_payload(const pack_fixture_desc *desc, enum ff_section_kind kind, ff_key key,
+                        uint8_t *out, const uint16_t *decoded, uint16_t *next)
+{
+    uint32_t node_heights = ff_node_side(&desc->info) * ff_node_side(&desc->info);
+    uint64_t number = ff_pack_record_number(key);
+    uint16_t source[FF_REFINED_HEIGHTS_MAX], refined[FF_REFINED_HEIGHTS_MAX];
+    if (kind == FF_SECTION_ROOT) {
+        source_grid(desc, key, 1u << desc->info.node_log2, source);
+        return ff_encode_root(&desc->info, source, node_error(desc, key), out,
+                              next + number * node_heights);
+    }
+    uint8_t child_error[4];
+    for (uint32_t q = 0; q < 4; q++) child_error[q] = node_error(desc, ff_key_child(key, q));
+    source_grid(desc, key, 2u << desc->info.node_log2, source);
+    int bytes = ff_encode_refinement(&desc->info, decoded + number * node_heights, source,
+                                     child_error, out, refined);
+    for (uint32_t q = 0; q < 4; q++)
+        ff_refined_child(&desc->info, refined, q, next + (4 * number + q) * node_heights);
+    return bytes;
+}
+
+static void section(writer *w, enum ff_section_kind kind, uint32_t level, const uint16_t *decoded,
+                    uint16_t *next)
+{
+    static uint8_t payload[1 << 18];
+    const ff_terrain_info *info = &w->desc->info;
+    uint64_t per_tile = (uint64_t)1 << (2 * level),
+             records = (uint64_t)info->tiles_x * info->tiles_y * per_tile;
+    ff_pack_section *s = &w->header.section[w->header.section_count++];
+    *s = (ff_pack_section){ .kind = (uint16_t)kind,
+                            .level = (uint16_t)level,
+                            .record_count = records };
+    s->index_offset = w->count;
+    size_t index_bytes = (size_t)(records + 1) * 8;
+    grow(w, index_bytes);
+    s->data_offset = w->count;
+    for (uint64_t r = 0; r < records && !w->failed; r++) {
+        ff_key key = ff_key_make((uint32_t)(r / per_tile), level, (uint32_t)(r % per_tile));
+        int bytes = kind == FF_SECTION_TEXTURE
+                        ? texture_payload(w->desc, key, payload, sizeof payload)
+                        : node_payload(w->desc, kind, key, payload, decoded, next);
+        uint8_t *out = bytes >= 0 ? grow(w, 4 + (size_t)bytes) : NULL;
+        if (!out) {
+            w->failed = 1;
+            return;
+        }
+        put_le(out, ff_crc32(0, payload, (size_t)bytes), 4);
+        s->records_crc = ff_crc32(s->records_crc, out, 4);
+        memcpy(out + 4, payload, (size_t)bytes);
+        put_le(w->bytes + s->index_offset + 8 * (r + 1), w->count - s->data_offset, 8);
+    }
+    s->data_bytes = w->count - s->data_offset;
+    s->index_crc = ff_crc32(0, w->bytes + s->index_offset, index_bytes);
+    w->header.info.checksum = ff_crc32(w->header.info.checksum, w->bytes + s->index_offset,
+                                       w->count - s->index_offset);
+}
+
+static void sections(writer *w)
+{
+    const ff_terrain_info *info = &w->desc->info;
+    uint32_t levels = ff_terrain_levels(info);
+    size_t level_heights = (size_t)info->tiles_x * info->tiles_y * ff_node_side(info) *
+                           ff_node_side(info);
+    uint16_t *decoded = NULL;
+    for (uint32_t level = 0; level < levels && !w->failed; level++) {
+        uint16_t *next = malloc((level_heights << (2 * level)) * sizeof *next);
+        if (!next)
+            w->failed = 1;
+        else if (level == 0)
+            section(w, FF_SECTION_ROOT, 0, NULL, next);
+        else
+            section(w, FF_SECTION_REFINEMENT, level - 1, decoded, next);
+        free(decoded);
+        decoded = next;
+    }
+    free(decoded);
+    for (uint32_t level = 0; level < info->texture_levels && !w->failed; level++)
+        section(w, FF_SECTION_TEXTURE, level, NULL, NULL);
+}
+
+uint8_t *pack_fixture_make(const pack_fixture_desc *desc, size_t *bytes)
+{
+    writer w = { .desc = desc, .header.info = desc->info };
+    if (ff_terrain_check(&desc->info) < 0) return NULL;
+    grow(&w, FF_PACK_HEADER_BYTES);
+    sections(&w);
+    if (!w.failed) w.failed = ff_pack_header_encode(&w.header, w.bytes) != FF_OK;
+    if (w.failed) {
+        free(w.bytes);
+        return NULL;
+    }
+    *bytes = w.count;
+    return w.bytes;
+}
+
+/* ---- ready-made ground ---- */
+
+ff_terrain_info pack_fixture_info(uint8_t tile_log2, uint32_t tiles_x, uint32_t tiles_y)
+{
+    ff_terrain_info info = { .node_log2 = 3,
+                             .tile_log2 = tile_log2,
+                             .codec = FF_CODEC_DEFLATE,
+                             .tiles_x = tiles_x,
+                             .tiles_y = tiles_y,
+                             .spacing_wu = 32 * FF_WU_PER_METRE,
+                             .hscale_q24 = 1u << 24,
+                             .height_max = 1500 };
+    info.samples_x = (tiles_x << tile_log2) + 1;
+    info.samples_y = (tiles_y << tile_log2) + 1;
+    return info;
+}
+
+static uint32_t hash2(uint32_t x, uint32_t y)
+{
+    uint32_t h = x * 0x9E3779B1u ^ (y * 0x85EBCA77u + 0x27D4EB2Fu);
+    h = (h ^ (h >> 15)) * 0x2C1B3C6Du;
+    h = (h ^ (h >> 12)) * 0x297A2D39u;
+    return h ^ (h >> 15);
+}
+
+/* Value noise of lattice width 2^log2 with range 0..range-1, interpolated bilinearly. */
+static uint32_t noise(uint32_t x, uint32_t y, uint32_t log2, uint32_t range)
+{
+    uint32_t cx = x >> log2, cy = y >> log2, size = 1u << log2, fx = x & (size - 1),
+             fy = y & (size - 1);
+    uint64_t south = (uint64_t)(hash2(cx, cy) % range) * (size - fx) +
+                     (uint64_t)(hash2(cx + 1, cy) % range) * fx;
+    uint64_t north = (uint64_t)(hash2(cx, cy + 1) % range) * (size - fx) +
+                     (uint64_t)(hash2(cx + 1, cy + 1) % range) * fx;
+    return (uint32_t)((south * (size - fy) + north * fy) >> (2 * log2));
+}
+
+uint16_t pack_fixture_hills(void *context, uint32_t x, uint32_t y)
+{
+    (void)context;
+    return (uint16_t)(noise(x, y, 5, 1000) + noise(x, y, 3, 400) + noise(x, y, 1, 60));
+}
+
+uint8_t *pack_fixture_usual(size_t *bytes)
+{
+    pack_fixture_desc desc = { .info = pack_fixture_info(6, 2, 2), .height = pack_fixture_hills };
+    return pack_fixture_make(&desc, bytes);
+}

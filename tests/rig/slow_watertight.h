@@ -1,0 +1,12 @@
+/* The second judge of whole ground, slow on purpose: it forms every triangle that is drawn and
+ * looks at every edge and vertex in hash tables, where sim/judge/sim_watertight.c looks at the rims
+ * that nodes share. Same contract as sim_watertight_check(). */
+#ifndef SLOW_WATERTIGHT_H
+#define SLOW_WATERTIGHT_H
+
+#include "../../client/terrain/ff_tree.h"
+
+int slow_watertight_check(const ff_terrain_info *info, const ff_drawn *list, uint32_t count,
+                          char *why, size_t why_bytes);
+
+#endif

@@ -1,0 +1,66 @@
+/* Ground made up in memory, and a tree fed from it: any size, encoded when it is asked for,
+ * delivered at once or by a bad link. */
+#ifndef TERRAIN_FIXTURE_H
+#define TERRAIN_FIXTURE_H
+
+#include "../../client/terrain/ff_tree.h"
+
+/* Height in steps of sample (x, y) from the south-west corner. */
+typedef uint16_t (*fixture_height)(uint32_t x, uint32_t y);
+uint16_t fixture_hills(uint32_t x, uint32_t y);
+uint16_t fixture_flat(uint32_t x, uint32_t y);
+uint16_t fixture_cliffs(uint32_t x, uint32_t y); /* 0 or 65535 */
+uint16_t fixture_noise(uint32_t x, uint32_t y);
+/* plain to the west of x = 96, hills to the east */
+uint16_t fixture_half_flat(uint32_t x, uint32_t y);
+
+typedef struct terrain_fixture {
+    ff_terrain_info info;
+    fixture_height height;
+    ff_decoder *decoder;
+    ff_tree *tree;
+    void *tree_memory;
+} terrain_fixture;
+
+/* Metre steps, 10 m samples; changes to fx->info may follow before fixture_tree. */
+void fixture_make(terrain_fixture *fx, unsigned node_log2, unsigned tile_log2, uint32_t tiles_x,
+                  uint32_t tiles_y, fixture_height height);
+/* (Re)makes the tree, and the decoder for fx->info. */
+void fixture_tree(terrain_fixture *fx, uint32_t node_count, uint32_t wish_count);
+void fixture_free(terrain_fixture *fx);
+/* Both at once for what most tests fly over: 3 x 2 tiles of 1280 m, hills, nodes of 8 cells, 5
+ * levels. */
+void fixture_usual(terrain_fixture *fx, uint32_t node_count);
+ff_tree_stats fixture_stats(const terrain_fixture *fx);
+
+/* What every decoder holds for a node. */
+void fixture_decoded(const terrain_fixture *fx, ff_key key, uint16_t *heights);
+/* Encodes, decodes and delivers one wish; the tree's answer. */
+int fixture_deliver(terrain_fixture *fx, ff_key key, int refinement);
+/* Selects and delivers until the tree wishes for nothing more (or `rounds` are over), then selects;
+ * number of deliveries. */
+uint32_t fixture_settle(terrain_fixture *fx, const ff_view *view, const ff_quality *quality,
+                        uint32_t rounds);
+
+/* A link that loses, delays and reorders: wishes wait in a bag and are taken out at random. */
+#define FIXTURE_BAG 64
+typedef struct fixture_link {
+    sys_random random;
+    uint32_t loss_percent, per_frame;
+    uint32_t count;
+    ff_wish bag[FIXTURE_BAG];
+} fixture_link;
+void fixture_link_step(terrain_fixture *fx, fixture_link *link);
+
+/* Fails the test when the cut, or the drawn part of it, is not whole, or the statistics disagree
+ * with it. */
+void fixture_assert_whole(terrain_fixture *fx);
+
+/* A camera at (x, y, z) metres, degrees, 240 by 320, 60 degrees wide; and Hybrid's low quality. */
+ff_view fixture_view(int32_t x_m, int32_t y_m, int32_t z_m, int32_t yaw_deg, int32_t pitch_deg);
+/* The same, above_m over the (metre-step, 10 m) ground. */
+ff_view fixture_view_above(const terrain_fixture *fx, int32_t x_m, int32_t y_m, int32_t above_m,
+                           int32_t yaw_deg, int32_t pitch_deg);
+ff_quality fixture_quality(enum ff_measure measure);
+
+#endif

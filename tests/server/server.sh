@@ -1,0 +1,115 @@
+#!/bin/bash
+# farfield-server's command line: every mistake is one clear line and exit status 1; starting and stopping leaves nothing behind.
+set -u
+cd "$(dirname "$0")/../.." || exit 2
+: "${BIN:=build/bin}"
+work=build/tests/server
+rm -rf "$work" && mkdir -p "$work"
+failures=0
+result() { # STATUS WHAT
+    if [ "$1" = 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failures=$((failures + 1)); fi
+}
+server() { "$BIN/farfield-server" "$@" >"$work/out" 2>"$work/err" </dev/null; }
+
+# WHAT PATTERN ARGUMENTS: refused with one line on stderr that matches, nothing on stdout.
+refused() {
+    local what=$1 pattern=$2 status
+    shift 2
+    server "$@"
+    status=$?
+    [ "$status" = 1 ] && [ "$(wc -l <"$work/err")" = 1 ] && grep -q -E "^farfield-server: .*$pattern" "$work/err" && [ ! -s "$work/out" ]
+    result $? "$what is refused in one line"
+}
+
+awk 'BEGIN { for (i = 0; i < 65 * 65; i++) printf "%c%c", 1 + i % 120, 1 }' | LC_ALL=C head -c 8450 >"$work/hills.r16"
+"$BIN/farfield-bake" --quiet --raw 65x65 --spacing 30 "$work/hills.r16" -o "$work/hills.ffp"
+result $? "a pack to serve"
+head -c 3000 "$work/hills.ffp" >"$work/short.ffp"
+{ head -c 100 "$work/hills.ffp"; printf 'x'; tail -c +102 "$work/hills.ffp"; } >"$work/flipped.ffp"
+: >"$work/empty.ffp"
+
+server --help && grep -q -- --pack "$work/out"
+result $? "--help"
+server --version && grep -q -E '^farfield-server [0-9]+\.' "$work/out"
+result $? "--version"
+refused "no pack" "--pack" --workers 1
+refused "a missing pack" "nowhere.ffp" --pack "$work/nowhere.ffp"
+refused "a folder as pack" "$work" --pack "$work"
+refused "an empty pack" "empty.ffp" --pack "$work/empty.ffp"
+refused "a truncated pack" "short.ffp" --pack "$work/short.ffp"
+refused "a damaged pack" "flipped.ffp: checksum" --pack "$work/flipped.ffp"
+refused "a foreign file" "hills.r16: not a Farfield" --pack "$work/hills.r16"
+refused "an address without a port" "listen" --pack "$work/hills.ffp" --listen 127.0.0.1
+refused "a foreign address" "listen" --pack "$work/hills.ffp" --listen 192.0.2.1:7788
+refused "no workers" "--workers" --pack "$work/hills.ffp" --workers 0
+refused "half a number" "--idle" --pack "$work/hills.ffp" --idle 1x
+refused "an unknown GL" "--gl" --pack "$work/hills.ffp" --gl soft
+refused "an unknown option" "--nonsense" --pack "$work/hills.ffp" --nonsense
+refused "a missing value" "--pack" --pack
+refused "a stray argument" "stray" --pack "$work/hills.ffp" stray
+
+# Runs while FUNCTION looks at it; $port is where it listens.
+with_server() { # FUNCTION ARGUMENTS
+    local check=$1 pid line
+    shift
+    : >"$work/log" # the line looked for below is not the last server's
+    "$BIN/farfield-server" --pack "$work/hills.ffp" --listen 127.0.0.1:0 "$@" >"$work/log" 2>"$work/err" </dev/null &
+    pid=$!
+    for ((tries = 0; tries < 1000; tries++)); do
+        line=$(grep -m1 listening "$work/log") && break
+        kill -0 "$pid" 2>/dev/null || break
+        sleep 0.02
+    done
+    port=$(grep -o -E '127\.0\.0\.1:[0-9]+' <<<"$line" | head -1 | cut -d: -f2)
+    children=$(cat "/proc/$pid/task/$pid/children" 2>/dev/null)
+    "$check"
+    kill -TERM "$pid" 2>/dev/null
+    wait "$pid"
+    status=$?
+}
+
+port_in_use() {
+    [ -n "$port" ]
+    result $? "it says where it listens"
+    refused "a port in use" "in use" --pack "$work/hills.ffp" --listen "127.0.0.1:$port"
+}
+with_server port_in_use --workers 2 --renderers 1
+[ "$status" = 0 ] && grep -q stopped "$work/log"
+result $? "SIGTERM stops it with status 0"
+left=0
+for child in $children; do [ -e "/proc/$child" ] && left=1; done
+[ -n "$children" ] && [ "$left" = 0 ]
+result $? "no process is left"
+
+# HELLO, and GET_NODE of tile 0's root, whose record is damaged (the server does not read records before they are asked for)
+cp "$work/hills.ffp" "$work/good.ffp"
+python3 - "$work/hills.ffp" <<'END'
+import struct, sys
+file = bytearray(open(sys.argv[1], "rb").read())
+index, data = struct.unpack_from("<QQ", file, 80 + 20)
+file[data + struct.unpack_from("<Q", file, index)[0] + 6] ^= 1
+open(sys.argv[1], "wb").write(file)
+END
+ask_root() {
+    python3 -c '
+import socket, sys
+s = socket.create_connection(("127.0.0.1", int(sys.argv[1])))
+s.sendall(b"\1\x0cFFLD\2\0\0\0\0\0\0\0" + b"\2\5\1\0\0\0\0")
+answer = b""
+while len(answer) < 70 + 5:
+    more = s.recv(4096)
+    answer += more or sys.exit("the server closed the connection")
+' "$port"
+}
+with_server ask_root
+[ "$status" = 0 ] && grep -q "^farfield-server: $work/hills.ffp is damaged: 1 answers" "$work/err"
+result $? "a damaged record is told to the operator"
+mv "$work/good.ffp" "$work/hills.ffp"
+
+nothing() { :; }
+with_server nothing --json --gl egl
+[ "$(grep -c '^{.*}$' "$work/log")" = "$(wc -l <"$work/log")" ] && grep -q '"event":"listening"' "$work/log" &&
+    grep -q '"event":"stopped"' "$work/log"
+result $? "--json prints JSON lines only, and --gl egl comes up"
+
+exit $((failures > 0))

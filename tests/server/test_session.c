@@ -1,0 +1,536 @@
+/* Sessions: order, limits, cancels, superseded panoramas, nonsense and slow readers. */
+#include "../rig/pack_fixture.h"
+#include "../../server/session/ff_session.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+static ff_pack pack;
+static uint8_t *pack_bytes;
+static size_t pack_size;
+
+static int open_pack(void **state)
+{
+    (void)state;
+    pack_bytes = pack_fixture_usual(&pack_size);
+    return !pack_bytes || ff_pack_open(&pack, pack_bytes, pack_size) != FF_OK;
+}
+
+static int close_pack(void **state)
+{
+    (void)state;
+    free(pack_bytes);
+    return 0;
+}
+
+/* ---- a client in an array ---- */
+
+static ff_session *session_with(ff_session_desc desc)
+{
+    desc.pack = &pack;
+    ff_session *session = ff_session_create(&desc);
+    assert_non_null(session);
+    return session;
+}
+
+static int tell_at(ff_session *session, const ff_message *message, int64_t now_us)
+{
+    uint8_t bytes[64];
+    int count = ff_message_encode(message, bytes, sizeof bytes);
+    assert_true(count > 0);
+    int rc = ff_session_receive(session, bytes, (size_t)count, now_us);
+    if (rc >= 0) assert_int_equal(rc, count);
+    return rc;
+}
+
+static int tell(ff_session *session, const ff_message *message)
+{
+    return tell_at(session, message, 0);
+}
+
+static int greet(ff_session *session)
+{
+    return tell(session,
+                &(ff_message){ .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION, 0 } });
+}
+
+static int get_root(ff_session *session, uint16_t id, uint32_t tile)
+{
+    return tell(session, &(ff_message){ .type = FF_MSG_GET_NODE,
+                                        .u.get = { id, FF_GET_ROOT, ff_key_make(tile, 0, 0) } });
+}
+
+static int cancel(ff_session *session, uint16_t id)
+{
+    return tell(session, &(ff_message){ .type = FF_MSG_CANCEL, .u.cancel = { id } });
+}
+
+static int get_panorama_at(ff_session *session, uint16_t id, uint8_t faces, int64_t now_us)
+{
+    ff_message message = { .type = FF_MSG_GET_PANORAMA };
+    message.u.panorama = (ff_get_panorama){ .id = id,
+                                            .front_wu = 1000,
+                                            .back_wu = 90000,
+                                            .face_size = 64,
+                                            .quality = 70,
+                                            .face_count = faces,
+                                            .face = { 3, 2, 1, 0, 4, 5 } };
+    return tell_at(session, &message, now_us);
+}
+
+static int get_panorama(ff_session *session, uint16_t id, uint8_t faces)
+{
+    return get_panorama_at(session, id, faces, 0);
+}
+
+/* Takes the next message off the output; type 0 when there is none. Its pointers live until the
+ * next call. */
+static ff_message heard(ff_session *session)
+{
+    static uint8_t copy[FF_MESSAGE_BODY_MAX + 8];
+    const uint8_t *bytes;
+    ff_message message;
+    memset(&message, 0, sizeof message);
+    size_t count = ff_session_output(session, &bytes);
+    if (count == 0) return message;
+    memcpy(copy, bytes, count < sizeof copy ? count : sizeof copy);
+    int used = ff_message_decode(copy, count < sizeof copy ? count : sizeof copy, &message);
+    assert_true(used > 0);
+    ff_session_sent(session, (size_t)used);
+    return message;
+}
+
+static ff_session *welcomed_with(ff_session_desc desc)
+{
+    ff_session *session = session_with(desc);
+    assert_true(greet(session) > 0);
+    ff_message welcome = heard(session);
+    assert_int_equal(welcome.type, FF_MSG_WELCOME);
+    assert_int_equal(welcome.u.welcome.info.checksum, pack.header.info.checksum);
+    return session;
+}
+
+static ff_session *welcomed(void) { return welcomed_with((ff_session_desc){ 0 }); }
+
+static void expect_goodbye(ff_session *session, int error)
+{
+    ff_message last = { 0 }, message;
+    while ((message = heard(session)).type) last = message;
+    assert_int_equal(last.type, FF_MSG_GOODBYE);
+    assert_int_equal(last.u.failed.error, error);
+    assert_int_equal(ff_session_receive(session, (const uint8_t *)"x", 1, 0), error);
+    ff_session_destroy(session);
+}
+
+static void expect_failed(ff_session *session, uint16_t id, int error)
+{
+    ff_message failed = heard(session);
+    assert_int_equal(failed.type, FF_MSG_FAILED);
+    assert_int_equal(failed.u.failed.id, id);
+    assert_int_equal(failed.u.failed.error, error);
+}
+
+/* ---- nodes ---- */
+
+static void test_nodes_come_from_the_pack_in_order(void **state)
+{
+    (void)state;
+    ff_session *session = welcomed();
+    ff_key keys[] = { ff_key_make(0, 0, 0), ff_key_make(3, 0, 0), ff_key_make(2, 1, 3),
+                      ff_key_make(1, 2, 7) };
+    for (uint16_t i = 0; i < 4; i++)
+        tell(session,
+             &(ff_message){ .type = FF_MSG_GET_NODE,
+                            .u.get = { i, i < 2 ? FF_GET_ROOT : FF_GET_REFINEMENT, keys[i] } });
+    for (uint16_t i = 0; i < 4; i++) {
+        const uint8_t *payload;
+        int bytes = ff_pack_record(&pack, i < 2 ? FF_SECTION_ROOT : FF_SECTION_REFINEMENT, keys[i],
+                                   &payload);
+        ff_message node = heard(session);
+        assert_int_equal(node.type, FF_MSG_NODE);
+        assert_int_equal(node.u.data.id, i);
+        assert_int_equal(node.u.data.byte_count, bytes);
+        assert_memory_equal(node.u.data.bytes, payload, (size_t)bytes);
+    }
+    ff_session_stats stats;
+    ff_session_get_stats(session, &stats);
+    assert_int_equal(stats.nodes, 4);
+    ff_session_destroy(session);
+}
+
+static void test_unknown_nodes_and_textures_fail(void **state)
+{
+    (void)state;
+    ff_session *session = welcomed();
+    get_root(session, 7, 4); /* four tiles: 0..3 */
+    expect_failed(session, 7, FF_ERR_NOT_FOUND);
+    /* The finest level has nothing below it. */
+    tell(session, &(ff_message){ .type = FF_MSG_GET_NODE,
+                                 .u.get = { 8, FF_GET_REFINEMENT, ff_key_make(0, 3, 0) } });
+    expect_failed(session, 8, FF_ERR_NOT_FOUND);
+    tell(session,
+         &(ff_message){ .type = FF_MSG_GET_TEXTURE, .u.get = { 9, 0, ff_key_make(0, 0, 0) } });
+    expect_failed(session, 9, FF_ERR_NOT_FOUND);
+    get_root(session, 10, 0);
+    assert_int_equal(heard(session).type, FF_MSG_NODE);
+    ff_session_destroy(session);
+}
+
+static void test_damaged_record_fails(void **state)
+{
+    (void)state;
+    const uint8_t *payload;
+    assert_true(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(1, 0, 0), &payload) > 0);
+    uint8_t *victim = pack_bytes + (payload - pack_bytes);
+    *victim ^= 1;
+    ff_session *session = welcomed();
+    get_root(session, 1, 1);
+    expect_failed(session, 1, FF_ERR_CHECKSUM);
+    ff_session_stats stats;
+    ff_session_get_stats(session, &stats);
+    assert_int_equal(stats.damaged, 1);
+    *victim ^= 1;
+    get_root(session, 2, 1);
+    assert_int_equal(heard(session).type, FF_MSG_NODE);
+    ff_session_destroy(session);
+}
+
+static void test_bytes_one_by_one(void **state)
+{
+    (void)state;
+    ff_session *session = welcomed();
+    uint8_t bytes[64];
+    int count = ff_message_encode(
+        &(ff_message){ .type = FF_MSG_GET_NODE, .u.get = { 5, FF_GET_ROOT, 0 } }, bytes,
+        sizeof bytes);
+    for (int i = 0; i < count; i++) {
+        assert_int_equal(heard(session).type, 0);
+        assert_int_equal(ff_session_receive(session, bytes + i, 1, 0), 1);
+    }
+    assert_int_equal(heard(session).u.data.id, 5);
+    ff_session_destroy(session);
+}
+
+/* ---- protocol errors ---- */
+
+static void test_hello_must_come_first_and_once(void **state)
+{
+    (void)state;
+    ff_session *session = session_with((ff_session_desc){ 0 });
+    assert_int_equal(get_root(session, 1, 0), FF_ERR_FORMAT);
+    expect_goodbye(session, FF_ERR_FORMAT);
+    session = welcomed();
+    assert_int_equal(greet(session), FF_ERR_FORMAT);
+    expect_goodbye(session, FF_ERR_FORMAT);
+}
+
+static void test_other_version_is_sent_away(void **state)
+{
+    (void)state;
+    ff_session *session = session_with((ff_session_desc){ 0 });
+    tell(session, &(ff_message){ .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION + 1, 0 } });
+    expect_goodbye(session, FF_ERR_VERSION);
+}
+
+static void test_nonsense_ends_the_session(void **state)
+{
+    (void)state;
+    static const char *const nonsense[] = { "GET / HTTP/1.1\r\n\r\n", "\x02\xff\xff\xff\xff",
+                                            "\x02\x01\x01" };
+    for (size_t i = 0; i < sizeof nonsense / sizeof *nonsense; i++) {
+        ff_session *session = welcomed();
+        int rc = ff_session_receive(session, (const uint8_t *)nonsense[i], strlen(nonsense[i]), 0);
+        assert_true(rc < 0);
+        expect_goodbye(session, rc);
+    }
+}
+
+static void test_servers_messages_and_endless_ones_end_the_session(void **state)
+{
+    (void)state;
+    ff_session *session = welcomed();
+    assert_int_equal(tell(session, &(ff_message){ .type = FF_MSG_PONG, .u.ping = { 1 } }),
+                     FF_ERR_FORMAT);
+    expect_goodbye(session, FF_ERR_FORMAT);
+    uint8_t long_one[300] = { FF_MSG_HELLO, 0x80, 0x80, 1 }; /* 16 kB announced */
+    session = session_with((ff_session_desc){ 0 });
+    assert_int_equal(ff_session_receive(session, long_one, sizeof long_one, 0), FF_ERR_FORMAT);
+    expect_goodbye(session, FF_ERR_FORMAT);
+}
+
+/* ---- limits ---- */
+
+static void test_slow_reader_waits_and_loses_nothing(void **state)
+{
+    (void)state;
+    ff_session *session = welcomed_with(
+        (ff_session_desc){ .out_bytes_max = 400, .requests_max = 64 });
+    const uint8_t *bytes;
+    for (uint16_t id = 1; id <= 40; id++) assert_true(get_root(session, id, id % 4u) > 0);
+    assert_true(ff_session_output(session, &bytes) <= 400);
+    for (uint16_t id = 1; id <= 40; id++) {
+        ff_message node = heard(session);
+        assert_int_equal(node.type, FF_MSG_NODE);
+        assert_int_equal(node.u.data.id, id);
+    }
+    assert_int_equal(heard(session).type, 0);
+    ff_session_destroy(session);
+}
+
+static void test_an_answer_larger_than_the_buffer_goes_alone(void **state)
+{
+    (void)state;
+    ff_session *session = welcomed_with((ff_session_desc){ .out_bytes_max = 1 });
+    get_root(session, 1, 0);
+    get_root(session, 2, 1);
+    assert_int_equal(heard(session).u.data.id, 1);
+    assert_int_equal(heard(session).u.data.id, 2);
+    ff_session_destroy(session);
+}
+
+static void test_too_many_requests_end_the_session(void **state)
+{
+    (void)state;
+    ff_session *session = welcomed_with((ff_session_desc){ .out_bytes_max = 1, .requests_max = 5 });
+    for (uint16_t id = 1; id <= 6; id++) /* one is in the buffer, five wait */
+        assert_true(get_root(session, id, 0) > 0);
+    assert_int_equal(get_root(session, 7, 0), FF_ERR_FULL);
+    expect_goodbye(session, FF_ERR_FULL);
+}
+
+static void test_pings_without_reading_are_left_unread(void **state)
+{
+    (void)state;
+    ff_session *session = welcomed_with((ff_session_desc){ .out_bytes_max = 1 });
+    uint8_t pings[6 * 4000];
+    for (uint32_t i = 0; i < 4000; i++)
+        assert_int_equal(ff_message_encode(&(ff_message){ .type = FF_MSG_PING, .u.ping = { i } },
+                                           pings + 6 * i, 6),
+                         6);
+    size_t taken = 0;
+    for (uint32_t answered = 0; answered < 4000;) {
+        int rc = ff_session_receive(session, pings + taken, sizeof pings - taken, 0);
+        assert_true(rc >= 0);
+        taken += (size_t)rc;
+        if (answered == 0) assert_true(taken < sizeof pings);
+        for (ff_message pong; (pong = heard(session)).type; answered++) {
+            assert_int_equal(pong.type, FF_MSG_PONG);
+            assert_int_equal(pong.u.ping.stamp, answered);
+        }
+    }
+    assert_int_equal(taken, sizeof pings);
+    ff_session_destroy(session);
+}
+
+static void test_idle(void **state)
+{
+    (void)state;
+    ff_session *session = session_with((ff_session_desc){ .idle_ms_max = 1000, .now_us = 5000000 });
+    assert_false(ff_session_idle(session, 6000000));
+    assert_true(ff_session_idle(session, 6000001));
+    tell_at(session, &(ff_message){ .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION, 0 } },
+            6000000);
+    assert_false(ff_session_idle(session, 7000000));
+    /* half a message is not a message */
+    ff_session_receive(session, (const uint8_t *)"\x06", 1, 6900000);
+    assert_true(ff_session_idle(session, 7000001));
+    ff_session_destroy(session);
+}
+
+/* ---- cancels ---- */
+
+static void test_cancelled_requests_are_not_served(void **state)
+{
+    (void)state;
+    ff_session *session = welcomed_with((ff_session_desc){ .out_bytes_max = 1, .requests_max = 4 });
+    for (uint16_t id = 1; id <= 5; id++) get_root(session, id, 0);
+    cancel(session, 3);
+    cancel(session, 2);
+    cancel(session, 1); /* in the buffer already */
+    cancel(session, 99);
+    get_root(session, 6, 0); /* room again */
+    get_root(session, 7, 0);
+    static const struct {
+        enum ff_message_type type;
+        uint16_t id;
+    } expected[] = { { FF_MSG_NODE, 1 }, { FF_MSG_CANCELLED, 3 }, { FF_MSG_CANCELLED, 2 },
+                     { FF_MSG_NODE, 4 }, { FF_MSG_NODE, 5 },      { FF_MSG_NODE, 6 },
+                     { FF_MSG_NODE, 7 } };
+    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
+        ff_message answer = heard(session);
+        assert_int_equal(answer.type, expected[i].type);
+        assert_int_equal(answer.u.data.id, expected[i].id);
+    }
+    assert_int_equal(heard(session).type, 0);
+    ff_session_destroy(session);
+}
+
+/* ---- panoramas ---- */
+
+static int face_bytes(const ff_face_job *job, uint8_t *out, size_t capacity)
+{
+    ff_message message = { .type = FF_MSG_FACE };
+    message.u.face =
+        (ff_face){ .id = job->request.id,
+                   .face = job->face,
+                   .face_size = 64,
+                   .flags = (uint8_t)(FF_FACE_EMPTY | (job->last ? FF_FACE_LAST : 0)) };
+    return ff_message_encode(&message, out, capacity);
+}
+
+static void render(ff_session *session, const ff_face_job *job)
+{
+    uint8_t face[64];
+    int bytes = face_bytes(job, face, sizeof face);
+    ff_session_face_done(session, job, face, bytes);
+}
+
+static void test_faces_one_at_a_time_in_the_order_wanted(void **state)
+{
+    (void)state;
+    ff_session *session = welcomed();
+    ff_face_job job, other;
+    assert_false(ff_session_next_face(session, &job));
+    get_panorama(session, 1, 3);
+    for (uint8_t i = 0; i < 3; i++) {
+        assert_true(ff_session_next_face(session, &job));
+        assert_false(ff_session_next_face(session, &other));
+        assert_int_equal(job.face, 3 - i);
+        assert_int_equal(job.last, i == 2);
+        render(session, &job);
+        ff_message face = heard(session);
+        assert_int_equal(face.type, FF_MSG_FACE);
+        assert_int_equal(face.u.face.flags, FF_FACE_EMPTY | (i == 2 ? FF_FACE_LAST : 0));
+    }
+    assert_false(ff_session_next_face(session, &job));
+    ff_session_destroy(session);
+}
+
+static void test_newer_panorama_supersedes(void **state)
+{
+    (void)state;
+    ff_session *session = welcomed();
+    ff_face_job old, job;
+    get_panorama(session, 1, 2);
+    assert_true(ff_session_next_face(session, &old));
+    /* the same number: the old face must not pass for the new one */
+    get_panorama(session, 1, 1);
+    ff_message answer = heard(session);
+    assert_int_equal(answer.type, FF_MSG_CANCELLED);
+    assert_int_equal(answer.u.cancel.id, 1);
+    assert_false(ff_session_next_face(session, &job));
+    render(session, &old);
+    assert_int_equal(heard(session).type, 0);
+    assert_true(ff_session_next_face(session, &job));
+    assert_true(job.last);
+    render(session, &job);
+    assert_int_equal(heard(session).type, FF_MSG_FACE);
+    ff_session_destroy(session);
+}
+
+static void test_cancelled_panorama(void **state)
+{
+    (void)state;
+    ff_session *session = welcomed();
+    ff_face_job job;
+    get_panorama(session, 4, 2);
+    assert_true(ff_session_next_face(session, &job));
+    cancel(session, 4);
+    assert_int_equal(heard(session).type, FF_MSG_CANCELLED);
+    render(session, &job);
+    assert_int_equal(heard(session).type, 0);
+    assert_false(ff_session_next_face(session, &job));
+    ff_session_destroy(session);
+}
+
+static void test_failed_face_ends_its_panorama_only(void **state)
+{
+    (void)state;
+    ff_session *session = welcomed();
+    ff_face_job job;
+    get_panorama(session, 4, 6);
+    assert_true(ff_session_next_face(session, &job));
+    ff_session_face_done(session, &job, NULL, FF_ERR_SYSTEM);
+    expect_failed(session, 4, FF_ERR_SYSTEM);
+    assert_false(ff_session_next_face(session, &job));
+    get_panorama(session, 5, 1);
+    assert_true(ff_session_next_face(session, &job));
+    assert_int_equal(job.request.id, 5);
+    ff_session_destroy(session);
+}
+
+static void test_panoramas_per_minute(void **state)
+{
+    (void)state;
+    ff_session *session = welcomed_with((ff_session_desc){ .panoramas_per_minute = 3 });
+    ff_face_job job;
+    for (uint16_t id = 1; id <= 4; id++) {
+        get_panorama_at(session, id, 1, 1000);
+        if (id <= 3) {
+            assert_true(ff_session_next_face(session, &job));
+            render(session, &job);
+            assert_int_equal(heard(session).type, FF_MSG_FACE);
+        }
+    }
+    expect_failed(session, 4, FF_ERR_FULL);
+    get_panorama_at(session, 5, 1, 19000000);
+    expect_failed(session, 5, FF_ERR_FULL);
+    get_panorama_at(session, 6, 1, 20001000);
+    assert_true(ff_session_next_face(session, &job));
+    ff_session_destroy(session);
+}
+
+static void test_large_face_fits_beside_full_buffer(void **state)
+{
+    (void)state;
+    ff_session *session = welcomed_with(
+        (ff_session_desc){ .out_bytes_max = 600, .requests_max = 64 });
+    ff_face_job job;
+    get_panorama(session, 100, 2);
+    assert_true(ff_session_next_face(session, &job));
+    for (uint16_t id = 1; id <= 20; id++) get_root(session, id, 0);
+    static const uint8_t ping[6] = { FF_MSG_PING, 4 }; /* short answers fill their reserve */
+    while (ff_session_receive(session, ping, sizeof ping, 0) > 0)
+        ;
+    size_t bytes = FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX;
+    uint8_t *face = calloc(1, bytes);
+    assert_non_null(face);
+    ff_session_face_done(session, &job, face, (int)bytes);
+    free(face);
+    ff_session_stats stats;
+    ff_session_get_stats(session, &stats);
+    assert_int_equal(stats.faces, 1);
+    assert_false(ff_session_next_face(session, &job)); /* not before the reader has caught up */
+    ff_session_destroy(session);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_nodes_come_from_the_pack_in_order),
+        cmocka_unit_test(test_unknown_nodes_and_textures_fail),
+        cmocka_unit_test(test_damaged_record_fails),
+        cmocka_unit_test(test_bytes_one_by_one),
+        cmocka_unit_test(test_hello_must_come_first_and_once),
+        cmocka_unit_test(test_other_version_is_sent_away),
+        cmocka_unit_test(test_nonsense_ends_the_session),
+        cmocka_unit_test(test_servers_messages_and_endless_ones_end_the_session),
+        cmocka_unit_test(test_slow_reader_waits_and_loses_nothing),
+        cmocka_unit_test(test_an_answer_larger_than_the_buffer_goes_alone),
+        cmocka_unit_test(test_too_many_requests_end_the_session),
+        cmocka_unit_test(test_pings_without_reading_are_left_unread),
+        cmocka_unit_test(test_idle),
+        cmocka_unit_test(test_cancelled_requests_are_not_served),
+        cmocka_unit_test(test_faces_one_at_a_time_in_the_order_wanted),
+        cmocka_unit_test(test_newer_panorama_supersedes),
+        cmocka_unit_test(test_cancelled_panorama),
+        cmocka_unit_test(test_failed_face_ends_its_panorama_only),
+        cmocka_unit_test(test_panoramas_per_minute),
+        cmocka_unit_test(test_large_face_fits_beside_full_buffer),
+    };
+    return cmocka_run_group_tests(tests, open_pack, close_pack);
+}

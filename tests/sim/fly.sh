@@ -1,0 +1,251 @@
+#!/bin/bash
+# farfield-fly over a small pack: the same twice, the same on every back end, no cracks whatever the link does, events, errors, and
+# the same flight against a real server.
+set -u
+cd "$(dirname "$0")/../.." || exit 2
+bin=${BIN:-build/bin}
+fly=$bin/farfield-fly
+work=build/tests/fly.$$ # runs may go on side by side; left behind only after a failure
+mkdir -p "$work"
+failures=0
+server_pid=
+trap '[ -n "$server_pid" ] && kill "$server_pid" 2>/dev/null' EXIT
+result() { # STATUS WHAT
+    if [ "$1" = 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failures=$((failures + 1)); fi
+}
+is() { # EXPRESSION WHAT: a python expression over the rows `r` (dicts of numbers), and the summary `s`, of the flight last flown
+    python3 - "$work/$flown.csv" "$work/$flown.json" "$1" <<'END'
+import csv, json, sys
+r = [{k: v if k.endswith("_hash") else float(v) for k, v in row.items()} for row in csv.DictReader(open(sys.argv[1]))]
+s = json.load(open(sys.argv[2]))
+sys.exit(0 if eval(sys.argv[3]) else 1)
+END
+    result $? "$2"
+}
+flies() { # NAME ARGUMENTS...
+    flown=$1
+    shift
+    timeout 300 "$fly" --pack "$work/hills.ffp" --csv "$work/$flown.csv" --json "$@" >"$work/$flown.json" 2>"$work/$flown.err"
+}
+
+python3 - "$work/hills.raw" "$work/node.raw" <<'END'
+import math, struct, sys
+def hills(x, y):
+    return int(700 + 350 * math.sin(x / 23) * math.cos(y / 31) + 120 * math.sin(x / 5 + y / 9) + 40 * math.sin(x * 1.7) * math.sin(y * 1.3))
+for path, n in zip(sys.argv[1:], (257, 9)):
+    open(path, "wb").write(b"".join(struct.pack("<H", hills(x, y)) for y in range(n) for x in range(n)))
+END
+"$bin/farfield-bake" "$work/hills.raw" --raw 257x257 --spacing 40 --tile-log2 6 --quiet -o "$work/hills.ffp" &&
+    "$bin/farfield-bake" "$work/node.raw" --raw 9x9 --spacing 40 --tile-log2 3 --quiet -o "$work/node.ffp" &&
+    "$bin/farfield-bake" "$work/hills.raw" --raw 257x257 --spacing 40 --densify 2 --tile-log2 6 --quiet -o "$work/dense.ffp"
+result $? "packs to fly over"
+
+# ---- the same again ----
+usual="--link gprs --quality px:2 --back-plane 1500 --seconds 6 --settle 6 --sample 0.5 --audit on"
+flies first $usual --backend gl --png "$work/pictures" --every 6
+result $? "a flight over GPRS with panorama and audit"
+is 's["crack_frames"] == 0 and s["stitched_frames"] > 0' "no crack in any frame, and stitching was needed"
+is 's["seed"] == 1 and s["frames"] == 361 and len(r) == 25 and abs(r[-1]["t_s"] - 12) < 1e-9' "the summary and the rows are complete"
+is 'all(a["bytes_down"] <= b["bytes_down"] for a, b in zip(r, r[1:])) and r[-1]["bytes_down"] > 2000' "bytes arrive and are counted"
+is 's["panoramas"] + r[12]["panoramas"] > 0 and r[-1]["panorama_faces"] > 0' "panoramas are asked for and arrive"
+is 'r[-1]["err_px_p95"] < 6 and r[-1]["undrawn_px_percent"] < 5 and 0 <= s["settle_s"] <= 12' "the picture is right at the end"
+is 'abs(((r[-1]["x_m"] - r[0]["x_m"])**2 + (r[-1]["y_m"] - r[0]["y_m"])**2)**0.5 - 250) < 1' "6 s at 150 km/h are 250 m"
+is 'r[0]["x_m"] == r[12]["x_m"] != r[14]["x_m"]' "it stands still before"
+is 'len({row["frame_hash"] for row in r}) > 10' "pictures change"
+head -1 "$work/first.csv" | grep -q '^t_s,x_m,y_m,z_m,triangles,nodes_drawn,nodes_held,bytes_down,bytes_up,requests,in_flight,panoramas,err_px_rms,err_px_p95,err_px_max,frame_hash,'
+result $? "the CSV's columns stand as promised"
+flies faces $usual --backend none --audit off --seconds 1 --face 128
+is "0 < r[12]['panorama_bytes'] < 0.7 * $(python3 -c "
+import csv; print(list(csv.DictReader(open('$work/first.csv')))[12]['panorama_bytes'])")" "smaller faces cost fewer bytes"
+[ "$(ls "$work/pictures")" = "frame-0000.00.png
+frame-0006.00.png
+frame-0012.00.png" ]
+result $? "pictures are written when asked for"
+
+flies again $usual --backend gl
+cmp -s "$work/first.csv" "$work/again.csv"
+result $? "the same seed gives the same CSV, byte for byte"
+flies seed2 $usual --backend none --seed 2
+! cmp -s <(cut -d, -f8-12 "$work/first.csv") <(cut -d, -f8-12 "$work/seed2.csv")
+result $? "another seed gives other arrivals"
+for backend in gles1 soft none; do
+    flies "$backend" $usual --backend $backend
+    cmp -s <(cut -d, -f1-15,17- "$work/first.csv") <(cut -d, -f1-15,17- "$work/$backend.csv")
+    result $? "all but the pixels is the same with backend $backend"
+done
+is 'all(row["frame_hash"] == "0" * 16 for row in r)' "without a back end there are no pixels"
+flies narrow $usual --backend soft565
+cp "$work/narrow.csv" "$work/narrow1.csv"
+flies narrow $usual --backend soft565
+cmp -s "$work/narrow.csv" "$work/narrow1.csv" && ! cmp -s "$work/narrow.csv" "$work/soft.csv"
+result $? "RGB565 gives the same pixels twice, and others than RGBA8888"
+flies plain $usual --backend gl --plain-arrays
+cmp -s "$work/first.csv" "$work/plain.csv"
+result $? "plain arrays draw the same picture as vertex buffers"
+flies wire $usual --backend gl --wireframe
+is 's["crack_frames"] == 0' "a wireframe flight"
+! cmp -s <(cut -d, -f16 "$work/first.csv") <(cut -d, -f16 "$work/wire.csv")
+result $? "and its pictures differ"
+
+# ---- panorama, quality ----
+quick="--backend none --link lan --seconds 4 --settle 2 --audit on --back-plane 1500"
+flies off $quick --panorama off --quality 3:4
+is 's["panoramas"] == 0 and r[-1]["panorama_bytes"] == 0 and r[-1]["panorama_px_percent"] == 0' "panorama off: none asked for"
+triangles_off=$(python3 -c "import json; print(json.load(open('$work/off.json'))['triangles'])")
+flies on $quick --panorama on --quality 3:4
+is "r[-1]['panorama_px_percent'] > 1 and s['triangles'] < $triangles_off" "panorama on: it shows ground, and triangles are saved"
+flies fine $quick --panorama off --quality px:0.5 --view 20000
+is 'r[-1]["err_px_max"] < 2 and r[-1]["undrawn_px_percent"] == 0' "half a pixel of error allowed: the audit finds no more than two"
+flies toggled $quick --event 2:panorama-off
+is 'r[1]["panoramas"] > 0 and r[-1]["panoramas"] == r[3]["panoramas"] and r[-1]["panorama_px_percent"] == 0' "the panorama can be switched off in flight"
+
+# ---- as it should look ----
+flies settled $usual --backend gl --link lan --panorama off --quality px:0.25 --view 200000 --memory 16M --seconds 0 --png "$work/settled" \
+    --reference "$work/true" --every 6
+cmp -s "$work/settled/frame-0006.00.png" "$work/true/frame-0006.00.png"
+result $? "a picture with all that it needs is its reference, bit for bit"
+flies coarse $usual --backend gl --link lan --quality 1:1 --seconds 0 --png "$work/coarse" --reference "$work/true2" --every 6
+! cmp -s "$work/coarse/frame-0006.00.png" "$work/true2/frame-0006.00.png" && cmp -s "$work/true/frame-0006.00.png" "$work/true2/frame-0006.00.png"
+result $? "a coarse one is not, and has the same"
+! "$bin/farfield-fly" --pack "$work/hills.ffp" --reference "$work/true" 2>"$work/error" &&
+    [ "$(cat "$work/error")" = "farfield-fly: --reference needs --png" ]
+result $? "--reference without --png is an error"
+
+# ---- relevance ----
+flies still $usual --backend none --speed 0 --seconds 20
+is '85 < s["relevance_percent"] <= 100 and r[-1]["unused_heights"] == r[-1]["unused_supporting"] and abs(r[-1]["bytes_heights"] + r[-1]["bytes_images"] + r[-1]["bytes_faces"] + r[-1]["bytes_overhead"] - r[-1]["bytes_down"]) < 1' \
+    "standing still all that comes is drawn, or lets what is drawn be so fine; the kinds of bytes add up"
+
+# ---- events ----
+flies events $quick --event 2:low-battery --event 4:battery-ok --event 5:interruption
+is '[row["low_power"] for row in r] == [0, 0, 1, 1, 0, 1, 1]' "low battery and interruption save power, and end"
+flies cut $quick --event 1:cut --event 3:cut
+is 's["crack_frames"] == 0 and r[-1]["reconnects"] == 2 and r[-1]["link_up"] == 1 and r[-1]["err_px_p95"] < 10' "two cuts: reconnected, whole, and the picture gets right"
+
+# ---- bad links: nothing breaks, it is only coarser ----
+for link in "lan,cut_every_ms=1000" "lan,down.bytes_s=10" "lan,down.delay_us=60000000" "ideal,down.bytes_s=1000000000" \
+            "gprs,stall_every_ms=500,stall_ms_min=100,stall_ms_max=2000" nbiot iridium edge ltem; do
+    flies "link" $quick --link "$link"
+    result $? "a flight over $link"
+    is 's["crack_frames"] == 0' "without a crack"
+done
+seq 0 30 2000 >"$work/trace"
+flies traced $quick --down-trace "$work/trace" --up-trace "$work/trace"
+is 'r[-1]["bytes_down"] > 2000 and s["crack_frames"] == 0' "a flight over a recorded link"
+
+# ---- paths, sizes, one node ----
+for path in circle hover; do
+    flies $path $quick --path $path
+    is 's["crack_frames"] == 0 and r[-1]["err_px_p95"] < 10' "path $path"
+done
+cat >"$work/walk.csv" <<'END'
+pitch_deg,t_s,note,x_m,y_m,h_m,heading_deg
+-10,1,start,4000,4000,50,350
+-10,3,turn,4100,4000,50,10
+-30,5,fall,4100,4200,-1000,90
+END
+flies walk $quick --path "$work/walk.csv" --settle 1
+is 'len(r) == 6 and s["crack_frames"] == 0 and s["settle_s"] <= 5' "a recorded path lasts as long as it was recorded"
+is '[(a["x_m"], a["y_m"]) for a in r] == [(4000, 4000), (4000, 4000), (4050, 4000), (4100, 4000), (4100, 4100), (4100, 4200)]' "and leads where it led"
+is 'abs(r[0]["z_m"] - 50 - (r[5]["z_m"] - 1)) < 500 and r[5]["z_m"] > 300' "above the ground, whatever was recorded"
+flies flown $quick --path diagonal
+flies reflown $quick --path "$work/flown.csv" --seconds 4
+is "all(abs(a['x_m'] - float(b['x_m'])) < 0.1 and abs(a['z_m'] - float(b['z_m'])) < 0.1 for a, b in zip(r, csv.DictReader(open('$work/flown.csv'))))" \
+    "the CSV of a flight is a recorded path"
+printf '# a bad day\n  2:low-battery # comment\n\n4:battery-ok\n3:teleport=0.5,0.5\n' >"$work/day"
+flies listed $quick --events "$work/day"
+cp "$work/listed.csv" "$work/listed1.csv"
+flies listed $quick --event 2:low-battery --event 3:teleport=0.5,0.5 --event 4:battery-ok
+cmp -s "$work/listed.csv" "$work/listed1.csv"
+result $? "events from a file are those given one by one"
+flies away $quick --path "$work/walk.csv" --event 2:teleport=0.75,0.25
+is 'r[1]["x_m"] == 4000 and abs(r[2]["x_m"] - 7680) < 1 and abs(r[-1]["y_m"] - r[2]["y_m"] - 200) < 1' "a recorded path goes on from where it is teleported to"
+flies around $quick --speed 10000
+is 's["crack_frames"] == 0 and all(0 < row["x_m"] < 10240 and 0 < row["y_m"] < 10240 for row in r)' "10 000 km/h turn round before the border"
+flies node --pack "$work/node.ffp" $quick
+is 's["crack_frames"] == 0 and r[-1]["nodes_drawn"] == 1' "a terrain of one node"
+flies tight --pack "$work/dense.ffp" $quick --memory 512K --fov 100 --quality px:0.1 --view 20000 --panorama off
+is 's["crack_frames"] == 0 and 50 < r[-1]["nodes_drawn"] < r[-1]["nodes_held"] < 1500' "little memory: whole"
+little=$(python3 -c "import json; print(json.load(open('$work/tight.json'))['err_px_rms'])")
+flies roomy --pack "$work/dense.ffp" $quick --memory 8M --fov 100 --quality px:0.1 --view 20000 --panorama off
+is "r[-1]['nodes_held'] > 1800 and s['err_px_rms'] < $little" "more memory: finer"
+for fov in 0.1 170; do
+    flies fov $quick --fov $fov --backend gl
+    is 's["crack_frames"] == 0' "a field of view of $fov degrees"
+done
+
+# ---- a real server in real time, and one that vanishes ----
+"$bin/farfield-server" --pack "$work/hills.ffp" --listen 127.0.0.1:0 >"$work/server.log" 2>&1 &
+server_pid=$!
+for _ in $(seq 200); do
+    grep -q "listening on.*renderers" "$work/server.log" && break
+    sleep 0.05
+done
+port=$(sed -n 's/.*listening on [^ ]*:\([0-9]*\).*/\1/p' "$work/server.log")
+timeout 60 "$fly" --pack "$work/dense.ffp" --server "127.0.0.1:$port" --backend none --seconds 0 --settle 3 2>"$work/err"
+[ $? = 1 ] && grep -q "^farfield-fly: 127.0.0.1:$port: serves another terrain than --pack$" "$work/err"
+result $? "a server with another terrain than the pack's is an error"
+flies real --server "127.0.0.1:$port" --backend none --quality px:2 --back-plane 1500 --seconds 2 --settle 3 --audit on
+result $? "a flight against a real server"
+is 's["crack_frames"] == 0 and r[-1]["link_up"] == 1 and r[-1]["bytes_down"] > 2000 and r[-1]["nodes_drawn"] > 0' "it sees the ground"
+( # gone as soon as there is something to fly on with
+    for _ in $(seq 100); do
+        [ -n "$(awk -F, 'NR > 1 && $6 > 0' "$work/gone.csv" 2>/dev/null)" ] && break
+        sleep 0.05
+    done
+    kill "$server_pid"
+) &
+flies gone --server "127.0.0.1:$port" --backend none --quality px:2 --back-plane 1500 --seconds 4 --settle 4 --sample 0.2 --audit on
+result $? "a server that goes away in flight"
+is 's["crack_frames"] == 0 and r[-1]["link_up"] == 0 and r[-1]["nodes_drawn"] > 0' "the client flies on with what it has"
+wait
+server_pid=
+
+# ---- errors ----
+refused() { # WHAT ARGUMENTS...
+    local what=$1 status
+    shift
+    timeout 60 "$fly" "$@" >"$work/out" 2>"$work/err"
+    status=$?
+    [ $status -ne 0 ] && [ $status -lt 124 ] && [ "$(grep -c -v '^farfield-fly: seed ' "$work/err")" = 1 ] && grep -q '^farfield-fly: ' "$work/err"
+    result $? "one line and an error for $what"
+}
+head -c 5000 "$work/hills.ffp" >"$work/short.ffp"
+head -c 20000 /dev/urandom >"$work/noise.ffp"
+cp "$work/hills.ffp" "$work/flipped.ffp"
+printf '\125' | dd of="$work/flipped.ffp" bs=1 seek=$(($(stat -c %s "$work/hills.ffp") / 2)) conv=notrunc 2>/dev/null
+refused "no pack" --backend none
+refused "a missing pack" --pack "$work/missing.ffp"
+refused "a truncated pack" --pack "$work/short.ffp"
+refused "a foreign file" --pack "$work/noise.ffp"
+refused "a damaged pack" --pack "$work/flipped.ffp" --backend none
+refused "an unknown back end" --pack "$work/hills.ffp" --backend vulkan
+refused "an unknown link" --pack "$work/hills.ffp" --link telex
+refused "an unknown quality" --pack "$work/hills.ffp" --quality superb
+refused "an unknown event" --pack "$work/hills.ffp" --event 3:earthquake
+refused "a link unknown in flight" --pack "$work/hills.ffp" --event 3:link=telex
+refused "a teleport to nowhere" --pack "$work/hills.ffp" --event 3:teleport=0.5,2
+printf 't_s,x_m,y_m\n1,2,3\n' >"$work/flat.csv"
+printf 't_s,x_m,y_m,z_m\n1,2,3,4\n1,2,3,4\n' >"$work/again.path"
+printf 't_s,x_m,y_m,z_m\n1,2,3\n' >"$work/narrow.path"
+printf 't_s,x_m,y_m,z_m\n1,2,nan,4\n' >"$work/nan.path"
+printf '3:earthquake\n' >"$work/quake"
+refused "a path that is neither word nor file" --pack "$work/hills.ffp" --path spiral
+refused "a recorded path without heights" --pack "$work/hills.ffp" --path "$work/flat.csv"
+refused "a recorded path whose time stands" --pack "$work/hills.ffp" --path "$work/again.path"
+refused "a recorded path with a short line" --pack "$work/hills.ffp" --path "$work/narrow.path"
+refused "a recorded path that is no number" --pack "$work/hills.ffp" --path "$work/nan.path"
+refused "a pack as a recorded path" --pack "$work/hills.ffp" --path "$work/hills.ffp"
+refused "missing events" --pack "$work/hills.ffp" --events "$work/missing"
+refused "an unknown event in a file" --pack "$work/hills.ffp" --events "$work/quake"
+refused "an impossible size" --pack "$work/hills.ffp" --size 0x0
+refused "faces too large" --pack "$work/hills.ffp" --face 2048
+refused "a server that is not there" --pack "$work/hills.ffp" --server 127.0.0.1:9 --backend none --seconds 0 --settle 1
+refused "a missing trace" --pack "$work/hills.ffp" --down-trace "$work/missing"
+refused "too little memory" --pack "$work/hills.ffp" --memory 1K --backend none
+refused "memory too little for the terrain" --pack "$work/hills.ffp" --memory 256K --backend none --seconds 0 --settle 5
+refused "a CSV that cannot be written" --pack "$work/hills.ffp" --csv "$work/missing/x.csv" --backend none
+"$fly" --help | grep -q -- --pack && "$fly" --version | grep -q "^farfield-fly [0-9]"
+result $? "--help and --version"
+[ $failures = 0 ] && rm -rf "$work"
+exit $((failures > 0))

@@ -1,0 +1,465 @@
+/* The auditor on ground of known error: flat ground drawn too high, panoramas taken elsewhere,
+ * nothing drawn; and its ray casting and heights against slower ways to the same answer. */
+#include "../../sim/judge/sim_audit.h"
+#include "../rig/pack_fixture.h"
+#include "../rig/terrain_fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { STEP_PX = 8, SIDE = 9 };
+
+typedef struct scene {
+    uint8_t *bytes;
+    ff_pack pack;
+    sim_ground ground;
+    sim_auditor *auditor;
+    ff_drawn drawn[16];
+    uint16_t heights[SIDE * SIDE];
+    sim_audit_view view;
+} scene;
+
+static uint16_t flat(void *context, uint32_t x, uint32_t y)
+{
+    (void)context;
+    (void)x;
+    (void)y;
+    return 0;
+}
+
+/* 4 by 4 tiles of 8 cells of 512 m: 16 km of flat ground at z = 0; the camera 200 m above its
+ * middle, level, looking north. */
+static void flat_scene(scene *s)
+{
+    memset(s, 0, sizeof *s);
+    pack_fixture_desc desc = { .info = pack_fixture_info(3, 4, 4), .height = flat };
+    desc.info.spacing_wu = 512 * FF_WU_PER_METRE;
+    size_t bytes;
+    s->bytes = pack_fixture_make(&desc, &bytes);
+    assert_non_null(s->bytes);
+    assert_int_equal(ff_pack_open(&s->pack, s->bytes, bytes), FF_OK);
+    assert_int_equal(sim_ground_load(&s->ground, &s->pack, UINT64_MAX), FF_OK);
+    s->auditor = sim_auditor_create(&s->ground, &s->pack.header.info, STEP_PX);
+    assert_non_null(s->auditor);
+    s->view.camera = (c3d_camera){ .pos_wu = { 8192 * 256, 8192 * 256, 200 * 256 },
+                                   .width = 240,
+                                   .height = 320,
+                                   .focal_q8 = c3d_focal_q8(65536 / 6, 240) };
+    s->view.front_wu = 1;
+    s->view.back_wu = INT32_MAX;
+}
+
+/* All tiles drawn as they are but `steps` metres higher. */
+static void draw_at(scene *s, uint16_t steps)
+{
+    for (int i = 0; i < SIDE * SIDE; i++) s->heights[i] = steps;
+    for (uint32_t tile = 0; tile < 16; tile++) {
+        s->drawn[tile] = (ff_drawn){ .key = ff_key_make(tile, 0, 0),
+                                     .heights = s->heights,
+                                     .cell_wu = 512 * 256 };
+        ff_node_origin_wu(&s->pack.header.info, s->drawn[tile].key, &s->drawn[tile].origin_wu[0],
+                          &s->drawn[tile].origin_wu[1]);
+    }
+    s->view.drawn = s->drawn;
+    s->view.drawn_count = 16;
+}
+
+static void free_scene(scene *s)
+{
+    sim_auditor_destroy(s->auditor);
+    sim_ground_free(&s->ground);
+    free(s->bytes);
+}
+
+/* Depth along the view at which row y's pixels meet the flat ground; 0: they do not, or north of
+ * the terrain. */
+static double row_depth_m(const scene *s, unsigned y)
+{
+    double below = y + 0.5 - 160,
+           depth = below > 0 ? 200 * (s->view.camera.focal_q8 / 256.0) / below : 0;
+    return depth < 8192 ? depth : 0;
+}
+
+typedef struct expected {
+    double sum_squares, most;
+    uint32_t count;
+} expected;
+
+static void expect_error(expected *e, double error)
+{
+    e->sum_squares += error * error;
+    e->most = fmax(e->most, error);
+    e->count++;
+}
+
+static void assert_near(double a, double b)
+{
+    if (fabs(a - b) > 1e-6 * (1 + fabs(b))) fail_msg("%.12g is not %.12g", a, b);
+}
+
+/* Ground drawn h too high, seen from H above: a pixel v below the horizon shows it h/H nearer to
+ * the horizon, v*h/H pixels off. */
+static void test_flat_ground_too_high(void **state)
+{
+    (void)state;
+    static scene s;
+    flat_scene(&s);
+    for (uint16_t steps = 0; steps <= 150; steps += 50) {
+        sim_audit_result result;
+        expected e = { 0 };
+        draw_at(&s, steps);
+        for (unsigned y = STEP_PX / 2; y < 320; y += STEP_PX)
+            for (unsigned x = STEP_PX / 2; x < 240 && row_depth_m(&s, y) > 0; x += STEP_PX)
+                expect_error(&e, (y + 0.5 - 160) * steps / 200.0);
+        assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
+        assert_int_equal(result.ground_pixels, e.count);
+        assert_int_equal(result.panorama_pixels + result.undrawn_pixels, 0);
+        assert_near(result.err_px_max, e.most);
+        assert_near(result.err_px_rms, sqrt(e.sum_squares / e.count));
+        assert_true(result.err_px_p95 <= e.most + 1e-9 &&
+                    result.err_px_p95 >= result.err_px_rms - 1e-9);
+    }
+    free_scene(&s);
+}
+
+/* Drawn above the eye: as wrong as a picture can be, and no number without a meaning. */
+static void test_ground_above_the_eye(void **state)
+{
+    (void)state;
+    static scene s;
+    sim_audit_result result;
+    flat_scene(&s);
+    draw_at(&s, 5000);
+    s.view.camera.pitch = -16384; /* straight down */
+    assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
+    assert_true(result.ground_pixels > 0);
+    assert_near(result.err_px_max, hypot(240, 320));
+    assert_near(result.err_px_rms, hypot(240, 320));
+    free_scene(&s);
+}
+
+/* No edge to come from anywhere: as wrong as the picture is large. */
+static void test_nothing_drawn(void **state)
+{
+    (void)state;
+    static scene s;
+    sim_audit_result result;
+    flat_scene(&s);
+    assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
+    assert_true(result.undrawn_pixels > 100);
+    assert_near(result.undrawn_percent, 100);
+    assert_near(result.err_px_max, hypot(240, 320));
+    assert_near(result.err_px_rms, hypot(240, 320));
+    assert_near(result.square_px[SIM_CAUSE_UNDRAWN], result.err_px_rms * result.err_px_rms);
+    draw_at(&s, 0);
+    uint32_t all = result.undrawn_pixels;
+    s.drawn[10] = s.drawn[0]; /* the tile ahead on the right is missing */
+    assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
+    assert_int_equal(result.undrawn_pixels + result.ground_pixels, all);
+    assert_true(result.undrawn_pixels > 0 && result.ground_pixels > 0);
+    free_scene(&s);
+}
+
+/* Seen from 2 km up, the farthest row of tiles is missing: the drawn ground ends in a level line,
+ * and each pixel above it is off by its distance to that line. */
+static void test_ground_not_yet_drawn(void **state)
+{
+    (void)state;
+    static scene s;
+    sim_audit_result result;
+    double sum = 0, most = 0;
+    uint32_t undrawn = 0, all = 0;
+    flat_scene(&s);
+    draw_at(&s, 0);
+    s.view.camera.pos_wu[2] = 2000 * 256;
+    s.view.drawn_count = 12;
+    double focal = s.view.camera.focal_q8 / 256.0, border = 2000 * focal / 8192,
+           edge = 2000 * focal / 4096;
+    for (unsigned y = STEP_PX / 2; y < 320; y += STEP_PX) {
+        double below = y + 0.5 - 160;
+        all += below > border ? 240 / STEP_PX : 0;
+        if (below <= border || below >= edge) continue;
+        undrawn += 240 / STEP_PX;
+        sum += (edge - below) * (edge - below) * (240 / STEP_PX);
+        most = fmax(most, edge - below);
+    }
+    assert_true(undrawn > 100);
+    assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
+    assert_int_equal(result.undrawn_pixels, undrawn);
+    assert_int_equal(result.ground_pixels + result.undrawn_pixels, all);
+    /* the edge is found to half a pixel */
+    assert_true(result.err_px_max >= most - 1e-6 && result.err_px_max <= most + 0.5);
+    assert_true(result.err_px_rms >= sqrt(sum / all) - 1e-6 &&
+                result.err_px_rms <= sqrt(sum / all) + 0.5);
+    assert_near(result.square_px[SIM_CAUSE_UNDRAWN], result.err_px_rms * result.err_px_rms);
+    free_scene(&s);
+}
+
+/* The same wrong ground under several qualities: whose fault is it? */
+static void test_causes(void **state)
+{
+    (void)state;
+    static const struct {
+        ff_quality quality;
+        uint8_t levels;
+        enum sim_audit_cause cause;
+    } row[] = {
+        { { .measure = FF_MEASURE_DISTANCE, .c_q8 = 9 * 256 }, 3, SIM_CAUSE_WAITING },
+        { { .measure = FF_MEASURE_DISTANCE, .c_q8 = 9 * 256, .depth_max = 2 },
+          3,
+          SIM_CAUSE_WAITING },
+        { { .measure = FF_MEASURE_DISTANCE, .c_q8 = 9 * 256, .depth_max = 1 }, 3, SIM_CAUSE_DEPTH },
+        { { .measure = FF_MEASURE_DISTANCE, .c_q8 = 9 * 256 }, 1, SIM_CAUSE_QUALITY },
+        { { .measure = FF_MEASURE_DISTANCE, .c_q8 = 8 }, 3, SIM_CAUSE_QUALITY },
+        { { .measure = FF_MEASURE_PIXELS, .error_px_q8 = 1 }, 3, SIM_CAUSE_WAITING },
+        { { .measure = FF_MEASURE_PIXELS, .error_px_q8 = 1, .depth_max = 1 }, 3, SIM_CAUSE_DEPTH },
+        { { .measure = FF_MEASURE_PIXELS, .error_px_q8 = 400 * 256 }, 3, SIM_CAUSE_QUALITY },
+    };
+    static scene s;
+    sim_audit_result result;
+    flat_scene(&s);
+    draw_at(&s, 50);
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        ff_terrain_info info = s.pack.header.info;
+        /* as if there were so many levels */
+        info.tile_log2 = (uint8_t)(info.node_log2 + row[i].levels - 1);
+        sim_auditor *auditor = sim_auditor_create(&s.ground, &info, STEP_PX);
+        assert_non_null(auditor);
+        s.view.quality = row[i].quality;
+        assert_int_equal(sim_audit_frame(auditor, &s.view, &result), FF_OK);
+        assert_true(result.err_px_rms > 1);
+        for (int cause = 0; cause < SIM_CAUSES; cause++)
+            assert_near(result.square_px[cause],
+                        cause == (int)row[i].cause ? result.err_px_rms * result.err_px_rms : 0);
+        sim_auditor_destroy(auditor);
+    }
+    free_scene(&s);
+}
+
+/* A panorama taken s to the west shows everything at the same depth s*d/depth pixels too far to the
+ * east. */
+static void test_parallax(void **state)
+{
+    (void)state;
+    static scene s;
+    sim_audit_result result;
+    for (int forwards = 0; forwards < 2; forwards++) {
+        expected e = { 0 };
+        double shift = 150, focal = 0;
+        flat_scene(&s);
+        focal = s.view.camera.focal_q8 / 256.0;
+        s.view.panorama = 1;
+        s.view.faces = 63;
+        memcpy(s.view.panorama_pos_wu, s.view.camera.pos_wu, sizeof s.view.panorama_pos_wu);
+        s.view.panorama_pos_wu[forwards] -= 150 * 256;
+        for (unsigned y = STEP_PX / 2; y < 320; y += STEP_PX)
+            for (unsigned x = STEP_PX / 2; x < 240 && row_depth_m(&s, y) > 0; x += STEP_PX) {
+                double depth = row_depth_m(&s, y), radius = hypot(x + 0.5 - 120, y + 0.5 - 160);
+                expect_error(&e,
+                             forwards ? radius * shift / (depth + shift) : shift * focal / depth);
+            }
+        assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
+        assert_int_equal(result.panorama_pixels, e.count);
+        assert_near(result.err_px_max, e.most);
+        assert_near(result.err_px_rms, sqrt(e.sum_squares / e.count));
+        assert_near(result.square_px[SIM_CAUSE_PANORAMA], e.sum_squares / e.count);
+        free_scene(&s);
+    }
+}
+
+/* Only the faces held and only ground between front and back plane count as shown. */
+static void test_panorama_limits(void **state)
+{
+    (void)state;
+    static scene s;
+    sim_audit_result all, result;
+    flat_scene(&s);
+    s.view.panorama = 1;
+    s.view.faces = 63;
+    memcpy(s.view.panorama_pos_wu, s.view.camera.pos_wu, sizeof s.view.panorama_pos_wu);
+    assert_int_equal(sim_audit_frame(s.auditor, &s.view, &all), FF_OK);
+    assert_near(all.err_px_max, 0);
+    assert_int_equal(all.undrawn_pixels, 0);
+    s.view.faces = 62; /* without the north */
+    assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
+    assert_int_equal(result.undrawn_pixels + result.panorama_pixels, all.panorama_pixels);
+    assert_true(result.panorama_pixels < all.panorama_pixels / 2);
+    s.view.faces = 63;
+    s.view.front_wu = 1000 * 256;
+    s.view.back_wu = 5000 * 256;
+    uint32_t between = 0;
+    for (unsigned y = STEP_PX / 2; y < 320; y += STEP_PX)
+        if (row_depth_m(&s, y) >= 1000 && row_depth_m(&s, y) <= 5000) between += 240 / STEP_PX;
+    assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
+    assert_int_equal(result.panorama_pixels, between);
+    free_scene(&s);
+}
+
+/* ---- the parts ---- */
+
+static void usual_ground(uint8_t **bytes, ff_pack *pack, sim_ground *ground)
+{
+    size_t count;
+    *bytes = pack_fixture_usual(&count);
+    assert_non_null(*bytes);
+    assert_int_equal(ff_pack_open(pack, *bytes, count), FF_OK);
+    assert_int_equal(sim_ground_load(ground, pack, UINT64_MAX), FF_OK);
+}
+
+/* The ground in memory is what the encoder was given, sample by sample (the usual pack is
+ * lossless). */
+static void test_ground_is_the_source(void **state)
+{
+    (void)state;
+    uint8_t *bytes;
+    ff_pack pack;
+    sim_ground ground;
+    usual_ground(&bytes, &pack, &ground);
+    assert_int_equal(ground.columns, 129);
+    assert_int_equal(ground.rows, 129);
+    for (uint32_t y = 0; y < 129; y++)
+        for (uint32_t x = 0; x < 129; x++) {
+            assert_int_equal(ground.height[y * 129 + x], pack_fixture_hills(NULL, x, y));
+            assert_near(sim_ground_height_m(&ground, x * 32.0, y * 32.0),
+                        pack_fixture_hills(NULL, x, y));
+        }
+    sim_ground_free(&ground);
+    assert_int_equal(sim_ground_load(&ground, &pack, 33 * 33), FF_OK); /* a coarser level */
+    assert_int_equal(ground.columns, 33);
+    assert_int_equal(ground.height[34], pack_fixture_hills(NULL, 4, 4));
+    sim_ground_free(&ground);
+    free(bytes);
+}
+
+static double uniform(sys_random *random, double low, double high)
+{
+    return low + (high - low) * sys_random_u32(random) / 4294967296.0;
+}
+
+/* Rays in all directions: the hit lies on the ground, and small steps find no ground before it. */
+static void test_cast_against_steps(void **state)
+{
+    (void)state;
+    uint8_t *bytes;
+    ff_pack pack;
+    sim_ground ground;
+    sys_random random;
+    int hits = 0;
+    usual_ground(&bytes, &pack, &ground);
+    sys_random_seed(&random, 5, 5);
+    for (int i = 0; i < 400; i++) {
+        double from[3] = { uniform(&random, 0, 4096), uniform(&random, 0, 4096), 0 }, along[3],
+               t = -1;
+        from[2] = fmax(1600, sim_ground_height_m(&ground, from[0], from[1])) +
+                  uniform(&random, 0, 200);
+        along[0] = i % 10 ? uniform(&random, -1, 1) : 0;
+        along[1] = i % 11 ? uniform(&random, -1, 1) : 0;
+        along[2] = uniform(&random, -1, 0.05);
+        int hit = sim_ground_cast(&ground, from, along, 20000, &t);
+        hits += hit;
+        for (double u = 0; u < (hit ? t - 1e-6 : 20000); u += 0.9) {
+            double x = from[0] + u * along[0], y = from[1] + u * along[1],
+                   z = from[2] + u * along[2];
+            if (x < 0 || y < 0 || x > 4096 || y > 4096) continue;
+            if (z < sim_ground_height_m(&ground, x, y) - 1e-6)
+                fail_msg("ray %d is below the ground at %g, before %g", i, u, t);
+        }
+        if (hit) {
+            double x = from[0] + t * along[0], y = from[1] + t * along[1];
+            assert_near(from[2] + t * along[2], sim_ground_height_m(&ground, x, y));
+        }
+    }
+    assert_true(hits > 100 && hits < 400);
+    sim_ground_free(&ground);
+    free(bytes);
+}
+
+static void test_projection_is_the_renderers(void **state)
+{
+    (void)state;
+    sys_random random;
+    sys_random_seed(&random, 6, 6);
+    for (int i = 0; i < 200; i++) {
+        c3d_camera camera = { .pos_wu = { 100000, -50000, 30000 },
+                              .yaw = (int32_t)sys_random_below(&random, 65536),
+                              .pitch = (int32_t)sys_random_below(&random, 32768) - 16384,
+                              .roll = (int32_t)sys_random_below(&random, 65536),
+                              .focal_q8 = 300 * 256,
+                              .width = 240,
+                              .height = 320 };
+        c3d_rotation rotation;
+        int64_t offset[3], eye[3];
+        double point[3], pixel[2];
+        for (int k = 0; k < 3; k++) {
+            offset[k] = (int64_t)sys_random_below(&random, 2000000) - 1000000;
+            point[k] = (double)(camera.pos_wu[k] + offset[k]) / 256;
+        }
+        c3d_rotation_from_camera(&camera, &rotation);
+        c3d_to_eye(&rotation, offset, eye);
+        if (eye[2] < 100000) continue;
+        assert_int_equal(sim_audit_project(&camera, point, pixel), 1);
+        assert_true(fabs(pixel[0] - (120 + (double)eye[0] * 300 / (double)eye[2])) < 0.01);
+        assert_true(fabs(pixel[1] - (160 - (double)eye[1] * 300 / (double)eye[2])) < 0.01);
+    }
+}
+
+/* A real cut with stitched borders: the auditor's triangles and the tree's own answer agree. */
+static void test_drawn_height_of_a_cut(void **state)
+{
+    (void)state;
+    terrain_fixture fx;
+    sim_ground ground = { 0 };
+    sys_random random;
+    fixture_make(&fx, 3, 7, 2, 2, fixture_hills);
+    fixture_tree(&fx, 2000, 200);
+    ff_view view = fixture_view(600, 700, 300, 30, -10);
+    ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
+    (void)fixture_settle(&fx, &view, &quality, 200);
+    const ff_drawn *list;
+    uint32_t count = ff_tree_cut(fx.tree, &list), stitched = 0, checked = 0;
+    ground.hscale_m = fx.info.hscale_q24 / 16777216.0;
+    ground.hoffset_m = fx.info.hoffset_wu / 256.0;
+    sim_auditor *auditor = sim_auditor_create(&ground, &fx.info, STEP_PX);
+    for (uint32_t i = 0; i < count; i++) stitched += list[i].coarser != 0;
+    assert_true(stitched > 4);
+    sys_random_seed(&random, 7, 7);
+    for (int i = 0; i < 3000; i++) {
+        int32_t x_wu = (int32_t)sys_random_below(&random, 2550 * 256),
+                y_wu = (int32_t)sys_random_below(&random, 2550 * 256), z_wu;
+        double z_m;
+        int drawn = ff_tree_drawn_height(fx.tree, x_wu, y_wu, &z_wu);
+        assert_int_equal(
+            sim_audit_drawn_height(auditor, list, count, x_wu / 256.0, y_wu / 256.0, &z_m), drawn);
+        if (drawn && fabs(z_m - z_wu / 256.0) > 0.02)
+            fail_msg("at %g, %g the auditor has %g, the tree %g", x_wu / 256.0, y_wu / 256.0, z_m,
+                     z_wu / 256.0);
+        checked += (uint32_t)drawn;
+    }
+    assert_true(checked > 1000);
+    sim_auditor_destroy(auditor);
+    fixture_free(&fx);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_flat_ground_too_high),
+        cmocka_unit_test(test_ground_above_the_eye),
+        cmocka_unit_test(test_nothing_drawn),
+        cmocka_unit_test(test_parallax),
+        cmocka_unit_test(test_panorama_limits),
+        cmocka_unit_test(test_ground_is_the_source),
+        cmocka_unit_test(test_cast_against_steps),
+        cmocka_unit_test(test_projection_is_the_renderers),
+        cmocka_unit_test(test_drawn_height_of_a_cut),
+        cmocka_unit_test(test_ground_not_yet_drawn),
+        cmocka_unit_test(test_causes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,314 @@
+/* Relevance on a wire of known messages and frames of known contents: what is drawn in time, too
+ * late, never; what hides in a line of ancestors, behind a finer image, beside the window; bytes
+ * that come in pieces or not at all. */
+#include "../../sim/judge/sim_relevance.h"
+#include "../../protocol/message/ff_message.h"
+#include "../rig/pack_fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct wire {
+    uint8_t bytes[65536]; /* for recv */
+    size_t count, at;
+    int64_t now_us;
+    sys_stream stream;
+    sim_relevance *relevance;
+    sim_relevance_view view;
+    ff_drawn drawn[8];
+    uint16_t id;
+} wire;
+
+static int wire_send(void *state, const uint8_t *bytes, size_t count)
+{
+    (void)state;
+    (void)bytes;
+    return (int)count;
+}
+
+static int wire_recv(void *state, uint8_t *bytes, size_t capacity)
+{
+    wire *w = state;
+    size_t count = w->count - w->at < capacity ? w->count - w->at : capacity;
+    memcpy(bytes, w->bytes + w->at, count);
+    w->at += count;
+    return (int)count;
+}
+
+static int wire_reconnect(void *state)
+{
+    (void)state;
+    return 0;
+}
+
+static void start(wire *w)
+{
+    memset(w, 0, sizeof *w);
+    ff_terrain_info info = pack_fixture_info(6, 2, 2);
+    info.texture_log2 = 4;
+    info.texture_levels = 3;
+    w->stream = (sys_stream){
+        .state = w, .send = wire_send, .recv = wire_recv, .reconnect = wire_reconnect
+    };
+    w->relevance = sim_relevance_create(&w->stream, &info, &w->now_us);
+    assert_non_null(w->relevance);
+    /* level, looking north: a window of the north face alone */
+    w->view.camera =
+        (c3d_camera){ .width = 240, .height = 320, .focal_q8 = c3d_focal_q8(65536 / 6, 240) };
+    w->view.drawn = w->drawn;
+}
+
+static void ask(wire *w, const ff_message *message)
+{
+    uint8_t bytes[FF_REQUEST_BYTES_MAX];
+    int count = ff_message_encode(message, bytes, sizeof bytes);
+    assert_true(count > 0);
+    for (int i = 0; i < count; i++) /* in pieces of one byte */
+        assert_int_equal(w->stream.send(w->stream.state, bytes + i, 1), 1);
+}
+
+/* Puts an answer on the wire; its size. */
+static size_t put(wire *w, const ff_message *message)
+{
+    int count = ff_message_encode(message, w->bytes + w->count, sizeof w->bytes - w->count);
+    assert_true(count > 0);
+    w->count += (size_t)count;
+    return (size_t)count;
+}
+
+/* Receives all there is, `piece` bytes at a time. */
+static void receive(wire *w, size_t piece)
+{
+    uint8_t bytes[1024];
+    while (w->stream.recv(w->stream.state, bytes, piece) > 0) continue;
+}
+
+static size_t node(wire *w, ff_key key, int what)
+{
+    static const uint8_t payload[40];
+    ff_message get = { .type = FF_MSG_GET_NODE, .u.get = { ++w->id, (uint8_t)what, key } };
+    ff_message data = { .type = FF_MSG_NODE,
+                        .u.data = { w->id, payload, what == FF_GET_ROOT ? 20 : 40 } };
+    ask(w, &get);
+    return put(w, &data);
+}
+
+static size_t image(wire *w, ff_key key)
+{
+    static const uint8_t jpeg[100];
+    ff_message get = { .type = FF_MSG_GET_TEXTURE, .u.get = { ++w->id, 0, key } };
+    ff_message data = { .type = FF_MSG_TEXTURE, .u.data = { w->id, jpeg, sizeof jpeg } };
+    ask(w, &get);
+    return put(w, &data);
+}
+
+static void draw(wire *w, int64_t now_us, uint32_t count, const ff_key *key)
+{
+    w->now_us = now_us;
+    w->view.drawn_count = count;
+    for (uint32_t i = 0; i < count; i++) w->drawn[i].key = key[i];
+    sim_relevance_frame(w->relevance, &w->view);
+}
+
+static sim_relevance_figures figures(wire *w, int64_t now_us)
+{
+    sim_relevance_figures f;
+    w->now_us = now_us;
+    assert_int_equal(sim_relevance_get(w->relevance, &f), FF_OK);
+    return f;
+}
+
+/* A node two levels down draws its root, and both refinements above it; the root's neighbour is
+ * never drawn. */
+static void test_line_of_ancestors(void **state)
+{
+    (void)state;
+    static wire w;
+    start(&w);
+    ff_key root = ff_key_make(1, 0, 0), child = ff_key_child(root, 2),
+           leaf = ff_key_child(child, 3);
+    size_t used = node(&w, root, FF_GET_ROOT) + node(&w, root, FF_GET_REFINEMENT) +
+                  node(&w, child, FF_GET_REFINEMENT);
+    size_t unused = node(&w, ff_key_child(root, 1), FF_GET_REFINEMENT) +
+                    node(&w, ff_key_make(2, 0, 0), FF_GET_ROOT);
+    receive(&w, 7);
+    assert_true(isnan(figures(&w, SIM_RELEVANCE_US).percent)); /* too early to say */
+    draw(&w, SIM_RELEVANCE_US, 1, &leaf);
+    sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
+    assert_int_equal(f.came[SIM_ANSWER_HEIGHTS], used + unused);
+    assert_int_equal(f.judged[SIM_ANSWER_HEIGHTS], used + unused);
+    assert_int_equal(f.unused[SIM_ANSWER_HEIGHTS], unused);
+    assert_true(fabs(f.percent - 100.0 * (double)used / (double)(used + unused)) < 1e-9);
+    sim_relevance_destroy(w.relevance);
+}
+
+/* Beside a drawn node: what lets it be so fine is not drawn, but told apart. */
+static void test_supporting(void **state)
+{
+    (void)state;
+    static wire w;
+    start(&w);
+    ff_key root = ff_key_make(0, 0, 0), child = ff_key_child(root, 1),
+           leaf = ff_key_child(child, 0);
+    (void)node(&w, root, FF_GET_ROOT);
+    (void)node(&w, root, FF_GET_REFINEMENT);
+    (void)node(&w, child, FF_GET_REFINEMENT);
+    size_t beside = node(&w, ff_key_make(1, 0, 0), FF_GET_REFINEMENT),
+           away = node(&w, ff_key_make(3, 0, 0), FF_GET_REFINEMENT);
+    receive(&w, 1024);
+    /* its parent's eastern neighbour is a child of the next tile's root */
+    draw(&w, 1, 1, &leaf);
+    sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
+    assert_int_equal(f.unused[SIM_ANSWER_HEIGHTS], beside + away);
+    assert_int_equal(f.supporting, beside);
+    sim_relevance_destroy(w.relevance);
+}
+
+static void test_too_late(void **state)
+{
+    (void)state;
+    static wire w;
+    start(&w);
+    ff_key root = ff_key_make(0, 0, 0);
+    size_t bytes = node(&w, root, FF_GET_ROOT);
+    receive(&w, 1024);
+    draw(&w, SIM_RELEVANCE_US + 1, 1, &root);
+    assert_int_equal(figures(&w, SIM_RELEVANCE_US + 1).unused[SIM_ANSWER_HEIGHTS], bytes);
+    bytes += node(&w, root, FF_GET_ROOT); /* sent once more: the new one is drawn */
+    receive(&w, 1024);
+    draw(&w, SIM_RELEVANCE_US + 2, 1, &root);
+    sim_relevance_figures f = figures(&w, 3 * SIM_RELEVANCE_US);
+    assert_int_equal(f.judged[SIM_ANSWER_HEIGHTS], bytes);
+    assert_int_equal(f.unused[SIM_ANSWER_HEIGHTS], bytes / 2);
+    sim_relevance_destroy(w.relevance);
+}
+
+/* An image under a finer one is not drawn where the finer one is, unless it comes again: then the
+ * finer one is gone. */
+static void test_finest_image(void **state)
+{
+    (void)state;
+    static wire w;
+    start(&w);
+    ff_key root = ff_key_make(3, 0, 0), child = ff_key_child(root, 0),
+           others[2] = { ff_key_child(child, 1), ff_key_child(root, 3) };
+    size_t coarse = image(&w, root), fine = image(&w, child);
+    receive(&w, 1024);
+    draw(&w, 1, 1, others);
+    assert_int_equal(figures(&w, SIM_RELEVANCE_US + 1).unused[SIM_ANSWER_IMAGE], coarse);
+    sim_relevance_destroy(w.relevance);
+    start(&w);
+    (void)image(&w, root);
+    (void)image(&w, child);
+    receive(&w, 1024);
+    draw(&w, 1, 2, others);
+    sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
+    assert_int_equal(f.judged[SIM_ANSWER_IMAGE], coarse + fine);
+    assert_int_equal(f.unused[SIM_ANSWER_IMAGE], 0);
+    (void)image(&w, root);
+    receive(&w, 1024);
+    draw(&w, SIM_RELEVANCE_US + 2, 1, others);
+    f = figures(&w, 3 * SIM_RELEVANCE_US);
+    assert_int_equal(f.judged[SIM_ANSWER_IMAGE], 2 * coarse + fine);
+    assert_int_equal(f.unused[SIM_ANSWER_IMAGE], 0);
+    sim_relevance_destroy(w.relevance);
+}
+
+/* Bytes of two faces, of which the window sees those of `row` rows from `top`. */
+static void check_face(enum ff_face_name name, unsigned top, unsigned rows, int32_t taken_wu,
+                       int drawn)
+{
+    static wire w;
+    static const uint8_t image_bytes[50], columns[4];
+    start(&w);
+    ff_message get = { .type = FF_MSG_GET_PANORAMA,
+                       .u.panorama = { .id = 9,
+                                       .position_wu = { taken_wu, 0, 0 },
+                                       .front_wu = 1,
+                                       .back_wu = 2,
+                                       .face_size = 256,
+                                       .quality = 70,
+                                       .face_count = 1,
+                                       .face = { (uint8_t)name } } };
+    ff_message face = { .type = FF_MSG_FACE,
+                        .u.face = { .id = 9,
+                                    .face = (uint8_t)name,
+                                    .face_size = 256,
+                                    .top_row = (uint16_t)top,
+                                    .row_count = (uint16_t)rows,
+                                    .columns = columns,
+                                    .columns_bytes = rows ? sizeof columns : 0,
+                                    .image = image_bytes,
+                                    .image_bytes = rows ? sizeof image_bytes : 0,
+                                    .flags = (uint8_t)(rows ? FF_FACE_LAST
+                                                            : FF_FACE_LAST | FF_FACE_EMPTY) } };
+    ask(&w, &get);
+    size_t bytes = put(&w, &face);
+    receive(&w, 1024);
+    w.view.panorama = 1;
+    w.view.panorama_pos_wu[0] = 500;
+    draw(&w, 1, 0, NULL);
+    sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
+    assert_int_equal(f.judged[SIM_ANSWER_FACE], bytes);
+    assert_int_equal(f.unused[SIM_ANSWER_FACE], drawn ? 0 : bytes);
+    sim_relevance_destroy(w.relevance);
+}
+
+/* 60 degrees across 240 pixels, 75 degrees across 320: rows 128 - 128 * 160 / 207.8 = 29.4 to 226.6
+ * of the north face are in the window. */
+static void test_faces(void **state)
+{
+    (void)state;
+    check_face(FF_FACE_NORTH, 100, 40, 500, 1);
+    check_face(FF_FACE_NORTH, 0, 40, 500, 1);
+    check_face(FF_FACE_NORTH, 0, 29, 500, 0);
+    check_face(FF_FACE_NORTH, 228, 28, 500, 0);
+    check_face(FF_FACE_NORTH, 100, 40, 501, 0); /* of another set */
+    /* empty: that nothing is there is what the window shows */
+    check_face(FF_FACE_NORTH, 0, 0, 500, 1);
+    check_face(FF_FACE_EAST, 100, 40, 500, 0);
+    check_face(FF_FACE_UP, 0, 0, 500, 0);
+}
+
+/* What brings no picture, and what a cut leaves in pieces. */
+static void test_overhead(void **state)
+{
+    (void)state;
+    static wire w;
+    start(&w);
+    ff_message pong = { .type = FF_MSG_PONG, .u.ping = { 7 } };
+    ff_message failed = { .type = FF_MSG_FAILED, .u.failed = { 1, FF_ERR_NOT_FOUND } };
+    ff_key root = ff_key_make(0, 0, 0);
+    size_t overhead = put(&w, &pong) + put(&w, &failed), used = node(&w, root, FF_GET_ROOT);
+    receive(&w, 1024);
+    draw(&w, 1, 1, &root);
+    (void)node(&w, root, FF_GET_REFINEMENT);
+    w.count -= 11; /* the rest never comes */
+    overhead += w.count - w.at;
+    receive(&w, 1024);
+    assert_int_equal(w.stream.reconnect(w.stream.state), 0);
+    size_t again = node(&w, root, FF_GET_REFINEMENT);
+    receive(&w, 1024);
+    sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 2);
+    assert_int_equal(f.overhead, overhead);
+    assert_int_equal(f.came[SIM_ANSWER_HEIGHTS], used + again);
+    assert_int_equal(f.unused[SIM_ANSWER_HEIGHTS], again);
+    assert_true(fabs(f.percent - 100.0 * (double)used / (double)(used + again + overhead)) < 1e-9);
+    sim_relevance_destroy(w.relevance);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_line_of_ancestors), cmocka_unit_test(test_too_late),
+        cmocka_unit_test(test_finest_image),      cmocka_unit_test(test_faces),
+        cmocka_unit_test(test_overhead),          cmocka_unit_test(test_supporting),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,328 @@
+/* The pieces of farfield-bake that hold promises by themselves: geometric error, void filling,
+ * densifying, tile choice, ordered jobs, and a tile's records seen by a decoder. */
+#include "../../platform/sys.h"
+#include "../../protocol/codec/ff_codec.h"
+#include "../../tools/bake/raster/bake_densify.h"
+#include "../../tools/bake/bake_error.h"
+#include "../../tools/bake/raster/bake_fill.h"
+#include "../../tools/bake/bake_jobs.h"
+#include "../../tools/bake/bake_run.h"
+#include "../../tools/bake/bake_say.h"
+#include "../../tools/bake/bake_tile.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+/* after the four above: */
+#include <cmocka.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static uint32_t next_random(uint32_t *state) { return *state = *state * 1664525u + 1013904223u; }
+
+/* ---- geometric error against plain double precision over every sample ---- */
+
+static double drawn_at(const uint16_t *drawn, size_t pitch, uint32_t cell, uint32_t x, uint32_t y,
+                       uint32_t edge)
+{
+    uint32_t i = x == edge ? x / cell - 1 : x / cell, j = y == edge ? y / cell - 1 : y / cell;
+    const uint16_t *sw = drawn + j * cell * pitch + i * cell;
+    double u = (double)(x - i * cell) / cell, v = (double)(y - j * cell) / cell;
+    double a = sw[0], b = sw[cell], c = sw[cell * pitch], d = sw[cell * pitch + cell];
+    return u >= v ? a + (b - a) * u + (d - b) * v : a + (c - a) * v + (d - c) * u;
+}
+
+static void check_error(uint32_t cells, uint32_t cell, uint32_t seed)
+{
+    uint32_t edge = cells * cell;
+    size_t pitch = edge + 3;
+    uint16_t *source = test_malloc(pitch * (edge + 1) * sizeof *source),
+             *drawn = test_malloc(pitch * (edge + 1) * sizeof *drawn);
+    for (size_t i = 0; i < pitch * (edge + 1); i++) {
+        source[i] = (uint16_t)(next_random(&seed) >> 16);
+        drawn[i] = (uint16_t)(source[i] ^ (seed >> 28));
+    }
+    double worst = 0;
+    for (uint32_t y = 0; y <= edge; y++)
+        for (uint32_t x = 0; x <= edge; x++)
+            worst = fmax(worst,
+                         fabs(drawn_at(drawn, pitch, cell, x, y, edge) - source[y * pitch + x]));
+    assert_int_equal(bake_node_error(source, drawn, pitch, cells, cell),
+                     (uint32_t)ceil(worst - 1e-6));
+    test_free(source);
+    test_free(drawn);
+}
+
+static void test_node_error_is_exact(void **state)
+{
+    (void)state;
+    check_error(8, 1, 1);
+    check_error(8, 2, 2);
+    check_error(2, 16, 3);
+    check_error(4, 64, 4);
+    check_error(1, 3, 5);
+}
+
+static void test_node_error_of_a_plane_is_nothing(void **state)
+{
+    uint16_t plane[33 * 33];
+    (void)state;
+    for (uint32_t i = 0; i < 33 * 33; i++)
+        plane[i] = (uint16_t)(1000 + 17 * (i % 33) + 40 * (i / 33));
+    assert_int_equal(bake_node_error(plane, plane, 33, 4, 8), 0);
+    plane[33 * 5 + 9] = (uint16_t)(plane[33 * 5 + 9] + 3);
+    assert_int_equal(bake_node_error(plane, plane, 33, 4, 8), 3);
+}
+
+/* ---- filling ---- */
+
+static void write_grid(bake_grid *grid, uint32_t width, uint32_t height, const float *values)
+{
+    assert_int_equal(bake_grid_open(grid, width, height, sizeof(float)), 0);
+    for (uint32_t j = 0; j < height; j++)
+        assert_int_equal(bake_grid_write(grid, j, 0, width, values + (size_t)j * width), 0);
+}
+
+static void test_fill_keeps_what_is_known(void **state)
+{
+    enum { W = 61, H = 47 };
+    static float before[W * H], after[W * H];
+    bake_grid grid;
+    (void)state;
+    for (int i = 0; i < W * H; i++) {
+        int x = i % W, y = i / W,
+            is_void = (x > 15 && x < 40 && y > 8 && y < 30) || i == 0 || x == W - 1;
+        before[i] = is_void ? NAN : (float)(100 + 3 * x + 2 * y);
+    }
+    write_grid(&grid, W, H, before);
+    assert_int_equal(bake_fill_voids(&grid), 0);
+    for (uint32_t j = 0; j < H; j++)
+        assert_int_equal(bake_grid_read(&grid, j, 0, W, after + (size_t)j * W), 0);
+    for (int i = 0; i < W * H; i++) {
+        if (!isnan(before[i])) assert_true(after[i] == before[i]);
+        /* a slope goes on through the hole, within a fraction of the rise across it */
+        assert_true(fabs(after[i] - (100 + 3.0 * (i % W) + 2.0 * (i / W))) < 15);
+    }
+    bake_grid_close(&grid);
+}
+
+static void test_fill_from_a_single_sample(void **state)
+{
+    float values[12], out[12];
+    bake_grid grid;
+    (void)state;
+    for (int i = 0; i < 12; i++) values[i] = i == 7 ? 42.0f : NAN;
+    write_grid(&grid, 4, 3, values);
+    assert_int_equal(bake_fill_voids(&grid), 0);
+    for (uint32_t j = 0; j < 3; j++)
+        assert_int_equal(bake_grid_read(&grid, j, 0, 4, out + 4 * j), 0);
+    for (int i = 0; i < 12; i++) assert_true(out[i] == 42.0f);
+    bake_grid_close(&grid);
+}
+
+/* ---- densifying ---- */
+
+static void test_densify_keeps_samples_and_flat_water(void **state)
+{
+    enum { W = 40, H = 30, N = 4, FINE = (W - 1) * N + 1 };
+    static float values[W * H], row[FINE];
+    uint32_t seed = 9;
+    double gt[6] = { 100, 8, 0, 500, 0, -8 };
+    bake_grid grid;
+    (void)state;
+    for (int i = 0; i < W * H; i++)
+        values[i] = i % W < W / 2 ? 5.0f : (float)(5 + (next_random(&seed) >> 24));
+    write_grid(&grid, W, H, values);
+    assert_int_equal(bake_densify(&grid, gt, N), 0);
+    assert_int_equal(grid.width, FINE);
+    assert_int_equal(grid.height, (H - 1) * N + 1);
+    assert_true(gt[1] == 2 && gt[0] + 1 == 104 && gt[3] - 1 == 496);
+    int invented = 0;
+    for (uint32_t j = 0; j < grid.height; j++) {
+        assert_int_equal(bake_grid_read(&grid, j, 0, FINE, row), 0);
+        for (uint32_t i = 0; j % N == 0 && i < FINE; i += N)
+            assert_true(row[i] == values[j / N * W + i / N]);
+        for (uint32_t i = 0; i < (W / 2 - 8) * N; i++) assert_true(row[i] == 5.0f);
+        invented += row[FINE - 2] != row[FINE - 1];
+    }
+    assert_true(invented > 0);
+    bake_grid_close(&grid);
+}
+
+/* ---- tiles ---- */
+
+static void test_tile_size_suits_the_raster(void **state)
+{
+    (void)state;
+    assert_int_equal(bake_choose_tile_log2(3, 5, 5), 3);
+    assert_int_equal(bake_choose_tile_log2(3, 2, 2), 3);
+    assert_int_equal(bake_choose_tile_log2(3, 1025, 1025), 10);
+    assert_int_equal(bake_choose_tile_log2(3, 1026, 1026), 7); /* 8 would add 55 % of padding */
+    assert_int_equal(bake_choose_tile_log2(3, 13000, 5000), 10);
+    assert_true(bake_choose_tile_log2(5, 17, 17) == 5);
+}
+
+static ff_terrain_info small_info(uint16_t max_error)
+{
+    return (ff_terrain_info){ .node_log2 = 2,
+                              .tile_log2 = 5,
+                              .codec = FF_CODEC_DEFLATE,
+                              .max_error = max_error,
+                              .height_max = 65535,
+                              .flags = max_error ? FF_TERRAIN_LOSSY : 0,
+                              .tiles_x = 2,
+                              .tiles_y = 1,
+                              .samples_x = 50,
+                              .samples_y = 20,
+                              .spacing_wu = 256,
+                              .hscale_q24 = 1 << 24 };
+}
+
+static void load_noise(bake_tile *tile, const ff_terrain_info *info, bake_grid *grid,
+                       uint32_t number)
+{
+    uint16_t row[50];
+    uint32_t seed = 77;
+    assert_int_equal(bake_grid_open(grid, 50, 20, sizeof(uint16_t)), 0);
+    for (uint32_t j = 0; j < 20; j++) {
+        for (int i = 0; i < 50; i++)
+            row[i] = (uint16_t)(20000 + 40 * j + (next_random(&seed) >> 23));
+        assert_int_equal(bake_grid_write(grid, j, 0, 50, row), 0);
+    }
+    assert_int_equal(bake_tile_open(tile, info), 0);
+    assert_int_equal(bake_tile_load(tile, grid, number), 0);
+}
+
+static void test_tile_repeats_the_rim(void **state)
+{
+    ff_terrain_info info = small_info(0);
+    bake_tile tile;
+    bake_grid grid;
+    uint16_t row[50];
+    (void)state;
+    load_noise(&tile, &info, &grid, 1);
+    assert_int_equal(bake_grid_read(&grid, 19, 0, 50, row), 0);
+    assert_int_equal(tile.source[19 * 33 + 3], row[35]);
+    assert_int_equal(tile.source[32 * 33 + 3], row[35]);
+    assert_int_equal(tile.source[32 * 33 + 32], row[49]);
+    bake_tile_close(&tile);
+    bake_grid_close(&grid);
+}
+
+/* Decoding the records gives what the encoder says it gives, within the bound, and errors that were
+ * measured. */
+static void check_records(uint16_t max_error)
+{
+    ff_terrain_info info = small_info(max_error);
+    bake_tile tile;
+    bake_grid grid;
+    int32_t value[FF_REFINED_HEIGHTS_MAX];
+    uint16_t node[FF_NODE_HEIGHTS_MAX];
+    ff_residuals residuals = { .value = value };
+    load_noise(&tile, &info, &grid, 0);
+    assert_int_equal(bake_tile_encode(&tile), 0);
+    for (int i = 0; i < 33 * 33; i++)
+        assert_true(abs(tile.decoded[i] - tile.source[i]) <= max_error);
+    size_t bytes = ff_decoder_bytes(&info);
+    void *memory = test_malloc(bytes);
+    ff_decoder *decoder = ff_decoder_create(&info, memory, bytes);
+    assert_non_null(decoder);
+    assert_int_equal(
+        ff_decode_root(decoder, tile.level[0].bytes, tile.level[0].length[0], &residuals), FF_OK);
+    ff_reconstruct_root(&info, &residuals, node);
+    for (int i = 0; i < 25; i++)
+        assert_int_equal(node[i], tile.decoded[i / 5 * 8 * 33 + i % 5 * 8]);
+    assert_int_equal(residuals.child_error[0], ff_geometric_error_encode(bake_node_error(
+                                                   tile.source, tile.decoded, 33, 4, 8)));
+    for (uint32_t l = 1; l < ff_terrain_levels(&info); l++)
+        assert_int_equal(tile.level[l].record_count, 1u << (2 * (l - 1)));
+    /* first refinement of level 1: children of 8 x 8 samples at the south-west */
+    const bake_blob *middle = &tile.level[2];
+    assert_int_equal(ff_decode_refinement(decoder, middle->bytes, middle->length[0], &residuals),
+                     FF_OK);
+    for (int q = 0; q < 4; q++) {
+        int at = (q & 1) * 8 + (q >> 1) * 8 * 33;
+        uint32_t steps = bake_node_error(tile.source + at, tile.decoded + at, 33, 4, 2);
+        assert_int_equal(residuals.child_error[q], ff_geometric_error_encode(steps));
+    }
+    /* refinements of level 2: their children are the data itself */
+    const bake_blob *finest = &tile.level[3];
+    assert_int_equal(ff_decode_refinement(decoder, finest->bytes, finest->length[0], &residuals),
+                     FF_OK);
+    for (int q = 0; q < 4; q++)
+        assert_true(ff_geometric_error_decode(residuals.child_error[q]) <= max_error);
+    test_free(memory);
+    bake_tile_close(&tile);
+    bake_grid_close(&grid);
+}
+
+static void test_records_decode(void **state)
+{
+    (void)state;
+    check_records(0);
+    check_records(6);
+}
+
+/* ---- jobs ---- */
+
+#define JOBS 200
+typedef struct ledger {
+    uint32_t made[8], taken[JOBS], count, fail_at;
+} ledger;
+
+static int make_job(void *context, int worker, uint32_t job)
+{
+    ledger *l = context;
+    l->made[worker] = job;
+    if (job % 3 == 0) sys_sleep_us(200); /* others overtake it */
+    return job == l->fail_at ? -1 : 0;
+}
+
+static int take_job(void *context, int worker, uint32_t job)
+{
+    ledger *l = context;
+    l->taken[l->count++] = l->made[worker] == job ? job : UINT32_MAX;
+    return 0;
+}
+
+static void test_jobs_are_taken_in_order(void **state)
+{
+    (void)state;
+    for (int threads = 1; threads <= 8; threads++) {
+        ledger l = { .fail_at = UINT32_MAX };
+        bake_jobs jobs = { "test", JOBS, threads, &l, make_job, take_job };
+        assert_int_equal(bake_jobs_run(&jobs), 0);
+        assert_int_equal(l.count, JOBS);
+        for (uint32_t i = 0; i < JOBS; i++) assert_int_equal(l.taken[i], i);
+    }
+}
+
+static void test_a_failed_job_ends_all(void **state)
+{
+    ledger l = { .fail_at = 50 };
+    bake_jobs jobs = { "test", JOBS, 4, &l, make_job, take_job };
+    (void)state;
+    assert_int_equal(bake_jobs_run(&jobs), -1);
+    assert_true(l.count <= 50);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_node_error_is_exact),
+        cmocka_unit_test(test_node_error_of_a_plane_is_nothing),
+        cmocka_unit_test(test_fill_keeps_what_is_known),
+        cmocka_unit_test(test_fill_from_a_single_sample),
+        cmocka_unit_test(test_densify_keeps_samples_and_flat_water),
+        cmocka_unit_test(test_tile_size_suits_the_raster),
+        cmocka_unit_test(test_tile_repeats_the_rim),
+        cmocka_unit_test(test_records_decode),
+        cmocka_unit_test(test_jobs_are_taken_in_order),
+        cmocka_unit_test(test_a_failed_job_ends_all),
+    };
+    bake_say_setup("test_bake", 1);
+    bake_temp_setup("build/x");
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,250 @@
+#include "bake_run.h"
+
+#include "../../platform/sys.h"
+#include "raster/bake_densify.h"
+#include "raster/bake_fill.h"
+#include "image/bake_image.h"
+#include "bake_jobs.h"
+#include "raster/bake_project.h"
+#include "raster/bake_quantise.h"
+#include "bake_say.h"
+#include "bake_tile.h"
+#include "pack_writer.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+
+#define TILE_LOG2_DEFAULT 10
+#define PADDING_MAX       1.5 /* padded samples to samples, for the default tile size */
+#define GDAL_CACHE_BYTES  (48 << 20)
+
+/* Everything between raster and pack; one per run. */
+typedef struct bake {
+    const bake_options *options;
+    bake_ground ground;
+    bake_steps steps;
+    ff_terrain_info info;
+    bake_grid heights; /* uint16, rows south to north */
+    bake_image image;
+    bake_tile *tile; /* one per job */
+    bake_blob (*texture)[BAKE_TEXTURE_LEVELS_MAX];
+    pack_writer writer;
+    int64_t started_us;
+} bake;
+
+/* ---- ground ---- */
+
+static int fill(bake_ground *ground, uint64_t count)
+{
+    return count ? bake_fill_voids(&ground->grid) : 0;
+}
+
+static void say_filled(const bake_ground *ground)
+{
+    uint64_t all = (uint64_t)ground->source_width * ground->source_height;
+    if (ground->voids)
+        bake_note("%" PRIu64 " of %" PRIu64 " samples are void; filled from around them",
+                  ground->voids, all);
+    if (ground->outside)
+        bake_note("%" PRIu64
+                  " samples lie outside the source after projection; filled from its border",
+                  ground->outside);
+}
+
+static int make_ground(bake *b)
+{
+    double spacing_m;
+    if (bake_source_read(b->options, &b->ground)) return -1;
+    if (fill(&b->ground, b->ground.voids)) return -1;
+    if (bake_project(b->options, &b->ground, &spacing_m)) return -1;
+    if (fill(&b->ground, b->ground.outside)) return -1;
+    say_filled(&b->ground);
+    if (bake_densify(&b->ground.grid, b->ground.geotransform, b->options->densify)) return -1;
+    b->info.spacing_wu = (uint32_t)nearbyint(spacing_m * FF_WU_PER_METRE / b->options->densify);
+    if (bake_steps_choose(b->options, &b->ground, &b->steps)) return -1;
+    if (bake_quantise(b->options, &b->ground, &b->steps, &b->info, &b->heights)) return -1;
+    bake_grid_close(&b->ground.grid); /* its size and place are still wanted, its samples not */
+    return 0;
+}
+
+/* ---- the terrain's description ---- */
+
+uint32_t bake_choose_tile_log2(uint32_t node_log2, uint32_t width, uint32_t height)
+{
+    for (uint32_t n = TILE_LOG2_DEFAULT; n > node_log2; n--) {
+        double tile = (double)(1u << n), columns = ceil((width - 1) / tile),
+               rows = ceil((height - 1) / tile);
+        if (columns * rows * tile * tile <= PADDING_MAX * (width - 1.0) * (height - 1.0)) return n;
+    }
+    return node_log2;
+}
+
+static void describe_place(const bake_ground *ground, ff_terrain_info *info)
+{
+    const double *gt = ground->geotransform;
+    double south = gt[5] < 0 ? gt[3] + gt[5] * ground->grid.height : gt[3];
+    if (!ground->has_place || ground->is_geographic) return;
+    info->origin_x_mm = (int64_t)nearbyint((gt[0] + gt[1] / 2) * 1000);
+    info->origin_y_mm = (int64_t)nearbyint((south + fabs(gt[5]) / 2) * 1000);
+    if (!ground->srs) return;
+    const char *code = OSRGetAuthorityCode(ground->srs, NULL),
+               *name = OSRGetAuthorityName(ground->srs, NULL);
+    if ((!code || !name) && OSRAutoIdentifyEPSG(ground->srs) == OGRERR_NONE) {
+        code = OSRGetAuthorityCode(ground->srs, NULL);
+        name = OSRGetAuthorityName(ground->srs, NULL);
+    }
+    if (code && name && EQUAL(name, "EPSG"))
+        info->epsg = atoi(code);
+    else
+        bake_note("the reference system has no EPSG code: the pack will not name it");
+}
+
+static int describe(bake *b)
+{
+    const bake_options *o = b->options;
+    ff_terrain_info *info = &b->info;
+    uint32_t width = b->heights.width, height = b->heights.height;
+    info->node_log2 = (uint8_t)o->node_log2;
+    info->tile_log2 = (uint8_t)(o->tile_log2 ? o->tile_log2
+                                             : bake_choose_tile_log2(o->node_log2, width, height));
+    info->codec = (uint8_t)o->codec;
+    if (o->densify > 1) info->flags |= FF_TERRAIN_DENSIFIED;
+    info->samples_x = width;
+    info->samples_y = height;
+    info->tiles_x = ((width - 2) >> info->tile_log2) + 1;
+    info->tiles_y = ((height - 2) >> info->tile_log2) + 1;
+    describe_place(&b->ground, info);
+    int rc = ff_terrain_check(info);
+    if (rc)
+        return bake_fail("%u x %u samples of %g m in tiles of 2^%u do not make a terrain: %s",
+                         width, height, (double)info->spacing_wu / FF_WU_PER_METRE, info->tile_log2,
+                         ff_error_text(rc));
+    return 0;
+}
+
+/* ---- tiles ---- */
+
+static int make_tile(void *context, int worker, uint32_t job)
+{
+    bake *b = context;
+    bake_tile *tile = &b->tile[worker];
+    if (bake_tile_load(tile, &b->heights, job) || bake_tile_encode(tile)) return -1;
+    for (uint32_t l = 0; l < b->image.levels; l++) {
+        bake_blob_clear(&b->texture[worker][l]);
+        if (bake_texture_encode(&b->image, &b->info, b->options->texture_quality, job, l,
+                                &b->texture[worker][l]))
+            return -1;
+    }
+    return 0;
+}
+
+static int take_tile(void *context, int worker, uint32_t job)
+{
+    bake *b = context;
+    uint32_t levels = ff_terrain_levels(&b->info);
+    (void)job;
+    for (uint32_t l = 0; l < levels; l++)
+        if (pack_writer_add(&b->writer, l, &b->tile[worker].level[l])) return -1;
+    for (uint32_t l = 0; l < b->image.levels; l++)
+        if (pack_writer_add(&b->writer, levels + l, &b->texture[worker][l])) return -1;
+    return 0;
+}
+
+static int make_tiles(bake *b)
+{
+    uint32_t tiles = b->info.tiles_x * b->info.tiles_y;
+    int workers = b->options->jobs < (int)tiles ? b->options->jobs : (int)tiles;
+    b->tile = calloc((size_t)workers, sizeof *b->tile);
+    b->texture = calloc((size_t)workers, sizeof *b->texture);
+    int rc = b->tile && b->texture ? 0 : bake_fail("out of memory");
+    for (int w = 0; !rc && w < workers; w++) rc = bake_tile_open(&b->tile[w], &b->info);
+    bake_jobs jobs = { "tiles", tiles, workers, b, make_tile, take_tile };
+    if (!rc) rc = bake_jobs_run(&jobs);
+    for (int w = 0; w < workers; w++) {
+        if (b->tile) bake_tile_close(&b->tile[w]);
+        for (uint32_t l = 0; b->texture && l < BAKE_TEXTURE_LEVELS_MAX; l++)
+            bake_blob_free(&b->texture[w][l]);
+    }
+    free(b->tile);
+    free(b->texture);
+    return rc;
+}
+
+/* ---- what was made ---- */
+
+static void report(const bake *b, uint64_t file_bytes)
+{
+    const ff_terrain_info *info = &b->info;
+    uint64_t height_bytes = 0, texture_bytes = 0,
+             samples = (uint64_t)info->samples_x * info->samples_y;
+    for (uint32_t i = 0; i < b->writer.section_count; i++)
+        *(i < ff_terrain_levels(info) ? &height_bytes : &texture_bytes) +=
+            b->writer.section[i].data_bytes - 4 * b->writer.section[i].records;
+    double seconds = (double)(sys_time_us() - b->started_us) / 1e6,
+           bits = 8.0 * (double)height_bytes / (double)samples;
+    double spacing_m = (double)info->spacing_wu / FF_WU_PER_METRE;
+    bake_note(
+        "%s: %u x %u samples of %g m, step %g m, %u x %u tiles of 2^%u; %.3f bits a sample, %" PRIu64
+        " bytes of textures, "
+        "%" PRIu64 " bytes in all, %.1f s",
+        b->options->out_path, info->samples_x, info->samples_y, spacing_m, b->steps.step_m,
+        info->tiles_x, info->tiles_y, info->tile_log2, bits, texture_bytes, file_bytes, seconds);
+    if (!b->options->json) return;
+    printf(
+        "{\"samples_x\": %u, \"samples_y\": %u, \"spacing_m\": %.9g, \"hscale_m\": %.9g, \"hoffset_m\": %.9g, "
+        "\"max_error_m\": %.9g, \"height_min_m\": %.9g, \"height_max_m\": %.9g, \"tiles_x\": %u, \"tiles_y\": %u, "
+        "\"tile_log2\": %u, \"node_log2\": %u, \"epsg\": %d, \"voids\": %" PRIu64
+        ", \"outside\": %" PRIu64
+        ", \"resampled\": %s, \"texture_levels\": %u, \"height_bytes\": %" PRIu64
+        ", \"bits_per_sample\": %.4f, "
+        "\"texture_bytes\": %" PRIu64 ", \"file_bytes\": %" PRIu64 ", \"seconds\": %.3f}\n",
+        info->samples_x, info->samples_y, spacing_m, b->steps.step_m,
+        (double)info->hoffset_wu / FF_WU_PER_METRE, info->max_error * b->steps.step_m,
+        b->steps.min_m, b->steps.max_m, info->tiles_x, info->tiles_y, info->tile_log2,
+        info->node_log2, info->epsg, b->ground.voids, b->ground.outside,
+        b->ground.resampled ? "true" : "false", info->texture_levels, height_bytes, bits,
+        texture_bytes, file_bytes, seconds);
+}
+
+static int make_pack(bake *b)
+{
+    uint64_t file_bytes;
+    if (make_ground(b) || describe(b)) return -1;
+    if (b->options->color_path && bake_image_make(b->options, &b->ground, &b->info, &b->image))
+        return -1;
+    if (pack_writer_open(&b->writer, &b->info)) return -1;
+    if (make_tiles(b)) return -1;
+    if (pack_writer_finish(&b->writer, b->options->out_path, &file_bytes)) return -1;
+    report(b, file_bytes);
+    return 0;
+}
+
+static int is_same_file(const char *path, const char *other)
+{
+    struct stat a, b;
+    return path && !stat(path, &a) && !stat(other, &b) && a.st_dev == b.st_dev &&
+           a.st_ino == b.st_ino;
+}
+
+int bake_run(const bake_options *options)
+{
+    bake b = { .options = options, .heights = BAKE_GRID_CLOSED, .started_us = sys_time_us() };
+    b.ground.grid = BAKE_GRID_CLOSED;
+    if (is_same_file(options->heights_path, options->out_path) ||
+        is_same_file(options->color_path, options->out_path))
+        return bake_fail("%s is the input: not overwritten", options->out_path);
+    bake_temp_setup(options->out_path);
+    if (pack_writer_prepare(options->out_path)) return -1;
+    GDALAllRegister();
+    GDALSetCacheMax64(GDAL_CACHE_BYTES);
+    CPLSetErrorHandler(CPLQuietErrorHandler);
+    int rc = make_pack(&b);
+    pack_writer_close(&b.writer);
+    bake_image_close(&b.image);
+    bake_grid_close(&b.heights);
+    bake_ground_close(&b.ground);
+    return rc;
+}

@@ -1,0 +1,276 @@
+#include "bake_image.h"
+
+#include "../../../platform/sys.h"
+#include "bake_image_local.h"
+#include "bake_nearest.h"
+#include "../bake_say.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define COARSEST_TEXEL_PX \
+    1.25 /* the finest level's texels are at most this many image pixels wide */
+#define RGB  3
+#define RGBA 4
+
+/* Source rows already filtered along x, kept while the window slides south. */
+typedef struct row_ring {
+    float *row;    /* slots x width x RGBA, colours weighted by how much is covered (alpha, 0..1) */
+    int64_t *held; /* source row in each slot, -1: none */
+    uint32_t slots, width;
+    uint8_t *source; /* one row of the image */
+} row_ring;
+
+/* A stretch [from, to) of pixels, kept inside 0..size and never empty. */
+static void footprint(double centre, double wide, uint32_t size, double *from, double *to)
+{
+    if (wide < 1) wide = 1;
+    *from = fmin(fmax(centre - wide / 2, 0), size - 0.5);
+    *to = fmax(fmin(centre + wide / 2, size), *from + 0.5);
+}
+
+/* Mean of the pixels from..to of a row, each weighted by how much of it is covered. */
+static void mean_pixels(const uint8_t *rgba, double from, double to, float *out)
+{
+    double sum[RGBA] = { 0 }, all = (to - from) * 255;
+    for (uint32_t px = (uint32_t)from; px < to; px++) {
+        const uint8_t *pixel = rgba + (size_t)RGBA * px;
+        double weight = (fmin(px + 1, to) - fmax(px, from)) * pixel[RGB];
+        for (int c = 0; c < RGB; c++) sum[c] += weight * pixel[c];
+        sum[RGB] += weight;
+    }
+    for (int c = 0; c < RGBA; c++) out[c] = (float)(sum[c] / all);
+}
+
+static const float *filtered_row(const bake_picture *picture, row_ring *ring, uint32_t row,
+                                 double texel_samples, double last_sample)
+{
+    float *out = ring->row + (size_t)(row % ring->slots) * ring->width * RGBA;
+    if (ring->held[row % ring->slots] == row) return out;
+    if (bake_picture_row(picture, row, ring->source)) return NULL;
+    double px_per_sample = picture->width / (picture->east - picture->west);
+    for (uint32_t i = 0; i < ring->width; i++) {
+        double from, to, x = fmin(i * texel_samples, last_sample);
+        footprint((x - picture->west) * px_per_sample, texel_samples * px_per_sample,
+                  picture->width, &from, &to);
+        mean_pixels(ring->source, from, to, out + (size_t)i * RGBA);
+    }
+    ring->held[row % ring->slots] = row;
+    return out;
+}
+
+/* What one row of the finest lattice is made in. */
+typedef struct lattice_row {
+    float *sum; /* RGBA */
+    uint8_t *rgb;
+    uint32_t *distance; /* to the nearest covered texel: bake_nearest.h */
+} lattice_row;
+
+/* Weighted sums to colours; counts the texels that the image covers. */
+static uint64_t finish_row(const lattice_row *out, uint32_t width)
+{
+    uint64_t covered = 0;
+    for (size_t i = 0; i < width; i++) {
+        const float *texel = out->sum + i * RGBA;
+        int is_covered = texel[RGB] > 1e-4f;
+        for (size_t c = 0; c < RGB; c++)
+            out->rgb[i * RGB + c] = is_covered ? (uint8_t)fminf(texel[c] / texel[RGB] + 0.5f, 255)
+                                               : 0;
+        out->distance[i] = is_covered ? 0 : BAKE_NEAREST_FAR;
+        covered += (uint64_t)is_covered;
+    }
+    return covered;
+}
+
+/* Rows from..to of the image, weighted, into one row of the finest lattice. */
+static int sample_row(const bake_picture *picture, row_ring *ring, double from, double to,
+                      double texel_samples, double last_sample, float *sum)
+{
+    size_t values = (size_t)ring->width * RGBA;
+    memset(sum, 0, values * sizeof *sum);
+    for (uint32_t row = (uint32_t)from; row < to; row++) {
+        const float *filtered = filtered_row(picture, ring, row, texel_samples, last_sample);
+        if (!filtered) return -1;
+        float weight = (float)((fmin(row + 1, to) - fmax(row, from)) / (to - from));
+        for (size_t i = 0; i < values; i++) sum[i] += weight * filtered[i];
+    }
+    return 0;
+}
+
+static int sample_rows(const bake_picture *picture, const bake_ground *ground, row_ring *ring,
+                       double texel_samples, const bake_grid *lattice, const bake_grid *distance,
+                       const lattice_row *out)
+{
+    double px_per_sample = picture->height / (picture->north - picture->south);
+    uint64_t covered = 0;
+    for (uint32_t j = lattice->height; j-- > 0;) {
+        double from, to, y = fmin(j * texel_samples, ground->grid.height - 1.0);
+        footprint((picture->north - y) * px_per_sample, texel_samples * px_per_sample,
+                  picture->height, &from, &to);
+        if (sample_row(picture, ring, from, to, texel_samples, ground->grid.width - 1.0, out->sum))
+            return -1;
+        covered += finish_row(out, lattice->width);
+        if (bake_grid_write(lattice, j, 0, lattice->width, out->rgb)) return -1;
+        if (bake_grid_write(distance, j, 0, lattice->width, out->distance)) return -1;
+        bake_progress("colour", lattice->height - j, lattice->height);
+    }
+    if (covered == 0) return bake_fail("the image shows nothing of this ground");
+    return covered < (uint64_t)lattice->width * lattice->height
+               ? bake_nearest_fill(lattice, distance)
+               : 0;
+}
+
+static int sample_image(const bake_picture *picture, const bake_ground *ground,
+                        double texel_samples, const bake_grid *lattice)
+{
+    double px_per_sample = picture->height / (picture->north - picture->south);
+    row_ring ring = { .slots = (uint32_t)ceil(fmax(1, texel_samples * px_per_sample)) + 2,
+                      .width = lattice->width };
+    lattice_row out = { malloc((size_t)ring.width * RGBA * sizeof(float)),
+                        malloc((size_t)ring.width * RGB), malloc(ring.width * sizeof(uint32_t)) };
+    bake_grid distance;
+    ring.row = malloc((size_t)ring.slots * ring.width * RGBA * sizeof *ring.row);
+    ring.held = malloc(ring.slots * sizeof *ring.held);
+    ring.source = malloc((size_t)picture->width * RGBA);
+    int rc = bake_grid_open(&distance, lattice->width, lattice->height, sizeof(uint32_t));
+    if (!rc && !(ring.row && ring.held && ring.source && out.sum && out.rgb && out.distance))
+        rc = bake_fail("out of memory");
+    for (uint32_t i = 0; !rc && i < ring.slots; i++) ring.held[i] = -1;
+    if (!rc) rc = sample_rows(picture, ground, &ring, texel_samples, lattice, &distance, &out);
+    bake_grid_close(&distance);
+    free(out.sum);
+    free(out.rgb);
+    free(out.distance);
+    free(ring.row);
+    free(ring.held);
+    free(ring.source);
+    return rc;
+}
+
+/* Every second point of the finer lattice, weighted 1-2-1 along both axes; beyond the rim the
+ * rim. */
+static void halve_row(uint8_t *const fine[3], uint32_t fine_width, uint32_t coarse_width,
+                      uint8_t *out)
+{
+    for (uint32_t i = 0; i < coarse_width; i++) {
+        size_t at = (size_t)2 * i, west = at ? at - 1 : at,
+               east = at + 1 < fine_width ? at + 1 : at;
+        for (int c = 0; c < RGB; c++) {
+            unsigned sum = 8;
+            for (int r = 0; r < 3; r++) {
+                const uint8_t *row = fine[r] + c;
+                sum += (r == 1 ? 2u : 1u) *
+                       (row[west * RGB] + 2u * row[at * RGB] + row[east * RGB]);
+            }
+            out[(size_t)i * RGB + (size_t)c] = (uint8_t)(sum / 16);
+        }
+    }
+}
+
+static int halve_lattice(const bake_grid *fine, const bake_grid *coarse)
+{
+    size_t row_bytes = (size_t)fine->width * RGB;
+    uint8_t *memory = malloc(4 * row_bytes);
+    if (!memory) return bake_fail("out of memory");
+    uint8_t *const rows[3] = { memory, memory + row_bytes, memory + 2 * row_bytes };
+    int rc = 0;
+    for (uint32_t j = 0; !rc && j < coarse->height; j++) {
+        for (int r = 0; !rc && r < 3; r++) {
+            int64_t row = 2 * (int64_t)j + r - 1;
+            row = row < 0 ? 0 : row >= fine->height ? fine->height - 1 : row;
+            rc = bake_grid_read(fine, (uint32_t)row, 0, fine->width, rows[r]);
+        }
+        if (rc) break;
+        halve_row(rows, fine->width, coarse->width, memory + 3 * row_bytes);
+        rc = bake_grid_write(coarse, j, 0, coarse->width, memory + 3 * row_bytes);
+    }
+    free(memory);
+    return rc;
+}
+
+static uint32_t choose_levels(const bake_options *o, const bake_picture *picture,
+                              const ff_terrain_info *info)
+{
+    uint32_t most = ff_terrain_levels(info), levels = 1;
+    if (most > BAKE_TEXTURE_LEVELS_MAX - 1) most = BAKE_TEXTURE_LEVELS_MAX - 1;
+    if (o->texture_levels) return o->texture_levels < most ? o->texture_levels : most;
+    double px_per_sample = fmax(picture->width / (picture->east - picture->west),
+                                picture->height / (picture->north - picture->south));
+    double texel_px = (double)(1u << info->tile_log2) / ((1u << o->texture_log2) - 1) *
+                      px_per_sample;
+    for (; levels < most && texel_px > COARSEST_TEXEL_PX; levels++) texel_px /= 2;
+    return levels;
+}
+
+static int make_lattices(const bake_picture *picture, const bake_ground *ground,
+                         const ff_terrain_info *info, bake_image *image)
+{
+    uint32_t steps = (1u << info->texture_log2) - 1, top = image->levels - 1;
+    for (uint32_t l = 0; l <= top; l++)
+        if (bake_grid_open(&image->lattice[l], (info->tiles_x * steps << l) + 1,
+                           (info->tiles_y * steps << l) + 1, RGB))
+            return -1;
+    double texel_samples = (double)(1u << (info->tile_log2 - top)) / steps;
+    if (sample_image(picture, ground, texel_samples, &image->lattice[top])) return -1;
+    for (uint32_t l = top; l > 0; l--)
+        if (halve_lattice(&image->lattice[l], &image->lattice[l - 1])) return -1;
+    return 0;
+}
+
+int bake_image_make(const bake_options *o, const bake_ground *ground, ff_terrain_info *info,
+                    bake_image *image)
+{
+    bake_picture picture;
+    for (int l = 0; l < BAKE_TEXTURE_LEVELS_MAX; l++) image->lattice[l] = BAKE_GRID_CLOSED;
+    if (bake_picture_open(o, ground, &picture)) return -1;
+    image->levels = choose_levels(o, &picture, info);
+    info->texture_log2 = (uint8_t)o->texture_log2;
+    info->texture_levels = (uint8_t)image->levels;
+    int rc = make_lattices(&picture, ground, info, image);
+    bake_picture_close(&picture);
+    return rc;
+}
+
+void bake_image_close(bake_image *image)
+{
+    for (uint32_t l = 0; l < image->levels; l++) bake_grid_close(&image->lattice[l]);
+    image->levels = 0;
+}
+
+/* ---- textures of nodes ---- */
+
+/* The texture at lattice point (column, row) of its south-west texel, top row first. */
+static int read_texture(const bake_grid *lattice, uint32_t side, uint32_t column, uint32_t row,
+                        uint8_t *rgb)
+{
+    for (uint32_t j = 0; j < side; j++)
+        if (bake_grid_read(lattice, row + j, column, side,
+                           rgb + (size_t)(side - 1 - j) * side * RGB))
+            return -1;
+    return 0;
+}
+
+int bake_texture_encode(const bake_image *image, const ff_terrain_info *info, int quality,
+                        uint32_t tile, uint32_t level, bake_blob *blob)
+{
+    uint32_t side = 1u << info->texture_log2;
+    uint32_t tile_x = (tile % info->tiles_x) << level, tile_y = (tile / info->tiles_x) << level;
+    size_t capacity = (size_t)4 * side * side + 8192;
+    uint8_t *rgb = malloc((size_t)side * side * RGB), *jpeg = malloc(capacity);
+    int rc = rgb && jpeg ? 0 : bake_fail("out of memory");
+    for (uint32_t code = 0; !rc && code >> (2 * level) == 0; code++) {
+        uint32_t column = (tile_x + ff_morton_x(code)) * (side - 1),
+                 row = (tile_y + ff_morton_y(code)) * (side - 1);
+        rc = read_texture(&image->lattice[level], side, column, row, rgb);
+        if (rc) break;
+        int bytes = sys_jpeg_encode(rgb, side, side, quality, jpeg, capacity);
+        if (bytes <= 0)
+            rc = bake_fail("cannot encode a texture: %s", ff_error_text(bytes));
+        else
+            rc = bake_blob_add(blob, jpeg, (size_t)bytes);
+    }
+    free(rgb);
+    free(jpeg);
+    return rc;
+}

@@ -1,0 +1,34 @@
+/* Colour of the ground: an image of any resolution becomes lattices of texels, one per texture
+ * level.
+ *
+ * A node's texture has T = 2^t texels a side, the outermost on the node's very edges, so that
+ * neighbours share them and bilinear filtering shows no seam. All texels of a level therefore form
+ * one lattice of 2^l * (T-1) * tiles + 1 texels; each coarser lattice is every second point of the
+ * finer one, weighted 1-2-1. Points beyond the ground repeat its rim.
+ */
+#ifndef BAKE_IMAGE_H
+#define BAKE_IMAGE_H
+
+#include "../../../protocol/ff_terrain.h"
+#include "../bake_blob.h"
+#include "../raster/bake_source.h"
+
+#define BAKE_TEXTURE_LEVELS_MAX 16
+
+typedef struct bake_image {
+    bake_grid lattice[BAKE_TEXTURE_LEVELS_MAX]; /* RGB, rows south to north */
+    uint32_t levels;
+} bake_image;
+
+/* Reads the image of `options` onto the ground; sets info->texture_log2 and texture_levels. 0 or -1
+ * (said). */
+int bake_image_make(const bake_options *options, const bake_ground *ground, ff_terrain_info *info,
+                    bake_image *image);
+void bake_image_close(bake_image *image);
+
+/* The JPEGs of one tile and level in Morton order, appended to `blob`. May run in several threads.
+ * 0 or -1 (said). */
+int bake_texture_encode(const bake_image *image, const ff_terrain_info *info, int quality,
+                        uint32_t tile, uint32_t level, bake_blob *blob);
+
+#endif

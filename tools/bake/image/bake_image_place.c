@@ -1,0 +1,182 @@
+/* Where an image lies over the ground. */
+#include "bake_image_local.h"
+#include "../bake_say.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Without georeference an image covers the heights' raster: all of its pixels' area, or, when it
+ * has one pixel per cell between samples (or a multiple), from the first sample to the last. Edges
+ * of that rectangle in raster pixels. */
+static void stretched_edges(uint32_t image_size, uint32_t raster_size, double *low, double *high)
+{
+    int per_cell = image_size % raster_size != 0 && image_size % (raster_size - 1) == 0;
+    *low = per_cell ? 0.5 : 0;
+    *high = raster_size - *low;
+}
+
+/* The rectangle in the plane of the source: west, north, east, south. */
+static void stretched_corners(const bake_ground *ground, GDALDatasetH set, double *corner)
+{
+    const double *gt = ground->source_geotransform;
+    double left, right, top, bottom;
+    stretched_edges((uint32_t)GDALGetRasterXSize(set), ground->source_width, &left, &right);
+    stretched_edges((uint32_t)GDALGetRasterYSize(set), ground->source_height, &top, &bottom);
+    double y0 = gt[3] + gt[5] * top, y1 = gt[3] + gt[5] * bottom;
+    corner[0] = gt[0] + gt[1] * left;
+    corner[1] = fmax(y0, y1);
+    corner[2] = gt[0] + gt[1] * right;
+    corner[3] = fmin(y0, y1);
+}
+
+static char **add_reference(char **list, const char *flag, OGRSpatialReferenceH srs)
+{
+    char *wkt = NULL;
+    if (!srs || OSRExportToWkt(srs, &wkt) != OGRERR_NONE) return list;
+    list = CSLAddString(CSLAddString(list, flag), wkt);
+    CPLFree(wkt);
+    return list;
+}
+
+static char **add_numbers(char **list, const char *flag, const double *number, int count)
+{
+    char text[40];
+    list = CSLAddString(list, flag);
+    for (int i = 0; i < count; i++) {
+        snprintf(text, sizeof text, "%.12g", number[i]);
+        list = CSLAddString(list, text);
+    }
+    return list;
+}
+
+/* A view of the image that lies where the source raster lies. */
+static GDALDatasetH lay_over_source(const bake_ground *ground, GDALDatasetH set)
+{
+    double corner[4];
+    stretched_corners(ground, set, corner);
+    char **list = CSLAddString(CSLAddString(NULL, "-of"), "VRT");
+    list = add_reference(list, "-a_srs", ground->source_srs);
+    list = add_numbers(list, "-a_ullr", corner, 4);
+    GDALTranslateOptions *options = GDALTranslateOptionsNew(list, NULL);
+    GDALDatasetH laid = GDALTranslate("", set, options, NULL);
+    GDALTranslateOptionsFree(options);
+    CSLDestroy(list);
+    return laid;
+}
+
+/* A view of the image warped onto the ground's plane and area, in about its own resolution. */
+static GDALDatasetH warp_onto_ground(const bake_ground *ground, GDALDatasetH set)
+{
+    const double *gt = ground->geotransform;
+    double y0 = gt[3], y1 = gt[3] + gt[5] * ground->grid.height;
+    double area[4] = { gt[0], fmin(y0, y1), gt[0] + gt[1] * ground->grid.width, fmax(y0, y1) };
+    char **list = CSLAddString(CSLAddString(NULL, "-of"), "VRT");
+    list = CSLAddString(CSLAddString(list, "-r"), "bilinear");
+    list = CSLAddString(list, "-dstalpha");
+    list = add_reference(list, "-t_srs", ground->srs);
+    list = add_numbers(list, "-te", area, 4);
+    GDALWarpAppOptions *options = GDALWarpAppOptionsNew(list, NULL);
+    GDALDatasetH warped = GDALWarp("", NULL, 1, &set, options, NULL);
+    GDALWarpAppOptionsFree(options);
+    CSLDestroy(list);
+    return warped;
+}
+
+static int check_bands(const char *path, GDALDatasetH set)
+{
+    int bands = GDALGetRasterCount(set);
+    if (bands < 1) return bake_fail("%s: no image in it", path);
+    for (int i = 1; i <= bands && i <= 3; i++)
+        if (GDALGetRasterDataType(GDALGetRasterBand(set, i)) != GDT_Byte)
+            return bake_fail("%s: an image of 8 bits a band is wanted", path);
+    return 0;
+}
+
+/* Palettes become RGB by a view, before anything is averaged. */
+static GDALDatasetH expand_palette(GDALDatasetH set)
+{
+    char **list = CSLAddString(CSLAddString(NULL, "-of"), "VRT");
+    list = CSLAddString(CSLAddString(list, "-expand"), "rgb");
+    GDALTranslateOptions *options = GDALTranslateOptionsNew(list, NULL);
+    GDALDatasetH expanded = GDALTranslate("", set, options, NULL);
+    GDALTranslateOptionsFree(options);
+    CSLDestroy(list);
+    return expanded;
+}
+
+static void place(const bake_ground *ground, bake_picture *picture, double west, double north,
+                  double east, double south)
+{
+    const double *gt = ground->geotransform;
+    double spacing = gt[1], south_edge = gt[5] < 0 ? gt[3] + gt[5] * ground->grid.height : gt[3];
+    double x0 = gt[0] + spacing / 2, y0 = south_edge + spacing / 2;
+    picture->west = (west - x0) / spacing;
+    picture->east = (east - x0) / spacing;
+    picture->south = (south - y0) / spacing;
+    picture->north = (north - y0) / spacing;
+    picture->width = (uint32_t)GDALGetRasterXSize(picture->set);
+    picture->height = (uint32_t)GDALGetRasterYSize(picture->set);
+}
+
+/* Puts a view in front of the present set. 0, or -1 when it could not be made (said). */
+static int stack_view(bake_picture *picture, GDALDatasetH view, const char *path)
+{
+    if (!view) return bake_fail_gdal("%s: cannot lay the image over the ground", path);
+    picture->behind[picture->behind_count++] = picture->set;
+    picture->set = view;
+    return 0;
+}
+
+static int lay_picture(const bake_ground *ground, const char *path, bake_picture *picture)
+{
+    double gt[6], corner[4];
+    int own_place = GDALGetGeoTransform(picture->set, gt) == CE_None && ground->has_place;
+    if (!own_place && !ground->resampled) {
+        stretched_corners(ground, picture->set, corner);
+        place(ground, picture, corner[0], corner[1], corner[2], corner[3]);
+        return 0;
+    }
+    if (!own_place && stack_view(picture, lay_over_source(ground, picture->set), path)) return -1;
+    if (stack_view(picture, warp_onto_ground(ground, picture->set), path)) return -1;
+    picture->has_alpha = 1;
+    GDALGetGeoTransform(picture->set, gt);
+    place(ground, picture, gt[0], gt[3], gt[0] + gt[1] * GDALGetRasterXSize(picture->set),
+          gt[3] + gt[5] * GDALGetRasterYSize(picture->set));
+    return 0;
+}
+
+int bake_picture_open(const bake_options *o, const bake_ground *ground, bake_picture *picture)
+{
+    CPLErrorReset();
+    *picture = (bake_picture){ .set = GDALOpen(o->color_path, GA_ReadOnly) };
+    if (!picture->set) return bake_fail_gdal("cannot read %s", o->color_path);
+    int rc = check_bands(o->color_path, picture->set);
+    if (!rc && GDALGetRasterColorTable(GDALGetRasterBand(picture->set, 1))) {
+        GDALDatasetH expanded = expand_palette(picture->set);
+        rc = stack_view(picture, expanded, o->color_path);
+    }
+    if (!rc) rc = lay_picture(ground, o->color_path, picture);
+    if (rc) bake_picture_close(picture);
+    return rc;
+}
+
+void bake_picture_close(bake_picture *picture)
+{
+    if (picture->set) GDALClose(picture->set);
+    while (picture->behind_count > 0) GDALClose(picture->behind[--picture->behind_count]);
+    *picture = (bake_picture){ 0 };
+}
+
+int bake_picture_row(const bake_picture *picture, uint32_t row, uint8_t *rgba)
+{
+    int bands = GDALGetRasterCount(picture->set), is_colour = bands - picture->has_alpha >= 3,
+        width = (int)picture->width;
+    int from[4] = { 1, is_colour ? 2 : 1, is_colour ? 3 : 1, bands };
+    if (!picture->has_alpha) memset(rgba, 255, (size_t)width * 4);
+    CPLErrorReset();
+    if (GDALDatasetRasterIO(picture->set, GF_Read, 0, (int)row, width, 1, rgba, width, 1, GDT_Byte,
+                            picture->has_alpha ? 4 : 3, from, 4, 4 * width, 1) != CE_None)
+        return bake_fail_gdal("cannot read row %u of the image", row);
+    return 0;
+}

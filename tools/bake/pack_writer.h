@@ -1,0 +1,37 @@
+/* Writes a pack: sections grow in unnamed temporary files, the pack itself appears whole or not at
+ * all.
+ *
+ * Memory does not depend on the pack's size. The final file is made under a temporary name beside
+ * its own (OUT.tmp-PID), synced and renamed; leftovers of killed runs are removed at the next
+ * start.
+ */
+#ifndef PACK_WRITER_H
+#define PACK_WRITER_H
+
+#include "../../protocol/ff_pack.h"
+#include "bake_blob.h"
+
+typedef struct pack_section_file {
+    int data_fd, index_fd; /* unnamed temporary files */
+    uint64_t data_bytes;   /* so far, record CRCs included */
+    uint64_t records;
+    uint32_t records_crc;
+} pack_section_file;
+
+typedef struct pack_writer {
+    ff_terrain_info info;
+    uint32_t section_count;
+    pack_section_file section[FF_PACK_SECTIONS_MAX];
+} pack_writer;
+
+/* Checks that `path` can be written and removes leftovers of killed runs. 0 or -1 (said). */
+int pack_writer_prepare(const char *path);
+/* Sections in order: root, refinements of level 0.., textures of level 0... 0 or -1 (said). */
+int pack_writer_open(pack_writer *writer, const ff_terrain_info *info);
+/* Appends a tile's records to a section. 0 or -1 (said). */
+int pack_writer_add(pack_writer *writer, uint32_t section, const bake_blob *blob);
+/* Puts the sections together as `path`; *file_bytes receives its size. 0 or -1 (said). */
+int pack_writer_finish(pack_writer *writer, const char *path, uint64_t *file_bytes);
+void pack_writer_close(pack_writer *writer);
+
+#endif

@@ -1,0 +1,132 @@
+#include "bake_quantise.h"
+
+#include "../bake_say.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#define STEPS_MAX       65535.0
+#define FINEST_CHOSEN_M 0.01
+#define MAX_ERROR_STEPS 32767.0 /* residuals are quantised by 2*max_error + 1 */
+#define Q24             16777216.0
+
+static int find_range(const bake_grid *grid, bake_steps *steps)
+{
+    float *row = malloc(grid->width * sizeof *row);
+    if (!row) return bake_fail("out of memory");
+    int rc = 0;
+    steps->min_m = INFINITY;
+    steps->max_m = -INFINITY;
+    for (uint32_t j = 0; !rc && j < grid->height; j++) {
+        rc = bake_grid_read(grid, j, 0, grid->width, row);
+        for (uint32_t i = 0; !rc && i < grid->width; i++) {
+            steps->min_m = fmin(steps->min_m, row[i]);
+            steps->max_m = fmax(steps->max_m, row[i]);
+        }
+    }
+    free(row);
+    return rc;
+}
+
+/* Step 0 lies at zero when all heights fit above it, else just below the lowest one, on a whole
+ * metre if there is room. */
+static double choose_first(double step_m, double low, double high)
+{
+    if (low >= 0 && high <= STEPS_MAX) return 0;
+    double per_metre = nearbyint(1 / step_m);
+    if (per_metre > 1 && fabs(per_metre * step_m - 1) < 1e-6) {
+        double first = floor(low / per_metre) * per_metre;
+        if (high - first <= STEPS_MAX) return first;
+    }
+    return low;
+}
+
+static int set_step(bake_steps *steps, double wanted_m)
+{
+    double q24 = fmax(1, nearbyint(wanted_m * Q24));
+    double low = nearbyint(steps->min_m / wanted_m), high = nearbyint(steps->max_m / wanted_m);
+    if (high - low > STEPS_MAX) return 0;
+    steps->step_m = q24 / Q24;
+    steps->first_step = choose_first(wanted_m, low, high);
+    return 1;
+}
+
+static double next_nice(double step_m)
+{
+    double decade = pow(10, floor(log10(step_m) + 1e-9)), digit = step_m / decade;
+    return digit < 1.5 ? 2 * decade : digit < 3.5 ? 5 * decade : 10 * decade;
+}
+
+int bake_steps_choose(const bake_options *o, const bake_ground *ground, bake_steps *steps)
+{
+    if (find_range(&ground->grid, steps)) return -1;
+    if (o->hscale_m > 0) {
+        if (set_step(steps, o->hscale_m)) return 0;
+        return bake_fail("--hscale %g: heights from %g to %g m span more than 65536 steps",
+                         o->hscale_m, steps->min_m, steps->max_m);
+    }
+    if (ground->step_m > 0) {
+        /* Invented detail needs finer steps than the source's, as far as they fit. */
+        for (double step_m = o->densify > 1 ? ground->step_m / 8 : ground->step_m;
+             step_m <= ground->step_m * 1.001; step_m *= 2)
+            if (set_step(steps, step_m)) return 0;
+        bake_note(
+            "heights span more than 65536 of their own steps of %g m: coarser steps are chosen",
+            ground->step_m);
+    }
+    for (double step_m = FINEST_CHOSEN_M; step_m < 250; step_m = next_nice(step_m))
+        if (set_step(steps, step_m)) return 0;
+    return bake_fail("heights from %g to %g m do not fit a pack", steps->min_m, steps->max_m);
+}
+
+static void quantise_row(const bake_steps *steps, const float *metres, uint16_t *heights,
+                         uint32_t count, ff_terrain_info *info)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        double h = nearbyint((double)metres[i] / steps->step_m - steps->first_step);
+        heights[i] = (uint16_t)fmin(fmax(h, 0), STEPS_MAX);
+        if (heights[i] < info->height_min) info->height_min = heights[i];
+        if (heights[i] > info->height_max) info->height_max = heights[i];
+    }
+}
+
+static int set_units(const bake_options *o, const bake_steps *steps, ff_terrain_info *info)
+{
+    double offset_wu = nearbyint(steps->first_step * steps->step_m * FF_WU_PER_METRE);
+    if (fabs(offset_wu) > INT32_MAX / 2)
+        return bake_fail("heights of %g m lie outside the world", steps->min_m);
+    info->hscale_q24 = (uint32_t)(steps->step_m * Q24);
+    info->hoffset_wu = (int32_t)offset_wu;
+    double error_steps = floor(o->max_error_m / steps->step_m + 1e-6);
+    info->max_error = (uint16_t)fmin(error_steps, MAX_ERROR_STEPS);
+    if (info->max_error)
+        info->flags |= FF_TERRAIN_LOSSY;
+    else if (o->max_error_m > 0)
+        bake_note("--max-error %g m is less than a height step of %g m: lossless", o->max_error_m,
+                  steps->step_m);
+    return 0;
+}
+
+int bake_quantise(const bake_options *o, const bake_ground *ground, const bake_steps *steps,
+                  ff_terrain_info *info, bake_grid *grid)
+{
+    const bake_grid *from = &ground->grid;
+    if (set_units(o, steps, info)) return -1;
+    if (bake_grid_open(grid, from->width, from->height, sizeof(uint16_t))) return -1;
+    float *metres = malloc(from->width * sizeof *metres);
+    uint16_t *heights = malloc(from->width * sizeof *heights);
+    int rc = metres && heights ? 0 : bake_fail("out of memory");
+    int north_up = ground->geotransform[5] < 0;
+    info->height_min = UINT16_MAX;
+    info->height_max = 0;
+    for (uint32_t j = 0; !rc && j < from->height; j++) {
+        rc = bake_grid_read(from, j, 0, from->width, metres);
+        if (rc) break;
+        quantise_row(steps, metres, heights, from->width, info);
+        rc = bake_grid_write(grid, north_up ? from->height - 1 - j : j, 0, from->width, heights);
+        bake_progress("quantising", j + 1, from->height);
+    }
+    free(metres);
+    free(heights);
+    return rc;
+}

@@ -1,0 +1,23 @@
+/* From float metres to the 16-bit steps of a pack. */
+#ifndef BAKE_QUANTISE_H
+#define BAKE_QUANTISE_H
+
+#include "../../../protocol/ff_terrain.h"
+#include "bake_source.h"
+
+typedef struct bake_steps {
+    double step_m;     /* metres a step; what hscale_q24 says, exactly */
+    double first_step; /* height of step 0, in steps: a whole number */
+    double min_m, max_m;
+} bake_steps;
+
+/* Chooses the step: as told, else the source's own when its range fits 16 bits, else the finest of
+ * 1-2-5 x 10^i from 1 cm up that fits. 0 or -1 (said). */
+int bake_steps_choose(const bake_options *options, const bake_ground *ground, bake_steps *steps);
+
+/* Writes `grid` (uint16, rows south to north) from the ground's floats; sets hscale, hoffset,
+ * height_min, height_max and max_error of `info`. 0 or -1 (said). */
+int bake_quantise(const bake_options *options, const bake_ground *ground, const bake_steps *steps,
+                  ff_terrain_info *info, bake_grid *grid);
+
+#endif

@@ -1,0 +1,259 @@
+#include "bake_source.h"
+
+#include "../bake_say.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ABSURD_M          12000.0 /* no ground of the Earth is further from the sea's surface */
+#define ABSURD_PLAIN_M    1e7     /* plain images may stand for anything */
+#define STRIP_SAMPLES_MAX (2u << 20)
+#define WHOLE_TOLERANCE_M 1e-3 /* single precision at 10 km keeps this */
+
+/* How raster values become metres. */
+typedef struct source_unit {
+    double scale, offset, absurd_m;
+    double nodata;
+    int has_nodata, is_plain;
+} source_unit;
+
+typedef struct source_scan {
+    int whole_values, whole_metres;
+    uint64_t voids;
+} source_scan;
+
+static GDALDatasetH open_raw_file(const bake_options *o)
+{
+    char xml[5000];
+    char *path = CPLEscapeString(o->heights_path, -1, CPLES_XML);
+    snprintf(
+        xml, sizeof xml,
+        "<VRTDataset rasterXSize=\"%u\" rasterYSize=\"%u\"><VRTRasterBand dataType=\"%s\" band=\"1\" "
+        "subClass=\"VRTRawRasterBand\"><SourceFilename relativetoVRT=\"0\">%s</SourceFilename>"
+        "<ImageOffset>0</ImageOffset><PixelOffset>2</PixelOffset><LineOffset>%u</LineOffset><ByteOrder>%s</ByteOrder>"
+        "</VRTRasterBand></VRTDataset>",
+        o->raw.width, o->raw.height, o->raw.is_signed ? "Int16" : "UInt16", path, o->raw.width * 2,
+        o->raw.big_endian ? "MSB" : "LSB");
+    CPLFree(path);
+    return GDALOpen(xml, GA_ReadOnly);
+}
+
+/* A raw file must have exactly the size told: a wrong width would give a sheared picture without a
+ * word. */
+static int check_raw_size(const bake_options *o)
+{
+    FILE *file = fopen(o->heights_path, "rb");
+    if (!file) return bake_fail("%s: %s", o->heights_path, strerror(errno));
+    fseek(file, 0, SEEK_END);
+    long long bytes = ftello(file), wanted = 2ll * o->raw.width * o->raw.height;
+    fclose(file);
+    if (bytes != wanted)
+        return bake_fail("%s: %lld bytes, but --raw %ux%u needs %lld", o->heights_path, bytes,
+                         o->raw.width, o->raw.height, wanted);
+    return 0;
+}
+
+static GDALDatasetH open_raster(const bake_options *o)
+{
+    CPLErrorReset();
+    if (o->raw.width && check_raw_size(o)) return NULL;
+    GDALDatasetH set = o->raw.width ? open_raw_file(o) : GDALOpen(o->heights_path, GA_ReadOnly);
+    if (!set) {
+        bake_fail_gdal("cannot read %s", o->heights_path);
+        return NULL;
+    }
+    int width = GDALGetRasterXSize(set), height = GDALGetRasterYSize(set);
+    if (GDALGetRasterCount(set) < 1) {
+        bake_fail("%s: no raster in it by itself; name one of its subdatasets (see gdalinfo)",
+                  o->heights_path);
+    } else if (width < 2 || height < 2) {
+        bake_fail("%s: %d x %d samples; ground needs at least 2 rows and 2 columns",
+                  o->heights_path, width, height);
+    } else {
+        return set;
+    }
+    GDALClose(set);
+    return NULL;
+}
+
+/* A raster without a reference system whose corners are degrees is taken as WGS84 longitude and
+ * latitude. */
+static int looks_geographic(const double *gt, int width, int height)
+{
+    double west = gt[0], east = gt[0] + gt[1] * width, north = gt[3],
+           south = gt[3] + gt[5] * height;
+    if (south > north) {
+        double swap = south;
+        south = north;
+        north = swap;
+    }
+    return gt[2] == 0 && gt[4] == 0 && fabs(gt[1]) < 0.5 && fabs(gt[5]) < 0.5 && west >= -181 &&
+           east <= 361 && south >= -91 && north <= 91;
+}
+
+static int read_place(const bake_options *o, GDALDatasetH set, bake_ground *ground)
+{
+    static const double plain[6] = { 0, 1, 0, 0, 0, -1 };
+    double *gt = ground->geotransform;
+    ground->has_place = !o->raw.width && GDALGetGeoTransform(set, gt) == CE_None && gt[1] != 0 &&
+                        gt[5] != 0;
+    if (ground->has_place)
+        for (int i = 0; i < 6; i++)
+            if (!isfinite(gt[i]))
+                return bake_fail("%s: its georeference is not a number", o->heights_path);
+    if (!ground->has_place) {
+        memcpy(gt, plain, sizeof plain);
+        gt[3] = GDALGetRasterYSize(set);
+        return 0;
+    }
+    OGRSpatialReferenceH srs = GDALGetSpatialRef(set);
+    if (srs) {
+        ground->srs = OSRClone(srs);
+    } else if (looks_geographic(gt, GDALGetRasterXSize(set), GDALGetRasterYSize(set)) &&
+               !o->no_project) {
+        bake_note(
+            "%s names no reference system; its corners look like degrees: taken as WGS84 longitude and latitude",
+            o->heights_path);
+        ground->srs = OSRNewSpatialReference(NULL);
+        OSRImportFromEPSG(ground->srs, 4326);
+    }
+    if (ground->srs) {
+        OSRSetAxisMappingStrategy(ground->srs, OAMS_TRADITIONAL_GIS_ORDER);
+        ground->is_geographic = OSRIsGeographic(ground->srs);
+    }
+    return 0;
+}
+
+static source_unit read_unit(const bake_options *o, GDALDatasetH set, const bake_ground *ground)
+{
+    GDALRasterBandH band = GDALGetRasterBand(set, 1);
+    GDALDataType type = GDALGetRasterDataType(band);
+    source_unit unit = { .scale = 1 };
+    unit.is_plain = !ground->has_place && (type == GDT_Byte || type == GDT_UInt16 || o->raw.width);
+    unit.absurd_m = ground->srs ? ABSURD_M : ABSURD_PLAIN_M;
+    unit.nodata = GDALGetRasterNoDataValue(band, &unit.has_nodata);
+    if (!unit.has_nodata && type == GDT_Int16) {
+        unit.nodata = -32768; /* SRTM's void, often not declared */
+        unit.has_nodata = 1;
+    }
+    if (o->scale > 0) {
+        unit.scale = o->scale;
+    } else if (unit.is_plain && o->hscale_m > 0) {
+        unit.scale = o->hscale_m;
+    } else {
+        const char *name = GDALGetRasterUnitType(band);
+        double metres = 1;
+        if (name && (EQUAL(name, "ft") || EQUAL(name, "foot") || EQUAL(name, "feet")))
+            metres = 0.3048;
+        else if (name && strstr(name, "survey foot"))
+            metres = 1200.0 / 3937.0;
+        else if (name && EQUAL(name, "cm"))
+            metres = 0.01;
+        unit.scale = GDALGetRasterScale(band, NULL) * metres;
+        unit.offset = GDALGetRasterOffset(band, NULL) * metres;
+    }
+    return unit;
+}
+
+/* One row of raster values to metres; voids become NaN. */
+static void scan_row(const source_unit *unit, const double *values, float *metres, uint32_t count,
+                     source_scan *scan)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        double value = values[i], z = value * unit->scale + unit->offset;
+        int is_void = !isfinite(value) || fabs(z) > unit->absurd_m ||
+                      (unit->has_nodata &&
+                       (value == unit->nodata || (float)value == (float)unit->nodata));
+        if (is_void) {
+            metres[i] = NAN;
+            scan->voids++;
+            continue;
+        }
+        metres[i] = (float)z;
+        if (scan->whole_values && value != nearbyint(value)) scan->whole_values = 0;
+        if (scan->whole_metres && fabs(z - nearbyint(z)) > WHOLE_TOLERANCE_M)
+            scan->whole_metres = 0;
+    }
+}
+
+static int read_strip(GDALDatasetH set, const source_unit *unit, uint32_t top, uint32_t rows,
+                      double *values, float *metres, bake_ground *ground, source_scan *scan)
+{
+    uint32_t width = ground->grid.width;
+    CPLErrorReset();
+    if (GDALRasterIO(GDALGetRasterBand(set, 1), GF_Read, 0, (int)top, (int)width, (int)rows, values,
+                     (int)width, (int)rows, GDT_Float64, 0, 0) != CE_None)
+        return bake_fail_gdal("cannot read rows %u to %u", top, top + rows - 1);
+    for (uint32_t row = 0; row < rows; row++)
+        scan_row(unit, values + (size_t)row * width, metres + (size_t)row * width, width, scan);
+    return bake_pwrite(ground->grid.fd, metres, (size_t)rows * width * sizeof *metres,
+                       (uint64_t)top * width * sizeof *metres);
+}
+
+static int read_heights(GDALDatasetH set, const source_unit *unit, bake_ground *ground,
+                        source_scan *scan)
+{
+    uint32_t width = ground->grid.width, height = ground->grid.height;
+    int block_x, block_y;
+    GDALGetBlockSize(GDALGetRasterBand(set, 1), &block_x, &block_y);
+    uint32_t strip = STRIP_SAMPLES_MAX / width;
+    if (strip > (uint32_t)block_y && block_y > 0) strip -= strip % (uint32_t)block_y;
+    if (strip < 1) strip = 1;
+    if (strip > height) strip = height;
+    double *values = malloc((size_t)strip * width * sizeof *values);
+    float *metres = malloc((size_t)strip * width * sizeof *metres);
+    int rc = values && metres ? 0 : bake_fail("out of memory");
+    for (uint32_t top = 0; !rc && top < height; top += strip) {
+        uint32_t rows = height - top < strip ? height - top : strip;
+        rc = read_strip(set, unit, top, rows, values, metres, ground, scan);
+        bake_progress("reading", top + rows, height);
+    }
+    free(values);
+    free(metres);
+    return rc;
+}
+
+static int read_all(const bake_options *o, GDALDatasetH set, bake_ground *ground)
+{
+    uint32_t width = (uint32_t)GDALGetRasterXSize(set), height = (uint32_t)GDALGetRasterYSize(set);
+    if (read_place(o, set, ground)) return -1;
+    source_unit unit = read_unit(o, set, ground);
+    if (bake_grid_open(&ground->grid, width, height, sizeof(float))) return -1;
+    source_scan scan = { .whole_values = 1, .whole_metres = 1 };
+    if (read_heights(set, &unit, ground, &scan)) return -1;
+    ground->source_width = width;
+    ground->source_height = height;
+    memcpy(ground->source_geotransform, ground->geotransform, sizeof ground->geotransform);
+    if (ground->srs) ground->source_srs = OSRClone(ground->srs);
+    ground->voids = scan.voids;
+    if (scan.voids == (uint64_t)width * height)
+        return bake_fail("%s: not one valid height in %u x %u samples", o->heights_path, width,
+                         height);
+    if (scan.whole_values)
+        ground->step_m = unit.scale;
+    else if (scan.whole_metres)
+        ground->step_m = 1;
+    return 0;
+}
+
+int bake_source_read(const bake_options *o, bake_ground *ground)
+{
+    *ground = (bake_ground){ .grid = BAKE_GRID_CLOSED };
+    GDALDatasetH set = open_raster(o);
+    if (!set) return -1;
+    int rc = read_all(o, set, ground);
+    GDALClose(set);
+    if (rc) bake_ground_close(ground);
+    return rc;
+}
+
+void bake_ground_close(bake_ground *ground)
+{
+    bake_grid_close(&ground->grid);
+    if (ground->srs) OSRDestroySpatialReference(ground->srs);
+    if (ground->source_srs) OSRDestroySpatialReference(ground->source_srs);
+    ground->srs = ground->source_srs = NULL;
+}

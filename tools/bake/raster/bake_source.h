@@ -1,0 +1,32 @@
+/* Ground on its way into a pack: a grid of float metres, row 0 north, with its place on the
+ * Earth. */
+#ifndef BAKE_SOURCE_H
+#define BAKE_SOURCE_H
+
+#include "bake_gdal.h"
+#include "bake_grid.h"
+#include "../bake_options.h"
+
+typedef struct bake_ground {
+    bake_grid grid; /* float32 metres; NaN: void */
+    /* GDAL's, of the grid; without georeference {0, 1, 0, height, 0, -1} */
+    double geotransform[6];
+    int has_place; /* the geotransform is the raster's own */
+    int is_geographic;
+    OGRSpatialReferenceH srs; /* owned; NULL: none */
+    /* as read, before any projection: where an image without georeference lies */
+    double source_geotransform[6];
+    uint32_t source_width, source_height;
+    OGRSpatialReferenceH source_srs;
+    double step_m; /* heights are whole multiples of this; 0: they are not */
+    /* samples filled: void in the source; beyond its area after projection */
+    uint64_t voids, outside;
+    int resampled;
+} bake_ground;
+
+/* Reads the raster named in `options` into `ground`, voids as NaN and counted. 0, or -1 after
+ * saying why. */
+int bake_source_read(const bake_options *options, bake_ground *ground);
+void bake_ground_close(bake_ground *ground);
+
+#endif

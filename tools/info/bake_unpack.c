@@ -1,0 +1,106 @@
+#include "bake_unpack.h"
+
+#include "../bake/bake_say.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+int bake_unpack_open(bake_unpack *unpack, const char *path)
+{
+    *unpack = (bake_unpack){ .path = path };
+    int rc = sys_map_file(path, &unpack->mapping);
+    if (rc) return bake_fail("%s: %s", path, ff_error_text(rc));
+    rc = ff_pack_open(&unpack->pack, unpack->mapping.bytes, unpack->mapping.size);
+    if (!rc) {
+        size_t bytes = ff_decoder_bytes(&unpack->pack.header.info);
+        unpack->decoder_memory = malloc(bytes);
+        if (unpack->decoder_memory)
+            unpack->decoder = ff_decoder_create(&unpack->pack.header.info, unpack->decoder_memory,
+                                                bytes);
+        if (!unpack->decoder) rc = FF_ERR_MEMORY;
+    }
+    if (!rc) return 0;
+    bake_unpack_close(unpack);
+    return bake_fail("%s: %s", path, ff_error_text(rc));
+}
+
+void bake_unpack_close(bake_unpack *unpack)
+{
+    free(unpack->decoder_memory);
+    sys_unmap_file(&unpack->mapping);
+    unpack->decoder_memory = unpack->decoder = NULL;
+}
+
+uint32_t bake_unpack_side(const ff_terrain_info *info, uint32_t level)
+{
+    return (1u << (info->node_log2 + level)) + 1;
+}
+
+static int fail_at(const bake_unpack *unpack, const char *what, ff_key key, int rc)
+{
+    return bake_fail("%s: %s of tile %u, level %u, code %u: %s", unpack->path, what,
+                     ff_key_tile(key), ff_key_level(key), ff_key_code(key), ff_error_text(rc));
+}
+
+/* Spreads a node or refined grid of `side` samples over a tile's grid, or gathers a node from
+ * it. */
+static void scatter(const uint16_t *in, uint32_t side, size_t pitch, size_t stride, uint16_t *out)
+{
+    for (uint32_t j = 0; j < side; j++)
+        for (uint32_t i = 0; i < side; i++) out[(j * pitch + i) * stride] = *in++;
+}
+
+static void gather(const uint16_t *in, uint32_t side, size_t pitch, size_t stride, uint16_t *out)
+{
+    for (uint32_t j = 0; j < side; j++)
+        for (uint32_t i = 0; i < side; i++) *out++ = in[(j * pitch + i) * stride];
+}
+
+static int decode_root(const bake_unpack *unpack, uint32_t tile, size_t pitch, size_t stride,
+                       uint16_t *heights)
+{
+    const ff_terrain_info *info = &unpack->pack.header.info;
+    int32_t value[FF_REFINED_HEIGHTS_MAX];
+    uint16_t node[FF_NODE_HEIGHTS_MAX];
+    ff_residuals residuals = { .value = value };
+    const uint8_t *payload;
+    ff_key key = ff_key_make(tile, 0, 0);
+    int rc = ff_pack_record(&unpack->pack, FF_SECTION_ROOT, key, &payload);
+    if (rc >= 0) rc = ff_decode_root(unpack->decoder, payload, (size_t)rc, &residuals);
+    if (rc < 0) return fail_at(unpack, "the root", key, rc);
+    ff_reconstruct_root(info, &residuals, node);
+    scatter(node, ff_node_side(info), pitch, stride, heights);
+    return 0;
+}
+
+static int decode_refinement(const bake_unpack *unpack, ff_key key, size_t pitch, size_t stride,
+                             uint16_t *at)
+{
+    const ff_terrain_info *info = &unpack->pack.header.info;
+    int32_t value[FF_REFINED_HEIGHTS_MAX];
+    uint16_t parent[FF_NODE_HEIGHTS_MAX], refined[FF_REFINED_HEIGHTS_MAX];
+    ff_residuals residuals = { .value = value };
+    const uint8_t *payload;
+    int rc = ff_pack_record(&unpack->pack, FF_SECTION_REFINEMENT, key, &payload);
+    if (rc >= 0) rc = ff_decode_refinement(unpack->decoder, payload, (size_t)rc, &residuals);
+    if (rc < 0) return fail_at(unpack, "the refinement", key, rc);
+    gather(at, ff_node_side(info), pitch, stride, parent);
+    ff_reconstruct_refinement(info, parent, &residuals, refined);
+    scatter(refined, ff_refined_side(info), pitch, stride / 2, at);
+    return 0;
+}
+
+int bake_unpack_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level, uint16_t *heights)
+{
+    const ff_terrain_info *info = &unpack->pack.header.info;
+    size_t pitch = bake_unpack_side(info, level);
+    if (decode_root(unpack, tile, pitch, (size_t)1 << level, heights)) return -1;
+    for (uint32_t l = 0; l < level; l++) {
+        size_t stride = (size_t)1 << (level - l), edge = stride << info->node_log2;
+        for (uint32_t code = 0; code >> (2 * l) == 0; code++) {
+            uint16_t *at = heights + ff_morton_y(code) * edge * pitch + ff_morton_x(code) * edge;
+            if (decode_refinement(unpack, ff_key_make(tile, l, code), pitch, stride, at)) return -1;
+        }
+    }
+    return 0;
+}

@@ -1,0 +1,25 @@
+/* Reading a pack back: what farfield-info and farfield-export share. */
+#ifndef BAKE_UNPACK_H
+#define BAKE_UNPACK_H
+
+#include "../../platform/sys.h"
+#include "../../protocol/ff_pack.h"
+
+typedef struct bake_unpack {
+    const char *path;
+    sys_mapping mapping;
+    ff_pack pack;
+    ff_decoder *decoder;
+    void *decoder_memory;
+} bake_unpack;
+
+/* Maps and checks a pack. 0 or -1 (said). */
+int bake_unpack_open(bake_unpack *unpack, const char *path);
+void bake_unpack_close(bake_unpack *unpack);
+
+/* Heights along a tile's side at a level: 2^(k+level) + 1. */
+uint32_t bake_unpack_side(const ff_terrain_info *info, uint32_t level);
+/* Decodes one tile down to `level` into `heights` (side^2, south to north). 0 or -1 (said). */
+int bake_unpack_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level, uint16_t *heights);
+
+#endif
