@@ -19,8 +19,8 @@ typedef struct ff_writer {
 
 uint64_t ff_read_bytes(ff_reader *in, unsigned count); /* 0..8 bytes, unsigned */
 int64_t ff_read_signed(ff_reader *in, unsigned count); /* 1..8 bytes, two's complement */
-/* LEB128 below 2^32: 7 bits a byte, low first, top bit: more follows. An overlong one (last byte 0)
- * is FF_ERR_RANGE. */
+/* A LEB128 number below 2^32: 7 bits a byte, low bits first; a byte's top bit says that another
+ * byte follows. A number longer than it need be (its last byte is 0) is FF_ERR_RANGE. */
 uint32_t ff_read_varint(ff_reader *in);
 /* The next `count` bytes, not copied; NULL on error. */
 const uint8_t *ff_read_span(ff_reader *in, size_t count);
@@ -30,7 +30,7 @@ void ff_write_varint(ff_writer *out, uint32_t value);
 void ff_write_span(ff_writer *out, const uint8_t *bytes, size_t count);
 unsigned ff_varint_bytes(uint32_t value);
 
-/* ff_terrain_info as in pack headers and WELCOME. Reading checks its ranges. */
+/* ff_terrain_info as it stands in pack headers and in WELCOME. Reading checks its ranges. */
 #define FF_TERRAIN_BYTES 64
 void ff_read_terrain(ff_reader *in, ff_terrain_info *info);
 void ff_write_terrain(ff_writer *out, const ff_terrain_info *info);

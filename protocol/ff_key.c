@@ -26,10 +26,10 @@ uint32_t ff_morton_encode(uint32_t x, uint32_t y) { return spread(x) | (spread(y
 uint32_t ff_morton_x(uint32_t code) { return gather(code); }
 uint32_t ff_morton_y(uint32_t code) { return gather(code >> 1); }
 
-/* The coordinate in `own` bits one up or down, the other one untouched. Filling the foreign bits
- * with ones lets a carry run through them, clearing them lets a borrow: dilated integers are added
- * without being taken apart. `level_bits` cuts the result, so that a step over the border comes in
- * at the other end. */
+/* Steps one coordinate of a Morton code by one, up or down; the mask `own` marks its bits. The
+ * other coordinate keeps its value: its bits are set to one while adding, so that a carry runs
+ * through them, and cleared while subtracting, so that a borrow does. The result is cut to
+ * `level_bits`: a step over the border of a tile comes in at the tile's other end. */
 static uint32_t step(uint32_t code, uint32_t own, uint32_t level_bits, int up)
 {
     uint32_t moved = up ? (code | ~own) + 1u : (code & own) - 1u;
@@ -37,7 +37,8 @@ static uint32_t step(uint32_t code, uint32_t own, uint32_t level_bits, int up)
     return (code & ~own) | (moved & own & level_bits);
 }
 
-/* The tile across `side`: 1 and *tile, or 0 where the terrain ends. */
+/* Moves *tile to the tile across `side`. Returns 0 when the terrain ends there: *tile then names no
+ * tile. */
 static int next_tile(uint32_t tiles_x, uint32_t tiles_y, enum ff_side side, uint32_t *tile)
 {
     uint32_t tx = *tile % tiles_x, ty = *tile / tiles_x;

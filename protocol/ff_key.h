@@ -33,8 +33,8 @@ static inline uint32_t ff_key_level(ff_key key) { return (uint32_t)(key >> 32) &
 static inline uint32_t ff_key_code(ff_key key) { return (uint32_t)key; }
 static inline uint32_t ff_key_quadrant(ff_key key) { return (uint32_t)key & 3u; }
 
-/* The child in `quadrant` (0..3) of a node above FF_KEY_LEVEL_MAX; the parent of a node below level
- * 0. */
+/* The child in `quadrant` (0..3) of a node whose level is less than FF_KEY_LEVEL_MAX; the parent of
+ * a node whose level is more than 0. */
 static inline ff_key ff_key_child(ff_key key, uint32_t quadrant)
 {
     return ff_key_make(ff_key_tile(key), ff_key_level(key) + 1, (ff_key_code(key) << 2) | quadrant);
@@ -49,8 +49,9 @@ uint32_t ff_morton_encode(uint32_t x, uint32_t y);
 uint32_t ff_morton_x(uint32_t code);
 uint32_t ff_morton_y(uint32_t code);
 
-/* The node of the same level across `side` by arithmetic on the interleaved bits alone; over a
- * tile's border it continues in the next tile; FF_KEY_NONE over the terrain's border. */
+/* The node of the same level that touches `key` across `side`, found by arithmetic on the
+ * interleaved bits alone. Across a tile's border it lies in the next tile; across the terrain's
+ * border the answer is FF_KEY_NONE. */
 ff_key ff_key_neighbour(uint32_t tiles_x, uint32_t tiles_y, ff_key key, enum ff_side side);
 
 #endif

@@ -10,8 +10,8 @@
 
 static const uint8_t magic[8] = { 0x89, 'F', 'F', 'P', '\r', '\n', 0x1a, '\n' };
 
-#define CHECKSUM_AT \
-    (8 + 4 + FF_TERRAIN_BYTES - 4) /* info.checksum is the last field of the terrain */
+/* info.checksum is the last field of the terrain. */
+#define CHECKSUM_AT      (8 + 4 + FF_TERRAIN_BYTES - 4)
 #define HEADER_CRC_AT    (FF_PACK_HEADER_BYTES - 4)
 #define RECORD_CRC_BYTES 4
 
@@ -34,8 +34,8 @@ static int inside(uint64_t offset, uint64_t bytes, uint64_t size)
     return offset >= FF_PACK_HEADER_BYTES && offset <= size && bytes <= size - offset;
 }
 
-/* Sections come in one order only: roots, refinements by level, textures by level; none missing,
- * none twice. */
+/* What section `number` must be; 0 when there must be none. Sections come in one order only: roots,
+ * refinements by level, textures by level, with none missing and none twice. */
 static int section_expected(const ff_terrain_info *info, uint32_t number, uint16_t *kind,
                             uint16_t *level)
 {
@@ -195,8 +195,8 @@ int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
     return FF_ERR_NOT_FOUND;
 }
 
-/* Damaged records of one section; *whole is cleared when its index or its list of CRCs is not what
- * the header says. */
+/* The number of damaged records in one section. Clears *whole when the section's index, or the list
+ * of its records' CRCs, is not what the header says. */
 static uint64_t verify_section(const ff_pack *pack, const ff_pack_section *section, int *whole)
 {
     const uint8_t *index = pack->bytes + section->index_offset, *payload;

@@ -11,9 +11,8 @@
 
 #include "codec/ff_codec.h"
 
-#define FF_PACK_VERSION 2
-#define FF_PACK_HEADER_BYTES \
-    4096 /* header and section directory; the first section's index follows */
+#define FF_PACK_VERSION      2
+#define FF_PACK_HEADER_BYTES 4096 /* with the directory of sections; the sections follow */
 #define FF_PACK_SECTIONS_MAX 48
 
 enum ff_section_kind { FF_SECTION_ROOT = 1, FF_SECTION_REFINEMENT = 2, FF_SECTION_TEXTURE = 3 };
@@ -22,13 +21,15 @@ typedef struct ff_pack_section {
     uint16_t kind;      /* enum ff_section_kind */
     uint16_t level;     /* of the node refined, or textured */
     uint32_t index_crc; /* CRC-32 of the index bytes */
-    /* CRC-32 of the records' own CRC words, in order, as stored: stands for the section's
-     * contents */
+    /* CRC-32 of the records' own CRC words, in order, as stored: it stands for all the section's
+     * data */
     uint32_t records_crc;
     uint64_t record_count; /* tiles * 4^level */
-    /* from file start: record_count + 1 offsets, 8 bytes each, little-endian, from data_offset */
+    /* where the index lies in the file: record_count + 1 offsets from data_offset, each 8 bytes,
+     * little-endian */
     uint64_t index_offset;
-    /* a record: CRC-32 of its payload (4 bytes, LE), payload; no bytes at all: no such record */
+    /* where the records lie in the file. A record is the CRC-32 of its payload (4 bytes,
+     * little-endian) and the payload; a record of no bytes at all does not exist */
     uint64_t data_offset, data_bytes;
 } ff_pack_section;
 
@@ -38,16 +39,16 @@ typedef struct ff_pack_header {
     ff_pack_section section[FF_PACK_SECTIONS_MAX];
 } ff_pack_header;
 
-/* A view on a mapped pack; plain data, no ownership: the mapping must outlive it; any number of
- * readers at once. */
+/* A view on a mapped pack: plain data that owns nothing. The mapping must outlive the view; any
+ * number of threads may read through one view at once. */
 typedef struct ff_pack {
     const uint8_t *bytes;
     uint64_t size;
     ff_pack_header header;
 } ff_pack;
 
-/* Checks header, version, checksum, ranges and that all sections lie inside `size`. FF_OK or a
- * negative error: FORMAT (foreign), VERSION, TRUNCATED, CHECKSUM, RANGE. */
+/* Checks magic, version, checksum and ranges, and that all sections lie inside `size`. FF_OK or a
+ * negative error: FORMAT (not a pack), VERSION, TRUNCATED, CHECKSUM, RANGE. */
 int ff_pack_open(ff_pack *pack, const void *bytes, uint64_t size);
 
 /* Reads record `key` of a kind; *payload points into the mapping. Payload bytes (0 or more) or
@@ -59,9 +60,9 @@ int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
  * FF_OK or error. */
 int ff_pack_verify(const ff_pack *pack, uint64_t *bad);
 
-/* Header to bytes, for writers; `out` has FF_PACK_HEADER_BYTES. Works out info.checksum itself
- * (whatever is in `header`): a CRC over the header, and so, by index_crc and records_crc, over
- * everything in the pack. FF_OK or FF_ERR_RANGE. */
+/* Header to bytes, for writers; `out` has FF_PACK_HEADER_BYTES. The function works out
+ * info.checksum itself and ignores the one in `header`: it is a CRC over the header, which by
+ * index_crc and records_crc stands for everything in the pack. FF_OK or FF_ERR_RANGE. */
 int ff_pack_header_encode(const ff_pack_header *header, uint8_t *out);
 
 /* CRC-32 (zlib's polynomial), crc 0 to start. */

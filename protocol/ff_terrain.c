@@ -14,7 +14,8 @@ static int grid_ok(const ff_terrain_info *info)
     if (info->samples_x < 2 || info->samples_y < 2 || info->samples_x > edge_x + 1 ||
         info->samples_y > edge_y + 1)
         return 0;
-    /* 43 bits times 32 bits would overflow: the spacing is held against the quotient instead. */
+    /* An edge of 43 bits times a spacing of 32 bits would overflow: so the spacing is compared with
+     * the quotient. */
     return info->spacing_wu >= 1 && info->spacing_wu <= INT32_MAX / edge_x &&
            info->spacing_wu <= INT32_MAX / edge_y;
 }

@@ -42,14 +42,15 @@ typedef struct ff_terrain_info {
     /* no decoded height is further from its source than this, in height steps */
     uint16_t max_error;
     uint32_t tiles_x, tiles_y; /* at least 1 each, product at most FF_KEY_TILES_MAX */
-    /* of the source; the tiles' rest repeats the rim; at least 2 each */
+    /* samples of the source, at least 2 each; tiles reach beyond them and repeat the last row and
+     * column there */
     uint32_t samples_x, samples_y;
     uint32_t spacing_wu; /* between neighbouring samples of the finest level; at least 1 */
     uint32_t hscale_q24; /* metres a height step, Q24; at least 1 */
     int32_t hoffset_wu;  /* z of height step 0 */
     int32_t epsg;        /* coordinate reference of the origin below; 0: none */
-    int64_t origin_x_mm, origin_y_mm; /* where x = y = 0 lies in it, millimetres */
-    /* of the pack's contents: a client's cache of another pack is of no use */
+    int64_t origin_x_mm, origin_y_mm; /* where x = y = 0 lies in that reference, millimetres */
+    /* of the pack's contents: a client knows by it whether its cache is of this pack */
     uint32_t checksum;
 } ff_terrain_info;
 

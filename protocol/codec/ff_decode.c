@@ -10,8 +10,8 @@
 
 struct ff_decoder {
     ff_terrain_info info;
-    ff_inflate *inflater; /* NULL: the codec has no use for one */
-    uint8_t *plane;       /* high parts of a payload's values, for it */
+    ff_inflate *inflater; /* NULL when the codec has no use for one */
+    uint8_t *plane;       /* what the inflater writes: high parts of a payload's values */
 };
 
 uint32_t ff_geometric_error_decode(uint8_t code)
@@ -94,7 +94,7 @@ static int take_errors(cursor *in, unsigned form, uint32_t count, uint8_t error[
 /* 0, -1, 1, -2, ... from 0, 1, 2, 3, ... */
 static int32_t unzigzag(uint32_t v) { return (int32_t)(v >> 1) ^ -(int32_t)(v & 1u); }
 
-/* Low parts: `width` bits of every value, packed low bit first. */
+/* Reads the low parts: `width` bits of every value, packed low bit first. */
 static int take_low(cursor *in, uint32_t width, int32_t *value, uint32_t count)
 {
     uint32_t bits = 0, held = 0;
@@ -109,7 +109,8 @@ static int take_low(cursor *in, uint32_t width, int32_t *value, uint32_t count)
     return FF_OK;
 }
 
-/* High parts: one byte a value, through raw deflate; all that is left of the payload. */
+/* Reads the high parts from all that is left of the payload: one byte a value, packed by raw
+ * deflate. */
 static int take_deflated(ff_decoder *dec, cursor *in, uint32_t width, int32_t *value,
                          uint32_t count)
 {
@@ -126,8 +127,8 @@ static int take_deflated(ff_decoder *dec, cursor *in, uint32_t width, int32_t *v
     return all > UINT16_MAX ? FF_ERR_RANGE : FF_OK;
 }
 
-/* High parts as that many one bits and a zero bit, low bit first: with the low parts a Golomb-Rice
- * code. */
+/* Reads the high parts in unary: a part's value is the number of one bits before a zero bit, low
+ * bit first. With the low parts this is a Golomb-Rice code. */
 static int take_unary(cursor *in, uint32_t width, int32_t *value, uint32_t count)
 {
     uint32_t high_max = (uint32_t)UINT16_MAX >> width, bit = 0;

@@ -1,5 +1,5 @@
-/* Encoder half of the height codec, for tools: closed loop, so it makes every height just as the
- * decoders will. */
+/* Encoder half of the height codec, for tools. It predicts from decoded heights (closed loop), so
+ * it makes every height just as the decoders will. */
 #ifdef FF_ENCODER
 
 #include "ff_codec_local.h"
@@ -57,7 +57,8 @@ static void put_low(const int32_t *value, uint32_t count, uint32_t width, uint8_
     if (held > 0) *at = (uint8_t)bits;
 }
 
-/* Bytes written, or 0 when they would not be fewer than `limit`. */
+/* Deflates a plane of high parts to `out`. Bytes written, or 0 when they would not be fewer than
+ * `limit`. */
 static size_t deflate_plane(const uint8_t *plane, uint32_t bytes, int window_bits, int strategy,
                             uint8_t *out, size_t limit)
 {
@@ -65,8 +66,8 @@ static size_t deflate_plane(const uint8_t *plane, uint32_t bytes, int window_bit
     size_t written = 0;
 
     memset(&z, 0, sizeof(z));
-    /* The least memory level whose symbol buffer holds the plane whole: one block, and little to
-     * allocate and clear. */
+    /* The least memory level whose symbol buffer holds the whole plane: zlib then writes one block,
+     * and has little memory to allocate and clear. */
     if (deflateInit2(&z, 9, Z_DEFLATED, -window_bits, bytes < 1000 ? 4 : 8, strategy) != Z_OK)
         abort();
     z.next_in = (z_const Bytef *)plane;
@@ -78,8 +79,8 @@ static size_t deflate_plane(const uint8_t *plane, uint32_t bytes, int window_bit
     return written;
 }
 
-/* High parts in unary, as the decoder's take_unary reads them; bytes written, or (`out` NULL) what
- * they would be. */
+/* Writes the high parts in unary, as take_unary in the decoder reads them. Returns their bytes;
+ * with `out` NULL it only counts them. */
 static size_t put_unary(const int32_t *value, uint32_t count, uint32_t low, uint8_t *out)
 {
     size_t bit = 0;
@@ -96,8 +97,8 @@ static size_t put_unary(const int32_t *value, uint32_t count, uint32_t low, uint
     return (bit + 7) / 8;
 }
 
-/* Deflates the parts of all values above their lowest `low` bits. Bytes in `out`, or 0 when not
- * fewer than `limit`. */
+/* Deflates the high parts of all values: what is above their lowest `low` bits. Bytes in `out`, or
+ * 0 when they are not fewer than `limit`. */
 static size_t put_deflated(const ff_terrain_info *info, const int32_t *value, uint32_t count,
                            uint32_t low, uint8_t *out, size_t limit)
 {
@@ -117,7 +118,7 @@ static size_t put_deflated(const ff_terrain_info *info, const int32_t *value, ui
     return best;
 }
 
-/* The form of a body, as chosen: its kind, low bits and bytes in all. */
+/* One way to write a body: its kind, the number of low bits stored plainly, the bytes in all. */
 typedef struct body_form {
     enum ff_body kind;
     uint32_t low;
@@ -135,8 +136,8 @@ static body_form cheapest_plain_form(const int32_t *value, uint32_t count, uint3
     return best;
 }
 
-/* Tries all forms, and where to cut the values into low bits and high parts. Bytes of the body; its
- * form goes into *head. */
+/* Tries all forms, and all places to cut the values into low bits and high parts. Returns the bytes
+ * of the smallest body, and adds its form to *head. */
 static size_t put_body(const ff_terrain_info *info, const int32_t *value, uint32_t count,
                        uint8_t *head, uint8_t *out)
 {

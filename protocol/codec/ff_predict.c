@@ -9,9 +9,9 @@ static int32_t clamp_height(int32_t sum, int shift)
     return sum > UINT16_MAX ? UINT16_MAX : sum;
 }
 
-/* The sample half-way between known[i] and known[i+1] of a line of `cells`+1 known samples, `step`
- * apart in memory. Read backwards the line gives the same value: neighbours whose axes run against
- * each other agree. */
+/* Predicts the sample half-way between known[i] and known[i+1] of a line of `cells`+1 known
+ * samples, which are `step` apart in memory. The line read backwards gives the same value, so that
+ * neighbours whose axes run against each other agree. */
 static int32_t predict_middle(const uint16_t *known, uint32_t step, uint32_t i, uint32_t cells)
 {
     int32_t a = known[i * step], b = known[(i + 1) * step];
@@ -32,8 +32,8 @@ static void predict_line(uint16_t *grid, uint32_t first, uint32_t stride, uint32
     }
 }
 
-/* Three parts Coons patch (2 * cross - corners) / 4 to one part mean of the cross: on three DEMs
- * the cheapest of eight mixes. */
+/* Predicts a centre: three parts Coons patch, (2 * cross - corners) / 4, to one part mean of the
+ * cross. On three DEMs this was the cheapest of eight mixes. */
 static int32_t predict_centre(const uint16_t *p, uint32_t dx, uint32_t dy)
 {
     const uint16_t *south = p - dy, *north = p + dy;
@@ -43,8 +43,8 @@ static int32_t predict_centre(const uint16_t *p, uint32_t dx, uint32_t dy)
     return clamp_height(7 * cross - 3 * corners + 8, 4);
 }
 
-/* One doubling of resolution in place: grid points at even multiples of `stride` are known, those
- * at odd ones are made. */
+/* One doubling of resolution in place: grid points at even multiples of `stride` are known, points
+ * at odd multiples are made. */
 static void predict_doubling(uint16_t *grid, uint32_t side, uint32_t stride, ff_sample_fn sample,
                              void *context)
 {

@@ -1,5 +1,5 @@
-/* Packed column spans of a panorama face (SPEC.md, "Columns"): skylines move by a row or two from
- * column to column and are often level, so each list is written as steps and runs, four bits at a
+/* Packed column spans of a panorama face (SPEC.md, "Columns"). A skyline is often level, or moves
+ * by a row or two from column to column, so each list is written as runs and steps, four bits at a
  * time. */
 #include "ff_message.h"
 
@@ -9,9 +9,9 @@
 #define NIBBLE_STEP     13 /* any step: three more, zigzag */
 
 typedef struct nibbles {
-    uint8_t *out; /* one of the two */
-    const uint8_t *in;
-    size_t at, limit; /* in nibbles */
+    uint8_t *out;      /* NULL when reading */
+    const uint8_t *in; /* NULL when writing */
+    size_t at, limit;  /* in nibbles; `at` runs on beyond `limit` when there was too little room */
 } nibbles;
 
 static void put(nibbles *n, uint32_t value)
@@ -23,7 +23,8 @@ static void put(nibbles *n, uint32_t value)
     n->at++;
 }
 
-/* Nibbles, low first; beyond the end zeros, and `at` tells. */
+/* The next `count` nibbles as one number, low nibble first. Nibbles beyond the end are zeros; the
+ * caller sees by `at` that they were read. */
 static uint32_t take(nibbles *n, unsigned count)
 {
     uint32_t value = 0;

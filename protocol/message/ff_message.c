@@ -149,8 +149,8 @@ size_t ff_message_bytes_max(const ff_message *message)
 
 int ff_message_encode(const ff_message *message, uint8_t *out, size_t capacity)
 {
-    /* Most bodies are short, so the body is written where a one-byte length puts it, and moved when
-     * that was too little. */
+    /* Most bodies are short: so the body is written where it belongs behind a length of one byte,
+     * and moved up when its length takes more. */
     size_t room = capacity < 2 ? capacity : 2, body_bytes, header_bytes;
     ff_writer body = { out + room, out + capacity, FF_OK };
     ff_writer head = { out, out + capacity, FF_OK };

@@ -39,7 +39,7 @@ enum ff_message_type {
 
 typedef struct ff_hello {
     uint32_t version;
-    uint32_t known_checksum; /* of the pack cached here, 0: none */
+    uint32_t known_checksum; /* of the pack in the client's cache; 0: none */
 } ff_hello;
 enum ff_get_what { FF_GET_ROOT = 0, FF_GET_REFINEMENT = 1 };
 typedef struct ff_get {
@@ -48,8 +48,8 @@ typedef struct ff_get {
     ff_key key;
 } ff_get;
 
-/* Cube faces are aligned with the world: the face's forward axis, and what its image's top edge
- * faces. */
+/* The faces of a cube aligned with the world, each named for the direction it looks in. Images of
+ * the four level faces have the sky at their top; FACE_UP's has south there, FACE_DOWN's north. */
 enum ff_face_name {
     FF_FACE_NORTH,
     FF_FACE_EAST,
@@ -61,14 +61,14 @@ enum ff_face_name {
 
 typedef struct ff_get_panorama {
     uint16_t id;
-    int32_t position_wu[3]; /* O of Hybrid figure 14: where the panorama is taken */
-    /* z_front_s: ground nearer than this (largest coordinate difference) is not drawn */
+    int32_t position_wu[3]; /* O (Hybrid, figure 14): the point from which the panorama is drawn */
+    /* Hybrid's z_front_s: ground nearer to O (in its largest coordinate difference) is not drawn */
     int32_t front_wu;
-    int32_t back_wu;             /* z_back_s */
+    int32_t back_wu;             /* Hybrid's z_back_s: nor is ground farther from O */
     uint16_t face_size;          /* texels a side, 16..FF_FACE_SIZE_MAX */
     uint8_t quality;             /* JPEG quality 1..100 */
     uint8_t face_count;          /* 1..6 */
-    uint8_t face[FF_FACE_COUNT]; /* enum ff_face_name, in the order wanted: in view first */
+    uint8_t face[FF_FACE_COUNT]; /* enum ff_face_name, in the order in which they are to come */
 } ff_get_panorama;
 
 typedef struct ff_cancel {
@@ -83,8 +83,8 @@ typedef struct ff_welcome {
 } ff_welcome;
 typedef struct ff_data {
     uint16_t id;
-    const uint8_t *bytes;
-    uint32_t byte_count; /* into the message, not copied */
+    const uint8_t *bytes; /* inside the message, not copied */
+    uint32_t byte_count;
 } ff_data;
 typedef struct ff_failed {
     uint16_t id;
@@ -93,7 +93,7 @@ typedef struct ff_failed {
 
 enum ff_face_flags {
     FF_FACE_EMPTY = 1, /* no far ground in it: no image */
-    FF_FACE_LAST = 2   /* of this request */
+    FF_FACE_LAST = 2   /* the last face of its request */
 };
 
 /* A face carries only the rows that show far ground: rows top_row .. top_row+row_count-1 of

@@ -10,7 +10,7 @@
 
 struct ff_inflate {
     z_stream stream;
-    uint8_t *arena; /* what zlib allocates, once */
+    uint8_t *arena; /* where zlib's allocations, made once, come from */
     size_t arena_bytes, arena_used;
 };
 
@@ -34,7 +34,7 @@ static voidpf arena_take(voidpf opaque, uInt items, uInt size)
     return taken;
 }
 
-/* The block goes away as a whole. */
+/* Nothing is given back: the block goes away as a whole. */
 static void arena_give(voidpf opaque, voidpf address)
 {
     (void)opaque;

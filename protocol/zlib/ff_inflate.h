@@ -1,6 +1,6 @@
 /* Private to protocol/: raw deflate (RFC 1951), the part of the height codec that needs zlib. A
- * build without it has protocol/without/ ff_no_inflate.c in place of ff_inflate.c and decodes packs
- * made with `farfield-bake --codec rice`. */
+ * build without zlib has ff_inflate_none.c in place of ff_inflate.c: it decodes packs made with
+ * `farfield-bake --codec rice`. */
 #ifndef FF_INFLATE_H
 #define FF_INFLATE_H
 
