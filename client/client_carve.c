@@ -241,7 +241,8 @@ static int carve_all(ff_client *client)
         ff_client_uncarve(client);
         return rc;
     }
-    ff_terrain_view_attach(&client->view, client->tree);
+    ff_terrain_view_attach(&client->view, client->tree, &client->info,
+                           client->has_textures ? &client->textures : NULL);
     ff_panorama_init(&client->panorama, client->device, &client->desc.panorama, &client->info,
                      face_size);
     ff_motion_reset(&client->motion);

@@ -138,7 +138,10 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera
     make_view(client, camera, &quality, &view);
     ff_tree_select(client->tree, &view, &quality);
     ff_client_rank(client, &view, &quality, now_us);
-    uint64_t hash = ff_terrain_view_hash(&client->view, client->tree);
+    const ff_drawn *list;
+    uint32_t count = ff_tree_drawn(client->tree, &list);
+    ff_terrain_view_begin(&client->view, list, count);
+    uint64_t hash = ff_terrain_view_hash(&client->view, list, count);
     int changed = moved || turned || pictures_changed || client->dirty ||
                   hash != client->frame_hash;
     client->camera = *camera;
@@ -207,7 +210,8 @@ void ff_client_draw(ff_client *client)
     c3d_begin(client->device, &frame);
     ff_sky_draw(&client->sky, client->device, frame.camera.near_wu);
     ff_panorama_draw(&client->panorama, frame.camera.near_wu);
-    ff_terrain_view_draw(&client->view, client->tree, &client->info, &frame.camera,
-                         client->has_textures ? &client->textures : NULL, client->show);
+    const ff_drawn *list;
+    uint32_t count = ff_tree_drawn(client->tree, &list);
+    ff_terrain_view_draw(&client->view, list, count, &frame.camera, client->show);
     c3d_end(client->device);
 }

@@ -1,11 +1,8 @@
 #include "ff_terrain_view.h"
 
 #include "../farfield.h"
-#include "../images/ff_textures.h"
-#include "../images/ff_texture_map.h"
 
 #define HASH_PRIME    UINT64_C(0x100000001b3)
-#define COLOUR_WHITE  0xFFFFFFFFu
 #define COLOUR_WIRE   0xFF202020u
 #define COLOUR_STITCH 0xFF2020FFu /* red */
 #define COLOUR_BORDER 0xFF00E0FFu /* yellow */
@@ -37,8 +34,12 @@ static void on_evict(void *context, uint32_t user)
     if (user) release(view, &view->entry[user - 1]);
 }
 
-void ff_terrain_view_attach(ff_terrain_view *view, ff_tree *tree)
+void ff_terrain_view_attach(ff_terrain_view *view, ff_tree *tree, const ff_terrain_info *info,
+                            const ff_textures *textures)
 {
+    view->tree = tree;
+    view->info = info;
+    view->textures = textures;
     ff_tree_on_evict(tree, on_evict, view);
 }
 
@@ -53,9 +54,9 @@ static uint64_t hash_heights(const ff_drawn *drawn, uint32_t count)
 
 /* The drawn node's entry, made when it has none; NULL when every entry belongs to a node of this
  * frame. */
-static ff_view_node *entry_of(ff_terrain_view *view, ff_tree *tree, const ff_drawn *drawn)
+static ff_view_node *entry_of(ff_terrain_view *view, const ff_drawn *drawn)
 {
-    uint32_t *user = ff_tree_user(tree, drawn->node);
+    uint32_t *user = ff_tree_user(view->tree, drawn->node);
     if (*user) return &view->entry[*user - 1];
     for (uint32_t tries = 0; tries < view->entry_count; tries++) {
         uint32_t place = view->hand;
@@ -68,7 +69,7 @@ static ff_view_node *entry_of(ff_terrain_view *view, ff_tree *tree, const ff_dra
         }
         entry->user = user;
         entry->used = view->stamp;
-        entry->heights_hash = hash_heights(drawn, view->heights_per_node);
+        entry->heights_hash = 0;
         *user = place + 1;
         if (++view->held > view->held_high) view->held_high = view->held;
         return entry;
@@ -76,20 +77,23 @@ static ff_view_node *entry_of(ff_terrain_view *view, ff_tree *tree, const ff_dra
     return NULL;
 }
 
-uint64_t ff_terrain_view_hash(ff_terrain_view *view, ff_tree *tree)
+void ff_terrain_view_begin(ff_terrain_view *view, const ff_drawn *list, uint32_t count)
 {
-    const ff_drawn *list;
-    uint32_t count = ff_tree_drawn(tree, &list);
-    uint64_t hash = FF_TERRAIN_VIEW_HASH_START;
     view->stamp++;
-    /* those that have an entry first: none of them may lose it below */
     for (uint32_t i = 0; i < count; i++) {
-        uint32_t user = *ff_tree_user(tree, list[i].node);
+        uint32_t user = *ff_tree_user(view->tree, list[i].node);
         if (user) view->entry[user - 1].used = view->stamp;
     }
+}
+
+uint64_t ff_terrain_view_hash(ff_terrain_view *view, const ff_drawn *list, uint32_t count)
+{
+    uint64_t hash = FF_TERRAIN_VIEW_HASH_START;
     for (uint32_t i = 0; i < count; i++) {
         const ff_drawn *drawn = &list[i];
-        const ff_view_node *entry = entry_of(view, tree, drawn);
+        ff_view_node *entry = entry_of(view, drawn);
+        if (entry && !entry->heights_hash)
+            entry->heights_hash = hash_heights(drawn, view->heights_per_node);
         hash = hash_word(hash, drawn->key);
         hash = hash_word(hash, drawn->coarser);
         for (int axis = 0; axis < 3; axis++)
@@ -100,11 +104,11 @@ uint64_t ff_terrain_view_hash(ff_terrain_view *view, ff_tree *tree)
     return hash;
 }
 
-static c3d_mesh make_mesh(ff_terrain_view *view, ff_tree *tree, const ff_terrain_info *info,
-                          const ff_drawn *drawn)
+static c3d_mesh make_mesh(ff_terrain_view *view, const ff_drawn *drawn)
 {
-    ff_tree_vertices(tree, drawn, 1, view->vertices);
-    ff_ground_frame_vertices(&view->frame, info, drawn, view->vertices, view->heights_per_node);
+    ff_tree_vertices(view->tree, drawn, 1, view->vertices);
+    ff_ground_frame_vertices(&view->frame, view->info, drawn, view->vertices,
+                             view->heights_per_node);
     return c3d_mesh_make(view->device, view->vertices, view->heights_per_node);
 }
 
@@ -160,26 +164,21 @@ static void draw_node(ff_terrain_view *view, const ff_drawn *drawn, c3d_draw dra
         draw_lines(view, draw, strip, strips, show);
 }
 
-void ff_terrain_view_draw(ff_terrain_view *view, ff_tree *tree, const ff_terrain_info *info,
-                          const c3d_camera *camera, struct ff_textures *textures, unsigned show)
+void ff_terrain_view_new_frame(ff_terrain_view *view) { view->frame.set = 0; }
+
+void ff_terrain_view_draw(ff_terrain_view *view, const ff_drawn *list, uint32_t count,
+                          const c3d_camera *camera, unsigned show)
 {
-    const ff_drawn *list;
-    uint32_t count = ff_tree_drawn(tree, &list);
-    if (ff_ground_frame_follow(&view->frame, info, camera)) free_meshes(view);
+    if (ff_ground_frame_follow(&view->frame, view->info, camera)) free_meshes(view);
     for (uint32_t i = 0; i < count; i++) {
         const ff_drawn *drawn = &list[i];
-        ff_view_node *entry = entry_of(view, tree, drawn);
+        ff_view_node *entry = entry_of(view, drawn);
         c3d_draw draw = { .flags = C3D_DRAW_COLOURED };
-        ff_key texture_key;
-        ff_ground_frame_draw(&view->frame, info, drawn, camera, &draw);
-        draw.mesh = entry && entry->mesh.id ? entry->mesh : make_mesh(view, tree, info, drawn);
-        if (!draw.mesh.id && free_one_mesh(view)) draw.mesh = make_mesh(view, tree, info, drawn);
+        ff_ground_frame_draw(&view->frame, view->info, drawn, camera, &draw);
+        draw.mesh = entry && entry->mesh.id ? entry->mesh : make_mesh(view, drawn);
+        if (!draw.mesh.id && free_one_mesh(view)) draw.mesh = make_mesh(view, drawn);
         if (entry) entry->mesh = draw.mesh;
-        if (textures && ff_textures_find(textures, drawn->key, &texture_key, &draw.texture)) {
-            draw.flags = C3D_DRAW_TEXTURED;
-            draw.colour = COLOUR_WHITE;
-            ff_texture_map(info, drawn->key, texture_key, draw.tex_scale_q16, draw.tex_offset_q16);
-        }
+        if (view->textures) ff_textures_lay(view->textures, drawn->key, &draw);
         draw_node(view, drawn, draw, show);
         if (!entry && draw.mesh.id) c3d_mesh_free(view->device, draw.mesh);
     }

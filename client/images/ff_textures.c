@@ -2,6 +2,8 @@
 
 #include "ff_texture_map.h"
 
+#define COLOUR_WHITE 0xFFFFFFFFu
+
 const uint8_t ff_textures_built = 1;
 
 static unsigned bucket_of(ff_key key)
@@ -27,13 +29,22 @@ static ff_texture_slot *find_nearest(const ff_textures *textures, ff_key node)
     return NULL;
 }
 
-int ff_textures_find(const ff_textures *textures, ff_key node, ff_key *key, c3d_texture *texture)
+void ff_textures_lay(const ff_textures *textures, ff_key node, c3d_draw *draw)
 {
     const ff_texture_slot *slot = find_nearest(textures, node);
-    if (!slot || !slot->texture.id) return 0;
-    *key = slot->key;
-    *texture = slot->texture;
-    return 1;
+    if (!slot || !slot->texture.id) return;
+    draw->flags = C3D_DRAW_TEXTURED;
+    draw->colour = COLOUR_WHITE;
+    draw->texture = slot->texture;
+    ff_texture_map(&textures->info, node, slot->key, draw->tex_scale_q16, draw->tex_offset_q16);
+}
+
+int ff_textures_touch(ff_textures *textures, ff_key key)
+{
+    ff_texture_slot *slot = find(textures, key);
+    textures->stamp++;
+    if (slot) slot->used = textures->stamp;
+    return slot != NULL;
 }
 
 /* The image one level below `held` (NULL: the root's) on the way to `finest`. */
@@ -128,26 +139,31 @@ static ff_texture_slot *take_slot(ff_textures *textures)
 
 int ff_textures_take(ff_textures *textures, const ff_new_item *item)
 {
-    if (find(textures, item->key)) return 0;
+    return ff_textures_put(textures, item->key, item->pixels);
+}
+
+int ff_textures_put(ff_textures *textures, ff_key key, const uint16_t *texels)
+{
+    if (find(textures, key)) return 0;
     ff_texture_slot *slot = take_slot(textures);
     if (!slot) {
         textures->full++;
         return 0;
     }
     slot->texture.id = 0;
-    if (textures->device) {
-        slot->texture = c3d_texture_make(textures->device, C3D_RGB565, item->width, item->height,
-                                         item->pixels);
+    if (textures->device && texels) {
+        uint32_t side = 1u << textures->info.texture_log2;
+        slot->texture = c3d_texture_make(textures->device, C3D_RGB565, side, side, texels);
         if (!slot->texture.id) {
             textures->full++;
             return 0;
         }
     }
-    slot->key = item->key;
+    slot->key = key;
     slot->held = 1;
     slot->used = textures->stamp;
-    slot->next = textures->bucket[bucket_of(item->key)];
-    textures->bucket[bucket_of(item->key)] = (uint16_t)(slot - textures->slot + 1);
+    slot->next = textures->bucket[bucket_of(key)];
+    textures->bucket[bucket_of(key)] = (uint16_t)(slot - textures->slot + 1);
     if (++textures->held > textures->high) textures->high = textures->held;
     return 1;
 }

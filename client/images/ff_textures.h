@@ -1,6 +1,9 @@
 /* Images of the ground: a tree of its own depth over the same keys (Planet: linked height and
- * texture trees). A node is drawn with its own image or its nearest held ancestor's; images come
- * from coarse to fine. Least lately drawn ones make room. */
+ * texture trees). A node is drawn with its own image or its nearest held ancestor's. Least lately
+ * drawn ones make room. The client's come over the link from coarse to fine (wishes, take), those
+ * of the server's renderer from the pack (touch, put).
+ *
+ * The owner zeroes the cache and sets the first part; the slots are the owner's memory. */
 #ifndef FF_TEXTURES_H
 #define FF_TEXTURES_H
 
@@ -22,8 +25,10 @@ typedef struct ff_texture_slot {
 typedef struct ff_textures {
     c3d_device *device;
     ff_terrain_info info;
-    ff_texture_slot *slot;
-    uint16_t slot_count, held, high;
+    ff_texture_slot *slot; /* zeroed */
+    uint16_t slot_count;
+
+    uint16_t held, high;
     uint16_t bucket[FF_TEXTURE_HASH]; /* slot + 1 */
     uint32_t stamp, full;
 } ff_textures;
@@ -34,14 +39,21 @@ typedef struct ff_texture_wish {
     uint32_t priority;
 } ff_texture_wish;
 
-/* The nearest held image over `node`: 1, or 0. */
-int ff_textures_find(const ff_textures *textures, ff_key node, ff_key *key, c3d_texture *texture);
+/* Lays the nearest held image over `node` on the call that draws it, in place of colours; without
+ * one the call stays as it is. */
+void ff_textures_lay(const ff_textures *textures, ff_key node, c3d_draw *draw);
 /* Marks what the drawn nodes use and lists what they lack, most urgent first; priorities are on the
  * tree's scale. */
 uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32_t drawn_count,
                             const ff_view *view, const ff_quality *quality, ff_texture_wish *list,
                             uint32_t capacity);
-/* Takes an image in. 1 when the picture may have changed; 0: no room (counted). */
+/* Takes an image in, RGB565, south row first; NULL: there is none, and ground below `key` shows its
+ * colours. 1 when the picture may have changed; 0: no room (counted). */
+int ff_textures_put(ff_textures *textures, ff_key key, const uint16_t *texels);
+/* The same, of an answer. */
 int ff_textures_take(ff_textures *textures, const ff_new_item *item);
+/* For an owner whose images come at once (a pack): 1 when this one is held, which is then the last
+ * to make room. */
+int ff_textures_touch(ff_textures *textures, ff_key key);
 
 #endif

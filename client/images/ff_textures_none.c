@@ -1,13 +1,12 @@
-/* Stands in for ff_textures.c and ff_intake_texture.c in builds without images of the ground. */
+/* Stands in for this folder in builds without images of the ground. */
 #include "../ask/ff_intake.h"
 #include "ff_textures.h"
 
 const uint8_t ff_textures_built = 0;
 
-int ff_textures_find(const ff_textures *textures, ff_key node, ff_key *key, c3d_texture *texture)
+void ff_textures_lay(const ff_textures *textures, ff_key node, c3d_draw *draw)
 {
-    (void)textures, (void)node, (void)key, (void)texture;
-    return 0;
+    (void)textures, (void)node, (void)draw;
 }
 
 uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32_t drawn_count,

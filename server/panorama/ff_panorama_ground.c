@@ -11,7 +11,6 @@
 #define SIGMA_Q8    320
 #define LOAD_ROUNDS_MAX \
     64 /* every round refines at least one level or stops: a bound for damaged packs */
-#define WHITE 0xFFFFFFFFu
 
 void panorama_ground_desc(const ff_pack *pack, const sys_surface_api *surface_api, c3d_desc *desc)
 {
@@ -25,22 +24,21 @@ void panorama_ground_desc(const ff_pack *pack, const sys_surface_api *surface_ap
                         .use_vertex_buffers = 1 };
 }
 
-static void node_evicted(void *context, uint32_t user)
+/* The view's and the images' memory is the renderer's. */
+static int make_view(panorama_ground *ground, c3d_device *device)
 {
-    panorama_ground *ground = context;
-    if (user) c3d_mesh_free(ground->device, (c3d_mesh){ user });
-}
-
-static int make_strips(panorama_ground *ground)
-{
-    int rc = ff_strips_make(&ground->strips, ground->pack->header.info.node_log2);
-    for (unsigned i = 0; rc == FF_OK && i < ground->strips.count; i++) {
-        const ff_strips *s = &ground->strips;
-        if (s->length[i] == 0) continue;
-        ground->strip[i] = c3d_strip_make(ground->device, s->index + s->first[i], s->length[i]);
-        if (!ground->strip[i].id) rc = FF_ERR_FULL;
-    }
-    return rc;
+    const ff_terrain_info *info = &ground->pack->header.info;
+    ff_strips strips;
+    ground->view = (ff_terrain_view){ .device = device,
+                                      .entry = ground->entry,
+                                      .entry_count = FF_PANORAMA_NODES,
+                                      .vertices = ground->vertices,
+                                      .heights_per_node = ff_node_side(info) * ff_node_side(info) };
+    ground->textures = (ff_textures){
+        .device = device, .info = *info, .slot = ground->slot, .slot_count = FF_PANORAMA_TEXTURES
+    };
+    ff_terrain_view_attach(&ground->view, ground->tree, info, &ground->textures);
+    return ff_terrain_view_strips(&ground->view, info->node_log2, &strips);
 }
 
 static int make_texture_memory(panorama_ground *ground)
@@ -70,9 +68,8 @@ int panorama_ground_open(panorama_ground *ground, const ff_pack *pack, c3d_devic
     ground->tree = ff_tree_create(&desc, ground->tree_memory, tree_bytes);
     ground->decoder = ff_decoder_create(info, ground->decoder_memory, decoder_bytes);
     if (!ground->tree || !ground->decoder) return FF_ERR_MEMORY;
-    ff_tree_on_evict(ground->tree, node_evicted, ground);
     int rc = make_texture_memory(ground);
-    return rc == FF_OK ? make_strips(ground) : rc;
+    return rc == FF_OK ? make_view(ground, device) : rc;
 }
 
 void panorama_ground_close(panorama_ground *ground)
@@ -159,7 +156,8 @@ int panorama_ground_seen(const panorama_ground *ground, const ff_get_panorama *r
 
 /* ---- drawing ---- */
 
-static int load_texture(panorama_ground *ground, ff_key key, c3d_texture *handle)
+/* FF_OK, or why the texels are not there. */
+static int read_image(const panorama_ground *ground, ff_key key)
 {
     const ff_terrain_info *info = &ground->pack->header.info;
     uint32_t size = 1u << info->texture_log2;
@@ -171,69 +169,23 @@ static int load_texture(panorama_ground *ground, ff_key key, c3d_texture *handle
     ff_texture_texels(info, ground->texture_rgb, ground->texture_texels);
     for (uint32_t i = 0; i < size * size; i++)
         ground->texture_texels[i] = ff_face_not_key(ground->texture_texels[i]);
-    *handle = c3d_texture_make(ground->device, C3D_RGB565, size, size, ground->texture_texels);
-    return handle->id ? FF_OK : FF_ERR_FULL;
+    return FF_OK;
 }
 
-/* The image over a node, the least recently used one making room; id 0: none, the ground is shaded.
- * A damaged one is remembered as such until its slot is needed. */
-static c3d_texture node_texture(panorama_ground *ground, ff_key key)
+/* The image over a node into the cache, the least recently used one making room. A damaged one is
+ * remembered as such until its slot is needed. */
+static void fetch_image(panorama_ground *ground, ff_key node)
 {
-    panorama_texture *oldest = &ground->texture[0];
-    ground->texture_clock++;
-    for (uint32_t i = 0; i < FF_PANORAMA_TEXTURES; i++) {
-        panorama_texture *texture = &ground->texture[i];
-        if (texture->used && texture->key == key) {
-            texture->used = ground->texture_clock;
-            return texture->handle;
-        }
-        if (texture->used < oldest->used) oldest = texture;
-    }
-    if (oldest->handle.id) c3d_texture_free(ground->device, oldest->handle);
-    *oldest = (panorama_texture){ .key = key, .used = ground->texture_clock };
-    if (load_texture(ground, key, &oldest->handle) < 0) ground->stats->nodes_damaged++;
-    return oldest->handle;
-}
-
-static c3d_mesh node_mesh(panorama_ground *ground, const ff_drawn *drawn)
-{
-    uint32_t *user = ff_tree_user(ground->tree, drawn->node);
-    if (*user == 0) {
-        c3d_vertex vertices[FF_NODE_HEIGHTS_MAX];
-        uint32_t side = ff_node_side(&ground->pack->header.info);
-        ff_tree_vertices(ground->tree, drawn, 1, vertices);
-        *user = c3d_mesh_make(ground->device, vertices, side * side).id;
-    }
-    return (c3d_mesh){ *user };
-}
-
-static void draw_node(panorama_ground *ground, const ff_drawn *drawn, const c3d_camera *camera)
-{
-    const ff_terrain_info *info = &ground->pack->header.info;
-    c3d_draw draw = { .mesh = node_mesh(ground, drawn),
-                      .xy_scale_wu = drawn->cell_wu,
-                      .z_scale_q16 = info->hscale_q24,
-                      .flags = C3D_DRAW_COLOURED,
-                      .colour = WHITE };
-    ff_key key = ff_texture_key(info, drawn->key);
-    for (int i = 0; i < 3; i++)
-        draw.origin_wu[i] = (int64_t)drawn->origin_wu[i] - camera->pos_wu[i];
-    if (key != FF_KEY_NONE) draw.texture = node_texture(ground, key);
-    if (draw.texture.id) {
-        draw.flags = C3D_DRAW_TEXTURED;
-        ff_texture_map(info, drawn->key, key, draw.tex_scale_q16, draw.tex_offset_q16);
-    }
-    uint8_t strip[5];
-    unsigned count = ff_strips_for(drawn->coarser, strip);
-    for (unsigned i = 0; i < count; i++) {
-        draw.strip = ground->strip[strip[i]];
-        if (draw.strip.id) c3d_draw_strip(ground->device, &draw);
-    }
+    ff_key key = ff_texture_key(&ground->pack->header.info, node);
+    if (key == FF_KEY_NONE || ff_textures_touch(&ground->textures, key)) return;
+    int rc = read_image(ground, key);
+    if (rc < 0) ground->stats->nodes_damaged++;
+    ff_textures_put(&ground->textures, key, rc < 0 ? NULL : ground->texture_texels);
 }
 
 static int by_key(const void *a, const void *b)
 {
-    ff_key ka = (*(const ff_drawn *const *)a)->key, kb = (*(const ff_drawn *const *)b)->key;
+    ff_key ka = ((const ff_drawn *)a)->key, kb = ((const ff_drawn *)b)->key;
     return ka < kb ? -1 : ka > kb;
 }
 
@@ -245,9 +197,18 @@ static uint32_t list_seen(panorama_ground *ground, const ff_get_panorama *reques
     const ff_drawn *list;
     uint32_t count = ff_tree_drawn(ground->tree, &list), seen = 0;
     for (uint32_t i = 0; i < count; i++)
-        if (node_seen(ground, &list[i], request, face)) ground->seen[seen++] = &list[i];
+        if (node_seen(ground, &list[i], request, face)) ground->seen[seen++] = list[i];
     qsort(ground->seen, seen, sizeof *ground->seen, by_key);
     return seen;
+}
+
+/* Faces of one panorama share a frame of coordinates, and no other does: what a face shows must not
+ * depend on who asked before. */
+static void choose_frame(panorama_ground *ground, const ff_get_panorama *request)
+{
+    if (memcmp(ground->position_wu, request->position_wu, sizeof ground->position_wu) == 0) return;
+    memcpy(ground->position_wu, request->position_wu, sizeof ground->position_wu);
+    ff_terrain_view_new_frame(&ground->view);
 }
 
 void panorama_ground_draw(panorama_ground *ground, const ff_get_panorama *request,
@@ -257,8 +218,13 @@ void panorama_ground_draw(panorama_ground *ground, const ff_get_panorama *reques
     c3d_stats stats;
     uint32_t count = list_seen(ground, request, face);
     ff_face_camera(request, face, &frame.camera);
+    choose_frame(ground, request);
     c3d_begin(ground->device, &frame);
-    for (uint32_t i = 0; i < count; i++) draw_node(ground, ground->seen[i], &frame.camera);
+    ff_terrain_view_begin(&ground->view, ground->seen, count);
+    for (uint32_t i = 0; i < count; i++) {
+        fetch_image(ground, ground->seen[i].key);
+        ff_terrain_view_draw(&ground->view, &ground->seen[i], 1, &frame.camera, 0);
+    }
     ground->stats->nodes_drawn += count;
     c3d_end(ground->device);
     c3d_get_stats(ground->device, &stats);

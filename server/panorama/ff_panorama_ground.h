@@ -1,22 +1,15 @@
-/* The ground a panorama shows: a tree fed from the pack and its meshes and textures on one 3D
- * device. Kept warm between faces. Internal to the renderer.
+/* The ground a panorama shows: a tree fed from the pack, drawn on one 3D device as the client draws
+ * its own (client/ground). Kept warm between faces. Internal to the renderer.
  */
 #ifndef FF_PANORAMA_GROUND_H
 #define FF_PANORAMA_GROUND_H
 
 #include "ff_panorama_render.h"
-#include "../../client/terrain/ff_strips.h"
-#include "../../client/terrain/ff_tree.h"
+#include "../../client/ground/ff_terrain_view.h"
 
 #define FF_PANORAMA_NODES    4096 /* slots of the tree: bounds the renderer's memory */
 #define FF_PANORAMA_WISHES   1024
 #define FF_PANORAMA_TEXTURES 256
-
-typedef struct panorama_texture {
-    ff_key key;
-    c3d_texture handle;
-    uint32_t used;
-} panorama_texture;
 
 typedef struct panorama_ground {
     const ff_pack *pack;
@@ -27,11 +20,13 @@ typedef struct panorama_ground {
     void *tree_memory, *decoder_memory;
     int32_t values[FF_REFINED_HEIGHTS_MAX];
     ff_wish wishes[FF_PANORAMA_WISHES];
-    const ff_drawn *seen[FF_PANORAMA_NODES]; /* of the face being drawn */
-    ff_strips strips;
-    c3d_strip strip[32];
-    panorama_texture texture[FF_PANORAMA_TEXTURES];
-    uint32_t texture_clock;
+    ff_drawn seen[FF_PANORAMA_NODES]; /* of the face being drawn */
+    int32_t position_wu[3];           /* of the face drawn last */
+    ff_terrain_view view;
+    ff_view_node entry[FF_PANORAMA_NODES];
+    c3d_vertex vertices[FF_NODE_HEIGHTS_MAX];
+    ff_textures textures;
+    ff_texture_slot slot[FF_PANORAMA_TEXTURES];
     uint8_t *texture_rgb; /* one decoded image, and the same as RGB565 */
     uint16_t *texture_texels;
 } panorama_ground;

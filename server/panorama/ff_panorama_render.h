@@ -1,7 +1,7 @@
 /* Panorama renderer: far ground into one cube face, as a finished FF_MSG_FACE message (Hybrid,
  * section 6.2). Ground whose largest coordinate difference to the position is below front_wu (less
  * a margin of one eighth, so that the join overlaps) or above back_wu is left out; sky is not
- * drawn: columns say where ground is. Draws with client/terrain over the pack.
+ * drawn: columns say where ground is. Draws with client/ground over the pack.
  */
 #ifndef FF_PANORAMA_RENDER_H
 #define FF_PANORAMA_RENDER_H

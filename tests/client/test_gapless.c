@@ -92,8 +92,9 @@ static void draw_ground(gap_rig *rig, const c3d_camera *camera)
     frame.camera.near_wu = 16 * FF_WU_PER_METRE;
     frame.camera.far_wu = 100000 * FF_WU_PER_METRE;
     c3d_begin(rig->client->device, &frame);
-    ff_terrain_view_draw(&rig->client->view, rig->client->tree, &rig->client->info, camera,
-                         rig->client->has_textures ? &rig->client->textures : NULL, 0);
+    const ff_drawn *list;
+    uint32_t count = ff_tree_drawn(rig->client->tree, &list);
+    ff_terrain_view_draw(&rig->client->view, list, count, camera, 0);
     c3d_end(rig->client->device);
     assert_int_equal(c3d_read_rgb(rig->client->device, rig->rgb), FF_OK);
 }

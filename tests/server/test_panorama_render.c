@@ -4,6 +4,7 @@
 #include "../../platform/sys.h"
 #include "../../server/panorama/ff_face_image.h"
 #include "../../server/panorama/ff_face_view.h"
+#include "../../server/panorama/ff_panorama_ground.h"
 #include "../../server/panorama/ff_panorama_render.h"
 
 #include <setjmp.h>
@@ -308,6 +309,42 @@ static void test_same_requests_same_bytes(void **state)
     }
 }
 
+/* All nodes of a panorama's faces are drawn in one frame of coordinates, which its own position
+ * chooses: one asked for close by before does not. */
+static void test_frame_is_the_position_s(void **state)
+{
+    (void)state;
+    static panorama_ground ground;
+    ff_panorama_render_stats stats = { .faces = 0 };
+    sys_surface *surface;
+    sys_surface_desc surface_desc = { "test", SIZE, SIZE, SYS_GL_DESKTOP };
+    c3d_desc device_desc;
+    c3d_device *device;
+    assert_int_equal(sys_surface_osmesa()->open(&surface_desc, &surface), FF_OK);
+    panorama_ground_desc(&hills, sys_surface_osmesa(), &device_desc);
+    size_t bytes = c3d_bytes(c3d_backend_gl(), &device_desc);
+    void *memory = malloc(bytes);
+    assert_int_equal(c3d_open(c3d_backend_gl(), &device_desc, memory, bytes, &device), FF_OK);
+    assert_int_equal(panorama_ground_open(&ground, &hills, device, &stats), FF_OK);
+    ff_get_panorama request = request_at(1800, 400, 100000);
+    for (int i = 0; i < 5; i++) {
+        for (enum ff_face_name face = FF_FACE_NORTH; face <= FF_FACE_WEST; face++) {
+            panorama_ground_load(&ground, &request, face);
+            panorama_ground_draw(&ground, &request, face);
+        }
+        for (int axis = 0; axis < 2; axis++) {
+            int32_t away_wu = request.position_wu[axis] - ground.view.frame.origin_wu[axis];
+            assert_in_range(away_wu, 0, hills.header.info.spacing_wu - 1);
+            request.position_wu[axis] += 77 * METRE;
+        }
+    }
+    assert_true(stats.nodes_drawn > 0);
+    panorama_ground_close(&ground);
+    c3d_close(device);
+    sys_surface_osmesa()->close(surface);
+    free(memory);
+}
+
 static void test_largest_face_at_best_quality_fits_a_message(void **state)
 {
     (void)state;
@@ -433,6 +470,7 @@ int main(void)
         cmocka_unit_test(test_absurd_requests_are_refused),
         cmocka_unit_test(test_same_ground_whatever_was_drawn_before),
         cmocka_unit_test(test_same_requests_same_bytes),
+        cmocka_unit_test(test_frame_is_the_position_s),
         cmocka_unit_test(test_largest_face_at_best_quality_fits_a_message),
         cmocka_unit_test(test_egl_agrees_with_osmesa),
         cmocka_unit_test(test_gles1_agrees_with_osmesa),
