@@ -33,6 +33,7 @@ plant protocol/clean.c <<'END'
 /* float malloc(1) time(0): words in comments and "strings" do not count */
 const char *clean_text = "double printf(";
 END
+echo '- `clean.c`' >"$planted/protocol/README.md"
 cc -std=c99 -c "$planted/protocol/clean.c" -o "$planted/build/obj/protocol/clean.o"
 tools/scripts/check-layers.sh "$planted" >"$planted/found" 2>&1
 result $? "a clean tree passes"
@@ -55,6 +56,10 @@ END
 plant client/ask/climb.c <<'END'
 #include "../ff_client_local.h"
 #include "../../protocol/ff_key.h"
+END
+plant client/README.md <<'END'
+- `words.c`: is there
+- `ghost.c`: is not
 END
 plant client/cellar/dig.c <<'END'
 #include "../terrain/ff_tree.h"
@@ -100,6 +105,8 @@ expect "a clock" "client/words.c:5: clock or chance in the core"
 expect "the server reaching into the client" "server/session/reach.c:1: server/session/ may not include client/source/link/ff_stream.h"
 expect "a room of the client that climbs" "client/ask/climb.c:1: client/ask/ may not include client/ff_client_local.h"
 expect "a room that nobody knows" "client/cellar/dig.c:1: client/cellar/ has no row in check-layers.sh"
+expect "a file that no README names" "client/cellar/dig.c:1: named in no README"
+expect "a file that only a README knows" "client/README.md:2: names ghost.c, which is not there"
 expect "a judge that knows the link" "sim/judge/partial.c:1: sim/judge/ may not include sim/link/sim_link.h"
 expect "a judge that knows the flight" "sim/judge/partial.c:2: sim/judge/ may not include sim/fly/fly_options.h"
 expect "an OS header outside platform" "sim/link/os.c:1: <unistd.h> belongs to platform/"

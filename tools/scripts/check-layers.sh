@@ -181,6 +181,21 @@ check_notes_and_names() {
     done
 }
 
+# ---- each source is named in the README of its folder or of the one above, and READMEs of rooms name nothing that is gone ----
+check_readmes() {
+    local file folder stem page line name
+    grep -v '^tests/[^/]*$' "$work/files" | while read -r file; do
+        folder=${file%/*} stem=${file##*/}
+        stem=${stem%.*}
+        cat "$folder/README.md" "${folder%/*}/README.md" 2>/dev/null | grep -q -F "$stem" || echo "$file:1: named in no README"
+    done
+    find $folders -name README.md 2>/dev/null | while read -r page; do
+        grep -noE '^- `[a-z0-9_]+\.[a-z.]+`' "$page" | tr -d '`' | sed 's/:- /:/' | while IFS=: read -r line name; do
+            [ -e "${page%/*}/$name" ] || echo "$page:$line: names $name, which is not there"
+        done
+    done
+}
+
 # ---- what the compiled core really calls ----
 core_objects() {
     find "$objects"/protocol "$objects"/client "$objects"/common3d -name '*.o' -not -path '*/gl*/*' 2>/dev/null | sort | while read -r object; do
@@ -220,6 +235,7 @@ strip_code $(cat "$work/files") >"$work/code"
     check_words
     check_sizes
     check_notes_and_names
+    check_readmes
     check_objects
 } >"$work/violations"
 cat "$work/violations"

@@ -1,4 +1,4 @@
-"""What bench_handheld.py and size_handheld.py share: runs of the cross-built client under the counting plugin (tools/tcg), and where in
+"""What bench_handheld.py and size_handheld.py share: runs of the cross-built client under the counting plugin (tcg_count.c), and where in
 the program an address lies."""
 import bisect
 import json
