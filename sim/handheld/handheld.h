@@ -60,8 +60,8 @@ int handheld_report(handheld *device);
 /* Figures over the picture; does nothing in a build without HUD. */
 void handheld_hud(handheld *device);
 
-/* ---- marks: where tools/scripts/tcg_count.c cuts time into phases; each is a function of its own that
- * does next to nothing ---- */
+/* ---- marks: where tools/scripts/tcg_count.c cuts time into phases; each is a function of its own
+ * that does next to nothing ---- */
 void handheld_mark_outside(void);
 void handheld_mark_work(void);   /* ff_client_work: link and decoding */
 void handheld_mark_update(void); /* ff_client_update */

@@ -57,6 +57,7 @@ plant client/ask/climb.c <<'END'
 #include "../ff_client_local.h"
 #include "../../protocol/ff_key.h"
 END
+echo '- `glue.c`' >"$planted/common3d/gl/README.md"
 plant client/README.md <<'END'
 - `words.c`: is there
 - `ghost.c`: is not
