@@ -163,7 +163,7 @@ numbers: ## the integers against the double-precision reference and the extreme 
 # PACKS="a.ffp b.ffp": instead of three small ones; SEEDS=0: until interrupted; SOAK: more options of tests/sim/soak.py
 SEEDS ?= 100
 FIRST ?= 1
-soak: $(BUILD)/bin/farfield-fly $(BUILD)/bin/farfield-bake ## random flights over random links (SEEDS=100 FIRST=1 PACKS=...); a failure tells the command that repeats it
+soak: $(BUILD)/bin/farfield-fly $(BUILD)/bin/farfield-bake $(BUILD)/bin/farfield-link ## random flights over random links (SEEDS=100 FIRST=1 PACKS=...); a failure tells the command that repeats it
 	@tests/sim/soak.py --first $(FIRST) --seeds $(SEEDS) --bin $(BUILD)/bin --work $(BUILD)/soak $(SOAK) $(PACKS)
 
 # With clang there is libFuzzer: build/fuzz/fuzz_message -max_total_time=60 NEW-INPUTS-DIR tests/corpus/message. Saved inputs run in `make test`.

@@ -11,11 +11,16 @@ import argparse, concurrent.futures, csv, json, math, os, random, struct, subpro
 
 HEAL_S = 20   # at the end: a good link, full power
 KNOWN_S = 15  # after the start, a teleport or panoramas switched on (which give the terrain up) ground may be unknown so long
-LINKS = ("gprs", "edge", "umts", "ltem", "nbiot", "iridium", "lan", "ideal")
 
 
-def random_link(rand):
-    spec = rand.choice(LINKS)
+def known_links(given):
+    """Names of all link profiles, as farfield-link tells them."""
+    table = subprocess.run([os.path.join(given.bin, "farfield-link"), "--list"], check=True, capture_output=True, text=True).stdout
+    return [line.split()[0] for line in table.splitlines()[1:]]
+
+
+def random_link(rand, links):
+    spec = rand.choice(links)
     if rand.random() < 0.3:
         spec += f",stall_every_ms={rand.randrange(2000, 30000)},stall_ms_min=500,stall_ms_max={rand.randrange(1000, 30000)}"
         spec += f",stall_bytes_s={rand.choice((0, 5, 50))}"
@@ -30,14 +35,14 @@ def random_link(rand):
     return spec
 
 
-def random_events(rand, settle, end):
+def random_events(rand, links, settle, end):
     events = []
     for _ in range(rand.randrange(0, 9)):
         at = round(rand.uniform(0, end), 1)
         what = rand.choice(("low-battery", "battery-ok", "interruption", "resume", "cut", "panorama-on", "panorama-off", "link", "link",
                             "teleport"))
         if what == "link":
-            what += "=" + random_link(rand)
+            what += "=" + random_link(rand, links)
         elif what == "teleport":
             what += f"={rand.random():.3f},{rand.random():.3f}"
         events.append((at, what))
@@ -49,9 +54,9 @@ def random_flight(seed, packs, given):
     rand = random.Random(seed)
     settle, seconds = rand.randrange(0, 16), rand.randrange(10, 61)
     heal = settle + seconds
-    events = random_events(rand, settle, heal)
+    events = random_events(rand, given.links, settle, heal)
     args = ["--pack", rand.choice(packs), "--seed", str(seed), "--settle", str(settle), "--seconds", str(seconds + HEAL_S),
-            "--link", random_link(rand), "--path", rand.choice(("diagonal", "diagonal", "circle", "hover", "turn")),
+            "--link", random_link(rand, given.links), "--path", rand.choice(("diagonal", "diagonal", "circle", "hover", "turn")),
             "--start", f"{rand.random():.3f}", "--speed", str(rand.choice((0, 5, 25, 150, 150, 750, 1000, 3000))),
             "--quality", rand.choice(("low", "low", "high", "px:0.5", "px:2", "px:8", f"{rand.uniform(0.5, 12):.2f}:{rand.randrange(1, 13)}")),
             "--panorama", rand.choice(("on", "on", "on", "off")), "--face", rand.choice(("64", "128", "256")),
@@ -160,8 +165,9 @@ def main():
     parse.add_argument("--timeout", type=int, default=600, help="seconds a flight may take")
     parse.add_argument("pack", nargs="*", help="instead of three small ones made here")
     given = parse.parse_args()
+    given.links = known_links(given)
     os.makedirs(given.work, exist_ok=True)
-    os.environ.setdefault("LSAN_OPTIONS", f"suppressions={os.path.dirname(os.path.abspath(__file__))}/lsan.supp:print_suppressions=0")
+    os.environ.setdefault("LSAN_OPTIONS", f"suppressions={os.path.dirname(os.path.abspath(__file__))}/../lsan.supp:print_suppressions=0")
     packs, failed, flown, seed = given.pack or own_packs(given), 0, 0, given.first
     with concurrent.futures.ThreadPoolExecutor(given.jobs) as pool:
         waiting = set()
