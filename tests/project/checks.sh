@@ -13,6 +13,32 @@ result $? "layers, core words, sizes and symbols"
 git ls-files '*.[ch]' | xargs clang-format --dry-run --Werror >/dev/null 2>&1
 result $? "all C is laid out by .clang-format (make format)"
 
+# README names the features that can be left out as features.mk has them, and the instruction bench has a row for each object.
+listed=$(make -s -f - print <<'END'
+srcs =
+include features.mk
+print: ; @echo $(FEATURES)
+END
+)
+[ -n "$listed" ] && grep -q -F "make handheld NO=\"$listed\"" README.md
+result $? "README lists the features of features.mk"
+(cd tools/scripts && python3 - <<'END'
+import glob
+import bench_handheld as bench
+
+def named(mark, path):
+    try:
+        return bench.row_of(mark, path)
+    except SystemExit:
+        return None
+
+own = [p for d in ("client", "protocol") for p in glob.glob("../../%s/**/*.c" % d, recursive=True)]
+unnamed = [p for p in own if not named("update", p[6:-2] + ".o")]
+raise SystemExit(len(own) < 40 or bool(unnamed) or named("draw", "attic/unknown.o") is not None)
+END
+) 2>/dev/null
+result $? "the instruction bench names all objects of the core, and refuses an unknown one"
+
 # What the documents link to is there.
 missing=$(git ls-files '*.md' 2>/dev/null | while read -r page; do
     grep -o '](\([^)#]*\))' "$page" | sed 's/^](//; s/)$//' | grep -v '^[a-z]*:' | while read -r target; do

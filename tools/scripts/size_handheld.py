@@ -14,7 +14,7 @@ from handheld_counts import Counts, Program, die, map_sections, run
 KINDS = ("text", "rodata", "data", "bss")
 PARTS = [("protocol", r"obj/protocol/"), ("client/terrain", r"obj/client/terrain/"), ("client", r"obj/client/"),
          ("common3d/soft", r"obj/common3d/soft/"), ("common3d", r"obj/common3d/"), ("platform", r"obj/platform/"),
-         ("program", r"obj/sim/"), ("zlib", r"libz\.a"), ("libjpeg", r"libjpeg\.a"), ("libc, libgcc", r".")]
+         ("program", r"obj/sim/"), ("zlib", r"libz\.a"), ("libjpeg", r"libjpeg\.a"), ("libc, libgcc", r"/lib(c|gcc|gcc_eh|pthread)\.a|/crt\w*\.o")]
 CORE = ("protocol", "client", "client/terrain", "common3d", "common3d/soft")
 PAGE = 4096
 RESIDENT_MAX = 8 << 20
@@ -30,7 +30,9 @@ def parts(path):
     """Bytes by part and kind, from the linker map."""
     sums = {name: dict.fromkeys(KINDS, 0) for name, _ in PARTS}
     for kind, _, size, obj in map_sections(path + ".map"):
-        part = next(name for name, pattern in PARTS if re.search(pattern, obj))
+        part = next((name for name, pattern in PARTS if re.search(pattern, obj)), None)
+        if not part:
+            die("%s belongs to no part of the program: name it in PARTS" % obj)
         sums[part][kind if kind in KINDS else "text"] += size
     return sums
 
