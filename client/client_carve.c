@@ -11,7 +11,7 @@
 #define ITEMS_MIN        4u
 #define FACE_SIZE_MIN    64u
 #define EXTRA_INDICES    (FF_SKY_INDICES + 36u) /* and faces */
-#define IMAGE_SHARE      5u /* of the block, at most one in so many bytes are images on their way in */
+#define IMAGE_SHARE      5u /* images on their way in take at most a fifth of the block */
 #define EXTRA_STRIPS     4
 #define ECONOMY_STEPS    3
 #define TEXTURES_MIN     8u
@@ -161,7 +161,8 @@ static int open_device(ff_client *client, unsigned face_size, unsigned *entries,
     return rc;
 }
 
-/* Meshes get a third of what is left at most, besides what the device needs without any. */
+/* The device takes what it needs without any mesh (`fixed`), and its meshes at most a third of the
+ * bytes that are then left. */
 static int carve_device(ff_client *client, unsigned face_size, unsigned *entries)
 {
     size_t left = ff_arena_left(&client->arena), share = left / 3;

@@ -10,8 +10,10 @@
 
 #include <string.h>
 
-/* How far ahead, besides the time of round trips: one for what is next to come on a straight way; a
- * turn shows ground that has to come level after level. */
+/* How far ahead the client asks: a fixed time, and a number of round trips on top. On a straight
+ * way the ground that comes into view lies next to what is held, and one answer brings it. A turn
+ * shows ground of which nothing is held: each of its levels takes a round trip, so a turn is
+ * foreseen longer. */
 #define AHEAD_US          3000000
 #define AHEAD_ROUND_TRIPS 2
 #define TURN_US           5000000

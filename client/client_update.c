@@ -101,7 +101,8 @@ static void make_view(const ff_client *client, const c3d_camera *camera, const f
         view->camera.height = client->desc.height;
     }
     if (view->camera.near_wu <= 0) view->camera.near_wu = NEAR_WU_MIN;
-    /* the box of ground to draw reaches sqrt(3) times as far; and O is not here */
+    /* Ground is drawn in a box of half-edge view_wu round O. Its corners lie sqrt(3) times as far
+     * from O, and the camera is not at O: three times covers both. */
     if (view->camera.far_wu <= view->camera.near_wu)
         view->camera.far_wu = quality->view_wu > INT32_MAX / 3 ? INT32_MAX : 3 * quality->view_wu;
     memcpy(view->centre_wu, camera->pos_wu, sizeof view->centre_wu);

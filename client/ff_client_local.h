@@ -1,11 +1,11 @@
-/* Inside of a client: shared by client*.c only.
+/* Inside of a client: for client*.c, client/balance and tests only.
  *
- * The block:   [ ff_client | requests | receive buffer ]            from ff_client_create on
- *              [ decoder | new-data items, images | scratch |       carved once the terrain is
- *                  known (WELCOME, or the pack),
- *                c3d device | view entries | textures | tree ] given back and carved anew for
- *                    another terrain
- * The tree's pool takes what is left, up to NODES_MAX. Then the block is sealed. */
+ * The block, from its start:
+ *   ff_client_create       ff_client | requests | receive buffer
+ *   the terrain is known   decoder | images on their way, new-data items | image slots |
+ *   (WELCOME, the pack)    c3d device | view entries, one node's vertices | tree
+ * The second line is given back and carved anew for another terrain. The tree takes what is left, up
+ * to NODES_MAX nodes; then the block is sealed. */
 #ifndef FF_CLIENT_LOCAL_H
 #define FF_CLIENT_LOCAL_H
 

@@ -167,6 +167,8 @@ void ff_balance_set(ff_balance *balance, const ff_balance_desc *desc, const ff_q
     unsigned old[FF_BALANCE_LEVELS] = { balance->top[0], balance->top[1] };
     balance->top[FF_BALANCE_SHARE] = (uint8_t)(detail_steps(balance) + balance->plane_steps);
     balance->top[FF_BALANCE_FIDELITY] = (uint8_t)(detail_steps(balance) + balance->error_steps);
+    /* A level keeps its part of a ladder that has changed its length. The first time, share starts
+     * half-way up its ladder, and fidelity at the top of its own. */
     for (int i = 0; i < FF_BALANCE_LEVELS; i++)
         balance->level[i] = (uint8_t)(old[i] ? balance->level[i] * balance->top[i] / old[i]
                                              : balance->top[i] / (2u - (unsigned)i));
@@ -251,8 +253,9 @@ static void move(ff_balance *balance, int which, int level, int64_t now_us)
     balance->settled = 0;
 }
 
-/* The most that a step up adds to a load: nothing where it lifts a cap that does not bind, or to a
- * frame where it is the panorama's. */
+/* The most that a step up adds to a load, in log2 units, Q8. A step of fidelity adds nothing to
+ * either load while it only lifts a cap that lies above the detail in force; and a step that allows
+ * the panorama less error adds nothing to a frame's load, only to the link's. */
 static int gain_q8(const ff_balance *balance, int which, int load, int step)
 {
     if (which == FF_BALANCE_FIDELITY) {

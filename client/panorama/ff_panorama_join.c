@@ -14,16 +14,16 @@
 #include "ff_panorama_rules.h"
 
 #define PATCHES 16 /* along a face */
-#define Z_WU_MAX                                                                                 \
-    (1 << 30) /* products of two lengths fit; ground taken to be nearer is off by more, never by \
-                 less */
+/* A larger z is taken to be this: products of two lengths then fit 64 bits, and ground that is
+ * taken to be nearer than it is comes out as off by more, never by less. */
+#define Z_WU_MAX (1 << 30)
 
 typedef struct join {
     const c3d_camera *camera;
     c3d_rotation rotation;
     int64_t moved_eye_wu[3];
     int64_t half_q8[2];
-    int64_t least_wu; /* D and D - mz of all that is in the window */
+    int64_t least_wu; /* no point in the window, shown or true, has a smaller D or D - mz */
     int64_t z_wu;
     int64_t error_q8;
 } join;

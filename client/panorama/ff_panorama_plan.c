@@ -5,8 +5,10 @@
 
 #include <string.h>
 
-#define HALVINGS     7
-#define TRUST_OF_8   7 /* of the way that would do: the path may bend */
+#define HALVINGS 7
+/* O is placed at 7/8 of the farthest distance ahead at which the set would still be good: the
+ * viewer's path may bend. */
+#define TRUST_OF_8   7
 #define AHEAD_US_MAX 30000000
 
 int ff_panorama_set_outdated(const ff_panorama *panorama, const ff_panorama_set *set,

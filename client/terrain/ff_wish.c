@@ -1,6 +1,7 @@
-/* Wishes: what would make the picture better and would find room. Roots first, nearest first, then
- * refinements by value; of either kind what the view sees, or needs beside it to split, comes
- * first. A wish that the pool would refuse is not made: a full tree asks for nothing. */
+/* Wishes: the keys that would make the picture better and for which the pool has room. Roots come
+ * before refinements; roots are ordered by distance, refinements by value. Within each, the nodes
+ * in view come first, together with the neighbours without which a node in view cannot split. The
+ * tree does not wish for what its pool would refuse: a full tree asks for nothing. */
 #include "ff_tree_local.h"
 
 #define SLOT_MASK    (FF_NODES_MAX - 1)

@@ -67,14 +67,14 @@ typedef struct soft_segment {
  * them. */
 typedef struct soft_space {
     int shift;
-    uint8_t near;             /* 32 bits do: the next four are valid */
+    uint8_t near;             /* 1: places fit 32 bits, and origin[] and scale are valid */
     int32_t origin[3], scale; /* world units */
     int64_t origin_wu[3];
     int32_t scale_wu;
     uint32_t z_scale_q16; /* wu */
     int32_t near_eye, far_eye;
-    uint32_t near_norm; /* near plane, shifted into bit 31, */
-    int near_shift;     /* and how far 1/z of a z in bit 30 is shifted to be near/z in Q30 */
+    uint32_t near_norm; /* the near plane as a mantissa: its highest bit is bit 31 */
+    int near_shift;     /* near_norm times 1/z, shifted right by this, is near/z in Q30 */
 } soft_space;
 
 /* From eye space to the screen, for one frame. */

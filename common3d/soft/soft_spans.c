@@ -40,8 +40,8 @@ static inline uint32_t mark_four(uint32_t depth[4], uint32_t w, uint32_t dw)
  * between are blended of two samples, by adding the same difference again and again. Columns of
  * samples keep their places from row to row: neither edges of triangles nor rows show. Pixels from
  * one to the next are drawn together where all of them are nearer than what is there, as on ground
- * not yet drawn: the bits of their depths together are no less than the greatest. 0: some sample
- * would lie beyond the texture. */
+ * not yet drawn. One comparison finds that out: the depths of the pixels there, joined by OR, give
+ * a number that is at least the greatest of them. 0: some sample would lie beyond the texture. */
 static SOFT_INLINE int magnified_row(const soft_state *state, const soft_segment *segment,
                                      const int log2)
 {
