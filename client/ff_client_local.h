@@ -4,8 +4,8 @@
  *   ff_client_create       ff_client | requests | receive buffer
  *   the terrain is known   decoder | images on their way, new-data items | image slots |
  *   (WELCOME, the pack)    c3d device | view entries, one node's vertices | tree
- * The second line is given back and carved anew for another terrain. The tree takes what is left, up
- * to NODES_MAX nodes; then the block is sealed. */
+ * The second line is given back and carved anew for another terrain. The tree takes what is left,
+ * up to NODES_MAX nodes; then the block is sealed. */
 #ifndef FF_CLIENT_LOCAL_H
 #define FF_CLIENT_LOCAL_H
 
