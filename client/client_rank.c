@@ -25,7 +25,7 @@ static void want_tree(ff_client *client)
     uint32_t count = ff_tree_wishes(client->tree, &list);
     for (uint32_t i = 0; i < count; i++) {
         const ff_wish *wish = &list[i];
-        enum ff_request_kind kind = wish->refinement ? FF_WANT_REFINEMENT : FF_WANT_ROOT;
+        enum ff_kind kind = wish->refinement ? FF_WANT_REFINEMENT : FF_WANT_ROOT;
         enum ff_request_class rank = wish->refinement ? FF_CLASS_IN_VIEW : FF_CLASS_FIRST;
         if (wish->in_view && !ff_refusals_final(&client->refusals, kind, wish->key))
             ff_requests_want(&client->requests, kind, wish->key, rank, wish->priority, NULL);
@@ -78,7 +78,7 @@ static void want_ahead(ff_client *client, const ahead *a)
         uint32_t count = ff_tree_foresee(client->tree, a->pos_wu[v], a->yaw[v], a->pitch[v], wish,
                                          FF_PREFETCH_WISHES);
         for (uint32_t i = 0; i < count; i++) {
-            enum ff_request_kind kind = wish[i].refinement ? FF_WANT_REFINEMENT : FF_WANT_ROOT;
+            enum ff_kind kind = wish[i].refinement ? FF_WANT_REFINEMENT : FF_WANT_ROOT;
             if (!ff_refusals_final(&client->refusals, kind, wish[i].key))
                 ff_requests_want(&client->requests, kind, wish[i].key, FF_CLASS_PREFETCH,
                                  wish[i].priority, NULL);

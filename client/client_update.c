@@ -45,21 +45,34 @@ static void look_at_link(ff_client *client)
     }
 }
 
-/* 1 when the picture may have changed. */
+/* 1 when the picture may have changed. A face brings its own refusals: its set must know of them.
+ */
 static int take_item(ff_client *client, const ff_new_item *item, int64_t now_us)
 {
-    if (item->kind == FF_WANT_PANORAMA) return ff_panorama_take(&client->panorama, item, now_us);
+    if (ff_kind[item->kind].data == FF_DATA_FACES)
+        return ff_panorama_take(&client->panorama, item, now_us);
     if (item->error != FF_OK) {
         ff_refusals_note(&client->refusals, item->kind, item->key);
         return 0;
     }
-    int rc;
-    if (item->kind == FF_WANT_TEXTURE) return ff_textures_take(&client->textures, item);
-    if (item->kind == FF_WANT_ROOT)
-        rc = ff_tree_deliver_root(client->tree, ff_key_tile(item->key), &item->residuals);
-    else
-        rc = ff_tree_deliver_children(client->tree, item->key, &item->residuals);
-    return rc == FF_OK;
+    switch (item->kind) {
+        case FF_WANT_ROOT:
+            return ff_tree_deliver_root(client->tree, ff_key_tile(item->key), &item->residuals) ==
+                   FF_OK;
+        case FF_WANT_REFINEMENT:
+            return ff_tree_deliver_children(client->tree, item->key, &item->residuals) == FF_OK;
+        default: return ff_textures_take(&client->textures, item);
+    }
+}
+
+/* How the request of its last item ends. A face that came and cannot be decoded ends it like any
+ * other face: its bytes have come, and the set counts it as missing. */
+static enum ff_request_state final_state(const ff_new_item *item)
+{
+    if (item->error == FF_OK) return FF_REQUEST_DONE;
+    if (item->error == FF_ERR_CLOSED) return FF_REQUEST_CANCELLED;
+    int face_came = ff_kind[item->kind].data == FF_DATA_FACES && item->bytes;
+    return face_came ? FF_REQUEST_DONE : FF_REQUEST_FAILED;
 }
 
 /* Number of items taken in; *changed: pictures other than heights changed (the tree tells of
@@ -70,14 +83,8 @@ static unsigned take_new_data(ff_client *client, int64_t now_us, int *changed)
     ff_new_item *item;
     while (taken < client->news.item_slots && (item = ff_new_data_first(&client->news)) != NULL) {
         int any = take_item(client, item, now_us);
-        if (any && item->kind >= FF_WANT_TEXTURE) *changed = 1;
-        if (item->last) {
-            enum ff_request_state final = item->error == FF_OK || item->bytes ? FF_REQUEST_DONE
-                                                                              : FF_REQUEST_FAILED;
-            if (item->error != FF_OK && item->kind != FF_WANT_PANORAMA) final = FF_REQUEST_FAILED;
-            if (item->error == FF_ERR_CLOSED) final = FF_REQUEST_CANCELLED;
-            ff_requests_finish(&client->requests, item->id, final);
-        }
+        if (any && ff_kind[item->kind].has_image) *changed = 1;
+        if (item->last) ff_requests_finish(&client->requests, item->id, final_state(item));
         ff_new_data_release(&client->news);
         taken++;
     }

@@ -15,7 +15,12 @@
 #define FF_PACK_HEADER_BYTES 4096 /* with the directory of sections; the sections follow */
 #define FF_PACK_SECTIONS_MAX 48
 
-enum ff_section_kind { FF_SECTION_ROOT = 1, FF_SECTION_REFINEMENT = 2, FF_SECTION_TEXTURE = 3 };
+enum ff_section_kind {
+    FF_SECTION_NONE = 0,
+    FF_SECTION_ROOT = 1,
+    FF_SECTION_REFINEMENT = 2,
+    FF_SECTION_TEXTURE = 3
+};
 
 typedef struct ff_pack_section {
     uint16_t kind;      /* enum ff_section_kind */

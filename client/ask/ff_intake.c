@@ -36,6 +36,14 @@ int ff_intake_node(ff_intake *intake, const ff_request *request, const uint8_t *
     return ff_intake_put(intake, item);
 }
 
+int ff_intake_record(ff_intake *intake, const ff_request *request, const uint8_t *payload,
+                     uint32_t bytes)
+{
+    if (ff_kind[request->kind].data == FF_DATA_IMAGES)
+        return ff_intake_texture(intake, request, payload, bytes);
+    return ff_intake_node(intake, request, payload, bytes);
+}
+
 int ff_intake_failed(ff_intake *intake, const ff_request *request, int error)
 {
     ff_new_item *item = ff_intake_begin(intake, request, 0, 0);

@@ -17,7 +17,10 @@ typedef struct ff_intake {
 } ff_intake;
 
 /* Each puts one item on the list and moves the request on. FF_OK (an undecodable payload too: the
- * item says so), or FF_ERR_AGAIN: the list is full, nothing happened, try later. */
+ * item says so), or FF_ERR_AGAIN: the list is full, nothing happened, try later. A record is a node
+ * or a texture, as its request's kind says. */
+int ff_intake_record(ff_intake *intake, const ff_request *request, const uint8_t *payload,
+                     uint32_t bytes);
 int ff_intake_node(ff_intake *intake, const ff_request *request, const uint8_t *payload,
                    uint32_t bytes);
 int ff_intake_texture(ff_intake *intake, const ff_request *request, const uint8_t *jpeg,

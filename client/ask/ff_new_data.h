@@ -10,7 +10,7 @@
 typedef struct ff_new_item {
     ff_key key;
     uint16_t id;            /* of the request */
-    uint8_t kind;           /* enum ff_request_kind */
+    uint8_t kind;           /* enum ff_kind */
     uint8_t last;           /* ends its request (a panorama's other faces do not) */
     int32_t error;          /* FF_OK or why there is no answer */
     ff_residuals residuals; /* roots and refinements; values belong to the item */

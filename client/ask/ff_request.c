@@ -30,7 +30,7 @@ void ff_requests_init(ff_requests *requests, unsigned in_flight_max, void *memor
     for (unsigned kind = 0; kind < FF_WANT_KINDS; kind++)
         for (unsigned level = 0; level < 16; level++)
             requests->answer_q4[kind][level] = ANSWER_BYTES_START
-                                               << (kind >= FF_WANT_TEXTURE ? 7 : 4);
+                                               << (ff_kind[kind].has_image ? 7 : 4);
 }
 
 static unsigned level_of(const ff_request *request)
@@ -127,7 +127,7 @@ static ff_request *slot_for_new(ff_requests *requests)
     return find_free(requests);
 }
 
-int ff_requests_want(ff_requests *requests, enum ff_request_kind kind, ff_key key,
+int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
                      enum ff_request_class rank, uint32_t priority, const ff_get_panorama *panorama)
 {
     sys_mutex_lock(&requests->mutex);

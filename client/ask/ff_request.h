@@ -27,17 +27,10 @@
 #define FF_REQUEST_H
 
 #include "../../platform/sys.h"
-#include "../../protocol/message/ff_message.h"
+#include "../../protocol/message/ff_kind.h"
 
 #define FF_REQUESTS_QUEUED_MAX 128 /* queued at a time, besides those in flight */
 
-enum ff_request_kind {
-    FF_WANT_ROOT,
-    FF_WANT_REFINEMENT,
-    FF_WANT_TEXTURE,
-    FF_WANT_PANORAMA,
-    FF_WANT_KINDS
-};
 enum ff_request_state {
     FF_REQUEST_FREE,
     FF_REQUEST_QUEUED,
@@ -92,7 +85,7 @@ void ff_requests_clear(ff_requests *requests);
 void ff_requests_rank_begin(ff_requests *requests);
 /* 1 when queued or already under way, 0 when the queue is full. priority per byte decides within
  * `rank`. */
-int ff_requests_want(ff_requests *requests, enum ff_request_kind kind, ff_key key,
+int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
                      enum ff_request_class rank, uint32_t priority,
                      const ff_get_panorama *panorama);
 void ff_requests_rank_end(ff_requests *requests);

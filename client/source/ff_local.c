@@ -4,19 +4,13 @@
 
 static int answer(ff_intake *intake, const ff_pack *pack, const ff_request *request)
 {
-    static const enum ff_section_kind section[FF_WANT_KINDS] = {
-        [FF_WANT_ROOT] = FF_SECTION_ROOT,
-        [FF_WANT_REFINEMENT] = FF_SECTION_REFINEMENT,
-        [FF_WANT_TEXTURE] = FF_SECTION_TEXTURE
-    };
-    if (request->kind == FF_WANT_PANORAMA) /* nobody here draws them */
+    enum ff_section_kind section = (enum ff_section_kind)ff_kind[request->kind].section;
+    if (section == FF_SECTION_NONE) /* nobody here draws panoramas */
         return ff_intake_failed(intake, request, FF_ERR_UNSUPPORTED);
     const uint8_t *payload;
-    int bytes = ff_pack_record(pack, section[request->kind], request->key, &payload);
+    int bytes = ff_pack_record(pack, section, request->key, &payload);
     if (bytes < 0) return ff_intake_failed(intake, request, bytes);
-    if (request->kind == FF_WANT_TEXTURE)
-        return ff_intake_texture(intake, request, payload, (uint32_t)bytes);
-    return ff_intake_node(intake, request, payload, (uint32_t)bytes);
+    return ff_intake_record(intake, request, payload, (uint32_t)bytes);
 }
 
 int ff_local_step(ff_intake *intake, const ff_pack *pack, int prefetch, int64_t now_us)

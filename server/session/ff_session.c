@@ -5,6 +5,7 @@
  * reader costs a fixed amount of memory, and says itself when to go on.
  */
 #include "ff_session.h"
+#include "../../protocol/message/ff_kind.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -146,12 +147,12 @@ static int end_session(ff_session *session, int error)
 
 static int fetch(const ff_session *session, const request *wanted, ff_message *message)
 {
-    enum ff_section_kind kind = FF_SECTION_TEXTURE;
-    if (wanted->type == FF_MSG_GET_NODE)
-        kind = wanted->get.what == FF_GET_ROOT ? FF_SECTION_ROOT : FF_SECTION_REFINEMENT;
-    message->type = wanted->type == FF_MSG_GET_NODE ? FF_MSG_NODE : FF_MSG_TEXTURE;
+    int kind = ff_kind_asked_by(wanted->type, wanted->get.what);
+    assert(kind >= 0); /* ff_message_decode knows no other `what` */
+    message->type = ff_kind[kind].answered_by;
     message->u.data.id = wanted->get.id;
-    int bytes = ff_pack_record(session->desc.pack, kind, wanted->get.key, &message->u.data.bytes);
+    int bytes = ff_pack_record(session->desc.pack, (enum ff_section_kind)ff_kind[kind].section,
+                               wanted->get.key, &message->u.data.bytes);
     if (bytes < 0) return bytes;
     message->u.data.byte_count = (uint32_t)bytes;
     return ff_message_bytes_max(message) <= FACE_BYTES ? FF_OK : FF_ERR_FULL;

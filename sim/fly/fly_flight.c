@@ -160,15 +160,15 @@ static int fill_relevance(fly_flight *flight, fly_sample *sample)
     if (!flight->world->relevance) return 0;
     int rc = sim_relevance_get(flight->world->relevance, &f);
     if (rc != FF_OK) return fail("relevance", ff_error_text(rc));
-    sample->bytes_heights = f.came[SIM_ANSWER_HEIGHTS];
-    sample->bytes_images = f.came[SIM_ANSWER_IMAGE];
-    sample->bytes_faces = f.came[SIM_ANSWER_FACE];
+    sample->bytes_heights = f.came[FF_DATA_HEIGHTS];
+    sample->bytes_images = f.came[FF_DATA_IMAGES];
+    sample->bytes_faces = f.came[FF_DATA_FACES];
     sample->bytes_overhead = f.overhead;
-    sample->bytes_judged = f.judged[SIM_ANSWER_HEIGHTS] + f.judged[SIM_ANSWER_IMAGE] +
-                           f.judged[SIM_ANSWER_FACE] + f.overhead;
-    sample->unused_heights = f.unused[SIM_ANSWER_HEIGHTS];
-    sample->unused_images = f.unused[SIM_ANSWER_IMAGE];
-    sample->unused_faces = f.unused[SIM_ANSWER_FACE];
+    sample->bytes_judged = f.judged[FF_DATA_HEIGHTS] + f.judged[FF_DATA_IMAGES] +
+                           f.judged[FF_DATA_FACES] + f.overhead;
+    sample->unused_heights = f.unused[FF_DATA_HEIGHTS];
+    sample->unused_images = f.unused[FF_DATA_IMAGES];
+    sample->unused_faces = f.unused[FF_DATA_FACES];
     sample->unused_supporting = f.supporting;
     sample->relevance_percent = f.percent;
     return 0;

@@ -20,7 +20,7 @@ typedef struct asked {
 } asked;
 
 typedef struct answer {
-    enum sim_answer_kind kind;
+    enum ff_data_class kind;
     ff_key key; /* heights: the node made (roots) or refined; images */
     int refinement;
     int32_t position_wu[3];                       /* faces */
@@ -54,7 +54,7 @@ struct sim_relevance {
 
 /* ---- what came ---- */
 
-static size_t bucket_of(enum sim_answer_kind kind, ff_key key, int refinement)
+static size_t bucket_of(enum ff_data_class kind, ff_key key, int refinement)
 {
     return (size_t)((key * 4 + kind + (refinement ? 2u : 0u)) * UINT64_C(0x9E3779B97F4A7C15) >>
                     52) %
@@ -62,7 +62,7 @@ static size_t bucket_of(enum sim_answer_kind kind, ff_key key, int refinement)
 }
 
 /* The latest answer of this kind and key. */
-static answer *find(sim_relevance *relevance, enum sim_answer_kind kind, ff_key key, int refinement)
+static answer *find(sim_relevance *relevance, enum ff_data_class kind, ff_key key, int refinement)
 {
     for (size_t i = relevance->bucket[bucket_of(kind, key, refinement)]; i != NONE;
          i = relevance->answer[i].next) {
@@ -86,7 +86,7 @@ static void keep(sim_relevance *relevance, answer a)
         relevance->capacity = more;
     }
     a.came_us = *relevance->now_us;
-    if (a.kind != SIM_ANSWER_FACE) {
+    if (a.kind != FF_DATA_FACES) {
         size_t *bucket = &relevance->bucket[bucket_of(a.kind, a.key, a.refinement)];
         a.next = *bucket;
         *bucket = relevance->count;
@@ -103,13 +103,13 @@ static void take_down(sim_relevance *relevance, const ff_message *message, size_
         case FF_MSG_NODE:
         case FF_MSG_TEXTURE:
             q = &relevance->asked[message->u.data.id];
-            a.kind = message->type == FF_MSG_NODE ? SIM_ANSWER_HEIGHTS : SIM_ANSWER_IMAGE;
+            a.kind = message->type == FF_MSG_NODE ? FF_DATA_HEIGHTS : FF_DATA_IMAGES;
             a.key = q->get.key;
             a.refinement = q->type == FF_MSG_GET_NODE && q->get.what == FF_GET_REFINEMENT;
             keep(relevance, a);
             return;
         case FF_MSG_FACE:
-            a.kind = SIM_ANSWER_FACE;
+            a.kind = FF_DATA_FACES;
             memcpy(a.position_wu, relevance->asked[face->id].position_wu, sizeof a.position_wu);
             a.face = face->face;
             a.face_size = face->face_size;
@@ -248,7 +248,7 @@ static void mark_support(sim_relevance *relevance, ff_key parent)
                                          (enum ff_side)side);
         answer *a = beside == FF_KEY_NONE
                         ? NULL
-                        : find(relevance, SIM_ANSWER_HEIGHTS, ff_key_parent(beside), 1);
+                        : find(relevance, FF_DATA_HEIGHTS, ff_key_parent(beside), 1);
         if (a) a->supports |= *relevance->now_us - a->came_us <= SIM_RELEVANCE_US;
     }
 }
@@ -261,7 +261,7 @@ static void mark_heights(sim_relevance *relevance, ff_key node)
             node = ff_key_parent(node);
             mark_support(relevance, node);
         }
-        answer *a = find(relevance, SIM_ANSWER_HEIGHTS, node, refinement);
+        answer *a = find(relevance, FF_DATA_HEIGHTS, node, refinement);
         if (a && a->frame == relevance->frame) return; /* and all above it */
         if (a) mark(relevance, a);
         if (!refinement) return;
@@ -274,7 +274,7 @@ static void mark_image(sim_relevance *relevance, ff_key node)
     answer *last = NULL;
     for (ff_key key = ff_texture_key(&relevance->info, node); key != FF_KEY_NONE;
          key = ff_key_parent(key)) {
-        answer *a = find(relevance, SIM_ANSWER_IMAGE, key, 0);
+        answer *a = find(relevance, FF_DATA_IMAGES, key, 0);
         if (a && (!last || a > last)) last = a;
         if (ff_key_level(key) == 0) break;
     }
@@ -303,7 +303,7 @@ static void mark_faces_at(sim_relevance *relevance, const sim_relevance_view *vi
     sim_eye_ray(eye, pixel, along);
     for (size_t i = relevance->first_young; i < relevance->count; i++) {
         answer *a = &relevance->answer[i];
-        if (a->kind != SIM_ANSWER_FACE || a->drawn ||
+        if (a->kind != FF_DATA_FACES || a->drawn ||
             memcmp(a->position_wu, view->panorama_pos_wu, sizeof a->position_wu))
             continue;
         if (face_of(along, a->face_size, &row) == a->face &&
@@ -317,7 +317,7 @@ static void mark_faces(sim_relevance *relevance, const sim_relevance_view *view)
     sim_eye eye;
     int any = 0;
     for (size_t i = relevance->first_young; i < relevance->count; i++)
-        any |= relevance->answer[i].kind == SIM_ANSWER_FACE && !relevance->answer[i].drawn;
+        any |= relevance->answer[i].kind == FF_DATA_FACES && !relevance->answer[i].drawn;
     if (!any || !view->panorama) return;
     sim_eye_of(&view->camera, &eye);
     for (unsigned y = RAY_STEP_PX / 2; y < view->camera.height; y += RAY_STEP_PX)
@@ -350,7 +350,7 @@ int sim_relevance_get(sim_relevance *relevance, sim_relevance_figures *figures)
         sum->supporting += !a->drawn && a->supports ? a->bytes : 0;
     }
     double judged = sum->overhead, unused = sum->overhead;
-    for (int kind = 0; kind < SIM_ANSWER_KINDS; kind++) {
+    for (int kind = 0; kind < FF_DATA_CLASSES; kind++) {
         judged += sum->judged[kind];
         unused += sum->unused[kind];
     }

@@ -20,16 +20,15 @@
 
 #include "../../client/terrain/ff_tree.h"
 #include "../../platform/sys.h"
+#include "../../protocol/message/ff_kind.h"
 
 #define SIM_RELEVANCE_US 5000000
 
-enum sim_answer_kind { SIM_ANSWER_HEIGHTS, SIM_ANSWER_IMAGE, SIM_ANSWER_FACE, SIM_ANSWER_KINDS };
-
 /* Bytes since the start. */
 typedef struct sim_relevance_figures {
-    double came[SIM_ANSWER_KINDS], overhead;
-    double judged[SIM_ANSWER_KINDS]; /* came at least SIM_RELEVANCE_US ago */
-    double unused[SIM_ANSWER_KINDS]; /* and were not drawn in time */
+    double came[FF_DATA_CLASSES], overhead;
+    double judged[FF_DATA_CLASSES]; /* came at least SIM_RELEVANCE_US ago */
+    double unused[FF_DATA_CLASSES]; /* and were not drawn in time */
     double supporting; /* of unused heights: a drawn node could not have been without them */
     /* of judged and overhead that was drawn in time; NAN before anything was judged */
     double percent;

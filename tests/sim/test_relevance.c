@@ -141,9 +141,9 @@ static void test_line_of_ancestors(void **state)
     assert_true(isnan(figures(&w, SIM_RELEVANCE_US).percent)); /* too early to say */
     draw(&w, SIM_RELEVANCE_US, 1, &leaf);
     sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
-    assert_int_equal(f.came[SIM_ANSWER_HEIGHTS], used + unused);
-    assert_int_equal(f.judged[SIM_ANSWER_HEIGHTS], used + unused);
-    assert_int_equal(f.unused[SIM_ANSWER_HEIGHTS], unused);
+    assert_int_equal(f.came[FF_DATA_HEIGHTS], used + unused);
+    assert_int_equal(f.judged[FF_DATA_HEIGHTS], used + unused);
+    assert_int_equal(f.unused[FF_DATA_HEIGHTS], unused);
     assert_true(fabs(f.percent - 100.0 * (double)used / (double)(used + unused)) < 1e-9);
     sim_relevance_destroy(w.relevance);
 }
@@ -165,7 +165,7 @@ static void test_supporting(void **state)
     /* its parent's eastern neighbour is a child of the next tile's root */
     draw(&w, 1, 1, &leaf);
     sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
-    assert_int_equal(f.unused[SIM_ANSWER_HEIGHTS], beside + away);
+    assert_int_equal(f.unused[FF_DATA_HEIGHTS], beside + away);
     assert_int_equal(f.supporting, beside);
     sim_relevance_destroy(w.relevance);
 }
@@ -179,13 +179,13 @@ static void test_too_late(void **state)
     size_t bytes = node(&w, root, FF_GET_ROOT);
     receive(&w, 1024);
     draw(&w, SIM_RELEVANCE_US + 1, 1, &root);
-    assert_int_equal(figures(&w, SIM_RELEVANCE_US + 1).unused[SIM_ANSWER_HEIGHTS], bytes);
+    assert_int_equal(figures(&w, SIM_RELEVANCE_US + 1).unused[FF_DATA_HEIGHTS], bytes);
     bytes += node(&w, root, FF_GET_ROOT); /* sent once more: the new one is drawn */
     receive(&w, 1024);
     draw(&w, SIM_RELEVANCE_US + 2, 1, &root);
     sim_relevance_figures f = figures(&w, 3 * SIM_RELEVANCE_US);
-    assert_int_equal(f.judged[SIM_ANSWER_HEIGHTS], bytes);
-    assert_int_equal(f.unused[SIM_ANSWER_HEIGHTS], bytes / 2);
+    assert_int_equal(f.judged[FF_DATA_HEIGHTS], bytes);
+    assert_int_equal(f.unused[FF_DATA_HEIGHTS], bytes / 2);
     sim_relevance_destroy(w.relevance);
 }
 
@@ -201,7 +201,7 @@ static void test_finest_image(void **state)
     size_t coarse = image(&w, root), fine = image(&w, child);
     receive(&w, 1024);
     draw(&w, 1, 1, others);
-    assert_int_equal(figures(&w, SIM_RELEVANCE_US + 1).unused[SIM_ANSWER_IMAGE], coarse);
+    assert_int_equal(figures(&w, SIM_RELEVANCE_US + 1).unused[FF_DATA_IMAGES], coarse);
     sim_relevance_destroy(w.relevance);
     start(&w);
     (void)image(&w, root);
@@ -209,14 +209,14 @@ static void test_finest_image(void **state)
     receive(&w, 1024);
     draw(&w, 1, 2, others);
     sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
-    assert_int_equal(f.judged[SIM_ANSWER_IMAGE], coarse + fine);
-    assert_int_equal(f.unused[SIM_ANSWER_IMAGE], 0);
+    assert_int_equal(f.judged[FF_DATA_IMAGES], coarse + fine);
+    assert_int_equal(f.unused[FF_DATA_IMAGES], 0);
     (void)image(&w, root);
     receive(&w, 1024);
     draw(&w, SIM_RELEVANCE_US + 2, 1, others);
     f = figures(&w, 3 * SIM_RELEVANCE_US);
-    assert_int_equal(f.judged[SIM_ANSWER_IMAGE], 2 * coarse + fine);
-    assert_int_equal(f.unused[SIM_ANSWER_IMAGE], 0);
+    assert_int_equal(f.judged[FF_DATA_IMAGES], 2 * coarse + fine);
+    assert_int_equal(f.unused[FF_DATA_IMAGES], 0);
     sim_relevance_destroy(w.relevance);
 }
 
@@ -255,8 +255,8 @@ static void check_face(enum ff_face_name name, unsigned top, unsigned rows, int3
     w.view.panorama_pos_wu[0] = 500;
     draw(&w, 1, 0, NULL);
     sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
-    assert_int_equal(f.judged[SIM_ANSWER_FACE], bytes);
-    assert_int_equal(f.unused[SIM_ANSWER_FACE], drawn ? 0 : bytes);
+    assert_int_equal(f.judged[FF_DATA_FACES], bytes);
+    assert_int_equal(f.unused[FF_DATA_FACES], drawn ? 0 : bytes);
     sim_relevance_destroy(w.relevance);
 }
 
@@ -297,8 +297,8 @@ static void test_overhead(void **state)
     receive(&w, 1024);
     sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 2);
     assert_int_equal(f.overhead, overhead);
-    assert_int_equal(f.came[SIM_ANSWER_HEIGHTS], used + again);
-    assert_int_equal(f.unused[SIM_ANSWER_HEIGHTS], again);
+    assert_int_equal(f.came[FF_DATA_HEIGHTS], used + again);
+    assert_int_equal(f.unused[FF_DATA_HEIGHTS], again);
     assert_true(fabs(f.percent - 100.0 * (double)used / (double)(used + again + overhead)) < 1e-9);
     sim_relevance_destroy(w.relevance);
 }

@@ -29,26 +29,21 @@ static int take_welcome(ff_stream *stream, const ff_welcome *welcome)
     return FF_OK;
 }
 
-/* An answer must belong to a request of its kind that waits for it. */
-static int find_request(ff_stream *stream, uint16_t id, unsigned kinds, ff_request *request)
+/* The request that an answer of this type belongs to: one that waits for it. */
+static int find_request(ff_stream *stream, uint16_t id, unsigned type, ff_request *request)
 {
-    if (!ff_requests_answered(stream->intake->requests, id, request) ||
-        !(kinds >> request->kind & 1u))
-        return FF_ERR_FORMAT;
-    return FF_OK;
+    if (!ff_requests_answered(stream->intake->requests, id, request)) return FF_ERR_FORMAT;
+    return type == FF_MSG_FAILED || ff_kind[request->kind].answered_by == type ? FF_OK
+                                                                               : FF_ERR_FORMAT;
 }
 
 static int take_data(ff_stream *stream, const ff_message *message, int64_t now_us)
 {
-    int texture = message->type == FF_MSG_TEXTURE;
     ff_request request;
     const ff_data *data = &message->u.data;
-    int rc = find_request(
-        stream, data->id,
-        texture ? 1u << FF_WANT_TEXTURE : 1u << FF_WANT_ROOT | 1u << FF_WANT_REFINEMENT, &request);
+    int rc = find_request(stream, data->id, message->type, &request);
     if (rc != FF_OK) return rc;
-    rc = texture ? ff_intake_texture(stream->intake, &request, data->bytes, data->byte_count)
-                 : ff_intake_node(stream->intake, &request, data->bytes, data->byte_count);
+    rc = ff_intake_record(stream->intake, &request, data->bytes, data->byte_count);
     if (rc == FF_OK) ff_link_estimate_answer(&stream->link, request.sent_us, now_us);
     return rc;
 }
@@ -63,7 +58,7 @@ static int asked_for(const ff_get_panorama *panorama, unsigned face)
 static int take_face(ff_stream *stream, const ff_face *face, uint32_t bytes)
 {
     ff_request request;
-    int rc = find_request(stream, face->id, 1u << FF_WANT_PANORAMA, &request);
+    int rc = find_request(stream, face->id, FF_MSG_FACE, &request);
     if (rc == FF_OK && !asked_for(&request.panorama, face->face)) rc = FF_ERR_FORMAT;
     if (rc == FF_OK) rc = ff_intake_face(stream->intake, &request, face, bytes);
     if (rc == FF_OK) stream->panorama_bytes += bytes;
@@ -73,7 +68,7 @@ static int take_face(ff_stream *stream, const ff_face *face, uint32_t bytes)
 static int take_failed(ff_stream *stream, uint16_t id, int error)
 {
     ff_request request;
-    int rc = find_request(stream, id, ~0u, &request);
+    int rc = find_request(stream, id, FF_MSG_FAILED, &request);
     return rc == FF_OK ? ff_intake_failed(stream->intake, &request, error) : rc;
 }
 

@@ -153,14 +153,13 @@ static int connect_step(ff_stream *stream, int64_t now_us)
 
 static void encode_request(ff_stream *stream, const ff_request *request)
 {
-    ff_message message = { .type = FF_MSG_GET_NODE };
-    if (request->kind == FF_WANT_PANORAMA) {
-        message.type = FF_MSG_GET_PANORAMA;
+    const ff_kind_row *kind = &ff_kind[request->kind];
+    ff_message message = { .type = kind->asked_by };
+    if (kind->asked_by == FF_MSG_GET_PANORAMA) {
         message.u.panorama = request->panorama;
     } else {
-        message.type = request->kind == FF_WANT_TEXTURE ? FF_MSG_GET_TEXTURE : FF_MSG_GET_NODE;
         message.u.get.id = request->id;
-        message.u.get.what = request->kind == FF_WANT_REFINEMENT ? FF_GET_REFINEMENT : FF_GET_ROOT;
+        message.u.get.what = kind->what;
         message.u.get.key = request->key;
     }
     append(stream, &message);
