@@ -16,9 +16,10 @@
  *   Mesh origins are given relative to the camera, subtracted in 64-bit integers by the caller: no
  *       jitter far from the origin.
  * Handles: slot and generation in 32 bits, 0 is never valid; using a stale or zero handle draws
- * nothing and is counted. Back ends: common3d/gl (desktop GL 1.5), common3d/gles1 (GL ES 1.1),
- * common3d/soft (integers, no GL), behind one table (c3d_backend.h); all memory of a device comes
- * from the block given at c3d_open.
+ * nothing and is counted. Whatever has a handle may be made and freed at any time, between frames
+ * or within one: a draw takes what it needs before it returns. Back ends: common3d/gl (desktop
+ * GL 1.5), common3d/gles1 (GL ES 1.1), common3d/soft (integers, no GL), behind one table
+ * (c3d_backend.h); all memory of a device comes from the block given at c3d_open.
  */
 #ifndef C3D_H
 #define C3D_H
@@ -55,10 +56,13 @@ typedef struct {
 } c3d_mesh;
 typedef struct {
     uint32_t id;
-} c3d_strip; /* 16-bit indices of one triangle strip */
+} c3d_strip; /* 16-bit indices: one triangle strip with its edges, or lines */
 typedef struct {
     uint32_t id;
 } c3d_texture;
+typedef struct {
+    uint32_t id;
+} c3d_label; /* one line of text */
 
 /* 16-bit formats have red in the highest bits; C3D_RGBA5551 alpha in the lowest. */
 enum c3d_texture_format { C3D_RGB565, C3D_RGBA5551, C3D_RGBA8888 };
@@ -68,7 +72,7 @@ enum c3d_draw_flags {
      * tex_scale/tex_offset */
     C3D_DRAW_TEXTURED = 1,
     C3D_DRAW_COLOURED = 2,    /* use vertex colours, else `colour` */
-    C3D_DRAW_WIREFRAME = 4,   /* the strip's edges as lines */
+    C3D_DRAW_WIREFRAME = 4,   /* the strip's edges, or its lines: a pixel wide, no texture */
     C3D_DRAW_BACKDROP = 8,    /* no depth test or write, no fog: skybox */
     C3D_DRAW_ALPHA_TEST = 16, /* texels with alpha below one half are not drawn */
     /* depth test with a bias of 1/64 of the distance towards the viewer: wireframe over ground */
@@ -93,7 +97,17 @@ typedef struct c3d_draw {
     int32_t tex_scale_q16[2], tex_offset_q16[2];
     int32_t tex_origin[2];
     uint8_t tex_shift;
+    uint8_t point_px; /* c3d_draw_points alone: edge of a point, 1..64 pixels */
 } c3d_draw;
+
+/* A label's text stands upright on the screen, whatever the camera does, 7 pixels high and 6 a
+ * character: its last row of pixels is that of the point it names, and its middle above it. */
+typedef struct c3d_label_draw {
+    c3d_label label;
+    int64_t origin_wu[3];      /* of the point, relative to the camera */
+    uint32_t colour;           /* 0xAABBGGRR */
+    int16_t right_px, down_px; /* moves the text on the screen, not its depth */
+} c3d_label_draw;
 
 typedef struct c3d_frame {
     c3d_camera camera;
@@ -105,8 +119,9 @@ typedef struct c3d_frame {
 typedef struct c3d_desc {
     const sys_surface_api *surface_api; /* the context is current when c3d_open is called */
     uint16_t mesh_count, strip_count, texture_count; /* pool sizes */
+    uint16_t label_count;                            /* 32 bytes each */
     uint16_t mesh_vertices_max;                      /* of one mesh */
-    uint32_t strip_indices_max;                      /* of all strips together */
+    uint32_t strip_indices_max; /* of all strips together; see c3d_lines_make */
     /* 1: buffers when the GL has them; 0: plain arrays (the fallback) */
     uint8_t use_vertex_buffers;
     /* For back ends that hold the picture themselves (soft); the others leave these alone. */
@@ -124,7 +139,8 @@ typedef struct c3d_stats {
     uint32_t frame_triangles, frame_draws;
     /* uses of stale or zero handles, and strips that reach beyond their mesh */
     uint32_t stale_handles;
-    uint32_t mesh_high, strip_high, texture_high;
+    uint32_t mesh_high, strip_high, texture_high, label_high;
+    uint32_t strip_indices_high; /* of strip_indices_max, gaps between strips counted */
     uint8_t vertex_buffers_used;
 } c3d_stats;
 
@@ -149,15 +165,32 @@ void c3d_close(c3d_device *device);
  * error). Data is copied. */
 c3d_mesh c3d_mesh_make(c3d_device *device, const c3d_vertex *vertices, uint32_t count);
 void c3d_mesh_free(c3d_device *device, c3d_mesh mesh);
+/* A triangle strip of at least 3 indices. */
 c3d_strip c3d_strip_make(c3d_device *device, const uint16_t *indices, uint32_t count);
+/* Lines between pairs of vertices: an even number of indices. Five take the room of one index of a
+ * triangle strip. C3D_DRAW_WIREFRAME draws them; without it they draw nothing. */
+c3d_strip c3d_lines_make(c3d_device *device, const uint16_t *indices, uint32_t count);
+void c3d_strip_free(c3d_device *device, c3d_strip strip);
 /* Pixels tightly packed, row 0 first = south / bottom (t = 0). Width and height powers of two.
  * Bilinear, clamped to edge. */
 c3d_texture c3d_texture_make(c3d_device *device, enum c3d_texture_format format, uint32_t width,
                              uint32_t height, const void *pixels);
 void c3d_texture_free(c3d_device *device, c3d_texture texture);
+/* At most C3D_LABEL_CHARS characters of `text` are kept; id 0 for none. Letters as in c3d_text.h,
+ * no line breaks. */
+#define C3D_LABEL_CHARS 23
+c3d_label c3d_label_make(c3d_device *device, const char *text);
+void c3d_label_free(c3d_device *device, c3d_label label);
 
 void c3d_begin(c3d_device *device, const c3d_frame *frame);
 void c3d_draw_strip(c3d_device *device, const c3d_draw *draw);
+/* Each vertex of the mesh as a square of draw->point_px pixels round it, at its depth, where its
+ * middle lies in the picture. Strip and texture are not looked at; of the flags, COLOURED and
+ * ON_TOP are. */
+void c3d_draw_points(c3d_device *device, const c3d_draw *draw);
+/* Hidden by what is more than 1/64 nearer than the point (as C3D_DRAW_ON_TOP); never in fog. A
+ * point before the near or beyond the far plane, or behind the camera, has no label. */
+void c3d_draw_label(c3d_device *device, const c3d_label_draw *draw);
 /* RGBA8888 image (top row first, powers of two) over the picture, its top left corner at (x, y)
  * pixels: the HUD. */
 void c3d_overlay(c3d_device *device, c3d_texture texture, int x, int y, int width, int height);

@@ -23,7 +23,7 @@ typedef struct c3d_mesh_data {
 } c3d_mesh_data;
 
 /* A strip's triangles and its edges (pairs of indices: lines), one after the other in one array or
- * buffer. */
+ * buffer. Lines have edges alone: count 0. */
 typedef struct c3d_strip_data {
     uint32_t buffer;
     const uint16_t *indices; /* the strip, then the edges; NULL when `buffer` has them */
@@ -35,11 +35,19 @@ typedef struct c3d_strip_data {
 typedef struct c3d_resolved_draw {
     const c3d_draw *draw;
     const c3d_mesh_data *mesh;
-    const c3d_strip_data *strip;
-    uint32_t texture; /* the back end's name; 0: untextured */
+    const c3d_strip_data *strip; /* NULL: the mesh's vertices as points */
+    uint32_t texture;            /* the back end's name; 0: untextured */
     /* origin of the mesh: x right, y up, z forward, wu with C3D_EYE_SHIFT fraction bits */
     int64_t eye_q14[3];
 } c3d_resolved_draw;
+
+/* A label that may be seen. */
+typedef struct c3d_placed_label {
+    const char *text; /* 1 .. C3D_LABEL_CHARS characters */
+    int32_t x, y;     /* pixel at the top left of its first letter; may lie off the picture */
+    int64_t z_q14;    /* eye depth, C3D_EYE_SHIFT fraction bits, already brought nearer */
+    uint32_t colour;
+} c3d_placed_label;
 
 struct c3d_backend {
     const char *name;
@@ -60,6 +68,9 @@ struct c3d_backend {
     void (*texture_free)(void *state, uint32_t texture);
     void (*begin)(void *state, const c3d_frame *frame, const c3d_rotation *rotation);
     void (*draw)(void *state, const c3d_resolved_draw *resolved);
+    void (*label)(void *state, const c3d_placed_label *label);
+    /* Draws what was kept for later: a strip goes away that may be part of it. NULL: nothing is. */
+    void (*flush)(void *state);
     void (*overlay)(void *state, uint32_t texture, int x, int y, int width, int height);
     void (*end)(void *state);
     /* Rows first_row .. first_row + rows - 1 from the bottom as RGBA8888, bottom row first. */

@@ -1,10 +1,12 @@
 /* Handles, pools and counters of a device; everything about graphics is behind its back end.
  *
- * The block:  device | back end's state | mesh slots | strip slots | texture slots | edge scratch |
- * [vertex copies | index copies] The copies in brackets are for plain arrays only: with vertex
- * buffers the graphics library has the data.
+ * The block:  device | back end's state | mesh slots | strip slots | texture slots | label slots |
+ * edge scratch | [vertex copies | index copies] The copies in brackets are for plain arrays only:
+ * with vertex buffers the graphics library has the data.
  */
+#include "c3d_font.h"
 #include "c3d_pool.h"
+#include "c3d_text.h"
 
 #include <assert.h>
 #include <string.h>
@@ -19,22 +21,31 @@ typedef struct mesh_slot {
 typedef struct strip_slot {
     c3d_slot slot;
     c3d_strip_data data;
+    uint32_t first, room; /* its part of the indices */
+    uint32_t next;        /* the strip whose part comes after it, or NO_STRIP */
 } strip_slot;
+
+#define NO_STRIP UINT32_MAX
 
 typedef struct texture_slot {
     c3d_slot slot;
     uint32_t texture;
 } texture_slot;
 
+typedef struct label_slot {
+    c3d_slot slot;
+    char text[C3D_LABEL_CHARS + 1];
+} label_slot;
+
 struct c3d_device {
     const struct c3d_backend *backend;
     void *state;
     c3d_desc desc;
-    c3d_pool meshes, strips, textures;
-    uint16_t *scratch;     /* a strip and its edges, before they are uploaded */
-    c3d_vertex *vertices;  /* mesh_vertices_max for each mesh slot; NULL with vertex buffers */
-    uint16_t *indices;     /* INDEX_WORDS for each index; NULL with vertex buffers */
-    uint32_t indices_used; /* of strip_indices_max */
+    c3d_pool meshes, strips, textures, labels;
+    uint16_t *scratch;    /* a strip and its edges, before they are uploaded */
+    c3d_vertex *vertices; /* mesh_vertices_max for each mesh slot; NULL with vertex buffers */
+    uint16_t *indices;    /* INDEX_WORDS for each index; NULL with vertex buffers */
+    uint32_t first_strip; /* in the order of their parts of strip_indices_max, or NO_STRIP */
     c3d_frame frame;
     c3d_rotation rotation;
     int64_t origin_wu[3], eye_q14[3]; /* of the last draw: those of a ground's nodes are one */
@@ -68,6 +79,7 @@ static c3d_device *lay_out(block_part *block, const struct c3d_backend *backend,
     void *meshes = take(block, desc->mesh_count * sizeof(mesh_slot));
     void *strips = take(block, desc->strip_count * sizeof(strip_slot));
     void *textures = take(block, desc->texture_count * sizeof(texture_slot));
+    void *labels = take(block, desc->label_count * sizeof(label_slot));
     uint16_t *scratch = take(block,
                              (size_t)desc->strip_indices_max * INDEX_WORDS * sizeof(uint16_t));
     c3d_vertex *vertices = NULL;
@@ -85,9 +97,11 @@ static c3d_device *lay_out(block_part *block, const struct c3d_backend *backend,
     device->scratch = scratch;
     device->vertices = vertices;
     device->indices = indices;
+    device->first_strip = NO_STRIP;
     c3d_pool_init(&device->meshes, meshes, sizeof(mesh_slot), desc->mesh_count);
     c3d_pool_init(&device->strips, strips, sizeof(strip_slot), desc->strip_count);
     c3d_pool_init(&device->textures, textures, sizeof(texture_slot), desc->texture_count);
+    c3d_pool_init(&device->labels, labels, sizeof(label_slot), desc->label_count);
     return device;
 }
 
@@ -197,33 +211,101 @@ void c3d_mesh_free(c3d_device *device, c3d_mesh mesh)
     c3d_pool_give(&device->meshes, mesh.id);
 }
 
+/* The first gap between the strips' parts of the indices that holds `room`: *link names the strip
+ * after it. Returns where the gap begins. */
+static uint32_t find_gap(c3d_device *device, uint32_t room, uint32_t **link)
+{
+    uint32_t begin = 0;
+    for (*link = &device->first_strip; **link != NO_STRIP;) {
+        strip_slot *strip = c3d_pool_at(&device->strips, **link);
+        if (strip->first - begin >= room) break;
+        begin = strip->first + strip->room;
+        *link = &strip->next;
+    }
+    return begin;
+}
+
+/* A slot with its part of the indices; *words: where to put them. NULL when there is no room. */
+static strip_slot *take_strip(c3d_device *device, uint32_t room, uint32_t *id, uint16_t **words)
+{
+    uint32_t *link, first = find_gap(device, room, &link), end = first + room;
+    if (room > device->desc.strip_indices_max || end > device->desc.strip_indices_max) return NULL;
+    *id = c3d_pool_take(&device->strips);
+    strip_slot *strip = c3d_pool_get(&device->strips, *id);
+    if (!strip) return NULL;
+    strip->data = (c3d_strip_data){ .count = 0 };
+    strip->first = first;
+    strip->room = room;
+    strip->next = *link;
+    *link = c3d_pool_index(*id);
+    if (end > device->stats.strip_indices_high) device->stats.strip_indices_high = end;
+    *words = device->indices ? device->indices + (size_t)first * INDEX_WORDS : device->scratch;
+    return strip;
+}
+
+static void give_strip(c3d_device *device, uint32_t id)
+{
+    strip_slot *strip = c3d_pool_get(&device->strips, id);
+    uint32_t *link = &device->first_strip;
+    while (*link != c3d_pool_index(id))
+        link = &((strip_slot *)c3d_pool_at(&device->strips, *link))->next;
+    *link = strip->next;
+    if (strip->data.buffer) device->backend->buffer_free(device->state, strip->data.buffer);
+    strip->data = (c3d_strip_data){ .count = 0 };
+    c3d_pool_give(&device->strips, id);
+}
+
+/* The words are in place: the handle, or id 0 when the graphics library has no room. */
+static c3d_strip finish_strip(c3d_device *device, uint32_t id, const uint16_t *words)
+{
+    strip_slot *strip = c3d_pool_get(&device->strips, id);
+    c3d_strip_data *data = &strip->data;
+    uint32_t count = data->count + data->edge_count;
+    for (uint32_t i = 0; i < count; i++)
+        if (words[i] > data->index_max) data->index_max = words[i];
+    if (device->indices)
+        data->indices = words;
+    else
+        data->buffer = device->backend->strip_upload(device->state, words, count);
+    if (!data->indices && !data->buffer) {
+        give_strip(device, id);
+        id = 0;
+    }
+    return (c3d_strip){ id };
+}
+
 c3d_strip c3d_strip_make(c3d_device *device, const uint16_t *indices, uint32_t count)
 {
-    c3d_strip none = { 0 };
-    if (count < 3 || count > device->desc.strip_indices_max - device->indices_used) return none;
-    uint32_t id = c3d_pool_take(&device->strips);
-    strip_slot *strip = c3d_pool_get(&device->strips, id);
-    if (!strip) return none;
-    c3d_strip_data *data = &strip->data;
-    *data = (c3d_strip_data){ .count = count };
-    uint16_t *words = device->indices ? device->indices + (size_t)device->indices_used * INDEX_WORDS
-                                      : device->scratch;
+    uint32_t id;
+    uint16_t *words;
+    strip_slot *strip = count < 3 ? NULL : take_strip(device, count, &id, &words);
+    if (!strip) return (c3d_strip){ 0 };
+    strip->data.count = count;
     memcpy(words, indices, count * sizeof *indices);
-    data->edge_count = c3d_strip_edges(indices, count, words + count, &data->triangles);
-    for (uint32_t i = 0; i < count; i++)
-        if (indices[i] > data->index_max) data->index_max = indices[i];
-    if (device->indices) {
-        data->indices = words;
-    } else {
-        data->buffer = device->backend->strip_upload(device->state, words,
-                                                     count + data->edge_count);
-        if (!data->buffer) {
-            c3d_pool_give(&device->strips, id);
-            return none;
-        }
+    strip->data.edge_count = c3d_strip_edges(indices, count, words + count, &strip->data.triangles);
+    return finish_strip(device, id, words);
+}
+
+c3d_strip c3d_lines_make(c3d_device *device, const uint16_t *indices, uint32_t count)
+{
+    uint32_t id, room = count / INDEX_WORDS + (count % INDEX_WORDS != 0);
+    uint16_t *words;
+    strip_slot *strip = count < 2 || count & 1 ? NULL : take_strip(device, room, &id, &words);
+    if (!strip) return (c3d_strip){ 0 };
+    strip->data.edge_count = count;
+    memcpy(words, indices, count * sizeof *indices);
+    return finish_strip(device, id, words);
+}
+
+void c3d_strip_free(c3d_device *device, c3d_strip strip)
+{
+    if (strip.id == 0) return;
+    if (!c3d_pool_get(&device->strips, strip.id)) {
+        device->stats.stale_handles++;
+        return;
     }
-    device->indices_used += count;
-    return (c3d_strip){ id };
+    if (device->backend->flush) device->backend->flush(device->state);
+    give_strip(device, strip.id);
 }
 
 static int is_power_of_two(uint32_t value) { return value != 0 && (value & (value - 1)) == 0; }
@@ -257,6 +339,27 @@ void c3d_texture_free(c3d_device *device, c3d_texture texture)
     device->backend->texture_free(device->state, slot->texture);
     slot->texture = 0;
     c3d_pool_give(&device->textures, texture.id);
+}
+
+c3d_label c3d_label_make(c3d_device *device, const char *text)
+{
+    size_t length = 0;
+    while (length < C3D_LABEL_CHARS && text[length]) length++;
+    uint32_t id = length ? c3d_pool_take(&device->labels) : 0;
+    label_slot *label = c3d_pool_get(&device->labels, id);
+    if (!label) return (c3d_label){ 0 };
+    memcpy(label->text, text, length);
+    label->text[length] = 0;
+    return (c3d_label){ id };
+}
+
+void c3d_label_free(c3d_device *device, c3d_label label)
+{
+    if (label.id == 0) return;
+    if (c3d_pool_get(&device->labels, label.id))
+        c3d_pool_give(&device->labels, label.id);
+    else
+        device->stats.stale_handles++;
 }
 
 void c3d_begin(c3d_device *device, const c3d_frame *frame)
@@ -302,6 +405,57 @@ void c3d_draw_strip(c3d_device *device, const c3d_draw *draw)
     if (!(draw->flags & C3D_DRAW_WIREFRAME)) device->stats.frame_triangles += strip->data.triangles;
 }
 
+void c3d_draw_points(c3d_device *device, const c3d_draw *draw)
+{
+    assert(draw->point_px >= 1 && draw->point_px <= 64);
+    const mesh_slot *mesh = c3d_pool_get(&device->meshes, draw->mesh.id);
+    if (!mesh) {
+        device->stats.stale_handles++;
+        return;
+    }
+    c3d_draw points = *draw;
+    points.flags &= C3D_DRAW_COLOURED | C3D_DRAW_ON_TOP;
+    find_origin(device, draw->origin_wu);
+    c3d_resolved_draw resolved = { .draw = &points, .mesh = &mesh->data };
+    memcpy(resolved.eye_q14, device->eye_q14, sizeof resolved.eye_q14);
+    device->backend->draw(device->state, &resolved);
+    device->stats.frame_draws++;
+}
+
+/* Pixels to the right of, or below, the principal point. */
+static int64_t screen_px(int64_t eye_q14, int64_t z_q14, const c3d_camera *camera, int size_px)
+{
+    int64_t offset_q8 = c3d_muldiv64(eye_q14, camera->focal_q8, z_q14), most = (int64_t)1 << 40;
+    offset_q8 = offset_q8 > most ? most : offset_q8 < -most ? -most : offset_q8;
+    return (offset_q8 + size_px * 128) >> 8;
+}
+
+void c3d_draw_label(c3d_device *device, const c3d_label_draw *draw)
+{
+    const label_slot *label = c3d_pool_get(&device->labels, draw->label.id);
+    const c3d_camera *camera = &device->frame.camera;
+    int64_t eye[3], near_q14 = (int64_t)camera->near_wu << C3D_EYE_SHIFT;
+    if (!label) {
+        device->stats.stale_handles++;
+        return;
+    }
+    c3d_to_eye_q14(&device->rotation, draw->origin_wu, eye);
+    if (eye[2] < near_q14 || eye[2] > (int64_t)camera->far_wu << C3D_EYE_SHIFT) return;
+    int width_px = (int)strlen(label->text) * C3D_TEXT_ADVANCE_PX - 1;
+    int64_t nearer = eye[2] - (eye[2] >> 6),
+            x = screen_px(eye[0], eye[2], camera, camera->width) - width_px / 2 + draw->right_px,
+            y = screen_px(-eye[1], eye[2], camera, camera->height) - C3D_FONT_ROWS + 1 +
+                draw->down_px;
+    if (x <= -width_px || x >= camera->width || y <= -C3D_FONT_ROWS || y >= camera->height) return;
+    device->backend->label(device->state,
+                           &(c3d_placed_label){ .text = label->text,
+                                                .x = (int32_t)x,
+                                                .y = (int32_t)y,
+                                                .z_q14 = nearer < near_q14 ? near_q14 : nearer,
+                                                .colour = draw->colour });
+    device->stats.frame_draws++;
+}
+
 void c3d_overlay(c3d_device *device, c3d_texture texture, int x, int y, int width, int height)
 {
     const texture_slot *slot = c3d_pool_get(&device->textures, texture.id);
@@ -342,4 +496,5 @@ void c3d_get_stats(const c3d_device *device, c3d_stats *stats)
     stats->mesh_high = device->meshes.high;
     stats->strip_high = device->strips.high;
     stats->texture_high = device->textures.high;
+    stats->label_high = device->labels.high;
 }

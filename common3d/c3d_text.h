@@ -1,5 +1,5 @@
-/* Text into pictures for c3d_overlay: one small font, capitals only (lower case shows as capitals),
- * integers only. */
+/* Text into pictures for c3d_overlay, in the font of c3d_font.h. Text that stands in the scene is
+ * c3d.h's labels. */
 #ifndef C3D_TEXT_H
 #define C3D_TEXT_H
 

@@ -9,7 +9,9 @@
 #include "../c3d_backend.h"
 
 enum {
+    GL_POINTS = 0x0000,
     GL_LINES = 0x0001,
+    GL_TRIANGLES = 0x0004,
     GL_TRIANGLE_STRIP = 0x0005,
     GL_SRC_ALPHA = 0x0302,
     GL_ONE_MINUS_SRC_ALPHA = 0x0303,
@@ -88,6 +90,7 @@ enum {
     X(void, LoadMatrixf, (const float *matrix))                                            \
     X(void, MatrixMode, (unsigned mode))                                                   \
     X(void, PixelStorei, (unsigned name, int value))                                       \
+    X(void, PointSize, (float size))                                                       \
     X(void, ReadPixels,                                                                    \
       (int x, int y, int width, int height, unsigned format, unsigned type, void *pixels)) \
     X(void, TexCoordPointer, (int size, unsigned type, int stride, const void *pointer))   \

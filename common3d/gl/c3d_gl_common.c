@@ -1,5 +1,7 @@
 /* Fixed-function drawing shared by both GL back ends. */
 #include "c3d_gl_local.h"
+#include "../c3d_font.h"
+#include "../c3d_text.h"
 
 #include <string.h>
 
@@ -78,6 +80,7 @@ static void set_up(c3d_gl_state *state)
 void c3d_gl_close(void *opaque)
 {
     c3d_gl_state *state = opaque;
+    if (state->font) c3d_gl_texture_free(state, state->font);
     state->gl.Finish();
 }
 
@@ -235,6 +238,11 @@ void c3d_gl_draw(void *opaque, const c3d_resolved_draw *resolved)
         gl->Color4f(rgba[0], rgba[1], rgba[2], rgba[3]);
     }
     const c3d_strip_data *strip = resolved->strip;
+    if (!strip) {
+        gl->PointSize((float)draw->point_px);
+        gl->DrawArrays(GL_POINTS, 0, (int)resolved->mesh->count);
+        return;
+    }
     bind_elements(state, strip->buffer);
     if (draw->flags & C3D_DRAW_WIREFRAME)
         gl->DrawElements(GL_LINES, (int)strip->edge_count, GL_UNSIGNED_SHORT,
@@ -282,6 +290,86 @@ void c3d_gl_overlay(void *opaque, uint32_t texture, int x, int y, int width, int
     gl->VertexPointer(2, GL_FLOAT, 0, corners);
     gl->TexCoordPointer(2, GL_FLOAT, 0, corners);
     gl->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+/* ---- labels ---- */
+
+enum {
+    FONT_CELL_PX = 8,
+    FONT_COLUMNS = 16,
+    FONT_WIDTH = FONT_CELL_PX * FONT_COLUMNS,
+    FONT_HEIGHT = FONT_CELL_PX * C3D_FONT_GLYPHS / FONT_COLUMNS,
+    CHAR_VERTICES = 6 /* two triangles */
+};
+
+/* White on nothing. */
+static uint32_t upload_font(c3d_gl_state *state)
+{
+    uint16_t texels[FONT_WIDTH * FONT_HEIGHT] = { 0 }; /* RGBA5551 */
+    for (unsigned glyph = 0; glyph < C3D_FONT_GLYPHS; glyph++) {
+        const uint8_t *rows = c3d_font_rows(glyph);
+        uint16_t *cell = texels +
+                         (glyph / FONT_COLUMNS * FONT_WIDTH + glyph % FONT_COLUMNS) * FONT_CELL_PX;
+        for (int row = 0; row < C3D_FONT_ROWS; row++)
+            for (int column = 0; column < C3D_FONT_COLUMNS; column++)
+                cell[row * FONT_WIDTH + column] = rows[row] >> (C3D_FONT_COLUMNS - 1 - column) & 1
+                                                      ? 0xFFFF
+                                                      : 0xFFFE;
+    }
+    return c3d_gl_texture_upload(state, C3D_RGBA5551, FONT_WIDTH, FONT_HEIGHT, texels);
+}
+
+/* A letter's corner: where it is in eye space, and in the font. */
+typedef struct label_vertex {
+    float place[3], texel[2];
+} label_vertex;
+
+/* Corners of pixels at the label's depth. */
+static void place_letter(const c3d_gl_state *state, const c3d_placed_label *label, int i,
+                         label_vertex corner[CHAR_VERTICES])
+{
+    static const uint8_t of_quad[CHAR_VERTICES][2] = { { 0, 0 }, { 0, 1 }, { 1, 0 },
+                                                       { 1, 0 }, { 0, 1 }, { 1, 1 } };
+    unsigned glyph = c3d_font_index(label->text[i]);
+    double z = (double)label->z_q14 / (256.0 * (1 << C3D_EYE_SHIFT));
+    for (int c = 0; c < CHAR_VERTICES; c++) {
+        int right = of_quad[c][0] * C3D_FONT_COLUMNS, down = of_quad[c][1] * C3D_FONT_ROWS;
+        double x_px = label->x + i * C3D_TEXT_ADVANCE_PX + right, y_px = label->y + down;
+        corner[c].place[0] = (float)((2 * x_px / state->width - 1) * z / state->projection[0]);
+        corner[c].place[1] = (float)((1 - 2 * y_px / state->height) * z / state->projection[5]);
+        corner[c].place[2] = (float)-z;
+        corner[c].texel[0] = (float)(glyph % FONT_COLUMNS * FONT_CELL_PX + (unsigned)right) /
+                             FONT_WIDTH;
+        corner[c].texel[1] = (float)(glyph / FONT_COLUMNS * FONT_CELL_PX + (unsigned)down) /
+                             FONT_HEIGHT;
+    }
+}
+
+void c3d_gl_label(void *opaque, const c3d_placed_label *label)
+{
+    c3d_gl_state *state = opaque;
+    c3d_gl_api *gl = &state->gl;
+    label_vertex corner[C3D_LABEL_CHARS * CHAR_VERTICES];
+    float rgba[4];
+    int count = 0;
+    if (!state->font) state->font = upload_font(state);
+    if (!state->font) return;
+    for (int i = 0; label->text[i]; i++, count += CHAR_VERTICES)
+        place_letter(state, label, i, corner + count);
+    set_flags(state, C3D_DRAW_TEXTURED | C3D_DRAW_ALPHA_TEST);
+    state->flags = UINT32_MAX; /* no fog belongs to the label alone */
+    gl->Disable(GL_FOG);
+    gl->MatrixMode(GL_TEXTURE);
+    gl->LoadIdentity();
+    gl->MatrixMode(GL_MODELVIEW);
+    gl->LoadIdentity();
+    c3d_gl_colour(rgba, label->colour | 0xFF000000u);
+    gl->Color4f(rgba[0], rgba[1], rgba[2], rgba[3]);
+    bind_texture(state, state->font);
+    bind_array(state, 0);
+    gl->VertexPointer(3, GL_FLOAT, (int)sizeof *corner, corner->place);
+    gl->TexCoordPointer(2, GL_FLOAT, (int)sizeof *corner, corner->texel);
+    gl->DrawArrays(GL_TRIANGLES, 0, count);
 }
 
 void c3d_gl_end(void *opaque)

@@ -146,7 +146,9 @@ static void draw_now(soft_state *state, const c3d_resolved_draw *resolved, enum 
     memset(&state->segment, 0, sizeof state->segment);
     soft_transform(state, resolved);
     soft_choose_span(state);
-    if (resolved->draw->flags & C3D_DRAW_WIREFRAME)
+    if (!strip)
+        soft_points(state, resolved->mesh->count, resolved->draw->point_px);
+    else if (resolved->draw->flags & C3D_DRAW_WIREFRAME)
         soft_lines(state, strip->indices + strip->count, strip->edge_count);
     else
         soft_strip(state, strip->indices, strip->count);
@@ -259,6 +261,8 @@ const struct c3d_backend *c3d_backend_soft(void)
                                                 .texture_free = soft_texture_drop,
                                                 .begin = soft_begin,
                                                 .draw = soft_draw,
+                                                .label = soft_label,
+                                                .flush = soft_end,
                                                 .overlay = soft_overlay,
                                                 .end = soft_end,
                                                 .read_rows = soft_read_rows,

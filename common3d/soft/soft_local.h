@@ -234,6 +234,12 @@ void soft_span_holes(soft_state *state, const soft_segment *segment);
 /* soft_line.c */
 void soft_lines(soft_state *state, const uint16_t *indices, uint32_t count);
 
+/* soft_point.c: the first `count` vertices transformed last. */
+void soft_points(soft_state *state, uint32_t count, int32_t size_px);
+
+/* soft_label.c; soft_label_none.c where labels are left out */
+void soft_label(void *state, const c3d_placed_label *label);
+
 /* soft_pixels.c: any paint, any format. */
 void soft_segment_paint(soft_state *state, const soft_segment *segment);
 /* Between four texels of RGBA5551, from the upper left one, x and y in 1/32 texel: RGB565, or

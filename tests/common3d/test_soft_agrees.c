@@ -2,6 +2,7 @@
  * images and fog. A pixel agrees when it is within 8/255 of the other picture's, or of one of its
  * eight neighbours there (edges may lie a pixel apart): at most 0.5 % do not. */
 #include "../rig/client_fixture.h"
+#include "../rig/picture.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -72,39 +73,6 @@ static void draw(view *v, int heading)
     assert_int_equal(c3d_read_rgb(ff_client_device(v->rig.client), v->rgb), FF_OK);
 }
 
-static int apart(const uint8_t *a, const uint8_t *b)
-{
-    int most = 0;
-    for (int i = 0; i < 3; i++)
-        if (abs(a[i] - b[i]) > most) most = abs(a[i] - b[i]);
-    return most;
-}
-
-static int has_near(const uint8_t *pixel, const uint8_t *rgb, int x, int y)
-{
-    for (int row = y - 1; row <= y + 1; row++)
-        for (int column = x - 1; column <= x + 1; column++)
-            if (row >= 0 && row < HEIGHT && column >= 0 && column < WIDTH &&
-                apart(pixel, rgb + (row * WIDTH + column) * 3) <= TOLERANCE)
-                return 1;
-    return 0;
-}
-
-/* Pixels of either picture without a like in the other; *strict: without allowing for edges. */
-static int disagreement(const uint8_t *a, const uint8_t *b, int *strict)
-{
-    int count = 0;
-    *strict = 0;
-    for (int y = 0; y < HEIGHT; y++)
-        for (int x = 0; x < WIDTH; x++) {
-            const uint8_t *p = a + (y * WIDTH + x) * 3, *q = b + (y * WIDTH + x) * 3;
-            if (apart(p, q) <= TOLERANCE) continue;
-            ++*strict;
-            count += !has_near(p, b, x, y) || !has_near(q, a, x, y);
-        }
-    return count;
-}
-
 /* A picture that shows next to nothing would agree with anything. */
 static int colours_in(const uint8_t *rgb)
 {
@@ -123,7 +91,7 @@ static void write_difference(const char *path, const view *a, const view *b)
     static uint8_t wide[PIXELS * 9];
     for (int y = 0; y < HEIGHT; y++)
         for (int x = 0; x < WIDTH; x++) {
-            int at = (y * WIDTH + x) * 3, difference = 8 * apart(a->rgb + at, b->rgb + at);
+            int at = (y * WIDTH + x) * 3, difference = 8 * picture_apart(a->rgb + at, b->rgb + at);
             uint8_t *out = wide + (y * WIDTH * 3 + x) * 3;
             memcpy(out, a->rgb + at, 3);
             memcpy(out + WIDTH * 3, b->rgb + at, 3);
@@ -140,7 +108,8 @@ static void compare_scene(const soft_scene *scene)
         for (int kind = 0; kind < KINDS; kind++) draw(&views[kind], heading);
         assert_true(colours_in(views[GLES1].rgb) >= 5);
         for (int kind = SOFT; kind < KINDS; kind++) {
-            int strict, count = disagreement(views[GLES1].rgb, views[kind].rgb, &strict);
+            int strict, count = picture_disagreement(views[GLES1].rgb, views[kind].rgb, WIDTH,
+                                                     HEIGHT, TOLERANCE, &strict);
             assert_true(rig_same_picture(&views[GLES1].rig, &views[kind].rig));
             if (count >= worst[kind]) {
                 char path[128];

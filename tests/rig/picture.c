@@ -39,6 +39,7 @@ static int open_device(picture_kit *kit, int use_vertex_buffers)
                       .mesh_count = 64,
                       .strip_count = 8,
                       .texture_count = 8,
+                      .label_count = 8,
                       .mesh_vertices_max = 1089,
                       .strip_indices_max = 8192,
                       .use_vertex_buffers = (uint8_t)use_vertex_buffers,
@@ -146,4 +147,39 @@ int picture_is(picture_kit *kit, const c3d_draw *draws, size_t count, const char
     if (strcmp(text, expected) == 0) return 1;
     printf("# drawn by %s:\n%s# expected:\n%s", kit->api->name, text, expected);
     return 0;
+}
+
+int picture_apart(const uint8_t *a, const uint8_t *b)
+{
+    int most = 0;
+    for (int i = 0; i < 3; i++)
+        if (abs(a[i] - b[i]) > most) most = abs(a[i] - b[i]);
+    return most;
+}
+
+static int has_near(const uint8_t *pixel, const uint8_t *rgb, int width, int height, int x, int y,
+                    int tolerance)
+{
+    for (int row = y - 1; row <= y + 1; row++)
+        for (int column = x - 1; column <= x + 1; column++)
+            if (row >= 0 && row < height && column >= 0 && column < width &&
+                picture_apart(pixel, rgb + (row * width + column) * 3) <= tolerance)
+                return 1;
+    return 0;
+}
+
+int picture_disagreement(const uint8_t *a, const uint8_t *b, int width, int height, int tolerance,
+                         int *strict)
+{
+    int count = 0;
+    *strict = 0;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const uint8_t *p = a + (y * width + x) * 3, *q = b + (y * width + x) * 3;
+            if (picture_apart(p, q) <= tolerance) continue;
+            ++*strict;
+            count += !has_near(p, b, width, height, x, y, tolerance) ||
+                     !has_near(q, a, width, height, x, y, tolerance);
+        }
+    return count;
 }

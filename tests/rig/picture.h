@@ -52,6 +52,13 @@ void picture_text(const uint8_t *rgb, int width, int height, char *text);
 /* Renders and compares with the expected text; prints both and returns 0 when they differ. */
 int picture_is(picture_kit *kit, const c3d_draw *draws, size_t count, const char *expected);
 
+/* Largest difference of two pixels' colours. */
+int picture_apart(const uint8_t *a, const uint8_t *b);
+/* Pixels of either picture without a like in the other, within `tolerance` there or next to it
+ * (edges may lie a pixel apart); *strict: without allowing for edges. */
+int picture_disagreement(const uint8_t *a, const uint8_t *b, int width, int height, int tolerance,
+                         int *strict);
+
 #define PICTURE_RED   0xFF0000FFu
 #define PICTURE_GREEN 0xFF00FF00u
 #define PICTURE_BLUE  0xFFFF0000u
