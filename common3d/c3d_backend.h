@@ -35,7 +35,7 @@ typedef struct c3d_strip_data {
 typedef struct c3d_resolved_draw {
     const c3d_draw *draw;
     const c3d_mesh_data *mesh;
-    const c3d_strip_data *strip; /* NULL: the mesh's vertices as points */
+    const c3d_strip_data *strip; /* NULL for points */
     uint32_t texture;            /* the back end's name; 0: untextured */
     /* origin of the mesh: x right, y up, z forward, wu with C3D_EYE_SHIFT fraction bits */
     int64_t eye_q14[3];
@@ -68,6 +68,8 @@ struct c3d_backend {
     void (*texture_free)(void *state, uint32_t texture);
     void (*begin)(void *state, const c3d_frame *frame, const c3d_rotation *rotation);
     void (*draw)(void *state, const c3d_resolved_draw *resolved);
+    void (*points)(void *state,
+                   const c3d_resolved_draw *resolved); /* COLOURED, ON_TOP or neither */
     void (*label)(void *state, const c3d_placed_label *label);
     /* Draws what was kept for later: a strip goes away that may be part of it. NULL: nothing is. */
     void (*flush)(void *state);

@@ -41,7 +41,7 @@ struct c3d_device {
     const struct c3d_backend *backend;
     void *state;
     c3d_desc desc;
-    c3d_pool meshes, strips, textures, labels;
+    c3d_pool meshes, strips, textures;
     uint16_t *scratch;    /* a strip and its edges, before they are uploaded */
     c3d_vertex *vertices; /* mesh_vertices_max for each mesh slot; NULL with vertex buffers */
     uint16_t *indices;    /* INDEX_WORDS for each index; NULL with vertex buffers */
@@ -50,6 +50,7 @@ struct c3d_device {
     c3d_rotation rotation;
     int64_t origin_wu[3], eye_q14[3]; /* of the last draw: those of a ground's nodes are one */
     c3d_stats stats;
+    c3d_pool labels;
     uint8_t read[READ_BYTES];
 };
 
@@ -415,10 +416,9 @@ void c3d_draw_points(c3d_device *device, const c3d_draw *draw)
     }
     c3d_draw points = *draw;
     points.flags &= C3D_DRAW_COLOURED | C3D_DRAW_ON_TOP;
-    find_origin(device, draw->origin_wu);
     c3d_resolved_draw resolved = { .draw = &points, .mesh = &mesh->data };
-    memcpy(resolved.eye_q14, device->eye_q14, sizeof resolved.eye_q14);
-    device->backend->draw(device->state, &resolved);
+    c3d_to_eye_q14(&device->rotation, points.origin_wu, resolved.eye_q14);
+    device->backend->points(device->state, &resolved);
     device->stats.frame_draws++;
 }
 

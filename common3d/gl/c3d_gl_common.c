@@ -212,9 +212,8 @@ static void set_texture(c3d_gl_state *state, const c3d_resolved_draw *resolved)
     state->gl.MatrixMode(GL_MODELVIEW);
 }
 
-void c3d_gl_draw(void *opaque, const c3d_resolved_draw *resolved)
+static void set_mesh(c3d_gl_state *state, const c3d_resolved_draw *resolved)
 {
-    c3d_gl_state *state = opaque;
     c3d_gl_api *gl = &state->gl;
     const c3d_draw *draw = resolved->draw;
     /* NULL with a buffer: pointers are offsets then */
@@ -237,18 +236,28 @@ void c3d_gl_draw(void *opaque, const c3d_resolved_draw *resolved)
         c3d_gl_colour(rgba, draw->colour);
         gl->Color4f(rgba[0], rgba[1], rgba[2], rgba[3]);
     }
+}
+
+void c3d_gl_draw(void *opaque, const c3d_resolved_draw *resolved)
+{
+    c3d_gl_state *state = opaque;
+    c3d_gl_api *gl = &state->gl;
     const c3d_strip_data *strip = resolved->strip;
-    if (!strip) {
-        gl->PointSize((float)draw->point_px);
-        gl->DrawArrays(GL_POINTS, 0, (int)resolved->mesh->count);
-        return;
-    }
+    set_mesh(state, resolved);
     bind_elements(state, strip->buffer);
-    if (draw->flags & C3D_DRAW_WIREFRAME)
+    if (resolved->draw->flags & C3D_DRAW_WIREFRAME)
         gl->DrawElements(GL_LINES, (int)strip->edge_count, GL_UNSIGNED_SHORT,
                          offset_pointer(strip->indices, strip->count * sizeof *strip->indices));
     else
         gl->DrawElements(GL_TRIANGLE_STRIP, (int)strip->count, GL_UNSIGNED_SHORT, strip->indices);
+}
+
+void c3d_gl_points(void *opaque, const c3d_resolved_draw *resolved)
+{
+    c3d_gl_state *state = opaque;
+    set_mesh(state, resolved);
+    state->gl.PointSize((float)resolved->draw->point_px);
+    state->gl.DrawArrays(GL_POINTS, 0, (int)resolved->mesh->count);
 }
 
 /* A rectangle in clip coordinates; t = 0 is the picture's first row, at the top. */

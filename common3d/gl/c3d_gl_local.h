@@ -29,6 +29,7 @@ uint32_t c3d_gl_texture_upload(void *state, enum c3d_texture_format format, uint
 void c3d_gl_texture_free(void *state, uint32_t texture);
 void c3d_gl_begin(void *state, const c3d_frame *frame, const c3d_rotation *rotation);
 void c3d_gl_draw(void *state, const c3d_resolved_draw *resolved);
+void c3d_gl_points(void *state, const c3d_resolved_draw *resolved);
 void c3d_gl_label(void *state, const c3d_placed_label *label);
 void c3d_gl_overlay(void *state, uint32_t texture, int x, int y, int width, int height);
 void c3d_gl_end(void *state);
@@ -39,8 +40,8 @@ int c3d_gl_read_rows(void *state, uint32_t width, uint32_t first_row, uint32_t r
     .state_bytes = sizeof(c3d_gl_state), .close = c3d_gl_close, .mesh_upload = c3d_gl_mesh_upload, \
     .strip_upload = c3d_gl_strip_upload, .buffer_free = c3d_gl_buffer_free,                        \
     .texture_upload = c3d_gl_texture_upload, .texture_free = c3d_gl_texture_free,                  \
-    .begin = c3d_gl_begin, .draw = c3d_gl_draw, .label = c3d_gl_label, .overlay = c3d_gl_overlay,  \
-    .end = c3d_gl_end, .read_rows = c3d_gl_read_rows
+    .begin = c3d_gl_begin, .draw = c3d_gl_draw, .points = c3d_gl_points, .label = c3d_gl_label,    \
+    .overlay = c3d_gl_overlay, .end = c3d_gl_end, .read_rows = c3d_gl_read_rows
 
 /* Matrices, column by column, in metres (c3d_gl_matrix.c). */
 void c3d_gl_projection(float matrix[16], const c3d_camera *camera);

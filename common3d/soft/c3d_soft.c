@@ -146,9 +146,7 @@ static void draw_now(soft_state *state, const c3d_resolved_draw *resolved, enum 
     memset(&state->segment, 0, sizeof state->segment);
     soft_transform(state, resolved);
     soft_choose_span(state);
-    if (!strip)
-        soft_points(state, resolved->mesh->count, resolved->draw->point_px);
-    else if (resolved->draw->flags & C3D_DRAW_WIREFRAME)
+    if (resolved->draw->flags & C3D_DRAW_WIREFRAME)
         soft_lines(state, strip->indices + strip->count, strip->edge_count);
     else
         soft_strip(state, strip->indices, strip->count);
@@ -194,6 +192,19 @@ static void soft_draw(void *opaque, const c3d_resolved_draw *resolved)
     if (backdrop) draw_deferred(state);
     if (!backdrop) state->painted = 1;
     draw_now(state, resolved, backdrop ? SOFT_DEPTH_NONE : SOFT_DEPTH_TEST);
+}
+
+static void soft_draw_points(void *opaque, const c3d_resolved_draw *resolved)
+{
+    soft_state *state = opaque;
+    if (state->blank) return;
+    state->painted = 1;
+    state->paint = (soft_paint){ .depth = SOFT_DEPTH_TEST,
+                                 .coloured = (resolved->draw->flags & C3D_DRAW_COLOURED) != 0,
+                                 .fog = state->frame.fog_end_wu > 0,
+                                 .on_top = (resolved->draw->flags & C3D_DRAW_ON_TOP) != 0 };
+    soft_transform(state, resolved);
+    soft_points(state, resolved->mesh->count, resolved->draw->point_px);
 }
 
 /* A texture of a deferred backdrop goes away: what waits is drawn while it is there. */
@@ -261,6 +272,7 @@ const struct c3d_backend *c3d_backend_soft(void)
                                                 .texture_free = soft_texture_drop,
                                                 .begin = soft_begin,
                                                 .draw = soft_draw,
+                                                .points = soft_draw_points,
                                                 .label = soft_label,
                                                 .flush = soft_end,
                                                 .overlay = soft_overlay,

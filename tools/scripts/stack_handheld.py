@@ -17,7 +17,8 @@ THROUGH_POINTERS = [
     (r"^c3d_mesh_|c3d_device\.c:(finish|give)_strip$", None),  # buffers of a GL: the soft back end has none
     (r"^c3d_strip_free$", r"soft/c3d_soft\.c:soft_end"),
     (r"^c3d_begin$", r"soft/c3d_soft\.c:soft_begin"),
-    (r"^c3d_draw_(strip|points)$", r"soft/c3d_soft\.c:soft_draw"),
+    (r"^c3d_draw_strip$", r"soft/c3d_soft\.c:soft_draw$"),
+    (r"^c3d_draw_points$", r"soft/c3d_soft\.c:soft_draw_points$"),
     (r"^c3d_draw_label$", r"^soft_label$"),
     (r"^c3d_overlay$", r"soft/c3d_soft\.c:soft_overlay"),
     (r"^c3d_end$", r"soft/c3d_soft\.c:soft_end"),
