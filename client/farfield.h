@@ -177,7 +177,22 @@ void ff_client_set_balance(ff_client *client, const ff_balance_desc *balance);
  * From the first call on it stands in for the triangles counted by the client. 0: triangles
  * again. */
 void ff_client_frame_cost(ff_client *client, uint32_t cost);
-enum ff_show { FF_SHOW_WIREFRAME = 1, FF_SHOW_NODE_BORDERS = 2, FF_SHOW_NO_FOG = 4 };
+/* Ways to draw, besides the plain one; any of them together. The one list: a mode is a row here and
+ * what FF_SHOW_... makes of it in client/ground. X(NAME, option, key and name in farfield-view's
+ * help, option's help) */
+/* clang-format off */
+#define FF_SHOW_MODES(X) \
+    X(WIREFRAME, "wireframe", "m", "mesh", "the strips as lines, stitching strips in another colour") \
+    X(NODE_BORDERS, "borders", "b", "node borders", "the nodes' borders as lines") \
+    X(NO_FOG, "no-fog", "f", "fog", "far ground as clear as near ground")
+#define X(NAME, option, key, name, help) FF_SHOW_INDEX_##NAME,
+enum ff_show_index { FF_SHOW_MODES(X) };
+#undef X
+#define X(NAME, option, key, name, help) FF_SHOW_##NAME = 1 << FF_SHOW_INDEX_##NAME,
+enum ff_show { FF_SHOW_MODES(X) };
+#undef X
+/* clang-format on */
+/* `show`: bits of enum ff_show. */
 void ff_client_set_show(ff_client *client, unsigned show);
 
 /* NULL until the terrain is known. */

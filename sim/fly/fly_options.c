@@ -64,8 +64,9 @@ static const char help_picture[] = /* compilers need not take longer strings */
     "  --png DIR             pictures every --every seconds (default 10) into DIR\n"
     "  --every S\n"
     "  --reference DIR       with --png: the same moments into DIR as they should look, drawn from the pack without a link, to a quarter\n"
-    "                        of a pixel and with all images\n"
-    "  --wireframe           the strips as lines, stitching strips in another colour\n"
+    "                        of a pixel and with all images\n";
+
+static const char help_checking[] =
     "\n"
     " checking\n"
     "  --audit on|off        err_px against the whole true ground, default off\n"
@@ -74,6 +75,16 @@ static const char help_picture[] = /* compilers need not take longer strings */
     "  --check on|off        every frame searched for cracks on integer vertices; default: as --audit\n"
     "  --sample S            time between rows, default 1\n"
     "  --tape FILE           records all that comes to the client, for farfield-handheld --tape (not with --server, --event, --balance)\n";
+
+static void print_help(void)
+{
+    fputs(help, stdout);
+    fputs(help_picture, stdout);
+#define X(NAME, option, key, name, help) printf("  --%-20s%s\n", option, help);
+    FF_SHOW_MODES(X)
+#undef X
+    fputs(help_checking, stdout);
+}
 
 enum option_id {
     OPT_PACK = 256,
@@ -106,7 +117,6 @@ enum option_id {
     OPT_PNG,
     OPT_REFERENCE,
     OPT_EVERY,
-    OPT_WIREFRAME,
     OPT_AUDIT,
     OPT_CHECK,
     OPT_SAMPLE,
@@ -115,7 +125,8 @@ enum option_id {
     OPT_GROUND_CACHE,
     OPT_BALANCE,
     OPT_HELP,
-    OPT_VERSION
+    OPT_VERSION,
+    OPT_SHOW /* the first of FF_SHOW_MODES; none comes after them */
 };
 
 static const struct option long_options[] = { { "pack", 1, NULL, OPT_PACK },
@@ -148,7 +159,11 @@ static const struct option long_options[] = { { "pack", 1, NULL, OPT_PACK },
                                               { "reference", 1, NULL, OPT_REFERENCE },
                                               { "png", 1, NULL, OPT_PNG },
                                               { "every", 1, NULL, OPT_EVERY },
-                                              { "wireframe", 0, NULL, OPT_WIREFRAME },
+/* clang-format off */
+#define X(NAME, option, key, name, help) { option, 0, NULL, OPT_SHOW + FF_SHOW_INDEX_##NAME },
+                                              FF_SHOW_MODES(X)
+#undef X
+                                              /* clang-format on */
                                               { "audit", 1, NULL, OPT_AUDIT },
                                               { "check", 1, NULL, OPT_CHECK },
                                               { "sample", 1, NULL, OPT_SAMPLE },
@@ -419,7 +434,6 @@ static int parse_one(fly_options *options, int id, const char *text)
         case OPT_DOWN_TRACE: options->link.way[SIM_DOWN].trace = text; return 0;
         case OPT_UP_TRACE: options->link.way[SIM_UP].trace = text; return 0;
         case OPT_JSON: options->json = 1; return 0;
-        case OPT_WIREFRAME: options->wireframe = 1; return 0;
         case OPT_PLAIN: options->plain_arrays = 1; return 0;
         case OPT_LINK: return parse_link(options, text);
         case OPT_QUALITY: options->quality_text = text; return parse_quality(options, text);
@@ -439,8 +453,11 @@ static int parse_one(fly_options *options, int id, const char *text)
             if (parse_switch("panorama", text, &on)) return -1;
             options->panorama.enabled = (uint8_t)on;
             return 0;
-        default: return parse_one_number(options, id, text);
+        default: break;
     }
+    if (id < OPT_SHOW) return parse_one_number(options, id, text);
+    options->show |= 1u << (id - OPT_SHOW);
+    return 0;
 }
 
 int fly_options_parse(fly_options *options, int argc, char **argv)
@@ -471,8 +488,10 @@ int fly_options_parse(fly_options *options, int argc, char **argv)
     (void)parse_quality(options, "low");
     for (int id; (id = getopt_long(argc, argv, "", long_options, NULL)) != -1;) {
         if (id == OPT_HELP || id == OPT_VERSION) {
-            fputs(id == OPT_HELP ? help : "farfield-fly " FARFIELD_VERSION "\n", stdout);
-            fputs(id == OPT_HELP ? help_picture : "", stdout);
+            if (id == OPT_HELP)
+                print_help();
+            else
+                puts("farfield-fly " FARFIELD_VERSION);
             return 1;
         }
         if (id == '?' || parse_one(options, id, optarg)) return -1;

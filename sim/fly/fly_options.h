@@ -55,7 +55,8 @@ typedef struct fly_options {
     /* decoded heights of the pack, for the audit; NULL: decoded for this flight alone */
     const char *ground_cache;
     uint32_t audit_step_px;
-    int audit, check, json, wireframe, plain_arrays;
+    int audit, check, json, plain_arrays;
+    unsigned show; /* enum ff_show */
     const char *csv_path, *png_dir;
     /* all that comes to the client, for farfield-handheld; NULL: not recorded */
     const char *tape_path;

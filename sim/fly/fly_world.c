@@ -134,7 +134,7 @@ static int open_client(fly_world *world)
         world->client = NULL;
         return fail("client", rc);
     }
-    if (options->wireframe) ff_client_set_show(world->client, FF_SHOW_WIREFRAME);
+    ff_client_set_show(world->client, options->show);
     return 0;
 }
 

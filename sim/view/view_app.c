@@ -160,8 +160,7 @@ int view_app_open(view_app *app, const view_options *options)
     view_fly_init(&app->fly, options->width, options->height, options->fov_brad16);
     app->fly.camera.yaw = options->yaw_brad16;
     if (open_files(app) || open_terrain(app) || open_picture(app)) return -1;
-    app->show = (options->wireframe ? FF_SHOW_WIREFRAME : 0u) |
-                (options->borders ? FF_SHOW_NODE_BORDERS : 0u);
+    app->show = options->show;
     ff_client_set_show(app->client, app->show);
     return 0;
 }

@@ -21,14 +21,18 @@ static const char help[] = "w s a d   fly (or up, down)\n"
                            "enter     cruise   space stop\n"
                            "drag      look     scroll speed\n"
                            "+ -       quality\n"
-                           "m mesh    b node borders\n"
-                           "f fog     p panorama\n"
-                           "l link    h text\n"
-                           "r start   esc quit\n"
-                           "f1 help   f2 position fix\n"
-                           "f3 tilt   f4 touch\n"
-                           "f5 battery low / ok\n"
-                           "f6 interruption   f12 picture\n";
+/* clang-format off */
+#define X(NAME, option, key, name, help) key " " name "\n"
+                           FF_SHOW_MODES(X)
+#undef X
+    /* clang-format on */
+    "p panorama  l link\n"
+    "h text\n"
+    "r start   esc quit\n"
+    "f1 help   f2 position fix\n"
+    "f3 tilt   f4 touch\n"
+    "f5 battery low / ok\n"
+    "f6 interruption   f12 picture\n";
 
 static void put(view_hud *hud, const char *format, ...) __attribute__((format(printf, 2, 3)));
 static void put(view_hud *hud, const char *format, ...)

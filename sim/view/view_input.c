@@ -94,10 +94,17 @@ static void inject(view_app *app, int function_key)
 }
 
 /* ---- switches ---- */
-static void toggle_show(view_app *app, unsigned bit)
+/* 1 when the key is that of a way to draw. */
+static int toggle_show(view_app *app, int code)
 {
+    unsigned bit = 0;
+#define X(NAME, option, key, name, help) \
+    if (code == (key)[0]) bit = FF_SHOW_##NAME;
+    FF_SHOW_MODES(X)
+#undef X
     app->show ^= bit;
-    ff_client_set_show(app->client, app->show);
+    if (bit) ff_client_set_show(app->client, app->show);
+    return bit != 0;
 }
 
 static void change_quality(view_app *app, int finer)
@@ -127,9 +134,6 @@ static void press(view_app *app, int code)
 {
     static char path[64];
     switch (code) {
-        case 'm': toggle_show(app, FF_SHOW_WIREFRAME); break;
-        case 'b': toggle_show(app, FF_SHOW_NODE_BORDERS); break;
-        case 'f': toggle_show(app, FF_SHOW_NO_FOG); break;
         case 'p':
             app->panorama.enabled = !app->panorama.enabled;
             ff_client_set_panorama(app->client, &app->panorama);
@@ -150,7 +154,10 @@ static void press(view_app *app, int code)
             snprintf(path, sizeof path, "farfield-view-%u.png", ++app->screenshots);
             app->screenshot = path;
             break;
-        default: inject(app, code - SYS_KEY_F1 + 1); return;
+        default:
+            if (toggle_show(app, code)) break;
+            inject(app, code - SYS_KEY_F1 + 1);
+            return;
     }
     app->redraw = 1;
 }

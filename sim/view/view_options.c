@@ -12,6 +12,7 @@
 #define MEMORY_MB_DEFAULT 16
 #define KILOMETRE_WU      (1000 * FF_WU_PER_METRE)
 
+/* Before and after the ways to draw. */
 static const char usage[] =
     "Usage: farfield-view [OPTION]... ADDR:PORT | PACK\n"
     "Fly over terrain from a server or a pack: the desktop emulator.\n"
@@ -22,9 +23,9 @@ static const char usage[] =
     "      --fov DEGREES         horizontal field of view, 0.1 to 170 (default 60)\n"
     "      --headless            no window: draw off screen\n"
     "      --plain-arrays        no vertex buffers\n"
-    "      --wireframe           begin with the wireframe shown\n"
-    "      --borders             begin with node borders shown\n"
-    "      --no-hud              begin without the text\n"
+    "      --no-hud              begin without the text\n";
+
+static const char usage_terrain[] =
     "\n"
     "Terrain:\n"
     "      --quality Q           low (default), high, C:DEPTH, or px:E for E pixels of error\n"
@@ -59,8 +60,6 @@ enum option_id {
     OPT_FOV,
     OPT_HEADLESS,
     OPT_PLAIN,
-    OPT_WIREFRAME,
-    OPT_BORDERS,
     OPT_NO_HUD,
     OPT_QUALITY,
     OPT_PANORAMA,
@@ -76,7 +75,8 @@ enum option_id {
     OPT_JSON,
     OPT_BALANCE,
     OPT_HELP,
-    OPT_VERSION
+    OPT_VERSION,
+    OPT_SHOW /* the first of FF_SHOW_MODES; none comes after them */
 };
 
 static const struct option long_options[] = { { "backend", required_argument, NULL, OPT_BACKEND },
@@ -84,8 +84,11 @@ static const struct option long_options[] = { { "backend", required_argument, NU
                                               { "fov", required_argument, NULL, OPT_FOV },
                                               { "headless", no_argument, NULL, OPT_HEADLESS },
                                               { "plain-arrays", no_argument, NULL, OPT_PLAIN },
-                                              { "wireframe", no_argument, NULL, OPT_WIREFRAME },
-                                              { "borders", no_argument, NULL, OPT_BORDERS },
+/* clang-format off */
+#define X(NAME, option, key, name, help) { option, no_argument, NULL, OPT_SHOW + FF_SHOW_INDEX_##NAME },
+                                              FF_SHOW_MODES(X)
+#undef X
+                                              /* clang-format on */
                                               { "no-hud", no_argument, NULL, OPT_NO_HUD },
                                               { "quality", required_argument, NULL, OPT_QUALITY },
                                               { "panorama", required_argument, NULL, OPT_PANORAMA },
@@ -217,8 +220,6 @@ static int take_plain(view_options *o, int option, const char *text)
     switch (option) {
         case OPT_HEADLESS: o->headless = 1; return 1;
         case OPT_PLAIN: o->plain_arrays = 1; return 1;
-        case OPT_WIREFRAME: o->wireframe = 1; return 1;
-        case OPT_BORDERS: o->borders = 1; return 1;
         case OPT_NO_HUD: o->no_hud = 1; return 1;
         case OPT_JSON: o->json = 1; return 1;
         case OPT_LINK: o->link = text; return 1;
@@ -226,8 +227,20 @@ static int take_plain(view_options *o, int option, const char *text)
         case OPT_KEYS: o->keys = text; return 1;
         case OPT_SCREENSHOT: o->screenshot = text; return 1;
         case OPT_EVENTS: o->events = text; return 1;
-        default: return 0;
+        default: break;
     }
+    if (option < OPT_SHOW) return 0;
+    o->show |= 1u << (option - OPT_SHOW);
+    return 1;
+}
+
+static void print_usage(void)
+{
+    fputs(usage, stdout);
+#define X(NAME, option, key, name, help) printf("      --%-20sbegin with: %s\n", option, help);
+    FF_SHOW_MODES(X)
+#undef X
+    fputs(usage_terrain, stdout);
 }
 
 int view_options_parse(view_options *o, int argc, char **argv)
@@ -241,7 +254,7 @@ int view_options_parse(view_options *o, int argc, char **argv)
                          .above_wu = VIEW_START_ABOVE_WU };
     read_quality("low", &o->quality);
     while ((option = getopt_long(argc, argv, "", long_options, &index)) != -1) {
-        if (option == OPT_HELP) return fputs(usage, stdout), 1;
+        if (option == OPT_HELP) return print_usage(), 1;
         if (option == OPT_VERSION) return puts("farfield-view " FARFIELD_VERSION), 1;
         if (option == '?') return view_fail("try --help");
         if (take_plain(o, option, optarg)) continue;

@@ -21,7 +21,8 @@ typedef struct view_options {
     int32_t yaw_brad16;
     const char *script, *keys, *events, *screenshot;
     uint32_t frames; /* 0: until quit */
-    int headless, wireframe, borders, no_hud, plain_arrays, json;
+    unsigned show;   /* enum ff_show, to begin with */
+    int headless, no_hud, plain_arrays, json;
 } view_options;
 
 /* 0: go on; 1: --help or --version answered; -1: wrong, said why. */
