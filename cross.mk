@@ -19,7 +19,7 @@ $(CROSS_STAMP): tools/scripts/cross-libs.sh
 NO ?=
 $(if $(filter-out $(FEATURES),$(NO)),$(error NO=$(NO): the features are $(FEATURES)))
 
-DEVICE_CORE := $(filter-out protocol/codec/ff_encode.c common3d/gl%,$(SRC_core))
+DEVICE_CORE := $(filter-out protocol/codec/ff_encode% protocol/zlib/ff_deflate% common3d/gl%,$(SRC_core))
 DEVICE_PLATFORM := $(filter-out platform/sim/% platform/posix/png.c,$(SRC_platform))
 DEVICE_PROGRAM := $(call srcs,sim/handheld) sim/tape/sim_tape.c sim/handheld/handheld_main.c
 

@@ -45,24 +45,32 @@ static void look_at_link(ff_client *client)
     }
 }
 
-/* 1 when the picture may have changed. A face brings its own refusals: its set must know of them.
- */
-static int take_item(ff_client *client, const ff_new_item *item, int64_t now_us)
+/* Heights into the tree. A codec may find only here, with the parent's heights, that a payload is
+ * bad: the item then has that error, as if the worker had found it. */
+static int deliver(ff_client *client, ff_new_item *item)
 {
-    if (ff_kind[item->kind].data == FF_DATA_FACES)
-        return ff_panorama_take(&client->panorama, item, now_us);
+    int rc = item->kind == FF_WANT_ROOT
+                 ? ff_tree_deliver_root(client->tree, ff_key_tile(item->key), &item->residuals)
+                 : ff_tree_deliver_children(client->tree, item->key, &item->residuals);
+    if (rc != FF_OK && rc != FF_ERR_FULL && rc != FF_ERR_NOT_FOUND) {
+        item->error = rc;
+        ff_refusals_note(&client->refusals, item->kind, item->key);
+    }
+    return rc == FF_OK;
+}
+
+/* 1 when the picture may have changed. A face brings its own refusals: its set must know of
+ * them. */
+static int take_item(ff_client *client, ff_new_item *item, int64_t now_us)
+{
+    enum ff_data_class data = (enum ff_data_class)ff_kind[item->kind].data;
+    if (data == FF_DATA_FACES) return ff_panorama_take(&client->panorama, item, now_us);
     if (item->error != FF_OK) {
         ff_refusals_note(&client->refusals, item->kind, item->key);
         return 0;
     }
-    switch (item->kind) {
-        case FF_WANT_ROOT:
-            return ff_tree_deliver_root(client->tree, ff_key_tile(item->key), &item->residuals) ==
-                   FF_OK;
-        case FF_WANT_REFINEMENT:
-            return ff_tree_deliver_children(client->tree, item->key, &item->residuals) == FF_OK;
-        default: return ff_textures_take(&client->textures, item);
-    }
+    return data == FF_DATA_IMAGES ? ff_textures_take(&client->textures, item)
+                                  : deliver(client, item);
 }
 
 /* How the request of its last item ends. A face that came and cannot be decoded ends it like any

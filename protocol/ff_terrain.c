@@ -40,12 +40,11 @@ int ff_terrain_check(const ff_terrain_info *info)
 {
     int levels_ok = info->node_log2 >= 1 && info->node_log2 <= FF_NODE_LOG2_MAX &&
                     info->tile_log2 >= info->node_log2 && info->tile_log2 <= 15;
-    int kinds_ok = info->codec < FF_CODEC_COUNT &&
-                   (info->flags & ~(FF_TERRAIN_DENSIFIED | FF_TERRAIN_LOSSY)) == 0;
+    int flags_ok = (info->flags & ~(FF_TERRAIN_DENSIFIED | FF_TERRAIN_LOSSY)) == 0;
 
-    return levels_ok && kinds_ok && grid_ok(info) && heights_ok(info) && textures_ok(info)
-               ? FF_OK
-               : FF_ERR_RANGE;
+    if (!levels_ok || !flags_ok || !grid_ok(info) || !heights_ok(info) || !textures_ok(info))
+        return FF_ERR_RANGE;
+    return ff_codec_name(info->codec) ? FF_OK : FF_ERR_UNSUPPORTED;
 }
 
 void ff_node_origin_wu(const ff_terrain_info *info, ff_key key, int32_t *x_wu, int32_t *y_wu)

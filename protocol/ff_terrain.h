@@ -15,16 +15,6 @@
 
 #define FF_WU_PER_METRE 256
 
-enum ff_codec_id {
-    /* residuals as 16-bit values, for tests and as the floor of every comparison */
-    FF_CODEC_RAW = 0,
-    /* residuals cut into low bits and high parts, these by raw deflate (zlib) or in unary */
-    FF_CODEC_DEFLATE = 1,
-    /* as DEFLATE, but high parts always in unary (Golomb-Rice): for devices without zlib */
-    FF_CODEC_RICE = 2,
-    FF_CODEC_COUNT
-};
-
 enum ff_terrain_flags {
     FF_TERRAIN_DENSIFIED = 1, /* part of the detail is invented (farfield-bake --densify) */
     FF_TERRAIN_LOSSY = 2      /* max_error > 0 */
@@ -33,7 +23,7 @@ enum ff_terrain_flags {
 typedef struct ff_terrain_info {
     uint8_t node_log2; /* k: a node holds (2^k+1)^2 heights; 1..5 */
     uint8_t tile_log2; /* n: a tile holds (2^n+1)^2 heights; k..k+15, at most 15 */
-    uint8_t codec;     /* enum ff_codec_id */
+    uint8_t codec;     /* enum ff_codec_id, codec/ff_codec_list.h */
     uint8_t flags;     /* enum ff_terrain_flags */
     /* a texture holds (2^t)^2 texels, t 4..8; 0: the terrain has no images */
     uint8_t texture_log2;

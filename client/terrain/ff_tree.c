@@ -110,7 +110,11 @@ int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, const ff_residuals *resid
         return FF_ERR_FULL;
     }
     uint32_t slot = ff_tree_take_slot(tree, key, FF_SLOT_NONE);
-    ff_reconstruct_root(&tree->info, residuals, heights_of(tree, slot));
+    int rc = ff_reconstruct_root(&tree->info, residuals, heights_of(tree, slot));
+    if (rc != FF_OK) {
+        ff_tree_drop_root(tree, &tree->node[slot]);
+        return rc;
+    }
     measure_heights(tree, slot, residuals->child_error[0]);
     ff_tree_reshade_beside(tree, key);
     tree->dirty = 1;
@@ -132,7 +136,9 @@ int ff_tree_deliver_children(ff_tree *tree, ff_key key, const ff_residuals *resi
         tree->stats.pool_full++;
         return FF_ERR_FULL;
     }
-    ff_reconstruct_refinement(&tree->info, heights_of(tree, slot), residuals, tree->refined);
+    int rc = ff_reconstruct_refinement(&tree->info, heights_of(tree, slot), residuals,
+                                       tree->refined);
+    if (rc != FF_OK) return rc;
     for (uint32_t q = 0; q < 4; q++) {
         uint32_t child = ff_tree_take_slot(tree, ff_key_child(key, q), slot);
         ff_refined_child(&tree->info, tree->refined, q, heights_of(tree, child));

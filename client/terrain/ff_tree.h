@@ -95,7 +95,7 @@ size_t ff_tree_bytes(const ff_tree_desc *desc);
 ff_tree *ff_tree_create(const ff_tree_desc *desc, void *memory, size_t bytes);
 
 /* Results of a request. Residuals from ff_decode_*. FF_OK; FF_ERR_FULL (counted, coarser),
- * FF_ERR_NOT_FOUND (node gone: counted). */
+ * FF_ERR_NOT_FOUND (node gone: counted); an error of ff_reconstruct_*: nothing is held of it. */
 int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, const ff_residuals *residuals);
 int ff_tree_deliver_children(ff_tree *tree, ff_key key, const ff_residuals *residuals);
 

@@ -1,24 +1,40 @@
-/* Height codec: makes a node's children from the node and residuals (DESIGN.md, chapter 4, "Closed
- * loop, bounded").
+/* Height codec: a node's children from the node and residuals (SPEC.md, chapter 3).
  *
  * A refinement turns the (2^k+1)^2 heights of a node into the (2^(k+1)+1)^2 heights of its four
- * children. Samples at even row and even column are the node's own, bit for bit. Every other sample
- * is predicted, and its residual is added:
+ * children. Samples at even row and even column are the node's own, bit for bit. The rest is
+ * predicted, residual added:
  *   1. odd column on an even row:  4-point interpolation along that row only (fewer points near its
  *      ends);
  *   2. even column on an odd row:  the same along that column;
  *   3. odd column on an odd row:   from the four new samples around it and the four old ones at its
  *      diagonals.
  * Rows and columns on the rim therefore use rim samples only: both sides of a border decode it
- * alike. A root is made by k such doublings, starting from its four corners, which are coded as
+ * alike. A root is the same thing k times over, starting from the four corners, which are coded as
  * absolute values. Residuals are quantised with step 2*max_error+1 against *decoded* heights, so no
  * error grows with depth. protocol/SPEC.md gives every bit.
+ *
+ * Prediction and residuals are the same for all codecs: a codec says how residuals become bytes.
+ * All codecs therefore decode to the same heights. ff_codec_list.h has a row for each.
+ *
+ * Decoding has two stages. ff_decode_* runs on the network worker, away from the tree;
+ * ff_reconstruct_* runs on the main thread, with the parent's heights. A codec chooses in which of
+ * the two it turns bits into residuals. The three of today do it in the first and share
+ * ff_add_residuals as the second. A codec whose contexts need the parent's heights, or those
+ * decoded just before, has FF_NEEDS_PARENT: its first stage reads the error codes and carries the
+ * rest of the payload in ff_residuals.value (ff_carry); its second stage reads the bits while it
+ * predicts. So the list of new data, the tree and the local source do not know which kind they
+ * move, the memory of a carried payload is that of the residuals it stands for, and the other
+ * codecs pay nothing. The price: the second stage can find the payload bad, so ff_reconstruct_* has
+ * an error to give and whoever holds the answer must treat it as undecodable. Carrying such
+ * payloads as a kind of new data of their own would have cost a branch and a buffer in each of
+ * those places.
  */
 #ifndef FF_CODEC_H
 #define FF_CODEC_H
 
 #include "../ff_error.h"
 #include "../ff_terrain.h"
+#include "ff_codec_list.h"
 
 #include <stddef.h>
 
@@ -28,30 +44,40 @@
 /* Largest encoded payload of a root or refinement, any codec: callers size buffers with it. */
 #define FF_PAYLOAD_BYTES_MAX (3 * FF_REFINED_HEIGHTS_MAX + 64)
 
-/* The geometric error of a node is the largest vertical distance between its drawn triangles and
- * any full-resolution sample within it, in height steps. It is coded as one byte c: 0..31 mean
- * themselves, 32..208 mean (16 + (c & 15)) << (c / 16 - 1). Encoding rounds up, so the decoded
- * error is never smaller than the true one. */
+/* Geometric error of a node: largest distance between its drawn triangles and any full-resolution
+ * sample below it, in height steps, as one byte: 0..31 are exact; above, (16 + (c & 15)) << (c / 16
+ * - 1) for c = 32..208. Encoding rounds up, so the decoded error is never smaller than the true
+ * one. */
 uint8_t ff_geometric_error_encode(uint32_t steps);
 uint32_t ff_geometric_error_decode(uint8_t code);
 
-/* The decoder's working memory (inflate state and scratch): a caller-owned block, nothing else is
- * ever allocated. */
+/* What decoding needs beyond the payload. */
+enum ff_codec_needs {
+    FF_NEEDS_NOTHING = 0,
+    FF_NEEDS_ZLIB = 1,  /* ff_inflate.h */
+    FF_NEEDS_PARENT = 2 /* residuals are read by the second stage, with the parent's heights */
+};
+
+/* Name of a codec, or NULL when no row of the list has this number. */
+const char *ff_codec_name(int codec);
+/* 1 when this build decodes payloads of the codec; without zlib it does not decode
+ * FF_CODEC_DEFLATE. */
+int ff_codec_supported(int codec);
+
+/* The decoder's working memory: a caller-owned block, nothing else is ever allocated. Here and
+ * below, `info` has passed ff_terrain_check. */
 typedef struct ff_decoder ff_decoder;
 size_t ff_decoder_bytes(const ff_terrain_info *info);
-/* 1 when this build decodes payloads of the codec (enum ff_codec_id); without zlib it does not
- * decode FF_CODEC_DEFLATE. */
-int ff_codec_supported(int codec);
 /* NULL when `bytes` is too small or the codec not supported. `memory` aligned for any type. */
 ff_decoder *ff_decoder_create(const ff_terrain_info *info, void *memory, size_t bytes);
 
-/* Residuals of one payload, entropy-decoded but not yet added to a prediction: this half needs no
- * parent and runs on the network worker. Corner values of a root are absolute. */
+/* What the first stage makes of a payload. Corner values of a root are absolute. */
 typedef struct ff_residuals {
     /* geometric error codes of the children, by quadrant; a root uses [0] for itself */
     uint8_t child_error[4];
-    uint16_t count; /* valid entries of value[] */
-    /* caller's array of at least FF_REFINED_HEIGHTS_MAX entries; quantised residuals */
+    uint16_t count;         /* valid entries of value[]; 0 while the payload is carried */
+    uint16_t carried_bytes; /* of the payload, in the memory of value[]: FF_NEEDS_PARENT alone */
+    /* caller's array of at least ff_refined_side()^2 entries; quantised residuals */
     int32_t *value;
 } ff_residuals;
 
@@ -59,22 +85,31 @@ typedef struct ff_residuals {
 int ff_decode_root(ff_decoder *dec, const uint8_t *payload, size_t bytes, ff_residuals *out);
 int ff_decode_refinement(ff_decoder *dec, const uint8_t *payload, size_t bytes, ff_residuals *out);
 
-/* The second half of decoding: each height is its prediction plus residual times step, clamped to
- * 0..65535 (lossless: taken modulo 2^16, so that 16 bits hold any residual). `heights` receives
- * ff_node_side()^2 values. */
-void ff_reconstruct_root(const ff_terrain_info *info, const ff_residuals *res, uint16_t *heights);
+/* Second stage: prediction plus residual times step, clamped to 0..65535 (lossless: modulo 2^16, so
+ * that 16 bits hold any residual). `heights` receives ff_node_side()^2 values. FF_OK; with
+ * FF_NEEDS_PARENT also the errors of ff_decode_*, and no heights. */
+int ff_reconstruct_root(const ff_terrain_info *info, const ff_residuals *res, uint16_t *heights);
 /* `parent` ff_node_side()^2 values, `refined` receives ff_refined_side()^2 values. */
-void ff_reconstruct_refinement(const ff_terrain_info *info, const uint16_t *parent,
-                               const ff_residuals *res, uint16_t *refined);
+int ff_reconstruct_refinement(const ff_terrain_info *info, const uint16_t *parent,
+                              const ff_residuals *res, uint16_t *refined);
 /* Cuts the child in `quadrant` out of a refined grid. */
 void ff_refined_child(const ff_terrain_info *info, const uint16_t *refined, uint32_t quadrant,
                       uint16_t *child);
 
-/* Encoder, for tools. `source` is the true grid (ff_node_side()^2 heights for a root,
- * ff_refined_side()^2 for a refinement); `parent` is the *decoded* parent; `decoded` receives the
- * heights that every decoder will make. Returns the payload's bytes, written to `out` (capacity at
- * least FF_PAYLOAD_BYTES_MAX), or FF_ERR_RANGE for an error code above 208. Uses zlib, which
- * allocates: not for devices (build switch FF_ENCODER). */
+/* Encoder, for tools (build switch FF_ENCODER; zlib allocates, so not for devices). Two steps,
+ * because a payload tells geometric errors, which are measured on decoded heights.
+ *
+ * First the closed loop: residuals of `source` (the true grid: ff_node_side()^2 samples of a root,
+ * ff_refined_side()^2 of a refinement) against predictions from `parent`, the *decoded* parent
+ * (NULL: a root). `out->value` receives the residuals, `decoded` what every decoder will see. */
+void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *source,
+                       ff_residuals *out, uint16_t *decoded);
+/* Then the payload, `res->child_error` filled in by the caller; the rest as the first step had it.
+ * Bytes written to `out` (capacity at least FF_PAYLOAD_BYTES_MAX), or FF_ERR_RANGE for an error
+ * code above 208. */
+int ff_encode_payload(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *decoded,
+                      const ff_residuals *res, uint8_t *out);
+/* Both, where the error codes are known beforehand. */
 int ff_encode_root(const ff_terrain_info *info, const uint16_t *source, uint8_t error_code,
                    uint8_t *out, uint16_t *decoded);
 int ff_encode_refinement(const ff_terrain_info *info, const uint16_t *parent,

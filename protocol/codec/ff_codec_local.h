@@ -1,27 +1,100 @@
-/* Private to protocol/codec: what the two halves of the height codec share. */
+/* Private to protocol/: what a codec is made of (a row of ff_codec_list.h), and what all codecs
+ * share. */
 #ifndef FF_CODEC_LOCAL_H
 #define FF_CODEC_LOCAL_H
 
 #include "ff_codec.h"
 
-/* First byte of a FF_CODEC_DEFLATE or FF_CODEC_RICE payload (SPEC.md, "Payload"). */
-#define FF_HEAD_BODY   0x03u /* enum ff_body */
-#define FF_HEAD_ERRORS 0x0cu /* enum ff_errors_form, shifted by 2 */
-/* From this bit on, the head says how many low bits of every value are stored plainly (for
- * FF_BODY_PACKED that number less one). */
-#define FF_HEAD_DETAIL_SHIFT 4
+#define FF_CORNERS           4
+#define FF_ERROR_CODE_MAX    208 /* 65536 steps: as far apart as two heights can be, and more */
+#define FF_DECODER_ALIGNMENT 16u
 
-enum ff_body { FF_BODY_ZERO, FF_BODY_PACKED, FF_BODY_DEFLATE, FF_BODY_UNARY };
+/* ---- a codec ---- */
+
+/* What is left of a payload. */
+typedef struct ff_payload {
+    const uint8_t *at, *end;
+} ff_payload;
+
+static inline size_t ff_payload_left(const ff_payload *in) { return (size_t)(in->end - in->at); }
+
+/* What a payload tells. A root: one error code, four corners, residuals; a refinement: four error
+ * codes, residuals. */
+typedef struct ff_contents {
+    uint32_t errors;
+    uint32_t corners;
+    uint32_t count; /* values in all, corners included */
+} ff_contents;
+
+/* Bytes of decoder memory for this terrain; when `memory` (so many bytes, aligned for any type) is
+ * given, it is made ready. FF_ERR_MEMORY when it cannot be. */
+typedef int32_t ff_memory_fn(const ff_terrain_info *info, void *memory);
+/* Takes error codes, corners and residuals off the payload. What it leaves makes the payload one of
+ * FF_ERR_FORMAT; out->count is set already, out->value has room for ff_refined_side()^2 values. */
+typedef int ff_decode_fn(const ff_decoder *dec, ff_payload *in, const ff_contents *contents,
+                         ff_residuals *out);
+/* `parent` NULL: a root. */
+typedef int ff_reconstruct_fn(const ff_terrain_info *info, const uint16_t *parent,
+                              const ff_residuals *res, uint16_t *heights);
+/* Bytes written. `decoded`: the heights that the residuals lead to, for contexts. */
+typedef size_t ff_encode_fn(const ff_terrain_info *info, const uint16_t *parent,
+                            const uint16_t *decoded, const ff_contents *contents,
+                            const ff_residuals *res, uint8_t *out);
+
+/* A row of the list, without the encoder: that one costs a device nothing. */
+typedef struct ff_codec {
+    const char *name;
+    uint32_t needs; /* enum ff_codec_needs */
+    ff_memory_fn *memory;
+    ff_decode_fn *decode;
+    ff_reconstruct_fn *reconstruct;
+} ff_codec;
+
+/* Both NULL when no row has this number. They alone stand in ff_codec_table.c, so that a test can
+ * link a longer table in place of that file. */
+const ff_codec *ff_codec_row(int codec);
+ff_encode_fn *ff_codec_encoder(int codec);
+
+/* clang-format off */
+#define ROW(number, constant, name, needs, memory, decode, reconstruct, encode) \
+    ff_memory_fn memory; ff_decode_fn decode; ff_reconstruct_fn reconstruct; ff_encode_fn encode;
+/* clang-format on */
+FF_CODEC_LIST(ROW)
+#undef ROW
+
+struct ff_decoder {
+    ff_terrain_info info;
+    const ff_codec *codec;
+    uint8_t *memory; /* the codec's own */
+};
+
+static inline size_t ff_align_up(size_t bytes)
+{
+    return (bytes + FF_DECODER_ALIGNMENT - 1) & ~(size_t)(FF_DECODER_ALIGNMENT - 1);
+}
+
+/* ---- parts of payloads that codecs share ---- */
+
+/* How error codes are stored: none (all are 0), one for all, each. */
 enum ff_errors_form { FF_ERRORS_ZERO, FF_ERRORS_SAME, FF_ERRORS_EACH };
 
-#define FF_CORNERS        4
-#define FF_ERROR_CODE_MAX 208 /* 65536 steps: more than two heights can be apart */
+int ff_take_errors(ff_payload *in, unsigned form, uint32_t errors, uint8_t error[4]);
+/* 16 bits each, low byte first: `corners` unsigned values, then signed ones, `count` in all. */
+int ff_take_words(ff_payload *in, uint32_t corners, int32_t *value, uint32_t count);
+/* All that is left, untouched, for the codec's second stage; FF_ERR_RANGE when out->value is too
+ * small for it. */
+int ff_carry(const ff_terrain_info *info, ff_payload *in, ff_residuals *out);
+/* Encoder: the same the other way. Bytes written. */
+size_t ff_put_errors(const uint8_t *error, enum ff_errors_form form, uint32_t errors, uint8_t *out);
+size_t ff_put_words(const int32_t *value, uint32_t count, uint8_t *out);
+
+/* ---- prediction and residuals ---- */
 
 /* Called once for every new sample, in coding order; returns its decoded height. `at` is its index
  * in the grid. */
 typedef uint16_t (*ff_sample_fn)(void *context, uint32_t at, int32_t predicted);
 
-/* Makes a root from its corners, which are already in the grid: node_log2 doublings. */
+/* A root from its corners (already in the grid): node_log2 doublings. */
 void ff_predict_root(const ff_terrain_info *info, uint16_t *grid, ff_sample_fn sample,
                      void *context);
 /* Spreads a parent over the even points of a refined grid, then one doubling. */
@@ -29,12 +102,6 @@ void ff_predict_refinement(const ff_terrain_info *info, const uint16_t *parent, 
                            ff_sample_fn sample, void *context);
 /* Grid index of root corner 0..3: south-west, south-east, north-west, north-east. */
 uint32_t ff_corner_at(const ff_terrain_info *info, uint32_t corner);
-
-/* Bytes of `count` values of `bits` bits each, packed. */
-static inline size_t ff_packed_bytes(uint32_t count, uint32_t bits)
-{
-    return ((size_t)count * bits + 7) / 8;
-}
 
 /* Number of residuals in a payload, root corners included. */
 static inline uint32_t ff_root_count(const ff_terrain_info *info)
@@ -53,8 +120,8 @@ static inline int32_t ff_quantum(const ff_terrain_info *info)
 }
 
 /* A height from its prediction and quantised residual. Lossless residuals are differences modulo
- * 2^16, so that 16 bits hold them all. Lossy residuals are at most 21845, and the height is
- * clamped, which can only bring it nearer to the source. */
+ * 2^16, so that 16 bits hold them all; lossy ones are at most 21845 and their sum is clamped, which
+ * can only bring it nearer to the source. */
 static inline uint16_t ff_dequantise(int32_t quantum, int32_t predicted, int32_t residual)
 {
     int64_t height = predicted + (int64_t)residual * quantum;
@@ -63,14 +130,11 @@ static inline uint16_t ff_dequantise(int32_t quantum, int32_t predicted, int32_t
     return (uint16_t)(height < 0 ? 0 : height > UINT16_MAX ? UINT16_MAX : height);
 }
 
-/* log2 of the window of the deflate streams: the smallest window that covers a payload's plane of
- * high parts, one byte a value. */
-static inline int ff_window_bits(const ff_terrain_info *info)
+/* Residuals are coded as 0, 1, 2, 3, ... for 0, -1, 1, -2, ... */
+static inline uint32_t ff_zigzag(int32_t v)
 {
-    int bits = 9;
-
-    while ((1u << bits) < ff_refinement_count(info)) bits++;
-    return bits;
+    return v < 0 ? ~((uint32_t)v << 1) : (uint32_t)v << 1;
 }
+static inline int32_t ff_unzigzag(uint32_t v) { return (int32_t)(v >> 1) ^ -(int32_t)(v & 1u); }
 
 #endif

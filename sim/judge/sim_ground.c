@@ -39,8 +39,8 @@ static int refine(loader *load, ff_key key, const uint16_t *heights)
     int bytes = ff_pack_record(load->pack, FF_SECTION_REFINEMENT, key, &payload);
     if (bytes < 0) return bytes;
     int rc = ff_decode_refinement(load->decoder, payload, (size_t)bytes, &residuals);
+    if (rc == FF_OK) rc = ff_reconstruct_refinement(info, heights, &residuals, refined);
     if (rc != FF_OK) return rc;
-    ff_reconstruct_refinement(info, heights, &residuals, refined);
     for (uint32_t quadrant = 0; quadrant < 4 && rc == FF_OK; quadrant++) {
         ff_refined_child(info, refined, quadrant, child);
         rc = refine(load, ff_key_child(key, quadrant), child);
@@ -56,8 +56,8 @@ static int decode_tile(loader *load, uint32_t tile)
     int bytes = ff_pack_record(load->pack, FF_SECTION_ROOT, ff_key_make(tile, 0, 0), &payload);
     if (bytes < 0) return bytes;
     int rc = ff_decode_root(load->decoder, payload, (size_t)bytes, &residuals);
+    if (rc == FF_OK) rc = ff_reconstruct_root(&load->pack->header.info, &residuals, heights);
     if (rc != FF_OK) return rc;
-    ff_reconstruct_root(&load->pack->header.info, &residuals, heights);
     return refine(load, ff_key_make(tile, 0, 0), heights);
 }
 

@@ -143,7 +143,6 @@ static void terrain_ranges(void **state)
     BAD(node_log2, 6);
     BAD(tile_log2, 2);
     BAD(tile_log2, 16);
-    BAD(codec, FF_CODEC_COUNT);
     BAD(flags, 4);
     BAD(texture_log2, 3);
     BAD(texture_log2, 9);
@@ -161,6 +160,9 @@ static void terrain_ranges(void **state)
     BAD(hscale_q24, 0);
     BAD(hscale_q24, 1u << 31);
     BAD(hoffset_wu, INT32_MAX);
+    t = good;
+    t.codec = FF_CODEC_COUNT;
+    assert_int_equal(ff_terrain_check(&t), FF_ERR_UNSUPPORTED);
 #undef BAD
     t = good;
     t.tiles_x = 1;

@@ -34,7 +34,7 @@ static const char help_text[] =
     "  --texture-log2 T     textures of (2^T)^2 texels, 4..8 (default 6)\n"
     "  --texture-levels L   levels with textures (default: down to the image's resolution)\n"
     "  --texture-quality Q  JPEG quality, 1..100 (default 75)\n"
-    "  --codec deflate|rice|raw  entropy coder (default deflate); rice: for devices without zlib\n"
+    "  --codec NAME         %s (default %s); rice: for devices without zlib\n"
     "Run\n"
     "  --jobs N             threads (default: the processors, at most 16); any N gives the same bytes\n"
     "  --json               a summary on stdout\n"
@@ -138,17 +138,24 @@ static int take_raw(const char *text, bake_raw *raw)
     return 0;
 }
 
+/* Names of all codecs: "a, b or c". */
+static const char *codec_names(void)
+{
+    static char names[160];
+    size_t used = 0;
+    for (int codec = 0; ff_codec_name(codec) && used < sizeof names; codec++) {
+        const char *before = codec == 0 ? "" : ff_codec_name(codec + 1) ? ", " : " or ";
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", before,
+                                 ff_codec_name(codec));
+    }
+    return names;
+}
+
 static int take_codec(const char *text, int *codec)
 {
-    if (!strcmp(text, "raw"))
-        *codec = FF_CODEC_RAW;
-    else if (!strcmp(text, "deflate"))
-        *codec = FF_CODEC_DEFLATE;
-    else if (!strcmp(text, "rice"))
-        *codec = FF_CODEC_RICE;
-    else
-        return bake_fail("--codec %s: deflate, rice or raw is wanted", text);
-    return 0;
+    for (*codec = 0; ff_codec_name(*codec); ++*codec)
+        if (!strcmp(text, ff_codec_name(*codec))) return 0;
+    return bake_fail("--codec %s: %s is wanted", text, codec_names());
 }
 
 static int take_epsg(const char *text, int *epsg)
@@ -222,7 +229,7 @@ int bake_options_parse(bake_options *o, int argc, char **argv)
     bake_say_setup("farfield-bake", 0);
     opterr = 0;
     for (int option; (option = getopt_long(argc, argv, "o:", long_options, NULL)) != -1;) {
-        if (option == OPT_HELP) return fputs(help_text, stdout), 1;
+        if (option == OPT_HELP) return printf(help_text, codec_names(), ff_codec_name(o->codec)), 1;
         if (option == OPT_VERSION) return puts("farfield-bake " FARFIELD_VERSION), 1;
         if (option == '?')
             return bake_fail("unknown or incomplete option %s; try --help", argv[optind - 1]);

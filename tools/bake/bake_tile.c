@@ -11,8 +11,7 @@ static size_t pitch_of(const ff_terrain_info *info) { return ((size_t)1 << info-
 int bake_tile_open(bake_tile *tile, const ff_terrain_info *info)
 {
     size_t samples = pitch_of(info) * pitch_of(info);
-    *tile = (bake_tile){ .info = info, .plain = *info };
-    tile->plain.codec = FF_CODEC_RAW;
+    *tile = (bake_tile){ .info = info };
     tile->source = malloc(samples * sizeof *tile->source);
     tile->decoded = malloc(samples * sizeof *tile->decoded);
     if (tile->source && tile->decoded) return 0;
@@ -70,19 +69,29 @@ static uint8_t error_code(const bake_tile *tile, size_t at, uint32_t cell)
         bake_node_error(tile->source + at, tile->decoded + at, pitch_of(tile->info), cells, cell));
 }
 
+/* The payload of a root or refinement, error codes filled in, at the end of a level's records. */
+static int add_payload(bake_tile *tile, uint32_t level, const uint16_t *parent,
+                       const uint16_t *decoded, const ff_residuals *residuals)
+{
+    uint8_t payload[FF_PAYLOAD_BYTES_MAX];
+    int bytes = ff_encode_payload(tile->info, parent, decoded, residuals, payload);
+    if (bytes < 0)
+        return bake_fail("cannot encode a %s: %s", parent ? "node" : "root", ff_error_text(bytes));
+    return bake_blob_add(&tile->level[level], payload, (size_t)bytes);
+}
+
 static int encode_root(bake_tile *tile)
 {
     const ff_terrain_info *info = tile->info;
     uint16_t source[FF_NODE_HEIGHTS_MAX], decoded[FF_NODE_HEIGHTS_MAX];
-    uint8_t payload[FF_PAYLOAD_BYTES_MAX];
+    int32_t value[FF_NODE_HEIGHTS_MAX];
+    ff_residuals residuals = { .value = value };
     uint32_t side = ff_node_side(info), cell = 1u << (info->tile_log2 - info->node_log2);
     gather(tile->source, pitch_of(info), side, cell, source);
-    if (ff_encode_root(&tile->plain, source, 0, payload, decoded) < 0)
-        return bake_fail("cannot encode a root");
+    ff_encode_heights(info, NULL, source, &residuals, decoded);
     scatter(decoded, pitch_of(info), side, cell, tile->decoded);
-    int bytes = ff_encode_root(info, source, error_code(tile, 0, cell), payload, decoded);
-    if (bytes < 0) return bake_fail("cannot encode a root: %s", ff_error_text(bytes));
-    return bake_blob_add(&tile->level[0], payload, (size_t)bytes);
+    residuals.child_error[0] = error_code(tile, 0, cell);
+    return add_payload(tile, 0, NULL, decoded, &residuals);
 }
 
 /* Encodes the refinement of the node whose south-west sample is `at`, its cells `cell` samples
@@ -92,19 +101,17 @@ static int encode_refinement(bake_tile *tile, uint32_t level, size_t at, uint32_
     const ff_terrain_info *info = tile->info;
     uint16_t parent[FF_NODE_HEIGHTS_MAX], source[FF_REFINED_HEIGHTS_MAX],
         decoded[FF_REFINED_HEIGHTS_MAX];
-    uint8_t payload[FF_PAYLOAD_BYTES_MAX], code[4];
+    int32_t value[FF_REFINED_HEIGHTS_MAX];
+    ff_residuals residuals = { .value = value };
     size_t pitch = pitch_of(info), edge = (size_t)(cell / 2) << info->node_log2;
     gather(tile->decoded + at, pitch, ff_node_side(info), cell, parent);
     gather(tile->source + at, pitch, ff_refined_side(info), cell / 2, source);
-    memset(code, 0, sizeof code);
-    if (ff_encode_refinement(&tile->plain, parent, source, code, payload, decoded) < 0)
-        return bake_fail("cannot encode a node");
+    ff_encode_heights(info, parent, source, &residuals, decoded);
     scatter(decoded, pitch, ff_refined_side(info), cell / 2, tile->decoded + at);
     for (uint32_t q = 0; q < 4; q++)
-        code[q] = error_code(tile, at + (q & 1) * edge + (q >> 1) * edge * pitch, cell / 2);
-    int bytes = ff_encode_refinement(info, parent, source, code, payload, decoded);
-    if (bytes < 0) return bake_fail("cannot encode a node: %s", ff_error_text(bytes));
-    return bake_blob_add(&tile->level[level + 1], payload, (size_t)bytes);
+        residuals.child_error[q] = error_code(tile, at + (q & 1) * edge + (q >> 1) * edge * pitch,
+                                              cell / 2);
+    return add_payload(tile, level + 1, parent, decoded, &residuals);
 }
 
 int bake_tile_encode(bake_tile *tile)

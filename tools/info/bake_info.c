@@ -6,11 +6,6 @@
 #define INDEX_ENTRY_BYTES 8
 #define RECORD_CRC_BYTES  4
 
-static const char *codec_name(int codec)
-{
-    return codec == FF_CODEC_DEFLATE ? "deflate" : codec == FF_CODEC_RICE ? "rice" : "raw";
-}
-
 /* Distinct heights of the whole terrain at a level, neighbours' shared rims counted once. */
 static uint64_t lattice_samples(const ff_terrain_info *info, uint32_t level)
 {
@@ -82,7 +77,7 @@ static void print_terrain(const ff_terrain_info *info)
                1u << info->texture_log2, info->texture_levels - 1);
     else
         printf("textures        none\n");
-    printf("codec           %s%s\n", codec_name(info->codec),
+    printf("codec           %s%s\n", ff_codec_name(info->codec),
            info->flags & FF_TERRAIN_DENSIFIED ? "; part of the detail is invented" : "");
     printf("checksum        %08x\n\n", info->checksum);
 }
@@ -126,7 +121,7 @@ static void print_terrain_json(const ff_terrain_info *info)
     printf(
         "\"version\": %d, \"node_log2\": %u, \"tile_log2\": %u, \"levels\": %u, \"codec\": \"%s\", \"flags\": %u, ",
         FF_PACK_VERSION, info->node_log2, info->tile_log2, ff_terrain_levels(info),
-        codec_name(info->codec), info->flags);
+        ff_codec_name(info->codec), info->flags);
     printf(
         "\"tiles_x\": %u, \"tiles_y\": %u, \"samples_x\": %u, \"samples_y\": %u, \"spacing_m\": %.9g, ",
         info->tiles_x, info->tiles_y, info->samples_x, info->samples_y, metres(info->spacing_wu));

@@ -11,6 +11,8 @@ int bake_unpack_open(bake_unpack *unpack, const char *path)
     int rc = sys_map_file(path, &unpack->mapping);
     if (rc) return bake_fail("%s: %s", path, ff_error_text(rc));
     rc = ff_pack_open(&unpack->pack, unpack->mapping.bytes, unpack->mapping.size);
+    int codec = unpack->pack.header.info.codec;
+    if (!rc && !ff_codec_supported(codec)) rc = FF_ERR_UNSUPPORTED;
     if (!rc) {
         size_t bytes = ff_decoder_bytes(&unpack->pack.header.info);
         unpack->decoder_memory = malloc(bytes);
@@ -21,6 +23,8 @@ int bake_unpack_open(bake_unpack *unpack, const char *path)
     }
     if (!rc) return 0;
     bake_unpack_close(unpack);
+    if (rc == FF_ERR_UNSUPPORTED)
+        return bake_fail("%s: codec %d is %s", path, codec, ff_error_text(rc));
     return bake_fail("%s: %s", path, ff_error_text(rc));
 }
 
@@ -67,8 +71,8 @@ static int decode_root(const bake_unpack *unpack, uint32_t tile, size_t pitch, s
     ff_key key = ff_key_make(tile, 0, 0);
     int rc = ff_pack_record(&unpack->pack, FF_SECTION_ROOT, key, &payload);
     if (rc >= 0) rc = ff_decode_root(unpack->decoder, payload, (size_t)rc, &residuals);
+    if (rc >= 0) rc = ff_reconstruct_root(info, &residuals, node);
     if (rc < 0) return fail_at(unpack, "the root", key, rc);
-    ff_reconstruct_root(info, &residuals, node);
     scatter(node, ff_node_side(info), pitch, stride, heights);
     return 0;
 }
@@ -83,9 +87,9 @@ static int decode_refinement(const bake_unpack *unpack, ff_key key, size_t pitch
     const uint8_t *payload;
     int rc = ff_pack_record(&unpack->pack, FF_SECTION_REFINEMENT, key, &payload);
     if (rc >= 0) rc = ff_decode_refinement(unpack->decoder, payload, (size_t)rc, &residuals);
-    if (rc < 0) return fail_at(unpack, "the refinement", key, rc);
     gather(at, ff_node_side(info), pitch, stride, parent);
-    ff_reconstruct_refinement(info, parent, &residuals, refined);
+    if (rc >= 0) rc = ff_reconstruct_refinement(info, parent, &residuals, refined);
+    if (rc < 0) return fail_at(unpack, "the refinement", key, rc);
     scatter(refined, ff_refined_side(info), pitch, stride / 2, at);
     return 0;
 }

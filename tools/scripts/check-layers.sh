@@ -3,7 +3,7 @@
 # "file:line: what"; exit 1 when there is one. OBJECTS (default ROOT/build/obj): objects of the normal build, for nm and objdump.
 #
 # Layers: who may include whom. Core: protocol, client, common3d compute in integers, take memory from the caller, and know no
-# clock, chance, file or socket; common3d/gl* may use float to talk to GL; protocol/codec/ff_encode.c may let zlib allocate, and abort when it cannot.
+# clock, chance, file or socket; common3d/gl* may use float to talk to GL; protocol/zlib/ff_deflate.c may let zlib allocate, and abort when it cannot.
 set -u
 root=${1:-$(dirname "$0")/../..}
 cd "$root" || exit 2
@@ -123,7 +123,7 @@ check_includes() {
             core = from ~ /^(protocol|client|common3d)(\/|$)/
             glue = from ~ /^common3d\/gl/ && name ~ /^(GL|GLES)\//
             pure = "^(stddef|stdint|stdbool|limits|string|assert|inttypes)\\.h$"
-            zlib = from == "protocol/zlib" && name == "zlib.h" || file == "protocol/codec/ff_encode.c" && name ~ /^(zlib|stdlib)\.h$/
+            zlib = from == "protocol/zlib" && name == "zlib.h" || file == "protocol/zlib/ff_deflate.c" && name == "stdlib.h"
             if (core && name !~ pure && !glue && !zlib)
                 print file ":" line ": <" name "> in the core"
             else if (from ~ /^sim(\/|$)/ && name ~ /^(unistd|pthread|poll|netdb|dlfcn|sched|fcntl|dirent)\.h$|^(sys|netinet|arpa|GLFW|EGL)\/|osmesa/)
@@ -144,7 +144,7 @@ check_words() {
     report_words '[^A-Za-z0-9_.>](malloc|calloc|realloc|free|strdup|alloca|posix_memalign) *\(' 'allocation in the core' <"$core"
     report_words '[^A-Za-z0-9_.>]((f|s|sn|v|vf|vs|vsn|d)?printf|puts|putchar|fputs|fopen|fread|fwrite|perror|getenv) *\(' \
         'input or output in the core' <"$core"
-    grep -v '^protocol/codec/ff_encode.c:' "$core" | report_words '[^A-Za-z0-9_.>](exit|abort) *\(' 'an end of the process in the core'
+    grep -v '^protocol/zlib/ff_deflate.c:' "$core" | report_words '[^A-Za-z0-9_.>](exit|abort) *\(' 'an end of the process in the core'
     report_words '[^A-Za-z0-9_.>](time|clock|clock_gettime|gettimeofday|nanosleep|usleep|rand|rand_r|srand|random|drand48) *\(' \
         'clock or chance in the core' <"$core"
 }
@@ -217,7 +217,7 @@ check_objects() {
     }
     {
         name = $NF; object = $1; sub(/:.*/, "", object)
-        if (own[name] || name ~ pure || name ~ /^(deflate.*|abort)$/ && object ~ /ff_encode\.o$/) next
+        if (own[name] || name ~ pure || name ~ /^(deflate.*|abort)$/ && object ~ /ff_deflate\.o$/) next
         print object ":0: calls " name
     }'
     for object in $list; do

@@ -1,0 +1,31 @@
+/* The codecs: one row each. Everything else that knows them by number or by name reads this list.
+ *
+ * A new codec is one row here and one file, ff_codec_NAME.c, with the functions that its row names;
+ * besides, a section in SPEC.md and a case in tests/rig/slow_decoder.c.
+ *
+ *   number       in packs and in WELCOME: 0, 1, 2, ... without gaps, never given to another codec
+ *   constant     FF_CODEC_<constant>
+ *   name         farfield-bake --codec, farfield-info
+ *   needs        enum ff_codec_needs: what decoding needs beyond the payload
+ *   memory       bytes of decoder memory it needs, and their setting up (ff_no_memory: none)
+ *   decode       a payload to residuals, on the network worker
+ *   reconstruct  residuals and the parent's heights to heights, on the main thread
+ *   encode       residuals to a payload; only in builds with FF_ENCODER
+ *
+ * ff_codec_local.h has the types of the functions. */
+#ifndef FF_CODEC_LIST_H
+#define FF_CODEC_LIST_H
+
+/* clang-format off */
+#define FF_CODEC_LIST(ROW) \
+    /*  number, constant, name,      needs,   memory,            decode,            reconstruct,      encode */ \
+    ROW(0,      RAW,      "raw",     NOTHING, ff_no_memory,      ff_raw_decode,     ff_add_residuals, ff_raw_encode) \
+    ROW(1,      DEFLATE,  "deflate", ZLIB,    ff_deflate_memory, ff_deflate_decode, ff_add_residuals, ff_deflate_encode) \
+    ROW(2,      RICE,     "rice",    NOTHING, ff_no_memory,      ff_rice_decode,    ff_add_residuals, ff_rice_encode)
+
+#define ROW(number, constant, name, needs, memory, decode, reconstruct, encode) FF_CODEC_##constant = number,
+enum ff_codec_id { FF_CODEC_LIST(ROW) FF_CODEC_COUNT };
+#undef ROW
+/* clang-format on */
+
+#endif

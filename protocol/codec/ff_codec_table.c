@@ -1,0 +1,27 @@
+/* The codecs of ff_codec_list.h, by number. */
+#include "ff_codec_local.h"
+
+const ff_codec *ff_codec_row(int codec)
+{
+/* clang-format off */
+#define ROW(number, constant, name, needs, memory, decode, reconstruct, encode) \
+    [number] = { name, FF_NEEDS_##needs, memory, decode, reconstruct },
+    static const ff_codec rows[FF_CODEC_COUNT] = { FF_CODEC_LIST(ROW) };
+#undef ROW
+    /* clang-format on */
+
+    return codec >= 0 && codec < FF_CODEC_COUNT ? &rows[codec] : NULL;
+}
+
+#ifdef FF_ENCODER
+ff_encode_fn *ff_codec_encoder(int codec)
+{
+/* clang-format off */
+#define ROW(number, constant, name, needs, memory, decode, reconstruct, encode) [number] = encode,
+    static ff_encode_fn *const encoders[FF_CODEC_COUNT] = { FF_CODEC_LIST(ROW) };
+#undef ROW
+    /* clang-format on */
+
+    return codec >= 0 && codec < FF_CODEC_COUNT ? encoders[codec] : NULL;
+}
+#endif
