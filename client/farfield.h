@@ -178,8 +178,8 @@ void ff_client_set_balance(ff_client *client, const ff_balance_desc *balance);
  * again. */
 void ff_client_frame_cost(ff_client *client, uint32_t cost);
 /* Ways to draw, besides the plain one; any of them together. The one list: a mode is a row here and
- * what FF_SHOW_... makes of it in client/ground. X(NAME, option, key and name in farfield-view's
- * help, option's help) */
+ * what client/ground/ff_show.c makes of it. X(NAME, option, key and name in farfield-view's help,
+ * option's help) */
 /* clang-format off */
 #define FF_SHOW_MODES(X) \
     X(WIREFRAME, "wireframe", "m", "mesh", "the strips as lines, stitching strips in another colour") \

@@ -1,11 +1,8 @@
 #include "ff_terrain_view.h"
 
-#include "../farfield.h"
+#include "ff_show.h"
 
-#define HASH_PRIME    UINT64_C(0x100000001b3)
-#define COLOUR_WIRE   0xFF202020u
-#define COLOUR_STITCH 0xFF2020FFu /* red */
-#define COLOUR_BORDER 0xFF00E0FFu /* yellow */
+#define HASH_PRIME UINT64_C(0x100000001b3)
 
 int ff_terrain_view_strips(ff_terrain_view *view, unsigned node_log2, ff_strips *strips)
 {
@@ -134,25 +131,7 @@ static int free_one_mesh(ff_terrain_view *view)
     return 0;
 }
 
-static void draw_lines(ff_terrain_view *view, c3d_draw draw, const uint8_t *strip, unsigned strips,
-                       unsigned show)
-{
-    draw.flags = C3D_DRAW_WIREFRAME | C3D_DRAW_ON_TOP;
-    for (unsigned i = 0; i < strips; i++) {
-        int stitch = strip[i] >= FF_STRIP_SIDE(0, 1);
-        if (!(show & FF_SHOW_WIREFRAME)) continue;
-        draw.strip = view->strip[strip[i]];
-        draw.colour = stitch ? COLOUR_STITCH : COLOUR_WIRE;
-        c3d_draw_strip(view->device, &draw);
-    }
-    for (unsigned side = 0; (show & FF_SHOW_NODE_BORDERS) && side < FF_SIDE_COUNT; side++) {
-        draw.strip = view->strip[FF_STRIP_SIDE(side, 0)];
-        draw.colour = COLOUR_BORDER;
-        c3d_draw_strip(view->device, &draw);
-    }
-}
-
-static void draw_node(ff_terrain_view *view, const ff_drawn *drawn, c3d_draw draw, unsigned show)
+static void draw_strips(ff_terrain_view *view, const ff_drawn *drawn, c3d_draw draw)
 {
     uint8_t strip[5];
     unsigned strips = ff_strips_for(drawn->coarser, strip);
@@ -160,8 +139,6 @@ static void draw_node(ff_terrain_view *view, const ff_drawn *drawn, c3d_draw dra
         draw.strip = view->strip[strip[i]];
         if (draw.strip.id) c3d_draw_strip(view->device, &draw);
     }
-    if (show & (FF_SHOW_WIREFRAME | FF_SHOW_NODE_BORDERS))
-        draw_lines(view, draw, strip, strips, show);
 }
 
 void ff_terrain_view_new_frame(ff_terrain_view *view) { view->frame.set = 0; }
@@ -179,7 +156,8 @@ void ff_terrain_view_draw(ff_terrain_view *view, const ff_drawn *list, uint32_t 
         if (!draw.mesh.id && free_one_mesh(view)) draw.mesh = make_mesh(view, drawn);
         if (entry) entry->mesh = draw.mesh;
         if (view->textures) ff_textures_lay(view->textures, drawn->key, &draw);
-        draw_node(view, drawn, draw, show);
+        draw_strips(view, drawn, draw);
+        if (show) ff_show_over(view, drawn, &draw, show);
         if (!entry && draw.mesh.id) c3d_mesh_free(view->device, draw.mesh);
     }
 }

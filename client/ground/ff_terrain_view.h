@@ -50,8 +50,8 @@ void ff_terrain_view_begin(ff_terrain_view *view, const ff_drawn *list, uint32_t
 /* FNV-1a (by 64-bit words) over nodes of the picture begun: keys, border masks, origins,
  * heights. */
 uint64_t ff_terrain_view_hash(ff_terrain_view *view, const ff_drawn *list, uint32_t count);
-/* Draws nodes of the picture begun; several calls may share its nodes out. `show` is enum
- * ff_show. */
+/* Draws nodes of the picture begun; several calls may share its nodes out. `show`: bits of
+ * enum ff_show. */
 void ff_terrain_view_draw(ff_terrain_view *view, const ff_drawn *list, uint32_t count,
                           const c3d_camera *camera, unsigned show);
 /* The next picture's frame of coordinates is chosen by its camera alone, not by those before. */
