@@ -1,5 +1,6 @@
-/* Any bytes as a payload. Byte 0: node_log2 - 1 (bits 0-2, modulo 5), raw codec (bit 3), refinement
- * (bit 4); bytes 1-2: max_error. What decodes is compared with the slow decoder. */
+/* Any bytes as a payload. Byte 0: node_log2 - 1 (bits 0-2, modulo 5), refinement (bit 3), codec
+ * (bits 4-7, modulo their number); bytes 1-2: max_error. What decodes is compared with the slow
+ * decoder. */
 #include "../../protocol/codec/ff_codec.h"
 #include "../rig/slow_decoder.h"
 
@@ -19,9 +20,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     int rc, slow_rc, refinement;
 
     if (count < 3) return 0;
-    refinement = bytes[0] >> 4 & 1;
+    refinement = bytes[0] >> 3 & 1;
     info.node_log2 = (uint8_t)((bytes[0] & 7) % FF_NODE_LOG2_MAX + 1);
-    info.codec = bytes[0] & 8 ? FF_CODEC_RAW : FF_CODEC_DEFLATE;
+    info.codec = (uint8_t)((bytes[0] >> 4) % FF_CODEC_COUNT);
     info.max_error = (uint16_t)((bytes[1] | bytes[2] << 8) & INT16_MAX);
     for (uint32_t i = 0; i < FF_NODE_HEIGHTS_MAX; i++) parent[i] = (uint16_t)(i * i * 40503u >> 3);
 
@@ -33,14 +34,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     count -= 3;
     rc = refinement ? ff_decode_refinement(dec, bytes, count, &residuals)
                     : ff_decode_root(dec, bytes, count, &residuals);
+    if (rc == FF_OK)
+        rc = refinement ? ff_reconstruct_refinement(&info, parent, &residuals, heights)
+                        : ff_reconstruct_root(&info, &residuals, heights);
     slow_rc = slow_decode(&info, refinement ? parent : NULL, bytes, count, slow);
     assert((rc == FF_OK) == (slow_rc == 0));
     if (rc == FF_OK) {
         uint32_t side = refinement ? ff_refined_side(&info) : ff_node_side(&info);
-        if (refinement)
-            ff_reconstruct_refinement(&info, parent, &residuals, heights);
-        else
-            ff_reconstruct_root(&info, &residuals, heights);
         assert(memcmp(heights, slow, 2u * side * side) == 0);
     }
     free(memory);

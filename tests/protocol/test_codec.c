@@ -1,5 +1,5 @@
 /* Height codec: bound, exactness, rims, sizes, damaged payloads; and the slow decoder beside it. */
-#include "../../protocol/codec/ff_codec.h"
+#include "../../protocol/codec/ff_codec_local.h"
 #include "../rig/slow_decoder.h"
 
 #include <malloc.h>
@@ -101,31 +101,41 @@ static ff_decoder *decoder_for(const ff_terrain_info *info)
     return dec;
 }
 
+/* Both stages of decoding: FF_OK, or the error of the first that fails. */
+static int decode(ff_decoder *dec, const ff_terrain_info *info, const uint16_t *parent,
+                  const uint8_t *payload, size_t bytes, uint8_t child_error[4], uint16_t *heights)
+{
+    static int32_t value[FF_REFINED_HEIGHTS_MAX];
+    ff_residuals residuals = { .value = value };
+    int rc = parent ? ff_decode_refinement(dec, payload, bytes, &residuals)
+                    : ff_decode_root(dec, payload, bytes, &residuals);
+
+    memcpy(child_error, residuals.child_error, 4);
+    if (rc != FF_OK) return rc;
+    return parent ? ff_reconstruct_refinement(info, parent, &residuals, heights)
+                  : ff_reconstruct_root(info, &residuals, heights);
+}
+
 /* Encodes (parent NULL: a root), decodes with both decoders, checks all promises on the way.
  * Payload bytes. */
 static int there_and_back(const ff_terrain_info *info, const uint16_t *parent,
                           const uint16_t *source, uint8_t *payload, uint16_t *decoded)
 {
-    static int32_t value[FF_REFINED_HEIGHTS_MAX];
     static uint16_t again[FF_REFINED_HEIGHTS_MAX], slow[FF_REFINED_HEIGHTS_MAX];
     static const uint8_t errors[4] = { 0, 31, 77, 208 };
+    uint8_t told[4];
     uint32_t side = parent ? ff_refined_side(info) : ff_node_side(info);
-    ff_residuals residuals = { .value = value };
     ff_decoder *dec = decoder_for(info);
     int bytes = parent ? ff_encode_refinement(info, parent, source, errors, payload, decoded)
                        : ff_encode_root(info, source, errors[2], payload, decoded);
 
     assert_in_range(bytes, 1, FF_PAYLOAD_BYTES_MAX);
     assert_in_range(bytes, 1, 5 + 2 * side * side);
-    if (parent) {
-        assert_int_equal(ff_decode_refinement(dec, payload, (size_t)bytes, &residuals), FF_OK);
-        assert_memory_equal(residuals.child_error, errors, 4);
-        ff_reconstruct_refinement(info, parent, &residuals, again);
-    } else {
-        assert_int_equal(ff_decode_root(dec, payload, (size_t)bytes, &residuals), FF_OK);
-        assert_int_equal(residuals.child_error[0], errors[2]);
-        ff_reconstruct_root(info, &residuals, again);
-    }
+    assert_int_equal(decode(dec, info, parent, payload, (size_t)bytes, told, again), FF_OK);
+    if (parent)
+        assert_memory_equal(told, errors, 4);
+    else
+        assert_int_equal(told[0], errors[2]);
     free(dec);
     assert_memory_equal(again, decoded, side * side * sizeof(*decoded));
     assert_int_equal(slow_decode(info, parent, payload, (size_t)bytes, slow), 0);
@@ -139,24 +149,32 @@ static int there_and_back(const ff_terrain_info *info, const uint16_t *parent,
     return bytes;
 }
 
-static void bound_holds_on_every_ground(void **state)
+static void bound_holds(const ff_terrain_info *info)
 {
-    static const uint32_t max_errors[] = { 0, 1, 4, 100, 32767 };
     static ground g;
     static uint16_t source[FF_REFINED_HEIGHTS_MAX], root[FF_REFINED_HEIGHTS_MAX],
         refined[FF_REFINED_HEIGHTS_MAX];
     static uint8_t payload[FF_PAYLOAD_BYTES_MAX];
 
-    (void)state;
-    for (int run = 0; run < GROUND_COUNT * FF_NODE_LOG2_MAX * FF_CODEC_COUNT * 5; run++) {
-        int k = run % 5 + 1, kind = run / 5 % GROUND_COUNT, codec = run / 30 % FF_CODEC_COUNT;
-        ff_terrain_info info = terrain(k, 2, (enum ff_codec_id)codec,
-                                       max_errors[run / (30 * FF_CODEC_COUNT)]);
-        make_ground(&g, kind, (2u << k) + 1);
-        cut(&g, 0, 0, 2, ff_node_side(&info), source);
-        there_and_back(&info, NULL, source, payload, root);
-        there_and_back(&info, root, g.height, payload, refined);
+    for (int kind = 0; kind < GROUND_COUNT; kind++) {
+        make_ground(&g, kind, ff_refined_side(info));
+        cut(&g, 0, 0, 2, ff_node_side(info), source);
+        there_and_back(info, NULL, source, payload, root);
+        there_and_back(info, root, g.height, payload, refined);
     }
+}
+
+static void bound_holds_on_every_ground(void **state)
+{
+    static const uint32_t max_errors[] = { 0, 1, 4, 100, 32767 };
+
+    (void)state;
+    for (int codec = 0; codec < FF_CODEC_COUNT; codec++)
+        for (size_t e = 0; e < sizeof(max_errors) / sizeof(max_errors[0]); e++)
+            for (int k = 1; k <= FF_NODE_LOG2_MAX; k++) {
+                ff_terrain_info info = terrain(k, 2, (enum ff_codec_id)codec, max_errors[e]);
+                bound_holds(&info);
+            }
 }
 
 /* ---- a whole terrain of 2 by 2 tiles ---- */
@@ -345,27 +363,41 @@ static void bad_error_codes_are_refused(void **state)
 
 /* ---- damaged payloads ---- */
 
-static void check_damaged(const ff_terrain_info *info, ff_decoder *dec, const uint16_t *parent,
-                          const uint8_t *payload, size_t bytes)
+static int check_damaged(const ff_terrain_info *info, ff_decoder *dec, const uint16_t *parent,
+                         const uint8_t *payload, size_t bytes)
 {
-    static int32_t value[FF_REFINED_HEIGHTS_MAX];
     static uint16_t heights[FF_REFINED_HEIGHTS_MAX], slow[FF_REFINED_HEIGHTS_MAX];
-    ff_residuals residuals = { .value = value };
-    uint8_t *exact = malloc(bytes > 0 ? bytes : 1);
+    uint8_t *exact = malloc(bytes > 0 ? bytes : 1), told[4];
     int rc;
 
     memcpy(exact, payload, bytes);
-    rc = parent ? ff_decode_refinement(dec, exact, bytes, &residuals)
-                : ff_decode_root(dec, exact, bytes, &residuals);
+    rc = decode(dec, info, parent, exact, bytes, told, heights);
     assert_true(rc == FF_OK || rc == FF_ERR_TRUNCATED || rc == FF_ERR_FORMAT || rc == FF_ERR_RANGE);
     assert_int_equal(rc == FF_OK, slow_decode(info, parent, exact, bytes, slow) == 0);
-    if (rc == FF_OK && parent) ff_reconstruct_refinement(info, parent, &residuals, heights);
-    if (rc == FF_OK && !parent) ff_reconstruct_root(info, &residuals, heights);
     if (rc == FF_OK) {
         uint32_t side = parent ? ff_refined_side(info) : ff_node_side(info);
         assert_memory_equal(heights, slow, side * side * sizeof(*heights));
     }
     free(exact);
+    return rc;
+}
+
+/* Cut anywhere, spoilt by a bit anywhere, a byte too long. */
+static void damage(const ff_terrain_info *info, const uint16_t *parent, uint8_t *payload, int bytes)
+{
+    ff_decoder *dec = decoder_for(info);
+
+    for (int cut_at = 0; cut_at < bytes; cut_at++)
+        assert_int_equal(check_damaged(info, dec, parent, payload, (size_t)cut_at),
+                         FF_ERR_TRUNCATED);
+    for (int bit = 0; bit < 8 * bytes; bit++) {
+        payload[bit / 8] ^= (uint8_t)(1u << bit % 8);
+        check_damaged(info, dec, parent, payload, (size_t)bytes);
+        payload[bit / 8] ^= (uint8_t)(1u << bit % 8);
+    }
+    payload[bytes] = 0;
+    assert_int_equal(check_damaged(info, dec, parent, payload, (size_t)bytes + 1), FF_ERR_FORMAT);
+    free(dec);
 }
 
 static void damaged_payloads_do_no_harm(void **state)
@@ -376,31 +408,16 @@ static void damaged_payloads_do_no_harm(void **state)
     static ground g;
 
     (void)state;
-    for (int run = 0; run < 8; run++) {
-        ff_terrain_info info = terrain(3, 2, run & 1 ? FF_CODEC_DEFLATE : FF_CODEC_RAW,
-                                       run & 2 ? 50 : 0);
-        const uint16_t *parent = run & 4 ? root : NULL;
-        ff_decoder *dec = decoder_for(&info);
-        make_ground(&g, FRACTAL, 17);
-        cut(&g, 0, 0, 2, 9, source);
-        int bytes = there_and_back(&info, NULL, source, payload, root);
-        if (parent) bytes = there_and_back(&info, parent, g.height, payload, refined);
-        for (int cut_at = 0; cut_at < bytes; cut_at++) {
-            int32_t value[FF_REFINED_HEIGHTS_MAX];
-            ff_residuals residuals = { .value = value };
-            int rc = parent ? ff_decode_refinement(dec, payload, (size_t)cut_at, &residuals)
-                            : ff_decode_root(dec, payload, (size_t)cut_at, &residuals);
-            assert_int_equal(rc, FF_ERR_TRUNCATED);
-            check_damaged(&info, dec, parent, payload, (size_t)cut_at);
+    for (int codec = 0; codec < FF_CODEC_COUNT; codec++)
+        for (uint32_t max_error = 0; max_error <= 50; max_error += 50) {
+            ff_terrain_info info = terrain(3, 2, (enum ff_codec_id)codec, max_error);
+            make_ground(&g, FRACTAL, 17);
+            cut(&g, 0, 0, 2, 9, source);
+            int bytes = there_and_back(&info, NULL, source, payload, root);
+            damage(&info, NULL, payload, bytes);
+            bytes = there_and_back(&info, root, g.height, payload, refined);
+            damage(&info, root, payload, bytes);
         }
-        for (int bit = 0; bit < 8 * bytes; bit++) {
-            payload[bit / 8] ^= (uint8_t)(1u << bit % 8);
-            check_damaged(&info, dec, parent, payload, (size_t)bytes);
-            payload[bit / 8] ^= (uint8_t)(1u << bit % 8);
-        }
-        check_damaged(&info, dec, parent, payload, (size_t)bytes + 1);
-        free(dec);
-    }
 }
 
 /* ---- deflate bodies, made here: the encoder takes them for repetitive ground only ---- */
@@ -460,6 +477,29 @@ static void deflate_bodies_are_held_to_their_length(void **state)
     free(dec);
 }
 
+/* ---- the table ---- */
+
+/* Numbers stand in packs: a row is complete, and keeps its number. */
+static void every_row_is_whole(void **state)
+{
+    (void)state;
+    for (int codec = 0; codec < FF_CODEC_COUNT; codec++) {
+        const ff_codec *row = ff_codec_row(codec);
+        assert_true(row && row->name && row->memory && row->decode && row->reconstruct);
+        assert_non_null(ff_codec_encoder(codec));
+        assert_string_equal(ff_codec_name(codec), row->name);
+        assert_true(ff_codec_supported(codec));
+        for (int before = 0; before < codec; before++)
+            assert_string_not_equal(ff_codec_name(before), row->name);
+    }
+    assert_string_equal(ff_codec_name(0), "raw");
+    assert_string_equal(ff_codec_name(1), "deflate");
+    assert_string_equal(ff_codec_name(2), "rice");
+    assert_null(ff_codec_name(-1));
+    assert_null(ff_codec_name(FF_CODEC_COUNT));
+    assert_false(ff_codec_supported(FF_CODEC_COUNT));
+}
+
 /* ---- memory ---- */
 
 #ifdef __SANITIZE_ADDRESS__
@@ -489,15 +529,15 @@ static void decoding_allocates_nothing(void **state)
     static ground g;
     static uint16_t root[FF_NODE_HEIGHTS_MAX], heights[FF_REFINED_HEIGHTS_MAX];
     static uint8_t payload[FF_PAYLOAD_BYTES_MAX];
-    static int32_t value[FF_REFINED_HEIGHTS_MAX];
     static const uint8_t errors[4];
-    ff_residuals residuals = { .value = value };
     int done = 0;
 
     (void)state;
     count_from_now();
-    for (int k = 1; k <= FF_NODE_LOG2_MAX; k++) {
-        ff_terrain_info info = terrain(k, 2, FF_CODEC_DEFLATE, 2);
+    for (int run = 0; run < FF_CODEC_COUNT * FF_NODE_LOG2_MAX; run++) {
+        int codec = run / FF_NODE_LOG2_MAX, k = run % FF_NODE_LOG2_MAX + 1;
+        ff_terrain_info info = terrain(k, 2, (enum ff_codec_id)codec, 2);
+        uint8_t told[4];
         size_t block_bytes = ff_decoder_bytes(&info), before;
         uint8_t *block = malloc(block_bytes + 64);
         make_ground(&g, FRACTAL, (2u << k) + 1);
@@ -508,12 +548,12 @@ static void decoding_allocates_nothing(void **state)
         before = counted();
         ff_decoder *dec = ff_decoder_create(&info, block, block_bytes);
         for (int i = 0; i < 100; i++)
-            done += ff_decode_refinement(dec, payload, (size_t)bytes, &residuals) == FF_OK;
+            done += decode(dec, &info, root, payload, (size_t)bytes, told, heights) == FF_OK;
         assert_int_equal(counted(), before);
         for (int i = 0; i < 64; i++) assert_int_equal(block[block_bytes + (size_t)i], 0xa5);
         free(block);
     }
-    assert_int_equal(done, 100 * FF_NODE_LOG2_MAX);
+    assert_int_equal(done, 100 * FF_CODEC_COUNT * FF_NODE_LOG2_MAX);
 }
 
 int main(void)
@@ -529,6 +569,7 @@ int main(void)
         cmocka_unit_test(bad_error_codes_are_refused),
         cmocka_unit_test(damaged_payloads_do_no_harm),
         cmocka_unit_test(deflate_bodies_are_held_to_their_length),
+        cmocka_unit_test(every_row_is_whole),
         cmocka_unit_test(decoding_allocates_nothing),
     };
 

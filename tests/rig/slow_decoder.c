@@ -117,7 +117,8 @@ static long unary_all(const uint8_t *bytes, long left, long *high, int count)
     return (bit + 7) / 8;
 }
 
-static int body(int head, const uint8_t *bytes, long left, long *residual, int count)
+/* `codec` 2 has no kind 2. */
+static int body(int codec, int head, const uint8_t *bytes, long left, long *residual, int count)
 {
     static uint8_t deflated[SIDE_MAX * SIDE_MAX];
     static long high[SIDE_MAX * SIDE_MAX];
@@ -125,7 +126,8 @@ static int body(int head, const uint8_t *bytes, long left, long *residual, int c
     int low_bits = kind == 1 ? detail + 1 : detail;
     long low_bytes = ((long)count * low_bits + 7) / 8;
 
-    if ((kind == 0 && detail != 0) || left < low_bytes || (kind < 2 && left != low_bytes))
+    if ((kind == 0 && detail != 0) || (kind == 2 && codec == 2) || left < low_bytes ||
+        (kind < 2 && left != low_bytes))
         return -1;
     memset(high, 0, sizeof(high));
     if (kind == 2) {
@@ -145,29 +147,49 @@ static int body(int head, const uint8_t *bytes, long left, long *residual, int c
     return 0;
 }
 
-/* All residuals of a payload, corners first. */
-static int residuals(const ff_terrain_info *info, int root, const uint8_t *at, long left,
-                     long *residual, int count)
+/* `stored` error codes; `count` values of 16 bits, signed after the first `corners`. 0 or -1. */
+static int plain_part(const uint8_t *at, long left, int stored, int corners, long *residual,
+                      int count)
 {
-    int errors = root ? 1 : 4, raw = info->codec == 0, head = 0, absolute = root ? 4 : 0, stored;
-
-    if (left < 1) return -1;
-    if (!raw) {
-        head = *at++;
-        left--;
-    }
-    stored = raw ? errors : (head >> 2 & 3) == 0 ? 0 : (head >> 2 & 3) == 1 ? 1 : errors;
-    if (((head >> 2) & 3) == 3 || left < stored + 2 * absolute ||
-        (raw && left != errors + 2 * count))
-        return -1;
+    if (left < stored + 2 * count) return -1;
     for (int i = 0; i < stored; i++)
         if (*at++ > 208) return -1;
-    left -= stored;
-    for (int i = 0; i < (raw ? count : absolute); i++, at += 2, left -= 2) {
+    for (int i = 0; i < count; i++, at += 2) {
         residual[i] = at[0] + 256L * at[1];
-        if (i >= absolute && residual[i] >= 32768) residual[i] -= 65536;
+        if (i >= corners && residual[i] >= 32768) residual[i] -= 65536;
     }
-    return raw ? 0 : body(head, at, left, residual + absolute, count - absolute);
+    return 0;
+}
+
+static int raw(int root, const uint8_t *at, long left, long *residual, int count)
+{
+    int errors = root ? 1 : 4;
+
+    if (left != errors + 2 * count) return -1;
+    return plain_part(at, left, errors, root ? 4 : 0, residual, count);
+}
+
+static int head_and_body(int codec, int root, const uint8_t *at, long left, long *residual,
+                         int count)
+{
+    int form = at[0] >> 2 & 3, corners = root ? 4 : 0;
+    int stored = form == 0 ? 0 : form == 1 || root ? 1 : 4, before = 1 + stored + 2 * corners;
+
+    if (form == 3 || plain_part(at + 1, left - 1, stored, corners, residual, corners) != 0)
+        return -1;
+    return body(codec, at[0], at + before, left - before, residual + corners, count - corners);
+}
+
+/* All residuals of a payload, corners first. */
+static int residuals(int codec, int root, const uint8_t *at, long left, long *residual, int count)
+{
+    if (left < 1) return -1;
+    switch (codec) {
+        case 0: return raw(root, at, left, residual, count);
+        case 1:
+        case 2: return head_and_body(codec, root, at, left, residual, count);
+        default: return -1;
+    }
 }
 
 int slow_decode(const ff_terrain_info *info, const uint16_t *parent, const uint8_t *payload,
@@ -180,7 +202,7 @@ int slow_decode(const ff_terrain_info *info, const uint16_t *parent, const uint8
     f.last = parent ? 2 * node : node;
     f.maximum_error = info->max_error;
     f.residual = residual;
-    if (residuals(info, !parent, payload, (long)bytes, residual,
+    if (residuals(info->codec, !parent, payload, (long)bytes, residual,
                   parent ? (2 * node + 1) * (2 * node + 1) - count : count) != 0)
         return -1;
     if (parent) {
