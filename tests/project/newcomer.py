@@ -1,0 +1,133 @@
+#!/usr/bin/env python3
+"""newcomer.py: a newcomer's changes stay small, and work at once. Each change is made in a copy of the tree: rows and files of its own go
+in, nothing else is touched; the copy is built and the change is tried. Prints TAP lines with the files and lines each change took."""
+import os
+import shutil
+import subprocess
+import sys
+
+WORK = "build/tests/newcomer"
+GRID = "--raw 65x65 --spacing 30 --tile-log2 5 --quiet"
+
+# name; most files; insertions (file, the line to insert before, lines); new files; what to build; commands, with what must be in their output
+CHANGES = [
+    ("a link profile", 1, [("sim/link/sim_link_profiles.c", '        .name = "lan",', """\
+        .name = "lorawan",
+        .source = "a newcomer's: EU868 DR5, 5470 bit/s, one frame in some seconds",
+        .way = {
+            [SIM_DOWN] = { .bytes_s = 680, .delay_us = 500000, .jitter_us = 1000000, .queue_bytes = 8192 },
+            [SIM_UP] = { .bytes_s = 680, .delay_us = 500000, .jitter_us = 1000000, .queue_bytes = 8192 },
+        },
+        .connect_ms = 2000,
+    },
+    {
+""")], {}, ["build/bin/farfield-link", "build/bin/farfield-fly", "build/tests/test_link_profiles"],
+     [("build/bin/farfield-link --list", "lorawan"), ("build/tests/test_link_profiles", "PASSED"),
+      ("build/bin/farfield-fly --pack hills.ffp --link lorawan --seconds 5 --settle 5 --backend none --json", "geometry_hash")]),
+    ("a way to draw", 5, [("client/farfield.h", '    X(NO_FOG, "no-fog"',
+                           '    X(DARK_MESH, "dark-mesh", "d", "dark mesh", "the mesh in black") \\\n'),
+                          ("client/ground/ff_show.c", "void ff_show_over(", """\
+static void show_dark(const ff_terrain_view *view, const ff_drawn *drawn, const c3d_draw *ground)
+{
+    uint8_t strip[5];
+    unsigned strips = ff_strips_for(drawn->coarser, strip);
+    for (unsigned i = 0; i < strips; i++) draw_lines(view, ground, strip[i], 0xFF000000u);
+}
+
+"""), ("client/ground/ff_show.c", "    if (show & FF_SHOW_NODE_BORDERS)",
+       "    if (show & FF_SHOW_DARK_MESH) show_dark(view, drawn, ground);\n")],
+     {}, ["build/bin/farfield-fly", "build/bin/farfield-view"],
+     [("build/bin/farfield-fly --help", "--dark-mesh"), ("build/bin/farfield-view --help", "--dark-mesh"),
+      ("build/bin/farfield-fly --pack hills.ffp --link lan --seconds 2 --settle 5 --backend soft --json --dark-mesh", "!PLAIN_HASH")]),
+]
+
+
+def run(command, where):
+    return subprocess.run(command, shell=True, cwd=where, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+
+
+def copy_tree(where):
+    """Tracked files and what is built of them, with their times: the copy builds only what a change touches."""
+    shutil.rmtree(where, ignore_errors=True)
+    for name in subprocess.check_output(["git", "ls-files"], text=True).split("\n"):
+        if name and os.path.exists(name):
+            os.makedirs(os.path.dirname(os.path.join(where, name)), exist_ok=True)
+            shutil.copy2(name, os.path.join(where, name))
+    os.makedirs(where + "/build")
+    for part in ("obj", "lib", ".deps"):
+        if os.path.exists("build/" + part):
+            run("cp -a %s %s" % (os.path.abspath("build/" + part), os.path.abspath(where + "/build/")), ".")
+
+
+def insert(where, path, anchor, text):
+    """1 when the anchor stands there: a change whose place is gone must be told, not skipped."""
+    path = os.path.join(where, path)
+    lines = open(path).read().split("\n")
+    at = next((i for i, line in enumerate(lines) if line.startswith(anchor)), None)
+    if at is None:
+        return 0
+    lines[at:at] = text.rstrip("\n").split("\n") if text.strip("\n") else []
+    open(path, "w").write("\n".join(lines))
+    return 1
+
+
+def frame_hash(text):
+    return [line for line in text.split("\n") if "frame_hash" in line]
+
+
+def expected(wanted, output, plain):
+    return frame_hash(output) not in ([], plain) if wanted == "!PLAIN_HASH" else wanted in output
+
+
+def why_not(change, where):
+    """None, or what went wrong."""
+    name, files_max, insertions, own, targets, commands = change
+    for path, anchor, text in insertions:
+        if not insert(where, path, anchor, text):
+            return "%s has no line %r" % (path, anchor)
+    for path, text in own.items():
+        open(os.path.join(where, path), "w").write(text)
+    touched = len({path for path, _, _ in insertions} | set(own))
+    if touched > files_max:
+        return "touches %d files, at most %d" % (touched, files_max)
+    plain = frame_hash(run("../../../bin/farfield-fly --pack ../hills.ffp --link lan --seconds 2 --settle 5 --backend soft --json", where).stdout)
+    built = run("make -j2 BUILD=build %s" % " ".join(targets), where)
+    if built.returncode:
+        return "does not build:\n" + built.stdout[-2000:]
+    for command, wanted in commands:
+        done = run(command.replace("hills.ffp", "../hills.ffp"), where)
+        if done.returncode or not expected(wanted, done.stdout, plain):
+            return "%s: %s" % (command, done.stdout[-1000:])
+    return None
+
+
+def size_of(change):
+    _, _, insertions, own, _, _ = change
+    lines = sum(text.count("\n") for _, _, text in insertions) + sum(text.count("\n") for text in own.values())
+    return "%d files, %d lines" % (len({path for path, _, _ in insertions} | set(own)), lines)
+
+
+def bake(path):
+    samples = bytes(b for y in range(65) for x in range(65) for b in ((700 + 9 * x + 5 * y + 80 * ((x // 8 + y // 8) % 2)).to_bytes(2, "little")))
+    open(path + ".raw", "wb").write(samples)
+    return run("build/bin/farfield-bake %s.raw %s -o %s.ffp" % (path, GRID, path), ".").returncode
+
+
+def main():
+    os.chdir(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../.."))
+    os.makedirs(WORK, exist_ok=True)
+    failures = bake(WORK + "/hills")
+    print("%sok - a pack to fly over" % ("not " if failures else ""))
+    for number, change in enumerate(CHANGES):
+        where = "%s/%d" % (WORK, number)
+        copy_tree(where)
+        wrong = why_not(change, where)
+        print("%sok - %s: %s" % ("not " if wrong else "", change[0], size_of(change)), flush=True)
+        if wrong:
+            failures += 1
+            print("# " + wrong.replace("\n", "\n# "))
+        shutil.rmtree(where, ignore_errors=True)
+    return failures > 0
+
+
+sys.exit(main())
