@@ -1,12 +1,10 @@
-/* Life of a client: the block, the worker, settings and what can be read of it. Frames are in
- * client_update.c. */
+/* Life of a client: the block, the worker, settings and what is known of the terrain. Frames are in
+ * client_update.c, figures in client_figures.c. */
 #include "ff_client_local.h"
 
 #include <string.h>
 
 #define CLIENT_BYTES_MIN ((size_t)512 << 10)
-#define RECV_BYTES_MIN   (20u << 10) /* any node fits, and common images */
-#define RECV_BYTES_MAX   (FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX)
 #define WORKER_SLEEP_US  2000
 #define METRES           FF_WU_PER_METRE
 
@@ -36,7 +34,7 @@ static void default_panorama(ff_panorama_desc *panorama, unsigned width)
     panorama->enabled &= ff_panorama_built;
 }
 
-static void default_desc(ff_client_desc *desc)
+void ff_client_default_desc(ff_client_desc *desc)
 {
     if (!desc->width) desc->width = 240;
     if (!desc->height) desc->height = 320;
@@ -75,12 +73,10 @@ static void worker_main(void *context)
 /* The part of the block that does not depend on the terrain. */
 static int make_fixed_part(ff_client *client)
 {
-    size_t recv = client->desc.memory_bytes / 32;
-    client->recv_bytes = recv < RECV_BYTES_MIN   ? RECV_BYTES_MIN
-                         : recv > RECV_BYTES_MAX ? RECV_BYTES_MAX
-                                                 : (uint32_t)recv;
-    client->recv = client->desc.stream ? ff_arena_take(&client->arena, client->recv_bytes) : NULL;
-    void *slots = ff_arena_take(&client->arena, ff_requests_bytes(client->desc.in_flight_max));
+    ff_budget budget;
+    ff_budget_fixed(&budget, &client->desc, client->arena.bytes);
+    client->recv = ff_client_take(&client->arena, &budget, FF_POOL_received);
+    void *slots = ff_client_take(&client->arena, &budget, FF_POOL_requests);
     if (!slots || (client->desc.stream && !client->recv)) return FF_ERR_MEMORY;
     client->fixed_bytes = client->arena.used;
     ff_requests_init(&client->requests, client->desc.in_flight_max, slots);
@@ -91,7 +87,7 @@ static int make_fixed_part(ff_client *client)
     if (client->desc.stream)
         ff_stream_init(&client->stream, client->desc.stream, &client->intake,
                        client->desc.in_flight_max, client->desc.answer_timeout_ms, client->recv,
-                       client->recv_bytes);
+                       budget.pool[FF_POOL_received].count);
     return FF_OK;
 }
 
@@ -112,7 +108,7 @@ int ff_client_create(const ff_client_desc *desc, ff_client **result)
     ff_client *client = ff_arena_take(&arena, sizeof *client);
     if (!client) return FF_ERR_MEMORY;
     client->desc = *desc;
-    default_desc(&client->desc);
+    ff_client_default_desc(&client->desc);
     client->arena = arena;
     client->geometry_hash = FF_TERRAIN_VIEW_HASH_START;
     rc = make_fixed_part(client);
@@ -247,67 +243,4 @@ uint64_t ff_client_request_hash(const ff_client *client)
     /* only its lock is written */
     ff_requests_get_counts((ff_requests *)&client->requests, &counts, &hash);
     return hash;
-}
-
-static void link_stats(const ff_client *client, ff_client_stats *stats)
-{
-    static const enum ff_link_state link[] = { [FF_STREAM_CONNECTING] = FF_LINK_CONNECTING,
-                                               [FF_STREAM_GREETING] = FF_LINK_CONNECTING,
-                                               [FF_STREAM_WELCOMED] = FF_LINK_UP,
-                                               [FF_STREAM_UP] = FF_LINK_UP,
-                                               [FF_STREAM_DOWN] = FF_LINK_DOWN,
-                                               [FF_STREAM_DEAD] = FF_LINK_DOWN };
-    ff_stream_shared shared;
-    ff_stream_get_shared((ff_stream *)&client->stream, &shared);
-    stats->link = link[shared.state];
-    stats->bytes_down = shared.bytes_down;
-    stats->bytes_up = shared.bytes_up;
-    stats->panorama_bytes = (uint32_t)shared.panorama_bytes;
-    stats->protocol_errors = shared.protocol_errors;
-    stats->reconnects = shared.reconnects;
-    stats->rtt_ms = shared.rtt_us / 1000;
-    stats->bandwidth_bytes_s = shared.bytes_s;
-}
-
-static void request_stats(const ff_client *client, ff_client_stats *stats)
-{
-    ff_request_counts counts;
-    ff_requests_get_counts((ff_requests *)&client->requests, &counts, NULL);
-    stats->requests_sent = counts.sent;
-    stats->requests_done = counts.done;
-    stats->requests_failed = counts.failed;
-    stats->requests_cancelled = counts.cancelled;
-    stats->requests_dropped = counts.dropped;
-    stats->in_flight = counts.in_flight;
-    stats->in_flight_high = counts.in_flight_high;
-    stats->queued = counts.queued;
-    stats->queued_high = counts.queued_high;
-    stats->panorama_requests = counts.panoramas_sent;
-    stats->panoramas_in_flight_high = counts.panoramas_in_flight_high;
-}
-
-void ff_client_get_stats(const ff_client *client, ff_client_stats *stats)
-{
-    memset(stats, 0, sizeof *stats);
-    if (client->tree) ff_tree_get_stats(client->tree, &stats->tree);
-    if (client->device) c3d_get_stats(client->device, &stats->c3d);
-    if (client->desc.stream) link_stats(client, stats);
-    request_stats(client, stats);
-    stats->have_terrain = client->have_terrain;
-    stats->terrain_error = client->terrain_error;
-    stats->low_power = (uint8_t)ff_client_low_power(client);
-    stats->panorama_faces = client->panorama.faces;
-    stats->panorama_faces_empty = client->panorama.faces_empty;
-    stats->textures_held = client->textures.held;
-    stats->textures_high = client->textures.high;
-    stats->textures_full = client->textures.full;
-    stats->frames_updated = client->frames_updated;
-    stats->frames_skipped = client->frames_skipped;
-    stats->memory_used = client->arena.used;
-    stats->memory_bytes = client->desc.memory_bytes;
-    stats->quality = ff_client_quality(client);
-    if (client->panorama.desc.enabled && client->panorama.face_size && !client->all_client)
-        stats->back_plane_wu = stats->quality.view_wu;
-    stats->panorama_error_q8 = client->panorama.desc.error_px_q8;
-    ff_client_balance_stats(client, &stats->balance);
 }

@@ -28,6 +28,7 @@
 extern "C" {
 #endif
 
+#include "ff_figures.h"
 #include "terrain/ff_tree.h"
 #include "../protocol/ff_pack.h"
 
@@ -121,31 +122,24 @@ enum ff_link_state {
     FF_LINK_DOWN /* retrying */
 };
 
+/* One row of ff_figures.h a field; the rows say what each counts. */
 typedef struct ff_client_stats {
-    ff_tree_stats tree;
-    c3d_stats c3d;
-    enum ff_link_state link;
-    uint8_t have_terrain; /* WELCOME has come */
-    /* why the terrain that has come is not shown: FF_ERR_MEMORY, the block is too small for it; or
-     * FF_OK */
-    int terrain_error;
-    uint8_t low_power; /* battery low or interrupted: slower, coarser, no prefetch */
-    uint64_t bytes_down, bytes_up;
-    uint32_t requests_sent, requests_done, requests_failed, requests_cancelled, requests_dropped;
-    uint32_t in_flight, in_flight_high, queued, queued_high;
-    uint32_t panorama_requests, panorama_faces, panorama_faces_empty, panorama_bytes;
-    /* requests sent and unanswered at once; 1 at most unless hold_back is 1 */
-    uint32_t panoramas_in_flight_high;
-    uint32_t textures_held, textures_high, textures_full;
-    uint32_t protocol_errors, reconnects;
-    uint32_t frames_updated, frames_skipped; /* skipped: nothing changed, nothing to redraw */
-    uint32_t rtt_ms, bandwidth_bytes_s;      /* as measured by the worker */
-    size_t memory_used, memory_bytes;
-    ff_quality quality;        /* in force: as set, by the balance, halved when power is low */
-    int32_t back_plane_wu;     /* in force; 0: no panoramas */
-    int32_t panorama_error_q8; /* in force */
-    ff_balance_stats balance;  /* zero without */
+#define FIELD(type, name, from, what) type name;
+#define PART(name, member)
+    FF_CLIENT_FIGURES(FIELD, FIELD, PART)
+#undef FIELD
+#undef PART
 } ff_client_stats;
+
+/* A pool of the block, see ff_budget.h. */
+typedef struct ff_pool_use {
+    const char *name;
+    uint32_t count;      /* of its items; 0: this client needs none */
+    size_t bytes;        /* of all of them together */
+    uint8_t inside;      /* lies inside the pool before it that is not inside another one */
+    uint32_t held, high; /* in use now, and the most ever at once */
+} ff_pool_use;
+#define FF_POOLS_MAX 24
 
 size_t ff_client_bytes_min(void);
 /* FF_OK or FF_ERR_ARGUMENT, FF_ERR_MEMORY, FF_ERR_UNSUPPORTED, and errors of the pack. */
@@ -204,6 +198,12 @@ c3d_device *ff_client_device(ff_client *client);
 /* Ground height at (x, y) as drawn now: 1 and *z_wu, or 0. */
 int ff_client_ground(const ff_client *client, int32_t x_wu, int32_t y_wu, int32_t *z_wu);
 void ff_client_get_stats(const ff_client *client, ff_client_stats *stats);
+/* The pools of the block and their number; those of a terrain have no items while none is known. */
+unsigned ff_client_pools(const ff_client *client, ff_pool_use list[FF_POOLS_MAX]);
+/* How a block of desc->memory_bytes would be shared out for a terrain, without the block: number of
+ * pools, or FF_ERR_MEMORY. */
+int ff_client_plan(const ff_client_desc *desc, const ff_terrain_info *info,
+                   ff_pool_use list[FF_POOLS_MAX]);
 
 /* The panorama in use: 1 and where it was taken, or 0. *faces: bit per enum ff_face_name held
  * (empty ones included). */

@@ -1,16 +1,14 @@
 /* Inside of a client: for client*.c, client/balance and tests only.
  *
- * The block, from its start:
- *   ff_client_create       ff_client | requests | receive buffer
- *   the terrain is known   decoder | images on their way, new-data items | image slots |
- *   (WELCOME, the pack)    c3d device | view entries, one node's vertices | tree
- * The second line is given back and carved anew for another terrain. The tree takes what is left,
- * up to NODES_MAX nodes; then the block is sealed. */
+ * The block is shared out by ff_budget.h: some pools from ff_client_create on, the others once the
+ * terrain is known (WELCOME, or the pack), given back and carved anew for another terrain. Then the
+ * block is sealed. */
 #ifndef FF_CLIENT_LOCAL_H
 #define FF_CLIENT_LOCAL_H
 
 #include "farfield.h"
 #include "ff_arena.h"
+#include "ff_budget.h"
 #include "balance/ff_balance.h"
 #include "source/ff_local.h"
 #include "ahead/ff_motion.h"
@@ -39,11 +37,10 @@ struct ff_client {
     ff_intake intake;
     ff_stream stream;
     uint8_t *recv;
-    uint32_t recv_bytes;
 
     uint8_t have_terrain;
-    int terrain_error; /* of the terrain met last */
     uint8_t economy;   /* left out for want of memory: 1 panoramas, 2 images too */
+    int terrain_error; /* of the terrain met last */
     ff_terrain_info info;
     ff_tree *tree;
     c3d_device *device;
@@ -71,7 +68,11 @@ struct ff_client {
     uint32_t frames_updated, frames_skipped;
 };
 
-/* client_carve.c: pools for client->info; under the gate (or before the worker runs). FF_OK,
+/* client.c: the defaults of all that is zero. */
+void ff_client_default_desc(ff_client_desc *desc);
+/* client_carve.c: a pool of the block, NULL when the budget has none. */
+void *ff_client_take(ff_arena *arena, const ff_budget *budget, enum ff_pool_id pool);
+/* Pools for client->info; under the gate (or before the worker runs). FF_OK,
  * FF_ERR_MEMORY, FF_ERR_UNSUPPORTED. */
 int ff_client_carve(ff_client *client);
 void ff_client_uncarve(ff_client *client);

@@ -139,6 +139,8 @@ typedef struct c3d_stats {
     uint32_t frame_triangles, frame_draws;
     /* uses of stale or zero handles, and strips that reach beyond their mesh */
     uint32_t stale_handles;
+    /* of the pools: in use, and the most at once */
+    uint32_t mesh_held, strip_held, texture_held;
     uint32_t mesh_high, strip_high, texture_high, label_high;
     uint32_t strip_indices_high; /* of strip_indices_max, gaps between strips counted */
     uint8_t vertex_buffers_used;

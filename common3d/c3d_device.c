@@ -493,6 +493,9 @@ const void *c3d_frame_pixels(c3d_device *device, enum c3d_texture_format *format
 void c3d_get_stats(const c3d_device *device, c3d_stats *stats)
 {
     *stats = device->stats;
+    stats->mesh_held = device->meshes.in_use;
+    stats->strip_held = device->strips.in_use;
+    stats->texture_held = device->textures.in_use;
     stats->mesh_high = device->meshes.high;
     stats->strip_high = device->strips.high;
     stats->texture_high = device->textures.high;

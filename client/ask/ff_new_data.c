@@ -57,6 +57,7 @@ void ff_new_data_put(ff_new_data *list, ff_new_item *item)
     list->count++;
     list->image_count = (uint16_t)(list->image_count + (item->pixels != NULL));
     if (list->count > list->high) list->high = list->count;
+    if (list->image_count > list->image_high) list->image_high = list->image_count;
     sys_mutex_unlock(&list->mutex);
 }
 
@@ -78,5 +79,12 @@ void ff_new_data_release(ff_new_data *list)
     }
     list->head = (uint16_t)((list->head + 1) % list->item_slots);
     list->count--;
+    sys_mutex_unlock(&list->mutex);
+}
+
+void ff_new_data_get_counts(ff_new_data *list, ff_new_data_counts *counts)
+{
+    sys_mutex_lock(&list->mutex);
+    *counts = (ff_new_data_counts){ list->count, list->high, list->image_count, list->image_high };
     sys_mutex_unlock(&list->mutex);
 }

@@ -30,8 +30,13 @@ typedef struct ff_new_data {
     size_t image_bytes;
     uint16_t item_slots, image_slots;
     uint16_t head, count, high;
-    uint16_t image_head, image_count;
+    uint16_t image_head, image_count, image_high;
 } ff_new_data;
+
+/* In use now, and the most at once. */
+typedef struct ff_new_data_counts {
+    uint16_t items, items_high, images, images_high;
+} ff_new_data_counts;
 
 /* Bytes of items with `values` residuals each. */
 size_t ff_new_data_item_bytes(unsigned item_slots, unsigned values);
@@ -48,5 +53,6 @@ void ff_new_data_put(ff_new_data *list, ff_new_item *item);
 /* Main thread: the oldest item, or NULL; it stays valid until _release. */
 ff_new_item *ff_new_data_first(ff_new_data *list);
 void ff_new_data_release(ff_new_data *list);
+void ff_new_data_get_counts(ff_new_data *list, ff_new_data_counts *counts);
 
 #endif

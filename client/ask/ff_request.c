@@ -64,6 +64,8 @@ static void enqueue(ff_requests *requests, ff_request *request)
     ff_request_counts *counts = &requests->counts;
     request->state = FF_REQUEST_QUEUED;
     if (++counts->queued > counts->queued_high) counts->queued_high = counts->queued;
+    uint32_t held = counts->queued + counts->in_flight + counts->arriving;
+    if (held > counts->held_high) counts->held_high = held;
 }
 
 void ff_requests_clear(ff_requests *requests)

@@ -61,6 +61,7 @@ typedef struct ff_request_counts {
     uint32_t queued, queued_high, in_flight, in_flight_high, arriving;
     uint32_t panoramas_sent, textures_sent, panoramas_in_flight, panoramas_in_flight_high;
     uint32_t bytes_in_flight; /* expected */
+    uint32_t held_high;       /* slots in use at once */
 } ff_request_counts;
 
 typedef struct ff_requests {

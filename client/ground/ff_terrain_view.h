@@ -28,7 +28,7 @@ typedef struct ff_terrain_view {
     c3d_device *device;
     ff_view_node *entry;  /* zeroed */
     c3d_vertex *vertices; /* scratch for one node */
-    uint32_t entry_count, heights_per_node, strip_indices;
+    uint32_t entry_count, heights_per_node;
 
     ff_tree *tree; /* see ff_terrain_view_attach */
     const ff_terrain_info *info;

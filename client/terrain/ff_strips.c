@@ -118,6 +118,12 @@ int ff_strips_make(ff_strips *strips, unsigned node_log2)
     return FF_OK;
 }
 
+uint32_t ff_strips_indices(unsigned node_log2)
+{
+    static const uint16_t indices[FF_NODE_LOG2_MAX + 1] = { 0, 54, 160, 508, 1656, 5620 };
+    return node_log2 <= FF_NODE_LOG2_MAX ? indices[node_log2] : 0;
+}
+
 unsigned ff_strips_for(unsigned coarser, uint8_t strip[5])
 {
     if (coarser == 0) {

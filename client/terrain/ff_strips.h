@@ -29,6 +29,9 @@ typedef struct ff_strips {
 /* node_log2 1..5 (1: INNER is empty). FF_OK or FF_ERR_RANGE. */
 int ff_strips_make(ff_strips *strips, unsigned node_log2);
 
+/* Indices of all strips of such a node together. */
+uint32_t ff_strips_indices(unsigned node_log2);
+
 /* The strips that draw a node with the given mask of coarser sides: count (1, or INNER and four
  * sides), ids into `strip`. */
 unsigned ff_strips_for(unsigned coarser, uint8_t strip[5]);

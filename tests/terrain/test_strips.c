@@ -168,6 +168,17 @@ static void test_range(void **state)
     assert_int_equal(strips.length[FF_STRIP_INNER], 0);
 }
 
+static void test_indices_together(void **state)
+{
+    (void)state;
+    for (unsigned node_log2 = 1; node_log2 <= FF_NODE_LOG2_MAX; node_log2++) {
+        unsigned sum = 0;
+        assert_int_equal(ff_strips_make(&strips, node_log2), FF_OK);
+        for (unsigned i = 0; i < strips.count; i++) sum += strips.length[i];
+        assert_int_equal(ff_strips_indices(node_log2), sum);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -175,6 +186,7 @@ int main(void)
         cmocka_unit_test(test_rims_leave_out_vertices),
         cmocka_unit_test(test_diagonals_run_north_east),
         cmocka_unit_test(test_strips_of_a_mask),
+        cmocka_unit_test(test_indices_together),
         cmocka_unit_test(test_range),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

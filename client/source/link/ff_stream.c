@@ -37,6 +37,8 @@ static void publish(ff_stream *stream)
     shared->panorama_bytes = stream->panorama_bytes;
     shared->protocol_errors = stream->protocol_errors;
     shared->reconnects = stream->reconnects;
+    shared->received = stream->recv_count;
+    shared->received_high = stream->recv_high;
     shared->losses = stream->losses;
     shared->rtt_us = stream->link.rtt_us;
     shared->bytes_s = stream->link.bytes_s;
@@ -245,6 +247,7 @@ static int receive(ff_stream *stream, int64_t now_us, int *moved)
         if (count < 0) return FF_ERR_CLOSED;
         if (count == 0) return FF_OK;
         stream->recv_count += (uint32_t)count;
+        if (stream->recv_count > stream->recv_high) stream->recv_high = stream->recv_count;
         stream->bytes_down += (uint32_t)count;
         stream->heard_us = now_us;
         *moved = 1;

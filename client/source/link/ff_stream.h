@@ -32,7 +32,9 @@ enum ff_stream_state {
 /* What the main thread may see and say; guarded by the request queue's lock. */
 typedef struct ff_stream_shared {
     enum ff_stream_state state;
+    uint32_t received; /* bytes of messages that have not come whole yet */
     uint64_t bytes_down, bytes_up, panorama_bytes;
+    uint32_t received_high; /* the most ever */
     uint32_t protocol_errors, reconnects, rtt_us, bytes_s;
     uint32_t losses;         /* connections lost: what was asked is to be ranked again */
     ff_terrain_info welcome; /* valid in WELCOMED */
@@ -52,7 +54,7 @@ typedef struct ff_stream {
     uint8_t attempt; /* CONNECTING: 1 when reconnect() has to be called */
     uint8_t blocked; /* the new-data list is full */
     uint8_t *recv;
-    uint32_t recv_bytes, recv_count, skip;
+    uint32_t recv_bytes, recv_count, recv_high, skip;
     uint8_t send[FF_STREAM_SEND_BYTES];
     uint32_t send_count;
     int64_t retry_us, backoff_us, connect_us, heard_us, sent_us;

@@ -1,0 +1,128 @@
+/* What can be read of a client: its figures (ff_figures.h) and what its pools hold (ff_budget.h).
+ */
+#include "ff_client_local.h"
+
+#include <string.h>
+
+/* What the parts of a client say of themselves, each asked once and under its own lock. */
+typedef struct ff_readings {
+    const ff_client *client;
+    ff_tree_stats tree;
+    c3d_stats c3d;
+    ff_stream_shared link; /* zero without a link */
+    ff_request_counts requests;
+    uint32_t requests_held; /* slots in use */
+    ff_new_data_counts news;
+    ff_balance_stats balance;
+} ff_readings;
+
+static void read_parts(const ff_client *client, ff_readings *readings)
+{
+    /* only the locks of what is asked are written */
+    ff_client *asked = (ff_client *)client;
+    ff_request_counts *requests = &readings->requests;
+    memset(readings, 0, sizeof *readings);
+    readings->client = client;
+    if (client->tree) ff_tree_get_stats(client->tree, &readings->tree);
+    if (client->device) c3d_get_stats(client->device, &readings->c3d);
+    if (client->desc.stream) ff_stream_get_shared(&asked->stream, &readings->link);
+    ff_requests_get_counts(&asked->requests, requests, NULL);
+    readings->requests_held = requests->queued + requests->in_flight + requests->arriving;
+    ff_new_data_get_counts(&asked->news, &readings->news);
+    ff_client_balance_stats(client, &readings->balance);
+}
+
+/* ---- figures ---- */
+
+static enum ff_link_state link_state(const ff_readings *from)
+{
+    static const enum ff_link_state link[] = { [FF_STREAM_CONNECTING] = FF_LINK_CONNECTING,
+                                               [FF_STREAM_GREETING] = FF_LINK_CONNECTING,
+                                               [FF_STREAM_WELCOMED] = FF_LINK_UP,
+                                               [FF_STREAM_UP] = FF_LINK_UP,
+                                               [FF_STREAM_DOWN] = FF_LINK_DOWN,
+                                               [FF_STREAM_DEAD] = FF_LINK_DOWN };
+    return from->client->desc.stream ? link[from->link.state] : FF_LINK_NONE;
+}
+
+static int32_t back_plane_wu(const ff_client *client)
+{
+    const ff_panorama *panorama = &client->panorama;
+    return panorama->desc.enabled && panorama->face_size && !client->all_client
+               ? ff_client_quality(client).view_wu
+               : 0;
+}
+
+void ff_client_get_stats(const ff_client *client, ff_client_stats *stats)
+{
+    ff_readings readings, *from = &readings;
+    read_parts(client, from);
+#define FIELD(type, name, where_from, what) stats->name = (where_from);
+#define PART(name, member)
+    FF_CLIENT_FIGURES(FIELD, FIELD, PART)
+#undef FIELD
+#undef PART
+}
+
+/* ---- pools ---- */
+
+/* farfield.h has room for all of them */
+typedef char all_pools_listed[FF_POOL_COUNT <= FF_POOLS_MAX ? 1 : -1];
+
+static void list_pools(const ff_budget *b, ff_pool_use *list)
+{
+#define LIST(name, inside)                                                                \
+    list[FF_POOL_##name] = (ff_pool_use){                                                 \
+        #name, b->pool[FF_POOL_##name].count, b->pool[FF_POOL_##name].bytes, inside, 0, 0 \
+    };
+#define X(name, when, wanted, least, most, bytes, held, high, why) LIST(name, 0)
+#define PART(name, n, bytes, held, high, why)                      LIST(name, 1)
+    FF_POOL_LIST(X, PART)
+#undef X
+#undef PART
+#undef LIST
+}
+
+unsigned ff_client_pools(const ff_client *client, ff_pool_use list[FF_POOLS_MAX])
+{
+    ff_readings readings, *from = &readings;
+    ff_budget budget, *b = &budget;
+    read_parts(client, from);
+    ff_budget_fixed(b, &client->desc, client->arena.bytes);
+    if (client->have_terrain) {
+        b->info = &client->info;
+        b->face_size = client->intake.face_size_max;
+        b->has_textures = client->has_textures;
+        (void)ff_budget_terrain(b, from->c3d.vertex_buffers_used);
+    }
+    list_pools(b, list);
+#define USE(name, held_now, most)                         \
+    if (list[FF_POOL_##name].count) {                     \
+        list[FF_POOL_##name].held = (uint32_t)(held_now); \
+        list[FF_POOL_##name].high = (uint32_t)(most);     \
+    }
+#define X(name, when, wanted, least, most, bytes, held, high, why) USE(name, held, high)
+#define PART(name, n, bytes, held, high, why)                      USE(name, held, high)
+    FF_POOL_LIST(X, PART)
+#undef X
+#undef PART
+#undef USE
+    return FF_POOL_COUNT;
+}
+
+int ff_client_plan(const ff_client_desc *desc, const ff_terrain_info *info,
+                   ff_pool_use list[FF_POOLS_MAX])
+{
+    ff_client_desc filled = *desc;
+    ff_budget budget;
+    int rc = FF_ERR_MEMORY;
+    ff_client_default_desc(&filled);
+    ff_budget_fixed(&budget, &filled, filled.memory_bytes);
+    for (unsigned economy = 0; rc == FF_ERR_MEMORY && economy < FF_ECONOMY_STEPS; economy++) {
+        ff_budget_economise(&budget, info, economy);
+        rc = ff_budget_terrain(&budget, !filled.use_plain_arrays);
+    }
+    if (rc != FF_OK) return rc;
+    list_pools(&budget, list);
+    return FF_POOL_COUNT;
+}

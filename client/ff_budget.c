@@ -1,0 +1,196 @@
+/* What stands behind the rows of ff_budget.h: sizes alone, nothing is taken here. */
+#include "ff_client_local.h"
+
+#include <string.h>
+
+#define FACE_SIZE_MIN    64u
+#define EXTRA_STRIPS     4
+#define EXTRA_INDICES    (FF_SKY_INDICES + 36u) /* and faces */
+#define TEXTURE_ROUNDING 256u
+
+/* ---- what comes ---- */
+
+/* An image of side * side texels, once as RGB888 and once as 16 bit. */
+static int image_fits(const ff_budget *b, size_t side)
+{
+    return side * side * 5 <= FF_SHARE_OF_AN_IMAGE(b->block);
+}
+
+/* Largest power of two up to the size set whose images fit. */
+static unsigned fit_face_size(const ff_budget *b)
+{
+    unsigned size = FF_FACE_SIZE_MAX;
+    if (!b->desc->panorama.enabled || b->desc->pack) return 0;
+    while (size > b->desc->panorama.face_size) size /= 2;
+    while (size > FACE_SIZE_MIN && !image_fits(b, size)) size /= 2;
+    return size;
+}
+
+static int can_have_textures(const ff_budget *b)
+{
+    return b->info->texture_log2 && b->info->texture_levels && !b->desc->no_textures &&
+           image_fits(b, (size_t)1 << b->info->texture_log2);
+}
+
+void ff_budget_economise(ff_budget *b, const ff_terrain_info *info, unsigned economy)
+{
+    b->info = info;
+    b->face_size = economy < 1 ? fit_face_size(b) : 0;
+    b->has_textures = (uint8_t)(economy < 2 && can_have_textures(b));
+}
+
+/* ---- what is drawn ---- */
+
+static size_t left(const ff_budget *b) { return b->used < b->block ? b->block - b->used : 0; }
+
+/* What a back end without a GL keeps of images: each with a rim of a texel, rounded up; faces and
+ * the caller's text by their share. */
+static uint32_t texel_bytes(const ff_budget *b)
+{
+    size_t side = ((size_t)1 << b->info->texture_log2) + 2, face = (size_t)b->face_size + 2,
+           share = FF_SHARE_OF_FACES(b->block);
+    size_t ground = b->pool[FF_POOL_textures].count * (side * side * 4 + TEXTURE_ROUNDING);
+    size_t faces = FF_PANORAMA_MESHES * (face * face * 2 + TEXTURE_ROUNDING);
+    faces = !b->face_size ? 0 : faces < share ? faces : share;
+    return (uint32_t)(ground + faces + FF_SHARE_OF_TEXT(b->block));
+}
+
+static void describe_device(ff_budget *b, uint32_t entries, int buffers)
+{
+    unsigned faces = b->face_size ? FF_PANORAMA_MESHES : 0;
+    b->entries = entries;
+    b->device =
+        (c3d_desc){ .surface_api = b->desc->surface_api,
+                    .use_vertex_buffers = (uint8_t)buffers,
+                    .mesh_count = (uint16_t)(entries + 1 /* spare */ + 1 /* sky */ + faces),
+                    .strip_count = FF_STRIP_COUNT_MAX + EXTRA_STRIPS,
+                    .texture_count = (uint16_t)(b->pool[FF_POOL_textures].count +
+                                                1 /* the caller's text */ + faces),
+                    .mesh_vertices_max = (uint16_t)(b->heights > FF_SKY_VERTICES ? b->heights
+                                                                                 : FF_SKY_VERTICES),
+                    .strip_indices_max = ff_strips_indices(b->info->node_log2) + EXTRA_INDICES,
+                    .width = b->desc->width,
+                    .height = b->desc->height,
+                    .frame_format = b->desc->frame_format,
+                    .texture_bytes = texel_bytes(b) };
+}
+
+/* Bytes of the device described, or without some of its parts. */
+static size_t device_bytes(const ff_budget *b, const c3d_desc *device)
+{
+    return b->desc->backend ? c3d_bytes(b->desc->backend, device) : 0;
+}
+
+static size_t meshes_bytes(const ff_budget *b)
+{
+    c3d_desc without = b->device;
+    without.mesh_count = 0;
+    return device_bytes(b, &b->device) - device_bytes(b, &without);
+}
+
+static size_t strips_bytes(const ff_budget *b)
+{
+    c3d_desc without = b->device;
+    without.strip_count = 0;
+    without.strip_indices_max = 0;
+    return device_bytes(b, &b->device) - device_bytes(b, &without);
+}
+
+static size_t textures_bytes(const ff_budget *b)
+{
+    c3d_desc without = b->device;
+    without.texture_count = 0;
+    without.texture_bytes = 0;
+    return device_bytes(b, &b->device) - device_bytes(b, &without);
+}
+
+/* As many entries, and meshes with them, as their share holds. */
+static void choose_entries(ff_budget *b, int buffers)
+{
+    uint32_t entries = FF_ENTRIES_MAX;
+    if (!b->desc->backend) {
+        size_t share = FF_SHARE_OF_ENTRIES(left(b));
+        while (entries > FF_ENTRIES_MIN && entries * sizeof(ff_view_node) > share) entries /= 2;
+        b->entries = entries;
+        memset(&b->device, 0, sizeof b->device);
+        return;
+    }
+    describe_device(b, 0, 0);
+    size_t bare = device_bytes(b, &b->device), rest = left(b);
+    size_t share = bare < rest ? bare + FF_SHARE_OF_MESHES(rest - bare) : rest;
+    describe_device(b, entries, buffers);
+    while (entries > FF_ENTRIES_MIN && device_bytes(b, &b->device) > share)
+        describe_device(b, entries /= 2, buffers);
+}
+
+static size_t tree_bytes(const ff_budget *b, uint32_t nodes)
+{
+    ff_tree_desc desc = { .info = *b->info, .node_count = nodes, .wish_count = FF_TREE_WISHES };
+    return ff_tree_bytes(&desc);
+}
+
+/* The most nodes that fit into what is left, below 2^15. */
+static uint32_t nodes_left(const ff_budget *b)
+{
+    uint32_t nodes = 0;
+    for (uint32_t bit = 1u << 14; bit; bit /= 2)
+        if (ff_arena_cost(tree_bytes(b, nodes + bit)) <= left(b)) nodes += bit;
+    return nodes;
+}
+
+/* ---- the rows ---- */
+
+static void add(ff_budget *b, enum ff_pool_id pool, uint32_t count, size_t bytes)
+{
+    b->pool[pool].count = count;
+    b->pool[pool].bytes = bytes;
+    b->used += ff_arena_cost(bytes);
+}
+
+static uint32_t between(size_t wanted, uint32_t least, uint32_t most)
+{
+    return wanted < least ? least : wanted > most ? most : (uint32_t)wanted;
+}
+
+#define X(name, when, wanted, least, most, bytes_of_n, held, high, why)             \
+    {                                                                               \
+        const uint32_t n = (when) ? between((size_t)(wanted), (least), (most)) : 0; \
+        add(b, FF_POOL_##name, n, n ? (size_t)(bytes_of_n) : 0);                    \
+    }
+#define PART(name, n, bytes_of_n, held, high, why)            \
+    {                                                         \
+        b->pool[FF_POOL_##name].count = (n);                  \
+        b->pool[FF_POOL_##name].bytes = (size_t)(bytes_of_n); \
+    }
+
+void ff_budget_fixed(ff_budget *b, const ff_client_desc *desc, size_t block)
+{
+    memset(b, 0, sizeof *b);
+    b->desc = desc;
+    b->block = block;
+    FF_POOLS_FIXED(X, PART)
+}
+
+static void add_arriving(ff_budget *b)
+{
+    size_t texture_side = b->has_textures ? (size_t)1 << b->info->texture_log2 : 0,
+           side = b->face_size > texture_side ? b->face_size : texture_side;
+    b->texels = side * side;
+    b->texture_bytes = (size_t)4 << (2 * b->info->texture_log2);
+    b->heights = ff_node_side(b->info) * ff_node_side(b->info);
+    b->values = ff_refined_side(b->info) * ff_refined_side(b->info);
+    FF_POOLS_ARRIVING(X, PART)
+}
+
+int ff_budget_terrain(ff_budget *b, int buffers)
+{
+    b->used = 0;
+    FF_POOLS_FIXED(X, PART)
+    add_arriving(b);
+    choose_entries(b, buffers);
+    FF_POOLS_DRAWN(X, PART)
+    /* the tree's place holds the strips first, while the device makes its own of them */
+    size_t scratch = b->desc->backend ? ff_arena_cost(sizeof(ff_strips)) : 0,
+           before_tree = b->used - ff_arena_cost(b->pool[FF_POOL_nodes].bytes);
+    return b->used <= b->block && before_tree + scratch <= b->block ? FF_OK : FF_ERR_MEMORY;
+}

@@ -1,0 +1,157 @@
+/* The budget: who gets how much of the client's block. Every pool is one row of the lists below, in
+ * the order in which the block is shared out. client_carve.c takes the pools as the rows say;
+ * client_figures.c reads from the same rows how much of them is used, for the HUD,
+ * farfield-handheld and `make size`. A new pool is a row here, and the code that uses it.
+ *
+ * X(pool, when, wanted, least, most, bytes, held, high, why)
+ *   when         0: this client needs none of it (no link, no images, no pictures)
+ *   wanted       how many: a sum of those who hold one each, or a share of the block
+ *   least, most  `wanted` is brought between them
+ *   bytes        of `n` of them together
+ *   held, high   in use now, and the most ever at once: the pool's own counters
+ *   why          what is in it, and why so many
+ * PART(pool, n, bytes, held, high, why) lies inside the device: told, not taken.
+ *
+ * `b` is the ff_budget as far as the rows above have made it, `from` an ff_readings. Where the
+ * least do not fit, panoramas are left out, then images; a terrain that does not fit even so is
+ * refused.
+ */
+#ifndef FF_BUDGET_H
+#define FF_BUDGET_H
+
+#include "farfield.h"
+
+/* A message of the server: any node fits into the least, and common images; any message at all into
+ * the most. A longer one than fits passes by unread. */
+#define FF_RECEIVED_MIN (20u << 10)
+#define FF_RECEIVED_MAX (FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX)
+/* The largest image that comes, once in RGB888 and once in 16 bits, may take so much of the block:
+ * faces are made smaller until it does; larger images of the ground are not asked for. */
+#define FF_SHARE_OF_AN_IMAGE(block) ((block) / 5)
+/* Two images may wait where both, in 16 bits, take so much at most. */
+#define FF_SHARE_OF_WAITING_IMAGES(block) ((block) / 16)
+#define FF_SHARE_OF_ITEMS(block)          ((block) / 10)
+/* Images of the ground, 4 bytes a texel on the device: the largest share, they are most of what is
+ * seen. */
+#define FF_SHARE_OF_TEXTURES(block) ((block) / 16 * 5)
+/* Of a device without a GL: texels of faces, and of the caller's text. */
+#define FF_SHARE_OF_FACES(block) ((block) / 8)
+#define FF_SHARE_OF_TEXT(block)  ((block) / 16 + (16u << 10))
+/* Meshes, of what is left besides what the device needs without any: the rest is for the tree,
+ * which holds several nodes for each one drawn. Without pictures an entry is all there is of a
+ * mesh. */
+#define FF_SHARE_OF_MESHES(left)  ((left) / 3)
+#define FF_SHARE_OF_ENTRIES(left) ((left) / 3 / 8)
+#define FF_ENTRIES_MIN            4u
+#define FF_ENTRIES_MAX            4096u
+
+/* clang-format off */
+/* What outlives a terrain. */
+#define FF_POOLS_FIXED(X, PART) \
+    X(client, 1, 1, 1, 1, \
+      sizeof(ff_client), 1, 1, \
+      "all that is no pool: settings, state, what waits to be sent") \
+    X(received, b->desc->stream != NULL, \
+      b->desc->memory_bytes / 32, FF_RECEIVED_MIN, FF_RECEIVED_MAX, \
+      n, from->link.received, from->link.received_high, \
+      "bytes of messages that have not come whole yet") \
+    X(requests, 1, \
+      b->desc->in_flight_max + FF_REQUESTS_QUEUED_MAX, 1, UINT16_MAX, \
+      ff_requests_bytes(b->desc->in_flight_max), from->requests_held, from->requests.held_high, \
+      "those sent and unanswered, and behind them all that a ranking can want")
+
+/* What comes, on its way to the tree and the device. */
+#define FF_POOLS_ARRIVING(X, PART) \
+    X(decoder, 1, 1, 1, 1, \
+      ff_decoder_bytes(b->info), 1, 1, \
+      "the network worker's state of the height codec") \
+    X(decoded_image, b->texels != 0, 1, 1, 1, \
+      b->texels * 3, 1, 1, \
+      "the one image that the network worker decodes, RGB888") \
+    X(face_columns, b->face_size != 0, 2, 2, 2, \
+      n * b->face_size * sizeof(uint16_t), 2, 2, \
+      "tops and bottoms of the columns of the one face that the network worker decodes") \
+    X(items, 1, \
+      FF_SHARE_OF_ITEMS(b->block) / ff_new_data_item_bytes(1, b->values), 4, 24, \
+      ff_new_data_item_bytes(n, b->values), from->news.items, from->news.items_high, \
+      "answers with their residuals, decoded and not taken in; a full list stops the worker") \
+    X(images, b->texels != 0, \
+      b->texels * 4 <= FF_SHARE_OF_WAITING_IMAGES(b->block) ? 2 : 1, 1, 2, \
+      n * b->texels * 2, from->news.images, from->news.images_high, \
+      "images decoded and not taken in, 16 bits a texel: one waits while the next is decoded") \
+    X(textures, b->has_textures, \
+      FF_SHARE_OF_TEXTURES(b->block) / b->texture_bytes, 8, 512, \
+      n * sizeof(ff_texture_slot), from->client->textures.held, from->client->textures.high, \
+      "images of the ground that are held, by name: their texels are the device's")
+
+/* What is drawn; the tree takes what is left. */
+#define FF_POOLS_DRAWN(X, PART) \
+    X(device, b->desc->backend != NULL, 1, 1, 1, \
+      c3d_bytes(b->desc->backend, &b->device), from->client->device != NULL, 1, \
+      "the back end: the picture and its depths where no GL has them, and what follows") \
+    PART(meshes, b->device.mesh_count, \
+      meshes_bytes(b), from->c3d.mesh_held, from->c3d.mesh_high, \
+      "one for each entry, one that lives for a frame, the sky, and two panoramas of six faces") \
+    PART(strips, b->device.strip_count, \
+      strips_bytes(b), from->c3d.strip_held, from->c3d.strip_high, \
+      "the masks of a node, and four for sky, faces and the caller") \
+    PART(device_textures, b->device.texture_count, \
+      textures_bytes(b), from->c3d.texture_held, from->c3d.texture_high, \
+      "images of the ground, two panoramas of six faces, the caller's text") \
+    X(entries, 1, \
+      b->entries, FF_ENTRIES_MIN, FF_ENTRIES_MAX, \
+      n * sizeof(ff_view_node), from->client->view.held, from->client->view.held_high, \
+      "nodes drawn lately, with their meshes: halved from the most until they fit their share") \
+    X(vertices, b->desc->backend != NULL, \
+      b->heights, 1, UINT16_MAX, \
+      n * sizeof(c3d_vertex), b->heights, b->heights, \
+      "of the one mesh that is being made") \
+    X(nodes, 1, \
+      nodes_left(b), 8, 16384, \
+      tree_bytes(b, n), from->tree.nodes_held, from->tree.nodes_high, \
+      "the tree's, with their heights and its lists: all that is left; at least two families")
+/* clang-format on */
+
+#define FF_POOL_LIST(X, PART) \
+    FF_POOLS_FIXED(X, PART)   \
+    FF_POOLS_ARRIVING(X, PART) FF_POOLS_DRAWN(X, PART)
+
+enum ff_pool_id {
+#define X(pool, when, wanted, least, most, bytes, held, high, why) FF_POOL_##pool,
+#define PART(pool, n, bytes, held, high, why)                      FF_POOL_##pool,
+    FF_POOL_LIST(X, PART)
+#undef X
+#undef PART
+        FF_POOL_COUNT
+};
+
+typedef struct ff_budget {
+    const ff_client_desc *desc;  /* defaults filled in */
+    const ff_terrain_info *info; /* NULL: only what outlives a terrain */
+    size_t block, used;
+    /* what depends on the economy: 1 leaves out panoramas, 2 images of the ground too */
+    unsigned face_size; /* 0: no panoramas */
+    uint8_t has_textures;
+    /* what rows have in common */
+    size_t texels;        /* of the largest image that comes; 0: none does */
+    size_t texture_bytes; /* of an image of the ground, on the device */
+    uint32_t heights;     /* of a node */
+    uint32_t values;      /* residuals of a refinement */
+    uint32_t entries;
+    c3d_desc device;
+    struct {
+        uint32_t count;
+        size_t bytes;
+    } pool[FF_POOL_COUNT];
+} ff_budget;
+
+#define FF_ECONOMY_STEPS 3
+
+/* The pools that outlive a terrain, in a block of so many bytes. */
+void ff_budget_fixed(ff_budget *budget, const ff_client_desc *desc, size_t block);
+/* What of panoramas and images a block can have at a step of economy. */
+void ff_budget_economise(ff_budget *budget, const ff_terrain_info *info, unsigned economy);
+/* All pools, after the two above; `buffers`: a GL holds the meshes. FF_OK or FF_ERR_MEMORY. */
+int ff_budget_terrain(ff_budget *budget, int buffers);
+
+#endif
