@@ -17,7 +17,7 @@ typedef struct handheld_options {
     ff_quality quality;
     ff_panorama_desc panorama;
     ff_balance_desc balance;
-    int json, hud, hash, no_pictures, no_textures;
+    int json, hud, hash, no_pictures, no_textures, plan;
 } handheld_options;
 
 /* 0: fly; 1: --help or --version was answered; -1: an error, said in one line on stderr. */
@@ -51,11 +51,16 @@ typedef struct handheld {
 /* 0, or -1 with one line on stderr; close in both cases. */
 int handheld_open(handheld *device, const handheld_options *options);
 void handheld_close(handheld *device);
+/* The client's settings, but for its memory and what it flies over. */
+ff_client_desc handheld_client_desc(const handheld *device);
 /* All frames. 0, or -1 with one line on stderr. */
 int handheld_fly(handheld *device);
 /* Statistics of the flight on stdout, as text or JSON; the last frame to options->fb_path. 0 or
  * -1. */
 int handheld_report(handheld *device);
+
+/* Instead of a flight: how blocks of several sizes would be shared out, as a table on stdout. */
+void handheld_plan(const handheld *device);
 
 /* Figures over the picture; does nothing in a build without HUD. */
 void handheld_hud(handheld *device);

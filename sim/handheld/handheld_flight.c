@@ -48,19 +48,26 @@ static int open_surface(handheld *device)
     return rc == FF_OK ? 0 : fail("picture", rc);
 }
 
+ff_client_desc handheld_client_desc(const handheld *device)
+{
+    const handheld_options *options = device->options;
+    const sim_tape_head *head = options->tape_path ? &device->tape.head : NULL;
+    return (ff_client_desc){ .width = device->width,
+                             .height = device->height,
+                             .quality = head ? head->quality : options->quality,
+                             .panorama = head ? head->panorama : options->panorama,
+                             .surface_api = device->surface_api,
+                             .backend = device->surface ? c3d_backend_soft() : NULL,
+                             .use_plain_arrays = 1,
+                             .no_textures = (uint8_t)options->no_textures,
+                             .balance = options->balance };
+}
+
 static int open_client(handheld *device)
 {
     const handheld_options *options = device->options;
     const sim_tape_head *head = options->tape_path ? &device->tape.head : NULL;
-    ff_client_desc desc = { .width = device->width,
-                            .height = device->height,
-                            .quality = head ? head->quality : options->quality,
-                            .panorama = head ? head->panorama : options->panorama,
-                            .surface_api = device->surface_api,
-                            .backend = device->surface ? c3d_backend_soft() : NULL,
-                            .use_plain_arrays = 1,
-                            .no_textures = (uint8_t)options->no_textures,
-                            .balance = options->balance };
+    ff_client_desc desc = handheld_client_desc(device);
     device->memory_bytes = options->memory_bytes ? options->memory_bytes
                            : head                ? head->memory_bytes
                                                  : MEMORY_BYTES;

@@ -8,8 +8,10 @@ int main(int argc, char **argv)
     int rc = handheld_options_parse(&options, argc, argv);
     if (rc) return rc < 0 ? 2 : 0;
     rc = handheld_open(&device, &options);
-    if (!rc) rc = handheld_fly(&device);
-    if (!rc) rc = handheld_report(&device);
+    if (!rc && options.plan)
+        handheld_plan(&device);
+    else if (!rc)
+        rc = handheld_fly(&device) || handheld_report(&device);
     handheld_close(&device);
     return rc ? 1 : 0;
 }

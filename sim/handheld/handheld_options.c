@@ -28,6 +28,7 @@ static const char help[] =
     "  --hash                a hash over the pixels of all frames, among the statistics\n"
     "  --fb FILE             the last frame as PPM\n"
     "  --json                statistics as JSON\n"
+    "  --plan                no flight: how blocks of 1, 2, 4 and 8 MB are shared out for this pack's ground, over a link\n"
     "  --help, --version\n";
 
 enum option_id {
@@ -48,6 +49,7 @@ enum option_id {
     OPT_HASH,
     OPT_FB,
     OPT_JSON,
+    OPT_PLAN,
     OPT_HELP,
     OPT_VERSION
 };
@@ -69,6 +71,7 @@ static const struct option long_options[] = { { "pack", 1, NULL, OPT_PACK },
                                               { "hash", 0, NULL, OPT_HASH },
                                               { "fb", 1, NULL, OPT_FB },
                                               { "json", 0, NULL, OPT_JSON },
+                                              { "plan", 0, NULL, OPT_PLAN },
                                               { "help", 0, NULL, OPT_HELP },
                                               { "version", 0, NULL, OPT_VERSION },
                                               { NULL, 0, NULL, 0 } };
@@ -167,6 +170,7 @@ static int parse_one(handheld_options *options, int id, const char *text)
         case OPT_TAPE: options->tape_path = text; break;
         case OPT_FB: options->fb_path = text; break;
         case OPT_JSON: options->json = 1; break;
+        case OPT_PLAN: options->plan = 1; break;
         case OPT_HUD: options->hud = 1; break;
         case OPT_HASH: options->hash = 1; break;
         case OPT_NO_PICTURES: options->no_pictures = 1; break;
@@ -217,6 +221,7 @@ int handheld_options_parse(handheld_options *options, int argc, char **argv)
     if ((options->pack_path != NULL) + (options->server != NULL) + (options->tape_path != NULL) !=
         1)
         return fail("one of --pack, --server and --tape is wanted (see --help)");
+    if (options->plan && !options->pack_path) return fail("--plan: --pack is wanted with it");
     if (options->tape_path && options->balance.mode != FF_BALANCE_OFF)
         return fail("--balance: not with --tape");
     if ((options->fb_path || options->hash) && options->no_pictures)

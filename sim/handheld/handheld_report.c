@@ -34,36 +34,14 @@ static unsigned collect(const handheld *device, figure *list)
         { "triangles_mean", t->drawn ? t->triangles / t->drawn : 0 },
         { "triangles_max", t->triangles_max },
         { "triangles_submitted_mean", t->drawn ? t->submitted / t->drawn : 0 },
-        { "nodes_held", s.tree.nodes_held },
-        { "nodes_high", s.tree.nodes_high },
-        { "nodes_capacity", s.tree.nodes_capacity },
-        { "pool_full", s.tree.pool_full },
-        { "orphans", s.tree.orphans },
-        { "meshes_high", s.c3d.mesh_high },
-        { "strips_high", s.c3d.strip_high },
-        { "device_textures_high", s.c3d.texture_high },
-        { "textures_held", s.textures_held },
-        { "textures_high", s.textures_high },
-        { "textures_full", s.textures_full },
-        { "panorama_requests", s.panorama_requests },
-        { "panorama_faces", s.panorama_faces },
-        { "panorama_faces_empty", s.panorama_faces_empty },
-        { "panorama_bytes", s.panorama_bytes },
-        { "requests_sent", s.requests_sent },
-        { "requests_done", s.requests_done },
-        { "requests_failed", s.requests_failed },
-        { "in_flight_high", s.in_flight_high },
-        { "queued_high", s.queued_high },
-        { "protocol_errors", s.protocol_errors },
-        { "bytes_down", s.bytes_down },
-        { "bytes_up", s.bytes_up },
-        { "share_percent", s.balance.share_percent },
-        { "fidelity_percent", s.balance.fidelity_percent },
-        { "balance_moves", s.balance.moves },
-        { "tree_err_px_q8", s.tree.error_px_q8 },
-        { "memory_used", s.memory_used },
-        { "memory_bytes", s.memory_bytes },
-        { "mapping_at", (uint64_t)(uintptr_t)device->mapping.bytes },
+#define TOLD(type, name, from, what) { #name, s.name },
+#define KEPT(type, name, from, what)
+#define PART(name, member) { #name, s.member },
+        FF_CLIENT_FIGURES(TOLD, KEPT, PART)
+#undef TOLD
+#undef KEPT
+#undef PART
+            { "mapping_at", (uint64_t)(uintptr_t)device->mapping.bytes },
         { "mapping_bytes", device->mapping.size },
         { "pixels_at", (uint64_t)(uintptr_t)pixels },
         { "pixels_bytes", pixels_bytes },
@@ -75,13 +53,12 @@ static unsigned collect(const handheld *device, figure *list)
     return sizeof all / sizeof all[0];
 }
 
-static void print(const handheld *device)
+/* In JSON a hash is text: a number too large for its readers. */
+static void print_figures(const handheld *device, int json)
 {
     figure list[FIGURES_MAX];
     unsigned count = collect(device, list);
-    int json = device->options->json;
     for (unsigned i = 0; i < count; i++) {
-        /* a number too large for JSON readers */
         int hash = strstr(list[i].name, "_hash") != NULL;
         if (json)
             printf(hash ? "%s\"%s\": \"%016" PRIx64 "\"" : "%s\"%s\": %" PRIu64, i ? ",\n " : "{",
@@ -90,7 +67,24 @@ static void print(const handheld *device)
             printf(hash ? "%-22s %016" PRIx64 "\n" : "%-22s %" PRIu64 "\n", list[i].name,
                    list[i].value);
     }
-    if (json) puts("}");
+}
+
+static void print_pools(const handheld *device, int json)
+{
+    ff_pool_use pool[FF_POOLS_MAX];
+    unsigned count = ff_client_pools(device->client, pool);
+    for (unsigned i = 0; i < count; i++) {
+        if (json)
+            printf("%s\"%s\": {\"count\": %" PRIu32 ", \"bytes\": %zu, \"high\": %" PRIu32
+                   ", \"inside\": %u}",
+                   i ? ",\n  " : ",\n \"pools\": {", pool[i].name, pool[i].count, pool[i].bytes,
+                   pool[i].high, pool[i].inside);
+        else
+            printf("%s%-*s %" PRIu32 " of %" PRIu32 " used at most, %zu bytes\n",
+                   pool[i].inside ? "  in it " : "pool ", pool[i].inside ? 14 : 17, pool[i].name,
+                   pool[i].high, pool[i].count, pool[i].bytes);
+    }
+    if (json) puts("}}");
 }
 
 static int write_picture(handheld *device)
@@ -114,6 +108,7 @@ static int write_picture(handheld *device)
 
 int handheld_report(handheld *device)
 {
-    print(device);
+    print_figures(device, device->options->json);
+    print_pools(device, device->options->json);
     return device->options->fb_path ? write_picture(device) : 0;
 }
