@@ -208,7 +208,7 @@ static int draw(view_app *app)
     app->redraw = 0;
     app->drawn++;
     if (!device) return view_fail("cannot draw with this graphics library");
-    if (app->show_hud || app->show_help) view_hud_draw(&app->hud, app, device);
+    if (app->show_hud || app->show_pools || app->show_help) view_hud_draw(&app->hud, app, device);
     int rc = app->screenshot ? write_screenshot(app, device) : 0;
     if (app->blit.device && view_blit_show(&app->blit, device) < 0)
         return view_fail("cannot show the picture in the window");
@@ -263,7 +263,7 @@ static void place_pilot(view_app *app)
 /* 1 when the text on the picture would now be another one; looked at a few times a second. */
 static int hud_changed(view_app *app, int64_t now_us)
 {
-    if (!app->show_hud || now_us < app->hud_us) return 0;
+    if ((!app->show_hud && !app->show_pools) || now_us < app->hud_us) return 0;
     app->hud_us = now_us + HUD_EVERY_US;
     return view_hud_update(&app->hud, app);
 }

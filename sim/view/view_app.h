@@ -34,7 +34,7 @@ typedef struct view_app {
     unsigned show; /* enum ff_show */
     ff_panorama_desc panorama;
     ff_quality quality;
-    uint8_t show_hud, show_help, battery_low, interrupted, tilted;
+    uint8_t show_hud, show_pools, show_help, battery_low, interrupted, tilted;
     uint8_t redraw, quit;
     const char *screenshot; /* asked for: written after the next drawing */
     unsigned screenshots;   /* taken by key */

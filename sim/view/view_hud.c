@@ -27,7 +27,7 @@ static const char help[] = "w s a d   fly (or up, down)\n"
 #undef X
     /* clang-format on */
     "p panorama  l link\n"
-    "h text\n"
+    "h text   k pools\n"
     "r start   esc quit\n"
     "f1 help   f2 position fix\n"
     "f3 tilt   f4 touch\n"
@@ -81,28 +81,46 @@ static void put_quality(view_hud *hud, const view_app *app, const ff_client_stat
     put(hud, "panorama %u faces %.1f kB\n", count, stats->panorama_bytes / 1000.0);
 }
 
-int view_hud_update(view_hud *hud, const view_app *app)
+/* In use, the most so far, and room, of each pool of the block that has any. */
+static void put_pools(view_hud *hud, const view_app *app)
+{
+    ff_pool_use pool[FF_POOLS_MAX];
+    unsigned count = ff_client_pools(app->client, pool);
+    put(hud, "%-16s%7s%7s%7s\n", "pool", "now", "most", "of");
+    for (unsigned i = 0; i < count; i++)
+        if (pool[i].count)
+            put(hud, "%s%-*s%7u%7u%7u\n", pool[i].inside ? " " : "", pool[i].inside ? 15 : 16,
+                pool[i].name, pool[i].held, pool[i].high, pool[i].count);
+}
+
+static void put_figures(view_hud *hud, const view_app *app)
 {
     ff_client_stats stats;
     const c3d_camera *camera = &app->fly.camera;
     ff_client_get_stats(app->client, &stats);
+    if (!stats.have_terrain)
+        put(hud, "%s\n", app->options->target);
+    else
+        put(hud, "%u triangles  %u/%u nodes\n", stats.tree.triangles, stats.tree.nodes_drawn,
+            stats.tree.nodes_held);
+    put_link(hud, app, &stats);
+    put_quality(hud, app, &stats);
+    put(hud, "%.2f %.2f km  %d m  %d deg\n", camera->pos_wu[0] / 256000.0,
+        camera->pos_wu[1] / 256000.0, camera->pos_wu[2] / FF_WU_PER_METRE,
+        camera->yaw * 360 / 65536);
+    put(hud, "%d km/h%s\n", app->fly.speed_wu_s * 36 / (10 * FF_WU_PER_METRE),
+        app->fly.cruise ? " cruise" : "");
+    if (app->interrupted) put(hud, "interrupted\n");
+    if (stats.low_power) put(hud, "low power\n");
+}
+
+int view_hud_update(view_hud *hud, const view_app *app)
+{
     hud->text[0] = 0;
-    if (app->show_hud) {
-        if (!stats.have_terrain)
-            put(hud, "%s\n", app->options->target);
-        else
-            put(hud, "%u triangles  %u/%u nodes\n", stats.tree.triangles, stats.tree.nodes_drawn,
-                stats.tree.nodes_held);
-        put_link(hud, app, &stats);
-        put_quality(hud, app, &stats);
-        put(hud, "%.2f %.2f km  %d m  %d deg\n", camera->pos_wu[0] / 256000.0,
-            camera->pos_wu[1] / 256000.0, camera->pos_wu[2] / FF_WU_PER_METRE,
-            camera->yaw * 360 / 65536);
-        put(hud, "%d km/h%s\n", app->fly.speed_wu_s * 36 / (10 * FF_WU_PER_METRE),
-            app->fly.cruise ? " cruise" : "");
-        if (app->interrupted) put(hud, "interrupted\n");
-        if (stats.low_power) put(hud, "low power\n");
-    }
+    if (app->show_pools)
+        put_pools(hud, app);
+    else if (app->show_hud)
+        put_figures(hud, app);
     if (app->show_help) put(hud, "\n%s", help);
     return strcmp(hud->text, hud->shown) != 0;
 }

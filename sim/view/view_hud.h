@@ -1,4 +1,5 @@
-/* The emulator's text over the picture: counters, link, device state, and the list of keys. */
+/* The emulator's text over the picture: counters, link and device state, or what the pools of the
+ * client's block hold; and the list of keys. */
 #ifndef VIEW_HUD_H
 #define VIEW_HUD_H
 

@@ -142,6 +142,7 @@ static void press(view_app *app, int code)
             if (app->link) view_link_cycle(app->link);
             break;
         case 'h': app->show_hud = !app->show_hud; break;
+        case 'k': app->show_pools = !app->show_pools; break;
         case 'r': start_again(app); break;
         case '+':
         case '=': change_quality(app, 1); break;

@@ -91,7 +91,10 @@ cat >"$work/toggles.txt" <<END
 7 key f1
 8 screenshot $work/help.png
 9 key f1
-10 screenshot $work/again.png
+10 key k
+11 screenshot $work/pools.png
+12 key k
+13 screenshot $work/again.png
 END
 toggles() { # WHAT, command before the program, options
     local what=$1 mode=$2
@@ -102,10 +105,11 @@ toggles() { # WHAT, command before the program, options
     result $? "$what: runs to the end of its script" && [ ! -s "$work/error" ] || head -n 5 "$work/error"
     read -r colours _ < <(pictures colours "$work/plain.png")
     [ "${colours:-0}" -gt 200 ]; result $? "$what: the picture has ${colours:-no} colours"
-    read -r _ mesh borders help again < <(pictures differences "$work/plain.png" "$work"/{mesh,borders,help,again}.png)
+    read -r _ mesh borders help pools again < <(pictures differences "$work/plain.png" "$work"/{mesh,borders,help,pools,again}.png)
     [ "${mesh:-0}" -gt 2000 ]; result $? "$what: the wireframe changes the picture"
     [ "${borders:-0}" -gt 100 ]; result $? "$what: node borders change the picture"
     [ "${help:-0}" -gt 5000 ]; result $? "$what: the list of keys changes the picture"
+    [ "${pools:-0}" -gt 5000 ]; result $? "$what: what the pools hold changes the picture"
     [ "${again:-1}" = 0 ]; result $? "$what: all off again is the first picture, to the pixel"
     read -r red_plain red_mesh < <(pictures red "$work/plain.png" "$work/mesh.png")
     [ "${red_plain:-1}" = 0 ] && [ "${red_mesh:-0}" -gt 50 ]; result $? "$what: stitching strips have a colour of their own"
