@@ -111,111 +111,64 @@ static int events(fly_flight *flight, double t_s)
 
 /* ---- rows ---- */
 
-static int fill_audit(fly_flight *flight, fly_sample *sample)
+static void no_errors(sim_audit_result *audit)
+{
+    audit->err_px_rms = audit->err_px_p95 = audit->err_px_max = NAN;
+    for (unsigned cause = 0; cause < SIM_CAUSES; cause++) audit->square_px[cause] = NAN;
+}
+
+/* Errors where something shows ground, percents in every frame that the auditor saw. */
+static int read_audit(fly_flight *flight, fly_sources *from)
 {
     fly_world *world = flight->world;
     const ff_tree *tree = ff_client_tree(world->client);
     const ff_panorama_desc *panorama = &flight->options->panorama;
-    ff_client_stats stats;
-    ff_client_get_stats(world->client, &stats);
     sim_audit_view view = { .camera = flight->camera,
-                            .quality = stats.quality,
-                            .front_wu = stats.back_plane_wu - stats.back_plane_wu / 8,
+                            .quality = from->client.quality,
+                            .front_wu = from->client.back_plane_wu - from->client.back_plane_wu / 8,
                             .back_wu = panorama->server_back_wu ? panorama->server_back_wu
                                                                 : 100000 * FF_WU_PER_METRE };
-    sim_audit_result result;
-    sample->err_px_rms = sample->err_px_p95 = sample->err_px_max = NAN;
-    sample->undrawn_px_percent = sample->panorama_px_percent = NAN;
-    sample->square_px_waiting = sample->square_px_depth = sample->square_px_quality = NAN;
-    sample->square_px_panorama = sample->square_px_undrawn = NAN;
-    if (!world->auditor) return 0;
+    sim_audit_result *audit = &from->audit;
     if (tree) view.drawn_count = ff_tree_drawn(tree, &view.drawn);
     view.panorama = ff_client_panorama(world->client, view.panorama_pos_wu, &view.faces);
-    int rc = sim_audit_frame(world->auditor, &view, &result);
+    int rc = sim_audit_frame(world->auditor, &view, audit);
     if (rc != FF_OK) return fail("auditor", ff_error_text(rc));
-    uint32_t all = result.ground_pixels + result.panorama_pixels + result.undrawn_pixels;
-    sample->undrawn_px_percent = result.undrawn_percent;
-    sample->panorama_px_percent = all ? 100.0 * result.panorama_pixels / all : 0;
-    if (all) {
-        sample->err_px_rms = result.err_px_rms;
-        sample->err_px_p95 = result.err_px_p95;
-        sample->err_px_max = result.err_px_max;
-        sample->square_px_waiting = result.square_px[SIM_CAUSE_WAITING];
-        sample->square_px_depth = result.square_px[SIM_CAUSE_DEPTH];
-        sample->square_px_quality = result.square_px[SIM_CAUSE_QUALITY];
-        sample->square_px_panorama = result.square_px[SIM_CAUSE_PANORAMA];
-        sample->square_px_undrawn = result.square_px[SIM_CAUSE_UNDRAWN];
-    }
+    uint32_t all = audit->ground_pixels + audit->panorama_pixels + audit->undrawn_pixels;
+    from->panorama_px_percent = all ? 100.0 * audit->panorama_pixels / all : 0;
+    if (!all) no_errors(audit);
     return 0;
 }
 
-static int fill_relevance(fly_flight *flight, fly_sample *sample)
+static int read_relevance(const fly_flight *flight, fly_sources *from)
 {
-    sim_relevance_figures f;
-    sample->bytes_heights = sample->bytes_images = sample->bytes_faces = sample->bytes_overhead =
-        sample->bytes_judged = NAN;
-    sample->unused_heights = sample->unused_images = sample->unused_faces =
-        sample->unused_supporting = NAN;
-    sample->relevance_percent = NAN;
-    if (!flight->world->relevance) return 0;
-    int rc = sim_relevance_get(flight->world->relevance, &f);
+    sim_relevance_figures *f = &from->relevance;
+    int rc = sim_relevance_get(flight->world->relevance, f);
     if (rc != FF_OK) return fail("relevance", ff_error_text(rc));
-    sample->bytes_heights = f.came[FF_DATA_HEIGHTS];
-    sample->bytes_images = f.came[FF_DATA_IMAGES];
-    sample->bytes_faces = f.came[FF_DATA_FACES];
-    sample->bytes_overhead = f.overhead;
-    sample->bytes_judged = f.judged[FF_DATA_HEIGHTS] + f.judged[FF_DATA_IMAGES] +
-                           f.judged[FF_DATA_FACES] + f.overhead;
-    sample->unused_heights = f.unused[FF_DATA_HEIGHTS];
-    sample->unused_images = f.unused[FF_DATA_IMAGES];
-    sample->unused_faces = f.unused[FF_DATA_FACES];
-    sample->unused_supporting = f.supporting;
-    sample->relevance_percent = f.percent;
+    from->bytes_judged = f->judged[FF_DATA_HEIGHTS] + f->judged[FF_DATA_IMAGES] +
+                         f->judged[FF_DATA_FACES] + f->overhead;
     return 0;
 }
 
-static void fill_stats(const fly_flight *flight, fly_sample *sample)
+static void judge_nothing(fly_sources *from)
 {
-    ff_client_stats stats;
-    ff_client_get_stats(flight->world->client, &stats);
-    sample->x_m = (double)flight->camera.pos_wu[0] / FF_WU_PER_METRE;
-    sample->y_m = (double)flight->camera.pos_wu[1] / FF_WU_PER_METRE;
-    sample->z_m = (double)flight->camera.pos_wu[2] / FF_WU_PER_METRE;
-    sample->triangles = stats.tree.triangles;
-    sample->nodes_drawn = stats.tree.nodes_drawn;
-    sample->nodes_held = stats.tree.nodes_held;
-    sample->bytes_down = (double)stats.bytes_down;
-    sample->bytes_up = (double)stats.bytes_up;
-    sample->requests = stats.requests_sent;
-    sample->in_flight = stats.in_flight;
-    sample->queued = stats.queued;
-    sample->panoramas = stats.panorama_requests;
-    sample->panorama_faces = stats.panorama_faces;
-    sample->panorama_faces_empty = stats.panorama_faces_empty;
-    sample->panorama_bytes = stats.panorama_bytes;
-    sample->requests_dropped = stats.requests_dropped;
-    sample->requests_cancelled = stats.requests_cancelled;
-    sample->tree_err_px = stats.tree.error_px_q8 / 256.0;
-    sample->stitched = stats.tree.stitched;
-    sample->textures_held = stats.textures_held;
-    sample->pool_full = stats.tree.pool_full;
-    sample->reconnects = stats.reconnects;
-    sample->link_up = stats.link == FF_LINK_UP;
-    sample->low_power = stats.low_power;
-    sample->share_percent = stats.balance.share_percent;
-    sample->fidelity_percent = stats.balance.fidelity_percent;
-    sample->frame_load = stats.balance.frame_load_q8 / 256.0;
-    sample->link_load = stats.balance.link_load_q8 / 256.0;
-    sample->balance_moves = stats.balance.moves;
-    sample->balance_turns = stats.balance.turns;
-    sample->c = stats.quality.c_q8 / 256.0;
-    sample->error_px = stats.quality.error_px_q8 / 256.0;
-    sample->depth = stats.quality.depth_max;
-    sample->back_plane_m = (double)stats.back_plane_wu / FF_WU_PER_METRE;
-    sample->panorama_error_px = stats.panorama_error_q8 / 256.0;
-    sample->frames_drawn = stats.frames_updated;
-    sample->geometry_hash = ff_client_geometry_hash(flight->world->client);
-    sample->request_hash = ff_client_request_hash(flight->world->client);
+    sim_relevance_figures *f = &from->relevance;
+    no_errors(&from->audit);
+    for (unsigned kind = 0; kind < FF_DATA_CLASSES; kind++) f->came[kind] = f->unused[kind] = NAN;
+    from->audit.undrawn_percent = from->panorama_px_percent = from->bytes_judged = NAN;
+    f->overhead = f->supporting = f->percent = NAN;
+}
+
+static int read_sources(fly_flight *flight, double t_s, fly_sources *from)
+{
+    const ff_client *client = flight->world->client;
+    from->t_s = t_s;
+    from->camera = flight->camera;
+    from->geometry_hash = ff_client_geometry_hash(client);
+    from->request_hash = ff_client_request_hash(client);
+    ff_client_get_stats(client, &from->client);
+    judge_nothing(from);
+    if (flight->world->auditor && read_audit(flight, from)) return -1;
+    return flight->world->relevance ? read_relevance(flight, from) : 0;
 }
 
 /* The picture as it stands, in flight->rgb; drawn once more, because a frame in which nothing
@@ -243,11 +196,10 @@ static int take_row(fly_flight *flight, double t_s)
         flight->sample_capacity = more;
     }
     fly_sample *sample = &flight->sample[flight->sample_count++];
+    fly_sources from;
     memset(sample, 0, sizeof *sample);
-    sample->t_s = t_s;
-    fill_stats(flight, sample);
-    if (fill_audit(flight, sample) || fill_relevance(flight, sample) || read_picture(flight))
-        return -1;
+    if (read_sources(flight, t_s, &from) || read_picture(flight)) return -1;
+    fly_sample_take(sample, &from);
     if (flight->world->surface)
         sample->frame_hash = fnv(FNV_START, flight->rgb,
                                  (size_t)flight->options->width * flight->options->height * 3);

@@ -11,7 +11,7 @@ typedef struct column {
     size_t offset;
 } column;
 
-#define X(name, format, kind) { #name, format, kind, offsetof(fly_sample, name) },
+#define X(name, format, kind, from) { #name, format, kind, offsetof(fly_sample, name) },
 static const column first_column[] = { FLY_COLUMNS_FIRST(X) };
 static const column last_column[] = { FLY_COLUMNS_LAST(X) };
 #undef X
@@ -31,6 +31,16 @@ static void print_value(FILE *file, const column *c, double number)
         fputs("nan", file);
     else
         fprintf(file, c->format, number);
+}
+
+void fly_sample_take(fly_sample *sample, const fly_sources *from)
+{
+#define X(name, format, kind, where_from) sample->name = (double)(where_from);
+    FLY_COLUMNS_FIRST(X)
+    FLY_COLUMNS_LAST(X)
+#undef X
+    sample->geometry_hash = from->geometry_hash;
+    sample->request_hash = from->request_hash;
 }
 
 void fly_csv_header(FILE *file)

@@ -3,80 +3,94 @@
 #define FLY_SAMPLE_H
 
 #include "fly_options.h"
+#include "../judge/sim_audit.h"
+#include "../judge/sim_relevance.h"
 
 #include <stdio.h>
 
-/* X(name, printf format, kind): the CSV's columns before and after the three hashes. How the
+/* X(name, printf format, kind, where from): the CSV's columns before and after the three hashes.
+ * `from` is a fly_sources; figures of the client have their names from client/ff_figures.h. How the
  * summary treats a column: PLACE left out, MEAN over the rows after settling, TOTAL gained after
  * settling, MOST of them, LAST of all. Columns without a value are nan. square_px_*: mean squared
  * error by cause (sim_audit.h); bytes_*, unused_*: by kind (sim_relevance.h), bytes_judged with the
  * overhead; relevance_percent: since the start. */
 /* clang-format off */
 #define FLY_COLUMNS_FIRST(X) \
-    X(t_s, "%.3f", PLACE) \
-    X(x_m, "%.2f", PLACE) \
-    X(y_m, "%.2f", PLACE) \
-    X(z_m, "%.2f", PLACE) \
-    X(triangles, "%.0f", MEAN) \
-    X(nodes_drawn, "%.0f", MEAN) \
-    X(nodes_held, "%.0f", MEAN) \
-    X(bytes_down, "%.0f", TOTAL) \
-    X(bytes_up, "%.0f", TOTAL) \
-    X(requests, "%.0f", TOTAL) \
-    X(in_flight, "%.0f", MEAN) \
-    X(panoramas, "%.0f", TOTAL) \
-    X(err_px_rms, "%.3f", MEAN) \
-    X(err_px_p95, "%.3f", MEAN) \
-    X(err_px_max, "%.3f", MOST)
-/* clang-format on */
-/* clang-format off */
+    X(t_s, "%.3f", PLACE, from->t_s) \
+    X(x_m, "%.2f", PLACE, (double)from->camera.pos_wu[0] / FF_WU_PER_METRE) \
+    X(y_m, "%.2f", PLACE, (double)from->camera.pos_wu[1] / FF_WU_PER_METRE) \
+    X(z_m, "%.2f", PLACE, (double)from->camera.pos_wu[2] / FF_WU_PER_METRE) \
+    X(triangles, "%.0f", MEAN, from->client.tree.triangles) \
+    X(nodes_drawn, "%.0f", MEAN, from->client.tree.nodes_drawn) \
+    X(nodes_held, "%.0f", MEAN, from->client.tree.nodes_held) \
+    X(bytes_down, "%.0f", TOTAL, from->client.bytes_down) \
+    X(bytes_up, "%.0f", TOTAL, from->client.bytes_up) \
+    X(requests, "%.0f", TOTAL, from->client.requests_sent) \
+    X(in_flight, "%.0f", MEAN, from->client.in_flight) \
+    X(panoramas, "%.0f", TOTAL, from->client.panorama_requests) \
+    X(err_px_rms, "%.3f", MEAN, from->audit.err_px_rms) \
+    X(err_px_p95, "%.3f", MEAN, from->audit.err_px_p95) \
+    X(err_px_max, "%.3f", MOST, from->audit.err_px_max)
+
 #define FLY_COLUMNS_LAST(X) \
-    X(undrawn_px_percent, "%.3f", MEAN) \
-    X(panorama_px_percent, "%.3f", MEAN) \
-    X(tree_err_px, "%.3f", MEAN) \
-    X(stitched, "%.0f", MEAN) \
-    X(queued, "%.0f", MEAN) \
-    X(panorama_faces, "%.0f", TOTAL) \
-    X(panorama_faces_empty, "%.0f", TOTAL) \
-    X(panorama_bytes, "%.0f", TOTAL) \
-    X(requests_dropped, "%.0f", TOTAL) \
-    X(requests_cancelled, "%.0f", TOTAL) \
-    X(textures_held, "%.0f", MEAN) \
-    X(pool_full, "%.0f", TOTAL) \
-    X(reconnects, "%.0f", TOTAL) \
-    X(link_up, "%.0f", MEAN) \
-    X(low_power, "%.0f", MEAN) \
-    X(frames_drawn, "%.0f", TOTAL) \
-    X(square_px_waiting, "%.4f", MEAN) \
-    X(square_px_depth, "%.4f", MEAN) \
-    X(square_px_quality, "%.4f", MEAN) \
-    X(square_px_panorama, "%.4f", MEAN) \
-    X(square_px_undrawn, "%.4f", MEAN) \
-    X(bytes_heights, "%.0f", TOTAL) \
-    X(bytes_images, "%.0f", TOTAL) \
-    X(bytes_faces, "%.0f", TOTAL) \
-    X(bytes_overhead, "%.0f", TOTAL) \
-    X(bytes_judged, "%.0f", TOTAL) \
-    X(unused_heights, "%.0f", TOTAL) \
-    X(unused_images, "%.0f", TOTAL) \
-    X(unused_faces, "%.0f", TOTAL) \
-    X(unused_supporting, "%.0f", TOTAL) \
-    X(relevance_percent, "%.2f", LAST) \
-    X(share_percent, "%.0f", MEAN) \
-    X(fidelity_percent, "%.0f", MEAN) \
-    X(frame_load, "%.3f", MEAN) \
-    X(link_load, "%.3f", MEAN) \
-    X(balance_moves, "%.0f", TOTAL) \
-    X(balance_turns, "%.0f", TOTAL) \
-    X(c, "%.3f", MEAN) \
-    X(error_px, "%.3f", MEAN) \
-    X(depth, "%.0f", MEAN) \
-    X(back_plane_m, "%.0f", MEAN) \
-    X(panorama_error_px, "%.3f", MEAN)
+    X(undrawn_px_percent, "%.3f", MEAN, from->audit.undrawn_percent) \
+    X(panorama_px_percent, "%.3f", MEAN, from->panorama_px_percent) \
+    X(tree_err_px, "%.3f", MEAN, from->client.tree.error_px_q8 / 256.0) \
+    X(stitched, "%.0f", MEAN, from->client.tree.stitched) \
+    X(queued, "%.0f", MEAN, from->client.queued) \
+    X(panorama_faces, "%.0f", TOTAL, from->client.panorama_faces) \
+    X(panorama_faces_empty, "%.0f", TOTAL, from->client.panorama_faces_empty) \
+    X(panorama_bytes, "%.0f", TOTAL, from->client.panorama_bytes) \
+    X(requests_dropped, "%.0f", TOTAL, from->client.requests_dropped) \
+    X(requests_cancelled, "%.0f", TOTAL, from->client.requests_cancelled) \
+    X(textures_held, "%.0f", MEAN, from->client.textures_held) \
+    X(pool_full, "%.0f", TOTAL, from->client.tree.pool_full) \
+    X(reconnects, "%.0f", TOTAL, from->client.reconnects) \
+    X(link_up, "%.0f", MEAN, from->client.link == FF_LINK_UP) \
+    X(low_power, "%.0f", MEAN, from->client.low_power) \
+    X(frames_drawn, "%.0f", TOTAL, from->client.frames_updated) \
+    X(square_px_waiting, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_WAITING]) \
+    X(square_px_depth, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_DEPTH]) \
+    X(square_px_quality, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_QUALITY]) \
+    X(square_px_panorama, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_PANORAMA]) \
+    X(square_px_undrawn, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_UNDRAWN]) \
+    X(bytes_heights, "%.0f", TOTAL, from->relevance.came[FF_DATA_HEIGHTS]) \
+    X(bytes_images, "%.0f", TOTAL, from->relevance.came[FF_DATA_IMAGES]) \
+    X(bytes_faces, "%.0f", TOTAL, from->relevance.came[FF_DATA_FACES]) \
+    X(bytes_overhead, "%.0f", TOTAL, from->relevance.overhead) \
+    X(bytes_judged, "%.0f", TOTAL, from->bytes_judged) \
+    X(unused_heights, "%.0f", TOTAL, from->relevance.unused[FF_DATA_HEIGHTS]) \
+    X(unused_images, "%.0f", TOTAL, from->relevance.unused[FF_DATA_IMAGES]) \
+    X(unused_faces, "%.0f", TOTAL, from->relevance.unused[FF_DATA_FACES]) \
+    X(unused_supporting, "%.0f", TOTAL, from->relevance.supporting) \
+    X(relevance_percent, "%.2f", LAST, from->relevance.percent) \
+    X(share_percent, "%.0f", MEAN, from->client.balance.share_percent) \
+    X(fidelity_percent, "%.0f", MEAN, from->client.balance.fidelity_percent) \
+    X(frame_load, "%.3f", MEAN, from->client.balance.frame_load_q8 / 256.0) \
+    X(link_load, "%.3f", MEAN, from->client.balance.link_load_q8 / 256.0) \
+    X(balance_moves, "%.0f", TOTAL, from->client.balance.moves) \
+    X(balance_turns, "%.0f", TOTAL, from->client.balance.turns) \
+    X(c, "%.3f", MEAN, from->client.quality.c_q8 / 256.0) \
+    X(error_px, "%.3f", MEAN, from->client.quality.error_px_q8 / 256.0) \
+    X(depth, "%.0f", MEAN, from->client.quality.depth_max) \
+    X(back_plane_m, "%.0f", MEAN, from->client.back_plane_wu / (double)FF_WU_PER_METRE) \
+    X(panorama_error_px, "%.3f", MEAN, from->client.panorama_error_q8 / 256.0)
 /* clang-format on */
 
+/* What a row is made from. NAN in all that nobody judges. */
+typedef struct fly_sources {
+    double t_s;
+    c3d_camera camera;
+    ff_client_stats client;
+    sim_audit_result audit;
+    double panorama_px_percent; /* of the pixels that truly show ground */
+    sim_relevance_figures relevance;
+    double bytes_judged;
+    uint64_t geometry_hash, request_hash;
+} fly_sources;
+
 typedef struct fly_sample {
-#define X(name, format, kind) double name;
+#define X(name, format, kind, from) double name;
     FLY_COLUMNS_FIRST(X)
     FLY_COLUMNS_LAST(X)
 #undef X
@@ -94,6 +108,8 @@ typedef struct fly_totals {
     uint64_t memory_used;
 } fly_totals;
 
+/* All of a row but the picture's hash. */
+void fly_sample_take(fly_sample *sample, const fly_sources *from);
 void fly_csv_header(FILE *file);
 void fly_csv_row(FILE *file, const fly_sample *sample);
 void fly_json(FILE *file, const fly_options *options, const fly_sample *sample, size_t count,
