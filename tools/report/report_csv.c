@@ -9,13 +9,14 @@
 
 #define FIELDS_MAX 128
 
+enum { MAY_LACK, NEEDED };
 static const char *const column_names[REPORT_COLUMN_COUNT] = {
-#define X(id, name, required) name,
+#define X(name, need) #name,
     REPORT_COLUMN_LIST(X)
 #undef X
 };
 static const int column_required[REPORT_COLUMN_COUNT] = {
-#define X(id, name, required) required,
+#define X(name, need) need,
     REPORT_COLUMN_LIST(X)
 #undef X
 };
@@ -129,7 +130,7 @@ static int read_rows(reader *in, report_flight *flight)
         }
         report_row *row = &flight->row[flight->row_count];
         if (read_row(in, row)) return -1;
-        if (flight->row_count && row->value[REPORT_T_S] < row[-1].value[REPORT_T_S])
+        if (flight->row_count && row->value[REPORT_t_s] < row[-1].value[REPORT_t_s])
             return refuse(in, "t_s goes back");
         flight->row_count++;
     }
@@ -176,7 +177,7 @@ double report_flight_mean(const report_flight *flight, enum report_column column
     size_t count = 0;
     for (size_t i = 0; i < flight->row_count; i++) {
         double value = flight->row[i].value[column];
-        if (isnan(value) || flight->row[i].value[REPORT_T_S] < from_s) continue;
+        if (isnan(value) || flight->row[i].value[REPORT_t_s] < from_s) continue;
         sum += value;
         count++;
     }
@@ -187,7 +188,7 @@ static double largest(const report_flight *flight, enum report_column column, do
 {
     double most = NAN;
     for (size_t i = 0; i < flight->row_count; i++)
-        if (flight->row[i].value[REPORT_T_S] >= from_s)
+        if (flight->row[i].value[REPORT_t_s] >= from_s)
             most = fmax(most, flight->row[i].value[column]);
     return most;
 }
@@ -201,21 +202,21 @@ void report_summarise(const report_flight *flight, double settle_s, report_summa
 {
     const double *last = flight->row[flight->row_count - 1].value;
     *summary = (report_summary){
-        .seconds = last[REPORT_T_S],
-        .triangles_mean = report_flight_mean(flight, REPORT_TRIANGLES, 0),
-        .triangles_max = largest(flight, REPORT_TRIANGLES, 0),
-        .nodes_drawn_mean = report_flight_mean(flight, REPORT_NODES_DRAWN, 0),
-        .nodes_held_max = largest(flight, REPORT_NODES_HELD, 0),
+        .seconds = last[REPORT_t_s],
+        .triangles_mean = report_flight_mean(flight, REPORT_triangles, 0),
+        .triangles_max = largest(flight, REPORT_triangles, 0),
+        .nodes_drawn_mean = report_flight_mean(flight, REPORT_nodes_drawn, 0),
+        .nodes_held_max = largest(flight, REPORT_nodes_held, 0),
         .kb_down_60s = NAN,
-        .kb_down = last[REPORT_BYTES_DOWN] / 1000,
-        .kb_up = last[REPORT_BYTES_UP] / 1000,
-        .requests = last[REPORT_REQUESTS],
-        .panoramas = last[REPORT_PANORAMAS],
-        .err_rms_mean = report_flight_mean(flight, REPORT_ERR_RMS, settle_s),
-        .err_p95_mean = report_flight_mean(flight, REPORT_ERR_P95, settle_s),
-        .err_max = largest(flight, REPORT_ERR_MAX, settle_s),
+        .kb_down = last[REPORT_bytes_down] / 1000,
+        .kb_up = last[REPORT_bytes_up] / 1000,
+        .requests = last[REPORT_requests],
+        .panoramas = last[REPORT_panoramas],
+        .err_rms_mean = report_flight_mean(flight, REPORT_err_px_rms, settle_s),
+        .err_p95_mean = report_flight_mean(flight, REPORT_err_px_p95, settle_s),
+        .err_max = largest(flight, REPORT_err_px_max, settle_s),
     };
     for (size_t i = 0; i < flight->row_count && summary->seconds >= 60; i++)
-        if (flight->row[i].value[REPORT_T_S] <= 60)
-            summary->kb_down_60s = flight->row[i].value[REPORT_BYTES_DOWN] / 1000;
+        if (flight->row[i].value[REPORT_t_s] <= 60)
+            summary->kb_down_60s = flight->row[i].value[REPORT_bytes_down] / 1000;
 }

@@ -5,40 +5,41 @@
 
 #include <stddef.h>
 
-/* Columns the report uses; a file may have more, in any order. Errors may be missing (flight
- * without auditor), kinds of bytes too (over real sockets): NAN. */
+/* X(name, need): the columns that the report uses, as the header line has them
+ * (sim/fly/fly_sample.h); a file may have more, in any order. Errors may lack (flight without
+ * auditor), kinds of bytes too (over real sockets): NAN. */
 /* clang-format off */
 #define REPORT_COLUMN_LIST(X) \
-    X(T_S, "t_s", 1) \
-    X(TRIANGLES, "triangles", 1) \
-    X(NODES_DRAWN, "nodes_drawn", 1) \
-    X(NODES_HELD, "nodes_held", 1) \
-    X(BYTES_DOWN, "bytes_down", 1) \
-    X(BYTES_UP, "bytes_up", 1) \
-    X(REQUESTS, "requests", 1) \
-    X(PANORAMAS, "panoramas", 1) \
-    X(ERR_RMS, "err_px_rms", 0) \
-    X(ERR_P95, "err_px_p95", 0) \
-    X(ERR_MAX, "err_px_max", 0) \
-    X(UNDRAWN, "undrawn_px_percent", 0) \
-    X(WAITING, "square_px_waiting", 0) \
-    X(DEPTH, "square_px_depth", 0) \
-    X(QUALITY, "square_px_quality", 0) \
-    X(PARALLAX, "square_px_panorama", 0) \
-    X(MISSING, "square_px_undrawn", 0) \
-    X(HEIGHTS, "bytes_heights", 0) \
-    X(IMAGES, "bytes_images", 0) \
-    X(FACES, "bytes_faces", 0) \
-    X(OVERHEAD, "bytes_overhead", 0) \
-    X(JUDGED, "bytes_judged", 0) \
-    X(UNUSED_HEIGHTS, "unused_heights", 0) \
-    X(UNUSED_IMAGES, "unused_images", 0) \
-    X(UNUSED_FACES, "unused_faces", 0) \
-    X(SUPPORTING, "unused_supporting", 0) \
-    X(RELEVANCE, "relevance_percent", 0)
+    X(t_s, NEEDED) \
+    X(triangles, NEEDED) \
+    X(nodes_drawn, NEEDED) \
+    X(nodes_held, NEEDED) \
+    X(bytes_down, NEEDED) \
+    X(bytes_up, NEEDED) \
+    X(requests, NEEDED) \
+    X(panoramas, NEEDED) \
+    X(err_px_rms, MAY_LACK) \
+    X(err_px_p95, MAY_LACK) \
+    X(err_px_max, MAY_LACK) \
+    X(undrawn_px_percent, MAY_LACK) \
+    X(square_px_waiting, MAY_LACK) \
+    X(square_px_depth, MAY_LACK) \
+    X(square_px_quality, MAY_LACK) \
+    X(square_px_panorama, MAY_LACK) \
+    X(square_px_undrawn, MAY_LACK) \
+    X(bytes_heights, MAY_LACK) \
+    X(bytes_images, MAY_LACK) \
+    X(bytes_faces, MAY_LACK) \
+    X(bytes_overhead, MAY_LACK) \
+    X(bytes_judged, MAY_LACK) \
+    X(unused_heights, MAY_LACK) \
+    X(unused_images, MAY_LACK) \
+    X(unused_faces, MAY_LACK) \
+    X(unused_supporting, MAY_LACK) \
+    X(relevance_percent, MAY_LACK)
 /* clang-format on */
 enum report_column {
-#define X(id, name, required) REPORT_##id,
+#define X(name, need) REPORT_##name,
     REPORT_COLUMN_LIST(X)
 #undef X
         REPORT_COLUMN_COUNT

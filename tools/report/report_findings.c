@@ -15,16 +15,16 @@ typedef struct kind {
     const char *name;
 } kind;
 
-static const kind bytes_kinds[] = { { REPORT_HEIGHTS, "heights" },
-                                    { REPORT_IMAGES, "images" },
-                                    { REPORT_FACES, "panorama faces" },
-                                    { REPORT_OVERHEAD, "greetings, pongs, refusals" },
-                                    { REPORT_BYTES_UP, "requests (up)" } };
-static const kind error_kinds[] = { { REPORT_DEPTH, "depth limit of the quality" },
-                                    { REPORT_QUALITY, "as coarse as the quality allows" },
-                                    { REPORT_PARALLAX, "parallax of the panorama" },
-                                    { REPORT_WAITING, "ground not come yet" },
-                                    { REPORT_MISSING, "ground not drawn" } };
+static const kind bytes_kinds[] = { { REPORT_bytes_heights, "heights" },
+                                    { REPORT_bytes_images, "images" },
+                                    { REPORT_bytes_faces, "panorama faces" },
+                                    { REPORT_bytes_overhead, "greetings, pongs, refusals" },
+                                    { REPORT_bytes_up, "requests (up)" } };
+static const kind error_kinds[] = { { REPORT_square_px_depth, "depth limit of the quality" },
+                                    { REPORT_square_px_quality, "as coarse as the quality allows" },
+                                    { REPORT_square_px_panorama, "parallax of the panorama" },
+                                    { REPORT_square_px_waiting, "ground not come yet" },
+                                    { REPORT_square_px_undrawn, "ground not drawn" } };
 enum {
     BYTES_KINDS = sizeof bytes_kinds / sizeof *bytes_kinds,
     ERROR_KINDS = sizeof error_kinds / sizeof *error_kinds,
@@ -49,7 +49,7 @@ static void sum_kinds(const report_content *content, const kind *list, int count
     for (size_t i = 0; i < content->flight_count; i++) {
         const report_flight *flight = &content->flight[i];
         if (is_over_lan(flight) ||
-            !report_flight_has(flight, error ? REPORT_ERR_RMS : REPORT_HEIGHTS))
+            !report_flight_has(flight, error ? REPORT_err_px_rms : REPORT_bytes_heights))
             continue;
         for (int k = 0; k < count; k++)
             sum[k] += zero_if_nan(
@@ -99,17 +99,17 @@ static void put_relevance(FILE *out, const report_style *style, const report_con
                                         "of these beside drawn ones",
                                         "kB images",
                                         "kB faces" };
-    static const enum report_column column[] = { REPORT_HEIGHTS,        REPORT_IMAGES,
-                                                 REPORT_FACES,          REPORT_OVERHEAD,
-                                                 REPORT_UNUSED_HEIGHTS, REPORT_SUPPORTING,
-                                                 REPORT_UNUSED_IMAGES,  REPORT_UNUSED_FACES };
+    static const enum report_column column[] = { REPORT_bytes_heights,  REPORT_bytes_images,
+                                                 REPORT_bytes_faces,    REPORT_bytes_overhead,
+                                                 REPORT_unused_heights, REPORT_unused_supporting,
+                                                 REPORT_unused_images,  REPORT_unused_faces };
     report_table_head(out, style, head, sizeof head / sizeof *head);
     for (size_t i = 0; i < content->flight_count; i++) {
         const report_flight *flight = &content->flight[i];
-        if (is_over_lan(flight) || !report_flight_has(flight, REPORT_HEIGHTS)) continue;
+        if (is_over_lan(flight) || !report_flight_has(flight, REPORT_bytes_heights)) continue;
         report_table_row(out, style);
         report_table_name(out, style, flight->name);
-        report_table_number(out, style, 2, last(flight, REPORT_RELEVANCE));
+        report_table_number(out, style, 2, last(flight, REPORT_relevance_percent));
         for (size_t c = 0; c < sizeof column / sizeof *column; c++)
             report_table_number(out, style, 1, last(flight, column[c]) / 1000);
         report_table_row_end(out, style);
@@ -165,7 +165,7 @@ static void put_paper_targets(FILE *out, const report_style *style, const report
         const report_flight *flight = report_find(content, paper->name);
         report_figures ours;
         char what[128], why[WHY_BYTES];
-        if (!flight || last(flight, REPORT_T_S) < PAPER_FLIGHT_S || strcmp(paper->link, "umts") ||
+        if (!flight || last(flight, REPORT_t_s) < PAPER_FLIGHT_S || strcmp(paper->link, "umts") ||
             strcmp(paper->quality, "low") || strcmp(paper->panorama, "on"))
             continue;
         report_figures_of(flight, NULL, content->settle_s, &ours);
@@ -219,19 +219,19 @@ static void put_relevance_targets(FILE *out, const report_style *style,
                 char name[64], what[128], why[WHY_BYTES];
                 snprintf(name, sizeof name, "%s-%s-low-%s", link[l], row[r].speed, panorama[p]);
                 const report_flight *flight = report_find(content, name);
-                if (!flight || !report_flight_has(flight, REPORT_RELEVANCE)) continue;
+                if (!flight || !report_flight_has(flight, REPORT_relevance_percent)) continue;
                 snprintf(what, sizeof what, "%s: relevance %%", name);
                 snprintf(
                     why, sizeof why,
                     "never drawn: %.1f kB of neighbours without which nodes in view could not split, %.1f kB others, "
                     "%.2f kB greetings and pongs",
-                    last(flight, REPORT_SUPPORTING) / 1000,
-                    (last(flight, REPORT_UNUSED_HEIGHTS) - last(flight, REPORT_SUPPORTING) +
-                     last(flight, REPORT_UNUSED_IMAGES) + last(flight, REPORT_UNUSED_FACES)) /
+                    last(flight, REPORT_unused_supporting) / 1000,
+                    (last(flight, REPORT_unused_heights) - last(flight, REPORT_unused_supporting) +
+                     last(flight, REPORT_unused_images) + last(flight, REPORT_unused_faces)) /
                         1000,
-                    last(flight, REPORT_OVERHEAD) / 1000);
-                put_target(out, style, what, 0, row[r].percent, last(flight, REPORT_RELEVANCE),
-                           why);
+                    last(flight, REPORT_bytes_overhead) / 1000);
+                put_target(out, style, what, 0, row[r].percent,
+                           last(flight, REPORT_relevance_percent), why);
             }
 }
 
@@ -257,7 +257,7 @@ void report_findings(FILE *out, const report_content *content, int html)
         put_relevance_targets(out, style, content);
         report_table_end(out, style);
     }
-    if (any_has(content, REPORT_HEIGHTS) || any_has(content, REPORT_WAITING)) {
+    if (any_has(content, REPORT_bytes_heights) || any_has(content, REPORT_square_px_waiting)) {
         report_table_heading(out, style, "Where bytes go and error comes from");
         report_table_text(
             out, style,
@@ -265,7 +265,7 @@ void report_findings(FILE *out, const report_content *content, int html)
         put_sources(out, style, content, bytes_kinds, BYTES_KINDS, 0);
         put_sources(out, style, content, error_kinds, ERROR_KINDS, 1);
     }
-    if (!any_has(content, REPORT_HEIGHTS)) return;
+    if (!any_has(content, REPORT_bytes_heights)) return;
     report_table_heading(out, style, "Relevance");
     report_table_text(
         out, style,

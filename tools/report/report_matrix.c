@@ -24,13 +24,14 @@ static int is_stable(const report_flight *flight, const report_flight *reference
                      size_t i)
 {
     const double *value = flight->row[i].value;
-    double t_s = fmax(value[REPORT_T_S], settle_s);
+    double t_s = fmax(value[REPORT_t_s], settle_s);
     size_t at = 0;
-    while (at < reference->row_count && reference->row[at].value[REPORT_T_S] < t_s) at++;
-    if (at == reference->row_count || !(value[REPORT_NODES_DRAWN] > 0)) return 0;
+    while (at < reference->row_count && reference->row[at].value[REPORT_t_s] < t_s) at++;
+    if (at == reference->row_count || !(value[REPORT_nodes_drawn] > 0)) return 0;
     const double *best = reference->row[at].value;
-    return value[REPORT_ERR_P95] <= STABLE_FACTOR * best[REPORT_ERR_P95] + STABLE_PX &&
-           !(value[REPORT_UNDRAWN] > best[REPORT_UNDRAWN] + STABLE_UNDRAWN_PERCENT);
+    return value[REPORT_err_px_p95] <= STABLE_FACTOR * best[REPORT_err_px_p95] + STABLE_PX &&
+           !(value[REPORT_undrawn_px_percent] >
+             best[REPORT_undrawn_px_percent] + STABLE_UNDRAWN_PERCENT);
 }
 
 double report_stable_s(const report_flight *flight, const report_flight *reference, double settle_s)
@@ -38,7 +39,7 @@ double report_stable_s(const report_flight *flight, const report_flight *referen
     size_t together = 0;
     for (size_t i = 0; reference && i < flight->row_count; i++) {
         together = is_stable(flight, reference, settle_s, i) ? together + 1 : 0;
-        if (together == STABLE_ROWS) return flight->row[i + 1 - STABLE_ROWS].value[REPORT_T_S];
+        if (together == STABLE_ROWS) return flight->row[i + 1 - STABLE_ROWS].value[REPORT_t_s];
     }
     return NAN;
 }
@@ -48,7 +49,7 @@ double report_stable_percent(const report_flight *flight, const report_flight *r
 {
     size_t rows = 0, stable = 0;
     for (size_t i = 0; reference && i < flight->row_count; i++) {
-        if (flight->row[i].value[REPORT_T_S] < settle_s) continue;
+        if (flight->row[i].value[REPORT_t_s] < settle_s) continue;
         rows++;
         stable += (size_t)is_stable(flight, reference, settle_s, i);
     }
@@ -59,11 +60,11 @@ void report_figures_of(const report_flight *flight, const report_flight *referen
                        report_figures *figures)
 {
     *figures = (report_figures){
-        .triangles = report_flight_mean(flight, REPORT_TRIANGLES, settle_s),
-        .kilobytes = flight->row[flight->row_count - 1].value[REPORT_BYTES_DOWN] / 1000,
+        .triangles = report_flight_mean(flight, REPORT_triangles, settle_s),
+        .kilobytes = flight->row[flight->row_count - 1].value[REPORT_bytes_down] / 1000,
         .stable_s = report_stable_s(flight, reference, settle_s),
-        .err_p95 = report_flight_mean(flight, REPORT_ERR_P95, settle_s),
-        .undrawn = report_flight_mean(flight, REPORT_UNDRAWN, settle_s),
+        .err_p95 = report_flight_mean(flight, REPORT_err_px_p95, settle_s),
+        .undrawn = report_flight_mean(flight, REPORT_undrawn_px_percent, settle_s),
     };
 }
 
@@ -190,11 +191,11 @@ static int put_convergence(FILE *out, const report_content *content, const repor
         const report_paper_row *row = &content->paper->row[i];
         const report_flight *flight = report_find(content, row->name);
         if (!flight || strcmp(row->link, group->link) || strcmp(row->quality, group->quality) ||
-            strcmp(row->panorama, "on") || !report_flight_has(flight, REPORT_ERR_P95))
+            strcmp(row->panorama, "on") || !report_flight_has(flight, REPORT_err_px_p95))
             continue;
         plot.curve[plot.curve_count++] = (report_curve){ .flight = flight,
-                                                         .x = REPORT_T_S,
-                                                         .y = REPORT_ERR_P95,
+                                                         .x = REPORT_t_s,
+                                                         .y = REPORT_err_px_p95,
                                                          .x_scale = 1,
                                                          .y_scale = 1,
                                                          .title = flight->name };
@@ -219,8 +220,8 @@ typedef struct series {
 
 static int by_triangles(const void *a, const void *b)
 {
-    double x = ((const report_row *)a)->value[REPORT_TRIANGLES],
-           y = ((const report_row *)b)->value[REPORT_TRIANGLES];
+    double x = ((const report_row *)a)->value[REPORT_triangles],
+           y = ((const report_row *)b)->value[REPORT_triangles];
     return (x > y) - (x < y);
 }
 
@@ -252,9 +253,9 @@ static size_t collect_series(series *list, const report_content *content)
         report_figures_of(flight, NULL, content->settle_s, &ours);
         if (isnan(ours.err_p95)) continue;
         double *value = s->points.row[s->points.row_count++].value;
-        value[REPORT_TRIANGLES] = ours.triangles;
-        value[REPORT_BYTES_DOWN] = ours.kilobytes;
-        value[REPORT_ERR_P95] = ours.err_p95;
+        value[REPORT_triangles] = ours.triangles;
+        value[REPORT_bytes_down] = ours.kilobytes;
+        value[REPORT_err_px_p95] = ours.err_p95;
     }
     for (size_t i = 0; i < count; i++)
         qsort(list[i].points.row, list[i].points.row_count, sizeof *list[i].points.row,
@@ -276,14 +277,14 @@ static int put_work(FILE *out, const report_content *content, char *why, size_t 
                                .y_label = "error px, 95 %",
                                .logarithmic_y = 1,
                                .points = 1 } };
-    static const enum report_column work[2] = { REPORT_TRIANGLES, REPORT_BYTES_DOWN };
+    static const enum report_column work[2] = { REPORT_triangles, REPORT_bytes_down };
     int rc = 0;
     for (int p = 0; p < 2 && !rc; p++) {
         for (size_t i = 0; i < count; i++)
             if (list[i].points.row_count)
                 plots[p].curve[plots[p].curve_count++] = (report_curve){ .flight = &list[i].points,
                                                                          .x = work[p],
-                                                                         .y = REPORT_ERR_P95,
+                                                                         .y = REPORT_err_px_p95,
                                                                          .x_scale = 1,
                                                                          .y_scale = 1,
                                                                          .title = list[i].name };
@@ -318,8 +319,8 @@ static size_t collect_work(series *list, const report_work *work)
             strcpy(list[count++].name, name);
         }
         double *value = list[at].points.row[list[at].points.row_count++].value;
-        value[REPORT_TRIANGLES] = work->row[i].instructions / 1e6;
-        value[REPORT_ERR_P95] = work->row[i].err_px_p95;
+        value[REPORT_triangles] = work->row[i].instructions / 1e6;
+        value[REPORT_err_px_p95] = work->row[i].err_px_p95;
     }
     for (size_t i = 0; i < count; i++)
         qsort(list[i].points.row, list[i].points.row_count, sizeof *list[i].points.row,
@@ -340,8 +341,8 @@ int report_work_html(FILE *out, const report_content *content, char *why, size_t
                          .points = 1 };
     for (size_t i = 0; i < count; i++)
         plot.curve[plot.curve_count++] = (report_curve){ .flight = &list[i].points,
-                                                         .x = REPORT_TRIANGLES,
-                                                         .y = REPORT_ERR_P95,
+                                                         .x = REPORT_triangles,
+                                                         .y = REPORT_err_px_p95,
                                                          .x_scale = 1,
                                                          .y_scale = 1,
                                                          .title = list[i].name };

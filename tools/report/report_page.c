@@ -113,8 +113,8 @@ static void add_curve(report_plot *plot, const report_flight *flight, enum repor
         .x = x,
         .y = y,
         .title = title,
-        .x_scale = x == REPORT_BYTES_DOWN ? kilo : 1,
-        .y_scale = y == REPORT_BYTES_DOWN || y == REPORT_BYTES_UP ? kilo : 1,
+        .x_scale = x == REPORT_bytes_down ? kilo : 1,
+        .y_scale = y == REPORT_bytes_down || y == REPORT_bytes_up ? kilo : 1,
     };
 }
 
@@ -133,15 +133,15 @@ static int put_flight(FILE *out, const report_content *content, const report_fli
                           .x_label = "seconds",
                           .y_label = "pixels",
                           .logarithmic_y = 1 };
-    add_curve(&triangles, flight, REPORT_T_S, REPORT_TRIANGLES, "triangles");
-    add_curve(&bytes, flight, REPORT_T_S, REPORT_BYTES_DOWN, "down");
-    add_curve(&bytes, flight, REPORT_T_S, REPORT_BYTES_UP, "up");
-    add_curve(&nodes, flight, REPORT_T_S, REPORT_NODES_HELD, "held");
-    add_curve(&nodes, flight, REPORT_T_S, REPORT_NODES_DRAWN, "drawn");
-    if (flight->row[flight->row_count - 1].value[REPORT_PANORAMAS] > 0)
-        add_curve(&panoramas, flight, REPORT_T_S, REPORT_PANORAMAS, "panoramas");
-    add_curve(&error, flight, REPORT_T_S, REPORT_ERR_RMS, "rms");
-    add_curve(&error, flight, REPORT_T_S, REPORT_ERR_P95, "95 %");
+    add_curve(&triangles, flight, REPORT_t_s, REPORT_triangles, "triangles");
+    add_curve(&bytes, flight, REPORT_t_s, REPORT_bytes_down, "down");
+    add_curve(&bytes, flight, REPORT_t_s, REPORT_bytes_up, "up");
+    add_curve(&nodes, flight, REPORT_t_s, REPORT_nodes_held, "held");
+    add_curve(&nodes, flight, REPORT_t_s, REPORT_nodes_drawn, "drawn");
+    if (flight->row[flight->row_count - 1].value[REPORT_panoramas] > 0)
+        add_curve(&panoramas, flight, REPORT_t_s, REPORT_panoramas, "panoramas");
+    add_curve(&error, flight, REPORT_t_s, REPORT_err_px_rms, "rms");
+    add_curve(&error, flight, REPORT_t_s, REPORT_err_px_p95, "95 %");
     fputs("<h2>", out);
     report_put_html(out, flight->name);
     fputs("</h2>\n<div class=\"plots\">\n", out);
@@ -168,9 +168,9 @@ static int put_comparison(FILE *out, const report_content *content, char *why, s
                          .logarithmic_y = 1 };
     for (size_t i = 0; i < content->flight_count; i++) {
         const report_flight *flight = &content->flight[i];
-        add_curve(&bytes, flight, REPORT_T_S, REPORT_BYTES_DOWN, flight->name);
-        add_curve(&error, flight, REPORT_T_S, REPORT_ERR_RMS, flight->name);
-        add_curve(&work, flight, REPORT_BYTES_DOWN, REPORT_ERR_RMS, flight->name);
+        add_curve(&bytes, flight, REPORT_t_s, REPORT_bytes_down, flight->name);
+        add_curve(&error, flight, REPORT_t_s, REPORT_err_px_rms, flight->name);
+        add_curve(&work, flight, REPORT_bytes_down, REPORT_err_px_rms, flight->name);
     }
     fputs("<h2>All flights</h2>\n<div class=\"plots\">\n", out);
     if (report_plot_put(out, content->folder, &bytes, why, why_bytes) ||
