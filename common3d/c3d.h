@@ -1,25 +1,24 @@
 /* Common 3D API: what the terrain needs of a renderer, in integers (Hybrid, section 4.2).
  *
  * Conventions
- *   World: x east, y north, z up, in wu (1/256 m). Eye: x right, y up, z forward (towards the
- *       scene).
- *   Camera angles: yaw 0 looks north, grows clockwise (east is 16384); pitch grows upwards; roll
- *       grows clockwise as the viewer
- *   sees the device turn, so the picture turns the other way.
+ *   World: x east, y north, z up, in wu (1/256 m).
+ *   Eye: x right, y up, z forward (towards the scene).
+ *   Camera angles: yaw 0 looks north and grows clockwise (east is 16384); pitch grows upwards; roll
+ *       grows clockwise as the viewer sees the device turn, so the picture turns the other way.
  *   Screen: pixel (0,0) is top left, its centre at (0.5, 0.5); the principal point is (width/2,
  *       height/2).
- *   Projection: x_px = width/2 + x_eye*d/z_eye, y_px = height/2 - y_eye*d/z_eye, d = focal distance
- *       in pixels (Hybrid, eq. 1).
- *   Front faces are counter-clockwise seen from outside; back faces are drawn too (terrain is never
- *       seen from below by rule).
- *   Colours are 0xAABBGGRR words, i.e. bytes r, g, b, a in memory.
- *   Mesh origins are given relative to the camera, subtracted in 64-bit integers by the caller: no
- *       jitter far from the origin.
- * Handles: slot and generation in 32 bits, 0 is never valid; using a stale or zero handle draws
- * nothing and is counted. Whatever has a handle may be made and freed at any time, between frames
- * or within one: a draw takes what it needs before it returns. Back ends: common3d/gl (desktop
- * GL 1.5), common3d/gles1 (GL ES 1.1), common3d/soft (integers, no GL), behind one table
- * (c3d_backend.h); all memory of a device comes from the block given at c3d_open.
+ *   Projection: x_px = width/2 + x_eye*d/z_eye, y_px = height/2 - y_eye*d/z_eye, with d the focal
+ *       distance in pixels (Hybrid, equation 1).
+ *   Faces: front faces are counter-clockwise seen from outside. Back faces are drawn too.
+ *   Colours: 0xAABBGGRR words, that is bytes r, g, b, a in memory.
+ *   Mesh origins: relative to the camera. The caller subtracts in 64-bit integers, so that nothing
+ *       jitters far from the world's origin.
+ *   Handles: slot and generation in 32 bits; 0 is never valid. Using a stale or zero handle draws
+ *       nothing and is counted. Whatever has a handle may be made and freed at any time, between
+ *       frames or within one: a draw takes what it needs before it returns.
+ * Back ends stand behind one table (c3d_backend.h): common3d/gl (desktop GL 1.5), common3d/gles1
+ * (GL ES 1.1), common3d/soft (integers, no GL). All memory of a device comes from the block given
+ * to c3d_open.
  */
 #ifndef C3D_H
 #define C3D_H
@@ -68,14 +67,14 @@ typedef struct {
 enum c3d_texture_format { C3D_RGB565, C3D_RGBA5551, C3D_RGBA8888 };
 
 enum c3d_draw_flags {
-    /* texture times vertex colour; coordinates are x,y of the vertex through
-     * tex_scale/tex_offset */
+    /* texture times vertex colour; texture coordinates come from the vertex's x and y by tex_scale
+     * and tex_offset */
     C3D_DRAW_TEXTURED = 1,
     C3D_DRAW_COLOURED = 2,    /* use vertex colours, else `colour` */
     C3D_DRAW_WIREFRAME = 4,   /* the strip's edges, or its lines: a pixel wide, no texture */
-    C3D_DRAW_BACKDROP = 8,    /* no depth test or write, no fog: skybox */
+    C3D_DRAW_BACKDROP = 8,    /* the sky, a panorama: no depth test, no depth written, no fog */
     C3D_DRAW_ALPHA_TEST = 16, /* texels with alpha below one half are not drawn */
-    /* depth test with a bias of 1/64 of the distance towards the viewer: wireframe over ground */
+    /* tests depth with a bias towards the viewer of 1/64 of the distance: wireframe over ground */
     C3D_DRAW_ON_TOP = 32,
     /* For upright quads (a panorama's side faces): texture coordinates come from other axes than x
      * and y. */
@@ -92,16 +91,17 @@ typedef struct c3d_draw {
     uint32_t flags;       /* enum c3d_draw_flags */
     uint32_t colour;      /* 0xAABBGGRR, when not C3D_DRAW_COLOURED */
     c3d_texture texture;
-    /* s = (x - tex_origin)/2^tex_shift * scale + offset in texture widths; t grows with y (row 0 =
-     * south) */
+    /* s = (x - tex_origin)/2^tex_shift * tex_scale + tex_offset, in texture widths; t likewise from
+     * y: it grows to the north, so a texture's row 0 lies in the south */
     int32_t tex_scale_q16[2], tex_offset_q16[2];
     int32_t tex_origin[2];
     uint8_t tex_shift;
     uint8_t point_px; /* c3d_draw_points alone: edge of a point, 1..64 pixels */
 } c3d_draw;
 
-/* A label's text stands upright on the screen, whatever the camera does, 7 pixels high and 6 a
- * character: its last row of pixels is that of the point it names, and its middle above it. */
+/* A label's text stands upright on the screen, whatever the camera does, 7 pixels high and 6 pixels
+ * a character. Its last row of pixels is the row of the point it names; its middle is above the
+ * point. */
 typedef struct c3d_label_draw {
     c3d_label label;
     int64_t origin_wu[3];      /* of the point, relative to the camera */
@@ -122,20 +122,20 @@ typedef struct c3d_desc {
     uint16_t label_count;                            /* 32 bytes each */
     uint16_t mesh_vertices_max;                      /* of one mesh */
     uint32_t strip_indices_max; /* of all strips together; see c3d_lines_make */
-    /* 1: buffers when the GL has them; 0: plain arrays (the fallback) */
+    /* 1: vertex buffers when the GL has them; 0: plain arrays */
     uint8_t use_vertex_buffers;
     /* For back ends that hold the picture themselves (soft); the others leave these alone. */
     uint8_t frame_format; /* C3D_RGB565 (0, default) or C3D_RGBA8888 */
     /* largest viewport, default 240x320; in a larger one nothing is drawn */
     uint16_t width, height;
-    /* of all textures together, with a rim of one texel each; 4 bytes a texel, RGBA5551 2; default
-     * 32 KB each */
+    /* of all textures together. A texture takes a rim of one texel besides, and 4 bytes a texel
+     * (RGBA5551: 2); default 32 KB for each texture */
     uint32_t texture_bytes;
 } c3d_desc;
 
 /* Counters since c3d_open, and of the frame being drawn (or last drawn). */
 typedef struct c3d_stats {
-    /* triangles: neither degenerate ones nor those of wireframes */
+    /* frame_triangles counts neither degenerate triangles nor those of wireframes */
     uint32_t frame_triangles, frame_draws;
     /* uses of stale or zero handles, and strips that reach beyond their mesh */
     uint32_t stale_handles;
@@ -153,18 +153,19 @@ const struct c3d_backend *c3d_backend_gles1(void);
 /* integers only, no GL: common3d/soft/c3d_soft.h */
 const struct c3d_backend *c3d_backend_soft(void);
 
-/* With vertex buffers the GL holds meshes and strips; without, copies of them lie in the block. */
+/* Bytes of the block. With vertex buffers the GL holds meshes and strips; without, the block holds
+ * copies of them. */
 size_t c3d_bytes(const struct c3d_backend *backend, const c3d_desc *desc);
 /* FF_OK, FF_ERR_MEMORY, FF_ERR_UNSUPPORTED (the context is of another kind, or a GL function is
- * missing). When buffers are wanted and missing, a block that also holds the copies makes plain
- * arrays step in; a smaller one is FF_ERR_MEMORY. The block must outlive the device, and the
- * device's context must be current in every call. */
+ * missing). When vertex buffers are wanted but the GL has none, plain arrays take their place if
+ * the block has room for the copies; if not, the answer is FF_ERR_MEMORY. The block must outlive
+ * the device, and the device's context must be current in every call. */
 int c3d_open(const struct c3d_backend *backend, const c3d_desc *desc, void *memory, size_t bytes,
              c3d_device **device);
 void c3d_close(c3d_device *device);
 
-/* A handle, or id 0 when the pool is full (counted by the caller as coarser picture, never an
- * error). Data is copied. */
+/* A handle, or id 0 when the pool is full: no error, the caller draws a coarser picture. Data is
+ * copied. */
 c3d_mesh c3d_mesh_make(c3d_device *device, const c3d_vertex *vertices, uint32_t count);
 void c3d_mesh_free(c3d_device *device, c3d_mesh mesh);
 /* A triangle strip of at least 3 indices. */
@@ -186,21 +187,21 @@ void c3d_label_free(c3d_device *device, c3d_label label);
 
 void c3d_begin(c3d_device *device, const c3d_frame *frame);
 void c3d_draw_strip(c3d_device *device, const c3d_draw *draw);
-/* Each vertex of the mesh as a square of draw->point_px pixels round it, at its depth, where its
- * middle lies in the picture. Strip and texture are not looked at; of the flags, COLOURED and
- * ON_TOP are. */
+/* Draws each vertex of the mesh whose place lies in the picture as a square of draw->point_px
+ * pixels round that place, at the vertex's depth. Strip and texture are ignored, and all flags but
+ * COLOURED and ON_TOP. */
 void c3d_draw_points(c3d_device *device, const c3d_draw *draw);
-/* Hidden by what is more than 1/64 nearer than the point (as C3D_DRAW_ON_TOP); never in fog. A
- * point before the near or beyond the far plane, or behind the camera, has no label. */
+/* Draws a label. It is hidden by what is more than 1/64 nearer than its point (as C3D_DRAW_ON_TOP),
+ * and never in fog. A point nearer than the near plane or beyond the far plane has no label. */
 void c3d_draw_label(c3d_device *device, const c3d_label_draw *draw);
-/* RGBA8888 image (top row first, powers of two) over the picture, its top left corner at (x, y)
- * pixels: the HUD. */
+/* Draws an RGBA8888 image (top row first, sides powers of two) over the picture, with its top left
+ * corner at (x, y) pixels: the HUD. */
 void c3d_overlay(c3d_device *device, c3d_texture texture, int x, int y, int width, int height);
 void c3d_end(c3d_device *device);
 /* The finished frame as RGB888, top row first, width*height*3 bytes; before present(). */
 int c3d_read_rgb(c3d_device *device, uint8_t *rgb);
-/* The finished frame where the back end has it, top row first, rows packed (RGBA8888: bytes r, g,
- * b, a); NULL: in a GL. Valid until the next c3d_begin. */
+/* The finished frame in the back end's own memory, top row first, rows packed (RGBA8888: bytes r,
+ * g, b, a); NULL when a GL holds it. Valid until the next c3d_begin. */
 const void *c3d_frame_pixels(c3d_device *device, enum c3d_texture_format *format);
 void c3d_get_stats(const c3d_device *device, c3d_stats *stats);
 

@@ -10,20 +10,20 @@
 
 #include "c3d.h"
 
-/* Fraction bits of eye coordinates inside the device: wu alone would show as cracks a pixel wide
- * close to the eye. */
+/* Fraction bits of eye coordinates inside the device: rounding to whole wu would show as cracks a
+ * pixel wide close to the eye. */
 #define C3D_EYE_SHIFT 14
 
 typedef struct c3d_mesh_data {
     uint32_t buffer;            /* the back end's name of its copy; 0: none, use `vertices` */
-    const c3d_vertex *vertices; /* copy in the pool, NULL when `buffer` has it */
+    const c3d_vertex *vertices; /* copy in the pool; NULL when `buffer` has the vertices */
     uint32_t count;
     uint16_t reach[3];         /* largest |x|, |y|, |z| */
     int16_t least[3], most[3]; /* x, y, z */
 } c3d_mesh_data;
 
-/* A strip's triangles and its edges (pairs of indices: lines), one after the other in one array or
- * buffer. Lines have edges alone: count 0. */
+/* A strip's triangles and then its edges (pairs of indices, for lines), in one array or buffer.
+ * Lines have edges alone: their count is 0. */
 typedef struct c3d_strip_data {
     uint32_t buffer;
     const uint16_t *indices; /* the strip, then the edges; NULL when `buffer` has them */
@@ -52,14 +52,14 @@ typedef struct c3d_placed_label {
 struct c3d_backend {
     const char *name;
     size_t state_bytes;
-    /* in place of state_bytes when it depends on the pools; or NULL */
+    /* bytes of the state where they depend on the pools; NULL: state_bytes says them */
     size_t (*state_bytes_for)(const c3d_desc *desc);
-    /* The surface's context is current. *buffers: in, wanted; out, 1 when vertex buffers will be
-     * used. FF_ERR_UNSUPPORTED. */
+    /* The surface's context is current. *buffers says whether vertex buffers are wanted, and
+     * receives whether they will be used. FF_OK or FF_ERR_UNSUPPORTED. */
     int (*open)(void *state, const c3d_desc *desc, int *buffers);
     void (*close)(void *state);
-    /* Copies into a buffer object; its name, or 0 when the library has no room. Called only when
-     * buffers are in use; NULL: this back end never has any. */
+    /* Copies data into a buffer object and returns its name, 0 when the library has no room. Called
+     * only when vertex buffers are in use; NULL when this back end never has any. */
     uint32_t (*mesh_upload)(void *state, const c3d_vertex *vertices, uint32_t count);
     uint32_t (*strip_upload)(void *state, const uint16_t *indices, uint32_t count);
     void (*buffer_free)(void *state, uint32_t buffer);
@@ -71,7 +71,8 @@ struct c3d_backend {
     void (*points)(void *state,
                    const c3d_resolved_draw *resolved); /* COLOURED, ON_TOP or neither */
     void (*label)(void *state, const c3d_placed_label *label);
-    /* Draws what was kept for later: a strip goes away that may be part of it. NULL: nothing is. */
+    /* Draws what the back end kept for later, before a strip that may belong to it goes away. NULL:
+     * it keeps nothing. */
     void (*flush)(void *state);
     void (*overlay)(void *state, uint32_t texture, int x, int y, int width, int height);
     void (*end)(void *state);

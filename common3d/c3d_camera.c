@@ -24,8 +24,8 @@ void c3d_rotation_from_camera(const c3d_camera *camera, c3d_rotation *rotation)
     }
 }
 
-/* d = width/2 / tan(fov/2) with tan from an angle of 2^-32 turn: half of an odd brad16 counts at
- * 0.1 degrees. */
+/* d = width/2 / tan(fov/2). The angle is halved in units of 2^-32 turn: at 0.1 degrees half a
+ * brad16 counts. */
 int32_t c3d_focal_q8(int32_t fov_brad16, int32_t width_px)
 {
     uint32_t half = (uint32_t)clamp32(fov_brad16, 18, 30948) << 15;
@@ -35,9 +35,9 @@ int32_t c3d_focal_q8(int32_t fov_brad16, int32_t width_px)
     return clamp32(focal, 256, INT32_MAX);
 }
 
-/* Offsets of 34 bits times 31 bits of rotation exceed 64 bits: taken in two halves of which the
- * lower has 16 bits. high: 3 * 2^17 * 2^30 < 2^49, and is in 2^16 wu with 30 fraction bits, that is
- * wu with 14. */
+/* An offset of 34 bits times a rotation of 31 bits exceeds 64 bits: so offsets are taken in two
+ * halves, the lower of 16 bits. `high` is below 3 * 2^17 * 2^30 < 2^49; it counts 2^16 wu with 30
+ * fraction bits, that is wu with 14 fraction bits. */
 void c3d_to_eye_q14(const c3d_rotation *rotation, const int64_t offset_wu[3], int64_t eye_q14[3])
 {
     for (int row = 0; row < 3; row++) {

@@ -1,8 +1,9 @@
 /* Handles, pools and counters of a device; everything about graphics is behind its back end.
  *
- * The block:  device | back end's state | mesh slots | strip slots | texture slots | label slots |
- * edge scratch | [vertex copies | index copies] The copies in brackets are for plain arrays only:
- * with vertex buffers the graphics library has the data.
+ * The block: device | back end's state | mesh slots | strip slots | texture slots | label slots
+ *            | edge scratch | vertex copies | index copies
+ * The copies are there for plain arrays only: with vertex buffers the graphics library has the
+ * data.
  */
 #include "c3d_font.h"
 #include "c3d_pool.h"
@@ -48,7 +49,7 @@ struct c3d_device {
     uint32_t first_strip; /* in the order of their parts of strip_indices_max, or NO_STRIP */
     c3d_frame frame;
     c3d_rotation rotation;
-    int64_t origin_wu[3], eye_q14[3]; /* of the last draw: those of a ground's nodes are one */
+    int64_t origin_wu[3], eye_q14[3]; /* of the last draw: all nodes of a ground have the same */
     c3d_stats stats;
     c3d_pool labels;
     uint8_t read[READ_BYTES];
@@ -69,8 +70,8 @@ static void *take(block_part *block, size_t bytes)
     return part;
 }
 
-/* Lays the device out in the block, or only measures when there is no memory. `plain`: with room
- * for copies. */
+/* Lays the device out in the block, or only measures when the block has no memory. `plain` asks for
+ * room for copies. */
 static c3d_device *lay_out(block_part *block, const struct c3d_backend *backend,
                            const c3d_desc *desc, int plain)
 {
@@ -226,7 +227,8 @@ static uint32_t find_gap(c3d_device *device, uint32_t room, uint32_t **link)
     return begin;
 }
 
-/* A slot with its part of the indices; *words: where to put them. NULL when there is no room. */
+/* Takes a slot and its part of the indices; *words receives where the indices go. NULL when there
+ * is no room. */
 static strip_slot *take_strip(c3d_device *device, uint32_t room, uint32_t *id, uint16_t **words)
 {
     uint32_t *link, first = find_gap(device, room, &link), end = first + room;
@@ -256,7 +258,8 @@ static void give_strip(c3d_device *device, uint32_t id)
     c3d_pool_give(&device->strips, id);
 }
 
-/* The words are in place: the handle, or id 0 when the graphics library has no room. */
+/* Finishes a strip whose words are in place: its handle, or id 0 when the graphics library has no
+ * room. */
 static c3d_strip finish_strip(c3d_device *device, uint32_t id, const uint16_t *words)
 {
     strip_slot *strip = c3d_pool_get(&device->strips, id);
@@ -422,7 +425,7 @@ void c3d_draw_points(c3d_device *device, const c3d_draw *draw)
     device->stats.frame_draws++;
 }
 
-/* Pixels to the right of, or below, the principal point. */
+/* Where a coordinate of eye space lies on the screen, in pixels from the left or the top. */
 static int64_t screen_px(int64_t eye_q14, int64_t z_q14, const c3d_camera *camera, int size_px)
 {
     int64_t offset_q8 = c3d_muldiv64(eye_q14, camera->focal_q8, z_q14), most = (int64_t)1 << 40;

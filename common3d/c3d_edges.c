@@ -4,7 +4,7 @@ uint32_t c3d_strip_edges(const uint16_t *indices, uint32_t count, uint16_t *edge
                          uint32_t *triangles)
 {
     uint32_t written = 0;
-    int previous_drawn = 0; /* then its last edge is this triangle's first */
+    int previous_drawn = 0; /* 1: the previous triangle's last edge is this one's first */
     *triangles = 0;
     for (uint32_t i = 2; i < count; i++) {
         uint16_t a = indices[i - 2], b = indices[i - 1], c = indices[i];

@@ -17,8 +17,8 @@ static int64_t polynomial(const int32_t *coefficient, int count, int64_t x2_q31)
     return sum;
 }
 
-/* Angle at most an eighth of a turn, in 2^-32 turn, to radians: times 2 pi, and from Q32 to Q31 on
- * the way. */
+/* An angle of at most an eighth of a turn, in 2^-32 turn, to radians in Q31: times 2 pi, and half
+ * of that because Q32 becomes Q31. */
 static int64_t radians_q31(uint32_t angle)
 {
     return (int64_t)((angle * PI_Q32 + (UINT64_C(1) << 31)) >> 32);
@@ -70,8 +70,8 @@ static int leading_zeros(uint64_t n) /* n > 0 */
 
 static uint32_t upper(uint32_t a, uint32_t b) { return (uint32_t)(((uint64_t)a * b) >> 32); }
 
-/* 1/sqrt(t), Q30, for t in 1/4 .. 1, Q32: a line within 9 %, then three steps of Newton's, from
- * below: to 2^-13, 2^-24 and about 2^-26. */
+/* 1/sqrt(t) in Q30 for t in 1/4 .. 1, Q32. A line gives it within 9 %; three of Newton's steps, all
+ * from below, bring it within 2^-13, 2^-24 and about 2^-26. */
 static uint32_t reciprocal_root_q30(uint32_t t)
 {
     uint32_t y = 2290055000u - upper(t, 1308600000u);
@@ -80,7 +80,7 @@ static uint32_t reciprocal_root_q30(uint32_t t)
     return y;
 }
 
-/* n * 1/sqrt(n) is off by about 2^7; what is left of n corrects that to a unit or two; the last
+/* n * 1/sqrt(n) is off by about 2^7; the rest n - root^2 corrects that to a unit or two; the last
  * steps make it exact. */
 uint32_t c3d_isqrt64(uint64_t value)
 {
@@ -97,8 +97,8 @@ uint32_t c3d_isqrt64(uint64_t value)
     return (uint32_t)root;
 }
 
-/* 1/d for d in 1/2 .. 1, Q32, as Q31: a line within 1/17, then three steps of Newton's, from below:
- * within 2^-29. */
+/* 1/d in Q31 for d in 1/2 .. 1, Q32. A line gives it within 1/17; three of Newton's steps, all from
+ * below, bring it within 2^-29. */
 static uint32_t reciprocal_q31(uint32_t d)
 {
     uint32_t x = (3031741620u - upper(d, 2021161080u)) << 1;

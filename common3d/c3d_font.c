@@ -1,6 +1,7 @@
 #include "c3d_font.h"
 
-/* Rows from the top, the highest of five bits leftmost. All zero but the blank: not in the font. */
+/* Rows from the top, the highest of five bits leftmost. A glyph of zeros, the blank apart, is not
+ * in the font. */
 static const uint8_t glyphs[C3D_FONT_GLYPHS][C3D_FONT_ROWS] = {
     [' ' - ' '] = { 0, 0, 0, 0, 0, 0, 0 },        ['!' - ' '] = { 4, 4, 4, 4, 4, 0, 4 },
     ['%' - ' '] = { 25, 25, 2, 4, 8, 19, 19 },    ['\'' - ' '] = { 4, 4, 8, 0, 0, 0, 0 },

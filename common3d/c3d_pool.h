@@ -9,7 +9,7 @@
 typedef struct c3d_slot {
     uint16_t generation; /* of the next or present owner, never 0 */
     uint16_t used;
-    uint32_t next_free; /* slot number, count: none */
+    uint32_t next_free; /* number of the next free slot; the pool's count: none */
 } c3d_slot;
 
 typedef struct c3d_pool {

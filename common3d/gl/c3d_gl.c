@@ -7,7 +7,7 @@ static int gl_open(void *opaque, const c3d_desc *desc, int *buffers)
     int rc = c3d_gl_load(&state->gl, desc->surface_api, buffers);
     if (rc < 0) return rc;
     const unsigned char *text = state->gl.GetString(GL_VERSION);
-    /* that of ES begins with a word */
+    /* GL ES begins its version with a word, which gives 0 */
     int version = text ? c3d_gl_version((const char *)text) : 0;
     if (version < 12) return FF_ERR_UNSUPPORTED;
     *buffers = *buffers && version >= 15;

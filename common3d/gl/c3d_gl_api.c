@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-/* A data pointer to a function pointer by its bytes: the conversion ISO C leaves out and every GL
- * needs. */
+/* Loads a function. Its address is copied byte by byte from a data pointer to a function pointer: a
+ * conversion that ISO C leaves out and every GL needs. */
 static int load(void *function, size_t size, const sys_surface_api *surface_api, const char *name)
 {
     void *address = surface_api->gl_proc(name);

@@ -115,8 +115,8 @@ typedef struct c3d_gl_api {
 #undef X
 } c3d_gl_api;
 
-/* FF_OK or FF_ERR_UNSUPPORTED. *buffers: 1 when the functions of vertex buffers are there too
- * (wanted only if it was 1). */
+/* FF_OK or FF_ERR_UNSUPPORTED. *buffers says whether vertex buffers are wanted; it becomes 0 when
+ * their functions are missing. */
 int c3d_gl_load(c3d_gl_api *gl, const sys_surface_api *surface_api, int *buffers);
 
 #endif

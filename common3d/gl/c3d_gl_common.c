@@ -54,8 +54,8 @@ int c3d_gl_version(const char *text)
     return (text[0] - '0') * 10 + text[2] - '0';
 }
 
-/* Everything a frame relies on, whoever drew in this context before: another device may share
- * it. */
+/* Sets everything a frame relies on, because another device may share this context and may have
+ * drawn in it. */
 static void set_up(c3d_gl_state *state)
 {
     c3d_gl_api *gl = &state->gl;
@@ -216,7 +216,7 @@ static void set_mesh(c3d_gl_state *state, const c3d_resolved_draw *resolved)
 {
     c3d_gl_api *gl = &state->gl;
     const c3d_draw *draw = resolved->draw;
-    /* NULL with a buffer: pointers are offsets then */
+    /* NULL with a vertex buffer: GL then takes pointers as offsets */
     const c3d_vertex *base = resolved->mesh->vertices;
     float matrix[16];
     set_flags(state, draw->flags);
@@ -260,7 +260,7 @@ void c3d_gl_points(void *opaque, const c3d_resolved_draw *resolved)
     state->gl.DrawArrays(GL_POINTS, 0, (int)resolved->mesh->count);
 }
 
-/* A rectangle in clip coordinates; t = 0 is the picture's first row, at the top. */
+/* Draws a rectangle in clip coordinates; t = 0 is the image's first row, at the top. */
 void c3d_gl_overlay(void *opaque, uint32_t texture, int x, int y, int width, int height)
 {
     static const float corners[8] = { 0, 0, 0, 1, 1, 0, 1, 1 };
@@ -311,7 +311,7 @@ enum {
     CHAR_VERTICES = 6 /* two triangles */
 };
 
-/* White on nothing. */
+/* Makes the texture of all glyphs: white letters on clear ground. */
 static uint32_t upload_font(c3d_gl_state *state)
 {
     uint16_t texels[FONT_WIDTH * FONT_HEIGHT] = { 0 }; /* RGBA5551 */
@@ -333,7 +333,7 @@ typedef struct label_vertex {
     float place[3], texel[2];
 } label_vertex;
 
-/* Corners of pixels at the label's depth. */
+/* Places a letter's corners: on corners of pixels, at the label's depth. */
 static void place_letter(const c3d_gl_state *state, const c3d_placed_label *label, int i,
                          label_vertex corner[CHAR_VERTICES])
 {

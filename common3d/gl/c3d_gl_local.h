@@ -35,7 +35,7 @@ void c3d_gl_overlay(void *state, uint32_t texture, int x, int y, int width, int 
 void c3d_gl_end(void *state);
 int c3d_gl_read_rows(void *state, uint32_t width, uint32_t first_row, uint32_t rows, uint8_t *rgba);
 
-/* The rest of a back end's table. */
+/* What the tables of both GL back ends have in common. */
 #define C3D_GL_TABLE                                                                               \
     .state_bytes = sizeof(c3d_gl_state), .close = c3d_gl_close, .mesh_upload = c3d_gl_mesh_upload, \
     .strip_upload = c3d_gl_strip_upload, .buffer_free = c3d_gl_buffer_free,                        \

@@ -5,9 +5,9 @@
 #include <string.h>
 
 #define METRES_PER_WU (1.0f / 256.0f)
-/* Bias of C3D_DRAW_ON_TOP: points move this part of the way to the eye, which leaves their place in
- * the picture as it is. Unlike glPolygonOffset this works for lines, and grows with distance as the
- * steps of the depth buffer do. */
+/* Bias of C3D_DRAW_ON_TOP: points move this part of their way to the eye, which does not move them
+ * in the picture. Unlike glPolygonOffset the bias works for lines, and it grows with distance as
+ * the steps of the depth buffer do. */
 #define ON_TOP_BIAS (1.0f / 64.0f)
 
 void c3d_gl_colour(float rgba[4], uint32_t colour)
@@ -34,7 +34,7 @@ void c3d_gl_projection(float matrix[16], const c3d_camera *camera)
     matrix[14] = (float)(-2.0 * far_m * near_m / (far_m - near_m));
 }
 
-/* Without a far plane, and a near plane of 1 wu: a backdrop may have any size. */
+/* A projection without a far plane and with a near plane of 1 wu: a backdrop may have any size. */
 void c3d_gl_backdrop_projection(float matrix[16], const c3d_camera *camera)
 {
     projection_xy(matrix, camera);
@@ -63,8 +63,8 @@ void c3d_gl_modelview(float matrix[16], const c3d_resolved_draw *resolved,
     matrix[15] = 1.0f;
 }
 
-/* Texture coordinates are the vertex itself, x, y and z: the matrix takes s and t from two of the
- * axes. */
+/* The texture coordinates given to GL are the vertex's x, y and z: the matrix makes s and t from
+ * two of them. */
 void c3d_gl_texture_matrix(float matrix[16], const c3d_draw *draw)
 {
     const int axis[2] = { draw->flags & C3D_DRAW_TEX_YZ ? 1 : 0,

@@ -9,8 +9,10 @@
 #define ROWS_MAX              4096
 #define WHITE                 0xFFFFFFFFu
 
-/* ---- memory: state | vertices | textures | colour | depth | open parts of rows | used units |
- * texels ---- */
+/* ---- memory ---- */
+
+/* The block: state | vertices | textures | colour | depth | open parts of rows | used units
+ *            | texels */
 
 typedef struct soft_sizes {
     size_t vertices, textures, colour, depth, rows, used, heap, pixels;
@@ -74,14 +76,14 @@ static void soft_close(void *state) { (void)state; }
 
 /* ---- a frame ---- */
 
-/* The first `done` bytes again and again; each copy doubles what there is. */
+/* Fills `bytes` bytes by repeating the first `done` of them; each copy doubles what is filled. */
 static void repeat(void *start, size_t done, size_t bytes)
 {
     for (uint8_t *at = start; done < bytes; done *= 2)
         memcpy(at + done, at, done < bytes - done ? done : bytes - done);
 }
 
-/* Depth only where the frame before left any. */
+/* Clears the picture, and depths from `first_row` on: above it the last frame marked none. */
 static void clear(soft_state *state, uint32_t colour, int32_t first_row)
 {
     size_t row_pixels = state->width, pixels = row_pixels * state->height,
@@ -171,7 +173,7 @@ static int defer(soft_state *state, const c3d_resolved_draw *resolved)
     return 1;
 }
 
-/* The last one first: it hides the others. */
+/* Draws the backdrops that waited, the last one first: it hides the others. */
 static void draw_deferred(soft_state *state)
 {
     if (state->deferred_count) soft_find_open_parts(state);
@@ -207,7 +209,7 @@ static void soft_draw_points(void *opaque, const c3d_resolved_draw *resolved)
     soft_points(state, resolved->mesh->count, resolved->draw->point_px);
 }
 
-/* A texture of a deferred backdrop goes away: what waits is drawn while it is there. */
+/* Frees a texture. A backdrop that waits may use it, so the backdrops are drawn first. */
 static void soft_texture_drop(void *opaque, uint32_t texture)
 {
     soft_state *state = opaque;

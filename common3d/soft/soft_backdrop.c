@@ -1,15 +1,16 @@
-/* Backdrops: pixels that nothing has covered, and the spans that fill them, into RGB565 (inner
- * loops: long functions of few branches). */
+/* Backdrops: finds the open pixels, those that nothing has covered, and has the spans that fill
+ * them, into RGB565 (inner loops: long functions of few branches). */
 #include "soft_ramp.h"
 #include "soft_sample.h"
 
 #include <string.h>
 
-#define STEADY_LOG2 6 /* pixels of one colour, at most 64 */
+#define STEADY_LOG2 6 /* at most 64 pixels get one colour */
 
 /* ---- open parts of rows ---- */
 
-/* 1 when one of eight pixels may be open: depths are below 2^31. */
+/* 1 when one of eight pixels is open, that is has depth 0. Depths are below 2^31, so only 0 - 1 has
+ * bit 31 set. */
 static inline int may_be_open(const uint32_t *depth)
 {
     uint32_t open = (depth[0] - 1) | (depth[1] - 1) | (depth[2] - 1) | (depth[3] - 1);
@@ -26,7 +27,7 @@ static const uint32_t *first_open(const uint32_t *depth, const uint32_t *end)
     }
 }
 
-/* Most rows of ground have none. */
+/* Finds the open part of every row; most rows of ground have none. */
 void soft_find_open_parts(soft_state *state)
 {
     const uint32_t *depth = state->depth;
@@ -48,7 +49,7 @@ void soft_find_open_parts(soft_state *state)
 
 /* ---- the sky ---- */
 
-/* Two pixels of one colour a word. */
+/* Fills pixels with one colour, two to a word. */
 static void fill(uint16_t *pixel, const uint16_t *end, uint32_t colour)
 {
     uint32_t pair = colour | colour << 16;
@@ -62,7 +63,7 @@ static void fill(uint16_t *pixel, const uint16_t *end, uint32_t colour)
     while (pixel < end) *pixel++ = (uint16_t)colour;
 }
 
-/* The same where nothing was drawn; four at a time as long as nothing was. */
+/* Fills the open ones among `count` pixels with one colour, and marks them. */
 static void fill_open(const soft_state *state, uint32_t first, uint32_t count, uint32_t colour)
 {
     uint32_t *depth = state->depth + first, *end = depth + count, mark = !state->paint.unmarked;
@@ -74,8 +75,8 @@ static void fill_open(const soft_state *state, uint32_t first, uint32_t count, u
     }
 }
 
-/* Pixels, as a power of two, over which no colour changes by more than half a step of its own: red
- * and blue have 32, green 64. */
+/* log2 of the pixels over which no colour changes by more than half a step of RGB565: red and blue
+ * have 32 steps, green 64. */
 static int steady_log2(const soft_ramp *ramp)
 {
     uint32_t change = (uint32_t)(ramp->dr < 0 ? -ramp->dr : ramp->dr) |
@@ -99,7 +100,7 @@ static void ramp_open(const soft_state *state, const soft_segment *segment, cons
     }
 }
 
-/* Its colours hardly change along a row. */
+/* The sky's colours hardly change along a row: it is filled by runs of one colour. */
 void soft_span_backdrop(soft_state *state, const soft_segment *segment)
 {
     soft_ramp ramp;
@@ -128,7 +129,7 @@ void soft_span_backdrop(soft_state *state, const soft_segment *segment)
 
 /* ---- a panorama ---- */
 
-/* Between four clear texels nothing is drawn at all. */
+/* A panorama has holes: a pixel between four clear texels is not drawn at all. */
 void soft_span_holes(soft_state *state, const soft_segment *segment)
 {
     const soft_texture *texture = state->paint.texture;

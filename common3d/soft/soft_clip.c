@@ -1,6 +1,6 @@
 /* Clipping in eye space, for the few triangles that cross the near or the far plane or reach out of
- * the guard band. A new vertex is always computed from the inner end of its edge to the outer one:
- * triangles that share the edge get the same. */
+ * the guard band. A new vertex is always computed from the inner end of its edge towards the outer
+ * end: so triangles that share the edge get the same vertex. */
 #include "soft_local.h"
 
 enum { NEAR_PLANE, FAR_PLANE, GUARD_PLANES, PLANES = 6, CORNERS_MAX = 3 + PLANES };
@@ -10,7 +10,7 @@ typedef struct corner {
     int32_t eye[3];
 } corner;
 
-/* Inside is positive. */
+/* A measure of a corner's distance from a plane, positive inside. */
 static int64_t distance(const soft_state *state, const corner *from, int plane)
 {
     const int32_t *eye = from->eye;
@@ -40,7 +40,8 @@ static int32_t part_q30(const soft_state *state, int64_t part, int64_t whole)
     return (int32_t)(q30 < UINT32_C(1) << 30 ? q30 : UINT32_C(1) << 30);
 }
 
-/* The point of the edge on the plane: as far from `inner` as its distance is of the sum of both. */
+/* Makes the corner where an edge crosses a plane: d_inner / (d_inner + d_outer) of the way from
+ * `inner` to `outer`, with d their distances from the plane. */
 static void cut(const soft_state *state, int plane, const corner *inner, const corner *outer,
                 corner *new)
 {
@@ -77,7 +78,7 @@ static int clip_plane(const soft_state *state, int plane, const corner *in, int 
     return kept;
 }
 
-/* Bits that some corner has; *all: that all have. */
+/* The bits of `out` that some corner has; *all receives those that every corner has. */
 static uint32_t out_of(const corner *in, int count, uint32_t *all)
 {
     uint32_t some = *all = in[0].at.out;
@@ -88,8 +89,8 @@ static uint32_t out_of(const corner *in, int count, uint32_t *all)
     return some;
 }
 
-/* Which planes the corners may be beyond: what is behind the near plane is known to lie beyond that
- * one only. */
+/* 1 when some corner lies beyond the plane. A corner behind the near plane has no other bit: it
+ * gets its other bits when it is cut there. */
 static int beyond(uint32_t out, int plane)
 {
     return (out & (plane == NEAR_PLANE  ? SOFT_NEAR
@@ -102,8 +103,8 @@ static int64_t area_of(const soft_vertex *a, const soft_vertex *b, const soft_ve
     return (int64_t)(b->x - a->x) * (c->y - a->y) - (int64_t)(c->x - a->x) * (b->y - a->y);
 }
 
-/* A fan from the first corner. Rounding may fold a flat corner over: what turns the other way than
- * most of it is left out. */
+/* Draws the corners as a fan from the first one. Rounding may fold a flat corner over: triangles
+ * that turn the other way than the whole are left out. */
 static void draw_fan(soft_state *state, const corner *in, int count)
 {
     int64_t all = 0;

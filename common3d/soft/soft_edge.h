@@ -1,25 +1,23 @@
-/* Exact edges. At the centre of a row an edge is at x = x0 + dx * k/dy, in sixteenths of a pixel;
- * needed is the first pixel whose centre is not left of it. `at` holds x with 32 fraction bits, too
- * small by less than 1/dy, plus 1 - 2^-32: its upper word is x rounded up exactly, because x itself
- * is a multiple of 1/dy.
- *   Small edges (dy <= 512, |dx| < 8192): dx times floor(2^31/dy), or the next greater number for
- *       negative dx, is too small by at
- *   most |dx| units of 2^-31 for each sixteenth of a row: over the edge by less than 2^13 * 2^9 /
- *       2^31 = 2^-9 <= 1/dy.
- *   Other edges: two quotients rounded down, too small by at most 2^-32 a row: 2^13 rows * 2^-32 <
- *       2^-17 <= 1/dy. */
+/* Exact edges. At the centre of a row, k sixteenths of a pixel below its upper end, an edge lies at
+ * x = x0 + dx * k/dy sixteenths. Needed is the first pixel whose centre is not left of x. `at`
+ * holds x with 32 fraction bits, too small by less than 1/dy, plus 1 - 2^-32. Because x is a
+ * multiple of 1/dy, the upper word of `at` is x rounded up exactly. Small edges (dy <= 512, |dx| <
+ * 8192): dx is multiplied with floor((2^31 - 1)/dy), a negative dx with the next greater number.
+ * The product is too small by at most |dx| units of 2^-31 for each sixteenth of a row: over the
+ * whole edge by less than 2^13 * 2^9 / 2^31 = 2^-9 <= 1/dy. Other edges: two quotients, rounded
+ * down, are too small by at most 2^-32 a row: over 2^13 rows by less than 2^-17 <= 1/dy. */
 #ifndef SOFT_EDGE_H
 #define SOFT_EDGE_H
 
 #include "soft_local.h"
 
 typedef struct soft_edge {
-    int64_t at, step; /* x in the row, Q4 with 32 more fraction bits; from row to row */
+    int64_t at, step; /* x in the row, and its change from row to row: Q4 with 32 more bits */
 } soft_edge;
 
-/* n/d rounded down, exactly; |n| < 2^53, d > 0. A first quotient from 31 bits of n, a second one
- * from what is left (below 2^26), and at most a step more: a fraction of what a division of 64 bits
- * costs where the processor has none. */
+/* n/d rounded down, exactly; |n| < 2^53, d > 0. A first quotient comes from 31 bits of n, a second
+ * one from the rest (below 2^26), and at most one step more is needed: a fraction of what a
+ * division of 64 bits costs on processors that have none. */
 static inline int64_t soft_floor_divide(const soft_state *state, int64_t n, int32_t d)
 {
     int lead = soft_leading_zeros((uint32_t)d) - 1;
@@ -34,7 +32,7 @@ static inline int64_t soft_floor_divide(const soft_state *state, int64_t n, int3
     return quotient;
 }
 
-/* From a down to b, at row `row`, whose centre lies between them. */
+/* Begins the edge from a down to b at row `row`, whose centre lies between a and b. */
 static inline void soft_edge_begin(const soft_state *state, soft_edge *edge, const soft_vertex *a,
                                    const soft_vertex *b, int32_t row)
 {
@@ -66,11 +64,11 @@ typedef struct soft_walk {
     soft_edge left, right;
     int32_t row, middle, end;
     int32_t from, to; /* the row's pixels */
-    int bend_left;    /* b is on the left side */
+    int bend_left;    /* 1: b is on the left side */
     const soft_vertex *b, *c;
 } soft_walk;
 
-/* 0 when there is no row. */
+/* Begins at the first row of the triangle that is in the frame; 0 when there is none. */
 static inline int soft_walk_begin(const soft_state *state, soft_walk *walk, const soft_vertex *a,
                                   const soft_vertex *b, const soft_vertex *c, int bend_left)
 {
@@ -102,7 +100,7 @@ static inline void soft_walk_row(const soft_state *state, soft_walk *walk)
     if (walk->to > state->open_to[walk->row]) walk->to = state->open_to[walk->row];
 }
 
-/* On to the next row; 0 after the last. */
+/* Goes on to the next row; 0 after the last. */
 static inline int soft_walk_next(const soft_state *state, soft_walk *walk)
 {
     if (++walk->row >= walk->end) return 0;

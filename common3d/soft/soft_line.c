@@ -1,5 +1,5 @@
-/* Lines one pixel wide: along the longer direction one pixel for each centre from the first end up
- * to, not including, the other. */
+/* Lines one pixel wide: along its longer direction a line has one pixel for each pixel centre from
+ * its first end up to, but not including, the other end. */
 #include "soft_local.h"
 
 static uint32_t w_between(uint32_t a, uint32_t b, int32_t part, int32_t whole)

@@ -13,7 +13,7 @@
 #define SOFT_TINY_TEXELS   64  /* each way: what soft_tiny multiplies stays below 2^28 */
 #define SOFT_HEAP_UNIT     256
 
-/* Where a vertex lies: of the screen (by pixel centres), or for the clipper. */
+/* Where a vertex lies: beside the screen (by pixel centres), or where the clipper must act. */
 enum {
     SOFT_LEFT = 1,
     SOFT_RIGHT = 2,
@@ -30,27 +30,27 @@ typedef struct soft_vertex {
     uint32_t w;   /* near/z, Q30; below 2^30 */
     int32_t s, t; /* texels less one half, Q16; below 2^28 */
     uint32_t out;
-    int32_t fog_q8; /* 256: clear, 0: all fog; beyond both ends within +-2^14 */
+    int32_t fog_q8; /* 256: clear, 0: all fog; may go on beyond both, within +-2^14 */
     uint8_t rgba[4];
 } soft_vertex;
 
 typedef struct soft_texture {
-    uint8_t *texels;                /* of texel (-1, -1): the rim */
-    uint32_t first_unit, units;     /* of the heap; units 0: free slot */
+    uint8_t *texels;                /* from texel (-1, -1) on, which is in the rim */
+    uint32_t first_unit, units;     /* of the heap; units 0: the slot is free */
     uint16_t width, height, stride; /* stride: width + 2 */
     uint8_t format, width_log2, height_log2;
 } soft_texture;
 
-/* What a draw asks of its pixels. */
+/* Which pixels a draw takes: those where it is nearest, those nothing has covered, all. */
 enum soft_depth { SOFT_DEPTH_TEST, SOFT_DEPTH_UNCOVERED, SOFT_DEPTH_NONE };
 typedef struct soft_paint {
     const soft_texture *texture; /* NULL: untextured */
     enum soft_depth depth;
     uint8_t coloured; /* vertices differ in colour */
-    uint8_t white;    /* all vertices are white: the texture as it is */
+    uint8_t white;    /* all vertices are white: the texture is drawn as it is */
     uint8_t alpha_test, fog, on_top;
-    uint8_t unmarked; /* the last backdrop: nothing comes after it that asks what it covered */
-    uint8_t axis[2];  /* of the vertex, for s and t */
+    uint8_t unmarked; /* the last backdrop marks no depths: nothing after it asks for them */
+    uint8_t axis[2];  /* which coordinates of a vertex give s and t: 0 x, 1 y, 2 z */
 } soft_paint;
 
 /* Attributes of a pixel, Q16: s, t, red, green, blue, fog (256: clear). */
@@ -73,7 +73,7 @@ typedef struct soft_space {
     int32_t scale_wu;
     uint32_t z_scale_q16; /* wu */
     int32_t near_eye, far_eye;
-    uint32_t near_norm; /* the near plane as a mantissa: its highest bit is bit 31 */
+    uint32_t near_norm; /* the near plane's distance in wu, shifted up until bit 31 is set */
     int near_shift;     /* near_norm times 1/z, shifted right by this, is near/z in Q30 */
 } soft_space;
 
@@ -81,10 +81,10 @@ typedef struct soft_space {
 typedef struct soft_view {
     /* right and up times the focal distance, forward times 2: Q30, see soft_transform.c */
     int32_t row[3][3];
-    int focal_shift;       /* the focal distance times 2^focal_shift is that of the rows, Q30 */
-    int32_t centre[2];     /* Q4, twice */
-    int32_t guard_from[2]; /* least coordinates that need no clipping */
-    int32_t right_q4, below_q4; /* last pixel centres */
+    int focal_shift;            /* right and up are multiplied with focal_q8 << focal_shift, Q30 */
+    int32_t centre[2];          /* twice the principal point, Q4 */
+    int32_t guard_from[2];      /* the least x and y that need no clipping, Q4 */
+    int32_t right_q4, below_q4; /* centres of the last column and row of pixels */
 } soft_view;
 
 typedef struct soft_deferred {
@@ -93,9 +93,10 @@ typedef struct soft_deferred {
     c3d_mesh_data mesh;
 } soft_deferred;
 
+/* Part of a row: pixels from .. to - 1. */
 typedef struct soft_part {
     uint16_t from, to;
-} soft_part; /* of a row: pixels from .. to - 1 */
+} soft_part;
 
 typedef struct soft_state soft_state;
 struct soft_state {
@@ -104,25 +105,26 @@ struct soft_state {
     uint32_t *depth;
     soft_vertex *vertices; /* of the mesh transformed last */
     soft_texture *textures;
-    /* of each row, while backdrops fill: the pixels nothing has covered lie between */
+    /* while backdrops fill: the open pixels of each row, which nothing has covered, lie within
+     * open_from .. open_to - 1 */
     uint16_t *open_from, *open_to;
     /* of each row, a run of pixels that something other than a backdrop covers */
     soft_part *covered;
-    uint8_t *heap, *heap_used; /* texels; one byte a unit */
+    uint8_t *heap, *heap_used; /* texels, in units; for each unit 1 when it is in use */
     uint32_t heap_units, pixels_max;
     uint16_t texture_count;
     uint8_t wide; /* 1: RGBA8888, 0: RGB565 */
 
-    uint32_t reciprocal[512];                 /* of n/512, n = 512 .. 1023, see soft_reciprocal */
+    uint32_t reciprocal[512]; /* 2^61/n for n around 2^30 + i * 2^21, see soft_reciprocal */
     int32_t edge_reciprocal[SOFT_EDGE_TABLE]; /* floor((2^31 - 1) / n) */
 
     /* the frame */
     uint16_t width, height;
     uint8_t blank;   /* the viewport is larger than the memory: nothing is drawn */
     uint8_t painted; /* something other than deferred backdrops was drawn */
-    /* no depth was marked in rows above it; whatever paints a triangle keeps it */
+    /* no depth was marked in rows above this one; what paints a triangle keeps that true */
     int32_t top_row;
-    int32_t open_end;  /* and nothing is open from this row on */
+    int32_t open_end;  /* while backdrops fill: no pixel is open from this row on */
     int32_t open_rows; /* while backdrops fill: nothing covers the rows above this one */
     c3d_frame frame;
     soft_view view;
@@ -130,22 +132,22 @@ struct soft_state {
 
     /* the draw */
     soft_paint paint;
-    soft_segment segment; /* of the row under way */
-    /* of this paint where there is no fog */
+    soft_segment segment; /* of the row being drawn */
+    /* draws a segment with this paint, where there is no fog */
     void (*span)(struct soft_state *state, const soft_segment *segment);
     soft_space space;
-    c3d_draw cached; /* whose vertices are in `vertices` */
+    c3d_draw cached; /* the draw whose vertices are in `vertices` */
     const c3d_vertex *cached_mesh;
-    uint8_t off_texture;  /* some vertex lies beyond its edges */
-    uint8_t tiny_rows;    /* and a texture small enough for soft_tiny */
-    uint8_t texture_rows; /* the texture alone, on it, into RGB565 with the depth test */
+    uint8_t off_texture;  /* 1: some vertex lies beyond the texture's edges */
+    uint8_t tiny_rows;    /* 1: texture_rows, and the texture is small enough for soft_tiny */
+    uint8_t texture_rows; /* 1: nothing but a texture, never off it, into RGB565, depth tested */
     uint32_t deferred_count;
     soft_deferred deferred[C3D_SOFT_BACKDROPS];
     uint32_t deferred_vertices;
     c3d_vertex deferred_vertex[C3D_SOFT_BACKDROP_VERTICES];
 };
 
-/* n in 2^30 .. 2^31 - 1: 2^61 / n within 2^-19 of it. */
+/* 2^61 / n for n in 2^30 .. 2^31 - 1, within 2^-19 of its value. */
 static inline uint32_t soft_reciprocal(const soft_state *state, uint32_t n)
 {
     uint32_t r = state->reciprocal[(n >> 21) & 511];
@@ -153,7 +155,7 @@ static inline uint32_t soft_reciprocal(const soft_state *state, uint32_t n)
     return (uint32_t)(((uint64_t)r * ((UINT32_C(1) << 30) - error)) >> 29);
 }
 
-/* The same within 2^-29 of it. */
+/* The same within 2^-29 of its value. */
 static inline uint32_t soft_fine_reciprocal(const soft_state *state, uint32_t n)
 {
     uint32_t r = soft_reciprocal(state, n);
@@ -192,40 +194,43 @@ void soft_texture_free(void *state, uint32_t texture);
 void soft_sample(const soft_texture *texture, int32_t s, int32_t t, int32_t rgba[4]);
 
 /* soft_transform.c */
-/* for a frame; width and height are known */
+/* Prepares a frame, whose width and height are known. */
 void soft_begin_view(soft_state *state, const c3d_rotation *rotation);
+/* Transforms a draw's vertices into state->vertices. */
 void soft_transform(soft_state *state, const c3d_resolved_draw *resolved);
-/* Where a vertex of the mesh transformed last lies; and x, y, w and out of any place. */
+/* Eye space of a vertex of the mesh transformed last; and, for a place in eye space, the x, y, w
+ * and `out` of a vertex. */
 void soft_eye(const soft_state *state, const soft_vertex *vertex, int32_t eye[3]);
 void soft_project(const soft_state *state, const int32_t eye[3], soft_vertex *vertex);
 
-/* soft_clip.c, for vertices of the mesh transformed last: cuts the triangle at the planes and draws
- * what is left. */
+/* soft_clip.c, for vertices of the mesh transformed last: cuts a triangle at the planes and draws
+ * the rest. */
 void soft_clip(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c);
-/* Cuts a line; 0 when nothing is left of it. */
+/* Cuts a line at the planes; 0 when nothing is left of it. */
 int soft_clip_line(const soft_state *state, const soft_vertex *a, const soft_vertex *b,
                    soft_vertex cut[2]);
 
 /* soft_triangle.c */
 void soft_strip(soft_state *state, const uint16_t *indices, uint32_t count);
-/* clipped */
+/* Draws a triangle that needs no clipping. */
 void soft_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b,
                    const soft_vertex *c);
-/* soft_perspective.c: any triangle; a.y <= b.y <= c.y, twice its area in Q8. */
+/* soft_perspective.c: draws any triangle; a.y <= b.y <= c.y, `area` is twice its area in Q8. */
 void soft_perspective(soft_state *state, const soft_vertex *a, const soft_vertex *b,
                       const soft_vertex *c, int64_t area);
 
-/* soft_small.c: 0 when it is not small or not flat enough; otherwise drawn. a.y <= b.y <= c.y. */
+/* soft_small.c: draws a triangle that is small and flat enough, or returns 0. a.y <= b.y <= c.y. */
 int soft_small(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c);
 
-/* soft_tiny.c: the same for a few rows, where state->tiny_rows; any order of corners. */
+/* soft_tiny.c: draws a triangle of a few rows, or returns 0; only where state->tiny_rows. Corners
+ * in any order. */
 int soft_tiny(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c);
 
-/* soft_spans.c: after soft_transform */
+/* soft_spans.c: sets state->span for the paint; after soft_transform. */
 void soft_choose_span(soft_state *state);
 
-/* soft_backdrop.c: what nothing has covered. open_from and open_to of all rows; then spans into
- * RGB565. */
+/* soft_backdrop.c: sets open_from and open_to of all rows; then the spans that fill open pixels,
+ * into RGB565. */
 void soft_find_open_parts(soft_state *state);
 void soft_span_backdrop(soft_state *state, const soft_segment *segment); /* colours: the sky */
 /* RGBA5551 with the alpha test: a panorama */
@@ -240,10 +245,10 @@ void soft_points(soft_state *state, uint32_t count, int32_t size_px);
 /* soft_label.c; soft_label_none.c where labels are left out */
 void soft_label(void *state, const c3d_placed_label *label);
 
-/* soft_pixels.c: any paint, any format. */
+/* soft_pixels.c: draws a segment with any paint, into any format. */
 void soft_segment_paint(soft_state *state, const soft_segment *segment);
-/* Between four texels of RGBA5551, from the upper left one, x and y in 1/32 texel: RGB565, or
- * clear. */
+/* Blends four texels of RGBA5551, `texel` being the upper left one, x and y in 1/32 texel: RGB565,
+ * or SOFT_CLEAR. */
 #define SOFT_CLEAR 0x10000u
 uint32_t soft_blend_5551(const uint16_t *texel, uint32_t stride, uint32_t x, uint32_t y);
 void soft_put(soft_state *state, uint32_t at, int32_t red, int32_t green, int32_t blue);

@@ -1,11 +1,12 @@
 /* Any triangle, perspective-correct: planes of w and of every attribute times w, divided at the
  * ends of segments.
  *
- * Slopes in 64 bits. w: Q42 (below 2^43). An attribute in Q16 below 2^28 times w, Q14: below 2^43
- * too. Differences of two, times 2^17 sixteenths, two of these: below 2^62. Then all is shifted
- * down so that the nearest w takes 30 bits: over 2^9 pixels and for depths 2^10 times the nearest
- * one, rounding moves the quotient by less than 2^-11. Values wrap: at pixels inside they are right
- * again. */
+ * Slopes are computed in 64 bits. w stands in Q42. An attribute (Q16, below 2^28) times w (Q14)
+ * stands in Q30. Differences of two values are below 2^43 for both; times 2^17 sixteenths of a
+ * pixel, and two such products added, they stay below 2^62. Then all is shifted down so that the
+ * nearest w takes 30 bits: over 2^9 pixels, and for depths up to 2^10 times the nearest, rounding
+ * moves the quotient by less than 2^-11. Values may wrap: at pixels inside the triangle they are
+ * right again. */
 #include "soft_planes.h"
 
 static void vertex_values(const soft_vertex *vertex, const soft_planes *planes,
@@ -44,7 +45,8 @@ static quotient one_over(const soft_state *state, int64_t area)
     return (quotient){ area < 0 ? -mantissa : mantissa, lead - 60 };
 }
 
-/* value/area: value in 31 bits and an exponent, times that of 1/area; 2^-28 of it is the error. */
+/* value/area, off by at most 2^-28 of itself: the value as 31 bits and an exponent, times 1/area.
+ */
 static int64_t over_area(int64_t value, quotient per_area)
 {
     if (value == 0) return 0;
@@ -59,7 +61,8 @@ static uint32_t scaled(uint64_t value, int down)
     return (uint32_t)soft_scale64((int64_t)value, -down);
 }
 
-/* Through three points; `planes` knows which and at what scale. */
+/* Makes the planes through three vertices: those that `planes` says are in use, shifted by `down`.
+ */
 static void make_planes(const soft_state *state, soft_planes *planes,
                         const soft_vertex *const vertex[3], int64_t area, int32_t row, int down)
 {
@@ -84,9 +87,9 @@ static void make_planes(const soft_state *state, soft_planes *planes,
     }
 }
 
-/* Colours alone may run linearly over the whole triangle where that is off by 4/255 at most, half a
- * step of red in RGB565: by (r - 1)/4 of their largest difference, r being the ratio of the nearest
- * w to the farthest. */
+/* 1 when colours may be interpolated linearly over the whole triangle, because that is off by at
+ * most 4/255, half a step of red in RGB565. With r = nearest w / farthest w it is off by (r - 1)/4
+ * of the colours' largest difference. */
 static int colours_are_linear(const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
 {
     uint32_t near = a->w > b->w ? a->w : b->w, far = a->w < b->w ? a->w : b->w;
@@ -103,7 +106,8 @@ static int colours_are_linear(const soft_vertex *a, const soft_vertex *b, const 
     return (uint64_t)(near - far) * (uint32_t)range <= (uint64_t)far * 16;
 }
 
-/* What is interpolated, and the nearest w in 30 bits. */
+/* Says which attributes are interpolated; returns the shift that brings the nearest w to 30 bits.
+ */
 static int set_up(const soft_state *state, soft_planes *planes, const soft_vertex *a,
                   const soft_vertex *b, const soft_vertex *c)
 {
@@ -119,7 +123,8 @@ static int set_up(const soft_state *state, soft_planes *planes, const soft_verte
     return down;
 }
 
-/* Attributes where planes are `value`: each divided by w. Below 2^28, Q16. */
+/* Attributes from the planes' values at a pixel: each attribute times w, divided by w. Q16, below
+ * 2^28. */
 static void divide(const soft_state *state, const soft_planes *planes,
                    const uint32_t value[SOFT_PLANES], int32_t out[SOFT_ATTRIBUTES])
 {
@@ -132,9 +137,9 @@ static void divide(const soft_state *state, const soft_planes *planes,
     }
 }
 
-/* Pixels after which to divide again. Linear interpolation between is off by a quarter of the
- * change of w, as a part of w, times that of the attribute: by a quarter of a texel at most where a
- * pixel is as large as a texel, and by 1/16 of the change of a colour. */
+/* The number of pixels after which to divide again. Linear interpolation over them is off by
+ * (change of w)/w * (change of the attribute)/4: by at most a quarter of a texel where a pixel is
+ * as large as a texel, and by at most 1/16 of the change of a colour. */
 static int segment_length(const soft_state *state, int32_t w, int32_t across)
 {
     int64_t change = across < 0 ? -(int64_t)across : across;

@@ -1,5 +1,5 @@
-/* Pixels one by one: any paint into any format. What is drawn most has faster ways
- * (soft_small.c). */
+/* Pixels one by one: any paint into any format. What is drawn most has faster ways (soft_spans.c,
+ * soft_tiny.c, soft_sample.h). */
 #include "soft_sample.h"
 
 static int32_t to_byte(int32_t value_q16)
@@ -37,7 +37,7 @@ void soft_get(const soft_state *state, uint32_t at, uint8_t rgb[3])
     }
 }
 
-/* Tests depth and takes the pixel when it passes. */
+/* 1 when the paint's depth test lets the pixel be drawn. */
 static int take_pixel(const soft_state *state, uint32_t at, uint32_t w)
 {
     switch (state->paint.depth) {
@@ -91,7 +91,7 @@ void soft_segment_paint(soft_state *state, const soft_segment *segment)
     }
 }
 
-/* RGBA5551 to the green of RGB565 with its highest bit repeated; the bit of alpha falls away. */
+/* RGBA5551 to RGB565, spread: green's highest bit is repeated as its lowest, alpha falls away. */
 static inline uint32_t spread_5551(uint32_t texel)
 {
     uint32_t colour = (texel & 0xFFC0) | (texel >> 5 & 0x20) | (texel >> 1 & 0x1F);

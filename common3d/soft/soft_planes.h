@@ -8,14 +8,15 @@
 #define SOFT_PLANES  (SOFT_ATTRIBUTES + 1)
 #define SOFT_PLANE_W SOFT_ATTRIBUTES
 
-/* at the frame's first pixel; from pixel to pixel */
+/* A value over the screen: at the frame's first pixel, its change from column to column and from
+ * row to row. */
 typedef struct soft_plane {
     uint32_t origin, across, down;
 } soft_plane;
 typedef struct soft_planes {
     int first, last; /* attributes in use; w always is */
-    int w_shift;     /* of w to Q30 */
-    int linear;      /* colours are not times w: nothing to divide, Q16 */
+    int w_shift;     /* takes w from the planes' scale to Q30 */
+    int linear;      /* 1: colours stand in Q16, not times w: nothing is divided */
     soft_plane of[SOFT_PLANES];
 } soft_planes;
 
@@ -27,8 +28,8 @@ static inline uint32_t soft_plane_at(const soft_plane *plane, int32_t row, int32
 /* The upper word of the product: one instruction. */
 static inline int32_t soft_high(int32_t a, int32_t b) { return (int32_t)(((int64_t)a * b) >> 32); }
 
-/* 2^59 / (w * 2^*lead), *lead such that the product takes 31 bits. w is 1 .. 2^31 - 1; of others
- * nothing is said. */
+/* 2^59 / (w * 2^*lead), with *lead such that the product takes 31 bits. w is 1 .. 2^31 - 1; for
+ * other w the result means nothing. */
 static inline int32_t soft_one_over_w(const soft_state *state, uint32_t w, int *lead)
 {
     *lead = soft_leading_zeros(w << 1 | 1);
@@ -45,7 +46,7 @@ static inline int32_t soft_quotient(uint32_t part, int32_t reciprocal, int lead)
     return 2 * soft_high((int32_t)(part << lead), reciprocal);
 }
 
-/* 65536/n: what is lost is below 1/65536 of the change over the segment. */
+/* A change over `pixels` pixels, per pixel. Rounding loses less than 1/65536 of the change. */
 static inline int32_t soft_per_pixel(const soft_state *state, int32_t change, int pixels)
 {
     return pixels ? 2 * soft_high(change, state->edge_reciprocal[pixels]) : 0;
@@ -56,9 +57,9 @@ static inline uint32_t soft_depth_of(uint32_t w, int w_shift)
     return (int32_t)w < 2 << w_shift ? 2 : w >> w_shift;
 }
 
-/* Rows after this one that lie as this one does beyond the left (to <= 0) or the right side of the
- * frame: an edge is straight up to the next bend, so what holds at both ends of a number of rows
- * holds between. */
+/* This row lies beyond the left (to <= 0) or the right side of the frame. Returns how many rows
+ * after it do so, too: an edge is straight up to the next bend, so what holds at both ends of a
+ * number of rows holds between. */
 static inline int32_t soft_rows_beyond(const soft_state *state, const soft_walk *walk, int32_t to)
 {
     soft_edge edge = to <= 0 ? walk->right : walk->left;
@@ -84,8 +85,8 @@ static inline void soft_skip_rows(soft_walk *walk, int32_t rows)
     walk->right.at += walk->right.step * rows;
 }
 
-/* Goes on from this row to one that has pixels; 0 when there is none. `painted`: rows before
- * had. */
+/* Goes on, from this row, to the first row that has pixels in the frame; 0 when there is none.
+ * `painted` says that earlier rows had some. */
 static inline int soft_walk_to_pixels(const soft_state *state, soft_walk *walk, int painted)
 {
     do {
@@ -108,9 +109,9 @@ static inline int soft_walk_to_pixels(const soft_state *state, soft_walk *walk, 
     return 0;
 }
 
-/* soft_perspective.c: a row divided at the ends of segments. */
+/* soft_perspective.c: draws a row, divided at the ends of segments. */
 void soft_segments(soft_state *state, const soft_planes *planes, const soft_walk *walk);
-/* soft_texture_rows.c: the rest of a triangle under a texture alone. */
+/* soft_texture_rows.c: draws a triangle under a texture alone, from the walk's row on. */
 void soft_texture_rows(soft_state *state, const soft_planes *planes, soft_walk *walk);
 
 #endif

@@ -1,8 +1,8 @@
 /* Bilinear samples of RGB565 textures. A texel's fields are spread over 32 bits:
  * 00000gggggg00000rrrrr000000bbbbb. They are kept twice as large and with a half,
- * 0000ggggggG0000rrrrrR00000bbbbbB, each with four bits of room above it: four texels times weights
- * that add up to 16 take four multiplications for all three colours, never reach the next field and
- * come out rounded. */
+ * 0000ggggggG0000rrrrrR00000bbbbbB, each with four bits of room above it. So four texels are
+ * blended with weights that add up to 16 by four multiplications for all three colours: no sum
+ * reaches the next field, and the half rounds it. */
 #ifndef SOFT_SAMPLE_H
 #define SOFT_SAMPLE_H
 
@@ -19,14 +19,14 @@ static inline uint32_t soft_kept(uint32_t texel)
     return 2 * soft_spread(texel) + SOFT_SPREAD_ONE;
 }
 
-/* Of a texture in RGB565. */
+/* Texel (0, 0) of a texture in RGB565. */
 static inline const uint32_t *soft_texel_zero(const soft_texture *texture)
 {
     return (const uint32_t *)(const void *)texture->texels + texture->stride + 1;
 }
 
-/* Between four texels, from the upper left one; x, y and x * y in 1/16 texel, x * y no greater than
- * either. Fields are 32 times the colour's, and a half. */
+/* Blends four texels, `at` being the upper left one; x, y and xy = x * y in 1/16 texel, xy no
+ * greater than x and y. The fields of the sum are 32 times the colour's, and a half. */
 static inline uint32_t soft_blend_sum(const uint32_t *at, uint32_t stride, uint32_t x, uint32_t y,
                                       uint32_t xy)
 {
@@ -38,7 +38,7 @@ static inline uint32_t soft_blend_sum(const uint32_t *at, uint32_t stride, uint3
     return sum + at[1] * xy;
 }
 
-/* `texels`: where s and t are 0. */
+/* The sum for a place; `texels` is the texel at which s and t are 0. */
 static inline uint32_t soft_sample_sum(const uint32_t *texels, uint32_t stride, int32_t s,
                                        int32_t t)
 {
@@ -52,8 +52,8 @@ static inline uint16_t soft_pixel_of(uint32_t spread_pixel)
     return (uint16_t)(spread_pixel | spread_pixel >> 16);
 }
 
-/* A row of a texture as it is, into RGB565 with the depth test; an inner loop. All pixels lie on
- * the texture and its rim. */
+/* Draws a segment of a texture as it is, into RGB565 with the depth test; an inner loop. All pixels
+ * lie on the texture and its rim. */
 static inline void soft_sample_row(const soft_state *state, const soft_segment *segment)
 {
     const soft_texture *texture = state->paint.texture;
@@ -71,7 +71,7 @@ static inline void soft_sample_row(const soft_state *state, const soft_segment *
     }
 }
 
-/* 1 when both ends of a straight line lie on the texture and its rim: then all between does. */
+/* 1 when both ends of a straight line lie on the texture and its rim: then the whole line does. */
 static inline int soft_between_on_texture(const soft_texture *texture, int32_t s, int32_t t,
                                           int32_t s_end, int32_t t_end)
 {
@@ -89,8 +89,8 @@ static inline int soft_on_texture(const soft_texture *texture, const soft_segmen
                                    t + segment->step[SOFT_T] * pixels);
 }
 
-/* Pixels from one sample to the next, as a power of two: within a texel, and where that is less
- * than 4 pixels, each is sampled. */
+/* log2 of the pixels from one sample to the next: as many as a texel is wide, at most 8; 0 (each
+ * pixel is sampled) where a texel is less than 4 pixels wide. */
 static inline int soft_sample_spacing(int32_t ds, int32_t dt)
 {
     uint32_t most = (uint32_t)((ds ^ ds >> 31) | (dt ^ dt >> 31) | 1);

@@ -1,9 +1,10 @@
 /* Triangles small enough that linear interpolation shows no difference. 32-bit throughout.
  *
- * Within 128 pixels each way: differences of coordinates below 2^11 (Q4), of attributes below 2^18
- * (texels Q12: 64; colours Q10), of w below 2^19 after a shift: a numerator is two products below
- * 2^29 + ... < 2^31. The area is below 2^23; a slope is a numerator times the reciprocal of the
- * area, in 64 bits. Values walk in 32 bits and wrap: at pixels inside they are right again. */
+ * Within 128 pixels each way, differences of coordinates are below 2^11 (Q4), of attributes below
+ * 2^18 (64 texels in Q12; colours in Q10), of w below 2^19 after a shift. So a numerator, two
+ * products, is below 2^31. The area is below 2^23; a slope is a numerator times the reciprocal of
+ * the area, in 64 bits. Values are stepped in 32 bits and may wrap: at pixels inside the triangle
+ * they are right again. */
 #include "soft_edge.h"
 #include "soft_sample.h"
 
@@ -35,13 +36,14 @@ static int32_t larger(int32_t a, int32_t b)
     return a > b ? a : b;
 }
 
-/* Per pixel: n / area * 16. */
+/* The slope per pixel, 16 * n / area, of a numerator n. */
 static inline int32_t slope(const soft_shape *shape, int32_t n)
 {
     return (int32_t)(((int64_t)n * shape->reciprocal) >> 32) >> shape->shift;
 }
 
-/* `lift`: the differences were shifted down by so much. */
+/* Makes the slopes of attribute i from its value at a and its differences d1 = b - a, d2 = c - a,
+ * which were shifted down by `lift` bits. */
 static inline void attribute(const soft_shape *shape, soft_slopes *slopes, int i, int32_t value,
                              int32_t d1, int32_t d2, int lift)
 {
@@ -54,8 +56,8 @@ static inline void attribute(const soft_shape *shape, soft_slopes *slopes, int i
                                SOFT_SUB);
 }
 
-/* Differences in depth and in what is interpolated are small enough: (r - 1)/4 of the attribute's
- * range is the largest error. */
+/* 1 when linear interpolation is good enough: it is off by at most (r - 1)/4 of an attribute's
+ * range, with r = greatest w / least w. */
 static int is_flat(const soft_state *state, const soft_shape *shape, int32_t dw)
 {
     const soft_vertex *a = shape->a, *b = shape->b, *c = shape->c;
@@ -99,8 +101,8 @@ static void make_slopes(const soft_state *state, const soft_shape *shape, soft_s
                   (c->fog_q8 - a->fog_q8) * 16, 12);
 }
 
-/* The texture alone, small triangles of the terrain: everything in one function. Long rows may be
- * magnified. */
+/* Draws a triangle under a texture alone, as small triangles of the terrain are: everything in one
+ * function, because it is drawn so often. Long rows may be magnified. */
 static void texture_rows(soft_state *state, soft_walk *walk, soft_slopes *slopes)
 {
     soft_segment *segment = &state->segment;
@@ -162,8 +164,8 @@ static void measure(const soft_state *state, soft_shape *shape, int32_t area, in
     shape->to_y = row * SOFT_ONE + SOFT_HALF - shape->a->y;
 }
 
-/* Slivers have no slopes: across a width below half of 1/16 pixel they would exceed 32 bits. They
- * take a's attributes. */
+/* 1 for a sliver. Across a width below half of 1/16 pixel slopes would exceed 32 bits: so slivers
+ * have none, and take the attributes of a. */
 static int is_sliver(const soft_shape *shape, int32_t area)
 {
     int32_t size = area < 0 ? -area : area,

@@ -3,9 +3,9 @@
 #include "soft_ramp.h"
 #include "soft_sample.h"
 
-/* A sample of a texture magnified: it keeps 5 - log2 bits below its last place, which with 2^log2
- * steps fill the room above each field, and the half that rounds the sum of both. s and t are
- * counted from the rim. */
+/* A sample of a magnified texture. Each field keeps 5 - log2 fraction bits, among them the half
+ * that rounds: 2^log2 steps from one sample to the next then need the 5 bits of room that a field
+ * has, and no more. s and t are counted from the rim. */
 static inline uint32_t magnified_sample(const uint32_t *texels, uint32_t stride, int32_t s,
                                         int32_t t, const int log2)
 {
@@ -36,12 +36,13 @@ static inline uint32_t mark_four(uint32_t depth[4], uint32_t w, uint32_t dw)
     return w + dw;
 }
 
-/* A row of a texture magnified. Every 2^log2-th pixel of the frame is sampled (2 or 3); those
- * between are blended of two samples, by adding the same difference again and again. Columns of
- * samples keep their places from row to row: neither edges of triangles nor rows show. Pixels from
- * one to the next are drawn together where all of them are nearer than what is there, as on ground
- * not yet drawn. One comparison finds that out: the depths of the pixels there, joined by OR, give
- * a number that is at least the greatest of them. 0: some sample would lie beyond the texture. */
+/* Draws a segment of a magnified texture. Every 2^log2-th pixel of the frame is sampled (log2 is 2
+ * or 3); the pixels between are blended of two samples, by adding the same difference again and
+ * again. Columns of samples keep their places from row to row, so that neither edges of triangles
+ * nor rows show. The pixels from one sample to the next are drawn together when all of them are
+ * nearer than what is there. One comparison finds that out: the old depths, joined by OR, give a
+ * number that is at least the greatest of them. Returns 0, with nothing drawn, when some sample
+ * would lie beyond the texture. */
 static SOFT_INLINE int magnified_row(const soft_state *state, const soft_segment *segment,
                                      const int log2)
 {
@@ -90,7 +91,7 @@ static SOFT_INLINE int magnified_row(const soft_state *state, const soft_segment
     return 1;
 }
 
-/* RGB565 with the depth test. */
+/* A texture as it is, with the depth test. */
 static void span_texture(soft_state *state, const soft_segment *segment)
 {
     int log2 = segment->count > 2

@@ -8,7 +8,7 @@ static uint32_t texel_bytes(enum c3d_texture_format format)
     return format == C3D_RGBA8888 ? 4 : 2;
 }
 
-/* RGB565 is kept spread. */
+/* Bytes of a texel in the block: RGB565 is kept spread over 32 bits. */
 static uint32_t kept_bytes(enum c3d_texture_format format)
 {
     return format == C3D_RGBA5551 ? 2 : 4;
@@ -16,7 +16,7 @@ static uint32_t kept_bytes(enum c3d_texture_format format)
 
 static int log2_of(uint32_t power) { return 31 - soft_leading_zeros(power); }
 
-/* First of so many units in a row, heap_units when there are none. */
+/* The first of `units` free units in a row; heap_units when there is no such run. */
 static uint32_t find_units(const soft_state *state, uint32_t units)
 {
     for (uint32_t first = 0, run = 0; first + run < state->heap_units;) {
@@ -30,7 +30,7 @@ static uint32_t find_units(const soft_state *state, uint32_t units)
     return state->heap_units;
 }
 
-/* With a texel of rim on either side. */
+/* Copies a row of texels, with a texel of rim on either side. */
 static void copy_row(uint8_t *out, const uint8_t *in, uint32_t width,
                      enum c3d_texture_format format)
 {

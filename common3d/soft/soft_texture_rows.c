@@ -2,8 +2,8 @@
  * will do. */
 #include "soft_planes.h"
 
-/* Linear where that is off by a quarter of a texel at most, see soft_perspective.c; 0 where it is
- * off by more. */
+/* Makes state->segment a whole row, interpolated linearly; 0 when that would be off by more than a
+ * quarter of a texel (see segment_length in soft_perspective.c). */
 static int measure_row(soft_state *state, const soft_planes *planes, const soft_walk *walk)
 {
     soft_segment *segment = &state->segment;
@@ -22,7 +22,7 @@ static int measure_row(soft_state *state, const soft_planes *planes, const soft_
     int32_t t_change =
         soft_quotient(t_part + planes->of[SOFT_T].across * (uint32_t)apart, reciprocal, lead) - t;
     int32_t least = (int32_t)(w < w_end ? w : w_end), w_change = (int32_t)(w_end - w);
-    /* at most twice the larger one */
+    /* at least the larger of both changes, less than twice it */
     int32_t far = (s_change ^ s_change >> 31) | (t_change ^ t_change >> 31);
     if (apart >= SOFT_EDGE_TABLE || soft_high(far, w_change ^ w_change >> 31) > least >> 16)
         return 0;
@@ -36,8 +36,8 @@ static int measure_row(soft_state *state, const soft_planes *planes, const soft_
     return 1;
 }
 
-/* The longest run of a row that is known to be covered, as far as one was found: nobody needs to
- * look for open pixels there. */
+/* Keeps, for each row, the longest run of covered pixels found so far: soft_find_open_parts need
+ * not look for open pixels there. */
 static inline void note_covered(soft_state *state, const soft_walk *walk)
 {
     soft_part *covered = &state->covered[walk->row];

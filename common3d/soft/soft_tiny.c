@@ -1,30 +1,31 @@
-/* Triangles of a few rows, white and textured, into RGB565: most of a terrain has one row and four
- * pixels. They get no planes and no walked edges: in each row two edges leave the corner that is
- * alone above or below its line, and what is interpolated runs along them to the line, then along
- * the line from one to the other. Everything drawn lies so between the corners, on the texture,
- * however thin the triangle.
+/* Triangles of a few rows, white and textured, into RGB565: most triangles of a terrain have one
+ * row and four pixels. They get no planes and no walked edges. The line through a row's pixel
+ * centres has one corner alone on its one side; two edges run from that corner to the line.
+ * Attributes are interpolated along both edges up to the line, then along the line from one edge to
+ * the other. So everything drawn lies between the corners, and on the texture, however thin the
+ * triangle is.
  *
  * Exact edges: an edge meets the line dx * k/dy sixteenths right of its corner. With v = -dx * k,
- * floor(v/dy) is the upper word of (2v + 1) * floor((2^31 - 1)/dy): |v| < 2^17 and dy < 2^9 keep
- * what the product lacks below 1/(2 dy), the half step it is ahead. Perspective: w differs from a's
- * by 1/8 at most. Linear interpolation moves the texture by (r - 1)/(r + 1) of an edge's length
- * then, r^2 = (9/8)/(7/8): by 2 pixels at worst, along 32 pixels; by a fraction of one where
- * triangles are a few pixels large. */
+ * floor(v/dy) is the upper word of (2v + 1) * floor((2^31 - 1)/dy): the 1 puts the product ahead by
+ * 1/(2 dy), and with |v| < 2^17 and dy < 2^9 the rounded reciprocal takes away less than that.
+ * Perspective: w differs from that of a by at most 1/8. Linear interpolation then moves the texture
+ * by at most (r - 1)/(r + 1) of an edge's length, r^2 = (9/8)/(7/8): by 2 pixels over 32 pixels, by
+ * a fraction of a pixel where triangles are a few pixels large. */
 #include "soft_edge.h"
 #include "soft_sample.h"
 
 #define ROWS     8   /* at most */
-#define REACH_Q4 256 /* of b and c from a, sideways */
+#define REACH_Q4 256 /* how far b and c may lie from a, sideways */
 #define W_MAX    (1u << 24)
 
 /* Where an edge from the corner that is alone meets the line. */
 typedef struct meeting {
     const soft_vertex *end;
     int32_t x;    /* Q4, rounded up */
-    int32_t part; /* of the way there, Q31 */
+    int32_t part; /* of the way from the corner to `end`, Q31 */
 } meeting;
 
-/* |n|, or one less. */
+/* |n|; one less for negative n. */
 static inline uint32_t size_of(int32_t n) { return (uint32_t)(n ^ n >> 31); }
 
 static inline int32_t least(int32_t a, int32_t b, int32_t c)
@@ -41,7 +42,7 @@ static inline int32_t most(int32_t a, int32_t b, int32_t c)
 
 static inline int32_t high(int32_t a, int32_t b) { return (int32_t)(((int64_t)a * b) >> 32); }
 
-/* k: from the corner to the line, dy: to the end; both downwards or both upwards. */
+/* k leads from the corner to the line, dy from the corner to the end: both down, or both up. */
 static inline void meet(const soft_state *state, const soft_vertex *alone, const soft_vertex *end,
                         int32_t y, meeting *at)
 {
@@ -58,8 +59,8 @@ static inline int32_t along(int32_t from, int32_t to, int32_t part)
     return from + 2 * high(to - from, part);
 }
 
-/* s and t in one word: 8 bits and 8 of fraction each, counted from the rim. Steps are off by 1/512
- * texel: 1/16 after 32 pixels. */
+/* s and t in one word, each 8 bits and 8 of fraction, counted from the rim. A step is off by at
+ * most 1/512 texel: by 1/16 after 32 pixels. */
 static inline uint32_t packed(int32_t s, int32_t t)
 {
     return ((uint32_t)((s + 128) >> 8) << 16) + (uint32_t)((t + 128) >> 8);

@@ -1,28 +1,28 @@
 /* From vertices to the screen, once for each vertex of a mesh.
  *
  * World units: 2^shift to a wu, chosen so that every coordinate relative to the camera stays below
- * 2^30; a vertex's place is exact in them (its height rounded down), so that meshes that share it
- * get the same, whatever their origins. Rotation: three products of 30 + 31 bits, of which the
- * upper word is kept. The rows have at most the length 2^31, so sums stay below 2^62 and eye
- * coordinates below 2^29 * sqrt 3. The row of depth is the forward direction: eye units are 2 world
- * units. Those of x and y are multiplied with the focal distance beforehand.
- * Projection: 1/z as a mantissa r of 30 bits and an exponent, so that x/z is one product of which
- * again the upper word is kept. */
+ * 2^30. A vertex's place is exact in them (its height rounded down), so that meshes that share the
+ * vertex get the same place, whatever their origins.
+ * Rotation: the sum of three products of 30 and 31 bits, of which the upper word is kept. The rows
+ * have at most the length 2^31, so sums stay below 2^62 and eye coordinates below 2^29 * sqrt 3.
+ * The row for depth is the forward direction, so an eye unit is 2 world units. The rows for x and y
+ * are multiplied with the focal distance beforehand. Projection: 1/z is a mantissa r of 30 bits and
+ * an exponent, so that x/z is one product, of which again the upper word is kept. */
 #include "soft_local.h"
 
 #include <string.h>
 
 #define WORLD_MAX    ((int64_t)1 << 30)
-#define W_MIN        16 /* of what is drawn; less means that nothing was */
-#define W_PLAIN_LOG2 25 /* how many times as far as the near plane w is certainly above that */
-#define W_ERROR_LOG2 18 /* 1/z is within 2^-19 of itself */
+#define W_MIN        16 /* least w of anything drawn: depths 0 and 1 mean something else */
+#define W_PLAIN_LOG2 25 /* up to 2^25 times the near plane's distance w is above W_MIN */
+#define W_ERROR_LOG2 18 /* 1/z may be too great by 2^-19 of itself: near_norm makes up for it */
 
 void soft_begin_view(soft_state *state, const c3d_rotation *rotation)
 {
     const c3d_camera *camera = &state->frame.camera;
     soft_view *view = &state->view;
     int lead = soft_leading_zeros((uint32_t)camera->focal_q8) - 1;
-    /* below 2^31: times a row of 2^30 at most, Q31 */
+    /* below 2^31; times a row of at most 2^30 */
     int64_t focal_norm = (int64_t)camera->focal_q8 << lead;
     view->focal_shift = lead;
     for (int i = 0; i < 3; i++) {
@@ -63,8 +63,8 @@ static int64_t reach_wu(const c3d_resolved_draw *resolved)
 
 static int fits(int64_t value) { return value <= INT32_MAX && value >= -INT32_MAX; }
 
-/* Places in 32 bits, where a unit is at most a wu: what WORLD_MAX bounds, and so every term of
- * it. */
+/* Prepares places in 32 bits, where world units are no larger than a wu. WORLD_MAX bounds the sum
+ * of the magnitudes of origin and offset, so each of them fits. */
 static void set_near_places(soft_space *space)
 {
     int64_t scale = soft_scale64(space->scale_wu, space->shift);
@@ -75,8 +75,8 @@ static void set_near_places(soft_space *space)
     space->scale = (int32_t)scale;
 }
 
-/* The near plane in eye units, rounded up so that near/z never exceeds 1; and near/z as a product
- * of mantissas: see soft_project. */
+/* The near plane in eye units, rounded up so that near/z never exceeds 1, and the factors that
+ * project() takes for near/z. */
 static void set_planes(soft_space *space, int32_t near_wu, int32_t far_wu)
 {
     int64_t near_eye = -soft_scale64(-(int64_t)near_wu, space->shift - 1),
@@ -87,7 +87,7 @@ static void set_planes(soft_space *space, int32_t near_wu, int32_t far_wu)
     space->near_norm = (uint32_t)near_wu << lead;
     space->near_norm -= space->near_norm >> W_ERROR_LOG2;
     space->near_shift = lead - space->shift;
-    /* shifts of 32 bits do */
+    /* so that project() shifts by less than 32 bits */
     for (; space->near_shift > 31; space->near_shift--) space->near_norm >>= 1;
 }
 
@@ -97,8 +97,8 @@ static void begin_space(soft_state *state, const c3d_resolved_draw *resolved)
     soft_space *space = &state->space;
     int backdrop = (draw->flags & C3D_DRAW_BACKDROP) != 0;
     int64_t reach = reach_wu(resolved);
-    /* Backdrops surround the eye: what is closer than 1/4096 of their reach only costs bits of
-     * depth. */
+    /* Backdrops surround the eye: a near plane closer than 1/4096 of their reach would only cost
+     * bits of depth. */
     int32_t near_wu = !backdrop                 ? state->frame.camera.near_wu
                       : reach < 8192            ? 1
                       : reach >> 12 < INT32_MAX ? (int32_t)(reach >> 12)
@@ -118,7 +118,7 @@ static void begin_space(soft_state *state, const c3d_resolved_draw *resolved)
 static SOFT_INLINE int32_t along(const int32_t row[3], int32_t x, int32_t y, int32_t z)
 {
     uint64_t sum = (uint64_t)((int64_t)row[0] * x + (int64_t)row[1] * y + (int64_t)row[2] * z);
-    /* unsigned, so that compilers see: 32 bits are multiplied next */
+    /* by way of unsigned, so that compilers see that 32 bits are multiplied next */
     return (int32_t)(uint32_t)(sum >> 32);
 }
 
@@ -148,7 +148,7 @@ static SOFT_INLINE void eye_near(const soft_space *space, const soft_view *view,
     rotate(view, world[0], world[1], world[2], eye);
 }
 
-/* The same place where 32 bits do not suffice on the way to it. */
+/* The same as eye_near, where 32 bits do not suffice on the way. */
 static void eye_far(const soft_space *space, const soft_view *view, const c3d_vertex *in,
                     int32_t eye[3])
 {
@@ -169,7 +169,7 @@ void soft_eye(const soft_state *state, const soft_vertex *vertex, int32_t eye[3]
 
 /* ---- the screen ---- */
 
-/* 2^60/n within 2^-19 of it; n in 2^30 .. 2^31 - 1. */
+/* 2^60/n for n in 2^30 .. 2^31 - 1, within 2^-19 of its value. */
 static SOFT_INLINE int32_t reciprocal(const uint32_t table[512], uint32_t n)
 {
     uint32_t r = table[n >> 21 ^ 512];
@@ -177,7 +177,7 @@ static SOFT_INLINE int32_t reciprocal(const uint32_t table[512], uint32_t n)
     return (int32_t)(((uint64_t)r * ~(error << 2)) >> 32);
 }
 
-/* Of a vertex beside the screen along one axis. */
+/* The bits of `out` for a vertex beside the screen along one axis. */
 static inline uint32_t beside(int32_t at, int32_t guard_from, uint32_t low, uint32_t high)
 {
     uint32_t guard = (uint32_t)(at - guard_from) > 2 * SOFT_GUARD_Q4 - 2 ? SOFT_GUARD : 0;
@@ -194,9 +194,9 @@ static inline int32_t twice_on_screen(int32_t x, int32_t r, int shift, int plain
     return (int32_t)(product > 1 << 28 ? 1 << 28 : product < -(1 << 28) ? -(1 << 28) : product);
 }
 
-/* Nothing of the mesh is too near or too far, so near that a product takes 64 bits, or so far that
- * near/z vanishes. Sums of three products are least and greatest in corners of its box, and stay in
- * order when their upper word is kept. */
+/* 1 when the whole mesh lies between the near and the far plane, not so near that a product takes
+ * 64 bits, and not so far that near/z vanishes. A sum of three products is least and greatest in
+ * corners of the mesh's box; keeping only the upper words keeps their order. */
 static int is_plain(const soft_space *space, const soft_view *view, const c3d_mesh_data *mesh)
 {
     const c3d_vertex corner[2] = {
@@ -218,8 +218,8 @@ static int is_plain(const soft_space *space, const soft_view *view, const c3d_me
            farthest <= space->far_eye && farthest >> W_PLAIN_LOG2 < space->near_eye;
 }
 
-/* near/z: near_norm * r * 2^(lead - near_shift - 31), a product below 2^62; rows of pixels and
- * columns. */
+/* Projects a place in eye space: x and y on the screen, w = near/z, and `out`. near/z is near_norm
+ * * r * 2^(lead - near_shift - 31), from a product below 2^62. */
 static SOFT_INLINE void project(const soft_space *space, const soft_view *view,
                                 const uint32_t table[512], int plain, const int32_t eye[3],
                                 soft_vertex *vertex)
@@ -227,7 +227,7 @@ static SOFT_INLINE void project(const soft_space *space, const soft_view *view,
     int32_t z = eye[2];
     if (!plain && z < space->near_eye) {
         vertex->out = SOFT_NEAR;
-        vertex->y = INT32_MIN; /* in no row of those in front */
+        vertex->y = INT32_MIN; /* a row that no vertex in front has: soft_strip compares rows */
         return;
     }
     int lead = soft_leading_zeros((uint32_t)z) - 1, shift = view->focal_shift - lead;
@@ -247,7 +247,7 @@ static SOFT_INLINE void project(const soft_space *space, const soft_view *view,
     vertex->out = out;
 }
 
-/* Nearer by 1/64. */
+/* Brings a vertex nearer by 1/64. */
 static void put_on_top(soft_vertex *vertex)
 {
     uint32_t w = vertex->w + (vertex->w >> 6), most = (UINT32_C(1) << 30) - 1;
@@ -297,7 +297,7 @@ typedef struct texel_axis {
     int64_t offset;
     int32_t scale;
     int shift, axis;
-    uint8_t wide; /* 32 bits do not suffice, or it goes beyond what a vertex can hold */
+    uint8_t wide; /* 1: 32 bits do not suffice, or some vertex cannot hold its s or t */
 } texel_axis;
 
 static int32_t texel_q16(const texel_axis *axis, int32_t at)
@@ -307,7 +307,8 @@ static int32_t texel_q16(const texel_axis *axis, int32_t at)
     return (int32_t)(texels > limit ? limit : texels < -limit ? -limit : texels);
 }
 
-/* What the mesh's least and greatest coordinate give is the range of all. */
+/* Prepares s (i = 0) or t (i = 1). The mesh's least and greatest coordinates give the range of all
+ * its texture coordinates. */
 static void make_axis(soft_state *state, const c3d_draw *draw, const c3d_mesh_data *mesh, int i,
                       texel_axis *axis)
 {
@@ -336,7 +337,7 @@ static inline int32_t coordinate(const c3d_vertex *in, int axis)
     return axis == 0 ? in->x : axis == 1 ? in->y : in->z;
 }
 
-/* 32 bits wrap on the way to what fits them. */
+/* 32 bits may wrap on the way; the result fits them. */
 static inline int32_t texel_narrow(int32_t at, uint32_t scale, uint32_t offset, int shift)
 {
     return (int32_t)((uint32_t)at * scale + offset) >> shift;

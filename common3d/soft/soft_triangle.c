@@ -18,7 +18,7 @@ void soft_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b
     int32_t left = a->x < b->x ? a->x : b->x, right = a->x < b->x ? b->x : a->x;
     if (c->x < left) left = c->x;
     if (c->x > right) right = c->x;
-    if (soft_first_row(left) == soft_first_row(right)) return; /* or columns */
+    if (soft_first_row(left) == soft_first_row(right)) return; /* between two columns of centres */
     if (soft_small(state, a, b, c)) return;
     int64_t area = area_of(a, b, c);
     if (area != 0) soft_perspective(state, a, b, c, area);
