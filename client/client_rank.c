@@ -46,7 +46,7 @@ static void want_textures(ff_client *client, const ff_view *view, const ff_quali
 }
 
 /* Where the viewer will be and look while an answer is on its way, and some seconds more: several
- * views when it turns far. */
+ * views when the viewer turns far. */
 typedef struct ahead {
     unsigned views;
     int32_t pos_wu[FF_TURN_VIEWS_MAX][3], yaw[FF_TURN_VIEWS_MAX], pitch[FF_TURN_VIEWS_MAX];
@@ -86,7 +86,7 @@ static void want_ahead(ff_client *client, const ahead *a)
     }
 }
 
-/* Faces that the views ahead show. */
+/* Bits of the faces that the views ahead show. */
 static unsigned faces_ahead(const ff_view *view, const ahead *a)
 {
     unsigned faces = 0;

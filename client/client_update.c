@@ -21,7 +21,7 @@ ff_quality ff_client_quality(const ff_client *client)
     return quality;
 }
 
-/* The worker has met a terrain: pools for it, or none when it does not fit. */
+/* The worker has met a terrain: carves pools for it, or none when it does not fit. */
 static void settle_welcome(ff_client *client, const ff_stream_shared *shared)
 {
     sys_mutex_lock(&client->gate);
@@ -45,8 +45,8 @@ static void look_at_link(ff_client *client)
     }
 }
 
-/* Heights into the tree. A codec may find only here, with the parent's heights, that a payload is
- * bad: the item then has that error, as if the worker had found it. */
+/* Gives an item's heights to the tree. A codec may find only here, with the parent's heights, that
+ * a payload is bad: the item then gets that error, as if the worker had found it. */
 static int deliver(ff_client *client, ff_new_item *item)
 {
     int rc = item->kind == FF_WANT_ROOT
@@ -59,8 +59,8 @@ static int deliver(ff_client *client, ff_new_item *item)
     return rc == FF_OK;
 }
 
-/* 1 when the picture may have changed. A face brings its own refusals: its set must know of
- * them. */
+/* Takes in an item; 1 when the picture may have changed. A face that was refused goes to its set,
+ * too, because the set waits for it. */
 static int take_item(ff_client *client, ff_new_item *item, int64_t now_us)
 {
     enum ff_data_class data = (enum ff_data_class)ff_kind[item->kind].data;
@@ -83,8 +83,8 @@ static enum ff_request_state final_state(const ff_new_item *item)
     return face_came ? FF_REQUEST_DONE : FF_REQUEST_FAILED;
 }
 
-/* Number of items taken in; *changed: pictures other than heights changed (the tree tells of
- * heights itself). */
+/* Takes in all new data and returns the number of items. *changed is set when faces or images
+ * changed the picture; the tree tells of heights itself. */
 static unsigned take_new_data(ff_client *client, int64_t now_us, int *changed)
 {
     unsigned taken = 0;

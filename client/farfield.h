@@ -39,14 +39,16 @@ typedef struct ff_client ff_client;
 /* Zero in any field takes the default given. */
 typedef struct ff_panorama_desc {
     uint8_t enabled; /* 0: the client draws all ground up to quality.view_wu itself */
-    /* z_back_c = z_front_s, default 7500 m: ground up to here is the client's */
+    /* the client draws ground itself up to here, and here a panorama begins: z_back_c = z_front_s
+     * of Hybrid; default 7500 m */
     int32_t back_plane_wu;
-    int32_t server_back_wu; /* z_back_s, default 100 km */
+    int32_t server_back_wu; /* how far a panorama reaches: z_back_s; default 100 km */
     /* epsilon of Hybrid eq. 6, 7 and 13 in pixels of the screen, default 5 % of its half-width */
     int32_t error_px_q8;
     uint16_t face_size;   /* default 256 */
     uint8_t jpeg_quality; /* default 70 */
-    /* Hybrid's congestion flag: 0 default (one set outstanding at most), 1 never hold back */
+    /* 0 (default): at most one set is asked for at a time; 1: a new set is asked for as soon as the
+     * last is outdated, whatever is still on its way (Hybrid's congestion flag) */
     uint8_t hold_back;
 } ff_panorama_desc;
 
@@ -57,9 +59,9 @@ typedef struct ff_panorama_desc {
 enum ff_balance_mode {
     FF_BALANCE_OFF,
     FF_BALANCE_ON,
-    /* stays at that end: coarsest ground up to the nearest back plane, the rest is panorama */
+    /* no controller: coarsest ground up to the nearest back plane, the rest is panorama */
     FF_BALANCE_ALL_SERVER,
-    /* stays at that end: the finest ground as far as quality.view_wu, no panoramas */
+    /* no controller: the finest ground as far as quality.view_wu, no panoramas */
     FF_BALANCE_ALL_CLIENT
 };
 
@@ -67,10 +69,10 @@ typedef struct ff_balance_desc {
     enum ff_balance_mode mode;
     /* what a frame may cost: triangles, or the unit of ff_client_frame_cost; 0: no limit */
     uint32_t frame_budget;
-    /* what may come in a second, and never more than link_percent of what the link is found to
-     * carry; 0: that alone */
+    /* bytes that may come in a second; 0: only link_percent limits them */
     uint32_t link_bytes_s;
-    /* also of the time in which something in view may have to wait for the link; default 80 */
+    /* share that may be used of what the link is found to carry, and share of the time in which
+     * something in view may wait for the link; default 80 */
     uint8_t link_percent;
     int32_t c_min_q8;        /* FF_MEASURE_DISTANCE; default a quarter of quality.c_q8 */
     int32_t error_px_max_q8; /* FF_MEASURE_PIXELS; default eight times quality.error_px_q8 */
@@ -86,7 +88,8 @@ typedef struct ff_balance_stats {
     uint8_t fidelity_percent; /* 100 as set, less to spare the link */
     /* log2(cost / budget) as last measured; above 0: over budget */
     int32_t frame_load_q8, link_load_q8;
-    /* levels changed; of those, against the direction of the change before */
+    /* moves: how often a level changed; turns: how often against the direction of its last change
+     */
     uint32_t moves, turns;
 } ff_balance_stats;
 
@@ -160,12 +163,13 @@ void ff_client_draw(ff_client *client);
  * asks for nothing new, the link is just kept alive. Restored after. */
 void ff_client_event(ff_client *client, const sys_event *event);
 
-/* Settings that may change between frames. Panoramas switched on in a block shared out without
- * them: the terrain is given up, the block shared out anew and the ground asked for again. */
+/* Settings that may change between frames. When panoramas are switched on and the block was shared
+ * out without them, the client gives up the terrain, shares the block out anew and asks for the
+ * ground again. */
 void ff_client_set_quality(ff_client *client, const ff_quality *quality);
 void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama);
-/* New budgets and limits, or on and off. The shares stay where they are on their ladders and move
- * from there. */
+/* New budgets and limits, or on and off. Share and fidelity stay where they are on their ladders
+ * and move from there. */
 void ff_client_set_balance(ff_client *client, const ff_balance_desc *balance);
 /* What the frame just drawn cost, in the unit of balance.frame_budget: microseconds, instructions.
  * From the first call on it stands in for the triangles counted by the client. 0: triangles

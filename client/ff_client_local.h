@@ -48,7 +48,7 @@ struct ff_client {
     ff_textures textures;
     ff_panorama panorama;
     ff_balance balance;
-    uint32_t frame_cost; /* as reported; 0: triangles count */
+    uint32_t frame_cost; /* as the embedder reports it; 0: triangles are counted */
     /* by the balance: no panoramas are wanted; one still shown is a backdrop until the ground is
      * here */
     uint8_t all_client;
@@ -58,8 +58,8 @@ struct ff_client {
     ff_refusals refusals;
 
     uint8_t has_camera, battery_low, interrupted, has_textures;
-    uint8_t dirty;    /* the picture has to be made anew */
-    uint8_t unranked; /* only what is asked for has to be: the connection was lost */
+    uint8_t dirty;    /* 1: the picture has to be made anew */
+    uint8_t unranked; /* 1: requests have to be ranked anew, because the connection was lost */
     unsigned show;
     c3d_camera camera; /* of the last update, as given */
     ff_view last_view;
@@ -76,12 +76,13 @@ void *ff_client_take(ff_arena *arena, const ff_budget *budget, enum ff_pool_id p
  * FF_ERR_MEMORY, FF_ERR_UNSUPPORTED. */
 int ff_client_carve(ff_client *client);
 void ff_client_uncarve(ff_client *client);
-/* client_rank.c: the request queue anew from what tree, textures, panorama and prediction want. */
+/* client_rank.c: fills the request queue anew with what tree, images, panorama and prediction
+ * want. */
 void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality,
                     int64_t now_us);
-/* client_balance.c. begin: for a terrain just met, or after settings changed; `fresh`: from the
- * start. step: once an update, under a terrain. quality: what the balance changes of the quality as
- * set. */
+/* client_balance.c. begin: for a terrain just met, or after settings changed; `fresh` forgets the
+ * levels. step: once an update, while there is a terrain. quality: puts the balance's detail into a
+ * quality. */
 void ff_client_balance_begin(ff_client *client, int fresh);
 void ff_client_balance_step(ff_client *client, const c3d_camera *camera, int64_t now_us);
 void ff_client_balance_quality(const ff_client *client, ff_quality *quality);

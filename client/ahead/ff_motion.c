@@ -82,8 +82,8 @@ static int64_t clamp(int64_t value, int64_t limit)
     return value > limit ? limit : value < -limit ? -limit : value;
 }
 
-/* The way made in that time at the mean velocity of the last bins; its length, 0 when there is
- * none. */
+/* The way made in ahead_ms at the mean velocity of the last bins. Returns its length, 0 for a
+ * viewer who stands still. */
 static int64_t straight_way(const ff_motion *motion, int64_t ahead_ms, int64_t way_wu[3])
 {
     if (motion->count < 2) return 0;

@@ -36,7 +36,8 @@ void ff_motion_feed(ff_motion *motion, int64_t now_us, const int32_t pos_wu[3]);
 /* 1 and the position expected `ahead_us` from the last one fed (0 .. 30 s), or 0: standing still or
  * nothing known. */
 int ff_motion_predict(const ff_motion *motion, int64_t ahead_us, int32_t pos_wu[3]);
-/* The same for longer ways: straight on and level. Who climbs now need not do so in ten seconds. */
+/* The same for longer times: straight on and level. Whoever climbs now need not be climbing ten
+ * seconds later. */
 int ff_motion_level(const ff_motion *motion, int64_t ahead_us, int32_t pos_wu[3]);
 
 #endif

@@ -19,8 +19,8 @@ typedef struct ff_turn {
 void ff_turn_reset(ff_turn *turn);
 void ff_turn_feed(ff_turn *turn, int64_t now_us, int32_t yaw, int32_t pitch);
 /* Yaw and pitch added within ahead_us at this rate; yaw at most half a turn, pitch at most a
- * quarter. Returns into how many steps of at most an eighth of a turn that falls, 0: the viewer
- * does not turn. */
+ * quarter. Returns the number of steps, each at most an eighth of a turn, that this makes; 0 when
+ * the viewer does not turn. */
 unsigned ff_turn_predict(const ff_turn *turn, int64_t ahead_us, int32_t *yaw, int32_t *pitch);
 
 #endif

@@ -1,5 +1,5 @@
-/* Requests that were refused: asked for again a few times, then left alone. A short memory, the
- * oldest entry gives way. */
+/* Remembers requests that were refused: each is made again a few times, then no more. The memory is
+ * short: its oldest entry gives way. */
 #ifndef FF_REFUSALS_H
 #define FF_REFUSALS_H
 
@@ -18,7 +18,7 @@ typedef struct ff_refusals {
 } ff_refusals;
 
 void ff_refusals_note(ff_refusals *refusals, unsigned kind, ff_key key);
-/* 1 when it was refused FF_REFUSALS_TRIES times: not to be asked for again. */
+/* 1 when the key was refused FF_REFUSALS_TRIES times: it is not asked for again. */
 int ff_refusals_final(const ff_refusals *refusals, unsigned kind, ff_key key);
 
 #endif

@@ -38,7 +38,7 @@ static unsigned level_of(const ff_request *request)
     return request->kind == FF_WANT_PANORAMA ? 0 : ff_key_level(request->key);
 }
 
-/* Every way out of QUEUED, SENT and ARRIVING passes here or free_slot: counts stay true. */
+/* Every way out of QUEUED, SENT and ARRIVING passes here, so that the counts stay true. */
 static void leave_state(ff_requests *requests, const ff_request *request)
 {
     ff_request_counts *counts = &requests->counts;
@@ -112,8 +112,8 @@ static uint32_t value_of(const ff_requests *requests, unsigned kind, unsigned le
     return value > UINT32_MAX ? UINT32_MAX : (uint32_t)value;
 }
 
-/* A free slot for a new request while the queue has room. What an earlier ranking left unmarked
- * makes room first. */
+/* A slot for a new request. In a full queue a request that this ranking has not wanted so far makes
+ * room; NULL when there is none. */
 static ff_request *slot_for_new(ff_requests *requests)
 {
     if (requests->counts.queued >= requests->queued_max) {
@@ -170,7 +170,7 @@ void ff_requests_rank_end(ff_requests *requests)
     sys_mutex_unlock(&requests->mutex);
 }
 
-/* 1 when it is still under way. */
+/* Cancels a request; 1 when it is still under way. */
 static int cancel(ff_requests *requests, ff_request *request)
 {
     if (request->state == FF_REQUEST_QUEUED) {

@@ -19,9 +19,9 @@
  * Every request ends in exactly one final state; `made` = done + failed + cancelled + dropped +
  * those still in a slot. No two requests with the same kind and key exist at a time.
  *
- * Policy for requests that lost their point: not sent yet: dropped. Sent: let come, because an
- * answer of some hundred bytes costs less than the message that cancels it; panoramas alone
- * (kilobytes, and work for the server) are cancelled.
+ * A request that is no longer wanted is dropped while it is not sent. Once it is sent, the answer
+ * is let come: some hundred bytes cost less than the message that cancels them. Only panoramas are
+ * cancelled, because they cost kilobytes and the server's work.
  */
 #ifndef FF_REQUEST_H
 #define FF_REQUEST_H
@@ -81,8 +81,8 @@ void ff_requests_init(ff_requests *requests, unsigned in_flight_max, void *memor
 void ff_requests_clear(ff_requests *requests);
 
 /* ---- main thread ---- */
-/* A ranking: begin, want everything worth having (most urgent first), end. What was queued and is
- * not wanted is dropped. */
+/* A ranking: begin, want everything worth having (most urgent first), end. Queued requests that
+ * were not wanted again are dropped. */
 void ff_requests_rank_begin(ff_requests *requests);
 /* 1 when queued or already under way, 0 when the queue is full. priority per byte decides within
  * `rank`. */
@@ -90,9 +90,10 @@ int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
                      enum ff_request_class rank, uint32_t priority,
                      const ff_get_panorama *panorama);
 void ff_requests_rank_end(ff_requests *requests);
-/* Something in view is queued: wanted and not yet sent. */
+/* 1 when something in view is queued: wanted and not yet sent. */
 int ff_requests_waiting(ff_requests *requests);
-/* Asks for cancellation of a panorama: dropped when queued. 1 when it is still under way. */
+/* Cancels a panorama: drops a queued request, has a sent one cancelled by the server. 1 when it is
+ * still under way. */
 int ff_requests_cancel(ff_requests *requests, ff_key key);
 /* The same for all panoramas. */
 void ff_requests_cancel_panoramas(ff_requests *requests);

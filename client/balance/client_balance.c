@@ -1,6 +1,6 @@
-/* The balance (ff_balance.h) in a client: what it measures, and where its knobs go. A back plane it
- * wishes for comes into force with the panorama taken for it: until that is drawn, the ground
- * reaches as far as the one before begins. */
+/* The balance (ff_balance.h) in a client: what it measures, and where its knobs go. A new back
+ * plane comes into force with the panorama taken for it: until that one is drawn, the ground
+ * reaches to where the panorama before it begins. */
 #include "../ff_client_local.h"
 
 static int can_panorama(const ff_client *client)
@@ -35,7 +35,8 @@ void ff_client_balance_begin(ff_client *client, int fresh)
     apply(client);
 }
 
-/* The wish is the back plane drawn, or there are no panoramas any more. */
+/* 1 when the back plane that the balance chose is the one drawn, or, when it chose none, no
+ * panorama is left. */
 static int in_force(const ff_client *client)
 {
     const ff_panorama *panorama = &client->panorama;
@@ -63,7 +64,7 @@ void ff_client_balance_step(ff_client *client, const c3d_camera *camera, int64_t
         sample.waiting = ff_requests_waiting(&client->requests) ||
                          ff_panorama_late(&client->panorama, camera);
     }
-    /* its own ground is here: far pictures go */
+    /* all of the client's own ground is here: the panorama goes */
     if (client->all_client && client->panorama.active >= 0 && !sample.waiting) {
         ff_panorama_drop(&client->panorama);
         client->dirty = 1;

@@ -6,11 +6,11 @@
 #define SETTLE_US_MAX     10000000
 #define FRAME_WINDOW_US   1000000
 #define LINK_WINDOW_US    8000000
-#define BLAME_US          30000000 /* relief sooner than this after a raise is laid to it */
+#define BLAME_US          30000000 /* a relief sooner than this after a raise undoes the raise */
 #define SATURATED_PERCENT 90       /* of the time something waits */
-#define SILENT_SHARE                                                                           \
-    32 /* less than one in so many of the bytes a link can carry: it is silent, and asking for \
-          less does not help */
+/* A link that brings less than one in SILENT_SHARE of the bytes it can carry is silent: asking for
+ * less does not help then. */
+#define SILENT_SHARE     32
 #define PERCENT_DEFAULT  80
 #define DEPTH_LESS       3
 #define DEPTH_LEAST      2
@@ -18,7 +18,7 @@
 #define PLANE_STEPS_MAX  24
 #define ERROR_STEPS_MAX  12
 #define ERROR_QUARTERS   2  /* the panorama's error changes by half an octave */
-#define RELIEF_STEP_Q8   64 /* as much as a step down is taken to spare: a quarter of an octave */
+#define RELIEF_STEP_Q8   64 /* what a step down is taken to spare: a quarter of an octave */
 #define GAIN_Q8(gain_q4) ((int32_t)(gain_q4)*16)
 #define BULGE_Q8         88
 #define TOLERANCE_Q8     GAIN_Q8(FF_BALANCE_NOISE_Q4)
@@ -49,7 +49,8 @@ static uint8_t steps_between(int64_t high, int64_t low, unsigned quarters, unsig
     return (uint8_t)steps;
 }
 
-/* The value `below` steps under the top of so many, whose bottom is `low`. */
+/* The value that lies `below` steps under the top of a ladder of `steps` steps from `high` down to
+ * `low`. */
 static int32_t on_ladder(int64_t high, int64_t low, unsigned below, unsigned steps,
                          unsigned quarters)
 {
@@ -57,8 +58,9 @@ static int32_t on_ladder(int64_t high, int64_t low, unsigned below, unsigned ste
     return (int32_t)(below && (below == steps || value < low) ? low : value);
 }
 
-/* How many of `level` steps are of the first of two kinds, spread evenly: each step up changes one
- * of the two by one. */
+/* A ladder mixes `first` steps of one kind and `second` steps of another evenly. Returns how many
+ * of its lowest `level` steps are of the first kind: each step up changes one of the two kinds by
+ * one. */
 static unsigned first_kind(unsigned level, unsigned first, unsigned second)
 {
     unsigned all = first + second;
@@ -70,7 +72,7 @@ static unsigned detail_steps(const ff_balance *balance)
     return (unsigned)balance->c_steps + balance->depth_steps;
 }
 
-/* Which steps of the ladders' kinds two levels stand for. */
+/* What two levels stand for: how many steps of each kind they have climbed. */
 typedef struct place {
     unsigned detail, cap, plane, error;
 } place;
@@ -97,7 +99,7 @@ void ff_balance_get(const ff_balance *balance, ff_balance_knobs *knobs)
     if (finest->measure == FF_MEASURE_DISTANCE)
         knobs->c_q8 = on_ladder(finest->c_q8, desc->c_min_q8, balance->c_steps - c,
                                 balance->c_steps, 1);
-    else /* a ladder of errors stands on its head */
+    else /* the least error is the finest: this ladder is climbed downwards */
         knobs->error_px_q8 = on_ladder(desc->error_px_max_q8, finest->error_px_q8, c,
                                        balance->c_steps, 1);
     knobs->depth_max = (uint8_t)(finest->depth_max - (balance->depth_steps - (detail - c)));
@@ -110,7 +112,7 @@ void ff_balance_get(const ff_balance *balance, ff_balance_knobs *knobs)
                                          at.error, balance->error_steps, ERROR_QUARTERS);
 }
 
-/* Limits that were left out, and limits on the wrong side of the finest. */
+/* Fills in limits that were left out; a limit finer than the finest becomes the finest. */
 static void complete(ff_balance_desc *desc, const ff_quality *finest,
                      const ff_panorama_desc *panorama)
 {
@@ -224,7 +226,7 @@ static int32_t frame_load(const ff_balance *balance)
                : INT16_MIN;
 }
 
-/* 0 when the link says nothing now. */
+/* Measures the link's load. 0 when the link is silent and says nothing about what it can carry. */
 static int link_load(const ff_balance *balance, const ff_balance_sample *sample, int32_t *load_q8)
 {
     uint64_t age_us = (uint64_t)(sample->now_us - balance->link_since_us),
@@ -274,8 +276,9 @@ static int gains_q8(const ff_balance *balance, int which, int load, int from, in
     return sum;
 }
 
-/* Between two levels a load has changed by so much. If that is more than the steps were known to
- * add, now they are known to add as much, in equal parts. */
+/* Between the levels `low` and `high` a load has changed by change_q8. When that is more than the
+ * steps between them were known to add, they are known to add as much from now on, the missing part
+ * shared out equally. */
 static void learn(ff_balance *balance, int which, int low, int high, int load, int change_q8)
 {
     int missing_q8 = change_q8 - gains_q8(balance, which, load, low, high);
@@ -307,7 +310,8 @@ static int relieve(ff_balance *balance, int load, int64_t now_us)
     return 1;
 }
 
-/* As many steps as leave both loads below their budgets, whatever noise there was. */
+/* Raises a level by as many steps as leave both loads below their budgets, whatever noise there
+ * was. */
 static int raise_level(ff_balance *balance, int which, int64_t now_us)
 {
     int from = balance->level[which], to = from;

@@ -14,8 +14,8 @@
  * the larger). Decisions:
  *   relief    a load above 0 by more than NOISE: its level goes down, a step for each quarter of an
  *             octave; or the raise that caused it is undone;
- *   raise     both loads so low that they stay 2 NOISE below 0 by the most that the steps are known
- *             to add: fidelity goes up, else share.
+ *   raise     both loads so low that they stay 2 NOISE below 0 with the most that the steps are
+ *             known to add: fidelity goes up; when it cannot, share does.
  * After a move nothing is measured until it is in force (settled, at least 0.5 s and two round
  * trips, at most 10 s); then a frame's load is taken over 1 s, the link's over 8 s, from new
  * windows. So a move comes after what was asked for by the last one has arrived, and a panorama is
@@ -81,11 +81,12 @@ typedef struct ff_balance {
     /* [level][load][step]: the most a step up adds */
     uint8_t gain_q4[FF_BALANCE_LEVELS][FF_BALANCE_LEVELS][FF_BALANCE_STEPS_MAX];
     int32_t load_q8[FF_BALANCE_LEVELS]; /* log2, as last measured */
-    int32_t frame_most_q8;              /* of the seconds since the link's window began */
+    int32_t frame_most_q8;              /* largest frame's load since the link's window began */
     /* the move last made */
     int64_t moved_us; /* INT64_MIN: none yet */
     uint8_t settled;
-    /* which level + 1 when that was a raise, or relief not yet learned from; else 0 */
+    /* the level moved, + 1, when the last move was a raise, or a relief not yet learned from; else
+     * 0 */
     uint8_t raised, lowered;
     uint8_t moved_from;
     int32_t before_q8[FF_BALANCE_LEVELS];
@@ -94,7 +95,8 @@ typedef struct ff_balance {
     uint64_t frame_sum, bytes_since;
     uint32_t frame_samples;
     int64_t waited_us;
-    /* levels changed; of those, against the direction of the level's last change */
+    /* moves: how often a level changed; turns: how often against the direction of its last change
+     */
     uint32_t moves, turns;
     int8_t direction[FF_BALANCE_LEVELS];
 } ff_balance;

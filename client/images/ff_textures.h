@@ -1,7 +1,7 @@
 /* Images of the ground: a tree of its own depth over the same keys (Planet: linked height and
- * texture trees). A node is drawn with its own image or its nearest held ancestor's. Least lately
- * drawn ones make room. The client's come over the link from coarse to fine (wishes, take), those
- * of the server's renderer from the pack (touch, put).
+ * texture trees). A node is drawn with its own image or its nearest held ancestor's. The image
+ * drawn least lately makes room. A client's images come over the link from coarse to fine (wishes,
+ * take), those of the server's renderer from the pack (touch, put).
  *
  * The owner zeroes the cache and sets the first part; the slots are the owner's memory. */
 #ifndef FF_TEXTURES_H
@@ -33,7 +33,7 @@ typedef struct ff_textures {
     uint32_t stamp, full;
 } ff_textures;
 
-/* One thing wanted: the image that comes next on the way down to a drawn node. */
+/* A wish for an image: the one that comes next on the way down to a drawn node. */
 typedef struct ff_texture_wish {
     ff_key key;
     uint32_t priority;
@@ -50,9 +50,9 @@ uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32
 /* Takes an image in, RGB565, south row first; NULL: there is none, and ground below `key` shows its
  * colours. 1 when the picture may have changed; 0: no room (counted). */
 int ff_textures_put(ff_textures *textures, ff_key key, const uint16_t *texels);
-/* The same, of an answer. */
+/* The same, for an item of the new-data list. */
 int ff_textures_take(ff_textures *textures, const ff_new_item *item);
-/* For an owner whose images come at once (a pack): 1 when this one is held, which is then the last
+/* For an owner whose images come at once (a pack): 1 when this image is held; it is then the last
  * to make room. */
 int ff_textures_touch(ff_textures *textures, ff_key key);
 

@@ -11,9 +11,9 @@ static unsigned texture_rows(unsigned rows)
     return height;
 }
 
-/* The face's rows to RGBA5551, lowest row first, padded upwards; only texels within the column
- * spans are opaque. The padding's first row keeps the colours of the image's top row: filtering
- * mixes them, and black would draw a dark line along the horizon. */
+/* Converts the face's rows to RGBA5551, lowest row first, padded upwards; only texels within the
+ * column spans are opaque. The padding's first row has the colours of the image's top row, because
+ * filtering mixes both: black would draw a dark line along the horizon. */
 static void to_rgba5551(const uint8_t *rgb, unsigned width, unsigned rows, const uint16_t *top,
                         const uint16_t *bottom, unsigned height, uint16_t *out)
 {

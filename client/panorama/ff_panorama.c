@@ -4,9 +4,9 @@
 
 #define ALL_FACES         ((1u << FF_FACE_COUNT) - 1)
 #define RETRY_US          2000000  /* the server was busy */
-#define RETRY_LATER_US    30000000 /* and again and again */
+#define RETRY_LATER_US    30000000 /* after REFUSALS_IN_A_ROW refusals */
 #define REFUSALS_IN_A_ROW 3
-#define TURNS_US          60000000 /* after a turn all faces are wanted for so long */
+#define TURNS_US          60000000 /* for this long after a turn all faces are wanted */
 #define TURN              8192     /* an eighth of a circle */
 #define TURN_WITHIN_US    10000000
 #define LEAD_US_MAX       10000000
@@ -75,8 +75,8 @@ static void measure_lead(ff_panorama *panorama, ff_panorama_set *set, int64_t no
     panorama->lead_us = panorama->lead_us ? (panorama->lead_us + took_us) / 2 : took_us;
 }
 
-/* The set that is coming has all that is in view: it takes over, unless the drawn one is still good
- * and it not yet. */
+/* Lets the set that is coming take over once all its faces in view are here, but not while the
+ * drawn set is still good and the new one is not good yet. */
 static int take_over(ff_panorama *panorama, const c3d_camera *camera, int64_t now_us)
 {
     if (panorama->next < 0) return 0;
@@ -86,7 +86,7 @@ static int take_over(ff_panorama *panorama, const c3d_camera *camera, int64_t no
     if (panorama->active >= 0 && ff_panorama_set_outdated(panorama, next, camera) &&
         !ff_panorama_set_outdated(panorama, &panorama->set[panorama->active], camera))
         return 0;
-    for (unsigned face = 0; face < FF_FACE_COUNT; face++) /* no longer expected: not there */
+    for (unsigned face = 0; face < FF_FACE_COUNT; face++) /* a face not here shows no ground */
         if (!(next->held >> face & 1u))
             ff_panorama_sight_face(&next->sight, face, 1, 0, 0, next->front_wu);
     if (panorama->active >= 0) drop_set(panorama, panorama->active);
@@ -143,7 +143,7 @@ static int refresh(ff_panorama *panorama, ff_requests *requests, const c3d_camer
     ff_request_counts counts;
     ff_requests_get_counts(requests, &counts, NULL);
     if (counts.panoramas_in_flight && !panorama->desc.hold_back)
-        return changed; /* of a set dropped when panoramas were switched off */
+        return changed; /* a set was dropped with panoramas off, but its request is still out */
     begin_set(panorama, camera, motion, now_us);
     return 1;
 }
@@ -167,8 +167,8 @@ int ff_panorama_late(const ff_panorama *panorama, const c3d_camera *camera)
            ff_panorama_set_outdated(panorama, set, camera);
 }
 
-/* Faces of `missing`, the one nearest the view's axis first: found by narrowing the view to its
- * middle. */
+/* Lists the missing faces, the one in the middle of the view first: it is found by narrowing the
+ * view to its middle. */
 static void list_faces(ff_get_panorama *request, unsigned missing, const c3d_camera *camera)
 {
     c3d_camera narrow = *camera;

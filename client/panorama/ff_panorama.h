@@ -7,12 +7,13 @@
  * comes: so it serves twice as long as one taken where the viewer is. It is asked for as long
  * before the drawn one is outdated as it will need to come.
  *
- * Faces in view are asked for first; when none of them is missing those that a viewer who turns
- * will soon see, and all for one who has turned (by an eighth of a circle within seconds, a minute
- * ago at most). A face the server found without far ground is not asked for again for that O.
- * Unless hold_back says otherwise at most one panorama request is out, and no newer O is asked for
- * while one is coming. A superseded request is cancelled. A set left behind is neither drawn nor
- * waited for: until there is another one the client draws its own ground round the viewer. */
+ * Faces in view are asked for first. When none of them is missing, the client asks for faces that a
+ * viewer who turns will soon see, and for all faces when the viewer has turned lately (by an eighth
+ * of a circle within seconds, at most a minute ago). A face that the server found without far
+ * ground is not asked for again for that O. Unless hold_back says otherwise, at most one panorama
+ * request is out, and no newer O is asked for while a set is coming. A superseded request is
+ * cancelled. A set left behind is neither drawn nor waited for: until there is another set, the
+ * client draws its own ground round the viewer. */
 #ifndef FF_PANORAMA_H
 #define FF_PANORAMA_H
 
@@ -26,9 +27,9 @@ extern const uint8_t ff_panorama_built; /* 0: left out of this build */
 #define FF_PANORAMA_MESHES (2 * FF_FACE_COUNT)
 
 typedef struct ff_panorama_set {
-    int32_t position_wu[3];
-    int32_t front_wu; /* z_front_s it was asked with */
-    ff_key key;       /* of its requests */
+    int32_t position_wu[3]; /* O */
+    int32_t front_wu;       /* the front with which it was asked for */
+    ff_key key;             /* of its requests */
     int64_t asked_us;
     uint8_t ready;               /* its faces in view are here, or were */
     uint8_t held, empty, failed; /* bit per enum ff_face_name */
@@ -37,7 +38,7 @@ typedef struct ff_panorama_set {
     uint16_t height[FF_FACE_COUNT]; /* rows of the texture */
     /* lowest (UP: southernmost) coordinate of the image, face units */
     int16_t low[FF_FACE_COUNT];
-    ff_panorama_sight sight; /* of the faces here; on its way: what is expected */
+    ff_panorama_sight sight; /* of its faces; expected, while the set is on its way */
 } ff_panorama_set;
 
 typedef struct ff_panorama {
@@ -45,18 +46,18 @@ typedef struct ff_panorama {
     c3d_strip quad;
     ff_panorama_desc desc;
     uint16_t face_size;   /* what memory allows; 0: no panoramas in this block */
-    int32_t ground_wu[2]; /* lowest and highest of the terrain */
-    int8_t active, next;  /* of set[]; -1: none */
-    /* the active one, -1: none or left behind, as after a long flight without a link */
+    int32_t ground_wu[2]; /* lowest and highest ground of the terrain */
+    int8_t active, next;  /* index in set[] of the drawn and the coming set; -1: none */
+    /* the active set; -1: none, or left behind, as after a long flight without a link */
     int8_t shown;
     uint8_t refusals; /* in a row */
     ff_panorama_set set[2];
     uint32_t serial;
-    int64_t retry_us; /* not before */
+    int64_t retry_us; /* nothing is asked for before this time */
     int64_t lead_us;  /* mean time that a set needs to come */
     int32_t yaw;      /* the camera's at yaw_us: some seconds ago, or at its last turn */
     int64_t yaw_us;
-    int64_t turns_until_us; /* who turned lately may turn again */
+    int64_t turns_until_us; /* until then all faces are wanted: the viewer may turn again */
     uint32_t faces, faces_empty;
 } ff_panorama;
 
@@ -81,16 +82,17 @@ void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const 
                       unsigned soon, int64_t now_us);
 /* Takes in a face or a refusal; 1 when it belongs to a set still wanted. */
 int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now_us);
-/* The set drawn is outdated, the next one still coming: more panoramas are wanted than come. */
+/* 1 when the drawn set is outdated and the next one still coming: more panoramas are wanted than
+ * come. */
 int ff_panorama_late(const ff_panorama *panorama, const c3d_camera *camera);
 /* ff_panorama_plan.c. Whether a set is outdated for this camera, or was taken for another back
  * plane. */
 int ff_panorama_set_outdated(const ff_panorama *panorama, const ff_panorama_set *set,
                              const c3d_camera *camera);
-/* Whether the set that is drawn will be when another one could be here. */
+/* Whether the drawn set will be outdated by the time another one could be here. */
 int ff_panorama_outdated_soon(const ff_panorama *panorama, const c3d_camera *camera,
                               const ff_motion *motion);
-/* Where a set asked for now is best taken, and what it will show there. */
+/* Fills in where a set asked for now is best taken, and what it is expected to show there. */
 void ff_panorama_plan(const ff_panorama *panorama, const c3d_camera *camera,
                       const ff_motion *motion, ff_panorama_set *set);
 void ff_panorama_draw(const ff_panorama *panorama, int32_t near_wu);

@@ -14,8 +14,8 @@
 #include "ff_panorama_rules.h"
 
 #define PATCHES 16 /* along a face */
-/* A larger z is taken to be this: products of two lengths then fit 64 bits, and ground that is
- * taken to be nearer than it is comes out as off by more, never by less. */
+/* z is limited to this: products of two lengths then fit 64 bits, and ground that is taken to be
+ * nearer than it is comes out as off by more, never by less. */
 #define Z_WU_MAX (1 << 30)
 
 typedef struct join {
@@ -84,7 +84,7 @@ static int patch_is_off(const join *j, const corner at[4])
     if (not_in_window(at)) return 0;
     for (int i = 0; i < 4; i++) {
         const int64_t *p = at[i].eye_wu;
-        /* eye space is whole wu */
+        /* 8 z more: eye space is rounded to whole wu */
         way[i] = c3d_length64(p[0] * m[2] - m[0] * p[2], p[1] * m[2] - m[1] * p[2], 0) +
                  8 * j->z_wu;
         deep &= p[2] >= j->least_wu;
@@ -98,8 +98,8 @@ static int patch_is_off(const join *j, const corner at[4])
     return depth_least_wu <= 0 || (off + 1) * j->camera->focal_q8 >= depth_least_wu * j->error_q8;
 }
 
-/* The face forward along an axis, from low to high along `up` and all of it along the third
- * axis. */
+/* 1 when the face that looks along `axis` is off somewhere: between low and high along the axis
+ * `up`, over its whole length along the third axis. */
 static int face_is_off(const join *j, int axis, int sign, int up, int64_t low, int64_t high)
 {
     int across = 3 - axis - up;

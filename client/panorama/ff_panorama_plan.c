@@ -1,6 +1,6 @@
-/* Where is the next set taken, and when is it asked for? Both by the motion: Hybrid takes it where
- * the viewer is when the old one is outdated, but then half of the ground over which it is good
- * lies behind, and it is too late by the time of a round trip. */
+/* Where is the next set taken, and when is it asked for? The viewer's motion decides both. Hybrid
+ * takes a set where the viewer is when the old one is outdated: but then half of the ground over
+ * which the set is good lies behind, and the set comes too late by a round trip. */
 #include "ff_panorama.h"
 
 #include <string.h>
@@ -38,8 +38,8 @@ int ff_panorama_outdated_soon(const ff_panorama *panorama, const c3d_camera *cam
            ff_panorama_set_outdated(panorama, set, &then);
 }
 
-/* What another set will show: on every side as much as the drawn one does on any; without one, all
- * that the terrain has. */
+/* Fills in what another set is expected to show: on each upright face as much as the drawn set
+ * shows on any of them; without a drawn set, all that the terrain has. */
 static void expect(const ff_panorama *panorama, ff_panorama_set *set)
 {
     int32_t z_wu = set->front_wu, low_wu = INT32_MAX, high_wu = INT32_MIN;
@@ -58,8 +58,7 @@ static void expect(const ff_panorama *panorama, ff_panorama_set *set)
     }
 }
 
-/* 1 when a set taken where the viewer will be `ahead_us` from now is good from the time on when it
- * is here. */
+/* 1 when a set taken where the viewer will be `ahead_us` from now is good as soon as it is here. */
 static int is_good(const ff_panorama *panorama, const c3d_camera *camera, const c3d_camera *then,
                    const ff_motion *motion, int64_t ahead_us, ff_panorama_set *set)
 {
@@ -67,7 +66,7 @@ static int is_good(const ff_panorama *panorama, const c3d_camera *camera, const 
     for (int axis = 0; axis < 2; axis++) {
         int64_t away_wu = (int64_t)set->position_wu[axis] - camera->pos_wu[axis];
         if (away_wu > set->front_wu / 4 || away_wu < -set->front_wu / 4)
-            return 0; /* the client's own ground lies round it */
+            return 0; /* O is the middle of the client's own ground: it stays near the viewer */
     }
     expect(panorama, set);
     return !ff_panorama_set_outdated(panorama, set, then);

@@ -26,7 +26,7 @@ int ff_panorama_left_behind(const int32_t viewer_wu[3], const int32_t taken_wu[3
     return 0;
 }
 
-/* Cones with their tip in the camera, as four rays: world directions of any length below 2^33. */
+/* A view as four rays from the camera: world directions of any length below 2^33. */
 typedef struct view_rays {
     int64_t ray[4][3];
 } view_rays;

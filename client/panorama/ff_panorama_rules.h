@@ -23,9 +23,9 @@ typedef struct ff_face_axis {
 /* by enum ff_face_name: the world axis a face looks along */
 extern const ff_face_axis ff_face_axes[FF_FACE_COUNT];
 
-/* Between which heights above O, on the cube of half-edge z round it, a set shows ground: by enum
- * ff_face_name; low > high: in none. Of the upper and the lower face only whether: they are taken
- * whole. */
+/* Sight: between which heights above O each face of a set shows ground, on the cube of half-edge z
+ * round O; by enum ff_face_name; low > high: the face shows none. Upper and lower face are taken
+ * whole when they show any. */
 typedef struct ff_panorama_sight {
     int32_t low_wu[FF_FACE_COUNT], high_wu[FF_FACE_COUNT];
 } ff_panorama_sight;
@@ -45,16 +45,16 @@ int ff_panorama_outdated(const c3d_camera *camera, const int32_t taken_wu[3],
 /* What a set may show of a terrain whose lowest and highest ground is ground_wu. */
 void ff_panorama_sight_terrain(ff_panorama_sight *sight, const int32_t taken_wu[3],
                                const int32_t ground_wu[2], int32_t z_wu);
-/* What a face shows whose image is these rows of it; row_count 0: nothing. All ground beyond z is
- * seen from O between the image's uppermost and lowest texel, what is hidden behind other ground
- * too; one row is added for a summit between two texels. */
+/* What a face shows whose image has these of its rows; row_count 0: nothing. Between the image's
+ * uppermost and lowest texel lies all ground beyond z as seen from O, also what other ground hides;
+ * one row is added for a summit between two texels. */
 void ff_panorama_sight_face(ff_panorama_sight *sight, unsigned face, unsigned face_size,
                             unsigned top_row, unsigned row_count, int32_t z_wu);
 
 /* 1 when the viewer has left a panorama behind, and with it the client's own ground, the box of z
- * round `taken_wu`: more than half of z along an axis. By then what comes nearer is half the window
- * from its place (forwards, |OO'| = z / 2), and half of the box ahead is gone: ground round the
- * viewer alone is better. */
+ * round `taken_wu`: by more than half of z along an axis. By then a point ahead may be shown half
+ * the window from its place (the rule forwards with |OO'| = z / 2), and half of the box ahead is
+ * used up: ground round the viewer, without a panorama, is better. */
 int ff_panorama_left_behind(const int32_t viewer_wu[3], const int32_t taken_wu[3], int32_t z_wu);
 
 /* Bit per enum ff_face_name the view pyramid touches: conservative, a face too many at most. */

@@ -21,8 +21,8 @@ static int has_leaf_family(const ff_tree *tree, const ff_node *node)
     return 1;
 }
 
-/* What the children of `node` are worth now. Not wanted ones are cached: worth their own 1/f, never
- * more than 1. */
+/* What the children of `node` are worth now. Children that nobody wants are a cache, worth 1/f of
+ * `node` and never more than 1. */
 static uint32_t split_worth(const ff_tree *tree, const ff_node *node)
 {
     if (node->flags & FF_NODE_WANTED) return node->value;
@@ -31,8 +31,9 @@ static uint32_t split_worth(const ff_tree *tree, const ff_node *node)
     return ff_tile_active(tree, ff_key_tile(node->key)) ? value : value >> IDLE_SHIFT;
 }
 
-/* A leaf family is also worth what its members are wanted for: their refinements would be of no use
- * without them. */
+/* What a leaf family, the four children of `parent`, is worth: the value of splitting `parent`, or
+ * of splitting a member when that is more, because a member's refinement is of no use without it.
+ */
 static uint32_t family_worth(const ff_tree *tree, const ff_node *parent)
 {
     uint32_t worth = split_worth(tree, parent);

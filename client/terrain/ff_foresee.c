@@ -3,8 +3,9 @@
  * if the camera stood there; the tree itself stays as it is. */
 #include "ff_tree_local.h"
 
-#define TILES_LOOKED_AT \
-    256 /* of a window's new tiles: tiny tiles would otherwise cost more than they bring */
+/* How many tiles of the window ahead are looked at: more tiny tiles would cost more than they
+ * bring. */
+#define TILES_LOOKED_AT 256
 
 typedef struct foresight {
     ff_tree ahead;
@@ -25,7 +26,7 @@ static void note(foresight *f, ff_key key, int refinement, uint32_t priority)
     f->list[at] = (ff_wish){ .key = key, .refinement = (uint8_t)refinement, .priority = priority };
 }
 
-/* Seen from there, and not from here. */
+/* 1 when a box is seen from there, and not from here. */
 static int comes_into_view(const ff_tree *tree, const foresight *f, const ff_box *here,
                            const ff_box *there)
 {
@@ -33,7 +34,7 @@ static int comes_into_view(const ff_tree *tree, const foresight *f, const ff_box
            (ff_box_beyond_view(tree, here) || !ff_box_in_view(tree, here));
 }
 
-/* Tiles that the window there will see. */
+/* Notes roots that are not held, of tiles that will come into view. */
 static void foresee_roots(const ff_tree *tree, foresight *f)
 {
     const ff_window *window = &f->ahead.window;
@@ -51,7 +52,8 @@ static void foresee_roots(const ff_tree *tree, foresight *f)
         }
 }
 
-/* As many victims as the pool would give up for a family worth `limit`: see ff_evict.c. */
+/* 1 when the pool would find room for the children of `node`: four free slots, or a victim that is
+ * worth less (ff_evict.c). */
 static int takes_room(const ff_tree *tree, foresight *f, const ff_node *node)
 {
     if (f->free >= 4) {
@@ -90,8 +92,8 @@ static void foresee_cut(const ff_tree *tree, foresight *f)
             foresee_children_of(tree, f, tree->drawn[i].node);
 }
 
-/* Tiles held that will come into the window. As bare roots they would keep the ground beside them
- * coarse until they are refined. */
+/* Notes refinements of held tiles that will come into the window of tiles. As bare roots they would
+ * keep the ground beside them coarse until they are refined. */
 static void foresee_tiles(const ff_tree *tree, foresight *f)
 {
     uint32_t stack[3 * FF_LEVELS_MAX + 1];

@@ -7,7 +7,7 @@ static int64_t floor_div(int64_t a, int64_t b)
     return a % b < 0 ? quotient - 1 : quotient;
 }
 
-/* Bounds of all ground, when it comes to roots that have not arrived. */
+/* Lowest and highest ground of the terrain: all that is known of roots that have not arrived. */
 static void terrain_z(const ff_terrain_info *info, int64_t *lo, int64_t *hi)
 {
     int64_t slack = ff_steps_wu(info, info->max_error);

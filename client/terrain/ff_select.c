@@ -27,7 +27,7 @@ static int32_t within(int32_t value, int32_t lo, int32_t hi)
     return value < lo ? lo : value > hi ? hi : value;
 }
 
-/* Settings come from outside: brought into the range the arithmetic is made for. */
+/* Takes view and quality, which come from outside, into the range the arithmetic is made for. */
 static void set_view(ff_tree *tree, const ff_view *view, const ff_quality *quality)
 {
     tree->view = *view;
@@ -40,7 +40,7 @@ static void set_view(ff_tree *tree, const ff_view *view, const ff_quality *quali
     ff_pyramid_make(tree);
 }
 
-/* Flags as they were before any selection. */
+/* Sets all flags back to what they were before any selection. */
 static void forget_flags(ff_tree *tree)
 {
     for (uint32_t slot = 0; tree->dropped && slot < tree->node_count; slot++)
@@ -78,7 +78,8 @@ static uint32_t push_children(ff_tree *tree, const ff_node *node, uint32_t count
     return count;
 }
 
-/* The measure alone, without regard to neighbours: above FF_VALUE_ONE the node wants to split. */
+/* The value by the measure alone, without regard to neighbours; 0: the node does not want to
+ * split. */
 static uint32_t own_value(ff_tree *tree, const ff_node *node)
 {
     uint32_t next = ff_key_level(node->key) + 1;
@@ -111,8 +112,8 @@ static void want_by_measure(ff_tree *tree)
     }
 }
 
-/* Level by level from the roots, so that all decisions about a level are made before the next one
- * looks at them. Leaves the leaves of the cut in `order`. */
+/* Decides who splits, level by level from the roots, so that all decisions about a level are made
+ * before the next level looks at them. The leaves of the cut stay behind in `order`. */
 static void split_cut(ff_tree *tree)
 {
     uint32_t count = push_active_roots(tree), leaves = 0;
@@ -162,7 +163,7 @@ static void count_drawn(ff_tree *tree, const ff_drawn *drawn, uint64_t distance)
     tree->stats.stitched += drawn->coarser != 0;
 }
 
-/* What is seen, nearest first; then what is not. */
+/* Lists the cut: first the nodes that are seen, nearest first, then the others. */
 static void list_cut(ff_tree *tree)
 {
     uint32_t seen = 0, unseen = 0;

@@ -6,10 +6,10 @@
 #include <stddef.h>
 
 #define SLOPE_MAX_Q8 (64 << 8)
-#define ROCK_FROM_Q8                                                                             \
-    160 /* steepness (rise over run) at which ground begins to turn to rock, and where it is all \
-           rock */
-#define ROCK_TO_Q8 420
+/* Steepness (rise over run) at which ground begins to turn to rock, and from which it is all rock.
+ */
+#define ROCK_FROM_Q8 160
+#define ROCK_TO_Q8   420
 
 static const uint8_t ramp[][3] = {
     { 86, 125, 70 },  { 118, 148, 82 },  { 164, 168, 100 }, { 196, 172, 112 }, { 178, 140, 96 },

@@ -20,8 +20,8 @@ static size_t side_index(enum ff_side side, uint32_t along, uint32_t depth, uint
     }
 }
 
-/* One more row beyond a side: the neighbour's where one of the same level is held, else so that the
- * slope at the rim becomes that of the first two cells. */
+/* Adds a row beyond a side: the neighbour's first row inside when a neighbour of the same level is
+ * held, else heights that give the rim the slope of the first two cells. */
 static void frame_side(const ff_tree *tree, const ff_drawn *drawn, enum ff_side side,
                        uint16_t *framed)
 {

@@ -54,7 +54,7 @@ struct ff_tree {
     uint32_t *hash;
     uint32_t *order; /* node_count slots: queue of a selection */
     uint64_t *sort;  /* 2 * node_count */
-    /* node_count: the cut, its visible part first; the rest without `coarser` until someone asks */
+    /* node_count: the cut, its visible part first; the rest gets `coarser` only in ff_tree_cut */
     ff_drawn *drawn;
     ff_wish *wish;
     uint16_t *refined; /* grid of four children */
@@ -64,7 +64,7 @@ struct ff_tree {
     ff_view asked_view, view; /* of the last selection: as given, and brought into range */
     ff_quality asked_quality, quality;
     uint8_t has_view, dirty;
-    /* nodes have gone since the last selection: lists of wanted ones are broken */
+    /* 1: nodes have gone since the last selection, so the lists of wanted nodes are broken */
     uint8_t dropped;
     ff_window window;
     /* inward normals of the view pyramid, largest component below 2^28 */
@@ -89,14 +89,14 @@ static inline int ff_node_has_children(const ff_node *node)
     return node->child[0] != FF_SLOT_NONE;
 }
 
-#define FF_COARSER_UNKNOWN 0xFFu /* of ff_drawn.coarser, for what is not seen */
+#define FF_COARSER_UNKNOWN 0xFFu /* ff_drawn.coarser of a node that is not seen */
 
 /* ff_pool.c */
 uint32_t ff_tree_find(const ff_tree *tree, ff_key key);
 /* The node itself or its nearest held ancestor, or FF_SLOT_NONE. */
 uint32_t ff_tree_find_nearest(const ff_tree *tree, ff_key key);
 uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent);
-/* The colours of nodes beside a new one change: what their users made of them is made anew. */
+/* The colours of nodes beside a new node change: forgets what their users made of them. */
 void ff_tree_reshade_beside(ff_tree *tree, ff_key key);
 void ff_tree_drop_children(ff_tree *tree, ff_node *parent);
 void ff_tree_drop_root(ff_tree *tree, ff_node *root);
@@ -109,8 +109,8 @@ int ff_evict_for_root(ff_tree *tree, uint32_t tile);
 /* Sort keys (value << FF_SLOT_BITS | slot) of all that may be dropped, unsorted: parents of leaf
  * families, idle roots. */
 uint32_t ff_evict_candidates(const ff_tree *tree, uint64_t *keys);
-/* What children of `node` may drive out: all that is worth less than this. Not wanted ones spare
- * the cache, up to sigma. */
+/* The children of `node` may drive out all that is worth less than this. Children that nobody wants
+ * drive out only what is worth less than 1/sigma: so much is cached. */
 uint32_t ff_evict_limit(const ff_tree *tree, const ff_node *node);
 
 /* ff_measure.c */
@@ -145,9 +145,9 @@ void ff_wish_make(ff_tree *tree);
 /* ff_sort.c */
 void ff_sort_keys(uint64_t *keys, uint32_t count);
 
-/* ff_strips.c: triangles of one side, vertex = row * (n+1) + column, from its one end to the other,
- * counter-clockwise; the first vertex of a triangle is the one the next has not. Returns how many
- * (at most 2n). */
+/* ff_strips.c: triangles of one side from its one end to the other, counter-clockwise, with vertex
+ * = row * (n+1) + column; the first vertex of a triangle is the one that the next triangle lacks.
+ * Returns how many there are (at most 2n). */
 unsigned ff_side_triangles(unsigned node_log2, enum ff_side side, unsigned difference,
                            uint16_t triangle[][3]);
 

@@ -42,7 +42,7 @@ static int64_t magnitude(int64_t value) { return value < 0 ? -value : value; }
 
 static int64_t larger(int64_t a, int64_t b) { return a > b ? a : b; }
 
-/* The nearest corner to the inside, or one beyond it, is outside by more than `slack`. */
+/* 1 when the box's innermost corner lies outside the plane by more than `slack`. */
 static int beyond_plane(const int32_t plane[3], const ff_box *box, int64_t slack)
 {
     int64_t height = 0;

@@ -64,8 +64,8 @@ static void scan_column(root_scan *scan, int64_t x, int64_t y_first, int64_t y_l
         scan_tile(scan, x, y);
 }
 
-/* Missing roots of the window in square rings round its middle, from the inside; into `sort`, those
- * in view first. */
+/* Looks for missing roots in the window of tiles, in square rings round its middle from the inside,
+ * and puts them into `sort`, those in view first. */
 static uint32_t missing_roots(ff_tree *tree)
 {
     const ff_window *window = &tree->window;
@@ -89,7 +89,7 @@ static uint32_t missing_roots(ff_tree *tree)
     return scan.found;
 }
 
-/* How many roots of the window are held, and how far the farthest of them is. */
+/* How many roots in the window of tiles are held, and how far the farthest of them is. */
 static uint32_t active_roots(const ff_tree *tree, int64_t *farthest)
 {
     uint32_t count = 0;
@@ -134,7 +134,7 @@ static void wish_roots(ff_tree *tree)
 
 /* ---- refinements ---- */
 
-/* Wanted nodes without children into `sort`, best first. */
+/* Puts wanted nodes without children into `sort`, the most valuable first. */
 static uint32_t missing_children(ff_tree *tree)
 {
     uint32_t count = 0;
@@ -156,8 +156,8 @@ static uint32_t missing_children(ff_tree *tree)
     return count;
 }
 
-/* Room that delivering the wishes in order would find: free slots, then what is worth less than
- * they are. */
+/* The room that delivering the wishes in order would find: free slots, then victims worth less than
+ * the wish. */
 typedef struct room {
     uint64_t *victim;
     uint32_t victims, next, free;

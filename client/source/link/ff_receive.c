@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-/* The same ground, sample for sample: what is held stays valid. */
+/* 1 for the same ground, sample for sample: what the client holds stays valid. */
 static int same_terrain(const ff_terrain_info *a, const ff_terrain_info *b)
 {
     return a->checksum == b->checksum && a->node_log2 == b->node_log2 &&
@@ -29,7 +29,7 @@ static int take_welcome(ff_stream *stream, const ff_welcome *welcome)
     return FF_OK;
 }
 
-/* The request that an answer of this type belongs to: one that waits for it. */
+/* Finds the request that an answer belongs to: it must wait for an answer of this type. */
 static int find_request(ff_stream *stream, uint16_t id, unsigned type, ff_request *request)
 {
     if (!ff_requests_answered(stream->intake->requests, id, request)) return FF_ERR_FORMAT;
@@ -72,7 +72,7 @@ static int take_failed(ff_stream *stream, uint16_t id, int error)
     return rc == FF_OK ? ff_intake_failed(stream->intake, &request, error) : rc;
 }
 
-/* FF_OK, FF_ERR_AGAIN when the new-data list is full, or what is wrong. */
+/* Takes in a message. FF_OK, FF_ERR_AGAIN when the new-data list is full, or another error. */
 static int take(ff_stream *stream, const ff_message *message, uint32_t bytes, int64_t now_us)
 {
     if (message->type == FF_MSG_GOODBYE) return FF_ERR_CLOSED;
@@ -90,8 +90,8 @@ static int take(ff_stream *stream, const ff_message *message, uint32_t bytes, in
     }
 }
 
-/* A legal message too long for our buffer: its request fails, its bytes pass by unread. FF_OK when
- * it is not that. */
+/* When a legal message is too long for the receive buffer, its request fails and its bytes pass by
+ * unread (stream->skip). FF_OK also for a message that is just not complete yet. */
 static int take_oversize(ff_stream *stream, uint32_t at)
 {
     const uint8_t *bytes = stream->recv + at;

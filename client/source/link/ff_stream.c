@@ -7,10 +7,10 @@
 #define CONNECT_US_MAX     30000000
 #define PING_AFTER_US      60000000 /* far below the server's idle limit */
 #define RECEIVE_ROUNDS_MAX 16       /* a step stays short, whatever the link brings */
-#define PATIENCE_MAX                                                                           \
-    4 /* time-outs grow twofold so often while no answer has ever come: the link may be slower \
-         than thought */
-#define PATIENCE_ROUND_TRIPS 4 /* and are at least so long when one has */
+/* While no answer has ever come, the link may be slower than thought: the time-out doubles up to
+ * PATIENCE_MAX times. Later it is at least PATIENCE_ROUND_TRIPS round trips. */
+#define PATIENCE_MAX         4
+#define PATIENCE_ROUND_TRIPS 4
 
 void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsigned in_flight_max,
                     uint32_t answer_timeout_ms, uint8_t *recv, uint32_t recv_bytes)
@@ -60,8 +60,8 @@ void ff_stream_say(ff_stream *stream, int quiet, int no_prefetch)
     sys_mutex_unlock(&stream->intake->requests->mutex);
 }
 
-/* The connection is of no more use. Half-received messages and unsent bytes are dropped, what was
- * asked is queued again. */
+/* Closes a connection that is of no more use. Half-received messages and unsent bytes are dropped,
+ * requests without an answer are queued again. */
 static void give_up(ff_stream *stream, int64_t now_us)
 {
     stream->io->close(stream->io->state);
@@ -167,7 +167,8 @@ static void encode_request(ff_stream *stream, const ff_request *request)
     append(stream, &message);
 }
 
-/* Requests into the send buffer, as many as window and buffer take: they leave in one piece. */
+/* Puts requests into the send buffer, as many as the link's window and the buffer take, so that
+ * they leave in one piece. */
 static int ask(ff_stream *stream, int64_t now_us)
 {
     ff_requests *requests = stream->intake->requests;
@@ -195,7 +196,7 @@ static int ask(ff_stream *stream, int64_t now_us)
         moved = 1;
     }
     sys_mutex_lock(&requests->mutex);
-    stream->link.window_full |= requests->counts.queued != 0; /* more would have gone */
+    stream->link.window_full |= requests->counts.queued != 0; /* more requests would have gone */
     sys_mutex_unlock(&requests->mutex);
     return moved;
 }
@@ -217,7 +218,7 @@ static int outstanding(ff_stream *stream)
     return counts.in_flight != 0;
 }
 
-/* Bytes of the send buffer onto the link. FF_OK or FF_ERR_CLOSED. */
+/* Sends what the link takes of the send buffer. FF_OK or FF_ERR_CLOSED. */
 static int flush(ff_stream *stream, int64_t now_us, int *moved)
 {
     if (!stream->send_count) return FF_OK;
@@ -279,7 +280,7 @@ static int link_step(ff_stream *stream, int64_t now_us)
     int rc = receive(stream, now_us, &moved);
     if (rc == FF_OK && stream->state == FF_STREAM_UP) {
         if (!outstanding(stream) && !stream->awaiting)
-            stream->heard_us = now_us; /* nothing was owed until now */
+            stream->heard_us = now_us; /* no answer was owed until now */
         moved |= ask(stream, now_us);
         keep_alive(stream, now_us);
     }

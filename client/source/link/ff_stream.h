@@ -3,12 +3,12 @@
  * go through a sys_stream, decoded answers leave through the new-data list, requests come out of
  * the request queue. Nothing here knows the tree or a graphics API.
  *
- *   CONNECTING --connected--> GREETING --WELCOME of a new terrain--> WELCOMED --ff_stream_accept-->
- *       UP
- *                                      --WELCOME of the terrain
- *                                          held-------------------------------> UP
- *   any --closed, nonsense or silent too long--> DOWN --after 0.5, 1, 2 .. 30 s--> CONNECTING;  no
- *       way to reconnect: DEAD
+ *   CONNECTING --connected--> GREETING --WELCOME, new terrain----> WELCOMED --ff_stream_accept-->
+ * UP
+ *                                      --WELCOME, terrain held--------------------------------> UP
+ *   any state  --closed, nonsense or silent too long--> DOWN --after 0.5, 1, 2 .. 30 s-->
+ * CONNECTING
+ *              --the same, and no way to reconnect----> DEAD
  */
 #ifndef FF_STREAM_H
 #define FF_STREAM_H
@@ -29,7 +29,7 @@ enum ff_stream_state {
     FF_STREAM_DEAD
 };
 
-/* What the main thread may see and say; guarded by the request queue's lock. */
+/* What the main thread reads of the worker, and tells it; guarded by the request queue's lock. */
 typedef struct ff_stream_shared {
     enum ff_stream_state state;
     uint32_t received; /* bytes of messages that have not come whole yet */
@@ -70,8 +70,8 @@ void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsign
                     uint32_t answer_timeout_ms, uint8_t *recv, uint32_t recv_bytes);
 /* Sends, receives, decodes. 1 when anything moved. */
 int ff_stream_step(ff_stream *stream, int64_t now_us);
-/* The pools for the WELCOMEd terrain stand (ok), or it cannot be held: then the connection is given
- * up. Not while stepping. */
+/* Says that the pools for the terrain of WELCOME are ready (ok), or that the terrain does not fit:
+ * then the connection is given up. Not while stepping. */
 void ff_stream_accept(ff_stream *stream, int ok);
 /* Forgets the terrain held and connects anew at once. Not while stepping. */
 void ff_stream_restart(ff_stream *stream);
