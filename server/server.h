@@ -19,7 +19,7 @@ typedef struct server {
     uint16_t port;
     server_channels channels;
     server_counters *worker_counters, *renderer_counters;
-    server_job *renderer_job; /* shared memory: what each renderer is at; serial 0: nothing */
+    server_job *renderer_job; /* shared memory: the job each renderer is at; serial 0: none */
     int ready_fd;             /* a child writes one byte when it is at work */
     int master_pid;
 } server;
@@ -29,15 +29,15 @@ enum { SERVER_EXIT_CANNOT_START = 3 };
 
 /* 1 once SIGTERM or SIGINT has come, or the master is gone. */
 int server_stopping(const server *shared);
-/* Handlers of SIGTERM and SIGINT; no SIGPIPE. */
+/* Installs handlers of SIGTERM and SIGINT, and ignores SIGPIPE. */
 void server_signals_begin(void);
-/* Children: signals, death with the master. */
+/* Begins a child: its signals, and its death with the master. */
 void server_child_begin(const server *shared);
 void server_child_ready(const server *shared);
 /* One line on stderr: "farfield-server: ...". */
 void server_complain(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* Run until stopped; exit status. */
+/* Each runs until it is stopped, and returns an exit status. */
 int server_worker_run(server *shared, unsigned number);
 int server_renderer_run(server *shared, unsigned number);
 int server_master_run(server *shared);

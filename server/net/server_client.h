@@ -36,10 +36,10 @@ typedef struct server_client {
 int server_client_open(server_client *client, int fd, const ff_session_desc *desc, int64_t now_us);
 void server_client_close(server_client *client);
 
-/* poll()'s events it waits for. */
+/* The events of poll() that the client waits for. */
 short server_client_events(const server_client *client);
-/* Receives, answers and sends what can be, and notices silence and lateness; state CLOSED when it
- * is done with. */
+/* Receives, answers and sends what is possible now, and notices silence and lateness. Afterwards
+ * the state is CLOSED when the connection is done with. */
 void server_client_step(server_client *client, int readable, int64_t now_us);
 /* Says GOODBYE with `reason` and closes in a while. */
 void server_client_end(server_client *client, int reason, int64_t now_us);

@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #define CHILDREN_MAX     (SERVER_WORKERS_MAX + SERVER_RENDERERS_MAX)
-#define YOUNG_US         5000000 /* who dies younger is replaced later and later */
+#define YOUNG_US         5000000 /* a child that dies younger is replaced later and later */
 #define BACKOFF_FIRST_US 100000
 #define BACKOFF_LAST_US  5000000
 #define STOP_PATIENCE_US 5000000
@@ -78,7 +78,7 @@ static void schedule(child *c, int64_t now_us)
     c->pid = 0;
 }
 
-/* What a dead renderer was at has failed: its worker need not wait for it. */
+/* Fails the job that a dead renderer was at, so that its worker need not wait for it. */
 static void fail_job(master *m, unsigned renderer)
 {
     static const uint8_t no_message[1];
@@ -106,7 +106,7 @@ static void reap(master *m)
     for (pid_t pid; (pid = waitpid(-1, &status, WNOHANG)) > 0;) bury(m, pid, status);
 }
 
-/* Until a signal, news from a child, or somebody's time to be replaced. */
+/* Waits for a signal, news from a child, or the time to replace a child. */
 static void wait_for_news(master *m)
 {
     int64_t now_us = sys_time_us(), until_us = now_us + 60000000;

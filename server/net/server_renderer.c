@@ -47,7 +47,7 @@ static void serve_jobs(server *shared, unsigned number, ff_panorama_renderer *re
         int rc = server_renderer_face(renderer, &job.face, &shared->renderer_counters[number], face,
                                       SERVER_FACE_BYTES);
         server_result_send(&shared->channels, &job, number, face, rc, RESULT_WAIT_MS);
-        /* not before it is sent: killed in between, the master speaks for it */
+        /* cleared only now: when this process is killed before, the master answers for it */
         shared->renderer_job[number].serial = 0;
     }
 }

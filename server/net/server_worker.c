@@ -110,7 +110,7 @@ static void take_results(worker *w)
     }
 }
 
-/* Finds the client's next face something to draw it. 0: the queue is full. */
+/* Gives the client's next face to somebody who draws it; 0 when the queue of jobs is full. */
 static int place_job(worker *w, server_client *client)
 {
     if (client->job_state == SERVER_JOB_NONE &&
@@ -138,8 +138,8 @@ static int place_job(worker *w, server_client *client)
     return 1;
 }
 
-/* In turn, so that one client's six faces do not go before another's first. Returns 0 when the
- * queue is full. */
+/* Takes clients in turn, so that one client's six faces do not go before another's first. Returns 0
+ * when the queue of jobs is full. */
 static int place_jobs(worker *w)
 {
     for (unsigned i = 0; i < w->count; i++) {

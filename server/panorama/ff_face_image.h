@@ -24,9 +24,9 @@ typedef struct ff_face_spans {
 /* Spans of ground in a size by size picture, RGB888, top row first. */
 void ff_face_find_spans(const uint8_t *rgb, uint32_t size, ff_face_spans *spans);
 
-/* Lowers the spans' lower ends by a pixel, and to those beside them: there the near plane cuts
- * ground that the client draws itself, in front, and rounding must not leave a gap between the
- * two. */
+/* Lowers the lower end of each span by a pixel, and to the lower ends beside it. There the near
+ * plane has cut off ground that the client draws itself, in front of the face: rounding must leave
+ * no gap between the two. */
 void ff_face_lower(ff_face_spans *spans, uint32_t size);
 
 /* Paints over all that is not ground within the spans' rows: ground is continued up, down, into

@@ -7,10 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ERROR_PX_Q8 256 /* one texel of the face */
-#define SIGMA_Q8    320
-#define LOAD_ROUNDS_MAX \
-    64 /* every round refines at least one level or stops: a bound for damaged packs */
+#define ERROR_PX_Q8     256 /* one texel of the face */
+#define SIGMA_Q8        320
+#define LOAD_ROUNDS_MAX 64 /* a bound for damaged packs: every round refines a level, or stops */
 
 void panorama_ground_desc(const ff_pack *pack, const sys_surface_api *surface_api, c3d_desc *desc)
 {
@@ -24,7 +23,7 @@ void panorama_ground_desc(const ff_pack *pack, const sys_surface_api *surface_ap
                         .use_vertex_buffers = 1 };
 }
 
-/* The view's and the images' memory is the renderer's. */
+/* Makes the view and the cache of images; their memory is part of `ground`. */
 static int make_view(panorama_ground *ground, c3d_device *device)
 {
     const ff_terrain_info *info = &ground->pack->header.info;
@@ -83,8 +82,8 @@ void panorama_ground_close(panorama_ground *ground)
 
 /* ---- loading ---- */
 
-/* The tree's list may change as nodes come in: it is copied first. Returns how many were
- * delivered. */
+/* Answers the tree's wishes from the pack; returns how many nodes were delivered. The list of
+ * wishes is copied first, because it may change as nodes come in. */
 static uint32_t serve_wishes(panorama_ground *ground)
 {
     const ff_wish *list;
@@ -156,7 +155,7 @@ int panorama_ground_seen(const panorama_ground *ground, const ff_get_panorama *r
 
 /* ---- drawing ---- */
 
-/* FF_OK, or why the texels are not there. */
+/* Reads an image into texture_texels. FF_OK, or why the texels are not there. */
 static int read_image(const panorama_ground *ground, ff_key key)
 {
     const ff_terrain_info *info = &ground->pack->header.info;
@@ -172,8 +171,8 @@ static int read_image(const panorama_ground *ground, ff_key key)
     return FF_OK;
 }
 
-/* The image over a node into the cache, the least recently used one making room. A damaged one is
- * remembered as such until its slot is needed. */
+/* Puts the image over a node into the cache; the least recently used image makes room. A damaged
+ * image is remembered as such until its slot is needed. */
 static void fetch_image(panorama_ground *ground, ff_key node)
 {
     ff_key key = ff_texture_key(&ground->pack->header.info, node);
@@ -189,8 +188,8 @@ static int by_key(const void *a, const void *b)
     return ka < kb ? -1 : ka > kb;
 }
 
-/* In an order that does not depend on what was drawn before: where two triangles are equally deep,
- * the first one stays. */
+/* Lists the nodes seen, in an order that does not depend on what was drawn before: where two
+ * triangles are equally deep, the first one stays. */
 static uint32_t list_seen(panorama_ground *ground, const ff_get_panorama *request,
                           enum ff_face_name face)
 {

@@ -31,7 +31,7 @@ typedef struct panorama_ground {
     uint16_t *texture_texels;
 } panorama_ground;
 
-/* What c3d_open must provide for it. */
+/* What c3d_open must provide for the ground. */
 void panorama_ground_desc(const ff_pack *pack, const sys_surface_api *surface_api, c3d_desc *desc);
 /* FF_OK or a negative error; the device stays the caller's. Close also after a failed open. */
 int panorama_ground_open(panorama_ground *ground, const ff_pack *pack, c3d_device *device,
@@ -44,7 +44,7 @@ void panorama_ground_load(panorama_ground *ground, const ff_get_panorama *reques
 /* 1 when the loaded ground can show in the face. */
 int panorama_ground_seen(const panorama_ground *ground, const ff_get_panorama *request,
                          enum ff_face_name face);
-/* Draws it over FF_FACE_KEY. */
+/* Draws the loaded ground over FF_FACE_KEY. */
 void panorama_ground_draw(panorama_ground *ground, const ff_get_panorama *request,
                           enum ff_face_name face);
 

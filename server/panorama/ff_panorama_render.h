@@ -12,14 +12,14 @@
 
 typedef struct ff_panorama_renderer ff_panorama_renderer;
 
-/* What it has done since it was opened. */
+/* What a renderer has done since it was opened. */
 typedef struct ff_panorama_render_stats {
     uint32_t faces;
     uint32_t empty_by_bounds; /* found empty from bounds of terrain or nodes, without drawing */
     uint32_t empty_drawn;     /* found empty in the picture */
     /* roots and refinements taken from the pack, damaged ones not counted */
     uint32_t nodes_read;
-    uint32_t nodes_damaged; /* drawn coarser instead */
+    uint32_t nodes_damaged; /* their ground is drawn coarser */
     uint32_t nodes_drawn;
     uint64_t triangles, bytes;
     int64_t time_us; /* by sys_time_us */
@@ -31,9 +31,9 @@ int ff_panorama_renderer_open(const ff_pack *pack, const sys_surface_api *surfac
                               const struct c3d_backend *backend, ff_panorama_renderer **renderer);
 void ff_panorama_renderer_close(ff_panorama_renderer *renderer);
 
-/* Bytes of the message written to `out`, or a negative error. error_px 1 of the face decides the
- * level of detail. A face without far ground is found empty from the tree alone, without
- * drawing. */
+/* Bytes of the message written to `out`, or a negative error. Ground is drawn as fine as an error
+ * of one pixel of the face asks for. A face without far ground is found empty from the tree alone,
+ * without drawing. */
 int ff_panorama_render_face(ff_panorama_renderer *renderer, const ff_get_panorama *request,
                             uint8_t face, int last, uint8_t *out, size_t capacity);
 

@@ -2,7 +2,7 @@
  *
  * Room in the buffer: nodes and textures up to out_bytes_max, above that one face of a panorama,
  * above that short answers (FAILED, CANCELLED, PONG), and a last reserve for the GOODBYE. So a slow
- * reader costs a fixed amount of memory, and says itself when to go on.
+ * reader costs a fixed amount of memory, and its own reading says when to go on.
  */
 #include "ff_session.h"
 #include "../../protocol/message/ff_kind.h"
@@ -14,7 +14,7 @@
 #define IN_BYTES            128 /* the longest client message, with room for longer HELLOs to come */
 #define SHORT_ANSWER_BYTES  64  /* WELCOME aside, more than any answer without a payload needs */
 #define WELCOME_BYTES       256
-#define SHORT_ANSWERS_BYTES 4096 /* reserve for them */
+#define SHORT_ANSWERS_BYTES 4096 /* reserve for short answers */
 #define FACE_BYTES          (FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX)
 #define MINUTE_US           60000000
 
@@ -65,7 +65,7 @@ ff_session *ff_session_create(const ff_session_desc *desc)
     session->out_capacity = (size_t)session->desc.out_bytes_max + FACE_BYTES + SHORT_ANSWERS_BYTES +
                             2 * SHORT_ANSWER_BYTES;
     session->queue = calloc(session->desc.requests_max, sizeof *session->queue);
-    /* large: the system hands out its pages as they are used */
+    /* the buffer is large, but the system hands out its pages only as they are used */
     session->out = malloc(session->out_capacity);
     if (!session->queue || !session->out) {
         ff_session_destroy(session);
@@ -126,8 +126,8 @@ static void answer_cancelled(ff_session *session, uint16_t id)
     answer_short(session, &message);
 }
 
-/* Whether any single client message can be taken: one may need two short answers (a panorama that
- * supersedes and is refused), and the GOODBYE after it its own room. */
+/* 1 when any client message can be taken: a message may need two short answers (a panorama that
+ * supersedes and is refused), and a GOODBYE after it needs room of its own. */
 static int short_answers_fit(const ff_session *session)
 {
     return out_pending(session) + WELCOME_BYTES + 3 * SHORT_ANSWER_BYTES <=
@@ -158,7 +158,7 @@ static int fetch(const ff_session *session, const request *wanted, ff_message *m
     return ff_message_bytes_max(message) <= FACE_BYTES ? FF_OK : FF_ERR_FULL;
 }
 
-/* 1 when answered, 0 when the buffer has no room for it yet. */
+/* Answers a request; 1 when answered, 0 when the buffer has no room for the answer yet. */
 static int serve(ff_session *session, const request *wanted)
 {
     ff_message message;
@@ -302,7 +302,7 @@ static void cancel(ff_session *session, uint16_t id)
             waiting->type = 0;
             session->queue_live--;
             answer_cancelled(session, id);
-            serve_queue(session); /* it may have been the one that found no room */
+            serve_queue(session); /* the cancelled request may have been the one without room */
             return;
         }
     }
@@ -345,8 +345,8 @@ static int take_message(ff_session *session, const uint8_t *bytes, size_t count,
     size_t added = count < IN_BYTES - held ? count : IN_BYTES - held;
     memcpy(session->in + held, bytes, added);
     ff_message message;
-    /* The server's own types are refused by their first byte: another protocol's talk need not be
-     * heard out. */
+    /* The server's own types are refused by their first byte: a peer that speaks another protocol
+     * need not be heard out. */
     int used = session->in[0] > FF_MSG_PING
                    ? FF_ERR_FORMAT
                    : ff_message_decode(session->in, held + added, &message);

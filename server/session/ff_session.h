@@ -12,9 +12,10 @@ typedef struct ff_session ff_session;
 
 typedef struct ff_session_desc {
     const ff_pack *pack;
-    uint32_t out_bytes_max; /* answers buffered (and one face); 0: 256 kB. While full, requests wait
-                               in the queue below, so that a CANCEL still reaches them; without room
-                               even for short answers, bytes wait unread */
+    /* answers buffered (and one face besides); 0: 256 kB. While the buffer is full, requests wait
+     * in a queue, so that a CANCEL still reaches them; without room even for short answers, bytes
+     * wait unread */
+    uint32_t out_bytes_max;
     /* requests waiting; 0: 256; more closes the session (GOODBYE, FULL) */
     uint32_t requests_max;
     uint32_t panoramas_per_minute; /* 0: 120; more are answered FAILED(FULL) */
@@ -53,8 +54,8 @@ typedef struct ff_face_job {
     uint8_t last;
 } ff_face_job;
 int ff_session_next_face(ff_session *session, ff_face_job *job);
-/* The rendered face, complete FF_MSG_FACE bytes; or a negative error: answered FAILED. Superseded
- * ones are thrown away here. */
+/* Takes the rendered face, a complete FF_MSG_FACE; or a negative error, which is answered FAILED. A
+ * face that was superseded is thrown away here. */
 void ff_session_face_done(ff_session *session, const ff_face_job *job, const uint8_t *message,
                           int bytes_or_error);
 
