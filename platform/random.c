@@ -26,7 +26,7 @@ uint32_t sys_random_u32(sys_random *random)
 uint32_t sys_random_below(sys_random *random, uint32_t limit)
 {
     assert(limit > 0);
-    /* Numbers under 2^32 mod limit would come once too often: drawn again. */
+    /* Numbers below 2^32 mod limit would come once too often: another number is drawn for them. */
     uint32_t threshold = (0u - limit) % limit;
     uint32_t value;
     do {

@@ -5,9 +5,9 @@
 
 #include "sys.h"
 
-/* Says that the context of `surface` is about to become current on this thread and how it is let go
- * of. The previous one is let go of first: each library believes its own last context still
- * current, and would skip the switch back to it. */
+/* Says that the context of `surface` is about to become current on this thread, and how the context
+ * is let go of. The previous context is let go of first: its library would believe it still
+ * current, and skip a later switch back to it. */
 void sys_surface_take(sys_surface *surface, void (*release)(void));
 /* Lets go of the context of `surface` if it is the current one: before it is destroyed. */
 void sys_surface_drop(sys_surface *surface);

@@ -113,13 +113,13 @@ int sys_stderr_is_terminal(void);
 /* ---- images (libjpeg-turbo, libpng behind it; allocate inside) ---- */
 /* Images travel as bare JPEGs (protocol/SPEC.md, "Images"): a byte of quality and the scan of a
  * baseline JPEG, without headers and tables. */
-/* Decodes one to tightly packed RGB888, top row first, width and height 1..65500. FF_OK,
- * FF_ERR_FORMAT (damaged, cut short, not bare), FF_ERR_ARGUMENT. The memory of one row of blocks is
- * enough here. */
+/* Decodes a bare JPEG to tightly packed RGB888, top row first, width and height 1..65500. FF_OK,
+ * FF_ERR_FORMAT (damaged, cut short, not bare), FF_ERR_ARGUMENT. Takes the memory of one row of
+ * blocks. */
 int sys_jpeg_decode(const uint8_t *bytes, size_t byte_count, uint32_t width, uint32_t height,
                     uint8_t *rgb);
-/* Encodes RGB888, top row first, quality 1..100; bytes written or FF_ERR_FULL: needs up to 64 bytes
- * more than it keeps. */
+/* Encodes RGB888, top row first, quality 1..100. Bytes written, or FF_ERR_FULL; encoding needs up
+ * to 64 bytes more than the result has. */
 int sys_jpeg_encode(const uint8_t *rgb, uint32_t width, uint32_t height, int quality, uint8_t *out,
                     size_t capacity);
 /* Writes RGB888, top row first, as a PNG file. */
@@ -130,17 +130,15 @@ int sys_png_read(const char *path, uint8_t **rgb, uint32_t *width, uint32_t *hei
 
 /* ---- window, GL context and device events ---- */
 enum sys_event_type {
-    /* touch or mouse */
     SYS_EVENT_NONE,
     SYS_EVENT_QUIT,
     SYS_EVENT_RESIZE,
     SYS_EVENT_KEY,
-    SYS_EVENT_POINTER,
+    SYS_EVENT_POINTER,  /* touch or mouse */
     SYS_EVENT_POSITION, /* position fix (GPS) */
-    /* incoming call: on, off */
     SYS_EVENT_ACCELEROMETER,
     SYS_EVENT_BATTERY,
-    SYS_EVENT_INTERRUPTION
+    SYS_EVENT_INTERRUPTION /* an incoming call begins or ends */
 };
 enum sys_pointer_action { SYS_POINTER_DOWN, SYS_POINTER_MOVE, SYS_POINTER_UP, SYS_POINTER_SCROLL };
 typedef struct sys_event {
@@ -197,8 +195,8 @@ typedef struct sys_surface_desc {
     int width, height;
     enum sys_gl_kind gl;
 } sys_surface_desc;
-/* A place to draw with its GL context. Several kinds may live in one process; the table says
- * which. */
+/* The functions of one kind of surface: a place to draw, with its GL context. Several kinds may
+ * live in one process. */
 typedef struct sys_surface_api {
     const char *name; /* "glfw", "egl", "osmesa", "memory" */
     /* makes current; FF_ERR_UNSUPPORTED, FF_ERR_SYSTEM */

@@ -18,8 +18,8 @@ struct sys_surface {
     EGLenum api;
 };
 
-/* eglTerminate ends a display for everyone in the process: it stays initialised until the process
- * ends. */
+/* The display stays initialised until the process ends, because eglTerminate would end it for
+ * everyone in the process. */
 static EGLDisplay open_display(void)
 {
     EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA,

@@ -1,7 +1,8 @@
-/* A blank port: every function of sys.h that an operating system must answer, answering as one that
- * has nothing would. It builds with any C99 compiler and no header of a system; a port to a new
- * system starts as a copy, one function after the other made real. Randomness and injected events
- * (platform/random.c, platform/events.c) ask nothing of a system and are shared by all ports.
+/* A blank port: every function of sys.h that a system must answer, answered as a system without
+ * anything would. It builds with any C99 compiler and no header of a system. A port to a new system
+ * starts as a copy in which one function after the other is made real. Randomness and injected
+ * events (platform/random.c, platform/events.c) ask nothing of a system and are shared by all
+ * ports.
  *
  * What works: the clock steps a millisecond at every look, so that loops waiting for time end;
  * locks do nothing, as there are no threads. Everything else says FF_ERR_UNSUPPORTED.

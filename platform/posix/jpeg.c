@@ -1,7 +1,7 @@
-/* Bare JPEGs (protocol/SPEC.md, "Images") through libjpeg's API: its abbreviated format, which
- * leaves tables out, and the few headers left stripped and put back. Errors leave by longjmp, never
- * by exit; corrupt data that libjpeg would only warn of and paint grey is an error too: a panorama
- * that is wrong is worse than none. */
+/* Bare JPEGs (protocol/SPEC.md, "Images") through libjpeg's API. Its abbreviated format leaves the
+ * tables out; this file strips the few headers that remain, and puts them back for decoding. Errors
+ * leave by longjmp, never by exit. Corrupt data, which libjpeg would only warn of and paint grey,
+ * is an error too: a wrong panorama is worse than none. */
 #include "../sys.h"
 #include "jpeg_tables.h"
 
@@ -53,7 +53,7 @@ struct pieces {
     unsigned next;
 };
 
-/* Start of image, frame and scan: what every bare image shares but for its size. */
+/* Makes the headers of image, frame and scan: all bare images share them, but for the size. */
 static void make_header(uint8_t header[HEADER_BYTES], uint32_t width, uint32_t height)
 {
     static const uint8_t usual[HEADER_BYTES] = { 0xFF, 0xD8, 0xFF, 0xC0, 0,    17, 8,  0,    0,
@@ -103,7 +103,7 @@ static void set_source(j_decompress_ptr jpeg, struct pieces *pieces, const uint8
     jpeg->src = &pieces->manager;
 }
 
-/* No markers: they could bring tables, restarts, other scans. */
+/* 1 when the scan has no markers: they could bring tables, restarts, other scans. */
 static int is_plain_scan(const uint8_t *bytes, size_t count)
 {
     if (count == 0 || bytes[count - 1] == 0xFF) return 0;
@@ -173,7 +173,8 @@ static boolean bounded_full(j_compress_ptr jpeg)
 
 static void bounded_done(j_compress_ptr jpeg) { (void)jpeg; }
 
-/* The scan of a whole JPEG, moved to its beginning; its length, or 0 when there is none. */
+/* Moves the scan of a whole JPEG to the JPEG's beginning. Returns its length, 0 when there is
+ * none. */
 static size_t bare_scan(uint8_t *jpeg, size_t count)
 {
     size_t at = 2;

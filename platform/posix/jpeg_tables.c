@@ -14,7 +14,7 @@ static const uint8_t quantisation[2][DCTSIZE2] = {
       99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99, 99 }
 };
 
-/* codes of 1..16 bits; what they stand for */
+/* How many codes have 1..16 bits; the values that the codes stand for. */
 typedef struct huffman {
     uint8_t lengths[16];
     uint8_t values[162];

@@ -6,8 +6,8 @@
 
 #include <jpeglib.h>
 
-/* Quantisation (tables K.1, K.2 scaled for quality 1..100) and Huffman tables (K.3 to K.6) of an
- * image whose stream has none. */
+/* Gives the decoder quantisation tables (K.1, K.2 scaled for quality 1..100) and Huffman tables
+ * (K.3 to K.6), because the stream of a bare image has none. */
 void jpeg_tables_set(j_decompress_ptr jpeg, int quality);
 
 #endif
