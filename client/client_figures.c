@@ -69,18 +69,23 @@ void ff_client_get_stats(const ff_client *client, ff_client_stats *stats)
 /* farfield.h has room for all of them */
 typedef char all_pools_listed[FF_POOL_COUNT <= FF_POOLS_MAX ? 1 : -1];
 
-static void list_pools(const ff_budget *b, ff_pool_use *list)
+static void list_pools(const ff_budget *budget, ff_pool_use *list)
 {
-#define LIST(name, inside)                                                                \
-    list[FF_POOL_##name] = (ff_pool_use){                                                 \
-        #name, b->pool[FF_POOL_##name].count, b->pool[FF_POOL_##name].bytes, inside, 0, 0 \
-    };
-#define X(name, when, wanted, least, most, bytes, held, high, why) LIST(name, 0)
-#define PART(name, n, bytes, held, high, why)                      LIST(name, 1)
-    FF_POOL_LIST(X, PART)
+    static const struct {
+        const char *name;
+        uint8_t inside;
+    } row[FF_POOL_COUNT] = {
+#define X(name, when, wanted, least, most, bytes, held, high, why) { #name, 0 },
+#define PART(name, n, bytes, held, high, why)                      { #name, 1 },
+        FF_POOL_LIST(X, PART)
 #undef X
 #undef PART
-#undef LIST
+    };
+    for (unsigned i = 0; i < FF_POOL_COUNT; i++)
+        list[i] = (ff_pool_use){ .name = row[i].name,
+                                 .count = budget->pool[i].count,
+                                 .bytes = budget->pool[i].bytes,
+                                 .inside = row[i].inside };
 }
 
 unsigned ff_client_pools(const ff_client *client, ff_pool_use list[FF_POOLS_MAX])
@@ -96,17 +101,19 @@ unsigned ff_client_pools(const ff_client *client, ff_pool_use list[FF_POOLS_MAX]
         (void)ff_budget_terrain(b, from->c3d.vertex_buffers_used);
     }
     list_pools(b, list);
-#define USE(name, held_now, most)                         \
-    if (list[FF_POOL_##name].count) {                     \
-        list[FF_POOL_##name].held = (uint32_t)(held_now); \
-        list[FF_POOL_##name].high = (uint32_t)(most);     \
-    }
-#define X(name, when, wanted, least, most, bytes, held, high, why) USE(name, held, high)
-#define PART(name, n, bytes, held, high, why)                      USE(name, held, high)
-    FF_POOL_LIST(X, PART)
+    const struct {
+        uint32_t held, high;
+    } use[FF_POOL_COUNT] = {
+#define X(name, when, wanted, least, most, bytes, held, high, why) { (held), (high) },
+#define PART(name, n, bytes, held, high, why)                      { (held), (high) },
+        FF_POOL_LIST(X, PART)
 #undef X
 #undef PART
-#undef USE
+    };
+    for (unsigned i = 0; i < FF_POOL_COUNT; i++) {
+        list[i].held = list[i].count ? use[i].held : 0;
+        list[i].high = list[i].count ? use[i].high : 0;
+    }
     return FF_POOL_COUNT;
 }
 

@@ -169,6 +169,7 @@ void ff_budget_fixed(ff_budget *b, const ff_client_desc *desc, size_t block)
     b->desc = desc;
     b->block = block;
     FF_POOLS_FIXED(X, PART)
+    b->fixed = b->used;
 }
 
 static void add_arriving(ff_budget *b)
@@ -184,8 +185,7 @@ static void add_arriving(ff_budget *b)
 
 int ff_budget_terrain(ff_budget *b, int buffers)
 {
-    b->used = 0;
-    FF_POOLS_FIXED(X, PART)
+    b->used = b->fixed;
     add_arriving(b);
     choose_entries(b, buffers);
     FF_POOLS_DRAWN(X, PART)

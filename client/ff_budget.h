@@ -128,7 +128,7 @@ enum ff_pool_id {
 typedef struct ff_budget {
     const ff_client_desc *desc;  /* defaults filled in */
     const ff_terrain_info *info; /* NULL: only what outlives a terrain */
-    size_t block, used;
+    size_t block, used, fixed;   /* fixed: used by what outlives a terrain */
     /* what depends on the economy: 1 leaves out panoramas, 2 images of the ground too */
     unsigned face_size; /* 0: no panoramas */
     uint8_t has_textures;

@@ -54,7 +54,7 @@ static void print_rest(const plan *plans)
 
 void handheld_plan(const handheld *device)
 {
-    static plan plans[BLOCKS];
+    plan plans[BLOCKS];
     ff_client_desc desc = handheld_client_desc(device);
     int most = 0;
     desc.pack = NULL;
