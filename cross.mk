@@ -37,7 +37,7 @@ HAND_LIBS = $(if $(filter jpeg,$(NO)),,$(ARM_LIBS)/libjpeg.a) $(if $(filter defl
 
 .PHONY: handheld
 handheld: $(HAND) ## cross-build the client for an armv6 without FPU; fly it under qemu-arm (NO="..." leaves features out)
-	@tools/scripts/handheld.sh $(HAND) $(BUILD)/bin $(HAND_OBJ) $(NO)
+	@tools/scripts/handheld.sh $(HAND) $(BUILD)/bin $(HAND_OBJ) "$(strip $(FEATURES))" $(NO)
 handheld: $(patsubst %,$(BUILD)/bin/farfield-%,bake server fly handheld)
 
 $(HAND_OBJ)/platform/%.o $(HAND_OBJ)/sim/%.o: HAND_STD = $(STD_host)
@@ -50,6 +50,10 @@ $(HAND_OBJ)/%.o: %.c | $(CROSS_STAMP)
 $(HAND): $(HAND_SRC:%.c=$(HAND_OBJ)/%.o)
 	$(ARM)gcc $(ARM_CPU) -static -Wl,--gc-sections -Wl,--no-warnings -Wl,-Map=$@.map $^ $(HAND_LIBS) -lpthread -o $@
 	@! $(ARM)nm $@ | grep ' U ' || { rm $@; echo "$@: missing symbols" >&2; exit 1; }
+
+.PHONY: handheld-objects
+handheld-objects: # what the program is linked from, for tools/scripts/handheld_rows.py
+	@printf '%s\n' $(HAND_SRC:%.c=%.o)
 
 -include $(shell find build/handheld -name '*.d' 2>/dev/null)
 
@@ -140,9 +144,9 @@ baremetal: $(BARE_ELF) ## link the core for a Cortex-M without a system, over th
 
 # ---- make size: code by part and by feature, worst stack, and what stays resident in a flight ----
 .PHONY: size
-size: build/handheld/farfield-handheld $(TCG_COUNT) build/handheld/size.tape ## code size by part and feature, stack, memory touched: build/bench/size.md
+size: build/handheld/farfield-handheld $(TCG_COUNT) build/handheld/size.tape ## code size by part and feature, stack, memory touched, pools: build/bench/size.md
 	@for f in $(FEATURES) "$(strip $(FEATURES))"; do $(MAKE) -s NO="$$f" handheld-program || exit 1; done
-	@tools/scripts/size_handheld.py build/handheld $(TCG_COUNT) build/bench $(FEATURES)
+	@tools/scripts/size_handheld.py build/handheld $(TCG_COUNT) $(PACK) build/bench $(FEATURES)
 build/handheld/size.tape: build/handheld/farfield-handheld $(BUILD)/bin/farfield-fly $(PACK)
 	$(BUILD)/bin/farfield-fly --pack $(PACK) --backend none --link umts --settle 15 --seconds 5 --tape $@ 2>/dev/null
 .PHONY: handheld-program

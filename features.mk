@@ -22,3 +22,7 @@ $(call feature,balance, client/balance, client/balance/ff_balance_none.c)
 
 # $(call device,SOURCES,FEATURES LEFT OUT)
 device = $(filter-out $(foreach f,$(2),$(WITHOUT_$f)),$(1)) $(foreach f,$(2),$(INSTEAD_$f))
+
+.PHONY: features
+features: # the names alone, for scripts
+	@echo $(strip $(FEATURES))

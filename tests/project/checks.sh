@@ -1,5 +1,6 @@
 #!/bin/bash
 # The tree keeps its layers, its core pure and its files small (tools/scripts/check-layers.sh); and that check sees what it should see.
+# Lists that stand beside a list are held to it.
 set -u
 cd "$(dirname "$0")/../.." || exit 2
 failures=0
@@ -13,32 +14,6 @@ result $? "layers, core words, sizes and symbols"
 git ls-files '*.[ch]' | xargs clang-format --dry-run --Werror >/dev/null 2>&1
 result $? "all C is laid out by .clang-format (make format)"
 
-# README names the features that can be left out as features.mk has them, and the instruction bench has a row for each object.
-listed=$(make -s -f - print <<'END'
-srcs =
-include features.mk
-print: ; @echo $(FEATURES)
-END
-)
-[ -n "$listed" ] && grep -q -F "make handheld NO=\"$listed\"" README.md
-result $? "README lists the features of features.mk"
-(cd tools/scripts && python3 - <<'END'
-import glob
-import bench_handheld as bench
-
-def named(mark, path):
-    try:
-        return bench.row_of(mark, path)
-    except SystemExit:
-        return None
-
-own = [p for d in ("client", "protocol") for p in glob.glob("../../%s/**/*.c" % d, recursive=True)]
-unnamed = [p for p in own if not named("update", p[6:-2] + ".o")]
-raise SystemExit(len(own) < 40 or bool(unnamed) or named("draw", "attic/unknown.o") is not None)
-END
-) 2>/dev/null
-result $? "the instruction bench names all objects of the core, and refuses an unknown one"
-
 # What the documents link to is there.
 missing=$(git ls-files '*.md' 2>/dev/null | while read -r page; do
     grep -o '](\([^)#]*\))' "$page" | sed 's/^](//; s/)$//' | grep -v '^[a-z]*:' | while read -r target; do
@@ -47,6 +22,40 @@ missing=$(git ls-files '*.md' 2>/dev/null | while read -r page; do
 done)
 [ -z "$missing" ]
 result $? "links in documents lead somewhere $missing"
+
+# ---- features that can be left out: features.mk has the list ----
+features=$(make -s features)
+told=$(sed -n 's/.*`make handheld NO="\([^"]*\)"`.*/\1/p' README.md)
+[ -n "$features" ] && [ "$(tr ' ' '\n' <<<"$features" | sort)" = "$(tr ' ' '\n' <<<"$told" | sort)" ]
+result $? "README.md names the features of features.mk ($features)"
+
+# ---- rows that objects count to, in the instruction bench and in the sizes ----
+rows=tools/scripts/handheld_rows.py
+objects=$(make -s handheld-objects)
+wrong=$($rows <<<"$objects" 2>&1)
+result $? "every object of the handheld has a row, every row an object $wrong"
+$rows <<<"$objects"$'\n'client/cellar/dig.o 2>&1 | grep -q '^no row for client/cellar/dig.o: add it to PLACES '
+result $? "an object of a new room is refused"
+$rows <<<"$objects"$'\n'client/terrain/dig.o 2>&1 | grep -q '^no row for client/terrain/dig.o: add it to PLACES '
+result $? "and a new one in a room whose objects count to several rows"
+$rows < <(grep -v ff_wish.o <<<"$objects") 2>&1 | grep -q '^there is no client/terrain/ff_wish.o: take it out of PLACES '
+result $? "and a row for an object that is gone"
+mkdir -p build/tests
+cat >build/tests/rows.py <<'END'
+import sys
+sys.path.insert(0, "tools/scripts")
+import handheld_rows, stack_handheld
+try:
+    handheld_rows.phase_of("draw", "client/ask/ff_request.o")
+    sys.exit("a request under the mark draw found a row")
+except handheld_rows.NoRow:
+    pass
+stack_handheld.THROUGH_POINTERS = [("^c3d_open$", "a"), ("^c3d_(open|shut)$", "b"), ("^c3d_close$", "c")]
+unused = stack_handheld.rows_unused({"c3d_open", "c3d_close"})
+sys.exit(unused != ["^c3d_(open|shut)$"] and "unused: %s" % unused)
+END
+wrong=$(python3 build/tests/rows.py 2>&1)
+result $? "so are work where none was expected, and calls through pointers that nobody makes $wrong"
 
 # A copy of a tiny tree with one violation of every kind: each must be named.
 planted=build/tests/checks

@@ -6,14 +6,14 @@ the cross-built farfield-handheld under qemu-arm with the counting plugin; it en
 OUT/handheld.md, OUT/handheld.json and OUT/work-precision.csv.
 
 The program's marks cut a frame into work (link, decoding), update and draw; within these, the linker map says which object file an
-instruction belongs to. Helpers (division, memset, ...) count to the file that called them."""
+instruction belongs to, and handheld_rows.py which row that counts to. Helpers (division, memset, ...) count to the file that called them."""
 import argparse
 import csv
 import json
 import os
-import re
 
 from handheld_counts import Counts, Program, die, run
+from handheld_rows import MARKS, NoRow, phase_of, without_row
 
 SECONDS, PLACE_SECONDS, SWEEP_SECONDS, SETTLE = "20", "10", "6", 20
 START, PLACES = "0.4", ("0.2", "0.3", "0.4", "0.5", "0.6")  # parts of the diagonal
@@ -22,39 +22,9 @@ SWEEP = ["2:4", "3:4", "4:5", "6:5", "px:4", "px:2", "px:1"]
 SWEEP_MEMORY = "16M"  # where a pool is full the flight depends on its capacity, which differs between machines
 BLOCKS = ("8M", "4M", "2M", "1M", "768K")
 TARGET = 4.0e6
-# Every object that runs between two marks has a row; the first that matches counts: mark, pattern of the object's path, phase, what.
-# One that no row names is an error: a file moved or added is never counted with what it has nothing to do with.
-LIBRARIES = r"/lib(c|gcc|gcc_eh|pthread)\.a|/crt\w*\.o"
-ROWS = [
-    ("work", r"libjpeg|/jpeg\.o|ff_intake_(face|texture)|ff_face_columns", "decode", "JPEG: images and faces"),
-    ("work", r"protocol/codec/|protocol/zlib/|libz", "decode", "inflate and residuals"),
-    ("work", r"client/(client|ff_sky|ff_arena|ask/|source/|images/|panorama/|ahead/)|protocol/(message/|ff_)|sim/tape/|sim/handheld/|platform/|" + LIBRARIES,
-     "decode", "link, messages, queue"),
-    ("update", r"protocol/codec/|protocol/zlib/|ff_new_data|ff_intake|ff_evict|ff_face_columns|ff_tree\.o|/soft/|c3d_device|c3d_pool|libz",
-     "take in", ""),
-    ("update", r"client/panorama/|client_carve", "select", "panorama rules"),
-    ("update", r"ff_wish|ff_request|ff_foresee|ff_motion|ff_refusals|client_rank|client/source/", "select", "wishes, queue, prefetch"),
-    ("update", r"client/images/", "select", "images"),
-    ("update", r"client/(client|ff_|terrain/|ground/|ahead/|ask/|balance/)|common3d/c3d_|protocol/|sim/handheld/|sim/tape/|platform/|" + LIBRARIES,
-     "select", "measure, restrict, cull, order"),
-    ("draw", r"soft_transform|soft_clip", "transform", ""),
-    ("draw", r"soft_perspective", "rasterise", "triangles in perspective"),
-    ("draw", r"soft_(small|tiny)", "rasterise", "small triangles"),
-    ("draw", r"soft_(spans|pixels|line)", "rasterise", "spans"),
-    ("draw", r"soft_(backdrop|texture)", "rasterise", "sky and panorama"),
-    ("draw", r"common3d/soft/", "rasterise", "strips, clearing"),
-    ("draw", r"client/|common3d/c3d_|protocol/|sim/handheld/|sim/tape/|platform/|" + LIBRARIES, "stitch", "strips chosen, draws set up"),
-]
 PHASES = ("take in", "select", "stitch", "transform", "rasterise", "decode")
 FILLERS = ("soft_tiny", "soft_small", "soft_perspective")  # each takes what the one before could not, of triangles left after culling
 CLEARING = ("memcpy", "memset")
-
-
-def row_of(mark, obj):
-    for m, pattern, phase, what in ROWS:
-        if m == mark and re.search(pattern, obj):
-            return phase, what
-    die("no row for %s between the marks of `%s`: name it in ROWS" % (obj, mark))
 
 
 def million(value):
@@ -65,6 +35,9 @@ class Bench:
     def __init__(self, options):
         self.bin, self.handheld, self.plugin, self.pack, self.out = options.bin, options.handheld, options.plugin, options.pack, options.out
         self.program = Program(self.handheld)
+        wrong = without_row(set(self.program.places))
+        if wrong:
+            die("\n".join(wrong))
 
     def count(self, name, arguments, options=""):
         return Counts(self.plugin, self.program, arguments, "%s/%s.counts" % (self.out, name), options)
@@ -80,11 +53,11 @@ class Bench:
         """Instructions a frame by row of the table."""
         sums = {}
         for address, length, executions, helped in counts.blocks:
-            obj = self.program.object_of(address)
-            for mark in ("work", "update", "draw"):
+            place = self.program.place_of(address)
+            for mark in MARKS:
                 cost = helped[mark] + (0 if self.program.is_helper(address) else length * executions[mark])
                 if cost:
-                    row = row_of(mark, obj)
+                    row = phase_of(mark, place)
                     sums[row] = sums.get(row, 0) + cost / len(counts.frames)
         return sums
 
@@ -106,7 +79,7 @@ class Bench:
                  "panorama_px_percent": mean("panorama_px_percent"), "undrawn_px_percent": mean("undrawn_px_percent"),
                  "bytes_down": figures["bytes_down"], "high_water": {k: figures[k] for k in figures if "high" in k or "memory" in k},
                  "phases": [{"phase": p, "what": w, "per_frame": c} for (p, w), c in sorted(self.phases(counts).items(), key=lambda i: -i[1])]}
-        flown.update({mark: sum(f[mark] for f in frames) / n for mark in ("work", "update", "draw")})
+        flown.update({mark: sum(f[mark] for f in frames) / n for mark in MARKS})
         return flown
 
     def calls(self, counts, name):
@@ -209,10 +182,10 @@ def functions(bench, most):
     n, sums = len(counts.frames), {}
     for address, length, executions, helped in counts.blocks:
         name, entry = bench.program.function_of(address)
-        s = sums.setdefault((name, os.path.basename(bench.program.object_of(address))),
+        s = sums.setdefault((name, os.path.basename(bench.program.place_of(address))),
                             {"calls": 0, "helped": 0, "work": 0, "update": 0, "draw": 0})
         s["helped"] += helped["update"] + helped["draw"]
-        for mark in ("work", "update", "draw"):
+        for mark in MARKS:
             s[mark] += length * executions[mark]
             s["calls"] += executions[mark] * entry
     cost = counts.costs()
@@ -258,4 +231,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except NoRow as what:
+        die(what)

@@ -3,8 +3,8 @@
 # floating point; over a pack, over a tape and against a real server (both on this machine) it does what the client built for this
 # machine does. Prints "ok - what" / "not ok - what" lines. Work files in build/handheld/work.
 set -u
-program=$1 host=$2 objects=$3
-shift 3
+program=$1 host=$2 objects=$3 features=" $4 "
+shift 4
 without=" $* "
 qemu=(qemu-arm -cpu arm1136)
 work=build/handheld/work
@@ -16,7 +16,10 @@ result() { # STATUS WHAT
     if [ "$1" = 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failures=$((failures + 1)); fi
 }
 value() { grep -E "^$1 " "$2" | awk '{ print $2 }'; } # NAME FILE: a figure of a flight
-has() { [[ $without != *" $1 "* ]]; }
+has() { # FEATURE: this build has it
+    [[ $features == *" $1 "* ]] || { echo "handheld.sh: no feature is called $1 (features.mk)" >&2; exit 2; }
+    [[ $without != *" $1 "* ]]
+}
 
 mapfile -t core < <(find "$objects"/{protocol,client,common3d} -name '*.o')
 counted=$(tools/scripts/check-no-float.sh arm-linux-gnueabi- "${core[@]}")

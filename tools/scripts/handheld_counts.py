@@ -7,11 +7,12 @@ import re
 import subprocess
 import sys
 
+from handheld_rows import is_helper, place_of
+
 NM = "arm-linux-gnueabi-nm"
 QEMU = ["qemu-arm", "-cpu", "arm1136"]
 PHASES = ("outside", "work", "update", "draw")
 LAYOUT = "Linker script and memory map"
-HELPERS = r"libgcc\.a|libc\.a\(mem|c3d_fixed\.o|ff_key\.o|ff_bytes\.o"  # objects that work for their callers
 
 
 def die(text):
@@ -26,7 +27,7 @@ def run(command):
 
 
 def map_sections(path):
-    """(kind, address, bytes, object) of every section linked, from the linker map."""
+    """(kind, address, bytes, path of the object) of every section linked, from the linker map."""
     text = re.sub(r"\n {16,}0x", " 0x", open(path).read().split(LAYOUT)[1])
     found = re.findall(r"^ \.(text|init|fini|plt|iplt|rodata|data|bss)\S*\s+0x([0-9a-f]+)\s+0x([0-9a-f]+)\s+(\S+)", text, re.M)
     return [(kind, int(at, 16), int(size, 16), obj) for kind, at, size, obj in found if int(size, 16) and int(at, 16)]
@@ -39,7 +40,7 @@ class Program:
         self.path = path
         sections = [s for s in map_sections(path + ".map") if s[0] not in ("rodata", "data", "bss")]
         code = sorted((at, obj) for _, at, _, obj in sections)
-        self.starts, self.objects = [a for a, _ in code], [o for _, o in code]
+        self.starts, self.places = [a for a, _ in code], [place_of(o) for _, o in code]
         names = {}
         for line in run([NM, path]).splitlines():
             word = line.split()
@@ -48,14 +49,15 @@ class Program:
         self.entries = sorted(names)
         self.names = [names[a] for a in self.entries]
 
-        self.helpers = sorted((at, size) for kind, at, size, obj in sections if re.search(HELPERS, obj))
+        self.helpers = sorted((at, size) for kind, at, size, obj in sections if is_helper(place_of(obj)))
 
     def is_helper(self, address):
-        return re.search(HELPERS, self.object_of(address)) is not None
+        return is_helper(self.place_of(address))
 
-    def object_of(self, address):
-        place = bisect.bisect_right(self.starts, address) - 1
-        return self.objects[place] if place >= 0 else ""
+    def place_of(self, address):
+        """The object, as the rows of handheld_rows.py name it."""
+        at = bisect.bisect_right(self.starts, address) - 1
+        return self.places[at] if at >= 0 else ""
 
     def function_of(self, address):
         """Its name, and whether `address` is where it begins."""

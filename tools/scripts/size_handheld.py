@@ -1,24 +1,24 @@
 #!/usr/bin/env python3
-"""size_handheld.py HANDHELD-DIR PLUGIN OUT FEATURE...: sizes of the cross-built client, as Markdown in OUT/size.md and on stdout.
+"""size_handheld.py HANDHELD-DIR PLUGIN PACK OUT FEATURE...: sizes of the cross-built client, as Markdown in OUT/size.md and on stdout.
 
-Code by part of the program (from the linker map), what each feature left out saves, the most stack the core can take (stack_handheld.py), and
+Code by part of the program (from the linker map, by the rows of handheld_rows.py), what each feature left out saves, the most stack the core can take (stack_handheld.py), and
 the 4 KiB pages a flight touches: code and data executed, read or written, each counted once, which is what a system with demand paging keeps
-resident. The tape takes the place of the link; its pages are not counted. Ends with an error when stack or memory pass their limits."""
+resident. The tape takes the place of the link; its pages are not counted. What each pool of the client's block held in that flight, and how
+blocks of other sizes are shared out for the ground of PACK. Ends with an error when stack or memory pass their limits."""
 import os
 import re
 import sys
 
 import stack_handheld
-from handheld_counts import Counts, Program, die, map_sections, run
+from handheld_counts import QEMU, Counts, Program, die, map_sections, run
+from handheld_rows import SIZES, NoRow, place_of
 
 KINDS = ("text", "rodata", "data", "bss")
-PARTS = [("protocol", r"obj/protocol/"), ("client/terrain", r"obj/client/terrain/"), ("client", r"obj/client/"),
-         ("common3d/soft", r"obj/common3d/soft/"), ("common3d", r"obj/common3d/"), ("platform", r"obj/platform/"),
-         ("program", r"obj/sim/"), ("zlib", r"libz\.a"), ("libjpeg", r"libjpeg\.a"), ("libc, libgcc", r"/lib(c|gcc|gcc_eh|pthread)\.a|/crt\w*\.o")]
 CORE = ("protocol", "client", "client/terrain", "common3d", "common3d/soft")
 PAGE = 4096
 RESIDENT_MAX = 8 << 20
 PATHS = 7
+BUDGET = "client/ff_budget.h"
 
 
 def sections(path):
@@ -28,12 +28,9 @@ def sections(path):
 
 def parts(path):
     """Bytes by part and kind, from the linker map."""
-    sums = {name: dict.fromkeys(KINDS, 0) for name, _ in PARTS}
+    sums = {part: dict.fromkeys(KINDS, 0) for part in SIZES.rows.values()}
     for kind, _, size, obj in map_sections(path + ".map"):
-        part = next((name for name, pattern in PARTS if re.search(pattern, obj)), None)
-        if not part:
-            die("%s belongs to no part of the program: name it in PARTS" % obj)
-        sums[part][kind if kind in KINDS else "text"] += size
+        sums[SIZES.of(place_of(obj))][kind if kind in KINDS else "text"] += size
     return sums
 
 
@@ -78,22 +75,33 @@ def stack_table(paths):
 def memory_tables(figures, pages):
     text = ["| touched in a flight (block of %d bytes) | KiB |" % figures["memory_bytes"], "|---|--:|"]
     text += ["| %s | %d |" % (k, PAGE // 1024 * n) for k, n in pages.items()]
-    text += ["| **all of the process**, limit %d | **%d** |" % (RESIDENT_MAX // 1024, PAGE // 1024 * sum(pages.values())), "",
-             "| pool | high-water mark |", "|---|--:|", "| nodes, of capacity | %d of %d |" % (figures["nodes_high"], figures["nodes_capacity"])]
-    text += ["| %s | %d |" % (k[:-5].replace("_", " "), figures[k]) for k in figures if k.endswith("_high") and k != "nodes_high"]
-    return text + ["| found no room | %d nodes, %d images |" % (figures["pool_full"], figures["textures_full"])]
+    return text + ["| **all of the process**, limit %d | **%d** |" % (RESIDENT_MAX // 1024, PAGE // 1024 * sum(pages.values()))]
 
 
-def main(folder, plugin, out, *features):
+def pool_tables(figures, plan):
+    """The pools in that flight, each with the reason from its row in client/ff_budget.h; then blocks of other sizes."""
+    why = dict(re.findall(r'^ +(?:X|PART)\((\w+), .*?"([^"]*)"\)', open(BUDGET).read(), re.S | re.M))
+    if set(why) != set(figures["pools"]):
+        die("%s has other rows than the program has pools" % BUDGET)
+    text = ["| pool | high-water mark | of | bytes | what is in it |", "|---|--:|--:|--:|---|"]
+    text += ["| %s%s | %d | %d | %d | %s |" % ("of it " if p["inside"] else "", name, p["high"], p["count"], p["bytes"], why[name])
+             for name, p in figures["pools"].items()]
+    text += ["| found no room | | | | %d nodes, %d images |" % (figures["pool_full"], figures["textures_full"]), "",
+             "How blocks of other sizes are shared out, over a link with images and panoramas:", ""]
+    return text + plan.splitlines()
+
+
+def main(folder, plugin, pack, out, *features):
     os.makedirs(out, exist_ok=True)
     full = folder + "/farfield-handheld"
     try:
         paths = stack_handheld.worst_paths(full, "client/farfield.h")
     except stack_handheld.Unresolved as what:
         die("stack: %s" % what)
+    plan = run([*QEMU, full, "--pack", pack, "--plan"])
     figures, pages = resident(Program(full), plugin, folder, out)
     text = ["# Size of the handheld client", "", "armv6, soft float, -O2, static. Bytes.", "", *size_tables(full, list(features)), "", *stack_table(paths), "",
-            *memory_tables(figures, pages)]
+            *memory_tables(figures, pages), "", *pool_tables(figures, plan)]
     open(out + "/size.md", "w").write("\n".join(text) + "\n")
     print("\n".join(text))
     if paths[0][0] > stack_handheld.LIMIT:
@@ -103,4 +111,7 @@ def main(folder, plugin, out, *features):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    try:
+        main(*sys.argv[1:])
+    except NoRow as what:
+        die(what)

@@ -7,7 +7,8 @@ from handheld_counts import map_sections, run
 
 CORE = ("protocol/", "client/", "common3d/")
 LIMIT = 4096  # bytes; DESIGN.md, chapter 11
-# Calls through pointers: pattern of the caller, pattern of all it can reach. Names are "file.c:name" for static functions.
+# Calls through pointers: pattern of the caller, pattern of all it can reach. Names are "file.c:name" for static functions. A row that no
+# caller needs any more is an error.
 THROUGH_POINTERS = [
     (r"c3d_device\.c:lay_out|^c3d_bytes", r"soft/c3d_soft\.c:soft_state_bytes"),
     (r"^c3d_open$", r"soft/c3d_soft\.c:soft_(open|close|state_bytes)"),
@@ -39,6 +40,16 @@ FOLLOWED = r"^(__aeabi_\w+|__u?div\w+|__\w+di3|__memcmpeq|mem\w+|str\w+|inflate\
 
 class Unresolved(Exception):
     pass
+
+
+def row_of(name):
+    return next((row for row, (caller, _) in enumerate(THROUGH_POINTERS) if re.search(caller, name)), None)
+
+
+def rows_unused(callers):
+    """Rows of the list that none of the functions that call through pointers needs."""
+    used = {row_of(name) for name in callers}
+    return [caller for row, (caller, _) in enumerate(THROUGH_POINTERS) if row not in used]
 
 
 class CallGraph:
@@ -75,7 +86,8 @@ class CallGraph:
                 self.pointers.add(name)
         reached = set(self.calls[name])
         if name in self.pointers:
-            pattern = next((to for caller, to in THROUGH_POINTERS if re.search(caller, name)), "")
+            row = row_of(name)
+            pattern = THROUGH_POINTERS[row][1] if row is not None else ""
             found = {f for f in self.place if pattern and re.search(pattern, f)}
             if not found and pattern is not None:
                 raise Unresolved("%s calls through a pointer: say in THROUGH_POINTERS what it can reach" % name)
@@ -152,4 +164,6 @@ def worst_paths(program, header):
     for root in re.findall(r"^[a-z].*?\b(ff_client_\w+)\(", open(header).read(), re.M):
         size, path = graph.worst(root, core_only)
         rows.append((size, graph.worst(root, with_platform)[0], path))
+    for caller in rows_unused(graph.pointers):
+        raise Unresolved("nothing calls through a pointer in %s any more: take the row out of THROUGH_POINTERS" % caller)
     return sorted(rows, reverse=True)
