@@ -26,6 +26,9 @@ THROUGH_POINTERS = [
     (r"^c3d_read_rgb$", r"soft/c3d_soft\.c:soft_read_rows"),
     (r"^c3d_frame_pixels$", r"soft/c3d_soft\.c:soft_pixels"),
     (r"^soft_|soft/soft_[a-z]+\.c:", r"soft_spans\.c:span_|^soft_segment_paint$"),
+    (r"^ff_decoder_|ff_decode\.c:(decode|reconstruct)$|^ff_(decode|reconstruct)_",
+     r"^ff_[a-z]+_(memory|decode|reconstruct)$|^ff_add_residuals$"),  # ff_codec_list.h
+    (r"ff_body\.c:|^ff_take_body$", r"ff_codec_deflate\.c:take_deflated$"),
     (r"ff_predict\.c:|^ff_predict_", r"ff_decode\.c:add_residual$"),
     (r"ff_pool\.c:|^ff_tree_reshade_beside$", r"ff_terrain_view\.c:on_evict$"),
     (r"^ff_box_in_view$", r"ff_view_cull\.c:(narrow_)?beyond_plane$"),
