@@ -7,8 +7,9 @@
 
 #define FF_HEAD_BODY   0x03u /* enum ff_body */
 #define FF_HEAD_ERRORS 0x0cu /* enum ff_errors_form, shifted by 2 */
-#define FF_HEAD_DETAIL_SHIFT \
-    4 /* low bits of every value that are stored plainly; PACKED: less one */
+/* From this bit on, the head says how many low bits of every value are stored plainly (for
+ * FF_BODY_PACKED that number less one). */
+#define FF_HEAD_DETAIL_SHIFT 4
 
 enum ff_body { FF_BODY_ZERO, FF_BODY_PACKED, FF_BODY_DEFLATE, FF_BODY_UNARY };
 

@@ -6,9 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TICK_US                                                                      \
-    2000 /* of the simulated network; a real server is looked after at the same pace \
-          */
+/* A step of the simulated network; a real server is looked after at the same pace. */
+#define TICK_US   2000
 #define FNV_START 14695981039346656037u
 #define FNV_PRIME 1099511628211u
 
@@ -26,7 +25,7 @@ static uint64_t fnv(uint64_t hash, const uint8_t *bytes, size_t count)
 
 /* ---- time ---- */
 
-/* Server and client until `until_us`, by ticks. */
+/* Steps server and client until `until_us`, tick by tick. */
 static int advance(fly_flight *flight, int64_t until_us)
 {
     fly_world *world = flight->world;
@@ -231,7 +230,7 @@ static int take_picture(fly_flight *flight, double t_s)
 
 /* ---- frames ---- */
 
-/* Searches the whole cut for cracks. The first one is told. */
+/* Searches the whole cut for cracks, and tells the first one. */
 static void check_cracks(fly_flight *flight, double t_s)
 {
     char why[256];
@@ -255,7 +254,7 @@ static int check_terrain(const fly_flight *flight)
                 "serves another terrain than --pack");
 }
 
-/* What the frame draws, for the relevance of what came. */
+/* Tells the relevance what the frame draws. */
 static void tell_relevance(fly_flight *flight)
 {
     const ff_tree *tree = ff_client_tree(flight->world->client);
@@ -320,8 +319,8 @@ static int begin(fly_flight *flight, fly_world *world, FILE *csv)
     return 0;
 }
 
-/* What went wrong at the server's end: an error when the flight says nothing about the pack, else a
- * word about it. */
+/* Looks at what went wrong at the server's end. It is an error when the flight then says nothing
+ * about the pack; else it is only told. */
 static int judge_server(const fly_flight *flight, const ff_client_stats *stats)
 {
     const char *name = flight->options->server ? flight->options->server

@@ -11,9 +11,9 @@ typedef struct fly_flight {
     FILE *csv; /* or NULL */
     c3d_camera camera;
     int64_t start_us; /* the clock at t = 0 */
-    /* of the server, rendered: after each the client's GL context is made current again */
+    /* faces the server has rendered; after each the client's GL context is made current again */
     uint32_t faces_seen;
-    int had_ground;       /* in a frame so far */
+    int had_ground;       /* 1: some frame so far has drawn ground */
     uint64_t events_done; /* bit per event */
     uint8_t *rgb;
     fly_sample *sample;
@@ -21,8 +21,8 @@ typedef struct fly_flight {
     fly_totals totals;
 } fly_flight;
 
-/* Flies all of it. 0, or -1 with one line on stderr. Rows lie in `sample` afterwards; free with
- * fly_flight_free. */
+/* Flies the whole flight. 0, or -1 with one line on stderr. Rows lie in `sample` afterwards; free
+ * with fly_flight_free. */
 int fly_flight_run(fly_flight *flight, fly_world *world, FILE *csv);
 void fly_flight_free(fly_flight *flight);
 

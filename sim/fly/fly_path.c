@@ -8,9 +8,9 @@
 #define HOVER_DEGREES_S 6.0
 #define TURN_EVERY_S    20.0
 #define TURN_S          2.0
-#define SMOOTH_M                                                                                 \
-    150.0 /* the height follows the highest ground within this distance along the path, averaged \
-             over it */
+/* A path keeps a height above the highest ground within this distance along it, averaged over
+ * the same distance. */
+#define SMOOTH_M     150.0
 #define SMOOTH_STEPS 15 /* on each side */
 
 void fly_path_init(fly_path *path, const fly_options *options, const ff_terrain_info *info,
@@ -82,7 +82,7 @@ static void place_unmoved(const fly_path *path, double arc_m, double pos_m[2], d
     }
 }
 
-/* After teleports; a border stops it. */
+/* Moves a position by what teleports have moved the path; a border stops it. */
 static void move(const fly_path *path, double pos_m[2])
 {
     for (int i = 0; i < 2; i++)
@@ -105,7 +105,7 @@ static double arc_at(const fly_path *path, double flown_s)
     return path->from_m + flown_s * path->speed_ms;
 }
 
-/* Turned by so much from the path's direction at a time. */
+/* How far the viewer has turned from the path's direction at a time. */
 static double turned_at(const fly_path *path, double flown_s)
 {
     if (path->kind == FLY_HOVER) return flown_s * HOVER_DEGREES_S / 360;

@@ -101,7 +101,7 @@ static int append(reader *r, fly_recording *recording, const fly_fix *fix)
     return 0;
 }
 
-/* Looks where the next fix lies; where that is here, on in the old direction. */
+/* Headings look to the next fix; when that lies at the same place, they stay as they were. */
 static void fill_headings(fly_recording *recording)
 {
     double heading_deg = 0;

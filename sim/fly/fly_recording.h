@@ -6,9 +6,9 @@
  *   z_m or h_m        metres above the terrain's zero, or above its ground
  *   heading_deg       0 north, 90 east; without it: where the next line lies
  *   pitch_deg         up; without it: -6
- * Others are passed over, so that the CSV of an earlier farfield-fly is a recording. Between two
- * lines all values change evenly, the heading by the shorter turn; before the first and after the
- * last line the viewer stands.
+ * Other columns are passed over, so that the CSV of an earlier farfield-fly is a recording. Between
+ * two lines all values change evenly, the heading by the shorter turn; before the first and after
+ * the last line the viewer stands.
  */
 #ifndef FLY_RECORDING_H
 #define FLY_RECORDING_H

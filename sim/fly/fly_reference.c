@@ -8,7 +8,7 @@
 #define VIEW_WU      (200000 * FF_WU_PER_METRE)
 #define STEP_US      20000
 #define STEPS_MAX    20000
-#define STEPS_IDLE   10 /* in a row: nothing is missing any more */
+#define STEPS_IDLE   10 /* this many steps without news: nothing is missing any more */
 
 int fly_reference_open(fly_reference *reference, const fly_options *options, const ff_pack *pack,
                        const sys_surface_api *surface_api, const sys_surface_desc *surface,

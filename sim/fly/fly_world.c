@@ -51,7 +51,7 @@ static int open_link(fly_world *world)
     return rc == FF_OK ? 0 : fail("server", rc);
 }
 
-/* From here on the stream records. */
+/* Opens the tape: from here on the stream records. */
 static int open_tape(fly_world *world)
 {
     const fly_options *options = world->options;
@@ -79,7 +79,7 @@ static const struct c3d_backend *backend_of(enum fly_backend backend)
                                   : c3d_backend_gl();
 }
 
-/* Before the flight's own surface, whose context is to be the current one. */
+/* Opens the reference, before the flight's own surface, whose context is to be the current one. */
 static int open_reference(fly_world *world, const sys_surface_desc *desc)
 {
     const fly_options *options = world->options;

@@ -16,7 +16,7 @@ typedef struct fly_world {
     int64_t now_us; /* the clock of the flight */
     sys_mapping mapping;
     ff_pack pack;
-    /* moderate level for the path; the whole, with an audit */
+    /* a moderate level, for the path; the whole ground, with an audit */
     sim_ground path_ground, true_ground;
     sim_auditor *auditor;
     fly_path path;
@@ -26,10 +26,10 @@ typedef struct fly_world {
     sim_relevance *relevance; /* NULL with a real server */
     sys_tcp tcp;              /* with a real server */
     sys_stream stream;
-    sim_tape_recorder tape; /* file NULL: none is recorded */
+    sim_tape_recorder tape; /* file NULL: no tape is recorded */
     const sys_surface_api *surface_api;
     sys_surface *surface;
-    fly_reference reference; /* client NULL: none is drawn */
+    fly_reference reference; /* client NULL: no reference is drawn */
     void *memory;
     ff_client *client;
 } fly_world;

@@ -55,8 +55,8 @@ void handheld_close(handheld *device);
 ff_client_desc handheld_client_desc(const handheld *device);
 /* All frames. 0, or -1 with one line on stderr. */
 int handheld_fly(handheld *device);
-/* Statistics of the flight on stdout, as text or JSON; the last frame to options->fb_path. 0 or
- * -1. */
+/* Prints the flight's statistics on stdout, as text or JSON, and writes the last frame to
+ * options->fb_path. 0 or -1. */
 int handheld_report(handheld *device);
 
 /* Instead of a flight: how blocks of several sizes would be shared out, as a table on stdout. */

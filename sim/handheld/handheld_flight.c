@@ -113,7 +113,7 @@ static int work(handheld *device, int64_t now_us)
     return moved;
 }
 
-/* Of values, not bytes: the same on every machine. */
+/* The hash is over pixels as values, not bytes: so it is the same on every machine. */
 static void hash_picture(handheld *device)
 {
     enum c3d_texture_format format;
@@ -184,7 +184,7 @@ static int fly_tape(handheld *device)
                : fail("tape: another flight than the one recorded", FF_ERR_FORMAT);
 }
 
-/* Straight along the terrain's diagonal, above the ground as drawn. */
+/* Places the camera: straight along the terrain's diagonal, above the ground as drawn. */
 static void place(const handheld *device, uint32_t frame, c3d_camera *camera)
 {
     const ff_terrain_info *info = ff_client_terrain(device->client);

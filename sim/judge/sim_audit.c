@@ -9,7 +9,7 @@
 #include <string.h>
 
 #define NEAREST_M 0.01 /* points nearer to the eye have no pixel */
-#define EDGE_PX   0.5  /* the drawn ground's edge is found to this */
+#define EDGE_PX   0.5  /* how exactly the drawn ground's edge is found */
 
 typedef struct triangles {
     uint32_t count;
@@ -92,7 +92,7 @@ static double vertex_height_m(const sim_auditor *auditor, const ff_drawn *drawn,
     return auditor->ground->hoffset_m + auditor->ground->hscale_m * drawn->heights[index];
 }
 
-/* Height of triangle (a, b, c) of a node at (x, y) in its cells: 1 and *z_m, or 0 outside. */
+/* Height of a node's triangle at (x, y), counted in the node's cells: 1 and *z_m, or 0 outside. */
 static int triangle_height(const sim_auditor *auditor, const ff_drawn *drawn,
                            const uint16_t vertex[3], double x, double y, double *z_m)
 {
@@ -227,14 +227,14 @@ static void look_at(const sim_auditor *auditor, const sim_audit_view *view, cons
         return;
     }
     at->drawn = 1;
-    at->error_px = most; /* shown behind the eye: as wrong as the picture is large */
+    at->error_px = most; /* the point is shown behind the eye: as wrong as the picture is large */
     if (sim_eye_project(e, shown, shown_px))
         at->error_px = fmin(most, hypot(shown_px[0] - at->pixel[0], shown_px[1] - at->pixel[1]));
     at->cause = node ? cause_of(auditor, view, e, node, at->error_px) : SIM_CAUSE_PANORAMA;
 }
 
-/* Ground that is not drawn is as wrong as the drawn ground's edge is far: halving towards the
- * nearest pixel that shows it. */
+/* The error of ground that is not drawn: how far the drawn ground's edge is. The edge is found by
+ * halving the way to the nearest pixel that shows drawn ground. */
 static double undrawn_error(const sim_auditor *auditor, const sim_audit_view *view,
                             const sim_eye *e, const look *list, size_t count, const look *at)
 {

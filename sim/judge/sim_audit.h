@@ -4,16 +4,16 @@
  * For a grid of pixels it finds the true visible ground point P, then what the client draws for P:
  *   ground    P's (x, y) lies under a drawn triangle: P at the drawn height is projected again; the
  *             distance to P's own pixel is the error.
- *   panorama  no triangle, but a panorama in use shows P: it shows it in the direction from O,
- *             where the panorama was taken; that direction seen from the camera is projected; the
- *             distance to P's pixel is the (parallax) error. The renderer's own error (a pixel of
- *             the face, by its rules) and what O could not see are not counted.
- *   nothing   neither: the distance to the nearest pixel at which something is drawn for the ground
- *             there is the error (one-sided Hausdorff: how far the drawn ground's edge would have
- *             to come), the picture's diagonal where there is none. Counted in undrawn_percent too.
- * Each pixel's error has one cause (enum sim_audit_cause), found from the quality asked for, not
- * from the client's selection. Independent of the client's estimates: triangles are made anew from
- * the drawn list's heights and border masks.
+ *   panorama  no triangle, but a panorama in use shows P, in the direction in which P lies from O,
+ *             where the panorama was taken. That direction, taken from the camera, is projected;
+ * the distance to P's pixel is the (parallax) error. The renderer's own error (a pixel of the face,
+ * by its rules) and ground that O could not see are not counted. nothing   neither: the distance to
+ * the nearest pixel at which something is drawn for the ground there is the error (one-sided
+ * Hausdorff: how far the drawn ground's edge would have to come), the picture's diagonal where
+ * there is none. Counted in undrawn_percent too. Each pixel's error has one cause (enum
+ * sim_audit_cause), found from the quality asked for, not from the client's selection. Independent
+ * of the client's estimates: triangles are made anew from the drawn list's heights and border
+ * masks.
  */
 #ifndef SIM_AUDIT_H
 #define SIM_AUDIT_H
@@ -24,7 +24,7 @@
 enum sim_audit_cause {
     /* the quality asks for finer ground here, and there is some: it has not come */
     SIM_CAUSE_WAITING,
-    SIM_CAUSE_DEPTH,    /* it would, but its depth_max forbids */
+    SIM_CAUSE_DEPTH,    /* the quality would ask for finer ground, but its depth_max forbids it */
     SIM_CAUSE_QUALITY,  /* fine enough for the quality, or as fine as the terrain is */
     SIM_CAUSE_PANORAMA, /* parallax */
     SIM_CAUSE_UNDRAWN,  /* nothing is drawn there */
@@ -36,15 +36,15 @@ typedef struct sim_audit_view {
     ff_quality quality;    /* for the causes alone: measure, c, error_px, depth_max */
     const ff_drawn *drawn; /* what is drawn */
     uint32_t drawn_count;
-    int panorama; /* 1: one is in use, and: */
+    int panorama; /* 1: a panorama is in use, and the rest tells of it */
     int32_t panorama_pos_wu[3];
     unsigned faces; /* bit per enum ff_face_name held */
-    /* it shows ground whose largest coordinate difference to its position lies between */
+    /* the panorama shows ground whose largest coordinate difference to O lies between these */
     int32_t front_wu, back_wu;
 } sim_audit_view;
 
 typedef struct sim_audit_result {
-    /* that truly show ground, by who draws it */
+    /* pixels that truly show ground, by what draws it */
     uint32_t ground_pixels, panorama_pixels, undrawn_pixels;
     double err_px_rms, err_px_p95, err_px_max; /* over all three; 0 without any */
     double square_px[SIM_CAUSES]; /* mean squares by cause: their sum is err_px_rms squared */

@@ -251,8 +251,8 @@ static int cast_cell(const ray *r, uint32_t column, uint32_t row, double t0, dou
     return cast_plane(r, column, row, difference + (t0 + t1) / 2 * slope >= 0, t0, t1, t_hit);
 }
 
-/* The block (column, row) of 2^log2 cells a side, crossed by the ray on t0..t1: its quarters in the
- * ray's order. */
+/* Looks for ground in the block (column, row) of 2^log2 cells a side, which the ray crosses on
+ * t0..t1: in its quarters, in the ray's order. */
 static int cast_block(const ray *r, unsigned log2, uint32_t column, uint32_t row, double t0,
                       double t1, double *t_hit)
 {

@@ -20,8 +20,8 @@ typedef struct sim_ground {
     double cell_m;
     double hscale_m, hoffset_m;
     const uint16_t *height;
-    void *block;         /* behind `height`, or */
-    sys_mapping mapping; /* a file mapped, shared by all that fly over this ground */
+    void *block;         /* the memory of `height`, when it was decoded here */
+    sys_mapping mapping; /* else the mapped file, shared by all who fly over this ground */
     unsigned top;        /* one block of 2^top cells a side covers everything */
     /* by log2 of the block's cells */
     struct {
@@ -33,8 +33,9 @@ typedef struct sim_ground {
 /* Decodes the finest level that has at most samples_max heights (level 0 whatever its size). FF_OK,
  * FF_ERR_MEMORY or an error of the pack's records. */
 int sim_ground_load(sim_ground *ground, const ff_pack *pack, uint64_t samples_max);
-/* The same through a file, when cache_path is not NULL: taken from there when it is of this pack
- * and level, else decoded and left there. FF_ERR_SYSTEM: it cannot be written. */
+/* The same by way of a file, when cache_path is not NULL: heights are taken from there when the
+ * file is of this pack and level, else they are decoded and left there. FF_ERR_SYSTEM: the file
+ * cannot be written. */
 int sim_ground_load_cached(sim_ground *ground, const ff_pack *pack, uint64_t samples_max,
                            const char *cache_path);
 void sim_ground_free(sim_ground *ground);

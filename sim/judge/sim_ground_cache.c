@@ -1,6 +1,6 @@
 /* A ground's heights on disk, so that decoding a large pack is done once for many flights: a head,
- * then the rows as they lie in memory. The file is of this machine only. What does not fit the pack
- * is not an error: it is decoded and written again. */
+ * then the rows as they lie in memory. The file is of this machine only. A file that does not fit
+ * the pack is not an error: the pack is decoded and the file written again. */
 #include "sim_ground_local.h"
 
 #include <string.h>

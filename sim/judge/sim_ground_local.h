@@ -11,8 +11,8 @@ typedef struct sim_ground_head {
     uint32_t zero[2];
 } sim_ground_head;
 
-/* `ground` has level, columns and rows. 1: heights are those of the file; 0: there is none, or of
- * another ground. */
+/* `ground` has level, columns and rows. 1: its heights are now those of the file; 0: there is no
+ * file, or it is of another ground. */
 int sim_ground_cache_open(sim_ground *ground, uint32_t checksum, const char *path);
 /* FF_OK or FF_ERR_SYSTEM. */
 int sim_ground_cache_write(const sim_ground *ground, uint32_t checksum, const char *path);

@@ -28,8 +28,8 @@ typedef struct answer {
     uint32_t bytes;
     int64_t came_us;
     int drawn, supports;
-    uint64_t frame; /* last looked at in */
-    size_t next;    /* in its bucket */
+    uint64_t frame; /* the last frame that marked it */
+    size_t next;    /* the next answer in its bucket */
 } answer;
 
 /* Bytes of one direction that do not make a whole message yet. */
@@ -240,7 +240,8 @@ static void mark(sim_relevance *relevance, answer *a)
     a->frame = relevance->frame;
 }
 
-/* A node is there only where those beside its parent are as fine as the parent. */
+/* Marks the answers that brought the nodes beside `parent`: without them its children could not be
+ * drawn, because the cut is restricted. */
 static void mark_support(sim_relevance *relevance, ff_key parent)
 {
     for (unsigned side = 0; side < FF_SIDE_COUNT && ff_key_level(parent) > 0; side++) {
@@ -268,7 +269,7 @@ static void mark_heights(sim_relevance *relevance, ff_key node)
     }
 }
 
-/* Images come from coarse to fine: the last one to come over a node is the one it is drawn with. */
+/* Images come from coarse to fine: a node is drawn with the last one that came over it. */
 static void mark_image(sim_relevance *relevance, ff_key node)
 {
     answer *last = NULL;

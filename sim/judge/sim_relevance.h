@@ -9,7 +9,7 @@
  *             draws the answers of its whole line of ancestors. Nodes outside the window that only
  *             let a drawn neighbour be as fine as it is (the cut is restricted) are not drawn; they
  *             are told apart as `supporting`.
- *   image     it is the last that has come over a drawn node: they come from coarse to fine.
+ *   image     it is the last that has come over a drawn node: images come from coarse to fine.
  *   face      its set is the one in use and a row of it lies in the window; of an empty face: any
  *             direction of it.
  * Overhead is all else that came: greetings, pongs, refusals, cancellations and what a cut left
@@ -28,9 +28,9 @@
 typedef struct sim_relevance_figures {
     double came[FF_DATA_CLASSES], overhead;
     double judged[FF_DATA_CLASSES]; /* came at least SIM_RELEVANCE_US ago */
-    double unused[FF_DATA_CLASSES]; /* and were not drawn in time */
-    double supporting; /* of unused heights: a drawn node could not have been without them */
-    /* of judged and overhead that was drawn in time; NAN before anything was judged */
+    double unused[FF_DATA_CLASSES]; /* of the judged: not drawn in time */
+    double supporting; /* of unused heights: those without which a drawn node could not be drawn */
+    /* share of judged bytes and overhead that was drawn in time; NAN before anything was judged */
     double percent;
 } sim_relevance_figures;
 
@@ -39,7 +39,7 @@ typedef struct sim_relevance_view {
     c3d_camera camera;
     const ff_drawn *drawn;
     uint32_t drawn_count;
-    int panorama; /* 1: one is in use, taken at: */
+    int panorama; /* 1: a panorama is in use, taken at position_wu */
     int32_t panorama_pos_wu[3];
 } sim_relevance_view;
 

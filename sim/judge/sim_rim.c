@@ -1,6 +1,7 @@
-/* See sim_rim.h. With all triangles counter-clockwise inside the node, all edges used once but
- * paired or on the border, and the areas adding up to the node's, the triangles tile it: the number
- * of triangles over a point changes nowhere inside, so it is 1 everywhere. */
+/* See sim_rim.h. The check: all triangles are counter-clockwise and inside the node, every edge is
+ * used once in each direction or lies on the border, and the areas add up to the node's. Then the
+ * triangles tile the node: the number of triangles over a point changes nowhere inside, so it is 1
+ * everywhere. */
 #include "sim_rim.h"
 
 #include "../../protocol/codec/ff_codec.h"

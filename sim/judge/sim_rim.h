@@ -13,8 +13,8 @@ typedef struct sim_rim {
 /* Grid index of the i-th vertex of a side, for nodes of n by n cells. */
 unsigned sim_rim_vertex(unsigned n, enum ff_side side, unsigned i);
 
-/* Forms the triangles of a node with `coarser` sides and checks that they tile it exactly (see
- * sim_watertight.h). NULL, and the rims in *rim; or what is wrong. */
+/* Forms the triangles of a node with `coarser` sides and checks that they tile the node exactly
+ * (see sim_watertight.h). Returns NULL and the rims in *rim, or what is wrong. */
 const char *sim_rim_of_strips(const ff_strips *strips, unsigned node_log2, unsigned coarser,
                               sim_rim *rim);
 

@@ -1,5 +1,5 @@
-/* See sim_watertight.h. A table of keys holds the listed nodes and all that lie above one; what
- * touches what is found there. */
+/* See sim_watertight.h. A table of keys holds the listed nodes and all nodes above them: the check
+ * finds in it which nodes touch. */
 #include "sim_watertight.h"
 
 #include "sim_rim.h"
@@ -28,7 +28,7 @@ typedef struct check {
     unsigned n; /* cells of a node each way */
     ff_strips strips;
     sim_rim rim[16];     /* by mask of coarser sides */
-    unsigned rims_known; /* bit: mask looked at */
+    unsigned rims_known; /* bit for each mask whose rim is known */
     entry *entries;
     corner *corners;
     uint32_t entry_mask, corner_mask;
@@ -112,8 +112,8 @@ static int enter_above(check *c, ff_key key)
 
 /* ---- nodes that touch ---- */
 
-/* Vertices from..to of one side of `drawn`, as drawn there, against those of the listed node
- * across, `finer` levels coarser. */
+/* Compares the vertices drawn along one side of `drawn` with those of the listed node `across`,
+ * which is `finer` levels coarser. */
 static int rims_agree(check *c, const ff_drawn *drawn, enum ff_side side, const ff_drawn *across,
                       unsigned finer)
 {

@@ -130,7 +130,7 @@ static int prepare(const link_options *options, sim_link_desc *desc, int *listen
         return fail(options->profile, rc == FF_ERR_NOT_FOUND ? "no such profile (see --list)"
                                                              : "not NAME[,KEY=VALUE...]");
     for (int way = 0; way < 2; way++) desc->way[way].trace = options->trace[way];
-    /* only whether the address can be one */
+    /* asks only whether the address can be one: the connection is not used */
     rc = sys_tcp_client(&tcp, options->connect, &probe);
     if (rc != FF_OK) return fail(options->connect, ff_error_text(rc));
     probe.close(probe.state);

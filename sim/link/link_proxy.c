@@ -6,7 +6,7 @@
 #define CONNECTIONS_MAX 64
 #define PIECE_BYTES     16384
 #define HELD_US         1000   /* pace while a socket takes no more of what has arrived */
-#define IDLE_US         100000 /* a signal between a look at its flag and the wait is seen so late */
+#define IDLE_US         100000 /* longest wait: a signal just before it is seen only after it */
 
 /* One accepted connection: WAITING for the model's connect time, then OPEN.
  *   client socket ──▶ link (up) ──▶ held[UP] ──▶ server socket, and the same down. */
@@ -23,7 +23,7 @@ typedef struct pass {
     sim_link *link;
     sys_tcp client_tcp, server_tcp;
     sys_stream client, server;
-    held out[2];         /* left the link, not yet taken by the socket */
+    held out[2];         /* bytes that left the link and that the socket has not taken yet */
     int closed[2];       /* no more bytes come from: [UP] the client, [DOWN] the server */
     uint64_t pending[2]; /* bytes in the link */
 } pass;
@@ -41,7 +41,8 @@ link_proxy *link_proxy_create(const sim_link_desc *desc, uint64_t seed, int list
                               const char *connect)
 {
     link_proxy *proxy = calloc(1, sizeof *proxy);
-    sim_link *trial = sim_link_create(desc, seed); /* so that a bad trace is told at the start */
+    /* made only so that a bad trace is told at the start */
+    sim_link *trial = sim_link_create(desc, seed);
     sim_link_destroy(trial);
     if (!proxy || !trial) {
         free(proxy);
@@ -95,8 +96,8 @@ static void accept_new(link_proxy *proxy, int64_t now_us)
     }
 }
 
-/* From a socket into the link. No more is received than the link takes: its full queue holds the
- * sender back, as TCP would. */
+/* Moves bytes from a socket into the link. No more is received than the link takes: its full queue
+ * holds the sender back, as TCP would. */
 static int fill_link(pass *p, enum sim_direction way, int64_t now_us)
 {
     uint8_t bytes[PIECE_BYTES];
@@ -114,7 +115,7 @@ static int fill_link(pass *p, enum sim_direction way, int64_t now_us)
     return FF_OK;
 }
 
-/* From the link into a socket. */
+/* Moves bytes from the link into a socket. */
 static int drain_link(link_proxy *proxy, pass *p, enum sim_direction way, int64_t now_us)
 {
     held *out = &p->out[way];
@@ -135,7 +136,7 @@ static int drain_link(link_proxy *proxy, pass *p, enum sim_direction way, int64_
     }
 }
 
-/* A side that is closed and whose bytes have all been delivered ends the connection. */
+/* 1 when the connection has ended: a side is closed, and all its bytes have been delivered. */
 static int finished(const pass *p)
 {
     return (p->closed[SIM_UP] && !p->pending[SIM_UP]) ||

@@ -29,7 +29,7 @@ static void plan_cut(sim_link *link, int64_t time_us)
                        (int64_t)(every_ms * 500u + every_ms * sys_random_below(&link->cuts, 1001));
 }
 
-/* Time since the link's start; cuts that are due happen here. */
+/* Time since the link's start. Cuts that are due happen here. */
 static int64_t link_time(sim_link *link, int64_t now_us)
 {
     if (!link->started) {

@@ -49,7 +49,7 @@ const sim_link_desc *sim_link_profile_at(unsigned index);
 int sim_link_parse(const char *spec, sim_link_desc *desc);
 
 typedef struct sim_link sim_link;
-/* A new link is connected; its clock (stalls, traces, cuts) starts at the first time it is given.
+/* A new link is connected; its clock (stalls, traces, cuts) starts at the first time that is given.
  * The same description, seed and bytes at the same times give the same arrivals, however often the
  * link is looked at in between. NULL when out of memory or a trace cannot be read. */
 sim_link *sim_link_create(const sim_link_desc *desc, uint64_t seed);
@@ -68,12 +68,12 @@ int sim_link_recv(sim_link *link, enum sim_direction way, uint8_t *bytes, size_t
  * way. */
 int64_t sim_link_next_us(const sim_link *link);
 /* From now on the link is as `desc` says, as when a phone changes from one radio network to
- * another: what is queued or under way arrives later, in order; a trace ends, and desc's traces are
- * not used. FF_OK or FF_ERR_MEMORY (the link is as before). */
+ * another. Bytes queued or under way arrive later, in order; a trace ends, and the traces of `desc`
+ * are not used. FF_OK or FF_ERR_MEMORY (the link is as before). */
 int sim_link_change(sim_link *link, const sim_link_desc *desc, int64_t now_us);
 /* Loses the connection now. */
 void sim_link_cut(sim_link *link, int64_t now_us);
-/* Connections made so far, the first included: the server's end notices a new one by it. */
+/* Connections made so far, the first included: the server's end notices a new connection by it. */
 unsigned sim_link_connections(const sim_link *link);
 /* After a cut: starts connecting; FF_ERR_AGAIN until connect_ms have passed, then FF_OK; all bytes
  * under way are lost. */

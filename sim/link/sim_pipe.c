@@ -43,7 +43,7 @@ static void next_stall(sim_stalls *stalls)
     stalls->end_us = stalls->start_us + (int64_t)length_ms * 1000;
 }
 
-/* None begins before `from_us`. */
+/* Prepares the stalls of a link; none begins before `from_us`. */
 static void stalls_init(sim_stalls *stalls, const sim_link_desc *desc, uint64_t seed,
                         int64_t from_us)
 {
@@ -58,8 +58,8 @@ static void stalls_init(sim_stalls *stalls, const sim_link_desc *desc, uint64_t 
     if (stalls->every_ms) next_stall(stalls);
 }
 
-/* The rate at time_us (never earlier than last asked) given the rate without stalls, and until when
- * it holds. */
+/* The rate at time_us, given the rate without stalls; *until_us receives until when it holds. Times
+ * never go back. */
 static uint32_t stalls_rate(sim_stalls *stalls, uint32_t bytes_s, int64_t time_us,
                             int64_t *until_us)
 {
@@ -163,9 +163,9 @@ static uint32_t take_packet(sim_pipe *pipe, uint32_t most, int64_t time_us)
     return packet;
 }
 
-/* When `count` bytes are out that the transmitter starts at time_us. Whole microseconds; what is
- * paid for and not used is carried over to the next packet, so that a long row of packets takes
- * exactly its bytes divided by the rate. */
+/* The time at which `count` bytes are out that the transmitter starts at time_us. The time is whole
+ * microseconds; the part of a byte that was paid for and not used is carried over to the next
+ * packet, so that a long row of packets takes exactly its bytes divided by the rate. */
 static int64_t transmit(sim_pipe *pipe, uint32_t count, int64_t time_us)
 {
     uint64_t need = (uint64_t)count * 1000000u;
@@ -189,8 +189,8 @@ static int64_t transmit(sim_pipe *pipe, uint32_t count, int64_t time_us)
     }
 }
 
-/* Moves all packets whose transmission starts before now_us to the wire. Strictly before: bytes
- * sent at the same moment by several calls go together. */
+/* Moves all packets whose transmission starts before now_us to the wire. Not those that start at
+ * now_us: bytes sent at the same moment by several calls go together. */
 static void advance(sim_pipe *pipe, int64_t now_us)
 {
     uint64_t opportunity;
@@ -249,8 +249,8 @@ void sim_pipe_change(sim_pipe *pipe, const sim_link_desc *desc, enum sim_directi
     stalls_init(&pipe->stalls, desc, seed, now_us);
     pipe->surplus = 0;
     if (pipe->free_us <= now_us) return;
-    /* The last packet on the wire is still being sent, perhaps for the rest of a long stall of
-     * before. */
+    /* The last packet on the wire is still being sent, perhaps for the rest of a long stall that
+     * the link had before the change. */
     sim_span *last = span_at(&pipe->wire, pipe->wire.count - 1);
     int64_t before_us = pipe->wire.count > 1 ? span_at(&pipe->wire, pipe->wire.count - 2)->us
                                              : now_us;

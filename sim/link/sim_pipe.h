@@ -13,10 +13,10 @@
 #include "sim_link.h"
 #include "sim_trace.h"
 
-#define SIM_PIPE_PACKET_BYTES \
-    512 /* a common packet size of 2.5G links; the jitter is drawn for each */
-#define SIM_PIPE_SPANS \
-    4096 /* most sends waiting, and packets under way; more hold the sender back */
+/* A common packet size of 2.5G links; jitter is drawn for each packet. */
+#define SIM_PIPE_PACKET_BYTES 512
+/* The most sends that wait, and the most packets under way; more hold the sender back. */
+#define SIM_PIPE_SPANS 4096
 
 /* The stalls of a link in order of time; both directions make the same ones from the same seed. */
 typedef struct sim_stalls {
@@ -41,11 +41,11 @@ typedef struct sim_pipe {
     sys_random jitter;
     uint8_t *ring;
     size_t ring_bytes, ring_first, stored; /* arrived, under way and queued bytes, in order */
-    size_t queued;                         /* the last ones of them */
-    sim_spans queue, wire;                 /* us: when sent; when it arrives */
+    size_t queued;                         /* of the stored bytes, the last ones */
+    sim_spans queue, wire;                 /* times: when bytes were sent; when they arrive */
     int64_t free_us;                       /* the transmitter is busy until then */
     uint64_t surplus;     /* part of a byte already paid for, in millionths of a byte */
-    uint64_t opportunity; /* trace: first one not used up */
+    uint64_t opportunity; /* with a trace: the first opportunity not used up */
     int64_t arrival_us;   /* of the last packet: order is kept */
 } sim_pipe;
 
@@ -54,7 +54,7 @@ int sim_pipe_init(sim_pipe *pipe, const sim_link_desc *desc, enum sim_direction 
 void sim_pipe_free(sim_pipe *pipe);
 /* Loses all bytes stored. */
 void sim_pipe_flush(sim_pipe *pipe, int64_t now_us);
-/* Makes place for a queue of so many bytes, if there is less. FF_OK or FF_ERR_MEMORY (nothing
+/* Makes room for a queue of queue_bytes, if there is less. FF_OK or FF_ERR_MEMORY (nothing
  * happened). */
 int sim_pipe_widen(sim_pipe *pipe, uint32_t queue_bytes);
 /* Another rate, delay, jitter, queue (sim_pipe_widen first) and stalls from now on; the packet

@@ -22,7 +22,7 @@ void sim_server_free(sim_server *server)
     memset(server, 0, sizeof *server);
 }
 
-/* A new connection is a new session; what the old one had under way is gone. */
+/* A new connection gets a new session; what the old session had under way is gone. */
 static int accept_connection(sim_server *server)
 {
     const ff_session_desc desc = { .pack = server->pack };

@@ -9,8 +9,8 @@
 #include "../../server/session/ff_session.h"
 #include "sim_stream.h"
 
-#define SIM_SERVER_FACE_US \
-    120000 /* assumed render time of a 256 x 256 face on a server, JPEG included */
+/* Assumed time in which a server renders a face of 256 x 256, JPEG included. */
+#define SIM_SERVER_FACE_US     120000
 #define SIM_SERVER_INPUT_BYTES 4096
 
 typedef struct sim_server {
@@ -21,7 +21,7 @@ typedef struct sim_server {
     sys_stream stream;
     unsigned connection; /* of the link that `session` serves */
     ff_session *session;
-    int closing; /* the session ended: what is pending goes out, then the link is cut */
+    int closing; /* 1: the session has ended; its pending bytes go out, then the link is cut */
     uint8_t input[SIM_SERVER_INPUT_BYTES];
     size_t input_count;
     ff_panorama_renderer *renderer; /* opened at the first panorama */

@@ -65,7 +65,7 @@ void sim_trace_free(sim_trace *trace)
 
 uint64_t sim_trace_find(const sim_trace *trace, int64_t time_us)
 {
-    uint64_t ms = ((uint64_t)time_us + 999) / 1000; /* first whole millisecond not before */
+    uint64_t ms = ((uint64_t)time_us + 999) / 1000; /* the first whole one not before time_us */
     uint64_t turn = ms / trace->period_ms, rest = ms % trace->period_ms;
     /* the end of one turn is the start of the next: both lines count, the earlier number first */
     if (turn && !rest) {

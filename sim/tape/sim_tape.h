@@ -4,14 +4,15 @@
  *
  * Little endian. "fftape 1", then SIM_TAPE_HEAD signed 32-bit numbers (sim_tape_head), then
  * records, each begun by a letter:
- *   W time:i64                                       ff_client_work
- *   U time:i64 x y z yaw pitch roll focal:i32 flying:u8   ff_client_update; flying 0: settling
- *       still
- *   R value:i32 bytes...     what the stream's recv answered, inside the W before; recv calls that
+ *   W time:i64               ff_client_work
+ *   U time:i64 x y z yaw pitch roll focal:i32 flying:u8
+ *                            ff_client_update; flying 0: the flight is still settling
+ *   R value:i32 bytes...     what the stream's recv answered, inside the last W; recv calls that
  *                            brought nothing are not recorded
- *   S value:i32 hash:u32     what send answered, and FNV-1a of the bytes it was offered
+ *   S value:i32 hash:u32     what send answered, and FNV-1a of the bytes that send was offered
  *   C value:i32              what reconnect answered
- *   E geometry:u64 requests:u64   the end: the client's two hashes
+ *   E geometry:u64 requests:u64
+ *                            the end: the client's two hashes
  */
 #ifndef SIM_TAPE_H
 #define SIM_TAPE_H
@@ -20,7 +21,7 @@
 
 #include <stdio.h>
 
-/* What the client was given; the player gives the same. */
+/* What the recorded client was given; the player gives the same to its client. */
 typedef struct sim_tape_head {
     uint32_t memory_bytes;
     uint16_t width, height;
@@ -58,7 +59,7 @@ typedef struct sim_tape_step {
 typedef struct sim_tape_player {
     const uint8_t *at, *end;
     uint32_t left; /* bytes of the R record begun */
-    int differs;   /* the client did not do what was recorded */
+    int differs;   /* 1: the client did not do what was recorded */
     sim_tape_head head;
 } sim_tape_player;
 

@@ -33,8 +33,8 @@ static int open_surface_of(view_app *app, enum sys_gl_kind gl)
     return app->surface_api ? app->surface_api->open(&desc, &app->surface) : FF_ERR_UNSUPPORTED;
 }
 
-/* A window for the soft back end has a GL all the same, whichever it can have: to show the picture
- * with. */
+/* A window for the soft back end has a GL all the same, to show the picture with: whichever GL it
+ * can have. */
 static int open_soft_window(view_app *app)
 {
     static const enum sys_gl_kind kinds[2] = { SYS_GL_ES1, SYS_GL_DESKTOP };
@@ -116,8 +116,8 @@ static int open_pack(view_app *app)
     return rc < 0 ? view_fail("%s: %s", path, ff_error_text(rc)) : 0;
 }
 
-/* A file is a pack, all else an address. A pack behind a link, or with panoramas, is served from
- * inside this process. */
+/* A target that is a file is a pack, all else is an address. A pack behind a link, or with
+ * panoramas, is served from inside this process. */
 static int open_terrain(view_app *app)
 {
     const view_options *o = app->options;
@@ -191,7 +191,7 @@ static int write_screenshot(view_app *app, c3d_device *device)
     return rc < 0 ? view_fail("%s: %s", path, ff_error_text(rc)) : 0;
 }
 
-/* The picture without text, and the device it was drawn with; NULL: none. */
+/* Draws the picture without text; returns the device that drew it, or NULL. */
 static c3d_device *draw_ground(view_app *app)
 {
     c3d_device *device = ff_client_device(app->client);
@@ -216,7 +216,7 @@ static int draw(view_app *app)
     return rc;
 }
 
-/* Script steps due now. While settling the script waits. */
+/* Runs the script's steps that are due. While settling the script waits. */
 static void run_script(view_app *app)
 {
     const view_step *step;
@@ -260,7 +260,7 @@ static void place_pilot(view_app *app)
         view_fly_place(&app->fly, info, !o->has_place, o->at_x_wu, o->at_y_wu, o->above_wu);
 }
 
-/* 1 when the text on the picture would now be another one; looked at a few times a second. */
+/* 1 when the text on the picture would change; looked at a few times a second. */
 static int hud_changed(view_app *app, int64_t now_us)
 {
     if ((!app->show_hud && !app->show_pools) || now_us < app->hud_us) return 0;

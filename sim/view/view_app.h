@@ -36,7 +36,7 @@ typedef struct view_app {
     ff_quality quality;
     uint8_t show_hud, show_pools, show_help, battery_low, interrupted, tilted;
     uint8_t redraw, quit;
-    const char *screenshot; /* asked for: written after the next drawing */
+    const char *screenshot; /* file to be written after the next drawing; or NULL */
     unsigned screenshots;   /* taken by key */
     /* the loop */
     uint32_t frame, drawn, events_handled;

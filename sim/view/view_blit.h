@@ -13,11 +13,11 @@ typedef struct view_blit {
     int window_width, window_height;
 } view_blit;
 
-/* For pictures of width x height, in a window of that size at first. The window's context is
- * current. An error of c3d_open. */
+/* Opens a blit for pictures of width x height, in a window of that size at first. The window's
+ * context is current. FF_OK or an error of c3d_open. */
 int view_blit_open(view_blit *blit, const struct c3d_backend *backend,
                    const sys_surface_api *surface_api, int width, int height);
-/* Also when never opened. */
+/* May be called when nothing was opened. */
 void view_blit_close(view_blit *blit);
 /* Fills the window with the finished frame of `device`. */
 int view_blit_show(view_blit *blit, c3d_device *device);

@@ -22,23 +22,24 @@ typedef struct view_fly {
 
 void view_fly_init(view_fly *fly, int width, int height, int32_t fov_brad16);
 void view_fly_resize(view_fly *fly, int width, int height);
-/* First place over a terrain: x_wu, y_wu, or its middle when `anywhere`; above_wu over the
- * ground. */
+/* Chooses the first place over a terrain: x_wu, y_wu, or the terrain's middle when `anywhere`;
+ * above_wu over the ground. */
 void view_fly_place(view_fly *fly, const ff_terrain_info *info, int anywhere, int32_t x_wu,
                     int32_t y_wu, int32_t above_wu);
 
-/* 1 when the key flies. */
+/* Takes a key; 1 when it is one that flies. */
 int view_fly_key(view_fly *fly, int code, int down);
 void view_fly_pointer(view_fly *fly, enum sys_pointer_action action, int x, int y, int button);
-/* A position fix moves there, z_wu the height of the eye. */
+/* A position fix moves the eye there; z_wu is the height of the eye. */
 void view_fly_position(view_fly *fly, int32_t x_wu, int32_t y_wu, int32_t z_wu);
-/* Tilt looks: gravity in device axes. Upright looks ahead; lying with the screen up looks down. */
+/* Tilting the device turns the view. The arguments are gravity in device axes: upright the viewer
+ * looks ahead, lying with the screen up it looks down. */
 void view_fly_tilt(view_fly *fly, int32_t x_mg, int32_t y_mg, int32_t z_mg);
 
 /* Flies for dt_us; then keeps the eye over the ground drawn, when that is known. 1 when the camera
  * moved. */
 int view_fly_step(view_fly *fly, int64_t dt_us, const ff_client *client);
-/* Lets go of all keys (interruption: their releases may never come). */
+/* Lets go of all keys: after an interruption their releases may never come. */
 void view_fly_release(view_fly *fly);
 
 #endif

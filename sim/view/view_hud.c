@@ -67,7 +67,7 @@ static void put_quality(view_hud *hud, const view_app *app, const ff_client_stat
         put(hud, "px %.2f", stats->quality.error_px_q8 / 256.0);
     else
         put(hud, "c %.2f depth %u", stats->quality.c_q8 / 256.0, stats->quality.depth_max);
-    /* The eye inside a node's box makes its bound endless. */
+    /* With the eye inside a node's box, the bound of its error is endless. */
     put(hud,
         stats->tree.error_px_q8 < ERROR_PX_MAX * 256 ? "  error %.1f px\n"
                                                      : "  error over %.0f px\n",
@@ -142,7 +142,7 @@ void view_hud_draw(view_hud *hud, const view_app *app, c3d_device *device)
     const ff_terrain_info *info = ff_client_terrain(app->client);
     uint32_t checksum = info ? info->checksum : 0;
     int size = app->fly.camera.height >= LARGE_PX ? 2 * VIEW_HUD_SIZE : VIEW_HUD_SIZE;
-    /* another terrain, another device: gone with the old */
+    /* another terrain has another device: the texture went with the old one */
     if (device != hud->device || checksum != hud->checksum) hud->texture.id = 0;
     hud->device = device;
     hud->checksum = checksum;

@@ -14,15 +14,15 @@ typedef struct view_hud {
     char text[VIEW_HUD_TEXT];  /* wanted */
     char shown[VIEW_HUD_TEXT]; /* in the texture */
     c3d_texture texture;
-    const c3d_device *device; /* that holds the texture, made for the terrain of this checksum */
+    const c3d_device *device; /* holds the texture; made for the terrain of this checksum */
     uint32_t checksum;
     uint8_t rgba[VIEW_HUD_SIZE * VIEW_HUD_SIZE * 4];
 } view_hud;
 
-/* Writes the text anew; 1 when it is another one than shown. */
+/* Writes the text anew; 1 when it differs from the text shown. */
 int view_hud_update(view_hud *hud, const struct view_app *app);
-/* Over the picture just drawn with `device`, which keeps the texture and frees it when it is
- * closed. */
+/* Draws the text over the picture just drawn with `device`. The device keeps the texture, and frees
+ * it when it is closed. */
 void view_hud_draw(view_hud *hud, const struct view_app *app, c3d_device *device);
 
 #endif

@@ -94,7 +94,7 @@ static void inject(view_app *app, int function_key)
 }
 
 /* ---- switches ---- */
-/* 1 when the key is that of a way to draw. */
+/* Switches a way to draw; 1 when the key is that of one. */
 static int toggle_show(view_app *app, int code)
 {
     unsigned bit = 0;
@@ -191,7 +191,8 @@ void view_handle(view_app *app, const sys_event *event)
     switch (event->type) {
         case SYS_EVENT_QUIT: app->quit = 1; break;
         case SYS_EVENT_RESIZE:
-            /* its memory is for one size: the picture is stretched over the window */
+            /* the soft back end's memory is for one size: its picture is stretched over the window
+             */
             if (app->backend == c3d_backend_soft()) {
                 app->blit.window_width = event->u.resize.width;
                 app->blit.window_height = event->u.resize.height;

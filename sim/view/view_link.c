@@ -6,7 +6,7 @@
 #define RELAY_BYTES 4096
 #define SEED        1
 
-typedef struct relay { /* bytes taken from one side that the other has not yet taken */
+typedef struct relay { /* bytes taken from one side that the other side has not taken yet */
     uint8_t bytes[RELAY_BYTES];
     size_t count;
 } relay;
@@ -15,7 +15,7 @@ struct view_link {
     sys_mutex lock;     /* guards desc, next_profile and changed */
     sim_link_desc desc; /* the profile chosen */
     unsigned next_profile;
-    int changed; /* the worker has not yet made a link of `desc` */
+    int changed; /* 1: the worker has not yet made a link of `desc` */
     /* the worker's */
     int64_t now_us;
     sim_link *link;
@@ -43,7 +43,7 @@ static void drop_link(view_link *link)
     link->up.count = link->down.count = 0;
 }
 
-/* A link of the profile chosen last, with the server's end where the server is ours. */
+/* Makes a link of the profile chosen last, with the server's end where the server is ours. */
 static int make_link(view_link *link)
 {
     sim_link_desc desc;
@@ -109,7 +109,7 @@ static void link_close(void *state)
     if (link->link) link->client.close(link->client.state);
 }
 
-/* What lies behind the link does its part. FF_ERR_CLOSED when the connection is lost. */
+/* Lets what lies behind the link do its part. FF_ERR_CLOSED when the connection is lost. */
 static int pump(view_link *link)
 {
     int rc;

@@ -2,7 +2,7 @@
  * back, # begins a comment.
  *
  *   key NAME | down NAME | up NAME     a..z 0..9 + - left right up down pageup pagedown escape
- *       enter space shift f1..f12;
+ *                                      enter space shift f1..f12;
  *                                      key lets go in the same frame: for toggles
  *   touch down|move|up X Y             scroll up|down
  *   position X Y Z                     metres from the south-west corner, height above sea

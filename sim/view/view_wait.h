@@ -10,10 +10,11 @@ typedef struct view_wait {
     void *memory;
 } view_wait;
 
-/* Begins and ends an empty frame, opening the device at first; NULL when that is not possible. */
+/* Begins and ends an empty frame; opens the device at the first call. NULL when that is not
+ * possible. */
 c3d_device *view_wait_draw(view_wait *wait, const struct c3d_backend *backend,
                            const sys_surface_api *surface_api, const c3d_camera *camera);
-/* Also when never opened. The context is current. */
+/* May be called when nothing was opened. The context is current. */
 void view_wait_close(view_wait *wait);
 
 #endif

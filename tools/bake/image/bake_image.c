@@ -9,10 +9,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define COARSEST_TEXEL_PX \
-    1.25 /* the finest level's texels are at most this many image pixels wide */
-#define RGB  3
-#define RGBA 4
+/* The finest level's texels are at most this many image pixels wide. */
+#define COARSEST_TEXEL_PX 1.25
+#define RGB               3
+#define RGBA              4
 
 /* Source rows already filtered along x, kept while the window slides south. */
 typedef struct row_ring {

@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SHRINK_MIN \
-    0.35 /* rougher or smoother than any measured ground: then the estimate is what is wrong */
+/* Ground rougher or smoother than SHRINK_MIN .. SHRINK_MAX was never measured: then the
+ * estimate is what is wrong. */
+#define SHRINK_MIN     0.35
 #define SHRINK_MAX     0.85
 #define SHRINK_DEFAULT 0.6
 
