@@ -14,7 +14,7 @@ typedef struct bake_blob {
 
 /* Appends one record. 0 or -1 (said). */
 int bake_blob_add(bake_blob *blob, const uint8_t *payload, size_t count);
-/* Empty again, memory kept. */
+/* Empties the blob, and keeps its memory. */
 void bake_blob_clear(bake_blob *blob);
 void bake_blob_free(bake_blob *blob);
 

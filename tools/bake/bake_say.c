@@ -19,7 +19,7 @@ void bake_say_setup(const char *program, int quiet)
     quiet_run = quiet;
 }
 
-/* An unfinished bar is wiped, so that no message is glued to it. */
+/* Wipes an unfinished bar, so that no message is glued to it. */
 static void wipe_bar(void)
 {
     if (bar_shown) fprintf(stderr, "\r%*s\r", BAR_CELLS + 30, "");

@@ -4,7 +4,8 @@
 
 #include <stdint.h>
 
-/* Name in front of every line ("farfield-bake"); quiet drops notes and progress, never errors. */
+/* Sets the name in front of every line ("farfield-bake"); `quiet` drops notes and progress, never
+ * errors. */
 void bake_say_setup(const char *program, int quiet);
 
 /* Prints "program: message" and returns -1, so that callers write `return bake_fail(...)`. */

@@ -33,8 +33,8 @@ int bake_tile_load(bake_tile *tile, const bake_grid *grid, uint32_t number)
     size_t pitch = pitch_of(info);
     uint32_t first_column = (number % info->tiles_x) << info->tile_log2;
     uint32_t first_row = (number / info->tiles_x) << info->tile_log2;
-    /* ff_terrain_info: tiles beyond the last sample do not exist, so at least one column and row is
-     * there. */
+    /* There are no tiles beyond the last sample (ff_terrain_info), so this one has at least one
+     * column and one row. */
     uint32_t columns = grid->width - first_column < pitch ? grid->width - first_column
                                                           : (uint32_t)pitch;
     for (size_t row = 0; row < pitch; row++) {
@@ -49,7 +49,7 @@ int bake_tile_load(bake_tile *tile, const bake_grid *grid, uint32_t number)
     return 0;
 }
 
-/* A square of `side` samples, `stride` apart, from a tile's grid; and back. */
+/* Copies a square of `side` samples, `stride` apart, from a tile's grid; scatter copies it back. */
 static void gather(const uint16_t *grid, size_t pitch, uint32_t side, size_t stride, uint16_t *out)
 {
     for (uint32_t j = 0; j < side; j++)
@@ -69,7 +69,7 @@ static uint8_t error_code(const bake_tile *tile, size_t at, uint32_t cell)
         bake_node_error(tile->source + at, tile->decoded + at, pitch_of(tile->info), cells, cell));
 }
 
-/* The payload of a root or refinement, error codes filled in, at the end of a level's records. */
+/* Appends the payload of a root or refinement, error codes filled in, to a level's records. */
 static int add_payload(bake_tile *tile, uint32_t level, const uint16_t *parent,
                        const uint16_t *decoded, const ff_residuals *residuals)
 {

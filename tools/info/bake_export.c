@@ -15,7 +15,7 @@
 /* Samples along one axis when every 2^skip-th is taken. */
 static uint32_t thinned(uint32_t samples, uint32_t skip) { return ((samples - 1) >> skip) + 1; }
 
-/* One row of tiles, decoded side by side, into the raster (row 0 north). */
+/* Decodes a tile into the raster (row 0 north). */
 static int export_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level,
                        const bake_grid *raster, uint16_t *heights)
 {

@@ -25,7 +25,7 @@ static uint64_t offset_of(const ff_pack *pack, const ff_pack_section *section, u
 typedef struct section_sum {
     uint64_t records;       /* that exist */
     uint64_t payload_bytes; /* CRCs and index not counted */
-    uint64_t new_samples;   /* heights first told here; 0 for textures */
+    uint64_t new_samples;   /* heights that no coarser level has; 0 for textures */
 } section_sum;
 
 /* New heights per level count every lattice point of the padded terrain once. */

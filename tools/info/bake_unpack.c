@@ -46,7 +46,7 @@ static int fail_at(const bake_unpack *unpack, const char *what, ff_key key, int 
                      ff_key_tile(key), ff_key_level(key), ff_key_code(key), ff_error_text(rc));
 }
 
-/* Spreads a node or refined grid of `side` samples over a tile's grid, or gathers a node from
+/* Spreads a node or refined grid of `side` samples over a tile's grid; gather takes a node from
  * it. */
 static void scatter(const uint16_t *in, uint32_t side, size_t pitch, size_t stride, uint16_t *out)
 {

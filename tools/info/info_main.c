@@ -50,7 +50,8 @@ static int parse(info_options *o, int argc, char **argv)
     return 0;
 }
 
-/* Checksums of all records, then every tile decoded: intact bytes may still make no sense. */
+/* Checks the checksums of all records, then decodes every tile: intact bytes may still make no
+ * sense. */
 static int verify(const bake_unpack *unpack)
 {
     const ff_terrain_info *info = &unpack->pack.header.info;

@@ -62,7 +62,7 @@ size_t report_csv_split(char *line, char **field, size_t most)
     return count;
 }
 
-/* 1: a line, 0: the end, -1: refused. */
+/* Reads the next line. 1: there is one, 0: the file has ended, -1: the line was refused. */
 static int next_line(reader *in)
 {
     errno = 0;

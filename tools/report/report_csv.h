@@ -55,8 +55,8 @@ typedef struct report_flight {
     size_t row_count; /* at least 1 */
 } report_flight;
 
-/* Means over all rows, of errors over those from settle_s on (before, nothing may be drawn yet);
- * NAN where a flight has none. */
+/* Means over all rows; means of errors over the rows from settle_s on, because before that nothing
+ * may be drawn yet. NAN where a flight has none. */
 typedef struct report_summary {
     double seconds, triangles_mean, triangles_max, nodes_drawn_mean, nodes_held_max;
     /* 60 s: NAN when the flight is shorter */
@@ -67,8 +67,8 @@ typedef struct report_summary {
 /* 0, or -1 with the reason in `why` ("FILE: ..." or "FILE:LINE: ..."). */
 int report_flight_load(report_flight *flight, const char *path, char *why, size_t why_bytes);
 void report_flight_free(report_flight *flight);
-/* Splits a line of commas in place, blanks around fields dropped. Number of fields, more than
- * `most` when there are too many. */
+/* Splits a line at its commas, in place, and drops blanks around fields. Returns the number of
+ * fields, more than `most` when there are too many. */
 size_t report_csv_split(char *line, char **field, size_t most);
 /* Mean over the rows from from_s on, NAN where none has the column. */
 double report_flight_mean(const report_flight *flight, enum report_column column, double from_s);

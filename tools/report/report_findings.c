@@ -58,7 +58,7 @@ static void sum_kinds(const report_content *content, const kind *list, int count
     }
 }
 
-/* The kinds from the largest on, each with its share. */
+/* Lists the kinds from the largest on, each with its share. */
 static void put_sources(FILE *out, const report_style *style, const report_content *content,
                         const kind *list, int count, int error)
 {
@@ -138,8 +138,8 @@ static void tell_largest(const report_flight *flight, const kind *list, int coun
     snprintf(why, WHY_BYTES, all > 0 ? "most of it: %s, %.0f %%" : "", name, 100 * most / all);
 }
 
-/* One line: `most` 1 when the measured value may be that large at most, 0 when it must be that
- * large at least. */
+/* Writes a target's line. With `most` 1 the measured value may be at most the target, with 0 it
+ * must be at least the target. */
 static void put_target(FILE *out, const report_style *style, const char *what, int most,
                        double target, double measured, const char *why)
 {

@@ -7,8 +7,8 @@
 
 #include <stdio.h>
 
-/* As HTML (`html` 1) or Markdown. Targets need content->paper; what the flights do not tell is left
- * out. */
+/* Writes the findings as HTML (`html` 1) or Markdown. Targets need content->paper; what the flights
+ * do not tell is left out. */
 void report_findings(FILE *out, const report_content *content, int html);
 
 #endif

@@ -70,7 +70,7 @@ static int fail(const char *format, ...)
     return -1;
 }
 
-/* NAME=DIR; the argument's text is cut in two. */
+/* Parses NAME=DIR; the argument's text is cut in two. */
 static int parse_beside(options *o, char *text)
 {
     char *equals = strchr(text, '=');
@@ -81,7 +81,7 @@ static int parse_beside(options *o, char *text)
     return 0;
 }
 
-/* DIR=DIR; the flight's folder names it. */
+/* Parses DIR=DIR; the first folder's name is the flight's. */
 static int parse_against(options *o, char *text)
 {
     char *equals = strchr(text, '='), *slash;
@@ -199,7 +199,7 @@ static int copy_pictures(const options *o, char **names)
     return 0;
 }
 
-/* Number of sheets made, or -1. */
+/* Makes all sheets; their number, or -1. */
 static int make_sheets(const options *o, report_sheet sheet[AGAINST_MAX + 1])
 {
     char why[WHY_BYTES];

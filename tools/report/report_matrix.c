@@ -95,7 +95,7 @@ static void put_range(FILE *out, const report_style *s, double from, double to)
         report_table_number(out, s, 0, from);
 }
 
-/* One row for each flight of the paper that is among ours. */
+/* Writes a row for each flight of the paper that is among ours. */
 static void put_paper(FILE *out, const report_style *s, const report_content *content)
 {
     static const char *const head[] = { "link",
@@ -176,7 +176,7 @@ static void put_sweep(FILE *out, const report_style *s, const report_content *co
 
 /* ---- plots ---- */
 
-/* The flights of one link and quality with panoramas, from the first second on. */
+/* Plots the flights of one link and quality with panoramas, from the first second on. */
 static int put_convergence(FILE *out, const report_content *content, const report_paper_row *group,
                            char *why, size_t why_bytes)
 {
@@ -296,14 +296,15 @@ static int put_work(FILE *out, const report_content *content, char *why, size_t 
 
 /* ---- instructions ---- */
 
-/* "px" of px:E, "C" of C:DEPTH, low and high; and whether panoramas are on. */
+/* Names a series: "px" for qualities px:E, "C" for C:DEPTH, low and high; and whether panoramas are
+ * on. */
 static void work_series_name(const report_work_row *row, char name[SERIES_NAME_BYTES])
 {
     snprintf(name, SERIES_NAME_BYTES, "%s, panorama %s",
              strncmp(row->quality, "px", 2) ? "C" : "px", row->panorama);
 }
 
-/* Rows of one series: instructions in the place of triangles. */
+/* Collects the rows of series, with instructions in the place of triangles. */
 static size_t collect_work(series *list, const report_work *work)
 {
     size_t count = 0;

@@ -7,8 +7,8 @@
 
 #include <stdio.h>
 
-/* Our side of a row, NAN where the flight has none. All but kilobytes and stable_s are means over
- * the rows from settle_s on. */
+/* Our side of a row; NAN where the flight lacks a figure. All but kilobytes and stable_s are means
+ * over the rows from settle_s on. */
 typedef struct report_figures {
     double triangles, kilobytes; /* kilobytes: all that came down, standing still included */
     double stable_s;             /* see report_stable_s */
@@ -38,7 +38,7 @@ const report_flight *report_find_reference(const report_content *content, const 
 int report_matrix_html(FILE *out, const report_content *content, char *why, size_t why_bytes);
 void report_matrix_markdown(FILE *out, const report_content *content);
 
-/* The error against instructions, content->work is not NULL: a plot and a table. */
+/* Writes the error against instructions, as a plot and a table; content->work is not NULL. */
 int report_work_html(FILE *out, const report_content *content, char *why, size_t why_bytes);
 
 #endif

@@ -45,7 +45,7 @@ static double summary_value(const report_summary *summary, const summary_column 
     return value;
 }
 
-/* A relative link: what is not plain goes as %XX. */
+/* Writes a relative link; characters that are not plain go as %XX. */
 static void put_link(FILE *out, const char *name)
 {
     static const char plain[] =

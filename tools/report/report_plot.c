@@ -15,7 +15,7 @@
 static const char *const colours[] = { "#1b6ca8", "#c8553d", "#588b3a", "#7a4f9a",
                                        "#b8860b", "#3a8a8a", "#8a3a5e", "#555555" };
 
-/* Text inside gnuplot's double quotes. */
+/* Writes text inside gnuplot's double quotes. */
 static void put_quoted(FILE *out, const char *text)
 {
     fputc('"', out);

@@ -24,9 +24,10 @@ typedef struct report_plot {
     size_t curve_count;
 } report_plot;
 
-/* Runs gnuplot; the picture goes into a page as a figure, nothing does for a plot without curves.
- * `folder` takes temporary files. 0, or -1 with the reason in `why`. Values NAN leave gaps; each
- * curve needs one that is not. A logarithmic axis draws what lies below 0.01 at 0.01. */
+/* Runs gnuplot and writes the picture into a page, as a figure; a plot without curves writes
+ * nothing. `folder` takes temporary files. 0, or -1 with the reason in `why`. Values NAN leave
+ * gaps; each curve needs a value that is a number. A logarithmic axis draws values below 0.01 at
+ * 0.01. */
 int report_plot_put(FILE *out, const char *folder, const report_plot *plot, char *why,
                     size_t why_bytes);
 

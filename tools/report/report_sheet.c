@@ -96,7 +96,7 @@ static void put_picture(const canvas *c, size_t column, size_t row, const uint8_
                3 * (size_t)c->picture_px[0]);
 }
 
-/* Into the band above a picture. */
+/* Writes text into the band above a picture. */
 static void put_text(const canvas *c, size_t column, size_t row, const char *text)
 {
     enum { WIDTH = SIDE_PX_MAX / TEXT_TIMES, HEIGHT = C3D_TEXT_LINE_PX };
@@ -113,7 +113,8 @@ static void put_text(const canvas *c, size_t column, size_t row, const char *tex
     }
 }
 
-/* The third row of a column; percent of the pixels that differ visibly. */
+/* Draws the third row of a column, the difference. Returns the percentage of pixels that differ
+ * visibly. */
 static double put_difference(const canvas *c, size_t column, int amplified, const uint8_t *a,
                              const uint8_t *b)
 {

@@ -1,5 +1,5 @@
-/* The same flight drawn twice: pictures of the same moments one above the other, below them how
- * they differ; one PNG. */
+/* A sheet, one PNG, shows the same flight drawn twice: pictures of the same moments one above the
+ * other, and below them how they differ. */
 #ifndef REPORT_SHEET_H
 #define REPORT_SHEET_H
 
@@ -18,16 +18,16 @@ typedef struct report_series {
 typedef struct report_sheet {
     const char *heading; /* plain words */
     char file[REPORT_SHEET_FILE_BYTES];
-    int amplified; /* differences are shown so many times as large */
+    int amplified; /* differences are shown this many times as large */
     const char *name[2];
     size_t moments;
-    /* of the pixels, by more than REPORT_SHEET_VISIBLE */
+    /* share of the pixels that differ by more than REPORT_SHEET_VISIBLE */
     double differ_percent[REPORT_SHEET_MOMENTS];
 } report_sheet;
 
-/* Pictures that both folders have by the same name, all of one size; into folder/sheet->file.
- * heading, file and amplified are the caller's, the rest is filled in. 0, or -1 with the reason in
- * `why`. */
+/* Makes folder/sheet->file of the pictures that both series have by the same name, all of one size.
+ * The caller sets the sheet's heading, file and amplified, the rest is filled in. 0, or -1 with the
+ * reason in `why`. */
 int report_sheet_write(const report_series series[2], const char *folder, report_sheet *sheet,
                        char *why, size_t why_bytes);
 

@@ -19,12 +19,12 @@ void report_table_row_end(FILE *out, const report_style *style);
 void report_table_word(FILE *out, const report_style *style, const char *word);
 /* Any text, marked up as needed. */
 void report_table_name(FILE *out, const report_style *style, const char *name);
-/* A dash when it is not finite. */
+/* A number, or a dash when it is not finite. */
 void report_table_number(FILE *out, const report_style *style, int decimals, double value);
 void report_table_heading(FILE *out, const report_style *style, const char *heading);
 void report_table_text(FILE *out, const report_style *style, const char *text);
 
-/* Text from outside, so that it shows as it is. */
+/* Writes text from outside, so that it shows as it is. */
 void report_put_html(FILE *out, const char *text);
 void report_put_markdown(FILE *out, const char *text);
 

@@ -15,10 +15,13 @@
  * helper=FIRST-HEX:BYTES is code that works for its callers (division, memset): it is counted as
  * usual, and once more to the block outside all helpers that was executed before it.
  *
- * Output, one record a line:  phase NAME...  |  frame INSTRUCTIONS-BY-PHASE...  |  at HEX-ADDRESS
- * LENGTH EXECUTIONS-BY-PHASE... (of a block of LENGTH instructions)  |  helped HEX-ADDRESS
- * INSTRUCTIONS-BY-PHASE... | page FIRST-HEX LAST-HEX  |  watch NUMBER HEX-ADDRESS BYTES-READ
- * BYTES-WRITTEN.
+ * Output, one record a line:
+ *   phase NAME...
+ *   frame INSTRUCTIONS-BY-PHASE...
+ *   at HEX-ADDRESS LENGTH EXECUTIONS-BY-PHASE...    a block of LENGTH instructions
+ *   helped HEX-ADDRESS INSTRUCTIONS-BY-PHASE...
+ *   page FIRST-HEX LAST-HEX
+ *   watch NUMBER HEX-ADDRESS BYTES-READ BYTES-WRITTEN
  *
  * Packages of qemu 7.2 carry no header for plugins; its API, version 1, is declared here, as far as
  * it is used. Guests of one thread. */
@@ -117,8 +120,8 @@ static uint64_t frame_count[PHASES];
 static uint8_t *page_touched; /* NULL: not asked for */
 static FILE *out;
 
-/* Translated anew, a block goes on counting where it was; blocks of another length at the same
- * address count apart. */
+/* Finds a block, or makes it. A block that is translated anew goes on counting where it was; blocks
+ * of another length at the same address count apart. */
 static block *find_block(uint64_t address, uint32_t instructions)
 {
     block **slot = &bucket[(address >> 2) % BUCKETS];

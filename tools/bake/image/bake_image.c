@@ -16,13 +16,13 @@
 
 /* Source rows already filtered along x, kept while the window slides south. */
 typedef struct row_ring {
-    float *row;    /* slots x width x RGBA, colours weighted by how much is covered (alpha, 0..1) */
+    float *row; /* slots x width x RGBA; colours weighted by alpha, what the image covers (0..1) */
     int64_t *held; /* source row in each slot, -1: none */
     uint32_t slots, width;
     uint8_t *source; /* one row of the image */
 } row_ring;
 
-/* A stretch [from, to) of pixels, kept inside 0..size and never empty. */
+/* The stretch *from .. *to of pixels round a centre, kept inside 0..size and never empty. */
 static void footprint(double centre, double wide, uint32_t size, double *from, double *to)
 {
     if (wide < 1) wide = 1;
@@ -60,14 +60,14 @@ static const float *filtered_row(const bake_picture *picture, row_ring *ring, ui
     return out;
 }
 
-/* What one row of the finest lattice is made in. */
+/* The memory in which one row of the finest lattice is made. */
 typedef struct lattice_row {
     float *sum; /* RGBA */
     uint8_t *rgb;
     uint32_t *distance; /* to the nearest covered texel: bake_nearest.h */
 } lattice_row;
 
-/* Weighted sums to colours; counts the texels that the image covers. */
+/* Makes colours of weighted sums; returns the number of texels that the image covers. */
 static uint64_t finish_row(const lattice_row *out, uint32_t width)
 {
     uint64_t covered = 0;
@@ -83,7 +83,7 @@ static uint64_t finish_row(const lattice_row *out, uint32_t width)
     return covered;
 }
 
-/* Rows from..to of the image, weighted, into one row of the finest lattice. */
+/* Sums the rows from..to of the image, weighted, into one row of the finest lattice. */
 static int sample_row(const bake_picture *picture, row_ring *ring, double from, double to,
                       double texel_samples, double last_sample, float *sum)
 {
@@ -148,8 +148,8 @@ static int sample_image(const bake_picture *picture, const bake_ground *ground,
     return rc;
 }
 
-/* Every second point of the finer lattice, weighted 1-2-1 along both axes; beyond the rim the
- * rim. */
+/* Makes a row of every second point of the finer lattice, weighted 1-2-1 along both axes; points
+ * beyond the rim repeat the rim. */
 static void halve_row(uint8_t *const fine[3], uint32_t fine_width, uint32_t coarse_width,
                       uint8_t *out)
 {
@@ -240,7 +240,7 @@ void bake_image_close(bake_image *image)
 
 /* ---- textures of nodes ---- */
 
-/* The texture at lattice point (column, row) of its south-west texel, top row first. */
+/* Reads the texture whose south-west texel lies at lattice point (column, row), top row first. */
 static int read_texture(const bake_grid *lattice, uint32_t side, uint32_t column, uint32_t row,
                         uint8_t *rgb)
 {

@@ -6,7 +6,7 @@
 
 typedef struct bake_picture {
     GDALDatasetH set;       /* 8 bits a band; row 0 north */
-    GDALDatasetH behind[3]; /* what `set` reads from, to be closed after it, last one first */
+    GDALDatasetH behind[3]; /* what `set` reads from: closed after it, the last one first */
     int behind_count;
     int has_alpha; /* its last band says what the image covers (0: nothing there) */
     uint32_t width, height;
@@ -19,7 +19,7 @@ typedef struct bake_picture {
 int bake_picture_open(const bake_options *options, const bake_ground *ground,
                       bake_picture *picture);
 void bake_picture_close(bake_picture *picture);
-/* One row of RGBA. 0 or -1 (said). */
+/* Reads one row as RGBA. 0 or -1 (said). */
 int bake_picture_row(const bake_picture *picture, uint32_t row, uint8_t *rgba);
 
 #endif

@@ -6,9 +6,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Without georeference an image covers the heights' raster: all of its pixels' area, or, when it
- * has one pixel per cell between samples (or a multiple), from the first sample to the last. Edges
- * of that rectangle in raster pixels. */
+/* Edges, in pixels of the heights' raster, of an image without georeference. Such an image covers
+ * the whole area of the raster's pixels; or, when it has one pixel for each cell between samples
+ * (or a multiple of that), the area from the first sample to the last. */
 static void stretched_edges(uint32_t image_size, uint32_t raster_size, double *low, double *high)
 {
     int per_cell = image_size % raster_size != 0 && image_size % (raster_size - 1) == 0;
@@ -50,7 +50,7 @@ static char **add_numbers(char **list, const char *flag, const double *number, i
     return list;
 }
 
-/* A view of the image that lies where the source raster lies. */
+/* Makes a view of the image that lies where the source raster lies. */
 static GDALDatasetH lay_over_source(const bake_ground *ground, GDALDatasetH set)
 {
     double corner[4];
@@ -65,7 +65,8 @@ static GDALDatasetH lay_over_source(const bake_ground *ground, GDALDatasetH set)
     return laid;
 }
 
-/* A view of the image warped onto the ground's plane and area, in about its own resolution. */
+/* Makes a view of the image warped onto the ground's plane and area, in about its own resolution.
+ */
 static GDALDatasetH warp_onto_ground(const bake_ground *ground, GDALDatasetH set)
 {
     const double *gt = ground->geotransform;
@@ -93,7 +94,7 @@ static int check_bands(const char *path, GDALDatasetH set)
     return 0;
 }
 
-/* Palettes become RGB by a view, before anything is averaged. */
+/* Makes a view that turns a palette into RGB, before anything is averaged. */
 static GDALDatasetH expand_palette(GDALDatasetH set)
 {
     char **list = CSLAddString(CSLAddString(NULL, "-of"), "VRT");

@@ -12,7 +12,8 @@ typedef struct nearest_row {
     uint32_t *distance;
 } nearest_row;
 
-/* Texel `to` takes over what `from` shows when that is nearer than what it has. */
+/* Texel k of `to` takes over the colour of texel i of `from`, when that colour comes from nearer
+ * than its own. */
 static void take_nearer(const nearest_row *from, uint32_t i, const nearest_row *to, uint32_t k)
 {
     if (from->distance[i] == BAKE_NEAREST_FAR || from->distance[i] + 1 >= to->distance[k]) return;

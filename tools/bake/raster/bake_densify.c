@@ -33,7 +33,7 @@ static float noise_at(uint64_t column, uint64_t row, uint32_t doubling)
     return (float)(3 * (sum - 1));
 }
 
-/* Magnitude of what 4-point interpolation over `step` and three of it misses at column i of a
+/* How far 4-point interpolation, between samples `step` and 3 * `step` away, misses column i of a
  * row. */
 static float missed_along(const float *row, uint32_t i, uint32_t width, int64_t step)
 {
@@ -44,7 +44,8 @@ static float missed_along(const float *row, uint32_t i, uint32_t width, int64_t 
 
 /* ---- roughness ---- */
 
-/* How much the residual shrinks when the spacing halves, over the rows of the whole raster. */
+/* Measures, over the rows of the whole raster, how much the residual shrinks when the spacing
+ * halves. */
 static int measure_shrink(const bake_grid *grid, float *row, float *shrink)
 {
     double fine = 0, coarse = 0;
@@ -60,8 +61,9 @@ static int measure_shrink(const bake_grid *grid, float *row, float *shrink)
     return 0;
 }
 
-/* Roughness of one row: mean residual along row and column, of three neighbours. `rows`: seven rows
- * of the grid, then two of working memory, the last of which receives the answer. */
+/* Measures the roughness of row j: the mean residual along row and column, averaged over three
+ * neighbours. `rows` are seven rows of the grid and two of working memory; the last one receives
+ * the answer. */
 static int measure_row(const bake_grid *grid, uint32_t j, float *const rows[9])
 {
     for (int r = 0; r < 7; r++)
@@ -100,7 +102,7 @@ typedef struct doubling {
     float *memory; /* nine coarse rows; reused as four fine ones and two of roughness */
 } doubling;
 
-/* Even rows: the old samples, and new ones half-way along the row. */
+/* Makes an even row: the old samples, and new ones half-way along the row. */
 static int double_row(const doubling *d, uint32_t j)
 {
     uint32_t width = d->coarse.width;
@@ -120,7 +122,7 @@ static int double_row(const doubling *d, uint32_t j)
     return bake_grid_write(&d->fine, 2 * j, 0, d->fine.width, new);
 }
 
-/* Odd rows: half-way between the even rows j and j+1. */
+/* Makes an odd row: half-way between the even rows j and j+1. */
 static int insert_row(const doubling *d, uint32_t j)
 {
     uint32_t width = d->fine.width, coarse_width = d->coarse.width;
@@ -161,7 +163,7 @@ static int double_grid(doubling *d)
     return 0;
 }
 
-/* The first and last samples stay where they are; the spacing halves. */
+/* Halves the spacing; the first and the last sample stay where they are. */
 static void halve_geotransform(double *gt)
 {
     gt[0] += gt[1] / 4;

@@ -15,7 +15,7 @@ typedef struct fill_rows { /* rows of working memory, each as wide as the finest
 
 static uint32_t halved(uint32_t size) { return (size + 1) / 2; }
 
-/* Mean of the known ones of up to four values, NaN when none is. */
+/* Mean of those among up to four values that are known, NaN when none is. */
 static float mean_known(const float *values, int count)
 {
     double sum = 0;
@@ -28,7 +28,7 @@ static float mean_known(const float *values, int count)
     return known ? (float)(sum / known) : NAN;
 }
 
-/* Pull: one coarser level. *voids receives how many of its samples are still void. */
+/* Pull: makes the next coarser level. *voids receives how many of its samples are still void. */
 static int pull(const bake_grid *fine, const bake_grid *coarse, const fill_rows *rows,
                 uint64_t *voids)
 {
@@ -61,8 +61,8 @@ static float bilinear(const float *near_row, const float *far_row, uint32_t colu
     return 0.75f * near_value + 0.25f * far_value;
 }
 
-/* Push: voids of `fine` from the complete `coarse`. `mask` (a byte a sample) remembers what was
- * void. */
+/* Push: fills the voids of `fine` from the complete `coarse`. `mask` (a byte a sample) remembers
+ * what was void. */
 static int push(const bake_grid *fine, const bake_grid *mask, const bake_grid *coarse,
                 const fill_rows *rows)
 {

@@ -27,7 +27,7 @@ int bake_temp_open(void);
 /* 0 or -1 (said). */
 int bake_grid_open(bake_grid *grid, uint32_t width, uint32_t height, uint32_t cell_bytes);
 void bake_grid_close(bake_grid *grid);
-/* `count` cells of row `row` from column `column`. 0 or -1 (said). */
+/* Reads or writes `count` cells of row `row` from column `column` on. 0 or -1 (said). */
 int bake_grid_read(const bake_grid *grid, uint32_t row, uint32_t column, uint32_t count,
                    void *cells);
 int bake_grid_write(const bake_grid *grid, uint32_t row, uint32_t column, uint32_t count,

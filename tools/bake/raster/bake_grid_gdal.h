@@ -5,8 +5,8 @@
 #include "bake_gdal.h"
 #include "bake_grid.h"
 
-/* A GDAL data set over a grid's temporary file (valid while the grid is open): `type` per band,
- * bands interleaved by cell. NULL after saying why. */
+/* A GDAL data set over a grid's temporary file, valid while the grid is open: bands of `type`,
+ * interleaved by cell. NULL after saying why. */
 GDALDatasetH bake_grid_dataset(const bake_grid *grid, GDALDataType type, int band_count);
 
 #endif

@@ -67,14 +67,15 @@ static int choose_target(const bake_options *o, const bake_ground *ground,
     return bake_fail("EPSG:%d is no projection in metres", epsg);
 }
 
-/* To whole world units, also after --densify has divided it. */
+/* Rounds a spacing to whole world units, so that it has whole ones also after --densify has divided
+ * it. */
 static double round_spacing(const bake_options *o, double spacing_m)
 {
     double units = fmax(1, nearbyint(spacing_m * FF_WU_PER_METRE / o->densify));
     return units * o->densify / FF_WU_PER_METRE;
 }
 
-/* What the warped grid will be: `gt`, `width`, `height`. The south-west sample lies on whole
+/* Plans the warped grid: its geotransform, width and height. The south-west sample lies on whole
  * metres. */
 static int plan_output(const bake_options *o, GDALDatasetH source, void *transform, double *gt,
                        int *width, int *height)
@@ -216,7 +217,7 @@ static int is_square(const double *gt)
            fabs(fabs(gt[5] / gt[1]) - 1) < 1e-3 && gt[1] > 0;
 }
 
-/* The samples stay as they are; what is their spacing? */
+/* Finds the spacing of samples that stay as they are. */
 static int keep_samples(const bake_options *o, const bake_ground *ground, double *spacing_m)
 {
     if (o->spacing_m > 0)

@@ -28,8 +28,8 @@ static int find_range(const bake_grid *grid, bake_steps *steps)
     return rc;
 }
 
-/* Step 0 lies at zero when all heights fit above it, else just below the lowest one, on a whole
- * metre if there is room. */
+/* Chooses the height of step 0: zero when all heights fit above it, else just below the lowest
+ * height, on a whole metre if there is room. */
 static double choose_first(double step_m, double low, double high)
 {
     if (low >= 0 && high <= STEPS_MAX) return 0;

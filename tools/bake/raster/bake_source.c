@@ -41,8 +41,8 @@ static GDALDatasetH open_raw_file(const bake_options *o)
     return GDALOpen(xml, GA_ReadOnly);
 }
 
-/* A raw file must have exactly the size told: a wrong width would give a sheared picture without a
- * word. */
+/* A raw file must have exactly the size that --raw tells: a wrong width would shear the ground
+ * without a word. */
 static int check_raw_size(const bake_options *o)
 {
     FILE *file = fopen(o->heights_path, "rb");
@@ -158,7 +158,7 @@ static source_unit read_unit(const bake_options *o, GDALDatasetH set, const bake
     return unit;
 }
 
-/* One row of raster values to metres; voids become NaN. */
+/* Turns a row of raster values into metres; voids become NaN. */
 static void scan_row(const source_unit *unit, const double *values, float *metres, uint32_t count,
                      source_scan *scan)
 {

@@ -18,7 +18,7 @@ typedef struct bake_ground {
     double source_geotransform[6];
     uint32_t source_width, source_height;
     OGRSpatialReferenceH source_srs;
-    double step_m; /* heights are whole multiples of this; 0: they are not */
+    double step_m; /* heights are whole multiples of this; 0: of nothing known */
     /* samples filled: void in the source; beyond its area after projection */
     uint64_t voids, outside;
     int resampled;
