@@ -9,7 +9,40 @@ import sys
 WORK = "build/tests/newcomer"
 GRID = "--raw 65x65 --spacing 30 --tile-log2 5 --quiet"
 
-# name; most files; insertions (file, the line to insert before, lines); new files; what to build; commands, with what must be in their output
+PLAIN_CODEC = """\
+/* Codec "plain", a newcomer's: error codes, then every value as 16 bits, high byte first. */
+#include "ff_codec_local.h"
+
+int ff_plain_decode(const ff_decoder *dec, ff_payload *in, const ff_contents *contents,
+                    ff_residuals *out)
+{
+    int rc = ff_take_errors(in, FF_ERRORS_EACH, contents->errors, out->child_error);
+    (void)dec;
+    if (rc != FF_OK) return rc;
+    if (ff_payload_left(in) < 2 * (size_t)contents->count) return FF_ERR_FORMAT;
+    for (uint32_t i = 0; i < contents->count; i++, in->at += 2) {
+        uint32_t word = (uint32_t)in->at[0] << 8 | in->at[1];
+        out->value[i] = i < contents->corners ? (int32_t)word : (int16_t)word;
+    }
+    return FF_OK;
+}
+
+#ifdef FF_ENCODER
+size_t ff_plain_encode(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *decoded,
+                       const ff_contents *contents, const ff_residuals *res, uint8_t *out)
+{
+    size_t bytes = ff_put_errors(res->child_error, FF_ERRORS_EACH, contents->errors, out);
+    (void)info, (void)parent, (void)decoded;
+    for (uint32_t i = 0; i < contents->count; i++) {
+        out[bytes++] = (uint8_t)((uint32_t)res->value[i] >> 8);
+        out[bytes++] = (uint8_t)res->value[i];
+    }
+    return bytes;
+}
+#endif
+"""
+
+# name; most files; insertions (file, the line to insert before, lines, in which @LINE@ is that line itself); new files; what to build; commands, with what must be in their output
 CHANGES = [
     ("a link profile", 1, [("sim/link/sim_link_profiles.c", '        .name = "lan",', """\
         .name = "lorawan",
@@ -24,6 +57,14 @@ CHANGES = [
 """)], {}, ["build/bin/farfield-link", "build/bin/farfield-fly", "build/tests/test_link_profiles"],
      [("build/bin/farfield-link --list", "lorawan"), ("build/tests/test_link_profiles", "PASSED"),
       ("build/bin/farfield-fly --pack hills.ffp --link lorawan --seconds 5 --settle 5 --backend none --json", "geometry_hash")]),
+    ("a codec", 2, [("protocol/codec/ff_codec_list.h", "    ROW(2,",
+                     '@LINE@ \\\n    ROW(3,      PLAIN,   "plain",   NOTHING, ff_no_memory,      ff_plain_decode,   ff_add_residuals, ff_plain_encode)\n')],
+     {"protocol/codec/ff_codec_plain.c": PLAIN_CODEC},
+     ["build/bin/farfield-bake", "build/bin/farfield-info", "build/bin/farfield-export", "build/bin/farfield-fly"],
+     [("build/bin/farfield-bake ../hills.raw %s --codec plain -o plain.ffp" % GRID, ""),
+      ("build/bin/farfield-info --verify plain.ffp", "plain"),
+      ("build/bin/farfield-export plain.ffp -o plain.r16 && build/bin/farfield-export hills.ffp -o own.r16 && cmp plain.r16 own.r16", ""),
+      ("build/bin/farfield-fly --pack plain.ffp --link lan --seconds 2 --settle 5 --backend none --json", "geometry_hash")]),
     ("a way to draw", 5, [("client/farfield.h", '    X(NO_FOG, "no-fog"',
                            '    X(DARK_MESH, "dark-mesh", "d", "dark mesh", "the mesh in black") \\\n'),
                           ("client/ground/ff_show.c", "void ff_show_over(", """\
@@ -67,7 +108,9 @@ def insert(where, path, anchor, text):
     at = next((i for i, line in enumerate(lines) if line.startswith(anchor)), None)
     if at is None:
         return 0
-    lines[at:at] = text.rstrip("\n").split("\n") if text.strip("\n") else []
+    if "@LINE@" in text:  # the row comes after it
+        text, lines[at:at + 1] = text.replace("@LINE@", lines[at]), []
+    lines[at:at] = text.rstrip("\n").split("\n")
     open(path, "w").write("\n".join(lines))
     return 1
 
