@@ -229,7 +229,7 @@ int ff_client_panorama(const ff_client *client, int32_t position_wu[3], unsigned
 {
     if (!client->have_terrain || client->panorama.shown < 0) return 0;
     const ff_panorama_set *set = &client->panorama.set[client->panorama.shown];
-    memcpy(position_wu, set->position_wu, sizeof set->position_wu);
+    ff_shape_leave(&client->info, &client->last_view.frame, set->position_wu, position_wu);
     *faces = (unsigned)set->held | set->empty;
     return 1;
 }

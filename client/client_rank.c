@@ -109,8 +109,7 @@ void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *qu
         look_ahead(client, view, shared.rtt_us, &a);
     ff_requests_rank_begin(&client->requests);
     if (!client->all_client)
-        ff_panorama_want(&client->panorama, &client->requests, &view->camera, faces_ahead(view, &a),
-                         now_us);
+        ff_panorama_want(&client->panorama, &client->requests, view, faces_ahead(view, &a), now_us);
     want_tree(client);
     if (client->has_textures) want_textures(client, view, quality);
     want_ahead(client, &a);

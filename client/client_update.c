@@ -4,8 +4,8 @@
 
 #include <string.h>
 
-#define NEAR_WU_MIN       64 /* 0.25 m */
-#define NEAR_WU_MAX       (1 << 20)
+#define NEAR_WU_MIN       (FF_WU_PER_METRE / 4)
+#define NEAR_WU_MAX       (4096 * FF_WU_PER_METRE)
 #define LOW_POWER_DIVISOR 2 /* C halved, pixels of error doubled */
 
 ff_quality ff_client_quality(const ff_client *client)
@@ -27,6 +27,7 @@ static void settle_welcome(ff_client *client, const ff_stream_shared *shared)
     sys_mutex_lock(&client->gate);
     ff_client_uncarve(client);
     client->info = shared->welcome;
+    client->has_camera = 0; /* another frame, too */
     int rc = ff_client_carve(client);
     client->terrain_error = rc;
     ff_stream_accept(&client->stream, rc == FF_OK);
@@ -107,10 +108,21 @@ static int same_camera(const c3d_camera *a, const c3d_camera *b)
            a->far_wu == b->far_wu;
 }
 
+/* The camera as given, in world axes, as one in the client's frame. */
+static c3d_camera enter_frame(ff_client *client, const c3d_camera *camera)
+{
+    ff_frame *frame = &client->last_view.frame;
+    c3d_camera here = *camera;
+    if (!client->has_camera) *frame = ff_shape_frame(&client->info, camera->pos_wu);
+    ff_shape_enter(&client->info, frame, camera->pos_wu, here.pos_wu);
+    return here;
+}
+
 static void make_view(const ff_client *client, const c3d_camera *camera, const ff_quality *quality,
                       ff_view *view)
 {
     view->camera = *camera;
+    view->frame = client->last_view.frame;
     if (!view->camera.width || !view->camera.height) {
         view->camera.width = client->desc.width;
         view->camera.height = client->desc.height;
@@ -126,14 +138,15 @@ static void make_view(const ff_client *client, const c3d_camera *camera, const f
                sizeof view->centre_wu);
 }
 
-int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera)
+int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
 {
     int pictures_changed = 0;
     look_at_link(client);
-    if (!client->have_terrain || camera->focal_q8 < 256) {
+    if (!client->have_terrain || given->focal_q8 < 256) {
         client->frames_skipped++;
         return 0;
     }
+    const c3d_camera entered = enter_frame(client, given), *camera = &entered;
     unsigned taken = take_new_data(client, now_us, &pictures_changed);
     int moved = !client->has_camera || !same_camera(&client->camera, camera);
     ff_quality quality = ff_client_quality(client);
@@ -193,15 +206,13 @@ static void fit_planes(const ff_client *client, c3d_camera *camera)
     if (client->camera.far_wu > camera->near_wu) return;
     const ff_drawn *list;
     uint32_t count = ff_tree_drawn(client->tree, &list);
+    int32_t lowest_wu = ff_height_wu(&client->info, client->info.height_min);
     int64_t far_wu = 16 * (int64_t)camera->near_wu; /* sky and panorama lie within */
     for (uint32_t i = 0; i < count; i++) {
-        int64_t edge_wu = ff_node_edge_wu(&client->info, ff_key_level(list[i].key));
-        int64_t reach = c3d_length64(
-                            (int64_t)list[i].origin_wu[0] + edge_wu / 2 - camera->pos_wu[0],
-                            (int64_t)list[i].origin_wu[1] + edge_wu / 2 - camera->pos_wu[1],
-                            (int64_t)ff_height_wu(&client->info, client->info.height_min) -
-                                camera->pos_wu[2]) +
-                        edge_wu;
+        int64_t edge_wu = ff_node_edge_wu(&client->info, ff_key_level(list[i].key)), way_wu[3];
+        ff_shape_to_middle(&client->info, list[i].key, ff_tree_placed(list[i].node), lowest_wu,
+                           camera->pos_wu, way_wu);
+        int64_t reach = c3d_length64(way_wu[0], way_wu[1], way_wu[2]) + edge_wu;
         far_wu = reach > far_wu ? reach : far_wu;
     }
     camera->far_wu = far_wu > INT32_MAX ? INT32_MAX : (int32_t)far_wu;
@@ -209,11 +220,14 @@ static void fit_planes(const ff_client *client, c3d_camera *camera)
 
 static void set_fog(const ff_client *client, c3d_frame *frame)
 {
-    ff_quality quality = ff_client_quality(client);
+    const ff_view *view = &client->last_view;
+    int32_t horizon_wu = ff_shape_horizon_wu(&client->info, &view->frame, view->centre_wu),
+            sight_wu = ff_client_quality(client).view_wu;
     if (client->panorama.shown >= 0 || (client->show & FF_SHOW_NO_FOG))
         return; /* the join with the panorama must not show */
-    frame->fog_start_wu = quality.view_wu / 2;
-    frame->fog_end_wu = quality.view_wu;
+    sight_wu = sight_wu > horizon_wu ? horizon_wu : sight_wu;
+    frame->fog_start_wu = sight_wu / 2;
+    frame->fog_end_wu = sight_wu;
     frame->fog_colour = FF_SKY_HORIZON_COLOUR;
 }
 

@@ -61,7 +61,7 @@ struct ff_client {
     uint8_t dirty;    /* 1: the picture has to be made anew */
     uint8_t unranked; /* 1: requests have to be ranked anew, because the connection was lost */
     unsigned show;
-    c3d_camera camera; /* of the last update, as given */
+    c3d_camera camera; /* of the last update, as given but in last_view's frame */
     ff_view last_view;
     uint32_t losses_seen;
     uint64_t frame_hash, geometry_hash;

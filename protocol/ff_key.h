@@ -1,11 +1,11 @@
 /* Node keys: tile, level of detail and Morton code in one 64-bit integer (Hybrid, section 6.1.1,
  * figure 11).
  *
- * The terrain is a grid of tiles_x by tiles_y tiles, tile number = ty * tiles_x + tx, tx to the
- * east, ty to the north. Every tile is the root (level 0) of a quadtree; level l of a tile holds
- * 2^l by 2^l nodes. The Morton code of node (x, y) interleaves the bits of x (even bits) and y (odd
- * bits), so the two lowest bits are the quadrant within the parent: 0 south-west, 1 south-east, 2
- * north-west, 3 north-east.
+ * Every tile is the root (level 0) of a quadtree; level l of a tile holds 2^l by 2^l nodes, x to
+ * the tile's east, y to its north. The Morton code of node (x, y) interleaves the bits of x (even
+ * bits) and y (odd bits), so the two lowest bits are the quadrant within the parent: 0 south-west,
+ * 1 south-east, 2 north-west, 3 north-east. Where tiles lie and touch is the terrain's shape
+ * (shape/ff_shape.h).
  *
  *   bit 63       36 35    32 31              0
  *       tile (28)   level(4)  Morton code (2*level bits used)
@@ -21,7 +21,13 @@ typedef uint64_t ff_key;
 #define FF_KEY_TILES_MAX (1u << 28)
 #define FF_KEY_LEVEL_MAX 15u
 
+/* Of a node's grid: its first row, last column, last row, first column. They run round it. */
 enum ff_side { FF_SIDE_SOUTH, FF_SIDE_EAST, FF_SIDE_NORTH, FF_SIDE_WEST, FF_SIDE_COUNT };
+
+static inline enum ff_side ff_side_opposite(enum ff_side side)
+{
+    return (enum ff_side)((unsigned)side ^ 2u);
+}
 
 static inline ff_key ff_key_make(uint32_t tile, uint32_t level, uint32_t code)
 {
@@ -49,9 +55,27 @@ uint32_t ff_morton_encode(uint32_t x, uint32_t y);
 uint32_t ff_morton_x(uint32_t code);
 uint32_t ff_morton_y(uint32_t code);
 
-/* The node of the same level that touches `key` across `side`, found by arithmetic on the
- * interleaved bits alone. Across a tile's border it lies in the next tile; across the terrain's
- * border the answer is FF_KEY_NONE. */
-ff_key ff_key_neighbour(uint32_t tiles_x, uint32_t tiles_y, ff_key key, enum ff_side side);
+#define FF_KEY_X_BITS 0x55555555u /* even bits hold x, odd bits y */
+#define FF_KEY_Y_BITS 0xaaaaaaaau
+
+/* The code of the node of the same level across `side` in the same tile, by arithmetic on the
+ * interleaved bits alone. 1 when that leads over the tile's border: *code is then where the step
+ * comes in again at the opposite side.
+ *
+ * The mask `own` marks the bits of the coordinate that steps. The other coordinate keeps its value:
+ * its bits are set to one while adding, so that a carry runs through them, and cleared while
+ * subtracting, so that a borrow does. */
+static inline int ff_key_step(ff_key key, enum ff_side side, uint32_t *code)
+{
+    uint32_t from = ff_key_code(key), level_bits = (1u << (2 * ff_key_level(key))) - 1u;
+    uint32_t own = side == FF_SIDE_EAST || side == FF_SIDE_WEST ? FF_KEY_X_BITS : FF_KEY_Y_BITS;
+    int up = side == FF_SIDE_EAST || side == FF_SIDE_NORTH;
+    uint32_t moved = up ? (from | ~own) + 1u : (from & own) - 1u;
+    /* the coordinate's value in the last node before the border */
+    uint32_t border = up ? own & level_bits : 0;
+
+    *code = (from & ~own) | (moved & own & level_bits);
+    return (from & own) == border;
+}
 
 #endif

@@ -4,6 +4,7 @@
 #include "ff_pack.h"
 
 #include "ff_bytes.h"
+#include "shape/ff_shape.h"
 
 #include <limits.h>
 #include <string.h>
@@ -26,7 +27,7 @@ static uint64_t load(const uint8_t *bytes, unsigned count)
 
 static uint64_t records_expected(const ff_terrain_info *info, uint32_t level)
 {
-    return ((uint64_t)info->tiles_x * info->tiles_y) << (2 * level);
+    return (uint64_t)ff_shape_tiles(info) << (2 * level);
 }
 
 static int inside(uint64_t offset, uint64_t bytes, uint64_t size)

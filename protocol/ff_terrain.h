@@ -1,10 +1,12 @@
 /* What a terrain is: sizes and units, as written in a pack's header and in the WELCOME message.
  *
  * World axes: x east, y north, z up; the south-west sample of the terrain lies at x = y = 0. World
- * unit (wu): 1/256 metre. Positions are int32_t wu (+-8388 km), differences of positions are
- * int64_t wu. Heights: uint16_t steps; z_wu = hoffset_wu + (h * hscale_q24 >> 16), with hscale_q24
- * in metres a step, Q24. Grids of heights are stored row by row from south to north, each row from
- * west to east.
+ * unit (wu): 1/256 metre, and only FF_WU_PER_METRE says so: lengths that are meant in metres are
+ * written with it. Positions are int32_t wu (+-8388 km), differences of positions are int64_t wu.
+ * Where a sample lies, and which nodes touch, is asked in shape/ff_shape.h; lengths of edges and
+ * cells below are for measures. Heights: uint16_t steps; z_wu = hoffset_wu + (h * hscale_q24 >>
+ * 16), with hscale_q24 in metres a step, Q24. Grids of heights are stored row by row from south to
+ * north, each row from west to east.
  */
 #ifndef FF_TERRAIN_H
 #define FF_TERRAIN_H
@@ -48,6 +50,9 @@ typedef struct ff_terrain_info {
  * ff_error. */
 int ff_terrain_check(const ff_terrain_info *info);
 
+/* 1 when it is the same ground, sample for sample: what is held of it stays valid. */
+int ff_terrain_same(const ff_terrain_info *a, const ff_terrain_info *b);
+
 /* Number of levels of every tile: n - k + 1. */
 static inline uint32_t ff_terrain_levels(const ff_terrain_info *info)
 {
@@ -62,7 +67,8 @@ static inline uint32_t ff_refined_side(const ff_terrain_info *info)
 {
     return (2u << info->node_log2) + 1u;
 }
-/* Edge of a node and of one of its cells at a level, in wu. */
+/* Edge of a node and of one of its cells at a level, in wu: nominal, what a measure reckons with.
+ */
 static inline int32_t ff_node_edge_wu(const ff_terrain_info *info, uint32_t level)
 {
     return (int32_t)(info->spacing_wu << (info->tile_log2 - level));
@@ -80,8 +86,13 @@ static inline int32_t ff_steps_wu(const ff_terrain_info *info, uint32_t steps)
 {
     return (int32_t)(((uint64_t)steps * info->hscale_q24) >> 16);
 }
-/* World position of a node's south-west corner. */
-void ff_node_origin_wu(const ff_terrain_info *info, ff_key key, int32_t *x_wu, int32_t *y_wu);
+/* z of the lowest and highest ground a decoder may show, as z of a height goes. */
+static inline void ff_terrain_range_wu(const ff_terrain_info *info, int64_t height_wu[2])
+{
+    int64_t slack = ff_steps_wu(info, info->max_error);
+    height_wu[0] = ff_height_wu(info, info->height_min) - slack;
+    height_wu[1] = ff_height_wu(info, info->height_max) + slack;
+}
 /* 1 when `key` names a node of this terrain. */
 int ff_terrain_has_node(const ff_terrain_info *info, ff_key key);
 

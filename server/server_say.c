@@ -1,5 +1,7 @@
 #include "server_say.h"
 
+#include "../protocol/shape/ff_shape.h"
+
 #include <inttypes.h>
 #include <signal.h>
 #include <stdio.h>
@@ -22,7 +24,7 @@ static const char *gl_name(const server *shared)
 void server_say_listening(const server *shared)
 {
     char address[256];
-    const ff_terrain_info *info = &shared->pack.header.info;
+    ff_sheet samples = ff_shape_sheet_samples(&shared->pack.header.info);
     bound_address(shared, address, sizeof address);
     if (shared->options.json)
         printf(
@@ -32,8 +34,8 @@ void server_say_listening(const server *shared)
     else if (!shared->options.quiet)
         printf("farfield-server: listening on %s, %" PRIu32 "x%" PRIu32
                " samples, %u workers, %u renderers (%s)\n",
-               address, info->samples_x, info->samples_y, shared->options.workers,
-               shared->options.renderers, gl_name(shared));
+               address, samples.x, samples.y, shared->options.workers, shared->options.renderers,
+               gl_name(shared));
     fflush(stdout);
 }
 

@@ -1,14 +1,15 @@
 #include "ff_motion.h"
 
 #include "../../common3d/c3d_fixed.h"
+#include "../../protocol/ff_terrain.h"
 
 #include <string.h>
 
 #define BIN_US         200000
 #define PAUSE_US_MAX   2000000
-#define SPEED_WU_S_MAX (10000 * 256)
+#define SPEED_WU_S_MAX (10000 * FF_WU_PER_METRE)
 #define AHEAD_US_MAX   30000000
-#define STILL_WU       64 /* a way shorter than this is no motion */
+#define STILL_WU       (FF_WU_PER_METRE / 4) /* a way shorter than this is no motion */
 
 void ff_motion_reset(ff_motion *motion) { memset(motion, 0, sizeof *motion); }
 

@@ -25,8 +25,9 @@ void ff_client_balance_begin(ff_client *client, int fresh)
     if (!client->have_terrain || client->desc.balance.mode == FF_BALANCE_OFF) return;
     ff_quality finest = client->desc.quality;
     const ff_terrain_info *info = &client->info;
-    int64_t samples = info->samples_x > info->samples_y ? info->samples_x : info->samples_y,
-            extent_wu = samples * info->spacing_wu;
+    int64_t size_wu[2];
+    ff_shape_size_wu(info, size_wu);
+    int64_t extent_wu = (size_wu[0] > size_wu[1] ? size_wu[0] : size_wu[1]) + info->spacing_wu;
     if (finest.depth_max > ff_terrain_levels(info))
         finest.depth_max = (uint8_t)ff_terrain_levels(info);
     if (finest.view_wu > extent_wu) finest.view_wu = (int32_t)extent_wu;

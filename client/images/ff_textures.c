@@ -59,11 +59,12 @@ static ff_key next_finer(const ff_texture_slot *held, ff_key finest)
 static uint32_t priority_of(const ff_textures *textures, ff_key key, const ff_view *view,
                             const ff_quality *quality)
 {
-    int32_t x_wu, y_wu, edge_wu = ff_node_edge_wu(&textures->info, ff_key_level(key));
-    ff_node_origin_wu(&textures->info, key, &x_wu, &y_wu);
-    int64_t dx = (int64_t)x_wu + edge_wu / 2 - view->camera.pos_wu[0];
-    int64_t dy = (int64_t)y_wu + edge_wu / 2 - view->camera.pos_wu[1];
-    int64_t distance = c3d_length64(dx, dy, 0);
+    int32_t edge_wu = ff_node_edge_wu(&textures->info, ff_key_level(key));
+    ff_placed placed = ff_shape_put(&textures->info, &view->frame, key);
+    int64_t way[3];
+    ff_shape_to_middle(&textures->info, key, &placed, view->camera.pos_wu[2], view->camera.pos_wu,
+                       way);
+    int64_t distance = c3d_length64(way[0], way[1], 0); /* as if the ground lay at our height */
     int64_t c_q8 = quality->c_q8 > 0 ? quality->c_q8 : 3 * 256;
     int64_t value = (int64_t)edge_wu * c_q8 / (distance > edge_wu / 2 ? distance : edge_wu / 2 + 1);
     return value > UINT32_MAX ? UINT32_MAX : (uint32_t)value;

@@ -23,10 +23,7 @@ void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panora
     panorama->device = device;
     panorama->desc = *desc;
     panorama->face_size = (uint16_t)face_size;
-    panorama->ground_wu[0] = ff_height_wu(info, info->height_min) -
-                             ff_steps_wu(info, info->max_error);
-    panorama->ground_wu[1] = ff_height_wu(info, info->height_max) +
-                             ff_steps_wu(info, info->max_error);
+    panorama->info = info;
     panorama->active = panorama->next = panorama->shown = -1;
     panorama->retry_us = INT64_MIN;
     static const uint16_t quad[4] = { 0, 1, 2, 3 };
@@ -181,9 +178,10 @@ static void list_faces(ff_get_panorama *request, unsigned missing, const c3d_cam
                 request->face[request->face_count++] = (uint8_t)face;
 }
 
-void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera,
+void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const ff_view *view,
                       unsigned soon, int64_t now_us)
 {
+    const c3d_camera *camera = &view->camera;
     int newest = panorama->next >= 0 ? panorama->next : panorama->active;
     if (!panorama->desc.enabled || newest < 0 || now_us < panorama->retry_us) return;
     const ff_panorama_set *set = &panorama->set[newest];
@@ -195,7 +193,7 @@ void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const 
                                 .back_wu = panorama->desc.server_back_wu,
                                 .face_size = panorama->face_size,
                                 .quality = panorama->desc.jpeg_quality };
-    memcpy(request.position_wu, set->position_wu, sizeof request.position_wu);
+    ff_shape_leave(panorama->info, &view->frame, set->position_wu, request.position_wu);
     list_faces(&request, missing, camera);
     ff_requests_want(requests, FF_WANT_PANORAMA, set->key,
                      in_view ? FF_CLASS_FIRST : FF_CLASS_PREFETCH, in_view ? PRIORITY_FACE : 1,

@@ -27,7 +27,7 @@ extern const uint8_t ff_panorama_built; /* 0: left out of this build */
 #define FF_PANORAMA_MESHES (2 * FF_FACE_COUNT)
 
 typedef struct ff_panorama_set {
-    int32_t position_wu[3]; /* O */
+    int32_t position_wu[3]; /* O, in the client's frame */
     int32_t front_wu;       /* the front with which it was asked for */
     ff_key key;             /* of its requests */
     int64_t asked_us;
@@ -45,9 +45,9 @@ typedef struct ff_panorama {
     c3d_device *device;
     c3d_strip quad;
     ff_panorama_desc desc;
-    uint16_t face_size;   /* what memory allows; 0: no panoramas in this block */
-    int32_t ground_wu[2]; /* lowest and highest ground of the terrain */
-    int8_t active, next;  /* index in set[] of the drawn and the coming set; -1: none */
+    const ff_terrain_info *info;
+    uint16_t face_size;  /* what memory allows; 0: no panoramas in this block */
+    int8_t active, next; /* index in set[] of the drawn and the coming set; -1: none */
     /* the active set; -1: none, or left behind, as after a long flight without a link */
     int8_t shown;
     uint8_t refusals; /* in a row */
@@ -61,6 +61,7 @@ typedef struct ff_panorama {
     uint32_t faces, faces_empty;
 } ff_panorama;
 
+/* `info` stays where it is. */
 void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panorama_desc *desc,
                       const ff_terrain_info *info, unsigned face_size);
 /* Frees what the device holds. */
@@ -78,7 +79,7 @@ static inline int32_t ff_panorama_front_wu(const ff_panorama *panorama)
 int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera,
                        const ff_motion *motion, int hold, int64_t now_us);
 /* Puts what is missing into the ranking under way; soon: bit per face that will soon be in view. */
-void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera,
+void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const ff_view *view,
                       unsigned soon, int64_t now_us);
 /* Takes in a face or a refusal; 1 when it belongs to a set still wanted. */
 int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now_us);

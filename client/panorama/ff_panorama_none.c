@@ -32,10 +32,10 @@ int ff_panorama_late(const ff_panorama *panorama, const c3d_camera *camera)
     return (void)panorama, (void)camera, 0;
 }
 
-void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera,
+void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const ff_view *view,
                       unsigned soon, int64_t now_us)
 {
-    (void)panorama, (void)requests, (void)camera, (void)soon, (void)now_us;
+    (void)panorama, (void)requests, (void)view, (void)soon, (void)now_us;
 }
 
 int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now_us)

@@ -43,7 +43,11 @@ int ff_panorama_outdated_soon(const ff_panorama *panorama, const c3d_camera *cam
 static void expect(const ff_panorama *panorama, ff_panorama_set *set)
 {
     int32_t z_wu = set->front_wu, low_wu = INT32_MAX, high_wu = INT32_MIN;
-    ff_panorama_sight_terrain(&set->sight, set->position_wu, panorama->ground_wu, z_wu);
+    int64_t height_wu[2];
+    ff_terrain_range_wu(panorama->info, height_wu);
+    const int32_t ground_wu[2] = { (int32_t)(height_wu[0] - ff_shape_drop_wu(panorama->info, z_wu)),
+                                   (int32_t)height_wu[1] };
+    ff_panorama_sight_terrain(&set->sight, set->position_wu, ground_wu, z_wu);
     if (panorama->active < 0 || panorama->set[panorama->active].front_wu != z_wu) return;
     const ff_panorama_sight *drawn = &panorama->set[panorama->active].sight;
     for (unsigned face = 0; face < FF_FACE_UP; face++)

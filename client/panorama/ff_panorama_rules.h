@@ -42,7 +42,8 @@ int64_t ff_panorama_forwards_max(int64_t error_px_q8, int64_t z_wu, int64_t half
 int ff_panorama_outdated(const c3d_camera *camera, const int32_t taken_wu[3],
                          const ff_panorama_sight *sight, int32_t z_wu, int32_t error_px_q8);
 
-/* What a set may show of a terrain whose lowest and highest ground is ground_wu. */
+/* What a set may show of a terrain whose lowest and highest ground is ground_wu: the lowest as it
+ * lies in the frame at O z away from there, the highest where it lies highest. */
 void ff_panorama_sight_terrain(ff_panorama_sight *sight, const int32_t taken_wu[3],
                                const int32_t ground_wu[2], int32_t z_wu);
 /* What a face shows whose image has these of its rows; row_count 0: nothing. Between the image's

@@ -37,19 +37,16 @@ static int comes_into_view(const ff_tree *tree, const foresight *f, const ff_box
 /* Notes roots that are not held, of tiles that will come into view. */
 static void foresee_roots(const ff_tree *tree, foresight *f)
 {
-    const ff_window *window = &f->ahead.window;
-    unsigned looked_at = 0;
-    for (int64_t y = window->y0; y <= window->y1; y++)
-        for (int64_t x = window->x0; x <= window->x1; x++) {
-            uint32_t tile = (uint32_t)(y * tree->info.tiles_x + x);
-            if (++looked_at > TILES_LOOKED_AT) return;
-            ff_box here, there;
-            ff_tile_box(tree, tile, &here);
-            ff_tile_box(&f->ahead, tile, &there);
-            if (comes_into_view(tree, f, &here, &there) &&
-                ff_tree_find(tree, ff_key_make(tile, 0, 0)) == FF_SLOT_NONE)
-                note(f, ff_key_make(tile, 0, 0), 0, FF_VALUE_ONE);
-        }
+    ff_walk walk = ff_shape_walk(&tree->info, &f->ahead.window);
+    uint32_t tile;
+    for (unsigned i = 0; i < TILES_LOOKED_AT && ff_shape_next(&tree->info, &walk, &tile); i++) {
+        ff_key root = ff_key_make(tile, 0, 0);
+        if (ff_tree_find(tree, root) != FF_SLOT_NONE) continue;
+        ff_box here, there;
+        ff_tile_box(tree, tile, &here);
+        ff_tile_box(&f->ahead, tile, &there);
+        if (comes_into_view(tree, f, &here, &there)) note(f, root, 0, FF_VALUE_ONE);
+    }
 }
 
 /* 1 when the pool would find room for the children of `node`: four free slots, or a victim that is

@@ -41,7 +41,7 @@ uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent)
     node->parent = parent;
     node->flags = FF_NODE_HELD;
     for (unsigned q = 0; q < 4; q++) node->child[q] = FF_SLOT_NONE;
-    ff_node_origin_wu(&tree->info, key, &node->x_wu, &node->y_wu);
+    node->placed = ff_shape_put(&tree->info, &tree->view.frame, key);
     node->hash_next = tree->hash[bucket];
     tree->hash[bucket] = slot;
     if (parent == FF_SLOT_NONE) {
@@ -62,8 +62,7 @@ static void forget_user(ff_tree *tree, ff_node *node)
 void ff_tree_reshade_beside(ff_tree *tree, ff_key key)
 {
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
-        ff_key beside = ff_key_neighbour(tree->info.tiles_x, tree->info.tiles_y, key,
-                                         (enum ff_side)side);
+        ff_key beside = ff_shape_neighbour(&tree->info, key, (enum ff_side)side).key;
         uint32_t slot = beside == FF_KEY_NONE ? FF_SLOT_NONE : ff_tree_find(tree, beside);
         if (slot != FF_SLOT_NONE) forget_user(tree, &tree->node[slot]);
     }

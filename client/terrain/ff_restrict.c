@@ -15,8 +15,7 @@ static ff_key parent_beside(const ff_tree *tree, const ff_node *node, enum ff_si
     };
     if (ff_key_level(node->key) == 0 || !(towards[side] >> ff_key_quadrant(node->key) & 1u))
         return FF_KEY_NONE;
-    ff_key beside = ff_key_neighbour(tree->info.tiles_x, tree->info.tiles_y,
-                                     ff_key_parent(node->key), side);
+    ff_key beside = ff_shape_neighbour(&tree->info, ff_key_parent(node->key), side).key;
     if (beside == FF_KEY_NONE || ff_key_tile(beside) == ff_key_tile(node->key)) return beside;
     uint32_t root = ff_tree_find(tree, ff_key_make(ff_key_tile(beside), 0, 0));
     return root != FF_SLOT_NONE && tree->node[root].flags & FF_NODE_ACTIVE ? beside : FF_KEY_NONE;

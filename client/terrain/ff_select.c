@@ -36,8 +36,21 @@ static void set_view(ff_tree *tree, const ff_view *view, const ff_quality *quali
     tree->quality.c_q8 = within(quality->c_q8, 0, C_Q8_MAX);
     tree->quality.error_px_q8 = within(quality->error_px_q8, 1, INT32_MAX);
     tree->quality.view_wu = within(quality->view_wu, 0, INT32_MAX);
+    int32_t horizon_wu = ff_shape_horizon_wu(&tree->info, &view->frame, view->centre_wu);
+    if (tree->quality.view_wu > horizon_wu) tree->quality.view_wu = horizon_wu;
     ff_window_make(tree);
     ff_pyramid_make(tree);
+}
+
+/* Places the held nodes anew when the view comes in another frame. */
+static void enter_frame(ff_tree *tree, const ff_frame *frame)
+{
+    if (ff_shape_same_frame(&tree->info, frame, &tree->view.frame)) return;
+    for (uint32_t slot = 0; slot < tree->node_count; slot++) {
+        ff_node *node = &tree->node[slot];
+        if (node->flags & FF_NODE_HELD) node->placed = ff_shape_put(&tree->info, frame, node->key);
+    }
+    tree->dirty = 1;
 }
 
 /* Sets all flags back to what they were before any selection. */
@@ -139,9 +152,7 @@ static void fill_drawn(const ff_tree *tree, uint32_t slot, unsigned coarser, ff_
     drawn->node = node;
     drawn->heights = tree->heights + slot * ff_heights_per_node(tree);
     drawn->coarser = (uint8_t)coarser;
-    drawn->origin_wu[0] = node->x_wu;
-    drawn->origin_wu[1] = node->y_wu;
-    drawn->origin_wu[2] = ff_height_wu(&tree->info, 32768);
+    ff_shape_place(&tree->info, node->key, &node->placed, 0, 0, 32768, drawn->origin_wu);
     drawn->cell_wu = ff_node_cell_wu(&tree->info, ff_key_level(node->key));
 }
 
@@ -190,6 +201,7 @@ static void list_cut(ff_tree *tree)
 
 int ff_tree_select(ff_tree *tree, const ff_view *view, const ff_quality *quality)
 {
+    enter_frame(tree, &view->frame);
     if (tree->has_view && !tree->dirty && same_view(view, &tree->asked_view) &&
         same_quality(quality, &tree->asked_quality)) {
         tree->stats.selects_skipped++;

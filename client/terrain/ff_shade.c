@@ -2,6 +2,7 @@
 #include "ff_shade.h"
 
 #include "../../common3d/c3d_fixed.h"
+#include "../../protocol/shape/ff_shape.h"
 
 #include <stddef.h>
 
@@ -70,13 +71,15 @@ static int32_t light_q8(int32_t east_q8, int32_t north_q8)
     return (int32_t)(90 + cosine_q8 * 166 / 181);
 }
 
-void ff_shade(const ff_terrain_info *info, const uint16_t *framed, int32_t cell_wu, uint32_t i,
-              uint32_t j, uint8_t rgba[4])
+void ff_shade(const ff_shade_grid *grid, uint32_t i, uint32_t j, uint8_t rgba[4])
 {
+    const ff_terrain_info *info = grid->info;
     size_t stride = ff_node_side(info) + 2;
-    const uint16_t *here = framed + (j + 1) * stride + i + 1;
-    int32_t east = slope_q8(info, here[1] - *(here - 1), cell_wu);
-    int32_t north = slope_q8(info, here[stride] - *(here - stride), cell_wu);
+    const uint16_t *here = grid->framed + (j + 1) * stride + i + 1;
+    int32_t slope[2] = { slope_q8(info, here[1] - *(here - 1), grid->cell_wu),
+                         slope_q8(info, here[stride] - *(here - stride), grid->cell_wu) };
+    ff_shape_slopes(info, grid->key, slope);
+    int32_t east = slope[0], north = slope[1];
     int32_t colour[3] = { water[0], water[1], water[2] };
     if (!is_water(info, *here)) {
         int64_t steep_square = (int64_t)east * east + (int64_t)north * north;

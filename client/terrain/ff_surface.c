@@ -26,13 +26,14 @@ static void frame_side(const ff_tree *tree, const ff_drawn *drawn, enum ff_side 
                        uint16_t *framed)
 {
     uint32_t samples = ff_node_side(&tree->info), last = samples - 1;
-    ff_key beside = ff_key_neighbour(tree->info.tiles_x, tree->info.tiles_y, drawn->key, side);
-    uint32_t slot = beside == FF_KEY_NONE ? FF_SLOT_NONE : ff_tree_find(tree, beside);
+    ff_beside beside = ff_shape_neighbour(&tree->info, drawn->key, side);
+    uint32_t slot = beside.key == FF_KEY_NONE ? FF_SLOT_NONE : ff_tree_find(tree, beside.key);
     for (uint32_t along = 0; along < samples; along++) {
         uint16_t *out = &framed[side_index(side, along + 1, 0, last + 2, samples + 2)];
         if (slot != FF_SLOT_NONE) {
             const uint16_t *other = tree->heights + slot * ff_heights_per_node(tree);
-            *out = other[side_index(side, along, last - 1, last, samples)];
+            *out = other[side_index(beside.side, ff_beside_along(&beside, along, last), 1, last,
+                                    samples)];
             continue;
         }
         int32_t beyond = drawn->heights[side_index(side, along, 0, last, samples)] +
@@ -55,6 +56,7 @@ static void frame_heights(const ff_tree *tree, const ff_drawn *drawn, uint16_t *
 void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3d_vertex *out)
 {
     uint16_t framed[FRAMED_MAX];
+    const ff_shade_grid grid = { &tree->info, drawn->key, drawn->cell_wu, framed };
     uint32_t side = ff_node_side(&tree->info);
     if (shaded) frame_heights(tree, drawn, framed);
     for (uint32_t row = 0; row < side; row++) {
@@ -64,7 +66,7 @@ void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3
             out->z = (int16_t)(drawn->heights[row * side + column] - 32768);
             out->pad = 0;
             if (shaded)
-                ff_shade(&tree->info, framed, drawn->cell_wu, column, row, out->rgba);
+                ff_shade(&grid, column, row, out->rgba);
             else
                 memset(out->rgba, 255, sizeof out->rgba);
         }
@@ -130,12 +132,10 @@ static uint64_t height_in_sides(const ff_tree *tree, const uint16_t *heights, un
     return 0;
 }
 
-static uint64_t height_in_node(const ff_tree *tree, const ff_node *node, int64_t x_wu, int64_t y_wu)
+static uint64_t height_in_node(const ff_tree *tree, const ff_node *node, grid_point at)
 {
     unsigned side = ff_node_side(&tree->info), last = side - 2;
     const uint16_t *heights = tree->heights + ff_slot_of(tree, node) * ff_heights_per_node(tree);
-    int64_t cell = ff_node_cell_wu(&tree->info, ff_key_level(node->key));
-    grid_point at = { ((x_wu - node->x_wu) << 16) / cell, ((y_wu - node->y_wu) << 16) / cell };
     unsigned column = (unsigned)(at.x >> 16), row = (unsigned)(at.y >> 16);
     column = column > last ? last : column;
     row = row > last ? last : row;
@@ -146,25 +146,35 @@ static uint64_t height_in_node(const ff_tree *tree, const ff_node *node, int64_t
     return height_in_cell(heights, side, column, row, at);
 }
 
-int ff_tree_drawn_height(const ff_tree *tree, int32_t x_wu, int32_t y_wu, int32_t *z_wu)
+/* The drawn node below a root over which a spot lies; *at is the spot in its grid. */
+static const ff_node *node_at(const ff_tree *tree, const ff_node *node, const ff_spot *spot,
+                              grid_point *at)
 {
-    const ff_terrain_info *info = &tree->info;
-    int64_t edge = ff_node_edge_wu(info, 0), width = info->tiles_x * edge,
-            depth = info->tiles_y * edge;
-    if (!tree->has_view || x_wu < 0 || y_wu < 0 || x_wu > width || y_wu > depth) return 0;
-    uint32_t tile_x = x_wu == width ? info->tiles_x - 1 : (uint32_t)(x_wu / edge);
-    uint32_t tile_y = y_wu == depth ? info->tiles_y - 1 : (uint32_t)(y_wu / edge);
-    uint32_t tile = tile_y * info->tiles_x + tile_x,
-             slot = ff_tree_find(tree, ff_key_make(tile, 0, 0));
-    if (slot == FF_SLOT_NONE || !ff_tile_active(tree, tile)) return 0;
-    const ff_node *node = &tree->node[slot];
-    while (node->flags & FF_NODE_SPLIT) {
-        int32_t half = ff_node_edge_wu(info, ff_key_level(node->key)) / 2;
-        unsigned east = (int64_t)x_wu - node->x_wu >= half,
-                 north = (int64_t)y_wu - node->y_wu >= half;
+    /* in samples, Q16, from the node's south-west corner */
+    uint32_t column = spot->column_q16, row = spot->row_q16,
+             half = 1u << (15 + tree->info.tile_log2);
+    for (; node->flags & FF_NODE_SPLIT; half >>= 1) {
+        unsigned east = column >= half, north = row >= half;
+        column -= east ? half : 0;
+        row -= north ? half : 0;
         node = &tree->node[node->child[2 * north + east]];
     }
-    uint64_t height_q16 = height_in_node(tree, node, x_wu, y_wu);
-    *z_wu = info->hoffset_wu + (int32_t)(height_q16 * info->hscale_q24 >> 32);
+    unsigned cell_log2 = tree->info.tile_log2 - tree->info.node_log2 - ff_key_level(node->key);
+    *at = (grid_point){ column >> cell_log2, row >> cell_log2 };
+    return node;
+}
+
+int ff_tree_drawn_height(const ff_tree *tree, int32_t x_wu, int32_t y_wu, int32_t *z_wu)
+{
+    const ff_view *view = &tree->view;
+    /* z need not be the ground's: it is looked for under or over the point */
+    const int32_t place_wu[3] = { x_wu, y_wu, view->camera.pos_wu[2] };
+    ff_spot spot;
+    grid_point at;
+    if (!tree->has_view || !ff_shape_locate(&tree->info, &view->frame, place_wu, &spot)) return 0;
+    uint32_t slot = ff_tree_find(tree, ff_key_make(spot.tile, 0, 0));
+    if (slot == FF_SLOT_NONE || !ff_tile_active(tree, spot.tile)) return 0;
+    const ff_node *node = node_at(tree, &tree->node[slot], &spot, &at);
+    *z_wu = ff_shape_z_wu(&tree->info, &view->frame, place_wu, height_in_node(tree, node, at));
     return 1;
 }

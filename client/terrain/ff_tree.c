@@ -166,6 +166,10 @@ uint32_t ff_tree_cut(const ff_tree *tree, const ff_drawn **list)
     return tree->cut_count;
 }
 
+const ff_frame *ff_tree_frame(const ff_tree *tree) { return &tree->view.frame; }
+
+const ff_placed *ff_tree_placed(const ff_node *node) { return &node->placed; }
+
 uint32_t ff_tree_wishes(const ff_tree *tree, const ff_wish **list)
 {
     *list = tree->wish;

@@ -20,6 +20,7 @@
 
 #include "../../common3d/c3d.h"
 #include "../../protocol/codec/ff_codec.h"
+#include "../../protocol/shape/ff_shape.h"
 
 typedef struct ff_tree ff_tree;
 typedef struct ff_node ff_node; /* defined in ff_tree_local.h for client/terrain only */
@@ -46,10 +47,12 @@ typedef struct ff_quality {
     int32_t hole_wu;
 } ff_quality;
 
+/* Positions are points of `frame`, whose z is up; {0}: world axes of a planar terrain. */
 typedef struct ff_view {
     c3d_camera camera;
     /* middle of the square of ground to draw: the camera, or where the panorama in use was taken */
     int32_t centre_wu[3];
+    ff_frame frame;
 } ff_view;
 
 /* One wish: a root (level 0, refinement 0) or the children of a node. priority: higher is more
@@ -66,7 +69,7 @@ typedef struct ff_drawn {
     const ff_node *node;
     const uint16_t *heights; /* ff_node_side()^2, decoded */
     uint8_t coarser;         /* bit FF_SIDE_x: the neighbour there is one level coarser */
-    int32_t origin_wu[3];    /* world position of vertex (0,0,z=0); see ff_tree_vertices */
+    int32_t origin_wu[3];    /* place of vertex (0,0,z=0) in the frame; see ff_tree_vertices */
     int32_t cell_wu;
 } ff_drawn;
 
@@ -107,6 +110,10 @@ int ff_tree_select(ff_tree *tree, const ff_view *view, const ff_quality *quality
 uint32_t ff_tree_drawn(const ff_tree *tree, const ff_drawn **list);
 /* All nodes of the cut, seen or not, for checks: same rules. */
 uint32_t ff_tree_cut(const ff_tree *tree, const ff_drawn **list);
+/* The frame that their origins are places of: the last selection's. */
+const ff_frame *ff_tree_frame(const ff_tree *tree);
+/* A node's place there, for ff_shape.h. */
+const ff_placed *ff_tree_placed(const ff_node *node);
 /* What would make the picture better, most urgent first. The tree does not remember asking: the
  * caller does. */
 uint32_t ff_tree_wishes(const ff_tree *tree, const ff_wish **list);
@@ -128,7 +135,8 @@ void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3
 uint32_t *ff_tree_user(ff_tree *tree, const ff_node *node);
 void ff_tree_on_evict(ff_tree *tree, void (*on_evict)(void *context, uint32_t user), void *context);
 
-/* Height of the drawn surface at (x, y), wu: 1 and *z_wu, or 0 where no node of the cut lies. */
+/* Height of the drawn surface at (x, y) of the frame, wu: 1 and *z_wu, or 0 where no node of the
+ * cut lies. */
 int ff_tree_drawn_height(const ff_tree *tree, int32_t x_wu, int32_t y_wu, int32_t *z_wu);
 void ff_tree_get_stats(const ff_tree *tree, ff_tree_stats *stats);
 

@@ -28,22 +28,15 @@ struct ff_node {
     uint32_t list_next; /* roots: next root */
     uint32_t want_next; /* next wanted node of the same level */
     uint32_t parent;
-    uint32_t child[4];  /* all four or, child[0] being FF_SLOT_NONE, none */
-    int32_t x_wu, y_wu; /* south-west corner */
-    uint32_t value;     /* valid while FF_NODE_WANTED */
+    uint32_t child[4]; /* all four or, child[0] being FF_SLOT_NONE, none */
+    ff_placed placed;  /* in the last selection's frame */
+    uint32_t value;    /* valid while FF_NODE_WANTED */
     uint32_t user;
     uint16_t height_min, height_max, height_mean;
     uint8_t error_code;
     uint8_t flags;
 };
 
-/* Tiles x0..x1, y0..y1 touch the window; x1 < x0: none does. */
-typedef struct ff_window {
-    int64_t x0, x1, y0, y1;
-} ff_window;
-typedef struct ff_box {
-    int64_t lo[3], hi[3];
-} ff_box; /* wu, relative to the camera */
 #define FF_PLANES 5
 
 struct ff_tree {
@@ -66,7 +59,7 @@ struct ff_tree {
     uint8_t has_view, dirty;
     /* 1: nodes have gone since the last selection, so the lists of wanted nodes are broken */
     uint8_t dropped;
-    ff_window window;
+    ff_reach window; /* tiles whose ground is drawn and asked for */
     /* inward normals of the view pyramid, largest component below 2^28 */
     int32_t plane[FF_PLANES][3];
     uint32_t want_head[FF_LEVELS_MAX];
@@ -118,7 +111,9 @@ void ff_window_make(ff_tree *tree);
 int ff_tile_active(const ff_tree *tree, uint32_t tile);
 /* Largest of |dx|, |dy| from the window's middle to a tile's square. */
 int64_t ff_tile_distance(const ff_tree *tree, uint32_t tile);
+/* Boxes are relative to the camera. */
 void ff_node_box(const ff_tree *tree, const ff_node *node, ff_box *box);
+/* Of a tile whose root has not arrived: between the terrain's lowest and highest ground. */
 void ff_tile_box(const ff_tree *tree, uint32_t tile, ff_box *box);
 /* 1 when no point of the box is within view_wu of the window's middle. */
 int ff_box_beyond_view(const ff_tree *tree, const ff_box *box);

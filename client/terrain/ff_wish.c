@@ -18,75 +18,25 @@ static uint32_t times_q16(uint32_t value_q16, uint32_t factor)
 
 /* ---- roots ---- */
 
-typedef struct root_scan {
-    ff_tree *tree;
-    uint32_t found, limit;
-} root_scan;
-
-static void scan_tile(root_scan *scan, int64_t x, int64_t y)
-{
-    ff_tree *tree = scan->tree;
-    const ff_window *window = &tree->window;
-    if (scan->found == scan->limit || x < window->x0 || x > window->x1 || y < window->y0 ||
-        y > window->y1)
-        return;
-    uint32_t tile = (uint32_t)(y * tree->info.tiles_x + x);
-    if (ff_tree_find(tree, ff_key_make(tile, 0, 0)) != FF_SLOT_NONE) return;
-    ff_box box;
-    ff_tile_box(tree, tile, &box);
-    uint64_t unseen = ff_box_in_view(tree, &box) ? 0 : OUT_OF_VIEW;
-    tree->sort[scan->found] = unseen | (uint64_t)scan->found << TILE_BITS | tile;
-    scan->found++;
-}
-
-static int64_t clamp64(int64_t value, int64_t lo, int64_t hi)
-{
-    return value < lo ? lo : value > hi ? hi : value;
-}
-
-static void scan_row(root_scan *scan, int64_t x_first, int64_t x_last, int64_t y)
-{
-    const ff_window *window = &scan->tree->window;
-    if (y < window->y0 || y > window->y1) return;
-    x_last = x_last > window->x1 ? window->x1 : x_last;
-    for (int64_t x = x_first < window->x0 ? window->x0 : x_first;
-         x <= x_last && scan->found < scan->limit; x++)
-        scan_tile(scan, x, y);
-}
-
-static void scan_column(root_scan *scan, int64_t x, int64_t y_first, int64_t y_last)
-{
-    const ff_window *window = &scan->tree->window;
-    if (x < window->x0 || x > window->x1) return;
-    y_last = y_last > window->y1 ? window->y1 : y_last;
-    for (int64_t y = y_first < window->y0 ? window->y0 : y_first;
-         y <= y_last && scan->found < scan->limit; y++)
-        scan_tile(scan, x, y);
-}
-
-/* Looks for missing roots in the window of tiles, in square rings round its middle from the inside,
- * and puts them into `sort`, those in view first. */
+/* Looks for missing roots in the window of tiles, from its middle outwards, and puts them into
+ * `sort`, those in view first. */
 static uint32_t missing_roots(ff_tree *tree)
 {
-    const ff_window *window = &tree->window;
     uint32_t limit = tree->wish_capacity < tree->node_count / 2 ? 4 * tree->wish_capacity
                                                                 : 2 * tree->node_count;
-    root_scan scan = { tree, 0, limit };
-    if (window->x1 < window->x0) return 0;
-    int64_t edge = ff_node_edge_wu(&tree->info, 0);
-    int64_t x = clamp64(tree->view.centre_wu[0] / edge, window->x0, window->x1);
-    int64_t y = clamp64(tree->view.centre_wu[1] / edge, window->y0, window->y1);
-    scan_tile(&scan, x, y);
-    for (int64_t r = 1; scan.found < limit; r++) {
-        if (x - r < window->x0 && x + r > window->x1 && y - r < window->y0 && y + r > window->y1)
-            break;
-        scan_row(&scan, x - r, x + r, y - r);
-        scan_row(&scan, x - r, x + r, y + r);
-        scan_column(&scan, x - r, y - r + 1, y + r - 1);
-        scan_column(&scan, x + r, y - r + 1, y + r - 1);
+    uint32_t found = 0, tile;
+    ff_walk walk = ff_shape_walk_out(&tree->info, &tree->view.frame, &tree->window,
+                                     tree->view.centre_wu);
+    while (found < limit && ff_shape_next(&tree->info, &walk, &tile)) {
+        if (ff_tree_find(tree, ff_key_make(tile, 0, 0)) != FF_SLOT_NONE) continue;
+        ff_box box;
+        ff_tile_box(tree, tile, &box);
+        uint64_t unseen = ff_box_in_view(tree, &box) ? 0 : OUT_OF_VIEW;
+        tree->sort[found] = unseen | (uint64_t)found << TILE_BITS | tile;
+        found++;
     }
-    ff_sort_keys(tree->sort, scan.found);
-    return scan.found;
+    ff_sort_keys(tree->sort, found);
+    return found;
 }
 
 /* How many roots in the window of tiles are held, and how far the farthest of them is. */

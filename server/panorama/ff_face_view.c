@@ -26,15 +26,10 @@ void ff_face_camera(const ff_get_panorama *request, enum ff_face_name face, c3d_
     camera->far_wu = request->back_wu;
 }
 
-int ff_face_sees_box(const ff_get_panorama *request, enum ff_face_name face,
-                     const int64_t low_wu[3], const int64_t high_wu[3])
+int ff_face_sees_box(const ff_get_panorama *request, enum ff_face_name face, const ff_box *box)
 {
     const face_axis *forward = &face_axes[face];
-    int64_t low[3], high[3];
-    for (int i = 0; i < 3; i++) {
-        low[i] = low_wu[i] - request->position_wu[i];
-        high[i] = high_wu[i] - request->position_wu[i];
-    }
+    const int64_t *low = box->lo, *high = box->hi;
     int64_t nearest = forward->sign > 0 ? low[forward->axis] : -high[forward->axis];
     int64_t farthest = forward->sign > 0 ? high[forward->axis] : -low[forward->axis];
     if (farthest > request->back_wu) farthest = request->back_wu;

@@ -104,8 +104,8 @@ static uint32_t serve_wishes(panorama_ground *ground)
     return delivered;
 }
 
-void panorama_ground_load(panorama_ground *ground, const ff_get_panorama *request,
-                          enum ff_face_name face)
+void panorama_ground_load(panorama_ground *ground, const ff_frame *frame,
+                          const ff_get_panorama *request, enum ff_face_name face)
 {
     ff_quality quality = { .measure = FF_MEASURE_PIXELS,
                            .c_q8 = 256,
@@ -113,7 +113,8 @@ void panorama_ground_load(panorama_ground *ground, const ff_get_panorama *reques
                            .sigma_q8 = SIGMA_Q8,
                            .view_wu = request->back_wu,
                            .hole_wu = ff_face_near_wu(request) };
-    ff_view view;
+    ff_view view = { .frame = *frame };
+    ground->frame = *frame;
     ff_face_camera(request, face, &view.camera);
     memcpy(view.centre_wu, request->position_wu, sizeof view.centre_wu);
     for (int round = 0; round < LOAD_ROUNDS_MAX; round++) {
@@ -135,12 +136,10 @@ static int node_seen(const panorama_ground *ground, const ff_drawn *drawn,
         lowest = drawn->heights[i] < lowest ? drawn->heights[i] : lowest;
         highest = drawn->heights[i] > highest ? drawn->heights[i] : highest;
     }
-    int32_t x_wu, y_wu;
-    int64_t edge = ff_node_edge_wu(info, ff_key_level(drawn->key));
-    ff_node_origin_wu(info, drawn->key, &x_wu, &y_wu);
-    int64_t low[3] = { x_wu, y_wu, ff_height_wu(info, lowest) };
-    int64_t high[3] = { x_wu + edge, y_wu + edge, ff_height_wu(info, highest) };
-    return ff_face_sees_box(request, face, low, high);
+    const int64_t height_wu[2] = { ff_height_wu(info, lowest), ff_height_wu(info, highest) };
+    ff_box box = ff_shape_box(info, drawn->key, ff_tree_placed(drawn->node), height_wu,
+                              request->position_wu);
+    return ff_face_sees_box(request, face, &box);
 }
 
 int panorama_ground_seen(const panorama_ground *ground, const ff_get_panorama *request,
@@ -205,8 +204,11 @@ static uint32_t list_seen(panorama_ground *ground, const ff_get_panorama *reques
  * depend on who asked before. */
 static void choose_frame(panorama_ground *ground, const ff_get_panorama *request)
 {
-    if (memcmp(ground->position_wu, request->position_wu, sizeof ground->position_wu) == 0) return;
+    if (memcmp(ground->position_wu, request->position_wu, sizeof ground->position_wu) == 0 &&
+        ff_shape_same_frame(&ground->pack->header.info, &ground->frame, &ground->drawn_frame))
+        return;
     memcpy(ground->position_wu, request->position_wu, sizeof ground->position_wu);
+    ground->drawn_frame = ground->frame;
     ff_terrain_view_new_frame(&ground->view);
 }
 

@@ -21,7 +21,9 @@ typedef struct panorama_ground {
     int32_t values[FF_REFINED_HEIGHTS_MAX];
     ff_wish wishes[FF_PANORAMA_WISHES];
     ff_drawn seen[FF_PANORAMA_NODES]; /* of the face being drawn */
-    int32_t position_wu[3];           /* of the face drawn last */
+    ff_frame frame;                   /* of the face loaded last */
+    int32_t position_wu[3];           /* of the face drawn last, and its frame */
+    ff_frame drawn_frame;
     ff_terrain_view view;
     ff_view_node entry[FF_PANORAMA_NODES];
     c3d_vertex vertices[FF_NODE_HEIGHTS_MAX];
@@ -38,9 +40,10 @@ int panorama_ground_open(panorama_ground *ground, const ff_pack *pack, c3d_devic
                          ff_panorama_render_stats *stats);
 void panorama_ground_close(panorama_ground *ground);
 
-/* Reads what the face needs, within the pool. */
-void panorama_ground_load(panorama_ground *ground, const ff_get_panorama *request,
-                          enum ff_face_name face);
+/* Reads what the face needs, within the pool. The request's position, here and below, is a point of
+ * the frame at O. */
+void panorama_ground_load(panorama_ground *ground, const ff_frame *frame,
+                          const ff_get_panorama *request, enum ff_face_name face);
 /* 1 when the loaded ground can show in the face. */
 int panorama_ground_seen(const panorama_ground *ground, const ff_get_panorama *request,
                          enum ff_face_name face);

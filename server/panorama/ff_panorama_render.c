@@ -130,18 +130,17 @@ void ff_panorama_renderer_get_stats(const ff_panorama_renderer *renderer,
 /* ---- a face ---- */
 
 /* Whether any ground of the terrain can lie in the face: its box alone, nothing read. */
-static int terrain_seen(const ff_terrain_info *info, const ff_get_panorama *request,
-                        enum ff_face_name face)
+static int terrain_seen(const ff_terrain_info *info, const ff_frame *frame,
+                        const ff_get_panorama *request, enum ff_face_name face)
 {
-    int64_t edge = ff_node_edge_wu(info, 0);
     uint32_t top = (uint32_t)info->height_max + info->max_error;
     uint32_t bottom = info->height_min > info->max_error
                           ? (uint32_t)info->height_min - info->max_error
                           : 0;
-    int64_t low[3] = { 0, 0, ff_height_wu(info, bottom) };
-    int64_t high[3] = { info->tiles_x * edge, info->tiles_y * edge,
-                        ff_height_wu(info, top > UINT16_MAX ? UINT16_MAX : top) };
-    return ff_face_sees_box(request, face, low, high);
+    const int64_t height_wu[2] = { ff_height_wu(info, bottom),
+                                   ff_height_wu(info, top > UINT16_MAX ? UINT16_MAX : top) };
+    ff_box box = ff_shape_bounds(info, frame, height_wu, request->position_wu);
+    return ff_face_sees_box(request, face, &box);
 }
 
 /* A JPEG of the spans' rows at the wanted quality, or the best below it that fits a message. */
@@ -185,16 +184,20 @@ static int draw_face(ff_panorama_renderer *renderer, const ff_get_panorama *requ
     return FF_OK;
 }
 
-static int render_face(ff_panorama_renderer *renderer, const ff_get_panorama *request,
-                       ff_face *face)
+/* O comes in world axes; from here on it is a point of the frame at O. */
+static int render_face(ff_panorama_renderer *renderer, const ff_get_panorama *asked, ff_face *face)
 {
-    if (!terrain_seen(&renderer->pack->header.info, request, face->face)) {
+    const ff_terrain_info *info = &renderer->pack->header.info;
+    ff_frame frame = ff_shape_frame(info, asked->position_wu);
+    ff_get_panorama entered = *asked, *request = &entered;
+    ff_shape_enter(info, &frame, asked->position_wu, request->position_wu);
+    if (!terrain_seen(info, &frame, request, face->face)) {
         renderer->stats.empty_by_bounds++;
         return FF_OK;
     }
     int rc = stage_fit(renderer, request->face_size);
     if (rc < 0) return rc;
-    panorama_ground_load(&renderer->ground, request, face->face);
+    panorama_ground_load(&renderer->ground, &frame, request, face->face);
     if (!panorama_ground_seen(&renderer->ground, request, face->face)) {
         renderer->stats.empty_by_bounds++;
         return FF_OK;

@@ -237,8 +237,8 @@ static void check_cracks(fly_flight *flight, double t_s)
     const ff_drawn *list;
     const ff_tree *tree = ff_client_tree(flight->world->client);
     uint32_t count = tree ? ff_tree_cut(tree, &list) : 0;
-    if (!count ||
-        sim_watertight_check(&flight->world->pack.header.info, list, count, why, sizeof why))
+    if (!count || sim_watertight_check(&flight->world->pack.header.info, ff_tree_frame(tree), list,
+                                       count, why, sizeof why))
         return;
     if (!flight->totals.crack_frames++)
         fprintf(stderr, "farfield-fly: crack at %.3f s: %s\n", t_s, why);

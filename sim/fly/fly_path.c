@@ -1,5 +1,7 @@
 #include "fly_path.h"
 
+#include "../../protocol/shape/ff_shape.h"
+
 #include <math.h>
 
 #define PI              3.14159265358979323846
@@ -16,8 +18,10 @@
 void fly_path_init(fly_path *path, const fly_options *options, const ff_terrain_info *info,
                    const sim_ground *ground)
 {
-    double spacing_m = (double)info->spacing_wu / FF_WU_PER_METRE;
-    double size_x = (info->samples_x - 1) * spacing_m, size_y = (info->samples_y - 1) * spacing_m;
+    int64_t size_wu[2];
+    ff_shape_size_wu(info, size_wu);
+    double size_x = (double)size_wu[0] / FF_WU_PER_METRE,
+           size_y = (double)size_wu[1] / FF_WU_PER_METRE;
     double shorter = fmin(size_x, size_y);
     *path = (fly_path){ .kind = options->path,
                         .ground = ground,

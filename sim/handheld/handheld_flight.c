@@ -1,5 +1,7 @@
 #include "handheld.h"
 
+#include "../../protocol/shape/ff_shape.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -198,8 +200,7 @@ static void place(const handheld *device, uint32_t frame, c3d_camera *camera)
                             .height = device->height,
                             .focal_q8 = c3d_focal_q8(FOV_BRAD16, device->width) };
     if (!info) return;
-    size_wu[0] = (int64_t)(info->samples_x - 1) * info->spacing_wu;
-    size_wu[1] = (int64_t)(info->samples_y - 1) * info->spacing_wu;
+    ff_shape_size_wu(info, size_wu);
     diagonal_wu = c3d_length64(size_wu[0], size_wu[1], 0);
     for (int axis = 0; axis < 2; axis++)
         camera->pos_wu[axis] = (int32_t)(size_wu[axis] * HERE +

@@ -3,6 +3,7 @@
 #include "../../client/terrain/ff_strips.h"
 #include "../../protocol/message/ff_message.h"
 #include "sim_eye.h"
+#include "sim_place.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -127,26 +128,23 @@ static int node_height(const sim_auditor *auditor, const ff_drawn *drawn, double
     return 0;
 }
 
-/* The node drawn at (x, y) and its height there, or NULL. */
+/* The node drawn over or under a point and its height there, or NULL. */
 static const ff_drawn *drawn_at(const sim_auditor *auditor, const ff_drawn *drawn, uint32_t count,
-                                double x_m, double y_m, double *z_m)
+                                const double point_m[3], double *z_m)
 {
-    double side = (double)(1u << auditor->info.node_log2);
-    for (uint32_t i = 0; i < count; i++) {
-        double cell_m = (double)drawn[i].cell_wu / FF_WU_PER_METRE;
-        double x = (x_m - (double)drawn[i].origin_wu[0] / FF_WU_PER_METRE) / cell_m;
-        double y = (y_m - (double)drawn[i].origin_wu[1] / FF_WU_PER_METRE) / cell_m;
-        if (x >= 0 && y >= 0 && x <= side && y <= side &&
-            node_height(auditor, &drawn[i], x, y, z_m))
+    double cell[2];
+    for (uint32_t i = 0; i < count; i++)
+        if (sim_place_in_node(&auditor->info, &drawn[i], point_m, cell) &&
+            node_height(auditor, &drawn[i], cell[0], cell[1], z_m))
             return &drawn[i];
-    }
     return NULL;
 }
 
 int sim_audit_drawn_height(const sim_auditor *auditor, const ff_drawn *drawn, uint32_t count,
                            double x_m, double y_m, double *z_m)
 {
-    return drawn_at(auditor, drawn, count, x_m, y_m, z_m) != NULL;
+    const double point_m[3] = { x_m, y_m, 0 };
+    return drawn_at(auditor, drawn, count, point_m, z_m) != NULL;
 }
 
 /* Why is the ground no finer here? Asked in the terms of the quality, not of the client's
@@ -159,11 +157,11 @@ static enum sim_audit_cause cause_of(const sim_auditor *auditor, const sim_audit
     double edge_m = (double)drawn->cell_wu * (1u << auditor->info.node_log2) / FF_WU_PER_METRE;
     int splits = error_px > quality->error_px_q8 / 256.0;
     if (quality->measure == FF_MEASURE_DISTANCE) {
-        double d[3] = { (double)drawn->origin_wu[0] / FF_WU_PER_METRE + edge_m / 2 - e->pos_m[0],
-                        (double)drawn->origin_wu[1] / FF_WU_PER_METRE + edge_m / 2 - e->pos_m[1],
-                        0 };
-        d[2] = sim_ground_height_m(auditor->ground, e->pos_m[0] + d[0], e->pos_m[1] + d[1]) -
-               e->pos_m[2];
+        double middle_m[3], d[3];
+        sim_place_middle(&auditor->info, drawn, middle_m);
+        sim_place_lift(middle_m, sim_ground_height_m(auditor->ground, middle_m[0], middle_m[1]),
+                       middle_m);
+        for (int i = 0; i < 3; i++) d[i] = middle_m[i] - e->pos_m[i];
         splits = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) < edge_m * quality->c_q8 / 256.0;
     }
     if (!splits || next >= ff_terrain_levels(&auditor->info)) return SIM_CAUSE_QUALITY;
@@ -178,10 +176,9 @@ static int panorama_direction(const sim_audit_view *view, const double point_m[3
     static const enum ff_face_name negative[3] = { FF_FACE_WEST, FF_FACE_SOUTH, FF_FACE_DOWN };
     int axis = 0;
     if (!view->panorama) return 0;
-    for (int i = 0; i < 3; i++) {
-        direction[i] = point_m[i] - (double)view->panorama_pos_wu[i] / FF_WU_PER_METRE;
+    sim_place_seen_from(view->panorama_pos_wu, point_m, direction);
+    for (int i = 1; i < 3; i++)
         if (fabs(direction[i]) > fabs(direction[axis])) axis = i;
-    }
     double reach_wu = fabs(direction[axis]) * FF_WU_PER_METRE;
     enum ff_face_name face = direction[axis] > 0 ? positive[axis] : negative[axis];
     return (view->faces >> face & 1u) && reach_wu >= view->front_wu && reach_wu <= view->back_wu;
@@ -218,10 +215,10 @@ static void look_at(const sim_auditor *auditor, const sim_audit_view *view, cons
     at->drawn = 0;
     at->ground = true_point(auditor, e, at->pixel, point_m);
     if (!at->ground) return;
-    const ff_drawn *node = drawn_at(auditor, view->drawn, view->drawn_count, point_m[0], point_m[1],
-                                    &z_m);
+    const ff_drawn *node = drawn_at(auditor, view->drawn, view->drawn_count, point_m, &z_m);
     if (node) {
-        for (int i = 0; i < 3; i++) shown[i] = (i == 2 ? z_m : point_m[i]) - e->pos_m[i];
+        sim_place_lift(point_m, z_m, shown);
+        for (int i = 0; i < 3; i++) shown[i] -= e->pos_m[i];
     } else if (!panorama_direction(view, point_m, shown)) {
         at->cause = SIM_CAUSE_UNDRAWN;
         return;

@@ -245,8 +245,7 @@ static void mark(sim_relevance *relevance, answer *a)
 static void mark_support(sim_relevance *relevance, ff_key parent)
 {
     for (unsigned side = 0; side < FF_SIDE_COUNT && ff_key_level(parent) > 0; side++) {
-        ff_key beside = ff_key_neighbour(relevance->info.tiles_x, relevance->info.tiles_y, parent,
-                                         (enum ff_side)side);
+        ff_key beside = ff_shape_neighbour(&relevance->info, parent, (enum ff_side)side).key;
         answer *a = beside == FF_KEY_NONE
                         ? NULL
                         : find(relevance, FF_DATA_HEIGHTS, ff_key_parent(beside), 1);

@@ -7,6 +7,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define ABOVE UINT32_MAX /* in place of an index: no listed node, but listed ones lie in it */
 
@@ -14,15 +15,17 @@ typedef struct entry {
     ff_key key;
     uint32_t index;
 } entry;
-/* in samples of the finest level */
+/* Where a node's corner would lie at no height, and its height: on any shape, whoever shares the
+ * sample agrees in both. */
 typedef struct corner {
-    uint32_t x, y;
+    int32_t foot_wu[3];
     uint16_t height;
     uint8_t used;
 } corner;
 
 typedef struct check {
     const ff_terrain_info *info;
+    const ff_frame *frame;
     const ff_drawn *list;
     uint32_t count;
     unsigned n; /* cells of a node each way */
@@ -79,14 +82,14 @@ static int kind_ok(check *c, unsigned coarser)
 
 static int node_ok(check *c, uint32_t index)
 {
-    int32_t x, y;
+    int32_t origin_wu[3];
     const ff_drawn *drawn = &c->list[index];
     unsigned long long key = (unsigned long long)drawn->key;
     if (!ff_terrain_has_node(c->info, drawn->key))
         return fault(c, "key %llx is not of this terrain", key);
-    ff_node_origin_wu(c->info, drawn->key, &x, &y);
-    if (drawn->origin_wu[0] != x || drawn->origin_wu[1] != y ||
-        drawn->origin_wu[2] != ff_height_wu(c->info, 32768) ||
+    ff_placed placed = ff_shape_put(c->info, c->frame, drawn->key);
+    ff_shape_place(c->info, drawn->key, &placed, 0, 0, 32768, origin_wu);
+    if (memcmp(drawn->origin_wu, origin_wu, sizeof origin_wu) != 0 ||
         drawn->cell_wu != ff_node_cell_wu(c->info, ff_key_level(drawn->key)))
         return fault(c, "node %llx has a wrong origin or cell", key);
     entry *place = entry_place(c, drawn->key);
@@ -113,20 +116,20 @@ static int enter_above(check *c, ff_key key)
 /* ---- nodes that touch ---- */
 
 /* Compares the vertices drawn along one side of `drawn` with those of the listed node `across`,
- * which is `finer` levels coarser. */
-static int rims_agree(check *c, const ff_drawn *drawn, enum ff_side side, const ff_drawn *across,
-                      unsigned finer)
+ * which is `finer` levels coarser. `beside` is what lies across at the level of `drawn`. */
+static int rims_agree(check *c, const ff_drawn *drawn, enum ff_side side, const ff_beside *beside,
+                      const ff_drawn *across, unsigned finer)
 {
-    enum ff_side back = (enum ff_side)((side + 2) % FF_SIDE_COUNT);
-    uint32_t code = ff_key_code(drawn->key), n = c->n;
-    uint32_t along = side == FF_SIDE_SOUTH || side == FF_SIDE_NORTH ? ff_morton_x(code)
+    enum ff_side back = beside->side;
+    uint32_t code = ff_key_code(beside->key), n = c->n;
+    uint32_t along = back == FF_SIDE_SOUTH || back == FF_SIDE_NORTH ? ff_morton_x(code)
                                                                     : ff_morton_y(code);
-    /* of the coarser side's length, in our cells */
+    /* of the coarser side's length, in cells of ours, as that side runs */
     uint32_t from = (along & ((1u << finer) - 1)) * n;
     uint64_t used = c->rim[drawn->coarser].used[side], missing = used,
              other = c->rim[across->coarser].used[back];
     for (uint32_t j = (from + (1u << finer) - 1) >> finer; j << finer <= from + n; j++) {
-        uint32_t i = (j << finer) - from;
+        uint32_t i = ff_beside_along(beside, (j << finer) - from, n);
         if (!(other >> j & 1u)) continue;
         uint16_t here = drawn->heights[sim_rim_vertex(n, side, i)],
                  there = across->heights[sim_rim_vertex(n, back, j)];
@@ -144,38 +147,43 @@ static int rims_agree(check *c, const ff_drawn *drawn, enum ff_side side, const 
                  (unsigned long long)drawn->key, side, (unsigned long long)across->key);
 }
 
-/* The listed node across a side when it is coarser, or as coarse and to the north or east: each
- * pair is looked at once. */
+/* The listed node across a side when it is coarser, or as coarse and of the larger key: each pair
+ * is looked at once, but for a node that is its own neighbour. */
 static int side_ok(check *c, const ff_drawn *drawn, enum ff_side side)
 {
-    ff_key key = ff_key_neighbour(c->info->tiles_x, c->info->tiles_y, drawn->key, side);
+    ff_beside beside = ff_shape_neighbour(c->info, drawn->key, side);
+    ff_key key = beside.key;
     for (unsigned finer = 0; key != FF_KEY_NONE; finer++) {
         const entry *place = entry_place(c, key);
-        if (place->key == key &&
-            (place->index == ABOVE || (!finer && (side == FF_SIDE_SOUTH || side == FF_SIDE_WEST))))
-            return 1;
-        if (place->key == key) return rims_agree(c, drawn, side, &c->list[place->index], finer);
+        if (place->key == key && (place->index == ABOVE || (!finer && key < drawn->key))) return 1;
+        if (place->key == key)
+            return rims_agree(c, drawn, side, &beside, &c->list[place->index], finer);
         key = ff_key_level(key) > 0 ? ff_key_parent(key) : FF_KEY_NONE;
     }
     return 1;
 }
 
+static corner *corner_place(const check *c, const int32_t foot_wu[3])
+{
+    uint64_t xy = (uint64_t)(uint32_t)foot_wu[0] << 32 | (uint32_t)foot_wu[1];
+    uint32_t at = (mixed(xy) ^ mixed((uint32_t)foot_wu[2])) & c->corner_mask;
+    while (c->corners[at].used && memcmp(c->corners[at].foot_wu, foot_wu, sizeof(int32_t[3])) != 0)
+        at = (at + 1) & c->corner_mask;
+    return &c->corners[at];
+}
+
 static int corners_ok(check *c, const ff_drawn *drawn)
 {
-    uint32_t x = (uint32_t)drawn->origin_wu[0] / c->info->spacing_wu,
-             y = (uint32_t)drawn->origin_wu[1] / c->info->spacing_wu;
-    uint32_t edge = 1u << (c->info->tile_log2 - ff_key_level(drawn->key));
+    ff_placed placed = ff_shape_put(c->info, c->frame, drawn->key);
     for (unsigned i = 0; i < 4; i++) {
-        corner at = { x + (i & 1) * edge, y + (i >> 1) * edge,
-                      drawn->heights[(i >> 1) * c->n * (c->n + 1) + (i & 1) * c->n], 1 };
-        uint32_t place = mixed((uint64_t)at.x << 32 | at.y) & c->corner_mask;
-        while (c->corners[place].used &&
-               (c->corners[place].x != at.x || c->corners[place].y != at.y))
-            place = (place + 1) & c->corner_mask;
-        if (c->corners[place].used && c->corners[place].height != at.height)
-            return fault(c, "crack: corner %u,%u has heights %u and %u", at.x, at.y,
-                         c->corners[place].height, at.height);
-        c->corners[place] = at;
+        uint32_t column = (i & 1) * c->n, row = (i >> 1) * c->n;
+        corner at = { .height = drawn->heights[row * (c->n + 1) + column], .used = 1 };
+        ff_shape_place(c->info, drawn->key, &placed, column, row, 0, at.foot_wu);
+        corner *place = corner_place(c, at.foot_wu);
+        if (place->used && place->height != at.height)
+            return fault(c, "crack: corner %d,%d,%d has heights %u and %u", at.foot_wu[0],
+                         at.foot_wu[1], at.foot_wu[2], place->height, at.height);
+        *place = at;
     }
     return 1;
 }
@@ -194,12 +202,13 @@ static int all_ok(check *c)
     return 1;
 }
 
-int sim_watertight_check(const ff_terrain_info *info, const ff_drawn *list, uint32_t count,
-                         char *why, size_t why_bytes)
+int sim_watertight_check(const ff_terrain_info *info, const ff_frame *frame, const ff_drawn *list,
+                         uint32_t count, char *why, size_t why_bytes)
 {
     check *c = calloc(1, sizeof *c);
     if (!c) return 0;
     *c = (check){ .info = info,
+                  .frame = frame,
                   .list = list,
                   .count = count,
                   .n = 1u << info->node_log2,

@@ -20,9 +20,9 @@
 
 #include "../../client/terrain/ff_tree.h"
 
-/* 1: whole. 0: not, and `why` (may be NULL) says what and where in one line; also 0 when out of
- * memory. */
-int sim_watertight_check(const ff_terrain_info *info, const ff_drawn *list, uint32_t count,
-                         char *why, size_t why_bytes);
+/* `frame`: ff_tree_frame of the tree that listed them. 1: whole. 0: not, and `why` (may be NULL)
+ * says what and where in one line; also 0 when out of memory. */
+int sim_watertight_check(const ff_terrain_info *info, const ff_frame *frame, const ff_drawn *list,
+                         uint32_t count, char *why, size_t why_bytes);
 
 #endif

@@ -1,5 +1,7 @@
 #include "view_fly.h"
 
+#include "../../protocol/shape/ff_shape.h"
+
 #include <math.h>
 #include <string.h>
 
@@ -7,7 +9,7 @@
 #define TURN_BRAD16_S       8192  /* 45 degrees a second */
 #define PITCH_BRAD16_MAX    16000 /* a little less than straight up or down */
 #define DRAG_BRAD16_PX      40
-#define SPEED_WU_S_MIN      256
+#define SPEED_WU_S_MIN      FF_WU_PER_METRE
 #define SPEED_WU_S_MAX      (20000 * FF_WU_PER_METRE)
 #define FAST_FACTOR         5
 #define BEYOND_WU           (20000 * FF_WU_PER_METRE) /* how far outside the terrain one may fly */
@@ -49,12 +51,10 @@ void view_fly_resize(view_fly *fly, int width, int height)
 void view_fly_place(view_fly *fly, const ff_terrain_info *info, int anywhere, int32_t x_wu,
                     int32_t y_wu, int32_t above_wu)
 {
-    fly->camera.pos_wu[0] = anywhere
-                                ? (int32_t)((int64_t)(info->samples_x - 1) * info->spacing_wu / 2)
-                                : x_wu;
-    fly->camera.pos_wu[1] = anywhere
-                                ? (int32_t)((int64_t)(info->samples_y - 1) * info->spacing_wu / 2)
-                                : y_wu;
+    int64_t size_wu[2];
+    ff_shape_size_wu(info, size_wu);
+    fly->camera.pos_wu[0] = anywhere ? (int32_t)(size_wu[0] / 2) : x_wu;
+    fly->camera.pos_wu[1] = anywhere ? (int32_t)(size_wu[1] / 2) : y_wu;
     fly->camera.pos_wu[2] = ff_height_wu(info, info->height_max) + above_wu;
     fly->camera.pitch = -1500;
     fly->above_wu = above_wu;
@@ -144,12 +144,15 @@ static void move(view_fly *fly, int64_t forward_wu, int64_t right_wu)
 
 static void stay_inside(view_fly *fly, const ff_terrain_info *info)
 {
-    int64_t edge = ff_node_edge_wu(info, 0);
-    fly->camera.pos_wu[0] = clamp(fly->camera.pos_wu[0], -BEYOND_WU,
-                                  edge * info->tiles_x + BEYOND_WU);
-    fly->camera.pos_wu[1] = clamp(fly->camera.pos_wu[1], -BEYOND_WU,
-                                  edge * info->tiles_y + BEYOND_WU);
-    fly->camera.pos_wu[2] = clamp(fly->camera.pos_wu[2], -HEIGHT_WU_MAX, HEIGHT_WU_MAX);
+    static const int64_t height_wu[2] = { -HEIGHT_WU_MAX, HEIGHT_WU_MAX };
+    static const int32_t from_wu[3] = { 0, 0, 0 };
+    ff_frame frame = ff_shape_frame(info, fly->camera.pos_wu);
+    ff_box all = ff_shape_bounds(info, &frame, height_wu, from_wu);
+    for (int axis = 0; axis < 3; axis++) {
+        int64_t beyond_wu = axis < 2 ? BEYOND_WU : 0;
+        fly->camera.pos_wu[axis] = clamp(fly->camera.pos_wu[axis], all.lo[axis] - beyond_wu,
+                                         all.hi[axis] + beyond_wu);
+    }
 }
 
 int view_fly_step(view_fly *fly, int64_t dt_us, const ff_client *client)

@@ -13,8 +13,9 @@ static void print_counters(const view_app *app)
         stats.tree.triangles, stats.tree.nodes_drawn, stats.tree.nodes_held,
         (unsigned long long)stats.bytes_down, (unsigned long long)stats.bytes_up,
         stats.requests_sent, stats.panorama_faces, stats.low_power, stats.reconnects,
-        app->fly.camera.pos_wu[0] / 256.0, app->fly.camera.pos_wu[1] / 256.0,
-        app->fly.camera.pos_wu[2] / 256.0);
+        app->fly.camera.pos_wu[0] / (double)FF_WU_PER_METRE,
+        app->fly.camera.pos_wu[1] / (double)FF_WU_PER_METRE,
+        app->fly.camera.pos_wu[2] / (double)FF_WU_PER_METRE);
 }
 
 int main(int argc, char **argv)

@@ -1,14 +1,15 @@
 #include "view_script.h"
 
+#include "../../protocol/ff_terrain.h"
+
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define LINE_BYTES   1024
-#define METRES_MAX   8000000.0
-#define WU_PER_METRE 256
+#define LINE_BYTES 1024
+#define METRES_MAX 8000000.0
 
 static const struct {
     const char *name;
@@ -111,10 +112,10 @@ static int read_position(const char *arguments, view_step *step)
     for (int i = 0; i < 3; i++)
         if (!(m[i] > -METRES_MAX && m[i] < METRES_MAX)) return -1;
     step->event.type = SYS_EVENT_POSITION;
-    step->event.u.position.x_wu = (int32_t)(m[0] * WU_PER_METRE);
-    step->event.u.position.y_wu = (int32_t)(m[1] * WU_PER_METRE);
-    step->event.u.position.z_wu = (int32_t)(m[2] * WU_PER_METRE);
-    step->event.u.position.accuracy_wu = 10 * WU_PER_METRE;
+    step->event.u.position.x_wu = (int32_t)(m[0] * FF_WU_PER_METRE);
+    step->event.u.position.y_wu = (int32_t)(m[1] * FF_WU_PER_METRE);
+    step->event.u.position.z_wu = (int32_t)(m[2] * FF_WU_PER_METRE);
+    step->event.u.position.accuracy_wu = 10 * FF_WU_PER_METRE;
     return 0;
 }
 

@@ -1,10 +1,12 @@
 #include "view_wait.h"
 
+#include "../../protocol/ff_terrain.h"
+
 #include <stdlib.h>
 
 #define GROUND_COLOUR 0xff604830u
-#define NEAR_WU       256
-#define FAR_WU        256000
+#define NEAR_WU       FF_WU_PER_METRE
+#define FAR_WU        (1000 * FF_WU_PER_METRE)
 #define TEXT_BYTES    (272u << 10) /* the text's picture with its rim */
 
 static c3d_device *open_device(view_wait *wait, const struct c3d_backend *backend,

@@ -127,7 +127,8 @@ static void check_whole(extreme_rig *rig)
     const ff_drawn *list;
     const ff_tree *tree = ff_client_tree(rig->client);
     uint32_t cut = tree ? ff_tree_cut(tree, &list) : 0;
-    if (cut && !sim_watertight_check(&rig->pack.header.info, list, cut, why, sizeof why))
+    if (cut && !sim_watertight_check(&rig->pack.header.info, ff_tree_frame(tree), list, cut, why,
+                                     sizeof why))
         extreme_row_expect(rig->row, 0, why);
 }
 

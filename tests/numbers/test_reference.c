@@ -353,8 +353,8 @@ static void random_node(sys_random *random, struct ff_tree *tree, ff_node *node)
     node->key = ff_key_make(0, level, 0);
     /* near enough for the threshold to be met */
     int32_t reach = 8 * ff_node_edge_wu(&tree->info, level);
-    node->x_wu = tree->view.camera.pos_wu[0] + ref_between(random, -reach, reach);
-    node->y_wu = tree->view.camera.pos_wu[1] + ref_between(random, -reach, reach);
+    node->placed.planar.x_wu = tree->view.camera.pos_wu[0] + ref_between(random, -reach, reach);
+    node->placed.planar.y_wu = tree->view.camera.pos_wu[1] + ref_between(random, -reach, reach);
     node->height_min = (uint16_t)ref_between(random, 0, 3000);
     node->height_max = (uint16_t)ref_between(random, node->height_min, 4000);
     node->height_mean = (uint16_t)ref_between(random, node->height_min, node->height_max);
@@ -378,7 +378,7 @@ static void node_choice_by_distance(void **state)
                                      .c_q8 = ref_between(&random, 128, 12 * 256) };
         ref_camera_of(&tree.view.camera, &ref);
         double edge = ff_node_edge_wu(&tree.info, ff_key_level(node.key));
-        double middle[3] = { node.x_wu + edge / 2, node.y_wu + edge / 2,
+        double middle[3] = { node.placed.planar.x_wu + edge / 2, node.placed.planar.y_wu + edge / 2,
                              tree.info.hoffset_wu +
                                  node.height_mean * (tree.info.hscale_q24 / 65536.0) };
         double c = tree.quality.c_q8 / 256.0, f = ref_node_f(&ref, middle, edge, c);
@@ -412,9 +412,9 @@ static void node_choice_by_pixels(void **state)
         double edge = ff_node_edge_wu(&tree.info, ff_key_level(node.key)),
                step = tree.info.hscale_q24 / 65536.0;
         double error = ff_geometric_error_decode(node.error_code) * step;
-        double low[3] = { node.x_wu, node.y_wu,
+        double low[3] = { node.placed.planar.x_wu, node.placed.planar.y_wu,
                           tree.info.hoffset_wu + node.height_min * step - error };
-        double high[3] = { node.x_wu + edge, node.y_wu + edge,
+        double high[3] = { node.placed.planar.x_wu + edge, node.placed.planar.y_wu + edge,
                            tree.info.hoffset_wu + node.height_max * step + error };
         double px = ref_error_px(&ref, low, high, error),
                allowed = tree.quality.error_px_q8 / 256.0;

@@ -59,58 +59,25 @@ static void children_lie_in_their_quadrants(void **state)
     }
 }
 
-/* The neighbour by coordinates of the whole terrain at one level. */
-static ff_key naive_neighbour(uint32_t tiles_x, uint32_t tiles_y, ff_key key, enum ff_side side)
-{
-    uint32_t level = ff_key_level(key), tile = ff_key_tile(key), width = 1u << level;
-    int64_t x = (int64_t)(tile % tiles_x) * width + ff_morton_x(ff_key_code(key));
-    int64_t y = (int64_t)(tile / tiles_x) * width + ff_morton_y(ff_key_code(key));
-
-    x += side == FF_SIDE_EAST ? 1 : side == FF_SIDE_WEST ? -1 : 0;
-    y += side == FF_SIDE_NORTH ? 1 : side == FF_SIDE_SOUTH ? -1 : 0;
-    if (x < 0 || y < 0 || x >= (int64_t)tiles_x * width || y >= (int64_t)tiles_y * width)
-        return FF_KEY_NONE;
-    tile = (uint32_t)(y / width) * tiles_x + (uint32_t)(x / width);
-    return ff_key_make(tile, level, naive_morton((uint32_t)(x % width), (uint32_t)(y % width)));
-}
-
-static void check_neighbours(uint32_t tiles_x, uint32_t tiles_y, ff_key key)
-{
-    for (int side = 0; side < FF_SIDE_COUNT; side++) {
-        ff_key found = ff_key_neighbour(tiles_x, tiles_y, key, (enum ff_side)side);
-        assert_true(found == naive_neighbour(tiles_x, tiles_y, key, (enum ff_side)side));
-        if (found != FF_KEY_NONE) /* sides 0..3 run round, so the opposite one is two away */
-            assert_true(ff_key_neighbour(tiles_x, tiles_y, found, (enum ff_side)((side + 2) % 4)) ==
-                        key);
-    }
-}
-
-static void neighbours_of_small_grids_all(void **state)
+/* One step to every side, against coordinates. */
+static void steps_move_one_coordinate(void **state)
 {
     (void)state;
-    for (uint32_t tiles_y = 1; tiles_y <= 3; tiles_y++)
-        for (uint32_t tiles_x = 1; tiles_x <= 3; tiles_x++)
-            for (uint32_t level = 0; level <= 4; level++)
-                for (uint32_t tile = 0; tile < tiles_x * tiles_y; tile++)
-                    for (uint32_t code = 0; code < 1u << (2 * level); code++)
-                        check_neighbours(tiles_x, tiles_y, ff_key_make(tile, level, code));
-}
-
-static void neighbours_of_large_grids_sampled(void **state)
-{
-    uint32_t random = 1;
-
-    (void)state;
-    for (int i = 0; i < 100000; i++) {
-        uint32_t level = (uint32_t)i % 16, tile, code;
-        random = random * 1664525u + 1013904223u;
-        tile = (random >> 3) % FF_KEY_TILES_MAX;
-        random = random * 1664525u + 1013904223u;
-        code = (uint32_t)(random & (((uint64_t)1 << (2 * level)) - 1));
-        if (i % 5 == 0) /* the rims are rare among random ones */
-            code &= i % 2 ? 0x55555555u : 0xaaaaaaaau;
-        check_neighbours(1u << 14, 1u << 14, ff_key_make(tile, level, code));
-    }
+    for (uint32_t level = 0; level <= 5; level++)
+        for (uint32_t at = 0; at < 1u << (2 * level); at++) {
+            uint32_t x = ff_morton_x(at), y = ff_morton_y(at), last = (1u << level) - 1;
+            for (int side = 0; side < FF_SIDE_COUNT; side++) {
+                uint32_t code, to_x = x, to_y = y;
+                int over = ff_key_step(ff_key_make(9, level, at), (enum ff_side)side, &code);
+                to_x += side == FF_SIDE_EAST ? 1 : side == FF_SIDE_WEST ? last : 0;
+                to_y += side == FF_SIDE_NORTH ? 1 : side == FF_SIDE_SOUTH ? last : 0;
+                assert_int_equal(code, naive_morton(to_x & last, to_y & last));
+                assert_int_equal(over, (side == FF_SIDE_EAST && x == last) ||
+                                           (side == FF_SIDE_WEST && x == 0) ||
+                                           (side == FF_SIDE_NORTH && y == last) ||
+                                           (side == FF_SIDE_SOUTH && y == 0));
+            }
+        }
 }
 
 static ff_terrain_info sound_terrain(void)
@@ -174,15 +141,11 @@ static void terrain_ranges(void **state)
     assert_int_equal(ff_terrain_check(&t), FF_ERR_RANGE);
 }
 
-static void positions_of_nodes(void **state)
+static void nodes_of_a_terrain(void **state)
 {
     const ff_terrain_info t = sound_terrain();
-    int32_t x, y;
 
     (void)state;
-    ff_node_origin_wu(&t, ff_key_make(5, 2, ff_morton_encode(3, 1)), &x, &y);
-    assert_int_equal(x, (1024 + 3 * 256) * 2560);
-    assert_int_equal(y, (1024 + 1 * 256) * 2560);
     assert_true(ff_terrain_has_node(&t, ff_key_make(7, 7, (1u << 14) - 1)));
     assert_false(ff_terrain_has_node(&t, ff_key_make(7, 7, 1u << 14)));
     assert_false(ff_terrain_has_node(&t, ff_key_make(8, 0, 0)));
@@ -207,10 +170,9 @@ int main(void)
         cmocka_unit_test(morton_is_interleaving),
         cmocka_unit_test(fields_survive),
         cmocka_unit_test(children_lie_in_their_quadrants),
-        cmocka_unit_test(neighbours_of_small_grids_all),
-        cmocka_unit_test(neighbours_of_large_grids_sampled),
+        cmocka_unit_test(steps_move_one_coordinate),
         cmocka_unit_test(terrain_ranges),
-        cmocka_unit_test(positions_of_nodes),
+        cmocka_unit_test(nodes_of_a_terrain),
         cmocka_unit_test(errors_have_texts),
     };
 

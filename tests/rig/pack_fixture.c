@@ -88,9 +88,10 @@ static uint8_t node_error(const pack_fixture_desc *desc, ff_key key)
 static int texture_payload(const pack_fixture_desc *desc, ff_key key, uint8_t *out, size_t capacity)
 {
     uint32_t texels = 1u << desc->info.texture_log2;
-    int64_t edge = ff_node_edge_wu(&desc->info, ff_key_level(key));
-    int32_t x, y;
-    ff_node_origin_wu(&desc->info, key, &x, &y);
+    uint32_t column, row_of;
+    int64_t spacing = desc->info.spacing_wu,
+            edge = node_place(&desc->info, key, &column, &row_of) * spacing;
+    int64_t x = column * spacing, y = row_of * spacing;
     uint8_t *rgb = malloc((size_t)3 * texels * texels);
     if (!rgb) return FF_ERR_MEMORY;
     for (uint32_t row = 0; row < texels; row++)

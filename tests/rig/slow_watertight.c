@@ -70,12 +70,15 @@ static ff_key *node_place(const check *c, ff_key key)
 
 static int node_ok(check *c, const ff_drawn *drawn)
 {
-    int32_t x, y;
     unsigned long long key = (unsigned long long)drawn->key;
     if (!ff_terrain_has_node(c->info, drawn->key))
         return fault(c, "key %llx is not of this terrain", key);
-    ff_node_origin_wu(c->info, drawn->key, &x, &y);
-    if (drawn->origin_wu[0] != x || drawn->origin_wu[1] != y ||
+    uint32_t tile = ff_key_tile(drawn->key), code = ff_key_code(drawn->key),
+             edge_wu = c->info->spacing_wu << (c->info->tile_log2 - ff_key_level(drawn->key)),
+             tile_edge_wu = c->info->spacing_wu << c->info->tile_log2;
+    uint32_t x = tile % c->info->tiles_x * tile_edge_wu + ff_morton_x(code) * edge_wu,
+             y = tile / c->info->tiles_x * tile_edge_wu + ff_morton_y(code) * edge_wu;
+    if (drawn->origin_wu[0] != (int32_t)x || drawn->origin_wu[1] != (int32_t)y ||
         drawn->origin_wu[2] != ff_height_wu(c->info, 32768) ||
         drawn->cell_wu != ff_node_cell_wu(c->info, ff_key_level(drawn->key)))
         return fault(c, "node %llx has a wrong origin or cell", key);

@@ -247,9 +247,18 @@ void fixture_assert_whole(terrain_fixture *fx)
     assert_int_equal(cut_count, stats.nodes_cut);
     assert_int_equal(drawn_count, stats.nodes_drawn);
     assert_true(stats.nodes_held <= stats.nodes_capacity);
-    if (!sim_watertight_check(&fx->info, cut, cut_count, why, sizeof why) ||
-        !sim_watertight_check(&fx->info, drawn, drawn_count, why, sizeof why))
+    const ff_frame *frame = ff_tree_frame(fx->tree);
+    if (!sim_watertight_check(&fx->info, frame, cut, cut_count, why, sizeof why) ||
+        !sim_watertight_check(&fx->info, frame, drawn, drawn_count, why, sizeof why))
         fail_msg("%s", why);
+}
+
+void fixture_origin(const ff_terrain_info *info, ff_key key, int32_t origin_wu[3])
+{
+    const int32_t world_wu[3] = { 0, 0, 0 };
+    ff_frame frame = ff_shape_frame(info, world_wu);
+    ff_placed placed = ff_shape_put(info, &frame, key);
+    ff_shape_place(info, key, &placed, 0, 0, 32768, origin_wu);
 }
 
 ff_view fixture_view(int32_t x_m, int32_t y_m, int32_t z_m, int32_t yaw_deg, int32_t pitch_deg)

@@ -56,6 +56,9 @@ void fixture_link_step(terrain_fixture *fx, fixture_link *link);
  * with it. */
 void fixture_assert_whole(terrain_fixture *fx);
 
+/* ff_drawn.origin_wu of a node. */
+void fixture_origin(const ff_terrain_info *info, ff_key key, int32_t origin_wu[3]);
+
 /* A camera at (x, y, z) metres, degrees, 240 by 320, 60 degrees wide; and Hybrid's low quality. */
 ff_view fixture_view(int32_t x_m, int32_t y_m, int32_t z_m, int32_t yaw_deg, int32_t pitch_deg);
 /* The same, above_m over the (metre-step, 10 m) ground. */

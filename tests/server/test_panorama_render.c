@@ -329,7 +329,8 @@ static void test_frame_is_the_position_s(void **state)
     ff_get_panorama request = request_at(1800, 400, 100000);
     for (int i = 0; i < 5; i++) {
         for (enum ff_face_name face = FF_FACE_NORTH; face <= FF_FACE_WEST; face++) {
-            panorama_ground_load(&ground, &request, face);
+            ff_frame frame = ff_shape_frame(&hills.header.info, request.position_wu);
+            panorama_ground_load(&ground, &frame, &request, face);
             panorama_ground_draw(&ground, &request, face);
         }
         for (int axis = 0; axis < 2; axis++) {
@@ -441,22 +442,22 @@ static void test_boxes_in_faces(void **state)
 {
     (void)state;
     ff_get_panorama request = { .front_wu = 800, .back_wu = 10000 }; /* near plane 700 */
-    int64_t low[3] = { -50, 600, -50 }, high[3] = { 50, 699, 50 };
-    assert_false(ff_face_sees_box(&request, FF_FACE_NORTH, low, high));
-    high[1] = 700;
-    assert_true(ff_face_sees_box(&request, FF_FACE_NORTH, low, high));
-    assert_false(ff_face_sees_box(&request, FF_FACE_SOUTH, low, high));
-    assert_false(ff_face_sees_box(&request, FF_FACE_EAST, low, high));
-    low[0] = 5000; /* north-east, beside the diagonal */
-    high[0] = 6000;
-    low[1] = high[1] = 4999;
-    assert_false(ff_face_sees_box(&request, FF_FACE_NORTH, low, high));
-    assert_true(ff_face_sees_box(&request, FF_FACE_EAST, low, high));
-    high[1] = 5000;
-    assert_true(ff_face_sees_box(&request, FF_FACE_NORTH, low, high));
-    low[1] = 10001; /* beyond the back plane */
-    high[1] = 20000;
-    assert_false(ff_face_sees_box(&request, FF_FACE_NORTH, low, high));
+    ff_box box = { { -50, 600, -50 }, { 50, 699, 50 } };
+    assert_false(ff_face_sees_box(&request, FF_FACE_NORTH, &box));
+    box.hi[1] = 700;
+    assert_true(ff_face_sees_box(&request, FF_FACE_NORTH, &box));
+    assert_false(ff_face_sees_box(&request, FF_FACE_SOUTH, &box));
+    assert_false(ff_face_sees_box(&request, FF_FACE_EAST, &box));
+    box.lo[0] = 5000; /* north-east, beside the diagonal */
+    box.hi[0] = 6000;
+    box.lo[1] = box.hi[1] = 4999;
+    assert_false(ff_face_sees_box(&request, FF_FACE_NORTH, &box));
+    assert_true(ff_face_sees_box(&request, FF_FACE_EAST, &box));
+    box.hi[1] = 5000;
+    assert_true(ff_face_sees_box(&request, FF_FACE_NORTH, &box));
+    box.lo[1] = 10001; /* beyond the back plane */
+    box.hi[1] = 20000;
+    assert_false(ff_face_sees_box(&request, FF_FACE_NORTH, &box));
 }
 
 int main(void)

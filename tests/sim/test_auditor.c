@@ -63,8 +63,7 @@ static void draw_at(scene *s, uint16_t steps)
         s->drawn[tile] = (ff_drawn){ .key = ff_key_make(tile, 0, 0),
                                      .heights = s->heights,
                                      .cell_wu = 512 * 256 };
-        ff_node_origin_wu(&s->pack.header.info, s->drawn[tile].key, &s->drawn[tile].origin_wu[0],
-                          &s->drawn[tile].origin_wu[1]);
+        fixture_origin(&s->pack.header.info, s->drawn[tile].key, s->drawn[tile].origin_wu);
     }
     s->view.drawn = s->drawn;
     s->view.drawn_count = 16;

@@ -22,7 +22,8 @@ static void slope_colour(int east, int north, uint8_t rgba[4])
         for (int column = 0; column < 11; column++)
             framed[row * 11 + column] = (uint16_t)(1500 + (column - 5) * east + (row - 5) * north);
     }
-    ff_shade(&info, framed, 2560, 4, 4, rgba);
+    const ff_shade_grid grid = { &info, ff_key_make(0, 0, 0), 2560, framed };
+    ff_shade(&grid, 4, 4, rgba);
 }
 
 static int brightness(const uint8_t rgba[4]) { return rgba[0] + rgba[1] + rgba[2]; }
@@ -61,10 +62,11 @@ static void test_water_at_zero_only(void **state)
     ff_terrain_info info = {
         .node_log2 = 3, .hscale_q24 = 1 << 24, .height_min = 0, .height_max = 3000
     };
-    ff_shade(&info, framed, 2560, 0, 8, sea);
+    const ff_shade_grid grid = { &info, ff_key_make(0, 0, 0), 2560, framed };
+    ff_shade(&grid, 0, 8, sea);
     assert_true(sea[2] > sea[0]);
     info.hoffset_wu = 100 * FF_WU_PER_METRE; /* the lowest ground lies 100 m high */
-    ff_shade(&info, framed, 2560, 0, 8, land);
+    ff_shade(&grid, 0, 8, land);
     assert_true(land[2] < land[1]);
 }
 

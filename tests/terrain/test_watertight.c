@@ -160,7 +160,8 @@ static void make_spoilt(spoilt *s)
         memcpy(s->heights + i * grid, cut[i].heights, grid * sizeof *s->heights);
         s->list[i].heights = s->heights + i * grid;
     }
-    assert_true(sim_watertight_check(&s->fx.info, s->list, s->count, s->why, sizeof s->why));
+    assert_true(sim_watertight_check(&s->fx.info, ff_tree_frame(s->fx.tree), s->list, s->count,
+                                     s->why, sizeof s->why));
 }
 
 static void free_spoilt(spoilt *s)
@@ -172,7 +173,8 @@ static void free_spoilt(spoilt *s)
 
 static void assert_found(spoilt *s, const char *what)
 {
-    assert_false(sim_watertight_check(&s->fx.info, s->list, s->count, s->why, sizeof s->why));
+    assert_false(sim_watertight_check(&s->fx.info, ff_tree_frame(s->fx.tree), s->list, s->count,
+                                      s->why, sizeof s->why));
     if (!strstr(s->why, what)) fail_msg("expected \"%s\" in: %s", what, s->why);
     free_spoilt(s);
 }
@@ -215,8 +217,7 @@ static void test_judge_finds_doubled_ground(void **state)
     uint32_t fine = first_stitched(&s);
     s.list[s.count] = s.list[fine];
     s.list[s.count].key = ff_key_parent(s.list[fine].key);
-    ff_node_origin_wu(&s.fx.info, s.list[s.count].key, &s.list[s.count].origin_wu[0],
-                      &s.list[s.count].origin_wu[1]);
+    fixture_origin(&s.fx.info, s.list[s.count].key, s.list[s.count].origin_wu);
     s.list[s.count].cell_wu *= 2;
     s.count++;
     assert_found(&s, "lies on");
@@ -238,8 +239,9 @@ static void test_judge_accepts_parts(void **state)
     spoilt s;
     make_spoilt(&s);
     for (uint32_t part = s.count; part > 0; part--)
-        assert_true(sim_watertight_check(&s.fx.info, s.list, part, s.why, sizeof s.why));
-    assert_true(sim_watertight_check(&s.fx.info, s.list, 0, NULL, 0));
+        assert_true(sim_watertight_check(&s.fx.info, ff_tree_frame(s.fx.tree), s.list, part, s.why,
+                                         sizeof s.why));
+    assert_true(sim_watertight_check(&s.fx.info, ff_tree_frame(s.fx.tree), s.list, 0, NULL, 0));
     s.list[0].key = FF_KEY_NONE;
     assert_found(&s, "not of this terrain");
 }
@@ -273,7 +275,7 @@ static void spoil(spoilt *s, sys_random *random)
             else if (ff_key_level(drawn->key) <
                      (uint32_t)(s->fx.info.tile_log2 - s->fx.info.node_log2))
                 drawn->key = ff_key_child(drawn->key, sys_random_below(random, 4));
-            ff_node_origin_wu(&s->fx.info, drawn->key, &drawn->origin_wu[0], &drawn->origin_wu[1]);
+            fixture_origin(&s->fx.info, drawn->key, drawn->origin_wu);
             drawn->cell_wu = ff_node_cell_wu(&s->fx.info, ff_key_level(drawn->key));
             break;
         default: drawn->heights = s->list[sys_random_below(random, s->count)].heights; break;
@@ -304,7 +306,8 @@ static void test_judges_agree(void **state)
             s.list[i].heights = s.heights + (original.list[i].heights - original.heights);
         for (uint32_t faults = sys_random_below(&random, 4); faults > 0; faults--)
             spoil(&s, &random);
-        int quick = sim_watertight_check(&s.fx.info, s.list, s.count, s.why, sizeof s.why);
+        int quick = sim_watertight_check(&s.fx.info, ff_tree_frame(s.fx.tree), s.list, s.count,
+                                         s.why, sizeof s.why);
         int slow = slow_watertight_check(&s.fx.info, s.list, s.count, slow_why, sizeof slow_why);
         if (quick != slow)
             fail_msg("trial %u: quick %d (%s), slow %d (%s)", trial, quick, quick ? "" : s.why,
@@ -335,7 +338,8 @@ static void test_judge_finds_wrong_corner(void **state)
     ff_drawn two[2] = { s.list[pair[0]], s.list[pair[1]] };
     memcpy(s.list, two, sizeof two);
     s.count = 2;
-    assert_true(sim_watertight_check(&s.fx.info, s.list, s.count, NULL, 0));
+    assert_true(
+        sim_watertight_check(&s.fx.info, ff_tree_frame(s.fx.tree), s.list, s.count, NULL, 0));
     s.heights[(s.list[0].heights - s.heights) + side * side - 1] ^= 1;
     assert_false(slow_watertight_check(&s.fx.info, s.list, s.count, NULL, 0));
     assert_found(&s, "corner");

@@ -1,5 +1,6 @@
 #include "bake_run.h"
 
+#include "../../protocol/shape/ff_shape.h"
 #include "../../platform/sys.h"
 #include "raster/bake_densify.h"
 #include "raster/bake_fill.h"
@@ -113,10 +114,7 @@ static int describe(bake *b)
                                              : bake_choose_tile_log2(o->node_log2, width, height));
     info->codec = (uint8_t)o->codec;
     if (o->densify > 1) info->flags |= FF_TERRAIN_DENSIFIED;
-    info->samples_x = width;
-    info->samples_y = height;
-    info->tiles_x = ((width - 2) >> info->tile_log2) + 1;
-    info->tiles_y = ((height - 2) >> info->tile_log2) + 1;
+    ff_shape_cover(info, width, height);
     describe_place(&b->ground, info);
     int rc = ff_terrain_check(info);
     if (rc)
@@ -156,7 +154,7 @@ static int take_tile(void *context, int worker, uint32_t job)
 
 static int make_tiles(bake *b)
 {
-    uint32_t tiles = b->info.tiles_x * b->info.tiles_y;
+    uint32_t tiles = ff_shape_tiles(&b->info);
     int workers = b->options->jobs < (int)tiles ? b->options->jobs : (int)tiles;
     b->tile = calloc((size_t)workers, sizeof *b->tile);
     b->texture = calloc((size_t)workers, sizeof *b->texture);
@@ -179,8 +177,8 @@ static int make_tiles(bake *b)
 static void report(const bake *b, uint64_t file_bytes)
 {
     const ff_terrain_info *info = &b->info;
-    uint64_t height_bytes = 0, texture_bytes = 0,
-             samples = (uint64_t)info->samples_x * info->samples_y;
+    ff_sheet source = ff_shape_sheet_samples(info), tiles = ff_shape_sheet_tiles(info);
+    uint64_t height_bytes = 0, texture_bytes = 0, samples = (uint64_t)source.x * source.y;
     for (uint32_t i = 0; i < b->writer.section_count; i++)
         *(i < ff_terrain_levels(info) ? &height_bytes : &texture_bytes) +=
             b->writer.section[i].data_bytes - 4 * b->writer.section[i].records;
@@ -191,8 +189,8 @@ static void report(const bake *b, uint64_t file_bytes)
         "%s: %u x %u samples of %g m, step %g m, %u x %u tiles of 2^%u; %.3f bits a sample, %" PRIu64
         " bytes of textures, "
         "%" PRIu64 " bytes in all, %.1f s",
-        b->options->out_path, info->samples_x, info->samples_y, spacing_m, b->steps.step_m,
-        info->tiles_x, info->tiles_y, info->tile_log2, bits, texture_bytes, file_bytes, seconds);
+        b->options->out_path, source.x, source.y, spacing_m, b->steps.step_m, tiles.x, tiles.y,
+        info->tile_log2, bits, texture_bytes, file_bytes, seconds);
     if (!b->options->json) return;
     printf(
         "{\"samples_x\": %u, \"samples_y\": %u, \"spacing_m\": %.9g, \"hscale_m\": %.9g, \"hoffset_m\": %.9g, "
@@ -202,10 +200,9 @@ static void report(const bake *b, uint64_t file_bytes)
         ", \"resampled\": %s, \"texture_levels\": %u, \"height_bytes\": %" PRIu64
         ", \"bits_per_sample\": %.4f, "
         "\"texture_bytes\": %" PRIu64 ", \"file_bytes\": %" PRIu64 ", \"seconds\": %.3f}\n",
-        info->samples_x, info->samples_y, spacing_m, b->steps.step_m,
-        (double)info->hoffset_wu / FF_WU_PER_METRE, info->max_error * b->steps.step_m,
-        b->steps.min_m, b->steps.max_m, info->tiles_x, info->tiles_y, info->tile_log2,
-        info->node_log2, info->epsg, b->ground.voids, b->ground.outside,
+        source.x, source.y, spacing_m, b->steps.step_m, (double)info->hoffset_wu / FF_WU_PER_METRE,
+        info->max_error * b->steps.step_m, b->steps.min_m, b->steps.max_m, tiles.x, tiles.y,
+        info->tile_log2, info->node_log2, info->epsg, b->ground.voids, b->ground.outside,
         b->ground.resampled ? "true" : "false", info->texture_levels, height_bytes, bits,
         texture_bytes, file_bytes, seconds);
 }

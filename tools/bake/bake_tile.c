@@ -1,5 +1,6 @@
 #include "bake_tile.h"
 
+#include "../../protocol/shape/ff_shape.h"
 #include "bake_error.h"
 #include "bake_say.h"
 
@@ -31,8 +32,8 @@ int bake_tile_load(bake_tile *tile, const bake_grid *grid, uint32_t number)
 {
     const ff_terrain_info *info = tile->info;
     size_t pitch = pitch_of(info);
-    uint32_t first_column = (number % info->tiles_x) << info->tile_log2;
-    uint32_t first_row = (number / info->tiles_x) << info->tile_log2;
+    ff_sheet at = ff_shape_sheet(info, number);
+    uint32_t first_column = at.x << info->tile_log2, first_row = at.y << info->tile_log2;
     /* There are no tiles beyond the last sample (ff_terrain_info), so this one has at least one
      * column and one row. */
     uint32_t columns = grid->width - first_column < pitch ? grid->width - first_column

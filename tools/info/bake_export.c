@@ -1,5 +1,6 @@
 #include "bake_export.h"
 
+#include "../../protocol/shape/ff_shape.h"
 #include "../bake/raster/bake_grid_gdal.h"
 #include "../bake/bake_say.h"
 
@@ -21,8 +22,8 @@ static int export_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level,
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
     uint32_t side = bake_unpack_side(info, level);
-    uint32_t column = (tile % info->tiles_x) * (side - 1),
-             row = (tile / info->tiles_x) * (side - 1);
+    ff_sheet at = ff_shape_sheet(info, tile);
+    uint32_t column = at.x * (side - 1), row = at.y * (side - 1);
     if (column >= raster->width || row >= raster->height) return 0;
     uint32_t columns = raster->width - column < side ? raster->width - column : side;
     if (bake_unpack_tile(unpack, tile, level, heights)) return -1;
@@ -36,7 +37,7 @@ static int export_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level,
 static int export_tiles(const bake_unpack *unpack, uint32_t level, const bake_grid *raster)
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
-    uint32_t side = bake_unpack_side(info, level), tiles = info->tiles_x * info->tiles_y;
+    uint32_t side = bake_unpack_side(info, level), tiles = ff_shape_tiles(info);
     uint16_t *heights = malloc((size_t)side * side * sizeof *heights);
     int rc = heights ? 0 : bake_fail("out of memory");
     for (uint32_t tile = 0; !rc && tile < tiles; tile++) {
@@ -123,9 +124,10 @@ int bake_export(const bake_unpack *unpack, uint32_t level, const char *path)
     if (snprintf(temp, sizeof temp, "%s.tmp-%ld", path, (long)getpid()) >= (int)sizeof temp)
         return bake_fail("%s: the name is too long", path);
     uint32_t skip = ff_terrain_levels(info) - 1 - level;
+    ff_sheet samples = ff_shape_sheet_samples(info);
     bake_grid raster;
     bake_temp_setup(path);
-    if (bake_grid_open(&raster, thinned(info->samples_x, skip), thinned(info->samples_y, skip),
+    if (bake_grid_open(&raster, thinned(samples.x, skip), thinned(samples.y, skip),
                        sizeof(uint16_t)))
         return -1;
     int rc = export_tiles(unpack, level, &raster);

@@ -1,5 +1,7 @@
 #include "bake_info.h"
 
+#include "../../protocol/shape/ff_shape.h"
+
 #include <inttypes.h>
 #include <stdio.h>
 
@@ -10,8 +12,14 @@
 static uint64_t lattice_samples(const ff_terrain_info *info, uint32_t level)
 {
     uint32_t cells_log2 = info->node_log2 + level;
-    return (((uint64_t)info->tiles_x << cells_log2) + 1) *
-           (((uint64_t)info->tiles_y << cells_log2) + 1);
+    ff_sheet tiles = ff_shape_sheet_tiles(info);
+    return (((uint64_t)tiles.x << cells_log2) + 1) * (((uint64_t)tiles.y << cells_log2) + 1);
+}
+
+static uint64_t source_samples(const ff_terrain_info *info)
+{
+    ff_sheet samples = ff_shape_sheet_samples(info);
+    return (uint64_t)samples.x * samples.y;
 }
 
 static uint64_t offset_of(const ff_pack *pack, const ff_pack_section *section, uint64_t record)
@@ -54,11 +62,11 @@ static double metres(int64_t wu) { return (double)wu / FF_WU_PER_METRE; }
 static void print_terrain(const ff_terrain_info *info)
 {
     double step = info->hscale_q24 / 16777216.0, spacing = metres(info->spacing_wu);
-    printf("samples         %u x %u, %.9g m apart (%.3f x %.3f km)\n", info->samples_x,
-           info->samples_y, spacing, (info->samples_x - 1) * spacing / 1000,
-           (info->samples_y - 1) * spacing / 1000);
+    ff_sheet samples = ff_shape_sheet_samples(info), tiles = ff_shape_sheet_tiles(info);
+    printf("samples         %u x %u, %.9g m apart (%.3f x %.3f km)\n", samples.x, samples.y,
+           spacing, (samples.x - 1) * spacing / 1000, (samples.y - 1) * spacing / 1000);
     printf("tiles           %u x %u of (2^%u+1)^2 heights, nodes of (2^%u+1)^2, %u levels\n",
-           info->tiles_x, info->tiles_y, info->tile_log2, info->node_log2, ff_terrain_levels(info));
+           tiles.x, tiles.y, info->tile_log2, info->node_log2, ff_terrain_levels(info));
     printf("heights         %.3f to %.3f m in steps of %.9g m above %.9g m\n",
            info->height_min * step + metres(info->hoffset_wu),
            info->height_max * step + metres(info->hoffset_wu), step, metres(info->hoffset_wu));
@@ -107,7 +115,7 @@ void bake_info_print(const ff_pack *pack, const char *path)
         if (sum.new_samples) printf(" %16.3f", per(sum.payload_bytes, sum.new_samples));
         putchar('\n');
     }
-    uint64_t source = (uint64_t)pack->header.info.samples_x * pack->header.info.samples_y;
+    uint64_t source = source_samples(&pack->header.info);
     printf("\nheights   %12" PRIu64 " bytes, %.3f bits a sample of the source\n",
            heights.payload_bytes, per(heights.payload_bytes, source));
     printf("textures  %12" PRIu64 " bytes\n", textures.payload_bytes);
@@ -118,13 +126,14 @@ void bake_info_print(const ff_pack *pack, const char *path)
 static void print_terrain_json(const ff_terrain_info *info)
 {
     double step = info->hscale_q24 / 16777216.0;
+    ff_sheet samples = ff_shape_sheet_samples(info), tiles = ff_shape_sheet_tiles(info);
     printf(
         "\"version\": %d, \"node_log2\": %u, \"tile_log2\": %u, \"levels\": %u, \"codec\": \"%s\", \"flags\": %u, ",
         FF_PACK_VERSION, info->node_log2, info->tile_log2, ff_terrain_levels(info),
         ff_codec_name(info->codec), info->flags);
     printf(
         "\"tiles_x\": %u, \"tiles_y\": %u, \"samples_x\": %u, \"samples_y\": %u, \"spacing_m\": %.9g, ",
-        info->tiles_x, info->tiles_y, info->samples_x, info->samples_y, metres(info->spacing_wu));
+        tiles.x, tiles.y, samples.x, samples.y, metres(info->spacing_wu));
     printf(
         "\"hscale_m\": %.9g, \"hoffset_m\": %.9g, \"height_min\": %u, \"height_max\": %u, \"max_error\": %u, ",
         step, metres(info->hoffset_wu), info->height_min, info->height_max, info->max_error);
@@ -138,7 +147,7 @@ static void print_terrain_json(const ff_terrain_info *info)
 void bake_info_print_json(const ff_pack *pack)
 {
     uint64_t height_bytes = 0, texture_bytes = 0;
-    uint64_t source = (uint64_t)pack->header.info.samples_x * pack->header.info.samples_y;
+    uint64_t source = source_samples(&pack->header.info);
     printf("{\"bytes\": %" PRIu64 ", ", pack->size);
     print_terrain_json(&pack->header.info);
     printf("\"sections\": [");

@@ -1,5 +1,6 @@
 /* farfield-info: what is inside a pack. */
 #include "../../client/farfield.h"
+#include "../../protocol/shape/ff_shape.h"
 #include "bake_info.h"
 #include "../bake/bake_say.h"
 #include "bake_unpack.h"
@@ -62,7 +63,7 @@ static int verify(const bake_unpack *unpack)
     if (rc) return bake_fail("%s: %s", unpack->path, ff_error_text(rc));
     uint16_t *heights = malloc((size_t)side * side * sizeof *heights);
     if (!heights) return bake_fail("out of memory");
-    for (uint32_t tile = 0; !rc && tile < info->tiles_x * info->tiles_y; tile++)
+    for (uint32_t tile = 0; !rc && tile < ff_shape_tiles(info); tile++)
         rc = bake_unpack_tile(unpack, tile, finest, heights);
     free(heights);
     return rc;

@@ -44,9 +44,10 @@ strip_code() {
 # `a/b` the files of that folder alone, `a/b.h` one header. Tests may include everything. ----
 rooms() {
     cat <<'END'
-protocol            protocol/codec
+protocol            protocol/codec protocol/shape
 protocol/codec      protocol protocol/zlib
 protocol/message    protocol protocol/codec
+protocol/shape      protocol
 protocol/zlib       protocol
 platform            protocol/ff_error.h
 platform/egl        platform
@@ -60,8 +61,8 @@ common3d            platform/sys.h protocol/ff_error.h
 common3d/gl         common3d
 common3d/gles1      common3d common3d/gl
 common3d/soft       common3d
-client/terrain      protocol protocol/codec common3d platform/sys.h
-client/ahead        common3d
+client/terrain      protocol protocol/codec protocol/shape common3d platform/sys.h
+client/ahead        protocol common3d
 client/ask          protocol/ platform/sys.h
 client/source       client/ask protocol/ platform/sys.h
 client/source/link  client/ask protocol/ platform/sys.h

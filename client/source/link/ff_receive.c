@@ -2,23 +2,13 @@
 
 #include <string.h>
 
-/* 1 for the same ground, sample for sample: what the client holds stays valid. */
-static int same_terrain(const ff_terrain_info *a, const ff_terrain_info *b)
-{
-    return a->checksum == b->checksum && a->node_log2 == b->node_log2 &&
-           a->tile_log2 == b->tile_log2 && a->codec == b->codec && a->tiles_x == b->tiles_x &&
-           a->tiles_y == b->tiles_y && a->spacing_wu == b->spacing_wu &&
-           a->hscale_q24 == b->hscale_q24 && a->hoffset_wu == b->hoffset_wu &&
-           a->texture_log2 == b->texture_log2 && a->texture_levels == b->texture_levels;
-}
-
 static int take_welcome(ff_stream *stream, const ff_welcome *welcome)
 {
     if (stream->state != FF_STREAM_GREETING) return FF_ERR_FORMAT;
     if (welcome->version != FF_PROTOCOL_VERSION) return FF_ERR_VERSION;
     stream->awaiting = 0;
     stream->backoff_us = FF_BACKOFF_US_MIN;
-    if (stream->has_terrain && same_terrain(&stream->held, &welcome->info)) {
+    if (stream->has_terrain && ff_terrain_same(&stream->held, &welcome->info)) {
         stream->state = FF_STREAM_UP;
         return FF_OK;
     }

@@ -1,5 +1,6 @@
 #include "bake_image.h"
 
+#include "../../../protocol/shape/ff_shape.h"
 #include "../../../platform/sys.h"
 #include "bake_image_local.h"
 #include "bake_nearest.h"
@@ -207,9 +208,10 @@ static int make_lattices(const bake_picture *picture, const bake_ground *ground,
                          const ff_terrain_info *info, bake_image *image)
 {
     uint32_t steps = (1u << info->texture_log2) - 1, top = image->levels - 1;
+    ff_sheet tiles = ff_shape_sheet_tiles(info);
     for (uint32_t l = 0; l <= top; l++)
-        if (bake_grid_open(&image->lattice[l], (info->tiles_x * steps << l) + 1,
-                           (info->tiles_y * steps << l) + 1, RGB))
+        if (bake_grid_open(&image->lattice[l], (tiles.x * steps << l) + 1,
+                           (tiles.y * steps << l) + 1, RGB))
             return -1;
     double texel_samples = (double)(1u << (info->tile_log2 - top)) / steps;
     if (sample_image(picture, ground, texel_samples, &image->lattice[top])) return -1;
@@ -255,13 +257,13 @@ int bake_texture_encode(const bake_image *image, const ff_terrain_info *info, in
                         uint32_t tile, uint32_t level, bake_blob *blob)
 {
     uint32_t side = 1u << info->texture_log2;
-    uint32_t tile_x = (tile % info->tiles_x) << level, tile_y = (tile / info->tiles_x) << level;
+    ff_sheet at = ff_shape_sheet(info, tile);
     size_t capacity = (size_t)4 * side * side + 8192;
     uint8_t *rgb = malloc((size_t)side * side * RGB), *jpeg = malloc(capacity);
     int rc = rgb && jpeg ? 0 : bake_fail("out of memory");
     for (uint32_t code = 0; !rc && code >> (2 * level) == 0; code++) {
-        uint32_t column = (tile_x + ff_morton_x(code)) * (side - 1),
-                 row = (tile_y + ff_morton_y(code)) * (side - 1);
+        uint32_t column = ((at.x << level) + ff_morton_x(code)) * (side - 1),
+                 row = ((at.y << level) + ff_morton_y(code)) * (side - 1);
         rc = read_texture(&image->lattice[level], side, column, row, rgb);
         if (rc) break;
         int bytes = sys_jpeg_encode(rgb, side, side, quality, jpeg, capacity);

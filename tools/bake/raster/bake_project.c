@@ -230,8 +230,8 @@ static int keep_samples(const bake_options *o, const bake_ground *ground, double
         *spacing_m = fabs(ground->geotransform[1]);
     double exact = *spacing_m * FF_WU_PER_METRE;
     if (exact < 0.5 * o->densify)
-        return bake_fail("a spacing of %g m is finer than the 1/256 m of world units",
-                         *spacing_m / o->densify);
+        return bake_fail("a spacing of %g m is finer than the 1/%d m of world units",
+                         *spacing_m / o->densify, FF_WU_PER_METRE);
     *spacing_m = round_spacing(o, *spacing_m);
     double drift_m = fabs(*spacing_m - exact / FF_WU_PER_METRE) * ground->grid.width;
     if (drift_m > *spacing_m / 2)

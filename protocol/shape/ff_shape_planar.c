@@ -1,0 +1,242 @@
+#include "ff_shape.h"
+
+/* ---- place ---- */
+
+int ff_planar_check(const ff_terrain_info *info)
+{
+    uint64_t edge_x, edge_y;
+
+    if (info->tiles_x < 1 || info->tiles_y < 1 ||
+        (uint64_t)info->tiles_x * info->tiles_y > FF_KEY_TILES_MAX)
+        return 0;
+    edge_x = (uint64_t)info->tiles_x << info->tile_log2;
+    edge_y = (uint64_t)info->tiles_y << info->tile_log2;
+    if (info->samples_x < 2 || info->samples_y < 2 || info->samples_x > edge_x + 1 ||
+        info->samples_y > edge_y + 1)
+        return 0;
+    /* An edge of 43 bits times a spacing of 32 bits would overflow: so the spacing is compared with
+     * the quotient. */
+    return info->spacing_wu >= 1 && info->spacing_wu <= INT32_MAX / edge_x &&
+           info->spacing_wu <= INT32_MAX / edge_y;
+}
+
+ff_placed ff_planar_put(const ff_terrain_info *info, const ff_frame *frame, ff_key key)
+{
+    uint32_t tile = ff_key_tile(key), code = ff_key_code(key);
+    int32_t tile_wu = ff_node_edge_wu(info, 0), edge_wu = ff_node_edge_wu(info, ff_key_level(key));
+    ff_placed placed;
+
+    (void)frame;
+    placed.planar.x_wu = (int32_t)(tile % info->tiles_x) * tile_wu;
+    placed.planar.y_wu = (int32_t)(tile / info->tiles_x) * tile_wu;
+    if (code) {
+        placed.planar.x_wu += (int32_t)ff_morton_x(code) * edge_wu;
+        placed.planar.y_wu += (int32_t)ff_morton_y(code) * edge_wu;
+    }
+    return placed;
+}
+
+/* ---- neighbour ---- */
+
+/* Moves *tile to the tile across `side`. Returns 0 when the terrain ends there: *tile then names no
+ * tile. */
+static int next_tile(const ff_terrain_info *info, enum ff_side side, uint32_t *tile)
+{
+    uint32_t x = *tile % info->tiles_x, y = *tile / info->tiles_x;
+
+    switch (side) {
+        case FF_SIDE_SOUTH: *tile -= info->tiles_x; return y > 0;
+        case FF_SIDE_EAST: *tile += 1; return x + 1 < info->tiles_x;
+        case FF_SIDE_NORTH: *tile += info->tiles_x; return y + 1 < info->tiles_y;
+        default: *tile -= 1; return x > 0;
+    }
+}
+
+ff_key ff_planar_across(const ff_terrain_info *info, ff_key key, enum ff_side side)
+{
+    uint32_t tile = ff_key_tile(key), code;
+
+    if (ff_key_step(key, side, &code) && !next_tile(info, side, &tile)) return FF_KEY_NONE;
+    return ff_key_make(tile, ff_key_level(key), code);
+}
+
+/* ---- locate ---- */
+
+/* Along one axis: 1, the tile and the place in it, samples Q16; 0 outside. The terrain's far rim
+ * belongs to its last tile. */
+static int locate_along(const ff_terrain_info *info, int32_t at_wu, uint32_t tiles, uint32_t *tile,
+                        uint32_t *sample_q16)
+{
+    uint32_t tile_wu = (uint32_t)ff_node_edge_wu(info, 0), at = (uint32_t)at_wu;
+
+    if (at_wu < 0 || at > tiles * tile_wu) return 0;
+    *tile = at == tiles * tile_wu ? tiles - 1 : at / tile_wu;
+    *sample_q16 = (uint32_t)(((uint64_t)(at - *tile * tile_wu) << 16) / info->spacing_wu);
+    return 1;
+}
+
+int ff_planar_locate(const ff_terrain_info *info, const ff_frame *frame, const int32_t place_wu[3],
+                     ff_spot *spot)
+{
+    uint32_t x, y;
+
+    (void)frame;
+    if (!locate_along(info, place_wu[0], info->tiles_x, &x, &spot->column_q16) ||
+        !locate_along(info, place_wu[1], info->tiles_y, &y, &spot->row_q16))
+        return 0;
+    spot->tile = y * info->tiles_x + x;
+    return 1;
+}
+
+/* ---- horizon: tiles in reach ---- */
+
+static int64_t floor_div(int64_t a, int64_t b)
+{
+    int64_t quotient = a / b;
+    return a % b < 0 ? quotient - 1 : quotient;
+}
+
+static void reach_along(int64_t centre_wu, int64_t view_wu, int64_t tile_wu, int64_t tiles,
+                        int32_t *first, int32_t *last)
+{
+    int64_t from = floor_div(centre_wu - view_wu - 1, tile_wu); /* touching counts */
+    int64_t to = floor_div(centre_wu + view_wu, tile_wu);
+    *first = (int32_t)(from < 0 ? 0 : from);
+    *last = (int32_t)(to > tiles - 1 ? tiles - 1 : to);
+}
+
+ff_reach ff_planar_reach(const ff_terrain_info *info, const ff_frame *frame,
+                         const int32_t centre_wu[3], int32_t view_wu, const int64_t height_wu[2])
+{
+    int64_t tile_wu = ff_node_edge_wu(info, 0);
+    ff_reach reach;
+
+    (void)frame;
+    reach_along(centre_wu[0], view_wu, tile_wu, info->tiles_x, &reach.planar.x0, &reach.planar.x1);
+    reach_along(centre_wu[1], view_wu, tile_wu, info->tiles_y, &reach.planar.y0, &reach.planar.y1);
+    if (reach.planar.y1 < reach.planar.y0 || height_wu[0] - centre_wu[2] > view_wu ||
+        centre_wu[2] - height_wu[1] > view_wu)
+        reach.planar.x1 = reach.planar.x0 - 1;
+    return reach;
+}
+
+static int64_t outside(int64_t value, int64_t lo, int64_t hi)
+{
+    if (value < lo) return lo - value;
+    return value > hi ? value - hi : 0;
+}
+
+int64_t ff_planar_tile_distance(const ff_terrain_info *info, const ff_frame *frame,
+                                const int32_t centre_wu[3], uint32_t tile)
+{
+    int64_t edge_wu = ff_node_edge_wu(info, 0), x_wu = tile % info->tiles_x * edge_wu,
+            y_wu = tile / info->tiles_x * edge_wu;
+    int64_t away_x = outside(centre_wu[0], x_wu, x_wu + edge_wu),
+            away_y = outside(centre_wu[1], y_wu, y_wu + edge_wu);
+
+    (void)frame;
+    return away_x > away_y ? away_x : away_y;
+}
+
+static int32_t clamp(int32_t value, int32_t lo, int32_t hi)
+{
+    return value < lo ? lo : value > hi ? hi : value;
+}
+
+/* Square rings round the middle, from the inside: the row south of it, the one north of it, the
+ * column west, the column east. The middle itself is the south of ring 0. */
+ff_walk ff_planar_walk_out(const ff_terrain_info *info, const ff_frame *frame,
+                           const ff_reach *reach, const int32_t centre_wu[3])
+{
+    int32_t edge_wu = ff_node_edge_wu(info, 0);
+    ff_walk walk = { .planar = { .reach = *reach, .side = -1 } };
+
+    (void)frame;
+    walk.planar.x = clamp(centre_wu[0] / edge_wu, reach->planar.x0, reach->planar.x1);
+    walk.planar.y = clamp(centre_wu[1] / edge_wu, reach->planar.y0, reach->planar.y1);
+    return walk;
+}
+
+ff_walk ff_planar_walk(const ff_terrain_info *info, const ff_reach *reach)
+{
+    (void)info;
+    return (ff_walk){ .planar = { .reach = *reach, .y = reach->planar.y0, .ring = -1 } };
+}
+
+/* The tiles from..to of a row or column, as far as they are in reach. */
+static void start_run(const ff_terrain_info *info, ff_walk *walk, int along_x, int32_t other,
+                      int32_t from, int32_t to)
+{
+    const ff_reach *reach = &walk->planar.reach;
+    int32_t first = along_x ? reach->planar.x0 : reach->planar.y0,
+            last = along_x ? reach->planar.x1 : reach->planar.y1;
+
+    if (other < (along_x ? reach->planar.y0 : reach->planar.x0) ||
+        other > (along_x ? reach->planar.y1 : reach->planar.x1))
+        return;
+    from = from < first ? first : from;
+    to = to > last ? last : to;
+    if (to < from) return;
+    walk->planar.left = (uint32_t)(to - from) + 1;
+    walk->planar.step = along_x ? 1 : info->tiles_x;
+    walk->planar.tile = along_x ? (uint32_t)other * info->tiles_x + (uint32_t)from
+                                : (uint32_t)from * info->tiles_x + (uint32_t)other;
+}
+
+/* 0 when a ring lies all outside the tiles in reach, and so do those round it. */
+static int ring_in_reach(const ff_walk *walk)
+{
+    const ff_reach *reach = &walk->planar.reach;
+    int32_t x = walk->planar.x, y = walk->planar.y, r = walk->planar.ring;
+
+    return x - r >= reach->planar.x0 || x + r <= reach->planar.x1 || y - r >= reach->planar.y0 ||
+           y + r <= reach->planar.y1;
+}
+
+/* The next row by number, or the next side of a ring; it may have no tile in reach. 0 at the
+ * end. */
+static int next_run(const ff_terrain_info *info, ff_walk *walk)
+{
+    const ff_reach *reach = &walk->planar.reach;
+    int32_t x = walk->planar.x, y = walk->planar.y, r = walk->planar.ring;
+
+    if (reach->planar.x1 < reach->planar.x0) return 0;
+    if (r < 0) {
+        if (y > reach->planar.y1) return 0;
+        walk->planar.y++;
+        start_run(info, walk, 1, y, reach->planar.x0, reach->planar.x1);
+        return 1;
+    }
+    if (++walk->planar.side > (r ? 3 : 0)) {
+        walk->planar.side = 0;
+        r = ++walk->planar.ring;
+        if (!ring_in_reach(walk)) return 0;
+    }
+    switch (walk->planar.side) {
+        case 0: start_run(info, walk, 1, y - r, x - r, x + r); break;
+        case 1: start_run(info, walk, 1, y + r, x - r, x + r); break;
+        case 2: start_run(info, walk, 0, x - r, y - r + 1, y + r - 1); break;
+        default: start_run(info, walk, 0, x + r, y - r + 1, y + r - 1); break;
+    }
+    return 1;
+}
+
+int ff_planar_next(const ff_terrain_info *info, ff_walk *walk, uint32_t *tile)
+{
+    while (!walk->planar.left)
+        if (!next_run(info, walk)) return 0;
+    *tile = walk->planar.tile;
+    walk->planar.tile += walk->planar.step;
+    walk->planar.left--;
+    return 1;
+}
+
+/* ---- sheet ---- */
+
+void ff_planar_cover(ff_terrain_info *info, uint32_t samples_x, uint32_t samples_y)
+{
+    info->samples_x = samples_x;
+    info->samples_y = samples_y;
+    info->tiles_x = ((samples_x - 2) >> info->tile_log2) + 1;
+    info->tiles_y = ((samples_y - 2) >> info->tile_log2) + 1;
+}

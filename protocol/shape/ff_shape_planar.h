@@ -1,0 +1,177 @@
+/* The plane: tiles_x by tiles_y tiles in a rectangle, tile number = y * tiles_x + x, x to the east,
+ * y to the north; a column is spacing_wu of x, a row of y, a height is z. One frame: world axes,
+ * the south-west sample at x = y = 0. What ff_shape.h says of each function is not said again; it
+ * includes this file. */
+#ifndef FF_SHAPE_PLANAR_H
+#define FF_SHAPE_PLANAR_H
+
+/* ff_shape_planar.c */
+int ff_planar_check(const ff_terrain_info *info);
+ff_placed ff_planar_put(const ff_terrain_info *info, const ff_frame *frame, ff_key key);
+ff_key ff_planar_across(const ff_terrain_info *info, ff_key key, enum ff_side side);
+int ff_planar_locate(const ff_terrain_info *info, const ff_frame *frame, const int32_t place_wu[3],
+                     ff_spot *spot);
+ff_reach ff_planar_reach(const ff_terrain_info *info, const ff_frame *frame,
+                         const int32_t centre_wu[3], int32_t view_wu, const int64_t height_wu[2]);
+int64_t ff_planar_tile_distance(const ff_terrain_info *info, const ff_frame *frame,
+                                const int32_t centre_wu[3], uint32_t tile);
+ff_walk ff_planar_walk_out(const ff_terrain_info *info, const ff_frame *frame,
+                           const ff_reach *reach, const int32_t centre_wu[3]);
+ff_walk ff_planar_walk(const ff_terrain_info *info, const ff_reach *reach);
+int ff_planar_next(const ff_terrain_info *info, ff_walk *walk, uint32_t *tile);
+void ff_planar_cover(ff_terrain_info *info, uint32_t samples_x, uint32_t samples_y);
+
+/* ---- place ---- */
+
+static inline uint32_t ff_planar_tiles(const ff_terrain_info *info)
+{
+    return info->tiles_x * info->tiles_y;
+}
+
+static inline void ff_planar_place(const ff_terrain_info *info, ff_key key, const ff_placed *placed,
+                                   uint32_t column, uint32_t row, uint32_t height,
+                                   int32_t place_wu[3])
+{
+    int32_t cell_wu = ff_node_cell_wu(info, ff_key_level(key));
+    place_wu[0] = placed->planar.x_wu + (int32_t)column * cell_wu;
+    place_wu[1] = placed->planar.y_wu + (int32_t)row * cell_wu;
+    place_wu[2] = ff_height_wu(info, height);
+}
+
+static inline ff_box ff_planar_square(int64_t x_wu, int64_t y_wu, int64_t width_wu,
+                                      int64_t depth_wu, const int64_t height_wu[2],
+                                      const int32_t from_wu[3])
+{
+    ff_box box;
+    box.lo[0] = x_wu - from_wu[0];
+    box.hi[0] = box.lo[0] + width_wu;
+    box.lo[1] = y_wu - from_wu[1];
+    box.hi[1] = box.lo[1] + depth_wu;
+    box.lo[2] = height_wu[0] - from_wu[2];
+    box.hi[2] = height_wu[1] - from_wu[2];
+    return box;
+}
+
+static inline ff_box ff_planar_box(const ff_terrain_info *info, ff_key key, const ff_placed *placed,
+                                   const int64_t height_wu[2], const int32_t from_wu[3])
+{
+    int64_t edge_wu = ff_node_edge_wu(info, ff_key_level(key));
+    return ff_planar_square(placed->planar.x_wu, placed->planar.y_wu, edge_wu, edge_wu, height_wu,
+                            from_wu);
+}
+
+static inline void ff_planar_to_middle(const ff_terrain_info *info, ff_key key,
+                                       const ff_placed *placed, int32_t height_wu,
+                                       const int32_t from_wu[3], int64_t way_wu[3])
+{
+    int32_t half_wu = ff_node_edge_wu(info, ff_key_level(key)) / 2;
+    way_wu[0] = (int64_t)placed->planar.x_wu + half_wu - from_wu[0];
+    way_wu[1] = (int64_t)placed->planar.y_wu + half_wu - from_wu[1];
+    way_wu[2] = (int64_t)height_wu - from_wu[2];
+}
+
+static inline ff_box ff_planar_bounds(const ff_terrain_info *info, const ff_frame *frame,
+                                      const int64_t height_wu[2], const int32_t from_wu[3])
+{
+    int64_t edge_wu = ff_node_edge_wu(info, 0);
+    (void)frame;
+    return ff_planar_square(0, 0, info->tiles_x * edge_wu, info->tiles_y * edge_wu, height_wu,
+                            from_wu);
+}
+
+/* Columns run east, rows north, and cells are square. */
+static inline void ff_planar_slopes(const ff_terrain_info *info, ff_key key, int32_t slope_q8[2])
+{
+    (void)info, (void)key, (void)slope_q8;
+}
+
+/* ---- neighbour ---- */
+
+static inline ff_beside ff_planar_neighbour(const ff_terrain_info *info, ff_key key,
+                                            enum ff_side side)
+{
+    return (ff_beside){ ff_planar_across(info, key, side), ff_side_opposite(side), 0 };
+}
+
+/* ---- locate ---- */
+
+static inline int32_t ff_planar_z_wu(const ff_terrain_info *info, const ff_frame *frame,
+                                     const int32_t place_wu[3], uint64_t height_q16)
+{
+    (void)frame, (void)place_wu;
+    return info->hoffset_wu + (int32_t)(height_q16 * info->hscale_q24 >> 32);
+}
+
+/* ---- frame ---- */
+
+static inline ff_frame ff_planar_frame(const ff_terrain_info *info, const int32_t world_wu[3])
+{
+    (void)info, (void)world_wu;
+    return (ff_frame){ 0 };
+}
+
+static inline int ff_planar_same_frame(const ff_terrain_info *info, const ff_frame *a,
+                                       const ff_frame *b)
+{
+    return (void)info, (void)a, (void)b, 1;
+}
+
+static inline void ff_planar_enter(const ff_terrain_info *info, const ff_frame *frame,
+                                   const int32_t world_wu[3], int32_t place_wu[3])
+{
+    (void)info, (void)frame;
+    for (unsigned axis = 0; axis < 3; axis++) place_wu[axis] = world_wu[axis];
+}
+
+static inline void ff_planar_leave(const ff_terrain_info *info, const ff_frame *frame,
+                                   const int32_t place_wu[3], int32_t world_wu[3])
+{
+    ff_planar_enter(info, frame, place_wu, world_wu);
+}
+
+/* ---- horizon ---- */
+
+/* A plane has none. */
+static inline int32_t ff_planar_horizon_wu(const ff_terrain_info *info, const ff_frame *frame,
+                                           const int32_t place_wu[3])
+{
+    return (void)info, (void)frame, (void)place_wu, INT32_MAX;
+}
+
+static inline int32_t ff_planar_drop_wu(const ff_terrain_info *info, int32_t away_wu)
+{
+    return (void)info, (void)away_wu, 0;
+}
+
+static inline int ff_planar_reaches(const ff_terrain_info *info, const ff_reach *reach,
+                                    uint32_t tile)
+{
+    int32_t x = (int32_t)(tile % info->tiles_x), y = (int32_t)(tile / info->tiles_x);
+    return x >= reach->planar.x0 && x <= reach->planar.x1 && y >= reach->planar.y0 &&
+           y <= reach->planar.y1;
+}
+
+/* ---- sheet ---- */
+
+static inline ff_sheet ff_planar_sheet(const ff_terrain_info *info, uint32_t tile)
+{
+    return (ff_sheet){ tile % info->tiles_x, tile / info->tiles_x };
+}
+
+static inline ff_sheet ff_planar_sheet_tiles(const ff_terrain_info *info)
+{
+    return (ff_sheet){ info->tiles_x, info->tiles_y };
+}
+
+static inline ff_sheet ff_planar_sheet_samples(const ff_terrain_info *info)
+{
+    return (ff_sheet){ info->samples_x, info->samples_y };
+}
+
+static inline void ff_planar_size_wu(const ff_terrain_info *info, int64_t size_wu[2])
+{
+    size_wu[0] = (int64_t)(info->samples_x - 1) * info->spacing_wu;
+    size_wu[1] = (int64_t)(info->samples_y - 1) * info->spacing_wu;
+}
+
+#endif

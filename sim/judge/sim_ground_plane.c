@@ -1,0 +1,133 @@
+/* The true ground of a planar terrain: x and y are columns and rows, z is height. Another shape
+ * asks the same two questions of another file. */
+#include "sim_ground.h"
+
+#include <math.h>
+
+static double sample_m(const sim_ground *ground, uint32_t column, uint32_t row)
+{
+    return ground->hoffset_m +
+           ground->hscale_m * ground->height[(size_t)row * ground->columns + column];
+}
+
+/* Height of one of a cell's two triangles' planes at (u, v) within the cell, 0..1. */
+static double plane_m(const sim_ground *ground, uint32_t column, uint32_t row, int south_east,
+                      double u, double v)
+{
+    double sw = sample_m(ground, column, row), ne = sample_m(ground, column + 1, row + 1);
+    if (south_east) {
+        double se = sample_m(ground, column + 1, row);
+        return sw + u * (se - sw) + v * (ne - se);
+    }
+    double nw = sample_m(ground, column, row + 1);
+    return sw + v * (nw - sw) + u * (ne - nw);
+}
+
+static double clamp(double value, double low, double high)
+{
+    return value < low ? low : value > high ? high : value;
+}
+
+double sim_ground_height_m(const sim_ground *ground, double x_m, double y_m)
+{
+    double x = clamp(x_m / ground->cell_m, 0, ground->columns - 1),
+           y = clamp(y_m / ground->cell_m, 0, ground->rows - 1);
+    uint32_t column = (uint32_t)clamp(floor(x), 0, ground->columns - 2),
+             row = (uint32_t)clamp(floor(y), 0, ground->rows - 2);
+    double u = x - column, v = y - row;
+    return plane_m(ground, column, row, u >= v, u, v);
+}
+
+/* A ray in cells (x, y) and metres (z). */
+typedef struct ray {
+    const sim_ground *ground;
+    double from[3], along[3];
+} ray;
+
+/* First ground on t0..t1 under one triangle's plane: linear in t. */
+static int cast_plane(const ray *r, uint32_t column, uint32_t row, int south_east, double t0,
+                      double t1, double *t_hit)
+{
+    double above[2], t[2] = { t0, t1 };
+    for (int i = 0; i < 2; i++)
+        above[i] = r->from[2] + t[i] * r->along[2] -
+                   plane_m(r->ground, column, row, south_east,
+                           r->from[0] + t[i] * r->along[0] - column,
+                           r->from[1] + t[i] * r->along[1] - row);
+    if (above[0] > 0 && above[1] > 0) return 0;
+    *t_hit = above[0] <= 0 ? t0 : t0 + (t1 - t0) * above[0] / (above[0] - above[1]);
+    return 1;
+}
+
+static int cast_cell(const ray *r, uint32_t column, uint32_t row, double t0, double t1,
+                     double *t_hit)
+{
+    if (column >= r->ground->columns - 1 || row >= r->ground->rows - 1) return 0;
+    /* u - v along the ray */
+    double difference = (r->from[0] - column) - (r->from[1] - row),
+           slope = r->along[0] - r->along[1];
+    double crossing = slope != 0 ? -difference / slope : INFINITY;
+    if (crossing > t0 && crossing < t1) {
+        int first = difference + (t0 + crossing) / 2 * slope >= 0;
+        return cast_plane(r, column, row, first, t0, crossing, t_hit) ||
+               cast_plane(r, column, row, !first, crossing, t1, t_hit);
+    }
+    return cast_plane(r, column, row, difference + (t0 + t1) / 2 * slope >= 0, t0, t1, t_hit);
+}
+
+/* Looks for ground in the block (column, row) of 2^log2 cells a side, which the ray crosses on
+ * t0..t1: in its quarters, in the ray's order. */
+static int cast_block(const ray *r, unsigned log2, uint32_t column, uint32_t row, double t0,
+                      double t1, double *t_hit)
+{
+    const sim_ground *ground = r->ground;
+    if (log2 >= SIM_GROUND_PYRAMID_FIRST) {
+        if (column >= ground->pyramid[log2].columns || row >= ground->pyramid[log2].rows) return 0;
+        double lowest = r->from[2] + (r->along[2] < 0 ? t1 : t0) * r->along[2];
+        uint16_t most =
+            ground->pyramid[log2].max[(size_t)row * ground->pyramid[log2].columns + column];
+        if (lowest > ground->hoffset_m + ground->hscale_m * most) return 0;
+    }
+    if (!log2) return cast_cell(r, column, row, t0, t1, t_hit);
+    double middle_x = (double)((uint64_t)(column * 2 + 1) << (log2 - 1)),
+           middle_y = (double)((uint64_t)(row * 2 + 1) << (log2 - 1));
+    double at[4] = { t0, t0, t0, t1 };
+    int count = 1;
+    double cross_x = r->along[0] != 0 ? (middle_x - r->from[0]) / r->along[0] : -1;
+    double cross_y = r->along[1] != 0 ? (middle_y - r->from[1]) / r->along[1] : -1;
+    double early = fmin(cross_x, cross_y), late = fmax(cross_x, cross_y);
+    if (early > t0 && early < t1) at[count++] = early;
+    if (late > t0 && late < t1 && late > early) at[count++] = late;
+    at[count] = t1;
+    for (int i = 0; i < count; i++) {
+        double t = (at[i] + at[i + 1]) / 2;
+        uint32_t east = r->from[0] + t * r->along[0] >= middle_x,
+                 north = r->from[1] + t * r->along[1] >= middle_y;
+        if (cast_block(r, log2 - 1, column * 2 + east, row * 2 + north, at[i], at[i + 1], t_hit))
+            return 1;
+    }
+    return 0;
+}
+
+int sim_ground_cast(const sim_ground *ground, const double from_m[3], const double direction[3],
+                    double t_max, double *t_hit)
+{
+    ray r = { .ground = ground };
+    double t0 = 0, t1 = t_max;
+    const double size[2] = { ground->columns - 1, ground->rows - 1 };
+    for (int axis = 0; axis < 3; axis++) {
+        double scale = axis < 2 ? ground->cell_m : 1;
+        r.from[axis] = from_m[axis] / scale;
+        r.along[axis] = direction[axis] / scale;
+    }
+    for (int axis = 0; axis < 2; axis++) { /* the part of the ray over the ground */
+        if (r.along[axis] == 0) {
+            if (r.from[axis] < 0 || r.from[axis] > size[axis]) return 0;
+            continue;
+        }
+        double a = -r.from[axis] / r.along[axis], b = (size[axis] - r.from[axis]) / r.along[axis];
+        t0 = fmax(t0, fmin(a, b));
+        t1 = fmin(t1, fmax(a, b));
+    }
+    return t0 < t1 && cast_block(&r, ground->top, 0, 0, t0, t1, t_hit);
+}

@@ -1,0 +1,31 @@
+#include "sim_place.h"
+
+int sim_place_in_node(const ff_terrain_info *info, const ff_drawn *drawn, const double point_m[3],
+                      double cell[2])
+{
+    double side = (double)(1u << info->node_log2),
+           cell_m = (double)drawn->cell_wu / FF_WU_PER_METRE;
+    for (int i = 0; i < 2; i++)
+        cell[i] = (point_m[i] - (double)drawn->origin_wu[i] / FF_WU_PER_METRE) / cell_m;
+    return cell[0] >= 0 && cell[1] >= 0 && cell[0] <= side && cell[1] <= side;
+}
+
+void sim_place_middle(const ff_terrain_info *info, const ff_drawn *drawn, double point_m[3])
+{
+    double edge_m = (double)drawn->cell_wu * (1u << info->node_log2) / FF_WU_PER_METRE;
+    for (int i = 0; i < 2; i++)
+        point_m[i] = (double)drawn->origin_wu[i] / FF_WU_PER_METRE + edge_m / 2;
+    point_m[2] = 0;
+}
+
+void sim_place_lift(const double point_m[3], double height_m, double lifted_m[3])
+{
+    lifted_m[0] = point_m[0];
+    lifted_m[1] = point_m[1];
+    lifted_m[2] = height_m;
+}
+
+void sim_place_seen_from(const int32_t place_wu[3], const double point_m[3], double way_m[3])
+{
+    for (int i = 0; i < 3; i++) way_m[i] = point_m[i] - (double)place_wu[i] / FF_WU_PER_METRE;
+}

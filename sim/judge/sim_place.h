@@ -1,0 +1,19 @@
+/* Points in metres among drawn nodes: the judge's own side of the shape (protocol/shape), in double
+ * precision, so that what it finds does not hang on the client's arithmetic. Planar. */
+#ifndef SIM_PLACE_H
+#define SIM_PLACE_H
+
+#include "../../client/terrain/ff_tree.h"
+
+/* Column and row, in cells, of a point in a drawn node's grid: 1 when it lies over the node. */
+int sim_place_in_node(const ff_terrain_info *info, const ff_drawn *drawn, const double point_m[3],
+                      double cell[2]);
+/* The middle of a drawn node, at height 0. */
+void sim_place_middle(const ff_terrain_info *info, const ff_drawn *drawn, double point_m[3]);
+/* The point straight over or under another one at a height. */
+void sim_place_lift(const double point_m[3], double height_m, double lifted_m[3]);
+/* The way from a place to a point, along the axes of the frame there: as a panorama taken at the
+ * place shows it. */
+void sim_place_seen_from(const int32_t place_wu[3], const double point_m[3], double way_m[3]);
+
+#endif
