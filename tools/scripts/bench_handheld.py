@@ -200,6 +200,14 @@ def functions(bench, most):
                                                          s["work"] / n, s["calls"] / n, name, obj))
 
 
+def write_curve(path, sweep):
+    with open(path, "w", newline="") as f:
+        keys = ["quality", "panorama", "instructions", "instructions_p95", "triangles", "err_px_rms", "err_px_p95", "work", "update", "draw"]
+        table = csv.DictWriter(f, keys, extrasaction="ignore")
+        table.writeheader()
+        table.writerows(sweep)
+
+
 def main():
     parser = argparse.ArgumentParser(prog="bench_handheld.py", description=__doc__.split("\n\n")[0])
     for name in ("bin", "handheld", "plugin", "pack", "out"):
@@ -222,11 +230,8 @@ def main():
     text = report(bench, low, places, sweep, memory)
     open(options.out + "/handheld.md", "w").write(text)
     json.dump({"low": low, "places": places, "sweep": sweep, "memory": memory, "target": TARGET}, open(options.out + "/handheld.json", "w"), indent=1)
-    with open(options.out + "/work-precision.csv", "w", newline="") as f:
-        keys = ["quality", "panorama", "instructions", "instructions_p95", "triangles", "err_px_rms", "err_px_p95", "work", "update", "draw"]
-        table = csv.DictWriter(f, keys, extrasaction="ignore")
-        table.writeheader()
-        table.writerows(sweep)
+    if sweep:  # a quick run has no curve, and leaves that of an earlier one alone
+        write_curve(options.out + "/work-precision.csv", sweep)
     print(text, end="")
 
 
