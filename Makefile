@@ -45,7 +45,7 @@ LIBS := $(LIB)/libffsim.a $(LIB)/libffserver.a $(LIB)/libfftools.a $(LIB)/libffc
 LINK_LIBS = -Wl,--start-group $(LIBS) -Wl,--end-group $(LDLIBS_core) $(LDLIBS_surface) $(LDLIBS_host)
 
 .DEFAULT_GOAL := all
-.PHONY: all help null deps format server emulator flyover hashes demo test test-build check extremes numbers soak man install uninstall clean lib fuzz FORCE
+.PHONY: all help null deps asserts format server emulator flyover hashes demo test test-build check extremes numbers soak man install uninstall clean lib fuzz FORCE
 
 all: $(PROGRAMS) lib null ## build all programs and libraries into build/
 
@@ -142,6 +142,9 @@ test: deps ## build and run every test (sanitized, with script tests); the last 
 
 check: all $(TESTS) ## quick subset: layer checks and unit tests, without sanitizers
 	@BUILD=$(BUILD) tests/run.sh --quick
+
+asserts: ## functions and assertions of the core, by folder
+	@tools/scripts/asserts.sh || true
 
 format: deps ## lay out all C by .clang-format (tests/project/checks.sh holds the tree to it)
 	@git ls-files '*.[ch]' | xargs clang-format -i

@@ -26,7 +26,7 @@ DEVICE_PROGRAM := $(call srcs,sim/handheld) sim/tape/sim_tape.c sim/handheld/han
 # ---- make handheld ----
 ARM := arm-linux-gnueabi-
 ARM_CPU := -march=armv6 -mtune=arm1136jf-s -mfloat-abi=soft -marm
-ARM_FLAGS = -O2 $(WARN) $(if $(WERROR),-Werror) -D_GNU_SOURCE $(ARM_CPU) -ffunction-sections -fdata-sections -fcallgraph-info=su -MMD -MP \
+ARM_FLAGS = -O2 -DNDEBUG $(WARN) $(if $(WERROR),-Werror) -D_GNU_SOURCE $(ARM_CPU) -ffunction-sections -fdata-sections -fcallgraph-info=su -MMD -MP \
             -isystem $(CROSS)/armel/usr/include -isystem $(CROSS)/armel/usr/include/arm-linux-gnueabi
 ARM_LIBS := $(CROSS)/armel/usr/lib/arm-linux-gnueabi
 HAND_OBJ := build/handheld/obj
@@ -122,7 +122,7 @@ test-cross: $(CROSS_CASES) ## unit tests on 32-bit ARM and on big-endian s390x, 
 # ---- make baremetal: the core over platform/null, for a Cortex-M without any operating system; zlib from Debian's source package ----
 BARE := arm-none-eabi-
 BARE_CPU := -mcpu=cortex-m3 -mthumb
-BARE_FLAGS = -Os $(WARN) $(BARE_CPU) -std=c99 -ffunction-sections -fdata-sections -MMD -MP -isystem $(CROSS)/src/zlib
+BARE_FLAGS = -Os -DNDEBUG $(WARN) $(BARE_CPU) -std=c99 -ffunction-sections -fdata-sections -MMD -MP -isystem $(CROSS)/src/zlib
 BARE_ZLIB := inflate inftrees inffast zutil adler32 crc32
 BARE_SRC = $(sort $(call device,$(DEVICE_CORE) $(SRC_null) platform/random.c platform/events.c,$(filter-out hud,$(NO))))
 BARE_ELF = build/baremetal/farfield$(if $(NO),-no-$(subst $(space),-,$(strip $(NO)))).elf

@@ -1,6 +1,6 @@
 #include "ff_arena.h"
+#include "../protocol/ff_assert.h"
 
-#include <assert.h>
 #include <string.h>
 
 size_t ff_arena_cost(size_t bytes)
@@ -23,7 +23,7 @@ size_t ff_arena_left(const ff_arena *arena) { return arena->bytes - arena->used;
 
 void *ff_arena_take(ff_arena *arena, size_t bytes)
 {
-    assert(!arena->sealed);
+    FF_ASSERT(!arena->sealed);
     size_t cost = ff_arena_cost(bytes);
     if (cost < bytes || cost > ff_arena_left(arena)) return NULL;
     void *place = arena->base + arena->used;
@@ -35,7 +35,7 @@ void ff_arena_seal(ff_arena *arena) { arena->sealed = 1; }
 
 void ff_arena_back_to(ff_arena *arena, size_t used)
 {
-    assert(used <= arena->used);
+    FF_ASSERT(used <= arena->used);
     arena->used = used;
     arena->sealed = 0;
 }

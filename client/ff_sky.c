@@ -1,6 +1,6 @@
 #include "ff_sky.h"
+#include "../protocol/ff_assert.h"
 
-#include <assert.h>
 #include <string.h>
 
 #define COLUMNS 8
@@ -57,7 +57,7 @@ void ff_sky_make(ff_sky *sky, c3d_device *device)
     uint16_t index[FF_SKY_INDICES];
     for (int i = 0; i < FF_SKY_VERTICES; i++) set_vertex(&vertex[i], i / COLUMNS, i % COLUMNS);
     uint32_t count = make_indices(index);
-    assert(LEVELS * COLUMNS == FF_SKY_VERTICES && count == FF_SKY_INDICES);
+    FF_ASSERT(LEVELS * COLUMNS == FF_SKY_VERTICES && count == FF_SKY_INDICES);
     sky->mesh = c3d_mesh_make(device, vertex, FF_SKY_VERTICES);
     sky->strip = c3d_strip_make(device, index, count);
 }

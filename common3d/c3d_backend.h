@@ -9,6 +9,7 @@
 #define C3D_BACKEND_H
 
 #include "c3d.h"
+#include "c3d_assert.h"
 
 /* Fraction bits of eye coordinates inside the device: rounding to whole wu would show as cracks a
  * pixel wide close to the eye. */

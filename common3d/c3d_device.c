@@ -6,10 +6,10 @@
  * data.
  */
 #include "c3d_font.h"
+#include "c3d_assert.h"
 #include "c3d_pool.h"
 #include "c3d_text.h"
 
-#include <assert.h>
 #include <string.h>
 
 #define READ_BYTES 65536 /* rows read back at once: at least one of 4096 pixels */
@@ -368,9 +368,9 @@ void c3d_label_free(c3d_device *device, c3d_label label)
 
 void c3d_begin(c3d_device *device, const c3d_frame *frame)
 {
-    assert(frame->camera.width >= 1 && frame->camera.width <= 4096);
-    assert(frame->camera.height >= 1 && frame->camera.height <= 4096);
-    assert(frame->camera.near_wu > 0 && frame->camera.near_wu < frame->camera.far_wu);
+    C3D_ASSERT(frame->camera.width >= 1 && frame->camera.width <= 4096);
+    C3D_ASSERT(frame->camera.height >= 1 && frame->camera.height <= 4096);
+    C3D_ASSERT(frame->camera.near_wu > 0 && frame->camera.near_wu < frame->camera.far_wu);
     device->frame = *frame;
     device->stats.frame_triangles = 0;
     device->stats.frame_draws = 0;
@@ -411,7 +411,7 @@ void c3d_draw_strip(c3d_device *device, const c3d_draw *draw)
 
 void c3d_draw_points(c3d_device *device, const c3d_draw *draw)
 {
-    assert(draw->point_px >= 1 && draw->point_px <= 64);
+    C3D_ASSERT(draw->point_px >= 1 && draw->point_px <= 64);
     const mesh_slot *mesh = c3d_pool_get(&device->meshes, draw->mesh.id);
     if (!mesh) {
         device->stats.stale_handles++;

@@ -1,6 +1,5 @@
 #include "c3d_fixed.h"
-
-#include <assert.h>
+#include "c3d_assert.h"
 
 #define EIGHTH_TURN (UINT32_C(1) << 29)
 #define PI_Q32      UINT64_C(13493037705)
@@ -149,7 +148,7 @@ static uint64_t divide128(uint64_t high, uint64_t low, uint64_t divisor)
 
 int64_t c3d_muldiv64(int64_t a, int64_t b, int64_t c)
 {
-    assert(c != 0);
+    C3D_ASSERT(c != 0);
     int negative = (a < 0) ^ (b < 0) ^ (c < 0);
     uint64_t high, low, divisor = magnitude(c), quotient;
     multiply128(magnitude(a), magnitude(b), &high, &low);

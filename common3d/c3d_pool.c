@@ -1,6 +1,5 @@
 #include "c3d_pool.h"
-
-#include <assert.h>
+#include "c3d_assert.h"
 
 void *c3d_pool_at(c3d_pool *pool, uint32_t index)
 {
@@ -38,7 +37,7 @@ void *c3d_pool_get(c3d_pool *pool, uint32_t id)
 void c3d_pool_give(c3d_pool *pool, uint32_t id)
 {
     c3d_slot *slot = c3d_pool_get(pool, id);
-    assert(slot);
+    C3D_ASSERT(slot);
     slot->used = 0;
     if (++slot->generation == 0) slot->generation = 1;
     slot->next_free = pool->first_free;

@@ -1,6 +1,6 @@
 #include "ff_new_data.h"
+#include "../../protocol/ff_assert.h"
 
-#include <assert.h>
 #include <string.h>
 
 size_t ff_new_data_item_bytes(unsigned item_slots, unsigned values)
@@ -53,7 +53,7 @@ ff_new_item *ff_new_data_begin(ff_new_data *list, int image)
 void ff_new_data_put(ff_new_data *list, ff_new_item *item)
 {
     sys_mutex_lock(&list->mutex);
-    assert(item == &list->item[(list->head + list->count) % list->item_slots]);
+    FF_ASSERT(item == &list->item[(list->head + list->count) % list->item_slots]);
     list->count++;
     list->image_count = (uint16_t)(list->image_count + (item->pixels != NULL));
     if (list->count > list->high) list->high = list->count;
@@ -72,7 +72,7 @@ ff_new_item *ff_new_data_first(ff_new_data *list)
 void ff_new_data_release(ff_new_data *list)
 {
     sys_mutex_lock(&list->mutex);
-    assert(list->count > 0);
+    FF_ASSERT(list->count > 0);
     if (list->item[list->head].pixels) {
         list->image_head = (uint16_t)((list->image_head + 1) % list->image_slots);
         list->image_count--;

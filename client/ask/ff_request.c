@@ -1,6 +1,6 @@
 #include "ff_request.h"
+#include "../../protocol/ff_assert.h"
 
-#include <assert.h>
 #include <string.h>
 
 #define HASH_START         UINT64_C(0xcbf29ce484222325)
@@ -203,9 +203,9 @@ void ff_requests_cancel_panoramas(ff_requests *requests)
 void ff_requests_finish(ff_requests *requests, uint16_t id, enum ff_request_state final)
 {
     sys_mutex_lock(&requests->mutex);
-    assert(id >= 1 && id <= requests->slot_count);
+    FF_ASSERT(id >= 1 && id <= requests->slot_count);
     ff_request *request = &requests->slot[id - 1];
-    assert(request->state == FF_REQUEST_ARRIVING);
+    FF_ASSERT(request->state == FF_REQUEST_ARRIVING);
     ff_request_counts *counts = &requests->counts;
     free_slot(requests, request,
               final == FF_REQUEST_DONE     ? &counts->done
@@ -308,7 +308,7 @@ void ff_requests_arrived(ff_requests *requests, uint16_t id, uint32_t bytes)
 {
     sys_mutex_lock(&requests->mutex);
     ff_request *request = &requests->slot[id - 1];
-    assert(request->state == FF_REQUEST_SENT);
+    FF_ASSERT(request->state == FF_REQUEST_SENT);
     leave_state(requests, request);
     request->state = FF_REQUEST_ARRIVING;
     requests->counts.arriving++;

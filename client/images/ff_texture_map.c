@@ -1,6 +1,5 @@
 #include "ff_texture_map.h"
-
-#include <assert.h>
+#include "../../protocol/ff_assert.h"
 
 ff_key ff_texture_key(const ff_terrain_info *info, ff_key node)
 {
@@ -24,7 +23,7 @@ static void map_axis(const ff_terrain_info *info, uint32_t place, uint32_t depth
 void ff_texture_map(const ff_terrain_info *info, ff_key node, ff_key texture, int32_t scale_q16[2],
                     int32_t offset_q16[2])
 {
-    assert(ff_key_level(texture) <= ff_key_level(node));
+    FF_ASSERT(ff_key_level(texture) <= ff_key_level(node));
     uint32_t depth = ff_key_level(node) - ff_key_level(texture);
     uint32_t within = (1u << depth) - 1; /* the bits of the place below the textured node */
     map_axis(info, ff_morton_x(ff_key_code(node)) & within, depth, &scale_q16[0], &offset_q16[0]);

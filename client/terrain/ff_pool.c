@@ -1,8 +1,8 @@
 /* Node slots: a free list, a hash from key to slot, links from parents to children and a list of
  * roots. */
 #include "ff_tree_local.h"
+#include "../../protocol/ff_assert.h"
 
-#include <assert.h>
 #include <string.h>
 
 static uint32_t hash_of(const ff_tree *tree, ff_key key)
@@ -31,7 +31,7 @@ uint32_t ff_tree_find_nearest(const ff_tree *tree, ff_key key)
 uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent)
 {
     uint32_t slot = tree->free_head, bucket = hash_of(tree, key);
-    assert(slot != FF_SLOT_NONE);
+    FF_ASSERT(slot != FF_SLOT_NONE);
     ff_node *node = &tree->node[slot];
     tree->free_head = node->hash_next;
     tree->free_count--;
@@ -71,7 +71,7 @@ void ff_tree_reshade_beside(ff_tree *tree, ff_key key)
 static void give_slot(ff_tree *tree, uint32_t slot)
 {
     ff_node *node = &tree->node[slot];
-    assert(node->flags & FF_NODE_HELD && !ff_node_has_children(node));
+    FF_ASSERT(node->flags & FF_NODE_HELD && !ff_node_has_children(node));
     forget_user(tree, node);
     uint32_t *link = &tree->hash[hash_of(tree, node->key)];
     while (*link != slot) link = &tree->node[*link].hash_next;

@@ -2,11 +2,10 @@
  * both are walked from one end to the other, each step closing one triangle, and the walk is
  * written down as a triangle strip. */
 #include "ff_strips.h"
+#include "../../protocol/ff_assert.h"
 
 #include "../../protocol/codec/ff_codec.h"
 #include "ff_tree_local.h"
-
-#include <assert.h>
 
 /* Grid index of (column, row) given in the frame of the south side, turned so that south becomes
  * `side`. */
@@ -45,7 +44,7 @@ unsigned ff_side_triangles(unsigned node_log2, enum ff_side side, unsigned diffe
 static void append(ff_strips *strips, unsigned id, uint16_t vertex)
 {
     unsigned at = strips->first[id] + strips->length[id];
-    assert(at < sizeof strips->index / sizeof strips->index[0]);
+    FF_ASSERT(at < sizeof strips->index / sizeof strips->index[0]);
     strips->index[at] = vertex;
     strips->length[id]++;
 }

@@ -1,8 +1,8 @@
 /* The drawn surface: vertices for the renderer, and its height at a point. */
 #include "ff_tree_local.h"
+#include "../../protocol/ff_assert.h"
 #include "ff_shade.h"
 
-#include <assert.h>
 #include <string.h>
 
 #define FRAMED_MAX (((1 << FF_NODE_LOG2_MAX) + 3) * ((1 << FF_NODE_LOG2_MAX) + 3))
@@ -128,7 +128,7 @@ static uint64_t height_in_sides(const ff_tree *tree, const uint16_t *heights, un
                 return height_q16;
         }
     }
-    assert(!"the sides of a node cover its rim");
+    FF_ASSERT(!"the sides of a node cover its rim");
     return 0;
 }
 

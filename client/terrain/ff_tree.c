@@ -1,7 +1,7 @@
 /* The tree as its users see it: creation in one block, arrival of nodes, answers to questions. */
 #include "ff_tree_local.h"
+#include "../../protocol/ff_assert.h"
 
-#include <assert.h>
 #include <string.h>
 
 #define BLOCK_ALIGN 16u

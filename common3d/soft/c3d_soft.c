@@ -9,6 +9,10 @@
 #define ROWS_MAX              4096
 #define WHITE                 0xFFFFFFFFu
 
+FF_STATIC_ASSERT(ROWS_MAX <= UINT16_MAX && TEXTURE_BYTES_DEFAULT % SOFT_HEAP_UNIT == 0);
+FF_STATIC_ASSERT(ROWS_MAX / 2 * SOFT_ONE <
+                 SOFT_GUARD_Q4); /* no viewport reaches out of the guard band */
+
 /* ---- memory ---- */
 
 /* The block: state | vertices | textures | colour | depth | open parts of rows | used units
@@ -65,6 +69,7 @@ static int soft_open(void *opaque, const c3d_desc *desc, int *buffers)
     state->pixels_max = (uint32_t)sizes.pixels;
     state->texture_count = desc->texture_count;
     state->wide = desc->frame_format == C3D_RGBA8888;
+    C3D_ASSERT(state->heap + sizes.heap == (uint8_t *)opaque + soft_state_bytes(desc));
     for (uint32_t i = 0; i < 512; i++) /* 2^61/n in the middle of the step */
         state->reciprocal[i] =
             (uint32_t)(((UINT64_C(1) << 61) / (((uint64_t)(i + 512) << 21) + (1 << 20))));
@@ -79,6 +84,7 @@ static void soft_close(void *state) { (void)state; }
 /* Fills `bytes` bytes by repeating the first `done` of them; each copy doubles what is filled. */
 static void repeat(void *start, size_t done, size_t bytes)
 {
+    C3D_ASSERT(done > 0 && done <= bytes);
     for (uint8_t *at = start; done < bytes; done *= 2)
         memcpy(at + done, at, done < bytes - done ? done : bytes - done);
 }
@@ -89,6 +95,7 @@ static void clear(soft_state *state, uint32_t colour, int32_t first_row)
     size_t row_pixels = state->width, pixels = row_pixels * state->height,
            pixel_bytes = state->wide ? 4 : 2;
     if (!pixels) return;
+    C3D_ASSERT(pixels <= state->pixels_max && first_row >= 0 && first_row <= state->height);
     if (first_row < state->height) {
         uint32_t *depth = state->depth + (size_t)first_row * row_pixels;
         memset(depth, 0, row_pixels * sizeof *depth);
@@ -118,6 +125,7 @@ static void soft_begin(void *opaque, const c3d_frame *frame, const c3d_rotation 
     soft_begin_view(state, rotation);
     clear(state, frame->clear_colour, marked);
     state->top_row = state->height;
+    C3D_ASSERT(state->height <= ROWS_MAX && state->width <= ROWS_MAX);
     memset(state->covered, 0, state->height * sizeof *state->covered);
 }
 
@@ -127,6 +135,8 @@ static void set_paint(soft_state *state, const c3d_resolved_draw *resolved, enum
     uint32_t flags = draw->flags;
     int wireframe = (flags & C3D_DRAW_WIREFRAME) != 0, backdrop = (flags & C3D_DRAW_BACKDROP) != 0;
     soft_paint *paint = &state->paint;
+    C3D_ASSERT(resolved->texture <= state->texture_count);
+    C3D_ASSERT(!(flags & C3D_DRAW_TEXTURED) || resolved->texture >= 1);
     paint->texture = (flags & C3D_DRAW_TEXTURED) && !wireframe
                          ? &state->textures[resolved->texture - 1]
                          : NULL;
@@ -143,6 +153,7 @@ static void set_paint(soft_state *state, const c3d_resolved_draw *resolved, enum
 
 static void draw_now(soft_state *state, const c3d_resolved_draw *resolved, enum soft_depth depth)
 {
+    C3D_ASSERT(resolved->strip->count >= 3 && resolved->strip->index_max < resolved->mesh->count);
     const c3d_strip_data *strip = resolved->strip;
     set_paint(state, resolved, depth);
     memset(&state->segment, 0, sizeof state->segment);
@@ -159,6 +170,7 @@ static int defer(soft_state *state, const c3d_resolved_draw *resolved)
 {
     uint32_t room = C3D_SOFT_BACKDROP_VERTICES - state->deferred_vertices,
              count = resolved->mesh->count;
+    C3D_ASSERT(state->deferred_vertices <= C3D_SOFT_BACKDROP_VERTICES && count > 0);
     if (state->painted || state->deferred_count == C3D_SOFT_BACKDROPS || count > room) return 0;
     c3d_vertex *vertices = state->deferred_vertex + state->deferred_vertices;
     soft_deferred *deferred = &state->deferred[state->deferred_count++];
@@ -176,6 +188,7 @@ static int defer(soft_state *state, const c3d_resolved_draw *resolved)
 /* Draws the backdrops that waited, the last one first: it hides the others. */
 static void draw_deferred(soft_state *state)
 {
+    C3D_ASSERT(state->deferred_count <= C3D_SOFT_BACKDROPS);
     if (state->deferred_count) soft_find_open_parts(state);
     while (state->deferred_count) {
         state->open_rows = state->top_row;
@@ -220,6 +233,7 @@ static void soft_texture_drop(void *opaque, uint32_t texture)
 
 static void soft_overlay(void *opaque, uint32_t name, int x, int y, int width, int height)
 {
+    C3D_ASSERT(name >= 1 && name <= ((soft_state *)opaque)->texture_count);
     soft_state *state = opaque;
     const soft_texture *texture = &state->textures[name - 1];
     if (width < 1 || height < 1) return;
@@ -248,6 +262,7 @@ static int soft_read_rows(void *opaque, uint32_t width, uint32_t first_row, uint
                           uint8_t *rgba)
 {
     const soft_state *state = opaque;
+    C3D_ASSERT(state->blank || (width == state->width && first_row + rows <= state->height));
     for (uint32_t row = first_row; row < first_row + rows; row++)
         for (uint32_t x = 0; x < width; x++, rgba += 4) {
             for (int i = 0; i < 3; i++) rgba[i] = (uint8_t)(state->frame.clear_colour >> (8 * i));

@@ -7,6 +7,8 @@
 
 #define STEADY_LOG2 6 /* at most 64 pixels get one colour */
 
+FF_STATIC_ASSERT(C3D_SOFT_BACKDROP_VERTICES <= 1 << 16); /* indices */
+
 /* ---- open parts of rows ---- */
 
 /* 1 when one of eight pixels is open, that is has depth 0. Depths are below 2^31, so only 0 - 1 has
@@ -19,6 +21,7 @@ static inline int may_be_open(const uint32_t *depth)
 
 static const uint32_t *first_open(const uint32_t *depth, const uint32_t *end)
 {
+    C3D_ASSERT(depth <= end);
     for (;;) {
         while (end - depth >= 8 && !may_be_open(depth)) depth += 8;
         const uint32_t *stop = end - depth < 8 ? end : depth + 8;
@@ -37,10 +40,12 @@ void soft_find_open_parts(soft_state *state)
         const uint32_t *from = depth, *to = depth + width;
         if (row >= state->top_row) {
             const soft_part *covered = &state->covered[row];
+            C3D_ASSERT(covered->from <= covered->to && covered->to <= width);
             from = first_open(from, from + covered->from);
             if (from == depth + covered->from) from = first_open(depth + covered->to, to);
             while (to > from && to[-1]) to--;
         }
+        C3D_ASSERT(from >= depth && from <= depth + width && to <= depth + width);
         if (from < to) state->open_end = row + 1;
         state->open_from[row] = (uint16_t)(from - depth);
         state->open_to[row] = (uint16_t)(to - depth);
@@ -52,6 +57,7 @@ void soft_find_open_parts(soft_state *state)
 /* Fills pixels with one colour, two to a word. */
 static void fill(uint16_t *pixel, const uint16_t *end, uint32_t colour)
 {
+    C3D_ASSERT(pixel <= end && colour >> 16 == 0);
     uint32_t pair = colour | colour << 16;
     if (pixel < end && (uintptr_t)pixel & 2) *pixel++ = (uint16_t)colour;
     for (; end - pixel >= 8; pixel += 8) {
@@ -66,6 +72,7 @@ static void fill(uint16_t *pixel, const uint16_t *end, uint32_t colour)
 /* Fills the open ones among `count` pixels with one colour, and marks them. */
 static void fill_open(const soft_state *state, uint32_t first, uint32_t count, uint32_t colour)
 {
+    C3D_ASSERT(soft_in_frame(state, first, count) && colour >> 16 == 0);
     uint32_t *depth = state->depth + first, *end = depth + count, mark = !state->paint.unmarked;
     uint16_t *pixel = (uint16_t *)(void *)state->colour + first;
     for (; depth < end; depth++, pixel++) {
@@ -84,11 +91,13 @@ static int steady_log2(const soft_ramp *ramp)
     change |= (uint32_t)(ramp->dg < 0 ? -ramp->dg : ramp->dg) << 1;
     /* change below 2^(18 - log2): half a step is 2^18 */
     int log2 = soft_leading_zeros(change | 1) - 14;
+    C3D_ASSERT(log2 >= -14 && log2 <= 17);
     return log2 > STEADY_LOG2 ? STEADY_LOG2 : log2;
 }
 
 static void ramp_open(const soft_state *state, const soft_segment *segment, const soft_ramp *ramp)
 {
+    C3D_ASSERT(state->paint.depth == SOFT_DEPTH_UNCOVERED);
     int32_t red = ramp->red, green = ramp->green, blue = ramp->blue;
     uint32_t *depth = state->depth + segment->first, *end = depth + segment->count,
              mark = !state->paint.unmarked;
@@ -103,6 +112,7 @@ static void ramp_open(const soft_state *state, const soft_segment *segment, cons
 /* The sky's colours hardly change along a row: it is filled by runs of one colour. */
 void soft_span_backdrop(soft_state *state, const soft_segment *segment)
 {
+    C3D_ASSERT(soft_in_frame(state, segment->first, segment->count) && !state->wide);
     soft_ramp ramp;
     soft_make_ramp(&ramp, segment);
     int log2 = steady_log2(&ramp);
@@ -132,6 +142,8 @@ void soft_span_backdrop(soft_state *state, const soft_segment *segment)
 /* A panorama has holes: a pixel between four clear texels is not drawn at all. */
 void soft_span_holes(soft_state *state, const soft_segment *segment)
 {
+    C3D_ASSERT(soft_in_frame(state, segment->first, segment->count) && !state->wide);
+    C3D_ASSERT(state->paint.texture->format == C3D_RGBA5551);
     const soft_texture *texture = state->paint.texture;
     const uint16_t *texels = (const uint16_t *)(const void *)texture->texels + texture->stride + 1;
     int32_t stride = texture->stride, s = segment->value[SOFT_S], t = segment->value[SOFT_T];

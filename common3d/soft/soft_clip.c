@@ -23,12 +23,15 @@ static int64_t distance(const soft_state *state, const corner *from, int plane)
 
 static int32_t between(int32_t inner, int32_t outer, int32_t part_q30)
 {
+    C3D_ASSERT(part_q30 >= 0 && part_q30 <= 1 << 30);
+    C3D_ASSERT((int64_t)outer - inner <= INT32_MAX && (int64_t)outer - inner >= -INT32_MAX);
     return inner + (int32_t)(((int64_t)(outer - inner) * part_q30) >> 30);
 }
 
-/* part/whole, Q30; 0 <= part <= whole. */
+/* part/whole, Q30. */
 static int32_t part_q30(const soft_state *state, int64_t part, int64_t whole)
 {
+    C3D_ASSERT(whole > 0 && part >= 0 && part <= whole);
     while (whole >= INT32_MAX) {
         whole >>= 1;
         part >>= 1;
@@ -56,6 +59,7 @@ static void cut(const soft_state *state, int plane, const corner *inner, const c
     for (int i = 0; i < 4; i++)
         new->at.rgba[i] = (uint8_t)between(inner->at.rgba[i], outer->at.rgba[i], p);
     soft_project(state, new->eye, &new->at);
+    C3D_ASSERT(plane == NEAR_PLANE || !(new->at.out &SOFT_NEAR));
 }
 
 static void take(const soft_state *state, const soft_vertex *vertex, corner *new)
@@ -66,6 +70,7 @@ static void take(const soft_state *state, const soft_vertex *vertex, corner *new
 
 static int clip_plane(const soft_state *state, int plane, const corner *in, int count, corner *out)
 {
+    C3D_ASSERT(count >= 3 && count < CORNERS_MAX);
     int kept = 0, inside = distance(state, &in[0], plane) >= 0;
     for (int i = 0; i < count; i++) {
         const corner *here = &in[i], *next = &in[i + 1 < count ? i + 1 : 0];
@@ -75,12 +80,14 @@ static int clip_plane(const soft_state *state, int plane, const corner *in, int 
         if (!inside && next_inside) cut(state, plane, next, here, &out[kept++]);
         inside = next_inside;
     }
+    C3D_ASSERT(kept <= count + 1); /* a plane cuts a convex polygon twice at most */
     return kept;
 }
 
 /* The bits of `out` that some corner has; *all receives those that every corner has. */
 static uint32_t out_of(const corner *in, int count, uint32_t *all)
 {
+    C3D_ASSERT(count >= 3 && count <= CORNERS_MAX);
     uint32_t some = *all = in[0].at.out;
     for (int i = 1; i < count; i++) {
         some |= in[i].at.out;
@@ -93,6 +100,7 @@ static uint32_t out_of(const corner *in, int count, uint32_t *all)
  * gets its other bits when it is cut there. */
 static int beyond(uint32_t out, int plane)
 {
+    C3D_ASSERT(plane >= 0 && plane < PLANES);
     return (out & (plane == NEAR_PLANE  ? SOFT_NEAR
                    : plane == FAR_PLANE ? SOFT_FAR
                                         : SOFT_GUARD)) != 0;
@@ -107,6 +115,8 @@ static int64_t area_of(const soft_vertex *a, const soft_vertex *b, const soft_ve
  * that turn the other way than the whole are left out. */
 static void draw_fan(soft_state *state, const corner *in, int count)
 {
+    C3D_ASSERT(count >= 3 && count <= CORNERS_MAX);
+    for (int i = 0; i < count; i++) C3D_ASSERT(!(in[i].at.out & SOFT_MUST_CLIP));
     int64_t all = 0;
     for (int i = 2; i < count; i++) all += area_of(&in[0].at, &in[i - 1].at, &in[i].at);
     for (int i = 2; i < count; i++) {

@@ -20,6 +20,7 @@ typedef struct soft_edge {
  * division of 64 bits costs on processors that have none. */
 static inline int64_t soft_floor_divide(const soft_state *state, int64_t n, int32_t d)
 {
+    C3D_ASSERT(d > 0 && n > -((int64_t)1 << 53) && n < (int64_t)1 << 53);
     int lead = soft_leading_zeros((uint32_t)d) - 1;
     /* 2^60 / (d << lead) */
     int32_t reciprocal = (int32_t)(soft_fine_reciprocal(state, (uint32_t)d << lead) >> 1);
@@ -37,6 +38,7 @@ static inline void soft_edge_begin(const soft_state *state, soft_edge *edge, con
                                    const soft_vertex *b, int32_t row)
 {
     int32_t dx = b->x - a->x, dy = b->y - a->y, k = row * SOFT_ONE + SOFT_HALF - a->y;
+    C3D_ASSERT(k >= 0 && k < dy && dx > -(1 << 17) && dx < 1 << 17);
     if (dy < SOFT_EDGE_TABLE && dx > -8192 && dx < 8192) {
         /* 2^13 * 2^31 */
         int64_t slope = (int64_t)dx * state->edge_reciprocal[dy] + (dx < 0 ? dx : 0);
@@ -72,6 +74,7 @@ typedef struct soft_walk {
 static inline int soft_walk_begin(const soft_state *state, soft_walk *walk, const soft_vertex *a,
                                   const soft_vertex *b, const soft_vertex *c, int bend_left)
 {
+    C3D_ASSERT(a->y <= b->y && b->y <= c->y);
     walk->row = soft_first_row(a->y);
     walk->middle = soft_first_row(b->y);
     walk->end = soft_first_row(c->y);
@@ -91,6 +94,7 @@ static inline int soft_walk_begin(const soft_state *state, soft_walk *walk, cons
 
 static inline void soft_walk_row(const soft_state *state, soft_walk *walk)
 {
+    C3D_ASSERT(walk->row >= 0 && walk->row < walk->end && walk->end <= state->height);
     walk->from = soft_edge_pixel(&walk->left);
     walk->to = soft_edge_pixel(&walk->right);
     if (walk->from < 0) walk->from = 0;

@@ -4,6 +4,7 @@
 
 static uint32_t w_between(uint32_t a, uint32_t b, int32_t part, int32_t whole)
 {
+    C3D_ASSERT(whole > 0 && part >= 0 && part < whole);
     return (uint32_t)((int64_t)a + ((int64_t)b - (int64_t)a) * part / whole);
 }
 
@@ -25,6 +26,7 @@ static void paint_pixel(soft_state *state, int32_t x, int32_t y, const soft_vert
 
 static void draw_line(soft_state *state, const soft_vertex *a, const soft_vertex *b)
 {
+    C3D_ASSERT(!((a->out | b->out) & SOFT_MUST_CLIP));
     int32_t dx = b->x - a->x, dy = b->y - a->y, wide = dx < 0 ? -dx : dx, high = dy < 0 ? -dy : dy;
     int steep = high > wide;
     if ((a->out & b->out) != 0 || (!wide && !high)) return;
@@ -34,6 +36,7 @@ static void draw_line(soft_state *state, const soft_vertex *a, const soft_vertex
     }
     int32_t start = steep ? a->y : a->x, whole = steep ? dy : dx,
             last = steep ? state->height : state->width;
+    C3D_ASSERT(whole > 0 && whole < 1 << 17);
     int32_t first = (start + SOFT_HALF - 1) >> SOFT_SUB,
             end = (start + whole + SOFT_HALF - 1) >> SOFT_SUB;
     for (int32_t at = first < 0 ? 0 : first; at < end && at < last; at++) {
@@ -49,6 +52,7 @@ static void draw_line(soft_state *state, const soft_vertex *a, const soft_vertex
 
 void soft_lines(soft_state *state, const uint16_t *indices, uint32_t count)
 {
+    C3D_ASSERT(count % 2 == 0);
     state->top_row = 0;
     for (uint32_t i = 0; i + 1 < count; i += 2) {
         const soft_vertex *a = &state->vertices[indices[i]], *b = &state->vertices[indices[i + 1]];

@@ -13,6 +13,11 @@
 #define SOFT_TINY_TEXELS   64  /* each way: what soft_tiny multiplies stays below 2^28 */
 #define SOFT_HEAP_UNIT     256
 
+FF_STATIC_ASSERT(SOFT_EDGE_TABLE == 32 * SOFT_ONE + 1);
+FF_STATIC_ASSERT(SOFT_GUARD_CLIP_PX *SOFT_ONE < SOFT_GUARD_Q4);
+/* differences of two coordinates stay below 2^17 */
+FF_STATIC_ASSERT(2 * SOFT_GUARD_Q4 <= 1 << 17);
+
 /* Where a vertex lies: beside the screen (by pixel centres), or where the clipper must act. */
 enum {
     SOFT_LEFT = 1,
@@ -150,6 +155,7 @@ struct soft_state {
 /* 2^61 / n for n in 2^30 .. 2^31 - 1, within 2^-19 of its value. */
 static inline uint32_t soft_reciprocal(const soft_state *state, uint32_t n)
 {
+    C3D_ASSERT(n >> 30 == 1);
     uint32_t r = state->reciprocal[(n >> 21) & 511];
     uint32_t error = (uint32_t)(((uint64_t)n * r) >> 32); /* 2^29 when exact */
     return (uint32_t)(((uint64_t)r * ((UINT32_C(1) << 30) - error)) >> 29);
@@ -170,8 +176,9 @@ static inline uint32_t soft_fine_reciprocal(const soft_state *state, uint32_t n)
 #define SOFT_INLINE inline
 #endif
 
-static inline int soft_leading_zeros(uint32_t n) /* n > 0 */
+static inline int soft_leading_zeros(uint32_t n)
 {
+    C3D_ASSERT(n > 0);
 #if defined(__GNUC__)
     return __builtin_clz(n);
 #else
@@ -183,7 +190,16 @@ static inline int soft_leading_zeros(uint32_t n) /* n > 0 */
 
 static inline int64_t soft_scale64(int64_t value, int shift) /* times 2^shift */
 {
+    C3D_ASSERT(shift > -64 && shift < 63);
+    C3D_ASSERT(shift < 0 || (value <= INT64_MAX >> shift && value >= -(INT64_MAX >> shift)));
     return shift >= 0 ? value * ((int64_t)1 << shift) : value >> -shift;
+}
+
+/* Of every segment that is painted: at least a pixel, all of them the frame's. */
+static inline int soft_in_frame(const soft_state *state, uint32_t first, uint32_t count)
+{
+    uint32_t pixels = (uint32_t)state->width * state->height;
+    return count > 0 && count <= pixels && first <= pixels - count;
 }
 
 /* soft_texture.c */

@@ -9,13 +9,21 @@
  * right again. */
 #include "soft_planes.h"
 
+#define DIFFERENCE_MAX ((int64_t)1 << 44)
+#define SEGMENT_MAX    64 /* pixels */
+
+FF_STATIC_ASSERT(SEGMENT_MAX < SOFT_EDGE_TABLE);
 static void vertex_values(const soft_vertex *vertex, const soft_planes *planes,
                           int64_t value[SOFT_PLANES])
 {
     int64_t w = vertex->w;
+    C3D_ASSERT(w > 0 && w < 1 << 30);
+    C3D_ASSERT(vertex->fog_q8 >= -(1 << 14) && vertex->fog_q8 <= 1 << 14);
     value[SOFT_PLANE_W] = w * 4096;
     for (int i = 0; planes->linear && i < 3; i++) value[SOFT_R + i] = vertex->rgba[i] * 65536;
     if (planes->linear) return;
+    C3D_ASSERT(planes->first != SOFT_S || (vertex->s > -(1 << 28) && vertex->s < 1 << 28));
+    C3D_ASSERT(planes->first != SOFT_S || (vertex->t > -(1 << 28) && vertex->t < 1 << 28));
     value[SOFT_S] = (vertex->s * w) >> 16;
     value[SOFT_T] = (vertex->t * w) >> 16;
     if (planes->last == SOFT_T) return;
@@ -23,8 +31,9 @@ static void vertex_values(const soft_vertex *vertex, const soft_planes *planes,
     value[SOFT_F] = (vertex->fog_q8 * w) >> 6; /* Q10: within 2^24 */
 }
 
-static int log2_of(uint64_t n) /* n > 0 */
+static int log2_of(uint64_t n)
 {
+    C3D_ASSERT(n > 0);
     return n >> 32 ? 63 - soft_leading_zeros((uint32_t)(n >> 32))
                    : 31 - soft_leading_zeros((uint32_t)n);
 }
@@ -40,6 +49,7 @@ static quotient one_over(const soft_state *state, int64_t area)
 {
     int64_t size = area < 0 ? -area : area;
     int lead = 30 - log2_of((uint64_t)size);
+    C3D_ASSERT(size < (int64_t)1 << 35); /* two products of 17 bits each way */
     int32_t mantissa = (int32_t)(soft_fine_reciprocal(state, (uint32_t)soft_scale64(size, lead)) >>
                                  1);
     return (quotient){ area < 0 ? -mantissa : mantissa, lead - 60 };
@@ -51,6 +61,7 @@ static int64_t over_area(int64_t value, quotient per_area)
 {
     if (value == 0) return 0;
     int down = log2_of((uint64_t)(value < 0 ? -value : value)) - 30;
+    C3D_ASSERT(down <= 62 - 30);
     int shift = down + per_area.exponent;
     int64_t product = (int64_t)(int32_t)soft_scale64(value, -down) * per_area.mantissa;
     return shift <= -63 ? 0 : soft_scale64(product, shift);
@@ -70,11 +81,15 @@ static void make_planes(const soft_state *state, soft_planes *planes,
     quotient per_area = one_over(state, area);
     int64_t dx1 = vertex[1]->x - vertex[0]->x, dy1 = vertex[1]->y - vertex[0]->y;
     int64_t dx2 = vertex[2]->x - vertex[0]->x, dy2 = vertex[2]->y - vertex[0]->y;
+    C3D_ASSERT(dx1 > -(1 << 17) && dx1 < 1 << 17 && dx2 > -(1 << 17) && dx2 < 1 << 17);
+    C3D_ASSERT(dy1 >= 0 && dy1 <= dy2 && dy2 < 1 << 17);
     uint64_t to_x = (uint64_t)(int64_t)(SOFT_HALF - vertex[0]->x),
              to_y = (uint64_t)(int64_t)(row * SOFT_ONE + SOFT_HALF - vertex[0]->y);
     for (int i = 0; i < 3; i++) vertex_values(vertex[i], planes, value[i]);
     for (int i = planes->first; i < SOFT_PLANES; i++) {
         int64_t d1 = value[1][i] - value[0][i], d2 = value[2][i] - value[0][i];
+        C3D_ASSERT(d1 > -DIFFERENCE_MAX && d1 < DIFFERENCE_MAX);
+        C3D_ASSERT(d2 > -DIFFERENCE_MAX && d2 < DIFFERENCE_MAX);
         uint64_t across = (uint64_t)over_area(d2 * dy1 - d1 * dy2, per_area),
                  below = (uint64_t)over_area(d1 * dx2 - d2 * dx1, per_area);
         int shift = planes->linear && i != SOFT_PLANE_W ? 0 : down;
@@ -103,6 +118,7 @@ static int colours_are_linear(const soft_vertex *a, const soft_vertex *b, const 
         if (c->rgba[i] > high) high = c->rgba[i];
         if (high - low > range) range = high - low;
     }
+    C3D_ASSERT(range >= 0 && range <= 255 && far <= near);
     return (uint64_t)(near - far) * (uint32_t)range <= (uint64_t)far * 16;
 }
 
@@ -118,8 +134,10 @@ static int set_up(const soft_state *state, soft_planes *planes, const soft_verte
     planes->first = paint->texture ? SOFT_S : SOFT_R;
     planes->last = fog ? SOFT_F : paint->texture && paint->white ? SOFT_T : SOFT_B;
     planes->linear = planes->last == SOFT_B && !paint->texture && colours_are_linear(a, b, c);
-    int down = 12 + 2 - soft_leading_zeros(w); /* of Q42: w below 2^30 */
+    C3D_ASSERT(w < UINT32_C(1) << 30);
+    int down = 12 + 2 - soft_leading_zeros(w); /* of Q42 */
     planes->w_shift = 12 - down;
+    C3D_ASSERT(planes->first <= planes->last && planes->last < SOFT_PLANE_W);
     return down;
 }
 
@@ -134,6 +152,7 @@ static void divide(const soft_state *state, const soft_planes *planes,
     for (int i = planes->first; i <= planes->last; i++) {
         int32_t part = (int32_t)value[i];
         out[i] = soft_quotient((uint32_t)(part > w ? w : part < -w ? -w : part), reciprocal, lead);
+        C3D_ASSERT(out[i] >= -(1 << 28) && out[i] <= 1 << 28);
     }
 }
 
@@ -143,8 +162,9 @@ static void divide(const soft_state *state, const soft_planes *planes,
 static int segment_length(const soft_state *state, int32_t w, int32_t across)
 {
     int64_t change = across < 0 ? -(int64_t)across : across;
-    if (!state->paint.texture) return change * 256 < w ? 64 : change * 64 < w ? 16 : 8;
-    return change * 4096 < w ? 64 : change * 1024 < w ? 32 : change * 256 < w ? 16 : 8;
+    C3D_ASSERT(change <= INT64_MAX >> 12);
+    if (!state->paint.texture) return change * 256 < w ? SEGMENT_MAX : change * 64 < w ? 16 : 8;
+    return change * 4096 < w ? SEGMENT_MAX : change * 1024 < w ? 32 : change * 256 < w ? 16 : 8;
 }
 
 static void paint_segment(soft_state *state, const soft_planes *planes,
@@ -152,6 +172,7 @@ static void paint_segment(soft_state *state, const soft_planes *planes,
                           int apart)
 {
     soft_segment *segment = &state->segment;
+    C3D_ASSERT(apart >= 0 && apart <= SEGMENT_MAX && apart <= (int)segment->count);
     for (int i = planes->first; i <= planes->last; i++) {
         segment->value[i] = from[i];
         segment->step[i] = soft_per_pixel(state, to[i] - from[i], apart);
@@ -169,6 +190,7 @@ void soft_segments(soft_state *state, const soft_planes *planes, const soft_walk
 {
     uint32_t value[SOFT_PLANES], w_across = planes->of[SOFT_PLANE_W].across;
     int32_t attribute[2][SOFT_ATTRIBUTES], left = walk->to - walk->from;
+    C3D_ASSERT(left > 0);
     int now = 0;
     for (int i = planes->first; i <= planes->last; i++)
         value[i] = soft_plane_at(&planes->of[i], walk->row, walk->from);
@@ -190,10 +212,12 @@ void soft_segments(soft_state *state, const soft_planes *planes, const soft_walk
         left -= length;
         now ^= 1;
     }
+    C3D_ASSERT(state->segment.first == (uint32_t)(walk->row * state->width + walk->to));
 }
 
 static void linear_row(soft_state *state, const soft_planes *planes, const soft_walk *walk)
 {
+    C3D_ASSERT(planes->linear && walk->from < walk->to);
     soft_segment *segment = &state->segment;
     segment->first = (uint32_t)(walk->row * state->width + walk->from);
     segment->count = (uint32_t)(walk->to - walk->from);
@@ -209,6 +233,7 @@ static void linear_row(soft_state *state, const soft_planes *planes, const soft_
 void soft_perspective(soft_state *state, const soft_vertex *a, const soft_vertex *b,
                       const soft_vertex *c, int64_t area)
 {
+    C3D_ASSERT(area != 0);
     const soft_vertex *const vertex[3] = { a, b, c };
     soft_walk walk;
     soft_planes planes;

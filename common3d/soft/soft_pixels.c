@@ -2,6 +2,8 @@
  * soft_tiny.c, soft_sample.h). */
 #include "soft_sample.h"
 
+/* 255 * 31/256 and 255 * 63/256 round to all ones, and no more */
+FF_STATIC_ASSERT((255 * 31 + 128) >> 8 == 31 && (255 * 63 + 128) >> 8 == 63);
 static int32_t to_byte(int32_t value_q16)
 {
     int32_t value = (value_q16 + 32768) >> 16;
@@ -70,6 +72,7 @@ static int shade(const soft_paint *paint, const int32_t value[SOFT_ATTRIBUTES], 
 
 void soft_segment_paint(soft_state *state, const soft_segment *segment)
 {
+    C3D_ASSERT(soft_in_frame(state, segment->first, segment->count));
     const soft_paint *paint = &state->paint;
     int32_t value[SOFT_ATTRIBUTES], rgb[3];
     uint32_t w = segment->w, fog_colour = state->frame.fog_colour;

@@ -49,11 +49,13 @@ static inline int32_t soft_quotient(uint32_t part, int32_t reciprocal, int lead)
 /* A change over `pixels` pixels, per pixel. Rounding loses less than 1/65536 of the change. */
 static inline int32_t soft_per_pixel(const soft_state *state, int32_t change, int pixels)
 {
+    C3D_ASSERT(pixels >= 0 && pixels < SOFT_EDGE_TABLE);
     return pixels ? 2 * soft_high(change, state->edge_reciprocal[pixels]) : 0;
 }
 
 static inline uint32_t soft_depth_of(uint32_t w, int w_shift)
 {
+    C3D_ASSERT(w_shift >= 0 && w_shift < 30);
     return (int32_t)w < 2 << w_shift ? 2 : w >> w_shift;
 }
 
@@ -75,11 +77,13 @@ static inline int32_t soft_rows_beyond(const soft_state *state, const soft_walk 
             edge = next;
             rows += step;
         }
+    C3D_ASSERT(rows >= 0 && rows <= rest);
     return rows;
 }
 
 static inline void soft_skip_rows(soft_walk *walk, int32_t rows)
 {
+    C3D_ASSERT(rows >= 0 && walk->row + rows < walk->end);
     walk->row += rows;
     walk->left.at += walk->left.step * rows;
     walk->right.at += walk->right.step * rows;
@@ -102,6 +106,7 @@ static inline int soft_walk_to_pixels(const soft_state *state, soft_walk *walk, 
             if (from < state->open_from[walk->row]) from = state->open_from[walk->row];
             if (to > state->open_to[walk->row]) to = state->open_to[walk->row];
         }
+        C3D_ASSERT(walk->row < state->height && from >= 0 && to <= state->width);
         walk->from = from;
         walk->to = to;
         if (from < to) return 1;

@@ -12,6 +12,10 @@
 #define SOFT_SPREAD_ONE     0x00200801u /* the last place of each field */
 #define SOFT_MAGNIFIED_LOG2 3           /* at most 8 pixels between samples */
 
+/* of the two bytes between a texel's fields, kept twice as large, four bits are free above each */
+FF_STATIC_ASSERT((SOFT_SPREAD & SOFT_SPREAD_ONE) == SOFT_SPREAD_ONE);
+FF_STATIC_ASSERT((16 * (uint64_t)(2 * SOFT_SPREAD + SOFT_SPREAD_ONE)) >> 32 == 0);
+
 static inline uint32_t soft_spread(uint32_t texel) { return (texel | texel << 16) & SOFT_SPREAD; }
 
 static inline uint32_t soft_kept(uint32_t texel)
@@ -56,6 +60,8 @@ static inline uint16_t soft_pixel_of(uint32_t spread_pixel)
  * lie on the texture and its rim. */
 static inline void soft_sample_row(const soft_state *state, const soft_segment *segment)
 {
+    C3D_ASSERT(soft_in_frame(state, segment->first, segment->count));
+    C3D_ASSERT(!state->wide && state->paint.texture->format == C3D_RGB565);
     const soft_texture *texture = state->paint.texture;
     const uint32_t *texels = soft_texel_zero(texture);
     uint32_t stride = texture->stride;
@@ -95,6 +101,7 @@ static inline int soft_sample_spacing(int32_t ds, int32_t dt)
 {
     uint32_t most = (uint32_t)((ds ^ ds >> 31) | (dt ^ dt >> 31) | 1);
     int log2 = soft_leading_zeros(most) - 16;
+    C3D_ASSERT(log2 >= -16 && log2 <= 15);
     return log2 > SOFT_MAGNIFIED_LOG2 ? SOFT_MAGNIFIED_LOG2 : log2 < 2 ? 0 : log2;
 }
 

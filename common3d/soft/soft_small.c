@@ -16,6 +16,11 @@
 #define PLAIN_PIXELS 8 /* in shorter rows every pixel is sampled */
 #define W            SOFT_ATTRIBUTES
 
+/* differences of coordinates below 2^11, of attributes below 2^18 before they are multiplied */
+FF_STATIC_ASSERT(SIZE_MAX_Q4 == 128 * SOFT_ONE && SIZE_MAX_Q4 <= 1 << 11);
+FF_STATIC_ASSERT(TEXELS_MAX >> 4 < 1 << 18 && 255 * 1024 < 1 << 18 && FOG_MAX * 16 < 1 << 18);
+FF_STATIC_ASSERT(TEXELS_MAX >> 13 < 1 << 9 && COLOUR_RANGE < 1 << 9); /* is_flat */
+
 typedef struct soft_slopes {
     int32_t across[SOFT_ATTRIBUTES + 1], down[SOFT_ATTRIBUTES + 1]; /* from pixel to pixel */
     uint32_t at[SOFT_ATTRIBUTES + 1]; /* at the first pixel of the frame in this row */
@@ -47,6 +52,7 @@ static inline int32_t slope(const soft_shape *shape, int32_t n)
 static inline void attribute(const soft_shape *shape, soft_slopes *slopes, int i, int32_t value,
                              int32_t d1, int32_t d2, int lift)
 {
+    C3D_ASSERT(larger(d1, d2) < 1 << 19); /* times 2^11, twice: below 2^31 */
     int32_t across = (int32_t)((uint32_t)slope(shape, d2 * shape->dy1 - d1 * shape->dy2) << lift);
     int32_t down = (int32_t)((uint32_t)slope(shape, d1 * shape->dx2 - d2 * shape->dx1) << lift);
     slopes->across[i] = across;
@@ -60,6 +66,7 @@ static inline void attribute(const soft_shape *shape, soft_slopes *slopes, int i
  * range, with r = greatest w / least w. */
 static int is_flat(const soft_state *state, const soft_shape *shape, int32_t dw)
 {
+    C3D_ASSERT(dw >= 0 && dw < 1 << 30);
     const soft_vertex *a = shape->a, *b = shape->b, *c = shape->c;
     uint32_t least = a->w < b->w ? a->w : b->w;
     int32_t range = 0;
@@ -72,6 +79,7 @@ static int is_flat(const soft_state *state, const soft_shape *shape, int32_t dw)
     }
     if ((!state->paint.texture || !state->paint.white || state->paint.fog) && range < COLOUR_RANGE)
         range = COLOUR_RANGE;
+    C3D_ASSERT(range >= 0 && range < 1 << 9); /* times 2^20 */
     return (uint32_t)(dw >> 3) * (uint32_t)range <= least;
 }
 
@@ -87,6 +95,7 @@ static void colour_slopes(const soft_shape *shape, soft_slopes *slopes)
 static void make_slopes(const soft_state *state, const soft_shape *shape, soft_slopes *slopes,
                         int32_t dw, int fog)
 {
+    C3D_ASSERT(dw < 1 << 23);
     const soft_vertex *a = shape->a, *b = shape->b, *c = shape->c;
     int lift = dw < 1 << 19 ? 0 : 4;
     attribute(shape, slopes, W, (int32_t)a->w, ((int32_t)b->w - (int32_t)a->w) >> lift,
@@ -105,6 +114,7 @@ static void make_slopes(const soft_state *state, const soft_shape *shape, soft_s
  * function, because it is drawn so often. Long rows may be magnified. */
 static void texture_rows(soft_state *state, soft_walk *walk, soft_slopes *slopes)
 {
+    C3D_ASSERT(!state->off_texture && state->paint.white);
     soft_segment *segment = &state->segment;
     uint32_t w = slopes->at[W], s = slopes->at[SOFT_S], t = slopes->at[SOFT_T];
     uint32_t dw = (uint32_t)slopes->across[W], ds = (uint32_t)slopes->across[SOFT_S],
@@ -132,6 +142,7 @@ static void texture_rows(soft_state *state, soft_walk *walk, soft_slopes *slopes
 
 static void paint_rows(soft_state *state, soft_walk *walk, soft_slopes *slopes, int first, int last)
 {
+    C3D_ASSERT(first <= last && last <= SOFT_F);
     soft_segment *segment = &state->segment;
     void (*span)(soft_state *, const soft_segment *) = last == SOFT_F ? soft_segment_paint
                                                                       : state->span;
@@ -156,10 +167,12 @@ static void paint_rows(soft_state *state, soft_walk *walk, soft_slopes *slopes, 
 static void measure(const soft_state *state, soft_shape *shape, int32_t area, int32_t row)
 {
     uint32_t size = (uint32_t)(area < 0 ? -area : area);
+    C3D_ASSERT(size >= AREA_MIN && size < 1 << 23);
     int lead = soft_leading_zeros(size) - 1;
     int32_t reciprocal = (int32_t)(soft_reciprocal(state, size << lead) >> 1);
     shape->reciprocal = area < 0 ? -reciprocal : reciprocal;
-    shape->shift = 60 - 32 - lead - SOFT_SUB; /* lead is 24 at most: 64 leaves 25 bits */
+    shape->shift = 60 - 32 - lead - SOFT_SUB;
+    C3D_ASSERT(shape->shift >= 0);
     shape->to_x = SOFT_HALF - shape->a->x;
     shape->to_y = row * SOFT_ONE + SOFT_HALF - shape->a->y;
 }
@@ -168,6 +181,7 @@ static void measure(const soft_state *state, soft_shape *shape, int32_t area, in
  * have none, and take the attributes of a. */
 static int is_sliver(const soft_shape *shape, int32_t area)
 {
+    C3D_ASSERT(area != 0);
     int32_t size = area < 0 ? -area : area,
             length = larger(larger(shape->dx1, shape->dx2), shape->dy2);
     return size < AREA_MIN || size < length / 2;
@@ -198,6 +212,7 @@ int soft_small(soft_state *state, const soft_vertex *a, const soft_vertex *b, co
         !is_flat(state, &shape, dw))
         return 0;
     if (fog && larger(b->fog_q8 - a->fog_q8, c->fog_q8 - a->fog_q8) > FOG_MAX) return 0;
+    C3D_ASSERT(shape.dy1 >= 0 && shape.dy1 <= shape.dy2);
     int32_t area = shape.dx2 * shape.dy1 - shape.dx1 * shape.dy2;
     if (area == 0 || !soft_walk_begin(state, &walk, a, b, c, area > 0)) return 1;
     if (walk.row < state->top_row) state->top_row = walk.row;

@@ -3,6 +3,8 @@
 #include "soft_ramp.h"
 #include "soft_sample.h"
 
+FF_STATIC_ASSERT(SOFT_MAGNIFIED_LOG2 == 3); /* magnified_row: 2 or 3 */
+
 /* A sample of a magnified texture. Each field keeps 5 - log2 fraction bits, among them the half
  * that rounds: 2^log2 steps from one sample to the next then need the 5 bits of room that a field
  * has, and no more. s and t are counted from the rim. */
@@ -46,6 +48,8 @@ static inline uint32_t mark_four(uint32_t depth[4], uint32_t w, uint32_t dw)
 static SOFT_INLINE int magnified_row(const soft_state *state, const soft_segment *segment,
                                      const int log2)
 {
+    C3D_ASSERT(log2 >= 2 && log2 <= SOFT_MAGNIFIED_LOG2);
+    C3D_ASSERT(soft_in_frame(state, segment->first, segment->count));
     const soft_texture *texture = state->paint.texture;
     const uint32_t size = 1u << log2, before = segment->first & (size - 1),
                    stride = texture->stride;
@@ -54,6 +58,7 @@ static SOFT_INLINE int magnified_row(const soft_state *state, const soft_segment
     int32_t s = segment->value[SOFT_S] - segment->step[SOFT_S] * (int32_t)before,
             t = segment->value[SOFT_T] - segment->step[SOFT_T] * (int32_t)before;
     int32_t blocks = (int32_t)((before + segment->count + size - 1) >> log2);
+    C3D_ASSERT(blocks >= 1 && before < size);
     if (!soft_between_on_texture(texture, s, t, s + ds * blocks, t + dt * blocks)) return 0;
     const uint32_t *texels = (const uint32_t *)(const void *)texture->texels;
     uint32_t *first = state->depth + segment->first, *end = first + segment->count,
@@ -107,6 +112,7 @@ static void span_texture(soft_state *state, const soft_segment *segment)
 
 static void span_colour(soft_state *state, const soft_segment *segment)
 {
+    C3D_ASSERT(soft_in_frame(state, segment->first, segment->count) && !state->wide);
     soft_ramp ramp;
     soft_make_ramp(&ramp, segment);
     int32_t red = ramp.red, green = ramp.green, blue = ramp.blue;
@@ -125,6 +131,7 @@ void soft_choose_span(soft_state *state)
 {
     const soft_paint *paint = &state->paint;
     const soft_texture *texture = paint->texture;
+    C3D_ASSERT(!texture || (texture->width <= 4096 && texture->height <= 4096));
     state->span = soft_segment_paint;
     state->texture_rows = state->tiny_rows = 0;
     if (state->wide || paint->depth == SOFT_DEPTH_NONE) return;

@@ -19,6 +19,7 @@ static int log2_of(uint32_t power) { return 31 - soft_leading_zeros(power); }
 /* The first of `units` free units in a row; heap_units when there is no such run. */
 static uint32_t find_units(const soft_state *state, uint32_t units)
 {
+    C3D_ASSERT(units > 0);
     for (uint32_t first = 0, run = 0; first + run < state->heap_units;) {
         if (state->heap_used[first + run]) {
             first += run + 1;
@@ -34,6 +35,7 @@ static uint32_t find_units(const soft_state *state, uint32_t units)
 static void copy_row(uint8_t *out, const uint8_t *in, uint32_t width,
                      enum c3d_texture_format format)
 {
+    C3D_ASSERT(width >= 1 && width <= 4096);
     uint32_t bytes = kept_bytes(format);
     if (format == C3D_RGB565)
         for (uint32_t x = 0; x < width; x++)
@@ -53,6 +55,8 @@ uint32_t soft_texture_upload(void *opaque, enum c3d_texture_format format, uint3
     while (slot < state->texture_count && state->textures[slot].units) slot++;
     uint32_t first = slot < state->texture_count ? find_units(state, units) : state->heap_units;
     if (first == state->heap_units) return 0;
+    C3D_ASSERT(first + units <= state->heap_units);
+    C3D_ASSERT((row_bytes * (height + 2) - 1) / SOFT_HEAP_UNIT == units - 1);
     soft_texture *texture = &state->textures[slot];
     *texture = (soft_texture){ .texels = state->heap + (size_t)first * SOFT_HEAP_UNIT,
                                .first_unit = first,
@@ -63,6 +67,7 @@ uint32_t soft_texture_upload(void *opaque, enum c3d_texture_format format, uint3
                                .format = (uint8_t)format,
                                .width_log2 = (uint8_t)log2_of(width),
                                .height_log2 = (uint8_t)log2_of(height) };
+    C3D_ASSERT(1u << texture->width_log2 == width && 1u << texture->height_log2 == height);
     memset(state->heap_used + first, 1, units);
     for (uint32_t row = 0; row < height + 2; row++) {
         uint32_t from = row == 0 ? 0 : row > height ? height - 1 : row - 1;
@@ -74,8 +79,10 @@ uint32_t soft_texture_upload(void *opaque, enum c3d_texture_format format, uint3
 
 void soft_texture_free(void *opaque, uint32_t name)
 {
+    C3D_ASSERT(name >= 1 && name <= ((soft_state *)opaque)->texture_count);
     soft_state *state = opaque;
     soft_texture *texture = &state->textures[name - 1];
+    C3D_ASSERT(texture->units > 0 && texture->first_unit + texture->units <= state->heap_units);
     memset(state->heap_used + texture->first_unit, 0, texture->units);
     texture->units = 0;
 }

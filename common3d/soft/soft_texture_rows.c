@@ -26,6 +26,7 @@ static int measure_row(soft_state *state, const soft_planes *planes, const soft_
     int32_t far = (s_change ^ s_change >> 31) | (t_change ^ t_change >> 31);
     if (apart >= SOFT_EDGE_TABLE || soft_high(far, w_change ^ w_change >> 31) > least >> 16)
         return 0;
+    C3D_ASSERT(apart >= 0 && least >= 0);
     segment->first = (uint32_t)(walk->row * state->width + walk->from);
     segment->count = (uint32_t)(apart + 1);
     segment->w = soft_depth_of(w, planes->w_shift);
@@ -40,6 +41,7 @@ static int measure_row(soft_state *state, const soft_planes *planes, const soft_
  * not look for open pixels there. */
 static inline void note_covered(soft_state *state, const soft_walk *walk)
 {
+    C3D_ASSERT(walk->from < walk->to && walk->to <= state->width && walk->row < state->height);
     soft_part *covered = &state->covered[walk->row];
     int32_t from = walk->from, to = walk->to;
     if (from <= covered->to && to >= covered->from) {
@@ -53,6 +55,7 @@ static inline void note_covered(soft_state *state, const soft_walk *walk)
 
 void soft_texture_rows(soft_state *state, const soft_planes *planes, soft_walk *walk)
 {
+    C3D_ASSERT(planes->first == SOFT_S && planes->last == SOFT_T);
     int covers = state->paint.depth == SOFT_DEPTH_TEST && !state->paint.alpha_test;
     do {
         if (covers) note_covered(state, walk);

@@ -17,6 +17,15 @@
 #define ROWS     8   /* at most */
 #define REACH_Q4 256 /* how far b and c may lie from a, sideways */
 #define W_MAX    (1u << 24)
+#define HIGH_Q4  ((ROWS + 1) * SOFT_ONE) /* dy stays below */
+#define WIDE_Q4  (2 * REACH_Q4)          /* and dx */
+
+FF_STATIC_ASSERT(HIGH_Q4 < 1 << 9 && HIGH_Q4 * WIDE_Q4 < 1 << 17);
+FF_STATIC_ASSERT(HIGH_Q4 < SOFT_EDGE_TABLE && WIDE_Q4 < SOFT_EDGE_TABLE);
+/* texels and w, times the 32 of paint_row: the difference of two differences */
+FF_STATIC_ASSERT((SOFT_TINY_TEXELS + 2) * 65536 <= (1 << 28) / 32);
+FF_STATIC_ASSERT(2 * (W_MAX / 8) * 32 < INT32_MAX);
+FF_STATIC_ASSERT(SOFT_TINY_TEXELS + 2 <= 256); /* packed */
 
 /* Where an edge from the corner that is alone meets the line. */
 typedef struct meeting {
@@ -48,6 +57,8 @@ static inline void meet(const soft_state *state, const soft_vertex *alone, const
 {
     int32_t k = y - alone->y, dy = end->y - alone->y;
     if (k < 0) k = -k, dy = -dy;
+    C3D_ASSERT(k >= 0 && k <= dy && dy > 0 && dy < HIGH_Q4);
+    C3D_ASSERT(end->x - alone->x > -WIDE_Q4 && end->x - alone->x < WIDE_Q4);
     int32_t reciprocal = state->edge_reciprocal[dy];
     at->end = end;
     at->part = k * reciprocal;
@@ -69,6 +80,7 @@ static inline uint32_t packed(int32_t s, int32_t t)
 static inline void paint(soft_state *state, uint32_t first, int32_t count, uint32_t w, uint32_t dw,
                          uint32_t st, uint32_t dst)
 {
+    C3D_ASSERT(soft_in_frame(state, first, (uint32_t)count));
     const uint32_t *texels = (const uint32_t *)(const void *)state->paint.texture->texels;
     uint32_t stride = state->paint.texture->stride;
     uint32_t *depth = state->depth + first, *end = depth + count;
@@ -92,6 +104,7 @@ static inline void paint_row(soft_state *state, const soft_vertex *alone, const 
     if (from < 0) from = 0;
     if (to > state->width) to = state->width;
     if (from >= to) return;
+    C3D_ASSERT(right->x > left->x && right->x - left->x <= WIDE_Q4);
     int32_t s = along(alone->s, left->end->s, left->part),
             t = along(alone->t, left->end->t, left->part);
     int32_t w = along((int32_t)alone->w, (int32_t)left->end->w, left->part);
@@ -103,12 +116,16 @@ static inline void paint_row(soft_state *state, const soft_vertex *alone, const 
                       reciprocal);
     s += (ds * off >> SOFT_SUB) + 65536, t += (dt * off >> SOFT_SUB) + 65536,
         w += dw * off >> SOFT_SUB;
+    C3D_ASSERT(soft_between_on_texture(state->paint.texture, s - 65536, t - 65536,
+                                       s - 65536 + ds * (to - from - 1),
+                                       t - 65536 + dt * (to - from - 1)));
     paint(state, (uint32_t)(row * state->width + from), to - from, (uint32_t)w, (uint32_t)dw,
           packed(s, t), packed(ds, dt));
 }
 
 int soft_tiny(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
 {
+    C3D_ASSERT(state->tiny_rows && !state->wide);
     int32_t row_a = soft_first_row(a->y), row_b = soft_first_row(b->y),
             row_c = soft_first_row(c->y);
     int32_t row = least(row_a, row_b, row_c), bottom = most(row_a, row_b, row_c);

@@ -24,6 +24,7 @@ void soft_begin_view(soft_state *state, const c3d_rotation *rotation)
     int lead = soft_leading_zeros((uint32_t)camera->focal_q8) - 1;
     /* below 2^31; times a row of at most 2^30 */
     int64_t focal_norm = (int64_t)camera->focal_q8 << lead;
+    C3D_ASSERT(focal_norm >> 30 == 1);
     view->focal_shift = lead;
     for (int i = 0; i < 3; i++) {
         view->row[0][i] = (int32_t)((rotation->m[0][i] * focal_norm) >> 30);
@@ -40,6 +41,7 @@ void soft_begin_view(soft_state *state, const c3d_rotation *rotation)
     view->below_q4 = state->height * SOFT_ONE - SOFT_HALF;
     state->frame_shift = 14; /* the far plane below 2^29 world units */
     while (soft_scale64(camera->far_wu, state->frame_shift) >= 1 << 29) state->frame_shift--;
+    C3D_ASSERT(state->frame_shift >= -2 && state->frame_shift <= 14);
 }
 
 /* ---- the space of a draw ---- */
@@ -58,6 +60,7 @@ static int64_t reach_wu(const c3d_resolved_draw *resolved)
                              : (int64_t)(((uint64_t)reach[2] * draw->z_scale_q16) >> 16) + 1;
         most = origin + size > most ? origin + size : most;
     }
+    C3D_ASSERT(most >= 0 && most < (int64_t)1 << 47); /* 15 bits of reach times 31, and 34 */
     return most;
 }
 
@@ -70,8 +73,11 @@ static void set_near_places(soft_space *space)
     int64_t scale = soft_scale64(space->scale_wu, space->shift);
     space->near = space->shift >= 0 && fits(scale) && space->z_scale_q16 <= INT32_MAX;
     if (!space->near) return;
-    for (int i = 0; i < 3; i++)
-        space->origin[i] = (int32_t)soft_scale64(space->origin_wu[i], space->shift);
+    for (int i = 0; i < 3; i++) {
+        int64_t origin = soft_scale64(space->origin_wu[i], space->shift);
+        C3D_ASSERT(origin > -WORLD_MAX && origin < WORLD_MAX);
+        space->origin[i] = (int32_t)origin;
+    }
     space->scale = (int32_t)scale;
 }
 
@@ -84,11 +90,13 @@ static void set_planes(soft_space *space, int32_t near_wu, int32_t far_wu)
     int lead = soft_leading_zeros((uint32_t)near_wu);
     space->near_eye = near_eye > INT32_MAX ? INT32_MAX : (int32_t)near_eye;
     space->far_eye = far_eye > INT32_MAX ? INT32_MAX : (int32_t)far_eye;
+    C3D_ASSERT(near_eye >= 1 && near_eye <= far_eye);
     space->near_norm = (uint32_t)near_wu << lead;
     space->near_norm -= space->near_norm >> W_ERROR_LOG2;
     space->near_shift = lead - space->shift;
     /* so that project() shifts by less than 32 bits */
     for (; space->near_shift > 31; space->near_shift--) space->near_norm >>= 1;
+    C3D_ASSERT(space->near_shift >= 0);
 }
 
 static void begin_space(soft_state *state, const c3d_resolved_draw *resolved)
@@ -105,6 +113,7 @@ static void begin_space(soft_state *state, const c3d_resolved_draw *resolved)
                                                 : INT32_MAX;
     space->shift = backdrop ? 14 : state->frame_shift;
     while (soft_scale64(reach, space->shift) >= WORLD_MAX) space->shift--;
+    C3D_ASSERT(near_wu >= 1 && space->shift >= -17 && space->shift <= 14);
     memcpy(space->origin_wu, draw->origin_wu, sizeof space->origin_wu);
     space->scale_wu = draw->xy_scale_wu;
     space->z_scale_q16 = draw->z_scale_q16;
@@ -133,7 +142,8 @@ static SOFT_INLINE void rotate(const soft_view *view, int32_t x, int32_t y, int3
 static SOFT_INLINE void place_near(const soft_space *space, const c3d_vertex *in, int32_t world[3])
 {
     int64_t height = (int64_t)(int32_t)space->z_scale_q16 * in->z;
-    int down = 16 - space->shift; /* 2 .. 16 */
+    int down = 16 - space->shift;
+    C3D_ASSERT(down >= 2 && down <= 16);
     world[0] = space->origin[0] + in->x * space->scale;
     world[1] = space->origin[1] + in->y * space->scale;
     world[2] = space->origin[2] +
@@ -163,6 +173,8 @@ static void eye_far(const soft_space *space, const soft_view *view, const c3d_ve
 
 void soft_eye(const soft_state *state, const soft_vertex *vertex, int32_t eye[3])
 {
+    C3D_ASSERT(vertex >= state->vertices &&
+               (const uint8_t *)(vertex + 1) <= (const uint8_t *)state->textures);
     const c3d_vertex *in = &state->cached_mesh[vertex - state->vertices];
     (state->space.near ? eye_near : eye_far)(&state->space, &state->view, in, eye);
 }
@@ -172,6 +184,7 @@ void soft_eye(const soft_state *state, const soft_vertex *vertex, int32_t eye[3]
 /* 2^60/n for n in 2^30 .. 2^31 - 1, within 2^-19 of its value. */
 static SOFT_INLINE int32_t reciprocal(const uint32_t table[512], uint32_t n)
 {
+    C3D_ASSERT(n >> 30 == 1);
     uint32_t r = table[n >> 21 ^ 512];
     uint32_t error = (uint32_t)(((uint64_t)n * r) >> 32); /* 2^29 when exact */
     return (int32_t)(((uint64_t)r * ~(error << 2)) >> 32);
@@ -190,6 +203,7 @@ static inline int32_t twice_on_screen(int32_t x, int32_t r, int shift, int plain
 {
     int64_t product = (int64_t)x * r;
     if (plain || shift >= 0) return (int32_t)(product >> 32) >> shift;
+    C3D_ASSERT(shift > -32);
     product >>= 32 + shift; /* nearer than a metre or so */
     return (int32_t)(product > 1 << 28 ? 1 << 28 : product < -(1 << 28) ? -(1 << 28) : product);
 }
@@ -207,6 +221,10 @@ static int is_plain(const soft_space *space, const soft_view *view, const c3d_me
     int64_t least = 0, most = 0;
     place_near(space, &corner[0], world[0]);
     place_near(space, &corner[1], world[1]);
+    for (int i = 0; i < 3; i++) {
+        C3D_ASSERT(world[0][i] > -WORLD_MAX && world[0][i] < WORLD_MAX);
+        C3D_ASSERT(world[1][i] > -WORLD_MAX && world[1][i] < WORLD_MAX);
+    }
     for (int i = 0; i < 3; i++) {
         int64_t a = (int64_t)view->row[2][i] * world[0][i],
                 b = (int64_t)view->row[2][i] * world[1][i];
@@ -237,6 +255,8 @@ static SOFT_INLINE void project(const soft_space *space, const soft_view *view,
     int32_t y = (view->centre[1] - twice_on_screen(eye[1], r, shift, plain)) >> 1;
     uint32_t w = (uint32_t)(((uint64_t)space->near_norm * (uint32_t)r) >> 32) << 1 >>
                  (space->near_shift - lead);
+    C3D_ASSERT(space->near_shift >= lead && space->near_shift - lead < 32);
+    C3D_ASSERT(w < UINT32_C(1) << 30);
     vertex->w = !plain && w < W_MIN ? W_MIN : w;
     vertex->x = x;
     vertex->y = y;
@@ -250,6 +270,7 @@ static SOFT_INLINE void project(const soft_space *space, const soft_view *view,
 /* Brings a vertex nearer by 1/64. */
 static void put_on_top(soft_vertex *vertex)
 {
+    C3D_ASSERT(vertex->out & SOFT_NEAR || vertex->w < UINT32_C(1) << 30);
     uint32_t w = vertex->w + (vertex->w >> 6), most = (UINT32_C(1) << 30) - 1;
     vertex->w = w > most ? most : w;
 }
@@ -262,6 +283,8 @@ void soft_project(const soft_state *state, const int32_t eye[3], soft_vertex *ve
 
 static SOFT_INLINE void transform_each(soft_state *state, const c3d_mesh_data *mesh, int plain)
 {
+    C3D_ASSERT((const uint8_t *)(state->vertices + mesh->count) <=
+               (const uint8_t *)state->textures);
     const soft_space space = state->space;
     const soft_view view = state->view;
     const uint32_t *table = state->reciprocal;
@@ -283,6 +306,8 @@ static void transform_near(soft_state *state, const c3d_mesh_data *mesh)
 
 static void transform_far(soft_state *state, const c3d_mesh_data *mesh)
 {
+    C3D_ASSERT((const uint8_t *)(state->vertices + mesh->count) <=
+               (const uint8_t *)state->textures);
     for (uint32_t i = 0; i < mesh->count; i++) {
         int32_t eye[3];
         eye_far(&state->space, &state->view, &mesh->vertices[i], eye);
@@ -316,6 +341,7 @@ static void make_axis(soft_state *state, const c3d_draw *draw, const c3d_mesh_da
     int64_t scale = draw->tex_scale_q16[i] * ((int64_t)1 << size_log2);
     int64_t offset = draw->tex_offset_q16[i] * ((int64_t)1 << size_log2) - 32768;
     int64_t limit = INT32_MAX; /* 2^15 texture widths for one vertex unit */
+    C3D_ASSERT(size_log2 <= 12 && draw->tex_shift <= 18); /* 31 + 12 + 18 bits of offset */
     axis->scale = (int32_t)(scale > limit ? limit : scale < -limit ? -limit : scale);
     axis->shift = draw->tex_shift;
     axis->axis = state->paint.axis[i];
@@ -334,6 +360,7 @@ static void make_axis(soft_state *state, const c3d_draw *draw, const c3d_mesh_da
 
 static inline int32_t coordinate(const c3d_vertex *in, int axis)
 {
+    C3D_ASSERT(axis >= 0 && axis < 3);
     return axis == 0 ? in->x : axis == 1 ? in->y : in->z;
 }
 
@@ -348,6 +375,7 @@ static void texture_plane(soft_vertex *vertex, const c3d_mesh_data *mesh, const 
 {
     uint32_t s_scale = (uint32_t)s->scale, s_offset = (uint32_t)s->offset,
              t_scale = (uint32_t)t->scale, t_offset = (uint32_t)t->offset;
+    C3D_ASSERT(s->shift == t->shift && !s->wide && !t->wide);
     int shift = s->shift;
     for (const c3d_vertex *in = mesh->vertices, *end = in + mesh->count; in < end; in++, vertex++) {
         vertex->s = texel_narrow(in->x, s_scale, s_offset, shift);
@@ -390,7 +418,9 @@ static void transform_fog(soft_state *state, uint32_t count)
         soft_eye(state, &state->vertices[i], eye);
         int64_t clear = frame->fog_end_wu - soft_scale64(eye[2], 1 - state->space.shift);
         clear = clear > most ? most : clear < -most ? -most : clear;
-        state->vertices[i].fog_q8 = (int32_t)((clear * per_wu_q24) >> 24);
+        int64_t fog_q8 = (clear * per_wu_q24) >> 24;
+        C3D_ASSERT(fog_q8 >= -(1 << 14) && fog_q8 <= 1 << 14);
+        state->vertices[i].fog_q8 = (int32_t)fog_q8;
     }
 }
 
@@ -415,6 +445,7 @@ void soft_transform(soft_state *state, const c3d_resolved_draw *resolved)
     if (state->cached_mesh == mesh->vertices && same_vertices(&state->cached, draw)) return;
     state->cached = *draw;
     state->cached_mesh = mesh->vertices;
+    C3D_ASSERT(mesh->count > 0 && resolved->strip->index_max < mesh->count);
     begin_space(state, resolved);
     state->off_texture = 0;
     (state->space.near ? transform_near : transform_far)(state, mesh);

@@ -10,6 +10,7 @@ static int64_t area_of(const soft_vertex *a, const soft_vertex *b, const soft_ve
 void soft_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b,
                    const soft_vertex *c)
 {
+    C3D_ASSERT(!((a->out | b->out | c->out) & SOFT_MUST_CLIP));
     const soft_vertex *swap;
     if (b->y < a->y) swap = a, a = b, b = swap;
     if (c->y < b->y) swap = b, b = c, c = swap;
@@ -37,6 +38,7 @@ static inline void draw(soft_state *state, const soft_vertex *a, const soft_vert
 
 void soft_strip(soft_state *state, const uint16_t *indices, uint32_t count)
 {
+    C3D_ASSERT(count >= 3);
     const soft_vertex *vertices = state->vertices, *a, *b = &vertices[indices[0]],
                       *c = &vertices[indices[1]];
     int32_t row_a, row_b = soft_first_row(b->y), row_c = soft_first_row(c->y);

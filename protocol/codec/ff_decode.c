@@ -1,9 +1,9 @@
 /* The two stages of decoding, whatever the codec: payload to residuals (network worker), residuals
  * to heights (main thread). */
 #include "../zlib/ff_inflate.h"
+#include "../ff_assert.h"
 #include "ff_codec_local.h"
 
-#include <assert.h>
 #include <string.h>
 
 uint32_t ff_geometric_error_decode(uint8_t code)
@@ -146,7 +146,7 @@ int ff_add_residuals(const ff_terrain_info *info, const uint16_t *parent, const 
 {
     reconstruction r = { res->value, ff_quantum(info) };
 
-    assert(res->count == (parent ? ff_refinement_count(info) : ff_root_count(info)));
+    FF_ASSERT(res->count == (parent ? ff_refinement_count(info) : ff_root_count(info)));
     if (parent) {
         ff_predict_refinement(info, parent, heights, add_residual, &r);
         return FF_OK;
@@ -162,7 +162,7 @@ static int reconstruct(const ff_terrain_info *info, const uint16_t *parent, cons
 {
     const ff_codec *codec = ff_codec_row(info->codec);
 
-    assert((res->count == 0) == ((codec->needs & FF_NEEDS_PARENT) != 0));
+    FF_ASSERT((res->count == 0) == ((codec->needs & FF_NEEDS_PARENT) != 0));
     return codec->reconstruct(info, parent, res, heights);
 }
 

@@ -105,6 +105,7 @@ check_includes() {
     function allowed(from, to,   room, i, n, word) {
         room = folder(to)
         if (room == from || from ~ /^tests(\/|$)/) return 1
+        if (to == "protocol/ff_assert.h" && from ~ /^(protocol|client|common3d)(\/|$)/) return 1
         n = split(may[from], word, " ")
         for (i = 2; i <= n; i++)
             if (word[i] == room || word[i] == to || word[i] ~ /\/$/ && index(to, word[i]) == 1) return 1
@@ -146,6 +147,7 @@ check_words() {
     report_words '[^A-Za-z0-9_.>]((f|s|sn|v|vf|vs|vsn|d)?printf|puts|putchar|fputs|fopen|fread|fwrite|perror|getenv) *\(' \
         'input or output in the core' <"$core"
     grep -v '^protocol/zlib/ff_deflate.c:' "$core" | report_words '[^A-Za-z0-9_.>](exit|abort) *\(' 'an end of the process in the core'
+    grep -v '^protocol/ff_assert.h:' "$core" | report_words '[^A-Za-z0-9_.>]assert *\(' 'assert instead of FF_ASSERT or C3D_ASSERT in the core'
     report_words '[^A-Za-z0-9_.>](time|clock|clock_gettime|gettimeofday|nanosleep|usleep|rand|rand_r|srand|random|drand48) *\(' \
         'clock or chance in the core' <"$core"
 }
