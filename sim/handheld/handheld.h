@@ -53,16 +53,16 @@ int handheld_open(handheld *device, const handheld_options *options);
 void handheld_close(handheld *device);
 /* The client's settings, but for its memory and what it flies over. */
 ff_client_desc handheld_client_desc(const handheld *device);
-/* All frames. 0, or -1 with one line on stderr. */
+/* Flies all frames. 0, or -1 with one line on stderr. */
 int handheld_fly(handheld *device);
 /* Prints the flight's statistics on stdout, as text or JSON, and writes the last frame to
  * options->fb_path. 0 or -1. */
 int handheld_report(handheld *device);
 
-/* Instead of a flight: how blocks of several sizes would be shared out, as a table on stdout. */
+/* Prints, instead of flying, how blocks of several sizes would be shared out. */
 void handheld_plan(const handheld *device);
 
-/* Figures over the picture; does nothing in a build without HUD. */
+/* Draws figures over the picture; does nothing in a build without HUD. */
 void handheld_hud(handheld *device);
 
 /* ---- marks: where tools/scripts/tcg_count.c cuts time into phases; each is a function of its own
