@@ -1,5 +1,6 @@
-/* The balance: its ladders; that it settles and does not cycle, against modelled plants within and
- * beyond what its argument assumes (constant, noisy, stepping, late); and in a client. */
+/* The balance: its ladders; a client under it; modelled plants (constant, noisy, stepping, late),
+ * within and beyond what its argument assumes. Against every plant the balance settles and does not
+ * cycle. */
 #include "../rig/client_fixture.h"
 #include "../../client/balance/ff_balance.h"
 
@@ -17,7 +18,7 @@
 #define STEP_US    50000
 #define DECISION_S 20   /* settling at most 10 s, the link's window 8, a second of the frame's */
 #define NOISE      0.12 /* below 1.5 FF_BALANCE_NOISE_Q4 */
-#define TOLERANCE  0.14 /* FF_BALANCE_NOISE_Q4 in octaves, and what is lost by whole numbers */
+#define TOLERANCE  0.14 /* FF_BALANCE_NOISE_Q4 in octaves, and what rounding loses */
 
 static const ff_quality finest = { .measure = FF_MEASURE_DISTANCE,
                                    .c_q8 = 9 * 256,
@@ -33,15 +34,15 @@ static const ff_panorama_desc far_ground = { .enabled = 1,
 
 enum { DETAIL, PLANE, PICTURE }; /* knobs; the last is the panorama's error */
 
-/* log2 of what frame and link cost with the coarsest knobs, and what each step of a knob adds to
- * either. */
+/* A plant: log2 of the frame's and the link's cost with the coarsest knobs, and what each step of a
+ * knob adds to either cost. */
 typedef struct plant {
     double base[2], gain[3][2]; /* gain[knob][load] */
-    double jump;                /* added to the frame by the seventh level of the tree */
+    double jump;                /* the tree's seventh level adds this to the frame's cost */
     double budget[2];           /* log2 */
     double delay_s;             /* until a move has its effect */
-    double overrated;           /* log2 of how much more the link is taken to carry than it does */
-    double noise;               /* at most so much of the cost, another share every second */
+    double overrated;           /* log2 of (rate assumed for the link / true rate) */
+    double noise;               /* the cost is off by at most this share, drawn anew each second */
     /* running */
     ff_balance balance;
     int64_t now_us, effect_us;
@@ -100,7 +101,7 @@ static void plant_open(plant *p)
     ff_balance_get(&p->balance, &p->knobs);
 }
 
-/* The link carries twice its budget (link_percent 50). What is asked for beyond that waits. */
+/* The link carries twice its budget (link_percent 50). Requests beyond that wait. */
 static void plant_step(plant *p)
 {
     ff_balance_sample sample = { .now_us = p->now_us += STEP_US, .rtt_us = 300000 };
@@ -109,7 +110,7 @@ static void plant_step(plant *p)
     if (p->now_us >= p->effect_us) ff_balance_get(&p->balance, &p->knobs);
     double rate = 2 * exp2(p->budget[1]);
     double wanted = exp2(true_load(p, 1, &p->knobs) + p->budget[1]) * p->factor[1];
-    /* the share of time in which it waits is the share of the link it fills */
+    /* requests wait for the share of time that they fill of the link */
     p->wait_debt += wanted < rate ? wanted / rate : 1;
     sample.waiting = p->wait_debt >= 1;
     p->wait_debt -= sample.waiting;
@@ -119,7 +120,7 @@ static void plant_step(plant *p)
     sample.frame_cost = (uint32_t)(exp2(true_load(p, 0, &p->knobs) + p->budget[0]) * p->factor[0]);
     sample.in_force = p->now_us >= p->effect_us;
     if (!ff_balance_feed(&p->balance, &sample)) return;
-    /* none on top of one that has not come into force */
+    /* no second move before the first one is in force */
     assert_true(p->delay_s > 9 || p->now_us >= p->effect_us);
     p->effect_us = p->now_us + (int64_t)(p->delay_s * SECOND_US);
 }
@@ -135,9 +136,9 @@ static unsigned all_steps(const plant *p)
     return (unsigned)p->balance.top[0] + p->balance.top[1];
 }
 
-/* Within the stated number of decisions it stands still, each level having turned once at most
- * (twice when the input changed on the way: a change may turn it, and its answer once more), no
- * load above its budget that could be lowered; and it stays so. */
+/* Within the stated number of decisions the balance stands still, and it stays so. Until then each
+ * level turned at most once; twice when the input changed on the way, since the change may turn a
+ * level and the answer to it once more. No load that could be lowered is left above its budget. */
 static void assert_settles(plant *p, uint32_t turns_most)
 {
     uint32_t turns = p->balance.turns, moves = p->balance.moves;
@@ -148,7 +149,7 @@ static void assert_settles(plant *p, uint32_t turns_most)
     turns = p->balance.turns;
     plant_run(p, 3600);
     assert_int_equal(p->balance.turns, turns);
-    /* a load next to a threshold may cross it late */
+    /* a load close to a threshold may cross the threshold late */
     assert_true(p->balance.moves - moves <= (p->noise > 0 ? 4 : 0));
     for (int load = 0; load < 2; load++)
         assert_true(p->balance.level[load] == 0 ||
@@ -214,7 +215,7 @@ static void limits_are_kept(void **state)
     assert_int_equal(knobs.error_px_q8, 1000);
     assert_int_equal(knobs.depth_max, 0);
     assert_int_equal(knobs.back_plane_wu, 2000 * METRE);
-    /* a limit finer than the finest is none */
+    /* a limit finer than the finest step limits nothing */
     assert_int_equal(knobs.panorama_error_q8, far_ground.error_px_q8);
     desc.mode = FF_BALANCE_ALL_CLIENT;
     ff_balance_set(&balance, &desc, &pixels, &far_ground, 1, 1);
@@ -222,7 +223,7 @@ static void limits_are_kept(void **state)
     assert_int_equal(knobs.error_px_q8, 256);
     assert_int_equal(knobs.back_plane_wu, 0);
     desc.mode = FF_BALANCE_ON;
-    /* nobody draws panoramas: detail alone */
+    /* nobody draws panoramas: share moves detail alone */
     ff_balance_set(&balance, &desc, &pixels, &far_ground, 0, 1);
     for (int level = 0; level <= balance.top[0]; level++) {
         balance.level[0] = (uint8_t)level;
@@ -239,8 +240,8 @@ static void limits_are_kept(void **state)
 
 /* ---- settling ---- */
 
-/* Every plant within the assumptions: what a step adds to each load from nothing to half an octave,
- * couplings of either sign. */
+/* Every plant within the assumptions: a step adds to each load from nothing to half an octave, and
+ * couplings have either sign. */
 static void over_plants(double noise, double delay_s)
 {
     static const double own[] = { 0, 0.05, 0.2, 0.48 }, cross[] = { -0.3, 0, 0.25 };
@@ -278,8 +279,8 @@ static void settles_when_moves_come_into_force_late(void **state)
     over_plants(0, 7);
 }
 
-/* The frame's budget halved and doubled, the link nine times slower and back: each settles anew,
- * and the budgets are made use of. */
+/* The frame's budget is halved and doubled, the link gets nine times slower and recovers: after
+ * each change the balance settles anew, and uses the budgets. */
 static void settles_after_steps_of_the_input(void **state)
 {
     (void)state;
@@ -297,14 +298,15 @@ static void settles_after_steps_of_the_input(void **state)
             plant_set(&p, 0);
             assert_settles(&p, 4);
             int frame_used = load_now(&p, 0) > -1 || p.balance.level[0] == p.balance.top[0];
-            assert_true(frame_used || load_now(&p, 1) > -1); /* what holds it down is a budget */
-            if (budget[i][1] > 13 && i < 5) /* the good link is back, and so is fidelity */
+            assert_true(frame_used ||
+                        load_now(&p, 1) > -1); /* a budget, nothing else, holds the levels down */
+            if (budget[i][1] > 13 && i < 5)    /* with the good link fidelity came back */
                 assert_int_equal(p.balance.level[1], p.balance.top[1]);
         }
     }
 }
 
-/* A frame's overload is gone within seconds, not decisions of the link. */
+/* The frame's overload ends within seconds; it does not wait for the link's decisions. */
 static void frame_overload_is_relieved_quickly(void **state)
 {
     (void)state;
@@ -320,8 +322,9 @@ static void frame_overload_is_relieved_quickly(void **state)
     assert_true(load_now(&p, 0) <= TOLERANCE);
 }
 
-/* A link with a sixteenth of what is asked of it. That it is taken to carry more does not matter:
- * waiting tells. Detail waits for the link, and comes back with it. */
+/* The link carries a sixteenth of what is asked for. The balance assumes a higher rate, but the
+ * time that requests wait shows the truth: detail falls until they wait no more, and rises when the
+ * link recovers. */
 static void a_link_much_too_slow_is_spared(void **state)
 {
     (void)state;
@@ -338,7 +341,7 @@ static void a_link_much_too_slow_is_spared(void **state)
         plant_run(&p, 100);
         assert_true(load_now(&p, 1) <= TOLERANCE);
         assert_settles(&p, 4);
-        p.base[1] = 7; /* less is asked for */
+        p.base[1] = 7; /* the view asks for less */
         plant_set(&p, 0);
         p.balance.level[0] = 0;
         assert_settles(&p, 4);
@@ -351,8 +354,8 @@ static void a_link_much_too_slow_is_spared(void **state)
     }
 }
 
-/* A step four times as dear as assumed, in the way: tried, undone, remembered; not tried again for
- * ever. */
+/* One step costs four times what the balance assumes: it tries the step, undoes it, remembers its
+ * cost, and does not try it again and again. */
 static void a_step_too_high_is_learned(void **state)
 {
     (void)state;
@@ -369,15 +372,16 @@ static void a_step_too_high_is_learned(void **state)
         assert_true(p.balance.turns <= 8);
         assert_int_equal(p.balance.moves, moves);
         assert_int_equal(p.knobs.depth_max, 6);
-        p.budget[0] = 14; /* room for it */
+        p.budget[0] = 14; /* the budget has room for the dear step */
         plant_set(&p, 0);
         assert_settles(&p, 4);
         assert_true(p.knobs.depth_max > 6);
     }
 }
 
-/* Rough ground every forty seconds, a fifth dearer: the level that passes the budget then is left
- * once, and not gone back to. What relief taught is forgotten when the input changes. */
+/* Every forty seconds rough ground costs a fifth more: the balance leaves the level that then
+ * passes the budget once, and does not return to it. When the input changes, it forgets what that
+ * relief taught. */
 static void a_regular_input_does_not_drag_it_along(void **state)
 {
     (void)state;
@@ -402,7 +406,7 @@ static void a_regular_input_does_not_drag_it_along(void **state)
     assert_true(p.knobs.depth_max >= 7);
 }
 
-/* Nothing comes: asking for less would not help. Pauses measure nothing. */
+/* Nothing arrives: to ask for less would not help. Pauses measure nothing. */
 static void silence_and_pauses_move_nothing(void **state)
 {
     (void)state;
@@ -418,7 +422,7 @@ static void silence_and_pauses_move_nothing(void **state)
                                  .in_force = 1 };
     sample.frame_cost = 3000;
     for (int i = 0; i < 200; i++, sample.now_us += STEP_US)
-        (void)ff_balance_feed(&p.balance, &sample); /* a window in which something still came */
+        (void)ff_balance_feed(&p.balance, &sample); /* a window in which some bytes still arrived */
     uint32_t moves = p.balance.moves;
     for (int i = 0; i < 2000; i++, sample.now_us += STEP_US)
         assert_false(ff_balance_feed(&p.balance, &sample));
@@ -470,11 +474,11 @@ static void a_client_follows_its_frame_budget(void **state)
     }
     int32_t position_wu[3];
     unsigned faces;
-    /* as much as one likes: all client */
+    /* a budget without end: all client */
     assert_int_equal(rig_stats(&rig).balance.share_percent, 100);
     assert_int_equal(rig_stats(&rig).back_plane_wu, 0);
     assert_false(ff_client_panorama(rig.client, position_wu, &faces));
-    ff_client_frame_cost(rig.client, 2000000); /* of another unit, and too much */
+    ff_client_frame_cost(rig.client, 2000000); /* a cost in another unit, above the budget */
     run(&rig, 60);
     assert_true(rig_stats(&rig).balance.share_percent < 30);
     assert_true(rig_stats(&rig).balance.frame_load_q8 > 200);
@@ -506,7 +510,8 @@ static void the_ends_and_off(void **state)
     assert_false(ff_client_panorama(client.client, position_wu, &faces));
     assert_int_equal(client.asked[FF_MSG_GET_PANORAMA], 0);
     assert_int_equal(o.balance.moves + o.balance.share_percent, 0);
-    server.desc.balance.mode = FF_BALANCE_OFF; /* off again: as set */
+    server.desc.balance.mode =
+        FF_BALANCE_OFF; /* the balance is off again: quality is what was set */
     ff_client_set_balance(server.client, &server.desc.balance);
     assert_true(rig_settle(&server, 600));
     assert_true(rig_same_picture(&server, &off));
@@ -515,8 +520,8 @@ static void the_ends_and_off(void **state)
     rig_close(&off);
 }
 
-/* A back plane that is wished for is drawn with the panorama taken for it, not before: no ring
- * without ground between the two. */
+/* A new back plane comes into force with the panorama that was taken for it, not before: no ring
+ * without ground lies between the two. */
 static void the_back_plane_waits_for_its_panorama(void **state)
 {
     (void)state;

@@ -14,7 +14,7 @@
 
 #define BLOCK_BYTES (4u << 20)
 
-/* What is asked for: heights only, images too, panoramas too. */
+/* The three settings: heights only; with images; with images and panoramas. */
 enum scene { HEIGHTS, IMAGES, PANORAMAS, SCENES };
 static const char *const scene_name[] = { "heights only", "with images", "with panoramas" };
 
@@ -39,7 +39,7 @@ static ff_client_desc desc_of(enum scene scene, int pictures)
     return desc;
 }
 
-/* As ff_client_carve goes about it: 1 and the budget, or 0. */
+/* Plans the budget as ff_client_carve does: 1, or 0 when the block is too small. */
 static int make_budget(ff_budget *b, const ff_client_desc *desc, const ff_terrain_info *info)
 {
     ff_budget_fixed(b, desc, desc->memory_bytes);
@@ -171,7 +171,7 @@ static const ff_pool_use *pool_of(const client_rig *rig, enum ff_pool_id pool)
     return &list[pool];
 }
 
-/* Each pool's own counters, over a link, with pictures; the same as the figures have them. */
+/* Each pool's own counters, over a link, with pictures, equal the client's figures. */
 static void pools_tell_what_they_hold(void **state)
 {
     client_rig rig;

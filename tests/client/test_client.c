@@ -21,7 +21,7 @@ static ff_request_counts counts_of(client_rig *rig)
     return counts;
 }
 
-/* Every request is in one place: a final state or a slot. */
+/* Every request is counted once: in a final state or in a slot. */
 static void assert_requests_add_up(client_rig *rig)
 {
     ff_request_counts c = counts_of(rig);
@@ -98,7 +98,7 @@ static void same_script_same_hashes(void **state)
         rig.desc.no_prefetch = 0;
         rig.desc.panorama.enabled = 1;
         rig.desc.panorama.back_plane_wu = 1200 * METRE;
-        rig.camera.yaw += i == 2; /* the third is another flight */
+        rig.camera.yaw += i == 2; /* the third flight turns otherwise */
         rig_client(&rig, 4 * MB);
         fly(&rig, &geometry[i], &requests[i]);
         rig_close(&rig);
@@ -163,7 +163,7 @@ static void panorama_follows_the_rules(void **state)
     assert_true(rig_settle(&rig, 400));
     assert_true(ff_client_panorama(rig.client, taken_wu, &faces));
     assert_memory_equal(taken_wu, rig.camera.pos_wu, sizeof taken_wu);
-    /* and no others, however long he stays */
+    /* no other faces are asked for, however long the viewer stays */
     assert_int_equal(faces, ff_panorama_faces_in_view(&rig.camera));
     for (int i = 0; i < 62; i++) rig_step(&rig, 500000);
     assert_int_equal(rig.asked[FF_MSG_GET_PANORAMA], 1);
@@ -180,12 +180,13 @@ static void panorama_follows_the_rules(void **state)
     }
     rig_settle(&rig, 100);
     assert_true(ff_client_panorama(rig.client, taken_wu, &faces));
-    assert_int_equal(faces, 0x3f); /* who has turned may turn again */
+    assert_int_equal(faces,
+                     0x3f); /* a viewer who has turned may turn again: all faces are asked for */
     assert_int_equal(rig_stats(&rig).panorama_faces, 4);
     assert_int_equal(rig_stats(&rig).panorama_faces_empty, 2);
     unsigned asked = rig.asked[FF_MSG_GET_PANORAMA];
 
-    rig.camera.pos_wu[2] += 20 * METRE; /* within the error */
+    rig.camera.pos_wu[2] += 20 * METRE; /* too little to make the set outdated */
     rig_settle(&rig, 100);
     assert_int_equal(rig.asked[FF_MSG_GET_PANORAMA], asked);
     rig.camera.pos_wu[2] += 200 * METRE;
@@ -197,8 +198,8 @@ static void panorama_follows_the_rules(void **state)
     rig_close(&rig);
 }
 
-/* Flying straight on: a set is taken ahead, serves as long before its O as behind it, and the next
- * one is there in time. */
+/* Flying straight on: O lies ahead when a set is taken, the set serves as long before O as behind
+ * it, and the next set arrives in time. */
 static void panorama_is_taken_ahead(void **state)
 {
     (void)state;
@@ -228,13 +229,13 @@ static void panorama_is_taken_ahead(void **state)
     assert_in_range(sets, 4, 20);
     int32_t each_wu = (last_y_wu - started_y_wu) / (int32_t)(sets - 1);
     assert_in_range(longest_ahead_wu, 20 * METRE, 375 * METRE);
-    assert_true(each_wu > longest_ahead_wu * 3 / 2); /* it is good on both sides */
+    assert_true(each_wu > longest_ahead_wu * 3 / 2); /* each set served on both sides of its O */
     assert_true(late * 20 < frames);
     rig_close(&rig);
 }
 
-/* The renderer stands still: the viewer flies on, one set stays outstanding, the ground comes all
- * the same. */
+/* The renderer stands still and the viewer flies on: one set stays outstanding, and ground still
+ * arrives. */
 static void one_set_outstanding_at_most(void **state)
 {
     (void)state;
@@ -249,7 +250,8 @@ static void one_set_outstanding_at_most(void **state)
         rig_step(&rig, 50000);
     }
     assert_int_equal(rig.asked[FF_MSG_GET_PANORAMA], 1);
-    /* further than half the back plane: left behind, cancelled, another one instead */
+    /* further than half the back plane: the set is left behind and cancelled, and another is asked
+     * for */
     for (int i = 0; i < 60; i++) {
         rig.camera.pos_wu[1] += 5 * METRE;
         rig_step(&rig, 50000);
@@ -260,7 +262,7 @@ static void one_set_outstanding_at_most(void **state)
     assert_true(rig_stats(&rig).tree.nodes_drawn > 5);
     int32_t taken_wu[3], old_wu[3];
     unsigned faces, old_faces;
-    /* nothing to show is not shown */
+    /* no set is complete: none is shown */
     assert_false(ff_client_panorama(rig.client, taken_wu, &faces));
     rig.no_faces = 0;
     assert_true(rig_settle(&rig, 400));
@@ -274,7 +276,7 @@ static void one_set_outstanding_at_most(void **state)
     assert_memory_equal(taken_wu, old_wu, sizeof taken_wu);
     assert_int_equal(faces, old_faces);
 
-    /* 800 m on: too far for it, the ground is the client's own, all round the viewer */
+    /* after 800 m the viewer is too far from O: the client draws its own ground all round him */
     for (int i = 0; i < 160; i++) {
         rig.camera.pos_wu[1] -= 5 * METRE;
         rig_step(&rig, 50000);
@@ -285,8 +287,8 @@ static void one_set_outstanding_at_most(void **state)
     rig_close(&rig);
 }
 
-/* Switched off and on again at once: the request of before is cancelled, and answered before there
- * is another one. */
+/* Panoramas are switched off and on again at once: the first request is cancelled, and a second is
+ * made only after the answer to the first. */
 static void switched_panoramas_do_not_queue_up(void **state)
 {
     (void)state;
@@ -303,7 +305,7 @@ static void switched_panoramas_do_not_queue_up(void **state)
             panorama.enabled = (uint8_t)on;
             ff_client_set_panorama(rig.client, &panorama);
         }
-        /* before the worker hears of it */
+        /* before the worker sees the change */
         rig.updates += (unsigned)ff_client_update(rig.client, rig.frame_us, &rig.camera);
     }
     assert_true(rig.asked[FF_MSG_GET_PANORAMA] > 2);
@@ -322,7 +324,7 @@ static void panorama_can_be_switched(void **state)
     rig_client(&rig, 4 * MB);
     assert_true(rig_settle(&rig, 400));
     ff_panorama_desc panorama = { .enabled = 1, .back_plane_wu = 1500 * METRE };
-    /* shared out without: the block is shared out anew */
+    /* the block was shared out without panoramas: it is shared out anew */
     ff_client_set_panorama(rig.client, &panorama);
     assert_true(rig_settle(&rig, 400));
     assert_true(ff_client_panorama(rig.client, taken_wu, &faces));
@@ -331,7 +333,8 @@ static void panorama_can_be_switched(void **state)
     assert_true(rig_settle(&rig, 400));
     assert_false(ff_client_panorama(rig.client, taken_wu, &faces));
     panorama.enabled = 1;
-    ff_client_set_panorama(rig.client, &panorama); /* this time the room is there */
+    ff_client_set_panorama(rig.client,
+                           &panorama); /* this time the block holds pools for panoramas */
     unsigned connections = rig.connections;
     assert_true(rig_settle(&rig, 400));
     assert_true(ff_client_panorama(rig.client, taken_wu, &faces));
@@ -355,7 +358,7 @@ static void little_memory_draws_coarser(void **state)
     assert_true(stats.textures_high > 0);
     unsigned sent = stats.requests_sent;
     for (int i = 0; i < 100; i++) rig_step(&rig, 50000);
-    /* a full pool asks for nothing over and over */
+    /* a full pool asks for nothing twice */
     assert_int_equal(rig_stats(&rig).requests_sent, sent);
     rig_close(&rig);
 }
@@ -395,7 +398,7 @@ static void low_power_is_coarser_and_recovers(void **state)
     uint32_t triangles = rig_stats(&rig).tree.triangles;
     sys_event touch = { .type = SYS_EVENT_POINTER };
     unsigned updates = rig.updates;
-    ff_client_event(rig.client, &touch); /* of no concern */
+    ff_client_event(rig.client, &touch); /* the client has no use for touches */
     rig_step(&rig, 50000);
     assert_int_equal(rig.updates, updates);
     sys_event event = { .type = SYS_EVENT_BATTERY };
@@ -457,7 +460,7 @@ static void prefetch_asks_ahead_only_in_motion(void **state)
     assert_true(sent[1] > sent[0]);
 }
 
-/* Standing still: all that was asked for lies in view, or lets what does be as fine as it is;
+/* Standing still: every node asked for lies in view or lets a node in view be as fine as it is;
  * turning brings the rest. */
 static void only_what_is_in_view_is_asked_for(void **state)
 {
@@ -470,7 +473,7 @@ static void only_what_is_in_view_is_asked_for(void **state)
     assert_true(rig_settle(&rig, 400));
     const ff_wish *wish;
     uint32_t count = ff_tree_wishes(rig.client->tree, &wish), sent = rig_stats(&rig).requests_sent;
-    assert_true(count > 0); /* there is more that it could have */
+    assert_true(count > 0); /* out of view there is more ground to have */
     for (uint32_t i = 0; i < count; i++) assert_false(wish[i].in_view);
     for (int i = 0; i < 200; i++) {
         rig.camera.yaw = (rig.camera.yaw + 328) & 0xFFFF;

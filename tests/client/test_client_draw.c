@@ -63,7 +63,7 @@ static void all_of_the_cut_is_drawn(void **state)
     open_rig(&rig, 5);
     rig_client(&rig, 4 * MB);
     assert_null(ff_client_device(rig.client));
-    ff_client_draw(rig.client); /* nothing known yet: nothing happens */
+    ff_client_draw(rig.client); /* no terrain is known yet: nothing is drawn */
     assert_true(rig_settle(&rig, 600));
     uint8_t *first = draw(&rig), *again = draw(&rig);
     ff_client_stats stats = rig_stats(&rig);
@@ -98,8 +98,8 @@ static void plain_arrays_draw_the_same(void **state)
     free(picture[1]);
 }
 
-/* Nothing bright shines through where rounding leaves a pixel between two nodes: below the horizon
- * the backdrop is like ground. */
+/* Where rounding leaves a pixel between two nodes empty nothing bright shines through: below the
+ * horizon the backdrop looks like ground. */
 static void no_sky_below_the_horizon(void **state)
 {
     (void)state;
@@ -145,7 +145,7 @@ static void a_full_mesh_pool_leaves_no_hole(void **state)
     open_rig(&rig, 0);
     rig.desc.use_plain_arrays = 1;
     rig.desc.quality = (ff_quality){ .c_q8 = 6 * 256 };
-    rig.camera.focal_q8 /= 3; /* much in view */
+    rig.camera.focal_q8 /= 3; /* much ground comes into view */
     rig_client(&rig, ff_client_bytes_min());
     assert_true(rig_settle(&rig, 2000));
     for (int i = 0; i < 20; i++) {
@@ -182,8 +182,8 @@ static void faces_stand_behind_the_ground(void **state)
         rig.camera.pitch = 40 * (int32_t)i; /* other pixels of the faces meet the sky */
         assert_true(rig_settle(&rig, 400));
         uint8_t *rgb = draw(&rig);
-        /* 20 of 256 rows: 32 pixels high at 208 pixels of focal distance, all along the horizon,
-         * partly cut by the columns */
+        /* the faces show 20 of 256 rows: 32 pixels high at a focal distance of 208, all along the
+         * horizon, cut by the columns' spans in part */
         assert_in_range(count_colour(rgb, look[i].grey, look[i].grey, look[i].grey, 10), WIDTH * 16,
                         WIDTH * 34);
         for (int p = 0; p < WIDTH * HEIGHT / 2; p++) /* no dark line where ground and sky meet */
@@ -209,7 +209,7 @@ static void meshes_show_stitching_in_another_colour(void **state)
     ff_client_set_show(rig.client, FF_SHOW_WIREFRAME | FF_SHOW_NO_FOG);
     unsigned updates = rig.updates;
     rig_step(&rig, 50000);
-    assert_int_equal(rig.updates, updates + 1); /* a setting is a change */
+    assert_int_equal(rig.updates, updates + 1); /* a new setting makes a new picture */
     uint8_t *mesh = draw(&rig);
     assert_int_equal(count_colour(plain, 255, 32, 32, 8), 0);
     assert_true(count_colour(mesh, 255, 32, 32, 8) > 20);

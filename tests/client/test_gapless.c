@@ -101,7 +101,7 @@ static void draw_ground(gap_rig *rig, const c3d_camera *camera)
 
 static int is_magenta(const uint8_t *rgb) { return rgb[0] == 255 && rgb[1] == 0 && rgb[2] == 255; }
 
-/* Magenta with ground above it. */
+/* Magenta pixels that have ground above them in their column. */
 static unsigned gaps_in(const uint8_t *rgb)
 {
     unsigned count = 0;
@@ -160,7 +160,7 @@ static void no_gap_with_integers(void **state)
 {
     (void)state;
     count_gaps(sys_surface_memory(), SYS_GL_NONE, c3d_backend_soft(), 0);
-    /* which have ways of their own */
+    /* triangles of these kinds have code of their own */
     count_gaps(sys_surface_memory(), SYS_GL_NONE, c3d_backend_soft(), 1);
 }
 

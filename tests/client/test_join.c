@@ -1,7 +1,7 @@
-/* The join between ground and panorama is off by no more pixels than were allowed while the set in
- * use is fresh: over random views (as many as VIEWS says, 1,000,000 by default), and in flights
- * over simulated links, where it is told how far off it gets when the link holds newer sets back.
- * Judged in double precision; a face's own texel (half of one, see below) comes on top. */
+/* While the set in use is fresh, the join between ground and panorama is off by no more pixels than
+ * were allowed: over random views (VIEWS of them, 1,000,000 by default), and in flights over
+ * simulated links. The flights also tell how far off the join gets when the link holds newer sets
+ * back. Judged in double precision; half a texel of the face (see below) comes on top. */
 #include "../../client/ff_client_local.h"
 #include "../../sim/judge/sim_ground.h"
 #include "../../sim/link/sim_server.h"
@@ -43,7 +43,7 @@ static int point_at_join(sys_random *random, const double taken[3], double z,
     return fabs(point[2] - taken[2]) <= reach && point[2] >= ground[0] && point[2] <= ground[1];
 }
 
-/* The same where a set's images show ground. */
+/* The same, but only where the set's faces show ground. */
 static int point_in_sight(sys_random *random, const double taken[3], double z,
                           const ff_panorama_sight *sight, double point[3])
 {
@@ -125,12 +125,12 @@ static void random_views(void **state)
         fresh, points, worst);
     assert_true(fresh > views / 20 && points > views / 10);
     assert_true(worst <= 1.0);
-    /* of use: not much earlier than needed */
+    /* the rule is of use: it does not ask much too early */
     assert_true(worst > 0.85 && near_limit > points / 1000);
 }
 
-/* Straight ahead, as flights go: how far off is the join when the rule asks, by a dense search
- * along it? */
+/* Straight ahead, as flights go: a dense search along the join tells how far off it is when the
+ * rule asks for a new set. */
 static void asks_not_much_too_soon(void **state)
 {
     (void)state;
@@ -147,7 +147,7 @@ static void asks_not_much_too_soon(void **state)
                               .height = 320,
                               .focal_q8 = c3d_focal_q8(10923, 240) };
         int32_t way_m = 0;
-        do { /* forwards until it asks */
+        do { /* moves forwards until the rule asks */
             way_m += 2;
             camera.pos_wu[0] = (int32_t)(way_m * M * sin(yaw * REF_PI / 32768));
             camera.pos_wu[1] = (int32_t)(way_m * M * cos(yaw * REF_PI / 32768));
@@ -163,7 +163,7 @@ static void asks_not_much_too_soon(void **state)
                                         face < 2 ? i / 200.0 * z : side, ground[level] };
                     worst = fmax(worst, ref_panorama_error_px(&ref, origin, point));
                 }
-        /* when it asks, some point is off by nearly what is allowed */
+        /* when the rule asks, some point is off by nearly what is allowed */
         assert_true(worst > 0.7 * error_q8 / 256);
         mean += worst / 17;
     }
@@ -245,7 +245,7 @@ static void close_flight(flight *f)
     free(f->bytes);
 }
 
-/* Largest error of the ground along the join round O and a little beyond, hidden or not. */
+/* Largest error of ground at the join, all round O and a little beyond, hidden ground included. */
 static double join_error_px(const flight *f, const int32_t taken[3])
 {
     const double taken_wu[3] = { taken[0], taken[1], taken[2] }, beyond[] = { 1.0, 1.02, 1.1, 1.3 };
@@ -267,7 +267,7 @@ static double join_error_px(const flight *f, const int32_t taken[3])
     return worst;
 }
 
-/* Round a circle of 900 m, up and down. */
+/* Flies round a circle of 900 m, up and down. */
 static void place_camera(flight *f, double t_s, double speed_ms)
 {
     double angle = t_s * speed_ms / 900, x_m = 4096 + 900 * cos(angle),
@@ -298,7 +298,7 @@ static void fly(const char *link, double speed_ms, unsigned seconds, double leas
         double off_px = join_error_px(&f, taken);
         const ff_panorama *panorama = &f.client->panorama;
         if (ff_panorama_set_outdated(panorama, &panorama->set[panorama->shown], &f.camera)) {
-            held_px = fmax(held_px, off_px); /* the newer set is on its way */
+            held_px = fmax(held_px, off_px); /* a newer set is on its way */
             held++;
         } else {
             fresh_px = fmax(fresh_px, off_px);
@@ -307,8 +307,8 @@ static void fly(const char *link, double speed_ms, unsigned seconds, double leas
     }
     ff_client_stats stats;
     ff_client_get_stats(f.client, &stats);
-    /* A texel spans focal * 2/FACE_SIZE pixels in a face's middle; drawn with its nearest
-     * neighbour's colour it is off by half of that. */
+    /* In a face's middle a texel spans focal * 2/FACE_SIZE pixels. A pixel takes the colour of the
+     * nearest texel, so it is off by half of that. */
     print_message(
         "# %s, %.0f m/s: %u frames fresh, join at most %.2f px off (allowed 6); %u held back by the link, at most %.2f px; "
         "half a texel of the faces: %.2f px; %u panoramas asked for\n",
@@ -316,7 +316,7 @@ static void fly(const char *link, double speed_ms, unsigned seconds, double leas
         stats.panorama_requests);
     close_flight(&f);
     assert_true(fresh_px <= 6.0);
-    assert_true(fresh_px > 1.0); /* it was put to the test */
+    assert_true(fresh_px > 1.0); /* the error came near the limit: the flight tests it */
     assert_true(fresh >= least_fresh * (fresh + held));
 }
 

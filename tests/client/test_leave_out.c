@@ -13,8 +13,8 @@
 
 #define BLOCK_BYTES (2u << 20)
 
-/* Nothing for images or panoramas: no request, no memory, no decoding scratch, no slot on the
- * device. */
+/* A terrain without images and panoramas takes nothing for them: no request, no memory, no decoding
+ * scratch, no slot on the device. */
 static void assert_heights_alone(client_rig *rig)
 {
     ff_client_stats stats = rig_stats(rig);
@@ -56,8 +56,8 @@ static void images_that_are_not_wanted(void **state)
     rig_close(&rig);
 }
 
-/* The same memory holds more ground when images and panoramas are not there; a pack on the device
- * has no link's buffers. */
+/* The same memory holds more ground when images and panoramas are left out; a pack on the device
+ * takes no buffers for a link. */
 static void memory_goes_to_the_ground(void **state)
 {
     (void)state;
@@ -90,7 +90,7 @@ static void rice_needs_no_zlib(void **state)
     static int32_t value[FF_REFINED_HEIGHTS_MAX];
     ff_residuals residuals = { .value = value };
     (void)state;
-    for (unsigned i = 0; i < FF_NODE_HEIGHTS_MAX; i++) /* rare values: what deflate is best at */
+    for (unsigned i = 0; i < FF_NODE_HEIGHTS_MAX; i++) /* rare values: here deflate is best */
         source[i] = (uint16_t)(20000 + (i % 33 == 7) * 40);
     ff_terrain_info info = pack_fixture_info(7, 1, 1);
     info.node_log2 = 5;

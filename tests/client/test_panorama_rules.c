@@ -31,7 +31,8 @@ static void limits_do_not_blow_up(void **state)
     (void)state;
     assert_int_equal(ff_panorama_forwards_max(0, Z_WU, 0), 0);
     assert_int_equal(ff_panorama_forwards_max(0, Z_WU, 1000), 0);
-    assert_int_equal(ff_panorama_forwards_max(1, Z_WU, 0), Z_WU); /* w to 0: only z limits */
+    assert_int_equal(ff_panorama_forwards_max(1, Z_WU, 0),
+                     Z_WU); /* w -> 0: only z limits the way forwards */
     assert_int_equal(ff_panorama_sideways_max(0, Z_WU, 1), 0);
     assert_true(ff_panorama_sideways_max(INT32_MAX, INT32_MAX, 1) > 0);
     assert_true(ff_panorama_forwards_max(INT32_MAX, INT32_MAX, 1) <= INT32_MAX);
@@ -70,7 +71,7 @@ static void motion_in_any_direction(void **state)
 {
     (void)state;
     assert_false(outdated(0, 0, 0, 0));
-    /* sideways, looking north: Hybrid has 375 m; whole patches cost some of it */
+    /* sideways, looking north: Hybrid allows 375 m, and our whole patches cost some of it */
     assert_false(outdated(320, 0, 0, 0));
     assert_true(outdated(376, 0, 0, 0));
     assert_true(outdated(-376, 0, 0, 0));
@@ -80,9 +81,9 @@ static void motion_in_any_direction(void **state)
     assert_true(outdated(0, -380, 0, 0));
     assert_false(outdated(0, 0, 320, 0)); /* upwards */
     assert_true(outdated(0, 0, 376, 0));
-    assert_false(outdated(300, 0, 0, 16384)); /* looking east, the same way is forwards */
+    assert_false(outdated(300, 0, 0, 16384)); /* looking east, the same motion is forwards */
     assert_true(outdated(366, 0, 0, 16384));
-    assert_true(outdated(300, 300, 0, 0)); /* each alone would do, together they add up */
+    assert_true(outdated(300, 300, 0, 0)); /* each motion alone is allowed, their sum is not */
     assert_true(outdated(7500, 0, 0, 0));
     assert_true(outdated(1000000, 0, 0, 0));
 }
@@ -100,7 +101,7 @@ static void no_error_allowed_means_no_motion_allowed(void **state)
     assert_true(outdated_over(&camera, far_west, any_ground, INT32_MAX));
 }
 
-/* What the images show decides: ground high up in the window's corners that no face has does not
+/* What the faces show decides: high ground in the window's corners that no face shows does not
  * count. */
 static void only_what_is_shown_counts(void **state)
 {

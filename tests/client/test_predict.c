@@ -122,14 +122,14 @@ static void extremes_do_not_overflow(void **state)
         now_us += i % 5 ? sys_random_below(&random, 50000) : 0;
     }
     int32_t west[3] = { INT32_MIN, 0, 0 }, at[3];
-    for (int i = 0; i < 100; i++) { /* over the world's rim: clamped */
+    for (int i = 0; i < 100; i++) { /* beyond the world's end: clamped */
         west[0] = INT32_MIN + (100 - i) * METRE * 10;
         ff_motion_feed(&motion, now_us + i * 100000, west);
     }
     if (ff_motion_predict(&motion, 30000000, at)) assert_int_equal(at[0], INT32_MIN);
 }
 
-/* Yaw at a steady rate, through north; the prediction falls into steps of at most 45 degrees, half
+/* Yaw at a steady rate, through north; the prediction is cut into steps of at most 45 degrees, half
  * a turn in all. */
 static void turning_is_continued(void **state)
 {
@@ -145,7 +145,7 @@ static void turning_is_continued(void **state)
     assert_int_equal(ff_turn_predict(&turn, 10000000, &yaw, &pitch), 2);
     assert_int_equal(ff_turn_predict(&turn, INT64_MAX, &yaw, &pitch), FF_TURN_VIEWS_MAX);
     assert_in_range(yaw, 32000, 32768);
-    for (int i = 60; i < 90; i++) /* it stops */
+    for (int i = 60; i < 90; i++) /* the viewer stops turning */
         ff_turn_feed(&turn, i * 33333, start, -1000);
     assert_int_equal(ff_turn_predict(&turn, 3000000, &yaw, &pitch), 0);
     for (int i = 90; i < 120; i++) ff_turn_feed(&turn, i * 33333, start - i * 36, 0);
@@ -155,7 +155,8 @@ static void turning_is_continued(void **state)
     assert_int_equal(ff_turn_predict(&turn, 3000000, &yaw, &pitch), 0);
 }
 
-/* Any angles, many at once: nothing overflows, the prediction stays within its bounds. */
+/* Any angles, jumping by any amount: nothing overflows, and the prediction stays within its bounds.
+ */
 static void wild_turning_stays_bounded(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* The stream and its request queue: every way a link or a peer can fail, and that the picture comes
- * all the same. */
+/* The stream and its request queue: a link or a peer fails in every way, and the picture is
+ * complete in the end. */
 #include "../rig/client_fixture.h"
 #include "../../client/ff_client_local.h"
 
@@ -16,7 +16,7 @@
 #define TEST_STRIDE 1 /* tests under emulation try every fifth place alone (cross.mk) */
 #endif
 
-static client_rig whole; /* a client that had no trouble: the picture to come to */
+static client_rig whole; /* a client whose link never failed: its picture is the right one */
 
 static int make_whole(void **state)
 {
@@ -90,8 +90,9 @@ static void bytes_in_crumbs(void **state)
     rig_close(&rig);
 }
 
-/* Nonsense from some byte on: noticed by its form, or it decodes by chance (payloads carry no
- * checksum on the wire); either way the client comes to rest with all requests accounted for. */
+/* From some byte on the peer sends nonsense. The client notices it by its form, or it decodes by
+ * chance (payloads carry no checksum on the wire); either way the client comes to rest with all
+ * requests accounted for. */
 static void nonsense_after_any_byte(void **state)
 {
     (void)state;
@@ -106,7 +107,7 @@ static void nonsense_after_any_byte(void **state)
         rig_client(&rig, 2 * MB);
         assert_true(rig_settle(&rig, 1000));
         assert_adds_up(&rig);
-        /* a WELCOME to elsewhere */
+        /* a WELCOME to another terrain */
         int believed = ff_client_terrain(rig.client)->checksum != whole.pack.header.info.checksum;
         assert_true(believed || rig_stats(&rig).tree.nodes_drawn > 0);
         noticed += rig_stats(&rig).protocol_errors > 0;
@@ -190,7 +191,7 @@ static void another_terrain_replaces_all(void **state)
     rig_client(&rig, 2 * MB);
     assert_true(rig_settle(&rig, 400));
     uint32_t requests = rig_stats(&rig).requests_sent;
-    rig.cut_at = rig.bytes_down; /* the same terrain: nothing is asked again */
+    rig.cut_at = rig.bytes_down; /* the same terrain: what is here is not asked for again */
     assert_true(rig_settle(&rig, 400));
     for (int i = 0; i < 40; i++) rig_step(&rig, 100000);
     assert_int_equal(rig.connections, 2);
@@ -221,7 +222,7 @@ static void requests_are_never_asked_twice(void **state)
     ff_client_stats stats = rig_stats(&rig);
     assert_int_equal(stats.requests_sent, stats.requests_done);
     assert_int_equal(stats.tree.orphans, 0);
-    /* each refinement brought four nodes, each root one: none came twice */
+    /* each refinement brought four nodes, each root one: no node came twice */
     uint32_t roots = 4;
     assert_int_equal(stats.tree.nodes_held, roots + 4 * (stats.requests_done - roots));
     rig_close(&rig);
@@ -235,7 +236,7 @@ static void full_list_stops_receiving(void **state)
     rig_client(&rig, 2 * MB);
     rig_settle(&rig, 8);
     for (int i = 0; i < 500; i++)
-        ff_client_work(rig.client, rig.now_us += 10000); /* the main thread is away */
+        ff_client_work(rig.client, rig.now_us += 10000); /* the main thread does not run */
     assert_in_range(rig.client->news.high, 1, rig.client->news.item_slots);
     assert_int_equal(rig_stats(&rig).reconnects, 0);
     assert_comes_whole(&rig);
@@ -269,7 +270,7 @@ static void undecodable_payloads_are_tried_thrice(void **state)
     ff_decoder *decoder = rig.client->intake.decoder;
     ff_terrain_info other = rig.client->info;
     other.codec = FF_CODEC_RAW;
-    /* reads another language */
+    /* the peer speaks another version */
     rig.client->intake.decoder = ff_decoder_create(&other, decoder, ff_decoder_bytes(&other));
     for (int i = 0; i < 200; i++) rig_step(&rig, 50000);
     ff_client_stats stats = rig_stats(&rig);
@@ -348,7 +349,7 @@ static void estimate_finds_the_link(void **state)
     assert_in_range(link.bytes_s, 5400, 5600);
     assert_int_equal(link.rtt_us, 800000);
     assert_in_range(ff_link_estimate_window(&link), 8600, 9000);
-    /* a stall: not forgotten what the link can do */
+    /* a stall does not make the client forget the link's rate */
     ff_link_estimate_received(&link, 50, 1, now_us + 30000000);
     assert_true(link.bytes_s > 4500);
 }

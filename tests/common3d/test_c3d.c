@@ -15,9 +15,9 @@
 #define EACH_KIT(kit) for (picture_kit *kit = kits; kit < kits + kits_open; kit++)
 
 enum { KITS = 5, WIDTH = 16, HEIGHT = 12 };
-/* integers; desktop GL, GL ES, desktop GL by EGL; desktop GL with plain arrays */
+/* in order: integers; desktop GL, GL ES, desktop GL by EGL; desktop GL with plain arrays */
 static picture_kit kits[KITS];
-static int kits_open; /* integers alone where no GL is built in */
+static int kits_open; /* 1 where no GL is built in */
 
 static int open_kits(void **state)
 {
@@ -180,7 +180,7 @@ static void texture_rows_begin_in_the_south(void **state)
                                        PICTURE_WHITE);
         draw_textured(&draw, texture, 0);
         assert_true(picture_is(kit, &draw, 1, map_picture));
-        kit->frame.camera.pitch = 0; /* upright ones: t grows with z */
+        kit->frame.camera.pitch = 0; /* upright squares: t grows with z */
         draw = picture_square(kit, PICTURE_SOUTH, -4 * M, 8 * M, -4 * M, 8 * M, PICTURE_WHITE);
         draw_textured(&draw, texture, C3D_DRAW_TEX_XZ);
         assert_true(picture_is(kit, &draw, 1, map_picture));
@@ -221,7 +221,7 @@ static void alpha_test_leaves_holes(void **state)
         c3d_draw draws[2];
         draws[0] = picture_square(kit, PICTURE_SOUTH, -4 * M, 8 * M, -4 * M, 8 * M, PICTURE_WHITE);
         draw_textured(&draws[0], texture, C3D_DRAW_TEX_XZ | C3D_DRAW_ALPHA_TEST);
-        /* cyan behind */
+        /* a cyan square behind */
         draws[1] = picture_square(kit, PICTURE_SOUTH, -16 * M, 16 * M, -16 * M, 32 * M,
                                   0xFFFFFF00u);
         assert_true(
@@ -293,7 +293,7 @@ static void fog_grows_with_depth(void **state)
             c3d_draw draw = picture_square(kit, PICTURE_SOUTH, -away, away, -away,
                                            (int32_t)(2 * away), PICTURE_BLUE);
             picture_render(kit, &draw, 1, rgb);
-            /* a corner: by depth */
+            /* a corner is hidden by depth */
             assert_true(abs(rgb[0] - expected[i].red) <= 3 && abs(rgb[2] - expected[i].blue) <= 3);
             draw.flags = C3D_DRAW_BACKDROP;
             picture_render(kit, &draw, 1, rgb);
@@ -341,14 +341,14 @@ static void backdrops_are_behind_everything(void **state)
             picture_square(kit, PICTURE_SOUTH, -90 * M, 90 * M, 0, 90 * M, PICTURE_RED)
         };
         draws[0].flags = C3D_DRAW_BACKDROP; /* beyond the far plane */
-        draws[1].flags = C3D_DRAW_BACKDROP; /* nearer than what is drawn over it */
+        draws[1].flags = C3D_DRAW_BACKDROP; /* nearer to the eye than the draw over it */
         assert_true(
             picture_is(kit, draws, 3,
                        "rrrrrrrrgggggggg\nrrrrrrrrgggggggg\nrrrrrrrrgggggggg\nrrrrrrrrgggggggg\n"
                        "rrrrrrrrgggggggg\nrrrrrrrrgggggggg\ngggggggggggggggg\ngggggggggggggggg\n"
                        "gggggggggggggggg\ngggggggggggggggg\ngggggggggggggggg\ngggggggggggggggg\n"));
         draws[1].origin_wu[0] = 0;       /* the right half only */
-        draws[2].origin_wu[1] = 110 * M; /* ordinary things beyond the far plane are not drawn */
+        draws[2].origin_wu[1] = 110 * M; /* beyond the far plane only a backdrop is drawn */
         assert_true(
             picture_is(kit, draws, 3,
                        "bbbbbbbbgggggggg\nbbbbbbbbgggggggg\nbbbbbbbbgggggggg\nbbbbbbbbgggggggg\n"
@@ -388,7 +388,7 @@ static void lines_on_top_keep_their_pixels(void **state)
     EACH_KIT(kit)
     {
         kit->frame.camera.pitch = -8192;
-        /* as for a picture 16 times as wide: depth grows 0.8 % a row */
+        /* the focal distance of a picture 16 times as wide: depth grows by 0.8 % a row */
         kit->frame.camera.focal_q8 = 128 * 256;
         for (int32_t roll = 0; roll < 65536; roll += 3001) {
             uint8_t alone[WIDTH * HEIGHT * 3], over[WIDTH * HEIGHT * 3];
@@ -421,7 +421,8 @@ static void overlays_lie_on_top(void **state)
         c3d_begin(kit->device, &kit->frame);
         c3d_draw_strip(kit->device, &near);
         c3d_overlay(kit->device, texture, 2, 1, 8, 8);
-        c3d_draw_strip(kit->device, &near); /* equal depth: drawn again, over the overlay */
+        c3d_draw_strip(kit->device,
+                       &near); /* at equal depth the square is drawn again, over the overlay */
         c3d_overlay(kit->device, texture, 2, 1, 8, 8);
         c3d_end(kit->device);
         assert_int_equal(c3d_read_rgb(kit->device, rgb), FF_OK);

@@ -42,7 +42,7 @@ static void stale_handles_draw_nothing_and_are_counted(void **state)
     c3d_mesh_free(kit.device, old);
     c3d_texture_free(kit.device, (c3d_texture){ 0x00010003 });
     c3d_overlay(kit.device, (c3d_texture){ 0 }, 0, 0, 8, 8);
-    c3d_mesh_free(kit.device, (c3d_mesh){ 0 }); /* nothing to free is nothing wrong */
+    c3d_mesh_free(kit.device, (c3d_mesh){ 0 }); /* to free no mesh is no fault */
     c3d_texture_free(kit.device, (c3d_texture){ 0 });
     c3d_get_stats(kit.device, &stats);
     assert_int_equal(stats.stale_handles, 8);
@@ -160,7 +160,7 @@ static void devices_need_their_memory_and_their_gl(void **state)
     missing_buffers = 0;
     assert_int_equal(c3d_open(gl, &desc, memory, plain_bytes, &device), FF_ERR_UNSUPPORTED);
     missing_buffers = 1;
-    /* plain arrays need room for copies */
+    /* plain arrays need memory for copies */
     assert_int_equal(c3d_open(gl, &desc, memory, bytes, &device), FF_ERR_MEMORY);
     assert_int_equal(c3d_open(gl, &desc, memory, plain_bytes, &device), FF_OK);
     c3d_get_stats(device, &stats);
@@ -276,7 +276,7 @@ static void every_way_to_draw_gives_the_same_picture(void **state)
     for (int view = 0; view < 8; view++) {
         c3d_camera camera = hill_camera(view * 8192, 3 * M, -7 * M);
         for (int i = 0; i < 5; i++) render_hills(&kits[i], &camera, C3D_DRAW_COLOURED, rgb[i]);
-        assert_memory_equal(rgb[0], rgb[1], sizeof rgb[0]); /* buffers or not */
+        assert_memory_equal(rgb[0], rgb[1], sizeof rgb[0]); /* with buffers and without */
         assert_memory_equal(rgb[2], rgb[3], sizeof rgb[0]);
         for (int i = 2; i < 5; i++) {
             int differ = 0;
@@ -322,8 +322,8 @@ static void devices_share_a_context(void **state)
     picture_close(&kit);
 }
 
-/* Low over the common edge, from everywhere: through no pixel of it may the clear colour be
- * seen. */
+/* Seen low over the common edge from everywhere, no pixel along that edge shows the clear colour.
+ */
 static void neighbours_meet_without_a_crack(void **state)
 {
     (void)state;

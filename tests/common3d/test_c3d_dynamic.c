@@ -1,5 +1,5 @@
-/* What comes and goes in flight: strips and lines made and freed, points, labels; the same pixels
- * on every back end. */
+/* Things made and freed in flight: strips, lines, points, labels; the same pixels on every back
+ * end. */
 #include "../rig/picture.h"
 
 #include <setjmp.h>
@@ -53,7 +53,7 @@ typedef struct dynamic_scene {
     c3d_draw draw[8], points[4];
     c3d_label_draw label[4];
     size_t draws, point_draws, labels;
-    size_t labels_after; /* so many draws */
+    size_t labels_after; /* the labels come after this many draws */
 } dynamic_scene;
 
 static void show(picture_kit *kit, const dynamic_scene *scene, char *text)
@@ -138,7 +138,7 @@ static void strips_come_and_go(void **state)
         }
         assert_true(refused > 20 && refused < 280);
         assert_true(stats_of(&kit).strip_indices_high <= INDICES_MAX);
-        /* all of it is there again */
+        /* all memory is free again */
         for (unsigned i = 0; i < 7; i++) c3d_strip_free(kit.device, strip[i]);
         for (int round = 0; round < 3; round++) {
             c3d_strip all = column_strip(kit.device, 0, INDICES_MAX, 0);
@@ -176,13 +176,13 @@ static void freed_strips_are_stale(void **state)
         assert_null(strchr(text, 'w'));
         assert_int_equal(stats_of(&kit).stale_handles, 1);
         c3d_strip_free(kit.device, old);
-        c3d_strip_free(kit.device, (c3d_strip){ 0 }); /* nothing to free is nothing wrong */
+        c3d_strip_free(kit.device, (c3d_strip){ 0 }); /* to free no strip is no fault */
         assert_int_equal(stats_of(&kit).stale_handles, 2);
     }
 }
 
-/* A strip may go as soon as it is drawn, a backdrop's too, which the integers keep for the end of
- * the frame. */
+/* A strip may be freed as soon as it is drawn, even a backdrop's, which the integer back end draws
+ * only at the end of the frame. */
 static void a_strip_may_go_within_the_frame(void **state)
 {
     (void)state;
@@ -325,13 +325,13 @@ static void points_are_squares_of_pixels(void **state)
         assert_shows(&kit, &scene, expected);
         assert_int_equal(stats_of(&kit).frame_draws, 3);
         assert_int_equal(stats_of(&kit).stale_handles, 0);
-        /* one colour for all; a texture is not looked at */
+        /* one colour for all points; a texture is ignored */
         for (int i = 0; i < 3; i++) {
             scene.points[i].flags = C3D_DRAW_TEXTURED;
             for (char *c = strpbrk(expected, "rgb"); c; c = strpbrk(c, "rgb")) *c = 'w';
         }
         assert_shows(&kit, &scene, expected);
-        /* hidden as what is at their depth */
+        /* points are hidden like a surface at their depth */
         scene.draws = 1;
         scene.draw[0] = picture_square(&kit, PICTURE_SOUTH, 0, 16 * M - M / 8, -64 * M, 128 * M,
                                        PICTURE_GREEN);
@@ -341,7 +341,8 @@ static void points_are_squares_of_pixels(void **state)
         scene.points[2].flags = C3D_DRAW_ON_TOP;
         for (int row = 4; row < 7; row++) memset(expected + row * (WIDTH + 1) + 24, 'w', 3);
         assert_shows(&kit, &scene, expected);
-        /* beyond the planes, behind the camera, the middle beside the picture: none */
+        /* beyond the planes, behind the camera or with the middle beside the picture no point is
+         * drawn */
         static const int64_t away[] = { 5000 * M, -16 * M, M / 8 };
         scene.draws = 0;
         for (int i = 0; i < 3; i++) scene.points[i].origin_wu[1] = away[i];
@@ -444,7 +445,7 @@ static void labels_stand_over_their_points(void **state)
         memcpy(expected + 9 * (WIDTH + 1) + 9, "g...g", 5);
         assert_shows(&kit, &scene, expected);
         assert_int_equal(stats_of(&kit).frame_draws, 1);
-        /* at any distance, whatever the camera does, and in any fog */
+        /* a label looks the same at any distance, in any fog, however the camera turns */
         static const int64_t away[] = { M / 2, 300 * M, 3999 * M };
         kit.frame.fog_end_wu = M;
         for (int i = 0; i < 3; i++) {
@@ -455,7 +456,7 @@ static void labels_stand_over_their_points(void **state)
         scene.label[0] = label_at(scene.label[0].label, WIDTH - 1 - 14, HEIGHT - 1 - 10, 16 * M);
         assert_shows(&kit, &scene, expected);
         kit.frame.camera.roll = 0;
-        /* moved on the screen */
+        /* the point moves on the screen */
         scene.label[0] = label_at(scene.label[0].label, 14 - 7, 10 + 3, 16 * M);
         scene.label[0].right_px = 7;
         scene.label[0].down_px = -3;
@@ -493,7 +494,8 @@ static void labels_are_cut_by_the_picture_s_edges(void **state)
     }
 }
 
-/* Before sky and something that hides it or does not, drawn before the label or after it. */
+/* A label before the sky, and with a surface that hides it or does not, drawn before the label or
+ * after it. */
 static void hide_labels(picture_kit *kit, size_t labels_after)
 {
     char text[TEXT];
@@ -506,7 +508,7 @@ static void hide_labels(picture_kit *kit, size_t labels_after)
                                    PICTURE_WHITE);
     show(kit, &scene, text);
     assert_memory_equal(text + 7 * (WIDTH + 1) + 9, "gggggw", 6);
-    /* ground at the point may be drawn a little nearer than it is */
+    /* ground at the label's point may be drawn a little nearer than it is */
     scene.draw[1].origin_wu[1] = 16 * M - M / 8;
     show(kit, &scene, text);
     assert_memory_equal(text + 7 * (WIDTH + 1) + 9, "gggggw", 6);

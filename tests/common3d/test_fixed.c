@@ -67,7 +67,7 @@ static void square_root_is_the_floor(void **state)
     assert_int_equal(c3d_isqrt64(UINT64_MAX), UINT32_MAX);
 }
 
-/* 128 bits, for machines that have none. */
+/* A number of 128 bits, for machines without such a type. */
 typedef struct wide {
     uint64_t high, low;
 } wide;
@@ -102,7 +102,7 @@ static int is_quotient(int64_t quotient, int64_t a, int64_t b, int64_t c)
            is_less(whole, product(size + 1, divisor));
 }
 
-/* Any sizes, and quotients that are just reached or just missed. */
+/* Operands of any size, and quotients at a whole number or just below it. */
 static void division_is_the_floor(void **state)
 {
     (void)state;
@@ -255,7 +255,7 @@ static void eye_space_of_far_points(void **state)
         c3d_to_eye(&r, offset, eye);
         c3d_to_eye_q14(&r, offset, fine);
         for (int row = 0; row < 3; row++) {
-            int64_t high = 0, low = 0; /* of the sum, in parts of 2^16: exact */
+            int64_t high = 0, low = 0; /* the exact sum, split at 2^16 */
             for (int i = 0; i < 3; i++) {
                 int64_t rest = offset[i] & 0xFFFF;
                 high += r.m[row][i] * ((offset[i] - rest) / 65536);

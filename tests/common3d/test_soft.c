@@ -1,6 +1,6 @@
 /* The integer back end by itself: its fill rule, every pixel once, clipping, formats, its memory,
- * and frames that are the same on every machine. That its pictures are those of the others is for
- * test_c3d.c (small ones) and test_soft_agrees.c. */
+ * and frames that are the same on every machine. test_c3d.c (small pictures) and test_soft_agrees.c
+ * compare its pictures with the other back ends'. */
 #include "../rig/picture.h"
 
 #include <setjmp.h>
@@ -105,8 +105,8 @@ static void count_writes(bench *b, c3d_draw *draw, uint8_t *writes)
     }
 }
 
-/* From far above, so that triangles are smaller than a pixel, to so near that the guard band clips
- * them, at any angle; of one colour and under a texture, which has ways of its own. */
+/* Seen from far above, where triangles are smaller than a pixel, to so near that the guard band
+ * clips them, at any angle; in one colour, and under a texture, whose triangles take other code. */
 static void every_pixel_of_a_surface_is_written_once(void **state)
 {
     (void)state;
@@ -183,7 +183,7 @@ static void lines_cross_the_near_plane(void **state)
     static uint8_t rgb[96 * 72 * 3];
     picture_kit kit;
     assert_int_equal(picture_open(&kit, PICTURE_SOFT_565, 96, 72, 0), FF_OK);
-    /* its west edge leads from behind to ahead */
+    /* its west edge runs from behind the camera to ahead of it */
     c3d_draw draw = picture_square(&kit, PICTURE_LEVEL, 0, -M, -M, 4 * M, PICTURE_RED);
     draw.flags = C3D_DRAW_WIREFRAME;
     picture_render(&kit, &draw, 1, rgb);
@@ -334,8 +334,8 @@ static void frames_are_the_same_on_every_machine(void **state)
     assert_int_equal(different, 0);
 }
 
-/* The fast spans of RGB565 against the exact ones of RGBA8888: a step of the narrow format apart,
- * edges and all. */
+/* The fast spans of RGB565 differ from the exact ones of RGBA8888 by at most one step of the narrow
+ * format, at edges too. */
 static void formats_show_the_same(void **state)
 {
     (void)state;

@@ -15,7 +15,7 @@
 #define MB    ((size_t)1 << 20)
 #define METRE FF_WU_PER_METRE
 enum { WIDTH = 240, HEIGHT = 320, PIXELS = WIDTH * HEIGHT, HEADINGS = 6, TOLERANCE = 8 };
-#define PART_MAX 200 /* one in so many pixels may disagree */
+#define PART_MAX 200 /* one pixel in PART_MAX may disagree */
 
 enum { GLES1, SOFT, SOFT_565, KINDS };
 static const char *const kind_name[KINDS] = { "gles1", "soft", "soft, RGB565" };
@@ -73,7 +73,7 @@ static void draw(view *v, int heading)
     assert_int_equal(c3d_read_rgb(ff_client_device(v->rig.client), v->rgb), FF_OK);
 }
 
-/* A picture that shows next to nothing would agree with anything. */
+/* Counts colours: a picture that shows next to nothing would agree with anything. */
 static int colours_in(const uint8_t *rgb)
 {
     uint8_t seen[512] = { 0 };

@@ -1,6 +1,6 @@
-/* A whole client over a small pack, local or by a simulated link and a real session, with every
- * changed frame judged: for the stiff and extreme cases. Faults go into the row of the case, never
- * stop it. */
+/* A whole client for the stiff and extreme cases: over a small pack, local or behind a simulated
+ * link and a real session; every changed frame is judged. A fault is written into the row of the
+ * case and does not stop it. */
 #ifndef EXTREME_RIG_H
 #define EXTREME_RIG_H
 
@@ -11,7 +11,7 @@
 #include "../../sim/judge/sim_audit.h"
 #include "../../sim/link/sim_server.h"
 
-#define EXTREME_ERROR_PX 6 /* asked for by FF_MEASURE_PIXELS, the rigs' default */
+#define EXTREME_ERROR_PX 6 /* the error that FF_MEASURE_PIXELS, the rigs' default, asks for */
 
 typedef struct extreme_rig {
     extreme_row *row;
@@ -30,8 +30,8 @@ typedef struct extreme_rig {
     ff_client *client;
     /* 240 x 320, 60 degrees wide, 200 m above the middle, looking north and down a little */
     c3d_camera camera;
-    uint32_t changes; /* frames that said: draw */
-    uint8_t untimed;  /* 1: the case takes its run time itself */
+    uint32_t changes; /* frames whose update asked to be drawn */
+    uint8_t untimed;  /* 1: the case measures its run time itself */
 } extreme_rig;
 
 /* Ground for pack_fixture: 0 or 65535 in blocks of eight samples, 120 everywhere. */
@@ -53,7 +53,7 @@ void extreme_place(extreme_rig *rig, double x_m, double y_m, double z_m);
 /* A frame step_us later; every third is drawn and timed, an ordinary one with it. A crack, too many
  * requests in flight or a protocol error fail the row. 1 when the picture changed. */
 int extreme_frame(extreme_rig *rig, int64_t step_us);
-/* Frames until nothing is out or queued for ten of them; fails the row after frames_max. */
+/* Steps until for ten frames no request is queued or unanswered; fails the row after frames_max. */
 void extreme_settle(extreme_rig *rig, int64_t step_us, unsigned frames_max);
 /* No oscillation: 40 frames with a still camera change nothing and ask for nothing; then, with the
  * camera going to and fro by one wu and one step of angle, nothing is asked for a second time. */
@@ -62,12 +62,12 @@ void extreme_calm(extreme_rig *rig);
  * and, where it sees no ground, of points of the ground in the window, hidden or not, by the
  * reference. */
 double extreme_audit(extreme_rig *rig);
-/* What the measure's EXTREME_ERROR_PX on the axis can become in the window's corner, and half a
- * pixel for rounding. */
+/* The most that EXTREME_ERROR_PX on the axis can become in the window's corner, and half a pixel
+ * for rounding. */
 double extreme_error_bound(const c3d_camera *camera);
-/* All three: settle, audit into the row, calm. */
+/* Settles, audits into the row, and tests for calm. */
 void extreme_judge(extreme_rig *rig);
-/* At the end of all cases: gives back the ordinary one. */
+/* Frees the ordinary case; called once, after all cases. */
 void extreme_ordinary_close(void);
 /* Error of the drawn heights round the camera in pixels, by the fixture's own function: its
  * terrain has 65536 cells of 10 m a side. */

@@ -1,7 +1,6 @@
-/* The arithmetic of the core once more, in double precision and straight from the definitions: what
- * the integers are judged by. For tests only, never linked into the core. Positions in wu, pixels
- * as c3d.h counts them.
- */
+/* The arithmetic of the core once more, in double precision and straight from the definitions: the
+ * integers are judged by it. For tests only, never linked into the core. Positions in wu, pixels as
+ * c3d.h counts them. */
 #ifndef REFERENCE_H
 #define REFERENCE_H
 
@@ -33,8 +32,8 @@ double ref_error_px(const ref_camera *ref, const double low_wu[3], const double 
 /* Hybrid, eq. 6 and 7: sideways; eq. 13: forwards. */
 double ref_sideways_max(double error_px, double z, double focal_px);
 double ref_forwards_max(double error_px, double z, double half_width_px);
-/* Where a panorama taken at taken_wu shows a point, against where it is: pixels apart, or -1 when
- * one of the two is not in front of the eye or neither is in the window. */
+/* Pixels between the place where a panorama taken at taken_wu shows a point and the place where the
+ * point is; -1 when one of the two is not in front of the eye or neither is in the window. */
 double ref_panorama_error_px(const ref_camera *ref, const double taken_wu[3],
                              const double point_wu[3]);
 

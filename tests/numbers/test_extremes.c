@@ -88,7 +88,7 @@ static void one_node(void **state)
     end_case(&rig);
 }
 
-/* Selections at the same place of both terrains in turns. */
+/* Selects at the same place of both terrains in turns. */
 static void time_selections(terrain_fixture *own, terrain_fixture *ordinary, ff_view view,
                             const ff_quality *quality, extreme_cost *cost)
 {
@@ -110,7 +110,8 @@ static void terrain_of_64k(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    /* The fixture samples the error of wide nodes: a little more than asked for may stay. */
+    /* The fixture measures the error of wide nodes at some samples only: the drawn error may be a
+     * little larger than the one asked for. */
     extreme_row *row = extreme_row_begin("64k x 64k terrain, 655 km", "err_px round the camera",
                                          "px", 3);
     static const int32_t at_m[][2] = {
@@ -282,7 +283,7 @@ static void near_far_ratio(void **state)
 
 /* ---- time and motion ---- */
 
-/* Settled at the end, over a link, it shows what a client with the pack itself shows. */
+/* Once settled over a link the client shows what a client with the pack itself shows. */
 static void expect_same_as_local(extreme_rig *rig)
 {
     extreme_rig local;
@@ -389,8 +390,8 @@ static void gps_noise(void **state)
 
 typedef struct link_case {
     const char *name, *link;
-    unsigned seconds; /* for a flight of 800 m, then it stops and settles within as many again */
-    int whole;        /* it settles */
+    unsigned seconds; /* flies 800 m in this time, then stops and settles within the same time */
+    int whole;        /* the client settles */
 } link_case;
 
 static void fly_over_link(const link_case *c)
@@ -417,7 +418,7 @@ static void fly_over_link(const link_case *c)
         extreme_row_value(row, extreme_audit(&rig));
         extreme_calm(&rig);
         expect_same_as_local(&rig);
-    } else { /* coarser, and said */
+    } else { /* the picture is coarser, and the statistics say so */
         row->bound = 400;
         ff_client_stats stats;
         ff_client_get_stats(rig.client, &stats);
@@ -463,7 +464,7 @@ static int outdated(const c3d_camera *camera, const int32_t taken_wu[3], int32_t
     return ff_panorama_outdated(camera, taken_wu, &sight, RULE_Z_WU, error_px_q8);
 }
 
-/* A limit's evaluation against an ordinary one's. */
+/* Times a rule's evaluation at a limit against an ordinary one. */
 static void time_limit(extreme_cost *cost, int64_t error, int64_t w)
 {
     static volatile int64_t kept;
@@ -522,8 +523,8 @@ static void allowed_error_to_zero(void **state)
     end_row(row);
 }
 
-/* 1 when the joint rule keeps a set of O after this motion; timed against half a pixel's motion
- * with a pixel allowed. */
+/* 1 when the joint rule keeps a set taken at O after this motion; timed against an ordinary case,
+ * half a pixel's motion with one pixel allowed. */
 static int set_is_kept(extreme_cost *cost, int64_t moved_wu, int32_t error)
 {
     static const int32_t taken[3] = { 0, 0, 0 };

@@ -23,9 +23,9 @@
 
 #define M          FF_WU_PER_METRE
 #define QUARTER_PX 0.25
-/* What is nearer may be more than 1/4 px off where a pixel is as narrow as here (20 degrees over
- * 640 px): GL's single precision costs up to half a millimetre, the units of the integer back end
- * one and a half where the far plane is 100 km away. */
+/* Nearer ground may be more than 1/4 px off where a pixel is as narrow as here (20 degrees over 640
+ * px): GL's single precision costs up to half a millimetre, the integer back end's units cost one
+ * and a half where the far plane is 100 km away. */
 #define NEAR_M    8
 #define HEIGHTS_M 9000 /* between the lowest and the highest of ordinary terrains, at most */
 
@@ -58,7 +58,7 @@ static void projection_of_the_eye_path(void **state)
         ref_camera_of(&camera, &ref);
         ref_point_in_view(&random, &ref, point);
         if (!ref_project(&ref, point, expected) || !ref_in_window(&ref, expected, 100))
-            continue; /* rounding to wu took it out of the picture */
+            continue; /* rounding to wu moved the point out of the picture */
         for (int axis = 0; axis < 3; axis++)
             offset[axis] = (int64_t)point[axis] - camera.pos_wu[axis];
         assert_true(project_q14(&camera, offset, got));
@@ -76,11 +76,12 @@ typedef struct ground_view {
     c3d_camera camera;
     ref_camera ref;
     c3d_draw draw;
-    int32_t vertex[3]; /* of a sample that shows in the window, or a little beyond */
+    int32_t vertex[3]; /* a sample that shows in the window or a little beyond */
 } ground_view;
 
-/* A terrain under the camera, and the sample nearest to a random point in view; 0 when there is
- * none. The camera moves to a fitting height, and by the way from the point to the sample. */
+/* Makes a terrain under the camera and takes the sample nearest to a random point in view; 0 when
+ * there is none. The camera moves to a fitting height, and as far as the sample lies from the
+ * point. */
 static int try_ordinary_ground(sys_random *random, const c3d_camera *camera, ground_view *view)
 {
     ff_terrain_info info = { .node_log2 = 3,
@@ -97,7 +98,7 @@ static int try_ordinary_ground(sys_random *random, const c3d_camera *camera, gro
     view->camera.pos_wu[2] = ref_between(random, info.hoffset_wu,
                                          info.hoffset_wu + (int32_t)(info.height_max * unit_wu[2]) +
                                              500 * M);
-    c3d_camera earlier = view->camera; /* the frame still follows it */
+    c3d_camera earlier = view->camera; /* the frame still follows this camera */
     for (int axis = 0; axis < 2; axis++)
         earlier.pos_wu[axis] += ref_between(random, -500 * M, 500 * M);
     ff_ground_frame frame = { .set = 0 };
@@ -128,14 +129,13 @@ static void ordinary_ground(sys_random *random, const c3d_camera *camera, ground
         ;
 }
 
-/* Largest distance to the true pixel, by depth: what is nearer than 1 m, 2 m, 4 m ... and
- * beyond. */
+/* Largest distance to the true pixel by depth: nearer than 1 m, 2 m, 4 m ..., and beyond. */
 typedef struct by_depth {
     double worst[8];
     uint32_t compared;
 } by_depth;
 
-/* Vertex `at` of the draw is shown at px. */
+/* Judges one vertex: the back end shows vertex `at` of the draw at px. */
 static void compare_vertex(const ground_view *view, const int32_t at[3], const double px[2],
                            by_depth *result)
 {
@@ -258,8 +258,7 @@ static void projection_of_vertices_by_soft(void **state)
     sys_random_seed(&random, 11, 61);
     soft_state *soft = calloc(1, c3d_backend_soft()->state_bytes_for(&desc));
     assert_int_equal(c3d_backend_soft()->open(soft, &desc, &buffers), FF_OK);
-    for (uint32_t i = ref_views(10); i > 0;
-         i--) { /* beginning a frame takes longer than all else */
+    for (uint32_t i = ref_views(10); i > 0; i--) { /* to begin a frame takes longer than all else */
         c3d_frame frame = { .camera = ref_ordinary_camera(&random) };
         c3d_rotation rotation;
         c3d_rotation_from_camera(&frame.camera, &rotation);
@@ -284,7 +283,7 @@ static ff_box random_box(sys_random *random, const ref_camera *ref)
     for (int axis = 0; axis < 3; axis++) {
         int64_t size = 1 +
                        (int64_t)sys_random_below(random, 1u << (4 + sys_random_below(random, 20)));
-        /* beside, over, or beyond the point */
+        /* the box lies beside, over or beyond the point */
         int64_t shift = (int64_t)sys_random_below(random, 3) * size - size;
         box.lo[axis] = (int64_t)(point[axis] - ref->pos_wu[axis]) - size / 2 + shift;
         box.hi[axis] = box.lo[axis] + size;
@@ -324,8 +323,8 @@ static void culling_drops_nothing_seen(void **state)
         int drawn = ff_box_in_view(&tree, &box);
         dropped += !drawn;
         if (drawn && i % 8)
-            /* only what is left out can be wrong; an eighth of the rest keeps the count below
-             * honest */
+            /* only a culled box can be wrong; the test below looks at an eighth of the others to
+             * keep the count honest */
             continue;
         int visible = box_seen(&random, &ref, &box);
         seen += (uint32_t)visible;
@@ -361,8 +360,8 @@ static void random_node(sys_random *random, struct ff_tree *tree, ff_node *node)
     node->error_code = (uint8_t)ref_between(random, 1, 120);
 }
 
-/* f is 1 within the rounding of d to a wu and of 1/f to 2^-16: inside this band either choice is
- * right. */
+/* 1 when f is 1 within the rounding of d to a wu and of 1/f to 2^-16: inside this band either
+ * choice is right. */
 static void node_choice_by_distance(void **state)
 {
     (void)state;
@@ -528,7 +527,7 @@ static void height_of_the_drawn_surface(void **state)
     double worst = 0, step = fx.info.hscale_q24 / 65536.0;
     for (uint32_t i = ref_views(1); i > 0; i--) {
         const ff_drawn *node = &cut[sys_random_below(&random, count)];
-        /* a border strip has triangles of its own: test_surface has those */
+        /* a border strip has triangles of its own; test_tree_view.c tests those */
         int ring = node->coarser ? 1 : 0;
         uint32_t column = (uint32_t)ref_between(&random, ring, 7 - ring),
                  row = (uint32_t)ref_between(&random, ring, 7 - ring);

@@ -1,5 +1,5 @@
-/* Any bytes as a bare JPEG. Bytes 0 and 1: width and height, 1..256. What decodes does so again,
- * alike. */
+/* Any bytes as a bare JPEG. Bytes 0 and 1: width and height, 1..256. An input that decodes gives
+ * the same picture when decoded again. */
 #include "../../platform/sys.h"
 
 #include <assert.h>

@@ -142,7 +142,7 @@ static void files_are_written_whole(void **state)
     assert_int_equal(sys_write_file(SCRATCH "/file", "old", 3), FF_OK);
     assert_int_equal(sys_map_file(SCRATCH "/file", &mapping), FF_OK);
     assert_int_equal(sys_write_file(SCRATCH "/file", big, sizeof big), FF_OK);
-    assert_int_equal(mapping.size, 3); /* the old file lives on for who has it */
+    assert_int_equal(mapping.size, 3); /* whoever mapped the old file still sees it */
     assert_memory_equal(mapping.bytes, "old", 3);
     sys_unmap_file(&mapping);
     assert_null(mapping.bytes);
@@ -269,7 +269,7 @@ static void bare_jpegs_share_their_tables(void **state)
     }
 }
 
-/* Whatever could bring other tables, sizes or scans is refused before libjpeg sees it. */
+/* Bytes that could bring other tables, sizes or scans are refused before libjpeg sees them. */
 static void markers_in_bare_jpegs_are_errors(void **state)
 {
     (void)state;
@@ -313,7 +313,9 @@ static void truncated_jpegs_are_errors(void **state)
     static uint8_t bytes[65536], back[SIDE * SIDE * 3];
     int count = encode(bytes, sizeof bytes, 80);
     for (int length = 0; length < count; length += length + 16 < count ? 16 : 1) {
-        uint8_t *exact = malloc((size_t)length + 1); /* so that reading past the end is seen */
+        uint8_t *exact = malloc(
+            (size_t)length +
+            1); /* of the exact size, so that the sanitizer sees a read past the end */
         memcpy(exact, bytes, (size_t)length);
         assert_int_equal(sys_jpeg_decode(exact, (size_t)length, SIDE, SIDE, back), FF_ERR_FORMAT);
         free(exact);

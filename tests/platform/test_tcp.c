@@ -43,7 +43,7 @@ static int reconnect_soon(sys_stream *stream)
     return rc;
 }
 
-/* Receives into the void until something else than "nothing yet" comes. */
+/* Receives and throws bytes away until recv answers anything but 0 ("nothing yet"). */
 static int recv_soon(sys_stream *stream, uint8_t *bytes, size_t capacity)
 {
     int got = 0;
@@ -113,7 +113,7 @@ static void a_slow_reader_makes_sends_partial(void **state)
         if (taken > 0 && taken < (int)sizeof block) partial = 1;
     } while (taken > 0);
     assert_true(partial);
-    p.out.close(p.out.state); /* what was taken still arrives, then the end */
+    p.out.close(p.out.state); /* the bytes that send took still arrive, then the end */
     int got;
     while ((got = recv_soon(&p.in, back, sizeof back)) > 0) {
         for (int i = 0; i < got; i++) sum_in = sum_in * 31 + back[i];

@@ -1,5 +1,5 @@
-/* Any bytes as a pack: once as they are, once with the header's checksum put right, so that what
- * lies behind it is reached. */
+/* Any bytes as a pack: once as they are, once with a right checksum in the header, so that the
+ * reader gets past it. */
 #include "../../protocol/ff_pack.h"
 
 #include <assert.h>
