@@ -9,8 +9,7 @@
 
 /* Rings of vertices from nadir to zenith: height and distance from the axis in vertex units. Below
  * the horizon the backdrop turns to the colour of bare ground, 10 to 20 degrees down (distant
- * ground above that ends in fog): what shows there is ground that has not come, or a pixel beside a
- * node too far away for the common frame (ff_ground_frame.h), and should not sparkle. */
+ * ground above that ends in fog): what shows there is ground that has not come. */
 static const struct {
     int16_t radius, z;
     uint8_t rgb[3];
@@ -25,8 +24,8 @@ static const int8_t circle[COLUMNS][2] = { { 0, 64 },  { 45, 45 },   { 64, 0 }, 
 static void set_vertex(c3d_vertex *vertex, int level, int column)
 {
     memset(vertex, 0, sizeof *vertex);
-    vertex->x = (int16_t)(circle[column][0] * ring[level].radius / 64);
-    vertex->y = (int16_t)(circle[column][1] * ring[level].radius / 64);
+    vertex->x = circle[column][0] * ring[level].radius / 64;
+    vertex->y = circle[column][1] * ring[level].radius / 64;
     vertex->z = ring[level].z;
     memcpy(vertex->rgba, ring[level].rgb, 3);
     vertex->rgba[3] = 255;

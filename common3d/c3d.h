@@ -45,8 +45,10 @@ int32_t c3d_focal_q8(int32_t fov_brad16, int32_t width_px);
 /* World offset from the camera (|each| < 2^33 wu) to eye space, wu. */
 void c3d_to_eye(const c3d_rotation *rotation, const int64_t offset_wu[3], int64_t eye_wu[3]);
 
-typedef struct c3d_vertex { /* 12 bytes */
-    int16_t x, y, z, pad;
+/* x, y and z count the draw's units (its scales) from its origin. Along no axis may a vertex lie
+ * 2^33 wu from the camera. 16 bytes. */
+typedef struct c3d_vertex {
+    int32_t x, y, z;
     uint8_t rgba[4];
 } c3d_vertex;
 
@@ -67,19 +69,13 @@ typedef struct {
 enum c3d_texture_format { C3D_RGB565, C3D_RGBA5551, C3D_RGBA8888 };
 
 enum c3d_draw_flags {
-    /* texture times vertex colour; texture coordinates come from the vertex's x and y by tex_scale
-     * and tex_offset */
-    C3D_DRAW_TEXTURED = 1,
+    C3D_DRAW_TEXTURED = 1,    /* texture times vertex colour */
     C3D_DRAW_COLOURED = 2,    /* use vertex colours, else `colour` */
     C3D_DRAW_WIREFRAME = 4,   /* the strip's edges, or its lines: a pixel wide, no texture */
     C3D_DRAW_BACKDROP = 8,    /* the sky, a panorama: no depth test, no depth written, no fog */
     C3D_DRAW_ALPHA_TEST = 16, /* texels with alpha below one half are not drawn */
     /* tests depth with a bias towards the viewer of 1/64 of the distance: wireframe over ground */
-    C3D_DRAW_ON_TOP = 32,
-    /* For upright quads (a panorama's side faces): texture coordinates come from other axes than x
-     * and y. */
-    C3D_DRAW_TEX_XZ = 64, /* s from x, t from z */
-    C3D_DRAW_TEX_YZ = 128 /* s from y, t from z */
+    C3D_DRAW_ON_TOP = 32
 };
 
 typedef struct c3d_draw {
@@ -91,12 +87,12 @@ typedef struct c3d_draw {
     uint32_t flags;       /* enum c3d_draw_flags */
     uint32_t colour;      /* 0xAABBGGRR, when not C3D_DRAW_COLOURED */
     c3d_texture texture;
-    /* s = (x - tex_origin)/2^tex_shift * tex_scale + tex_offset, in texture widths; t likewise from
-     * y: it grows to the north, so a texture's row 0 lies in the south */
+    /* A texture lies on the grid of the mesh, not on its places: vertex i is in column
+     * i % tex_columns and row i / tex_columns. s = column * scale + offset in texture widths, t
+     * likewise by row; t = 0 is the texture's first row. TEXTURED alone needs them. */
     int32_t tex_scale_q16[2], tex_offset_q16[2];
-    int32_t tex_origin[2];
-    uint8_t tex_shift;
-    uint8_t point_px; /* c3d_draw_points alone: edge of a point, 1..64 pixels */
+    uint16_t tex_columns; /* at least 1 */
+    uint8_t point_px;     /* c3d_draw_points alone: edge of a point, 1..64 pixels */
 } c3d_draw;
 
 /* A label's text stands upright on the screen, whatever the camera does, 7 pixels high and 6 pixels

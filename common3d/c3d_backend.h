@@ -1,8 +1,8 @@
 /* What a back end of the Common 3D API must offer: for authors of back ends; callers use c3d.h.
  *
  * c3d_device.c owns handles, pools, counters and all integer geometry; a back end owns what the
- * graphics library wants. A back end keeps its own state in `state_bytes` of the device's block,
- * zeroed, and never allocates. Everything it is handed is checked already: handles resolved,
+ * graphics library wants. A back end keeps its own state in state_bytes() of the device's
+ * block, zeroed, and never allocates. Everything it is handed is checked already: handles resolved,
  * indices inside the mesh, pictures powers of two.
  */
 #ifndef C3D_BACKEND_H
@@ -16,11 +16,12 @@
 #define C3D_EYE_SHIFT 14
 
 typedef struct c3d_mesh_data {
-    uint32_t buffer;            /* the back end's name of its copy; 0: none, use `vertices` */
-    const c3d_vertex *vertices; /* copy in the pool; NULL when `buffer` has the vertices */
+    uint32_t buffer; /* the back end's name of its copy; 0: none, use `vertices` */
+    /* copy in the pool, see mesh_form; NULL when `buffer` has the vertices */
+    const c3d_vertex *vertices;
     uint32_t count;
-    uint16_t reach[3];         /* largest |x|, |y|, |z| */
-    int16_t least[3], most[3]; /* x, y, z */
+    uint32_t reach[3];         /* largest |x|, |y|, |z| */
+    int32_t least[3], most[3]; /* x, y, z */
 } c3d_mesh_data;
 
 /* A strip's triangles and then its edges (pairs of indices, for lines), in one array or buffer.
@@ -52,13 +53,13 @@ typedef struct c3d_placed_label {
 
 struct c3d_backend {
     const char *name;
-    size_t state_bytes;
-    /* bytes of the state where they depend on the pools; NULL: state_bytes says them */
-    size_t (*state_bytes_for)(const c3d_desc *desc);
+    size_t (*state_bytes)(const c3d_desc *desc);
     /* The surface's context is current. *buffers says whether vertex buffers are wanted, and
      * receives whether they will be used. FF_OK or FF_ERR_UNSUPPORTED. */
     int (*open)(void *state, const c3d_desc *desc, int *buffers);
     void (*close)(void *state);
+    /* Turns a copy of a mesh, in place, into what the library reads; NULL: it reads c3d_vertex. */
+    void (*mesh_form)(c3d_vertex *vertices, uint32_t count);
     /* Copies data into a buffer object and returns its name, 0 when the library has no room. Called
      * only when vertex buffers are in use; NULL when this back end never has any. */
     uint32_t (*mesh_upload)(void *state, const c3d_vertex *vertices, uint32_t count);

@@ -43,7 +43,7 @@ struct c3d_device {
     void *state;
     c3d_desc desc;
     c3d_pool meshes, strips, textures;
-    uint16_t *scratch;    /* a strip and its edges, before they are uploaded */
+    void *scratch;        /* a strip and its edges, or a mesh, before they are uploaded */
     c3d_vertex *vertices; /* mesh_vertices_max for each mesh slot; NULL with vertex buffers */
     uint16_t *indices;    /* INDEX_WORDS for each index; NULL with vertex buffers */
     uint32_t first_strip; /* in the order of their parts of strip_indices_max, or NO_STRIP */
@@ -76,21 +76,16 @@ static c3d_device *lay_out(block_part *block, const struct c3d_backend *backend,
                            const c3d_desc *desc, int plain)
 {
     c3d_device *device = take(block, sizeof *device);
-    void *state = take(block, backend->state_bytes_for ? backend->state_bytes_for(desc)
-                                                       : backend->state_bytes);
+    void *state = take(block, backend->state_bytes(desc));
     void *meshes = take(block, desc->mesh_count * sizeof(mesh_slot));
     void *strips = take(block, desc->strip_count * sizeof(strip_slot));
     void *textures = take(block, desc->texture_count * sizeof(texture_slot));
     void *labels = take(block, desc->label_count * sizeof(label_slot));
-    uint16_t *scratch = take(block,
-                             (size_t)desc->strip_indices_max * INDEX_WORDS * sizeof(uint16_t));
-    c3d_vertex *vertices = NULL;
-    uint16_t *indices = NULL;
-    if (plain) {
-        vertices = take(block,
-                        (size_t)desc->mesh_count * desc->mesh_vertices_max * sizeof(c3d_vertex));
-        indices = take(block, (size_t)desc->strip_indices_max * INDEX_WORDS * sizeof(uint16_t));
-    }
+    size_t mesh_bytes = desc->mesh_vertices_max * sizeof(c3d_vertex),
+           strip_bytes = (size_t)desc->strip_indices_max * INDEX_WORDS * sizeof(uint16_t);
+    void *scratch = take(block, mesh_bytes > strip_bytes ? mesh_bytes : strip_bytes);
+    c3d_vertex *vertices = plain ? take(block, desc->mesh_count * mesh_bytes) : NULL;
+    uint16_t *indices = plain ? take(block, strip_bytes) : NULL;
     if (!device) return NULL;
     memset(block->memory, 0, block->used);
     device->backend = backend;
@@ -165,15 +160,27 @@ void c3d_close(c3d_device *device)
 static void measure_extent(c3d_mesh_data *mesh, const c3d_vertex *vertices)
 {
     for (uint32_t i = 0; i < mesh->count; i++) {
-        const int16_t at[3] = { vertices[i].x, vertices[i].y, vertices[i].z };
+        const int32_t at[3] = { vertices[i].x, vertices[i].y, vertices[i].z };
         for (int axis = 0; axis < 3; axis++) {
             if (i == 0 || at[axis] < mesh->least[axis]) mesh->least[axis] = at[axis];
             if (i == 0 || at[axis] > mesh->most[axis]) mesh->most[axis] = at[axis];
         }
     }
-    for (int axis = 0; axis < 3; axis++)
-        mesh->reach[axis] = (uint16_t)(-mesh->least[axis] > mesh->most[axis] ? -mesh->least[axis]
-                                                                             : mesh->most[axis]);
+    for (int axis = 0; axis < 3; axis++) {
+        int64_t below = -(int64_t)mesh->least[axis], above = mesh->most[axis];
+        mesh->reach[axis] = (uint32_t)(below > above ? below : above);
+    }
+}
+
+/* Copies the vertices to where they stay, or to where they are uploaded from. */
+static c3d_vertex *copy_mesh(c3d_device *device, uint32_t id, const c3d_vertex *vertices,
+                             uint32_t count)
+{
+    size_t first = (size_t)c3d_pool_index(id) * device->desc.mesh_vertices_max;
+    c3d_vertex *copy = device->vertices ? device->vertices + first : device->scratch;
+    memcpy(copy, vertices, count * sizeof *vertices);
+    if (device->backend->mesh_form) device->backend->mesh_form(copy, count);
+    return copy;
 }
 
 c3d_mesh c3d_mesh_make(c3d_device *device, const c3d_vertex *vertices, uint32_t count)
@@ -185,17 +192,14 @@ c3d_mesh c3d_mesh_make(c3d_device *device, const c3d_vertex *vertices, uint32_t 
     if (!mesh) return none;
     mesh->data = (c3d_mesh_data){ .count = count };
     measure_extent(&mesh->data, vertices);
-    if (device->vertices) {
-        c3d_vertex *copy = device->vertices +
-                           (size_t)c3d_pool_index(id) * device->desc.mesh_vertices_max;
-        memcpy(copy, vertices, count * sizeof *vertices);
+    const c3d_vertex *copy = copy_mesh(device, id, vertices, count);
+    if (device->vertices)
         mesh->data.vertices = copy;
-    } else {
-        mesh->data.buffer = device->backend->mesh_upload(device->state, vertices, count);
-        if (!mesh->data.buffer) {
-            c3d_pool_give(&device->meshes, id);
-            return none;
-        }
+    else
+        mesh->data.buffer = device->backend->mesh_upload(device->state, copy, count);
+    if (!mesh->data.vertices && !mesh->data.buffer) {
+        c3d_pool_give(&device->meshes, id);
+        return none;
     }
     return (c3d_mesh){ id };
 }
@@ -398,6 +402,7 @@ void c3d_draw_strip(c3d_device *device, const c3d_draw *draw)
         device->stats.stale_handles++;
         return;
     }
+    C3D_ASSERT(!textured || draw->tex_columns >= 1);
     find_origin(device, draw->origin_wu);
     c3d_resolved_draw resolved = { draw,
                                    &mesh->data,

@@ -4,9 +4,10 @@
  * A renderer multiplies each vertex with its draw call's matrix and rounds. Two nodes with matrices
  * of their own round their common rim differently, and now and then a pixel between them stays
  * empty, however whole the mesh is. Vertices are therefore moved into one frame: units of the
- * finest samples, counted from a sample near the camera. All nodes then use the same matrix, equal
- * vertices give equal pixels, and the numbers stay small enough for single precision (no jitter far
- * from the origin). Heights, too, count from one near those of the terrain.
+ * finest samples, counted from a sample near the camera, in the 32 bits that reach over any
+ * terrain. All nodes then use the same matrix, equal vertices give equal pixels, and the numbers
+ * stay small enough for single precision (no jitter far from the origin). Heights, too, count from
+ * one near those of the terrain.
  */
 #ifndef FF_GROUND_FRAME_H
 #define FF_GROUND_FRAME_H
@@ -14,22 +15,21 @@
 #include "../terrain/ff_tree.h"
 
 typedef struct ff_ground_frame {
-    int32_t origin_wu[2]; /* a sample's position */
+    int32_t origin_wu[2]; /* the position of a sample of the terrain */
     uint8_t set;          /* 0: not chosen yet */
 } ff_ground_frame;
 
-/* Keeps the frame within about 512 m (at least one sample) of the camera. 1 when it moved: all
- * vertices made with it are void. */
+/* Keeps the frame within about 512 m (at least one sample) of the camera, or of the terrain's edge
+ * nearest to it. 1 when it moved: all vertices made with it are void. */
 int ff_ground_frame_follow(ff_ground_frame *frame, const ff_terrain_info *info,
                            const c3d_camera *camera);
 
-/* Moves ff_tree_vertices' output, `count` vertices of `drawn`, into the frame. A node that 16 bits
- * cannot reach (32767 samples away) stays as it is and is drawn with a matrix of its own. */
+/* Moves ff_tree_vertices' output, `count` vertices of `drawn`, into the frame. */
 void ff_ground_frame_vertices(const ff_ground_frame *frame, const ff_terrain_info *info,
                               const ff_drawn *drawn, c3d_vertex *vertices, uint32_t count);
 
-/* Fills origin, scales and tex_origin, tex_shift of the call that draws them. */
+/* Fills what all calls that draw them have in common: origin, scales and the grid's columns. */
 void ff_ground_frame_draw(const ff_ground_frame *frame, const ff_terrain_info *info,
-                          const ff_drawn *drawn, const c3d_camera *camera, c3d_draw *draw);
+                          const c3d_camera *camera, c3d_draw *draw);
 
 #endif

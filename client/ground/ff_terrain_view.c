@@ -146,12 +146,13 @@ void ff_terrain_view_new_frame(ff_terrain_view *view) { view->frame.set = 0; }
 void ff_terrain_view_draw(ff_terrain_view *view, const ff_drawn *list, uint32_t count,
                           const c3d_camera *camera, unsigned show)
 {
+    c3d_draw ground = { .flags = C3D_DRAW_COLOURED };
     if (ff_ground_frame_follow(&view->frame, view->info, camera)) free_meshes(view);
+    ff_ground_frame_draw(&view->frame, view->info, camera, &ground);
     for (uint32_t i = 0; i < count; i++) {
         const ff_drawn *drawn = &list[i];
         ff_view_node *entry = entry_of(view, drawn);
-        c3d_draw draw = { .flags = C3D_DRAW_COLOURED };
-        ff_ground_frame_draw(&view->frame, view->info, drawn, camera, &draw);
+        c3d_draw draw = ground;
         draw.mesh = entry && entry->mesh.id ? entry->mesh : make_mesh(view, drawn);
         if (!draw.mesh.id && free_one_mesh(view)) draw.mesh = make_mesh(view, drawn);
         if (entry) entry->mesh = draw.mesh;

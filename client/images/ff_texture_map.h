@@ -16,8 +16,8 @@
  * when the terrain has no images. */
 ff_key ff_texture_key(const ff_terrain_info *info, ff_key node);
 
-/* Coordinates of c3d_draw for `node`, drawn with vertices 0..2^k, under the texture of `texture`
- * (itself or any ancestor). */
+/* Coordinates of c3d_draw for `node`, whose grid has columns and rows 0..2^k, under the texture of
+ * `texture` (itself or any ancestor). */
 void ff_texture_map(const ff_terrain_info *info, ff_key node, ff_key texture, int32_t scale_q16[2],
                     int32_t offset_q16[2]);
 

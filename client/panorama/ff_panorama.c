@@ -205,8 +205,7 @@ void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const 
 /* Corners of a face's quad and where its image lies, in units of half a texel: the cube reaches
  * from -size to size. Side faces: columns run along x or y, rows along z. UP and DOWN: columns
  * along x, rows along y. */
-static void make_quad(ff_panorama_set *set, unsigned face, int size, int top_row, int rows,
-                      c3d_vertex quad[4])
+static void make_quad(unsigned face, int size, int top_row, int rows, c3d_vertex quad[4])
 {
     int high = size - 2 * top_row, low = high - 2 * rows;
     if (face == FF_FACE_UP) { /* its image's top edge looks south */
@@ -225,11 +224,10 @@ static void make_quad(ff_panorama_set *set, unsigned face, int size, int top_row
         int y = face == FF_FACE_NORTH || face == FF_FACE_SOUTH ? forward
                 : face == FF_FACE_EAST || face == FF_FACE_WEST ? across
                                                                : along;
-        vertex->x = (int16_t)x;
-        vertex->y = (int16_t)y;
-        vertex->z = (int16_t)(face == FF_FACE_UP || face == FF_FACE_DOWN ? forward : along);
+        vertex->x = x;
+        vertex->y = y;
+        vertex->z = face == FF_FACE_UP || face == FF_FACE_DOWN ? forward : along;
     }
-    set->low[face] = (int16_t)(face == FF_FACE_UP ? high : low);
 }
 
 static void take_image(ff_panorama *panorama, ff_panorama_set *set, const ff_new_item *item)
@@ -241,8 +239,9 @@ static void take_image(ff_panorama *panorama, ff_panorama_set *set, const ff_new
     panorama->faces++;
     if (!panorama->device) return;
     c3d_vertex quad[4];
-    make_quad(set, face, item->width, item->face_top_row, item->face_row_count, quad);
+    make_quad(face, item->width, item->face_top_row, item->face_row_count, quad);
     set->height[face] = item->height;
+    set->rows[face] = item->face_row_count;
     set->texture[face] = c3d_texture_make(panorama->device, C3D_RGBA5551, item->width, item->height,
                                           item->pixels);
     set->mesh[face] = c3d_mesh_make(panorama->device, quad, 4);
@@ -285,7 +284,7 @@ int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now
 static void draw_face(const ff_panorama *panorama, const ff_panorama_set *set, unsigned face,
                       int32_t scale_wu)
 {
-    int along = 32768 / set->height[face], across = 32768 / panorama->face_size;
+    int32_t across = 65536, along = set->rows[face] * (65536 / set->height[face]);
     int s_backward = face == FF_FACE_SOUTH || face == FF_FACE_EAST, t_backward = face == FF_FACE_UP;
     c3d_draw draw = { .mesh = set->mesh[face],
                       .strip = panorama->quad,
@@ -293,15 +292,12 @@ static void draw_face(const ff_panorama *panorama, const ff_panorama_set *set, u
                       .z_scale_q16 = (uint32_t)scale_wu << 16,
                       .texture = set->texture[face],
                       .colour = 0xFFFFFFFFu,
-                      .flags = C3D_DRAW_TEXTURED | C3D_DRAW_BACKDROP | C3D_DRAW_ALPHA_TEST };
-    if (face == FF_FACE_NORTH || face == FF_FACE_SOUTH)
-        draw.flags |= C3D_DRAW_TEX_XZ;
-    else if (face == FF_FACE_EAST || face == FF_FACE_WEST)
-        draw.flags |= C3D_DRAW_TEX_YZ;
+                      .flags = C3D_DRAW_TEXTURED | C3D_DRAW_BACKDROP | C3D_DRAW_ALPHA_TEST,
+                      .tex_columns = 2 };
     draw.tex_scale_q16[0] = s_backward ? -across : across;
-    draw.tex_offset_q16[0] = 32768;
+    draw.tex_offset_q16[0] = s_backward ? across : 0;
     draw.tex_scale_q16[1] = t_backward ? -along : along;
-    draw.tex_offset_q16[1] = t_backward ? set->low[face] * along : -set->low[face] * along;
+    draw.tex_offset_q16[1] = t_backward ? along : 0;
     c3d_draw_strip(panorama->device, &draw);
 }
 

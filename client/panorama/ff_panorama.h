@@ -36,8 +36,8 @@ typedef struct ff_panorama_set {
     c3d_texture texture[FF_FACE_COUNT];
     c3d_mesh mesh[FF_FACE_COUNT];
     uint16_t height[FF_FACE_COUNT]; /* rows of the texture */
-    /* lowest (UP: southernmost) coordinate of the image, face units */
-    int16_t low[FF_FACE_COUNT];
+    /* of these rows, those of the image: the first ones */
+    uint16_t rows[FF_FACE_COUNT];
     ff_panorama_sight sight; /* of its faces; expected, while the set is on its way */
 } ff_panorama_set;
 

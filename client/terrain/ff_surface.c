@@ -61,10 +61,9 @@ void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3
     if (shaded) frame_heights(tree, drawn, framed);
     for (uint32_t row = 0; row < side; row++) {
         for (uint32_t column = 0; column < side; column++, out++) {
-            out->x = (int16_t)column;
-            out->y = (int16_t)row;
-            out->z = (int16_t)(drawn->heights[row * side + column] - 32768);
-            out->pad = 0;
+            out->x = (int32_t)column;
+            out->y = (int32_t)row;
+            out->z = drawn->heights[row * side + column] - 32768;
             if (shaded)
                 ff_shade(&grid, column, row, out->rgba);
             else

@@ -77,6 +77,11 @@ static void set_up(c3d_gl_state *state)
     gl->EnableClientState(GL_VERTEX_ARRAY);
 }
 
+size_t c3d_gl_state_bytes(const c3d_desc *desc)
+{
+    return sizeof(c3d_gl_state) + desc->mesh_vertices_max * sizeof(float[2]);
+}
+
 void c3d_gl_close(void *opaque)
 {
     c3d_gl_state *state = opaque;
@@ -102,6 +107,16 @@ static uint32_t upload(c3d_gl_state *state, unsigned target, const void *data, s
         return 0;
     }
     return buffer;
+}
+
+/* ES knows no 32-bit integers, and not every library divides GL_FIXED by 65536 (Mesa's llvmpipe:
+ * by 65535): x, y and z become floats where they lie. */
+void c3d_gl_mesh_form(c3d_vertex *vertices, uint32_t count)
+{
+    for (c3d_vertex *vertex = vertices; vertex < vertices + count; vertex++) {
+        const float place[3] = { (float)vertex->x, (float)vertex->y, (float)vertex->z };
+        memcpy(vertex, place, sizeof place);
+    }
 }
 
 uint32_t c3d_gl_mesh_upload(void *state, const c3d_vertex *vertices, uint32_t count)
@@ -202,9 +217,24 @@ static void set_flags(c3d_gl_state *state, uint32_t flags)
     state->flags = flags;
 }
 
+/* All meshes of as many columns have the same grid. */
+static void set_grid(c3d_gl_state *state, uint32_t columns, uint32_t count)
+{
+    if (state->grid_columns != columns) state->grid_count = 0;
+    state->grid_columns = columns;
+    for (uint32_t i = state->grid_count; i < count; i++) {
+        state->grid[i][0] = (float)(i % columns);
+        state->grid[i][1] = (float)(i / columns);
+    }
+    if (state->grid_count < count) state->grid_count = count;
+    bind_array(state, 0);
+    state->gl.TexCoordPointer(2, GL_FLOAT, 0, state->grid);
+}
+
 static void set_texture(c3d_gl_state *state, const c3d_resolved_draw *resolved)
 {
     float matrix[16];
+    set_grid(state, resolved->draw->tex_columns, resolved->mesh->count);
     bind_texture(state, resolved->texture);
     c3d_gl_texture_matrix(matrix, resolved->draw);
     state->gl.MatrixMode(GL_TEXTURE);
@@ -222,12 +252,9 @@ static void set_mesh(c3d_gl_state *state, const c3d_resolved_draw *resolved)
     set_flags(state, draw->flags);
     c3d_gl_modelview(matrix, resolved, &state->rotation);
     gl->LoadMatrixf(matrix);
+    if (draw->flags & C3D_DRAW_TEXTURED) set_texture(state, resolved);
     bind_array(state, resolved->mesh->buffer);
-    gl->VertexPointer(3, GL_SHORT, (int)sizeof *base, base);
-    if (draw->flags & C3D_DRAW_TEXTURED) {
-        set_texture(state, resolved);
-        gl->TexCoordPointer(3, GL_SHORT, (int)sizeof *base, base);
-    }
+    gl->VertexPointer(3, GL_FLOAT, (int)sizeof *base, base);
     if (draw->flags & C3D_DRAW_COLOURED) {
         gl->ColorPointer(4, GL_UNSIGNED_BYTE, (int)sizeof *base,
                          offset_pointer(base, offsetof(c3d_vertex, rgba)));

@@ -11,16 +11,20 @@ typedef struct c3d_gl_state {
     uint32_t flags; /* enum c3d_draw_flags that GL is set to; UINT32_MAX: unknown */
     uint32_t array_buffer, element_buffer, texture; /* bound now */
     uint32_t font; /* texture of all glyphs, made with the first label; 0: not yet */
+    uint32_t grid_columns, grid_count; /* of `grid` now */
     int fog;
     uint16_t width, height;
     c3d_rotation rotation;
     float projection[16], backdrop_projection[16];
+    float grid[][2]; /* column and row of each vertex */
 } c3d_gl_state;
 
 /* "M.N" at `text` as 10*M + N, 0 when there is none. */
 int c3d_gl_version(const char *text);
 
+size_t c3d_gl_state_bytes(const c3d_desc *desc);
 void c3d_gl_close(void *state);
+void c3d_gl_mesh_form(c3d_vertex *vertices, uint32_t count);
 uint32_t c3d_gl_mesh_upload(void *state, const c3d_vertex *vertices, uint32_t count);
 uint32_t c3d_gl_strip_upload(void *state, const uint16_t *indices, uint32_t count);
 void c3d_gl_buffer_free(void *state, uint32_t buffer);
@@ -36,12 +40,13 @@ void c3d_gl_end(void *state);
 int c3d_gl_read_rows(void *state, uint32_t width, uint32_t first_row, uint32_t rows, uint8_t *rgba);
 
 /* What the tables of both GL back ends have in common. */
-#define C3D_GL_TABLE                                                                               \
-    .state_bytes = sizeof(c3d_gl_state), .close = c3d_gl_close, .mesh_upload = c3d_gl_mesh_upload, \
-    .strip_upload = c3d_gl_strip_upload, .buffer_free = c3d_gl_buffer_free,                        \
-    .texture_upload = c3d_gl_texture_upload, .texture_free = c3d_gl_texture_free,                  \
-    .begin = c3d_gl_begin, .draw = c3d_gl_draw, .points = c3d_gl_points, .label = c3d_gl_label,    \
-    .overlay = c3d_gl_overlay, .end = c3d_gl_end, .read_rows = c3d_gl_read_rows
+#define C3D_GL_TABLE                                                                              \
+    .state_bytes = c3d_gl_state_bytes, .mesh_form = c3d_gl_mesh_form, .close = c3d_gl_close,      \
+    .mesh_upload = c3d_gl_mesh_upload, .strip_upload = c3d_gl_strip_upload,                       \
+    .buffer_free = c3d_gl_buffer_free, .texture_upload = c3d_gl_texture_upload,                   \
+    .texture_free = c3d_gl_texture_free, .begin = c3d_gl_begin, .draw = c3d_gl_draw,              \
+    .points = c3d_gl_points, .label = c3d_gl_label, .overlay = c3d_gl_overlay, .end = c3d_gl_end, \
+    .read_rows = c3d_gl_read_rows
 
 /* Matrices, column by column, in metres (c3d_gl_matrix.c). */
 void c3d_gl_projection(float matrix[16], const c3d_camera *camera);

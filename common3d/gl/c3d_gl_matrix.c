@@ -63,17 +63,12 @@ void c3d_gl_modelview(float matrix[16], const c3d_resolved_draw *resolved,
     matrix[15] = 1.0f;
 }
 
-/* The texture coordinates given to GL are the vertex's x, y and z: the matrix makes s and t from
- * two of them. */
 void c3d_gl_texture_matrix(float matrix[16], const c3d_draw *draw)
 {
-    const int axis[2] = { draw->flags & C3D_DRAW_TEX_YZ ? 1 : 0,
-                          draw->flags & (C3D_DRAW_TEX_XZ | C3D_DRAW_TEX_YZ) ? 2 : 1 };
     memset(matrix, 0, 16 * sizeof *matrix);
     for (int i = 0; i < 2; i++) {
-        double scale = draw->tex_scale_q16[i] / (65536.0 * (double)(1u << draw->tex_shift));
-        matrix[axis[i] * 4 + i] = (float)scale;
-        matrix[12 + i] = (float)(draw->tex_offset_q16[i] / 65536.0 - draw->tex_origin[i] * scale);
+        matrix[i * 4 + i] = (float)draw->tex_scale_q16[i] * (1.0f / 65536.0f);
+        matrix[12 + i] = (float)draw->tex_offset_q16[i] * (1.0f / 65536.0f);
     }
     matrix[15] = 1.0f;
 }

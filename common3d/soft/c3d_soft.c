@@ -147,13 +147,11 @@ static void set_paint(soft_state *state, const c3d_resolved_draw *resolved, enum
     paint->fog = state->frame.fog_end_wu > 0 && !backdrop;
     paint->on_top = (flags & C3D_DRAW_ON_TOP) != 0;
     paint->unmarked = depth == SOFT_DEPTH_UNCOVERED && !state->deferred_count;
-    paint->axis[0] = flags & C3D_DRAW_TEX_YZ ? 1 : 0;
-    paint->axis[1] = flags & (C3D_DRAW_TEX_XZ | C3D_DRAW_TEX_YZ) ? 2 : 1;
 }
 
 static void draw_now(soft_state *state, const c3d_resolved_draw *resolved, enum soft_depth depth)
 {
-    C3D_ASSERT(resolved->strip->count >= 3 && resolved->strip->index_max < resolved->mesh->count);
+    C3D_ASSERT(resolved->strip->index_max < resolved->mesh->count);
     const c3d_strip_data *strip = resolved->strip;
     set_paint(state, resolved, depth);
     memset(&state->segment, 0, sizeof state->segment);
@@ -161,7 +159,7 @@ static void draw_now(soft_state *state, const c3d_resolved_draw *resolved, enum 
     soft_choose_span(state);
     if (resolved->draw->flags & C3D_DRAW_WIREFRAME)
         soft_lines(state, strip->indices + strip->count, strip->edge_count);
-    else
+    else if (strip->count) /* lines have edges alone */
         soft_strip(state, strip->indices, strip->count);
 }
 
@@ -282,7 +280,7 @@ static const void *soft_pixels(void *opaque, enum c3d_texture_format *format)
 const struct c3d_backend *c3d_backend_soft(void)
 {
     static const struct c3d_backend backend = { .name = "soft",
-                                                .state_bytes_for = soft_state_bytes,
+                                                .state_bytes = soft_state_bytes,
                                                 .open = soft_open,
                                                 .close = soft_close,
                                                 .texture_upload = soft_texture_upload,

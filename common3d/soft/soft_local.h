@@ -55,7 +55,6 @@ typedef struct soft_paint {
     uint8_t white;    /* all vertices are white: the texture is drawn as it is */
     uint8_t alpha_test, fog, on_top;
     uint8_t unmarked; /* the last backdrop marks no depths: nothing after it asks for them */
-    uint8_t axis[2];  /* which coordinates of a vertex give s and t: 0 x, 1 y, 2 z */
 } soft_paint;
 
 /* Attributes of a pixel, Q16: s, t, red, green, blue, fog (256: clear). */

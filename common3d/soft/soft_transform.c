@@ -50,7 +50,7 @@ void soft_begin_view(soft_state *state, const c3d_rotation *rotation)
 static int64_t reach_wu(const c3d_resolved_draw *resolved)
 {
     const c3d_draw *draw = resolved->draw;
-    const uint16_t *reach = resolved->mesh->reach;
+    const uint32_t *reach = resolved->mesh->reach;
     int64_t most = 0;
     for (int i = 0; i < 3; i++) {
         int64_t origin = draw->origin_wu[i] < 0 ? -draw->origin_wu[i] : draw->origin_wu[i];
@@ -60,7 +60,7 @@ static int64_t reach_wu(const c3d_resolved_draw *resolved)
                              : (int64_t)(((uint64_t)reach[2] * draw->z_scale_q16) >> 16) + 1;
         most = origin + size > most ? origin + size : most;
     }
-    C3D_ASSERT(most >= 0 && most < (int64_t)1 << 47); /* 15 bits of reach times 31, and 34 */
+    C3D_ASSERT(most >= 0);
     return most;
 }
 
@@ -317,84 +317,48 @@ static void transform_far(soft_state *state, const c3d_mesh_data *mesh)
 
 /* ---- textures, colours, fog ---- */
 
-/* s or t: (at * scale + offset) >> shift, texels Q16. */
+/* s of a column or t of a row: at * scale + offset, texels Q16. */
 typedef struct texel_axis {
-    int64_t offset;
-    int32_t scale;
-    int shift, axis;
-    uint8_t wide; /* 1: 32 bits do not suffice, or some vertex cannot hold its s or t */
+    int64_t scale, offset;
 } texel_axis;
 
-static int32_t texel_q16(const texel_axis *axis, int32_t at)
+static int32_t texel_q16(const texel_axis *axis, uint32_t at)
 {
-    int64_t texels = (at * (int64_t)axis->scale + axis->offset) >> axis->shift,
-            limit = ((int64_t)1 << 28) - 1;
+    int64_t texels = at * axis->scale + axis->offset, limit = ((int64_t)1 << 28) - 1;
     return (int32_t)(texels > limit ? limit : texels < -limit ? -limit : texels);
 }
 
-/* Prepares s (i = 0) or t (i = 1). The mesh's least and greatest coordinates give the range of all
- * its texture coordinates. */
-static void make_axis(soft_state *state, const c3d_draw *draw, const c3d_mesh_data *mesh, int i,
-                      texel_axis *axis)
+/* What the first and the last column, or row, give is the range of all. */
+static texel_axis make_axis(soft_state *state, const c3d_draw *draw, int i, uint32_t last)
 {
     int size_log2 = i ? state->paint.texture->height_log2 : state->paint.texture->width_log2;
-    int64_t scale = draw->tex_scale_q16[i] * ((int64_t)1 << size_log2);
-    int64_t offset = draw->tex_offset_q16[i] * ((int64_t)1 << size_log2) - 32768;
-    int64_t limit = INT32_MAX; /* 2^15 texture widths for one vertex unit */
-    C3D_ASSERT(size_log2 <= 12 && draw->tex_shift <= 18); /* 31 + 12 + 18 bits of offset */
-    axis->scale = (int32_t)(scale > limit ? limit : scale < -limit ? -limit : scale);
-    axis->shift = draw->tex_shift;
-    axis->axis = state->paint.axis[i];
-    axis->offset = offset * ((int64_t)1 << axis->shift) -
-                   (int64_t)draw->tex_origin[i] * axis->scale;
-    axis->wide = 0;
+    C3D_ASSERT(size_log2 <= 12);
+    texel_axis axis = { draw->tex_scale_q16[i] * ((int64_t)1 << size_log2),
+                        draw->tex_offset_q16[i] * ((int64_t)1 << size_log2) - 32768 };
     for (int end = 0; end < 2; end++) {
-        int32_t at = end ? mesh->most[axis->axis] : mesh->least[axis->axis],
-                texels = texel_q16(axis, at);
-        int64_t exact = at * (int64_t)axis->scale + axis->offset;
-        axis->wide |= !fits(exact) || exact >> axis->shift != texels;
+        int32_t texels = texel_q16(&axis, end ? last : 0);
         /* the texture with half of its rim */
         state->off_texture |= texels < -32768 || texels > (1 << (size_log2 + 16)) - 32768;
     }
+    return axis;
 }
 
-static inline int32_t coordinate(const c3d_vertex *in, int axis)
+/* A column has the same s in every row. */
+static void transform_textured(soft_state *state, const c3d_draw *draw, uint32_t count)
 {
-    C3D_ASSERT(axis >= 0 && axis < 3);
-    return axis == 0 ? in->x : axis == 1 ? in->y : in->z;
-}
-
-/* 32 bits may wrap on the way; the result fits them. */
-static inline int32_t texel_narrow(int32_t at, uint32_t scale, uint32_t offset, int shift)
-{
-    return (int32_t)((uint32_t)at * scale + offset) >> shift;
-}
-
-static void texture_plane(soft_vertex *vertex, const c3d_mesh_data *mesh, const texel_axis *s,
-                          const texel_axis *t)
-{
-    uint32_t s_scale = (uint32_t)s->scale, s_offset = (uint32_t)s->offset,
-             t_scale = (uint32_t)t->scale, t_offset = (uint32_t)t->offset;
-    C3D_ASSERT(s->shift == t->shift && !s->wide && !t->wide);
-    int shift = s->shift;
-    for (const c3d_vertex *in = mesh->vertices, *end = in + mesh->count; in < end; in++, vertex++) {
-        vertex->s = texel_narrow(in->x, s_scale, s_offset, shift);
-        vertex->t = texel_narrow(in->y, t_scale, t_offset, shift);
-    }
-}
-
-static void transform_textured(soft_state *state, const c3d_draw *draw, const c3d_mesh_data *mesh)
-{
-    texel_axis s, t;
-    make_axis(state, draw, mesh, 0, &s);
-    make_axis(state, draw, mesh, 1, &t);
-    if (!s.wide && !t.wide && s.axis == 0 && t.axis == 1) {
-        texture_plane(state->vertices, mesh, &s, &t);
-        return;
-    }
-    for (uint32_t i = 0; i < mesh->count; i++) {
-        state->vertices[i].s = texel_q16(&s, coordinate(&mesh->vertices[i], s.axis));
-        state->vertices[i].t = texel_q16(&t, coordinate(&mesh->vertices[i], t.axis));
+    uint32_t columns = draw->tex_columns < count ? draw->tex_columns : count;
+    texel_axis s = make_axis(state, draw, 0, columns - 1),
+               t = make_axis(state, draw, 1, (count - 1) / columns);
+    const soft_vertex *top = state->vertices;
+    for (uint32_t i = 0; i < columns; i++) state->vertices[i].s = texel_q16(&s, i);
+    for (uint32_t row = 0, first = 0; first < count; row++, first += columns) {
+        soft_vertex *vertex = state->vertices + first;
+        uint32_t length = count - first < columns ? count - first : columns;
+        int32_t texel = texel_q16(&t, row);
+        for (uint32_t i = 0; i < length; i++) {
+            vertex[i].s = top[i].s;
+            vertex[i].t = texel;
+        }
     }
 }
 
@@ -430,11 +394,11 @@ static int same_vertices(const c3d_draw *a, const c3d_draw *b)
         if (a->origin_wu[i] != b->origin_wu[i]) return 0;
     for (int i = 0; i < 2; i++)
         if (a->tex_scale_q16[i] != b->tex_scale_q16[i] ||
-            a->tex_offset_q16[i] != b->tex_offset_q16[i] || a->tex_origin[i] != b->tex_origin[i])
+            a->tex_offset_q16[i] != b->tex_offset_q16[i])
             return 0;
     return a->mesh.id == b->mesh.id && a->xy_scale_wu == b->xy_scale_wu &&
            a->z_scale_q16 == b->z_scale_q16 && a->flags == b->flags && a->colour == b->colour &&
-           a->texture.id == b->texture.id && a->tex_shift == b->tex_shift;
+           a->texture.id == b->texture.id && a->tex_columns == b->tex_columns;
 }
 
 /* The strips of a node share its mesh: its vertices are transformed with the first. */
@@ -445,13 +409,13 @@ void soft_transform(soft_state *state, const c3d_resolved_draw *resolved)
     if (state->cached_mesh == mesh->vertices && same_vertices(&state->cached, draw)) return;
     state->cached = *draw;
     state->cached_mesh = mesh->vertices;
-    C3D_ASSERT(mesh->count > 0 && resolved->strip->index_max < mesh->count);
+    C3D_ASSERT(mesh->count > 0);
     begin_space(state, resolved);
     state->off_texture = 0;
     (state->space.near ? transform_near : transform_far)(state, mesh);
     for (uint32_t i = 0; state->paint.on_top && i < mesh->count; i++)
         put_on_top(&state->vertices[i]);
-    if (state->paint.texture) transform_textured(state, draw, mesh);
+    if (state->paint.texture) transform_textured(state, draw, mesh->count);
     if (!state->paint.texture || !state->paint.white || state->paint.fog)
         transform_colours(state, draw, mesh);
     if (state->paint.fog) transform_fog(state, mesh->count);

@@ -9,10 +9,10 @@
 #include <stdio.h>
 
 /* X(name, printf format, kind, where from): the CSV's columns before and after the three hashes.
- * `from` is a fly_sources; figures of the client have their names from client/ff_figures.h. The kind
- * says how the summary treats a column: PLACE leaves it out, MEAN takes the mean over the rows after
- * settling, TOTAL what was gained after settling, MOST the largest value, LAST the last one. Columns
- * without a value are nan. square_px_*: mean squared error by cause (sim_audit.h); bytes_*,
+ * `from` is a fly_sources; figures of the client have their names from client/ff_figures.h. The
+ * kind says how the summary treats a column: PLACE leaves it out, MEAN takes the mean over the rows
+ * after settling, TOTAL what was gained after settling, MOST the largest value, LAST the last one.
+ * Columns without a value are nan. square_px_*: mean squared error by cause (sim_audit.h); bytes_*,
  * unused_*: by class of data (sim_relevance.h), bytes_judged with the overhead; relevance_percent:
  * since the start. */
 /* clang-format off */

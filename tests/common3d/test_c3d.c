@@ -162,7 +162,8 @@ static void draw_textured(c3d_draw *draw, c3d_texture texture, uint32_t flags)
 {
     draw->texture = texture;
     draw->flags = C3D_DRAW_TEXTURED | flags;
-    draw->tex_scale_q16[0] = draw->tex_scale_q16[1] = 65536 / PICTURE_UNITS;
+    draw->tex_scale_q16[0] = draw->tex_scale_q16[1] = 65536;
+    draw->tex_columns = 2;
 }
 
 static const char map_picture[] =
@@ -180,13 +181,13 @@ static void texture_rows_begin_in_the_south(void **state)
                                        PICTURE_WHITE);
         draw_textured(&draw, texture, 0);
         assert_true(picture_is(kit, &draw, 1, map_picture));
-        kit->frame.camera.pitch = 0; /* upright squares: t grows with z */
+        kit->frame.camera.pitch = 0; /* upright squares: the second row of vertices is above */
         draw = picture_square(kit, PICTURE_SOUTH, -4 * M, 8 * M, -4 * M, 8 * M, PICTURE_WHITE);
-        draw_textured(&draw, texture, C3D_DRAW_TEX_XZ);
+        draw_textured(&draw, texture, 0);
         assert_true(picture_is(kit, &draw, 1, map_picture));
         kit->frame.camera.yaw = -16384; /* to the west, y grows to the right */
         draw = picture_square(kit, PICTURE_WEST, -8 * M, -4 * M, -4 * M, 8 * M, PICTURE_WHITE);
-        draw_textured(&draw, texture, C3D_DRAW_TEX_YZ);
+        draw_textured(&draw, texture, 0);
         assert_true(picture_is(kit, &draw, 1, map_picture));
         c3d_texture_free(kit->device, texture);
     }
@@ -200,15 +201,49 @@ static void texture_window_scales_and_shifts(void **state)
         c3d_texture texture = quarters(kit);
         c3d_draw draw = picture_square(kit, PICTURE_SOUTH, -8 * M, 8 * M, -6 * M, 16 * M,
                                        PICTURE_WHITE);
-        draw_textured(&draw, texture, C3D_DRAW_TEX_XZ);
+        draw_textured(&draw, texture, 0);
         /* a quarter of the texture: the middle of its green part */
-        draw.tex_scale_q16[0] = draw.tex_scale_q16[1] = 16384 / PICTURE_UNITS;
+        draw.tex_scale_q16[0] = draw.tex_scale_q16[1] = 16384;
         draw.tex_offset_q16[0] = 40960;
         draw.tex_offset_q16[1] = 8192;
         uint8_t rgb[WIDTH * HEIGHT * 3];
         picture_render(kit, &draw, 1, rgb);
         for (int i = 0; i < WIDTH * HEIGHT; i++) assert_memory_equal(rgb + i * 3, "\0\377\0", 3);
         c3d_texture_free(kit->device, texture);
+    }
+}
+
+/* Neither the middle column's place nor the size of a place says where the texture lies: its middle
+ * is at the second of three columns. */
+static void textures_lie_on_the_grid_of_the_mesh(void **state)
+{
+    (void)state;
+    static const uint16_t strip[6] = { 3, 0, 4, 1, 5, 2 };
+    static const int32_t far_x = 1 << 22;
+    EACH_KIT(kit)
+    {
+        static const c3d_vertex vertex[6] = {
+            { .x = far_x },         { .x = far_x + 2 },         { .x = far_x + 6 },
+            { .x = far_x, .z = 8 }, { .x = far_x + 2, .z = 8 }, { .x = far_x + 6, .z = 8 }
+        };
+        c3d_texture texture = quarters(kit);
+        c3d_draw draw = { .mesh = c3d_mesh_make(kit->device, vertex, 6),
+                          .strip = c3d_strip_make(kit->device, strip, 6),
+                          .origin_wu = { (-4 - (int64_t)far_x) * M, 8 * M, -4 * M },
+                          .xy_scale_wu = M,
+                          .z_scale_q16 = M << 16,
+                          .colour = PICTURE_WHITE };
+        draw_textured(&draw, texture, 0);
+        draw.tex_columns = 3;
+        draw.tex_scale_q16[0] = 32768;
+        assert_true(
+            picture_is(kit, &draw, 1,
+                       "................\n................\n....bbwwww......\n....bbwwww......\n"
+                       "....bbwwww......\n....bbwwww......\n....rrgggg......\n....rrgggg......\n"
+                       "....rrgggg......\n....rrgggg......\n................\n................\n"));
+        c3d_texture_free(kit->device, texture);
+        c3d_strip_free(kit->device, draw.strip);
+        c3d_mesh_free(kit->device, draw.mesh);
     }
 }
 
@@ -220,7 +255,7 @@ static void alpha_test_leaves_holes(void **state)
         c3d_texture texture = quarters(kit);
         c3d_draw draws[2];
         draws[0] = picture_square(kit, PICTURE_SOUTH, -4 * M, 8 * M, -4 * M, 8 * M, PICTURE_WHITE);
-        draw_textured(&draws[0], texture, C3D_DRAW_TEX_XZ | C3D_DRAW_ALPHA_TEST);
+        draw_textured(&draws[0], texture, C3D_DRAW_ALPHA_TEST);
         /* a cyan square behind */
         draws[1] = picture_square(kit, PICTURE_SOUTH, -16 * M, 16 * M, -16 * M, 32 * M,
                                   0xFFFFFF00u);
@@ -247,7 +282,7 @@ static void small_formats_have_the_right_bits(void **state)
                                                    i ? rgba5551 : rgb565);
             c3d_draw draw = picture_square(kit, PICTURE_SOUTH, -8 * M, 8 * M, -6 * M, 16 * M,
                                            PICTURE_WHITE);
-            draw_textured(&draw, texture, C3D_DRAW_TEX_XZ | C3D_DRAW_ALPHA_TEST);
+            draw_textured(&draw, texture, C3D_DRAW_ALPHA_TEST);
             picture_render(kit, &draw, 1, rgb);
             assert_memory_equal(rgb + (11 * WIDTH + 0) * 3, "\377\0\0", 3);
             assert_memory_equal(rgb + (11 * WIDTH + 15) * 3, "\0\377\0", 3);
@@ -265,7 +300,7 @@ static void colours_multiply_the_texture(void **state)
         /* yellow */
         c3d_draw draw = picture_square(kit, PICTURE_SOUTH, -4 * M, 8 * M, -4 * M, 8 * M,
                                        0xFF00FFFFu);
-        draw_textured(&draw, texture, C3D_DRAW_TEX_XZ);
+        draw_textured(&draw, texture, 0);
         assert_true(
             picture_is(kit, &draw, 1,
                        "................\n................\n........yyyy....\n........yyyy....\n"
@@ -444,6 +479,7 @@ int main(void)
         PICTURE_TEST(pitch_moves_and_roll_tilts_the_horizon),
         PICTURE_TEST(texture_rows_begin_in_the_south),
         PICTURE_TEST(texture_window_scales_and_shifts),
+        PICTURE_TEST(textures_lie_on_the_grid_of_the_mesh),
         PICTURE_TEST(alpha_test_leaves_holes),
         PICTURE_TEST(small_formats_have_the_right_bits),
         PICTURE_TEST(colours_multiply_the_texture),

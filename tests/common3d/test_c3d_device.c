@@ -189,10 +189,9 @@ static c3d_mesh hills(c3d_device *device, int part)
             int world_x = x + part * (SIDE - 1);
             int32_t z = (c3d_sin_q30(world_x * 3000) >> 19) +
                         (c3d_sin_q30(y * 5000 + world_x * 700) >> 20);
-            vertices[y * SIDE + x] = (c3d_vertex){ (int16_t)x,
-                                                   (int16_t)y,
-                                                   (int16_t)z,
-                                                   0,
+            vertices[y * SIDE + x] = (c3d_vertex){ x,
+                                                   y,
+                                                   z,
                                                    { (uint8_t)(64 + x * 5), (uint8_t)(64 + y * 5),
                                                      (uint8_t)(128 + z / 32), 255 } };
         }

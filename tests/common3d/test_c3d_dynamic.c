@@ -44,7 +44,7 @@ static c3d_draw upright(c3d_mesh mesh, c3d_strip strip, int64_t away_wu)
 
 static c3d_vertex vertex_at(int x, int z, uint32_t rgba)
 {
-    c3d_vertex vertex = { .x = (int16_t)x, .z = (int16_t)z };
+    c3d_vertex vertex = { .x = x, .z = z };
     for (int i = 0; i < 4; i++) vertex.rgba[i] = (uint8_t)(rgba >> (8 * i));
     return vertex;
 }

@@ -23,13 +23,11 @@ static void make_hills(c3d_device *device, c3d_mesh *ground, c3d_mesh *points, c
     for (int y = 0; y <= HILLS; y++)
         for (int x = 0; x <= HILLS; x++) {
             c3d_vertex *v = &vertex[y * (HILLS + 1) + x];
-            *v = (c3d_vertex){ .x = (int16_t)x,
-                               .y = (int16_t)y,
-                               .z = (int16_t)sys_random_below(&random, 400) };
+            *v = (c3d_vertex){ .x = x, .y = y, .z = (int32_t)sys_random_below(&random, 400) };
             for (int i = 0; i < 3; i++) v->rgba[i] = (uint8_t)sys_random_below(&random, 256);
             if (!((x + y) & 1)) continue;
             point[points_made] = *v;
-            point[points_made++].z = (int16_t)(v->z + 20);
+            point[points_made++].z = v->z + 20;
         }
     for (int y = 0; y < HILLS; y++) {
         for (int x = 0; x <= HILLS; x++) {

@@ -80,12 +80,10 @@ static void scatter(bench *b, sys_random *random)
     c3d_vertex vertices[SIDE * SIDE];
     if (b->mesh.id) c3d_mesh_free(b->device, b->mesh);
     for (int i = 0; i < SIDE * SIDE; i++)
-        vertices[i] =
-            (c3d_vertex){ (int16_t)((i % SIDE) * 1000 + (int)sys_random_below(random, 600) - 300),
-                          (int16_t)((i / SIDE) * 1000 + (int)sys_random_below(random, 600) - 300),
-                          0,
-                          0,
-                          { 255, 255, 255, 255 } };
+        vertices[i] = (c3d_vertex){ (i % SIDE) * 1000 + (int)sys_random_below(random, 600) - 300,
+                                    (i / SIDE) * 1000 + (int)sys_random_below(random, 600) - 300,
+                                    0,
+                                    { 255, 255, 255, 255 } };
     b->mesh = c3d_mesh_make(b->device, vertices, SIDE * SIDE);
 }
 
@@ -130,7 +128,8 @@ static void every_pixel_of_a_surface_is_written_once(void **state)
         if (round & 1) {
             draw.flags = C3D_DRAW_TEXTURED;
             draw.texture = b.white;
-            draw.tex_scale_q16[0] = draw.tex_scale_q16[1] = 7;
+            draw.tex_scale_q16[0] = draw.tex_scale_q16[1] = 7000;
+            draw.tex_columns = SIDE;
             draw.tex_offset_q16[0] = draw.tex_offset_q16[1] = 4096;
         }
         count_writes(&b, &draw, writes);
@@ -224,7 +223,8 @@ static void backdrops_outlive_what_they_are_made_of(void **state)
         c3d_draw draw = picture_square(&kit, PICTURE_SOUTH, -9 * M, 8 * M, -9 * M, 18 * M,
                                        PICTURE_WHITE);
         draw.texture = c3d_texture_make(kit.device, C3D_RGB565, 2, 2, red);
-        draw.flags = C3D_DRAW_TEXTURED | C3D_DRAW_TEX_XZ | C3D_DRAW_BACKDROP;
+        draw.flags = C3D_DRAW_TEXTURED | C3D_DRAW_BACKDROP;
+        draw.tex_columns = 2;
         c3d_begin(kit.device, &kit.frame);
         c3d_draw_strip(kit.device, &draw);
         if (round) c3d_mesh_free(kit.device, draw.mesh);
@@ -267,11 +267,10 @@ static uint64_t large_frame(enum picture_kind kind, int32_t yaw, int fog, uint8_
     picture_kit kit;
     assert_int_equal(picture_open(&kit, kind, LARGE_WIDTH, LARGE_HEIGHT, 0), FF_OK);
     for (int i = 0; i < GRID * GRID; i++)
-        vertices[i] = (c3d_vertex){ (int16_t)(i % GRID),
-                                    (int16_t)(i / GRID),
-                                    (int16_t)((c3d_sin_q30(i % GRID * 3000) >> 19) +
-                                              (c3d_sin_q30(i / GRID * 5000) >> 20)),
-                                    0,
+        vertices[i] = (c3d_vertex){ i % GRID,
+                                    i / GRID,
+                                    (c3d_sin_q30(i % GRID * 3000) >> 19) +
+                                        (c3d_sin_q30(i / GRID * 5000) >> 20),
                                     { 255, 255, 255, 255 } };
     for (int i = 0; i < 64 * 64; i++)
         texels[i] = (uint16_t)((i % 64 / 2) << 11 | (i / 64) << 5 | ((i ^ i >> 6) & 31));
@@ -301,7 +300,8 @@ static uint64_t large_frame(enum picture_kind kind, int32_t yaw, int fog, uint8_
                        .colour = PICTURE_WHITE,
                        .texture = c3d_texture_make(kit.device, C3D_RGB565, 64, 64, texels),
                        .tex_scale_q16 = { 2016, 2016 },
-                       .tex_offset_q16 = { 512, 512 } };
+                       .tex_offset_q16 = { 512, 512 },
+                       .tex_columns = GRID };
     assert_true(hills.mesh.id && hills.strip.id && hills.texture.id);
     const c3d_draw draws[2] = { sky, hills };
     picture_render(&kit, draws, 2, rgb);

@@ -13,8 +13,7 @@ static void make_squares(picture_kit *kit)
     for (int plane = 0; plane < PICTURE_PLANES; plane++) {
         c3d_vertex corners[4] = { { 0 } };
         for (int i = 0; i < 4; i++) {
-            int16_t across = (int16_t)((i & 1) * PICTURE_UNITS),
-                    along = (int16_t)((i >> 1) * PICTURE_UNITS);
+            int32_t across = (i & 1) * PICTURE_UNITS, along = (i >> 1) * PICTURE_UNITS;
             corners[i].x = plane == PICTURE_WEST ? 0 : across;
             corners[i].y = plane == PICTURE_LEVEL ? along : plane == PICTURE_WEST ? across : 0;
             corners[i].z = plane == PICTURE_LEVEL ? 0 : along;

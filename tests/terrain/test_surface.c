@@ -155,10 +155,10 @@ static void render_window(enum sys_gl_kind gl, uint8_t *rgb, const char *png)
                       .strip_indices_max = 64,
                       .use_vertex_buffers = 1 };
     static const uint16_t strip[4] = { 0, 1, 2, 3 };
-    static const c3d_vertex corners[4] = { { 0, 0, 0, 0, { 255, 0, 0, 255 } },
-                                           { 1, 0, 0, 0, { 0, 255, 0, 255 } },
-                                           { 0, 1, 0, 0, { 0, 0, 255, 255 } },
-                                           { 1, 1, 0, 0, { 255, 255, 255, 255 } } };
+    static const c3d_vertex corners[4] = { { 0, 0, 0, { 255, 0, 0, 255 } },
+                                           { 1, 0, 0, { 0, 255, 0, 255 } },
+                                           { 0, 1, 0, { 0, 0, 255, 255 } },
+                                           { 1, 1, 0, { 255, 255, 255, 255 } } };
     size_t bytes = c3d_bytes(backend, &desc);
     kit.memory = malloc(bytes);
     assert_int_equal(kit.api->open(&surface_desc, &kit.surface), FF_OK);

@@ -15,7 +15,7 @@ THROUGH_POINTERS = [
     (r"^c3d_close$", r"soft/c3d_soft\.c:soft_(texture_drop|close)"),
     (r"^c3d_texture_make", r"^soft_texture_upload$"),
     (r"^c3d_texture_free", r"soft/c3d_soft\.c:soft_texture_drop"),
-    (r"^c3d_mesh_|c3d_device\.c:(finish|give)_strip$", None),  # buffers of a GL: the soft back end has none
+    (r"^c3d_mesh_|c3d_device\.c:((finish|give)_strip|copy_mesh)$", None),  # buffers of a GL: the soft back end has none
     (r"^c3d_strip_free$", r"soft/c3d_soft\.c:soft_end"),
     (r"^c3d_begin$", r"soft/c3d_soft\.c:soft_begin"),
     (r"^c3d_draw_strip$", r"soft/c3d_soft\.c:soft_draw$"),
