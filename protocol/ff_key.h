@@ -24,11 +24,6 @@ typedef uint64_t ff_key;
 /* Of a node's grid: its first row, last column, last row, first column. They run round it. */
 enum ff_side { FF_SIDE_SOUTH, FF_SIDE_EAST, FF_SIDE_NORTH, FF_SIDE_WEST, FF_SIDE_COUNT };
 
-static inline enum ff_side ff_side_opposite(enum ff_side side)
-{
-    return (enum ff_side)((unsigned)side ^ 2u);
-}
-
 static inline ff_key ff_key_make(uint32_t tile, uint32_t level, uint32_t code)
 {
     return ((ff_key)tile << 36) | ((ff_key)(level & 15u) << 32) | code;

@@ -90,7 +90,8 @@ static inline void ff_planar_slopes(const ff_terrain_info *info, ff_key key, int
 static inline ff_beside ff_planar_neighbour(const ff_terrain_info *info, ff_key key,
                                             enum ff_side side)
 {
-    return (ff_beside){ ff_planar_across(info, key, side), ff_side_opposite(side), 0 };
+    enum ff_side opposite = (enum ff_side)((side + 2) % FF_SIDE_COUNT);
+    return (ff_beside){ ff_planar_across(info, key, side), opposite, 0 };
 }
 
 /* ---- locate ---- */

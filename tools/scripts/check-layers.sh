@@ -152,6 +152,70 @@ check_words() {
         'clock or chance in the core' <"$core"
 }
 
+# ---- the ground's shape: who counts tiles, multiplies edges, takes sides for opposite, or reads what a shape keeps, asks protocol/shape ----
+shape_words() { # PATTERN that no code may have but protocol/shape, the tests, and the files named; each with its reason
+    cat <<'END'
+(^|[^A-Za-z0-9_])(tiles|samples)_[xy]([^A-Za-z0-9_]|$)
+    protocol/ff_terrain.h      declares them
+    protocol/ff_terrain.c      compares two terrains
+    protocol/ff_bytes.c        reads and writes them, in packs and messages
+(^|[^A-Za-z0-9_])spacing_wu([^A-Za-z0-9_]|$)
+    protocol/ff_terrain.h      declares it; an edge and a cell are so many spacings
+    protocol/ff_terrain.c      compares two terrains
+    protocol/ff_bytes.c        reads and writes it
+    client/balance/client_balance.c  farther than the terrain is wide, by a sample, nothing is seen
+    client/ground/ff_ground_frame.c  a vertex is placed in units of a sample
+    tools/bake/bake_run.c      describes the raster; reports it
+    tools/info/bake_export.c   writes it into a raster's head
+    tools/info/bake_info.c     reports it
+ff_node_(edge|cell)_wu
+    protocol/ff_terrain.h      defines them: nominal lengths
+    client/terrain/ff_measure.c  the e of f = d / (e C)
+    client/terrain/ff_wish.c   the same, of roots
+    client/terrain/ff_select.c  hands a node's cell to who draws it
+    client/images/ff_textures.c  the e of images
+    client/client_update.c     how far beyond its middle a node reaches, at most
+    sim/judge/sim_ground.c     the judge's own side of the plane, with sim_place.c
+    sim/judge/sim_watertight.c  compares it with what is drawn
+drawn(\[[^]]*\])?(\.|->)origin_wu
+    client/terrain/ff_select.c  asks the shape for it
+    client/ground/ff_terrain_view.c  the hash of the geometry
+    client/ground/ff_ground_frame.c  a vertex is placed in units of a sample
+    sim/judge/sim_place.c      the judge's own side of the plane
+    sim/judge/sim_watertight.c  compares it with the shape's
+\(side *\+ *2\)|% *FF_SIDE_COUNT|ff_side_opposite
+ff_planar_|(\.|->)planar([^A-Za-z0-9_]|$)
+END
+}
+
+check_shape() {
+    shape_words >"$work/shape"
+    grep -vE '^(protocol/shape|tests)/' "$work/code" | awk -v rows="$work/shape" '
+    BEGIN {
+        while ((getline row < rows) > 0)
+            if (row ~ /^ /) { split(row, word, " "); may[word[1], count] = 1; named[word[1], count] = 1 } else pattern[++count] = row
+    }
+    {
+        split($0, part, ":"); file = part[1]; text = $0
+        sub(/^[^:]*:[^:]*:/, "", text)
+        seen[file] = 1
+        for (i = 1; i <= count; i++) {
+            if (text !~ pattern[i]) continue
+            if ((file, i) in may) { delete named[file, i]; continue }
+            match(text, pattern[i])
+            what = substr(text, RSTART, RLENGTH)
+            gsub(/^[^A-Za-z0-9_%]+|[^A-Za-z0-9_]+$/, "", what)
+            print file ":" part[2] ": " what ": ask protocol/shape"
+        }
+    }
+    END {
+        for (pair in named) {
+            split(pair, word, SUBSEP)
+            if (word[1] in seen) print word[1] ":1: has no " pattern[word[2]] ": take it out of shape_words in check-layers.sh"
+        }
+    }'
+}
+
 # ---- size of files and functions, left-over notes, file names ----
 check_sizes() {
     wc -l $(cat "$work/files") | awk -v max="$file_lines_max" '$2 != "total" && $1 > max {
@@ -236,6 +300,7 @@ strip_code $(cat "$work/files") >"$work/code"
 {
     check_includes
     check_words
+    check_shape
     check_sizes
     check_notes_and_names
     check_readmes
