@@ -133,9 +133,20 @@ $(1): $(call obj,$(2) $(TEST_LIB_SRC)) $(LIBS)
 	@mkdir -p $$(@D)
 	$$(CC) $$(OPT) $$(LDFLAGS) $$(filter %.o,$$^) $$(LINK_LIBS) $$(GDAL_LIBS) -lcmocka -o $$@
 endef
-$(foreach t,$(TEST_MAINS),$(eval $(call link_test,$(call built_test,$t),$t)))
+$(foreach t,$(filter-out tests/protocol/test_turned.c,$(TEST_MAINS)),$(eval $(call link_test,$(call built_test,$t),$t)))
 $(foreach t,$(FUZZ_MAINS),$(eval $(call link_test,$(call built_test,$t)-replay,$t tests/rig/replay.c)))
 test-build: $(TESTS) $(FUZZERS)
+
+# A second shape: what draws the ground is built once more, with the list of shapes of tests/protocol/turned_shapes.h.
+TURNED_SRC := tests/protocol/test_turned.c tests/rig/terrain_fixture.c sim/judge/sim_watertight.c sim/judge/sim_rim.c \
+              $(call srcs,protocol) $(call srcs,client/terrain)
+TURNED_OBJS := $(TURNED_SRC:%.c=$(BUILD)/turned/%.o)
+$(BUILD)/turned/%.o: %.c | $(DEPS_STAMP)
+	@mkdir -p $(@D)
+	$(CC) $(CFLAGS_BASE) $(STD_host) $(CFLAGS) -DFF_SHAPES_BUILT='"../../tests/protocol/turned_shapes.h"' -c $< -o $@
+$(call built_test,tests/protocol/test_turned.c): $(TURNED_OBJS) $(LIBS)
+	@mkdir -p $(@D)
+	$(CC) $(OPT) $(LDFLAGS) $(TURNED_OBJS) $(LINK_LIBS) -lcmocka -o $@
 
 test: deps ## build and run every test (sanitized, with script tests); the last line counts
 	@MAKE="$(MAKE)" tests/run.sh
@@ -221,4 +232,4 @@ clean: ## remove everything built
 	rm -rf build
 
 .SECONDARY:
--include $(shell find $(BUILD)/obj -name '*.d' 2>/dev/null)
+-include $(shell find $(BUILD)/obj $(BUILD)/turned -name '*.d' 2>/dev/null)

@@ -98,31 +98,56 @@ void fixture_free(terrain_fixture *fx)
 
 /* ---- encoding ---- */
 
-/* Samples of a grid of `side`, every `step`-th one, from (x, y). */
-static void true_grid(const terrain_fixture *fx, uint32_t x, uint32_t y, uint32_t step,
-                      uint32_t side, uint16_t *grid)
+/* A node's samples of the finest level: `edge` columns and rows of them from (0, 0), and the way
+ * that a column and a row go, as the terrain's shape says. */
+typedef struct patch {
+    int32_t edge, from[2], column[2], row[2];
+} patch;
+
+static patch patch_of(const terrain_fixture *fx, ff_key key)
 {
-    for (uint32_t row = 0; row < side; row++) {
-        for (uint32_t column = 0; column < side; column++)
-            grid[row * side + column] = fx->height(x + column * step, y + row * step);
+    const int32_t nowhere[3] = { 0, 0, 0 };
+    uint32_t last = 1u << fx->info.node_log2;
+    int32_t edge = 1 << (fx->info.tile_log2 - ff_key_level(key)),
+            edge_wu = edge * (int32_t)fx->info.spacing_wu;
+    int32_t from_wu[3], column_wu[3], row_wu[3];
+    ff_frame frame = ff_shape_frame(&fx->info, nowhere);
+    ff_placed placed = ff_shape_put(&fx->info, &frame, key);
+    ff_shape_place(&fx->info, key, &placed, 0, 0, 0, from_wu);
+    ff_shape_place(&fx->info, key, &placed, last, 0, 0, column_wu);
+    ff_shape_place(&fx->info, key, &placed, 0, last, 0, row_wu);
+    patch p = { .edge = edge };
+    for (int axis = 0; axis < 2; axis++) {
+        p.from[axis] = from_wu[axis] / (int32_t)fx->info.spacing_wu;
+        p.column[axis] = (column_wu[axis] - from_wu[axis]) / edge_wu;
+        p.row[axis] = (row_wu[axis] - from_wu[axis]) / edge_wu;
     }
+    return p;
 }
 
-static void place_of(const terrain_fixture *fx, ff_key key, uint32_t *x, uint32_t *y,
-                     uint32_t *edge)
+static uint16_t true_height(const terrain_fixture *fx, const patch *p, int32_t column, int32_t row)
 {
-    uint32_t tile = ff_key_tile(key), code = ff_key_code(key);
-    *edge = 1u << (fx->info.tile_log2 - ff_key_level(key));
-    *x = (tile % fx->info.tiles_x << fx->info.tile_log2) + ff_morton_x(code) * *edge;
-    *y = (tile / fx->info.tiles_x << fx->info.tile_log2) + ff_morton_y(code) * *edge;
+    return fx->height((uint32_t)(p->from[0] + column * p->column[0] + row * p->row[0]),
+                      (uint32_t)(p->from[1] + column * p->column[1] + row * p->row[1]));
+}
+
+/* The patch as a grid of `side`. */
+static void true_grid(const terrain_fixture *fx, const patch *p, uint32_t side, uint16_t *grid)
+{
+    int32_t step = p->edge / (int32_t)(side - 1);
+    for (uint32_t row = 0; row < side; row++) {
+        for (uint32_t column = 0; column < side; column++)
+            grid[row * side + column] = true_height(fx, p, (int32_t)column * step,
+                                                    (int32_t)row * step);
+    }
 }
 
 /* Largest distance between the source and the node's triangles, rounded up; wide nodes are
  * sampled. */
 static uint8_t error_of(const terrain_fixture *fx, ff_key key, const uint16_t *heights)
 {
-    uint32_t x, y, edge, side = ff_node_side(&fx->info), worst = 0;
-    place_of(fx, key, &x, &y, &edge);
+    patch p = patch_of(fx, key);
+    uint32_t edge = (uint32_t)p.edge, side = ff_node_side(&fx->info), worst = 0;
     uint32_t cell = edge / (side - 1),
              step = edge > ERROR_STRIDE_SPAN ? edge / ERROR_STRIDE_SPAN : 1;
     for (uint32_t row = 0; row < edge; row += step) {
@@ -131,7 +156,7 @@ static uint8_t error_of(const terrain_fixture *fx, ff_key key, const uint16_t *h
             int64_t u = column % cell, v = row % cell, c = cell;
             int64_t drawn = u >= v ? sw[0] * (c - u) + sw[1] * (u - v) + sw[side + 1] * v
                                    : sw[0] * (c - v) + sw[side] * (v - u) + sw[side + 1] * u;
-            int64_t off = drawn - fx->height(x + column, y + row) * c;
+            int64_t off = drawn - true_height(fx, &p, (int32_t)column, (int32_t)row) * c;
             uint32_t error = (uint32_t)(((off < 0 ? -off : off) + c - 1) / c);
             worst = error > worst ? error : worst;
         }
@@ -141,22 +166,22 @@ static uint8_t error_of(const terrain_fixture *fx, ff_key key, const uint16_t *h
 
 void fixture_decoded(const terrain_fixture *fx, ff_key key, uint16_t *heights)
 {
-    uint32_t x, y, edge, side = ff_node_side(&fx->info);
-    place_of(fx, key, &x, &y, &edge);
+    uint32_t side = ff_node_side(&fx->info);
+    patch p = patch_of(fx, key);
     uint16_t source[FF_REFINED_HEIGHTS_MAX], parent[FF_NODE_HEIGHTS_MAX],
         decoded[FF_REFINED_HEIGHTS_MAX];
     static uint8_t payload[FF_PAYLOAD_BYTES_MAX];
     const uint8_t no_error[4] = { 0 };
     if (fx->info.max_error == 0) {
-        true_grid(fx, x, y, edge / (side - 1), side, heights);
+        true_grid(fx, &p, side, heights);
     } else if (ff_key_level(key) == 0) {
-        true_grid(fx, x, y, edge / (side - 1), side, source);
+        true_grid(fx, &p, side, source);
         assert_true(ff_encode_root(&fx->info, source, 0, payload, heights) > 0);
     } else {
         ff_key up = ff_key_parent(key);
         fixture_decoded(fx, up, parent);
-        place_of(fx, up, &x, &y, &edge);
-        true_grid(fx, x, y, edge / (2 * (side - 1)), ff_refined_side(&fx->info), source);
+        p = patch_of(fx, up);
+        true_grid(fx, &p, ff_refined_side(&fx->info), source);
         assert_true(ff_encode_refinement(&fx->info, parent, source, no_error, payload, decoded) >
                     0);
         ff_refined_child(&fx->info, decoded, ff_key_quadrant(key), heights);
@@ -165,17 +190,17 @@ void fixture_decoded(const terrain_fixture *fx, ff_key key, uint16_t *heights)
 
 int fixture_deliver(terrain_fixture *fx, ff_key key, int refinement)
 {
-    uint32_t x, y, edge, side = ff_node_side(&fx->info);
+    uint32_t side = ff_node_side(&fx->info);
+    patch p = patch_of(fx, key);
     uint16_t source[FF_REFINED_HEIGHTS_MAX], held[FF_NODE_HEIGHTS_MAX],
         decoded[FF_REFINED_HEIGHTS_MAX];
     static uint8_t payload[FF_PAYLOAD_BYTES_MAX];
     static int32_t value[FF_REFINED_HEIGHTS_MAX];
     ff_residuals residuals = { .value = value };
     int bytes;
-    place_of(fx, key, &x, &y, &edge);
     fixture_decoded(fx, key, held);
     if (!refinement) {
-        true_grid(fx, x, y, edge / (side - 1), side, source);
+        true_grid(fx, &p, side, source);
         bytes = ff_encode_root(&fx->info, source, error_of(fx, key, held), payload, decoded);
         assert_true(bytes > 0);
         assert_int_equal(ff_decode_root(fx->decoder, payload, (size_t)bytes, &residuals), FF_OK);
@@ -187,7 +212,7 @@ int fixture_deliver(terrain_fixture *fx, ff_key key, int refinement)
         fixture_decoded(fx, ff_key_child(key, q), child);
         error[q] = error_of(fx, ff_key_child(key, q), child);
     }
-    true_grid(fx, x, y, edge / (2 * (side - 1)), ff_refined_side(&fx->info), source);
+    true_grid(fx, &p, ff_refined_side(&fx->info), source);
     bytes = ff_encode_refinement(&fx->info, held, source, error, payload, decoded);
     assert_true(bytes > 0);
     assert_int_equal(ff_decode_refinement(fx->decoder, payload, (size_t)bytes, &residuals), FF_OK);
