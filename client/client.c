@@ -197,7 +197,7 @@ void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama)
         sys_mutex_unlock(&client->gate);
         return;
     }
-    ff_requests_cancel_panoramas(&client->requests);
+    ff_requests_cancel_all(&client->requests, FF_KIND_FACE);
     ff_panorama_drop(&client->panorama);
     client->panorama.desc = client->desc.panorama;
     ff_client_balance_begin(client, 0);

@@ -25,8 +25,8 @@ static void want_tree(ff_client *client)
     uint32_t count = ff_tree_wishes(client->tree, &list);
     for (uint32_t i = 0; i < count; i++) {
         const ff_wish *wish = &list[i];
-        enum ff_kind kind = wish->refinement ? FF_WANT_REFINEMENT : FF_WANT_ROOT;
-        enum ff_request_class rank = wish->refinement ? FF_CLASS_IN_VIEW : FF_CLASS_FIRST;
+        enum ff_kind kind = (enum ff_kind)wish->kind;
+        enum ff_request_class rank = kind == FF_KIND_ROOT ? FF_CLASS_FIRST : FF_CLASS_IN_VIEW;
         if (wish->in_view && !ff_refusals_final(&client->refusals, kind, wish->key))
             ff_requests_want(&client->requests, kind, wish->key, rank, wish->priority, NULL);
     }
@@ -40,8 +40,8 @@ static void want_textures(ff_client *client, const ff_view *view, const ff_quali
     uint32_t count = ff_textures_wishes(&client->textures, drawn, drawn_count, view, quality, wish,
                                         FF_TEXTURE_WISHES);
     for (uint32_t i = 0; i < count; i++)
-        if (!ff_refusals_final(&client->refusals, FF_WANT_TEXTURE, wish[i].key))
-            ff_requests_want(&client->requests, FF_WANT_TEXTURE, wish[i].key, FF_CLASS_IN_VIEW,
+        if (!ff_refusals_final(&client->refusals, FF_KIND_TEXTURE, wish[i].key))
+            ff_requests_want(&client->requests, FF_KIND_TEXTURE, wish[i].key, FF_CLASS_IN_VIEW,
                              wish[i].priority, NULL);
 }
 
@@ -78,7 +78,7 @@ static void want_ahead(ff_client *client, const ahead *a)
         uint32_t count = ff_tree_foresee(client->tree, a->pos_wu[v], a->yaw[v], a->pitch[v], wish,
                                          FF_PREFETCH_WISHES);
         for (uint32_t i = 0; i < count; i++) {
-            enum ff_kind kind = wish[i].refinement ? FF_WANT_REFINEMENT : FF_WANT_ROOT;
+            enum ff_kind kind = (enum ff_kind)wish[i].kind;
             if (!ff_refusals_final(&client->refusals, kind, wish[i].key))
                 ff_requests_want(&client->requests, kind, wish[i].key, FF_CLASS_PREFETCH,
                                  wish[i].priority, NULL);

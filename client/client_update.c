@@ -46,60 +46,6 @@ static void look_at_link(ff_client *client)
     }
 }
 
-/* Gives an item's heights to the tree. A codec may find only here, with the parent's heights, that
- * a payload is bad: the item then gets that error, as if the worker had found it. */
-static int deliver(ff_client *client, ff_new_item *item)
-{
-    int rc = item->kind == FF_WANT_ROOT
-                 ? ff_tree_deliver_root(client->tree, ff_key_tile(item->key), &item->residuals)
-                 : ff_tree_deliver_children(client->tree, item->key, &item->residuals);
-    if (rc != FF_OK && rc != FF_ERR_FULL && rc != FF_ERR_NOT_FOUND) {
-        item->error = rc;
-        ff_refusals_note(&client->refusals, item->kind, item->key);
-    }
-    return rc == FF_OK;
-}
-
-/* Takes in an item; 1 when the picture may have changed. A face that was refused goes to its set,
- * too, because the set waits for it. */
-static int take_item(ff_client *client, ff_new_item *item, int64_t now_us)
-{
-    enum ff_data_class data = (enum ff_data_class)ff_kind[item->kind].data;
-    if (data == FF_DATA_FACES) return ff_panorama_take(&client->panorama, item, now_us);
-    if (item->error != FF_OK) {
-        ff_refusals_note(&client->refusals, item->kind, item->key);
-        return 0;
-    }
-    return data == FF_DATA_IMAGES ? ff_textures_take(&client->textures, item)
-                                  : deliver(client, item);
-}
-
-/* How the request of its last item ends. A face that came and cannot be decoded ends it like any
- * other face: its bytes have come, and the set counts it as missing. */
-static enum ff_request_state final_state(const ff_new_item *item)
-{
-    if (item->error == FF_OK) return FF_REQUEST_DONE;
-    if (item->error == FF_ERR_CLOSED) return FF_REQUEST_CANCELLED;
-    int face_came = ff_kind[item->kind].data == FF_DATA_FACES && item->bytes;
-    return face_came ? FF_REQUEST_DONE : FF_REQUEST_FAILED;
-}
-
-/* Takes in all new data and returns the number of items. *changed is set when faces or images
- * changed the picture; the tree tells of heights itself. */
-static unsigned take_new_data(ff_client *client, int64_t now_us, int *changed)
-{
-    unsigned taken = 0;
-    ff_new_item *item;
-    while (taken < client->news.item_slots && (item = ff_new_data_first(&client->news)) != NULL) {
-        int any = take_item(client, item, now_us);
-        if (any && ff_kind[item->kind].has_image) *changed = 1;
-        if (item->last) ff_requests_finish(&client->requests, item->id, final_state(item));
-        ff_new_data_release(&client->news);
-        taken++;
-    }
-    return taken;
-}
-
 static int same_camera(const c3d_camera *a, const c3d_camera *b)
 {
     return memcmp(a->pos_wu, b->pos_wu, sizeof a->pos_wu) == 0 && a->yaw == b->yaw &&
@@ -147,7 +93,7 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
         return 0;
     }
     const c3d_camera entered = enter_frame(client, given), *camera = &entered;
-    unsigned taken = take_new_data(client, now_us, &pictures_changed);
+    unsigned taken = ff_client_take_new_data(client, now_us, &pictures_changed);
     int moved = !client->has_camera || !same_camera(&client->camera, camera);
     ff_quality quality = ff_client_quality(client);
     ff_view view;

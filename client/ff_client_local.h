@@ -76,6 +76,15 @@ void *ff_client_take(ff_arena *arena, const ff_budget *budget, enum ff_pool_id p
  * FF_ERR_MEMORY, FF_ERR_UNSUPPORTED. */
 int ff_client_carve(ff_client *client);
 void ff_client_uncarve(ff_client *client);
+/* client_take.c: takes in all new data and returns the number of items. *changed is set when the
+ * picture changed and the tree does not tell of it. */
+unsigned ff_client_take_new_data(ff_client *client, int64_t now_us, int *changed);
+/* Takes one kind's new data into what the client holds, and refusals too when the key is the
+ * client's own. 1 when the picture may have changed and the tree does not tell of it. */
+#define X(kind, name, ...) \
+    int ff_client_take_##name(ff_client *client, ff_new_item *item, int64_t now_us);
+FF_KIND_LIST(X)
+#undef X
 /* client_rank.c: fills the request queue anew with what tree, images, panorama and prediction
  * want. */
 void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality,

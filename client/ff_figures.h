@@ -27,12 +27,12 @@
     TOLD(uint32_t, textures_held, from->client->textures.held, "images of the ground") \
     TOLD(uint32_t, textures_high, from->client->textures.high, "the most at once") \
     TOLD(uint32_t, textures_full, from->client->textures.full, "images that found no room") \
-    TOLD(uint32_t, panorama_requests, from->requests.panoramas_sent, "sent") \
+    TOLD(uint32_t, panorama_requests, from->requests.of[FF_KIND_FACE].sent, "sent") \
     TOLD(uint32_t, panorama_faces, from->client->panorama.faces, "that came") \
     TOLD(uint32_t, panorama_faces_empty, from->client->panorama.faces_empty, \
          "found without far ground by the server") \
-    TOLD(uint32_t, panorama_bytes, (uint32_t)from->link.panorama_bytes, "of their messages") \
-    KEPT(uint32_t, panoramas_in_flight_high, from->requests.panoramas_in_flight_high, \
+    TOLD(uint32_t, panorama_bytes, (uint32_t)from->link.answer_bytes[FF_KIND_FACE], "of their messages") \
+    KEPT(uint32_t, panoramas_in_flight_high, from->requests.of[FF_KIND_FACE].in_flight_high, \
          "requests sent and unanswered at once; 1 at most unless hold_back is 1") \
     TOLD(uint32_t, requests_sent, from->requests.sent, "of all kinds") \
     TOLD(uint32_t, requests_done, from->requests.done, "answered, and the answer was of use") \

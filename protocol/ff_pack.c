@@ -35,40 +35,47 @@ static int inside(uint64_t offset, uint64_t bytes, uint64_t size)
     return offset >= FF_PACK_HEADER_BYTES && offset <= size && bytes <= size - offset;
 }
 
-/* What section `number` must be; 0 when there must be none. Sections come in one order only: roots,
- * refinements by level, textures by level, with none missing and none twice. */
-static int section_expected(const ff_terrain_info *info, uint32_t number, uint16_t *kind,
-                            uint16_t *level)
+static uint32_t levels_of(const ff_terrain_info *info, enum ff_kind kind)
 {
-    uint32_t refinements = ff_terrain_levels(info) - 1;
-
-    if (number == 0) {
-        *kind = FF_SECTION_ROOT;
-        *level = 0;
-    } else if (number <= refinements) {
-        *kind = FF_SECTION_REFINEMENT;
-        *level = (uint16_t)(number - 1);
-    } else {
-        *kind = FF_SECTION_TEXTURE;
-        *level = (uint16_t)(number - 1 - refinements);
+    switch (kind) {
+#define X(kind, name, asked_by, what, asks, answered_by, brings, section, levels, ...) \
+    case FF_KIND_##kind: return levels;
+        FF_KIND_LIST(X)
+#undef X
+        case FF_KIND_COUNT: break;
     }
-    return number < 1 + refinements + info->texture_levels;
+    return 0;
+}
+
+/* Sections come in one order only: kind after kind, each by level, with none missing and none
+ * twice. */
+int ff_pack_section_at(const ff_terrain_info *info, uint32_t number, ff_pack_section *section)
+{
+    for (unsigned kind = 0; kind < FF_KIND_COUNT; kind++) {
+        uint32_t levels = levels_of(info, (enum ff_kind)kind);
+        if (number < levels) {
+            section->kind = ff_kind[kind].section;
+            section->level = (uint16_t)number;
+            return 1;
+        }
+        number -= levels;
+    }
+    return 0;
 }
 
 static int check_sections(const ff_pack_header *header)
 {
     const ff_terrain_info *info = &header->info;
+    ff_pack_section expected;
 
-    if (header->section_count != ff_terrain_levels(info) + info->texture_levels)
-        return FF_ERR_RANGE;
     for (uint32_t i = 0; i < header->section_count; i++) {
         const ff_pack_section *section = &header->section[i];
-        uint16_t kind, level;
-        if (!section_expected(info, i, &kind, &level) || section->kind != kind ||
-            section->level != level || section->record_count != records_expected(info, level))
+        if (!ff_pack_section_at(info, i, &expected) || section->kind != expected.kind ||
+            section->level != expected.level ||
+            section->record_count != records_expected(info, expected.level))
             return FF_ERR_RANGE;
     }
-    return FF_OK;
+    return ff_pack_section_at(info, header->section_count, &expected) ? FF_ERR_RANGE : FF_OK;
 }
 
 static void read_section(ff_reader *in, ff_pack_section *section)
@@ -201,6 +208,7 @@ int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
 static uint64_t verify_section(const ff_pack *pack, const ff_pack_section *section, int *whole)
 {
     const uint8_t *index = pack->bytes + section->index_offset, *payload;
+    int may_have_gaps = ff_kind_of_section(section->kind)->data != FF_DATA_HEIGHTS;
     uint64_t bad = 0;
     uint32_t records_crc = 0;
 
@@ -211,7 +219,7 @@ static uint64_t verify_section(const ff_pack *pack, const ff_pack_section *secti
         int rc = read_record(pack, section, number, &payload);
         if (rc >= 0)
             records_crc = ff_crc32(records_crc, payload - RECORD_CRC_BYTES, RECORD_CRC_BYTES);
-        else if (rc != FF_ERR_NOT_FOUND || section->kind != FF_SECTION_TEXTURE)
+        else if (rc != FF_ERR_NOT_FOUND || !may_have_gaps)
             bad++;
     }
     if (bad == 0 && records_crc != section->records_crc) *whole = 0;

@@ -10,17 +10,11 @@
 #define FF_PACK_H
 
 #include "codec/ff_codec.h"
+#include "ff_kind.h"
 
 #define FF_PACK_VERSION      2
 #define FF_PACK_HEADER_BYTES 4096 /* with the directory of sections; the sections follow */
 #define FF_PACK_SECTIONS_MAX 48
-
-enum ff_section_kind {
-    FF_SECTION_NONE = 0,
-    FF_SECTION_ROOT = 1,
-    FF_SECTION_REFINEMENT = 2,
-    FF_SECTION_TEXTURE = 3
-};
 
 typedef struct ff_pack_section {
     uint16_t kind;      /* enum ff_section_kind */
@@ -60,6 +54,10 @@ int ff_pack_open(ff_pack *pack, const void *bytes, uint64_t size);
  * NOT_FOUND, CHECKSUM, RANGE. Root: key level 0. Refinement: key of the node to refine. */
 int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
                    const uint8_t **payload);
+
+/* What section `number` of this terrain's packs holds: fills kind and level alone. 1, or 0: they
+ * have fewer sections. */
+int ff_pack_section_at(const ff_terrain_info *info, uint32_t number, ff_pack_section *section);
 
 /* Checks indexes and every record of every section; *bad receives the number of damaged records.
  * FF_OK or error. */

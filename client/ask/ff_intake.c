@@ -1,9 +1,8 @@
 #include "ff_intake_local.h"
 
-ff_new_item *ff_intake_begin(ff_intake *intake, const ff_request *request, int image,
-                             uint32_t bytes)
+static ff_new_item *begin(ff_intake *intake, const ff_request *request, uint32_t bytes)
 {
-    ff_new_item *item = ff_new_data_begin(intake->news, image);
+    ff_new_item *item = ff_new_data_begin(intake->news);
     if (item) {
         item->key = request->key;
         item->id = request->id;
@@ -14,40 +13,57 @@ ff_new_item *ff_intake_begin(ff_intake *intake, const ff_request *request, int i
     return item;
 }
 
-int ff_intake_put(ff_intake *intake, ff_new_item *item)
+static int put(ff_intake *intake, ff_new_item *item)
 {
-    int last = item->last;
-    uint16_t id = item->id;
-    uint32_t bytes = item->bytes;
-    if (last) /* before the main thread can see the item */
-        ff_requests_arrived(intake->requests, id, bytes);
+    if (item->last) /* before the main thread can see the item */
+        ff_requests_arrived(intake->requests, item->id, item->bytes);
     ff_new_data_put(intake->news, item);
     return FF_OK;
 }
 
-int ff_intake_node(ff_intake *intake, const ff_request *request, const uint8_t *payload,
-                   uint32_t bytes)
+static int decode(ff_intake *intake, const ff_message *answer, ff_new_item *item)
 {
-    ff_new_item *item = ff_intake_begin(intake, request, 0, bytes);
-    if (!item) return FF_ERR_AGAIN;
-    item->error = request->kind == FF_WANT_ROOT
-                      ? ff_decode_root(intake->decoder, payload, bytes, &item->residuals)
-                      : ff_decode_refinement(intake->decoder, payload, bytes, &item->residuals);
-    return ff_intake_put(intake, item);
+    switch ((enum ff_kind)item->kind) {
+#define X(kind, name, ...) \
+    case FF_KIND_##kind: return ff_intake_##name(intake, answer, item);
+        FF_KIND_LIST(X)
+#undef X
+        case FF_KIND_COUNT: break;
+    }
+    return FF_ERR_UNSUPPORTED;
 }
 
-int ff_intake_record(ff_intake *intake, const ff_request *request, const uint8_t *payload,
+int ff_intake_answer(ff_intake *intake, const ff_request *request, const ff_message *answer,
                      uint32_t bytes)
 {
-    if (ff_kind[request->kind].data == FF_DATA_IMAGES)
-        return ff_intake_texture(intake, request, payload, bytes);
-    return ff_intake_node(intake, request, payload, bytes);
+    int payload = ff_kind[request->kind].brings == FF_BRINGS_PAYLOAD;
+    ff_new_item *item = begin(intake, request, payload ? answer->u.data.byte_count : bytes);
+    if (!item) return FF_ERR_AGAIN;
+    item->error = decode(intake, answer, item);
+    if (item->error == FF_ERR_AGAIN) return FF_ERR_AGAIN;
+    if (item->error != FF_OK) item->pixels = NULL;
+    return put(intake, item);
 }
 
 int ff_intake_failed(ff_intake *intake, const ff_request *request, int error)
 {
-    ff_new_item *item = ff_intake_begin(intake, request, 0, 0);
+    ff_new_item *item = begin(intake, request, 0);
     if (!item) return FF_ERR_AGAIN;
+    item->refused = 1;
     item->error = error < 0 ? error : FF_ERR_FORMAT;
-    return ff_intake_put(intake, item);
+    return put(intake, item);
+}
+
+int ff_intake_root(ff_intake *intake, const ff_message *answer, ff_new_item *item)
+{
+    item->u.residuals.value = item->room;
+    return ff_decode_root(intake->decoder, answer->u.data.bytes, answer->u.data.byte_count,
+                          &item->u.residuals);
+}
+
+int ff_intake_refinement(ff_intake *intake, const ff_message *answer, ff_new_item *item)
+{
+    item->u.residuals.value = item->room;
+    return ff_decode_refinement(intake->decoder, answer->u.data.bytes, answer->u.data.byte_count,
+                                &item->u.residuals);
 }

@@ -16,17 +16,12 @@ typedef struct ff_intake {
     uint16_t face_size_max;
 } ff_intake;
 
-/* Each puts one item on the list and moves the request on. FF_OK (an undecodable payload too: the
- * item says so), or FF_ERR_AGAIN: the list is full, nothing happened, try later. A record is a node
- * or a texture, as its request's kind says. */
-int ff_intake_record(ff_intake *intake, const ff_request *request, const uint8_t *payload,
+/* Puts an answer on the list, decoded as the request's kind says, and moves the request on when it
+ * is the last. `bytes`: of the whole message; a payload counts without its head. FF_OK (an
+ * undecodable answer too: the item says so), or FF_ERR_AGAIN: the list is full, nothing happened,
+ * try later. */
+int ff_intake_answer(ff_intake *intake, const ff_request *request, const ff_message *answer,
                      uint32_t bytes);
-int ff_intake_node(ff_intake *intake, const ff_request *request, const uint8_t *payload,
-                   uint32_t bytes);
-int ff_intake_texture(ff_intake *intake, const ff_request *request, const uint8_t *jpeg,
-                      uint32_t bytes);
-int ff_intake_face(ff_intake *intake, const ff_request *request, const ff_face *face,
-                   uint32_t bytes);
 /* No answer will come: FF_ERR_CLOSED stands for cancelled. */
 int ff_intake_failed(ff_intake *intake, const ff_request *request, int error);
 

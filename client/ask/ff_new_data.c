@@ -16,9 +16,8 @@ void ff_new_data_init(ff_new_data *list, unsigned item_slots, unsigned values, v
     list->images = images;
     list->image_slots = (uint16_t)image_slots;
     list->image_bytes = image_bytes;
-    int32_t *value = (int32_t *)(void *)(list->item + item_slots);
-    for (unsigned i = 0; i < item_slots; i++)
-        list->item[i].residuals.value = value + (size_t)i * values;
+    list->rooms = (int32_t *)(void *)(list->item + item_slots);
+    list->room_words = values;
     sys_mutex_lock(&list->mutex);
     list->head = list->count = list->image_head = list->image_count = 0;
     sys_mutex_unlock(&list->mutex);
@@ -32,22 +31,27 @@ int ff_new_data_room(ff_new_data *list, int image)
     return room;
 }
 
-ff_new_item *ff_new_data_begin(ff_new_data *list, int image)
+ff_new_item *ff_new_data_begin(ff_new_data *list)
 {
-    if (!ff_new_data_room(list, image))
-        return NULL; /* the other side only ever makes room: still true below */
     sys_mutex_lock(&list->mutex);
+    int room = list->count < list->item_slots; /* the other side only ever makes more */
     unsigned place = (list->head + list->count) % list->item_slots;
-    unsigned image_place = list->image_slots
-                               ? (list->image_head + list->image_count) % list->image_slots
-                               : 0;
     sys_mutex_unlock(&list->mutex);
+    if (!room) return NULL;
     ff_new_item *item = &list->item[place];
-    int32_t *value = item->residuals.value;
     memset(item, 0, sizeof *item);
-    item->residuals.value = value;
-    if (image) item->pixels = (uint16_t *)(void *)(list->images + image_place * list->image_bytes);
+    item->room = list->rooms + place * list->room_words;
     return item;
+}
+
+int ff_new_data_image(ff_new_data *list, ff_new_item *item)
+{
+    sys_mutex_lock(&list->mutex);
+    int room = list->image_count < list->image_slots;
+    unsigned place = room ? (list->image_head + list->image_count) % list->image_slots : 0;
+    sys_mutex_unlock(&list->mutex);
+    if (room) item->pixels = (uint16_t *)(void *)(list->images + place * list->image_bytes);
+    return room;
 }
 
 void ff_new_data_put(ff_new_data *list, ff_new_item *item)

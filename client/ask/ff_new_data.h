@@ -7,27 +7,37 @@
 
 #include "ff_request.h"
 
+/* One answer, or the news that none will come. */
 typedef struct ff_new_item {
-    ff_key key;
-    uint16_t id;            /* of the request */
-    uint8_t kind;           /* enum ff_kind */
-    uint8_t last;           /* ends its request (a panorama's other faces do not) */
-    int32_t error;          /* FF_OK or why there is no answer */
-    ff_residuals residuals; /* roots and refinements; values belong to the item */
-    /* Textures: RGB565, width x width, row 0 south. Faces: RGBA5551 of width x height (a power of
-     * two), row 0 lowest, texels without ground transparent. */
-    uint16_t *pixels; /* NULL: no image */
+    ff_key key; /* of the request, as are id and kind */
+    uint16_t id;
+    uint8_t kind;     /* enum ff_kind */
+    uint8_t last;     /* ends its request: always, but for kinds with several answers */
+    uint8_t refused;  /* no answer came: `error` says why, and nothing below counts */
+    int32_t error;    /* FF_OK, or why there is nothing to take in */
+    uint32_t bytes;   /* of the answer, for the counters */
+    uint16_t *pixels; /* in an image slot; NULL: no image */
     uint16_t width, height;
-    uint8_t face, face_empty;
-    uint16_t face_top_row, face_row_count;
-    uint32_t bytes; /* of the message, for the counters */
+    int32_t *room; /* words of the item's own, as many as a refinement has residuals */
+    union {
+        /* ROOT, REFINEMENT; value lies in `room` */
+        ff_residuals residuals;
+        /* TEXTURE has nothing of its own. pixels: RGB565, width x width, row 0 south */
+        /* FACE. pixels: RGBA5551 of width x height (a power of two), row 0 lowest, texels without
+         * ground transparent; none when the face is empty */
+        struct {
+            uint8_t face, empty; /* enum ff_face_name */
+            uint16_t top_row, row_count;
+        } face;
+    } u;
 } ff_new_item;
 
 typedef struct ff_new_data {
     sys_mutex mutex; /* guards head, count, image_count */
     ff_new_item *item;
+    int32_t *rooms;  /* item_slots of room_words each */
     uint8_t *images; /* image_slots of image_bytes each */
-    size_t image_bytes;
+    size_t room_words, image_bytes;
     uint16_t item_slots, image_slots;
     uint16_t head, count, high;
     uint16_t image_head, image_count, image_high;
@@ -38,15 +48,17 @@ typedef struct ff_new_data_counts {
     uint16_t items, items_high, images, images_high;
 } ff_new_data_counts;
 
-/* Bytes of items with `values` residuals each. */
+/* Bytes of items with room for `values` residuals each. */
 size_t ff_new_data_item_bytes(unsigned item_slots, unsigned values);
 void ff_new_data_init(ff_new_data *list, unsigned item_slots, unsigned values, void *items,
                       unsigned image_slots, size_t image_bytes, void *images);
 
-/* Worker: the next free item (with an image slot in pixels when `image`), or NULL: full. Nothing is
- * visible until _put. */
-ff_new_item *ff_new_data_begin(ff_new_data *list, int image);
-/* 1 when a _begin would find room. */
+/* Worker: the next free item, or NULL: full. Nothing is visible until _put; an item that is not put
+ * was never begun. */
+ff_new_item *ff_new_data_begin(ff_new_data *list);
+/* Gives the item begun its image slot. 1, or 0: none is free. */
+int ff_new_data_image(ff_new_data *list, ff_new_item *item);
+/* 1 when there is room for an item, and with `image` for an image too. */
 int ff_new_data_room(ff_new_data *list, int image);
 void ff_new_data_put(ff_new_data *list, ff_new_item *item);
 

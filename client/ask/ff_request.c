@@ -27,7 +27,7 @@ void ff_requests_init(ff_requests *requests, unsigned in_flight_max, void *memor
     requests->queued_max = FF_REQUESTS_QUEUED_MAX;
     requests->hash = HASH_START;
     memset(requests->slot, 0, ff_requests_bytes(in_flight_max));
-    for (unsigned kind = 0; kind < FF_WANT_KINDS; kind++)
+    for (unsigned kind = 0; kind < FF_KIND_COUNT; kind++)
         for (unsigned level = 0; level < 16; level++)
             requests->answer_q4[kind][level] = ANSWER_BYTES_START
                                                << (ff_kind[kind].has_image ? 7 : 4);
@@ -35,7 +35,7 @@ void ff_requests_init(ff_requests *requests, unsigned in_flight_max, void *memor
 
 static unsigned level_of(const ff_request *request)
 {
-    return request->kind == FF_WANT_PANORAMA ? 0 : ff_key_level(request->key);
+    return ff_kind[request->kind].asks == FF_ASKS_NODE ? ff_key_level(request->key) : 0;
 }
 
 /* Every way out of QUEUED, SENT and ARRIVING passes here, so that the counts stay true. */
@@ -46,7 +46,7 @@ static void leave_state(ff_requests *requests, const ff_request *request)
         counts->queued--;
     else if (request->state == FF_REQUEST_SENT) {
         counts->in_flight--;
-        counts->panoramas_in_flight -= request->kind == FF_WANT_PANORAMA;
+        counts->of[request->kind].in_flight--;
         counts->bytes_in_flight -= request->bytes_expected;
     } else if (request->state == FF_REQUEST_ARRIVING)
         counts->arriving--;
@@ -181,21 +181,20 @@ static int cancel(ff_requests *requests, ff_request *request)
     return 1;
 }
 
-int ff_requests_cancel(ff_requests *requests, ff_key key)
+int ff_requests_cancel(ff_requests *requests, enum ff_kind kind, ff_key key)
 {
     sys_mutex_lock(&requests->mutex);
-    ff_request *request = find(requests, FF_WANT_PANORAMA, key);
+    ff_request *request = find(requests, kind, key);
     int under_way = request ? cancel(requests, request) : 0;
     sys_mutex_unlock(&requests->mutex);
     return under_way;
 }
 
-void ff_requests_cancel_panoramas(ff_requests *requests)
+void ff_requests_cancel_all(ff_requests *requests, enum ff_kind kind)
 {
     sys_mutex_lock(&requests->mutex);
     for (unsigned i = 0; i < requests->slot_count; i++)
-        if (requests->slot[i].state != FF_REQUEST_FREE &&
-            requests->slot[i].kind == FF_WANT_PANORAMA)
+        if (requests->slot[i].state != FF_REQUEST_FREE && requests->slot[i].kind == kind)
             (void)cancel(requests, &requests->slot[i]);
     sys_mutex_unlock(&requests->mutex);
 }
@@ -225,26 +224,38 @@ static int goes_before(const ff_request *a, const ff_request *b)
 
 static void hash_word(uint64_t *hash, uint64_t word) { *hash = (*hash ^ word) * HASH_PRIME; }
 
+static unsigned answers_to(const ff_request *request)
+{
+    return ff_kind[request->kind].asks == FF_ASKS_PANORAMA ? request->panorama.face_count : 1;
+}
+
+static void hash_request(uint64_t *hash, const ff_request *request)
+{
+    const ff_get_panorama *panorama = &request->panorama;
+    hash_word(hash, request->kind);
+    switch ((enum ff_kind_asks)ff_kind[request->kind].asks) {
+        case FF_ASKS_NODE: hash_word(hash, request->key); break;
+        case FF_ASKS_PANORAMA:
+            for (int i = 0; i < 3; i++) hash_word(hash, (uint32_t)panorama->position_wu[i]);
+            for (int i = 0; i < panorama->face_count; i++) hash_word(hash, panorama->face[i]);
+            break;
+    }
+}
+
+static void count_one(uint32_t *count, uint32_t *high)
+{
+    if (++*count > *high) *high = *count;
+}
+
 static void count_sent(ff_requests *requests, const ff_request *request)
 {
     ff_request_counts *counts = &requests->counts;
     counts->sent++;
-    if (request->kind == FF_WANT_PANORAMA) {
-        counts->panoramas_sent++;
-        if (++counts->panoramas_in_flight > counts->panoramas_in_flight_high)
-            counts->panoramas_in_flight_high = counts->panoramas_in_flight;
-    }
-    counts->textures_sent += request->kind == FF_WANT_TEXTURE;
-    if (++counts->in_flight > counts->in_flight_high) counts->in_flight_high = counts->in_flight;
+    counts->of[request->kind].sent++;
+    count_one(&counts->in_flight, &counts->in_flight_high);
+    count_one(&counts->of[request->kind].in_flight, &counts->of[request->kind].in_flight_high);
     counts->bytes_in_flight += request->bytes_expected;
-    hash_word(&requests->hash, request->kind);
-    if (request->kind != FF_WANT_PANORAMA) {
-        hash_word(&requests->hash, request->key);
-        return;
-    }
-    const ff_get_panorama *panorama = &request->panorama;
-    for (int i = 0; i < 3; i++) hash_word(&requests->hash, (uint32_t)panorama->position_wu[i]);
-    for (int i = 0; i < panorama->face_count; i++) hash_word(&requests->hash, panorama->face[i]);
+    hash_request(&requests->hash, request);
 }
 
 int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_max,
@@ -268,8 +279,8 @@ int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_m
         best->sent_us = now_us;
         best->cancel = 0;
         best->panorama.id = best->id;
-        best->bytes_expected = requests->answer_q4[best->kind][level_of(best)] >> 4;
-        if (best->kind == FF_WANT_PANORAMA) best->bytes_expected *= best->panorama.face_count;
+        best->bytes_expected = (requests->answer_q4[best->kind][level_of(best)] >> 4) *
+                               answers_to(best);
         count_sent(requests, best);
         *copy = *best;
     }

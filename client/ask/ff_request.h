@@ -20,14 +20,14 @@
  * those still in a slot. No two requests with the same kind and key exist at a time.
  *
  * A request that is no longer wanted is dropped while it is not sent. Once it is sent, the answer
- * is let come: some hundred bytes cost less than the message that cancels them. Only panoramas are
- * cancelled, because they cost kilobytes and the server's work.
+ * is let come: some hundred bytes cost less than the message that cancels them. Who asks for
+ * kilobytes, or for work of the server's, as panoramas do, cancels them.
  */
 #ifndef FF_REQUEST_H
 #define FF_REQUEST_H
 
 #include "../../platform/sys.h"
-#include "../../protocol/message/ff_kind.h"
+#include "../../protocol/message/ff_message.h"
 
 #define FF_REQUESTS_QUEUED_MAX 128 /* queued at a time, besides those in flight */
 
@@ -44,24 +44,26 @@ enum ff_request_state {
 enum ff_request_class { FF_CLASS_FIRST, FF_CLASS_IN_VIEW, FF_CLASS_PREFETCH };
 
 typedef struct ff_request {
-    ff_key key;              /* panoramas: a number of the client's own */
+    ff_key key;              /* what it means says its kind: enum ff_kind_asks */
     uint32_t value;          /* within the class: priority per expected byte, higher first */
     uint32_t sequence;       /* ties: older first */
     uint32_t bytes_expected; /* of the answer */
     int64_t sent_us;
     uint16_t id;               /* on the wire: slot + 1 */
-    uint8_t kind, state, rank; /* rank: enum ff_request_class */
+    uint8_t kind, state, rank; /* enums ff_kind, ff_request_state, ff_request_class */
     uint8_t marked;            /* wanted by the ranking under way */
     uint8_t cancel;            /* 1: to be cancelled; 2: the cancellation was sent */
-    ff_get_panorama panorama;  /* of FF_WANT_PANORAMA */
+    ff_get_panorama panorama;  /* of FF_ASKS_PANORAMA */
 } ff_request;
 
 typedef struct ff_request_counts {
     uint32_t made, sent, done, failed, cancelled, dropped, queue_full;
     uint32_t queued, queued_high, in_flight, in_flight_high, arriving;
-    uint32_t panoramas_sent, textures_sent, panoramas_in_flight, panoramas_in_flight_high;
     uint32_t bytes_in_flight; /* expected */
     uint32_t held_high;       /* slots in use at once */
+    struct {
+        uint32_t sent, in_flight, in_flight_high;
+    } of[FF_KIND_COUNT];
 } ff_request_counts;
 
 typedef struct ff_requests {
@@ -72,7 +74,7 @@ typedef struct ff_requests {
     uint64_t hash; /* over requests as sent */
     ff_request_counts counts;
     /* bytes of an answer by kind and level, running mean, Q4 */
-    uint32_t answer_q4[FF_WANT_KINDS][16];
+    uint32_t answer_q4[FF_KIND_COUNT][16];
 } ff_requests;
 
 size_t ff_requests_bytes(unsigned in_flight_max);
@@ -92,11 +94,11 @@ int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
 void ff_requests_rank_end(ff_requests *requests);
 /* 1 when something in view is queued: wanted and not yet sent. */
 int ff_requests_waiting(ff_requests *requests);
-/* Cancels a panorama: drops a queued request, has a sent one cancelled by the server. 1 when it is
- * still under way. */
-int ff_requests_cancel(ff_requests *requests, ff_key key);
-/* The same for all panoramas. */
-void ff_requests_cancel_panoramas(ff_requests *requests);
+/* Cancels a request: drops a queued one, has a sent one cancelled by the server. 1 when it is still
+ * under way. */
+int ff_requests_cancel(ff_requests *requests, enum ff_kind kind, ff_key key);
+/* The same for all of a kind. */
+void ff_requests_cancel_all(ff_requests *requests, enum ff_kind kind);
 /* Ends an ARRIVING request in a final state. */
 void ff_requests_finish(ff_requests *requests, uint16_t id, enum ff_request_state final);
 

@@ -4,20 +4,14 @@
 
 #include <stddef.h>
 
-int ff_intake_texture(ff_intake *intake, const ff_request *request, const uint8_t *jpeg,
-                      uint32_t bytes)
+int ff_intake_texture(ff_intake *intake, const ff_message *answer, ff_new_item *item)
 {
-    ff_new_item *item = ff_intake_begin(intake, request, 1, bytes);
-    if (!item) return FF_ERR_AGAIN;
+    if (!ff_new_data_image(intake->news, item)) return FF_ERR_AGAIN;
     unsigned side = 1u << intake->info.texture_log2;
     item->width = item->height = (uint16_t)side;
-    if ((size_t)side * side * 3 > intake->rgb_bytes)
-        item->error = FF_ERR_FULL;
-    else
-        item->error = sys_jpeg_decode(jpeg, bytes, side, side, intake->rgb);
-    if (item->error == FF_OK)
-        ff_texture_texels(&intake->info, intake->rgb, item->pixels);
-    else
-        item->pixels = NULL;
-    return ff_intake_put(intake, item);
+    if ((size_t)side * side * 3 > intake->rgb_bytes) return FF_ERR_FULL;
+    int rc = sys_jpeg_decode(answer->u.data.bytes, answer->u.data.byte_count, side, side,
+                             intake->rgb);
+    if (rc == FF_OK) ff_texture_texels(&intake->info, intake->rgb, item->pixels);
+    return rc;
 }

@@ -1,5 +1,5 @@
 /* Stands in for this folder in builds without images of the ground. */
-#include "../ask/ff_intake.h"
+#include "../ask/ff_intake_local.h"
 #include "ff_textures.h"
 
 const uint8_t ff_textures_built = 0;
@@ -24,10 +24,9 @@ int ff_textures_take(ff_textures *textures, const ff_new_item *item)
     return 0;
 }
 
-/* Never asked for: an answer is an error of the server. */
-int ff_intake_texture(ff_intake *intake, const ff_request *request, const uint8_t *jpeg,
-                      uint32_t bytes)
+/* Never asked for. */
+int ff_intake_texture(ff_intake *intake, const ff_message *answer, ff_new_item *item)
 {
-    (void)intake, (void)request, (void)jpeg, (void)bytes;
-    return FF_ERR_FORMAT;
+    (void)intake, (void)answer, (void)item;
+    return FF_ERR_UNSUPPORTED;
 }

@@ -45,22 +45,19 @@ static int decode_face(ff_intake *intake, const ff_face *face, ff_new_item *item
     if (rc != FF_OK) return rc;
     item->width = (uint16_t)size;
     item->height = (uint16_t)texture_rows(face->row_count);
-    item->face_top_row = face->top_row;
-    item->face_row_count = face->row_count;
+    item->u.face.top_row = face->top_row;
+    item->u.face.row_count = face->row_count;
     to_rgba5551(intake->rgb, size, face->row_count, top, bottom, item->height, item->pixels);
     return FF_OK;
 }
 
-int ff_intake_face(ff_intake *intake, const ff_request *request, const ff_face *face,
-                   uint32_t bytes)
+int ff_intake_face(ff_intake *intake, const ff_message *answer, ff_new_item *item)
 {
-    int empty = (face->flags & FF_FACE_EMPTY) != 0;
-    ff_new_item *item = ff_intake_begin(intake, request, !empty, bytes);
-    if (!item) return FF_ERR_AGAIN;
-    item->face = face->face;
-    item->face_empty = (uint8_t)empty;
+    const ff_face *face = &answer->u.face;
+    item->u.face.face = face->face;
+    item->u.face.empty = (face->flags & FF_FACE_EMPTY) != 0;
     item->last = (face->flags & FF_FACE_LAST) != 0;
-    if (!empty) item->error = decode_face(intake, face, item);
-    if (item->error != FF_OK) item->pixels = NULL;
-    return ff_intake_put(intake, item);
+    if (item->u.face.empty) return FF_OK;
+    if (!ff_new_data_image(intake->news, item)) return FF_ERR_AGAIN;
+    return decode_face(intake, face, item);
 }

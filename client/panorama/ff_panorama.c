@@ -124,7 +124,7 @@ static int refresh(ff_panorama *panorama, ff_requests *requests, const c3d_camer
             : !ff_panorama_outdated_soon(panorama, camera, motion))
         return changed;
     if (left_behind(panorama, camera, panorama->next) &&
-        !ff_requests_cancel(requests, panorama->set[panorama->next].key)) {
+        !ff_requests_cancel(requests, FF_KIND_FACE, panorama->set[panorama->next].key)) {
         /* it was not yet asked for, or its cancellation was answered */
         drop_set(panorama, panorama->next);
         panorama->next = -1;
@@ -132,14 +132,14 @@ static int refresh(ff_panorama *panorama, ff_requests *requests, const c3d_camer
     if (panorama->next >= 0 && !panorama->desc.hold_back)
         return changed; /* one set outstanding at most */
     int newest = panorama->next >= 0 ? panorama->next : panorama->active;
-    if (newest >= 0 && ff_requests_cancel(requests, panorama->set[newest].key) &&
+    if (newest >= 0 && ff_requests_cancel(requests, FF_KIND_FACE, panorama->set[newest].key) &&
         !panorama->desc.hold_back)
         /* the old set's last faces are still on their way: wait for the answer to the
          * cancellation */
         return changed;
     ff_request_counts counts;
     ff_requests_get_counts(requests, &counts, NULL);
-    if (counts.panoramas_in_flight && !panorama->desc.hold_back)
+    if (counts.of[FF_KIND_FACE].in_flight && !panorama->desc.hold_back)
         return changed; /* a set was dropped with panoramas off, but its request is still out */
     begin_set(panorama, camera, motion, now_us);
     return 1;
@@ -195,9 +195,8 @@ void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const 
                                 .quality = panorama->desc.jpeg_quality };
     ff_shape_leave(panorama->info, &view->frame, set->position_wu, request.position_wu);
     list_faces(&request, missing, camera);
-    ff_requests_want(requests, FF_WANT_PANORAMA, set->key,
-                     in_view ? FF_CLASS_FIRST : FF_CLASS_PREFETCH, in_view ? PRIORITY_FACE : 1,
-                     &request);
+    ff_requests_want(requests, FF_KIND_FACE, set->key, in_view ? FF_CLASS_FIRST : FF_CLASS_PREFETCH,
+                     in_view ? PRIORITY_FACE : 1, &request);
 }
 
 /* ---- faces ---- */
@@ -232,16 +231,16 @@ static void make_quad(unsigned face, int size, int top_row, int rows, c3d_vertex
 
 static void take_image(ff_panorama *panorama, ff_panorama_set *set, const ff_new_item *item)
 {
-    unsigned face = item->face;
+    unsigned face = item->u.face.face, top_row = item->u.face.top_row,
+             row_count = item->u.face.row_count;
     set->held |= (uint8_t)(1u << face);
-    ff_panorama_sight_face(&set->sight, face, item->width, item->face_top_row, item->face_row_count,
-                           set->front_wu);
+    ff_panorama_sight_face(&set->sight, face, item->width, top_row, row_count, set->front_wu);
     panorama->faces++;
     if (!panorama->device) return;
     c3d_vertex quad[4];
-    make_quad(face, item->width, item->face_top_row, item->face_row_count, quad);
+    make_quad(face, item->width, top_row, row_count, quad);
     set->height[face] = item->height;
-    set->rows[face] = item->face_row_count;
+    set->rows[face] = row_count;
     set->texture[face] = c3d_texture_make(panorama->device, C3D_RGBA5551, item->width, item->height,
                                           item->pixels);
     set->mesh[face] = c3d_mesh_make(panorama->device, quad, 4);
@@ -256,12 +255,11 @@ static void take_refusal(ff_panorama *panorama, int64_t now_us)
 
 int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now_us)
 {
-    int whole = item->error == FF_OK || item->bytes != 0; /* a face message, decodable or not */
     for (int i = 0; i < 2; i++) {
         ff_panorama_set *set = &panorama->set[i];
-        unsigned bit = 1u << item->face;
+        unsigned bit = 1u << item->u.face.face;
         if (set->key != item->key || !set->key) continue;
-        if (!whole) {
+        if (item->refused) {
             if (item->error != FF_ERR_CLOSED) take_refusal(panorama, now_us);
             return 1;
         }
@@ -269,9 +267,9 @@ int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now
         panorama->refusals = 0;
         if (item->error != FF_OK)
             set->failed |= (uint8_t)bit;
-        else if (item->face_empty) {
+        else if (item->u.face.empty) {
             set->empty |= (uint8_t)bit;
-            ff_panorama_sight_face(&set->sight, item->face, 1, 0, 0, set->front_wu);
+            ff_panorama_sight_face(&set->sight, item->u.face.face, 1, 0, 0, set->front_wu);
             panorama->faces_empty++;
         } else {
             take_image(panorama, set, item);

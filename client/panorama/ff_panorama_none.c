@@ -1,5 +1,5 @@
 /* Stands in for ff_panorama.c in builds without panoramas. */
-#include "../ask/ff_intake.h"
+#include "../ask/ff_intake_local.h"
 #include "ff_panorama.h"
 #include "ff_panorama_rules.h"
 
@@ -49,10 +49,9 @@ void ff_panorama_draw(const ff_panorama *panorama, int32_t near_wu)
     (void)panorama, (void)near_wu;
 }
 
-/* Never asked for: an answer is an error of the server. */
-int ff_intake_face(ff_intake *intake, const ff_request *request, const ff_face *face,
-                   uint32_t bytes)
+/* Never asked for. */
+int ff_intake_face(ff_intake *intake, const ff_message *answer, ff_new_item *item)
 {
-    (void)intake, (void)request, (void)face, (void)bytes;
-    return FF_ERR_FORMAT;
+    (void)intake, (void)answer, (void)item;
+    return FF_ERR_UNSUPPORTED;
 }

@@ -5,12 +5,13 @@
 static int answer(ff_intake *intake, const ff_pack *pack, const ff_request *request)
 {
     enum ff_section_kind section = (enum ff_section_kind)ff_kind[request->kind].section;
-    if (section == FF_SECTION_NONE) /* nobody here draws panoramas */
+    if (!section) /* a server makes it, and there is none */
         return ff_intake_failed(intake, request, FF_ERR_UNSUPPORTED);
-    const uint8_t *payload;
-    int bytes = ff_pack_record(pack, section, request->key, &payload);
+    ff_message message = { .type = FF_MSG_ANSWER, .kind = (enum ff_kind)request->kind };
+    int bytes = ff_pack_record(pack, section, request->key, &message.u.data.bytes);
     if (bytes < 0) return ff_intake_failed(intake, request, bytes);
-    return ff_intake_record(intake, request, payload, (uint32_t)bytes);
+    message.u.data.byte_count = (uint32_t)bytes;
+    return ff_intake_answer(intake, request, &message, (uint32_t)bytes);
 }
 
 int ff_local_step(ff_intake *intake, const ff_pack *pack, int prefetch, int64_t now_us)

@@ -14,7 +14,7 @@ typedef struct foresight {
     uint32_t victims, next_victim, free;
 } foresight;
 
-static void note(foresight *f, ff_key key, int refinement, uint32_t priority)
+static void note(foresight *f, ff_key key, enum ff_kind kind, uint32_t priority)
 {
     uint32_t at = f->count;
     if (at == f->capacity) {
@@ -23,7 +23,7 @@ static void note(foresight *f, ff_key key, int refinement, uint32_t priority)
         f->count++;
     }
     for (; at > 0 && f->list[at - 1].priority < priority; at--) f->list[at] = f->list[at - 1];
-    f->list[at] = (ff_wish){ .key = key, .refinement = (uint8_t)refinement, .priority = priority };
+    f->list[at] = (ff_wish){ .key = key, .kind = (uint8_t)kind, .priority = priority };
 }
 
 /* 1 when a box is seen from there, and not from here. */
@@ -45,7 +45,7 @@ static void foresee_roots(const ff_tree *tree, foresight *f)
         ff_box here, there;
         ff_tile_box(tree, tile, &here);
         ff_tile_box(&f->ahead, tile, &there);
-        if (comes_into_view(tree, f, &here, &there)) note(f, root, 0, FF_VALUE_ONE);
+        if (comes_into_view(tree, f, &here, &there)) note(f, root, FF_KIND_ROOT, FF_VALUE_ONE);
     }
 }
 
@@ -79,7 +79,7 @@ static void foresee_children_of(const ff_tree *tree, foresight *f, const ff_node
         return;
     uint32_t value = ff_value_of_split(&f->ahead, node);
     if (value >= FF_VALUE_ONE && !ff_box_beyond_view(&f->ahead, &there))
-        note(f, node->key, 1, value);
+        note(f, node->key, FF_KIND_REFINEMENT, value);
 }
 
 static void foresee_cut(const ff_tree *tree, foresight *f)
@@ -131,7 +131,7 @@ uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], int32_t y
     uint32_t kept = 0;
     for (uint32_t i = 0; i < f.count; i++) {
         const ff_wish *wish = &list[i];
-        int room = wish->refinement
+        int room = wish->kind == FF_KIND_REFINEMENT
                        ? takes_room(tree, &f, &tree->node[ff_tree_find(tree, wish->key)])
                        : f.free > 0;
         if (room) list[kept++] = *wish;

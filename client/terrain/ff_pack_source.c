@@ -1,14 +1,13 @@
 #include "ff_pack_source.h"
 
 int ff_pack_source_serve(const ff_pack *pack, ff_decoder *decoder, int32_t *values, ff_tree *tree,
-                         ff_key key, int refinement)
+                         enum ff_kind kind, ff_key key)
 {
     const uint8_t *payload;
     ff_residuals residuals = { .value = values };
-    int bytes = ff_pack_record(pack, refinement ? FF_SECTION_REFINEMENT : FF_SECTION_ROOT, key,
-                               &payload);
+    int bytes = ff_pack_record(pack, (enum ff_section_kind)ff_kind[kind].section, key, &payload);
     if (bytes < 0) return bytes;
-    if (!refinement) {
+    if (kind == FF_KIND_ROOT) {
         int rc = ff_decode_root(decoder, payload, (size_t)bytes, &residuals);
         return rc < 0 ? rc : ff_tree_deliver_root(tree, ff_key_tile(key), &residuals);
     }

@@ -6,9 +6,9 @@
 #include "../../protocol/ff_pack.h"
 #include "ff_tree.h"
 
-/* Reads, decodes and delivers one wish; `values` has FF_REFINED_HEIGHTS_MAX entries. FF_OK, or an
- * error of ff_pack_record, of the codec or of the tree. */
+/* Reads, decodes and delivers one wish, a root or a refinement; `values` has FF_REFINED_HEIGHTS_MAX
+ * entries. FF_OK, or an error of ff_pack_record, of the codec or of the tree. */
 int ff_pack_source_serve(const ff_pack *pack, ff_decoder *decoder, int32_t *values, ff_tree *tree,
-                         ff_key key, int refinement);
+                         enum ff_kind kind, ff_key key);
 
 #endif

@@ -20,6 +20,7 @@
 
 #include "../../common3d/c3d.h"
 #include "../../protocol/codec/ff_codec.h"
+#include "../../protocol/ff_kind.h"
 #include "../../protocol/shape/ff_shape.h"
 
 typedef struct ff_tree ff_tree;
@@ -55,11 +56,10 @@ typedef struct ff_view {
     ff_frame frame;
 } ff_view;
 
-/* One wish: a root (level 0, refinement 0) or the children of a node. priority: higher is more
- * urgent. */
+/* One wish: a root (level 0) or the children of a node. priority: higher is more urgent. */
 typedef struct ff_wish {
     ff_key key;
-    uint8_t refinement;
+    uint8_t kind;      /* FF_KIND_ROOT or FF_KIND_REFINEMENT */
     uint8_t in_view;   /* or a neighbour without which something in view may not split */
     uint32_t priority; /* of the same class: pixels of error removed, Q8 (DISTANCE: Q8 of 1/f) */
 } ff_wish;

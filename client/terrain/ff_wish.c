@@ -76,7 +76,7 @@ static void wish_roots(ff_tree *tree)
             continue;
         ff_wish *wish = &tree->wish[tree->wish_count++];
         wish->key = ff_key_make(tile, 0, 0);
-        wish->refinement = 0;
+        wish->kind = FF_KIND_ROOT;
         wish->in_view = !(tree->sort[i] & OUT_OF_VIEW);
         wish->priority = root_priority(tree, tile);
     }
@@ -140,7 +140,7 @@ static void wish_children(ff_tree *tree)
         const ff_node *node = &tree->node[slot];
         ff_wish *wish = &tree->wish[tree->wish_count++];
         wish->key = node->key;
-        wish->refinement = 1;
+        wish->kind = FF_KIND_REFINEMENT;
         wish->in_view = !(tree->sort[i] & OUT_OF_VIEW);
         wish->priority = times_q16(node->value, tree->quality.measure == FF_MEASURE_PIXELS
                                                     ? (uint32_t)tree->quality.error_px_q8

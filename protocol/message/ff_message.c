@@ -14,13 +14,12 @@ static void require(int *error, int condition)
 
 /* ---- ranges, the same for both directions ---- */
 
-static int get_ok(const ff_get *get, enum ff_message_type type)
+static int get_ok(const ff_get *get, enum ff_kind kind)
 {
     uint32_t level = ff_key_level(get->key);
 
-    if ((uint64_t)ff_key_code(get->key) >> (2 * level) != 0) return 0;
-    if (type == FF_MSG_GET_TEXTURE) return get->what == 0;
-    return get->what == FF_GET_REFINEMENT || (get->what == FF_GET_ROOT && level == 0);
+    return (uint64_t)ff_key_code(get->key) >> (2 * level) == 0 &&
+           (kind != FF_KIND_ROOT || level == 0);
 }
 
 static int panorama_ok(const ff_get_panorama *panorama)
@@ -54,11 +53,11 @@ static int face_ok(const ff_face *face)
 
 /* ---- encode ---- */
 
-static void write_get(ff_writer *out, const ff_get *get, enum ff_message_type type)
+static void write_get(ff_writer *out, const ff_get *get, enum ff_kind kind)
 {
-    require(&out->error, get_ok(get, type));
+    require(&out->error, get_ok(get, kind));
     ff_write_bytes(out, get->id, 2);
-    ff_write_bytes(out, get->what | ff_key_level(get->key) << 4, 1);
+    ff_write_bytes(out, ff_kind[kind].what | ff_key_level(get->key) << 4, 1);
     ff_write_varint(out, ff_key_tile(get->key));
     ff_write_varint(out, ff_key_code(get->key));
 }
@@ -106,6 +105,25 @@ static void write_welcome(ff_writer *out, const ff_welcome *welcome)
     ff_write_terrain(out, &welcome->info);
 }
 
+static void write_request(ff_writer *out, const ff_message *message)
+{
+    switch ((enum ff_kind_asks)ff_kind[message->kind].asks) {
+        case FF_ASKS_NODE: write_get(out, &message->u.get, message->kind); break;
+        case FF_ASKS_PANORAMA: write_panorama(out, &message->u.panorama); break;
+    }
+}
+
+static void write_answer(ff_writer *out, const ff_message *message)
+{
+    switch ((enum ff_kind_brings)ff_kind[message->kind].brings) {
+        case FF_BRINGS_PAYLOAD:
+            ff_write_bytes(out, message->u.data.id, 2);
+            ff_write_span(out, message->u.data.bytes, message->u.data.byte_count);
+            break;
+        case FF_BRINGS_FACE: write_face(out, &message->u.face); break;
+    }
+}
+
 static void write_body(ff_writer *out, const ff_message *message)
 {
     switch (message->type) {
@@ -114,35 +132,42 @@ static void write_body(ff_writer *out, const ff_message *message)
             ff_write_bytes(out, message->u.hello.version, 4);
             ff_write_bytes(out, message->u.hello.known_checksum, 4);
             break;
-        case FF_MSG_GET_NODE:
-        case FF_MSG_GET_TEXTURE: write_get(out, &message->u.get, message->type); break;
-        case FF_MSG_GET_PANORAMA: write_panorama(out, &message->u.panorama); break;
+        case FF_MSG_GET: write_request(out, message); break;
+        case FF_MSG_ANSWER: write_answer(out, message); break;
         case FF_MSG_CANCEL:
         case FF_MSG_CANCELLED: ff_write_bytes(out, message->u.cancel.id, 2); break;
         case FF_MSG_PING:
         case FF_MSG_PONG: ff_write_bytes(out, message->u.ping.stamp, 4); break;
         case FF_MSG_WELCOME: write_welcome(out, &message->u.welcome); break;
-        case FF_MSG_NODE:
-        case FF_MSG_TEXTURE:
-            ff_write_bytes(out, message->u.data.id, 2);
-            ff_write_span(out, message->u.data.bytes, message->u.data.byte_count);
-            break;
-        case FF_MSG_FACE: write_face(out, &message->u.face); break;
         case FF_MSG_FAILED:
         case FF_MSG_GOODBYE: write_failed(out, &message->u.failed, message->type); break;
         default: require(&out->error, 0);
     }
 }
 
+static uint32_t type_byte(const ff_message *message)
+{
+    return message->type == FF_MSG_GET      ? ff_kind[message->kind].asked_by
+           : message->type == FF_MSG_ANSWER ? ff_kind[message->kind].answered_by
+                                            : (uint32_t)message->type;
+}
+
+static size_t answer_bytes_max(const ff_message *message)
+{
+    switch ((enum ff_kind_brings)ff_kind[message->kind].brings) {
+        case FF_BRINGS_PAYLOAD:
+            return FF_MESSAGE_HEADER_MAX + 2 + (size_t)message->u.data.byte_count;
+        case FF_BRINGS_FACE: break;
+    }
+    return FF_MESSAGE_HEADER_MAX + 14 + (size_t)message->u.face.columns_bytes +
+           message->u.face.image_bytes;
+}
+
 size_t ff_message_bytes_max(const ff_message *message)
 {
     switch (message->type) {
         case FF_MSG_WELCOME: return FF_MESSAGE_HEADER_MAX + 4 + FF_TERRAIN_BYTES;
-        case FF_MSG_NODE:
-        case FF_MSG_TEXTURE: return FF_MESSAGE_HEADER_MAX + 2 + (size_t)message->u.data.byte_count;
-        case FF_MSG_FACE:
-            return FF_MESSAGE_HEADER_MAX + 14 + (size_t)message->u.face.columns_bytes +
-                   message->u.face.image_bytes;
+        case FF_MSG_ANSWER: return answer_bytes_max(message);
         default: return FF_REQUEST_BYTES_MAX;
     }
 }
@@ -162,7 +187,7 @@ int ff_message_encode(const ff_message *message, uint8_t *out, size_t capacity)
     header_bytes = 1 + ff_varint_bytes((uint32_t)body_bytes);
     if (header_bytes + body_bytes > capacity) return FF_ERR_FULL;
     memmove(out + header_bytes, out + room, body_bytes);
-    ff_write_bytes(&head, message->type, 1);
+    ff_write_bytes(&head, type_byte(message), 1);
     ff_write_varint(&head, (uint32_t)body_bytes);
     return (int)(header_bytes + body_bytes);
 }
@@ -178,18 +203,22 @@ static void read_hello(ff_reader *in, ff_hello *hello)
     hello->known_checksum = (uint32_t)ff_read_bytes(in, 4);
 }
 
-static void read_get(ff_reader *in, ff_get *get, enum ff_message_type type)
+/* *kind comes as the first of those asked for by this type of message, and leaves as the one. */
+static void read_get(ff_reader *in, ff_get *get, enum ff_kind *kind)
 {
-    uint32_t tile, code, form;
+    uint32_t form, what, tile, code, asked_by = ff_kind[*kind].asked_by;
 
     get->id = (uint16_t)ff_read_bytes(in, 2);
     form = (uint32_t)ff_read_bytes(in, 1);
     tile = ff_read_varint(in);
     code = ff_read_varint(in);
     require(&in->error, tile < FF_KEY_TILES_MAX);
-    get->what = (uint8_t)(form & 15u);
     get->key = ff_key_make(tile, form >> 4, code);
-    require(&in->error, get_ok(get, type));
+    what = form & 15u;
+    while (*kind < FF_KIND_COUNT &&
+           (ff_kind[*kind].asked_by != asked_by || ff_kind[*kind].what != what))
+        *kind = (enum ff_kind)(*kind + 1);
+    require(&in->error, *kind < FF_KIND_COUNT && get_ok(get, *kind));
 }
 
 static void read_panorama(ff_reader *in, ff_get_panorama *panorama)
@@ -249,33 +278,87 @@ static void read_failed(ff_reader *in, ff_failed *failed, enum ff_message_type t
     require(&in->error, failed->error < 0 && (type == FF_MSG_FAILED || failed->id == 0));
 }
 
+static void read_request(ff_reader *in, ff_message *out)
+{
+    switch ((enum ff_kind_asks)ff_kind[out->kind].asks) {
+        case FF_ASKS_NODE: read_get(in, &out->u.get, &out->kind); break;
+        case FF_ASKS_PANORAMA: read_panorama(in, &out->u.panorama); break;
+    }
+}
+
+static void read_answer(ff_reader *in, ff_message *out)
+{
+    switch ((enum ff_kind_brings)ff_kind[out->kind].brings) {
+        case FF_BRINGS_PAYLOAD:
+            out->u.data.id = (uint16_t)ff_read_bytes(in, 2);
+            read_rest(in, &out->u.data.bytes, &out->u.data.byte_count);
+            break;
+        case FF_BRINGS_FACE: read_face(in, &out->u.face); break;
+    }
+}
+
 static void read_body(ff_reader *in, ff_message *out)
 {
     switch (out->type) {
         case FF_MSG_HELLO: read_hello(in, &out->u.hello); break;
-        case FF_MSG_GET_NODE:
-        case FF_MSG_GET_TEXTURE: read_get(in, &out->u.get, out->type); break;
-        case FF_MSG_GET_PANORAMA: read_panorama(in, &out->u.panorama); break;
+        case FF_MSG_GET: read_request(in, out); break;
+        case FF_MSG_ANSWER: read_answer(in, out); break;
         case FF_MSG_CANCEL:
         case FF_MSG_CANCELLED: out->u.cancel.id = (uint16_t)ff_read_bytes(in, 2); break;
         case FF_MSG_PING:
         case FF_MSG_PONG: out->u.ping.stamp = (uint32_t)ff_read_bytes(in, 4); break;
         case FF_MSG_WELCOME: read_welcome(in, &out->u.welcome); break;
-        case FF_MSG_NODE:
-        case FF_MSG_TEXTURE:
-            out->u.data.id = (uint16_t)ff_read_bytes(in, 2);
-            read_rest(in, &out->u.data.bytes, &out->u.data.byte_count);
-            break;
-        case FF_MSG_FACE: read_face(in, &out->u.face); break;
         case FF_MSG_FAILED:
         case FF_MSG_GOODBYE: read_failed(in, &out->u.failed, out->type); break;
     }
 }
 
-static int type_known(uint8_t type)
+/* The type that a first byte stands for, 0: none; of GET and ANSWER the first such kind, too. */
+static int type_of(uint8_t byte, enum ff_kind *kind)
 {
-    return (type >= FF_MSG_HELLO && type <= FF_MSG_PING) ||
-           (type >= FF_MSG_WELCOME && type <= FF_MSG_GOODBYE);
+    for (unsigned i = 0; i < FF_KIND_COUNT; i++) {
+        int asked = ff_kind[i].asked_by == byte;
+        if (!asked && ff_kind[i].answered_by != byte) continue;
+        *kind = (enum ff_kind)i;
+        return asked ? FF_MSG_GET : FF_MSG_ANSWER;
+    }
+    switch (byte) {
+#define X(name, type, sender) case FF_MSG_##name:
+        FF_MESSAGE_LIST(X)
+#undef X
+        return byte;
+        default: return 0;
+    }
+}
+
+int ff_message_type_of(uint8_t byte)
+{
+    enum ff_kind kind;
+
+    return type_of(byte, &kind);
+}
+
+int ff_message_from_client(uint8_t byte)
+{
+    enum { SERVER, CLIENT };
+
+    switch (ff_message_type_of(byte)) {
+#define X(name, type, sender) \
+    case FF_MSG_##name: return sender == CLIENT;
+        FF_MESSAGE_LIST(X)
+#undef X
+        case FF_MSG_GET: return 1;
+        default: return 0;
+    }
+}
+
+uint16_t ff_message_id(const ff_message *message)
+{
+    const ff_kind_row *kind = &ff_kind[message->kind];
+
+    if (message->type == FF_MSG_GET)
+        return kind->asks == FF_ASKS_NODE ? message->u.get.id : message->u.panorama.id;
+    return kind->brings == FF_BRINGS_PAYLOAD ? message->u.data.id : message->u.face.id;
 }
 
 int ff_message_decode(const uint8_t *bytes, size_t byte_count, ff_message *out)
@@ -286,11 +369,13 @@ int ff_message_decode(const uint8_t *bytes, size_t byte_count, ff_message *out)
     };
     ff_reader body = { NULL, NULL, FF_OK };
     uint32_t body_bytes;
+    int type;
 
     if (byte_count < 1) return 0;
     memset(out, 0, sizeof(*out));
-    if (!type_known(bytes[0])) return FF_ERR_FORMAT;
-    out->type = (enum ff_message_type)ff_read_bytes(&head, 1);
+    type = type_of((uint8_t)ff_read_bytes(&head, 1), &out->kind);
+    if (!type) return FF_ERR_FORMAT;
+    out->type = (enum ff_message_type)type;
     body_bytes = ff_read_varint(&head);
     if (head.error == FF_ERR_TRUNCATED)
         return byte_count < FF_MESSAGE_HEADER_MAX ? 0 : FF_ERR_RANGE;

@@ -3,13 +3,14 @@
  *
  * Every message: type (1 byte), body length (LEB128, 1..3 bytes), body. Numbers are little-endian;
  * `id` is the client's request number, unique among its unanswered requests. Every request gets
- * exactly one final answer (NODE, TEXTURE, FACE with FF_FACE_LAST, or FAILED), unless it was
- * cancelled, when the answer may be CANCELLED instead. Pure bytes: no sockets here.
+ * exactly one final answer (its kind's, with FF_FACE_LAST where there are several, or FAILED),
+ * unless it was cancelled, when the answer may be CANCELLED instead. Pure bytes: no sockets here.
  */
 #ifndef FF_MESSAGE_H
 #define FF_MESSAGE_H
 
 #include "../codec/ff_codec.h"
+#include "../ff_kind.h"
 
 #define FF_PROTOCOL_VERSION   2
 #define FF_MESSAGE_BODY_MAX   (1u << 18) /* a longer length is a protocol error */
@@ -18,34 +19,37 @@
 #define FF_FACE_COUNT         6
 #define FF_FACE_SIZE_MAX      1024
 
+/* Messages about the link itself: X(name, type, who sends it). Those that ask for things, and those
+ * that answer, stand in ff_kind.h. */
+/* clang-format off */
+#define FF_MESSAGE_LIST(X) \
+    X(HELLO,      1, CLIENT) /* ff_hello */ \
+    X(CANCEL,     5, CLIENT) /* ff_cancel: the answer is no longer wanted */ \
+    X(PING,       6, CLIENT) /* ff_ping */ \
+    X(WELCOME,   65, SERVER) /* ff_welcome: the terrain */ \
+    X(FAILED,    69, SERVER) /* ff_failed: this request has no answer */ \
+    X(CANCELLED, 70, SERVER) /* ff_cancel */ \
+    X(PONG,      71, SERVER) /* ff_ping */ \
+    X(GOODBYE,   72, SERVER) /* ff_failed with id 0: the server closes, and says why */
+/* clang-format on */
+
 enum ff_message_type {
-    /* client to server */
-    FF_MSG_HELLO = 1,        /* ff_hello */
-    FF_MSG_GET_NODE = 2,     /* ff_get: root (level 0, FF_GET_ROOT) or the refinement of a node */
-    FF_MSG_GET_TEXTURE = 3,  /* ff_get */
-    FF_MSG_GET_PANORAMA = 4, /* ff_get_panorama */
-    FF_MSG_CANCEL = 5,       /* ff_cancel: the answer is no longer wanted */
-    FF_MSG_PING = 6,         /* ff_ping */
-    /* server to client */
-    FF_MSG_WELCOME = 65,   /* ff_welcome: the terrain */
-    FF_MSG_NODE = 66,      /* ff_data: payload of ff_decode_root / ff_decode_refinement */
-    FF_MSG_TEXTURE = 67,   /* ff_data: a bare JPEG (SPEC.md) */
-    FF_MSG_FACE = 68,      /* ff_face: one face of a panorama */
-    FF_MSG_FAILED = 69,    /* ff_failed: this request has no answer */
-    FF_MSG_CANCELLED = 70, /* ff_cancel */
-    FF_MSG_PONG = 71,      /* ff_ping */
-    FF_MSG_GOODBYE = 72    /* ff_failed with id 0: the server closes, and says why */
+#define X(name, type, sender) FF_MSG_##name = type,
+    FF_MESSAGE_LIST(X)
+#undef X
+    /* Each stands for all types of its sort, and the message says of which kind it is. Neither
+     * is a byte. */
+    FF_MSG_GET = 256,
+    FF_MSG_ANSWER
 };
 
 typedef struct ff_hello {
     uint32_t version;
     uint32_t known_checksum; /* of the pack in the client's cache; 0: none */
 } ff_hello;
-enum ff_get_what { FF_GET_ROOT = 0, FF_GET_REFINEMENT = 1 };
 typedef struct ff_get {
     uint16_t id;
-    uint8_t what; /* enum ff_get_what; textures: 0 */
-    ff_key key;
+    ff_key key; /* of a root: level 0 */
 } ff_get;
 
 /* The faces of a cube aligned with the world, each named for the direction it looks in. Images of
@@ -122,15 +126,18 @@ int ff_face_columns_decode(const uint8_t *bytes, size_t byte_count, uint32_t cou
 /* One received or to-be-sent message, decoded. */
 typedef struct ff_message {
     enum ff_message_type type;
+    /* of GET and ANSWER. Kinds that share an answer's type are decoded as the first of them: only
+     * the request tells them apart */
+    enum ff_kind kind;
     union {
         ff_hello hello;
-        ff_get get;
-        ff_get_panorama panorama;
+        ff_get get;               /* GET, FF_ASKS_NODE */
+        ff_get_panorama panorama; /* GET, FF_ASKS_PANORAMA */
         ff_cancel cancel;
         ff_ping ping;
         ff_welcome welcome;
-        ff_data data;
-        ff_face face;
+        ff_data data; /* ANSWER, FF_BRINGS_PAYLOAD */
+        ff_face face; /* ANSWER, FF_BRINGS_FACE */
         ff_failed failed;
     } u;
 } ff_message;
@@ -139,6 +146,14 @@ typedef struct ff_message {
 int ff_message_encode(const ff_message *message, uint8_t *out, size_t capacity);
 /* Most bytes `message` can need, header included. */
 size_t ff_message_bytes_max(const ff_message *message);
+
+/* The request's number in a GET or an ANSWER. */
+uint16_t ff_message_id(const ff_message *message);
+
+/* What a message's first byte says of its type: 0 when there is no such type. */
+int ff_message_type_of(uint8_t byte);
+/* 1 when it is the first byte of a message that clients send. */
+int ff_message_from_client(uint8_t byte);
 
 /* Takes one message off the front of `bytes`. Returns bytes consumed (> 0); 0 when more bytes are
  * needed, or a negative error (FORMAT: unknown type; RANGE; TRUNCATED: body shorter than its

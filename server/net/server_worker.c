@@ -36,10 +36,10 @@ static void count_session(worker *w, const server_client *client)
     ff_session_get_stats(client->session, &stats);
     w->counters->bytes_in += stats.bytes_in;
     w->counters->bytes_out += stats.bytes_out;
-    w->counters->nodes += stats.nodes;
-    w->counters->textures += stats.textures;
+    w->counters->nodes += stats.answers[FF_DATA_HEIGHTS];
+    w->counters->textures += stats.answers[FF_DATA_IMAGES];
     w->counters->panoramas += stats.panoramas;
-    w->counters->faces += stats.faces;
+    w->counters->faces += stats.answers[FF_DATA_FACES];
     w->counters->failed += stats.failed;
     if (stats.damaged)
         server_complain(

@@ -93,7 +93,7 @@ static uint32_t serve_wishes(panorama_ground *ground)
     for (uint32_t i = 0; i < count; i++) {
         const ff_wish *wish = &ground->wishes[i];
         int rc = ff_pack_source_serve(ground->pack, ground->decoder, ground->values, ground->tree,
-                                      wish->key, wish->refinement);
+                                      (enum ff_kind)wish->kind, wish->key);
         if (rc == FF_OK) {
             ground->stats->nodes_read++;
             delivered++;

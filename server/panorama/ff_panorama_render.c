@@ -212,7 +212,7 @@ int ff_panorama_render_face(ff_panorama_renderer *renderer, const ff_get_panoram
         request->face_size > FF_FACE_SIZE_MAX || request->front_wu < 8 ||
         request->back_wu <= request->front_wu)
         return FF_ERR_RANGE;
-    ff_message message = { .type = FF_MSG_FACE };
+    ff_message message = { .type = FF_MSG_ANSWER, .kind = FF_KIND_FACE };
     message.u.face = (ff_face){ .id = request->id,
                                 .face = face,
                                 .face_size = request->face_size,

@@ -1,4 +1,4 @@
-/* Panorama renderer: far ground into one cube face, as a finished FF_MSG_FACE message (Hybrid,
+/* Panorama renderer: far ground into one cube face, as a finished message (Hybrid,
  * section 6.2). Ground whose largest coordinate difference to the position is below front_wu (less
  * a margin of one eighth, so that the join overlaps) or above back_wu is left out; sky is not
  * drawn: columns say where ground is. Draws with client/ground over the pack.

@@ -4,8 +4,7 @@
  * above that short answers (FAILED, CANCELLED, PONG), and a last reserve for the GOODBYE. So a slow
  * reader costs a fixed amount of memory, and its own reading says when to go on.
  */
-#include "ff_session.h"
-#include "../../protocol/message/ff_kind.h"
+#include "ff_session_local.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -19,7 +18,8 @@
 #define MINUTE_US           60000000
 
 typedef struct request {
-    uint8_t type; /* FF_MSG_GET_NODE, FF_MSG_GET_TEXTURE; 0: cancelled */
+    ff_session_fetch *fetch; /* NULL: cancelled */
+    enum ff_kind kind;
     ff_get get;
 } request;
 
@@ -143,16 +143,13 @@ static int end_session(ff_session *session, int error)
     return error;
 }
 
-/* ---- nodes and textures ---- */
+/* ---- what waits in turn ---- */
 
-static int fetch(const ff_session *session, const request *wanted, ff_message *message)
+static int fetch_answer(const ff_session *session, const request *wanted, ff_message *message)
 {
-    int kind = ff_kind_asked_by(wanted->type, wanted->get.what);
-    assert(kind >= 0); /* ff_message_decode knows no other `what` */
-    message->type = ff_kind[kind].answered_by;
+    *message = (ff_message){ .type = FF_MSG_ANSWER, .kind = wanted->kind };
     message->u.data.id = wanted->get.id;
-    int bytes = ff_pack_record(session->desc.pack, (enum ff_section_kind)ff_kind[kind].section,
-                               wanted->get.key, &message->u.data.bytes);
+    int bytes = wanted->fetch(session, wanted->kind, wanted->get.key, &message->u.data.bytes);
     if (bytes < 0) return bytes;
     message->u.data.byte_count = (uint32_t)bytes;
     return ff_message_bytes_max(message) <= FACE_BYTES ? FF_OK : FF_ERR_FULL;
@@ -162,7 +159,7 @@ static int fetch(const ff_session *session, const request *wanted, ff_message *m
 static int serve(ff_session *session, const request *wanted)
 {
     ff_message message;
-    int rc = fetch(session, wanted, &message);
+    int rc = fetch_answer(session, wanted, &message);
     if (rc == FF_OK) {
         size_t room = ff_message_bytes_max(&message);
         int alone = out_pending(session) == 0 && !session->job_out;
@@ -176,10 +173,7 @@ static int serve(ff_session *session, const request *wanted)
         return 1;
     }
     session->out_end += (size_t)rc;
-    if (message.type == FF_MSG_NODE)
-        session->stats.nodes++;
-    else
-        session->stats.textures++;
+    session->stats.answers[ff_kind[wanted->kind].data]++;
     return 1;
 }
 
@@ -187,7 +181,7 @@ static void serve_queue(ff_session *session)
 {
     while (session->queue_first < session->queue_end) {
         const request *wanted = &session->queue[session->queue_first];
-        if (wanted->type) {
+        if (wanted->fetch) {
             if (!serve(session, wanted)) return;
             session->queue_live--;
         }
@@ -200,19 +194,33 @@ static void queue_compact(ff_session *session)
 {
     uint32_t kept = 0;
     for (uint32_t i = session->queue_first; i < session->queue_end; i++)
-        if (session->queue[i].type) session->queue[kept++] = session->queue[i];
+        if (session->queue[i].fetch) session->queue[kept++] = session->queue[i];
     session->queue_first = 0;
     session->queue_end = kept;
 }
 
-static int queue_add(ff_session *session, uint8_t type, const ff_get *get)
+int ff_session_queue(ff_session *session, const ff_message *ask, ff_session_fetch *fetch)
 {
+    assert(ff_kind[ask->kind].asks == FF_ASKS_NODE &&
+           ff_kind[ask->kind].brings == FF_BRINGS_PAYLOAD);
     if (session->queue_live == session->desc.requests_max) return end_session(session, FF_ERR_FULL);
     if (session->queue_end == session->desc.requests_max) queue_compact(session);
-    session->queue[session->queue_end++] = (request){ .type = type, .get = *get };
+    session->queue[session->queue_end++] = (request){ fetch, ask->kind, ask->u.get };
     session->queue_live++;
     serve_queue(session);
     return FF_OK;
+}
+
+static int fetch_record(const ff_session *session, enum ff_kind kind, ff_key key,
+                        const uint8_t **payload)
+{
+    enum ff_section_kind section = (enum ff_section_kind)ff_kind[kind].section;
+    return ff_pack_record(session->desc.pack, section, key, payload);
+}
+
+int ff_session_ask_record(ff_session *session, const ff_message *ask)
+{
+    return ff_session_queue(session, ask, fetch_record);
 }
 
 /* ---- panoramas ---- */
@@ -237,11 +245,12 @@ static int panorama_allowed(ff_session *session)
     return 1;
 }
 
-static void panorama_request(ff_session *session, const ff_get_panorama *wanted)
+int ff_session_ask_faces(ff_session *session, const ff_message *ask)
 {
+    const ff_get_panorama *wanted = &ask->u.panorama;
     if (!panorama_allowed(session)) {
         answer_failed(session, wanted->id, FF_ERR_FULL);
-        return;
+        return FF_OK;
     }
     if (session->panorama_on) {
         answer_cancelled(session, session->panorama.id);
@@ -251,6 +260,7 @@ static void panorama_request(ff_session *session, const ff_get_panorama *wanted)
     session->panorama = *wanted;
     session->panorama_on = 1;
     session->next_face = 0;
+    return FF_OK;
 }
 
 int ff_session_next_face(ff_session *session, ff_face_job *job)
@@ -281,7 +291,7 @@ void ff_session_face_done(ff_session *session, const ff_face_job *job, const uin
     }
     memcpy(out_room(session, (size_t)bytes_or_error), message, (size_t)bytes_or_error);
     session->out_end += (size_t)bytes_or_error;
-    session->stats.faces++;
+    session->stats.answers[FF_DATA_FACES]++;
     session->next_face++;
     if (job->last) session->panorama_on = 0;
     serve_queue(session);
@@ -298,8 +308,8 @@ static void cancel(ff_session *session, uint16_t id)
     }
     for (uint32_t i = session->queue_first; i < session->queue_end; i++) {
         request *waiting = &session->queue[i];
-        if (waiting->type && waiting->get.id == id) {
-            waiting->type = 0;
+        if (waiting->fetch && waiting->get.id == id) {
+            waiting->fetch = NULL;
             session->queue_live--;
             answer_cancelled(session, id);
             serve_queue(session); /* the cancelled request may have been the one without room */
@@ -321,14 +331,25 @@ static int hello(ff_session *session, const ff_hello *greeting)
     return FF_OK;
 }
 
+static int take_request(ff_session *session, const ff_message *message)
+{
+    switch (message->kind) {
+#define X(kind, name, asked_by, what, asks, answered_by, brings, section, levels, data, has_image, \
+          server)                                                                                  \
+    case FF_KIND_##kind: return ff_session_ask_##server(session, message);
+        FF_KIND_LIST(X)
+#undef X
+        case FF_KIND_COUNT: break;
+    }
+    return end_session(session, FF_ERR_FORMAT);
+}
+
 static int handle(ff_session *session, const ff_message *message)
 {
     if (message->type == FF_MSG_HELLO) return hello(session, &message->u.hello);
     if (!session->welcomed) return end_session(session, FF_ERR_FORMAT);
     switch (message->type) {
-        case FF_MSG_GET_NODE:
-        case FF_MSG_GET_TEXTURE: return queue_add(session, (uint8_t)message->type, &message->u.get);
-        case FF_MSG_GET_PANORAMA: panorama_request(session, &message->u.panorama); return FF_OK;
+        case FF_MSG_GET: return take_request(session, message);
         case FF_MSG_CANCEL: cancel(session, message->u.cancel.id); return FF_OK;
         case FF_MSG_PING:
             answer_short(session, &(ff_message){ .type = FF_MSG_PONG, .u.ping = message->u.ping });
@@ -345,11 +366,11 @@ static int take_message(ff_session *session, const uint8_t *bytes, size_t count,
     size_t added = count < IN_BYTES - held ? count : IN_BYTES - held;
     memcpy(session->in + held, bytes, added);
     ff_message message;
-    /* The server's own types are refused by their first byte: a peer that speaks another protocol
-     * need not be heard out. */
-    int used = session->in[0] > FF_MSG_PING
-                   ? FF_ERR_FORMAT
-                   : ff_message_decode(session->in, held + added, &message);
+    /* What no client says is refused by its first byte: a peer that speaks another protocol need
+     * not be heard out. */
+    int used = ff_message_from_client(session->in[0])
+                   ? ff_message_decode(session->in, held + added, &message)
+                   : FF_ERR_FORMAT;
     *complete = used > 0;
     if (used < 0) return end_session(session, used);
     if (used == 0) {

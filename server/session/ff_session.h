@@ -25,7 +25,8 @@ typedef struct ff_session_desc {
 
 typedef struct ff_session_stats {
     uint64_t bytes_in, bytes_out;
-    uint32_t nodes, textures, panoramas, faces, failed, cancelled;
+    uint32_t answers[FF_DATA_CLASSES]; /* those that brought something */
+    uint32_t panoramas, failed, cancelled;
     uint32_t damaged; /* of the failed: records whose checksum is wrong */
 } ff_session_stats;
 
@@ -54,7 +55,7 @@ typedef struct ff_face_job {
     uint8_t last;
 } ff_face_job;
 int ff_session_next_face(ff_session *session, ff_face_job *job);
-/* Takes the rendered face, a complete FF_MSG_FACE; or a negative error, which is answered FAILED. A
+/* Takes the rendered face, a complete message; or a negative error, which is answered FAILED. A
  * face that was superseded is thrown away here. */
 void ff_session_face_done(ff_session *session, const ff_face_job *job, const uint8_t *message,
                           int bytes_or_error);

@@ -140,11 +140,8 @@ static int read_audit(fly_flight *flight, fly_sources *from)
 
 static int read_relevance(const fly_flight *flight, fly_sources *from)
 {
-    sim_relevance_figures *f = &from->relevance;
-    int rc = sim_relevance_get(flight->world->relevance, f);
+    int rc = sim_relevance_get(flight->world->relevance, &from->relevance);
     if (rc != FF_OK) return fail("relevance", ff_error_text(rc));
-    from->bytes_judged = f->judged[FF_DATA_HEIGHTS] + f->judged[FF_DATA_IMAGES] +
-                         f->judged[FF_DATA_FACES] + f->overhead;
     return 0;
 }
 
@@ -153,8 +150,8 @@ static void judge_nothing(fly_sources *from)
     sim_relevance_figures *f = &from->relevance;
     no_errors(&from->audit);
     for (unsigned kind = 0; kind < FF_DATA_CLASSES; kind++) f->came[kind] = f->unused[kind] = NAN;
-    from->audit.undrawn_percent = from->panorama_px_percent = from->bytes_judged = NAN;
-    f->overhead = f->supporting = f->percent = NAN;
+    from->audit.undrawn_percent = from->panorama_px_percent = NAN;
+    f->judged_all = f->supporting = f->percent = NAN;
 }
 
 static int read_sources(fly_flight *flight, double t_s, fly_sources *from)

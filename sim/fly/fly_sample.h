@@ -58,8 +58,8 @@
     X(bytes_heights, "%.0f", TOTAL, from->relevance.came[FF_DATA_HEIGHTS]) \
     X(bytes_images, "%.0f", TOTAL, from->relevance.came[FF_DATA_IMAGES]) \
     X(bytes_faces, "%.0f", TOTAL, from->relevance.came[FF_DATA_FACES]) \
-    X(bytes_overhead, "%.0f", TOTAL, from->relevance.overhead) \
-    X(bytes_judged, "%.0f", TOTAL, from->bytes_judged) \
+    X(bytes_overhead, "%.0f", TOTAL, from->relevance.came[FF_DATA_OVERHEAD]) \
+    X(bytes_judged, "%.0f", TOTAL, from->relevance.judged_all) \
     X(unused_heights, "%.0f", TOTAL, from->relevance.unused[FF_DATA_HEIGHTS]) \
     X(unused_images, "%.0f", TOTAL, from->relevance.unused[FF_DATA_IMAGES]) \
     X(unused_faces, "%.0f", TOTAL, from->relevance.unused[FF_DATA_FACES]) \
@@ -86,7 +86,6 @@ typedef struct fly_sources {
     sim_audit_result audit;
     double panorama_px_percent; /* of the pixels that truly show ground */
     sim_relevance_figures relevance;
-    double bytes_judged;
     uint64_t geometry_hash, request_hash;
 } fly_sources;
 

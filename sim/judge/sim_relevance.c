@@ -14,16 +14,15 @@
 
 /* What a request asked for, by its id. */
 typedef struct asked {
-    enum ff_message_type type;
-    ff_get get;
-    int32_t position_wu[3];
+    enum ff_kind kind;
+    ff_key key;
+    int32_t position_wu[3]; /* faces */
 } asked;
 
 typedef struct answer {
-    enum ff_data_class kind;
-    ff_key key; /* heights: the node made (roots) or refined; images */
-    int refinement;
-    int32_t position_wu[3];                       /* faces */
+    enum ff_kind kind;
+    ff_key key;             /* heights: the node made (roots) or refined; images */
+    int32_t position_wu[3]; /* faces */
     unsigned face, face_size, top_row, row_count; /* row_count 0: empty */
     uint32_t bytes;
     int64_t came_us;
@@ -54,27 +53,25 @@ struct sim_relevance {
 
 /* ---- what came ---- */
 
-static size_t bucket_of(enum ff_data_class kind, ff_key key, int refinement)
+static size_t bucket_of(enum ff_kind kind, ff_key key)
 {
-    return (size_t)((key * 4 + kind + (refinement ? 2u : 0u)) * UINT64_C(0x9E3779B97F4A7C15) >>
-                    52) %
-           BUCKETS;
+    return (size_t)((key * FF_KIND_COUNT + kind) * UINT64_C(0x9E3779B97F4A7C15) >> 52) % BUCKETS;
 }
 
 /* The latest answer of this kind and key. */
-static answer *find(sim_relevance *relevance, enum ff_data_class kind, ff_key key, int refinement)
+static answer *find(sim_relevance *relevance, enum ff_kind kind, ff_key key)
 {
-    for (size_t i = relevance->bucket[bucket_of(kind, key, refinement)]; i != NONE;
+    for (size_t i = relevance->bucket[bucket_of(kind, key)]; i != NONE;
          i = relevance->answer[i].next) {
         answer *a = &relevance->answer[i];
-        if (a->kind == kind && a->key == key && a->refinement == refinement) return a;
+        if (a->kind == kind && a->key == key) return a;
     }
     return NULL;
 }
 
 static void keep(sim_relevance *relevance, answer a)
 {
-    relevance->figures.came[a.kind] += a.bytes;
+    relevance->figures.came[ff_kind[a.kind].data] += a.bytes;
     if (relevance->count == relevance->capacity) {
         size_t more = relevance->capacity ? 2 * relevance->capacity : 1024;
         answer *grown = realloc(relevance->answer, more * sizeof *grown);
@@ -86,51 +83,56 @@ static void keep(sim_relevance *relevance, answer a)
         relevance->capacity = more;
     }
     a.came_us = *relevance->now_us;
-    if (a.kind != FF_DATA_FACES) {
-        size_t *bucket = &relevance->bucket[bucket_of(a.kind, a.key, a.refinement)];
+    if (ff_kind[a.kind].asks == FF_ASKS_NODE) {
+        size_t *bucket = &relevance->bucket[bucket_of(a.kind, a.key)];
         a.next = *bucket;
         *bucket = relevance->count;
     }
     relevance->answer[relevance->count++] = a;
 }
 
+static void take_answer(sim_relevance *relevance, const ff_message *message, size_t bytes)
+{
+    const asked *q = &relevance->asked[ff_message_id(message)];
+    answer a = { .kind = q->kind, .key = q->key, .bytes = (uint32_t)bytes };
+    const ff_face *face = &message->u.face;
+    if (ff_kind[a.kind].brings == FF_BRINGS_FACE) {
+        memcpy(a.position_wu, q->position_wu, sizeof a.position_wu);
+        a.face = face->face;
+        a.face_size = face->face_size;
+        a.top_row = face->flags & FF_FACE_EMPTY ? 0 : face->top_row;
+        a.row_count = face->flags & FF_FACE_EMPTY ? 0 : face->row_count;
+    }
+    keep(relevance, a);
+}
+
+/* What no picture shows, and what answers nothing that was asked, is overhead. */
+static int is_to_be_judged(const sim_relevance *relevance, const ff_message *message)
+{
+    if (message->type != FF_MSG_ANSWER) return 0;
+    const ff_kind_row *kind = &ff_kind[relevance->asked[ff_message_id(message)].kind];
+    return kind->answered_by == ff_kind[message->kind].answered_by &&
+           kind->data != FF_DATA_OVERHEAD;
+}
+
 static void take_down(sim_relevance *relevance, const ff_message *message, size_t bytes)
 {
-    answer a = { .bytes = (uint32_t)bytes };
-    const ff_face *face = &message->u.face;
-    const asked *q;
-    switch (message->type) {
-        case FF_MSG_NODE:
-        case FF_MSG_TEXTURE:
-            q = &relevance->asked[message->u.data.id];
-            a.kind = message->type == FF_MSG_NODE ? FF_DATA_HEIGHTS : FF_DATA_IMAGES;
-            a.key = q->get.key;
-            a.refinement = q->type == FF_MSG_GET_NODE && q->get.what == FF_GET_REFINEMENT;
-            keep(relevance, a);
-            return;
-        case FF_MSG_FACE:
-            a.kind = FF_DATA_FACES;
-            memcpy(a.position_wu, relevance->asked[face->id].position_wu, sizeof a.position_wu);
-            a.face = face->face;
-            a.face_size = face->face_size;
-            a.top_row = face->flags & FF_FACE_EMPTY ? 0 : face->top_row;
-            a.row_count = face->flags & FF_FACE_EMPTY ? 0 : face->row_count;
-            keep(relevance, a);
-            return;
-        default: relevance->figures.overhead += (double)bytes;
-    }
+    if (is_to_be_judged(relevance, message))
+        take_answer(relevance, message, bytes);
+    else
+        relevance->figures.came[FF_DATA_OVERHEAD] += (double)bytes;
 }
 
 static void take_up(sim_relevance *relevance, const ff_message *message)
 {
-    asked *q;
-    if (message->type == FF_MSG_GET_NODE || message->type == FF_MSG_GET_TEXTURE) {
-        q = &relevance->asked[message->u.get.id];
-        *q = (asked){ .type = message->type, .get = message->u.get };
-    } else if (message->type == FF_MSG_GET_PANORAMA) {
-        q = &relevance->asked[message->u.panorama.id];
-        *q = (asked){ .type = message->type };
-        memcpy(q->position_wu, message->u.panorama.position_wu, sizeof q->position_wu);
+    if (message->type != FF_MSG_GET) return;
+    asked *q = &relevance->asked[ff_message_id(message)];
+    *q = (asked){ .kind = message->kind };
+    switch ((enum ff_kind_asks)ff_kind[q->kind].asks) {
+        case FF_ASKS_NODE: q->key = message->u.get.key; break;
+        case FF_ASKS_PANORAMA:
+            memcpy(q->position_wu, message->u.panorama.position_wu, sizeof q->position_wu);
+            break;
     }
 }
 
@@ -161,7 +163,8 @@ static void take_bytes(sim_relevance *relevance, half *part, const uint8_t *byte
         at += (size_t)used;
     }
     if (used < 0) { /* nonsense: the client will close */
-        relevance->figures.overhead += part == &relevance->down ? (double)(part->count - at) : 0;
+        if (part == &relevance->down)
+            relevance->figures.came[FF_DATA_OVERHEAD] += (double)(part->count - at);
         at = part->count;
     }
     memmove(part->bytes, part->bytes + at, part->count - at);
@@ -189,7 +192,7 @@ static int tap_recv(void *state, uint8_t *bytes, size_t capacity)
 static int tap_reconnect(void *state)
 {
     sim_relevance *relevance = state;
-    relevance->figures.overhead += (double)relevance->down.count;
+    relevance->figures.came[FF_DATA_OVERHEAD] += (double)relevance->down.count;
     relevance->down.count = relevance->up.count = 0;
     return relevance->inner.reconnect(relevance->inner.state);
 }
@@ -248,7 +251,7 @@ static void mark_support(sim_relevance *relevance, ff_key parent)
         ff_key beside = ff_shape_neighbour(&relevance->info, parent, (enum ff_side)side).key;
         answer *a = beside == FF_KEY_NONE
                         ? NULL
-                        : find(relevance, FF_DATA_HEIGHTS, ff_key_parent(beside), 1);
+                        : find(relevance, FF_KIND_REFINEMENT, ff_key_parent(beside));
         if (a) a->supports |= *relevance->now_us - a->came_us <= SIM_RELEVANCE_US;
     }
 }
@@ -261,7 +264,7 @@ static void mark_heights(sim_relevance *relevance, ff_key node)
             node = ff_key_parent(node);
             mark_support(relevance, node);
         }
-        answer *a = find(relevance, FF_DATA_HEIGHTS, node, refinement);
+        answer *a = find(relevance, refinement ? FF_KIND_REFINEMENT : FF_KIND_ROOT, node);
         if (a && a->frame == relevance->frame) return; /* and all above it */
         if (a) mark(relevance, a);
         if (!refinement) return;
@@ -274,7 +277,7 @@ static void mark_image(sim_relevance *relevance, ff_key node)
     answer *last = NULL;
     for (ff_key key = ff_texture_key(&relevance->info, node); key != FF_KEY_NONE;
          key = ff_key_parent(key)) {
-        answer *a = find(relevance, FF_DATA_IMAGES, key, 0);
+        answer *a = find(relevance, FF_KIND_TEXTURE, key);
         if (a && (!last || a > last)) last = a;
         if (ff_key_level(key) == 0) break;
     }
@@ -303,7 +306,7 @@ static void mark_faces_at(sim_relevance *relevance, const sim_relevance_view *vi
     sim_eye_ray(eye, pixel, along);
     for (size_t i = relevance->first_young; i < relevance->count; i++) {
         answer *a = &relevance->answer[i];
-        if (a->kind != FF_DATA_FACES || a->drawn ||
+        if (a->kind != FF_KIND_FACE || a->drawn ||
             memcmp(a->position_wu, view->panorama_pos_wu, sizeof a->position_wu))
             continue;
         if (face_of(along, a->face_size, &row) == a->face &&
@@ -317,7 +320,7 @@ static void mark_faces(sim_relevance *relevance, const sim_relevance_view *view)
     sim_eye eye;
     int any = 0;
     for (size_t i = relevance->first_young; i < relevance->count; i++)
-        any |= relevance->answer[i].kind == FF_DATA_FACES && !relevance->answer[i].drawn;
+        any |= relevance->answer[i].kind == FF_KIND_FACE && !relevance->answer[i].drawn;
     if (!any || !view->panorama) return;
     sim_eye_of(&view->camera, &eye);
     for (unsigned y = RAY_STEP_PX / 2; y < view->camera.height; y += RAY_STEP_PX)
@@ -345,16 +348,18 @@ int sim_relevance_get(sim_relevance *relevance, sim_relevance_figures *figures)
     for (; relevance->judged_count < relevance->count; relevance->judged_count++) {
         const answer *a = &relevance->answer[relevance->judged_count];
         if (*relevance->now_us - a->came_us <= SIM_RELEVANCE_US) break;
-        sum->judged[a->kind] += a->bytes;
-        sum->unused[a->kind] += a->drawn ? 0 : a->bytes;
+        sum->judged[ff_kind[a->kind].data] += a->bytes;
+        sum->unused[ff_kind[a->kind].data] += a->drawn ? 0 : a->bytes;
         sum->supporting += !a->drawn && a->supports ? a->bytes : 0;
     }
-    double judged = sum->overhead, unused = sum->overhead;
-    for (int kind = 0; kind < FF_DATA_CLASSES; kind++) {
-        judged += sum->judged[kind];
-        unused += sum->unused[kind];
+    double overhead = sum->came[FF_DATA_OVERHEAD], unused = 0;
+    sum->judged[FF_DATA_OVERHEAD] = sum->unused[FF_DATA_OVERHEAD] = overhead;
+    sum->judged_all = 0;
+    for (int data = 0; data < FF_DATA_CLASSES; data++) {
+        sum->judged_all += sum->judged[data];
+        unused += sum->unused[data];
     }
-    sum->percent = judged > sum->overhead ? 100 * (1 - unused / judged) : NAN;
+    sum->percent = sum->judged_all > overhead ? 100 * (1 - unused / sum->judged_all) : NAN;
     *figures = *sum;
     return relevance->rc;
 }

@@ -20,17 +20,18 @@
 
 #include "../../client/terrain/ff_tree.h"
 #include "../../platform/sys.h"
-#include "../../protocol/message/ff_kind.h"
+#include "../../protocol/ff_kind.h"
 
 #define SIM_RELEVANCE_US 5000000
 
 /* Bytes since the start. */
 typedef struct sim_relevance_figures {
-    double came[FF_DATA_CLASSES], overhead;
-    double judged[FF_DATA_CLASSES]; /* came at least SIM_RELEVANCE_US ago */
+    double came[FF_DATA_CLASSES];
+    double judged[FF_DATA_CLASSES]; /* came at least SIM_RELEVANCE_US ago; overhead: at once */
     double unused[FF_DATA_CLASSES]; /* of the judged: not drawn in time */
+    double judged_all;              /* sum of judged */
     double supporting; /* of unused heights: those without which a drawn node could not be drawn */
-    /* share of judged bytes and overhead that was drawn in time; NAN before anything was judged */
+    /* share of judged_all that was drawn in time; NAN before anything was judged */
     double percent;
 } sim_relevance_figures;
 

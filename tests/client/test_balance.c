@@ -508,7 +508,7 @@ static void the_ends_and_off(void **state)
     assert_true(s.tree.triangles < o.tree.triangles && o.tree.triangles < c.tree.triangles);
     assert_true(ff_client_panorama(server.client, position_wu, &faces));
     assert_false(ff_client_panorama(client.client, position_wu, &faces));
-    assert_int_equal(client.asked[FF_MSG_GET_PANORAMA], 0);
+    assert_int_equal(client.asked[FF_KIND_FACE], 0);
     assert_int_equal(o.balance.moves + o.balance.share_percent, 0);
     server.desc.balance.mode =
         FF_BALANCE_OFF; /* the balance is off again: quality is what was set */

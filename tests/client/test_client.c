@@ -116,9 +116,9 @@ static void what_is_off_costs_nothing(void **state)
     rig.desc.no_textures = 1;
     rig_client(&rig, 2 * MB);
     assert_true(rig_settle(&rig, 400));
-    assert_int_equal(rig.asked[FF_MSG_GET_TEXTURE], 0);
-    assert_int_equal(rig.asked[FF_MSG_GET_PANORAMA], 0);
-    assert_true(rig.asked[FF_MSG_GET_NODE] > 10);
+    assert_int_equal(rig.asked[FF_KIND_TEXTURE], 0);
+    assert_int_equal(rig.asked[FF_KIND_FACE], 0);
+    assert_true(rig.asked[FF_KIND_REFINEMENT] > 10);
     assert_null(rig.client->textures.slot);
     assert_null(rig.client->intake.rgb);
     assert_null(rig.client->news.images);
@@ -144,7 +144,7 @@ static void images_come_from_coarse_to_fine(void **state)
         assert_true(found);
     }
     assert_int_equal(rig_stats(&rig).requests_failed, 0);
-    assert_int_equal(rig.asked[FF_MSG_GET_TEXTURE], rig_stats(&rig).textures_held);
+    assert_int_equal(rig.asked[FF_KIND_TEXTURE], rig_stats(&rig).textures_held);
     rig_close(&rig);
 }
 
@@ -166,7 +166,7 @@ static void panorama_follows_the_rules(void **state)
     /* no other faces are asked for, however long the viewer stays */
     assert_int_equal(faces, ff_panorama_faces_in_view(&rig.camera));
     for (int i = 0; i < 62; i++) rig_step(&rig, 500000);
-    assert_int_equal(rig.asked[FF_MSG_GET_PANORAMA], 1);
+    assert_int_equal(rig.asked[FF_KIND_FACE], 1);
     unsigned seen = 0;
     /* 18 degrees a second: a face is there before it comes into view */
     for (int i = 0; i < 200; i++) {
@@ -184,14 +184,14 @@ static void panorama_follows_the_rules(void **state)
                      0x3f); /* a viewer who has turned may turn again: all faces are asked for */
     assert_int_equal(rig_stats(&rig).panorama_faces, 4);
     assert_int_equal(rig_stats(&rig).panorama_faces_empty, 2);
-    unsigned asked = rig.asked[FF_MSG_GET_PANORAMA];
+    unsigned asked = rig.asked[FF_KIND_FACE];
 
     rig.camera.pos_wu[2] += 20 * METRE; /* too little to make the set outdated */
     rig_settle(&rig, 100);
-    assert_int_equal(rig.asked[FF_MSG_GET_PANORAMA], asked);
+    assert_int_equal(rig.asked[FF_KIND_FACE], asked);
     rig.camera.pos_wu[2] += 200 * METRE;
     rig_settle(&rig, 100);
-    assert_true(rig.asked[FF_MSG_GET_PANORAMA] > asked);
+    assert_true(rig.asked[FF_KIND_FACE] > asked);
     ff_client_panorama(rig.client, taken_wu, &faces);
     assert_memory_equal(taken_wu, rig.camera.pos_wu, sizeof taken_wu);
     assert_requests_add_up(&rig);
@@ -249,14 +249,14 @@ static void one_set_outstanding_at_most(void **state)
         rig.camera.pos_wu[1] += 5 * METRE;
         rig_step(&rig, 50000);
     }
-    assert_int_equal(rig.asked[FF_MSG_GET_PANORAMA], 1);
+    assert_int_equal(rig.asked[FF_KIND_FACE], 1);
     /* further than half the back plane: the set is left behind and cancelled, and another is asked
      * for */
     for (int i = 0; i < 60; i++) {
         rig.camera.pos_wu[1] += 5 * METRE;
         rig_step(&rig, 50000);
     }
-    assert_int_equal(rig.asked[FF_MSG_GET_PANORAMA], 2);
+    assert_int_equal(rig.asked[FF_KIND_FACE], 2);
     assert_int_equal(rig_stats(&rig).requests_cancelled, 1);
     assert_int_equal(rig_stats(&rig).panoramas_in_flight_high, 1);
     assert_true(rig_stats(&rig).tree.nodes_drawn > 5);
@@ -308,7 +308,7 @@ static void switched_panoramas_do_not_queue_up(void **state)
         /* before the worker sees the change */
         rig.updates += (unsigned)ff_client_update(rig.client, rig.frame_us, &rig.camera);
     }
-    assert_true(rig.asked[FF_MSG_GET_PANORAMA] > 2);
+    assert_true(rig.asked[FF_KIND_FACE] > 2);
     assert_int_equal(rig_stats(&rig).panoramas_in_flight_high, 1);
     assert_requests_add_up(&rig);
     rig_close(&rig);
@@ -428,7 +428,7 @@ static void interruption_asks_for_nothing(void **state)
     uint32_t sent = rig_stats(&rig).requests_sent;
     for (int i = 0; i < 100; i++) rig_step(&rig, 5000000); /* minutes: the link is kept alive */
     assert_int_equal(rig_stats(&rig).requests_sent, sent);
-    assert_true(rig.asked[FF_MSG_PING] > 2);
+    assert_true(rig.pings > 2);
     assert_int_equal(rig_stats(&rig).link, FF_LINK_UP);
     event.u.interruption.begins = 0;
     ff_client_event(rig.client, &event);

@@ -19,8 +19,8 @@ static void assert_heights_alone(client_rig *rig)
 {
     ff_client_stats stats = rig_stats(rig);
     assert_true(stats.tree.nodes_drawn > 0);
-    assert_int_equal(rig->asked[FF_MSG_GET_TEXTURE], 0);
-    assert_int_equal(rig->asked[FF_MSG_GET_PANORAMA], 0);
+    assert_int_equal(rig->asked[FF_KIND_TEXTURE], 0);
+    assert_int_equal(rig->asked[FF_KIND_FACE], 0);
     assert_int_equal(stats.textures_held | stats.textures_high | stats.textures_full, 0);
     assert_int_equal(stats.panorama_requests | stats.panorama_faces | stats.panorama_bytes, 0);
     assert_null(rig->client->textures.slot);

@@ -292,11 +292,11 @@ static void queue_goes_by_class_then_value_then_age(void **state)
     assert_true(ff_requests_bytes(8) <= sizeof slots);
     ff_requests_init(&requests, 8, slots);
     ff_requests_rank_begin(&requests);
-    ff_requests_want(&requests, FF_WANT_REFINEMENT, 1, FF_CLASS_PREFETCH, 900, NULL);
-    ff_requests_want(&requests, FF_WANT_REFINEMENT, 2, FF_CLASS_IN_VIEW, 100, NULL);
-    ff_requests_want(&requests, FF_WANT_REFINEMENT, 3, FF_CLASS_IN_VIEW, 5000, NULL);
-    ff_requests_want(&requests, FF_WANT_REFINEMENT, 4, FF_CLASS_IN_VIEW, 5000, NULL);
-    ff_requests_want(&requests, FF_WANT_ROOT, 5, FF_CLASS_FIRST, 1, NULL);
+    ff_requests_want(&requests, FF_KIND_REFINEMENT, 1, FF_CLASS_PREFETCH, 900, NULL);
+    ff_requests_want(&requests, FF_KIND_REFINEMENT, 2, FF_CLASS_IN_VIEW, 100, NULL);
+    ff_requests_want(&requests, FF_KIND_REFINEMENT, 3, FF_CLASS_IN_VIEW, 5000, NULL);
+    ff_requests_want(&requests, FF_KIND_REFINEMENT, 4, FF_CLASS_IN_VIEW, 5000, NULL);
+    ff_requests_want(&requests, FF_KIND_ROOT, 5, FF_CLASS_FIRST, 1, NULL);
     ff_requests_rank_end(&requests);
     static const ff_key order[] = { 5, 3, 4, 2 };
     for (unsigned i = 0; i < 4; i++) {
@@ -317,7 +317,7 @@ static void window_leaves_two_always(void **state)
     ff_request out;
     ff_requests_init(&requests, 8, slots);
     for (ff_key key = 0; key < 20; key++)
-        ff_requests_want(&requests, FF_WANT_ROOT, key, FF_CLASS_FIRST, 1, NULL);
+        ff_requests_want(&requests, FF_KIND_ROOT, key, FF_CLASS_FIRST, 1, NULL);
     assert_true(ff_requests_next(&requests, 0, 1, 0, 1, &out));
     assert_true(ff_requests_next(&requests, 0, 1, 0, 1, &out));
     assert_false(ff_requests_next(&requests, 0, 1, 0, 1, &out));

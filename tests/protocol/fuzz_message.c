@@ -34,7 +34,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
         int used = ff_message_decode(bytes, count, &message);
         if (used <= 0) break;
         assert((size_t)used <= count);
-        if (message.type == FF_MSG_FACE && !(message.u.face.flags & FF_FACE_EMPTY))
+        if (message.type == FF_MSG_ANSWER && message.kind == FF_KIND_FACE &&
+            !(message.u.face.flags & FF_FACE_EMPTY))
             check_columns(&message.u.face);
         uint8_t *again = malloc(ff_message_bytes_max(&message));
         assert(ff_message_encode(&message, again, ff_message_bytes_max(&message)) == used);

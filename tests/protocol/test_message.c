@@ -35,9 +35,9 @@ static ff_terrain_info terrain(void)
                               .checksum = UINT32_MAX };
 }
 
-static ff_message get(enum ff_message_type type, uint16_t id, uint8_t what, ff_key key)
+static ff_message get(enum ff_kind kind, uint16_t id, ff_key key)
 {
-    return (ff_message){ .type = type, .u.get = { id, what, key } };
+    return (ff_message){ .type = FF_MSG_GET, .kind = kind, .u.get = { id, key } };
 }
 
 /* Every type, with fields at their ends. */
@@ -51,11 +51,11 @@ static size_t samples(ff_message *list)
     uint32_t columns_bytes = (uint32_t)ff_face_columns_encode(top, bottom, 64, columns,
                                                               sizeof(columns));
     list[n++] = (ff_message){ .type = FF_MSG_HELLO, .u.hello = { UINT32_MAX, 0x01020304 } };
-    list[n++] = get(FF_MSG_GET_NODE, 0, FF_GET_ROOT, ff_key_make(0, 0, 0));
-    list[n++] = get(FF_MSG_GET_NODE, 65535, FF_GET_REFINEMENT,
-                    ff_key_make(FF_KEY_TILES_MAX - 1, 15, 0x3fffffff));
-    list[n++] = get(FF_MSG_GET_TEXTURE, 7, 0, ff_key_make(127, 3, 63));
-    list[n++] = (ff_message){ .type = FF_MSG_GET_PANORAMA,
+    list[n++] = get(FF_KIND_ROOT, 0, ff_key_make(0, 0, 0));
+    list[n++] = get(FF_KIND_REFINEMENT, 65535, ff_key_make(FF_KEY_TILES_MAX - 1, 15, 0x3fffffff));
+    list[n++] = get(FF_KIND_TEXTURE, 7, ff_key_make(127, 3, 63));
+    list[n++] = (ff_message){ .type = FF_MSG_GET,
+                              .kind = FF_KIND_FACE,
                               .u.panorama = { 1,
                                               { INT32_MIN, INT32_MAX, -1 },
                                               0,
@@ -64,22 +64,31 @@ static size_t samples(ff_message *list)
                                               100,
                                               6,
                                               { 5, 4, 3, 2, 1, 0 } } };
-    list[n++] = (ff_message){ .type = FF_MSG_GET_PANORAMA,
+    list[n++] = (ff_message){ .type = FF_MSG_GET,
+                              .kind = FF_KIND_FACE,
                               .u.panorama = { 2, { 0, 0, 0 }, 1, 2, 16, 1, 1, { 3 } } };
     list[n++] = (ff_message){ .type = FF_MSG_CANCEL, .u.cancel = { 65535 } };
     list[n++] = (ff_message){ .type = FF_MSG_PING, .u.ping = { UINT32_MAX } };
     list[n++] = (ff_message){ .type = FF_MSG_WELCOME,
                               .u.welcome = { FF_PROTOCOL_VERSION, terrain() } };
-    list[n++] = (ff_message){ .type = FF_MSG_NODE, .u.data = { 1, payload, 1 } };
-    list[n++] = (ff_message){ .type = FF_MSG_NODE, .u.data = { 1, payload, 125 } };
-    list[n++] = (ff_message){ .type = FF_MSG_NODE, .u.data = { 1, payload, 126 } };
-    list[n++] = (ff_message){ .type = FF_MSG_TEXTURE, .u.data = { 65535, payload, 300 } };
-    list[n++] = (ff_message){ .type = FF_MSG_TEXTURE, .u.data = { 3, NULL, 0 } };
-    list[n++] = (ff_message){ .type = FF_MSG_FACE,
+    list[n++] =
+        (ff_message){ .type = FF_MSG_ANSWER, .kind = FF_KIND_ROOT, .u.data = { 1, payload, 1 } };
+    list[n++] =
+        (ff_message){ .type = FF_MSG_ANSWER, .kind = FF_KIND_ROOT, .u.data = { 1, payload, 125 } };
+    list[n++] =
+        (ff_message){ .type = FF_MSG_ANSWER, .kind = FF_KIND_ROOT, .u.data = { 1, payload, 126 } };
+    list[n++] = (ff_message){ .type = FF_MSG_ANSWER,
+                              .kind = FF_KIND_TEXTURE,
+                              .u.data = { 65535, payload, 300 } };
+    list[n++] =
+        (ff_message){ .type = FF_MSG_ANSWER, .kind = FF_KIND_TEXTURE, .u.data = { 3, NULL, 0 } };
+    list[n++] = (ff_message){ .type = FF_MSG_ANSWER,
+                              .kind = FF_KIND_FACE,
                               .u.face = { 9, FF_FACE_DOWN, FF_FACE_LAST, 64, 15, 49, columns,
                                           columns_bytes, payload, 299 } };
     list[n++] =
-        (ff_message){ .type = FF_MSG_FACE,
+        (ff_message){ .type = FF_MSG_ANSWER,
+                      .kind = FF_KIND_FACE,
                       .u.face = { 9, FF_FACE_NORTH, FF_FACE_EMPTY, 1024, 0, 0, NULL, 0, NULL, 0 } };
     list[n++] = (ff_message){ .type = FF_MSG_FAILED, .u.failed = { 65535, -128 } };
     list[n++] = (ff_message){ .type = FF_MSG_CANCELLED, .u.cancel = { 1 } };
@@ -139,6 +148,29 @@ static void assert_same_panorama(const ff_get_panorama *a, const ff_get_panorama
     assert_memory_equal(a->face, b->face, sizeof(a->face));
 }
 
+static void assert_same_get(const ff_message *a, const ff_message *b)
+{
+    assert_int_equal(a->kind, b->kind);
+    if (ff_kind[a->kind].asks == FF_ASKS_PANORAMA) {
+        assert_same_panorama(&a->u.panorama, &b->u.panorama);
+    } else {
+        assert_int_equal(a->u.get.id, b->u.get.id);
+        assert_true(a->u.get.key == b->u.get.key);
+    }
+}
+
+static void assert_same_answer(const ff_message *a, const ff_message *b)
+{
+    assert_int_equal(ff_kind[a->kind].answered_by, ff_kind[b->kind].answered_by);
+    if (ff_kind[a->kind].brings == FF_BRINGS_FACE) {
+        assert_same_face(&a->u.face, &b->u.face);
+    } else {
+        assert_int_equal(a->u.data.id, b->u.data.id);
+        assert_int_equal(a->u.data.byte_count, b->u.data.byte_count);
+        assert_bytes(a->u.data.bytes, b->u.data.bytes, a->u.data.byte_count);
+    }
+}
+
 static void assert_same(const ff_message *a, const ff_message *b)
 {
     assert_int_equal(a->type, b->type);
@@ -147,13 +179,8 @@ static void assert_same(const ff_message *a, const ff_message *b)
             assert_int_equal(a->u.hello.version, b->u.hello.version);
             assert_int_equal(a->u.hello.known_checksum, b->u.hello.known_checksum);
             break;
-        case FF_MSG_GET_NODE:
-        case FF_MSG_GET_TEXTURE:
-            assert_int_equal(a->u.get.id, b->u.get.id);
-            assert_int_equal(a->u.get.what, b->u.get.what);
-            assert_true(a->u.get.key == b->u.get.key);
-            break;
-        case FF_MSG_GET_PANORAMA: assert_same_panorama(&a->u.panorama, &b->u.panorama); break;
+        case FF_MSG_GET: assert_same_get(a, b); break;
+        case FF_MSG_ANSWER: assert_same_answer(a, b); break;
         case FF_MSG_CANCEL:
         case FF_MSG_CANCELLED: assert_int_equal(a->u.cancel.id, b->u.cancel.id); break;
         case FF_MSG_PING:
@@ -162,16 +189,41 @@ static void assert_same(const ff_message *a, const ff_message *b)
             assert_int_equal(a->u.welcome.version, b->u.welcome.version);
             assert_same_terrain(&a->u.welcome.info, &b->u.welcome.info);
             break;
-        case FF_MSG_NODE:
-        case FF_MSG_TEXTURE:
-            assert_int_equal(a->u.data.id, b->u.data.id);
-            assert_int_equal(a->u.data.byte_count, b->u.data.byte_count);
-            assert_bytes(a->u.data.bytes, b->u.data.bytes, a->u.data.byte_count);
-            break;
-        case FF_MSG_FACE: assert_same_face(&a->u.face, &b->u.face); break;
         default:
             assert_int_equal(a->u.failed.id, b->u.failed.id);
             assert_int_equal(a->u.failed.error, b->u.failed.error);
+    }
+}
+
+/* A row of the list is told apart from all others by its bytes alone. */
+static void every_kind_has_its_own_bytes(void **state)
+{
+    (void)state;
+    for (unsigned a = 0; a < FF_KIND_COUNT; a++) {
+        assert_true(ff_message_from_client(ff_kind[a].asked_by));
+        assert_false(ff_message_from_client(ff_kind[a].answered_by));
+        assert_int_equal(ff_message_type_of(ff_kind[a].asked_by), FF_MSG_GET);
+        assert_int_equal(ff_message_type_of(ff_kind[a].answered_by), FF_MSG_ANSWER);
+        for (unsigned b = 0; b < a; b++) {
+            assert_true(ff_kind[a].asked_by != ff_kind[b].asked_by ||
+                        ff_kind[a].what != ff_kind[b].what);
+            assert_true(!ff_kind[a].section || ff_kind[a].section != ff_kind[b].section);
+            if (ff_kind[a].asked_by == ff_kind[b].asked_by)
+                assert_int_equal(ff_kind[a].asks, ff_kind[b].asks);
+            if (ff_kind[a].answered_by == ff_kind[b].answered_by)
+                assert_int_equal(ff_kind[a].brings, ff_kind[b].brings);
+        }
+    }
+    /* those of SPEC.md */
+    static const uint8_t client[] = { 1, 2, 3, 4, 5, 6 },
+                         server[] = { 65, 66, 67, 68, 69, 70, 71, 72 };
+    for (unsigned byte = 0, c = 0, s = 0; byte < 256; byte++) {
+        int from_client = c < sizeof client && client[c] == byte,
+            from_server = s < sizeof server && server[s] == byte;
+        c += from_client;
+        s += from_server;
+        assert_int_equal(ff_message_from_client((uint8_t)byte), from_client);
+        assert_int_equal(ff_message_type_of((uint8_t)byte) != 0, from_client || from_server);
     }
 }
 
@@ -185,7 +237,7 @@ static void there_and_back_in_exact_room(void **state)
         uint8_t bytes[512];
         int used = ff_message_encode(&list[i], bytes, sizeof(bytes));
         assert_in_range(used, 2, ff_message_bytes_max(&list[i]));
-        if (list[i].type < FF_MSG_WELCOME && list[i].type != FF_MSG_HELLO)
+        if (ff_message_from_client(bytes[0]) && list[i].type != FF_MSG_HELLO)
             assert_in_range(used, 2, FF_REQUEST_BYTES_MAX);
         assert_int_equal(ff_message_decode(bytes, (size_t)used, &again), used);
         assert_same(&list[i], &again);
@@ -201,7 +253,7 @@ static void there_and_back_in_exact_room(void **state)
 static void short_requests_stay_short(void **state)
 {
     uint8_t bytes[64];
-    ff_message near = get(FF_MSG_GET_NODE, 1, FF_GET_REFINEMENT, ff_key_make(5, 3, 63));
+    ff_message near = get(FF_KIND_REFINEMENT, 1, ff_key_make(5, 3, 63));
 
     (void)state;
     assert_int_equal(ff_message_encode(&near, bytes, sizeof(bytes)), 7);
@@ -271,8 +323,7 @@ static void bodies_of_wrong_length_are_errors(void **state)
         uint8_t bytes[512] = { 0 }, shorter[512] = { 0 };
         int used = ff_message_encode(&list[i], bytes, sizeof(bytes) - 1);
         int header = bytes[1] < 128 ? 2 : 3;
-        int open_ended = list[i].type == FF_MSG_NODE || list[i].type == FF_MSG_TEXTURE ||
-                         list[i].type == FF_MSG_FACE;
+        int open_ended = list[i].type == FF_MSG_ANSWER;
         if (bytes[1] >= 127 || bytes[1] == 0 || open_ended) continue;
         bytes[1]++;
         assert_true(ff_message_decode(bytes, (size_t)used + 1, &out) < 0);
@@ -300,7 +351,8 @@ static void flipped_bits_do_no_harm(void **state)
             if (used <= 0) break;
             assert_int_equal(ff_message_encode(&out, again, sizeof(again)), used);
             assert_memory_equal(again, stream + at, (size_t)used);
-            if (out.type == FF_MSG_FACE && out.u.face.columns_bytes > 0)
+            if (out.type == FF_MSG_ANSWER && out.kind == FF_KIND_FACE &&
+                out.u.face.columns_bytes > 0)
                 ff_face_columns_decode(out.u.face.columns, out.u.face.columns_bytes,
                                        out.u.face.face_size, out.u.face.row_count, top, bottom);
         }
@@ -338,7 +390,7 @@ static void lengths_and_headers(void **state)
 static void ranges_hold_both_ways(void **state)
 {
     static const ff_get_panorama good = { 1, { 0, 0, 0 }, 100, 200, 256, 70, 2, { 0, 1 } };
-    ff_message m = { .type = FF_MSG_GET_PANORAMA };
+    ff_message m = { .type = FF_MSG_GET, .kind = FF_KIND_FACE };
     uint8_t bytes[512];
 
     (void)state;
@@ -358,7 +410,7 @@ static void ranges_hold_both_ways(void **state)
     BAD(panorama, face[1] = 0);
     BAD(panorama, face[1] = 6);
     static const ff_face good_face = { 1, 0, 0, 64, 10, 54, payload, 5, payload, 5 };
-    m.type = FF_MSG_FACE;
+    m.type = FF_MSG_ANSWER;
     BAD(face, face = 6);
     BAD(face, flags = 4);
     BAD(face, flags = FF_FACE_EMPTY);
@@ -367,19 +419,20 @@ static void ranges_hold_both_ways(void **state)
     BAD(face, columns_bytes = 0);
     BAD(face, image_bytes = 0);
     BAD(face, face_size = 2000);
-    static const ff_get good_get = { 1, FF_GET_REFINEMENT, 0 };
-    m.type = FF_MSG_GET_NODE;
-    BAD(get, what = 2);
+    static const ff_get good_get = { 1, 0 };
+    m.type = FF_MSG_GET;
+    m.kind = FF_KIND_REFINEMENT;
     BAD(get, key = ff_key_make(0, 2, 16));
-    m.type = FF_MSG_GET_TEXTURE;
-    BAD(get, what = 1);
+    m.kind = FF_KIND_ROOT;
+    BAD(get, key = ff_key_make(0, 1, 0));
     static const ff_failed good_failed = { 0, -1 };
     m.type = FF_MSG_GOODBYE;
     BAD(failed, id = 1);
     BAD(failed, error = 0);
     static const ff_data good_data = { 0, payload, 1 };
     static uint8_t room[FF_MESSAGE_BODY_MAX + 16];
-    m.type = FF_MSG_NODE;
+    m.type = FF_MSG_ANSWER;
+    m.kind = FF_KIND_REFINEMENT;
     m.u.data = good_data;
     m.u.data.bytes = calloc(1, FF_MESSAGE_BODY_MAX);
     m.u.data.byte_count = FF_MESSAGE_BODY_MAX - 2;
@@ -473,6 +526,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(there_and_back_in_exact_room),
+        cmocka_unit_test(every_kind_has_its_own_bytes),
         cmocka_unit_test(short_requests_stay_short),
         cmocka_unit_test(splitting_changes_nothing),
         cmocka_unit_test(cut_messages_wait),

@@ -30,7 +30,7 @@ static int make_face(const ff_face_job *job, uint8_t *out, size_t capacity)
         columns[4 * FF_FACE_SIZE_MAX + 8];
     uint16_t top[FF_FACE_SIZE_MAX], bottom[FF_FACE_SIZE_MAX];
     unsigned size = job->request.face_size;
-    ff_message message = { .type = FF_MSG_FACE };
+    ff_message message = { .type = FF_MSG_ANSWER, .kind = FF_KIND_FACE };
     ff_face *face = &message.u.face;
     face->id = job->request.id;
     face->face = job->face;
@@ -60,8 +60,10 @@ static void count_messages(client_rig *rig, const uint8_t *bytes, size_t count)
 {
     ff_message message;
     for (int used; count && (used = ff_message_decode(bytes, count, &message)) > 0;
-         bytes += used, count -= (size_t)used)
-        rig->asked[message.type]++;
+         bytes += used, count -= (size_t)used) {
+        if (message.type == FF_MSG_GET) rig->asked[message.kind]++;
+        rig->pings += message.type == FF_MSG_PING;
+    }
 }
 
 static void serve(client_rig *rig)

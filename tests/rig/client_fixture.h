@@ -25,7 +25,8 @@ typedef struct client_rig {
 
     uint64_t bytes_down;
     unsigned connections;
-    uint32_t asked[256];      /* messages from the client, by type */
+    uint32_t asked[FF_KIND_COUNT]; /* messages from the client, by kind */
+    uint32_t pings;
     int64_t now_us, frame_us; /* of server and worker; of the frames */
 
     void *memory;

@@ -262,15 +262,16 @@ pid_t harness_served_by(const harness_server *server, const harness_client *clie
 
 int harness_root_comes(harness_client *client, uint16_t id)
 {
-    ff_message message = { .type = FF_MSG_GET_NODE,
-                           .u.get = { id, FF_GET_ROOT, ff_key_make(id % 4u, 0, 0) } };
+    ff_message message = { .type = FF_MSG_GET,
+                           .kind = FF_KIND_ROOT,
+                           .u.get = { id, ff_key_make(id % 4u, 0, 0) } };
     return harness_tell(client, &message) && harness_hear(client, &message) == 1 &&
-           message.type == FF_MSG_NODE && message.u.data.id == id;
+           message.type == FF_MSG_ANSWER && message.kind == FF_KIND_ROOT && message.u.data.id == id;
 }
 
 int harness_panorama_comes(harness_client *client, uint16_t id)
 {
-    ff_message message = { .type = FF_MSG_GET_PANORAMA };
+    ff_message message = { .type = FF_MSG_GET, .kind = FF_KIND_FACE };
     message.u.panorama = (ff_get_panorama){ .id = id,
                                             .position_wu = { 500000, 500000, 400000 },
                                             .front_wu = 50000,
@@ -283,7 +284,8 @@ int harness_panorama_comes(harness_client *client, uint16_t id)
     for (int faces = 0;; faces++) {
         if (harness_hear(client, &message) != 1) return -1;
         if (message.type == FF_MSG_FAILED && message.u.failed.id == id) return 0;
-        if (message.type != FF_MSG_FACE || message.u.face.id != id || message.u.face.face != faces)
+        if (message.type != FF_MSG_ANSWER || message.kind != FF_KIND_FACE ||
+            message.u.face.id != id || message.u.face.face != faces)
             return -1;
         if (message.u.face.flags & FF_FACE_LAST) return faces == 3 ? 1 : -1;
     }

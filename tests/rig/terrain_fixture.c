@@ -234,7 +234,7 @@ uint32_t fixture_settle(terrain_fixture *fx, const ff_view *view, const ff_quali
         count = count > FIXTURE_BAG ? FIXTURE_BAG : count;
         memcpy(wish, list, count * sizeof *wish);
         for (uint32_t i = 0; i < count; i++)
-            delivered += fixture_deliver(fx, wish[i].key, wish[i].refinement) == FF_OK;
+            delivered += fixture_deliver(fx, wish[i].key, wish[i].kind) == FF_OK;
     }
     ff_tree_select(fx->tree, view, quality);
     return delivered;
@@ -246,8 +246,8 @@ void fixture_link_step(terrain_fixture *fx, fixture_link *link)
     uint32_t count = ff_tree_wishes(fx->tree, &list);
     for (uint32_t i = 0; i < count && link->count < FIXTURE_BAG; i++) {
         uint32_t known = 0;
-        while (known < link->count && (link->bag[known].key != list[i].key ||
-                                       link->bag[known].refinement != list[i].refinement))
+        while (known < link->count &&
+               (link->bag[known].key != list[i].key || link->bag[known].kind != list[i].kind))
             known++;
         if (known == link->count) link->bag[link->count++] = list[i];
     }
@@ -256,7 +256,7 @@ void fixture_link_step(terrain_fixture *fx, fixture_link *link)
         ff_wish wish = link->bag[taken];
         link->bag[taken] = link->bag[--link->count];
         if (sys_random_below(&link->random, 100) >= link->loss_percent)
-            fixture_deliver(fx, wish.key, wish.refinement);
+            fixture_deliver(fx, wish.key, wish.kind);
     }
 }
 

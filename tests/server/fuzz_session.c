@@ -58,7 +58,7 @@ static void drain(fuzz_run *run, size_t most)
 static void face(fuzz_run *run, unsigned amount)
 {
     uint8_t bytes[64];
-    ff_message message = { .type = FF_MSG_FACE };
+    ff_message message = { .type = FF_MSG_ANSWER, .kind = FF_KIND_FACE };
     run->now_us += amount * INT64_C(250000);
     ff_session_idle(run->session, run->now_us);
     if (!run->job_out) {

@@ -104,7 +104,8 @@ static void render_with(ff_panorama_renderer *with, const ff_get_panorama *reque
                                          message_bytes, sizeof message_bytes);
     assert_true(out->bytes > 0);
     assert_int_equal(ff_message_decode(message_bytes, (size_t)out->bytes, &message), out->bytes);
-    assert_int_equal(message.type, FF_MSG_FACE);
+    assert_int_equal(message.type, FF_MSG_ANSWER);
+    assert_int_equal(message.kind, FF_KIND_FACE);
     out->face = message.u.face;
     assert_int_equal(out->face.id, 9);
     assert_int_equal(out->face.face, name);

@@ -133,7 +133,7 @@ static void test_panorama_of_a_killed_renderer_fails_at_once(void **state)
 {
     (void)state;
     pid_t child[HARNESS_CHILDREN_MAX];
-    ff_message message = { .type = FF_MSG_GET_PANORAMA };
+    ff_message message = { .type = FF_MSG_GET, .kind = FF_KIND_FACE };
     message.u.panorama = (ff_get_panorama){ .id = 1,
                                             .position_wu = { 500000, 500000, 400000 },
                                             .front_wu = 50000,
@@ -152,17 +152,18 @@ static void test_panorama_of_a_killed_renderer_fails_at_once(void **state)
     int failed = 0;
     /* now and then the kill falls between two faces: their successor draws them */
     for (uint16_t id = 1; id < 50 && !failed; id++) {
-        message.type = FF_MSG_GET_PANORAMA;
+        message.type = FF_MSG_GET;
+        message.kind = FF_KIND_FACE;
         message.u.panorama.id = id;
         ff_get_panorama again = message.u.panorama;
         assert_true(harness_tell(client, &message));
         /* the first face: it is at the second now */
         assert_int_equal(harness_hear(client, &message), 1);
         kill(renderer, SIGKILL);
-        while (message.type == FF_MSG_FACE && !(message.u.face.flags & FF_FACE_LAST))
+        while (message.type == FF_MSG_ANSWER && !(message.u.face.flags & FF_FACE_LAST))
             assert_int_equal(harness_hear(client, &message), 1);
         failed = message.type == FF_MSG_FAILED && message.u.failed.error == FF_ERR_SYSTEM;
-        assert_true(message.type == FF_MSG_FAILED || message.type == FF_MSG_FACE);
+        assert_true(message.type == FF_MSG_FAILED || message.type == FF_MSG_ANSWER);
         assert_true(harness_wait_children(&server, 2, renderer));
         assert_int_equal(harness_children(&server, child), 2);
         renderer = child[0] == worker ? child[1] : child[0];
@@ -200,7 +201,7 @@ static void test_a_crowd(void **state)
     (void)state;
     static harness_client *crowd[CROWD];
     /* every tenth stops in the middle of a message */
-    static const uint8_t half[3] = { FF_MSG_GET_NODE, 5, 1 };
+    static const uint8_t half[3] = { 2, 5, 1 }; /* GET_NODE */
     for (int i = 0; i < CROWD; i++) {
         crowd[i] = harness_connect(&server, 1);
         assert_non_null(crowd[i]);
@@ -217,7 +218,7 @@ static void test_a_reader_that_does_not_read(void **state)
 {
     (void)state;
     harness_client *deaf = harness_connect(&server, 1), *good = harness_connect(&server, 1);
-    ff_message get = { .type = FF_MSG_GET_NODE, .u.get = { 1, FF_GET_ROOT, 0 } };
+    ff_message get = { .type = FF_MSG_GET, .kind = FF_KIND_ROOT, .u.get = { 1, 0 } };
     assert_non_null(deaf);
     assert_non_null(good);
     for (int i = 0; i < 3000; i++) assert_true(harness_tell(deaf, &get));
@@ -233,8 +234,9 @@ static void test_truncated_pack_is_survived(void **state)
 {
     (void)state;
     struct stat whole;
-    ff_message message = { .type = FF_MSG_GET_NODE,
-                           .u.get = { 1, FF_GET_REFINEMENT, ff_key_make(3, 2, 15) } };
+    ff_message message = { .type = FF_MSG_GET,
+                           .kind = FF_KIND_REFINEMENT,
+                           .u.get = { 1, ff_key_make(3, 2, 15) } };
     harness_client *client = harness_connect(&server, 1);
     assert_non_null(client);
     pid_t victim = harness_served_by(&server, client);

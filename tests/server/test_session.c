@@ -58,10 +58,18 @@ static int greet(ff_session *session)
                 &(ff_message){ .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION, 0 } });
 }
 
+/* The first kind that is answered so: roots stand for refinements. */
+static void assert_answer(ff_message message, enum ff_kind kind)
+{
+    assert_int_equal(message.type, FF_MSG_ANSWER);
+    assert_int_equal(message.kind, kind);
+}
+
 static int get_root(ff_session *session, uint16_t id, uint32_t tile)
 {
-    return tell(session, &(ff_message){ .type = FF_MSG_GET_NODE,
-                                        .u.get = { id, FF_GET_ROOT, ff_key_make(tile, 0, 0) } });
+    return tell(session, &(ff_message){ .type = FF_MSG_GET,
+                                        .kind = FF_KIND_ROOT,
+                                        .u.get = { id, ff_key_make(tile, 0, 0) } });
 }
 
 static int cancel(ff_session *session, uint16_t id)
@@ -71,7 +79,7 @@ static int cancel(ff_session *session, uint16_t id)
 
 static int get_panorama_at(ff_session *session, uint16_t id, uint8_t faces, int64_t now_us)
 {
-    ff_message message = { .type = FF_MSG_GET_PANORAMA };
+    ff_message message = { .type = FF_MSG_GET, .kind = FF_KIND_FACE };
     message.u.panorama = (ff_get_panorama){ .id = id,
                                             .front_wu = 1000,
                                             .back_wu = 90000,
@@ -143,22 +151,22 @@ static void test_nodes_come_from_the_pack_in_order(void **state)
     ff_key keys[] = { ff_key_make(0, 0, 0), ff_key_make(3, 0, 0), ff_key_make(2, 1, 3),
                       ff_key_make(1, 2, 7) };
     for (uint16_t i = 0; i < 4; i++)
-        tell(session,
-             &(ff_message){ .type = FF_MSG_GET_NODE,
-                            .u.get = { i, i < 2 ? FF_GET_ROOT : FF_GET_REFINEMENT, keys[i] } });
+        tell(session, &(ff_message){ .type = FF_MSG_GET,
+                                     .kind = i < 2 ? FF_KIND_ROOT : FF_KIND_REFINEMENT,
+                                     .u.get = { i, keys[i] } });
     for (uint16_t i = 0; i < 4; i++) {
         const uint8_t *payload;
         int bytes = ff_pack_record(&pack, i < 2 ? FF_SECTION_ROOT : FF_SECTION_REFINEMENT, keys[i],
                                    &payload);
         ff_message node = heard(session);
-        assert_int_equal(node.type, FF_MSG_NODE);
+        assert_answer(node, FF_KIND_ROOT);
         assert_int_equal(node.u.data.id, i);
         assert_int_equal(node.u.data.byte_count, bytes);
         assert_memory_equal(node.u.data.bytes, payload, (size_t)bytes);
     }
     ff_session_stats stats;
     ff_session_get_stats(session, &stats);
-    assert_int_equal(stats.nodes, 4);
+    assert_int_equal(stats.answers[FF_DATA_HEIGHTS], 4);
     ff_session_destroy(session);
 }
 
@@ -169,14 +177,16 @@ static void test_unknown_nodes_and_textures_fail(void **state)
     get_root(session, 7, 4); /* four tiles: 0..3 */
     expect_failed(session, 7, FF_ERR_NOT_FOUND);
     /* The finest level has nothing below it. */
-    tell(session, &(ff_message){ .type = FF_MSG_GET_NODE,
-                                 .u.get = { 8, FF_GET_REFINEMENT, ff_key_make(0, 3, 0) } });
+    tell(session, &(ff_message){ .type = FF_MSG_GET,
+                                 .kind = FF_KIND_REFINEMENT,
+                                 .u.get = { 8, ff_key_make(0, 3, 0) } });
     expect_failed(session, 8, FF_ERR_NOT_FOUND);
-    tell(session,
-         &(ff_message){ .type = FF_MSG_GET_TEXTURE, .u.get = { 9, 0, ff_key_make(0, 0, 0) } });
+    tell(session, &(ff_message){ .type = FF_MSG_GET,
+                                 .kind = FF_KIND_TEXTURE,
+                                 .u.get = { 9, ff_key_make(0, 0, 0) } });
     expect_failed(session, 9, FF_ERR_NOT_FOUND);
     get_root(session, 10, 0);
-    assert_int_equal(heard(session).type, FF_MSG_NODE);
+    assert_answer(heard(session), FF_KIND_ROOT);
     ff_session_destroy(session);
 }
 
@@ -195,7 +205,7 @@ static void test_damaged_record_fails(void **state)
     assert_int_equal(stats.damaged, 1);
     *victim ^= 1;
     get_root(session, 2, 1);
-    assert_int_equal(heard(session).type, FF_MSG_NODE);
+    assert_answer(heard(session), FF_KIND_ROOT);
     ff_session_destroy(session);
 }
 
@@ -205,7 +215,7 @@ static void test_bytes_one_by_one(void **state)
     ff_session *session = welcomed();
     uint8_t bytes[64];
     int count = ff_message_encode(
-        &(ff_message){ .type = FF_MSG_GET_NODE, .u.get = { 5, FF_GET_ROOT, 0 } }, bytes,
+        &(ff_message){ .type = FF_MSG_GET, .kind = FF_KIND_ROOT, .u.get = { 5, 0 } }, bytes,
         sizeof bytes);
     for (int i = 0; i < count; i++) {
         assert_int_equal(heard(session).type, 0);
@@ -274,7 +284,7 @@ static void test_slow_reader_waits_and_loses_nothing(void **state)
     assert_true(ff_session_output(session, &bytes) <= 400);
     for (uint16_t id = 1; id <= 40; id++) {
         ff_message node = heard(session);
-        assert_int_equal(node.type, FF_MSG_NODE);
+        assert_answer(node, FF_KIND_ROOT);
         assert_int_equal(node.u.data.id, id);
     }
     assert_int_equal(heard(session).type, 0);
@@ -357,9 +367,9 @@ static void test_cancelled_requests_are_not_served(void **state)
     static const struct {
         enum ff_message_type type;
         uint16_t id;
-    } expected[] = { { FF_MSG_NODE, 1 }, { FF_MSG_CANCELLED, 3 }, { FF_MSG_CANCELLED, 2 },
-                     { FF_MSG_NODE, 4 }, { FF_MSG_NODE, 5 },      { FF_MSG_NODE, 6 },
-                     { FF_MSG_NODE, 7 } };
+    } expected[] = { { FF_MSG_ANSWER, 1 }, { FF_MSG_CANCELLED, 3 }, { FF_MSG_CANCELLED, 2 },
+                     { FF_MSG_ANSWER, 4 }, { FF_MSG_ANSWER, 5 },    { FF_MSG_ANSWER, 6 },
+                     { FF_MSG_ANSWER, 7 } };
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
         ff_message answer = heard(session);
         assert_int_equal(answer.type, expected[i].type);
@@ -373,7 +383,7 @@ static void test_cancelled_requests_are_not_served(void **state)
 
 static int face_bytes(const ff_face_job *job, uint8_t *out, size_t capacity)
 {
-    ff_message message = { .type = FF_MSG_FACE };
+    ff_message message = { .type = FF_MSG_ANSWER, .kind = FF_KIND_FACE };
     message.u.face =
         (ff_face){ .id = job->request.id,
                    .face = job->face,
@@ -403,7 +413,7 @@ static void test_faces_one_at_a_time_in_the_order_wanted(void **state)
         assert_int_equal(job.last, i == 2);
         render(session, &job);
         ff_message face = heard(session);
-        assert_int_equal(face.type, FF_MSG_FACE);
+        assert_answer(face, FF_KIND_FACE);
         assert_int_equal(face.u.face.flags, FF_FACE_EMPTY | (i == 2 ? FF_FACE_LAST : 0));
     }
     assert_false(ff_session_next_face(session, &job));
@@ -428,7 +438,7 @@ static void test_newer_panorama_supersedes(void **state)
     assert_true(ff_session_next_face(session, &job));
     assert_true(job.last);
     render(session, &job);
-    assert_int_equal(heard(session).type, FF_MSG_FACE);
+    assert_answer(heard(session), FF_KIND_FACE);
     ff_session_destroy(session);
 }
 
@@ -473,7 +483,7 @@ static void test_panoramas_per_minute(void **state)
         if (id <= 3) {
             assert_true(ff_session_next_face(session, &job));
             render(session, &job);
-            assert_int_equal(heard(session).type, FF_MSG_FACE);
+            assert_answer(heard(session), FF_KIND_FACE);
         }
     }
     expect_failed(session, 4, FF_ERR_FULL);
@@ -503,7 +513,7 @@ static void test_large_face_fits_beside_full_buffer(void **state)
     free(face);
     ff_session_stats stats;
     ff_session_get_stats(session, &stats);
-    assert_int_equal(stats.faces, 1);
+    assert_int_equal(stats.answers[FF_DATA_FACES], 1);
     assert_false(ff_session_next_face(session, &job)); /* not before the reader has caught up */
     ff_session_destroy(session);
 }

@@ -89,12 +89,13 @@ static void receive(wire *w, size_t piece)
     while (w->stream.recv(w->stream.state, bytes, piece) > 0) continue;
 }
 
-static size_t node(wire *w, ff_key key, int what)
+static size_t node(wire *w, ff_key key, enum ff_kind kind)
 {
     static const uint8_t payload[40];
-    ff_message get = { .type = FF_MSG_GET_NODE, .u.get = { ++w->id, (uint8_t)what, key } };
-    ff_message data = { .type = FF_MSG_NODE,
-                        .u.data = { w->id, payload, what == FF_GET_ROOT ? 20 : 40 } };
+    ff_message get = { .type = FF_MSG_GET, .kind = kind, .u.get = { ++w->id, key } };
+    ff_message data = { .type = FF_MSG_ANSWER,
+                        .kind = kind,
+                        .u.data = { w->id, payload, kind == FF_KIND_ROOT ? 20 : 40 } };
     ask(w, &get);
     return put(w, &data);
 }
@@ -102,8 +103,10 @@ static size_t node(wire *w, ff_key key, int what)
 static size_t image(wire *w, ff_key key)
 {
     static const uint8_t jpeg[100];
-    ff_message get = { .type = FF_MSG_GET_TEXTURE, .u.get = { ++w->id, 0, key } };
-    ff_message data = { .type = FF_MSG_TEXTURE, .u.data = { w->id, jpeg, sizeof jpeg } };
+    ff_message get = { .type = FF_MSG_GET, .kind = FF_KIND_TEXTURE, .u.get = { ++w->id, key } };
+    ff_message data = { .type = FF_MSG_ANSWER,
+                        .kind = FF_KIND_TEXTURE,
+                        .u.data = { w->id, jpeg, sizeof jpeg } };
     ask(w, &get);
     return put(w, &data);
 }
@@ -133,10 +136,10 @@ static void test_line_of_ancestors(void **state)
     start(&w);
     ff_key root = ff_key_make(1, 0, 0), child = ff_key_child(root, 2),
            leaf = ff_key_child(child, 3);
-    size_t used = node(&w, root, FF_GET_ROOT) + node(&w, root, FF_GET_REFINEMENT) +
-                  node(&w, child, FF_GET_REFINEMENT);
-    size_t unused = node(&w, ff_key_child(root, 1), FF_GET_REFINEMENT) +
-                    node(&w, ff_key_make(2, 0, 0), FF_GET_ROOT);
+    size_t used = node(&w, root, FF_KIND_ROOT) + node(&w, root, FF_KIND_REFINEMENT) +
+                  node(&w, child, FF_KIND_REFINEMENT);
+    size_t unused = node(&w, ff_key_child(root, 1), FF_KIND_REFINEMENT) +
+                    node(&w, ff_key_make(2, 0, 0), FF_KIND_ROOT);
     receive(&w, 7);
     assert_true(isnan(figures(&w, SIM_RELEVANCE_US).percent)); /* too early to say */
     draw(&w, SIM_RELEVANCE_US, 1, &leaf);
@@ -156,11 +159,11 @@ static void test_supporting(void **state)
     start(&w);
     ff_key root = ff_key_make(0, 0, 0), child = ff_key_child(root, 1),
            leaf = ff_key_child(child, 0);
-    (void)node(&w, root, FF_GET_ROOT);
-    (void)node(&w, root, FF_GET_REFINEMENT);
-    (void)node(&w, child, FF_GET_REFINEMENT);
-    size_t beside = node(&w, ff_key_make(1, 0, 0), FF_GET_REFINEMENT),
-           away = node(&w, ff_key_make(3, 0, 0), FF_GET_REFINEMENT);
+    (void)node(&w, root, FF_KIND_ROOT);
+    (void)node(&w, root, FF_KIND_REFINEMENT);
+    (void)node(&w, child, FF_KIND_REFINEMENT);
+    size_t beside = node(&w, ff_key_make(1, 0, 0), FF_KIND_REFINEMENT),
+           away = node(&w, ff_key_make(3, 0, 0), FF_KIND_REFINEMENT);
     receive(&w, 1024);
     /* its parent's eastern neighbour is a child of the next tile's root */
     draw(&w, 1, 1, &leaf);
@@ -176,11 +179,11 @@ static void test_too_late(void **state)
     static wire w;
     start(&w);
     ff_key root = ff_key_make(0, 0, 0);
-    size_t bytes = node(&w, root, FF_GET_ROOT);
+    size_t bytes = node(&w, root, FF_KIND_ROOT);
     receive(&w, 1024);
     draw(&w, SIM_RELEVANCE_US + 1, 1, &root);
     assert_int_equal(figures(&w, SIM_RELEVANCE_US + 1).unused[FF_DATA_HEIGHTS], bytes);
-    bytes += node(&w, root, FF_GET_ROOT); /* sent once more: the new one is drawn */
+    bytes += node(&w, root, FF_KIND_ROOT); /* sent once more: the new one is drawn */
     receive(&w, 1024);
     draw(&w, SIM_RELEVANCE_US + 2, 1, &root);
     sim_relevance_figures f = figures(&w, 3 * SIM_RELEVANCE_US);
@@ -227,7 +230,8 @@ static void check_face(enum ff_face_name name, unsigned top, unsigned rows, int3
     static wire w;
     static const uint8_t image_bytes[50], columns[4];
     start(&w);
-    ff_message get = { .type = FF_MSG_GET_PANORAMA,
+    ff_message get = { .type = FF_MSG_GET,
+                       .kind = FF_KIND_FACE,
                        .u.panorama = { .id = 9,
                                        .position_wu = { taken_wu, 0, 0 },
                                        .front_wu = 1,
@@ -236,7 +240,8 @@ static void check_face(enum ff_face_name name, unsigned top, unsigned rows, int3
                                        .quality = 70,
                                        .face_count = 1,
                                        .face = { (uint8_t)name } } };
-    ff_message face = { .type = FF_MSG_FACE,
+    ff_message face = { .type = FF_MSG_ANSWER,
+                        .kind = FF_KIND_FACE,
                         .u.face = { .id = 9,
                                     .face = (uint8_t)name,
                                     .face_size = 256,
@@ -285,18 +290,18 @@ static void test_overhead(void **state)
     ff_message pong = { .type = FF_MSG_PONG, .u.ping = { 7 } };
     ff_message failed = { .type = FF_MSG_FAILED, .u.failed = { 1, FF_ERR_NOT_FOUND } };
     ff_key root = ff_key_make(0, 0, 0);
-    size_t overhead = put(&w, &pong) + put(&w, &failed), used = node(&w, root, FF_GET_ROOT);
+    size_t overhead = put(&w, &pong) + put(&w, &failed), used = node(&w, root, FF_KIND_ROOT);
     receive(&w, 1024);
     draw(&w, 1, 1, &root);
-    (void)node(&w, root, FF_GET_REFINEMENT);
+    (void)node(&w, root, FF_KIND_REFINEMENT);
     w.count -= 11; /* the rest never comes */
     overhead += w.count - w.at;
     receive(&w, 1024);
     assert_int_equal(w.stream.reconnect(w.stream.state), 0);
-    size_t again = node(&w, root, FF_GET_REFINEMENT);
+    size_t again = node(&w, root, FF_KIND_REFINEMENT);
     receive(&w, 1024);
     sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 2);
-    assert_int_equal(f.overhead, overhead);
+    assert_int_equal(f.came[FF_DATA_OVERHEAD], overhead);
     assert_int_equal(f.came[FF_DATA_HEIGHTS], used + again);
     assert_int_equal(f.unused[FF_DATA_HEIGHTS], again);
     assert_true(fabs(f.percent - 100.0 * (double)used / (double)(used + again + overhead)) < 1e-9);

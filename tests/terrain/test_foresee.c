@@ -58,7 +58,7 @@ static void test_new_tiles_come_refined(void **state)
         for (uint32_t round = 0; foreseen && round < 20; round++) {
             uint32_t count = ff_tree_foresee(fx.tree, pos_wu, 0, 0, list, LIST);
             for (uint32_t i = 0; i < count; i++)
-                assert_int_equal(fixture_deliver(&fx, list[i].key, list[i].refinement), FF_OK);
+                assert_int_equal(fixture_deliver(&fx, list[i].key, list[i].kind), FF_OK);
         }
         assert_int_equal(fixture_deliver(&fx, tile_key(3, 2), 0), FF_OK);
         memcpy(view.camera.pos_wu, pos_wu, sizeof pos_wu);

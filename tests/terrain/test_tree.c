@@ -252,16 +252,17 @@ static void test_wishes_come_in_order(void **state)
     for (unsigned round = 0; round < 40; round++) {
         ff_tree_select(fx.tree, &view, &quality);
         count = ff_tree_wishes(fx.tree, &wish);
-        for (uint32_t i = 0; i < count; i++) unseen += wish[i].refinement && !wish[i].in_view;
+        for (uint32_t i = 0; i < count; i++)
+            unseen += wish[i].kind == FF_KIND_REFINEMENT && !wish[i].in_view;
         for (uint32_t i = 1; i < count; i++) {
-            assert_true(wish[i - 1].refinement <= wish[i].refinement);
-            if (wish[i - 1].refinement == wish[i].refinement) {
+            assert_true(wish[i - 1].kind <= wish[i].kind);
+            if (wish[i - 1].kind == wish[i].kind) {
                 assert_true(wish[i - 1].in_view >= wish[i].in_view);
-                if (wish[i].refinement && wish[i - 1].in_view == wish[i].in_view)
+                if (wish[i].kind == FF_KIND_REFINEMENT && wish[i - 1].in_view == wish[i].in_view)
                     assert_true(wish[i - 1].priority >= wish[i].priority);
             }
         }
-        if (count) fixture_deliver(&fx, wish[count - 1].key, wish[count - 1].refinement);
+        if (count) fixture_deliver(&fx, wish[count - 1].key, wish[count - 1].kind);
     }
     assert_true(unseen > 0);
     fixture_free(&fx);
@@ -277,7 +278,7 @@ static uint32_t deliver_wishes(terrain_fixture *fx, const ff_view *view, const f
         uint32_t count = ff_tree_wishes(fx->tree, &wish), at = 0;
         while (at < count && !unseen && !wish[at].in_view) at++;
         if (at == count) return delivered;
-        fixture_deliver(fx, wish[at].key, wish[at].refinement);
+        fixture_deliver(fx, wish[at].key, wish[at].kind);
     }
 }
 
@@ -323,7 +324,7 @@ static void test_wish_list_is_bounded_and_keeps_the_best(void **state)
     fixture_deliver(&fx, wish[0].key, 0);
     ff_tree_select(fx.tree, &view, &quality);
     assert_int_equal(ff_tree_wishes(fx.tree, &wish), 6);
-    assert_true(wish[5].refinement && ff_key_tile(wish[5].key) == 15 * 30 + 15);
+    assert_true(wish[5].kind == FF_KIND_REFINEMENT && ff_key_tile(wish[5].key) == 15 * 30 + 15);
     fixture_free(&fx);
 }
 

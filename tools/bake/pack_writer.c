@@ -132,17 +132,6 @@ static int copy_part(int from, int to, uint64_t count, uint64_t to_offset, uint3
     return rc;
 }
 
-static void describe_section(const pack_writer *writer, uint32_t number, ff_pack_section *out)
-{
-    uint32_t refinements = ff_terrain_levels(&writer->info) - 1;
-    out->kind = number == 0             ? FF_SECTION_ROOT
-                : number <= refinements ? FF_SECTION_REFINEMENT
-                                        : FF_SECTION_TEXTURE;
-    out->level = (uint16_t)(number == 0             ? 0
-                            : number <= refinements ? number - 1
-                                                    : number - 1 - refinements);
-}
-
 static int write_sections(const pack_writer *writer, int fd, ff_pack_header *header, uint64_t *end)
 {
     *end = FF_PACK_HEADER_BYTES;
@@ -151,7 +140,7 @@ static int write_sections(const pack_writer *writer, int fd, ff_pack_header *hea
         ff_pack_section *section = &header->section[i];
         uint8_t last[8];
         uint32_t unused = 0;
-        describe_section(writer, i, section);
+        ff_pack_section_at(&writer->info, i, section);
         section->record_count = from->records;
         section->records_crc = from->records_crc;
         section->index_offset = *end;

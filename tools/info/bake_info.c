@@ -90,13 +90,6 @@ static void print_terrain(const ff_terrain_info *info)
     printf("checksum        %08x\n\n", info->checksum);
 }
 
-static const char *kind_name(int kind)
-{
-    return kind == FF_SECTION_ROOT         ? "root"
-           : kind == FF_SECTION_REFINEMENT ? "refinement"
-                                           : "texture";
-}
-
 void bake_info_print(const ff_pack *pack, const char *path)
 {
     section_sum heights = { 0 }, textures = { 0 };
@@ -109,9 +102,9 @@ void bake_info_print(const ff_pack *pack, const char *path)
         total->records += sum.records;
         total->payload_bytes += sum.payload_bytes;
         total->new_samples += sum.new_samples;
-        printf("%-10s %6u %10" PRIu64 " %12" PRIu64 " %13.1f", kind_name(section->kind),
-               section->level, sum.records, sum.payload_bytes,
-               per(sum.payload_bytes, sum.records) / 8);
+        printf("%-10s %6u %10" PRIu64 " %12" PRIu64 " %13.1f",
+               ff_kind_of_section(section->kind)->name, section->level, sum.records,
+               sum.payload_bytes, per(sum.payload_bytes, sum.records) / 8);
         if (sum.new_samples) printf(" %16.3f", per(sum.payload_bytes, sum.new_samples));
         putchar('\n');
     }
@@ -157,7 +150,7 @@ void bake_info_print_json(const ff_pack *pack)
         *(sum.new_samples ? &height_bytes : &texture_bytes) += sum.payload_bytes;
         printf("%s{\"kind\": \"%s\", \"level\": %u, \"records\": %" PRIu64 ", \"bytes\": %" PRIu64
                ", \"new_samples\": %" PRIu64 ", \"bits_per_new_sample\": %.4f}",
-               i ? ", " : "", kind_name(section->kind), section->level, sum.records,
+               i ? ", " : "", ff_kind_of_section(section->kind)->name, section->level, sum.records,
                sum.payload_bytes, sum.new_samples, per(sum.payload_bytes, sum.new_samples));
     }
     printf("], \"height_bytes\": %" PRIu64

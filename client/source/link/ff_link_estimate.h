@@ -5,9 +5,9 @@
  *               ms); running mean, quick to rise (1/2), slow to fall (1/8), so that a stall of GPRS
  *               does not forget what the link can do. An interval in which the window was not full
  *               says nothing about the link's limit and cannot lower the mean.
- *   round trip  request to answer, panoramas apart (their drawing takes time); falls at once, rises
- *               by 1/16: nearly the minimum, so that our own queue in the network is not taken for
- *               distance.
+ *   round trip  request to answer, of what packs hold (drawing panoramas takes time); falls at
+ *               once, rises by 1/16: nearly the minimum, so that our own queue in the network is
+ *               not taken for distance.
  *   window      2 * rate * round trip, at least FF_WINDOW_BYTES_MIN: twice, because a window of
  *               just the product could never find out that the link carries more. */
 #ifndef FF_LINK_ESTIMATE_H

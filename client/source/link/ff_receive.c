@@ -19,25 +19,6 @@ static int take_welcome(ff_stream *stream, const ff_welcome *welcome)
     return FF_OK;
 }
 
-/* Finds the request that an answer belongs to: it must wait for an answer of this type. */
-static int find_request(ff_stream *stream, uint16_t id, unsigned type, ff_request *request)
-{
-    if (!ff_requests_answered(stream->intake->requests, id, request)) return FF_ERR_FORMAT;
-    return type == FF_MSG_FAILED || ff_kind[request->kind].answered_by == type ? FF_OK
-                                                                               : FF_ERR_FORMAT;
-}
-
-static int take_data(ff_stream *stream, const ff_message *message, int64_t now_us)
-{
-    ff_request request;
-    const ff_data *data = &message->u.data;
-    int rc = find_request(stream, data->id, message->type, &request);
-    if (rc != FF_OK) return rc;
-    rc = ff_intake_record(stream->intake, &request, data->bytes, data->byte_count);
-    if (rc == FF_OK) ff_link_estimate_answer(&stream->link, request.sent_us, now_us);
-    return rc;
-}
-
 static int asked_for(const ff_get_panorama *panorama, unsigned face)
 {
     for (unsigned i = 0; i < panorama->face_count; i++)
@@ -45,21 +26,34 @@ static int asked_for(const ff_get_panorama *panorama, unsigned face)
     return 0;
 }
 
-static int take_face(ff_stream *stream, const ff_face *face, uint32_t bytes)
+/* Whether this is an answer to that request. */
+static int answers(const ff_message *message, const ff_request *request)
+{
+    const ff_kind_row *kind = &ff_kind[request->kind];
+    if (ff_kind[message->kind].answered_by != kind->answered_by) return 0;
+    return kind->brings != FF_BRINGS_FACE || asked_for(&request->panorama, message->u.face.face);
+}
+
+static int take_answer(ff_stream *stream, const ff_message *message, uint32_t bytes, int64_t now_us)
 {
     ff_request request;
-    int rc = find_request(stream, face->id, FF_MSG_FACE, &request);
-    if (rc == FF_OK && !asked_for(&request.panorama, face->face)) rc = FF_ERR_FORMAT;
-    if (rc == FF_OK) rc = ff_intake_face(stream->intake, &request, face, bytes);
-    if (rc == FF_OK) stream->panorama_bytes += bytes;
-    return rc;
+    if (!ff_requests_answered(stream->intake->requests, ff_message_id(message), &request) ||
+        !answers(message, &request))
+        return FF_ERR_FORMAT;
+    int rc = ff_intake_answer(stream->intake, &request, message, bytes);
+    if (rc != FF_OK) return rc;
+    stream->answer_bytes[request.kind] += bytes;
+    /* what lies in a pack comes at once: it tells of the link, not of a server's work */
+    if (ff_kind[request.kind].section)
+        ff_link_estimate_answer(&stream->link, request.sent_us, now_us);
+    return FF_OK;
 }
 
 static int take_failed(ff_stream *stream, uint16_t id, int error)
 {
     ff_request request;
-    int rc = find_request(stream, id, FF_MSG_FAILED, &request);
-    return rc == FF_OK ? ff_intake_failed(stream->intake, &request, error) : rc;
+    if (!ff_requests_answered(stream->intake->requests, id, &request)) return FF_ERR_FORMAT;
+    return ff_intake_failed(stream->intake, &request, error);
 }
 
 /* Takes in a message. FF_OK, FF_ERR_AGAIN when the new-data list is full, or another error. */
@@ -69,9 +63,7 @@ static int take(ff_stream *stream, const ff_message *message, uint32_t bytes, in
     if (message->type == FF_MSG_WELCOME) return take_welcome(stream, &message->u.welcome);
     if (stream->state != FF_STREAM_UP) return FF_ERR_FORMAT;
     switch (message->type) {
-        case FF_MSG_NODE:
-        case FF_MSG_TEXTURE: return take_data(stream, message, now_us);
-        case FF_MSG_FACE: return take_face(stream, &message->u.face, bytes);
+        case FF_MSG_ANSWER: return take_answer(stream, message, bytes, now_us);
         case FF_MSG_FAILED:
             return take_failed(stream, message->u.failed.id, message->u.failed.error);
         case FF_MSG_CANCELLED: return take_failed(stream, message->u.cancel.id, FF_ERR_CLOSED);
@@ -93,8 +85,7 @@ static int take_oversize(ff_stream *stream, uint32_t at)
     }
     header++;
     if (header + body <= stream->recv_bytes || count < header + 2) return FF_OK;
-    int type = bytes[0];
-    if (type != FF_MSG_NODE && type != FF_MSG_TEXTURE && type != FF_MSG_FACE) return FF_ERR_RANGE;
+    if (ff_message_type_of(bytes[0]) != FF_MSG_ANSWER) return FF_ERR_RANGE;
     int rc = take_failed(stream, (uint16_t)(bytes[header] | bytes[header + 1] << 8), FF_ERR_FULL);
     if (rc == FF_OK) stream->skip = header + body;
     return rc;

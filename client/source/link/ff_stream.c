@@ -34,7 +34,7 @@ static void publish(ff_stream *stream)
     shared->state = stream->state;
     shared->bytes_down = stream->bytes_down;
     shared->bytes_up = stream->bytes_up;
-    shared->panorama_bytes = stream->panorama_bytes;
+    memcpy(shared->answer_bytes, stream->answer_bytes, sizeof shared->answer_bytes);
     shared->protocol_errors = stream->protocol_errors;
     shared->reconnects = stream->reconnects;
     shared->received = stream->recv_count;
@@ -155,14 +155,10 @@ static int connect_step(ff_stream *stream, int64_t now_us)
 
 static void encode_request(ff_stream *stream, const ff_request *request)
 {
-    const ff_kind_row *kind = &ff_kind[request->kind];
-    ff_message message = { .type = kind->asked_by };
-    if (kind->asked_by == FF_MSG_GET_PANORAMA) {
-        message.u.panorama = request->panorama;
-    } else {
-        message.u.get.id = request->id;
-        message.u.get.what = kind->what;
-        message.u.get.key = request->key;
+    ff_message message = { .type = FF_MSG_GET, .kind = (enum ff_kind)request->kind };
+    switch ((enum ff_kind_asks)ff_kind[request->kind].asks) {
+        case FF_ASKS_NODE: message.u.get = (ff_get){ request->id, request->key }; break;
+        case FF_ASKS_PANORAMA: message.u.panorama = request->panorama; break;
     }
     append(stream, &message);
 }

@@ -33,7 +33,7 @@ enum ff_stream_state {
 typedef struct ff_stream_shared {
     enum ff_stream_state state;
     uint32_t received; /* bytes of messages that have not come whole yet */
-    uint64_t bytes_down, bytes_up, panorama_bytes;
+    uint64_t bytes_down, bytes_up, answer_bytes[FF_KIND_COUNT];
     uint32_t received_high; /* the most ever */
     uint32_t protocol_errors, reconnects, rtt_us, bytes_s;
     uint32_t losses;         /* connections lost: what was asked is to be ranked again */
@@ -61,7 +61,7 @@ typedef struct ff_stream {
     uint8_t awaiting; /* HELLO or PING unanswered */
     uint8_t patience; /* how often the time-out has been doubled */
     ff_link_estimate link;
-    uint64_t bytes_down, bytes_up, panorama_bytes;
+    uint64_t bytes_down, bytes_up, answer_bytes[FF_KIND_COUNT];
     uint32_t protocol_errors, reconnects, losses;
     ff_stream_shared shared;
 } ff_stream;
