@@ -105,7 +105,7 @@ demo: $(PROGRAMS) ## fetch real terrain, bake it, serve it, fly over it: picture
 	@tools/scripts/demo.sh $(BUILD)/bin build/demo
 
 # ---- libfarfield: what an embedding program links ----
-LIBFARFIELD_OBJS = $(call obj,$(SRC_core) $(filter-out platform/sim/%,$(SRC_platform)))
+LIBFARFIELD_OBJS = $(call obj,$(SRC_core) $(filter-out platform/sim/% platform/options/%,$(SRC_platform)))
 lib: $(LIB)/libfarfield.a $(LIB)/libfarfield.so
 $(LIB)/libfarfield.a: $(LIBFARFIELD_OBJS); $(archive)
 $(LIB)/libfarfield.so: $(LIBFARFIELD_OBJS)

@@ -20,8 +20,8 @@ NO ?=
 $(if $(filter-out $(FEATURES),$(NO)),$(error NO=$(NO): the features are $(FEATURES)))
 
 DEVICE_CORE := $(filter-out protocol/codec/ff_encode% protocol/zlib/ff_deflate% common3d/gl%,$(SRC_core))
-DEVICE_PLATFORM := $(filter-out platform/sim/% platform/posix/png.c,$(SRC_platform))
-DEVICE_PROGRAM := $(call srcs,sim/handheld) sim/tape/sim_tape.c sim/handheld/handheld_main.c
+DEVICE_PLATFORM := $(filter-out platform/sim/% platform/posix/png.c platform/options/sys_option_real.c,$(SRC_platform))
+DEVICE_PROGRAM := $(call srcs,sim/handheld) $(call srcs,sim/options) sim/tape/sim_tape.c sim/handheld/handheld_main.c
 
 # ---- make handheld ----
 ARM := arm-linux-gnueabi-

@@ -47,9 +47,15 @@ void ff_client_default_desc(ff_client_desc *desc)
 
 static int check_desc(const ff_client_desc *desc)
 {
-    if (!desc->memory || (desc->stream != NULL) == (desc->pack != NULL) || desc->width > 4096 ||
-        desc->height > 4096 || desc->in_flight_max > 1024 || desc->panorama.jpeg_quality > 100 ||
-        (desc->panorama.face_size && desc->panorama.face_size < 64))
+    if (!desc->memory || (desc->stream != NULL) == (desc->pack != NULL) ||
+        desc->width > FF_PICTURE_SIDE_MAX || desc->height > FF_PICTURE_SIDE_MAX ||
+        desc->in_flight_max > 1024 || desc->panorama.jpeg_quality > 100 ||
+        (desc->panorama.face_size && desc->panorama.face_size < FF_PANORAMA_FACE_MIN) ||
+        desc->panorama.face_size > FF_FACE_SIZE_MAX)
+        return FF_ERR_ARGUMENT;
+    if (desc->quality.c_q8 > FF_QUALITY_C_MAX << 8 ||
+        desc->quality.error_px_q8 > FF_QUALITY_ERROR_PX_MAX << 8 ||
+        desc->quality.depth_max > FF_QUALITY_DEPTH_MAX)
         return FF_ERR_ARGUMENT;
     if ((unsigned)desc->balance.mode > FF_BALANCE_ALL_CLIENT) return FF_ERR_ARGUMENT;
     if (desc->backend && !desc->surface_api) return FF_ERR_ARGUMENT;

@@ -34,6 +34,13 @@ extern "C" {
 
 #define FARFIELD_VERSION "0.1.0"
 
+/* Bounds of what ff_client_create takes; options of programs have their ranges from here. */
+#define FF_PICTURE_SIDE_MAX     4096
+#define FF_PANORAMA_FACE_MIN    64 /* the largest is FF_FACE_SIZE_MAX of ff_message.h */
+#define FF_QUALITY_C_MAX        1000
+#define FF_QUALITY_ERROR_PX_MAX 1000
+#define FF_QUALITY_DEPTH_MAX    16 /* all levels of a key */
+
 typedef struct ff_client ff_client;
 
 /* Zero in any field takes the default given. */

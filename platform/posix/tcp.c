@@ -1,6 +1,7 @@
 /* TCP as sys_stream: non-blocking, no delay, never SIGPIPE. A client walks through all addresses of
  * its host, one after the other: sys_tcp.connecting is the number (from 1) of the address being
  * tried, 0 when connected or closed. */
+#include "../address.h"
 #include "../sys.h"
 
 #include <errno.h>
@@ -15,36 +16,10 @@
 
 #define LISTEN_BACKLOG 128
 
-/* "HOST:PORT" or "[HOST]:PORT" taken apart; 1 when well formed. An empty host is allowed for
- * listening. */
-static int split_address(const char *address, char host[128], char port[8])
-{
-    const char *colon = strrchr(address, ':');
-    if (!colon) return 0;
-    const char *first = address, *last = colon;
-    if (*address == '[') {
-        if (colon - address < 2 || colon[-1] != ']') return 0;
-        first++;
-        last--;
-    } else if (memchr(address, ':', (size_t)(colon - address))) {
-        return 0; /* a bare IPv6 address: which colon begins the port? */
-    }
-    size_t host_size = (size_t)(last - first), port_size = strlen(colon + 1);
-    if (host_size >= 128 || port_size == 0 || port_size > 5) return 0;
-    if (strspn(colon + 1, "0123456789") != port_size) return 0;
-    memcpy(host, first, host_size);
-    host[host_size] = 0;
-    memcpy(port, colon + 1, port_size + 1);
-    unsigned long number = 0;
-    for (const char *digit = port; *digit; digit++)
-        number = number * 10 + (unsigned long)(*digit - '0');
-    return number <= 65535;
-}
-
 static int resolve(const char *address, int flags, struct addrinfo **list)
 {
     char host[128], port[8];
-    if (!split_address(address, host, port)) return FF_ERR_ARGUMENT;
+    if (!sys_address_split(address, host, port)) return FF_ERR_ARGUMENT;
     struct addrinfo hints = { .ai_flags = flags | AI_NUMERICSERV, .ai_socktype = SOCK_STREAM };
     return getaddrinfo(*host ? host : NULL, port, &hints, list) ? FF_ERR_NOT_FOUND : FF_OK;
 }
@@ -156,7 +131,7 @@ static int tcp_reconnect(void *state)
 int sys_tcp_client(sys_tcp *tcp, const char *address, sys_stream *stream)
 {
     char host[128], port[8];
-    if (strlen(address) >= sizeof tcp->address || !split_address(address, host, port) || !*host)
+    if (strlen(address) >= sizeof tcp->address || !sys_address_split(address, host, port) || !*host)
         return FF_ERR_ARGUMENT;
     memset(tcp, 0, sizeof *tcp);
     tcp->fd = -1;

@@ -99,10 +99,10 @@ static int events(fly_flight *flight, double t_s)
 {
     sys_event event;
     int rc = 0;
-    for (unsigned i = 0; !rc && i < flight->options->event_count; i++)
-        if (!(flight->events_done >> i & 1u) && t_s >= flight->options->event[i].at_s) {
+    for (unsigned i = 0; !rc && i < flight->options->events.count; i++)
+        if (!(flight->events_done >> i & 1u) && t_s >= flight->options->events.event[i].at_s) {
             flight->events_done |= (uint64_t)1 << i;
-            rc = apply_event(flight, &flight->options->event[i], t_s);
+            rc = apply_event(flight, &flight->options->events.event[i], t_s);
         }
     while (sys_event_take(&event)) ff_client_event(flight->world->client, &event);
     return rc;
@@ -175,7 +175,8 @@ static int read_picture(fly_flight *flight)
     ff_client_draw(flight->world->client);
     c3d_device *device = ff_client_device(flight->world->client);
     if (!device) { /* the terrain is not known yet: a black picture */
-        memset(flight->rgb, 0, (size_t)flight->options->width * flight->options->height * 3);
+        memset(flight->rgb, 0,
+               (size_t)flight->options->size.width * flight->options->size.height * 3);
         return 0;
     }
     int rc = c3d_read_rgb(device, flight->rgb);
@@ -198,7 +199,8 @@ static int take_row(fly_flight *flight, double t_s)
     fly_sample_take(sample, &from);
     if (flight->world->surface)
         sample->frame_hash = fnv(FNV_START, flight->rgb,
-                                 (size_t)flight->options->width * flight->options->height * 3);
+                                 (size_t)flight->options->size.width *
+                                     flight->options->size.height * 3);
     flight->totals.frame_hash = fnv(flight->totals.frame_hash, (const uint8_t *)&sample->frame_hash,
                                     sizeof sample->frame_hash);
     if (flight->csv) fly_csv_row(flight->csv, sample);
@@ -210,7 +212,8 @@ static int write_picture(const fly_flight *flight, const char *folder, double t_
     char path[4096];
     if (snprintf(path, sizeof path, "%s/frame-%07.2f.png", folder, t_s) >= (int)sizeof path)
         return fail(folder, "path too long");
-    int rc = sys_png_write(path, flight->rgb, flight->options->width, flight->options->height);
+    int rc = sys_png_write(path, flight->rgb, flight->options->size.width,
+                           flight->options->size.height);
     return rc == FF_OK ? 0 : fail(path, ff_error_text(rc));
 }
 
@@ -297,11 +300,11 @@ static int begin(fly_flight *flight, fly_world *world, FILE *csv)
         .world = world, .options = options, .csv = csv, .totals = { .frame_hash = FNV_START }
     };
     flight->camera =
-        (c3d_camera){ .width = options->width,
-                      .height = options->height,
+        (c3d_camera){ .width = options->size.width,
+                      .height = options->size.height,
                       .focal_q8 = c3d_focal_q8((int32_t)(options->fov_degrees * 65536 / 360 + 0.5),
-                                               options->width) };
-    flight->rgb = malloc((size_t)options->width * options->height * 3);
+                                               options->size.width) };
+    flight->rgb = malloc((size_t)options->size.width * options->size.height * 3);
     if (!flight->rgb) return fail("picture", ff_error_text(FF_ERR_MEMORY));
     if (options->png_dir && sys_make_folder(options->png_dir) != FF_OK)
         return fail(options->png_dir, "cannot make this folder");

@@ -12,9 +12,10 @@ int main(int argc, char **argv)
     fly_flight flight = { 0 };
     FILE *csv = NULL;
     int rc = fly_options_parse(&options, argc, argv);
-    if (rc) {
+    if (rc) return rc < 0 ? SYS_EXIT_USAGE : SYS_EXIT_DONE;
+    if (fly_options_load(&options)) {
         fly_options_free(&options);
-        return rc < 0 ? 2 : 0;
+        return SYS_EXIT_FAILED;
     }
     fly_options_print(&options);
     rc = fly_world_open(&world, &options);
@@ -38,5 +39,5 @@ int main(int argc, char **argv)
     fly_flight_free(&flight);
     fly_world_close(&world);
     fly_options_free(&options);
-    return rc ? 1 : 0;
+    return rc ? SYS_EXIT_FAILED : SYS_EXIT_DONE;
 }

@@ -1,12 +1,17 @@
-/* What farfield-fly is told on its command line. */
+/* What farfield-fly is told on its command line: a row for each option, see sys_options.h. */
 #ifndef FLY_OPTIONS_H
 #define FLY_OPTIONS_H
 
-#include "../../client/farfield.h"
+#include "../../protocol/message/ff_message.h"
+#include "../link/sim_link_option.h"
+#include "../options/sim_client_options.h"
 #include "fly_recording.h"
-#include "../link/sim_link.h"
 
 #define FLY_EVENTS_MAX 64
+#define FLY_SECONDS    SYS_REAL(0, 1e6, "s")
+#define FLY_INTERVAL   SYS_REAL(0.01, 1e6, "s")
+#define FLY_DISTANCE   SYS_REAL(1, 8e6, "m")
+#define FLY_TEXELS     SYS_WHOLE(FF_PANORAMA_FACE_MIN, FF_FACE_SIZE_MAX, "texels")
 
 enum fly_backend { FLY_GLES1, FLY_GL, FLY_SOFT, FLY_SOFT_565, FLY_NONE };
 enum fly_path_kind { FLY_DIAGONAL, FLY_CIRCLE, FLY_HOVER, FLY_TURN, FLY_RECORDED };
@@ -32,47 +37,104 @@ typedef struct fly_event {
     double place[2];
 } fly_event;
 
+typedef struct fly_events {
+    fly_event event[FLY_EVENTS_MAX];
+    unsigned count;
+} fly_events;
+
+extern const sys_option_type fly_events_option;
+
+/* clang-format off */
+#define FLY_OPTIONS(OPTION, HEADING, SHOW) \
+    OPTION(sys_text, pack_path, "pack", "PACK", NULL, SYS_FLAGS(SYS_NEEDED), \
+           "the terrain, also with --server (the true ground the flight keeps above)") \
+    OPTION(sys_text, csv_path, "csv", "FILE", NULL, SYS_ANY, "one row per --sample seconds") \
+    OPTION(sys_flag, json, "json", NULL, NULL, SYS_ANY, \
+           "a summary on stdout: means and totals after settling") \
+    HEADING("The flight") \
+    OPTION(sys_text, path_text, "path", "KIND|FILE", "diagonal", SYS_ANY, \
+           "diagonal: along the terrain's diagonal towards its north-east corner, turning back " \
+           "in a half circle before the border; circle; hover: in one place, turning 6 degrees " \
+           "a second; turn: along the diagonal for 20 s, round on the spot within 2 s, back, " \
+           "and so on; FILE: a recorded flight, CSV whose first line names columns t_s, x_m, " \
+           "y_m, z_m (above the terrain's zero) or h_m (above ground), heading_deg and " \
+           "pitch_deg (may be missing). Its times count from the start, --settle included. The " \
+           "CSV of an earlier flight is one") \
+    OPTION(sys_real, start, "start", "F", "0.4", SYS_REAL(0, 1, ""), "where on the diagonal") \
+    OPTION(sys_real, speed_kmh, "speed", "KMH", "150", SYS_REAL(0, SIM_SPEED_KMH_MAX, "km/h"), \
+           "how fast") \
+    OPTION(sys_real, height_m, "height", "M", "100", SYS_REAL(0.01, SIM_HEIGHT_M_MAX, "m"), \
+           "above the highest ground within 150 m along the path, smoothed") \
+    OPTION(sys_real, seconds, "seconds", "S", NULL, FLY_SECONDS, \
+           "in flight; default 300, or to the end of a recorded flight") \
+    OPTION(sys_real, settle_s, "settle", "S", "15", FLY_SECONDS, "standing still before") \
+    OPTION(fly_events, events, "event", "T:WHAT", NULL, SYS_FLAGS(SYS_REPEATABLE), \
+           "at T seconds. link: the link is another one from now on; teleport: to these shares " \
+           "of the terrain's width and height (the path goes on from there and stays at a " \
+           "border that it would cross); budget: triangles a frame, with --balance") \
+    OPTION(sys_text, events_path, "events", "FILE", NULL, SYS_ANY, \
+           "such events, one on a line; what follows a # is a comment") \
+    HEADING("The link") \
+    OPTION(sim_link_spec, link_text, "link", "SPEC", "umts", SYS_ANY, "between server and client") \
+    SIM_LINK_OPTIONS(OPTION) \
+    OPTION(sys_address, server, "server", "ADDR:PORT", NULL, SYS_ANY, \
+           "a real server, real sockets and real time; --link and the traces are not used") \
+    HEADING("The client") \
+    SIM_CLIENT_OPTIONS(OPTION, "4M", "the client's one block") \
+    SIM_PANORAMA_OPTION(OPTION, "on", "far ground as panoramas drawn by the server") \
+    OPTION(sys_real, back_plane_m, "back-plane", "M", NULL, FLY_DISTANCE, \
+           "where the panorama takes over; default 7500") \
+    OPTION(sys_whole, face_texels, "face", "N", NULL, FLY_TEXELS, \
+           "a panorama's face each way; default 256; a larger one needs more --memory") \
+    OPTION(sys_real, view_m, "view", "M", "30000", FLY_DISTANCE, \
+           "how far ground is drawn without panorama") \
+    SIM_PLAIN_ARRAYS_OPTION(OPTION) \
+    HEADING("The picture") \
+    OPTION(sys_word, backend, "backend", "KIND", "gl", SYS_WORDS(fly_backend_words), \
+           "gles1: by EGL; gl: by OSMesa; soft: integers, RGBA8888; soft565; none: geometry only") \
+    SIM_SIZE_OPTION(OPTION, "of the picture") \
+    SIM_FOV_OPTION(OPTION) \
+    OPTION(sys_whole, fps, "fps", "N", "30", SYS_WHOLE(1, 1000, ""), "frames a second") \
+    OPTION(sys_text, png_dir, "png", "DIR", NULL, SYS_ANY, \
+           "pictures every --every seconds into DIR") \
+    OPTION(sys_real, every_s, "every", "S", "10", FLY_INTERVAL, "time between pictures") \
+    OPTION(sys_text, reference_dir, "reference", "DIR", NULL, SYS_ANY, \
+           "with --png: the same moments into DIR as they should look, drawn from the pack " \
+           "without a link, to a quarter of a pixel and with all images") \
+    SHOW \
+    HEADING("Checking") \
+    OPTION(sys_switch, audit, "audit", "on|off", "off", SYS_ANY, \
+           "err_px against the whole true ground") \
+    OPTION(sys_whole, audit_step_px, "audit-step", "N", "8", SYS_WHOLE(1, 64, ""), \
+           "every N-th pixel each way is looked at") \
+    OPTION(sys_text, ground_cache, "ground-cache", "FILE", NULL, SYS_ANY, \
+           "keeps the decoded true ground there for further flights over this pack") \
+    OPTION(sys_switch, check, "check", "on|off", NULL, SYS_ANY, \
+           "every frame searched for cracks on integer vertices; default: as --audit") \
+    OPTION(sys_real, sample_s, "sample", "S", "1", FLY_INTERVAL, "time between rows") \
+    OPTION(sys_text, tape_path, "tape", "FILE", NULL, SYS_ANY, \
+           "records all that comes to the client, for farfield-handheld --tape (not with " \
+           "--server, --event, --balance)")
+/* clang-format on */
+
 typedef struct fly_options {
-    const char *pack_path;
-    const char *server; /* ADDR:PORT: real sockets in real time; NULL: simulated */
-    const char *link_text;
+    FLY_OPTIONS(SYS_FIELD, SYS_NO_FIELD, sys_bits show;)
+    /* what follows from them */
     sim_link_desc link;
-    double speed_kmh, seconds, settle_s, height_m;
-    double start; /* where on the diagonal, 0..1 */
-    const char *quality_text;
     ff_quality quality;
     ff_panorama_desc panorama;
-    const char *balance_text;
     ff_balance_desc balance;
-    uint64_t seed;
-    uint32_t fps;
-    uint16_t width, height; /* of the picture, pixels */
-    double fov_degrees;     /* across the width */
-    enum fly_backend backend;
     enum fly_path_kind path;
-    const char *path_text;
     fly_recording recording; /* of FLY_RECORDED */
-    /* decoded heights of the pack, for the audit; NULL: decoded for this flight alone */
-    const char *ground_cache;
-    uint32_t audit_step_px;
-    int audit, check, json, plain_arrays;
-    unsigned show; /* enum ff_show */
-    const char *csv_path, *png_dir;
-    /* all that comes to the client, for farfield-handheld; NULL: not recorded */
-    const char *tape_path;
-    const char *reference_dir; /* the same moments as they should look; NULL: not drawn */
-    double every_s, sample_s;  /* between pictures; between rows */
-    size_t memory_bytes;
-    fly_event event[FLY_EVENTS_MAX];
-    unsigned event_count;
 } fly_options;
 
-/* 0: fly; 1: --help or --version was answered; -1: an error, said in one line on stderr. */
+/* 0: fly; 1: --help or --version was answered; -1: wrong usage, said in one line on stderr. */
 int fly_options_parse(fly_options *options, int argc, char **argv);
+/* Reads the files with events and a recorded flight. 0, or -1 with one line on stderr. */
+int fly_options_load(fly_options *options);
+void fly_options_free(fly_options *options);
 /* All options in one line on stderr, the seed first: what it takes to fly the same again. */
 void fly_options_print(const fly_options *options);
-
-void fly_options_free(fly_options *options);
 
 const char *fly_backend_name(enum fly_backend backend);
 

@@ -56,8 +56,8 @@ static int open_tape(fly_world *world)
 {
     const fly_options *options = world->options;
     sim_tape_head head = { .memory_bytes = (uint32_t)options->memory_bytes,
-                           .width = options->width,
-                           .height = options->height,
+                           .width = options->size.width,
+                           .height = options->size.height,
                            .quality = options->quality,
                            .panorama = options->panorama };
     int rc = options->tape_path
@@ -93,7 +93,8 @@ static int open_reference(fly_world *world, const sys_surface_desc *desc)
 static int open_surface(fly_world *world)
 {
     const fly_options *options = world->options;
-    sys_surface_desc desc = { "farfield-fly", options->width, options->height, SYS_GL_DESKTOP };
+    sys_surface_desc desc = { "farfield-fly", options->size.width, options->size.height,
+                              SYS_GL_DESKTOP };
     if (options->backend == FLY_NONE) return 0;
     world->surface_api = sys_surface_osmesa();
     if (options->backend == FLY_GLES1) {
@@ -120,8 +121,8 @@ static int open_client(fly_world *world)
                             .memory_bytes = options->memory_bytes,
                             .stream = &world->stream,
                             .surface_api = world->surface_api,
-                            .width = options->width,
-                            .height = options->height,
+                            .width = options->size.width,
+                            .height = options->size.height,
                             .quality = options->quality,
                             .panorama = options->panorama,
                             .balance = options->balance,

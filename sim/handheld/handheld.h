@@ -5,22 +5,50 @@
 #ifndef HANDHELD_H
 #define HANDHELD_H
 
+#include "../options/sim_client_options.h"
 #include "../tape/sim_tape.h"
 
+/* clang-format off */
+#define HANDHELD_OPTIONS(OPTION) \
+    OPTION(sys_text, pack_path, "pack", "PACK", NULL, SYS_ANY, "a pack on this device") \
+    OPTION(sys_address, server, "server", "ADDR:PORT", NULL, SYS_ANY, \
+           "a farfield-server, in real time") \
+    OPTION(sys_text, tape_path, "tape", "FILE", NULL, SYS_ANY, \
+           "a flight recorded by farfield-fly --tape: fails unless everything goes as recorded") \
+    OPTION(sys_whole, frames, "frames", "N", "300", SYS_WHOLE(1, SIM_FRAMES_MAX, ""), \
+           "30 a second (a tape has its own)") \
+    SIM_SIZE_OPTION(OPTION, "of the picture (a tape has its own)") \
+    SIM_CLIENT_OPTIONS(OPTION, NULL, "the client's one block; default 4M, or what the tape says") \
+    SIM_PANORAMA_OPTION(OPTION, "on", \
+           "far ground as panoramas, with --server; a tape has its own") \
+    OPTION(sys_whole, speed_kmh, "speed", "KMH", "150", SYS_WHOLE(0, SIM_SPEED_KMH_MAX, "km/h"), \
+           "how fast") \
+    OPTION(sys_whole, height_m, "height", "M", "100", SYS_WHOLE(1, SIM_HEIGHT_M_MAX, "m"), \
+           "above the ground drawn") \
+    OPTION(sys_flag, no_textures, "no-textures", NULL, NULL, SYS_ANY, \
+           "images of the ground are not asked for") \
+    OPTION(sys_flag, no_pictures, "no-pictures", NULL, NULL, SYS_ANY, \
+           "geometry only, nothing is drawn") \
+    OPTION(sys_flag, hud, "hud", NULL, NULL, SYS_ANY, "figures over the picture") \
+    OPTION(sys_flag, hash, "hash", NULL, NULL, SYS_ANY, \
+           "a hash over the pixels of all frames, among the statistics") \
+    OPTION(sys_text, fb_path, "fb", "FILE", NULL, SYS_ANY, "the last frame as PPM") \
+    OPTION(sys_flag, json, "json", NULL, NULL, SYS_ANY, "statistics as JSON") \
+    OPTION(sys_flag, plan, "plan", NULL, NULL, SYS_ANY, \
+           "no flight: how blocks of 1, 2, 4 and 8 MB are shared out for this pack's ground, over " \
+           "a link")
+/* clang-format on */
+
 typedef struct handheld_options {
-    const char *pack_path, *server, *tape_path; /* exactly one */
-    const char *fb_path;                        /* the last frame as PPM, or NULL */
-    uint32_t frames;
-    uint32_t memory_bytes; /* 0: the tape's, or 4 MiB */
-    uint16_t width, height;
-    int32_t speed_kmh, height_m;
+    HANDHELD_OPTIONS(SYS_FIELD)
+    /* what follows from them */
     ff_quality quality;
     ff_panorama_desc panorama;
     ff_balance_desc balance;
-    int json, hud, hash, no_pictures, no_textures, plan;
 } handheld_options;
 
-/* 0: fly; 1: --help or --version was answered; -1: an error, said in one line on stderr. */
+/* 0: fly; 1: --help or --version was answered; -1: wrong usage, said in one line on
+ * stderr. */
 int handheld_options_parse(handheld_options *options, int argc, char **argv);
 
 /* Sums over the frames flown (a tape's settling not counted), and what had to hold. */

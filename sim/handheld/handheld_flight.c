@@ -91,8 +91,8 @@ int handheld_open(handheld *device, const handheld_options *options)
     memset(device, 0, sizeof *device);
     device->options = options;
     if (open_source(device)) return -1;
-    device->width = options->tape_path ? device->tape.head.width : options->width;
-    device->height = options->tape_path ? device->tape.head.height : options->height;
+    device->width = options->tape_path ? device->tape.head.width : options->size.width;
+    device->height = options->tape_path ? device->tape.head.height : options->size.height;
     return open_surface(device) ? -1 : open_client(device);
 }
 
@@ -207,7 +207,7 @@ static void place(const handheld *device, uint32_t frame, c3d_camera *camera)
                                          flown_wu * size_wu[axis] / diagonal_wu);
     if (!ff_client_ground(device->client, camera->pos_wu[0], camera->pos_wu[1], &ground_wu))
         ground_wu = ff_height_wu(info, info->height_max);
-    camera->pos_wu[2] = ground_wu + device->options->height_m * FF_WU_PER_METRE;
+    camera->pos_wu[2] = ground_wu + (int32_t)device->options->height_m * FF_WU_PER_METRE;
 }
 
 /* Frame `frame` of the flight; time is real with a server, else counted. */

@@ -41,12 +41,11 @@ typedef struct sim_link_desc {
 const sim_link_desc *sim_link_profile(const char *name);
 const sim_link_desc *sim_link_profile_at(unsigned index);
 
-#define SIM_LINK_SPEC_HELP                                                                              \
-    "NAME[,KEY=VALUE...], KEY one of down.bytes_s up.bytes_s down.delay_us up.delay_us down.jitter_us " \
-    "up.jitter_us down.queue_bytes up.queue_bytes stall_every_ms stall_ms_min stall_ms_max stall_bytes_s cut_every_ms connect_ms"
 /* A profile's name, then changes: "gprs,cut_every_ms=10000". FF_OK, FF_ERR_NOT_FOUND (no such
  * profile), FF_ERR_ARGUMENT. */
 int sim_link_parse(const char *spec, sim_link_desc *desc);
+/* Names of what can be changed, NULL at the end. */
+const char *sim_link_key_at(unsigned index);
 
 typedef struct sim_link sim_link;
 /* A new link is connected; its clock (stalls, traces, cuts) starts at the first time that is given.

@@ -26,6 +26,7 @@
 #include "sim_link.h"
 
 #include <errno.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -42,12 +43,14 @@ static const sim_link_desc profile[] = {
                            .jitter_us = 200000,
                            /* C&P: round trips grow to tens of seconds; 20 s at 5.5 kB/s */
                            .queue_bytes = 110000 },
-            [SIM_UP] = { .bytes_s = 2262,          /* 45.002/.003: two slots of CS-1, 2 * 9.05 kbit/s */
+            /* 45.002/.003: two slots of CS-1, 2 * 9.05 kbit/s */
+            [SIM_UP] = { .bytes_s = 2262,
                          .delay_us = 300000, .jitter_us = 200000,
                          .queue_bytes = 16384 },   /* tcp(7) */
         },
-        .stall_every_ms = 120000, /* assumed, on the hard side: Hybrid shows stalls in two of its 14 flights (figures 43 and 48), C&P tell
-                                     lengths only; so every flight of 300 s meets one or two */
+        /* assumed, on the hard side: Hybrid shows stalls in two of its 14 flights (figures 43 and
+         * 48), C&P tell lengths only; so every flight of 300 s meets one or two */
+        .stall_every_ms = 120000,
         .stall_ms_min = 4000,     /* C&P: 4 to 40 s, also standing still; Hybrid saw up to 30 s */
         .stall_ms_max = 40000,
         .stall_bytes_s = 5,       /* Hybrid: "a few bytes per second" */
@@ -89,23 +92,37 @@ static const sim_link_desc profile[] = {
     },
     {
         .name = "ltem",
-        .source = "3GPP release 13, category M1 half duplex: peak rates 300 / 375 kbit/s; latency 50 to 100 ms (Arduino)",
+        .source = "3GPP release 13, category M1 half duplex: peak rates 300 / 375 kbit/s; "
+                  "latency 50 to 100 ms (Arduino)",
         .way = {
             /* assumed queue: 1.7 s */
-            [SIM_DOWN] = { .bytes_s = 37500, .delay_us = 25000, .jitter_us = 25000, .queue_bytes = 65536 },
+            [SIM_DOWN] = { .bytes_s = 37500,
+                           .delay_us = 25000,
+                           .jitter_us = 25000,
+                           .queue_bytes = 65536 },
             /* tcp(7) */
-            [SIM_UP] = { .bytes_s = 46875, .delay_us = 25000, .jitter_us = 25000, .queue_bytes = 16384 },
+            [SIM_UP] = { .bytes_s = 46875,
+                         .delay_us = 25000,
+                         .jitter_us = 25000,
+                         .queue_bytes = 16384 },
         },
         .connect_ms = 100,
     },
     {
         .name = "nbiot",
-        .source = "3GPP release 13, category NB1: peak rates 26.15 / 62.5 kbit/s; latency 1.6 to 10 s (3GPP TR 45.820's goal)",
-        .way = {                                   /* The hard side: Ugwuanyi measured 837 ms in good coverage */
+        .source = "3GPP release 13, category NB1: peak rates 26.15 / 62.5 kbit/s; "
+                  "latency 1.6 to 10 s (3GPP TR 45.820's goal)",
+        .way = { /* the hard side: Ugwuanyi measured 837 ms in good coverage */
             /* assumed: 20 s, as GPRS */
-            [SIM_DOWN] = { .bytes_s = 3268, .delay_us = 800000, .jitter_us = 4200000, .queue_bytes = 65536 },
+            [SIM_DOWN] = { .bytes_s = 3268,
+                           .delay_us = 800000,
+                           .jitter_us = 4200000,
+                           .queue_bytes = 65536 },
             /* tcp(7) */
-            [SIM_UP] = { .bytes_s = 7812, .delay_us = 800000, .jitter_us = 4200000, .queue_bytes = 16384 },
+            [SIM_UP] = { .bytes_s = 7812,
+                         .delay_us = 800000,
+                         .jitter_us = 4200000,
+                         .queue_bytes = 16384 },
         },
         .connect_ms = 1600,
     },
@@ -164,23 +181,39 @@ const sim_link_desc *sim_link_profile(const char *name)
 
 /* ---- "gprs,cut_every_ms=10000" ---- */
 
-static uint32_t *field(sim_link_desc *desc, const char *key)
+/* clang-format off */
+#define DOWN(member) offsetof(sim_link_desc, way[SIM_DOWN].member)
+#define UP(member)   offsetof(sim_link_desc, way[SIM_UP].member)
+#define BOTH(member) offsetof(sim_link_desc, member)
+static const struct {
+    const char *name;
+    size_t field;
+} key[] = {
+    { "down.bytes_s",     DOWN(bytes_s) },
+    { "up.bytes_s",       UP(bytes_s) },
+    { "down.delay_us",    DOWN(delay_us) },
+    { "up.delay_us",      UP(delay_us) },
+    { "down.jitter_us",   DOWN(jitter_us) },
+    { "up.jitter_us",     UP(jitter_us) },
+    { "down.queue_bytes", DOWN(queue_bytes) },
+    { "up.queue_bytes",   UP(queue_bytes) },
+    { "stall_every_ms",   BOTH(stall_every_ms) },
+    { "stall_ms_min",     BOTH(stall_ms_min) },
+    { "stall_ms_max",     BOTH(stall_ms_max) },
+    { "stall_bytes_s",    BOTH(stall_bytes_s) },
+    { "cut_every_ms",     BOTH(cut_every_ms) },
+    { "connect_ms",       BOTH(connect_ms) },
+};
+/* clang-format on */
+
+enum { KEY_COUNT = sizeof key / sizeof key[0] };
+
+const char *sim_link_key_at(unsigned index) { return index < KEY_COUNT ? key[index].name : NULL; }
+
+static uint32_t *field(sim_link_desc *desc, const char *name)
 {
-    sim_link_way *down = &desc->way[SIM_DOWN], *up = &desc->way[SIM_UP];
-    const struct {
-        const char *key;
-        uint32_t *value;
-    } table[] = {
-        { "down.bytes_s", &down->bytes_s },          { "up.bytes_s", &up->bytes_s },
-        { "down.delay_us", &down->delay_us },        { "up.delay_us", &up->delay_us },
-        { "down.jitter_us", &down->jitter_us },      { "up.jitter_us", &up->jitter_us },
-        { "down.queue_bytes", &down->queue_bytes },  { "up.queue_bytes", &up->queue_bytes },
-        { "stall_every_ms", &desc->stall_every_ms }, { "stall_ms_min", &desc->stall_ms_min },
-        { "stall_ms_max", &desc->stall_ms_max },     { "stall_bytes_s", &desc->stall_bytes_s },
-        { "cut_every_ms", &desc->cut_every_ms },     { "connect_ms", &desc->connect_ms },
-    };
-    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++)
-        if (!strcmp(table[i].key, key)) return table[i].value;
+    for (unsigned i = 0; i < KEY_COUNT; i++)
+        if (!strcmp(key[i].name, name)) return (uint32_t *)(void *)((char *)desc + key[i].field);
     return NULL;
 }
 

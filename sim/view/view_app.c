@@ -26,9 +26,10 @@ static const sys_surface_api *surface_for(const view_options *o, enum sys_gl_kin
 
 static int open_surface_of(view_app *app, enum sys_gl_kind gl)
 {
-    sys_surface_desc desc = {
-        .title = "Farfield", .width = app->options->width, .height = app->options->height, .gl = gl
-    };
+    sys_surface_desc desc = { .title = "Farfield",
+                              .width = app->options->size.width,
+                              .height = app->options->size.height,
+                              .gl = gl };
     app->surface_api = surface_for(app->options, gl);
     return app->surface_api ? app->surface_api->open(&desc, &app->surface) : FF_ERR_UNSUPPORTED;
 }
@@ -43,8 +44,8 @@ static int open_soft_window(view_app *app)
         const struct c3d_backend *backend = kinds[i] == SYS_GL_ES1 ? c3d_backend_gles1()
                                                                    : c3d_backend_gl();
         if ((rc = open_surface_of(app, kinds[i])) < 0) continue;
-        rc = view_blit_open(&app->blit, backend, app->surface_api, app->options->width,
-                            app->options->height);
+        rc = view_blit_open(&app->blit, backend, app->surface_api, app->options->size.width,
+                            app->options->size.height);
         if (rc == FF_OK) return FF_OK;
         app->surface_api->close(app->surface);
         app->surface = NULL;
@@ -71,8 +72,8 @@ static int create_client(view_app *app, const char *backend)
                             .pack = app->link ? NULL : &app->pack,
                             .backend = app->backend,
                             .surface_api = app->surface_api,
-                            .width = (uint16_t)o->width,
-                            .height = (uint16_t)o->height,
+                            .width = o->size.width,
+                            .height = o->size.height,
                             .frame_format = C3D_RGBA8888,
                             .quality = app->quality,
                             .panorama = app->panorama,
@@ -100,8 +101,7 @@ static int open_picture(view_app *app)
     int rc = open_with(app, backend);
     if (rc == FF_ERR_UNSUPPORTED && !app->options->backend) rc = open_with(app, backend = "gl");
     if (rc == FF_ERR_MEMORY)
-        return view_fail("--memory: the client needs at least %zu MB",
-                         (ff_client_bytes_min() >> 20) + 1);
+        return view_fail("--memory: %u bytes are too few", app->options->memory_bytes);
     if (rc < 0)
         return view_fail("no picture with %s%s: %s", backend,
                          app->options->headless ? " (headless)" : "", ff_error_text(rc));
@@ -125,15 +125,12 @@ static int open_terrain(view_app *app)
     int is_pack = file || !strchr(o->target, ':'), rc;
     if (file) fclose(file);
     if (is_pack && open_pack(app)) return -1;
-    app->panorama.enabled = o->panorama < 0 ? !is_pack : (uint8_t)o->panorama;
+    app->panorama.enabled = o->use_panorama == SYS_UNSET ? !is_pack : (uint8_t)o->use_panorama;
     if (is_pack && !o->link && !app->panorama.enabled) return 0;
     rc = view_link_create(is_pack ? NULL : o->target, &app->pack, o->link, &app->link,
                           &app->stream);
-    if (rc == FF_ERR_NOT_FOUND) return view_fail("--link %s: no such profile", o->link);
-    if (rc == FF_ERR_ARGUMENT && !is_pack)
-        return view_fail("%s: neither a pack nor ADDR:PORT%s", o->target,
-                         o->link ? ", or --link is wrong" : "");
-    return rc < 0 ? view_fail("--link %s: %s", o->link ? o->link : "none", ff_error_text(rc)) : 0;
+    if (rc == FF_ERR_ARGUMENT) return view_fail("%s: neither a pack nor ADDR:PORT", o->target);
+    return rc < 0 ? view_fail("%s: %s", o->target, ff_error_text(rc)) : 0;
 }
 
 static int open_files(view_app *app)
@@ -157,7 +154,7 @@ int view_app_open(view_app *app, const view_options *options)
     app->show_hud = !options->no_hud;
     app->memory = malloc(options->memory_bytes);
     if (!app->memory) return view_fail("out of memory");
-    view_fly_init(&app->fly, options->width, options->height, options->fov_brad16);
+    view_fly_init(&app->fly, options->size.width, options->size.height, options->fov_brad16);
     app->fly.camera.yaw = options->yaw_brad16;
     if (open_files(app) || open_terrain(app) || open_picture(app)) return -1;
     app->show = options->show;
@@ -257,7 +254,7 @@ static void place_pilot(view_app *app)
     const view_options *o = app->options;
     const ff_terrain_info *info = ff_client_terrain(app->client);
     if (!app->fly.placed && info)
-        view_fly_place(&app->fly, info, !o->has_place, o->at_x_wu, o->at_y_wu, o->above_wu);
+        view_fly_place(&app->fly, info, !o->at.given, o->at.x_wu, o->at.y_wu, o->at.above_wu);
 }
 
 /* 1 when the text on the picture would change; looked at a few times a second. */

@@ -124,8 +124,8 @@ static void start_again(view_app *app)
 {
     const ff_terrain_info *info = ff_client_terrain(app->client);
     if (info)
-        view_fly_place(&app->fly, info, !app->options->has_place, app->options->at_x_wu,
-                       app->options->at_y_wu, app->options->above_wu);
+        view_fly_place(&app->fly, info, !app->options->at.given, app->options->at.x_wu,
+                       app->options->at.y_wu, app->options->at.above_wu);
     app->fly.camera.yaw = app->options->yaw_brad16;
     app->fly.camera.roll = 0;
 }

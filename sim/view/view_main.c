@@ -23,10 +23,10 @@ int main(int argc, char **argv)
     static view_app app;
     view_options options;
     int rc = view_options_parse(&options, argc, argv);
-    if (rc) return rc < 0;
+    if (rc) return rc < 0 ? SYS_EXIT_USAGE : SYS_EXIT_DONE;
     rc = view_app_open(&app, &options);
     if (rc == 0) rc = view_app_run(&app);
     if (rc >= 0 && options.json) print_counters(&app);
     view_app_close(&app);
-    return rc < 0;
+    return rc < 0 ? SYS_EXIT_FAILED : SYS_EXIT_DONE;
 }

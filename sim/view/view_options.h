@@ -1,31 +1,62 @@
-/* What farfield-view was asked for. */
+/* What farfield-view was asked for: a row for each option, see sys_options.h. */
 #ifndef VIEW_OPTIONS_H
 #define VIEW_OPTIONS_H
 
-#include "../../client/farfield.h"
+#include "../link/sim_link_option.h"
+#include "../options/sim_client_options.h"
 
-#include <stddef.h>
+typedef struct view_place {
+    int given;
+    int32_t x_wu, y_wu, above_wu;
+} view_place;
+extern const sys_option_type view_place_option;
+
+/* clang-format off */
+#define VIEW_OPTIONS(OPTION, HEADING, SHOW) \
+    OPTION(sys_text, target, NULL, "ADDR:PORT | PACK", NULL, SYS_FLAGS(SYS_NEEDED), \
+           "a server, or a pack on this machine") \
+    HEADING("Display") \
+    OPTION(sys_choice, backend, "backend", "KIND", NULL, SYS_WORDS(backend_words), \
+           "graphics library, or integers alone; default: gles1, else gl") \
+    SIM_SIZE_OPTION(OPTION, "of the window") \
+    SIM_FOV_OPTION(OPTION) \
+    OPTION(sys_flag, headless, "headless", NULL, NULL, SYS_ANY, "no window: draws off screen") \
+    SIM_PLAIN_ARRAYS_OPTION(OPTION) \
+    OPTION(sys_flag, no_hud, "no-hud", NULL, NULL, SYS_ANY, "begins without the text") \
+    SHOW \
+    HEADING("Terrain") \
+    SIM_CLIENT_OPTIONS(OPTION, "16M", "the client's one block") \
+    SIM_PANORAMA_OPTION(OPTION, NULL, "far ground as panoramas; default: on with a server") \
+    OPTION(sim_link_spec, link, "link", "SPEC", NULL, SYS_WORDS(no_link_words), \
+           "link model between client and server; with PACK the server's logic runs inside this " \
+           "program") \
+    OPTION(view_place, at, "at", "X,Y[,H]", NULL, SYS_ANY, \
+           "starts there; default: the middle, 500 m up") \
+    OPTION(sys_real, yaw_degrees, "yaw", "DEGREES", "0", SYS_REAL(-360, 360, "degrees"), \
+           "first direction, clockwise from north") \
+    HEADING("Driving it from a file") \
+    OPTION(sys_text, script, "script", "FILE", NULL, SYS_ANY, \
+           "lines FRAME COMMAND; see sim/view/view_script.h") \
+    OPTION(sys_text, keys, "keys", "TEXT", NULL, SYS_ANY, \
+           "presses these keys one after the other") \
+    OPTION(sys_whole, frames, "frames", "N", NULL, SYS_WHOLE(1, SIM_FRAMES_MAX, ""), \
+           "stops after N frames") \
+    OPTION(sys_text, screenshot, "screenshot", "FILE", NULL, SYS_ANY, \
+           "writes the last picture as PNG") \
+    OPTION(sys_text, events, "events", "FILE", NULL, SYS_ANY, \
+           "writes each event handled (-: standard output)") \
+    OPTION(sys_flag, json, "json", NULL, NULL, SYS_ANY, "prints the counters at the end")
+/* clang-format on */
 
 typedef struct view_options {
-    const char *target;  /* ADDR:PORT or PACK */
-    const char *backend; /* "gles1", "gl", "soft"; NULL: the first that works */
-    int width, height;
-    const char *link; /* spec for sim_link_parse; NULL: none */
+    VIEW_OPTIONS(SYS_FIELD, SYS_NO_FIELD, sys_bits show;)
+    /* what follows from them */
     ff_quality quality;
     ff_balance_desc balance;
-    int panorama; /* 1 on, 0 off, -1 on for servers */
-    int32_t fov_brad16;
-    size_t memory_bytes;
-    int has_place; /* --at */
-    int32_t at_x_wu, at_y_wu, above_wu;
-    int32_t yaw_brad16;
-    const char *script, *keys, *events, *screenshot;
-    uint32_t frames; /* 0: until quit */
-    unsigned show;   /* enum ff_show, to begin with */
-    int headless, no_hud, plain_arrays, json;
+    int32_t fov_brad16, yaw_brad16;
 } view_options;
 
-/* 0: go on; 1: --help or --version answered; -1: wrong, said why. */
+/* 0: go on; 1: --help or --version answered; -1: wrong usage, said in one line on stderr. */
 int view_options_parse(view_options *options, int argc, char **argv);
 /* "farfield-view: ..." on stderr; returns -1. */
 int view_fail(const char *format, ...) __attribute__((format(printf, 1, 2)));

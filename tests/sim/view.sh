@@ -269,27 +269,27 @@ stop_server
 [ $? = 0 ] && [ "$(value bytes_down)" -gt 1000 ] && [ "$(value panoramas)" -ge 1 ]; result $? "a pack behind a link of its own, with panoramas"
 
 # ---- wrong words ----
-refuses() { # WHAT MESSAGE OPTION...
-    local what=$1 message=$2
-    shift 2
+refuses() { # STATUS WHAT MESSAGE OPTION...
+    local status=$1 what=$2 message=$3
+    shift 3
     timeout 60 "$view" --headless --frames 2 "$@" >"$work/said" 2>"$work/error"
-    [ $? = 1 ] && [ "$(wc -l <"$work/error")" = 1 ] && grep -q -F "farfield-view: $message" "$work/error"
+    [ $? = "$status" ] && [ "$(wc -l <"$work/error")" = 1 ] && grep -q -F "farfield-view: $message" "$work/error"
     result $? "refuses $what"
 }
 head -c 5000 "$pack" >"$work/short.ffp"
 echo "not a pack" >"$work/foreign.ffp"
 echo "0 jump high" >"$work/bad.txt"
-refuses "no terrain" "one server or pack is needed"
-refuses "a missing pack" "$work/none.ffp: " "$work/none.ffp"
-refuses "a foreign file" "$work/foreign.ffp: " "$work/foreign.ffp"
-refuses "a truncated pack" "$work/short.ffp: " "$work/short.ffp"
-refuses "an address without a port" "host:: neither a pack nor ADDR:PORT" host:
-refuses "a size" "--size: not understood: 0x5" --size 0x5 "$pack"
-refuses "a quality" "--quality: not understood: best" --quality best "$pack"
-refuses "a link" "--link pigeon: no such profile" --link pigeon "$pack"
-refuses "a script" "$work/bad.txt:1: not a command: 0 jump high" --script "$work/bad.txt" "$pack"
-refuses "too little memory" "--memory: the client needs at least" --memory 0.1 "$pack"
-refuses "a folder for a picture" "$work/none/a.png: " --screenshot "$work/none/a.png" "$pack"
+refuses 2 "no terrain" "ADDR:PORT | PACK is missing"
+refuses 1 "a missing pack" "$work/none.ffp: " "$work/none.ffp"
+refuses 1 "a foreign file" "$work/foreign.ffp: " "$work/foreign.ffp"
+refuses 1 "a truncated pack" "$work/short.ffp: " "$work/short.ffp"
+refuses 1 "an address without a port" "host:: neither a pack nor ADDR:PORT" host:
+refuses 2 "a size" "--size: 0x5 is not WIDTHxHEIGHT, each 16 to 4096" --size 0x5 "$pack"
+refuses 2 "a quality" "--quality: best is not low, high" --quality best "$pack"
+refuses 2 "a link" "--link: pigeon is not none or NAME" --link pigeon "$pack"
+refuses 1 "a script" "$work/bad.txt:1: not a command: 0 jump high" --script "$work/bad.txt" "$pack"
+refuses 2 "too little memory" "--memory: 16 is not a number of bytes, with K or M: 512K to 4095M" --memory 16 "$pack"
+refuses 1 "a folder for a picture" "$work/none/a.png: " --screenshot "$work/none/a.png" "$pack"
 "$view" --help | grep -q '^Usage: farfield-view' && "$view" --version | grep -q '^farfield-view [0-9]'
 result $? "--help and --version"
 exit $((failures > 0))

@@ -54,6 +54,7 @@ platform/egl        platform
 platform/glfw       platform
 platform/memory     platform
 platform/null       platform
+platform/options    platform protocol/ff_error.h
 platform/osmesa     platform
 platform/posix      platform
 platform/sim        platform
@@ -74,18 +75,19 @@ client              client/ protocol/ common3d platform/sys.h
 server/session      protocol/ platform/sys.h
 server/panorama     client/terrain client/ground client/images protocol/ common3d platform/sys.h
 server/net          server server/session server/panorama protocol/ platform/sys.h
-server              server/ client/farfield.h protocol/ platform/sys.h
-sim/link            server/session server/panorama client/farfield.h protocol/ platform/sys.h
+server              server/ platform/options client/farfield.h protocol/ platform/sys.h
+sim/options         platform/options client/farfield.h
+sim/link            platform/options server/session server/panorama client/farfield.h protocol/ platform/sys.h
 sim/judge           client/terrain client/images protocol/ common3d platform/sys.h
 sim/tape            client/farfield.h protocol/ platform/sys.h
-sim/fly             sim/link sim/judge sim/tape client/farfield.h protocol/ common3d platform/sys.h
-sim/view            sim/link client/farfield.h protocol/ common3d platform/sys.h
-sim/handheld        sim/tape client/farfield.h protocol/ common3d platform/sys.h
-tools/bake          tools/bake/ client/farfield.h protocol/ platform/sys.h
+sim/fly             platform/options sim/options sim/link sim/judge sim/tape client/farfield.h protocol/ common3d platform/sys.h
+sim/view            platform/options sim/options sim/link client/farfield.h protocol/ common3d platform/sys.h
+sim/handheld        platform/options sim/options sim/tape client/farfield.h protocol/ common3d platform/sys.h
+tools/bake          platform/options tools/bake/ client/farfield.h protocol/ platform/sys.h
 tools/bake/raster   tools/bake protocol/ platform/sys.h
 tools/bake/image    tools/bake tools/bake/raster protocol/ platform/sys.h
-tools/info          tools/bake tools/bake/raster client/farfield.h protocol/ platform/sys.h
-tools/report        client/farfield.h common3d platform/sys.h
+tools/info          platform/options tools/bake tools/bake/raster client/farfield.h protocol/ platform/sys.h
+tools/report        platform/options client/farfield.h common3d platform/sys.h
 tools/scripts
 END
 }

@@ -1,0 +1,53 @@
+/* Options of programs that hold a client: farfield-fly, farfield-view and farfield-handheld take
+ * the same words for them and mean the same. In integers alone: one of the three is the device's.
+ *
+ * Rows for platform/options/sys_options.h; a program puts them among its own. Quality and balance
+ * are kept as text, for reports and titles, and read with the functions below once all is
+ * parsed. */
+#ifndef SIM_CLIENT_OPTIONS_H
+#define SIM_CLIENT_OPTIONS_H
+
+#include "../../client/farfield.h"
+#include "../../platform/options/sys_options.h"
+
+typedef const char *sim_quality; /* low, high, C:DEPTH or px:E */
+typedef const char *sim_balance; /* off, server, client or TRIANGLES[,BYTES] */
+typedef uint32_t sim_memory;     /* bytes, with K or M; at least ff_client_bytes_min() */
+
+extern const sys_option_type sim_quality_option, sim_balance_option, sim_memory_option;
+
+/* Sets all of `quality` but view_wu. 0, or SYS_NOT_ONE. */
+int sim_quality_read(const char *text, ff_quality *quality);
+int sim_balance_read(const char *text, ff_balance_desc *balance);
+
+#define SIM_SPEED_KMH_MAX 100000
+#define SIM_HEIGHT_M_MAX  1000000
+#define SIM_FRAMES_MAX    1000000000
+#define SIM_BUDGET_MAX    1000000000u
+
+/* clang-format off */
+#define SIM_CLIENT_OPTIONS(OPTION, memory, memory_help) \
+    OPTION(sim_quality, quality_text, "quality", "Q", "low", SYS_ANY, \
+           "how fine the ground is drawn; low is 3:4, high 9:8") \
+    OPTION(sim_balance, balance_text, "balance", "SPEC", "off", SYS_ANY, \
+           "the client's share of the work follows budgets, and what --quality and --panorama " \
+           "say is the finest: a frame's triangles (0: as many as it takes) and the bytes that " \
+           "may come a second (0: at most 80 % of what the link carries). server or client: " \
+           "stays at that end; off: all as set") \
+    OPTION(sim_memory, memory_bytes, "memory", "BYTES", memory, SYS_ANY, memory_help)
+#define SIM_PANORAMA_OPTION(OPTION, fallback, help) \
+    OPTION(sys_switch, use_panorama, "panorama", "on|off", fallback, SYS_ANY, help)
+#define SIM_SIZE_OPTION(OPTION, help) \
+    OPTION(sys_size, size, "size", "WxH", "240x320", SYS_WHOLE(16, FF_PICTURE_SIDE_MAX, "pixels"), \
+           help)
+#define SIM_FOV_OPTION(OPTION) \
+    OPTION(sys_real, fov_degrees, "fov", "DEGREES", "60", SYS_REAL(0.1, 170, "degrees"), \
+           "field of view across the width")
+#define SIM_PLAIN_ARRAYS_OPTION(OPTION) \
+    OPTION(sys_flag, plain_arrays, "plain-arrays", NULL, NULL, SYS_ANY, "no vertex buffers")
+/* FF_SHOW_MODES(SIM_SHOW_ROW) stands for `sys_bits show`; ROW is the program's. */
+#define SIM_SHOW_ROW(NAME, option, key, name, help) \
+    ROW(sys_bits, show, option, NULL, NULL, SYS_BIT(FF_SHOW_INDEX_##NAME), help)
+/* clang-format on */
+
+#endif
