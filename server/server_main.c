@@ -68,15 +68,16 @@ static int run_single(server *shared)
     server_say_listening(shared);
     int status = server_worker_run(shared, 0);
     if (status == 0) server_say_stopped(shared);
-    return status == 0 ? 0 : 1;
+    return status == 0 ? SYS_EXIT_DONE : SYS_EXIT_FAILED;
 }
 
 int main(int argc, char **argv)
 {
     static server shared;
     int rc = server_options_parse(&shared.options, argc, argv);
-    if (rc) return rc < 0 ? 1 : 0;
+    if (rc) return rc < 0 ? SYS_EXIT_USAGE : SYS_EXIT_DONE;
     shared.master_pid = (int)getpid();
-    if (open_pack(&shared) < 0 || open_listening(&shared) < 0 || open_shared(&shared) < 0) return 1;
+    if (open_pack(&shared) < 0 || open_listening(&shared) < 0 || open_shared(&shared) < 0)
+        return SYS_EXIT_FAILED;
     return shared.options.single ? run_single(&shared) : server_master_run(&shared);
 }

@@ -15,12 +15,6 @@ static void bound_address(const server *shared, char *out, size_t capacity)
     snprintf(out, capacity, "%.*s:%u", (int)(colon - listen), listen, shared->port);
 }
 
-static const char *gl_name(const server *shared)
-{
-    static const char *const names[] = { "osmesa", "egl", "egl-gles1" };
-    return names[shared->options.gl];
-}
-
 void server_say_listening(const server *shared)
 {
     char address[256];
@@ -30,12 +24,12 @@ void server_say_listening(const server *shared)
         printf(
             "{\"event\":\"listening\",\"address\":\"%s\",\"port\":%u,\"workers\":%u,\"renderers\":%u,\"gl\":\"%s\"}\n",
             address, shared->port, shared->options.workers, shared->options.renderers,
-            gl_name(shared));
+            server_gl_name((enum server_gl)shared->options.gl));
     else if (!shared->options.quiet)
         printf("farfield-server: listening on %s, %" PRIu32 "x%" PRIu32
                " samples, %u workers, %u renderers (%s)\n",
                address, samples.x, samples.y, shared->options.workers, shared->options.renderers,
-               gl_name(shared));
+               server_gl_name((enum server_gl)shared->options.gl));
     fflush(stdout);
 }
 

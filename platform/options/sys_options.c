@@ -154,7 +154,7 @@ int sys_options_parse(const sys_program *program, void *options, int argc, char 
         if (only_arguments || word[0] != '-' || !word[1])
             rc = take_argument(&p, word);
         else if (!strcmp(word, "--"))
-            only_arguments = 1;
+            only_arguments = 1, p.following = NULL;
         else if (!(rc = answer(program, word)))
             rc = take_option(&p, word);
     }

@@ -10,7 +10,7 @@
 
 int server_renderer_open(const server *shared, ff_panorama_renderer **renderer)
 {
-    enum server_gl gl = shared->options.gl;
+    enum server_gl gl = (enum server_gl)shared->options.gl;
     const sys_surface_api *surface_api = gl == SERVER_GL_OSMESA ? sys_surface_osmesa()
                                                                 : sys_surface_egl();
     const struct c3d_backend *backend = gl == SERVER_GL_EGL_GLES1 ? c3d_backend_gles1()

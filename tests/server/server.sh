@@ -1,5 +1,5 @@
 #!/bin/bash
-# farfield-server's command line: every mistake is one clear line and exit status 1; starting and stopping leaves nothing behind.
+# farfield-server's command line: every mistake is one clear line and exit status 2, what fails later 1; starting and stopping leaves nothing behind.
 set -u
 cd "$(dirname "$0")/../.." || exit 2
 : "${BIN:=build/bin}"
@@ -11,13 +11,13 @@ result() { # STATUS WHAT
 }
 server() { "$BIN/farfield-server" "$@" >"$work/out" 2>"$work/err" </dev/null; }
 
-# WHAT PATTERN ARGUMENTS: refused with one line on stderr that matches, nothing on stdout.
+# STATUS WHAT PATTERN ARGUMENTS: refused with one line on stderr that matches, nothing on stdout.
 refused() {
-    local what=$1 pattern=$2 status
-    shift 2
+    local wanted=$1 what=$2 pattern=$3 status
+    shift 3
     server "$@"
     status=$?
-    [ "$status" = 1 ] && [ "$(wc -l <"$work/err")" = 1 ] && grep -q -E "^farfield-server: .*$pattern" "$work/err" && [ ! -s "$work/out" ]
+    [ "$status" = "$wanted" ] && [ "$(wc -l <"$work/err")" = 1 ] && grep -q -E "^farfield-server: .*$pattern" "$work/err" && [ ! -s "$work/out" ]
     result $? "$what is refused in one line"
 }
 
@@ -32,21 +32,21 @@ server --help && grep -q -- --pack "$work/out"
 result $? "--help"
 server --version && grep -q -E '^farfield-server [0-9]+\.' "$work/out"
 result $? "--version"
-refused "no pack" "--pack" --workers 1
-refused "a missing pack" "nowhere.ffp" --pack "$work/nowhere.ffp"
-refused "a folder as pack" "$work" --pack "$work"
-refused "an empty pack" "empty.ffp" --pack "$work/empty.ffp"
-refused "a truncated pack" "short.ffp" --pack "$work/short.ffp"
-refused "a damaged pack" "flipped.ffp: checksum" --pack "$work/flipped.ffp"
-refused "a foreign file" "hills.r16: not a Farfield" --pack "$work/hills.r16"
-refused "an address without a port" "listen" --pack "$work/hills.ffp" --listen 127.0.0.1
-refused "a foreign address" "listen" --pack "$work/hills.ffp" --listen 192.0.2.1:7788
-refused "no workers" "--workers" --pack "$work/hills.ffp" --workers 0
-refused "half a number" "--idle" --pack "$work/hills.ffp" --idle 1x
-refused "an unknown GL" "--gl" --pack "$work/hills.ffp" --gl soft
-refused "an unknown option" "--nonsense" --pack "$work/hills.ffp" --nonsense
-refused "a missing value" "--pack" --pack
-refused "a stray argument" "stray" --pack "$work/hills.ffp" stray
+refused 2 "no pack" "--pack" --workers 1
+refused 1 "a missing pack" "nowhere.ffp" --pack "$work/nowhere.ffp"
+refused 1 "a folder as pack" "$work" --pack "$work"
+refused 1 "an empty pack" "empty.ffp" --pack "$work/empty.ffp"
+refused 1 "a truncated pack" "short.ffp" --pack "$work/short.ffp"
+refused 1 "a damaged pack" "flipped.ffp: checksum" --pack "$work/flipped.ffp"
+refused 1 "a foreign file" "hills.r16: not a Farfield" --pack "$work/hills.r16"
+refused 2 "an address without a port" "listen" --pack "$work/hills.ffp" --listen 127.0.0.1
+refused 1 "a foreign address" "listen" --pack "$work/hills.ffp" --listen 192.0.2.1:7788
+refused 2 "no workers" "--workers" --pack "$work/hills.ffp" --workers 0
+refused 2 "half a number" "--idle" --pack "$work/hills.ffp" --idle 1x
+refused 2 "an unknown GL" "--gl" --pack "$work/hills.ffp" --gl soft
+refused 2 "an unknown option" "--nonsense" --pack "$work/hills.ffp" --nonsense
+refused 2 "a missing value" "--pack" --pack
+refused 2 "a stray argument" "stray" --pack "$work/hills.ffp" stray
 
 # Runs while FUNCTION looks at it; $port is where it listens.
 with_server() { # FUNCTION ARGUMENTS
@@ -71,7 +71,7 @@ with_server() { # FUNCTION ARGUMENTS
 port_in_use() {
     [ -n "$port" ]
     result $? "it says where it listens"
-    refused "a port in use" "in use" --pack "$work/hills.ffp" --listen "127.0.0.1:$port"
+    refused 1 "a port in use" "in use" --pack "$work/hills.ffp" --listen "127.0.0.1:$port"
 }
 with_server port_in_use --workers 2 --renderers 1
 [ "$status" = 0 ] && grep -q stopped "$work/log"

@@ -6,6 +6,6 @@ int main(int argc, char **argv)
 {
     bake_options options;
     int rc = bake_options_parse(&options, argc, argv);
-    if (rc) return rc < 0;
-    return bake_run(&options) ? 1 : 0;
+    if (rc) return rc < 0 ? SYS_EXIT_USAGE : SYS_EXIT_DONE;
+    return bake_run(&options) ? SYS_EXIT_FAILED : SYS_EXIT_DONE;
 }

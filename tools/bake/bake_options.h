@@ -1,36 +1,74 @@
-/* What farfield-bake was asked for. */
+/* What farfield-bake was asked for: a row for each option, see sys_options.h. */
 #ifndef BAKE_OPTIONS_H
 #define BAKE_OPTIONS_H
 
-#include <stdint.h>
+#include "../../client/farfield.h"
+#include "../../platform/options/sys_options.h"
 
 typedef struct bake_raw { /* --raw WxH[:le|be][:u16|s16]; width 0: not raw */
     uint32_t width, height;
     int big_endian, is_signed;
 } bake_raw;
+typedef int bake_epsg;           /* --t-srs EPSG:N */
+typedef uint32_t bake_power_two; /* within SYS_WHOLE */
+extern const sys_option_type bake_raw_option, bake_epsg_option, bake_power_two_option;
 
+#define BAKE_FACTOR  SYS_REAL(1e-6, 1e6, "")
+#define BAKE_STEP    SYS_REAL(1e-6, 200, "m")
+#define BAKE_SPACING SYS_REAL(1.0 / FF_WU_PER_METRE, 1e6, "m")
+#define BAKE_LEVELS  SYS_WHOLE(1, FF_KEY_LEVEL_MAX, "")
+#define BAKE_NODES   SYS_WHOLE(1, FF_NODE_LOG2_MAX, "")
+
+/* clang-format off */
+#define BAKE_OPTIONS(OPTION, HEADING) \
+    OPTION(sys_text, heights_path, NULL, "HEIGHTS", NULL, SYS_FLAGS(SYS_NEEDED), "the raster") \
+    HEADING("Input") \
+    OPTION(sys_text, color_path, "color", "IMAGE", NULL, SYS_ANY, \
+           "image over the same ground, any resolution") \
+    OPTION(bake_raw, raw, "raw", "WxH[:le|be][:u16|s16]", NULL, SYS_ANY, \
+           "HEIGHTS is headerless 16 bit, top row north; default: le, u16") \
+    OPTION(sys_real, scale, "scale", "F", NULL, BAKE_FACTOR, \
+           "source value * F = metres; default: the source's unit, else 1") \
+    OPTION(sys_real, hscale_m, "hscale", "M", NULL, BAKE_STEP, \
+           "metres a height step; alone with plain 16-bit images: metres a unit") \
+    OPTION(sys_real, spacing_m, "spacing", "M", NULL, BAKE_SPACING, \
+           "metres between samples; resamples georeferenced rasters") \
+    OPTION(bake_epsg, target_epsg, "t-srs", "EPSG:N", NULL, SYS_ANY, \
+           "projects to this CRS (units metres) instead of the local UTM zone") \
+    OPTION(sys_flag, no_project, "no-project", NULL, NULL, SYS_ANY, \
+           "takes the samples as they are") \
+    OPTION(bake_power_two, densify, "densify", "N", "1", SYS_WHOLE(1, 64, ""), \
+           "inserts N - 1 invented samples between neighbours") \
+    HEADING("Pack") \
+    OPTION(sys_text, out_path, "output", "OUT.ffp", NULL, SYS_FLAGS(SYS_NEEDED | SYS_LETTER), \
+           "the pack") \
+    OPTION(sys_real, max_error_m, "max-error", "M", "0", SYS_REAL(0, 1e6, "m"), \
+           "no decoded height is further from its source") \
+    OPTION(sys_whole, node_log2, "node-log2", "K", "3", BAKE_NODES, "nodes of (2^K+1)^2 heights") \
+    OPTION(sys_whole, tile_log2, "tile-log2", "N", NULL, BAKE_LEVELS, \
+           "tiles of (2^N+1)^2 heights; default: at most 10, little padding") \
+    OPTION(sys_whole, texture_log2, "texture-log2", "T", "6", SYS_WHOLE(4, 8, ""), \
+           "textures of (2^T)^2 texels") \
+    OPTION(sys_whole, texture_levels, "texture-levels", "L", NULL, BAKE_LEVELS, \
+           "levels with textures; default: down to the image's resolution") \
+    OPTION(sys_whole, texture_quality, "texture-quality", "Q", "75", SYS_WHOLE(1, 100, ""), \
+           "JPEG quality") \
+    OPTION(sys_word, codec, "codec", "NAME", "deflate", SYS_WORDS(codec_words), \
+           "rice: for devices without zlib") \
+    HEADING("Run") \
+    OPTION(sys_whole, jobs, "jobs", "N", NULL, SYS_WHOLE(1, 64, ""), \
+           "threads; default: the processors, at most 16; any N gives the same bytes") \
+    OPTION(sys_flag, json, "json", NULL, NULL, SYS_ANY, "a summary on stdout") \
+    OPTION(sys_flag, quiet, "quiet", NULL, NULL, SYS_ANY, "errors only")
+/* clang-format on */
+
+/* A number not given is 0: chosen while baking. */
 typedef struct bake_options {
-    const char *heights_path, *color_path, *out_path;
-    bake_raw raw;
-    double scale;     /* source value * scale = metres; 0: from the source's own unit */
-    double hscale_m;  /* metres a height step; 0: chosen */
-    double spacing_m; /* 0: the source's */
-    double max_error_m;
-    uint32_t node_log2;
-    uint32_t tile_log2; /* 0: chosen */
-    uint32_t densify;   /* 1: none */
-    uint32_t texture_log2;
-    uint32_t texture_levels; /* 0: chosen */
-    int texture_quality;
-    int codec;       /* enum ff_codec_id */
-    int target_epsg; /* 0: local UTM zone */
-    int no_project;
-    int jobs;
-    int json, quiet;
+    BAKE_OPTIONS(SYS_FIELD, SYS_NO_FIELD)
 } bake_options;
 
-/* Fills `options` from the command line. 0: go on; 1: --help or --version answered; -1: wrong, said
- * why. */
+/* Fills `options` from the command line. 0: go on; 1: --help or --version answered; -1: wrong
+ * usage, said in one line on stderr. */
 int bake_options_parse(bake_options *options, int argc, char **argv);
 
 #endif

@@ -155,7 +155,7 @@ static int take_tile(void *context, int worker, uint32_t job)
 static int make_tiles(bake *b)
 {
     uint32_t tiles = ff_shape_tiles(&b->info);
-    int workers = b->options->jobs < (int)tiles ? b->options->jobs : (int)tiles;
+    int workers = b->options->jobs < tiles ? (int)b->options->jobs : (int)tiles;
     b->tile = calloc((size_t)workers, sizeof *b->tile);
     b->texture = calloc((size_t)workers, sizeof *b->texture);
     int rc = b->tile && b->texture ? 0 : bake_fail("out of memory");

@@ -1,55 +1,40 @@
 /* farfield-info: what is inside a pack. */
 #include "../../client/farfield.h"
+#include "../../platform/options/sys_options.h"
 #include "../../protocol/shape/ff_shape.h"
 #include "bake_info.h"
 #include "../bake/bake_say.h"
 #include "bake_unpack.h"
 
-#include <getopt.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-static const char help_text[] =
-    "Usage: farfield-info [--json] [--verify] PACK\n"
-    "\n"
-    "Shows what a pack holds: its terrain, and bytes and bits a sample by level.\n"
-    "\n"
-    "  --json               as JSON\n"
-    "  --verify             check every record's checksum and decode every height\n"
-    "  --help, --version\n";
+/* clang-format off */
+#define INFO_OPTIONS(OPTION) \
+    OPTION(sys_text, path, NULL, "PACK", NULL, SYS_FLAGS(SYS_NEEDED), "the pack") \
+    OPTION(sys_flag, json, "json", NULL, NULL, SYS_ANY, "as JSON") \
+    OPTION(sys_flag, verify, "verify", NULL, NULL, SYS_ANY, \
+           "checks every record's checksum and decodes every height")
+/* clang-format on */
 
 typedef struct info_options {
-    const char *path;
-    int json, verify;
+    INFO_OPTIONS(SYS_FIELD)
 } info_options;
 
-enum { OPT_JSON = 1000, OPT_VERIFY, OPT_HELP, OPT_VERSION };
+#define ROW(type, field, name, value, fallback, range, help) \
+    SYS_OPTION(info_options, type, field, name, value, fallback, help, range)
+static const sys_option row[] = { INFO_OPTIONS(ROW) };
+#undef ROW
 
-static const struct option long_options[] = { { "json", no_argument, 0, OPT_JSON },
-                                              { "verify", no_argument, 0, OPT_VERIFY },
-                                              { "help", no_argument, 0, OPT_HELP },
-                                              { "version", no_argument, 0, OPT_VERSION },
-                                              { 0, 0, 0, 0 } };
-
-/* 0: go on; 1: answered; -1: wrong, said why. */
-static int parse(info_options *o, int argc, char **argv)
-{
-    *o = (info_options){ 0 };
-    opterr = 0;
-    for (int option; (option = getopt_long(argc, argv, "", long_options, NULL)) != -1;) {
-        switch (option) {
-            case OPT_JSON: o->json = 1; break;
-            case OPT_VERIFY: o->verify = 1; break;
-            case OPT_HELP: return fputs(help_text, stdout), 1;
-            case OPT_VERSION: return puts("farfield-info " FARFIELD_VERSION), 1;
-            default: return bake_fail("unknown option %s; try --help", argv[optind - 1]);
-        }
-    }
-    if (optind + 1 != argc) return bake_fail("one pack is wanted; try --help");
-    o->path = argv[optind];
-    return 0;
-}
+static const sys_program program = {
+    .name = "farfield-info",
+    .version = FARFIELD_VERSION,
+    .usage = "[--json] [--verify] PACK",
+    .about = "Shows what a pack holds: its terrain, and bytes and bits a sample by level.",
+    .option = row,
+    .option_count = sizeof row / sizeof *row
+};
 
 /* Checks the checksums of all records, then decodes every tile: intact bytes may still make no
  * sense. */
@@ -71,12 +56,12 @@ static int verify(const bake_unpack *unpack)
 
 int main(int argc, char **argv)
 {
-    info_options options;
+    info_options options = { 0 };
     bake_unpack unpack;
     bake_say_setup("farfield-info", 0);
-    int rc = parse(&options, argc, argv);
-    if (rc) return rc < 0;
-    if (bake_unpack_open(&unpack, options.path)) return 1;
+    int rc = sys_options_parse(&program, &options, argc, argv);
+    if (rc) return rc < 0 ? SYS_EXIT_USAGE : SYS_EXIT_DONE;
+    if (bake_unpack_open(&unpack, options.path)) return SYS_EXIT_FAILED;
     if (options.verify) rc = verify(&unpack);
     if (!rc && options.json)
         bake_info_print_json(&unpack.pack);
@@ -84,5 +69,5 @@ int main(int argc, char **argv)
         bake_info_print(&unpack.pack, options.path);
     if (!rc && options.verify && !options.json) puts("verified: every record is whole and decodes");
     bake_unpack_close(&unpack);
-    return rc ? 1 : 0;
+    return rc ? SYS_EXIT_FAILED : SYS_EXIT_DONE;
 }

@@ -3,9 +3,9 @@
 #include "report_sheet.h"
 
 #include "../../client/farfield.h"
+#include "../../platform/options/sys_options.h"
 
 #include <errno.h>
-#include <getopt.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,45 +18,81 @@
 #define BESIDE_AMPLIFIED  32
 #define AGAINST_AMPLIFIED 2
 
-static const char usage[] =
-    "Usage: farfield-report [OPTION]... CSV... -o DIR\n"
-    "Make a report of flights: DIR/index.html with plots, and DIR/REPORT.md.\n"
-    "\n"
-    "Each CSV comes from farfield-fly; the page can be read without a network.\n"
-    "\n"
-    "  -o, --output DIR     folder for the report, made if missing\n"
-    "      --title TITLE    heading of the report\n"
-    "      --picture FILE   copy a picture into DIR and show it; may be repeated, and\n"
-    "                       several files may follow until the next option\n"
-    "      --beside NAME=DIR    given twice, for folders of farfield-fly --png: up to five\n"
-    "                       pictures of the same moments from both and their difference\n"
-    "                       become one, DIR/side-by-side.png\n"
-    "      --against DIR=DIR    pictures of a flight and, by the same names, how they should\n"
-    "                       look (farfield-fly --png, --reference): a sheet of both\n"
-    "                       and where they differ; up to eight times\n"
-    "      --instructions TABLE draw the error against instructions: work-precision.csv of\n"
-    "                       make bench-handheld\n"
-    "      --paper TABLE        put flights named LINK-SPEED-QUALITY-PANORAMA beside those of\n"
-    "                       a paper (tools/report/hybrid_table3.csv), and draw the error of\n"
-    "                       flights named sweep-SERIES-VALUE against their work\n"
-    "      --settle S       seconds of standing still before a flight, default 15\n"
-    "      --json           print the summaries as JSON\n"
-    "      --help           show this help and exit\n"
-    "      --version        show the version and exit\n";
+/* NAME=DIR or DIR=DIR, cut at the `=`. */
+typedef struct report_pairs {
+    size_t count, room; /* the program sets room before parsing */
+    struct {
+        char left[PATH_BYTES];
+        const char *right;
+    } pair[AGAINST_MAX];
+} report_pairs;
+
+static int take_pair(const sys_option *option, const char *text, void *field)
+{
+    report_pairs *pairs = field;
+    size_t left = strcspn(text, "=");
+    (void)option;
+    if (!left || left >= PATH_BYTES || !text[left] || !text[left + 1]) return SYS_NOT_ONE;
+    if (pairs->count == pairs->room) return SYS_TOO_MANY;
+    memcpy(pairs->pair[pairs->count].left, text, left);
+    pairs->pair[pairs->count].left[left] = '\0';
+    pairs->pair[pairs->count++].right = text + left + 1;
+    return 0;
+}
+
+static int pair_range(const sys_option *option, char *text, size_t room)
+{
+    return snprintf(text, room, "%s", option->value);
+}
+
+static const sys_option_type report_pairs_option = { "", pair_range, take_pair };
+
+/* clang-format off */
+#define REPORT_OPTIONS(OPTION) \
+    OPTION(sys_texts, csv, NULL, "CSV", NULL, SYS_FLAGS(SYS_NEEDED | SYS_REPEATABLE), \
+           "of a flight, from farfield-fly") \
+    OPTION(sys_text, folder, "output", "DIR", NULL, SYS_FLAGS(SYS_NEEDED | SYS_LETTER), \
+           "folder for the report, made if missing") \
+    OPTION(sys_text, title, "title", "TITLE", "Farfield flights", SYS_ANY, \
+           "heading of the report") \
+    OPTION(sys_texts, picture, "picture", "FILE", NULL, SYS_FLAGS(SYS_REPEATABLE | SYS_FOLLOWED), \
+           "copies a picture into DIR and shows it; several files may follow until the next " \
+           "option") \
+    OPTION(report_pairs, beside, "beside", "NAME=DIR", NULL, SYS_FLAGS(SYS_REPEATABLE), \
+           "given twice, for folders of farfield-fly --png: up to five pictures of the same " \
+           "moments from both and their difference become one, DIR/side-by-side.png") \
+    OPTION(report_pairs, against, "against", "DIR=DIR", NULL, SYS_FLAGS(SYS_REPEATABLE), \
+           "pictures of a flight and, by the same names, how they should look (farfield-fly " \
+           "--png, --reference): a sheet of both and where they differ; up to eight times") \
+    OPTION(sys_text, instructions, "instructions", "TABLE", NULL, SYS_ANY, \
+           "draws the error against instructions: work-precision.csv of make bench-handheld") \
+    OPTION(sys_text, paper, "paper", "TABLE", NULL, SYS_ANY, \
+           "puts flights named LINK-SPEED-QUALITY-PANORAMA beside those of a paper " \
+           "(tools/report/hybrid_table3.csv), and draws the error of flights named " \
+           "sweep-SERIES-VALUE against their work") \
+    OPTION(sys_real, settle_s, "settle", "S", "15", SYS_REAL(0, 1e6, "s"), \
+           "standing still before a flight") \
+    OPTION(sys_flag, json, "json", NULL, NULL, SYS_ANY, "prints the summaries as JSON")
+/* clang-format on */
 
 typedef struct options {
-    const char *title, *folder;
-    const char **csv, **picture; /* argc entries each */
-    size_t csv_count, picture_count;
-    report_series beside[2];
-    size_t beside_count;
-    report_series against[AGAINST_MAX][2];
-    size_t against_count;
-    const char *instructions; /* NULL: none */
-    const char *paper;        /* NULL: none */
-    double settle_s;
-    int json;
+    REPORT_OPTIONS(SYS_FIELD)
 } options;
+
+#define ROW(type, field, name, value, fallback, range, help) \
+    SYS_OPTION(options, type, field, name, value, fallback, help, range)
+static const sys_option row[] = { REPORT_OPTIONS(ROW) };
+#undef ROW
+
+static const sys_program program = {
+    .name = "farfield-report",
+    .version = FARFIELD_VERSION,
+    .usage = "[OPTION]... CSV... -o DIR",
+    .about = "Makes a report of flights: DIR/index.html with plots, and DIR/REPORT.md. The page "
+             "can be read without a network.",
+    .option = row,
+    .option_count = sizeof row / sizeof *row
+};
 
 static int fail(const char *format, ...) __attribute__((format(printf, 1, 2)));
 static int fail(const char *format, ...)
@@ -68,86 +104,6 @@ static int fail(const char *format, ...)
     fputc('\n', stderr);
     va_end(args);
     return -1;
-}
-
-/* Parses NAME=DIR; the argument's text is cut in two. */
-static int parse_beside(options *o, char *text)
-{
-    char *equals = strchr(text, '=');
-    if (!equals || equals == text || !equals[1]) return fail("--beside: %s is not NAME=DIR", text);
-    if (o->beside_count == 2) return fail("--beside: two folders, not more");
-    *equals = 0;
-    o->beside[o->beside_count++] = (report_series){ text, equals + 1 };
-    return 0;
-}
-
-/* Parses DIR=DIR; the first folder's name is the flight's. */
-static int parse_against(options *o, char *text)
-{
-    char *equals = strchr(text, '='), *slash;
-    if (!equals || equals == text || !equals[1]) return fail("--against: %s is not DIR=DIR", text);
-    if (o->against_count == AGAINST_MAX) return fail("--against: more than %d", AGAINST_MAX);
-    *equals = 0;
-    slash = strrchr(text, '/');
-    o->against[o->against_count][0] = (report_series){ slash && slash[1] ? slash + 1 : text, text };
-    o->against[o->against_count++][1] = (report_series){ "as it should be", equals + 1 };
-    return 0;
-}
-
-/* 0: go on, 1: answered, -1: wrong. Arguments in order ("-"): those after --picture are pictures
- * until another option comes. */
-static int parse(options *o, int argc, char **argv)
-{
-    static const struct option list[] = { { "output", required_argument, NULL, 'o' },
-                                          { "title", required_argument, NULL, 't' },
-                                          { "picture", required_argument, NULL, 'p' },
-                                          { "json", no_argument, NULL, 'j' },
-                                          { "beside", required_argument, NULL, 'b' },
-                                          { "against", required_argument, NULL, 'a' },
-                                          { "instructions", required_argument, NULL, 'i' },
-                                          { "paper", required_argument, NULL, 'P' },
-                                          { "settle", required_argument, NULL, 'S' },
-                                          { "help", no_argument, NULL, 'h' },
-                                          { "version", no_argument, NULL, 'v' },
-                                          { NULL, 0, NULL, 0 } };
-    int c, pictures = 0;
-    while ((c = getopt_long(argc, argv, "-o:", list, NULL)) != -1) {
-        if (c == 1 && !pictures)
-            o->csv[o->csv_count++] = optarg;
-        else if (c == 'p' || c == 1)
-            o->picture[o->picture_count++] = optarg;
-        else if (c == 'o')
-            o->folder = optarg;
-        else if (c == 't')
-            o->title = optarg;
-        else if (c == 'b') {
-            if (parse_beside(o, optarg)) return -1;
-        } else if (c == 'a') {
-            if (parse_against(o, optarg)) return -1;
-        } else if (c == 'i')
-            o->instructions = optarg;
-        else if (c == 'P')
-            o->paper = optarg;
-        else if (c == 'S') {
-            char *end;
-            o->settle_s = strtod(optarg, &end);
-            if (end == optarg || *end || !(o->settle_s >= 0 && o->settle_s < 1e6))
-                return fail("--settle: %s is not a number of seconds", optarg);
-        } else if (c == 'j')
-            o->json = 1;
-        else if (c == 'h')
-            return fputs(usage, stdout), 1;
-        else if (c == 'v')
-            return puts("farfield-report " FARFIELD_VERSION), 1;
-        else
-            return fail("try --help");
-        if (c != 1) pictures = c == 'p';
-    }
-    while (optind < argc) o->csv[o->csv_count++] = argv[optind++];
-    if (!o->csv_count) return fail("no CSV given; try --help");
-    if (!o->folder) return fail("no folder given; use -o DIR");
-    if (o->beside_count == 1) return fail("--beside: give two folders");
-    return 0;
 }
 
 static int make_folder(const char *path)
@@ -189,12 +145,12 @@ static char *picture_name(const char *path, size_t number)
 
 static int copy_pictures(const options *o, char **names)
 {
-    for (size_t i = 0; i < o->picture_count; i++) {
+    for (size_t i = 0; i < o->picture.count; i++) {
         char to[PATH_BYTES];
-        if (!(names[i] = picture_name(o->picture[i], i))) return fail("out of memory");
+        if (!(names[i] = picture_name(o->picture.text[i], i))) return fail("out of memory");
         if ((size_t)snprintf(to, sizeof to, "%s/%s", o->folder, names[i]) >= sizeof to)
             return fail("path too long: %s", names[i]);
-        if (copy_file(o->picture[i], to)) return -1;
+        if (copy_file(o->picture.text[i], to)) return -1;
     }
     return 0;
 }
@@ -204,18 +160,24 @@ static int make_sheets(const options *o, report_sheet sheet[AGAINST_MAX + 1])
 {
     char why[WHY_BYTES];
     int count = 0;
-    if (o->beside_count) {
+    if (o->beside.count) {
+        report_series both[2];
+        for (int i = 0; i < 2; i++)
+            both[i] = (report_series){ o->beside.pair[i].left, o->beside.pair[i].right };
         sheet[count] = (report_sheet){ .heading = "Side by side",
                                        .file = "side-by-side.png",
                                        .amplified = BESIDE_AMPLIFIED };
-        if (report_sheet_write(o->beside, o->folder, &sheet[count++], why, sizeof why))
+        if (report_sheet_write(both, o->folder, &sheet[count++], why, sizeof why))
             return fail("--beside: %s", why);
     }
-    for (size_t i = 0; i < o->against_count; i++) {
+    for (size_t i = 0; i < o->against.count; i++) {
+        const char *flight = o->against.pair[i].left, *slash = strrchr(flight, '/');
+        report_series both[2] = { { slash && slash[1] ? slash + 1 : flight, flight },
+                                  { "as it should be", o->against.pair[i].right } };
         sheet[count] = (report_sheet){ .heading = "As it is and as it should be",
                                        .amplified = AGAINST_AMPLIFIED };
         snprintf(sheet[count].file, sizeof sheet[count].file, "reference-%zu.png", i + 1);
-        if (report_sheet_write(o->against[i], o->folder, &sheet[count++], why, sizeof why))
+        if (report_sheet_write(both, o->folder, &sheet[count++], why, sizeof why))
             return fail("--against: %s", why);
     }
     return count;
@@ -227,9 +189,9 @@ static int make_report(const options *o, report_flight *flight, char **picture)
     report_content content = { .title = o->title,
                                .folder = o->folder,
                                .flight = flight,
-                               .flight_count = o->csv_count,
+                               .flight_count = o->csv.count,
                                .picture = (const char *const *)picture,
-                               .picture_count = o->picture_count,
+                               .picture_count = o->picture.count,
                                .settle_s = o->settle_s };
     report_paper paper;
     report_sheet sheet[AGAINST_MAX + 1];
@@ -239,8 +201,8 @@ static int make_report(const options *o, report_flight *flight, char **picture)
     if (o->instructions) content.work = &work;
     if (o->paper && report_paper_load(&paper, o->paper, why, sizeof why)) return fail("%s", why);
     if (o->paper) content.paper = &paper;
-    for (size_t i = 0; i < o->csv_count; i++)
-        if (report_flight_load(&flight[i], o->csv[i], why, sizeof why)) return fail("%s", why);
+    for (size_t i = 0; i < o->csv.count; i++)
+        if (report_flight_load(&flight[i], o->csv.text[i], why, sizeof why)) return fail("%s", why);
     if (make_folder(o->folder) || copy_pictures(o, picture)) return -1;
     int sheets = make_sheets(o, sheet);
     if (sheets < 0) return -1;
@@ -256,24 +218,35 @@ static int make_report(const options *o, report_flight *flight, char **picture)
     return 0;
 }
 
+static int parse(options *o, int argc, char **argv)
+{
+    int rc = sys_options_parse(&program, o, argc, argv);
+    if (rc) return rc;
+    return o->beside.count == 1 ? fail("--beside: give two folders") : 0;
+}
+
 int main(int argc, char **argv)
 {
+    static options o = { .beside.room = 2, .against.room = AGAINST_MAX };
     size_t room = (size_t)argc;
-    options o = { .title = "Farfield flights", .settle_s = 15 };
-    o.csv = calloc(room, sizeof *o.csv);
-    o.picture = calloc(room, sizeof *o.picture);
+    const char **words = calloc(2 * room, sizeof *words);
     report_flight *flight = calloc(room, sizeof *flight);
     char **picture = calloc(room, sizeof *picture);
-    int rc = o.csv && o.picture && flight && picture ? parse(&o, argc, argv)
-                                                     : fail("out of memory");
-    if (rc == 0) rc = make_report(&o, flight, picture);
+    int rc = -1, usage = 0;
+    if (words && flight && picture) {
+        o.csv = (sys_texts){ .text = words, .room = room };
+        o.picture = (sys_texts){ .text = words + room, .room = room };
+        usage = parse(&o, argc, argv);
+        rc = usage ? usage : make_report(&o, flight, picture);
+    } else {
+        fail("out of memory");
+    }
     for (size_t i = 0; i < room; i++) {
         if (flight) report_flight_free(&flight[i]);
         if (picture) free(picture[i]);
     }
-    free(o.csv);
-    free(o.picture);
+    free(words);
     free(flight);
     free(picture);
-    return rc < 0 ? 1 : 0;
+    return usage < 0 ? SYS_EXIT_USAGE : rc < 0 ? SYS_EXIT_FAILED : SYS_EXIT_DONE;
 }
