@@ -65,6 +65,13 @@ CHANGES = [
       ("build/bin/farfield-info --verify plain.ffp", "plain"),
       ("build/bin/farfield-export plain.ffp -o plain.r16 && build/bin/farfield-export hills.ffp -o own.r16 && cmp plain.r16 own.r16", ""),
       ("build/bin/farfield-fly --pack plain.ffp --link lan --seconds 2 --settle 5 --backend none --json", "geometry_hash")]),
+    ("an option", 2, [("sim/fly/fly_options.h", '    OPTION(sys_text, csv_path, "csv"',
+                       '    OPTION(sys_whole, laps, "laps", "N", "1", SYS_WHOLE(1, 9, "laps"), "how often") \\\n'),
+                      ("sim/fly/fly_main.c", "    fly_options_print(&options);", '    printf("laps %u\\n", options.laps);\n')],
+     {}, ["build/bin/farfield-fly"],
+     [("build/bin/farfield-fly --help", "--laps N                how often (1 to 9 laps; default 1)"),
+      ("build/bin/farfield-fly --pack hills.ffp --laps 10 || [ $? = 2 ]", "farfield-fly: --laps: 10 is not a whole number from 1 to 9 laps"),
+      ("build/bin/farfield-fly --pack hills.ffp --laps 7 --link lan --seconds 2 --settle 5 --backend none", "laps 7")]),
     ("a way to draw", 5, [("client/farfield.h", '    X(NO_FOG, "no-fog"',
                            '    X(DARK_MESH, "dark-mesh", "d", "dark mesh", "the mesh in black") \\\n'),
                           ("client/ground/ff_show.c", "void ff_show_over(", """\

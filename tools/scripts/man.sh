@@ -1,10 +1,10 @@
 #!/bin/sh
 # man.sh PROGRAM PAGE: a manual page from --help and --version. The one-line description is the first sentence of --help
-# that is neither empty nor the usage line.
+# after the usage line.
 set -eu
 program=$1
 page=$2
 name=$(basename "$program")
-about=$("$program" --help | grep -v -i '^ *\(usage\|or\):' | grep -v "^ *$name " | sed -n '/[a-z]/{s/^ *//;p;q;}' | sed 's/\. .*//; s/[.:]$//')
+about=$("$program" --help | awk 'BEGIN { RS = "" } NR == 2 { gsub("\n", " "); print }' | sed 's/\. .*//; s/[.:]$//')
 help2man --no-info --name "$about" --output "$page.new" "$program"
 mv "$page.new" "$page"
