@@ -70,8 +70,8 @@ struct c3d_backend {
     void (*texture_free)(void *state, uint32_t texture);
     void (*begin)(void *state, const c3d_frame *frame, const c3d_rotation *rotation);
     void (*draw)(void *state, const c3d_resolved_draw *resolved);
-    void (*points)(void *state,
-                   const c3d_resolved_draw *resolved); /* COLOURED, ON_TOP or neither */
+    /* Flags: COLOURED, ON_TOP or neither. */
+    void (*points)(void *state, const c3d_resolved_draw *resolved);
     void (*label)(void *state, const c3d_placed_label *label);
     /* Draws what the back end kept for later, before a strip that may belong to it goes away. NULL:
      * it keeps nothing. */

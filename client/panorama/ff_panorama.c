@@ -129,8 +129,8 @@ static int refresh(ff_panorama *panorama, ff_requests *requests, const c3d_camer
         drop_set(panorama, panorama->next);
         panorama->next = -1;
     }
-    if (panorama->next >= 0 && !panorama->desc.hold_back)
-        return changed; /* one set outstanding at most */
+    /* one set outstanding at most */
+    if (panorama->next >= 0 && !panorama->desc.hold_back) return changed;
     int newest = panorama->next >= 0 ? panorama->next : panorama->active;
     if (newest >= 0 && ff_requests_cancel(requests, FF_KIND_FACE, panorama->set[newest].key) &&
         !panorama->desc.hold_back)

@@ -69,8 +69,8 @@ static int is_good(const ff_panorama *panorama, const c3d_camera *camera, const 
     if (!ff_motion_level(motion, ahead_us, set->position_wu)) return 0;
     for (int axis = 0; axis < 2; axis++) {
         int64_t away_wu = (int64_t)set->position_wu[axis] - camera->pos_wu[axis];
-        if (away_wu > set->front_wu / 4 || away_wu < -set->front_wu / 4)
-            return 0; /* O is the middle of the client's own ground: it stays near the viewer */
+        /* O is the middle of the client's own ground: it stays near the viewer */
+        if (away_wu > set->front_wu / 4 || away_wu < -set->front_wu / 4) return 0;
     }
     expect(panorama, set);
     return !ff_panorama_set_outdated(panorama, set, then);

@@ -298,9 +298,9 @@ static void settles_after_steps_of_the_input(void **state)
             plant_set(&p, 0);
             assert_settles(&p, 4);
             int frame_used = load_now(&p, 0) > -1 || p.balance.level[0] == p.balance.top[0];
-            assert_true(frame_used ||
-                        load_now(&p, 1) > -1); /* a budget, nothing else, holds the levels down */
-            if (budget[i][1] > 13 && i < 5)    /* with the good link fidelity came back */
+            /* a budget, nothing else, holds the levels down */
+            assert_true(frame_used || load_now(&p, 1) > -1);
+            if (budget[i][1] > 13 && i < 5) /* with the good link fidelity came back */
                 assert_int_equal(p.balance.level[1], p.balance.top[1]);
         }
     }
@@ -510,8 +510,8 @@ static void the_ends_and_off(void **state)
     assert_false(ff_client_panorama(client.client, position_wu, &faces));
     assert_int_equal(client.asked[FF_KIND_FACE], 0);
     assert_int_equal(o.balance.moves + o.balance.share_percent, 0);
-    server.desc.balance.mode =
-        FF_BALANCE_OFF; /* the balance is off again: quality is what was set */
+    /* the balance is off again: quality is what was set */
+    server.desc.balance.mode = FF_BALANCE_OFF;
     ff_client_set_balance(server.client, &server.desc.balance);
     assert_true(rig_settle(&server, 600));
     assert_true(rig_same_picture(&server, &off));

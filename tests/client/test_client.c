@@ -180,8 +180,8 @@ static void panorama_follows_the_rules(void **state)
     }
     rig_settle(&rig, 100);
     assert_true(ff_client_panorama(rig.client, taken_wu, &faces));
-    assert_int_equal(faces,
-                     0x3f); /* a viewer who has turned may turn again: all faces are asked for */
+    /* a viewer who has turned may turn again: all faces are asked for */
+    assert_int_equal(faces, 0x3f);
     assert_int_equal(rig_stats(&rig).panorama_faces, 4);
     assert_int_equal(rig_stats(&rig).panorama_faces_empty, 2);
     unsigned asked = rig.asked[FF_KIND_FACE];
@@ -215,8 +215,8 @@ static void panorama_is_taken_ahead(void **state)
     for (unsigned i = 0; i < frames; i++) {
         rig.camera.pos_wu[1] += 3 * METRE;
         rig_step(&rig, 50000);
-        if (i < 60 || !ff_client_panorama(rig.client, taken_wu, &faces))
-            continue; /* until the motion is known */
+        /* the viewer's motion is not known yet */
+        if (i < 60 || !ff_client_panorama(rig.client, taken_wu, &faces)) continue;
         const ff_panorama *panorama = &rig.client->panorama;
         late += (unsigned)ff_panorama_set_outdated(panorama, &panorama->set[panorama->shown],
                                                    &rig.camera);
@@ -333,8 +333,8 @@ static void panorama_can_be_switched(void **state)
     assert_true(rig_settle(&rig, 400));
     assert_false(ff_client_panorama(rig.client, taken_wu, &faces));
     panorama.enabled = 1;
-    ff_client_set_panorama(rig.client,
-                           &panorama); /* this time the block holds pools for panoramas */
+    /* this time the block holds pools for panoramas */
+    ff_client_set_panorama(rig.client, &panorama);
     unsigned connections = rig.connections;
     assert_true(rig_settle(&rig, 400));
     assert_true(ff_client_panorama(rig.client, taken_wu, &faces));

@@ -31,8 +31,8 @@ static void limits_do_not_blow_up(void **state)
     (void)state;
     assert_int_equal(ff_panorama_forwards_max(0, Z_WU, 0), 0);
     assert_int_equal(ff_panorama_forwards_max(0, Z_WU, 1000), 0);
-    assert_int_equal(ff_panorama_forwards_max(1, Z_WU, 0),
-                     Z_WU); /* w -> 0: only z limits the way forwards */
+    /* w -> 0: only z limits the way forwards */
+    assert_int_equal(ff_panorama_forwards_max(1, Z_WU, 0), Z_WU);
     assert_int_equal(ff_panorama_sideways_max(0, Z_WU, 1), 0);
     assert_true(ff_panorama_sideways_max(INT32_MAX, INT32_MAX, 1) > 0);
     assert_true(ff_panorama_forwards_max(INT32_MAX, INT32_MAX, 1) <= INT32_MAX);

@@ -235,8 +235,8 @@ static void full_list_stops_receiving(void **state)
     rig_open(&rig, 0);
     rig_client(&rig, 2 * MB);
     rig_settle(&rig, 8);
-    for (int i = 0; i < 500; i++)
-        ff_client_work(rig.client, rig.now_us += 10000); /* the main thread does not run */
+    /* the main thread does not run */
+    for (int i = 0; i < 500; i++) ff_client_work(rig.client, rig.now_us += 10000);
     assert_in_range(rig.client->news.high, 1, rig.client->news.item_slots);
     assert_int_equal(rig_stats(&rig).reconnects, 0);
     assert_comes_whole(&rig);

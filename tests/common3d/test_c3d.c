@@ -456,8 +456,8 @@ static void overlays_lie_on_top(void **state)
         c3d_begin(kit->device, &kit->frame);
         c3d_draw_strip(kit->device, &near);
         c3d_overlay(kit->device, texture, 2, 1, 8, 8);
-        c3d_draw_strip(kit->device,
-                       &near); /* at equal depth the square is drawn again, over the overlay */
+        /* at equal depth the square is drawn again, over the overlay */
+        c3d_draw_strip(kit->device, &near);
         c3d_overlay(kit->device, texture, 2, 1, 8, 8);
         c3d_end(kit->device);
         assert_int_equal(c3d_read_rgb(kit->device, rgb), FF_OK);

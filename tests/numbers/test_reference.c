@@ -57,8 +57,8 @@ static void projection_of_the_eye_path(void **state)
         int64_t offset[3];
         ref_camera_of(&camera, &ref);
         ref_point_in_view(&random, &ref, point);
-        if (!ref_project(&ref, point, expected) || !ref_in_window(&ref, expected, 100))
-            continue; /* rounding to wu moved the point out of the picture */
+        /* rounding to wu moved the point out of the picture */
+        if (!ref_project(&ref, point, expected) || !ref_in_window(&ref, expected, 100)) continue;
         for (int axis = 0; axis < 3; axis++)
             offset[axis] = (int64_t)point[axis] - camera.pos_wu[axis];
         assert_true(project_q14(&camera, offset, got));

@@ -313,9 +313,8 @@ static void truncated_jpegs_are_errors(void **state)
     static uint8_t bytes[65536], back[SIDE * SIDE * 3];
     int count = encode(bytes, sizeof bytes, 80);
     for (int length = 0; length < count; length += length + 16 < count ? 16 : 1) {
-        uint8_t *exact = malloc(
-            (size_t)length +
-            1); /* of the exact size, so that the sanitizer sees a read past the end */
+        /* of the exact size, so that the sanitizer sees a read past the end */
+        uint8_t *exact = malloc((size_t)length + 1);
         memcpy(exact, bytes, (size_t)length);
         assert_int_equal(sys_jpeg_decode(exact, (size_t)length, SIDE, SIDE, back), FF_ERR_FORMAT);
         free(exact);

@@ -1,6 +1,6 @@
 /* Any bytes as a payload. Byte 0: node_log2 - 1 (bits 0-2, modulo 5), refinement (bit 3), codec
- * (bits 4-7, modulo their number); bytes 1-2: max_error. What decodes is compared with the slow
- * decoder. */
+ * (bits 4-7, modulo the number of codecs); bytes 1-2: max_error. When the payload decodes, its
+ * heights must be the slow decoder's. */
 #include "../../protocol/codec/ff_codec.h"
 #include "../rig/slow_decoder.h"
 

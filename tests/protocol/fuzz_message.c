@@ -1,5 +1,5 @@
-/* Any bytes as a message stream. What decodes must encode to the same bytes again: every message
- * has one form only. */
+/* Any bytes as a message stream. A message that decodes must encode to the same bytes again: every
+ * message has one form only. */
 #include "../../protocol/message/ff_message.h"
 
 #include <assert.h>

@@ -36,8 +36,8 @@ static uint32_t middle(uint32_t a, uint32_t b, uint32_t rough)
     return h < rough / 2 ? 0 : h - rough / 2 > 65535 ? 65535 : h - rough / 2;
 }
 
-/* Midpoint displacement along rows, then columns: rough at every scale. `side` is a power of two
- * plus one. */
+/* Midpoint displacement along rows, then along columns: ground that is rough at every scale. `side`
+ * is a power of two plus one. */
 static void fractal(ground *g)
 {
     uint32_t side = g->side;
@@ -116,8 +116,8 @@ static int decode(ff_decoder *dec, const ff_terrain_info *info, const uint16_t *
                   : ff_reconstruct_root(info, &residuals, heights);
 }
 
-/* Encodes (parent NULL: a root), decodes with both decoders, checks all promises on the way.
- * Payload bytes. */
+/* Encodes (parent NULL: a root), decodes with both decoders, and checks the bound, rims and sizes
+ * on the way. Returns the payload's bytes. */
 static int there_and_back(const ff_terrain_info *info, const uint16_t *parent,
                           const uint16_t *source, uint8_t *payload, uint16_t *decoded)
 {
@@ -141,7 +141,8 @@ static int there_and_back(const ff_terrain_info *info, const uint16_t *parent,
     assert_int_equal(slow_decode(info, parent, payload, (size_t)bytes, slow), 0);
     assert_memory_equal(slow, decoded, side * side * sizeof(*decoded));
     for (uint32_t i = 0; i < side * side; i++) {
-        if (parent && i / side % 2 == 0 && i % side % 2 == 0) /* the parent's own, bit for bit */
+        if (parent && i / side % 2 == 0 &&
+            i % side % 2 == 0) /* the parent's own samples, bit for bit */
             assert_int_equal(decoded[i], parent[i / side / 2 * ff_node_side(info) + i % side / 2]);
         else
             assert_in_range(abs(decoded[i] - source[i]), 0, info->max_error);
@@ -182,7 +183,7 @@ static void bound_holds_on_every_ground(void **state)
 typedef struct walk {
     const ff_terrain_info *info;
     const ground *source;
-    ground at_level[8]; /* decoded, in the place of the finest grid */
+    ground at_level[8]; /* decoded heights of each level, laid out in the finest grid */
     uint8_t set[8][FIELD_MAX * FIELD_MAX];
 } walk;
 
@@ -250,7 +251,7 @@ static void rims_agree_on_every_level(void **state)
 }
 
 /* A rim depends on the heights along it alone: another ground with the same rim between the tiles
- * decodes it alike. */
+ * decodes to the same rim. */
 static void rims_depend_on_rims_alone(void **state)
 {
     static ground g, h;
@@ -382,7 +383,7 @@ static int check_damaged(const ff_terrain_info *info, ff_decoder *dec, const uin
     return rc;
 }
 
-/* Cut anywhere, spoilt by a bit anywhere, a byte too long. */
+/* A payload cut anywhere, with any one bit flipped, or a byte too long. */
 static void damage(const ff_terrain_info *info, const uint16_t *parent, uint8_t *payload, int bytes)
 {
     ff_decoder *dec = decoder_for(info);
@@ -479,7 +480,7 @@ static void deflate_bodies_are_held_to_their_length(void **state)
 
 /* ---- the table ---- */
 
-/* Numbers stand in packs: a row is complete, and keeps its number. */
+/* Packs hold a codec's number: each row is complete and keeps its number. */
 static void every_row_is_whole(void **state)
 {
     (void)state;
@@ -503,7 +504,7 @@ static void every_row_is_whole(void **state)
 /* ---- memory ---- */
 
 #ifdef __SANITIZE_ADDRESS__
-/* gcc ships no header for this. */
+/* a sanitizer's function for which gcc ships no header */
 int __sanitizer_install_malloc_and_free_hooks(void (*taken)(const volatile void *, size_t),
                                               void (*given)(const volatile void *));
 static size_t allocations;

@@ -1,5 +1,6 @@
-/* A codec whose contexts need the parent's heights is possible: one is here, a row more than the
- * library's table has. Codec by itself, damaged payloads, and all the way through the client. */
+/* A codec whose contexts need the parent's heights is possible: this file has one, as one more row
+ * of the library's table. Tested: the codec by itself, damaged payloads, and the whole way through
+ * the client. */
 #include "../../client/ff_client_local.h"
 #include "../../protocol/codec/ff_codec_local.h"
 #include "../rig/client_fixture.h"
@@ -148,7 +149,7 @@ static int second_stage(const ff_terrain_info *info, const uint16_t *parent,
     return (c.bits.at + 7) / 8 == ff_payload_left(&in) ? FF_OK : FF_ERR_FORMAT;
 }
 
-static int add_a_byte_each; /* makes every n-th payload one that the second stage refuses */
+static int add_a_byte_each; /* spoils every n-th payload so that the second stage refuses it */
 static int payloads_made;
 
 static size_t encode(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *decoded,
@@ -216,7 +217,7 @@ static ff_terrain_info terrain(int k, uint32_t max_error)
     return info;
 }
 
-/* Hills, or noise for which no low bits are right. */
+/* Hills, or noise for which no number of low bits fits. */
 static void refine_ground(payload *p, int k, uint32_t max_error, int noise)
 {
     static const uint8_t errors[4] = { 1, 2, 3, 208 };
@@ -235,7 +236,7 @@ static void refine_ground(payload *p, int k, uint32_t max_error, int noise)
     assert_in_range(p->count, 1, FF_PAYLOAD_BYTES_MAX);
 }
 
-/* Both stages; everything lies in blocks of just its size. */
+/* Both stages of decoding; everything lies in blocks of exactly its size. */
 static int decode_exactly(const payload *p, const uint8_t *bytes, size_t count, uint16_t *heights)
 {
     size_t side = ff_refined_side(&p->info);
@@ -247,7 +248,7 @@ static int decode_exactly(const payload *p, const uint8_t *bytes, size_t count, 
 
     memcpy(copy, bytes, count);
     rc = ff_decode_refinement(dec, copy, count, &residuals);
-    free(copy); /* the second stage has nothing but what was carried */
+    free(copy); /* the second stage sees only what the first one carried over */
     if (rc == FF_OK) {
         assert_int_equal(residuals.count, 0);
         rc = ff_reconstruct_refinement(&p->info, p->parent, &residuals, heights);
@@ -269,7 +270,8 @@ static void contexts_come_from_the_parent(void **state)
         size_t side = ff_refined_side(&p.info);
         assert_int_equal(decode_exactly(&p, p.bytes, (size_t)p.count, heights), FF_OK);
         assert_memory_equal(heights, p.decoded, side * side * sizeof(*heights));
-        /* another parent: other contexts, so the bits of a larger node do not come out even */
+        /* another parent gives other contexts, so a larger node's bits do not end where the payload
+         * does */
         for (uint32_t i = 0; i < ff_root_count(&p.info); i++) p.parent[i] = 500;
         if (k >= 3 && !noise)
             assert_int_not_equal(decode_exactly(&p, p.bytes, (size_t)p.count, heights), FF_OK);
@@ -299,7 +301,8 @@ static void damaged_payloads_do_no_harm(void **state)
     assert_int_equal(decode_exactly(&p, p.bytes, (size_t)p.count + 1, heights), FF_ERR_FORMAT);
 }
 
-/* What is carried fits the memory of the values, or is refused by the first stage. */
+/* What the first stage carries over fits the memory of the values, or the first stage refuses the
+ * payload. */
 static void long_payloads_are_not_carried(void **state)
 {
     static payload p;
@@ -357,8 +360,8 @@ static void shows_what_raw_shows(void **state)
     rig_close(&local);
 }
 
-/* Refused by the second stage alone: as by the first, asked for three times and then left; of the
- * rest all is there. A refused root leaves no node behind. */
+/* A payload that only the second stage refuses is treated like one that the first refuses: asked
+ * for three times, then left. Everything else arrives. A refused root leaves no node behind. */
 static void refused_by_the_tree(void **state)
 {
     static const int each[] = { 7, 1 };

@@ -282,7 +282,7 @@ static size_t stream_of_samples(uint8_t *stream, ff_message *list, size_t *messa
     return bytes;
 }
 
-/* Whatever pieces the stream comes in, the same messages come out. */
+/* However the stream is cut into pieces, the same messages come out. */
 static void splitting_changes_nothing(void **state)
 {
     static uint8_t stream[STREAM_MAX];
@@ -468,7 +468,7 @@ static void columns_there_and_back(void **state)
         uint8_t packed[4 * 1024 + 8];
         for (uint32_t c = 0; c < count; c++) {
             random = random * 1664525u + 1013904223u;
-            /* noise, then skylines of growing calm */
+            /* noise, then skylines that get calmer */
             wander = run < 20
                          ? random >> 22
                          : (wander + (random >> 24) % (1 + 200 / run) + 1024 - 100 / run) % 1024;
@@ -514,7 +514,7 @@ static void assert_columns(const char *bytes, size_t count, int expected)
 {
     uint16_t top[17] = { 0 }, bottom[17] = { 0 };
 
-    top[16] = bottom[16] = 4711; /* 16 columns: these must stay */
+    top[16] = bottom[16] = 4711; /* only 16 columns are written: these must stay */
     assert_int_equal(ff_face_columns_decode((const uint8_t *)bytes, count, 16, 5, top, bottom),
                      expected);
     assert_int_equal(top[16], 4711);

@@ -1,4 +1,4 @@
-/* Pack reader: every record found, every kind of damage named. */
+/* The pack reader finds every record, and names every kind of damage. */
 #include "../../protocol/ff_pack.h"
 #include "../rig/pack_fixture.h"
 
@@ -152,7 +152,7 @@ static void keys_without_record_are_not_found(void **state)
                      FF_ERR_NOT_FOUND);
 }
 
-/* Same terrain, same sizes, other heights: a cache of the one must not serve the other. */
+/* Same terrain, same sizes, other heights: a cache of one pack must not serve the other. */
 static void checksum_tells_packs_apart(void **state)
 {
     const fixture *f = *state;
@@ -232,7 +232,7 @@ static void damaged_records_are_counted_and_refused(void **state)
     assert_int_equal(bad, 1);
 }
 
-/* Sound records, but not those the header was made for. */
+/* The records are sound, but the header was made for others. */
 static void exchanged_records_are_found_by_verify(void **state)
 {
     fixture *f = *state;
@@ -270,8 +270,8 @@ static void wild_indexes_are_out_of_range(void **state)
 
 #define SECTION_AT(number, field) (80 + 44 * (number) + (field))
 
-/* Headers that are sealed but lie: the section table's fields set to what a hostile writer would
- * like. */
+/* Headers with a right checksum that lie: the section table's fields hold what a hostile writer
+ * would like. */
 static void lying_section_tables_are_refused(void **state)
 {
     static const struct {
@@ -318,7 +318,7 @@ static void bad_headers_are_not_written(void **state)
 
     assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
     ff_pack_header header = pack.header;
-    header.info.checksum = 12345; /* worked out anew */
+    header.info.checksum = 12345; /* the writer computes the checksum anew */
     assert_int_equal(ff_pack_header_encode(&header, out), FF_OK);
     assert_memory_equal(out, f->bytes, sizeof(out));
     header.section[1].level = 7;

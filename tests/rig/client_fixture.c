@@ -130,7 +130,7 @@ static int rig_reconnect(void *state)
     client_rig *rig = state;
     if (rig->refuse) return FF_ERR_SYSTEM;
     begin_session(rig);
-    rig->spoil_at = rig->silent_at = UINT64_MAX; /* what went wrong went wrong once */
+    rig->spoil_at = rig->silent_at = UINT64_MAX; /* each fault happens once */
     return FF_OK;
 }
 
@@ -233,7 +233,7 @@ void rig_close(client_rig *rig)
 void rig_step(client_rig *rig, int64_t us)
 {
     rig->frame_us += us;
-    /* else the server's time stands still: it belongs to the worker's thread */
+    /* with a thread the server's time stands still here: the worker owns it */
     if (!rig->desc.use_thread) {
         rig->now_us += us;
         ff_client_work(rig->client, rig->now_us);

@@ -13,15 +13,15 @@ typedef struct client_rig {
     ff_pack pack;
     ff_session *session; /* of the present connection; NULL: none */
     sys_stream stream;
-    uint8_t inbox[4096]; /* sent by the client, not taken by the session yet */
+    uint8_t inbox[4096]; /* sent by the client, not yet taken by the session */
     size_t inbox_count;
 
-    /* what goes wrong; counted in bytes to the client since the start, UINT64_MAX: never */
+    /* faults; places are counted in bytes to the client since the start, UINT64_MAX: never */
     uint64_t cut_at, silent_at, spoil_at;
-    uint8_t spoil_with; /* the byte at spoil_at is this, and all after it */
+    uint8_t spoil_with; /* the byte at spoil_at becomes this, and all after it */
     int refuse;         /* no new connection */
     int no_faces;       /* the renderer never answers */
-    unsigned chop;      /* recv gives at most so many bytes; 0: all there is */
+    unsigned chop;      /* recv gives at most this many bytes; 0: all there are */
 
     uint64_t bytes_down;
     unsigned connections;
@@ -34,24 +34,26 @@ typedef struct client_rig {
     ff_client_desc desc;
     ff_client *client;
     c3d_camera camera;
-    unsigned updates; /* that said: draw */
+    unsigned updates; /* updates that asked to be drawn */
 } client_rig;
 
-/* The usual pack of hills, with images when texture_log2 is not 0; no client yet. */
+/* Opens the usual pack of hills, with images when texture_log2 is not 0; makes no client yet. */
 void rig_open(client_rig *rig, unsigned texture_log2);
-/* The same ground in nodes of another size. */
+/* As rig_open, with nodes of another size. */
 void rig_use_node_log2(client_rig *rig, unsigned node_log2, unsigned texture_log2);
-/* Another terrain for all further connections. */
+/* Serves another terrain on all further connections. */
 void rig_change_terrain(client_rig *rig);
-/* A client of `bytes` over the stream; rig->desc's other fields are the test's to set before. */
+/* Makes a client with a block of `bytes` over the stream; the test sets rig->desc's other fields
+ * before. */
 void rig_client(client_rig *rig, size_t bytes);
-/* The same over the pack itself. */
+/* Makes a client over the pack itself. */
 void rig_local_client(client_rig *rig, size_t bytes);
 void rig_close(client_rig *rig);
 
-/* One frame: server, worker, update. `us` later. */
+/* Runs one frame, `us` later: server, worker, update. */
 void rig_step(client_rig *rig, int64_t us);
-/* Frames of 50 ms until nothing is out and queued for a while, `frames` at most. 1 when settled. */
+/* Runs frames of 50 ms, at most `frames`, until for a while no request is queued or unanswered. 1
+ * when settled. */
 int rig_settle(client_rig *rig, unsigned frames);
 ff_client_stats rig_stats(const client_rig *rig);
 /* 1 when both show the same nodes, borders and heights. */

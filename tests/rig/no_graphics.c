@@ -1,5 +1,5 @@
-/* What machines without graphics libraries and libpng are tested with: no GL, and pictures meant
- * for looking at are not kept. */
+/* Stands in for graphics libraries and libpng on machines without them: there is no GL, and
+ * pictures meant for looking at are not kept. */
 #include "../../common3d/c3d.h"
 
 const sys_surface_api *sys_surface_glfw(void) { return NULL; }

@@ -104,8 +104,8 @@ static int texture_payload(const pack_fixture_desc *desc, ff_key key, uint8_t *o
     return bytes;
 }
 
-/* decoded[]: heights of all nodes of the section's level, replaced by those of the next one after a
- * section of refinements. */
+/* decoded[]: heights of all nodes of the section's level; a section of refinements replaces them by
+ * those of the next level. */
 static int node_payload(const pack_fixture_desc *desc, enum ff_section_kind kind, ff_key key,
                         uint8_t *out, const uint16_t *decoded, uint16_t *next)
 {

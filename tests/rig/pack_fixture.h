@@ -1,11 +1,12 @@
-/* A small, complete pack in memory, made with the encoder: what tests serve, fly over and break. */
+/* A small, complete pack in memory, made with the encoder. Tests serve it, fly over it and break
+ * it. */
 #ifndef PACK_FIXTURE_H
 #define PACK_FIXTURE_H
 
 #include "../../protocol/ff_pack.h"
 
 typedef struct pack_fixture_desc {
-    ff_terrain_info info; /* checksum is filled in; the rest is the caller's */
+    ff_terrain_info info; /* the fixture fills in the checksum; the caller sets the rest */
     /* Height in steps of sample (x, y) counted from the south-west; called for all tiles' samples,
      * rims included. */
     uint16_t (*height)(void *context, uint32_t x, uint32_t y);

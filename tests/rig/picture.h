@@ -27,9 +27,9 @@ typedef struct picture_kit {
     void *memory;
     int width, height;
     c3d_mesh square[PICTURE_PLANES];
-    c3d_strip strip; /* of a square */
-    /* at the origin, looking north, 90 degrees wide, near 0.25 m, far 4 km, black; the test's to
-     * change */
+    c3d_strip strip; /* the strip of a square */
+    /* at the origin, looking north, 90 degrees wide, near 0.25 m, far 4 km, black; a test may
+     * change it */
     c3d_frame frame;
 } picture_kit;
 
@@ -54,8 +54,9 @@ int picture_is(picture_kit *kit, const c3d_draw *draws, size_t count, const char
 
 /* Largest difference of two pixels' colours. */
 int picture_apart(const uint8_t *a, const uint8_t *b);
-/* Pixels of either picture without a like in the other, within `tolerance` there or next to it
- * (edges may lie a pixel apart); *strict: without allowing for edges. */
+/* Counts pixels of either picture that differ by more than `tolerance` from the other's pixel at
+ * the same place and all beside it (edges may lie a pixel apart); *strict counts those that differ
+ * at the same place. */
 int picture_disagreement(const uint8_t *a, const uint8_t *b, int width, int height, int tolerance,
                          int *strict);
 

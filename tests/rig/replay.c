@@ -1,5 +1,5 @@
-/* Feeds saved inputs to a fuzz target without a fuzzer: replay FILE|DIRECTORY ... One line a file;
- * any crash is the failure. */
+/* Feeds saved inputs to a fuzz target without a fuzzer: replay FILE|DIRECTORY ... Prints a line for
+ * each file; a failure is a crash. */
 #include <dirent.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -21,7 +21,7 @@ static int replay_file(const char *path)
         printf("not ok - %s cannot be read\n", path);
         count = -1;
     } else {
-        /* Exactly as large as the input: a read beyond its end is seen by the sanitizer. */
+        /* Exactly as large as the input, so that the sanitizer sees a read beyond its end. */
         uint8_t *exact = malloc(count > 0 ? (size_t)count : 1);
         memcpy(exact, bytes, (size_t)count);
         LLVMFuzzerTestOneInput(exact, (size_t)count);

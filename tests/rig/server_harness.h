@@ -7,7 +7,7 @@
 #include <sys/types.h>
 
 #define HARNESS_CHILDREN_MAX 16
-#define HARNESS_TRIES        1500 /* bounded waits: so many looks, HARNESS_LOOK_US apart */
+#define HARNESS_TRIES        1500 /* waits are bounded: this many looks, HARNESS_LOOK_US apart */
 #define HARNESS_LOOK_US      20000
 
 typedef struct harness_server {
@@ -24,7 +24,7 @@ int harness_start(harness_server *server, const char *options);
 int harness_stop(harness_server *server);
 /* Pids of the master's children, workers first as they were started; count. */
 int harness_children(const harness_server *server, pid_t children[HARNESS_CHILDREN_MAX]);
-/* 1 when no such process is left alive. */
+/* 1 when none of these processes is alive. */
 int harness_gone(pid_t pid);
 /* Waits until `count` children live, none of them `not_this`. */
 int harness_wait_children(const harness_server *server, int count, pid_t not_this);
@@ -33,13 +33,13 @@ typedef struct harness_client {
     int fd;
     size_t count;
     uint8_t bytes[FF_MESSAGE_BODY_MAX + 8];
-    size_t used; /* of the message handed out last */
+    size_t used; /* bytes of the message handed out last */
 } harness_client;
 
-/* Connects (and says HELLO, and hears WELCOME, when `greet`); NULL when that fails. */
+/* Connects, and with `greet` sends HELLO and waits for WELCOME; NULL when that fails. */
 harness_client *harness_connect(const harness_server *server, int greet);
 void harness_close(harness_client *client);
-/* 1 when sent. */
+/* Sends bytes; 1 when all are sent. */
 int harness_send(harness_client *client, const void *bytes, size_t count);
 int harness_tell(harness_client *client, const ff_message *message);
 /* The next message: 1; 0 when the connection has ended; -1 after HARNESS_TRIES looks without
@@ -47,9 +47,10 @@ int harness_tell(harness_client *client, const ff_message *message);
 int harness_hear(harness_client *client, ff_message *message);
 /* The child that serves this client, or 0. */
 pid_t harness_served_by(const harness_server *server, const harness_client *client);
-/* Asks for a root and hears it. 1 when it came. */
+/* Asks for a root and waits for it. 1 when it came. */
 int harness_root_comes(harness_client *client, uint16_t id);
-/* Asks for a panorama of four faces and hears all of them: 1, or 0 when it failed; -1 otherwise. */
+/* Asks for a panorama of four faces and waits for them: 1, or 0 when the panorama failed; -1
+ * otherwise. */
 int harness_panorama_comes(harness_client *client, uint16_t id);
 
 #endif

@@ -1,5 +1,5 @@
 /* The second judge of whole ground, slow on purpose: it forms every triangle that is drawn and
- * looks at every edge and vertex in hash tables, where sim/judge/sim_watertight.c looks at the rims
+ * looks every edge and vertex up in hash tables; sim/judge/sim_watertight.c looks only at the rims
  * that nodes share. Same contract as sim_watertight_check(). */
 #ifndef SLOW_WATERTIGHT_H
 #define SLOW_WATERTIGHT_H

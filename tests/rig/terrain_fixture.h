@@ -1,5 +1,5 @@
-/* Ground made up in memory, and a tree fed from it: any size, encoded when it is asked for,
- * delivered at once or by a bad link. */
+/* Ground made up in memory, and a tree fed from it. The ground may have any size; nodes are encoded
+ * when they are asked for, and delivered at once or over a bad link. */
 #ifndef TERRAIN_FIXTURE_H
 #define TERRAIN_FIXTURE_H
 
@@ -22,18 +22,18 @@ typedef struct terrain_fixture {
     void *tree_memory;
 } terrain_fixture;
 
-/* Metre steps, 10 m samples; changes to fx->info may follow before fixture_tree. */
+/* Steps of 1 m, samples every 10 m; the test may change fx->info before fixture_tree. */
 void fixture_make(terrain_fixture *fx, unsigned node_log2, unsigned tile_log2, uint32_t tiles_x,
                   uint32_t tiles_y, fixture_height height);
 /* (Re)makes the tree, and the decoder for fx->info. */
 void fixture_tree(terrain_fixture *fx, uint32_t node_count, uint32_t wish_count);
 void fixture_free(terrain_fixture *fx);
-/* Both at once for what most tests fly over: 3 x 2 tiles of 1280 m, hills, nodes of 8 cells, 5
+/* Both at once, for the ground of most tests: 3 x 2 tiles of 1280 m, hills, nodes of 8 cells, 5
  * levels. */
 void fixture_usual(terrain_fixture *fx, uint32_t node_count);
 ff_tree_stats fixture_stats(const terrain_fixture *fx);
 
-/* What every decoder holds for a node. */
+/* What the fixture keeps of a node: the heights that any decoder has. */
 void fixture_decoded(const terrain_fixture *fx, ff_key key, uint16_t *heights);
 /* Encodes, decodes and delivers one wish; the tree's answer. */
 int fixture_deliver(terrain_fixture *fx, ff_key key, int refinement);
@@ -42,7 +42,7 @@ int fixture_deliver(terrain_fixture *fx, ff_key key, int refinement);
 uint32_t fixture_settle(terrain_fixture *fx, const ff_view *view, const ff_quality *quality,
                         uint32_t rounds);
 
-/* A link that loses, delays and reorders: wishes wait in a bag and are taken out at random. */
+/* A link that loses, delays and reorders: it keeps wishes in a bag and takes them out at random. */
 #define FIXTURE_BAG 64
 typedef struct fixture_link {
     sys_random random;
@@ -52,8 +52,8 @@ typedef struct fixture_link {
 } fixture_link;
 void fixture_link_step(terrain_fixture *fx, fixture_link *link);
 
-/* Fails the test when the cut, or the drawn part of it, is not whole, or the statistics disagree
- * with it. */
+/* Fails the test when the cut or its drawn part is not whole, or the statistics disagree with the
+ * cut. */
 void fixture_assert_whole(terrain_fixture *fx);
 
 /* ff_drawn.origin_wu of a node. */
@@ -61,7 +61,7 @@ void fixture_origin(const ff_terrain_info *info, ff_key key, int32_t origin_wu[3
 
 /* A camera at (x, y, z) metres, degrees, 240 by 320, 60 degrees wide; and Hybrid's low quality. */
 ff_view fixture_view(int32_t x_m, int32_t y_m, int32_t z_m, int32_t yaw_deg, int32_t pitch_deg);
-/* The same, above_m over the (metre-step, 10 m) ground. */
+/* The same, above_m over the ground (steps of 1 m, samples every 10 m). */
 ff_view fixture_view_above(const terrain_fixture *fx, int32_t x_m, int32_t y_m, int32_t above_m,
                            int32_t yaw_deg, int32_t pitch_deg);
 ff_quality fixture_quality(enum ff_measure measure);

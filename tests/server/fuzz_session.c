@@ -35,13 +35,13 @@ static void feed(fuzz_run *run, const uint8_t *bytes, size_t count)
 {
     while (count > 0) {
         int taken = ff_session_receive(run->session, bytes, count, run->now_us);
-        if (taken <= 0) return; /* closed, or full: the rest is lost to this client */
+        if (taken <= 0) return; /* the session closed or is full: this client loses the rest */
         bytes += taken;
         count -= (size_t)taken;
     }
 }
 
-/* What the server sends must be whole, known messages. */
+/* The server must send whole, known messages only. */
 static void drain(fuzz_run *run, size_t most)
 {
     const uint8_t *bytes;

@@ -1,5 +1,5 @@
-/* Panorama faces: ground where it must be, nothing where there is none, the same on both kinds of
- * GL. */
+/* Panorama faces show ground where ground must be and nothing where there is none, the same on both
+ * kinds of GL. */
 #include "../rig/pack_fixture.h"
 #include "../../platform/sys.h"
 #include "../../server/panorama/ff_face_image.h"
@@ -19,10 +19,10 @@
 
 static uint8_t *hills_bytes, *wall_bytes, *images_bytes;
 static ff_pack hills, wall, images;
-static ff_panorama_renderer *renderer; /* of hills */
+static ff_panorama_renderer *renderer; /* draws hills */
 static uint8_t message_bytes[FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX];
 
-/* Flat, but for a wall of 1000 steps along the northern rim of 2 by 2 tiles of 64 cells. */
+/* Flat ground with a wall of 1000 steps along the northern rim of 2 by 2 tiles of 64 cells. */
 static uint16_t wall_height(void *context, uint32_t x, uint32_t y)
 {
     (void)context;
@@ -184,8 +184,8 @@ static void test_down_face_has_north_at_its_top(void **state)
         ff_panorama_renderer_open(&images, sys_surface_osmesa(), c3d_backend_gl(), &with), FF_OK);
     render_with(with, &request, FF_FACE_DOWN, &picture);
     assert_false(is_empty(&picture));
-    /* 4 km square seen from 5.9 km (the wall from 5): the wall, north, comes closer and so reaches
-     * further out. */
+    /* The terrain's 4 km square is seen from 5.9 km above, the wall in the north from 5 km: being
+     * closer, it reaches further out in the picture. */
     int top = SIZE / 2 - 2048 * (SIZE / 2) / 5000, bottom = SIZE / 2 + 2048 * (SIZE / 2) / 5900;
     assert_in_range(picture.face.top_row, top - 1, top + 1);
     assert_in_range(picture.face.top_row + picture.face.row_count, bottom - 1, bottom + 1);
@@ -261,8 +261,8 @@ static void test_absurd_requests_are_refused(void **state)
     }
 }
 
-/* The same ground whatever was drawn before; colours may differ a little where a node's neighbour
- * is held now and was not then. */
+/* A face shows the same ground whatever was drawn before; colours may differ a little where a
+ * node's neighbour is held now and was not held then. */
 static void test_same_ground_whatever_was_drawn_before(void **state)
 {
     (void)state;
@@ -272,7 +272,7 @@ static void test_same_ground_whatever_was_drawn_before(void **state)
     elsewhere.position_wu[0] /= 2;
     elsewhere.front_wu /= 4;
     render_with(renderer, &elsewhere, FF_FACE_WEST, &other);
-    elsewhere.face_size = 512; /* a surface of its own, everything read again in another order */
+    elsewhere.face_size = 512; /* another surface; all nodes are read again, in another order */
     assert_true(ff_panorama_render_face(renderer, &elsewhere, FF_FACE_EAST, 0, message_bytes,
                                         sizeof message_bytes) > 0);
     render_with(renderer, &request, FF_FACE_WEST, &other);
@@ -310,8 +310,8 @@ static void test_same_requests_same_bytes(void **state)
     }
 }
 
-/* All nodes of a panorama's faces are drawn in one frame of coordinates, which its own position
- * chooses: one asked for close by before does not. */
+/* All nodes of a panorama's faces are drawn in one frame of coordinates. The panorama's own
+ * position chooses it, not that of a panorama drawn close by before. */
 static void test_frame_is_the_position_s(void **state)
 {
     (void)state;
@@ -375,7 +375,7 @@ static void compare_kinds(const struct c3d_backend *backend)
         for (int c = 0; c < SIZE; c++)
             off += (uint32_t)abs((picture.face.top_row + picture.top[c]) -
                                  (other.face.top_row + other.top[c]));
-        assert_true(off <= SIZE / 16); /* edges fall alike but for the odd pixel */
+        assert_true(off <= SIZE / 16); /* edges fall on the same pixels, with few exceptions */
     }
     ff_panorama_renderer_close(egl);
 }
@@ -418,7 +418,7 @@ static void test_fill_continues_ground(void **state)
     assert_memory_equal(rgb + 3 * (2 * S + 2), ground, 3);
     assert_memory_equal(rgb + 3 * (1 * S + 3), low, 3);
     assert_memory_equal(rgb + 3 * (3 * S + 3), low, 3);
-    assert_memory_equal(rgb + 3 * (3 * S + 0), low, 3); /* sideways: as column 2 */
+    assert_memory_equal(rgb + 3 * (3 * S + 0), low, 3); /* turned sideways: as column 2 */
     assert_memory_equal(rgb, key, 3);                   /* above the rows nothing matters */
 }
 

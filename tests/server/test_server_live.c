@@ -1,5 +1,5 @@
-/* The real server, several processes: killed, stopped, talked nonsense to, crowded. Waits are
- * bounded in tries, never in time. */
+/* The real server in several processes: they are killed, stopped, crowded, and sent nonsense. Waits
+ * are bounded in tries, never in time. */
 #include "../rig/server_harness.h"
 
 #include <setjmp.h>
@@ -95,7 +95,7 @@ static void test_killed_worker_is_replaced_and_others_go_on(void **state)
     assert_int_equal(harness_served_by(&server, clients[count - 1]), survivor);
     assert_int_equal(harness_panorama_comes(clients[count - 1], 77), 1);
     close_all(clients, count);
-    /* The new one serves: nodes, and faces through the channels it inherited. */
+    /* The new worker serves nodes, and faces through the channels it inherited. */
     count = occupy_both_workers(clients);
     assert_true(count > 1);
     for (int i = 0; i < count; i++) {
@@ -127,8 +127,8 @@ static void test_killed_renderers_cost_their_panorama_only(void **state)
     close_all(clients, count);
 }
 
-/* A renderer killed while it has the job: its panorama fails though the timeout is far away; then
- * another draws. */
+/* A renderer is killed while it draws: its panorama fails long before the timeout, and another
+ * renderer draws the next. */
 static void test_panorama_of_a_killed_renderer_fails_at_once(void **state)
 {
     (void)state;
@@ -150,14 +150,14 @@ static void test_panorama_of_a_killed_renderer_fails_at_once(void **state)
     pid_t worker = harness_served_by(&server, client),
           renderer = child[0] == worker ? child[1] : child[0];
     int failed = 0;
-    /* now and then the kill falls between two faces: their successor draws them */
+    /* now and then the kill falls between two faces: the renderer's successor draws the rest */
     for (uint16_t id = 1; id < 50 && !failed; id++) {
         message.type = FF_MSG_GET;
         message.kind = FF_KIND_FACE;
         message.u.panorama.id = id;
         ff_get_panorama again = message.u.panorama;
         assert_true(harness_tell(client, &message));
-        /* the first face: it is at the second now */
+        /* the first face is here, so the renderer now draws the second */
         assert_int_equal(harness_hear(client, &message), 1);
         kill(renderer, SIGKILL);
         while (message.type == FF_MSG_ANSWER && !(message.u.face.flags & FF_FACE_LAST))
@@ -213,7 +213,7 @@ static void test_a_crowd(void **state)
     close_all(crowd, CROWD);
 }
 
-/* Asks for much and never reads: must not hold up anybody. */
+/* A client that asks for much and never reads must not hold up anybody. */
 static void test_a_reader_that_does_not_read(void **state)
 {
     (void)state;
@@ -228,8 +228,8 @@ static void test_a_reader_that_does_not_read(void **state)
     harness_close(good);
 }
 
-/* A pack cut short under the server: its worker dies of it, aloud, another comes, and the rest of
- * the pack is still served. */
+/* A pack is cut short under the server: a worker dies and says why, another takes its place, and
+ * the rest of the pack is still served. */
 static void test_truncated_pack_is_survived(void **state)
 {
     (void)state;
@@ -296,7 +296,7 @@ static void test_idle_clients_are_sent_away(void **state)
     assert_int_equal(message.type, FF_MSG_GOODBYE);
     assert_int_equal(message.u.failed.error, FF_ERR_CLOSED);
     harness_close(client);
-    /* Without renderers a panorama fails, and says so. */
+    /* Without renderers a panorama fails, and the client is told. */
     client = harness_connect(&server, 1);
     assert_non_null(client);
     assert_int_equal(harness_panorama_comes(client, 1), 0);

@@ -360,9 +360,9 @@ static void test_cancelled_requests_are_not_served(void **state)
     for (uint16_t id = 1; id <= 5; id++) get_root(session, id, 0);
     cancel(session, 3);
     cancel(session, 2);
-    cancel(session, 1); /* in the buffer already */
+    cancel(session, 1); /* its answer is in the buffer already */
     cancel(session, 99);
-    get_root(session, 6, 0); /* room again */
+    get_root(session, 6, 0); /* the session has room again */
     get_root(session, 7, 0);
     static const struct {
         enum ff_message_type type;
@@ -427,7 +427,7 @@ static void test_newer_panorama_supersedes(void **state)
     ff_face_job old, job;
     get_panorama(session, 1, 2);
     assert_true(ff_session_next_face(session, &old));
-    /* the same number: the old face must not pass for the new one */
+    /* the new request has the same id: the old face must not pass for the new one */
     get_panorama(session, 1, 1);
     ff_message answer = heard(session);
     assert_int_equal(answer.type, FF_MSG_CANCELLED);
@@ -503,7 +503,8 @@ static void test_large_face_fits_beside_full_buffer(void **state)
     get_panorama(session, 100, 2);
     assert_true(ff_session_next_face(session, &job));
     for (uint16_t id = 1; id <= 20; id++) get_root(session, id, 0);
-    static const uint8_t ping[6] = { FF_MSG_PING, 4 }; /* short answers fill their reserve */
+    /* short answers fill the output's reserve for them */
+    static const uint8_t ping[6] = { FF_MSG_PING, 4 };
     while (ff_session_receive(session, ping, sizeof ping, 0) > 0)
         ;
     size_t bytes = FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX;

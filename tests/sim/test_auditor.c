@@ -1,5 +1,5 @@
-/* The auditor on ground of known error: flat ground drawn too high, panoramas taken elsewhere,
- * nothing drawn; and its ray casting and heights against slower ways to the same answer. */
+/* The auditor over ground of known error: flat ground drawn too high, panoramas taken elsewhere,
+ * nothing drawn; its ray casting and heights are compared with slower ways to the same answer. */
 #include "../../sim/judge/sim_audit.h"
 #include "../rig/pack_fixture.h"
 #include "../rig/terrain_fixture.h"
@@ -55,7 +55,7 @@ static void flat_scene(scene *s)
     s->view.back_wu = INT32_MAX;
 }
 
-/* All tiles drawn as they are but `steps` metres higher. */
+/* All tiles, drawn `steps` metres too high. */
 static void draw_at(scene *s, uint16_t steps)
 {
     for (int i = 0; i < SIDE * SIDE; i++) s->heights[i] = steps;
@@ -76,8 +76,8 @@ static void free_scene(scene *s)
     free(s->bytes);
 }
 
-/* Depth along the view at which row y's pixels meet the flat ground; 0: they do not, or north of
- * the terrain. */
+/* Depth along the view at which the pixels of row y meet the flat ground; 0 when they miss it or
+ * meet the plane north of the terrain. */
 static double row_depth_m(const scene *s, unsigned y)
 {
     double below = y + 0.5 - 160,
@@ -127,7 +127,8 @@ static void test_flat_ground_too_high(void **state)
     free_scene(&s);
 }
 
-/* Drawn above the eye: as wrong as a picture can be, and no number without a meaning. */
+/* Ground drawn above the eye: the error is the largest a picture can have, not a meaningless
+ * number. */
 static void test_ground_above_the_eye(void **state)
 {
     (void)state;
@@ -143,7 +144,7 @@ static void test_ground_above_the_eye(void **state)
     free_scene(&s);
 }
 
-/* No edge to come from anywhere: as wrong as the picture is large. */
+/* Nothing is drawn, so no edge is near: each pixel is off by the size of the picture. */
 static void test_nothing_drawn(void **state)
 {
     (void)state;
@@ -200,7 +201,7 @@ static void test_ground_not_yet_drawn(void **state)
     free_scene(&s);
 }
 
-/* The same wrong ground under several qualities: whose fault is it? */
+/* The same wrong ground under several qualities: the auditor names another cause each time. */
 static void test_causes(void **state)
 {
     (void)state;
@@ -226,7 +227,7 @@ static void test_causes(void **state)
     draw_at(&s, 50);
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         ff_terrain_info info = s.pack.header.info;
-        /* as if there were so many levels */
+        /* as if the terrain had this many levels */
         info.tile_log2 = (uint8_t)(info.node_log2 + row[i].levels - 1);
         sim_auditor *auditor = sim_auditor_create(&s.ground, &info, STEP_PX);
         assert_non_null(auditor);
@@ -285,7 +286,7 @@ static void test_panorama_limits(void **state)
     assert_int_equal(sim_audit_frame(s.auditor, &s.view, &all), FF_OK);
     assert_near(all.err_px_max, 0);
     assert_int_equal(all.undrawn_pixels, 0);
-    s.view.faces = 62; /* without the north */
+    s.view.faces = 62; /* all faces but the north one */
     assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
     assert_int_equal(result.undrawn_pixels + result.panorama_pixels, all.panorama_pixels);
     assert_true(result.panorama_pixels < all.panorama_pixels / 2);

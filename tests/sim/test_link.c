@@ -1,5 +1,5 @@
-/* The link models against their own descriptions: rate, delay, gaps, traces, cuts, determinism, and
- * no byte lost or reordered. */
+/* The link models do what their descriptions say: rate, delay, gaps, traces, cuts; they are
+ * deterministic, and lose and reorder no byte. */
 #include "../../sim/link/sim_link.h"
 #include "../../sim/link/sim_stream.h"
 #include "../../sim/link/sim_trace.h"
@@ -61,7 +61,7 @@ static void test_rate_exact(void **state)
     }
 }
 
-/* Bytes one by one at the very rate: no drift builds up from rounding. */
+/* Bytes are sent one by one at exactly the link's rate: rounding builds up no drift. */
 static void test_no_drift(void **state)
 {
     (void)state;
@@ -114,8 +114,8 @@ static void test_queue_limit(void **state)
     sim_link_destroy(link);
 }
 
-/* A sender that never stops sees every stall as a gap: their number, lengths and spacing are those
- * described. */
+/* A sender that never stops sees every stall as a gap: the gaps' number, lengths and spacing are
+ * those described. */
 static void test_stalls(void **state)
 {
     (void)state;
@@ -156,7 +156,7 @@ static void test_stalls(void **state)
 static void test_stall_rate(void **state)
 {
     (void)state;
-    sim_link_desc desc = plain(1000, 0, 0); /* little before the first stall */
+    sim_link_desc desc = plain(1000, 0, 0); /* a short time before the first stall */
     desc.stall_every_ms = 1;                /* nearly always stalled */
     desc.stall_ms_min = desc.stall_ms_max = 1000000;
     desc.stall_bytes_s = 5;
@@ -204,8 +204,8 @@ static void test_trace_replay(void **state)
         total += sim_link_recv(link, SIM_DOWN, bytes, sizeof bytes, expect[i].ms * 1000);
         assert_int_equal(total, expect[i].total);
     }
-    /* what is not used is lost: nothing was queued at 510 and 510, so 2000 bytes sent at 511 leave
-     * at 525 and 600 */
+    /* an unused opportunity is lost: nothing was queued at 510 and 510, so 2000 bytes sent at 511
+     * leave at 525 and 600 */
     assert_int_equal(sim_link_send(link, SIM_DOWN, bytes, 2000, 511000), 2000);
     assert_int_equal(sim_link_recv(link, SIM_DOWN, bytes, sizeof bytes, 526000), 1500);
     assert_int_equal(sim_link_recv(link, SIM_DOWN, bytes, sizeof bytes, 599000), 0);
@@ -371,14 +371,14 @@ static void test_cut_and_reconnect(void **state)
         up_since = now += 500000;
         assert_int_equal(sim_link_reconnect(link, now), FF_OK);
         assert_int_equal(sim_link_connections(link), cut + 2);
-        /* what was under way is lost */
+        /* bytes under way are lost */
         assert_int_equal(sim_link_recv(link, SIM_UP, bytes, sizeof bytes, now), 0);
     }
     sim_link_destroy(link);
 }
 
-/* What is under way arrives later, in order and whole, at the new rate and delay; the queue may
- * grow and shrink; a stall ends. */
+/* When a link changes, the bytes under way arrive in order and whole, at the new rate and delay;
+ * the queue may grow and shrink; a stall ends. */
 static void test_change(void **state)
 {
     (void)state;
@@ -399,7 +399,8 @@ static void test_change(void **state)
     assert_int_equal(sim_link_send(link, SIM_DOWN, sent + 2000, sizeof sent - 2000, 100 * SECOND),
                      8000);
     assert_int_equal(sim_link_change(link, &narrow, 100 * SECOND), FF_OK);
-    assert_int_equal(sim_link_room(link, SIM_DOWN, 100 * SECOND), 0); /* more waits than may */
+    /* more bytes wait than the new queue holds */
+    assert_int_equal(sim_link_room(link, SIM_DOWN, 100 * SECOND), 0);
     /* whole packets of 512 */
     assert_int_equal(sim_link_recv(link, SIM_DOWN, got, sizeof got, 101 * SECOND + 4999), 9728);
     assert_int_equal(

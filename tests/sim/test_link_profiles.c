@@ -18,7 +18,7 @@
 
 static uint8_t bytes[1 << 16];
 
-/* What a sender who never stops makes of one way of a link. */
+/* What one way of a link delivers for a sender who never stops. */
 typedef struct measured {
     uint64_t received;
     int64_t span_us; /* from the first arrival to the last */
@@ -80,7 +80,7 @@ static void test_rates(void **state)
             int64_t end_us = 4000 * packet_us(w) + 10 * (int64_t)(w->delay_us + w->jitter_us);
             measured m = saturate(&desc, (enum sim_direction)way, 3, end_us, INT64_MAX);
             double rate = (double)m.received * SECOND / (double)m.span_us;
-            /* by which the jitter can move the ends */
+            /* the jitter can move either end by this much */
             double share = 0.001 + w->jitter_us / (double)m.span_us;
             assert_true(rate > (1 - share) * w->bytes_s && rate < (1 + share) * w->bytes_s);
             assert_true(m.longest_gap_us <= packet_us(w) + w->jitter_us + 1);
@@ -88,7 +88,7 @@ static void test_rates(void **state)
     }
 }
 
-/* A rate of its own each way, both at once. */
+/* Each way has its own rate, also while both are full. */
 static void test_ways_do_not_share(void **state)
 {
     (void)state;
@@ -179,9 +179,9 @@ static void test_stalls(void **state)
 
 /* ---- cuts ---- */
 
-/* Cut about every 10 s while both ways are full: a connection lasts 5 to 15 s, 10 in the mean, as
- * long again as it takes to connect; what comes over a connection was sent over it, from its first
- * byte on. */
+/* A link is cut about every 10 s while both ways are full. A connection lasts 5 to 15 s, 10 in the
+ * mean, after the time it takes to connect; the bytes that arrive over it were sent over it, from
+ * its first byte on. */
 static void test_cuts(void **state)
 {
     (void)state;
@@ -278,7 +278,7 @@ static void test_replay(void **state)
     unlink(path);
 }
 
-/* Links recorded on the road, where there are some. */
+/* Links recorded on the road, if the machine has such recordings. */
 static void test_replay_recorded(void **state)
 {
     (void)state;

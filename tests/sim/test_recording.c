@@ -1,5 +1,5 @@
-/* Recorded flights: read, and where the viewer is between two lines. Errors are told by
- * tests/sim/fly.sh. */
+/* Recorded flights: reading them, and where the viewer is between two lines. tests/sim/fly.sh tests
+ * the error messages. */
 #include "../../sim/fly/fly_recording.h"
 
 #include <setjmp.h>
@@ -47,8 +47,8 @@ static void test_between_lines(void **state)
     fly_recording_free(&recording);
 }
 
-/* Columns in any order, others passed over; without headings it looks where it goes, and stands as
- * it came. */
+/* Columns may stand in any order, and unknown ones are skipped. Without headings the viewer looks
+ * where he goes, and when he stands still he looks as before. */
 static void test_columns(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
-/* Relevance on a wire of known messages and frames of known contents: what is drawn in time, too
- * late, never; what hides in a line of ancestors, behind a finer image, beside the window; bytes
- * that come in pieces or not at all. */
+/* Relevance for known messages on the wire and frames of known contents: data drawn in time, too
+ * late, or never; ancestors of what is drawn, images behind finer ones, faces beside the window;
+ * bytes that come in pieces or not at all. */
 #include "../../sim/judge/sim_relevance.h"
 #include "../../protocol/message/ff_message.h"
 #include "../rig/pack_fixture.h"
@@ -15,7 +15,7 @@
 #include <string.h>
 
 typedef struct wire {
-    uint8_t bytes[65536]; /* for recv */
+    uint8_t bytes[65536]; /* recv writes here */
     size_t count, at;
     int64_t now_us;
     sys_stream stream;
@@ -73,7 +73,7 @@ static void ask(wire *w, const ff_message *message)
         assert_int_equal(w->stream.send(w->stream.state, bytes + i, 1), 1);
 }
 
-/* Puts an answer on the wire; its size. */
+/* Puts an answer on the wire; returns its size. */
 static size_t put(wire *w, const ff_message *message)
 {
     int count = ff_message_encode(message, w->bytes + w->count, sizeof w->bytes - w->count);
@@ -141,7 +141,7 @@ static void test_line_of_ancestors(void **state)
     size_t unused = node(&w, ff_key_child(root, 1), FF_KIND_REFINEMENT) +
                     node(&w, ff_key_make(2, 0, 0), FF_KIND_ROOT);
     receive(&w, 7);
-    assert_true(isnan(figures(&w, SIM_RELEVANCE_US).percent)); /* too early to say */
+    assert_true(isnan(figures(&w, SIM_RELEVANCE_US).percent)); /* too early to know */
     draw(&w, SIM_RELEVANCE_US, 1, &leaf);
     sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
     assert_int_equal(f.came[FF_DATA_HEIGHTS], used + unused);
@@ -151,7 +151,8 @@ static void test_line_of_ancestors(void **state)
     sim_relevance_destroy(w.relevance);
 }
 
-/* Beside a drawn node: what lets it be so fine is not drawn, but told apart. */
+/* A node beside a drawn one, which lets it be so fine, does not count as drawn, but is counted
+ * apart. */
 static void test_supporting(void **state)
 {
     (void)state;
@@ -192,8 +193,8 @@ static void test_too_late(void **state)
     sim_relevance_destroy(w.relevance);
 }
 
-/* An image under a finer one is not drawn where the finer one is, unless it comes again: then the
- * finer one is gone. */
+/* Where a finer image is, the coarser one under it is not drawn. When the coarser image comes
+ * again, the finer one is gone. */
 static void test_finest_image(void **state)
 {
     (void)state;
@@ -274,14 +275,14 @@ static void test_faces(void **state)
     check_face(FF_FACE_NORTH, 0, 40, 500, 1);
     check_face(FF_FACE_NORTH, 0, 29, 500, 0);
     check_face(FF_FACE_NORTH, 228, 28, 500, 0);
-    check_face(FF_FACE_NORTH, 100, 40, 501, 0); /* of another set */
-    /* empty: that nothing is there is what the window shows */
+    check_face(FF_FACE_NORTH, 100, 40, 501, 0); /* a face of another set */
+    /* an empty face in the window counts as drawn: it shows that there is no ground */
     check_face(FF_FACE_NORTH, 0, 0, 500, 1);
     check_face(FF_FACE_EAST, 100, 40, 500, 0);
     check_face(FF_FACE_UP, 0, 0, 500, 0);
 }
 
-/* What brings no picture, and what a cut leaves in pieces. */
+/* Messages that bring no picture, and those that a cut leaves in pieces. */
 static void test_overhead(void **state)
 {
     (void)state;

@@ -1,4 +1,5 @@
-/* Prefetch: the ground of tiles that will come into the window; nothing into a full pool. */
+/* Prefetch asks for the ground of tiles that will come into the window, and for nothing when the
+ * pool is full. */
 #include "../rig/terrain_fixture.h"
 
 #include <setjmp.h>
@@ -73,7 +74,7 @@ static void test_new_tiles_come_refined(void **state)
     }
 }
 
-/* A full pool is asked for nothing. */
+/* When the pool is full, prefetch asks for nothing. */
 static void test_no_room(void **state)
 {
     (void)state;

@@ -99,7 +99,7 @@ static void test_every_combination_covers_once(void **state)
     }
 }
 
-/* Vertices of a side strip that lie on its rim: exactly every 2^d-th. */
+/* The vertices of a side strip on its rim are exactly every 2^d-th one. */
 static void test_rims_leave_out_vertices(void **state)
 {
     (void)state;

@@ -1,5 +1,5 @@
-/* Surfaces: off-screen ones of several kinds and sizes in one process, and the window where there
- * is a display (tests/platform/window.sh brings one). */
+/* Off-screen surfaces of several kinds and sizes in one process, and the window where there is a
+ * display (tests/platform/window.sh starts one). */
 #include "../rig/picture.h"
 
 #include <setjmp.h>
@@ -59,8 +59,8 @@ static void many_surfaces_live_together(void **state)
     }
 }
 
-/* Nothing but two contexts of two libraries, back and forth: each library would take its context
- * for still current. */
+/* Switches between two contexts of two libraries: each library would believe that its own context
+ * is still current. */
 static void two_libraries_take_turns(void **state)
 {
     (void)state;

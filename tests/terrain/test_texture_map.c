@@ -1,4 +1,4 @@
-/* Images over nodes: which one, where its texels fall, which way is up. */
+/* Images over nodes: which image is chosen, where its texels fall, which way is up. */
 #include "../../client/images/ff_texture_map.h"
 #include "../rig/pack_fixture.h"
 
@@ -31,7 +31,8 @@ static void test_finest_image_over_a_node(void **state)
     assert_true(ff_texture_key(&info, ff_key_make(4, 0, 0)) == FF_KEY_NONE);
 }
 
-/* Ends of a node's edge in the image, and continued without a step by its neighbour. */
+/* The ends of a node's edge fall on the right texels, and the neighbour's image continues there
+ * without a step. */
 static void test_edges_meet_rim_texels(void **state)
 {
     (void)state;

@@ -161,7 +161,8 @@ static void test_one_node_world(void **state)
     assert_int_equal(fixture_settle(&fx, &view, &quality, 10), 1);
     fixture_assert_whole(&fx);
     assert_int_equal(fixture_stats(&fx).triangles, 128);
-    assert_int_equal(fixture_deliver(&fx, ff_key_make(0, 0, 0), 0), FF_OK); /* again: no harm */
+    /* delivered again: no harm */
+    assert_int_equal(fixture_deliver(&fx, ff_key_make(0, 0, 0), 0), FF_OK);
     assert_int_equal(fixture_stats(&fx).nodes_held, 1);
     fixture_free(&fx);
 }
@@ -206,8 +207,8 @@ static void test_flat_ground_asks_for_nothing_below(void **state)
     }
 }
 
-/* Beside rough ground flat ground is refined as far as the restriction needs, so that it does not
- * hold its neighbour back. */
+/* Beside rough ground flat ground is refined as far as the restriction needs, so that the rough
+ * ground may split. */
 static void test_flat_ground_beside_rough(void **state)
 {
     (void)state;
@@ -245,7 +246,7 @@ static void test_wishes_come_in_order(void **state)
     ff_tree_select(fx.tree, &view, &quality);
     uint32_t count = ff_tree_wishes(fx.tree, &wish);
     assert_int_equal(count, 6);
-    assert_int_equal(ff_key_tile(wish[0].key), 0); /* the one below comes first */
+    assert_int_equal(ff_key_tile(wish[0].key), 0); /* the tile below the viewer comes first */
     fixture_deliver(&fx, ff_key_make(0, 0, 0), 0);
     fixture_deliver(&fx, ff_key_make(1, 0, 0), 0);
     uint32_t unseen = 0;
@@ -268,7 +269,7 @@ static void test_wishes_come_in_order(void **state)
     fixture_free(&fx);
 }
 
-/* Delivers the first wish until there is none; unseen 0: of those that count as in view. */
+/* Delivers the first wish until none is left; with unseen 0 only wishes that count as in view. */
 static uint32_t deliver_wishes(terrain_fixture *fx, const ff_view *view, const ff_quality *quality,
                                int unseen)
 {
@@ -282,8 +283,8 @@ static uint32_t deliver_wishes(terrain_fixture *fx, const ff_view *view, const f
     }
 }
 
-/* What is in view, and what lets it split, is enough: the same nodes are drawn as when all has
- * come, of less. */
+/* The nodes in view and those that let them split are enough: the same nodes are drawn as when
+ * everything has come. */
 static void test_wishes_in_view_are_enough(void **state)
 {
     (void)state;
@@ -375,12 +376,12 @@ static void test_select_skips_when_nothing_changed(void **state)
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 1);
     assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 0);
-    view.camera.near_wu = 17; /* does not concern the ground */
+    view.camera.near_wu = 17; /* the near plane does not change the ground */
     assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 0);
     assert_int_equal(fixture_stats(&fx).selects_skipped, 2);
     fixture_deliver(&fx, ff_key_make(1, 0, 0), 0);
     assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 1);
-    fixture_deliver(&fx, ff_key_make(1, 0, 0), 0); /* held already */
+    fixture_deliver(&fx, ff_key_make(1, 0, 0), 0); /* the tree holds this node already */
     assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 0);
     view.camera.yaw++;
     assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 1);
@@ -388,7 +389,7 @@ static void test_select_skips_when_nothing_changed(void **state)
     assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 1);
     quality.c_q8++;
     assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 1);
-    quality.c_q8 = -5; /* out of range settings are the same every time, too */
+    quality.c_q8 = -5; /* a setting out of range is clamped the same way every time */
     assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 1);
     assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 0);
     fixture_free(&fx);

@@ -11,8 +11,8 @@
 
 /* ---- pools ---- */
 
-/* A still camera and every pool size: after a while nothing is wished for, evicted or redrawn any
- * more. */
+/* A still camera and pools of every size: after a while the tree wishes for nothing, evicts nothing
+ * and redraws nothing. */
 static void test_pools_settle(void **state)
 {
     (void)state;
@@ -56,7 +56,8 @@ static void test_full_pool_stays_still_for_10000_frames(void **state)
     fixture_free(&fx);
 }
 
-/* Half a world of roots in a pool for eight: the eight nearest, and no strife among them. */
+/* Half a world of roots and a pool for eight: the tree holds the eight nearest, and does not evict
+ * one for another. */
 static void test_more_roots_than_slots(void **state)
 {
     (void)state;
@@ -92,7 +93,7 @@ static void test_cache_serves_a_return(void **state)
     fixture_free(&fx);
 }
 
-/* A family that was not asked for finds no room by dropping the node it would refine, whatever
+/* A family that was not asked for is not given room by dropping the node it would refine, whatever
  * sigma says. */
 static void test_own_family_is_spared(void **state)
 {
@@ -111,7 +112,7 @@ static void test_own_family_is_spared(void **state)
         ff_tree_select(fx.tree, &view, &quality);
         assert_int_equal(fixture_deliver(&fx, ff_key_make(0, 0, 0), 1), FF_OK);
         ff_tree_select(fx.tree, &view, &quality);
-        /* its own family is not dropped for it */
+        /* the parent's own family is not dropped for it */
         assert_int_equal(fixture_deliver(&fx, ff_key_make(0, 1, 3), 1), FF_ERR_FULL);
         assert_int_equal(fixture_stats(&fx).nodes_held, 5);
         assert_int_equal(fixture_stats(&fx).pool_full, 1);

@@ -1,4 +1,4 @@
-/* What is seen: culling against double precision, order, vertices, the height of the drawn
+/* What is seen: culling judged in double precision, drawing order, vertices, heights of the drawn
  * surface. */
 #include "../rig/terrain_fixture.h"
 
@@ -120,7 +120,7 @@ static void test_drawn_nearest_first(void **state)
         dx = dx > 0 ? dx : dx + edge < 0 ? dx + edge : 0;
         dy = dy > 0 ? dy : dy + edge < 0 ? dy + edge : 0;
         double flat_distance = sqrt(dx * dx + dy * dy);
-        assert_true(flat_distance > last - 700 * M); /* heights differ: in order but for those */
+        assert_true(flat_distance > last - 700 * M); /* in order, but for differences in height */
         last = flat_distance > last ? flat_distance : last;
     }
     assert_true(count > 20);

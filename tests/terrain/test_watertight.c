@@ -1,6 +1,6 @@
-/* The drawn ground is whole whatever arrives, in whatever order, however the camera jumps: flights
- * over made-up ground with random links, qualities and pools, every frame judged exactly. And the
- * judge finds faults put in on purpose. */
+/* The drawn ground is whole whatever arrives in whatever order, however the camera jumps: flights
+ * over made-up ground with random links, qualities and pools, every frame judged exactly. The judge
+ * itself must find faults put in on purpose. */
 #include "../../sim/judge/sim_watertight.h"
 #include "../rig/slow_watertight.h"
 #include "../rig/terrain_fixture.h"
@@ -232,7 +232,7 @@ static void test_judge_finds_wrong_place(void **state)
     assert_found(&s, "wrong origin");
 }
 
-/* What is left out is no crack, only the end of the view: any part of a whole cut is whole. */
+/* A node left out makes no crack, only an end of the view: any part of a whole cut is whole. */
 static void test_judge_accepts_parts(void **state)
 {
     (void)state;
@@ -248,7 +248,7 @@ static void test_judge_accepts_parts(void **state)
 
 /* ---- two judges ---- */
 
-/* One fault, or what may look like one, at a random place. */
+/* Puts in one fault, or what may look like one, at a random place. */
 static void spoil(spoilt *s, sys_random *random)
 {
     uint32_t i = sys_random_below(random, s->count), side = ff_node_side(&s->fx.info),
@@ -264,8 +264,8 @@ static void spoil(spoilt *s, sys_random *random)
                        (sys_random_below(random, 2) ? rim * side + row : row * side + rim)] ^= 4;
             break;
         case 2: drawn->coarser ^= (uint8_t)(1u << sys_random_below(random, 4)); break;
-        case 3: /* one gone */ *drawn = s->list[--s->count]; break;
-        case 4: /* many gone: only a part is left */
+        case 3: /* one node gone */ *drawn = s->list[--s->count]; break;
+        case 4: /* many nodes gone: only a part is left */
             while (s->count > 3 && sys_random_below(random, 40))
                 s->list[sys_random_below(random, s->count)] = s->list[s->count - 1], s->count--;
             break;
@@ -282,7 +282,7 @@ static void spoil(spoilt *s, sys_random *random)
     }
 }
 
-/* The quick judge and the slow one, who looks at every triangle, agree on cuts with up to three
+/* The quick judge and the slow judge, which looks at every triangle, agree on cuts with up to three
  * faults of any kind. */
 static void test_judges_agree(void **state)
 {

@@ -1,5 +1,5 @@
-/* The pieces of farfield-bake that hold promises by themselves: geometric error, void filling,
- * densifying, tile choice, ordered jobs, and a tile's records seen by a decoder. */
+/* The parts of farfield-bake that keep promises by themselves: geometric error, void filling,
+ * densifying, choice of tiles, ordered jobs, and a tile's records as a decoder sees them. */
 #include "../../platform/sys.h"
 #include "../../protocol/codec/ff_codec.h"
 #include "../../tools/bake/raster/bake_densify.h"
@@ -102,7 +102,7 @@ static void test_fill_keeps_what_is_known(void **state)
         assert_int_equal(bake_grid_read(&grid, j, 0, W, after + (size_t)j * W), 0);
     for (int i = 0; i < W * H; i++) {
         if (!isnan(before[i])) assert_true(after[i] == before[i]);
-        /* a slope goes on through the hole, within a fraction of the rise across it */
+        /* a slope continues through the hole, within a fraction of its rise across the hole */
         assert_true(fabs(after[i] - (100 + 3.0 * (i % W) + 2.0 * (i / W))) < 15);
     }
     bake_grid_close(&grid);
@@ -211,8 +211,8 @@ static void test_tile_repeats_the_rim(void **state)
     bake_grid_close(&grid);
 }
 
-/* Decoding the records gives what the encoder says it gives, within the bound, and errors that were
- * measured. */
+/* Decoding the records gives the heights that the encoder predicted, within the bound, and the
+ * errors that were measured. */
 static void check_records(uint16_t max_error)
 {
     ff_terrain_info info = small_info(max_error);
@@ -276,7 +276,7 @@ static int make_job(void *context, int worker, uint32_t job)
 {
     ledger *l = context;
     l->made[worker] = job;
-    if (job % 3 == 0) sys_sleep_us(200); /* others overtake it */
+    if (job % 3 == 0) sys_sleep_us(200); /* other jobs overtake this one */
     return job == l->fail_at ? -1 : 0;
 }
 

@@ -67,8 +67,8 @@ static int make_ground(bake *b)
     b->info.spacing_wu = (uint32_t)nearbyint(spacing_m * FF_WU_PER_METRE / b->options->densify);
     if (bake_steps_choose(b->options, &b->ground, &b->steps)) return -1;
     if (bake_quantise(b->options, &b->ground, &b->steps, &b->info, &b->heights)) return -1;
-    bake_grid_close(
-        &b->ground.grid); /* the ground's size and place are needed on, not its samples */
+    /* the ground's size and place are still needed, its samples are not */
+    bake_grid_close(&b->ground.grid);
     return 0;
 }
 

@@ -275,8 +275,8 @@ static int link_step(ff_stream *stream, int64_t now_us)
     int moved = 0;
     int rc = receive(stream, now_us, &moved);
     if (rc == FF_OK && stream->state == FF_STREAM_UP) {
-        if (!outstanding(stream) && !stream->awaiting)
-            stream->heard_us = now_us; /* no answer was owed until now */
+        /* no answer was owed until now */
+        if (!outstanding(stream) && !stream->awaiting) stream->heard_us = now_us;
         moved |= ask(stream, now_us);
         keep_alive(stream, now_us);
     }
