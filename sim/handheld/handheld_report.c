@@ -59,7 +59,6 @@ static void print_figures(const handheld *device, int json)
     figure list[FIGURES_MAX];
     unsigned count = collect(device, list);
     for (unsigned i = 0; i < count; i++) {
-        /* a hash is a number too large for JSON readers */
         int hash = strstr(list[i].name, "_hash") != NULL;
         if (json)
             printf(hash ? "%s\"%s\": \"%016" PRIx64 "\"" : "%s\"%s\": %" PRIu64, i ? ",\n " : "{",

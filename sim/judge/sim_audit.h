@@ -6,14 +6,15 @@
  *             distance to P's own pixel is the error.
  *   panorama  no triangle, but a panorama in use shows P, in the direction in which P lies from O,
  *             where the panorama was taken. That direction, taken from the camera, is projected;
- * the distance to P's pixel is the (parallax) error. The renderer's own error (a pixel of the face,
- * by its rules) and ground that O could not see are not counted. nothing   neither: the distance to
- * the nearest pixel at which something is drawn for the ground there is the error (one-sided
- * Hausdorff: how far the drawn ground's edge would have to come), the picture's diagonal where
- * there is none. Counted in undrawn_percent too. Each pixel's error has one cause (enum
- * sim_audit_cause), found from the quality asked for, not from the client's selection. Independent
- * of the client's estimates: triangles are made anew from the drawn list's heights and border
- * masks.
+ *             the distance to P's pixel is the (parallax) error. The renderer's own error (a pixel
+ *             of the face, by its rules) and ground that O could not see are not counted.
+ *   nothing   neither: the error is the distance to the nearest pixel at which something is drawn
+ *             for the ground there (one-sided Hausdorff: how far the drawn ground's edge would have
+ *             to come), the picture's diagonal where there is none. Counted in undrawn_percent too.
+ *
+ * Each pixel's error has one cause (enum sim_audit_cause), found from the quality asked for, not
+ * from the client's selection. The auditor does not depend on the client's estimates: it makes
+ * triangles anew from the drawn list's heights and border masks.
  */
 #ifndef SIM_AUDIT_H
 #define SIM_AUDIT_H
