@@ -6,10 +6,7 @@ cd "$(dirname "$0")/../.." || exit 2
 bin=${BIN:-build/bin}
 work=build/tests/balance.$$
 mkdir -p "$work"
-failures=0
-result() { # STATUS WHAT
-    if [ "$1" = 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failures=$((failures + 1)); fi
-}
+. tests/rig/result.bash
 is() { # EXPRESSION WHAT: python over the rows `r` and the summary `s` of the flight last flown, or of another: rows(NAME), summary(NAME)
     python3 - "$work" "$flown" "$1" <<'END'
 import csv, json, sys
@@ -33,12 +30,7 @@ flies() { # NAME ARGUMENTS...
 }
 usual="--settle 10 --quality 6:8 --back-plane 2000 --view 10000 --face 64 --fps 10 --start 0.2 --backend none --check on"
 
-python3 - "$work/hills.raw" <<'END'
-import math, struct, sys
-def hills(x, y):
-    return int(700 + 350 * math.sin(x / 23) * math.cos(y / 31) + 120 * math.sin(x / 5 + y / 9) + 40 * math.sin(x * 1.7) * math.sin(y * 1.3))
-open(sys.argv[1], "wb").write(b"".join(struct.pack("<H", hills(x, y)) for y in range(513) for x in range(513)))
-END
+python3 tests/rig/hills.py 513 "$work/hills.raw"
 "$bin/farfield-bake" "$work/hills.raw" --raw 513x513 --spacing 30 --tile-log2 7 --quiet -o "$work/hills.ffp"
 result $? "ground to fly over"
 

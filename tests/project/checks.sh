@@ -3,10 +3,7 @@
 # Lists that stand beside a list are held to it.
 set -u
 cd "$(dirname "$0")/../.." || exit 2
-failures=0
-result() { # STATUS WHAT
-    if [ "$1" = 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failures=$((failures + 1)); fi
-}
+. tests/rig/result.bash
 
 tools/scripts/check-layers.sh . build/obj
 result $? "layers, core words, sizes and symbols"
@@ -129,6 +126,10 @@ END
 seq -f "/* %g */" 601 | plant sim/fly/big.c
 echo "/* TO""DO */" | plant platform/note.c
 plant tools/bake/clean.c </dev/null
+plant tests/test_words.c <<'END'
+const int list[] = { cmocka_unit_test(ground_has_no_holes),
+                     cmocka_unit_test(test_ground) };
+END
 plant protocol/calls.c <<'END'
 extern void *malloc(unsigned long);
 extern int gettimeofday(void *, void *);
@@ -159,6 +160,7 @@ expect "a judge that knows the link" "sim/judge/partial.c:1: sim/judge/ may not 
 expect "a judge that knows the flight" "sim/judge/partial.c:2: sim/judge/ may not include sim/fly/fly_options.h"
 expect "an OS header outside platform" "sim/link/os.c:1: <unistd.h> belongs to platform/"
 expect "an include of tests" "sim/link/os.c:2: sim/link/ may not include tests/helper.h"
+expect "a test without a sentence" "tests/test_words.c:2: a test is named by a sentence"
 expect "tiles counted by hand" "client/terrain/ff_foresee.c:2: tiles_x: ask protocol/shape"
 expect "an edge multiplied" "client/terrain/ff_foresee.c:3: ff_node_edge_wu: ask protocol/shape"
 expect "sides taken for opposite" "client/terrain/ff_foresee.c:4: side + 2: ask protocol/shape"

@@ -3,10 +3,7 @@
 set -u
 cd "$(dirname "$0")/../.." || exit 2
 work=$PWD/build/tests/install
-failures=0
-result() { # STATUS WHAT
-    if [ "$1" = 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failures=$((failures + 1)); fi
-}
+. tests/rig/result.bash
 unset MAKEFLAGS MFLAGS MAKELEVEL
 rm -rf "$work"
 mkdir -p "$work"

@@ -5,10 +5,7 @@ cd "$(dirname "$0")/../.." || exit 2
 : "${BIN:=build/bin}"
 work=build/tests/server
 rm -rf "$work" && mkdir -p "$work"
-failures=0
-result() { # STATUS WHAT
-    if [ "$1" = 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failures=$((failures + 1)); fi
-}
+. tests/rig/result.bash
 server() { "$BIN/farfield-server" "$@" >"$work/out" 2>"$work/err" </dev/null; }
 
 # STATUS WHAT PATTERN ARGUMENTS: refused with one line on stderr that matches, nothing on stdout.

@@ -132,7 +132,7 @@ static int row_of(const ff_get_panorama *request, int32_t z_m, int32_t depth_m)
 
 static face_picture picture, other;
 
-static void test_wall_stands_where_geometry_says(void **state)
+static void wall_stands_where_geometry_says(void **state)
 {
     (void)state;
     ff_panorama_renderer *with;
@@ -158,7 +158,7 @@ static void test_wall_stands_where_geometry_says(void **state)
     ff_panorama_renderer_close(with);
 }
 
-static void test_side_faces_show_the_wall_where_it_is_north(void **state)
+static void side_faces_show_the_wall_where_it_is_north(void **state)
 {
     (void)state;
     ff_panorama_renderer *with;
@@ -175,7 +175,7 @@ static void test_side_faces_show_the_wall_where_it_is_north(void **state)
     ff_panorama_renderer_close(with);
 }
 
-static void test_down_face_has_north_at_its_top(void **state)
+static void down_face_has_north_at_its_top(void **state)
 {
     (void)state;
     ff_panorama_renderer *with;
@@ -201,7 +201,7 @@ static void test_down_face_has_north_at_its_top(void **state)
     ff_panorama_renderer_close(with);
 }
 
-static void test_faces_without_far_ground_are_empty(void **state)
+static void faces_without_far_ground_are_empty(void **state)
 {
     (void)state;
     ff_panorama_render_stats before, after;
@@ -222,7 +222,7 @@ static void test_faces_without_far_ground_are_empty(void **state)
     assert_int_equal(after.nodes_drawn, before.nodes_drawn);
 }
 
-static void test_back_plane_cuts(void **state)
+static void the_back_plane_cuts(void **state)
 {
     (void)state;
     ff_get_panorama near_back = request_at(1800, 400, 1200),
@@ -232,7 +232,7 @@ static void test_back_plane_cuts(void **state)
     assert_true(is_empty(&picture) || picture.face.top_row > other.face.top_row);
 }
 
-static void test_absurd_requests_are_refused(void **state)
+static void absurd_requests_are_refused(void **state)
 {
     (void)state;
     ff_get_panorama request = request_at(100, 400, 1000);
@@ -263,7 +263,7 @@ static void test_absurd_requests_are_refused(void **state)
 
 /* A face shows the same ground whatever was drawn before; colours may differ a little where a
  * node's neighbour is held now and was not held then. */
-static void test_same_ground_whatever_was_drawn_before(void **state)
+static void same_ground_whatever_was_drawn_before(void **state)
 {
     (void)state;
     ff_get_panorama request = request_at(1800, 400, 100000), elsewhere = request;
@@ -286,7 +286,7 @@ static void test_same_ground_whatever_was_drawn_before(void **state)
 }
 
 /* The same requests in the same order give the same bytes: the simulator relies on it. */
-static void test_same_requests_same_bytes(void **state)
+static void same_requests_same_bytes(void **state)
 {
     (void)state;
     static uint8_t first[2][sizeof message_bytes];
@@ -312,7 +312,7 @@ static void test_same_requests_same_bytes(void **state)
 
 /* All nodes of a panorama's faces are drawn in one frame of coordinates. The panorama's own
  * position chooses it, not that of a panorama drawn close by before. */
-static void test_frame_is_the_position_s(void **state)
+static void frame_is_the_position_s(void **state)
 {
     (void)state;
     static panorama_ground ground;
@@ -347,7 +347,7 @@ static void test_frame_is_the_position_s(void **state)
     free(memory);
 }
 
-static void test_largest_face_at_best_quality_fits_a_message(void **state)
+static void largest_face_at_best_quality_fits_a_message(void **state)
 {
     (void)state;
     ff_get_panorama request = request_at(1200, 300, 100000);
@@ -380,13 +380,13 @@ static void compare_kinds(const struct c3d_backend *backend)
     ff_panorama_renderer_close(egl);
 }
 
-static void test_egl_agrees_with_osmesa(void **state)
+static void egl_agrees_with_osmesa(void **state)
 {
     (void)state;
     compare_kinds(c3d_backend_gl());
 }
 
-static void test_gles1_agrees_with_osmesa(void **state)
+static void gles1_agrees_with_osmesa(void **state)
 {
     (void)state;
     compare_kinds(c3d_backend_gles1());
@@ -394,7 +394,7 @@ static void test_gles1_agrees_with_osmesa(void **state)
 
 /* ---- pictures as pixels ---- */
 
-static void test_fill_continues_ground(void **state)
+static void fill_continues_ground(void **state)
 {
     (void)state;
     enum { S = 4 };
@@ -422,7 +422,7 @@ static void test_fill_continues_ground(void **state)
     assert_memory_equal(rgb, key, 3);                   /* above the rows nothing matters */
 }
 
-static void test_spans_are_lowered_by_a_pixel(void **state)
+static void spans_are_lowered_by_a_pixel(void **state)
 {
     (void)state;
     static ff_face_spans spans;
@@ -439,7 +439,7 @@ static void test_spans_are_lowered_by_a_pixel(void **state)
     assert_int_equal(spans.row_count, 4);
 }
 
-static void test_boxes_in_faces(void **state)
+static void boxes_are_seen_by_their_faces(void **state)
 {
     (void)state;
     ff_get_panorama request = { .front_wu = 800, .back_wu = 10000 }; /* near plane 700 */
@@ -464,21 +464,21 @@ static void test_boxes_in_faces(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_wall_stands_where_geometry_says),
-        cmocka_unit_test(test_side_faces_show_the_wall_where_it_is_north),
-        cmocka_unit_test(test_down_face_has_north_at_its_top),
-        cmocka_unit_test(test_faces_without_far_ground_are_empty),
-        cmocka_unit_test(test_back_plane_cuts),
-        cmocka_unit_test(test_absurd_requests_are_refused),
-        cmocka_unit_test(test_same_ground_whatever_was_drawn_before),
-        cmocka_unit_test(test_same_requests_same_bytes),
-        cmocka_unit_test(test_frame_is_the_position_s),
-        cmocka_unit_test(test_largest_face_at_best_quality_fits_a_message),
-        cmocka_unit_test(test_egl_agrees_with_osmesa),
-        cmocka_unit_test(test_gles1_agrees_with_osmesa),
-        cmocka_unit_test(test_fill_continues_ground),
-        cmocka_unit_test(test_spans_are_lowered_by_a_pixel),
-        cmocka_unit_test(test_boxes_in_faces),
+        cmocka_unit_test(wall_stands_where_geometry_says),
+        cmocka_unit_test(side_faces_show_the_wall_where_it_is_north),
+        cmocka_unit_test(down_face_has_north_at_its_top),
+        cmocka_unit_test(faces_without_far_ground_are_empty),
+        cmocka_unit_test(the_back_plane_cuts),
+        cmocka_unit_test(absurd_requests_are_refused),
+        cmocka_unit_test(same_ground_whatever_was_drawn_before),
+        cmocka_unit_test(same_requests_same_bytes),
+        cmocka_unit_test(frame_is_the_position_s),
+        cmocka_unit_test(largest_face_at_best_quality_fits_a_message),
+        cmocka_unit_test(egl_agrees_with_osmesa),
+        cmocka_unit_test(gles1_agrees_with_osmesa),
+        cmocka_unit_test(fill_continues_ground),
+        cmocka_unit_test(spans_are_lowered_by_a_pixel),
+        cmocka_unit_test(boxes_are_seen_by_their_faces),
     };
     return cmocka_run_group_tests(tests, setup, teardown);
 }

@@ -66,7 +66,7 @@ static void close_all(harness_client **clients, int count)
     for (int i = 0; i < count; i++) harness_close(clients[i]);
 }
 
-static void test_nodes_and_panoramas(void **state)
+static void nodes_and_panoramas_come(void **state)
 {
     (void)state;
     harness_client *client = harness_connect(&server, 1);
@@ -77,7 +77,7 @@ static void test_nodes_and_panoramas(void **state)
     harness_close(client);
 }
 
-static void test_killed_worker_is_replaced_and_others_go_on(void **state)
+static void killed_worker_is_replaced_and_others_go_on(void **state)
 {
     (void)state;
     harness_client *clients[CLIENTS_MAX];
@@ -105,7 +105,7 @@ static void test_killed_worker_is_replaced_and_others_go_on(void **state)
     close_all(clients, count);
 }
 
-static void test_killed_renderers_cost_their_panorama_only(void **state)
+static void killed_renderers_cost_their_panorama_only(void **state)
 {
     (void)state;
     harness_client *clients[CLIENTS_MAX];
@@ -129,7 +129,7 @@ static void test_killed_renderers_cost_their_panorama_only(void **state)
 
 /* A renderer is killed while it draws: its panorama fails long before the timeout, and another
  * renderer draws the next. */
-static void test_panorama_of_a_killed_renderer_fails_at_once(void **state)
+static void panorama_of_a_killed_renderer_fails_at_once(void **state)
 {
     (void)state;
     pid_t child[HARNESS_CHILDREN_MAX];
@@ -175,7 +175,7 @@ static void test_panorama_of_a_killed_renderer_fails_at_once(void **state)
     assert_int_equal(harness_stop(&server), 0);
 }
 
-static void test_nonsense_closes_its_own_connection_only(void **state)
+static void nonsense_closes_its_own_connection_only(void **state)
 {
     (void)state;
     static const char *const nonsense[] = { "GET / HTTP/1.1\r\nHost: x\r\n\r\n", "\x16\x03\x01\x02",
@@ -196,7 +196,7 @@ static void test_nonsense_closes_its_own_connection_only(void **state)
     harness_close(good);
 }
 
-static void test_a_crowd(void **state)
+static void a_crowd_is_served(void **state)
 {
     (void)state;
     static harness_client *crowd[CROWD];
@@ -214,7 +214,7 @@ static void test_a_crowd(void **state)
 }
 
 /* A client that asks for much and never reads must not hold up anybody. */
-static void test_a_reader_that_does_not_read(void **state)
+static void a_reader_that_does_not_read(void **state)
 {
     (void)state;
     harness_client *deaf = harness_connect(&server, 1), *good = harness_connect(&server, 1);
@@ -230,7 +230,7 @@ static void test_a_reader_that_does_not_read(void **state)
 
 /* A pack is cut short under the server: a worker dies and says why, another takes its place, and
  * the rest of the pack is still served. */
-static void test_truncated_pack_is_survived(void **state)
+static void truncated_pack_is_survived(void **state)
 {
     (void)state;
     struct stat whole;
@@ -253,7 +253,7 @@ static void test_truncated_pack_is_survived(void **state)
     harness_close(client);
 }
 
-static void test_stop_leaves_no_process_and_says_goodbye(void **state)
+static void stop_leaves_no_process_and_says_goodbye(void **state)
 {
     (void)state;
     pid_t child[HARNESS_CHILDREN_MAX];
@@ -271,7 +271,7 @@ static void test_stop_leaves_no_process_and_says_goodbye(void **state)
     for (int i = 0; i < count; i++) assert_true(harness_gone(child[i]));
 }
 
-static void test_children_die_with_a_killed_master(void **state)
+static void children_die_with_a_killed_master(void **state)
 {
     (void)state;
     pid_t child[HARNESS_CHILDREN_MAX];
@@ -283,7 +283,7 @@ static void test_children_die_with_a_killed_master(void **state)
     for (int i = 0; i < count; i++) assert_true(harness_gone(child[i]));
 }
 
-static void test_idle_clients_are_sent_away(void **state)
+static void idle_clients_are_sent_away(void **state)
 {
     (void)state;
     static const uint8_t half[2] = { FF_MSG_PING, 4 };
@@ -304,7 +304,7 @@ static void test_idle_clients_are_sent_away(void **state)
     assert_int_equal(harness_stop(&server), 0);
 }
 
-static void test_single_process_serves_too(void **state)
+static void single_process_serves_too(void **state)
 {
     (void)state;
     pid_t child[HARNESS_CHILDREN_MAX];
@@ -321,20 +321,18 @@ static void test_single_process_serves_too(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_nodes_and_panoramas, start, stop),
-        cmocka_unit_test_setup_teardown(test_killed_worker_is_replaced_and_others_go_on, start,
-                                        stop),
-        cmocka_unit_test_setup_teardown(test_killed_renderers_cost_their_panorama_only, start,
-                                        stop),
-        cmocka_unit_test_setup_teardown(test_nonsense_closes_its_own_connection_only, start, stop),
-        cmocka_unit_test_setup_teardown(test_a_crowd, start, stop),
-        cmocka_unit_test_setup_teardown(test_a_reader_that_does_not_read, start, stop),
-        cmocka_unit_test_setup_teardown(test_truncated_pack_is_survived, start, stop),
-        cmocka_unit_test(test_panorama_of_a_killed_renderer_fails_at_once),
-        cmocka_unit_test(test_stop_leaves_no_process_and_says_goodbye),
-        cmocka_unit_test(test_children_die_with_a_killed_master),
-        cmocka_unit_test(test_idle_clients_are_sent_away),
-        cmocka_unit_test(test_single_process_serves_too),
+        cmocka_unit_test_setup_teardown(nodes_and_panoramas_come, start, stop),
+        cmocka_unit_test_setup_teardown(killed_worker_is_replaced_and_others_go_on, start, stop),
+        cmocka_unit_test_setup_teardown(killed_renderers_cost_their_panorama_only, start, stop),
+        cmocka_unit_test_setup_teardown(nonsense_closes_its_own_connection_only, start, stop),
+        cmocka_unit_test_setup_teardown(a_crowd_is_served, start, stop),
+        cmocka_unit_test_setup_teardown(a_reader_that_does_not_read, start, stop),
+        cmocka_unit_test_setup_teardown(truncated_pack_is_survived, start, stop),
+        cmocka_unit_test(panorama_of_a_killed_renderer_fails_at_once),
+        cmocka_unit_test(stop_leaves_no_process_and_says_goodbye),
+        cmocka_unit_test(children_die_with_a_killed_master),
+        cmocka_unit_test(idle_clients_are_sent_away),
+        cmocka_unit_test(single_process_serves_too),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

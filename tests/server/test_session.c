@@ -144,7 +144,7 @@ static void expect_failed(ff_session *session, uint16_t id, int error)
 
 /* ---- nodes ---- */
 
-static void test_nodes_come_from_the_pack_in_order(void **state)
+static void nodes_come_from_the_pack_in_order(void **state)
 {
     (void)state;
     ff_session *session = welcomed();
@@ -170,7 +170,7 @@ static void test_nodes_come_from_the_pack_in_order(void **state)
     ff_session_destroy(session);
 }
 
-static void test_unknown_nodes_and_textures_fail(void **state)
+static void unknown_nodes_and_textures_fail(void **state)
 {
     (void)state;
     ff_session *session = welcomed();
@@ -190,7 +190,7 @@ static void test_unknown_nodes_and_textures_fail(void **state)
     ff_session_destroy(session);
 }
 
-static void test_damaged_record_fails(void **state)
+static void a_damaged_record_fails_alone(void **state)
 {
     (void)state;
     const uint8_t *payload;
@@ -209,7 +209,7 @@ static void test_damaged_record_fails(void **state)
     ff_session_destroy(session);
 }
 
-static void test_bytes_one_by_one(void **state)
+static void bytes_one_by_one(void **state)
 {
     (void)state;
     ff_session *session = welcomed();
@@ -227,7 +227,7 @@ static void test_bytes_one_by_one(void **state)
 
 /* ---- protocol errors ---- */
 
-static void test_hello_must_come_first_and_once(void **state)
+static void hello_must_come_first_and_once(void **state)
 {
     (void)state;
     ff_session *session = session_with((ff_session_desc){ 0 });
@@ -238,7 +238,7 @@ static void test_hello_must_come_first_and_once(void **state)
     expect_goodbye(session, FF_ERR_FORMAT);
 }
 
-static void test_other_version_is_sent_away(void **state)
+static void other_version_is_sent_away(void **state)
 {
     (void)state;
     ff_session *session = session_with((ff_session_desc){ 0 });
@@ -246,7 +246,7 @@ static void test_other_version_is_sent_away(void **state)
     expect_goodbye(session, FF_ERR_VERSION);
 }
 
-static void test_nonsense_ends_the_session(void **state)
+static void nonsense_ends_the_session(void **state)
 {
     (void)state;
     static const char *const nonsense[] = { "GET / HTTP/1.1\r\n\r\n", "\x02\xff\xff\xff\xff",
@@ -259,7 +259,7 @@ static void test_nonsense_ends_the_session(void **state)
     }
 }
 
-static void test_servers_messages_and_endless_ones_end_the_session(void **state)
+static void servers_messages_and_endless_ones_end_the_session(void **state)
 {
     (void)state;
     ff_session *session = welcomed();
@@ -274,7 +274,7 @@ static void test_servers_messages_and_endless_ones_end_the_session(void **state)
 
 /* ---- limits ---- */
 
-static void test_slow_reader_waits_and_loses_nothing(void **state)
+static void slow_reader_waits_and_loses_nothing(void **state)
 {
     (void)state;
     ff_session *session = welcomed_with(
@@ -291,7 +291,7 @@ static void test_slow_reader_waits_and_loses_nothing(void **state)
     ff_session_destroy(session);
 }
 
-static void test_an_answer_larger_than_the_buffer_goes_alone(void **state)
+static void an_answer_larger_than_the_buffer_goes_alone(void **state)
 {
     (void)state;
     ff_session *session = welcomed_with((ff_session_desc){ .out_bytes_max = 1 });
@@ -302,7 +302,7 @@ static void test_an_answer_larger_than_the_buffer_goes_alone(void **state)
     ff_session_destroy(session);
 }
 
-static void test_too_many_requests_end_the_session(void **state)
+static void too_many_requests_end_the_session(void **state)
 {
     (void)state;
     ff_session *session = welcomed_with((ff_session_desc){ .out_bytes_max = 1, .requests_max = 5 });
@@ -312,7 +312,7 @@ static void test_too_many_requests_end_the_session(void **state)
     expect_goodbye(session, FF_ERR_FULL);
 }
 
-static void test_pings_without_reading_are_left_unread(void **state)
+static void pings_without_reading_are_left_unread(void **state)
 {
     (void)state;
     ff_session *session = welcomed_with((ff_session_desc){ .out_bytes_max = 1 });
@@ -336,7 +336,7 @@ static void test_pings_without_reading_are_left_unread(void **state)
     ff_session_destroy(session);
 }
 
-static void test_idle(void **state)
+static void silence_makes_a_session_idle(void **state)
 {
     (void)state;
     ff_session *session = session_with((ff_session_desc){ .idle_ms_max = 1000, .now_us = 5000000 });
@@ -353,7 +353,7 @@ static void test_idle(void **state)
 
 /* ---- cancels ---- */
 
-static void test_cancelled_requests_are_not_served(void **state)
+static void cancelled_requests_are_not_served(void **state)
 {
     (void)state;
     ff_session *session = welcomed_with((ff_session_desc){ .out_bytes_max = 1, .requests_max = 4 });
@@ -399,7 +399,7 @@ static void render(ff_session *session, const ff_face_job *job)
     ff_session_face_done(session, job, face, bytes);
 }
 
-static void test_faces_one_at_a_time_in_the_order_wanted(void **state)
+static void faces_one_at_a_time_in_the_order_wanted(void **state)
 {
     (void)state;
     ff_session *session = welcomed();
@@ -420,7 +420,7 @@ static void test_faces_one_at_a_time_in_the_order_wanted(void **state)
     ff_session_destroy(session);
 }
 
-static void test_newer_panorama_supersedes(void **state)
+static void a_newer_panorama_supersedes(void **state)
 {
     (void)state;
     ff_session *session = welcomed();
@@ -442,7 +442,7 @@ static void test_newer_panorama_supersedes(void **state)
     ff_session_destroy(session);
 }
 
-static void test_cancelled_panorama(void **state)
+static void a_cancelled_panorama_is_not_drawn(void **state)
 {
     (void)state;
     ff_session *session = welcomed();
@@ -457,7 +457,7 @@ static void test_cancelled_panorama(void **state)
     ff_session_destroy(session);
 }
 
-static void test_failed_face_ends_its_panorama_only(void **state)
+static void failed_face_ends_its_panorama_only(void **state)
 {
     (void)state;
     ff_session *session = welcomed();
@@ -473,7 +473,7 @@ static void test_failed_face_ends_its_panorama_only(void **state)
     ff_session_destroy(session);
 }
 
-static void test_panoramas_per_minute(void **state)
+static void panoramas_per_minute_are_limited(void **state)
 {
     (void)state;
     ff_session *session = welcomed_with((ff_session_desc){ .panoramas_per_minute = 3 });
@@ -494,7 +494,7 @@ static void test_panoramas_per_minute(void **state)
     ff_session_destroy(session);
 }
 
-static void test_large_face_fits_beside_full_buffer(void **state)
+static void large_face_fits_beside_full_buffer(void **state)
 {
     (void)state;
     ff_session *session = welcomed_with(
@@ -522,26 +522,26 @@ static void test_large_face_fits_beside_full_buffer(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nodes_come_from_the_pack_in_order),
-        cmocka_unit_test(test_unknown_nodes_and_textures_fail),
-        cmocka_unit_test(test_damaged_record_fails),
-        cmocka_unit_test(test_bytes_one_by_one),
-        cmocka_unit_test(test_hello_must_come_first_and_once),
-        cmocka_unit_test(test_other_version_is_sent_away),
-        cmocka_unit_test(test_nonsense_ends_the_session),
-        cmocka_unit_test(test_servers_messages_and_endless_ones_end_the_session),
-        cmocka_unit_test(test_slow_reader_waits_and_loses_nothing),
-        cmocka_unit_test(test_an_answer_larger_than_the_buffer_goes_alone),
-        cmocka_unit_test(test_too_many_requests_end_the_session),
-        cmocka_unit_test(test_pings_without_reading_are_left_unread),
-        cmocka_unit_test(test_idle),
-        cmocka_unit_test(test_cancelled_requests_are_not_served),
-        cmocka_unit_test(test_faces_one_at_a_time_in_the_order_wanted),
-        cmocka_unit_test(test_newer_panorama_supersedes),
-        cmocka_unit_test(test_cancelled_panorama),
-        cmocka_unit_test(test_failed_face_ends_its_panorama_only),
-        cmocka_unit_test(test_panoramas_per_minute),
-        cmocka_unit_test(test_large_face_fits_beside_full_buffer),
+        cmocka_unit_test(nodes_come_from_the_pack_in_order),
+        cmocka_unit_test(unknown_nodes_and_textures_fail),
+        cmocka_unit_test(a_damaged_record_fails_alone),
+        cmocka_unit_test(bytes_one_by_one),
+        cmocka_unit_test(hello_must_come_first_and_once),
+        cmocka_unit_test(other_version_is_sent_away),
+        cmocka_unit_test(nonsense_ends_the_session),
+        cmocka_unit_test(servers_messages_and_endless_ones_end_the_session),
+        cmocka_unit_test(slow_reader_waits_and_loses_nothing),
+        cmocka_unit_test(an_answer_larger_than_the_buffer_goes_alone),
+        cmocka_unit_test(too_many_requests_end_the_session),
+        cmocka_unit_test(pings_without_reading_are_left_unread),
+        cmocka_unit_test(silence_makes_a_session_idle),
+        cmocka_unit_test(cancelled_requests_are_not_served),
+        cmocka_unit_test(faces_one_at_a_time_in_the_order_wanted),
+        cmocka_unit_test(a_newer_panorama_supersedes),
+        cmocka_unit_test(a_cancelled_panorama_is_not_drawn),
+        cmocka_unit_test(failed_face_ends_its_panorama_only),
+        cmocka_unit_test(panoramas_per_minute_are_limited),
+        cmocka_unit_test(large_face_fits_beside_full_buffer),
     };
     return cmocka_run_group_tests(tests, open_pack, close_pack);
 }

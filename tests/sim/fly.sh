@@ -7,12 +7,9 @@ bin=${BIN:-build/bin}
 fly=$bin/farfield-fly
 work=build/tests/fly.$$ # runs may go on side by side; left behind only after a failure
 mkdir -p "$work"
-failures=0
 server_pid=
 trap '[ -n "$server_pid" ] && kill "$server_pid" 2>/dev/null' EXIT
-result() { # STATUS WHAT
-    if [ "$1" = 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failures=$((failures + 1)); fi
-}
+. tests/rig/result.bash
 is() { # EXPRESSION WHAT: a python expression over the rows `r` (dicts of numbers), and the summary `s`, of the flight last flown
     python3 - "$work/$flown.csv" "$work/$flown.json" "$1" <<'END'
 import csv, json, sys
@@ -28,13 +25,7 @@ flies() { # NAME ARGUMENTS...
     timeout 300 "$fly" --pack "$work/hills.ffp" --csv "$work/$flown.csv" --json "$@" >"$work/$flown.json" 2>"$work/$flown.err"
 }
 
-python3 - "$work/hills.raw" "$work/node.raw" <<'END'
-import math, struct, sys
-def hills(x, y):
-    return int(700 + 350 * math.sin(x / 23) * math.cos(y / 31) + 120 * math.sin(x / 5 + y / 9) + 40 * math.sin(x * 1.7) * math.sin(y * 1.3))
-for path, n in zip(sys.argv[1:], (257, 9)):
-    open(path, "wb").write(b"".join(struct.pack("<H", hills(x, y)) for y in range(n) for x in range(n)))
-END
+python3 tests/rig/hills.py 257 "$work/hills.raw" 9 "$work/node.raw"
 "$bin/farfield-bake" "$work/hills.raw" --raw 257x257 --spacing 40 --tile-log2 6 --quiet -o "$work/hills.ffp" &&
     "$bin/farfield-bake" "$work/node.raw" --raw 9x9 --spacing 40 --tile-log2 3 --quiet -o "$work/node.ffp" &&
     "$bin/farfield-bake" "$work/hills.raw" --raw 257x257 --spacing 40 --densify 2 --tile-log2 6 --quiet -o "$work/dense.ffp"

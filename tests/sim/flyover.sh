@@ -7,22 +7,14 @@ bin=${BIN:-build/bin}
 work=build/tests/flyover.$$
 rm -rf "$work"
 mkdir -p "$work"
-failures=0
-result() { # STATUS WHAT
-    if [ "$1" = 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failures=$((failures + 1)); fi
-}
+. tests/rig/result.bash
 fly_over() { # OUT [VARIABLE=VALUE...]
     local out=$1
     shift
     env QUICK=1 SECONDS_EACH=2 FLYOVER_PACK="$work/hills.ffp" JOBS=2 "$@" tools/scripts/flyover.sh "$bin" "$out" >"$work/said" 2>"$work/error"
 }
 
-python3 - "$work/hills.raw" <<'END'
-import math, struct, sys
-def hills(x, y):
-    return int(700 + 350 * math.sin(x / 23) * math.cos(y / 31) + 120 * math.sin(x / 5 + y / 9) + 40 * math.sin(x * 1.7) * math.sin(y * 1.3))
-open(sys.argv[1], "wb").write(b"".join(struct.pack("<H", hills(x, y)) for y in range(129) for x in range(129)))
-END
+python3 tests/rig/hills.py 129 "$work/hills.raw"
 "$bin/farfield-bake" "$work/hills.raw" --raw 129x129 --spacing 80 --tile-log2 5 --quiet -o "$work/hills.ffp"
 result $? "a pack to fly over"
 

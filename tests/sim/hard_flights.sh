@@ -9,11 +9,8 @@ cd "$(dirname "$0")/../.." || exit 2
 bin=${BIN:-build/bin}
 work=build/tests/hard_flights.$$
 mkdir -p "$work"
-failures=0
 table=${HARD_TABLE:-/dev/null}
-result() { # STATUS WHAT
-    if [ "$1" = 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failures=$((failures + 1)); fi
-}
+. tests/rig/result.bash
 usual="--link umts --settle 10 --quality px:2 --back-plane 1500 --face 64 --fps 10 --sample 0.5 --audit on --backend none"
 
 # judge FLIGHT CALM FROM_S TO_S BOUND_PX BACK_S EMPTY_S DROPPED: link bad (or place new) in FROM..TO, 0 0: never
@@ -60,14 +57,12 @@ hard() { # NAME CALM FROM TO BOUND BACK EMPTY DROPPED ARGUMENTS...
     result $? "$name: $text"
 }
 # ---- ground and the calm flights ----
-python3 - "$work/hills.raw" "$work/trace" <<'END'
-import math, random, struct, sys
-def hills(x, y):
-    return int(700 + 350 * math.sin(x / 23) * math.cos(y / 31) + 120 * math.sin(x / 5 + y / 9) + 40 * math.sin(x * 1.7) * math.sin(y * 1.3))
-open(sys.argv[1], "wb").write(b"".join(struct.pack("<H", hills(x, y)) for y in range(257) for x in range(257)))
+python3 tests/rig/hills.py 257 "$work/hills.raw"
+python3 - "$work/trace" <<'END'
+import random, sys
 # A drive: seconds of 0 to 20 packets of 1500 bytes, three gaps of 6 s
 drive = random.Random(1)
-with open(sys.argv[2], "w") as trace:
+with open(sys.argv[1], "w") as trace:
     for second in range(60):
         for packet in range(0 if second % 20 < 6 else drive.randrange(1, 21)):
             trace.write(f"{second * 1000 + packet * 50}\n")

@@ -6,12 +6,9 @@ cd "$(dirname "$0")/../.." || exit 2
 link=${BIN:-build/bin}/farfield-link
 work=build/tests/link_proxy.$$ # runs may go on side by side; left behind only after a failure
 mkdir -p "$work"
-failures=0
 pids=()
 trap 'for pid in "${pids[@]}"; do kill "$pid" 2>/dev/null; done' EXIT
-result() { # STATUS WHAT
-    if [ "$1" = 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failures=$((failures + 1)); fi
-}
+. tests/rig/result.bash
 
 # An echo server; tells its port in a file.
 cat >"$work/echo.py" <<'END'

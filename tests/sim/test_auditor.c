@@ -104,7 +104,7 @@ static void assert_near(double a, double b)
 
 /* Ground drawn h too high, seen from H above: a pixel v below the horizon shows it h/H nearer to
  * the horizon, v*h/H pixels off. */
-static void test_flat_ground_too_high(void **state)
+static void flat_ground_too_high(void **state)
 {
     (void)state;
     static scene s;
@@ -129,7 +129,7 @@ static void test_flat_ground_too_high(void **state)
 
 /* Ground drawn above the eye: the error is the largest a picture can have, not a meaningless
  * number. */
-static void test_ground_above_the_eye(void **state)
+static void ground_above_the_eye(void **state)
 {
     (void)state;
     static scene s;
@@ -145,7 +145,7 @@ static void test_ground_above_the_eye(void **state)
 }
 
 /* Nothing is drawn, so no edge is near: each pixel is off by the size of the picture. */
-static void test_nothing_drawn(void **state)
+static void nothing_drawn_is_a_picture_off(void **state)
 {
     (void)state;
     static scene s;
@@ -168,7 +168,7 @@ static void test_nothing_drawn(void **state)
 
 /* Seen from 2 km up, the farthest row of tiles is missing: the drawn ground ends in a level line,
  * and each pixel above it is off by its distance to that line. */
-static void test_ground_not_yet_drawn(void **state)
+static void ground_not_yet_drawn(void **state)
 {
     (void)state;
     static scene s;
@@ -202,7 +202,7 @@ static void test_ground_not_yet_drawn(void **state)
 }
 
 /* The same wrong ground under several qualities: the auditor names another cause each time. */
-static void test_causes(void **state)
+static void the_quality_names_the_cause(void **state)
 {
     (void)state;
     static const struct {
@@ -244,7 +244,7 @@ static void test_causes(void **state)
 
 /* A panorama taken s to the west shows everything at the same depth s*d/depth pixels too far to the
  * east. */
-static void test_parallax(void **state)
+static void parallax_is_the_way_over_the_depth(void **state)
 {
     (void)state;
     static scene s;
@@ -274,7 +274,7 @@ static void test_parallax(void **state)
 }
 
 /* Only the faces held and only ground between front and back plane count as shown. */
-static void test_panorama_limits(void **state)
+static void a_panorama_shows_between_its_planes(void **state)
 {
     (void)state;
     static scene s;
@@ -314,7 +314,7 @@ static void usual_ground(uint8_t **bytes, ff_pack *pack, sim_ground *ground)
 
 /* The ground in memory is what the encoder was given, sample by sample (the usual pack is
  * lossless). */
-static void test_ground_is_the_source(void **state)
+static void ground_is_the_source(void **state)
 {
     (void)state;
     uint8_t *bytes;
@@ -343,7 +343,7 @@ static double uniform(sys_random *random, double low, double high)
 }
 
 /* Rays in all directions: the hit lies on the ground, and small steps find no ground before it. */
-static void test_cast_against_steps(void **state)
+static void rays_hit_where_steps_do(void **state)
 {
     (void)state;
     uint8_t *bytes;
@@ -380,7 +380,7 @@ static void test_cast_against_steps(void **state)
     free(bytes);
 }
 
-static void test_projection_is_the_renderers(void **state)
+static void projection_is_the_renderers(void **state)
 {
     (void)state;
     sys_random random;
@@ -410,7 +410,7 @@ static void test_projection_is_the_renderers(void **state)
 }
 
 /* A real cut with stitched borders: the auditor's triangles and the tree's own answer agree. */
-static void test_drawn_height_of_a_cut(void **state)
+static void drawn_height_of_a_cut(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -449,17 +449,17 @@ static void test_drawn_height_of_a_cut(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_flat_ground_too_high),
-        cmocka_unit_test(test_ground_above_the_eye),
-        cmocka_unit_test(test_nothing_drawn),
-        cmocka_unit_test(test_parallax),
-        cmocka_unit_test(test_panorama_limits),
-        cmocka_unit_test(test_ground_is_the_source),
-        cmocka_unit_test(test_cast_against_steps),
-        cmocka_unit_test(test_projection_is_the_renderers),
-        cmocka_unit_test(test_drawn_height_of_a_cut),
-        cmocka_unit_test(test_ground_not_yet_drawn),
-        cmocka_unit_test(test_causes),
+        cmocka_unit_test(flat_ground_too_high),
+        cmocka_unit_test(ground_above_the_eye),
+        cmocka_unit_test(nothing_drawn_is_a_picture_off),
+        cmocka_unit_test(parallax_is_the_way_over_the_depth),
+        cmocka_unit_test(a_panorama_shows_between_its_planes),
+        cmocka_unit_test(ground_is_the_source),
+        cmocka_unit_test(rays_hit_where_steps_do),
+        cmocka_unit_test(projection_is_the_renderers),
+        cmocka_unit_test(drawn_height_of_a_cut),
+        cmocka_unit_test(ground_not_yet_drawn),
+        cmocka_unit_test(the_quality_names_the_cause),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -43,7 +43,7 @@ static int64_t receive_all(sim_link *link, enum sim_direction way, size_t count,
     return now_us;
 }
 
-static void test_rate_exact(void **state)
+static void the_rate_is_exact(void **state)
 {
     (void)state;
     static const uint32_t rate[] = { 1, 7, 5500, 48000, 999983, 12500000 };
@@ -62,7 +62,7 @@ static void test_rate_exact(void **state)
 }
 
 /* Bytes are sent one by one at exactly the link's rate: rounding builds up no drift. */
-static void test_no_drift(void **state)
+static void rounding_does_not_drift(void **state)
 {
     (void)state;
     sim_link_desc desc = plain(3000, 0, 0); /* 333.33 us a byte */
@@ -78,7 +78,7 @@ static void test_no_drift(void **state)
     sim_link_destroy(link);
 }
 
-static void test_delay_and_jitter(void **state)
+static void delay_and_jitter_are_as_described(void **state)
 {
     (void)state;
     sim_link_desc desc = plain(0, 300000, 200000);
@@ -100,7 +100,7 @@ static void test_delay_and_jitter(void **state)
     sim_link_destroy(link);
 }
 
-static void test_queue_limit(void **state)
+static void a_full_queue_takes_no_more(void **state)
 {
     (void)state;
     sim_link_desc desc = plain(1000, 0, 0);
@@ -116,7 +116,7 @@ static void test_queue_limit(void **state)
 
 /* A sender that never stops sees every stall as a gap: the gaps' number, lengths and spacing are
  * those described. */
-static void test_stalls(void **state)
+static void stalls_are_as_described(void **state)
 {
     (void)state;
     sim_link_desc desc = plain(5500, 0, 0);
@@ -153,7 +153,7 @@ static void test_stalls(void **state)
     sim_link_destroy(link);
 }
 
-static void test_stall_rate(void **state)
+static void a_stall_lets_its_rate_through(void **state)
 {
     (void)state;
     sim_link_desc desc = plain(1000, 0, 0); /* a short time before the first stall */
@@ -182,7 +182,7 @@ static void write_trace(char *path, const char *text)
     close(fd);
 }
 
-static void test_trace_replay(void **state)
+static void a_trace_is_replayed(void **state)
 {
     (void)state;
     char path[64];
@@ -215,7 +215,7 @@ static void test_trace_replay(void **state)
 }
 
 /* A sender that always has bytes gets 1500 times the opportunities, over several turns. */
-static void test_trace_rate(void **state)
+static void a_trace_s_rate_is_its_packets(void **state)
 {
     (void)state;
     char path[64], text[4096] = "";
@@ -244,7 +244,7 @@ static void test_trace_rate(void **state)
     unlink(path);
 }
 
-static void test_trace_errors(void **state)
+static void bad_traces_are_refused(void **state)
 {
     (void)state;
     static const char *const bad[] = { "",     "x\n", "5\n4\n", "-1\n", "99999999999999999999\n",
@@ -314,7 +314,7 @@ static run_result run_profile(const sim_link_desc *desc, uint64_t seed, int look
     return result;
 }
 
-static void test_profiles(void **state)
+static void every_profile_repeats_itself(void **state)
 {
     (void)state;
     for (unsigned i = 0; sim_link_profile_at(i); i++) {
@@ -332,7 +332,7 @@ static void test_profiles(void **state)
     assert_null(sim_link_profile("carrier pigeon"));
 }
 
-static void test_parse(void **state)
+static void links_are_parsed(void **state)
 {
     (void)state;
     sim_link_desc desc;
@@ -350,7 +350,7 @@ static void test_parse(void **state)
 
 /* ---- cuts ---- */
 
-static void test_cut_and_reconnect(void **state)
+static void a_cut_is_reconnected(void **state)
 {
     (void)state;
     sim_link_desc desc = plain(1000, 100000, 0);
@@ -379,7 +379,7 @@ static void test_cut_and_reconnect(void **state)
 
 /* When a link changes, the bytes under way arrive in order and whole, at the new rate and delay;
  * the queue may grow and shrink; a stall ends. */
-static void test_change(void **state)
+static void a_changed_link_loses_nothing(void **state)
 {
     (void)state;
     sim_link_desc slow = plain(100, 1000, 0), fast = plain(10000, 5000, 0),
@@ -410,7 +410,7 @@ static void test_change(void **state)
     sim_link_destroy(link);
 }
 
-static void test_streams(void **state)
+static void streams_carry_bytes_both_ways(void **state)
 {
     (void)state;
     sim_link_desc desc = plain(0, 50000, 0);
@@ -440,20 +440,20 @@ static void test_streams(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rate_exact),
-        cmocka_unit_test(test_no_drift),
-        cmocka_unit_test(test_delay_and_jitter),
-        cmocka_unit_test(test_queue_limit),
-        cmocka_unit_test(test_stalls),
-        cmocka_unit_test(test_stall_rate),
-        cmocka_unit_test(test_trace_replay),
-        cmocka_unit_test(test_trace_rate),
-        cmocka_unit_test(test_trace_errors),
-        cmocka_unit_test(test_profiles),
-        cmocka_unit_test(test_parse),
-        cmocka_unit_test(test_cut_and_reconnect),
-        cmocka_unit_test(test_change),
-        cmocka_unit_test(test_streams),
+        cmocka_unit_test(the_rate_is_exact),
+        cmocka_unit_test(rounding_does_not_drift),
+        cmocka_unit_test(delay_and_jitter_are_as_described),
+        cmocka_unit_test(a_full_queue_takes_no_more),
+        cmocka_unit_test(stalls_are_as_described),
+        cmocka_unit_test(a_stall_lets_its_rate_through),
+        cmocka_unit_test(a_trace_is_replayed),
+        cmocka_unit_test(a_trace_s_rate_is_its_packets),
+        cmocka_unit_test(bad_traces_are_refused),
+        cmocka_unit_test(every_profile_repeats_itself),
+        cmocka_unit_test(links_are_parsed),
+        cmocka_unit_test(a_cut_is_reconnected),
+        cmocka_unit_test(a_changed_link_loses_nothing),
+        cmocka_unit_test(streams_carry_bytes_both_ways),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -68,7 +68,7 @@ static int64_t packet_us(const sim_link_way *way)
 
 /* Without stalls: the stated bytes a second, and never a gap longer than a packet and the
  * jitter. */
-static void test_rates(void **state)
+static void profiles_keep_their_rates(void **state)
 {
     (void)state;
     for (unsigned i = 0; sim_link_profile_at(i); i++) {
@@ -89,7 +89,7 @@ static void test_rates(void **state)
 }
 
 /* Each way has its own rate, also while both are full. */
-static void test_ways_do_not_share(void **state)
+static void ways_do_not_share(void **state)
 {
     (void)state;
     const sim_link_desc *desc = sim_link_profile("umts");
@@ -108,7 +108,7 @@ static void test_ways_do_not_share(void **state)
 /* ---- delay ---- */
 
 /* One byte at a time: at least the delay, at most the jitter more, and half of it in the mean. */
-static void test_delays(void **state)
+static void profiles_keep_their_delays(void **state)
 {
     (void)state;
     for (unsigned i = 0; sim_link_profile_at(i); i++) {
@@ -146,7 +146,7 @@ static void test_delays(void **state)
 /* Profiles with stalls, for about 400 of them: number and mean length as described; the time
  * between at the full rate. No byte passes during a stall here: the few that do (test_link.c) may
  * complete a packet and make two gaps of one. */
-static void test_stalls(void **state)
+static void profiles_keep_their_stalls(void **state)
 {
     (void)state;
     unsigned stalling = 0;
@@ -182,7 +182,7 @@ static void test_stalls(void **state)
 /* A link is cut about every 10 s while both ways are full. A connection lasts 5 to 15 s, 10 in the
  * mean, after the time it takes to connect; the bytes that arrive over it were sent over it, from
  * its first byte on. */
-static void test_cuts(void **state)
+static void profiles_are_cut_and_come_back(void **state)
 {
     (void)state;
     for (unsigned i = 0; sim_link_profile_at(i); i++) {
@@ -259,7 +259,7 @@ static void replay(const char *path)
 }
 
 /* A drive made here: seconds of 0 to 60 packets, gaps of up to 8 s. */
-static void test_replay(void **state)
+static void a_drive_is_replayed(void **state)
 {
     (void)state;
     char path[] = "/tmp/test_link_profiles_XXXXXX";
@@ -279,7 +279,7 @@ static void test_replay(void **state)
 }
 
 /* Links recorded on the road, if the machine has such recordings. */
-static void test_replay_recorded(void **state)
+static void recorded_drives_are_replayed(void **state)
 {
     (void)state;
     static const char *const name[] = { "TMobile-UMTS-driving", "Verizon-EVDO-driving",
@@ -296,13 +296,13 @@ static void test_replay_recorded(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rates),
-        cmocka_unit_test(test_ways_do_not_share),
-        cmocka_unit_test(test_delays),
-        cmocka_unit_test(test_stalls),
-        cmocka_unit_test(test_cuts),
-        cmocka_unit_test(test_replay),
-        cmocka_unit_test(test_replay_recorded),
+        cmocka_unit_test(profiles_keep_their_rates),
+        cmocka_unit_test(ways_do_not_share),
+        cmocka_unit_test(profiles_keep_their_delays),
+        cmocka_unit_test(profiles_keep_their_stalls),
+        cmocka_unit_test(profiles_are_cut_and_come_back),
+        cmocka_unit_test(a_drive_is_replayed),
+        cmocka_unit_test(recorded_drives_are_replayed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -25,7 +25,7 @@ static void read_text(fly_recording *recording, const char *text)
 
 static int near(double a, double b) { return fabs(a - b) < 1e-9; }
 
-static void test_between_lines(void **state)
+static void between_lines_is_interpolated(void **state)
 {
     (void)state;
     fly_recording recording;
@@ -49,7 +49,7 @@ static void test_between_lines(void **state)
 
 /* Columns may stand in any order, and unknown ones are skipped. Without headings the viewer looks
  * where he goes, and when he stands still he looks as before. */
-static void test_columns(void **state)
+static void columns_may_stand_in_any_order(void **state)
 {
     (void)state;
     fly_recording recording;
@@ -66,7 +66,7 @@ static void test_columns(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(test_between_lines),
-                                        cmocka_unit_test(test_columns) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(between_lines_is_interpolated),
+                                        cmocka_unit_test(columns_may_stand_in_any_order) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -129,7 +129,7 @@ static sim_relevance_figures figures(wire *w, int64_t now_us)
 
 /* A node two levels down draws its root, and both refinements above it; the root's neighbour is
  * never drawn. */
-static void test_line_of_ancestors(void **state)
+static void a_node_draws_its_ancestors(void **state)
 {
     (void)state;
     static wire w;
@@ -153,7 +153,7 @@ static void test_line_of_ancestors(void **state)
 
 /* A node beside a drawn one, which lets it be so fine, does not count as drawn, but is counted
  * apart. */
-static void test_supporting(void **state)
+static void a_supporting_node_is_counted_apart(void **state)
 {
     (void)state;
     static wire w;
@@ -174,7 +174,7 @@ static void test_supporting(void **state)
     sim_relevance_destroy(w.relevance);
 }
 
-static void test_too_late(void **state)
+static void what_is_drawn_too_late_is_not_relevant(void **state)
 {
     (void)state;
     static wire w;
@@ -195,7 +195,7 @@ static void test_too_late(void **state)
 
 /* Where a finer image is, the coarser one under it is not drawn. When the coarser image comes
  * again, the finer one is gone. */
-static void test_finest_image(void **state)
+static void only_the_finest_image_is_drawn(void **state)
 {
     (void)state;
     static wire w;
@@ -268,7 +268,7 @@ static void check_face(enum ff_face_name name, unsigned top, unsigned rows, int3
 
 /* 60 degrees across 240 pixels, 75 degrees across 320: rows 128 - 128 * 160 / 207.8 = 29.4 to 226.6
  * of the north face are in the window. */
-static void test_faces(void **state)
+static void faces_in_the_window_are_drawn(void **state)
 {
     (void)state;
     check_face(FF_FACE_NORTH, 100, 40, 500, 1);
@@ -283,7 +283,7 @@ static void test_faces(void **state)
 }
 
 /* Messages that bring no picture, and those that a cut leaves in pieces. */
-static void test_overhead(void **state)
+static void messages_without_picture_are_overhead(void **state)
 {
     (void)state;
     static wire w;
@@ -312,9 +312,12 @@ static void test_overhead(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_line_of_ancestors), cmocka_unit_test(test_too_late),
-        cmocka_unit_test(test_finest_image),      cmocka_unit_test(test_faces),
-        cmocka_unit_test(test_overhead),          cmocka_unit_test(test_supporting),
+        cmocka_unit_test(a_node_draws_its_ancestors),
+        cmocka_unit_test(what_is_drawn_too_late_is_not_relevant),
+        cmocka_unit_test(only_the_finest_image_is_drawn),
+        cmocka_unit_test(faces_in_the_window_are_drawn),
+        cmocka_unit_test(messages_without_picture_are_overhead),
+        cmocka_unit_test(a_supporting_node_is_counted_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,14 +5,8 @@ cd "$(dirname "$0")/../.." || exit 2
 bin=${BIN:-build/bin}
 view=$bin/farfield-view
 work=build/tests/view
-failures=0
 server_pid=""
-result() { # STATUS WHAT
-    if [ "$1" = 0 ]; then echo "ok - $2"; return 0; fi
-    echo "not ok - $2"
-    failures=$((failures + 1))
-    return 1
-}
+. tests/rig/result.bash
 stop_server() {
     [ -z "$server_pid" ] || { kill "$server_pid"; wait "$server_pid"; } 2>/dev/null
     server_pid=""

@@ -42,7 +42,7 @@ static uint32_t finest_drawn(const terrain_fixture *fx)
 
 /* A tile that comes into the window as a bare root makes the ground beside it coarse; one that was
  * foreseen does not. */
-static void test_new_tiles_come_refined(void **state)
+static void new_tiles_come_refined(void **state)
 {
     (void)state;
     for (int foreseen = 0; foreseen < 2; foreseen++) {
@@ -75,7 +75,7 @@ static void test_new_tiles_come_refined(void **state)
 }
 
 /* When the pool is full, prefetch asks for nothing. */
-static void test_no_room(void **state)
+static void a_full_pool_prefetches_nothing(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -98,8 +98,8 @@ static void test_no_room(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_new_tiles_come_refined),
-        cmocka_unit_test(test_no_room),
+        cmocka_unit_test(new_tiles_come_refined),
+        cmocka_unit_test(a_full_pool_prefetches_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,7 +28,7 @@ static void slope_colour(int east, int north, uint8_t rgba[4])
 
 static int brightness(const uint8_t rgba[4]) { return rgba[0] + rgba[1] + rgba[2]; }
 
-static void test_light_from_north_west(void **state)
+static void light_from_north_west(void **state)
 {
     (void)state;
     uint8_t level[4], lit[4], away[4], wall[4];
@@ -43,7 +43,7 @@ static void test_light_from_north_west(void **state)
     assert_int_equal(level[3], 255);
 }
 
-static void test_steep_ground_is_rock(void **state)
+static void steep_ground_is_rock(void **state)
 {
     (void)state;
     uint8_t level[4], steep[4];
@@ -53,7 +53,7 @@ static void test_steep_ground_is_rock(void **state)
     assert_true(steep_tint < level_tint);
 }
 
-static void test_water_at_zero_only(void **state)
+static void water_at_zero_only(void **state)
 {
     (void)state;
     uint16_t framed[11 * 11];
@@ -71,7 +71,7 @@ static void test_water_at_zero_only(void **state)
 }
 
 /* Both nodes beside a border, tiles' borders too, give its vertices the same colour. */
-static void test_no_seams(void **state)
+static void shading_has_no_seams(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -111,7 +111,7 @@ static void note(void *context, uint32_t user)
     forgotten |= user;
 }
 
-static void test_neighbours_are_coloured_anew(void **state)
+static void neighbours_are_coloured_anew(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -140,11 +140,9 @@ static void test_neighbours_are_coloured_anew(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_light_from_north_west),
-        cmocka_unit_test(test_steep_ground_is_rock),
-        cmocka_unit_test(test_water_at_zero_only),
-        cmocka_unit_test(test_no_seams),
-        cmocka_unit_test(test_neighbours_are_coloured_anew),
+        cmocka_unit_test(light_from_north_west),        cmocka_unit_test(steep_ground_is_rock),
+        cmocka_unit_test(water_at_zero_only),           cmocka_unit_test(shading_has_no_seams),
+        cmocka_unit_test(neighbours_are_coloured_anew),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

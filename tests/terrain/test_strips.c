@@ -87,7 +87,7 @@ static void check_combinations(unsigned k)
     }
 }
 
-static void test_every_combination_covers_once(void **state)
+static void every_combination_covers_once(void **state)
 {
     (void)state;
     for (unsigned k = 1; k <= FF_NODE_LOG2_MAX; k++) {
@@ -100,7 +100,7 @@ static void test_every_combination_covers_once(void **state)
 }
 
 /* The vertices of a side strip on its rim are exactly every 2^d-th one. */
-static void test_rims_leave_out_vertices(void **state)
+static void rims_leave_out_vertices(void **state)
 {
     (void)state;
     for (unsigned k = 1; k <= FF_NODE_LOG2_MAX; k++) {
@@ -123,7 +123,7 @@ static void test_rims_leave_out_vertices(void **state)
     }
 }
 
-static void test_diagonals_run_north_east(void **state)
+static void diagonals_run_north_east(void **state)
 {
     (void)state;
     assert_int_equal(ff_strips_make(&strips, 3), FF_OK);
@@ -145,7 +145,7 @@ static void test_diagonals_run_north_east(void **state)
     }
 }
 
-static void test_strips_of_a_mask(void **state)
+static void strips_of_a_mask(void **state)
 {
     (void)state;
     uint8_t strip[5];
@@ -159,7 +159,7 @@ static void test_strips_of_a_mask(void **state)
     }
 }
 
-static void test_range(void **state)
+static void node_sizes_out_of_range_are_errors(void **state)
 {
     (void)state;
     assert_int_equal(ff_strips_make(&strips, 0), FF_ERR_RANGE);
@@ -168,7 +168,7 @@ static void test_range(void **state)
     assert_int_equal(strips.length[FF_STRIP_INNER], 0);
 }
 
-static void test_indices_together(void **state)
+static void indices_add_up(void **state)
 {
     (void)state;
     for (unsigned node_log2 = 1; node_log2 <= FF_NODE_LOG2_MAX; node_log2++) {
@@ -182,12 +182,12 @@ static void test_indices_together(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_combination_covers_once),
-        cmocka_unit_test(test_rims_leave_out_vertices),
-        cmocka_unit_test(test_diagonals_run_north_east),
-        cmocka_unit_test(test_strips_of_a_mask),
-        cmocka_unit_test(test_indices_together),
-        cmocka_unit_test(test_range),
+        cmocka_unit_test(every_combination_covers_once),
+        cmocka_unit_test(rims_leave_out_vertices),
+        cmocka_unit_test(diagonals_run_north_east),
+        cmocka_unit_test(strips_of_a_mask),
+        cmocka_unit_test(indices_add_up),
+        cmocka_unit_test(node_sizes_out_of_range_are_errors),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -20,7 +20,7 @@ static ff_terrain_info textured(void)
     return info;
 }
 
-static void test_finest_image_over_a_node(void **state)
+static void finest_image_over_a_node(void **state)
 {
     (void)state;
     ff_terrain_info info = textured();
@@ -33,7 +33,7 @@ static void test_finest_image_over_a_node(void **state)
 
 /* The ends of a node's edge fall on the right texels, and the neighbour's image continues there
  * without a step. */
-static void test_edges_meet_rim_texels(void **state)
+static void edges_meet_rim_texels(void **state)
 {
     (void)state;
     ff_terrain_info info = textured();
@@ -61,7 +61,7 @@ static void test_edges_meet_rim_texels(void **state)
     }
 }
 
-static void test_first_row_of_a_jpeg_is_north(void **state)
+static void first_row_of_a_jpeg_is_north(void **state)
 {
     (void)state;
     ff_terrain_info info = textured();
@@ -81,9 +81,9 @@ static void test_first_row_of_a_jpeg_is_north(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_finest_image_over_a_node),
-        cmocka_unit_test(test_edges_meet_rim_texels),
-        cmocka_unit_test(test_first_row_of_a_jpeg_is_north),
+        cmocka_unit_test(finest_image_over_a_node),
+        cmocka_unit_test(edges_meet_rim_texels),
+        cmocka_unit_test(first_row_of_a_jpeg_is_north),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

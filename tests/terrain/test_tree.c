@@ -28,7 +28,7 @@ static double node_f(const terrain_fixture *fx, const ff_drawn *drawn, const ff_
     return sqrt(d) / (edge * quality->c_q8 / 256.0);
 }
 
-static void test_distance_measure(void **state)
+static void distance_splits_by_the_published_rule(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -55,7 +55,7 @@ static void test_distance_measure(void **state)
     fixture_free(&fx);
 }
 
-static void test_pixel_measure(void **state)
+static void pixels_split_by_their_error(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -76,7 +76,7 @@ static void test_pixel_measure(void **state)
 }
 
 /* The same ground, asked for in different orders through different links, ends in the same cut. */
-static void test_settled_cut_does_not_depend_on_order(void **state)
+static void settled_cut_does_not_depend_on_order(void **state)
 {
     (void)state;
     ff_view view = fixture_view(1500, 1100, 400, 0, -30);
@@ -108,7 +108,7 @@ static void test_settled_cut_does_not_depend_on_order(void **state)
 
 /* ---- window ---- */
 
-static void test_window_of_tiles(void **state)
+static void only_tiles_in_the_window_are_drawn(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -150,7 +150,7 @@ static void test_window_of_tiles(void **state)
     fixture_free(&fx);
 }
 
-static void test_one_node_world(void **state)
+static void a_world_of_one_node(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -169,7 +169,7 @@ static void test_one_node_world(void **state)
 
 /* ---- restriction ---- */
 
-static void test_refinement_of_one_spot_pulls_its_neighbours(void **state)
+static void refinement_of_one_spot_pulls_its_neighbours(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -189,7 +189,7 @@ static void test_refinement_of_one_spot_pulls_its_neighbours(void **state)
     fixture_free(&fx);
 }
 
-static void test_flat_ground_asks_for_nothing_below(void **state)
+static void flat_ground_asks_for_nothing_below(void **state)
 {
     (void)state;
     for (int measure = FF_MEASURE_DISTANCE; measure <= FF_MEASURE_PIXELS; measure++) {
@@ -209,7 +209,7 @@ static void test_flat_ground_asks_for_nothing_below(void **state)
 
 /* Beside rough ground flat ground is refined as far as the restriction needs, so that the rough
  * ground may split. */
-static void test_flat_ground_beside_rough(void **state)
+static void flat_ground_beside_rough(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -235,7 +235,7 @@ static void test_flat_ground_beside_rough(void **state)
 
 /* ---- wishes ---- */
 
-static void test_wishes_come_in_order(void **state)
+static void wishes_come_in_order(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -285,7 +285,7 @@ static uint32_t deliver_wishes(terrain_fixture *fx, const ff_view *view, const f
 
 /* The nodes in view and those that let them split are enough: the same nodes are drawn as when
  * everything has come. */
-static void test_wishes_in_view_are_enough(void **state)
+static void wishes_in_view_are_enough(void **state)
 {
     (void)state;
     terrain_fixture part, whole;
@@ -309,7 +309,7 @@ static void test_wishes_in_view_are_enough(void **state)
     }
 }
 
-static void test_wish_list_is_bounded_and_keeps_the_best(void **state)
+static void wish_list_is_bounded_and_keeps_the_best(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -329,7 +329,7 @@ static void test_wish_list_is_bounded_and_keeps_the_best(void **state)
     fixture_free(&fx);
 }
 
-static void test_bad_deliveries(void **state)
+static void bad_deliveries_are_refused(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -347,7 +347,7 @@ static void test_bad_deliveries(void **state)
     fixture_free(&fx);
 }
 
-static void test_create(void **state)
+static void trees_need_their_memory(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -367,7 +367,7 @@ static void test_create(void **state)
 
 /* ---- skipping ---- */
 
-static void test_select_skips_when_nothing_changed(void **state)
+static void select_skips_when_nothing_changed(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -398,20 +398,20 @@ static void test_select_skips_when_nothing_changed(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_distance_measure),
-        cmocka_unit_test(test_pixel_measure),
-        cmocka_unit_test(test_settled_cut_does_not_depend_on_order),
-        cmocka_unit_test(test_window_of_tiles),
-        cmocka_unit_test(test_one_node_world),
-        cmocka_unit_test(test_refinement_of_one_spot_pulls_its_neighbours),
-        cmocka_unit_test(test_flat_ground_asks_for_nothing_below),
-        cmocka_unit_test(test_flat_ground_beside_rough),
-        cmocka_unit_test(test_wishes_come_in_order),
-        cmocka_unit_test(test_wishes_in_view_are_enough),
-        cmocka_unit_test(test_wish_list_is_bounded_and_keeps_the_best),
-        cmocka_unit_test(test_bad_deliveries),
-        cmocka_unit_test(test_create),
-        cmocka_unit_test(test_select_skips_when_nothing_changed),
+        cmocka_unit_test(distance_splits_by_the_published_rule),
+        cmocka_unit_test(pixels_split_by_their_error),
+        cmocka_unit_test(settled_cut_does_not_depend_on_order),
+        cmocka_unit_test(only_tiles_in_the_window_are_drawn),
+        cmocka_unit_test(a_world_of_one_node),
+        cmocka_unit_test(refinement_of_one_spot_pulls_its_neighbours),
+        cmocka_unit_test(flat_ground_asks_for_nothing_below),
+        cmocka_unit_test(flat_ground_beside_rough),
+        cmocka_unit_test(wishes_come_in_order),
+        cmocka_unit_test(wishes_in_view_are_enough),
+        cmocka_unit_test(wish_list_is_bounded_and_keeps_the_best),
+        cmocka_unit_test(bad_deliveries_are_refused),
+        cmocka_unit_test(trees_need_their_memory),
+        cmocka_unit_test(select_skips_when_nothing_changed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

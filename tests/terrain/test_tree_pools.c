@@ -13,7 +13,7 @@
 
 /* A still camera and pools of every size: after a while the tree wishes for nothing, evicts nothing
  * and redraws nothing. */
-static void test_pools_settle(void **state)
+static void pools_settle_down(void **state)
 {
     (void)state;
     for (uint32_t nodes = 8; nodes < 500; nodes += nodes < 40 ? 1 : 37) {
@@ -37,7 +37,7 @@ static void test_pools_settle(void **state)
     }
 }
 
-static void test_full_pool_stays_still_for_10000_frames(void **state)
+static void full_pool_stays_still_for_10000_frames(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -58,7 +58,7 @@ static void test_full_pool_stays_still_for_10000_frames(void **state)
 
 /* Half a world of roots and a pool for eight: the tree holds the eight nearest, and does not evict
  * one for another. */
-static void test_more_roots_than_slots(void **state)
+static void more_roots_than_slots(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -78,7 +78,7 @@ static void test_more_roots_than_slots(void **state)
     fixture_free(&fx);
 }
 
-static void test_cache_serves_a_return(void **state)
+static void cache_serves_a_return(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -95,7 +95,7 @@ static void test_cache_serves_a_return(void **state)
 
 /* A family that was not asked for is not given room by dropping the node it would refine, whatever
  * sigma says. */
-static void test_own_family_is_spared(void **state)
+static void own_family_is_spared(void **state)
 {
     (void)state;
     for (int32_t sigma = 257; sigma < 100000; sigma *= 300) {
@@ -128,7 +128,7 @@ static void note_eviction(void *context, uint32_t user)
     evicted_users++;
 }
 
-static void test_user_words(void **state)
+static void user_words_live_and_die_with_nodes(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -155,7 +155,7 @@ static void test_user_words(void **state)
 
 /* ---- extremes: nothing overflows (UndefinedBehaviorSanitizer watches) ---- */
 
-static void test_largest_terrain_and_farthest_cameras(void **state)
+static void largest_terrain_and_farthest_cameras(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -182,7 +182,7 @@ static void test_largest_terrain_and_farthest_cameras(void **state)
     fixture_free(&fx);
 }
 
-static void test_a_long_thin_world_of_many_tiles(void **state)
+static void a_long_thin_world_of_many_tiles(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -204,14 +204,14 @@ static void test_a_long_thin_world_of_many_tiles(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pools_settle),
-        cmocka_unit_test(test_full_pool_stays_still_for_10000_frames),
-        cmocka_unit_test(test_more_roots_than_slots),
-        cmocka_unit_test(test_cache_serves_a_return),
-        cmocka_unit_test(test_own_family_is_spared),
-        cmocka_unit_test(test_user_words),
-        cmocka_unit_test(test_largest_terrain_and_farthest_cameras),
-        cmocka_unit_test(test_a_long_thin_world_of_many_tiles),
+        cmocka_unit_test(pools_settle_down),
+        cmocka_unit_test(full_pool_stays_still_for_10000_frames),
+        cmocka_unit_test(more_roots_than_slots),
+        cmocka_unit_test(cache_serves_a_return),
+        cmocka_unit_test(own_family_is_spared),
+        cmocka_unit_test(user_words_live_and_die_with_nodes),
+        cmocka_unit_test(largest_terrain_and_farthest_cameras),
+        cmocka_unit_test(a_long_thin_world_of_many_tiles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

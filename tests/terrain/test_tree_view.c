@@ -51,7 +51,7 @@ static void assert_nothing_visible_culled(terrain_fixture *fx, const ff_view *vi
     }
 }
 
-static void test_culling_never_drops_what_is_visible(void **state)
+static void culling_never_drops_what_is_visible(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -85,7 +85,7 @@ static void test_culling_never_drops_what_is_visible(void **state)
     fixture_free(&fx);
 }
 
-static void test_culling_is_of_use(void **state)
+static void culling_is_of_use(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -103,7 +103,7 @@ static void test_culling_is_of_use(void **state)
     fixture_free(&fx);
 }
 
-static void test_drawn_nearest_first(void **state)
+static void nodes_are_drawn_nearest_first(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -129,7 +129,7 @@ static void test_drawn_nearest_first(void **state)
 
 /* ---- the drawn surface ---- */
 
-static void test_vertices_and_height_agree(void **state)
+static void vertices_and_height_agree(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -169,7 +169,7 @@ static void test_vertices_and_height_agree(void **state)
 
 /* Across every border of nodes the surface goes on without a step: the two sides' triangles
  * meet. */
-static void test_height_has_no_steps(void **state)
+static void height_has_no_steps(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -195,7 +195,7 @@ static void test_height_has_no_steps(void **state)
     fixture_free(&fx);
 }
 
-static void test_nothing_drawn_beyond_view(void **state)
+static void nothing_drawn_beyond_view(void **state)
 {
     (void)state;
     terrain_fixture fx;
@@ -221,12 +221,12 @@ static void test_nothing_drawn_beyond_view(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_culling_never_drops_what_is_visible),
-        cmocka_unit_test(test_culling_is_of_use),
-        cmocka_unit_test(test_nothing_drawn_beyond_view),
-        cmocka_unit_test(test_drawn_nearest_first),
-        cmocka_unit_test(test_vertices_and_height_agree),
-        cmocka_unit_test(test_height_has_no_steps),
+        cmocka_unit_test(culling_never_drops_what_is_visible),
+        cmocka_unit_test(culling_is_of_use),
+        cmocka_unit_test(nothing_drawn_beyond_view),
+        cmocka_unit_test(nodes_are_drawn_nearest_first),
+        cmocka_unit_test(vertices_and_height_agree),
+        cmocka_unit_test(height_has_no_steps),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -72,14 +72,14 @@ static void fly_randomly(uint64_t seed, unsigned node_log2, unsigned tile_log2, 
     fixture_free(&fx);
 }
 
-static void test_random_flights(void **state)
+static void random_flights_are_watertight(void **state)
 {
     (void)state;
     for (uint64_t seed = 0; seed < 120; seed++)
         fly_randomly(seed, 3, 7, 3, 2, fixture_hills, seed % 3 == 0 ? 60 : 1200);
 }
 
-static void test_random_flights_every_node_size(void **state)
+static void random_flights_every_node_size(void **state)
 {
     (void)state;
     for (unsigned k = 1; k <= 5; k++) {
@@ -88,7 +88,7 @@ static void test_random_flights_every_node_size(void **state)
     }
 }
 
-static void test_random_flights_over_hard_ground(void **state)
+static void random_flights_over_hard_ground(void **state)
 {
     (void)state;
     const fixture_height ground[] = { fixture_cliffs, fixture_noise, fixture_flat,
@@ -99,14 +99,14 @@ static void test_random_flights_over_hard_ground(void **state)
     }
 }
 
-static void test_random_flights_tiny_pools(void **state)
+static void random_flights_tiny_pools(void **state)
 {
     (void)state;
     for (uint32_t nodes = 8; nodes < 40; nodes++)
         fly_randomly(3000 + nodes, 3, 7, 2, 2, fixture_hills, nodes);
 }
 
-static void test_lossy_ground(void **state)
+static void lossy_ground_is_watertight(void **state)
 {
     (void)state;
     for (unsigned codec = 0; codec < FF_CODEC_COUNT; codec++) {
@@ -187,7 +187,7 @@ static uint32_t first_stitched(const spoilt *s)
     return i;
 }
 
-static void test_judge_finds_missing_stitch(void **state)
+static void judge_finds_missing_stitch(void **state)
 {
     (void)state;
     spoilt s;
@@ -196,7 +196,7 @@ static void test_judge_finds_missing_stitch(void **state)
     assert_found(&s, "crack");
 }
 
-static void test_judge_finds_wrong_height(void **state)
+static void judge_finds_wrong_height(void **state)
 {
     (void)state;
     spoilt s;
@@ -205,7 +205,7 @@ static void test_judge_finds_wrong_height(void **state)
     assert_found(&s, "crack");
 }
 
-static void test_judge_finds_doubled_ground(void **state)
+static void judge_finds_doubled_ground(void **state)
 {
     (void)state;
     spoilt s;
@@ -223,7 +223,7 @@ static void test_judge_finds_doubled_ground(void **state)
     assert_found(&s, "lies on");
 }
 
-static void test_judge_finds_wrong_place(void **state)
+static void judge_finds_wrong_place(void **state)
 {
     (void)state;
     spoilt s;
@@ -233,7 +233,7 @@ static void test_judge_finds_wrong_place(void **state)
 }
 
 /* A node left out makes no crack, only an end of the view: any part of a whole cut is whole. */
-static void test_judge_accepts_parts(void **state)
+static void the_judge_accepts_parts(void **state)
 {
     (void)state;
     spoilt s;
@@ -284,7 +284,7 @@ static void spoil(spoilt *s, sys_random *random)
 
 /* The quick judge and the slow judge, which looks at every triangle, agree on cuts with up to three
  * faults of any kind. */
-static void test_judges_agree(void **state)
+static void the_judges_agree(void **state)
 {
     (void)state;
     spoilt s, original;
@@ -322,7 +322,7 @@ static void test_judges_agree(void **state)
 }
 
 /* Nodes that touch in a corner alone agree on its height. */
-static void test_judge_finds_wrong_corner(void **state)
+static void judge_finds_wrong_corner(void **state)
 {
     (void)state;
     spoilt s;
@@ -348,18 +348,18 @@ static void test_judge_finds_wrong_corner(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random_flights),
-        cmocka_unit_test(test_random_flights_every_node_size),
-        cmocka_unit_test(test_random_flights_over_hard_ground),
-        cmocka_unit_test(test_random_flights_tiny_pools),
-        cmocka_unit_test(test_lossy_ground),
-        cmocka_unit_test(test_judge_finds_missing_stitch),
-        cmocka_unit_test(test_judge_finds_wrong_height),
-        cmocka_unit_test(test_judge_finds_doubled_ground),
-        cmocka_unit_test(test_judge_finds_wrong_place),
-        cmocka_unit_test(test_judge_accepts_parts),
-        cmocka_unit_test(test_judge_finds_wrong_corner),
-        cmocka_unit_test(test_judges_agree),
+        cmocka_unit_test(random_flights_are_watertight),
+        cmocka_unit_test(random_flights_every_node_size),
+        cmocka_unit_test(random_flights_over_hard_ground),
+        cmocka_unit_test(random_flights_tiny_pools),
+        cmocka_unit_test(lossy_ground_is_watertight),
+        cmocka_unit_test(judge_finds_missing_stitch),
+        cmocka_unit_test(judge_finds_wrong_height),
+        cmocka_unit_test(judge_finds_doubled_ground),
+        cmocka_unit_test(judge_finds_wrong_place),
+        cmocka_unit_test(the_judge_accepts_parts),
+        cmocka_unit_test(judge_finds_wrong_corner),
+        cmocka_unit_test(the_judges_agree),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -4,10 +4,7 @@ set -u
 cd "$(dirname "$0")/../.." || exit 2
 report=${BIN:-build/bin}/farfield-report
 work=build/tests/report
-failures=0
-result() { # STATUS WHAT
-    if [ "$1" = 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failures=$((failures + 1)); fi
-}
+. tests/rig/result.bash
 rm -rf "$work"
 mkdir -p "$work/fly"
 

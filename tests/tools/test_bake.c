@@ -55,7 +55,7 @@ static void check_error(uint32_t cells, uint32_t cell, uint32_t seed)
     test_free(drawn);
 }
 
-static void test_node_error_is_exact(void **state)
+static void node_error_is_exact(void **state)
 {
     (void)state;
     check_error(8, 1, 1);
@@ -65,7 +65,7 @@ static void test_node_error_is_exact(void **state)
     check_error(1, 3, 5);
 }
 
-static void test_node_error_of_a_plane_is_nothing(void **state)
+static void node_error_of_a_plane_is_nothing(void **state)
 {
     uint16_t plane[33 * 33];
     (void)state;
@@ -85,7 +85,7 @@ static void write_grid(bake_grid *grid, uint32_t width, uint32_t height, const f
         assert_int_equal(bake_grid_write(grid, j, 0, width, values + (size_t)j * width), 0);
 }
 
-static void test_fill_keeps_what_is_known(void **state)
+static void fill_keeps_what_is_known(void **state)
 {
     enum { W = 61, H = 47 };
     static float before[W * H], after[W * H];
@@ -108,7 +108,7 @@ static void test_fill_keeps_what_is_known(void **state)
     bake_grid_close(&grid);
 }
 
-static void test_fill_from_a_single_sample(void **state)
+static void fill_from_a_single_sample(void **state)
 {
     float values[12], out[12];
     bake_grid grid;
@@ -124,7 +124,7 @@ static void test_fill_from_a_single_sample(void **state)
 
 /* ---- densifying ---- */
 
-static void test_densify_keeps_samples_and_flat_water(void **state)
+static void densify_keeps_samples_and_flat_water(void **state)
 {
     enum { W = 40, H = 30, N = 4, FINE = (W - 1) * N + 1 };
     static float values[W * H], row[FINE];
@@ -153,7 +153,7 @@ static void test_densify_keeps_samples_and_flat_water(void **state)
 
 /* ---- tiles ---- */
 
-static void test_tile_size_suits_the_raster(void **state)
+static void tile_size_suits_the_raster(void **state)
 {
     (void)state;
     assert_int_equal(bake_choose_tile_log2(3, 5, 5), 3);
@@ -195,7 +195,7 @@ static void load_noise(bake_tile *tile, const ff_terrain_info *info, bake_grid *
     assert_int_equal(bake_tile_load(tile, grid, number), 0);
 }
 
-static void test_tile_repeats_the_rim(void **state)
+static void tile_repeats_the_rim(void **state)
 {
     ff_terrain_info info = small_info(0);
     bake_tile tile;
@@ -258,7 +258,7 @@ static void check_records(uint16_t max_error)
     bake_grid_close(&grid);
 }
 
-static void test_records_decode(void **state)
+static void records_decode(void **state)
 {
     (void)state;
     check_records(0);
@@ -287,7 +287,7 @@ static int take_job(void *context, int worker, uint32_t job)
     return 0;
 }
 
-static void test_jobs_are_taken_in_order(void **state)
+static void jobs_are_taken_in_order(void **state)
 {
     (void)state;
     for (int threads = 1; threads <= 8; threads++) {
@@ -299,7 +299,7 @@ static void test_jobs_are_taken_in_order(void **state)
     }
 }
 
-static void test_a_failed_job_ends_all(void **state)
+static void a_failed_job_ends_all(void **state)
 {
     ledger l = { .fail_at = 50 };
     bake_jobs jobs = { "test", JOBS, 4, &l, make_job, take_job };
@@ -311,16 +311,16 @@ static void test_a_failed_job_ends_all(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_node_error_is_exact),
-        cmocka_unit_test(test_node_error_of_a_plane_is_nothing),
-        cmocka_unit_test(test_fill_keeps_what_is_known),
-        cmocka_unit_test(test_fill_from_a_single_sample),
-        cmocka_unit_test(test_densify_keeps_samples_and_flat_water),
-        cmocka_unit_test(test_tile_size_suits_the_raster),
-        cmocka_unit_test(test_tile_repeats_the_rim),
-        cmocka_unit_test(test_records_decode),
-        cmocka_unit_test(test_jobs_are_taken_in_order),
-        cmocka_unit_test(test_a_failed_job_ends_all),
+        cmocka_unit_test(node_error_is_exact),
+        cmocka_unit_test(node_error_of_a_plane_is_nothing),
+        cmocka_unit_test(fill_keeps_what_is_known),
+        cmocka_unit_test(fill_from_a_single_sample),
+        cmocka_unit_test(densify_keeps_samples_and_flat_water),
+        cmocka_unit_test(tile_size_suits_the_raster),
+        cmocka_unit_test(tile_repeats_the_rim),
+        cmocka_unit_test(records_decode),
+        cmocka_unit_test(jobs_are_taken_in_order),
+        cmocka_unit_test(a_failed_job_ends_all),
     };
     bake_say_setup("test_bake", 1);
     bake_temp_setup("build/x");

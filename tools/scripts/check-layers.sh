@@ -152,6 +152,7 @@ check_words() {
     grep -v '^protocol/ff_assert.h:' "$core" | report_words '[^A-Za-z0-9_.>]assert *\(' 'assert instead of FF_ASSERT or C3D_ASSERT in the core'
     report_words '[^A-Za-z0-9_.>](time|clock|clock_gettime|gettimeofday|nanosleep|usleep|rand|rand_r|srand|random|drand48) *\(' \
         'clock or chance in the core' <"$core"
+    grep '^tests/' "$work/code" | report_words 'cmocka_unit_test[a-z_]*\(test_' 'a test is named by a sentence'
 }
 
 # ---- the ground's shape: who counts tiles, multiplies edges, takes sides for opposite, or reads what a shape keeps, asks protocol/shape ----

@@ -9,34 +9,30 @@ without=" $* "
 qemu=(qemu-arm -cpu arm1136)
 work=build/handheld/work
 mkdir -p "$work"
-failures=0
 server_pid=
 trap '[ -z "$server_pid" ] || kill "$server_pid"' EXIT
-result() { # STATUS WHAT
-    if [ "$1" = 0 ]; then echo "ok - $2"; else echo "not ok - $2"; failures=$((failures + 1)); fi
-}
+. tests/rig/result.bash
 value() { grep -E "^$1 " "$2" | awk '{ print $2 }'; } # NAME FILE: a figure of a flight
 has() { # FEATURE: this build has it
     [[ $features == *" $1 "* ]] || { echo "handheld.sh: no feature is called $1 (features.mk)" >&2; exit 2; }
     [[ $without != *" $1 "* ]]
 }
 
-mapfile -t core < <(find "$objects"/{protocol,client,common3d} -name '*.o')
+mapfile -t core < <(find "$objects"/{protocol,client,common3d,platform/options,sim/options,sim/handheld} -name '*.o')
 counted=$(tools/scripts/check-no-float.sh arm-linux-gnueabi- "${core[@]}")
-result $? "the core has neither floating-point instructions nor helpers ($counted)"
+result $? "the core and the command line have neither floating-point instructions nor helpers ($counted)"
 ! arm-linux-gnueabi-readelf -A "$program" | grep -q 'Tag_ABI_VFP_args' && [ "$(arm-linux-gnueabi-readelf -h "$program" | grep -c 'soft-float')" = 1 ]
 result $? "the program is static, for armv6, soft float"
 
+python3 tests/rig/hills.py 257 "$work/hills.raw"
 python3 - "$work" <<'END'
-import math, struct, sys
-def hills(x, y):
-    return int(700 + 350 * math.sin(x / 23) * math.cos(y / 31) + 120 * math.sin(x / 5 + y / 9) + 40 * math.sin(x * 1.7) * math.sin(y * 1.3))
+import struct, sys
 n = 257
-open(sys.argv[1] + "/hills.raw", "wb").write(b"".join(struct.pack("<H", hills(x, y)) for y in range(n) for x in range(n)))
+heights = struct.unpack("<%dH" % (n * n), open(sys.argv[1] + "/hills.raw", "rb").read())
 rgb = bytearray()
 for y in range(n):
     for x in range(n):
-        h = hills(x, y) * 255 // 1300
+        h = heights[y * n + x] * 255 // 1300
         rgb += bytes((h // 2 + 40 + (x ^ y) % 16, 90 + h // 3, h // 2))
 open(sys.argv[1] + "/hills.ppm", "wb").write(b"P6 %d %d 255\n" % (n, n) + rgb)
 END

@@ -1,0 +1,10 @@
+# What every script test is made of, read with `. tests/rig/result.bash` from the project's root: one line a case, and in the end
+# `exit $((failures > 0))`.
+failures=0
+
+result() { # STATUS WHAT: "ok - WHAT" for status 0, or "not ok - WHAT" and status 1
+    if [ "$1" = 0 ]; then echo "ok - $2"; return 0; fi
+    echo "not ok - $2"
+    failures=$((failures + 1))
+    return 1
+}
