@@ -1,5 +1,6 @@
 #include "ff_bytes.h"
 
+#include "ff_assert.h"
 #include "ff_error.h"
 
 #include <string.h>
@@ -8,6 +9,7 @@ const uint8_t *ff_read_span(ff_reader *in, size_t count)
 {
     const uint8_t *span = in->at;
 
+    FF_ASSERT(in->at <= in->end);
     if (in->error == FF_OK && (size_t)(in->end - in->at) < count) in->error = FF_ERR_TRUNCATED;
     if (in->error != FF_OK) return NULL;
     in->at += count;
@@ -19,12 +21,14 @@ uint64_t ff_read_bytes(ff_reader *in, unsigned count)
     const uint8_t *bytes = ff_read_span(in, count);
     uint64_t value = 0;
 
+    FF_ASSERT(count <= 8);
     for (unsigned i = 0; bytes && i < count; i++) value |= (uint64_t)bytes[i] << (8 * i);
     return value;
 }
 
 int64_t ff_read_signed(ff_reader *in, unsigned count)
 {
+    FF_ASSERT(count >= 1 && count <= 8);
     uint64_t value = ff_read_bytes(in, count), sign = (uint64_t)1 << (8 * count - 1);
 
     return value & sign ? -(int64_t)(2 * sign - 1 - value) - 1 : (int64_t)value;
@@ -38,6 +42,7 @@ uint32_t ff_read_varint(ff_reader *in)
         uint32_t byte = (uint32_t)ff_read_bytes(in, 1);
         if (in->error != FF_OK) return 0;
         if ((shift == 28 && byte > 15) || (shift > 0 && byte == 0)) break;
+        FF_ASSERT((byte & 127u) <= UINT32_MAX >> shift);
         value |= (byte & 127u) << shift;
         if (byte < 128) return value;
     }
@@ -47,6 +52,7 @@ uint32_t ff_read_varint(ff_reader *in)
 
 void ff_write_span(ff_writer *out, const uint8_t *bytes, size_t count)
 {
+    FF_ASSERT(out->at <= out->end);
     if (out->error == FF_OK && (size_t)(out->end - out->at) < count) out->error = FF_ERR_FULL;
     if (out->error != FF_OK || count == 0) return;
     memcpy(out->at, bytes, count);
@@ -57,6 +63,7 @@ void ff_write_bytes(ff_writer *out, uint64_t value, unsigned count)
 {
     uint8_t bytes[8];
 
+    FF_ASSERT(count <= sizeof(bytes));
     for (unsigned i = 0; i < count; i++) bytes[i] = (uint8_t)(value >> (8 * i));
     ff_write_span(out, bytes, count);
 }
@@ -72,6 +79,7 @@ unsigned ff_varint_bytes(uint32_t value)
     unsigned count = 1;
 
     for (; value > 127; value >>= 7) count++;
+    FF_ASSERT(count <= 5);
     return count;
 }
 

@@ -19,6 +19,11 @@ static uint32_t gather(uint32_t v)
     return (v | (v >> 8)) & 0xffffu;
 }
 
-uint32_t ff_morton_encode(uint32_t x, uint32_t y) { return spread(x) | (spread(y) << 1); }
+uint32_t ff_morton_encode(uint32_t x, uint32_t y)
+{
+    FF_ASSERT(x <= UINT16_MAX && y <= UINT16_MAX);
+    return spread(x) | (spread(y) << 1);
+}
+
 uint32_t ff_morton_x(uint32_t code) { return gather(code); }
 uint32_t ff_morton_y(uint32_t code) { return gather(code >> 1); }

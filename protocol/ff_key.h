@@ -13,6 +13,8 @@
 #ifndef FF_KEY_H
 #define FF_KEY_H
 
+#include "ff_assert.h"
+
 #include <stdint.h>
 
 typedef uint64_t ff_key;
@@ -21,11 +23,17 @@ typedef uint64_t ff_key;
 #define FF_KEY_TILES_MAX (1u << 28)
 #define FF_KEY_LEVEL_MAX 15u
 
+/* Tile, level and code fill a key. No terrain has nodes of level 15 (ff_terrain.c), so the key of
+ * all ones is no node's. */
+FF_STATIC_ASSERT(((ff_key)(FF_KEY_TILES_MAX - 1) << 36 | (ff_key)FF_KEY_LEVEL_MAX << 32 |
+                  UINT32_MAX) == FF_KEY_NONE);
+
 /* Of a node's grid: its first row, last column, last row, first column. They run round it. */
 enum ff_side { FF_SIDE_SOUTH, FF_SIDE_EAST, FF_SIDE_NORTH, FF_SIDE_WEST, FF_SIDE_COUNT };
 
 static inline ff_key ff_key_make(uint32_t tile, uint32_t level, uint32_t code)
 {
+    FF_ASSERT(level <= FF_KEY_LEVEL_MAX);
     return ((ff_key)tile << 36) | ((ff_key)(level & 15u) << 32) | code;
 }
 
@@ -38,10 +46,12 @@ static inline uint32_t ff_key_quadrant(ff_key key) { return (uint32_t)key & 3u; 
  * a node whose level is more than 0. */
 static inline ff_key ff_key_child(ff_key key, uint32_t quadrant)
 {
+    FF_ASSERT(ff_key_level(key) < FF_KEY_LEVEL_MAX && quadrant < 4);
     return ff_key_make(ff_key_tile(key), ff_key_level(key) + 1, (ff_key_code(key) << 2) | quadrant);
 }
 static inline ff_key ff_key_parent(ff_key key)
 {
+    FF_ASSERT(ff_key_level(key) > 0);
     return ff_key_make(ff_key_tile(key), ff_key_level(key) - 1, ff_key_code(key) >> 2);
 }
 
@@ -52,6 +62,7 @@ uint32_t ff_morton_y(uint32_t code);
 
 #define FF_KEY_X_BITS 0x55555555u /* even bits hold x, odd bits y */
 #define FF_KEY_Y_BITS 0xaaaaaaaau
+FF_STATIC_ASSERT((FF_KEY_X_BITS ^ FF_KEY_Y_BITS) == UINT32_MAX);
 
 /* The code of the node of the same level across `side` in the same tile, by arithmetic on the
  * interleaved bits alone. 1 when that leads over the tile's border: *code is then where the step
@@ -69,6 +80,7 @@ static inline int ff_key_step(ff_key key, enum ff_side side, uint32_t *code)
     /* the coordinate's value in the last node before the border */
     uint32_t border = up ? own & level_bits : 0;
 
+    FF_ASSERT((unsigned)side < FF_SIDE_COUNT && (from & ~level_bits) == 0);
     *code = (from & ~own) | (moved & own & level_bits);
     return (from & own) == border;
 }

@@ -3,6 +3,7 @@
  * its place was checked. */
 #include "ff_pack.h"
 
+#include "ff_assert.h"
 #include "ff_bytes.h"
 #include "shape/ff_shape.h"
 
@@ -15,6 +16,11 @@ static const uint8_t magic[8] = { 0x89, 'F', 'F', 'P', '\r', '\n', 0x1a, '\n' };
 #define CHECKSUM_AT      (8 + 4 + FF_TERRAIN_BYTES - 4)
 #define HEADER_CRC_AT    (FF_PACK_HEADER_BYTES - 4)
 #define RECORD_CRC_BYTES 4
+#define SECTION_BYTES    (2 + 2 + 4 + 4 + 4 * 8)
+
+FF_STATIC_ASSERT(CHECKSUM_AT + 4 + 4 + FF_PACK_SECTIONS_MAX * SECTION_BYTES <= HEADER_CRC_AT);
+/* An index of any section, one entry longer than its records, is counted in 64 bits. */
+FF_STATIC_ASSERT((uint64_t)FF_KEY_TILES_MAX << (2 * FF_KEY_LEVEL_MAX) < UINT64_MAX / 8);
 
 static uint64_t load(const uint8_t *bytes, unsigned count)
 {
@@ -27,6 +33,7 @@ static uint64_t load(const uint8_t *bytes, unsigned count)
 
 static uint64_t records_expected(const ff_terrain_info *info, uint32_t level)
 {
+    FF_ASSERT(level <= FF_KEY_LEVEL_MAX);
     return (uint64_t)ff_shape_tiles(info) << (2 * level);
 }
 
@@ -109,6 +116,7 @@ int ff_pack_header_encode(const ff_pack_header *header, uint8_t *out)
 
     if (ff_terrain_check(&header->info) != FF_OK || check_sections(header) != FF_OK)
         return FF_ERR_RANGE;
+    FF_ASSERT(header->section_count <= FF_PACK_SECTIONS_MAX);
     memset(out, 0, FF_PACK_HEADER_BYTES);
     ff_write_span(&writer, magic, sizeof(magic));
     ff_write_bytes(&writer, FF_PACK_VERSION, 4);
@@ -116,6 +124,9 @@ int ff_pack_header_encode(const ff_pack_header *header, uint8_t *out)
     ff_write_bytes(&writer, header->section_count, 4);
     for (uint32_t i = 0; i < header->section_count; i++)
         write_section(&writer, &header->section[i]);
+    FF_ASSERT(writer.error == FF_OK &&
+              writer.at - out ==
+                  CHECKSUM_AT + 4 + 4 + (ptrdiff_t)header->section_count * SECTION_BYTES);
     memset(out + CHECKSUM_AT, 0, 4);
     checksum = ff_crc32(0, out, HEADER_CRC_AT);
     writer.at = out + CHECKSUM_AT;
@@ -132,6 +143,7 @@ static int read_header(ff_pack_header *header, const uint8_t *bytes)
     ff_reader in = { bytes + sizeof(magic) + 4, bytes + HEADER_CRC_AT, FF_OK };
 
     ff_read_terrain(&in, &header->info);
+    FF_ASSERT(in.at == bytes + CHECKSUM_AT + 4);
     header->section_count = (uint32_t)ff_read_bytes(&in, 4);
     if (in.error == FF_OK && header->section_count > FF_PACK_SECTIONS_MAX) return FF_ERR_RANGE;
     for (uint32_t i = 0; in.error == FF_OK && i < header->section_count; i++)
@@ -156,6 +168,7 @@ int ff_pack_open(ff_pack *pack, const void *bytes, uint64_t size)
     rc = read_header(&pack->header, file);
     for (uint32_t i = 0; rc == FF_OK && i < pack->header.section_count; i++) {
         const ff_pack_section *section = &pack->header.section[i];
+        FF_ASSERT(section->record_count < UINT64_MAX / 8);
         if (!inside(section->index_offset, (section->record_count + 1) * 8, size) ||
             !inside(section->data_offset, section->data_bytes, size))
             rc = FF_ERR_TRUNCATED;
@@ -171,14 +184,20 @@ static int read_record(const ff_pack *pack, const ff_pack_section *section, uint
                        const uint8_t **payload)
 {
     const uint8_t *entry = pack->bytes + section->index_offset + 8 * number;
-    uint64_t first = load(entry, 8), end = load(entry + 8, 8);
     const uint8_t *record;
+    uint64_t first, end;
 
+    FF_ASSERT(number < section->record_count);
+    FF_ASSERT(inside(section->index_offset, (section->record_count + 1) * 8, pack->size));
+    FF_ASSERT(inside(section->data_offset, section->data_bytes, pack->size));
+    first = load(entry, 8);
+    end = load(entry + 8, 8);
     if (first > end || end > section->data_bytes) return FF_ERR_RANGE;
     if (first == end) return FF_ERR_NOT_FOUND;
     if (end - first < RECORD_CRC_BYTES || end - first - RECORD_CRC_BYTES > INT_MAX)
         return FF_ERR_RANGE;
     record = pack->bytes + section->data_offset + first;
+    FF_ASSERT(section->data_offset + end <= pack->size);
     *payload = record + RECORD_CRC_BYTES;
     if (load(record, RECORD_CRC_BYTES) !=
         ff_crc32(0, *payload, (size_t)(end - first) - RECORD_CRC_BYTES))
@@ -191,6 +210,7 @@ int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
 {
     uint32_t level = ff_key_level(key);
 
+    FF_ASSERT(pack->header.section_count <= FF_PACK_SECTIONS_MAX);
     for (uint32_t i = 0; i < pack->header.section_count; i++) {
         const ff_pack_section *section = &pack->header.section[i];
         if (section->kind == kind && section->level == level) {
@@ -222,6 +242,7 @@ static uint64_t verify_section(const ff_pack *pack, const ff_pack_section *secti
         else if (rc != FF_ERR_NOT_FOUND || !may_have_gaps)
             bad++;
     }
+    FF_ASSERT(bad <= section->record_count);
     if (bad == 0 && records_crc != section->records_crc) *whole = 0;
     return bad;
 }

@@ -15,6 +15,9 @@
 #define FF_PACK_VERSION      2
 #define FF_PACK_HEADER_BYTES 4096 /* with the directory of sections; the sections follow */
 #define FF_PACK_SECTIONS_MAX 48
+/* Roots and refinements are a section for each level of the deepest tile, textures one for each
+ * level of a key. */
+FF_STATIC_ASSERT(FF_TILE_LOG2_MAX + FF_KEY_LEVEL_MAX + 1 <= FF_PACK_SECTIONS_MAX);
 
 typedef struct ff_pack_section {
     uint16_t kind;      /* enum ff_section_kind */
@@ -74,6 +77,7 @@ uint32_t ff_crc32(uint32_t crc, const void *bytes, size_t count);
 /* The record's number within its section for `key`: constant time. */
 static inline uint64_t ff_pack_record_number(ff_key key)
 {
+    FF_ASSERT((uint64_t)ff_key_code(key) >> (2 * ff_key_level(key)) == 0);
     return ((uint64_t)ff_key_tile(key) << (2 * ff_key_level(key))) + ff_key_code(key);
 }
 

@@ -15,7 +15,14 @@
 
 #include <stdint.h>
 
-#define FF_WU_PER_METRE 256
+#define FF_WU_PER_METRE  256
+#define FF_NODE_LOG2_MAX 5
+#define FF_TILE_LOG2_MAX 15
+
+/* The highest level of a tile with the smallest nodes, of 2^1 cells, is below FF_KEY_LEVEL_MAX: so
+ * no node's key is FF_KEY_NONE. */
+FF_STATIC_ASSERT(FF_TILE_LOG2_MAX - 1 < FF_KEY_LEVEL_MAX);
+FF_STATIC_ASSERT(FF_NODE_LOG2_MAX <= FF_TILE_LOG2_MAX);
 
 enum ff_terrain_flags {
     FF_TERRAIN_DENSIFIED = 1, /* part of the detail is invented (farfield-bake --densify) */
@@ -56,34 +63,42 @@ int ff_terrain_same(const ff_terrain_info *a, const ff_terrain_info *b);
 /* Number of levels of every tile: n - k + 1. */
 static inline uint32_t ff_terrain_levels(const ff_terrain_info *info)
 {
+    FF_ASSERT(info->node_log2 <= info->tile_log2 && info->tile_log2 <= FF_TILE_LOG2_MAX);
     return (uint32_t)info->tile_log2 - info->node_log2 + 1u;
 }
 /* Heights along a node's side: 2^k + 1; along the grid of its four children: 2^(k+1) + 1. */
 static inline uint32_t ff_node_side(const ff_terrain_info *info)
 {
+    FF_ASSERT(info->node_log2 >= 1 && info->node_log2 <= FF_NODE_LOG2_MAX);
     return (1u << info->node_log2) + 1u;
 }
 static inline uint32_t ff_refined_side(const ff_terrain_info *info)
 {
+    FF_ASSERT(info->node_log2 >= 1 && info->node_log2 <= FF_NODE_LOG2_MAX);
     return (2u << info->node_log2) + 1u;
 }
 /* Edge of a node and of one of its cells at a level, in wu: nominal, what a measure reckons with.
  */
 static inline int32_t ff_node_edge_wu(const ff_terrain_info *info, uint32_t level)
 {
+    FF_ASSERT(level <= info->tile_log2 &&
+              (uint64_t)info->spacing_wu << (info->tile_log2 - level) <= INT32_MAX);
     return (int32_t)(info->spacing_wu << (info->tile_log2 - level));
 }
 static inline int32_t ff_node_cell_wu(const ff_terrain_info *info, uint32_t level)
 {
+    FF_ASSERT(level < ff_terrain_levels(info));
     return (int32_t)(info->spacing_wu << (info->tile_log2 - info->node_log2 - level));
 }
 static inline int32_t ff_height_wu(const ff_terrain_info *info, uint32_t h)
 {
+    FF_ASSERT(h <= UINT16_MAX && info->hscale_q24 <= INT32_MAX);
     return info->hoffset_wu + (int32_t)(((uint64_t)h * info->hscale_q24) >> 16);
 }
 /* A length in height steps (an error, say) as wu. */
 static inline int32_t ff_steps_wu(const ff_terrain_info *info, uint32_t steps)
 {
+    FF_ASSERT(steps <= UINT16_MAX + 1 && info->hscale_q24 <= INT32_MAX);
     return (int32_t)(((uint64_t)steps * info->hscale_q24) >> 16);
 }
 /* z of the lowest and highest ground a decoder may show, as z of a height goes. */
@@ -92,6 +107,7 @@ static inline void ff_terrain_range_wu(const ff_terrain_info *info, int64_t heig
     int64_t slack = ff_steps_wu(info, info->max_error);
     height_wu[0] = ff_height_wu(info, info->height_min) - slack;
     height_wu[1] = ff_height_wu(info, info->height_max) + slack;
+    FF_ASSERT(height_wu[0] <= height_wu[1]);
 }
 /* 1 when `key` names a node of this terrain. */
 int ff_terrain_has_node(const ff_terrain_info *info, ff_key key);

@@ -38,7 +38,6 @@
 
 #include <stddef.h>
 
-#define FF_NODE_LOG2_MAX       5
 #define FF_NODE_HEIGHTS_MAX    (33 * 33) /* (2^5+1)^2 */
 #define FF_REFINED_HEIGHTS_MAX (65 * 65) /* (2^6+1)^2 */
 /* Largest encoded payload of a root or refinement, any codec: callers size buffers with it. */
