@@ -13,6 +13,7 @@ static int take_low(ff_payload *in, uint32_t width, int32_t *value, uint32_t cou
         bits >>= width;
         held -= width;
     }
+    FF_ASSERT(held < 8); /* no byte was taken that the values do not reach */
     return FF_OK;
 }
 
@@ -22,7 +23,9 @@ static int take_unary(ff_payload *in, uint32_t width, int32_t *value, uint32_t c
 {
     uint32_t high_max = (uint32_t)UINT16_MAX >> width, bit = 0;
 
+    FF_ASSERT(width < FF_WIDTH_MAX);
     for (uint32_t i = 0; i < count; i++) {
+        FF_ASSERT((uint32_t)value[i] >> width == 0);
         for (uint32_t high = 0, more = 1; more; high++) {
             if (in->at == in->end) return FF_ERR_TRUNCATED;
             if (high > high_max) return FF_ERR_RANGE;
@@ -55,9 +58,13 @@ int ff_take_body(const ff_decoder *dec, ff_payload *in, const ff_contents *conte
                  ff_take_high_fn *deflated, ff_residuals *out)
 {
     uint32_t corners = contents->corners;
-    uint8_t head = *in->at++; /* a payload has one byte at least */
-    int rc = ff_take_errors(in, (head & FF_HEAD_ERRORS) >> 2, contents->errors, out->child_error);
+    uint8_t head;
+    int rc;
 
+    FF_ASSERT(ff_payload_left(in) >= 1); /* decode() refuses an empty payload */
+    FF_ASSERT(corners < contents->count && contents->count <= FF_REFINED_HEIGHTS_MAX);
+    head = *in->at++;
+    rc = ff_take_errors(in, (head & FF_HEAD_ERRORS) >> 2, contents->errors, out->child_error);
     if (rc == FF_OK) rc = ff_take_words(in, corners, out->value, corners);
     return rc == FF_OK ? take_values(dec, in, head, deflated, out->value + corners,
                                      contents->count - corners)

@@ -10,12 +10,19 @@
 /* From this bit on, the head says how many low bits of every value are stored plainly (for
  * FF_BODY_PACKED that number less one). */
 #define FF_HEAD_DETAIL_SHIFT 4
+#define FF_WIDTH_MAX         16 /* bits of the widest value of a body */
 
 enum ff_body { FF_BODY_ZERO, FF_BODY_PACKED, FF_BODY_DEFLATE, FF_BODY_UNARY };
+
+FF_STATIC_ASSERT(FF_BODY_UNARY <= FF_HEAD_BODY && FF_ERRORS_EACH <= FF_HEAD_ERRORS >> 2);
+FF_STATIC_ASSERT((FF_HEAD_BODY | FF_HEAD_ERRORS) == (1u << FF_HEAD_DETAIL_SHIFT) - 1);
+/* A body of form PACKED, whose head says one less, may have all bits. */
+FF_STATIC_ASSERT((UINT8_MAX >> FF_HEAD_DETAIL_SHIFT) + 1 == FF_WIDTH_MAX);
 
 /* Bytes of `count` values of `bits` bits each, packed. */
 static inline size_t ff_packed_bytes(uint32_t count, uint32_t bits)
 {
+    FF_ASSERT(count <= FF_REFINED_HEIGHTS_MAX && bits <= FF_WIDTH_MAX);
     return ((size_t)count * bits + 7) / 8;
 }
 

@@ -43,6 +43,20 @@
 /* Largest encoded payload of a root or refinement, any codec: callers size buffers with it. */
 #define FF_PAYLOAD_BYTES_MAX (3 * FF_REFINED_HEIGHTS_MAX + 64)
 
+FF_STATIC_ASSERT(FF_NODE_HEIGHTS_MAX ==
+                 ((1 << FF_NODE_LOG2_MAX) + 1) * ((1 << FF_NODE_LOG2_MAX) + 1));
+FF_STATIC_ASSERT(FF_REFINED_HEIGHTS_MAX ==
+                 ((2 << FF_NODE_LOG2_MAX) + 1) * ((2 << FF_NODE_LOG2_MAX) + 1));
+/* Four error codes and every residual in 16 bits: what codec raw writes, and no other exceeds. */
+FF_STATIC_ASSERT(4 + 2 * FF_REFINED_HEIGHTS_MAX <= FF_PAYLOAD_BYTES_MAX);
+
+/* The rows' numbers have no gaps, and fit ff_terrain_info.codec. */
+/* clang-format off */
+#define ROW(...) +1
+FF_STATIC_ASSERT((0 FF_CODEC_LIST(ROW)) == FF_CODEC_COUNT && FF_CODEC_COUNT <= UINT8_MAX + 1);
+#undef ROW
+/* clang-format on */
+
 /* Geometric error of a node: largest distance between its drawn triangles and any full-resolution
  * sample below it, in height steps, as one byte: 0..31 are exact; above, (16 + (c & 15)) << (c / 16
  * - 1) for c = 32..208. Encoding rounds up, so the decoded error is never smaller than the true
@@ -79,6 +93,7 @@ typedef struct ff_residuals {
     /* caller's array of at least ff_refined_side()^2 entries; quantised residuals */
     int32_t *value;
 } ff_residuals;
+FF_STATIC_ASSERT(FF_REFINED_HEIGHTS_MAX * sizeof(int32_t) <= UINT16_MAX); /* carried_bytes */
 
 /* FF_OK, or FF_ERR_TRUNCATED, FF_ERR_FORMAT, FF_ERR_RANGE: payload bytes are never trusted. */
 int ff_decode_root(ff_decoder *dec, const uint8_t *payload, size_t bytes, ff_residuals *out);

@@ -3,12 +3,16 @@
 #include "../zlib/ff_inflate.h"
 #include "ff_body.h"
 
+/* The plane is as long as a refinement's residuals: a root's are fewer. */
+FF_STATIC_ASSERT(FF_NODE_HEIGHTS_MAX - FF_CORNERS <= FF_REFINED_HEIGHTS_MAX - FF_NODE_HEIGHTS_MAX);
+
 /* Window of the streams: the smallest that covers all high parts of a payload. */
 static int window_bits(const ff_terrain_info *info)
 {
     int bits = 9;
 
     while ((1u << bits) < ff_refinement_count(info)) bits++;
+    FF_ASSERT(bits <= 13); /* as SPEC.md promises, 3.5 */
     return bits;
 }
 
@@ -33,10 +37,13 @@ static int take_deflated(const ff_decoder *dec, ff_payload *in, uint32_t width, 
     uint8_t *plane = dec->memory;
     void *inflater = plane + plane_bytes(&dec->info);
     uint32_t all = 0;
-    int rc = ff_inflate_all(inflater, in->at, ff_payload_left(in), plane, count);
+    int rc;
 
+    FF_ASSERT(count <= plane_bytes(&dec->info) && width < FF_WIDTH_MAX);
+    rc = ff_inflate_all(inflater, in->at, ff_payload_left(in), plane, count);
     if (rc != FF_OK) return rc;
     for (uint32_t i = 0; i < count; i++) {
+        FF_ASSERT((uint32_t)value[i] >> width == 0);
         value[i] |= (int32_t)plane[i] << width;
         all |= (uint32_t)value[i];
     }
@@ -53,9 +60,13 @@ int ff_deflate_decode(const ff_decoder *dec, ff_payload *in, const ff_contents *
 #ifdef FF_ENCODER
 #include "../zlib/ff_deflate.h"
 
+/* A limit is the packed form's length at most (ff_put_body). */
+FF_STATIC_ASSERT(FF_WIDTH_MAX / 8 * FF_REFINED_HEIGHTS_MAX <= FF_DEFLATE_LIMIT_MAX);
+
 static size_t put_deflated(const ff_terrain_info *info, const uint8_t *high, uint32_t count,
                            uint8_t *out, size_t limit)
 {
+    FF_ASSERT(count <= ff_refinement_count(info));
     return ff_deflate_all(window_bits(info), high, count, out, limit);
 }
 

@@ -9,6 +9,10 @@
 #define FF_ERROR_CODE_MAX    208 /* 65536 steps: as far apart as two heights can be, and more */
 #define FF_DECODER_ALIGNMENT 16u
 
+/* ff_geometric_error_decode(FF_ERROR_CODE_MAX). */
+FF_STATIC_ASSERT((16 + FF_ERROR_CODE_MAX % 16) << (FF_ERROR_CODE_MAX / 16 - 1) == UINT16_MAX + 1);
+FF_STATIC_ASSERT((FF_DECODER_ALIGNMENT & (FF_DECODER_ALIGNMENT - 1)) == 0);
+
 /* ---- a codec ---- */
 
 /* What is left of a payload. */
@@ -16,7 +20,11 @@ typedef struct ff_payload {
     const uint8_t *at, *end;
 } ff_payload;
 
-static inline size_t ff_payload_left(const ff_payload *in) { return (size_t)(in->end - in->at); }
+static inline size_t ff_payload_left(const ff_payload *in)
+{
+    FF_ASSERT(in->at <= in->end);
+    return (size_t)(in->end - in->at);
+}
 
 /* What a payload tells. A root: one error code, four corners, residuals; a refinement: four error
  * codes, residuals. */
@@ -116,6 +124,7 @@ static inline uint32_t ff_refinement_count(const ff_terrain_info *info)
 /* Quantiser step. */
 static inline int32_t ff_quantum(const ff_terrain_info *info)
 {
+    FF_ASSERT(info->max_error <= INT16_MAX);
     return 2 * (int32_t)info->max_error + 1;
 }
 
@@ -126,6 +135,8 @@ static inline uint16_t ff_dequantise(int32_t quantum, int32_t predicted, int32_t
 {
     int64_t height = predicted + (int64_t)residual * quantum;
 
+    FF_ASSERT(predicted >= 0 && predicted <= UINT16_MAX);
+    FF_ASSERT(residual >= INT16_MIN && residual <= UINT16_MAX); /* a corner's is unsigned */
     if (quantum == 1) return (uint16_t)height;
     return (uint16_t)(height < 0 ? 0 : height > UINT16_MAX ? UINT16_MAX : height);
 }
@@ -133,8 +144,13 @@ static inline uint16_t ff_dequantise(int32_t quantum, int32_t predicted, int32_t
 /* Residuals are coded as 0, 1, 2, 3, ... for 0, -1, 1, -2, ... */
 static inline uint32_t ff_zigzag(int32_t v)
 {
+    FF_ASSERT(v >= INT16_MIN && v <= INT16_MAX);
     return v < 0 ? ~((uint32_t)v << 1) : (uint32_t)v << 1;
 }
-static inline int32_t ff_unzigzag(uint32_t v) { return (int32_t)(v >> 1) ^ -(int32_t)(v & 1u); }
+static inline int32_t ff_unzigzag(uint32_t v)
+{
+    FF_ASSERT(v <= UINT16_MAX);
+    return (int32_t)(v >> 1) ^ -(int32_t)(v & 1u);
+}
 
 #endif

@@ -7,6 +7,7 @@ int ff_raw_decode(const ff_decoder *dec, ff_payload *in, const ff_contents *cont
 {
     int rc = ff_take_errors(in, FF_ERRORS_EACH, contents->errors, out->child_error);
 
+    FF_ASSERT(contents->count <= ff_refined_side(&dec->info) * ff_refined_side(&dec->info));
     (void)dec;
     return rc == FF_OK ? ff_take_words(in, contents->corners, out->value, contents->count) : rc;
 }
@@ -17,6 +18,7 @@ size_t ff_raw_encode(const ff_terrain_info *info, const uint16_t *parent, const 
 {
     size_t bytes = ff_put_errors(res->child_error, FF_ERRORS_EACH, contents->errors, out);
 
+    FF_ASSERT(bytes == contents->errors && bytes == (parent ? 4 : 1));
     (void)info, (void)parent, (void)decoded;
     return bytes + ff_put_words(res->value, contents->count, out + bytes);
 }

@@ -8,6 +8,7 @@
 
 uint32_t ff_geometric_error_decode(uint8_t code)
 {
+    FF_ASSERT(code <= FF_ERROR_CODE_MAX);
     return code < 32 ? code : (16u + (code & 15u)) << (code / 16u - 1u);
 }
 
@@ -21,7 +22,9 @@ uint8_t ff_geometric_error_encode(uint32_t steps)
         code += 16;
         shift++;
     }
-    return (uint8_t)(code + ((steps + (1u << shift) - 1) >> shift) - 16);
+    code += ((steps + (1u << shift) - 1) >> shift) - 16;
+    FF_ASSERT(code <= FF_ERROR_CODE_MAX && ff_geometric_error_decode((uint8_t)code) >= steps);
+    return (uint8_t)code;
 }
 
 const char *ff_codec_name(int codec)
@@ -46,18 +49,24 @@ int32_t ff_no_memory(const ff_terrain_info *info, void *memory)
 
 size_t ff_decoder_bytes(const ff_terrain_info *info)
 {
-    return ff_align_up(sizeof(ff_decoder)) + (size_t)ff_codec_row(info->codec)->memory(info, NULL);
+    int32_t codec_bytes = ff_codec_row(info->codec)->memory(info, NULL);
+
+    FF_ASSERT(codec_bytes >= 0); /* an error comes of memory that is given only */
+    return ff_align_up(sizeof(ff_decoder)) + (size_t)codec_bytes;
 }
 
 ff_decoder *ff_decoder_create(const ff_terrain_info *info, void *memory, size_t bytes)
 {
     ff_decoder *dec = memory;
+    int32_t codec_bytes;
 
     if (!ff_codec_supported(info->codec) || bytes < ff_decoder_bytes(info)) return NULL;
     dec->info = *info;
     dec->codec = ff_codec_row(info->codec);
     dec->memory = (uint8_t *)memory + ff_align_up(sizeof(ff_decoder));
-    return dec->codec->memory(info, dec->memory) >= 0 ? dec : NULL;
+    codec_bytes = dec->codec->memory(info, dec->memory);
+    FF_ASSERT(codec_bytes <= (int64_t)(bytes - ff_align_up(sizeof(ff_decoder))));
+    return codec_bytes >= 0 ? dec : NULL;
 }
 
 /* ---- payload to residuals ---- */
@@ -66,6 +75,7 @@ int ff_take_errors(ff_payload *in, unsigned form, uint32_t errors, uint8_t error
 {
     uint32_t stored = form == FF_ERRORS_EACH ? errors : form == FF_ERRORS_SAME ? 1 : 0;
 
+    FF_ASSERT(errors == 1 || errors == 4);
     if (form > FF_ERRORS_EACH) return FF_ERR_FORMAT;
     if (ff_payload_left(in) < stored) return FF_ERR_TRUNCATED;
     memset(error, 0, 4);
@@ -79,6 +89,7 @@ int ff_take_errors(ff_payload *in, unsigned form, uint32_t errors, uint8_t error
 
 int ff_take_words(ff_payload *in, uint32_t corners, int32_t *value, uint32_t count)
 {
+    FF_ASSERT(corners <= count && count <= FF_REFINED_HEIGHTS_MAX);
     if (ff_payload_left(in) < 2 * (size_t)count) return FF_ERR_TRUNCATED;
     for (uint32_t i = 0; i < count; i++, in->at += 2) {
         int32_t v = in->at[0] | in->at[1] << 8;
@@ -109,6 +120,8 @@ static int decode(ff_decoder *dec, const uint8_t *payload, size_t bytes,
     out->count = (uint16_t)contents->count;
     out->carried_bytes = 0;
     rc = dec->codec->decode(dec, &in, contents, out);
+    FF_ASSERT(rc != FF_OK ||
+              out->count == (dec->codec->needs & FF_NEEDS_PARENT ? 0 : contents->count));
     return rc == FF_OK && ff_payload_left(&in) > 0 ? FF_ERR_FORMAT : rc;
 }
 
@@ -149,11 +162,13 @@ int ff_add_residuals(const ff_terrain_info *info, const uint16_t *parent, const 
     FF_ASSERT(res->count == (parent ? ff_refinement_count(info) : ff_root_count(info)));
     if (parent) {
         ff_predict_refinement(info, parent, heights, add_residual, &r);
+        FF_ASSERT(r.next == res->value + res->count);
         return FF_OK;
     }
     for (uint32_t corner = 0; corner < FF_CORNERS; corner++)
         heights[ff_corner_at(info, corner)] = ff_dequantise(r.quantum, 0, *r.next++);
     ff_predict_root(info, heights, add_residual, &r);
+    FF_ASSERT(r.next == res->value + res->count);
     return FF_OK;
 }
 
@@ -184,6 +199,7 @@ void ff_refined_child(const ff_terrain_info *info, const uint16_t *refined, uint
     const uint16_t *from = refined + (quadrant & 1u) * (side - 1) +
                            (quadrant >> 1) * (side - 1) * refined_side;
 
+    FF_ASSERT(quadrant < 4 && refined_side == 2 * side - 1);
     for (uint32_t j = 0; j < side; j++)
         memcpy(child + j * side, from + j * refined_side, side * sizeof(*child));
 }

@@ -17,6 +17,7 @@ static uint16_t take_residual(void *context, uint32_t at, int32_t predicted)
     quantisation *q = context;
     int32_t difference = q->source[at] - predicted, half = q->quantum / 2;
     int32_t residual;
+    uint16_t height;
 
     if (q->quantum == 1) /* modulo 2^16: the shorter way round */
         residual = difference > INT16_MAX   ? difference - 65536
@@ -26,7 +27,9 @@ static uint16_t take_residual(void *context, uint32_t at, int32_t predicted)
         residual = difference >= 0 ? (difference + half) / q->quantum
                                    : -((half - difference) / q->quantum);
     *q->next++ = residual;
-    return ff_dequantise(q->quantum, predicted, residual);
+    height = ff_dequantise(q->quantum, predicted, residual);
+    FF_ASSERT(height - q->source[at] <= half && q->source[at] - height <= half); /* max_error */
+    return height;
 }
 
 void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *source,
@@ -38,6 +41,7 @@ void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, cons
     out->carried_bytes = 0;
     if (parent) {
         ff_predict_refinement(info, parent, decoded, take_residual, &q);
+        FF_ASSERT(q.next == out->value + out->count);
         return;
     }
     for (uint32_t corner = 0; corner < FF_CORNERS; corner++) {
@@ -46,16 +50,20 @@ void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, cons
         decoded[at] = ff_dequantise(q.quantum, 0, *q.next++);
     }
     ff_predict_root(info, decoded, take_residual, &q);
+    FF_ASSERT(q.next == out->value + out->count);
 }
 
 int ff_encode_payload(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *decoded,
                       const ff_residuals *res, uint8_t *out)
 {
     ff_contents contents = { parent ? 4 : 1, parent ? 0 : FF_CORNERS, res->count };
+    size_t bytes;
 
     for (uint32_t i = 0; i < contents.errors; i++)
         if (res->child_error[i] > FF_ERROR_CODE_MAX) return FF_ERR_RANGE;
-    return (int)ff_codec_encoder(info->codec)(info, parent, decoded, &contents, res, out);
+    bytes = ff_codec_encoder(info->codec)(info, parent, decoded, &contents, res, out);
+    FF_ASSERT(bytes >= 1 && bytes <= FF_PAYLOAD_BYTES_MAX);
+    return (int)bytes;
 }
 
 int ff_encode_root(const ff_terrain_info *info, const uint16_t *source, uint8_t error_code,
@@ -86,6 +94,7 @@ size_t ff_put_errors(const uint8_t *error, enum ff_errors_form form, uint32_t er
 {
     size_t bytes = form == FF_ERRORS_EACH ? errors : form == FF_ERRORS_SAME;
 
+    FF_ASSERT(errors == 1 || errors == 4);
     memcpy(out, error, bytes);
     return bytes;
 }
@@ -93,6 +102,7 @@ size_t ff_put_errors(const uint8_t *error, enum ff_errors_form form, uint32_t er
 size_t ff_put_words(const int32_t *value, uint32_t count, uint8_t *out)
 {
     for (uint32_t i = 0; i < count; i++) {
+        FF_ASSERT(value[i] >= INT16_MIN && value[i] <= UINT16_MAX); /* a corner's is unsigned */
         *out++ = (uint8_t)((uint32_t)value[i] & 0xffu);
         *out++ = (uint8_t)(((uint32_t)value[i] >> 8) & 0xffu);
     }

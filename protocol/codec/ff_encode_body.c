@@ -11,6 +11,7 @@ static uint32_t packed_width(const int32_t *value, uint32_t count)
 
     for (uint32_t i = 0; i < count; i++) all |= ff_zigzag(value[i]);
     while (all >> width) width++;
+    FF_ASSERT(width <= FF_WIDTH_MAX);
     return width;
 }
 
@@ -24,6 +25,7 @@ static void put_low(const int32_t *value, uint32_t count, uint32_t width, uint8_
         bits |= (ff_zigzag(value[i]) & mask) << held;
         for (held += width; held >= 8; held -= 8, bits >>= 8) *at++ = (uint8_t)bits;
     }
+    FF_ASSERT((size_t)(at - out) + (held > 0) == ff_packed_bytes(count, width));
     if (held > 0) *at = (uint8_t)bits;
 }
 
@@ -33,6 +35,7 @@ static size_t put_unary(const int32_t *value, uint32_t count, uint32_t low, uint
 {
     size_t bit = 0;
 
+    FF_ASSERT(low < FF_WIDTH_MAX);
     for (uint32_t i = 0; i < count; i++) {
         uint32_t high = ff_zigzag(value[i]) >> low;
         for (uint32_t one = 0; out && one <= high; one++) {
@@ -52,7 +55,11 @@ static size_t put_high(const ff_terrain_info *info, ff_put_high_fn *deflated, co
 {
     uint8_t plane[FF_REFINED_HEIGHTS_MAX];
 
-    for (uint32_t i = 0; i < count; i++) plane[i] = (uint8_t)(ff_zigzag(value[i]) >> low);
+    FF_ASSERT(count <= sizeof(plane));
+    for (uint32_t i = 0; i < count; i++) {
+        FF_ASSERT(ff_zigzag(value[i]) >> low <= UINT8_MAX);
+        plane[i] = (uint8_t)(ff_zigzag(value[i]) >> low);
+    }
     return deflated(info, plane, count, out, limit);
 }
 
@@ -83,6 +90,7 @@ static size_t put_values(const ff_terrain_info *info, ff_put_high_fn *deflated,
     uint8_t high[2 * FF_REFINED_HEIGHTS_MAX];
     body_form best = cheapest_plain_form(value, count, width);
 
+    FF_ASSERT(best.bytes <= 2 * (size_t)count);
     if (width == 0) return 0;
     for (uint32_t low = width > 8 ? width - 8 : 0; deflated && low < width; low++) {
         size_t low_bytes = ff_packed_bytes(count, low);
@@ -90,10 +98,12 @@ static size_t put_values(const ff_terrain_info *info, ff_put_high_fn *deflated,
                                                : put_high(info, deflated, value, count, low, high,
                                                           best.bytes - low_bytes);
         if (bytes > 0) {
+            FF_ASSERT(bytes <= sizeof(high) && low_bytes + bytes < best.bytes);
             memcpy(out + low_bytes, high, bytes);
             best = (body_form){ FF_BODY_DEFLATE, low, low_bytes + bytes };
         }
     }
+    FF_ASSERT(best.low < FF_WIDTH_MAX || best.kind == FF_BODY_PACKED);
     put_low(value, count, best.low, out);
     if (best.kind == FF_BODY_UNARY)
         put_unary(value, count, best.low, out + ff_packed_bytes(count, best.low));
@@ -117,6 +127,7 @@ size_t ff_put_body(const ff_terrain_info *info, const ff_contents *contents,
     uint32_t corners = contents->corners;
     size_t bytes = 1;
 
+    FF_ASSERT(corners < contents->count && contents->count <= FF_REFINED_HEIGHTS_MAX);
     out[0] = (uint8_t)(form << 2);
     bytes += ff_put_errors(res->child_error, form, contents->errors, out + bytes);
     bytes += ff_put_words(res->value, corners, out + bytes);

@@ -16,6 +16,7 @@ static int32_t predict_middle(const uint16_t *known, uint32_t step, uint32_t i, 
 {
     int32_t a = known[i * step], b = known[(i + 1) * step];
 
+    FF_ASSERT(i < cells && (cells & (cells - 1)) == 0);
     if (cells == 1) return (a + b + 1) >> 1;
     if (i == 0) return clamp_height(7 * a + 10 * b - known[2 * step] + 8, 4);
     if (i == cells - 1) return clamp_height(7 * b + 10 * a - known[(i - 1) * step] + 8, 4);
@@ -26,6 +27,7 @@ static int32_t predict_middle(const uint16_t *known, uint32_t step, uint32_t i, 
 static void predict_line(uint16_t *grid, uint32_t first, uint32_t stride, uint32_t cells,
                          ff_sample_fn sample, void *context)
 {
+    FF_ASSERT(first + 2 * cells * stride < FF_REFINED_HEIGHTS_MAX);
     for (uint32_t i = 0; i < cells; i++) {
         uint32_t at = first + (2 * i + 1) * stride;
         grid[at] = sample(context, at, predict_middle(grid + first, 2 * stride, i, cells));
@@ -50,6 +52,7 @@ static void predict_doubling(uint16_t *grid, uint32_t side, uint32_t stride, ff_
 {
     uint32_t cells = (side - 1) / (2 * stride), row = side * stride;
 
+    FF_ASSERT(stride >= 1 && cells >= 1 && cells * 2 * stride == side - 1);
     for (uint32_t j = 0; j <= cells; j++)
         predict_line(grid, 2 * j * row, stride, cells, sample, context);
     for (uint32_t i = 0; i <= cells; i++)
@@ -74,6 +77,7 @@ void ff_predict_refinement(const ff_terrain_info *info, const uint16_t *parent, 
 {
     uint32_t node_side = ff_node_side(info), side = ff_refined_side(info);
 
+    FF_ASSERT(side == 2 * node_side - 1);
     for (uint32_t j = 0; j < node_side; j++)
         for (uint32_t i = 0; i < node_side; i++)
             grid[2 * j * side + 2 * i] = parent[j * node_side + i];
@@ -84,5 +88,6 @@ uint32_t ff_corner_at(const ff_terrain_info *info, uint32_t corner)
 {
     uint32_t side = ff_node_side(info);
 
+    FF_ASSERT(corner < FF_CORNERS);
     return (corner & 1u) * (side - 1) + (corner >> 1) * side * (side - 1);
 }

@@ -4,6 +4,9 @@
 #include <limits.h>
 #include <zlib.h>
 
+/* Counts up to UINT_MAX and sums of 32 bits pass through zlib's types whole. */
+FF_STATIC_ASSERT(sizeof(uInt) >= sizeof(unsigned) && sizeof(uLong) >= sizeof(uint32_t));
+
 uint32_t ff_crc32(uint32_t crc, const void *bytes, size_t count)
 {
     const uint8_t *at = bytes;

@@ -2,6 +2,8 @@
 
 #include "ff_deflate.h"
 
+#include "../ff_assert.h"
+
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -13,6 +15,9 @@ static size_t deflate_as(int strategy, int window_bits, const uint8_t *in, uint3
     z_stream z;
     size_t written = 0;
 
+    FF_ASSERT(window_bits >= 9 && window_bits <= MAX_WBITS);
+    FF_ASSERT(limit > 1 && limit <= FF_DEFLATE_LIMIT_MAX);
+    FF_ASSERT(bytes < 1u << (8 + 6)); /* the symbol buffer of level 8 */
     memset(&z, 0, sizeof(z));
     /* The least memory level whose symbol buffer holds the input whole: one block, and little to
      * allocate and clear. */
@@ -24,6 +29,7 @@ static size_t deflate_as(int strategy, int window_bits, const uint8_t *in, uint3
     z.avail_out = (uInt)limit - 1;
     if (deflate(&z, Z_FINISH) == Z_STREAM_END) written = (size_t)(z.next_out - out);
     deflateEnd(&z);
+    FF_ASSERT(written < limit);
     return written;
 }
 
@@ -34,6 +40,7 @@ size_t ff_deflate_all(int window_bits, const uint8_t *in, uint32_t bytes, uint8_
     uint8_t trial[FF_DEFLATE_LIMIT_MAX];
     size_t shortest = 0;
 
+    FF_ASSERT(limit <= sizeof(trial));
     for (size_t s = 0; s < sizeof(strategies) / sizeof(strategies[0]) && limit > 1; s++) {
         size_t written = deflate_as(strategies[s], window_bits, in, bytes, trial, limit);
         if (written > 0) {

@@ -1,5 +1,7 @@
 #include "ff_inflate.h"
 
+#include "../ff_assert.h"
+
 #include <string.h>
 #include <zlib.h>
 
@@ -7,6 +9,8 @@
  * top. */
 #define INFLATE_STATE_BYTES (20u * 1024u)
 #define ALIGNMENT           16u
+
+FF_STATIC_ASSERT((ALIGNMENT & (ALIGNMENT - 1)) == 0 && ALIGNMENT >= sizeof(voidpf));
 
 struct ff_inflate {
     z_stream stream;
@@ -20,6 +24,7 @@ static size_t align_up(size_t bytes) { return (bytes + ALIGNMENT - 1) & ~(size_t
 
 size_t ff_inflate_bytes(int window_bits)
 {
+    FF_ASSERT(window_bits >= 9 && window_bits <= MAX_WBITS);
     return align_up(sizeof(ff_inflate)) + INFLATE_STATE_BYTES + ((size_t)1 << window_bits);
 }
 
@@ -29,6 +34,8 @@ static voidpf arena_take(voidpf opaque, uInt items, uInt size)
     size_t bytes = align_up((size_t)items * size);
     voidpf taken = inflater->arena + inflater->arena_used;
 
+    FF_ASSERT(inflater->arena_used <= inflater->arena_bytes);
+    FF_ASSERT(inflater->arena_used % ALIGNMENT == 0);
     if (bytes > inflater->arena_bytes - inflater->arena_used) return Z_NULL;
     inflater->arena_used += bytes;
     return taken;
@@ -61,6 +68,7 @@ int ff_inflate_all(ff_inflate *inflater, const uint8_t *in, size_t bytes, uint8_
     z_stream *z = &inflater->stream;
     int rc;
 
+    FF_ASSERT((uInt)bytes == bytes);
     inflateReset(z);
     z->next_in = (z_const Bytef *)in;
     z->avail_in = (uInt)bytes;
