@@ -8,6 +8,9 @@
 #define NIBBLE_LONG_RUN 12 /* 17..272 times: two more */
 #define NIBBLE_STEP     13 /* any step: three more, zigzag */
 
+FF_STATIC_ASSERT(NIBBLE_RUN == 2 * SMALL_MAX + 1); /* the nibbles below are small steps */
+FF_STATIC_ASSERT(2 * FF_FACE_SIZE_MAX < 1 << 12);  /* three nibbles hold every step */
+
 typedef struct nibbles {
     uint8_t *out;      /* NULL when reading */
     const uint8_t *in; /* NULL when writing */
@@ -16,6 +19,7 @@ typedef struct nibbles {
 
 static void put(nibbles *n, uint32_t value)
 {
+    FF_ASSERT(value <= 15);
     if (n->at < n->limit) {
         if (n->at % 2 == 0) n->out[n->at / 2] = 0;
         n->out[n->at / 2] |= (uint8_t)(value << (n->at % 2 * 4));
@@ -29,6 +33,7 @@ static uint32_t take(nibbles *n, unsigned count)
 {
     uint32_t value = 0;
 
+    FF_ASSERT(count <= 3); /* as many as any token is followed by */
     for (unsigned i = 0; i < count; i++, n->at++)
         if (n->at < n->limit)
             value |= (uint32_t)(n->in[n->at / 2] >> (n->at % 2 * 4) & 15u) << (4 * i);
@@ -51,6 +56,7 @@ static void put_step(nibbles *n, int32_t step)
         put(n, zigzag);
         return;
     }
+    FF_ASSERT(zigzag >> 12 == 0);
     put(n, NIBBLE_STEP);
     for (int shift = 0; shift < 12; shift += 4) put(n, zigzag >> shift & 15u);
 }
@@ -61,6 +67,7 @@ static void put_list(nibbles *n, const uint16_t *list, uint32_t count)
 
     for (uint32_t i = 0; i < count;) {
         uint32_t run = run_length(list, i, count, previous);
+        FF_ASSERT(run <= count - i && run <= 17 + UINT8_MAX);
         if (run > 16) {
             put(n, NIBBLE_LONG_RUN);
             put(n, (run - 17) & 15u);
@@ -86,6 +93,7 @@ int ff_face_columns_encode(const uint16_t *top, const uint16_t *bottom, uint32_t
         if (top[i] > bottom[i] || bottom[i] > FF_FACE_SIZE_MAX) return FF_ERR_RANGE;
     put_list(&n, top, count);
     put_list(&n, bottom, count);
+    FF_ASSERT((n.at + 1) / 2 <= 4 * (size_t)count + 8); /* as ff_message.h promises */
     return n.at <= n.limit ? (int)((n.at + 1) / 2) : FF_ERR_FULL;
 }
 
@@ -93,6 +101,7 @@ static int take_list(nibbles *n, uint16_t *list, uint32_t count, uint32_t row_co
 {
     int32_t value = 0;
 
+    FF_ASSERT(row_count <= FF_FACE_SIZE_MAX);
     for (uint32_t i = 0; i < count;) {
         uint32_t token = take(n, 1), run = 1;
         if (token == NIBBLE_RUN) {

@@ -7,8 +7,14 @@
 
 static const uint8_t hello_magic[4] = { 'F', 'F', 'L', 'D' };
 
+/* GET_PANORAMA, the longest of requests: id, position, front and back, size, quality, count. */
+#define PANORAMA_BYTES (2 + 3 * 4 + 2 * 4 + 2 + 1 + 1)
+FF_STATIC_ASSERT(FF_MESSAGE_HEADER_MAX + PANORAMA_BYTES + FF_FACE_COUNT <= FF_REQUEST_BYTES_MAX);
+FF_STATIC_ASSERT(FF_ERR_LAST >= INT8_MIN); /* as FAILED has it */
+
 static void require(int *error, int condition)
 {
+    FF_ASSERT(*error <= FF_OK);
     if (!condition && *error == FF_OK) *error = FF_ERR_RANGE;
 }
 
@@ -18,6 +24,7 @@ static int get_ok(const ff_get *get, enum ff_kind kind)
 {
     uint32_t level = ff_key_level(get->key);
 
+    FF_ASSERT(ff_kind[kind].asks == FF_ASKS_NODE);
     return (uint64_t)ff_key_code(get->key) >> (2 * level) == 0 &&
            (kind != FF_KIND_ROOT || level == 0);
 }
@@ -107,6 +114,7 @@ static void write_welcome(ff_writer *out, const ff_welcome *welcome)
 
 static void write_request(ff_writer *out, const ff_message *message)
 {
+    FF_ASSERT((unsigned)message->kind < FF_KIND_COUNT);
     switch ((enum ff_kind_asks)ff_kind[message->kind].asks) {
         case FF_ASKS_NODE: write_get(out, &message->u.get, message->kind); break;
         case FF_ASKS_PANORAMA: write_panorama(out, &message->u.panorama); break;
@@ -115,6 +123,7 @@ static void write_request(ff_writer *out, const ff_message *message)
 
 static void write_answer(ff_writer *out, const ff_message *message)
 {
+    FF_ASSERT((unsigned)message->kind < FF_KIND_COUNT);
     switch ((enum ff_kind_brings)ff_kind[message->kind].brings) {
         case FF_BRINGS_PAYLOAD:
             ff_write_bytes(out, message->u.data.id, 2);
@@ -185,10 +194,13 @@ int ff_message_encode(const ff_message *message, uint8_t *out, size_t capacity)
     body_bytes = (size_t)(body.at - (out + room));
     if (body_bytes > FF_MESSAGE_BODY_MAX) return FF_ERR_RANGE;
     header_bytes = 1 + ff_varint_bytes((uint32_t)body_bytes);
+    FF_ASSERT(header_bytes <= FF_MESSAGE_HEADER_MAX);
+    FF_ASSERT(header_bytes + body_bytes <= ff_message_bytes_max(message));
     if (header_bytes + body_bytes > capacity) return FF_ERR_FULL;
     memmove(out + header_bytes, out + room, body_bytes);
     ff_write_bytes(&head, type_byte(message), 1);
     ff_write_varint(&head, (uint32_t)body_bytes);
+    FF_ASSERT(head.error == FF_OK && head.at == out + header_bytes);
     return (int)(header_bytes + body_bytes);
 }
 
@@ -235,7 +247,10 @@ static void read_panorama(ff_reader *in, ff_get_panorama *panorama)
     panorama->face_count = (uint8_t)ff_read_bytes(in, 1);
     require(&in->error, panorama->face_count <= FF_FACE_COUNT);
     face = ff_read_span(in, panorama->face_count);
-    if (face) memcpy(panorama->face, face, panorama->face_count);
+    if (face) {
+        FF_ASSERT(panorama->face_count <= FF_FACE_COUNT); /* else there was an error, and no span */
+        memcpy(panorama->face, face, panorama->face_count);
+    }
     require(&in->error, face && panorama_ok(panorama));
 }
 
@@ -248,6 +263,7 @@ static void read_welcome(ff_reader *in, ff_welcome *welcome)
 
 static void read_rest(ff_reader *in, const uint8_t **bytes, uint32_t *count)
 {
+    FF_ASSERT(in->end - in->at <= FF_MESSAGE_BODY_MAX);
     *count = (uint32_t)(in->end - in->at);
     *bytes = ff_read_span(in, *count);
 }
@@ -269,6 +285,7 @@ static void read_face(ff_reader *in, ff_face *face)
         read_rest(in, &face->image, &face->image_bytes);
     }
     require(&in->error, face_ok(face));
+    FF_ASSERT(in->error != FF_OK || face->columns_bytes + face->image_bytes <= FF_MESSAGE_BODY_MAX);
 }
 
 static void read_failed(ff_reader *in, ff_failed *failed, enum ff_message_type type)
@@ -313,6 +330,17 @@ static void read_body(ff_reader *in, ff_message *out)
     }
 }
 
+/* Requests, and whatever else clients send, have types below the servers'. */
+/* clang-format off */
+enum { SERVER, CLIENT };
+#define X(name, type, sender) && (sender == CLIENT ? type <= 64 : type > 64)
+FF_STATIC_ASSERT(1 FF_MESSAGE_LIST(X));
+#undef X
+#define X(kind, name, asked_by, what, asks, answered_by, ...) && asked_by <= 64 && answered_by > 64
+FF_STATIC_ASSERT(1 FF_KIND_LIST(X));
+#undef X
+/* clang-format on */
+
 /* The type that a first byte stands for, 0: none; of GET and ANSWER the first such kind, too. */
 static int type_of(uint8_t byte, enum ff_kind *kind)
 {
@@ -340,8 +368,6 @@ int ff_message_type_of(uint8_t byte)
 
 int ff_message_from_client(uint8_t byte)
 {
-    enum { SERVER, CLIENT };
-
     switch (ff_message_type_of(byte)) {
 #define X(name, type, sender) \
     case FF_MSG_##name: return sender == CLIENT;
@@ -356,6 +382,7 @@ uint16_t ff_message_id(const ff_message *message)
 {
     const ff_kind_row *kind = &ff_kind[message->kind];
 
+    FF_ASSERT(message->type == FF_MSG_GET || message->type == FF_MSG_ANSWER);
     if (message->type == FF_MSG_GET)
         return kind->asks == FF_ASKS_NODE ? message->u.get.id : message->u.panorama.id;
     return kind->brings == FF_BRINGS_PAYLOAD ? message->u.data.id : message->u.face.id;
@@ -381,6 +408,7 @@ int ff_message_decode(const uint8_t *bytes, size_t byte_count, ff_message *out)
         return byte_count < FF_MESSAGE_HEADER_MAX ? 0 : FF_ERR_RANGE;
     if (head.error != FF_OK || body_bytes > FF_MESSAGE_BODY_MAX) return FF_ERR_RANGE;
     if ((size_t)(bytes + byte_count - head.at) < body_bytes) return 0;
+    FF_ASSERT(head.at - bytes == 1 + (ptrdiff_t)ff_varint_bytes(body_bytes));
     body.at = head.at;
     body.end = head.at + body_bytes;
     read_body(&body, out);

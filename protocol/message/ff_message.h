@@ -19,6 +19,11 @@
 #define FF_FACE_COUNT         6
 #define FF_FACE_SIZE_MAX      1024
 
+/* A length of 3 bytes reaches the longest body, and one of 2 does not. */
+FF_STATIC_ASSERT(FF_MESSAGE_BODY_MAX >> 7 * (FF_MESSAGE_HEADER_MAX - 1) == 0 &&
+                 FF_MESSAGE_BODY_MAX >> 7 * (FF_MESSAGE_HEADER_MAX - 2) != 0);
+FF_STATIC_ASSERT(2 + FF_PAYLOAD_BYTES_MAX <= FF_MESSAGE_BODY_MAX);
+
 /* Messages about the link itself: X(name, type, who sends it). Those that ask for things, and those
  * that answer, stand in ff_kind.h. */
 /* clang-format off */
@@ -42,6 +47,7 @@ enum ff_message_type {
     FF_MSG_GET = 256,
     FF_MSG_ANSWER
 };
+FF_STATIC_ASSERT(FF_MSG_GET > UINT8_MAX);
 
 typedef struct ff_hello {
     uint32_t version;
@@ -62,6 +68,7 @@ enum ff_face_name {
     FF_FACE_UP,
     FF_FACE_DOWN
 };
+FF_STATIC_ASSERT(FF_FACE_DOWN + 1 == FF_FACE_COUNT);
 
 typedef struct ff_get_panorama {
     uint16_t id;
@@ -99,6 +106,9 @@ enum ff_face_flags {
     FF_FACE_EMPTY = 1, /* no far ground in it: no image */
     FF_FACE_LAST = 2   /* the last face of its request */
 };
+/* A face and its flags share a byte of FACE, as a kind and a level share one of GET_NODE. */
+FF_STATIC_ASSERT(FF_FACE_COUNT <= 16 && (FF_FACE_EMPTY | FF_FACE_LAST) < 16);
+FF_STATIC_ASSERT(FF_KEY_LEVEL_MAX < 16);
 
 /* A face carries only the rows that show far ground: rows top_row .. top_row+row_count-1 of
  * face_size. Within them column c shows ground in rows column_top[c] .. column_bottom[c]-1
