@@ -77,12 +77,14 @@ static inline void ff_shape_place(const ff_terrain_info *info, ff_key key, const
                                   uint32_t column, uint32_t row, uint32_t height,
                                   int32_t place_wu[3])
 {
+    FF_ASSERT(column <= 1u << info->node_log2 && row <= 1u << info->node_log2);
     FF_SHAPE_CALL(info, place, (info, key, placed, column, row, height, place_wu));
 }
 /* Holds all ground of the node between two heights. */
 static inline ff_box ff_shape_box(const ff_terrain_info *info, ff_key key, const ff_placed *placed,
                                   const int64_t height_wu[2], const int32_t from_wu[3])
 {
+    FF_ASSERT(height_wu[0] <= height_wu[1]);
     return FF_SHAPE_CALL(info, box, (info, key, placed, height_wu, from_wu));
 }
 /* From a point to the middle of the node's ground at a height: for measures. */
@@ -96,6 +98,7 @@ static inline void ff_shape_to_middle(const ff_terrain_info *info, ff_key key,
 static inline ff_box ff_shape_bounds(const ff_terrain_info *info, const ff_frame *frame,
                                      const int64_t height_wu[2], const int32_t from_wu[3])
 {
+    FF_ASSERT(height_wu[0] <= height_wu[1]);
     return FF_SHAPE_CALL(info, bounds, (info, frame, height_wu, from_wu));
 }
 /* Slopes along a node's columns and rows, reckoned with ff_node_cell_wu, become those to the east
@@ -116,6 +119,7 @@ static inline ff_beside ff_shape_neighbour(const ff_terrain_info *info, ff_key k
 /* The sample across that sample `along` of a side with samples 0..last is. */
 static inline uint32_t ff_beside_along(const ff_beside *beside, uint32_t along, uint32_t last)
 {
+    FF_ASSERT(along <= last);
     return beside->reversed ? last - along : along;
 }
 
@@ -132,6 +136,7 @@ static inline int ff_shape_locate(const ff_terrain_info *info, const ff_frame *f
 static inline int32_t ff_shape_z_wu(const ff_terrain_info *info, const ff_frame *frame,
                                     const int32_t place_wu[3], uint64_t height_q16)
 {
+    FF_ASSERT(height_q16 <= (uint64_t)UINT16_MAX << 16);
     return FF_SHAPE_CALL(info, z_wu, (info, frame, place_wu, height_q16));
 }
 
@@ -171,6 +176,7 @@ static inline int32_t ff_shape_horizon_wu(const ff_terrain_info *info, const ff_
  * place. */
 static inline int32_t ff_shape_drop_wu(const ff_terrain_info *info, int32_t away_wu)
 {
+    FF_ASSERT(away_wu >= 0);
     return FF_SHAPE_CALL(info, drop_wu, (info, away_wu));
 }
 /* The tiles that may have ground within `view_wu` of a place: no further along any axis of the
@@ -179,17 +185,20 @@ static inline ff_reach ff_shape_reach(const ff_terrain_info *info, const ff_fram
                                       const int32_t centre_wu[3], int32_t view_wu,
                                       const int64_t height_wu[2])
 {
+    FF_ASSERT(view_wu >= 0 && height_wu[0] <= height_wu[1]);
     return FF_SHAPE_CALL(info, reach, (info, frame, centre_wu, view_wu, height_wu));
 }
 static inline int ff_shape_reaches(const ff_terrain_info *info, const ff_reach *reach,
                                    uint32_t tile)
 {
+    FF_ASSERT(tile < ff_shape_tiles(info));
     return FF_SHAPE_CALL(info, reaches, (info, reach, tile));
 }
 /* How far beyond the place a tile begins: an order among tiles that are in reach. */
 static inline int64_t ff_shape_tile_distance(const ff_terrain_info *info, const ff_frame *frame,
                                              const int32_t centre_wu[3], uint32_t tile)
 {
+    FF_ASSERT(tile < ff_shape_tiles(info));
     return FF_SHAPE_CALL(info, tile_distance, (info, frame, centre_wu, tile));
 }
 /* Walks over the tiles in reach: from the place outwards, or in the order of their numbers.
@@ -214,6 +223,7 @@ static inline int ff_shape_next(const ff_terrain_info *info, ff_walk *walk, uint
  * number of tiles each way. */
 static inline ff_sheet ff_shape_sheet(const ff_terrain_info *info, uint32_t tile)
 {
+    FF_ASSERT(tile < ff_shape_tiles(info));
     return FF_SHAPE_CALL(info, sheet, (info, tile));
 }
 static inline ff_sheet ff_shape_sheet_tiles(const ff_terrain_info *info)

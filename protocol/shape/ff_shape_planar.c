@@ -2,10 +2,14 @@
 
 /* ---- place ---- */
 
+/* ff_planar_check: a terrain's longest edge, in samples. */
+FF_STATIC_ASSERT((uint64_t)FF_KEY_TILES_MAX << FF_TILE_LOG2_MAX <= 1ull << 43);
+
 int ff_planar_check(const ff_terrain_info *info)
 {
     uint64_t edge_x, edge_y;
 
+    FF_ASSERT(info->tile_log2 <= FF_TILE_LOG2_MAX);
     if (info->tiles_x < 1 || info->tiles_y < 1 ||
         (uint64_t)info->tiles_x * info->tiles_y > FF_KEY_TILES_MAX)
         return 0;
@@ -27,12 +31,15 @@ ff_placed ff_planar_put(const ff_terrain_info *info, const ff_frame *frame, ff_k
     ff_placed placed;
 
     (void)frame;
+    FF_ASSERT(tile < ff_planar_tiles(info) && (uint64_t)code >> (2 * ff_key_level(key)) == 0);
     placed.planar.x_wu = (int32_t)(tile % info->tiles_x) * tile_wu;
     placed.planar.y_wu = (int32_t)(tile / info->tiles_x) * tile_wu;
     if (code) {
         placed.planar.x_wu += (int32_t)ff_morton_x(code) * edge_wu;
         placed.planar.y_wu += (int32_t)ff_morton_y(code) * edge_wu;
     }
+    FF_ASSERT(placed.planar.x_wu >= 0 && placed.planar.x_wu % edge_wu == 0);
+    FF_ASSERT(placed.planar.y_wu >= 0 && placed.planar.y_wu % edge_wu == 0);
     return placed;
 }
 
@@ -44,6 +51,7 @@ static int next_tile(const ff_terrain_info *info, enum ff_side side, uint32_t *t
 {
     uint32_t x = *tile % info->tiles_x, y = *tile / info->tiles_x;
 
+    FF_ASSERT(y < info->tiles_y);
     switch (side) {
         case FF_SIDE_SOUTH: *tile -= info->tiles_x; return y > 0;
         case FF_SIDE_EAST: *tile += 1; return x + 1 < info->tiles_x;
@@ -57,6 +65,7 @@ ff_key ff_planar_across(const ff_terrain_info *info, ff_key key, enum ff_side si
     uint32_t tile = ff_key_tile(key), code;
 
     if (ff_key_step(key, side, &code) && !next_tile(info, side, &tile)) return FF_KEY_NONE;
+    FF_ASSERT(tile < ff_planar_tiles(info));
     return ff_key_make(tile, ff_key_level(key), code);
 }
 
@@ -69,9 +78,11 @@ static int locate_along(const ff_terrain_info *info, int32_t at_wu, uint32_t til
 {
     uint32_t tile_wu = (uint32_t)ff_node_edge_wu(info, 0), at = (uint32_t)at_wu;
 
+    FF_ASSERT((uint64_t)tiles * tile_wu <= INT32_MAX);
     if (at_wu < 0 || at > tiles * tile_wu) return 0;
     *tile = at == tiles * tile_wu ? tiles - 1 : at / tile_wu;
     *sample_q16 = (uint32_t)(((uint64_t)(at - *tile * tile_wu) << 16) / info->spacing_wu);
+    FF_ASSERT(*tile < tiles && *sample_q16 <= 1u << (info->tile_log2 + 16));
     return 1;
 }
 
@@ -93,6 +104,7 @@ int ff_planar_locate(const ff_terrain_info *info, const ff_frame *frame, const i
 static int64_t floor_div(int64_t a, int64_t b)
 {
     int64_t quotient = a / b;
+    FF_ASSERT(b > 0);
     return a % b < 0 ? quotient - 1 : quotient;
 }
 
@@ -101,6 +113,7 @@ static void reach_along(int64_t centre_wu, int64_t view_wu, int64_t tile_wu, int
 {
     int64_t from = floor_div(centre_wu - view_wu - 1, tile_wu); /* touching counts */
     int64_t to = floor_div(centre_wu + view_wu, tile_wu);
+    FF_ASSERT(from <= to && from <= INT32_MAX && to >= INT32_MIN);
     *first = (int32_t)(from < 0 ? 0 : from);
     *last = (int32_t)(to > tiles - 1 ? tiles - 1 : to);
 }
@@ -122,6 +135,7 @@ ff_reach ff_planar_reach(const ff_terrain_info *info, const ff_frame *frame,
 
 static int64_t outside(int64_t value, int64_t lo, int64_t hi)
 {
+    FF_ASSERT(lo < hi);
     if (value < lo) return lo - value;
     return value > hi ? value - hi : 0;
 }
@@ -181,6 +195,8 @@ static void start_run(const ff_terrain_info *info, ff_walk *walk, int along_x, i
     walk->planar.step = along_x ? 1 : info->tiles_x;
     walk->planar.tile = along_x ? (uint32_t)other * info->tiles_x + (uint32_t)from
                                 : (uint32_t)from * info->tiles_x + (uint32_t)other;
+    FF_ASSERT(walk->planar.tile + (walk->planar.left - 1) * walk->planar.step <
+              ff_planar_tiles(info));
 }
 
 /* 0 when a ring lies all outside the tiles in reach, and so do those round it. */
@@ -189,6 +205,8 @@ static int ring_in_reach(const ff_walk *walk)
     const ff_reach *reach = &walk->planar.reach;
     int32_t x = walk->planar.x, y = walk->planar.y, r = walk->planar.ring;
 
+    FF_ASSERT(x >= reach->planar.x0 && x <= reach->planar.x1); /* the middle was moved there */
+    FF_ASSERT(y >= reach->planar.y0 && y <= reach->planar.y1);
     return x - r >= reach->planar.x0 || x + r <= reach->planar.x1 || y - r >= reach->planar.y0 ||
            y + r <= reach->planar.y1;
 }
@@ -200,6 +218,7 @@ static int next_run(const ff_terrain_info *info, ff_walk *walk)
     const ff_reach *reach = &walk->planar.reach;
     int32_t x = walk->planar.x, y = walk->planar.y, r = walk->planar.ring;
 
+    FF_ASSERT(walk->planar.left == 0);
     if (reach->planar.x1 < reach->planar.x0) return 0;
     if (r < 0) {
         if (y > reach->planar.y1) return 0;
@@ -226,6 +245,7 @@ int ff_planar_next(const ff_terrain_info *info, ff_walk *walk, uint32_t *tile)
     while (!walk->planar.left)
         if (!next_run(info, walk)) return 0;
     *tile = walk->planar.tile;
+    FF_ASSERT(*tile < ff_planar_tiles(info));
     walk->planar.tile += walk->planar.step;
     walk->planar.left--;
     return 1;

@@ -25,6 +25,7 @@ void ff_planar_cover(ff_terrain_info *info, uint32_t samples_x, uint32_t samples
 
 static inline uint32_t ff_planar_tiles(const ff_terrain_info *info)
 {
+    FF_ASSERT((uint64_t)info->tiles_x * info->tiles_y <= FF_KEY_TILES_MAX);
     return info->tiles_x * info->tiles_y;
 }
 
@@ -56,6 +57,8 @@ static inline ff_box ff_planar_box(const ff_terrain_info *info, ff_key key, cons
                                    const int64_t height_wu[2], const int32_t from_wu[3])
 {
     int64_t edge_wu = ff_node_edge_wu(info, ff_key_level(key));
+    FF_ASSERT(placed->planar.x_wu + edge_wu <= INT32_MAX);
+    FF_ASSERT(placed->planar.y_wu + edge_wu <= INT32_MAX);
     return ff_planar_square(placed->planar.x_wu, placed->planar.y_wu, edge_wu, edge_wu, height_wu,
                             from_wu);
 }
@@ -75,6 +78,7 @@ static inline ff_box ff_planar_bounds(const ff_terrain_info *info, const ff_fram
 {
     int64_t edge_wu = ff_node_edge_wu(info, 0);
     (void)frame;
+    FF_ASSERT(info->tiles_x * edge_wu <= INT32_MAX && info->tiles_y * edge_wu <= INT32_MAX);
     return ff_planar_square(0, 0, info->tiles_x * edge_wu, info->tiles_y * edge_wu, height_wu,
                             from_wu);
 }
@@ -86,6 +90,10 @@ static inline void ff_planar_slopes(const ff_terrain_info *info, ff_key key, int
 }
 
 /* ---- neighbour ---- */
+
+/* The sides run round a node: so the one opposite is two further on. */
+FF_STATIC_ASSERT(FF_SIDE_COUNT == 4 && FF_SIDE_NORTH - FF_SIDE_SOUTH == 2 &&
+                 FF_SIDE_WEST - FF_SIDE_EAST == 2);
 
 static inline ff_beside ff_planar_neighbour(const ff_terrain_info *info, ff_key key,
                                             enum ff_side side)
@@ -171,6 +179,7 @@ static inline ff_sheet ff_planar_sheet_samples(const ff_terrain_info *info)
 
 static inline void ff_planar_size_wu(const ff_terrain_info *info, int64_t size_wu[2])
 {
+    FF_ASSERT(info->samples_x >= 2 && info->samples_y >= 2);
     size_wu[0] = (int64_t)(info->samples_x - 1) * info->spacing_wu;
     size_wu[1] = (int64_t)(info->samples_y - 1) * info->spacing_wu;
 }

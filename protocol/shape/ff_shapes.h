@@ -36,6 +36,9 @@ typedef union ff_walk {
     } planar;
 } ff_walk;
 
+/* Places and numbers of tiles along an axis are int32_t above. */
+FF_STATIC_ASSERT(FF_KEY_TILES_MAX <= INT32_MAX);
+
 #include "ff_shape_planar.h"
 
 #define FF_SHAPE_CALL(info, question, arguments) ff_planar_##question arguments
