@@ -8,6 +8,7 @@
 
 static int is_idle_root(const ff_tree *tree, const ff_node *node)
 {
+    FF_ASSERT((node->parent == FF_SLOT_NONE) == (ff_key_level(node->key) == 0));
     return node->parent == FF_SLOT_NONE && !ff_node_has_children(node) &&
            !ff_tile_active(tree, ff_key_tile(node->key));
 }
@@ -16,6 +17,7 @@ static int has_leaf_family(const ff_tree *tree, const ff_node *node)
 {
     if (!ff_node_has_children(node)) return 0;
     for (unsigned q = 0; q < 4; q++) {
+        FF_ASSERT(node->child[q] < tree->node_count);
         if (ff_node_has_children(&tree->node[node->child[q]])) return 0;
     }
     return 1;
@@ -25,6 +27,7 @@ static int has_leaf_family(const ff_tree *tree, const ff_node *node)
  * `node` and never more than 1. */
 static uint32_t split_worth(const ff_tree *tree, const ff_node *node)
 {
+    FF_ASSERT(!(node->flags & FF_NODE_WANTED) || node->value > FF_VALUE_ONE);
     if (node->flags & FF_NODE_WANTED) return node->value;
     uint32_t value = ff_value_of_split(tree, node);
     if (value > FF_VALUE_ONE) value = FF_VALUE_ONE;
@@ -39,6 +42,7 @@ static uint32_t family_worth(const ff_tree *tree, const ff_node *parent)
     uint32_t worth = split_worth(tree, parent);
     for (unsigned q = 0; q < 4; q++) {
         const ff_node *child = &tree->node[parent->child[q]];
+        FF_ASSERT(child->flags & FF_NODE_HELD && child->key == ff_key_child(parent->key, q));
         if (child->flags & FF_NODE_WANTED && child->value > worth) worth = child->value;
     }
     return worth;
@@ -49,6 +53,7 @@ uint32_t ff_evict_limit(const ff_tree *tree, const ff_node *node)
     uint32_t worth = split_worth(tree, node);
     if (node->flags & FF_NODE_WANTED || tree->quality.sigma_q8 <= 256) return worth;
     uint32_t cached = (uint32_t)((FF_VALUE_ONE << 8) / (uint32_t)tree->quality.sigma_q8);
+    FF_ASSERT(cached < FF_VALUE_ONE);
     return worth < cached ? worth : cached;
 }
 
@@ -63,6 +68,7 @@ uint32_t ff_evict_candidates(const ff_tree *tree, uint64_t *keys)
         else if (has_leaf_family(tree, node))
             keys[count++] = (uint64_t)family_worth(tree, node) << FF_SLOT_BITS | slot;
     }
+    FF_ASSERT(count <= tree->node_count - tree->free_count);
     return count;
 }
 
@@ -72,6 +78,8 @@ static int drop_one(ff_tree *tree, uint32_t keep, uint64_t below)
 {
     uint32_t keep_parent = keep == FF_SLOT_NONE ? FF_SLOT_NONE : tree->node[keep].parent,
              victim = FF_SLOT_NONE;
+    FF_ASSERT(tree->free_count < 4);
+    FF_ASSERT(keep == FF_SLOT_NONE || tree->node[keep].flags & FF_NODE_HELD);
     for (uint32_t slot = 0; slot < tree->node_count; slot++) {
         const ff_node *node = &tree->node[slot];
         if (!(node->flags & FF_NODE_HELD) || slot == keep || slot == keep_parent) continue;
@@ -99,6 +107,7 @@ static int drop_one(ff_tree *tree, uint32_t keep, uint64_t below)
 int ff_evict_for_children(ff_tree *tree, uint32_t keep)
 {
     uint32_t limit = ff_evict_limit(tree, &tree->node[keep]);
+    FF_ASSERT(!ff_node_has_children(&tree->node[keep]));
     while (tree->free_count < 4) {
         if (!tree->has_view || !drop_one(tree, keep, limit)) return 0;
     }
@@ -120,6 +129,7 @@ int ff_evict_for_root(ff_tree *tree, uint32_t tile)
         }
     }
     if (victim == FF_SLOT_NONE) return 0;
+    FF_ASSERT(!ff_node_has_children(&tree->node[victim])); /* or drop_one would have found them */
     ff_tree_drop_root(tree, &tree->node[victim]);
     return 1;
 }

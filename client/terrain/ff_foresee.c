@@ -17,6 +17,7 @@ typedef struct foresight {
 static void note(foresight *f, ff_key key, enum ff_kind kind, uint32_t priority)
 {
     uint32_t at = f->count;
+    FF_ASSERT(f->capacity > 0 && f->count <= f->capacity);
     if (at == f->capacity) {
         if (f->list[--at].priority >= priority) return;
     } else {
@@ -24,12 +25,14 @@ static void note(foresight *f, ff_key key, enum ff_kind kind, uint32_t priority)
     }
     for (; at > 0 && f->list[at - 1].priority < priority; at--) f->list[at] = f->list[at - 1];
     f->list[at] = (ff_wish){ .key = key, .kind = (uint8_t)kind, .priority = priority };
+    FF_ASSERT(at + 1 == f->count || f->list[at + 1].priority < priority);
 }
 
 /* 1 when a box is seen from there, and not from here. */
 static int comes_into_view(const ff_tree *tree, const foresight *f, const ff_box *here,
                            const ff_box *there)
 {
+    FF_ASSERT(here->hi[2] - here->lo[2] == there->hi[2] - there->lo[2]);
     return ff_box_in_view(&f->ahead, there) &&
            (ff_box_beyond_view(tree, here) || !ff_box_in_view(tree, here));
 }
@@ -41,6 +44,7 @@ static void foresee_roots(const ff_tree *tree, foresight *f)
     uint32_t tile;
     for (unsigned i = 0; i < TILES_LOOKED_AT && ff_shape_next(&tree->info, &walk, &tile); i++) {
         ff_key root = ff_key_make(tile, 0, 0);
+        FF_ASSERT(ff_terrain_has_node(&tree->info, root));
         if (ff_tree_find(tree, root) != FF_SLOT_NONE) continue;
         ff_box here, there;
         ff_tile_box(tree, tile, &here);
@@ -53,6 +57,7 @@ static void foresee_roots(const ff_tree *tree, foresight *f)
  * worth less (ff_evict.c). */
 static int takes_room(const ff_tree *tree, foresight *f, const ff_node *node)
 {
+    FF_ASSERT(f->free <= tree->free_count && f->next_victim <= f->victims);
     if (f->free >= 4) {
         f->free -= 4;
         return 1;
@@ -67,6 +72,7 @@ static int takes_room(const ff_tree *tree, foresight *f, const ff_node *node)
 static void foresee_children_of(const ff_tree *tree, foresight *f, const ff_node *node)
 {
     uint32_t next = ff_key_level(node->key) + 1;
+    FF_ASSERT(!ff_node_has_children(node));
     if (next >= ff_terrain_levels(&tree->info) ||
         (tree->quality.depth_max && next >= tree->quality.depth_max) ||
         node->flags & FF_NODE_NEEDED || node->error_code == 0)
@@ -84,6 +90,7 @@ static void foresee_children_of(const ff_tree *tree, foresight *f, const ff_node
 
 static void foresee_cut(const ff_tree *tree, foresight *f)
 {
+    FF_ASSERT(tree->cut_count <= tree->node_count);
     for (uint32_t i = 0; i < tree->cut_count; i++)
         if (!ff_node_has_children(tree->drawn[i].node))
             foresee_children_of(tree, f, tree->drawn[i].node);
@@ -103,6 +110,7 @@ static void foresee_tiles(const ff_tree *tree, foresight *f)
                 foresee_children_of(tree, f, node);
                 continue;
             }
+            FF_ASSERT(depth + 4 <= sizeof stack / sizeof stack[0]);
             for (unsigned q = 0; q < 4; q++) stack[depth++] = node->child[q];
         }
     }
@@ -131,6 +139,7 @@ uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], int32_t y
     uint32_t kept = 0;
     for (uint32_t i = 0; i < f.count; i++) {
         const ff_wish *wish = &list[i];
+        FF_ASSERT((ff_tree_find(tree, wish->key) == FF_SLOT_NONE) == (wish->kind == FF_KIND_ROOT));
         int room = wish->kind == FF_KIND_REFINEMENT
                        ? takes_room(tree, &f, &tree->node[ff_tree_find(tree, wish->key)])
                        : f.free > 0;

@@ -6,24 +6,30 @@ void ff_window_make(ff_tree *tree)
     const ff_view *view = &tree->view;
     int64_t height_wu[2];
     ff_terrain_range_wu(&tree->info, height_wu);
+    FF_ASSERT(height_wu[0] <= height_wu[1] && tree->quality.view_wu >= 0);
     tree->window = ff_shape_reach(&tree->info, &view->frame, view->centre_wu, tree->quality.view_wu,
                                   height_wu);
 }
 
 int ff_tile_active(const ff_tree *tree, uint32_t tile)
 {
+    FF_ASSERT(tile < ff_shape_tiles(&tree->info));
     return ff_shape_reaches(&tree->info, &tree->window, tile);
 }
 
 int64_t ff_tile_distance(const ff_tree *tree, uint32_t tile)
 {
-    return ff_shape_tile_distance(&tree->info, &tree->view.frame, tree->view.centre_wu, tile);
+    int64_t distance = ff_shape_tile_distance(&tree->info, &tree->view.frame, tree->view.centre_wu,
+                                              tile);
+    FF_ASSERT(distance >= 0 && distance < INT64_C(1) << 33);
+    return distance;
 }
 
 void ff_node_box(const ff_tree *tree, const ff_node *node, ff_box *box)
 {
     const ff_terrain_info *info = &tree->info;
     int64_t error = ff_steps_wu(info, ff_geometric_error_decode(node->error_code));
+    FF_ASSERT(error >= 0 && node->height_min <= node->height_max);
     const int64_t height_wu[2] = { ff_height_wu(info, node->height_min) - error,
                                    ff_height_wu(info, node->height_max) + error };
     *box = ff_shape_box(info, node->key, &node->placed, height_wu, tree->view.camera.pos_wu);
@@ -36,10 +42,12 @@ void ff_tile_box(const ff_tree *tree, uint32_t tile, ff_box *box)
     int64_t height_wu[2];
     ff_terrain_range_wu(&tree->info, height_wu);
     *box = ff_shape_box(&tree->info, key, &placed, height_wu, tree->view.camera.pos_wu);
+    FF_ASSERT(box->lo[2] <= box->hi[2] && box->hi[2] - box->lo[2] < INT64_C(1) << 33);
 }
 
 static int64_t outside(int64_t value, int64_t lo, int64_t hi)
 {
+    FF_ASSERT(lo <= hi);
     if (value < lo) return lo - value;
     return value > hi ? value - hi : 0;
 }
@@ -57,6 +65,7 @@ int ff_box_in_hole(const ff_tree *tree, const ff_box *box)
 {
     for (unsigned axis = 0; axis < 3; axis++) {
         int64_t middle = (int64_t)tree->view.centre_wu[axis] - tree->view.camera.pos_wu[axis];
+        FF_ASSERT(box->lo[axis] <= box->hi[axis]);
         if (middle - box->lo[axis] >= tree->quality.hole_wu ||
             box->hi[axis] - middle >= tree->quality.hole_wu)
             return 0;
@@ -66,14 +75,18 @@ int ff_box_in_hole(const ff_tree *tree, const ff_box *box)
 
 int64_t ff_box_distance(const ff_box *box)
 {
-    return c3d_length64(outside(0, box->lo[0], box->hi[0]), outside(0, box->lo[1], box->hi[1]),
-                        outside(0, box->lo[2], box->hi[2]));
+    int64_t distance = c3d_length64(outside(0, box->lo[0], box->hi[0]),
+                                    outside(0, box->lo[1], box->hi[1]),
+                                    outside(0, box->lo[2], box->hi[2]));
+    FF_ASSERT(distance >= 0 && distance < INT64_C(1) << 40); /* beside a slot in a sort key */
+    return distance;
 }
 
 uint32_t ff_projected_error_q8(const ff_tree *tree, const ff_node *node, uint64_t distance)
 {
     uint64_t error = (uint64_t)ff_steps_wu(&tree->info,
                                            ff_geometric_error_decode(node->error_code));
+    FF_ASSERT(error <= INT32_MAX && tree->view.camera.focal_q8 > 0);
     return c3d_divide_saturated(error * (uint64_t)tree->view.camera.focal_q8,
                                 distance ? distance : 1);
 }
@@ -85,15 +98,18 @@ static uint32_t value_by_distance(const ff_tree *tree, const ff_node *node)
     ff_shape_to_middle(&tree->info, node->key, &node->placed,
                        ff_height_wu(&tree->info, node->height_mean), tree->view.camera.pos_wu, way);
     uint64_t d = (uint64_t)c3d_length64(way[0], way[1], way[2]);
-    uint64_t reach = (uint64_t)edge * (uint64_t)tree->quality.c_q8; /* below 2^31 * 2^24 */
+    uint64_t reach = (uint64_t)edge * (uint64_t)tree->quality.c_q8;
+    FF_ASSERT(reach <= UINT64_C(1) << (31 + 24));
     return c3d_divide_saturated(reach << 8, d ? d : 1);
 }
 
 uint32_t ff_value_of_split(const ff_tree *tree, const ff_node *node)
 {
+    FF_ASSERT(ff_key_level(node->key) < ff_terrain_levels(&tree->info));
     if (tree->quality.measure == FF_MEASURE_DISTANCE) return value_by_distance(tree, node);
     ff_box box;
     ff_node_box(tree, node, &box);
     uint64_t error_q8 = ff_projected_error_q8(tree, node, (uint64_t)ff_box_distance(&box));
+    FF_ASSERT(tree->quality.error_px_q8 > 0);
     return c3d_divide_saturated(error_q8 << 16, (uint64_t)tree->quality.error_px_q8);
 }

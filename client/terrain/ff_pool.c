@@ -1,9 +1,10 @@
 /* Node slots: a free list, a hash from key to slot, links from parents to children and a list of
  * roots. */
 #include "ff_tree_local.h"
-#include "../../protocol/ff_assert.h"
 
 #include <string.h>
+
+FF_STATIC_ASSERT(FF_NODES_MAX <= 1u << 25); /* bits that hash_of leaves */
 
 static uint32_t hash_of(const ff_tree *tree, ff_key key)
 {
@@ -16,11 +17,13 @@ uint32_t ff_tree_find(const ff_tree *tree, ff_key key)
 {
     uint32_t slot = tree->hash[hash_of(tree, key)];
     while (slot != FF_SLOT_NONE && tree->node[slot].key != key) slot = tree->node[slot].hash_next;
+    FF_ASSERT(slot == FF_SLOT_NONE || tree->node[slot].flags & FF_NODE_HELD);
     return slot;
 }
 
 uint32_t ff_tree_find_nearest(const ff_tree *tree, ff_key key)
 {
+    FF_ASSERT(ff_terrain_has_node(&tree->info, key));
     for (;;) {
         uint32_t slot = ff_tree_find(tree, key);
         if (slot != FF_SLOT_NONE || ff_key_level(key) == 0) return slot;
@@ -31,8 +34,10 @@ uint32_t ff_tree_find_nearest(const ff_tree *tree, ff_key key)
 uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent)
 {
     uint32_t slot = tree->free_head, bucket = hash_of(tree, key);
-    FF_ASSERT(slot != FF_SLOT_NONE);
+    FF_ASSERT(slot < tree->node_count && tree->free_count > 0);
+    FF_ASSERT((parent == FF_SLOT_NONE) == (ff_key_level(key) == 0));
     ff_node *node = &tree->node[slot];
+    FF_ASSERT(!(node->flags & FF_NODE_HELD));
     tree->free_head = node->hash_next;
     tree->free_count--;
 
@@ -55,6 +60,7 @@ uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent)
 
 static void forget_user(ff_tree *tree, ff_node *node)
 {
+    FF_ASSERT(node->flags & FF_NODE_HELD);
     if (node->user && tree->on_evict) tree->on_evict(tree->evict_context, node->user);
     node->user = 0;
 }
@@ -63,6 +69,7 @@ void ff_tree_reshade_beside(ff_tree *tree, ff_key key)
 {
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
         ff_key beside = ff_shape_neighbour(&tree->info, key, (enum ff_side)side).key;
+        FF_ASSERT(beside == FF_KEY_NONE || ff_key_level(beside) == ff_key_level(key));
         uint32_t slot = beside == FF_KEY_NONE ? FF_SLOT_NONE : ff_tree_find(tree, beside);
         if (slot != FF_SLOT_NONE) forget_user(tree, &tree->node[slot]);
     }
@@ -71,10 +78,13 @@ void ff_tree_reshade_beside(ff_tree *tree, ff_key key)
 static void give_slot(ff_tree *tree, uint32_t slot)
 {
     ff_node *node = &tree->node[slot];
-    FF_ASSERT(node->flags & FF_NODE_HELD && !ff_node_has_children(node));
+    FF_ASSERT(!ff_node_has_children(node) && tree->free_count < tree->node_count);
     forget_user(tree, node);
     uint32_t *link = &tree->hash[hash_of(tree, node->key)];
-    while (*link != slot) link = &tree->node[*link].hash_next;
+    while (*link != slot) {
+        FF_ASSERT(*link < tree->node_count); /* a held node is in its chain */
+        link = &tree->node[*link].hash_next;
+    }
     *link = node->hash_next;
     node->flags = 0;
     node->hash_next = tree->free_head;
@@ -86,6 +96,7 @@ static void give_slot(ff_tree *tree, uint32_t slot)
 void ff_tree_drop_children(ff_tree *tree, ff_node *parent)
 {
     for (unsigned q = 0; q < 4; q++) {
+        FF_ASSERT(tree->node[parent->child[q]].parent == ff_slot_of(tree, parent));
         give_slot(tree, parent->child[q]);
         parent->child[q] = FF_SLOT_NONE;
     }
@@ -95,7 +106,11 @@ void ff_tree_drop_children(ff_tree *tree, ff_node *parent)
 void ff_tree_drop_root(ff_tree *tree, ff_node *root)
 {
     uint32_t *link = &tree->root_head;
-    while (*link != ff_slot_of(tree, root)) link = &tree->node[*link].list_next;
+    FF_ASSERT(ff_key_level(root->key) == 0 && root->parent == FF_SLOT_NONE);
+    while (*link != ff_slot_of(tree, root)) {
+        FF_ASSERT(*link < tree->node_count);
+        link = &tree->node[*link].list_next;
+    }
     *link = root->list_next;
     give_slot(tree, ff_slot_of(tree, root));
 }

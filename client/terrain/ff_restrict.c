@@ -16,6 +16,7 @@ static ff_key parent_beside(const ff_tree *tree, const ff_node *node, enum ff_si
     if (ff_key_level(node->key) == 0 || !(towards[side] >> ff_key_quadrant(node->key) & 1u))
         return FF_KEY_NONE;
     ff_key beside = ff_shape_neighbour(&tree->info, ff_key_parent(node->key), side).key;
+    FF_ASSERT(beside == FF_KEY_NONE || ff_key_level(beside) + 1 == ff_key_level(node->key));
     if (beside == FF_KEY_NONE || ff_key_tile(beside) == ff_key_tile(node->key)) return beside;
     uint32_t root = ff_tree_find(tree, ff_key_make(ff_key_tile(beside), 0, 0));
     return root != FF_SLOT_NONE && tree->node[root].flags & FF_NODE_ACTIVE ? beside : FF_KEY_NONE;
@@ -25,6 +26,7 @@ static int side_coarser(const ff_tree *tree, const ff_node *node, enum ff_side s
 {
     ff_key beside = parent_beside(tree, node, side);
     if (beside == FF_KEY_NONE) return 0;
+    FF_ASSERT(beside != ff_key_parent(node->key));
     uint32_t parent = ff_tree_find(tree, beside);
     return parent == FF_SLOT_NONE || !(tree->node[parent].flags & FF_NODE_SPLIT);
 }
@@ -34,17 +36,20 @@ unsigned ff_coarser_mask(const ff_tree *tree, const ff_node *node)
     unsigned mask = 0;
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++)
         mask |= (unsigned)side_coarser(tree, node, (enum ff_side)side) << side;
+    FF_ASSERT(!(mask & mask >> 2)); /* of opposite sides one lies inside the parent */
     return mask;
 }
 
 void ff_want(ff_tree *tree, uint32_t slot, uint32_t value)
 {
     ff_node *node = &tree->node[slot];
+    FF_ASSERT(value > FF_VALUE_ONE && node->flags & FF_NODE_HELD);
     if (node->flags & FF_NODE_WANTED) {
         if (value > node->value) node->value = value;
         return;
     }
     uint32_t level = ff_key_level(node->key);
+    FF_ASSERT(level + 1 < ff_terrain_levels(&tree->info));
     node->flags |= FF_NODE_WANTED;
     node->value = value;
     node->want_next = tree->want_head[level];
@@ -55,6 +60,7 @@ void ff_want(ff_tree *tree, uint32_t slot, uint32_t value)
 static int is_needed(const ff_tree *tree, const ff_node *node)
 {
     ff_box box;
+    FF_ASSERT(node->flags & FF_NODE_WANTED);
     if (node->flags & FF_NODE_NEEDED) return 1;
     ff_node_box(tree, node, &box);
     return ff_box_in_view(tree, &box);
@@ -67,11 +73,13 @@ void ff_want_close(ff_tree *tree)
         for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE;
              slot = tree->node[slot].want_next) {
             const ff_node *node = &tree->node[slot];
+            FF_ASSERT(ff_key_level(node->key) == level);
             for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
                 ff_key beside = parent_beside(tree, node, (enum ff_side)side);
                 if (beside == FF_KEY_NONE) continue;
                 uint32_t nearest = ff_tree_find_nearest(tree, beside);
                 if (nearest == FF_SLOT_NONE) continue;
+                FF_ASSERT(ff_key_level(tree->node[nearest].key) < level);
                 ff_want(tree, nearest, node->value);
                 if (!ff_node_has_children(&tree->node[nearest]) && is_needed(tree, node))
                     tree->node[nearest].flags |= FF_NODE_NEEDED;

@@ -24,6 +24,7 @@ static int same_quality(const ff_quality *a, const ff_quality *b)
 
 static int32_t within(int32_t value, int32_t lo, int32_t hi)
 {
+    FF_ASSERT(lo <= hi);
     return value < lo ? lo : value > hi ? hi : value;
 }
 
@@ -37,6 +38,7 @@ static void set_view(ff_tree *tree, const ff_view *view, const ff_quality *quali
     tree->quality.error_px_q8 = within(quality->error_px_q8, 1, INT32_MAX);
     tree->quality.view_wu = within(quality->view_wu, 0, INT32_MAX);
     int32_t horizon_wu = ff_shape_horizon_wu(&tree->info, &view->frame, view->centre_wu);
+    FF_ASSERT(horizon_wu >= 0);
     if (tree->quality.view_wu > horizon_wu) tree->quality.view_wu = horizon_wu;
     ff_window_make(tree);
     ff_pyramid_make(tree);
@@ -60,8 +62,10 @@ static void forget_flags(ff_tree *tree)
         tree->node[slot].flags &= FF_NODE_HELD;
     for (uint32_t level = 0; level < FF_LEVELS_MAX; level++) {
         for (uint32_t slot = tree->want_head[level]; !tree->dropped && slot != FF_SLOT_NONE;
-             slot = tree->node[slot].want_next)
+             slot = tree->node[slot].want_next) {
+            FF_ASSERT(tree->node[slot].flags & FF_NODE_WANTED);
             tree->node[slot].flags = FF_NODE_HELD;
+        }
         tree->want_head[level] = FF_SLOT_NONE;
     }
     tree->dropped = 0;
@@ -71,6 +75,7 @@ static void mark_active_roots(ff_tree *tree)
 {
     for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
         ff_node *root = &tree->node[slot];
+        FF_ASSERT(root->flags & FF_NODE_HELD && ff_key_level(root->key) == 0);
         root->flags = FF_NODE_HELD |
                       (ff_tile_active(tree, ff_key_tile(root->key)) ? FF_NODE_ACTIVE : 0);
     }
@@ -80,6 +85,7 @@ static uint32_t push_active_roots(ff_tree *tree)
 {
     uint32_t count = 0;
     for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
+        FF_ASSERT(count < tree->node_count - tree->free_count); /* or the list runs in a circle */
         if (tree->node[slot].flags & FF_NODE_ACTIVE) tree->order[count++] = slot;
     }
     return count;
@@ -87,6 +93,7 @@ static uint32_t push_active_roots(ff_tree *tree)
 
 static uint32_t push_children(ff_tree *tree, const ff_node *node, uint32_t count)
 {
+    FF_ASSERT(count + 4 <= tree->node_count - tree->free_count); /* a node is pushed once */
     for (unsigned q = 0; q < 4; q++) tree->order[count++] = node->child[q];
     return count;
 }
@@ -96,6 +103,7 @@ static uint32_t push_children(ff_tree *tree, const ff_node *node, uint32_t count
 static uint32_t own_value(ff_tree *tree, const ff_node *node)
 {
     uint32_t next = ff_key_level(node->key) + 1;
+    FF_ASSERT(next <= ff_terrain_levels(&tree->info));
     if (next >= ff_terrain_levels(&tree->info) ||
         (tree->quality.depth_max && next >= tree->quality.depth_max))
         return 0;
@@ -123,6 +131,7 @@ static void want_by_measure(ff_tree *tree)
         ff_want(tree, tree->order[i], value);
         if (ff_node_has_children(node)) count = push_children(tree, node, count);
     }
+    FF_ASSERT(tree->stats.flat <= count);
 }
 
 /* Decides who splits, level by level from the roots, so that all decisions about a level are made
@@ -134,6 +143,7 @@ static void split_cut(ff_tree *tree)
         ff_node *node = &tree->node[tree->order[i]];
         if (node->flags & FF_NODE_WANTED && ff_node_has_children(node) &&
             ff_coarser_mask(tree, node) == 0) {
+            FF_ASSERT(ff_key_level(node->key) + 1 < ff_terrain_levels(&tree->info));
             node->flags |= FF_NODE_SPLIT;
             count = push_children(tree, node, count);
         }
@@ -142,24 +152,28 @@ static void split_cut(ff_tree *tree)
         if (!(tree->node[tree->order[i]].flags & FF_NODE_SPLIT))
             tree->order[leaves++] = tree->order[i];
     }
+    FF_ASSERT((count - leaves) * 4 <= count); /* who splits has pushed four */
     tree->cut_count = leaves;
 }
 
 static void fill_drawn(const ff_tree *tree, uint32_t slot, unsigned coarser, ff_drawn *drawn)
 {
     const ff_node *node = &tree->node[slot];
+    FF_ASSERT((node->flags & (FF_NODE_HELD | FF_NODE_SPLIT)) == FF_NODE_HELD);
     drawn->key = node->key;
     drawn->node = node;
     drawn->heights = tree->heights + slot * ff_heights_per_node(tree);
     drawn->coarser = (uint8_t)coarser;
     ff_shape_place(&tree->info, node->key, &node->placed, 0, 0, 32768, drawn->origin_wu);
     drawn->cell_wu = ff_node_cell_wu(&tree->info, ff_key_level(node->key));
+    FF_ASSERT(drawn->cell_wu > 0);
 }
 
 /* Triangles of a node's strips (ff_strips.h), degenerate ones not counted. */
 static uint32_t triangles_of(const ff_tree *tree, unsigned coarser)
 {
     uint32_t n = 1u << tree->info.node_log2, count = 2 * n * n;
+    FF_ASSERT(coarser < 1u << FF_SIDE_COUNT);
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
         if (coarser >> side & 1u) count -= n / 2;
     }
@@ -172,6 +186,7 @@ static void count_drawn(ff_tree *tree, const ff_drawn *drawn, uint64_t distance)
     if (error_q8 > tree->stats.error_px_q8) tree->stats.error_px_q8 = error_q8;
     tree->stats.triangles += triangles_of(tree, drawn->coarser);
     tree->stats.stitched += drawn->coarser != 0;
+    FF_ASSERT(tree->stats.stitched <= tree->drawn_count);
 }
 
 /* Lists the cut: first the nodes that are seen, nearest first, then the others. */
@@ -187,11 +202,13 @@ static void list_cut(ff_tree *tree)
         else
             tree->order[unseen++] = slot;
     }
+    FF_ASSERT(tree->cut_count <= tree->node_count - tree->free_count);
     ff_sort_keys(tree->sort, seen);
     tree->drawn_count = seen;
     tree->stats.triangles = tree->stats.stitched = tree->stats.error_px_q8 = 0;
     for (uint32_t i = 0; i < seen; i++) {
         uint32_t slot = (uint32_t)tree->sort[i] & (FF_NODES_MAX - 1);
+        FF_ASSERT(slot < tree->node_count && (i == 0 || tree->sort[i - 1] < tree->sort[i]));
         fill_drawn(tree, slot, ff_coarser_mask(tree, &tree->node[slot]), &tree->drawn[i]);
         count_drawn(tree, &tree->drawn[i], tree->sort[i] >> FF_SLOT_BITS);
     }
@@ -218,5 +235,6 @@ int ff_tree_select(ff_tree *tree, const ff_view *view, const ff_quality *quality
     split_cut(tree);
     list_cut(tree);
     ff_wish_make(tree);
+    FF_ASSERT(tree->wish_count <= tree->wish_capacity);
     return 1;
 }

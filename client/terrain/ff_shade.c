@@ -2,6 +2,7 @@
 #include "ff_shade.h"
 
 #include "../../common3d/c3d_fixed.h"
+#include "../../protocol/ff_assert.h"
 #include "../../protocol/shape/ff_shape.h"
 
 #include <stddef.h>
@@ -11,6 +12,7 @@
  */
 #define ROCK_FROM_Q8 160
 #define ROCK_TO_Q8   420
+FF_STATIC_ASSERT(ROCK_FROM_Q8 < ROCK_TO_Q8 && ROCK_TO_Q8 < SLOPE_MAX_Q8);
 
 static const uint8_t ramp[][3] = {
     { 86, 125, 70 },  { 118, 148, 82 },  { 164, 168, 100 }, { 196, 172, 112 }, { 178, 140, 96 },
@@ -23,6 +25,7 @@ static const uint8_t water[3] = { 62, 106, 150 };
 /* Rise over run from twice the height difference per cell. */
 static int32_t slope_q8(const ff_terrain_info *info, int32_t doubled, int32_t cell_wu)
 {
+    FF_ASSERT(cell_wu > 0 && doubled >= -UINT16_MAX && doubled <= UINT16_MAX);
     int64_t rise_wu = (int64_t)doubled * (int64_t)info->hscale_q24 / 65536;
     int64_t slope = rise_wu * 128 / cell_wu;
     return slope > SLOPE_MAX_Q8    ? SLOPE_MAX_Q8
@@ -46,6 +49,7 @@ static void ground_colour(const ff_terrain_info *info, uint32_t height, uint32_t
                     : steep_q8 >= ROCK_TO_Q8
                         ? 256
                         : (steep_q8 - ROCK_FROM_Q8) * 256 / (ROCK_TO_Q8 - ROCK_FROM_Q8);
+    FF_ASSERT(step < RAMP_STEPS && part <= 256 && bare <= 256);
     for (unsigned c = 0; c < 3; c++) {
         int32_t soil = (int32_t)(ramp[step][c] * (256 - part) + ramp[step + 1][c] * part) / 256;
         colour[c] = (soil * (int32_t)(256 - bare) + rock[c] * (int32_t)bare) / 256;
@@ -55,6 +59,7 @@ static void ground_colour(const ff_terrain_info *info, uint32_t height, uint32_t
 static int is_water(const ff_terrain_info *info, uint32_t height)
 {
     int32_t lowest_wu = ff_height_wu(info, info->height_min), step_wu = ff_steps_wu(info, 1) + 1;
+    FF_ASSERT(step_wu > 0 && step_wu <= 1 << 15);
     return height <= info->height_min && lowest_wu > -step_wu && lowest_wu < step_wu;
 }
 
@@ -66,7 +71,9 @@ static int32_t light_q8(int32_t east_q8, int32_t north_q8)
         (uint64_t)(65536 + (int64_t)east_q8 * east_q8 + (int64_t)north_q8 * north_q8));
     /* Q16: slopes of 1/2, and 181/256 for 1/sqrt 2 */
     int64_t facing = (int64_t)(east_q8 - north_q8) * 128 + 181 * 256;
+    FF_ASSERT(length >= 256);
     int64_t cosine_q8 = facing / length;
+    FF_ASSERT(cosine_q8 <= 256);
     if (cosine_q8 < 0) cosine_q8 = 0;
     return (int32_t)(90 + cosine_q8 * 166 / 181);
 }
@@ -75,6 +82,7 @@ void ff_shade(const ff_shade_grid *grid, uint32_t i, uint32_t j, uint8_t rgba[4]
 {
     const ff_terrain_info *info = grid->info;
     size_t stride = ff_node_side(info) + 2;
+    FF_ASSERT(i + 2 < stride && j + 2 < stride);
     const uint16_t *here = grid->framed + (j + 1) * stride + i + 1;
     int32_t slope[2] = { slope_q8(info, here[1] - *(here - 1), grid->cell_wu),
                          slope_q8(info, here[stride] - *(here - stride), grid->cell_wu) };
@@ -88,6 +96,7 @@ void ff_shade(const ff_shade_grid *grid, uint32_t i, uint32_t j, uint8_t rgba[4]
     int32_t light = light_q8(east, north);
     for (unsigned c = 0; c < 3; c++) {
         int32_t lit = colour[c] * light / 256;
+        FF_ASSERT(lit >= 0);
         rgba[c] = (uint8_t)(lit > 255 ? 255 : lit);
     }
     rgba[3] = 255;

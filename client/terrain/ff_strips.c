@@ -2,15 +2,19 @@
  * both are walked from one end to the other, each step closing one triangle, and the walk is
  * written down as a triangle strip. */
 #include "ff_strips.h"
-#include "../../protocol/ff_assert.h"
 
 #include "../../protocol/codec/ff_codec.h"
 #include "ff_tree_local.h"
+
+#define STRIPS (sizeof((ff_strips *)0)->first / sizeof((ff_strips *)0)->first[0])
+FF_STATIC_ASSERT(FF_STRIP_SIDE(0, FF_NODE_LOG2_MAX + 1) <= STRIPS);
+FF_STATIC_ASSERT(FF_NODE_HEIGHTS_MAX <= UINT16_MAX); /* indices */
 
 /* Grid index of (column, row) given in the frame of the south side, turned so that south becomes
  * `side`. */
 static uint16_t turned(unsigned n, enum ff_side side, unsigned column, unsigned row)
 {
+    FF_ASSERT(column <= n && row <= n);
     switch (side) {
         case FF_SIDE_EAST: return (uint16_t)(column * (n + 1) + (n - row));
         case FF_SIDE_NORTH: return (uint16_t)((n - row) * (n + 1) + (n - column));
@@ -23,6 +27,7 @@ unsigned ff_side_triangles(unsigned node_log2, enum ff_side side, unsigned diffe
                            uint16_t triangle[][3])
 {
     unsigned n = 1u << node_log2, step = 1u << difference, outer = 0, inner = 1, count = 0;
+    FF_ASSERT(step <= n);
     while (outer < n || inner < n - 1) {
         /* Advance the chain whose next edge has its middle further west; equal middles: the inner
          * one, diagonal to north-east. */
@@ -38,6 +43,7 @@ unsigned ff_side_triangles(unsigned node_log2, enum ff_side side, unsigned diffe
         }
         count++;
     }
+    FF_ASSERT(count == n / step + n - 2);
     return count;
 }
 
@@ -53,6 +59,7 @@ static void append(ff_strips *strips, unsigned id, uint16_t vertex)
  * north-west ...: an even number of indices, so that every row starts with the same winding. */
 static void make_rows(ff_strips *strips, unsigned id, unsigned n, unsigned first, unsigned end)
 {
+    FF_ASSERT(first <= end && end <= n);
     for (unsigned row = first; row < end; row++) {
         uint16_t start = (uint16_t)((row + 1) * (n + 1) + first);
         if (row > first) {
@@ -64,6 +71,7 @@ static void make_rows(ff_strips *strips, unsigned id, unsigned n, unsigned first
             append(strips, id, (uint16_t)(row * (n + 1) + column));
         }
         strips->triangles[id] = (uint16_t)(strips->triangles[id] + 2 * (end - first));
+        FF_ASSERT(strips->length[id] % 2 == 0);
     }
 }
 
@@ -72,6 +80,7 @@ static void make_side(ff_strips *strips, unsigned id, unsigned node_log2, enum f
 {
     uint16_t triangle[2 << FF_NODE_LOG2_MAX][3];
     unsigned count = ff_side_triangles(node_log2, side, difference, triangle);
+    FF_ASSERT(count <= sizeof triangle / sizeof triangle[0]);
     strips->triangles[id] = (uint16_t)count;
 
     /* A triangle replaces the older of the last two vertices. Where it should replace the younger,
@@ -83,6 +92,7 @@ static void make_side(ff_strips *strips, unsigned id, unsigned node_log2, enum f
     append(strips, id, older);
     append(strips, id, younger);
     for (unsigned i = 0; i < count; i++) {
+        FF_ASSERT(older == triangle[i][0] || younger == triangle[i][0]);
         uint16_t kept = older == triangle[i][0] ? younger : older;
         if (kept == older) append(strips, id, older);
         older = kept;
@@ -93,6 +103,7 @@ static void make_side(ff_strips *strips, unsigned id, unsigned node_log2, enum f
 
 static void begin_strip(ff_strips *strips, unsigned id)
 {
+    FF_ASSERT(id < STRIPS);
     strips->first[id] = id == 0 ? 0 : (uint16_t)(strips->first[id - 1] + strips->length[id - 1]);
     strips->length[id] = 0;
     strips->triangles[id] = 0;
@@ -114,6 +125,8 @@ int ff_strips_make(ff_strips *strips, unsigned node_log2)
             make_side(strips, id, node_log2, (enum ff_side)side, difference);
         }
     }
+    FF_ASSERT(strips->first[strips->count - 1] + (uint32_t)strips->length[strips->count - 1] ==
+              ff_strips_indices(node_log2));
     return FF_OK;
 }
 
@@ -125,6 +138,7 @@ uint32_t ff_strips_indices(unsigned node_log2)
 
 unsigned ff_strips_for(unsigned coarser, uint8_t strip[5])
 {
+    FF_ASSERT(coarser < 1u << FF_SIDE_COUNT);
     if (coarser == 0) {
         strip[0] = FF_STRIP_FULL;
         return 1;

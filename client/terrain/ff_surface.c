@@ -1,6 +1,5 @@
 /* The drawn surface: vertices for the renderer, and its height at a point. */
 #include "ff_tree_local.h"
-#include "../../protocol/ff_assert.h"
 #include "ff_shade.h"
 
 #include <string.h>
@@ -12,6 +11,7 @@
 static size_t side_index(enum ff_side side, uint32_t along, uint32_t depth, uint32_t last,
                          size_t stride)
 {
+    FF_ASSERT(along <= last && depth <= last);
     switch (side) {
         case FF_SIDE_EAST: return along * stride + last - depth;
         case FF_SIDE_NORTH: return (last - depth) * stride + along;
@@ -26,6 +26,7 @@ static void frame_side(const ff_tree *tree, const ff_drawn *drawn, enum ff_side 
                        uint16_t *framed)
 {
     uint32_t samples = ff_node_side(&tree->info), last = samples - 1;
+    FF_ASSERT(last >= 2); /* the slope of two cells */
     ff_beside beside = ff_shape_neighbour(&tree->info, drawn->key, side);
     uint32_t slot = beside.key == FF_KEY_NONE ? FF_SLOT_NONE : ff_tree_find(tree, beside.key);
     for (uint32_t along = 0; along < samples; along++) {
@@ -46,6 +47,7 @@ static void frame_side(const ff_tree *tree, const ff_drawn *drawn, enum ff_side 
 static void frame_heights(const ff_tree *tree, const ff_drawn *drawn, uint16_t *framed)
 {
     uint32_t samples = ff_node_side(&tree->info);
+    FF_ASSERT((samples + 2) * (samples + 2) <= FRAMED_MAX);
     for (uint32_t row = 0; row < samples; row++)
         memcpy(framed + (row + 1) * (samples + 2) + 1, drawn->heights + row * samples,
                samples * sizeof *framed);
@@ -95,7 +97,9 @@ static int height_in_triangle(const uint16_t *heights, unsigned side, const uint
         area += weight;
         sum += weight * heights[triangle[i]];
     }
+    FF_ASSERT(area >> 16 > 0);
     *height_q16 = (uint64_t)(sum / (area >> 16));
+    FF_ASSERT(*height_q16 <= (uint64_t)UINT16_MAX << 16);
     return 1;
 }
 
@@ -108,6 +112,7 @@ static uint64_t height_in_cell(const uint16_t *heights, unsigned side, unsigned 
     uint16_t below[3] = { south_west, (uint16_t)(south_west + 1), north_east };
     uint16_t above[3] = { south_west, north_east, (uint16_t)(south_west + side) };
     uint64_t height_q16 = 0;
+    FF_ASSERT(column + 1 < side && row + 1 < side);
     if (!height_in_triangle(heights, side, below, at, &height_q16))
         (void)height_in_triangle(heights, side, above, at, &height_q16);
     return height_q16;
@@ -118,6 +123,7 @@ static uint64_t height_in_sides(const ff_tree *tree, const uint16_t *heights, un
 {
     uint16_t triangle[2 << FF_NODE_LOG2_MAX][3];
     uint64_t height_q16 = 0;
+    FF_ASSERT(coarser < 1u << FF_SIDE_COUNT);
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
         unsigned count = ff_side_triangles(tree->info.node_log2, (enum ff_side)side,
                                            coarser >> side & 1u, triangle);
@@ -135,6 +141,7 @@ static uint64_t height_in_node(const ff_tree *tree, const ff_node *node, grid_po
 {
     unsigned side = ff_node_side(&tree->info), last = side - 2;
     const uint16_t *heights = tree->heights + ff_slot_of(tree, node) * ff_heights_per_node(tree);
+    FF_ASSERT(at.x >> 16 <= side - 1 && at.y >> 16 <= side - 1);
     unsigned column = (unsigned)(at.x >> 16), row = (unsigned)(at.y >> 16);
     column = column > last ? last : column;
     row = row > last ? last : row;
@@ -153,12 +160,14 @@ static const ff_node *node_at(const ff_tree *tree, const ff_node *node, const ff
     uint32_t column = spot->column_q16, row = spot->row_q16,
              half = 1u << (15 + tree->info.tile_log2);
     for (; node->flags & FF_NODE_SPLIT; half >>= 1) {
+        FF_ASSERT(ff_node_has_children(node));
         unsigned east = column >= half, north = row >= half;
         column -= east ? half : 0;
         row -= north ? half : 0;
         node = &tree->node[node->child[2 * north + east]];
     }
     unsigned cell_log2 = tree->info.tile_log2 - tree->info.node_log2 - ff_key_level(node->key);
+    FF_ASSERT(column <= 2 * half && row <= 2 * half); /* the node's edge by now */
     *at = (grid_point){ column >> cell_log2, row >> cell_log2 };
     return node;
 }
@@ -171,6 +180,7 @@ int ff_tree_drawn_height(const ff_tree *tree, int32_t x_wu, int32_t y_wu, int32_
     ff_spot spot;
     grid_point at;
     if (!tree->has_view || !ff_shape_locate(&tree->info, &view->frame, place_wu, &spot)) return 0;
+    FF_ASSERT(spot.tile < ff_shape_tiles(&tree->info));
     uint32_t slot = ff_tree_find(tree, ff_key_make(spot.tile, 0, 0));
     if (slot == FF_SLOT_NONE || !ff_tile_active(tree, spot.tile)) return 0;
     const ff_node *node = node_at(tree, &tree->node[slot], &spot, &at);

@@ -1,6 +1,5 @@
 /* The tree as its users see it: creation in one block, arrival of nodes, answers to questions. */
 #include "ff_tree_local.h"
-#include "../../protocol/ff_assert.h"
 
 #include <string.h>
 
@@ -15,6 +14,7 @@ typedef struct block {
 static void *take(block *from, size_t bytes)
 {
     void *part = from->base ? from->base + from->used : NULL;
+    FF_ASSERT((uintptr_t)part % BLOCK_ALIGN == 0);
     from->used += (bytes + BLOCK_ALIGN - 1) & ~(size_t)(BLOCK_ALIGN - 1);
     return part;
 }
@@ -22,6 +22,7 @@ static void *take(block *from, size_t bytes)
 static uint32_t hash_size(uint32_t node_count)
 {
     uint32_t size = 8;
+    FF_ASSERT(node_count <= FF_NODES_MAX);
     while (size < node_count) size *= 2;
     return size;
 }
@@ -30,6 +31,7 @@ static ff_tree *carve(const ff_tree_desc *desc, block *from)
 {
     size_t n = desc->node_count, side = ff_node_side(&desc->info),
            refined = ff_refined_side(&desc->info);
+    FF_ASSERT(side * side <= FF_NODE_HEIGHTS_MAX && refined * refined <= FF_REFINED_HEIGHTS_MAX);
     ff_tree *tree = take(from, sizeof *tree);
     ff_tree parts = { 0 };
     parts.node = take(from, n * sizeof *parts.node);
@@ -63,10 +65,12 @@ ff_tree *ff_tree_create(const ff_tree_desc *desc, void *memory, size_t bytes)
     if (!memory || !desc_ok(desc) || bytes < ff_tree_bytes(desc)) return NULL;
     block from = { memory, (BLOCK_ALIGN - (uintptr_t)memory % BLOCK_ALIGN) % BLOCK_ALIGN };
     ff_tree *tree = carve(desc, &from);
+    FF_ASSERT(from.used <= bytes);
     tree->info = desc->info;
     tree->node_count = tree->free_count = desc->node_count;
     tree->wish_capacity = desc->wish_count;
     tree->hash_mask = hash_size(desc->node_count) - 1;
+    FF_ASSERT((tree->hash_mask & (tree->hash_mask + 1)) == 0);
     memset(tree->hash, 0xFF, (tree->hash_mask + 1) * sizeof *tree->hash);
     memset(tree->node, 0, tree->node_count * sizeof *tree->node);
     for (uint32_t slot = 0; slot < tree->node_count; slot++)
@@ -79,8 +83,11 @@ ff_tree *ff_tree_create(const ff_tree_desc *desc, void *memory, size_t bytes)
 
 static uint16_t *heights_of(const ff_tree *tree, uint32_t slot)
 {
+    FF_ASSERT(slot < tree->node_count);
     return tree->heights + slot * ff_heights_per_node(tree);
 }
+
+FF_STATIC_ASSERT(FF_NODE_HEIGHTS_MAX <= UINT32_MAX / UINT16_MAX); /* a sum of heights */
 
 static void measure_heights(ff_tree *tree, uint32_t slot, uint8_t error_code)
 {
@@ -98,6 +105,8 @@ static void measure_heights(ff_tree *tree, uint32_t slot, uint8_t error_code)
     node->height_max = highest;
     node->height_mean = (uint16_t)(sum / count);
     node->error_code = error_code;
+    FF_ASSERT(node->height_min <= node->height_mean && node->height_mean <= node->height_max);
+    FF_ASSERT(ff_geometric_error_decode(error_code) <= 65536);
 }
 
 int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, const ff_residuals *residuals)
@@ -109,6 +118,7 @@ int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, const ff_residuals *resid
         tree->stats.pool_full++;
         return FF_ERR_FULL;
     }
+    FF_ASSERT(tree->free_count > 0);
     uint32_t slot = ff_tree_take_slot(tree, key, FF_SLOT_NONE);
     int rc = ff_reconstruct_root(&tree->info, residuals, heights_of(tree, slot));
     if (rc != FF_OK) {
@@ -136,6 +146,7 @@ int ff_tree_deliver_children(ff_tree *tree, ff_key key, const ff_residuals *resi
         tree->stats.pool_full++;
         return FF_ERR_FULL;
     }
+    FF_ASSERT(tree->free_count >= 4 && tree->node[slot].key == key); /* it was spared itself */
     int rc = ff_reconstruct_refinement(&tree->info, heights_of(tree, slot), residuals,
                                        tree->refined);
     if (rc != FF_OK) return rc;
@@ -158,6 +169,7 @@ uint32_t ff_tree_drawn(const ff_tree *tree, const ff_drawn **list)
 
 uint32_t ff_tree_cut(const ff_tree *tree, const ff_drawn **list)
 {
+    FF_ASSERT(tree->drawn_count <= tree->cut_count);
     for (uint32_t i = tree->drawn_count; i < tree->cut_count; i++) {
         if (tree->drawn[i].coarser == FF_COARSER_UNKNOWN)
             tree->drawn[i].coarser = (uint8_t)ff_coarser_mask(tree, tree->drawn[i].node);
@@ -191,6 +203,7 @@ void ff_tree_get_stats(const ff_tree *tree, ff_tree_stats *stats)
 {
     *stats = tree->stats;
     stats->nodes_held = tree->node_count - tree->free_count;
+    FF_ASSERT(stats->nodes_held <= stats->nodes_high && stats->nodes_high <= tree->node_count);
     stats->nodes_cut = tree->cut_count;
     stats->nodes_drawn = tree->drawn_count;
 }

@@ -3,11 +3,13 @@
 #define FF_TREE_LOCAL_H
 
 #include "ff_tree.h"
+#include "../../protocol/ff_assert.h"
 
 #define FF_SLOT_NONE  UINT32_MAX
 #define FF_NODES_MAX  (1u << 20) /* slot numbers share a 64-bit sort key with a 40-bit distance */
 #define FF_SLOT_BITS  20
 #define FF_LEVELS_MAX (FF_KEY_LEVEL_MAX + 1u)
+FF_STATIC_ASSERT(FF_NODES_MAX == 1u << FF_SLOT_BITS && FF_SLOT_NONE >= FF_NODES_MAX);
 
 /* Value of splitting a node, Q16: 1/f, above 1.0 the measure asks for it. Saturates. */
 #define FF_VALUE_ONE 65536u
@@ -71,6 +73,7 @@ struct ff_tree {
 
 static inline uint32_t ff_slot_of(const ff_tree *tree, const ff_node *node)
 {
+    FF_ASSERT(node >= tree->node && node < tree->node + tree->node_count);
     return (uint32_t)(node - tree->node);
 }
 static inline size_t ff_heights_per_node(const ff_tree *tree)
@@ -79,6 +82,7 @@ static inline size_t ff_heights_per_node(const ff_tree *tree)
 }
 static inline int ff_node_has_children(const ff_node *node)
 {
+    FF_ASSERT((node->child[0] == FF_SLOT_NONE) == (node->child[3] == FF_SLOT_NONE));
     return node->child[0] != FF_SLOT_NONE;
 }
 

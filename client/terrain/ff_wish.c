@@ -10,8 +10,15 @@
 #define ONE_Q8       256u
 #define UNSEEN_SHARE 4 /* of the list, at most, for roots out of view */
 
+FF_STATIC_ASSERT(FF_KEY_TILES_MAX == 1u << TILE_BITS);
+/* What stands below OUT_OF_VIEW in a sort key: the number of a root found and its tile, or a value
+ * and a slot. */
+FF_STATIC_ASSERT((uint64_t)2 * FF_NODES_MAX << TILE_BITS <= OUT_OF_VIEW);
+FF_STATIC_ASSERT((uint64_t)FF_VALUE_MAX << FF_SLOT_BITS < OUT_OF_VIEW);
+
 static uint32_t times_q16(uint32_t value_q16, uint32_t factor)
 {
+    FF_ASSERT(value_q16 > FF_VALUE_ONE && factor > 0);
     uint64_t product = (uint64_t)value_q16 * factor >> 16;
     return product > UINT32_MAX ? UINT32_MAX : (uint32_t)product;
 }
@@ -25,11 +32,13 @@ static uint32_t missing_roots(ff_tree *tree)
     uint32_t limit = tree->wish_capacity < tree->node_count / 2 ? 4 * tree->wish_capacity
                                                                 : 2 * tree->node_count;
     uint32_t found = 0, tile;
+    FF_ASSERT(limit <= 2 * tree->node_count);
     ff_walk walk = ff_shape_walk_out(&tree->info, &tree->view.frame, &tree->window,
                                      tree->view.centre_wu);
     while (found < limit && ff_shape_next(&tree->info, &walk, &tile)) {
         if (ff_tree_find(tree, ff_key_make(tile, 0, 0)) != FF_SLOT_NONE) continue;
         ff_box box;
+        FF_ASSERT(tile < ff_shape_tiles(&tree->info));
         ff_tile_box(tree, tile, &box);
         uint64_t unseen = ff_box_in_view(tree, &box) ? 0 : OUT_OF_VIEW;
         tree->sort[found] = unseen | (uint64_t)found << TILE_BITS | tile;
@@ -51,6 +60,7 @@ static uint32_t active_roots(const ff_tree *tree, int64_t *farthest)
         int64_t distance = ff_tile_distance(tree, tile);
         *farthest = distance > *farthest ? distance : *farthest;
     }
+    FF_ASSERT(count <= tree->node_count - tree->free_count);
     return count;
 }
 
@@ -60,6 +70,7 @@ static uint32_t root_priority(const ff_tree *tree, uint32_t tile)
     ff_tile_box(tree, tile, &box);
     uint64_t distance = (uint64_t)ff_box_distance(&box),
              reach = (uint64_t)ff_node_edge_wu(&tree->info, 0) << 16;
+    FF_ASSERT(reach > 0 && reach <= (uint64_t)INT32_MAX << 16);
     uint64_t priority = reach / (distance + 1);
     return priority > UINT32_MAX ? UINT32_MAX : (uint32_t)priority;
 }
@@ -74,6 +85,7 @@ static void wish_roots(ff_tree *tree)
             break; /* refinements in view need the rest */
         if (held + tree->wish_count >= tree->node_count && ff_tile_distance(tree, tile) >= farthest)
             continue;
+        FF_ASSERT(ff_tree_find(tree, ff_key_make(tile, 0, 0)) == FF_SLOT_NONE);
         ff_wish *wish = &tree->wish[tree->wish_count++];
         wish->key = ff_key_make(tile, 0, 0);
         wish->kind = FF_KIND_ROOT;
@@ -92,6 +104,7 @@ static uint32_t missing_children(ff_tree *tree)
         for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE;
              slot = tree->node[slot].want_next) {
             const ff_node *node = &tree->node[slot];
+            FF_ASSERT(node->flags & FF_NODE_WANTED && ff_key_level(node->key) == level);
             if (ff_node_has_children(node)) continue;
             ff_box box;
             ff_node_box(tree, node, &box);
@@ -116,6 +129,7 @@ typedef struct room {
 static int find_room(const ff_tree *tree, room *in, uint32_t slot)
 {
     uint32_t limit = ff_evict_limit(tree, &tree->node[slot]);
+    FF_ASSERT(in->next <= in->victims && in->free <= tree->node_count);
     while (in->free < 4 && in->next < in->victims && in->victim[in->next] >> FF_SLOT_BITS < limit) {
         const ff_node *victim = &tree->node[in->victim[in->next++] & SLOT_MASK];
         in->free += ff_node_has_children(victim) ? 4 : 1;
@@ -134,6 +148,8 @@ static void wish_children(ff_tree *tree)
         in.victims = ff_evict_candidates(tree, in.victim);
         ff_sort_keys(in.victim, in.victims);
     }
+    /* who lacks children is not among the victims */
+    FF_ASSERT(missing + in.victims <= tree->node_count - tree->free_count);
     for (uint32_t i = 0; i < missing && tree->wish_count < tree->wish_capacity; i++) {
         uint32_t slot = (uint32_t)(tree->sort[i] & SLOT_MASK);
         if (!find_room(tree, &in, slot)) continue;
