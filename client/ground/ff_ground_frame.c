@@ -1,4 +1,5 @@
 #include "ff_ground_frame.h"
+#include "../../protocol/ff_assert.h"
 
 #define FOLLOW_WU (512 * FF_WU_PER_METRE)
 
@@ -6,6 +7,7 @@
  * its ground. */
 static int32_t base_height(const ff_terrain_info *info)
 {
+    FF_ASSERT(info->height_min <= info->height_max);
     return info->height_min + (info->height_max - info->height_min) / 2;
 }
 
@@ -15,6 +17,7 @@ static int32_t samples_to(const ff_ground_frame *frame, const ff_terrain_info *i
                           const ff_drawn *drawn, int axis)
 {
     int32_t away_wu = drawn->origin_wu[axis] - frame->origin_wu[axis];
+    FF_ASSERT(away_wu % (int32_t)info->spacing_wu == 0);
     return away_wu / (int32_t)info->spacing_wu;
 }
 
@@ -29,14 +32,18 @@ int ff_ground_frame_follow(ff_ground_frame *frame, const ff_terrain_info *info,
     int32_t place_wu[2], near = frame->set;
     for (int axis = 0; axis < 2; axis++) {
         int64_t at_wu = camera->pos_wu[axis];
+        FF_ASSERT(ground.lo[axis] >= INT32_MIN && ground.hi[axis] <= INT32_MAX);
         at_wu = at_wu < ground.lo[axis] ? ground.lo[axis] : at_wu;
         place_wu[axis] = (int32_t)(at_wu > ground.hi[axis] ? ground.hi[axis] : at_wu);
         int64_t away_wu = (int64_t)place_wu[axis] - frame->origin_wu[axis];
         near = near && away_wu <= reach && away_wu >= -reach;
     }
     if (near) return 0;
-    for (int axis = 0; axis < 2; axis++)
+    for (int axis = 0; axis < 2; axis++) {
         frame->origin_wu[axis] = (int32_t)(place_wu[axis] / spacing * spacing);
+        FF_ASSERT(frame->origin_wu[axis] >= ground.lo[axis] &&
+                  frame->origin_wu[axis] <= ground.hi[axis]);
+    }
     frame->set = 1;
     return 1;
 }
@@ -47,7 +54,9 @@ void ff_ground_frame_vertices(const ff_ground_frame *frame, const ff_terrain_inf
     unsigned level = ff_key_level(drawn->key), shift = info->tile_log2 - info->node_log2 - level;
     int32_t west = samples_to(frame, info, drawn, 0), south = samples_to(frame, info, drawn, 1);
     int32_t lift = 32768 - base_height(info);
+    FF_ASSERT(level < ff_terrain_levels(info) && count <= FF_NODE_HEIGHTS_MAX);
     for (uint32_t i = 0; i < count; i++) {
+        FF_ASSERT(vertices[i].x <= 1 << info->node_log2 && vertices[i].y <= 1 << info->node_log2);
         vertices[i].x = west + (vertices[i].x << shift);
         vertices[i].y = south + (vertices[i].y << shift);
         vertices[i].z += lift;
@@ -57,6 +66,7 @@ void ff_ground_frame_vertices(const ff_ground_frame *frame, const ff_terrain_inf
 void ff_ground_frame_draw(const ff_ground_frame *frame, const ff_terrain_info *info,
                           const c3d_camera *camera, c3d_draw *draw)
 {
+    FF_ASSERT(frame->set == 1 && info->spacing_wu <= INT32_MAX);
     for (int axis = 0; axis < 2; axis++)
         draw->origin_wu[axis] = (int64_t)frame->origin_wu[axis] - camera->pos_wu[axis];
     draw->origin_wu[2] = (int64_t)ff_height_wu(info, (uint32_t)base_height(info)) -

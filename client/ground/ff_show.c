@@ -1,15 +1,20 @@
 #include "ff_show.h"
 
 #include "../farfield.h"
+#include "../../protocol/ff_assert.h"
 
 #define COLOUR_WIRE   0xFF202020u
 #define COLOUR_STITCH 0xFF2020FFu /* red */
 #define COLOUR_BORDER 0xFF00E0FFu /* yellow */
 
+/* Sides that leave out vertices come after all that do not. */
+FF_STATIC_ASSERT(FF_STRIP_SIDE(0, 1) == FF_STRIP_SIDE(FF_SIDE_COUNT - 1, 0) + 1);
+
 static void draw_lines(const ff_terrain_view *view, const c3d_draw *ground, unsigned strip,
                        uint32_t colour)
 {
     c3d_draw lines = *ground;
+    FF_ASSERT(strip < FF_STRIP_COUNT_MAX);
     lines.flags = C3D_DRAW_WIREFRAME | C3D_DRAW_ON_TOP;
     lines.strip = view->strip[strip];
     lines.colour = colour;

@@ -1,13 +1,18 @@
 #include "ff_terrain_view.h"
 
 #include "ff_show.h"
+#include "../../protocol/ff_assert.h"
 
 #define HASH_PRIME UINT64_C(0x100000001b3)
+
+FF_STATIC_ASSERT(FF_STRIP_COUNT_MAX >= FF_STRIP_SIDE(0, FF_NODE_LOG2_MAX + 1));
+FF_STATIC_ASSERT(sizeof((ff_strips *)0)->length == FF_STRIP_COUNT_MAX * sizeof(uint16_t));
 
 int ff_terrain_view_strips(ff_terrain_view *view, unsigned node_log2, ff_strips *strips)
 {
     int rc = ff_strips_make(strips, node_log2);
     for (unsigned i = 0; rc == FF_OK && i < strips->count; i++) {
+        FF_ASSERT(strips->first[i] + strips->length[i] <= (int)ff_strips_indices(node_log2));
         view->strip[i].id = 0;
         if (strips->length[i] == 0) continue; /* INNER of the smallest nodes */
         view->strip[i] = c3d_strip_make(view->device, strips->index + strips->first[i],
@@ -19,6 +24,7 @@ int ff_terrain_view_strips(ff_terrain_view *view, unsigned node_log2, ff_strips 
 
 static void release(ff_terrain_view *view, ff_view_node *entry)
 {
+    FF_ASSERT(entry->user != NULL && view->held > 0);
     if (entry->mesh.id) c3d_mesh_free(view->device, entry->mesh);
     entry->mesh.id = 0;
     entry->user = NULL;
@@ -28,12 +34,16 @@ static void release(ff_terrain_view *view, ff_view_node *entry)
 static void on_evict(void *context, uint32_t user)
 {
     ff_terrain_view *view = context;
+    FF_ASSERT(user <= view->entry_count);
+    FF_ASSERT(!user || *view->entry[user - 1].user == user); /* the two name each other */
     if (user) release(view, &view->entry[user - 1]);
 }
 
 void ff_terrain_view_attach(ff_terrain_view *view, ff_tree *tree, const ff_terrain_info *info,
                             const ff_textures *textures)
 {
+    FF_ASSERT(view->heights_per_node == ff_node_side(info) * ff_node_side(info));
+    FF_ASSERT(view->held == 0); /* no entry is another tree's */
     view->tree = tree;
     view->info = info;
     view->textures = textures;
@@ -45,6 +55,7 @@ static uint64_t hash_word(uint64_t hash, uint64_t word) { return (hash ^ word) *
 static uint64_t hash_heights(const ff_drawn *drawn, uint32_t count)
 {
     uint64_t hash = FF_TERRAIN_VIEW_HASH_START;
+    FF_ASSERT(count <= FF_NODE_HEIGHTS_MAX);
     for (uint32_t i = 0; i < count; i++) hash = hash_word(hash, drawn->heights[i]);
     return hash;
 }
@@ -54,13 +65,17 @@ static uint64_t hash_heights(const ff_drawn *drawn, uint32_t count)
 static ff_view_node *entry_of(ff_terrain_view *view, const ff_drawn *drawn)
 {
     uint32_t *user = ff_tree_user(view->tree, drawn->node);
+    FF_ASSERT(*user <= view->entry_count);
+    FF_ASSERT(!*user || view->entry[*user - 1].used == view->stamp); /* marked as it began */
     if (*user) return &view->entry[*user - 1];
     for (uint32_t tries = 0; tries < view->entry_count; tries++) {
         uint32_t place = view->hand;
         ff_view_node *entry = &view->entry[place];
+        FF_ASSERT(place < view->entry_count);
         view->hand = view->hand + 1 < view->entry_count ? view->hand + 1 : 0;
         if (entry->user && entry->used == view->stamp) continue;
         if (entry->user) {
+            FF_ASSERT(*entry->user == place + 1);
             *entry->user = 0;
             release(view, entry);
         }
@@ -69,6 +84,7 @@ static ff_view_node *entry_of(ff_terrain_view *view, const ff_drawn *drawn)
         entry->heights_hash = 0;
         *user = place + 1;
         if (++view->held > view->held_high) view->held_high = view->held;
+        FF_ASSERT(view->held <= view->entry_count);
         return entry;
     }
     return NULL;
@@ -79,6 +95,7 @@ void ff_terrain_view_begin(ff_terrain_view *view, const ff_drawn *list, uint32_t
     view->stamp++;
     for (uint32_t i = 0; i < count; i++) {
         uint32_t user = *ff_tree_user(view->tree, list[i].node);
+        FF_ASSERT(user <= view->entry_count);
         if (user) view->entry[user - 1].used = view->stamp;
     }
 }
@@ -89,6 +106,7 @@ uint64_t ff_terrain_view_hash(ff_terrain_view *view, const ff_drawn *list, uint3
     for (uint32_t i = 0; i < count; i++) {
         const ff_drawn *drawn = &list[i];
         ff_view_node *entry = entry_of(view, drawn);
+        FF_ASSERT(drawn->coarser < 1u << FF_SIDE_COUNT);
         if (entry && !entry->heights_hash)
             entry->heights_hash = hash_heights(drawn, view->heights_per_node);
         hash = hash_word(hash, drawn->key);
@@ -103,6 +121,7 @@ uint64_t ff_terrain_view_hash(ff_terrain_view *view, const ff_drawn *list, uint3
 
 static c3d_mesh make_mesh(ff_terrain_view *view, const ff_drawn *drawn)
 {
+    FF_ASSERT(view->frame.set == 1);
     ff_tree_vertices(view->tree, drawn, 1, view->vertices);
     ff_ground_frame_vertices(&view->frame, view->info, drawn, view->vertices,
                              view->heights_per_node);
@@ -112,6 +131,7 @@ static c3d_mesh make_mesh(ff_terrain_view *view, const ff_drawn *drawn)
 static void free_meshes(ff_terrain_view *view)
 {
     for (uint32_t i = 0; i < view->entry_count; i++) {
+        FF_ASSERT(!view->entry[i].mesh.id || view->entry[i].user != NULL);
         if (view->entry[i].mesh.id) c3d_mesh_free(view->device, view->entry[i].mesh);
         view->entry[i].mesh.id = 0;
     }
@@ -136,6 +156,7 @@ static void draw_strips(ff_terrain_view *view, const ff_drawn *drawn, c3d_draw d
     uint8_t strip[5];
     unsigned strips = ff_strips_for(drawn->coarser, strip);
     for (unsigned i = 0; i < strips; i++) {
+        FF_ASSERT(strip[i] < FF_STRIP_COUNT_MAX);
         draw.strip = view->strip[strip[i]];
         if (draw.strip.id) c3d_draw_strip(view->device, &draw);
     }
@@ -149,6 +170,7 @@ void ff_terrain_view_draw(ff_terrain_view *view, const ff_drawn *list, uint32_t 
     c3d_draw ground = { .flags = C3D_DRAW_COLOURED };
     if (ff_ground_frame_follow(&view->frame, view->info, camera)) free_meshes(view);
     ff_ground_frame_draw(&view->frame, view->info, camera, &ground);
+    FF_ASSERT((uint32_t)ground.tex_columns * ground.tex_columns == view->heights_per_node);
     for (uint32_t i = 0; i < count; i++) {
         const ff_drawn *drawn = &list[i];
         ff_view_node *entry = entry_of(view, drawn);
