@@ -1,6 +1,7 @@
 /* Images of the ground, decoded. Left out with textures. */
 #include "../ask/ff_intake_local.h"
 #include "ff_texture_map.h"
+#include "../../protocol/ff_assert.h"
 
 #include <stddef.h>
 
@@ -8,8 +9,10 @@ int ff_intake_texture(ff_intake *intake, const ff_message *answer, ff_new_item *
 {
     if (!ff_new_data_image(intake->news, item)) return FF_ERR_AGAIN;
     unsigned side = 1u << intake->info.texture_log2;
+    FF_ASSERT(side <= 1u << 8);
     item->width = item->height = (uint16_t)side;
     if ((size_t)side * side * 3 > intake->rgb_bytes) return FF_ERR_FULL;
+    FF_ASSERT((size_t)side * side * sizeof *item->pixels <= intake->news->image_bytes);
     int rc = sys_jpeg_decode(answer->u.data.bytes, answer->u.data.byte_count, side, side,
                              intake->rgb);
     if (rc == FF_OK) ff_texture_texels(&intake->info, intake->rgb, item->pixels);

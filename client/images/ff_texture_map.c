@@ -4,6 +4,7 @@
 ff_key ff_texture_key(const ff_terrain_info *info, ff_key node)
 {
     if (info->texture_log2 == 0 || info->texture_levels == 0) return FF_KEY_NONE;
+    FF_ASSERT(info->texture_levels <= FF_KEY_LEVEL_MAX + 1);
     while (ff_key_level(node) >= info->texture_levels) node = ff_key_parent(node);
     return node;
 }
@@ -16,14 +17,18 @@ static void map_axis(const ff_terrain_info *info, uint32_t place, uint32_t depth
     int64_t span_q16 = (((int64_t)1 << info->texture_log2) - 1) << 16;
     uint32_t shift = info->texture_log2 + depth; /* divides by 2^shift, rounded */
     int64_t half = (int64_t)1 << shift >> 1;
+    FF_ASSERT(depth <= FF_KEY_LEVEL_MAX && place < 1u << depth);
     *scale_q16 = (int32_t)(((span_q16 >> info->node_log2) + half) >> shift);
     *offset_q16 = (int32_t)((span_q16 * place + half) >> shift) + ((1 << 15) >> info->texture_log2);
+    FF_ASSERT(*scale_q16 >= 0 && *offset_q16 >= 0);
+    FF_ASSERT(*offset_q16 + (*scale_q16 << info->node_log2) <= 1 << 16);
 }
 
 void ff_texture_map(const ff_terrain_info *info, ff_key node, ff_key texture, int32_t scale_q16[2],
                     int32_t offset_q16[2])
 {
     FF_ASSERT(ff_key_level(texture) <= ff_key_level(node));
+    FF_ASSERT(ff_key_tile(texture) == ff_key_tile(node));
     uint32_t depth = ff_key_level(node) - ff_key_level(texture);
     uint32_t within = (1u << depth) - 1; /* the bits of the place below the textured node */
     map_axis(info, ff_morton_x(ff_key_code(node)) & within, depth, &scale_q16[0], &offset_q16[0]);
@@ -33,6 +38,7 @@ void ff_texture_map(const ff_terrain_info *info, ff_key node, ff_key texture, in
 void ff_texture_texels(const ff_terrain_info *info, const uint8_t *rgb, uint16_t *texels)
 {
     uint32_t size = 1u << info->texture_log2;
+    FF_ASSERT(info->texture_log2 <= 8);
     for (uint32_t row = 0; row < size; row++) {
         const uint8_t *from = rgb + (size_t)3 * size * (size - 1 - row);
         for (uint32_t i = 0; i < size; i++, from += 3)

@@ -1,8 +1,11 @@
 #include "ff_textures.h"
 
 #include "ff_texture_map.h"
+#include "../../protocol/ff_assert.h"
 
 #define COLOUR_WHITE 0xFFFFFFFFu
+
+FF_STATIC_ASSERT((FF_TEXTURE_HASH & (FF_TEXTURE_HASH - 1)) == 0 && FF_TEXTURE_HASH <= 1u << 8);
 
 const uint8_t ff_textures_built = 1;
 
@@ -13,8 +16,10 @@ static unsigned bucket_of(ff_key key)
 
 static ff_texture_slot *find(const ff_textures *textures, ff_key key)
 {
-    for (unsigned i = textures->bucket[bucket_of(key)]; i; i = textures->slot[i - 1].next)
+    for (unsigned i = textures->bucket[bucket_of(key)]; i; i = textures->slot[i - 1].next) {
+        FF_ASSERT(i <= textures->slot_count && textures->slot[i - 1].held == 1);
         if (textures->slot[i - 1].key == key) return &textures->slot[i - 1];
+    }
     return NULL;
 }
 
@@ -23,6 +28,7 @@ static ff_texture_slot *find_nearest(const ff_textures *textures, ff_key node)
     ff_key key = ff_texture_key(&textures->info, node);
     while (key != FF_KEY_NONE) {
         ff_texture_slot *slot = find(textures, key);
+        FF_ASSERT(ff_key_level(key) < textures->info.texture_levels);
         if (slot || ff_key_level(key) == 0) return slot;
         key = ff_key_parent(key);
     }
@@ -51,6 +57,7 @@ int ff_textures_touch(ff_textures *textures, ff_key key)
 static ff_key next_finer(const ff_texture_slot *held, ff_key finest)
 {
     uint32_t level = held ? ff_key_level(held->key) + 1 : 0;
+    FF_ASSERT(level <= ff_key_level(finest));
     while (ff_key_level(finest) > level) finest = ff_key_parent(finest);
     return finest;
 }
@@ -65,6 +72,7 @@ static uint32_t priority_of(const ff_textures *textures, ff_key key, const ff_vi
     ff_shape_to_middle(&textures->info, key, &placed, view->camera.pos_wu[2], view->camera.pos_wu,
                        way);
     int64_t distance = c3d_length64(way[0], way[1], 0); /* as if the ground lay at our height */
+    FF_ASSERT(edge_wu > 0 && distance >= 0 && distance < INT64_C(1) << 34);
     int64_t c_q8 = quality->c_q8 > 0 ? quality->c_q8 : 3 * 256;
     int64_t value = (int64_t)edge_wu * c_q8 / (distance > edge_wu / 2 ? distance : edge_wu / 2 + 1);
     return value > UINT32_MAX ? UINT32_MAX : (uint32_t)value;
@@ -72,6 +80,7 @@ static uint32_t priority_of(const ff_textures *textures, ff_key key, const ff_vi
 
 static void insert(ff_texture_wish *list, uint32_t *count, uint32_t capacity, ff_texture_wish wish)
 {
+    FF_ASSERT(*count <= capacity);
     for (uint32_t i = 0; i < *count; i++)
         if (list[i].key == wish.key) return;
     uint32_t at = *count;
@@ -85,6 +94,7 @@ static void insert(ff_texture_wish *list, uint32_t *count, uint32_t capacity, ff
         at--;
     }
     list[at] = wish;
+    FF_ASSERT(at + 1 == *count || list[at + 1].priority < wish.priority);
 }
 
 uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32_t drawn_count,
@@ -106,6 +116,7 @@ uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32
         wish.priority = priority_of(textures, wish.key, view, quality);
         insert(list, &count, capacity, wish);
     }
+    FF_ASSERT(in_use <= textures->held && textures->held <= textures->slot_count);
     /* what would find no place is not asked for */
     uint32_t room = textures->slot_count - in_use;
     return count < room ? count : room;
@@ -115,7 +126,10 @@ static void unlink_slot(ff_textures *textures, ff_texture_slot *slot)
 {
     uint16_t *link = &textures->bucket[bucket_of(slot->key)];
     uint16_t number = (uint16_t)(slot - textures->slot + 1);
-    while (*link != number) link = &textures->slot[*link - 1].next;
+    while (*link != number) {
+        FF_ASSERT(*link > 0 && *link <= textures->slot_count); /* a held slot is in its chain */
+        link = &textures->slot[*link - 1].next;
+    }
     *link = slot->next;
 }
 
@@ -130,6 +144,7 @@ static ff_texture_slot *take_slot(ff_textures *textures)
             (!oldest || textures->stamp - slot->used > textures->stamp - oldest->used))
             oldest = slot;
     }
+    FF_ASSERT(textures->held == textures->slot_count);
     if (!oldest) return NULL;
     unlink_slot(textures, oldest);
     if (oldest->texture.id) c3d_texture_free(textures->device, oldest->texture);
@@ -140,6 +155,7 @@ static ff_texture_slot *take_slot(ff_textures *textures)
 
 int ff_textures_take(ff_textures *textures, const ff_new_item *item)
 {
+    FF_ASSERT(item->width == 1u << textures->info.texture_log2);
     return ff_textures_put(textures, item->key, item->pixels);
 }
 
@@ -151,6 +167,7 @@ int ff_textures_put(ff_textures *textures, ff_key key, const uint16_t *texels)
         textures->full++;
         return 0;
     }
+    FF_ASSERT(!slot->held && textures->held < textures->slot_count);
     slot->texture.id = 0;
     if (textures->device && texels) {
         uint32_t side = 1u << textures->info.texture_log2;
