@@ -1,5 +1,6 @@
 /* Faces of a panorama, decoded. Left out with panoramas. */
 #include "../ask/ff_intake_local.h"
+#include "../../protocol/ff_assert.h"
 
 #include <string.h>
 
@@ -7,6 +8,7 @@
 static unsigned texture_rows(unsigned rows)
 {
     unsigned height = 1;
+    FF_ASSERT(rows > 0 && rows <= FF_FACE_SIZE_MAX);
     while (height < rows) height *= 2;
     return height;
 }
@@ -17,6 +19,7 @@ static unsigned texture_rows(unsigned rows)
 static void to_rgba5551(const uint8_t *rgb, unsigned width, unsigned rows, const uint16_t *top,
                         const uint16_t *bottom, unsigned height, uint16_t *out)
 {
+    FF_ASSERT(rows <= height && height <= width);
     for (unsigned r = 0; r < rows; r++) {
         unsigned row = rows - 1 - r;
         const uint8_t *from = rgb + (size_t)row * width * 3;
@@ -37,6 +40,7 @@ static int decode_face(ff_intake *intake, const ff_face *face, ff_new_item *item
     if (size > intake->face_size_max || (size & (size - 1)) != 0 || face->row_count == 0 ||
         face->row_count > size || face->top_row + face->row_count > size)
         return FF_ERR_RANGE;
+    FF_ASSERT((size_t)size * face->row_count * 3 <= intake->rgb_bytes);
     uint16_t *top = intake->columns, *bottom = intake->columns + size;
     int rc = ff_face_columns_decode(face->columns, face->columns_bytes, size, face->row_count, top,
                                     bottom);
@@ -45,6 +49,7 @@ static int decode_face(ff_intake *intake, const ff_face *face, ff_new_item *item
     if (rc != FF_OK) return rc;
     item->width = (uint16_t)size;
     item->height = (uint16_t)texture_rows(face->row_count);
+    FF_ASSERT((size_t)size * item->height * sizeof *item->pixels <= intake->news->image_bytes);
     item->u.face.top_row = face->top_row;
     item->u.face.row_count = face->row_count;
     to_rgba5551(intake->rgb, size, face->row_count, top, bottom, item->height, item->pixels);
@@ -54,6 +59,7 @@ static int decode_face(ff_intake *intake, const ff_face *face, ff_new_item *item
 int ff_intake_face(ff_intake *intake, const ff_message *answer, ff_new_item *item)
 {
     const ff_face *face = &answer->u.face;
+    FF_ASSERT(face->face < FF_FACE_COUNT); /* ff_message_decode lets no other pass */
     item->u.face.face = face->face;
     item->u.face.empty = (face->flags & FF_FACE_EMPTY) != 0;
     item->last = (face->flags & FF_FACE_LAST) != 0;

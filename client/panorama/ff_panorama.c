@@ -12,12 +12,16 @@
 #define LEAD_US_MAX       10000000
 #define PRIORITY_FACE     0x10000u /* among the first: before refinements, beside roots */
 
+FF_STATIC_ASSERT(RETRY_US < RETRY_LATER_US && REFUSALS_IN_A_ROW <= UINT8_MAX);
+FF_STATIC_ASSERT(2 * TURN < 65536 && TURN_WITHIN_US < TURNS_US);
+
 const uint8_t ff_panorama_built = 1;
 
 void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panorama_desc *desc,
                       const ff_terrain_info *info, unsigned face_size)
 {
     uint32_t serial = panorama->serial;
+    FF_ASSERT(face_size <= FF_FACE_SIZE_MAX && (face_size & (face_size - 1)) == 0);
     memset(panorama, 0, sizeof *panorama);
     panorama->serial = serial;
     panorama->device = device;
@@ -33,6 +37,7 @@ void ff_panorama_init(ff_panorama *panorama, c3d_device *device, const ff_panora
 static void drop_set(ff_panorama *panorama, int index)
 {
     ff_panorama_set *set = &panorama->set[index];
+    FF_ASSERT(index == 0 || index == 1);
     for (unsigned face = 0; face < FF_FACE_COUNT; face++) {
         if (set->texture[face].id) c3d_texture_free(panorama->device, set->texture[face]);
         if (set->mesh[face].id) c3d_mesh_free(panorama->device, set->mesh[face]);
@@ -49,6 +54,7 @@ void ff_panorama_drop(ff_panorama *panorama)
 
 static unsigned known(const ff_panorama_set *set)
 {
+    FF_ASSERT(!(set->held & set->empty) && !((set->held | set->empty) & set->failed));
     return (unsigned)set->held | set->empty | set->failed;
 }
 
@@ -57,10 +63,12 @@ static void begin_set(ff_panorama *panorama, const c3d_camera *camera, const ff_
 {
     int index = panorama->active == 0 ? 1 : 0;
     ff_panorama_set *set = &panorama->set[index];
+    FF_ASSERT(panorama->next < 0 || panorama->next == index); /* a set that is shown stays */
     drop_set(panorama, index);
     set->front_wu = panorama->desc.back_plane_wu;
     ff_panorama_plan(panorama, camera, motion, set);
     set->key = ++panorama->serial;
+    FF_ASSERT(set->key != panorama->set[1 - index].key);
     set->asked_us = now_us;
     panorama->next = (int8_t)index;
 }
@@ -70,6 +78,7 @@ static void measure_lead(ff_panorama *panorama, ff_panorama_set *set, int64_t no
     int64_t took_us = now_us - set->asked_us < LEAD_US_MAX ? now_us - set->asked_us : LEAD_US_MAX;
     set->ready = 1;
     panorama->lead_us = panorama->lead_us ? (panorama->lead_us + took_us) / 2 : took_us;
+    FF_ASSERT(panorama->lead_us <= LEAD_US_MAX);
 }
 
 /* Lets the set that is coming take over once all its faces in view are here, but not while the
@@ -77,6 +86,7 @@ static void measure_lead(ff_panorama *panorama, ff_panorama_set *set, int64_t no
 static int take_over(ff_panorama *panorama, const c3d_camera *camera, int64_t now_us)
 {
     if (panorama->next < 0) return 0;
+    FF_ASSERT(panorama->next < 2 && panorama->next != panorama->active);
     ff_panorama_set *next = &panorama->set[panorama->next];
     if ((ff_panorama_faces_in_view(camera) & ~known(next)) != 0) return 0;
     if (!next->ready) measure_lead(panorama, next, now_us);
@@ -105,6 +115,7 @@ static void look_for_turns(ff_panorama *panorama, const c3d_camera *camera, int6
 
 static int left_behind(const ff_panorama *panorama, const c3d_camera *camera, int index)
 {
+    FF_ASSERT(index < 2 && (index < 0 || panorama->set[index].front_wu > 0));
     return index >= 0 && ff_panorama_left_behind(camera->pos_wu, panorama->set[index].position_wu,
                                                  panorama->set[index].front_wu);
 }
@@ -142,6 +153,7 @@ static int refresh(ff_panorama *panorama, ff_requests *requests, const c3d_camer
     if (counts.of[FF_KIND_FACE].in_flight && !panorama->desc.hold_back)
         return changed; /* a set was dropped with panoramas off, but its request is still out */
     begin_set(panorama, camera, motion, now_us);
+    FF_ASSERT(panorama->next >= 0 && panorama->next != panorama->active);
     return 1;
 }
 
@@ -158,6 +170,7 @@ int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_c
 
 int ff_panorama_late(const ff_panorama *panorama, const c3d_camera *camera)
 {
+    FF_ASSERT(panorama->active < 2);
     const ff_panorama_set *set = &panorama->set[panorama->active >= 0 ? panorama->active : 0];
     return panorama->next >= 0 && panorama->active >= 0 &&
            set->front_wu == panorama->desc.back_plane_wu &&
@@ -171,6 +184,7 @@ static void list_faces(ff_get_panorama *request, unsigned missing, const c3d_cam
     c3d_camera narrow = *camera;
     narrow.width = narrow.height = 1;
     narrow.focal_q8 = 1 << 20;
+    FF_ASSERT(missing > 0 && missing <= ALL_FACES);
     unsigned middle = ff_panorama_faces_in_view(&narrow) & missing;
     for (int pass = 0; pass < 2; pass++)
         for (unsigned face = 0; face < FF_FACE_COUNT; face++)
@@ -195,6 +209,7 @@ void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const 
                                 .quality = panorama->desc.jpeg_quality };
     ff_shape_leave(panorama->info, &view->frame, set->position_wu, request.position_wu);
     list_faces(&request, missing, camera);
+    FF_ASSERT(request.face_count > 0 && request.face_count <= FF_FACE_COUNT);
     ff_requests_want(requests, FF_KIND_FACE, set->key, in_view ? FF_CLASS_FIRST : FF_CLASS_PREFETCH,
                      in_view ? PRIORITY_FACE : 1, &request);
 }
@@ -212,6 +227,7 @@ static void make_quad(unsigned face, int size, int top_row, int rows, c3d_vertex
         high = -low;
         low = -swap;
     }
+    FF_ASSERT(-size <= low && low < high && high <= size);
     for (int corner = 0; corner < 4; corner++) {
         int across = corner & 1 ? size : -size, along = corner & 2 ? high : low;
         c3d_vertex *vertex = &quad[corner];
@@ -233,6 +249,8 @@ static void take_image(ff_panorama *panorama, ff_panorama_set *set, const ff_new
 {
     unsigned face = item->u.face.face, top_row = item->u.face.top_row,
              row_count = item->u.face.row_count;
+    FF_ASSERT(top_row + row_count <= item->width && row_count <= item->height);
+    FF_ASSERT(!(known(set) >> face & 1u));
     set->held |= (uint8_t)(1u << face);
     ff_panorama_sight_face(&set->sight, face, item->width, top_row, row_count, set->front_wu);
     panorama->faces++;
@@ -248,6 +266,7 @@ static void take_image(ff_panorama *panorama, ff_panorama_set *set, const ff_new
 
 static void take_refusal(ff_panorama *panorama, int64_t now_us)
 {
+    FF_ASSERT(panorama->refusals <= REFUSALS_IN_A_ROW);
     if (panorama->refusals < REFUSALS_IN_A_ROW) panorama->refusals++;
     panorama->retry_us = now_us +
                          (panorama->refusals < REFUSALS_IN_A_ROW ? RETRY_US : RETRY_LATER_US);
@@ -255,6 +274,7 @@ static void take_refusal(ff_panorama *panorama, int64_t now_us)
 
 int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now_us)
 {
+    FF_ASSERT(item->u.face.face < FF_FACE_COUNT);
     for (int i = 0; i < 2; i++) {
         ff_panorama_set *set = &panorama->set[i];
         unsigned bit = 1u << item->u.face.face;
@@ -282,6 +302,7 @@ int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now
 static void draw_face(const ff_panorama *panorama, const ff_panorama_set *set, unsigned face,
                       int32_t scale_wu)
 {
+    FF_ASSERT(set->rows[face] > 0 && set->rows[face] <= set->height[face]);
     int32_t across = 65536, along = set->rows[face] * (65536 / set->height[face]);
     int s_backward = face == FF_FACE_SOUTH || face == FF_FACE_EAST, t_backward = face == FF_FACE_UP;
     c3d_draw draw = { .mesh = set->mesh[face],
@@ -304,6 +325,7 @@ void ff_panorama_draw(const ff_panorama *panorama, int32_t near_wu)
     if (panorama->shown < 0 || !panorama->desc.enabled) return;
     const ff_panorama_set *set = &panorama->set[panorama->shown];
     /* the cube's faces lie two near planes away */
+    FF_ASSERT(panorama->face_size > 0 && near_wu > 0);
     int32_t scale_wu = 2 * (near_wu / panorama->face_size + 1);
     for (unsigned face = 0; face < FF_FACE_COUNT; face++)
         if (set->texture[face].id && set->mesh[face].id) draw_face(panorama, set, face, scale_wu);

@@ -21,6 +21,7 @@
 #include "../ahead/ff_motion.h"
 #include "../ask/ff_new_data.h"
 #include "ff_panorama_rules.h"
+#include "../../protocol/ff_assert.h"
 
 extern const uint8_t ff_panorama_built; /* 0: left out of this build */
 
@@ -40,6 +41,7 @@ typedef struct ff_panorama_set {
     uint16_t rows[FF_FACE_COUNT];
     ff_panorama_sight sight; /* of its faces; expected, while the set is on its way */
 } ff_panorama_set;
+FF_STATIC_ASSERT(FF_FACE_COUNT <= 8 && FF_FACE_SIZE_MAX <= UINT16_MAX); /* held, height */
 
 typedef struct ff_panorama {
     c3d_device *device;
@@ -71,6 +73,7 @@ void ff_panorama_drop(ff_panorama *panorama);
  * plane is outdated. */
 static inline int32_t ff_panorama_front_wu(const ff_panorama *panorama)
 {
+    FF_ASSERT(panorama->shown < 0 || panorama->shown == panorama->active);
     return panorama->shown >= 0 ? panorama->set[panorama->shown].front_wu
                                 : panorama->desc.back_plane_wu;
 }

@@ -12,11 +12,16 @@
  * least in a corner. What is in the window, shown or true, is at least `least_wu` deep, so that
  * corners beside or behind the eye cannot make the bound useless. */
 #include "ff_panorama_rules.h"
+#include "../../protocol/ff_assert.h"
 
 #define PATCHES 16 /* along a face */
 /* z is limited to this: products of two lengths then fit 64 bits, and ground that is taken to be
  * nearer than it is comes out as off by more, never by less. */
-#define Z_WU_MAX (1 << 30)
+#define Z_WU_MAX   (1 << 30)
+#define LENGTH_MAX (INT64_C(1) << 32) /* times a focal distance of 31 bits */
+
+/* A corner of the cube is nearer than 2 z, and the way from O to the eye shorter than 2^31. */
+FF_STATIC_ASSERT(INT64_C(2) * Z_WU_MAX + INT32_MAX < LENGTH_MAX);
 
 typedef struct join {
     const c3d_camera *camera;
@@ -42,6 +47,7 @@ static int64_t larger(int64_t a, int64_t b) { return a > b ? a : b; }
 static int64_t least_depth_wu(const join *j, int64_t moved_wu)
 {
     int64_t most_q8 = 0, reach_wu = j->z_wu - moved_wu;
+    FF_ASSERT(moved_wu > 0 && j->z_wu <= Z_WU_MAX);
     for (int axis = 0; axis < 3; axis++)
         most_q8 = larger(most_q8, magnitude(j->rotation.m[2][axis]) * j->camera->focal_q8 +
                                       magnitude(j->rotation.m[0][axis]) * j->half_q8[0] +
@@ -53,6 +59,8 @@ static int64_t least_depth_wu(const join *j, int64_t moved_wu)
 /* Bit per side of the window, and one for behind the eye, that a point in eye space lies beyond. */
 static unsigned beyond(const join *j, int64_t x, int64_t y, int64_t depth)
 {
+    FF_ASSERT(x > -LENGTH_MAX && x < LENGTH_MAX && y > -LENGTH_MAX && y < LENGTH_MAX);
+    FF_ASSERT(depth > -LENGTH_MAX && depth < LENGTH_MAX);
     int64_t focal_q8 = j->camera->focal_q8, reach_x = depth * j->half_q8[0],
             reach_y = depth * j->half_q8[1];
     return (unsigned)(x * focal_q8 > reach_x) | (unsigned)(-x * focal_q8 > reach_x) << 1 |
@@ -65,6 +73,7 @@ static void place_corner(const join *j, const int64_t first_wu[3], const int64_t
 {
     const int64_t *m = j->moved_eye_wu;
     int64_t *p = at->eye_wu;
+    FF_ASSERT(part >= 0 && part <= PATCHES);
     for (int i = 0; i < 3; i++) p[i] = first_wu[i] + (last_wu[i] - first_wu[i]) * part / PATCHES;
     at->shown = beyond(j, p[0], p[1], p[2]);
     at->truly = beyond(j, p[0] - m[0], p[1] - m[1], p[2] - m[2]);
@@ -81,6 +90,7 @@ static int patch_is_off(const join *j, const corner at[4])
     const int64_t *m = j->moved_eye_wu;
     int64_t way[4], off = 0, depth_wu = INT64_MAX;
     int deep = 1;
+    FF_ASSERT(j->least_wu > 0);
     if (not_in_window(at)) return 0;
     for (int i = 0; i < 4; i++) {
         const int64_t *p = at[i].eye_wu;
@@ -94,7 +104,7 @@ static int patch_is_off(const join *j, const corner at[4])
         off = larger(off, c3d_divide_saturated((uint64_t)way[i],
                                                (uint64_t)(deep ? at[i].eye_wu[2] : j->least_wu)));
     int64_t depth_least_wu = larger(depth_wu, j->least_wu) - 4;
-    /* 2^32 * 2^31, 2^32 * 2^30 */
+    FF_ASSERT(depth_least_wu < LENGTH_MAX && j->error_q8 <= 1 << 30);
     return depth_least_wu <= 0 || (off + 1) * j->camera->focal_q8 >= depth_least_wu * j->error_q8;
 }
 
@@ -103,6 +113,8 @@ static int patch_is_off(const join *j, const corner at[4])
 static int face_is_off(const join *j, int axis, int sign, int up, int64_t low, int64_t high)
 {
     int across = 3 - axis - up;
+    FF_ASSERT(axis != up && across >= 0 && across <= 2);
+    FF_ASSERT(-j->z_wu <= low && low <= high && high <= j->z_wu);
     int64_t end_wu[2][2][3]; /* of the lower and upper edge: first and last corner */
     corner at[4];
     for (int i = 0; i < 4; i++) {
@@ -151,6 +163,7 @@ int ff_panorama_outdated(const c3d_camera *camera, const int32_t taken_wu[3],
         most_wu = larger(most_wu, magnitude(moved_wu[i]));
     }
     if (!most_wu) return 0;
+    FF_ASSERT(z_wu > 0);
     if (error_px_q8 <= 0 || c3d_length64(moved_wu[0], moved_wu[1], moved_wu[2]) >= z_wu) return 1;
     join j = { .camera = camera,
                .half_q8 = { camera->width * 128, camera->height * 128 },
@@ -158,12 +171,14 @@ int ff_panorama_outdated(const c3d_camera *camera, const int32_t taken_wu[3],
                .z_wu = kept_wu(z_wu) };
     c3d_rotation_from_camera(camera, &j.rotation);
     c3d_to_eye(&j.rotation, moved_wu, j.moved_eye_wu);
+    FF_ASSERT(most_wu < z_wu);
     j.least_wu = least_depth_wu(&j, most_wu);
     return j.least_wu <= 0 || join_is_off(&j, sight);
 }
 
 static int64_t within(int64_t value, int64_t low, int64_t high)
 {
+    FF_ASSERT(low <= high);
     return value < low ? low : value > high ? high : value;
 }
 
@@ -184,8 +199,10 @@ void ff_panorama_sight_terrain(ff_panorama_sight *sight, const int32_t taken_wu[
 void ff_panorama_sight_face(ff_panorama_sight *sight, unsigned face, unsigned face_size,
                             unsigned top_row, unsigned row_count, int32_t z_wu)
 {
+    FF_ASSERT(face < FF_FACE_COUNT && top_row + row_count <= face_size);
     int64_t z = kept_wu(z_wu), size = face_size, top = top_row ? top_row - 1 : 0,
             bottom = top_row + row_count;
     sight->high_wu[face] = row_count ? (int32_t)(z - z * 2 * top / size) : 0;
     sight->low_wu[face] = row_count ? (int32_t)(z - (z * 2 * bottom + size - 1) / size) : 1;
+    FF_ASSERT(!row_count || sight->low_wu[face] < sight->high_wu[face]);
 }

@@ -11,6 +11,8 @@
 #define TRUST_OF_8   7
 #define AHEAD_US_MAX 30000000
 
+FF_STATIC_ASSERT(TRUST_OF_8 < 8 && AHEAD_US_MAX >> HALVINGS > 0);
+
 int ff_panorama_set_outdated(const ff_panorama *panorama, const ff_panorama_set *set,
                              const c3d_camera *camera)
 {
@@ -24,6 +26,7 @@ static c3d_camera camera_then(const ff_panorama *panorama, const c3d_camera *cam
                               const ff_motion *motion)
 {
     c3d_camera then = *camera;
+    FF_ASSERT(panorama->lead_us <= AHEAD_US_MAX);
     (void)ff_motion_level(motion, panorama->lead_us, then.pos_wu);
     return then;
 }
@@ -31,6 +34,7 @@ static c3d_camera camera_then(const ff_panorama *panorama, const c3d_camera *cam
 int ff_panorama_outdated_soon(const ff_panorama *panorama, const c3d_camera *camera,
                               const ff_motion *motion)
 {
+    FF_ASSERT(panorama->active < 2);
     if (panorama->active < 0) return 1;
     const ff_panorama_set *set = &panorama->set[panorama->active];
     c3d_camera then = camera_then(panorama, camera, motion);
@@ -44,6 +48,7 @@ static void expect(const ff_panorama *panorama, ff_panorama_set *set)
 {
     int32_t z_wu = set->front_wu, low_wu = INT32_MAX, high_wu = INT32_MIN;
     int64_t height_wu[2];
+    FF_ASSERT(z_wu == panorama->desc.back_plane_wu && z_wu > 0);
     ff_terrain_range_wu(panorama->info, height_wu);
     const int32_t ground_wu[2] = { (int32_t)(height_wu[0] - ff_shape_drop_wu(panorama->info, z_wu)),
                                    (int32_t)height_wu[1] };
@@ -66,6 +71,7 @@ static void expect(const ff_panorama *panorama, ff_panorama_set *set)
 static int is_good(const ff_panorama *panorama, const c3d_camera *camera, const c3d_camera *then,
                    const ff_motion *motion, int64_t ahead_us, ff_panorama_set *set)
 {
+    FF_ASSERT(ahead_us >= panorama->lead_us);
     if (!ff_motion_level(motion, ahead_us, set->position_wu)) return 0;
     for (int axis = 0; axis < 2; axis++) {
         int64_t away_wu = (int64_t)set->position_wu[axis] - camera->pos_wu[axis];
@@ -88,6 +94,7 @@ void ff_panorama_plan(const ff_panorama *panorama, const c3d_camera *camera,
         else
             bad_us = ahead_us;
     }
+    FF_ASSERT(good_us < bad_us && bad_us - good_us <= (AHEAD_US_MAX >> HALVINGS) + 1);
     memcpy(set->position_wu, camera->pos_wu, sizeof set->position_wu);
     (void)ff_motion_level(motion, panorama->lead_us + good_us / 8 * TRUST_OF_8, set->position_wu);
     expect(panorama, set);

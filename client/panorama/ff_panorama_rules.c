@@ -1,4 +1,5 @@
 #include "ff_panorama_rules.h"
+#include "../../protocol/ff_assert.h"
 
 const ff_face_axis ff_face_axes[FF_FACE_COUNT] = {
     [FF_FACE_NORTH] = { 1, 1 }, [FF_FACE_EAST] = { 0, 1 }, [FF_FACE_SOUTH] = { 1, -1 },
@@ -7,11 +8,13 @@ const ff_face_axis ff_face_axes[FF_FACE_COUNT] = {
 
 int64_t ff_panorama_sideways_max(int64_t error_px_q8, int64_t z_wu, int64_t focal_q8)
 {
+    FF_ASSERT(focal_q8 > 0 && z_wu > 0);
     return c3d_muldiv64(error_px_q8, z_wu, focal_q8);
 }
 
 int64_t ff_panorama_forwards_max(int64_t error_px_q8, int64_t z_wu, int64_t half_width_px_q8)
 {
+    FF_ASSERT(half_width_px_q8 >= 0 && z_wu > 0);
     if (error_px_q8 <= 0) return 0;
     return c3d_muldiv64(error_px_q8, z_wu, error_px_q8 + half_width_px_q8);
 }
@@ -19,6 +22,7 @@ int64_t ff_panorama_forwards_max(int64_t error_px_q8, int64_t z_wu, int64_t half
 int ff_panorama_left_behind(const int32_t viewer_wu[3], const int32_t taken_wu[3], int32_t z_wu)
 {
     int64_t most_wu = z_wu / 2;
+    FF_ASSERT(z_wu > 0);
     for (int axis = 0; axis < 3; axis++) {
         int64_t away_wu = (int64_t)viewer_wu[axis] - taken_wu[axis];
         if (away_wu > most_wu || away_wu < -most_wu) return 1;
@@ -26,7 +30,9 @@ int ff_panorama_left_behind(const int32_t viewer_wu[3], const int32_t taken_wu[3
     return 0;
 }
 
-/* A view as four rays from the camera: world directions of any length below 2^33. */
+#define RAY_MAX (INT64_C(1) << 38)
+
+/* A view as four rays from the camera: world directions of any length below RAY_MAX. */
 typedef struct view_rays {
     int64_t ray[4][3];
 } view_rays;
@@ -37,10 +43,12 @@ static void make_rays(const c3d_camera *camera, const c3d_rotation *rotation, vi
     for (int corner = 0; corner < 4; corner++) {
         int64_t x = corner == 0 || corner == 3 ? -half_x_q8 : half_x_q8; /* round the rim */
         int64_t y = corner < 2 ? -half_y_q8 : half_y_q8;
-        for (int axis = 0; axis < 3; axis++)
+        for (int axis = 0; axis < 3; axis++) {
             rays->ray[corner][axis] = (x * rotation->m[0][axis] + y * rotation->m[1][axis] +
                                        (int64_t)camera->focal_q8 * rotation->m[2][axis]) >>
                                       24;
+            FF_ASSERT(rays->ray[corner][axis] > -RAY_MAX && rays->ray[corner][axis] < RAY_MAX);
+        }
     }
 }
 
@@ -48,6 +56,7 @@ static void make_rays(const c3d_camera *camera, const c3d_rotation *rotation, vi
  * unless all its rays lie beyond one of those four planes. */
 static int view_outside_face(const view_rays *rays, int forward_axis, int sign)
 {
+    FF_ASSERT((sign == 1 || sign == -1) && forward_axis >= 0 && forward_axis < 3);
     for (int other = 0; other < 3; other++) {
         if (other == forward_axis) continue;
         for (int side = -1; side <= 1; side += 2) {
@@ -78,6 +87,8 @@ static int face_outside_view(const c3d_camera *camera, const c3d_rotation *rotat
                         (int64_t)ray[1] * rotation->m[row][1] +
                         (int64_t)ray[2] * rotation->m[row][2]) >>
                        8;
+        /* half of the cube's diagonal, Q22; times a focal distance of 31 bits */
+        FF_ASSERT(eye[2] > -(1 << 24) && eye[2] < 1 << 24);
         unsigned beyond = 0;
         for (int i = 0; i < 2; i++) {
             int64_t reach = eye[2] * half_q8[i], off = eye[i] * camera->focal_q8;
@@ -99,5 +110,6 @@ unsigned ff_panorama_faces_in_view(const c3d_camera *camera)
         if (!view_outside_face(&rays, ff_face_axes[i].axis, ff_face_axes[i].sign) &&
             !face_outside_view(camera, &rotation, ff_face_axes[i].axis, ff_face_axes[i].sign))
             faces |= 1u << i;
+    FF_ASSERT(faces != 0); /* the ray through the middle meets one */
     return faces;
 }
