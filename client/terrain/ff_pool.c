@@ -40,6 +40,7 @@ uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent)
     FF_ASSERT(!(node->flags & FF_NODE_HELD));
     tree->free_head = node->hash_next;
     tree->free_count--;
+    FF_ASSERT((tree->free_head == FF_SLOT_NONE) == (tree->free_count == 0));
 
     memset(node, 0, sizeof *node);
     node->key = key;
