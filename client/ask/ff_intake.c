@@ -1,7 +1,9 @@
 #include "ff_intake_local.h"
+#include "../../protocol/ff_assert.h"
 
 static ff_new_item *begin(ff_intake *intake, const ff_request *request, uint32_t bytes)
 {
+    FF_ASSERT(request->state == FF_REQUEST_SENT && request->id >= 1);
     ff_new_item *item = ff_new_data_begin(intake->news);
     if (item) {
         item->key = request->key;
@@ -15,6 +17,7 @@ static ff_new_item *begin(ff_intake *intake, const ff_request *request, uint32_t
 
 static int put(ff_intake *intake, ff_new_item *item)
 {
+    FF_ASSERT(item->last || ff_kind[item->kind].brings == FF_BRINGS_FACE);
     if (item->last) /* before the main thread can see the item */
         ff_requests_arrived(intake->requests, item->id, item->bytes);
     ff_new_data_put(intake->news, item);
@@ -41,6 +44,7 @@ int ff_intake_answer(ff_intake *intake, const ff_request *request, const ff_mess
     if (!item) return FF_ERR_AGAIN;
     item->error = decode(intake, answer, item);
     if (item->error == FF_ERR_AGAIN) return FF_ERR_AGAIN;
+    FF_ASSERT(item->error <= FF_OK && item->error >= FF_ERR_LAST);
     if (item->error != FF_OK) item->pixels = NULL;
     return put(intake, item);
 }
@@ -56,6 +60,7 @@ int ff_intake_failed(ff_intake *intake, const ff_request *request, int error)
 
 int ff_intake_root(ff_intake *intake, const ff_message *answer, ff_new_item *item)
 {
+    FF_ASSERT(ff_key_level(item->key) == 0);
     item->u.residuals.value = item->room;
     return ff_decode_root(intake->decoder, answer->u.data.bytes, answer->u.data.byte_count,
                           &item->u.residuals);
@@ -63,6 +68,8 @@ int ff_intake_root(ff_intake *intake, const ff_message *answer, ff_new_item *ite
 
 int ff_intake_refinement(ff_intake *intake, const ff_message *answer, ff_new_item *item)
 {
+    FF_ASSERT(ff_refined_side(&intake->info) * ff_refined_side(&intake->info) <=
+              intake->news->room_words);
     item->u.residuals.value = item->room;
     return ff_decode_refinement(intake->decoder, answer->u.data.bytes, answer->u.data.byte_count,
                                 &item->u.residuals);

@@ -1,4 +1,7 @@
 #include "ff_refusals.h"
+#include "../../protocol/ff_assert.h"
+
+FF_STATIC_ASSERT(FF_REFUSALS_KEPT <= UINT8_MAX && FF_REFUSALS_TRIES <= UINT8_MAX);
 
 static int find(const ff_refusals *refusals, unsigned kind, ff_key key)
 {
@@ -11,9 +14,11 @@ static int find(const ff_refusals *refusals, unsigned kind, ff_key key)
 
 void ff_refusals_note(ff_refusals *refusals, unsigned kind, ff_key key)
 {
+    FF_ASSERT(ff_kind[kind].asks == FF_ASKS_NODE); /* of such a kind a key comes up again */
     int at = find(refusals, kind, key);
     if (at < 0) {
         at = refusals->next;
+        FF_ASSERT(at < (int)FF_REFUSALS_KEPT);
         refusals->next = (uint8_t)((refusals->next + 1) % FF_REFUSALS_KEPT);
         refusals->entry[at] = (ff_refusal){ .key = key, .kind = (uint8_t)kind };
     }
@@ -23,5 +28,6 @@ void ff_refusals_note(ff_refusals *refusals, unsigned kind, ff_key key)
 int ff_refusals_final(const ff_refusals *refusals, unsigned kind, ff_key key)
 {
     int at = find(refusals, kind, key);
+    FF_ASSERT(at < 0 || refusals->entry[at].tries <= FF_REFUSALS_TRIES);
     return at >= 0 && refusals->entry[at].tries >= FF_REFUSALS_TRIES;
 }

@@ -8,6 +8,13 @@
 #define ANSWER_BYTES_START 200u /* before the first answer of a kind: Hybrid's 9x9 node is 182 */
 #define IN_FLIGHT_ALWAYS   2u
 
+/* answer_q4 has a mean for every level of a key */
+FF_STATIC_ASSERT(sizeof((ff_requests *)0)->answer_q4[0] ==
+                 (FF_KEY_LEVEL_MAX + 1) * sizeof(uint32_t));
+/* a message at its longest, Q4, before an eighth of it is taken */
+FF_STATIC_ASSERT((uint64_t)(FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX) * 16 <= UINT32_MAX);
+FF_STATIC_ASSERT(FF_REQUESTS_QUEUED_MAX <= UINT16_MAX); /* queued_max */
+
 static size_t slots_for(unsigned in_flight_max)
 {
     return (size_t)in_flight_max + FF_REQUESTS_QUEUED_MAX;
@@ -20,6 +27,7 @@ size_t ff_requests_bytes(unsigned in_flight_max)
 
 void ff_requests_init(ff_requests *requests, unsigned in_flight_max, void *memory)
 {
+    FF_ASSERT(slots_for(in_flight_max) <= UINT16_MAX); /* ids on the wire are slots + 1 */
     memset(requests, 0, sizeof *requests);
     sys_mutex_init(&requests->mutex);
     requests->slot = memory;
@@ -35,6 +43,7 @@ void ff_requests_init(ff_requests *requests, unsigned in_flight_max, void *memor
 
 static unsigned level_of(const ff_request *request)
 {
+    FF_ASSERT(request->kind < FF_KIND_COUNT);
     return ff_kind[request->kind].asks == FF_ASKS_NODE ? ff_key_level(request->key) : 0;
 }
 
@@ -42,18 +51,25 @@ static unsigned level_of(const ff_request *request)
 static void leave_state(ff_requests *requests, const ff_request *request)
 {
     ff_request_counts *counts = &requests->counts;
-    if (request->state == FF_REQUEST_QUEUED)
+    if (request->state == FF_REQUEST_QUEUED) {
+        FF_ASSERT(counts->queued > 0);
         counts->queued--;
-    else if (request->state == FF_REQUEST_SENT) {
+    } else if (request->state == FF_REQUEST_SENT) {
+        FF_ASSERT(counts->in_flight >= counts->of[request->kind].in_flight);
+        FF_ASSERT(counts->of[request->kind].in_flight > 0);
+        FF_ASSERT(counts->bytes_in_flight >= request->bytes_expected);
         counts->in_flight--;
         counts->of[request->kind].in_flight--;
         counts->bytes_in_flight -= request->bytes_expected;
-    } else if (request->state == FF_REQUEST_ARRIVING)
+    } else if (request->state == FF_REQUEST_ARRIVING) {
+        FF_ASSERT(counts->arriving > 0);
         counts->arriving--;
+    }
 }
 
 static void free_slot(ff_requests *requests, ff_request *request, uint32_t *final_count)
 {
+    FF_ASSERT(request->state != FF_REQUEST_FREE);
     leave_state(requests, request);
     request->state = FF_REQUEST_FREE;
     ++*final_count;
@@ -62,9 +78,11 @@ static void free_slot(ff_requests *requests, ff_request *request, uint32_t *fina
 static void enqueue(ff_requests *requests, ff_request *request)
 {
     ff_request_counts *counts = &requests->counts;
+    FF_ASSERT(request->state == FF_REQUEST_FREE || request->state == FF_REQUEST_SENT);
     request->state = FF_REQUEST_QUEUED;
     if (++counts->queued > counts->queued_high) counts->queued_high = counts->queued;
     uint32_t held = counts->queued + counts->in_flight + counts->arriving;
+    FF_ASSERT(held <= requests->slot_count);
     if (held > counts->held_high) counts->held_high = held;
 }
 
@@ -78,6 +96,8 @@ void ff_requests_clear(ff_requests *requests)
         else if (request->state != FF_REQUEST_FREE)
             free_slot(requests, request, &requests->counts.cancelled);
     }
+    FF_ASSERT(requests->counts.queued + requests->counts.in_flight + requests->counts.arriving ==
+              0);
     sys_mutex_unlock(&requests->mutex);
 }
 
@@ -108,6 +128,7 @@ void ff_requests_rank_begin(ff_requests *requests)
 static uint32_t value_of(const ff_requests *requests, unsigned kind, unsigned level,
                          uint32_t priority)
 {
+    FF_ASSERT(level <= FF_KEY_LEVEL_MAX);
     uint64_t value = ((uint64_t)priority << 12) / (requests->answer_q4[kind][level] + 1u);
     return value > UINT32_MAX ? UINT32_MAX : (uint32_t)value;
 }
@@ -132,6 +153,8 @@ static ff_request *slot_for_new(ff_requests *requests)
 int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
                      enum ff_request_class rank, uint32_t priority, const ff_get_panorama *panorama)
 {
+    FF_ASSERT(rank <= FF_CLASS_PREFETCH);
+    FF_ASSERT((panorama != NULL) == (ff_kind[kind].asks == FF_ASKS_PANORAMA));
     sys_mutex_lock(&requests->mutex);
     ff_request *request = find(requests, kind, key);
     if (!request) {
@@ -173,6 +196,7 @@ void ff_requests_rank_end(ff_requests *requests)
 /* Cancels a request; 1 when it is still under way. */
 static int cancel(ff_requests *requests, ff_request *request)
 {
+    FF_ASSERT(request->state <= FF_REQUEST_ARRIVING); /* the others are ends, no slot is in one */
     if (request->state == FF_REQUEST_QUEUED) {
         free_slot(requests, request, &requests->counts.dropped);
         return 0;
@@ -204,7 +228,7 @@ void ff_requests_finish(ff_requests *requests, uint16_t id, enum ff_request_stat
     sys_mutex_lock(&requests->mutex);
     FF_ASSERT(id >= 1 && id <= requests->slot_count);
     ff_request *request = &requests->slot[id - 1];
-    FF_ASSERT(request->state == FF_REQUEST_ARRIVING);
+    FF_ASSERT(request->state == FF_REQUEST_ARRIVING && final > FF_REQUEST_ARRIVING);
     ff_request_counts *counts = &requests->counts;
     free_slot(requests, request,
               final == FF_REQUEST_DONE     ? &counts->done
@@ -219,6 +243,7 @@ static int goes_before(const ff_request *a, const ff_request *b)
 {
     if (a->rank != b->rank) return a->rank < b->rank;
     if (a->value != b->value) return a->value > b->value;
+    FF_ASSERT(a->sequence != b->sequence);
     return a->sequence < b->sequence;
 }
 
@@ -226,12 +251,15 @@ static void hash_word(uint64_t *hash, uint64_t word) { *hash = (*hash ^ word) * 
 
 static unsigned answers_to(const ff_request *request)
 {
-    return ff_kind[request->kind].asks == FF_ASKS_PANORAMA ? request->panorama.face_count : 1;
+    if (ff_kind[request->kind].asks != FF_ASKS_PANORAMA) return 1;
+    FF_ASSERT(request->panorama.face_count >= 1 && request->panorama.face_count <= FF_FACE_COUNT);
+    return request->panorama.face_count;
 }
 
 static void hash_request(uint64_t *hash, const ff_request *request)
 {
     const ff_get_panorama *panorama = &request->panorama;
+    FF_ASSERT(request->panorama.id == request->id);
     hash_word(hash, request->kind);
     switch ((enum ff_kind_asks)ff_kind[request->kind].asks) {
         case FF_ASKS_NODE: hash_word(hash, request->key); break;
@@ -254,6 +282,7 @@ static void count_sent(ff_requests *requests, const ff_request *request)
     counts->of[request->kind].sent++;
     count_one(&counts->in_flight, &counts->in_flight_high);
     count_one(&counts->of[request->kind].in_flight, &counts->of[request->kind].in_flight_high);
+    FF_ASSERT(counts->bytes_in_flight <= UINT32_MAX - request->bytes_expected);
     counts->bytes_in_flight += request->bytes_expected;
     hash_request(&requests->hash, request);
 }
@@ -282,6 +311,7 @@ int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_m
         best->bytes_expected = (requests->answer_q4[best->kind][level_of(best)] >> 4) *
                                answers_to(best);
         count_sent(requests, best);
+        FF_ASSERT(counts->in_flight <= in_flight_max || counts->in_flight <= IN_FLIGHT_ALWAYS);
         *copy = *best;
     }
     sys_mutex_unlock(&requests->mutex);
@@ -295,6 +325,7 @@ uint16_t ff_requests_next_cancel(ff_requests *requests)
     for (unsigned i = 0; !id && i < requests->slot_count; i++) {
         ff_request *request = &requests->slot[i];
         if (request->state == FF_REQUEST_SENT && request->cancel == 1) {
+            FF_ASSERT(request->id == i + 1);
             request->cancel = 2;
             id = request->id;
         }
@@ -309,6 +340,7 @@ int ff_requests_answered(ff_requests *requests, uint16_t id, ff_request *copy)
     sys_mutex_lock(&requests->mutex);
     if (id >= 1 && id <= requests->slot_count && requests->slot[id - 1].state == FF_REQUEST_SENT) {
         *copy = requests->slot[id - 1];
+        FF_ASSERT(copy->id == id);
         known = 1;
     }
     sys_mutex_unlock(&requests->mutex);
@@ -318,6 +350,7 @@ int ff_requests_answered(ff_requests *requests, uint16_t id, ff_request *copy)
 void ff_requests_arrived(ff_requests *requests, uint16_t id, uint32_t bytes)
 {
     sys_mutex_lock(&requests->mutex);
+    FF_ASSERT(id >= 1 && id <= requests->slot_count);
     ff_request *request = &requests->slot[id - 1];
     FF_ASSERT(request->state == FF_REQUEST_SENT);
     leave_state(requests, request);
@@ -344,6 +377,7 @@ void ff_requests_lost(ff_requests *requests)
             enqueue(requests, request);
         }
     }
+    FF_ASSERT(requests->counts.in_flight == 0 && requests->counts.bytes_in_flight == 0);
     sys_mutex_unlock(&requests->mutex);
 }
 
@@ -362,6 +396,10 @@ void ff_requests_get_counts(ff_requests *requests, ff_request_counts *counts, ui
 {
     sys_mutex_lock(&requests->mutex);
     *counts = requests->counts;
+    FF_ASSERT(counts->held_high <= requests->slot_count);
+    /* every request ends once */
+    FF_ASSERT(counts->made == counts->done + counts->failed + counts->cancelled + counts->dropped +
+                                  counts->queued + counts->in_flight + counts->arriving);
     if (hash) *hash = requests->hash;
     sys_mutex_unlock(&requests->mutex);
 }
