@@ -2,6 +2,7 @@
  * plane comes into force with the panorama taken for it: until that one is drawn, the ground
  * reaches to where the panorama before it begins. */
 #include "../ff_client_local.h"
+#include "../../protocol/ff_assert.h"
 
 static int can_panorama(const ff_client *client)
 {
@@ -12,6 +13,7 @@ static void apply(ff_client *client)
 {
     ff_balance_knobs knobs;
     ff_balance_get(&client->balance, &knobs);
+    FF_ASSERT(knobs.back_plane_wu >= 0 && knobs.back_plane_wu <= client->balance.finest.view_wu);
     client->panorama.desc.error_px_q8 = knobs.panorama_error_q8;
     client->all_client = can_panorama(client) && !knobs.back_plane_wu;
     if (knobs.back_plane_wu) client->panorama.desc.back_plane_wu = knobs.back_plane_wu;
@@ -30,6 +32,7 @@ void ff_client_balance_begin(ff_client *client, int fresh)
     int64_t extent_wu = (size_wu[0] > size_wu[1] ? size_wu[0] : size_wu[1]) + info->spacing_wu;
     if (finest.depth_max > ff_terrain_levels(info))
         finest.depth_max = (uint8_t)ff_terrain_levels(info);
+    FF_ASSERT(finest.depth_max <= FF_QUALITY_DEPTH_MAX && extent_wu > 0);
     if (finest.view_wu > extent_wu) finest.view_wu = (int32_t)extent_wu;
     ff_balance_set(&client->balance, &client->desc.balance, &finest, &client->desc.panorama,
                    can_panorama(client), fresh);
@@ -41,6 +44,7 @@ void ff_client_balance_begin(ff_client *client, int fresh)
 static int in_force(const ff_client *client)
 {
     const ff_panorama *panorama = &client->panorama;
+    FF_ASSERT(panorama->shown < 0 || panorama->shown == panorama->active);
     if (!can_panorama(client)) return 1;
     if (client->all_client) return panorama->active < 0;
     return panorama->shown >= 0 &&
@@ -81,6 +85,8 @@ void ff_client_balance_quality(const ff_client *client, ff_quality *quality)
     if (client->desc.balance.mode == FF_BALANCE_OFF || !client->have_terrain) return;
     ff_balance_knobs knobs;
     ff_balance_get(&client->balance, &knobs);
+    FF_ASSERT(knobs.c_q8 <= quality->c_q8 && knobs.error_px_q8 >= quality->error_px_q8);
+    FF_ASSERT(knobs.depth_max <= quality->depth_max);
     quality->c_q8 = knobs.c_q8;
     quality->error_px_q8 = knobs.error_px_q8;
     quality->depth_max = knobs.depth_max;
@@ -90,6 +96,7 @@ void ff_client_balance_stats(const ff_client *client, ff_balance_stats *stats)
 {
     const ff_balance *balance = &client->balance;
     if (client->desc.balance.mode == FF_BALANCE_OFF || !client->have_terrain) return;
+    for (int i = 0; i < FF_BALANCE_LEVELS; i++) FF_ASSERT(balance->level[i] <= balance->top[i]);
     unsigned share = FF_BALANCE_SHARE, fidelity = FF_BALANCE_FIDELITY;
     stats->share_percent =
         (uint8_t)(balance->top[share] ? balance->level[share] * 100 / balance->top[share] : 100);

@@ -1,4 +1,5 @@
 #include "ff_balance.h"
+#include "../../protocol/ff_assert.h"
 
 #include <string.h>
 
@@ -23,12 +24,24 @@
 #define BULGE_Q8         88
 #define TOLERANCE_Q8     GAIN_Q8(FF_BALANCE_NOISE_Q4)
 
+/* the longest ladders: gain_q4 has a place for each step, and a level is a byte */
+FF_STATIC_ASSERT(C_STEPS_MAX + FF_QUALITY_DEPTH_MAX + PLANE_STEPS_MAX <= FF_BALANCE_STEPS_MAX);
+FF_STATIC_ASSERT(ERROR_STEPS_MAX <= PLANE_STEPS_MAX && FF_BALANCE_STEPS_MAX <= UINT8_MAX);
+FF_STATIC_ASSERT(FF_BALANCE_LEVELS == 2); /* ff_balance_set names both */
+FF_STATIC_ASSERT(FF_BALANCE_GAIN_Q4 <= UINT8_MAX);
+FF_STATIC_ASSERT(TOLERANCE_Q8 < RELIEF_STEP_Q8 && RELIEF_STEP_Q8 == 256 / 4);
+/* what a raise does is measured while it may still be blamed */
+FF_STATIC_ASSERT(SETTLE_US < SETTLE_US_MAX && SETTLE_US_MAX + LINK_WINDOW_US < BLAME_US);
+/* a link's window has seen frames */
+FF_STATIC_ASSERT(FRAME_WINDOW_US < LINK_WINDOW_US);
+
 int32_t ff_balance_log2_q8(uint64_t value)
 {
     int32_t whole = 0;
     if (!value) return 0;
     for (uint64_t rest = value; rest >>= 1;) whole++;
     int32_t part = (int32_t)((whole >= 8 ? value >> (whole - 8) : value << (8 - whole)) - 256);
+    FF_ASSERT(whole < 64 && part >= 0 && part < 256);
     /* log2(1 + p) is about p + 0.344 p (1 - p) */
     return whole * 256 + part + (part * (256 - part) * BULGE_Q8 >> 16);
 }
@@ -39,12 +52,14 @@ int32_t ff_balance_log2_q8(uint64_t value)
 static int64_t lessened(int64_t value, unsigned quarters)
 {
     static const int32_t root_q16[4] = { 65536, 55109, 46341, 38968 };
+    FF_ASSERT(value > 0 && value <= INT32_MAX && quarters / 4 < 32);
     return (value >> quarters / 4) * root_q16[quarters % 4] >> 16;
 }
 
 static uint8_t steps_between(int64_t high, int64_t low, unsigned quarters, unsigned most)
 {
     unsigned steps = 0;
+    FF_ASSERT(low > 0);
     while (steps < most && lessened(high, steps * quarters) > low) steps++;
     return (uint8_t)steps;
 }
@@ -54,6 +69,7 @@ static uint8_t steps_between(int64_t high, int64_t low, unsigned quarters, unsig
 static int32_t on_ladder(int64_t high, int64_t low, unsigned below, unsigned steps,
                          unsigned quarters)
 {
+    FF_ASSERT(below <= steps);
     int64_t value = lessened(high, below * quarters);
     return (int32_t)(below && (below == steps || value < low) ? low : value);
 }
@@ -63,8 +79,9 @@ static int32_t on_ladder(int64_t high, int64_t low, unsigned below, unsigned ste
  * one. */
 static unsigned first_kind(unsigned level, unsigned first, unsigned second)
 {
-    unsigned all = first + second;
-    return all ? (level * first + all / 2) / all : 0;
+    unsigned all = first + second, kind = all ? (level * first + all / 2) / all : 0;
+    FF_ASSERT(level <= all && kind <= first && level - kind <= second);
+    return kind;
 }
 
 static unsigned detail_steps(const ff_balance *balance)
@@ -110,12 +127,18 @@ void ff_balance_get(const ff_balance *balance, ff_balance_knobs *knobs)
                                            1);
     knobs->panorama_error_q8 = on_ladder(desc->panorama_error_max_q8, balance->panorama_error_q8,
                                          at.error, balance->error_steps, ERROR_QUARTERS);
+    FF_ASSERT(knobs->c_q8 > 0 && knobs->c_q8 <= finest->c_q8);
+    FF_ASSERT(knobs->error_px_q8 >= finest->error_px_q8);
+    FF_ASSERT(knobs->depth_max >= desc->depth_min && knobs->depth_max <= finest->depth_max);
+    FF_ASSERT(knobs->panorama_error_q8 >= balance->panorama_error_q8);
 }
 
 /* Fills in limits that were left out; a limit finer than the finest becomes the finest. */
 static void complete(ff_balance_desc *desc, const ff_quality *finest,
                      const ff_panorama_desc *panorama)
 {
+    FF_ASSERT(finest->c_q8 > 0 && finest->error_px_q8 > 0 && finest->view_wu > 0);
+    FF_ASSERT(panorama->error_px_q8 > 0 && panorama->back_plane_wu > 0);
     if (!desc->link_percent || desc->link_percent > 100) desc->link_percent = PERCENT_DEFAULT;
     if (desc->c_min_q8 <= 0) desc->c_min_q8 = finest->c_q8 / 4;
     if (desc->c_min_q8 > finest->c_q8 || desc->c_min_q8 <= 0) desc->c_min_q8 = finest->c_q8;
@@ -166,14 +189,17 @@ void ff_balance_set(ff_balance *balance, const ff_balance_desc *desc, const ff_q
                                ? steps_between(desc->panorama_error_max_q8, panorama->error_px_q8,
                                                ERROR_QUARTERS, ERROR_STEPS_MAX)
                                : 0;
+    FF_ASSERT(detail_steps(balance) + balance->plane_steps <= FF_BALANCE_STEPS_MAX);
     unsigned old[FF_BALANCE_LEVELS] = { balance->top[0], balance->top[1] };
     balance->top[FF_BALANCE_SHARE] = (uint8_t)(detail_steps(balance) + balance->plane_steps);
     balance->top[FF_BALANCE_FIDELITY] = (uint8_t)(detail_steps(balance) + balance->error_steps);
     /* A level keeps its part of a ladder that has changed its length. The first time, share starts
      * half-way up its ladder, and fidelity at the top of its own. */
-    for (int i = 0; i < FF_BALANCE_LEVELS; i++)
+    for (int i = 0; i < FF_BALANCE_LEVELS; i++) {
+        FF_ASSERT(balance->level[i] <= old[i]);
         balance->level[i] = (uint8_t)(old[i] ? balance->level[i] * balance->top[i] / old[i]
                                              : balance->top[i] / (2u - (unsigned)i));
+    }
     if (desc->mode == FF_BALANCE_ALL_SERVER)
         balance->level[FF_BALANCE_SHARE] = 0;
     else if (desc->mode == FF_BALANCE_ALL_CLIENT)
@@ -221,6 +247,7 @@ static int32_t load_of(uint64_t cost, uint64_t budget)
 
 static int32_t frame_load(const ff_balance *balance)
 {
+    FF_ASSERT(balance->frame_samples > 0);
     return balance->desc.frame_budget
                ? load_of(balance->frame_sum / balance->frame_samples, balance->desc.frame_budget)
                : INT16_MIN;
@@ -231,6 +258,8 @@ static int link_load(const ff_balance *balance, const ff_balance_sample *sample,
 {
     uint64_t age_us = (uint64_t)(sample->now_us - balance->link_since_us),
              percent = balance->desc.link_percent;
+    FF_ASSERT(age_us >= LINK_WINDOW_US && percent >= 1 && percent <= 100);
+    FF_ASSERT(sample->bytes_down >= balance->bytes_since);
     uint64_t waited_percent = (uint64_t)balance->waited_us * 100 / age_us;
     uint64_t bytes_s = (sample->bytes_down - balance->bytes_since) * 1000000u / age_us;
     uint64_t budget = sample->rate_bytes_s * percent / 100;
@@ -246,6 +275,7 @@ static int link_load(const ff_balance *balance, const ff_balance_sample *sample,
 
 static void move(ff_balance *balance, int which, int level, int64_t now_us)
 {
+    FF_ASSERT(level >= 0 && level <= balance->top[which] && level != balance->level[which]);
     int8_t direction = level > balance->level[which] ? 1 : -1;
     balance->turns += balance->direction[which] == -direction;
     balance->direction[which] = direction;
@@ -260,6 +290,7 @@ static void move(ff_balance *balance, int which, int level, int64_t now_us)
  * the panorama less error adds nothing to a frame's load, only to the link's. */
 static int gain_q8(const ff_balance *balance, int which, int load, int step)
 {
+    FF_ASSERT(step >= 0 && step < balance->top[which]);
     if (which == FF_BALANCE_FIDELITY) {
         place low = place_of(balance, balance->level[FF_BALANCE_SHARE], (unsigned)step);
         place high = place_of(balance, balance->level[FF_BALANCE_SHARE], (unsigned)step + 1);
@@ -281,6 +312,7 @@ static int gains_q8(const ff_balance *balance, int which, int load, int from, in
  * shared out equally. */
 static void learn(ff_balance *balance, int which, int low, int high, int load, int change_q8)
 {
+    FF_ASSERT(low < high);
     int missing_q8 = change_q8 - gains_q8(balance, which, load, low, high);
     int more_q4 = missing_q8 > 0 ? missing_q8 / (16 * (high - low)) + 1 : 0;
     for (int step = low; step < high; step++) {
@@ -291,8 +323,10 @@ static void learn(ff_balance *balance, int which, int low, int high, int load, i
 
 static int relieve(ff_balance *balance, int load, int64_t now_us)
 {
+    FF_ASSERT(balance->load_q8[load] > TOLERANCE_Q8);
     if (balance->raised && now_us - balance->moved_us < BLAME_US) {
         int which = balance->raised - 1;
+        FF_ASSERT(which < FF_BALANCE_LEVELS);
         learn(balance, which, balance->moved_from, balance->level[which], load,
               balance->load_q8[load] - balance->before_q8[load]);
         balance->raised = 0;
@@ -321,6 +355,7 @@ static int raise_level(ff_balance *balance, int which, int64_t now_us)
                         2 * GAIN_Q8(FF_BALANCE_NOISE_Q4) <=
                     0;
     if (to == from) return 0;
+    FF_ASSERT(balance->load_q8[FF_BALANCE_SHARE] < 0 && balance->load_q8[FF_BALANCE_FIDELITY] < 0);
     memcpy(balance->before_q8, balance->load_q8, sizeof balance->before_q8);
     balance->raised = (uint8_t)(which + 1);
     balance->moved_from = (uint8_t)from;
@@ -332,12 +367,14 @@ static int raise_level(ff_balance *balance, int which, int64_t now_us)
 /* The link's window is over: relief for the link, or a raise. */
 static int decide(ff_balance *balance, const ff_balance_sample *sample)
 {
+    FF_ASSERT(balance->settled);
     int told = link_load(balance, sample, &balance->load_q8[FF_BALANCE_FIDELITY]);
     int32_t last_q8 = balance->load_q8[FF_BALANCE_SHARE];
     int moved = 0;
     if (told && balance->lowered) { /* what the relief spared, a raise would add */
         int which = balance->lowered - 1,
             now_q8 = which == FF_BALANCE_SHARE ? balance->frame_most_q8 : balance->load_q8[which];
+        FF_ASSERT(which < FF_BALANCE_LEVELS && !balance->raised);
         learn(balance, which, balance->level[which], balance->moved_from, which,
               balance->before_q8[which] - now_q8);
         balance->lowered = 0;
