@@ -1,6 +1,7 @@
 #include "ff_motion.h"
 
 #include "../../common3d/c3d_fixed.h"
+#include "../../protocol/ff_assert.h"
 #include "../../protocol/ff_terrain.h"
 
 #include <string.h>
@@ -11,6 +12,10 @@
 #define AHEAD_US_MAX   30000000
 #define STILL_WU       (FF_WU_PER_METRE / 4) /* a way shorter than this is no motion */
 
+FF_STATIC_ASSERT(FF_MOTION_BINS == 5); /* curve() names bins 0, 1, 3 and 4 */
+FF_STATIC_ASSERT(BIN_US < PAUSE_US_MAX && PAUSE_US_MAX < AHEAD_US_MAX);
+FF_STATIC_ASSERT((int64_t)SPEED_WU_S_MAX *(AHEAD_US_MAX / 1000) < INT64_MAX / 1000);
+
 void ff_motion_reset(ff_motion *motion) { memset(motion, 0, sizeof *motion); }
 
 static int is_jump(const ff_motion *motion, int64_t now_us, const int32_t pos_wu[3])
@@ -20,17 +25,20 @@ static int is_jump(const ff_motion *motion, int64_t now_us, const int32_t pos_wu
     int64_t moved_wu = c3d_length64((int64_t)pos_wu[0] - motion->last_wu[0],
                                     (int64_t)pos_wu[1] - motion->last_wu[1],
                                     (int64_t)pos_wu[2] - motion->last_wu[2]);
+    FF_ASSERT(moved_wu >= 0 && moved_wu < (int64_t)1 << 34); /* times a million fits */
     return moved_wu * 1000000 > (elapsed_us + 20000) * SPEED_WU_S_MAX;
 }
 
 static void close_bin(ff_motion *motion)
 {
+    FF_ASSERT(motion->open_samples > 0 && motion->count <= FF_MOTION_BINS);
     memmove(motion->bin + 1, motion->bin, sizeof motion->bin - sizeof motion->bin[0]);
     ff_motion_bin *bin = &motion->bin[0];
     int64_t samples = motion->open_samples;
     bin->time_us = motion->open_since_us + motion->open_time_sum_us / samples;
     for (int i = 0; i < 3; i++) bin->pos_wu[i] = motion->open_sum_wu[i] / samples;
     if (motion->count < FF_MOTION_BINS) motion->count++;
+    FF_ASSERT(motion->count < 2 || bin->time_us > motion->bin[1].time_us);
     motion->open_samples = 0;
 }
 
@@ -54,6 +62,7 @@ void ff_motion_feed(ff_motion *motion, int64_t now_us, const int32_t pos_wu[3])
 /* Mean velocity between two bins, wu/s. */
 static int64_t velocity(const ff_motion *motion, int newer, int older, int axis)
 {
+    FF_ASSERT(newer < older && older < motion->count);
     int64_t elapsed_us = motion->bin[newer].time_us - motion->bin[older].time_us;
     return elapsed_us > 0 ? (motion->bin[newer].pos_wu[axis] - motion->bin[older].pos_wu[axis]) *
                                 1000000 / elapsed_us
@@ -87,6 +96,7 @@ static int64_t clamp(int64_t value, int64_t limit)
  * viewer who stands still. */
 static int64_t straight_way(const ff_motion *motion, int64_t ahead_ms, int64_t way_wu[3])
 {
+    FF_ASSERT(ahead_ms <= AHEAD_US_MAX / 1000);
     if (motion->count < 2) return 0;
     for (int i = 0; i < 3; i++)
         way_wu[i] = clamp(velocity(motion, 0, motion->count - 1, i), SPEED_WU_S_MAX) * ahead_ms /

@@ -1,4 +1,5 @@
 #include "ff_turn.h"
+#include "../../protocol/ff_assert.h"
 
 #include <string.h>
 
@@ -11,6 +12,10 @@
 #define AHEAD_US_MAX   30000000
 #define RATE_BRAD_MAX  (1 << 24) /* a second: 256 turns */
 
+FF_STATIC_ASSERT(YAW_BRAD_MAX == 65536 / 2); /* half a turn */
+FF_STATIC_ASSERT(PITCH_BRAD_MAX == 65536 / 4 && PITCH_BRAD_MAX <= YAW_BRAD_MAX);
+FF_STATIC_ASSERT(STILL_BRAD < STEP_BRAD && BIN_US < PAUSE_US_MAX);
+
 void ff_turn_reset(ff_turn *turn) { memset(turn, 0, sizeof *turn); }
 
 static int32_t within(int64_t value, int32_t limit)
@@ -21,6 +26,7 @@ static int32_t within(int64_t value, int32_t limit)
 /* From one angle to another the short way round. */
 static int32_t turned(int32_t from, int32_t to)
 {
+    FF_ASSERT(from >= 0 && from <= 0xFFFF && to >= 0 && to <= 0xFFFF);
     int32_t by = (to - from) & 0xFFFF;
     return by < 0x8000 ? by : by - 0x10000;
 }
@@ -54,5 +60,6 @@ unsigned ff_turn_predict(const ff_turn *turn, int64_t ahead_us, int32_t *yaw, in
     *yaw = within(turn->yaw_rate * ahead_ms / 1000, YAW_BRAD_MAX);
     *pitch = within(turn->pitch_rate * ahead_ms / 1000, PITCH_BRAD_MAX);
     int32_t most = size_of(*yaw) > size_of(*pitch) ? size_of(*yaw) : size_of(*pitch);
+    FF_ASSERT(most <= FF_TURN_VIEWS_MAX * STEP_BRAD);
     return most < STILL_BRAD ? 0 : (unsigned)(most + STEP_BRAD - 1) / STEP_BRAD;
 }
