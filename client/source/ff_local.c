@@ -1,4 +1,5 @@
 #include "ff_local.h"
+#include "../../protocol/ff_assert.h"
 
 #define ANSWERS_A_STEP 32 /* a step stays short */
 
@@ -21,8 +22,8 @@ int ff_local_step(ff_intake *intake, const ff_pack *pack, int prefetch, int64_t 
         ff_request request;
         if (!ff_new_data_room(intake->news, intake->rgb_bytes != 0)) break;
         if (!ff_requests_next(intake->requests, now_us, 1, 0, prefetch, &request)) break;
-        (void)answer(intake, pack, &request); /* there is room: it cannot fail */
-        moved = 1;
+        moved = answer(intake, pack, &request) == FF_OK;
+        FF_ASSERT(moved); /* there is room: it cannot fail */
     }
     return moved;
 }

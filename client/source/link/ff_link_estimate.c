@@ -1,7 +1,11 @@
 #include "ff_link_estimate.h"
+#include "../../../protocol/ff_assert.h"
 
 #define INTERVAL_US_MIN  100000
 #define WINDOW_BYTES_MAX (1u << 24)
+
+FF_STATIC_ASSERT(FF_WINDOW_BYTES_MIN < WINDOW_BYTES_MAX);
+FF_STATIC_ASSERT((uint64_t)UINT32_MAX * 1000000u < INT64_MAX); /* take_sample */
 
 const uint8_t ff_link_built = 1;
 
@@ -23,6 +27,7 @@ void ff_link_estimate_sent(ff_link_estimate *link, int64_t now_us)
 
 static void take_sample(ff_link_estimate *link, int64_t interval_us)
 {
+    FF_ASSERT(interval_us > 0);
     uint64_t sample = (uint64_t)link->interval_bytes * 1000000u / (uint64_t)interval_us;
     if (sample > UINT32_MAX / 2) sample = UINT32_MAX / 2;
     if (link->bytes_s == 0)
@@ -58,10 +63,12 @@ void ff_link_estimate_answer(ff_link_estimate *link, int64_t sent_us, int64_t no
         link->rtt_us = (uint32_t)sample;
     else
         link->rtt_us += ((uint32_t)sample - link->rtt_us) / 16;
+    FF_ASSERT(link->rtt_us >= 1 && link->rtt_us <= INT32_MAX);
 }
 
 uint32_t ff_link_estimate_window(const ff_link_estimate *link)
 {
+    FF_ASSERT(link->bytes_s <= UINT32_MAX / 2); /* times rtt_us, which has 31 bits, it fits */
     uint64_t bytes = 2 * ((uint64_t)link->bytes_s * link->rtt_us / 1000000u);
     if (bytes > WINDOW_BYTES_MAX) bytes = WINDOW_BYTES_MAX;
     return bytes > FF_WINDOW_BYTES_MIN ? (uint32_t)bytes : FF_WINDOW_BYTES_MIN;

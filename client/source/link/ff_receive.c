@@ -1,4 +1,5 @@
 #include "ff_receive.h"
+#include "../../../protocol/ff_assert.h"
 
 #include <string.h>
 
@@ -21,6 +22,7 @@ static int take_welcome(ff_stream *stream, const ff_welcome *welcome)
 
 static int asked_for(const ff_get_panorama *panorama, unsigned face)
 {
+    FF_ASSERT(panorama->face_count >= 1 && panorama->face_count <= FF_FACE_COUNT);
     for (unsigned i = 0; i < panorama->face_count; i++)
         if (panorama->face[i] == face) return 1;
     return 0;
@@ -29,6 +31,7 @@ static int asked_for(const ff_get_panorama *panorama, unsigned face)
 /* Whether this is an answer to that request. */
 static int answers(const ff_message *message, const ff_request *request)
 {
+    FF_ASSERT(message->kind < FF_KIND_COUNT && request->kind < FF_KIND_COUNT);
     const ff_kind_row *kind = &ff_kind[request->kind];
     if (ff_kind[message->kind].answered_by != kind->answered_by) return 0;
     return kind->brings != FF_BRINGS_FACE || asked_for(&request->panorama, message->u.face.face);
@@ -80,10 +83,12 @@ static int take_oversize(ff_stream *stream, uint32_t at)
     uint32_t count = stream->recv_count - at, body = 0, header = 1;
     for (unsigned shift = 0;; shift += 7, header++) {
         if (header >= count || header >= FF_MESSAGE_HEADER_MAX) return FF_OK;
+        FF_ASSERT(shift <= 7 * (FF_MESSAGE_HEADER_MAX - 2));
         body |= (uint32_t)(bytes[header] & 0x7f) << shift;
         if (!(bytes[header] & 0x80)) break;
     }
     header++;
+    FF_ASSERT(header <= FF_MESSAGE_HEADER_MAX && header <= count);
     if (header + body <= stream->recv_bytes || count < header + 2) return FF_OK;
     if (ff_message_type_of(bytes[0]) != FF_MSG_ANSWER) return FF_ERR_RANGE;
     int rc = take_failed(stream, (uint16_t)(bytes[header] | bytes[header + 1] << 8), FF_ERR_FULL);
@@ -93,12 +98,14 @@ static int take_oversize(ff_stream *stream, uint32_t at)
 
 static void drop_front(ff_stream *stream, uint32_t count)
 {
+    FF_ASSERT(count <= stream->recv_count);
     stream->recv_count -= count;
     memmove(stream->recv, stream->recv + count, stream->recv_count);
 }
 
 static uint32_t skip_front(ff_stream *stream, uint32_t at)
 {
+    FF_ASSERT(at <= stream->recv_count);
     uint32_t here = stream->recv_count - at;
     uint32_t count = stream->skip < here ? stream->skip : here;
     stream->skip -= count;
@@ -109,13 +116,16 @@ int ff_receive_messages(ff_stream *stream, int64_t now_us)
 {
     uint32_t at = 0;
     int rc = FF_OK;
+    FF_ASSERT(stream->recv_count <= stream->recv_bytes);
     stream->blocked = 0;
     while (rc == FF_OK && stream->state != FF_STREAM_WELCOMED) {
         at = skip_front(stream, at);
         if (at == stream->recv_count) break;
+        FF_ASSERT(stream->skip == 0 && at < stream->recv_count);
         ff_message message;
         int count = ff_message_decode(stream->recv + at, stream->recv_count - at, &message);
         if (count < 0) return count;
+        FF_ASSERT((uint32_t)count <= stream->recv_count - at);
         if (count == 0) {
             rc = take_oversize(stream, at);
             if (rc != FF_OK || !stream->skip) break;

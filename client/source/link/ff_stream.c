@@ -1,6 +1,7 @@
 /* Connection, sending and time-outs; what comes in is in ff_receive.c. */
 #include "ff_stream.h"
 #include "ff_receive.h"
+#include "../../../protocol/ff_assert.h"
 
 #include <string.h>
 
@@ -12,9 +13,16 @@
 #define PATIENCE_MAX         4
 #define PATIENCE_ROUND_TRIPS 4
 
+FF_STATIC_ASSERT(FF_REQUEST_BYTES_MAX <= FF_STREAM_SEND_BYTES);
+FF_STATIC_ASSERT(FF_BACKOFF_US_MIN < FF_BACKOFF_US_MAX && FF_BACKOFF_US_MAX <= INT64_MAX / 2);
+/* UINT32_MAX milliseconds are below 2^42 microseconds */
+FF_STATIC_ASSERT(42 + PATIENCE_MAX < 63 && PATIENCE_MAX <= UINT8_MAX);
+
 void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsigned in_flight_max,
                     uint32_t answer_timeout_ms, uint8_t *recv, uint32_t recv_bytes)
 {
+    FF_ASSERT(in_flight_max >= 1 && in_flight_max <= UINT16_MAX);
+    FF_ASSERT(recv_bytes > FF_REQUEST_BYTES_MAX);
     memset(stream, 0, sizeof *stream);
     stream->io = io;
     stream->intake = intake;
@@ -30,7 +38,10 @@ void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsign
 static void publish(ff_stream *stream)
 {
     ff_stream_shared *shared = &stream->shared;
+    FF_ASSERT(stream->recv_count <= stream->recv_high && stream->recv_high <= stream->recv_bytes);
     sys_mutex_lock(&stream->intake->requests->mutex);
+    FF_ASSERT(shared->bytes_down <= stream->bytes_down && shared->bytes_up <= stream->bytes_up);
+    FF_ASSERT(shared->losses <= stream->losses && shared->reconnects <= stream->reconnects);
     shared->state = stream->state;
     shared->bytes_down = stream->bytes_down;
     shared->bytes_up = stream->bytes_up;
@@ -64,6 +75,8 @@ void ff_stream_say(ff_stream *stream, int quiet, int no_prefetch)
  * requests without an answer are queued again. */
 static void give_up(ff_stream *stream, int64_t now_us)
 {
+    FF_ASSERT(stream->state != FF_STREAM_DOWN && stream->state != FF_STREAM_DEAD);
+    FF_ASSERT(stream->backoff_us >= FF_BACKOFF_US_MIN && stream->backoff_us <= FF_BACKOFF_US_MAX);
     stream->io->close(stream->io->state);
     ff_requests_lost(stream->intake->requests);
     stream->recv_count = stream->send_count = stream->skip = 0;
@@ -78,6 +91,7 @@ static void give_up(ff_stream *stream, int64_t now_us)
 
 void ff_stream_accept(ff_stream *stream, int ok)
 {
+    FF_ASSERT(stream->state == FF_STREAM_WELCOMED);
     stream->has_terrain = (uint8_t)ok;
     stream->held = stream->shared.welcome;
     if (ok) {
@@ -115,15 +129,20 @@ static void append(ff_stream *stream, const ff_message *message)
 
 static int has_send_room(const ff_stream *stream)
 {
+    FF_ASSERT(stream->send_count <= sizeof stream->send);
     return stream->send_count + FF_REQUEST_BYTES_MAX <= sizeof stream->send;
 }
 
 static void greet(ff_stream *stream, int64_t now_us)
 {
+    FF_ASSERT(stream->state == FF_STREAM_CONNECTING);
+    /* of the connection before this one nothing is left */
+    FF_ASSERT(stream->send_count == 0 && stream->recv_count == 0 && stream->skip == 0);
     ff_message hello = { .type = FF_MSG_HELLO };
     hello.u.hello.version = FF_PROTOCOL_VERSION;
     hello.u.hello.known_checksum = stream->has_terrain ? stream->held.checksum : 0;
     append(stream, &hello);
+    FF_ASSERT(stream->send_count > 0);
     stream->state = FF_STREAM_GREETING;
     stream->heard_us = stream->sent_us = now_us;
     stream->awaiting = 1;
@@ -155,6 +174,7 @@ static int connect_step(ff_stream *stream, int64_t now_us)
 
 static void encode_request(ff_stream *stream, const ff_request *request)
 {
+    FF_ASSERT(request->state == FF_REQUEST_SENT && has_send_room(stream));
     ff_message message = { .type = FF_MSG_GET, .kind = (enum ff_kind)request->kind };
     switch ((enum ff_kind_asks)ff_kind[request->kind].asks) {
         case FF_ASKS_NODE: message.u.get = (ff_get){ request->id, request->key }; break;
@@ -173,6 +193,7 @@ static int ask(ff_stream *stream, int64_t now_us)
     int prefetch = !stream->shared.no_prefetch &&
                    requests->counts.in_flight < stream->in_flight_max / 2u;
     sys_mutex_unlock(&requests->mutex);
+    FF_ASSERT(stream->state == FF_STREAM_UP);
     uint32_t window = ff_link_estimate_window(&stream->link);
     int moved = 0;
     ff_request request;
@@ -239,6 +260,8 @@ static int receive(ff_stream *stream, int64_t now_us, int *moved)
         int rc = ff_receive_messages(stream, now_us);
         if (rc < 0) return rc;
         if (stream->blocked || stream->state == FF_STREAM_WELCOMED) return FF_OK;
+        /* a full buffer holds a whole message, or one that passes by */
+        FF_ASSERT(stream->recv_count < stream->recv_bytes);
         int count = stream->io->recv(stream->io->state, stream->recv + stream->recv_count,
                                      stream->recv_bytes - stream->recv_count);
         if (count < 0) return FF_ERR_CLOSED;
@@ -255,6 +278,7 @@ static int receive(ff_stream *stream, int64_t now_us, int *moved)
 
 static int silent_too_long(ff_stream *stream, int64_t now_us)
 {
+    FF_ASSERT(stream->patience <= PATIENCE_MAX);
     int64_t limit_us = stream->answer_timeout_us << stream->patience,
             round_trips_us = PATIENCE_ROUND_TRIPS * (int64_t)stream->link.rtt_us;
     if (stream->blocked || stream->state == FF_STREAM_WELCOMED ||
