@@ -1,12 +1,24 @@
 /* Life of a client: the block, the worker, settings and what is known of the terrain. Frames are in
  * client_update.c, figures in client_figures.c. */
 #include "ff_client_local.h"
+#include "../protocol/ff_assert.h"
 
 #include <string.h>
 
 #define CLIENT_BYTES_MIN ((size_t)512 << 10)
 #define WORKER_SLEEP_US  2000
 #define METRES           FF_WU_PER_METRE
+#define IN_FLIGHT_LIMIT  1024
+
+/* what outlives a terrain fits into the smallest block */
+FF_STATIC_ASSERT(sizeof(ff_client) + CLIENT_BYTES_MIN / 32 + FF_RECEIVED_MIN +
+                     (IN_FLIGHT_LIMIT + FF_REQUESTS_QUEUED_MAX) * sizeof(ff_request) <
+                 CLIENT_BYTES_MIN);
+FF_STATIC_ASSERT(IN_FLIGHT_LIMIT + FF_REQUESTS_QUEUED_MAX <= UINT16_MAX); /* a request's id */
+FF_STATIC_ASSERT(FF_QUALITY_DEPTH_MAX == FF_KEY_LEVEL_MAX + 1);
+FF_STATIC_ASSERT(FF_QUALITY_C_MAX <= INT32_MAX >> 8 && FF_QUALITY_ERROR_PX_MAX <= INT32_MAX >> 8);
+FF_STATIC_ASSERT((int64_t)100000 * METRES <= INT32_MAX);
+FF_STATIC_ASSERT(FF_PICTURE_SIDE_MAX <= UINT16_MAX && FF_FACE_SIZE_MAX <= UINT16_MAX);
 
 size_t ff_client_bytes_min(void) { return CLIENT_BYTES_MIN; }
 
@@ -32,6 +44,7 @@ static void default_panorama(ff_panorama_desc *panorama, unsigned width)
     if (!panorama->face_size) panorama->face_size = 256;
     if (!panorama->jpeg_quality || panorama->jpeg_quality > 100) panorama->jpeg_quality = 70;
     panorama->enabled &= ff_panorama_built;
+    FF_ASSERT(panorama->error_px_q8 > 0 && panorama->server_back_wu >= panorama->back_plane_wu);
 }
 
 void ff_client_default_desc(ff_client_desc *desc)
@@ -49,7 +62,7 @@ static int check_desc(const ff_client_desc *desc)
 {
     if (!desc->memory || (desc->stream != NULL) == (desc->pack != NULL) ||
         desc->width > FF_PICTURE_SIDE_MAX || desc->height > FF_PICTURE_SIDE_MAX ||
-        desc->in_flight_max > 1024 || desc->panorama.jpeg_quality > 100 ||
+        desc->in_flight_max > IN_FLIGHT_LIMIT || desc->panorama.jpeg_quality > 100 ||
         (desc->panorama.face_size && desc->panorama.face_size < FF_PANORAMA_FACE_MIN) ||
         desc->panorama.face_size > FF_FACE_SIZE_MAX)
         return FF_ERR_ARGUMENT;
@@ -86,6 +99,8 @@ static int make_fixed_part(ff_client *client)
     if (!slots || (client->desc.stream && !client->recv)) return FF_ERR_MEMORY;
     client->fixed_bytes = client->arena.used;
     ff_requests_init(&client->requests, client->desc.in_flight_max, slots);
+    FF_ASSERT(client->requests.slot_count == budget.pool[FF_POOL_requests].count);
+    FF_ASSERT(!client->desc.stream || budget.pool[FF_POOL_received].count >= FF_RECEIVED_MIN);
     sys_mutex_init(&client->news.mutex);
     sys_mutex_init(&client->gate);
     client->intake.requests = &client->requests;
@@ -234,7 +249,9 @@ int ff_client_ground(const ff_client *client, int32_t x_wu, int32_t y_wu, int32_
 int ff_client_panorama(const ff_client *client, int32_t position_wu[3], unsigned *faces)
 {
     if (!client->have_terrain || client->panorama.shown < 0) return 0;
+    FF_ASSERT(client->panorama.shown == client->panorama.active && client->panorama.shown < 2);
     const ff_panorama_set *set = &client->panorama.set[client->panorama.shown];
+    FF_ASSERT((set->held & set->empty) == 0);
     ff_shape_leave(&client->info, &client->last_view.frame, set->position_wu, position_wu);
     *faces = (unsigned)set->held | set->empty;
     return 1;

@@ -1,10 +1,12 @@
 /* The pools of a terrain, taken as the budget says, and what lives in them. */
 #include "ff_client_local.h"
+#include "../protocol/ff_assert.h"
 
 #include <string.h>
 
 void *ff_client_take(ff_arena *arena, const ff_budget *budget, enum ff_pool_id pool)
 {
+    FF_ASSERT(pool < FF_POOL_COUNT);
     return budget->pool[pool].count ? ff_arena_take(arena, budget->pool[pool].bytes) : NULL;
 }
 
@@ -25,6 +27,9 @@ static int carve_decoder(ff_client *client, const ff_budget *budget)
 static void carve_arriving(ff_client *client, const ff_budget *budget)
 {
     ff_intake *intake = &client->intake;
+    FF_ASSERT(budget->face_size <= FF_FACE_SIZE_MAX);
+    FF_ASSERT((size_t)budget->face_size * budget->face_size <= budget->texels);
+    FF_ASSERT(budget->pool[FF_POOL_decoded_image].bytes == 3 * budget->texels);
     intake->rgb_bytes = budget->pool[FF_POOL_decoded_image].bytes;
     intake->rgb = take(client, budget, FF_POOL_decoded_image);
     intake->face_size_max = (uint16_t)budget->face_size;
@@ -38,6 +43,7 @@ static void carve_arriving(ff_client *client, const ff_budget *budget)
 static void carve_textures(ff_client *client, const ff_budget *budget)
 {
     ff_textures *textures = &client->textures;
+    FF_ASSERT(budget->pool[FF_POOL_textures].count < UINT16_MAX); /* its lists hold slots + 1 */
     memset(textures, 0, sizeof *textures);
     textures->info = client->info;
     textures->slot_count = (uint16_t)budget->pool[FF_POOL_textures].count;
@@ -57,6 +63,7 @@ static int open_device(ff_client *client, const ff_budget *budget)
 /* Where the graphics library has no buffers the block holds the meshes, and fewer of them. */
 static int carve_device(ff_client *client, ff_budget *budget)
 {
+    FF_ASSERT(!client->device && client->arena.used >= client->fixed_bytes);
     if (!client->desc.backend) return FF_OK;
     int rc = open_device(client, budget);
     if (rc != FF_ERR_MEMORY || client->desc.use_plain_arrays) return rc;
@@ -73,7 +80,11 @@ static int carve_view(ff_client *client, const ff_budget *budget)
     view->entry_count = budget->pool[FF_POOL_entries].count;
     view->entry = take(client, budget, FF_POOL_entries);
     view->vertices = take(client, budget, FF_POOL_vertices);
+    FF_ASSERT(view->entry_count >= FF_ENTRIES_MIN && view->entry_count <= FF_ENTRIES_MAX);
     if (!client->device) return FF_OK;
+    /* a mesh for each entry, one for a node without, and the sky's */
+    FF_ASSERT(budget->device.mesh_count >= view->entry_count + 2);
+    FF_ASSERT(budget->device.mesh_vertices_max >= view->heights_per_node);
     size_t mark = client->arena.used;
     /* the device copies them: given back at once */
     ff_strips *strips = ff_arena_take(&client->arena, sizeof *strips);
@@ -96,7 +107,9 @@ static int carve_tree(ff_client *client, const ff_budget *budget)
 static int carve_all(ff_client *client, unsigned economy)
 {
     ff_budget budget;
+    FF_ASSERT(client->arena.used == client->fixed_bytes);
     ff_budget_fixed(&budget, &client->desc, client->arena.bytes);
+    FF_ASSERT(budget.fixed == client->fixed_bytes);
     ff_budget_economise(&budget, &client->info, economy);
     int rc = ff_budget_terrain(&budget, !client->desc.use_plain_arrays);
     if (rc == FF_OK) rc = carve_decoder(client, &budget);
@@ -110,6 +123,7 @@ static int carve_all(ff_client *client, unsigned economy)
         ff_client_uncarve(client);
         return rc;
     }
+    FF_ASSERT(client->arena.used == budget.used);
     client->has_textures = budget.has_textures;
     ff_terrain_view_attach(&client->view, client->tree, &client->info,
                            client->has_textures ? &client->textures : NULL);
@@ -125,12 +139,14 @@ static int carve_all(ff_client *client, unsigned economy)
  * wrong. */
 int ff_client_carve(ff_client *client)
 {
+    FF_ASSERT(!client->have_terrain);
     if (!ff_codec_supported(client->info.codec)) return FF_ERR_UNSUPPORTED;
     int rc = FF_ERR_MEMORY;
     for (client->economy = 0; rc == FF_ERR_MEMORY && client->economy < FF_ECONOMY_STEPS;
          client->economy++)
         rc = carve_all(client, client->economy);
     client->economy--;
+    FF_ASSERT(client->economy < FF_ECONOMY_STEPS);
     if (rc != FF_OK) return rc;
     ff_arena_seal(&client->arena);
     client->have_terrain = client->dirty = 1;

@@ -1,6 +1,7 @@
 /* What can be read of a client: its figures (ff_figures.h) and what its pools hold (ff_budget.h).
  */
 #include "ff_client_local.h"
+#include "../protocol/ff_assert.h"
 
 #include <string.h>
 
@@ -28,6 +29,8 @@ static void read_parts(const ff_client *client, ff_readings *readings)
     if (client->desc.stream) ff_stream_get_shared(&asked->stream, &readings->link);
     ff_requests_get_counts(&asked->requests, requests, NULL);
     readings->requests_held = requests->queued + requests->in_flight + requests->arriving;
+    FF_ASSERT(readings->requests_held <= requests->held_high);
+    FF_ASSERT(readings->tree.nodes_held <= readings->tree.nodes_high);
     ff_new_data_get_counts(&asked->news, &readings->news);
     ff_client_balance_stats(client, &readings->balance);
 }
@@ -42,6 +45,7 @@ static enum ff_link_state link_state(const ff_readings *from)
                                                [FF_STREAM_UP] = FF_LINK_UP,
                                                [FF_STREAM_DOWN] = FF_LINK_DOWN,
                                                [FF_STREAM_DEAD] = FF_LINK_DOWN };
+    FF_ASSERT(from->link.state < sizeof link / sizeof link[0]);
     return from->client->desc.stream ? link[from->link.state] : FF_LINK_NONE;
 }
 
@@ -67,7 +71,7 @@ void ff_client_get_stats(const ff_client *client, ff_client_stats *stats)
 /* ---- pools ---- */
 
 /* farfield.h has room for all of them */
-typedef char all_pools_listed[FF_POOL_COUNT <= FF_POOLS_MAX ? 1 : -1];
+FF_STATIC_ASSERT(FF_POOL_COUNT <= FF_POOLS_MAX);
 
 static void list_pools(const ff_budget *budget, ff_pool_use *list)
 {
@@ -113,6 +117,7 @@ unsigned ff_client_pools(const ff_client *client, ff_pool_use list[FF_POOLS_MAX]
     for (unsigned i = 0; i < FF_POOL_COUNT; i++) {
         list[i].held = list[i].count ? use[i].held : 0;
         list[i].high = list[i].count ? use[i].high : 0;
+        FF_ASSERT(list[i].held <= list[i].high && list[i].high <= list[i].count);
     }
     return FF_POOL_COUNT;
 }

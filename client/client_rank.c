@@ -7,6 +7,7 @@
  * queue's contents are replaced each time; what is no longer wanted is dropped. */
 #include "ff_client_local.h"
 #include "panorama/ff_panorama_rules.h"
+#include "../protocol/ff_assert.h"
 
 #include <string.h>
 
@@ -19,13 +20,21 @@
 #define TURN_US           5000000
 #define TURN_ROUND_TRIPS  6
 
+/* what is in view finds room in the queue: ground, images, and the faces of the set that comes */
+FF_STATIC_ASSERT(FF_TREE_WISHES + FF_TEXTURE_WISHES + 1 <= FF_REQUESTS_QUEUED_MAX);
+
 static void want_tree(ff_client *client)
 {
     const ff_wish *list;
     uint32_t count = ff_tree_wishes(client->tree, &list);
+    FF_ASSERT(count <= FF_TREE_WISHES);
     for (uint32_t i = 0; i < count; i++) {
         const ff_wish *wish = &list[i];
         enum ff_kind kind = (enum ff_kind)wish->kind;
+        /* a root is wished for at level 0, children below a node that is not of the last level */
+        FF_ASSERT(kind == FF_KIND_ROOT
+                      ? ff_key_level(wish->key) == 0
+                      : ff_key_level(wish->key) + 1 < ff_terrain_levels(&client->info));
         enum ff_request_class rank = kind == FF_KIND_ROOT ? FF_CLASS_FIRST : FF_CLASS_IN_VIEW;
         if (wish->in_view && !ff_refusals_final(&client->refusals, kind, wish->key))
             ff_requests_want(&client->requests, kind, wish->key, rank, wish->priority, NULL);
@@ -39,10 +48,13 @@ static void want_textures(ff_client *client, const ff_view *view, const ff_quali
     uint32_t drawn_count = ff_tree_drawn(client->tree, &drawn);
     uint32_t count = ff_textures_wishes(&client->textures, drawn, drawn_count, view, quality, wish,
                                         FF_TEXTURE_WISHES);
-    for (uint32_t i = 0; i < count; i++)
+    FF_ASSERT(count <= FF_TEXTURE_WISHES);
+    for (uint32_t i = 0; i < count; i++) {
+        FF_ASSERT(ff_key_level(wish[i].key) < client->info.texture_levels);
         if (!ff_refusals_final(&client->refusals, FF_KIND_TEXTURE, wish[i].key))
             ff_requests_want(&client->requests, FF_KIND_TEXTURE, wish[i].key, FF_CLASS_IN_VIEW,
                              wish[i].priority, NULL);
+    }
 }
 
 /* Where the viewer will be and look while an answer is on its way, and some seconds more: several
@@ -58,6 +70,8 @@ static void look_ahead(const ff_client *client, const ff_view *view, int64_t rtt
     unsigned turns = ff_turn_predict(&client->turn, TURN_US + TURN_ROUND_TRIPS * rtt_us, &yaw,
                                      &pitch),
              views = turns ? turns : 1, i;
+    FF_ASSERT(rtt_us >= 0 && rtt_us <= INT32_MAX && views <= FF_TURN_VIEWS_MAX);
+    FF_ASSERT(yaw >= -(1 << 15) && yaw <= 1 << 15 && pitch >= -(1 << 14) && pitch <= 1 << 14);
     int64_t ahead_us = turns ? TURN_US + TURN_ROUND_TRIPS * rtt_us
                              : AHEAD_US + AHEAD_ROUND_TRIPS * rtt_us;
     a->views = 0;
@@ -77,6 +91,7 @@ static void want_ahead(ff_client *client, const ahead *a)
     for (unsigned v = 0; v < a->views; v++) {
         uint32_t count = ff_tree_foresee(client->tree, a->pos_wu[v], a->yaw[v], a->pitch[v], wish,
                                          FF_PREFETCH_WISHES);
+        FF_ASSERT(count <= FF_PREFETCH_WISHES);
         for (uint32_t i = 0; i < count; i++) {
             enum ff_kind kind = (enum ff_kind)wish[i].kind;
             if (!ff_refusals_final(&client->refusals, kind, wish[i].key))
@@ -96,6 +111,7 @@ static unsigned faces_ahead(const ff_view *view, const ahead *a)
         camera.pitch = (camera.pitch + a->pitch[v]) & 0xFFFF;
         faces |= ff_panorama_faces_in_view(&camera);
     }
+    FF_ASSERT(faces < 1u << FF_FACE_COUNT);
     return faces;
 }
 

@@ -1,11 +1,13 @@
 /* New data into what the client holds, kind by kind, and how the requests for it end. */
 #include "ff_client_local.h"
+#include "../protocol/ff_assert.h"
 
 /* Heights. A codec may find only here, with the parent's heights, that a payload is bad: the item
  * then has that error, as if the worker had found it. The tree tells itself whether the picture
  * changed. */
 static int heights_taken(ff_new_item *item, int rc)
 {
+    FF_ASSERT(rc <= FF_OK && rc >= FF_ERR_LAST);
     if (rc != FF_OK && rc != FF_ERR_FULL && rc != FF_ERR_NOT_FOUND) item->error = rc;
     return 0;
 }
@@ -13,6 +15,7 @@ static int heights_taken(ff_new_item *item, int rc)
 int ff_client_take_root(ff_client *client, ff_new_item *item, int64_t now_us)
 {
     (void)now_us;
+    FF_ASSERT(ff_key_level(item->key) == 0);
     uint32_t tile = ff_key_tile(item->key);
     return heights_taken(item, ff_tree_deliver_root(client->tree, tile, &item->u.residuals));
 }
@@ -20,6 +23,7 @@ int ff_client_take_root(ff_client *client, ff_new_item *item, int64_t now_us)
 int ff_client_take_refinement(ff_client *client, ff_new_item *item, int64_t now_us)
 {
     (void)now_us;
+    FF_ASSERT(ff_key_level(item->key) + 1 < ff_terrain_levels(&client->info));
     return heights_taken(item,
                          ff_tree_deliver_children(client->tree, item->key, &item->u.residuals));
 }
@@ -27,11 +31,15 @@ int ff_client_take_refinement(ff_client *client, ff_new_item *item, int64_t now_
 int ff_client_take_texture(ff_client *client, ff_new_item *item, int64_t now_us)
 {
     (void)now_us;
+    FF_ASSERT(ff_key_level(item->key) < client->info.texture_levels);
+    FF_ASSERT(item->width == 1u << client->info.texture_log2 && item->height == item->width);
     return ff_textures_take(&client->textures, item);
 }
 
 int ff_client_take_face(ff_client *client, ff_new_item *item, int64_t now_us)
 {
+    FF_ASSERT(item->u.face.face < FF_FACE_COUNT);
+    FF_ASSERT(item->u.face.row_count <= item->height);
     return ff_panorama_take(&client->panorama, item, now_us);
 }
 
@@ -51,6 +59,7 @@ static int take(ff_client *client, ff_new_item *item, int64_t now_us)
  * not: whoever made it is told of refusals like of answers. */
 static int take_item(ff_client *client, ff_new_item *item, int64_t now_us)
 {
+    FF_ASSERT(item->kind < FF_KIND_COUNT && item->error <= FF_OK);
     int changed = 0, of_node = ff_kind[item->kind].asks == FF_ASKS_NODE;
     if (item->error == FF_OK || !of_node) changed = take(client, item, now_us);
     if (item->error != FF_OK && of_node) ff_refusals_note(&client->refusals, item->kind, item->key);
@@ -61,6 +70,7 @@ static int take_item(ff_client *client, ff_new_item *item, int64_t now_us)
  * other: it is one of several, and its set counts it as missing. */
 static enum ff_request_state final_state(const ff_new_item *item)
 {
+    FF_ASSERT(item->last && item->error <= FF_OK);
     if (item->error == FF_OK) return FF_REQUEST_DONE;
     if (item->error == FF_ERR_CLOSED) return FF_REQUEST_CANCELLED;
     int face_came = ff_kind[item->kind].brings == FF_BRINGS_FACE && !item->refused;

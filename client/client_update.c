@@ -1,6 +1,7 @@
 /* A frame: take in new data, apply the panorama's rules, choose the cut, rank what is missing; then
  * draw. */
 #include "ff_client_local.h"
+#include "../protocol/ff_assert.h"
 
 #include <string.h>
 
@@ -8,12 +9,16 @@
 #define NEAR_WU_MAX       (4096 * FF_WU_PER_METRE)
 #define LOW_POWER_DIVISOR 2 /* C halved, pixels of error doubled */
 
+FF_STATIC_ASSERT((FF_QUALITY_ERROR_PX_MAX << 8) <= INT32_MAX / LOW_POWER_DIVISOR);
+FF_STATIC_ASSERT(0 < NEAR_WU_MIN && NEAR_WU_MIN < NEAR_WU_MAX && NEAR_WU_MAX <= INT32_MAX / 16);
+
 ff_quality ff_client_quality(const ff_client *client)
 {
     ff_quality quality = client->desc.quality;
     ff_client_balance_quality(client, &quality);
     if (client->panorama.desc.enabled && client->panorama.face_size && !client->all_client)
         quality.view_wu = ff_panorama_front_wu(&client->panorama);
+    FF_ASSERT(quality.view_wu > 0);
     if (ff_client_low_power(client)) {
         quality.c_q8 /= LOW_POWER_DIVISOR;
         quality.error_px_q8 *= LOW_POWER_DIVISOR;
@@ -29,6 +34,7 @@ static void settle_welcome(ff_client *client, const ff_stream_shared *shared)
     client->info = shared->welcome;
     client->has_camera = 0; /* another frame, too */
     int rc = ff_client_carve(client);
+    FF_ASSERT(client->have_terrain == (rc == FF_OK));
     client->terrain_error = rc;
     ff_stream_accept(&client->stream, rc == FF_OK);
     sys_mutex_unlock(&client->gate);
@@ -40,6 +46,7 @@ static void look_at_link(ff_client *client)
     ff_stream_shared shared;
     ff_stream_get_shared(&client->stream, &shared);
     if (shared.state == FF_STREAM_WELCOMED) settle_welcome(client, &shared);
+    FF_ASSERT(shared.losses >= client->losses_seen);
     if (shared.losses != client->losses_seen) {
         client->losses_seen = shared.losses;
         client->unranked = 1; /* what was asked is queued again: is it still wanted? */
@@ -79,6 +86,7 @@ static void make_view(const ff_client *client, const c3d_camera *camera, const f
     if (view->camera.far_wu <= view->camera.near_wu)
         view->camera.far_wu = quality->view_wu > INT32_MAX / 3 ? INT32_MAX : 3 * quality->view_wu;
     memcpy(view->centre_wu, camera->pos_wu, sizeof view->centre_wu);
+    FF_ASSERT(client->panorama.shown < 2);
     if (client->panorama.desc.enabled && client->panorama.shown >= 0 && !client->all_client)
         memcpy(view->centre_wu, client->panorama.set[client->panorama.shown].position_wu,
                sizeof view->centre_wu);
@@ -171,6 +179,7 @@ static void set_fog(const ff_client *client, c3d_frame *frame)
             sight_wu = ff_client_quality(client).view_wu;
     if (client->panorama.shown >= 0 || (client->show & FF_SHOW_NO_FOG))
         return; /* the join with the panorama must not show */
+    FF_ASSERT(sight_wu > 0 && horizon_wu > 0);
     sight_wu = sight_wu > horizon_wu ? horizon_wu : sight_wu;
     frame->fog_start_wu = sight_wu / 2;
     frame->fog_end_wu = sight_wu;
@@ -180,6 +189,7 @@ static void set_fog(const ff_client *client, c3d_frame *frame)
 void ff_client_draw(ff_client *client)
 {
     if (!client->device || !client->has_camera) return;
+    FF_ASSERT(client->have_terrain); /* a device lives as long as a terrain */
     c3d_frame frame = { .camera = client->last_view.camera, .clear_colour = FF_SKY_HORIZON_COLOUR };
     fit_planes(client, &frame.camera);
     set_fog(client, &frame);

@@ -1,5 +1,6 @@
 /* What stands behind the rows of ff_budget.h: sizes alone, nothing is taken here. */
 #include "ff_client_local.h"
+#include "../protocol/ff_assert.h"
 
 #include <string.h>
 
@@ -7,6 +8,21 @@
 #define EXTRA_STRIPS     4
 #define EXTRA_INDICES    (FF_SKY_INDICES + 36u) /* and faces */
 #define TEXTURE_ROUNDING 256u
+
+/* faces are halved from the largest down to the smallest */
+FF_STATIC_ASSERT(FACE_SIZE_MIN == FF_PANORAMA_FACE_MIN && FACE_SIZE_MIN < FF_FACE_SIZE_MAX);
+FF_STATIC_ASSERT((FF_FACE_SIZE_MAX & (FF_FACE_SIZE_MAX - 1)) == 0);
+/* and so are entries, each of which may have a mesh: their handles have 16 bits */
+FF_STATIC_ASSERT((FF_ENTRIES_MAX & (FF_ENTRIES_MAX - 1)) == 0 && FF_ENTRIES_MIN < FF_ENTRIES_MAX);
+FF_STATIC_ASSERT((FF_ENTRIES_MIN & (FF_ENTRIES_MIN - 1)) == 0);
+FF_STATIC_ASSERT(FF_ENTRIES_MAX + 2 + FF_PANORAMA_MESHES <= UINT16_MAX);
+FF_STATIC_ASSERT(FF_SKY_VERTICES <= UINT16_MAX && FF_RECEIVED_MIN < FF_RECEIVED_MAX);
+/* all shares of a block together leave an eighth of it, which is the tree's */
+#define BLOCK (16u << 20)
+FF_STATIC_ASSERT(FF_SHARE_OF_AN_IMAGE(BLOCK) + FF_SHARE_OF_WAITING_IMAGES(BLOCK) +
+                     FF_SHARE_OF_ITEMS(BLOCK) + FF_SHARE_OF_TEXTURES(BLOCK) +
+                     FF_SHARE_OF_FACES(BLOCK) + FF_SHARE_OF_TEXT(BLOCK) <=
+                 BLOCK - BLOCK / 8);
 
 /* ---- what comes ---- */
 
@@ -23,6 +39,7 @@ static unsigned fit_face_size(const ff_budget *b)
     if (!b->desc->panorama.enabled || b->desc->pack) return 0;
     while (size > b->desc->panorama.face_size) size /= 2;
     while (size > FACE_SIZE_MIN && !image_fits(b, size)) size /= 2;
+    FF_ASSERT(size > 0 && size <= b->desc->panorama.face_size);
     return size;
 }
 
@@ -34,6 +51,7 @@ static int can_have_textures(const ff_budget *b)
 
 void ff_budget_economise(ff_budget *b, const ff_terrain_info *info, unsigned economy)
 {
+    FF_ASSERT(economy < FF_ECONOMY_STEPS);
     b->info = info;
     b->face_size = economy < 1 ? fit_face_size(b) : 0;
     b->has_textures = (uint8_t)(economy < 2 && can_have_textures(b));
@@ -58,6 +76,8 @@ static uint32_t texel_bytes(const ff_budget *b)
 static void describe_device(ff_budget *b, uint32_t entries, int buffers)
 {
     unsigned faces = b->face_size ? FF_PANORAMA_MESHES : 0;
+    FF_ASSERT(entries <= FF_ENTRIES_MAX);
+    FF_ASSERT(b->pool[FF_POOL_textures].count + 1 + faces <= UINT16_MAX);
     b->entries = entries;
     b->device =
         (c3d_desc){ .surface_api = b->desc->surface_api,
@@ -81,11 +101,19 @@ static size_t device_bytes(const ff_budget *b, const c3d_desc *device)
     return b->desc->backend ? c3d_bytes(b->desc->backend, device) : 0;
 }
 
+/* What the device takes more than `without`, which lacks a part of it. */
+static size_t part_bytes(const ff_budget *b, const c3d_desc *without)
+{
+    size_t whole = device_bytes(b, &b->device), rest = device_bytes(b, without);
+    FF_ASSERT(rest <= whole && whole <= b->pool[FF_POOL_device].bytes);
+    return whole - rest;
+}
+
 static size_t meshes_bytes(const ff_budget *b)
 {
     c3d_desc without = b->device;
     without.mesh_count = 0;
-    return device_bytes(b, &b->device) - device_bytes(b, &without);
+    return part_bytes(b, &without);
 }
 
 static size_t strips_bytes(const ff_budget *b)
@@ -93,7 +121,7 @@ static size_t strips_bytes(const ff_budget *b)
     c3d_desc without = b->device;
     without.strip_count = 0;
     without.strip_indices_max = 0;
-    return device_bytes(b, &b->device) - device_bytes(b, &without);
+    return part_bytes(b, &without);
 }
 
 static size_t textures_bytes(const ff_budget *b)
@@ -101,7 +129,7 @@ static size_t textures_bytes(const ff_budget *b)
     c3d_desc without = b->device;
     without.texture_count = 0;
     without.texture_bytes = 0;
-    return device_bytes(b, &b->device) - device_bytes(b, &without);
+    return part_bytes(b, &without);
 }
 
 /* As many entries, and meshes with them, as their share holds. */
@@ -142,6 +170,7 @@ static uint32_t nodes_left(const ff_budget *b)
 
 static void add(ff_budget *b, enum ff_pool_id pool, uint32_t count, size_t bytes)
 {
+    FF_ASSERT((count == 0) == (bytes == 0));
     b->pool[pool].count = count;
     b->pool[pool].bytes = bytes;
     b->used += ff_arena_cost(bytes);
@@ -149,6 +178,7 @@ static void add(ff_budget *b, enum ff_pool_id pool, uint32_t count, size_t bytes
 
 static uint32_t between(size_t wanted, uint32_t least, uint32_t most)
 {
+    FF_ASSERT(least <= most);
     return wanted < least ? least : wanted > most ? most : (uint32_t)wanted;
 }
 
@@ -185,6 +215,7 @@ static void add_arriving(ff_budget *b)
 
 int ff_budget_terrain(ff_budget *b, int buffers)
 {
+    FF_ASSERT(b->fixed >= sizeof(ff_client)); /* ff_budget_fixed was called */
     b->used = b->fixed;
     add_arriving(b);
     choose_entries(b, buffers);
@@ -192,5 +223,6 @@ int ff_budget_terrain(ff_budget *b, int buffers)
     /* the tree's place holds the strips first, while the device makes its own of them */
     size_t scratch = b->desc->backend ? ff_arena_cost(sizeof(ff_strips)) : 0,
            before_tree = b->used - ff_arena_cost(b->pool[FF_POOL_nodes].bytes);
+    FF_ASSERT(before_tree >= b->fixed);
     return b->used <= b->block && before_tree + scratch <= b->block ? FF_OK : FF_ERR_MEMORY;
 }

@@ -18,11 +18,15 @@ static const struct {
                    { 252, 45, { 175, 201, 227 } },  { 240, 90, { 150, 186, 222 } },
                    { 201, 158, { 127, 169, 214 } }, { 150, 210, { 104, 152, 206 } },
                    { 78, 244, { 94, 143, 200 } },   { 0, 256, { 84, 134, 194 } } };
+FF_STATIC_ASSERT(LEVELS *COLUMNS == FF_SKY_VERTICES);
+/* of each band two for every column and the first again, and two between bands */
+FF_STATIC_ASSERT((LEVELS - 1) * (2 * (COLUMNS + 1) + 2) - 2 == FF_SKY_INDICES);
 static const int8_t circle[COLUMNS][2] = { { 0, 64 },  { 45, 45 },   { 64, 0 },  { 45, -45 },
                                            { 0, -64 }, { -45, -45 }, { -64, 0 }, { -45, 45 } };
 
 static void set_vertex(c3d_vertex *vertex, int level, int column)
 {
+    FF_ASSERT(level < LEVELS && column < COLUMNS);
     memset(vertex, 0, sizeof *vertex);
     vertex->x = circle[column][0] * ring[level].radius / 64;
     vertex->y = circle[column][1] * ring[level].radius / 64;
@@ -56,7 +60,7 @@ void ff_sky_make(ff_sky *sky, c3d_device *device)
     uint16_t index[FF_SKY_INDICES];
     for (int i = 0; i < FF_SKY_VERTICES; i++) set_vertex(&vertex[i], i / COLUMNS, i % COLUMNS);
     uint32_t count = make_indices(index);
-    FF_ASSERT(LEVELS * COLUMNS == FF_SKY_VERTICES && count == FF_SKY_INDICES);
+    FF_ASSERT(count == FF_SKY_INDICES);
     sky->mesh = c3d_mesh_make(device, vertex, FF_SKY_VERTICES);
     sky->strip = c3d_strip_make(device, index, count);
 }
