@@ -47,6 +47,7 @@ static inline uint32_t ff_key_quadrant(ff_key key) { return (uint32_t)key & 3u; 
 static inline ff_key ff_key_child(ff_key key, uint32_t quadrant)
 {
     FF_ASSERT(ff_key_level(key) < FF_KEY_LEVEL_MAX && quadrant < 4);
+    FF_ASSERT((uint64_t)ff_key_code(key) >> (2 * ff_key_level(key)) == 0);
     return ff_key_make(ff_key_tile(key), ff_key_level(key) + 1, (ff_key_code(key) << 2) | quadrant);
 }
 static inline ff_key ff_key_parent(ff_key key)
