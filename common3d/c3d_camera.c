@@ -21,6 +21,9 @@ void c3d_rotation_from_camera(const c3d_camera *camera, c3d_rotation *rotation)
         rotation->m[0][i] = c3d_mul_q30(right[i], cos_roll) - c3d_mul_q30(up[i], sin_roll);
         rotation->m[1][i] = c3d_mul_q30(right[i], sin_roll) + c3d_mul_q30(up[i], cos_roll);
         rotation->m[2][i] = forward[i];
+        /* of unit vectors, rounding apart */
+        C3D_ASSERT(rotation->m[0][i] <= C3D_ONE_Q30 + 4 && rotation->m[0][i] >= -C3D_ONE_Q30 - 4);
+        C3D_ASSERT(rotation->m[1][i] <= C3D_ONE_Q30 + 4 && rotation->m[1][i] >= -C3D_ONE_Q30 - 4);
     }
 }
 
@@ -31,6 +34,7 @@ int32_t c3d_focal_q8(int32_t fov_brad16, int32_t width_px)
     uint32_t half = (uint32_t)clamp32(fov_brad16, 18, 30948) << 15;
     int32_t sine = c3d_sin_turn32_q30(half),
             cosine = c3d_sin_turn32_q30(half + (UINT32_C(1) << 30));
+    C3D_ASSERT(sine > 0 && cosine > 0);
     int64_t focal = ((int64_t)width_px * 128 * cosine + sine / 2) / sine;
     return clamp32(focal, 256, INT32_MAX);
 }
@@ -46,6 +50,7 @@ void c3d_to_eye_q14(const c3d_rotation *rotation, const int64_t offset_wu[3], in
             high += rotation->m[row][i] * (offset_wu[i] >> 16);
             low += rotation->m[row][i] * (offset_wu[i] & 0xFFFF);
         }
+        C3D_ASSERT(high > -(INT64_C(1) << 49) && high < INT64_C(1) << 49);
         eye_q14[row] = high + ((low + (1 << 15)) >> 16);
     }
 }

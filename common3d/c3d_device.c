@@ -10,9 +10,14 @@
 #include "c3d_pool.h"
 #include "c3d_text.h"
 
+#include <stddef.h>
 #include <string.h>
 
-#define READ_BYTES 65536 /* rows read back at once: at least one of 4096 pixels */
+#define READ_BYTES 65536 /* rows read back at once */
+#define SIDE_MAX   4096  /* of pictures and textures */
+
+FF_STATIC_ASSERT(READ_BYTES >= SIDE_MAX * 4);
+FF_STATIC_ASSERT(sizeof(c3d_vertex) == 16);
 
 typedef struct mesh_slot {
     c3d_slot slot;
@@ -37,6 +42,11 @@ typedef struct label_slot {
     c3d_slot slot;
     char text[C3D_LABEL_CHARS + 1];
 } label_slot;
+
+/* a pool knows a slot by its first member alone */
+FF_STATIC_ASSERT(offsetof(mesh_slot, slot) == 0 && offsetof(strip_slot, slot) == 0);
+FF_STATIC_ASSERT(offsetof(texture_slot, slot) == 0 && offsetof(label_slot, slot) == 0);
+FF_STATIC_ASSERT(sizeof(label_slot) == 32); /* as c3d_desc says */
 
 struct c3d_device {
     const struct c3d_backend *backend;
@@ -65,6 +75,7 @@ typedef struct block_part {
 /* Next part of the block, aligned to 16; NULL while only measuring. */
 static void *take(block_part *block, size_t bytes)
 {
+    C3D_ASSERT(((uintptr_t)block->memory & 15) == 0 && block->used % 16 == 0);
     void *part = block->memory ? block->memory + block->used : NULL;
     block->used += (bytes + 15) & ~(size_t)15;
     return part;
@@ -127,6 +138,7 @@ int c3d_open(const struct c3d_backend *backend, const c3d_desc *desc, void *memo
     int buffers = wants_buffers(backend, desc),
         plain = !buffers || bytes >= bytes_for(backend, desc, 1);
     c3d_device *opened = lay_out(&block, backend, desc, plain);
+    C3D_ASSERT((size_t)(block.memory - (uint8_t *)memory) + block.used <= bytes);
     int rc = backend->open(opened->state, desc, &buffers);
     if (rc < 0) return rc;
     if (!buffers && !plain) {
@@ -159,6 +171,7 @@ void c3d_close(c3d_device *device)
 
 static void measure_extent(c3d_mesh_data *mesh, const c3d_vertex *vertices)
 {
+    C3D_ASSERT(mesh->count > 0);
     for (uint32_t i = 0; i < mesh->count; i++) {
         const int32_t at[3] = { vertices[i].x, vertices[i].y, vertices[i].z };
         for (int axis = 0; axis < 3; axis++) {
@@ -167,6 +180,7 @@ static void measure_extent(c3d_mesh_data *mesh, const c3d_vertex *vertices)
         }
     }
     for (int axis = 0; axis < 3; axis++) {
+        C3D_ASSERT(mesh->least[axis] <= mesh->most[axis]);
         int64_t below = -(int64_t)mesh->least[axis], above = mesh->most[axis];
         mesh->reach[axis] = (uint32_t)(below > above ? below : above);
     }
@@ -201,6 +215,7 @@ c3d_mesh c3d_mesh_make(c3d_device *device, const c3d_vertex *vertices, uint32_t 
         c3d_pool_give(&device->meshes, id);
         return none;
     }
+    C3D_ASSERT(!mesh->data.vertices == (mesh->data.buffer != 0));
     return (c3d_mesh){ id };
 }
 
@@ -224,6 +239,7 @@ static uint32_t find_gap(c3d_device *device, uint32_t room, uint32_t **link)
     uint32_t begin = 0;
     for (*link = &device->first_strip; **link != NO_STRIP;) {
         strip_slot *strip = c3d_pool_at(&device->strips, **link);
+        C3D_ASSERT(strip->first >= begin && strip->room > 0);
         if (strip->first - begin >= room) break;
         begin = strip->first + strip->room;
         *link = &strip->next;
@@ -237,6 +253,9 @@ static strip_slot *take_strip(c3d_device *device, uint32_t room, uint32_t *id, u
 {
     uint32_t *link, first = find_gap(device, room, &link), end = first + room;
     if (room > device->desc.strip_indices_max || end > device->desc.strip_indices_max) return NULL;
+    C3D_ASSERT((device->first_strip == NO_STRIP) == (device->strips.in_use == 0));
+    C3D_ASSERT(*link == NO_STRIP ||
+               ((strip_slot *)c3d_pool_at(&device->strips, *link))->first >= end);
     *id = c3d_pool_take(&device->strips);
     strip_slot *strip = c3d_pool_get(&device->strips, *id);
     if (!strip) return NULL;
@@ -256,6 +275,7 @@ static void give_strip(c3d_device *device, uint32_t id)
     uint32_t *link = &device->first_strip;
     while (*link != c3d_pool_index(id))
         link = &((strip_slot *)c3d_pool_at(&device->strips, *link))->next;
+    C3D_ASSERT(strip->next == NO_STRIP || strip->next < device->strips.count);
     *link = strip->next;
     if (strip->data.buffer) device->backend->buffer_free(device->state, strip->data.buffer);
     strip->data = (c3d_strip_data){ .count = 0 };
@@ -269,6 +289,8 @@ static c3d_strip finish_strip(c3d_device *device, uint32_t id, const uint16_t *w
     strip_slot *strip = c3d_pool_get(&device->strips, id);
     c3d_strip_data *data = &strip->data;
     uint32_t count = data->count + data->edge_count;
+    C3D_ASSERT(count > 0 && count <= strip->room * INDEX_WORDS);
+    C3D_ASSERT(data->edge_count % 2 == 0 && data->triangles <= data->count);
     for (uint32_t i = 0; i < count; i++)
         if (words[i] > data->index_max) data->index_max = words[i];
     if (device->indices)
@@ -322,7 +344,8 @@ c3d_texture c3d_texture_make(c3d_device *device, enum c3d_texture_format format,
                              uint32_t height, const void *pixels)
 {
     c3d_texture none = { 0 };
-    if (!is_power_of_two(width) || !is_power_of_two(height) || width > 4096 || height > 4096)
+    if (!is_power_of_two(width) || !is_power_of_two(height) || width > SIDE_MAX ||
+        height > SIDE_MAX)
         return none;
     uint32_t id = c3d_pool_take(&device->textures);
     texture_slot *texture = c3d_pool_get(&device->textures, id);
@@ -372,8 +395,8 @@ void c3d_label_free(c3d_device *device, c3d_label label)
 
 void c3d_begin(c3d_device *device, const c3d_frame *frame)
 {
-    C3D_ASSERT(frame->camera.width >= 1 && frame->camera.width <= 4096);
-    C3D_ASSERT(frame->camera.height >= 1 && frame->camera.height <= 4096);
+    C3D_ASSERT(frame->camera.width >= 1 && frame->camera.width <= SIDE_MAX);
+    C3D_ASSERT(frame->camera.height >= 1 && frame->camera.height <= SIDE_MAX);
     C3D_ASSERT(frame->camera.near_wu > 0 && frame->camera.near_wu < frame->camera.far_wu);
     device->frame = *frame;
     device->stats.frame_triangles = 0;
@@ -433,6 +456,7 @@ void c3d_draw_points(c3d_device *device, const c3d_draw *draw)
 /* Where a coordinate of eye space lies on the screen, in pixels from the left or the top. */
 static int64_t screen_px(int64_t eye_q14, int64_t z_q14, const c3d_camera *camera, int size_px)
 {
+    C3D_ASSERT(z_q14 > 0);
     int64_t offset_q8 = c3d_muldiv64(eye_q14, camera->focal_q8, z_q14), most = (int64_t)1 << 40;
     offset_q8 = offset_q8 > most ? most : offset_q8 < -most ? -most : offset_q8;
     return (offset_q8 + size_px * 128) >> 8;
@@ -450,6 +474,7 @@ void c3d_draw_label(c3d_device *device, const c3d_label_draw *draw)
     c3d_to_eye_q14(&device->rotation, draw->origin_wu, eye);
     if (eye[2] < near_q14 || eye[2] > (int64_t)camera->far_wu << C3D_EYE_SHIFT) return;
     int width_px = (int)strlen(label->text) * C3D_TEXT_ADVANCE_PX - 1;
+    C3D_ASSERT(width_px > 0 && width_px < C3D_LABEL_CHARS * C3D_TEXT_ADVANCE_PX);
     int64_t nearer = eye[2] - (eye[2] >> 6),
             x = screen_px(eye[0], eye[2], camera, camera->width) - width_px / 2 + draw->right_px,
             y = screen_px(-eye[1], eye[2], camera, camera->height) - C3D_FONT_ROWS + 1 +
@@ -480,6 +505,7 @@ int c3d_read_rgb(c3d_device *device, uint8_t *rgb)
     uint32_t width = device->frame.camera.width, height = device->frame.camera.height;
     if (width == 0) return FF_ERR_ARGUMENT; /* no frame was begun yet */
     uint32_t at_once = READ_BYTES / (width * 4);
+    C3D_ASSERT(at_once >= 1);
     for (uint32_t first = 0; first < height; first += at_once) {
         uint32_t rows = height - first < at_once ? height - first : at_once;
         int rc = device->backend->read_rows(device->state, width, first, rows, device->read);
@@ -500,6 +526,7 @@ const void *c3d_frame_pixels(c3d_device *device, enum c3d_texture_format *format
 
 void c3d_get_stats(const c3d_device *device, c3d_stats *stats)
 {
+    C3D_ASSERT(device->stats.strip_indices_high <= device->desc.strip_indices_max);
     *stats = device->stats;
     stats->mesh_held = device->meshes.in_use;
     stats->strip_held = device->strips.in_use;

@@ -14,5 +14,8 @@ uint32_t c3d_strip_edges(const uint16_t *indices, uint32_t count, uint16_t *edge
         *triangles += (uint32_t)drawn;
         previous_drawn = drawn;
     }
+    /* three edges of the first triangle of a run, two of each after it */
+    C3D_ASSERT(written >= 4 * *triangles && written <= 6 * *triangles);
+    C3D_ASSERT(*triangles + 2 <= count && written <= 4 * count);
     return written;
 }

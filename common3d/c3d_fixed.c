@@ -4,6 +4,9 @@
 #define EIGHTH_TURN (UINT32_C(1) << 29)
 #define PI_Q32      UINT64_C(13493037705)
 
+FF_STATIC_ASSERT(EIGHTH_TURN <= (UINT64_MAX - (UINT64_C(1) << 31)) / PI_Q32); /* radians_q31 */
+FF_STATIC_ASSERT(UINT64_C(1) << 62 <= UINT64_MAX / 3); /* c3d_length64: three squares of 31 bits */
+
 static int64_t round_q31(int64_t product) { return (product + (INT64_C(1) << 30)) >> 31; }
 
 /* Taylor's polynomials over an eighth of a turn: x up to 0.786, so the first term left out is below
@@ -11,6 +14,7 @@ static int64_t round_q31(int64_t product) { return (product + (INT64_C(1) << 30)
  * product exceeds 2^62. */
 static int64_t polynomial(const int32_t *coefficient, int count, int64_t x2_q31)
 {
+    C3D_ASSERT(x2_q31 >= 0 && x2_q31 < INT64_C(1) << 31);
     int64_t sum = coefficient[0];
     for (int i = 1; i < count; i++) sum = coefficient[i] + round_q31(sum * x2_q31);
     return sum;
@@ -20,6 +24,7 @@ static int64_t polynomial(const int32_t *coefficient, int count, int64_t x2_q31)
  * of that because Q32 becomes Q31. */
 static int64_t radians_q31(uint32_t angle)
 {
+    C3D_ASSERT(angle <= EIGHTH_TURN);
     return (int64_t)((angle * PI_Q32 + (UINT64_C(1) << 31)) >> 32);
 }
 
@@ -43,6 +48,7 @@ int32_t c3d_sin_turn32_q30(uint32_t angle)
     if (octant & 1) within = EIGHTH_TURN - within;
     int use_cosine = (octant + 1) & 2; /* octants 1, 2 and 5, 6 */
     int64_t value = ((use_cosine ? cosine_q31(within) : sine_q31(within)) + 1) >> 1;
+    C3D_ASSERT(value >= 0 && value <= C3D_ONE_Q30);
     return (int32_t)(octant & 4 ? -value : value);
 }
 
@@ -56,8 +62,9 @@ int32_t c3d_cos_q30(int32_t angle_brad16)
     return c3d_sin_turn32_q30(((uint32_t)angle_brad16 + 16384u) << 16);
 }
 
-static int leading_zeros(uint64_t n) /* n > 0 */
+static int leading_zeros(uint64_t n)
 {
+    C3D_ASSERT(n > 0);
 #if defined(__GNUC__)
     return __builtin_clzll(n);
 #else
@@ -73,6 +80,7 @@ static uint32_t upper(uint32_t a, uint32_t b) { return (uint32_t)(((uint64_t)a *
  * from below, bring it within 2^-13, 2^-24 and about 2^-26. */
 static uint32_t reciprocal_root_q30(uint32_t t)
 {
+    C3D_ASSERT(t >= 1u << 30);
     uint32_t y = 2290055000u - upper(t, 1308600000u);
     for (int i = 0; i < 3; i++)
         y = (uint32_t)(((uint64_t)y * ((3u << 28) - upper(t, upper(y, y)))) >> 29);
@@ -87,7 +95,8 @@ uint32_t c3d_isqrt64(uint64_t value)
     int half = leading_zeros(value) >> 1;
     uint64_t n = value << (2 * half);
     uint32_t top = (uint32_t)(n >> 32), y = reciprocal_root_q30(top);
-    uint64_t root = ((uint64_t)top * y) >> 30; /* below 2^32 as y is too small */
+    uint64_t root = ((uint64_t)top * y) >> 30;
+    C3D_ASSERT(root >> 32 == 0); /* as y is too small */
     int64_t left = (int64_t)(n - root * root);
     root = (root + (uint64_t)(((left >> 10) * (int64_t)y) >> 53)) >> half; /* left/2 * y */
     if (root > UINT32_MAX) root = UINT32_MAX;
@@ -100,6 +109,7 @@ uint32_t c3d_isqrt64(uint64_t value)
  * below, bring it within 2^-29. */
 static uint32_t reciprocal_q31(uint32_t d)
 {
+    C3D_ASSERT(d >> 31 == 1);
     uint32_t x = (3031741620u - upper(d, 2021161080u)) << 1;
     for (int i = 0; i < 3; i++) x = (uint32_t)(((uint64_t)x * ~upper(d, x)) >> 31);
     return x;
@@ -111,8 +121,8 @@ uint32_t c3d_divide_saturated(uint64_t a, uint64_t b)
     if (b >> 32) return (uint32_t)(a / b);
     int lead = leading_zeros(b) - 32;
     uint32_t reciprocal = reciprocal_q31((uint32_t)b << lead);
-    /* too small by a few */
     uint64_t quotient = ((a << lead >> 32) * reciprocal) >> 31, left = a - quotient * b;
+    C3D_ASSERT(left <= a && left >> 4 < b); /* too small by a few */
     for (; left >= b; left -= b) quotient++;
     return (uint32_t)quotient;
 }
@@ -135,6 +145,7 @@ static void multiply128(uint64_t a, uint64_t b, uint64_t *high, uint64_t *low)
 static uint64_t divide128(uint64_t high, uint64_t low, uint64_t divisor)
 {
     uint64_t quotient = 0;
+    C3D_ASSERT(high < divisor);
     for (int bit = 63; bit >= 0; bit--) {
         uint64_t carry = high >> 63;
         high = high << 1 | (low >> bit & 1);
@@ -166,6 +177,7 @@ int64_t c3d_length64(int64_t x, int64_t y, int64_t z)
     int shift = 0;
     /* three squares of 31 bits fit 64; 30 bits of precision stay */
     while (all >> shift >= UINT64_C(1) << 31) shift++;
+    C3D_ASSERT(shift <= 64 - 31);
     a >>= shift;
     b >>= shift;
     c >>= shift;

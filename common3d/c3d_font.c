@@ -1,4 +1,7 @@
 #include "c3d_font.h"
+#include "c3d_assert.h"
+
+FF_STATIC_ASSERT('_' - ' ' == C3D_FONT_GLYPHS - 1 && C3D_FONT_COLUMNS <= 8);
 
 /* Rows from the top, the highest of five bits leftmost. A glyph of zeros, the blank apart, is not
  * in the font. */
@@ -47,4 +50,8 @@ unsigned c3d_font_index(char c)
     return index < C3D_FONT_GLYPHS && is_known(index) ? index : '?' - ' ';
 }
 
-const uint8_t *c3d_font_rows(unsigned index) { return glyphs[index]; }
+const uint8_t *c3d_font_rows(unsigned index)
+{
+    C3D_ASSERT(index < C3D_FONT_GLYPHS);
+    return glyphs[index];
+}
