@@ -206,6 +206,9 @@ void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama)
 {
     unsigned face_size = client->panorama.face_size;
     client->desc.panorama = *panorama;
+    uint16_t *size = &client->desc.panorama.face_size;
+    if (*size > FF_FACE_SIZE_MAX) *size = FF_FACE_SIZE_MAX;
+    if (*size && *size < FF_PANORAMA_FACE_MIN) *size = FF_PANORAMA_FACE_MIN;
     default_panorama(&client->desc.panorama, client->desc.width);
     client->dirty = 1;
     if (!client->have_terrain) return;

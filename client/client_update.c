@@ -61,13 +61,17 @@ static int same_camera(const c3d_camera *a, const c3d_camera *b)
            a->far_wu == b->far_wu;
 }
 
-/* The camera as given, in world axes, as one in the client's frame. */
+/* The camera as given, in world axes and with angles of any number of turns, as one in the client's
+ * frame: yaw and roll 0 to 65535, pitch from -32768, so that angles can be added. */
 static c3d_camera enter_frame(ff_client *client, const c3d_camera *camera)
 {
     ff_frame *frame = &client->last_view.frame;
     c3d_camera here = *camera;
     if (!client->has_camera) *frame = ff_shape_frame(&client->info, camera->pos_wu);
     ff_shape_enter(&client->info, frame, camera->pos_wu, here.pos_wu);
+    here.yaw &= 65535;
+    here.roll &= 65535;
+    here.pitch = (int16_t)(here.pitch & 65535);
     return here;
 }
 

@@ -172,7 +172,8 @@ void ff_client_event(ff_client *client, const sys_event *event);
 
 /* Settings that may change between frames. When panoramas are switched on and the block was shared
  * out without them, the client gives up the terrain, shares the block out anew and asks for the
- * ground again. */
+ * ground again. A face_size that ff_client_create would refuse becomes the nearest that it takes.
+ */
 void ff_client_set_quality(ff_client *client, const ff_quality *quality);
 void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama);
 /* New budgets and limits, or on and off. Share and fidelity stay where they are on their ladders

@@ -314,6 +314,32 @@ static void switched_panoramas_do_not_queue_up(void **state)
     rig_close(&rig);
 }
 
+/* Angles of many turns, and a face size that ff_client_create would refuse. */
+static void wild_angles_and_sizes_are_made_whole(void **state)
+{
+    (void)state;
+    client_rig rig, calm;
+    rig_open(&rig, 0);
+    rig_open(&calm, 0);
+    rig_client(&rig, 4 * MB);
+    rig_client(&calm, 4 * MB);
+    ff_panorama_desc panorama = { .enabled = 1, .back_plane_wu = 1500 * METRE, .face_size = 1 };
+    ff_client_set_panorama(rig.client, &panorama);
+    panorama.face_size = FF_PANORAMA_FACE_MIN;
+    ff_client_set_panorama(calm.client, &panorama);
+    calm.camera.yaw = (int32_t)(rig.camera.yaw = INT32_MAX) & 65535;
+    calm.camera.roll = (int32_t)(rig.camera.roll = INT32_MIN) & 65535;
+    calm.camera.pitch = rig.camera.pitch;
+    rig.camera.pitch -= 100 << 16;
+    assert_true(rig_settle(&rig, 400) && rig_settle(&calm, 400));
+    assert_true(rig_stats(&rig).panorama_faces > 0);
+    assert_true(rig_same_picture(&rig, &calm));
+    rig.camera.yaw = INT32_MIN;
+    assert_true(rig_settle(&rig, 400));
+    rig_close(&rig);
+    rig_close(&calm);
+}
+
 static void panorama_can_be_switched(void **state)
 {
     (void)state;
@@ -497,6 +523,7 @@ int main(void)
                                         cmocka_unit_test(one_set_outstanding_at_most),
                                         cmocka_unit_test(panorama_can_be_switched),
                                         cmocka_unit_test(switched_panoramas_do_not_queue_up),
+                                        cmocka_unit_test(wild_angles_and_sizes_are_made_whole),
                                         cmocka_unit_test(little_memory_draws_coarser),
                                         cmocka_unit_test(wrong_descriptions_are_refused),
                                         cmocka_unit_test(low_power_is_coarser_and_recovers),
