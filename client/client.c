@@ -34,9 +34,19 @@ static void default_quality(ff_quality *quality)
     if (quality->view_wu <= 0) quality->view_wu = 30000 * METRES;
 }
 
+static void bound_quality(ff_quality *quality)
+{
+    if (quality->c_q8 > FF_QUALITY_C_MAX << 8) quality->c_q8 = FF_QUALITY_C_MAX << 8;
+    if (quality->error_px_q8 > FF_QUALITY_ERROR_PX_MAX << 8)
+        quality->error_px_q8 = FF_QUALITY_ERROR_PX_MAX << 8;
+    if (quality->depth_max > FF_QUALITY_DEPTH_MAX) quality->depth_max = FF_QUALITY_DEPTH_MAX;
+}
+
 static void default_panorama(ff_panorama_desc *panorama, unsigned width)
 {
     if (panorama->back_plane_wu <= 0) panorama->back_plane_wu = 7500 * METRES;
+    if (panorama->back_plane_wu > FF_PANORAMA_BACK_WU_MAX)
+        panorama->back_plane_wu = FF_PANORAMA_BACK_WU_MAX;
     if (panorama->server_back_wu <= panorama->back_plane_wu)
         panorama->server_back_wu = panorama->back_plane_wu < 100000 * METRES ? 100000 * METRES
                                                                              : INT32_MAX;
@@ -198,6 +208,7 @@ void ff_client_set_quality(ff_client *client, const ff_quality *quality)
 {
     client->desc.quality = *quality;
     default_quality(&client->desc.quality);
+    bound_quality(&client->desc.quality);
     client->dirty = 1;
     ff_client_balance_begin(client, 0);
 }

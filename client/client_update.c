@@ -7,7 +7,8 @@
 
 #define NEAR_WU_MIN       (FF_WU_PER_METRE / 4)
 #define NEAR_WU_MAX       (4096 * FF_WU_PER_METRE)
-#define LOW_POWER_DIVISOR 2 /* C halved, pixels of error doubled */
+#define NEAR_GIVEN_WU_MAX (16384 * FF_WU_PER_METRE) /* the sky is drawn 16 times as far away */
+#define LOW_POWER_DIVISOR 2                         /* C halved, pixels of error doubled */
 
 FF_STATIC_ASSERT((FF_QUALITY_ERROR_PX_MAX << 8) <= INT32_MAX / LOW_POWER_DIVISOR);
 FF_STATIC_ASSERT(0 < NEAR_WU_MIN && NEAR_WU_MIN < NEAR_WU_MAX && NEAR_WU_MAX <= INT32_MAX / 16);
@@ -96,11 +97,18 @@ static void make_view(const ff_client *client, const c3d_camera *camera, const f
                sizeof view->centre_wu);
 }
 
+/* The ranges of c3d.h; without a size the picture's is taken. */
+static int can_look(const c3d_camera *camera)
+{
+    return camera->focal_q8 >= 256 && camera->width <= FF_PICTURE_SIDE_MAX &&
+           camera->height <= FF_PICTURE_SIDE_MAX && camera->near_wu <= NEAR_GIVEN_WU_MAX;
+}
+
 int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
 {
     int pictures_changed = 0;
     look_at_link(client);
-    if (!client->have_terrain || given->focal_q8 < 256) {
+    if (!client->have_terrain || !can_look(given)) {
         client->frames_skipped++;
         return 0;
     }

@@ -36,6 +36,7 @@ extern "C" {
 
 /* Bounds of what ff_client_create takes; options of programs have their ranges from here. */
 #define FF_PICTURE_SIDE_MAX     4096
+#define FF_PANORAMA_BACK_WU_MAX (8000000 * 256) /* of back_plane_wu: 8000 km */
 #define FF_PANORAMA_FACE_MIN    64 /* the largest is FF_FACE_SIZE_MAX of ff_message.h */
 #define FF_QUALITY_C_MAX        1000
 #define FF_QUALITY_ERROR_PX_MAX 1000

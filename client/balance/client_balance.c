@@ -16,6 +16,8 @@ static void apply(ff_client *client)
     FF_ASSERT(knobs.back_plane_wu >= 0 && knobs.back_plane_wu <= client->balance.finest.view_wu);
     client->panorama.desc.error_px_q8 = knobs.panorama_error_q8;
     client->all_client = can_panorama(client) && !knobs.back_plane_wu;
+    if (knobs.back_plane_wu > FF_PANORAMA_BACK_WU_MAX)
+        knobs.back_plane_wu = FF_PANORAMA_BACK_WU_MAX;
     if (knobs.back_plane_wu) client->panorama.desc.back_plane_wu = knobs.back_plane_wu;
     if (client->all_client) ff_requests_cancel_all(&client->requests, FF_KIND_FACE);
     client->dirty = 1;

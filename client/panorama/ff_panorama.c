@@ -204,7 +204,9 @@ void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const 
         missing = (now_us < panorama->turns_until_us ? ALL_FACES : soon) & ~known(set);
     if (!missing) return;
     ff_get_panorama request = { .front_wu = set->front_wu,
-                                .back_wu = panorama->desc.server_back_wu,
+                                .back_wu = panorama->desc.server_back_wu > set->front_wu
+                                               ? panorama->desc.server_back_wu
+                                               : INT32_MAX,
                                 .face_size = panorama->face_size,
                                 .quality = panorama->desc.jpeg_quality };
     ff_shape_leave(panorama->info, &view->frame, set->position_wu, request.position_wu);

@@ -336,6 +336,22 @@ static void wild_angles_and_sizes_are_made_whole(void **state)
     assert_true(rig_same_picture(&rig, &calm));
     rig.camera.yaw = INT32_MIN;
     assert_true(rig_settle(&rig, 400));
+    /* a camera that no picture has is no camera; settings end where ff_client_create's do */
+    c3d_camera wide = rig.camera, far_off = rig.camera;
+    wide.width = FF_PICTURE_SIDE_MAX + 1;
+    far_off.near_wu = INT32_MAX;
+    assert_false(ff_client_update(rig.client, rig.frame_us, &wide));
+    assert_false(ff_client_update(rig.client, rig.frame_us, &far_off));
+    ff_quality quality = { .measure = FF_MEASURE_PIXELS,
+                           .error_px_q8 = INT32_MAX,
+                           .depth_max = UINT8_MAX,
+                           .view_wu = INT32_MAX };
+    ff_client_set_quality(rig.client, &quality);
+    panorama.back_plane_wu = panorama.server_back_wu = INT32_MAX;
+    ff_client_set_panorama(rig.client, &panorama);
+    assert_true(rig_settle(&rig, 400));
+    assert_int_equal(rig_stats(&rig).quality.error_px_q8, FF_QUALITY_ERROR_PX_MAX << 8);
+    assert_int_equal(rig_stats(&rig).back_plane_wu, FF_PANORAMA_BACK_WU_MAX);
     rig_close(&rig);
     rig_close(&calm);
 }

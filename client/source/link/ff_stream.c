@@ -124,7 +124,8 @@ static void append(ff_stream *stream, const ff_message *message)
 {
     int count = ff_message_encode(message, stream->send + stream->send_count,
                                   sizeof stream->send - stream->send_count);
-    if (count > 0) stream->send_count += (uint32_t)count;
+    FF_ASSERT(count > 0); /* a request that is not sent would be waited for */
+    stream->send_count += (uint32_t)count;
 }
 
 static int has_send_room(const ff_stream *stream)
