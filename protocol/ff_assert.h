@@ -6,8 +6,8 @@
  * (cross.mk): there it is no instruction and the condition is never evaluated, so it must not
  * change anything. A program that embeds libfarfield and wants it off builds with CFLAGS=-DNDEBUG.
  *
- * FF_STATIC_ASSERT(condition) is checked by the compiler in every build, in C99 as in C11. It stands
- * outside functions; constants that must agree have one beside them.
+ * FF_STATIC_ASSERT(condition) is checked by the compiler in every build, in C99 as in C11. It
+ * stands outside functions; constants that must agree have one beside them.
  *
  * Never asserted on is what comes from outside: bytes of messages, packs and tapes, arguments of
  * the public functions, the size of the caller's block. That gets an error.
