@@ -104,6 +104,7 @@ void ff_read_terrain(ff_reader *in, ff_terrain_info *info)
     info->epsg = (int32_t)ff_read_signed(in, 4);
     info->origin_x_mm = ff_read_signed(in, 8);
     info->origin_y_mm = ff_read_signed(in, 8);
+    info->curve_q60 = (uint32_t)ff_read_bytes(in, 4);
     info->checksum = (uint32_t)ff_read_bytes(in, 4);
     if (in->error == FF_OK) in->error = ff_terrain_check(info);
 }
@@ -129,5 +130,6 @@ void ff_write_terrain(ff_writer *out, const ff_terrain_info *info)
     ff_write_bytes(out, (uint32_t)info->epsg, 4);
     ff_write_bytes(out, (uint64_t)info->origin_x_mm, 8);
     ff_write_bytes(out, (uint64_t)info->origin_y_mm, 8);
+    ff_write_bytes(out, info->curve_q60, 4);
     ff_write_bytes(out, info->checksum, 4);
 }

@@ -31,7 +31,7 @@ void ff_write_span(ff_writer *out, const uint8_t *bytes, size_t count);
 unsigned ff_varint_bytes(uint32_t value);
 
 /* ff_terrain_info as it stands in pack headers and in WELCOME. Reading checks its ranges. */
-#define FF_TERRAIN_BYTES 64
+#define FF_TERRAIN_BYTES 68
 void ff_read_terrain(ff_reader *in, ff_terrain_info *info);
 void ff_write_terrain(ff_writer *out, const ff_terrain_info *info);
 

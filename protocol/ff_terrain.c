@@ -9,7 +9,8 @@ static int heights_ok(const ff_terrain_info *info)
                      (int64_t)((UINT16_MAX * (uint64_t)info->hscale_q24) >> 16);
 
     return info->hscale_q24 >= 1 && info->hscale_q24 <= INT32_MAX && top_wu <= INT32_MAX &&
-           info->height_min <= info->height_max && info->max_error <= INT16_MAX;
+           info->height_min <= info->height_max && info->max_error <= INT16_MAX &&
+           info->curve_q60 <= FF_CURVE_MAX;
 }
 
 static int textures_ok(const ff_terrain_info *info)
@@ -36,7 +37,8 @@ int ff_terrain_same(const ff_terrain_info *a, const ff_terrain_info *b)
            a->tile_log2 == b->tile_log2 && a->codec == b->codec && a->tiles_x == b->tiles_x &&
            a->tiles_y == b->tiles_y && a->spacing_wu == b->spacing_wu &&
            a->hscale_q24 == b->hscale_q24 && a->hoffset_wu == b->hoffset_wu &&
-           a->texture_log2 == b->texture_log2 && a->texture_levels == b->texture_levels;
+           a->curve_q60 == b->curve_q60 && a->texture_log2 == b->texture_log2 &&
+           a->texture_levels == b->texture_levels;
 }
 
 int ff_terrain_has_node(const ff_terrain_info *info, ff_key key)

@@ -49,9 +49,14 @@ typedef struct ff_terrain_info {
     int32_t hoffset_wu;  /* z of height step 0 */
     int32_t epsg;        /* coordinate reference of the origin below; 0: none */
     int64_t origin_x_mm, origin_y_mm; /* where x = y = 0 lies in that reference, millimetres */
+    /* How the ground falls away: at a distance of d wu it lies d * d * curve_q60 / 2^60 wu lower
+     * than on a plane, (1 - refraction) / (2 radius). 0: flat. At most 2^31: a radius of 262 km. */
+    uint32_t curve_q60;
     /* of the pack's contents: a client knows by it whether its cache is of this pack */
     uint32_t checksum;
 } ff_terrain_info;
+
+#define FF_CURVE_MAX (UINT32_C(1) << 31)
 
 /* 0 when every field is in range and the terrain's far corner fits int32_t wu; else a negative
  * ff_error. */

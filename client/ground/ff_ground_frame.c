@@ -1,7 +1,7 @@
 #include "ff_ground_frame.h"
 #include "../../protocol/ff_assert.h"
 
-#define FOLLOW_WU (512 * FF_WU_PER_METRE)
+#define FOLLOW_WU FF_SHAPE_DROP_SLACK_WU
 
 /* The height that becomes z = 0: in the middle of the terrain's, so that the call's origin is near
  * its ground. */
@@ -37,15 +37,37 @@ int ff_ground_frame_follow(ff_ground_frame *frame, const ff_terrain_info *info,
         place_wu[axis] = (int32_t)(at_wu > ground.hi[axis] ? ground.hi[axis] : at_wu);
         int64_t away_wu = (int64_t)place_wu[axis] - frame->origin_wu[axis];
         near = near && away_wu <= reach && away_wu >= -reach;
+        away_wu = (int64_t)camera->pos_wu[axis] - frame->centre_wu[axis];
+        near = near && (!info->curve_q60 || (away_wu <= FOLLOW_WU && away_wu >= -FOLLOW_WU));
     }
     if (near) return 0;
     for (int axis = 0; axis < 2; axis++) {
+        frame->centre_wu[axis] = camera->pos_wu[axis];
         frame->origin_wu[axis] = (int32_t)(place_wu[axis] / spacing * spacing);
         FF_ASSERT(frame->origin_wu[axis] >= ground.lo[axis] &&
                   frame->origin_wu[axis] <= ground.hi[axis]);
     }
     frame->set = 1;
     return 1;
+}
+
+/* Lowers vertices in the frame by what curved ground falls away, in height steps. */
+static void bend(const ff_ground_frame *frame, const ff_terrain_info *info, c3d_vertex *vertices,
+                 uint32_t count)
+{
+    uint64_t per_wu = (UINT64_C(1) << 48) / info->hscale_q24; /* steps, Q32 */
+    int64_t from_wu[2];
+    unsigned shift = 32;
+    for (; per_wu >> 33; per_wu >>= 1) shift--;
+    for (int axis = 0; axis < 2; axis++)
+        from_wu[axis] = (int64_t)frame->origin_wu[axis] - frame->centre_wu[axis];
+    FF_ASSERT(shift > 16 && per_wu > 0);
+    for (uint32_t i = 0; i < count; i++) {
+        int64_t spacing = info->spacing_wu;
+        uint64_t drop_wu = (uint64_t)ff_shape_drop_wu(info, from_wu[0] + vertices[i].x * spacing,
+                                                      from_wu[1] + vertices[i].y * spacing);
+        vertices[i].z -= (int32_t)((drop_wu * per_wu + (UINT64_C(1) << (shift - 1))) >> shift);
+    }
 }
 
 void ff_ground_frame_vertices(const ff_ground_frame *frame, const ff_terrain_info *info,
@@ -61,6 +83,7 @@ void ff_ground_frame_vertices(const ff_ground_frame *frame, const ff_terrain_inf
         vertices[i].y = south + (vertices[i].y << shift);
         vertices[i].z += lift;
     }
+    if (info->curve_q60) bend(frame, info, vertices, count);
 }
 
 void ff_ground_frame_draw(const ff_ground_frame *frame, const ff_terrain_info *info,

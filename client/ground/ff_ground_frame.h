@@ -16,11 +16,14 @@
 
 typedef struct ff_ground_frame {
     int32_t origin_wu[2]; /* the position of a sample of the terrain */
+    int32_t centre_wu[2]; /* from here curved ground falls away */
     uint8_t set;          /* 0: not chosen yet */
 } ff_ground_frame;
 
-/* Keeps the frame within about 512 m (at least one sample) of the camera, or of the terrain's edge
- * nearest to it. 1 when it moved: all vertices made with it are void. */
+/* Keeps the origin within about 512 m (at least one sample) of the camera, or of the terrain's edge
+ * nearest to it, and on curved ground the centre within 512 m of the camera: what lies there is
+ * tilted by less than 8e-5, a sixtieth of a pixel on a handheld. 1 when one of them moved: all
+ * vertices made with it are void. */
 int ff_ground_frame_follow(ff_ground_frame *frame, const ff_terrain_info *info,
                            const c3d_camera *camera);
 

@@ -50,7 +50,8 @@ static void expect(const ff_panorama *panorama, ff_panorama_set *set)
     int64_t height_wu[2];
     FF_ASSERT(z_wu == panorama->desc.back_plane_wu && z_wu > 0);
     ff_terrain_range_wu(panorama->info, height_wu);
-    const int32_t ground_wu[2] = { (int32_t)(height_wu[0] - ff_shape_drop_wu(panorama->info, z_wu)),
+    const int32_t ground_wu[2] = { (int32_t)(height_wu[0] -
+                                             ff_shape_drop_wu(panorama->info, z_wu, z_wu)),
                                    (int32_t)height_wu[1] };
     ff_panorama_sight_terrain(&set->sight, set->position_wu, ground_wu, z_wu);
     if (panorama->active < 0 || panorama->set[panorama->active].front_wu != z_wu) return;

@@ -32,7 +32,7 @@ static void note(foresight *f, ff_key key, enum ff_kind kind, uint32_t priority)
 static int comes_into_view(const ff_tree *tree, const foresight *f, const ff_box *here,
                            const ff_box *there)
 {
-    FF_ASSERT(here->hi[2] - here->lo[2] == there->hi[2] - there->lo[2]);
+    FF_ASSERT(here->hi[0] - here->lo[0] == there->hi[0] - there->lo[0]);
     return ff_box_in_view(&f->ahead, there) &&
            (ff_box_beyond_view(tree, here) || !ff_box_in_view(tree, here));
 }

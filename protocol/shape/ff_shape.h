@@ -49,6 +49,9 @@ typedef struct ff_sheet {
     uint32_t x, y;
 } ff_sheet;
 
+/* See ff_shape_drop_wu. */
+#define FF_SHAPE_DROP_SLACK_WU (512 * FF_WU_PER_METRE)
+
 /* The test of a second shape builds another list. */
 #ifndef FF_SHAPES_BUILT
 #define FF_SHAPES_BUILT "ff_shapes.h"
@@ -80,7 +83,7 @@ static inline void ff_shape_place(const ff_terrain_info *info, ff_key key, const
     FF_ASSERT(column <= 1u << info->node_log2 && row <= 1u << info->node_log2);
     FF_SHAPE_CALL(info, place, (info, key, placed, column, row, height, place_wu));
 }
-/* Holds all ground of the node between two heights. */
+/* Holds all ground of the node between two heights, as it is drawn for a viewer at `from_wu`. */
 static inline ff_box ff_shape_box(const ff_terrain_info *info, ff_key key, const ff_placed *placed,
                                   const int64_t height_wu[2], const int32_t from_wu[3])
 {
@@ -172,12 +175,13 @@ static inline int32_t ff_shape_horizon_wu(const ff_terrain_info *info, const ff_
 {
     return FF_SHAPE_CALL(info, horizon_wu, (info, frame, place_wu));
 }
-/* How much lower in the frame than its height says ground lies at a distance from the frame's
- * place. */
-static inline int32_t ff_shape_drop_wu(const ff_terrain_info *info, int32_t away_wu)
+/* How much lower than its height says ground lies for a viewer so far east and north of whom it
+ * is, because it is curved. For pictures it is taken from where the viewer was lately, at most
+ * FF_SHAPE_DROP_SLACK_WU away along each axis; boxes hold the ground for all such places. */
+static inline int32_t ff_shape_drop_wu(const ff_terrain_info *info, int64_t east_wu,
+                                       int64_t north_wu)
 {
-    FF_ASSERT(away_wu >= 0);
-    return FF_SHAPE_CALL(info, drop_wu, (info, away_wu));
+    return FF_SHAPE_CALL(info, drop_wu, (info, east_wu, north_wu));
 }
 /* The tiles that may have ground within `view_wu` of a place: no further along any axis of the
  * frame. height_wu: lowest and highest ground of the terrain. */

@@ -99,7 +99,35 @@ int ff_planar_locate(const ff_terrain_info *info, const ff_frame *frame, const i
     return 1;
 }
 
-/* ---- horizon: tiles in reach ---- */
+/* ---- horizon ---- */
+
+/* How far away ground has dropped by so much. */
+static int64_t dropped_at(const ff_terrain_info *info, int64_t drop_wu)
+{
+    int64_t away_wu = 0;
+
+    for (int64_t step = INT64_C(1) << 30; step; step >>= 1)
+        if (ff_planar_drop_wu(info, away_wu + step, 0) <= drop_wu) away_wu += step;
+    return away_wu;
+}
+
+/* A line of sight that grazes the level of the lowest ground still meets the highest. */
+int32_t ff_planar_horizon_wu(const ff_terrain_info *info, const ff_frame *frame,
+                             const int32_t place_wu[3])
+{
+    int64_t height_wu[2], above_wu, away_wu;
+
+    (void)frame;
+    if (!info->curve_q60) return INT32_MAX;
+    ff_terrain_range_wu(info, height_wu);
+    above_wu = place_wu[2] - height_wu[0];
+    away_wu = dropped_at(info, above_wu > 0 ? above_wu : 0) +
+              dropped_at(info, height_wu[1] - height_wu[0]);
+    FF_ASSERT(away_wu >= 0 && away_wu < INT64_C(1) << 32);
+    return away_wu < INT32_MAX ? (int32_t)away_wu : INT32_MAX;
+}
+
+/* ---- tiles in reach ---- */
 
 static int64_t floor_div(int64_t a, int64_t b)
 {

@@ -1,7 +1,7 @@
-/* The plane: tiles_x by tiles_y tiles in a rectangle, tile number = y * tiles_x + x, x to the east,
- * y to the north; a column is spacing_wu of x, a row of y, a height is z. One frame: world axes,
- * the south-west sample at x = y = 0. What ff_shape.h says of each function is not said again; it
- * includes this file. */
+/* The plane, flat or bent about the viewer (ff_terrain_info.curve_q60): tiles_x by tiles_y tiles in
+ * a rectangle, tile number = y * tiles_x + x, x to the east, y to the north; a column is spacing_wu
+ * of x, a row of y, a height is z. One frame: world axes, the south-west sample at x = y = 0. What
+ * ff_shape.h says of each function is not said again; it includes this file. */
 #ifndef FF_SHAPE_PLANAR_H
 #define FF_SHAPE_PLANAR_H
 
@@ -19,7 +19,26 @@ ff_walk ff_planar_walk_out(const ff_terrain_info *info, const ff_frame *frame,
                            const ff_reach *reach, const int32_t centre_wu[3]);
 ff_walk ff_planar_walk(const ff_terrain_info *info, const ff_reach *reach);
 int ff_planar_next(const ff_terrain_info *info, ff_walk *walk, uint32_t *tile);
+int32_t ff_planar_horizon_wu(const ff_terrain_info *info, const ff_frame *frame,
+                             const int32_t place_wu[3]);
 void ff_planar_cover(ff_terrain_info *info, uint32_t samples_x, uint32_t samples_y);
+
+/* ---- how the ground falls away ---- */
+
+static inline uint64_t ff_planar_square_of(int64_t away_wu)
+{
+    int64_t most = away_wu > INT32_MAX ? INT32_MAX : away_wu < -INT32_MAX ? -INT32_MAX : away_wu;
+    return (uint64_t)(most * most); /* below 2^62 */
+}
+
+static inline int32_t ff_planar_drop_wu(const ff_terrain_info *info, int64_t east_wu,
+                                        int64_t north_wu)
+{
+    uint64_t away2 = ff_planar_square_of(east_wu) + ff_planar_square_of(north_wu);
+    uint64_t drop_wu = ((away2 >> 31) * info->curve_q60) >> 29;
+    FF_ASSERT(away2 >> 31 <= UINT32_MAX && info->curve_q60 <= FF_CURVE_MAX);
+    return drop_wu < INT32_MAX / 2 ? (int32_t)drop_wu : INT32_MAX / 2;
+}
 
 /* ---- place ---- */
 
@@ -39,9 +58,21 @@ static inline void ff_planar_place(const ff_terrain_info *info, ff_key key, cons
     place_wu[2] = ff_height_wu(info, height);
 }
 
-static inline ff_box ff_planar_square(int64_t x_wu, int64_t y_wu, int64_t width_wu,
-                                      int64_t depth_wu, const int64_t height_wu[2],
-                                      const int32_t from_wu[3])
+/* Along an axis, of a box beside the viewer: how near and how far its ground lies, with the slack.
+ */
+static inline int64_t ff_planar_nearest(int64_t lo, int64_t hi)
+{
+    int64_t away_wu = (lo > 0 ? lo : hi < 0 ? -hi : 0) - FF_SHAPE_DROP_SLACK_WU;
+    return away_wu > 0 ? away_wu : 0;
+}
+static inline int64_t ff_planar_farthest(int64_t lo, int64_t hi)
+{
+    return (hi > -lo ? hi : -lo) + FF_SHAPE_DROP_SLACK_WU;
+}
+
+static inline ff_box ff_planar_block(const ff_terrain_info *info, int64_t x_wu, int64_t y_wu,
+                                     int64_t width_wu, int64_t depth_wu, const int64_t height_wu[2],
+                                     const int32_t from_wu[3])
 {
     ff_box box;
     box.lo[0] = x_wu - from_wu[0];
@@ -50,6 +81,12 @@ static inline ff_box ff_planar_square(int64_t x_wu, int64_t y_wu, int64_t width_
     box.hi[1] = box.lo[1] + depth_wu;
     box.lo[2] = height_wu[0] - from_wu[2];
     box.hi[2] = height_wu[1] - from_wu[2];
+    if (info->curve_q60) {
+        box.lo[2] -= ff_planar_drop_wu(info, ff_planar_farthest(box.lo[0], box.hi[0]),
+                                       ff_planar_farthest(box.lo[1], box.hi[1]));
+        box.hi[2] -= ff_planar_drop_wu(info, ff_planar_nearest(box.lo[0], box.hi[0]),
+                                       ff_planar_nearest(box.lo[1], box.hi[1]));
+    }
     return box;
 }
 
@@ -59,8 +96,8 @@ static inline ff_box ff_planar_box(const ff_terrain_info *info, ff_key key, cons
     int64_t edge_wu = ff_node_edge_wu(info, ff_key_level(key));
     FF_ASSERT(placed->planar.x_wu + edge_wu <= INT32_MAX);
     FF_ASSERT(placed->planar.y_wu + edge_wu <= INT32_MAX);
-    return ff_planar_square(placed->planar.x_wu, placed->planar.y_wu, edge_wu, edge_wu, height_wu,
-                            from_wu);
+    return ff_planar_block(info, placed->planar.x_wu, placed->planar.y_wu, edge_wu, edge_wu,
+                           height_wu, from_wu);
 }
 
 static inline void ff_planar_to_middle(const ff_terrain_info *info, ff_key key,
@@ -79,8 +116,8 @@ static inline ff_box ff_planar_bounds(const ff_terrain_info *info, const ff_fram
     int64_t edge_wu = ff_node_edge_wu(info, 0);
     (void)frame;
     FF_ASSERT(info->tiles_x * edge_wu <= INT32_MAX && info->tiles_y * edge_wu <= INT32_MAX);
-    return ff_planar_square(0, 0, info->tiles_x * edge_wu, info->tiles_y * edge_wu, height_wu,
-                            from_wu);
+    return ff_planar_block(info, 0, 0, info->tiles_x * edge_wu, info->tiles_y * edge_wu, height_wu,
+                           from_wu);
 }
 
 /* Columns run east, rows north, and cells are square. */
@@ -138,19 +175,7 @@ static inline void ff_planar_leave(const ff_terrain_info *info, const ff_frame *
     ff_planar_enter(info, frame, place_wu, world_wu);
 }
 
-/* ---- horizon ---- */
-
-/* A plane has none. */
-static inline int32_t ff_planar_horizon_wu(const ff_terrain_info *info, const ff_frame *frame,
-                                           const int32_t place_wu[3])
-{
-    return (void)info, (void)frame, (void)place_wu, INT32_MAX;
-}
-
-static inline int32_t ff_planar_drop_wu(const ff_terrain_info *info, int32_t away_wu)
-{
-    return (void)info, (void)away_wu, 0;
-}
+/* ---- tiles in reach ---- */
 
 static inline int ff_planar_reaches(const ff_terrain_info *info, const ff_reach *reach,
                                     uint32_t tile)

@@ -159,8 +159,8 @@ static enum sim_audit_cause cause_of(const sim_auditor *auditor, const sim_audit
     if (quality->measure == FF_MEASURE_DISTANCE) {
         double middle_m[3], d[3];
         sim_place_middle(&auditor->info, drawn, middle_m);
-        sim_place_lift(middle_m, sim_ground_height_m(auditor->ground, middle_m[0], middle_m[1]),
-                       middle_m);
+        sim_place_lift(auditor->ground, e->pos_m, middle_m,
+                       sim_ground_height_m(auditor->ground, middle_m[0], middle_m[1]), middle_m);
         for (int i = 0; i < 3; i++) d[i] = middle_m[i] - e->pos_m[i];
         splits = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) < edge_m * quality->c_q8 / 256.0;
     }
@@ -169,14 +169,14 @@ static enum sim_audit_cause cause_of(const sim_auditor *auditor, const sim_audit
 }
 
 /* The direction in which the panorama shows a point: 1, or 0 when it does not. */
-static int panorama_direction(const sim_audit_view *view, const double point_m[3],
-                              double direction[3])
+static int panorama_direction(const sim_auditor *auditor, const sim_audit_view *view,
+                              const sim_eye *e, const double point_m[3], double direction[3])
 {
     static const enum ff_face_name positive[3] = { FF_FACE_EAST, FF_FACE_NORTH, FF_FACE_UP };
     static const enum ff_face_name negative[3] = { FF_FACE_WEST, FF_FACE_SOUTH, FF_FACE_DOWN };
     int axis = 0;
     if (!view->panorama) return 0;
-    sim_place_seen_from(view->panorama_pos_wu, point_m, direction);
+    sim_place_seen_from(auditor->ground, view->panorama_pos_wu, e->pos_m, point_m, direction);
     for (int i = 1; i < 3; i++)
         if (fabs(direction[i]) > fabs(direction[axis])) axis = i;
     double reach_wu = fabs(direction[axis]) * FF_WU_PER_METRE;
@@ -217,9 +217,9 @@ static void look_at(const sim_auditor *auditor, const sim_audit_view *view, cons
     if (!at->ground) return;
     const ff_drawn *node = drawn_at(auditor, view->drawn, view->drawn_count, point_m, &z_m);
     if (node) {
-        sim_place_lift(point_m, z_m, shown);
+        sim_place_lift(auditor->ground, e->pos_m, point_m, z_m, shown);
         for (int i = 0; i < 3; i++) shown[i] -= e->pos_m[i];
-    } else if (!panorama_direction(view, point_m, shown)) {
+    } else if (!panorama_direction(auditor, view, e, point_m, shown)) {
         at->cause = SIM_CAUSE_UNDRAWN;
         return;
     }

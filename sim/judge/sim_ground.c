@@ -2,6 +2,7 @@
 
 #include "../../protocol/shape/ff_shape.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -156,6 +157,7 @@ int sim_ground_load_cached(sim_ground *ground, const ff_pack *pack, uint64_t sam
     ground->rows = (tiles.y << (info->node_log2 + level)) + 1;
     ground->cell_m = (double)ff_node_cell_wu(info, level) / FF_WU_PER_METRE;
     ground->hscale_m = (double)info->hscale_q24 / (1 << 24);
+    ground->curve_per_m = ldexp((double)info->curve_q60, -60) * FF_WU_PER_METRE;
     ground->hoffset_m = (double)info->hoffset_wu / FF_WU_PER_METRE;
     int rc = FF_OK;
     if (!cache_path || !sim_ground_cache_open(ground, info->checksum, cache_path)) {

@@ -19,6 +19,7 @@ typedef struct sim_ground {
     uint32_t columns, rows; /* of heights */
     double cell_m;
     double hscale_m, hoffset_m;
+    double curve_per_m; /* at a distance of d m ground lies d * d * curve_per_m lower; 0: flat */
     const uint16_t *height;
     void *block;         /* the memory of `height`, when it was decoded here */
     sys_mapping mapping; /* else the mapped file, shared by all who fly over this ground */
@@ -42,8 +43,11 @@ void sim_ground_free(sim_ground *ground);
 
 /* Height at (x, y), clamped to the rim. */
 double sim_ground_height_m(const sim_ground *ground, double x_m, double y_m);
+/* How much lower than its height says ground lies for an eye so far away. */
+double sim_ground_drop_m(const sim_ground *ground, double east_m, double north_m);
 /* First ground along from + t * direction, 0 < t <= t_max (direction of any length): 1 and *t_hit,
- * or 0. */
+ * or 0. Curved ground has fallen away from `from`: the point met lies by sim_ground_drop_m lower
+ * than its height. */
 int sim_ground_cast(const sim_ground *ground, const double from_m[3], const double direction[3],
                     double t_max, double *t_hit);
 

@@ -1,5 +1,6 @@
-/* The true ground of a planar terrain: x and y are columns and rows, z is height. Another shape
- * asks the same two questions of another file. */
+/* The true ground of a planar terrain: x and y are columns and rows, z is height. Curved ground is
+ * not bent for that: the ray is bent up instead, by as much as the ground has fallen away, and so
+ * is a parabola over the plane. Another shape asks the same questions of another file. */
 #include "sim_ground.h"
 
 #include <math.h>
@@ -38,24 +39,42 @@ double sim_ground_height_m(const sim_ground *ground, double x_m, double y_m)
     return plane_m(ground, column, row, u >= v, u, v);
 }
 
-/* A ray in cells (x, y) and metres (z). */
+/* A ray in cells (x, y) and metres (z): z = from + t along + t^2 bend. */
 typedef struct ray {
     const sim_ground *ground;
-    double from[3], along[3];
+    double from[3], along[3], bend;
 } ray;
 
-/* First ground on t0..t1 under one triangle's plane: linear in t. */
+static double ray_height(const ray *r, double t)
+{
+    return r->from[2] + t * (r->along[2] + t * r->bend);
+}
+
+/* The least of a parabola that is `bend` bent, on t0..t1 of length 1: its values at both ends are
+ * a and b. *where: at which part of the way. */
+static double lowest_between(double a, double b, double bend, double *where)
+{
+    *where = bend > 0 ? clamp((bend - (b - a)) / (2 * bend), 0, 1) : b < a;
+    return a + *where * (b - a) - bend * *where * (1 - *where);
+}
+
+/* First ground on t0..t1 under one triangle's plane: above it the ray is a parabola that opens
+ * upwards, met on the way down to its lowest point. */
 static int cast_plane(const ray *r, uint32_t column, uint32_t row, int south_east, double t0,
                       double t1, double *t_hit)
 {
-    double above[2], t[2] = { t0, t1 };
+    double above[2], t[2] = { t0, t1 }, bend = r->bend * (t1 - t0) * (t1 - t0), where;
     for (int i = 0; i < 2; i++)
-        above[i] = r->from[2] + t[i] * r->along[2] -
-                   plane_m(r->ground, column, row, south_east,
-                           r->from[0] + t[i] * r->along[0] - column,
-                           r->from[1] + t[i] * r->along[1] - row);
-    if (above[0] > 0 && above[1] > 0) return 0;
-    *t_hit = above[0] <= 0 ? t0 : t0 + (t1 - t0) * above[0] / (above[0] - above[1]);
+        above[i] = ray_height(r, t[i]) - plane_m(r->ground, column, row, south_east,
+                                                 r->from[0] + t[i] * r->along[0] - column,
+                                                 r->from[1] + t[i] * r->along[1] - row);
+    *t_hit = t0;
+    if (above[0] <= 0) return 1;
+    if (lowest_between(above[0], above[1], bend, &where) > 0) return 0;
+    /* bend p^2 - slope p + above = 0, the smaller root, in the form that does not cancel */
+    double slope = bend - (above[1] - above[0]),
+           root = sqrt(fmax(0, slope * slope - 4 * bend * above[0]));
+    *t_hit = t0 + (t1 - t0) * clamp(2 * above[0] / (slope + root), 0, 1);
     return 1;
 }
 
@@ -83,7 +102,8 @@ static int cast_block(const ray *r, unsigned log2, uint32_t column, uint32_t row
     const sim_ground *ground = r->ground;
     if (log2 >= SIM_GROUND_PYRAMID_FIRST) {
         if (column >= ground->pyramid[log2].columns || row >= ground->pyramid[log2].rows) return 0;
-        double lowest = r->from[2] + (r->along[2] < 0 ? t1 : t0) * r->along[2];
+        double where, lowest = lowest_between(ray_height(r, t0), ray_height(r, t1),
+                                              r->bend * (t1 - t0) * (t1 - t0), &where);
         uint16_t most =
             ground->pyramid[log2].max[(size_t)row * ground->pyramid[log2].columns + column];
         if (lowest > ground->hoffset_m + ground->hscale_m * most) return 0;
@@ -109,6 +129,11 @@ static int cast_block(const ray *r, unsigned log2, uint32_t column, uint32_t row
     return 0;
 }
 
+double sim_ground_drop_m(const sim_ground *ground, double east_m, double north_m)
+{
+    return ground->curve_per_m * (east_m * east_m + north_m * north_m);
+}
+
 int sim_ground_cast(const sim_ground *ground, const double from_m[3], const double direction[3],
                     double t_max, double *t_hit)
 {
@@ -120,6 +145,7 @@ int sim_ground_cast(const sim_ground *ground, const double from_m[3], const doub
         r.from[axis] = from_m[axis] / scale;
         r.along[axis] = direction[axis] / scale;
     }
+    r.bend = sim_ground_drop_m(ground, direction[0], direction[1]);
     for (int axis = 0; axis < 2; axis++) { /* the part of the ray over the ground */
         if (r.along[axis] == 0) {
             if (r.from[axis] < 0 || r.from[axis] > size[axis]) return 0;

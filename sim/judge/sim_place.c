@@ -18,14 +18,26 @@ void sim_place_middle(const ff_terrain_info *info, const ff_drawn *drawn, double
     point_m[2] = 0;
 }
 
-void sim_place_lift(const double point_m[3], double height_m, double lifted_m[3])
+static double fallen_m(const sim_ground *ground, const double eye_m[3], const double point_m[3])
+{
+    return sim_ground_drop_m(ground, point_m[0] - eye_m[0], point_m[1] - eye_m[1]);
+}
+
+void sim_place_lift(const sim_ground *ground, const double eye_m[3], const double point_m[3],
+                    double height_m, double lifted_m[3])
 {
     lifted_m[0] = point_m[0];
     lifted_m[1] = point_m[1];
-    lifted_m[2] = height_m;
+    lifted_m[2] = height_m - fallen_m(ground, eye_m, point_m);
 }
 
-void sim_place_seen_from(const int32_t place_wu[3], const double point_m[3], double way_m[3])
+void sim_place_seen_from(const sim_ground *ground, const int32_t place_wu[3], const double eye_m[3],
+                         const double point_m[3], double way_m[3])
 {
-    for (int i = 0; i < 3; i++) way_m[i] = point_m[i] - (double)place_wu[i] / FF_WU_PER_METRE;
+    double place_m[3];
+    for (int i = 0; i < 3; i++) {
+        place_m[i] = (double)place_wu[i] / FF_WU_PER_METRE;
+        way_m[i] = point_m[i] - place_m[i];
+    }
+    way_m[2] += fallen_m(ground, eye_m, point_m) - fallen_m(ground, place_m, point_m);
 }

@@ -3,6 +3,7 @@
 #include "../../client/ground/ff_ground_frame.h"
 #include "../../platform/sys.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -121,10 +122,71 @@ static void frames_follow_any_camera(void **state)
     }
 }
 
+/* Elevation of a point seen from `eye_m` above a sphere: `away_m` along it, `height_m` above it. */
+static double true_elevation(double radius_m, double eye_m, double away_m, double height_m)
+{
+    double angle = away_m / radius_m;
+    return atan2((radius_m + height_m) * cos(angle) - radius_m - eye_m,
+                 (radius_m + height_m) * sin(angle));
+}
+
+static double metres(int64_t wu) { return (double)wu / FF_WU_PER_METRE; }
+
+/* How far one vertex, drawn from wherever a viewer is within 512 m of the frame's centre, lies from
+ * where a sphere has it, in radians; 0 for one further than 100 km away. */
+static double off_by(sys_random *random, double radius_m)
+{
+    ff_terrain_info info = terrain(3 * FF_WU_PER_METRE);
+    c3d_camera camera = { .pos_wu = { 98304 * FF_WU_PER_METRE, 98304 * FF_WU_PER_METRE, 0 } };
+    ff_ground_frame frame = { .set = 0 };
+    c3d_draw draw = { .flags = 0 };
+    c3d_vertex vertex[COUNT];
+    info.curve_q60 = (uint32_t)(ldexp(1, 60) / (2 * radius_m * FF_WU_PER_METRE) + 0.5);
+    info.hscale_q24 = 1u << (18 + sys_random_u32(random) % 6); /* ground up to 8 km */
+    ff_ground_frame_follow(&frame, &info, &camera);
+    for (int axis = 0; axis < 2; axis++)
+        camera.pos_wu[axis] += ((int32_t)(sys_random_u32(random) % 1001) - 500) * FF_WU_PER_METRE;
+    camera.pos_wu[2] = (int32_t)(sys_random_u32(random) % (12000 * FF_WU_PER_METRE));
+    assert_int_equal(ff_ground_frame_follow(&frame, &info, &camera), 0);
+    ff_ground_frame_draw(&frame, &info, &camera, &draw);
+    uint32_t at = sys_random_u32(random) % (1u << 24);
+    place(&frame, &info, sys_random_u32(random) % 4, 12, at % 4096, at / 4096, vertex);
+    const c3d_vertex *one = &vertex[sys_random_u32(random) % COUNT];
+    const int64_t flat_wu[2] = { draw.origin_wu[0] + (int64_t)one->x * draw.xy_scale_wu,
+                                 draw.origin_wu[1] + (int64_t)one->y * draw.xy_scale_wu };
+    double away_m = hypot(metres(flat_wu[0]), metres(flat_wu[1])),
+           z_m = metres(draw.origin_wu[2]) + ldexp((double)one->z * draw.z_scale_q16, -24),
+           height_m = metres(info.hoffset_wu) +
+                      ldexp((double)height_at((flat_wu[0] + camera.pos_wu[0]) / info.spacing_wu,
+                                              (flat_wu[1] + camera.pos_wu[1]) / info.spacing_wu) *
+                                info.hscale_q24,
+                            -24);
+    if (away_m > 100000 || away_m < 10) return 0;
+    return atan2(z_m, away_m) -
+           true_elevation(radius_m, metres(camera.pos_wu[2]), away_m, height_m);
+}
+
+/* The Earth as light shows it, refraction 0.13: within a quarter of a pixel of a picture 640 pixels
+ * and 60 degrees wide, up to 100 km away. */
+static void curved_ground_lies_where_a_sphere_has_it(void **state)
+{
+    (void)state;
+    const double focal_px = 320 / tan(30 * 3.14159265358979 / 180);
+    double worst_px = 0;
+    sys_random random;
+    sys_random_seed(&random, 3, 3);
+    for (int i = 0; i < 20000; i++)
+        worst_px = fmax(worst_px, fabs(off_by(&random, 6371000 / 0.87)) * focal_px);
+    print_message("at most %.3f px off\n", worst_px);
+    assert_true(worst_px < 0.25 && worst_px > 0.001);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(
-                                            far_nodes_lie_in_the_same_frame_as_near_ones),
-                                        cmocka_unit_test(frames_follow_any_camera) };
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(far_nodes_lie_in_the_same_frame_as_near_ones),
+        cmocka_unit_test(frames_follow_any_camera),
+        cmocka_unit_test(curved_ground_lies_where_a_sphere_has_it)
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

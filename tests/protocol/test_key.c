@@ -126,6 +126,7 @@ static void terrain_ranges(void **state)
     BAD(spacing_wu, 1u << 19);
     BAD(hscale_q24, 0);
     BAD(hscale_q24, 1u << 31);
+    BAD(curve_q60, FF_CURVE_MAX + 1);
     BAD(hoffset_wu, INT32_MAX);
     t = good;
     t.codec = FF_CODEC_COUNT;

@@ -32,6 +32,7 @@ static ff_terrain_info terrain(void)
                               .epsg = -1,
                               .origin_x_mm = INT64_MIN,
                               .origin_y_mm = INT64_MAX,
+                              .curve_q60 = FF_CURVE_MAX,
                               .checksum = UINT32_MAX };
 }
 
@@ -117,6 +118,7 @@ static void assert_same_terrain(const ff_terrain_info *a, const ff_terrain_info 
     assert_int_equal(a->samples_y, b->samples_y);
     assert_int_equal(a->spacing_wu, b->spacing_wu);
     assert_int_equal(a->hscale_q24, b->hscale_q24);
+    assert_int_equal(a->curve_q60, b->curve_q60);
     assert_int_equal(a->hoffset_wu, b->hoffset_wu);
     assert_int_equal(a->epsg, b->epsg);
     assert_true(a->origin_x_mm == b->origin_x_mm && a->origin_y_mm == b->origin_y_mm);
@@ -396,7 +398,7 @@ static void lengths_and_headers(void **state)
                   14, FF_ERR_FORMAT);
     /* tile 2^28 */
     assert_decode("\x02\x09\x01\x00\x01\x80\x80\x80\x80\x01\x00", 11, FF_ERR_RANGE);
-    assert_decode("\x41\x04\x03\x00\x00\x00", 6, FF_ERR_VERSION);
+    assert_decode("\x41\x04\x04\x00\x00\x00", 6, FF_ERR_VERSION);
 }
 
 static void ranges_hold_both_ways(void **state)

@@ -268,7 +268,7 @@ static void wild_indexes_are_out_of_range(void **state)
                      FF_ERR_NOT_FOUND);
 }
 
-#define SECTION_AT(number, field) (80 + 44 * (number) + (field))
+#define SECTION_AT(number, field) (84 + 44 * (number) + (field))
 
 /* Headers with a right checksum that lie: the section table's fields hold what a hostile writer
  * would like. */
@@ -279,10 +279,10 @@ static void lying_section_tables_are_refused(void **state)
         uint64_t value;
         int expected;
     } lies[] = {
-        { 76, 4, 0, FF_ERR_RANGE },
-        { 76, 4, 2, FF_ERR_RANGE },
-        { 76, 4, 49, FF_ERR_RANGE },
-        { 76, 4, UINT32_MAX, FF_ERR_RANGE },
+        { 80, 4, 0, FF_ERR_RANGE },
+        { 80, 4, 2, FF_ERR_RANGE },
+        { 80, 4, 49, FF_ERR_RANGE },
+        { 80, 4, UINT32_MAX, FF_ERR_RANGE },
         { SECTION_AT(0, 0), 2, FF_SECTION_TEXTURE, FF_ERR_RANGE },
         { SECTION_AT(1, 2), 2, 1, FF_ERR_RANGE },
         { SECTION_AT(1, 12), 8, 3, FF_ERR_RANGE },

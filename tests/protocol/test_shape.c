@@ -3,6 +3,7 @@
 #include "../../platform/sys.h"
 #include "../../protocol/shape/ff_shape.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -269,8 +270,83 @@ static void the_plane_has_one_frame_and_no_horizon(void **state)
     ff_shape_leave(&info, &here, place, to);
     assert_memory_equal(to, place, sizeof to);
     assert_int_equal(ff_shape_horizon_wu(&info, &here, place), INT32_MAX);
-    assert_int_equal(ff_shape_drop_wu(&info, 1 << 30), 0);
+    assert_int_equal(ff_shape_drop_wu(&info, 1 << 30, 0), 0);
     assert_int_equal(ff_shape_z_wu(&info, &here, place, (uint64_t)100 << 16), -1000 + 100 * 64);
+}
+
+/* ---- curved ground ---- */
+
+/* The square of the distance through the curvature, against double precision, near and far. */
+static void curved_ground_falls_away_with_the_square(void **state)
+{
+    (void)state;
+    ff_terrain_info info = terrain_of(3, 2);
+    sys_random random;
+    sys_random_seed(&random, 8, 8);
+    for (int i = 0; i < 100000; i++) {
+        info.curve_q60 = sys_random_u32(&random) % FF_CURVE_MAX + 1;
+        int64_t east = (int32_t)sys_random_u32(&random) >> sys_random_u32(&random) % 20,
+                north = (int32_t)sys_random_u32(&random) >> sys_random_u32(&random) % 20;
+        double drop = ((double)east * east + (double)north * north) *
+                      ldexp((double)info.curve_q60, -60),
+               found = ff_shape_drop_wu(&info, east, north);
+        if (drop >= INT32_MAX / 2) continue;
+        /* the square is taken in whole 2^31 */
+        assert_true(found <= drop + 1 && found >= drop - ldexp(info.curve_q60, -29) - 2);
+    }
+    assert_int_equal(ff_shape_drop_wu(&info, INT64_MAX, INT64_MIN), INT32_MAX / 2);
+}
+
+/* Beyond the horizon a line of sight to the highest ground has met the lowest; a little before it
+ * may not have. */
+static void nothing_is_seen_beyond_the_horizon(void **state)
+{
+    (void)state;
+    ff_terrain_info info = terrain_of(3, 2);
+    info.curve_q60 = 307486195; /* the Earth's, refraction 0.13 */
+    const double per_m = ldexp(info.curve_q60, -60) * FF_WU_PER_METRE;
+    for (int32_t height_m = 1; height_m < 40000; height_m *= 2) {
+        const int32_t place[3] = { 5000, -7, height_m * FF_WU_PER_METRE };
+        int64_t range_wu[2];
+        ff_terrain_range_wu(&info, range_wu);
+        double least_m = (double)range_wu[0] / FF_WU_PER_METRE,
+               most_m = (double)range_wu[1] / FF_WU_PER_METRE,
+               wanted_m = sqrt((height_m - least_m) / per_m) + sqrt((most_m - least_m) / per_m);
+        ff_frame here = ff_shape_frame(&info, place);
+        double found_m = (double)ff_shape_horizon_wu(&info, &here, place) / FF_WU_PER_METRE;
+        assert_true(found_m >= wanted_m && found_m < wanted_m * 1.001 + 100);
+    }
+}
+
+/* All ground of a node, seen from within the slack, lies in its box. */
+static void boxes_hold_curved_ground(void **state)
+{
+    (void)state;
+    ff_terrain_info info = terrain_of(40, 30);
+    const ff_frame world = { 0 };
+    sys_random random;
+    info.spacing_wu = 40 * FF_WU_PER_METRE;
+    info.curve_q60 = 307486195;
+    sys_random_seed(&random, 9, 9);
+    for (int i = 0; i < 20000; i++) {
+        ff_key key = ff_key_make(sys_random_u32(&random) % 1200, 1, sys_random_u32(&random) % 4);
+        const int32_t from[3] = { (int32_t)sys_random_u32(&random) >> 4,
+                                  (int32_t)sys_random_u32(&random) >> 4, 700000 };
+        const int64_t height_wu[2] = { -1000, 60000 };
+        ff_placed placed = ff_shape_put(&info, &world, key);
+        ff_box box = ff_shape_box(&info, key, &placed, height_wu, from);
+        int32_t at[3];
+        ff_shape_place(&info, key, &placed, sys_random_u32(&random) % 5,
+                       sys_random_u32(&random) % 5, 0, at);
+        int64_t slack[2];
+        for (int axis = 0; axis < 2; axis++)
+            slack[axis] = (int64_t)(sys_random_u32(&random) % (2 * FF_SHAPE_DROP_SLACK_WU)) -
+                          FF_SHAPE_DROP_SLACK_WU;
+        int64_t drop = ff_shape_drop_wu(&info, (int64_t)at[0] - from[0] + slack[0],
+                                        (int64_t)at[1] - from[1] + slack[1]);
+        assert_true(height_wu[0] - drop - from[2] >= box.lo[2]);
+        assert_true(height_wu[1] - drop - from[2] <= box.hi[2]);
+    }
 }
 
 static void tiles_cover_the_samples(void **state)
@@ -299,6 +375,9 @@ int main(void)
         cmocka_unit_test(points_are_found_in_their_tile),
         cmocka_unit_test(walks_cover_what_is_in_reach),
         cmocka_unit_test(the_plane_has_one_frame_and_no_horizon),
+        cmocka_unit_test(curved_ground_falls_away_with_the_square),
+        cmocka_unit_test(nothing_is_seen_beyond_the_horizon),
+        cmocka_unit_test(boxes_hold_curved_ground),
         cmocka_unit_test(tiles_cover_the_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

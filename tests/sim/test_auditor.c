@@ -354,6 +354,9 @@ static void rays_hit_where_steps_do(void **state)
     usual_ground(&bytes, &pack, &ground);
     sys_random_seed(&random, 5, 5);
     for (int i = 0; i < 400; i++) {
+        /* every other ray over ground that falls away 12 times as steeply as the Earth's, or more
+         */
+        ground.curve_per_m = i % 2 ? 8e-7 * (1 + i % 3) : 0;
         double from[3] = { uniform(&random, 0, 4096), uniform(&random, 0, 4096), 0 }, along[3],
                t = -1;
         from[2] = fmax(1600, sim_ground_height_m(&ground, from[0], from[1])) +
@@ -365,14 +368,16 @@ static void rays_hit_where_steps_do(void **state)
         hits += hit;
         for (double u = 0; u < (hit ? t - 1e-6 : 20000); u += 0.9) {
             double x = from[0] + u * along[0], y = from[1] + u * along[1],
-                   z = from[2] + u * along[2];
+                   z = from[2] + u * along[2] +
+                       sim_ground_drop_m(&ground, u * along[0], u * along[1]);
             if (x < 0 || y < 0 || x > 4096 || y > 4096) continue;
             if (z < sim_ground_height_m(&ground, x, y) - 1e-6)
                 fail_msg("ray %d is below the ground at %g, before %g", i, u, t);
         }
         if (hit) {
             double x = from[0] + t * along[0], y = from[1] + t * along[1];
-            assert_near(from[2] + t * along[2], sim_ground_height_m(&ground, x, y));
+            double drop_m = sim_ground_drop_m(&ground, t * along[0], t * along[1]);
+            assert_near(from[2] + t * along[2] + drop_m, sim_ground_height_m(&ground, x, y));
         }
     }
     assert_true(hits > 100 && hits < 400);

@@ -100,6 +100,17 @@ round_trip() { # round_trip RAW WxH BOUND OPTIONS...
 # ---- what must hold ----
 check "lossless round trip is exact" round_trip plain.r16 150x131 0
 codecs=$("$BAKE" plain.r16 --codec '?' -o OUT.ffp 2>&1 | sed -n 's/.*--codec: ? is not \(.*\)$/\1/p' | tr -d , | sed 's/ or / /')
+radius_of() { # radius_of WANTED RASTER OPTIONS...: of the sphere that falls away like the pack's ground, in whole metres, within 10
+    wanted=$1
+    shift
+    "$BAKE" "$@" --quiet -o curve.ffp && "$INFO" --json curve.ffp >curve.json && [ $(($(field effective_radius_m curve.json) - wanted)) -le 10 ] &&
+        [ $(($(field effective_radius_m curve.json) - wanted)) -ge -10 ]
+}
+check "ground falls away as on the Earth, with refraction" radius_of 7322998 plain.r16 --raw 150x131 --spacing 10
+check "with another refraction" radius_of 6371009 plain.r16 --raw 150x131 --spacing 10 --refraction 0
+check "flat ground does not" radius_of 0 plain.r16 --raw 150x131 --spacing 10 --flat
+gdal_translate -q -of VRT -a_srs '+proj=eqc +R=1737400 +units=m +no_defs' metric.asc moon.vrt
+check "on the Moon as on the Moon, where light goes straight" radius_of 1737400 moon.vrt
 check "codecs are told by name" test "$codecs" != "${codecs#raw deflate rice}"
 codec_trip() {
     round_trip plain.r16 150x131 0 --codec "$1" && "$INFO" trip.ffp | grep -q "^codec  *$1\$" && "$INFO" --json trip.ffp >codec.json &&

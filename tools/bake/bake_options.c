@@ -2,6 +2,7 @@
 
 #include "bake_say.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -117,7 +118,7 @@ static uint32_t processors(void)
 
 int bake_options_parse(bake_options *o, int argc, char **argv)
 {
-    *o = (bake_options){ .jobs = processors() };
+    *o = (bake_options){ .jobs = processors(), .refraction = NAN };
     bake_say_setup("farfield-bake", 0);
     int rc = sys_options_parse(&program, o, argc, argv);
     if (rc) return rc;

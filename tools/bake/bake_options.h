@@ -39,6 +39,10 @@ extern const sys_option_type bake_raw_option, bake_epsg_option, bake_power_two_o
            "takes the samples as they are") \
     OPTION(bake_power_two, densify, "densify", "N", "1", SYS_WHOLE(1, 64, ""), \
            "inserts N - 1 invented samples between neighbours") \
+    OPTION(sys_flag, flat, "flat", NULL, NULL, SYS_ANY, \
+           "the ground is a plane; default: it falls away as on its ellipsoid") \
+    OPTION(sys_real, refraction, "refraction", "K", NULL, SYS_REAL(-1, 0.99, ""), \
+           "how light bends with the ground; default: 0.13 on the Earth, else 0") \
     HEADING("Pack") \
     OPTION(sys_text, out_path, "output", "OUT.ffp", NULL, SYS_FLAGS(SYS_NEEDED | SYS_LETTER), \
            "the pack") \

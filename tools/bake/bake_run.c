@@ -2,6 +2,7 @@
 
 #include "../../protocol/shape/ff_shape.h"
 #include "../../platform/sys.h"
+#include "raster/bake_curve.h"
 #include "raster/bake_densify.h"
 #include "raster/bake_fill.h"
 #include "image/bake_image.h"
@@ -116,6 +117,7 @@ static int describe(bake *b)
     if (o->densify > 1) info->flags |= FF_TERRAIN_DENSIFIED;
     ff_shape_cover(info, width, height);
     describe_place(&b->ground, info);
+    info->curve_q60 = bake_curve_q60(o, &b->ground);
     int rc = ff_terrain_check(info);
     if (rc)
         return bake_fail("%u x %u samples of %g m in tiles of 2^%u do not make a terrain: %s",

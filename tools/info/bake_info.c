@@ -3,6 +3,7 @@
 #include "../../protocol/shape/ff_shape.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 
 #define INDEX_ENTRY_BYTES 8
@@ -59,6 +60,12 @@ static double per(uint64_t bytes, uint64_t count)
 
 static double metres(int64_t wu) { return (double)wu / FF_WU_PER_METRE; }
 
+/* Of the sphere that falls away alike when light goes straight; 0: flat. */
+static double radius_m(const ff_terrain_info *info)
+{
+    return info->curve_q60 ? ldexp(1, 59) / info->curve_q60 / FF_WU_PER_METRE : 0;
+}
+
 static void print_terrain(const ff_terrain_info *info)
 {
     double step = info->hscale_q24 / 16777216.0, spacing = metres(info->spacing_wu);
@@ -80,6 +87,11 @@ static void print_terrain(const ff_terrain_info *info)
     else
         printf("reference       none, origin");
     printf(" %.3f %.3f\n", (double)info->origin_x_mm / 1000, (double)info->origin_y_mm / 1000);
+    if (info->curve_q60)
+        printf("curvature       as of a sphere of %.0f km, refraction included\n",
+               radius_m(info) / 1000);
+    else
+        printf("curvature       none (flat)\n");
     if (info->texture_levels)
         printf("textures        %u x %u texels on levels 0 to %u\n", 1u << info->texture_log2,
                1u << info->texture_log2, info->texture_levels - 1);
@@ -132,9 +144,9 @@ static void print_terrain_json(const ff_terrain_info *info)
         step, metres(info->hoffset_wu), info->height_min, info->height_max, info->max_error);
     printf("\"epsg\": %d, \"origin_x_mm\": %" PRId64 ", \"origin_y_mm\": %" PRId64
            ", \"texture_log2\": %u, "
-           "\"texture_levels\": %u, \"checksum\": \"%08x\", ",
+           "\"texture_levels\": %u, \"effective_radius_m\": %.0f, \"checksum\": \"%08x\", ",
            info->epsg, info->origin_x_mm, info->origin_y_mm, info->texture_log2,
-           info->texture_levels, info->checksum);
+           info->texture_levels, radius_m(info), info->checksum);
 }
 
 void bake_info_print_json(const ff_pack *pack)
