@@ -17,7 +17,6 @@ FF_STATIC_ASSERT(sizeof(ff_client) + CLIENT_BYTES_MIN / 32 + FF_RECEIVED_MIN +
 FF_STATIC_ASSERT(IN_FLIGHT_LIMIT + FF_REQUESTS_QUEUED_MAX <= UINT16_MAX); /* a request's id */
 FF_STATIC_ASSERT(FF_QUALITY_DEPTH_MAX == FF_KEY_LEVEL_MAX + 1);
 FF_STATIC_ASSERT(FF_QUALITY_C_MAX <= INT32_MAX >> 8 && FF_QUALITY_ERROR_PX_MAX <= INT32_MAX >> 8);
-FF_STATIC_ASSERT((int64_t)100000 * METRES <= INT32_MAX);
 FF_STATIC_ASSERT(FF_PICTURE_SIDE_MAX <= UINT16_MAX && FF_FACE_SIZE_MAX <= UINT16_MAX);
 
 size_t ff_client_bytes_min(void) { return CLIENT_BYTES_MIN; }
@@ -31,7 +30,7 @@ static void default_quality(ff_quality *quality)
     if (quality->c_q8 <= 0) quality->c_q8 = 3 * 256;
     if (quality->error_px_q8 <= 0) quality->error_px_q8 = 2 * 256;
     if (quality->sigma_q8 <= 256) quality->sigma_q8 = 320;
-    if (quality->view_wu <= 0) quality->view_wu = 30000 * METRES;
+    if (quality->view_wu <= 0) quality->view_wu = INT32_MAX;
 }
 
 static void bound_quality(ff_quality *quality)
@@ -47,9 +46,7 @@ static void default_panorama(ff_panorama_desc *panorama, unsigned width)
     if (panorama->back_plane_wu <= 0) panorama->back_plane_wu = 7500 * METRES;
     if (panorama->back_plane_wu > FF_PANORAMA_BACK_WU_MAX)
         panorama->back_plane_wu = FF_PANORAMA_BACK_WU_MAX;
-    if (panorama->server_back_wu <= panorama->back_plane_wu)
-        panorama->server_back_wu = panorama->back_plane_wu < 100000 * METRES ? 100000 * METRES
-                                                                             : INT32_MAX;
+    if (panorama->server_back_wu <= panorama->back_plane_wu) panorama->server_back_wu = INT32_MAX;
     if (panorama->error_px_q8 <= 0) panorama->error_px_q8 = (int32_t)width * 128 / 20;
     if (!panorama->face_size) panorama->face_size = 256;
     if (!panorama->jpeg_quality || panorama->jpeg_quality > 100) panorama->jpeg_quality = 70;

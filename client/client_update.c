@@ -190,9 +190,9 @@ static void set_fog(const ff_client *client, c3d_frame *frame)
     int32_t horizon_wu = ff_shape_horizon_wu(&client->info, &view->frame, view->centre_wu),
             sight_wu = ff_client_quality(client).view_wu;
     if (client->panorama.shown >= 0 || (client->show & FF_SHOW_NO_FOG))
-        return; /* the join with the panorama must not show */
-    FF_ASSERT(sight_wu > 0 && horizon_wu > 0);
-    sight_wu = sight_wu > horizon_wu ? horizon_wu : sight_wu;
+        return;                         /* the join with the panorama must not show */
+    if (sight_wu >= horizon_wu) return; /* all is drawn that can be seen: nothing to hide */
+    FF_ASSERT(sight_wu > 0);
     frame->fog_start_wu = sight_wu / 2;
     frame->fog_end_wu = sight_wu;
     frame->fog_colour = FF_SKY_HORIZON_COLOUR;

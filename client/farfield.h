@@ -50,7 +50,7 @@ typedef struct ff_panorama_desc {
     /* the client draws ground itself up to here, and here a panorama begins: z_back_c = z_front_s
      * of Hybrid; default 7500 m */
     int32_t back_plane_wu;
-    int32_t server_back_wu; /* how far a panorama reaches: z_back_s; default 100 km */
+    int32_t server_back_wu; /* how far a panorama reaches: z_back_s; default: to the horizon */
     /* epsilon of Hybrid eq. 6, 7 and 13 in pixels of the screen, default 5 % of its half-width */
     int32_t error_px_q8;
     uint16_t face_size;   /* default 256 */

@@ -41,7 +41,8 @@ typedef struct ff_quality {
     /* children of a node are kept until f exceeds sigma (> 1.0); Listing 1's caching threshold */
     int32_t sigma_q8;
     /* ground further than this (largest of |dx|,|dy|,|dz| to `centre_wu`) is neither drawn nor
-     * asked for */
+     * asked for; nor is what lies beyond the horizon (ff_shape_horizon_wu). INT32_MAX: all that can
+     * be seen, the client's default */
     int32_t view_wu;
     /* ground nearer than this (measured alike) is not split for its own sake: a panorama leaves it
      * out; 0: none */

@@ -32,7 +32,8 @@ static void complete(fly_options *options)
     (void)sim_link_parse(options->link_text, &options->link);
     options->link.way[SIM_DOWN].trace = options->down_trace;
     options->link.way[SIM_UP].trace = options->up_trace;
-    options->quality.view_wu = (int32_t)(options->view_m * FF_WU_PER_METRE);
+    options->quality.view_wu = options->view_m > 0 ? (int32_t)(options->view_m * FF_WU_PER_METRE)
+                                                   : INT32_MAX;
     (void)sim_quality_read(options->quality_text, &options->quality);
     (void)sim_balance_read(options->balance_text, &options->balance);
     options->panorama =

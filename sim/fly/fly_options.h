@@ -86,8 +86,8 @@ extern const sys_option_type fly_events_option;
            "where the panorama takes over; default 7500") \
     OPTION(sys_whole, face_texels, "face", "N", NULL, FLY_TEXELS, \
            "a panorama's face each way; default 256; a larger one needs more --memory") \
-    OPTION(sys_real, view_m, "view", "M", "30000", FLY_DISTANCE, \
-           "how far ground is drawn without panorama") \
+    OPTION(sys_real, view_m, "view", "M", NULL, FLY_DISTANCE, \
+           "how far ground is drawn without panorama; default: to the horizon") \
     SIM_PLAIN_ARRAYS_OPTION(OPTION) \
     HEADING("The picture") \
     OPTION(sys_word, backend, "backend", "KIND", "gl", SYS_WORDS(fly_backend_words), \

@@ -19,7 +19,7 @@ static int fail(const char *what) { return sys_options_fail(&program, "%s", what
 
 int handheld_options_parse(handheld_options *options, int argc, char **argv)
 {
-    *options = (handheld_options){ .quality = { .view_wu = 30000 * FF_WU_PER_METRE } };
+    *options = (handheld_options){ .quality = { .view_wu = INT32_MAX } };
     int rc = sys_options_parse(&program, options, argc, argv);
     if (rc) return rc;
     (void)sim_quality_read(options->quality_text, &options->quality);

@@ -6,8 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#define KILOMETRE_WU (1000 * FF_WU_PER_METRE)
-#define PLACE_M_MAX  8e6 /* 32 bits of 1/256 m */
+#define PLACE_M_MAX 8e6 /* 32 bits of 1/256 m */
 
 static const char *const backend_words[] = { "gles1", "gl", "soft", NULL };
 static const char *const no_link_words[] = { "none", NULL };
@@ -69,7 +68,7 @@ int view_options_parse(view_options *o, int argc, char **argv)
 {
     *o = (view_options){ .use_panorama = SYS_UNSET,
                          .at = { .above_wu = VIEW_START_ABOVE_WU },
-                         .quality = { .view_wu = 30 * KILOMETRE_WU } };
+                         .quality = { .view_wu = INT32_MAX } };
     int rc = sys_options_parse(&program, o, argc, argv);
     if (rc) return rc;
     (void)sim_quality_read(o->quality_text, &o->quality);
