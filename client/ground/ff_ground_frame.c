@@ -76,14 +76,26 @@ void ff_ground_frame_vertices(const ff_ground_frame *frame, const ff_terrain_inf
     unsigned level = ff_key_level(drawn->key), shift = info->tile_log2 - info->node_log2 - level;
     int32_t west = samples_to(frame, info, drawn, 0), south = samples_to(frame, info, drawn, 1);
     int32_t lift = 32768 - base_height(info);
+    ff_extent extent = ff_shape_extent(info, drawn->key);
+    int32_t columns = (int32_t)extent.columns, rows = (int32_t)extent.rows;
     FF_ASSERT(level < ff_terrain_levels(info) && count <= FF_NODE_HEIGHTS_MAX);
     for (uint32_t i = 0; i < count; i++) {
         FF_ASSERT(vertices[i].x <= 1 << info->node_log2 && vertices[i].y <= 1 << info->node_log2);
-        vertices[i].x = west + (vertices[i].x << shift);
-        vertices[i].y = south + (vertices[i].y << shift);
+        int32_t column = vertices[i].x << shift, row = vertices[i].y << shift;
+        vertices[i].x = west + (column < columns ? column : columns);
+        vertices[i].y = south + (row < rows ? row : rows);
         vertices[i].z += lift;
     }
     if (info->curve_q60) bend(frame, info, vertices, count);
+}
+
+void ff_ground_frame_last(const ff_terrain_info *info, const ff_drawn *drawn, c3d_draw *draw)
+{
+    unsigned cell_log2 = info->tile_log2 - info->node_log2 - ff_key_level(drawn->key);
+    ff_extent extent = ff_shape_extent(info, drawn->key);
+    FF_ASSERT(extent.columns > 0 && extent.rows > 0);
+    draw->tex_last_q16[0] = (uint32_t)(((uint64_t)extent.columns << 16) >> cell_log2);
+    draw->tex_last_q16[1] = (uint32_t)(((uint64_t)extent.rows << 16) >> cell_log2);
 }
 
 void ff_ground_frame_draw(const ff_ground_frame *frame, const ff_terrain_info *info,

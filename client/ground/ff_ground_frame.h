@@ -27,9 +27,14 @@ typedef struct ff_ground_frame {
 int ff_ground_frame_follow(ff_ground_frame *frame, const ff_terrain_info *info,
                            const c3d_camera *camera);
 
-/* Moves ff_tree_vertices' output, `count` vertices of `drawn`, into the frame. */
+/* Moves ff_tree_vertices' output, `count` vertices of `drawn`, into the frame. Columns and rows
+ * beyond the terrain's last sample come to lie on it: of cells that are all padding nothing is
+ * left, and of one that the edge crosses the part inside. What two nodes share they move alike. */
 void ff_ground_frame_vertices(const ff_ground_frame *frame, const ff_terrain_info *info,
                               const ff_drawn *drawn, c3d_vertex *vertices, uint32_t count);
+
+/* Where a texture ends on such a node, for its draw call. */
+void ff_ground_frame_last(const ff_terrain_info *info, const ff_drawn *drawn, c3d_draw *draw);
 
 /* Fills what all calls that draw them have in common: origin, scales and the grid's columns. */
 void ff_ground_frame_draw(const ff_ground_frame *frame, const ff_terrain_info *info,

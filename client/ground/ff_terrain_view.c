@@ -179,6 +179,7 @@ void ff_terrain_view_draw(ff_terrain_view *view, const ff_drawn *list, uint32_t 
         if (!draw.mesh.id && free_one_mesh(view)) draw.mesh = make_mesh(view, drawn);
         if (entry) entry->mesh = draw.mesh;
         if (view->textures) ff_textures_lay(view->textures, drawn->key, &draw);
+        if (draw.flags & C3D_DRAW_TEXTURED) ff_ground_frame_last(view->info, drawn, &draw);
         draw_strips(view, drawn, draw);
         if (show) ff_show_over(view, drawn, &draw, show);
         if (!entry && draw.mesh.id) c3d_mesh_free(view->device, draw.mesh);

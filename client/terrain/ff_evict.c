@@ -17,6 +17,7 @@ static int has_leaf_family(const ff_tree *tree, const ff_node *node)
 {
     if (!ff_node_has_children(node)) return 0;
     for (unsigned q = 0; q < 4; q++) {
+        if (node->child[q] == FF_SLOT_NONE) continue;
         FF_ASSERT(node->child[q] < tree->node_count);
         if (ff_node_has_children(&tree->node[node->child[q]])) return 0;
     }
@@ -34,13 +35,14 @@ static uint32_t split_worth(const ff_tree *tree, const ff_node *node)
     return ff_tile_active(tree, ff_key_tile(node->key)) ? value : value >> IDLE_SHIFT;
 }
 
-/* What a leaf family, the four children of `parent`, is worth: the value of splitting `parent`, or
+/* What a leaf family, the children of `parent`, is worth: the value of splitting `parent`, or
  * of splitting a member when that is more, because a member's refinement is of no use without it.
  */
 static uint32_t family_worth(const ff_tree *tree, const ff_node *parent)
 {
     uint32_t worth = split_worth(tree, parent);
     for (unsigned q = 0; q < 4; q++) {
+        if (parent->child[q] == FF_SLOT_NONE) continue;
         const ff_node *child = &tree->node[parent->child[q]];
         FF_ASSERT(child->flags & FF_NODE_HELD && child->key == ff_key_child(parent->key, q));
         if (child->flags & FF_NODE_WANTED && child->value > worth) worth = child->value;
@@ -70,6 +72,21 @@ uint32_t ff_evict_candidates(const ff_tree *tree, uint64_t *keys)
     }
     FF_ASSERT(count <= tree->node_count - tree->free_count);
     return count;
+}
+
+int ff_room_take(const ff_tree *tree, ff_room *room, const ff_node *node)
+{
+    uint32_t limit = ff_evict_limit(tree, node), needed = ff_family_size(tree, node->key);
+    FF_ASSERT(room->next <= room->victims && room->free <= tree->node_count);
+    while (room->free < needed && room->next < room->victims &&
+           room->victim[room->next] >> FF_SLOT_BITS < limit) {
+        uint32_t slot = (uint32_t)room->victim[room->next++] & (FF_NODES_MAX - 1);
+        uint32_t family = ff_node_children(&tree->node[slot]);
+        room->free += family ? family : 1;
+    }
+    if (room->free < needed) return 0;
+    room->free -= needed;
+    return 1;
 }
 
 /* Drops the least valuable thing worth less than `below`, sparing `keep` and the family it is
@@ -106,9 +123,10 @@ static int drop_one(ff_tree *tree, uint32_t keep, uint64_t below)
 
 int ff_evict_for_children(ff_tree *tree, uint32_t keep)
 {
-    uint32_t limit = ff_evict_limit(tree, &tree->node[keep]);
+    uint32_t limit = ff_evict_limit(tree, &tree->node[keep]),
+             needed = ff_family_size(tree, tree->node[keep].key);
     FF_ASSERT(!ff_node_has_children(&tree->node[keep]));
-    while (tree->free_count < 4) {
+    while (tree->free_count < needed) {
         if (!tree->has_view || !drop_one(tree, keep, limit)) return 0;
     }
     return 1;

@@ -11,7 +11,6 @@ typedef struct foresight {
     ff_tree ahead;
     ff_wish *list;
     uint32_t capacity, count;
-    uint32_t victims, next_victim, free;
 } foresight;
 
 static void note(foresight *f, ff_key key, enum ff_kind kind, uint32_t priority)
@@ -51,22 +50,6 @@ static void foresee_roots(const ff_tree *tree, foresight *f)
         ff_tile_box(&f->ahead, tile, &there);
         if (comes_into_view(tree, f, &here, &there)) note(f, root, FF_KIND_ROOT, FF_VALUE_ONE);
     }
-}
-
-/* 1 when the pool would find room for the children of `node`: four free slots, or a victim that is
- * worth less (ff_evict.c). */
-static int takes_room(const ff_tree *tree, foresight *f, const ff_node *node)
-{
-    FF_ASSERT(f->free <= tree->free_count && f->next_victim <= f->victims);
-    if (f->free >= 4) {
-        f->free -= 4;
-        return 1;
-    }
-    if (f->next_victim == f->victims ||
-        tree->sort[f->next_victim] >> FF_SLOT_BITS >= ff_evict_limit(tree, node))
-        return 0;
-    f->next_victim++;
-    return 1;
 }
 
 static void foresee_children_of(const ff_tree *tree, foresight *f, const ff_node *node)
@@ -111,7 +94,8 @@ static void foresee_tiles(const ff_tree *tree, foresight *f)
                 continue;
             }
             FF_ASSERT(depth + 4 <= sizeof stack / sizeof stack[0]);
-            for (unsigned q = 0; q < 4; q++) stack[depth++] = node->child[q];
+            for (unsigned q = 0; q < 4; q++)
+                if (node->child[q] != FF_SLOT_NONE) stack[depth++] = node->child[q];
         }
     }
 }
@@ -131,19 +115,19 @@ uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], int32_t y
     foresee_cut(tree, &f);
     foresee_tiles(tree, &f);
 
-    f.free = tree->free_count;
-    if (f.free < 4 * f.count) {
-        f.victims = ff_evict_candidates(tree, tree->sort);
-        ff_sort_keys(tree->sort, f.victims);
+    ff_room room = { tree->sort, 0, 0, tree->free_count };
+    if (room.free < 4 * f.count) {
+        room.victims = ff_evict_candidates(tree, tree->sort);
+        ff_sort_keys(tree->sort, room.victims);
     }
     uint32_t kept = 0;
     for (uint32_t i = 0; i < f.count; i++) {
         const ff_wish *wish = &list[i];
         FF_ASSERT((ff_tree_find(tree, wish->key) == FF_SLOT_NONE) == (wish->kind == FF_KIND_ROOT));
-        int room = wish->kind == FF_KIND_REFINEMENT
-                       ? takes_room(tree, &f, &tree->node[ff_tree_find(tree, wish->key)])
-                       : f.free > 0;
-        if (room) list[kept++] = *wish;
+        int fits = wish->kind == FF_KIND_REFINEMENT
+                       ? ff_room_take(tree, &room, &tree->node[ff_tree_find(tree, wish->key)])
+                       : room.free > 0;
+        if (fits) list[kept++] = *wish;
     }
     return kept;
 }

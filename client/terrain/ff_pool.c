@@ -76,6 +76,15 @@ void ff_tree_reshade_beside(ff_tree *tree, ff_key key)
     }
 }
 
+uint32_t ff_family_size(const ff_tree *tree, ff_key parent)
+{
+    uint32_t count = 0;
+    for (uint32_t q = 0; q < 4; q++)
+        count += ff_shape_has_ground(&tree->info, ff_key_child(parent, q)) != 0;
+    FF_ASSERT(count > 0); /* of a node with ground */
+    return count;
+}
+
 static void give_slot(ff_tree *tree, uint32_t slot)
 {
     ff_node *node = &tree->node[slot];
@@ -97,6 +106,7 @@ static void give_slot(ff_tree *tree, uint32_t slot)
 void ff_tree_drop_children(ff_tree *tree, ff_node *parent)
 {
     for (unsigned q = 0; q < 4; q++) {
+        if (parent->child[q] == FF_SLOT_NONE) continue;
         FF_ASSERT(tree->node[parent->child[q]].parent == ff_slot_of(tree, parent));
         give_slot(tree, parent->child[q]);
         parent->child[q] = FF_SLOT_NONE;

@@ -93,8 +93,9 @@ static uint32_t push_active_roots(ff_tree *tree)
 
 static uint32_t push_children(ff_tree *tree, const ff_node *node, uint32_t count)
 {
-    FF_ASSERT(count + 4 <= tree->node_count - tree->free_count); /* a node is pushed once */
-    for (unsigned q = 0; q < 4; q++) tree->order[count++] = node->child[q];
+    for (unsigned q = 0; q < 4; q++)
+        if (node->child[q] != FF_SLOT_NONE) tree->order[count++] = node->child[q];
+    FF_ASSERT(count <= tree->node_count - tree->free_count); /* a node is pushed once */
     return count;
 }
 
@@ -152,7 +153,7 @@ static void split_cut(ff_tree *tree)
         if (!(tree->node[tree->order[i]].flags & FF_NODE_SPLIT))
             tree->order[leaves++] = tree->order[i];
     }
-    FF_ASSERT((count - leaves) * 4 <= count); /* who splits has pushed four */
+    FF_ASSERT(leaves > 0 || count == 0); /* who splits has pushed children */
     tree->cut_count = leaves;
 }
 
@@ -169,13 +170,16 @@ static void fill_drawn(const ff_tree *tree, uint32_t slot, unsigned coarser, ff_
     FF_ASSERT(drawn->cell_wu > 0);
 }
 
-/* Triangles of a node's strips (ff_strips.h), degenerate ones not counted. */
-static uint32_t triangles_of(const ff_tree *tree, unsigned coarser)
+/* Triangles of a node's strips (ff_strips.h), degenerate ones not counted: those of padding are. */
+static uint32_t triangles_of(const ff_tree *tree, const ff_drawn *drawn)
 {
-    uint32_t n = 1u << tree->info.node_log2, count = 2 * n * n;
-    FF_ASSERT(coarser < 1u << FF_SIDE_COUNT);
+    ff_extent cells = ff_drawn_cells(tree, drawn->key);
+    uint32_t count = 2 * cells.columns * cells.rows;
+    FF_ASSERT(drawn->coarser < 1u << FF_SIDE_COUNT);
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
-        if (coarser >> side & 1u) count -= n / 2;
+        uint32_t along = side == FF_SIDE_SOUTH || side == FF_SIDE_NORTH ? cells.columns
+                                                                        : cells.rows;
+        if (drawn->coarser >> side & 1u) count -= along / 2;
     }
     return count;
 }
@@ -184,7 +188,7 @@ static void count_drawn(ff_tree *tree, const ff_drawn *drawn, uint64_t distance)
 {
     uint32_t error_q8 = ff_projected_error_q8(tree, drawn->node, distance);
     if (error_q8 > tree->stats.error_px_q8) tree->stats.error_px_q8 = error_q8;
-    tree->stats.triangles += triangles_of(tree, drawn->coarser);
+    tree->stats.triangles += triangles_of(tree, drawn);
     tree->stats.stitched += drawn->coarser != 0;
     FF_ASSERT(tree->stats.stitched <= tree->drawn_count);
 }

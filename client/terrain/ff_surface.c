@@ -20,8 +20,15 @@ static size_t side_index(enum ff_side side, uint32_t along, uint32_t depth, uint
     }
 }
 
+/* The height beyond a rim that gives it the slope of the two cells inside. */
+static uint16_t beyond(int32_t rim, int32_t inside, int32_t further)
+{
+    int32_t height = rim + inside - further;
+    return (uint16_t)(height < 0 ? 0 : height > UINT16_MAX ? UINT16_MAX : height);
+}
+
 /* Adds a row beyond a side: the neighbour's first row inside when a neighbour of the same level is
- * held, else heights that give the rim the slope of the first two cells. */
+ * held, else heights that go on as the ground inside does. */
 static void frame_side(const ff_tree *tree, const ff_drawn *drawn, enum ff_side side,
                        uint16_t *framed)
 {
@@ -37,10 +44,26 @@ static void frame_side(const ff_tree *tree, const ff_drawn *drawn, enum ff_side 
                                     samples)];
             continue;
         }
-        int32_t beyond = drawn->heights[side_index(side, along, 0, last, samples)] +
-                         drawn->heights[side_index(side, along, 1, last, samples)] -
-                         drawn->heights[side_index(side, along, 2, last, samples)];
-        *out = (uint16_t)(beyond < 0 ? 0 : beyond > UINT16_MAX ? UINT16_MAX : beyond);
+        *out = beyond(drawn->heights[side_index(side, along, 0, last, samples)],
+                      drawn->heights[side_index(side, along, 1, last, samples)],
+                      drawn->heights[side_index(side, along, 2, last, samples)]);
+    }
+}
+
+/* Where the ground ends inside the node, heights beyond its last column and row go on likewise: the
+ * padding would make its rim level. */
+static void frame_edge(const ff_tree *tree, const ff_drawn *drawn, uint16_t *framed)
+{
+    uint32_t samples = ff_node_side(&tree->info), stride = samples + 2;
+    ff_extent drawn_cells = ff_drawn_cells(tree, drawn->key);
+    uint32_t column = drawn_cells.columns + 1, row = drawn_cells.rows + 1;
+    for (uint32_t i = 1; column < samples && i <= samples; i++) {
+        uint16_t *rim = framed + i * stride + column;
+        rim[1] = beyond(rim[0], *(rim - 1), *(rim - 2));
+    }
+    for (uint32_t i = 1; row < samples && i <= samples; i++) {
+        uint16_t *rim = framed + row * stride + i;
+        rim[stride] = beyond(rim[0], *(rim - stride), *(rim - 2 * stride));
     }
 }
 
@@ -53,6 +76,7 @@ static void frame_heights(const ff_tree *tree, const ff_drawn *drawn, uint16_t *
                samples * sizeof *framed);
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++)
         frame_side(tree, drawn, (enum ff_side)side, framed);
+    frame_edge(tree, drawn, framed);
 }
 
 void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3d_vertex *out)
@@ -79,15 +103,24 @@ typedef struct grid_point {
     int64_t x, y;
 } grid_point;
 
+/* A node's heights as they are drawn: columns and rows beyond `last` lie on it. */
+typedef struct drawn_grid {
+    const uint16_t *heights;
+    unsigned side;
+    grid_point last;
+} drawn_grid;
+
+static int64_t least(int64_t a, int64_t b) { return a < b ? a : b; }
+
 /* Heights of a triangle weighted by the areas opposite its vertices; 0 when the point lies
  * outside. */
-static int height_in_triangle(const uint16_t *heights, unsigned side, const uint16_t triangle[3],
-                              grid_point at, uint64_t *height_q16)
+static int height_in_triangle(const drawn_grid *grid, const uint16_t triangle[3], grid_point at,
+                              uint64_t *height_q16)
 {
     grid_point corner[3];
     for (unsigned i = 0; i < 3; i++) {
-        corner[i].x = (int64_t)(triangle[i] % side) << 16;
-        corner[i].y = (int64_t)(triangle[i] / side) << 16;
+        corner[i].x = least((int64_t)(triangle[i] % grid->side) << 16, grid->last.x);
+        corner[i].y = least((int64_t)(triangle[i] / grid->side) << 16, grid->last.y);
     }
     int64_t area = 0, sum = 0;
     for (unsigned i = 0; i < 3; i++) {
@@ -95,30 +128,30 @@ static int height_in_triangle(const uint16_t *heights, unsigned side, const uint
         int64_t weight = (a->x - at.x) * (b->y - at.y) - (b->x - at.x) * (a->y - at.y);
         if (weight < 0) return 0;
         area += weight;
-        sum += weight * heights[triangle[i]];
+        sum += weight * grid->heights[triangle[i]];
     }
-    FF_ASSERT(area >> 16 > 0);
-    *height_q16 = (uint64_t)(sum / (area >> 16));
+    if (area == 0) return 0; /* of padding */
+    *height_q16 = ((uint64_t)(sum / area) << 16) + ((uint64_t)(sum % area) << 16) / (uint64_t)area;
     FF_ASSERT(*height_q16 <= (uint64_t)UINT16_MAX << 16);
     return 1;
 }
 
 /* Cells of FULL and INNER: two triangles, diagonal from south-west to north-east. */
-static uint64_t height_in_cell(const uint16_t *heights, unsigned side, unsigned column,
-                               unsigned row, grid_point at)
+static uint64_t height_in_cell(const drawn_grid *grid, unsigned column, unsigned row, grid_point at)
 {
+    unsigned side = grid->side;
     uint16_t south_west = (uint16_t)(row * side + column),
              north_east = (uint16_t)(south_west + side + 1);
     uint16_t below[3] = { south_west, (uint16_t)(south_west + 1), north_east };
     uint16_t above[3] = { south_west, north_east, (uint16_t)(south_west + side) };
     uint64_t height_q16 = 0;
     FF_ASSERT(column + 1 < side && row + 1 < side);
-    if (!height_in_triangle(heights, side, below, at, &height_q16))
-        (void)height_in_triangle(heights, side, above, at, &height_q16);
+    if (!height_in_triangle(grid, below, at, &height_q16))
+        (void)height_in_triangle(grid, above, at, &height_q16);
     return height_q16;
 }
 
-static uint64_t height_in_sides(const ff_tree *tree, const uint16_t *heights, unsigned coarser,
+static uint64_t height_in_sides(const ff_tree *tree, const drawn_grid *grid, unsigned coarser,
                                 grid_point at)
 {
     uint16_t triangle[2 << FF_NODE_LOG2_MAX][3];
@@ -128,9 +161,7 @@ static uint64_t height_in_sides(const ff_tree *tree, const uint16_t *heights, un
         unsigned count = ff_side_triangles(tree->info.node_log2, (enum ff_side)side,
                                            coarser >> side & 1u, triangle);
         for (unsigned i = 0; i < count; i++) {
-            if (height_in_triangle(heights, ff_node_side(&tree->info), triangle[i], at,
-                                   &height_q16))
-                return height_q16;
+            if (height_in_triangle(grid, triangle[i], at, &height_q16)) return height_q16;
         }
     }
     FF_ASSERT(!"the sides of a node cover its rim");
@@ -139,17 +170,22 @@ static uint64_t height_in_sides(const ff_tree *tree, const uint16_t *heights, un
 
 static uint64_t height_in_node(const ff_tree *tree, const ff_node *node, grid_point at)
 {
-    unsigned side = ff_node_side(&tree->info), last = side - 2;
-    const uint16_t *heights = tree->heights + ff_slot_of(tree, node) * ff_heights_per_node(tree);
-    FF_ASSERT(at.x >> 16 <= side - 1 && at.y >> 16 <= side - 1);
-    unsigned column = (unsigned)(at.x >> 16), row = (unsigned)(at.y >> 16);
-    column = column > last ? last : column;
-    row = row > last ? last : row;
+    unsigned side = ff_node_side(&tree->info), last = side - 2,
+             cell_log2 = tree->info.tile_log2 - tree->info.node_log2 - ff_key_level(node->key);
+    ff_extent extent = ff_shape_extent(&tree->info, node->key);
+    const drawn_grid grid = { .heights = tree->heights +
+                                         ff_slot_of(tree, node) * ff_heights_per_node(tree),
+                              .side = side,
+                              .last = { ((int64_t)extent.columns << 16) >> cell_log2,
+                                        ((int64_t)extent.rows << 16) >> cell_log2 } };
+    FF_ASSERT(at.x <= grid.last.x && at.y <= grid.last.y);
+    unsigned column = (unsigned)(least(at.x, grid.last.x - 1) >> 16),
+             row = (unsigned)(least(at.y, grid.last.y - 1) >> 16);
 
     int on_rim = column == 0 || row == 0 || column == last || row == last;
     unsigned coarser = on_rim ? ff_coarser_mask(tree, node) : 0;
-    if (coarser) return height_in_sides(tree, heights, coarser, at);
-    return height_in_cell(heights, side, column, row, at);
+    if (coarser) return height_in_sides(tree, &grid, coarser, at);
+    return height_in_cell(&grid, column, row, at);
 }
 
 /* The drawn node below a root over which a spot lies; *at is the spot in its grid. */
@@ -161,7 +197,9 @@ static const ff_node *node_at(const ff_tree *tree, const ff_node *node, const ff
              half = 1u << (15 + tree->info.tile_log2);
     for (; node->flags & FF_NODE_SPLIT; half >>= 1) {
         FF_ASSERT(ff_node_has_children(node));
-        unsigned east = column >= half, north = row >= half;
+        /* the last sample may lie in the middle: then nothing is held beyond it */
+        unsigned east = column >= half && node->child[1] != FF_SLOT_NONE,
+                 north = row >= half && node->child[2] != FF_SLOT_NONE;
         column -= east ? half : 0;
         row -= north ? half : 0;
         node = &tree->node[node->child[2 * north + east]];

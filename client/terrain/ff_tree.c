@@ -146,11 +146,12 @@ int ff_tree_deliver_children(ff_tree *tree, ff_key key, const ff_residuals *resi
         tree->stats.pool_full++;
         return FF_ERR_FULL;
     }
-    FF_ASSERT(tree->free_count >= 4 && tree->node[slot].key == key); /* it was spared itself */
+    FF_ASSERT(tree->node[slot].key == key); /* it was spared itself */
     int rc = ff_reconstruct_refinement(&tree->info, heights_of(tree, slot), residuals,
                                        tree->refined);
     if (rc != FF_OK) return rc;
     for (uint32_t q = 0; q < 4; q++) {
+        if (!ff_shape_has_ground(&tree->info, ff_key_child(key, q))) continue;
         uint32_t child = ff_tree_take_slot(tree, ff_key_child(key, q), slot);
         ff_refined_child(&tree->info, tree->refined, q, heights_of(tree, child));
         measure_heights(tree, child, residuals->child_error[q]);

@@ -10,6 +10,7 @@
 #define FF_SLOT_BITS  20
 #define FF_LEVELS_MAX (FF_KEY_LEVEL_MAX + 1u)
 FF_STATIC_ASSERT(FF_NODES_MAX == 1u << FF_SLOT_BITS && FF_SLOT_NONE >= FF_NODES_MAX);
+FF_STATIC_ASSERT(FF_SLOT_NONE == UINT32_MAX); /* so only four of them have all bits in common */
 
 /* Value of splitting a node, Q16: 1/f, above 1.0 the measure asks for it. Saturates. */
 #define FF_VALUE_ONE 65536u
@@ -30,9 +31,10 @@ struct ff_node {
     uint32_t list_next; /* roots: next root */
     uint32_t want_next; /* next wanted node of the same level */
     uint32_t parent;
-    uint32_t child[4]; /* all four or, child[0] being FF_SLOT_NONE, none */
-    ff_placed placed;  /* in the last selection's frame */
-    uint32_t value;    /* valid while FF_NODE_WANTED */
+    /* all that have ground, or none; FF_SLOT_NONE in the other quadrants */
+    uint32_t child[4];
+    ff_placed placed; /* in the last selection's frame */
+    uint32_t value;   /* valid while FF_NODE_WANTED */
     uint32_t user;
     uint16_t height_min, height_max, height_mean;
     uint8_t error_code;
@@ -82,8 +84,26 @@ static inline size_t ff_heights_per_node(const ff_tree *tree)
 }
 static inline int ff_node_has_children(const ff_node *node)
 {
-    FF_ASSERT((node->child[0] == FF_SLOT_NONE) == (node->child[3] == FF_SLOT_NONE));
-    return node->child[0] != FF_SLOT_NONE;
+    return (node->child[0] & node->child[1] & node->child[2] & node->child[3]) != FF_SLOT_NONE;
+}
+static inline uint32_t ff_node_children(const ff_node *node)
+{
+    uint32_t count = 0;
+    for (unsigned q = 0; q < 4; q++) count += node->child[q] != FF_SLOT_NONE;
+    return count;
+}
+/* Slots that the children of a node take: those that are not padding. */
+uint32_t ff_family_size(const ff_tree *tree, ff_key parent);
+
+/* A node's columns and rows of cells that have ground: the last ones may end inside the cell. */
+static inline ff_extent ff_drawn_cells(const ff_tree *tree, ff_key key)
+{
+    unsigned cell_log2 = tree->info.tile_log2 - tree->info.node_log2 - ff_key_level(key);
+    ff_extent extent = ff_shape_extent(&tree->info, key);
+    FF_ASSERT(extent.columns > 0 && extent.rows > 0);
+    extent.columns = ((extent.columns - 1) >> cell_log2) + 1;
+    extent.rows = ((extent.rows - 1) >> cell_log2) + 1;
+    return extent;
 }
 
 #define FF_COARSER_UNKNOWN 0xFFu /* ff_drawn.coarser of a node that is not seen */
@@ -99,13 +119,20 @@ void ff_tree_drop_children(ff_tree *tree, ff_node *parent);
 void ff_tree_drop_root(ff_tree *tree, ff_node *root);
 
 /* ff_evict.c */
-/* Make room for four children of `keep`, or for a root, by dropping what is worth less. 1 when
+/* Make room for the children of `keep`, or for a root, by dropping what is worth less. 1 when
  * there is room. */
 int ff_evict_for_children(ff_tree *tree, uint32_t keep);
 int ff_evict_for_root(ff_tree *tree, uint32_t tile);
 /* Sort keys (value << FF_SLOT_BITS | slot) of all that may be dropped, unsorted: parents of leaf
  * families, idle roots. */
 uint32_t ff_evict_candidates(const ff_tree *tree, uint64_t *keys);
+/* The room that a full pool would make: its free slots, then victims, the least valuable first. */
+typedef struct ff_room {
+    const uint64_t *victim; /* sorted candidates */
+    uint32_t victims, next, free;
+} ff_room;
+/* Takes room for the children of `node` out of it. 1 when there was enough. */
+int ff_room_take(const ff_tree *tree, ff_room *room, const ff_node *node);
 /* The children of `node` may drive out all that is worth less than this. Children that nobody wants
  * drive out only what is worth less than 1/sigma: so much is cached. */
 uint32_t ff_evict_limit(const ff_tree *tree, const ff_node *node);

@@ -119,41 +119,20 @@ static uint32_t missing_children(ff_tree *tree)
     return count;
 }
 
-/* The room that delivering the wishes in order would find: free slots, then victims worth less than
- * the wish. */
-typedef struct room {
-    uint64_t *victim;
-    uint32_t victims, next, free;
-} room;
-
-static int find_room(const ff_tree *tree, room *in, uint32_t slot)
-{
-    uint32_t limit = ff_evict_limit(tree, &tree->node[slot]);
-    FF_ASSERT(in->next <= in->victims && in->free <= tree->node_count);
-    while (in->free < 4 && in->next < in->victims && in->victim[in->next] >> FF_SLOT_BITS < limit) {
-        const ff_node *victim = &tree->node[in->victim[in->next++] & SLOT_MASK];
-        in->free += ff_node_has_children(victim) ? 4 : 1;
-    }
-    if (in->free < 4) return 0;
-    in->free -= 4;
-    return 1;
-}
-
 static void wish_children(ff_tree *tree)
 {
     uint32_t missing = missing_children(tree), roots = tree->wish_count;
-    room in = { tree->sort + missing, 0, 0,
-                tree->free_count > roots ? tree->free_count - roots : 0 };
-    if (in.free < 4 * (uint64_t)missing) {
-        in.victims = ff_evict_candidates(tree, in.victim);
-        ff_sort_keys(in.victim, in.victims);
+    uint64_t *victim = tree->sort + missing;
+    ff_room room = { victim, 0, 0, tree->free_count > roots ? tree->free_count - roots : 0 };
+    if (room.free < 4 * (uint64_t)missing) {
+        room.victims = ff_evict_candidates(tree, victim);
+        ff_sort_keys(victim, room.victims);
     }
     /* who lacks children is not among the victims */
-    FF_ASSERT(missing + in.victims <= tree->node_count - tree->free_count);
+    FF_ASSERT(missing + room.victims <= tree->node_count - tree->free_count);
     for (uint32_t i = 0; i < missing && tree->wish_count < tree->wish_capacity; i++) {
-        uint32_t slot = (uint32_t)(tree->sort[i] & SLOT_MASK);
-        if (!find_room(tree, &in, slot)) continue;
-        const ff_node *node = &tree->node[slot];
+        const ff_node *node = &tree->node[tree->sort[i] & SLOT_MASK];
+        if (!ff_room_take(tree, &room, node)) continue;
         ff_wish *wish = &tree->wish[tree->wish_count++];
         wish->key = node->key;
         wish->kind = FF_KIND_REFINEMENT;

@@ -217,14 +217,26 @@ static void set_flags(c3d_gl_state *state, uint32_t flags)
     state->flags = flags;
 }
 
-/* All meshes of as many columns have the same grid. */
-static void set_grid(c3d_gl_state *state, uint32_t columns, uint32_t count)
+static float grid_place(uint32_t at, uint32_t last_q16)
 {
-    if (state->grid_columns != columns) state->grid_count = 0;
+    float last = (float)last_q16 * (1.0f / 65536.0f);
+    return last_q16 && last < (float)at ? last : (float)at;
+}
+
+/* All meshes of as many columns, and of the same last ones, have the same grid. */
+static void set_grid(c3d_gl_state *state, const c3d_draw *draw, uint32_t count)
+{
+    uint32_t columns = draw->tex_columns;
+    const uint32_t *last = draw->tex_last_q16;
+    if (state->grid_columns != columns || state->grid_last_q16[0] != last[0] ||
+        state->grid_last_q16[1] != last[1])
+        state->grid_count = 0;
     state->grid_columns = columns;
+    state->grid_last_q16[0] = last[0];
+    state->grid_last_q16[1] = last[1];
     for (uint32_t i = state->grid_count; i < count; i++) {
-        state->grid[i][0] = (float)(i % columns);
-        state->grid[i][1] = (float)(i / columns);
+        state->grid[i][0] = grid_place(i % columns, last[0]);
+        state->grid[i][1] = grid_place(i / columns, last[1]);
     }
     if (state->grid_count < count) state->grid_count = count;
     bind_array(state, 0);
@@ -234,7 +246,7 @@ static void set_grid(c3d_gl_state *state, uint32_t columns, uint32_t count)
 static void set_texture(c3d_gl_state *state, const c3d_resolved_draw *resolved)
 {
     float matrix[16];
-    set_grid(state, resolved->draw->tex_columns, resolved->mesh->count);
+    set_grid(state, resolved->draw, resolved->mesh->count);
     bind_texture(state, resolved->texture);
     c3d_gl_texture_matrix(matrix, resolved->draw);
     state->gl.MatrixMode(GL_TEXTURE);

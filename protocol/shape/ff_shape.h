@@ -31,7 +31,7 @@ typedef struct ff_box {
     int64_t lo[3], hi[3];
 } ff_box; /* wu, relative to a point that whoever asks for the box names */
 
-/* A node across a side, FF_KEY_NONE where the terrain ends. It touches with its side `side`;
+/* A node across a side, FF_KEY_NONE where the ground ends. It touches with its side `side`;
  * `reversed`: that side's first sample is our side's last one. */
 typedef struct ff_beside {
     ff_key key;
@@ -43,6 +43,12 @@ typedef struct ff_beside {
 typedef struct ff_spot {
     uint32_t tile, column_q16, row_q16;
 } ff_spot;
+
+/* How far the ground reaches along a node's columns and rows, in samples of the finest level from
+ * the first. */
+typedef struct ff_extent {
+    uint32_t columns, rows;
+} ff_extent;
 
 /* Place of a tile in the raster of all tiles, or their number each way. */
 typedef struct ff_sheet {
@@ -74,8 +80,21 @@ static inline ff_placed ff_shape_put(const ff_terrain_info *info, const ff_frame
 {
     return FF_SHAPE_CALL(info, put, (info, frame, key));
 }
-/* The sample in a column and row of the node's grid at a height in steps. The nodes that share a
- * sample place it alike, bit for bit, whatever their tiles and levels. */
+/* 2^(n-l) both ways, less where the terrain's last sample lies in the node: what is beyond is
+ * padding. */
+static inline ff_extent ff_shape_extent(const ff_terrain_info *info, ff_key key)
+{
+    return FF_SHAPE_CALL(info, extent, (info, key));
+}
+/* 0 when all of a node is padding: it is neither drawn nor asked for. Every root has ground. */
+static inline int ff_shape_has_ground(const ff_terrain_info *info, ff_key key)
+{
+    ff_extent extent = ff_shape_extent(info, key);
+    return extent.columns > 0 && extent.rows > 0;
+}
+/* The sample in a column and row of the node's grid at a height in steps; columns and rows beyond
+ * the last sample lie on it. The nodes that share a sample place it alike, bit for bit, whatever
+ * their tiles and levels. */
 static inline void ff_shape_place(const ff_terrain_info *info, ff_key key, const ff_placed *placed,
                                   uint32_t column, uint32_t row, uint32_t height,
                                   int32_t place_wu[3])
@@ -97,7 +116,7 @@ static inline void ff_shape_to_middle(const ff_terrain_info *info, ff_key key,
 {
     FF_SHAPE_CALL(info, to_middle, (info, key, placed, height_wu, from_wu, way_wu));
 }
-/* Holds all of the terrain between two heights, padding of the last tiles included. */
+/* Holds all of the terrain between two heights. */
 static inline ff_box ff_shape_bounds(const ff_terrain_info *info, const ff_frame *frame,
                                      const int64_t height_wu[2], const int32_t from_wu[3])
 {
@@ -113,7 +132,8 @@ static inline void ff_shape_slopes(const ff_terrain_info *info, ff_key key, int3
 
 /* ---- neighbour ---- */
 
-/* The node of the same level across a side. Asked back across .side it is `key` again. */
+/* The node of the same level across a side, unless it is padding. Asked back across .side it is
+ * `key` again. */
 static inline ff_beside ff_shape_neighbour(const ff_terrain_info *info, ff_key key,
                                            enum ff_side side)
 {

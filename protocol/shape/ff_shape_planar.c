@@ -5,6 +5,12 @@
 /* ff_planar_check: a terrain's longest edge, in samples. */
 FF_STATIC_ASSERT((uint64_t)FF_KEY_TILES_MAX << FF_TILE_LOG2_MAX <= 1ull << 43);
 
+static uint32_t tiles_for(const ff_terrain_info *info, uint32_t samples)
+{
+    FF_ASSERT(samples >= 2);
+    return ((samples - 2) >> info->tile_log2) + 1;
+}
+
 int ff_planar_check(const ff_terrain_info *info)
 {
     uint64_t edge_x, edge_y;
@@ -15,13 +21,40 @@ int ff_planar_check(const ff_terrain_info *info)
         return 0;
     edge_x = (uint64_t)info->tiles_x << info->tile_log2;
     edge_y = (uint64_t)info->tiles_y << info->tile_log2;
-    if (info->samples_x < 2 || info->samples_y < 2 || info->samples_x > edge_x + 1 ||
-        info->samples_y > edge_y + 1)
+    /* As many tiles as hold the samples: each has ground. */
+    if (info->samples_x < 2 || info->samples_y < 2 ||
+        tiles_for(info, info->samples_x) != info->tiles_x ||
+        tiles_for(info, info->samples_y) != info->tiles_y)
         return 0;
     /* An edge of 43 bits times a spacing of 32 bits would overflow: so the spacing is compared with
      * the quotient. */
     return info->spacing_wu >= 1 && info->spacing_wu <= INT32_MAX / edge_x &&
            info->spacing_wu <= INT32_MAX / edge_y;
+}
+
+/* Of `width` samples from `first` on, how many there are before the last of `samples`. */
+static uint32_t extent_along(uint32_t first, uint32_t width, uint32_t samples)
+{
+    if (first >= samples - 1) return 0;
+    return samples - 1 - first < width ? samples - 1 - first : width;
+}
+
+ff_extent ff_planar_extent(const ff_terrain_info *info, ff_key key)
+{
+    uint32_t tile = ff_key_tile(key), code = ff_key_code(key),
+             edge_log2 = info->tile_log2 - ff_key_level(key);
+    ff_extent extent = { 1u << edge_log2, 1u << edge_log2 };
+
+    FF_ASSERT(tile < ff_planar_tiles(info) && ff_key_level(key) < ff_terrain_levels(info));
+    if (!(((info->samples_x - 1) | (info->samples_y - 1)) & ((1u << info->tile_log2) - 1)))
+        return extent; /* the samples fill the tiles */
+    extent.columns = extent_along((tile % info->tiles_x << info->tile_log2) +
+                                      (ff_morton_x(code) << edge_log2),
+                                  1u << edge_log2, info->samples_x);
+    extent.rows = extent_along((tile / info->tiles_x << info->tile_log2) +
+                                   (ff_morton_y(code) << edge_log2),
+                               1u << edge_log2, info->samples_y);
+    return extent;
 }
 
 ff_placed ff_planar_put(const ff_terrain_info *info, const ff_frame *frame, ff_key key)
@@ -60,26 +93,42 @@ static int next_tile(const ff_terrain_info *info, enum ff_side side, uint32_t *t
     }
 }
 
+/* 1 when a node to the east or north of ground is padding. Asked often: who lies before the last
+ * sample of its own tile needs no division to know. */
+static int is_padding(const ff_terrain_info *info, ff_key key, int north)
+{
+    uint32_t code = ff_key_code(key), last = (north ? info->samples_y : info->samples_x) - 1,
+             in_tile = last & ((1u << info->tile_log2) - 1);
+    uint32_t at = (north ? ff_morton_y(code) : ff_morton_x(code))
+                  << (info->tile_log2 - ff_key_level(key));
+
+    if (in_tile == 0 || at < in_tile) return 0;
+    ff_extent extent = ff_planar_extent(info, key);
+    return (north ? extent.rows : extent.columns) == 0;
+}
+
 ff_key ff_planar_across(const ff_terrain_info *info, ff_key key, enum ff_side side)
 {
     uint32_t tile = ff_key_tile(key), code;
 
     if (ff_key_step(key, side, &code) && !next_tile(info, side, &tile)) return FF_KEY_NONE;
     FF_ASSERT(tile < ff_planar_tiles(info));
-    return ff_key_make(tile, ff_key_level(key), code);
+    key = ff_key_make(tile, ff_key_level(key), code);
+    if (side == FF_SIDE_SOUTH || side == FF_SIDE_WEST) return key;
+    return is_padding(info, key, side == FF_SIDE_NORTH) ? FF_KEY_NONE : key;
 }
 
 /* ---- locate ---- */
 
 /* Along one axis: 1, the tile and the place in it, samples Q16; 0 outside. The terrain's far rim
  * belongs to its last tile. */
-static int locate_along(const ff_terrain_info *info, int32_t at_wu, uint32_t tiles, uint32_t *tile,
-                        uint32_t *sample_q16)
+static int locate_along(const ff_terrain_info *info, int32_t at_wu, int32_t last_wu, uint32_t tiles,
+                        uint32_t *tile, uint32_t *sample_q16)
 {
     uint32_t tile_wu = (uint32_t)ff_node_edge_wu(info, 0), at = (uint32_t)at_wu;
 
     FF_ASSERT((uint64_t)tiles * tile_wu <= INT32_MAX);
-    if (at_wu < 0 || at > tiles * tile_wu) return 0;
+    if (at_wu < 0 || at_wu > last_wu) return 0;
     *tile = at == tiles * tile_wu ? tiles - 1 : at / tile_wu;
     *sample_q16 = (uint32_t)(((uint64_t)(at - *tile * tile_wu) << 16) / info->spacing_wu);
     FF_ASSERT(*tile < tiles && *sample_q16 <= 1u << (info->tile_log2 + 16));
@@ -92,8 +141,10 @@ int ff_planar_locate(const ff_terrain_info *info, const ff_frame *frame, const i
     uint32_t x, y;
 
     (void)frame;
-    if (!locate_along(info, place_wu[0], info->tiles_x, &x, &spot->column_q16) ||
-        !locate_along(info, place_wu[1], info->tiles_y, &y, &spot->row_q16))
+    if (!locate_along(info, place_wu[0], ff_planar_east_wu(info), info->tiles_x, &x,
+                      &spot->column_q16) ||
+        !locate_along(info, place_wu[1], ff_planar_north_wu(info), info->tiles_y, &y,
+                      &spot->row_q16))
         return 0;
     spot->tile = y * info->tiles_x + x;
     return 1;
@@ -136,12 +187,13 @@ static int64_t floor_div(int64_t a, int64_t b)
     return a % b < 0 ? quotient - 1 : quotient;
 }
 
-static void reach_along(int64_t centre_wu, int64_t view_wu, int64_t tile_wu, int64_t tiles,
-                        int32_t *first, int32_t *last)
+static void reach_along(int64_t centre_wu, int64_t view_wu, int64_t last_wu, int64_t tile_wu,
+                        int64_t tiles, int32_t *first, int32_t *last)
 {
     int64_t from = floor_div(centre_wu - view_wu - 1, tile_wu); /* touching counts */
     int64_t to = floor_div(centre_wu + view_wu, tile_wu);
     FF_ASSERT(from <= to && from <= INT32_MAX && to >= INT32_MIN);
+    if (centre_wu - view_wu > last_wu) from = tiles; /* beyond the ground of the last tile */
     *first = (int32_t)(from < 0 ? 0 : from);
     *last = (int32_t)(to > tiles - 1 ? tiles - 1 : to);
 }
@@ -153,8 +205,10 @@ ff_reach ff_planar_reach(const ff_terrain_info *info, const ff_frame *frame,
     ff_reach reach;
 
     (void)frame;
-    reach_along(centre_wu[0], view_wu, tile_wu, info->tiles_x, &reach.planar.x0, &reach.planar.x1);
-    reach_along(centre_wu[1], view_wu, tile_wu, info->tiles_y, &reach.planar.y0, &reach.planar.y1);
+    reach_along(centre_wu[0], view_wu, ff_planar_east_wu(info), tile_wu, info->tiles_x,
+                &reach.planar.x0, &reach.planar.x1);
+    reach_along(centre_wu[1], view_wu, ff_planar_north_wu(info), tile_wu, info->tiles_y,
+                &reach.planar.y0, &reach.planar.y1);
     if (reach.planar.y1 < reach.planar.y0 || height_wu[0] - centre_wu[2] > view_wu ||
         centre_wu[2] - height_wu[1] > view_wu)
         reach.planar.x1 = reach.planar.x0 - 1;
@@ -171,12 +225,13 @@ static int64_t outside(int64_t value, int64_t lo, int64_t hi)
 int64_t ff_planar_tile_distance(const ff_terrain_info *info, const ff_frame *frame,
                                 const int32_t centre_wu[3], uint32_t tile)
 {
-    int64_t edge_wu = ff_node_edge_wu(info, 0), x_wu = tile % info->tiles_x * edge_wu,
-            y_wu = tile / info->tiles_x * edge_wu;
-    int64_t away_x = outside(centre_wu[0], x_wu, x_wu + edge_wu),
-            away_y = outside(centre_wu[1], y_wu, y_wu + edge_wu);
+    static const int64_t height_wu[2] = { 0, 0 };
+    ff_key key = ff_key_make(tile, 0, 0);
+    ff_placed placed = ff_planar_put(info, frame, key);
+    ff_box ground = ff_planar_box(info, key, &placed, height_wu, centre_wu);
+    int64_t away_x = outside(0, ground.lo[0], ground.hi[0]),
+            away_y = outside(0, ground.lo[1], ground.hi[1]);
 
-    (void)frame;
     return away_x > away_y ? away_x : away_y;
 }
 
@@ -285,6 +340,6 @@ void ff_planar_cover(ff_terrain_info *info, uint32_t samples_x, uint32_t samples
 {
     info->samples_x = samples_x;
     info->samples_y = samples_y;
-    info->tiles_x = ((samples_x - 2) >> info->tile_log2) + 1;
-    info->tiles_y = ((samples_y - 2) >> info->tile_log2) + 1;
+    info->tiles_x = tiles_for(info, samples_x);
+    info->tiles_y = tiles_for(info, samples_y);
 }

@@ -7,6 +7,7 @@
 
 /* ff_shape_planar.c */
 int ff_planar_check(const ff_terrain_info *info);
+ff_extent ff_planar_extent(const ff_terrain_info *info, ff_key key);
 ff_placed ff_planar_put(const ff_terrain_info *info, const ff_frame *frame, ff_key key);
 ff_key ff_planar_across(const ff_terrain_info *info, ff_key key, enum ff_side side);
 int ff_planar_locate(const ff_terrain_info *info, const ff_frame *frame, const int32_t place_wu[3],
@@ -48,13 +49,30 @@ static inline uint32_t ff_planar_tiles(const ff_terrain_info *info)
     return info->tiles_x * info->tiles_y;
 }
 
+/* x and y of the last sample. */
+static inline int32_t ff_planar_east_wu(const ff_terrain_info *info)
+{
+    FF_ASSERT(info->samples_x >= 2 && info->samples_x - 1 <= INT32_MAX / info->spacing_wu);
+    return (int32_t)((info->samples_x - 1) * info->spacing_wu);
+}
+
+static inline int32_t ff_planar_north_wu(const ff_terrain_info *info)
+{
+    FF_ASSERT(info->samples_y >= 2 && info->samples_y - 1 <= INT32_MAX / info->spacing_wu);
+    return (int32_t)((info->samples_y - 1) * info->spacing_wu);
+}
+
+static inline int32_t ff_planar_least(int32_t a, int32_t b) { return a < b ? a : b; }
+
 static inline void ff_planar_place(const ff_terrain_info *info, ff_key key, const ff_placed *placed,
                                    uint32_t column, uint32_t row, uint32_t height,
                                    int32_t place_wu[3])
 {
     int32_t cell_wu = ff_node_cell_wu(info, ff_key_level(key));
-    place_wu[0] = placed->planar.x_wu + (int32_t)column * cell_wu;
-    place_wu[1] = placed->planar.y_wu + (int32_t)row * cell_wu;
+    place_wu[0] = ff_planar_least(placed->planar.x_wu + (int32_t)column * cell_wu,
+                                  ff_planar_east_wu(info));
+    place_wu[1] = ff_planar_least(placed->planar.y_wu + (int32_t)row * cell_wu,
+                                  ff_planar_north_wu(info));
     place_wu[2] = ff_height_wu(info, height);
 }
 
@@ -70,15 +88,18 @@ static inline int64_t ff_planar_farthest(int64_t lo, int64_t hi)
     return (hi > -lo ? hi : -lo) + FF_SHAPE_DROP_SLACK_WU;
 }
 
-static inline ff_box ff_planar_block(const ff_terrain_info *info, int64_t x_wu, int64_t y_wu,
-                                     int64_t width_wu, int64_t depth_wu, const int64_t height_wu[2],
-                                     const int32_t from_wu[3])
+/* A square, as far as there is ground in it. */
+static inline ff_box ff_planar_square(const ff_terrain_info *info, int32_t x_wu, int32_t y_wu,
+                                      int32_t edge_wu, const int64_t height_wu[2],
+                                      const int32_t from_wu[3])
 {
     ff_box box;
-    box.lo[0] = x_wu - from_wu[0];
-    box.hi[0] = box.lo[0] + width_wu;
-    box.lo[1] = y_wu - from_wu[1];
-    box.hi[1] = box.lo[1] + depth_wu;
+    FF_ASSERT(x_wu <= INT32_MAX - edge_wu && y_wu <= INT32_MAX - edge_wu);
+    box.lo[0] = (int64_t)x_wu - from_wu[0];
+    box.hi[0] = (int64_t)ff_planar_least(x_wu + edge_wu, ff_planar_east_wu(info)) - from_wu[0];
+    box.lo[1] = (int64_t)y_wu - from_wu[1];
+    box.hi[1] = (int64_t)ff_planar_least(y_wu + edge_wu, ff_planar_north_wu(info)) - from_wu[1];
+    FF_ASSERT(box.lo[0] < box.hi[0] && box.lo[1] < box.hi[1]); /* no node of padding is held */
     box.lo[2] = height_wu[0] - from_wu[2];
     box.hi[2] = height_wu[1] - from_wu[2];
     if (info->curve_q60) {
@@ -93,31 +114,28 @@ static inline ff_box ff_planar_block(const ff_terrain_info *info, int64_t x_wu, 
 static inline ff_box ff_planar_box(const ff_terrain_info *info, ff_key key, const ff_placed *placed,
                                    const int64_t height_wu[2], const int32_t from_wu[3])
 {
-    int64_t edge_wu = ff_node_edge_wu(info, ff_key_level(key));
-    FF_ASSERT(placed->planar.x_wu + edge_wu <= INT32_MAX);
-    FF_ASSERT(placed->planar.y_wu + edge_wu <= INT32_MAX);
-    return ff_planar_block(info, placed->planar.x_wu, placed->planar.y_wu, edge_wu, edge_wu,
-                           height_wu, from_wu);
+    return ff_planar_square(info, placed->planar.x_wu, placed->planar.y_wu,
+                            ff_node_edge_wu(info, ff_key_level(key)), height_wu, from_wu);
 }
 
 static inline void ff_planar_to_middle(const ff_terrain_info *info, ff_key key,
                                        const ff_placed *placed, int32_t height_wu,
                                        const int32_t from_wu[3], int64_t way_wu[3])
 {
-    int32_t half_wu = ff_node_edge_wu(info, ff_key_level(key)) / 2;
-    way_wu[0] = (int64_t)placed->planar.x_wu + half_wu - from_wu[0];
-    way_wu[1] = (int64_t)placed->planar.y_wu + half_wu - from_wu[1];
+    int32_t edge_wu = ff_node_edge_wu(info, ff_key_level(key)), x_wu = placed->planar.x_wu,
+            y_wu = placed->planar.y_wu;
+    way_wu[0] = (int64_t)x_wu + ff_planar_least(edge_wu, ff_planar_east_wu(info) - x_wu) / 2 -
+                from_wu[0];
+    way_wu[1] = (int64_t)y_wu + ff_planar_least(edge_wu, ff_planar_north_wu(info) - y_wu) / 2 -
+                from_wu[1];
     way_wu[2] = (int64_t)height_wu - from_wu[2];
 }
 
 static inline ff_box ff_planar_bounds(const ff_terrain_info *info, const ff_frame *frame,
                                       const int64_t height_wu[2], const int32_t from_wu[3])
 {
-    int64_t edge_wu = ff_node_edge_wu(info, 0);
     (void)frame;
-    FF_ASSERT(info->tiles_x * edge_wu <= INT32_MAX && info->tiles_y * edge_wu <= INT32_MAX);
-    return ff_planar_block(info, 0, 0, info->tiles_x * edge_wu, info->tiles_y * edge_wu, height_wu,
-                           from_wu);
+    return ff_planar_square(info, 0, 0, INT32_MAX, height_wu, from_wu);
 }
 
 /* Columns run east, rows north, and cells are square. */
@@ -204,9 +222,8 @@ static inline ff_sheet ff_planar_sheet_samples(const ff_terrain_info *info)
 
 static inline void ff_planar_size_wu(const ff_terrain_info *info, int64_t size_wu[2])
 {
-    FF_ASSERT(info->samples_x >= 2 && info->samples_y >= 2);
-    size_wu[0] = (int64_t)(info->samples_x - 1) * info->spacing_wu;
-    size_wu[1] = (int64_t)(info->samples_y - 1) * info->spacing_wu;
+    size_wu[0] = ff_planar_east_wu(info);
+    size_wu[1] = ff_planar_north_wu(info);
 }
 
 #endif

@@ -80,6 +80,28 @@ static int kind_ok(check *c, unsigned coarser)
     return !wrong || fault(c, "crack: strips of a node with coarser sides %x: %s", coarser, wrong);
 }
 
+/* Along each axis the node is as long as its edge, or ends with the terrain. */
+static int ends_with_ground(const check *c, ff_key key, const ff_placed *placed)
+{
+    static const int64_t height_wu[2] = { 0, 0 };
+    static const int32_t from_wu[3] = { 0, 0, 0 };
+    ff_box all = ff_shape_bounds(c->info, c->frame, height_wu, from_wu);
+    int64_t lo[2] = { INT64_MAX, INT64_MAX }, hi[2] = { INT64_MIN, INT64_MIN };
+    for (unsigned i = 0; i < 4; i++) {
+        int32_t at_wu[3];
+        ff_shape_place(c->info, key, placed, (i & 1) * c->n, (i >> 1) * c->n, 0, at_wu);
+        for (unsigned axis = 0; axis < 2; axis++) {
+            lo[axis] = at_wu[axis] < lo[axis] ? at_wu[axis] : lo[axis];
+            hi[axis] = at_wu[axis] > hi[axis] ? at_wu[axis] : hi[axis];
+        }
+    }
+    for (unsigned axis = 0; axis < 2; axis++) {
+        int64_t end = lo[axis] + ff_node_edge_wu(c->info, ff_key_level(key));
+        if (hi[axis] != (end < all.hi[axis] ? end : all.hi[axis])) return 0;
+    }
+    return 1;
+}
+
 static int node_ok(check *c, uint32_t index)
 {
     int32_t origin_wu[3];
@@ -87,11 +109,15 @@ static int node_ok(check *c, uint32_t index)
     unsigned long long key = (unsigned long long)drawn->key;
     if (!ff_terrain_has_node(c->info, drawn->key))
         return fault(c, "key %llx is not of this terrain", key);
+    if (!ff_shape_has_ground(c->info, drawn->key))
+        return fault(c, "node %llx lies beyond the terrain", key);
     ff_placed placed = ff_shape_put(c->info, c->frame, drawn->key);
     ff_shape_place(c->info, drawn->key, &placed, 0, 0, 32768, origin_wu);
     if (memcmp(drawn->origin_wu, origin_wu, sizeof origin_wu) != 0 ||
         drawn->cell_wu != ff_node_cell_wu(c->info, ff_key_level(drawn->key)))
         return fault(c, "node %llx has a wrong origin or cell", key);
+    if (!ends_with_ground(c, drawn->key, &placed))
+        return fault(c, "node %llx is not drawn up to the terrain's edge", key);
     entry *place = entry_place(c, drawn->key);
     if (place->key == drawn->key) return fault(c, "node %llx is listed twice", key);
     *place = (entry){ drawn->key, index };
@@ -172,11 +198,16 @@ static corner *corner_place(const check *c, const int32_t foot_wu[3])
     return &c->corners[at];
 }
 
+/* Corners beyond the last sample lie where others do and are not theirs: along a side they have
+ * been compared. */
 static int corners_ok(check *c, const ff_drawn *drawn)
 {
     ff_placed placed = ff_shape_put(c->info, c->frame, drawn->key);
+    uint32_t edge = 1u << (c->info->tile_log2 - ff_key_level(drawn->key));
+    ff_extent extent = ff_shape_extent(c->info, drawn->key);
     for (unsigned i = 0; i < 4; i++) {
         uint32_t column = (i & 1) * c->n, row = (i >> 1) * c->n;
+        if ((column && extent.columns < edge) || (row && extent.rows < edge)) continue;
         corner at = { .height = drawn->heights[row * (c->n + 1) + column], .used = 1 };
         ff_shape_place(c->info, drawn->key, &placed, column, row, 0, at.foot_wu);
         corner *place = corner_place(c, at.foot_wu);

@@ -122,6 +122,8 @@ static void terrain_ranges(void **state)
     BAD(tiles_x, UINT32_MAX);
     BAD(samples_x, 1);
     BAD(samples_y, 2050);
+    BAD(samples_y, 1025); /* the northern tiles would be padding */
+    BAD(samples_x, 3073);
     BAD(spacing_wu, 0);
     BAD(spacing_wu, 1u << 19);
     BAD(hscale_q24, 0);
@@ -136,6 +138,7 @@ static void terrain_ranges(void **state)
     t.tiles_x = 1;
     t.samples_x = 1025;
     t.tiles_y = 1u << 12;
+    t.samples_y = (1u << 22) + 1;
     t.spacing_wu = 511;
     assert_int_equal(ff_terrain_check(&t), FF_OK);
     t.spacing_wu = 512; /* northern end at 2^31 wu */

@@ -25,7 +25,7 @@ static ff_terrain_info terrain(void)
                               .tiles_x = 3,
                               .tiles_y = 2,
                               .samples_x = 98305,
-                              .samples_y = 2,
+                              .samples_y = 32770, /* the least of two tiles */
                               .spacing_wu = 21845,
                               .hscale_q24 = INT32_MAX,
                               .hoffset_wu = INT32_MIN,

@@ -96,6 +96,7 @@ static inline int ff_turned_locate(const ff_terrain_info *info, const ff_frame *
 /* The rest of the questions do not touch columns and rows. */
 #define ff_turned_check         ff_planar_check
 #define ff_turned_tiles         ff_planar_tiles
+#define ff_turned_extent        ff_planar_extent /* of whole tiles: no sample is padding */
 #define ff_turned_box           ff_planar_box
 #define ff_turned_to_middle     ff_planar_to_middle
 #define ff_turned_bounds        ff_planar_bounds

@@ -1,5 +1,7 @@
-/* See slow_watertight.h. Points are counted in samples of the finest level, heights in steps; three
- * hash tables with open addressing hold nodes, vertices and edges. */
+/* See slow_watertight.h. Beyond the terrain's last sample vertices are drawn on it: who shares a
+ * vertex shares its place, so edges are paired by the samples they come from, and what is drawn
+ * must cover the part inside. Points are counted in samples of the finest level, heights in steps;
+ * three hash tables with open addressing hold nodes, vertices and edges. */
 #include "slow_watertight.h"
 
 #include "../../client/terrain/ff_strips.h"
@@ -82,6 +84,9 @@ static int node_ok(check *c, const ff_drawn *drawn)
         drawn->origin_wu[2] != ff_height_wu(c->info, 32768) ||
         drawn->cell_wu != ff_node_cell_wu(c->info, ff_key_level(drawn->key)))
         return fault(c, "node %llx has a wrong origin or cell", key);
+    if (x >= (c->info->samples_x - 1) * c->info->spacing_wu ||
+        y >= (c->info->samples_y - 1) * c->info->spacing_wu)
+        return fault(c, "node %llx lies beyond the terrain", key);
     ff_key *place = node_place(c, drawn->key);
     if (*place == drawn->key) return fault(c, "node %llx is listed twice", key);
     *place = drawn->key;
@@ -148,6 +153,13 @@ static int add_edge(check *c, point from, point to)
     return 1;
 }
 
+/* Where a sample is drawn. */
+static point drawn_point(const check *c, point at)
+{
+    point last = { c->info->samples_x - 1, c->info->samples_y - 1 };
+    return (point){ at.x < last.x ? at.x : last.x, at.y < last.y ? at.y : last.y };
+}
+
 static int64_t doubled_area(const point p[3])
 {
     int64_t ax = (int64_t)p[1].x - p[0].x, ay = (int64_t)p[1].y - p[0].y;
@@ -169,9 +181,11 @@ static int add_strip(check *c, const ff_drawn *drawn, unsigned id, int64_t *area
             if (v[j] >= side * side) return fault(c, "strip %u runs out of its node", id);
             p[j] = (point){ x + v[j] % side * cell, y + v[j] / side * cell };
         }
-        int64_t doubled = doubled_area(p);
-        if (doubled <= 0)
+        if (doubled_area(p) <= 0)
             return fault(c, "triangle at %u,%u is degenerate or clockwise", p[0].x, p[0].y);
+        point drawn_at[3] = { drawn_point(c, p[0]), drawn_point(c, p[1]), drawn_point(c, p[2]) };
+        int64_t doubled = doubled_area(drawn_at);
+        if (doubled < 0) return fault(c, "triangle at %u,%u is turned over", p[0].x, p[0].y);
         *area += doubled;
         for (unsigned j = 0; j < 3; j++) {
             if (!add_vertex(c, p[j], drawn->heights[v[j]]) || !add_edge(c, p[j], p[(j + 1) % 3]))
@@ -185,11 +199,15 @@ static int add_node(check *c, const ff_drawn *drawn)
 {
     uint8_t strip[5];
     unsigned strips = ff_strips_for(drawn->coarser, strip);
-    int64_t area = 0, edge_samples = (int64_t)1 << (c->info->tile_log2 - ff_key_level(drawn->key));
+    uint32_t edge_samples = 1u << (c->info->tile_log2 - ff_key_level(drawn->key));
+    int64_t area = 0;
     for (unsigned i = 0; i < strips; i++) {
         if (!add_strip(c, drawn, strip[i], &area)) return 0;
     }
-    if (area != 2 * edge_samples * edge_samples)
+    point first = { (uint32_t)drawn->origin_wu[0] / c->info->spacing_wu,
+                    (uint32_t)drawn->origin_wu[1] / c->info->spacing_wu },
+          last = drawn_point(c, (point){ first.x + edge_samples, first.y + edge_samples });
+    if (area != 2 * (int64_t)(last.x - first.x) * (last.y - first.y))
         return fault(c, "node %llx is not covered exactly", (unsigned long long)drawn->key);
     return 1;
 }

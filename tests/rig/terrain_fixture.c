@@ -104,12 +104,13 @@ typedef struct patch {
     int32_t edge, from[2], column[2], row[2];
 } patch;
 
+static int32_t sign(int32_t value) { return (value > 0) - (value < 0); }
+
 static patch patch_of(const terrain_fixture *fx, ff_key key)
 {
     const int32_t nowhere[3] = { 0, 0, 0 };
     uint32_t last = 1u << fx->info.node_log2;
-    int32_t edge = 1 << (fx->info.tile_log2 - ff_key_level(key)),
-            edge_wu = edge * (int32_t)fx->info.spacing_wu;
+    int32_t edge = 1 << (fx->info.tile_log2 - ff_key_level(key));
     int32_t from_wu[3], column_wu[3], row_wu[3];
     ff_frame frame = ff_shape_frame(&fx->info, nowhere);
     ff_placed placed = ff_shape_put(&fx->info, &frame, key);
@@ -119,16 +120,18 @@ static patch patch_of(const terrain_fixture *fx, ff_key key)
     patch p = { .edge = edge };
     for (int axis = 0; axis < 2; axis++) {
         p.from[axis] = from_wu[axis] / (int32_t)fx->info.spacing_wu;
-        p.column[axis] = (column_wu[axis] - from_wu[axis]) / edge_wu;
-        p.row[axis] = (row_wu[axis] - from_wu[axis]) / edge_wu;
+        p.column[axis] = sign(column_wu[axis] - from_wu[axis]);
+        p.row[axis] = sign(row_wu[axis] - from_wu[axis]);
     }
     return p;
 }
 
 static uint16_t true_height(const terrain_fixture *fx, const patch *p, int32_t column, int32_t row)
 {
-    return fx->height((uint32_t)(p->from[0] + column * p->column[0] + row * p->row[0]),
-                      (uint32_t)(p->from[1] + column * p->column[1] + row * p->row[1]));
+    uint32_t x = (uint32_t)(p->from[0] + column * p->column[0] + row * p->row[0]),
+             y = (uint32_t)(p->from[1] + column * p->column[1] + row * p->row[1]);
+    return fx->height(x < fx->info.samples_x ? x : fx->info.samples_x - 1,
+                      y < fx->info.samples_y ? y : fx->info.samples_y - 1);
 }
 
 /* The patch as a grid of `side`. */
@@ -142,18 +145,27 @@ static void true_grid(const terrain_fixture *fx, const patch *p, uint32_t side, 
     }
 }
 
+/* Of the cell with a number, as far as there is ground. */
+static int64_t cell_width(uint32_t number, uint32_t cell, uint32_t ground)
+{
+    return number * cell + cell < ground ? cell : ground - number * cell;
+}
+
 /* Largest distance between the source and the node's triangles, rounded up; wide nodes are
  * sampled. */
 static uint8_t error_of(const terrain_fixture *fx, ff_key key, const uint16_t *heights)
 {
     patch p = patch_of(fx, key);
+    ff_extent ground = ff_shape_extent(&fx->info, key);
     uint32_t edge = (uint32_t)p.edge, side = ff_node_side(&fx->info), worst = 0;
     uint32_t cell = edge / (side - 1),
              step = edge > ERROR_STRIDE_SPAN ? edge / ERROR_STRIDE_SPAN : 1;
-    for (uint32_t row = 0; row < edge; row += step) {
-        for (uint32_t column = 0; column < edge; column += step) {
+    for (uint32_t row = 0; row < ground.rows; row += step) {
+        for (uint32_t column = 0; column < ground.columns; column += step) {
             const uint16_t *sw = heights + row / cell * side + column / cell;
-            int64_t u = column % cell, v = row % cell, c = cell;
+            int64_t wide = cell_width(column / cell, cell, ground.columns),
+                    deep = cell_width(row / cell, cell, ground.rows), c = wide * deep,
+                    u = column % cell * deep, v = row % cell * wide;
             int64_t drawn = u >= v ? sw[0] * (c - u) + sw[1] * (u - v) + sw[side + 1] * v
                                    : sw[0] * (c - v) + sw[side] * (v - u) + sw[side + 1] * u;
             int64_t off = drawn - true_height(fx, &p, (int32_t)column, (int32_t)row) * c;

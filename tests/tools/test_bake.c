@@ -24,17 +24,25 @@ static uint32_t next_random(uint32_t *state) { return *state = *state * 1664525u
 
 /* ---- geometric error against plain double precision over every sample ---- */
 
-static double drawn_at(const uint16_t *drawn, size_t pitch, uint32_t cell, uint32_t x, uint32_t y,
-                       uint32_t edge)
+/* Place in its cell, 0..1, of a sample, and the cell: the last one ends with the ground. */
+static double in_cell(uint32_t at, uint32_t cell, uint32_t ground, uint32_t *number)
 {
-    uint32_t i = x == edge ? x / cell - 1 : x / cell, j = y == edge ? y / cell - 1 : y / cell;
+    *number = at == ground ? (at - 1) / cell : at / cell;
+    uint32_t first = *number * cell, width = first + cell < ground ? cell : ground - first;
+    return (double)(at - first) / width;
+}
+
+static double drawn_at(const uint16_t *drawn, size_t pitch, uint32_t cell, uint32_t x, uint32_t y,
+                       ff_extent ground)
+{
+    uint32_t i, j;
+    double u = in_cell(x, cell, ground.columns, &i), v = in_cell(y, cell, ground.rows, &j);
     const uint16_t *sw = drawn + j * cell * pitch + i * cell;
-    double u = (double)(x - i * cell) / cell, v = (double)(y - j * cell) / cell;
     double a = sw[0], b = sw[cell], c = sw[cell * pitch], d = sw[cell * pitch + cell];
     return u >= v ? a + (b - a) * u + (d - b) * v : a + (c - a) * v + (d - c) * u;
 }
 
-static void check_error(uint32_t cells, uint32_t cell, uint32_t seed)
+static void check_error(uint32_t cells, uint32_t cell, ff_extent ground, uint32_t seed)
 {
     uint32_t edge = cells * cell;
     size_t pitch = edge + 3;
@@ -45,11 +53,11 @@ static void check_error(uint32_t cells, uint32_t cell, uint32_t seed)
         drawn[i] = (uint16_t)(source[i] ^ (seed >> 28));
     }
     double worst = 0;
-    for (uint32_t y = 0; y <= edge; y++)
-        for (uint32_t x = 0; x <= edge; x++)
+    for (uint32_t y = 0; y <= ground.rows; y++)
+        for (uint32_t x = 0; x <= ground.columns; x++)
             worst = fmax(worst,
-                         fabs(drawn_at(drawn, pitch, cell, x, y, edge) - source[y * pitch + x]));
-    assert_int_equal(bake_node_error(source, drawn, pitch, cells, cell),
+                         fabs(drawn_at(drawn, pitch, cell, x, y, ground) - source[y * pitch + x]));
+    assert_int_equal(bake_node_error(source, drawn, pitch, ground, cell),
                      (uint32_t)ceil(worst - 1e-6));
     test_free(source);
     test_free(drawn);
@@ -58,11 +66,22 @@ static void check_error(uint32_t cells, uint32_t cell, uint32_t seed)
 static void node_error_is_exact(void **state)
 {
     (void)state;
-    check_error(8, 1, 1);
-    check_error(8, 2, 2);
-    check_error(2, 16, 3);
-    check_error(4, 64, 4);
-    check_error(1, 3, 5);
+    check_error(8, 1, (ff_extent){ 8, 8 }, 1);
+    check_error(8, 2, (ff_extent){ 16, 16 }, 2);
+    check_error(2, 16, (ff_extent){ 32, 32 }, 3);
+    check_error(4, 64, (ff_extent){ 256, 256 }, 4);
+    check_error(1, 3, (ff_extent){ 3, 3 }, 5);
+}
+
+static void the_error_ends_with_the_ground(void **state)
+{
+    (void)state;
+    for (uint32_t columns = 1; columns <= 32; columns++)
+        for (uint32_t rows = 1; rows <= 32; rows++)
+            check_error(4, 8, (ff_extent){ columns, rows }, 100 * columns + rows);
+    check_error(2, 512, (ff_extent){ 511, 1023 }, 6);
+    uint16_t none[25] = { 0, 9, 0, 9, 0, 9 };
+    assert_int_equal(bake_node_error(none, none, 5, (ff_extent){ 0, 4 }, 1), 0);
 }
 
 static void node_error_of_a_plane_is_nothing(void **state)
@@ -71,9 +90,9 @@ static void node_error_of_a_plane_is_nothing(void **state)
     (void)state;
     for (uint32_t i = 0; i < 33 * 33; i++)
         plane[i] = (uint16_t)(1000 + 17 * (i % 33) + 40 * (i / 33));
-    assert_int_equal(bake_node_error(plane, plane, 33, 4, 8), 0);
+    assert_int_equal(bake_node_error(plane, plane, 33, (ff_extent){ 32, 32 }, 8), 0);
     plane[33 * 5 + 9] = (uint16_t)(plane[33 * 5 + 9] + 3);
-    assert_int_equal(bake_node_error(plane, plane, 33, 4, 8), 3);
+    assert_int_equal(bake_node_error(plane, plane, 33, (ff_extent){ 32, 32 }, 8), 3);
 }
 
 /* ---- filling ---- */
@@ -234,8 +253,9 @@ static void check_records(uint16_t max_error)
     ff_reconstruct_root(&info, &residuals, node);
     for (int i = 0; i < 25; i++)
         assert_int_equal(node[i], tile.decoded[i / 5 * 8 * 33 + i % 5 * 8]);
-    assert_int_equal(residuals.child_error[0], ff_geometric_error_encode(bake_node_error(
-                                                   tile.source, tile.decoded, 33, 4, 8)));
+    assert_int_equal(residuals.child_error[0],
+                     ff_geometric_error_encode(
+                         bake_node_error(tile.source, tile.decoded, 33, (ff_extent){ 32, 19 }, 8)));
     for (uint32_t l = 1; l < ff_terrain_levels(&info); l++)
         assert_int_equal(tile.level[l].record_count, 1u << (2 * (l - 1)));
     /* first refinement of level 1: children of 8 x 8 samples at the south-west */
@@ -244,7 +264,8 @@ static void check_records(uint16_t max_error)
                      FF_OK);
     for (int q = 0; q < 4; q++) {
         int at = (q & 1) * 8 + (q >> 1) * 8 * 33;
-        uint32_t steps = bake_node_error(tile.source + at, tile.decoded + at, 33, 4, 2);
+        uint32_t steps = bake_node_error(tile.source + at, tile.decoded + at, 33,
+                                         (ff_extent){ 8, 8 }, 2);
         assert_int_equal(residuals.child_error[q], ff_geometric_error_encode(steps));
     }
     /* refinements of level 2: their children are the data itself */
@@ -312,6 +333,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(node_error_is_exact),
+        cmocka_unit_test(the_error_ends_with_the_ground),
         cmocka_unit_test(node_error_of_a_plane_is_nothing),
         cmocka_unit_test(fill_keeps_what_is_known),
         cmocka_unit_test(fill_from_a_single_sample),

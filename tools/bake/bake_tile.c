@@ -33,6 +33,7 @@ int bake_tile_load(bake_tile *tile, const bake_grid *grid, uint32_t number)
     const ff_terrain_info *info = tile->info;
     size_t pitch = pitch_of(info);
     ff_sheet at = ff_shape_sheet(info, number);
+    tile->number = number;
     uint32_t first_column = at.x << info->tile_log2, first_row = at.y << info->tile_log2;
     /* There are no tiles beyond the last sample (ff_terrain_info), so this one has at least one
      * column and one row. */
@@ -63,11 +64,12 @@ static void scatter(const uint16_t *in, size_t pitch, uint32_t side, size_t stri
         for (uint32_t i = 0; i < side; i++) grid[j * stride * pitch + i * stride] = *in++;
 }
 
-static uint8_t error_code(const bake_tile *tile, size_t at, uint32_t cell)
+/* Of the node whose south-west sample is `at`, its cells `cell` samples wide; 0 for padding. */
+static uint8_t error_code(const bake_tile *tile, ff_key key, size_t at, uint32_t cell)
 {
-    uint32_t cells = 1u << tile->info->node_log2;
-    return ff_geometric_error_encode(
-        bake_node_error(tile->source + at, tile->decoded + at, pitch_of(tile->info), cells, cell));
+    return ff_geometric_error_encode(bake_node_error(tile->source + at, tile->decoded + at,
+                                                     pitch_of(tile->info),
+                                                     ff_shape_extent(tile->info, key), cell));
 }
 
 /* Appends the payload of a root or refinement, error codes filled in, to a level's records. */
@@ -91,13 +93,13 @@ static int encode_root(bake_tile *tile)
     gather(tile->source, pitch_of(info), side, cell, source);
     ff_encode_heights(info, NULL, source, &residuals, decoded);
     scatter(decoded, pitch_of(info), side, cell, tile->decoded);
-    residuals.child_error[0] = error_code(tile, 0, cell);
+    residuals.child_error[0] = error_code(tile, ff_key_make(tile->number, 0, 0), 0, cell);
     return add_payload(tile, 0, NULL, decoded, &residuals);
 }
 
 /* Encodes the refinement of the node whose south-west sample is `at`, its cells `cell` samples
  * wide. */
-static int encode_refinement(bake_tile *tile, uint32_t level, size_t at, uint32_t cell)
+static int encode_refinement(bake_tile *tile, ff_key key, size_t at, uint32_t cell)
 {
     const ff_terrain_info *info = tile->info;
     uint16_t parent[FF_NODE_HEIGHTS_MAX], source[FF_REFINED_HEIGHTS_MAX],
@@ -110,9 +112,9 @@ static int encode_refinement(bake_tile *tile, uint32_t level, size_t at, uint32_
     ff_encode_heights(info, parent, source, &residuals, decoded);
     scatter(decoded, pitch, ff_refined_side(info), cell / 2, tile->decoded + at);
     for (uint32_t q = 0; q < 4; q++)
-        residuals.child_error[q] = error_code(tile, at + (q & 1) * edge + (q >> 1) * edge * pitch,
-                                              cell / 2);
-    return add_payload(tile, level + 1, parent, decoded, &residuals);
+        residuals.child_error[q] = error_code(
+            tile, ff_key_child(key, q), at + (q & 1) * edge + (q >> 1) * edge * pitch, cell / 2);
+    return add_payload(tile, ff_key_level(key) + 1, parent, decoded, &residuals);
 }
 
 int bake_tile_encode(bake_tile *tile)
@@ -125,7 +127,8 @@ int bake_tile_encode(bake_tile *tile)
         uint32_t cell = (uint32_t)(edge >> info->node_log2);
         for (uint32_t code = 0; code >> (2 * level) == 0; code++) {
             size_t at = ff_morton_y(code) * edge * pitch_of(info) + ff_morton_x(code) * edge;
-            if (encode_refinement(tile, level, at, cell)) return -1;
+            if (encode_refinement(tile, ff_key_make(tile->number, level, code), at, cell))
+                return -1;
         }
     }
     return 0;

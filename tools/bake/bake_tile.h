@@ -11,6 +11,7 @@
 
 typedef struct bake_tile {
     const ff_terrain_info *info;
+    uint32_t number;   /* of the tile that is loaded */
     uint16_t *source;  /* (2^n+1)^2, south to north */
     uint16_t *decoded; /* the same grid as every decoder will see it, filled level by level */
     bake_blob level[BAKE_LEVELS_MAX]; /* [0]: the root; [l]: refinements of level l-1 */
