@@ -93,18 +93,21 @@ static double vertex_height_m(const sim_auditor *auditor, const ff_drawn *drawn,
     return auditor->ground->hoffset_m + auditor->ground->hscale_m * drawn->heights[index];
 }
 
-/* Height of a node's triangle at (x, y), counted in the node's cells: 1 and *z_m, or 0 outside. */
+/* Height of a node's triangle at (x, y), counted in the node's cells, the last ones at `last`: 1
+ * and *z_m, or 0 outside. */
 static int triangle_height(const sim_auditor *auditor, const ff_drawn *drawn,
-                           const uint16_t vertex[3], double x, double y, double *z_m)
+                           const uint16_t vertex[3], const double last[2], double x, double y,
+                           double *z_m)
 {
     uint32_t side = ff_node_side(&auditor->info);
     double at[3][2], z[3];
     for (int i = 0; i < 3; i++) {
-        at[i][0] = vertex[i] % side;
-        at[i][1] = vertex[i] / side;
+        at[i][0] = fmin(vertex[i] % side, last[0]);
+        at[i][1] = fmin(vertex[i] / side, last[1]);
     }
     double area = (at[1][0] - at[0][0]) * (at[2][1] - at[0][1]) -
                   (at[2][0] - at[0][0]) * (at[1][1] - at[0][1]);
+    if (area == 0) return 0; /* of padding */
     double b = ((x - at[0][0]) * (at[2][1] - at[0][1]) - (at[2][0] - at[0][0]) * (y - at[0][1])) /
                area;
     double c = ((at[1][0] - at[0][0]) * (y - at[0][1]) - (x - at[0][0]) * (at[1][1] - at[0][1])) /
@@ -120,10 +123,12 @@ static int node_height(const sim_auditor *auditor, const ff_drawn *drawn, double
 {
     uint8_t strip[5];
     unsigned count = ff_strips_for(drawn->coarser, strip);
+    double last[2];
+    sim_place_last(&auditor->info, drawn, last);
     for (unsigned i = 0; i < count; i++) {
         const triangles *list = &auditor->strip[strip[i]];
         for (uint32_t j = 0; j < list->count; j++)
-            if (triangle_height(auditor, drawn, list->vertex[j], x, y, z_m)) return 1;
+            if (triangle_height(auditor, drawn, list->vertex[j], last, x, y, z_m)) return 1;
     }
     return 0;
 }

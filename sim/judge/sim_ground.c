@@ -24,9 +24,10 @@ static void place(loader *load, ff_key key, const uint16_t *heights)
     ff_sheet at = ff_shape_sheet(info, ff_key_tile(key));
     size_t column = ((size_t)at.x * along + ff_morton_x(code)) * cells;
     size_t row = ((size_t)at.y * along + ff_morton_y(code)) * cells;
-    for (uint32_t j = 0; j < side; j++)
+    size_t columns = load->ground->columns - column < side ? load->ground->columns - column : side;
+    for (uint32_t j = 0; j < side && row + j < load->ground->rows; j++)
         memcpy(load->height + (row + j) * load->ground->columns + column,
-               heights + (size_t)j * side, side * sizeof *heights);
+               heights + (size_t)j * side, columns * sizeof *heights);
 }
 
 static int refine(loader *load, ff_key key, const uint16_t *heights)
@@ -45,6 +46,7 @@ static int refine(loader *load, ff_key key, const uint16_t *heights)
     if (rc == FF_OK) rc = ff_reconstruct_refinement(info, heights, &residuals, refined);
     if (rc != FF_OK) return rc;
     for (uint32_t quadrant = 0; quadrant < 4 && rc == FF_OK; quadrant++) {
+        if (!ff_shape_has_ground(info, ff_key_child(key, quadrant))) continue;
         ff_refined_child(info, refined, quadrant, child);
         rc = refine(load, ff_key_child(key, quadrant), child);
     }
@@ -139,31 +141,37 @@ static int build_pyramid(sim_ground *ground)
     return FF_OK;
 }
 
-int sim_ground_load_cached(sim_ground *ground, const ff_pack *pack, uint64_t samples_max,
-                           const char *cache_path)
+/* Level, samples and lengths of the finest ground of the pack with at most so many samples. */
+static void measure(sim_ground *ground, const ff_terrain_info *info, uint64_t samples_max)
 {
-    const ff_terrain_info *info = &pack->header.info;
-    ff_sheet tiles = ff_shape_sheet_tiles(info);
-    uint32_t level = 0;
-    memset(ground, 0, sizeof *ground);
-    for (uint32_t next = 1; next < ff_terrain_levels(info); next++) {
-        uint64_t columns = ((uint64_t)tiles.x << (info->node_log2 + next)) + 1;
-        uint64_t rows = ((uint64_t)tiles.y << (info->node_log2 + next)) + 1;
-        if (columns > samples_max / rows) break;
-        level = next;
+    ff_sheet samples = ff_shape_sheet_samples(info);
+    for (uint32_t level = 0; level < ff_terrain_levels(info); level++) {
+        unsigned cell_log2 = info->tile_log2 - info->node_log2 - level;
+        uint32_t columns = ((samples.x - 2) >> cell_log2) + 2,
+                 rows = ((samples.y - 2) >> cell_log2) + 2;
+        if (level && columns > samples_max / rows) break;
+        ground->level = level;
+        ground->columns = columns;
+        ground->rows = rows;
+        ground->size[0] = (double)(samples.x - 1) / (1u << cell_log2);
+        ground->size[1] = (double)(samples.y - 1) / (1u << cell_log2);
     }
-    ground->level = level;
-    ground->columns = (tiles.x << (info->node_log2 + level)) + 1;
-    ground->rows = (tiles.y << (info->node_log2 + level)) + 1;
-    ground->cell_m = (double)ff_node_cell_wu(info, level) / FF_WU_PER_METRE;
+    ground->cell_m = (double)ff_node_cell_wu(info, ground->level) / FF_WU_PER_METRE;
     ground->hscale_m = (double)info->hscale_q24 / (1 << 24);
     ground->curve_per_m = ldexp((double)info->curve_q60, -60) * FF_WU_PER_METRE;
     ground->hoffset_m = (double)info->hoffset_wu / FF_WU_PER_METRE;
+}
+
+int sim_ground_load_cached(sim_ground *ground, const ff_pack *pack, uint64_t samples_max,
+                           const char *cache_path)
+{
+    uint32_t checksum = pack->header.info.checksum;
     int rc = FF_OK;
-    if (!cache_path || !sim_ground_cache_open(ground, info->checksum, cache_path)) {
+    memset(ground, 0, sizeof *ground);
+    measure(ground, &pack->header.info, samples_max);
+    if (!cache_path || !sim_ground_cache_open(ground, checksum, cache_path)) {
         rc = decode_all(ground, pack);
-        if (rc == FF_OK && cache_path)
-            rc = sim_ground_cache_write(ground, info->checksum, cache_path);
+        if (rc == FF_OK && cache_path) rc = sim_ground_cache_write(ground, checksum, cache_path);
     }
     if (rc == FF_OK) rc = build_pyramid(ground);
     if (rc != FF_OK) sim_ground_free(ground);

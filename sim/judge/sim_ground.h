@@ -2,7 +2,9 @@
  * clear of and pictures are judged by.
  *
  * Heights lie row by row from the south-west; between samples the ground is two triangles a cell,
- * the diagonal from south-west to north-east as in the drawn strips. A pyramid of block maxima
+ * the diagonal from south-west to north-east as in the drawn strips. It ends with the source's last
+ * sample: at a level coarser than the finest the last column and row of cells may be narrower. A
+ * pyramid of block maxima
  * makes ray casting fast: it starts at blocks of 4 x 4 cells.
  */
 #ifndef SIM_GROUND_H
@@ -18,6 +20,7 @@ typedef struct sim_ground {
     uint32_t level;         /* of the tiles' quadtrees, as decoded */
     uint32_t columns, rows; /* of heights */
     double cell_m;
+    double size[2]; /* to the source's last sample, in cells */
     double hscale_m, hoffset_m;
     double curve_per_m; /* at a distance of d m ground lies d * d * curve_per_m lower; 0: flat */
     const uint16_t *height;
@@ -41,13 +44,16 @@ int sim_ground_load_cached(sim_ground *ground, const ff_pack *pack, uint64_t sam
                            const char *cache_path);
 void sim_ground_free(sim_ground *ground);
 
+/* 1 when there is ground at (x, y). */
+int sim_ground_has(const sim_ground *ground, double x_m, double y_m);
 /* Height at (x, y), clamped to the rim. */
 double sim_ground_height_m(const sim_ground *ground, double x_m, double y_m);
 /* How much lower than its height says ground lies for an eye so far away. */
 double sim_ground_drop_m(const sim_ground *ground, double east_m, double north_m);
 /* First ground along from + t * direction, 0 < t <= t_max (direction of any length): 1 and *t_hit,
  * or 0. Curved ground has fallen away from `from`: the point met lies by sim_ground_drop_m lower
- * than its height. */
+ * than its height. The ground is a surface without walls: who comes in below its edge meets it from
+ * below, if at all. */
 int sim_ground_cast(const sim_ground *ground, const double from_m[3], const double direction[3],
                     double t_max, double *t_hit);
 

@@ -11,6 +11,12 @@ static double sample_m(const sim_ground *ground, uint32_t column, uint32_t row)
            ground->hscale_m * ground->height[(size_t)row * ground->columns + column];
 }
 
+/* Of a column's or row's cells: where the ground ends inside, less than 1. */
+static double width(const sim_ground *ground, int axis, uint32_t number)
+{
+    return fmin(1, ground->size[axis] - number);
+}
+
 /* Height of one of a cell's two triangles' planes at (u, v) within the cell, 0..1. */
 static double plane_m(const sim_ground *ground, uint32_t column, uint32_t row, int south_east,
                       double u, double v)
@@ -29,13 +35,19 @@ static double clamp(double value, double low, double high)
     return value < low ? low : value > high ? high : value;
 }
 
+int sim_ground_has(const sim_ground *ground, double x_m, double y_m)
+{
+    return x_m >= 0 && y_m >= 0 && x_m <= ground->size[0] * ground->cell_m &&
+           y_m <= ground->size[1] * ground->cell_m;
+}
+
 double sim_ground_height_m(const sim_ground *ground, double x_m, double y_m)
 {
-    double x = clamp(x_m / ground->cell_m, 0, ground->columns - 1),
-           y = clamp(y_m / ground->cell_m, 0, ground->rows - 1);
+    double x = clamp(x_m / ground->cell_m, 0, ground->size[0]),
+           y = clamp(y_m / ground->cell_m, 0, ground->size[1]);
     uint32_t column = (uint32_t)clamp(floor(x), 0, ground->columns - 2),
              row = (uint32_t)clamp(floor(y), 0, ground->rows - 2);
-    double u = x - column, v = y - row;
+    double u = (x - column) / width(ground, 0, column), v = (y - row) / width(ground, 1, row);
     return plane_m(ground, column, row, u >= v, u, v);
 }
 
@@ -43,6 +55,7 @@ double sim_ground_height_m(const sim_ground *ground, double x_m, double y_m)
 typedef struct ray {
     const sim_ground *ground;
     double from[3], along[3], bend;
+    double side; /* 1: it comes from above the ground; -1: from below */
 } ray;
 
 static double ray_height(const ray *r, double t)
@@ -50,28 +63,31 @@ static double ray_height(const ray *r, double t)
     return r->from[2] + t * (r->along[2] + t * r->bend);
 }
 
-/* The least of a parabola that is `bend` bent, on t0..t1 of length 1: its values at both ends are
- * a and b. *where: at which part of the way. */
-static double lowest_between(double a, double b, double bend, double *where)
+/* The least of a parabola that is `bend` bent, on a way of length 1: its values at both ends are a
+ * and b. */
+static double lowest_between(double a, double b, double bend)
 {
-    *where = bend > 0 ? clamp((bend - (b - a)) / (2 * bend), 0, 1) : b < a;
-    return a + *where * (b - a) - bend * *where * (1 - *where);
+    double where = bend > 0 ? clamp((bend - (b - a)) / (2 * bend), 0, 1) : b < a;
+    return a + where * (b - a) - bend * where * (1 - where);
 }
 
-/* First ground on t0..t1 under one triangle's plane: above it the ray is a parabola that opens
- * upwards, met on the way down to its lowest point. */
+/* First ground on t0..t1 in one triangle's plane: over it the ray is a parabola, met where it first
+ * changes sides. */
 static int cast_plane(const ray *r, uint32_t column, uint32_t row, int south_east, double t0,
                       double t1, double *t_hit)
 {
-    double above[2], t[2] = { t0, t1 }, bend = r->bend * (t1 - t0) * (t1 - t0), where;
+    double above[2], t[2] = { t0, t1 }, bend = r->side * r->bend * (t1 - t0) * (t1 - t0);
     for (int i = 0; i < 2; i++)
-        above[i] = ray_height(r, t[i]) - plane_m(r->ground, column, row, south_east,
-                                                 r->from[0] + t[i] * r->along[0] - column,
-                                                 r->from[1] + t[i] * r->along[1] - row);
+        above[i] =
+            r->side *
+            (ray_height(r, t[i]) -
+             plane_m(r->ground, column, row, south_east,
+                     (r->from[0] + t[i] * r->along[0] - column) / width(r->ground, 0, column),
+                     (r->from[1] + t[i] * r->along[1] - row) / width(r->ground, 1, row)));
     *t_hit = t0;
     if (above[0] <= 0) return 1;
-    if (lowest_between(above[0], above[1], bend, &where) > 0) return 0;
-    /* bend p^2 - slope p + above = 0, the smaller root, in the form that does not cancel */
+    if (lowest_between(above[0], above[1], bend) > 0) return 0;
+    /* bend p^2 - slope p + above = 0, the first root, in the form that does not cancel */
     double slope = bend - (above[1] - above[0]),
            root = sqrt(fmax(0, slope * slope - 4 * bend * above[0]));
     *t_hit = t0 + (t1 - t0) * clamp(2 * above[0] / (slope + root), 0, 1);
@@ -83,8 +99,9 @@ static int cast_cell(const ray *r, uint32_t column, uint32_t row, double t0, dou
 {
     if (column >= r->ground->columns - 1 || row >= r->ground->rows - 1) return 0;
     /* u - v along the ray */
-    double difference = (r->from[0] - column) - (r->from[1] - row),
-           slope = r->along[0] - r->along[1];
+    double wide = width(r->ground, 0, column), deep = width(r->ground, 1, row),
+           difference = (r->from[0] - column) / wide - (r->from[1] - row) / deep,
+           slope = r->along[0] / wide - r->along[1] / deep;
     double crossing = slope != 0 ? -difference / slope : INFINITY;
     if (crossing > t0 && crossing < t1) {
         int first = difference + (t0 + crossing) / 2 * slope >= 0;
@@ -102,8 +119,8 @@ static int cast_block(const ray *r, unsigned log2, uint32_t column, uint32_t row
     const sim_ground *ground = r->ground;
     if (log2 >= SIM_GROUND_PYRAMID_FIRST) {
         if (column >= ground->pyramid[log2].columns || row >= ground->pyramid[log2].rows) return 0;
-        double where, lowest = lowest_between(ray_height(r, t0), ray_height(r, t1),
-                                              r->bend * (t1 - t0) * (t1 - t0), &where);
+        double lowest = lowest_between(ray_height(r, t0), ray_height(r, t1),
+                                       r->bend * (t1 - t0) * (t1 - t0));
         uint16_t most =
             ground->pyramid[log2].max[(size_t)row * ground->pyramid[log2].columns + column];
         if (lowest > ground->hoffset_m + ground->hscale_m * most) return 0;
@@ -134,12 +151,17 @@ double sim_ground_drop_m(const sim_ground *ground, double east_m, double north_m
     return ground->curve_per_m * (east_m * east_m + north_m * north_m);
 }
 
+static double edge_height_m(const sim_ground *ground, const double from_m[3],
+                            const double direction[3], double t)
+{
+    return sim_ground_height_m(ground, from_m[0] + t * direction[0], from_m[1] + t * direction[1]);
+}
+
 int sim_ground_cast(const sim_ground *ground, const double from_m[3], const double direction[3],
                     double t_max, double *t_hit)
 {
-    ray r = { .ground = ground };
+    ray r = { .ground = ground, .side = 1 };
     double t0 = 0, t1 = t_max;
-    const double size[2] = { ground->columns - 1, ground->rows - 1 };
     for (int axis = 0; axis < 3; axis++) {
         double scale = axis < 2 ? ground->cell_m : 1;
         r.from[axis] = from_m[axis] / scale;
@@ -148,12 +170,16 @@ int sim_ground_cast(const sim_ground *ground, const double from_m[3], const doub
     r.bend = sim_ground_drop_m(ground, direction[0], direction[1]);
     for (int axis = 0; axis < 2; axis++) { /* the part of the ray over the ground */
         if (r.along[axis] == 0) {
-            if (r.from[axis] < 0 || r.from[axis] > size[axis]) return 0;
+            if (r.from[axis] < 0 || r.from[axis] > ground->size[axis]) return 0;
             continue;
         }
-        double a = -r.from[axis] / r.along[axis], b = (size[axis] - r.from[axis]) / r.along[axis];
+        double a = -r.from[axis] / r.along[axis],
+               b = (ground->size[axis] - r.from[axis]) / r.along[axis];
         t0 = fmax(t0, fmin(a, b));
         t1 = fmin(t1, fmax(a, b));
     }
+    if (t0 > 0 && t0 < t1 &&
+        ray_height(&r, t0) < edge_height_m(ground, from_m, direction, t0))
+        r.side = -1; /* it comes in below the ground's edge */
     return t0 < t1 && cast_block(&r, ground->top, 0, 0, t0, t1, t_hit);
 }

@@ -1,5 +1,7 @@
 #include "sim_place.h"
 
+#include <math.h>
+
 int sim_place_in_node(const ff_terrain_info *info, const ff_drawn *drawn, const double point_m[3],
                       double cell[2])
 {
@@ -10,11 +12,21 @@ int sim_place_in_node(const ff_terrain_info *info, const ff_drawn *drawn, const 
     return cell[0] >= 0 && cell[1] >= 0 && cell[0] <= side && cell[1] <= side;
 }
 
+void sim_place_last(const ff_terrain_info *info, const ff_drawn *drawn, double cell[2])
+{
+    int64_t size_wu[2];
+    ff_shape_size_wu(info, size_wu);
+    for (int i = 0; i < 2; i++)
+        cell[i] = fmin(1u << info->node_log2,
+                       (double)(size_wu[i] - drawn->origin_wu[i]) / drawn->cell_wu);
+}
+
 void sim_place_middle(const ff_terrain_info *info, const ff_drawn *drawn, double point_m[3])
 {
-    double edge_m = (double)drawn->cell_wu * (1u << info->node_log2) / FF_WU_PER_METRE;
+    double last[2], cell_m = (double)drawn->cell_wu / FF_WU_PER_METRE;
+    sim_place_last(info, drawn, last);
     for (int i = 0; i < 2; i++)
-        point_m[i] = (double)drawn->origin_wu[i] / FF_WU_PER_METRE + edge_m / 2;
+        point_m[i] = (double)drawn->origin_wu[i] / FF_WU_PER_METRE + last[i] * cell_m / 2;
     point_m[2] = 0;
 }
 

@@ -9,7 +9,10 @@
 /* Column and row, in cells, of a point in a drawn node's grid: 1 when it lies over the node. */
 int sim_place_in_node(const ff_terrain_info *info, const ff_drawn *drawn, const double point_m[3],
                       double cell[2]);
-/* The middle of a drawn node, at height 0. */
+/* The column and row, in cells, of the terrain's last sample where it lies in the node; else the
+ * node's last ones. What is beyond is drawn there. */
+void sim_place_last(const ff_terrain_info *info, const ff_drawn *drawn, double cell[2]);
+/* The middle of a drawn node's ground, at height 0. */
 void sim_place_middle(const ff_terrain_info *info, const ff_drawn *drawn, double point_m[3]);
 /* The point straight over or under another one at a height, as an eye sees it: curved ground has
  * fallen away from the eye. */

@@ -37,6 +37,8 @@ static void open_rig(gap_rig *rig, const sys_surface_api *api, enum sys_gl_kind 
     sys_surface_desc surface = { "test", WIDTH, HEIGHT, gl };
     pack_fixture_desc pack = { .info = pack_fixture_info(6, 8, 8), .height = pack_fixture_hills };
     pack.info.spacing_wu = 19913; /* not a power of two: products round */
+    pack.info.samples_x -= 37;    /* the ground ends within its tiles */
+    pack.info.samples_y -= 22;
     pack.info.texture_log2 = images ? 5 : 0;
     pack.info.texture_levels = images ? 1 : 0;
     pack.colour = meadow;
@@ -57,7 +59,7 @@ static void open_rig(gap_rig *rig, const sys_surface_api *api, enum sys_gl_kind 
     desc.quality = (ff_quality){ .measure = FF_MEASURE_PIXELS,
                                  .error_px_q8 = 256,
                                  .sigma_q8 = 320,
-                                 .view_wu = 30000 * FF_WU_PER_METRE };
+                                 .view_wu = 60000 * FF_WU_PER_METRE }; /* all there is */
     assert_int_equal(ff_client_create(&desc, &rig->client), FF_OK);
 }
 
@@ -70,9 +72,9 @@ static void close_rig(gap_rig *rig)
     free(rig->rgb);
 }
 
-/* Low over the middle of the terrain, looking in any direction: far ground is seen at grazing
- * angles. */
-static c3d_camera camera_at(sys_random *random)
+/* Low over the middle of the terrain or by its edge, looking in any direction: far ground is seen
+ * at grazing angles. */
+static c3d_camera camera_at(sys_random *random, int by_edge)
 {
     c3d_camera camera = { .yaw = (int32_t)sys_random_below(random, 65536),
                           .pitch = -(int32_t)sys_random_below(random, 800),
@@ -80,7 +82,8 @@ static c3d_camera camera_at(sys_random *random)
                           .height = HEIGHT,
                           .focal_q8 = c3d_focal_q8(10923, WIDTH) };
     for (int axis = 0; axis < 2; axis++)
-        camera.pos_wu[axis] = (17000 + (int32_t)sys_random_below(random, 6000)) * FF_WU_PER_METRE;
+        camera.pos_wu[axis] =
+            ((by_edge ? 30800 : 17000) + (int32_t)sys_random_below(random, 6000)) * FF_WU_PER_METRE;
     camera.pos_wu[2] = (1500 + (int32_t)sys_random_below(random, 300)) * FF_WU_PER_METRE;
     return camera;
 }
@@ -126,7 +129,7 @@ static void count_gaps(const sys_surface_api *api, enum sys_gl_kind gl,
     sys_random_seed(&random, 7, 1);
     open_rig(&rig, api, gl, backend, images);
     for (int i = 0; i < VIEWS; i++) {
-        c3d_camera camera = camera_at(&random);
+        c3d_camera camera = camera_at(&random, i % 3 == 2);
         for (int step = 0; step < 12; step++, now_us += 33000) {
             ff_client_work(rig.client, now_us);
             ff_client_update(rig.client, now_us, &camera);

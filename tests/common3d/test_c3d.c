@@ -241,6 +241,16 @@ static void textures_lie_on_the_grid_of_the_mesh(void **state)
                        "................\n................\n....bbwwww......\n....bbwwww......\n"
                        "....bbwwww......\n....bbwwww......\n....rrgggg......\n....rrgggg......\n"
                        "....rrgggg......\n....rrgggg......\n................\n................\n"));
+        /* The last column ends a quarter of the way, the last row too: beyond, red is all there is.
+         */
+        draw.tex_scale_q16[0] = 21845;
+        draw.tex_last_q16[0] = 5 << 14;
+        draw.tex_last_q16[1] = 1 << 14;
+        assert_true(
+            picture_is(kit, &draw, 1,
+                       "................\n................\n....rrrrrr......\n....rrrrrr......\n"
+                       "....rrrrrr......\n....rrrrrr......\n....rrrrrr......\n....rrrrrr......\n"
+                       "....rrrrrr......\n....rrrrrr......\n................\n................\n"));
         c3d_texture_free(kit->device, texture);
         c3d_strip_free(kit->device, draw.strip);
         c3d_mesh_free(kit->device, draw.mesh);

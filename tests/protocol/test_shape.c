@@ -72,7 +72,11 @@ static void neighbours_of_small_grids_all(void **state)
 
 static void neighbours_of_large_grids_sampled(void **state)
 {
-    ff_terrain_info info = { .tile_log2 = 15, .tiles_x = 1u << 14, .tiles_y = 1u << 14 };
+    ff_terrain_info info = { .tile_log2 = 15,
+                             .tiles_x = 1u << 14,
+                             .tiles_y = 1u << 14,
+                             .samples_x = (1u << 29) + 1,
+                             .samples_y = (1u << 29) + 1 };
     uint32_t random = 1;
 
     (void)state;
@@ -189,6 +193,94 @@ static void points_are_found_in_their_tile(void **state)
         { -1, 5, 0 }, { 5, -1, 0 }, { 96 * 77 + 1, 5, 0 }, { 5, 64 * 77 + 1, 0 }
     };
     for (int i = 0; i < 4; i++) assert_false(ff_shape_locate(&info, &frame, outside[i], &spot));
+}
+
+/* ---- where the samples end ---- */
+
+static ff_terrain_info ending_terrain(void)
+{
+    ff_terrain_info info = terrain_of(1, 1);
+    ff_shape_cover(&info, 100, 70); /* 4 by 3 tiles of 32 */
+    assert_int_equal(ff_terrain_check(&info), FF_OK);
+    return info;
+}
+
+static uint32_t clamped(int64_t value, uint32_t most)
+{
+    return value < 0 ? 0 : value > most ? most : (uint32_t)value;
+}
+
+static void check_ending_node(const ff_terrain_info *info, ff_key key)
+{
+    static const int64_t height_wu[2] = { 0, 10 };
+    uint32_t level = ff_key_level(key), edge = 32u >> level, code = ff_key_code(key);
+    uint32_t x = ff_key_tile(key) % 4 * 32 + ff_morton_x(code) * edge,
+             y = ff_key_tile(key) / 4 * 32 + ff_morton_y(code) * edge;
+    ff_extent extent = ff_shape_extent(info, key);
+    assert_int_equal(extent.columns, clamped((int64_t)99 - x, edge));
+    assert_int_equal(extent.rows, clamped((int64_t)69 - y, edge));
+    assert_int_equal(ff_shape_has_ground(info, key), x < 99 && y < 69);
+    if (!ff_shape_has_ground(info, key)) return;
+    ff_frame frame = ff_shape_frame(info, nowhere);
+    ff_placed placed = ff_shape_put(info, &frame, key);
+    for (uint32_t column = 0; column <= 4; column++)
+        for (uint32_t row = 0; row <= 4; row++) {
+            int32_t place_wu[3];
+            ff_shape_place(info, key, &placed, column, row, 0, place_wu);
+            assert_int_equal(place_wu[0], clamped(x + column * (edge / 4), 99) * 77);
+            assert_int_equal(place_wu[1], clamped(y + row * (edge / 4), 69) * 77);
+        }
+    ff_box box = ff_shape_box(info, key, &placed, height_wu, nowhere);
+    int64_t way_wu[3];
+    ff_shape_to_middle(info, key, &placed, 0, nowhere, way_wu);
+    for (int axis = 0; axis < 2; axis++) {
+        int64_t first = axis ? y : x, length = axis ? extent.rows : extent.columns;
+        assert_int_equal(box.lo[axis], first * 77);
+        assert_int_equal(box.hi[axis], (first + length) * 77);
+        assert_int_equal(way_wu[axis], first * 77 + length * 77 / 2);
+    }
+    for (int side = 0; side < FF_SIDE_COUNT; side++) {
+        ff_key across = naive_neighbour(info, key, (enum ff_side)side);
+        if (across != FF_KEY_NONE && !ff_shape_has_ground(info, across)) across = FF_KEY_NONE;
+        assert_true(ff_shape_neighbour(info, key, (enum ff_side)side).key == across);
+    }
+}
+
+static void nodes_end_with_the_samples(void **state)
+{
+    (void)state;
+    ff_terrain_info info = ending_terrain();
+    for (uint32_t level = 0; level <= 3; level++)
+        for (uint32_t tile = 0; tile < 12; tile++)
+            for (uint32_t code = 0; code < 1u << (2 * level); code++)
+                check_ending_node(&info, ff_key_make(tile, level, code));
+}
+
+static void nothing_is_found_beyond_the_samples(void **state)
+{
+    (void)state;
+    static const int64_t height_wu[2] = { -100, 100 };
+    ff_terrain_info info = ending_terrain();
+    ff_frame frame = ff_shape_frame(&info, nowhere);
+    ff_spot spot;
+    const int32_t corner[3] = { 99 * 77, 69 * 77, 0 }, east[3] = { 99 * 77 + 1, 5, 0 },
+                  north[3] = { 5, 69 * 77 + 1, 0 };
+    assert_true(ff_shape_locate(&info, &frame, corner, &spot));
+    assert_int_equal(spot.tile, 11);
+    assert_int_equal(spot.column_q16, 3 << 16);
+    assert_int_equal(spot.row_q16, 5 << 16);
+    assert_false(ff_shape_locate(&info, &frame, east, &spot));
+    assert_false(ff_shape_locate(&info, &frame, north, &spot));
+    ff_box all = ff_shape_bounds(&info, &frame, height_wu, nowhere);
+    assert_int_equal(all.hi[0], 99 * 77);
+    assert_int_equal(all.hi[1], 69 * 77);
+    /* 20 samples beyond the last one, still over the tile */
+    const int32_t beyond[3] = { 119 * 77, 40 * 77, 0 };
+    assert_int_equal(ff_shape_tile_distance(&info, &frame, beyond, 7), 20 * 77);
+    ff_reach reach = ff_shape_reach(&info, &frame, beyond, 20 * 77, height_wu);
+    assert_true(ff_shape_reaches(&info, &reach, 7));
+    reach = ff_shape_reach(&info, &frame, beyond, 20 * 77 - 1, height_wu);
+    assert_false(ff_shape_reaches(&info, &reach, 7));
 }
 
 /* ---- tiles in reach ---- */
@@ -373,6 +465,8 @@ int main(void)
         cmocka_unit_test(shared_rims_lie_in_one_place),
         cmocka_unit_test(places_are_products),
         cmocka_unit_test(points_are_found_in_their_tile),
+        cmocka_unit_test(nodes_end_with_the_samples),
+        cmocka_unit_test(nothing_is_found_beyond_the_samples),
         cmocka_unit_test(walks_cover_what_is_in_reach),
         cmocka_unit_test(the_plane_has_one_frame_and_no_horizon),
         cmocka_unit_test(curved_ground_falls_away_with_the_square),

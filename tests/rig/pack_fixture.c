@@ -48,12 +48,18 @@ static uint32_t node_place(const ff_terrain_info *info, ff_key key, uint32_t *x,
     return extent;
 }
 
+/* Beyond the last sample the rim is repeated. */
+static uint16_t height_at(const pack_fixture_desc *desc, uint32_t x, uint32_t y)
+{
+    uint32_t east = desc->info.samples_x - 1, north = desc->info.samples_y - 1;
+    return desc->height(desc->context, x < east ? x : east, y < north ? y : north);
+}
+
 static void source_grid(const pack_fixture_desc *desc, ff_key key, uint32_t cells, uint16_t *out)
 {
     uint32_t x, y, step = node_place(&desc->info, key, &x, &y) / cells;
     for (uint32_t j = 0; j <= cells; j++)
-        for (uint32_t i = 0; i <= cells; i++)
-            *out++ = desc->height(desc->context, x + i * step, y + j * step);
+        for (uint32_t i = 0; i <= cells; i++) *out++ = height_at(desc, x + i * step, y + j * step);
 }
 
 /* Height of the drawn cell at fraction (fx, fy)/step, times step: two triangles with their common
@@ -64,21 +70,23 @@ static int64_t cell_height(const int64_t h[4], int64_t fx, int64_t fy, int64_t s
     return h[0] * step + (h[2] - h[0]) * fy + (h[3] - h[2]) * fx;
 }
 
+/* Cells in which the ground ends are drawn narrower. */
 static uint8_t node_error(const pack_fixture_desc *desc, ff_key key)
 {
     uint32_t x0, y0, cells = 1u << desc->info.node_log2;
     uint32_t extent = node_place(&desc->info, key, &x0, &y0), step = extent / cells;
-    int64_t worst = 0;
-    for (uint32_t y = 0; y < extent; y++)
-        for (uint32_t x = 0; x < extent; x++) {
-            uint32_t cx = x0 + x / step * step, cy = y0 + y / step * step;
-            int64_t corner[4];
+    int64_t worst = 0, east = desc->info.samples_x - 1, north = desc->info.samples_y - 1;
+    for (uint32_t y = y0; y < y0 + extent && y < north; y++)
+        for (uint32_t x = x0; x < x0 + extent && x < east; x++) {
+            uint32_t cx = x0 + (x - x0) / step * step, cy = y0 + (y - y0) / step * step;
+            int64_t wide = cx + step < east ? step : east - cx,
+                    deep = cy + step < north ? step : north - cy, corner[4];
             for (uint32_t c = 0; c < 4; c++)
-                corner[c] = desc->height(desc->context, cx + (c & 1) * step, cy + (c >> 1) * step);
-            int64_t drawn = cell_height(corner, x0 + x - cx, y0 + y - cy, step);
-            int64_t off = drawn - (int64_t)step * desc->height(desc->context, x0 + x, y0 + y);
-            off = (off < 0 ? -off : off) + step - 1;
-            worst = off / step > worst ? off / step : worst;
+                corner[c] = height_at(desc, cx + (c & 1) * step, cy + (c >> 1) * step);
+            int64_t drawn = cell_height(corner, (x - cx) * deep, (y - cy) * wide, wide * deep);
+            int64_t off = drawn - wide * deep * height_at(desc, x, y);
+            off = ((off < 0 ? -off : off) + wide * deep - 1) / (wide * deep);
+            worst = off > worst ? off : worst;
         }
     return ff_geometric_error_encode((uint32_t)worst + desc->info.max_error);
 }

@@ -7,8 +7,7 @@
 
 typedef struct pack_fixture_desc {
     ff_terrain_info info; /* the fixture fills in the checksum; the caller sets the rest */
-    /* Height in steps of sample (x, y) counted from the south-west; called for all tiles' samples,
-     * rims included. */
+    /* Height in steps of sample (x, y) counted from the south-west */
     uint16_t (*height)(void *context, uint32_t x, uint32_t y);
     /* Colour of a point of the ground in wu, when info.texture_log2 is not 0. */
     void (*colour)(void *context, int64_t x_wu, int64_t y_wu, uint8_t rgb[3]);

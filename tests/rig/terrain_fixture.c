@@ -74,6 +74,11 @@ void fixture_make(terrain_fixture *fx, unsigned node_log2, unsigned tile_log2, u
     };
 }
 
+void fixture_samples(terrain_fixture *fx, uint32_t samples_x, uint32_t samples_y)
+{
+    ff_shape_cover(&fx->info, samples_x, samples_y);
+}
+
 void fixture_tree(terrain_fixture *fx, uint32_t node_count, uint32_t wish_count)
 {
     fixture_free(fx);

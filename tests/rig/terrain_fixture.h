@@ -25,6 +25,8 @@ typedef struct terrain_fixture {
 /* Steps of 1 m, samples every 10 m; the test may change fx->info before fixture_tree. */
 void fixture_make(terrain_fixture *fx, unsigned node_log2, unsigned tile_log2, uint32_t tiles_x,
                   uint32_t tiles_y, fixture_height height);
+/* The ground ends with this many samples, and its tiles are as many as hold them. */
+void fixture_samples(terrain_fixture *fx, uint32_t samples_x, uint32_t samples_y);
 /* (Re)makes the tree, and the decoder for fx->info. */
 void fixture_tree(terrain_fixture *fx, uint32_t node_count, uint32_t wish_count);
 void fixture_free(terrain_fixture *fx);

@@ -303,13 +303,23 @@ static void a_panorama_shows_between_its_planes(void **state)
 
 /* ---- the parts ---- */
 
-static void usual_ground(uint8_t **bytes, ff_pack *pack, sim_ground *ground)
+/* The usual pack, ending with so many samples. */
+static void ending_ground(uint8_t **bytes, ff_pack *pack, sim_ground *ground, uint32_t samples_x,
+                          uint32_t samples_y, uint64_t samples_max)
 {
     size_t count;
-    *bytes = pack_fixture_usual(&count);
+    pack_fixture_desc desc = { .info = pack_fixture_info(6, 2, 2), .height = pack_fixture_hills };
+    desc.info.samples_x = samples_x;
+    desc.info.samples_y = samples_y;
+    *bytes = pack_fixture_make(&desc, &count);
     assert_non_null(*bytes);
     assert_int_equal(ff_pack_open(pack, *bytes, count), FF_OK);
-    assert_int_equal(sim_ground_load(ground, pack, UINT64_MAX), FF_OK);
+    assert_int_equal(sim_ground_load(ground, pack, samples_max), FF_OK);
+}
+
+static void usual_ground(uint8_t **bytes, ff_pack *pack, sim_ground *ground)
+{
+    ending_ground(bytes, pack, ground, 129, 129, UINT64_MAX);
 }
 
 /* The ground in memory is what the encoder was given, sample by sample (the usual pack is
@@ -342,16 +352,46 @@ static double uniform(sys_random *random, double low, double high)
     return low + (high - low) * sys_random_u32(random) / 4294967296.0;
 }
 
-/* Rays in all directions: the hit lies on the ground, and small steps find no ground before it. */
-static void rays_hit_where_steps_do(void **state)
+/* The ground in memory ends where the source does, at every level: where a cell is longer than
+ * what is left, the last sample's place has the rim's height. */
+static void ground_ends_with_the_source(void **state)
 {
     (void)state;
+    for (int level = 3; level >= 0; level--) {
+        uint8_t *bytes;
+        ff_pack pack;
+        sim_ground ground;
+        ending_ground(&bytes, &pack, &ground, 100, 70, (99 / 8 + 2) * (69 / 8 + 2) << 2 * level);
+        double cell = 8 >> level, east = 99 * 32, north = 69 * 32;
+        assert_int_equal(ground.level, level);
+        assert_int_equal(ground.columns, ceil(99 / cell) + 1);
+        assert_int_equal(ground.rows, ceil(69 / cell) + 1);
+        assert_near(sim_ground_height_m(&ground, east, north), pack_fixture_hills(NULL, 99, 69));
+        assert_near(sim_ground_height_m(&ground, east, 64 * 32), pack_fixture_hills(NULL, 99, 64));
+        assert_near(sim_ground_height_m(&ground, 96 * 32, north), pack_fixture_hills(NULL, 96, 69));
+        assert_true(sim_ground_has(&ground, east, north) && sim_ground_has(&ground, 0, 0));
+        assert_false(sim_ground_has(&ground, east + 0.1, north) ||
+                     sim_ground_has(&ground, east, north + 0.1) ||
+                     sim_ground_has(&ground, -0.1, 0) || sim_ground_has(&ground, 0, -0.1));
+        double t, down[3] = { 0, 0, -1 }, inside[3] = { east - 0.1, north - 0.1, 4000 },
+                  outside[3] = { east + 0.1, north - 0.1, 4000 };
+        assert_true(sim_ground_cast(&ground, inside, down, 9000, &t));
+        assert_false(sim_ground_cast(&ground, outside, down, 9000, &t));
+        sim_ground_free(&ground);
+        free(bytes);
+    }
+}
+
+/* Rays in all directions: the hit lies on the ground, and small steps find no ground before it. */
+static void check_rays(uint32_t samples_x, uint32_t samples_y, uint64_t samples_max)
+{
     uint8_t *bytes;
     ff_pack pack;
     sim_ground ground;
     sys_random random;
-    int hits = 0;
-    usual_ground(&bytes, &pack, &ground);
+    int hits = 0, below = 0;
+    double east = (samples_x - 1) * 32, north = (samples_y - 1) * 32;
+    ending_ground(&bytes, &pack, &ground, samples_x, samples_y, samples_max);
     sys_random_seed(&random, 5, 5);
     for (int i = 0; i < 400; i++) {
         /* every other ray over ground that falls away 12 times as steeply as the Earth's, or more
@@ -364,25 +404,37 @@ static void rays_hit_where_steps_do(void **state)
         along[0] = i % 10 ? uniform(&random, -1, 1) : 0;
         along[1] = i % 11 ? uniform(&random, -1, 1) : 0;
         along[2] = uniform(&random, -1, 0.05);
-        int hit = sim_ground_cast(&ground, from, along, 20000, &t);
+        int hit = sim_ground_cast(&ground, from, along, 20000, &t), side = 0;
         hits += hit;
         for (double u = 0; u < (hit ? t - 1e-6 : 20000); u += 0.9) {
             double x = from[0] + u * along[0], y = from[1] + u * along[1],
                    z = from[2] + u * along[2] +
                        sim_ground_drop_m(&ground, u * along[0], u * along[1]);
-            if (x < 0 || y < 0 || x > 4096 || y > 4096) continue;
-            if (z < sim_ground_height_m(&ground, x, y) - 1e-6)
-                fail_msg("ray %d is below the ground at %g, before %g", i, u, t);
+            if (x < 0 || y < 0 || x > east || y > north) continue;
+            double above = z - sim_ground_height_m(&ground, x, y);
+            if (!side) side = above < 0 ? -1 : 1; /* it may have come in below the edge */
+            if (side * above < -1e-6) fail_msg("ray %d meets ground at %g, before %g", i, u, t);
         }
+        below += side < 0;
         if (hit) {
             double x = from[0] + t * along[0], y = from[1] + t * along[1];
             double drop_m = sim_ground_drop_m(&ground, t * along[0], t * along[1]);
+            assert_true(x < east + 1e-6 && y < north + 1e-6);
             assert_near(from[2] + t * along[2] + drop_m, sim_ground_height_m(&ground, x, y));
         }
     }
-    assert_true(hits > 100 && hits < 400);
+    assert_in_range(hits, 60, 399);
+    assert_int_equal(below > 0, samples_x < 129);
     sim_ground_free(&ground);
     free(bytes);
+}
+
+static void rays_hit_where_steps_do(void **state)
+{
+    (void)state;
+    check_rays(129, 129, UINT64_MAX);
+    check_rays(100, 70, UINT64_MAX);
+    check_rays(100, 70, 27 * 19); /* a level whose cells do not end there */
 }
 
 static void projection_is_the_renderers(void **state)
@@ -460,6 +512,7 @@ int main(void)
         cmocka_unit_test(parallax_is_the_way_over_the_depth),
         cmocka_unit_test(a_panorama_shows_between_its_planes),
         cmocka_unit_test(ground_is_the_source),
+        cmocka_unit_test(ground_ends_with_the_source),
         cmocka_unit_test(rays_hit_where_steps_do),
         cmocka_unit_test(projection_is_the_renderers),
         cmocka_unit_test(drawn_height_of_a_cut),
