@@ -155,16 +155,30 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
 
 /* ---- drawing ---- */
 
-/* Near and far planes where the camera leaves them open: an eighth of the height above ground, and
+/* How near ground may be: as far as the camera is above it, or from the terrain's border when it is
+ * outside. 0: nobody knows. */
+static int64_t clearance_wu(const ff_client *client, const c3d_camera *camera)
+{
+    int64_t height_wu[2], away_wu = 0;
+    int32_t ground_wu;
+    if (ff_client_ground(client, camera->pos_wu[0], camera->pos_wu[1], &ground_wu))
+        return (int64_t)camera->pos_wu[2] - ground_wu;
+    ff_terrain_range_wu(&client->info, height_wu);
+    ff_box all = ff_shape_bounds(&client->info, &client->last_view.frame, height_wu,
+                                 camera->pos_wu);
+    for (int axis = 0; axis < 2; axis++) {
+        int64_t beyond_wu = all.lo[axis] > -all.hi[axis] ? all.lo[axis] : -all.hi[axis];
+        away_wu = beyond_wu > away_wu ? beyond_wu : away_wu;
+    }
+    return away_wu;
+}
+
+/* Near and far planes where the camera leaves them open: an eighth of the way to the ground, and
  * the farthest node drawn. */
 static void fit_planes(const ff_client *client, c3d_camera *camera)
 {
-    int32_t ground_wu;
     if (client->camera.near_wu <= 0) {
-        int64_t clearance_wu = 8 * NEAR_WU_MIN;
-        if (ff_client_ground(client, camera->pos_wu[0], camera->pos_wu[1], &ground_wu))
-            clearance_wu = (int64_t)camera->pos_wu[2] - ground_wu;
-        int64_t near_wu = clearance_wu / 8;
+        int64_t near_wu = clearance_wu(client, camera) / 8;
         camera->near_wu = near_wu < NEAR_WU_MIN   ? NEAR_WU_MIN
                           : near_wu > NEAR_WU_MAX ? NEAR_WU_MAX
                                                   : (int32_t)near_wu;

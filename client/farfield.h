@@ -208,7 +208,9 @@ const ff_tree *ff_client_tree(const ff_client *client);
 /* For checks and the emulator: the c3d device; NULL without a back end and until the terrain is
  * known, another one after another terrain. */
 c3d_device *ff_client_device(ff_client *client);
-/* Ground height at (x, y) as drawn now: 1 and *z_wu, or 0. */
+/* Ground height at (x, y) as drawn now: 1 and *z_wu, or 0 where no ground is drawn: beyond the
+ * terrain's last sample there is none, and else it has not come or lies further than the client
+ * draws. */
 int ff_client_ground(const ff_client *client, int32_t x_wu, int32_t y_wu, int32_t *z_wu);
 void ff_client_get_stats(const ff_client *client, ff_client_stats *stats);
 /* The pools of the block and their number; those of a terrain have no items while none is known. */

@@ -7,6 +7,7 @@
 #define PI              3.14159265358979323846
 #define PITCH_DEGREES   (-6.0)
 #define ABOVE_M         1.0 /* ground that a recorded flight keeps below */
+#define WORLD_M         8e6 /* as far as recorded positions go (fly_recording.c) */
 #define HOVER_DEGREES_S 6.0
 #define TURN_EVERY_S    20.0
 #define TURN_S          2.0
@@ -86,11 +87,14 @@ static void place_unmoved(const fly_path *path, double arc_m, double pos_m[2], d
     }
 }
 
-/* Moves a position by what teleports have moved the path; a border stops it. */
+/* Moves a position by what teleports have moved the path; a border stops it. A recorded path may
+ * leave the terrain: what stops it is the end of the world's positions. */
 static void move(const fly_path *path, double pos_m[2])
 {
+    int recorded = path->kind == FLY_RECORDED;
     for (int i = 0; i < 2; i++)
-        pos_m[i] = fmin(fmax(pos_m[i] + path->moved_m[i], 0), path->size_m[i]);
+        pos_m[i] = fmin(fmax(pos_m[i] + path->moved_m[i], recorded ? -WORLD_M : 0),
+                        recorded ? WORLD_M : path->size_m[i]);
 }
 
 static void place(const fly_path *path, double arc_m, double pos_m[2], double heading[2])
@@ -146,6 +150,7 @@ static void set_camera(c3d_camera *camera, const double pos_m[2], double z_m, do
     camera->roll = 0;
 }
 
+/* Outside the terrain there is no ground to keep above; heights above ground are above its rim. */
 static void recorded_at(const fly_path *path, double t_s, c3d_camera *camera)
 {
     fly_fix fix;
@@ -153,8 +158,8 @@ static void recorded_at(const fly_path *path, double t_s, c3d_camera *camera)
     double pos_m[2] = { fix.x_m, fix.y_m };
     move(path, pos_m);
     double ground_m = sim_ground_height_m(path->ground, pos_m[0], pos_m[1]);
-    double z_m = fmax(ground_m + ABOVE_M,
-                      path->recording->above_ground ? ground_m + fix.up_m : fix.up_m);
+    double z_m = path->recording->above_ground ? ground_m + fix.up_m : fix.up_m;
+    if (sim_ground_has(path->ground, pos_m[0], pos_m[1])) z_m = fmax(z_m, ground_m + ABOVE_M);
     set_camera(camera, pos_m, z_m, fix.heading_deg / 360, fmin(fmax(fix.pitch_deg, -90), 90));
 }
 

@@ -1,5 +1,6 @@
 /* Flight paths: where the camera is at a time of the flight. Always inside the terrain's source,
- * always above the true ground (a recorded one at least a metre). */
+ * but for a recorded one, which goes where it went; always above the true ground where there is
+ * some (a recorded one at least a metre). */
 #ifndef FLY_PATH_H
 #define FLY_PATH_H
 
@@ -28,7 +29,7 @@ void fly_path_init(fly_path *path, const fly_options *options, const ff_terrain_
 void fly_path_at(const fly_path *path, double t_s, c3d_camera *camera);
 
 /* Moves the path so that it is at (x, y), shares 0..1 of the source's size, at t_s. From then on it
- * stays where a border stops it. */
+ * stays where a border stops it, unless it is recorded. */
 void fly_path_teleport(fly_path *path, double t_s, double x, double y);
 
 #endif

@@ -139,6 +139,27 @@ flies walk $quick --path "$work/walk.csv" --settle 1
 is 'len(r) == 6 and s["crack_frames"] == 0 and s["settle_s"] <= 5' "a recorded path lasts as long as it was recorded"
 is '[(a["x_m"], a["y_m"]) for a in r] == [(4000, 4000), (4000, 4000), (4050, 4000), (4100, 4000), (4100, 4100), (4100, 4200)]' "and leads where it led"
 is 'abs(r[0]["z_m"] - 50 - (r[5]["z_m"] - 1)) < 500 and r[5]["z_m"] > 300' "above the ground, whatever was recorded"
+# The terrain ends 9160 m to the east, within its last tile; from there the flight looks back, below the rim's height in the end.
+python3 tests/rig/hills.py 230 "$work/edge.raw"
+"$bin/farfield-bake" "$work/edge.raw" --raw 230x230 --spacing 40 --tile-log2 6 --quiet -o "$work/edge.ffp"
+cat >"$work/leave.path" <<'END'
+t_s,x_m,y_m,z_m,heading_deg
+0,8800,5000,2000,90
+4,9600,5000,2000,90
+5,9600,5000,2000,270
+9,13600,5000,2000,270
+12,13600,5000,-100,270
+END
+leave="--path $work/leave.path --link lan --quality px:1 --settle 1 --audit on --audit-step 4"
+for panorama in on off; do
+    px=$([ $panorama = on ] && echo 6.5 || echo 1) # the parallax allowed
+    flies leave $leave --pack "$work/edge.ffp" --panorama $panorama
+    is '[(a["x_m"], a["z_m"]) for a in r[:2] + r[9:]] == [(8800, 2000), (9000, 2000), (13600, 2000), (13600, 1300), (13600, 600), (13600, -100)]' \
+        "a recorded path leaves the terrain, and keeps above nothing there (panorama $panorama)"
+    is 's["crack_frames"] == 0 and r[4]["triangles"] == 0 and r[4]["undrawn_px_percent"] == 0' "looking away there is nothing to draw, and nothing missing (panorama $panorama)"
+    is 'all(a["triangles"] > 500 and a["undrawn_px_percent"] == 0 and a["err_px_p95"] <= '$px' for a in r[6:])' \
+        "and the terrain is seen from outside (panorama $panorama)"
+done
 flies flown $quick --path diagonal
 flies reflown $quick --path "$work/flown.csv" --seconds 4
 is "all(abs(a['x_m'] - float(b['x_m'])) < 0.1 and abs(a['z_m'] - float(b['z_m'])) < 0.1 for a, b in zip(r, csv.DictReader(open('$work/flown.csv'))))" \
