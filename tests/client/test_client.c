@@ -527,6 +527,48 @@ static void only_what_is_in_view_is_asked_for(void **state)
     rig_close(&rig);
 }
 
+/* Over the last sample there is ground, and a unit beyond there is none, wherever the viewer is. */
+static void assert_ends(const client_rig *rig, int32_t east_wu, int32_t north_wu)
+{
+    int32_t z_wu;
+    assert_int_equal(ff_client_ground(rig->client, east_wu, north_wu, &z_wu), 1);
+    assert_int_equal(z_wu, pack_fixture_hills(NULL, 99, 69) * METRE);
+    assert_int_equal(ff_client_ground(rig->client, east_wu + 1, north_wu, &z_wu), 0);
+    assert_int_equal(ff_client_ground(rig->client, east_wu, north_wu + 1, &z_wu), 0);
+    assert_int_equal(ff_client_ground(rig->client, 0, 0, &z_wu), 1);
+    assert_int_equal(ff_client_ground(rig->client, -1, 0, &z_wu), 0);
+    assert_int_equal(ff_client_ground(rig->client, 0, -1, &z_wu), 0);
+}
+
+static void ground_ends_with_the_samples(void **state)
+{
+    (void)state;
+    int32_t east_wu = 99 * 32 * METRE, north_wu = 69 * 32 * METRE;
+    for (int images = 0; images < 2; images++) {
+        client_rig rig;
+        rig_open(&rig, 0);
+        rig_use_samples(&rig, 100, 70, images ? 5 : 0);
+        rig.desc.quality = (ff_quality){ .measure = FF_MEASURE_PIXELS, .error_px_q8 = 8 };
+        rig.desc.no_prefetch = 0;
+        rig_client(&rig, 4 * MB);
+        assert_true(rig_settle(&rig, 800));
+        assert_ends(&rig, east_wu, north_wu);
+        /* out over the corner, and a look back */
+        for (int i = 0; i < 100; i++) {
+            for (int axis = 0; axis < 2; axis++) rig.camera.pos_wu[axis] += 40 * METRE;
+            rig_step(&rig, 50000);
+        }
+        rig.camera.yaw = 40960;
+        assert_true(rig_settle(&rig, 800));
+        assert_true(rig.camera.pos_wu[0] > east_wu && rig.camera.pos_wu[1] > north_wu);
+        assert_true(rig_stats(&rig).tree.nodes_drawn > 4);
+        assert_ends(&rig, east_wu, north_wu);
+        assert_int_equal(rig_stats(&rig).requests_failed, 0);
+        assert_requests_add_up(&rig);
+        rig_close(&rig);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(same_picture_over_stream_and_pack),
@@ -545,6 +587,7 @@ int main(void)
                                         cmocka_unit_test(low_power_is_coarser_and_recovers),
                                         cmocka_unit_test(interruption_asks_for_nothing),
                                         cmocka_unit_test(prefetch_asks_ahead_only_in_motion),
-                                        cmocka_unit_test(only_what_is_in_view_is_asked_for) };
+                                        cmocka_unit_test(only_what_is_in_view_is_asked_for),
+                                        cmocka_unit_test(ground_ends_with_the_samples) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
