@@ -222,36 +222,44 @@ static void padding_is_neither_held_nor_asked_for(void **state)
 
 /* ---- heights ---- */
 
-static void heights_end_with_the_ground(void **state)
+static void check_heights(uint32_t samples_x, uint32_t samples_y)
 {
-    (void)state;
     terrain_fixture fx;
     fixture_make(&fx, 3, 6, 1, 1, fixture_hills);
-    fixture_samples(&fx, 100, 70);
+    fixture_samples(&fx, samples_x, samples_y);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
+    int32_t last_x = (int32_t)samples_x - 1, last_y = (int32_t)samples_y - 1, z,
+            east = last_x * CELL_WU, north = last_y * CELL_WU;
     for (unsigned depth = 1; depth <= 4; depth++) {
         fixture_tree(&fx, 2000, 64);
         quality.depth_max = (uint8_t)depth;
-        ff_view view = fixture_view(980, 690, 300, 225, -20);
+        ff_view view = fixture_view(last_x * 10 - 10, last_y * 10, 300, 225, -20);
         fixture_settle(&fx, &view, &quality, 100);
-        int32_t z, east = 99 * CELL_WU, north = 69 * CELL_WU;
-        for (int32_t along = 0; along <= 99; along++) {
+        for (int32_t along = 0; along <= last_x; along++) {
             assert_int_equal(ff_tree_drawn_height(fx.tree, along * CELL_WU, north, &z), 1);
             assert_int_equal(ff_tree_drawn_height(fx.tree, along * CELL_WU, north + 1, &z), 0);
             assert_int_equal(ff_tree_drawn_height(fx.tree, along * CELL_WU, -1, &z), 0);
         }
-        for (int32_t along = 0; along <= 69; along++) {
+        for (int32_t along = 0; along <= last_y; along++) {
             assert_int_equal(ff_tree_drawn_height(fx.tree, east, along * CELL_WU, &z), 1);
             assert_int_equal(ff_tree_drawn_height(fx.tree, east + 1, along * CELL_WU, &z), 0);
             assert_int_equal(ff_tree_drawn_height(fx.tree, -1, along * CELL_WU, &z), 0);
         }
         /* The corner is a sample, however coarse its node; so are those of the rim. */
         assert_int_equal(ff_tree_drawn_height(fx.tree, east, north, &z), 1);
-        assert_int_equal(z, ff_height_wu(&fx.info, fixture_hills(99, 69)));
+        assert_int_equal(z, ff_height_wu(&fx.info, fixture_hills(samples_x - 1, samples_y - 1)));
         assert_int_equal(ff_tree_drawn_height(fx.tree, east, 64 * CELL_WU, &z), 1);
-        assert_int_equal(z, ff_height_wu(&fx.info, fixture_hills(99, 64)));
+        assert_int_equal(z, ff_height_wu(&fx.info, fixture_hills(samples_x - 1, 64)));
         fixture_free(&fx);
     }
+}
+
+static void heights_end_with_the_ground(void **state)
+{
+    (void)state;
+    check_heights(100, 70);
+    check_heights(97, 97); /* in the middle of a root */
+    check_heights(81, 73); /* and of its children */
 }
 
 /* The judge's triangles, in double precision, and the tree's own answer. */
