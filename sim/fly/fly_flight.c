@@ -152,6 +152,7 @@ static void judge_nothing(fly_sources *from)
     for (unsigned kind = 0; kind < FF_DATA_CLASSES; kind++) f->came[kind] = f->unused[kind] = NAN;
     from->audit.undrawn_percent = from->panorama_px_percent = NAN;
     f->judged_all = f->supporting = f->percent = NAN;
+    from->picture = (sim_picture_figures){ NAN, NAN, NAN };
 }
 
 static int read_sources(fly_flight *flight, double t_s, fly_sources *from)
@@ -183,6 +184,24 @@ static int read_picture(fly_flight *flight)
     return rc == FF_OK ? 0 : fail("picture", ff_error_text(rc));
 }
 
+/* The picture as it should stand, in flight->reference_rgb. */
+static int draw_reference(fly_flight *flight, double t_s)
+{
+    if (flight->reference_t_s == t_s) return 0;
+    int rc = fly_reference_draw(&flight->world->reference, &flight->camera, flight->reference_rgb);
+    flight->reference_t_s = t_s;
+    return rc == FF_OK ? 0 : fail("reference", ff_error_text(rc));
+}
+
+static int compare_picture(fly_flight *flight, double t_s, sim_picture_figures *figures)
+{
+    if (!flight->options->diff) return 0;
+    if (draw_reference(flight, t_s)) return -1;
+    int rc = sim_picture_compare(flight->rgb, flight->reference_rgb, flight->options->size.width,
+                                 flight->options->size.height, figures);
+    return rc == FF_OK ? 0 : fail("picture", ff_error_text(rc));
+}
+
 static int take_row(fly_flight *flight, double t_s)
 {
     if (flight->sample_count == flight->sample_capacity) {
@@ -195,7 +214,9 @@ static int take_row(fly_flight *flight, double t_s)
     fly_sample *sample = &flight->sample[flight->sample_count++];
     fly_sources from;
     memset(sample, 0, sizeof *sample);
-    if (read_sources(flight, t_s, &from) || read_picture(flight)) return -1;
+    if (read_sources(flight, t_s, &from) || read_picture(flight) ||
+        compare_picture(flight, t_s, &from.picture))
+        return -1;
     fly_sample_take(sample, &from);
     if (flight->world->surface)
         sample->frame_hash = fnv(FNV_START, flight->rgb,
@@ -207,25 +228,24 @@ static int take_row(fly_flight *flight, double t_s)
     return 0;
 }
 
-static int write_picture(const fly_flight *flight, const char *folder, double t_s)
+static int write_picture(const fly_flight *flight, const char *folder, double t_s,
+                         const uint8_t *rgb)
 {
     char path[4096];
     if (snprintf(path, sizeof path, "%s/frame-%07.2f.png", folder, t_s) >= (int)sizeof path)
         return fail(folder, "path too long");
-    int rc = sys_png_write(path, flight->rgb, flight->options->size.width,
-                           flight->options->size.height);
+    int rc = sys_png_write(path, rgb, flight->options->size.width, flight->options->size.height);
     return rc == FF_OK ? 0 : fail(path, ff_error_text(rc));
 }
 
 static int take_picture(fly_flight *flight, double t_s)
 {
-    fly_world *world = flight->world;
-    if (read_picture(flight) || write_picture(flight, flight->options->png_dir, t_s)) return -1;
-    if (!world->reference.client) return 0;
-    int rc = fly_reference_draw(&world->reference, &flight->camera, flight->rgb);
-    (void)world->surface_api->make_current(world->surface);
-    return rc == FF_OK ? write_picture(flight, flight->options->reference_dir, t_s)
-                       : fail("reference", ff_error_text(rc));
+    const fly_options *options = flight->options;
+    if (read_picture(flight) || write_picture(flight, options->png_dir, t_s, flight->rgb))
+        return -1;
+    if (!options->reference_dir) return 0;
+    if (draw_reference(flight, t_s)) return -1;
+    return write_picture(flight, options->reference_dir, t_s, flight->reference_rgb);
 }
 
 /* ---- frames ---- */
@@ -296,16 +316,20 @@ static int one_frame(fly_flight *flight, double t_s)
 static int begin(fly_flight *flight, fly_world *world, FILE *csv)
 {
     const fly_options *options = world->options;
-    *flight = (fly_flight){
-        .world = world, .options = options, .csv = csv, .totals = { .frame_hash = FNV_START }
-    };
+    *flight = (fly_flight){ .world = world,
+                            .options = options,
+                            .csv = csv,
+                            .reference_t_s = -1,
+                            .totals = { .frame_hash = FNV_START } };
     flight->camera =
         (c3d_camera){ .width = options->size.width,
                       .height = options->size.height,
                       .focal_q8 = c3d_focal_q8((int32_t)(options->fov_degrees * 65536 / 360 + 0.5),
                                                options->size.width) };
     flight->rgb = malloc((size_t)options->size.width * options->size.height * 3);
-    if (!flight->rgb) return fail("picture", ff_error_text(FF_ERR_MEMORY));
+    flight->reference_rgb = malloc((size_t)options->size.width * options->size.height * 3);
+    if (!flight->rgb || !flight->reference_rgb)
+        return fail("picture", ff_error_text(FF_ERR_MEMORY));
     if (options->png_dir && sys_make_folder(options->png_dir) != FF_OK)
         return fail(options->png_dir, "cannot make this folder");
     if (options->reference_dir && sys_make_folder(options->reference_dir) != FF_OK)
@@ -389,6 +413,7 @@ int fly_flight_run(fly_flight *flight, fly_world *world, FILE *csv)
 void fly_flight_free(fly_flight *flight)
 {
     free(flight->rgb);
+    free(flight->reference_rgb);
     free(flight->sample);
     memset(flight, 0, sizeof *flight);
 }

@@ -15,7 +15,8 @@ typedef struct fly_flight {
     uint32_t faces_seen;
     int had_ground;       /* 1: some frame so far has drawn ground */
     uint64_t events_done; /* bit per event */
-    uint8_t *rgb;
+    uint8_t *rgb, *reference_rgb;
+    double reference_t_s; /* when the picture in reference_rgb was drawn for; -1: none yet */
     fly_sample *sample;
     size_t sample_count, sample_capacity;
     fly_totals totals;

@@ -57,6 +57,8 @@ int fly_options_parse(fly_options *options, int argc, char **argv)
     if (options->reference_dir && !options->png_dir) return fail("--reference needs --png");
     if (options->png_dir && options->backend == FLY_NONE)
         return fail("--png needs a --backend other than none");
+    if (options->diff && options->backend == FLY_NONE)
+        return fail("--diff needs a --backend other than none");
     return 0;
 }
 

@@ -100,14 +100,17 @@ extern const sys_option_type fly_events_option;
            "pictures every --every seconds into DIR") \
     OPTION(sys_real, every_s, "every", "S", "10", FLY_INTERVAL, "time between pictures") \
     OPTION(sys_text, reference_dir, "reference", "DIR", NULL, SYS_ANY, \
-           "with --png: the same moments into DIR as they should look, drawn from the pack " \
-           "without a link, to a quarter of a pixel and with all images") \
+           "with --png: the same moments into DIR as they should look, drawn from the pack to the " \
+           "horizon, with all images, at 3 x 3 samples a pixel") \
     SHOW \
     HEADING("Checking") \
     OPTION(sys_switch, audit, "audit", "on|off", "off", SYS_ANY, \
            "err_px against the whole true ground") \
     OPTION(sys_whole, audit_step_px, "audit-step", "N", "8", SYS_WHOLE(1, 64, ""), \
            "every N-th pixel each way is looked at") \
+    OPTION(sys_switch, diff, "diff", "on|off", "off", SYS_ANY, \
+           "diff_mean, diff_p95 and ssim: each row's picture against the one that --reference " \
+           "draws, by luminance; some seconds a row") \
     OPTION(sys_text, ground_cache, "ground-cache", "FILE", NULL, SYS_ANY, \
            "keeps the decoded true ground there for further flights over this pack") \
     OPTION(sys_switch, check, "check", "on|off", NULL, SYS_ANY, \

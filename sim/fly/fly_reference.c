@@ -1,65 +1,308 @@
 #include "fly_reference.h"
 
+#include "../../client/images/ff_texture_map.h"
+#include "../../client/terrain/ff_pack_source.h"
+
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define MEMORY_BYTES ((size_t)192 << 20) /* the client's pools at their largest */
-#define ERROR_PX_Q8  64                  /* a quarter of a pixel: finer ground shows the same */
-#define VIEW_WU      (200000 * FF_WU_PER_METRE)
-#define STEP_US      20000
-#define STEPS_MAX    20000
-#define STEPS_IDLE   10 /* this many steps without news: nothing is missing any more */
+#define SAMPLES        3 /* of a pixel, each way */
+#define SIDE_MAX       4096
+#define NODES_MAX      (1u << 20)
+#define TREE_BYTES_MAX ((size_t)512 << 20)
+#define WISHES         (1u << 14)
+#define IMAGE_BYTES    ((size_t)64 << 20) /* of the images on the device */
+#define IMAGES_MAX     1024u
+#define NEAR_WU_MIN    (FF_WU_PER_METRE / 4)
+#define NEAR_WU_MAX    (4096 * FF_WU_PER_METRE)
 
-int fly_reference_open(fly_reference *reference, const fly_options *options, const ff_pack *pack,
-                       const sys_surface_api *surface_api, const sys_surface_desc *surface,
-                       const struct c3d_backend *backend)
+/* ---- memory ---- */
+
+/* Slots for all nodes of the terrain, or as many as may be. */
+static void choose_slots(fly_reference *reference)
 {
-    memset(reference, 0, sizeof *reference);
-    reference->surface_api = surface_api;
-    int rc = surface_api->open(surface, &reference->surface);
-    if (rc != FF_OK) {
-        reference->surface = NULL;
-        return rc;
+    ff_tree_desc *desc = &reference->tree_desc;
+    uint64_t all = ff_shape_tiles(&desc->info), sum = 0;
+    for (uint32_t level = 0; level < ff_terrain_levels(&desc->info) && sum < NODES_MAX; level++) {
+        sum += all;
+        all *= 4;
     }
-    reference->memory = malloc(MEMORY_BYTES);
-    if (!reference->memory) return FF_ERR_MEMORY;
-    ff_client_desc desc = { .memory = reference->memory,
-                            .memory_bytes = MEMORY_BYTES,
-                            .pack = pack,
-                            .surface_api = surface_api,
-                            .backend = backend,
-                            .width = options->size.width,
-                            .height = options->size.height,
-                            .no_prefetch = 1,
-                            .quality = { .measure = FF_MEASURE_PIXELS,
-                                         .error_px_q8 = ERROR_PX_Q8,
-                                         .sigma_q8 = 320,
-                                         .view_wu = VIEW_WU },
-                            .frame_format = options->backend == FLY_SOFT ? C3D_RGBA8888
-                                                                         : C3D_RGB565 };
-    return ff_client_create(&desc, &reference->client);
+    desc->node_count = sum < NODES_MAX ? (uint32_t)(sum < 8 ? 8 : sum) : NODES_MAX;
+    while (ff_tree_bytes(desc) > TREE_BYTES_MAX) desc->node_count /= 2;
+    reference->holds_all = desc->node_count >= sum;
 }
 
-int fly_reference_draw(fly_reference *reference, const c3d_camera *camera, uint8_t *rgb)
+static size_t image_bytes(const ff_terrain_info *info)
 {
-    int rc = reference->surface_api->make_current(reference->surface);
-    if (rc != FF_OK) return rc;
-    for (unsigned step = 0, idle = 0; idle < STEPS_IDLE; step++) {
-        if (step == STEPS_MAX) return FF_ERR_AGAIN;
-        reference->now_us += STEP_US;
-        int moved = ff_client_work(reference->client, reference->now_us);
-        moved |= ff_client_update(reference->client, reference->now_us, camera);
-        idle = moved ? 0 : idle + 1;
-    }
-    ff_client_draw(reference->client);
-    return c3d_read_rgb(ff_client_device(reference->client), rgb);
+    size_t side = ((size_t)1 << info->texture_log2) + 2; /* with the rim, see c3d_desc */
+    return info->texture_log2 ? (side * side * 4 + 255) / 256 * 256 : 0;
+}
+
+static void describe(fly_reference *reference)
+{
+    const ff_terrain_info *info = &reference->pack->header.info;
+    size_t one = image_bytes(info), images = one ? IMAGE_BYTES / one : 0;
+    if (images > IMAGES_MAX) images = IMAGES_MAX;
+    reference->tree_desc = (ff_tree_desc){ .info = *info, .wish_count = WISHES };
+    choose_slots(reference);
+    reference->device_desc = (c3d_desc){
+        .mesh_count = 2, /* of the node being drawn, and of the sky */
+        .strip_count = FF_STRIP_COUNT_MAX + 1,
+        .texture_count = (uint16_t)images,
+        .mesh_vertices_max = FF_NODE_HEIGHTS_MAX,
+        .strip_indices_max = sizeof((ff_strips *)0)->index / sizeof(uint16_t) + FF_SKY_INDICES,
+        .frame_format = C3D_RGBA8888,
+        .width = (uint16_t)(reference->width * reference->samples),
+        .height = (uint16_t)(reference->height * reference->samples),
+        .texture_bytes = (uint32_t)(images * one)
+    };
+}
+
+int fly_reference_open(fly_reference *reference, const ff_pack *pack, uint16_t width,
+                       uint16_t height)
+{
+    const ff_terrain_info *info = &pack->header.info;
+    unsigned largest = width > height ? width : height;
+    size_t texels = (size_t)1 << (2 * info->texture_log2), decoder_bytes = ff_decoder_bytes(info);
+    memset(reference, 0, sizeof *reference);
+    reference->pack = pack;
+    reference->width = width;
+    reference->height = height;
+    reference->samples = SIDE_MAX / largest < SAMPLES ? SIDE_MAX / largest : SAMPLES;
+    describe(reference);
+    reference->tree_bytes = ff_tree_bytes(&reference->tree_desc);
+    reference->device_bytes = c3d_bytes(c3d_backend_soft(), &reference->device_desc);
+    reference->tree_memory = malloc(reference->tree_bytes);
+    reference->device_memory = malloc(reference->device_bytes);
+    reference->decoder_memory = malloc(decoder_bytes);
+    reference->wish = malloc(WISHES * sizeof *reference->wish);
+    reference->sampled = malloc((size_t)3 * reference->device_desc.width *
+                                reference->device_desc.height);
+    reference->slot = malloc(IMAGES_MAX * sizeof *reference->slot);
+    reference->image_rgb = malloc(texels * 3);
+    reference->image_texels = malloc(texels * sizeof *reference->image_texels);
+    if (!reference->tree_memory || !reference->device_memory || !reference->decoder_memory ||
+        !reference->wish || !reference->sampled || !reference->slot || !reference->image_rgb ||
+        !reference->image_texels)
+        return FF_ERR_MEMORY;
+    reference->decoder = ff_decoder_create(info, reference->decoder_memory, decoder_bytes);
+    return reference->decoder ? FF_OK : FF_ERR_UNSUPPORTED;
 }
 
 void fly_reference_close(fly_reference *reference)
 {
-    if (reference->surface) (void)reference->surface_api->make_current(reference->surface);
-    if (reference->client) ff_client_destroy(reference->client);
-    if (reference->surface) reference->surface_api->close(reference->surface);
-    free(reference->memory);
+    free(reference->tree_memory);
+    free(reference->device_memory);
+    free(reference->decoder_memory);
+    free(reference->wish);
+    free(reference->sampled);
+    free(reference->slot);
+    free(reference->image_rgb);
+    free(reference->image_texels);
     memset(reference, 0, sizeof *reference);
+}
+
+/* ---- ground ---- */
+
+/* Answers the tree's wishes for what is in view: how many, or an error of the pack. The list is
+ * copied first, because it may change as nodes come in. */
+static int serve_wishes(fly_reference *reference)
+{
+    const ff_wish *list;
+    uint32_t count = ff_tree_wishes(reference->tree, &list);
+    int served = 0;
+    memcpy(reference->wish, list, count * sizeof *list);
+    for (uint32_t i = 0; i < count; i++) {
+        const ff_wish *wish = &reference->wish[i];
+        if (!wish->in_view) continue;
+        int rc = ff_pack_source_serve(reference->pack, reference->decoder, reference->values,
+                                      reference->tree, (enum ff_kind)wish->kind, wish->key);
+        if (rc == FF_ERR_FULL || rc == FF_ERR_NOT_FOUND) continue;
+        if (rc < 0) return rc;
+        served++;
+    }
+    return served;
+}
+
+/* Reads all that is in view until cells are no wider than so many samples. FF_OK; FF_ERR_FULL:
+ * there are too many; or an error of the pack. */
+static int load_until(fly_reference *reference, uint32_t cell)
+{
+    uint32_t c_q8 = (uint32_t)reference->view.camera.focal_q8 / cell >>
+                    reference->tree_desc.info.node_log2;
+    ff_quality quality = { .measure = FF_MEASURE_DISTANCE,
+                           .c_q8 = (int32_t)c_q8 + 1,
+                           .sigma_q8 = 320,
+                           .view_wu = INT32_MAX };
+    ff_tree_stats stats;
+    reference->tree = ff_tree_create(&reference->tree_desc, reference->tree_memory,
+                                     reference->tree_bytes);
+    if (!reference->tree) return FF_ERR_MEMORY;
+    for (;;) {
+        ff_tree_select(reference->tree, &reference->view, &quality);
+        int served = serve_wishes(reference);
+        if (served <= 0) {
+            ff_tree_get_stats(reference->tree, &stats);
+            int full = !reference->holds_all && stats.nodes_held + 4 > stats.nodes_capacity;
+            return served < 0 ? served : full ? FF_ERR_FULL : FF_OK;
+        }
+    }
+}
+
+static int load_ground(fly_reference *reference)
+{
+    int rc = FF_ERR_FULL;
+    for (uint32_t cell = 1; rc == FF_ERR_FULL && cell < 1u << 16; cell *= 2)
+        rc = load_until(reference, cell);
+    return rc;
+}
+
+/* ---- images ---- */
+
+static double outside(int64_t lo, int64_t hi)
+{
+    return lo > 0 ? (double)lo : hi < 0 ? (double)-hi : 0;
+}
+
+/* How near the ground under a node's image may be, wu. */
+static double image_distance(const fly_reference *reference, ff_key key)
+{
+    const ff_terrain_info *info = &reference->tree_desc.info;
+    ff_placed placed = ff_shape_put(info, &reference->view.frame, key);
+    int64_t height_wu[2];
+    ff_terrain_range_wu(info, height_wu);
+    ff_box box = ff_shape_box(info, key, &placed, height_wu, reference->view.camera.pos_wu);
+    double across = hypot(outside(box.lo[0], box.hi[0]), outside(box.lo[1], box.hi[1]));
+    return hypot(across, outside(box.lo[2], box.hi[2]));
+}
+
+/* The finest image over a node whose texels are not smaller than a sample at the nearest place that
+ * the image covers. So a node takes every image above it that another node takes, and what is held
+ * for one is right for all. */
+static ff_key image_of(const fly_reference *reference, const ff_drawn *drawn)
+{
+    const ff_terrain_info *info = &reference->tree_desc.info;
+    double focal_px = reference->view.camera.focal_q8 / 256.0,
+           edge_wu = ldexp(drawn->cell_wu, info->node_log2);
+    ff_key key = ff_texture_key(info, drawn->key);
+    while (key != FF_KEY_NONE && ff_key_level(key) > 0) {
+        double texel_wu = ldexp(edge_wu, (int)ff_key_level(drawn->key) - (int)ff_key_level(key) -
+                                             info->texture_log2);
+        if (texel_wu * focal_px >= image_distance(reference, key)) break;
+        key = ff_key_parent(key);
+    }
+    return key;
+}
+
+static int fetch_image(fly_reference *reference, ff_key key)
+{
+    const ff_terrain_info *info = &reference->tree_desc.info;
+    uint32_t side = 1u << info->texture_log2;
+    const uint8_t *jpeg;
+    if (key == FF_KEY_NONE || ff_textures_touch(&reference->textures, key)) return FF_OK;
+    int bytes = ff_pack_record(reference->pack, FF_SECTION_TEXTURE, key, &jpeg);
+    if (bytes < 0) return bytes;
+    int rc = sys_jpeg_decode(jpeg, (size_t)bytes, side, side, reference->image_rgb);
+    if (rc < 0) return rc;
+    ff_texture_texels(info, reference->image_rgb, reference->image_texels);
+    return ff_textures_put(&reference->textures, key, reference->image_texels) ? FF_OK
+                                                                               : FF_ERR_MEMORY;
+}
+
+/* ---- the picture ---- */
+
+/* Near and far planes: an eighth of the height above ground, and all of the terrain. */
+static void set_planes(const fly_reference *reference, c3d_camera *camera)
+{
+    const ff_terrain_info *info = &reference->tree_desc.info;
+    int64_t height_wu[2], near_wu = 2 * NEAR_WU_MIN;
+    double away = 0;
+    int32_t ground_wu;
+    if (ff_tree_drawn_height(reference->tree, camera->pos_wu[0], camera->pos_wu[1], &ground_wu))
+        near_wu = ((int64_t)camera->pos_wu[2] - ground_wu) / 8;
+    camera->near_wu = near_wu < NEAR_WU_MIN   ? NEAR_WU_MIN
+                      : near_wu > NEAR_WU_MAX ? NEAR_WU_MAX
+                                              : (int32_t)near_wu;
+    ff_terrain_range_wu(info, height_wu);
+    ff_box box = ff_shape_bounds(info, &reference->view.frame, height_wu, camera->pos_wu);
+    for (unsigned axis = 0; axis < 3; axis++)
+        away = hypot(away, fmax(fabs((double)box.lo[axis]), fabs((double)box.hi[axis])));
+    away = fmax(away, 16.0 * camera->near_wu); /* the sky lies within */
+    camera->far_wu = away < INT32_MAX ? (int32_t)ceil(away) : INT32_MAX;
+}
+
+static int open_device(fly_reference *reference)
+{
+    const ff_terrain_info *info = &reference->tree_desc.info;
+    ff_strips strips;
+    int rc = c3d_open(c3d_backend_soft(), &reference->device_desc, reference->device_memory,
+                      reference->device_bytes, &reference->device);
+    if (rc != FF_OK) return rc;
+    uint16_t images = reference->device_desc.texture_count;
+    memset(reference->slot, 0, images * sizeof *reference->slot);
+    reference->textures = (ff_textures){
+        .device = reference->device, .info = *info, .slot = reference->slot, .slot_count = images
+    };
+    /* no entries: a node's mesh lives as long as it takes to draw it */
+    reference->ground = (ff_terrain_view){ .device = reference->device,
+                                           .vertices = reference->vertices,
+                                           .heights_per_node = ff_node_side(info) *
+                                                               ff_node_side(info) };
+    ff_terrain_view_attach(&reference->ground, reference->tree, info, &reference->textures);
+    ff_sky_make(&reference->sky, reference->device);
+    return ff_terrain_view_strips(&reference->ground, info->node_log2, &strips);
+}
+
+static int draw_samples(fly_reference *reference)
+{
+    c3d_frame frame = { .camera = reference->view.camera, .clear_colour = FF_SKY_HORIZON_COLOUR };
+    const ff_drawn *list;
+    uint32_t count = ff_tree_drawn(reference->tree, &list);
+    int rc = FF_OK;
+    set_planes(reference, &frame.camera);
+    c3d_begin(reference->device, &frame);
+    ff_sky_draw(&reference->sky, reference->device, frame.camera.near_wu);
+    ff_terrain_view_begin(&reference->ground, list, count);
+    for (uint32_t i = 0; rc == FF_OK && i < count; i++) {
+        rc = fetch_image(reference, image_of(reference, &list[i]));
+        ff_terrain_view_draw(&reference->ground, &list[i], 1, &frame.camera, 0);
+    }
+    c3d_end(reference->device);
+    return rc == FF_OK ? c3d_read_rgb(reference->device, reference->sampled) : rc;
+}
+
+/* Each pixel is the mean of its samples. */
+static void average(const fly_reference *reference, uint8_t *rgb)
+{
+    unsigned n = reference->samples, all = n * n;
+    size_t row = (size_t)3 * n * reference->width;
+    for (unsigned y = 0; y < reference->height; y++)
+        for (unsigned x = 0; x < reference->width; x++)
+            for (unsigned c = 0; c < 3; c++) {
+                const uint8_t *from = reference->sampled + y * n * row + (size_t)3 * n * x + c;
+                unsigned sum = all / 2;
+                for (unsigned i = 0; i < all; i++) sum += from[i / n * row + 3 * (i % n)];
+                *rgb++ = (uint8_t)(sum / all);
+            }
+}
+
+int fly_reference_draw(fly_reference *reference, const c3d_camera *camera, uint8_t *rgb)
+{
+    const ff_terrain_info *info = &reference->tree_desc.info;
+    ff_view *view = &reference->view;
+    view->camera = *camera;
+    view->frame = ff_shape_frame(info, camera->pos_wu);
+    ff_shape_enter(info, &view->frame, camera->pos_wu, view->camera.pos_wu);
+    view->camera.focal_q8 *= (int32_t)reference->samples;
+    view->camera.width = reference->device_desc.width;
+    view->camera.height = reference->device_desc.height;
+    memcpy(view->centre_wu, view->camera.pos_wu, sizeof view->centre_wu);
+    int rc = load_ground(reference);
+    if (rc == FF_OK) rc = open_device(reference);
+    if (rc == FF_OK) rc = draw_samples(reference);
+    if (reference->device) c3d_close(reference->device);
+    reference->device = NULL;
+    if (rc == FF_OK) average(reference, rgb);
+    return rc;
 }

@@ -4,6 +4,7 @@
 
 #include "fly_options.h"
 #include "../judge/sim_audit.h"
+#include "../judge/sim_picture.h"
 #include "../judge/sim_relevance.h"
 
 #include <stdio.h>
@@ -12,9 +13,9 @@
  * `from` is a fly_sources; figures of the client have their names from client/ff_figures.h. The
  * kind says how the summary treats a column: PLACE leaves it out, MEAN takes the mean over the rows
  * after settling, TOTAL what was gained after settling, MOST the largest value, LAST the last one.
- * Columns without a value are nan. square_px_*: mean squared error by cause (sim_audit.h); bytes_*,
- * unused_*: by class of data (sim_relevance.h), bytes_judged with the overhead; relevance_percent:
- * since the start. */
+ * Columns without a value are nan. diff_*, ssim: sim_picture.h. square_px_*: mean squared error by
+ * cause (sim_audit.h); bytes_*, unused_*: by class of data (sim_relevance.h), bytes_judged with the
+ * overhead; relevance_percent: since the start. */
 /* clang-format off */
 #define FLY_COLUMNS_FIRST(X) \
     X(t_s, "%.3f", PLACE, from->t_s) \
@@ -36,6 +37,9 @@
 #define FLY_COLUMNS_LAST(X) \
     X(undrawn_px_percent, "%.3f", MEAN, from->audit.undrawn_percent) \
     X(panorama_px_percent, "%.3f", MEAN, from->panorama_px_percent) \
+    X(diff_mean, "%.4f", MEAN, from->picture.diff_mean) \
+    X(diff_p95, "%.3f", MEAN, from->picture.diff_p95) \
+    X(ssim, "%.5f", MEAN, from->picture.ssim) \
     X(tree_err_px, "%.3f", MEAN, from->client.tree.error_px_q8 / 256.0) \
     X(stitched, "%.0f", MEAN, from->client.tree.stitched) \
     X(queued, "%.0f", MEAN, from->client.queued) \
@@ -85,6 +89,7 @@ typedef struct fly_sources {
     ff_client_stats client;
     sim_audit_result audit;
     double panorama_px_percent; /* of the pixels that truly show ground */
+    sim_picture_figures picture;
     sim_relevance_figures relevance;
     uint64_t geometry_hash, request_hash;
 } fly_sources;

@@ -79,14 +79,12 @@ static const struct c3d_backend *backend_of(enum fly_backend backend)
                                   : c3d_backend_gl();
 }
 
-/* Opens the reference, before the flight's own surface, whose context is to be the current one. */
-static int open_reference(fly_world *world, const sys_surface_desc *desc)
+static int open_reference(fly_world *world)
 {
     const fly_options *options = world->options;
-    int rc = world->surface_api
-                 ? fly_reference_open(&world->reference, options, &world->pack, world->surface_api,
-                                      desc, backend_of(options->backend))
-                 : FF_ERR_UNSUPPORTED;
+    if (!options->reference_dir && !options->diff) return 0;
+    int rc = fly_reference_open(&world->reference, &world->pack, options->size.width,
+                                options->size.height);
     return rc == FF_OK ? 0 : fail("reference", rc);
 }
 
@@ -104,7 +102,6 @@ static int open_surface(fly_world *world)
         world->surface_api = sys_surface_memory();
         desc.gl = SYS_GL_NONE;
     }
-    if (options->reference_dir && open_reference(world, &desc)) return -1;
     int rc = world->surface_api ? world->surface_api->open(&desc, &world->surface)
                                 : FF_ERR_UNSUPPORTED;
     if (rc == FF_OK) return 0;
@@ -143,8 +140,8 @@ int fly_world_open(fly_world *world, const fly_options *options)
 {
     memset(world, 0, sizeof *world);
     world->options = options;
-    if (open_ground(world) || open_link(world) || open_tape(world) || open_surface(world) ||
-        open_client(world))
+    if (open_ground(world) || open_reference(world) || open_link(world) || open_tape(world) ||
+        open_surface(world) || open_client(world))
         return -1;
     return 0;
 }

@@ -29,7 +29,7 @@ typedef struct fly_world {
     sim_tape_recorder tape; /* file NULL: no tape is recorded */
     const sys_surface_api *surface_api;
     sys_surface *surface;
-    fly_reference reference; /* client NULL: no reference is drawn */
+    fly_reference reference; /* pack NULL: no reference is drawn */
     void *memory;
     ff_client *client;
 } fly_world;

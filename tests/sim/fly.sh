@@ -91,13 +91,29 @@ flies toggled $quick --event 2:panorama-off
 is 'r[1]["panoramas"] > 0 and r[-1]["panoramas"] == r[3]["panoramas"] and r[-1]["panorama_px_percent"] == 0' "the panorama can be switched off in flight"
 
 # ---- as it should look ----
-flies settled $usual --backend gl --link lan --panorama off --quality px:0.25 --view 200000 --memory 16M --seconds 0 --png "$work/settled" \
-    --reference "$work/true" --every 6
-cmp -s "$work/settled/frame-0006.00.png" "$work/true/frame-0006.00.png"
-result $? "a picture with all that it needs is its reference, bit for bit"
-flies coarse $usual --backend gl --link lan --quality 1:1 --seconds 0 --png "$work/coarse" --reference "$work/true2" --every 6
-! cmp -s "$work/coarse/frame-0006.00.png" "$work/true2/frame-0006.00.png" && cmp -s "$work/true/frame-0006.00.png" "$work/true2/frame-0006.00.png"
-result $? "a coarse one is not, and has the same"
+looks="--seconds 0 --settle 6 --sample 6 --link lan --audit on --diff on --every 6"
+differs() { # NAME: its picture's mean difference, as last flown
+    python3 -c "import json; print(json.load(open('$work/$1.json'))['diff_mean'])"
+}
+flies settled $looks --backend gl --panorama off --quality px:1 --view 20000 --png "$work/settled" --reference "$work/true"
+is '0 < s["diff_mean"] < 1 and s["diff_p95"] < 2 and 0.99 < s["ssim"] < 1' "a picture with all that it needs differs from what it should be by its stairs alone"
+is 'r[0]["diff_mean"] > 50 and r[0]["ssim"] < 0.5' "before anything has come it differs by all"
+flies coarse $looks --backend soft --back-plane 1500 --png "$work/coarse" --reference "$work/true2"
+is "s['diff_mean'] > $(differs settled) / 2 and s['ssim'] < 0.99" "a coarse one looks less like it"
+cmp -s "$work/true/frame-0006.00.png" "$work/true2/frame-0006.00.png"
+result $? "what it should be is the same for both, whatever their back ends"
+flies fine $looks --backend soft --panorama off --quality px:1 --view 20000
+is "s['diff_mean'] < 0.8 * $(differs coarse)" "a pixel of error and no panorama differ less than low"
+flies faces $looks --backend soft --back-plane 1500 --face 1024 --memory 16M
+is "s['diff_mean'] < 0.9 * $(differs coarse)" "larger faces differ less than those of 256"
+flies hazy $looks --backend soft --panorama off --quality px:1 --view 6000
+flies clear $looks --backend soft --panorama off --quality px:1 --view 6000 --no-fog
+is "s['diff_mean'] < $(differs hazy) - 1" "haze counts"
+flies rows $looks --backend none --diff off
+is 'all(row[c] != row[c] for row in r for c in ("diff_mean", "diff_p95", "ssim")) and s["ssim"] is None' "without --diff there is nothing in its columns"
+! "$bin/farfield-fly" --pack "$work/hills.ffp" --backend none --diff on 2>"$work/error" &&
+    [ "$(cat "$work/error")" = "farfield-fly: --diff needs a --backend other than none" ]
+result $? "--diff without pictures is an error"
 ! "$bin/farfield-fly" --pack "$work/hills.ffp" --reference "$work/true" 2>"$work/error" &&
     [ "$(cat "$work/error")" = "farfield-fly: --reference needs --png" ]
 result $? "--reference without --png is an error"

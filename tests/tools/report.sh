@@ -41,6 +41,13 @@ grep -q -F '| umts \<&\> on | 90 | 1900 | 3700 | 50 | 200 | 60.0 | 90.0 | 4.5 | 
 result $? "the numbers of the table"
 grep -q -F '| blind | 90 | 1900 | 3700 | 50 | 200 | 60.0 | 90.0 | 4.5 | 270 | 3 | – | – | – |' "$table"
 result $? "a flight without auditor has no error"
+! grep -q -E 'SSIM|difference' "$page" "$table"; result $? "no flight compared its pictures: no columns of them"
+awk -F, '{ print NR == 1 ? $0 ", diff_mean, diff_p95, ssim" : $0 (NR % 2 ? ", 3, 5, 0.75" : ", nan, nan, nan") }' "$work/blind.csv" >"$work/seen.csv"
+"$report" "$work/seen.csv" "$work/blind.csv" -o "$work/seen" --settle 0 >"$work/said" 2>"$work/error" &&
+    grep -q -F '| seen | 90 | 1900 | 3700 | 50 | 200 | 60.0 | 90.0 | 4.5 | 270 | 3 | 3.00 | 5.0 | 0.7500 |' "$work/seen/REPORT.md" &&
+    grep -q -F '| blind | 90 | 1900 | 3700 | 50 | 200 | 60.0 | 90.0 | 4.5 | 270 | 3 | – | – | – |' "$work/seen/REPORT.md" &&
+    grep -q -F '<th>SSIM</th>' "$work/seen/index.html" && [ "$(grep -c '<svg' "$work/seen/index.html")" = 10 ]
+result $? "differences of pictures where a flight has them, and a plot of them"
 # Pictures of two flights: three of the same names, one that only one of them has, one that differs everywhere by 2.
 if command -v python3 >/dev/null; then
     python3 - "$work" <<'END'

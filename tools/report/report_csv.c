@@ -215,6 +215,9 @@ void report_summarise(const report_flight *flight, double settle_s, report_summa
         .err_rms_mean = report_flight_mean(flight, REPORT_err_px_rms, settle_s),
         .err_p95_mean = report_flight_mean(flight, REPORT_err_px_p95, settle_s),
         .err_max = largest(flight, REPORT_err_px_max, settle_s),
+        .diff_mean = report_flight_mean(flight, REPORT_diff_mean, settle_s),
+        .diff_p95_mean = report_flight_mean(flight, REPORT_diff_p95, settle_s),
+        .ssim_mean = report_flight_mean(flight, REPORT_ssim, settle_s),
     };
     for (size_t i = 0; i < flight->row_count && summary->seconds >= 60; i++)
         if (flight->row[i].value[REPORT_t_s] <= 60)

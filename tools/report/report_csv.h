@@ -22,6 +22,9 @@
     X(err_px_p95, MAY_LACK) \
     X(err_px_max, MAY_LACK) \
     X(undrawn_px_percent, MAY_LACK) \
+    X(diff_mean, MAY_LACK) \
+    X(diff_p95, MAY_LACK) \
+    X(ssim, MAY_LACK) \
     X(square_px_waiting, MAY_LACK) \
     X(square_px_depth, MAY_LACK) \
     X(square_px_quality, MAY_LACK) \
@@ -55,13 +58,14 @@ typedef struct report_flight {
     size_t row_count; /* at least 1 */
 } report_flight;
 
-/* Means over all rows; means of errors over the rows from settle_s on, because before that nothing
- * may be drawn yet. NAN where a flight has none. */
+/* Means over all rows; means of errors and differences over the rows from settle_s on, because
+ * before that nothing may be drawn yet. NAN where a flight has none. */
 typedef struct report_summary {
     double seconds, triangles_mean, triangles_max, nodes_drawn_mean, nodes_held_max;
     /* 60 s: NAN when the flight is shorter */
     double kb_down_60s, kb_down, kb_up, requests, panoramas;
     double err_rms_mean, err_p95_mean, err_max;
+    double diff_mean, diff_p95_mean, ssim_mean;
 } report_summary;
 
 /* 0, or -1 with the reason in `why` ("FILE: ..." or "FILE:LINE: ..."). */

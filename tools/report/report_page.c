@@ -7,6 +7,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,6 +36,9 @@ static const summary_column summary_columns[] = {
     { "error px, rms", "err_px_rms_mean", 2, AT(err_rms_mean) },
     { "error px, 95 %", "err_px_p95_mean", 2, AT(err_p95_mean) },
     { "error px, most", "err_px_max", 1, AT(err_max) },
+    { "difference, mean", "diff_mean", 2, AT(diff_mean) },
+    { "difference, 95 %", "diff_p95_mean", 1, AT(diff_p95_mean) },
+    { "SSIM", "ssim_mean", 4, AT(ssim_mean) },
 };
 enum { SUMMARY_COLUMNS = sizeof summary_columns / sizeof *summary_columns };
 
@@ -43,6 +47,18 @@ static double summary_value(const report_summary *summary, const summary_column 
     double value;
     memcpy(&value, (const char *)summary + column->offset, sizeof value);
     return value;
+}
+
+/* A column that no flight has is left out of the tables. */
+static void find_shown(const report_content *content, uint8_t shown[SUMMARY_COLUMNS])
+{
+    memset(shown, 0, SUMMARY_COLUMNS);
+    for (size_t i = 0; i < content->flight_count; i++) {
+        report_summary summary;
+        report_summarise(&content->flight[i], content->settle_s, &summary);
+        for (int c = 0; c < SUMMARY_COLUMNS; c++)
+            shown[c] |= !isnan(summary_value(&summary, &summary_columns[c]));
+    }
 }
 
 /* Writes a relative link; characters that are not plain go as %XX. */
@@ -81,9 +97,11 @@ static int close_page(FILE *out, const report_content *content, const char *name
 /* ---- HTML ---- */
 static void put_html_table(FILE *out, const report_content *content)
 {
+    uint8_t shown[SUMMARY_COLUMNS];
+    find_shown(content, shown);
     fputs("<div class=\"wide\"><table>\n<tr><th>flight</th>", out);
     for (int c = 0; c < SUMMARY_COLUMNS; c++)
-        fprintf(out, "<th>%s</th>", summary_columns[c].heading);
+        if (shown[c]) fprintf(out, "<th>%s</th>", summary_columns[c].heading);
     fputs("</tr>\n", out);
     for (size_t i = 0; i < content->flight_count; i++) {
         report_summary summary;
@@ -93,6 +111,7 @@ static void put_html_table(FILE *out, const report_content *content)
         fputs("</td>", out);
         for (int c = 0; c < SUMMARY_COLUMNS; c++) {
             double value = summary_value(&summary, &summary_columns[c]);
+            if (!shown[c]) continue;
             if (isnan(value))
                 fputs("<td>–</td>", out);
             else
@@ -133,6 +152,10 @@ static int put_flight(FILE *out, const report_content *content, const report_fli
                           .x_label = "seconds",
                           .y_label = "pixels",
                           .logarithmic_y = 1 };
+    report_plot picture = { .title = "Difference to the picture as it should be",
+                            .x_label = "seconds",
+                            .y_label = "of 255",
+                            .logarithmic_y = 1 };
     add_curve(&triangles, flight, REPORT_t_s, REPORT_triangles, "triangles");
     add_curve(&bytes, flight, REPORT_t_s, REPORT_bytes_down, "down");
     add_curve(&bytes, flight, REPORT_t_s, REPORT_bytes_up, "up");
@@ -142,6 +165,8 @@ static int put_flight(FILE *out, const report_content *content, const report_fli
         add_curve(&panoramas, flight, REPORT_t_s, REPORT_panoramas, "panoramas");
     add_curve(&error, flight, REPORT_t_s, REPORT_err_px_rms, "rms");
     add_curve(&error, flight, REPORT_t_s, REPORT_err_px_p95, "95 %");
+    add_curve(&picture, flight, REPORT_t_s, REPORT_diff_mean, "mean");
+    add_curve(&picture, flight, REPORT_t_s, REPORT_diff_p95, "95 %");
     fputs("<h2>", out);
     report_put_html(out, flight->name);
     fputs("</h2>\n<div class=\"plots\">\n", out);
@@ -149,7 +174,8 @@ static int put_flight(FILE *out, const report_content *content, const report_fli
         report_plot_put(out, content->folder, &bytes, why, why_bytes) ||
         report_plot_put(out, content->folder, &nodes, why, why_bytes) ||
         report_plot_put(out, content->folder, &panoramas, why, why_bytes) ||
-        report_plot_put(out, content->folder, &error, why, why_bytes))
+        report_plot_put(out, content->folder, &error, why, why_bytes) ||
+        report_plot_put(out, content->folder, &picture, why, why_bytes))
         return -1;
     fputs("</div>\n", out);
     return 0;
@@ -256,7 +282,9 @@ int report_page_html(const report_content *content, char *why, size_t why_bytes)
 int report_page_markdown(const report_content *content, char *why, size_t why_bytes)
 {
     FILE *out = open_page(content, "REPORT.md", why, why_bytes);
+    uint8_t shown[SUMMARY_COLUMNS];
     if (!out) return -1;
+    find_shown(content, shown);
     fputs("# ", out);
     report_put_markdown(out, content->title);
     fputs("\n", out);
@@ -265,9 +293,11 @@ int report_page_markdown(const report_content *content, char *why, size_t why_by
     if (content->paper) fputs("\n## All flights\n", out);
     fputs("\n", out);
     fputs("| flight |", out);
-    for (int c = 0; c < SUMMARY_COLUMNS; c++) fprintf(out, " %s |", summary_columns[c].heading);
+    for (int c = 0; c < SUMMARY_COLUMNS; c++)
+        if (shown[c]) fprintf(out, " %s |", summary_columns[c].heading);
     fputs("\n| :-- |", out);
-    for (int c = 0; c < SUMMARY_COLUMNS; c++) fputs(" --: |", out);
+    for (int c = 0; c < SUMMARY_COLUMNS; c++)
+        if (shown[c]) fputs(" --: |", out);
     for (size_t i = 0; i < content->flight_count; i++) {
         report_summary summary;
         report_summarise(&content->flight[i], content->settle_s, &summary);
@@ -276,6 +306,7 @@ int report_page_markdown(const report_content *content, char *why, size_t why_by
         fputs(" |", out);
         for (int c = 0; c < SUMMARY_COLUMNS; c++) {
             double value = summary_value(&summary, &summary_columns[c]);
+            if (!shown[c]) continue;
             if (isnan(value))
                 fputs(" – |", out);
             else

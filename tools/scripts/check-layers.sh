@@ -80,7 +80,7 @@ sim/options         platform/options client/farfield.h
 sim/link            platform/options server/session server/panorama client/farfield.h protocol/ platform/sys.h
 sim/judge           client/terrain client/images protocol/ common3d platform/sys.h
 sim/tape            client/farfield.h protocol/ platform/sys.h
-sim/fly             platform/options sim/options sim/link sim/judge sim/tape client/farfield.h protocol/ common3d platform/sys.h
+sim/fly             platform/options sim/options sim/link sim/judge sim/tape client/farfield.h client/ff_sky.h client/terrain client/ground client/images protocol/ common3d platform/sys.h
 sim/view            platform/options sim/options sim/link client/farfield.h protocol/ common3d platform/sys.h
 sim/handheld        platform/options sim/options sim/tape client/farfield.h protocol/ common3d platform/sys.h
 tools/bake          platform/options tools/bake/ client/farfield.h protocol/ platform/sys.h
