@@ -144,6 +144,8 @@ int ff_client_create(const ff_client_desc *desc, ff_client **result)
     if (desc->pack) {
         client->info = desc->pack->header.info;
         rc = ff_client_carve(client);
+    } else {
+        ff_client_carve_sky(client);
     }
     if (rc == FF_OK && desc->use_thread) {
         rc = sys_thread_start(&client->thread, worker_main, client);
@@ -225,6 +227,7 @@ void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama)
          * again */
         sys_mutex_lock(&client->gate);
         ff_client_uncarve(client);
+        ff_client_carve_sky(client);
         ff_stream_restart(&client->stream);
         sys_mutex_unlock(&client->gate);
         return;

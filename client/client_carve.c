@@ -154,6 +154,24 @@ int ff_client_carve(ff_client *client)
     return FF_OK;
 }
 
+void ff_client_carve_sky(ff_client *client)
+{
+    ff_budget budget;
+    FF_ASSERT(!client->have_terrain && !client->device);
+    if (!client->desc.backend) return;
+    ff_budget_fixed(&budget, &client->desc, client->arena.bytes);
+    ff_budget_sky(&budget);
+    size_t mark = client->arena.used, bytes = c3d_bytes(client->desc.backend, &budget.device);
+    void *memory = ff_arena_take(&client->arena, bytes);
+    if (memory &&
+        c3d_open(client->desc.backend, &budget.device, memory, bytes, &client->device) == FF_OK) {
+        ff_sky_make(&client->sky, client->device);
+        return;
+    }
+    client->device = NULL;
+    ff_arena_back_to(&client->arena, mark);
+}
+
 void ff_client_uncarve(ff_client *client)
 {
     ff_requests_clear(&client->requests);

@@ -37,6 +37,7 @@ static void settle_welcome(ff_client *client, const ff_stream_shared *shared)
     int rc = ff_client_carve(client);
     FF_ASSERT(client->have_terrain == (rc == FF_OK));
     client->terrain_error = rc;
+    if (rc != FF_OK) ff_client_carve_sky(client);
     ff_stream_accept(&client->stream, rc == FF_OK);
     sys_mutex_unlock(&client->gate);
 }
@@ -104,14 +105,26 @@ static int can_look(const c3d_camera *camera)
            camera->height <= FF_PICTURE_SIDE_MAX && camera->near_wu <= NEAR_GIVEN_WU_MAX;
 }
 
+/* No terrain is known: the sky, as the camera sees it. */
+static int update_sky(ff_client *client, const c3d_camera *camera)
+{
+    int changed = !client->has_camera || client->dirty || !same_camera(&client->camera, camera);
+    client->camera = *camera;
+    client->has_camera = 1;
+    client->dirty = 0;
+    *(changed ? &client->frames_updated : &client->frames_skipped) += 1;
+    return changed;
+}
+
 int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
 {
     int pictures_changed = 0;
     look_at_link(client);
-    if (!client->have_terrain || !can_look(given)) {
+    if (!can_look(given)) {
         client->frames_skipped++;
         return 0;
     }
+    if (!client->have_terrain) return update_sky(client, given);
     const c3d_camera entered = enter_frame(client, given), *camera = &entered;
     unsigned taken = ff_client_take_new_data(client, now_us, &pictures_changed);
     int moved = !client->has_camera || !same_camera(&client->camera, camera);
@@ -212,10 +225,27 @@ static void set_fog(const ff_client *client, c3d_frame *frame)
     frame->fog_colour = FF_SKY_HORIZON_COLOUR;
 }
 
+static void draw_sky(ff_client *client)
+{
+    c3d_frame frame = { .camera = client->camera, .clear_colour = FF_SKY_HORIZON_COLOUR };
+    if (!frame.camera.width || !frame.camera.height) {
+        frame.camera.width = client->desc.width;
+        frame.camera.height = client->desc.height;
+    }
+    frame.camera.near_wu = NEAR_WU_MIN;
+    frame.camera.far_wu = 16 * NEAR_WU_MIN; /* the sky lies within */
+    c3d_begin(client->device, &frame);
+    ff_sky_draw(&client->sky, client->device, frame.camera.near_wu);
+    c3d_end(client->device);
+}
+
 void ff_client_draw(ff_client *client)
 {
     if (!client->device || !client->has_camera) return;
-    FF_ASSERT(client->have_terrain); /* a device lives as long as a terrain */
+    if (!client->have_terrain) {
+        draw_sky(client);
+        return;
+    }
     c3d_frame frame = { .camera = client->last_view.camera, .clear_colour = FF_SKY_HORIZON_COLOUR };
     fit_planes(client, &frame.camera);
     set_fog(client, &frame);

@@ -161,7 +161,7 @@ void ff_client_destroy(ff_client *client);
  * something, 0 when idle. */
 int ff_client_work(ff_client *client, int64_t now_us);
 /* Takes in new data and selects for this camera. 1: the picture changed, draw; 0: same picture as
- * before. */
+ * before. Until the terrain is known the picture is the sky. */
 int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera);
 /* Draws the last update through the back end (no present). */
 void ff_client_draw(ff_client *client);
@@ -205,8 +205,9 @@ void ff_client_set_show(ff_client *client, unsigned show);
 /* NULL until the terrain is known. */
 const ff_terrain_info *ff_client_terrain(const ff_client *client);
 const ff_tree *ff_client_tree(const ff_client *client);
-/* For checks and the emulator: the c3d device; NULL without a back end and until the terrain is
- * known, another one after another terrain. */
+/* For checks and the emulator: the c3d device; NULL without a back end and where the block has no
+ * room for one. Until the terrain is known it is one for the sky; another one with every
+ * terrain. */
 c3d_device *ff_client_device(ff_client *client);
 /* Ground height at (x, y) as drawn now: 1 and *z_wu, or 0 where no ground is drawn: beyond the
  * terrain's last sample there is none, and else it has not come or lies further than the client

@@ -202,6 +202,22 @@ void ff_budget_fixed(ff_budget *b, const ff_client_desc *desc, size_t block)
     b->fixed = b->used;
 }
 
+void ff_budget_sky(ff_budget *b)
+{
+    FF_ASSERT(b->desc->backend && b->fixed >= sizeof(ff_client));
+    b->device = (c3d_desc){ .surface_api = b->desc->surface_api,
+                            .mesh_count = 1,
+                            .strip_count = 1,
+                            .texture_count = 1,
+                            .mesh_vertices_max = FF_SKY_VERTICES,
+                            .strip_indices_max = FF_SKY_INDICES,
+                            .use_vertex_buffers = !b->desc->use_plain_arrays,
+                            .width = b->desc->width,
+                            .height = b->desc->height,
+                            .frame_format = b->desc->frame_format,
+                            .texture_bytes = FF_SHARE_OF_TEXT(b->block) };
+}
+
 static void add_arriving(ff_budget *b)
 {
     size_t texture_side = b->has_textures ? (size_t)1 << b->info->texture_log2 : 0,

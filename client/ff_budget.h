@@ -151,7 +151,11 @@ typedef struct ff_budget {
 void ff_budget_fixed(ff_budget *budget, const ff_client_desc *desc, size_t block);
 /* What of panoramas and images a block can have at a step of economy. */
 void ff_budget_economise(ff_budget *budget, const ff_terrain_info *info, unsigned economy);
-/* All pools, after the two above; `buffers`: a GL holds the meshes. FF_OK or FF_ERR_MEMORY. */
+/* The device alone that draws the sky, and the caller's text, until a terrain is known: described
+ * in budget->device, after ff_budget_fixed. */
+void ff_budget_sky(ff_budget *budget);
+/* All pools, after the fixed ones and the economy; `buffers`: a GL holds the meshes. FF_OK or
+ * FF_ERR_MEMORY. */
 int ff_budget_terrain(ff_budget *budget, int buffers);
 
 #endif

@@ -76,6 +76,9 @@ void *ff_client_take(ff_arena *arena, const ff_budget *budget, enum ff_pool_id p
  * FF_ERR_MEMORY, FF_ERR_UNSUPPORTED. */
 int ff_client_carve(ff_client *client);
 void ff_client_uncarve(ff_client *client);
+/* What draws the sky until a terrain is known, where the block has room for it; under the gate (or
+ * before the worker runs), nothing being carved. ff_client_uncarve gives it back. */
+void ff_client_carve_sky(ff_client *client);
 /* client_take.c: takes in all new data and returns the number of items. *changed is set when the
  * picture changed and the tree does not tell of it. */
 unsigned ff_client_take_new_data(ff_client *client, int64_t now_us, int *changed);

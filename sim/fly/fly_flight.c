@@ -175,7 +175,7 @@ static int read_picture(fly_flight *flight)
     if (!flight->world->surface) return 0;
     ff_client_draw(flight->world->client);
     c3d_device *device = ff_client_device(flight->world->client);
-    if (!device) { /* the terrain is not known yet: a black picture */
+    if (!device) { /* the block has no room for one: a black picture */
         memset(flight->rgb, 0,
                (size_t)flight->options->size.width * flight->options->size.height * 3);
         return 0;

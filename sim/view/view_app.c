@@ -164,7 +164,6 @@ int view_app_open(view_app *app, const view_options *options)
 
 void view_app_close(view_app *app)
 {
-    view_wait_close(&app->wait);
     if (app->client) ff_client_destroy(app->client);
     view_blit_close(&app->blit);
     if (app->surface) app->surface_api->close(app->surface);
@@ -188,23 +187,13 @@ static int write_screenshot(view_app *app, c3d_device *device)
     return rc < 0 ? view_fail("%s: %s", path, ff_error_text(rc)) : 0;
 }
 
-/* Draws the picture without text; returns the device that drew it, or NULL. */
-static c3d_device *draw_ground(view_app *app)
-{
-    c3d_device *device = ff_client_device(app->client);
-    if (!device)
-        return view_wait_draw(&app->wait, app->backend, app->surface_api, &app->fly.camera);
-    view_wait_close(&app->wait);
-    ff_client_draw(app->client);
-    return device;
-}
-
 static int draw(view_app *app)
 {
-    c3d_device *device = draw_ground(app);
+    c3d_device *device = ff_client_device(app->client);
+    ff_client_draw(app->client);
     app->redraw = 0;
     app->drawn++;
-    if (!device) return view_fail("cannot draw with this graphics library");
+    if (!device) return view_fail("--memory: too little for a picture");
     if (app->show_hud || app->show_pools || app->show_help) view_hud_draw(&app->hud, app, device);
     int rc = app->screenshot ? write_screenshot(app, device) : 0;
     if (app->blit.device && view_blit_show(&app->blit, device) < 0)

@@ -9,7 +9,6 @@
 #include "view_link.h"
 #include "view_options.h"
 #include "view_script.h"
-#include "view_wait.h"
 
 #include <stdio.h>
 
@@ -24,7 +23,6 @@ typedef struct view_app {
     view_link *link; /* NULL: the pack without a link */
     void *memory;
     ff_client *client;
-    view_wait wait; /* until the terrain is known */
     view_blit blit; /* with --backend soft: its picture into the window */
     view_fly fly;
     view_hud hud;

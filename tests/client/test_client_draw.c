@@ -62,8 +62,6 @@ static void all_of_the_cut_is_drawn(void **state)
     client_rig rig;
     open_rig(&rig, 5);
     rig_client(&rig, 4 * MB);
-    assert_null(ff_client_device(rig.client));
-    ff_client_draw(rig.client); /* no terrain is known yet: nothing is drawn */
     assert_true(rig_settle(&rig, 600));
     uint8_t *first = draw(&rig), *again = draw(&rig);
     ff_client_stats stats = rig_stats(&rig);
@@ -96,6 +94,49 @@ static void plain_arrays_draw_the_same(void **state)
     assert_int_equal(hash[0], hash[1]);
     free(picture[0]);
     free(picture[1]);
+}
+
+/* Sky above, the colour of bare ground far below the horizon, nothing black anywhere. */
+static void expect_sky(client_rig *rig)
+{
+    uint8_t *rgb = draw(rig);
+    for (int i = 0; i < WIDTH * HEIGHT; i++) assert_true(rgb[3 * i] > 80);
+    for (int i = 0; i < WIDTH * HEIGHT / 3; i++) assert_true(rgb[3 * i + 2] > rgb[3 * i] + 20);
+    assert_true(count_colour(rgb, 138, 126, 102, 5) > WIDTH * HEIGHT / 8);
+    free(rgb);
+}
+
+static void sky_stands_until_a_terrain_is_known(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 3; kind++) {
+        client_rig rig;
+        ff_panorama_desc panorama = { .enabled = 1 };
+        open_rig(&rig, 0);
+        if (kind) rig.desc.backend = c3d_backend_soft();
+        if (kind == 2) rig.desc.frame_format = C3D_RGBA8888;
+        rig.camera.pitch = 0;
+        rig.silent_at = 0;
+        rig_client(&rig, 4 * MB);
+        rig_step(&rig, 50000);
+        assert_null(ff_client_terrain(rig.client));
+        assert_int_equal(rig.updates, 1);
+        expect_sky(&rig);
+        rig_step(&rig, 50000);
+        assert_int_equal(rig.updates, 1); /* the same sky */
+        rig.camera.roll += 100;
+        rig_step(&rig, 50000);
+        assert_int_equal(rig.updates, 2);
+        rig.silent_at = UINT64_MAX;
+        rig.camera.roll = 0;
+        assert_true(rig_settle(&rig, 600) && rig_stats(&rig).tree.nodes_drawn > 0);
+        ff_client_set_panorama(rig.client, &panorama); /* the block is shared out anew */
+        assert_null(ff_client_terrain(rig.client));
+        expect_sky(&rig);
+        assert_true(rig_settle(&rig, 600) && rig_stats(&rig).tree.nodes_drawn > 0);
+        assert_int_equal(rig_stats(&rig).c3d.stale_handles, 0);
+        rig_close(&rig);
+    }
 }
 
 /* Where rounding leaves a pixel between two nodes empty nothing bright shines through: below the
@@ -227,6 +268,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(all_of_the_cut_is_drawn),
                                         cmocka_unit_test(plain_arrays_draw_the_same),
+                                        cmocka_unit_test(sky_stands_until_a_terrain_is_known),
                                         cmocka_unit_test(a_full_mesh_pool_leaves_no_hole),
                                         cmocka_unit_test(least_memory_is_true),
                                         cmocka_unit_test(faces_stand_behind_the_ground),

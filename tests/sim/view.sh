@@ -29,7 +29,7 @@ pack=$work/hills.ffp
 "$bin/farfield-bake" --quiet "$work/hills.r16" --raw 257x257 --spacing 30 --scale 1 -o "$pack"
 result $? "a pack to fly over"
 
-# pictures WHAT FILE...: prints for each file the number of its colours, or of its pixels that differ from the first one's.
+# pictures WHAT FILE...: prints for each file the number of its colours, of its pixels that are sky and dark, or of its pixels that differ from the first one's.
 cat >"$work/pictures.py" <<'END'
 import struct, sys, zlib
 def rows(path):
@@ -57,6 +57,8 @@ for path in sys.argv[2:]:
     pixels = rows(path)
     if sys.argv[1] == "colours":
         print(len(set(pixels)))
+    elif sys.argv[1] == "sky": # blue ones, and dark ones
+        print(sum(p[2] > p[0] + 20 for p in pixels), sum(max(p) < 80 for p in pixels))
     elif sys.argv[1] == "red":
         print(sum(p[0] > 150 and p[1] < 90 and p[2] < 90 for p in pixels))
     else:
@@ -257,8 +259,12 @@ result $? "over a link to a server" && [ ! -s "$work/error" ] || cat "$work/erro
 "$view" "$address" --headless --panorama on --at 3840,300,900 --script "$work/toggles.txt" --json >"$work/said" 2>"$work/error"
 [ $? = 0 ] && [ "$(value panoramas)" -ge 1 ]; result $? "panoramas come from the server"
 stop_server
-"$view" "$address" --headless --frames 30 --screenshot "$work/waiting.png" --json >"$work/said" 2>"$work/error"
-[ $? = 0 ] && [ -s "$work/waiting.png" ] && [ ! -s "$work/error" ] && [ "$(value nodes_held)" = 0 ]; result $? "a server that is not there is waited for"
+for backend in gles1 gl soft; do
+    "$view" "$address" --headless --backend $backend --no-hud --frames 30 --screenshot "$work/waiting.png" --json >"$work/said" 2>"$work/error"
+    [ $? = 0 ] && [ -s "$work/waiting.png" ] && [ ! -s "$work/error" ] && [ "$(value nodes_held)" = 0 ]; result $? "a server that is not there is waited for, with $backend"
+    read -r blue dark < <(pictures sky "$work/waiting.png")
+    [ "${blue:-0}" -gt 20000 ] && [ "$dark" = 0 ]; result $? "under the sky"
+done
 "$view" "$pack" --headless --link umts --panorama on --at 3840,300,900 --script "$work/toggles.txt" --json >"$work/said" 2>"$work/error"
 [ $? = 0 ] && [ "$(value bytes_down)" -gt 1000 ] && [ "$(value panoramas)" -ge 1 ]; result $? "a pack behind a link of its own, with panoramas"
 
