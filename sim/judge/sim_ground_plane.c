@@ -178,8 +178,7 @@ int sim_ground_cast(const sim_ground *ground, const double from_m[3], const doub
         t0 = fmax(t0, fmin(a, b));
         t1 = fmin(t1, fmax(a, b));
     }
-    if (t0 > 0 && t0 < t1 &&
-        ray_height(&r, t0) < edge_height_m(ground, from_m, direction, t0))
+    if (t0 > 0 && t0 < t1 && ray_height(&r, t0) < edge_height_m(ground, from_m, direction, t0))
         r.side = -1; /* it comes in below the ground's edge */
     return t0 < t1 && cast_block(&r, ground->top, 0, 0, t0, t1, t_hit);
 }

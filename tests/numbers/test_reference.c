@@ -88,6 +88,8 @@ static int try_ordinary_ground(sys_random *random, const c3d_camera *camera, gro
                              .tile_log2 = 10,
                              .tiles_x = 256,
                              .tiles_y = 256,
+                             .samples_x = (256 << 10) + 1,
+                             .samples_y = (256 << 10) + 1,
                              .spacing_wu = (uint32_t)ref_between(random, 1, 30) * M,
                              .hscale_q24 = (uint32_t)ref_between(random, 1 << 20, 1 << 24),
                              .hoffset_wu = ref_between(random, -400, 3000) * M };
@@ -341,8 +343,10 @@ static void random_node(sys_random *random, struct ff_tree *tree, ff_node *node)
     tree->view.camera = ref_ordinary_camera(random);
     tree->info = (ff_terrain_info){ .node_log2 = 3,
                                     .tile_log2 = 10,
-                                    .tiles_x = 16,
-                                    .tiles_y = 16,
+                                    .tiles_x = 64,
+                                    .tiles_y = 64,
+                                    .samples_x = (64 << 10) + 1,
+                                    .samples_y = (64 << 10) + 1,
                                     .spacing_wu = 10 * M,
                                     .hscale_q24 = (uint32_t)ref_between(random, 1 << 20, 1 << 25),
                                     .hoffset_wu = ref_between(random, -500 * M, 500 * M) };

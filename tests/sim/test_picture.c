@@ -30,17 +30,17 @@ static void set(uint8_t rgb[3], int red, int green, int blue)
     rgb[2] = (uint8_t)blue;
 }
 
-static void fill(picture *picture, int red, int green, int blue)
+static void fill(picture *of, int red, int green, int blue)
 {
-    for (int i = 0; i < PIXELS; i++) set(picture->rgb[i], red, green, blue);
+    for (int i = 0; i < PIXELS; i++) set(of->rgb[i], red, green, blue);
 }
 
 /* Hills of grey, dark in the west. */
-static void hills(picture *picture)
+static void hills(picture *of)
 {
     for (int i = 0; i < PIXELS; i++) {
         int grey = 60 + 3 * (i % WIDTH) + (i * 37 + i / WIDTH * 11) % 29;
-        set(picture->rgb[i], grey, grey, grey);
+        set(of->rgb[i], grey, grey, grey);
     }
 }
 
@@ -78,7 +78,7 @@ static void a_grey_level_is_one_everywhere(void **state)
 }
 
 /* The formula as it stands in the paper, over the one window of an 11 x 11 picture. */
-static double slow_ssim(const uint8_t shown[121][3], const uint8_t truth[121][3])
+static double slow_ssim(uint8_t shown[121][3], uint8_t truth[121][3])
 {
     double weight[121], sum = 0, mean[2] = { 0, 0 }, variance[2] = { 0, 0 }, covariance = 0;
     for (int i = 0; i < 121; i++) {
