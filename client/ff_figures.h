@@ -67,7 +67,9 @@
     KEPT(ff_quality, quality, ff_client_quality(from->client), \
          "in force: as set, by the balance, halved when power is low") \
     KEPT(int32_t, back_plane_wu, back_plane_wu(from->client), "in force; 0: no panoramas") \
-    KEPT(int32_t, panorama_error_q8, from->client->panorama.desc.error_px_q8, "in force")
+    KEPT(int32_t, panorama_error_q8, from->client->panorama.desc.error_px_q8, "in force") \
+    KEPT(uint16_t, face_size, from->client->panorama.face_size, \
+         "texels of a panorama's face each way, as the block has room for; 0: no panoramas")
 /* clang-format on */
 
 #endif

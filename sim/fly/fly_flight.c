@@ -116,25 +116,35 @@ static void no_errors(sim_audit_result *audit)
     for (unsigned cause = 0; cause < SIM_CAUSES; cause++) audit->square_px[cause] = NAN;
 }
 
+static void no_skyline(sim_audit_result *audit)
+{
+    audit->skyline_px_rms = audit->skyline_px_p95 = audit->skyline_px_max = NAN;
+}
+
 /* Errors where something shows ground, percents in every frame that the auditor saw. */
 static int read_audit(fly_flight *flight, fly_sources *from)
 {
     fly_world *world = flight->world;
     const ff_tree *tree = ff_client_tree(world->client);
     const ff_panorama_desc *panorama = &flight->options->panorama;
+    int32_t join_wu = from->client.back_plane_wu;
     sim_audit_view view = { .camera = flight->camera,
                             .quality = from->client.quality,
-                            .front_wu = from->client.back_plane_wu - from->client.back_plane_wu / 8,
-                            .back_wu = panorama->server_back_wu ? panorama->server_back_wu
-                                                                : 100000 * FF_WU_PER_METRE };
+                            .panorama = { .front_wu = join_wu - join_wu / 8,
+                                          .back_wu = panorama->server_back_wu
+                                                         ? panorama->server_back_wu
+                                                         : 100000 * FF_WU_PER_METRE,
+                                          .face_size = from->client.face_size } };
     sim_audit_result *audit = &from->audit;
     if (tree) view.drawn_count = ff_tree_drawn(tree, &view.drawn);
-    view.panorama = ff_client_panorama(world->client, view.panorama_pos_wu, &view.faces);
+    (void)ff_client_panorama(world->client, view.panorama.pos_wu, &view.faces);
     int rc = sim_audit_frame(world->auditor, &view, audit);
     if (rc != FF_OK) return fail("auditor", ff_error_text(rc));
+    from->truth_error_m = world->truth_error_m;
     uint32_t all = audit->ground_pixels + audit->panorama_pixels + audit->undrawn_pixels;
     from->panorama_px_percent = all ? 100.0 * audit->panorama_pixels / all : 0;
-    if (!all) no_errors(audit);
+    if (!all && !audit->sky_pixels) no_errors(audit);
+    if (!audit->skyline_columns) no_skyline(audit);
     return 0;
 }
 
@@ -149,8 +159,9 @@ static void judge_nothing(fly_sources *from)
 {
     sim_relevance_figures *f = &from->relevance;
     no_errors(&from->audit);
+    no_skyline(&from->audit);
     for (unsigned kind = 0; kind < FF_DATA_CLASSES; kind++) f->came[kind] = f->unused[kind] = NAN;
-    from->audit.undrawn_percent = from->panorama_px_percent = NAN;
+    from->audit.undrawn_percent = from->panorama_px_percent = from->truth_error_m = NAN;
     f->judged_all = f->supporting = f->percent = NAN;
     from->picture = (sim_picture_figures){ NAN, NAN, NAN };
 }

@@ -54,6 +54,7 @@ int fly_options_parse(fly_options *options, int argc, char **argv)
     if (options->tape_path && (options->server || options->events.count || options->events_path ||
                                options->balance.mode != FF_BALANCE_OFF))
         return fail("--tape records simulated flights without events and without --balance");
+    if (options->truth_path && !options->audit) return fail("--truth needs --audit on");
     if (options->reference_dir && !options->png_dir) return fail("--reference needs --png");
     if (options->png_dir && options->backend == FLY_NONE)
         return fail("--png needs a --backend other than none");
@@ -108,7 +109,7 @@ void fly_options_print(const fly_options *options)
     fprintf(stderr,
             "farfield-fly: seed %llu, pack %s, %s %s, %g km/h, %g s after %g s, %s from %g, "
             "%g m up, quality %s, panorama %s, balance %s, %ux%u at %g degrees, %u fps, "
-            "backend %s, %u bytes, audit %s\n",
+            "backend %s, %u bytes, audit %s%s%s\n",
             (unsigned long long)options->seed, options->pack_path,
             options->server ? "server" : "link",
             options->server ? options->server : options->link_text, options->speed_kmh,
@@ -116,5 +117,6 @@ void fly_options_print(const fly_options *options)
             options->height_m, options->quality_text, options->use_panorama ? "on" : "off",
             options->balance_text, options->size.width, options->size.height, options->fov_degrees,
             options->fps, fly_backend_name((enum fly_backend)options->backend),
-            options->memory_bytes, options->audit ? "on" : "off");
+            options->memory_bytes, options->audit ? "on" : "off", options->truth_path ? " by " : "",
+            options->truth_path ? options->truth_path : "");
 }

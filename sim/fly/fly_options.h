@@ -111,8 +111,11 @@ extern const sys_option_type fly_events_option;
     OPTION(sys_switch, diff, "diff", "on|off", "off", SYS_ANY, \
            "diff_mean, diff_p95 and ssim: each row's picture against the one that --reference " \
            "draws, by luminance; some seconds a row") \
+    OPTION(sys_text, truth_path, "truth", "PACK", NULL, SYS_ANY, \
+           "the ground the audit judges by, where it is not that of --pack: the same samples, the " \
+           "same spacing and place, such as the same raster baked without error") \
     OPTION(sys_text, ground_cache, "ground-cache", "FILE", NULL, SYS_ANY, \
-           "keeps the decoded true ground there for further flights over this pack") \
+           "keeps the decoded true ground there for further flights over it") \
     OPTION(sys_switch, check, "check", "on|off", NULL, SYS_ANY, \
            "every frame searched for cracks on integer vertices; default: as --audit") \
     OPTION(sys_real, sample_s, "sample", "S", "1", FLY_INTERVAL, "time between rows") \

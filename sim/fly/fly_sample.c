@@ -132,6 +132,10 @@ void fly_json(FILE *file, const fly_options *options, const fly_sample *sample, 
     fprintf(file, "{\n  \"seed\": %" PRIu64 ",\n  \"frames\": %" PRIu32 ",\n  \"settle_s\": %.3f",
             options->seed, totals->frames, settle_s(sample, count));
     json_text(file, "pack", options->pack_path);
+    if (options->audit)
+        json_text(file, "truth", options->truth_path ? options->truth_path : options->pack_path);
+    else
+        fputs(",\n  \"truth\": null", file);
     json_text(file, "link", options->server ? options->server : options->link_text);
     json_text(file, "quality", options->quality_text);
     json_text(file, "backend", fly_backend_name(options->backend));

@@ -40,6 +40,10 @@
     X(diff_mean, "%.4f", MEAN, from->picture.diff_mean) \
     X(diff_p95, "%.3f", MEAN, from->picture.diff_p95) \
     X(ssim, "%.5f", MEAN, from->picture.ssim) \
+    X(skyline_px_rms, "%.3f", MEAN, from->audit.skyline_px_rms) \
+    X(skyline_px_p95, "%.3f", MEAN, from->audit.skyline_px_p95) \
+    X(skyline_px_max, "%.3f", MOST, from->audit.skyline_px_max) \
+    X(truth_error_m, "%.3f", MEAN, from->truth_error_m) \
     X(tree_err_px, "%.3f", MEAN, from->client.tree.error_px_q8 / 256.0) \
     X(stitched, "%.0f", MEAN, from->client.tree.stitched) \
     X(queued, "%.0f", MEAN, from->client.queued) \
@@ -90,6 +94,7 @@ typedef struct fly_sources {
     sim_audit_result audit;
     double panorama_px_percent; /* of the pixels that truly show ground */
     sim_picture_figures picture;
+    double truth_error_m; /* no height judged by is further than this from its source */
     sim_relevance_figures relevance;
     uint64_t geometry_hash, request_hash;
 } fly_sources;

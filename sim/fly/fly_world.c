@@ -12,19 +12,45 @@ static int fail(const char *what, int rc)
     return -1;
 }
 
+/* The ground that the audit judges by: the pack's, or that of a pack which is needed no longer once
+ * it is decoded. */
+static int open_truth(fly_world *world)
+{
+    const fly_options *options = world->options;
+    sys_mapping mapping = { 0 };
+    ff_pack other, *pack = &world->pack;
+    int rc = FF_OK;
+    if (options->truth_path) {
+        pack = &other;
+        rc = sys_map_file(options->truth_path, &mapping);
+        if (rc != FF_OK) return fail(options->truth_path, rc);
+        rc = ff_pack_open(&other, mapping.bytes, mapping.size);
+    }
+    const ff_terrain_info *info = &pack->header.info;
+    const char *why = rc == FF_OK ? sim_ground_differs(&world->pack.header.info, info) : NULL;
+    if (rc == FF_OK && !why)
+        rc = sim_ground_load_cached(&world->true_ground, pack, UINT64_MAX, options->ground_cache);
+    if (rc == FF_OK) world->truth_error_m = (double)info->hscale_q24 / (1 << 24) * info->max_error;
+    if (mapping.bytes) sys_unmap_file(&mapping);
+    if (why)
+        fprintf(stderr, "farfield-fly: %s: no truth for %s: %s\n", options->truth_path,
+                options->pack_path, why);
+    if (rc != FF_OK)
+        return fail(options->truth_path ? options->truth_path : options->pack_path, rc);
+    return why ? -1 : 0;
+}
+
 static int open_ground(fly_world *world)
 {
     const fly_options *options = world->options;
     int rc = sys_map_file(options->pack_path, &world->mapping);
     if (rc == FF_OK) rc = ff_pack_open(&world->pack, world->mapping.bytes, world->mapping.size);
     if (rc == FF_OK) rc = sim_ground_load(&world->path_ground, &world->pack, PATH_SAMPLES_MAX);
-    if (rc == FF_OK && options->audit)
-        rc = sim_ground_load_cached(&world->true_ground, &world->pack, UINT64_MAX,
-                                    options->ground_cache);
     if (rc != FF_OK) return fail(options->pack_path, rc);
     const ff_terrain_info *info = &world->pack.header.info;
     fly_path_init(&world->path, options, info, &world->path_ground);
     if (options->audit) {
+        if (open_truth(world)) return -1;
         world->auditor = sim_auditor_create(&world->true_ground, info, options->audit_step_px);
         if (!world->auditor) return fail("auditor", FF_ERR_MEMORY);
     }

@@ -18,6 +18,7 @@ typedef struct fly_world {
     ff_pack pack;
     /* a moderate level, for the path; the whole ground, with an audit */
     sim_ground path_ground, true_ground;
+    double truth_error_m; /* no true height is further than this from its source */
     sim_auditor *auditor;
     fly_path path;
     sim_link *link; /* NULL with a real server */

@@ -1,9 +1,12 @@
 #include "sim_audit.h"
 
-#include "../../client/terrain/ff_strips.h"
-#include "../../protocol/message/ff_message.h"
+#include "sim_cover.h"
+#include "sim_cube.h"
 #include "sim_eye.h"
+#include "sim_mesh.h"
 #include "sim_place.h"
+#include "sim_skyline.h"
+#include "sim_spread.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,66 +15,56 @@
 #define NEAREST_M 0.01 /* points nearer to the eye have no pixel */
 #define EDGE_PX   0.5  /* how exactly the drawn ground's edge is found */
 
-typedef struct triangles {
-    uint32_t count;
-    uint16_t (*vertex)[3];
-} triangles;
-
 struct sim_auditor {
     const sim_ground *ground;
-    ff_terrain_info info;
     unsigned step_px;
-    triangles strip[32]; /* by strip id, degenerate ones left out */
-    double *error;       /* of one frame */
+    sim_mesh mesh;
+    sim_faces faces;
+    /* of one frame */
+    sim_cover cover;
     struct look *look;
-    size_t capacity; /* of both */
+    double *error;                        /* of looks, then of columns */
+    double *true_px, *drawn_px, *hint_px; /* skylines, a place for each column of pixels */
+    size_t looks, columns;                /* room for so many */
 };
 
-/* ---- strips as triangles ---- */
-
-static int unpack_strip(triangles *out, const uint16_t *index, uint32_t length)
-{
-    out->vertex = malloc((length + 1u) * sizeof *out->vertex);
-    if (!out->vertex) return FF_ERR_MEMORY;
-    for (uint32_t i = 0; i + 2 < length; i++) {
-        uint16_t a = index[i], b = index[i + 1], c = index[i + 2];
-        if (a == b || b == c || a == c) continue;
-        out->vertex[out->count][0] = a;
-        out->vertex[out->count][1] = b;
-        out->vertex[out->count++][2] = c;
-    }
-    return FF_OK;
-}
+/* A frame being audited. */
+typedef struct frame {
+    sim_auditor *auditor;
+    const sim_audit_view *view;
+    sim_eye e;
+    size_t looks;
+} frame;
 
 sim_auditor *sim_auditor_create(const sim_ground *ground, const ff_terrain_info *info,
                                 unsigned step_px)
 {
     sim_auditor *auditor = calloc(1, sizeof *auditor);
-    ff_strips *strips = malloc(sizeof *strips);
-    int rc = auditor && strips ? ff_strips_make(strips, info->node_log2) : FF_ERR_MEMORY;
-    if (rc == FF_OK) {
-        auditor->ground = ground;
-        auditor->info = *info;
-        auditor->step_px = step_px;
-        for (uint32_t i = 0; rc == FF_OK && i < strips->count; i++)
-            rc = unpack_strip(&auditor->strip[i], strips->index + strips->first[i],
-                              strips->length[i]);
-    }
-    free(strips);
-    if (rc != FF_OK) {
+    if (!auditor) return NULL;
+    auditor->ground = auditor->faces.ground = ground;
+    auditor->step_px = step_px;
+    if (sim_mesh_make(&auditor->mesh, info) != FF_OK) {
         sim_auditor_destroy(auditor);
         return NULL;
     }
     return auditor;
 }
 
+static void free_room(sim_auditor *auditor)
+{
+    free(auditor->look);
+    free(auditor->error);
+    free(auditor->true_px);
+    free(auditor->drawn_px);
+    free(auditor->hint_px);
+}
+
 void sim_auditor_destroy(sim_auditor *auditor)
 {
     if (!auditor) return;
-    for (size_t i = 0; i < sizeof auditor->strip / sizeof auditor->strip[0]; i++)
-        free(auditor->strip[i].vertex);
-    free(auditor->error);
-    free(auditor->look);
+    sim_mesh_free(&auditor->mesh);
+    sim_cover_free(&auditor->cover);
+    free_room(auditor);
     free(auditor);
 }
 
@@ -88,59 +81,14 @@ int sim_audit_project(const c3d_camera *camera, const double point_m[3], double 
 
 /* ---- what the client draws ---- */
 
-static double vertex_height_m(const sim_auditor *auditor, const ff_drawn *drawn, uint32_t index)
-{
-    return auditor->ground->hoffset_m + auditor->ground->hscale_m * drawn->heights[index];
-}
-
-/* Height of a node's triangle at (x, y), counted in the node's cells, the last ones at `last`: 1
- * and *z_m, or 0 outside. */
-static int triangle_height(const sim_auditor *auditor, const ff_drawn *drawn,
-                           const uint16_t vertex[3], const double last[2], double x, double y,
-                           double *z_m)
-{
-    uint32_t side = ff_node_side(&auditor->info);
-    double at[3][2], z[3];
-    for (int i = 0; i < 3; i++) {
-        at[i][0] = fmin(vertex[i] % side, last[0]);
-        at[i][1] = fmin(vertex[i] / side, last[1]);
-    }
-    double area = (at[1][0] - at[0][0]) * (at[2][1] - at[0][1]) -
-                  (at[2][0] - at[0][0]) * (at[1][1] - at[0][1]);
-    if (area == 0) return 0; /* of padding */
-    double b = ((x - at[0][0]) * (at[2][1] - at[0][1]) - (at[2][0] - at[0][0]) * (y - at[0][1])) /
-               area;
-    double c = ((at[1][0] - at[0][0]) * (y - at[0][1]) - (x - at[0][0]) * (at[1][1] - at[0][1])) /
-               area;
-    if (!(b >= -1e-9 && c >= -1e-9 && b + c <= 1 + 1e-9)) return 0;
-    for (int i = 0; i < 3; i++) z[i] = vertex_height_m(auditor, drawn, vertex[i]);
-    *z_m = z[0] + b * (z[1] - z[0]) + c * (z[2] - z[0]);
-    return 1;
-}
-
-static int node_height(const sim_auditor *auditor, const ff_drawn *drawn, double x, double y,
-                       double *z_m)
-{
-    uint8_t strip[5];
-    unsigned count = ff_strips_for(drawn->coarser, strip);
-    double last[2];
-    sim_place_last(&auditor->info, drawn, last);
-    for (unsigned i = 0; i < count; i++) {
-        const triangles *list = &auditor->strip[strip[i]];
-        for (uint32_t j = 0; j < list->count; j++)
-            if (triangle_height(auditor, drawn, list->vertex[j], last, x, y, z_m)) return 1;
-    }
-    return 0;
-}
-
 /* The node drawn over or under a point and its height there, or NULL. */
 static const ff_drawn *drawn_at(const sim_auditor *auditor, const ff_drawn *drawn, uint32_t count,
                                 const double point_m[3], double *z_m)
 {
     double cell[2];
     for (uint32_t i = 0; i < count; i++)
-        if (sim_place_in_node(&auditor->info, &drawn[i], point_m, cell) &&
-            node_height(auditor, &drawn[i], cell[0], cell[1], z_m))
+        if (sim_place_in_node(&auditor->mesh.info, &drawn[i], point_m, cell) &&
+            sim_mesh_height(&auditor->mesh, &drawn[i], cell, z_m))
             return &drawn[i];
     return NULL;
 }
@@ -154,106 +102,148 @@ int sim_audit_drawn_height(const sim_auditor *auditor, const ff_drawn *drawn, ui
 
 /* Why is the ground no finer here? Asked in the terms of the quality, not of the client's
  * selection. */
-static enum sim_audit_cause cause_of(const sim_auditor *auditor, const sim_audit_view *view,
-                                     const sim_eye *e, const ff_drawn *drawn, double error_px)
+static enum sim_audit_cause cause_of(const frame *of, const ff_drawn *drawn, double error_px)
 {
-    const ff_quality *quality = &view->quality;
+    const sim_auditor *auditor = of->auditor;
+    const ff_quality *quality = &of->view->quality;
     uint32_t next = ff_key_level(drawn->key) + 1;
-    double edge_m = (double)drawn->cell_wu * (1u << auditor->info.node_log2) / FF_WU_PER_METRE;
+    double edge_m = (double)drawn->cell_wu * (1u << auditor->mesh.info.node_log2) / FF_WU_PER_METRE;
     int splits = error_px > quality->error_px_q8 / 256.0;
     if (quality->measure == FF_MEASURE_DISTANCE) {
         double middle_m[3], d[3];
-        sim_place_middle(&auditor->info, drawn, middle_m);
-        sim_place_lift(auditor->ground, e->pos_m, middle_m,
+        sim_place_middle(&auditor->mesh.info, drawn, middle_m);
+        sim_place_lift(auditor->ground, of->e.pos_m, middle_m,
                        sim_ground_height_m(auditor->ground, middle_m[0], middle_m[1]), middle_m);
-        for (int i = 0; i < 3; i++) d[i] = middle_m[i] - e->pos_m[i];
+        for (int i = 0; i < 3; i++) d[i] = middle_m[i] - of->e.pos_m[i];
         splits = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) < edge_m * quality->c_q8 / 256.0;
     }
-    if (!splits || next >= ff_terrain_levels(&auditor->info)) return SIM_CAUSE_QUALITY;
+    if (!splits || next >= ff_terrain_levels(&auditor->mesh.info)) return SIM_CAUSE_QUALITY;
     return quality->depth_max && next >= quality->depth_max ? SIM_CAUSE_DEPTH : SIM_CAUSE_WAITING;
 }
 
-/* The direction in which the panorama shows a point: 1, or 0 when it does not. */
-static int panorama_direction(const sim_auditor *auditor, const sim_audit_view *view,
-                              const sim_eye *e, const double point_m[3], double direction[3])
+/* The direction in which the panorama shows a point, and where on its cube: 1, or 0 when it does
+ * not. */
+static int panorama_direction(const frame *of, const double point_m[3], double direction[3],
+                              sim_cube_place *place)
 {
-    static const enum ff_face_name positive[3] = { FF_FACE_EAST, FF_FACE_NORTH, FF_FACE_UP };
-    static const enum ff_face_name negative[3] = { FF_FACE_WEST, FF_FACE_SOUTH, FF_FACE_DOWN };
-    int axis = 0;
-    if (!view->panorama) return 0;
-    sim_place_seen_from(auditor->ground, view->panorama_pos_wu, e->pos_m, point_m, direction);
-    for (int i = 1; i < 3; i++)
-        if (fabs(direction[i]) > fabs(direction[axis])) axis = i;
-    double reach_wu = fabs(direction[axis]) * FF_WU_PER_METRE;
-    enum ff_face_name face = direction[axis] > 0 ? positive[axis] : negative[axis];
-    return (view->faces >> face & 1u) && reach_wu >= view->front_wu && reach_wu <= view->back_wu;
+    const sim_panorama *panorama = &of->view->panorama;
+    if (!of->view->faces) return 0;
+    sim_place_seen_from(of->auditor->ground, panorama->pos_wu, of->e.pos_m, point_m, direction);
+    sim_cube_meet(direction, panorama->face_size, place);
+    double reach_wu = place->reach * FF_WU_PER_METRE;
+    return (of->view->faces >> place->face & 1u) && reach_wu >= panorama->front_wu &&
+           reach_wu <= panorama->back_wu;
 }
 
-/* ---- a frame ---- */
+static double most_px(const sim_eye *e) { return hypot(e->centre_px[0], e->centre_px[1]) * 2; }
+
+/* How far two places on the cube lie apart in the picture. */
+static double apart_px(const sim_eye *e, unsigned size, const sim_cube_place place[2])
+{
+    double direction[3], pixel[2][2];
+    for (int i = 0; i < 2; i++) {
+        sim_cube_direction(&place[i], size, direction);
+        if (!sim_eye_project(e, direction, pixel[i])) return most_px(e);
+    }
+    return hypot(pixel[1][0] - pixel[0][0], pixel[1][1] - pixel[0][1]);
+}
+
+/* Half of what a texel of the face measures in the picture, its longer way. */
+static double half_texel_px(const sim_eye *e, unsigned size, const sim_cube_place *at)
+{
+    sim_cube_place wide[2] = { *at, *at }, high[2] = { *at, *at };
+    wide[0].column -= 0.5;
+    wide[1].column += 0.5;
+    high[0].row -= 0.5;
+    high[1].row += 0.5;
+    return fmax(apart_px(e, size, wide), apart_px(e, size, high)) / 2;
+}
+
+/* ---- a pixel ---- */
 
 /* A pixel of the grid: what it truly shows and what is drawn there. */
 typedef struct look {
     double pixel[2], error_px;
-    int ground, drawn;
+    int ground, drawn; /* it truly shows ground; and that is drawn, somewhere */
+    int wrong;         /* it has an error: it truly shows ground, or shows ground over the sky */
     enum sim_audit_cause cause;
 } look;
 
 /* The true ground a pixel shows: 1 and the point, or 0. */
-static int true_point(const sim_auditor *auditor, const sim_eye *e, const double pixel[2],
-                      double point_m[3])
+static int true_point(const frame *of, const double pixel[2], double point_m[3])
 {
-    double along[3], t,
-        reach_m = 4.0 * auditor->ground->cell_m *
-                  ((double)auditor->ground->columns + auditor->ground->rows);
+    const sim_ground *ground = of->auditor->ground;
+    const sim_eye *e = &of->e;
+    double along[3], t, reach_m = 4.0 * ground->cell_m * ((double)ground->columns + ground->rows);
     sim_eye_ray(e, pixel, along);
-    if (!sim_ground_cast(auditor->ground, e->pos_m, along, reach_m, &t) || t <= NEAREST_M) return 0;
+    if (!sim_ground_cast(ground, e->pos_m, along, reach_m, &t) || t <= NEAREST_M) return 0;
     for (int i = 0; i < 3; i++) point_m[i] = e->pos_m[i] + t * along[i];
     return 1;
 }
 
-/* Looks at one pixel; where nothing is drawn the error is left for later. */
-static void look_at(const sim_auditor *auditor, const sim_audit_view *view, const sim_eye *e,
-                    look *at)
+static int truth_shows(void *context, const double pixel[2])
 {
-    double point_m[3], shown[3], shown_px[2], z_m,
-        most = hypot(e->centre_px[0], e->centre_px[1]) * 2;
+    double point_m[3];
+    return true_point(context, pixel, point_m);
+}
+
+static int panorama_shows(void *context, const double pixel[2])
+{
+    const frame *of = context;
+    sim_faces *faces = &of->auditor->faces;
+    sim_cube_place place;
+    double along[3];
+    if (!of->view->faces) return 0;
+    sim_eye_ray(&of->e, pixel, along);
+    sim_cube_meet(along, faces->of.face_size, &place);
+    return (of->view->faces >> place.face & 1u) && sim_faces_show(faces, along);
+}
+
+/* Looks at one pixel; where ground is not drawn the error is left for later. */
+static void look_at(const frame *of, look *at)
+{
+    double point_m[3], shown[3], shown_px[2], z_m, most = most_px(&of->e);
+    sim_cube_place place;
     at->drawn = 0;
-    at->ground = true_point(auditor, e, at->pixel, point_m);
+    at->wrong = at->ground = true_point(of, at->pixel, point_m);
     if (!at->ground) return;
-    const ff_drawn *node = drawn_at(auditor, view->drawn, view->drawn_count, point_m, &z_m);
+    const ff_drawn *node = drawn_at(of->auditor, of->view->drawn, of->view->drawn_count, point_m,
+                                    &z_m);
     if (node) {
-        sim_place_lift(auditor->ground, e->pos_m, point_m, z_m, shown);
-        for (int i = 0; i < 3; i++) shown[i] -= e->pos_m[i];
-    } else if (!panorama_direction(auditor, view, e, point_m, shown)) {
+        sim_place_lift(of->auditor->ground, of->e.pos_m, point_m, z_m, shown);
+        for (int i = 0; i < 3; i++) shown[i] -= of->e.pos_m[i];
+    } else if (!panorama_direction(of, point_m, shown, &place)) {
         at->cause = SIM_CAUSE_UNDRAWN;
         return;
     }
     at->drawn = 1;
     at->error_px = most; /* the point is shown behind the eye: as wrong as the picture is large */
-    if (sim_eye_project(e, shown, shown_px))
-        at->error_px = fmin(most, hypot(shown_px[0] - at->pixel[0], shown_px[1] - at->pixel[1]));
-    at->cause = node ? cause_of(auditor, view, e, node, at->error_px) : SIM_CAUSE_PANORAMA;
+    if (sim_eye_project(&of->e, shown, shown_px))
+        at->error_px = hypot(shown_px[0] - at->pixel[0], shown_px[1] - at->pixel[1]);
+    if (!node) at->error_px += half_texel_px(&of->e, of->view->panorama.face_size, &place);
+    at->error_px = fmin(at->error_px, most);
+    at->cause = node ? cause_of(of, node, at->error_px) : SIM_CAUSE_PANORAMA;
 }
 
 /* The error of ground that is not drawn: how far the drawn ground's edge is. The edge is found by
  * halving the way to the nearest pixel that shows drawn ground. */
-static double undrawn_error(const sim_auditor *auditor, const sim_audit_view *view,
-                            const sim_eye *e, const look *list, size_t count, const look *at)
+static double undrawn_error(const frame *of, const look *at)
 {
-    double nearest = hypot(e->centre_px[0], e->centre_px[1]) * 2, low = 0, high = 1;
+    double nearest = most_px(&of->e), low = 0, high = 1;
     const look *other = NULL;
-    for (size_t i = 0; i < count; i++) {
-        double distance = hypot(list[i].pixel[0] - at->pixel[0], list[i].pixel[1] - at->pixel[1]);
-        if (list[i].drawn && distance < nearest) {
+    for (size_t i = 0; i < of->looks; i++) {
+        const look *there = &of->auditor->look[i];
+        double distance = hypot(there->pixel[0] - at->pixel[0], there->pixel[1] - at->pixel[1]);
+        if (there->drawn && distance < nearest) {
             nearest = distance;
-            other = &list[i];
+            other = there;
         }
     }
     while (other && (high - low) * nearest > EDGE_PX) {
         double middle = (low + high) / 2;
         look between = { .pixel = { at->pixel[0] + middle * (other->pixel[0] - at->pixel[0]),
                                     at->pixel[1] + middle * (other->pixel[1] - at->pixel[1]) } };
-        look_at(auditor, view, e, &between);
+        look_at(of, &between);
         if (between.drawn)
             high = middle;
         else
@@ -262,67 +252,163 @@ static double undrawn_error(const sim_auditor *auditor, const sim_audit_view *vi
     return high * nearest;
 }
 
-static int by_value(const void *a, const void *b)
+/* The error of ground drawn over the sky: how far the true ground is, by the true skyline and by
+ * the pixels that show it. */
+static double sky_error(const frame *of, const look *at)
 {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+    const sim_auditor *auditor = of->auditor;
+    const c3d_camera *camera = &of->view->camera;
+    double nearest = most_px(&of->e);
+    for (unsigned i = 0; i < camera->width; i++)
+        if (auditor->true_px[i] < camera->height)
+            nearest = fmin(nearest,
+                           hypot(i + 0.5 - at->pixel[0], auditor->true_px[i] - at->pixel[1]));
+    for (size_t i = 0; i < of->looks; i++)
+        if (auditor->look[i].ground)
+            nearest = fmin(nearest, hypot(auditor->look[i].pixel[0] - at->pixel[0],
+                                          auditor->look[i].pixel[1] - at->pixel[1]));
+    return fmax(nearest, SIM_SKYLINE_PX);
 }
 
-static void summarise(const look *list, size_t looks, double *error, sim_audit_result *result)
-{
-    size_t count = 0;
-    double sum = 0;
-    for (size_t i = 0; i < looks; i++) {
-        if (!list[i].ground) continue;
-        error[count++] = list[i].error_px;
-        sum += list[i].error_px * list[i].error_px;
-        result->square_px[list[i].cause] += list[i].error_px * list[i].error_px;
-        result->undrawn_pixels += list[i].cause == SIM_CAUSE_UNDRAWN;
-        result->panorama_pixels += list[i].cause == SIM_CAUSE_PANORAMA;
-    }
-    result->ground_pixels = (uint32_t)count - result->undrawn_pixels - result->panorama_pixels;
-    if (!count) return;
-    qsort(error, count, sizeof *error, by_value);
-    for (int cause = 0; cause < SIM_CAUSES; cause++) result->square_px[cause] /= (double)count;
-    result->undrawn_percent = 100.0 * result->undrawn_pixels / (double)count;
-    result->err_px_rms = sqrt(sum / (double)count);
-    result->err_px_p95 = error[(count - 1) * 95 / 100];
-    result->err_px_max = error[count - 1];
-}
+/* ---- a frame ---- */
 
-static int make_room(sim_auditor *auditor, size_t most)
+static int make_room(sim_auditor *auditor, size_t looks, size_t columns)
 {
-    if (most <= auditor->capacity) return FF_OK;
-    double *error = realloc(auditor->error, most * sizeof *error);
-    if (error) auditor->error = error;
-    look *list = realloc(auditor->look, most * sizeof *list);
-    if (list) auditor->look = list;
-    if (!error || !list) return FF_ERR_MEMORY;
-    auditor->capacity = most;
+    if (looks <= auditor->looks && columns <= auditor->columns) return FF_OK;
+    free_room(auditor);
+    auditor->look = malloc(looks * sizeof *auditor->look);
+    auditor->error = malloc((looks + columns) * sizeof *auditor->error);
+    auditor->true_px = malloc(columns * sizeof *auditor->true_px);
+    auditor->drawn_px = malloc(columns * sizeof *auditor->drawn_px);
+    auditor->hint_px = malloc((columns + 1) * sizeof *auditor->hint_px);
+    auditor->looks = auditor->columns = 0;
+    if (!auditor->look || !auditor->error || !auditor->true_px || !auditor->drawn_px ||
+        !auditor->hint_px)
+        return FF_ERR_MEMORY;
+    auditor->looks = looks;
+    auditor->columns = columns;
     return FF_OK;
+}
+
+static void look_at_all(frame *of)
+{
+    const c3d_camera *camera = &of->view->camera;
+    unsigned step = of->auditor->step_px;
+    of->looks = 0;
+    for (unsigned y = step / 2; y < camera->height; y += step)
+        for (unsigned x = step / 2; x < camera->width; x += step) {
+            look *at = &of->auditor->look[of->looks++];
+            *at = (look){ .pixel = { x + 0.5, y + 0.5 } };
+            look_at(of, at);
+        }
+}
+
+/* Finds the true skyline, or the panorama's. */
+static void find_skyline(frame *of, int truth, double *top_px)
+{
+    sim_auditor *auditor = of->auditor;
+    const c3d_camera *camera = &of->view->camera;
+    unsigned across = sim_looked_at(camera->width, auditor->step_px);
+    for (unsigned i = 0; i <= camera->width / auditor->step_px; i++)
+        auditor->hint_px[i] = camera->height;
+    for (size_t i = 0; i < of->looks; i++) {
+        const look *at = &auditor->look[i];
+        double *hint = &auditor->hint_px[i % across];
+        if (at->pixel[1] < *hint && (truth ? at->ground : panorama_shows(of, at->pixel)))
+            *hint = at->pixel[1];
+    }
+    sim_skyline_find(&(sim_skyline){ .width = camera->width,
+                                     .height = camera->height,
+                                     .step_px = auditor->step_px,
+                                     .shows = truth ? truth_shows : panorama_shows,
+                                     .context = of,
+                                     .hint_px = auditor->hint_px },
+                     top_px);
+}
+
+/* The two skylines, true_px and drawn_px. */
+static void find_skylines(frame *of)
+{
+    sim_auditor *auditor = of->auditor;
+    unsigned width = of->view->camera.width;
+    find_skyline(of, 1, auditor->true_px);
+    if (!of->view->faces) {
+        memcpy(auditor->drawn_px, auditor->cover.top_px, width * sizeof *auditor->drawn_px);
+        return;
+    }
+    find_skyline(of, 0, auditor->drawn_px);
+    for (unsigned i = 0; i < width; i++)
+        auditor->drawn_px[i] = fmin(auditor->drawn_px[i], auditor->cover.top_px[i]);
+}
+
+/* The errors that hang on other pixels: ground not drawn, and ground drawn over the sky. */
+static void look_around(frame *of)
+{
+    sim_auditor *auditor = of->auditor;
+    for (size_t i = 0; i < of->looks; i++) {
+        look *at = &auditor->look[i];
+        uint32_t node = auditor->cover.node[i];
+        if (at->ground && !at->drawn) at->error_px = undrawn_error(of, at);
+        if (at->ground || (!node && !panorama_shows(of, at->pixel))) continue;
+        at->wrong = 1;
+        at->error_px = sky_error(of, at);
+        at->cause = node ? cause_of(of, &of->view->drawn[node - 1], at->error_px)
+                         : SIM_CAUSE_PANORAMA;
+    }
+}
+
+static void summarise(const frame *of, sim_audit_result *result)
+{
+    sim_auditor *auditor = of->auditor;
+    const c3d_camera *camera = &of->view->camera;
+    size_t count = 0;
+    for (size_t i = 0; i < of->looks; i++) {
+        const look *at = &auditor->look[i];
+        if (!at->wrong) continue;
+        auditor->error[count++] = at->error_px;
+        result->square_px[at->cause] += at->error_px * at->error_px;
+        result->sky_pixels += !at->ground;
+        result->undrawn_pixels += at->cause == SIM_CAUSE_UNDRAWN;
+        result->panorama_pixels += at->ground && at->cause == SIM_CAUSE_PANORAMA;
+    }
+    result->ground_pixels = (uint32_t)count - result->undrawn_pixels - result->panorama_pixels -
+                            result->sky_pixels;
+    for (int cause = 0; cause < SIM_CAUSES && count; cause++)
+        result->square_px[cause] /= (double)count;
+    if (count > result->sky_pixels)
+        result->undrawn_percent = 100.0 * result->undrawn_pixels /
+                                  (double)(count - result->sky_pixels);
+    sim_spread all = sim_spread_of(auditor->error, count);
+    count = sim_skyline_compare(auditor->true_px, auditor->drawn_px, camera->width, camera->height,
+                                auditor->error);
+    result->skyline_columns = (uint32_t)count;
+    sim_spread skyline = sim_spread_of(auditor->error, count);
+    result->err_px_rms = all.rms;
+    result->err_px_p95 = all.p95;
+    result->err_px_max = all.max;
+    result->skyline_px_rms = skyline.rms;
+    result->skyline_px_p95 = skyline.p95;
+    result->skyline_px_max = skyline.max;
 }
 
 int sim_audit_frame(sim_auditor *auditor, const sim_audit_view *view, sim_audit_result *result)
 {
     const c3d_camera *camera = &view->camera;
-    unsigned step = auditor->step_px;
-    size_t count = 0;
-    sim_eye e;
-    sim_eye_of(camera, &e);
+    frame of = { .auditor = auditor, .view = view };
     memset(result, 0, sizeof *result);
-    if (make_room(auditor, ((size_t)camera->width / step + 1) *
-                               ((size_t)camera->height / step + 1)) != FF_OK)
-        return FF_ERR_MEMORY;
-    for (unsigned y = step / 2; y < camera->height; y += step)
-        for (unsigned x = step / 2; x < camera->width; x += step) {
-            look *at = &auditor->look[count++];
-            *at = (look){ .pixel = { x + 0.5, y + 0.5 } };
-            look_at(auditor, view, &e, at);
-        }
-    for (size_t i = 0; i < count; i++)
-        if (auditor->look[i].ground && !auditor->look[i].drawn)
-            auditor->look[i].error_px = undrawn_error(auditor, view, &e, auditor->look, count,
-                                                      &auditor->look[i]);
-    summarise(auditor->look, count, auditor->error, result);
+    int rc = make_room(auditor,
+                       (size_t)sim_looked_at(camera->width, auditor->step_px) *
+                           sim_looked_at(camera->height, auditor->step_px),
+                       camera->width);
+    if (rc == FF_OK)
+        rc = sim_cover_make(&auditor->cover, &auditor->mesh, auditor->ground, camera,
+                            auditor->step_px, view->drawn, view->drawn_count);
+    if (rc != FF_OK) return rc;
+    sim_eye_of(camera, &of.e);
+    if (view->faces) sim_faces_use(&auditor->faces, &view->panorama);
+    look_at_all(&of);
+    find_skylines(&of);
+    look_around(&of);
+    summarise(&of, result);
     return FF_OK;
 }

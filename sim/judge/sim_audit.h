@@ -6,11 +6,25 @@
  *             distance to P's own pixel is the error.
  *   panorama  no triangle, but a panorama in use shows P, in the direction in which P lies from O,
  *             where the panorama was taken. That direction, taken from the camera, is projected;
- *             the distance to P's pixel is the (parallax) error. The renderer's own error (a pixel
- *             of the face, by its rules) and ground that O could not see are not counted.
+ *             the distance to P's pixel is its parallax. A texel of the face is one colour, and
+ *             the ground's edge in it runs along texels: the error is
+ *               parallax + max(w, h) / 2
+ *             where w and h are how far the middles of the texel's left and right, upper and lower
+ *             sides lie apart in the picture there, in pixels. Ground that O could not see is not
+ *             counted.
  *   nothing   neither: the error is the distance to the nearest pixel at which something is drawn
  *             for the ground there (one-sided Hausdorff: how far the drawn ground's edge would have
  *             to come), the picture's diagonal where there is none. Counted in undrawn_percent too.
+ *
+ * A pixel that truly shows the sky has an error, too, when ground is drawn there: by a triangle, or
+ * by a texel of a panorama (sim_faces.h). The error is the distance to the nearest true ground of
+ * the picture, where ground would be right, the picture's diagonal where there is none. Its cause
+ * is what keeps that node, or the panorama, from being right.
+ *
+ * The skyline is judged apart, over the whole picture: in each column of pixels the topmost true
+ * ground, found by rays to 1/16 pixel, against the topmost drawn ground, by triangles cut at the
+ * eye and by the texels of panoramas. Where only one of the two exists the other counts as the
+ * picture's lower border; columns without ground do not count.
  *
  * Each pixel's error has one cause (enum sim_audit_cause), found from the quality asked for, not
  * from the client's selection. The auditor does not depend on the client's estimates: it makes
@@ -20,6 +34,7 @@
 #define SIM_AUDIT_H
 
 #include "../../client/terrain/ff_tree.h"
+#include "sim_faces.h"
 #include "sim_ground.h"
 
 enum sim_audit_cause {
@@ -27,7 +42,7 @@ enum sim_audit_cause {
     SIM_CAUSE_WAITING,
     SIM_CAUSE_DEPTH,    /* the quality would ask for finer ground, but its depth_max forbids it */
     SIM_CAUSE_QUALITY,  /* fine enough for the quality, or as fine as the terrain is */
-    SIM_CAUSE_PANORAMA, /* parallax */
+    SIM_CAUSE_PANORAMA, /* parallax, and the size of a face's texels */
     SIM_CAUSE_UNDRAWN,  /* nothing is drawn there */
     SIM_CAUSES
 };
@@ -37,19 +52,19 @@ typedef struct sim_audit_view {
     ff_quality quality;    /* for the causes alone: measure, c, error_px, depth_max */
     const ff_drawn *drawn; /* what is drawn */
     uint32_t drawn_count;
-    int panorama; /* 1: a panorama is in use, and the rest tells of it */
-    int32_t panorama_pos_wu[3];
-    unsigned faces; /* bit per enum ff_face_name held */
-    /* the panorama shows ground whose largest coordinate difference to O lies between these */
-    int32_t front_wu, back_wu;
+    unsigned faces; /* of the panorama in use, bit per enum ff_face_name held; 0: none is */
+    sim_panorama panorama;
 } sim_audit_view;
 
 typedef struct sim_audit_result {
     /* pixels that truly show ground, by what draws it */
     uint32_t ground_pixels, panorama_pixels, undrawn_pixels;
-    double err_px_rms, err_px_p95, err_px_max; /* over all three; 0 without any */
+    uint32_t sky_pixels;                       /* that truly show sky, and show ground */
+    double err_px_rms, err_px_p95, err_px_max; /* over all four; 0 without any */
     double square_px[SIM_CAUSES]; /* mean squares by cause: their sum is err_px_rms squared */
     double undrawn_percent;       /* of all pixels that truly show ground */
+    uint32_t skyline_columns;     /* of pixels, with true or drawn ground */
+    double skyline_px_rms, skyline_px_p95, skyline_px_max; /* over these; 0 without any */
 } sim_audit_result;
 
 typedef struct sim_auditor sim_auditor;

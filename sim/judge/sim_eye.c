@@ -38,11 +38,19 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+void sim_eye_turn(const sim_eye *e, const double direction[3], double turned[3])
+{
+    turned[0] = dot(direction, e->right);
+    turned[1] = dot(direction, e->up);
+    turned[2] = dot(direction, e->forward);
+}
+
 int sim_eye_project(const sim_eye *e, const double direction[3], double pixel[2])
 {
-    double depth = dot(direction, e->forward);
-    if (depth < NEAREST_M) return 0;
-    pixel[0] = e->centre_px[0] + dot(direction, e->right) * e->focal_px / depth;
-    pixel[1] = e->centre_px[1] - dot(direction, e->up) * e->focal_px / depth;
+    double turned[3];
+    sim_eye_turn(e, direction, turned);
+    if (turned[2] < NEAREST_M) return 0;
+    pixel[0] = e->centre_px[0] + turned[0] * e->focal_px / turned[2];
+    pixel[1] = e->centre_px[1] - turned[1] * e->focal_px / turned[2];
     return 1;
 }

@@ -190,3 +190,14 @@ void sim_ground_free(sim_ground *ground)
     if (ground->mapping.bytes) sys_unmap_file(&ground->mapping);
     memset(ground, 0, sizeof *ground);
 }
+
+const char *sim_ground_differs(const ff_terrain_info *a, const ff_terrain_info *b)
+{
+    if (a->samples_x != b->samples_x || a->samples_y != b->samples_y)
+        return "it has another number of samples";
+    if (a->spacing_wu != b->spacing_wu) return "its samples lie otherwise apart";
+    if (a->epsg != b->epsg || a->origin_x_mm != b->origin_x_mm || a->origin_y_mm != b->origin_y_mm)
+        return "it lies elsewhere";
+    if (a->curve_q60 != b->curve_q60) return "it falls away otherwise";
+    return NULL;
+}

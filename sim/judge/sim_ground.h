@@ -43,6 +43,9 @@ int sim_ground_load(sim_ground *ground, const ff_pack *pack, uint64_t samples_ma
 int sim_ground_load_cached(sim_ground *ground, const ff_pack *pack, uint64_t samples_max,
                            const char *cache_path);
 void sim_ground_free(sim_ground *ground);
+/* Why one terrain's ground cannot be the truth of the other's, in words: another number of samples,
+ * spacing or place. NULL: it can; heights may differ, and how they are cut into tiles. */
+const char *sim_ground_differs(const ff_terrain_info *a, const ff_terrain_info *b);
 
 /* 1 when there is ground at (x, y). */
 int sim_ground_has(const sim_ground *ground, double x_m, double y_m);

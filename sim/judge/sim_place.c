@@ -21,6 +21,14 @@ void sim_place_last(const ff_terrain_info *info, const ff_drawn *drawn, double c
                        (double)(size_wu[i] - drawn->origin_wu[i]) / drawn->cell_wu);
 }
 
+void sim_place_of_cell(const ff_drawn *drawn, const double cell[2], double height_m,
+                       double point_m[3])
+{
+    for (int i = 0; i < 2; i++)
+        point_m[i] = ((double)drawn->origin_wu[i] + cell[i] * drawn->cell_wu) / FF_WU_PER_METRE;
+    point_m[2] = height_m;
+}
+
 void sim_place_middle(const ff_terrain_info *info, const ff_drawn *drawn, double point_m[3])
 {
     double last[2], cell_m = (double)drawn->cell_wu / FF_WU_PER_METRE;

@@ -12,6 +12,9 @@ int sim_place_in_node(const ff_terrain_info *info, const ff_drawn *drawn, const 
 /* The column and row, in cells, of the terrain's last sample where it lies in the node; else the
  * node's last ones. What is beyond is drawn there. */
 void sim_place_last(const ff_terrain_info *info, const ff_drawn *drawn, double cell[2]);
+/* A point of a drawn node's grid, given in cells, at a height. */
+void sim_place_of_cell(const ff_drawn *drawn, const double cell[2], double height_m,
+                       double point_m[3]);
 /* The middle of a drawn node's ground, at height 0. */
 void sim_place_middle(const ff_terrain_info *info, const ff_drawn *drawn, double point_m[3]);
 /* The point straight over or under another one at a height, as an eye sees it: curved ground has

@@ -45,6 +45,12 @@ is 'r[0]["x_m"] == r[12]["x_m"] != r[14]["x_m"]' "it stands still before"
 is 'len({row["frame_hash"] for row in r}) > 10' "pictures change"
 head -1 "$work/first.csv" | grep -q '^t_s,x_m,y_m,z_m,triangles,nodes_drawn,nodes_held,bytes_down,bytes_up,requests,in_flight,panoramas,err_px_rms,err_px_p95,err_px_max,frame_hash,'
 result $? "the CSV's columns stand as promised"
+faces_err() { # TEXELS: mean square of the panorama's error with faces of so many texels
+    flies "faces$1" $usual --backend none --seconds 1 --face "$1" --memory 8M
+    python3 -c "import json; print(json.load(open('$work/faces$1.json'))['square_px_panorama'])"
+}
+coarse=$(faces_err 64) && fine=$(faces_err 512) && python3 -c "exit(not $coarse > 2 * $fine > 0)"
+result $? "faces of larger texels are more wrong"
 flies faces $usual --backend none --audit off --seconds 1 --face 128
 is "0 < r[12]['panorama_bytes'] < 0.7 * $(python3 -c "
 import csv; print(list(csv.DictReader(open('$work/first.csv')))[12]['panorama_bytes'])")" "smaller faces cost fewer bytes"
@@ -87,8 +93,29 @@ flies on $quick --panorama on --quality 3:4
 is "r[-1]['panorama_px_percent'] > 1 and s['triangles'] < $triangles_off" "panorama on: it shows ground, and triangles are saved"
 flies fine $quick --panorama off --quality px:0.5 --view 20000
 is 'r[-1]["err_px_max"] < 2 and r[-1]["undrawn_px_percent"] == 0' "half a pixel of error allowed: the audit finds no more than two"
+is 'r[-1]["skyline_px_rms"] < 1 and s["skyline_px_p95"] < 2 and all(row["skyline_px_rms"] <= row["skyline_px_max"] <= s["skyline_px_max"] or row["t_s"] <= 2 for row in r)' \
+    "and its skyline is right"
+skyline=$(python3 -c "import json; print(json.load(open('$work/fine.json'))['skyline_px_rms'])")
+flies rough $quick --panorama off --quality 0.5:2 --view 20000
+is "s['skyline_px_rms'] > 3 * $skyline" "the skyline of coarse ground is wrong"
 flies toggled $quick --event 2:panorama-off
 is 'r[1]["panoramas"] > 0 and r[-1]["panoramas"] == r[3]["panoramas"] and r[-1]["panorama_px_percent"] == 0' "the panorama can be switched off in flight"
+
+# ---- judged by the source ----
+"$bin/farfield-bake" "$work/hills.raw" --raw 257x257 --spacing 40 --tile-log2 6 --max-error 4 --quiet -o "$work/lossy.ffp" &&
+    "$bin/farfield-bake" "$work/hills.raw" --raw 257x257 --spacing 40 --tile-log2 7 --quiet -o "$work/tiles.ffp" &&
+    "$bin/farfield-bake" "$work/hills.raw" --raw 257x257 --spacing 41 --tile-log2 6 --quiet -o "$work/wide.ffp"
+result $? "other packs of the same ground"
+of() { python3 -c "import json; print(json.load(open('$work/$1.json'))['$2'])"; }
+fine="--pack $work/lossy.ffp $quick --panorama off --quality px:0.5 --view 20000"
+flies itself $fine
+is "s['truth'] == '$work/lossy.ffp' and s['truth_error_m'] == 4" "a pack is judged by itself, unless another is named"
+flies source $fine --truth "$work/hills.ffp"
+is "s['truth'] == '$work/hills.ffp' and s['truth_error_m'] == 0 and all(row['truth_error_m'] == 0 for row in r)" "and says which"
+is "s['err_px_rms'] > 3 * $(of itself err_px_rms) and s['err_px_p95'] > 3 * $(of itself err_px_p95) and s['request_hash'] == '$(of itself request_hash)'" \
+    "4 m that the pack is off are seen by its source alone"
+flies source2 $fine --truth "$work/tiles.ffp"
+is "s['err_px_rms'] == $(of source err_px_rms)" "however that is cut into tiles"
 
 # ---- as it should look ----
 looks="--seconds 0 --settle 6 --sample 6 --link lan --audit on --diff on --every 6"
@@ -273,6 +300,10 @@ refused "an unknown event in a file" --pack "$work/hills.ffp" --events "$work/qu
 refused "an impossible size" --pack "$work/hills.ffp" --size 0x0
 refused "faces too large" --pack "$work/hills.ffp" --face 2048
 refused "a server that is not there" --pack "$work/hills.ffp" --server 127.0.0.1:9 --backend none --seconds 0 --settle 1
+for other in node wide dense missing short; do
+    refused "a truth that is not this ground's: $other" --pack "$work/hills.ffp" --audit on --truth "$work/$other.ffp"
+done
+refused "a truth that nobody asks" --pack "$work/hills.ffp" --truth "$work/hills.ffp"
 refused "a missing trace" --pack "$work/hills.ffp" --down-trace "$work/missing"
 refused "too little memory" --pack "$work/hills.ffp" --memory 1K --backend none
 refused "memory too little for the terrain" --pack "$work/hills.ffp" --memory 256K --backend none --seconds 0 --settle 5

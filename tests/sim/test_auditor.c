@@ -1,7 +1,9 @@
 /* The auditor over ground of known error: flat ground drawn too high, panoramas taken elsewhere,
  * nothing drawn; its ray casting and heights are compared with slower ways to the same answer. */
-#include "../../sim/judge/sim_audit.h"
+#include "../../server/panorama/ff_face_view.h"
+#include "../../sim/judge/sim_cube.h"
 #include "../rig/pack_fixture.h"
+#include "../rig/scene_fixture.h"
 #include "../rig/terrain_fixture.h"
 
 #include <setjmp.h>
@@ -12,69 +14,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-enum { STEP_PX = 8, SIDE = 9 };
-
-typedef struct scene {
-    uint8_t *bytes;
-    ff_pack pack;
-    sim_ground ground;
-    sim_auditor *auditor;
-    ff_drawn drawn[16];
-    uint16_t heights[SIDE * SIDE];
-    sim_audit_view view;
-} scene;
-
-static uint16_t flat(void *context, uint32_t x, uint32_t y)
-{
-    (void)context;
-    (void)x;
-    (void)y;
-    return 0;
-}
-
-/* 4 by 4 tiles of 8 cells of 512 m: 16 km of flat ground at z = 0; the camera 200 m above its
- * middle, level, looking north. */
-static void flat_scene(scene *s)
-{
-    memset(s, 0, sizeof *s);
-    pack_fixture_desc desc = { .info = pack_fixture_info(3, 4, 4), .height = flat };
-    desc.info.spacing_wu = 512 * FF_WU_PER_METRE;
-    size_t bytes;
-    s->bytes = pack_fixture_make(&desc, &bytes);
-    assert_non_null(s->bytes);
-    assert_int_equal(ff_pack_open(&s->pack, s->bytes, bytes), FF_OK);
-    assert_int_equal(sim_ground_load(&s->ground, &s->pack, UINT64_MAX), FF_OK);
-    s->auditor = sim_auditor_create(&s->ground, &s->pack.header.info, STEP_PX);
-    assert_non_null(s->auditor);
-    s->view.camera = (c3d_camera){ .pos_wu = { 8192 * 256, 8192 * 256, 200 * 256 },
-                                   .width = 240,
-                                   .height = 320,
-                                   .focal_q8 = c3d_focal_q8(65536 / 6, 240) };
-    s->view.front_wu = 1;
-    s->view.back_wu = INT32_MAX;
-}
-
-/* All tiles, drawn `steps` metres too high. */
-static void draw_at(scene *s, uint16_t steps)
-{
-    for (int i = 0; i < SIDE * SIDE; i++) s->heights[i] = steps;
-    for (uint32_t tile = 0; tile < 16; tile++) {
-        s->drawn[tile] = (ff_drawn){ .key = ff_key_make(tile, 0, 0),
-                                     .heights = s->heights,
-                                     .cell_wu = 512 * 256 };
-        fixture_origin(&s->pack.header.info, s->drawn[tile].key, s->drawn[tile].origin_wu);
-    }
-    s->view.drawn = s->drawn;
-    s->view.drawn_count = 16;
-}
-
-static void free_scene(scene *s)
-{
-    sim_auditor_destroy(s->auditor);
-    sim_ground_free(&s->ground);
-    free(s->bytes);
-}
 
 /* Depth along the view at which the pixels of row y meet the flat ground; 0 when they miss it or
  * meet the plane north of the terrain. */
@@ -97,34 +36,44 @@ static void expect_error(expected *e, double error)
     e->count++;
 }
 
-static void assert_near(double a, double b)
-{
-    if (fabs(a - b) > 1e-6 * (1 + fabs(b))) fail_msg("%.12g is not %.12g", a, b);
-}
-
 /* Ground drawn h too high, seen from H above: a pixel v below the horizon shows it h/H nearer to
- * the horizon, v*h/H pixels off. */
+ * the horizon, v*h/H pixels off. Beyond the terrain's true end it is drawn over the sky: a pixel
+ * there is off by the way to that end. The skyline is off by the way between the two ends. */
 static void flat_ground_too_high(void **state)
 {
     (void)state;
     static scene s;
-    flat_scene(&s);
+    scene_flat(&s);
     for (uint16_t steps = 0; steps <= 150; steps += 50) {
         sim_audit_result result;
         expected e = { 0 };
-        draw_at(&s, steps);
-        for (unsigned y = STEP_PX / 2; y < 320; y += STEP_PX)
-            for (unsigned x = STEP_PX / 2; x < 240 && row_depth_m(&s, y) > 0; x += STEP_PX)
-                expect_error(&e, (y + 0.5 - 160) * steps / 200.0);
+        uint32_t over_sky = 0;
+        scene_draw(&s, steps);
+        for (unsigned y = SCENE_STEP_PX / 2; y < 320; y += SCENE_STEP_PX)
+            for (unsigned x = SCENE_STEP_PX / 2; x < 240; x += SCENE_STEP_PX) {
+                double below = y + 0.5 - 160;
+                if (row_depth_m(&s, y) > 0)
+                    expect_error(&e, below * steps / 200.0);
+                else if (below > scene_border_px(&s, 200 - steps)) {
+                    expect_error(&e, scene_border_px(&s, 200) - below);
+                    over_sky++;
+                }
+            }
+        assert_int_equal(over_sky, steps ? 30 : 0);
         assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
-        assert_int_equal(result.ground_pixels, e.count);
+        assert_int_equal(result.ground_pixels, e.count - over_sky);
+        assert_int_equal(result.sky_pixels, over_sky);
         assert_int_equal(result.panorama_pixels + result.undrawn_pixels, 0);
-        assert_near(result.err_px_max, e.most);
-        assert_near(result.err_px_rms, sqrt(e.sum_squares / e.count));
+        scene_assert_near(result.err_px_max, e.most);
+        assert_true(fabs(result.err_px_rms - sqrt(e.sum_squares / e.count)) < 1e-3);
+        assert_int_equal(result.skyline_columns, 240);
+        assert_true(fabs(result.skyline_px_rms - scene_border_px(&s, steps)) < 1.0 / 16);
+        assert_true(fabs(result.skyline_px_max - scene_border_px(&s, steps)) < 1.0 / 16);
+        assert_true(fabs(result.skyline_px_p95 - scene_border_px(&s, steps)) < 1.0 / 16);
         assert_true(result.err_px_p95 <= e.most + 1e-9 &&
                     result.err_px_p95 >= result.err_px_rms - 1e-9);
     }
-    free_scene(&s);
+    scene_free(&s);
 }
 
 /* Ground drawn above the eye: the error is the largest a picture can have, not a meaningless
@@ -134,14 +83,14 @@ static void ground_above_the_eye(void **state)
     (void)state;
     static scene s;
     sim_audit_result result;
-    flat_scene(&s);
-    draw_at(&s, 5000);
+    scene_flat(&s);
+    scene_draw(&s, 5000);
     s.view.camera.pitch = -16384; /* straight down */
     assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
     assert_true(result.ground_pixels > 0);
-    assert_near(result.err_px_max, hypot(240, 320));
-    assert_near(result.err_px_rms, hypot(240, 320));
-    free_scene(&s);
+    scene_assert_near(result.err_px_max, hypot(240, 320));
+    scene_assert_near(result.err_px_rms, hypot(240, 320));
+    scene_free(&s);
 }
 
 /* Nothing is drawn, so no edge is near: each pixel is off by the size of the picture. */
@@ -150,20 +99,23 @@ static void nothing_drawn_is_a_picture_off(void **state)
     (void)state;
     static scene s;
     sim_audit_result result;
-    flat_scene(&s);
+    scene_flat(&s);
     assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
     assert_true(result.undrawn_pixels > 100);
-    assert_near(result.undrawn_percent, 100);
-    assert_near(result.err_px_max, hypot(240, 320));
-    assert_near(result.err_px_rms, hypot(240, 320));
-    assert_near(result.square_px[SIM_CAUSE_UNDRAWN], result.err_px_rms * result.err_px_rms);
-    draw_at(&s, 0);
+    scene_assert_near(result.undrawn_percent, 100);
+    scene_assert_near(result.err_px_max, hypot(240, 320));
+    scene_assert_near(result.err_px_rms, hypot(240, 320));
+    scene_assert_near(result.square_px[SIM_CAUSE_UNDRAWN], result.err_px_rms * result.err_px_rms);
+    /* the skyline is missing down to the picture's lower border */
+    assert_int_equal(result.skyline_columns, 240);
+    assert_true(fabs(result.skyline_px_rms - (160 - scene_border_px(&s, 200))) < 1.0 / 16);
+    scene_draw(&s, 0);
     uint32_t all = result.undrawn_pixels;
     s.drawn[10] = s.drawn[0]; /* the tile ahead on the right is missing */
     assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
     assert_int_equal(result.undrawn_pixels + result.ground_pixels, all);
     assert_true(result.undrawn_pixels > 0 && result.ground_pixels > 0);
-    free_scene(&s);
+    scene_free(&s);
 }
 
 /* Seen from 2 km up, the farthest row of tiles is missing: the drawn ground ends in a level line,
@@ -175,30 +127,31 @@ static void ground_not_yet_drawn(void **state)
     sim_audit_result result;
     double sum = 0, most = 0;
     uint32_t undrawn = 0, all = 0;
-    flat_scene(&s);
-    draw_at(&s, 0);
+    scene_flat(&s);
+    scene_draw(&s, 0);
     s.view.camera.pos_wu[2] = 2000 * 256;
     s.view.drawn_count = 12;
     double focal = s.view.camera.focal_q8 / 256.0, border = 2000 * focal / 8192,
            edge = 2000 * focal / 4096;
-    for (unsigned y = STEP_PX / 2; y < 320; y += STEP_PX) {
+    for (unsigned y = SCENE_STEP_PX / 2; y < 320; y += SCENE_STEP_PX) {
         double below = y + 0.5 - 160;
-        all += below > border ? 240 / STEP_PX : 0;
+        all += below > border ? 240 / SCENE_STEP_PX : 0;
         if (below <= border || below >= edge) continue;
-        undrawn += 240 / STEP_PX;
-        sum += (edge - below) * (edge - below) * (240 / STEP_PX);
+        undrawn += 240 / SCENE_STEP_PX;
+        sum += (edge - below) * (edge - below) * (240 / SCENE_STEP_PX);
         most = fmax(most, edge - below);
     }
     assert_true(undrawn > 100);
     assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
     assert_int_equal(result.undrawn_pixels, undrawn);
     assert_int_equal(result.ground_pixels + result.undrawn_pixels, all);
+    assert_true(fabs(result.skyline_px_rms - (edge - border)) < 1.0 / 16);
     /* the edge is found to half a pixel */
     assert_true(result.err_px_max >= most - 1e-6 && result.err_px_max <= most + 0.5);
     assert_true(result.err_px_rms >= sqrt(sum / all) - 1e-6 &&
                 result.err_px_rms <= sqrt(sum / all) + 0.5);
-    assert_near(result.square_px[SIM_CAUSE_UNDRAWN], result.err_px_rms * result.err_px_rms);
-    free_scene(&s);
+    scene_assert_near(result.square_px[SIM_CAUSE_UNDRAWN], result.err_px_rms * result.err_px_rms);
+    scene_free(&s);
 }
 
 /* The same wrong ground under several qualities: the auditor names another cause each time. */
@@ -223,27 +176,28 @@ static void the_quality_names_the_cause(void **state)
     };
     static scene s;
     sim_audit_result result;
-    flat_scene(&s);
-    draw_at(&s, 50);
+    scene_flat(&s);
+    scene_draw(&s, 50);
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         ff_terrain_info info = s.pack.header.info;
         /* as if the terrain had this many levels */
         info.tile_log2 = (uint8_t)(info.node_log2 + row[i].levels - 1);
-        sim_auditor *auditor = sim_auditor_create(&s.ground, &info, STEP_PX);
+        sim_auditor *auditor = sim_auditor_create(&s.ground, &info, SCENE_STEP_PX);
         assert_non_null(auditor);
         s.view.quality = row[i].quality;
         assert_int_equal(sim_audit_frame(auditor, &s.view, &result), FF_OK);
         assert_true(result.err_px_rms > 1);
         for (int cause = 0; cause < SIM_CAUSES; cause++)
-            assert_near(result.square_px[cause],
-                        cause == (int)row[i].cause ? result.err_px_rms * result.err_px_rms : 0);
+            scene_assert_near(result.square_px[cause], cause == (int)row[i].cause
+                                                           ? result.err_px_rms * result.err_px_rms
+                                                           : 0);
         sim_auditor_destroy(auditor);
     }
-    free_scene(&s);
+    scene_free(&s);
 }
 
 /* A panorama taken s to the west shows everything at the same depth s*d/depth pixels too far to the
- * east. */
+ * east, and half a texel more. */
 static void parallax_is_the_way_over_the_depth(void **state)
 {
     (void)state;
@@ -251,25 +205,94 @@ static void parallax_is_the_way_over_the_depth(void **state)
     sim_audit_result result;
     for (int forwards = 0; forwards < 2; forwards++) {
         expected e = { 0 };
-        double shift = 150, focal = 0;
-        flat_scene(&s);
+        double shift = 100, focal = 0;
+        scene_flat(&s);
         focal = s.view.camera.focal_q8 / 256.0;
-        s.view.panorama = 1;
-        s.view.faces = 63;
-        memcpy(s.view.panorama_pos_wu, s.view.camera.pos_wu, sizeof s.view.panorama_pos_wu);
-        s.view.panorama_pos_wu[forwards] -= 150 * 256;
-        for (unsigned y = STEP_PX / 2; y < 320; y += STEP_PX)
-            for (unsigned x = STEP_PX / 2; x < 240 && row_depth_m(&s, y) > 0; x += STEP_PX) {
+        scene_panorama(&s, 1024, forwards ? 0 : 100, forwards ? 100 : 0);
+        for (unsigned y = SCENE_STEP_PX / 2; y < 320; y += SCENE_STEP_PX)
+            for (unsigned x = SCENE_STEP_PX / 2; x < 240 && row_depth_m(&s, y) > 0;
+                 x += SCENE_STEP_PX) {
                 double depth = row_depth_m(&s, y), radius = hypot(x + 0.5 - 120, y + 0.5 - 160);
-                expect_error(&e,
-                             forwards ? radius * shift / (depth + shift) : shift * focal / depth);
+                expect_error(&e, focal / 1024 + (forwards ? radius * shift / (depth + shift)
+                                                          : shift * focal / depth));
             }
         assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
         assert_int_equal(result.panorama_pixels, e.count);
-        assert_near(result.err_px_max, e.most);
-        assert_near(result.err_px_rms, sqrt(e.sum_squares / e.count));
-        assert_near(result.square_px[SIM_CAUSE_PANORAMA], e.sum_squares / e.count);
-        free_scene(&s);
+        scene_assert_near(result.err_px_max, e.most);
+        scene_assert_near(result.err_px_rms, sqrt(e.sum_squares / e.count));
+        scene_assert_near(result.square_px[SIM_CAUSE_PANORAMA], e.sum_squares / e.count);
+        scene_free(&s);
+    }
+}
+
+/* Half a texel in pixels, of a pixel (x, y) from the middle of a picture that looks level at an
+ * edge of the cube. Both faces beside the edge, u from their middle and v below it, lie at the
+ * picture's (1 - u) / (1 + u) and sqrt(2) v / (1 + u). */
+static double half_texel_at_an_edge(double focal, double size, double x, double y)
+{
+    double u = (1 - fabs(x) / focal) / (1 + fabs(x) / focal), v = y / focal * (1 + u) / sqrt(2),
+           left = u - 1 / size, right = u + 1 / size;
+    double w = focal * hypot((1 - left) / (1 + left) - (1 - right) / (1 + right),
+                             sqrt(2) * v / (1 + left) - sqrt(2) * v / (1 + right)),
+           h = focal * 2 / size * sqrt(2) / (1 + u);
+    return fmax(w, h) / 2;
+}
+
+/* Taken where the viewer is, a panorama has no parallax: all its pixels are off by half a texel. On
+ * the face straight ahead that is focal / size pixels everywhere. */
+static void a_texel_is_an_error_of_half_its_size(void **state)
+{
+    (void)state;
+    static const unsigned size[] = { 64, 256, 1024 };
+    static scene s;
+    sim_audit_result result;
+    scene_flat(&s);
+    s.view.camera.height = 240;          /* level faces alone */
+    s.view.camera.pos_wu[2] = 100 * 256; /* the highest row looked at meets ground 4.6 km away */
+    double focal = s.view.camera.focal_q8 / 256.0;
+    for (size_t i = 0; i < sizeof size / sizeof *size; i++) {
+        expected e = { 0 };
+        scene_panorama(&s, size[i], 0, 0);
+        s.view.camera.yaw = 0;
+        assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
+        assert_true(result.panorama_pixels > 100);
+        scene_assert_near(result.err_px_rms, focal / size[i]);
+        scene_assert_near(result.err_px_max, focal / size[i]);
+        scene_assert_near(result.square_px[SIM_CAUSE_PANORAMA],
+                          result.err_px_rms * result.err_px_rms);
+        s.view.camera.yaw = 8192;
+        for (int y = 120 + SCENE_STEP_PX / 2; y < 240; y += SCENE_STEP_PX)
+            for (int x = SCENE_STEP_PX / 2; x < 240; x += SCENE_STEP_PX)
+                expect_error(&e, half_texel_at_an_edge(focal, size[i], x - 119.5, y - 119.5));
+        assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
+        assert_int_equal(result.panorama_pixels, e.count);
+        scene_assert_near(result.err_px_max, e.most);
+        scene_assert_near(result.err_px_rms, sqrt(e.sum_squares / e.count));
+    }
+    scene_free(&s);
+}
+
+/* A place on the cube is where the renderer's camera of that face has it, texel by texel. */
+static void the_cube_lies_as_the_renderer_has_it(void **state)
+{
+    (void)state;
+    const ff_get_panorama request = { .front_wu = 8, .back_wu = 1 << 20, .face_size = 64 };
+    for (unsigned face = 0; face < FF_FACE_COUNT; face++) {
+        const sim_cube_place at = { .face = (enum ff_face_name)face, .column = 9.5, .row = 50.5 };
+        sim_cube_place met;
+        c3d_camera camera;
+        double direction[3], pixel[2];
+        ff_face_camera(&request, (enum ff_face_name)face, &camera);
+        sim_cube_direction(&at, 64, direction);
+        assert_int_equal(sim_audit_project(&camera, direction, pixel), 1);
+        scene_assert_near(pixel[0], at.column);
+        scene_assert_near(pixel[1], at.row);
+        for (int i = 0; i < 3; i++) direction[i] *= 7;
+        sim_cube_meet(direction, 64, &met);
+        assert_int_equal(met.face, face);
+        scene_assert_near(met.column, at.column);
+        scene_assert_near(met.row, at.row);
+        scene_assert_near(met.reach, 7);
     }
 }
 
@@ -279,26 +302,25 @@ static void a_panorama_shows_between_its_planes(void **state)
     (void)state;
     static scene s;
     sim_audit_result all, result;
-    flat_scene(&s);
-    s.view.panorama = 1;
-    s.view.faces = 63;
-    memcpy(s.view.panorama_pos_wu, s.view.camera.pos_wu, sizeof s.view.panorama_pos_wu);
+    scene_flat(&s);
+    scene_panorama(&s, 1024, 0, 0);
     assert_int_equal(sim_audit_frame(s.auditor, &s.view, &all), FF_OK);
-    assert_near(all.err_px_max, 0);
+    scene_assert_near(all.err_px_max, s.view.camera.focal_q8 / 256.0 / 1024);
     assert_int_equal(all.undrawn_pixels, 0);
     s.view.faces = 62; /* all faces but the north one */
     assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
     assert_int_equal(result.undrawn_pixels + result.panorama_pixels, all.panorama_pixels);
     assert_true(result.panorama_pixels < all.panorama_pixels / 2);
     s.view.faces = 63;
-    s.view.front_wu = 1000 * 256;
-    s.view.back_wu = 5000 * 256;
+    s.view.panorama.front_wu = 1000 * 256;
+    s.view.panorama.back_wu = 5000 * 256;
     uint32_t between = 0;
-    for (unsigned y = STEP_PX / 2; y < 320; y += STEP_PX)
-        if (row_depth_m(&s, y) >= 1000 && row_depth_m(&s, y) <= 5000) between += 240 / STEP_PX;
+    for (unsigned y = SCENE_STEP_PX / 2; y < 320; y += SCENE_STEP_PX)
+        if (row_depth_m(&s, y) >= 1000 && row_depth_m(&s, y) <= 5000)
+            between += 240 / SCENE_STEP_PX;
     assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
     assert_int_equal(result.panorama_pixels, between);
-    free_scene(&s);
+    scene_free(&s);
 }
 
 /* ---- the parts ---- */
@@ -317,11 +339,6 @@ static void ending_ground(uint8_t **bytes, ff_pack *pack, sim_ground *ground, ui
     assert_int_equal(sim_ground_load(ground, pack, samples_max), FF_OK);
 }
 
-static void usual_ground(uint8_t **bytes, ff_pack *pack, sim_ground *ground)
-{
-    ending_ground(bytes, pack, ground, 129, 129, UINT64_MAX);
-}
-
 /* The ground in memory is what the encoder was given, sample by sample (the usual pack is
  * lossless). */
 static void ground_is_the_source(void **state)
@@ -330,14 +347,14 @@ static void ground_is_the_source(void **state)
     uint8_t *bytes;
     ff_pack pack;
     sim_ground ground;
-    usual_ground(&bytes, &pack, &ground);
+    scene_usual_ground(&bytes, &pack, &ground);
     assert_int_equal(ground.columns, 129);
     assert_int_equal(ground.rows, 129);
     for (uint32_t y = 0; y < 129; y++)
         for (uint32_t x = 0; x < 129; x++) {
             assert_int_equal(ground.height[y * 129 + x], pack_fixture_hills(NULL, x, y));
-            assert_near(sim_ground_height_m(&ground, x * 32.0, y * 32.0),
-                        pack_fixture_hills(NULL, x, y));
+            scene_assert_near(sim_ground_height_m(&ground, x * 32.0, y * 32.0),
+                              pack_fixture_hills(NULL, x, y));
         }
     sim_ground_free(&ground);
     assert_int_equal(sim_ground_load(&ground, &pack, 33 * 33), FF_OK); /* a coarser level */
@@ -345,11 +362,6 @@ static void ground_is_the_source(void **state)
     assert_int_equal(ground.height[34], pack_fixture_hills(NULL, 4, 4));
     sim_ground_free(&ground);
     free(bytes);
-}
-
-static double uniform(sys_random *random, double low, double high)
-{
-    return low + (high - low) * sys_random_u32(random) / 4294967296.0;
 }
 
 /* The ground in memory ends where the source does, at every level: where a cell is longer than
@@ -366,9 +378,12 @@ static void ground_ends_with_the_source(void **state)
         assert_int_equal(ground.level, level);
         assert_int_equal(ground.columns, ceil(99 / cell) + 1);
         assert_int_equal(ground.rows, ceil(69 / cell) + 1);
-        assert_near(sim_ground_height_m(&ground, east, north), pack_fixture_hills(NULL, 99, 69));
-        assert_near(sim_ground_height_m(&ground, east, 64 * 32), pack_fixture_hills(NULL, 99, 64));
-        assert_near(sim_ground_height_m(&ground, 96 * 32, north), pack_fixture_hills(NULL, 96, 69));
+        scene_assert_near(sim_ground_height_m(&ground, east, north),
+                          pack_fixture_hills(NULL, 99, 69));
+        scene_assert_near(sim_ground_height_m(&ground, east, 64 * 32),
+                          pack_fixture_hills(NULL, 99, 64));
+        scene_assert_near(sim_ground_height_m(&ground, 96 * 32, north),
+                          pack_fixture_hills(NULL, 96, 69));
         assert_true(sim_ground_has(&ground, east, north) && sim_ground_has(&ground, 0, 0));
         assert_false(sim_ground_has(&ground, east + 0.1, north) ||
                      sim_ground_has(&ground, east, north + 0.1) ||
@@ -397,13 +412,13 @@ static void check_rays(uint32_t samples_x, uint32_t samples_y, uint64_t samples_
         /* every other ray over ground that falls away 12 times as steeply as the Earth's, or more
          */
         ground.curve_per_m = i % 2 ? 8e-7 * (1 + i % 3) : 0;
-        double from[3] = { uniform(&random, 0, 4096), uniform(&random, 0, 4096), 0 }, along[3],
-               t = -1;
+        double from[3] = { scene_uniform(&random, 0, 4096), scene_uniform(&random, 0, 4096), 0 },
+               along[3], t = -1;
         from[2] = fmax(1600, sim_ground_height_m(&ground, from[0], from[1])) +
-                  uniform(&random, 0, 200);
-        along[0] = i % 10 ? uniform(&random, -1, 1) : 0;
-        along[1] = i % 11 ? uniform(&random, -1, 1) : 0;
-        along[2] = uniform(&random, -1, 0.05);
+                  scene_uniform(&random, 0, 200);
+        along[0] = i % 10 ? scene_uniform(&random, -1, 1) : 0;
+        along[1] = i % 11 ? scene_uniform(&random, -1, 1) : 0;
+        along[2] = scene_uniform(&random, -1, 0.05);
         int hit = sim_ground_cast(&ground, from, along, 20000, &t), side = 0;
         hits += hit;
         for (double u = 0; u < (hit ? t - 1e-6 : 20000); u += 0.9) {
@@ -420,7 +435,7 @@ static void check_rays(uint32_t samples_x, uint32_t samples_y, uint64_t samples_
             double x = from[0] + t * along[0], y = from[1] + t * along[1];
             double drop_m = sim_ground_drop_m(&ground, t * along[0], t * along[1]);
             assert_true(x < east + 1e-6 && y < north + 1e-6);
-            assert_near(from[2] + t * along[2] + drop_m, sim_ground_height_m(&ground, x, y));
+            scene_assert_near(from[2] + t * along[2] + drop_m, sim_ground_height_m(&ground, x, y));
         }
     }
     assert_in_range(hits, 60, 399);
@@ -435,6 +450,30 @@ static void rays_hit_where_steps_do(void **state)
     check_rays(129, 129, UINT64_MAX);
     check_rays(100, 70, UINT64_MAX);
     check_rays(100, 70, 27 * 19); /* a level whose cells do not end there */
+}
+
+/* Ground may be judged by another pack's when that has the same samples in the same place. */
+static void truth_is_of_the_same_grid(void **state)
+{
+    (void)state;
+    ff_terrain_info info = pack_fixture_info(3, 4, 4), other = info;
+    assert_null(sim_ground_differs(&info, &other));
+    other.tile_log2 = 5;
+    other.tiles_x = other.tiles_y = 1;
+    other.max_error = 4;
+    other.hscale_q24 *= 2;
+    assert_null(sim_ground_differs(&info, &other));
+    other.samples_y--;
+    assert_string_equal(sim_ground_differs(&info, &other), "it has another number of samples");
+    other = info;
+    other.spacing_wu++;
+    assert_string_equal(sim_ground_differs(&info, &other), "its samples lie otherwise apart");
+    other = info;
+    other.origin_y_mm += 1000;
+    assert_string_equal(sim_ground_differs(&info, &other), "it lies elsewhere");
+    other = info;
+    other.epsg++;
+    assert_string_equal(sim_ground_differs(&info, &other), "it lies elsewhere");
 }
 
 static void projection_is_the_renderers(void **state)
@@ -482,7 +521,7 @@ static void drawn_height_of_a_cut(void **state)
     uint32_t count = ff_tree_cut(fx.tree, &list), stitched = 0, checked = 0;
     ground.hscale_m = fx.info.hscale_q24 / 16777216.0;
     ground.hoffset_m = fx.info.hoffset_wu / 256.0;
-    sim_auditor *auditor = sim_auditor_create(&ground, &fx.info, STEP_PX);
+    sim_auditor *auditor = sim_auditor_create(&ground, &fx.info, SCENE_STEP_PX);
     for (uint32_t i = 0; i < count; i++) stitched += list[i].coarser != 0;
     assert_true(stitched > 4);
     sys_random_seed(&random, 7, 7);
@@ -510,10 +549,13 @@ int main(void)
         cmocka_unit_test(ground_above_the_eye),
         cmocka_unit_test(nothing_drawn_is_a_picture_off),
         cmocka_unit_test(parallax_is_the_way_over_the_depth),
+        cmocka_unit_test(a_texel_is_an_error_of_half_its_size),
+        cmocka_unit_test(the_cube_lies_as_the_renderer_has_it),
         cmocka_unit_test(a_panorama_shows_between_its_planes),
         cmocka_unit_test(ground_is_the_source),
         cmocka_unit_test(ground_ends_with_the_source),
         cmocka_unit_test(rays_hit_where_steps_do),
+        cmocka_unit_test(truth_is_of_the_same_grid),
         cmocka_unit_test(projection_is_the_renderers),
         cmocka_unit_test(drawn_height_of_a_cut),
         cmocka_unit_test(ground_not_yet_drawn),

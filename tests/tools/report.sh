@@ -116,6 +116,13 @@ END
     result $? "every plot is well-formed and has a curve"
 fi
 
+# ---- the skyline, and by which truth ----
+printf 't_s,triangles,nodes_drawn,nodes_held,bytes_down,bytes_up,requests,panoramas,err_px_rms,skyline_px_rms,truth_error_m\n0,1,1,1,1,1,1,0,9,9,4\n20,1,1,1,1,1,1,0,1,1.5,4\n21,1,1,1,1,1,1,0,1,2.5,4\n' >"$work/judged.csv"
+"$report" --json "$work/judged.csv" -o "$work/judged" >"$work/said" 2>"$work/error"
+grep -q '"skyline_px_rms_mean": 2, "truth_error_m": 4}' "$work/said" && grep -q '| 1.00 | – | – | 2.00 | 4.00 |$' "$work/judged/REPORT.md" &&
+    grep -q 'judged by ground within m of its source' "$work/judged/index.html"
+result $? "the skyline's error, and how true the truth is"
+
 # ---- findings ----
 mkdir -p "$work/found"
 found() { # NAME RELEVANCE
@@ -133,7 +140,7 @@ grep -q -F '| gprs-150-low-on: seconds to a stable picture | 15.00 | 0.00 | hit 
 grep -q -F '| umts-0-low-on: relevance % | 99.50 | 96.50 | missed by 3 | never drawn: 0.2 kB of neighbours' "$table" &&
     grep -q -F '| umts-150-low-on: relevance % | 95.00 | 96.50 | hit |' "$table"
 result $? "relevance, standing still and in flight"
-grep -q -F '| images | 60.0 |' "$table" && grep -q -F '| depth limit of the quality | 75.0 |' "$table" && grep -q -F '| parallax of the panorama | 18.8 |' "$table"
+grep -q -F '| images | 60.0 |' "$table" && grep -q -F '| depth limit of the quality | 75.0 |' "$table" && grep -q -F '| parallax and texels of the panorama | 18.8 |' "$table"
 result $? "where bytes go and error comes from"
 grep -q 'Error against instructions' "$page" && grep -q '<td>px:2</td><td>on</td><td>5.00</td><td>0.50</td>' "$page"; result $? "the error against instructions"
 sed '2s/5000000/many/' "$work/work.csv" >"$work/bad.work"

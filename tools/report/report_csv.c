@@ -218,6 +218,8 @@ void report_summarise(const report_flight *flight, double settle_s, report_summa
         .diff_mean = report_flight_mean(flight, REPORT_diff_mean, settle_s),
         .diff_p95_mean = report_flight_mean(flight, REPORT_diff_p95, settle_s),
         .ssim_mean = report_flight_mean(flight, REPORT_ssim, settle_s),
+        .skyline_rms_mean = report_flight_mean(flight, REPORT_skyline_px_rms, settle_s),
+        .truth_error_m = largest(flight, REPORT_truth_error_m, 0),
     };
     for (size_t i = 0; i < flight->row_count && summary->seconds >= 60; i++)
         if (flight->row[i].value[REPORT_t_s] <= 60)

@@ -25,6 +25,8 @@
     X(diff_mean, MAY_LACK) \
     X(diff_p95, MAY_LACK) \
     X(ssim, MAY_LACK) \
+    X(skyline_px_rms, MAY_LACK) \
+    X(truth_error_m, MAY_LACK) \
     X(square_px_waiting, MAY_LACK) \
     X(square_px_depth, MAY_LACK) \
     X(square_px_quality, MAY_LACK) \
@@ -64,8 +66,9 @@ typedef struct report_summary {
     double seconds, triangles_mean, triangles_max, nodes_drawn_mean, nodes_held_max;
     /* 60 s: NAN when the flight is shorter */
     double kb_down_60s, kb_down, kb_up, requests, panoramas;
-    double err_rms_mean, err_p95_mean, err_max;
+    double err_rms_mean, err_p95_mean, err_max, skyline_rms_mean;
     double diff_mean, diff_p95_mean, ssim_mean;
+    double truth_error_m; /* how far the ground judged by may be from its source */
 } report_summary;
 
 /* 0, or -1 with the reason in `why` ("FILE: ..." or "FILE:LINE: ..."). */

@@ -22,7 +22,8 @@ static const kind bytes_kinds[] = { { REPORT_bytes_heights, "heights" },
                                     { REPORT_bytes_up, "requests (up)" } };
 static const kind error_kinds[] = { { REPORT_square_px_depth, "depth limit of the quality" },
                                     { REPORT_square_px_quality, "as coarse as the quality allows" },
-                                    { REPORT_square_px_panorama, "parallax of the panorama" },
+                                    { REPORT_square_px_panorama,
+                                      "parallax and texels of the panorama" },
                                     { REPORT_square_px_waiting, "ground not come yet" },
                                     { REPORT_square_px_undrawn, "ground not drawn" } };
 enum {

@@ -39,6 +39,8 @@ static const summary_column summary_columns[] = {
     { "difference, mean", "diff_mean", 2, AT(diff_mean) },
     { "difference, 95 %", "diff_p95_mean", 1, AT(diff_p95_mean) },
     { "SSIM", "ssim_mean", 4, AT(ssim_mean) },
+    { "skyline px, rms", "skyline_px_rms_mean", 2, AT(skyline_rms_mean) },
+    { "judged by ground within m of its source", "truth_error_m", 2, AT(truth_error_m) },
 };
 enum { SUMMARY_COLUMNS = sizeof summary_columns / sizeof *summary_columns };
 

@@ -1,0 +1,47 @@
+/* What the drawn ground covers of a picture: its triangles projected in double precision, cut where
+ * they come too near to the eye. Panoramas are drawn behind all of it. */
+#ifndef SIM_COVER_H
+#define SIM_COVER_H
+
+#include "sim_eye.h"
+#include "sim_ground.h"
+#include "sim_mesh.h"
+
+/* A point of the picture, pixels from its top left; 1 / depth, per metre. */
+typedef struct sim_corner {
+    double x, y, closeness;
+} sim_corner;
+
+typedef struct sim_vertex {
+    double eye[3]; /* right, up, depth */
+    int before;    /* the eye: it has a place in the picture */
+    sim_corner at;
+} sim_vertex;
+
+typedef struct sim_cover {
+    unsigned width, height, step_px;
+    /* of each column of pixels: topmost row that drawn ground covers at the column's middle, pixels
+     * from the picture's top, 0 at least; the picture's height where it covers none */
+    double *top_px;
+    /* of each pixel looked at, row by row: which node is nearest, as 1 + its index in the drawn
+     * list; 0: none. Every step-th pixel is looked at, from step / 2 on */
+    uint32_t *node;
+    double *closeness;              /* of those: 1 / depth, per metre */
+    sim_vertex *point;              /* of one node */
+    size_t columns, pixels, points; /* room for so many */
+} sim_cover;
+
+/* `cover` starts as zeros and is used again for the next picture. `ground`: by it what is drawn
+ * falls away from the eye. FF_OK or FF_ERR_MEMORY. */
+int sim_cover_make(sim_cover *cover, const sim_mesh *mesh, const sim_ground *ground,
+                   const c3d_camera *camera, unsigned step_px, const ff_drawn *drawn,
+                   uint32_t count);
+void sim_cover_free(sim_cover *cover);
+
+/* How many pixels are looked at along `size` of them. */
+static inline unsigned sim_looked_at(unsigned size, unsigned step_px)
+{
+    return (size + step_px - 1 - step_px / 2) / step_px;
+}
+
+#endif

@@ -1,0 +1,31 @@
+/* The triangles of a drawn node, made anew from its heights and border mask: the judge's own, as
+ * the strips draw them. */
+#ifndef SIM_MESH_H
+#define SIM_MESH_H
+
+#include "../../client/terrain/ff_tree.h"
+
+typedef struct sim_triangles {
+    uint32_t count;
+    uint16_t (*vertex)[3]; /* places in a node's grid, row by row */
+} sim_triangles;
+
+typedef struct sim_mesh {
+    ff_terrain_info info;
+    sim_triangles strip[32]; /* by strip id, degenerate ones left out */
+} sim_mesh;
+
+/* FF_OK, or FF_ERR_MEMORY. Call free in both cases. */
+int sim_mesh_make(sim_mesh *mesh, const ff_terrain_info *info);
+void sim_mesh_free(sim_mesh *mesh);
+
+/* Where a vertex of a drawn node lies, in cells: what is beyond the terrain's last sample is drawn
+ * there. */
+void sim_mesh_vertex_cell(const sim_mesh *mesh, const ff_drawn *drawn, uint32_t vertex,
+                          double cell[2]);
+/* Height of a vertex of a drawn node, metres. */
+double sim_mesh_vertex_m(const sim_mesh *mesh, const ff_drawn *drawn, uint32_t vertex);
+/* Height of a node's triangles at (x, y), counted in the node's cells: 1 and *z_m, or 0 outside. */
+int sim_mesh_height(const sim_mesh *mesh, const ff_drawn *drawn, const double cell[2], double *z_m);
+
+#endif
