@@ -191,7 +191,8 @@ void ff_client_frame_cost(ff_client *client, uint32_t cost);
 #define FF_SHOW_MODES(X) \
     X(WIREFRAME, "wireframe", "m", "mesh", "the strips as lines, stitching strips in another colour") \
     X(NODE_BORDERS, "borders", "b", "node borders", "the nodes' borders as lines") \
-    X(NO_FOG, "no-fog", "f", "fog", "far ground as clear as near ground")
+    X(NO_FOG, "no-fog", "f", "fog", "far ground as clear as near ground") \
+    X(FILLED, "filled", "v", "filled voids", "a mesh over ground that the source did not have, filled from around it")
 #define X(NAME, option, key, name, help) FF_SHOW_INDEX_##NAME,
 enum ff_show_index { FF_SHOW_MODES(X) };
 #undef X
@@ -213,6 +214,9 @@ c3d_device *ff_client_device(ff_client *client);
  * terrain's last sample there is none, and else it has not come or lies further than the client
  * draws. */
 int ff_client_ground(const ff_client *client, int32_t x_wu, int32_t y_wu, int32_t *z_wu);
+/* 1 where that ground may be made up: the source had voids there, and they were filled from around
+ * them. It is told of whole nodes, finer where finer ground is drawn. 0: measured, or no ground. */
+int ff_client_filled(const ff_client *client, int32_t x_wu, int32_t y_wu);
 void ff_client_get_stats(const ff_client *client, ff_client_stats *stats);
 /* The pools of the block and their number; those of a terrain have no items while none is known. */
 unsigned ff_client_pools(const ff_client *client, ff_pool_use list[FF_POOLS_MAX]);

@@ -12,7 +12,7 @@
 #include "codec/ff_codec.h"
 #include "ff_kind.h"
 
-#define FF_PACK_VERSION      3
+#define FF_PACK_VERSION      4
 #define FF_PACK_HEADER_BYTES 4096 /* with the directory of sections; the sections follow */
 #define FF_PACK_SECTIONS_MAX 48
 /* Roots and refinements are a section for each level of the deepest tile, textures one for each

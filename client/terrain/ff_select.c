@@ -59,12 +59,12 @@ static void enter_frame(ff_tree *tree, const ff_frame *frame)
 static void forget_flags(ff_tree *tree)
 {
     for (uint32_t slot = 0; tree->dropped && slot < tree->node_count; slot++)
-        tree->node[slot].flags &= FF_NODE_HELD;
+        tree->node[slot].flags &= FF_NODE_KEPT;
     for (uint32_t level = 0; level < FF_LEVELS_MAX; level++) {
         for (uint32_t slot = tree->want_head[level]; !tree->dropped && slot != FF_SLOT_NONE;
              slot = tree->node[slot].want_next) {
             FF_ASSERT(tree->node[slot].flags & FF_NODE_WANTED);
-            tree->node[slot].flags = FF_NODE_HELD;
+            tree->node[slot].flags &= FF_NODE_KEPT;
         }
         tree->want_head[level] = FF_SLOT_NONE;
     }
@@ -76,7 +76,7 @@ static void mark_active_roots(ff_tree *tree)
     for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
         ff_node *root = &tree->node[slot];
         FF_ASSERT(root->flags & FF_NODE_HELD && ff_key_level(root->key) == 0);
-        root->flags = FF_NODE_HELD |
+        root->flags = (root->flags & FF_NODE_KEPT) |
                       (ff_tile_active(tree, ff_key_tile(root->key)) ? FF_NODE_ACTIVE : 0);
     }
 }
@@ -165,6 +165,7 @@ static void fill_drawn(const ff_tree *tree, uint32_t slot, unsigned coarser, ff_
     drawn->node = node;
     drawn->heights = tree->heights + slot * ff_heights_per_node(tree);
     drawn->coarser = (uint8_t)coarser;
+    drawn->filled = (node->flags & FF_NODE_FILLED) != 0;
     ff_shape_place(&tree->info, node->key, &node->placed, 0, 0, 32768, drawn->origin_wu);
     drawn->cell_wu = ff_node_cell_wu(&tree->info, ff_key_level(node->key));
     FF_ASSERT(drawn->cell_wu > 0);

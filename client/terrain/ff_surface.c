@@ -210,18 +210,33 @@ static const ff_node *node_at(const ff_tree *tree, const ff_node *node, const ff
     return node;
 }
 
-int ff_tree_drawn_height(const ff_tree *tree, int32_t x_wu, int32_t y_wu, int32_t *z_wu)
+/* The node drawn over or under a place, NULL where there is none; *at is the place in its grid. */
+static const ff_node *drawn_at(const ff_tree *tree, const int32_t place_wu[3], grid_point *at)
 {
-    const ff_view *view = &tree->view;
-    /* z need not be the ground's: it is looked for under or over the point */
-    const int32_t place_wu[3] = { x_wu, y_wu, view->camera.pos_wu[2] };
     ff_spot spot;
-    grid_point at;
-    if (!tree->has_view || !ff_shape_locate(&tree->info, &view->frame, place_wu, &spot)) return 0;
+    if (!tree->has_view || !ff_shape_locate(&tree->info, &tree->view.frame, place_wu, &spot))
+        return NULL;
     FF_ASSERT(spot.tile < ff_shape_tiles(&tree->info));
     uint32_t slot = ff_tree_find(tree, ff_key_make(spot.tile, 0, 0));
-    if (slot == FF_SLOT_NONE || !ff_tile_active(tree, spot.tile)) return 0;
-    const ff_node *node = node_at(tree, &tree->node[slot], &spot, &at);
-    *z_wu = ff_shape_z_wu(&tree->info, &view->frame, place_wu, height_in_node(tree, node, at));
+    if (slot == FF_SLOT_NONE || !ff_tile_active(tree, spot.tile)) return NULL;
+    return node_at(tree, &tree->node[slot], &spot, at);
+}
+
+/* z need not be the ground's: it is looked for under or over the point. */
+int ff_tree_drawn_height(const ff_tree *tree, int32_t x_wu, int32_t y_wu, int32_t *z_wu)
+{
+    const int32_t place_wu[3] = { x_wu, y_wu, tree->view.camera.pos_wu[2] };
+    grid_point at;
+    const ff_node *node = drawn_at(tree, place_wu, &at);
+    if (!node) return 0;
+    *z_wu = ff_shape_z_wu(&tree->info, &tree->view.frame, place_wu, height_in_node(tree, node, at));
     return 1;
+}
+
+int ff_tree_drawn_filled(const ff_tree *tree, int32_t x_wu, int32_t y_wu)
+{
+    const int32_t place_wu[3] = { x_wu, y_wu, tree->view.camera.pos_wu[2] };
+    grid_point at;
+    const ff_node *node = drawn_at(tree, place_wu, &at);
+    return node && node->flags & FF_NODE_FILLED;
 }

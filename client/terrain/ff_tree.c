@@ -126,6 +126,7 @@ int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, const ff_residuals *resid
         return rc;
     }
     measure_heights(tree, slot, residuals->child_error[0]);
+    if (residuals->filled & 1u) tree->node[slot].flags |= FF_NODE_FILLED;
     ff_tree_reshade_beside(tree, key);
     tree->dirty = 1;
     return FF_OK;
@@ -155,6 +156,7 @@ int ff_tree_deliver_children(ff_tree *tree, ff_key key, const ff_residuals *resi
         uint32_t child = ff_tree_take_slot(tree, ff_key_child(key, q), slot);
         ff_refined_child(&tree->info, tree->refined, q, heights_of(tree, child));
         measure_heights(tree, child, residuals->child_error[q]);
+        if (residuals->filled >> q & 1u) tree->node[child].flags |= FF_NODE_FILLED;
         tree->node[slot].child[q] = child;
         ff_tree_reshade_beside(tree, ff_key_child(key, q));
     }

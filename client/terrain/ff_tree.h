@@ -70,6 +70,7 @@ typedef struct ff_drawn {
     const ff_node *node;
     const uint16_t *heights; /* ff_node_side()^2, decoded */
     uint8_t coarser;         /* bit FF_SIDE_x: the neighbour there is one level coarser */
+    uint8_t filled;          /* 1: some of its ground was void in the source, and filled */
     int32_t origin_wu[3];    /* place of vertex (0,0,z=0) in the frame; see ff_tree_vertices */
     int32_t cell_wu;
 } ff_drawn;
@@ -139,6 +140,8 @@ void ff_tree_on_evict(ff_tree *tree, void (*on_evict)(void *context, uint32_t us
 /* Height of the drawn surface at (x, y) of the frame, wu: 1 and *z_wu, or 0 where no node of the
  * cut lies. */
 int ff_tree_drawn_height(const ff_tree *tree, int32_t x_wu, int32_t y_wu, int32_t *z_wu);
+/* 1 when that surface is of a node with filled ground (ff_drawn.filled). */
+int ff_tree_drawn_filled(const ff_tree *tree, int32_t x_wu, int32_t y_wu);
 void ff_tree_get_stats(const ff_tree *tree, ff_tree_stats *stats);
 
 #endif

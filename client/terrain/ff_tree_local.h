@@ -21,8 +21,10 @@ enum ff_node_flags {
     FF_NODE_ACTIVE = 2, /* a root inside the window (as of the last selection) */
     /* its children are desired, by itself or by a neighbour that may not be two levels finer */
     FF_NODE_WANTED = 4,
-    FF_NODE_SPLIT = 8,  /* the cut runs below it */
-    FF_NODE_NEEDED = 16 /* something in view cannot split before its children are here */
+    FF_NODE_SPLIT = 8,   /* the cut runs below it */
+    FF_NODE_NEEDED = 16, /* something in view cannot split before its children are here */
+    FF_NODE_FILLED = 32, /* some of its ground was void in the source */
+    FF_NODE_KEPT = FF_NODE_HELD | FF_NODE_FILLED /* by selections */
 };
 
 struct ff_node {

@@ -47,8 +47,9 @@ FF_STATIC_ASSERT(FF_NODE_HEIGHTS_MAX ==
                  ((1 << FF_NODE_LOG2_MAX) + 1) * ((1 << FF_NODE_LOG2_MAX) + 1));
 FF_STATIC_ASSERT(FF_REFINED_HEIGHTS_MAX ==
                  ((2 << FF_NODE_LOG2_MAX) + 1) * ((2 << FF_NODE_LOG2_MAX) + 1));
-/* Four error codes and every residual in 16 bits: what codec raw writes, and no other exceeds. */
-FF_STATIC_ASSERT(4 + 2 * FF_REFINED_HEIGHTS_MAX <= FF_PAYLOAD_BYTES_MAX);
+/* A byte of filled children, four error codes and every residual in 16 bits: what codec raw writes,
+ * and no other exceeds. */
+FF_STATIC_ASSERT(5 + 2 * FF_REFINED_HEIGHTS_MAX <= FF_PAYLOAD_BYTES_MAX);
 
 /* The rows' numbers have no gaps, and fit ff_terrain_info.codec. */
 /* clang-format off */
@@ -88,6 +89,9 @@ ff_decoder *ff_decoder_create(const ff_terrain_info *info, void *memory, size_t 
 typedef struct ff_residuals {
     /* geometric error codes of the children, by quadrant; a root uses [0] for itself */
     uint8_t child_error[4];
+    /* bit q: below child q (a root: bit 0, itself) are samples that were void and have been filled
+     */
+    uint8_t filled;
     uint16_t count;         /* valid entries of value[]; 0 while the payload is carried */
     uint16_t carried_bytes; /* of the payload, in the memory of value[]: FF_NEEDS_PARENT alone */
     /* caller's array of at least ff_refined_side()^2 entries; quantised residuals */
@@ -118,7 +122,8 @@ void ff_refined_child(const ff_terrain_info *info, const uint16_t *refined, uint
  * (NULL: a root). `out->value` receives the residuals, `decoded` what every decoder will see. */
 void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *source,
                        ff_residuals *out, uint16_t *decoded);
-/* Then the payload, `res->child_error` filled in by the caller; the rest as the first step had it.
+/* Then the payload, `res->child_error` and `filled` set by the caller; the rest as the first step
+ * had it.
  * Bytes written to `out` (capacity at least FF_PAYLOAD_BYTES_MAX), or FF_ERR_RANGE for an error
  * code above 208. */
 int ff_encode_payload(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *decoded,

@@ -83,17 +83,22 @@ static inline size_t ff_align_up(size_t bytes)
 
 /* ---- parts of payloads that codecs share ---- */
 
-/* How error codes are stored: none (all are 0), one for all, each. */
+/* How error codes are stored: none (all are 0), one for all, each. Before codes that are stored may
+ * stand a byte of FF_FILLED and ff_residuals.filled. */
 enum ff_errors_form { FF_ERRORS_ZERO, FF_ERRORS_SAME, FF_ERRORS_EACH };
+#define FF_FILLED 0xf0u
+FF_STATIC_ASSERT(FF_FILLED > FF_ERROR_CODE_MAX);
 
-int ff_take_errors(ff_payload *in, unsigned form, uint32_t errors, uint8_t error[4]);
+/* Sets child_error and filled. */
+int ff_take_errors(ff_payload *in, unsigned form, uint32_t errors, ff_residuals *out);
 /* 16 bits each, low byte first: `corners` unsigned values, then signed ones, `count` in all. */
 int ff_take_words(ff_payload *in, uint32_t corners, int32_t *value, uint32_t count);
 /* All that is left, untouched, for the codec's second stage; FF_ERR_RANGE when out->value is too
  * small for it. */
 int ff_carry(const ff_terrain_info *info, ff_payload *in, ff_residuals *out);
 /* Encoder: the same the other way. Bytes written. */
-size_t ff_put_errors(const uint8_t *error, enum ff_errors_form form, uint32_t errors, uint8_t *out);
+size_t ff_put_errors(const ff_residuals *res, enum ff_errors_form form, uint32_t errors,
+                     uint8_t *out);
 size_t ff_put_words(const int32_t *value, uint32_t count, uint8_t *out);
 
 /* ---- prediction and residuals ---- */

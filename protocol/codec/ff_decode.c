@@ -71,17 +71,30 @@ ff_decoder *ff_decoder_create(const ff_terrain_info *info, void *memory, size_t 
 
 /* ---- payload to residuals ---- */
 
-int ff_take_errors(ff_payload *in, unsigned form, uint32_t errors, uint8_t error[4])
+/* Takes the byte of filled children off when there is one. */
+static int take_filled(ff_payload *in, uint32_t errors, uint8_t *filled)
+{
+    *filled = 0;
+    if (ff_payload_left(in) < 1 || *in->at < FF_FILLED) return FF_OK;
+    *filled = *in->at++ & (uint8_t)~FF_FILLED;
+    return *filled == 0 || *filled >> errors ? FF_ERR_RANGE : FF_OK;
+}
+
+int ff_take_errors(ff_payload *in, unsigned form, uint32_t errors, ff_residuals *out)
 {
     uint32_t stored = form == FF_ERRORS_EACH ? errors : form == FF_ERRORS_SAME ? 1 : 0;
+    int rc;
 
     FF_ASSERT(errors == 1 || errors == 4);
+    out->filled = 0;
     if (form > FF_ERRORS_EACH) return FF_ERR_FORMAT;
+    rc = stored ? take_filled(in, errors, &out->filled) : FF_OK;
+    if (rc != FF_OK) return rc;
     if (ff_payload_left(in) < stored) return FF_ERR_TRUNCATED;
-    memset(error, 0, 4);
+    memset(out->child_error, 0, 4);
     for (uint32_t i = 0; i < errors && stored > 0; i++) {
-        error[i] = in->at[stored == 1 ? 0 : i];
-        if (error[i] > FF_ERROR_CODE_MAX) return FF_ERR_RANGE;
+        out->child_error[i] = in->at[stored == 1 ? 0 : i];
+        if (out->child_error[i] > FF_ERROR_CODE_MAX) return FF_ERR_RANGE;
     }
     in->at += stored;
     return FF_OK;

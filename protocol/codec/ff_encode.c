@@ -90,13 +90,16 @@ int ff_encode_refinement(const ff_terrain_info *info, const uint16_t *parent,
 
 /* ---- parts of payloads that codecs share ---- */
 
-size_t ff_put_errors(const uint8_t *error, enum ff_errors_form form, uint32_t errors, uint8_t *out)
+size_t ff_put_errors(const ff_residuals *res, enum ff_errors_form form, uint32_t errors,
+                     uint8_t *out)
 {
     size_t bytes = form == FF_ERRORS_EACH ? errors : form == FF_ERRORS_SAME;
 
     FF_ASSERT(errors == 1 || errors == 4);
-    memcpy(out, error, bytes);
-    return bytes;
+    FF_ASSERT(res->filled >> errors == 0 && (bytes > 0 || !res->filled));
+    if (res->filled) *out++ = (uint8_t)(FF_FILLED | res->filled);
+    memcpy(out, res->child_error, bytes);
+    return bytes + (res->filled != 0);
 }
 
 size_t ff_put_words(const int32_t *value, uint32_t count, uint8_t *out)

@@ -112,24 +112,26 @@ static size_t put_values(const ff_terrain_info *info, ff_put_high_fn *deflated,
     return best.bytes;
 }
 
-static enum ff_errors_form errors_form(const uint8_t *error, uint32_t errors)
+static enum ff_errors_form errors_form(const ff_residuals *res, uint32_t errors)
 {
+    const uint8_t *error = res->child_error;
     int same = 1;
 
     for (uint32_t i = 1; i < errors; i++) same &= error[i] == error[0];
-    return !same ? FF_ERRORS_EACH : error[0] == 0 ? FF_ERRORS_ZERO : FF_ERRORS_SAME;
+    if (!same) return FF_ERRORS_EACH;
+    return error[0] == 0 && !res->filled ? FF_ERRORS_ZERO : FF_ERRORS_SAME;
 }
 
 size_t ff_put_body(const ff_terrain_info *info, const ff_contents *contents,
                    const ff_residuals *res, ff_put_high_fn *deflated, uint8_t *out)
 {
-    enum ff_errors_form form = errors_form(res->child_error, contents->errors);
+    enum ff_errors_form form = errors_form(res, contents->errors);
     uint32_t corners = contents->corners;
     size_t bytes = 1;
 
     FF_ASSERT(corners < contents->count && contents->count <= FF_REFINED_HEIGHTS_MAX);
     out[0] = (uint8_t)(form << 2);
-    bytes += ff_put_errors(res->child_error, form, contents->errors, out + bytes);
+    bytes += ff_put_errors(res, form, contents->errors, out + bytes);
     bytes += ff_put_words(res->value, corners, out + bytes);
     return bytes + put_values(info, deflated, res->value + corners, contents->count - corners, out,
                               out + bytes);

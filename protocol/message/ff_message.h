@@ -12,7 +12,7 @@
 #include "../codec/ff_codec.h"
 #include "../ff_kind.h"
 
-#define FF_PROTOCOL_VERSION   3
+#define FF_PROTOCOL_VERSION   4
 #define FF_MESSAGE_BODY_MAX   (1u << 18) /* a longer length is a protocol error */
 #define FF_MESSAGE_HEADER_MAX 4
 #define FF_REQUEST_BYTES_MAX  48 /* any client message but HELLO fits */

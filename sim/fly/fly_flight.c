@@ -161,7 +161,8 @@ static void judge_nothing(fly_sources *from)
     no_errors(&from->audit);
     no_skyline(&from->audit);
     for (unsigned kind = 0; kind < FF_DATA_CLASSES; kind++) f->came[kind] = f->unused[kind] = NAN;
-    from->audit.undrawn_percent = from->panorama_px_percent = from->truth_error_m = NAN;
+    from->audit.undrawn_percent = from->audit.filled_percent = from->panorama_px_percent =
+        from->truth_error_m = NAN;
     f->judged_all = f->supporting = f->percent = NAN;
     from->picture = (sim_picture_figures){ NAN, NAN, NAN };
 }

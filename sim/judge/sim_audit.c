@@ -165,6 +165,7 @@ static double half_texel_px(const sim_eye *e, unsigned size, const sim_cube_plac
 typedef struct look {
     double pixel[2], error_px;
     int ground, drawn; /* it truly shows ground; and that is drawn, somewhere */
+    int filled;        /* it truly shows ground that was void in the source */
     int wrong;         /* it has an error: it truly shows ground, or shows ground over the sky */
     enum sim_audit_cause cause;
 } look;
@@ -207,6 +208,7 @@ static void look_at(const frame *of, look *at)
     at->drawn = 0;
     at->wrong = at->ground = true_point(of, at->pixel, point_m);
     if (!at->ground) return;
+    at->filled = sim_ground_filled(of->auditor->ground, point_m[0], point_m[1]);
     const ff_drawn *node = drawn_at(of->auditor, of->view->drawn, of->view->drawn_count, point_m,
                                     &z_m);
     if (node) {
@@ -361,13 +363,14 @@ static void summarise(const frame *of, sim_audit_result *result)
 {
     sim_auditor *auditor = of->auditor;
     const c3d_camera *camera = &of->view->camera;
-    size_t count = 0;
+    size_t count = 0, filled = 0;
     for (size_t i = 0; i < of->looks; i++) {
         const look *at = &auditor->look[i];
         if (!at->wrong) continue;
         auditor->error[count++] = at->error_px;
         result->square_px[at->cause] += at->error_px * at->error_px;
         result->sky_pixels += !at->ground;
+        filled += at->ground && at->filled;
         result->undrawn_pixels += at->cause == SIM_CAUSE_UNDRAWN;
         result->panorama_pixels += at->ground && at->cause == SIM_CAUSE_PANORAMA;
     }
@@ -375,9 +378,11 @@ static void summarise(const frame *of, sim_audit_result *result)
                             result->sky_pixels;
     for (int cause = 0; cause < SIM_CAUSES && count; cause++)
         result->square_px[cause] /= (double)count;
-    if (count > result->sky_pixels)
-        result->undrawn_percent = 100.0 * result->undrawn_pixels /
-                                  (double)(count - result->sky_pixels);
+    if (count > result->sky_pixels) {
+        double ground = (double)(count - result->sky_pixels);
+        result->undrawn_percent = 100.0 * result->undrawn_pixels / ground;
+        result->filled_percent = 100.0 * (double)filled / ground;
+    }
     sim_spread all = sim_spread_of(auditor->error, count);
     count = sim_skyline_compare(auditor->true_px, auditor->drawn_px, camera->width, camera->height,
                                 auditor->error);

@@ -65,6 +65,7 @@ typedef struct sim_audit_result {
     double undrawn_percent;       /* of all pixels that truly show ground */
     uint32_t skyline_columns;     /* of pixels, with true or drawn ground */
     double skyline_px_rms, skyline_px_p95, skyline_px_max; /* over these; 0 without any */
+    double filled_percent; /* of them: those whose ground was void in the source */
 } sim_audit_result;
 
 typedef struct sim_auditor sim_auditor;

@@ -11,12 +11,13 @@
 typedef struct loader {
     const sim_ground *ground;
     uint16_t *height; /* of `ground`, being written */
+    uint8_t *filled;
     const ff_pack *pack;
     ff_decoder *decoder;
     int32_t *residual;
 } loader;
 
-static void place(loader *load, ff_key key, const uint16_t *heights)
+static void place(loader *load, ff_key key, const uint16_t *heights, unsigned filled)
 {
     const ff_terrain_info *info = &load->pack->header.info;
     uint32_t cells = 1u << info->node_log2, side = cells + 1, along = 1u << load->ground->level;
@@ -24,17 +25,18 @@ static void place(loader *load, ff_key key, const uint16_t *heights)
     ff_sheet at = ff_shape_sheet(info, ff_key_tile(key));
     size_t column = ((size_t)at.x * along + ff_morton_x(code)) * cells;
     size_t row = ((size_t)at.y * along + ff_morton_y(code)) * cells;
+    load->filled[row / cells * load->ground->node_columns + column / cells] = (uint8_t)filled;
     size_t columns = load->ground->columns - column < side ? load->ground->columns - column : side;
     for (uint32_t j = 0; j < side && row + j < load->ground->rows; j++)
         memcpy(load->height + (row + j) * load->ground->columns + column,
                heights + (size_t)j * side, columns * sizeof *heights);
 }
 
-static int refine(loader *load, ff_key key, const uint16_t *heights)
+static int refine(loader *load, ff_key key, const uint16_t *heights, unsigned filled)
 {
     const ff_terrain_info *info = &load->pack->header.info;
     if (ff_key_level(key) == load->ground->level) {
-        place(load, key, heights);
+        place(load, key, heights, filled);
         return FF_OK;
     }
     const uint8_t *payload;
@@ -48,7 +50,7 @@ static int refine(loader *load, ff_key key, const uint16_t *heights)
     for (uint32_t quadrant = 0; quadrant < 4 && rc == FF_OK; quadrant++) {
         if (!ff_shape_has_ground(info, ff_key_child(key, quadrant))) continue;
         ff_refined_child(info, refined, quadrant, child);
-        rc = refine(load, ff_key_child(key, quadrant), child);
+        rc = refine(load, ff_key_child(key, quadrant), child, residuals.filled >> quadrant & 1u);
     }
     return rc;
 }
@@ -63,7 +65,7 @@ static int decode_tile(loader *load, uint32_t tile)
     int rc = ff_decode_root(load->decoder, payload, (size_t)bytes, &residuals);
     if (rc == FF_OK) rc = ff_reconstruct_root(&load->pack->header.info, &residuals, heights);
     if (rc != FF_OK) return rc;
-    return refine(load, ff_key_make(tile, 0, 0), heights);
+    return refine(load, ff_key_make(tile, 0, 0), heights, residuals.filled & 1u);
 }
 
 static int decode_all(sim_ground *ground, const ff_pack *pack)
@@ -71,16 +73,16 @@ static int decode_all(sim_ground *ground, const ff_pack *pack)
     const ff_terrain_info *info = &pack->header.info;
     size_t bytes = ff_decoder_bytes(info);
     void *memory = malloc(bytes);
-    ground->block = malloc(sizeof(sim_ground_head) +
-                           (size_t)ground->columns * ground->rows * sizeof *ground->height);
+    ground->block = malloc((size_t)sim_ground_bytes(ground));
     if (!ground->block) {
         free(memory);
         return FF_ERR_MEMORY;
     }
+    sim_ground_lie(ground, ground->block);
     loader load = { .ground = ground,
                     .pack = pack,
-                    .height = (uint16_t *)((uint8_t *)ground->block + sizeof(sim_ground_head)) };
-    ground->height = load.height;
+                    .height = (uint16_t *)ground->height,
+                    .filled = (uint8_t *)ground->filled };
     load.residual = malloc(FF_REFINED_HEIGHTS_MAX * sizeof *load.residual);
     load.decoder = memory ? ff_decoder_create(info, memory, bytes) : NULL;
     int rc = load.decoder && load.residual ? FF_OK : FF_ERR_MEMORY;
@@ -156,6 +158,9 @@ static void measure(sim_ground *ground, const ff_terrain_info *info, uint64_t sa
         ground->size[0] = (double)(samples.x - 1) / (1u << cell_log2);
         ground->size[1] = (double)(samples.y - 1) / (1u << cell_log2);
     }
+    ground->node_cells = 1u << info->node_log2;
+    ground->node_columns = ((ground->columns - 2) >> info->node_log2) + 1;
+    ground->node_rows = ((ground->rows - 2) >> info->node_log2) + 1;
     ground->cell_m = (double)ff_node_cell_wu(info, ground->level) / FF_WU_PER_METRE;
     ground->hscale_m = (double)info->hscale_q24 / (1 << 24);
     ground->curve_per_m = ldexp((double)info->curve_q60, -60) * FF_WU_PER_METRE;

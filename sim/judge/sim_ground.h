@@ -24,6 +24,9 @@ typedef struct sim_ground {
     double hscale_m, hoffset_m;
     double curve_per_m; /* at a distance of d m ground lies d * d * curve_per_m lower; 0: flat */
     const uint16_t *height;
+    /* a byte for each node, row by row: 1 when some of its ground was void in the source */
+    const uint8_t *filled;
+    uint32_t node_cells, node_columns, node_rows;
     void *block;         /* the memory of `height`, when it was decoded here */
     sys_mapping mapping; /* else the mapped file, shared by all who fly over this ground */
     unsigned top;        /* one block of 2^top cells a side covers everything */
@@ -49,6 +52,8 @@ const char *sim_ground_differs(const ff_terrain_info *a, const ff_terrain_info *
 
 /* 1 when there is ground at (x, y). */
 int sim_ground_has(const sim_ground *ground, double x_m, double y_m);
+/* 1 where there is ground in a node that has filled voids. */
+int sim_ground_filled(const sim_ground *ground, double x_m, double y_m);
 /* Height at (x, y), clamped to the rim. */
 double sim_ground_height_m(const sim_ground *ground, double x_m, double y_m);
 /* How much lower than its height says ground lies for an eye so far away. */

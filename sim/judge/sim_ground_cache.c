@@ -1,6 +1,6 @@
 /* A ground's heights on disk, so that decoding a large pack is done once for many flights: a head,
- * then the rows as they lie in memory. The file is of this machine only. A file that does not fit
- * the pack is not an error: the pack is decoded and the file written again. */
+ * then heights and marks as they lie in memory. The file is of this machine only. A file that does
+ * not fit the pack is not an error: the pack is decoded and the file written again. */
 #include "sim_ground_local.h"
 
 #include <string.h>
@@ -8,7 +8,7 @@
 static void make_head(const sim_ground *ground, uint32_t checksum, sim_ground_head *head)
 {
     memset(head, 0, sizeof *head);
-    memcpy(head->magic, "FFGROUN1", sizeof head->magic);
+    memcpy(head->magic, "FFGROUN2", sizeof head->magic);
     head->checksum = checksum;
     head->level = ground->level;
     head->columns = ground->columns;
@@ -23,10 +23,9 @@ int sim_ground_cache_open(sim_ground *ground, uint32_t checksum, const char *pat
         return 0;
     }
     make_head(ground, checksum, &head);
-    uint64_t bytes = sizeof head +
-                     (uint64_t)ground->columns * ground->rows * sizeof *ground->height;
-    if (ground->mapping.size == bytes && !memcmp(ground->mapping.bytes, &head, sizeof head)) {
-        ground->height = (const uint16_t *)((const uint8_t *)ground->mapping.bytes + sizeof head);
+    if (ground->mapping.size == sim_ground_bytes(ground) &&
+        !memcmp(ground->mapping.bytes, &head, sizeof head)) {
+        sim_ground_lie(ground, ground->mapping.bytes);
         return 1;
     }
     sys_unmap_file(&ground->mapping);
@@ -38,7 +37,5 @@ int sim_ground_cache_write(const sim_ground *ground, uint32_t checksum, const ch
 {
     sim_ground_head *head = ground->block;
     make_head(ground, checksum, head);
-    return sys_write_file(path, ground->block,
-                          sizeof *head +
-                              (size_t)ground->columns * ground->rows * sizeof *ground->height);
+    return sys_write_file(path, ground->block, (size_t)sim_ground_bytes(ground));
 }

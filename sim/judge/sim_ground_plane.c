@@ -41,6 +41,15 @@ int sim_ground_has(const sim_ground *ground, double x_m, double y_m)
            y_m <= ground->size[1] * ground->cell_m;
 }
 
+int sim_ground_filled(const sim_ground *ground, double x_m, double y_m)
+{
+    if (!sim_ground_has(ground, x_m, y_m)) return 0;
+    double node_m = ground->cell_m * ground->node_cells;
+    uint32_t column = (uint32_t)fmin(x_m / node_m, ground->node_columns - 1),
+             row = (uint32_t)fmin(y_m / node_m, ground->node_rows - 1);
+    return ground->filled[(size_t)row * ground->node_columns + column];
+}
+
 double sim_ground_height_m(const sim_ground *ground, double x_m, double y_m)
 {
     double x = clamp(x_m / ground->cell_m, 0, ground->size[0]),

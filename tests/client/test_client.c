@@ -569,6 +569,47 @@ static void ground_ends_with_the_samples(void **state)
     }
 }
 
+/* Ground near the filled void is told from measured ground, by nodes of 256 m: what lies in a node
+ * with a filled sample may be filled, all else is not. */
+static void filled_ground_is_told(void **state)
+{
+    (void)state;
+    for (int local = 0; local < 2; local++) {
+        client_rig rig;
+        rig_open(&rig, 0);
+        rig_use_filled(&rig);
+        /* near and flat enough that all is refined to the finest there */
+        rig.desc.quality = (ff_quality){ .measure = FF_MEASURE_DISTANCE, .c_q8 = 20 * 256 };
+        rig.camera.pos_wu[0] = 45 * 32 * METRE;
+        rig.camera.pos_wu[1] = 8 * 32 * METRE;
+        if (local)
+            rig_local_client(&rig, 4 * MB);
+        else
+            rig_client(&rig, 4 * MB);
+        assert_int_equal(ff_client_filled(rig.client, 45 * 32 * METRE, 25 * 32 * METRE), 0);
+        assert_true(rig_settle(&rig, 800));
+        for (int32_t y = 8; y < 56; y++)
+            for (int32_t x = 24; x < 72; x++) {
+                int in_node = x >= 32 && x < 56 && y >= 16 && y < 32;
+                assert_int_equal(
+                    ff_client_filled(rig.client, x * 32 * METRE + 99, y * 32 * METRE + 99),
+                    in_node);
+            }
+        const ff_drawn *drawn;
+        uint32_t count = ff_tree_drawn(ff_client_tree(rig.client), &drawn), filled = 0;
+        for (uint32_t i = 0; i < count; i++) filled += drawn[i].filled;
+        assert_in_range(filled, 1, 6);
+        /* it is kept while the view changes */
+        for (int i = 0; i < 40; i++) {
+            rig.camera.pos_wu[1] += 4 * METRE;
+            rig_step(&rig, 50000);
+        }
+        assert_int_equal(ff_client_filled(rig.client, 45 * 32 * METRE, 25 * 32 * METRE), 1);
+        assert_int_equal(ff_client_filled(rig.client, -1, 25 * 32 * METRE), 0);
+        rig_close(&rig);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(same_picture_over_stream_and_pack),
@@ -588,6 +629,7 @@ int main(void)
                                         cmocka_unit_test(interruption_asks_for_nothing),
                                         cmocka_unit_test(prefetch_asks_ahead_only_in_motion),
                                         cmocka_unit_test(only_what_is_in_view_is_asked_for),
-                                        cmocka_unit_test(ground_ends_with_the_samples) };
+                                        cmocka_unit_test(ground_ends_with_the_samples),
+                                        cmocka_unit_test(filled_ground_is_told) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -374,7 +374,7 @@ static int check_damaged(const ff_terrain_info *info, ff_decoder *dec, const uin
     memcpy(exact, payload, bytes);
     rc = decode(dec, info, parent, exact, bytes, told, heights);
     assert_true(rc == FF_OK || rc == FF_ERR_TRUNCATED || rc == FF_ERR_FORMAT || rc == FF_ERR_RANGE);
-    assert_int_equal(rc == FF_OK, slow_decode(info, parent, exact, bytes, slow) == 0);
+    assert_int_equal(rc == FF_OK, slow_decode(info, parent, exact, bytes, slow) >= 0);
     if (rc == FF_OK) {
         uint32_t side = parent ? ff_refined_side(info) : ff_node_side(info);
         assert_memory_equal(heights, slow, side * side * sizeof(*heights));

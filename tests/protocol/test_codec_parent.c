@@ -123,7 +123,7 @@ static int first_stage(const ff_decoder *dec, ff_payload *in, const ff_contents 
                        ff_residuals *out)
 {
     unsigned form = *in->at++;
-    int rc = ff_take_errors(in, form, contents->errors, out->child_error);
+    int rc = ff_take_errors(in, form, contents->errors, out);
 
     return rc == FF_OK ? ff_carry(&dec->info, in, out) : rc;
 }
@@ -160,7 +160,7 @@ static size_t encode(const ff_terrain_info *info, const uint16_t *parent, const 
     size_t bytes = 1;
 
     out[0] = FF_ERRORS_EACH;
-    bytes += ff_put_errors(res->child_error, FF_ERRORS_EACH, contents->errors, out + bytes);
+    bytes += ff_put_errors(res, FF_ERRORS_EACH, contents->errors, out + bytes);
     bytes += ff_put_words(res->value, contents->corners, out + bytes);
     c.residual += contents->corners;
     c.bits.out = out + bytes;

@@ -146,17 +146,20 @@ static void colour(void *context, int64_t x_wu, int64_t y_wu, uint8_t rgb[3])
 
 #define SAMPLES 129 /* that fill the usual pack's tiles, each way */
 
-static void open_pack(client_rig *rig, unsigned texture_log2, unsigned node_log2, int variant,
-                      uint32_t samples_x, uint32_t samples_y)
+enum variant { USUAL, OTHER, FILLED };
+
+static void open_pack(client_rig *rig, unsigned texture_log2, unsigned node_log2,
+                      enum variant variant, uint32_t samples_x, uint32_t samples_y)
 {
     pack_fixture_desc desc = { .info = pack_fixture_info(6, 2, 2),
                                .height = pack_fixture_hills,
+                               .filled = variant == FILLED ? pack_fixture_hole : NULL,
                                .colour = colour };
     size_t bytes;
     desc.info.node_log2 = (uint8_t)node_log2;
     desc.info.texture_log2 = (uint8_t)texture_log2;
     desc.info.texture_levels = texture_log2 ? 3 : 0;
-    desc.info.hoffset_wu = variant * 1000;
+    desc.info.hoffset_wu = variant == OTHER ? 1000 : 0;
     desc.info.samples_x = samples_x;
     desc.info.samples_y = samples_y;
     free(rig->pack_bytes);
@@ -170,7 +173,7 @@ static void open_pack(client_rig *rig, unsigned texture_log2, unsigned node_log2
 void rig_open(client_rig *rig, unsigned texture_log2)
 {
     memset(rig, 0, sizeof *rig);
-    open_pack(rig, texture_log2, 3, 0, SAMPLES, SAMPLES);
+    open_pack(rig, texture_log2, 3, USUAL, SAMPLES, SAMPLES);
     rig->cut_at = rig->silent_at = rig->spoil_at = UINT64_MAX;
     rig->spoil_with = 0xff;
     rig->stream = (sys_stream){ .state = rig,
@@ -190,18 +193,20 @@ void rig_open(client_rig *rig, unsigned texture_log2)
 
 void rig_use_node_log2(client_rig *rig, unsigned node_log2, unsigned texture_log2)
 {
-    open_pack(rig, texture_log2, node_log2, 0, SAMPLES, SAMPLES);
+    open_pack(rig, texture_log2, node_log2, USUAL, SAMPLES, SAMPLES);
 }
 
 void rig_use_samples(client_rig *rig, uint32_t samples_x, uint32_t samples_y, unsigned texture_log2)
 {
-    open_pack(rig, texture_log2, 3, 0, samples_x, samples_y);
+    open_pack(rig, texture_log2, 3, USUAL, samples_x, samples_y);
 }
+
+void rig_use_filled(client_rig *rig) { open_pack(rig, 0, 3, FILLED, SAMPLES, SAMPLES); }
 
 void rig_change_terrain(client_rig *rig)
 {
     if (rig->session) end_session(rig);
-    open_pack(rig, 0, 3, 1, SAMPLES, SAMPLES);
+    open_pack(rig, 0, 3, OTHER, SAMPLES, SAMPLES);
 }
 
 static void make_client(client_rig *rig, size_t bytes)

@@ -114,25 +114,42 @@ static int texture_payload(const pack_fixture_desc *desc, ff_key key, uint8_t *o
 
 /* decoded[]: heights of all nodes of the section's level; a section of refinements replaces them by
  * those of the next level. */
+/* 1 when a sample of the node's ground was filled. */
+static unsigned node_filled(const pack_fixture_desc *desc, ff_key key)
+{
+    uint32_t x0, y0, extent = node_place(&desc->info, key, &x0, &y0);
+    if (!desc->filled) return 0;
+    for (uint32_t y = y0; y <= y0 + extent && y < desc->info.samples_y; y++)
+        for (uint32_t x = x0; x <= x0 + extent && x < desc->info.samples_x; x++)
+            if (desc->filled(desc->context, x, y)) return 1;
+    return 0;
+}
+
 static int node_payload(const pack_fixture_desc *desc, enum ff_section_kind kind, ff_key key,
                         uint8_t *out, const uint16_t *decoded, uint16_t *next)
 {
     uint32_t node_heights = ff_node_side(&desc->info) * ff_node_side(&desc->info);
     uint64_t number = ff_pack_record_number(key);
     uint16_t source[FF_REFINED_HEIGHTS_MAX], refined[FF_REFINED_HEIGHTS_MAX];
+    int32_t value[FF_REFINED_HEIGHTS_MAX];
+    ff_residuals res = { .value = value };
     if (kind == FF_SECTION_ROOT) {
         source_grid(desc, key, 1u << desc->info.node_log2, source);
-        return ff_encode_root(&desc->info, source, node_error(desc, key), out,
-                              next + number * node_heights);
+        res.child_error[0] = node_error(desc, key);
+        res.filled = (uint8_t)node_filled(desc, key);
+        ff_encode_heights(&desc->info, NULL, source, &res, next + number * node_heights);
+        return ff_encode_payload(&desc->info, NULL, next + number * node_heights, &res, out);
     }
-    uint8_t child_error[4];
-    for (uint32_t q = 0; q < 4; q++) child_error[q] = node_error(desc, ff_key_child(key, q));
+    for (uint32_t q = 0; q < 4; q++) {
+        res.child_error[q] = node_error(desc, ff_key_child(key, q));
+        res.filled |= (uint8_t)(node_filled(desc, ff_key_child(key, q)) << q);
+    }
+    const uint16_t *parent = decoded + number * node_heights;
     source_grid(desc, key, 2u << desc->info.node_log2, source);
-    int bytes = ff_encode_refinement(&desc->info, decoded + number * node_heights, source,
-                                     child_error, out, refined);
+    ff_encode_heights(&desc->info, parent, source, &res, refined);
     for (uint32_t q = 0; q < 4; q++)
         ff_refined_child(&desc->info, refined, q, next + (4 * number + q) * node_heights);
-    return bytes;
+    return ff_encode_payload(&desc->info, parent, refined, &res, out);
 }
 
 static void section(writer *w, enum ff_section_kind kind, uint32_t level, const uint16_t *decoded,
@@ -250,6 +267,12 @@ uint16_t pack_fixture_hills(void *context, uint32_t x, uint32_t y)
 {
     (void)context;
     return (uint16_t)(noise(x, y, 5, 1000) + noise(x, y, 3, 400) + noise(x, y, 1, 60));
+}
+
+int pack_fixture_hole(void *context, uint32_t x, uint32_t y)
+{
+    (void)context;
+    return x >= 40 && x <= 50 && y >= 20 && y <= 30;
 }
 
 uint8_t *pack_fixture_usual(size_t *bytes)

@@ -9,6 +9,8 @@ typedef struct pack_fixture_desc {
     ff_terrain_info info; /* the fixture fills in the checksum; the caller sets the rest */
     /* Height in steps of sample (x, y) counted from the south-west */
     uint16_t (*height)(void *context, uint32_t x, uint32_t y);
+    /* 1: that sample was filled; NULL: none was */
+    int (*filled)(void *context, uint32_t x, uint32_t y);
     /* Colour of a point of the ground in wu, when info.texture_log2 is not 0. */
     void (*colour)(void *context, int64_t x_wu, int64_t y_wu, uint8_t rgb[3]);
     void *context;
@@ -24,6 +26,8 @@ ff_terrain_info pack_fixture_info(uint8_t tile_log2, uint32_t tiles_x, uint32_t 
 
 /* Hills of several sizes, 0..~1500 steps; a pure function of its arguments. */
 uint16_t pack_fixture_hills(void *context, uint32_t x, uint32_t y);
+/* Samples 40..50, 20..30 were void. */
+int pack_fixture_hole(void *context, uint32_t x, uint32_t y);
 /* The usual pack: 2 by 2 tiles of 2^6 cells of hills. */
 uint8_t *pack_fixture_usual(size_t *bytes);
 

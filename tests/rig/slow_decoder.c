@@ -161,26 +161,38 @@ static int plain_part(const uint8_t *at, long left, int stored, int corners, lon
     return 0;
 }
 
+/* What a byte before the error codes says; 0 when there is none, -1 when it may not be. */
+static int filled_part(int root, const uint8_t *at, long left)
+{
+    if (left < 1 || at[0] < 240) return 0;
+    return at[0] == 240 || (root && at[0] != 241) ? -1 : at[0] - 240;
+}
+
 static int raw(int root, const uint8_t *at, long left, long *residual, int count)
 {
-    int errors = root ? 1 : 4;
+    int errors = root ? 1 : 4, filled = filled_part(root, at, left), more = filled > 0;
 
-    if (left != errors + 2 * count) return -1;
-    return plain_part(at, left, errors, root ? 4 : 0, residual, count);
+    if (filled < 0 || left != more + errors + 2 * count) return -1;
+    return plain_part(at + more, left - more, errors, root ? 4 : 0, residual, count) ? -1 : filled;
 }
 
 static int head_and_body(int codec, int root, const uint8_t *at, long left, long *residual,
                          int count)
 {
     int form = at[0] >> 2 & 3, corners = root ? 4 : 0;
-    int stored = form == 0 ? 0 : form == 1 || root ? 1 : 4, before = 1 + stored + 2 * corners;
+    int stored = form == 0 ? 0 : form == 1 || root ? 1 : 4;
+    int filled = stored ? filled_part(root, at + 1, left - 1) : 0, first = 1 + (filled > 0),
+        before = first + stored + 2 * corners;
 
-    if (form == 3 || plain_part(at + 1, left - 1, stored, corners, residual, corners) != 0)
+    if (form == 3 || filled < 0 ||
+        plain_part(at + first, left - first, stored, corners, residual, corners) != 0)
         return -1;
-    return body(codec, at[0], at + before, left - before, residual + corners, count - corners);
+    return body(codec, at[0], at + before, left - before, residual + corners, count - corners)
+               ? -1
+               : filled;
 }
 
-/* All residuals of a payload, corners first. */
+/* All residuals of a payload, corners first; gives the bits of filled children. */
 static int residuals(int codec, int root, const uint8_t *at, long left, long *residual, int count)
 {
     if (left < 1) return -1;
@@ -197,14 +209,14 @@ int slow_decode(const ff_terrain_info *info, const uint16_t *parent, const uint8
 {
     static long residual[SIDE_MAX * SIDE_MAX];
     static field f;
-    int node = 1 << info->node_log2, count = (node + 1) * (node + 1);
+    int node = 1 << info->node_log2, count = (node + 1) * (node + 1), filled;
 
     f.last = parent ? 2 * node : node;
     f.maximum_error = info->max_error;
     f.residual = residual;
-    if (residuals(info->codec, !parent, payload, (long)bytes, residual,
-                  parent ? (2 * node + 1) * (2 * node + 1) - count : count) != 0)
-        return -1;
+    filled = residuals(info->codec, !parent, payload, (long)bytes, residual,
+                       parent ? (2 * node + 1) * (2 * node + 1) - count : count);
+    if (filled < 0) return -1;
     if (parent) {
         for (int i = 0; i < count; i++)
             f.height[2 * (i / (node + 1))][2 * (i % (node + 1))] = parent[i];
@@ -215,5 +227,5 @@ int slow_decode(const ff_terrain_info *info, const uint16_t *parent, const uint8
     }
     for (int i = 0; i < (f.last + 1) * (f.last + 1); i++)
         heights[i] = (uint16_t)f.height[i / (f.last + 1)][i % (f.last + 1)];
-    return 0;
+    return filled;
 }

@@ -91,7 +91,7 @@ ask_root() {
     python3 -c '
 import socket, sys
 s = socket.create_connection(("127.0.0.1", int(sys.argv[1])))
-s.sendall(b"\1\x0cFFLD\3\0\0\0\0\0\0\0" + b"\2\5\1\0\0\0\0")
+s.sendall(b"\1\x0cFFLD\4\0\0\0\0\0\0\0" + b"\2\5\1\0\0\0\0")
 answer = b""
 while len(answer) < 74 + 5:
     more = s.recv(4096)

@@ -14,6 +14,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Depth along the view at which the pixels of row y meet the flat ground; 0 when they miss it or
  * meet the plane north of the terrain. */
@@ -364,6 +365,52 @@ static void ground_is_the_source(void **state)
     free(bytes);
 }
 
+static uint16_t no_height(void *context, uint32_t x, uint32_t y)
+{
+    return (void)context, (void)x, (void)y, 0;
+}
+
+/* The judge tells filled ground from measured ground, by nodes, from memory and from a cache, and
+ * how much of the picture it is. */
+static void filled_ground_is_judged(void **state)
+{
+    (void)state;
+    char path[] = "/tmp/test_auditor_XXXXXX";
+    int fd = mkstemp(path);
+    assert_true(fd >= 0);
+    close(fd);
+    pack_fixture_desc desc = { .info = pack_fixture_info(6, 2, 2),
+                               .height = no_height,
+                               .filled = pack_fixture_hole };
+    size_t bytes;
+    uint8_t *pack_bytes = pack_fixture_make(&desc, &bytes);
+    ff_pack pack;
+    assert_int_equal(ff_pack_open(&pack, pack_bytes, bytes), FF_OK);
+    for (int again = 0; again < 2; again++) {
+        sim_ground ground;
+        assert_int_equal(sim_ground_load_cached(&ground, &pack, UINT64_MAX, path), FF_OK);
+        for (uint32_t y = 0; y < 128; y++)
+            for (uint32_t x = 0; x < 128; x++)
+                assert_int_equal(sim_ground_filled(&ground, x * 32 + 5, y * 32 + 5),
+                                 x >= 32 && x < 56 && y >= 16 && y < 32);
+        assert_false(sim_ground_filled(&ground, -1, 20 * 32));
+        sim_auditor *auditor = sim_auditor_create(&ground, &pack.header.info, 4);
+        sim_audit_result result;
+        /* from straight above: 50 by 49 samples of ground, of which 24 by 16 are filled */
+        sim_audit_view view = { .camera = { .pos_wu = { 44 * 32 * 256, 24 * 32 * 256, 1600 * 256 },
+                                            .pitch = -16384,
+                                            .width = 256,
+                                            .height = 256,
+                                            .focal_q8 = 256 * 256 } };
+        assert_int_equal(sim_audit_frame(auditor, &view, &result), FF_OK);
+        assert_true(fabs(result.filled_percent - 100.0 * 24 * 16 / (50 * 49)) < 1);
+        sim_auditor_destroy(auditor);
+        sim_ground_free(&ground);
+    }
+    unlink(path);
+    free(pack_bytes);
+}
+
 /* The ground in memory ends where the source does, at every level: where a cell is longer than
  * what is left, the last sample's place has the rim's height. */
 static void ground_ends_with_the_source(void **state)
@@ -554,6 +601,7 @@ int main(void)
         cmocka_unit_test(a_panorama_shows_between_its_planes),
         cmocka_unit_test(ground_is_the_source),
         cmocka_unit_test(ground_ends_with_the_source),
+        cmocka_unit_test(filled_ground_is_judged),
         cmocka_unit_test(rays_hit_where_steps_do),
         cmocka_unit_test(truth_is_of_the_same_grid),
         cmocka_unit_test(projection_is_the_renderers),

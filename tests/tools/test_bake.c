@@ -9,6 +9,7 @@
 #include "../../tools/bake/bake_run.h"
 #include "../../tools/bake/bake_say.h"
 #include "../../tools/bake/bake_tile.h"
+#include "../../tools/bake/raster/bake_voids.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -211,7 +212,7 @@ static void load_noise(bake_tile *tile, const ff_terrain_info *info, bake_grid *
         assert_int_equal(bake_grid_write(grid, j, 0, 50, row), 0);
     }
     assert_int_equal(bake_tile_open(tile, info), 0);
-    assert_int_equal(bake_tile_load(tile, grid, number), 0);
+    assert_int_equal(bake_tile_load(tile, grid, &BAKE_GRID_CLOSED, number), 0);
 }
 
 static void tile_repeats_the_rim(void **state)
@@ -279,6 +280,97 @@ static void check_records(uint16_t max_error)
     bake_grid_close(&grid);
 }
 
+/* Marks of filled samples: of the ground's size and way, then of the heights'. */
+static void marks_follow_the_heights(void **state)
+{
+    (void)state;
+    bake_grid ground, marks = BAKE_GRID_CLOSED, filled;
+    float row[5];
+    uint8_t marked[9];
+    assert_int_equal(bake_grid_open(&ground, 5, 3, sizeof(float)), 0);
+    for (uint32_t j = 0; j < 3; j++) {
+        for (uint32_t i = 0; i < 5; i++) row[i] = i == 2 && j == 0 ? NAN : 7;
+        assert_int_equal(bake_grid_write(&ground, j, 0, 5, row), 0);
+    }
+    assert_int_equal(bake_voids_mark(&ground, &marks), 0);
+    for (int north_up = 0; north_up < 2; north_up++)
+        for (uint32_t densify = 1; densify <= 2; densify++) {
+            uint32_t width = 4 * densify + 1, height = 2 * densify + 1;
+            assert_int_equal(bake_voids_finish(&marks, north_up, densify, &filled), 0);
+            assert_true(filled.width == width && filled.height == height);
+            for (uint32_t j = 0; j < height; j++) {
+                uint32_t from_void = north_up ? height - 1 - j : j;
+                assert_int_equal(bake_grid_read(&filled, j, 0, width, marked), 0);
+                for (uint32_t i = 0; i < width; i++)
+                    assert_int_equal(marked[i],
+                                     from_void < densify && i > densify && i < 3 * densify);
+            }
+            bake_grid_close(&filled);
+        }
+    bake_grid_close(&marks);
+    bake_grid_close(&ground);
+}
+
+/* Which children of a node of tile 1 hold filled samples, by the samples themselves. */
+static unsigned filled_children(const ff_terrain_info *info, const uint8_t *filled, ff_key key)
+{
+    unsigned bits = 0;
+    for (uint32_t q = 0; q < 4; q++) {
+        ff_key child = ff_key_child(key, q);
+        ff_extent extent = ff_shape_extent(info, child);
+        uint32_t edge = 32u >> ff_key_level(child), code = ff_key_code(child),
+                 x = 32 + ff_morton_x(code) * edge, y = ff_morton_y(code) * edge;
+        if (!extent.columns || !extent.rows) continue;
+        for (uint32_t j = y; j <= y + extent.rows; j++)
+            for (uint32_t i = x; i <= x + extent.columns; i++)
+                bits |= (unsigned)filled[j * 50 + i] << q;
+    }
+    return bits;
+}
+
+static void records_tell_filled_nodes(void **state)
+{
+    (void)state;
+    ff_terrain_info info = small_info(0);
+    bake_tile tile;
+    bake_grid grid, filled;
+    uint8_t marks[20 * 50] = { 0 };
+    int32_t value[FF_REFINED_HEIGHTS_MAX];
+    ff_residuals residuals = { .value = value };
+    marks[6 * 50 + 37] = marks[19 * 50 + 49] = marks[8 * 50 + 40] = 1;
+    load_noise(&tile, &info, &grid, 1);
+    assert_int_equal(bake_grid_open(&filled, 50, 20, 1), 0);
+    for (uint32_t j = 0; j < 20; j++)
+        assert_int_equal(bake_grid_write(&filled, j, 0, 50, marks + j * 50), 0);
+    assert_int_equal(bake_tile_load(&tile, &grid, &filled, 1), 0);
+    assert_int_equal(bake_tile_encode(&tile), 0);
+    size_t bytes = ff_decoder_bytes(&info);
+    void *memory = test_malloc(bytes);
+    ff_decoder *decoder = ff_decoder_create(&info, memory, bytes);
+    assert_int_equal(
+        ff_decode_root(decoder, tile.level[0].bytes, tile.level[0].length[0], &residuals), FF_OK);
+    assert_int_equal(residuals.filled, 1);
+    unsigned told = 0;
+    for (uint32_t level = 0; level + 1 < ff_terrain_levels(&info); level++) {
+        const bake_blob *records = &tile.level[level + 1];
+        size_t at = 0;
+        for (uint32_t code = 0; code < 1u << (2 * level); code++) {
+            assert_int_equal(ff_decode_refinement(decoder, records->bytes + at,
+                                                  records->length[code], &residuals),
+                             FF_OK);
+            assert_int_equal(residuals.filled,
+                             filled_children(&info, marks, ff_key_make(1, level, code)));
+            told += residuals.filled != 0;
+            at += records->length[code];
+        }
+    }
+    assert_in_range(told, 5, 12);
+    test_free(memory);
+    bake_tile_close(&tile);
+    bake_grid_close(&grid);
+    bake_grid_close(&filled);
+}
+
 static void records_decode(void **state)
 {
     (void)state;
@@ -340,6 +432,8 @@ int main(void)
         cmocka_unit_test(densify_keeps_samples_and_flat_water),
         cmocka_unit_test(tile_size_suits_the_raster),
         cmocka_unit_test(tile_repeats_the_rim),
+        cmocka_unit_test(marks_follow_the_heights),
+        cmocka_unit_test(records_tell_filled_nodes),
         cmocka_unit_test(records_decode),
         cmocka_unit_test(jobs_are_taken_in_order),
         cmocka_unit_test(a_failed_job_ends_all),

@@ -9,6 +9,7 @@
 #include "bake_jobs.h"
 #include "raster/bake_project.h"
 #include "raster/bake_quantise.h"
+#include "raster/bake_voids.h"
 #include "bake_say.h"
 #include "bake_tile.h"
 #include "pack_writer.h"
@@ -30,6 +31,8 @@ typedef struct bake {
     bake_steps steps;
     ff_terrain_info info;
     bake_grid heights; /* uint16, rows south to north */
+    bake_grid marks;   /* of filled samples, as the ground is; closed: there are none */
+    bake_grid filled;  /* the same beside the heights, a byte each */
     bake_image image;
     bake_tile *tile; /* one per job */
     bake_blob (*texture)[BAKE_TEXTURE_LEVELS_MAX];
@@ -39,9 +42,23 @@ typedef struct bake {
 
 /* ---- ground ---- */
 
-static int fill(bake_ground *ground, uint64_t count)
+/* Fills `count` voids, and remembers where they were. */
+static int fill(bake *b, uint64_t count)
 {
-    return count ? bake_fill_voids(&ground->grid) : 0;
+    if (!count) return 0;
+    return bake_voids_mark(&b->ground.grid, &b->marks) || bake_fill_voids(&b->ground.grid) ? -1 : 0;
+}
+
+/* Projects the ground, and the marks with it. */
+static int project(bake *b, double *spacing_m)
+{
+    bake_ground before = b->ground;
+    if (before.srs) before.srs = OSRClone(before.srs);
+    int rc = bake_project(b->options, &b->ground, spacing_m);
+    if (!rc && b->ground.resampled && b->marks.fd >= 0)
+        rc = bake_voids_project(b->options, &before, &b->marks);
+    if (before.srs) OSRDestroySpatialReference(before.srs);
+    return rc;
 }
 
 static void say_filled(const bake_ground *ground)
@@ -60,17 +77,21 @@ static int make_ground(bake *b)
 {
     double spacing_m;
     if (bake_source_read(b->options, &b->ground)) return -1;
-    if (fill(&b->ground, b->ground.voids)) return -1;
-    if (bake_project(b->options, &b->ground, &spacing_m)) return -1;
-    if (fill(&b->ground, b->ground.outside)) return -1;
+    if (fill(b, b->ground.voids)) return -1;
+    if (project(b, &spacing_m)) return -1;
+    if (fill(b, b->ground.outside)) return -1;
     say_filled(&b->ground);
     if (bake_densify(&b->ground.grid, b->ground.geotransform, b->options->densify)) return -1;
     b->info.spacing_wu = (uint32_t)nearbyint(spacing_m * FF_WU_PER_METRE / b->options->densify);
     if (bake_steps_choose(b->options, &b->ground, &b->steps)) return -1;
     if (bake_quantise(b->options, &b->ground, &b->steps, &b->info, &b->heights)) return -1;
+    int rc = b->marks.fd < 0 ? 0
+                             : bake_voids_finish(&b->marks, b->ground.geotransform[5] < 0,
+                                                 b->options->densify, &b->filled);
     /* the ground's size and place are still needed, its samples are not */
     bake_grid_close(&b->ground.grid);
-    return 0;
+    bake_grid_close(&b->marks);
+    return rc;
 }
 
 /* ---- the terrain's description ---- */
@@ -132,7 +153,7 @@ static int make_tile(void *context, int worker, uint32_t job)
 {
     bake *b = context;
     bake_tile *tile = &b->tile[worker];
-    if (bake_tile_load(tile, &b->heights, job) || bake_tile_encode(tile)) return -1;
+    if (bake_tile_load(tile, &b->heights, &b->filled, job) || bake_tile_encode(tile)) return -1;
     for (uint32_t l = 0; l < b->image.levels; l++) {
         bake_blob_clear(&b->texture[worker][l]);
         if (bake_texture_encode(&b->image, &b->info, b->options->texture_quality, job, l,
@@ -231,8 +252,8 @@ static int is_same_file(const char *path, const char *other)
 
 int bake_run(const bake_options *options)
 {
-    bake b = { .options = options, .heights = BAKE_GRID_CLOSED, .started_us = sys_time_us() };
-    b.ground.grid = BAKE_GRID_CLOSED;
+    bake b = { .options = options, .started_us = sys_time_us() };
+    b.ground.grid = b.heights = b.marks = b.filled = BAKE_GRID_CLOSED;
     if (is_same_file(options->heights_path, options->out_path) ||
         is_same_file(options->color_path, options->out_path))
         return bake_fail("%s is the input: not overwritten", options->out_path);
@@ -245,6 +266,8 @@ int bake_run(const bake_options *options)
     pack_writer_close(&b.writer);
     bake_image_close(&b.image);
     bake_grid_close(&b.heights);
+    bake_grid_close(&b.marks);
+    bake_grid_close(&b.filled);
     bake_ground_close(&b.ground);
     return rc;
 }

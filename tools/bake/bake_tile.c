@@ -24,11 +24,27 @@ void bake_tile_close(bake_tile *tile)
 {
     free(tile->source);
     free(tile->decoded);
+    free(tile->filled);
     for (int i = 0; i < BAKE_LEVELS_MAX; i++) bake_blob_free(&tile->level[i]);
     *tile = (bake_tile){ 0 };
 }
 
-int bake_tile_load(bake_tile *tile, const bake_grid *grid, uint32_t number)
+/* The part of the tile that is ground; 0 beyond it. */
+static int load_filled(bake_tile *tile, const bake_grid *filled, uint32_t first_column,
+                       uint32_t first_row, uint32_t columns)
+{
+    size_t pitch = pitch_of(tile->info);
+    if (!tile->filled) tile->filled = malloc(pitch * pitch);
+    if (!tile->filled) return bake_fail("out of memory");
+    memset(tile->filled, 0, pitch * pitch);
+    for (size_t row = 0; row < pitch && first_row + row < filled->height; row++)
+        if (bake_grid_read(filled, first_row + (uint32_t)row, first_column, columns,
+                           tile->filled + row * pitch))
+            return -1;
+    return 0;
+}
+
+int bake_tile_load(bake_tile *tile, const bake_grid *grid, const bake_grid *filled, uint32_t number)
 {
     const ff_terrain_info *info = tile->info;
     size_t pitch = pitch_of(info);
@@ -48,7 +64,7 @@ int bake_tile_load(bake_tile *tile, const bake_grid *grid, uint32_t number)
         if (bake_grid_read(grid, first_row + (uint32_t)row, first_column, columns, to)) return -1;
         for (size_t i = columns; i < pitch; i++) to[i] = to[columns - 1];
     }
-    return 0;
+    return filled->fd < 0 ? 0 : load_filled(tile, filled, first_column, first_row, columns);
 }
 
 /* Copies a square of `side` samples, `stride` apart, from a tile's grid; scatter copies it back. */
@@ -72,6 +88,16 @@ static uint8_t error_code(const bake_tile *tile, ff_key key, size_t at, uint32_t
                                                      ff_shape_extent(tile->info, key), cell));
 }
 
+/* 1 when a sample of the node's ground was filled. */
+static unsigned is_filled(const bake_tile *tile, ff_key key, size_t at)
+{
+    ff_extent extent = ff_shape_extent(tile->info, key);
+    if (!tile->filled || !ff_shape_has_ground(tile->info, key)) return 0;
+    for (uint32_t row = 0; row <= extent.rows; row++)
+        if (memchr(tile->filled + at + row * pitch_of(tile->info), 1, extent.columns + 1)) return 1;
+    return 0;
+}
+
 /* Appends the payload of a root or refinement, error codes filled in, to a level's records. */
 static int add_payload(bake_tile *tile, uint32_t level, const uint16_t *parent,
                        const uint16_t *decoded, const ff_residuals *residuals)
@@ -93,7 +119,9 @@ static int encode_root(bake_tile *tile)
     gather(tile->source, pitch_of(info), side, cell, source);
     ff_encode_heights(info, NULL, source, &residuals, decoded);
     scatter(decoded, pitch_of(info), side, cell, tile->decoded);
-    residuals.child_error[0] = error_code(tile, ff_key_make(tile->number, 0, 0), 0, cell);
+    ff_key key = ff_key_make(tile->number, 0, 0);
+    residuals.child_error[0] = error_code(tile, key, 0, cell);
+    residuals.filled = (uint8_t)is_filled(tile, key, 0);
     return add_payload(tile, 0, NULL, decoded, &residuals);
 }
 
@@ -111,9 +139,11 @@ static int encode_refinement(bake_tile *tile, ff_key key, size_t at, uint32_t ce
     gather(tile->source + at, pitch, ff_refined_side(info), cell / 2, source);
     ff_encode_heights(info, parent, source, &residuals, decoded);
     scatter(decoded, pitch, ff_refined_side(info), cell / 2, tile->decoded + at);
-    for (uint32_t q = 0; q < 4; q++)
-        residuals.child_error[q] = error_code(
-            tile, ff_key_child(key, q), at + (q & 1) * edge + (q >> 1) * edge * pitch, cell / 2);
+    for (uint32_t q = 0; q < 4; q++) {
+        size_t child = at + (q & 1) * edge + (q >> 1) * edge * pitch;
+        residuals.child_error[q] = error_code(tile, ff_key_child(key, q), child, cell / 2);
+        residuals.filled |= (uint8_t)(is_filled(tile, ff_key_child(key, q), child) << q);
+    }
     return add_payload(tile, ff_key_level(key) + 1, parent, decoded, &residuals);
 }
 
