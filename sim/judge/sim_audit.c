@@ -406,8 +406,8 @@ int sim_audit_frame(sim_auditor *auditor, const sim_audit_view *view, sim_audit_
                            sim_looked_at(camera->height, auditor->step_px),
                        camera->width);
     if (rc == FF_OK)
-        rc = sim_cover_make(&auditor->cover, &auditor->mesh, auditor->ground, camera,
-                            auditor->step_px, view->drawn, view->drawn_count);
+        rc = sim_cover_make(&auditor->cover, &auditor->mesh, camera, auditor->step_px, view->drawn,
+                            view->drawn_count);
     if (rc != FF_OK) return rc;
     sim_eye_of(camera, &of.e);
     if (view->faces) sim_faces_use(&auditor->faces, &view->panorama);

@@ -148,8 +148,8 @@ static unsigned cut_triangle(const sim_eye *e, const sim_vertex *const point[3],
 }
 
 /* A node's vertices as seen from the eye. */
-static void place_vertices(sim_cover *cover, const sim_mesh *mesh, const sim_ground *ground,
-                           const sim_eye *e, const ff_drawn *drawn)
+static void place_vertices(sim_cover *cover, const sim_mesh *mesh, const sim_eye *e,
+                           const ff_drawn *drawn)
 {
     uint32_t side = ff_node_side(&mesh->info);
     for (uint32_t i = 0; i < side * side; i++) {
@@ -157,20 +157,20 @@ static void place_vertices(sim_cover *cover, const sim_mesh *mesh, const sim_gro
         double cell[2], way[3];
         sim_mesh_vertex_cell(mesh, drawn, i, cell);
         sim_place_of_cell(drawn, cell, sim_mesh_vertex_m(mesh, drawn, i), way);
-        sim_place_lift(ground, e->pos_m, way, way[2], way);
         for (int k = 0; k < 3; k++) way[k] -= e->pos_m[k];
+        way[2] -= mesh->curve_per_m * (way[0] * way[0] + way[1] * way[1]);
         sim_eye_turn(e, way, point->eye);
         point->before = point->eye[2] >= NEAREST_M;
         if (point->before) point->at = project(e, point->eye);
     }
 }
 
-static void cover_node(sim_cover *cover, const sim_mesh *mesh, const sim_ground *ground,
-                       const sim_eye *e, const ff_drawn *drawn, uint32_t node)
+static void cover_node(sim_cover *cover, const sim_mesh *mesh, const sim_eye *e,
+                       const ff_drawn *drawn, uint32_t node)
 {
     uint8_t strip[5];
     unsigned strips = ff_strips_for(drawn->coarser, strip);
-    place_vertices(cover, mesh, ground, e, drawn);
+    place_vertices(cover, mesh, e, drawn);
     for (unsigned i = 0; i < strips; i++) {
         const sim_triangles *list = &mesh->strip[strip[i]];
         for (uint32_t j = 0; j < list->count; j++) {
@@ -183,14 +183,13 @@ static void cover_node(sim_cover *cover, const sim_mesh *mesh, const sim_ground 
     }
 }
 
-int sim_cover_make(sim_cover *cover, const sim_mesh *mesh, const sim_ground *ground,
-                   const c3d_camera *camera, unsigned step_px, const ff_drawn *drawn,
-                   uint32_t count)
+int sim_cover_make(sim_cover *cover, const sim_mesh *mesh, const c3d_camera *camera,
+                   unsigned step_px, const ff_drawn *drawn, uint32_t count)
 {
     sim_eye e;
     sim_eye_of(camera, &e);
     int rc = begin(cover, mesh, camera, step_px);
     for (uint32_t i = 0; rc == FF_OK && i < count; i++)
-        cover_node(cover, mesh, ground, &e, &drawn[i], i + 1);
+        cover_node(cover, mesh, &e, &drawn[i], i + 1);
     return rc;
 }

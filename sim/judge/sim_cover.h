@@ -4,7 +4,6 @@
 #define SIM_COVER_H
 
 #include "sim_eye.h"
-#include "sim_ground.h"
 #include "sim_mesh.h"
 
 /* A point of the picture, pixels from its top left; 1 / depth, per metre. */
@@ -31,11 +30,9 @@ typedef struct sim_cover {
     size_t columns, pixels, points; /* room for so many */
 } sim_cover;
 
-/* `cover` starts as zeros and is used again for the next picture. `ground`: by it what is drawn
- * falls away from the eye. FF_OK or FF_ERR_MEMORY. */
-int sim_cover_make(sim_cover *cover, const sim_mesh *mesh, const sim_ground *ground,
-                   const c3d_camera *camera, unsigned step_px, const ff_drawn *drawn,
-                   uint32_t count);
+/* `cover` starts as zeros and is used again for the next picture. FF_OK or FF_ERR_MEMORY. */
+int sim_cover_make(sim_cover *cover, const sim_mesh *mesh, const c3d_camera *camera,
+                   unsigned step_px, const ff_drawn *drawn, uint32_t count);
 void sim_cover_free(sim_cover *cover);
 
 /* How many pixels are looked at along `size` of them. */

@@ -1,8 +1,8 @@
 #include "sim_ground_local.h"
+#include "sim_place.h"
 
 #include "../../protocol/shape/ff_shape.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -163,7 +163,7 @@ static void measure(sim_ground *ground, const ff_terrain_info *info, uint64_t sa
     ground->node_rows = ((ground->rows - 2) >> info->node_log2) + 1;
     ground->cell_m = (double)ff_node_cell_wu(info, ground->level) / FF_WU_PER_METRE;
     ground->hscale_m = (double)info->hscale_q24 / (1 << 24);
-    ground->curve_per_m = ldexp((double)info->curve_q60, -60) * FF_WU_PER_METRE;
+    ground->curve_per_m = sim_place_curve_per_m(info);
     ground->hoffset_m = (double)info->hoffset_wu / FF_WU_PER_METRE;
 }
 

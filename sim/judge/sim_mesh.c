@@ -24,7 +24,7 @@ static int unpack_strip(sim_triangles *out, const uint16_t *index, uint32_t leng
 int sim_mesh_make(sim_mesh *mesh, const ff_terrain_info *info)
 {
     ff_strips *strips = malloc(sizeof *strips);
-    *mesh = (sim_mesh){ .info = *info };
+    *mesh = (sim_mesh){ .info = *info, .curve_per_m = sim_place_curve_per_m(info) };
     int rc = strips ? ff_strips_make(strips, info->node_log2) : FF_ERR_MEMORY;
     for (uint32_t i = 0; rc == FF_OK && i < strips->count; i++)
         rc = unpack_strip(&mesh->strip[i], strips->index + strips->first[i], strips->length[i]);

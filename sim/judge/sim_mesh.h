@@ -12,6 +12,7 @@ typedef struct sim_triangles {
 
 typedef struct sim_mesh {
     ff_terrain_info info;
+    double curve_per_m;      /* at a distance of d m ground is drawn d * d * curve_per_m lower */
     sim_triangles strip[32]; /* by strip id, degenerate ones left out */
 } sim_mesh;
 

@@ -12,6 +12,11 @@ int sim_place_in_node(const ff_terrain_info *info, const ff_drawn *drawn, const 
     return cell[0] >= 0 && cell[1] >= 0 && cell[0] <= side && cell[1] <= side;
 }
 
+double sim_place_curve_per_m(const ff_terrain_info *info)
+{
+    return ldexp((double)info->curve_q60, -60) * FF_WU_PER_METRE;
+}
+
 void sim_place_last(const ff_terrain_info *info, const ff_drawn *drawn, double cell[2])
 {
     int64_t size_wu[2];

@@ -9,6 +9,8 @@
 /* Column and row, in cells, of a point in a drawn node's grid: 1 when it lies over the node. */
 int sim_place_in_node(const ff_terrain_info *info, const ff_drawn *drawn, const double point_m[3],
                       double cell[2]);
+/* At a distance of d m ground lies d * d times this lower than its height says; 0: flat. */
+double sim_place_curve_per_m(const ff_terrain_info *info);
 /* The column and row, in cells, of the terrain's last sample where it lies in the node; else the
  * node's last ones. What is beyond is drawn there. */
 void sim_place_last(const ff_terrain_info *info, const ff_drawn *drawn, double cell[2]);

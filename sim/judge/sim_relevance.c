@@ -2,7 +2,8 @@
 
 #include "../../client/images/ff_texture_map.h"
 #include "../../protocol/message/ff_message.h"
-#include "sim_eye.h"
+#include "sim_cover.h"
+#include "sim_cube.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,6 +12,7 @@
 #define BUCKETS     4096u
 #define NONE        SIZE_MAX
 #define RAY_STEP_PX 4
+#define LOOK_US     250000 /* faces are looked for so often: pictures change little meanwhile */
 
 /* What a request asked for, by its id. */
 typedef struct asked {
@@ -23,12 +25,17 @@ typedef struct answer {
     enum ff_kind kind;
     ff_key key;             /* heights: the node made (roots) or refined; images */
     int32_t position_wu[3]; /* faces */
-    unsigned face, face_size, top_row, row_count; /* row_count 0: empty */
+    unsigned face, face_size;
+    /* of each column of the face the rows that show ground: first[column] to before
+     * first[face_size + column]; NULL: the face is empty */
+    uint16_t *first;
     uint32_t bytes;
     int64_t came_us;
-    int drawn, supports;
-    uint64_t frame; /* the last frame that marked it */
-    size_t next;    /* the next answer in its bucket */
+    double drawn; /* the share of it that was drawn in time */
+    int supports;
+    uint32_t pixels, seen; /* of a face, in one frame: in the window; and not hidden */
+    uint64_t frame;        /* the last frame that marked it */
+    size_t next;           /* the next answer in its bucket */
 } answer;
 
 /* Bytes of one direction that do not make a whole message yet. */
@@ -47,6 +54,9 @@ struct sim_relevance {
     size_t count, capacity, judged_count, first_young;
     size_t bucket[BUCKETS];
     uint64_t frame;
+    sim_mesh mesh;
+    sim_cover cover;      /* of the frame that looks for faces */
+    int64_t next_look_us; /* for faces */
     sim_relevance_figures figures;
     int rc;
 };
@@ -77,6 +87,7 @@ static void keep(sim_relevance *relevance, answer a)
         answer *grown = realloc(relevance->answer, more * sizeof *grown);
         if (!grown) {
             relevance->rc = FF_ERR_MEMORY;
+            free(a.first);
             return;
         }
         relevance->answer = grown;
@@ -91,6 +102,22 @@ static void keep(sim_relevance *relevance, answer a)
     relevance->answer[relevance->count++] = a;
 }
 
+/* The rows that show ground; none in a column where the face does not tell. NULL: out of memory. */
+static uint16_t *take_spans(sim_relevance *relevance, const ff_face *face)
+{
+    unsigned size = face->face_size;
+    uint16_t *first = calloc(2u * size, sizeof *first);
+    if (!first) {
+        relevance->rc = FF_ERR_MEMORY;
+        return NULL;
+    }
+    if (ff_face_columns_decode(face->columns, face->columns_bytes, size, face->row_count, first,
+                               first + size) != FF_OK)
+        memset(first, 0, 2u * size * sizeof *first);
+    for (unsigned i = 0; i < 2u * size; i++) first[i] = (uint16_t)(first[i] + face->top_row);
+    return first;
+}
+
 static void take_answer(sim_relevance *relevance, const ff_message *message, size_t bytes)
 {
     const asked *q = &relevance->asked[ff_message_id(message)];
@@ -100,8 +127,7 @@ static void take_answer(sim_relevance *relevance, const ff_message *message, siz
         memcpy(a.position_wu, q->position_wu, sizeof a.position_wu);
         a.face = face->face;
         a.face_size = face->face_size;
-        a.top_row = face->flags & FF_FACE_EMPTY ? 0 : face->top_row;
-        a.row_count = face->flags & FF_FACE_EMPTY ? 0 : face->row_count;
+        if (!(face->flags & FF_FACE_EMPTY)) a.first = take_spans(relevance, face);
     }
     keep(relevance, a);
 }
@@ -209,8 +235,8 @@ sim_relevance *sim_relevance_create(sys_stream *stream, const ff_terrain_info *i
     sim_relevance *relevance = calloc(1, sizeof *relevance);
     if (!relevance) return NULL;
     relevance->asked = calloc((size_t)UINT16_MAX + 1, sizeof *relevance->asked);
-    if (!relevance->asked) {
-        free(relevance);
+    if (sim_mesh_make(&relevance->mesh, info) != FF_OK || !relevance->asked) {
+        sim_relevance_destroy(relevance);
         return NULL;
     }
     for (size_t i = 0; i < BUCKETS; i++) relevance->bucket[i] = NONE;
@@ -231,7 +257,10 @@ void sim_relevance_destroy(sim_relevance *relevance)
     free(relevance->down.bytes);
     free(relevance->up.bytes);
     free(relevance->asked);
+    for (size_t i = 0; i < relevance->count; i++) free(relevance->answer[i].first);
     free(relevance->answer);
+    sim_mesh_free(&relevance->mesh);
+    sim_cover_free(&relevance->cover);
     free(relevance);
 }
 
@@ -239,7 +268,7 @@ void sim_relevance_destroy(sim_relevance *relevance)
 
 static void mark(sim_relevance *relevance, answer *a)
 {
-    a->drawn |= *relevance->now_us - a->came_us <= SIM_RELEVANCE_US;
+    if (*relevance->now_us - a->came_us <= SIM_RELEVANCE_US) a->drawn = 1;
     a->frame = relevance->frame;
 }
 
@@ -284,48 +313,84 @@ static void mark_image(sim_relevance *relevance, ff_key node)
     if (last) mark(relevance, last);
 }
 
-/* Face of a direction and the row of its whole image, counted from its top. */
-static unsigned face_of(const double d[3], unsigned size, double *row)
+/* 1 while a face of the set in use may still be drawn in time; the others are older. */
+static int is_sought(const answer *a, const sim_relevance_view *view)
 {
-    static const unsigned positive[3] = { FF_FACE_EAST, FF_FACE_NORTH, FF_FACE_UP };
-    static const unsigned negative[3] = { FF_FACE_WEST, FF_FACE_SOUTH, FF_FACE_DOWN };
-    int axis = 0;
-    for (int i = 1; i < 3; i++) axis = fabs(d[i]) > fabs(d[axis]) ? i : axis;
-    /* the top edge of UP looks south, that of DOWN north */
-    double up = axis < 2 ? d[2] : d[2] > 0 ? -d[1] : d[1];
-    *row = (1 - up / fabs(d[axis])) / 2 * size;
-    return d[axis] > 0 ? positive[axis] : negative[axis];
+    return a->kind == FF_KIND_FACE && a->drawn < 1 &&
+           memcmp(a->position_wu, view->panorama_pos_wu, sizeof a->position_wu) == 0;
 }
 
-/* Marks the faces of the set in use that pixel (x, y) shows. */
-static void mark_faces_at(sim_relevance *relevance, const sim_relevance_view *view,
-                          const sim_eye *eye, double x, double y)
+/* 1 when a face has a pixel at a place of the cube, whose size is 1. */
+static int face_shows(const answer *a, const sim_cube_place *at)
 {
-    const double pixel[2] = { x, y };
-    double along[3], row;
-    sim_eye_ray(eye, pixel, along);
+    double row = at->row * a->face_size;
+    if (at->face != a->face || !a->first) return at->face == a->face;
+    unsigned column = at->column > 0 ? (unsigned)(at->column * a->face_size) : 0;
+    if (column >= a->face_size) column = a->face_size - 1;
+    return row >= a->first[column] && row < a->first[a->face_size + column];
+}
+
+/* Counts a pixel of the picture for the faces that have one there. */
+static void count_pixel(sim_relevance *relevance, const sim_relevance_view *view,
+                        const double along[3], int hidden)
+{
+    sim_cube_place at;
+    sim_cube_meet(along, 1, &at);
     for (size_t i = relevance->first_young; i < relevance->count; i++) {
         answer *a = &relevance->answer[i];
-        if (a->kind != FF_KIND_FACE || a->drawn ||
-            memcmp(a->position_wu, view->panorama_pos_wu, sizeof a->position_wu))
-            continue;
-        if (face_of(along, a->face_size, &row) == a->face &&
-            (!a->row_count || (row >= a->top_row && row < a->top_row + a->row_count)))
-            mark(relevance, a);
+        if (!is_sought(a, view) || !face_shows(a, &at)) continue;
+        a->pixels++;
+        a->seen += !hidden;
+    }
+}
+
+/* Begins to count pixels: how many faces are sought. */
+static size_t begin_faces(sim_relevance *relevance, const sim_relevance_view *view)
+{
+    size_t sought = 0;
+    for (size_t i = relevance->first_young; i < relevance->count; i++) {
+        answer *a = &relevance->answer[i];
+        if (!is_sought(a, view)) continue;
+        a->pixels = a->seen = 0;
+        sought++;
+    }
+    return sought;
+}
+
+/* An empty face is drawn where any of it is seen, others by the pixels that are. */
+static void end_faces(sim_relevance *relevance, const sim_relevance_view *view)
+{
+    for (size_t i = relevance->first_young; i < relevance->count; i++) {
+        answer *a = &relevance->answer[i];
+        if (is_sought(a, view) && a->seen)
+            a->drawn = fmax(a->drawn, a->first ? (double)a->seen / a->pixels : 1);
     }
 }
 
 static void mark_faces(sim_relevance *relevance, const sim_relevance_view *view)
 {
     sim_eye eye;
-    int any = 0;
-    for (size_t i = relevance->first_young; i < relevance->count; i++)
-        any |= relevance->answer[i].kind == FF_KIND_FACE && !relevance->answer[i].drawn;
-    if (!any || !view->panorama) return;
-    sim_eye_of(&view->camera, &eye);
-    for (unsigned y = RAY_STEP_PX / 2; y < view->camera.height; y += RAY_STEP_PX)
-        for (unsigned x = RAY_STEP_PX / 2; x < view->camera.width; x += RAY_STEP_PX)
-            mark_faces_at(relevance, view, &eye, x, y);
+    const c3d_camera *camera = &view->camera;
+    if (!view->panorama || *relevance->now_us < relevance->next_look_us ||
+        !begin_faces(relevance, view))
+        return;
+    relevance->next_look_us = *relevance->now_us + LOOK_US;
+    int rc = sim_cover_make(&relevance->cover, &relevance->mesh, camera, RAY_STEP_PX, view->drawn,
+                            view->drawn_count);
+    if (rc != FF_OK) {
+        relevance->rc = rc;
+        return;
+    }
+    sim_eye_of(camera, &eye);
+    const uint32_t *node = relevance->cover.node;
+    for (unsigned y = RAY_STEP_PX / 2; y < camera->height; y += RAY_STEP_PX)
+        for (unsigned x = RAY_STEP_PX / 2; x < camera->width; x += RAY_STEP_PX) {
+            const double pixel[2] = { x + 0.5, y + 0.5 };
+            double along[3];
+            sim_eye_ray(&eye, pixel, along);
+            count_pixel(relevance, view, along, *node++ != 0);
+        }
+    end_faces(relevance, view);
 }
 
 void sim_relevance_frame(sim_relevance *relevance, const sim_relevance_view *view)
@@ -349,8 +414,8 @@ int sim_relevance_get(sim_relevance *relevance, sim_relevance_figures *figures)
         const answer *a = &relevance->answer[relevance->judged_count];
         if (*relevance->now_us - a->came_us <= SIM_RELEVANCE_US) break;
         sum->judged[ff_kind[a->kind].data] += a->bytes;
-        sum->unused[ff_kind[a->kind].data] += a->drawn ? 0 : a->bytes;
-        sum->supporting += !a->drawn && a->supports ? a->bytes : 0;
+        sum->unused[ff_kind[a->kind].data] += (1 - a->drawn) * a->bytes;
+        sum->supporting += a->drawn == 0 && a->supports ? a->bytes : 0;
     }
     double overhead = sum->came[FF_DATA_OVERHEAD], unused = 0;
     sum->judged[FF_DATA_OVERHEAD] = sum->unused[FF_DATA_OVERHEAD] = overhead;

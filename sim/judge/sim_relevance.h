@@ -10,8 +10,10 @@
  *             let a drawn neighbour be as fine as it is (the cut is restricted) are not drawn; they
  *             are told apart as `supporting`.
  *   image     it is the last that has come over a drawn node: images come from coarse to fine.
- *   face      its set is the one in use and a row of it lies in the window; of an empty face: any
- *             direction of it.
+ *   face      its set is the one in use: by the share of its pixels in the window that no drawn
+ *             ground hides, in the frame with the largest share; an empty face wholly, when any
+ *             direction of it is seen. Four times a second every fourth pixel each way is looked
+ *             at.
  * Overhead is all else that came: greetings, pongs, refusals, cancellations and what a cut left
  * incomplete. It counts as never drawn.
  */

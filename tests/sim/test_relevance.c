@@ -53,6 +53,7 @@ static void start(wire *w)
     ff_terrain_info info = pack_fixture_info(6, 2, 2);
     info.texture_log2 = 4;
     info.texture_levels = 3;
+    info.spacing_wu = 256 * FF_WU_PER_METRE; /* ground of 32 km */
     w->stream = (sys_stream){
         .state = w, .send = wire_send, .recv = wire_recv, .reconnect = wire_reconnect
     };
@@ -224,62 +225,160 @@ static void only_the_finest_image_is_drawn(void **state)
     sim_relevance_destroy(w.relevance);
 }
 
-/* Bytes of two faces, of which the window sees those of `row` rows from `top`. */
-static void check_face(enum ff_face_name name, unsigned top, unsigned rows, int32_t taken_wu,
-                       int drawn)
+enum { FACE_SIZE = 256 };
+
+typedef struct face_case {
+    enum ff_face_name name;
+    unsigned top, rows; /* rows 0: an empty face */
+    /* columns from..to - 1 show ground in all rows, others in none */
+    unsigned from, to;
+} face_case;
+
+static size_t face(wire *w, const face_case *of)
 {
-    static wire w;
-    static const uint8_t image_bytes[50], columns[4];
-    start(&w);
+    static const uint8_t image_bytes[50];
+    static uint16_t first[FACE_SIZE], end[FACE_SIZE];
+    static uint8_t columns[4 * FACE_SIZE + 8];
+    for (unsigned i = 0; i < FACE_SIZE; i++) {
+        first[i] = 0;
+        end[i] = (uint16_t)(i >= of->from && i < of->to ? of->rows : 0);
+    }
+    int bytes = ff_face_columns_encode(first, end, FACE_SIZE, columns, sizeof columns);
+    assert_true(bytes > 0);
     ff_message get = { .type = FF_MSG_GET,
                        .kind = FF_KIND_FACE,
                        .u.panorama = { .id = 9,
-                                       .position_wu = { taken_wu, 0, 0 },
+                                       .position_wu = { 500, 0, 0 },
                                        .front_wu = 1,
                                        .back_wu = 2,
-                                       .face_size = 256,
+                                       .face_size = FACE_SIZE,
                                        .quality = 70,
                                        .face_count = 1,
-                                       .face = { (uint8_t)name } } };
-    ff_message face = { .type = FF_MSG_ANSWER,
-                        .kind = FF_KIND_FACE,
-                        .u.face = { .id = 9,
-                                    .face = (uint8_t)name,
-                                    .face_size = 256,
-                                    .top_row = (uint16_t)top,
-                                    .row_count = (uint16_t)rows,
-                                    .columns = columns,
-                                    .columns_bytes = rows ? sizeof columns : 0,
-                                    .image = image_bytes,
-                                    .image_bytes = rows ? sizeof image_bytes : 0,
-                                    .flags = (uint8_t)(rows ? FF_FACE_LAST
-                                                            : FF_FACE_LAST | FF_FACE_EMPTY) } };
-    ask(&w, &get);
-    size_t bytes = put(&w, &face);
+                                       .face = { (uint8_t)of->name } } };
+    ff_message answer = {
+        .type = FF_MSG_ANSWER,
+        .kind = FF_KIND_FACE,
+        .u.face = { .id = 9,
+                    .face = (uint8_t)of->name,
+                    .face_size = FACE_SIZE,
+                    .top_row = (uint16_t)of->top,
+                    .row_count = (uint16_t)of->rows,
+                    .columns = columns,
+                    .columns_bytes = of->rows ? (uint32_t)bytes : 0,
+                    .image = image_bytes,
+                    .image_bytes = of->rows ? sizeof image_bytes : 0,
+                    .flags = (uint8_t)(of->rows ? FF_FACE_LAST : FF_FACE_LAST | FF_FACE_EMPTY) }
+    };
+    ask(w, &get);
+    return put(w, &answer);
+}
+
+/* Draws level ground 32 km wide, 100 m below the viewer: all that lies below the horizon. */
+static void draw_level_ground(wire *w)
+{
+    static const uint16_t heights[81];
+    w->view.camera.pos_wu[2] = 100 * FF_WU_PER_METRE;
+    w->drawn[0] = (ff_drawn){ .key = ff_key_make(0, 0, 0),
+                              .heights = heights,
+                              .cell_wu = 4096 * FF_WU_PER_METRE,
+                              .origin_wu = { -16384 * FF_WU_PER_METRE, -16384 * FF_WU_PER_METRE } };
+    w->view.drawn_count = 1;
+}
+
+/* The share of a face's bytes that counts as drawn. `ground`: level ground is drawn, too;
+ * taken_wu: where the set in use was taken; yaw: where the viewer looks. */
+static double share_of_face(const face_case *of, int ground, int32_t taken_wu, int32_t yaw)
+{
+    static wire w;
+    start(&w);
+    size_t bytes = face(&w, of);
     receive(&w, 1024);
     w.view.panorama = 1;
-    w.view.panorama_pos_wu[0] = 500;
-    draw(&w, 1, 0, NULL);
+    w.view.panorama_pos_wu[0] = taken_wu;
+    w.view.camera.yaw = yaw;
+    w.now_us = 1;
+    if (ground) draw_level_ground(&w);
+    sim_relevance_frame(w.relevance, &w.view);
     sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
-    assert_int_equal(f.judged[FF_DATA_FACES], bytes);
-    assert_int_equal(f.unused[FF_DATA_FACES], drawn ? 0 : bytes);
+    assert_true(f.judged[FF_DATA_FACES] == (double)bytes);
     sim_relevance_destroy(w.relevance);
+    return 1 - f.unused[FF_DATA_FACES] / (double)bytes;
 }
 
 /* 60 degrees across 240 pixels, 75 degrees across 320: rows 128 - 128 * 160 / 207.8 = 29.4 to 226.6
- * of the north face are in the window. */
+ * of the north face are in the window, and its columns 54 to 202. */
 static void faces_in_the_window_are_drawn(void **state)
 {
     (void)state;
-    check_face(FF_FACE_NORTH, 100, 40, 500, 1);
-    check_face(FF_FACE_NORTH, 0, 40, 500, 1);
-    check_face(FF_FACE_NORTH, 0, 29, 500, 0);
-    check_face(FF_FACE_NORTH, 228, 28, 500, 0);
-    check_face(FF_FACE_NORTH, 100, 40, 501, 0); /* a face of another set */
-    /* an empty face in the window counts as drawn: it shows that there is no ground */
-    check_face(FF_FACE_NORTH, 0, 0, 500, 1);
-    check_face(FF_FACE_EAST, 100, 40, 500, 0);
-    check_face(FF_FACE_UP, 0, 0, 500, 0);
+    static const struct {
+        face_case of;
+        int32_t taken_wu;
+        int drawn;
+    } row[] = {
+        { { FF_FACE_NORTH, 100, 40, 0, 256 }, 500, 1 },
+        { { FF_FACE_NORTH, 0, 40, 0, 256 }, 500, 1 },
+        { { FF_FACE_NORTH, 0, 29, 0, 256 }, 500, 0 },
+        { { FF_FACE_NORTH, 228, 28, 0, 256 }, 500, 0 },
+        { { FF_FACE_NORTH, 100, 40, 0, 256 }, 501, 0 }, /* a face of another set */
+        { { FF_FACE_NORTH, 100, 40, 0, 53 }, 500, 0 },
+        { { FF_FACE_NORTH, 100, 40, 60, 61 }, 500, 1 },
+        { { FF_FACE_NORTH, 100, 40, 204, 256 }, 500, 0 },
+        /* an empty face in the window counts as drawn: it shows that there is no ground */
+        { { FF_FACE_NORTH, 0, 0, 0, 0 }, 500, 1 },
+        { { FF_FACE_EAST, 100, 40, 0, 256 }, 500, 0 },
+        { { FF_FACE_UP, 0, 0, 0, 0 }, 500, 0 },
+    };
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+        if (share_of_face(&row[i].of, 0, row[i].taken_wu, 0) != row[i].drawn)
+            fail_msg("case %zu is drawn by %g", i,
+                     share_of_face(&row[i].of, 0, row[i].taken_wu, 0));
+    /* looking 30 degrees to the east, the window begins in the middle of the north face */
+    const face_case west = { FF_FACE_NORTH, 100, 40, 0, 127 },
+                    east = { FF_FACE_NORTH, 100, 40, 129, 256 };
+    assert_true(share_of_face(&west, 0, 500, 65536 / 12) == 0);
+    assert_true(share_of_face(&east, 0, 500, 65536 / 12) == 1);
+}
+
+/* Drawn ground hides what is below the horizon: row 128 of a level face, a little above in truth.
+ */
+static void hidden_faces_are_not_drawn(void **state)
+{
+    (void)state;
+    const face_case above = { FF_FACE_NORTH, 100, 20, 0, 256 },
+                    below = { FF_FACE_NORTH, 132, 20, 0, 256 },
+                    half = { FF_FACE_NORTH, 108, 40, 0, 256 }, none = { FF_FACE_DOWN, 0, 0, 0, 0 };
+    assert_true(share_of_face(&above, 1, 500, 0) == 1);
+    assert_true(share_of_face(&below, 0, 500, 0) == 1);
+    assert_true(share_of_face(&below, 1, 500, 0) == 0);
+    assert_true(fabs(share_of_face(&half, 1, 500, 0) - 0.5) < 0.06);
+    assert_true(share_of_face(&none, 1, 500, 0) == 0);
+}
+
+/* Level ground hides 12 of 40 rows, ground that rises to 3000 m most of them: the face counts by
+ * the frame that shows more of it, whichever comes first. */
+static void a_face_counts_by_its_best_frame(void **state)
+{
+    (void)state;
+    static uint16_t rising[81];
+    for (int i = 72; i < 81; i++) rising[i] = 3000;
+    const face_case most = { FF_FACE_NORTH, 100, 40, 0, 256 };
+    for (int first = 0; first < 2; first++) {
+        static wire w;
+        start(&w);
+        double bytes = (double)face(&w, &most);
+        receive(&w, 1024);
+        w.view.panorama = 1;
+        w.view.panorama_pos_wu[0] = 500;
+        for (int t = 0; t < 2; t++) {
+            w.now_us = t * 1000000;
+            draw_level_ground(&w);
+            if (t != first) w.drawn[0].heights = rising;
+            sim_relevance_frame(w.relevance, &w.view);
+        }
+        double unused = figures(&w, SIM_RELEVANCE_US + 1).unused[FF_DATA_FACES];
+        assert_true(fabs(unused / bytes - 12.0 / 40) < 0.05);
+        sim_relevance_destroy(w.relevance);
+    }
 }
 
 /* Messages that bring no picture, and those that a cut leaves in pieces. */
@@ -316,6 +415,8 @@ int main(void)
         cmocka_unit_test(what_is_drawn_too_late_is_not_relevant),
         cmocka_unit_test(only_the_finest_image_is_drawn),
         cmocka_unit_test(faces_in_the_window_are_drawn),
+        cmocka_unit_test(hidden_faces_are_not_drawn),
+        cmocka_unit_test(a_face_counts_by_its_best_frame),
         cmocka_unit_test(messages_without_picture_are_overhead),
         cmocka_unit_test(a_supporting_node_is_counted_apart),
     };

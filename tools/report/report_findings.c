@@ -271,6 +271,7 @@ void report_findings(FILE *out, const report_content *content, int html)
     report_table_text(
         out, style,
         "The share of received bytes that a frame draws within 5 s of their arrival, since the start. A drawn node draws all "
-        "it is built on; nodes out of view that only let a drawn one beside them be so fine are not drawn, but told apart.");
+        "it is built on; nodes out of view that only let a drawn one beside them be so fine are not drawn, but told apart. "
+        "A panorama's face is drawn by the share of its pixels in the window that near ground does not hide.");
     put_relevance(out, style, content);
 }
