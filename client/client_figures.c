@@ -1,6 +1,7 @@
 /* What can be read of a client: its figures (ff_figures.h) and what its pools hold (ff_budget.h).
  */
 #include "ff_client_local.h"
+#include "terrain/ff_estimate.h"
 #include "../protocol/ff_assert.h"
 
 #include <string.h>
@@ -66,6 +67,20 @@ void ff_client_get_stats(const ff_client *client, ff_client_stats *stats)
     FF_CLIENT_FIGURES(FIELD, FIELD, PART)
 #undef FIELD
 #undef PART
+}
+
+uint32_t ff_client_error_px_q8(const ff_client *client)
+{
+    const ff_panorama *panorama = &client->panorama;
+    ff_beyond beyond = { 0 };
+    if (!client->tree) return 0;
+    if (panorama->shown >= 0 && !client->all_client) {
+        beyond.face_size = panorama->face_size;
+        beyond.back_wu = panorama->desc.server_back_wu;
+        memcpy(beyond.position_wu, panorama->set[panorama->shown].position_wu,
+               sizeof beyond.position_wu);
+    }
+    return ff_estimate_p95_q8(client->tree, &beyond);
 }
 
 /* ---- pools ---- */

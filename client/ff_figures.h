@@ -54,7 +54,6 @@
     PART(share_percent, balance.share_percent) \
     PART(fidelity_percent, balance.fidelity_percent) \
     PART(balance_moves, balance.moves) \
-    PART(tree_err_px_q8, tree.error_px_q8) \
     TOLD(size_t, memory_used, from->client->arena.used, "of the block") \
     TOLD(size_t, memory_bytes, from->client->desc.memory_bytes, "the block's") \
     KEPT(uint8_t, have_terrain, from->client->have_terrain, "WELCOME has come") \

@@ -185,10 +185,8 @@ static uint32_t triangles_of(const ff_tree *tree, const ff_drawn *drawn)
     return count;
 }
 
-static void count_drawn(ff_tree *tree, const ff_drawn *drawn, uint64_t distance)
+static void count_drawn(ff_tree *tree, const ff_drawn *drawn)
 {
-    uint32_t error_q8 = ff_projected_error_q8(tree, drawn->node, distance);
-    if (error_q8 > tree->stats.error_px_q8) tree->stats.error_px_q8 = error_q8;
     tree->stats.triangles += triangles_of(tree, drawn);
     tree->stats.stitched += drawn->coarser != 0;
     FF_ASSERT(tree->stats.stitched <= tree->drawn_count);
@@ -210,12 +208,12 @@ static void list_cut(ff_tree *tree)
     FF_ASSERT(tree->cut_count <= tree->node_count - tree->free_count);
     ff_sort_keys(tree->sort, seen);
     tree->drawn_count = seen;
-    tree->stats.triangles = tree->stats.stitched = tree->stats.error_px_q8 = 0;
+    tree->stats.triangles = tree->stats.stitched = 0;
     for (uint32_t i = 0; i < seen; i++) {
         uint32_t slot = (uint32_t)tree->sort[i] & (FF_NODES_MAX - 1);
         FF_ASSERT(slot < tree->node_count && (i == 0 || tree->sort[i - 1] < tree->sort[i]));
         fill_drawn(tree, slot, ff_coarser_mask(tree, &tree->node[slot]), &tree->drawn[i]);
-        count_drawn(tree, &tree->drawn[i], tree->sort[i] >> FF_SLOT_BITS);
+        count_drawn(tree, &tree->drawn[i]);
     }
     for (uint32_t i = 0; i < unseen; i++)
         fill_drawn(tree, tree->order[i], FF_COARSER_UNKNOWN, &tree->drawn[seen + i]);

@@ -85,8 +85,6 @@ typedef struct ff_tree_stats {
     uint32_t selects, selects_skipped;
     /* nodes of the last selection near enough to split but exact already: not asked for */
     uint32_t flat;
-    /* the tree's own estimate: largest projected geometric error of a drawn node */
-    uint32_t error_px_q8;
 } ff_tree_stats;
 
 typedef struct ff_tree_desc {

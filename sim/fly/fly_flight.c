@@ -175,6 +175,7 @@ static int read_sources(fly_flight *flight, double t_s, fly_sources *from)
     from->geometry_hash = ff_client_geometry_hash(client);
     from->request_hash = ff_client_request_hash(client);
     ff_client_get_stats(client, &from->client);
+    from->estimate_px = ff_client_error_px_q8(client) / 256.0;
     judge_nothing(from);
     if (flight->world->auditor && read_audit(flight, from)) return -1;
     return flight->world->relevance ? read_relevance(flight, from) : 0;

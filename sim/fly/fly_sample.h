@@ -44,7 +44,7 @@
     X(skyline_px_p95, "%.3f", MEAN, from->audit.skyline_px_p95) \
     X(skyline_px_max, "%.3f", MOST, from->audit.skyline_px_max) \
     X(truth_error_m, "%.3f", MEAN, from->truth_error_m) \
-    X(tree_err_px, "%.3f", MEAN, from->client.tree.error_px_q8 / 256.0) \
+    X(tree_err_px, "%.3f", MEAN, from->estimate_px) \
     X(stitched, "%.0f", MEAN, from->client.tree.stitched) \
     X(queued, "%.0f", MEAN, from->client.queued) \
     X(panorama_faces, "%.0f", TOTAL, from->client.panorama_faces) \
@@ -92,6 +92,7 @@ typedef struct fly_sources {
     double t_s;
     c3d_camera camera;
     ff_client_stats client;
+    double estimate_px; /* the client's own of its err_px_p95 */
     sim_audit_result audit;
     double panorama_px_percent; /* of the pixels that truly show ground */
     sim_picture_figures picture;

@@ -41,7 +41,8 @@ static unsigned collect(const handheld *device, figure *list)
 #undef TOLD
 #undef KEPT
 #undef PART
-            { "mapping_at", (uint64_t)(uintptr_t)device->mapping.bytes },
+            { "tree_err_px_q8", ff_client_error_px_q8(device->client) },
+        { "mapping_at", (uint64_t)(uintptr_t)device->mapping.bytes },
         { "mapping_bytes", device->mapping.size },
         { "pixels_at", (uint64_t)(uintptr_t)pixels },
         { "pixels_bytes", pixels_bytes },

@@ -3,16 +3,14 @@
 #include "../../common3d/c3d_text.h"
 #include "view_app.h"
 
-#include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-#define MARGIN_PX    4
-#define SHADE        150 /* opacity of the ground behind the text, of 255 */
-#define TEXT_COLOUR  0xffffffffu
-#define ERROR_PX_MAX 999
-#define LARGE_PX     900 /* windows this high get text twice as large */
+#define MARGIN_PX   4
+#define SHADE       150 /* opacity of the ground behind the text, of 255 */
+#define TEXT_COLOUR 0xffffffffu
+#define LARGE_PX    900 /* windows this high get text twice as large */
 
 static const char help[] = "w s a d   fly (or up, down)\n"
                            "left right  turn\n"
@@ -67,11 +65,7 @@ static void put_quality(view_hud *hud, const view_app *app, const ff_client_stat
         put(hud, "px %.2f", stats->quality.error_px_q8 / 256.0);
     else
         put(hud, "c %.2f depth %u", stats->quality.c_q8 / 256.0, stats->quality.depth_max);
-    /* With the eye inside a node's box, the bound of its error is endless. */
-    put(hud,
-        stats->tree.error_px_q8 < ERROR_PX_MAX * 256 ? "  error %.1f px\n"
-                                                     : "  error over %.0f px\n",
-        fmin(stats->tree.error_px_q8 / 256.0, ERROR_PX_MAX));
+    put(hud, "  error about %.1f px\n", ff_client_error_px_q8(app->client) / 256.0);
     if (!app->panorama.enabled) {
         put(hud, "panorama off\n");
         return;

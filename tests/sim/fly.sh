@@ -149,6 +149,31 @@ result $? "--diff without pictures is an error"
     [ "$(cat "$work/error")" = "farfield-fly: --reference needs --png" ]
 result $? "--reference without --png is an error"
 
+# ---- the client's own estimate, against the auditor ----
+estimated="--backend none --link umts --seconds 20 --settle 4 --sample 2 --audit on --audit-step 10 --check off"
+for ground in hills fractal plateaus; do
+    python3 tests/rig/hills.py 257:$ground "$work/wide.raw"
+    "$bin/farfield-bake" "$work/wide.raw" --raw 257x257 --spacing 100 --quiet -o "$work/wide.ffp"
+    for height in 100 600 2000 12000; do
+        flies "estimate-$ground-$height-low" --pack "$work/wide.ffp" $estimated --height $height --panorama off
+        flies "estimate-$ground-$height-fine" --pack "$work/wide.ffp" $estimated --height $height --panorama off --quality px:4
+        flies "estimate-$ground-$height-finest" --pack "$work/wide.ffp" $estimated --height $height --panorama off --quality px:1
+    done
+done
+python3 - "$work"/estimate-*.csv <<'END'
+import csv, sys
+near = rows = 0
+for name in sys.argv[1:]:
+    for row in csv.DictReader(open(name)):
+        if float(row["t_s"]) >= 4 and row["err_px_p95"] != "nan":
+            ratio = max(float(row["tree_err_px"]), 0.1) / max(float(row["err_px_p95"]), 0.1)
+            rows += 1
+            near += 0.5 <= ratio <= 2
+print("# the estimate is near in %d of %d rows" % (near, rows))
+sys.exit(0 if rows > 300 and near >= 0.85 * rows else 1)
+END
+result $? "over three kinds of ground the client's estimate is within a factor of two of the judged p95 (from 0.1 px on) in 85 rows of 100"
+
 # ---- relevance ----
 flies still $usual --backend none --speed 0 --seconds 20
 is '0 < s["relevance_percent"] < 100 and r[-1]["unused_images"] == 0 and r[-1]["unused_heights"] == r[-1]["unused_supporting"] and abs(r[-1]["bytes_heights"] + r[-1]["bytes_images"] + r[-1]["bytes_faces"] + r[-1]["bytes_overhead"] - r[-1]["bytes_down"]) < 1' \
