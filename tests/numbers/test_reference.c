@@ -343,7 +343,7 @@ static void random_node(sys_random *random, struct ff_tree *tree, ff_node *node)
     tree->view.camera = ref_ordinary_camera(random);
     tree->info = (ff_terrain_info){ .node_log2 = 3,
                                     .tile_log2 = 10,
-                                    .tiles_x = 64,
+                                    .tiles_x = 64, /* the node lies well inside */
                                     .tiles_y = 64,
                                     .samples_x = (64 << 10) + 1,
                                     .samples_y = (64 << 10) + 1,

@@ -398,7 +398,8 @@ static void lengths_and_headers(void **state)
                   14, FF_ERR_FORMAT);
     /* tile 2^28 */
     assert_decode("\x02\x09\x01\x00\x01\x80\x80\x80\x80\x01\x00", 11, FF_ERR_RANGE);
-    assert_decode("\x41\x04\x05\x00\x00\x00", 6, FF_ERR_VERSION);
+    assert_decode("\x41\x04\x03\x00\x00\x00", 6, FF_ERR_VERSION); /* older */
+    assert_decode("\x41\x04\x05\x00\x00\x00", 6, FF_ERR_VERSION); /* newer */
 }
 
 static void ranges_hold_both_ways(void **state)
