@@ -90,6 +90,12 @@ static void filled_ground_is_told(void **state)
             rig_step(&rig, 50000);
         }
         assert_int_equal(ff_client_filled(rig.client, 45 * 32 * METRE, 25 * 32 * METRE), 1);
+        /* and when nodes above are drawn again */
+        rig.desc.quality.c_q8 = 64;
+        ff_client_set_quality(rig.client, &rig.desc.quality);
+        assert_true(rig_settle(&rig, 800));
+        assert_int_equal(ff_client_filled(rig.client, 45 * 32 * METRE, 25 * 32 * METRE), 1);
+        assert_int_equal(ff_client_filled(rig.client, 20 * 32 * METRE, 5 * 32 * METRE), 1);
         assert_int_equal(ff_client_filled(rig.client, -1, 25 * 32 * METRE), 0);
         rig_close(&rig);
     }

@@ -287,23 +287,23 @@ static void marks_follow_the_heights(void **state)
     bake_grid ground, marks = BAKE_GRID_CLOSED, filled;
     float row[5];
     uint8_t marked[9];
-    assert_int_equal(bake_grid_open(&ground, 5, 3, sizeof(float)), 0);
-    for (uint32_t j = 0; j < 3; j++) {
-        for (uint32_t i = 0; i < 5; i++) row[i] = i == 2 && j == 0 ? NAN : 7;
+    assert_int_equal(bake_grid_open(&ground, 5, 4, sizeof(float)), 0);
+    for (uint32_t j = 0; j < 4; j++) {
+        for (uint32_t i = 0; i < 5; i++) row[i] = i == 2 && j == 1 ? NAN : 7;
         assert_int_equal(bake_grid_write(&ground, j, 0, 5, row), 0);
     }
     assert_int_equal(bake_voids_mark(&ground, &marks), 0);
     for (int north_up = 0; north_up < 2; north_up++)
         for (uint32_t densify = 1; densify <= 2; densify++) {
-            uint32_t width = 4 * densify + 1, height = 2 * densify + 1;
+            uint32_t width = 4 * densify + 1, height = 3 * densify + 1;
             assert_int_equal(bake_voids_finish(&marks, north_up, densify, &filled), 0);
             assert_true(filled.width == width && filled.height == height);
             for (uint32_t j = 0; j < height; j++) {
                 uint32_t from_void = north_up ? height - 1 - j : j;
                 assert_int_equal(bake_grid_read(&filled, j, 0, width, marked), 0);
                 for (uint32_t i = 0; i < width; i++)
-                    assert_int_equal(marked[i],
-                                     from_void < densify && i > densify && i < 3 * densify);
+                    assert_int_equal(marked[i], from_void > 0 && from_void < 2 * densify &&
+                                                    i > densify && i < 3 * densify);
             }
             bake_grid_close(&filled);
         }
