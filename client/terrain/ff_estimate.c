@@ -153,7 +153,7 @@ static unsigned sector_of(const square *s)
 static int32_t slope_q12(const square *s)
 {
     int64_t across = about_length(s->middle[0], s->middle[1], 0);
-    int64_t slope = ((int64_t)s->middle[2] << 12) / (across + 1);
+    int64_t slope = s->middle[2] * INT64_C(4096) / (across + 1);
     return slope > INT32_MAX ? INT32_MAX : slope < -INT32_MAX ? -INT32_MAX : (int32_t)slope;
 }
 
@@ -384,7 +384,7 @@ static int64_t panorama_error_q8(const gaze *at, const square *s, const ff_beyon
     }
     if (eye[2] <= 0) return INT32_MAX;
     for (unsigned i = 0; i < 2; i++)
-        shift_q14[i] = (eye[i] << 14) / eye[2] - ((s->eye[i] * (s->inverse_q40 >> 10)) >> 16);
+        shift_q14[i] = (eye[i] * 16384) / eye[2] - ((s->eye[i] * (s->inverse_q40 >> 10)) >> 16);
     int64_t parallax_q8 = about_length(shift_q14[0], shift_q14[1], 0) * camera->focal_q8 >> 14,
             texel_q8 = (int64_t)camera->focal_q8 * 6 / (5 * beyond->face_size),
             slant_q8 = (s->away * (s->inverse_q40 >> 16)) >> 16;
