@@ -119,7 +119,7 @@ fi
 # ---- the skyline, and by which truth ----
 printf 't_s,triangles,nodes_drawn,nodes_held,bytes_down,bytes_up,requests,panoramas,err_px_rms,skyline_px_rms,truth_error_m\n0,1,1,1,1,1,1,0,9,9,4\n20,1,1,1,1,1,1,0,1,1.5,4\n21,1,1,1,1,1,1,0,1,2.5,4\n' >"$work/judged.csv"
 "$report" --json "$work/judged.csv" -o "$work/judged" >"$work/said" 2>"$work/error"
-grep -q '"skyline_px_rms_mean": 2, "truth_error_m": 4}' "$work/said" && grep -q '| 1.00 | – | – | 2.00 | 4.00 |$' "$work/judged/REPORT.md" &&
+grep -q '"skyline_px_rms_mean": 2, "truth_error_m": 4}' "$work/said" && grep -q '| 1.00 | 2.00 | 4.00 |$' "$work/judged/REPORT.md" &&
     grep -q 'judged by ground within m of its source' "$work/judged/index.html"
 result $? "the skyline's error, and how true the truth is"
 
