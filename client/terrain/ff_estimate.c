@@ -20,6 +20,10 @@
 #define ROUGHEST_LOG_Q8  256
 #define SMOOTHEST_LOG_Q8 (-425)
 #define LEVEL_MIN        256 /* level ground is not looked at in smaller squares: 16 m */
+/* what keeps products within 64 bits */
+#define EXTENT_MAX_Q6 (1 << 22)
+#define SLOPE_MAX_Q12 (1 << 24)
+#define SHIFT_MAX_Q14 (1 << 26)
 /* Far ground has slopes that face the viewer: it is seen as if it were tilted by so much. */
 #define FAR_TILT 50
 
@@ -50,6 +54,11 @@ enum sight { UNSEEN, TOO_WIDE, SEEN };
 /* ---- geometry ---- */
 
 static int64_t size_of(int64_t value) { return value < 0 ? -value : value; }
+
+static int64_t within(int64_t value, int64_t most)
+{
+    return value > most ? most : value < -most ? -most : value;
+}
 
 /* Length of a vector, at most 8 % off. */
 static int64_t about_length(int64_t x, int64_t y, int64_t z)
@@ -109,10 +118,11 @@ static int64_t pixels_q8(const gaze *at, const square *s, int64_t length)
     return (by_depth_q20 * at->tree->view.camera.focal_q8) >> 20;
 }
 
-/* The same of a length of either sign, pixels Q6. */
+/* The same of a length of either sign, pixels Q6; no longer than a picture may be many times. */
 static int64_t extent_q6(const gaze *at, const square *s, int64_t length)
 {
-    return length < 0 ? -(pixels_q8(at, s, -length) >> 2) : pixels_q8(at, s, length) >> 2;
+    int64_t pixels_q6 = pixels_q8(at, s, size_of(length)) >> 2;
+    return within(length < 0 ? -pixels_q6 : pixels_q6, EXTENT_MAX_Q6);
 }
 
 /* How many pixels the square covers, Q4: half the product of its diagonals as seen; at least what
@@ -153,8 +163,8 @@ static unsigned sector_of(const square *s)
 static int32_t slope_q12(const square *s)
 {
     int64_t across = about_length(s->middle[0], s->middle[1], 0);
-    int64_t slope = s->middle[2] * INT64_C(4096) / (across + 1);
-    return slope > INT32_MAX ? INT32_MAX : slope < -INT32_MAX ? -INT32_MAX : (int32_t)slope;
+    int64_t slope = (int64_t)s->middle[2] * 4096 / (across + 1);
+    return (int32_t)within(slope, SLOPE_MAX_Q12);
 }
 
 /* ---- drawn ground ---- */
@@ -384,7 +394,8 @@ static int64_t panorama_error_q8(const gaze *at, const square *s, const ff_beyon
     }
     if (eye[2] <= 0) return INT32_MAX;
     for (unsigned i = 0; i < 2; i++)
-        shift_q14[i] = (eye[i] * 16384) / eye[2] - ((s->eye[i] * (s->inverse_q40 >> 10)) >> 16);
+        shift_q14[i] = within(eye[i] * 16384 / eye[2], SHIFT_MAX_Q14) -
+                       ((s->eye[i] * (s->inverse_q40 >> 10)) >> 16);
     int64_t parallax_q8 = about_length(shift_q14[0], shift_q14[1], 0) * camera->focal_q8 >> 14,
             texel_q8 = (int64_t)camera->focal_q8 * 6 / (5 * beyond->face_size),
             slant_q8 = (s->away * (s->inverse_q40 >> 16)) >> 16;

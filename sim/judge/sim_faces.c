@@ -11,9 +11,12 @@ void sim_faces_use(sim_faces *faces, const sim_panorama *panorama)
     faces->known = 0;
 }
 
-/* Does the ray through a texel's middle meet ground between front and back? */
-static int texel_shows(const sim_faces *faces, enum ff_face_name face, unsigned column,
-                       unsigned row)
+enum met { NOTHING, GROUND, INSIDE };
+
+/* What the ray through a texel's middle meets between front and back. INSIDE: it begins below
+ * ground, of which the server has cut off what is nearer, and sees nothing. */
+static enum met texel_meets(const sim_faces *faces, enum ff_face_name face, unsigned column,
+                            unsigned row)
 {
     const sim_panorama *of = &faces->of;
     const sim_cube_place at = { .face = face, .column = column + 0.5, .row = row + 0.5 };
@@ -27,35 +30,48 @@ static int texel_shows(const sim_faces *faces, enum ff_face_name face, unsigned 
     double drop_m = sim_ground_drop_m(faces->ground, front_m * along[0], front_m * along[1]);
     from[2] += drop_m;
     if (front_m > 0) along[2] += 2 * drop_m / front_m;
-    return sim_ground_cast(faces->ground, from, along,
-                           ((double)of->back_wu - of->front_wu) / FF_WU_PER_METRE, &t);
+    if (!sim_ground_cast(faces->ground, from, along,
+                         ((double)of->back_wu - of->front_wu) / FF_WU_PER_METRE, &t))
+        return NOTHING;
+    return t > 0 ? GROUND : INSIDE;
 }
 
-/* First row with ground in a column of a level face, sought from a row near it. All rows below it
- * have ground: they look at the same places, and lower. */
+/* The same, looked for from the top: below ground that ends there may be nothing. */
+static unsigned first_row_outside(const sim_faces *faces, enum ff_face_name face, unsigned column)
+{
+    unsigned row = 0;
+    while (row < faces->of.face_size && texel_meets(faces, face, column, row) != GROUND) row++;
+    return row;
+}
+
+/* First row with ground in a column of a level face, sought from a row near it. From over the
+ * ground all rows below it meet ground: they look at the same places, and lower. */
 static unsigned first_row(const sim_faces *faces, enum ff_face_name face, unsigned column,
                           unsigned near)
 {
     unsigned size = faces->of.face_size, stride = 1;
     int sky = -1, ground = (int)size, row = (int)near;
     while (row > sky && row < ground) {
-        int shows = texel_shows(faces, face, column, (unsigned)row);
+        int shows = texel_meets(faces, face, column, (unsigned)row) != NOTHING;
         *(shows ? &ground : &sky) = row;
         row += (int)(shows ? -stride : stride);
         stride *= 2;
     }
     while (ground - sky > 1) {
         row = (sky + ground) / 2;
-        *(texel_shows(faces, face, column, (unsigned)row) ? &ground : &sky) = row;
+        *(texel_meets(faces, face, column, (unsigned)row) ? &ground : &sky) = row;
     }
     return (unsigned)ground;
 }
 
 static void find_skyline(sim_faces *faces, enum ff_face_name face)
 {
+    const int32_t *at_wu = faces->of.pos_wu;
+    int over = sim_ground_has(faces->ground, (double)at_wu[0] / FF_WU_PER_METRE,
+                              (double)at_wu[1] / FF_WU_PER_METRE);
     unsigned near = faces->of.face_size / 2;
     for (unsigned column = 0; column < faces->of.face_size; column++) {
-        near = first_row(faces, face, column, near);
+        near = over ? first_row(faces, face, column, near) : first_row_outside(faces, face, column);
         faces->top[face][column] = (uint16_t)near;
         if (near == faces->of.face_size) near--;
     }
@@ -70,7 +86,7 @@ int sim_faces_show(sim_faces *faces, const double direction[3])
     unsigned column = (unsigned)fmin(fmax(floor(at.column), 0), last),
              row = (unsigned)fmin(fmax(floor(at.row), 0), last);
     if (at.face == FF_FACE_UP || at.face == FF_FACE_DOWN)
-        return texel_shows(faces, at.face, column, row);
+        return texel_meets(faces, at.face, column, row) == GROUND;
     if (!(faces->known >> at.face & 1u)) find_skyline(faces, at.face);
-    return row >= faces->top[at.face][column];
+    return row >= faces->top[at.face][column] && texel_meets(faces, at.face, column, row) == GROUND;
 }

@@ -1,8 +1,8 @@
 /* Which texels of a panorama's faces show ground, from the whole true ground: a texel does when the
  * ray from O through its middle meets ground between the panorama's front and back. As the server
- * draws, but for its own level of detail, which is within a texel. What lies below ground in a
- * level face shows ground, too: the skyline of such a face is one row for each of its columns, kept
- * until another panorama is asked for. */
+ * draws, but for its own level of detail, which is within a texel. The skyline of a level face is
+ * one row for each of its columns, kept until another panorama is asked for; texels below it are
+ * looked at one by one: the ground ends below, too, where nearer ground begins or there is none. */
 #ifndef SIM_FACES_H
 #define SIM_FACES_H
 

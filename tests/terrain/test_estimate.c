@@ -108,11 +108,19 @@ static void coarse_ground_near_the_eye_has_an_end(void **state)
     fixture_tree(&fx, 400, 64);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     quality.depth_max = 1;
-    for (int32_t z_m = -100; z_m <= 70000; z_m += 10000) {
-        ff_view view = fixture_view(1900, 600, z_m, 0, -10);
-        fixture_settle(&fx, &view, &quality, 100);
-        assert_true(estimate(&fx) <= 256 * 440);
-    }
+    static const int32_t focal_q8[] = { 1, 256, 208 * 256, 140000 * 256, INT32_MAX };
+    const ff_beyond beyond = { .face_size = 1,
+                               .position_wu = { INT32_MAX, INT32_MIN, 0 },
+                               .back_wu = INT32_MAX };
+    for (int32_t z_m = -100; z_m <= 70000; z_m += 10000)
+        for (unsigned i = 0; i < sizeof focal_q8 / sizeof *focal_q8; i++)
+            for (int32_t pitch = -90; pitch <= 90; pitch += 45) {
+                ff_view view = fixture_view(1900, 600, z_m, 0, pitch);
+                view.camera.focal_q8 = focal_q8[i];
+                fixture_settle(&fx, &view, &quality, 100);
+                assert_true(estimate(&fx) <= 256 * 440);
+                assert_true(ff_estimate_p95_q8(fx.tree, &beyond) <= 256 * 440);
+            }
     fixture_free(&fx);
 }
 
