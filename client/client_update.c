@@ -214,11 +214,11 @@ static void fit_planes(const ff_client *client, c3d_camera *camera)
 static void set_fog(const ff_client *client, c3d_frame *frame)
 {
     const ff_view *view = &client->last_view;
-    int32_t horizon_wu = ff_shape_horizon_wu(&client->info, &view->frame, view->centre_wu),
-            sight_wu = ff_client_quality(client).view_wu;
+    int32_t sight_wu = ff_client_quality(client).view_wu;
     if (client->panorama.shown >= 0 || (client->show & FF_SHOW_NO_FOG))
-        return;                         /* the join with the panorama must not show */
-    if (sight_wu >= horizon_wu) return; /* all is drawn that can be seen: nothing to hide */
+        return; /* the join with the panorama must not show */
+    if (sight_wu >= ff_shape_horizon_wu(&client->info, &view->frame, view->centre_wu))
+        return; /* all is drawn that can be seen: nothing to hide */
     FF_ASSERT(sight_wu > 0);
     frame->fog_start_wu = sight_wu / 2;
     frame->fog_end_wu = sight_wu;

@@ -152,10 +152,12 @@ static void place_vertices(sim_cover *cover, const sim_mesh *mesh, const sim_eye
                            const ff_drawn *drawn)
 {
     uint32_t side = ff_node_side(&mesh->info);
+    double last[2];
+    sim_place_last(&mesh->info, drawn, last);
     for (uint32_t i = 0; i < side * side; i++) {
         sim_vertex *point = &cover->point[i];
         double cell[2], way[3];
-        sim_mesh_vertex_cell(mesh, drawn, i, cell);
+        sim_mesh_vertex_cell(mesh, last, i, cell);
         sim_place_of_cell(drawn, cell, sim_mesh_vertex_m(mesh, drawn, i), way);
         for (int k = 0; k < 3; k++) way[k] -= e->pos_m[k];
         way[2] -= mesh->curve_per_m * (way[0] * way[0] + way[1] * way[1]);

@@ -45,21 +45,19 @@ double sim_mesh_vertex_m(const sim_mesh *mesh, const ff_drawn *drawn, uint32_t v
            (double)mesh->info.hscale_q24 / (1 << 24) * drawn->heights[vertex];
 }
 
-void sim_mesh_vertex_cell(const sim_mesh *mesh, const ff_drawn *drawn, uint32_t vertex,
+void sim_mesh_vertex_cell(const sim_mesh *mesh, const double last[2], uint32_t vertex,
                           double cell[2])
 {
     uint32_t side = ff_node_side(&mesh->info);
-    double last[2];
-    sim_place_last(&mesh->info, drawn, last);
     cell[0] = fmin(vertex % side, last[0]);
     cell[1] = fmin(vertex / side, last[1]);
 }
 
-static int triangle_height(const sim_mesh *mesh, const ff_drawn *drawn, const uint16_t vertex[3],
-                           const double cell[2], double *z_m)
+static int triangle_height(const sim_mesh *mesh, const ff_drawn *drawn, const double last[2],
+                           const uint16_t vertex[3], const double cell[2], double *z_m)
 {
     double at[3][2], z[3], x = cell[0], y = cell[1];
-    for (int i = 0; i < 3; i++) sim_mesh_vertex_cell(mesh, drawn, vertex[i], at[i]);
+    for (int i = 0; i < 3; i++) sim_mesh_vertex_cell(mesh, last, vertex[i], at[i]);
     double area = (at[1][0] - at[0][0]) * (at[2][1] - at[0][1]) -
                   (at[2][0] - at[0][0]) * (at[1][1] - at[0][1]);
     if (area == 0) return 0; /* of padding */
@@ -77,10 +75,12 @@ int sim_mesh_height(const sim_mesh *mesh, const ff_drawn *drawn, const double ce
 {
     uint8_t strip[5];
     unsigned count = ff_strips_for(drawn->coarser, strip);
+    double last[2];
+    sim_place_last(&mesh->info, drawn, last);
     for (unsigned i = 0; i < count; i++) {
         const sim_triangles *list = &mesh->strip[strip[i]];
         for (uint32_t j = 0; j < list->count; j++)
-            if (triangle_height(mesh, drawn, list->vertex[j], cell, z_m)) return 1;
+            if (triangle_height(mesh, drawn, last, list->vertex[j], cell, z_m)) return 1;
     }
     return 0;
 }

@@ -20,9 +20,9 @@ typedef struct sim_mesh {
 int sim_mesh_make(sim_mesh *mesh, const ff_terrain_info *info);
 void sim_mesh_free(sim_mesh *mesh);
 
-/* Where a vertex of a drawn node lies, in cells: what is beyond the terrain's last sample is drawn
- * there. */
-void sim_mesh_vertex_cell(const sim_mesh *mesh, const ff_drawn *drawn, uint32_t vertex,
+/* Where a vertex of a drawn node lies, in cells, when the node's ground ends at `last`
+ * (sim_place_last): what is beyond is drawn there. */
+void sim_mesh_vertex_cell(const sim_mesh *mesh, const double last[2], uint32_t vertex,
                           double cell[2]);
 /* Height of a vertex of a drawn node, metres. */
 double sim_mesh_vertex_m(const sim_mesh *mesh, const ff_drawn *drawn, uint32_t vertex);

@@ -5,8 +5,9 @@ unnoticed or is found by something else is named. Prints TAP lines."""
 import os
 import re
 import shutil
-import subprocess
 import sys
+
+from tree_copy import copy_tree, run
 
 WORK = "build/tests/bounds"
 MUST_STOP = 15
@@ -36,27 +37,6 @@ BREAKS = [
     ("client/panorama/ff_panorama_join.c", "for (int i = 0; i <= PATCHES; i++) {", "for (int i = 0; i <= PATCHES + 1; i++) {", "patches of a face", ""),
     ("client/ask/ff_request.c", "counts->in_flight--;", "counts->in_flight -= 2;", "requests in flight are counted one by one", ""),
 ]
-
-
-def run(command, where):
-    try:
-        return subprocess.run(command, shell=True, cwd=where, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                              errors="replace", timeout=120)
-    except subprocess.TimeoutExpired:
-        return subprocess.CompletedProcess(command, 124, "runs without end", "")
-
-
-def copy_tree(where):
-    """Tracked files and what is built of them, with their times: the copy builds only what a break touches."""
-    shutil.rmtree(where, ignore_errors=True)
-    for name in subprocess.check_output(["git", "ls-files"], text=True).split("\n"):
-        if name and os.path.exists(name):
-            os.makedirs(os.path.dirname(os.path.join(where, name)), exist_ok=True)
-            shutil.copy2(name, os.path.join(where, name))
-    os.makedirs(where + "/build")
-    for part in ("obj", "lib", ".deps"):
-        if os.path.exists("build/" + part):
-            run("cp -a %s %s" % (os.path.abspath("build/" + part), os.path.abspath(where + "/build/")), ".")
 
 
 def what_stops(where, name, old, new, runs):

@@ -3,8 +3,9 @@
 in, nothing else is touched; the copy is built and the change is tried. Prints TAP lines with the files and lines each change took."""
 import os
 import shutil
-import subprocess
 import sys
+
+from tree_copy import copy_tree, run
 
 WORK = "build/tests/newcomer"
 GRID = "--raw 65x65 --spacing 30 --tile-log2 5 --quiet"
@@ -181,24 +182,6 @@ static void show_dark(const ff_terrain_view *view, const ff_drawn *drawn, const 
      [("build/bin/farfield-fly --help", "--dark-mesh"), ("build/bin/farfield-view --help", "--dark-mesh"),
       ("build/bin/farfield-fly --pack hills.ffp --link lan --seconds 2 --settle 5 --backend soft --json --dark-mesh", "!PLAIN_HASH")]),
 ]
-
-
-def run(command, where):
-    os.environ.pop("CMOCKA_MESSAGE_OUTPUT", None)  # run.sh asks for TAP: the words below are cmocka's own
-    return subprocess.run(command, shell=True, cwd=where, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-
-
-def copy_tree(where):
-    """Tracked files and what is built of them, with their times: the copy builds only what a change touches."""
-    shutil.rmtree(where, ignore_errors=True)
-    for name in subprocess.check_output(["git", "ls-files"], text=True).split("\n"):
-        if name and os.path.exists(name):
-            os.makedirs(os.path.dirname(os.path.join(where, name)), exist_ok=True)
-            shutil.copy2(name, os.path.join(where, name))
-    os.makedirs(where + "/build")
-    for part in ("obj", "lib", ".deps"):
-        if os.path.exists("build/" + part):
-            run("cp -a %s %s" % (os.path.abspath("build/" + part), os.path.abspath(where + "/build/")), ".")
 
 
 def insert(where, path, anchor, text):
