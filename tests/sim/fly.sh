@@ -149,6 +149,18 @@ result $? "--diff without pictures is an error"
     [ "$(cat "$work/error")" = "farfield-fly: --reference needs --png" ]
 result $? "--reference without --png is an error"
 
+# ---- to the horizon: 290 km of hills, seen from 3 km above their corner ----
+python3 tests/rig/hills.py 257 "$work/far.raw"
+"$bin/farfield-bake" "$work/far.raw" --raw 257x257 --spacing 800 --quiet -o "$work/far.ffp"
+printf 't_s,x_m,y_m,z_m,heading_deg\n0,9000,9000,4000,45\n9,9000,9000,4000,45\n' >"$work/far.path"
+far="--pack $work/far.ffp --path $work/far.path --link lan --seconds 1 --settle 6 --quality px:2 --backend none --audit on"
+for panorama in on off; do
+    flies far $far --panorama $panorama
+    is 's["undrawn_px_percent"] == 0 and s["skyline_px_rms"] < 2' "ground is drawn as far as it can be seen (panorama $panorama)"
+done
+flies near $far --panorama off --view 30000
+is 's["undrawn_px_percent"] > 2 and s["skyline_px_rms"] > 5' "unless a limit is asked for"
+
 # ---- the client's own estimate, against the auditor ----
 estimated="--backend none --link umts --seconds 20 --settle 4 --sample 2 --audit on --audit-step 10 --check off"
 for ground in hills fractal plateaus; do
