@@ -188,16 +188,22 @@ static int truth_shows(void *context, const double pixel[2])
     return true_point(context, pixel, point_m);
 }
 
-static int panorama_shows(void *context, const double pixel[2])
+/* Asks the faces held about a pixel. */
+static int ask_faces(const frame *of, const double pixel[2],
+                     int (*question)(sim_faces *faces, const double direction[3]))
 {
-    const frame *of = context;
     sim_faces *faces = &of->auditor->faces;
     sim_cube_place place;
     double along[3];
     if (!of->view->faces) return 0;
     sim_eye_ray(&of->e, pixel, along);
     sim_cube_meet(along, faces->of.face_size, &place);
-    return (of->view->faces >> place.face & 1u) && sim_faces_show(faces, along);
+    return (of->view->faces >> place.face & 1u) && question(faces, along);
+}
+
+static int panorama_reaches(void *context, const double pixel[2])
+{
+    return ask_faces(context, pixel, sim_faces_reach);
 }
 
 /* Looks at one pixel; where ground is not drawn the error is left for later. */
@@ -316,13 +322,13 @@ static void find_skyline(frame *of, int truth, double *top_px)
     for (size_t i = 0; i < of->looks; i++) {
         const look *at = &auditor->look[i];
         double *hint = &auditor->hint_px[i % across];
-        if (at->pixel[1] < *hint && (truth ? at->ground : panorama_shows(of, at->pixel)))
+        if (at->pixel[1] < *hint && (truth ? at->ground : panorama_reaches(of, at->pixel)))
             *hint = at->pixel[1];
     }
     sim_skyline_find(&(sim_skyline){ .width = camera->width,
                                      .height = camera->height,
                                      .step_px = auditor->step_px,
-                                     .shows = truth ? truth_shows : panorama_shows,
+                                     .shows = truth ? truth_shows : panorama_reaches,
                                      .context = of,
                                      .hint_px = auditor->hint_px },
                      top_px);
@@ -351,7 +357,7 @@ static void look_around(frame *of)
         look *at = &auditor->look[i];
         uint32_t node = auditor->cover.node[i];
         if (at->ground && !at->drawn) at->error_px = undrawn_error(of, at);
-        if (at->ground || (!node && !panorama_shows(of, at->pixel))) continue;
+        if (at->ground || (!node && !ask_faces(of, at->pixel, sim_faces_show))) continue;
         at->wrong = 1;
         at->error_px = sky_error(of, at);
         at->cause = node ? cause_of(of, &of->view->drawn[node - 1], at->error_px)

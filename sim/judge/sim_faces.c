@@ -78,15 +78,31 @@ static void find_skyline(sim_faces *faces, enum ff_face_name face)
     faces->known |= 1u << face;
 }
 
-int sim_faces_show(sim_faces *faces, const double direction[3])
+/* The texel that a direction from O meets. */
+static void texel_at(const sim_faces *faces, const double direction[3], sim_cube_place *at,
+                     unsigned *column, unsigned *row)
 {
     double last = faces->of.face_size - 1;
+    sim_cube_meet(direction, faces->of.face_size, at);
+    *column = (unsigned)fmin(fmax(floor(at->column), 0), last);
+    *row = (unsigned)fmin(fmax(floor(at->row), 0), last);
+}
+
+int sim_faces_reach(sim_faces *faces, const double direction[3])
+{
     sim_cube_place at;
-    sim_cube_meet(direction, faces->of.face_size, &at);
-    unsigned column = (unsigned)fmin(fmax(floor(at.column), 0), last),
-             row = (unsigned)fmin(fmax(floor(at.row), 0), last);
+    unsigned column, row;
+    texel_at(faces, direction, &at, &column, &row);
     if (at.face == FF_FACE_UP || at.face == FF_FACE_DOWN)
-        return texel_meets(faces, at.face, column, row) == GROUND;
+        return texel_meets(faces, at.face, column, row) != NOTHING;
     if (!(faces->known >> at.face & 1u)) find_skyline(faces, at.face);
-    return row >= faces->top[at.face][column] && texel_meets(faces, at.face, column, row) == GROUND;
+    return row >= faces->top[at.face][column];
+}
+
+int sim_faces_show(sim_faces *faces, const double direction[3])
+{
+    sim_cube_place at;
+    unsigned column, row;
+    texel_at(faces, direction, &at, &column, &row);
+    return sim_faces_reach(faces, direction) && texel_meets(faces, at.face, column, row) == GROUND;
 }

@@ -27,5 +27,7 @@ typedef struct sim_faces {
 void sim_faces_use(sim_faces *faces, const sim_panorama *panorama);
 /* 1 when the texel that a direction from O meets shows ground. */
 int sim_faces_show(sim_faces *faces, const double direction[3]);
+/* 1 when it shows ground or lies below one of its column that does: by this a skyline is sought. */
+int sim_faces_reach(sim_faces *faces, const double direction[3]);
 
 #endif

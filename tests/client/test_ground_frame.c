@@ -137,7 +137,15 @@ static double metres(int64_t wu) { return (double)wu / FF_WU_PER_METRE; }
 static double off_by(sys_random *random, double radius_m)
 {
     ff_terrain_info info = terrain(3 * FF_WU_PER_METRE);
+    unsigned level = 12, coarse = sys_random_u32(random) % 2;
+    if (coarse) { /* samples of 6 km: the frame's origin is far from its centre */
+        info.spacing_wu = 6000 * FF_WU_PER_METRE;
+        info.tile_log2 = 9;
+        info.samples_x = info.samples_y = (2 << 9) + 1;
+        level = 6;
+    }
     c3d_camera camera = { .pos_wu = { 98304 * FF_WU_PER_METRE, 98304 * FF_WU_PER_METRE, 0 } };
+    if (coarse) camera.pos_wu[0] = camera.pos_wu[1] = (512 * 6000 + 5000) * FF_WU_PER_METRE;
     ff_ground_frame frame = { .set = 0 };
     c3d_draw draw = { .flags = 0 };
     c3d_vertex vertex[COUNT];
@@ -150,7 +158,8 @@ static double off_by(sys_random *random, double radius_m)
     assert_int_equal(ff_ground_frame_follow(&frame, &info, &camera), 0);
     ff_ground_frame_draw(&frame, &info, &camera, &draw);
     uint32_t at = sys_random_u32(random) % (1u << 24);
-    place(&frame, &info, sys_random_u32(random) % 4, 12, at % 4096, at / 4096, vertex);
+    place(&frame, &info, sys_random_u32(random) % 4, level, at % (1u << level),
+          at / 4096 % (1u << level), vertex);
     const c3d_vertex *one = &vertex[sys_random_u32(random) % COUNT];
     const int64_t flat_wu[2] = { draw.origin_wu[0] + (int64_t)one->x * draw.xy_scale_wu,
                                  draw.origin_wu[1] + (int64_t)one->y * draw.xy_scale_wu };

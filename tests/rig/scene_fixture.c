@@ -19,10 +19,12 @@ static uint16_t flat(void *context, uint32_t x, uint32_t y)
     return 0;
 }
 
-void scene_make(scene *s, uint16_t (*height)(void *context, uint32_t x, uint32_t y))
+static void make(scene *s, uint16_t (*height)(void *context, uint32_t x, uint32_t y),
+                 uint32_t curve_q60)
 {
     memset(s, 0, sizeof *s);
     pack_fixture_desc desc = { .info = pack_fixture_info(3, 4, 4), .height = height };
+    desc.info.curve_q60 = curve_q60;
     desc.info.spacing_wu = 512 * FF_WU_PER_METRE;
     size_t bytes;
     s->bytes = pack_fixture_make(&desc, &bytes);
@@ -39,7 +41,14 @@ void scene_make(scene *s, uint16_t (*height)(void *context, uint32_t x, uint32_t
     s->view.panorama.back_wu = INT32_MAX;
 }
 
-void scene_flat(scene *s) { scene_make(s, flat); }
+void scene_make(scene *s, uint16_t (*height)(void *context, uint32_t x, uint32_t y))
+{
+    make(s, height, 0);
+}
+
+void scene_flat(scene *s) { make(s, flat, 0); }
+
+void scene_round(scene *s) { make(s, flat, FF_CURVE_MAX); }
 
 void scene_draw(scene *s, uint16_t metres)
 {

@@ -22,6 +22,8 @@ typedef struct scene {
 void scene_make(scene *s, uint16_t (*height)(void *context, uint32_t x, uint32_t y));
 /* All of it at z = 0. */
 void scene_flat(scene *s);
+/* The same, falling away from the viewer as steeply as a pack can say. */
+void scene_round(scene *s);
 void scene_free(scene *s);
 /* Draws all tiles, level, so many metres high. */
 void scene_draw(scene *s, uint16_t metres);

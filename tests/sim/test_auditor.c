@@ -228,6 +228,34 @@ static void parallax_is_the_way_over_the_depth(void **state)
 /* Half a texel in pixels, of a pixel (x, y) from the middle of a picture that looks level at an
  * edge of the cube. Both faces beside the edge, u from their middle and v below it, lie at the
  * picture's (1 - u) / (1 + u) and sqrt(2) v / (1 + u). */
+/* The same over ground that falls away from O as from the viewer: of a place d to the north and x
+ * to the side, seen (200 + c (x^2 + d^2)) / d below the horizon, O 100 m to the south. */
+static void parallax_over_round_ground(void **state)
+{
+    (void)state;
+    static scene s;
+    sim_audit_result result;
+    expected e = { 0 };
+    scene_round(&s);
+    double focal = s.view.camera.focal_q8 / 256.0, curve = s.ground.curve_per_m, back = 100;
+    scene_panorama(&s, 1024, 0, 100);
+    for (unsigned y = SCENE_STEP_PX / 2; y < 320; y += SCENE_STEP_PX)
+        for (unsigned x = SCENE_STEP_PX / 2; x < 240 && y + 0.5 > 160; x += SCENE_STEP_PX) {
+            double across = (x + 0.5 - 120) / focal, slope = (y + 0.5 - 160) / focal,
+                   bend = curve * (1 + across * across), root = slope * slope - 800 * bend;
+            if (root < 0) continue;
+            double d = 400 / (slope + sqrt(root)), away = d + back;
+            if (d > 8192) continue;
+            double low = (200 + curve * (across * across * d * d + away * away)) / away;
+            expect_error(&e, focal / 1024 + focal * hypot(across * d / away - across, low - slope));
+        }
+    assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
+    assert_int_equal(result.panorama_pixels, e.count);
+    scene_assert_near(result.err_px_max, e.most);
+    scene_assert_near(result.err_px_rms, sqrt(e.sum_squares / e.count));
+    scene_free(&s);
+}
+
 static double half_texel_at_an_edge(double focal, double size, double x, double y)
 {
     double u = (1 - fabs(x) / focal) / (1 + fabs(x) / focal), v = y / focal * (1 + u) / sqrt(2),
@@ -398,6 +426,7 @@ int main(void)
         cmocka_unit_test(ground_above_the_eye),
         cmocka_unit_test(nothing_drawn_is_a_picture_off),
         cmocka_unit_test(parallax_is_the_way_over_the_depth),
+        cmocka_unit_test(parallax_over_round_ground),
         cmocka_unit_test(a_texel_is_an_error_of_half_its_size),
         cmocka_unit_test(the_cube_lies_as_the_renderer_has_it),
         cmocka_unit_test(a_panorama_shows_between_its_planes),

@@ -143,9 +143,9 @@ static void check_rays(uint32_t samples_x, uint32_t samples_y, uint64_t samples_
     ending_ground(&bytes, &pack, &ground, samples_x, samples_y, samples_max);
     sys_random_seed(&random, 5, 5);
     for (int i = 0; i < 400; i++) {
-        /* every other ray over ground that falls away 12 times as steeply as the Earth's, or more
-         */
-        ground.curve_per_m = i % 2 ? 8e-7 * (1 + i % 3) : 0;
+        /* over flat ground, ground that falls away 12 times as steeply as the Earth's or more, and
+         * ground that falls away so steeply that a ray may dip into a cell and come out again */
+        ground.curve_per_m = i % 2 == 0 ? 0 : i % 4 == 3 ? 3e-4 : 8e-7 * (1 + i % 3);
         double from[3] = { scene_uniform(&random, 0, 4096), scene_uniform(&random, 0, 4096), 0 },
                along[3], t = -1;
         from[2] = fmax(1600, sim_ground_height_m(&ground, from[0], from[1])) +
@@ -186,6 +186,22 @@ static void rays_hit_where_steps_do(void **state)
     check_rays(100, 70, 27 * 19); /* a level whose cells do not end there */
 }
 
+/* Over level ground that falls away a ray 10 m up, sinking by 0.065, is at 0 after 250 m and after
+ * 400 m: it meets ground at the first, though it is above it where it enters and leaves the cell.
+ */
+static void a_ray_that_dips_into_a_cell_meets_it(void **state)
+{
+    (void)state;
+    static scene s;
+    const double from[3] = { 8192, 8202, 10 }, along[3] = { 1, 0, -0.065 };
+    double t;
+    scene_flat(&s);
+    s.ground.curve_per_m = 1e-4;
+    assert_int_equal(sim_ground_cast(&s.ground, from, along, 9000, &t), 1);
+    scene_assert_near(t, 250);
+    scene_free(&s);
+}
+
 /* Ground may be judged by another pack's when that has the same samples in the same place. */
 static void truth_is_of_the_same_grid(void **state)
 {
@@ -213,8 +229,11 @@ static void truth_is_of_the_same_grid(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(ground_is_the_source),        cmocka_unit_test(filled_ground_is_judged),
-        cmocka_unit_test(ground_ends_with_the_source), cmocka_unit_test(rays_hit_where_steps_do),
+        cmocka_unit_test(ground_is_the_source),
+        cmocka_unit_test(filled_ground_is_judged),
+        cmocka_unit_test(ground_ends_with_the_source),
+        cmocka_unit_test(rays_hit_where_steps_do),
+        cmocka_unit_test(a_ray_that_dips_into_a_cell_meets_it),
         cmocka_unit_test(truth_is_of_the_same_grid),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -74,6 +74,32 @@ static void the_skyline_of_a_wall(void **state)
     scene_free(&s);
 }
 
+/* Ground that falls away ends lower: drawn as it is there is no error, and a panorama taken here
+ * has the end where it is, by its rows of texels. */
+static void round_ground_ends_lower(void **state)
+{
+    (void)state;
+    static const unsigned size[] = { 700, 900, 1000, 1024 };
+    static scene s;
+    sim_audit_result result;
+    scene_round(&s);
+    double focal = s.view.camera.focal_q8 / 256.0,
+           below_m = 200 + sim_ground_drop_m(&s.ground, 0, 8192);
+    assert_true(focal * (below_m - 200) / 8192 > 0.5);
+    scene_draw(&s, 0);
+    assert_true(skyline_of(&s) <= 1.0 / 16);
+    assert_int_equal(sim_audit_frame(s.auditor, &s.view, &result), FF_OK);
+    assert_true(result.err_px_max < 1e-3 && result.sky_pixels == 0);
+    s.view.drawn_count = 0;
+    for (size_t i = 0; i < sizeof size / sizeof *size; i++) {
+        scene_panorama(&s, size[i], 0, 0);
+        s.view.panorama.front_wu = 6000 * FF_WU_PER_METRE;
+        /* towards the sides it ends 0.2 px lower */
+        assert_true(fabs(skyline_of(&s) - texel_row_px(focal, size[i], -below_m, 8192)) < 0.3);
+    }
+    scene_free(&s);
+}
+
 /* Ground where the sky should be is off by its distance to the true ground, whoever draws it. */
 static void ground_over_the_sky_is_an_error(void **state)
 {
@@ -172,6 +198,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_skyline_of_a_wall),
+        cmocka_unit_test(round_ground_ends_lower),
         cmocka_unit_test(ground_over_the_sky_is_an_error),
         cmocka_unit_test(ground_drawn_as_it_is_has_no_error),
     };
