@@ -76,16 +76,26 @@ static inline void ff_planar_place(const ff_terrain_info *info, ff_key key, cons
     place_wu[2] = ff_height_wu(info, height);
 }
 
-/* Along an axis, of a box beside the viewer: how near and how far its ground lies, with the slack.
- */
-static inline int64_t ff_planar_nearest(int64_t lo, int64_t hi)
+/* How near and how far ground of a box beside the viewer lies along an axis, with the slack, in
+ * units of 128 m, rounded to the safe side: a box is made for every node that is looked at. */
+#define FF_PLANAR_COARSE_LOG2 15
+FF_STATIC_ASSERT(FF_SHAPE_DROP_SLACK_WU == 4 << FF_PLANAR_COARSE_LOG2);
+static inline uint32_t ff_planar_nearest(int64_t lo, int64_t hi)
 {
-    int64_t away_wu = (lo > 0 ? lo : hi < 0 ? -hi : 0) - FF_SHAPE_DROP_SLACK_WU;
-    return away_wu > 0 ? away_wu : 0;
+    int32_t away = (int32_t)((lo > 0 ? lo : hi < 0 ? -hi : 0) >> FF_PLANAR_COARSE_LOG2) - 4;
+    return away > 0 ? (uint32_t)away : 0;
 }
-static inline int64_t ff_planar_farthest(int64_t lo, int64_t hi)
+static inline uint32_t ff_planar_farthest(int64_t lo, int64_t hi)
 {
-    return (hi > -lo ? hi : -lo) + FF_SHAPE_DROP_SLACK_WU;
+    return (uint32_t)((hi > -lo ? hi : -lo) >> FF_PLANAR_COARSE_LOG2) + 5;
+}
+/* The drop at so many units; above 5 900 km along an axis as at that distance. */
+static inline int64_t ff_planar_coarse_drop_wu(const ff_terrain_info *info, uint32_t east,
+                                               uint32_t north)
+{
+    east = east < 46340 ? east : 46340; /* two squares of it fit 32 bits */
+    north = north < 46340 ? north : 46340;
+    return (int64_t)((uint64_t)(east * east + north * north) * info->curve_q60 >> 30);
 }
 
 /* A square, as far as there is ground in it. */
@@ -103,10 +113,10 @@ static inline ff_box ff_planar_square(const ff_terrain_info *info, int32_t x_wu,
     box.lo[2] = height_wu[0] - from_wu[2];
     box.hi[2] = height_wu[1] - from_wu[2];
     if (info->curve_q60) {
-        box.lo[2] -= ff_planar_drop_wu(info, ff_planar_farthest(box.lo[0], box.hi[0]),
-                                       ff_planar_farthest(box.lo[1], box.hi[1]));
-        box.hi[2] -= ff_planar_drop_wu(info, ff_planar_nearest(box.lo[0], box.hi[0]),
-                                       ff_planar_nearest(box.lo[1], box.hi[1]));
+        box.lo[2] -= ff_planar_coarse_drop_wu(info, ff_planar_farthest(box.lo[0], box.hi[0]),
+                                              ff_planar_farthest(box.lo[1], box.hi[1]));
+        box.hi[2] -= ff_planar_coarse_drop_wu(info, ff_planar_nearest(box.lo[0], box.hi[0]),
+                                              ff_planar_nearest(box.lo[1], box.hi[1]));
     }
     return box;
 }
