@@ -109,7 +109,7 @@ hard teleport-near calm-near 20 20 26 2 0 0 --seconds 40 --event 20:teleport=0.5
 for link in TMobile-UMTS-driving Verizon-EVDO-driving ATT-LTE-driving-2016; do
     recorded=../shared/data/traces/$link
     if [ -e "$recorded.down" ]; then
-        hard "$link" calm 15 50 10 2 0 0 --seconds 60 --down-trace "$recorded.down" --up-trace "$recorded.up" --event 50:link=umts
+        hard "$link" calm 15 50 12 2 0 0 --seconds 60 --down-trace "$recorded.down" --up-trace "$recorded.up" --event 50:link=umts
     else
         echo "ok - $link # skip no $recorded.down"
     fi
