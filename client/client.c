@@ -9,6 +9,7 @@
 #define WORKER_SLEEP_US  2000
 #define METRES           FF_WU_PER_METRE
 #define IN_FLIGHT_LIMIT  1024
+#define LEAST_PIXELS     2 /* for each triangle: more could not be told apart */
 
 /* what outlives a terrain fits into the smallest block */
 FF_STATIC_ASSERT(sizeof(ff_client) + CLIENT_BYTES_MIN / 32 + FF_RECEIVED_MIN +
@@ -21,16 +22,21 @@ FF_STATIC_ASSERT(FF_PICTURE_SIDE_MAX <= UINT16_MAX && FF_FACE_SIZE_MAX <= UINT16
 
 size_t ff_client_bytes_min(void) { return CLIENT_BYTES_MIN; }
 
-static void default_quality(ff_quality *quality)
+static void default_quality(ff_quality *quality, unsigned width, unsigned height)
 {
+    uint32_t pixels = (uint32_t)width * height;
     int untouched = quality->measure == FF_MEASURE_DISTANCE && !quality->c_q8 &&
                     !quality->error_px_q8 && !quality->depth_max && !quality->sigma_q8 &&
-                    !quality->view_wu;
-    if (untouched) quality->depth_max = 4;
+                    !quality->view_wu && !quality->triangles_max;
+    if (untouched) {
+        quality->measure = FF_MEASURE_PIXELS;
+        quality->triangles_max = pixels / FF_QUALITY_DEFAULT_PIXELS;
+    }
     if (quality->c_q8 <= 0) quality->c_q8 = 3 * 256;
-    if (quality->error_px_q8 <= 0) quality->error_px_q8 = 2 * 256;
+    if (quality->error_px_q8 <= 0) quality->error_px_q8 = FF_QUALITY_DEFAULT_PX * 256;
     if (quality->sigma_q8 <= 256) quality->sigma_q8 = 320;
     if (quality->view_wu <= 0) quality->view_wu = INT32_MAX;
+    if (!quality->triangles_max) quality->triangles_max = pixels / LEAST_PIXELS;
 }
 
 static void bound_quality(ff_quality *quality)
@@ -60,7 +66,7 @@ void ff_client_default_desc(ff_client_desc *desc)
     if (!desc->height) desc->height = 320;
     if (!desc->in_flight_max) desc->in_flight_max = 32;
     if (!desc->answer_timeout_ms) desc->answer_timeout_ms = 60000;
-    default_quality(&desc->quality);
+    default_quality(&desc->quality, desc->width, desc->height);
     default_panorama(&desc->panorama, desc->width);
     desc->no_textures |= !ff_textures_built;
 }
@@ -206,7 +212,7 @@ void ff_client_event(ff_client *client, const sys_event *event)
 void ff_client_set_quality(ff_client *client, const ff_quality *quality)
 {
     client->desc.quality = *quality;
-    default_quality(&client->desc.quality);
+    default_quality(&client->desc.quality, client->desc.width, client->desc.height);
     bound_quality(&client->desc.quality);
     client->dirty = 1;
     ff_client_balance_begin(client, 0);

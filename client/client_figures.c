@@ -58,6 +58,12 @@ static int32_t back_plane_wu(const ff_client *client)
                : 0;
 }
 
+static ff_quality quality_in_force(const ff_client *client)
+{
+    return client->have_terrain && client->has_camera ? *ff_tree_quality(client->tree)
+                                                      : ff_client_quality(client);
+}
+
 void ff_client_get_stats(const ff_client *client, ff_client_stats *stats)
 {
     ff_readings readings, *from = &readings;

@@ -8,7 +8,7 @@
 #define NEAR_WU_MIN       (FF_WU_PER_METRE / 4)
 #define NEAR_WU_MAX       (4096 * FF_WU_PER_METRE)
 #define NEAR_GIVEN_WU_MAX (16384 * FF_WU_PER_METRE) /* the sky is drawn 16 times as far away */
-#define LOW_POWER_DIVISOR 2                         /* C halved, pixels of error doubled */
+#define LOW_POWER_DIVISOR 2 /* C and triangles halved, pixels of error doubled */
 
 FF_STATIC_ASSERT((FF_QUALITY_ERROR_PX_MAX << 8) <= INT32_MAX / LOW_POWER_DIVISOR);
 FF_STATIC_ASSERT(0 < NEAR_WU_MIN && NEAR_WU_MIN < NEAR_WU_MAX && NEAR_WU_MAX <= INT32_MAX / 16);
@@ -23,6 +23,7 @@ ff_quality ff_client_quality(const ff_client *client)
     if (ff_client_low_power(client)) {
         quality.c_q8 /= LOW_POWER_DIVISOR;
         quality.error_px_q8 *= LOW_POWER_DIVISOR;
+        quality.triangles_max = quality.triangles_max / LOW_POWER_DIVISOR + 1;
     }
     return quality;
 }
@@ -214,7 +215,7 @@ static void fit_planes(const ff_client *client, c3d_camera *camera)
 static void set_fog(const ff_client *client, c3d_frame *frame)
 {
     const ff_view *view = &client->last_view;
-    int32_t sight_wu = ff_client_quality(client).view_wu;
+    int32_t sight_wu = ff_tree_quality(client->tree)->view_wu;
     if (client->panorama.shown >= 0 || (client->show & FF_SHOW_NO_FOG))
         return; /* the join with the panorama must not show */
     if (sight_wu >= ff_shape_horizon_wu(&client->info, &view->frame, view->centre_wu))

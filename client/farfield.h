@@ -42,6 +42,11 @@ extern "C" {
 #define FF_QUALITY_ERROR_PX_MAX 1000
 #define FF_QUALITY_DEPTH_MAX    16 /* all levels of a key */
 
+/* What a client takes where no quality is given: pixels of error, and pixels of the picture for
+ * each triangle. */
+#define FF_QUALITY_DEFAULT_PX     2
+#define FF_QUALITY_DEFAULT_PIXELS 14
+
 typedef struct ff_client ff_client;
 
 /* Zero in any field takes the default given. */
@@ -112,7 +117,10 @@ typedef struct ff_client_desc {
     uint16_t width, height;
     /* of a back end without a GL: C3D_RGB565 (0, default) or C3D_RGBA8888 */
     uint8_t frame_format;
-    ff_quality quality; /* all zero: DISTANCE, C = 3, depth 4, sigma 1.25, view 30 km */
+    /* all zero: FF_QUALITY_DEFAULT_PX pixels of error, a triangle for FF_QUALITY_DEFAULT_PIXELS
+     * pixels at most. Else C = 3, 2 pixels, sigma 1.25, as far as one sees, a triangle for 2 pixels
+     * at most, where a field is zero */
+    ff_quality quality;
     ff_panorama_desc panorama;
     ff_balance_desc balance;
     uint8_t use_thread;       /* 1: ff_client_create starts a thread that calls ff_client_work */
@@ -167,8 +175,8 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera
 void ff_client_draw(ff_client *client);
 
 /* Device events; what does not concern the client is ignored. Battery low or an interruption (a
- * call): C halved or pixels of error doubled, no prefetch, no new panoramas; an interruption also
- * asks for nothing new, the link is just kept alive. Restored after. */
+ * call): C and triangles halved, pixels of error doubled, no prefetch, no new panoramas; an
+ * interruption also asks for nothing new, the link is just kept alive. Restored after. */
 void ff_client_event(ff_client *client, const sys_event *event);
 
 /* Settings that may change between frames. When panoramas are switched on and the block was shared

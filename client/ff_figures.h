@@ -63,8 +63,9 @@
          "battery low or interrupted: slower, coarser, no prefetch") \
     KEPT(uint32_t, frames_updated, from->client->frames_updated, "that showed something new") \
     KEPT(uint32_t, frames_skipped, from->client->frames_skipped, "nothing changed, nothing to redraw") \
-    KEPT(ff_quality, quality, ff_client_quality(from->client), \
-         "in force: as set, by the balance, halved when power is low") \
+    KEPT(ff_quality, quality, quality_in_force(from->client), \
+         "in force: as set, by the balance, halved when power is low, as coarse as the limit of " \
+         "triangles takes") \
     KEPT(int32_t, back_plane_wu, back_plane_wu(from->client), "in force; 0: no panoramas") \
     KEPT(int32_t, panorama_error_q8, from->client->panorama.desc.error_px_q8, "in force") \
     KEPT(uint16_t, face_size, from->client->panorama.face_size, \

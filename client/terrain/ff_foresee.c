@@ -67,7 +67,7 @@ static void foresee_children_of(const ff_tree *tree, foresight *f, const ff_node
                                      : !ff_box_in_view(&f->ahead, &there))
         return;
     uint32_t value = ff_value_of_split(&f->ahead, node);
-    if (value >= FF_VALUE_ONE && !ff_box_beyond_view(&f->ahead, &there))
+    if (value >= tree->wish_value && !ff_box_beyond_view(&f->ahead, &there))
         note(f, node->key, FF_KIND_REFINEMENT, value);
 }
 

@@ -19,7 +19,7 @@ static int same_quality(const ff_quality *a, const ff_quality *b)
 {
     return a->measure == b->measure && a->c_q8 == b->c_q8 && a->error_px_q8 == b->error_px_q8 &&
            a->depth_max == b->depth_max && a->sigma_q8 == b->sigma_q8 && a->view_wu == b->view_wu &&
-           a->hole_wu == b->hole_wu;
+           a->hole_wu == b->hole_wu && a->triangles_max == b->triangles_max;
 }
 
 static int32_t within(int32_t value, int32_t lo, int32_t hi)
@@ -40,6 +40,9 @@ static void set_view(ff_tree *tree, const ff_view *view, const ff_quality *quali
     int32_t horizon_wu = ff_shape_horizon_wu(&tree->info, &view->frame, view->centre_wu);
     FF_ASSERT(horizon_wu >= 0);
     if (tree->quality.view_wu > horizon_wu) tree->quality.view_wu = horizon_wu;
+    if (tree->quality.triangles_max && tree->quality.triangles_max < FF_TRIANGLES_MIN)
+        tree->quality.triangles_max = FF_TRIANGLES_MIN;
+    tree->finest = tree->quality;
     ff_window_make(tree);
     ff_pyramid_make(tree);
 }
@@ -233,10 +236,15 @@ int ff_tree_select(ff_tree *tree, const ff_view *view, const ff_quality *quality
     tree->has_view = 1;
     tree->dirty = 0;
     tree->stats.selects++;
-    want_by_measure(tree);
-    ff_want_close(tree);
-    split_cut(tree);
-    list_cut(tree);
+    ff_limit_search search;
+    ff_limit_begin(tree, &search);
+    do {
+        want_by_measure(tree);
+        ff_want_close(tree);
+        split_cut(tree);
+        list_cut(tree);
+    } while (ff_limit_again(tree, &search));
+    ff_limit_wishes(tree);
     ff_wish_make(tree);
     FF_ASSERT(tree->wish_count <= tree->wish_capacity);
     return 1;

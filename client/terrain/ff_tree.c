@@ -183,6 +183,8 @@ uint32_t ff_tree_cut(const ff_tree *tree, const ff_drawn **list)
 
 const ff_frame *ff_tree_frame(const ff_tree *tree) { return &tree->view.frame; }
 
+const ff_quality *ff_tree_quality(const ff_tree *tree) { return &tree->quality; }
+
 const ff_placed *ff_tree_placed(const ff_node *node) { return &node->placed; }
 
 uint32_t ff_tree_wishes(const ff_tree *tree, const ff_wish **list)

@@ -47,7 +47,11 @@ typedef struct ff_quality {
     /* ground nearer than this (measured alike) is not split for its own sake: a panorama leaves it
      * out; 0: none */
     int32_t hole_wu;
+    /* the most triangles in view; where the measure asks for more, it is made as much coarser as it
+     * takes, and then the reach shorter. 0: no limit; less than FF_TRIANGLES_MIN is that many */
+    uint32_t triangles_max;
 } ff_quality;
+#define FF_TRIANGLES_MIN 1024u /* room for the roots round the viewer */
 
 /* Positions are points of `frame`, whose z is up; {0}: world axes of a planar terrain. */
 typedef struct ff_view {
@@ -112,6 +116,8 @@ uint32_t ff_tree_drawn(const ff_tree *tree, const ff_drawn **list);
 uint32_t ff_tree_cut(const ff_tree *tree, const ff_drawn **list);
 /* The frame that their origins are places of: the last selection's. */
 const ff_frame *ff_tree_frame(const ff_tree *tree);
+/* The last selection's quality, as coarse as the limit of triangles made it. */
+const ff_quality *ff_tree_quality(const ff_tree *tree);
 /* A node's place there, for ff_shape.h. */
 const ff_placed *ff_tree_placed(const ff_node *node);
 /* What would make the picture better, most urgent first. The tree does not remember asking: the

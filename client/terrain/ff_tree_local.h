@@ -61,7 +61,11 @@ struct ff_tree {
     uint32_t cut_count, drawn_count, wish_count;
 
     ff_view asked_view, view; /* of the last selection: as given, and brought into range */
-    ff_quality asked_quality, quality;
+    /* as given, brought into range, and in force: coarser where the limit of triangles wants it */
+    ff_quality asked_quality, finest, quality;
+    uint16_t limit_step; /* how much coarser, see ff_limit.c */
+    uint8_t limit_rests; /* selections before a finer step is tried again */
+    uint32_t wish_value; /* what is in view and worth less is not wished for */
     uint8_t has_view, dirty;
     /* 1: nodes have gone since the last selection, so the lists of wanted nodes are broken */
     uint8_t dropped;
@@ -166,6 +170,17 @@ unsigned ff_coarser_mask(const ff_tree *tree, const ff_node *node);
 void ff_want(ff_tree *tree, uint32_t slot, uint32_t value);
 /* Makes everything wanted that wanted nodes need beside them. */
 void ff_want_close(ff_tree *tree);
+
+/* ff_limit.c. begin: puts the last selection's quality into force, for a cut to be made with.
+ * again: 1 when the cut made is to be made anew, with the quality that is then in force. */
+typedef struct ff_limit_search {
+    int over, under; /* coarsest step found to pass the limit, finest found to keep it */
+    unsigned tries;
+} ff_limit_search;
+void ff_limit_begin(ff_tree *tree, ff_limit_search *search);
+int ff_limit_again(ff_tree *tree, ff_limit_search *search);
+/* Sets wish_value for the cut made. */
+void ff_limit_wishes(ff_tree *tree);
 
 /* ff_wish.c */
 void ff_wish_make(ff_tree *tree);

@@ -111,6 +111,7 @@ static uint32_t missing_children(ff_tree *tree)
             uint64_t unseen = node->flags & FF_NODE_NEEDED || ff_box_in_view(tree, &box)
                                   ? 0
                                   : OUT_OF_VIEW;
+            if (!unseen && node->value < tree->wish_value) continue;
             tree->sort[count++] = unseen | (uint64_t)(FF_VALUE_MAX - node->value) << FF_SLOT_BITS |
                                   slot;
         }

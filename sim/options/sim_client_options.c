@@ -16,12 +16,31 @@ static int q8_at(const char **text, uint64_t most, int32_t *q8)
     return 0;
 }
 
-int sim_quality_read(const char *text, ff_quality *quality)
+/* What the words stand for: a measure, and pixels of the picture for each triangle at most; 0: as
+ * many triangles as a client draws at most by itself. */
+static const struct {
+    const char *word, *measure;
+    unsigned pixels;
+} preset[] = { { "low", "px:4", 28 },
+               { "medium", "px:2", FF_QUALITY_DEFAULT_PIXELS },
+               { "high", "px:1", 4 },
+               { "paper-low", "3:4", 0 },
+               { "paper-high", "9:8", 0 } };
+FF_STATIC_ASSERT(FF_QUALITY_DEFAULT_PX == 2); /* medium's */
+
+int sim_quality_read(const char *text, uint32_t triangles, const sys_size *size,
+                     ff_quality *quality)
 {
     uint64_t depth = 0;
     ff_quality read = { .sigma_q8 = 320, .view_wu = quality->view_wu };
-    if (!strcmp(text, "low")) text = "3:4";
-    if (!strcmp(text, "high")) text = "9:8";
+    for (size_t i = 0; i < sizeof preset / sizeof *preset; i++) {
+        if (strcmp(text, preset[i].word)) continue;
+        text = preset[i].measure;
+        if (preset[i].pixels)
+            read.triangles_max = (uint32_t)size->width * size->height / preset[i].pixels;
+        break;
+    }
+    if (triangles) read.triangles_max = triangles;
     if (!strncmp(text, "px:", 3)) {
         text += 3;
         read.measure = FF_MEASURE_PIXELS;
@@ -40,10 +59,11 @@ int sim_quality_read(const char *text, ff_quality *quality)
 static int quality_range(const sys_option *option, char *text, size_t room)
 {
     (void)option;
-    return snprintf(text, room,
-                    "low, high, C:DEPTH with C 0.01 to %d and DEPTH 0 to %d (0: all levels), or "
-                    "px:E for E pixels of error, 0.01 to %d",
-                    FF_QUALITY_C_MAX, FF_QUALITY_DEPTH_MAX, FF_QUALITY_ERROR_PX_MAX);
+    return snprintf(
+        text, room,
+        "low, medium, high, paper-low, paper-high, C:DEPTH with C 0.01 to %d and DEPTH 0 to %d (0: all levels), or "
+        "px:E for E pixels of error, 0.01 to %d",
+        FF_QUALITY_C_MAX, FF_QUALITY_DEPTH_MAX, FF_QUALITY_ERROR_PX_MAX);
 }
 
 static int take_quality(const sys_option *option, const char *text, void *field)
@@ -51,7 +71,7 @@ static int take_quality(const sys_option *option, const char *text, void *field)
     ff_quality quality = { 0 };
     (void)option;
     *(sim_quality *)field = text;
-    return sim_quality_read(text, &quality);
+    return sim_quality_read(text, 0, &(sys_size){ 1, 1 }, &quality);
 }
 
 /* ---- balance ---- */

@@ -10,14 +10,16 @@
 #include "../../client/farfield.h"
 #include "../../platform/options/sys_options.h"
 
-typedef const char *sim_quality; /* low, high, C:DEPTH or px:E */
+typedef const char *sim_quality; /* low, medium, high, paper-low, paper-high, C:DEPTH or px:E */
 typedef const char *sim_balance; /* off, server, client or TRIANGLES[,BYTES] */
 typedef uint32_t sim_memory;     /* bytes, with K or M; at least ff_client_bytes_min() */
 
 extern const sys_option_type sim_quality_option, sim_balance_option, sim_memory_option;
 
-/* Sets all of `quality` but view_wu. 0, or SYS_NOT_ONE. */
-int sim_quality_read(const char *text, ff_quality *quality);
+/* Sets all of `quality` but view_wu, for a picture of a size; `triangles`, where they are not 0,
+ * stand for the text's limit. 0, or SYS_NOT_ONE. */
+int sim_quality_read(const char *text, uint32_t triangles, const sys_size *size,
+                     ff_quality *quality);
 int sim_balance_read(const char *text, ff_balance_desc *balance);
 
 #define SIM_SPEED_KMH_MAX 100000
@@ -27,8 +29,14 @@ int sim_balance_read(const char *text, ff_balance_desc *balance);
 
 /* clang-format off */
 #define SIM_CLIENT_OPTIONS(OPTION, memory, memory_help) \
-    OPTION(sim_quality, quality_text, "quality", "Q", "low", SYS_ANY, \
-           "how fine the ground is drawn; low is 3:4, high 9:8") \
+    OPTION(sim_quality, quality_text, "quality", "Q", "medium", SYS_ANY, \
+           "how fine the ground is drawn. low, medium, high: 4, 2 and 1 pixels of error, and at " \
+           "most a triangle for 28, 14 and 4 pixels. paper-low, paper-high: Hybrid's, 3:4 and " \
+           "9:8. These and the others: at most a triangle for 2 pixels") \
+    OPTION(sys_whole, triangles, "triangles", "N", NULL, \
+           SYS_WHOLE(FF_TRIANGLES_MIN, SIM_BUDGET_MAX, ""), \
+           "the most triangles of ground in a picture: where --quality asks for more, all of it " \
+           "is drawn as much coarser as that takes; default: what --quality says") \
     OPTION(sim_balance, balance_text, "balance", "SPEC", "off", SYS_ANY, \
            "the client's share of the work follows budgets, and what --quality and --panorama " \
            "say is the finest: a frame's triangles (0: as many as it takes) and the bytes that " \

@@ -89,6 +89,7 @@ static void take_head(sim_tape_player *player)
                              .face_size = (uint16_t)n[14],
                              .jpeg_quality = (uint8_t)n[15],
                              .hold_back = (uint8_t)n[16] };
+    q->triangles_max = (uint32_t)n[17];
 }
 
 int sim_tape_open(sim_tape_player *player, const void *bytes, uint64_t count, sys_stream *stream)

@@ -58,7 +58,7 @@ def random_flight(seed, packs, given):
     args = ["--pack", rand.choice(packs), "--seed", str(seed), "--settle", str(settle), "--seconds", str(seconds + HEAL_S),
             "--link", random_link(rand, given.links), "--path", rand.choice(("diagonal", "diagonal", "circle", "hover", "turn")),
             "--start", f"{rand.random():.3f}", "--speed", str(rand.choice((0, 5, 25, 150, 150, 750, 1000, 3000))),
-            "--quality", rand.choice(("low", "low", "high", "px:0.5", "px:2", "px:8", f"{rand.uniform(0.5, 12):.2f}:{rand.randrange(1, 13)}")),
+            "--quality", rand.choice(("low", "medium", "paper-low", "high", "px:0.5", "px:2", "px:8", f"{rand.uniform(0.5, 12):.2f}:{rand.randrange(1, 13)}")),
             "--panorama", rand.choice(("on", "on", "on", "off")), "--face", rand.choice(("64", "128", "256")),
             "--memory", given.memory or rand.choice(("512K", "640K", "1M", "2M", "4M", "8M")),
             "--backend", given.backend or rand.choice(("none", "none", "none", "gl", "gles1", "soft", "soft565")),

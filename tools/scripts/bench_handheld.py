@@ -178,7 +178,7 @@ def memory_rows(bench):
 
 def functions(bench, most):
     """The functions that cost most, in the low-quality flight."""
-    counts = bench.count("functions", ["--tape", bench.tape("functions", "low", "on", SECONDS)[0]])
+    counts = bench.count("functions", ["--tape", bench.tape("functions", "paper-low", "on", SECONDS)[0]])
     n, sums = len(counts.frames), {}
     for address, length, executions, helped in counts.blocks:
         name, entry = bench.program.function_of(address)
@@ -220,8 +220,8 @@ def main():
     if options.functions:
         functions(bench, options.functions)
         return
-    low = bench.fly("low", "low", "on", SECONDS)
-    places = [bench.fly("place", "low", "on", PLACE_SECONDS, start=start) for start in PLACES]
+    low = bench.fly("low", "paper-low", "on", SECONDS)
+    places = [bench.fly("place", "paper-low", "on", PLACE_SECONDS, start=start) for start in PLACES]
     low["pixels"] = bench.pixels(options.out + "/low.tape")
     if sum(bench.count("low", ["--tape", options.out + "/low.tape"]).costs()) / low["frames"] != low["instructions"]:
         die("counted twice, different numbers")

@@ -33,7 +33,7 @@ fly() {
     name=$1 link=$2 seconds=$3 panorama=$4 size=$5
     shift 5
     mkdir -p "$out/$name"
-    "$bin/farfield-fly" --pack "$pack" --link "$link" --start 0.35 --speed 150 --quality low --panorama "$panorama" --seconds "$seconds" \
+    "$bin/farfield-fly" --pack "$pack" --link "$link" --start 0.35 --speed 150 --panorama "$panorama" --seconds "$seconds" \
         --seed 1 --size "$size" --csv "$out/$name.csv" --png "$out/$name" --json "$@" >"$out/$name.json"
     rm -f "$out/$name/frame-0000.00.png" # nothing has arrived yet
 }
@@ -44,7 +44,7 @@ say "terrain: Trinidad, Colorado (USGS, public domain) from Debian's libncarg-da
 dem=$("$(dirname "$0")/trinidad.sh" "$out") || fail "no terrain"
 
 say "bake: $dem"
-"$bin/farfield-bake" "$dem" --scale 0.3048780488 --tile-log2 7 -o "$pack"
+"$bin/farfield-bake" "$dem" --scale 0.3048780488 -o "$pack"
 "$bin/farfield-info" "$pack"
 
 say "server and a UMTS link, real sockets, real time: 25 seconds"
@@ -83,7 +83,7 @@ for name in live-umts umts-panorama-on gprs-panorama-on umts-panorama-off large-
 done
 # shellcheck disable=SC2086
 "$bin/farfield-report" "$out"/live-umts.csv "$out"/umts-*.csv "$out"/gprs-*.csv -o "$out/report" \
-    --beside soft="$out/look/soft" --beside gles1="$out/look/gles1" --title "Trinidad, Colorado: 150 km/h, low quality" $against $pictures
+    --beside soft="$out/look/soft" --beside gles1="$out/look/gles1" --title "Trinidad, Colorado: 150 km/h" $against $pictures
 
 say "done"
 echo "report:   $out/report/index.html (text: $out/report/REPORT.md)"

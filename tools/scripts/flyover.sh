@@ -50,8 +50,8 @@ find_ground() {
 list_flights() {
     local link speed quality panorama
     if [ -n "$QUICK" ]; then
-        for link in umts gprs lan; do echo "$link-150-low-on --link $link --speed 150 --quality low --panorama on"; done
-        echo "umts-0-low-on --link umts --speed 0 --quality low --panorama on"
+        for link in umts gprs lan; do echo "$link-150-low-on --link $link --speed 150 --quality paper-low --panorama on"; done
+        echo "umts-0-low-on --link umts --speed 0 --quality paper-low --panorama on"
         printf '%s\n' "px-8 px:8" "px-4 px:4" "C-2 2:8" "C-3 3:8" | list_sweep
         return
     fi
@@ -59,13 +59,13 @@ list_flights() {
         for speed in 1000 750 150 25; do
             for panorama in off on; do
                 for link in umts gprs lan; do
-                    echo "$link-$speed-$quality-$panorama --link $link --speed $speed --quality $quality --panorama $panorama"
+                    echo "$link-$speed-$quality-$panorama --link $link --speed $speed --quality paper-$quality --panorama $panorama"
                 done
             done
         done
     done
     for link in umts gprs; do # standing still, for relevance
-        for panorama in off on; do echo "$link-0-low-$panorama --link $link --speed 0 --quality low --panorama $panorama"; done
+        for panorama in off on; do echo "$link-0-low-$panorama --link $link --speed 0 --quality paper-low --panorama $panorama"; done
     done
     printf '%s\n' "px-8 px:8" "px-4 px:4" "px-2 px:2" "px-1 px:1" "C-2 2:8" "C-3 3:8" "C-5 5:8" "C-9 9:8" | list_sweep
     printf '%s\n' "share-server 9:8 server" "share-2500 9:8 2500" "share-5000 9:8 5000" "share-10000 9:8 10000" "share-20000 9:8 20000" \
@@ -131,8 +131,8 @@ main() {
     say "$(basename "$pack"): flights of $SECONDS_EACH s, $JOBS side by side"
     fly_all
     say "pictures beside what they should be"
-    look umts-150-low-on --link umts --speed 150 --quality low --panorama on
-    look gprs-150-high-on --link gprs --speed 150 --quality high --panorama on
+    look umts-150-low-on --link umts --speed 150 --quality paper-low --panorama on
+    look gprs-150-high-on --link gprs --speed 150 --quality paper-high --panorama on
     [ ! -s "$instructions" ] || more=(--instructions "$instructions")
     mapfile -t csv < <(sed "s|^\([^ ]*\).*|$flights/\1.csv|" "$flights/list")
     "$bin/farfield-report" --paper "$here/../report/hybrid_table3.csv" --settle $settle_s --title "The flights of Hybrid's Table 3 over $ground" \

@@ -26,10 +26,10 @@ fly() { # NAME PACK OPTION...
 }
 fly 01 ground --link umts --backend gl --speed 150
 fly 02 ground --link gprs --backend gles1 --speed 750 --start 0.3 --audit on
-fly 03 ground --link lan --backend soft565 --quality high --speed 1000
+fly 03 ground --link lan --backend soft565 --quality paper-high --speed 1000
 fly 04 trinidad --link gprs --backend soft565 --quality px:2 --audit on
 fly 05 trinidad --link umts --backend gl --quality px:1 --panorama off --view 100000
-fly 06 trinidad --link nbiot --backend soft565 --balance 5000 --quality high
+fly 06 trinidad --link nbiot --backend soft565 --balance 5000 --quality paper-high
 fly 07 rice --link edge --backend soft --path turn --height 20 --memory 1M
 fly 08 rice --link iridium --backend gles1 --path circle --balance 3000,4000 --event 20:cut --event 30:low-battery
 fly 09 ground --link umts --backend soft565 --path hover --tape "$work/09.tape"
