@@ -56,7 +56,7 @@ static void default_panorama(ff_panorama_desc *panorama, unsigned width)
     if (panorama->error_px_q8 <= 0) panorama->error_px_q8 = (int32_t)width * 128 / 20;
     if (!panorama->face_size) panorama->face_size = 256;
     if (!panorama->jpeg_quality || panorama->jpeg_quality > 100) panorama->jpeg_quality = 70;
-    panorama->enabled &= ff_panorama_built;
+    if (!ff_panorama_built) panorama->enabled = FF_PANORAMA_OFF;
     FF_ASSERT(panorama->error_px_q8 > 0 && panorama->server_back_wu >= panorama->back_plane_wu);
 }
 
@@ -83,7 +83,9 @@ static int check_desc(const ff_client_desc *desc)
         desc->quality.error_px_q8 > FF_QUALITY_ERROR_PX_MAX << 8 ||
         desc->quality.depth_max > FF_QUALITY_DEPTH_MAX)
         return FF_ERR_ARGUMENT;
-    if ((unsigned)desc->balance.mode > FF_BALANCE_ALL_CLIENT) return FF_ERR_ARGUMENT;
+    if ((unsigned)desc->balance.mode > FF_BALANCE_ALL_CLIENT ||
+        desc->panorama.enabled > FF_PANORAMA_AUTO)
+        return FF_ERR_ARGUMENT;
     if (desc->backend && !desc->surface_api) return FF_ERR_ARGUMENT;
     if (desc->stream && !ff_link_built) return FF_ERR_UNSUPPORTED;
     return desc->memory_bytes < CLIENT_BYTES_MIN ? FF_ERR_MEMORY : FF_OK;
@@ -241,6 +243,7 @@ void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama)
     ff_requests_cancel_all(&client->requests, FF_KIND_FACE);
     ff_panorama_drop(&client->panorama);
     client->panorama.desc = client->desc.panorama;
+    ff_client_auto_begin(client);
     ff_client_balance_begin(client, 0);
 }
 

@@ -129,6 +129,7 @@ static int carve_all(ff_client *client, unsigned economy)
                            client->has_textures ? &client->textures : NULL);
     ff_panorama_init(&client->panorama, client->device, &client->desc.panorama, &client->info,
                      budget.face_size);
+    ff_client_auto_begin(client);
     ff_motion_reset(&client->motion);
     ff_turn_reset(&client->turn);
     memset(&client->refusals, 0, sizeof client->refusals);

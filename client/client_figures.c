@@ -52,10 +52,7 @@ static enum ff_link_state link_state(const ff_readings *from)
 
 static int32_t back_plane_wu(const ff_client *client)
 {
-    const ff_panorama *panorama = &client->panorama;
-    return panorama->desc.enabled && panorama->face_size && !client->all_client
-               ? ff_client_quality(client).view_wu
-               : 0;
+    return client->far_painted ? ff_client_quality(client).view_wu : 0;
 }
 
 static ff_quality quality_in_force(const ff_client *client)
@@ -80,7 +77,7 @@ uint32_t ff_client_error_px_q8(const ff_client *client)
     const ff_panorama *panorama = &client->panorama;
     ff_beyond beyond = { 0 };
     if (!client->tree) return 0;
-    if (panorama->shown >= 0 && !client->all_client) {
+    if (panorama->shown >= 0 && client->far_painted) {
         beyond.face_size = panorama->face_size;
         beyond.back_wu = panorama->desc.server_back_wu;
         memcpy(beyond.position_wu, panorama->set[panorama->shown].position_wu,

@@ -124,7 +124,7 @@ void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *qu
     if (!client->desc.no_prefetch && !ff_client_low_power(client))
         look_ahead(client, view, shared.rtt_us, &a);
     ff_requests_rank_begin(&client->requests);
-    if (!client->all_client)
+    if (!ff_client_own_ground(client))
         ff_panorama_want(&client->panorama, &client->requests, view, faces_ahead(view, &a), now_us);
     want_tree(client);
     if (client->has_textures) want_textures(client, view, quality);

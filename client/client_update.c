@@ -17,8 +17,7 @@ ff_quality ff_client_quality(const ff_client *client)
 {
     ff_quality quality = client->desc.quality;
     ff_client_balance_quality(client, &quality);
-    if (client->panorama.desc.enabled && client->panorama.face_size && !client->all_client)
-        quality.view_wu = ff_panorama_front_wu(&client->panorama);
+    if (client->far_painted) quality.view_wu = ff_panorama_front_wu(&client->panorama);
     FF_ASSERT(quality.view_wu > 0);
     if (ff_client_low_power(client)) {
         quality.c_q8 /= LOW_POWER_DIVISOR;
@@ -94,7 +93,7 @@ static void make_view(const ff_client *client, const c3d_camera *camera, const f
         view->camera.far_wu = quality->view_wu > INT32_MAX / 3 ? INT32_MAX : 3 * quality->view_wu;
     memcpy(view->centre_wu, camera->pos_wu, sizeof view->centre_wu);
     FF_ASSERT(client->panorama.shown < 2);
-    if (client->panorama.desc.enabled && client->panorama.shown >= 0 && !client->all_client)
+    if (client->panorama.shown >= 0 && client->far_painted)
         memcpy(view->centre_wu, client->panorama.set[client->panorama.shown].position_wu,
                sizeof view->centre_wu);
 }
@@ -117,6 +116,13 @@ static int update_sky(ff_client *client, const c3d_camera *camera)
     return changed;
 }
 
+/* By its own rule the client waits for a panorama behind its own ground. */
+static uint8_t is_far_painted(const ff_client *client, const c3d_camera *camera)
+{
+    return !ff_client_own_ground(client) && (client->panorama.desc.enabled == FF_PANORAMA_ON ||
+                                             ff_panorama_whole(&client->panorama, camera));
+}
+
 int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
 {
     int pictures_changed = 0;
@@ -135,9 +141,11 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
     ff_client_balance_step(client, &view.camera, now_us);
     ff_motion_feed(&client->motion, now_us, camera->pos_wu);
     ff_turn_feed(&client->turn, now_us, camera->yaw, camera->pitch);
-    int hold = ff_client_low_power(client) || client->all_client;
+    ff_client_auto_step(client, camera, now_us);
+    int hold = ff_client_low_power(client) || ff_client_own_ground(client);
     int turned = ff_panorama_update(&client->panorama, &client->requests, &view.camera,
                                     &client->motion, hold, now_us);
+    client->far_painted = is_far_painted(client, camera);
     if (!taken && !moved && !turned && !client->dirty && !client->unranked) {
         client->frames_skipped++;
         return 0;

@@ -49,9 +49,13 @@ extern "C" {
 
 typedef struct ff_client ff_client;
 
+/* Who draws far ground: the client all of it up to quality.view_wu; panoramas what lies beyond
+ * back_plane_wu; or whichever is cheaper for the error allowed (panorama/ff_panorama_auto.h). */
+enum ff_panorama_use { FF_PANORAMA_OFF, FF_PANORAMA_ON, FF_PANORAMA_AUTO };
+
 /* Zero in any field takes the default given. */
 typedef struct ff_panorama_desc {
-    uint8_t enabled; /* 0: the client draws all ground up to quality.view_wu itself */
+    uint8_t enabled; /* enum ff_panorama_use; default FF_PANORAMA_OFF */
     /* the client draws ground itself up to here, and here a panorama begins: z_back_c = z_front_s
      * of Hybrid; default 7500 m */
     int32_t back_plane_wu;

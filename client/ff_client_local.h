@@ -14,6 +14,7 @@
 #include "ahead/ff_motion.h"
 #include "ahead/ff_turn.h"
 #include "panorama/ff_panorama.h"
+#include "panorama/ff_panorama_auto.h"
 #include "ask/ff_refusals.h"
 #include "ff_sky.h"
 #include "source/link/ff_stream.h"
@@ -52,6 +53,11 @@ struct ff_client {
     /* by the balance: no panoramas are wanted; one still shown is a backdrop until the ground is
      * here */
     uint8_t all_client;
+    /* FF_PANORAMA_AUTO: the same by its rule; what the rule was last asked, and when */
+    uint8_t auto_ground;
+    ff_panorama_case far_ground;
+    uint8_t far_painted; /* the client's ground ends at the back plane */
+    int64_t auto_us;
     ff_sky sky;
     ff_motion motion;
     ff_turn turn;
@@ -101,6 +107,16 @@ void ff_client_balance_quality(const ff_client *client, ff_quality *quality);
 void ff_client_balance_stats(const ff_client *client, ff_balance_stats *stats);
 /* client_update.c: what is in force, as set, by the balance, or coarser while power is low. */
 ff_quality ff_client_quality(const ff_client *client);
+/* panorama/client_auto.c. begin: panoramas were set, or pools carved for them. step: once an
+ * update, while there is a terrain. */
+void ff_client_auto_begin(ff_client *client);
+void ff_client_auto_step(ff_client *client, const c3d_camera *camera, int64_t now_us);
+/* 1 while no panoramas are wanted and the client draws far ground itself. */
+static inline int ff_client_own_ground(const ff_client *client)
+{
+    return !client->panorama.desc.enabled || !client->panorama.face_size || client->all_client ||
+           client->auto_ground;
+}
 static inline int ff_client_low_power(const ff_client *client)
 {
     return client->battery_low || client->interrupted;

@@ -193,6 +193,15 @@ void ff_requests_rank_end(ff_requests *requests)
     sys_mutex_unlock(&requests->mutex);
 }
 
+uint32_t ff_requests_answer_bytes(ff_requests *requests, enum ff_kind kind, unsigned level)
+{
+    FF_ASSERT(level <= FF_KEY_LEVEL_MAX);
+    sys_mutex_lock(&requests->mutex);
+    uint32_t bytes = requests->answer_q4[kind][level] >> 4;
+    sys_mutex_unlock(&requests->mutex);
+    return bytes;
+}
+
 /* Cancels a request; 1 when it is still under way. */
 static int cancel(ff_requests *requests, ff_request *request)
 {

@@ -92,6 +92,8 @@ int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
                      enum ff_request_class rank, uint32_t priority,
                      const ff_get_panorama *panorama);
 void ff_requests_rank_end(ff_requests *requests);
+/* Bytes that an answer of a kind is expected to have, of a node's level. */
+uint32_t ff_requests_answer_bytes(ff_requests *requests, enum ff_kind kind, unsigned level);
 /* 1 when something in view is queued: wanted and not yet sent. */
 int ff_requests_waiting(ff_requests *requests);
 /* Cancels a request: drops a queued one, has a sent one cancelled by the server. 1 when it is still

@@ -168,6 +168,13 @@ int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_c
     return changed;
 }
 
+int ff_panorama_whole(const ff_panorama *panorama, const c3d_camera *camera)
+{
+    FF_ASSERT(panorama->shown < 2);
+    return panorama->shown >= 0 &&
+           !(ff_panorama_faces_in_view(camera) & ~known(&panorama->set[panorama->shown]));
+}
+
 int ff_panorama_late(const ff_panorama *panorama, const c3d_camera *camera)
 {
     FF_ASSERT(panorama->active < 2);

@@ -81,6 +81,8 @@ static inline int32_t ff_panorama_front_wu(const ff_panorama *panorama)
  * changed. */
 int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_camera *camera,
                        const ff_motion *motion, int hold, int64_t now_us);
+/* 1 when the drawn set shows all that the camera sees. */
+int ff_panorama_whole(const ff_panorama *panorama, const c3d_camera *camera);
 /* Puts what is missing into the ranking under way; soon: bit per face that will soon be in view. */
 void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const ff_view *view,
                       unsigned soon, int64_t now_us);

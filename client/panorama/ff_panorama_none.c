@@ -1,5 +1,6 @@
 /* Stands in for ff_panorama.c in builds without panoramas. */
 #include "../ask/ff_intake_local.h"
+#include "../ff_client_local.h"
 #include "ff_panorama.h"
 #include "ff_panorama_rules.h"
 
@@ -27,6 +28,11 @@ int ff_panorama_update(ff_panorama *panorama, ff_requests *requests, const c3d_c
 
 unsigned ff_panorama_faces_in_view(const c3d_camera *camera) { return (void)camera, 0; }
 
+int ff_panorama_whole(const ff_panorama *panorama, const c3d_camera *camera)
+{
+    return (void)panorama, (void)camera, 0;
+}
+
 int ff_panorama_late(const ff_panorama *panorama, const c3d_camera *camera)
 {
     return (void)panorama, (void)camera, 0;
@@ -47,6 +53,13 @@ int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now
 void ff_panorama_draw(const ff_panorama *panorama, int32_t near_wu)
 {
     (void)panorama, (void)near_wu;
+}
+
+void ff_client_auto_begin(ff_client *client) { (void)client; }
+
+void ff_client_auto_step(ff_client *client, const c3d_camera *camera, int64_t now_us)
+{
+    (void)client, (void)camera, (void)now_us;
 }
 
 /* Never asked for. */

@@ -115,7 +115,7 @@ void fly_options_print(const fly_options *options)
             options->server ? "server" : "link",
             options->server ? options->server : options->link_text, options->speed_kmh,
             options->seconds, options->settle_s, options->path_text, options->start,
-            options->height_m, options->quality_text, options->use_panorama ? "on" : "off",
+            options->height_m, options->quality_text, sim_panorama_words[options->use_panorama],
             options->balance_text, options->size.width, options->size.height, options->fov_degrees,
             options->fps, fly_backend_name((enum fly_backend)options->backend),
             options->memory_bytes, options->audit ? "on" : "off", options->truth_path ? " by " : "",

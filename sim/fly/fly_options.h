@@ -82,7 +82,7 @@ extern const sys_option_type fly_events_option;
            "a real server, real sockets and real time; --link and the traces are not used") \
     HEADING("The client") \
     SIM_CLIENT_OPTIONS(OPTION, "4M", "the client's one block") \
-    SIM_PANORAMA_OPTION(OPTION, "on", "far ground as panoramas drawn by the server") \
+    SIM_PANORAMA_OPTION(OPTION, "auto", "far ground as panoramas drawn by the server") \
     OPTION(sys_real, back_plane_m, "back-plane", "M", NULL, FLY_DISTANCE, \
            "where the panorama takes over; default 7500") \
     OPTION(sys_whole, face_texels, "face", "N", NULL, FLY_TEXELS, \

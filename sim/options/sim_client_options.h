@@ -14,6 +14,7 @@ typedef const char *sim_quality; /* low, medium, high, paper-low, paper-high, C:
 typedef const char *sim_balance; /* off, server, client or TRIANGLES[,BYTES] */
 typedef uint32_t sim_memory;     /* bytes, with K or M; at least ff_client_bytes_min() */
 
+extern const char *const sim_panorama_words[]; /* by enum ff_panorama_use */
 extern const sys_option_type sim_quality_option, sim_balance_option, sim_memory_option;
 
 /* Sets all of `quality` but view_wu, for a picture of a size; `triangles`, where they are not 0,
@@ -44,7 +45,7 @@ int sim_balance_read(const char *text, ff_balance_desc *balance);
            "stays at that end; off: all as set") \
     OPTION(sim_memory, memory_bytes, "memory", "BYTES", memory, SYS_ANY, memory_help)
 #define SIM_PANORAMA_OPTION(OPTION, fallback, help) \
-    OPTION(sys_switch, use_panorama, "panorama", "on|off", fallback, SYS_ANY, help)
+    OPTION(sys_word, use_panorama, "panorama", "USE", fallback, SYS_WORDS(sim_panorama_words), help "; auto: where that is cheaper for the error allowed")
 #define SIM_SIZE_OPTION(OPTION, help) \
     OPTION(sys_size, size, "size", "WxH", "240x320", SYS_WHOLE(16, FF_PICTURE_SIDE_MAX, "pixels"), \
            help)

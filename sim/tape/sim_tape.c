@@ -82,7 +82,8 @@ static void take_head(sim_tape_player *player)
                        .sigma_q8 = n[7],
                        .view_wu = n[8],
                        .hole_wu = n[9] };
-    *p = (ff_panorama_desc){ .enabled = n[10] != 0,
+    *p = (ff_panorama_desc){ .enabled = (uint8_t)(n[10] >= 0 && n[10] <= FF_PANORAMA_AUTO ? n[10]
+                                                                                          : 0),
                              .back_plane_wu = n[11],
                              .server_back_wu = n[12],
                              .error_px_q8 = n[13],

@@ -125,7 +125,9 @@ static int open_terrain(view_app *app)
     int is_pack = file || !strchr(o->target, ':'), rc;
     if (file) fclose(file);
     if (is_pack && open_pack(app)) return -1;
-    app->panorama.enabled = o->use_panorama == SYS_UNSET ? !is_pack : (uint8_t)o->use_panorama;
+    app->panorama.enabled = o->use_panorama != SYS_UNSET ? (uint8_t)o->use_panorama
+                            : is_pack                    ? FF_PANORAMA_OFF
+                                                         : FF_PANORAMA_AUTO;
     if (is_pack && !o->link && !app->panorama.enabled) return 0;
     rc = view_link_create(is_pack ? NULL : o->target, &app->pack, o->link, &app->link,
                           &app->stream);

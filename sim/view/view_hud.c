@@ -72,7 +72,9 @@ static void put_quality(view_hud *hud, const view_app *app, const ff_client_stat
     }
     if (ff_client_panorama(app->client, position_wu, &faces))
         for (; faces; faces &= faces - 1) count++;
-    put(hud, "panorama %u faces %.1f kB\n", count, stats->panorama_bytes / 1000.0);
+    put(hud, "panorama%s %u faces %.1f kB\n",
+        app->panorama.enabled == FF_PANORAMA_AUTO ? " auto" : "", count,
+        stats->panorama_bytes / 1000.0);
 }
 
 /* In use, the most so far, and room, of each pool of the block that has any. */

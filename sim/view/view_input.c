@@ -135,7 +135,7 @@ static void press(view_app *app, int code)
     static char path[64];
     switch (code) {
         case 'p':
-            app->panorama.enabled = !app->panorama.enabled;
+            app->panorama.enabled = (uint8_t)((app->panorama.enabled + 1) % (FF_PANORAMA_AUTO + 1));
             ff_client_set_panorama(app->client, &app->panorama);
             break;
         case 'l':

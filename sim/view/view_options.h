@@ -26,7 +26,7 @@ extern const sys_option_type view_place_option;
     SHOW \
     HEADING("Terrain") \
     SIM_CLIENT_OPTIONS(OPTION, "16M", "the client's one block") \
-    SIM_PANORAMA_OPTION(OPTION, NULL, "far ground as panoramas; default: on with a server") \
+    SIM_PANORAMA_OPTION(OPTION, NULL, "far ground as panoramas; default: auto with a server") \
     OPTION(sim_link_spec, link, "link", "SPEC", NULL, SYS_WORDS(no_link_words), \
            "link model between client and server; with PACK the server's logic runs inside this " \
            "program") \

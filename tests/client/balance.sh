@@ -28,7 +28,7 @@ flies() { # NAME ARGUMENTS...
     result $? "flight: $flown $*"
     is 's["crack_frames"] == 0 and s["empty_frames"] == 0 and s["panoramas_in_flight_high"] <= 1' "no crack, no empty frame, no queue of panoramas"
 }
-usual="--settle 10 --quality 6:8 --back-plane 2000 --view 10000 --face 64 --fps 10 --start 0.2 --backend none --check on"
+usual="--settle 10 --panorama on --quality 6:8 --back-plane 2000 --view 10000 --face 64 --fps 10 --start 0.2 --backend none --check on"
 
 python3 tests/rig/hills.py 513 "$work/hills.raw"
 "$bin/farfield-bake" "$work/hills.raw" --raw 513x513 --spacing 30 --tile-log2 7 --quiet -o "$work/hills.ffp"

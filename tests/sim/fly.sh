@@ -32,7 +32,7 @@ python3 tests/rig/hills.py 257 "$work/hills.raw" 9 "$work/node.raw"
 result $? "packs to fly over"
 
 # ---- the same again ----
-usual="--link gprs --quality px:2 --back-plane 1500 --seconds 6 --settle 6 --sample 0.5 --audit on"
+usual="--link gprs --panorama on --quality px:2 --back-plane 1500 --seconds 6 --settle 6 --sample 0.5 --audit on"
 flies first $usual --backend gl --png "$work/pictures" --every 6
 result $? "a flight over GPRS with panorama and audit"
 is 's["crack_frames"] == 0 and s["stitched_frames"] > 0' "no crack in any frame, and stitching was needed"
@@ -98,7 +98,7 @@ is 'r[-1]["skyline_px_rms"] < 1 and s["skyline_px_p95"] < 2 and all(row["skyline
 skyline=$(python3 -c "import json; print(json.load(open('$work/fine.json'))['skyline_px_rms'])")
 flies rough $quick --panorama off --quality 0.5:2 --view 20000
 is "s['skyline_px_rms'] > 3 * $skyline" "the skyline of coarse ground is wrong"
-flies toggled $quick --event 2:panorama-off
+flies toggled $quick --panorama on --event 2:panorama-off
 is 'r[1]["panoramas"] > 0 and r[-1]["panoramas"] == r[3]["panoramas"] and r[-1]["panorama_px_percent"] == 0' "the panorama can be switched off in flight"
 
 # ---- judged by the source ----
@@ -266,10 +266,10 @@ flies around $quick --speed 10000
 is 's["crack_frames"] == 0 and all(0 < row["x_m"] < 10240 and 0 < row["y_m"] < 10240 for row in r)' "10 000 km/h turn round before the border"
 flies node --pack "$work/node.ffp" $quick
 is 's["crack_frames"] == 0 and r[-1]["nodes_drawn"] == 1' "a terrain of one node"
-flies tight --pack "$work/dense.ffp" $quick --memory 512K --fov 100 --quality px:0.1 --view 20000 --panorama off
+flies tight --pack "$work/dense.ffp" $quick --memory 512K --fov 100 --quality px:0.1 --triangles 500000 --view 20000 --panorama off
 is 's["crack_frames"] == 0 and 50 < r[-1]["nodes_drawn"] < r[-1]["nodes_held"] < 1500' "little memory: whole"
 little=$(python3 -c "import json; print(json.load(open('$work/tight.json'))['err_px_rms'])")
-flies roomy --pack "$work/dense.ffp" $quick --memory 8M --fov 100 --quality px:0.1 --view 20000 --panorama off
+flies roomy --pack "$work/dense.ffp" $quick --memory 8M --fov 100 --quality px:0.1 --triangles 500000 --view 20000 --panorama off
 is "r[-1]['nodes_held'] > 1800 and s['err_px_rms'] < $little" "more memory: finer"
 for fov in 0.1 170; do
     flies fov $quick --fov $fov --backend gl

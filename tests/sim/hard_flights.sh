@@ -12,7 +12,7 @@ work=build/tests/hard_flights.$$
 mkdir -p "$work"
 table=${HARD_TABLE:-/dev/null}
 . tests/rig/result.bash
-usual="--link umts --settle 10 --quality px:2 --back-plane 1500 --face 64 --fps 10 --sample 0.5 --audit on --backend none"
+usual="--link umts --settle 10 --quality px:2 --panorama on --back-plane 1500 --face 64 --fps 10 --sample 0.5 --audit on --backend none"
 
 # judge FLIGHT CALM FROM_S TO_S BOUND_PX BACK_S EMPTY_S DROPPED: link bad (or place new) in FROM..TO, 0 0: never
 judge() {

@@ -69,7 +69,7 @@ client/source       client/ask protocol/ platform/sys.h
 client/source/link  client/ask protocol/ platform/sys.h
 client/images       client/ask client/terrain protocol/ common3d
 client/ground       client/farfield.h client/images client/terrain protocol/ common3d
-client/panorama     client/farfield.h client/ask client/ahead protocol/ common3d
+client/panorama     client client/ask client/ahead protocol/ common3d
 client/balance      client
 client              client/ protocol/ common3d platform/sys.h
 server/session      protocol/ platform/sys.h
