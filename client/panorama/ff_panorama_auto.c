@@ -5,8 +5,8 @@
 
 #define TYPICAL          4 /* a quarter of the bound: what ground is off by in 19 pixels of 20 */
 #define FAR_SHARE        3
-#define LINK_SHARE       3
-#define LINK_SHARE_DRAWN 2
+#define LINK_SHARE       16
+#define LINK_SHARE_DRAWN 8
 
 int32_t ff_panorama_worth_q8(const ff_panorama_case *of, int drawn)
 {

@@ -25,13 +25,13 @@ static void the_rule_keeps_its_numbers(void **state)
     (void)state;
     ff_panorama_case c = usual;
     assert_int_equal(ff_panorama_worth_q8(&c, 0), 2 * 256 - 208);
-    /* 3 sets of 3000 bytes for each 42.9 m, or 2 once drawn: 23.8 m/s, 35.7 m/s */
-    c.speed_wu_s = (int64_t)(23.7 * METRE);
+    /* 16 sets of 3000 bytes for each 42.9 m, or 8 once drawn: 4.46 m/s, 8.93 m/s */
+    c.speed_wu_s = (int64_t)(4.4 * METRE);
     assert_true(ff_panorama_worth_q8(&c, 0));
-    c.speed_wu_s = (int64_t)(23.9 * METRE);
+    c.speed_wu_s = (int64_t)(4.5 * METRE);
     assert_false(ff_panorama_worth_q8(&c, 0));
     assert_true(ff_panorama_worth_q8(&c, 1));
-    c.speed_wu_s = (int64_t)(35.8 * METRE);
+    c.speed_wu_s = (int64_t)(9 * METRE);
     assert_false(ff_panorama_worth_q8(&c, 1));
     c = usual;
     c.ground_px_q8 = 832; /* a quarter of it is half a texel */
