@@ -76,7 +76,8 @@ uint32_t ff_client_error_px_q8(const ff_client *client)
 {
     const ff_panorama *panorama = &client->panorama;
     ff_beyond beyond = { 0 };
-    if (!client->tree) return 0;
+    if (!client->tree) /* anything may be there */
+        return (uint32_t)c3d_length64(client->desc.width, client->desc.height, 0) << 8;
     if (panorama->shown >= 0 && client->far_painted) {
         beyond.face_size = panorama->face_size;
         beyond.back_wu = panorama->desc.server_back_wu;

@@ -231,7 +231,8 @@ int ff_client_ground(const ff_client *client, int32_t x_wu, int32_t y_wu, int32_
 int ff_client_filled(const ff_client *client, int32_t x_wu, int32_t y_wu);
 void ff_client_get_stats(const ff_client *client, ff_client_stats *stats);
 /* The client's own estimate of its picture's error: pixels Q8 that 95 % of the pixels that show
- * ground likely do not pass. It is worked out anew in every call, from some hundred places. */
+ * ground likely do not pass; the picture's diagonal until the terrain is known. It is worked out anew
+ * in every call, from some hundred places. */
 uint32_t ff_client_error_px_q8(const ff_client *client);
 /* The pools of the block and their number; those of a terrain have no items while none is known. */
 unsigned ff_client_pools(const ff_client *client, ff_pool_use list[FF_POOLS_MAX]);

@@ -440,12 +440,37 @@ static int64_t further(const gaze *at, const square *s, int64_t half)
     return most_of(away) - (at->tree->quality.view_wu >> UNIT_LOG2);
 }
 
+/* 1 when some of the ground in reach has not come. */
+static int lacks_roots(const ff_tree *tree)
+{
+    for (uint32_t i = 0; i < tree->wish_count; i++)
+        if (tree->wish[i].kind == FF_KIND_ROOT) return 1;
+    return 0;
+}
+
+/* 1 when the ground in the square's middle is in reach and has not come. */
+static int lacks_ground(const gaze *at, const square *s)
+{
+    const ff_tree *tree = at->tree;
+    int32_t place_wu[3];
+    ff_spot spot;
+    for (unsigned i = 0; i < 3; i++) {
+        int64_t wu = tree->view.camera.pos_wu[i] + s->middle[i] * (1 << UNIT_LOG2);
+        place_wu[i] = (int32_t)within(wu, INT32_MAX);
+    }
+    return further(at, s, 0) < 0 &&
+           ff_shape_locate(&tree->info, &tree->view.frame, place_wu, &spot) &&
+           ff_tree_find(tree, ff_key_make(spot.tile, 0, 0)) == FF_SLOT_NONE;
+}
+
 static void look_beyond(gaze *at, const ff_beyond *beyond)
 {
+    static const ff_beyond nothing = { 0 };
     const ff_tree *tree = at->tree;
     int64_t height_wu[2] = { mean_ground_wu(tree), mean_ground_wu(tree) };
     ff_box box = ff_shape_bounds(&tree->info, &tree->view.frame, height_wu,
                                  tree->view.camera.pos_wu);
+    int lacks = lacks_roots(tree);
     int64_t wide = box.hi[0] - box.lo[0], deep = box.hi[1] - box.lo[1];
     int32_t pile[LEVELS_MAX][3] = { { (int32_t)(box.lo[0] >> UNIT_LOG2),
                                       (int32_t)(box.lo[1] >> UNIT_LOG2),
@@ -457,9 +482,12 @@ static void look_beyond(gaze *at, const ff_beyond *beyond)
         if (piece[0] > box.hi[0] >> UNIT_LOG2 || piece[1] > box.hi[1] >> UNIT_LOG2) continue;
         level_square(piece, (int32_t)(box.lo[2] >> UNIT_LOG2), &s);
         enum sight sight = look_at(at, &s, piece[2] > LEVEL_MIN);
-        if (sight == UNSEEN || further(at, &s, piece[2] / 2) < 0) continue;
+        if (sight == UNSEEN || (!lacks && further(at, &s, piece[2] / 2) < 0)) continue;
         if (sight == SEEN) {
-            if (further(at, &s, 0) >= 0) count_beyond(at, &s, beyond);
+            if (further(at, &s, 0) >= 0)
+                count_beyond(at, &s, beyond);
+            else if (lacks && lacks_ground(at, &s))
+                count_beyond(at, &s, &nothing);
             continue;
         }
         FF_ASSERT(count + 4 <= LEVELS_MAX);

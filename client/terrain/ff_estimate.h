@@ -6,7 +6,8 @@
  * unless nearer ground hides it, and is off by a part of its node's geometric error, projected
  * where the square lies: more where its cell is rough among those of its node. Beyond the drawn
  * ground the terrain is taken as level; there the error is a panorama's parallax and the size of
- * its texels, or how far the drawn ground's edge would have to come. Some hundred squares a
+ * its texels, or how far the drawn ground's edge would have to come; so it is where a tile has not
+ * come. Some hundred squares a
  * picture; nothing is kept, so that only who asks pays.
  */
 #ifndef FF_ESTIMATE_H

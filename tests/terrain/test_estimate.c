@@ -99,6 +99,29 @@ static void finer_ground_has_less_error(void **state)
     fixture_free(&fx);
 }
 
+/* A tile in sight that has not come counts as ground not drawn; where all have come it does not. */
+static void a_tile_that_has_not_come_is_an_error(void **state)
+{
+    (void)state;
+    terrain_fixture fx;
+    fixture_make(&fx, 3, 7, 3, 3, fixture_flat);
+    fx.info.height_min = fx.info.height_max = fixture_flat(0, 0);
+    fixture_tree(&fx, 400, 64);
+    ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
+    ff_view view = fixture_view(1900, 100, 400, 0, -20);
+    ff_tree_select(fx.tree, &view, &quality);
+    uint32_t bare = estimate(&fx);
+    assert_true(bare > 100 * 256); /* none at all is here */
+    fixture_deliver(&fx, ff_key_make(1, 0, 0), 0); /* the nearest one */
+    ff_tree_select(fx.tree, &view, &quality);
+    uint32_t lacking = estimate(&fx);
+    assert_true(lacking > 256 && lacking < bare);
+    for (uint32_t tile = 0; tile < 9; tile++) fixture_deliver(&fx, ff_key_make(tile, 0, 0), 0);
+    ff_tree_select(fx.tree, &view, &quality);
+    assert_int_equal(estimate(&fx), 0);
+    fixture_free(&fx);
+}
+
 /* The picture's size is all it can be wrong by, above and below the drawn ground. */
 static void coarse_ground_near_the_eye_has_an_end(void **state)
 {
@@ -175,6 +198,7 @@ int main(void)
         cmocka_unit_test(bounds_count_for_a_part_of_them),
         cmocka_unit_test(exact_ground_has_no_error),
         cmocka_unit_test(finer_ground_has_less_error),
+        cmocka_unit_test(a_tile_that_has_not_come_is_an_error),
         cmocka_unit_test(coarse_ground_near_the_eye_has_an_end),
         cmocka_unit_test(it_does_not_depend_on_roll),
         cmocka_unit_test(beyond_the_ground_a_panorama_counts),

@@ -69,7 +69,7 @@ if has network; then
         [ -n "$port" ] && break
         sleep 0.1
     done
-    "${qemu[@]}" "$program" --server "127.0.0.1:${port:-1}" --frames 150 --fb "$work/live.ppm" >"$work/live.txt"
+    "${qemu[@]}" "$program" --server "127.0.0.1:${port:-1}" --panorama on --frames 150 --fb "$work/live.ppm" >"$work/live.txt"
     result $? "a flight against a real server"
     [ "$(value bytes_down "$work/live.txt")" -gt 2000 ] && [ "$(value triangles_mean "$work/live.txt")" -gt 100 ] &&
         [ "$(value protocol_errors "$work/live.txt")" = 0 ]
@@ -84,7 +84,7 @@ else
     result $? "a server is refused as not supported"
 fi
 if has network && has panorama && has textures && has jpeg; then
-    "$host/farfield-fly" --pack "$work/hills.ffp" --back-plane 1500 --seconds 4 --settle 6 --backend none --tape "$work/flight.tape" 2>"$work/fly.err"
+    "$host/farfield-fly" --pack "$work/hills.ffp" --panorama on --back-plane 1500 --seconds 4 --settle 6 --backend none --tape "$work/flight.tape" 2>"$work/fly.err"
     result $? "a flight recorded on tape"
     "${qemu[@]}" "$program" --tape "$work/flight.tape" --hash >"$work/tape.txt"
     result $? "flown again: the same requests, the same geometry"
