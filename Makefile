@@ -45,7 +45,7 @@ LIBS := $(LIB)/libffsim.a $(LIB)/libffserver.a $(LIB)/libfftools.a $(LIB)/libffc
 LINK_LIBS = -Wl,--start-group $(LIBS) -Wl,--end-group $(LDLIBS_core) $(LDLIBS_surface) $(LDLIBS_host)
 
 .DEFAULT_GOAL := all
-.PHONY: all help null deps asserts format server emulator flyover hashes demo test test-build check extremes numbers soak man install uninstall clean lib fuzz FORCE
+.PHONY: all help null deps asserts format server emulator flyover front hashes demo test test-build check extremes numbers soak man install uninstall clean lib fuzz FORCE
 
 all: $(PROGRAMS) lib null ## build all programs and libraries into build/
 
@@ -97,6 +97,9 @@ server: $(BUILD)/bin/farfield-server ## the panorama server
 emulator: $(BUILD)/bin/farfield-view ## the desktop emulator
 flyover: $(PROGRAMS) ## fly all of Hybrid's Table 3 over emulated links; report in build/flyover (QUICK=1: a few short flights)
 	@QUICK=$(QUICK) $(if $(DATA),FARFIELD_DATA=$(DATA)) tools/scripts/flyover.sh $(BUILD)/bin build/flyover
+
+front: $(PROGRAMS) ## sweep settings over grounds, heights and links, about an hour: the front, and where named settings stand, in build/front (QUICK=1: a slice; FRONT="--grounds trinidad --links umts")
+	@QUICK=$(QUICK) $(if $(DATA),FARFIELD_DATA=$(DATA)) tools/scripts/front.py $(BUILD)/bin build/front $(FRONT)
 
 hashes: $(PROGRAMS) ## hashes of packs, requests, geometry and pictures of ten flights: the same before and after a change that changes nothing
 	@tools/scripts/hashes.sh $(BUILD)/bin build/hashes

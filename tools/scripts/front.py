@@ -15,6 +15,7 @@ import concurrent.futures
 import csv
 import hashlib
 import io
+import json
 import os
 import subprocess
 import sys
@@ -137,8 +138,9 @@ class Grounds:
         for source in DATA:
             path = "%s/%s" % (self.data, source.file)
             if wanted(source.name) and os.path.exists(path):
-                found.append(Ground(source.name, self.bake(source.name, path, source.options.format(dir=os.path.dirname(path))), source.highest_m))
-        return found[:2] if QUICK else found
+                options = source.options.format(dir=os.path.dirname(path))
+                found.append(Ground(source.name, self.bake(source.name, path, options), source.highest_m))
+        return found
 
 
 class Sweep:
@@ -167,24 +169,21 @@ class Sweep:
                 refused.append(name)
         return refused
 
-    def edge_path(self, ground, settle_s, speed_kmh, height_m):
-        """Stands and then flies along the southern edge, a sample inside it, looking along it."""
-        path = "%s/%s-edge.csv" % (self.out, ground.name)
-        text = run([self.info, "--json", ground.pack])
-        number = lambda name: float(text.split('"%s": ' % name)[1].split(",")[0])
-        spacing = number("spacing_m")
-        start, end = 0.3 * (number("samples_x") - 1) * spacing, 0.9 * (number("samples_x") - 1) * spacing
-        last = min(end, start + FLOWN_S * speed_kmh / 3.6)
+    def edge_path(self, flight):
+        """A recorded flight that stands and then goes along the southern edge, a sample inside it, looking along it."""
+        path, ground = "%s/%s-edge.csv" % (self.out, flight.ground.name), json.loads(run([self.info, "--json", flight.ground.pack]))
+        spacing = ground["spacing_m"]
+        start, end = (share * (ground["samples_x"] - 1) * spacing for share in (0.3, 0.9))
+        end = min(end, start + FLOWN_S * flight.speed_kmh / 3.6)
         with open(path, "w", encoding="utf-8") as file:
             file.write("t_s,x_m,y_m,h_m,heading_deg\n")
-            for t, x in ((0, start), (settle_s, start), (settle_s + FLOWN_S, last)):
-                file.write("%g,%.2f,%.2f,%g,90\n" % (t, x, spacing, height_m))
+            for t, x in ((0, start), (flight.settle_s, start), (flight.settle_s + FLOWN_S, end)):
+                file.write("%g,%.2f,%.2f,%g,90\n" % (t, x, spacing, flight.height_m))
         return path
 
     def arguments(self, flight):
+        """What makes the flight, but for the file of its path."""
         words = [*flight.options.split(), "--link", flight.link, "--settle", str(flight.settle_s), "--seconds", str(FLOWN_S), "--seed", "1"]
-        if flight.course == "edge":
-            return words + ["--path", self.edge_path(flight.ground, flight.settle_s, flight.speed_kmh, flight.height_m)]
         return words + ["--height", str(flight.height_m), "--speed", str(flight.speed_kmh)]
 
     def key(self, flight):
@@ -194,9 +193,10 @@ class Sweep:
 
     def rows_of(self, flight, more):
         """The rows of its CSV, as numbers; None for nan."""
+        path = ["--path", self.edge_path(flight)] if flight.course == "edge" else []
         with tempfile.NamedTemporaryFile(suffix=".csv") as file:
             run([self.fly, "--pack", flight.ground.pack, "--ground-cache", self.caches[flight.ground.name], "--check", "off", "--csv", file.name,
-                 *self.arguments(flight), *more.split()])
+                 *self.arguments(flight), *path, *more.split()])
             with open(file.name, newline="", encoding="utf-8") as table:
                 return [{name: None if text == "nan" else float(text) for name, text in row.items() if not name.endswith("_hash")}
                         for row in csv.DictReader(table)]
@@ -323,7 +323,7 @@ def parse():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bin")
     parser.add_argument("out")
-    parser.add_argument("--grounds", type=words, help="trinidad,dense,%s" % ",".join(s.name for s in DATA))
+    parser.add_argument("--grounds", type=words, default=["trinidad", "dense"] if QUICK else None, help="trinidad,dense,%s" % ",".join(s.name for s in DATA))
     parser.add_argument("--heights", type=lambda text: [int(h) for h in words(text)], default=list(HEIGHTS))
     parser.add_argument("--links", type=words, default=list(LINKS))
     options = parser.parse_args()
@@ -336,11 +336,11 @@ def main():
     options = parse()
     os.makedirs(options.out, exist_ok=True)
     grounds = Grounds(options.bin, options.out).find(options.grounds)
+    if not grounds:
+        die("no such ground here: %s" % ",".join(options.grounds or []))
     if QUICK:
         options.out += "/quick"
         os.makedirs(options.out, exist_ok=True)
-    if not grounds:
-        die("no such ground here: %s" % ",".join(options.grounds or []))
     sweep = Sweep(options)
     refused = sweep.prepare(grounds)
     for name in refused:

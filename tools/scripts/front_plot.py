@@ -4,7 +4,7 @@ import math
 
 import front_rule
 
-PANEL, GAP, LEFT, TOP, FOOT = (250, 180), (14, 34), 60, 66, 40
+PANEL, GAP, LEFT, TOP, FOOT = (250, 180), (14, 34), 50, 84, 10
 SPANS = {"triangles": (100, 300000), "bytes": (1000, 2000000)}
 ERRORS = (0.01, 100)
 GRID = {"triangles": (100, 1000, 10000, 100000), "bytes": (1000, 10000, 100000, 1000000)}
@@ -99,21 +99,21 @@ class Panel:
 
 
 def legend(svg):
-    marks = [("C, all levels", "C"), ("C and depth", "depth"), ("pixels of error", "px")]
     x = LEFT
-    for text, kind in marks:
+    for text, kind in (("C, all levels", "C"), ("C and depth", "depth"), ("pixels of error", "px")):
         svg.append('<rect x="%d" y="30" width="9" height="9" fill="%s"/><text x="%d" y="39">%s</text>' % (x, COLOURS[kind], x + 14, text))
-        x += 125
+        x += 120
     svg.append('<rect x="%d" y="31" width="6" height="6" fill="none" stroke="#444"/><text x="%d" y="39">panorama on</text>' % (x, x + 12))
-    svg.append('<circle cx="%d" cy="34" r="3.2" fill="none" stroke="#444"/><text x="%d" y="39">off; filled: on the front</text>' % (x + 110, x + 120))
-    svg.append('<path d="M%d 29 l5 5 l-5 5 l-5 -5 z" fill="#e8c400" stroke="#000"/><text x="%d" y="39">D default, L low, M medium, H high, bN balance N</text>' % (x + 285, x + 296))
+    svg.append('<circle cx="%d" cy="34" r="3.2" fill="none" stroke="#444"/><text x="%d" y="39">off; filled: on the front</text>' % (x + 100, x + 110))
+    svg.append('<path d="M%d 46 l5 5 l-5 5 l-5 -5 z" fill="#e8c400" stroke="#000"/>' % (LEFT + 5))
+    svg.append('<text x="%d" y="55">D default, L low, M medium, H high, p of the papers, bN balance N</text>' % (LEFT + 14))
 
 
 def write(out, link, what, rows, target):
     """OUT/front-LINK-WHAT.svg; its name."""
     grounds = list(dict.fromkeys(row["ground"] for row in rows))
     heights = sorted({row["height_m"] for row in rows})
-    width = max(LEFT + len(heights) * (PANEL[0] + GAP[0]) + 10, 960)
+    width = max(LEFT + len(heights) * (PANEL[0] + GAP[0]) + 10, 720)
     height = TOP + len(grounds) * (PANEL[1] + GAP[1]) + FOOT
     svg = ['<svg xmlns="http://www.w3.org/2000/svg" width="%d" height="%d" viewBox="0 0 %d %d">' % (width, height, width, height),
            '<style>text{font:11px sans-serif}.s{font-size:9px;fill:#555}.n{font-size:9px;font-weight:bold}</style>',
