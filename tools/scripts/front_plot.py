@@ -16,6 +16,10 @@ def kind_of(setting):
     return "px" if quality.startswith("px:") else "C" if quality.endswith(":0") else "depth"
 
 
+def has_panorama(setting):
+    return setting.split(",")[0].endswith(" on")
+
+
 def share(value, span):
     """0 to 1 along a logarithmic axis; what lies beyond it stands at its end."""
     low, high = (math.log(end) for end in span)
@@ -73,12 +77,12 @@ class Panel:
     def swept(self, rows):
         members = {id(row) for row in front_rule.front(rows)}
         for row in rows:
-            colour, panorama = COLOURS[kind_of(row["setting"])], " on" in row["setting"]
+            colour = COLOURS[kind_of(row["setting"])]
             x, y = self.place(row)
             fill = colour if id(row) in members else "none"
             style = 'fill="%s" stroke="%s" stroke-width="0.9"' % (fill, colour)
             title = "<title>%s</title>" % row["setting"]
-            if panorama:
+            if has_panorama(row["setting"]):
                 self.svg.append('<rect x="%.1f" y="%.1f" width="5" height="5" %s>%s</rect>' % (x - 2.5, y - 2.5, style, title))
             else:
                 self.svg.append('<circle cx="%.1f" cy="%.1f" r="2.8" %s>%s</circle>' % (x, y, style, title))

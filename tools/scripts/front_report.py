@@ -108,6 +108,25 @@ def within_table(rows):
     return table(["where"] + ["within %d triangles" % budget for budget in BUDGETS], lines)
 
 
+def families_table(rows):
+    """Which measure, and with panoramas or without: the least error of each kind of setting within a budget, as median over the points at which
+    it has one, and its bytes."""
+    families = dict.fromkeys((front_plot.kind_of(row["setting"]), front_plot.has_panorama(row["setting"])) for row in rows if row["kind"] == "swept")
+    together, lines = front_rule.points(front_rule.judged(rows)), []
+    for height in sorted({row["height_m"] for row in rows}):
+        here = [group for group in together.values() if group[0]["height_m"] == height]
+        for budget in BUDGETS:
+            line = ["%.0f" % height, budget]
+            for family in families:
+                mine = [[r for r in group if r["kind"] == "swept" and (front_plot.kind_of(r["setting"]), front_plot.has_panorama(r["setting"])) == family]
+                        for group in here]
+                best = [row for row in (front_rule.within(group, budget) for group in mine) if row]
+                line.append("%s px, %s kB (%d of %d)" % (px(statistics.median(r["err_px_p95"] for r in best)),
+                                                         kb(statistics.median(r["bytes"] for r in best)), len(best), len(here)) if best else "–")
+            lines.append(line)
+    return table(["#metres up", "#triangles"] + ["%s, %s" % (kind, "on" if panorama else "off") for kind, panorama in families], lines)
+
+
 def settings_table(rows):
     """Every setting over all grounds and links at one height: does one value suit all?"""
     together = front_rule.points(front_rule.judged(rows))
@@ -171,6 +190,7 @@ def write(out, rows, target, window_s, refused):
         "Diamonds are named settings. Dashed: %d triangles, %g px.\n" % (target["triangles"], target["err_px_p95"]),
         *["### %s, error against %s\n\n![error against %s over %s](%s)\n" % (link, what, what, link, name) for link, what, name in plots],
         "## The least error within a frame's triangles\n", within_table(main),
+        "By measure, with panoramas (on) and without (off); depth: C with a limit of depth. Medians over grounds and links.\n", families_table(main),
         "## Settings over all grounds and links\n", "Medians and the most.\n",
         *["### %.0f m\n\n%s" % (height, settings_table([row for row in main if row["height_m"] == height])) for height in heights],
         "## The front at each point\n", "Named settings: %s.\n" % ", ".join("**%s**" % name for name in named),
