@@ -75,6 +75,9 @@ DATA = (
 TRINIDAD = "--scale 0.3048780488"
 DENSE_WINDOW, DENSE = "780 300 480 480", TRINIDAD + " --densify 8"
 
+STANDING_STILL = "--backend none --seconds 0 --settle 0".split()
+WRONG_USAGE = 2  # a program's exit status
+
 Ground = collections.namedtuple("Ground", "name pack highest_m")
 Flight = collections.namedtuple("Flight", "ground course height_m speed_kmh link settle_s setting kind options diff")
 COLUMNS = ("ground course height_m speed_kmh link setting kind options triangles bytes bytes_flight err_px_p95 err_px_rms skyline_px_rms "
@@ -159,13 +162,11 @@ class Sweep:
         for ground in grounds:
             self.packs[ground.name] = hash_of(ground.pack)
             self.caches[ground.name] = "%s/%s.ground" % (self.out, ground.name)
-            run([self.fly, "--pack", ground.pack, "--ground-cache", self.caches[ground.name], "--audit", "on", "--backend", "none", "--seconds",
-                 "0", "--settle", "0"])
+            run([self.fly, "--pack", ground.pack, "--ground-cache", self.caches[ground.name], "--audit", "on", *STANDING_STILL])
         refused = []
         for name, options in NAMED + SWEPT:
-            probe = [self.fly, "--pack", grounds[0].pack, "--backend", "none", "--seconds", "0", "--settle", "0", *options.split()]
-            code = subprocess.run(probe, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False).returncode
-            if code == 2:
+            probe = [self.fly, "--pack", grounds[0].pack, *STANDING_STILL, *options.split()]
+            if subprocess.run(probe, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False).returncode == WRONG_USAGE:
                 refused.append(name)
         return refused
 
@@ -208,13 +209,15 @@ class Sweep:
         after = [r for r in rows if r["t_s"] > flight.settle_s]
         row = {"ground": flight.ground.name, "course": flight.course, "height_m": flight.height_m, "speed_kmh": flight.speed_kmh,
                "link": flight.link, "setting": flight.setting, "kind": flight.kind, "options": flight.options, "key": self.key(flight),
-               "program": self.program, "bytes": after[-1]["bytes_down"], "bytes_flight": after[-1]["bytes_down"] - before[-1]["bytes_down"],
+               "program": self.program, "bytes": after[-1]["bytes_down"],
+               "bytes_flight": after[-1]["bytes_down"] - before[-1]["bytes_down"],
                "pool_full": after[-1]["pool_full"], "diff_mean": None, "ssim": None}
         for name in ("triangles", "err_px_p95", "err_px_rms", "skyline_px_rms", "undrawn_px_percent", "panorama_px_percent"):
             row[name] = mean(after, name)
         row["windows"] = [self.window(after, flight.settle_s + at) for at in range(0, FLOWN_S, WINDOW_S)]
         if flight.diff:
-            pictures = [r for r in self.rows_of(flight, "--backend soft --diff on --sample %d" % DIFF_SAMPLE_S) if r["t_s"] > flight.settle_s]
+            pictures = self.rows_of(flight, "--backend soft --diff on --sample %d" % DIFF_SAMPLE_S)
+            pictures = [r for r in pictures if r["t_s"] > flight.settle_s]
             row["diff_mean"], row["ssim"] = mean(pictures, "diff_mean"), mean(pictures, "ssim")
         return row
 
@@ -278,7 +281,9 @@ def mean(rows, name):
 
 
 def text_of(value):
-    return "" if value is None else "%.6g" % value if isinstance(value, float) and value != int(value) else str(value if isinstance(value, str) else int(value))
+    if value is None or isinstance(value, str):
+        return value or ""
+    return str(int(value)) if value == int(value) else "%.6g" % value
 
 
 def pack(row):
@@ -323,9 +328,11 @@ def parse():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bin")
     parser.add_argument("out")
-    parser.add_argument("--grounds", type=words, default=["trinidad", "dense"] if QUICK else None, help="trinidad,dense,%s" % ",".join(s.name for s in DATA))
-    parser.add_argument("--heights", type=lambda text: [int(h) for h in words(text)], default=list(HEIGHTS))
-    parser.add_argument("--links", type=words, default=list(LINKS))
+    parser.add_argument("--grounds", type=words, default=["trinidad", "dense"] if QUICK else None,
+                        help="of " + ",".join(["trinidad", "dense"] + [source.name for source in DATA]))
+    parser.add_argument("--heights", type=lambda text: [int(h) for h in words(text)], default=list(HEIGHTS),
+                        help="of " + ",".join("%d" % h for h in HEIGHTS))
+    parser.add_argument("--links", type=words, default=list(LINKS), help="of " + ",".join(LINKS))
     options = parser.parse_args()
     if not set(options.heights) <= set(HEIGHTS) or not set(options.links) <= set(LINKS):
         parser.error("heights are of %s, links of %s" % (list(HEIGHTS), list(LINKS)))

@@ -108,21 +108,24 @@ def within_table(rows):
     return table(["where"] + ["within %d triangles" % budget for budget in BUDGETS], lines)
 
 
+def family_of(row):
+    return front_plot.kind_of(row["setting"]), front_plot.has_panorama(row["setting"])
+
+
 def families_table(rows):
-    """Which measure, and with panoramas or without: the least error of each kind of setting within a budget, as median over the points at which
-    it has one, and its bytes."""
-    families = dict.fromkeys((front_plot.kind_of(row["setting"]), front_plot.has_panorama(row["setting"])) for row in rows if row["kind"] == "swept")
+    """Which measure, and with panoramas or without: the least error of each kind of setting within a budget, as median over the
+    points at which it has one, and its bytes."""
+    families = list(dict.fromkeys(family_of(row) for row in rows if row["kind"] == "swept"))
     together, lines = front_rule.points(front_rule.judged(rows)), []
     for height in sorted({row["height_m"] for row in rows}):
         here = [group for group in together.values() if group[0]["height_m"] == height]
         for budget in BUDGETS:
             line = ["%.0f" % height, budget]
             for family in families:
-                mine = [[r for r in group if r["kind"] == "swept" and (front_plot.kind_of(r["setting"]), front_plot.has_panorama(r["setting"])) == family]
-                        for group in here]
+                mine = [[row for row in group if row["kind"] == "swept" and family_of(row) == family] for group in here]
                 best = [row for row in (front_rule.within(group, budget) for group in mine) if row]
-                line.append("%s px, %s kB (%d of %d)" % (px(statistics.median(r["err_px_p95"] for r in best)),
-                                                         kb(statistics.median(r["bytes"] for r in best)), len(best), len(here)) if best else "–")
+                middle = lambda name: statistics.median(row[name] for row in best)
+                line.append("%s px, %s kB (%d of %d)" % (px(middle("err_px_p95")), kb(middle("bytes")), len(best), len(here)) if best else "–")
             lines.append(line)
     return table(["#metres up", "#triangles"] + ["%s, %s" % (kind, "on" if panorama else "off") for kind, panorama in families], lines)
 
