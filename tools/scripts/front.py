@@ -35,7 +35,7 @@ NAMED += [("balance %d" % n, "--balance %d" % n) for n in BALANCED]
 
 # What they are judged against: measure x value x panorama, and round some of them depth, back plane and face size, one at a time.
 C = "0.5 0.7 1 1.4 2 3 4.5 6 9".split()
-PIXELS = "0.5 0.7 1 1.4 2 2.8 4 5.6 8 11 16".split()
+PIXELS = "0.5 0.7 1 1.4 2 2.8 4 5.6 8 11 16 32".split()
 DEPTHS = "1:5 2:5 3:4 3:5 3:6 5:6 9:8".split()
 SWEPT = [("%s %s" % (quality, panorama), "--quality %s --panorama %s" % (quality, panorama))
          for quality in [c + ":0" for c in C] + DEPTHS + ["px:" + e for e in PIXELS] for panorama in ("on", "off")]

@@ -31,7 +31,8 @@ def short(value):
 
 
 def label(setting):
-    return {"default": "D", "low": "L", "medium": "M", "high": "H", "paper-low": "pL", "paper-high": "pH"}.get(setting, setting.replace("balance ", "b"))
+    short_names = {"default": "D", "low": "L", "medium": "M", "high": "H", "paper-low": "pL", "paper-high": "pH"}
+    return short_names.get(setting) or "b" + short(float(setting.split()[1]))
 
 
 class Panel:
@@ -88,18 +89,24 @@ class Panel:
                 self.svg.append('<circle cx="%.1f" cy="%.1f" r="2.8" %s>%s</circle>' % (x, y, style, title))
 
     def named(self, rows):
-        """Diamonds, each with a short name to its right, moved down where another stands there."""
-        taken = []
-        for row in sorted(rows, key=lambda row: self.place(row)[::-1]):
-            x, y = self.place(row)
-            self.svg.append('<path d="M%.1f %.1f l5 5 l-5 5 l-5 -5 z" fill="#e8c400" stroke="#000"><title>%s</title></path>' % (x, y - 5, row["setting"]))
-            left = x > self.x + PANEL[0] - 40
-            low = y
-            while any(abs(low - other) < 9 and abs(x - across) < 34 for across, other in taken):
-                low += 3
-            taken.append((x, low))
-            self.svg.append('<text x="%.1f" y="%.1f" class="n" text-anchor="%s">%s</text>' % (x - 7 if left else x + 7, low + 3, "end" if left else "start",
-                                                                                              label(row["setting"])))
+        """Diamonds, each with a short name beside it where there is room."""
+        places = [(row["setting"], *self.place(row)) for row in rows]
+        taken = [(x - 5, y - 5, x + 5, y + 5) for _, x, y in places]
+        for setting, x, y in places:
+            self.svg.append('<path d="M%.1f %.1f l5 5 l-5 5 l-5 -5 z" fill="#e8c400" stroke="#000"><title>%s</title></path>' % (x, y - 5, setting))
+        for setting, x, y in places:
+            width = 6 * len(label(setting))
+            boxes = [(left, low - 8, left + width, low) for away in range(0, 60, 9) for left, low in (
+                (x + 7, y + 3 - away), (x - 7 - width, y + 3 - away), (x + 7, y + 3 + away), (x - 7 - width, y + 3 + away),
+                (x - width / 2, y - 7 - away), (x - width / 2, y + 15 + away))]
+            inside = [b for b in boxes if b[0] > self.x and b[2] < self.x + PANEL[0] + 4 and b[1] > self.y and b[3] < self.y + PANEL[1]]
+            box = next((b for b in inside if not any(overlap(b, other) for other in taken)), boxes[0])
+            taken.append(box)
+            self.svg.append('<text x="%.1f" y="%.1f" class="n">%s</text>' % (box[0], box[3], label(setting)))
+
+
+def overlap(one, other):
+    return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]
 
 
 def legend(svg):
@@ -120,7 +127,7 @@ def write(out, link, what, rows, target):
     width = max(LEFT + len(heights) * (PANEL[0] + GAP[0]) + 10, 720)
     height = TOP + len(grounds) * (PANEL[1] + GAP[1]) + FOOT
     svg = ['<svg xmlns="http://www.w3.org/2000/svg" width="%d" height="%d" viewBox="0 0 %d %d">' % (width, height, width, height),
-           '<style>text{font:11px sans-serif}.s{font-size:9px;fill:#555}.n{font-size:9px;font-weight:bold}</style>',
+           '<style>text{font:11px sans-serif}.s{font-size:9px;fill:#555}.n{font-size:9px;font-weight:bold;paint-order:stroke;stroke:#fff;stroke-width:2px}</style>',
            '<rect width="100%" height="100%" fill="#fff"/>',
            '<text x="%d" y="18" style="font-size:14px">Error (p95, px) against %s over %s</text>' % (LEFT, "triangles a frame" if what == "triangles" else "bytes of the flight", link)]
     legend(svg)
