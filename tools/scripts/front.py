@@ -84,9 +84,8 @@ COLUMNS = ("ground course height_m speed_kmh link setting kind options triangles
            "undrawn_px_percent panorama_px_percent pool_full diff_mean ssim windows program key").split()
 
 
-def die(text):
-    print("front: " + text, file=sys.stderr)
-    sys.exit(1)
+class Failure(Exception):
+    """One line for stderr."""
 
 
 def say(text):
@@ -96,7 +95,7 @@ def say(text):
 def run(command):
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
     if done.returncode:
-        die((done.stderr.strip().splitlines() or ["%s ended with %d" % (command[0], done.returncode)])[-1])
+        raise Failure((done.stderr.strip().splitlines() or ["%s ended with %d" % (command[0], done.returncode)])[-1])
     return done.stdout
 
 
@@ -344,7 +343,7 @@ def main():
     os.makedirs(options.out, exist_ok=True)
     grounds = Grounds(options.bin, options.out).find(options.grounds)
     if not grounds:
-        die("no such ground here: %s" % ",".join(options.grounds or []))
+        raise Failure("no such ground here: %s" % ",".join(options.grounds or []))
     if QUICK:
         options.out += "/quick"
         os.makedirs(options.out, exist_ok=True)
@@ -360,4 +359,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except Failure as failure:
+        sys.exit("front: %s" % failure)
