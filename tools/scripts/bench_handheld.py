@@ -18,7 +18,7 @@ from handheld_rows import MARKS, NoRow, phase_of, without_row
 SECONDS, PLACE_SECONDS, SWEEP_SECONDS, SETTLE = "20", "10", "6", 20
 START, PLACES = "0.4", ("0.2", "0.3", "0.4", "0.5", "0.6")  # parts of the diagonal
 FLIGHT = ["--backend", "none", "--link", "umts", "--settle", str(SETTLE), "--sample", "0.5", "--audit", "on", "--check", "off"]
-SWEEP = ["2:4", "3:4", "4:5", "6:5", "px:4", "px:2", "px:1"]
+SWEEP = ["2:4", "3:4", "4:5", "6:5", "px:4", "px:2", "px:1", "low", "medium", "high"]
 SWEEP_MEMORY = "16M"  # where a pool is full the flight depends on its capacity, which differs between machines
 BLOCKS = ("8M", "4M", "2M", "1M", "768K")
 TARGET = 4.0e6

@@ -29,7 +29,7 @@ QUICK = bool(os.environ.get("QUICK"))
 
 # ---- the settings: name, options of farfield-fly; each list may be changed freely ----
 # What must lie on the front. One that the program does not know is left out, and front.md says so.
-NAMED = [("default", "")] + [(name, "--quality " + name) for name in ("low", "medium", "high", "paper-low", "paper-high")]
+NAMED = [("default", "")] + [(name, "--quality " + name) for name in ("low", "medium", "high")]
 BALANCED = [1500, 2500, 5000, 10000, 20000]
 NAMED += [("balance %d" % n, "--balance %d" % n) for n in BALANCED]
 
