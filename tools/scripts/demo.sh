@@ -54,7 +54,7 @@ server=$(address_of "$out/server.log" farfield-server)
 "$bin/farfield-link" --profile umts --listen 127.0.0.1:0 --connect "$server" --seed 1 >"$out/link.log" 2>&1 &
 link_pid=$!
 link=$(address_of "$out/link.log" farfield-link)
-fly live-umts umts 25 on 240x320 --settle 10 --backend gles1 --every 5 --server "$link"
+fly live-umts umts 25 auto 240x320 --settle 10 --backend gles1 --every 5 --server "$link"
 stop
 server_pid="" link_pid=""
 
