@@ -7,6 +7,7 @@
 #define HASH_PRIME         UINT64_C(0x100000001b3)
 #define ANSWER_BYTES_START 200u /* before the first answer of a kind: Hybrid's 9x9 node is 182 */
 #define IN_FLIGHT_ALWAYS   2u
+#define RESERVE_SHARE      8u /* of the bytes that may be in flight */
 
 /* answer_q4 has a mean for every level of a key */
 FF_STATIC_ASSERT(sizeof((ff_requests *)0)->answer_q4[0] ==
@@ -61,6 +62,8 @@ static void leave_state(ff_requests *requests, const ff_request *request)
         counts->in_flight--;
         counts->of[request->kind].in_flight--;
         counts->bytes_in_flight -= request->bytes_expected;
+        counts->reserve_in_flight -= request->rank == FF_CLASS_RESERVE;
+        FF_ASSERT(counts->reserve_in_flight <= counts->in_flight);
     } else if (request->state == FF_REQUEST_ARRIVING) {
         FF_ASSERT(counts->arriving > 0);
         counts->arriving--;
@@ -153,7 +156,7 @@ static ff_request *slot_for_new(ff_requests *requests)
 int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
                      enum ff_request_class rank, uint32_t priority, const ff_get_panorama *panorama)
 {
-    FF_ASSERT(rank <= FF_CLASS_PREFETCH);
+    FF_ASSERT(rank <= FF_CLASS_RESERVE);
     FF_ASSERT((panorama != NULL) == (ff_kind[kind].asks == FF_ASKS_PANORAMA));
     sys_mutex_lock(&requests->mutex);
     ff_request *request = find(requests, kind, key);
@@ -293,7 +296,20 @@ static void count_sent(ff_requests *requests, const ff_request *request)
     count_one(&counts->of[request->kind].in_flight, &counts->of[request->kind].in_flight_high);
     FF_ASSERT(counts->bytes_in_flight <= UINT32_MAX - request->bytes_expected);
     counts->bytes_in_flight += request->bytes_expected;
+    counts->reserve_sent += request->rank == FF_CLASS_RESERVE;
+    counts->reserve_in_flight += request->rank == FF_CLASS_RESERVE;
     hash_request(&requests->hash, request);
+}
+
+/* The last class that may leave now: the reserve is for a link that has nothing else to do. */
+static enum ff_request_class last_class(const ff_request_counts *counts,
+                                        uint32_t bytes_in_flight_max, int prefetch)
+{
+    if (!prefetch) return FF_CLASS_IN_VIEW;
+    int idle = counts->in_flight == counts->reserve_in_flight &&
+               (!counts->in_flight ||
+                counts->bytes_in_flight < bytes_in_flight_max / RESERVE_SHARE);
+    return idle ? FF_CLASS_RESERVE : FF_CLASS_PREFETCH;
 }
 
 int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_max,
@@ -304,10 +320,10 @@ int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_m
     const ff_request_counts *counts = &requests->counts;
     int room = counts->in_flight < IN_FLIGHT_ALWAYS ||
                (counts->in_flight < in_flight_max && counts->bytes_in_flight < bytes_in_flight_max);
+    enum ff_request_class last = last_class(counts, bytes_in_flight_max, prefetch);
     for (unsigned i = 0; room && i < requests->slot_count; i++) {
         ff_request *request = &requests->slot[i];
-        if (request->state == FF_REQUEST_QUEUED &&
-            (prefetch || request->rank != FF_CLASS_PREFETCH) &&
+        if (request->state == FF_REQUEST_QUEUED && request->rank <= last &&
             (!best || goes_before(request, best)))
             best = request;
     }
@@ -365,6 +381,7 @@ void ff_requests_arrived(ff_requests *requests, uint16_t id, uint32_t bytes)
     leave_state(requests, request);
     request->state = FF_REQUEST_ARRIVING;
     requests->counts.arriving++;
+    if (request->rank == FF_CLASS_RESERVE) requests->counts.reserve_bytes += bytes;
     if (bytes) {
         uint32_t *mean_q4 = &requests->answer_q4[request->kind][level_of(request)];
         *mean_q4 -= *mean_q4 >> 3;
@@ -390,13 +407,13 @@ void ff_requests_lost(ff_requests *requests)
     sys_mutex_unlock(&requests->mutex);
 }
 
-int ff_requests_waiting(ff_requests *requests)
+int ff_requests_waiting(ff_requests *requests, enum ff_request_class last)
 {
     int waiting = 0;
     sys_mutex_lock(&requests->mutex);
     for (unsigned i = 0; !waiting && i < requests->slot_count; i++)
-        waiting = requests->slot[i].state == FF_REQUEST_QUEUED &&
-                  requests->slot[i].rank <= FF_CLASS_IN_VIEW;
+        waiting = requests->slot[i].state == FF_REQUEST_QUEUED && requests->slot[i].marked &&
+                  requests->slot[i].rank <= last;
     sys_mutex_unlock(&requests->mutex);
     return waiting;
 }

@@ -41,7 +41,7 @@ enum ff_request_state {
     FF_REQUEST_CANCELLED
 };
 /* A request of a lower class goes first, whatever its value. */
-enum ff_request_class { FF_CLASS_FIRST, FF_CLASS_IN_VIEW, FF_CLASS_PREFETCH };
+enum ff_request_class { FF_CLASS_FIRST, FF_CLASS_IN_VIEW, FF_CLASS_PREFETCH, FF_CLASS_RESERVE };
 
 typedef struct ff_request {
     ff_key key;              /* what it means says its kind: enum ff_kind_asks */
@@ -61,6 +61,8 @@ typedef struct ff_request_counts {
     uint32_t queued, queued_high, in_flight, in_flight_high, arriving;
     uint32_t bytes_in_flight; /* expected */
     uint32_t held_high;       /* slots in use at once */
+    /* of FF_CLASS_RESERVE, as they were sent; bytes of the answers, without headers */
+    uint32_t reserve_sent, reserve_in_flight, reserve_bytes;
     struct {
         uint32_t sent, in_flight, in_flight_high;
     } of[FF_KIND_COUNT];
@@ -94,8 +96,8 @@ int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
 void ff_requests_rank_end(ff_requests *requests);
 /* Bytes that an answer of a kind is expected to have, of a node's level. */
 uint32_t ff_requests_answer_bytes(ff_requests *requests, enum ff_kind kind, unsigned level);
-/* 1 when something in view is queued: wanted and not yet sent. */
-int ff_requests_waiting(ff_requests *requests);
+/* 1 when something of class `last` or one before it is queued: wanted and not yet sent. */
+int ff_requests_waiting(ff_requests *requests, enum ff_request_class last);
 /* Cancels a request: drops a queued one, has a sent one cancelled by the server. 1 when it is still
  * under way. */
 int ff_requests_cancel(ff_requests *requests, enum ff_kind kind, ff_key key);
@@ -107,12 +109,15 @@ void ff_requests_finish(ff_requests *requests, uint16_t id, enum ff_request_stat
 /* ---- worker ---- */
 /* Takes the most urgent queued request while fewer than `in_flight_max` and `bytes_in_flight_max`
  * are out (two are always allowed): moves it to SENT, *copy describes it. prefetch 0 leaves the
- * lowest class alone. 1, or 0 when there is none. */
+ * classes from FF_CLASS_PREFETCH on alone. The reserve leaves while nothing else is out and only an
+ * eighth of bytes_in_flight_max of its own, one at least: what comes into view then waits for no
+ * more than that. 1, or 0 when there is none. */
 int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_max,
                      uint32_t bytes_in_flight_max, int prefetch, ff_request *copy);
 /* A sent request to be cancelled on the wire: its id, once, or 0. */
 uint16_t ff_requests_next_cancel(ff_requests *requests);
-/* A request waiting for an answer: 1 and *copy, or 0: unknown id (stale or nonsense). */
+/* A request waiting for an answer: 1 and *copy, or 0: unknown id (stale or nonsense). Checks ask
+ * it, too. */
 int ff_requests_answered(ff_requests *requests, uint16_t id, ff_request *copy);
 /* SENT to ARRIVING once the answer lies on the new-data list; bytes: size of the answer, for the
  * means. */

@@ -68,7 +68,7 @@ void ff_client_balance_step(ff_client *client, const c3d_camera *camera, int64_t
         sample.bytes_down = shared.bytes_down;
         sample.rate_bytes_s = shared.bytes_s;
         sample.rtt_us = shared.rtt_us;
-        sample.waiting = ff_requests_waiting(&client->requests) ||
+        sample.waiting = ff_requests_waiting(&client->requests, FF_CLASS_IN_VIEW) ||
                          ff_panorama_late(&client->panorama, camera);
     }
     /* all of the client's own ground is here: the panorama goes */

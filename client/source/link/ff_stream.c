@@ -213,9 +213,8 @@ static int ask(ff_stream *stream, int64_t now_us)
         }
         moved = 1;
     }
-    sys_mutex_lock(&requests->mutex);
-    stream->link.window_full |= requests->counts.queued != 0; /* more requests would have gone */
-    sys_mutex_unlock(&requests->mutex);
+    /* more requests would have gone; the reserve waits for other reasons */
+    stream->link.window_full |= (uint8_t)ff_requests_waiting(requests, FF_CLASS_PREFETCH);
     return moved;
 }
 
