@@ -1,7 +1,7 @@
 /* Who makes room when the pool is full. Roots in the window come before all refinements, nearer
  * before farther; refinements by the value of their split. Something is dropped only for something
  * strictly more valuable, so under a still camera every exchange raises the value of what is held:
- * a full pool settles. */
+ * a full pool settles. What is not in view drives out only what nobody wants. */
 #include "ff_tree_local.h"
 
 #define IDLE_SHIFT 8 /* outside the window children are worth 1/256 of what they are inside */
@@ -53,7 +53,13 @@ static uint32_t family_worth(const ff_tree *tree, const ff_node *parent)
 uint32_t ff_evict_limit(const ff_tree *tree, const ff_node *node)
 {
     uint32_t worth = split_worth(tree, node);
-    if (node->flags & FF_NODE_WANTED || tree->quality.sigma_q8 <= 256) return worth;
+    if (node->flags & FF_NODE_WANTED) {
+        ff_box box;
+        ff_node_box(tree, node, &box);
+        int needed = node->flags & FF_NODE_NEEDED && !ff_tile_waits(tree, node);
+        return needed || ff_box_in_view(tree, &box) ? worth : FF_VALUE_ONE;
+    }
+    if (tree->quality.sigma_q8 <= 256) return worth;
     uint32_t cached = (uint32_t)((FF_VALUE_ONE << 8) / (uint32_t)tree->quality.sigma_q8);
     FF_ASSERT(cached < FF_VALUE_ONE);
     return worth < cached ? worth : cached;
@@ -74,9 +80,18 @@ uint32_t ff_evict_candidates(const ff_tree *tree, uint64_t *keys)
     return count;
 }
 
-int ff_room_take(const ff_tree *tree, ff_room *room, const ff_node *node)
+ff_room ff_room_make(const ff_tree *tree, uint64_t *victim, uint32_t taken, uint64_t needed)
 {
-    uint32_t limit = ff_evict_limit(tree, node), needed = ff_family_size(tree, node->key);
+    ff_room room = { victim, 0, 0, tree->free_count > taken ? tree->free_count - taken : 0 };
+    if (room.free < needed) {
+        room.victims = ff_evict_candidates(tree, victim);
+        ff_sort_keys(victim, room.victims);
+    }
+    return room;
+}
+
+int ff_room_take_slots(const ff_tree *tree, ff_room *room, uint32_t needed, uint32_t limit)
+{
     FF_ASSERT(room->next <= room->victims && room->free <= tree->node_count);
     while (room->free < needed && room->next < room->victims &&
            room->victim[room->next] >> FF_SLOT_BITS < limit) {
@@ -87,6 +102,13 @@ int ff_room_take(const ff_tree *tree, ff_room *room, const ff_node *node)
     if (room->free < needed) return 0;
     room->free -= needed;
     return 1;
+}
+
+int ff_room_take(const ff_tree *tree, ff_room *room, const ff_node *node)
+{
+    uint32_t needed = ff_family_size(tree, node->key);
+    return ff_room_take_slots(tree, room, needed,
+                              room->free < needed ? ff_evict_limit(tree, node) : 0);
 }
 
 /* Drops the least valuable thing worth less than `below`, sparing `keep` and the family it is
@@ -136,7 +158,10 @@ int ff_evict_for_root(ff_tree *tree, uint32_t tile)
 {
     if (tree->free_count > 0) return 1;
     if (!tree->has_view || !ff_tile_active(tree, tile)) return 0;
-    if (drop_one(tree, FF_SLOT_NONE, UINT64_MAX)) return 1;
+    ff_box box;
+    ff_tile_box(tree, tile, &box);
+    if (drop_one(tree, FF_SLOT_NONE, ff_box_in_view(tree, &box) ? UINT64_MAX : FF_VALUE_ONE))
+        return 1;
     int64_t farthest = ff_tile_distance(tree, tile);
     uint32_t victim = FF_SLOT_NONE;
     for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {

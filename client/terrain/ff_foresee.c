@@ -57,9 +57,12 @@ static void foresee_children_of(const ff_tree *tree, foresight *f, const ff_node
     uint32_t next = ff_key_level(node->key) + 1;
     FF_ASSERT(!ff_node_has_children(node));
     if (next >= ff_terrain_levels(&tree->info) ||
-        (tree->quality.depth_max && next >= tree->quality.depth_max) ||
-        node->flags & FF_NODE_NEEDED || node->error_code == 0)
+        (tree->quality.depth_max && next >= tree->quality.depth_max) || node->error_code == 0)
         return;
+    if (node->flags & FF_NODE_NEEDED) { /* wished for already, unless its tile waits for it */
+        if (ff_tile_waits(tree, node)) note(f, node->key, FF_KIND_REFINEMENT, node->value);
+        return;
+    }
     ff_box here, there;
     ff_node_box(tree, node, &here);
     ff_node_box(&f->ahead, node, &there);
@@ -79,14 +82,15 @@ static void foresee_cut(const ff_tree *tree, foresight *f)
             foresee_children_of(tree, f, tree->drawn[i].node);
 }
 
-/* Notes refinements of held tiles that will come into the window of tiles. As bare roots they would
- * keep the ground beside them coarse until they are refined. */
+/* Notes refinements of held tiles that are not in the cut: those that will come into the window of
+ * tiles, and those that wait to join. As bare roots they would keep the ground beside them coarse
+ * until they are refined. */
 static void foresee_tiles(const ff_tree *tree, foresight *f)
 {
     uint32_t stack[3 * FF_LEVELS_MAX + 1];
     for (uint32_t root = tree->root_head; root != FF_SLOT_NONE; root = tree->node[root].list_next) {
         uint32_t tile = ff_key_tile(tree->node[root].key), depth = 0;
-        if (ff_tile_active(tree, tile) || !ff_tile_active(&f->ahead, tile)) continue;
+        if (tree->node[root].flags & FF_NODE_ACTIVE || !ff_tile_active(&f->ahead, tile)) continue;
         for (stack[depth++] = root; depth > 0;) {
             const ff_node *node = &tree->node[stack[--depth]];
             if (!ff_node_has_children(node)) {
@@ -115,11 +119,7 @@ uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], int32_t y
     foresee_cut(tree, &f);
     foresee_tiles(tree, &f);
 
-    ff_room room = { tree->sort, 0, 0, tree->free_count };
-    if (room.free < 4 * f.count) {
-        room.victims = ff_evict_candidates(tree, tree->sort);
-        ff_sort_keys(tree->sort, room.victims);
-    }
+    ff_room room = ff_room_make(tree, tree->sort, 0, 4 * f.count);
     uint32_t kept = 0;
     for (uint32_t i = 0; i < f.count; i++) {
         const ff_wish *wish = &list[i];

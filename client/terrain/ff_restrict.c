@@ -66,9 +66,66 @@ static int is_needed(const ff_tree *tree, const ff_node *node)
     return ff_box_in_view(tree, &box);
 }
 
-/* From the finest level up: what a level adds concerns coarser levels only. */
+/* ---- new tiles ---- */
+
+/* A root that comes for the reserve would at once forbid its neighbours in view to be more than a
+ * level finer, and the picture would become coarser by what it gained. So out of view a new tile
+ * joins the cut once all has come of it that nodes in view need. In view it joins at once: empty
+ * ground is worse. */
+
+static int is_new(const ff_node *root)
+{
+    return (root->flags & (FF_NODE_ACTIVE | FF_NODE_JOINED)) == FF_NODE_ACTIVE;
+}
+
+/* 1 when a tile lacks children that something in view needs. */
+static int lacks_needed(const ff_tree *tree, uint32_t tile)
+{
+    for (uint32_t level = 0; level < FF_LEVELS_MAX; level++)
+        for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE;
+             slot = tree->node[slot].want_next) {
+            const ff_node *node = &tree->node[slot];
+            if (ff_key_tile(node->key) == tile && node->flags & FF_NODE_NEEDED &&
+                !ff_node_has_children(node))
+                return 1;
+        }
+    return 0;
+}
+
+static int has_new_tiles(const ff_tree *tree)
+{
+    for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next)
+        if (is_new(&tree->node[slot])) return 1;
+    return 0;
+}
+
+static void join_tiles(ff_tree *tree)
+{
+    for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
+        ff_node *root = &tree->node[slot];
+        ff_box box;
+        if (!(root->flags & FF_NODE_ACTIVE)) root->flags &= (uint8_t)~FF_NODE_JOINED;
+        if (!is_new(root)) continue;
+        ff_node_box(tree, root, &box);
+        if (!ff_box_in_view(tree, &box) && lacks_needed(tree, ff_key_tile(root->key)))
+            root->flags &= (uint8_t)~FF_NODE_ACTIVE;
+        else
+            root->flags |= FF_NODE_JOINED;
+    }
+}
+
+int ff_tile_waits(const ff_tree *tree, const ff_node *node)
+{
+    uint32_t root = ff_tree_find(tree, ff_key_make(ff_key_tile(node->key), 0, 0));
+    FF_ASSERT(root != FF_SLOT_NONE);
+    return !(tree->node[root].flags & FF_NODE_ACTIVE);
+}
+
+/* From the finest level up: what a level adds concerns coarser levels only. Through nodes that have
+ * their children only a new tile can be needed. */
 void ff_want_close(ff_tree *tree)
 {
+    int through = has_new_tiles(tree);
     for (uint32_t level = FF_LEVELS_MAX; level-- > 1;) {
         for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE;
              slot = tree->node[slot].want_next) {
@@ -81,9 +138,11 @@ void ff_want_close(ff_tree *tree)
                 if (nearest == FF_SLOT_NONE) continue;
                 FF_ASSERT(ff_key_level(tree->node[nearest].key) < level);
                 ff_want(tree, nearest, node->value);
-                if (!ff_node_has_children(&tree->node[nearest]) && is_needed(tree, node))
+                if ((through || !ff_node_has_children(&tree->node[nearest])) &&
+                    is_needed(tree, node))
                     tree->node[nearest].flags |= FF_NODE_NEEDED;
             }
         }
     }
+    join_tiles(tree);
 }

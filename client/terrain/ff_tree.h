@@ -130,6 +130,13 @@ uint32_t ff_tree_wishes(const ff_tree *tree, const ff_wish **list);
 uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], int32_t yaw, int32_t pitch,
                          ff_wish *list, uint32_t capacity);
 
+/* The reserve: what the viewer would miss most if it turned at once. Missing roots out of view, and
+ * refinements out of view of wanted nodes whose error, looked at, would pass a twentieth of the
+ * picture's longer side; most urgent first, roots before refinements, at most `capacity`. Only what
+ * finds room without driving out anything that is wanted; roots while they fill no more than a
+ * quarter of the pool. priority of refinements: pixels Q8, in either measure. */
+uint32_t ff_tree_reserve(const ff_tree *tree, ff_wish *list, uint32_t capacity);
+
 /* Vertices of a node for c3d: x, y = column, row (0..2^k), z = height - 32768, colour from height
  * and slope (ff_shade.h) or white when `shaded` is 0. `out` has ff_node_side()^2 entries. Draw with
  * origin ff_drawn.origin_wu - camera, xy_scale cell_wu, z_scale_q16 = hscale_q24. */

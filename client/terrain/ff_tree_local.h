@@ -18,13 +18,15 @@ FF_STATIC_ASSERT(FF_SLOT_NONE == UINT32_MAX); /* so only four of them have all b
 
 enum ff_node_flags {
     FF_NODE_HELD = 1,
-    FF_NODE_ACTIVE = 2, /* a root inside the window (as of the last selection) */
+    FF_NODE_ACTIVE = 2, /* a root that takes part in the last selection: inside the window */
     /* its children are desired, by itself or by a neighbour that may not be two levels finer */
     FF_NODE_WANTED = 4,
     FF_NODE_SPLIT = 8,   /* the cut runs below it */
     FF_NODE_NEEDED = 16, /* something in view cannot split before its children are here */
     FF_NODE_FILLED = 32, /* some of its ground was void in the source */
-    FF_NODE_KEPT = FF_NODE_HELD | FF_NODE_FILLED /* by selections */
+    /* a root that has been in the cut since it came into the window */
+    FF_NODE_JOINED = 64,
+    FF_NODE_KEPT = FF_NODE_HELD | FF_NODE_FILLED | FF_NODE_JOINED /* by selections */
 };
 
 struct ff_node {
@@ -137,10 +139,15 @@ typedef struct ff_room {
     const uint64_t *victim; /* sorted candidates */
     uint32_t victims, next, free;
 } ff_room;
+/* The free slots but `taken`, and victims in `victim` where they are fewer than `needed`. */
+ff_room ff_room_make(const ff_tree *tree, uint64_t *victim, uint32_t taken, uint64_t needed);
 /* Takes room for the children of `node` out of it. 1 when there was enough. */
 int ff_room_take(const ff_tree *tree, ff_room *room, const ff_node *node);
-/* The children of `node` may drive out all that is worth less than this. Children that nobody wants
- * drive out only what is worth less than 1/sigma: so much is cached. */
+/* The same for `needed` slots, from victims worth less than `limit`. */
+int ff_room_take_slots(const ff_tree *tree, ff_room *room, uint32_t needed, uint32_t limit);
+/* The children of `node` may drive out all that is worth less than this. Children that are not in
+ * view drive out only what nobody wants, worth less than 1; children that nobody wants only what is
+ * worth less than 1/sigma: so much is cached. */
 uint32_t ff_evict_limit(const ff_tree *tree, const ff_node *node);
 
 /* ff_measure.c */
@@ -168,8 +175,11 @@ int ff_box_in_view(const ff_tree *tree, const ff_box *box);
 /* ff_restrict.c */
 unsigned ff_coarser_mask(const ff_tree *tree, const ff_node *node);
 void ff_want(ff_tree *tree, uint32_t slot, uint32_t value);
-/* Makes everything wanted that wanted nodes need beside them. */
+/* Makes everything wanted that wanted nodes need beside them. Then tiles out of view that are new
+ * and lack what nodes in view need there stop being active: they do not join the cut yet. */
 void ff_want_close(ff_tree *tree);
+/* 1 for a node of such a tile. */
+int ff_tile_waits(const ff_tree *tree, const ff_node *node);
 
 /* ff_limit.c. begin: puts the last selection's quality into force, for a cut to be made with.
  * again: 1 when the cut made is to be made anew, with the quality that is then in force. */

@@ -108,9 +108,8 @@ static uint32_t missing_children(ff_tree *tree)
             if (ff_node_has_children(node)) continue;
             ff_box box;
             ff_node_box(tree, node, &box);
-            uint64_t unseen = node->flags & FF_NODE_NEEDED || ff_box_in_view(tree, &box)
-                                  ? 0
-                                  : OUT_OF_VIEW;
+            int needed = node->flags & FF_NODE_NEEDED && !ff_tile_waits(tree, node);
+            uint64_t unseen = needed || ff_box_in_view(tree, &box) ? 0 : OUT_OF_VIEW;
             if (!unseen && node->value < tree->wish_value) continue;
             tree->sort[count++] = unseen | (uint64_t)(FF_VALUE_MAX - node->value) << FF_SLOT_BITS |
                                   slot;
@@ -123,12 +122,7 @@ static uint32_t missing_children(ff_tree *tree)
 static void wish_children(ff_tree *tree)
 {
     uint32_t missing = missing_children(tree), roots = tree->wish_count;
-    uint64_t *victim = tree->sort + missing;
-    ff_room room = { victim, 0, 0, tree->free_count > roots ? tree->free_count - roots : 0 };
-    if (room.free < 4 * (uint64_t)missing) {
-        room.victims = ff_evict_candidates(tree, victim);
-        ff_sort_keys(victim, room.victims);
-    }
+    ff_room room = ff_room_make(tree, tree->sort + missing, roots, 4 * (uint64_t)missing);
     /* who lacks children is not among the victims */
     FF_ASSERT(missing + room.victims <= tree->node_count - tree->free_count);
     for (uint32_t i = 0; i < missing && tree->wish_count < tree->wish_capacity; i++) {
