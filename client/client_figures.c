@@ -72,6 +72,13 @@ void ff_client_get_stats(const ff_client *client, ff_client_stats *stats)
 #undef PART
 }
 
+int ff_client_asked_for_reserve(ff_client *client, uint16_t id)
+{
+    ff_request request;
+    return ff_requests_answered(&client->requests, id, &request) &&
+           request.rank == FF_CLASS_RESERVE;
+}
+
 uint32_t ff_client_error_px_q8(const ff_client *client)
 {
     const ff_panorama *panorama = &client->panorama;

@@ -3,8 +3,11 @@
  *   IN_VIEW      refinements and images in view: pixels of error removed for each byte expected
  *   PREFETCH     ground and panorama faces that a viewer who goes on as it flies and turns will
  *                see; leaves only while the link has room and nothing else waits
- * What is not in view and will not soon be is never asked for: most of it would never be drawn. The
- * queue's contents are replaced each time; what is no longer wanted is dropped. */
+ *   RESERVE      coarse ground in every direction, for a viewer who turns at once or while the link
+ *                is silent (ff_tree_reserve), and the panorama's other faces for one who stays:
+ *                leaves only while the link is idle
+ * Nothing else is ever asked for: most of it would never be drawn. The queue's contents are
+ * replaced each time; what is no longer wanted is dropped. */
 #include "ff_client_local.h"
 #include "panorama/ff_panorama_rules.h"
 #include "../protocol/ff_assert.h"
@@ -19,6 +22,9 @@
 #define AHEAD_ROUND_TRIPS 2
 #define TURN_US           5000000
 #define TURN_ROUND_TRIPS  6
+
+/* The roots of the reserve go before all its refinements: empty ground is worse than coarse. */
+#define RESERVE_ROOT 0x8000000u
 
 /* what is in view finds room in the queue: ground, images, and the faces of the set that comes */
 FF_STATIC_ASSERT(FF_TREE_WISHES + FF_TEXTURE_WISHES + 1 <= FF_REQUESTS_QUEUED_MAX);
@@ -101,6 +107,27 @@ static void want_ahead(ff_client *client, const ahead *a)
     }
 }
 
+/* After all else: while something of another class waits, the reserve would not leave. */
+static void want_reserve(ff_client *client, const ff_view *view, int64_t now_us)
+{
+    ff_wish wish[FF_RESERVE_WISHES];
+    if (client->desc.no_reserve || ff_client_low_power(client) ||
+        ff_requests_waiting(&client->requests, FF_CLASS_PREFETCH))
+        return;
+    uint32_t count = ff_tree_reserve(client->tree, wish, FF_RESERVE_WISHES);
+    FF_ASSERT(count <= FF_RESERVE_WISHES);
+    for (uint32_t i = 0; i < count; i++) {
+        enum ff_kind kind = (enum ff_kind)wish[i].kind;
+        uint32_t priority = wish[i].priority < RESERVE_ROOT ? wish[i].priority : RESERVE_ROOT - 1;
+        if (kind == FF_KIND_ROOT) priority += RESERVE_ROOT;
+        if (!ff_refusals_final(&client->refusals, kind, wish[i].key))
+            ff_requests_want(&client->requests, kind, wish[i].key, FF_CLASS_RESERVE, priority,
+                             NULL);
+    }
+    if (client->resting && !client->all_client)
+        ff_panorama_want_reserve(&client->panorama, &client->requests, view, now_us);
+}
+
 /* Bits of the faces that the views ahead show. */
 static unsigned faces_ahead(const ff_view *view, const ahead *a)
 {
@@ -129,5 +156,6 @@ void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *qu
     want_tree(client);
     if (client->has_textures) want_textures(client, view, quality);
     want_ahead(client, &a);
+    want_reserve(client, view, now_us);
     ff_requests_rank_end(&client->requests);
 }

@@ -8,7 +8,8 @@
 #define NEAR_WU_MIN       (FF_WU_PER_METRE / 4)
 #define NEAR_WU_MAX       (4096 * FF_WU_PER_METRE)
 #define NEAR_GIVEN_WU_MAX (16384 * FF_WU_PER_METRE) /* the sky is drawn 16 times as far away */
-#define LOW_POWER_DIVISOR 2 /* C and triangles halved, pixels of error doubled */
+#define LOW_POWER_DIVISOR 2       /* C and triangles halved, pixels of error doubled */
+#define REST_US           1000000 /* who is going nowhere within this time stays */
 
 FF_STATIC_ASSERT((FF_QUALITY_ERROR_PX_MAX << 8) <= INT32_MAX / LOW_POWER_DIVISOR);
 FF_STATIC_ASSERT(0 < NEAR_WU_MIN && NEAR_WU_MIN < NEAR_WU_MAX && NEAR_WU_MAX <= INT32_MAX / 16);
@@ -123,6 +124,15 @@ static uint8_t is_far_painted(const ff_client *client, const c3d_camera *camera)
                                              ff_panorama_whole(&client->panorama, camera));
 }
 
+/* Whoever stops may have the panorama's other faces, although nothing else changes. */
+static void look_for_rest(ff_client *client)
+{
+    int32_t expected_wu[3];
+    uint8_t resting = !ff_motion_predict(&client->motion, REST_US, expected_wu);
+    if (resting && !client->resting) client->unranked = 1;
+    client->resting = resting;
+}
+
 int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
 {
     int pictures_changed = 0;
@@ -141,6 +151,7 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
     ff_client_balance_step(client, &view.camera, now_us);
     ff_motion_feed(&client->motion, now_us, camera->pos_wu);
     ff_turn_feed(&client->turn, now_us, camera->yaw, camera->pitch);
+    look_for_rest(client);
     ff_client_auto_step(client, camera, now_us);
     int hold = ff_client_low_power(client) || ff_client_own_ground(client);
     int turned = ff_panorama_update(&client->panorama, &client->requests, &view.camera,

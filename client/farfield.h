@@ -130,7 +130,8 @@ typedef struct ff_client_desc {
     uint8_t use_thread;       /* 1: ff_client_create starts a thread that calls ff_client_work */
     uint8_t use_plain_arrays; /* 1: no vertex buffers */
     uint8_t no_textures;      /* 1: images of the terrain are not asked for */
-    uint8_t no_prefetch;
+    uint8_t no_prefetch;      /* 1: what motion and turns will show is not asked for ahead */
+    uint8_t no_reserve;       /* 1: no coarse ground all round while the link is idle */
     /* requests sent and unanswered at most, default 32 */
     uint16_t in_flight_max;
     /* A connection silent this long with requests out is closed and made anew, default 60000. Never
@@ -179,7 +180,7 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera
 void ff_client_draw(ff_client *client);
 
 /* Device events; what does not concern the client is ignored. Battery low or an interruption (a
- * call): C and triangles halved, pixels of error doubled, no prefetch, no new panoramas; an
+ * call): C and triangles halved, pixels of error doubled, no prefetch, no reserve, no new panoramas; an
  * interruption also asks for nothing new, the link is just kept alive. Restored after. */
 void ff_client_event(ff_client *client, const sys_event *event);
 
@@ -244,6 +245,10 @@ int ff_client_plan(const ff_client_desc *desc, const ff_terrain_info *info,
 /* The panorama in use: 1 and where it was taken, or 0. *faces: bit per enum ff_face_name held
  * (empty ones included). */
 int ff_client_panorama(const ff_client *client, int32_t position_wu[3], unsigned *faces);
+
+/* 1 while the request of this id on the wire is out and was made for the reserve. For checks, from
+ * the thread that calls ff_client_work. */
+int ff_client_asked_for_reserve(ff_client *client, uint16_t id);
 
 /* FNV-1a hash over what is drawn (keys, border masks, heights, origins) and another one over
  * requests made, since the start: the same on every back end. */

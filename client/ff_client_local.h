@@ -24,6 +24,7 @@
 #define FF_TREE_WISHES     96u
 #define FF_TEXTURE_WISHES  24u
 #define FF_PREFETCH_WISHES 8u
+#define FF_RESERVE_WISHES  16u
 
 struct ff_client {
     ff_client_desc desc; /* defaults filled in */
@@ -64,8 +65,10 @@ struct ff_client {
     ff_refusals refusals;
 
     uint8_t has_camera, battery_low, interrupted, has_textures;
-    uint8_t dirty;    /* 1: the picture has to be made anew */
-    uint8_t unranked; /* 1: requests have to be ranked anew, because the connection was lost */
+    uint8_t dirty; /* 1: the picture has to be made anew */
+    /* 1: requests have to be ranked anew, because the connection was lost, or the viewer stopped */
+    uint8_t unranked;
+    uint8_t resting; /* the viewer stays where it is */
     unsigned show;
     c3d_camera camera; /* of the last update, as given but in last_view's frame */
     ff_view last_view;

@@ -43,6 +43,8 @@
     TOLD(uint32_t, in_flight_high, from->requests.in_flight_high, "the most at once") \
     KEPT(uint32_t, queued, from->requests.queued, "requests wanted and not sent") \
     TOLD(uint32_t, queued_high, from->requests.queued_high, "the most at once") \
+    KEPT(uint32_t, reserve_requests, from->requests.reserve_sent, "sent for the reserve") \
+    KEPT(uint32_t, reserve_bytes, from->requests.reserve_bytes, "of their answers, without headers") \
     TOLD(uint32_t, protocol_errors, from->link.protocol_errors, "messages that were nonsense") \
     KEPT(enum ff_link_state, link, link_state(from), "to the server") \
     KEPT(uint32_t, reconnects, from->link.reconnects, "connections made again") \
@@ -60,7 +62,7 @@
     KEPT(int, terrain_error, from->client->terrain_error, \
          "why the terrain that has come is not shown: FF_ERR_MEMORY, the block is too small; or FF_OK") \
     KEPT(uint8_t, low_power, (uint8_t)ff_client_low_power(from->client), \
-         "battery low or interrupted: slower, coarser, no prefetch") \
+         "battery low or interrupted: slower, coarser, no prefetch, no reserve") \
     KEPT(uint32_t, frames_updated, from->client->frames_updated, "that showed something new") \
     KEPT(uint32_t, frames_skipped, from->client->frames_skipped, "nothing changed, nothing to redraw") \
     KEPT(ff_quality, quality, quality_in_force(from->client), \

@@ -199,17 +199,9 @@ static void list_faces(ff_get_panorama *request, unsigned missing, const c3d_cam
                 request->face[request->face_count++] = (uint8_t)face;
 }
 
-void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const ff_view *view,
-                      unsigned soon, int64_t now_us)
+static void want_faces(const ff_panorama *panorama, ff_requests *requests, const ff_view *view,
+                       const ff_panorama_set *set, unsigned missing, enum ff_request_class rank)
 {
-    const c3d_camera *camera = &view->camera;
-    int newest = panorama->next >= 0 ? panorama->next : panorama->active;
-    if (!panorama->desc.enabled || newest < 0 || now_us < panorama->retry_us) return;
-    const ff_panorama_set *set = &panorama->set[newest];
-    unsigned in_view = ff_panorama_faces_in_view(camera) & ~known(set), missing = in_view;
-    if (!in_view && panorama->next < 0)
-        missing = (now_us < panorama->turns_until_us ? ALL_FACES : soon) & ~known(set);
-    if (!missing) return;
     ff_get_panorama request = { .front_wu = set->front_wu,
                                 .back_wu = panorama->desc.server_back_wu > set->front_wu
                                                ? panorama->desc.server_back_wu
@@ -217,10 +209,36 @@ void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const 
                                 .face_size = panorama->face_size,
                                 .quality = panorama->desc.jpeg_quality };
     ff_shape_leave(panorama->info, &view->frame, set->position_wu, request.position_wu);
-    list_faces(&request, missing, camera);
+    list_faces(&request, missing, &view->camera);
     FF_ASSERT(request.face_count > 0 && request.face_count <= FF_FACE_COUNT);
-    ff_requests_want(requests, FF_KIND_FACE, set->key, in_view ? FF_CLASS_FIRST : FF_CLASS_PREFETCH,
-                     in_view ? PRIORITY_FACE : 1, &request);
+    ff_requests_want(requests, FF_KIND_FACE, set->key, rank,
+                     rank == FF_CLASS_FIRST ? PRIORITY_FACE : 1, &request);
+}
+
+void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const ff_view *view,
+                      unsigned soon, int64_t now_us)
+{
+    int newest = panorama->next >= 0 ? panorama->next : panorama->active;
+    if (!panorama->desc.enabled || newest < 0 || now_us < panorama->retry_us) return;
+    const ff_panorama_set *set = &panorama->set[newest];
+    unsigned in_view = ff_panorama_faces_in_view(&view->camera) & ~known(set), missing = in_view;
+    if (!in_view && panorama->next < 0)
+        missing = (now_us < panorama->turns_until_us ? ALL_FACES : soon) & ~known(set);
+    if (missing)
+        want_faces(panorama, requests, view, set, missing,
+                   in_view ? FF_CLASS_FIRST : FF_CLASS_PREFETCH);
+}
+
+void ff_panorama_want_reserve(const ff_panorama *panorama, ff_requests *requests,
+                              const ff_view *view, int64_t now_us)
+{
+    if (!panorama->desc.enabled || panorama->next >= 0 || panorama->active < 0 ||
+        now_us < panorama->retry_us)
+        return;
+    const ff_panorama_set *set = &panorama->set[panorama->active];
+    unsigned missing = ALL_FACES & ~known(set);
+    if (missing)
+        want_faces(panorama, requests, view, set, missing & (0 - missing), FF_CLASS_RESERVE);
 }
 
 /* ---- faces ---- */

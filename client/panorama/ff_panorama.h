@@ -86,6 +86,10 @@ int ff_panorama_whole(const ff_panorama *panorama, const c3d_camera *camera);
 /* Puts what is missing into the ranking under way; soon: bit per face that will soon be in view. */
 void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const ff_view *view,
                       unsigned soon, int64_t now_us);
+/* For the reserve: a face of the set in use, for a viewer who stays. One at a time, because it has
+ * kilobytes. */
+void ff_panorama_want_reserve(const ff_panorama *panorama, ff_requests *requests,
+                              const ff_view *view, int64_t now_us);
 /* Takes in a face or a refusal; 1 when it belongs to a set still wanted. */
 int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now_us);
 /* 1 when the drawn set is outdated and the next one still coming: more panoramas are wanted than

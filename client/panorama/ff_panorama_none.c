@@ -44,6 +44,12 @@ void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const 
     (void)panorama, (void)requests, (void)view, (void)soon, (void)now_us;
 }
 
+void ff_panorama_want_reserve(const ff_panorama *panorama, ff_requests *requests,
+                              const ff_view *view, int64_t now_us)
+{
+    (void)panorama, (void)requests, (void)view, (void)now_us;
+}
+
 int ff_panorama_take(ff_panorama *panorama, const ff_new_item *item, int64_t now_us)
 {
     (void)panorama, (void)item, (void)now_us;

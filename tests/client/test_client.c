@@ -157,6 +157,7 @@ static void panorama_follows_the_rules(void **state)
     rig_open(&rig, 0);
     rig.desc.panorama.enabled = 1;
     rig.desc.no_prefetch = 0;
+    rig.desc.no_reserve = 1;
     rig.desc.panorama.back_plane_wu = 1500 * METRE;
     rig_client(&rig, 4 * MB);
     assert_false(ff_client_panorama(rig.client, taken_wu, &faces));
@@ -502,31 +503,6 @@ static void prefetch_asks_ahead_only_in_motion(void **state)
     assert_true(sent[1] > sent[0]);
 }
 
-/* Standing still: every node asked for lies in view or lets a node in view be as fine as it is;
- * turning brings the rest. */
-static void only_what_is_in_view_is_asked_for(void **state)
-{
-    (void)state;
-    client_rig rig;
-    rig_open(&rig, 0);
-    rig.desc.no_prefetch = 0;
-    rig.camera.pos_wu[2] = 600 * METRE;
-    rig_client(&rig, 4 * MB);
-    assert_true(rig_settle(&rig, 400));
-    const ff_wish *wish;
-    uint32_t count = ff_tree_wishes(rig.client->tree, &wish), sent = rig_stats(&rig).requests_sent;
-    assert_true(count > 0); /* out of view there is more ground to have */
-    for (uint32_t i = 0; i < count; i++) assert_false(wish[i].in_view);
-    for (int i = 0; i < 200; i++) {
-        rig.camera.yaw = (rig.camera.yaw + 328) & 0xFFFF;
-        rig_step(&rig, 50000);
-    }
-    assert_true(rig_settle(&rig, 400));
-    assert_true(rig_stats(&rig).requests_sent > sent + 2);
-    assert_requests_add_up(&rig);
-    rig_close(&rig);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -546,7 +522,6 @@ int main(void)
         cmocka_unit_test(low_power_is_coarser_and_recovers),
         cmocka_unit_test(interruption_asks_for_nothing),
         cmocka_unit_test(prefetch_asks_ahead_only_in_motion),
-        cmocka_unit_test(only_what_is_in_view_is_asked_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

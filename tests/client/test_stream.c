@@ -309,6 +309,40 @@ static void queue_goes_by_class_then_value_then_age(void **state)
     sys_mutex_destroy(&requests.mutex);
 }
 
+/* The reserve leaves last, while nothing else is out, and only an eighth of the window of it. */
+static void the_reserve_leaves_on_an_idle_link(void **state)
+{
+    (void)state;
+    static ff_request slots[300];
+    ff_requests requests;
+    ff_request out, other;
+    ff_requests_init(&requests, 8, slots);
+    for (ff_key key = 1; key < 9; key++)
+        ff_requests_want(&requests, FF_KIND_REFINEMENT, key, FF_CLASS_RESERVE, 9000, NULL);
+    ff_requests_want(&requests, FF_KIND_REFINEMENT, 20, FF_CLASS_PREFETCH, 1, NULL);
+    assert_true(ff_requests_waiting(&requests, FF_CLASS_PREFETCH));
+    assert_false(ff_requests_waiting(&requests, FF_CLASS_IN_VIEW));
+    assert_true(ff_requests_next(&requests, 0, 8, 4000, 1, &other));
+    assert_int_equal(other.key, 20);
+    assert_false(ff_requests_next(&requests, 0, 8, 4000, 1, &out)); /* something is out */
+    assert_false(ff_requests_waiting(&requests, FF_CLASS_PREFETCH));
+    ff_requests_arrived(&requests, other.id, 200);
+    assert_false(ff_requests_next(&requests, 0, 8, 4000, 0, &out)); /* power is low */
+    unsigned sent = 0;
+    while (ff_requests_next(&requests, 0, 8, 4000, 1, &out)) sent++;
+    assert_int_equal(sent, 3); /* of 200 bytes each, the third while fewer than 500 are out */
+    assert_int_equal(requests.counts.reserve_sent, 3);
+    ff_requests_want(&requests, FF_KIND_REFINEMENT, 30, FF_CLASS_IN_VIEW, 1, NULL);
+    assert_true(ff_requests_next(&requests, 0, 8, 4000, 1, &other));
+    assert_int_equal(other.key, 30); /* what comes into view does not wait for it */
+    ff_requests_arrived(&requests, out.id, 150);
+    assert_int_equal(requests.counts.reserve_bytes, 150);
+    assert_int_equal(requests.counts.reserve_in_flight, 2);
+    ff_requests_lost(&requests);
+    assert_int_equal(requests.counts.reserve_in_flight, 0);
+    sys_mutex_destroy(&requests.mutex);
+}
+
 static void window_leaves_two_always(void **state)
 {
     (void)state;
@@ -391,6 +425,7 @@ int main(void)
                                         cmocka_unit_test(too_long_a_message_fails_alone),
                                         cmocka_unit_test(undecodable_payloads_are_tried_thrice),
                                         cmocka_unit_test(queue_goes_by_class_then_value_then_age),
+                                        cmocka_unit_test(the_reserve_leaves_on_an_idle_link),
                                         cmocka_unit_test(window_leaves_two_always),
                                         cmocka_unit_test(estimate_finds_the_link),
                                         cmocka_unit_test(worker_thread_brings_the_same_picture) };
