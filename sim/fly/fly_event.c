@@ -24,6 +24,30 @@ static int read_place(const char *text, double place[2])
     return 0;
 }
 
+/* WORD=DEGREES for the events of one angle. */
+static int read_angle(const char *what, fly_event *event)
+{
+    static const struct {
+        const char *word;
+        enum fly_event_kind kind;
+        double least, most;
+    } row[] = { { "turn=", FLY_TURN_BY, -360, 360 },
+                { "pitch=", FLY_PITCH, -90, 90 },
+                { "fov=", FLY_FOV, SIM_FOV_MIN, SIM_FOV_MAX } };
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        const char *value = after(what, row[i].word);
+        char *end;
+        if (!value) continue;
+        event->kind = row[i].kind;
+        event->degrees = strtod(value, &end);
+        return end != value && !*end && event->degrees >= row[i].least &&
+                       event->degrees <= row[i].most
+                   ? 0
+                   : SYS_NOT_ONE;
+    }
+    return SYS_NOT_ONE;
+}
+
 static int read_what(const char *what, fly_event *event)
 {
     const char *value;
@@ -41,7 +65,7 @@ static int read_what(const char *what, fly_event *event)
         event->kind = FLY_TELEPORT;
         return read_place(value, event->place);
     }
-    if (!(value = after(what, "budget="))) return SYS_NOT_ONE;
+    if (!(value = after(what, "budget="))) return read_angle(what, event);
     event->kind = FLY_BUDGET;
     rc = sys_whole_at(&value, 0, SIM_BUDGET_MAX, &budget);
     event->budget = (uint32_t)budget;
@@ -69,9 +93,10 @@ static int event_range(const sys_option *option, char *text, size_t room)
     (void)option;
     sys_words_list(plain_words, words, sizeof words);
     return snprintf(text, room,
-                    "T 0 to 1e6; WHAT: %s, link=SPEC, teleport=X,Y, each 0 to 1, or "
-                    "budget=TRIANGLES",
-                    words);
+                    "T 0 to 1e6; WHAT: %s, link=SPEC, teleport=X,Y, each 0 to 1, "
+                    "budget=TRIANGLES, turn=DEGREES, -360 to 360, pitch=DEGREES, -90 to 90, or "
+                    "fov=DEGREES, %g to %g",
+                    words, SIM_FOV_MIN, SIM_FOV_MAX);
 }
 
 const sys_option_type fly_events_option = { "T:WHAT, ", event_range, take_event };

@@ -52,6 +52,11 @@ static int64_t flight_clock(void *context) { return ((const fly_world *)context)
 
 /* ---- events ---- */
 
+static int32_t focal_q8(double fov_degrees, const fly_options *options)
+{
+    return c3d_focal_q8((int32_t)(fov_degrees * 65536 / 360 + 0.5), options->size.width);
+}
+
 static int apply_event(fly_flight *flight, const fly_event *what, double t_s)
 {
     fly_world *world = flight->world;
@@ -91,6 +96,9 @@ static int apply_event(fly_flight *flight, const fly_event *what, double t_s)
         case FLY_TELEPORT:
             fly_path_teleport(&world->path, t_s, what->place[0], what->place[1]);
             break;
+        case FLY_TURN_BY: world->path.turned_degrees += what->degrees; break;
+        case FLY_PITCH: world->path.pitch_degrees = what->degrees; break;
+        case FLY_FOV: flight->camera.focal_q8 = focal_q8(what->degrees, flight->options); break;
     }
     return 0;
 }
@@ -163,7 +171,8 @@ static void judge_nothing(fly_sources *from)
     for (unsigned kind = 0; kind < FF_DATA_CLASSES; kind++) f->came[kind] = f->unused[kind] = NAN;
     from->audit.undrawn_percent = from->audit.filled_percent = from->panorama_px_percent =
         from->truth_error_m = NAN;
-    f->judged_all = f->supporting = f->percent = NAN;
+    f->judged_all = f->supporting = f->percent = f->no_reserve_percent = NAN;
+    f->reserve_came = f->reserve_unused = NAN;
     from->picture = (sim_picture_figures){ NAN, NAN, NAN };
 }
 
@@ -334,11 +343,9 @@ static int begin(fly_flight *flight, fly_world *world, FILE *csv)
                             .csv = csv,
                             .reference_t_s = -1,
                             .totals = { .frame_hash = FNV_START } };
-    flight->camera =
-        (c3d_camera){ .width = options->size.width,
-                      .height = options->size.height,
-                      .focal_q8 = c3d_focal_q8((int32_t)(options->fov_degrees * 65536 / 360 + 0.5),
-                                               options->size.width) };
+    flight->camera = (c3d_camera){ .width = options->size.width,
+                                   .height = options->size.height,
+                                   .focal_q8 = focal_q8(options->fov_degrees, options) };
     flight->rgb = malloc((size_t)options->size.width * options->size.height * 3);
     flight->reference_rgb = malloc((size_t)options->size.width * options->size.height * 3);
     if (!flight->rgb || !flight->reference_rgb)

@@ -25,7 +25,10 @@ enum fly_event_kind {
     FLY_PANORAMA_OFF,
     FLY_LINK,
     FLY_TELEPORT,
-    FLY_BUDGET
+    FLY_BUDGET,
+    FLY_TURN_BY,
+    FLY_PITCH,
+    FLY_FOV
 };
 
 typedef struct fly_event {
@@ -35,6 +38,7 @@ typedef struct fly_event {
     uint32_t budget;    /* of FLY_BUDGET */
     /* of FLY_TELEPORT: share of the terrain's size from its south-west corner, 0..1 */
     double place[2];
+    double degrees; /* of FLY_TURN_BY, FLY_PITCH and FLY_FOV */
 } fly_event;
 
 typedef struct fly_events {
@@ -72,7 +76,9 @@ extern const sys_option_type fly_events_option;
     OPTION(fly_events, events, "event", "T:WHAT", NULL, SYS_FLAGS(SYS_REPEATABLE), \
            "at T seconds. link: the link is another one from now on; teleport: to these shares " \
            "of the terrain's width and height (the path goes on from there and stays at a " \
-           "border that it would cross); budget: triangles a frame, with --balance") \
+           "border that it would cross); budget: triangles a frame, with --balance; turn: at once by so " \
+           "many degrees to the right, on top of the path's own turns; pitch: looks so many degrees up " \
+           "from now on; fov: the field of view, a zoom") \
     OPTION(sys_text, events_path, "events", "FILE", NULL, SYS_ANY, \
            "such events, one on a line; what follows a # is a comment") \
     HEADING("The link") \
@@ -82,6 +88,8 @@ extern const sys_option_type fly_events_option;
            "a real server, real sockets and real time; --link and the traces are not used") \
     HEADING("The client") \
     SIM_CLIENT_OPTIONS(OPTION, "4M", "the client's one block") \
+    OPTION(sys_switch, reserve, "reserve", "on|off", "on", SYS_ANY, \
+           "coarse ground in every direction while the link is idle") \
     SIM_PANORAMA_OPTION(OPTION, "auto", "far ground as panoramas drawn by the server") \
     OPTION(sys_real, back_plane_m, "back-plane", "M", NULL, FLY_DISTANCE, \
            "where the panorama takes over; default 7500") \

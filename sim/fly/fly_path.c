@@ -30,7 +30,8 @@ void fly_path_init(fly_path *path, const fly_options *options, const ff_terrain_
                         .settle_s = options->settle_s,
                         .speed_ms = options->speed_kmh / 3.6,
                         .height_m = options->height_m,
-                        .size_m = { size_x, size_y } };
+                        .size_m = { size_x, size_y },
+                        .pitch_degrees = NAN };
     if (options->path == FLY_RECORDED) return;
     if (options->path == FLY_CIRCLE) {
         path->start_m[0] = size_x / 2;
@@ -139,9 +140,11 @@ static double smooth_ground_m(const fly_path *path, double arc_m)
     return sum / (2 * SMOOTH_STEPS + 1);
 }
 
-static void set_camera(c3d_camera *camera, const double pos_m[2], double z_m, double yaw_turns,
-                       double pitch_degrees)
+static void set_camera(const fly_path *path, c3d_camera *camera, const double pos_m[2], double z_m,
+                       double yaw_turns, double pitch_degrees)
 {
+    yaw_turns += path->turned_degrees / 360;
+    if (!isnan(path->pitch_degrees)) pitch_degrees = path->pitch_degrees;
     camera->pos_wu[0] = (int32_t)floor(pos_m[0] * FF_WU_PER_METRE + 0.5);
     camera->pos_wu[1] = (int32_t)floor(pos_m[1] * FF_WU_PER_METRE + 0.5);
     camera->pos_wu[2] = (int32_t)floor(z_m * FF_WU_PER_METRE + 0.5);
@@ -160,7 +163,7 @@ static void recorded_at(const fly_path *path, double t_s, c3d_camera *camera)
     double ground_m = sim_ground_height_m(path->ground, pos_m[0], pos_m[1]);
     double z_m = path->recording->above_ground ? ground_m + fix.up_m : fix.up_m;
     if (sim_ground_has(path->ground, pos_m[0], pos_m[1])) z_m = fmax(z_m, ground_m + ABOVE_M);
-    set_camera(camera, pos_m, z_m, fix.heading_deg / 360, fmin(fmax(fix.pitch_deg, -90), 90));
+    set_camera(path, camera, pos_m, z_m, fix.heading_deg / 360, fmin(fmax(fix.pitch_deg, -90), 90));
 }
 
 void fly_path_at(const fly_path *path, double t_s, c3d_camera *camera)
@@ -173,7 +176,7 @@ void fly_path_at(const fly_path *path, double t_s, c3d_camera *camera)
     double arc_m = arc_at(path, flown_s);
     place(path, arc_m, pos_m, heading);
     double yaw_turns = atan2(heading[0], heading[1]) / (2 * PI) + turned_at(path, flown_s);
-    set_camera(camera, pos_m, smooth_ground_m(path, arc_m) + path->height_m, yaw_turns,
+    set_camera(path, camera, pos_m, smooth_ground_m(path, arc_m) + path->height_m, yaw_turns,
                PITCH_DEGREES);
 }
 

@@ -12,13 +12,15 @@ typedef struct fly_path {
     const sim_ground *ground;
     const fly_recording *recording;
     double settle_s, speed_ms, height_m;
-    double start_m[2];   /* of the straight part, or the circle's centre */
-    double direction[2]; /* of the straight part, unit */
-    double length_m;     /* of the straight part */
-    double radius_m;     /* of the half circles at its ends, or of the circle */
-    double from_m;       /* arc length where the flight begins */
-    double size_m[2];    /* of the terrain's source */
-    double moved_m[2];   /* by teleports */
+    double start_m[2];     /* of the straight part, or the circle's centre */
+    double direction[2];   /* of the straight part, unit */
+    double length_m;       /* of the straight part */
+    double radius_m;       /* of the half circles at its ends, or of the circle */
+    double from_m;         /* arc length where the flight begins */
+    double size_m[2];      /* of the terrain's source */
+    double moved_m[2];     /* by teleports */
+    double turned_degrees; /* by events, on top of the path's own turns */
+    double pitch_degrees;  /* by an event, instead of the path's; NAN: none */
 } fly_path;
 
 /* `ground` and `options` must outlive the path. */

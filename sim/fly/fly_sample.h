@@ -15,7 +15,8 @@
  * after settling, TOTAL what was gained after settling, MOST the largest value, LAST the last one.
  * Columns without a value are nan. diff_*, ssim: sim_picture.h. square_px_*: mean squared error by
  * cause (sim_audit.h); bytes_*, unused_*: by class of data (sim_relevance.h), bytes_judged with the
- * overhead; relevance_percent: since the start. */
+ * overhead, bytes_reserve and unused_reserve a part of them; relevance_percent and the same without
+ * the reserve's bytes, relevance_no_reserve_percent: since the start. */
 /* clang-format off */
 #define FLY_COLUMNS_FIRST(X) \
     X(t_s, "%.3f", PLACE, from->t_s) \
@@ -73,6 +74,9 @@
     X(unused_faces, "%.0f", TOTAL, from->relevance.unused[FF_DATA_FACES]) \
     X(unused_supporting, "%.0f", TOTAL, from->relevance.supporting) \
     X(relevance_percent, "%.2f", LAST, from->relevance.percent) \
+    X(bytes_reserve, "%.0f", TOTAL, from->relevance.reserve_came) \
+    X(unused_reserve, "%.0f", TOTAL, from->relevance.reserve_unused) \
+    X(relevance_no_reserve_percent, "%.2f", LAST, from->relevance.no_reserve_percent) \
     X(share_percent, "%.0f", MEAN, from->client.balance.share_percent) \
     X(fidelity_percent, "%.0f", MEAN, from->client.balance.fidelity_percent) \
     X(frame_load, "%.3f", MEAN, from->client.balance.frame_load_q8 / 256.0) \

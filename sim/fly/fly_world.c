@@ -135,6 +135,11 @@ static int open_surface(fly_world *world)
     return fail(fly_backend_name(options->backend), rc);
 }
 
+static int asked_for_reserve(void *client, uint16_t id)
+{
+    return ff_client_asked_for_reserve(client, id);
+}
+
 static int open_client(fly_world *world)
 {
     const fly_options *options = world->options;
@@ -150,7 +155,8 @@ static int open_client(fly_world *world)
                             .panorama = options->panorama,
                             .balance = options->balance,
                             .use_thread = options->server != NULL,
-                            .use_plain_arrays = (uint8_t)options->plain_arrays };
+                            .use_plain_arrays = (uint8_t)options->plain_arrays,
+                            .no_reserve = !options->reserve };
     desc.backend = backend_of(options->backend);
     desc.frame_format = options->backend == FLY_SOFT ? C3D_RGBA8888 : C3D_RGB565;
     int rc = ff_client_create(&desc, &world->client);
@@ -159,6 +165,7 @@ static int open_client(fly_world *world)
         return fail("client", rc);
     }
     ff_client_set_show(world->client, options->show);
+    if (world->relevance) sim_relevance_ask(world->relevance, asked_for_reserve, world->client);
     return 0;
 }
 

@@ -19,6 +19,7 @@ typedef struct asked {
     enum ff_kind kind;
     ff_key key;
     int32_t position_wu[3]; /* faces */
+    int reserve;
 } asked;
 
 typedef struct answer {
@@ -32,7 +33,7 @@ typedef struct answer {
     uint32_t bytes;
     int64_t came_us;
     double drawn; /* the share of it that was drawn in time */
-    int supports;
+    int supports, reserve;
     uint32_t pixels, seen; /* of a face, in one frame: in the window; and not hidden */
     uint64_t frame;        /* the last frame that marked it */
     size_t next;           /* the next answer in its bucket */
@@ -54,6 +55,8 @@ struct sim_relevance {
     size_t count, capacity, judged_count, first_young;
     size_t bucket[BUCKETS];
     uint64_t frame;
+    sim_relevance_is_reserve is_reserve; /* NULL: nothing is */
+    void *reserve_context;
     sim_mesh mesh;
     sim_cover cover;      /* of the frame that looks for faces */
     int64_t next_look_us; /* for faces */
@@ -82,6 +85,7 @@ static answer *find(sim_relevance *relevance, enum ff_kind kind, ff_key key)
 static void keep(sim_relevance *relevance, answer a)
 {
     relevance->figures.came[ff_kind[a.kind].data] += a.bytes;
+    relevance->figures.reserve_came += a.reserve ? a.bytes : 0;
     if (relevance->count == relevance->capacity) {
         size_t more = relevance->capacity ? 2 * relevance->capacity : 1024;
         answer *grown = realloc(relevance->answer, more * sizeof *grown);
@@ -121,7 +125,7 @@ static uint16_t *take_spans(sim_relevance *relevance, const ff_face *face)
 static void take_answer(sim_relevance *relevance, const ff_message *message, size_t bytes)
 {
     const asked *q = &relevance->asked[ff_message_id(message)];
-    answer a = { .kind = q->kind, .key = q->key, .bytes = (uint32_t)bytes };
+    answer a = { .kind = q->kind, .key = q->key, .bytes = (uint32_t)bytes, .reserve = q->reserve };
     const ff_face *face = &message->u.face;
     if (ff_kind[a.kind].brings == FF_BRINGS_FACE) {
         memcpy(a.position_wu, q->position_wu, sizeof a.position_wu);
@@ -154,6 +158,8 @@ static void take_up(sim_relevance *relevance, const ff_message *message)
     if (message->type != FF_MSG_GET) return;
     asked *q = &relevance->asked[ff_message_id(message)];
     *q = (asked){ .kind = message->kind };
+    if (relevance->is_reserve)
+        q->reserve = relevance->is_reserve(relevance->reserve_context, ff_message_id(message));
     switch ((enum ff_kind_asks)ff_kind[q->kind].asks) {
         case FF_ASKS_NODE: q->key = message->u.get.key; break;
         case FF_ASKS_PANORAMA:
@@ -249,6 +255,12 @@ sim_relevance *sim_relevance_create(sys_stream *stream, const ff_terrain_info *i
     stream->close = stream->close ? tap_close : NULL;
     stream->reconnect = stream->reconnect ? tap_reconnect : NULL;
     return relevance;
+}
+
+void sim_relevance_ask(sim_relevance *relevance, sim_relevance_is_reserve is_reserve, void *context)
+{
+    relevance->is_reserve = is_reserve;
+    relevance->reserve_context = context;
 }
 
 void sim_relevance_destroy(sim_relevance *relevance)
@@ -407,15 +419,29 @@ void sim_relevance_frame(sim_relevance *relevance, const sim_relevance_view *vie
     mark_faces(relevance, view);
 }
 
+/* Adds up an answer whose time is over. */
+static void judge(sim_relevance_figures *sum, const answer *a)
+{
+    double unused = (1 - a->drawn) * a->bytes;
+    sum->judged[ff_kind[a->kind].data] += a->bytes;
+    sum->unused[ff_kind[a->kind].data] += unused;
+    sum->supporting += a->drawn == 0 && a->supports && !a->reserve ? a->bytes : 0;
+    sum->reserve_judged += a->reserve ? a->bytes : 0;
+    sum->reserve_unused += a->reserve ? unused : 0;
+}
+
+static double percent_of(double judged, double unused, double overhead)
+{
+    return judged > overhead ? 100 * (1 - unused / judged) : NAN;
+}
+
 int sim_relevance_get(sim_relevance *relevance, sim_relevance_figures *figures)
 {
     sim_relevance_figures *sum = &relevance->figures;
     for (; relevance->judged_count < relevance->count; relevance->judged_count++) {
         const answer *a = &relevance->answer[relevance->judged_count];
         if (*relevance->now_us - a->came_us <= SIM_RELEVANCE_US) break;
-        sum->judged[ff_kind[a->kind].data] += a->bytes;
-        sum->unused[ff_kind[a->kind].data] += (1 - a->drawn) * a->bytes;
-        sum->supporting += a->drawn == 0 && a->supports ? a->bytes : 0;
+        judge(sum, a);
     }
     double overhead = sum->came[FF_DATA_OVERHEAD], unused = 0;
     sum->judged[FF_DATA_OVERHEAD] = sum->unused[FF_DATA_OVERHEAD] = overhead;
@@ -424,7 +450,9 @@ int sim_relevance_get(sim_relevance *relevance, sim_relevance_figures *figures)
         sum->judged_all += sum->judged[data];
         unused += sum->unused[data];
     }
-    sum->percent = sum->judged_all > overhead ? 100 * (1 - unused / sum->judged_all) : NAN;
+    sum->percent = percent_of(sum->judged_all, unused, overhead);
+    sum->no_reserve_percent = percent_of(sum->judged_all - sum->reserve_judged,
+                                         unused - sum->reserve_unused, overhead);
     *figures = *sum;
     return relevance->rc;
 }

@@ -1,6 +1,5 @@
 /* Relevance: how much of what came down was of use. Measured on the wire and on the picture alone:
- * a tap on the client's stream reads every message both ways, and each frame tells what is drawn;
- * neither asks the client what it meant to do.
+ * a tap on the client's stream reads every message both ways, and each frame tells what is drawn.
  *
  * An answer (its whole message, header included) is of use when a frame within SIM_RELEVANCE_US of
  * its arrival draws it:
@@ -14,8 +13,11 @@
  *             ground hides, in the frame with the largest share; an empty face wholly, when any
  *             direction of it is seen. Four times a second every fourth pixel each way is looked
  *             at.
- * Overhead is all else that came: greetings, pongs, refusals, cancellations and what a cut left
- * incomplete. It counts as never drawn.
+ *   reserve   what the client asked for on an idle link without a use in sight. By its purpose most
+ * of it is not drawn in time: the shares with and without it stand side by side. Whether a request
+ * was made for it cannot be seen on the wire, and is all that the client is asked. Overhead is all
+ * else that came: greetings, pongs, refusals, cancellations and what a cut left incomplete. It
+ * counts as never drawn.
  */
 #ifndef SIM_RELEVANCE_H
 #define SIM_RELEVANCE_H
@@ -32,9 +34,12 @@ typedef struct sim_relevance_figures {
     double judged[FF_DATA_CLASSES]; /* came at least SIM_RELEVANCE_US ago; overhead: at once */
     double unused[FF_DATA_CLASSES]; /* of the judged: not drawn in time */
     double judged_all;              /* sum of judged */
-    double supporting; /* of unused heights: those without which a drawn node could not be drawn */
+    double reserve_came, reserve_judged, reserve_unused; /* within those above */
+    /* of unused heights, not the reserve's: those without which a drawn node could not be drawn */
+    double supporting;
     /* share of judged_all that was drawn in time; NAN before anything was judged */
     double percent;
+    double no_reserve_percent; /* the same without the reserve's answers */
 } sim_relevance_figures;
 
 /* What a frame draws. */
@@ -52,6 +57,11 @@ typedef struct sim_relevance sim_relevance;
  * memory. */
 sim_relevance *sim_relevance_create(sys_stream *stream, const ff_terrain_info *info,
                                     const int64_t *now_us);
+/* Who tells from now on whether the request of an id, just made, is for the reserve; without, none
+ * is. */
+typedef int (*sim_relevance_is_reserve)(void *context, uint16_t id);
+void sim_relevance_ask(sim_relevance *relevance, sim_relevance_is_reserve is_reserve,
+                       void *context);
 void sim_relevance_destroy(sim_relevance *relevance);
 void sim_relevance_frame(sim_relevance *relevance, const sim_relevance_view *view);
 /* As of *now_us. FF_OK, or FF_ERR_MEMORY when not every answer could be kept. */

@@ -25,6 +25,8 @@ int sim_balance_read(const char *text, ff_balance_desc *balance);
 
 #define SIM_SPEED_KMH_MAX 100000
 #define SIM_HEIGHT_M_MAX  1000000
+#define SIM_FOV_MIN       0.1
+#define SIM_FOV_MAX       170.0
 #define SIM_FRAMES_MAX    1000000000
 #define SIM_BUDGET_MAX    1000000000u
 
@@ -50,7 +52,7 @@ int sim_balance_read(const char *text, ff_balance_desc *balance);
     OPTION(sys_size, size, "size", "WxH", "240x320", SYS_WHOLE(16, FF_PICTURE_SIDE_MAX, "pixels"), \
            help)
 #define SIM_FOV_OPTION(OPTION) \
-    OPTION(sys_real, fov_degrees, "fov", "DEGREES", "60", SYS_REAL(0.1, 170, "degrees"), \
+    OPTION(sys_real, fov_degrees, "fov", "DEGREES", "60", SYS_REAL(SIM_FOV_MIN, SIM_FOV_MAX, "degrees"), \
            "field of view across the width")
 #define SIM_PLAIN_ARRAYS_OPTION(OPTION) \
     OPTION(sys_flag, plain_arrays, "plain-arrays", NULL, NULL, SYS_ANY, "no vertex buffers")

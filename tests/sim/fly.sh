@@ -187,19 +187,30 @@ END
 result $? "over three kinds of ground the client's estimate is within a factor of two of the judged p95 (from 0.1 px on) in 85 rows of 100"
 
 # ---- relevance ----
-flies still $usual --backend none --speed 0 --seconds 20
-is '0 < s["relevance_percent"] < 100 and r[-1]["unused_images"] == 0 and r[-1]["unused_heights"] == r[-1]["unused_supporting"] and abs(r[-1]["bytes_heights"] + r[-1]["bytes_images"] + r[-1]["bytes_faces"] + r[-1]["bytes_overhead"] - r[-1]["bytes_down"]) < 1' \
+flies still $usual --backend none --speed 0 --seconds 20 --reserve off
+is '0 < s["relevance_percent"] < 100 and r[-1]["unused_images"] == 0 and r[-1]["unused_heights"] == r[-1]["unused_supporting"] and r[-1]["bytes_reserve"] == 0 and s["relevance_percent"] == s["relevance_no_reserve_percent"] and abs(r[-1]["bytes_heights"] + r[-1]["bytes_images"] + r[-1]["bytes_faces"] + r[-1]["bytes_overhead"] - r[-1]["bytes_down"]) < 1' \
     "standing still all ground that comes is drawn, or lets what is drawn be so fine; the kinds of bytes add up"
+flies kept $usual --backend none --speed 0 --seconds 20 --panorama off
+is 's["relevance_percent"] < s["relevance_no_reserve_percent"] < 100 and 0 < r[-1]["unused_reserve"] <= r[-1]["bytes_reserve"] < r[-1]["bytes_heights"] and r[-1]["unused_heights"] == r[-1]["unused_supporting"] + r[-1]["unused_reserve"]' \
+    "with a reserve the rest is of the reserve, and the relevance is told with and without it"
 hidden=$(python3 -c "
 import csv
 last = list(csv.DictReader(open('$work/still.csv')))[-1]
 print(float(last['unused_faces']) / float(last['bytes_faces']))")
-flies high $usual --backend none --speed 0 --seconds 20 --height 1500
+flies high $usual --backend none --speed 0 --seconds 20 --height 1500 --reserve off
 is "r[-1]['unused_faces'] / r[-1]['bytes_faces'] < 0.7 * $hidden < 0.7" "near ground hides more of a panorama from low above it than from high up"
 
 # ---- events ----
 flies events $quick --event 2:low-battery --event 4:battery-ok --event 5:interruption
 is '[row["low_power"] for row in r] == [0, 0, 1, 1, 0, 1, 1]' "low battery and interruption save power, and end"
+flies looks $quick --speed 0 --path diagonal --event 2:turn=90 --event 3:turn=-45 --event 4:pitch=-80 --event 5:fov=20
+python3 - "$work/looks.csv" <<'END'
+import csv, sys
+r = [{k: float(v) for k, v in row.items() if not k.endswith("_hash")} for row in csv.DictReader(open(sys.argv[1]))]
+drawn = [row["nodes_drawn"] for row in r]
+sys.exit(0 if len({row["geometry_hash"] for row in csv.DictReader(open(sys.argv[1])) if float(row["t_s"]) >= 1}) >= 5 and drawn[6] < drawn[4] else 1)
+END
+result $? "turns at once, looks down and zooms"
 flies cut $quick --event 1:cut --event 3:cut
 is 's["crack_frames"] == 0 and r[-1]["reconnects"] == 2 and r[-1]["link_up"] == 1 and r[-1]["err_px_p95"] < 10' "two cuts: reconnected, whole, and the picture gets right"
 

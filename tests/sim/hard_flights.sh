@@ -1,5 +1,5 @@
 #!/bin/bash
-# Hard flights: outages, stalls, cuts, a changing link, a client that turns round, hovers, circles, teleports, a recorded link.
+# Hard flights: outages, stalls, cuts, a changing link, a client that turns round, hovers, circles, teleports, looks elsewhere at once, a recorded link.
 # Each is compared with the same flight over UMTS without a care ("calm"): its error, ground not drawn included, may be so large while
 # the link is bad (bound, close above what is measured: flights repeat exactly; half a texel of these faces of 64 is 3.2 px), and must be as in
 # calm (a quarter and a pixel more at most than within 4 s of then) from so many simulated seconds after it heals (back). No crack, no frame
@@ -100,10 +100,42 @@ hard trace calm 15 50 15 2 0 0 --seconds 60 --down-trace "$work/trace" --up-trac
 # ---- the client ----
 # The first turn of all waits a round trip of GPRS for the far ground behind it.
 hard turn calm-turn 20 50 66 2 0 3 --seconds 60 --path turn --link gprs --event 50:link=umts
-hard circle calm-circle 20 50 23 2 0 4 --seconds 60 --path circle --speed 300 --link gprs --event 50:link=umts
+hard circle calm-circle 20 50 23 2 0 1 --seconds 60 --path circle --speed 300 --link gprs --event 50:link=umts
 hard hover calm-hover 20 20 4 2 0 0 --seconds 60 --path hover --link gprs
 hard teleport calm-teleport 20 20 4 2 1 0 --seconds 40 --event 20:teleport=0.85,0.15
 hard teleport-near calm-near 20 20 26 2 0 0 --seconds 40 --event 20:teleport=0.5,0.45
+
+# ---- a look elsewhere at rest, the link up or silent: the reserve ----
+# Hovering 15 s on GPRS, then a turn at once, a look down, a wide and a narrow field of view. No ground is empty, and its error stays
+# within 8 px, but for the narrow field: it magnifies what is here, 2 px at 60 degrees are 5 at 25, beside what the reserve holds.
+looks() { # NAME P95_PX EVENT...
+    local name=$1 bound=$2 text
+    shift 2
+    flies "$name" --settle 15 --seconds 9 --sample 0.1 --path diagonal --speed 0 --link gprs "$@" || { result 1 "$name flies: $(tail -1 "$work/$name.err")"; return; }
+    text=$(python3 - "$work/$name.csv" "$work/$name.json" "$bound" <<'END'
+import csv, json, sys
+rows = [{k: float(v) for k, v in r.items() if not k.endswith("_hash")} for r in csv.DictReader(open(sys.argv[1]))]
+after = [r for r in rows if r["t_s"] >= 16]
+empty, error = max(r["undrawn_px_percent"] for r in after), max(r["err_px_p95"] for r in after)
+cracks = json.load(open(sys.argv[2]))["crack_frames"]
+still = {r["requests"] for r in rows if 14 <= r["t_s"] <= 15.9}
+print(f"{empty:.2f} % empty, p95 {error:.1f} px (at most {sys.argv[3]}), {cracks} cracks, {'silent' if len(still) == 1 else 'not silent'} before")
+sys.exit(not (empty == 0 and error <= float(sys.argv[3]) and not cracks and len(still) == 1))
+END
+)
+    result $? "$name: $text"
+}
+for panorama in on off; do
+    for link in up silent; do
+        dead=()
+        [ $link = up ] || dead=(--event 15.5:link=gprs,down.bytes_s=3,up.bytes_s=3)
+        turns=()
+        for t in 16 17 18 19 20 21 22 23; do turns+=(--event $t:turn=135); done # each of eight directions once
+        looks "turns-$link-panorama-$panorama" 8 --panorama $panorama "${dead[@]}" "${turns[@]}"
+        looks "down-$link-panorama-$panorama" 8 --panorama $panorama "${dead[@]}" --event 16:pitch=-90 --event 18:turn=90 --event 20:pitch=-45
+        looks "zoom-$link-panorama-$panorama" 16 --panorama $panorama "${dead[@]}" --event 16:fov=100 --event 18:fov=25 --event 20:turn=180
+    done
+done
 
 # ---- recorded links, where there are some ----
 for link in TMobile-UMTS-driving Verizon-EVDO-driving ATT-LTE-driving-2016; do

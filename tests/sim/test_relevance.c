@@ -152,6 +152,33 @@ static void a_node_draws_its_ancestors(void **state)
     sim_relevance_destroy(w.relevance);
 }
 
+static int is_second(void *context, uint16_t id) { return ++*(unsigned *)context && id == 2; }
+
+/* What was asked for the reserve is told apart, and both shares are given. */
+static void the_reserve_is_told_apart(void **state)
+{
+    (void)state;
+    static wire w;
+    unsigned asked = 0;
+    start(&w);
+    sim_relevance_ask(w.relevance, is_second, &asked);
+    ff_key drawn = ff_key_make(1, 0, 0);
+    size_t used = node(&w, drawn, FF_KIND_ROOT);
+    size_t reserve = node(&w, ff_key_make(2, 0, 0), FF_KIND_ROOT),
+           unused = node(&w, ff_key_make(0, 0, 0), FF_KIND_ROOT);
+    receive(&w, 7);
+    assert_int_equal(asked, 3);
+    draw(&w, SIM_RELEVANCE_US, 1, &drawn);
+    sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
+    assert_int_equal(f.reserve_came, reserve);
+    assert_int_equal(f.reserve_judged, reserve);
+    assert_int_equal(f.reserve_unused, reserve);
+    assert_int_equal(f.unused[FF_DATA_HEIGHTS], unused + reserve);
+    assert_true(fabs(f.percent - 100.0 * (double)used / (double)(used + unused + reserve)) < 1e-9);
+    assert_true(fabs(f.no_reserve_percent - 100.0 * (double)used / (double)(used + unused)) < 1e-9);
+    sim_relevance_destroy(w.relevance);
+}
+
 /* A node beside a drawn one, which lets it be so fine, does not count as drawn, but is counted
  * apart. */
 static void a_supporting_node_is_counted_apart(void **state)
@@ -412,6 +439,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_node_draws_its_ancestors),
+        cmocka_unit_test(the_reserve_is_told_apart),
         cmocka_unit_test(what_is_drawn_too_late_is_not_relevant),
         cmocka_unit_test(only_the_finest_image_is_drawn),
         cmocka_unit_test(faces_in_the_window_are_drawn),

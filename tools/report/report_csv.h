@@ -41,7 +41,10 @@
     X(unused_images, MAY_LACK) \
     X(unused_faces, MAY_LACK) \
     X(unused_supporting, MAY_LACK) \
-    X(relevance_percent, MAY_LACK)
+    X(relevance_percent, MAY_LACK) \
+    X(bytes_reserve, MAY_LACK) \
+    X(unused_reserve, MAY_LACK) \
+    X(relevance_no_reserve_percent, MAY_LACK)
 /* clang-format on */
 enum report_column {
 #define X(name, need) REPORT_##name,
