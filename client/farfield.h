@@ -180,8 +180,9 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *camera
 void ff_client_draw(ff_client *client);
 
 /* Device events; what does not concern the client is ignored. Battery low or an interruption (a
- * call): C and triangles halved, pixels of error doubled, no prefetch, no reserve, no new panoramas; an
- * interruption also asks for nothing new, the link is just kept alive. Restored after. */
+ * call): C and triangles halved, pixels of error doubled, no prefetch, no reserve, no new
+ * panoramas; an interruption also asks for nothing new, the link is just kept alive. Restored
+ * after. */
 void ff_client_event(ff_client *client, const sys_event *event);
 
 /* Settings that may change between frames. When panoramas are switched on and the block was shared
@@ -232,8 +233,8 @@ int ff_client_ground(const ff_client *client, int32_t x_wu, int32_t y_wu, int32_
 int ff_client_filled(const ff_client *client, int32_t x_wu, int32_t y_wu);
 void ff_client_get_stats(const ff_client *client, ff_client_stats *stats);
 /* The client's own estimate of its picture's error: pixels Q8 that 95 % of the pixels that show
- * ground likely do not pass; the picture's diagonal until the terrain is known. It is worked out anew
- * in every call, from some hundred places. */
+ * ground likely do not pass; the picture's diagonal until the terrain is known. It is worked out
+ * anew in every call, from some hundred places. */
 uint32_t ff_client_error_px_q8(const ff_client *client);
 /* The pools of the block and their number; those of a terrain have no items while none is known. */
 unsigned ff_client_pools(const ff_client *client, ff_pool_use list[FF_POOLS_MAX]);

@@ -82,7 +82,7 @@ void ff_client_auto_step(ff_client *client, const c3d_camera *camera, int64_t no
     if (client->panorama.desc.enabled != FF_PANORAMA_AUTO || ff_client_low_power(client)) return;
     /* all of the client's own ground is here: the panorama goes */
     if (client->auto_ground && client->panorama.active >= 0 &&
-        !ff_requests_waiting(&client->requests)) {
+        !ff_requests_waiting(&client->requests, FF_CLASS_IN_VIEW)) {
         ff_panorama_drop(&client->panorama);
         client->dirty = 1;
     }
@@ -90,7 +90,7 @@ void ff_client_auto_step(ff_client *client, const c3d_camera *camera, int64_t no
     if (now_us - client->auto_us < (drawn ? LEAVE_US : DECIDE_US)) return;
     client->auto_us = now_us;
     /* faces do not make ground wait */
-    if (!drawn && ff_requests_waiting(&client->requests)) return;
+    if (!drawn && ff_requests_waiting(&client->requests, FF_CLASS_IN_VIEW)) return;
     if (!drawn) look_at_ground(client, camera);
     look_at_link(client, camera);
     decide(client, ff_panorama_worth_q8(&client->far_ground, drawn));

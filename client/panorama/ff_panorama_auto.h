@@ -8,8 +8,8 @@
  *   - the ground beyond the back plane is a third of the triangles drawn, or more;
  *   - the limit of triangles makes the ground so coarse that a face's texels are fine enough;
  *   - the sets that the viewer then flies through take no more than a sixteenth of the link; once
- *     they are drawn, an eighth of it: in flight, ground beyond the back plane takes less than that,
- *     as most of it is needed on arrival anyway. */
+ *     they are drawn, an eighth of it: in flight, ground beyond the back plane takes less than
+ * that, as most of it is needed on arrival anyway. */
 #ifndef FF_PANORAMA_AUTO_H
 #define FF_PANORAMA_AUTO_H
 

@@ -111,7 +111,7 @@ static void a_tile_that_has_not_come_is_an_error(void **state)
     ff_view view = fixture_view(1900, 100, 400, 0, -20);
     ff_tree_select(fx.tree, &view, &quality);
     uint32_t bare = estimate(&fx);
-    assert_true(bare > 100 * 256); /* none at all is here */
+    assert_true(bare > 100 * 256);                 /* none at all is here */
     fixture_deliver(&fx, ff_key_make(1, 0, 0), 0); /* the nearest one */
     ff_tree_select(fx.tree, &view, &quality);
     uint32_t lacking = estimate(&fx);
