@@ -69,22 +69,24 @@ typedef struct ff_panorama_desc {
     uint8_t hold_back;
 } ff_panorama_desc;
 
-/* Server and client share the work at run time (client/balance/ff_balance.h): detail, depth, back
- * plane and the panorama's error follow a frame budget and the link, between the limits given here
- * (coarsest, nearest) and the quality and panorama set (finest). Zero in any field takes the
- * default given. */
+/* The work follows what a frame may cost and what the link carries (client/balance/ff_balance.h),
+ * between the limits given here (coarsest) and the quality and panorama set (finest). A frame's
+ * budget moves the limit of triangles; the link moves a bound on detail and the panorama's error.
+ * Zero in any field takes the default given. */
 enum ff_balance_mode {
     FF_BALANCE_OFF,
     FF_BALANCE_ON,
-    /* no controller: coarsest ground up to the nearest back plane, the rest is panorama */
+    /* no controller: FF_TRIANGLES_MIN up to the nearest back plane, the rest is panorama */
     FF_BALANCE_ALL_SERVER,
-    /* no controller: the finest ground as far as quality.view_wu, no panoramas */
+    /* no controller: as set as far as quality.view_wu, no panoramas */
     FF_BALANCE_ALL_CLIENT
 };
 
 typedef struct ff_balance_desc {
     enum ff_balance_mode mode;
-    /* what a frame may cost: triangles, or the unit of ff_client_frame_cost; 0: no limit */
+    /* what a frame may cost. Triangles: no picture has more. Or in the unit of
+     * ff_client_frame_cost: then the limit of triangles is moved so that costs stay below it, 9 %
+     * may pass. 0: no limit but the quality's */
     uint32_t frame_budget;
     /* bytes that may come in a second; 0: only link_percent limits them */
     uint32_t link_bytes_s;
@@ -93,17 +95,17 @@ typedef struct ff_balance_desc {
     uint8_t link_percent;
     int32_t c_min_q8;        /* FF_MEASURE_DISTANCE; default a quarter of quality.c_q8 */
     int32_t error_px_max_q8; /* FF_MEASURE_PIXELS; default eight times quality.error_px_q8 */
-    /* default: quality.depth_max less 3, at least 2; of no effect where depth_max is 0 */
-    uint8_t depth_min;
-    /* default a quarter of panorama.back_plane_wu; the furthest is quality.view_wu */
+    /* FF_BALANCE_ALL_SERVER; default a quarter of panorama.back_plane_wu */
     int32_t back_plane_min_wu;
     int32_t panorama_error_max_q8; /* default four times panorama.error_px_q8 */
 } ff_balance_desc;
 
 typedef struct ff_balance_stats {
-    uint8_t share_percent;    /* 0 all server, 100 all client */
+    /* where the limit of triangles stands between FF_TRIANGLES_MIN and the one set, in log2 units:
+     * 0 all server, 100 all client */
+    uint8_t share_percent;
     uint8_t fidelity_percent; /* 100 as set, less to spare the link */
-    /* log2(cost / budget) as last measured; above 0: over budget */
+    /* log2(cost / budget) as last measured, Q8; above 0: over budget */
     int32_t frame_load_q8, link_load_q8;
     /* moves: how often a level changed; turns: how often against the direction of its last change
      */

@@ -11,29 +11,38 @@
 #define SATURATED_PERCENT 90       /* of the time something waits */
 /* A link that brings less than one in SILENT_SHARE of the bytes it can carry is silent: asking for
  * less does not help then. */
-#define SILENT_SHARE     32
-#define PERCENT_DEFAULT  80
-#define DEPTH_LESS       3
-#define DEPTH_LEAST      2
-#define C_STEPS_MAX      16
-#define PLANE_STEPS_MAX  24
+#define SILENT_SHARE    32
+#define PERCENT_DEFAULT 80
+/* steps in eighths of an octave */
+#define SHARE_EIGHTHS    1
+#define DETAIL_EIGHTHS   2
+#define ERROR_EIGHTHS    4
+#define SHARE_OCTAVES    16 /* of the share's ladder at most: no picture has more triangles */
+#define DETAIL_STEPS_MAX 16
 #define ERROR_STEPS_MAX  12
-#define ERROR_QUARTERS   2  /* the panorama's error changes by half an octave */
-#define RELIEF_STEP_Q8   64 /* what a step down is taken to spare: a quarter of an octave */
-#define GAIN_Q8(gain_q4) ((int32_t)(gain_q4)*16)
+#define EIGHTH_Q8        32
 #define BULGE_Q8         88
+#define GAIN_Q8(gain_q4) ((int32_t)(gain_q4)*16)
 #define TOLERANCE_Q8     GAIN_Q8(FF_BALANCE_NOISE_Q4)
+#define FRAME_MARGIN_Q8  16 /* of a raise */
+#define LINK_MARGIN_Q8   (2 * TOLERANCE_Q8)
 
-/* the longest ladders: gain_q4 has a place for each step, and a level is a byte */
-FF_STATIC_ASSERT(C_STEPS_MAX + FF_QUALITY_DEPTH_MAX + PLANE_STEPS_MAX <= FF_BALANCE_STEPS_MAX);
-FF_STATIC_ASSERT(ERROR_STEPS_MAX <= PLANE_STEPS_MAX && FF_BALANCE_STEPS_MAX <= UINT8_MAX);
+/* gain_q4 has a place for each step of the longest ladder, and a level is a byte */
+FF_STATIC_ASSERT(8 * SHARE_OCTAVES / SHARE_EIGHTHS <= FF_BALANCE_STEPS_MAX);
+FF_STATIC_ASSERT(DETAIL_STEPS_MAX + ERROR_STEPS_MAX <= FF_BALANCE_STEPS_MAX);
+FF_STATIC_ASSERT(FF_BALANCE_STEPS_MAX <= UINT8_MAX);
+FF_STATIC_ASSERT((uint64_t)FF_TRIANGLES_MIN << SHARE_OCTAVES <= INT32_MAX);
 FF_STATIC_ASSERT(FF_BALANCE_LEVELS == 2); /* ff_balance_set names both */
-FF_STATIC_ASSERT(FF_BALANCE_GAIN_Q4 <= UINT8_MAX);
-FF_STATIC_ASSERT(TOLERANCE_Q8 < RELIEF_STEP_Q8 && RELIEF_STEP_Q8 == 256 / 4);
+/* no relief follows a raise */
+FF_STATIC_ASSERT(FRAME_MARGIN_Q8 <= TOLERANCE_Q8 && TOLERANCE_Q8 <= LINK_MARGIN_Q8);
 /* what a raise does is measured while it may still be blamed */
 FF_STATIC_ASSERT(SETTLE_US < SETTLE_US_MAX && SETTLE_US_MAX + LINK_WINDOW_US < BLAME_US);
 /* a link's window has seen frames */
 FF_STATIC_ASSERT(FRAME_WINDOW_US < LINK_WINDOW_US);
+
+/* The most that a step up is taken to add to a load before anything is learned; to a frame's load,
+ * a step of the share adds what it adds to the limit, and this. */
+static const uint8_t gain_q4[FF_BALANCE_LEVELS][FF_BALANCE_LEVELS] = { { 0, 4 }, { 8, 8 } };
 
 int32_t ff_balance_log2_q8(uint64_t value)
 {
@@ -48,29 +57,29 @@ int32_t ff_balance_log2_q8(uint64_t value)
 
 /* ---- the ladders ---- */
 
-/* value / 2^(quarters / 4) */
-static int64_t lessened(int64_t value, unsigned quarters)
+/* value / 2^(eighths / 8) */
+static int64_t lessened(int64_t value, unsigned eighths)
 {
-    static const int32_t root_q16[4] = { 65536, 55109, 46341, 38968 };
-    FF_ASSERT(value > 0 && value <= INT32_MAX && quarters / 4 < 32);
-    return (value >> quarters / 4) * root_q16[quarters % 4] >> 16;
+    static const int32_t root_q16[8] = { 65536, 60097, 55109, 50535, 46341, 42495, 38968, 35734 };
+    FF_ASSERT(value > 0 && value <= INT32_MAX && eighths / 8 < 32);
+    return (value >> eighths / 8) * root_q16[eighths % 8] >> 16;
 }
 
-static uint8_t steps_between(int64_t high, int64_t low, unsigned quarters, unsigned most)
+static uint8_t steps_between(int64_t high, int64_t low, unsigned eighths, unsigned most)
 {
     unsigned steps = 0;
     FF_ASSERT(low > 0);
-    while (steps < most && lessened(high, steps * quarters) > low) steps++;
+    while (steps < most && lessened(high, steps * eighths) > low) steps++;
     return (uint8_t)steps;
 }
 
 /* The value that lies `below` steps under the top of a ladder of `steps` steps from `high` down to
  * `low`. */
 static int32_t on_ladder(int64_t high, int64_t low, unsigned below, unsigned steps,
-                         unsigned quarters)
+                         unsigned eighths)
 {
     FF_ASSERT(below <= steps);
-    int64_t value = lessened(high, below * quarters);
+    int64_t value = lessened(high, below * eighths);
     return (int32_t)(below && (below == steps || value < low) ? low : value);
 }
 
@@ -84,115 +93,128 @@ static unsigned first_kind(unsigned level, unsigned first, unsigned second)
     return kind;
 }
 
-static unsigned detail_steps(const ff_balance *balance)
+static unsigned detail_of(const ff_balance *balance, unsigned fidelity)
 {
-    return (unsigned)balance->c_steps + balance->depth_steps;
+    return first_kind(fidelity, balance->detail_steps, balance->error_steps);
 }
 
-/* What two levels stand for: how many steps of each kind they have climbed. */
-typedef struct place {
-    unsigned detail, cap, plane, error;
-} place;
-
-static place place_of(const ff_balance *balance, unsigned share, unsigned fidelity)
+static uint32_t limit_at(const ff_balance *balance, unsigned share)
 {
-    place at = { .detail = first_kind(share, detail_steps(balance), balance->plane_steps),
-                 .cap = first_kind(fidelity, detail_steps(balance), balance->error_steps) };
-    at.plane = share - at.detail;
-    at.error = fidelity - at.cap;
-    return at;
+    unsigned top = balance->top[FF_BALANCE_SHARE];
+    return (uint32_t)on_ladder(balance->finest.triangles_max, FF_TRIANGLES_MIN, top - share, top,
+                               SHARE_EIGHTHS);
+}
+
+/* The bound on detail: C, or pixels of error; the least error is the finest, that ladder is climbed
+ * downwards. */
+static int32_t bound_at(const ff_balance *balance, unsigned fidelity)
+{
+    const ff_quality *finest = &balance->finest;
+    unsigned up = detail_of(balance, fidelity), steps = balance->detail_steps;
+    if (finest->measure == FF_MEASURE_DISTANCE)
+        return on_ladder(finest->c_q8, balance->desc.c_min_q8, steps - up, steps, DETAIL_EIGHTHS);
+    return on_ladder(balance->desc.error_px_max_q8, finest->error_px_q8, up, steps, DETAIL_EIGHTHS);
 }
 
 void ff_balance_get(const ff_balance *balance, ff_balance_knobs *knobs)
 {
     const ff_balance_desc *desc = &balance->desc;
     const ff_quality *finest = &balance->finest;
-    place at = place_of(balance, balance->level[FF_BALANCE_SHARE],
-                        balance->level[FF_BALANCE_FIDELITY]);
-    unsigned detail = at.detail < at.cap ? at.detail : at.cap,
-             c = first_kind(detail, balance->c_steps, balance->depth_steps);
-    knobs->c_q8 = finest->c_q8;
-    knobs->error_px_q8 = finest->error_px_q8;
-    if (finest->measure == FF_MEASURE_DISTANCE)
-        knobs->c_q8 = on_ladder(finest->c_q8, desc->c_min_q8, balance->c_steps - c,
-                                balance->c_steps, 1);
-    else /* the least error is the finest: this ladder is climbed downwards */
-        knobs->error_px_q8 = on_ladder(desc->error_px_max_q8, finest->error_px_q8, c,
-                                       balance->c_steps, 1);
-    knobs->depth_max = (uint8_t)(finest->depth_max - (balance->depth_steps - (detail - c)));
-    knobs->back_plane_wu = at.plane == balance->plane_steps
-                               ? 0
-                               : on_ladder(finest->view_wu, desc->back_plane_min_wu,
-                                           balance->plane_steps - at.plane, balance->plane_steps,
-                                           1);
-    knobs->panorama_error_q8 = on_ladder(desc->panorama_error_max_q8, balance->panorama_error_q8,
-                                         at.error, balance->error_steps, ERROR_QUARTERS);
+    unsigned fidelity = balance->level[FF_BALANCE_FIDELITY];
+    int distance = finest->measure == FF_MEASURE_DISTANCE;
+    *knobs = (ff_balance_knobs){
+        .c_q8 = distance ? bound_at(balance, fidelity) : finest->c_q8,
+        .error_px_q8 = distance ? finest->error_px_q8 : bound_at(balance, fidelity),
+        .triangles_max = limit_at(balance, balance->level[FF_BALANCE_SHARE]),
+        .back_plane_wu = balance->back_plane_wu
+    };
+    if (balance->back_plane_wu)
+        knobs->panorama_error_q8 = on_ladder(
+            desc->panorama_error_max_q8, balance->panorama_error_q8,
+            fidelity - detail_of(balance, fidelity), balance->error_steps, ERROR_EIGHTHS);
+    if (desc->mode == FF_BALANCE_ALL_CLIENT) knobs->back_plane_wu = 0;
+    if (desc->mode == FF_BALANCE_ALL_SERVER) {
+        knobs->triangles_max = FF_TRIANGLES_MIN;
+        if (knobs->back_plane_wu) knobs->back_plane_wu = desc->back_plane_min_wu;
+    }
     FF_ASSERT(knobs->c_q8 > 0 && knobs->c_q8 <= finest->c_q8);
     FF_ASSERT(knobs->error_px_q8 >= finest->error_px_q8);
-    FF_ASSERT(knobs->depth_max >= desc->depth_min && knobs->depth_max <= finest->depth_max);
+    FF_ASSERT(knobs->triangles_max >= FF_TRIANGLES_MIN);
     FF_ASSERT(knobs->panorama_error_q8 >= balance->panorama_error_q8);
 }
 
-/* Fills in limits that were left out; a limit finer than the finest becomes the finest. */
+/* A limit that was left out, or one finer than the finest. */
+static int32_t at_least(int32_t given, int32_t finest, int32_t times)
+{
+    FF_ASSERT(finest > 0);
+    if (given <= 0) given = finest > INT32_MAX / times ? INT32_MAX : finest * times;
+    return given > finest ? given : finest;
+}
+
 static void complete(ff_balance_desc *desc, const ff_quality *finest,
                      const ff_panorama_desc *panorama)
 {
-    FF_ASSERT(finest->c_q8 > 0 && finest->error_px_q8 > 0 && finest->view_wu > 0);
-    FF_ASSERT(panorama->error_px_q8 > 0 && panorama->back_plane_wu > 0);
     if (!desc->link_percent || desc->link_percent > 100) desc->link_percent = PERCENT_DEFAULT;
     if (desc->c_min_q8 <= 0) desc->c_min_q8 = finest->c_q8 / 4;
     if (desc->c_min_q8 > finest->c_q8 || desc->c_min_q8 <= 0) desc->c_min_q8 = finest->c_q8;
-    if (desc->error_px_max_q8 <= 0)
-        desc->error_px_max_q8 = finest->error_px_q8 > INT32_MAX / 8 ? INT32_MAX
-                                                                    : finest->error_px_q8 * 8;
-    if (desc->error_px_max_q8 < finest->error_px_q8) desc->error_px_max_q8 = finest->error_px_q8;
-    if (!desc->depth_min)
-        desc->depth_min = (uint8_t)(finest->depth_max > DEPTH_LESS + DEPTH_LEAST
-                                        ? finest->depth_max - DEPTH_LESS
-                                        : DEPTH_LEAST);
-    if (desc->depth_min > finest->depth_max) desc->depth_min = finest->depth_max;
+    desc->error_px_max_q8 = at_least(desc->error_px_max_q8, finest->error_px_q8, 8);
+    if (!panorama) return;
     if (desc->back_plane_min_wu <= 0) desc->back_plane_min_wu = panorama->back_plane_wu / 4 + 1;
-    if (desc->panorama_error_max_q8 <= 0)
-        desc->panorama_error_max_q8 = panorama->error_px_q8 > INT32_MAX / 4
-                                          ? INT32_MAX
-                                          : panorama->error_px_q8 * 4;
-    if (desc->panorama_error_max_q8 < panorama->error_px_q8)
-        desc->panorama_error_max_q8 = panorama->error_px_q8;
+    desc->panorama_error_max_q8 = at_least(desc->panorama_error_max_q8, panorama->error_px_q8, 4);
+}
+
+/* The finest limit of triangles: as set, or the budget for them. */
+static uint32_t limit_set(const ff_balance_desc *desc, const ff_quality *quality, int reported)
+{
+    const uint32_t most = FF_TRIANGLES_MIN << SHARE_OCTAVES;
+    uint32_t limit = quality->triangles_max < most ? quality->triangles_max : most;
+    int budgeted = desc->mode == FF_BALANCE_ON && desc->frame_budget && !reported;
+    if (budgeted && limit > desc->frame_budget) limit = desc->frame_budget;
+    return limit > FF_TRIANGLES_MIN ? limit : FF_TRIANGLES_MIN;
 }
 
 /* ---- measuring ---- */
 
 static void forget(ff_balance *balance)
 {
-    memset(balance->gain_q4, FF_BALANCE_GAIN_Q4, sizeof balance->gain_q4);
+    for (int which = 0; which < FF_BALANCE_LEVELS; which++)
+        for (int load = 0; load < FF_BALANCE_LEVELS; load++)
+            memset(balance->gain_q4[which][load], gain_q4[which][load],
+                   sizeof balance->gain_q4[which][load]);
     balance->raised = balance->lowered = 0;
 }
 
+static void set_ladders(ff_balance *balance, const ff_panorama_desc *panorama, int shares)
+{
+    const ff_quality *finest = &balance->finest;
+    const ff_balance_desc *desc = &balance->desc;
+    int distance = finest->measure == FF_MEASURE_DISTANCE;
+    balance->detail_steps = steps_between(distance ? finest->c_q8 : desc->error_px_max_q8,
+                                          distance ? desc->c_min_q8 : finest->error_px_q8,
+                                          DETAIL_EIGHTHS, DETAIL_STEPS_MAX);
+    balance->error_steps = panorama
+                               ? steps_between(desc->panorama_error_max_q8, panorama->error_px_q8,
+                                               ERROR_EIGHTHS, ERROR_STEPS_MAX)
+                               : 0;
+    balance->top[FF_BALANCE_SHARE] = shares ? steps_between(finest->triangles_max, FF_TRIANGLES_MIN,
+                                                            SHARE_EIGHTHS, FF_BALANCE_STEPS_MAX)
+                                            : 0;
+    balance->top[FF_BALANCE_FIDELITY] = (uint8_t)(balance->detail_steps + balance->error_steps);
+}
+
 void ff_balance_set(ff_balance *balance, const ff_balance_desc *desc, const ff_quality *quality,
-                    const ff_panorama_desc *panorama, int can_panorama, int fresh)
+                    const ff_panorama_desc *panorama, int reported, int fresh)
 {
     if (fresh) memset(balance, 0, sizeof *balance);
     balance->desc = *desc;
     balance->finest = *quality;
-    balance->panorama_error_q8 = panorama->error_px_q8;
+    balance->reported = reported != 0;
+    balance->finest.triangles_max = limit_set(desc, quality, reported);
+    balance->back_plane_wu = panorama ? panorama->back_plane_wu : 0;
+    balance->panorama_error_q8 = panorama ? panorama->error_px_q8 : 0;
     complete(&balance->desc, quality, panorama);
-    desc = &balance->desc;
-    balance->c_steps = quality->measure == FF_MEASURE_DISTANCE
-                           ? steps_between(quality->c_q8, desc->c_min_q8, 1, C_STEPS_MAX)
-                           : steps_between(desc->error_px_max_q8, quality->error_px_q8, 1,
-                                           C_STEPS_MAX);
-    balance->depth_steps = (uint8_t)(quality->depth_max - desc->depth_min);
-    balance->plane_steps = can_panorama ? steps_between(quality->view_wu, desc->back_plane_min_wu,
-                                                        1, PLANE_STEPS_MAX)
-                                        : 0;
-    balance->error_steps = can_panorama
-                               ? steps_between(desc->panorama_error_max_q8, panorama->error_px_q8,
-                                               ERROR_QUARTERS, ERROR_STEPS_MAX)
-                               : 0;
-    FF_ASSERT(detail_steps(balance) + balance->plane_steps <= FF_BALANCE_STEPS_MAX);
     unsigned old[FF_BALANCE_LEVELS] = { balance->top[0], balance->top[1] };
-    balance->top[FF_BALANCE_SHARE] = (uint8_t)(detail_steps(balance) + balance->plane_steps);
-    balance->top[FF_BALANCE_FIDELITY] = (uint8_t)(detail_steps(balance) + balance->error_steps);
+    set_ladders(balance, panorama, reported && desc->frame_budget);
     /* A level keeps its part of a ladder that has changed its length. The first time, share starts
      * half-way up its ladder, and fidelity at the top of its own. */
     for (int i = 0; i < FF_BALANCE_LEVELS; i++) {
@@ -200,12 +222,8 @@ void ff_balance_set(ff_balance *balance, const ff_balance_desc *desc, const ff_q
         balance->level[i] = (uint8_t)(old[i] ? balance->level[i] * balance->top[i] / old[i]
                                              : balance->top[i] / (2u - (unsigned)i));
     }
-    if (desc->mode == FF_BALANCE_ALL_SERVER)
-        balance->level[FF_BALANCE_SHARE] = 0;
-    else if (desc->mode == FF_BALANCE_ALL_CLIENT)
-        balance->level[FF_BALANCE_SHARE] = balance->top[FF_BALANCE_SHARE];
     if (desc->mode != FF_BALANCE_ON)
-        balance->level[FF_BALANCE_FIDELITY] = balance->top[FF_BALANCE_FIDELITY];
+        for (int i = 0; i < FF_BALANCE_LEVELS; i++) balance->level[i] = balance->top[i];
     forget(balance);
     ff_balance_pause(balance);
 }
@@ -219,7 +237,7 @@ void ff_balance_pause(ff_balance *balance)
 static void begin_frame_window(ff_balance *balance, const ff_balance_sample *sample)
 {
     balance->frame_since_us = sample->now_us;
-    balance->frame_sum = balance->frame_samples = 0;
+    balance->frame_sum = balance->triangles_sum = balance->frame_samples = 0;
 }
 
 static void begin_link_window(ff_balance *balance, const ff_balance_sample *sample)
@@ -227,7 +245,9 @@ static void begin_link_window(ff_balance *balance, const ff_balance_sample *samp
     balance->link_since_us = sample->now_us;
     balance->bytes_since = sample->bytes_down;
     balance->waited_us = 0;
-    balance->frame_most_q8 = INT32_MIN;
+    balance->frames_before = balance->frames;
+    balance->frames = (ff_balance_dearest){ INT32_MIN, INT32_MIN };
+    balance->coarser_least_q8 = INT32_MAX;
 }
 
 static int is_settled(ff_balance *balance, const ff_balance_sample *sample)
@@ -235,8 +255,7 @@ static int is_settled(ff_balance *balance, const ff_balance_sample *sample)
     if (balance->settled) return 1;
     int64_t age_us = sample->now_us - balance->moved_us;
     balance->settled = age_us >= SETTLE_US_MAX ||
-                       (sample->in_force && !sample->waiting &&
-                        age_us >= SETTLE_US + 2 * (int64_t)sample->rtt_us);
+                       (!sample->waiting && age_us >= SETTLE_US + 2 * (int64_t)sample->rtt_us);
     return 0;
 }
 
@@ -245,12 +264,40 @@ static int32_t load_of(uint64_t cost, uint64_t budget)
     return ff_balance_log2_q8(cost) - ff_balance_log2_q8(budget);
 }
 
-static int32_t frame_load(const ff_balance *balance)
+/* How much coarser a detail is than the finest, in log2 units. */
+static int32_t coarser_q8(const ff_balance *balance, int32_t c_q8, int32_t error_px_q8)
+{
+    FF_ASSERT(c_q8 >= 0 && error_px_q8 >= 0);
+    return balance->finest.measure == FF_MEASURE_DISTANCE
+               ? load_of((uint64_t)balance->finest.c_q8, (uint64_t)c_q8)
+               : load_of((uint64_t)error_px_q8, (uint64_t)balance->finest.error_px_q8);
+}
+
+static int32_t bound_coarser_q8(const ff_balance *balance, unsigned fidelity)
+{
+    int32_t bound_q8 = bound_at(balance, fidelity);
+    return coarser_q8(balance, bound_q8, bound_q8);
+}
+
+static void most(ff_balance_dearest *frames, int32_t load_q8, int32_t full_q8)
+{
+    if (load_q8 > frames->load_q8) frames->load_q8 = load_q8;
+    if (full_q8 > frames->full_q8) frames->full_q8 = full_q8;
+}
+
+/* The frame's window is over. */
+static void measure_frames(ff_balance *balance)
 {
     FF_ASSERT(balance->frame_samples > 0);
-    return balance->desc.frame_budget
-               ? load_of(balance->frame_sum / balance->frame_samples, balance->desc.frame_budget)
-               : INT16_MIN;
+    uint64_t cost = balance->frame_sum / balance->frame_samples;
+    uint32_t limit = limit_at(balance, balance->level[FF_BALANCE_SHARE]),
+             drawn = (uint32_t)(balance->triangles_sum / balance->frame_samples);
+    int32_t load_q8 = balance->desc.frame_budget ? load_of(cost, balance->desc.frame_budget)
+                                                 : INT16_MIN;
+    int32_t full_q8 = load_q8 + (drawn < limit ? load_of(limit, drawn) : 0);
+    balance->triangles_mean = drawn;
+    balance->load_q8[FF_BALANCE_SHARE] = load_q8;
+    most(&balance->frames, load_q8, full_q8);
 }
 
 /* Measures the link's load. 0 when the link is silent and says nothing about what it can carry. */
@@ -285,25 +332,23 @@ static void move(ff_balance *balance, int which, int level, int64_t now_us)
     balance->settled = 0;
 }
 
-/* The most that a step up adds to a load, in log2 units, Q8. A step of fidelity adds nothing to
- * either load while it only lifts a cap that lies above the detail in force; and a step that allows
- * the panorama less error adds nothing to a frame's load, only to the link's. */
-static int gain_q8(const ff_balance *balance, int which, int load, int step)
-{
-    FF_ASSERT(step >= 0 && step < balance->top[which]);
-    if (which == FF_BALANCE_FIDELITY) {
-        place low = place_of(balance, balance->level[FF_BALANCE_SHARE], (unsigned)step);
-        place high = place_of(balance, balance->level[FF_BALANCE_SHARE], (unsigned)step + 1);
-        int finer = high.cap > low.cap && low.cap < low.detail;
-        if (!finer && (load == FF_BALANCE_SHARE || high.error == low.error)) return 0;
-    }
-    return GAIN_Q8(balance->gain_q4[which][load][step]);
-}
-
+/* The most that the steps between two levels add to a load, in log2 units, Q8. */
 static int gains_q8(const ff_balance *balance, int which, int load, int from, int to)
 {
-    int sum = 0;
-    for (int step = from; step < to; step++) sum += gain_q8(balance, which, load, step);
+    FF_ASSERT(from >= 0 && from <= to && to <= balance->top[which]);
+    int sum = 0, share = which == FF_BALANCE_SHARE;
+    /* the bound on detail binds: it is as coarse as what is in force */
+    int binds = share ||
+                balance->coarser_least_q8 <= bound_coarser_q8(balance, (unsigned)from) + EIGHTH_Q8;
+    if (share && load == FF_BALANCE_SHARE)
+        sum = load_of(limit_at(balance, (unsigned)to), limit_at(balance, (unsigned)from));
+    for (int step = from; step < to; step++) {
+        int of_detail = share || detail_of(balance, (unsigned)step) !=
+                                     detail_of(balance, (unsigned)step + 1);
+        /* the panorama's error adds nothing to a frame's load */
+        if (of_detail ? binds : load != FF_BALANCE_SHARE)
+            sum += GAIN_Q8(balance->gain_q4[which][load][step]);
+    }
     return sum;
 }
 
@@ -316,47 +361,90 @@ static void learn(ff_balance *balance, int which, int low, int high, int load, i
     int missing_q8 = change_q8 - gains_q8(balance, which, load, low, high);
     int more_q4 = missing_q8 > 0 ? missing_q8 / (16 * (high - low)) + 1 : 0;
     for (int step = low; step < high; step++) {
-        int gain_q4 = balance->gain_q4[which][load][step] + more_q4;
-        balance->gain_q4[which][load][step] = (uint8_t)(gain_q4 > UINT8_MAX ? UINT8_MAX : gain_q4);
+        int gain = balance->gain_q4[which][load][step] + more_q4;
+        balance->gain_q4[which][load][step] = (uint8_t)(gain > UINT8_MAX ? UINT8_MAX : gain);
     }
+}
+
+/* Whether the level changes anything when it goes down to `to`, a step below. */
+static int matters(const ff_balance *balance, int which, int to)
+{
+    if (which == FF_BALANCE_SHARE) return limit_at(balance, (unsigned)to) < balance->triangles_mean;
+    return detail_of(balance, (unsigned)to) == detail_of(balance, (unsigned)to + 1) ||
+           bound_coarser_q8(balance, (unsigned)to) > balance->coarser_least_q8;
+}
+
+/* The level at which relief for the load ends: a step of the share spares an eighth of an octave, a
+ * step of fidelity is taken to spare a quarter. Where no step changes anything it is this one. */
+static int relieved(const ff_balance *balance, int load)
+{
+    int spares_q8 = load == FF_BALANCE_SHARE ? EIGHTH_Q8 : 2 * EIGHTH_Q8,
+        steps = (balance->load_q8[load] + spares_q8 - 1) / spares_q8, level = balance->level[load];
+    FF_ASSERT(steps > 0);
+    for (int to = level - 1; to >= 0 && steps; to--) {
+        if (!matters(balance, load, to)) continue;
+        level = to;
+        steps--;
+    }
+    return level;
+}
+
+/* Undoes a raise that a load did not bear, or the part of it that relief would take back, and
+ * learns from it. What is left of it may still be blamed. */
+static void undo(ff_balance *balance, int load, int64_t now_us)
+{
+    int which = balance->raised - 1, to = balance->moved_from, eased = relieved(balance, load);
+    FF_ASSERT(which >= 0 && which < FF_BALANCE_LEVELS);
+    learn(balance, which, to, balance->level[which], load,
+          balance->load_q8[load] - balance->before_q8[load]);
+    if (which == load && eased > to && eased < balance->level[which])
+        to = eased;
+    else
+        balance->raised = 0;
+    move(balance, which, to, now_us);
 }
 
 static int relieve(ff_balance *balance, int load, int64_t now_us)
 {
     FF_ASSERT(balance->load_q8[load] > TOLERANCE_Q8);
-    if (balance->raised && now_us - balance->moved_us < BLAME_US) {
-        int which = balance->raised - 1;
-        FF_ASSERT(which < FF_BALANCE_LEVELS);
-        learn(balance, which, balance->moved_from, balance->level[which], load,
-              balance->load_q8[load] - balance->before_q8[load]);
-        balance->raised = 0;
-        move(balance, which, balance->moved_from, now_us);
+    if (balance->raised && now_us - balance->moved_us < BLAME_US &&
+        balance->before_q8[load] <= TOLERANCE_Q8) {
+        undo(balance, load, now_us);
         return 1;
     }
-    int level = balance->level[load], steps = 1 + balance->load_q8[load] / RELIEF_STEP_Q8;
-    if (!level) return 0;
+    int level = balance->level[load], to = relieved(balance, load);
+    if (to == level) return 0;
     forget(balance);
-    balance->raised = 0;
     balance->lowered = (uint8_t)(load + 1);
     balance->moved_from = (uint8_t)level;
     balance->before_q8[load] = balance->load_q8[load];
-    move(balance, load, steps > level ? 0 : level - steps, now_us);
+    move(balance, load, to, now_us);
     return 1;
 }
 
-/* Raises a level by as many steps as leave both loads below their budgets, whatever noise there
- * was. */
-static int raise_level(ff_balance *balance, int which, int64_t now_us)
+/* Whether both loads stay below their budgets when the level is raised. A frame never costs more
+ * than one that fills the limit. */
+static int fits(const ff_balance *balance, const ff_balance_dearest *frames, int which, int from,
+                int to)
+{
+    int32_t frame_q8 = frames->load_q8 + FRAME_MARGIN_Q8, full_q8 = frames->full_q8,
+            gain_q8 = gains_q8(balance, which, FF_BALANCE_SHARE, from, to),
+            link_q8 = balance->load_q8[FF_BALANCE_FIDELITY] + LINK_MARGIN_Q8 +
+                      gains_q8(balance, which, FF_BALANCE_FIDELITY, from, to);
+    if (full_q8 < frame_q8) full_q8 = frame_q8;
+    if (link_q8 > 0) return 0;
+    if (which == FF_BALANCE_SHARE) return full_q8 + gain_q8 <= 0;
+    return !balance->top[FF_BALANCE_SHARE] || !gain_q8 || full_q8 <= 0 || frame_q8 + gain_q8 <= 0;
+}
+
+static int raise_level(ff_balance *balance, const ff_balance_dearest *frames, int which,
+                       int64_t now_us)
 {
     int from = balance->level[which], to = from;
-    for (int fits = 1; fits && to < balance->top[which]; to += fits)
-        for (int load = 0; load < FF_BALANCE_LEVELS; load++)
-            fits &= balance->load_q8[load] + gains_q8(balance, which, load, from, to + 1) +
-                        2 * GAIN_Q8(FF_BALANCE_NOISE_Q4) <=
-                    0;
+    while (to < balance->top[which] && fits(balance, frames, which, from, to + 1)) to++;
     if (to == from) return 0;
-    FF_ASSERT(balance->load_q8[FF_BALANCE_SHARE] < 0 && balance->load_q8[FF_BALANCE_FIDELITY] < 0);
-    memcpy(balance->before_q8, balance->load_q8, sizeof balance->before_q8);
+    balance->before_q8[FF_BALANCE_SHARE] = frames->load_q8;
+    balance->before_q8[FF_BALANCE_FIDELITY] = balance->load_q8[FF_BALANCE_FIDELITY];
     balance->raised = (uint8_t)(which + 1);
     balance->moved_from = (uint8_t)from;
     balance->lowered = 0;
@@ -369,26 +457,36 @@ static int decide(ff_balance *balance, const ff_balance_sample *sample)
 {
     FF_ASSERT(balance->settled);
     int told = link_load(balance, sample, &balance->load_q8[FF_BALANCE_FIDELITY]);
-    int32_t last_q8 = balance->load_q8[FF_BALANCE_SHARE];
     int moved = 0;
     if (told && balance->lowered) { /* what the relief spared, a raise would add */
         int which = balance->lowered - 1,
-            now_q8 = which == FF_BALANCE_SHARE ? balance->frame_most_q8 : balance->load_q8[which];
+            now_q8 = which == FF_BALANCE_SHARE ? balance->frames.load_q8 : balance->load_q8[which];
         FF_ASSERT(which < FF_BALANCE_LEVELS && !balance->raised);
         learn(balance, which, balance->level[which], balance->moved_from, which,
               balance->before_q8[which] - now_q8);
         balance->lowered = 0;
     }
-    if (told && balance->load_q8[FF_BALANCE_FIDELITY] > TOLERANCE_Q8) {
+    if (told && balance->load_q8[FF_BALANCE_FIDELITY] > TOLERANCE_Q8)
         moved = relieve(balance, FF_BALANCE_FIDELITY, sample->now_us);
-    } else if (told && balance->frame_most_q8 != INT32_MIN) {
-        balance->load_q8[FF_BALANCE_SHARE] = balance->frame_most_q8;
-        moved = raise_level(balance, FF_BALANCE_FIDELITY, sample->now_us) ||
-                raise_level(balance, FF_BALANCE_SHARE, sample->now_us);
-        balance->load_q8[FF_BALANCE_SHARE] = last_q8;
+    else if (told && balance->frames.load_q8 != INT32_MIN) {
+        ff_balance_dearest frames = balance->frames;
+        most(&frames, balance->frames_before.load_q8, balance->frames_before.full_q8);
+        moved = raise_level(balance, &frames, FF_BALANCE_FIDELITY, sample->now_us) ||
+                raise_level(balance, &frames, FF_BALANCE_SHARE, sample->now_us);
     }
     begin_link_window(balance, sample);
     return moved;
+}
+
+static void take(ff_balance *balance, const ff_balance_sample *sample)
+{
+    int32_t detail_q8 = coarser_q8(balance, sample->c_q8, sample->error_px_q8);
+    balance->frame_sum += balance->reported ? sample->frame_cost : sample->triangles;
+    balance->triangles_sum += sample->triangles;
+    balance->frame_samples++;
+    balance->waited_us += sample->waiting ? sample->now_us - balance->last_us : 0;
+    balance->last_us = sample->now_us;
+    if (detail_q8 < balance->coarser_least_q8) balance->coarser_least_q8 = detail_q8;
 }
 
 int ff_balance_feed(ff_balance *balance, const ff_balance_sample *sample)
@@ -404,15 +502,13 @@ int ff_balance_feed(ff_balance *balance, const ff_balance_sample *sample)
         balance->last_us = sample->now_us;
         return 0;
     }
-    balance->frame_sum += sample->frame_cost;
-    balance->frame_samples++;
-    balance->waited_us += sample->waiting ? sample->now_us - balance->last_us : 0;
-    balance->last_us = sample->now_us;
+    take(balance, sample);
     if (sample->now_us - balance->frame_since_us >= FRAME_WINDOW_US) {
-        int32_t load_q8 = balance->load_q8[FF_BALANCE_SHARE] = frame_load(balance);
-        if (load_q8 > balance->frame_most_q8) balance->frame_most_q8 = load_q8;
+        measure_frames(balance);
         begin_frame_window(balance, sample);
-        if (load_q8 > TOLERANCE_Q8 && relieve(balance, FF_BALANCE_SHARE, sample->now_us)) return 1;
+        if (balance->top[FF_BALANCE_SHARE] && balance->load_q8[FF_BALANCE_SHARE] > TOLERANCE_Q8 &&
+            relieve(balance, FF_BALANCE_SHARE, sample->now_us))
+            return 1;
     }
     return sample->now_us - balance->link_since_us >= LINK_WINDOW_US ? decide(balance, sample) : 0;
 }
