@@ -41,10 +41,11 @@ int sim_balance_read(const char *text, ff_balance_desc *balance);
            "the most triangles of ground in a picture: where --quality asks for more, all of it " \
            "is drawn as much coarser as that takes; default: what --quality says") \
     OPTION(sim_balance, balance_text, "balance", "SPEC", "off", SYS_ANY, \
-           "the client's share of the work follows budgets, and what --quality and --panorama " \
-           "say is the finest: a frame's triangles (0: as many as it takes) and the bytes that " \
-           "may come a second (0: at most 80 % of what the link carries). server or client: " \
-           "stays at that end; off: all as set") \
+           "budgets; what --quality and --panorama say is the finest. No picture has more " \
+           "triangles than the first number (0: as many as --quality allows). The second: bytes " \
+           "that may come a second (0: at most 80 % of what the link carries); pixels of error, " \
+           "or C, and the panoramas' error give way to it. client: as set, without panoramas; " \
+           "server: as few triangles as can be, up to the nearest back plane; off: all as set") \
     OPTION(sim_memory, memory_bytes, "memory", "BYTES", memory, SYS_ANY, memory_help)
 #define SIM_PANORAMA_OPTION(OPTION, fallback, help) \
     OPTION(sys_word, use_panorama, "panorama", "USE", fallback, SYS_WORDS(sim_panorama_words), help "; auto: where that is cheaper for the error allowed")

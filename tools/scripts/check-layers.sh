@@ -168,7 +168,6 @@ shape_words() { # PATTERN that no code may have but protocol/shape, the tests, a
     protocol/ff_terrain.c      compares two terrains
     protocol/ff_bytes.c        reads and writes it
     sim/judge/sim_ground.c     compares two terrains
-    client/balance/client_balance.c  farther than the terrain is wide, by a sample, nothing is seen
     client/ground/ff_ground_frame.c  a vertex is placed in units of a sample
     tools/bake/bake_run.c      describes the raster; reports it
     tools/info/bake_export.c   writes it into a raster's head

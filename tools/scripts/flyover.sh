@@ -68,11 +68,11 @@ list_flights() {
         for panorama in off on; do echo "$link-0-low-$panorama --link $link --speed 0 --quality paper-low --panorama $panorama"; done
     done
     printf '%s\n' "px-8 px:8" "px-4 px:4" "px-2 px:2" "px-1 px:1" "C-2 2:8" "C-3 3:8" "C-5 5:8" "C-9 9:8" | list_sweep
-    printf '%s\n' "share-server 9:8 server" "share-2500 9:8 2500" "share-5000 9:8 5000" "share-10000 9:8 10000" "share-20000 9:8 20000" \
-        "share-client 9:8 client" | list_sweep
+    printf '%s\n' "share-server px:1 server" "share-2500 px:1 2500" "share-5000 px:1 5000" "share-10000 px:1 10000" "share-20000 px:1 20000" \
+        "share-client px:1 client" | list_sweep
 }
 
-# Quality against work, on one flight: "SERIES-VALUE QUALITY [BALANCE]" each; share: balanced, from all server to all client.
+# Quality against work, on one flight: "SERIES-VALUE QUALITY [BALANCE]" each; share: budgets of triangles, from all server to all client.
 list_sweep() {
     while read -r name quality balance; do
         echo "sweep-$name --link umts --speed 150 --quality $quality --panorama on --balance ${balance:-off}"
