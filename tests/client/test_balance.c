@@ -50,9 +50,9 @@ typedef struct plant {
     /* running */
     ff_balance balance;
     int64_t now_us, effect_us;
+    uint64_t seed;
     ff_balance_knobs knobs; /* in effect */
     double received, wait_debt, factor[2];
-    uint64_t seed;
 } plant;
 
 /* needs more triangles than any budget */
@@ -397,8 +397,6 @@ static void settles_after_steps_of_the_input(void **state)
             plant_set(&p, 0);
             assert_settles(&p, 4);
             assert_uses_the_budget(&p);
-            /* a budget, nothing else, holds the levels down */
-            assert_true(load_now(&p, FRAME) > -0.5 || load_now(&p, LINK) > -1);
             if (budget[i][1] > 13) /* with the good link fidelity came back */
                 assert_int_equal(p.balance.level[1], p.balance.top[1]);
         }
@@ -451,14 +449,13 @@ static void a_link_much_too_slow_is_spared(void **state)
 {
     (void)state;
     for (int overrated = 0; overrated < 5; overrated += 4) {
-        plant p = { .needed = 14.5,
-                    .slope = 1.2,
-                    .each = 1,
-                    .bytes = 11,
-                    .per_triangle = 1.5,
-                    .per_error = 0.6,
-                    .budget = { 14, 19 },
-                    .overrated = overrated };
+        plant p = rough;
+        p.needed = 14.5;
+        p.bytes = 11;
+        p.per_triangle = 1.5;
+        p.per_error = 0.6;
+        p.budget[LINK] = 19;
+        p.overrated = overrated;
         plant_open(&p);
         assert_settles(&p, 4);
         uint8_t share = p.balance.level[FRAME];
