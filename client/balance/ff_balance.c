@@ -5,7 +5,7 @@
 
 #define SETTLE_US         500000 /* after a move, besides two round trips */
 #define SETTLE_US_MAX     10000000
-#define FRAME_WINDOW_US   1000000
+#define FRAME_WINDOW_US   2000000
 #define LINK_WINDOW_US    8000000
 #define BLAME_US          30000000 /* a relief sooner than this after a raise undoes the raise */
 #define SATURATED_PERCENT 90       /* of the time something waits */
@@ -13,22 +13,23 @@
  * less does not help then. */
 #define SILENT_SHARE    32
 #define PERCENT_DEFAULT 80
-/* steps in eighths of an octave */
-#define SHARE_EIGHTHS    1
-#define DETAIL_EIGHTHS   2
-#define ERROR_EIGHTHS    4
-#define SHARE_OCTAVES    16 /* of the share's ladder at most: no picture has more triangles */
-#define DETAIL_STEPS_MAX 16
-#define ERROR_STEPS_MAX  12
-#define EIGHTH_Q8        32
-#define BULGE_Q8         88
-#define GAIN_Q8(gain_q4) ((int32_t)(gain_q4)*16)
-#define TOLERANCE_Q8     GAIN_Q8(FF_BALANCE_NOISE_Q4)
-#define FRAME_MARGIN_Q8  16 /* of a raise */
-#define LINK_MARGIN_Q8   (2 * TOLERANCE_Q8)
+/* steps in sixteenths of an octave */
+#define SHARE_SIXTEENTHS  1
+#define DETAIL_SIXTEENTHS 4
+#define ERROR_SIXTEENTHS  8
+#define SHARE_OCTAVES     15 /* of the share's ladder at most: no picture has more triangles */
+#define DETAIL_STEPS_MAX  16
+#define ERROR_STEPS_MAX   12
+#define SHARE_STEP_Q8     (256 * SHARE_SIXTEENTHS / 16)
+#define DETAIL_STEP_Q8    (256 * DETAIL_SIXTEENTHS / 16)
+#define BULGE_Q8          88
+#define GAIN_Q8(gain_q4)  ((int32_t)(gain_q4)*16)
+#define TOLERANCE_Q8      GAIN_Q8(FF_BALANCE_NOISE_Q4)
+#define FRAME_MARGIN_Q8   16 /* of a raise */
+#define LINK_MARGIN_Q8    (2 * TOLERANCE_Q8)
 
 /* gain_q4 has a place for each step of the longest ladder, and a level is a byte */
-FF_STATIC_ASSERT(8 * SHARE_OCTAVES / SHARE_EIGHTHS <= FF_BALANCE_STEPS_MAX);
+FF_STATIC_ASSERT(16 * SHARE_OCTAVES / SHARE_SIXTEENTHS <= FF_BALANCE_STEPS_MAX);
 FF_STATIC_ASSERT(DETAIL_STEPS_MAX + ERROR_STEPS_MAX <= FF_BALANCE_STEPS_MAX);
 FF_STATIC_ASSERT(FF_BALANCE_STEPS_MAX <= UINT8_MAX);
 FF_STATIC_ASSERT((uint64_t)FF_TRIANGLES_MIN << SHARE_OCTAVES <= INT32_MAX);
@@ -42,7 +43,7 @@ FF_STATIC_ASSERT(FRAME_WINDOW_US < LINK_WINDOW_US);
 
 /* The most that a step up is taken to add to a load before anything is learned; to a frame's load,
  * a step of the share adds what it adds to the limit, and this. */
-static const uint8_t gain_q4[FF_BALANCE_LEVELS][FF_BALANCE_LEVELS] = { { 0, 4 }, { 8, 8 } };
+static const uint8_t gain_q4[FF_BALANCE_LEVELS][FF_BALANCE_LEVELS] = { { 0, 2 }, { 8, 8 } };
 
 int32_t ff_balance_log2_q8(uint64_t value)
 {
@@ -57,29 +58,30 @@ int32_t ff_balance_log2_q8(uint64_t value)
 
 /* ---- the ladders ---- */
 
-/* value / 2^(eighths / 8) */
-static int64_t lessened(int64_t value, unsigned eighths)
+/* value / 2^(sixteenths / 16) */
+static int64_t lessened(int64_t value, unsigned sixteenths)
 {
-    static const int32_t root_q16[8] = { 65536, 60097, 55109, 50535, 46341, 42495, 38968, 35734 };
-    FF_ASSERT(value > 0 && value <= INT32_MAX && eighths / 8 < 32);
-    return (value >> eighths / 8) * root_q16[eighths % 8] >> 16;
+    static const int32_t root_q16[16] = { 65536, 62757, 60097, 57549, 55109, 52773, 50535, 48393,
+                                          46341, 44376, 42495, 40693, 38968, 37316, 35734, 34219 };
+    FF_ASSERT(value > 0 && value <= INT32_MAX && sixteenths / 16 < 32);
+    return (value >> sixteenths / 16) * root_q16[sixteenths % 16] >> 16;
 }
 
-static uint8_t steps_between(int64_t high, int64_t low, unsigned eighths, unsigned most)
+static uint8_t steps_between(int64_t high, int64_t low, unsigned sixteenths, unsigned most)
 {
     unsigned steps = 0;
     FF_ASSERT(low > 0);
-    while (steps < most && lessened(high, steps * eighths) > low) steps++;
+    while (steps < most && lessened(high, steps * sixteenths) > low) steps++;
     return (uint8_t)steps;
 }
 
 /* The value that lies `below` steps under the top of a ladder of `steps` steps from `high` down to
  * `low`. */
 static int32_t on_ladder(int64_t high, int64_t low, unsigned below, unsigned steps,
-                         unsigned eighths)
+                         unsigned sixteenths)
 {
     FF_ASSERT(below <= steps);
-    int64_t value = lessened(high, below * eighths);
+    int64_t value = lessened(high, below * sixteenths);
     return (int32_t)(below && (below == steps || value < low) ? low : value);
 }
 
@@ -102,7 +104,7 @@ static uint32_t limit_at(const ff_balance *balance, unsigned share)
 {
     unsigned top = balance->top[FF_BALANCE_SHARE];
     return (uint32_t)on_ladder(balance->finest.triangles_max, FF_TRIANGLES_MIN, top - share, top,
-                               SHARE_EIGHTHS);
+                               SHARE_SIXTEENTHS);
 }
 
 /* The bound on detail: C, or pixels of error; the least error is the finest, that ladder is climbed
@@ -112,8 +114,10 @@ static int32_t bound_at(const ff_balance *balance, unsigned fidelity)
     const ff_quality *finest = &balance->finest;
     unsigned up = detail_of(balance, fidelity), steps = balance->detail_steps;
     if (finest->measure == FF_MEASURE_DISTANCE)
-        return on_ladder(finest->c_q8, balance->desc.c_min_q8, steps - up, steps, DETAIL_EIGHTHS);
-    return on_ladder(balance->desc.error_px_max_q8, finest->error_px_q8, up, steps, DETAIL_EIGHTHS);
+        return on_ladder(finest->c_q8, balance->desc.c_min_q8, steps - up, steps,
+                         DETAIL_SIXTEENTHS);
+    return on_ladder(balance->desc.error_px_max_q8, finest->error_px_q8, up, steps,
+                     DETAIL_SIXTEENTHS);
 }
 
 void ff_balance_get(const ff_balance *balance, ff_balance_knobs *knobs)
@@ -131,7 +135,7 @@ void ff_balance_get(const ff_balance *balance, ff_balance_knobs *knobs)
     if (balance->back_plane_wu)
         knobs->panorama_error_q8 = on_ladder(
             desc->panorama_error_max_q8, balance->panorama_error_q8,
-            fidelity - detail_of(balance, fidelity), balance->error_steps, ERROR_EIGHTHS);
+            fidelity - detail_of(balance, fidelity), balance->error_steps, ERROR_SIXTEENTHS);
     if (desc->mode == FF_BALANCE_ALL_CLIENT) knobs->back_plane_wu = 0;
     if (desc->mode == FF_BALANCE_ALL_SERVER) {
         knobs->triangles_max = FF_TRIANGLES_MIN;
@@ -191,13 +195,13 @@ static void set_ladders(ff_balance *balance, const ff_panorama_desc *panorama, i
     int distance = finest->measure == FF_MEASURE_DISTANCE;
     balance->detail_steps = steps_between(distance ? finest->c_q8 : desc->error_px_max_q8,
                                           distance ? desc->c_min_q8 : finest->error_px_q8,
-                                          DETAIL_EIGHTHS, DETAIL_STEPS_MAX);
+                                          DETAIL_SIXTEENTHS, DETAIL_STEPS_MAX);
     balance->error_steps = panorama
                                ? steps_between(desc->panorama_error_max_q8, panorama->error_px_q8,
-                                               ERROR_EIGHTHS, ERROR_STEPS_MAX)
+                                               ERROR_SIXTEENTHS, ERROR_STEPS_MAX)
                                : 0;
     balance->top[FF_BALANCE_SHARE] = shares ? steps_between(finest->triangles_max, FF_TRIANGLES_MIN,
-                                                            SHARE_EIGHTHS, FF_BALANCE_STEPS_MAX)
+                                                            SHARE_SIXTEENTHS, FF_BALANCE_STEPS_MAX)
                                             : 0;
     balance->top[FF_BALANCE_FIDELITY] = (uint8_t)(balance->detail_steps + balance->error_steps);
 }
@@ -338,8 +342,8 @@ static int gains_q8(const ff_balance *balance, int which, int load, int from, in
     FF_ASSERT(from >= 0 && from <= to && to <= balance->top[which]);
     int sum = 0, share = which == FF_BALANCE_SHARE;
     /* the bound on detail binds: it is as coarse as what is in force */
-    int binds = share ||
-                balance->coarser_least_q8 <= bound_coarser_q8(balance, (unsigned)from) + EIGHTH_Q8;
+    int binds = share || balance->coarser_least_q8 <=
+                             bound_coarser_q8(balance, (unsigned)from) + DETAIL_STEP_Q8 / 2;
     if (share && load == FF_BALANCE_SHARE)
         sum = load_of(limit_at(balance, (unsigned)to), limit_at(balance, (unsigned)from));
     for (int step = from; step < to; step++) {
@@ -374,11 +378,11 @@ static int matters(const ff_balance *balance, int which, int to)
            bound_coarser_q8(balance, (unsigned)to) > balance->coarser_least_q8;
 }
 
-/* The level at which relief for the load ends: a step of the share spares an eighth of an octave, a
- * step of fidelity is taken to spare a quarter. Where no step changes anything it is this one. */
+/* The level at which relief for the load ends: a step of the share spares a sixteenth of an octave,
+ * a step of fidelity is taken to spare a quarter. Where no step changes anything it is this one. */
 static int relieved(const ff_balance *balance, int load)
 {
-    int spares_q8 = load == FF_BALANCE_SHARE ? EIGHTH_Q8 : 2 * EIGHTH_Q8,
+    int spares_q8 = load == FF_BALANCE_SHARE ? SHARE_STEP_Q8 : DETAIL_STEP_Q8,
         steps = (balance->load_q8[load] + spares_q8 - 1) / spares_q8, level = balance->level[load];
     FF_ASSERT(steps > 0);
     for (int to = level - 1; to >= 0 && steps; to--) {

@@ -6,8 +6,8 @@
  * the limit is a level on a ladder.
  *
  * Two levels, each on a ladder; up is finer:
- *   share     the limit of triangles, steps of an eighth of an octave, from FF_TRIANGLES_MIN to the
- *             one set. No steps where costs are counted in triangles.
+ *   share     the limit of triangles, steps of a sixteenth of an octave, from FF_TRIANGLES_MIN to
+ *             the one set. No steps where costs are counted in triangles.
  *   fidelity  what may travel: a bound on detail (pixels of error, or C), steps of a quarter of an
  *             octave, and the panorama's allowed error, of a half. Top: as set by the embedder.
  * Two loads, each log2(cost / budget): of a frame as reported, and of the link (bytes a second, and
@@ -23,7 +23,7 @@
  * does not drift up while the ground needs few triangles, to be found too high later.
  *
  * After a move nothing is measured until it is in force (settled: at least 0.5 s and two round
- * trips, until nothing waits, at most 10 s); then a frame's load is taken over 1 s, the link's over
+ * trips, until nothing waits, at most 10 s); then a frame's load is taken over 2 s, the link's over
  * 8 s, from new windows. So a move comes after what was asked for by the last one has arrived. A
  * raise goes by the largest frame's load of two of the link's windows: costs that go up and down
  * more quickly do not drag the level along.
@@ -57,7 +57,7 @@
 
 #include "../farfield.h"
 
-#define FF_BALANCE_STEPS_MAX 128
+#define FF_BALANCE_STEPS_MAX 240
 #define FF_BALANCE_NOISE_Q4  2 /* 9 %; also what a budget may be passed by */
 
 /* the levels, and the loads that lower them: frame, link */

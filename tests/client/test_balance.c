@@ -15,7 +15,7 @@
 #define METRE      FF_WU_PER_METRE
 #define SECOND_US  1000000
 #define STEP_US    50000
-#define DECISION_S 20   /* settling at most 10 s, the link's window 8, a second of the frame's */
+#define DECISION_S 20   /* settling at most 10 s, the link's window 8, two seconds of the frame's */
 #define NOISE      0.12 /* of a second's cost: below 1.5 FF_BALANCE_NOISE_Q4 */
 #define TOLERANCE  0.14 /* FF_BALANCE_NOISE_Q4 in octaves, and what rounding loses */
 #define USED       0.85 /* of the frame's budget, where the ground needs it */
@@ -192,8 +192,8 @@ static void assert_settles(plant *p, uint32_t turns_most)
     turns = p->balance.turns;
     plant_run(p, 3600);
     assert_int_equal(p->balance.turns, turns);
-    /* a load close to a threshold may cross the threshold late */
-    assert_true(p->balance.moves - moves <= (p->noise > 0 ? 4 : 0));
+    /* a load close to a threshold may cross the threshold late: half an octave of the share */
+    assert_true(p->balance.moves - moves <= (p->noise > 0 ? 8 : 0));
     for (int load = 0; load < 2; load++)
         assert_true(!could_go_down(p, load) || load_now(p, load) <= log2(1 + p->noise) + TOLERANCE);
 }
@@ -232,7 +232,7 @@ static void each_step_changes_one_knob(void **state)
                 assert_int_equal(limit + detail + error, 1);
                 assert_int_equal(limit, which == FF_BALANCE_SHARE);
                 assert_true(now.triangles_max >= before.triangles_max &&
-                            now.triangles_max <= before.triangles_max * 1.0911);
+                            now.triangles_max <= before.triangles_max * 1.0451);
                 assert_true(now.c_q8 >= before.c_q8 && now.c_q8 * 4 <= before.c_q8 * 5);
                 assert_true(now.error_px_q8 <= before.error_px_q8 &&
                             now.error_px_q8 * 5 >= before.error_px_q8 * 4 - 4);
@@ -417,7 +417,7 @@ static void frame_overload_is_relieved_quickly(void **state)
         assert_true(limit_now(&p) > (loose ? 4 << 13 : 1 << 13));
         p.budget[FRAME] = 12.5;
         plant_set(&p, 0);
-        plant_run(&p, 10);
+        plant_run(&p, 4);
         assert_true(load_now(&p, FRAME) <= TOLERANCE);
         assert_true(load_now(&p, FRAME) >= log2(USED));
     }
@@ -436,7 +436,7 @@ static void the_limit_stays_where_the_budget_allows(void **state)
     plant_run(&p, 600);
     assert_true(load_now(&p, FRAME) < -2);
     p.needed = 18;
-    assert_true(limit_now(&p) <= limit * 1.0911);
+    assert_true(limit_now(&p) <= limit * 1.0451);
     assert_true(load_now(&p, FRAME) <= 0);
 }
 
@@ -497,7 +497,7 @@ static void a_step_too_high_is_learned(void **state)
         assert_true(p.balance.turns <= 10);
         assert_int_equal(p.balance.moves, moves);
         /* the next step is the dear one */
-        assert_true(limit_now(&p) <= 8192 && limit_now(&p) * 1.0911 > 8192);
+        assert_true(limit_now(&p) <= 8192 && limit_now(&p) * 1.0451 > 8192);
         p.budget[FRAME] = 16; /* the budget has room for the dear step */
         plant_set(&p, 0);
         assert_settles(&p, 4);
@@ -506,7 +506,7 @@ static void a_step_too_high_is_learned(void **state)
     }
 }
 
-/* Every ten seconds frames cost half as much again for three: the balance leaves the level that
+/* Every ten seconds frames cost half as much again for four: the balance leaves the level that
  * then passes the budget once, and does not return to it. When that is over, it does. */
 static void a_regular_input_does_not_drag_it_along(void **state)
 {
@@ -517,7 +517,7 @@ static void a_regular_input_does_not_drag_it_along(void **state)
     uint32_t limit = limit_now(&p), turns = p.balance.turns;
     for (int i = 0; i < 400; i++) {
         p.dearer = i % 2 ? 0 : 0.6;
-        plant_run(&p, i % 2 ? 7 : 3);
+        plant_run(&p, i % 2 ? 6 : 4);
     }
     assert_true(p.balance.turns - turns <= 2);
     assert_true(load_now(&p, FRAME) + 0.6 <= TOLERANCE && load_now(&p, FRAME) + 0.6 >= log2(USED));
