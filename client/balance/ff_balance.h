@@ -31,19 +31,21 @@
  * Why it settles. Assume, for a constant input, and with x the loads at a pair of levels in log2
  * units:
  *   A1  a window after a move contains all of the move's effect;
- *   A2  a frame's load that a raise goes by is within MARGIN (1/16) of the largest one measured at
+ *   A2  the frame's load that a raise goes by is within NOISE of the largest one ever measured at
  *       these levels; a link's load is within 1.5 NOISE of the true one, x;
  *   A3  a step up adds at most its known gain to either load: of the share to a frame's load what
  *       it adds to the limit, for a cost in proportion to triangles or with a constant part; else
  *       GAIN; or what was learned.
- * A raise is made only where the largest load to come, of a frame by A2 and A3 at most MARGIN and
- * of a link at most NOISE, is one that no relief answers: no relief ever follows a raise. Hence all
+ * A frame's load grows only while the limit binds, so a frame that fills the limit costs what A3
+ * says. Hence after a raise at most NOISE is measured, of a frame and of the link, and that is
+ * answered by no relief: no relief ever follows a raise. Hence all
  * reliefs come first; they only go down and there are at most as many as steps; then raises, at
  * most as many as steps; then rest. At most 2 * (all steps) decisions, one change of direction a
  * level, no limit cycle, whatever the plant is in other respects: it may be flat, saturate, or
  * couple the loads. If relief also lowers its own load (A4, monotone), it rests with no load above
  * the tolerance, or with that level at its bottom. And where the limit binds and the link's load
- * does not, the share rests with less than a step and the margin of the frame's budget unused.
+ * does not, the dearest frames, had they filled the limit, would cost less than a step and a
+ * sixteenth of an octave, 8 %, below the budget.
  *
  * Where A3 does not hold (a cache that overflows), the raise is undone, and the steps' gains are
  * set to what was seen: they only grow, so each step can be wrong a bounded number of times and
