@@ -506,7 +506,7 @@ static void a_step_too_high_is_learned(void **state)
     }
 }
 
-/* Every ten seconds frames cost half as much again for four: the balance leaves the level that
+/* Every fourteen seconds frames cost half as much again for four: the balance leaves the level that
  * then passes the budget once, and does not return to it. When that is over, it does. */
 static void a_regular_input_does_not_drag_it_along(void **state)
 {
@@ -517,7 +517,7 @@ static void a_regular_input_does_not_drag_it_along(void **state)
     uint32_t limit = limit_now(&p), turns = p.balance.turns;
     for (int i = 0; i < 400; i++) {
         p.dearer = i % 2 ? 0 : 0.6;
-        plant_run(&p, i % 2 ? 6 : 4);
+        plant_run(&p, i % 2 ? 10 : 4);
     }
     assert_true(p.balance.turns - turns <= 2);
     assert_true(load_now(&p, FRAME) + 0.6 <= TOLERANCE && load_now(&p, FRAME) + 0.6 >= log2(USED));
