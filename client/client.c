@@ -22,15 +22,18 @@ FF_STATIC_ASSERT(FF_PICTURE_SIDE_MAX <= UINT16_MAX && FF_FACE_SIZE_MAX <= UINT16
 
 size_t ff_client_bytes_min(void) { return CLIENT_BYTES_MIN; }
 
-static void default_quality(ff_quality *quality, unsigned width, unsigned height)
+static void default_quality(ff_client_desc *desc)
 {
-    uint32_t pixels = (uint32_t)width * height;
+    ff_quality *quality = &desc->quality;
+    uint32_t pixels = (uint32_t)desc->width * desc->height;
     int untouched = quality->measure == FF_MEASURE_DISTANCE && !quality->c_q8 &&
                     !quality->error_px_q8 && !quality->depth_max && !quality->sigma_q8 &&
                     !quality->view_wu && !quality->triangles_max;
     if (untouched) {
+        int budget = desc->balance.mode == FF_BALANCE_ON && desc->balance.frame_budget;
         quality->measure = FF_MEASURE_PIXELS;
-        quality->triangles_max = pixels / FF_QUALITY_DEFAULT_PIXELS;
+        quality->error_px_q8 = (budget ? FF_QUALITY_BUDGET_PX : FF_QUALITY_DEFAULT_PX) * 256;
+        quality->triangles_max = pixels / (budget ? LEAST_PIXELS : FF_QUALITY_DEFAULT_PIXELS);
     }
     if (quality->c_q8 <= 0) quality->c_q8 = 3 * 256;
     if (quality->error_px_q8 <= 0) quality->error_px_q8 = FF_QUALITY_DEFAULT_PX * 256;
@@ -66,7 +69,7 @@ void ff_client_default_desc(ff_client_desc *desc)
     if (!desc->height) desc->height = 320;
     if (!desc->in_flight_max) desc->in_flight_max = 32;
     if (!desc->answer_timeout_ms) desc->answer_timeout_ms = 60000;
-    default_quality(&desc->quality, desc->width, desc->height);
+    default_quality(desc);
     default_panorama(&desc->panorama, desc->width);
     desc->no_textures |= !ff_textures_built;
 }
@@ -214,7 +217,7 @@ void ff_client_event(ff_client *client, const sys_event *event)
 void ff_client_set_quality(ff_client *client, const ff_quality *quality)
 {
     client->desc.quality = *quality;
-    default_quality(&client->desc.quality, client->desc.width, client->desc.height);
+    default_quality(&client->desc);
     bound_quality(&client->desc.quality);
     client->dirty = 1;
     ff_client_balance_begin(client, 0);

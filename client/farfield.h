@@ -46,6 +46,7 @@ extern "C" {
  * each triangle. */
 #define FF_QUALITY_DEFAULT_PX     2
 #define FF_QUALITY_DEFAULT_PIXELS 14
+#define FF_QUALITY_BUDGET_PX      1 /* with a frame budget, which then limits the triangles */
 
 typedef struct ff_client ff_client;
 

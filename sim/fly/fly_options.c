@@ -34,9 +34,8 @@ static void complete(fly_options *options)
     options->link.way[SIM_UP].trace = options->up_trace;
     options->quality.view_wu = options->view_m > 0 ? (int32_t)(options->view_m * FF_WU_PER_METRE)
                                                    : INT32_MAX;
-    (void)sim_quality_read(options->quality_text, options->triangles, &options->size,
-                           &options->quality);
-    (void)sim_balance_read(options->balance_text, &options->balance);
+    sim_client_read(&options->quality_text, options->triangles, &options->size,
+                    options->balance_text, &options->quality, &options->balance);
     options->panorama =
         (ff_panorama_desc){ .enabled = (uint8_t)options->use_panorama,
                             .back_plane_wu = (int32_t)(options->back_plane_m * FF_WU_PER_METRE),

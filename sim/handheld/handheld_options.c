@@ -22,9 +22,8 @@ int handheld_options_parse(handheld_options *options, int argc, char **argv)
     *options = (handheld_options){ .quality = { .view_wu = INT32_MAX } };
     int rc = sys_options_parse(&program, options, argc, argv);
     if (rc) return rc;
-    (void)sim_quality_read(options->quality_text, options->triangles, &options->size,
-                           &options->quality);
-    (void)sim_balance_read(options->balance_text, &options->balance);
+    sim_client_read(&options->quality_text, options->triangles, &options->size,
+                    options->balance_text, &options->quality, &options->balance);
     options->panorama.enabled = (uint8_t)options->use_panorama;
     if (!options->pack_path + !options->server + !options->tape_path != 2)
         return fail("one of --pack, --server and --tape is wanted; try --help");

@@ -26,7 +26,7 @@ static const struct {
                { "high", "px:1", 4 },
                { "paper-low", "3:4", 0 },
                { "paper-high", "9:8", 0 } };
-FF_STATIC_ASSERT(FF_QUALITY_DEFAULT_PX == 2); /* medium's */
+FF_STATIC_ASSERT(FF_QUALITY_DEFAULT_PX == 2 && FF_QUALITY_BUDGET_PX == 1); /* medium, px:1 */
 
 int sim_quality_read(const char *text, uint32_t triangles, const sys_size *size,
                      ff_quality *quality)
@@ -93,6 +93,14 @@ int sim_balance_read(const char *text, ff_balance_desc *balance)
     balance->frame_budget = (uint32_t)triangles;
     balance->link_bytes_s = (uint32_t)bytes_s;
     return *text ? SYS_NOT_ONE : 0;
+}
+
+void sim_client_read(const char **quality_text, uint32_t triangles, const sys_size *size,
+                     const char *balance_text, ff_quality *quality, ff_balance_desc *balance)
+{
+    (void)sim_balance_read(balance_text, balance);
+    if (!*quality_text) *quality_text = balance->frame_budget ? "px:1" : "medium";
+    (void)sim_quality_read(*quality_text, triangles, size, quality);
 }
 
 static int balance_range(const sys_option *option, char *text, size_t room)

@@ -22,6 +22,9 @@ extern const sys_option_type sim_quality_option, sim_balance_option, sim_memory_
 int sim_quality_read(const char *text, uint32_t triangles, const sys_size *size,
                      ff_quality *quality);
 int sim_balance_read(const char *text, ff_balance_desc *balance);
+/* Both, of texts that their options took; *quality_text NULL becomes the default. */
+void sim_client_read(const char **quality_text, uint32_t triangles, const sys_size *size,
+                     const char *balance_text, ff_quality *quality, ff_balance_desc *balance);
 
 #define SIM_SPEED_KMH_MAX 100000
 #define SIM_HEIGHT_M_MAX  1000000
@@ -32,8 +35,8 @@ int sim_balance_read(const char *text, ff_balance_desc *balance);
 
 /* clang-format off */
 #define SIM_CLIENT_OPTIONS(OPTION, memory, memory_help) \
-    OPTION(sim_quality, quality_text, "quality", "Q", "medium", SYS_ANY, \
-           "how fine the ground is drawn. low, medium, high: 4, 2 and 1 pixels of error, and at " \
+    OPTION(sim_quality, quality_text, "quality", "Q", NULL, SYS_ANY, \
+           "how fine the ground is drawn; default medium, with a budget of triangles px:1. low, medium, high: 4, 2 and 1 pixels of error, and at " \
            "most a triangle for 28, 14 and 4 pixels. paper-low, paper-high: Hybrid's, 3:4 and " \
            "9:8. These and the others: at most a triangle for 2 pixels") \
     OPTION(sys_whole, triangles, "triangles", "N", NULL, \

@@ -71,8 +71,8 @@ int view_options_parse(view_options *o, int argc, char **argv)
                          .quality = { .view_wu = INT32_MAX } };
     int rc = sys_options_parse(&program, o, argc, argv);
     if (rc) return rc;
-    (void)sim_quality_read(o->quality_text, o->triangles, &o->size, &o->quality);
-    (void)sim_balance_read(o->balance_text, &o->balance);
+    sim_client_read(&o->quality_text, o->triangles, &o->size, o->balance_text, &o->quality,
+                    &o->balance);
     o->fov_brad16 = (int32_t)(o->fov_degrees * 65536 / 360 + 0.5);
     o->yaw_brad16 = (int32_t)(o->yaw_degrees * 65536 / 360) & 65535;
     if (o->script && o->keys) return view_fail("--script and --keys exclude each other");
