@@ -98,7 +98,8 @@ static int carve_tree(ff_client *client, const ff_budget *budget)
 {
     ff_tree_desc desc = { .info = client->info,
                           .node_count = budget->pool[FF_POOL_nodes].count,
-                          .wish_count = FF_TREE_WISHES };
+                          .wish_count = FF_TREE_WISHES,
+                          .hidden = client->desc.hidden };
     void *memory = take(client, budget, FF_POOL_nodes);
     client->tree = ff_tree_create(&desc, memory, budget->pool[FF_POOL_nodes].bytes);
     return client->tree ? FF_OK : FF_ERR_MEMORY;

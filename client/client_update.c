@@ -207,7 +207,7 @@ static int64_t clearance_wu(const ff_client *client, const c3d_camera *camera)
 }
 
 /* Near and far planes where the camera leaves them open: an eighth of the way to the ground, and
- * the farthest node drawn. */
+ * the farthest node in view, hidden or not: depths are rounded alike. */
 static void fit_planes(const ff_client *client, c3d_camera *camera)
 {
     if (client->camera.near_wu <= 0) {
@@ -218,7 +218,7 @@ static void fit_planes(const ff_client *client, c3d_camera *camera)
     }
     if (client->camera.far_wu > camera->near_wu) return;
     const ff_drawn *list;
-    uint32_t count = ff_tree_drawn(client->tree, &list);
+    uint32_t count = ff_tree_in_view(client->tree, &list);
     int32_t lowest_wu = ff_height_wu(&client->info, client->info.height_min);
     int64_t far_wu = 16 * (int64_t)camera->near_wu; /* sky and panorama lie within */
     for (uint32_t i = 0; i < count; i++) {

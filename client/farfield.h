@@ -135,6 +135,7 @@ typedef struct ff_client_desc {
     uint8_t no_textures;      /* 1: images of the terrain are not asked for */
     uint8_t no_prefetch;      /* 1: what motion and turns will show is not asked for ahead */
     uint8_t no_reserve;       /* 1: no coarse ground all round while the link is idle */
+    enum ff_hidden hidden;    /* default: ground that nearer ground hides is left out */
     /* requests sent and unanswered at most, default 32 */
     uint16_t in_flight_max;
     /* A connection silent this long with requests out is closed and made anew, default 60000. Never

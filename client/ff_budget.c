@@ -153,7 +153,10 @@ static void choose_entries(ff_budget *b, int buffers)
 
 static size_t tree_bytes(const ff_budget *b, uint32_t nodes)
 {
-    ff_tree_desc desc = { .info = *b->info, .node_count = nodes, .wish_count = FF_TREE_WISHES };
+    ff_tree_desc desc = { .info = *b->info,
+                          .node_count = nodes,
+                          .wish_count = FF_TREE_WISHES,
+                          .hidden = b->desc->hidden };
     return ff_tree_bytes(&desc);
 }
 

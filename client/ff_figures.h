@@ -20,6 +20,8 @@
     PART(nodes_capacity, tree.nodes_capacity) \
     PART(pool_full, tree.pool_full) \
     PART(orphans, tree.orphans) \
+    PART(nodes_hidden, tree.nodes_hidden) \
+    PART(triangles_hidden, tree.triangles_hidden) \
     KEPT(c3d_stats, c3d, from->c3d, "of the graphics device") \
     PART(meshes_high, c3d.mesh_high) \
     PART(strips_high, c3d.strip_high) \

@@ -2,6 +2,7 @@
  * found without moving the cut (Shared: prefetch from predicted motion). The measures are asked as
  * if the camera stood there; the tree itself stays as it is. */
 #include "ff_tree_local.h"
+#include "ff_horizon.h"
 
 /* How many tiles of the window ahead are looked at: more tiny tiles would cost more than they
  * bring. */
@@ -11,6 +12,7 @@ typedef struct foresight {
     ff_tree ahead;
     ff_wish *list;
     uint32_t capacity, count;
+    uint8_t looked; /* 1: the horizon ahead is known */
 } foresight;
 
 static void note(foresight *f, ff_key key, enum ff_kind kind, uint32_t priority)
@@ -27,13 +29,46 @@ static void note(foresight *f, ff_key key, enum ff_kind kind, uint32_t priority)
     FF_ASSERT(at + 1 == f->count || f->list[at + 1].priority < priority);
 }
 
+/* The horizon there, of the ground that is drawn here; made when somebody asks. */
+static void look(const ff_tree *tree, foresight *f)
+{
+    ff_horizon *horizon = f->ahead.horizon;
+    uint32_t count = 0;
+    f->looked = 1;
+    for (uint32_t i = 0; i < tree->cut_count; i++) {
+        ff_box there;
+        ff_node_box(&f->ahead, tree->drawn[i].node, &there);
+        if (!ff_box_beyond_view(&f->ahead, &there) && ff_box_in_view(&f->ahead, &there))
+            tree->sort[count++] = (uint64_t)ff_box_distance(&there) << FF_SLOT_BITS |
+                                  ff_slot_of(tree, tree->drawn[i].node);
+    }
+    ff_sort_keys(tree->sort, count);
+    ff_whole_make(&f->ahead);
+    ff_horizon_begin(&f->ahead, horizon, tree->sort, count, 1);
+    for (uint32_t i = 0; i < count; i++) {
+        const ff_node *node = &tree->node[tree->sort[i] & (FF_NODES_MAX - 1)];
+        if (!ff_horizon_hides_node(&f->ahead, horizon, node))
+            ff_horizon_raise(&f->ahead, horizon, tree->sort, count, i, FF_COARSER_UNKNOWN);
+    }
+}
+
+/* Ground seen from here is taken as seen from there, if it is in view: to know better would cost
+ * more than it brings. */
+static int seen_there(const ff_tree *tree, foresight *f, const ff_box *here, const ff_box *there)
+{
+    if (!ff_box_in_view(&f->ahead, there)) return 0;
+    if (!f->ahead.horizon || ff_box_seen(tree, here)) return 1;
+    if (!f->looked) look(tree, f);
+    return ff_box_seen(&f->ahead, there);
+}
+
 /* 1 when a box is seen from there, and not from here. */
-static int comes_into_view(const ff_tree *tree, const foresight *f, const ff_box *here,
+static int comes_into_view(const ff_tree *tree, foresight *f, const ff_box *here,
                            const ff_box *there)
 {
     FF_ASSERT(here->hi[0] - here->lo[0] == there->hi[0] - there->lo[0]);
-    return ff_box_in_view(&f->ahead, there) &&
-           (ff_box_beyond_view(tree, here) || !ff_box_in_view(tree, here));
+    return (ff_box_beyond_view(tree, here) || !ff_box_seen(tree, here)) &&
+           seen_there(tree, f, here, there);
 }
 
 /* Notes roots that are not held, of tiles that will come into view. */
@@ -63,14 +98,14 @@ static void foresee_children_of(const ff_tree *tree, foresight *f, const ff_node
         if (ff_tile_waits(tree, node)) note(f, node->key, FF_KIND_REFINEMENT, node->value);
         return;
     }
+    uint32_t value = ff_value_of_split(&f->ahead, node);
+    if (value < tree->wish_value) return;
     ff_box here, there;
     ff_node_box(tree, node, &here);
     ff_node_box(&f->ahead, node, &there);
-    if (node->flags & FF_NODE_WANTED ? !comes_into_view(tree, f, &here, &there)
-                                     : !ff_box_in_view(&f->ahead, &there))
-        return;
-    uint32_t value = ff_value_of_split(&f->ahead, node);
-    if (value >= tree->wish_value && !ff_box_beyond_view(&f->ahead, &there))
+    if (!ff_box_beyond_view(&f->ahead, &there) &&
+        (node->flags & FF_NODE_WANTED ? comes_into_view(tree, f, &here, &there)
+                                      : seen_there(tree, f, &here, &there)))
         note(f, node->key, FF_KIND_REFINEMENT, value);
 }
 
@@ -111,6 +146,7 @@ uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], int32_t y
     if (!tree->has_view || !capacity) return 0;
     for (int axis = 0; axis < 3; axis++)
         f.ahead.view.camera.pos_wu[axis] = f.ahead.view.centre_wu[axis] = pos_wu[axis];
+    f.ahead.horizon = tree->horizon_ahead;
     f.ahead.view.camera.yaw = (f.ahead.view.camera.yaw + yaw) & 0xFFFF;
     f.ahead.view.camera.pitch = (f.ahead.view.camera.pitch + pitch) & 0xFFFF;
     ff_window_make(&f.ahead);

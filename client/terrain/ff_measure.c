@@ -17,6 +17,35 @@ int ff_tile_active(const ff_tree *tree, uint32_t tile)
     return ff_shape_reaches(&tree->info, &tree->window, tile);
 }
 
+/* The first tile in view, from the window's middle outwards, whose root is not held. 0: there is
+ * none. */
+static int first_missing(ff_tree *tree, uint32_t *tile)
+{
+    ff_walk walk = ff_shape_walk_out(&tree->info, &tree->view.frame, &tree->window,
+                                     tree->view.centre_wu);
+    tree->roots_missing = 0;
+    while (ff_shape_next(&tree->info, &walk, tile)) {
+        if (ff_tree_find(tree, ff_key_make(*tile, 0, 0)) != FF_SLOT_NONE) continue;
+        tree->roots_missing = 1;
+        ff_box box;
+        ff_tile_box(tree, *tile, &box);
+        if (ff_box_in_view(tree, &box)) return 1;
+    }
+    return 0;
+}
+
+/* The walk goes outwards in squares of tiles: what comes after the first tile that is not held lies
+ * no more than a tile nearer. */
+void ff_whole_make(ff_tree *tree)
+{
+    uint32_t tile;
+    tree->whole_wu = tree->quality.view_wu;
+    if (!first_missing(tree, &tile)) return;
+    int64_t near_wu = ff_tile_distance(tree, tile) - ff_node_edge_wu(&tree->info, 0);
+    near_wu = near_wu > 0 ? near_wu : 0;
+    if (near_wu < tree->whole_wu) tree->whole_wu = (int32_t)near_wu;
+}
+
 int64_t ff_tile_distance(const ff_tree *tree, uint32_t tile)
 {
     int64_t distance = ff_shape_tile_distance(&tree->info, &tree->view.frame, tree->view.centre_wu,

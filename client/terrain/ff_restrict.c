@@ -57,13 +57,23 @@ void ff_want(ff_tree *tree, uint32_t slot, uint32_t value)
 }
 
 /* Is a wanted node in view, or needed by one that is? */
-static int is_needed(const ff_tree *tree, const ff_node *node)
+static int is_needed_in_view(const ff_tree *tree, const ff_node *node)
 {
     ff_box box;
     FF_ASSERT(node->flags & FF_NODE_WANTED);
     if (node->flags & FF_NODE_NEEDED) return 1;
     ff_node_box(tree, node, &box);
     return ff_box_in_view(tree, &box);
+}
+
+/* The same, once it is known what is hidden. */
+static int is_needed(const ff_tree *tree, const ff_node *node)
+{
+    ff_box box;
+    FF_ASSERT(node->flags & FF_NODE_WANTED);
+    if (node->flags & FF_NODE_NEEDED) return 1;
+    ff_node_box(tree, node, &box);
+    return ff_box_seen(tree, &box);
 }
 
 /* ---- new tiles ---- */
@@ -101,16 +111,19 @@ static int has_new_tiles(const ff_tree *tree)
 
 static void join_tiles(ff_tree *tree)
 {
+    tree->tiles_wait = 0;
     for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
         ff_node *root = &tree->node[slot];
         ff_box box;
         if (!(root->flags & FF_NODE_ACTIVE)) root->flags &= (uint8_t)~FF_NODE_JOINED;
         if (!is_new(root)) continue;
         ff_node_box(tree, root, &box);
-        if (!ff_box_in_view(tree, &box) && lacks_needed(tree, ff_key_tile(root->key)))
+        if (!ff_box_in_view(tree, &box) && lacks_needed(tree, ff_key_tile(root->key))) {
             root->flags &= (uint8_t)~FF_NODE_ACTIVE;
-        else
+            tree->tiles_wait = 1;
+        } else {
             root->flags |= FF_NODE_JOINED;
+        }
     }
 }
 
@@ -121,8 +134,20 @@ int ff_tile_waits(const ff_tree *tree, const ff_node *node)
     return !(tree->node[root].flags & FF_NODE_ACTIVE);
 }
 
-/* From the finest level up: what a level adds concerns coarser levels only. Through nodes that have
- * their children only a new tile can be needed. */
+/* What is needed of tiles in the cut is found again once it is known what is hidden. */
+static void forget_needs(ff_tree *tree)
+{
+    for (uint32_t level = 0; level < FF_LEVELS_MAX; level++)
+        for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE;
+             slot = tree->node[slot].want_next) {
+            ff_node *node = &tree->node[slot];
+            if (!tree->tiles_wait || !ff_tile_waits(tree, node))
+                node->flags &= (uint8_t)~FF_NODE_NEEDED;
+        }
+}
+
+/* From the finest level up: what a level adds concerns coarser levels only. What nodes in view need
+ * is marked where there are new tiles, for them. */
 void ff_want_close(ff_tree *tree)
 {
     int through = has_new_tiles(tree);
@@ -138,11 +163,40 @@ void ff_want_close(ff_tree *tree)
                 if (nearest == FF_SLOT_NONE) continue;
                 FF_ASSERT(ff_key_level(tree->node[nearest].key) < level);
                 ff_want(tree, nearest, node->value);
-                if ((through || !ff_node_has_children(&tree->node[nearest])) &&
-                    is_needed(tree, node))
+                if (through && is_needed_in_view(tree, node))
                     tree->node[nearest].flags |= FF_NODE_NEEDED;
             }
         }
     }
     join_tiles(tree);
+    if (through) forget_needs(tree);
+}
+
+static void need_beside(ff_tree *tree, const ff_node *node)
+{
+    for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
+        ff_key beside = parent_beside(tree, node, (enum ff_side)side);
+        if (beside == FF_KEY_NONE) continue;
+        uint32_t nearest = ff_tree_find_nearest(tree, beside);
+        if (nearest == FF_SLOT_NONE) continue;
+        if ((tree->node[nearest].flags & (FF_NODE_WANTED | FF_NODE_SPLIT)) == FF_NODE_WANTED)
+            tree->node[nearest].flags |= FF_NODE_NEEDED;
+    }
+}
+
+void ff_need_close(ff_tree *tree)
+{
+    for (uint32_t i = 0; i < tree->drawn_count; i++) {
+        const ff_node *node = tree->drawn[i].node;
+        if (tree->drawn[i].coarser && !(node->flags & FF_NODE_HIDDEN)) need_beside(tree, node);
+    }
+    for (uint32_t level = FF_LEVELS_MAX; level-- > 1;) {
+        for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE;
+             slot = tree->node[slot].want_next) {
+            const ff_node *node = &tree->node[slot];
+            if (node->flags & FF_NODE_SPLIT || (tree->tiles_wait && ff_tile_waits(tree, node)))
+                continue;
+            if (is_needed(tree, node)) need_beside(tree, node);
+        }
+    }
 }

@@ -1,5 +1,6 @@
 /* Selection: which nodes want to split, which may, and which of the resulting cut can be seen. */
 #include "ff_tree_local.h"
+#include "ff_horizon.h"
 #include "ff_strips.h"
 
 #define C_Q8_MAX (1 << 24)
@@ -195,7 +196,53 @@ static void count_drawn(ff_tree *tree, const ff_drawn *drawn)
     FF_ASSERT(tree->stats.stitched <= tree->drawn_count);
 }
 
-/* Lists the cut: first the nodes that are seen, nearest first, then the others. */
+static uint32_t slot_in_view(const ff_tree *tree, uint32_t i)
+{
+    uint32_t slot = (uint32_t)tree->sort[i] & (FF_NODES_MAX - 1);
+    FF_ASSERT(i < tree->view_count && slot < tree->node_count);
+    FF_ASSERT(i == 0 || tree->sort[i - 1] < tree->sort[i]);
+    return slot;
+}
+
+/* Is a node in view hidden? If not, it may hide others. */
+static int is_hidden(ff_tree *tree, uint32_t i, const ff_drawn *drawn)
+{
+    if (!tree->horizon) return 0;
+    if (ff_horizon_hides_node(tree, tree->horizon, drawn->node)) return 1;
+    ff_horizon_raise(tree, tree->horizon, tree->sort, tree->view_count, i, drawn->coarser);
+    return 0;
+}
+
+/* Lists what is in view, from `sort`: what is drawn first, nearest first, and from the other end
+ * what is hidden. */
+static void list_view(ff_tree *tree)
+{
+    uint32_t left_out = 0;
+    tree->drawn_count = 0;
+    tree->stats.triangles = tree->stats.stitched = 0;
+    tree->stats.nodes_hidden = tree->stats.triangles_hidden = 0;
+    if (tree->horizon) ff_horizon_begin(tree, tree->horizon, tree->sort, tree->view_count, 0);
+    for (uint32_t i = 0; i < tree->view_count; i++) {
+        uint32_t slot = slot_in_view(tree, i);
+        ff_drawn drawn;
+        fill_drawn(tree, slot, ff_coarser_mask(tree, &tree->node[slot]), &drawn);
+        tree->node[slot].flags &= ~FF_NODE_HIDDEN & UINT8_MAX;
+        if (is_hidden(tree, i, &drawn)) {
+            tree->node[slot].flags |= FF_NODE_HIDDEN;
+            tree->stats.nodes_hidden++;
+            tree->stats.triangles_hidden += triangles_of(tree, &drawn);
+            if (tree->hidden == FF_HIDDEN_LEFT_OUT) {
+                tree->drawn[tree->view_count - ++left_out] = drawn;
+                continue;
+            }
+        }
+        tree->drawn[tree->drawn_count++] = drawn;
+        count_drawn(tree, &drawn);
+    }
+    FF_ASSERT(tree->drawn_count + left_out == tree->view_count);
+}
+
+/* Lists the cut: first the nodes that are in view, then the others. */
 static void list_cut(ff_tree *tree)
 {
     uint32_t seen = 0, unseen = 0;
@@ -210,14 +257,8 @@ static void list_cut(ff_tree *tree)
     }
     FF_ASSERT(tree->cut_count <= tree->node_count - tree->free_count);
     ff_sort_keys(tree->sort, seen);
-    tree->drawn_count = seen;
-    tree->stats.triangles = tree->stats.stitched = 0;
-    for (uint32_t i = 0; i < seen; i++) {
-        uint32_t slot = (uint32_t)tree->sort[i] & (FF_NODES_MAX - 1);
-        FF_ASSERT(slot < tree->node_count && (i == 0 || tree->sort[i - 1] < tree->sort[i]));
-        fill_drawn(tree, slot, ff_coarser_mask(tree, &tree->node[slot]), &tree->drawn[i]);
-        count_drawn(tree, &tree->drawn[i]);
-    }
+    tree->view_count = seen;
+    list_view(tree);
     for (uint32_t i = 0; i < unseen; i++)
         fill_drawn(tree, tree->order[i], FF_COARSER_UNKNOWN, &tree->drawn[seen + i]);
 }
@@ -242,6 +283,7 @@ int ff_tree_select(ff_tree *tree, const ff_view *view, const ff_quality *quality
         want_by_measure(tree);
         ff_want_close(tree);
         split_cut(tree);
+        ff_whole_make(tree);
         list_cut(tree);
     } while (ff_limit_again(tree, &search));
     ff_limit_wishes(tree);

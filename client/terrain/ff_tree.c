@@ -1,5 +1,6 @@
 /* The tree as its users see it: creation in one block, arrival of nodes, answers to questions. */
 #include "ff_tree_local.h"
+#include "ff_horizon.h"
 
 #include <string.h>
 
@@ -42,6 +43,10 @@ static ff_tree *carve(const ff_tree_desc *desc, block *from)
     parts.drawn = take(from, n * sizeof *parts.drawn);
     parts.wish = take(from, desc->wish_count * sizeof *parts.wish);
     parts.refined = take(from, refined * refined * sizeof *parts.refined);
+    if (desc->hidden != FF_HIDDEN_FETCHED) {
+        parts.horizon = take(from, sizeof *parts.horizon);
+        parts.horizon_ahead = take(from, sizeof *parts.horizon);
+    }
     if (tree) *tree = parts;
     return tree;
 }
@@ -69,6 +74,9 @@ ff_tree *ff_tree_create(const ff_tree_desc *desc, void *memory, size_t bytes)
     tree->info = desc->info;
     tree->node_count = tree->free_count = desc->node_count;
     tree->wish_capacity = desc->wish_count;
+    tree->hidden = desc->hidden;
+    if (tree->horizon) memset(tree->horizon, 0, sizeof *tree->horizon);
+    if (tree->horizon) memset(tree->horizon_ahead, 0, sizeof *tree->horizon_ahead);
     tree->hash_mask = hash_size(desc->node_count) - 1;
     FF_ASSERT((tree->hash_mask & (tree->hash_mask + 1)) == 0);
     memset(tree->hash, 0xFF, (tree->hash_mask + 1) * sizeof *tree->hash);
@@ -170,10 +178,16 @@ uint32_t ff_tree_drawn(const ff_tree *tree, const ff_drawn **list)
     return tree->drawn_count;
 }
 
+uint32_t ff_tree_in_view(const ff_tree *tree, const ff_drawn **list)
+{
+    *list = tree->drawn;
+    return tree->view_count;
+}
+
 uint32_t ff_tree_cut(const ff_tree *tree, const ff_drawn **list)
 {
-    FF_ASSERT(tree->drawn_count <= tree->cut_count);
-    for (uint32_t i = tree->drawn_count; i < tree->cut_count; i++) {
+    FF_ASSERT(tree->drawn_count <= tree->view_count && tree->view_count <= tree->cut_count);
+    for (uint32_t i = tree->view_count; i < tree->cut_count; i++) {
         if (tree->drawn[i].coarser == FF_COARSER_UNKNOWN)
             tree->drawn[i].coarser = (uint8_t)ff_coarser_mask(tree, tree->drawn[i].node);
     }

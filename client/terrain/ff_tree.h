@@ -61,6 +61,13 @@ typedef struct ff_view {
     ff_frame frame;
 } ff_view;
 
+/* What becomes of ground in view that nearer ground hides (ff_horizon.h). */
+enum ff_hidden {
+    FF_HIDDEN_LEFT_OUT, /* neither drawn nor wished for in view */
+    FF_HIDDEN_DRAWN,    /* not wished for, but drawn: for checks, the picture is the same */
+    FF_HIDDEN_FETCHED   /* nothing is known of it: it is drawn and wished for like any other */
+};
+
 /* One wish: a root (level 0) or the children of a node. priority: higher is more urgent. */
 typedef struct ff_wish {
     ff_key key;
@@ -89,12 +96,14 @@ typedef struct ff_tree_stats {
     uint32_t selects, selects_skipped;
     /* nodes of the last selection near enough to split but exact already: not asked for */
     uint32_t flat;
+    uint32_t nodes_hidden, triangles_hidden; /* of the cut, in view, by nearer ground */
 } ff_tree_stats;
 
 typedef struct ff_tree_desc {
     ff_terrain_info info;
     uint32_t node_count; /* slots; at least 8 */
     uint32_t wish_count; /* most wishes one selection lists */
+    enum ff_hidden hidden;
 } ff_tree_desc;
 
 size_t ff_tree_bytes(const ff_tree_desc *desc);
@@ -109,9 +118,11 @@ int ff_tree_deliver_children(ff_tree *tree, ff_key key, const ff_residuals *resi
 /* Chooses the cut for a view. Returns 1 when anything changed (view, quality, nodes) and the cut
  * was made anew, 0 when skipped. */
 int ff_tree_select(ff_tree *tree, const ff_view *view, const ff_quality *quality);
-/* Nodes of the cut inside the view pyramid, nearest first; valid until the next call that changes
- * the tree. */
+/* Nodes of the cut inside the view pyramid that are not left out as hidden, nearest first; valid
+ * until the next call that changes the tree. */
 uint32_t ff_tree_drawn(const ff_tree *tree, const ff_drawn **list);
+/* The same nodes, and then those left out: all that the picture is true of. */
+uint32_t ff_tree_in_view(const ff_tree *tree, const ff_drawn **list);
 /* All nodes of the cut, seen or not, for checks: same rules. */
 uint32_t ff_tree_cut(const ff_tree *tree, const ff_drawn **list);
 /* The frame that their origins are places of: the last selection's. */

@@ -21,11 +21,12 @@ enum ff_node_flags {
     FF_NODE_ACTIVE = 2, /* a root that takes part in the last selection: inside the window */
     /* its children are desired, by itself or by a neighbour that may not be two levels finer */
     FF_NODE_WANTED = 4,
-    FF_NODE_SPLIT = 8,   /* the cut runs below it */
-    FF_NODE_NEEDED = 16, /* something in view cannot split before its children are here */
-    FF_NODE_FILLED = 32, /* some of its ground was void in the source */
-    /* a root that has been in the cut since it came into the window */
-    FF_NODE_JOINED = 64,
+    FF_NODE_SPLIT = 8, /* the cut runs below it */
+    FF_NODE_NEEDED =
+        16, /* something seen cannot split, or is drawn coarser, before this node has split */
+    FF_NODE_FILLED = 32,  /* some of its ground was void in the source */
+    FF_NODE_JOINED = 64,  /* a root that has been in the cut since it came into the window */
+    FF_NODE_HIDDEN = 128, /* of the cut, in view, by nearer ground; stale when out of view */
     FF_NODE_KEPT = FF_NODE_HELD | FF_NODE_FILLED | FF_NODE_JOINED /* by selections */
 };
 
@@ -47,6 +48,8 @@ struct ff_node {
 
 #define FF_PLANES 5
 
+typedef struct ff_horizon ff_horizon; /* ff_horizon.h */
+
 struct ff_tree {
     ff_terrain_info info;
     uint32_t node_count, wish_capacity, hash_mask;
@@ -55,12 +58,13 @@ struct ff_tree {
     uint32_t *hash;
     uint32_t *order; /* node_count slots: queue of a selection */
     uint64_t *sort;  /* 2 * node_count */
-    /* node_count: the cut, its visible part first; the rest gets `coarser` only in ff_tree_cut */
+    /* node_count: the cut, what is drawn first, then what is hidden; the rest gets `coarser` only
+     * in ff_tree_cut */
     ff_drawn *drawn;
     ff_wish *wish;
     uint16_t *refined; /* grid of four children */
     uint32_t free_head, root_head, free_count;
-    uint32_t cut_count, drawn_count, wish_count;
+    uint32_t cut_count, view_count, drawn_count, wish_count;
 
     ff_view asked_view, view; /* of the last selection: as given, and brought into range */
     /* as given, brought into range, and in force: coarser where the limit of triangles wants it */
@@ -75,6 +79,13 @@ struct ff_tree {
     /* inward normals of the view pyramid, largest component below 2^28 */
     int32_t plane[FF_PLANES][3];
     uint32_t want_head[FF_LEVELS_MAX];
+    enum ff_hidden hidden;
+    /* of the view, and, for ff_tree_foresee, of a view ahead; NULL where hidden is FETCHED */
+    ff_horizon *horizon, *horizon_ahead;
+    /* ground in view is held and in the window up to here from its middle, along both axes */
+    int32_t whole_wu;
+    uint8_t roots_missing; /* 0: all roots in the window are held */
+    uint8_t tiles_wait;    /* 1: some tile in the window has not joined the cut */
 
     void (*on_evict)(void *context, uint32_t user);
     void *evict_context;
@@ -153,6 +164,8 @@ uint32_t ff_evict_limit(const ff_tree *tree, const ff_node *node);
 /* ff_measure.c */
 void ff_window_make(ff_tree *tree);
 int ff_tile_active(const ff_tree *tree, uint32_t tile);
+/* Finds how far ground is whole. */
+void ff_whole_make(ff_tree *tree);
 /* Largest of |dx|, |dy| from the window's middle to a tile's square. */
 int64_t ff_tile_distance(const ff_tree *tree, uint32_t tile);
 /* Boxes are relative to the camera. */
@@ -172,12 +185,19 @@ uint32_t ff_value_of_split(const ff_tree *tree, const ff_node *node);
 void ff_pyramid_make(ff_tree *tree);
 int ff_box_in_view(const ff_tree *tree, const ff_box *box);
 
+/* ff_horizon.c */
+/* 1 when a box can be seen from the view, as far as held ground tells. */
+int ff_box_seen(const ff_tree *tree, const ff_box *box);
+
 /* ff_restrict.c */
 unsigned ff_coarser_mask(const ff_tree *tree, const ff_node *node);
 void ff_want(ff_tree *tree, uint32_t slot, uint32_t value);
 /* Makes everything wanted that wanted nodes need beside them. Then tiles out of view that are new
  * and lack what nodes in view need there stop being active: they do not join the cut yet. */
 void ff_want_close(ff_tree *tree);
+/* Marks what nodes that are seen need beside them: to split, or to be drawn without leaving out
+ * vertices at a side. */
+void ff_need_close(ff_tree *tree);
 /* 1 for a node of such a tile. */
 int ff_tile_waits(const ff_tree *tree, const ff_node *node);
 

@@ -40,7 +40,7 @@ static uint32_t missing_roots(ff_tree *tree)
         ff_box box;
         FF_ASSERT(tile < ff_shape_tiles(&tree->info));
         ff_tile_box(tree, tile, &box);
-        uint64_t unseen = ff_box_in_view(tree, &box) ? 0 : OUT_OF_VIEW;
+        uint64_t unseen = ff_box_seen(tree, &box) ? 0 : OUT_OF_VIEW;
         tree->sort[found] = unseen | (uint64_t)found << TILE_BITS | tile;
         found++;
     }
@@ -78,6 +78,7 @@ static uint32_t root_priority(const ff_tree *tree, uint32_t tile)
 static void wish_roots(ff_tree *tree)
 {
     int64_t farthest;
+    if (!tree->roots_missing) return;
     uint32_t held = active_roots(tree, &farthest), missing = missing_roots(tree);
     for (uint32_t i = 0; i < missing && tree->wish_count < tree->wish_capacity; i++) {
         uint32_t tile = (uint32_t)(tree->sort[i] & (FF_KEY_TILES_MAX - 1));
@@ -109,7 +110,7 @@ static uint32_t missing_children(ff_tree *tree)
             ff_box box;
             ff_node_box(tree, node, &box);
             int needed = node->flags & FF_NODE_NEEDED && !ff_tile_waits(tree, node);
-            uint64_t unseen = needed || ff_box_in_view(tree, &box) ? 0 : OUT_OF_VIEW;
+            uint64_t unseen = needed || ff_box_seen(tree, &box) ? 0 : OUT_OF_VIEW;
             if (!unseen && node->value < tree->wish_value) continue;
             tree->sort[count++] = unseen | (uint64_t)(FF_VALUE_MAX - node->value) << FF_SLOT_BITS |
                                   slot;
@@ -141,6 +142,7 @@ static void wish_children(ff_tree *tree)
 void ff_wish_make(ff_tree *tree)
 {
     tree->wish_count = 0;
+    ff_need_close(tree);
     wish_roots(tree);
     wish_children(tree);
 }

@@ -55,7 +55,8 @@ int panorama_ground_open(panorama_ground *ground, const ff_pack *pack, c3d_devic
     const ff_terrain_info *info = &pack->header.info;
     ff_tree_desc desc = { .info = *info,
                           .node_count = FF_PANORAMA_NODES,
-                          .wish_count = FF_PANORAMA_WISHES };
+                          .wish_count = FF_PANORAMA_WISHES,
+                          .hidden = FF_HIDDEN_FETCHED };
     size_t tree_bytes = ff_tree_bytes(&desc), decoder_bytes = ff_decoder_bytes(info);
     memset(ground, 0, sizeof *ground);
     ground->pack = pack;

@@ -144,7 +144,7 @@ static int read_audit(fly_flight *flight, fly_sources *from)
                                                          : 100000 * FF_WU_PER_METRE,
                                           .face_size = from->client.face_size } };
     sim_audit_result *audit = &from->audit;
-    if (tree) view.drawn_count = ff_tree_drawn(tree, &view.drawn);
+    if (tree) view.drawn_count = ff_tree_in_view(tree, &view.drawn);
     (void)ff_client_panorama(world->client, view.panorama.pos_wu, &view.faces);
     int rc = sim_audit_frame(world->auditor, &view, audit);
     if (rc != FF_OK) return fail("auditor", ff_error_text(rc));

@@ -6,6 +6,7 @@
 #include <string.h>
 
 static const char *const fly_backend_words[] = { "gles1", "gl", "soft", "soft565", "none", NULL };
+static const char *const fly_hidden_words[] = { "left-out", "drawn", "fetched", NULL };
 static const char *const path_words[] = { "diagonal", "circle", "hover", "turn", NULL };
 
 #define ROW(type, field, name, value, fallback, range, help) \

@@ -126,6 +126,9 @@ extern const sys_option_type fly_events_option;
            "keeps the decoded true ground there for further flights over it") \
     OPTION(sys_switch, check, "check", "on|off", NULL, SYS_ANY, \
            "every frame searched for cracks on integer vertices; default: as --audit") \
+    OPTION(sys_word, hidden, "hidden", "WHAT", "left-out", SYS_WORDS(fly_hidden_words), \
+           "ground in view behind nearer ground: left-out; drawn: all the same, the pictures must " \
+           "not differ; or fetched, too, as if nothing hid it") \
     OPTION(sys_real, sample_s, "sample", "S", "1", FLY_INTERVAL, "time between rows") \
     OPTION(sys_text, tape_path, "tape", "FILE", NULL, SYS_ANY, \
            "records all that comes to the client, for farfield-handheld --tape (not with " \

@@ -44,7 +44,8 @@ static void describe(fly_reference *reference)
     const ff_terrain_info *info = &reference->pack->header.info;
     size_t one = image_bytes(info), images = one ? IMAGE_BYTES / one : 0;
     if (images > IMAGES_MAX) images = IMAGES_MAX;
-    reference->tree_desc = (ff_tree_desc){ .info = *info, .wish_count = WISHES };
+    reference->tree_desc =
+        (ff_tree_desc){ .info = *info, .wish_count = WISHES, .hidden = FF_HIDDEN_FETCHED };
     choose_slots(reference);
     reference->device_desc = (c3d_desc){
         .mesh_count = 2, /* of the node being drawn, and of the sky */

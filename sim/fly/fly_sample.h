@@ -88,7 +88,9 @@
     X(depth, "%.0f", MEAN, from->client.quality.depth_max) \
     X(back_plane_m, "%.0f", MEAN, from->client.back_plane_wu / (double)FF_WU_PER_METRE) \
     X(panorama_error_px, "%.3f", MEAN, from->client.panorama_error_q8 / 256.0) \
-    X(filled_px_percent, "%.3f", MEAN, from->audit.filled_percent)
+    X(filled_px_percent, "%.3f", MEAN, from->audit.filled_percent) \
+    X(nodes_hidden, "%.0f", MEAN, from->client.tree.nodes_hidden) \
+    X(triangles_hidden, "%.0f", MEAN, from->client.tree.triangles_hidden)
 /* clang-format on */
 
 /* What a row is made from. NAN in all that nobody judges. */

@@ -85,7 +85,8 @@ static int open_tape(fly_world *world)
                            .width = options->size.width,
                            .height = options->size.height,
                            .quality = options->quality,
-                           .panorama = options->panorama };
+                           .panorama = options->panorama,
+                           .hidden = (enum ff_hidden)options->hidden };
     int rc = options->tape_path
                  ? sim_tape_record(&world->tape, options->tape_path, &head, &world->stream)
                  : FF_OK;
@@ -156,7 +157,8 @@ static int open_client(fly_world *world)
                             .balance = options->balance,
                             .use_thread = options->server != NULL,
                             .use_plain_arrays = (uint8_t)options->plain_arrays,
-                            .no_reserve = !options->reserve };
+                            .no_reserve = !options->reserve,
+                            .hidden = (enum ff_hidden)options->hidden };
     desc.backend = backend_of(options->backend);
     desc.frame_format = options->backend == FLY_SOFT ? C3D_RGBA8888 : C3D_RGB565;
     int rc = ff_client_create(&desc, &world->client);

@@ -62,6 +62,7 @@ ff_client_desc handheld_client_desc(const handheld *device)
                              .backend = device->surface ? c3d_backend_soft() : NULL,
                              .use_plain_arrays = 1,
                              .no_textures = (uint8_t)options->no_textures,
+                             .hidden = head ? head->hidden : FF_HIDDEN_LEFT_OUT,
                              .balance = options->balance };
 }
 

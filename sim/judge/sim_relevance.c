@@ -34,9 +34,10 @@ typedef struct answer {
     int64_t came_us;
     double drawn; /* the share of it that was drawn in time */
     int supports, reserve;
-    uint32_t pixels, seen; /* of a face, in one frame: in the window; and not hidden */
-    uint64_t frame;        /* the last frame that marked it */
-    size_t next;           /* the next answer in its bucket */
+    uint64_t support_frame; /* the last in which it was found to */
+    uint32_t pixels, seen;  /* of a face, in one frame: in the window; and not hidden */
+    uint64_t frame;         /* the last frame that marked it */
+    size_t next;            /* the next answer in its bucket */
 } answer;
 
 /* Bytes of one direction that do not make a whole message yet. */
@@ -284,21 +285,26 @@ static void mark(sim_relevance *relevance, answer *a)
     a->frame = relevance->frame;
 }
 
-/* Marks the answers that brought the nodes beside `parent`: without them its children could not be
- * drawn, because the cut is restricted. */
-static void mark_support(sim_relevance *relevance, ff_key parent)
+/* Marks the answers that brought the nodes beside a drawn node, without which vertices of its side
+ * would be left out, or beside one above it, without which its children could not be drawn, because
+ * the cut is restricted; and what these need in turn. */
+static void mark_support(sim_relevance *relevance, ff_key node)
 {
-    for (unsigned side = 0; side < FF_SIDE_COUNT && ff_key_level(parent) > 0; side++) {
-        ff_key beside = ff_shape_neighbour(&relevance->info, parent, (enum ff_side)side).key;
+    for (unsigned side = 0; side < FF_SIDE_COUNT && ff_key_level(node) > 0; side++) {
+        ff_key beside = ff_shape_neighbour(&relevance->info, node, (enum ff_side)side).key;
         answer *a = beside == FF_KEY_NONE
                         ? NULL
                         : find(relevance, FF_KIND_REFINEMENT, ff_key_parent(beside));
-        if (a) a->supports |= *relevance->now_us - a->came_us <= SIM_RELEVANCE_US;
+        if (!a || a->support_frame == relevance->frame) continue;
+        a->support_frame = relevance->frame;
+        a->supports |= *relevance->now_us - a->came_us <= SIM_RELEVANCE_US;
+        mark_support(relevance, ff_key_parent(beside));
     }
 }
 
 static void mark_heights(sim_relevance *relevance, ff_key node)
 {
+    mark_support(relevance, node);
     for (;;) {
         int refinement = ff_key_level(node) > 0;
         if (refinement) {

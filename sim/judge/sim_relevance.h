@@ -6,8 +6,8 @@
  *   heights   a node whose heights it brought, or one built on them, lies in the window: a
  *             refinement's residuals add to the heights of all nodes above it, so a drawn node
  *             draws the answers of its whole line of ancestors. Nodes outside the window that only
- *             let a drawn neighbour be as fine as it is (the cut is restricted) are not drawn; they
- *             are told apart as `supporting`.
+ *             let a drawn neighbour be as fine as it is, on its whole rim (the cut is restricted),
+ *             are not drawn; they are told apart as `supporting`.
  *   image     it is the last that has come over a drawn node: images come from coarse to fine.
  *   face      its set is the one in use: by the share of its pixels in the window that no drawn
  *             ground hides, in the frame with the largest share; an empty face wholly, when any

@@ -21,7 +21,7 @@ static int q8_at(const char **text, uint64_t most, int32_t *q8)
 static const struct {
     const char *word, *measure;
     unsigned pixels;
-} preset[] = { { "low", "px:4", 28 },
+} preset[] = { { "low", "px:4", 24 },
                { "medium", "px:2", FF_QUALITY_DEFAULT_PIXELS },
                { "high", "px:1", 4 },
                { "paper-low", "3:4", 0 },

@@ -73,7 +73,10 @@ static void take_head(sim_tape_player *player)
     for (unsigned i = 0; i < SIM_TAPE_HEAD; i++) n[i] = take_i32(player);
     *head = (sim_tape_head){ .memory_bytes = (uint32_t)n[0],
                              .width = (uint16_t)n[1],
-                             .height = (uint16_t)n[2] };
+                             .height = (uint16_t)n[2],
+                             .hidden = n[18] == FF_HIDDEN_FETCHED ? FF_HIDDEN_FETCHED
+                                       : n[18] == FF_HIDDEN_DRAWN ? FF_HIDDEN_DRAWN
+                                                                  : FF_HIDDEN_LEFT_OUT };
     *q = (ff_quality){ .measure = n[3] == FF_MEASURE_PIXELS ? FF_MEASURE_PIXELS
                                                             : FF_MEASURE_DISTANCE,
                        .c_q8 = n[4],

@@ -62,7 +62,7 @@ static void first_what_is_in_view_then_the_reserve_then_nothing(void **state)
 static uint32_t turn_at_once(client_rig *rig, int no_reserve)
 {
     uint32_t sent, reserve;
-    hover(rig, 3200, no_reserve, &sent, &reserve);
+    hover(rig, 4900, no_reserve, &sent, &reserve);
     rig->camera.yaw = (rig->camera.yaw + 0x8000) & 0xFFFF;
     assert_true(ff_client_update(rig->client, rig->frame_us, &rig->camera));
     uint32_t error_q8 = ff_client_error_px_q8(rig->client);

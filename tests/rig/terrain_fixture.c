@@ -60,6 +60,7 @@ void fixture_make(terrain_fixture *fx, unsigned node_log2, unsigned tile_log2, u
 {
     memset(fx, 0, sizeof *fx);
     fx->height = height;
+    fx->hidden = FF_HIDDEN_FETCHED;
     fx->info = (ff_terrain_info){
         .node_log2 = (uint8_t)node_log2,
         .tile_log2 = (uint8_t)tile_log2,
@@ -82,7 +83,7 @@ void fixture_samples(terrain_fixture *fx, uint32_t samples_x, uint32_t samples_y
 void fixture_tree(terrain_fixture *fx, uint32_t node_count, uint32_t wish_count)
 {
     fixture_free(fx);
-    ff_tree_desc desc = { fx->info, node_count, wish_count };
+    ff_tree_desc desc = { fx->info, node_count, wish_count, fx->hidden };
     size_t bytes = ff_tree_bytes(&desc), decoder_bytes = ff_decoder_bytes(&fx->info);
     assert_true(bytes > 0);
     fx->tree_memory = malloc(bytes);

@@ -17,6 +17,7 @@ uint16_t fixture_half_flat(uint32_t x, uint32_t y);
 typedef struct terrain_fixture {
     ff_terrain_info info;
     fixture_height height;
+    enum ff_hidden hidden; /* fixture_make: FETCHED */
     ff_decoder *decoder;
     ff_tree *tree;
     void *tree_memory;

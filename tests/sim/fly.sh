@@ -25,6 +25,10 @@ flies() { # NAME ARGUMENTS...
     timeout 300 "$fly" --pack "$work/hills.ffp" --csv "$work/$flown.csv" --json "$@" >"$work/$flown.json" 2>"$work/$flown.err"
 }
 
+hashes() { # NAME: of the flight's pictures
+    sed -n 's/.*"frame_hash": "\([0-9a-f]*\)".*/\1/p' "$work/$1.json"
+}
+
 python3 tests/rig/hills.py 257 "$work/hills.raw" 9 "$work/node.raw"
 "$bin/farfield-bake" "$work/hills.raw" --raw 257x257 --spacing 40 --tile-log2 6 --quiet -o "$work/hills.ffp" &&
     "$bin/farfield-bake" "$work/node.raw" --raw 9x9 --spacing 40 --tile-log2 3 --quiet -o "$work/node.ffp" &&
@@ -83,6 +87,18 @@ flies wire $usual --backend gl --wireframe
 is 's["crack_frames"] == 0' "a wireframe flight"
 ! cmp -s <(cut -d, -f16 "$work/first.csv") <(cut -d, -f16 "$work/wire.csv")
 result $? "and its pictures differ"
+
+# ---- hidden ground ----
+behind="--link umts --panorama off --quality px:2 --height 20 --speed 450 --seconds 6 --settle 6 --sample 0.2 --fps 10"
+for backend in soft gl; do
+    flies $backend-left-out $behind --backend $backend
+    is 'sum(row["triangles_hidden"] for row in r) > len(r) * 100' "near ground hides triangles ($backend)"
+    flies $backend-drawn $behind --backend $backend --hidden drawn
+    [ "$(hashes $backend-left-out)" = "$(hashes $backend-drawn)" ]
+    result $? "drawn or left out, hidden ground has no pixel ($backend)"
+done
+flies fetched $behind --backend none --hidden fetched
+is 'all(row["nodes_hidden"] == 0 for row in r)' "nothing hides where all is fetched"
 
 # ---- panorama, quality ----
 quick="--backend none --link lan --seconds 4 --settle 2 --audit on --back-plane 1500"
