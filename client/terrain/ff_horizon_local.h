@@ -58,7 +58,7 @@ static inline int column_at(int32_t place)
     return ((place + ONE + (1 << COLUMN_LOG2)) >> COLUMN_LOG2) - 1;
 }
 
-static inline int32_t first_of(int column) { return (column << COLUMN_LOG2) - ONE; }
+static inline int32_t first_of(int column) { return column * (1 << COLUMN_LOG2) - ONE; }
 
 /* ---- boxes ---- */
 
