@@ -29,7 +29,8 @@ static void note(foresight *f, ff_key key, enum ff_kind kind, uint32_t priority)
     FF_ASSERT(at + 1 == f->count || f->list[at + 1].priority < priority);
 }
 
-/* The horizon there, of the ground that is drawn here; made when somebody asks. */
+/* The horizon there, of the ground that is drawn here, and in `order` 1 for every node in view
+ * there of which nothing can be seen; made when somebody asks. */
 static void look(const ff_tree *tree, foresight *f)
 {
     ff_horizon *horizon = f->ahead.horizon;
@@ -46,29 +47,41 @@ static void look(const ff_tree *tree, foresight *f)
     ff_whole_make(&f->ahead);
     ff_horizon_begin(&f->ahead, horizon, tree->sort, count, 1);
     for (uint32_t i = 0; i < count; i++) {
-        const ff_node *node = &tree->node[tree->sort[i] & (FF_NODES_MAX - 1)];
+        uint32_t slot = (uint32_t)tree->sort[i] & (FF_NODES_MAX - 1);
+        const ff_node *node = &tree->node[slot];
+        tree->order[slot] = 0;
         if (!ff_horizon_hides_node(&f->ahead, horizon, node))
             ff_horizon_raise(&f->ahead, horizon, tree->sort, count, i, FF_COARSER_UNKNOWN);
+        else
+            tree->order[slot] = (uint32_t)ff_horizon_hides_children(&f->ahead, horizon, node);
     }
 }
 
-/* Ground seen from here is taken as seen from there, if it is in view: to know better would cost
- * more than it brings. */
-static int seen_there(const ff_tree *tree, foresight *f, const ff_box *here, const ff_box *there)
+static int seen_here(const ff_tree *tree, uint32_t slot, const ff_box *here)
+{
+    return slot == FF_SLOT_NONE ? ff_box_seen(tree, here)
+                                : ff_node_seen(tree, &tree->node[slot], here);
+}
+
+/* Of a node, or of a tile whose root is not held: `slot` FF_SLOT_NONE. Ground seen from here is
+ * taken as seen from there, if it is in view: to know better would cost more than it brings. */
+static int seen_there(const ff_tree *tree, foresight *f, uint32_t slot, const ff_box *here,
+                      const ff_box *there)
 {
     if (!ff_box_in_view(&f->ahead, there)) return 0;
-    if (!f->ahead.horizon || ff_box_seen(tree, here)) return 1;
+    if (!f->ahead.horizon || seen_here(tree, slot, here)) return 1;
     if (!f->looked) look(tree, f);
+    if (slot != FF_SLOT_NONE && tree->order[slot]) return 0;
     return ff_box_seen(&f->ahead, there);
 }
 
 /* 1 when a box is seen from there, and not from here. */
-static int comes_into_view(const ff_tree *tree, foresight *f, const ff_box *here,
+static int comes_into_view(const ff_tree *tree, foresight *f, uint32_t slot, const ff_box *here,
                            const ff_box *there)
 {
     FF_ASSERT(here->hi[0] - here->lo[0] == there->hi[0] - there->lo[0]);
-    return (ff_box_beyond_view(tree, here) || !ff_box_seen(tree, here)) &&
-           seen_there(tree, f, here, there);
+    return (ff_box_beyond_view(tree, here) || !seen_here(tree, slot, here)) &&
+           seen_there(tree, f, slot, here, there);
 }
 
 /* Notes roots that are not held, of tiles that will come into view. */
@@ -83,7 +96,8 @@ static void foresee_roots(const ff_tree *tree, foresight *f)
         ff_box here, there;
         ff_tile_box(tree, tile, &here);
         ff_tile_box(&f->ahead, tile, &there);
-        if (comes_into_view(tree, f, &here, &there)) note(f, root, FF_KIND_ROOT, FF_VALUE_ONE);
+        if (comes_into_view(tree, f, FF_SLOT_NONE, &here, &there))
+            note(f, root, FF_KIND_ROOT, FF_VALUE_ONE);
     }
 }
 
@@ -101,11 +115,12 @@ static void foresee_children_of(const ff_tree *tree, foresight *f, const ff_node
     uint32_t value = ff_value_of_split(&f->ahead, node);
     if (value < tree->wish_value) return;
     ff_box here, there;
+    uint32_t slot = ff_slot_of(tree, node);
     ff_node_box(tree, node, &here);
     ff_node_box(&f->ahead, node, &there);
     if (!ff_box_beyond_view(&f->ahead, &there) &&
-        (node->flags & FF_NODE_WANTED ? comes_into_view(tree, f, &here, &there)
-                                      : seen_there(tree, f, &here, &there)))
+        (node->flags & FF_NODE_WANTED ? comes_into_view(tree, f, slot, &here, &there)
+                                      : seen_there(tree, f, slot, &here, &there)))
         note(f, node->key, FF_KIND_REFINEMENT, value);
 }
 

@@ -294,8 +294,20 @@ int ff_horizon_hides_node(const ff_tree *tree, const ff_horizon *horizon, const 
     return ff_horizon_hides(horizon, &box, FF_HIDES_DRAWN);
 }
 
+int ff_horizon_hides_children(const ff_tree *tree, const ff_horizon *horizon, const ff_node *node)
+{
+    ff_box box;
+    ff_node_box(tree, node, &box);
+    return ff_horizon_hides(horizon, &box, FF_HIDES_DRAWN);
+}
+
 int ff_box_seen(const ff_tree *tree, const ff_box *box)
 {
     return ff_box_in_view(tree, box) &&
            !(tree->horizon && ff_horizon_hides(tree->horizon, box, FF_HIDES_UNKNOWN));
+}
+
+int ff_node_seen(const ff_tree *tree, const ff_node *node, const ff_box *box)
+{
+    return !(node->flags & FF_NODE_HIDDEN) && ff_box_seen(tree, box);
 }

@@ -9,9 +9,13 @@
  * behind the ground that leads up to it. So no roll or pitch matters, and what is left out changes
  * no pixel: the horizon is made from what is drawn.
  *
- * Each column has two slopes. Drawn ground is hidden by FF_HIDES_DRAWN. What is not here is hidden
- * by FF_HIDES_UNKNOWN, lower by the geometric error of the nodes that hide: finer data may lower
- * them so far. */
+ * Each column has two slopes. Drawn ground, and what may come of it, is hidden by FF_HIDES_DRAWN:
+ * should finer data lower what hides it, it is asked for then. Tiles of which nothing is here, and
+ * would leave a hole, are hidden by FF_HIDES_UNKNOWN, lower by the geometric error of the nodes
+ * that hide: finer data may lower them so far.
+ *
+ * The horizon knows the steepest line of a column only, and whatever is nearer than that line is
+ * not hidden by it. So a node is asked about while the horizon holds exactly what is nearer. */
 #ifndef FF_HORIZON_H
 #define FF_HORIZON_H
 
@@ -56,5 +60,7 @@ void ff_horizon_raise(const ff_tree *tree, ff_horizon *horizon, const uint64_t *
 int ff_horizon_hides(const ff_horizon *horizon, const ff_box *box, enum ff_hides kind);
 /* The same of what is drawn of a node. */
 int ff_horizon_hides_node(const ff_tree *tree, const ff_horizon *horizon, const ff_node *node);
+/* And of whatever finer data may make of it. */
+int ff_horizon_hides_children(const ff_tree *tree, const ff_horizon *horizon, const ff_node *node);
 
 #endif

@@ -138,7 +138,7 @@ static uint32_t count_splits(const ff_tree *tree, uint32_t nodes[BUCKETS])
             ff_box box;
             if (here && !(node->flags & FF_NODE_SPLIT)) continue;
             ff_node_box(tree, node, &box);
-            if (!ff_box_seen(tree, &box)) continue;
+            if (!ff_node_seen(tree, node, &box)) continue;
             for (unsigned k = 0; k < levels && level + k + 1 < ff_terrain_levels(&tree->info);
                  k++) {
                 uint32_t more = 3u << 2 * k;

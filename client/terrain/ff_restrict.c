@@ -50,7 +50,7 @@ void ff_want(ff_tree *tree, uint32_t slot, uint32_t value)
     }
     uint32_t level = ff_key_level(node->key);
     FF_ASSERT(level + 1 < ff_terrain_levels(&tree->info));
-    node->flags |= FF_NODE_WANTED;
+    node->flags = (uint8_t)((node->flags & ~FF_NODE_HIDDEN) | FF_NODE_WANTED);
     node->value = value;
     node->want_next = tree->want_head[level];
     tree->want_head[level] = slot;
@@ -73,7 +73,7 @@ static int is_needed(const ff_tree *tree, const ff_node *node)
     FF_ASSERT(node->flags & FF_NODE_WANTED);
     if (node->flags & FF_NODE_NEEDED) return 1;
     ff_node_box(tree, node, &box);
-    return ff_box_seen(tree, &box);
+    return ff_node_seen(tree, node, &box);
 }
 
 /* ---- new tiles ---- */
@@ -186,10 +186,8 @@ static void need_beside(ff_tree *tree, const ff_node *node)
 
 void ff_need_close(ff_tree *tree)
 {
-    for (uint32_t i = 0; i < tree->drawn_count; i++) {
-        const ff_node *node = tree->drawn[i].node;
-        if (tree->drawn[i].coarser && !(node->flags & FF_NODE_HIDDEN)) need_beside(tree, node);
-    }
+    for (uint32_t i = 0; i < tree->view_count - tree->stats.nodes_hidden; i++)
+        if (tree->drawn[i].coarser) need_beside(tree, tree->drawn[i].node);
     for (uint32_t level = FF_LEVELS_MAX; level-- > 1;) {
         for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE;
              slot = tree->node[slot].want_next) {

@@ -193,7 +193,7 @@ static void count_drawn(ff_tree *tree, const ff_drawn *drawn)
 {
     tree->stats.triangles += triangles_of(tree, drawn);
     tree->stats.stitched += drawn->coarser != 0;
-    FF_ASSERT(tree->stats.stitched <= tree->drawn_count);
+    FF_ASSERT(tree->stats.stitched <= tree->view_count);
 }
 
 static uint32_t slot_in_view(const ff_tree *tree, uint32_t i)
@@ -207,18 +207,22 @@ static uint32_t slot_in_view(const ff_tree *tree, uint32_t i)
 /* Is a node in view hidden? If not, it may hide others. */
 static int is_hidden(ff_tree *tree, uint32_t i, const ff_drawn *drawn)
 {
+    ff_node *node = &tree->node[slot_in_view(tree, i)];
+    node->flags &= ~FF_NODE_HIDDEN & UINT8_MAX;
     if (!tree->horizon) return 0;
-    if (ff_horizon_hides_node(tree, tree->horizon, drawn->node)) return 1;
-    ff_horizon_raise(tree, tree->horizon, tree->sort, tree->view_count, i, drawn->coarser);
-    return 0;
+    if (!ff_horizon_hides_node(tree, tree->horizon, node)) {
+        ff_horizon_raise(tree, tree->horizon, tree->sort, tree->view_count, i, drawn->coarser);
+        return 0;
+    }
+    if (ff_horizon_hides_children(tree, tree->horizon, node)) node->flags |= FF_NODE_HIDDEN;
+    return 1;
 }
 
-/* Lists what is in view, from `sort`: what is drawn first, nearest first, and from the other end
+/* Lists what is in view, from `sort`: what can be seen first, nearest first, and from the other end
  * what is hidden. */
 static void list_view(ff_tree *tree)
 {
-    uint32_t left_out = 0;
-    tree->drawn_count = 0;
+    uint32_t seen = 0;
     tree->stats.triangles = tree->stats.stitched = 0;
     tree->stats.nodes_hidden = tree->stats.triangles_hidden = 0;
     if (tree->horizon) ff_horizon_begin(tree, tree->horizon, tree->sort, tree->view_count, 0);
@@ -226,20 +230,17 @@ static void list_view(ff_tree *tree)
         uint32_t slot = slot_in_view(tree, i);
         ff_drawn drawn;
         fill_drawn(tree, slot, ff_coarser_mask(tree, &tree->node[slot]), &drawn);
-        tree->node[slot].flags &= ~FF_NODE_HIDDEN & UINT8_MAX;
-        if (is_hidden(tree, i, &drawn)) {
-            tree->node[slot].flags |= FF_NODE_HIDDEN;
-            tree->stats.nodes_hidden++;
+        int hidden = is_hidden(tree, i, &drawn);
+        if (hidden) {
+            tree->drawn[tree->view_count - ++tree->stats.nodes_hidden] = drawn;
             tree->stats.triangles_hidden += triangles_of(tree, &drawn);
-            if (tree->hidden == FF_HIDDEN_LEFT_OUT) {
-                tree->drawn[tree->view_count - ++left_out] = drawn;
-                continue;
-            }
+        } else {
+            tree->drawn[seen++] = drawn;
         }
-        tree->drawn[tree->drawn_count++] = drawn;
-        count_drawn(tree, &drawn);
+        if (!hidden || tree->hidden == FF_HIDDEN_DRAWN) count_drawn(tree, &drawn);
     }
-    FF_ASSERT(tree->drawn_count + left_out == tree->view_count);
+    FF_ASSERT(seen + tree->stats.nodes_hidden == tree->view_count);
+    tree->drawn_count = tree->hidden == FF_HIDDEN_DRAWN ? tree->view_count : seen;
 }
 
 /* Lists the cut: first the nodes that are in view, then the others. */

@@ -24,9 +24,10 @@ enum ff_node_flags {
     FF_NODE_SPLIT = 8, /* the cut runs below it */
     FF_NODE_NEEDED =
         16, /* something seen cannot split, or is drawn coarser, before this node has split */
-    FF_NODE_FILLED = 32,  /* some of its ground was void in the source */
-    FF_NODE_JOINED = 64,  /* a root that has been in the cut since it came into the window */
-    FF_NODE_HIDDEN = 128, /* of the cut, in view, by nearer ground; stale when out of view */
+    FF_NODE_FILLED = 32, /* some of its ground was void in the source */
+    FF_NODE_JOINED = 64, /* a root that has been in the cut since it came into the window */
+    /* of the cut, in view, and by nearer ground, whatever comes of it; stale when out of view */
+    FF_NODE_HIDDEN = 128,
     FF_NODE_KEPT = FF_NODE_HELD | FF_NODE_FILLED | FF_NODE_JOINED /* by selections */
 };
 
@@ -188,6 +189,8 @@ int ff_box_in_view(const ff_tree *tree, const ff_box *box);
 /* ff_horizon.c */
 /* 1 when a box can be seen from the view, as far as held ground tells. */
 int ff_box_seen(const ff_tree *tree, const ff_box *box);
+/* The same of a node, once the cut is listed. */
+int ff_node_seen(const ff_tree *tree, const ff_node *node, const ff_box *box);
 
 /* ff_restrict.c */
 unsigned ff_coarser_mask(const ff_tree *tree, const ff_node *node);

@@ -110,7 +110,7 @@ static uint32_t missing_children(ff_tree *tree)
             ff_box box;
             ff_node_box(tree, node, &box);
             int needed = node->flags & FF_NODE_NEEDED && !ff_tile_waits(tree, node);
-            uint64_t unseen = needed || ff_box_seen(tree, &box) ? 0 : OUT_OF_VIEW;
+            uint64_t unseen = needed || ff_node_seen(tree, node, &box) ? 0 : OUT_OF_VIEW;
             if (!unseen && node->value < tree->wish_value) continue;
             tree->sort[count++] = unseen | (uint64_t)(FF_VALUE_MAX - node->value) << FF_SLOT_BITS |
                                   slot;
