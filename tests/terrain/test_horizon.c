@@ -14,6 +14,7 @@
 #define NODES    4000
 #define RIDGE_M  1500 /* east of the border, from south to north, 300 m high */
 #define RIDGE_UP 300
+#define BACK_M   3500
 #define LIST     64
 #define DOWN     (-6000) /* 33 degrees */
 
@@ -23,10 +24,17 @@ static uint16_t ridge(uint32_t x, uint32_t y)
     return (uint16_t)(100 + (away < 15 ? RIDGE_UP - 20 * away : 0) + fixture_hills(x, y) / 10);
 }
 
-/* Ground with its ridge, and a tree over it. */
-static void open_ridge(terrain_fixture *fx, enum ff_hidden hidden)
+/* Behind it a valley, and a ridge that stands steeper before the eye. */
+static uint16_t valley(uint32_t x, uint32_t y)
 {
-    fixture_make(fx, 3, 7, 4, 3, ridge);
+    uint32_t away = x > BACK_M / 10 ? x - BACK_M / 10 : BACK_M / 10 - x;
+    return (uint16_t)(ridge(x, y) + (away < 65 ? 1300 - 20 * away : 0));
+}
+
+/* Ground with its ridges, and a tree over it. */
+static void open_ground(terrain_fixture *fx, fixture_height height, enum ff_hidden hidden)
+{
+    fixture_make(fx, 3, 7, 4, 3, height);
     fx->hidden = hidden;
     fixture_tree(fx, NODES, LIST);
 }
@@ -139,8 +147,8 @@ static void hidden_ground_is_not_wished_for(void **state)
 {
     (void)state;
     terrain_fixture left_out, fetched;
-    open_ridge(&left_out, FF_HIDDEN_LEFT_OUT);
-    open_ridge(&fetched, FF_HIDDEN_FETCHED);
+    open_ground(&left_out, ridge, FF_HIDDEN_LEFT_OUT);
+    open_ground(&fetched, ridge, FF_HIDDEN_FETCHED);
     roots(&left_out);
     roots(&fetched);
     ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
@@ -167,6 +175,36 @@ static void hidden_ground_is_not_wished_for(void **state)
     fixture_free(&fetched);
 }
 
+/* Nodes that the valley has in a settled picture from before both ridges. */
+static uint32_t held_in_valley(enum ff_hidden hidden)
+{
+    terrain_fixture fx;
+    open_ground(&fx, valley, hidden);
+    roots(&fx);
+    ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
+    const ff_view view = fixture_view_above(&fx, 600, 2000, 30, 90, 10);
+    const ff_drawn *list;
+    settle_in_view(&fx, &view, &quality); /* the ridges are known now */
+    quality.error_px_q8 = 64;
+    settle_in_view(&fx, &view, &quality);
+    uint32_t count = ff_tree_in_view(fx.tree, &list), nodes = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        int32_t origin_wu[3];
+        fixture_origin(&fx.info, list[i].key, origin_wu);
+        nodes += origin_wu[0] >= (RIDGE_M + 200) * FF_WU_PER_METRE &&
+                 origin_wu[0] < (BACK_M - 700) * FF_WU_PER_METRE;
+    }
+    fixture_free(&fx);
+    return nodes;
+}
+
+static void a_valley_between_ridges_is_not_wished_for(void **state)
+{
+    (void)state;
+    uint32_t few = held_in_valley(FF_HIDDEN_LEFT_OUT), many = held_in_valley(FF_HIDDEN_FETCHED);
+    assert_true(few > 0 && 2 * few < many);
+}
+
 /* What is foreseen straight behind the part of the ridge that is held as it is. */
 static uint32_t foreseen_beyond(const terrain_fixture *fx, const int32_t pos_wu[3])
 {
@@ -185,7 +223,7 @@ static void ground_beyond_a_ridge_is_foreseen_from_above(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    open_ridge(&fx, FF_HIDDEN_LEFT_OUT);
+    open_ground(&fx, ridge, FF_HIDDEN_LEFT_OUT);
     roots(&fx);
     ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
     quality.error_px_q8 = 64;
@@ -211,7 +249,7 @@ static void only_whole_ground_under_the_eye_hides(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    open_ridge(&fx, FF_HIDDEN_LEFT_OUT);
+    open_ground(&fx, ridge, FF_HIDDEN_LEFT_OUT);
     ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
     ff_view view = fixture_view_above(&fx, 600, 2000, 30, 90, 0), other = view;
     roots(&fx);
@@ -239,6 +277,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_hidden_has_no_pixel),
         cmocka_unit_test(hidden_ground_is_not_wished_for),
+        cmocka_unit_test(a_valley_between_ridges_is_not_wished_for),
         cmocka_unit_test(ground_beyond_a_ridge_is_foreseen_from_above),
         cmocka_unit_test(only_whole_ground_under_the_eye_hides),
     };
