@@ -220,16 +220,24 @@ static int32_t highest_top(const span spans[FF_HORIZON_WEDGES])
     return top;
 }
 
-/* Marks in `word` the nodes that may be hidden; returns how many. */
+/* What finding a node hidden is worth: it is not drawn, nor are the children asked for that it
+ * lacks. */
+static uint32_t worth_of(const ff_node *node)
+{
+    return node->flags & FF_NODE_WANTED && !ff_node_has_children(node) ? 4 : 1;
+}
+
+/* Marks in `word` the nodes that may be hidden; returns what that is worth. */
 static uint32_t survey(const ff_tree *tree, ff_horizon *horizon, const uint64_t *keys,
                        uint32_t count, uint64_t *word)
 {
     uint32_t found = 0;
     span spans[FF_HORIZON_WEDGES];
     for (uint32_t i = 0; i < count; i++) {
-        ff_box box = ff_horizon_drawn_box(tree, horizon, node_of(tree, keys[i]));
+        const ff_node *node = node_of(tree, keys[i]);
+        ff_box box = ff_horizon_drawn_box(tree, horizon, node);
         word[i] = spans_of(horizon, &box, spans) && may_be_hidden(horizon, spans);
-        found += (uint32_t)word[i];
+        if (word[i]) found += worth_of(node);
     }
     return found;
 }
