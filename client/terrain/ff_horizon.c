@@ -7,6 +7,12 @@
 #define HIDDEN_LEAST 4 /* one in so many */
 #define WORTH_IT     2
 #define WORTH_IT_OF  3
+/* A node that is not drawn, and the children that are not asked for. */
+#define LACKING_WORTH 4
+/* To draw a node takes this many times what it takes to find what one hides; where less was found
+ * hidden, the horizon rests for so many views. */
+#define HIDING_LEAST 12
+#define RESTS        15
 
 void ff_horizon_invert(int32_t depth, inverse *to)
 {
@@ -220,11 +226,10 @@ static int32_t highest_top(const span spans[FF_HORIZON_WEDGES])
     return top;
 }
 
-/* What finding a node hidden is worth: it is not drawn, nor are the children asked for that it
- * lacks. */
-static uint32_t worth_of(const ff_node *node)
+/* Will it be asked for, if it is not hidden? */
+static int lacks_children(const ff_node *node)
 {
-    return node->flags & FF_NODE_WANTED && !ff_node_has_children(node) ? 4 : 1;
+    return node->flags & FF_NODE_WANTED && !ff_node_has_children(node);
 }
 
 /* Marks in `word` the nodes that may be hidden; returns what that is worth. */
@@ -237,7 +242,7 @@ static uint32_t survey(const ff_tree *tree, ff_horizon *horizon, const uint64_t 
         const ff_node *node = node_of(tree, keys[i]);
         ff_box box = ff_horizon_drawn_box(tree, horizon, node);
         word[i] = spans_of(horizon, &box, spans) && may_be_hidden(horizon, spans);
-        if (word[i]) found += worth_of(node);
+        if (word[i]) found += lacks_children(node) ? LACKING_WORTH : 1;
     }
     return found;
 }
@@ -262,18 +267,43 @@ static uint32_t find_needs(const ff_tree *tree, ff_horizon *horizon, const uint6
     return raisers;
 }
 
+/* 1 when it may rest: nothing in view would be asked for that may be hidden, and what is hidden
+ * leaves no room for finer ground. */
+static int may_rest(const ff_tree *tree, const uint64_t *keys, uint32_t count)
+{
+    if (tree->limit_step || tree->whole_wu < tree->quality.view_wu) return 0;
+    for (uint32_t i = 0; i < count; i++)
+        if (lacks_children(node_of(tree, keys[i]))) return 0;
+    return 1;
+}
+
 void ff_horizon_begin(const ff_tree *tree, ff_horizon *horizon, uint64_t *keys, uint32_t count,
                       int always)
 {
+    horizon->raisers = 0;
+    if (!always && horizon->rests && may_rest(tree, keys, count)) {
+        horizon->rests--;
+        horizon->reach_wu = 0;
+        return;
+    }
     clear(tree, horizon);
     if (horizon->reach_wu == 0) return;
     uint32_t found = survey(tree, horizon, keys, count, keys + count);
     int worth_it = always || found * HIDDEN_LEAST >= count;
     if (worth_it) {
-        uint32_t raisers = find_needs(tree, horizon, keys, count, keys + count);
-        worth_it = always || found * WORTH_IT_OF >= raisers * WORTH_IT;
+        horizon->raisers = find_needs(tree, horizon, keys, count, keys + count);
+        worth_it = always || found * WORTH_IT_OF >= horizon->raisers * WORTH_IT;
     }
     if (!worth_it) horizon->reach_wu = 0;
+}
+
+void ff_horizon_end(const ff_tree *tree, ff_horizon *horizon)
+{
+    const ff_tree_stats *found = &tree->stats;
+    uint32_t limit = tree->quality.triangles_max;
+    if (horizon->raisers == 0) return;
+    int fits = !limit || found->triangles + found->triangles_hidden <= limit - limit / 8;
+    horizon->rests = fits && found->nodes_hidden * HIDING_LEAST < horizon->raisers ? RESTS : 0;
 }
 
 int ff_horizon_hides(const ff_horizon *horizon, const ff_box *box, enum ff_hides kind)

@@ -40,6 +40,8 @@ struct ff_horizon {
     int32_t reach_wu;   /* ground nearer than this, along both axes, is whole: it may hide others */
     int32_t half_pixel; /* slope of half a pixel */
     int32_t rounding_wu; /* of drawn heights */
+    uint32_t raisers;    /* nodes that may hide others */
+    uint8_t rests;       /* views before it is tried again whether it pays */
     /* columns of each wedge that are in view; none: first > last */
     int16_t first[FF_HORIZON_WEDGES], last[FF_HORIZON_WEDGES];
     /* and one beside each end, which nobody reads */
@@ -49,9 +51,13 @@ struct ff_horizon {
 /* Nothing hides yet. For the tree's view; what is out of it counts as hidden. `keys`: the nodes in
  * view from the nearest to the farthest, slots in the lower FF_SLOT_BITS; behind them this leaves
  * as many words for ff_horizon_raise. `always` 0: nothing hides where finding it would cost more
- * than drawing it. */
+ * than drawing it, by what may be hidden, and what lately was; what lacks children may always be,
+ * or they would be asked for. */
 void ff_horizon_begin(const ff_tree *tree, ff_horizon *horizon, uint64_t *keys, uint32_t count,
                       int always);
+/* The tree's figures say what was found hidden: where it was too little, it rests for some views.
+ */
+void ff_horizon_end(const ff_tree *tree, ff_horizon *horizon);
 /* What node `i` of them hides. From the nearest on, or less is found. `coarser` as of ff_drawn, or
  * FF_COARSER_UNKNOWN. */
 void ff_horizon_raise(const ff_tree *tree, ff_horizon *horizon, const uint64_t *keys,

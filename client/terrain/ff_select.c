@@ -239,6 +239,7 @@ static void list_view(ff_tree *tree)
         }
         if (!hidden || tree->hidden == FF_HIDDEN_DRAWN) count_drawn(tree, &drawn);
     }
+    if (tree->horizon) ff_horizon_end(tree, tree->horizon);
     FF_ASSERT(seen + tree->stats.nodes_hidden == tree->view_count);
     tree->drawn_count = tree->hidden == FF_HIDDEN_DRAWN ? tree->view_count : seen;
 }

@@ -272,6 +272,31 @@ static void only_whole_ground_under_the_eye_hides(void **state)
     fixture_free(&fx);
 }
 
+static void where_little_is_hidden_it_rests(void **state)
+{
+    (void)state;
+    terrain_fixture fx;
+    unsigned found = 0;
+    open_ground(&fx, fixture_hills, FF_HIDDEN_LEFT_OUT);
+    roots(&fx);
+    ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
+    ff_view view = fixture_view_above(&fx, 600, 2000, 534, 90, 0);
+    quality.depth_max = 3;
+    settle_in_view(&fx, &view, &quality);
+    for (unsigned i = 0; i < 32; i++) {
+        view.camera.pos_wu[0] += 16;
+        view.centre_wu[0] += 16;
+        ff_tree_select(fx.tree, &view, &quality);
+        found += fixture_stats(&fx).nodes_hidden > 0;
+    }
+    assert_int_equal(found, 2); /* in one view of sixteen */
+    assert_int_equal(fixture_stats(&fx).nodes_hidden, 0);
+    quality.depth_max = 0; /* now nodes lack children, and hidden ones are not to be asked for */
+    ff_tree_select(fx.tree, &view, &quality);
+    assert_true(fixture_stats(&fx).nodes_hidden > 0);
+    fixture_free(&fx);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -279,6 +304,7 @@ int main(void)
         cmocka_unit_test(hidden_ground_is_not_wished_for),
         cmocka_unit_test(a_valley_between_ridges_is_not_wished_for),
         cmocka_unit_test(ground_beyond_a_ridge_is_foreseen_from_above),
+        cmocka_unit_test(where_little_is_hidden_it_rests),
         cmocka_unit_test(only_whole_ground_under_the_eye_hides),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
