@@ -57,8 +57,10 @@ struct ff_tree {
     ff_node *node;
     uint16_t *heights; /* node_count grids */
     uint32_t *hash;
-    uint32_t *order; /* node_count slots: queue of a selection */
-    uint64_t *sort;  /* 2 * node_count */
+    /* node_count slots: queue of a selection; between selections what ff_tree_foresee knows of each
+     * slot */
+    uint32_t *order;
+    uint64_t *sort; /* 2 * node_count */
     /* node_count: the cut, what is drawn first, then what is hidden; the rest gets `coarser` only
      * in ff_tree_cut */
     ff_drawn *drawn;
