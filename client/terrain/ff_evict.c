@@ -165,6 +165,8 @@ int ff_evict_for_root(ff_tree *tree, uint32_t tile)
     int64_t farthest = ff_tile_distance(tree, tile);
     uint32_t victim = FF_SLOT_NONE;
     for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
+        /* what is not in view was refused this family */
+        if (ff_node_has_children(&tree->node[slot])) return 0;
         int64_t distance = ff_tile_distance(tree, ff_key_tile(tree->node[slot].key));
         if (distance > farthest) {
             farthest = distance;
@@ -172,7 +174,6 @@ int ff_evict_for_root(ff_tree *tree, uint32_t tile)
         }
     }
     if (victim == FF_SLOT_NONE) return 0;
-    FF_ASSERT(!ff_node_has_children(&tree->node[victim])); /* or drop_one would have found them */
     ff_tree_drop_root(tree, &tree->node[victim]);
     return 1;
 }

@@ -126,12 +126,38 @@ static void the_reserve_takes_nothing_from_the_view(void **state)
     assert_true(came > 0 && none > 0);
 }
 
+/* A pool full of wanted ground in view: a nearer root out of view is refused, and drives out no
+ * farther root from under its children. */
+static void a_full_view_refuses_roots_elsewhere(void **state)
+{
+    (void)state;
+    terrain_fixture fx;
+    ff_view view;
+    ff_quality quality;
+    const uint32_t ahead = 3 * 6 + 2, behind = 1 * 6 + 2;
+    begin(&fx, 4000, &view, &quality);
+    quality.error_px_q8 = 1;
+    fixture_tree(&fx, 9, 96);
+    const ff_key keys[] = { ff_key_make(ahead, 0, 0), ff_key_make(ahead, 0, 0),
+                            ff_key_make(ahead, 1, 0) };
+    for (int i = 0; i < 3; i++) {
+        ff_tree_select(fx.tree, &view, &quality);
+        assert_int_equal(fixture_deliver(&fx, keys[i], i > 0), FF_OK);
+    }
+    ff_tree_select(fx.tree, &view, &quality);
+    assert_int_equal(fixture_stats(&fx).nodes_held, 9);
+    assert_int_equal(fixture_deliver(&fx, ff_key_make(behind, 0, 0), 0), FF_ERR_FULL);
+    assert_int_equal(fixture_stats(&fx).nodes_held, 9);
+    fixture_free(&fx);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_reserve_is_roots_first_then_coarse_ground),
         cmocka_unit_test(a_new_tile_out_of_view_waits),
         cmocka_unit_test(the_reserve_takes_nothing_from_the_view),
+        cmocka_unit_test(a_full_view_refuses_roots_elsewhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
