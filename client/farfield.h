@@ -96,7 +96,7 @@ typedef struct ff_balance_desc {
     uint8_t link_percent;
     int32_t c_min_q8;        /* FF_MEASURE_DISTANCE; default a quarter of quality.c_q8 */
     int32_t error_px_max_q8; /* FF_MEASURE_PIXELS; default eight times quality.error_px_q8 */
-    /* FF_BALANCE_ALL_SERVER; default a quarter of panorama.back_plane_wu */
+    /* FF_BALANCE_ALL_SERVER, at most panorama.back_plane_wu; default a quarter of it */
     int32_t back_plane_min_wu;
     int32_t panorama_error_max_q8; /* default four times panorama.error_px_q8 */
 } ff_balance_desc;

@@ -164,6 +164,8 @@ static void complete(ff_balance_desc *desc, const ff_quality *finest,
     desc->error_px_max_q8 = at_least(desc->error_px_max_q8, finest->error_px_q8, 8);
     if (!panorama) return;
     if (desc->back_plane_min_wu <= 0) desc->back_plane_min_wu = panorama->back_plane_wu / 4 + 1;
+    if (desc->back_plane_min_wu > panorama->back_plane_wu)
+        desc->back_plane_min_wu = panorama->back_plane_wu;
     desc->panorama_error_max_q8 = at_least(desc->panorama_error_max_q8, panorama->error_px_q8, 4);
 }
 

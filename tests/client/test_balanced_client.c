@@ -159,11 +159,26 @@ static void the_back_plane_waits_for_its_panorama(void **state)
     rig_close(&rig);
 }
 
+/* A nearest back plane that lies beyond the back plane itself is that one. */
+static void no_nearest_back_plane_is_too_far(void **state)
+{
+    (void)state;
+    client_rig rig;
+    open_balanced(&rig, FF_BALANCE_OFF, 0);
+    rig.desc.balance.mode = FF_BALANCE_ALL_SERVER;
+    rig.desc.balance.back_plane_min_wu = INT32_MAX;
+    ff_client_set_balance(rig.client, &rig.desc.balance);
+    run(&rig, 10);
+    assert_int_equal(rig_stats(&rig).back_plane_wu, 1500 * METRE);
+    rig_close(&rig);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(a_client_keeps_a_budget_of_triangles),
                                         cmocka_unit_test(a_client_follows_costs_that_are_reported),
                                         cmocka_unit_test(the_ends_and_off),
-                                        cmocka_unit_test(the_back_plane_waits_for_its_panorama) };
+                                        cmocka_unit_test(the_back_plane_waits_for_its_panorama),
+                                        cmocka_unit_test(no_nearest_back_plane_is_too_far) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
