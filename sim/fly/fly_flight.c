@@ -136,13 +136,13 @@ static int read_audit(fly_flight *flight, fly_sources *from)
     const ff_tree *tree = ff_client_tree(world->client);
     const ff_panorama_desc *panorama = &flight->options->panorama;
     int32_t join_wu = from->client.back_plane_wu;
-    sim_audit_view view = { .camera = flight->camera,
-                            .quality = from->client.quality,
-                            .panorama = { .front_wu = join_wu - join_wu / 8,
-                                          .back_wu = panorama->server_back_wu
-                                                         ? panorama->server_back_wu
-                                                         : 100000 * FF_WU_PER_METRE,
-                                          .face_size = from->client.face_size } };
+    sim_audit_view view = {
+        .camera = flight->camera,
+        .quality = from->client.quality,
+        .panorama = { .front_wu = join_wu - join_wu / 8,
+                      .back_wu = panorama->server_back_wu ? panorama->server_back_wu : INT32_MAX,
+                      .face_size = from->client.face_size }
+    };
     sim_audit_result *audit = &from->audit;
     if (tree) view.drawn_count = ff_tree_in_view(tree, &view.drawn);
     (void)ff_client_panorama(world->client, view.panorama.pos_wu, &view.faces);

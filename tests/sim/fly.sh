@@ -114,6 +114,12 @@ is 'r[-1]["skyline_px_rms"] < 1 and s["skyline_px_p95"] < 2 and all(row["skyline
 skyline=$(python3 -c "import json; print(json.load(open('$work/fine.json'))['skyline_px_rms'])")
 flies rough $quick --panorama off --quality 0.5:2 --view 20000
 is "s['skyline_px_rms'] > 3 * $skyline" "the skyline of coarse ground is wrong"
+# ground far beyond 100 km is the panorama's, too
+"$bin/farfield-bake" "$work/hills.raw" --raw 257x257 --spacing 1000 --tile-log2 6 --quiet -o "$work/wide.ffp"
+flies wide $quick --pack "$work/wide.ffp" --panorama on --height 12000 --speed 0 --start 0.1
+is "r[-1]['panorama_px_percent'] > 99 and r[-1]['undrawn_px_percent'] == 0 and r[-1]['skyline_px_p95'] < 2" \
+    "a panorama's ground beyond 100 km counts as drawn"
+
 flies toggled $quick --panorama on --event 2:panorama-off
 is 'r[1]["panoramas"] > 0 and r[-1]["panoramas"] == r[3]["panoramas"] and r[-1]["panorama_px_percent"] == 0' "the panorama can be switched off in flight"
 
