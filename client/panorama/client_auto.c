@@ -5,7 +5,8 @@
 #include "../../protocol/ff_assert.h"
 
 #define DECIDE_US INT64_C(2000000)
-#define LEAVE_US  INT64_C(250000) /* while a panorama is drawn: the viewer may set off */
+#define LEAVE_US  INT64_C(250000)   /* while a panorama is drawn: the viewer may set off */
+#define AGAIN_US  INT64_C(20000000) /* after that: it shall not go to and fro */
 #define SECOND_US 1000000
 
 /* Triangles drawn of nodes that lie beyond the back plane; each node counts alike. */
@@ -38,9 +39,9 @@ static void look_at_ground(ff_client *client, const c3d_camera *camera)
     ff_tree_stats tree;
     ff_tree_get_stats(client->tree, &tree);
     now->front_wu = client->panorama.desc.back_plane_wu;
-    now->ground_px_q8 = ff_tree_quality(client->tree)->measure == FF_MEASURE_PIXELS
-                            ? ff_tree_quality(client->tree)->error_px_q8
-                            : 0;
+    const ff_quality *quality = ff_tree_quality(client->tree);
+    now->asked_px_q8 = ff_client_quality(client).error_px_q8;
+    now->ground_px_q8 = quality->measure == FF_MEASURE_PIXELS ? quality->error_px_q8 : 0;
     now->triangles = tree.triangles;
     now->far_triangles = far_share(client, camera, now->front_wu, tree.triangles);
 }
@@ -53,6 +54,7 @@ static void look_at_link(ff_client *client, const c3d_camera *camera)
     if (client->desc.stream) ff_stream_get_shared(&client->stream, &shared);
     for (unsigned seen = ff_panorama_faces_in_view(camera); seen; seen &= seen - 1) faces++;
     now->focal_q8 = camera->focal_q8;
+    now->half_width_q8 = (camera->width ? camera->width : client->desc.width) * 128;
     now->face_size = client->panorama.face_size;
     now->speed_wu_s = speed_wu_s(client, camera);
     now->link_bytes_s = shared.bytes_s;
@@ -65,10 +67,12 @@ static void decide(ff_client *client, int32_t allowed_q8)
     if (ground == client->auto_ground) return;
     client->auto_ground = (uint8_t)ground;
     client->dirty = 1;
-    if (ground)
+    if (ground) {
         ff_requests_cancel_all(&client->requests, FF_KIND_FACE);
-    else
+        client->auto_us += AGAIN_US - DECIDE_US;
+    } else {
         client->panorama.desc.error_px_q8 = allowed_q8;
+    }
 }
 
 void ff_client_auto_begin(ff_client *client)

@@ -4,9 +4,10 @@
  * Both ways are held to one error, that of the ground now drawn: pixels of error are a bound, and
  * ground stays within a quarter of them in 19 pixels of 20 (make front). A set of faces stays
  * within it only where half its texels are smaller, and only for as long as the viewer moves less
- * than the rest of it allows sideways (Hybrid eq. 6). A panorama is worth it when
+ * than the rest of it allows (Hybrid eq. 6, 7). A panorama is worth it when
+ *   - the limit of triangles makes ground half as coarse again as was asked for, or more;
  *   - the ground beyond the back plane is a third of the triangles drawn, or more;
- *   - the limit of triangles makes the ground so coarse that a face's texels are fine enough;
+ *   - ground is so coarse that a face's texels are fine enough;
  *   - the sets that the viewer then flies through take no more than a sixteenth of the link; once
  *     they are drawn, an eighth of it: in flight, ground beyond the back plane takes less than
  * that, as most of it is needed on arrival anyway. */
@@ -16,10 +17,10 @@
 #include <stdint.h>
 
 typedef struct ff_panorama_case {
-    int32_t focal_q8; /* pixels */
+    int32_t focal_q8, half_width_q8; /* pixels */
     uint16_t face_size;
     int32_t front_wu;                  /* the back plane: where a panorama would begin */
-    int32_t ground_px_q8;              /* of error, in force for ground: pixels */
+    int32_t asked_px_q8, ground_px_q8; /* pixels of error asked for, and in force for ground */
     uint32_t triangles, far_triangles; /* drawn, and of them those beyond the back plane */
     int64_t speed_wu_s;
     uint32_t link_bytes_s; /* what it is found to carry; 0: unknown, or no link */

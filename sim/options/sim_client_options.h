@@ -42,7 +42,7 @@ void sim_client_read(const char **quality_text, uint32_t triangles, const sys_si
     OPTION(sys_whole, triangles, "triangles", "N", NULL, \
            SYS_WHOLE(FF_TRIANGLES_MIN, SIM_BUDGET_MAX, ""), \
            "the most triangles of ground in a picture: where --quality asks for more, all of it " \
-           "is drawn as much coarser as that takes; default: what --quality says") \
+           "is drawn as much coarser as that takes, and in the end less far; default: what --quality says") \
     OPTION(sim_balance, balance_text, "balance", "SPEC", "off", SYS_ANY, \
            "budgets; what --quality and --panorama say is the finest. No picture has more " \
            "triangles than the first number (0: as many as --quality allows). The second: bytes " \
