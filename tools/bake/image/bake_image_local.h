@@ -6,7 +6,7 @@
 
 typedef struct bake_picture {
     GDALDatasetH set;       /* 8 bits a band; row 0 north */
-    GDALDatasetH behind[3]; /* what `set` reads from: closed after it, the last one first */
+    GDALDatasetH behind[4]; /* what `set` reads from: closed after it, the last one first */
     int behind_count;
     int has_alpha; /* its last band says what the image covers (0: nothing there) */
     uint32_t width, height;

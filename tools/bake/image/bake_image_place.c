@@ -1,6 +1,7 @@
 /* Where an image lies over the ground. */
 #include "bake_image_local.h"
 #include "../bake_say.h"
+#include "../raster/bake_area.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -84,6 +85,52 @@ static GDALDatasetH warp_onto_ground(const bake_ground *ground, GDALDatasetH set
     return warped;
 }
 
+/* An image whose coordinates have no named reference system has the heights', as they were read or
+ * as they were projected: the one in whose plane it lies over them. */
+static OGRSpatialReferenceH reference_for(const bake_ground *ground, GDALDatasetH set)
+{
+    double gt[6];
+    GDALGetGeoTransform(set, gt);
+    bake_area image = bake_area_of(gt, (uint32_t)GDALGetRasterXSize(set),
+                                   (uint32_t)GDALGetRasterYSize(set)),
+              source = bake_area_of(ground->source_geotransform, ground->source_width,
+                                    ground->source_height),
+              now = bake_area_of(ground->geotransform, ground->grid.width, ground->grid.height);
+    if (bake_area_meets(&image, &source)) return ground->source_srs;
+    return bake_area_meets(&image, &now) ? ground->srs : NULL;
+}
+
+/* Makes a view of the image that names its reference system. */
+static GDALDatasetH name_reference(GDALDatasetH set, OGRSpatialReferenceH srs)
+{
+    char **list = CSLAddString(CSLAddString(NULL, "-of"), "VRT");
+    list = add_reference(list, "-a_srs", srs);
+    GDALTranslateOptions *options = GDALTranslateOptionsNew(list, NULL);
+    GDALDatasetH named = GDALTranslate("", set, options, NULL);
+    GDALTranslateOptionsFree(options);
+    CSLDestroy(list);
+    return named;
+}
+
+/* Whether any of the image comes to lie on the ground, told before a pixel is read. */
+static int meets_ground(const bake_ground *ground, GDALDatasetH set)
+{
+    char *wkt = NULL;
+    if (ground->srs) OSRExportToWkt(ground->srs, &wkt);
+    char **settings = wkt ? CSLSetNameValue(NULL, "DST_SRS", wkt) : NULL;
+    void *transform = GDALCreateGenImgProjTransformer2(set, NULL, settings);
+    double gt[6], extent[4];
+    int columns, rows;
+    int ok = transform && GDALSuggestedWarpOutput2(set, GDALGenImgProjTransform, transform, gt,
+                                                   &columns, &rows, extent, 0) == CE_None;
+    if (transform) GDALDestroyGenImgProjTransformer(transform);
+    CSLDestroy(settings);
+    CPLFree(wkt);
+    bake_area image = { extent[0], extent[1], extent[2], extent[3] },
+              here = bake_area_of(ground->geotransform, ground->grid.width, ground->grid.height);
+    return ok && bake_area_meets(&image, &here);
+}
+
 static int check_bands(const char *path, GDALDatasetH set)
 {
     int bands = GDALGetRasterCount(set);
@@ -129,6 +176,20 @@ static int stack_view(bake_picture *picture, GDALDatasetH view, const char *path
     return 0;
 }
 
+/* Names the reference system of an image that has a place and none. 0 or -1 (said). */
+static int find_reference(const bake_ground *ground, const char *path, bake_picture *picture)
+{
+    if (!ground->srs || GDALGetSpatialRef(picture->set)) return 0;
+    OGRSpatialReferenceH srs = reference_for(ground, picture->set);
+    if (!srs)
+        return bake_fail("%s names no reference system, and in the heights' own it shows nothing "
+                         "of this ground: name it with gdal_translate -a_srs",
+                         path);
+    bake_note("%s names no reference system: taken as the heights'%s", path,
+              srs == ground->srs ? " after projection" : "");
+    return stack_view(picture, name_reference(picture->set, srs), path);
+}
+
 static int lay_picture(const bake_ground *ground, const char *path, bake_picture *picture)
 {
     double gt[6], corner[4];
@@ -139,7 +200,16 @@ static int lay_picture(const bake_ground *ground, const char *path, bake_picture
         return 0;
     }
     if (!own_place && stack_view(picture, lay_over_source(ground, picture->set), path)) return -1;
+    if (own_place && find_reference(ground, path, picture)) return -1;
+    if (!meets_ground(ground, picture->set))
+        return bake_fail("%s: the image shows nothing of this ground", path);
     if (stack_view(picture, warp_onto_ground(ground, picture->set), path)) return -1;
+    double columns = GDALGetRasterXSize(picture->set), rows = GDALGetRasterYSize(picture->set);
+    if (columns * rows > BAKE_SAMPLES_MAX)
+        return bake_fail(
+            "%s: its resolution over all of the ground makes %.0f x %.0f pixels, more than %g: "
+            "make it coarser (gdalwarp -tr), or the heights fewer (gdal_translate -projwin)",
+            path, columns, rows, BAKE_SAMPLES_MAX);
     picture->has_alpha = 1;
     GDALGetGeoTransform(picture->set, gt);
     place(ground, picture, gt[0], gt[3], gt[0] + gt[1] * GDALGetRasterXSize(picture->set),

@@ -1,6 +1,7 @@
 #include "bake_project.h"
 
 #include "../../../protocol/ff_terrain.h"
+#include "bake_area.h"
 #include "bake_grid_gdal.h"
 #include "../bake_say.h"
 
@@ -12,7 +13,8 @@
 #define STRIP_ROWS         128  /* rows of a warped VRT's blocks */
 #define LONGITUDES_MAX     20.0 /* further from its middle a UTM zone shows another Earth */
 #define TRANSFORM_ERROR_PX 0.05
-#define SAMPLES_MAX        1e11
+#define GROWTH_MAX         64.0 /* samples made of one: a projection that makes more has torn the raster \
+                                 */
 
 /* The UTM zone (polar: UPS) round a place, as an EPSG code of WGS84. */
 static int local_zone(double longitude, double latitude)
@@ -75,6 +77,29 @@ static double round_spacing(const bake_options *o, double spacing_m)
     return units * o->densify / FF_WU_PER_METRE;
 }
 
+/* Refuses, before a sample is made, what would be no terrain or take for ever. 0 or -1 (said). */
+static int check_size(const bake_options *o, double source_samples, double spacing_m,
+                      double columns, double rows)
+{
+    if (columns < 2 || rows < 2)
+        return bake_fail("a spacing of %g m is too coarse for this raster", spacing_m);
+    if (fmax(columns, rows) * spacing_m > BAKE_EDGE_MAX_M)
+        return bake_fail(
+            "the raster is %.0f x %.0f km after projection, a terrain at most %.0f km: "
+            "cut a part with gdal_translate -projwin, or name another projection with "
+            "--t-srs",
+            columns * spacing_m / 1000, rows * spacing_m / 1000, BAKE_EDGE_MAX_M / 1000);
+    if (columns * rows > BAKE_SAMPLES_MAX)
+        return bake_fail("a spacing of %g m would make %.0f x %.0f samples, more than %g: give a "
+                         "coarser --spacing",
+                         spacing_m, columns, rows, BAKE_SAMPLES_MAX);
+    if (o->spacing_m <= 0 && columns * rows > GROWTH_MAX * source_samples)
+        return bake_fail("projected, the raster would be %.0f times as large: name another "
+                         "projection with --t-srs, or give --spacing",
+                         columns * rows / source_samples);
+    return 0;
+}
+
 /* Plans the warped grid: its geotransform, width and height. The south-west sample lies on whole
  * metres. */
 static int plan_output(const bake_options *o, GDALDatasetH source, void *transform, double *gt,
@@ -89,11 +114,9 @@ static int plan_output(const bake_options *o, GDALDatasetH source, void *transfo
     double west = ceil(extent[0] + spacing / 2), south = ceil(extent[1] + spacing / 2);
     double columns = floor((extent[2] - spacing / 2 - west) / spacing) + 1;
     double rows = floor((extent[3] - spacing / 2 - south) / spacing) + 1;
-    if (columns < 2 || rows < 2)
-        return bake_fail("a spacing of %g m is too coarse for this raster", spacing);
-    if (columns * rows > SAMPLES_MAX || columns > 1 << 28 || rows > 1 << 28)
-        return bake_fail("a spacing of %g m would make %.0f x %.0f samples: too many", spacing,
-                         columns, rows);
+    if (check_size(o, GDALGetRasterXSize(source) * (double)GDALGetRasterYSize(source), spacing,
+                   columns, rows))
+        return -1;
     *width = (int)columns;
     *height = (int)rows;
     double planned[6] = {

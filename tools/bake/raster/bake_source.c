@@ -1,5 +1,6 @@
 #include "bake_source.h"
 
+#include "bake_area.h"
 #include "../bake_say.h"
 
 #include <errno.h>
@@ -72,6 +73,9 @@ static GDALDatasetH open_raster(const bake_options *o)
     } else if (width < 2 || height < 2) {
         bake_fail("%s: %d x %d samples; ground needs at least 2 rows and 2 columns",
                   o->heights_path, width, height);
+    } else if ((double)width * height > BAKE_SAMPLES_MAX) {
+        bake_fail("%s: %d x %d samples, more than %g: cut a part with gdal_translate -projwin",
+                  o->heights_path, width, height, BAKE_SAMPLES_MAX);
     } else {
         return set;
     }
