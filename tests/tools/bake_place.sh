@@ -29,6 +29,23 @@ with open('bare.asc', 'w') as out:
         out.write(' '.join(str(500 + 3 * x - 2 * y) for x in range(60)) + '\n')
 with open('bare.ppm', 'wb') as out:
     out.write(b'P6\n60 48\n255\n' + b''.join(bytes((4 * x, 5 * y, 40)) for y in range(48) for x in range(60)))
+# The same ground, and the same image, stored in each of the eight ways: turn-N.asc, .ppm, and turn-N.gt, where it lies (30 m).
+for n in range(8):
+    w, h = (48, 60) if n & 4 else (60, 48)
+    def at(i, j):  # column and row of the ground for column i and row j of the file
+        x, y = (j, i) if n & 4 else (i, j)
+        return 59 - x if n & 1 else x, 47 - y if n & 2 else y
+    with open('turn-%d.asc' % n, 'w') as out:
+        out.write('ncols %d\nnrows %d\nxllcorner 0\nyllcorner 0\ncellsize 1\n' % (w, h))
+        for j in range(h):
+            out.write(' '.join(str(500 + 3 * x - 2 * y) for x, y in (at(i, j) for i in range(w))) + '\n')
+    with open('turn-%d.ppm' % n, 'wb') as out:
+        out.write(b'P6\n%d %d\n255\n' % (w, h) + b''.join(bytes((4 * x, 5 * y, 40)) for x, y in (at(i, j) for j in range(h) for i in range(w))))
+    dx, dy = -30 if n & 1 else 30, 30 if n & 2 else -30
+    gt = [501800 if n & 1 else 500000, dx, 0, 4998560 if n & 2 else 5000000, 0, dy]
+    if n & 4:
+        gt = [gt[0], 0, dx, gt[3], dy, 0]
+    open('turn-%d.gt' % n, 'w').write(' '.join(str(v) for v in gt))
 PY
 placed() { # SOURCE OUT.vrt SRS GT0..GT5: the raster there ("": without a reference system)
     local from=$1 to=$2 srs=$3
@@ -48,8 +65,8 @@ edge = 1 << b["tile_log2"]
 at = lambda percent, n: round(63 * percent / 100 * (n - 1) / edge)
 x, y = (int(v) for v in sys.argv[1:3])
 i = ((63 - at(100 - y, b["samples_y"])) * 64 + at(x, b["samples_x"])) * 3
-print("#   seen", list(d[i:i + 3]), "wanted", sys.argv[3:])
-sys.exit(max(abs(d[i] - int(sys.argv[3])), abs(d[i + 1] - int(sys.argv[4]))) > 16)' "$@"
+if max(abs(d[i] - int(sys.argv[3])), abs(d[i + 1] - int(sys.argv[4]))) > 16:
+    sys.exit("#   seen %s, wanted %s" % (list(d[i:i + 3]), sys.argv[3:]))' "$@"
 }
 look=(--tile-log2 7 --texture-levels 1 --texture-quality 95)
 
@@ -78,5 +95,39 @@ result $? "more samples than the limit are refused before they are read"
 placed bare.asc world.vrt EPSG:4326 -180 6 0 72 0 -3
 refused "a terrain at most 8389 km" world.vrt --t-srs EPSG:32701
 result $? "a projection that tears the raster is refused before it is walked"
+
+# ---- any invertible geotransform ----
+for n in 0 1 2 3 4 5 6 7; do # shellcheck disable=SC2046
+    placed turn-$n.asc turn-$n.vrt EPSG:32632 $(cat turn-$n.gt)
+done
+eight() { # OPTIONS...: all eight make the pack of the first
+    local n
+    for n in 0 1 2 3 4 5 6 7; do
+        bake turn-$n.vrt "$@" || { cat bake.err; return 1; }
+        if [ $n = 0 ]; then mv OUT.ffp first.ffp; else cmp OUT.ffp first.ffp || return 1; fi
+    done
+}
+eight && [ "$(field samples_x) $(field samples_y) $(field epsg)" = "60 48 32632" ]
+result $? "rows and columns exchanged or running backwards, in all eight ways, are the same ground"
+eight --spacing 30 && eight --no-project && eight --no-project --spacing 30
+result $? "with --spacing as well, and with --no-project"
+eight_seen() {
+    local n
+    for n in 0 1 2 3 4 5 6 7; do
+        bake turn-$n.vrt --color turn-$n.ppm "${look[@]}" && seen 10 10 24 24 && seen 90 20 212 48 && seen 20 90 48 212 || return 1
+    done
+}
+eight_seen
+result $? "an image without georeference lies over them pixel by pixel"
+eight --spacing 45 && bake turn-6.vrt --spacing 45 --color turn-6.ppm "${look[@]}" && seen 10 10 24 24 && seen 90 20 212 48
+result $? "and so it does when they are resampled"
+placed bare.asc slant.vrt EPSG:32632 500000 25.98 15 5000000 15 -25.98
+refused "turned or no squares" slant.vrt --no-project
+result $? "turned cells are not taken as they are without --spacing"
+bake slant.vrt --no-project --spacing 30 && noted "does not tell where they lie" && [ "$(field epsg) $(field samples_x)" = "0 60" ]
+result $? "with it they are, and the pack names no place"
+placed bare.asc line.vrt EPSG:32632 500000 30 60 5000000 15 30
+refused "all samples on one line" line.vrt
+result $? "a geotransform that cannot be inverted is refused"
 
 exit $((failures > 0))

@@ -49,18 +49,6 @@ static int fill(bake *b, uint64_t count)
     return bake_voids_mark(&b->ground.grid, &b->marks) || bake_fill_voids(&b->ground.grid) ? -1 : 0;
 }
 
-/* Projects the ground, and the marks with it. */
-static int project(bake *b, double *spacing_m)
-{
-    bake_ground before = b->ground;
-    if (before.srs) before.srs = OSRClone(before.srs);
-    int rc = bake_project(b->options, &b->ground, spacing_m);
-    if (!rc && b->ground.resampled && b->marks.fd >= 0)
-        rc = bake_voids_project(b->options, &before, &b->marks);
-    if (before.srs) OSRDestroySpatialReference(before.srs);
-    return rc;
-}
-
 static void say_filled(const bake_ground *ground)
 {
     uint64_t all = (uint64_t)ground->source_width * ground->source_height;
@@ -78,7 +66,7 @@ static int make_ground(bake *b)
     double spacing_m;
     if (bake_source_read(b->options, &b->ground)) return -1;
     if (fill(b, b->ground.voids)) return -1;
-    if (project(b, &spacing_m)) return -1;
+    if (bake_project(b->options, &b->ground, &b->marks, &spacing_m)) return -1;
     if (fill(b, b->ground.outside)) return -1;
     say_filled(&b->ground);
     if (bake_densify(&b->ground.grid, b->ground.geotransform, b->options->densify)) return -1;

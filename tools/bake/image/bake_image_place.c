@@ -17,18 +17,22 @@ static void stretched_edges(uint32_t image_size, uint32_t raster_size, double *l
     *high = raster_size - *low;
 }
 
-/* The rectangle in the plane of the source: west, north, east, south. */
-static void stretched_corners(const bake_ground *ground, GDALDatasetH set, double *corner)
+/* The geotransform of an image without georeference: its pixels lie where the raster's lie, however
+ * that is turned. */
+static void stretched_place(const bake_ground *ground, GDALDatasetH set, double *place)
 {
     const double *gt = ground->source_geotransform;
     double left, right, top, bottom;
-    stretched_edges((uint32_t)GDALGetRasterXSize(set), ground->source_width, &left, &right);
-    stretched_edges((uint32_t)GDALGetRasterYSize(set), ground->source_height, &top, &bottom);
-    double y0 = gt[3] + gt[5] * top, y1 = gt[3] + gt[5] * bottom;
-    corner[0] = gt[0] + gt[1] * left;
-    corner[1] = fmax(y0, y1);
-    corner[2] = gt[0] + gt[1] * right;
-    corner[3] = fmin(y0, y1);
+    int columns = GDALGetRasterXSize(set), rows = GDALGetRasterYSize(set);
+    stretched_edges((uint32_t)columns, ground->source_width, &left, &right);
+    stretched_edges((uint32_t)rows, ground->source_height, &top, &bottom);
+    double across = (right - left) / columns, down = (bottom - top) / rows;
+    place[0] = gt[0] + gt[1] * left + gt[2] * top;
+    place[1] = gt[1] * across;
+    place[2] = gt[2] * down;
+    place[3] = gt[3] + gt[4] * left + gt[5] * top;
+    place[4] = gt[4] * across;
+    place[5] = gt[5] * down;
 }
 
 static char **add_reference(char **list, const char *flag, OGRSpatialReferenceH srs)
@@ -54,15 +58,15 @@ static char **add_numbers(char **list, const char *flag, const double *number, i
 /* Makes a view of the image that lies where the source raster lies. */
 static GDALDatasetH lay_over_source(const bake_ground *ground, GDALDatasetH set)
 {
-    double corner[4];
-    stretched_corners(ground, set, corner);
+    double place[6];
+    stretched_place(ground, set, place);
     char **list = CSLAddString(CSLAddString(NULL, "-of"), "VRT");
     list = add_reference(list, "-a_srs", ground->source_srs);
-    list = add_numbers(list, "-a_ullr", corner, 4);
     GDALTranslateOptions *options = GDALTranslateOptionsNew(list, NULL);
     GDALDatasetH laid = GDALTranslate("", set, options, NULL);
     GDALTranslateOptionsFree(options);
     CSLDestroy(list);
+    if (laid) GDALSetGeoTransform(laid, place);
     return laid;
 }
 
@@ -153,9 +157,11 @@ static GDALDatasetH expand_palette(GDALDatasetH set)
     return expanded;
 }
 
-static void place(const bake_ground *ground, bake_picture *picture, double west, double north,
-                  double east, double south)
+/* Tells where the set's edges are, whose rows run from west to east and from north to south. */
+static void place(const bake_ground *ground, bake_picture *picture, const double *lies)
 {
+    double west = lies[0], east = lies[0] + lies[1] * GDALGetRasterXSize(picture->set);
+    double north = lies[3], south = lies[3] + lies[5] * GDALGetRasterYSize(picture->set);
     const double *gt = ground->geotransform;
     double spacing = gt[1], south_edge = gt[5] < 0 ? gt[3] + gt[5] * ground->grid.height : gt[3];
     double x0 = gt[0] + spacing / 2, y0 = south_edge + spacing / 2;
@@ -192,11 +198,11 @@ static int find_reference(const bake_ground *ground, const char *path, bake_pict
 
 static int lay_picture(const bake_ground *ground, const char *path, bake_picture *picture)
 {
-    double gt[6], corner[4];
+    double gt[6];
     int own_place = GDALGetGeoTransform(picture->set, gt) == CE_None && ground->has_place;
-    if (!own_place && !ground->resampled) {
-        stretched_corners(ground, picture->set, corner);
-        place(ground, picture, corner[0], corner[1], corner[2], corner[3]);
+    if (!own_place) stretched_place(ground, picture->set, gt);
+    if (!own_place && !ground->resampled && gt[1] > 0 && gt[5] < 0 && gt[2] == 0 && gt[4] == 0) {
+        place(ground, picture, gt);
         return 0;
     }
     if (!own_place && stack_view(picture, lay_over_source(ground, picture->set), path)) return -1;
@@ -212,8 +218,7 @@ static int lay_picture(const bake_ground *ground, const char *path, bake_picture
             path, columns, rows, BAKE_SAMPLES_MAX);
     picture->has_alpha = 1;
     GDALGetGeoTransform(picture->set, gt);
-    place(ground, picture, gt[0], gt[3], gt[0] + gt[1] * GDALGetRasterXSize(picture->set),
-          gt[3] + gt[5] * GDALGetRasterYSize(picture->set));
+    place(ground, picture, gt);
     return 0;
 }
 

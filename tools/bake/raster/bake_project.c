@@ -2,19 +2,16 @@
 
 #include "../../../protocol/ff_terrain.h"
 #include "bake_area.h"
-#include "bake_grid_gdal.h"
+#include "bake_warp.h"
 #include "../bake_say.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-#define STRIP_ROWS         128  /* rows of a warped VRT's blocks */
-#define LONGITUDES_MAX     20.0 /* further from its middle a UTM zone shows another Earth */
-#define TRANSFORM_ERROR_PX 0.05
-#define GROWTH_MAX         64.0 /* samples made of one: a projection that makes more has torn the raster \
-                                 */
+#define LONGITUDES_MAX 20.0 /* further from its middle a UTM zone shows another Earth */
+#define GROWTH_MAX                                                                \
+    64.0 /* samples made of one: a projection that makes more has torn the raster \
+          */
 
 /* The UTM zone (polar: UPS) round a place, as an EPSG code of WGS84. */
 static int local_zone(double longitude, double latitude)
@@ -50,7 +47,9 @@ static int choose_target(const bake_options *o, const bake_ground *ground,
     int epsg = o->target_epsg;
     *target = NULL;
     if (!epsg) {
-        double wide = fabs(ground->geotransform[1]) * ground->grid.width;
+        bake_area area = bake_area_of(ground->geotransform, ground->grid.width,
+                                      ground->grid.height);
+        double wide = area.east - area.west;
         if (ground->is_geographic && wide > LONGITUDES_MAX)
             return bake_fail(
                 "%.0f degrees of longitude are too wide for a UTM zone: name a projection with --t-srs",
@@ -100,131 +99,64 @@ static int check_size(const bake_options *o, double source_samples, double spaci
     return 0;
 }
 
-/* Plans the warped grid: its geotransform, width and height. The south-west sample lies on whole
- * metres. */
-static int plan_output(const bake_options *o, GDALDatasetH source, void *transform, double *gt,
-                       int *width, int *height)
+/* Finds how far the warped grid reaches, and the spacing that suits it best. */
+static int plan_extent(const bake_ground *ground, const bake_warp *warp, double *extent,
+                       double *spacing_m)
 {
-    double extent[4], suggested[6];
-    if (GDALSuggestedWarpOutput2(source, GDALGenImgProjTransform, transform, suggested, width,
-                                 height, extent, 0) != CE_None)
-        return bake_fail_gdal("cannot project the raster");
-    double spacing = o->spacing_m > 0 ? o->spacing_m : suggested[1];
-    spacing = round_spacing(o, spacing);
-    double west = ceil(extent[0] + spacing / 2), south = ceil(extent[1] + spacing / 2);
-    double columns = floor((extent[2] - spacing / 2 - west) / spacing) + 1;
-    double rows = floor((extent[3] - spacing / 2 - south) / spacing) + 1;
-    if (check_size(o, GDALGetRasterXSize(source) * (double)GDALGetRasterYSize(source), spacing,
-                   columns, rows))
-        return -1;
-    *width = (int)columns;
-    *height = (int)rows;
-    double planned[6] = {
-        west - spacing / 2, spacing, 0, south + (rows - 0.5) * spacing, 0, -spacing
-    };
-    memcpy(gt, planned, sizeof planned);
+    double suggested[6];
+    int columns, rows;
+    GDALDatasetH source = bake_warp_source(warp, &ground->grid);
+    void *transform = source ? bake_warp_transform(source, warp->target) : NULL;
+    int rc = transform ? 0 : -1;
+    if (!rc && GDALSuggestedWarpOutput2(source, GDALGenImgProjTransform, transform, suggested,
+                                        &columns, &rows, extent, 0) != CE_None)
+        rc = bake_fail_gdal("cannot project the raster");
+    if (transform) GDALDestroyGenImgProjTransformer(transform);
+    if (source) GDALClose(source);
+    if (rc) return rc;
+    const double *gt = ground->geotransform;
+    int is_turned = gt[2] != 0 || gt[4] != 0;
+    *spacing_m = is_turned && !warp->target ? sqrt(fabs(gt[1] * gt[5] - gt[2] * gt[4]))
+                                            : suggested[1];
     return 0;
 }
 
-static GDALDatasetH make_warped(const bake_options *o, GDALDatasetH source, void *transform,
-                                const double *gt, int width, int height)
+/* Plans the warped grid. The south-west sample lies on whole metres. */
+static int plan_warp(const bake_options *o, const bake_ground *ground, bake_warp *warp,
+                     double *spacing_m)
 {
-    char threads[16];
-    snprintf(threads, sizeof threads, "%d", o->jobs);
-    GDALWarpOptions *warp = GDALCreateWarpOptions();
-    warp->eResampleAlg = GRA_Cubic;
-    warp->eWorkingDataType = GDT_Float32;
-    warp->dfWarpMemoryLimit = 32 << 20;
-    warp->hSrcDS = source;
-    warp->nBandCount = 1;
-    warp->panSrcBands = CPLCalloc(1, sizeof(int));
-    warp->panDstBands = CPLCalloc(1, sizeof(int));
-    warp->panSrcBands[0] = warp->panDstBands[0] = 1;
-    warp->padfDstNoDataReal = CPLCalloc(1, sizeof(double));
-    warp->padfDstNoDataReal[0] = NAN;
-    warp->papszWarpOptions = CSLSetNameValue(warp->papszWarpOptions, "INIT_DEST", "NO_DATA");
-    warp->papszWarpOptions = CSLSetNameValue(warp->papszWarpOptions, "NUM_THREADS", threads);
-    GDALSetGenImgProjTransformerDstGeoTransform(transform, gt);
-    warp->pfnTransformer = GDALApproxTransform;
-    warp->pTransformerArg = GDALCreateApproxTransformer(GDALGenImgProjTransform, transform,
-                                                        TRANSFORM_ERROR_PX);
-    GDALApproxTransformerOwnsSubtransformer(warp->pTransformerArg, 1);
-    GDALDatasetH warped = GDALCreateWarpedVRT(source, width, height, (double *)gt, warp);
-    GDALDestroyWarpOptions(warp);
-    return warped;
+    double extent[4], spacing;
+    if (plan_extent(ground, warp, extent, &spacing)) return -1;
+    spacing = round_spacing(o, o->spacing_m > 0 ? o->spacing_m : spacing);
+    double west = ceil(extent[0] + spacing / 2), south = ceil(extent[1] + spacing / 2);
+    double columns = floor((extent[2] - spacing / 2 - west) / spacing) + 1;
+    double rows = floor((extent[3] - spacing / 2 - south) / spacing) + 1;
+    double source_samples = (double)ground->grid.width * ground->grid.height;
+    if (check_size(o, source_samples, spacing, columns, rows)) return -1;
+    warp->width = (uint32_t)columns;
+    warp->height = (uint32_t)rows;
+    double to[6] = { west - spacing / 2, spacing, 0, south + (rows - 0.5) * spacing, 0, -spacing };
+    memcpy(warp->to, to, sizeof to);
+    *spacing_m = spacing;
+    return 0;
 }
 
-static int copy_warped(GDALDatasetH warped, bake_grid *grid, uint64_t *outside)
+/* Replaces the grid, and the marks of what was filled in it, by their image in `target` (NULL: the
+ * same plane). Takes `target` over. */
+static int warp_ground(const bake_options *o, OGRSpatialReferenceH target, bake_ground *ground,
+                       bake_grid *marks, double *spacing_m)
 {
-    float *rows = malloc((size_t)STRIP_ROWS * grid->width * sizeof *rows);
-    if (!rows) return bake_fail("out of memory");
-    int rc = 0;
-    for (uint32_t top = 0; !rc && top < grid->height; top += STRIP_ROWS) {
-        uint32_t count = grid->height - top < STRIP_ROWS ? grid->height - top : STRIP_ROWS;
-        CPLErrorReset();
-        if (GDALRasterIO(GDALGetRasterBand(warped, 1), GF_Read, 0, (int)top, (int)grid->width,
-                         (int)count, rows, (int)grid->width, (int)count, GDT_Float32, 0,
-                         0) != CE_None)
-            rc = bake_fail_gdal("cannot project rows %u to %u", top, top + count - 1);
-        size_t samples = (size_t)count * grid->width;
-        for (size_t i = 0; i < samples; i++) *outside += isnan(rows[i]) != 0;
-        if (!rc)
-            rc = bake_pwrite(grid->fd, rows, samples * sizeof *rows,
-                             (uint64_t)top * grid->width * sizeof *rows);
-        bake_progress("projecting", top + count, grid->height);
-    }
-    free(rows);
-    return rc;
-}
-
-static int warp_from(const bake_options *o, GDALDatasetH source, OGRSpatialReferenceH target,
-                     bake_ground *ground, bake_grid *grid)
-{
-    char **settings = NULL;
-    char *wkt = NULL;
-    if (target) {
-        OSRExportToWkt(target, &wkt);
-        settings = CSLSetNameValue(settings, "DST_SRS", wkt);
-    }
-    CPLErrorReset();
-    void *transform = GDALCreateGenImgProjTransformer2(source, NULL, settings);
-    CSLDestroy(settings);
-    CPLFree(wkt);
-    if (!transform) return bake_fail_gdal("cannot project the raster");
-    double gt[6];
-    int width, height;
-    if (plan_output(o, source, transform, gt, &width, &height)) {
-        GDALDestroyGenImgProjTransformer(transform);
-        return -1;
-    }
-    GDALDatasetH warped = make_warped(o, source, transform, gt, width, height);
-    if (!warped) return bake_fail_gdal("cannot project the raster");
-    int rc = bake_grid_open(grid, (uint32_t)width, (uint32_t)height, sizeof(float));
-    if (!rc) rc = copy_warped(warped, grid, &ground->outside);
-    GDALClose(warped);
-    if (!rc) memcpy(ground->geotransform, gt, sizeof gt);
-    return rc;
-}
-
-/* Replaces the grid by its image in `target` (NULL: the same plane). Takes `target` over. */
-static int warp_ground(const bake_options *o, OGRSpatialReferenceH target, bake_ground *ground)
-{
-    bake_grid grid = BAKE_GRID_CLOSED;
-    GDALDatasetH source = bake_grid_dataset(&ground->grid, GDT_Float32, 1);
-    int rc = source ? 0 : -1;
-    if (!rc) {
-        GDALSetGeoTransform(source, ground->geotransform);
-        if (ground->srs) GDALSetSpatialRef(source, ground->srs);
-        rc = warp_from(o, source, target, ground, &grid);
-    }
-    if (source) GDALClose(source);
+    uint64_t ignored = 0;
+    bake_warp warp = { .srs = ground->srs, .target = target, .jobs = (int)o->jobs };
+    memcpy(warp.from, ground->geotransform, sizeof warp.from);
+    int rc = plan_warp(o, ground, &warp, spacing_m);
+    if (!rc) rc = bake_warp_grid(&warp, &ground->grid, &ground->outside);
+    if (!rc && marks->fd >= 0) rc = bake_warp_grid(&warp, marks, &ignored);
     if (rc) {
-        bake_grid_close(&grid);
         if (target) OSRDestroySpatialReference(target);
         return rc;
     }
-    bake_grid_close(&ground->grid);
-    ground->grid = grid;
+    memcpy(ground->geotransform, warp.to, sizeof warp.to);
     ground->resampled = 1;
     ground->is_geographic = 0;
     if (target) {
@@ -234,10 +166,15 @@ static int warp_ground(const bake_options *o, OGRSpatialReferenceH target, bake_
     return 0;
 }
 
+/* Whether rows run from west to east and columns along the other axis. */
+static int is_upright(const double *gt)
+{
+    return fabs(gt[2]) < 1e-9 * fabs(gt[1]) && fabs(gt[4]) < 1e-9 * fabs(gt[5]) && gt[1] > 0;
+}
+
 static int is_square(const double *gt)
 {
-    return fabs(gt[2]) < 1e-9 * fabs(gt[1]) && fabs(gt[4]) < 1e-9 * fabs(gt[5]) &&
-           fabs(fabs(gt[5] / gt[1]) - 1) < 1e-3 && gt[1] > 0;
+    return is_upright(gt) && fabs(fabs(gt[5] / gt[1]) - 1) < 1e-3;
 }
 
 /* Finds the spacing of samples that stay as they are. */
@@ -270,11 +207,28 @@ static int needs_target(const bake_options *o, const bake_ground *ground)
            fabs(OSRGetLinearUnits(ground->srs, NULL) - 1) > 1e-9;
 }
 
-int bake_project(const bake_options *o, bake_ground *ground, double *spacing_m)
+/* Prepares samples that --no-project takes as they are. */
+static int refuse_projection(const bake_options *o, bake_ground *ground)
+{
+    const double *gt = ground->geotransform;
+    int is_plain = is_upright(gt) && (ground->is_geographic || is_square(gt));
+    if (o->spacing_m <= 0 && !is_plain)
+        return bake_fail("%s: its cells are turned or no squares: leave --no-project out, or give "
+                         "--spacing too",
+                         o->heights_path);
+    if (is_upright(gt)) return 0;
+    bake_note("%s: its cells are turned: with --no-project the pack does not tell where they lie",
+              o->heights_path);
+    bake_ground_forget_place(ground);
+    return 0;
+}
+
+int bake_project(const bake_options *o, bake_ground *ground, bake_grid *marks, double *spacing_m)
 {
     OGRSpatialReferenceH target = NULL;
     if (o->target_epsg && !ground->srs)
         return bake_fail("%s names no reference system: nothing to project from", o->heights_path);
+    if (ground->has_place && o->no_project && refuse_projection(o, ground)) return -1;
     if (!ground->has_place || o->no_project) return keep_samples(o, ground, spacing_m);
     int same_spacing = o->spacing_m <= 0 || fabs(o->spacing_m / ground->geotransform[1] - 1) < 1e-6;
     if (needs_target(o, ground)) {
@@ -286,7 +240,5 @@ int bake_project(const bake_options *o, bake_ground *ground, double *spacing_m)
     }
     if (!target && same_spacing && is_square(ground->geotransform))
         return keep_samples(o, ground, spacing_m);
-    if (warp_ground(o, target, ground)) return -1;
-    *spacing_m = ground->geotransform[1];
-    return 0;
+    return warp_ground(o, target, ground, marks, spacing_m);
 }

@@ -2,6 +2,8 @@
 
 #include "bake_area.h"
 #include "../bake_say.h"
+#include "bake_place.h"
+#include "bake_turn.h"
 
 #include <errno.h>
 #include <math.h>
@@ -81,54 +83,6 @@ static GDALDatasetH open_raster(const bake_options *o)
     }
     GDALClose(set);
     return NULL;
-}
-
-/* A raster without a reference system whose corners are degrees is taken as WGS84 longitude and
- * latitude. */
-static int looks_geographic(const double *gt, int width, int height)
-{
-    double west = gt[0], east = gt[0] + gt[1] * width, north = gt[3],
-           south = gt[3] + gt[5] * height;
-    if (south > north) {
-        double swap = south;
-        south = north;
-        north = swap;
-    }
-    return gt[2] == 0 && gt[4] == 0 && fabs(gt[1]) < 0.5 && fabs(gt[5]) < 0.5 && west >= -181 &&
-           east <= 361 && south >= -91 && north <= 91;
-}
-
-static int read_place(const bake_options *o, GDALDatasetH set, bake_ground *ground)
-{
-    static const double plain[6] = { 0, 1, 0, 0, 0, -1 };
-    double *gt = ground->geotransform;
-    ground->has_place = !o->raw.width && GDALGetGeoTransform(set, gt) == CE_None && gt[1] != 0 &&
-                        gt[5] != 0;
-    if (ground->has_place)
-        for (int i = 0; i < 6; i++)
-            if (!isfinite(gt[i]))
-                return bake_fail("%s: its georeference is not a number", o->heights_path);
-    if (!ground->has_place) {
-        memcpy(gt, plain, sizeof plain);
-        gt[3] = GDALGetRasterYSize(set);
-        return 0;
-    }
-    OGRSpatialReferenceH srs = GDALGetSpatialRef(set);
-    if (srs) {
-        ground->srs = OSRClone(srs);
-    } else if (looks_geographic(gt, GDALGetRasterXSize(set), GDALGetRasterYSize(set)) &&
-               !o->no_project) {
-        bake_note(
-            "%s names no reference system; its corners look like degrees: taken as WGS84 longitude and latitude",
-            o->heights_path);
-        ground->srs = OSRNewSpatialReference(NULL);
-        OSRImportFromEPSG(ground->srs, 4326);
-    }
-    if (ground->srs) {
-        OSRSetAxisMappingStrategy(ground->srs, OAMS_TRADITIONAL_GIS_ORDER);
-        ground->is_geographic = OSRIsGeographic(ground->srs);
-    }
-    return 0;
 }
 
 static source_unit read_unit(const bake_options *o, GDALDatasetH set, const bake_ground *ground)
@@ -223,7 +177,7 @@ static int read_heights(GDALDatasetH set, const source_unit *unit, bake_ground *
 static int read_all(const bake_options *o, GDALDatasetH set, bake_ground *ground)
 {
     uint32_t width = (uint32_t)GDALGetRasterXSize(set), height = (uint32_t)GDALGetRasterYSize(set);
-    if (read_place(o, set, ground)) return -1;
+    if (bake_place_read(o, set, ground)) return -1;
     source_unit unit = read_unit(o, set, ground);
     if (bake_grid_open(&ground->grid, width, height, sizeof(float))) return -1;
     source_scan scan = { .whole_values = 1, .whole_metres = 1 };
@@ -232,6 +186,7 @@ static int read_all(const bake_options *o, GDALDatasetH set, bake_ground *ground
     ground->source_height = height;
     memcpy(ground->source_geotransform, ground->geotransform, sizeof ground->geotransform);
     if (ground->srs) ground->source_srs = OSRClone(ground->srs);
+    if (ground->has_place && bake_turn(&ground->grid, ground->geotransform)) return -1;
     ground->voids = scan.voids;
     if (scan.voids == (uint64_t)width * height)
         return bake_fail("%s: not one valid height in %u x %u samples", o->heights_path, width,
@@ -252,6 +207,15 @@ int bake_source_read(const bake_options *o, bake_ground *ground)
     GDALClose(set);
     if (rc) bake_ground_close(ground);
     return rc;
+}
+
+void bake_ground_forget_place(bake_ground *ground)
+{
+    double plain[6] = { 0, 1, 0, ground->grid.height, 0, -1 };
+    memcpy(ground->geotransform, plain, sizeof plain);
+    ground->has_place = ground->is_geographic = 0;
+    if (ground->srs) OSRDestroySpatialReference(ground->srs);
+    ground->srs = NULL;
 }
 
 void bake_ground_close(bake_ground *ground)

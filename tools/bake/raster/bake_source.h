@@ -14,7 +14,7 @@ typedef struct bake_ground {
     int has_place; /* the geotransform is the raster's own */
     int is_geographic;
     OGRSpatialReferenceH srs; /* owned; NULL: none */
-    /* as read, before any projection: where an image without georeference lies */
+    /* as read, before any turn or projection: where an image without georeference lies */
     double source_geotransform[6];
     uint32_t source_width, source_height;
     OGRSpatialReferenceH source_srs;
@@ -27,6 +27,8 @@ typedef struct bake_ground {
 /* Reads the raster named in `options` into `ground`, voids as NaN and counted. 0, or -1 after
  * saying why. */
 int bake_source_read(const bake_options *options, bake_ground *ground);
+/* Makes it ground that lies nowhere, its samples as they are. */
+void bake_ground_forget_place(bake_ground *ground);
 void bake_ground_close(bake_ground *ground);
 
 #endif

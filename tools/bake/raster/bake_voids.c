@@ -1,7 +1,6 @@
 #include "bake_voids.h"
 
 #include "../bake_say.h"
-#include "bake_project.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -40,18 +39,6 @@ int bake_voids_mark(const bake_grid *grid, bake_grid *marks)
     for (uint32_t j = 0; !rc && j < grid->height; j++)
         rc = mark_row(grid, marks, j, memory, memory + grid->width);
     free(memory);
-    return rc;
-}
-
-int bake_voids_project(const bake_options *options, const bake_ground *source, bake_grid *marks)
-{
-    double spacing_m;
-    bake_ground marked = *source;
-    marked.grid = *marks;
-    marked.srs = source->srs ? OSRClone(source->srs) : NULL; /* projecting replaces it */
-    int rc = bake_project(options, &marked, &spacing_m);
-    if (marked.srs) OSRDestroySpatialReference(marked.srs);
-    *marks = marked.grid;
     return rc;
 }
 

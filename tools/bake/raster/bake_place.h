@@ -1,0 +1,11 @@
+/* Where a raster says that it lies. */
+#ifndef BAKE_PLACE_H
+#define BAKE_PLACE_H
+
+#include "bake_source.h"
+
+/* Reads geotransform and reference system of `set` into `ground`; a raster without a place gets a
+ * grid of unit cells. 0 or -1 (said). */
+int bake_place_read(const bake_options *options, GDALDatasetH set, bake_ground *ground);
+
+#endif
