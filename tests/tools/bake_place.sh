@@ -130,4 +130,25 @@ placed bare.asc line.vrt EPSG:32632 500000 30 60 5000000 15 30
 refused "all samples on one line" line.vrt
 result $? "a geotransform that cannot be inverted is refused"
 
+# ---- projections that are not true to scale ----
+near() { python3 -c 'import sys; a, b, within = map(float, sys.argv[1:]); print("#   %g, wanted %g" % (a, b)); sys.exit(abs(a - b) > within)' "$@"; }
+placed bare.asc mercator.vrt EPSG:3857 1113194 30 0 8399737 0 -30 # 60 degrees north, where a metre is shown as two
+bake mercator.vrt && noted "Pseudo-Mercator shows a metre of this ground as 1.99" && [ "$(field epsg)" = 32632 ] && near "$(field spacing_m)" 15.03 .05
+result $? "Web Mercator is projected to the local UTM zone, and the note tells why"
+placed bare.asc carree.vrt EPSG:4087 1113194 60 0 6679169 0 -60
+bake carree.vrt && noted "Equidistant Cylindrical shows a metre of this ground as 0.99[0-9] to 1.99" && [ "$(field epsg)" = 32632 ]
+result $? "so is plate carree"
+bake mercator.vrt --no-project && noted "kept" && [ "$(field epsg) $(field spacing_m)" = "3857 30" ]
+result $? "with --no-project it stays, and the note tells"
+bake degrees.vrt --t-srs EPSG:3857 && noted "shows a metre of this ground as 1.41.* are not true"
+result $? "asked for by --t-srs it is made, and the note tells"
+bake utm.vrt && [ "$(wc -l <bake.err)" = 1 ] && [ "$(field epsg) $(field resampled)" = "32632 false" ]
+result $? "a plane true to scale stays, without a word"
+placed bare.asc europe.vrt EPSG:3035 2700000 100 0 1900000 0 -100 # 20 degrees west of its middle
+bake europe.vrt && noted "projected to WGS 84 / UTM zone 29N" && [ "$(field epsg)" = 32629 ]
+result $? "a plane of a whole continent is projected at its rim"
+placed bare.asc moon.vrt "+proj=eqc +R=1737400 +units=m" 30323 100 0 1819405 0 -100
+bake moon.vrt && noted "projected to local transverse Mercator" && near "$(field spacing_m)" 73.7 .1
+result $? "on the Moon the local projection is one of the Moon"
+
 exit $((failures > 0))

@@ -2,71 +2,16 @@
 
 #include "../../../protocol/ff_terrain.h"
 #include "bake_area.h"
+#include "bake_target.h"
 #include "bake_warp.h"
 #include "../bake_say.h"
 
 #include <math.h>
 #include <string.h>
 
-#define LONGITUDES_MAX 20.0 /* further from its middle a UTM zone shows another Earth */
 #define GROWTH_MAX                                                                \
     64.0 /* samples made of one: a projection that makes more has torn the raster \
           */
-
-/* The UTM zone (polar: UPS) round a place, as an EPSG code of WGS84. */
-static int local_zone(double longitude, double latitude)
-{
-    if (latitude > 84) return 32661;
-    if (latitude < -80) return 32761;
-    int zone = ((int)floor((longitude + 180) / 6) % 60 + 60) % 60 + 1;
-    return (latitude < 0 ? 32700 : 32600) + zone;
-}
-
-/* Middle of the ground in longitude and latitude. */
-static int middle_of(const bake_ground *ground, double *longitude, double *latitude)
-{
-    const double *gt = ground->geotransform;
-    double column = ground->grid.width / 2.0, row = ground->grid.height / 2.0;
-    *longitude = gt[0] + gt[1] * column + gt[2] * row;
-    *latitude = gt[3] + gt[4] * column + gt[5] * row;
-    if (ground->is_geographic) return 0;
-    OGRSpatialReferenceH wgs84 = OSRNewSpatialReference(NULL);
-    OSRImportFromEPSG(wgs84, 4326);
-    OSRSetAxisMappingStrategy(wgs84, OAMS_TRADITIONAL_GIS_ORDER);
-    OGRCoordinateTransformationH to = OCTNewCoordinateTransformation(ground->srs, wgs84);
-    int ok = to && OCTTransform(to, 1, longitude, latitude, NULL);
-    if (to) OCTDestroyCoordinateTransformation(to);
-    OSRDestroySpatialReference(wgs84);
-    return ok ? 0 : bake_fail_gdal("cannot tell where on the Earth the raster lies");
-}
-
-static int choose_target(const bake_options *o, const bake_ground *ground,
-                         OGRSpatialReferenceH *target)
-{
-    double longitude, latitude;
-    int epsg = o->target_epsg;
-    *target = NULL;
-    if (!epsg) {
-        bake_area area = bake_area_of(ground->geotransform, ground->grid.width,
-                                      ground->grid.height);
-        double wide = area.east - area.west;
-        if (ground->is_geographic && wide > LONGITUDES_MAX)
-            return bake_fail(
-                "%.0f degrees of longitude are too wide for a UTM zone: name a projection with --t-srs",
-                wide);
-        if (middle_of(ground, &longitude, &latitude)) return -1;
-        epsg = local_zone(longitude, latitude);
-    }
-    *target = OSRNewSpatialReference(NULL);
-    OSRSetAxisMappingStrategy(*target, OAMS_TRADITIONAL_GIS_ORDER);
-    CPLErrorReset();
-    if (OSRImportFromEPSG(*target, epsg) == OGRERR_NONE && OSRIsProjected(*target) &&
-        fabs(OSRGetLinearUnits(*target, NULL) - 1) < 1e-9)
-        return 0;
-    OSRDestroySpatialReference(*target);
-    *target = NULL;
-    return bake_fail("EPSG:%d is no projection in metres", epsg);
-}
 
 /* Rounds a spacing to whole world units, so that it has whole ones also after --densify has divided
  * it. */
@@ -150,6 +95,7 @@ static int warp_ground(const bake_options *o, OGRSpatialReferenceH target, bake_
     bake_warp warp = { .srs = ground->srs, .target = target, .jobs = (int)o->jobs };
     memcpy(warp.from, ground->geotransform, sizeof warp.from);
     int rc = plan_warp(o, ground, &warp, spacing_m);
+    if (!rc && target) bake_target_note(ground, target);
     if (!rc) rc = bake_warp_grid(&warp, &ground->grid, &ground->outside);
     if (!rc && marks->fd >= 0) rc = bake_warp_grid(&warp, marks, &ignored);
     if (rc) {
@@ -200,13 +146,6 @@ static int keep_samples(const bake_options *o, const bake_ground *ground, double
     return 0;
 }
 
-static int needs_target(const bake_options *o, const bake_ground *ground)
-{
-    if (!ground->srs || o->no_project) return 0;
-    return ground->is_geographic || o->target_epsg ||
-           fabs(OSRGetLinearUnits(ground->srs, NULL) - 1) > 1e-9;
-}
-
 /* Prepares samples that --no-project takes as they are. */
 static int refuse_projection(const bake_options *o, bake_ground *ground)
 {
@@ -229,15 +168,9 @@ int bake_project(const bake_options *o, bake_ground *ground, bake_grid *marks, d
     if (o->target_epsg && !ground->srs)
         return bake_fail("%s names no reference system: nothing to project from", o->heights_path);
     if (ground->has_place && o->no_project && refuse_projection(o, ground)) return -1;
+    if (ground->has_place && bake_target_choose(o, ground, &target)) return -1;
     if (!ground->has_place || o->no_project) return keep_samples(o, ground, spacing_m);
     int same_spacing = o->spacing_m <= 0 || fabs(o->spacing_m / ground->geotransform[1] - 1) < 1e-6;
-    if (needs_target(o, ground)) {
-        if (choose_target(o, ground, &target)) return -1;
-        if (OSRIsSame(target, ground->srs)) {
-            OSRDestroySpatialReference(target);
-            target = NULL;
-        }
-    }
     if (!target && same_spacing && is_square(ground->geotransform))
         return keep_samples(o, ground, spacing_m);
     return warp_ground(o, target, ground, marks, spacing_m);
