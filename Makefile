@@ -65,7 +65,7 @@ $(DEPS_STAMP): Makefile
 deps: $(DEPS_STAMP) ## install what is missing (Debian packages; says so first)
 
 # ---- compiling ----
-$(BUILD)/obj/tools/%.o: CFLAGS_LAYER = $(STD_host) $(GDAL_CFLAGS)
+$(BUILD)/obj/tools/%.o $(BUILD)/obj/tests/tools/%.o: CFLAGS_LAYER = $(STD_host) $(GDAL_CFLAGS)
 $(BUILD)/obj/server/%.o $(BUILD)/obj/sim/%.o $(BUILD)/obj/tests/%.o $(BUILD)/obj/platform/%.o: CFLAGS_LAYER = $(STD_host)
 CFLAGS_LAYER = $(STD_core)
 $(BUILD)/obj/platform/null/%.o: CFLAGS_LAYER = $(STD_core)

@@ -29,6 +29,10 @@ with open('bare.asc', 'w') as out:
         out.write(' '.join(str(500 + 3 * x - 2 * y) for x in range(60)) + '\n')
 with open('bare.ppm', 'wb') as out:
     out.write(b'P6\n60 48\n255\n' + b''.join(bytes((4 * x, 5 * y, 40)) for y in range(48) for x in range(60)))
+with open('cliff.asc', 'w') as out:
+    out.write('ncols 60\nnrows 48\nxllcorner 0\nyllcorner 0\ncellsize 1\n')
+    for y in range(48):
+        out.write(' '.join(str(1000 * (x // 20 % 2)) for x in range(60)) + '\n')
 # The same ground, and the same image, stored in each of the eight ways: turn-N.asc, .ppm, and turn-N.gt, where it lies (30 m).
 for n in range(8):
     w, h = (48, 60) if n & 4 else (60, 48)
@@ -150,5 +154,11 @@ result $? "a plane of a whole continent is projected at its rim"
 placed bare.asc moon.vrt "+proj=eqc +R=1737400 +units=m" 30323 100 0 1819405 0 -100
 bake moon.vrt && noted "projected to local transverse Mercator" && near "$(field spacing_m)" 73.7 .1
 result $? "on the Moon the local projection is one of the Moon"
+
+# ---- resampling ----
+placed cliff.asc cliff.vrt EPSG:32632 500000 25.98 15 5000000 15 -25.98
+bake cliff.vrt && noted "beyond the source's lowest or highest height at [0-9]* samples, by up to 7[0-9].[0-9] m: kept" &&
+    [ "$(field height_min_m) $(field height_max_m)" = "0 1000" ]
+result $? "cliffs do not overshoot the source's range, and the note tells"
 
 exit $((failures > 0))

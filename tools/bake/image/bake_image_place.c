@@ -80,6 +80,8 @@ static GDALDatasetH warp_onto_ground(const bake_ground *ground, GDALDatasetH set
     char **list = CSLAddString(CSLAddString(NULL, "-of"), "VRT");
     list = CSLAddString(CSLAddString(list, "-r"), "bilinear");
     list = CSLAddString(list, "-dstalpha");
+    list = CSLAddString(CSLAddString(list, "-wo"), "XSCALE=1"); /* else what is turned blurs */
+    list = CSLAddString(CSLAddString(list, "-wo"), "YSCALE=1");
     list = add_reference(list, "-t_srs", ground->srs);
     list = add_numbers(list, "-te", area, 4);
     GDALWarpAppOptions *options = GDALWarpAppOptionsNew(list, NULL);

@@ -6,9 +6,11 @@
 #include "bake_warp.h"
 #include "../bake_say.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
+#define BEYOND_NOTED_M 0.1
 #define GROWTH_MAX                                                                \
     64.0 /* samples made of one: a projection that makes more has torn the raster \
           */
@@ -91,18 +93,23 @@ static int plan_warp(const bake_options *o, const bake_ground *ground, bake_warp
 static int warp_ground(const bake_options *o, OGRSpatialReferenceH target, bake_ground *ground,
                        bake_grid *marks, double *spacing_m)
 {
-    uint64_t ignored = 0;
+    bake_warp_count count, ignored;
     bake_warp warp = { .srs = ground->srs, .target = target, .jobs = (int)o->jobs };
     memcpy(warp.from, ground->geotransform, sizeof warp.from);
     int rc = plan_warp(o, ground, &warp, spacing_m);
     if (!rc && target) bake_target_note(ground, target);
-    if (!rc) rc = bake_warp_grid(&warp, &ground->grid, &ground->outside);
+    if (!rc) rc = bake_warp_grid(&warp, &ground->grid, &count);
     if (!rc && marks->fd >= 0) rc = bake_warp_grid(&warp, marks, &ignored);
     if (rc) {
         if (target) OSRDestroySpatialReference(target);
         return rc;
     }
+    if (count.beyond_m > BEYOND_NOTED_M)
+        bake_note("resampling went beyond the source's lowest or highest height at %" PRIu64
+                  " samples, by up to %.1f m: kept to it",
+                  count.beyond, count.beyond_m);
     memcpy(ground->geotransform, warp.to, sizeof warp.to);
+    ground->outside = count.outside;
     ground->resampled = 1;
     ground->is_geographic = 0;
     if (target) {

@@ -9,7 +9,8 @@
 #include <string.h>
 
 #define STRIP_ROWS         128 /* rows of a warped VRT's blocks */
-#define TRANSFORM_ERROR_PX 0.05
+#define TRANSFORM_ERROR_PX 0.0001
+#define CELLS_SHARP        1.99 /* of the source in a sample: up to here a cubic sees them all */
 
 void *bake_warp_transform(GDALDatasetH source, OGRSpatialReferenceH target)
 {
@@ -36,10 +37,34 @@ GDALDatasetH bake_warp_source(const bake_warp *w, const bake_grid *grid)
     return source;
 }
 
+/* Source cells that a sample of the new grid is wide, along each axis of the source, in the middle.
+ */
+static int measure_cells(const bake_warp *w, void *transform, double *across, double *down)
+{
+    double i = w->width / 2, j = w->height / 2;
+    double x[3] = { i, i + 1, i }, y[3] = { j, j, j + 1 }, z[3] = { 0 };
+    int ok[3] = { 0 };
+    if (!GDALGenImgProjTransform(transform, 1, 3, x, y, z, ok) || !ok[0] || !ok[1] || !ok[2])
+        return -1;
+    *across = hypot(x[1] - x[0], x[2] - x[0]);
+    *down = hypot(y[1] - y[0], y[2] - y[0]);
+    return 0;
+}
+
+/* Tells the filter how much coarser the new grid is. Left to itself the warper takes the ratio of
+ * each block to the upright window round it in the source, and blurs whatever is turned. */
+static char **add_scale(char **list, const char *name, double cells)
+{
+    char text[40];
+    snprintf(text, sizeof text, "%.17g", cells > CELLS_SHARP ? 1 / cells : 1);
+    return CSLSetNameValue(list, name, text);
+}
+
 /* Takes `transform` over. */
 static GDALDatasetH make_warped(const bake_warp *w, GDALDatasetH source, void *transform)
 {
     char threads[16];
+    double across = 1, down = 1;
     snprintf(threads, sizeof threads, "%d", w->jobs);
     GDALWarpOptions *warp = GDALCreateWarpOptions();
     warp->eResampleAlg = GRA_Cubic;
@@ -55,6 +80,10 @@ static GDALDatasetH make_warped(const bake_warp *w, GDALDatasetH source, void *t
     warp->papszWarpOptions = CSLSetNameValue(warp->papszWarpOptions, "INIT_DEST", "NO_DATA");
     warp->papszWarpOptions = CSLSetNameValue(warp->papszWarpOptions, "NUM_THREADS", threads);
     GDALSetGenImgProjTransformerDstGeoTransform(transform, w->to);
+    if (!measure_cells(w, transform, &across, &down)) {
+        warp->papszWarpOptions = add_scale(warp->papszWarpOptions, "XSCALE", across);
+        warp->papszWarpOptions = add_scale(warp->papszWarpOptions, "YSCALE", down);
+    }
     warp->pfnTransformer = GDALApproxTransform;
     warp->pTransformerArg = GDALCreateApproxTransformer(GDALGenImgProjTransform, transform,
                                                         TRANSFORM_ERROR_PX);
@@ -66,7 +95,44 @@ static GDALDatasetH make_warped(const bake_warp *w, GDALDatasetH source, void *t
     return warped;
 }
 
-static int copy_warped(GDALDatasetH warped, bake_grid *grid, uint64_t *outside)
+/* The heights of a grid lie between these. */
+typedef struct value_range {
+    float low, high;
+} value_range;
+
+static int find_range(const bake_grid *grid, value_range *range)
+{
+    float *row = malloc(grid->width * sizeof *row);
+    int rc = row ? 0 : bake_fail("out of memory");
+    *range = (value_range){ INFINITY, -INFINITY };
+    for (uint32_t j = 0; !rc && j < grid->height; j++) {
+        rc = bake_grid_read(grid, j, 0, grid->width, row);
+        for (uint32_t i = 0; !rc && i < grid->width; i++) {
+            range->low = fminf(range->low, row[i]);
+            range->high = fmaxf(range->high, row[i]);
+        }
+    }
+    free(row);
+    return rc;
+}
+
+/* Keeps what the cubic filter made beyond the range of its source to that range, and counts it. */
+static void keep_in_range(float *value, size_t count, value_range range, bake_warp_count *out)
+{
+    for (size_t i = 0; i < count; i++) {
+        float kept = fminf(fmaxf(value[i], range.low), range.high);
+        if (isnan(value[i])) {
+            out->outside++;
+        } else if (kept != value[i]) {
+            out->beyond++;
+            out->beyond_m = fmax(out->beyond_m, fabs((double)value[i] - kept));
+            value[i] = kept;
+        }
+    }
+}
+
+static int copy_warped(GDALDatasetH warped, value_range range, bake_grid *grid,
+                       bake_warp_count *out)
 {
     float *rows = malloc((size_t)STRIP_ROWS * grid->width * sizeof *rows);
     if (!rows) return bake_fail("out of memory");
@@ -79,7 +145,7 @@ static int copy_warped(GDALDatasetH warped, bake_grid *grid, uint64_t *outside)
                          0) != CE_None)
             rc = bake_fail_gdal("cannot project rows %u to %u", top, top + count - 1);
         size_t samples = (size_t)count * grid->width;
-        for (size_t i = 0; i < samples; i++) *outside += isnan(rows[i]) != 0;
+        if (!rc) keep_in_range(rows, samples, range, out);
         if (!rc)
             rc = bake_pwrite(grid->fd, rows, samples * sizeof *rows,
                              (uint64_t)top * grid->width * sizeof *rows);
@@ -89,23 +155,27 @@ static int copy_warped(GDALDatasetH warped, bake_grid *grid, uint64_t *outside)
     return rc;
 }
 
-static int warp_from(const bake_warp *w, GDALDatasetH source, bake_grid *grid, uint64_t *outside)
+static int warp_from(const bake_warp *w, GDALDatasetH source, value_range range, bake_grid *grid,
+                     bake_warp_count *out)
 {
     void *transform = bake_warp_transform(source, w->target);
     GDALDatasetH warped = transform ? make_warped(w, source, transform) : NULL;
     if (!warped) return -1;
     int rc = bake_grid_open(grid, w->width, w->height, sizeof(float));
-    if (!rc) rc = copy_warped(warped, grid, outside);
+    if (!rc) rc = copy_warped(warped, range, grid, out);
     GDALClose(warped);
     return rc;
 }
 
-int bake_warp_grid(const bake_warp *w, bake_grid *grid, uint64_t *outside)
+int bake_warp_grid(const bake_warp *w, bake_grid *grid, bake_warp_count *out)
 {
+    value_range range;
+    *out = (bake_warp_count){ 0 };
+    if (find_range(grid, &range)) return -1;
     bake_grid image = BAKE_GRID_CLOSED;
     GDALDatasetH source = bake_warp_source(w, grid);
     if (!source) return -1;
-    int rc = warp_from(w, source, &image, outside);
+    int rc = warp_from(w, source, range, &image, out);
     GDALClose(source);
     if (rc) {
         bake_grid_close(&image);

@@ -13,13 +13,20 @@ typedef struct bake_warp {
     int jobs;
 } bake_warp;
 
+/* What became of the samples. */
+typedef struct bake_warp_count {
+    uint64_t outside; /* of the source's area: NaN */
+    uint64_t beyond;  /* the source's range, by as much as beyond_m: kept to it */
+    double beyond_m;
+} bake_warp_count;
+
 /* What lies where after warping: the transformer that GDAL's functions take, from `source`, a data
  * set that has place and reference system. NULL after saying why. */
 void *bake_warp_transform(GDALDatasetH source, OGRSpatialReferenceH target);
 /* A data set over `grid` as `warp` tells where it comes from. NULL after saying why. */
 GDALDatasetH bake_warp_source(const bake_warp *warp, const bake_grid *grid);
-/* Replaces a float grid by its image. Samples outside the source's area become NaN, counted in
- * *outside. 0 or -1 (said). */
-int bake_warp_grid(const bake_warp *warp, bake_grid *grid, uint64_t *outside);
+/* Replaces a float grid by its image: sharp, averaged only where the new grid is coarser, and
+ * within the range of its source. Samples outside the source's area become NaN. 0 or -1 (said). */
+int bake_warp_grid(const bake_warp *warp, bake_grid *grid, bake_warp_count *out);
 
 #endif
