@@ -161,4 +161,19 @@ bake cliff.vrt && noted "beyond the source's lowest or highest height at [0-9]* 
     [ "$(field height_min_m) $(field height_max_m)" = "0 1000" ]
 result $? "cliffs do not overshoot the source's range, and the note tells"
 
+# ---- what a pack says of its reference system ----
+placed bare.asc compound.vrt EPSG:32632+5773 500000 30 0 5000000 0 -30
+placed bare.asc compound-degrees.vrt EPSG:4326+5773 9 .001 0 45 0 -.001
+bake compound.vrt && [ "$(wc -l <bake.err) $(field epsg)" = "1 32632" ] && bake compound-degrees.vrt && [ "$(field epsg)" = 32632 ]
+result $? "a compound system keeps the code of its horizontal part"
+prj_files() {
+    local code
+    for code in 2056 25832 31467 27700 2154 5514 28992 26913; do
+        sed 's/^cellsize.*/cellsize 30/' bare.asc >prj.asc && gdalsrsinfo -o wkt_esri EPSG:$code | tr -d '\n' >prj.prj
+        bake prj.asc --no-project && [ "$(field epsg)" = $code ] || { echo "#   EPSG:$code became $(field epsg)"; return 1; }
+    done
+}
+prj_files
+result $? ".prj files, which name no code, keep theirs"
+
 exit $((failures > 0))

@@ -9,6 +9,7 @@
 #include "bake_jobs.h"
 #include "raster/bake_project.h"
 #include "raster/bake_quantise.h"
+#include "raster/bake_reference.h"
 #include "raster/bake_voids.h"
 #include "bake_say.h"
 #include "bake_tile.h"
@@ -102,15 +103,8 @@ static void describe_place(const bake_ground *ground, ff_terrain_info *info)
     info->origin_x_mm = (int64_t)nearbyint((gt[0] + gt[1] / 2) * 1000);
     info->origin_y_mm = (int64_t)nearbyint((south + fabs(gt[5]) / 2) * 1000);
     if (!ground->srs) return;
-    const char *code = OSRGetAuthorityCode(ground->srs, NULL),
-               *name = OSRGetAuthorityName(ground->srs, NULL);
-    if ((!code || !name) && OSRAutoIdentifyEPSG(ground->srs) == OGRERR_NONE) {
-        code = OSRGetAuthorityCode(ground->srs, NULL);
-        name = OSRGetAuthorityName(ground->srs, NULL);
-    }
-    if (code && name && EQUAL(name, "EPSG"))
-        info->epsg = atoi(code);
-    else
+    info->epsg = bake_reference_epsg(ground->srs);
+    if (!info->epsg)
         bake_note("the reference system has no EPSG code: the pack will not name it");
 }
 

@@ -52,6 +52,7 @@ int bake_place_read(const bake_options *o, GDALDatasetH set, bake_ground *ground
         OSRImportFromEPSG(ground->srs, 4326);
     }
     if (ground->srs) {
+        if (OSRIsCompound(ground->srs)) OSRStripVertical(ground->srs);
         OSRSetAxisMappingStrategy(ground->srs, OAMS_TRADITIONAL_GIS_ORDER);
         ground->is_geographic = OSRIsGeographic(ground->srs);
     }
