@@ -161,6 +161,27 @@ bake cliff.vrt && noted "beyond the source's lowest or highest height at [0-9]* 
     [ "$(field height_min_m) $(field height_max_m)" = "0 1000" ]
 result $? "cliffs do not overshoot the source's range, and the note tells"
 
+# ---- spacings that a pack does not have ----
+width() { near "$(python3 -c "print($(field samples_x) * $(field spacing_m))")" "$1" "$2"; }
+placed bare.asc fine.vrt EPSG:32632 500000 .05 0 5000000 0 -.05 # 12.8 units
+bake fine.vrt && noted "no multiple of 1/256 m: resampled to squares of 0.05078125 m" && width 3 .026 && [ "$(field resampled)" = true ]
+result $? "cells of 5 cm are resampled to keep their extent"
+placed bare.asc finest.vrt EPSG:32632 500000 .01 0 5000000 0 -.01
+bake finest.vrt && width .6 .006
+result $? "so are cells of 1 cm"
+placed bare.asc little.vrt EPSG:32632 500000 30 0 5000000 0 -30.3
+bake little.vrt && noted "unlike" && near "$(python3 -c "print($(field samples_y) * $(field spacing_m))")" 1454.4 31
+result $? "so are cells that are unlike by 1 %"
+bake bare.ppm --spacing .05 --scale .1 && noted "resampled to squares of 0.05078125 m" && width 3 .026 && [ "$(field epsg)" = 0 ]
+result $? "so is a raster without a place whose --spacing the pack does not have"
+bake bare.ppm --spacing .05 --color bare.ppm "${look[@]}" && seen 10 10 24 24 && seen 90 50 212 120
+result $? "and an image still lies over it"
+placed bare.asc near.vrt EPSG:32632 500000 28.4 0 5000000 0 -28.4
+bake near.vrt && [ "$(field resampled)" = false ] && [ "$(wc -l <bake.err)" = 1 ] && width 1704 .1
+result $? "where all drift stays below a quarter of a sample every sample is kept"
+bake fine.vrt --no-project && noted "rounded to 0.05078125 m: 0.0 m from end to end" && [ "$(field resampled)" = false ]
+result $? "with --no-project it is rounded, and the note tells"
+
 # ---- what a pack says of its reference system ----
 placed bare.asc compound.vrt EPSG:32632+5773 500000 30 0 5000000 0 -30
 placed bare.asc compound-degrees.vrt EPSG:4326+5773 9 .001 0 45 0 -.001

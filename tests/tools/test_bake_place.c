@@ -60,14 +60,16 @@ enum kind {
     TURNED,
     TURNED_MIRRORED,
     UNLIKE,
+    UNLIKE_BY_LITTLE,
     SHEARED,
+    FINE,
     SPACED,
     KINDS
 };
-static const char *const kind_name[KINDS] = { "upright",   "rows northwards", "westwards",
-                                              "exchanged", "backwards",       "turned",
-                                              "mirrored",  "cells unlike",    "sheared",
-                                              "--spacing" };
+static const char *const kind_name[KINDS] = {
+    "upright",  "rows northwards", "westwards",       "exchanged", "backwards", "turned",
+    "mirrored", "cells unlike",    "unlike by 0.4 %", "sheared",   "fine",      "--spacing"
+};
 
 static uint32_t seed = 1;
 static double chance(double low, double high)
@@ -79,14 +81,18 @@ static double chance(double low, double high)
 /* A geotransform of this kind. */
 static void make_geotransform(const place *at, enum kind kind, double *gt)
 {
-    double a = 0, along = at->cell, down = -at->cell, shear = 0;
+    double a = 0, cell = at->cell, shear = 0;
+    /* no multiple of 1/256 m where the plane stays */
+    if (kind == FINE) cell *= (floor(chance(12, 60)) + chance(0.25, 0.45)) / 256 / at->metre;
+    double along = cell, down = -cell;
     if (kind == TURNED || kind == TURNED_MIRRORED || kind == SHEARED) a = chance(-3, 3);
     if (kind == ROWS_NORTHWARDS || kind == TURNED_MIRRORED) down = -down;
     if (kind == COLUMNS_WESTWARDS) along = -along;
     if (kind == UNLIKE || kind == SHEARED) down *= chance(0.6, 1.5);
+    if (kind == UNLIKE_BY_LITTLE) down *= 1.004;
     if (kind == SHEARED) shear = chance(-0.4, 0.4) * at->cell;
-    gt[0] = at->x + 7 * at->cell;
-    gt[3] = at->y - 3 * at->cell;
+    gt[0] = at->x + 7.3 * at->cell;
+    gt[3] = at->y - 3.1 * at->cell;
     gt[1] = along * cos(a);
     gt[4] = along * sin(a);
     gt[2] = shear * cos(a) - down * sin(a);

@@ -11,9 +11,10 @@
 #include <string.h>
 
 #define BEYOND_NOTED_M 0.1
-#define GROWTH_MAX                                                                \
-    64.0 /* samples made of one: a projection that makes more has torn the raster \
-          */
+#define GROWTH_MAX     64.0 /* samples made of one: a projection that makes more tears the raster */
+#define DRIFT_MAX      0.25 /* samples, from end to end: with more the ground is resampled */
+#define DRIFT_NOTED    0.05
+#define WHOLE_METRES_M 2.0 /* from this spacing on, whole metres cost less than half a sample */
 
 /* Rounds a spacing to whole world units, so that it has whole ones also after --densify has divided
  * it. */
@@ -46,11 +47,16 @@ static int check_size(const bake_options *o, double source_samples, double spaci
     return 0;
 }
 
-/* Finds how far the warped grid reaches, and the spacing that suits it best. */
-static int plan_extent(const bake_ground *ground, const bake_warp *warp, double *extent,
+/* Finds how far the warped grid reaches, and the spacing that suits it best: in the same plane, the
+ * one that makes as many samples as there were. */
+static int plan_extent(const bake_ground *ground, const bake_warp *warp, bake_area *area,
                        double *spacing_m)
 {
-    double suggested[6];
+    const double *gt = ground->geotransform;
+    *area = bake_area_of(gt, ground->grid.width, ground->grid.height);
+    *spacing_m = sqrt(fabs(gt[1] * gt[5] - gt[2] * gt[4]));
+    if (!warp->target) return 0;
+    double suggested[6], extent[4];
     int columns, rows;
     GDALDatasetH source = bake_warp_source(warp, &ground->grid);
     void *transform = source ? bake_warp_transform(source, warp->target) : NULL;
@@ -61,23 +67,34 @@ static int plan_extent(const bake_ground *ground, const bake_warp *warp, double 
     if (transform) GDALDestroyGenImgProjTransformer(transform);
     if (source) GDALClose(source);
     if (rc) return rc;
-    const double *gt = ground->geotransform;
-    int is_turned = gt[2] != 0 || gt[4] != 0;
-    *spacing_m = is_turned && !warp->target ? sqrt(fabs(gt[1] * gt[5] - gt[2] * gt[4]))
-                                            : suggested[1];
+    *area = (bake_area){ extent[0], extent[1], extent[2], extent[3] };
+    *spacing_m = suggested[1];
     return 0;
 }
 
-/* Plans the warped grid. The south-west sample lies on whole metres. */
+/* One axis of the warped grid, from `low` to `high`: where its first sample lies, and how many
+ * there are. Coarse grids begin on whole metres, fine ones fill the extent, on whole millimetres.
+ */
+static double plan_axis(double low, double high, double spacing, double *first)
+{
+    if (spacing >= WHOLE_METRES_M) {
+        *first = ceil(low + spacing / 2);
+        return floor((high - spacing / 2 - *first) / spacing) + 1;
+    }
+    double count = nearbyint((high - low) / spacing);
+    *first = nearbyint(((low + high) / 2 - (count - 1) / 2 * spacing) * 1000) / 1000;
+    return count;
+}
+
 static int plan_warp(const bake_options *o, const bake_ground *ground, bake_warp *warp,
                      double *spacing_m)
 {
-    double extent[4], spacing;
-    if (plan_extent(ground, warp, extent, &spacing)) return -1;
+    bake_area area;
+    double spacing, west, south;
+    if (plan_extent(ground, warp, &area, &spacing)) return -1;
     spacing = round_spacing(o, o->spacing_m > 0 ? o->spacing_m : spacing);
-    double west = ceil(extent[0] + spacing / 2), south = ceil(extent[1] + spacing / 2);
-    double columns = floor((extent[2] - spacing / 2 - west) / spacing) + 1;
-    double rows = floor((extent[3] - spacing / 2 - south) / spacing) + 1;
+    double columns = plan_axis(area.west, area.east, spacing, &west),
+           rows = plan_axis(area.south, area.north, spacing, &south);
     double source_samples = (double)ground->grid.width * ground->grid.height;
     if (check_size(o, source_samples, spacing, columns, rows)) return -1;
     warp->width = (uint32_t)columns;
@@ -125,31 +142,50 @@ static int is_upright(const double *gt)
     return fabs(gt[2]) < 1e-9 * fabs(gt[1]) && fabs(gt[4]) < 1e-9 * fabs(gt[5]) && gt[1] > 0;
 }
 
-static int is_square(const double *gt)
+/* How far, in samples and from end to end, a grid of upright squares would be off that keeps the
+ * samples as they are. */
+static double drift_of(const bake_ground *ground, double spacing_m)
 {
-    return is_upright(gt) && fabs(fabs(gt[5] / gt[1]) - 1) < 1e-3;
+    const double *gt = ground->geotransform;
+    double columns = ground->grid.width, rows = ground->grid.height;
+    double x = fabs(gt[1] - spacing_m) * columns + fabs(gt[2]) * rows,
+           y = fabs(gt[4]) * columns + fabs(fabs(gt[5]) - spacing_m) * rows;
+    return fmax(x, y) / spacing_m;
 }
 
-/* Finds the spacing of samples that stay as they are. */
-static int keep_samples(const bake_options *o, const bake_ground *ground, double *spacing_m)
+/* Keeps the samples as upright squares round the middle of where they are. */
+static void keep_samples(bake_ground *ground, double spacing_m)
 {
-    if (o->spacing_m > 0)
-        *spacing_m = o->spacing_m;
-    else if (!ground->has_place)
-        return bake_fail("%s: no georeference: give --spacing", o->heights_path);
-    else if (ground->is_geographic)
+    double *gt = ground->geotransform, columns = ground->grid.width, rows = ground->grid.height;
+    double drift = drift_of(ground, spacing_m), down = gt[5] < 0 ? -spacing_m : spacing_m;
+    if (drift > DRIFT_NOTED)
+        bake_note("the cells are taken as squares of %.8g m: up to %.2f of a sample off", spacing_m,
+                  drift / 2);
+    double x = gt[0] + (gt[1] * columns + gt[2] * rows) / 2,
+           y = gt[3] + (gt[4] * columns + gt[5] * rows) / 2;
+    double kept[6] = { x - spacing_m * columns / 2, spacing_m, 0, y - down * rows / 2, 0, down };
+    if (drift > 0) memcpy(gt, kept, sizeof kept);
+}
+
+/* Gives ground that lies nowhere the spacing that it is told to have. */
+static void space_out(bake_ground *ground, double spacing_m)
+{
+    double *gt[2] = { ground->geotransform, ground->source_geotransform };
+    for (int n = 0; n < 2; n++)
+        for (int i = 0; i < 6; i++) gt[n][i] *= spacing_m;
+}
+
+/* Finds the spacing of samples that --no-project takes as they are. */
+static int take_samples(const bake_options *o, const bake_ground *ground, double *spacing_m)
+{
+    if (o->spacing_m <= 0 && ground->is_geographic)
         return bake_fail("degrees are no spacing: with --no-project give --spacing too");
-    else
-        *spacing_m = fabs(ground->geotransform[1]);
-    double exact = *spacing_m * FF_WU_PER_METRE;
-    if (exact < 0.5 * o->densify)
-        return bake_fail("a spacing of %g m is finer than the 1/%d m of world units",
-                         *spacing_m / o->densify, FF_WU_PER_METRE);
-    *spacing_m = round_spacing(o, *spacing_m);
-    double drift_m = fabs(*spacing_m - exact / FF_WU_PER_METRE) * ground->grid.width;
-    if (drift_m > *spacing_m / 2)
-        bake_note("the spacing is rounded to %.8g m: %.1f m over the whole width", *spacing_m,
-                  drift_m);
+    double exact = o->spacing_m > 0 ? o->spacing_m : fabs(ground->geotransform[1]);
+    *spacing_m = round_spacing(o, exact);
+    double drift = fabs(*spacing_m / exact - 1) * fmax(ground->grid.width, ground->grid.height);
+    if (drift > 0.5)
+        bake_note("the spacing is rounded to %.8g m: %.1f m from end to end", *spacing_m,
+                  drift * exact);
     return 0;
 }
 
@@ -157,7 +193,8 @@ static int keep_samples(const bake_options *o, const bake_ground *ground, double
 static int refuse_projection(const bake_options *o, bake_ground *ground)
 {
     const double *gt = ground->geotransform;
-    int is_plain = is_upright(gt) && (ground->is_geographic || is_square(gt));
+    int is_plain = is_upright(gt) &&
+                   (ground->is_geographic || drift_of(ground, gt[1]) <= DRIFT_MAX);
     if (o->spacing_m <= 0 && !is_plain)
         return bake_fail("%s: its cells are turned or no squares: leave --no-project out, or give "
                          "--spacing too",
@@ -174,11 +211,24 @@ int bake_project(const bake_options *o, bake_ground *ground, bake_grid *marks, d
     OGRSpatialReferenceH target = NULL;
     if (o->target_epsg && !ground->srs)
         return bake_fail("%s names no reference system: nothing to project from", o->heights_path);
+    if (!ground->has_place && o->spacing_m <= 0)
+        return bake_fail("%s: no georeference: give --spacing", o->heights_path);
     if (ground->has_place && o->no_project && refuse_projection(o, ground)) return -1;
     if (ground->has_place && bake_target_choose(o, ground, &target)) return -1;
-    if (!ground->has_place || o->no_project) return keep_samples(o, ground, spacing_m);
-    int same_spacing = o->spacing_m <= 0 || fabs(o->spacing_m / ground->geotransform[1] - 1) < 1e-6;
-    if (!target && same_spacing && is_square(ground->geotransform))
-        return keep_samples(o, ground, spacing_m);
-    return warp_ground(o, target, ground, marks, spacing_m);
+    if (o->no_project) return take_samples(o, ground, spacing_m);
+    if (!ground->has_place) space_out(ground, o->spacing_m);
+    double wanted = o->spacing_m > 0 ? o->spacing_m : ground->geotransform[1];
+    int same_spacing = fabs(wanted / ground->geotransform[1] - 1) < 1e-6;
+    *spacing_m = round_spacing(o, wanted);
+    if (!target && same_spacing && drift_of(ground, *spacing_m) <= DRIFT_MAX) {
+        keep_samples(ground, *spacing_m);
+        return 0;
+    }
+    int is_forced = !target && same_spacing;
+    if (warp_ground(o, target, ground, marks, spacing_m)) return -1;
+    if (is_forced)
+        bake_note("%s: its cells are turned, unlike or no multiple of 1/%d m: resampled to squares "
+                  "of %.8g m",
+                  o->heights_path, FF_WU_PER_METRE, *spacing_m);
+    return 0;
 }

@@ -213,6 +213,7 @@ void bake_ground_forget_place(bake_ground *ground)
 {
     double plain[6] = { 0, 1, 0, ground->grid.height, 0, -1 };
     memcpy(ground->geotransform, plain, sizeof plain);
+    memcpy(ground->source_geotransform, plain, sizeof plain);
     ground->has_place = ground->is_geographic = 0;
     if (ground->srs) OSRDestroySpatialReference(ground->srs);
     ground->srs = NULL;
