@@ -135,7 +135,7 @@ refused "all samples on one line" line.vrt
 result $? "a geotransform that cannot be inverted is refused"
 
 # ---- projections that are not true to scale ----
-near() { python3 -c 'import sys; a, b, within = map(float, sys.argv[1:]); print("#   %g, wanted %g" % (a, b)); sys.exit(abs(a - b) > within)' "$@"; }
+near() { python3 -c 'import sys; a, b, within = map(float, sys.argv[1:]); sys.exit("#   %g, wanted %g" % (a, b) if abs(a - b) > within else 0)' "$@"; }
 placed bare.asc mercator.vrt EPSG:3857 1113194 30 0 8399737 0 -30 # 60 degrees north, where a metre is shown as two
 bake mercator.vrt && noted "Pseudo-Mercator shows a metre of this ground as 1.99" && [ "$(field epsg)" = 32632 ] && near "$(field spacing_m)" 15.03 .05
 result $? "Web Mercator is projected to the local UTM zone, and the note tells why"
@@ -181,6 +181,52 @@ bake near.vrt && [ "$(field resampled)" = false ] && [ "$(wc -l <bake.err)" = 1 
 result $? "where all drift stays below a quarter of a sample every sample is kept"
 bake fine.vrt --no-project && noted "rounded to 0.05078125 m: 0.0 m from end to end" && [ "$(field resampled)" = false ]
 result $? "with --no-project it is rounded, and the note tells"
+
+# ---- across 180 degrees ----
+python3 - <<'PY'
+for name, west, first in (('east', 179, 0), ('west', -180, 20)):
+    with open(name + '.asc', 'w') as out:
+        out.write('ncols 20\nnrows 20\nxllcorner %d\nyllcorner -17\ncellsize 0.05\n' % west)
+        for y in range(20):
+            out.write(' '.join(str(900 + 10 * (first + x)) for x in range(20)) + '\n')
+PY
+gdalbuildvrt -q -a_srs EPSG:4326 both.vrt east.asc west.asc
+gdalbuildvrt -q -a_srs EPSG:4326 -vrtnodata -99 void.vrt east.asc west.asc && gdal_translate -q void.vrt void.tif
+slope() { # the heights rise evenly from west to east
+    local at
+    "$BIN/farfield-export" OUT.ffp -o OUT.tif --quiet || return 1
+    for at in 179.175:930 179.975:1090 -179.975:1100 -179.375:1220; do
+        near "$(gdallocationinfo -valonly -wgs84 OUT.tif "${at%:*}" -16.5 | python3 -c 'print(float(input()))')" "${at#*:}" 6 || return 1
+    done
+}
+for raster in both.vrt void.vrt void.tif; do
+    bake $raster --hscale 1 && noted "joined at 180 degrees" && [ "$(field epsg)" = 32701 ] && slope
+    result $? "a mosaic on both sides of 180 degrees is one ground ($raster)"
+done
+gdal_translate -q -of VRT -srcwin 0 0 3600 20 both.vrt crop.vrt
+refused "cut a part with gdal_translate -projwin" crop.vrt
+result $? "half the Earth is refused"
+gdal_translate -q -projwin 179 -16 180 -17 both.vrt part.tif && bake part.tif
+result $? "and the advice works: the part is baked"
+
+# ---- other ways of telling where a raster lies ----
+gcps() { # NAME: with control points at three corners, and whatever follows
+    local to=$1
+    shift
+    gdal_translate -q -a_srs EPSG:32632 -gcp 0 0 500000 5000000 -gcp 60 0 501800 5000000 -gcp 0 48 500000 4998560 "$@" bare.asc "$to"
+}
+gcps agree.tif -gcp 60 48 501800 4998560 && bake agree.tif && [ "$(field epsg) $(field spacing_m) $(field origin_x_mm)" = "32632 30 " ]
+result $? "control points that agree on a geotransform are one"
+gcps bent.tif -gcp 60 48 501900 4998660 && refused "make a grid of it first with gdalwarp -r cubic" bent.tif
+result $? "others are refused, with what to do"
+gdalwarp -q -r cubic bent.tif straight.tif && bake straight.tif && [ "$(field epsg)" = 32632 ]
+result $? "and that works"
+gdal_translate -q -of VRT bare.asc rpc.vrt && sed -i 's|</GeoTransform>|&<Metadata domain="RPC"><MDI key="LINE_OFF">24</MDI></Metadata>|; s|<GeoTransform>.*</GeoTransform>||' rpc.vrt
+refused "sensor model (RPC): make a grid of it first with gdalwarp -rpc -r cubic" rpc.vrt --spacing 30
+result $? "a raster placed by RPCs is refused, also with --spacing"
+gdal_translate -q -a_srs EPSG:32632 -gcp 0 0 500000 5000000 -gcp 60 0 501800 5000000 -gcp 0 48 500000 4998560 bare.ppm gcps-image.tif
+refused "gcps-image.tif is placed by ground control points" utm.vrt --color gcps-image.tif
+result $? "so is an image placed by control points, over heights that have a place"
 
 # ---- what a pack says of its reference system ----
 placed bare.asc compound.vrt EPSG:32632+5773 500000 30 0 5000000 0 -30

@@ -2,6 +2,7 @@
 #include "bake_image_local.h"
 #include "../bake_say.h"
 #include "../raster/bake_area.h"
+#include "../raster/bake_place.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -202,6 +203,7 @@ static int lay_picture(const bake_ground *ground, const char *path, bake_picture
 {
     double gt[6];
     int own_place = GDALGetGeoTransform(picture->set, gt) == CE_None && ground->has_place;
+    if (!own_place && ground->has_place && bake_place_check(path, picture->set)) return -1;
     if (!own_place) stretched_place(ground, picture->set, gt);
     if (!own_place && !ground->resampled && gt[1] > 0 && gt[5] < 0 && gt[2] == 0 && gt[4] == 0) {
         place(ground, picture, gt);

@@ -10,6 +10,7 @@
 #include <gdal.h>
 #include <gdal_alg.h>
 #include <gdal_utils.h>
+#include <gdal_vrt.h>
 #include <gdalwarper.h>
 #include <ogr_srs_api.h>
 

@@ -16,12 +16,38 @@ static int looks_geographic(const double *gt, uint32_t width, uint32_t height)
            area.north <= 91;
 }
 
+int bake_place_check(const char *path, GDALDatasetH set)
+{
+    static const struct {
+        const char *domain, *what, *flag;
+    } model[] = { { "RPC", "a sensor model (RPC)", "-rpc " },
+                  { "GEOLOCATION", "arrays of longitudes and latitudes", "-geoloc " } };
+    if (GDALGetGCPCount(set) > 0)
+        return bake_fail("%s is placed by ground control points: make a grid of it first with "
+                         "gdalwarp -r cubic",
+                         path);
+    for (size_t i = 0; i < sizeof model / sizeof *model; i++)
+        if (GDALGetMetadata(set, model[i].domain))
+            return bake_fail("%s is placed by %s: make a grid of it first with gdalwarp %s-r cubic",
+                             path, model[i].what, model[i].flag);
+    return 0;
+}
+
+/* Whether there is a geotransform, the raster's own or one that its control points agree on. */
+static int has_geotransform(GDALDatasetH set, double *gt)
+{
+    if (GDALGetGeoTransform(set, gt) == CE_None) return 1;
+    int count = GDALGetGCPCount(set);
+    return count > 2 && GDALGCPsToGeoTransform(count, GDALGetGCPs(set), gt, FALSE);
+}
+
 /* Reads the geotransform: 0, or -1 for one that is none (said). */
 static int read_geotransform(const bake_options *o, GDALDatasetH set, bake_ground *ground)
 {
     double *gt = ground->geotransform, inverse[6];
-    ground->has_place = !o->raw.width && GDALGetGeoTransform(set, gt) == CE_None;
+    ground->has_place = !o->raw.width && has_geotransform(set, gt);
     if (!ground->has_place) {
+        if (!o->raw.width && !o->no_project && bake_place_check(o->heights_path, set)) return -1;
         double plain[6] = { 0, 1, 0, GDALGetRasterYSize(set), 0, -1 };
         memcpy(gt, plain, sizeof plain);
         return 0;
@@ -40,6 +66,7 @@ int bake_place_read(const bake_options *o, GDALDatasetH set, bake_ground *ground
     if (read_geotransform(o, set, ground)) return -1;
     if (!ground->has_place) return 0;
     OGRSpatialReferenceH srs = GDALGetSpatialRef(set);
+    if (!srs) srs = GDALGetGCPSpatialRef(set);
     if (srs) {
         ground->srs = OSRClone(srs);
     } else if (looks_geographic(ground->geotransform, (uint32_t)GDALGetRasterXSize(set),

@@ -3,6 +3,7 @@
 #include "bake_area.h"
 #include "../bake_say.h"
 #include "bake_place.h"
+#include "bake_seam.h"
 #include "bake_turn.h"
 
 #include <errno.h>
@@ -202,6 +203,7 @@ int bake_source_read(const bake_options *o, bake_ground *ground)
 {
     *ground = (bake_ground){ .grid = BAKE_GRID_CLOSED };
     GDALDatasetH set = open_raster(o);
+    if (set && !o->raw.width) set = bake_seam_join(o->heights_path, set);
     if (!set) return -1;
     int rc = read_all(o, set, ground);
     GDALClose(set);
