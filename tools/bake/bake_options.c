@@ -100,8 +100,10 @@ static const sys_program program = {
     .name = "farfield-bake",
     .version = FARFIELD_VERSION,
     .usage = "HEIGHTS [OPTION]... -o OUT.ffp",
-    .about = "Makes a Farfield pack from a raster of heights: any raster GDAL reads, or raw "
-             "16 bit. Geographic rasters are projected to metres; voids are filled and counted.",
+    .about =
+        "Makes a Farfield pack from a raster of heights: any raster GDAL reads, or raw "
+        "16 bit. Degrees, and planes far from true to scale, are projected to the local UTM zone; "
+        "voids are filled and counted.",
     .more = "Memory: about 130 MiB for GDAL and its caches (more for inputs packed in large "
             "blocks), plus 9 bytes x 4^N a job (9 MiB at N = 10), whatever the raster's size. "
             "Disk while baking: about 12 bytes a sample beside OUT.ffp, or in FARFIELD_TMP or "

@@ -36,7 +36,7 @@ extern const sys_option_type bake_raw_option, bake_epsg_option, bake_power_two_o
     OPTION(bake_epsg, target_epsg, "t-srs", "EPSG:N", NULL, SYS_ANY, \
            "projects to this CRS (units metres) instead of the local UTM zone") \
     OPTION(sys_flag, no_project, "no-project", NULL, NULL, SYS_ANY, \
-           "takes the samples as they are") \
+           "takes the samples as they are, in their own plane") \
     OPTION(bake_power_two, densify, "densify", "N", "1", SYS_WHOLE(1, 64, ""), \
            "inserts N - 1 invented samples between neighbours") \
     OPTION(sys_flag, flat, "flat", NULL, NULL, SYS_ANY, \

@@ -104,8 +104,7 @@ static void describe_place(const bake_ground *ground, ff_terrain_info *info)
     info->origin_y_mm = (int64_t)nearbyint((south + fabs(gt[5]) / 2) * 1000);
     if (!ground->srs) return;
     info->epsg = bake_reference_epsg(ground->srs);
-    if (!info->epsg)
-        bake_note("the reference system has no EPSG code: the pack will not name it");
+    if (!info->epsg) bake_note("the reference system has no EPSG code: the pack will not name it");
 }
 
 static int describe(bake *b)
