@@ -55,7 +55,7 @@ help: ## this list
 # ---- what Debian 12 must have ----
 DEPS := gcc make pkg-config zlib1g-dev libjpeg62-turbo-dev libpng-dev libosmesa6-dev libegl-dev libegl1 libgl1-mesa-dri \
         libglfw3-dev libgdal-dev gdal-bin libcmocka-dev xvfb xauth python3 help2man gnuplot-nox man-db \
-        clang-format
+        clang-format python3-gdal
 DEPS_STAMP := build/.deps
 
 $(DEPS_STAMP): Makefile

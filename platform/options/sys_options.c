@@ -1,5 +1,7 @@
 #include "sys_options.h"
 
+#include "sys_output.h"
+
 #include <assert.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -142,6 +144,7 @@ int sys_options_parse(const sys_program *program, void *options, int argc, char 
     parser p = { .program = program, .options = options, .argv = argv, .argc = argc, .at = 1 };
     int only_arguments = 0, rc = 0;
     assert(program->option_count <= ROWS_MAX);
+    sys_output_watch(program->name);
     for (size_t i = 0; i < program->option_count; i++) {
         const sys_option *option = &program->option[i];
         rc = option->fallback

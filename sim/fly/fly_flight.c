@@ -246,8 +246,9 @@ static int take_row(fly_flight *flight, double t_s)
                                      flight->options->size.height * 3);
     flight->totals.frame_hash = fnv(flight->totals.frame_hash, (const uint8_t *)&sample->frame_hash,
                                     sizeof sample->frame_hash);
-    if (flight->csv) fly_csv_row(flight->csv, sample);
-    return 0;
+    if (!flight->csv) return 0;
+    fly_csv_row(flight->csv, sample);
+    return ferror(flight->csv) ? -1 : 0; /* told where the file is closed */
 }
 
 static int write_picture(const fly_flight *flight, const char *folder, double t_s,

@@ -1,5 +1,6 @@
 /* farfield-fly: a flight over a pack, simulated (server, link and client in this process) or
  * against a real server. */
+#include "../../platform/options/sys_output.h"
 #include "fly_flight.h"
 
 #include <errno.h>
@@ -27,10 +28,7 @@ int main(int argc, char **argv)
     if (!rc) rc = fly_flight_run(&flight, &world, csv);
     if (!rc && options.json)
         fly_json(stdout, &options, flight.sample, flight.sample_count, &flight.totals);
-    if (csv && fclose(csv) && !rc) {
-        fprintf(stderr, "farfield-fly: %s: %s\n", options.csv_path, strerror(errno));
-        rc = -1;
-    }
+    if (csv && sys_output_close("farfield-fly", csv, options.csv_path)) rc = -1;
     if (!rc && flight.totals.crack_frames) {
         fprintf(stderr, "farfield-fly: %u of %u frames have cracks\n", flight.totals.crack_frames,
                 flight.totals.frames);

@@ -1,5 +1,7 @@
 #include "view_app.h"
 
+#include "../../platform/options/sys_output.h"
+
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -164,16 +166,19 @@ int view_app_open(view_app *app, const view_options *options)
     return 0;
 }
 
-void view_app_close(view_app *app)
+int view_app_close(view_app *app)
 {
+    int rc = app->events && app->events != stdout
+                 ? sys_output_close("farfield-view", app->events, app->options->events)
+                 : 0;
     if (app->client) ff_client_destroy(app->client);
     view_blit_close(&app->blit);
     if (app->surface) app->surface_api->close(app->surface);
     view_link_destroy(app->link);
     if (app->mapping.bytes) sys_unmap_file(&app->mapping);
-    if (app->events && app->events != stdout) fclose(app->events);
     view_script_free(&app->script);
     free(app->memory);
+    return rc;
 }
 
 /* ---- one frame ---- */

@@ -45,7 +45,7 @@ typedef struct view_app {
 /* Each 0, or -1 having said why. */
 int view_app_open(view_app *app, const view_options *options);
 int view_app_run(view_app *app);
-void view_app_close(view_app *app);
+int view_app_close(view_app *app);
 
 /* view_input.c: one event from the window, the script or a function key. */
 void view_handle(view_app *app, const sys_event *event);

@@ -27,6 +27,6 @@ int main(int argc, char **argv)
     rc = view_app_open(&app, &options);
     if (rc == 0) rc = view_app_run(&app);
     if (rc >= 0 && options.json) print_counters(&app);
-    view_app_close(&app);
+    if (view_app_close(&app) && rc >= 0) rc = -1;
     return rc < 0 ? SYS_EXIT_FAILED : SYS_EXIT_DONE;
 }

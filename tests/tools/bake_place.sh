@@ -172,9 +172,9 @@ result $? "so are cells of 1 cm"
 placed bare.asc little.vrt EPSG:32632 500000 30 0 5000000 0 -30.3
 bake little.vrt && noted "unlike" && near "$(python3 -c "print($(field samples_y) * $(field spacing_m))")" 1454.4 31
 result $? "so are cells that are unlike by 1 %"
-bake bare.ppm --spacing .05 --scale .1 && noted "resampled to squares of 0.05078125 m" && width 3 .026 && [ "$(field epsg)" = 0 ]
+bake bare.ppm --rgb none --spacing .05 --scale .1 && noted "resampled to squares of 0.05078125 m" && width 3 .026 && [ "$(field epsg)" = 0 ]
 result $? "so is a raster without a place whose --spacing the pack does not have"
-bake bare.ppm --spacing .05 --color bare.ppm "${look[@]}" && seen 10 10 24 24 && seen 90 50 212 120
+bake bare.ppm --rgb none --spacing .05 --color bare.ppm "${look[@]}" && seen 10 10 24 24 && seen 90 50 212 120
 result $? "and an image still lies over it"
 placed bare.asc near.vrt EPSG:32632 500000 28.4 0 5000000 0 -28.4
 bake near.vrt && [ "$(field resampled)" = false ] && [ "$(wc -l <bake.err)" = 1 ] && width 1704 .1

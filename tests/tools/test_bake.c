@@ -4,6 +4,7 @@
 #include "../../protocol/codec/ff_codec.h"
 #include "../../tools/bake/raster/bake_densify.h"
 #include "../../tools/bake/bake_error.h"
+#include "../../tools/bake/bake_fault.h"
 #include "../../tools/bake/raster/bake_fill.h"
 #include "../../tools/bake/bake_jobs.h"
 #include "../../tools/bake/bake_run.h"
@@ -421,6 +422,61 @@ static void a_failed_job_ends_all(void **state)
     assert_true(l.count <= 50);
 }
 
+/* ---- fields out of range ---- */
+
+/* A number that is often at an edge of something. */
+static uint32_t edge_number(uint32_t *state)
+{
+    uint32_t bits = next_random(state) >> 27, jitter = (next_random(state) >> 16) % 3;
+    return (1u << bits) - 1 + jitter;
+}
+
+static void a_fault_is_told_where_the_core_finds_one(void **state)
+{
+    uint32_t random = 1, faults = 0;
+    char text[200];
+    (void)state;
+    for (int i = 0; i < 200000; i++) {
+        ff_terrain_info info = { 3,    10,   FF_CODEC_DEFLATE, 0,     0, 0, 0, 43000, 0, 4, 2, 4097,
+                                 2000, 2560, 1677722,          -1000, 0, 0, 0, 0,     0 };
+        for (int n = next_random(&random) >> 30; n >= 0; n--) {
+            uint32_t value = edge_number(&random);
+            switch (next_random(&random) >> 28) {
+                case 0: info.node_log2 = value & 7; break;
+                case 1: info.tile_log2 = value & 31; break;
+                case 2: info.flags = value & 7; break;
+                case 3: info.texture_log2 = value & 15; break;
+                case 4: info.texture_levels = value & 31; break;
+                case 5: info.height_min = (uint16_t)value; break;
+                case 6: info.max_error = (uint16_t)value; break;
+                case 7: info.tiles_x = value; break;
+                case 8: info.tiles_y = value; break;
+                case 9: info.samples_x = value; break;
+                case 10: info.samples_y = value; break;
+                case 11: info.spacing_wu = value; break;
+                case 12: info.hscale_q24 = value; break;
+                case 13: info.hoffset_wu = (int32_t)value; break;
+                default: info.curve_q60 = value;
+            }
+        }
+        int fault = bake_fault(&info, text, sizeof text);
+        assert_int_equal(fault, ff_terrain_check(&info) == FF_ERR_RANGE);
+        faults += (uint32_t)fault;
+    }
+    assert_true(faults > 50000 && faults < 195000);
+    ff_terrain_info far = { .node_log2 = 3,
+                            .tile_log2 = 10,
+                            .tiles_x = 4,
+                            .tiles_y = 2,
+                            .samples_x = 4097,
+                            .samples_y = 2000,
+                            .spacing_wu = 1u << 19,
+                            .hscale_q24 = 1,
+                            .codec = FF_CODEC_DEFLATE };
+    assert_int_equal(bake_fault(&far, text, sizeof text), 1);
+    assert_string_equal(text, "spacing_wu 524288 is not from 1 to 524287");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -437,6 +493,7 @@ int main(void)
         cmocka_unit_test(records_decode),
         cmocka_unit_test(jobs_are_taken_in_order),
         cmocka_unit_test(a_failed_job_ends_all),
+        cmocka_unit_test(a_fault_is_told_where_the_core_finds_one),
     };
     bake_say_setup("test_bake", 1);
     bake_temp_setup("build/x");

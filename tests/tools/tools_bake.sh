@@ -332,6 +332,24 @@ refuses 1 "a damaged header" "checksum mismatch" "$INFO" flip.ffp
 cp jobs1.ffp flip.ffp && flip flip.ffp $(($(wc -c <flip.ffp) - 100))
 refuses 1 "a damaged record, by --verify" "damaged records" "$INFO" --verify flip.ffp
 
+# ---- a full disk ----
+full() { # full COMMAND...: exit 1 and one line that says what was not written
+    "$@" 2>full.err
+    rc=$?
+    [ $rc = 1 ] && [ "$(grep -c "cannot write" full.err)" = 1 ] || { echo "$* (exit $rc)"; cat full.err; return 1; }
+}
+fly() { "$BIN/farfield-fly" --pack whole.ffp --backend none --seconds 2 --settle 1 "$@"; }
+full_disk() {
+    full fly --csv /dev/full && full sh -c "'$BAKE' metric.asc --quiet --json -o full.ffp >/dev/full" && full sh -c "'$INFO' whole.ffp >/dev/full" &&
+        full sh -c "'$INFO' --json whole.ffp >/dev/full" && full sh -c "'$BIN/farfield-fly' --pack whole.ffp --backend none --seconds 2 --settle 1 --json >/dev/full" &&
+        full sh -c "'$BIN/farfield-report' fly.csv -o full.d --json >/dev/full" &&
+        for program in bake info export fly report server view handheld link; do
+            full sh -c "'$BIN/farfield-$program' --help >/dev/full" || return 1
+        done
+}
+fly --csv fly.csv 2>/dev/null
+check "a result that does not fit on the disk is an error, in every program" full_disk
+
 # ---- killed half-way ----
 killed() {
     : >OUT.ffp.tmp-4194305 # left behind by a run that is no more: no process has this number

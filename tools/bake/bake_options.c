@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -15,6 +16,9 @@
 #define ROW(number, constant, name, ...) name,
 static const char *const codec_words[] = { FF_CODEC_LIST(ROW) NULL };
 #undef ROW
+
+/* By number of enum bake_rgb_word. */
+static const char *const rgb_words[] = { "auto", "mapbox", "terrarium", "none", NULL };
 
 /* What follows `word` in *text: 1, and *text behind it. */
 static int skip(const char **text, const char *word)
@@ -56,6 +60,34 @@ static int raw_range(const sys_option *option, char *text, size_t room)
     return snprintf(text, room, "each side 1 to %u", RAW_SIDE_MAX);
 }
 
+static int take_nodata(const sys_option *option, const char *text, void *field)
+{
+    bake_nodata nodata = { .is_given = 1, .is_none = !strcmp(text, "none") };
+    char *end = (char *)text;
+    (void)option;
+    if (!nodata.is_none) nodata.value = strtod(text, &end);
+    if (!nodata.is_none && (end == text || *end)) return SYS_NOT_ONE;
+    *(bake_nodata *)field = nodata;
+    return 0;
+}
+
+/* W,S,E,N; from 180 W to 180 E, and the end of the map in the north and the south. */
+static int take_box(const sys_option *option, const char *text, void *field)
+{
+    double number[4];
+    char *end = (char *)text;
+    (void)option;
+    for (int i = 0; i < 4; i++) {
+        number[i] = strtod(text, &end);
+        if (end == text || !(fabs(number[i]) <= (i & 1 ? 90 : 180))) return SYS_NOT_ONE;
+        if (*end != (i < 3 ? ',' : 0)) return SYS_NOT_ONE;
+        text = end + 1;
+    }
+    if (!(number[1] < number[3]) || number[0] == number[2]) return SYS_NOT_ONE;
+    *(bake_box *)field = (bake_box){ number[0], number[1], number[2], number[3], 1 };
+    return 0;
+}
+
 static int take_epsg(const sys_option *option, const char *text, void *field)
 {
     uint64_t code;
@@ -88,6 +120,8 @@ static int power_two_range(const sys_option *option, char *text, size_t room)
 }
 
 const sys_option_type bake_raw_option = { "WxH[:le|be][:u16|s16], ", raw_range, take_raw },
+                      bake_nodata_option = { "a number or none", NULL, take_nodata },
+                      bake_box_option = { "W,S,E,N in degrees, S below N", NULL, take_box },
                       bake_epsg_option = { "EPSG:N, ", epsg_range, take_epsg },
                       bake_power_two_option = { "", power_two_range, take_power_two };
 
@@ -101,9 +135,9 @@ static const sys_program program = {
     .version = FARFIELD_VERSION,
     .usage = "HEIGHTS [OPTION]... -o OUT.ffp",
     .about =
-        "Makes a Farfield pack from a raster of heights: any raster GDAL reads, or raw "
-        "16 bit. Degrees, and planes far from true to scale, are projected to the local UTM zone; "
-        "voids are filled and counted.",
+        "Makes a Farfield pack from a raster of heights: any raster GDAL reads, map tiles of "
+        "encoded heights (PMTiles, MBTiles, folders), or raw 16 bit. Degrees, and planes far from "
+        "true to scale, are projected to the local UTM zone; voids are filled and counted.",
     .more = "Memory: about 130 MiB for GDAL and its caches (more for inputs packed in large "
             "blocks), plus 9 bytes x 4^N a job (9 MiB at N = 10), whatever the raster's size. "
             "Disk while baking: about 12 bytes a sample beside OUT.ffp, or in FARFIELD_TMP or "
@@ -120,7 +154,9 @@ static uint32_t processors(void)
 
 int bake_options_parse(bake_options *o, int argc, char **argv)
 {
-    *o = (bake_options){ .jobs = processors(), .refraction = NAN };
+    *o = (bake_options){
+        .jobs = processors(), .refraction = NAN, .void_height_m = NAN, .rim_void_height_m = NAN
+    };
     bake_say_setup("farfield-bake", 0);
     int rc = sys_options_parse(&program, o, argc, argv);
     if (rc) return rc;

@@ -9,13 +9,25 @@ typedef struct bake_raw { /* --raw WxH[:le|be][:u16|s16]; width 0: not raw */
     uint32_t width, height;
     int big_endian, is_signed;
 } bake_raw;
+typedef struct bake_nodata { /* --nodata V, or none */
+    int is_given, is_none;
+    double value;
+} bake_nodata;
+typedef struct bake_box { /* --bbox W,S,E,N, degrees; east of W, across the antimeridian if need be
+                           */
+    double west, south, east, north;
+    int is_given;
+} bake_box;
+enum bake_rgb_word { BAKE_RGB_AUTO, BAKE_RGB_MAPBOX, BAKE_RGB_TERRARIUM, BAKE_RGB_NONE };
 typedef int bake_epsg;           /* --t-srs EPSG:N */
 typedef uint32_t bake_power_two; /* within SYS_WHOLE */
-extern const sys_option_type bake_raw_option, bake_epsg_option, bake_power_two_option;
+extern const sys_option_type bake_raw_option, bake_nodata_option, bake_box_option, bake_epsg_option,
+    bake_power_two_option;
 
 #define BAKE_FACTOR  SYS_REAL(1e-6, 1e6, "")
-#define BAKE_STEP    SYS_REAL(1e-6, 200, "m")
+#define BAKE_STEP    SYS_REAL(1e-6, 127, "m")
 #define BAKE_SPACING SYS_REAL(1.0 / FF_WU_PER_METRE, 1e6, "m")
+#define BAKE_HEIGHT  SYS_REAL(-1e6, 1e6, "m")
 #define BAKE_LEVELS  SYS_WHOLE(1, FF_KEY_LEVEL_MAX, "")
 #define BAKE_NODES   SYS_WHOLE(1, FF_NODE_LOG2_MAX, "")
 
@@ -27,6 +39,18 @@ extern const sys_option_type bake_raw_option, bake_epsg_option, bake_power_two_o
            "image over the same ground, any resolution") \
     OPTION(bake_raw, raw, "raw", "WxH[:le|be][:u16|s16]", NULL, SYS_ANY, \
            "HEIGHTS is headerless 16 bit, top row north; default: le, u16") \
+    OPTION(bake_nodata, nodata, "nodata", "V", NULL, SYS_ANY, \
+           "source value that stands for void, or none; default: the raster's own, and told sentinels") \
+    OPTION(sys_real, void_height_m, "void-height", "M", NULL, BAKE_HEIGHT, \
+           "gives voids this height; default: they are filled from around them") \
+    OPTION(sys_real, rim_void_height_m, "rim-void-height", "M", NULL, BAKE_HEIGHT, \
+           "the same for voids that touch the raster's rim: 0 where they are sea") \
+    OPTION(sys_word, rgb, "rgb", "NAME", "auto", SYS_WORDS(rgb_words), \
+           "how colours encode heights; auto: as metadata or the name says; none: the first band is heights") \
+    OPTION(bake_box, bbox, "bbox", "W,S,E,N", NULL, SYS_ANY, \
+           "of map tiles this part, in degrees") \
+    OPTION(sys_whole, zoom, "zoom", "Z", NULL, SYS_WHOLE(1, 24, ""), \
+           "of map tiles this zoom; default: the finest there is") \
     OPTION(sys_real, scale, "scale", "F", NULL, BAKE_FACTOR, \
            "source value * F = metres; default: the source's unit, else 1") \
     OPTION(sys_real, hscale_m, "hscale", "M", NULL, BAKE_STEP, \

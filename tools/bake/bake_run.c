@@ -5,12 +5,15 @@
 #include "raster/bake_curve.h"
 #include "raster/bake_densify.h"
 #include "raster/bake_fill.h"
+#include "raster/bake_given.h"
 #include "image/bake_image.h"
+#include "bake_fault.h"
 #include "bake_jobs.h"
 #include "raster/bake_project.h"
 #include "raster/bake_quantise.h"
 #include "raster/bake_reference.h"
 #include "raster/bake_voids.h"
+#include "tiles/bake_mosaic.h"
 #include "bake_say.h"
 #include "bake_tile.h"
 #include "pack_writer.h"
@@ -43,6 +46,23 @@ typedef struct bake {
 
 /* ---- ground ---- */
 
+/* Reads the raster, or puts it together from map tiles. */
+static int read_source(const bake_options *o, bake_ground *ground)
+{
+    bake_mosaic mosaic;
+    if (!bake_mosaic_wanted(o)) {
+        if (o->bbox.is_given || o->zoom)
+            return bake_fail("%s: no map tiles: --bbox and --zoom take a part of map tiles, "
+                             "gdal_translate -projwin one of other rasters",
+                             o->heights_path);
+        return bake_source_read(o, NULL, ground);
+    }
+    if (bake_mosaic_open(o, &mosaic)) return -1;
+    int rc = bake_source_read(o, mosaic.set, ground);
+    bake_mosaic_close(&mosaic);
+    return rc;
+}
+
 /* Fills `count` voids, and remembers where they were. */
 static int fill(bake *b, uint64_t count)
 {
@@ -56,6 +76,9 @@ static void say_filled(const bake_ground *ground)
     if (ground->voids)
         bake_note("%" PRIu64 " of %" PRIu64 " samples are void; filled from around them",
                   ground->voids, all);
+    if (ground->given)
+        bake_note("%" PRIu64 " of %" PRIu64 " samples are void; given the height asked for",
+                  ground->given, all);
     if (ground->outside)
         bake_note("%" PRIu64
                   " samples lie outside the source after projection; filled from its border",
@@ -65,7 +88,8 @@ static void say_filled(const bake_ground *ground)
 static int make_ground(bake *b)
 {
     double spacing_m;
-    if (bake_source_read(b->options, &b->ground)) return -1;
+    if (read_source(b->options, &b->ground)) return -1;
+    if (bake_given_heights(b->options, &b->ground)) return -1;
     if (fill(b, b->ground.voids)) return -1;
     if (bake_project(b->options, &b->ground, &b->marks, &spacing_m)) return -1;
     if (fill(b, b->ground.outside)) return -1;
@@ -120,11 +144,12 @@ static int describe(bake *b)
     ff_shape_cover(info, width, height);
     describe_place(&b->ground, info);
     info->curve_q60 = bake_curve_q60(o, &b->ground);
-    int rc = ff_terrain_check(info);
-    if (rc)
+    char fault[200];
+    if (bake_fault(info, fault, sizeof fault))
         return bake_fail("%u x %u samples of %g m in tiles of 2^%u do not make a terrain: %s",
                          width, height, (double)info->spacing_wu / FF_WU_PER_METRE, info->tile_log2,
-                         ff_error_text(rc));
+                         fault);
+    if (ff_terrain_check(info)) return bake_fail("codec %d is no codec of this build", info->codec);
     return 0;
 }
 
@@ -200,15 +225,15 @@ static void report(const bake *b, uint64_t file_bytes)
         "{\"samples_x\": %u, \"samples_y\": %u, \"spacing_m\": %.9g, \"hscale_m\": %.9g, \"hoffset_m\": %.9g, "
         "\"max_error_m\": %.9g, \"height_min_m\": %.9g, \"height_max_m\": %.9g, \"tiles_x\": %u, \"tiles_y\": %u, "
         "\"tile_log2\": %u, \"node_log2\": %u, \"epsg\": %d, \"voids\": %" PRIu64
-        ", \"outside\": %" PRIu64
+        ", \"given\": %" PRIu64 ", \"outside\": %" PRIu64
         ", \"resampled\": %s, \"texture_levels\": %u, \"height_bytes\": %" PRIu64
         ", \"bits_per_sample\": %.4f, "
         "\"texture_bytes\": %" PRIu64 ", \"file_bytes\": %" PRIu64 ", \"seconds\": %.3f}\n",
         source.x, source.y, spacing_m, b->steps.step_m, (double)info->hoffset_wu / FF_WU_PER_METRE,
         info->max_error * b->steps.step_m, b->steps.min_m, b->steps.max_m, tiles.x, tiles.y,
-        info->tile_log2, info->node_log2, info->epsg, b->ground.voids, b->ground.outside,
-        b->ground.resampled ? "true" : "false", info->texture_levels, height_bytes, bits,
-        texture_bytes, file_bytes, seconds);
+        info->tile_log2, info->node_log2, info->epsg, b->ground.voids, b->ground.given,
+        b->ground.outside, b->ground.resampled ? "true" : "false", info->texture_levels,
+        height_bytes, bits, texture_bytes, file_bytes, seconds);
 }
 
 static int make_pack(bake *b)

@@ -1,5 +1,6 @@
 #include "bake_unpack.h"
 
+#include "../bake/bake_fault.h"
 #include "../bake/bake_say.h"
 
 #include <stdlib.h>
@@ -22,10 +23,12 @@ int bake_unpack_open(bake_unpack *unpack, const char *path)
         if (!unpack->decoder) rc = FF_ERR_MEMORY;
     }
     if (!rc) return 0;
+    char fault[200];
+    int field = rc == FF_ERR_RANGE && bake_fault(&unpack->pack.header.info, fault, sizeof fault);
     bake_unpack_close(unpack);
     if (rc == FF_ERR_UNSUPPORTED)
         return bake_fail("%s: codec %d is %s", path, codec, ff_error_text(rc));
-    return bake_fail("%s: %s", path, ff_error_text(rc));
+    return bake_fail("%s: %s", path, field ? fault : ff_error_text(rc));
 }
 
 void bake_unpack_close(bake_unpack *unpack)

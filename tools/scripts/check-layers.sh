@@ -86,6 +86,7 @@ sim/handheld        platform/options sim/options sim/tape client/farfield.h prot
 tools/bake          platform/options tools/bake/ client/farfield.h protocol/ platform/sys.h
 tools/bake/raster   tools/bake protocol/ platform/sys.h
 tools/bake/image    tools/bake tools/bake/raster protocol/ platform/sys.h
+tools/bake/tiles    tools/bake tools/bake/raster platform/sys.h
 tools/info          platform/options tools/bake tools/bake/raster client/farfield.h protocol/ platform/sys.h
 tools/report        platform/options client/farfield.h common3d platform/sys.h
 tools/scripts
@@ -163,6 +164,7 @@ shape_words() { # PATTERN that no code may have but protocol/shape, the tests, a
     protocol/ff_terrain.c      compares two terrains
     protocol/ff_bytes.c        reads and writes them, in packs and messages
     sim/judge/sim_ground.c     compares two terrains
+    tools/bake/bake_fault.c    says which field is out of range
 (^|[^A-Za-z0-9_])spacing_wu([^A-Za-z0-9_]|$)
     protocol/ff_terrain.h      declares it; an edge and a cell are so many spacings
     protocol/ff_terrain.c      compares two terrains
@@ -170,6 +172,7 @@ shape_words() { # PATTERN that no code may have but protocol/shape, the tests, a
     sim/judge/sim_ground.c     compares two terrains
     client/ground/ff_ground_frame.c  a vertex is placed in units of a sample
     tools/bake/bake_run.c      describes the raster; reports it
+    tools/bake/bake_fault.c    says which field is out of range
     tools/info/bake_export.c   writes it into a raster's head
     tools/info/bake_info.c     reports it
 ff_node_(edge|cell)_wu

@@ -2,11 +2,13 @@
 #ifndef BAKE_IMAGE_LOCAL_H
 #define BAKE_IMAGE_LOCAL_H
 
+#include "../raster/bake_colour.h"
 #include "bake_image.h"
 
 typedef struct bake_picture {
-    GDALDatasetH set;       /* 8 bits a band; row 0 north */
-    GDALDatasetH behind[4]; /* what `set` reads from: closed after it, the last one first */
+    GDALDatasetH set;                               /* 8 bits a band; row 0 north */
+    GDALDatasetH behind[4 + BAKE_COLOUR_VIEWS_MAX]; /* what `set` reads from: closed after it, the
+                                                       last one first */
     int behind_count;
     int has_alpha; /* its last band says what the image covers (0: nothing there) */
     uint32_t width, height;

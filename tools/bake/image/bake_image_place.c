@@ -3,6 +3,7 @@
 #include "../bake_say.h"
 #include "../raster/bake_area.h"
 #include "../raster/bake_place.h"
+#include "../raster/bake_colour.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -148,18 +149,6 @@ static int check_bands(const char *path, GDALDatasetH set)
     return 0;
 }
 
-/* Makes a view that turns a palette into RGB, before anything is averaged. */
-static GDALDatasetH expand_palette(GDALDatasetH set)
-{
-    char **list = CSLAddString(CSLAddString(NULL, "-of"), "VRT");
-    list = CSLAddString(CSLAddString(list, "-expand"), "rgb");
-    GDALTranslateOptions *options = GDALTranslateOptionsNew(list, NULL);
-    GDALDatasetH expanded = GDALTranslate("", set, options, NULL);
-    GDALTranslateOptionsFree(options);
-    CSLDestroy(list);
-    return expanded;
-}
-
 /* Tells where the set's edges are, whose rows run from west to east and from north to south. */
 static void place(const bake_ground *ground, bake_picture *picture, const double *lies)
 {
@@ -232,10 +221,11 @@ int bake_picture_open(const bake_options *o, const bake_ground *ground, bake_pic
     *picture = (bake_picture){ .set = GDALOpen(o->color_path, GA_ReadOnly) };
     if (!picture->set) return bake_fail_gdal("cannot read %s", o->color_path);
     int rc = check_bands(o->color_path, picture->set);
-    if (!rc && GDALGetRasterColorTable(GDALGetRasterBand(picture->set, 1))) {
-        GDALDatasetH expanded = expand_palette(picture->set);
-        rc = stack_view(picture, expanded, o->color_path);
-    }
+    GDALDatasetH view[BAKE_COLOUR_VIEWS_MAX];
+    int views = rc ? 0 : bake_colour_views(picture->set, o->color_path, view);
+    if (views < 0) rc = -1;
+    for (int i = 0; i < views; i++) stack_view(picture, view[i], o->color_path);
+    picture->has_alpha = bake_colour_has_alpha(picture->set);
     if (!rc) rc = lay_picture(ground, o->color_path, picture);
     if (rc) bake_picture_close(picture);
     return rc;

@@ -12,6 +12,7 @@
 #include <gdal_utils.h>
 #include <gdal_vrt.h>
 #include <gdalwarper.h>
+#include <ogr_api.h>
 #include <ogr_srs_api.h>
 
 #endif

@@ -2,6 +2,7 @@
 
 #include "../bake_say.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -9,6 +10,9 @@
 #define FINEST_CHOSEN_M 0.01
 #define MAX_ERROR_STEPS 32767.0 /* residuals are quantised by 2*max_error + 1 */
 #define Q24             16777216.0
+#define COARSEST_M      100.0 /* a step in Q24 ends at 128 m */
+#define OFFSET_ERROR_M  1e-4
+#define TRIES_MAX       4096
 
 static int find_range(const bake_grid *grid, bake_steps *steps)
 {
@@ -41,13 +45,62 @@ static double choose_first(double step_m, double low, double high)
     return low;
 }
 
+/* How far the height of a step is from the world unit that it is written in. */
+static double offset_error_m(double base_m, double step_m, double step)
+{
+    double wu = (base_m + step * step_m) * FF_WU_PER_METRE;
+    return fabs(wu - nearbyint(wu)) / FF_WU_PER_METRE;
+}
+
+/* The same choice where heights are no whole steps above 0: of the steps that leave room for all
+ * heights, the highest one that a world unit tells within OFFSET_ERROR_M, else the nearest. */
+static double choose_first_above(double base_m, double step_m, double low, double high)
+{
+    double best = low, best_m = INFINITY;
+    for (double first = low; first > low - TRIES_MAX && high - first <= STEPS_MAX; first--) {
+        double error_m = offset_error_m(base_m, step_m, first);
+        if (error_m < best_m) {
+            best = first;
+            best_m = error_m;
+        }
+        if (best_m <= OFFSET_ERROR_M) break;
+    }
+    return best;
+}
+
 static int set_step(bake_steps *steps, double wanted_m)
 {
     double q24 = fmax(1, nearbyint(wanted_m * Q24));
     double low = nearbyint(steps->min_m / wanted_m), high = nearbyint(steps->max_m / wanted_m);
     if (high - low > STEPS_MAX) return 0;
     steps->step_m = q24 / Q24;
+    steps->base_m = 0;
     steps->first_step = choose_first(wanted_m, low, high);
+    return 1;
+}
+
+/* The source's own steps: step 0 lies where one of them lies, and so do all above it as far as a
+ * step in Q24 is the source's. */
+static int set_own_step(bake_steps *steps, double own_m, double base_m)
+{
+    base_m -= own_m * nearbyint(base_m / own_m);
+    if (fabs(base_m) < 1e-6 * own_m) base_m = 0;
+    steps->min_m -= base_m;
+    steps->max_m -= base_m;
+    int fits = set_step(steps, own_m);
+    double low = nearbyint(steps->min_m / own_m), high = nearbyint(steps->max_m / own_m);
+    steps->min_m += base_m;
+    steps->max_m += base_m;
+    if (!fits) return 0;
+    if (offset_error_m(base_m, own_m, steps->first_step) > OFFSET_ERROR_M)
+        steps->first_step = choose_first_above(base_m, own_m, low, high);
+    steps->base_m = base_m + steps->first_step * (own_m - steps->step_m);
+    double drift_m = (high - low) * fabs(own_m - steps->step_m),
+           float_m = fmax(fabs(steps->min_m), fabs(steps->max_m)) * FLT_EPSILON;
+    if (fmax(drift_m, float_m) > own_m / 4)
+        bake_note("the source's steps of %.9g m are finer than what a pack tells: heights are "
+                  "within %.2g m, not exact",
+                  own_m, own_m / 2 + fmin(drift_m, own_m / 2) + float_m);
     return 1;
 }
 
@@ -67,14 +120,16 @@ int bake_steps_choose(const bake_options *o, const bake_ground *ground, bake_ste
     }
     if (ground->step_m > 0) {
         /* Invented detail needs finer steps than the source's, as far as they fit. */
-        for (double step_m = o->densify > 1 ? ground->step_m / 8 : ground->step_m;
-             step_m <= ground->step_m * 1.001; step_m *= 2)
-            if (set_step(steps, step_m)) return 0;
+        double own_m = ground->step_m;
+        while (own_m > COARSEST_M) own_m /= 2; /* steps of a kilometre are whole ones of 125/2 m */
+        for (double step_m = o->densify > 1 ? own_m / 8 : own_m; step_m <= own_m * 1.001;
+             step_m *= 2)
+            if (set_own_step(steps, step_m, ground->base_m)) return 0;
         bake_note(
             "heights span more than 65536 of their own steps of %g m: coarser steps are chosen",
             ground->step_m);
     }
-    for (double step_m = FINEST_CHOSEN_M; step_m < 250; step_m = next_nice(step_m))
+    for (double step_m = FINEST_CHOSEN_M; step_m <= COARSEST_M; step_m = next_nice(step_m))
         if (set_step(steps, step_m)) return 0;
     return bake_fail("heights from %g to %g m do not fit a pack", steps->min_m, steps->max_m);
 }
@@ -83,7 +138,8 @@ static void quantise_row(const bake_steps *steps, const float *metres, uint16_t 
                          uint32_t count, ff_terrain_info *info)
 {
     for (uint32_t i = 0; i < count; i++) {
-        double h = nearbyint((double)metres[i] / steps->step_m - steps->first_step);
+        double h = nearbyint(((double)metres[i] - steps->base_m) / steps->step_m -
+                             steps->first_step);
         heights[i] = (uint16_t)fmin(fmax(h, 0), STEPS_MAX);
         if (heights[i] < info->height_min) info->height_min = heights[i];
         if (heights[i] > info->height_max) info->height_max = heights[i];
@@ -92,7 +148,8 @@ static void quantise_row(const bake_steps *steps, const float *metres, uint16_t 
 
 static int set_units(const bake_options *o, const bake_steps *steps, ff_terrain_info *info)
 {
-    double offset_wu = nearbyint(steps->first_step * steps->step_m * FF_WU_PER_METRE);
+    double offset_wu = nearbyint((steps->base_m + steps->first_step * steps->step_m) *
+                                 FF_WU_PER_METRE);
     if (fabs(offset_wu) > INT32_MAX / 2)
         return bake_fail("heights of %g m lie outside the world", steps->min_m);
     info->hscale_q24 = (uint32_t)(steps->step_m * Q24);

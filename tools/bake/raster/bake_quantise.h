@@ -7,7 +7,8 @@
 
 typedef struct bake_steps {
     double step_m;     /* metres a step; what hscale_q24 says, exactly */
-    double first_step; /* height of step 0, in steps: a whole number */
+    double first_step; /* height of step 0 above base_m, in steps: a whole number */
+    double base_m;     /* heights are whole steps above this */
     double min_m, max_m;
 } bake_steps;
 

@@ -5,26 +5,25 @@
 #include "bake_place.h"
 #include "bake_seam.h"
 #include "bake_turn.h"
+#include "bake_colour.h"
+#include "bake_rgb.h"
+#include "bake_unit.h"
+#include "bake_validity.h"
 
 #include <errno.h>
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define ABSURD_M          12000.0 /* no ground of the Earth is further from the sea's surface */
-#define ABSURD_PLAIN_M    1e7     /* plain images may stand for anything */
 #define STRIP_SAMPLES_MAX (2u << 20)
 #define WHOLE_TOLERANCE_M 1e-3 /* single precision at 10 km keeps this */
 
-/* How raster values become metres. */
-typedef struct source_unit {
-    double scale, offset, absurd_m;
-    double nodata;
-    int has_nodata, is_plain;
-} source_unit;
-
+/* What is found out while all values are read. */
 typedef struct source_scan {
+    bake_unit unit;
+    bake_validity validity;
     int whole_values, whole_metres;
     uint64_t voids;
 } source_scan;
@@ -86,47 +85,18 @@ static GDALDatasetH open_raster(const bake_options *o)
     return NULL;
 }
 
-static source_unit read_unit(const bake_options *o, GDALDatasetH set, const bake_ground *ground)
-{
-    GDALRasterBandH band = GDALGetRasterBand(set, 1);
-    GDALDataType type = GDALGetRasterDataType(band);
-    source_unit unit = { .scale = 1 };
-    unit.is_plain = !ground->has_place && (type == GDT_Byte || type == GDT_UInt16 || o->raw.width);
-    unit.absurd_m = ground->srs ? ABSURD_M : ABSURD_PLAIN_M;
-    unit.nodata = GDALGetRasterNoDataValue(band, &unit.has_nodata);
-    if (!unit.has_nodata && type == GDT_Int16) {
-        unit.nodata = -32768; /* SRTM's void, often not declared */
-        unit.has_nodata = 1;
-    }
-    if (o->scale > 0) {
-        unit.scale = o->scale;
-    } else if (unit.is_plain && o->hscale_m > 0) {
-        unit.scale = o->hscale_m;
-    } else {
-        const char *name = GDALGetRasterUnitType(band);
-        double metres = 1;
-        if (name && (EQUAL(name, "ft") || EQUAL(name, "foot") || EQUAL(name, "feet")))
-            metres = 0.3048;
-        else if (name && strstr(name, "survey foot"))
-            metres = 1200.0 / 3937.0;
-        else if (name && EQUAL(name, "cm"))
-            metres = 0.01;
-        unit.scale = GDALGetRasterScale(band, NULL) * metres;
-        unit.offset = GDALGetRasterOffset(band, NULL) * metres;
-    }
-    return unit;
-}
-
 /* Turns a row of raster values into metres; voids become NaN. */
-static void scan_row(const source_unit *unit, const double *values, float *metres, uint32_t count,
-                     source_scan *scan)
+static void scan_row(const double *values, float *metres, uint32_t count, source_scan *scan)
 {
     for (uint32_t i = 0; i < count; i++) {
-        double value = values[i], z = value * unit->scale + unit->offset;
-        int is_void = !isfinite(value) || fabs(z) > unit->absurd_m ||
-                      (unit->has_nodata &&
-                       (value == unit->nodata || (float)value == (float)unit->nodata));
-        if (is_void) {
+        double value = values[i], z = value * scan->unit.scale + scan->unit.offset;
+        int sentinel = bake_validity_sentinel(&scan->validity, value);
+        if (sentinel >= 0) {
+            metres[i] = (float)fmax(z, -FLT_MAX);
+            scan->validity.sentinel_samples[sentinel]++;
+            continue;
+        }
+        if (bake_validity_is_void(&scan->validity, &scan->unit, value)) {
             metres[i] = NAN;
             scan->voids++;
             continue;
@@ -138,22 +108,26 @@ static void scan_row(const source_unit *unit, const double *values, float *metre
     }
 }
 
-static int read_strip(GDALDatasetH set, const source_unit *unit, uint32_t top, uint32_t rows,
-                      double *values, float *metres, bake_ground *ground, source_scan *scan)
+static int read_strip(GDALDatasetH set, uint32_t top, uint32_t rows, double *values, float *metres,
+                      bake_ground *ground, source_scan *scan)
 {
     uint32_t width = ground->grid.width;
     CPLErrorReset();
-    if (GDALRasterIO(GDALGetRasterBand(set, 1), GF_Read, 0, (int)top, (int)width, (int)rows, values,
-                     (int)width, (int)rows, GDT_Float64, 0, 0) != CE_None)
-        return bake_fail_gdal("cannot read rows %u to %u", top, top + rows - 1);
+    int rc = 0;
+    if (scan->unit.is_rgb)
+        rc = bake_rgb_read(set, width, top, rows, values, metres);
+    else
+        rc = GDALRasterIO(GDALGetRasterBand(set, 1), GF_Read, 0, (int)top, (int)width, (int)rows,
+                          values, (int)width, (int)rows, GDT_Float64, 0, 0) != CE_None;
+    if (rc) return bake_fail_gdal("cannot read rows %u to %u", top, top + rows - 1);
+    if (bake_validity_mask(&scan->validity, width, top, rows, values, metres)) return -1;
     for (uint32_t row = 0; row < rows; row++)
-        scan_row(unit, values + (size_t)row * width, metres + (size_t)row * width, width, scan);
+        scan_row(values + (size_t)row * width, metres + (size_t)row * width, width, scan);
     return bake_pwrite(ground->grid.fd, metres, (size_t)rows * width * sizeof *metres,
                        (uint64_t)top * width * sizeof *metres);
 }
 
-static int read_heights(GDALDatasetH set, const source_unit *unit, bake_ground *ground,
-                        source_scan *scan)
+static int read_heights(GDALDatasetH set, bake_ground *ground, source_scan *scan)
 {
     uint32_t width = ground->grid.width, height = ground->grid.height;
     int block_x, block_y;
@@ -167,7 +141,7 @@ static int read_heights(GDALDatasetH set, const source_unit *unit, bake_ground *
     int rc = values && metres ? 0 : bake_fail("out of memory");
     for (uint32_t top = 0; !rc && top < height; top += strip) {
         uint32_t rows = height - top < strip ? height - top : strip;
-        rc = read_strip(set, unit, top, rows, values, metres, ground, scan);
+        rc = read_strip(set, top, rows, values, metres, ground, scan);
         bake_progress("reading", top + rows, height);
     }
     free(values);
@@ -177,36 +151,51 @@ static int read_heights(GDALDatasetH set, const source_unit *unit, bake_ground *
 
 static int read_all(const bake_options *o, GDALDatasetH set, bake_ground *ground)
 {
+    bake_rgb rgb;
     uint32_t width = (uint32_t)GDALGetRasterXSize(set), height = (uint32_t)GDALGetRasterYSize(set);
-    if (bake_place_read(o, set, ground)) return -1;
-    source_unit unit = read_unit(o, set, ground);
+    if (bake_rgb_choose(o, set, &rgb) || bake_place_read(o, set, ground)) return -1;
+    source_scan scan = { .unit = bake_unit_read(o, set, &rgb, ground),
+                         .whole_values = 1,
+                         .whole_metres = 1 };
+    bake_validity_open(o, set, &scan.unit, &scan.validity);
     if (bake_grid_open(&ground->grid, width, height, sizeof(float))) return -1;
-    source_scan scan = { .whole_values = 1, .whole_metres = 1 };
-    if (read_heights(set, &unit, ground, &scan)) return -1;
+    if (read_heights(set, ground, &scan)) return -1;
     ground->source_width = width;
     ground->source_height = height;
     memcpy(ground->source_geotransform, ground->geotransform, sizeof ground->geotransform);
     if (ground->srs) ground->source_srs = OSRClone(ground->srs);
     if (ground->has_place && bake_turn(&ground->grid, ground->geotransform)) return -1;
     ground->voids = scan.voids;
-    if (scan.voids == (uint64_t)width * height)
+    if (bake_validity_settle(&scan.validity, &scan.unit, ground)) return -1;
+    if (ground->voids == (uint64_t)width * height)
         return bake_fail("%s: not one valid height in %u x %u samples", o->heights_path, width,
                          height);
-    if (scan.whole_values)
-        ground->step_m = unit.scale;
-    else if (scan.whole_metres)
+    if (scan.whole_values) {
+        ground->step_m = scan.unit.scale;
+        ground->base_m = scan.unit.offset;
+    } else if (scan.whole_metres)
         ground->step_m = 1;
     return 0;
 }
 
-int bake_source_read(const bake_options *o, bake_ground *ground)
+/* Reads a raster, of a palette its colours. */
+static int read_set(const bake_options *o, GDALDatasetH set, bake_ground *ground)
+{
+    GDALDatasetH view[1 + BAKE_COLOUR_VIEWS_MAX] = { set };
+    int is_palette = o->rgb != BAKE_RGB_NONE && bake_rgb_is_palette(set),
+        views = is_palette ? bake_colour_views(set, o->heights_path, view + 1) : 0;
+    int rc = views < 0 ? -1 : read_all(o, view[views], ground);
+    for (; views > 0; views--) GDALClose(view[views]);
+    return rc;
+}
+
+int bake_source_read(const bake_options *o, GDALDatasetH set, bake_ground *ground)
 {
     *ground = (bake_ground){ .grid = BAKE_GRID_CLOSED };
-    GDALDatasetH set = open_raster(o);
-    if (set && !o->raw.width) set = bake_seam_join(o->heights_path, set);
-    if (!set) return -1;
-    int rc = read_all(o, set, ground);
-    GDALClose(set);
+    GDALDatasetH own = set ? NULL : open_raster(o);
+    if (own && !o->raw.width) own = bake_seam_join(o->heights_path, own);
+    int rc = set || own ? read_set(o, set ? set : own, ground) : -1;
+    if (own) GDALClose(own);
     if (rc) bake_ground_close(ground);
     return rc;
 }

@@ -18,15 +18,17 @@ typedef struct bake_ground {
     double source_geotransform[6];
     uint32_t source_width, source_height;
     OGRSpatialReferenceH source_srs;
-    double step_m; /* heights are whole multiples of this; 0: of nothing known */
+    double step_m; /* heights are whole multiples of this above base_m; 0: of nothing known */
+    double base_m;
     /* samples filled: void in the source; beyond its area after projection */
     uint64_t voids, outside;
+    uint64_t given; /* samples void in the source that were given a height */
     int resampled;
 } bake_ground;
 
-/* Reads the raster named in `options` into `ground`, voids as NaN and counted. 0, or -1 after
- * saying why. */
-int bake_source_read(const bake_options *options, bake_ground *ground);
+/* Reads `set`, or the raster named in `options` when it is NULL, into `ground`, voids as NaN and
+ * counted. 0, or -1 after saying why. */
+int bake_source_read(const bake_options *options, GDALDatasetH set, bake_ground *ground);
 /* Makes it ground that lies nowhere, its samples as they are. */
 void bake_ground_forget_place(bake_ground *ground);
 void bake_ground_close(bake_ground *ground);
