@@ -151,13 +151,13 @@ for backend in gl gles1 soft soft565; do
     flies first $looks --backend $backend --settle 1 --link gprs
     is 'r[0]["nodes_held"] == 0 and r[0]["diff_mean"] < 30 and r[0]["ssim"] > 0.7' "and is sky, with backend $backend"
 done
-flies coarse $looks --backend soft --back-plane 1500 --png "$work/coarse" --reference "$work/true2"
+flies coarse $looks --backend soft --panorama on --back-plane 1500 --png "$work/coarse" --reference "$work/true2"
 is "s['diff_mean'] > $(differs settled) / 2 and s['ssim'] < 0.99" "a coarse one looks less like it"
 cmp -s "$work/true/frame-0006.00.png" "$work/true2/frame-0006.00.png"
 result $? "what it should be is the same for both, whatever their back ends"
 flies fine $looks --backend soft --panorama off --quality px:1 --view 20000
 is "s['diff_mean'] < 0.8 * $(differs coarse)" "a pixel of error and no panorama differ less than low"
-flies faces $looks --backend soft --back-plane 1500 --face 1024 --memory 16M
+flies faces $looks --backend soft --panorama on --back-plane 1500 --face 1024 --memory 16M
 is "s['diff_mean'] < 0.9 * $(differs coarse)" "larger faces differ less than those of 256"
 flies hazy $looks --backend soft --panorama off --quality px:1 --view 6000
 flies clear $looks --backend soft --panorama off --quality px:1 --view 6000 --no-fog

@@ -93,7 +93,7 @@ hard outage calm 15 45 45 4 0 2 --seconds 60 --event 15:link=umts,connect_ms=300
 hard outage-fast calm-fast 15 45 60 6 0 7 --seconds 60 --speed 450 --start 0.3 --event 15:link=umts,connect_ms=30000 --event 15:cut
 hard silence calm 15 45 45 4 0 0 --seconds 60 --event 15:link=$slow --event 45:link=umts
 hard stalls calm 20 50 23 4 0 0 --seconds 60 --link gprs,stall_every_ms=6000,stall_ms_min=4000,stall_ms_max=15000 --event 50:link=umts
-hard cuts calm 20 50 8 2 0 0 --seconds 60 --link umts,cut_every_ms=10000 --event 50:link=umts
+hard cuts calm 20 50 9 2 0 0 --seconds 60 --link umts,cut_every_ms=10000 --event 50:link=umts
 hard handover calm 15 50 8 2 0 0 --seconds 60 --event 15:link=gprs --event 30:link=umts --event 35:link=gprs --event 50:link=umts
 hard trace calm 15 50 15 2 0 0 --seconds 60 --down-trace "$work/trace" --up-trace "$work/trace" --event 50:link=umts
 
