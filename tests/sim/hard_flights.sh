@@ -90,17 +90,21 @@ END
 # ---- the link ----
 slow="umts,down.bytes_s=5,up.bytes_s=5"
 hard outage calm 15 45 45 4 0 2 --seconds 60 --event 15:link=umts,connect_ms=30000 --event 15:cut
-hard outage-fast calm-fast 15 45 60 6 0 7 --seconds 60 --speed 450 --start 0.3 --event 15:link=umts,connect_ms=30000 --event 15:cut
+hard outage-fast calm-fast 15 45 60 5 0 15 --seconds 60 --speed 450 --start 0.3 --event 15:link=umts,connect_ms=30000 --event 15:cut
 hard silence calm 15 45 45 4 0 0 --seconds 60 --event 15:link=$slow --event 45:link=umts
 hard stalls calm 20 50 23 4 0 0 --seconds 60 --link gprs,stall_every_ms=6000,stall_ms_min=4000,stall_ms_max=15000 --event 50:link=umts
-hard cuts calm 20 50 9 2 0 0 --seconds 60 --link umts,cut_every_ms=10000 --event 50:link=umts
+# How far a panorama is off while the next one has to be asked for again depends on when in its life the link is cut: three phases. It
+# is allowed 6 px of parallax, and half a texel.
+for ms in 9400 10000 11200; do
+    hard "cuts-$ms" calm 20 50 9 2 0 0 --seconds 60 --link "umts,cut_every_ms=$ms" --event 50:link=umts
+done
 hard handover calm 15 50 8 2 0 0 --seconds 60 --event 15:link=gprs --event 30:link=umts --event 35:link=gprs --event 50:link=umts
 hard trace calm 15 50 15 2 0 0 --seconds 60 --down-trace "$work/trace" --up-trace "$work/trace" --event 50:link=umts
 
 # ---- the client ----
 # The first turn of all waits a round trip of GPRS for the far ground behind it.
 hard turn calm-turn 20 50 66 2 0 3 --seconds 60 --path turn --link gprs --event 50:link=umts
-hard circle calm-circle 20 50 23 2 0 1 --seconds 60 --path circle --speed 300 --link gprs --event 50:link=umts
+hard circle calm-circle 20 50 14 2 0 2 --seconds 60 --path circle --speed 300 --link gprs --event 50:link=umts
 hard hover calm-hover 20 20 4 2 0 0 --seconds 60 --path hover --link gprs
 hard teleport calm-teleport 20 20 4 2 1 0 --seconds 40 --event 20:teleport=0.85,0.15
 hard teleport-near calm-near 20 20 26 2 0 0 --seconds 40 --event 20:teleport=0.5,0.45
@@ -138,10 +142,11 @@ for panorama in on off; do
 done
 
 # ---- recorded links, where there are some ----
-for link in TMobile-UMTS-driving Verizon-EVDO-driving ATT-LTE-driving-2016; do
+for link in TMobile-UMTS-driving:11.5 Verizon-EVDO-driving:7 ATT-LTE-driving-2016:9.5; do
+    px=${link#*:} link=${link%:*}
     recorded=../shared/data/traces/$link
     if [ -e "$recorded.down" ]; then
-        hard "$link" calm 15 50 12 2 0 0 --seconds 60 --down-trace "$recorded.down" --up-trace "$recorded.up" --event 50:link=umts
+        hard "$link" calm 15 50 "$px" 2 0 0 --seconds 60 --down-trace "$recorded.down" --up-trace "$recorded.up" --event 50:link=umts
     else
         echo "ok - $link # skip no $recorded.down"
     fi
