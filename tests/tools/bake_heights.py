@@ -149,12 +149,12 @@ def _():
 def _():
     compound = "EPSG:32612+6360"  # NAVD88 height in US survey feet
     survey = 1200 / 3937
-    for name, driver in (("c.tif", "GTiff"), ("c.vrt", "VRT")):
-        source = put("raw.tif", plane / survey, reference=compound)
-        path = source if driver == "GTiff" else os.path.join(work, name)
-        if driver == "VRT":
-            gdal.Translate(path, source, format="VRT")
-        assert abs(bake(path)[0]["height_max_m"] - plane.max()) < 0.05, name
+    told, untold = put("told.tif", plane / survey, reference=compound), os.path.join(work, "untold.vrt")
+    gdal.Translate(untold, put("plain.tif", plane / survey), format="VRT", outputSRS=compound)
+    for path, unit in ((told, "US survey foot"), (untold, "")):  # GDAL makes it the band's unit in a GeoTIFF
+        raster = gdal.Open(path)
+        assert raster.GetRasterBand(1).GetUnitType() == unit, raster.GetRasterBand(1).GetUnitType()
+        assert abs(bake(path)[0]["height_max_m"] - plane.max()) < 0.05, path
     assert abs(bake(put("own.tif", plane / 0.3048, reference=compound, unit="ft"))[0]["height_max_m"] - plane.max()) < 0.01
 
 

@@ -72,18 +72,20 @@ double bake_unit_metres(const char *spelling)
 
 /* ---- the raster's own ---- */
 
-/* Metres a unit of the vertical part of a compound reference system, or 1. */
-static double vertical_metres(const bake_ground *ground)
+/* Metres a unit of the vertical part of a compound reference system, or 1. The ground keeps only
+ * the horizontal part. */
+static double vertical_metres(GDALDatasetH set)
 {
-    if (!ground->srs || !OSRIsCompound(ground->srs)) return 1;
-    double metres = OSRGetTargetLinearUnits(ground->srs, "COMPD_CS|VERT_CS", NULL);
+    OGRSpatialReferenceH srs = GDALGetSpatialRef(set);
+    if (!srs || !OSRIsCompound(srs)) return 1;
+    double metres = OSRGetTargetLinearUnits(srs, "COMPD_CS|VERT_CS", NULL);
     return metres > 0 && isfinite(metres) ? metres : 1;
 }
 
-static double unit_metres(const bake_options *o, GDALRasterBandH band, const bake_ground *ground)
+static double unit_metres(const bake_options *o, GDALDatasetH set)
 {
-    const char *spelling = GDALGetRasterUnitType(band);
-    if (!spelling || !*spelling) return vertical_metres(ground);
+    const char *spelling = GDALGetRasterUnitType(GDALGetRasterBand(set, 1));
+    if (!spelling || !*spelling) return vertical_metres(set);
     double metres = bake_unit_metres(spelling);
     if (metres > 0) return metres;
     bake_note("%s: the unit of its heights, \"%.40s\", is not known: taken as metres; --scale says "
@@ -132,7 +134,7 @@ bake_unit bake_unit_read(const bake_options *o, GDALDatasetH set, const bake_rgb
     } else if (is_plain && o->hscale_m > 0) {
         unit.scale = o->hscale_m;
     } else {
-        double metres = unit_metres(o, band, ground);
+        double metres = unit_metres(o, set);
         unit.scale = GDALGetRasterScale(band, NULL) * metres;
         unit.offset = GDALGetRasterOffset(band, NULL) * metres;
     }
