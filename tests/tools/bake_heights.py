@@ -264,6 +264,11 @@ def _():
 def _():
     said = refused(put("wide.tif", plane, place=(0, 300000, 0, 0, 0, -300000), reference=None))
     assert "spacing_wu 76800000 is not from 1 to" in said, said
+    said = refused(put("wide.tif", plane, place=(0, 1e11, 0, 0, 0, -1e11), reference=None))
+    assert "spacing_wu 4294967295 is not from 1 to" in said, said
+    for place in ((0, 1e200, 0, 0, 0, -1e200), (1e308, 1e307, 0, 1e308, 0, -1e307), (1e13, 30, 0, 0, 0, -30), (float("nan"), 30, 0, 0, 0, -30)):
+        said = refused(put("nowhere.tif", plane, place=place, reference=None))
+        assert "is no place" in said, said
 
 
 finish()

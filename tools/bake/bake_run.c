@@ -95,7 +95,9 @@ static int make_ground(bake *b)
     if (fill(b, b->ground.outside)) return -1;
     say_filled(&b->ground);
     if (bake_densify(&b->ground.grid, b->ground.geotransform, b->options->densify)) return -1;
-    b->info.spacing_wu = (uint32_t)nearbyint(spacing_m * FF_WU_PER_METRE / b->options->densify);
+    /* one out of range is refused when the terrain is described */
+    b->info.spacing_wu = (uint32_t)fmin(
+        nearbyint(spacing_m * FF_WU_PER_METRE / b->options->densify), UINT32_MAX);
     if (bake_steps_choose(b->options, &b->ground, &b->steps)) return -1;
     if (bake_quantise(b->options, &b->ground, &b->steps, &b->info, &b->heights)) return -1;
     int rc = b->marks.fd < 0 ? 0

@@ -6,9 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-/* A raster without a reference system whose corners are degrees is taken as WGS84 longitude and
- * latitude. */
-static int looks_geographic(const double *gt, uint32_t width, uint32_t height)
+#define UNITS_MAX 1e12 /* of any plane: no reckoning with such numbers overflows */
+
+int bake_place_looks_geographic(const double *gt, uint32_t width, uint32_t height)
 {
     bake_area area = bake_area_of(gt, width, height);
     double cell = fmax(fmax(fabs(gt[1]), fabs(gt[2])), fmax(fabs(gt[4]), fabs(gt[5])));
@@ -53,8 +53,8 @@ static int read_geotransform(const bake_options *o, GDALDatasetH set, bake_groun
         return 0;
     }
     for (int i = 0; i < 6; i++)
-        if (!isfinite(gt[i]))
-            return bake_fail("%s: its georeference is not a number", o->heights_path);
+        if (!(fabs(gt[i]) <= UNITS_MAX))
+            return bake_fail("%s: its georeference, %g, is no place", o->heights_path, gt[i]);
     if (GDALInvGeoTransform(gt, inverse)) return 0;
     return bake_fail("%s: its georeference puts all samples on one line: give it another with "
                      "gdal_translate -a_ullr",
@@ -69,8 +69,8 @@ int bake_place_read(const bake_options *o, GDALDatasetH set, bake_ground *ground
     if (!srs) srs = GDALGetGCPSpatialRef(set);
     if (srs) {
         ground->srs = OSRClone(srs);
-    } else if (looks_geographic(ground->geotransform, (uint32_t)GDALGetRasterXSize(set),
-                                (uint32_t)GDALGetRasterYSize(set)) &&
+    } else if (bake_place_looks_geographic(ground->geotransform, (uint32_t)GDALGetRasterXSize(set),
+                                           (uint32_t)GDALGetRasterYSize(set)) &&
                !o->no_project) {
         bake_note(
             "%s names no reference system; its corners look like degrees: taken as WGS84 longitude and latitude",
