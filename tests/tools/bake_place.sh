@@ -189,6 +189,10 @@ for name, west, first in (('east', 179, 0), ('west', -180, 20)):
         out.write('ncols 20\nnrows 20\nxllcorner %d\nyllcorner -17\ncellsize 0.05\n' % west)
         for y in range(20):
             out.write(' '.join(str(900 + 10 * (first + x)) for x in range(20)) + '\n')
+with open('metres.asc', 'w') as out:
+    out.write('ncols 360\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -99\n')
+    for y in range(4):
+        out.write(' '.join(str(x if x < 100 or x >= 340 else -99) for x in range(360)) + '\n')
 PY
 gdalbuildvrt -q -a_srs EPSG:4326 both.vrt east.asc west.asc
 gdalbuildvrt -q -a_srs EPSG:4326 -vrtnodata -99 void.vrt east.asc west.asc && gdal_translate -q void.vrt void.tif
@@ -203,6 +207,11 @@ for raster in both.vrt void.vrt void.tif; do
     bake $raster --hscale 1 && noted "joined at 180 degrees" && [ "$(field epsg)" = 32701 ] && slope
     result $? "a mosaic on both sides of 180 degrees is one ground ($raster)"
 done
+gdal_translate -q -scale 0 9999 -99 -99 void.vrt nothing.tif
+refused "not one valid height" nothing.tif
+result $? "a raster all round the Earth with nothing in it is told to be that"
+bake metres.asc && ! grep -q "180 degrees" bake.err && [ "$(field samples_x) $(field voids)" = "360 960" ]
+result $? "360 columns of a metre are not 360 degrees"
 gdal_translate -q -of VRT -srcwin 0 0 3600 20 both.vrt crop.vrt
 refused "cut a part with gdal_translate -projwin" crop.vrt
 result $? "half the Earth is refused"

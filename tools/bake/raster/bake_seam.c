@@ -1,6 +1,7 @@
 #include "bake_seam.h"
 
 #include "../bake_say.h"
+#include "bake_place.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -73,15 +74,17 @@ static int find_void_columns(GDALRasterBandH band, column_run *run)
 static int columns_round(GDALDatasetH set)
 {
     double gt[6];
+    int width = GDALGetRasterXSize(set), height = GDALGetRasterYSize(set);
     OGRSpatialReferenceH srs = GDALGetSpatialRef(set);
-    if ((srs && !OSRIsGeographic(srs)) || GDALGetGeoTransform(set, gt) != CE_None) return 0;
+    if (GDALGetGeoTransform(set, gt) != CE_None || !(gt[1] > 0) || gt[2] != 0 || gt[4] != 0)
+        return 0;
+    if (srs ? !OSRIsGeographic(srs)
+            : !bake_place_looks_geographic(gt, (uint32_t)width, (uint32_t)height))
+        return 0;
     double degree = srs ? OSRGetAngularUnits(srs, NULL) * 57.29577951308232 : 1,
            round = 360 / (gt[1] * degree);
-    int width = GDALGetRasterXSize(set), whole = (int)fmin(nearbyint(round), 1e9);
-    int is_upright = gt[1] > 0 && gt[2] == 0 && gt[4] == 0;
-    return is_upright && fabs(round - whole) < 0.01 && abs(width - whole) <= 2 && width >= whole
-               ? whole
-               : 0;
+    int whole = (int)fmin(nearbyint(round), 1e9);
+    return fabs(round - whole) < 0.01 && width - whole <= 2 && width >= whole ? whole : 0;
 }
 
 /* Lays the first `columns` columns of `set` over those of `view` from `at` on. */
@@ -136,6 +139,7 @@ GDALDatasetH bake_seam_join(const char *path, GDALDatasetH set)
     }
     int joins = run.from > 0 && run.to < width, from = run.to < width ? run.to : 0,
         columns = joins ? round - run.to + run.from : width - (run.to - run.from);
+    if (columns < 2) return set; /* no ground: refused when it is read */
     CPLErrorReset();
     GDALDatasetH view = make_view(set, from, columns);
     int rc = view ? 0 : -1;
