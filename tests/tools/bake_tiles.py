@@ -119,9 +119,10 @@ def pmtiles(name, tiles, metadata=b'{"name": "x", "encoding": "terrarium"}', lea
 
 
 def worst(path, *options, system="EPSG:32632", inside=(9.12, 45.07, 9.68, 45.58)):
-    """The largest distance of the pack from the surface, in metres, in a box in degrees; and what was said."""
-    summary, said = bake(path, "--t-srs", system, *options)
+    """The largest distance of the pack from the surface, in metres, in a box in degrees; and what was said. System None: the baker chooses."""
+    summary, said = bake(path, *(["--t-srs", system] if system else []), *options)
     assert summary, said
+    system = system or "EPSG:%d" % summary["epsg"]
     heights, place = export()
     rows, columns = np.mgrid[0:heights.shape[0], 0:heights.shape[1]] + 0.5
     target, wgs84 = osr.SpatialReference(), osr.SpatialReference()
@@ -151,6 +152,17 @@ def _():
     assert whole < 0.6 and summary_all["samples_x"] > 400, (whole, summary_all)
     coarse, summary, _ = worst(pmtiles("world.pmtiles", images), "--zoom", ZOOM - 1)
     assert coarse < 6 and abs(summary["spacing_m"] / summary_all["spacing_m"] - 2) < 0.05, (coarse, summary)
+
+
+@case("without --t-srs they are projected to the local UTM zone, true to scale, and told; with --no-project they stay")
+def _():
+    path = pmtiles("world.pmtiles", images)
+    error, summary, said = worst(path, "--bbox", BOX, system=None)
+    assert error < 0.6 and summary["epsg"] == 32632 and "Pseudo-Mercator shows a metre of this ground as 1.4" in said, (error, summary, said)
+    pixel = 2 * math.pi * RADIUS / 2**ZOOM / 256
+    assert abs(summary["spacing_m"] / (pixel * math.cos(math.radians(45.3))) - 1) < 0.005, summary
+    error, summary, said = worst(path, "--bbox", BOX, "--no-project", system=None)
+    assert error < 0.6 and summary["epsg"] == 3857 and abs(summary["spacing_m"] - pixel) < 0.01 and "kept" in said, (error, summary, said)
 
 
 @case("MBTiles and folders do, of PNG and WebP, of 256 and 512 pixels, of both encodings")
@@ -193,6 +205,7 @@ def _():
     assert "beside its tiles" in refused(path, "--bbox", "20,45,21,46")
     assert "no tile" in refused(path, "--zoom", "12")
     assert "too many" in refused(pmtiles("planet.pmtiles", images, zooms=(0, 9), box=(-180, -85, 180, 85)))
+    assert "tiles of zoom 24 are too many" in refused(pmtiles("endless.pmtiles", {(0, 0, 0): images[tiles_of(ZOOM)[0]]}, zooms=(0, 24), box=(-180, -85, 180, 85)))
     assert "--rgb" in refused(pmtiles("plain.pmtiles", images, metadata=b"{}"), "--bbox", BOX)
     assert "map tiles" in refused(put("dem.tif", np.zeros((60, 80))), "--bbox", BOX)
     vector = pmtiles("vector.pmtiles", {key: b"\x1a\x02no picture" for key in tiles_of(ZOOM)})

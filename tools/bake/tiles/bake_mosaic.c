@@ -22,6 +22,7 @@
 #define MERCATOR_180  "+proj=webmerc +lon_0=180 +datum=WGS84 +units=m +no_defs"
 #define TILE_FILE     "/vsimem/farfield-tile"
 #define TILE_SIDE_MAX 4096
+#define TILE_SIDE_MIN 32 /* of smaller ones a bake takes fewer */
 
 /* What is being put together: pixels of a zoom, from the map's west and north end. */
 typedef struct patchwork {
@@ -114,6 +115,16 @@ static int choose_area(const bake_options *o, patchwork *p)
     return bake_fail("%s: --bbox lies beside its tiles", o->heights_path);
 }
 
+/* Refuses, before they are looked for, more tiles than all samples make. 0 or -1 (said). */
+static int check_tiles(const patchwork *p)
+{
+    double columns = ceil(p->east) - floor(p->west), rows = ceil(p->south) - floor(p->north);
+    if (columns * rows <= SAMPLES_MAX / (TILE_SIDE_MIN * TILE_SIDE_MIN)) return 0;
+    return bake_fail("%s: %.0f x %.0f tiles of zoom %u are too many: give --bbox W,S,E,N or a "
+                     "coarser --zoom",
+                     p->tiles.path, columns, rows, p->zoom);
+}
+
 /* The first tile that is there tells the size of all. */
 static int find_side(patchwork *p)
 {
@@ -200,8 +211,8 @@ int bake_mosaic_open(const bake_options *o, bake_mosaic *mosaic)
     *mosaic = (bake_mosaic){ .grid = BAKE_GRID_CLOSED };
     patchwork p = { .grid = &mosaic->grid };
     if (bake_tileset_open(o->heights_path, bake_tileset_kind(o->heights_path), &p.tiles)) return -1;
-    int rc = bake_rgb_told(o, p.tiles.encoding) < 0 || choose_area(o, &p) || find_side(&p) ||
-                     open_grid(&p)
+    int rc = bake_rgb_told(o, p.tiles.encoding) < 0 || choose_area(o, &p) || check_tiles(&p) ||
+                     find_side(&p) || open_grid(&p)
                  ? -1
                  : 0;
     p.found = 0;
