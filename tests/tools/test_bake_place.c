@@ -23,7 +23,7 @@
 #define SHIFT_MAX   0.05 /* samples */
 #define SCALE_MAX   1e-5
 #define BIAS_MAX_M  0.02
-#define ERROR_MAX_M 0.25 /* of any sample: half a step and what a cubic misses */
+#define ERROR_MAX_M 0.15 /* of any sample: half a step and what a cubic misses */
 #define RIM         4    /* samples: there the cubic has no neighbours */
 #define UNKNOWNS    8
 
@@ -85,7 +85,8 @@ static void make_geotransform(const place *at, enum kind kind, double *gt)
     /* no multiple of 1/256 m where the plane stays */
     if (kind == FINE) cell *= (floor(chance(12, 60)) + chance(0.25, 0.45)) / 256 / at->metre;
     double along = cell, down = -cell;
-    if (kind == TURNED || kind == TURNED_MIRRORED || kind == SHEARED) a = chance(-3, 3);
+    /* less of a turn is left, and told: a quarter of a sample from end to end */
+    if (kind == TURNED || kind == TURNED_MIRRORED || kind == SHEARED) a = chance(0.01, 6.27);
     if (kind == ROWS_NORTHWARDS || kind == TURNED_MIRRORED) down = -down;
     if (kind == COLUMNS_WESTWARDS) along = -along;
     if (kind == UNLIKE || kind == SHEARED) down *= chance(0.6, 1.5);

@@ -47,8 +47,15 @@ static int check_size(const bake_options *o, double source_samples, double spaci
     return 0;
 }
 
-/* Finds how far the warped grid reaches, and the spacing that suits it best: in the same plane, the
- * one that makes as many samples as there were. */
+/* Whether rows run from west to east and columns along the other axis. */
+static int is_upright(const double *gt)
+{
+    return fabs(gt[2]) < 1e-9 * fabs(gt[1]) && fabs(gt[4]) < 1e-9 * fabs(gt[5]) && gt[1] > 0;
+}
+
+/* Finds how far the warped grid reaches, and the spacing that suits it best: GDAL's choice, or, of
+ * turned cells and in the same plane, the one that makes as many samples as there were. GDAL
+ * compares one diagonal of the raster, which of sheared cells is far too long or too short. */
 static int plan_extent(const bake_ground *ground, const bake_warp *warp, bake_area *area,
                        double *spacing_m)
 {
@@ -60,7 +67,10 @@ static int plan_extent(const bake_ground *ground, const bake_warp *warp, bake_ar
     int columns, rows;
     GDALDatasetH source = bake_warp_source(warp, &ground->grid);
     void *transform = source ? bake_warp_transform(source, warp->target) : NULL;
-    int rc = transform ? 0 : -1;
+    bake_warp_cell cell;
+    int rc = transform ? 0 : -1, is_turned = transform && !is_upright(gt) &&
+                                             !bake_warp_measure(transform, 0, ground->grid.width,
+                                                                ground->grid.height, &cell);
     if (!rc && GDALSuggestedWarpOutput2(source, GDALGenImgProjTransform, transform, suggested,
                                         &columns, &rows, extent, 0) != CE_None)
         rc = bake_fail_gdal("cannot project the raster");
@@ -69,6 +79,7 @@ static int plan_extent(const bake_ground *ground, const bake_warp *warp, bake_ar
     if (rc) return rc;
     *area = (bake_area){ extent[0], extent[1], extent[2], extent[3] };
     *spacing_m = suggested[1];
+    if (is_turned) *spacing_m = sqrt(fabs(cell.x[0] * cell.y[1] - cell.x[1] * cell.y[0]));
     return 0;
 }
 
@@ -134,12 +145,6 @@ static int warp_ground(const bake_options *o, OGRSpatialReferenceH target, bake_
         ground->srs = target;
     }
     return 0;
-}
-
-/* Whether rows run from west to east and columns along the other axis. */
-static int is_upright(const double *gt)
-{
-    return fabs(gt[2]) < 1e-9 * fabs(gt[1]) && fabs(gt[4]) < 1e-9 * fabs(gt[5]) && gt[1] > 0;
 }
 
 /* How far, in samples and from end to end, a grid of upright squares would be off that keeps the

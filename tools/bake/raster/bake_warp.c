@@ -37,17 +37,16 @@ GDALDatasetH bake_warp_source(const bake_warp *w, const bake_grid *grid)
     return source;
 }
 
-/* Source cells that a sample of the new grid is wide, along each axis of the source, in the middle.
- */
-static int measure_cells(const bake_warp *w, void *transform, double *across, double *down)
+int bake_warp_measure(void *transform, int to_source, uint32_t width, uint32_t height,
+                      bake_warp_cell *cell)
 {
-    double i = w->width / 2, j = w->height / 2;
+    double i = width / 2, j = height / 2;
     double x[3] = { i, i + 1, i }, y[3] = { j, j, j + 1 }, z[3] = { 0 };
     int ok[3] = { 0 };
-    if (!GDALGenImgProjTransform(transform, 1, 3, x, y, z, ok) || !ok[0] || !ok[1] || !ok[2])
+    if (!GDALGenImgProjTransform(transform, to_source, 3, x, y, z, ok) || !ok[0] || !ok[1] ||
+        !ok[2])
         return -1;
-    *across = hypot(x[1] - x[0], x[2] - x[0]);
-    *down = hypot(y[1] - y[0], y[2] - y[0]);
+    *cell = (bake_warp_cell){ { x[1] - x[0], x[2] - x[0] }, { y[1] - y[0], y[2] - y[0] } };
     return 0;
 }
 
@@ -64,7 +63,7 @@ static char **add_scale(char **list, const char *name, double cells)
 static GDALDatasetH make_warped(const bake_warp *w, GDALDatasetH source, void *transform)
 {
     char threads[16];
-    double across = 1, down = 1;
+    bake_warp_cell cell;
     snprintf(threads, sizeof threads, "%d", w->jobs);
     GDALWarpOptions *warp = GDALCreateWarpOptions();
     warp->eResampleAlg = GRA_Cubic;
@@ -80,7 +79,8 @@ static GDALDatasetH make_warped(const bake_warp *w, GDALDatasetH source, void *t
     warp->papszWarpOptions = CSLSetNameValue(warp->papszWarpOptions, "INIT_DEST", "NO_DATA");
     warp->papszWarpOptions = CSLSetNameValue(warp->papszWarpOptions, "NUM_THREADS", threads);
     GDALSetGenImgProjTransformerDstGeoTransform(transform, w->to);
-    if (!measure_cells(w, transform, &across, &down)) {
+    if (!bake_warp_measure(transform, 1, w->width, w->height, &cell)) {
+        double across = hypot(cell.x[0], cell.x[1]), down = hypot(cell.y[0], cell.y[1]);
         warp->papszWarpOptions = add_scale(warp->papszWarpOptions, "XSCALE", across);
         warp->papszWarpOptions = add_scale(warp->papszWarpOptions, "YSCALE", down);
     }

@@ -20,9 +20,18 @@ typedef struct bake_warp_count {
     double beyond_m;
 } bake_warp_count;
 
+/* How far the image of one cell reaches, along its columns and along its rows. */
+typedef struct bake_warp_cell {
+    double x[2], y[2];
+} bake_warp_cell;
+
 /* What lies where after warping: the transformer that GDAL's functions take, from `source`, a data
  * set that has place and reference system. NULL after saying why. */
 void *bake_warp_transform(GDALDatasetH source, OGRSpatialReferenceH target);
+/* The image of the cell in the middle of a grid: of the source, or, `to_source`, of the new grid in
+ * cells of the source. 0, or -1: it has none. */
+int bake_warp_measure(void *transform, int to_source, uint32_t width, uint32_t height,
+                      bake_warp_cell *cell);
 /* A data set over `grid` as `warp` tells where it comes from. NULL after saying why. */
 GDALDatasetH bake_warp_source(const bake_warp *warp, const bake_grid *grid);
 /* Replaces a float grid by its image: sharp, averaged only where the new grid is coarser, and
