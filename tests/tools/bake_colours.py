@@ -82,7 +82,7 @@ def _():
     placed_or_not("grey.tif", np.where(hole, 0, np.where(west, 60, 200)), (60,) * 3, (200,) * 3, nodata=0)
 
 
-@case("bits are black and white, greys of few bits reach to white")
+@case("bits are black and white, greys and colours of few bits reach to white, beside alpha, too")
 def _():
     for bits in (1, 2, 4):
         image = put("bits.tif", np.where(west, 0, 2**bits - 1), gdal.GDT_Byte, options=["NBITS=%d" % bits])
@@ -90,6 +90,11 @@ def _():
         png = os.path.join(work, "bits.png")
         gdal.Translate(png, image, format="PNG", creationOptions=["NBITS=%d" % bits])
         shows(png, (0, 0, 0), (255, 255, 255))
+    colours = [np.where(west, a, b) for a, b in ((0, 15), (15, 5), (5, 15))]
+    shows(put("bits.tif", colours, gdal.GDT_Byte, options=["NBITS=4"]), (0, 255, 85), (255, 85, 255))
+    for bands in ([np.where(hole, 9, band) for band in colours], np.where(hole, 9, np.where(west, 0, 15))[None]):
+        image = put("bits.tif", [*bands, np.where(hole, 0, 15)], gdal.GDT_Byte, options=["NBITS=4"], alpha=True)
+        shows(image, (0, 255, 85) if len(bands) == 3 else (0, 0, 0), (255, 85, 255) if len(bands) == 3 else (255,) * 3)
 
 
 finish()

@@ -57,7 +57,7 @@ static int expand_palette(GDALDatasetH set, GDALDatasetH view[BAKE_COLOUR_VIEWS_
 
 /* ---- greys and masks ---- */
 
-/* The most that a grey of fewer than 8 bits can be, else 255. */
+/* The most that a grey or colour of fewer than 8 bits can be, else 255. */
 static int white_of(GDALRasterBandH band)
 {
     const char *bits = GDALGetMetadataItem(band, "NBITS", "IMAGE_STRUCTURE");
@@ -65,26 +65,32 @@ static int white_of(GDALRasterBandH band)
     return count >= 1 && count < 8 ? (1 << count) - 1 : 255;
 }
 
-/* A view of the first bands and, behind them, what covers them. */
-static GDALDatasetH masked_view(GDALDatasetH set, int colours, int white, int masked)
+/* A band of `set`, its values up to `white` as 0 to 255, as the next one of a view. */
+static char **add_band(char **list, int number, int source, int white)
 {
-    char number[16], most[16];
+    char text[24];
+    snprintf(text, sizeof text, "%d", source);
+    list = CSLAddString(CSLAddString(list, "-b"), text);
+    if (white == 255) return list;
+    snprintf(text, sizeof text, "-scale_%d", number);
+    list = CSLAddString(CSLAddString(list, text), "0");
+    snprintf(text, sizeof text, "%d", white);
+    return CSLAddString(CSLAddString(CSLAddString(list, text), "0"), "255");
+}
+
+/* A view of the first bands and, behind them, what covers them: alpha, or a mask, or nothing. */
+static GDALDatasetH covered_view(GDALDatasetH set, int colours, int white, int masked)
+{
+    int has_alpha = bake_colour_has_alpha(set);
     char **list = NULL;
-    snprintf(most, sizeof most, "%d", white);
-    for (int i = 1; i <= colours; i++) {
-        snprintf(number, sizeof number, "%d", i);
-        list = CSLAddString(CSLAddString(list, "-b"), number);
-    }
-    if (white != 255) {
-        list = CSLAddString(CSLAddString(CSLAddString(list, "-scale_1"), "0"), most);
-        list = CSLAddString(CSLAddString(list, "0"), "255");
-    }
+    for (int i = 1; i <= colours; i++) list = add_band(list, i, i, white);
+    if (has_alpha) list = add_band(list, colours + 1, GDALGetRasterCount(set), white);
     if (masked) {
         list = CSLAddString(CSLAddString(list, "-b"), "mask");
         list = CSLAddString(CSLAddString(list, "-mask"), "none");
     }
     GDALDatasetH view = translate(set, list);
-    if (view && masked)
+    if (view && (masked || has_alpha))
         GDALSetRasterColorInterpretation(GDALGetRasterBand(view, colours + 1), GCI_AlphaBand);
     return view;
 }
@@ -122,7 +128,7 @@ int bake_colour_views(GDALDatasetH set, const char *path, GDALDatasetH view[BAKE
         if (!view[count]) return bake_fail_gdal("%s: cannot read its colours", path);
         set = view[count++];
     }
-    view[count] = masked_view(set, colours, white, masked);
+    view[count] = covered_view(set, colours, white, masked);
     if (view[count]) return count + 1;
     if (count) GDALClose(view[0]);
     return bake_fail_gdal("%s: cannot read its colours", path);

@@ -8,9 +8,9 @@
 #define BAKE_COLOUR_VIEWS_MAX 2
 
 /* Makes views in front of an image of 8 bits a band: a palette is expanded, its transparent entries
- * and nodata value are not covered; greys of fewer bits reach to white; what a mask or a nodata
- * value excludes becomes alpha. Each view reads from the one before, the first one from `set`: they
- * are closed in reverse, before `set`. The number of views, or -1 (said). */
+ * and nodata value are not covered; greys and colours of fewer bits reach to white; what a mask or
+ * a nodata value excludes becomes alpha. Each view reads from the one before, the first one from
+ * `set`: they are closed in reverse, before `set`. The number of views, or -1 (said). */
 int bake_colour_views(GDALDatasetH set, const char *path, GDALDatasetH view[BAKE_COLOUR_VIEWS_MAX]);
 /* 1 when the last band is alpha. */
 int bake_colour_has_alpha(GDALDatasetH set);
