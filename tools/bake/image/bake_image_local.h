@@ -10,7 +10,6 @@ typedef struct bake_picture {
     GDALDatasetH behind[4 + BAKE_COLOUR_VIEWS_MAX]; /* what `set` reads from: closed after it, the
                                                        last one first */
     int behind_count;
-    int has_alpha; /* its last band says what the image covers (0: nothing there) */
     uint32_t width, height;
     /* its edges, in samples from the ground's south-west sample */
     double west, east, south, north;

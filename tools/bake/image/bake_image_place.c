@@ -3,11 +3,11 @@
 #include "../bake_say.h"
 #include "../raster/bake_area.h"
 #include "../raster/bake_place.h"
-#include "../raster/bake_colour.h"
+#include "../raster/bake_view.h"
+#include "../raster/bake_warp.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <string.h>
 
 /* Edges, in pixels of the heights' raster, of an image without georeference. Such an image covers
  * the whole area of the raster's pixels; or, when it has one pixel for each cell between samples
@@ -57,17 +57,18 @@ static char **add_numbers(char **list, const char *flag, const double *number, i
     return list;
 }
 
+/* Makes a view of the image that names its reference system. */
+static GDALDatasetH name_reference(GDALDatasetH set, OGRSpatialReferenceH srs)
+{
+    return bake_view(set, add_reference(NULL, "-a_srs", srs));
+}
+
 /* Makes a view of the image that lies where the source raster lies. */
 static GDALDatasetH lay_over_source(const bake_ground *ground, GDALDatasetH set)
 {
     double place[6];
     stretched_place(ground, set, place);
-    char **list = CSLAddString(CSLAddString(NULL, "-of"), "VRT");
-    list = add_reference(list, "-a_srs", ground->source_srs);
-    GDALTranslateOptions *options = GDALTranslateOptionsNew(list, NULL);
-    GDALDatasetH laid = GDALTranslate("", set, options, NULL);
-    GDALTranslateOptionsFree(options);
-    CSLDestroy(list);
+    GDALDatasetH laid = name_reference(set, ground->source_srs);
     if (laid) GDALSetGeoTransform(laid, place);
     return laid;
 }
@@ -108,35 +109,20 @@ static OGRSpatialReferenceH reference_for(const bake_ground *ground, GDALDataset
     return bake_area_meets(&image, &now) ? ground->srs : NULL;
 }
 
-/* Makes a view of the image that names its reference system. */
-static GDALDatasetH name_reference(GDALDatasetH set, OGRSpatialReferenceH srs)
-{
-    char **list = CSLAddString(CSLAddString(NULL, "-of"), "VRT");
-    list = add_reference(list, "-a_srs", srs);
-    GDALTranslateOptions *options = GDALTranslateOptionsNew(list, NULL);
-    GDALDatasetH named = GDALTranslate("", set, options, NULL);
-    GDALTranslateOptionsFree(options);
-    CSLDestroy(list);
-    return named;
-}
-
-/* Whether any of the image comes to lie on the ground, told before a pixel is read. */
+/* Whether any of the image comes to lie on the ground, told before a pixel is read; -1 (said). */
 static int meets_ground(const bake_ground *ground, GDALDatasetH set)
 {
-    char *wkt = NULL;
-    if (ground->srs) OSRExportToWkt(ground->srs, &wkt);
-    char **settings = wkt ? CSLSetNameValue(NULL, "DST_SRS", wkt) : NULL;
-    void *transform = GDALCreateGenImgProjTransformer2(set, NULL, settings);
+    void *transform = bake_warp_transform(set, ground->srs);
     double gt[6], extent[4];
     int columns, rows;
-    int ok = transform && GDALSuggestedWarpOutput2(set, GDALGenImgProjTransform, transform, gt,
-                                                   &columns, &rows, extent, 0) == CE_None;
-    if (transform) GDALDestroyGenImgProjTransformer(transform);
-    CSLDestroy(settings);
-    CPLFree(wkt);
+    if (!transform) return -1;
+    int ok = GDALSuggestedWarpOutput2(set, GDALGenImgProjTransform, transform, gt, &columns, &rows,
+                                      extent, 0) == CE_None;
+    GDALDestroyGenImgProjTransformer(transform);
+    if (!ok) return 0;
     bake_area image = { extent[0], extent[1], extent[2], extent[3] },
               here = bake_area_of(ground->geotransform, ground->grid.width, ground->grid.height);
-    return ok && bake_area_meets(&image, &here);
+    return bake_area_meets(&image, &here);
 }
 
 static int check_bands(const char *path, GDALDatasetH set)
@@ -200,8 +186,9 @@ static int lay_picture(const bake_ground *ground, const char *path, bake_picture
     }
     if (!own_place && stack_view(picture, lay_over_source(ground, picture->set), path)) return -1;
     if (own_place && find_reference(ground, path, picture)) return -1;
-    if (!meets_ground(ground, picture->set))
-        return bake_fail("%s: the image shows nothing of this ground", path);
+    int meets = meets_ground(ground, picture->set);
+    if (meets < 0) return -1;
+    if (!meets) return bake_fail("%s: the image shows nothing of this ground", path);
     if (stack_view(picture, warp_onto_ground(ground, picture->set), path)) return -1;
     double columns = GDALGetRasterXSize(picture->set), rows = GDALGetRasterYSize(picture->set);
     if (columns * rows > BAKE_SAMPLES_MAX)
@@ -209,7 +196,6 @@ static int lay_picture(const bake_ground *ground, const char *path, bake_picture
             "%s: its resolution over all of the ground makes %.0f x %.0f pixels, more than %g: "
             "make it coarser (gdalwarp -tr), or the heights fewer (gdal_translate -projwin)",
             path, columns, rows, BAKE_SAMPLES_MAX);
-    picture->has_alpha = 1;
     GDALGetGeoTransform(picture->set, gt);
     place(ground, picture, gt);
     return 0;
@@ -225,7 +211,6 @@ int bake_picture_open(const bake_options *o, const bake_ground *ground, bake_pic
     int views = rc ? 0 : bake_colour_views(picture->set, o->color_path, view);
     if (views < 0) rc = -1;
     for (int i = 0; i < views; i++) stack_view(picture, view[i], o->color_path);
-    picture->has_alpha = bake_colour_has_alpha(picture->set);
     if (!rc) rc = lay_picture(ground, o->color_path, picture);
     if (rc) bake_picture_close(picture);
     return rc;
@@ -240,13 +225,8 @@ void bake_picture_close(bake_picture *picture)
 
 int bake_picture_row(const bake_picture *picture, uint32_t row, uint8_t *rgba)
 {
-    int bands = GDALGetRasterCount(picture->set), is_colour = bands - picture->has_alpha >= 3,
-        width = (int)picture->width;
-    int from[4] = { 1, is_colour ? 2 : 1, is_colour ? 3 : 1, bands };
-    if (!picture->has_alpha) memset(rgba, 255, (size_t)width * 4);
     CPLErrorReset();
-    if (GDALDatasetRasterIO(picture->set, GF_Read, 0, (int)row, width, 1, rgba, width, 1, GDT_Byte,
-                            picture->has_alpha ? 4 : 3, from, 4, 4 * width, 1) != CE_None)
+    if (bake_colour_read(picture->set, (int)row, 1, rgba))
         return bake_fail_gdal("cannot read row %u of the image", row);
     return 0;
 }

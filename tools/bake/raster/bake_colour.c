@@ -1,21 +1,16 @@
 #include "bake_colour.h"
 
 #include "../bake_say.h"
+#include "bake_view.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* A view as gdal_translate makes it; takes `list` over. */
-static GDALDatasetH translate(GDALDatasetH set, char **list)
+/* A view without a nodata value; takes `words` over. */
+static GDALDatasetH translate(GDALDatasetH set, char **words)
 {
-    list = CSLAddString(CSLAddString(list, "-of"), "VRT");
-    list = CSLAddString(CSLAddString(list, "-a_nodata"), "none");
-    GDALTranslateOptions *options = GDALTranslateOptionsNew(list, NULL);
-    GDALDatasetH view = GDALTranslate("", set, options, NULL);
-    GDALTranslateOptionsFree(options);
-    CSLDestroy(list);
-    return view;
+    return bake_view(set, CSLAddString(CSLAddString(words, "-a_nodata"), "none"));
 }
 
 int bake_colour_has_alpha(GDALDatasetH set)
@@ -132,4 +127,16 @@ int bake_colour_views(GDALDatasetH set, const char *path, GDALDatasetH view[BAKE
     if (view[count]) return count + 1;
     if (count) GDALClose(view[0]);
     return bake_fail_gdal("%s: cannot read its colours", path);
+}
+
+int bake_colour_read(GDALDatasetH set, int top, int rows, uint8_t *rgba)
+{
+    int width = GDALGetRasterXSize(set), bands = GDALGetRasterCount(set),
+        has_alpha = bake_colour_has_alpha(set), is_colour = bands - has_alpha >= 3;
+    int from[4] = { 1, is_colour ? 2 : 1, is_colour ? 3 : 1, bands };
+    if (!has_alpha) memset(rgba, 255, (size_t)rows * (size_t)width * 4);
+    return GDALDatasetRasterIO(set, GF_Read, 0, top, width, rows, rgba, width, rows, GDT_Byte,
+                               has_alpha ? 4 : 3, from, 4, 4 * width, 1) == CE_None
+               ? 0
+               : -1;
 }

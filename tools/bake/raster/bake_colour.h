@@ -5,6 +5,8 @@
 
 #include "bake_gdal.h"
 
+#include <stdint.h>
+
 #define BAKE_COLOUR_VIEWS_MAX 2
 
 /* Makes views in front of an image of 8 bits a band: a palette is expanded, its transparent entries
@@ -14,5 +16,7 @@
 int bake_colour_views(GDALDatasetH set, const char *path, GDALDatasetH view[BAKE_COLOUR_VIEWS_MAX]);
 /* 1 when the last band is alpha. */
 int bake_colour_has_alpha(GDALDatasetH set);
+/* Reads rows as RGBA; what has no alpha is covered. 0 or -1 (GDAL's error). */
+int bake_colour_read(GDALDatasetH set, int top, int rows, uint8_t *rgba);
 
 #endif

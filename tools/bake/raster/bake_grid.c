@@ -3,6 +3,7 @@
 #include "../bake_say.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -98,4 +99,21 @@ int bake_grid_write(const bake_grid *grid, uint32_t row, uint32_t column, uint32
 {
     return bake_pwrite(grid->fd, cells, (size_t)count * grid->cell_bytes,
                        cell_at(grid, row, column));
+}
+
+int bake_grid_range(const bake_grid *grid, float *low, float *high)
+{
+    float *row = malloc(grid->width * sizeof *row);
+    int rc = row ? 0 : bake_fail("out of memory");
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (uint32_t j = 0; !rc && j < grid->height; j++) {
+        rc = bake_grid_read(grid, j, 0, grid->width, row);
+        for (uint32_t i = 0; !rc && i < grid->width; i++) {
+            *low = fminf(*low, row[i]);
+            *high = fmaxf(*high, row[i]);
+        }
+    }
+    free(row);
+    return rc;
 }

@@ -33,6 +33,9 @@ int bake_grid_read(const bake_grid *grid, uint32_t row, uint32_t column, uint32_
 int bake_grid_write(const bake_grid *grid, uint32_t row, uint32_t column, uint32_t count,
                     const void *cells);
 
+/* The least and the greatest of a float grid's cells. 0 or -1 (said). */
+int bake_grid_range(const bake_grid *grid, float *low, float *high);
+
 /* Whole transfers at a file position, interrupted calls continued. 0 or -1 (said). */
 int bake_pread(int fd, void *bytes, size_t count, uint64_t at);
 int bake_pwrite(int fd, const void *bytes, size_t count, uint64_t at);

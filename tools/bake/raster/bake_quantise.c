@@ -14,24 +14,6 @@
 #define OFFSET_ERROR_M  1e-4
 #define TRIES_MAX       4096
 
-static int find_range(const bake_grid *grid, bake_steps *steps)
-{
-    float *row = malloc(grid->width * sizeof *row);
-    if (!row) return bake_fail("out of memory");
-    int rc = 0;
-    steps->min_m = INFINITY;
-    steps->max_m = -INFINITY;
-    for (uint32_t j = 0; !rc && j < grid->height; j++) {
-        rc = bake_grid_read(grid, j, 0, grid->width, row);
-        for (uint32_t i = 0; !rc && i < grid->width; i++) {
-            steps->min_m = fmin(steps->min_m, row[i]);
-            steps->max_m = fmax(steps->max_m, row[i]);
-        }
-    }
-    free(row);
-    return rc;
-}
-
 /* Chooses the height of step 0: zero when all heights fit above it, else just below the lowest
  * height, on a whole metre if there is room. */
 static double choose_first(double step_m, double low, double high)
@@ -112,7 +94,9 @@ static double next_nice(double step_m)
 
 int bake_steps_choose(const bake_options *o, const bake_ground *ground, bake_steps *steps)
 {
-    if (find_range(&ground->grid, steps)) return -1;
+    float low_m, high_m;
+    if (bake_grid_range(&ground->grid, &low_m, &high_m)) return -1;
+    *steps = (bake_steps){ .min_m = low_m, .max_m = high_m };
     if (o->hscale_m > 0) {
         if (set_step(steps, o->hscale_m)) return 0;
         return bake_fail("--hscale %g: heights from %g to %g m span more than 65536 steps",

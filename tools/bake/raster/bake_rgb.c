@@ -30,17 +30,6 @@ int bake_rgb_is_palette(GDALDatasetH set)
            GDALGetRasterDataType(band) == GDT_Byte;
 }
 
-/* 1 when the first bands are colours of 8 or 16 bits. */
-static int is_colour(GDALDatasetH set)
-{
-    GDALRasterBandH band = GDALGetRasterBand(set, 1);
-    int bytes = 1, reds = GDALGetRasterColorInterpretation(band) == GCI_RedBand;
-    if (GDALGetRasterCount(set) < BANDS) return 0;
-    for (int i = 1; i <= BANDS; i++)
-        bytes &= GDALGetRasterDataType(GDALGetRasterBand(set, i)) == GDT_Byte;
-    return bytes || reds;
-}
-
 static int has_rgb(GDALDatasetH set)
 {
     for (int i = 1; i <= BANDS; i++)
@@ -48,6 +37,14 @@ static int has_rgb(GDALDatasetH set)
             GDALGetRasterDataType(GDALGetRasterBand(set, i)) != GDT_Byte)
             return 0;
     return 1;
+}
+
+/* 1 when the first bands are colours of 8 or 16 bits. */
+static int is_colour(GDALDatasetH set)
+{
+    GDALRasterBandH band = GDALGetRasterBand(set, 1);
+    return has_rgb(set) || (GDALGetRasterCount(set) >= BANDS &&
+                            GDALGetRasterColorInterpretation(band) == GCI_RedBand);
 }
 
 static int tagged(const char *tag)

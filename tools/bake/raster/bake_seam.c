@@ -2,6 +2,7 @@
 
 #include "../bake_say.h"
 #include "bake_place.h"
+#include "bake_view.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -115,14 +116,10 @@ static GDALDatasetH make_view(GDALDatasetH set, int from, int columns)
     snprintf(number[1], sizeof number[1], "%d", columns);
     char rows[20];
     snprintf(rows, sizeof rows, "%d", GDALGetRasterYSize(set));
-    const char *word[] = { "-of", "VRT", "-srcwin", number[0], "0", number[1], rows };
+    const char *word[] = { "-srcwin", number[0], "0", number[1], rows };
     char **list = NULL;
     for (size_t i = 0; i < sizeof word / sizeof *word; i++) list = CSLAddString(list, word[i]);
-    GDALTranslateOptions *options = GDALTranslateOptionsNew(list, NULL);
-    GDALDatasetH view = GDALTranslate("", set, options, NULL);
-    GDALTranslateOptionsFree(options);
-    CSLDestroy(list);
-    return view;
+    return bake_view(set, list);
 }
 
 static int is_most(const column_run *run, int round) { return 2 * (run->to - run->from) > round; }

@@ -100,22 +100,6 @@ typedef struct value_range {
     float low, high;
 } value_range;
 
-static int find_range(const bake_grid *grid, value_range *range)
-{
-    float *row = malloc(grid->width * sizeof *row);
-    int rc = row ? 0 : bake_fail("out of memory");
-    *range = (value_range){ INFINITY, -INFINITY };
-    for (uint32_t j = 0; !rc && j < grid->height; j++) {
-        rc = bake_grid_read(grid, j, 0, grid->width, row);
-        for (uint32_t i = 0; !rc && i < grid->width; i++) {
-            range->low = fminf(range->low, row[i]);
-            range->high = fmaxf(range->high, row[i]);
-        }
-    }
-    free(row);
-    return rc;
-}
-
 /* Keeps what the cubic filter made beyond the range of its source to that range, and counts it. */
 static void keep_in_range(float *value, size_t count, value_range range, bake_warp_count *out)
 {
@@ -171,7 +155,7 @@ int bake_warp_grid(const bake_warp *w, bake_grid *grid, bake_warp_count *out)
 {
     value_range range;
     *out = (bake_warp_count){ 0 };
-    if (find_range(grid, &range)) return -1;
+    if (bake_grid_range(grid, &range.low, &range.high)) return -1;
     bake_grid image = BAKE_GRID_CLOSED;
     GDALDatasetH source = bake_warp_source(w, grid);
     if (!source) return -1;

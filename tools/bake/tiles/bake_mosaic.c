@@ -40,20 +40,13 @@ typedef struct patchwork {
 /* Reads an image of any make, as long as all are of one size. 0 or -1. */
 static int read_pixels(patchwork *p, GDALDatasetH set)
 {
-    int side = GDALGetRasterXSize(set), bands = GDALGetRasterCount(set),
-        alpha = bake_colour_has_alpha(set), colours = bands - alpha >= 3;
-    int from[RGBA] = { 1, colours ? 2 : 1, colours ? 3 : 1, bands };
+    int side = GDALGetRasterXSize(set);
     if (side != GDALGetRasterYSize(set) || side > TILE_SIDE_MAX ||
         (p->side && (int)p->side != side))
         return -1;
     p->side = (uint32_t)side;
     if (!p->pixels) p->pixels = malloc((size_t)RGBA * p->side * p->side);
-    if (!p->pixels) return -1;
-    memset(p->pixels, 255, (size_t)RGBA * p->side * p->side);
-    return GDALDatasetRasterIO(set, GF_Read, 0, 0, side, side, p->pixels, side, side, GDT_Byte,
-                               alpha ? RGBA : 3, from, RGBA, RGBA * side, 1) == CE_None
-               ? 0
-               : -1;
+    return p->pixels ? bake_colour_read(set, 0, side, p->pixels) : -1;
 }
 
 static int decode(patchwork *p, uint8_t *bytes, size_t count)
