@@ -6,6 +6,7 @@
 #include "../../tools/bake/bake_error.h"
 #include "../../tools/bake/bake_fault.h"
 #include "../../tools/bake/raster/bake_fill.h"
+#include "../../tools/bake/raster/bake_unit.h"
 #include "../../tools/bake/bake_jobs.h"
 #include "../../tools/bake/bake_run.h"
 #include "../../tools/bake/bake_say.h"
@@ -477,6 +478,40 @@ static void a_fault_is_told_where_the_core_finds_one(void **state)
     assert_string_equal(text, "spacing_wu 524288 is not from 1 to 524287");
 }
 
+/* ---- units ---- */
+
+static void units_are_known_in_every_spelling(void **state)
+{
+    static const double foot = 0.3048, survey = 1200.0 / 3937;
+    const struct {
+        double metres;
+        const char *spellings[12];
+    } unit[] = {
+        { foot,
+          { "ft", "foot", "Feet", "international foot", "foot (International)", "ft_int",
+            "feet (international)" } },
+        { survey,
+          { "ftUS", "us-ft", "US survey foot", "US_survey_foot", "us_ft", "ft_us", "foot_us",
+            "Foot_US", "US survey feet", "ft (US)", "feet_us" } },
+        { 1, { "m", "metre", "Metres", "meter", "METERS", "[m]", "m (MSL)", "gpm" } },
+        { 1000, { "km", "kilometre" } },
+        { 0.1, { "dm", "decimeters", "0.1 m" } },
+        { 0.01, { "cm", "centimetre" } },
+        { 0.001, { "mm", "millimetres" } },
+        { 6 * foot, { "fathom", "fathoms" } },
+        { 3 * foot, { "yard", "yd" } },
+        { foot / 12, { "inch", "in" } },
+        { 0, { "klafter", "", " ", "-1 m", "0 m", "inf m", "nan", "f", "t", "m ft" } },
+    };
+    (void)state;
+    for (size_t u = 0; u < sizeof unit / sizeof *unit; u++)
+        for (int s = 0; unit[u].spellings[s]; s++) {
+            double found = bake_unit_metres(unit[u].spellings[s]);
+            if (fabs(found - unit[u].metres) <= 1e-12 * unit[u].metres) continue;
+            fail_msg("\"%s\" is %.9g m, not %.9g m", unit[u].spellings[s], found, unit[u].metres);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -494,6 +529,7 @@ int main(void)
         cmocka_unit_test(jobs_are_taken_in_order),
         cmocka_unit_test(a_failed_job_ends_all),
         cmocka_unit_test(a_fault_is_told_where_the_core_finds_one),
+        cmocka_unit_test(units_are_known_in_every_spelling),
     };
     bake_say_setup("test_bake", 1);
     bake_temp_setup("build/x");
