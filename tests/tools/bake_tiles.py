@@ -2,7 +2,6 @@
 import gzip
 import math
 import os
-import random
 import sqlite3
 import struct
 import sys
@@ -217,10 +216,10 @@ def _():
         assert run("bake", path, "-o", "out.ffp", "--bbox", wrong).returncode == 2, wrong
 
 
-@case("damaged PMTiles end in one line, or in ground: cut off, spoilt, hostile numbers")
+@case("damaged PMTiles end in one line: cut off, hostile numbers, packed without end (spoilt ones: test_pmtiles.c)")
 def _():
     whole = open(pmtiles("world.pmtiles", images, leaves=2), "rb").read()
-    path, chance = os.path.join(work, "bad.pmtiles"), random.Random(3)
+    path = os.path.join(work, "bad.pmtiles")
 
     def spoil(data):
         with open(path, "wb") as out:
@@ -231,14 +230,6 @@ def _():
 
     for end in (7, 50, 126, 127, 140, len(whole) // 2):
         assert spoil(whole[:end]), end
-    for at in (8, 16, 24, 32, 40, 48, 56, 64):  # a section that is nowhere, or endless
-        for value in (2**64 - 1, 2**63, len(whole)):
-            spoil(whole[:at] + struct.pack("<Q", value) + whole[at + 8:])
-    for _ in range(25):
-        data = bytearray(whole)
-        for _ in range(chance.randrange(1, 4)):
-            data[chance.randrange(8, 1200)] = chance.randrange(256)
-        spoil(bytes(data))
     for bomb in (varint(2**62), varint(1) + varint(5) + varint(0) + varint(2**40) + varint(1), varint(3) + b"\x01\x00\x00" + b"\x01" * 9, b"\xff" * 40, b""):
         root = gzip.compress(bomb)
         assert "damaged" in spoil(whole[:8] + struct.pack("<2Q", 127, len(root)) + whole[24:127] + root + whole[127 + len(root):])
