@@ -113,43 +113,43 @@ int ff_limit_again(ff_tree *tree, ff_limit_search *search)
 /* ---- wishes ---- */
 
 #define BUCKETS       128
-#define BUCKET_Q8     32 /* an eighth of an octave of value */
-#define LEVEL_BUCKETS 11 /* a level on, ground is off by 2.6 times less, or so */
-#define FINER_LEVELS  4  /* of what has not come, looked forward to */
+#define BUCKET_Q8     32         /* an eighth of an octave of value */
+#define ONE_LOG_Q8    (16 * 256) /* of FF_VALUE_ONE */
+#define LEVEL_BUCKETS 11         /* a level on, ground is off by 2.6 times less, or so */
+#define FINER_LEVELS  4          /* of what has not come, looked forward to */
 
 static unsigned bucket_of(uint32_t value)
 {
     FF_ASSERT(value > FF_VALUE_ONE);
-    unsigned bucket = (unsigned)(ff_log2_q8(value) - ff_log2_q8(FF_VALUE_ONE)) / BUCKET_Q8;
+    unsigned bucket = (unsigned)(ff_log2_q8(value) - ONE_LOG_Q8) / BUCKET_Q8;
     return bucket < BUCKETS ? bucket : BUCKETS - 1;
 }
 
-/* Nodes that splits of each value bring into view: those here already, and those to come. Returns
- * how many are to come. */
-static uint32_t count_splits(const ff_tree *tree, uint32_t nodes[BUCKETS])
+/* Nodes that splits of each value bring into view: those here already, or those to come. Returns
+ * how many. */
+static uint32_t count_splits(const ff_tree *tree, int here, uint32_t nodes[BUCKETS])
 {
-    uint32_t to_come = 0;
+    uint32_t count = 0;
     for (uint32_t level = 0; level < FF_LEVELS_MAX; level++) {
         for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE;
              slot = tree->node[slot].want_next) {
             const ff_node *node = &tree->node[slot];
-            int here = ff_node_has_children(node);
-            unsigned bucket = bucket_of(node->value), levels = here ? 1 : FINER_LEVELS;
             ff_box box;
-            if (here && !(node->flags & FF_NODE_SPLIT)) continue;
+            if (here ? !(node->flags & FF_NODE_SPLIT) : ff_node_has_children(node)) continue;
             ff_node_box(tree, node, &box);
             if (!ff_node_seen(tree, node, &box)) continue;
+            unsigned bucket = bucket_of(node->value), levels = here ? 1 : FINER_LEVELS;
             for (unsigned k = 0; k < levels && level + k + 1 < ff_terrain_levels(&tree->info);
                  k++) {
                 uint32_t more = 3u << 2 * k;
                 nodes[bucket] += more;
-                to_come += here ? 0 : more;
+                count += more;
                 if (bucket < LEVEL_BUCKETS) break;
                 bucket -= LEVEL_BUCKETS;
             }
         }
     }
-    return to_come;
+    return count;
 }
 
 void ff_limit_wishes(ff_tree *tree)
@@ -158,9 +158,11 @@ void ff_limit_wishes(ff_tree *tree)
     unsigned bucket = 0;
     tree->wish_value = FF_VALUE_ONE;
     if (!limit) return;
-    uint32_t to_come = count_splits(tree, nodes), each = 2u << 2 * tree->info.node_log2;
+    uint32_t to_come = count_splits(tree, 0, nodes), each = 2u << 2 * tree->info.node_log2;
     uint64_t triangles = tree->stats.triangles + (uint64_t)to_come * each;
-    for (; to_come && bucket < BUCKETS && triangles > limit; bucket++) {
+    if (!to_come || triangles <= limit) return;
+    (void)count_splits(tree, 1, nodes);
+    for (; bucket < BUCKETS && triangles > limit; bucket++) {
         uint64_t less = (uint64_t)nodes[bucket] * each;
         triangles -= less < triangles ? less : triangles;
     }

@@ -66,16 +66,6 @@ static int is_needed_in_view(const ff_tree *tree, const ff_node *node)
     return ff_box_in_view(tree, &box);
 }
 
-/* The same, once it is known what is hidden. */
-static int is_needed(const ff_tree *tree, const ff_node *node)
-{
-    ff_box box;
-    FF_ASSERT(node->flags & FF_NODE_WANTED);
-    if (node->flags & FF_NODE_NEEDED) return 1;
-    ff_node_box(tree, node, &box);
-    return ff_node_seen(tree, node, &box);
-}
-
 /* ---- new tiles ---- */
 
 /* A root that comes for the reserve would at once forbid its neighbours in view to be more than a
@@ -129,6 +119,7 @@ static void join_tiles(ff_tree *tree)
 
 int ff_tile_waits(const ff_tree *tree, const ff_node *node)
 {
+    if (!tree->tiles_wait) return 0;
     uint32_t root = ff_tree_find(tree, ff_key_make(ff_key_tile(node->key), 0, 0));
     FF_ASSERT(root != FF_SLOT_NONE);
     return !(tree->node[root].flags & FF_NODE_ACTIVE);
@@ -141,8 +132,7 @@ static void forget_needs(ff_tree *tree)
         for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE;
              slot = tree->node[slot].want_next) {
             ff_node *node = &tree->node[slot];
-            if (!tree->tiles_wait || !ff_tile_waits(tree, node))
-                node->flags &= (uint8_t)~FF_NODE_NEEDED;
+            if (!ff_tile_waits(tree, node)) node->flags &= (uint8_t)~FF_NODE_NEEDED;
         }
 }
 
@@ -172,7 +162,7 @@ void ff_want_close(ff_tree *tree)
     if (through) forget_needs(tree);
 }
 
-static void need_beside(ff_tree *tree, const ff_node *node)
+void ff_need_beside(ff_tree *tree, const ff_node *node)
 {
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
         ff_key beside = parent_beside(tree, node, (enum ff_side)side);
@@ -181,20 +171,5 @@ static void need_beside(ff_tree *tree, const ff_node *node)
         if (nearest == FF_SLOT_NONE) continue;
         if ((tree->node[nearest].flags & (FF_NODE_WANTED | FF_NODE_SPLIT)) == FF_NODE_WANTED)
             tree->node[nearest].flags |= FF_NODE_NEEDED;
-    }
-}
-
-void ff_need_close(ff_tree *tree)
-{
-    for (uint32_t i = 0; i < tree->view_count - tree->stats.nodes_hidden; i++)
-        if (tree->drawn[i].coarser) need_beside(tree, tree->drawn[i].node);
-    for (uint32_t level = FF_LEVELS_MAX; level-- > 1;) {
-        for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE;
-             slot = tree->node[slot].want_next) {
-            const ff_node *node = &tree->node[slot];
-            if (node->flags & FF_NODE_SPLIT || (tree->tiles_wait && ff_tile_waits(tree, node)))
-                continue;
-            if (is_needed(tree, node)) need_beside(tree, node);
-        }
     }
 }

@@ -200,10 +200,10 @@ void ff_want(ff_tree *tree, uint32_t slot, uint32_t value);
 /* Makes everything wanted that wanted nodes need beside them. Then tiles out of view that are new
  * and lack what nodes in view need there stop being active: they do not join the cut yet. */
 void ff_want_close(ff_tree *tree);
-/* Marks what nodes that are seen need beside them: to split, or to be drawn without leaving out
+/* Marks what a node that is seen needs beside it: to split, or to be drawn without leaving out
  * vertices at a side. */
-void ff_need_close(ff_tree *tree);
-/* 1 for a node of such a tile. */
+void ff_need_beside(ff_tree *tree, const ff_node *node);
+/* 1 for a wanted node of such a tile. */
 int ff_tile_waits(const ff_tree *tree, const ff_node *node);
 
 /* ff_limit.c. begin: puts the last selection's quality into force, for a cut to be made with.

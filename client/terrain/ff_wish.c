@@ -97,20 +97,32 @@ static void wish_roots(ff_tree *tree)
 
 /* ---- refinements ---- */
 
-/* Puts wanted nodes without children into `sort`, the most valuable first. */
+static int is_seen_or_needed(const ff_tree *tree, const ff_node *node, int waits)
+{
+    ff_box box;
+    if (node->flags & FF_NODE_NEEDED && !waits) return 1;
+    ff_node_box(tree, node, &box);
+    return ff_node_seen(tree, node, &box);
+}
+
+/* Puts wanted nodes without children into `sort`, the most valuable first. From the finest level
+ * up: what a node that is seen needs beside it is coarser, so its own need is known before its
+ * turn. */
 static uint32_t missing_children(ff_tree *tree)
 {
     uint32_t count = 0;
-    for (uint32_t level = 0; level < FF_LEVELS_MAX; level++) {
+    for (uint32_t i = 0; i < tree->view_count - tree->stats.nodes_hidden; i++)
+        if (tree->drawn[i].coarser) ff_need_beside(tree, tree->drawn[i].node);
+    for (uint32_t level = FF_LEVELS_MAX; level-- > 0;) {
         for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE;
              slot = tree->node[slot].want_next) {
             const ff_node *node = &tree->node[slot];
             FF_ASSERT(node->flags & FF_NODE_WANTED && ff_key_level(node->key) == level);
+            if (node->flags & FF_NODE_SPLIT) continue;
+            int waits = ff_tile_waits(tree, node), seen = is_seen_or_needed(tree, node, waits);
+            if (seen && !waits) ff_need_beside(tree, node);
             if (ff_node_has_children(node)) continue;
-            ff_box box;
-            ff_node_box(tree, node, &box);
-            int needed = node->flags & FF_NODE_NEEDED && !ff_tile_waits(tree, node);
-            uint64_t unseen = needed || ff_node_seen(tree, node, &box) ? 0 : OUT_OF_VIEW;
+            uint64_t unseen = seen ? 0 : OUT_OF_VIEW;
             if (!unseen && node->value < tree->wish_value) continue;
             tree->sort[count++] = unseen | (uint64_t)(FF_VALUE_MAX - node->value) << FF_SLOT_BITS |
                                   slot;
@@ -142,7 +154,6 @@ static void wish_children(ff_tree *tree)
 void ff_wish_make(ff_tree *tree)
 {
     tree->wish_count = 0;
-    ff_need_close(tree);
     wish_roots(tree);
     wish_children(tree);
 }
