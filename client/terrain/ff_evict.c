@@ -1,7 +1,8 @@
 /* Who makes room when the pool is full. Roots in the window come before all refinements, nearer
  * before farther; refinements by the value of their split. Something is dropped only for something
  * strictly more valuable, so under a still camera every exchange raises the value of what is held:
- * a full pool settles. What is not in view drives out only what nobody wants. */
+ * a full pool settles. What is not seen, out of view or hidden, drives out only what nobody
+ * wants. */
 #include "ff_tree_local.h"
 
 #define IDLE_SHIFT 8 /* outside the window children are worth 1/256 of what they are inside */
@@ -53,12 +54,7 @@ static uint32_t family_worth(const ff_tree *tree, const ff_node *parent)
 uint32_t ff_evict_limit(const ff_tree *tree, const ff_node *node)
 {
     uint32_t worth = split_worth(tree, node);
-    if (node->flags & FF_NODE_WANTED) {
-        ff_box box;
-        ff_node_box(tree, node, &box);
-        int needed = node->flags & FF_NODE_NEEDED && !ff_tile_waits(tree, node);
-        return needed || ff_box_in_view(tree, &box) ? worth : FF_VALUE_ONE;
-    }
+    if (node->flags & FF_NODE_WANTED) return ff_node_needed(tree, node) ? worth : FF_VALUE_ONE;
     if (tree->quality.sigma_q8 <= 256) return worth;
     uint32_t cached = (uint32_t)((FF_VALUE_ONE << 8) / (uint32_t)tree->quality.sigma_q8);
     FF_ASSERT(cached < FF_VALUE_ONE);
@@ -160,12 +156,11 @@ int ff_evict_for_root(ff_tree *tree, uint32_t tile)
     if (!tree->has_view || !ff_tile_active(tree, tile)) return 0;
     ff_box box;
     ff_tile_box(tree, tile, &box);
-    if (drop_one(tree, FF_SLOT_NONE, ff_box_in_view(tree, &box) ? UINT64_MAX : FF_VALUE_ONE))
-        return 1;
+    if (drop_one(tree, FF_SLOT_NONE, ff_box_seen(tree, &box) ? UINT64_MAX : FF_VALUE_ONE)) return 1;
     int64_t farthest = ff_tile_distance(tree, tile);
     uint32_t victim = FF_SLOT_NONE;
     for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
-        /* what is not in view was refused this family */
+        /* what is not seen was refused this family */
         if (ff_node_has_children(&tree->node[slot])) return 0;
         int64_t distance = ff_tile_distance(tree, ff_key_tile(tree->node[slot].key));
         if (distance > farthest) {

@@ -173,3 +173,12 @@ void ff_need_beside(ff_tree *tree, const ff_node *node)
             tree->node[nearest].flags |= FF_NODE_NEEDED;
     }
 }
+
+int ff_node_needed(const ff_tree *tree, const ff_node *node)
+{
+    ff_box box;
+    FF_ASSERT(node->flags & FF_NODE_WANTED);
+    if (node->flags & FF_NODE_NEEDED && !ff_tile_waits(tree, node)) return 1;
+    ff_node_box(tree, node, &box);
+    return ff_node_seen(tree, node, &box);
+}

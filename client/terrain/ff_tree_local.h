@@ -22,8 +22,8 @@ enum ff_node_flags {
     /* its children are desired, by itself or by a neighbour that may not be two levels finer */
     FF_NODE_WANTED = 4,
     FF_NODE_SPLIT = 8, /* the cut runs below it */
-    FF_NODE_NEEDED =
-        16, /* something seen cannot split, or is drawn coarser, before this node has split */
+    /* something seen cannot split, or is drawn coarser, before this node has split */
+    FF_NODE_NEEDED = 16,
     FF_NODE_FILLED = 32, /* some of its ground was void in the source */
     FF_NODE_JOINED = 64, /* a root that has been in the cut since it came into the window */
     /* of the cut, in view, and by nearer ground, whatever comes of it; stale when out of view */
@@ -159,8 +159,8 @@ ff_room ff_room_make(const ff_tree *tree, uint64_t *victim, uint32_t taken, uint
 int ff_room_take(const ff_tree *tree, ff_room *room, const ff_node *node);
 /* The same for `needed` slots, from victims worth less than `limit`. */
 int ff_room_take_slots(const ff_tree *tree, ff_room *room, uint32_t needed, uint32_t limit);
-/* The children of `node` may drive out all that is worth less than this. Children that are not in
- * view drive out only what nobody wants, worth less than 1; children that nobody wants only what is
+/* The children of `node` may drive out all that is worth less than this. Children that are not
+ * seen drive out only what nobody wants, worth less than 1; children that nobody wants only what is
  * worth less than 1/sigma: so much is cached. */
 uint32_t ff_evict_limit(const ff_tree *tree, const ff_node *node);
 
@@ -203,6 +203,9 @@ void ff_want_close(ff_tree *tree);
 /* Marks what a node that is seen needs beside it: to split, or to be drawn without leaving out
  * vertices at a side. */
 void ff_need_beside(ff_tree *tree, const ff_node *node);
+/* 1 when a wanted node is seen, or needed by one that is: its children are wished for in view. Once
+ * the cut is listed. */
+int ff_node_needed(const ff_tree *tree, const ff_node *node);
 /* 1 for a wanted node of such a tile. */
 int ff_tile_waits(const ff_tree *tree, const ff_node *node);
 

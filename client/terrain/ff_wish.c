@@ -97,14 +97,6 @@ static void wish_roots(ff_tree *tree)
 
 /* ---- refinements ---- */
 
-static int is_seen_or_needed(const ff_tree *tree, const ff_node *node, int waits)
-{
-    ff_box box;
-    if (node->flags & FF_NODE_NEEDED && !waits) return 1;
-    ff_node_box(tree, node, &box);
-    return ff_node_seen(tree, node, &box);
-}
-
 /* Puts wanted nodes without children into `sort`, the most valuable first. From the finest level
  * up: what a node that is seen needs beside it is coarser, so its own need is known before its
  * turn. */
@@ -119,10 +111,10 @@ static uint32_t missing_children(ff_tree *tree)
             const ff_node *node = &tree->node[slot];
             FF_ASSERT(node->flags & FF_NODE_WANTED && ff_key_level(node->key) == level);
             if (node->flags & FF_NODE_SPLIT) continue;
-            int waits = ff_tile_waits(tree, node), seen = is_seen_or_needed(tree, node, waits);
-            if (seen && !waits) ff_need_beside(tree, node);
+            int needed = ff_node_needed(tree, node);
+            if (needed && !ff_tile_waits(tree, node)) ff_need_beside(tree, node);
             if (ff_node_has_children(node)) continue;
-            uint64_t unseen = seen ? 0 : OUT_OF_VIEW;
+            uint64_t unseen = needed ? 0 : OUT_OF_VIEW;
             if (!unseen && node->value < tree->wish_value) continue;
             tree->sort[count++] = unseen | (uint64_t)(FF_VALUE_MAX - node->value) << FF_SLOT_BITS |
                                   slot;

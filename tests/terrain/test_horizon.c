@@ -205,6 +205,64 @@ static void a_valley_between_ridges_is_not_wished_for(void **state)
     assert_true(few > 0 && 2 * few < many);
 }
 
+/* One after the other, the refinements that are left to wish for come, those of hidden ground among
+ * them, and then the roots of the reserve. Nothing of the picture is given up for them. Returns how
+ * many came. */
+static uint32_t deliver_out_of_view(terrain_fixture *fx, const ff_view *view,
+                                    const ff_quality *quality)
+{
+    for (uint32_t came = 0;; came++) {
+        const ff_wish *wish;
+        const ff_drawn *drawn;
+        ff_wish next;
+        uint32_t count = ff_tree_wishes(fx->tree, &wish), at = 0,
+                 before = ff_tree_drawn(fx->tree, &drawn);
+        while (at < count && wish[at].kind != FF_KIND_REFINEMENT) at++;
+        if (at < count)
+            next = wish[at];
+        else if (!ff_tree_reserve(fx->tree, &next, 1))
+            return came;
+        assert_false(next.in_view);
+        assert_int_equal(fixture_deliver(fx, next.key, next.kind), FF_OK);
+        settle_in_view(fx, view, quality);
+        assert_true(ff_tree_drawn(fx->tree, &drawn) >= before);
+        assert_true(came < 4000);
+    }
+}
+
+/* In pools of every size what is in view comes to an end, then the rest, and then nothing changes
+ * any more. */
+static void full_pools_settle(void **state)
+{
+    (void)state;
+    static const fixture_height ground[] = { ridge, valley, fixture_hills };
+    uint32_t came = 0;
+    for (uint32_t nodes = 16; nodes < 1200; nodes += nodes / 2) {
+        for (unsigned g = 0; g < 3; g++) {
+            terrain_fixture fx;
+            fixture_make(&fx, 3, 7, 4, 3, ground[g]);
+            fx.hidden = FF_HIDDEN_LEFT_OUT;
+            fixture_tree(&fx, nodes, LIST);
+            ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
+            quality.error_px_q8 = 16;
+            quality.triangles_max = g == 0 ? 40000 : 0;
+            const ff_view view = fixture_view_above(&fx, 600, 2000, 30, 90, 0);
+            settle_in_view(&fx, &view, &quality);
+            came += deliver_out_of_view(&fx, &view, &quality);
+            ff_wish list[LIST];
+            uint32_t held = fixture_stats(&fx).nodes_held;
+            for (unsigned frame = 0; frame < 40; frame++) {
+                assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 0);
+                assert_int_equal(ff_tree_reserve(fx.tree, list, LIST), 0);
+            }
+            assert_int_equal(fixture_stats(&fx).nodes_held, held);
+            fixture_assert_whole(&fx);
+            fixture_free(&fx);
+        }
+    }
+    assert_true(came > 100);
+}
+
 /* What is foreseen straight behind the part of the ridge that is held as it is. */
 static uint32_t foreseen_beyond(const terrain_fixture *fx, const int32_t pos_wu[3])
 {
@@ -303,6 +361,7 @@ int main(void)
         cmocka_unit_test(what_is_hidden_has_no_pixel),
         cmocka_unit_test(hidden_ground_is_not_wished_for),
         cmocka_unit_test(a_valley_between_ridges_is_not_wished_for),
+        cmocka_unit_test(full_pools_settle),
         cmocka_unit_test(ground_beyond_a_ridge_is_foreseen_from_above),
         cmocka_unit_test(where_little_is_hidden_it_rests),
         cmocka_unit_test(only_whole_ground_under_the_eye_hides),
