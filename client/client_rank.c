@@ -124,7 +124,7 @@ static void want_reserve(ff_client *client, const ff_view *view, int64_t now_us)
             ff_requests_want(&client->requests, kind, wish[i].key, FF_CLASS_RESERVE, priority,
                              NULL);
     }
-    if (client->resting && !client->all_client)
+    if (client->resting && !ff_client_own_ground(client))
         ff_panorama_want_reserve(&client->panorama, &client->requests, view, now_us);
 }
 

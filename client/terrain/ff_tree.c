@@ -75,8 +75,10 @@ ff_tree *ff_tree_create(const ff_tree_desc *desc, void *memory, size_t bytes)
     tree->node_count = tree->free_count = desc->node_count;
     tree->wish_capacity = desc->wish_count;
     tree->hidden = desc->hidden;
-    if (tree->horizon) memset(tree->horizon, 0, sizeof *tree->horizon);
-    if (tree->horizon) memset(tree->horizon_ahead, 0, sizeof *tree->horizon_ahead);
+    if (tree->horizon) {
+        memset(tree->horizon, 0, sizeof *tree->horizon);
+        memset(tree->horizon_ahead, 0, sizeof *tree->horizon_ahead);
+    }
     tree->hash_mask = hash_size(desc->node_count) - 1;
     FF_ASSERT((tree->hash_mask & (tree->hash_mask + 1)) == 0);
     memset(tree->hash, 0xFF, (tree->hash_mask + 1) * sizeof *tree->hash);
