@@ -19,12 +19,30 @@ static void open_balanced(client_rig *rig, enum ff_balance_mode mode, uint32_t f
     rig_client(rig, 4u << 20);
 }
 
+/* The client draws all ground. */
+static void open_budgeted(client_rig *rig, uint32_t frame_budget)
+{
+    open_balanced(rig, FF_BALANCE_ON, frame_budget);
+    rig->desc.panorama.enabled = 0;
+    ff_client_set_panorama(rig->client, &rig->desc.panorama);
+}
+
+static void set_budget(client_rig *rig, uint32_t frame_budget)
+{
+    rig->desc.balance.frame_budget = frame_budget;
+    ff_client_set_balance(rig->client, &rig->desc.balance);
+}
+
+/* A picture every other frame. */
+static void step(client_rig *rig, unsigned frame)
+{
+    rig->camera.yaw = 3000 + 300 * (frame / 2 % 2);
+    rig_step(rig, STEP_US);
+}
+
 static void run(client_rig *rig, unsigned seconds)
 {
-    for (unsigned i = 0; i < seconds * 20; i++) {
-        rig->camera.yaw = 3000 + 300 * (i / 2 % 2); /* a picture every other frame */
-        rig_step(rig, STEP_US);
-    }
+    for (unsigned frame = 0; frame < seconds * 20; frame++) step(rig, frame);
 }
 
 static void a_client_keeps_a_budget_of_triangles(void **state)
@@ -33,15 +51,11 @@ static void a_client_keeps_a_budget_of_triangles(void **state)
     static const uint32_t budget[] = { 5000, 2500, 8000, 1000000 };
     client_rig rig;
     uint32_t triangles = 0;
-    open_balanced(&rig, FF_BALANCE_ON, budget[0]);
-    rig.desc.panorama.enabled = 0;
-    ff_client_set_panorama(rig.client, &rig.desc.panorama);
+    open_budgeted(&rig, budget[0]);
     for (int i = 0; i < 4; i++) {
-        rig.desc.balance.frame_budget = budget[i];
-        ff_client_set_balance(rig.client, &rig.desc.balance);
+        set_budget(&rig, budget[i]);
         for (unsigned frame = 0; frame < 20 * 20; frame++) {
-            rig.camera.yaw = 3000 + 300 * (frame / 2 % 2);
-            rig_step(&rig, STEP_US);
+            step(&rig, frame);
             assert_true(rig_stats(&rig).tree.triangles <= budget[i]);
         }
         ff_client_stats settled = rig_stats(&rig);
@@ -66,9 +80,8 @@ static void run_costed(client_rig *rig, unsigned seconds, double *mean)
 {
     static uint32_t seed = 1;
     double sum = 0;
-    for (unsigned i = 0; i < seconds * 20; i++) {
-        rig->camera.yaw = 3000 + 300 * (i / 2 % 2);
-        rig_step(rig, STEP_US);
+    for (unsigned frame = 0; frame < seconds * 20; frame++) {
+        step(rig, frame);
         uint32_t cost = device_cost(rig_stats(rig).tree.triangles, &seed);
         ff_client_frame_cost(rig->client, cost);
         sum += cost;
@@ -82,12 +95,9 @@ static void a_client_follows_costs_that_are_reported(void **state)
     static const uint32_t budget[] = { 20000, 10000, 25000, 10000 };
     client_rig rig;
     double mean;
-    open_balanced(&rig, FF_BALANCE_ON, budget[0]);
-    rig.desc.panorama.enabled = 0;
-    ff_client_set_panorama(rig.client, &rig.desc.panorama);
+    open_budgeted(&rig, budget[0]);
     for (int i = 0; i < 4; i++) {
-        rig.desc.balance.frame_budget = budget[i];
-        ff_client_set_balance(rig.client, &rig.desc.balance);
+        set_budget(&rig, budget[i]);
         run_costed(&rig, 120, &mean);
         ff_client_stats settled = rig_stats(&rig);
         run_costed(&rig, 120, &mean);
