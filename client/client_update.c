@@ -124,6 +124,16 @@ static uint8_t is_far_painted(const ff_client *client, const c3d_camera *camera)
                                              ff_panorama_whole(&client->panorama, camera));
 }
 
+/* All of the client's own ground is here, or was asked for: the panorama goes. */
+static void leave_panorama(ff_client *client)
+{
+    if (!ff_client_own_ground(client) || client->panorama.active < 0 || client->dirty ||
+        ff_requests_waiting(&client->requests, FF_CLASS_IN_VIEW))
+        return;
+    ff_panorama_drop(&client->panorama);
+    client->dirty = 1;
+}
+
 /* Whoever stops may have the panorama's other faces, although nothing else changes. */
 static void look_for_rest(ff_client *client)
 {
@@ -148,6 +158,7 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
     ff_quality quality = ff_client_quality(client);
     ff_view view;
     make_view(client, camera, &quality, &view);
+    leave_panorama(client);
     ff_client_balance_step(client, &view.camera, now_us);
     ff_motion_feed(&client->motion, now_us, camera->pos_wu);
     ff_turn_feed(&client->turn, now_us, camera->yaw, camera->pitch);

@@ -49,11 +49,6 @@ void ff_client_balance_step(ff_client *client, const c3d_camera *camera, int64_t
         sample.waiting = ff_requests_waiting(&client->requests, FF_CLASS_IN_VIEW) ||
                          ff_panorama_late(&client->panorama, camera);
     }
-    /* all of the client's own ground is here: the panorama goes */
-    if (client->all_client && client->panorama.active >= 0 && !sample.waiting) {
-        ff_panorama_drop(&client->panorama);
-        client->dirty = 1;
-    }
     if (ff_client_low_power(client) || !tree.nodes_held)
         ff_balance_pause(&client->balance);
     else if (ff_balance_feed(&client->balance, &sample))

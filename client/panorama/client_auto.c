@@ -84,12 +84,6 @@ void ff_client_auto_begin(ff_client *client)
 void ff_client_auto_step(ff_client *client, const c3d_camera *camera, int64_t now_us)
 {
     if (client->panorama.desc.enabled != FF_PANORAMA_AUTO || ff_client_low_power(client)) return;
-    /* all of the client's own ground is here: the panorama goes */
-    if (client->auto_ground && client->panorama.active >= 0 &&
-        !ff_requests_waiting(&client->requests, FF_CLASS_IN_VIEW)) {
-        ff_panorama_drop(&client->panorama);
-        client->dirty = 1;
-    }
     int drawn = !client->auto_ground;
     if (now_us - client->auto_us < (drawn ? LEAVE_US : DECIDE_US)) return;
     client->auto_us = now_us;

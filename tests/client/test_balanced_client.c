@@ -169,6 +169,24 @@ static void the_back_plane_waits_for_its_panorama(void **state)
     rig_close(&rig);
 }
 
+/* Who shall draw all ground keeps the panorama behind it until that was asked for. */
+static void the_panorama_waits_for_the_ground(void **state)
+{
+    (void)state;
+    client_rig rig;
+    int32_t position_wu[3];
+    unsigned faces;
+    open_balanced(&rig, FF_BALANCE_OFF, 0);
+    assert_true(rig_settle(&rig, 600));
+    rig.desc.balance.mode = FF_BALANCE_ALL_CLIENT;
+    ff_client_set_balance(rig.client, &rig.desc.balance);
+    rig_step(&rig, STEP_US);
+    assert_true(ff_client_panorama(rig.client, position_wu, &faces));
+    assert_true(rig_settle(&rig, 600));
+    assert_false(ff_client_panorama(rig.client, position_wu, &faces));
+    rig_close(&rig);
+}
+
 /* A nearest back plane that lies beyond the back plane itself is that one. */
 static void no_nearest_back_plane_is_too_far(void **state)
 {
@@ -189,6 +207,7 @@ int main(void)
                                         cmocka_unit_test(a_client_follows_costs_that_are_reported),
                                         cmocka_unit_test(the_ends_and_off),
                                         cmocka_unit_test(the_back_plane_waits_for_its_panorama),
+                                        cmocka_unit_test(the_panorama_waits_for_the_ground),
                                         cmocka_unit_test(no_nearest_back_plane_is_too_far) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
