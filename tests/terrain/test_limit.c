@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <cmocka.h>
 
+#include <string.h>
+
 static ff_quality limited(enum ff_measure measure, uint32_t triangles)
 {
     ff_quality quality = fixture_quality(measure);
@@ -104,6 +106,22 @@ static void settles_in_pools_of_every_size(void **state)
     }
 }
 
+/* All that is wished for in view comes at once; returns how much. */
+static uint32_t deliver_in_view(terrain_fixture *fx, const ff_view *view, const ff_quality *quality)
+{
+    ff_wish wish[FIXTURE_BAG];
+    const ff_wish *list;
+    uint32_t came = 0;
+    ff_tree_select(fx->tree, view, quality);
+    uint32_t count = ff_tree_wishes(fx->tree, &list);
+    assert_true(count <= FIXTURE_BAG);
+    memcpy(wish, list, count * sizeof *wish);
+    for (uint32_t i = 0; i < count; i++)
+        if (wish[i].in_view)
+            came += fixture_deliver(fx, wish[i].key, wish[i].kind == FF_KIND_REFINEMENT) == FF_OK;
+    return came;
+}
+
 /* What is fetched under a limit is little more than what the limit lets be drawn in view. */
 static void fetches_what_it_lets_be_drawn(void **state)
 {
@@ -114,13 +132,7 @@ static void fetches_what_it_lets_be_drawn(void **state)
         fixture_usual(&fx, 4000);
         ff_view view = fixture_view_above(&fx, 1400, 200, 100, 0, -10);
         ff_quality quality = limited(FF_MEASURE_PIXELS, with ? 4000 : 0);
-        for (unsigned round = 0; round < 300; round++) {
-            const ff_wish *wish;
-            ff_tree_select(fx.tree, &view, &quality);
-            uint32_t count = ff_tree_wishes(fx.tree, &wish), first = 0;
-            while (first < count && !wish[first].in_view) first++;
-            if (first == count) break;
-            (void)fixture_deliver(&fx, wish[first].key, wish[first].kind == FF_KIND_REFINEMENT);
+        while (deliver_in_view(&fx, &view, &quality)) {
         }
         ff_tree_stats stats = fixture_stats(&fx);
         held[with] = stats.nodes_held;
