@@ -171,7 +171,7 @@ static void judge_nothing(fly_sources *from)
     for (unsigned kind = 0; kind < FF_DATA_CLASSES; kind++) f->came[kind] = f->unused[kind] = NAN;
     from->audit.undrawn_percent = from->audit.filled_percent = from->panorama_px_percent =
         from->truth_error_m = NAN;
-    f->judged_all = f->supporting = f->percent = f->no_reserve_percent = NAN;
+    f->judged_all = f->supporting = f->hidden = f->percent = f->no_reserve_percent = NAN;
     f->reserve_came = f->reserve_unused = NAN;
     from->picture = (sim_picture_figures){ NAN, NAN, NAN };
 }
@@ -305,6 +305,7 @@ static void tell_relevance(fly_flight *flight)
     unsigned faces;
     if (!flight->world->relevance || !tree) return;
     view.drawn_count = ff_tree_drawn(tree, &view.drawn);
+    view.in_view_count = ff_tree_in_view(tree, &view.drawn);
     view.panorama = ff_client_panorama(flight->world->client, view.panorama_pos_wu, &faces);
     sim_relevance_frame(flight->world->relevance, &view);
 }

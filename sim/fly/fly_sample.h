@@ -15,8 +15,9 @@
  * after settling, TOTAL what was gained after settling, MOST the largest value, LAST the last one.
  * Columns without a value are nan. diff_*, ssim: sim_picture.h. square_px_*: mean squared error by
  * cause (sim_audit.h); bytes_*, unused_*: by class of data (sim_relevance.h), bytes_judged with the
- * overhead, bytes_reserve and unused_reserve a part of them; relevance_percent and the same without
- * the reserve's bytes, relevance_no_reserve_percent: since the start. */
+ * overhead, bytes_reserve and unused_reserve a part of them, unused_supporting and unused_hidden
+ * parts of unused_heights; relevance_percent and the same without the reserve's bytes,
+ * relevance_no_reserve_percent: since the start. */
 /* clang-format off */
 #define FLY_COLUMNS_FIRST(X) \
     X(t_s, "%.3f", PLACE, from->t_s) \
@@ -90,7 +91,8 @@
     X(panorama_error_px, "%.3f", MEAN, from->client.panorama_error_q8 / 256.0) \
     X(filled_px_percent, "%.3f", MEAN, from->audit.filled_percent) \
     X(nodes_hidden, "%.0f", MEAN, from->client.tree.nodes_hidden) \
-    X(triangles_hidden, "%.0f", MEAN, from->client.tree.triangles_hidden)
+    X(triangles_hidden, "%.0f", MEAN, from->client.tree.triangles_hidden) \
+    X(unused_hidden, "%.0f", TOTAL, from->relevance.hidden)
 /* clang-format on */
 
 /* What a row is made from. NAN in all that nobody judges. */

@@ -33,7 +33,7 @@ typedef struct answer {
     uint32_t bytes;
     int64_t came_us;
     double drawn; /* the share of it that was drawn in time */
-    int supports, reserve;
+    int supports, hidden, reserve;
     uint64_t support_frame; /* the last in which it was found to */
     uint32_t pixels, seen;  /* of a face, in one frame: in the window; and not hidden */
     uint64_t frame;         /* the last frame that marked it */
@@ -279,10 +279,22 @@ void sim_relevance_destroy(sim_relevance *relevance)
 
 /* ---- what is drawn ---- */
 
+static int is_young(const sim_relevance *relevance, const answer *a)
+{
+    return *relevance->now_us - a->came_us <= SIM_RELEVANCE_US;
+}
+
 static void mark(sim_relevance *relevance, answer *a)
 {
-    if (*relevance->now_us - a->came_us <= SIM_RELEVANCE_US) a->drawn = 1;
+    if (is_young(relevance, a)) a->drawn = 1;
     a->frame = relevance->frame;
+}
+
+/* The latest answer that brought a node: its parent's refinement, or the root itself. */
+static answer *bringer(sim_relevance *relevance, ff_key node)
+{
+    return ff_key_level(node) > 0 ? find(relevance, FF_KIND_REFINEMENT, ff_key_parent(node))
+                                  : find(relevance, FF_KIND_ROOT, node);
 }
 
 /* Marks the answers that brought the nodes beside a drawn node, without which vertices of its side
@@ -292,29 +304,32 @@ static void mark_support(sim_relevance *relevance, ff_key node)
 {
     for (unsigned side = 0; side < FF_SIDE_COUNT && ff_key_level(node) > 0; side++) {
         ff_key beside = ff_shape_neighbour(&relevance->info, node, (enum ff_side)side).key;
-        answer *a = beside == FF_KEY_NONE
-                        ? NULL
-                        : find(relevance, FF_KIND_REFINEMENT, ff_key_parent(beside));
+        answer *a = beside == FF_KEY_NONE ? NULL : bringer(relevance, beside);
         if (!a || a->support_frame == relevance->frame) continue;
         a->support_frame = relevance->frame;
-        a->supports |= *relevance->now_us - a->came_us <= SIM_RELEVANCE_US;
+        a->supports |= is_young(relevance, a);
         mark_support(relevance, ff_key_parent(beside));
     }
 }
 
 static void mark_heights(sim_relevance *relevance, ff_key node)
 {
-    mark_support(relevance, node);
-    for (;;) {
-        int refinement = ff_key_level(node) > 0;
-        if (refinement) {
-            node = ff_key_parent(node);
-            mark_support(relevance, node);
-        }
-        answer *a = find(relevance, refinement ? FF_KIND_REFINEMENT : FF_KIND_ROOT, node);
+    for (;; node = ff_key_parent(node)) {
+        mark_support(relevance, node);
+        answer *a = bringer(relevance, node);
         if (a && a->frame == relevance->frame) return; /* and all above it */
         if (a) mark(relevance, a);
-        if (!refinement) return;
+        if (ff_key_level(node) == 0) return;
+    }
+}
+
+/* Marks the answers that brought a node which nearer ground hides, and those above it. */
+static void mark_hidden(sim_relevance *relevance, ff_key node)
+{
+    for (;; node = ff_key_parent(node)) {
+        answer *a = bringer(relevance, node);
+        if (a) a->hidden |= is_young(relevance, a);
+        if (ff_key_level(node) == 0) return;
     }
 }
 
@@ -422,6 +437,8 @@ void sim_relevance_frame(sim_relevance *relevance, const sim_relevance_view *vie
         mark_heights(relevance, view->drawn[i].key);
         mark_image(relevance, view->drawn[i].key);
     }
+    for (uint32_t i = view->drawn_count; i < view->in_view_count; i++)
+        mark_hidden(relevance, view->drawn[i].key);
     mark_faces(relevance, view);
 }
 
@@ -431,9 +448,13 @@ static void judge(sim_relevance_figures *sum, const answer *a)
     double unused = (1 - a->drawn) * a->bytes;
     sum->judged[ff_kind[a->kind].data] += a->bytes;
     sum->unused[ff_kind[a->kind].data] += unused;
-    sum->supporting += a->drawn == 0 && a->supports && !a->reserve ? a->bytes : 0;
-    sum->reserve_judged += a->reserve ? a->bytes : 0;
-    sum->reserve_unused += a->reserve ? unused : 0;
+    if (a->reserve) {
+        sum->reserve_judged += a->bytes;
+        sum->reserve_unused += unused;
+    } else if (a->drawn == 0) {
+        sum->supporting += a->supports ? a->bytes : 0;
+        sum->hidden += a->hidden && !a->supports ? a->bytes : 0;
+    }
 }
 
 static double percent_of(double judged, double unused, double overhead)

@@ -7,17 +7,21 @@
  *             refinement's residuals add to the heights of all nodes above it, so a drawn node
  *             draws the answers of its whole line of ancestors. Nodes outside the window that only
  *             let a drawn neighbour be as fine as it is, on its whole rim (the cut is restricted),
- *             are not drawn; they are told apart as `supporting`.
+ *             are not drawn; they are told apart as `supporting`. Nor are nodes in view that the
+ *             client left out behind nearer ground: when it asked for them it did not know that
+ *             ground yet. They are told apart as `hidden`.
  *   image     it is the last that has come over a drawn node: images come from coarse to fine.
  *   face      its set is the one in use: by the share of its pixels in the window that no drawn
  *             ground hides, in the frame with the largest share; an empty face wholly, when any
  *             direction of it is seen. Four times a second every fourth pixel each way is looked
  *             at.
  *   reserve   what the client asked for on an idle link without a use in sight. By its purpose most
- * of it is not drawn in time: the shares with and without it stand side by side. Whether a request
- * was made for it cannot be seen on the wire, and is all that the client is asked. Overhead is all
- * else that came: greetings, pongs, refusals, cancellations and what a cut left incomplete. It
- * counts as never drawn.
+ *             of it is not drawn in time: the shares with and without it stand side by side.
+ *             Whether a request was made for it cannot be seen on the wire, and is all that the
+ *             client is asked.
+ *
+ * Overhead is all else that came: greetings, pongs, refusals, cancellations and what a cut left
+ * incomplete. It counts as never drawn.
  */
 #ifndef SIM_RELEVANCE_H
 #define SIM_RELEVANCE_H
@@ -35,8 +39,9 @@ typedef struct sim_relevance_figures {
     double unused[FF_DATA_CLASSES]; /* of the judged: not drawn in time */
     double judged_all;              /* sum of judged */
     double reserve_came, reserve_judged, reserve_unused; /* within those above */
-    /* of unused heights, not the reserve's: those without which a drawn node could not be drawn */
-    double supporting;
+    /* of unused heights, not the reserve's: those without which a drawn node could not be drawn,
+     * and of the others those that nearer ground hid */
+    double supporting, hidden;
     /* share of judged_all that was drawn in time; NAN before anything was judged */
     double percent;
     double no_reserve_percent; /* the same without the reserve's answers */
@@ -45,8 +50,8 @@ typedef struct sim_relevance_figures {
 /* What a frame draws. */
 typedef struct sim_relevance_view {
     c3d_camera camera;
-    const ff_drawn *drawn;
-    uint32_t drawn_count;
+    const ff_drawn *drawn; /* drawn_count of them, then those in view that nearer ground hides */
+    uint32_t drawn_count, in_view_count;
     int panorama; /* 1: a panorama is in use, taken at position_wu */
     int32_t panorama_pos_wu[3];
 } sim_relevance_view;

@@ -112,12 +112,20 @@ static size_t image(wire *w, ff_key key)
     return put(w, &data);
 }
 
-static void draw(wire *w, int64_t now_us, uint32_t count, const ff_key *key)
+/* A frame that draws the first nodes and has the others hidden in view. */
+static void draw_and_hide(wire *w, int64_t now_us, uint32_t drawn, uint32_t count,
+                          const ff_key *key)
 {
     w->now_us = now_us;
-    w->view.drawn_count = count;
+    w->view.drawn_count = drawn;
+    w->view.in_view_count = count;
     for (uint32_t i = 0; i < count; i++) w->drawn[i].key = key[i];
     sim_relevance_frame(w->relevance, &w->view);
+}
+
+static void draw(wire *w, int64_t now_us, uint32_t count, const ff_key *key)
+{
+    draw_and_hide(w, now_us, count, count, key);
 }
 
 static sim_relevance_figures figures(wire *w, int64_t now_us)
@@ -199,6 +207,36 @@ static void a_supporting_node_is_counted_apart(void **state)
     sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
     assert_int_equal(f.unused[FF_DATA_HEIGHTS], beside + away);
     assert_int_equal(f.supporting, beside);
+    sim_relevance_destroy(w.relevance);
+}
+
+/* What brought a node that is in view and hidden is counted apart, unless it is drawn, or a drawn
+ * node needs it, or it was asked for the reserve, or it was hidden only after its time. */
+static void a_hidden_node_is_counted_apart(void **state)
+{
+    (void)state;
+    static wire w;
+    start(&w);
+    unsigned asked = 0;
+    sim_relevance_ask(w.relevance, is_second, &asked);
+    ff_key drawn = ff_key_make(0, 0, 0), far = ff_key_make(2, 0, 0),
+           keys[5] = { ff_key_child(drawn, 1), ff_key_child(drawn, 0),
+                       ff_key_child(ff_key_make(1, 0, 0), 0), ff_key_child(far, 0),
+                       ff_key_make(3, 0, 0) };
+    (void)node(&w, drawn, FF_KIND_REFINEMENT);
+    size_t reserve = node(&w, keys[4], FF_KIND_ROOT),
+           supporting = node(&w, ff_key_make(1, 0, 0), FF_KIND_REFINEMENT),
+           hidden = node(&w, far, FF_KIND_ROOT) + node(&w, far, FF_KIND_REFINEMENT),
+           late = node(&w, ff_key_make(4, 0, 0), FF_KIND_ROOT);
+    receive(&w, 1024);
+    draw_and_hide(&w, SIM_RELEVANCE_US, 1, 5, keys);
+    keys[4] = ff_key_make(4, 0, 0);
+    draw_and_hide(&w, SIM_RELEVANCE_US + 1, 1, 5, keys);
+    sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
+    assert_int_equal(f.unused[FF_DATA_HEIGHTS], reserve + supporting + hidden + late);
+    assert_int_equal(f.reserve_unused, reserve);
+    assert_int_equal(f.supporting, supporting);
+    assert_int_equal(f.hidden, hidden);
     sim_relevance_destroy(w.relevance);
 }
 
@@ -440,6 +478,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_node_draws_its_ancestors),
         cmocka_unit_test(the_reserve_is_told_apart),
+        cmocka_unit_test(a_hidden_node_is_counted_apart),
         cmocka_unit_test(what_is_drawn_too_late_is_not_relevant),
         cmocka_unit_test(only_the_finest_image_is_drawn),
         cmocka_unit_test(faces_in_the_window_are_drawn),

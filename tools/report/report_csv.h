@@ -44,7 +44,8 @@
     X(relevance_percent, MAY_LACK) \
     X(bytes_reserve, MAY_LACK) \
     X(unused_reserve, MAY_LACK) \
-    X(relevance_no_reserve_percent, MAY_LACK)
+    X(relevance_no_reserve_percent, MAY_LACK) \
+    X(unused_hidden, MAY_LACK)
 /* clang-format on */
 enum report_column {
 #define X(name, need) REPORT_##name,

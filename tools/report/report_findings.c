@@ -99,14 +99,15 @@ static void put_relevance(FILE *out, const report_style *style, const report_con
                                         "kB other",
                                         "never drawn: kB heights",
                                         "of these beside drawn ones",
-                                        "of these the reserve",
+                                        "of these hidden by near ground",
                                         "kB images",
-                                        "kB faces" };
+                                        "kB faces",
+                                        "of all these the reserve" };
     static const enum report_column column[] = { REPORT_bytes_heights,  REPORT_bytes_images,
                                                  REPORT_bytes_faces,    REPORT_bytes_overhead,
                                                  REPORT_unused_heights, REPORT_unused_supporting,
-                                                 REPORT_unused_reserve, REPORT_unused_images,
-                                                 REPORT_unused_faces };
+                                                 REPORT_unused_hidden,  REPORT_unused_images,
+                                                 REPORT_unused_faces,   REPORT_unused_reserve };
     report_table_head(out, style, head, sizeof head / sizeof *head);
     for (size_t i = 0; i < content->flight_count; i++) {
         const report_flight *flight = &content->flight[i];
@@ -218,6 +219,7 @@ static void put_relevance_target(FILE *out, const report_style *style, const rep
     char what[128], why[WHY_BYTES];
     double reserve = zero_if_nan(last(flight, REPORT_unused_reserve)),
            supporting = last(flight, REPORT_unused_supporting),
+           hidden = zero_if_nan(last(flight, REPORT_unused_hidden)),
            all = last(flight, REPORT_unused_heights) + last(flight, REPORT_unused_images) +
                  last(flight, REPORT_unused_faces),
            with = last(flight, REPORT_relevance_percent),
@@ -227,9 +229,9 @@ static void put_relevance_target(FILE *out, const report_style *style, const rep
              with);
     snprintf(
         why, sizeof why,
-        "never drawn: %.1f kB of neighbours without which nodes in view could not split, %.1f kB others, "
-        "%.2f kB greetings and pongs",
-        supporting / 1000, (all - supporting - reserve) / 1000,
+        "never drawn: %.1f kB of neighbours without which nodes in view could not split, %.1f kB hidden by "
+        "near ground, %.1f kB others, %.2f kB greetings and pongs",
+        supporting / 1000, hidden / 1000, (all - supporting - hidden - reserve) / 1000,
         last(flight, REPORT_bytes_overhead) / 1000);
     put_target(out, style, what, 0, percent, without, why);
 }
