@@ -49,6 +49,12 @@ def random_events(rand, links, settle, end):
     return sorted(events, key=lambda event: event[0])
 
 
+def random_looks(rand, end):
+    """Looks elsewhere at once, at most two."""
+    what = lambda: rand.choice((f"turn={rand.randrange(-180, 181)}", f"pitch={rand.randrange(-90, 11)}", f"fov={rand.choice((20, 60, 100))}"))
+    return [(round(rand.uniform(0, end), 1), what()) for _ in range(rand.randrange(0, 3))]
+
+
 def random_flight(seed, packs, given):
     """The arguments of farfield-fly, and the times from which ground may be unknown."""
     rand = random.Random(seed)
@@ -72,7 +78,13 @@ def random_flight(seed, packs, given):
     balance = random.Random(f"balance {seed}").choice(("off", "off", "0", "2000", "20000", "3000,1500", "server", "client"))
     if balance != "off":
         args += ["--balance", balance]
-    unknown = [0.0] + [at for at, what in events if what.startswith(("teleport", "panorama-on"))]
+    newer = random.Random(f"looks, auto, reserve {seed}")  # what a seed had before stays
+    events = sorted(events + random_looks(newer, heal), key=lambda event: event[0])
+    if newer.random() < 0.5:
+        args[args.index("--panorama") + 1] = "auto"
+    if newer.random() < 0.2:
+        args += ["--reserve", "off"]
+    unknown = [0.0] + [at for at, what in events if what.startswith(("teleport", "panorama-on", "turn", "pitch", "fov"))]
     for what in ("resume", "battery-ok", "link=lan"):
         events.append((heal, what))
     for at, what in events:

@@ -225,9 +225,6 @@ static void parallax_is_the_way_over_the_depth(void **state)
     }
 }
 
-/* Half a texel in pixels, of a pixel (x, y) from the middle of a picture that looks level at an
- * edge of the cube. Both faces beside the edge, u from their middle and v below it, lie at the
- * picture's (1 - u) / (1 + u) and sqrt(2) v / (1 + u). */
 /* The same over ground that falls away from O as from the viewer: of a place d to the north and x
  * to the side, seen (200 + c (x^2 + d^2)) / d below the horizon, O 100 m to the south. */
 static void parallax_over_round_ground(void **state)
@@ -256,6 +253,9 @@ static void parallax_over_round_ground(void **state)
     scene_free(&s);
 }
 
+/* Half a texel in pixels, of a pixel (x, y) from the middle of a picture that looks level at an
+ * edge of the cube. Both faces beside the edge, u from their middle and v below it, lie at the
+ * picture's (1 - u) / (1 + u) and sqrt(2) v / (1 + u). */
 static double half_texel_at_an_edge(double focal, double size, double x, double y)
 {
     double u = (1 - fabs(x) / focal) / (1 + fabs(x) / focal), v = y / focal * (1 + u) / sqrt(2),
