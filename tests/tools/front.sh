@@ -57,8 +57,18 @@ assert rule.against_fixed((1, 1, 0.5), 0, fixed) is None
 balanced = row("balance 1000", 700, 0, 1.0)
 assert rule.needs_more(balanced, 1000, [row("finer", 1500, 0, 0.8)]) and not rule.needs_more(balanced, 1000, [row("finer", 1500, 0, 0.81)])
 assert not rule.needs_more(balanced, 1000, [row("enough", 900, 0, 0.1)])
+
+import front_report as report
+there = {"ground": "alps", "height_m": 100, "link": "umts", "speed_kmh": 150, "course": "front", "skyline_px_rms": 0, "undrawn_px_percent": 0}
+made = lambda kind, *figures: {**row(*figures), **there, "kind": kind}
+lines = report.balance_lines([made("named", "balance 5000", 4000, 10, 1, [(4000, 10, 1), (4000, 10, 1.2), (4000, 10, 1.21), (100, 1, 9)]),
+                              made("swept", "finer", 9000, 10, 0.8, [(4000, 10, 1)] * 4)])
+assert [(line["used"], line["needs"], line["windows"], line["late"], line["worst"][0]) for line in lines] == [(80, True, 3, 1, 1.21)], lines
+target = {"setting": "default", "link": "umts", "speed": 150, "err_px_p95": 2.0, "triangles": 5500}
+flown = [made("named", "default", *figures) for figures in ((5500, 10, 2), (5501, 10, 2), (5500, 10, 2.01), (5500, 10, None))]
+assert report.target_table(flown, target).startswith("3 of 4 missed."), report.target_table(flown, target)
 END
-result $? "the front's members, the best within a budget, and what the balance is held against"
+result $? "the front's members, the best within a budget, what the balance is held against, and what counts as missed"
 
 # ---- the sweep ----
 python3 tests/rig/hills.py 129 "$work/hills.raw" 129:fractal "$work/fractal.raw"
