@@ -1,5 +1,5 @@
-/* Private to protocol/: reading and writing little-endian fields with one sticky error (read all,
- * check once). */
+/* For protocol/, and for those who write lists: reading and writing little-endian fields with one
+ * sticky error (read all, check once). */
 #ifndef FF_BYTES_H
 #define FF_BYTES_H
 

@@ -12,21 +12,14 @@ const ff_kind_row ff_kind[FF_KIND_COUNT] = {
     /* clang-format on */
 };
 
-/* The kind of a thing asked for takes the low half of a byte (GET_NODE); no two kinds share a
- * section: then sum and union of their bits are the same. */
+/* The kind of a thing asked for takes the low half of a byte (GET_NODE). */
 /* clang-format off */
 #define X(kind, name, asked_by, what, ...) && what < 16
 FF_STATIC_ASSERT(1 FF_KIND_LIST(X));
 #undef X
-#define SECTION_BIT(section) ((section) ? 1ull << (section) : 0)
-#define X(kind, name, asked_by, what, asks, answered_by, brings, section, ...) + SECTION_BIT(section)
-#define Y(kind, name, asked_by, what, asks, answered_by, brings, section, ...) | SECTION_BIT(section)
-FF_STATIC_ASSERT((0 FF_KIND_LIST(X)) == (0 FF_KIND_LIST(Y)));
-#undef X
-#undef Y
 /* clang-format on */
 
-const ff_kind_row *ff_kind_of_section(unsigned section)
+const ff_kind_row *ff_kind_of_section(uint32_t section)
 {
     unsigned kind = 0;
     while (kind < FF_KIND_COUNT && ff_kind[kind].section != section) kind++;

@@ -13,6 +13,10 @@
 
 #include <stdint.h>
 
+/* Four letters as they stand in a file, as a little-endian number. */
+#define FF_LETTERS(a, b, c, d) \
+    ((uint32_t)(a) | (uint32_t)(b) << 8 | (uint32_t)(c) << 16 | (uint32_t)(d) << 24)
+
 /* clang-format off */
 /* X(kind, name, asked_by, what, asks, answered_by, brings, section, levels, data, has_image, server)
  *   asked_by, what   the message that asks for it: its type (SPEC.md, "Messages") and, where kinds
@@ -20,16 +24,16 @@
  *   asks             the body of that message: enum ff_kind_asks
  *   answered_by      the type of the message that answers; the request tells kinds that share one
  *   brings           the body of that message: enum ff_kind_brings
- *   section, levels  where packs keep it: the number of its sections, 0 for none, and how many of
- *                    them a terrain `info` has; packs hold sections in the order of this list
+ *   section, levels  where packs keep it: the four letters of its sections, 0 for none, and how many
+ *                    of them a terrain `info` has; packs hold sections in the order of this list
  *   data             what statistics and relevance count it as: enum ff_data_class
  *   has_image        1: its answer may hold an image
  *   server           how a session answers it; kinds may share a way */
 #define FF_KIND_LIST(X) \
-    X(ROOT,       root,       2, 0, NODE,     66, PAYLOAD, 1, 1,                           HEIGHTS, 0, record) \
-    X(REFINEMENT, refinement, 2, 1, NODE,     66, PAYLOAD, 2, ff_terrain_levels(info) - 1, HEIGHTS, 0, record) \
-    X(TEXTURE,    texture,    3, 0, NODE,     67, PAYLOAD, 3, info->texture_levels,        IMAGES,  1, record) \
-    X(FACE,       face,       4, 0, PANORAMA, 68, FACE,    0, 0,                           FACES,   1, faces)
+    X(ROOT,       root,       2, 0, NODE,     66, PAYLOAD, FF_LETTERS('R', 'O', 'O', 'T'), 1,                           HEIGHTS, 0, record) \
+    X(REFINEMENT, refinement, 2, 1, NODE,     66, PAYLOAD, FF_LETTERS('R', 'E', 'F', 'I'), ff_terrain_levels(info) - 1, HEIGHTS, 0, record) \
+    X(TEXTURE,    texture,    3, 0, NODE,     67, PAYLOAD, FF_LETTERS('I', 'M', 'A', 'G'), info->texture_levels,        IMAGES,  1, record) \
+    X(FACE,       face,       4, 0, PANORAMA, 68, FACE,    0,                               0,                           FACES,   1, faces)
 /* clang-format on */
 
 enum ff_kind {
@@ -39,7 +43,7 @@ enum ff_kind {
         FF_KIND_COUNT
 };
 
-/* Numbers of sections in packs, for those who read one kind; 0: packs do not hold it. */
+/* Letters of sections in packs, for those who read one kind; 0: packs do not hold it. */
 enum ff_section_kind {
 #define X(kind, name, asked_by, what, asks, answered_by, brings, section, ...) \
     FF_SECTION_##kind = section,
@@ -67,7 +71,7 @@ typedef struct ff_kind_row {
     const char *name;
     uint8_t asked_by, what, asks;
     uint8_t answered_by, brings;
-    uint8_t section;
+    uint32_t section;
     uint8_t data;
     uint8_t has_image;
 } ff_kind_row;
@@ -75,6 +79,6 @@ typedef struct ff_kind_row {
 extern const ff_kind_row ff_kind[FF_KIND_COUNT];
 
 /* The kind that a section of a pack holds; `section` is one of the list's, not 0. */
-const ff_kind_row *ff_kind_of_section(unsigned section);
+const ff_kind_row *ff_kind_of_section(uint32_t section);
 
 #endif

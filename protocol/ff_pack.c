@@ -16,9 +16,12 @@ static const uint8_t magic[8] = { 0x89, 'F', 'F', 'P', '\r', '\n', 0x1a, '\n' };
 #define CHECKSUM_AT      (8 + 4 + FF_TERRAIN_BYTES - 4)
 #define HEADER_CRC_AT    (FF_PACK_HEADER_BYTES - 4)
 #define RECORD_CRC_BYTES 4
-#define SECTION_BYTES    (2 + 2 + 4 + 4 + 4 * 8)
+#define COUNT_AT         (CHECKSUM_AT + 4)
+#define SECTION_BYTES    (4 + 4 + 4 + 4 + 4 * 8)
+#define SECTION_VERSION  1 /* of all layouts so far */
 
-FF_STATIC_ASSERT(CHECKSUM_AT + 4 + 4 + FF_PACK_SECTIONS_MAX * SECTION_BYTES <= HEADER_CRC_AT);
+FF_STATIC_ASSERT(COUNT_AT + 4 + FF_PACK_LISTED_MAX * SECTION_BYTES <= HEADER_CRC_AT);
+FF_STATIC_ASSERT(FF_PACK_SECTIONS_MAX < FF_PACK_LISTED_MAX);
 /* An index of any section, one entry longer than its records, is counted in 64 bits. */
 FF_STATIC_ASSERT((uint64_t)FF_KEY_TILES_MAX << (2 * FF_KEY_LEVEL_MAX) < UINT64_MAX / 8);
 
@@ -61,13 +64,29 @@ int ff_pack_section_at(const ff_terrain_info *info, uint32_t number, ff_pack_sec
     for (unsigned kind = 0; kind < FF_KIND_COUNT; kind++) {
         uint32_t levels = levels_of(info, (enum ff_kind)kind);
         if (number < levels) {
+            int heights = ff_kind[kind].data == FF_DATA_HEIGHTS;
             section->kind = ff_kind[kind].section;
-            section->level = (uint16_t)number;
+            section->version = SECTION_VERSION;
+            section->codec = heights ? info->codec : 0;
+            section->level = (uint8_t)number;
+            section->flags = FF_PACK_NEEDED;
             return 1;
         }
         number -= levels;
     }
     return 0;
+}
+
+ff_pack_section ff_pack_about_section(void)
+{
+    return (
+        ff_pack_section){ .kind = FF_PACK_ABOUT, .version = SECTION_VERSION, .record_count = 1 };
+}
+
+static int same_sort(const ff_pack_section *a, const ff_pack_section *b)
+{
+    return a->kind == b->kind && a->version == b->version && a->codec == b->codec &&
+           a->level == b->level && a->flags == b->flags && a->record_count == b->record_count;
 }
 
 static int check_sections(const ff_pack_header *header)
@@ -76,19 +95,22 @@ static int check_sections(const ff_pack_header *header)
     ff_pack_section expected;
 
     for (uint32_t i = 0; i < header->section_count; i++) {
-        const ff_pack_section *section = &header->section[i];
-        if (!ff_pack_section_at(info, i, &expected) || section->kind != expected.kind ||
-            section->level != expected.level ||
-            section->record_count != records_expected(info, expected.level))
-            return FF_ERR_RANGE;
+        if (!ff_pack_section_at(info, i, &expected)) return FF_ERR_RANGE;
+        expected.record_count = records_expected(info, expected.level);
+        if (!same_sort(&header->section[i], &expected)) return FF_ERR_RANGE;
     }
+    expected = ff_pack_about_section();
+    if (header->about.kind && !same_sort(&header->about, &expected)) return FF_ERR_RANGE;
     return ff_pack_section_at(info, header->section_count, &expected) ? FF_ERR_RANGE : FF_OK;
 }
 
 static void read_section(ff_reader *in, ff_pack_section *section)
 {
-    section->kind = (uint16_t)ff_read_bytes(in, 2);
-    section->level = (uint16_t)ff_read_bytes(in, 2);
+    section->kind = (uint32_t)ff_read_bytes(in, 4);
+    section->version = (uint8_t)ff_read_bytes(in, 1);
+    section->codec = (uint8_t)ff_read_bytes(in, 1);
+    section->level = (uint8_t)ff_read_bytes(in, 1);
+    section->flags = (uint8_t)ff_read_bytes(in, 1);
     section->index_crc = (uint32_t)ff_read_bytes(in, 4);
     section->records_crc = (uint32_t)ff_read_bytes(in, 4);
     section->record_count = ff_read_bytes(in, 8);
@@ -99,8 +121,11 @@ static void read_section(ff_reader *in, ff_pack_section *section)
 
 static void write_section(ff_writer *out, const ff_pack_section *section)
 {
-    ff_write_bytes(out, section->kind, 2);
-    ff_write_bytes(out, section->level, 2);
+    ff_write_bytes(out, section->kind, 4);
+    ff_write_bytes(out, section->version, 1);
+    ff_write_bytes(out, section->codec, 1);
+    ff_write_bytes(out, section->level, 1);
+    ff_write_bytes(out, section->flags, 1);
     ff_write_bytes(out, section->index_crc, 4);
     ff_write_bytes(out, section->records_crc, 4);
     ff_write_bytes(out, section->record_count, 8);
@@ -112,7 +137,7 @@ static void write_section(ff_writer *out, const ff_pack_section *section)
 int ff_pack_header_encode(const ff_pack_header *header, uint8_t *out)
 {
     ff_writer writer = { out, out + HEADER_CRC_AT, FF_OK };
-    uint32_t checksum;
+    uint32_t checksum, has_about = header->about.kind != 0;
 
     if (ff_terrain_check(&header->info) != FF_OK || check_sections(header) != FF_OK)
         return FF_ERR_RANGE;
@@ -121,12 +146,13 @@ int ff_pack_header_encode(const ff_pack_header *header, uint8_t *out)
     ff_write_span(&writer, magic, sizeof(magic));
     ff_write_bytes(&writer, FF_PACK_VERSION, 4);
     ff_write_terrain(&writer, &header->info);
-    ff_write_bytes(&writer, header->section_count, 4);
+    ff_write_bytes(&writer, header->section_count + has_about, 4);
     for (uint32_t i = 0; i < header->section_count; i++)
         write_section(&writer, &header->section[i]);
+    if (has_about) write_section(&writer, &header->about);
     FF_ASSERT(writer.error == FF_OK &&
               writer.at - out ==
-                  CHECKSUM_AT + 4 + 4 + (ptrdiff_t)header->section_count * SECTION_BYTES);
+                  COUNT_AT + 4 + (ptrdiff_t)(header->section_count + has_about) * SECTION_BYTES);
     memset(out + CHECKSUM_AT, 0, 4);
     checksum = ff_crc32(0, out, HEADER_CRC_AT);
     writer.at = out + CHECKSUM_AT;
@@ -138,17 +164,113 @@ int ff_pack_header_encode(const ff_pack_header *header, uint8_t *out)
     return writer.error;
 }
 
-static int read_header(ff_pack_header *header, const uint8_t *bytes)
-{
-    ff_reader in = { bytes + sizeof(magic) + 4, bytes + HEADER_CRC_AT, FF_OK };
+/* ---- refusals in words ---- */
 
-    ff_read_terrain(&in, &header->info);
-    FF_ASSERT(in.at == bytes + CHECKSUM_AT + 4);
-    header->section_count = (uint32_t)ff_read_bytes(&in, 4);
-    if (in.error == FF_OK && header->section_count > FF_PACK_SECTIONS_MAX) return FF_ERR_RANGE;
-    for (uint32_t i = 0; in.error == FF_OK && i < header->section_count; i++)
-        read_section(&in, &header->section[i]);
-    return in.error != FF_OK ? in.error : check_sections(header);
+/* the longest of them, with its numbers */
+FF_STATIC_ASSERT(sizeof((ff_pack *)0)->refusal > 110);
+
+static char *put_text(char *at, const char *text)
+{
+    while (*text) *at++ = *text++;
+    return at;
+}
+
+static char *put_number(char *at, uint32_t number)
+{
+    uint32_t unit = 1;
+    while (number / unit > 9) unit *= 10;
+    for (; unit; unit /= 10) *at++ = (char)('0' + number / unit % 10);
+    return at;
+}
+
+static int refuse_version(ff_pack *pack, uint32_t version)
+{
+    static const char older[] = ": bake it again: farfield-bake HEIGHTS -o OUT.ffp",
+                      newer[] = ": it needs a newer Farfield";
+    char *at = put_text(pack->refusal, "a pack of version ");
+    at = put_text(put_number(at, version), ", this program reads ");
+    at = put_text(put_number(at, FF_PACK_VERSION), version < FF_PACK_VERSION ? older : newer);
+    *at = 0;
+    return FF_ERR_VERSION;
+}
+
+static int refuse_section(ff_pack *pack, const ff_pack_section *section)
+{
+    char *at = put_text(pack->refusal, "it needs section ");
+    for (unsigned i = 0; i < 4; i++) {
+        unsigned letter = section->kind >> 8 * i & 0xffu;
+        *at++ = (letter | 32) >= 'a' && (letter | 32) <= 'z' ? (char)letter : '?';
+    }
+    at = put_number(put_text(at, " version "), section->version);
+    at = put_number(put_text(at, " codec "), section->codec);
+    *put_text(at, ", which this program does not know") = 0;
+    return FF_ERR_UNSUPPORTED;
+}
+
+const char *ff_pack_error_text(const ff_pack *pack, int error)
+{
+    int said = pack->refusal[0] && (error == FF_ERR_VERSION || error == FF_ERR_UNSUPPORTED);
+    return said ? pack->refusal : ff_error_text(error);
+}
+
+/* ---- reading the header ---- */
+
+static int is_known(const ff_pack_section *section)
+{
+    if (section->version != SECTION_VERSION) return 0;
+    if (section->kind == FF_PACK_ABOUT) return section->codec == 0;
+    for (unsigned kind = 0; kind < FF_KIND_COUNT; kind++)
+        if (ff_kind[kind].section == section->kind && section->kind)
+            return ff_kind[kind].data == FF_DATA_HEIGHTS ? section->codec < FF_CODEC_COUNT
+                                                         : section->codec == 0;
+    return 0;
+}
+
+/* Those that are not known are looked at no further. */
+static int take_section(ff_pack *pack, const ff_pack_section *section)
+{
+    ff_pack_header *header = &pack->header;
+
+    if (!is_known(section))
+        return section->flags & FF_PACK_NEEDED ? refuse_section(pack, section) : FF_OK;
+    if (section->kind == FF_PACK_ABOUT) {
+        if (header->about.kind) return FF_ERR_RANGE;
+        header->about = *section;
+        return FF_OK;
+    }
+    if (header->section_count == FF_PACK_SECTIONS_MAX) return FF_ERR_RANGE;
+    header->section[header->section_count++] = *section;
+    return FF_OK;
+}
+
+/* Sections come first: a pack that is not for this reader is refused by their names, not by a
+ * number in its terrain. */
+static int read_header(ff_pack *pack, const uint8_t *bytes)
+{
+    ff_reader in = { bytes + sizeof(magic) + 4, bytes + COUNT_AT, FF_OK },
+              list = { bytes + COUNT_AT, bytes + HEADER_CRC_AT, FF_OK };
+    uint32_t count = (uint32_t)ff_read_bytes(&list, 4);
+    ff_pack_section section;
+    int rc = count > FF_PACK_LISTED_MAX ? FF_ERR_RANGE : FF_OK;
+
+    for (uint32_t i = 0; rc == FF_OK && i < count; i++) {
+        read_section(&list, &section);
+        FF_ASSERT(list.error == FF_OK);
+        rc = take_section(pack, &section);
+    }
+    if (rc != FF_OK) return rc;
+    ff_read_terrain(&in, &pack->header.info);
+    FF_ASSERT(in.at == in.end);
+    return in.error != FF_OK ? in.error : check_sections(&pack->header);
+}
+
+static int check_place(const ff_pack_section *section, uint64_t size)
+{
+    FF_ASSERT(section->record_count < UINT64_MAX / 8);
+    return inside(section->index_offset, (section->record_count + 1) * 8, size) &&
+                   inside(section->data_offset, section->data_bytes, size)
+               ? FF_OK
+               : FF_ERR_TRUNCATED;
 }
 
 int ff_pack_open(ff_pack *pack, const void *bytes, uint64_t size)
@@ -163,17 +285,14 @@ int ff_pack_open(ff_pack *pack, const void *bytes, uint64_t size)
         return size < sizeof(magic) && memcmp(file, magic, (size_t)size) == 0 ? FF_ERR_TRUNCATED
                                                                               : FF_ERR_FORMAT;
     if (size < FF_PACK_HEADER_BYTES) return FF_ERR_TRUNCATED;
-    if (load(file + sizeof(magic), 4) != FF_PACK_VERSION) return FF_ERR_VERSION;
+    if (load(file + sizeof(magic), 4) != FF_PACK_VERSION)
+        return refuse_version(pack, (uint32_t)load(file + sizeof(magic), 4));
     if (load(file + HEADER_CRC_AT, 4) != ff_crc32(0, file, HEADER_CRC_AT)) return FF_ERR_CHECKSUM;
-    rc = read_header(&pack->header, file);
-    for (uint32_t i = 0; rc == FF_OK && i < pack->header.section_count; i++) {
-        const ff_pack_section *section = &pack->header.section[i];
-        FF_ASSERT(section->record_count < UINT64_MAX / 8);
-        if (!inside(section->index_offset, (section->record_count + 1) * 8, size) ||
-            !inside(section->data_offset, section->data_bytes, size))
-            rc = FF_ERR_TRUNCATED;
-    }
-    pack->bytes = file;
+    rc = read_header(pack, file);
+    for (uint32_t i = 0; rc == FF_OK && i < pack->header.section_count; i++)
+        rc = check_place(&pack->header.section[i], size);
+    if (rc == FF_OK && pack->header.about.kind) rc = check_place(&pack->header.about, size);
+    pack->bytes = bytes;
     pack->size = size;
     return rc;
 }
@@ -223,12 +342,24 @@ int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
     return FF_ERR_NOT_FOUND;
 }
 
+int ff_pack_about(const ff_pack *pack, ff_list *about)
+{
+    const uint8_t *list;
+    int bytes = pack->header.about.kind ? read_record(pack, &pack->header.about, 0, &list)
+                                        : FF_ERR_NOT_FOUND;
+
+    if (bytes < 0) return bytes;
+    *about = (ff_list){ list, (uint32_t)bytes };
+    return ff_about_check(*about);
+}
+
 /* The number of damaged records in one section. Clears *whole when the section's index, or the list
  * of its records' CRCs, is not what the header says. */
 static uint64_t verify_section(const ff_pack *pack, const ff_pack_section *section, int *whole)
 {
     const uint8_t *index = pack->bytes + section->index_offset, *payload;
-    int may_have_gaps = ff_kind_of_section(section->kind)->data != FF_DATA_HEIGHTS;
+    int may_have_gaps = section->kind != FF_PACK_ABOUT &&
+                        ff_kind_of_section(section->kind)->data != FF_DATA_HEIGHTS;
     uint64_t bad = 0;
     uint32_t records_crc = 0;
 
@@ -249,10 +380,15 @@ static uint64_t verify_section(const ff_pack *pack, const ff_pack_section *secti
 
 int ff_pack_verify(const ff_pack *pack, uint64_t *bad)
 {
-    int whole = 1;
+    int whole = 1, rc = FF_OK;
+    ff_list about;
 
     *bad = 0;
     for (uint32_t i = 0; i < pack->header.section_count; i++)
         *bad += verify_section(pack, &pack->header.section[i], &whole);
-    return *bad == 0 && whole ? FF_OK : FF_ERR_CHECKSUM;
+    if (pack->header.about.kind) {
+        *bad += verify_section(pack, &pack->header.about, &whole);
+        rc = ff_pack_about(pack, &about);
+    }
+    return *bad == 0 && whole ? rc : FF_ERR_CHECKSUM;
 }

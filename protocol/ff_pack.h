@@ -4,24 +4,31 @@
  * Sections: heights level 0 (roots), refinements of level 0, of level 1, ..., textures of level 0,
  * 1, ... Within a section records lie in order of tile, then Morton code; the section's index gives
  * any record's place in constant time. Every record is preceded by its CRC-32, checked whenever it
- * is read.
+ * is read. What the pack says of itself is a section of one record. Sections that this reader does
+ * not know are passed over, or the pack is refused where the section says that it is needed.
  */
 #ifndef FF_PACK_H
 #define FF_PACK_H
 
 #include "codec/ff_codec.h"
+#include "ff_about.h"
 #include "ff_kind.h"
 
-#define FF_PACK_VERSION      4
+#define FF_PACK_VERSION      5
 #define FF_PACK_HEADER_BYTES 4096 /* with the directory of sections; the sections follow */
-#define FF_PACK_SECTIONS_MAX 48
+#define FF_PACK_SECTIONS_MAX 48   /* that this reader knows */
+#define FF_PACK_LISTED_MAX   80   /* with those that it does not */
+#define FF_PACK_ABOUT        FF_LETTERS('A', 'B', 'O', 'U')
 /* Roots and refinements are a section for each level of the deepest tile, textures one for each
  * level of a key. */
 FF_STATIC_ASSERT(FF_TILE_LOG2_MAX + FF_KEY_LEVEL_MAX + 1 <= FF_PACK_SECTIONS_MAX);
 
 typedef struct ff_pack_section {
-    uint16_t kind;      /* enum ff_section_kind */
-    uint16_t level;     /* of the node refined, or textured */
+    uint32_t kind;      /* enum ff_section_kind, or FF_PACK_ABOUT */
+    uint8_t version;    /* of the section's layout */
+    uint8_t codec;      /* of its records: the terrain's for heights, else 0 */
+    uint8_t level;      /* of the node refined, or textured */
+    uint8_t flags;      /* enum ff_pack_section_flags */
     uint32_t index_crc; /* CRC-32 of the index bytes */
     /* CRC-32 of the records' own CRC words, in order, as stored: it stands for all the section's
      * data */
@@ -35,10 +42,13 @@ typedef struct ff_pack_section {
     uint64_t data_offset, data_bytes;
 } ff_pack_section;
 
+enum ff_pack_section_flags { FF_PACK_NEEDED = 1 /* who does not know the section cannot read */ };
+
 typedef struct ff_pack_header {
     ff_terrain_info info;
-    uint32_t section_count;
+    uint32_t section_count; /* of the kinds in ff_kind.h */
     ff_pack_section section[FF_PACK_SECTIONS_MAX];
+    ff_pack_section about; /* without records: the pack says nothing of itself */
 } ff_pack_header;
 
 /* A view on a mapped pack: plain data that owns nothing. The mapping must outlive the view; any
@@ -47,24 +57,36 @@ typedef struct ff_pack {
     const uint8_t *bytes;
     uint64_t size;
     ff_pack_header header;
+    char refusal[112]; /* why it was not opened, where the error alone does not say; else "" */
 } ff_pack;
 
 /* Checks magic, version, checksum and ranges, and that all sections lie inside `size`. FF_OK or a
- * negative error: FORMAT (not a pack), VERSION, TRUNCATED, CHECKSUM, RANGE. */
+ * negative error: FORMAT (not a pack), VERSION, TRUNCATED, CHECKSUM, RANGE, UNSUPPORTED (a section
+ * that is needed and not known). */
 int ff_pack_open(ff_pack *pack, const void *bytes, uint64_t size);
+/* The error of ff_pack_open, or of what came before it, in words for people: which section, and
+ * what to do about an old pack. */
+const char *ff_pack_error_text(const ff_pack *pack, int error);
 
 /* Reads record `key` of a kind; *payload points into the mapping. Payload bytes (0 or more) or
  * NOT_FOUND, CHECKSUM, RANGE. Root: key level 0. Refinement: key of the node to refine. */
 int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
                    const uint8_t **payload);
 
-/* What section `number` of this terrain's packs holds: fills kind and level alone. 1, or 0: they
- * have fewer sections. */
+/* What the pack says of itself, inside the mapping, checked. FF_OK, NOT_FOUND: nothing; CHECKSUM,
+ * RANGE, TRUNCATED. */
+int ff_pack_about(const ff_pack *pack, ff_list *about);
+
+/* What section `number` of this terrain's packs holds: fills all but places, counts and CRCs. 1, or
+ * 0: they have fewer sections. */
 int ff_pack_section_at(const ff_terrain_info *info, uint32_t number, ff_pack_section *section);
 
 /* Checks indexes and every record of every section; *bad receives the number of damaged records.
  * FF_OK or error. */
 int ff_pack_verify(const ff_pack *pack, uint64_t *bad);
+
+/* The section of what a pack says of itself: the same, for a list in one record. */
+ff_pack_section ff_pack_about_section(void);
 
 /* Header to bytes, for writers; `out` has FF_PACK_HEADER_BYTES. The function works out
  * info.checksum itself and ignores the one in `header`: it is a CRC over the header, which by

@@ -16,7 +16,8 @@ static int open_pack(server *shared)
     if (rc == FF_OK) rc = ff_pack_open(&shared->pack, shared->mapping.bytes, shared->mapping.size);
     if (rc < 0)
         server_complain("%s: %s", shared->options.pack,
-                        rc == FF_ERR_SYSTEM && errno ? strerror(errno) : ff_error_text(rc));
+                        rc == FF_ERR_SYSTEM && errno ? strerror(errno)
+                                                     : ff_pack_error_text(&shared->pack, rc));
     return rc;
 }
 

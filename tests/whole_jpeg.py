@@ -21,8 +21,8 @@ def first_texture(pack):
     """Side and payload."""
     side = 1 << pack[12 + 4]
     for i in range(struct.unpack_from("<I", pack, 80)[0]):
-        kind, level, _, _, _, index, data, _ = struct.unpack_from("<HHIIQQQQ", pack, 84 + 44 * i)
-        if kind == 3 and level == 0:
+        kind, _, _, level, _, _, _, _, index, data, _ = struct.unpack_from("<4sBBBBIIQQQQ", pack, 84 + 48 * i)
+        if kind == b"IMAG" and level == 0:
             begin, end = struct.unpack_from("<QQ", pack, index)
             return side, pack[data + begin + 4:data + end]
     sys.exit("no textures")

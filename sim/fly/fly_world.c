@@ -6,11 +6,13 @@
 
 #define PATH_SAMPLES_MAX (4097u * 4097u) /* 34 MB: the level of ground that paths keep above */
 
-static int fail(const char *what, int rc)
+static int fail_with(const char *what, const char *why)
 {
-    fprintf(stderr, "farfield-fly: %s: %s\n", what, ff_error_text(rc));
+    fprintf(stderr, "farfield-fly: %s: %s\n", what, why);
     return -1;
 }
+
+static int fail(const char *what, int rc) { return fail_with(what, ff_error_text(rc)); }
 
 /* The ground that the audit judges by: the pack's, or that of a pack which is needed no longer once
  * it is decoded. */
@@ -18,7 +20,7 @@ static int open_truth(fly_world *world)
 {
     const fly_options *options = world->options;
     sys_mapping mapping = { 0 };
-    ff_pack other, *pack = &world->pack;
+    ff_pack other = { .refusal = "" }, *pack = &world->pack;
     int rc = FF_OK;
     if (options->truth_path) {
         pack = &other;
@@ -36,7 +38,8 @@ static int open_truth(fly_world *world)
         fprintf(stderr, "farfield-fly: %s: no truth for %s: %s\n", options->truth_path,
                 options->pack_path, why);
     if (rc != FF_OK)
-        return fail(options->truth_path ? options->truth_path : options->pack_path, rc);
+        return fail_with(options->truth_path ? options->truth_path : options->pack_path,
+                         ff_pack_error_text(pack, rc));
     return why ? -1 : 0;
 }
 
@@ -46,7 +49,7 @@ static int open_ground(fly_world *world)
     int rc = sys_map_file(options->pack_path, &world->mapping);
     if (rc == FF_OK) rc = ff_pack_open(&world->pack, world->mapping.bytes, world->mapping.size);
     if (rc == FF_OK) rc = sim_ground_load(&world->path_ground, &world->pack, PATH_SAMPLES_MAX);
-    if (rc != FF_OK) return fail(options->pack_path, rc);
+    if (rc != FF_OK) return fail_with(options->pack_path, ff_pack_error_text(&world->pack, rc));
     const ff_terrain_info *info = &world->pack.header.info;
     fly_path_init(&world->path, options, info, &world->path_ground);
     if (options->audit) {

@@ -15,11 +15,13 @@
 #define BLOCK_ALIGN       64 /* so that no byte of the block is lost to alignment, on any machine */
 #define SETTLE_FRAMES_MAX 3000 /* of a pack's flight, before it starts: until the ground stands */
 
-static int fail(const char *what, int rc)
+static int fail_with(const char *what, const char *why)
 {
-    fprintf(stderr, "farfield-handheld: %s: %s\n", what, ff_error_text(rc));
+    fprintf(stderr, "farfield-handheld: %s: %s\n", what, why);
     return -1;
 }
+
+static int fail(const char *what, int rc) { return fail_with(what, ff_error_text(rc)); }
 
 /* ---- opening ---- */
 
@@ -38,7 +40,7 @@ static int open_source(handheld *device)
     else if (rc == FF_OK)
         rc = sim_tape_open(&device->tape, device->mapping.bytes, device->mapping.size,
                            &device->stream);
-    return rc == FF_OK ? 0 : fail(path, rc);
+    return rc == FF_OK ? 0 : fail_with(path, ff_pack_error_text(&device->pack, rc));
 }
 
 static int open_surface(handheld *device)

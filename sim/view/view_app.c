@@ -115,7 +115,7 @@ static int open_pack(view_app *app)
     const char *path = app->options->target;
     int rc = sys_map_file(path, &app->mapping);
     if (rc == FF_OK) rc = ff_pack_open(&app->pack, app->mapping.bytes, app->mapping.size);
-    return rc < 0 ? view_fail("%s: %s", path, ff_error_text(rc)) : 0;
+    return rc < 0 ? view_fail("%s: %s", path, ff_pack_error_text(&app->pack, rc)) : 0;
 }
 
 /* A target that is a file is a pack, all else is an address. A pack behind a link, or with
@@ -191,7 +191,7 @@ static int write_screenshot(view_app *app, c3d_device *device)
     if (rc >= 0) rc = sys_png_write(path, rgb, camera->width, camera->height);
     free(rgb);
     app->screenshot = NULL;
-    return rc < 0 ? view_fail("%s: %s", path, ff_error_text(rc)) : 0;
+    return rc < 0 ? view_fail("%s: %s", path, ff_pack_error_text(&app->pack, rc)) : 0;
 }
 
 static int draw(view_app *app)

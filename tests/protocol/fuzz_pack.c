@@ -40,6 +40,7 @@ static void use_pack(const uint8_t *bytes, size_t count)
 {
     ff_pack pack;
     uint64_t bad, records = 0;
+    ff_list about;
     volatile int sum = 0;
 
     if (ff_pack_open(&pack, bytes, count) != FF_OK) return;
@@ -58,6 +59,14 @@ static void use_pack(const uint8_t *bytes, size_t count)
                                rc);
         }
     }
+    if (ff_pack_about(&pack, &about) == FF_OK) {
+        ff_list_entry entry;
+        records++;
+        for (int n = 0; n < 8; n++) sum += ff_pack_error_text(&pack, -n)[0];
+        while (ff_list_next(&about, &entry) > 0)
+            sum += read_all(entry.value, (int)entry.byte_count);
+    }
+    records += pack.header.about.record_count;
     ff_pack_verify(&pack, &bad);
     assert(bad <= records);
 }

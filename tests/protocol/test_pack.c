@@ -1,6 +1,7 @@
 /* The pack reader finds every record, and names every kind of damage. */
 #include "../../protocol/ff_pack.h"
 #include "../rig/pack_fixture.h"
+#include "../rig/slow_pack.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,7 +22,10 @@ static uint16_t other_hills(void *context, uint32_t x, uint32_t y)
 /* Two tiles of 2^4 cells, raw codec: every record of two such packs has the same length. */
 static fixture make_small(uint16_t (*height)(void *context, uint32_t x, uint32_t y))
 {
-    pack_fixture_desc desc = { .info = pack_fixture_info(4, 2, 1), .height = height };
+    static const uint8_t about[] = "\1\5Hills\2\6nobody";
+    pack_fixture_desc desc = { .info = pack_fixture_info(4, 2, 1),
+                               .height = height,
+                               .about = { about, sizeof about - 1 } };
     fixture f;
 
     desc.info.node_log2 = 2;
@@ -54,6 +58,8 @@ static void put(uint8_t *at, uint64_t value, unsigned bytes)
 
 static void reseal(fixture *f)
 {
+    put(f->bytes + 76, 0, 4);
+    put(f->bytes + 76, ff_crc32(0, f->bytes, FF_PACK_HEADER_BYTES - 4), 4);
     put(f->bytes + FF_PACK_HEADER_BYTES - 4, ff_crc32(0, f->bytes, FF_PACK_HEADER_BYTES - 4), 4);
 }
 
@@ -268,7 +274,7 @@ static void wild_indexes_are_out_of_range(void **state)
                      FF_ERR_NOT_FOUND);
 }
 
-#define SECTION_AT(number, field) (84 + 44 * (number) + (field))
+#define SECTION_AT(number, field) (84 + 48 * (number) + (field))
 
 /* Headers with a right checksum that lie: the section table's fields hold what a hostile writer
  * would like. */
@@ -281,17 +287,24 @@ static void lying_section_tables_are_refused(void **state)
     } lies[] = {
         { 80, 4, 0, FF_ERR_RANGE },
         { 80, 4, 2, FF_ERR_RANGE },
-        { 80, 4, 49, FF_ERR_RANGE },
+        { 80, 4, 81, FF_ERR_RANGE },
         { 80, 4, UINT32_MAX, FF_ERR_RANGE },
-        { SECTION_AT(0, 0), 2, FF_SECTION_TEXTURE, FF_ERR_RANGE },
-        { SECTION_AT(1, 2), 2, 1, FF_ERR_RANGE },
-        { SECTION_AT(1, 12), 8, 3, FF_ERR_RANGE },
-        { SECTION_AT(1, 12), 8, UINT64_MAX, FF_ERR_RANGE },
-        { SECTION_AT(0, 20), 8, 0, FF_ERR_TRUNCATED },
-        { SECTION_AT(0, 20), 8, UINT64_MAX - 8, FF_ERR_TRUNCATED },
-        { SECTION_AT(0, 28), 8, UINT64_MAX, FF_ERR_TRUNCATED },
-        { SECTION_AT(0, 28), 8, 100, FF_ERR_TRUNCATED },
-        { SECTION_AT(2, 36), 8, UINT64_MAX, FF_ERR_TRUNCATED },
+        { SECTION_AT(0, 0), 4, FF_SECTION_TEXTURE, FF_ERR_RANGE },
+        { SECTION_AT(0, 5), 1, FF_CODEC_RICE, FF_ERR_RANGE }, /* not the terrain's */
+        { SECTION_AT(1, 6), 1, 1, FF_ERR_RANGE },
+        { SECTION_AT(1, 7), 1, 0, FF_ERR_RANGE }, /* heights are needed */
+        { SECTION_AT(1, 16), 8, 3, FF_ERR_RANGE },
+        { SECTION_AT(1, 16), 8, UINT64_MAX, FF_ERR_RANGE },
+        { SECTION_AT(0, 24), 8, 0, FF_ERR_TRUNCATED },
+        { SECTION_AT(0, 24), 8, UINT64_MAX - 8, FF_ERR_TRUNCATED },
+        { SECTION_AT(0, 32), 8, UINT64_MAX, FF_ERR_TRUNCATED },
+        { SECTION_AT(0, 32), 8, 100, FF_ERR_TRUNCATED },
+        { SECTION_AT(2, 40), 8, UINT64_MAX, FF_ERR_TRUNCATED },
+        { SECTION_AT(3, 6), 1, 1, FF_ERR_RANGE }, /* what it says of itself has no levels */
+        { SECTION_AT(3, 7), 1, FF_PACK_NEEDED, FF_ERR_RANGE },
+        { SECTION_AT(3, 16), 8, 2, FF_ERR_RANGE },
+        { SECTION_AT(3, 24), 8, 0, FF_ERR_TRUNCATED },
+        { SECTION_AT(3, 40), 8, UINT64_MAX, FF_ERR_TRUNCATED },
         { 12, 1, 9, FF_ERR_RANGE },
         { 24, 4, 0, FF_ERR_RANGE },
         { 24, 4, UINT32_MAX, FF_ERR_RANGE },
@@ -324,6 +337,9 @@ static void bad_headers_are_not_written(void **state)
     header.section[1].level = 7;
     assert_int_equal(ff_pack_header_encode(&header, out), FF_ERR_RANGE);
     header = pack.header;
+    header.about.record_count = 2;
+    assert_int_equal(ff_pack_header_encode(&header, out), FF_ERR_RANGE);
+    header = pack.header;
     header.section_count--;
     assert_int_equal(ff_pack_header_encode(&header, out), FF_ERR_RANGE);
     header = pack.header;
@@ -352,6 +368,154 @@ static void large_packs_are_measured_in_64_bits(void **state)
         FF_ERR_TRUNCATED);
 }
 
+/* ---- formats grow ---- */
+
+#define SECTION_BYTES 48
+
+/* Puts a section of other letters into the list at `place`. */
+static void insert_section(fixture *f, unsigned place, const char *letters, unsigned version,
+                           unsigned codec, unsigned flags)
+{
+    uint8_t *count = f->bytes + 80, *at = f->bytes + SECTION_AT(place, 0);
+    memmove(at + SECTION_BYTES, at, (size_t)(*count - place) * SECTION_BYTES);
+    memset(at, 0xff, SECTION_BYTES); /* a place that this reader must not look for */
+    memcpy(at, letters, 4);
+    at[4] = (uint8_t)version;
+    at[5] = (uint8_t)codec;
+    at[7] = (uint8_t)flags;
+    ++*count;
+    reseal(f);
+}
+
+static void unknown_sections_are_passed_over_wherever_they_stand(void **state)
+{
+    fixture *f = *state;
+    const uint8_t *payload;
+    ff_list about;
+    uint64_t bad;
+    ff_pack pack;
+
+    for (unsigned place = 0; place <= 4; place++) insert_section(f, 2 * place, "MARK", 1, 0, 0xfe);
+    assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
+    assert_int_equal(pack.header.section_count, 3);
+    assert_int_equal(ff_pack_verify(&pack, &bad), FF_OK);
+    assert_true(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(1, 0, 0), &payload) > 0);
+    assert_int_equal(ff_pack_about(&pack, &about), FF_OK);
+    assert_int_equal(about.byte_count, 15);
+}
+
+/* What a pack says of itself may be in a form that this reader does not know. */
+static void an_unknown_form_of_what_is_not_needed_is_passed_over(void **state)
+{
+    fixture *f = *state;
+    ff_list about;
+    ff_pack pack;
+
+    f->bytes[SECTION_AT(3, 4)] = 2;
+    reseal(f);
+    assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
+    assert_int_equal(ff_pack_about(&pack, &about), FF_ERR_NOT_FOUND);
+}
+
+static void unknown_sections_that_are_needed_are_refused_by_name(void **state)
+{
+    static const struct {
+        const char *letters;
+        unsigned version, codec;
+        const char *said;
+    } row[] = {
+        { "MARK", 1, 0,
+          "it needs section MARK version 1 codec 0, which this program does not know" },
+        { "ROOT", 2, 0,
+          "it needs section ROOT version 2 codec 0, which this program does not know" },
+        { "REFI", 1, 200,
+          "it needs section REFI version 1 codec 200, which this program does not know" },
+        { "IMAG", 1, 1,
+          "it needs section IMAG version 1 codec 1, which this program does not know" },
+        { "\033[2J", 255, 255,
+          "it needs section ???J version 255 codec 255, which this program does not know" },
+    };
+    fixture *f = *state;
+    uint8_t keep[FF_PACK_HEADER_BYTES];
+    ff_pack pack;
+
+    memcpy(keep, f->bytes, sizeof(keep));
+    for (unsigned i = 0; i < sizeof(row) / sizeof(row[0]); i++) {
+        insert_section(f, i % 5, row[i].letters, row[i].version, row[i].codec, FF_PACK_NEEDED);
+        int rc = ff_pack_open(&pack, f->bytes, f->count);
+        assert_int_equal(rc, FF_ERR_UNSUPPORTED);
+        assert_string_equal(ff_pack_error_text(&pack, rc), row[i].said);
+        memcpy(f->bytes, keep, sizeof(keep));
+    }
+}
+
+static void older_packs_are_refused_with_the_command_that_bakes_them(void **state)
+{
+    fixture *f = *state;
+    ff_pack pack;
+
+    f->bytes[8] = 4;
+    int rc = ff_pack_open(&pack, f->bytes, f->count);
+    assert_int_equal(rc, FF_ERR_VERSION);
+    assert_string_equal(ff_pack_error_text(&pack, rc),
+                        "a pack of version 4, this program reads 5: bake it again: farfield-bake "
+                        "HEIGHTS -o OUT.ffp");
+    memset(f->bytes + 8, 0xff, 4);
+    rc = ff_pack_open(&pack, f->bytes, f->count);
+    assert_string_equal(ff_pack_error_text(&pack, rc),
+                        "a pack of version 4294967295, this program reads 5: it needs a newer "
+                        "Farfield");
+    assert_string_equal(ff_pack_error_text(&pack, FF_ERR_MEMORY), ff_error_text(FF_ERR_MEMORY));
+}
+
+static void what_a_pack_says_of_itself_comes_back_or_is_known_to_be_damaged(void **state)
+{
+    fixture *f = *state;
+    const uint8_t *name;
+    ff_list about;
+    uint64_t bad;
+    ff_pack pack;
+
+    assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
+    assert_int_equal(ff_pack_about(&pack, &about), FF_OK);
+    assert_int_equal(ff_list_find(about, FF_ABOUT_NAME, &name), 5);
+    assert_memory_equal(name, "Hills", 5);
+    f->bytes[f->count - 1] ^= 1;
+    assert_int_equal(ff_pack_about(&pack, &about), FF_ERR_CHECKSUM);
+    assert_int_equal(ff_pack_verify(&pack, &bad), FF_ERR_CHECKSUM);
+    assert_int_equal(bad, 1);
+    insert_section(f, 4, "ABOU", 1, 0, 0);
+    assert_int_equal(open_rc(f), FF_ERR_RANGE);
+}
+
+static void the_second_reader_finds_the_same_bytes(void **state)
+{
+    static const char *const letters[] = { "ROOT", "REFI", "REFI" };
+    fixture *f = *state;
+    const uint8_t *mine, *other;
+    ff_list about;
+    ff_pack pack;
+
+    insert_section(f, 1, "MARK", 1, 0, 0);
+    assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
+    for (uint32_t s = 0; s < 3; s++)
+        for (uint32_t i = 0; i < pack.header.section[s].record_count; i++) {
+            uint32_t level = pack.header.section[s].level, per_tile = 1u << 2 * level;
+            int bytes = ff_pack_record(&pack, (enum ff_section_kind)pack.header.section[s].kind,
+                                       ff_key_make(i / per_tile, level, i % per_tile), &mine);
+            assert_int_equal(slow_pack_record(f->bytes, f->count, letters[s], level, i, &other),
+                             bytes);
+            assert_ptr_equal(mine, other);
+        }
+    assert_int_equal(ff_pack_about(&pack, &about), FF_OK);
+    assert_int_equal(slow_pack_record(f->bytes, f->count, "ABOU", 0, 0, &other), about.byte_count);
+    assert_ptr_equal(other, about.bytes);
+    assert_int_equal(slow_list_find(other, about.byte_count, 2, &other), 6);
+    assert_memory_equal(other, "nobody", 6);
+    insert_section(f, 1, "MARK", 1, 0, FF_PACK_NEEDED);
+    assert_int_equal(slow_pack_record(f->bytes, f->count, "ROOT", 0, 0, &other), -1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -367,6 +531,17 @@ int main(void)
         cmocka_unit_test_setup_teardown(wild_indexes_are_out_of_range, make, drop),
         cmocka_unit_test_setup_teardown(lying_section_tables_are_refused, make, drop),
         cmocka_unit_test_setup_teardown(bad_headers_are_not_written, make, drop),
+        cmocka_unit_test_setup_teardown(unknown_sections_are_passed_over_wherever_they_stand, make,
+                                        drop),
+        cmocka_unit_test_setup_teardown(an_unknown_form_of_what_is_not_needed_is_passed_over, make,
+                                        drop),
+        cmocka_unit_test_setup_teardown(unknown_sections_that_are_needed_are_refused_by_name, make,
+                                        drop),
+        cmocka_unit_test_setup_teardown(older_packs_are_refused_with_the_command_that_bakes_them,
+                                        make, drop),
+        cmocka_unit_test_setup_teardown(
+            what_a_pack_says_of_itself_comes_back_or_is_known_to_be_damaged, make, drop),
+        cmocka_unit_test_setup_teardown(the_second_reader_finds_the_same_bytes, make, drop),
         cmocka_unit_test_setup_teardown(large_packs_are_measured_in_64_bits, make, drop),
     };
 

@@ -160,9 +160,8 @@ static void section(writer *w, enum ff_section_kind kind, uint32_t level, const 
     uint64_t per_tile = (uint64_t)1 << (2 * level),
              records = (uint64_t)info->tiles_x * info->tiles_y * per_tile;
     ff_pack_section *s = &w->header.section[w->header.section_count++];
-    *s = (ff_pack_section){ .kind = (uint16_t)kind,
-                            .level = (uint16_t)level,
-                            .record_count = records };
+    ff_pack_section_at(info, w->header.section_count - 1, s);
+    s->record_count = records;
     s->index_offset = w->count;
     size_t index_bytes = (size_t)(records + 1) * 8;
     grow(w, index_bytes);
@@ -211,12 +210,31 @@ static void sections(writer *w)
         section(w, FF_SECTION_TEXTURE, level, NULL, NULL);
 }
 
+static void about(writer *w)
+{
+    ff_list list = w->desc->about;
+    ff_pack_section *s = &w->header.about;
+    if (!list.byte_count) return;
+    *s = ff_pack_about_section();
+    s->index_offset = w->count;
+    s->data_offset = w->count + 16;
+    s->data_bytes = 4 + (uint64_t)list.byte_count;
+    uint8_t *out = grow(w, 16 + (size_t)s->data_bytes);
+    if (!out) return;
+    put_le(out + 8, s->data_bytes, 8);
+    put_le(out + 16, ff_crc32(0, list.bytes, list.byte_count), 4);
+    memcpy(out + 20, list.bytes, list.byte_count);
+    s->index_crc = ff_crc32(0, out, 16);
+    s->records_crc = ff_crc32(0, out + 16, 4);
+}
+
 uint8_t *pack_fixture_make(const pack_fixture_desc *desc, size_t *bytes)
 {
     writer w = { .desc = desc, .header.info = desc->info };
     if (ff_terrain_check(&desc->info) < 0) return NULL;
     grow(&w, FF_PACK_HEADER_BYTES);
     sections(&w);
+    about(&w);
     if (!w.failed) w.failed = ff_pack_header_encode(&w.header, w.bytes) != FF_OK;
     if (w.failed) {
         free(w.bytes);

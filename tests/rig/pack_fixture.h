@@ -14,6 +14,7 @@ typedef struct pack_fixture_desc {
     /* Colour of a point of the ground in wu, when info.texture_log2 is not 0. */
     void (*colour)(void *context, int64_t x_wu, int64_t y_wu, uint8_t rgb[3]);
     void *context;
+    ff_list about; /* what the pack says of itself; empty: nothing */
 } pack_fixture_desc;
 
 /* The pack's bytes (free them), or NULL. Textures are JPEGs, north up, texel i at i/(T-1) of the

@@ -83,7 +83,7 @@ cp "$work/hills.ffp" "$work/good.ffp"
 python3 - "$work/hills.ffp" <<'END'
 import struct, sys
 file = bytearray(open(sys.argv[1], "rb").read())
-index, data = struct.unpack_from("<QQ", file, 84 + 20)
+index, data = struct.unpack_from("<QQ", file, 84 + 24)
 file[data + struct.unpack_from("<Q", file, index)[0] + 6] ^= 1
 open(sys.argv[1], "wb").write(file)
 END

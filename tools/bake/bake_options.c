@@ -1,6 +1,7 @@
 #include "bake_options.h"
 
 #include "bake_say.h"
+#include "raster/bake_about.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -164,6 +165,7 @@ int bake_options_parse(bake_options *o, int argc, char **argv)
         return bake_fail("--tile-log2 %u: not from --node-log2 %u up", o->tile_log2, o->node_log2);
     if (o->no_project && o->target_epsg)
         return bake_fail("--no-project and --t-srs exclude each other");
+    if (bake_about_check(o)) return -1;
     bake_say_setup("farfield-bake", o->quiet);
     return 0;
 }

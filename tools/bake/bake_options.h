@@ -83,6 +83,14 @@ extern const sys_option_type bake_raw_option, bake_nodata_option, bake_box_optio
            "JPEG quality") \
     OPTION(sys_word, codec, "codec", "NAME", "deflate", SYS_WORDS(codec_words), \
            "rice: for devices without zlib") \
+    HEADING("What the pack says of itself; default: what the source says") \
+    OPTION(sys_text, name, "name", "TEXT", NULL, SYS_ANY, "what ground it is") \
+    OPTION(sys_text, attribution, "attribution", "TEXT", NULL, SYS_ANY, \
+           "whose it is, as it is to be shown") \
+    OPTION(sys_text, licence, "licence", "TEXT", NULL, SYS_ANY, "what may be done with it") \
+    OPTION(sys_text, date, "date", "TEXT", NULL, SYS_ANY, "of the source") \
+    OPTION(sys_text, vertical_datum, "vertical-datum", "TEXT", NULL, SYS_ANY, \
+           "what heights are above") \
     HEADING("Run") \
     OPTION(sys_whole, jobs, "jobs", "N", NULL, SYS_WHOLE(1, 64, ""), \
            "threads; default: the processors, at most 16; any N gives the same bytes") \

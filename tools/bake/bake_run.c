@@ -41,6 +41,7 @@ typedef struct bake {
     bake_tile *tile; /* one per job */
     bake_blob (*texture)[BAKE_TEXTURE_LEVELS_MAX];
     pack_writer writer;
+    uint8_t about[FF_ABOUT_BYTES_MAX];
     int64_t started_us;
 } bake;
 
@@ -246,6 +247,10 @@ static int make_pack(bake *b)
         return -1;
     if (pack_writer_open(&b->writer, &b->info)) return -1;
     if (make_tiles(b)) return -1;
+    int is_placed = b->ground.has_place && !b->ground.is_geographic;
+    b->writer.about = (ff_list){
+        b->about, bake_about_list(&b->ground.about, is_placed ? b->ground.srs : NULL, b->about)
+    };
     if (pack_writer_finish(&b->writer, b->options->out_path, &file_bytes)) return -1;
     report(b, file_bytes);
     return 0;

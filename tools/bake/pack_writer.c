@@ -160,12 +160,33 @@ static int write_sections(const pack_writer *writer, int fd, ff_pack_header *hea
     return 0;
 }
 
+/* A section of one record, with its index. */
+static int write_about(const pack_writer *writer, int fd, ff_pack_section *section, uint64_t *end)
+{
+    uint8_t bytes[16 + RECORD_CRC_BYTES + FF_ABOUT_BYTES_MAX] = { 0 }, *record = bytes + 16;
+    uint32_t count = writer->about.byte_count;
+    if (!count) return 0;
+    *section = ff_pack_about_section();
+    section->index_offset = *end;
+    section->data_offset = *end + 16;
+    section->data_bytes = RECORD_CRC_BYTES + count;
+    put_le(bytes + 8, section->data_bytes, 8);
+    put_le(record, ff_crc32(0, writer->about.bytes, count), RECORD_CRC_BYTES);
+    memcpy(record + RECORD_CRC_BYTES, writer->about.bytes, count);
+    section->index_crc = ff_crc32(0, bytes, 16);
+    section->records_crc = ff_crc32(0, record, RECORD_CRC_BYTES);
+    *end = section->data_offset + section->data_bytes;
+    return bake_pwrite(fd, bytes, 16 + (size_t)section->data_bytes, section->index_offset);
+}
+
 static int write_file(const pack_writer *writer, int fd, uint64_t *file_bytes)
 {
     static ff_pack_header header;
     static uint8_t bytes[FF_PACK_HEADER_BYTES];
     header = (ff_pack_header){ .info = writer->info, .section_count = writer->section_count };
-    if (write_sections(writer, fd, &header, file_bytes)) return -1;
+    if (write_sections(writer, fd, &header, file_bytes) ||
+        write_about(writer, fd, &header.about, file_bytes))
+        return -1;
     int rc = ff_pack_header_encode(&header, bytes);
     if (rc) return bake_fail("the pack's header does not hold: %s", ff_error_text(rc));
     if (bake_pwrite(fd, bytes, sizeof bytes, 0)) return -1;

@@ -22,6 +22,7 @@ typedef struct pack_writer {
     ff_terrain_info info;
     uint32_t section_count;
     pack_section_file section[FF_PACK_SECTIONS_MAX];
+    ff_list about; /* what the pack says of itself, set before it is finished; may be empty */
 } pack_writer;
 
 /* Checks that `path` can be written and removes leftovers of killed runs. 0 or -1 (said). */

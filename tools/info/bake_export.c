@@ -1,4 +1,5 @@
 #include "bake_export.h"
+#include "bake_about_gdal.h"
 
 #include "../../protocol/shape/ff_shape.h"
 #include "../bake/raster/bake_grid_gdal.h"
@@ -66,35 +67,35 @@ static int copy_raw(const bake_grid *raster, const char *path)
     return rc;
 }
 
-static void set_reference(const ff_terrain_info *info, uint32_t skip, const bake_grid *raster,
+static void set_reference(const ff_pack *pack, uint32_t skip, const bake_grid *raster,
                           GDALDatasetH set)
 {
+    const ff_terrain_info *info = &pack->header.info;
     double spacing = (double)info->spacing_wu / FF_WU_PER_METRE * (double)(1u << skip);
     double west = (double)info->origin_x_mm / 1000 - spacing / 2,
            south = (double)info->origin_y_mm / 1000 - spacing / 2;
     double gt[6] = { west, spacing, 0, south + spacing * raster->height, 0, -spacing };
     GDALSetGeoTransform(set, gt);
-    if (info->epsg) {
-        OGRSpatialReferenceH srs = OSRNewSpatialReference(NULL);
-        if (OSRImportFromEPSG(srs, info->epsg) == OGRERR_NONE)
-            GDALSetSpatialRef(set, srs);
-        else
-            bake_note("EPSG:%d is not known here: the raster will not name it", info->epsg);
+    OGRSpatialReferenceH srs = bake_about_reference(pack);
+    if (srs) {
+        GDALSetSpatialRef(set, srs);
         OSRDestroySpatialReference(srs);
-    }
+    } else if (info->epsg)
+        bake_note("EPSG:%d is not known here: the raster will not name it", info->epsg);
+    bake_about_metadata(pack, set);
     GDALRasterBandH band = GDALGetRasterBand(set, 1);
     GDALSetRasterScale(band, info->hscale_q24 / 16777216.0);
     GDALSetRasterOffset(band, (double)info->hoffset_wu / FF_WU_PER_METRE);
     GDALSetRasterUnitType(band, "m");
 }
 
-static int copy_image(const ff_terrain_info *info, uint32_t skip, const bake_grid *raster,
+static int copy_image(const ff_pack *pack, uint32_t skip, const bake_grid *raster,
                       const char *driver, const char *path)
 {
     GDALDatasetH set = bake_grid_dataset(raster, GDT_UInt16, 1);
     if (!set) return -1;
     int is_tiff = !strcmp(driver, "GTiff");
-    if (is_tiff) set_reference(info, skip, raster, set);
+    if (is_tiff) set_reference(pack, skip, raster, set);
     char **settings = is_tiff ? CSLSetNameValue(NULL, "COMPRESS", "DEFLATE") : NULL;
     if (is_tiff) settings = CSLSetNameValue(settings, "PREDICTOR", "2");
     CPLErrorReset();
@@ -107,11 +108,11 @@ static int copy_image(const ff_terrain_info *info, uint32_t skip, const bake_gri
     return bake_fail_gdal("cannot write %s", path);
 }
 
-static int write_as(const ff_terrain_info *info, uint32_t skip, const bake_grid *raster,
-                    const char *ending, const char *path)
+static int write_as(const ff_pack *pack, uint32_t skip, const bake_grid *raster, const char *ending,
+                    const char *path)
 {
     if (!strcmp(ending, ".r16")) return copy_raw(raster, path);
-    return copy_image(info, skip, raster, strcmp(ending, ".png") ? "GTiff" : "PNG", path);
+    return copy_image(pack, skip, raster, strcmp(ending, ".png") ? "GTiff" : "PNG", path);
 }
 
 int bake_export(const bake_unpack *unpack, uint32_t level, const char *path)
@@ -131,7 +132,7 @@ int bake_export(const bake_unpack *unpack, uint32_t level, const char *path)
                        sizeof(uint16_t)))
         return -1;
     int rc = export_tiles(unpack, level, &raster);
-    if (!rc) rc = write_as(info, skip, &raster, ending, temp);
+    if (!rc) rc = write_as(&unpack->pack, skip, &raster, ending, temp);
     if (!rc && rename(temp, path)) rc = bake_fail("cannot rename to %s: %s", path, strerror(errno));
     if (rc) unlink(temp);
     bake_grid_close(&raster);

@@ -1,4 +1,5 @@
 #include "bake_info.h"
+#include "bake_info_about.h"
 
 #include "../../protocol/shape/ff_shape.h"
 
@@ -99,7 +100,7 @@ static void print_terrain(const ff_terrain_info *info)
         printf("textures        none\n");
     printf("codec           %s%s\n", ff_codec_name(info->codec),
            info->flags & FF_TERRAIN_DENSIFIED ? "; part of the detail is invented" : "");
-    printf("checksum        %08x\n\n", info->checksum);
+    printf("checksum        %08x\n", info->checksum);
 }
 
 void bake_info_print(const ff_pack *pack, const char *path)
@@ -107,7 +108,8 @@ void bake_info_print(const ff_pack *pack, const char *path)
     section_sum heights = { 0 }, textures = { 0 };
     printf("%s: Farfield pack, version %d, %" PRIu64 " bytes\n", path, FF_PACK_VERSION, pack->size);
     print_terrain(&pack->header.info);
-    printf("section     level    records        bytes  bytes/record  bits/new sample\n");
+    bake_info_about(pack);
+    printf("\nsection     level    records        bytes  bytes/record  bits/new sample\n");
     for (uint32_t i = 0; i < pack->header.section_count; i++) {
         const ff_pack_section *section = &pack->header.section[i];
         section_sum sum = sum_up(pack, i), *total = sum.new_samples ? &heights : &textures;
@@ -124,7 +126,7 @@ void bake_info_print(const ff_pack *pack, const char *path)
     printf("\nheights   %12" PRIu64 " bytes, %.3f bits a sample of the source\n",
            heights.payload_bytes, per(heights.payload_bytes, source));
     printf("textures  %12" PRIu64 " bytes\n", textures.payload_bytes);
-    printf("overhead  %12" PRIu64 " bytes (header, indexes, checksums)\n",
+    printf("overhead  %12" PRIu64 " bytes (header, indexes, checksums, what is said of it)\n",
            pack->size - heights.payload_bytes - textures.payload_bytes);
 }
 
@@ -155,6 +157,7 @@ void bake_info_print_json(const ff_pack *pack)
     uint64_t source = source_samples(&pack->header.info);
     printf("{\"bytes\": %" PRIu64 ", ", pack->size);
     print_terrain_json(&pack->header.info);
+    bake_info_about_json(pack);
     printf("\"sections\": [");
     for (uint32_t i = 0; i < pack->header.section_count; i++) {
         const ff_pack_section *section = &pack->header.section[i];

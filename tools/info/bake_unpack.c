@@ -26,9 +26,9 @@ int bake_unpack_open(bake_unpack *unpack, const char *path)
     char fault[200];
     int field = rc == FF_ERR_RANGE && bake_fault(&unpack->pack.header.info, fault, sizeof fault);
     bake_unpack_close(unpack);
-    if (rc == FF_ERR_UNSUPPORTED)
+    if (rc == FF_ERR_UNSUPPORTED && !*unpack->pack.refusal)
         return bake_fail("%s: codec %d is %s", path, codec, ff_error_text(rc));
-    return bake_fail("%s: %s", path, field ? fault : ff_error_text(rc));
+    return bake_fail("%s: %s", path, field ? fault : ff_pack_error_text(&unpack->pack, rc));
 }
 
 void bake_unpack_close(bake_unpack *unpack)

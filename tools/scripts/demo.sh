@@ -44,7 +44,8 @@ say "terrain: Trinidad, Colorado (USGS, public domain) from Debian's libncarg-da
 dem=$("$(dirname "$0")/trinidad.sh" "$out") || fail "no terrain"
 
 say "bake: $dem"
-"$bin/farfield-bake" "$dem" --scale 0.3048780488 -o "$pack"
+"$bin/farfield-bake" "$dem" --scale 0.3048780488 --name "Trinidad, Colorado" --attribution "U.S. Geological Survey" \
+    --licence "public domain" -o "$pack"
 "$bin/farfield-info" "$pack"
 
 say "server and a UMTS link, real sockets, real time: 25 seconds"

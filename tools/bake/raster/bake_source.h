@@ -6,6 +6,7 @@
 #include "bake_gdal.h"
 #include "bake_grid.h"
 #include "../bake_options.h"
+#include "bake_about.h"
 
 typedef struct bake_ground {
     bake_grid grid; /* float32 metres; NaN: void */
@@ -24,6 +25,7 @@ typedef struct bake_ground {
     uint64_t voids, outside;
     uint64_t given; /* samples void in the source that were given a height */
     int resampled;
+    bake_about about; /* whose it is */
 } bake_ground;
 
 /* Reads `set`, or the raster named in `options` when it is NULL, into `ground`, voids as NaN and

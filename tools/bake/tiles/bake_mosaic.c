@@ -191,6 +191,9 @@ static int make_set(const patchwork *p, bake_mosaic *mosaic)
     OSRDestroySpatialReference(srs);
     GDALSetRasterColorInterpretation(GDALGetRasterBand(mosaic->set, RGBA), GCI_AlphaBand);
     if (*p->tiles.encoding) GDALSetMetadataItem(mosaic->set, "encoding", p->tiles.encoding, NULL);
+    if (*p->tiles.name) GDALSetMetadataItem(mosaic->set, "name", p->tiles.name, NULL);
+    if (*p->tiles.attribution)
+        GDALSetMetadataItem(mosaic->set, "attribution", p->tiles.attribution, NULL);
     return 0;
 }
 

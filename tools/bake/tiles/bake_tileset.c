@@ -1,6 +1,7 @@
 #include "bake_tileset.h"
 
 #include "../bake_say.h"
+#include "bake_json.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -115,6 +116,16 @@ static void release(const bake_tileset *set, OGRFeatureH row, OGRLayerH layer)
     if (layer) GDALDatasetReleaseResultSet(set->table, layer);
 }
 
+static void table_text(const bake_tileset *set, const char *name, char *value, size_t room)
+{
+    char query[100];
+    OGRLayerH layer;
+    snprintf(query, sizeof query, "SELECT value FROM metadata WHERE name = '%s'", name);
+    OGRFeatureH row = first_row(set, query, &layer);
+    if (row) snprintf(value, room, "%s", OGR_F_GetFieldAsString(row, 0));
+    release(set, row, layer);
+}
+
 static int open_table(bake_tileset *set)
 {
     static const char *const drivers[] = { "SQLite", NULL };
@@ -130,9 +141,9 @@ static int open_table(bake_tileset *set)
     release(set, row, layer);
     if (zoom < 0 || zoom > BAKE_ZOOM_MAX) return bake_fail("%s: MBTiles without tiles", set->path);
     set->zoom_max = (uint32_t)zoom;
-    row = first_row(set, "SELECT value FROM metadata WHERE name = 'encoding'", &layer);
-    if (row) snprintf(set->encoding, sizeof set->encoding, "%s", OGR_F_GetFieldAsString(row, 0));
-    release(set, row, layer);
+    table_text(set, "encoding", set->encoding, sizeof set->encoding);
+    table_text(set, "name", set->name, sizeof set->name);
+    table_text(set, "attribution", set->attribution, sizeof set->attribution);
     return 0;
 }
 
@@ -183,24 +194,14 @@ static int table_get(const bake_tileset *set, uint32_t zoom, uint32_t x, uint32_
 
 /* ---- PMTiles ---- */
 
-/* The value of a text in flat JSON. */
-static void find_text(const char *json, const char *name, char *value, size_t room)
-{
-    const char *at = strstr(json, name);
-    if (!at) return;
-    at += strlen(name);
-    at += strspn(at, " \t\r\n:");
-    if (*at != '"') return;
-    size_t length = strcspn(at + 1, "\"\\");
-    if (length < room) snprintf(value, room, "%.*s", (int)length, at + 1);
-}
-
 static int open_pmtiles(bake_tileset *set)
 {
     if (bake_pmtiles_open(set->path, &set->pmtiles)) return -1;
     char *json = bake_pmtiles_metadata(&set->pmtiles);
     if (!json) return -1;
-    find_text(json, "\"encoding\"", set->encoding, sizeof set->encoding);
+    bake_json_text(json, "encoding", set->encoding, sizeof set->encoding);
+    bake_json_text(json, "name", set->name, sizeof set->name);
+    bake_json_text(json, "attribution", set->attribution, sizeof set->attribution);
     free(json);
     set->zoom_max = set->pmtiles.zoom_max;
     return 0;

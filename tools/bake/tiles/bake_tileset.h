@@ -13,7 +13,8 @@ typedef struct bake_tileset {
     bake_pmtiles pmtiles;
     GDALDatasetH table; /* MBTiles, as SQLite */
     uint32_t zoom_max;
-    char encoding[16]; /* "mapbox", "terrarium", or "" */
+    char encoding[16];                 /* "mapbox", "terrarium", or "" */
+    char name[512], attribution[2048]; /* whose they are, or "" */
 } bake_tileset;
 
 /* Columns and rows of tiles, row 0 north; both ends belong to it. */

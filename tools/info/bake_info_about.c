@@ -1,0 +1,101 @@
+#include "bake_info_about.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+#define NANO 1e9
+
+/* EPSG's codes of parameters that are factors; the others are angles or lengths. */
+static int is_factor(uint16_t code) { return code == 8805 || code == 8815 || code == 8819; }
+static int is_length(uint16_t code)
+{
+    return code == 8806 || code == 8807 || code == 8816 || code == 8817 || code == 8826 ||
+           code == 8827;
+}
+
+static void print_projection(const ff_about_projection *projection)
+{
+    printf("projection      method EPSG:%u, ellipsoid of %.3f m and 1/%.12g", projection->method,
+           (double)projection->semi_major_um / 1e6, (double)projection->inverse_flattening / NANO);
+    for (uint32_t i = 0; i < projection->parameter_count; i++) {
+        int64_t value;
+        uint16_t code = ff_about_parameter(projection, i, &value);
+        double unit = is_factor(code) ? 1e12 : is_length(code) ? 1e6 : NANO;
+        printf("%s EPSG:%u %.12g%s", i ? "," : "; parameters", code, (double)value / unit,
+               is_factor(code)   ? ""
+               : is_length(code) ? " m"
+                                 : " degrees");
+    }
+    putchar('\n');
+}
+
+void bake_info_about(const ff_pack *pack)
+{
+    static const char *const label[] = { "",        "name", "attribution",
+                                         "licence", "date", "heights above" };
+    ff_about_projection projection;
+    ff_list_entry entry;
+    ff_list about, rest;
+    int rc = ff_pack_about(pack, &about);
+    if (rc == FF_ERR_NOT_FOUND) return;
+    if (rc != FF_OK) {
+        printf("about           %s\n", ff_error_text(rc));
+        return;
+    }
+    for (rest = about; ff_list_next(&rest, &entry) > 0;)
+        if (entry.type <= FF_ABOUT_VERTICAL)
+            printf("%-15s %.*s\n", label[entry.type], (int)entry.byte_count,
+                   (const char *)entry.value);
+    if (ff_about_get_projection(about, &projection) == FF_OK) print_projection(&projection);
+}
+
+/* Texts have no control characters: only these two are to be marked. */
+static void print_text(const ff_list_entry *entry)
+{
+    putchar('"');
+    for (uint32_t i = 0; i < entry->byte_count; i++) {
+        if (entry->value[i] == '"' || entry->value[i] == '\\') putchar('\\');
+        putchar(entry->value[i]);
+    }
+    putchar('"');
+}
+
+static void print_numbers(ff_list about)
+{
+    ff_about_projection projection;
+    if (ff_about_get_projection(about, &projection) != FF_OK) return;
+    printf("{\"method\": %u, \"semi_major_um\": %" PRId64 ", \"inverse_flattening_e9\": %" PRId64
+           ", \"prime_meridian_e9\": %" PRId64 ", \"parameters\": {",
+           projection.method, projection.semi_major_um, projection.inverse_flattening,
+           projection.prime_meridian);
+    for (uint32_t i = 0; i < projection.parameter_count; i++) {
+        int64_t value;
+        uint16_t code = ff_about_parameter(&projection, i, &value);
+        printf("%s\"%u\": %" PRId64, i ? ", " : "", code, value);
+    }
+    printf("}}");
+}
+
+void bake_info_about_json(const ff_pack *pack)
+{
+    static const char *const name[] = { "",
+#define X(entry, name, type, form, most) [type] = #name,
+                                        FF_ABOUT_LIST(X)
+#undef X
+    };
+    ff_list_entry entry;
+    ff_list about, rest;
+    int first = 1;
+    printf("\"about\": {");
+    if (ff_pack_about(pack, &about) == FF_OK)
+        for (rest = about; ff_list_next(&rest, &entry) > 0;) {
+            if (entry.type >= sizeof name / sizeof *name) continue;
+            printf("%s\"%s\": ", first ? "" : ", ", name[entry.type]);
+            first = 0;
+            if (entry.type == FF_ABOUT_PROJECTION)
+                print_numbers(about);
+            else
+                print_text(&entry);
+        }
+    printf("}, ");
+}
