@@ -72,6 +72,7 @@ void ff_client_default_desc(ff_client_desc *desc)
     default_quality(desc);
     default_panorama(&desc->panorama, desc->width);
     desc->no_textures |= !ff_textures_built;
+    desc->about &= FF_ABOUT_KNOWN;
 }
 
 static int check_desc(const ff_client_desc *desc)
@@ -114,7 +115,10 @@ static int make_fixed_part(ff_client *client)
     ff_budget_fixed(&budget, &client->desc, client->arena.bytes);
     client->recv = ff_client_take(&client->arena, &budget, FF_POOL_received);
     void *slots = ff_client_take(&client->arena, &budget, FF_POOL_requests);
-    if (!slots || (client->desc.stream && !client->recv)) return FF_ERR_MEMORY;
+    uint8_t *about = ff_client_take(&client->arena, &budget, FF_POOL_about);
+    if (!slots || (client->desc.stream && !client->recv) ||
+        (budget.pool[FF_POOL_about].count && !about))
+        return FF_ERR_MEMORY;
     client->fixed_bytes = client->arena.used;
     ff_requests_init(&client->requests, client->desc.in_flight_max, slots);
     FF_ASSERT(client->requests.slot_count == budget.pool[FF_POOL_requests].count);
@@ -127,6 +131,7 @@ static int make_fixed_part(ff_client *client)
         ff_stream_init(&client->stream, client->desc.stream, &client->intake,
                        client->desc.in_flight_max, client->desc.answer_timeout_ms, client->recv,
                        budget.pool[FF_POOL_received].count);
+    if (about) ff_stream_want_about(&client->stream, client->desc.about, about);
     return FF_OK;
 }
 
@@ -261,6 +266,24 @@ void ff_client_set_show(ff_client *client, unsigned show)
 const ff_terrain_info *ff_client_terrain(const ff_client *client)
 {
     return client->have_terrain ? &client->info : NULL;
+}
+
+static int about_of_pack(const ff_pack *pack, unsigned entry, void *value, size_t room)
+{
+    const uint8_t *found;
+    ff_list about;
+    int bytes = ff_pack_about(pack, &about);
+    if (bytes == FF_OK) bytes = ff_list_find(about, entry, &found);
+    if (bytes > 0 && (size_t)bytes > room) return FF_ERR_FULL;
+    if (bytes > 0) memcpy(value, found, (size_t)bytes);
+    return bytes;
+}
+
+int ff_client_about(ff_client *client, enum ff_about_entry entry, void *value, size_t room)
+{
+    if (!(client->desc.about & FF_ABOUT_BIT(entry))) return FF_ERR_NOT_FOUND;
+    if (client->desc.pack) return about_of_pack(client->desc.pack, entry, value, room);
+    return ff_stream_about_entry(&client->stream, entry, value, room);
 }
 
 const ff_tree *ff_client_tree(const ff_client *client) { return client->tree; }

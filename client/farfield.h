@@ -136,6 +136,10 @@ typedef struct ff_client_desc {
     uint8_t no_prefetch;      /* 1: what motion and turns will show is not asked for ahead */
     uint8_t no_reserve;       /* 1: no coarse ground all round while the link is idle */
     enum ff_hidden hidden;    /* default: ground that nearer ground hides is left out */
+    /* what is to be known of what the pack says of itself (protocol/ff_about.h): FF_ABOUT_BIT of
+     * each entry; a server is asked for those alone, and they have room in the block. Default:
+     * nothing */
+    uint32_t about;
     /* requests sent and unanswered at most, default 32 */
     uint16_t in_flight_max;
     /* A connection silent this long with requests out is closed and made anew, default 60000. Never
@@ -223,6 +227,11 @@ void ff_client_set_show(ff_client *client, unsigned show);
 
 /* NULL until the terrain is known. */
 const ff_terrain_info *ff_client_terrain(const ff_client *client);
+/* An entry of what the pack says of itself, of those in desc.about: its bytes in `value`, a text
+ * without an end mark; FF_ERR_NOT_FOUND: the pack does not say, or it has not come yet;
+ * FF_ERR_FULL.
+ */
+int ff_client_about(ff_client *client, enum ff_about_entry entry, void *value, size_t room);
 const ff_tree *ff_client_tree(const ff_client *client);
 /* For checks and the emulator: the c3d device; NULL without a back end and where the block has no
  * room for one. Until the terrain is known it is one for the sky; another one with every

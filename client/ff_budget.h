@@ -58,7 +58,11 @@
     X(requests, 1, \
       b->desc->in_flight_max + FF_REQUESTS_QUEUED_MAX, 1, UINT16_MAX, \
       ff_requests_bytes(b->desc->in_flight_max), from->requests_held, from->requests.held_high, \
-      "those sent and unanswered, and behind them all that a ranking can want")
+      "those sent and unanswered, and behind them all that a ranking can want") \
+    X(about, b->desc->stream != NULL && b->desc->about != 0, \
+      ff_about_bytes_max(b->desc->about), 1, FF_ABOUT_BYTES_MAX, \
+      n, from->link.about_bytes, from->link.about_bytes, \
+      "bytes of what the pack says of itself, of the entries that the program shows")
 
 /* What comes, on its way to the tree and the device. */
 #define FF_POOLS_ARRIVING(X, PART) \

@@ -49,6 +49,8 @@
     KEPT(uint32_t, reserve_bytes, from->requests.reserve_bytes, "of their answers, without headers") \
     TOLD(uint32_t, protocol_errors, from->link.protocol_errors, "messages that were nonsense") \
     KEPT(enum ff_link_state, link, link_state(from), "to the server") \
+    KEPT(int, refusal, from->link.refusal, \
+         "why the server would have no part of this client: FF_ERR_VERSION, FF_ERR_FULL; or FF_OK") \
     KEPT(uint32_t, reconnects, from->link.reconnects, "connections made again") \
     KEPT(uint32_t, rtt_ms, from->link.rtt_us / 1000, "round trip, as measured by the worker") \
     KEPT(uint32_t, bandwidth_bytes_s, from->link.bytes_s, "of the link, as measured by the worker") \

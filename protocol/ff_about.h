@@ -25,11 +25,15 @@ enum ff_about_entry {
     FF_ABOUT_LIST(X)
 #undef X
 };
-/* clang-format on */
 
 /* A set of entries has a bit for each type up to 32. */
-#define FF_ABOUT_BIT(type) (UINT32_C(1) << ((type)-1))
-#define FF_ABOUT_ALL       UINT32_MAX
+#define FF_ABOUT_BIT(type) (UINT32_C(1) << ((type) - 1))
+enum ff_about_set {
+#define X(entry, name, type, form, most) | FF_ABOUT_BIT(type)
+    FF_ABOUT_KNOWN = 0 FF_ABOUT_LIST(X)
+#undef X
+};
+/* clang-format on */
 
 /* How the reference system is projected. Parameters follow, see ff_about_parameter. */
 typedef struct ff_about_projection {

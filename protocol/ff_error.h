@@ -8,7 +8,7 @@
     X(FF_ERR_MEMORY, -2, "memory block too small")                   \
     X(FF_ERR_TRUNCATED, -3, "data ends too early")                   \
     X(FF_ERR_FORMAT, -4, "not a Farfield file or message")           \
-    X(FF_ERR_VERSION, -5, "made by an unknown version of Farfield")  \
+    X(FF_ERR_VERSION, -5, "another version of Farfield")             \
     X(FF_ERR_CHECKSUM, -6, "checksum mismatch: the data is damaged") \
     X(FF_ERR_RANGE, -7, "a field is out of range")                   \
     X(FF_ERR_NOT_FOUND, -8, "no such node, texture or file")         \

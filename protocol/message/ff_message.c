@@ -18,6 +18,30 @@ static void require(int *error, int condition)
     if (!condition && *error == FF_OK) *error = FF_ERR_RANGE;
 }
 
+/* ---- lists ---- */
+
+#define X(entry, type, least, most) { type, least, most },
+static const ff_list_rule caps_rule[] = { FF_CAPS_LIST(X) };
+static const ff_list_rule welcome_rule[] = { FF_WELCOME_LIST(X) };
+#undef X
+
+static int check_list(ff_list list, const ff_list_rule *rule, size_t rules)
+{
+    return list.byte_count > FF_CAPS_BYTES_MAX ? FF_ERR_RANGE
+                                               : ff_list_check(list, rule, (unsigned)rules);
+}
+
+static int check_caps(ff_list list)
+{
+    return check_list(list, caps_rule, sizeof caps_rule / sizeof *caps_rule);
+}
+
+static void write_list(ff_writer *out, ff_list list, int check)
+{
+    require(&out->error, check == FF_OK);
+    ff_write_span(out, list.bytes, list.byte_count);
+}
+
 /* ---- ranges, the same for both directions ---- */
 
 static int get_ok(const ff_get *get, enum ff_kind kind)
@@ -109,7 +133,10 @@ static void write_welcome(ff_writer *out, const ff_welcome *welcome)
     require(&out->error,
             welcome->version == FF_PROTOCOL_VERSION && ff_terrain_check(&welcome->info) == FF_OK);
     ff_write_bytes(out, welcome->version, 4);
+    ff_write_bytes(out, FF_WELCOME_TERRAIN, 1);
+    ff_write_varint(out, FF_TERRAIN_BYTES);
     ff_write_terrain(out, &welcome->info);
+    ff_write_span(out, welcome->more.bytes, welcome->more.byte_count);
 }
 
 static void write_request(ff_writer *out, const ff_message *message)
@@ -147,6 +174,9 @@ static void write_body(ff_writer *out, const ff_message *message)
         case FF_MSG_CANCELLED: ff_write_bytes(out, message->u.cancel.id, 2); break;
         case FF_MSG_PING:
         case FF_MSG_PONG: ff_write_bytes(out, message->u.ping.stamp, 4); break;
+        case FF_MSG_CAPS: write_list(out, message->u.list, check_caps(message->u.list)); break;
+        case FF_MSG_ABOUT: write_list(out, message->u.list, ff_about_check(message->u.list)); break;
+        case FF_MSG_GET_ABOUT: ff_write_varint(out, message->u.get_about.entries); break;
         case FF_MSG_WELCOME: write_welcome(out, &message->u.welcome); break;
         case FF_MSG_FAILED:
         case FF_MSG_GOODBYE: write_failed(out, &message->u.failed, message->type); break;
@@ -175,7 +205,11 @@ static size_t answer_bytes_max(const ff_message *message)
 size_t ff_message_bytes_max(const ff_message *message)
 {
     switch (message->type) {
-        case FF_MSG_WELCOME: return FF_MESSAGE_HEADER_MAX + 4 + FF_TERRAIN_BYTES;
+        case FF_MSG_WELCOME:
+            return FF_MESSAGE_HEADER_MAX + 4 + 2 + FF_TERRAIN_BYTES +
+                   (size_t)message->u.welcome.more.byte_count;
+        case FF_MSG_CAPS:
+        case FF_MSG_ABOUT: return FF_MESSAGE_HEADER_MAX + (size_t)message->u.list.byte_count;
         case FF_MSG_ANSWER: return answer_bytes_max(message);
         default: return FF_REQUEST_BYTES_MAX;
     }
@@ -254,18 +288,46 @@ static void read_panorama(ff_reader *in, ff_get_panorama *panorama)
     require(&in->error, face && panorama_ok(panorama));
 }
 
-static void read_welcome(ff_reader *in, ff_welcome *welcome)
-{
-    welcome->version = (uint32_t)ff_read_bytes(in, 4);
-    if (in->error == FF_OK && welcome->version != FF_PROTOCOL_VERSION) in->error = FF_ERR_VERSION;
-    ff_read_terrain(in, &welcome->info);
-}
-
 static void read_rest(ff_reader *in, const uint8_t **bytes, uint32_t *count)
 {
     FF_ASSERT(in->end - in->at <= FF_MESSAGE_BODY_MAX);
     *count = (uint32_t)(in->end - in->at);
     *bytes = ff_read_span(in, *count);
+}
+
+static ff_list read_list(ff_reader *in)
+{
+    ff_list list = { 0 };
+    read_rest(in, &list.bytes, &list.byte_count);
+    return list;
+}
+
+static void keep_error(ff_reader *in, int check)
+{
+    if (in->error == FF_OK) in->error = check;
+}
+
+/* The terrain's type is the least: it comes first. */
+static void read_welcome(ff_reader *in, ff_welcome *welcome)
+{
+    ff_list_entry terrain;
+    ff_reader value = { NULL, NULL, FF_OK };
+
+    welcome->version = (uint32_t)ff_read_bytes(in, 4);
+    if (in->error == FF_OK && welcome->version != FF_PROTOCOL_VERSION) in->error = FF_ERR_VERSION;
+    if (in->error != FF_OK) return;
+    welcome->more = read_list(in);
+    keep_error(in,
+               check_list(welcome->more, welcome_rule, sizeof welcome_rule / sizeof *welcome_rule));
+    if (in->error != FF_OK) return;
+    require(&in->error,
+            ff_list_next(&welcome->more, &terrain) == 1 && terrain.type == FF_WELCOME_TERRAIN);
+    if (in->error != FF_OK) return;
+    FF_ASSERT(terrain.byte_count == FF_TERRAIN_BYTES);
+    value.at = terrain.value;
+    value.end = terrain.value + terrain.byte_count;
+    ff_read_terrain(&value, &welcome->info);
+    in->error = value.error;
 }
 
 static void read_face(ff_reader *in, ff_face *face)
@@ -324,6 +386,15 @@ static void read_body(ff_reader *in, ff_message *out)
         case FF_MSG_CANCELLED: out->u.cancel.id = (uint16_t)ff_read_bytes(in, 2); break;
         case FF_MSG_PING:
         case FF_MSG_PONG: out->u.ping.stamp = (uint32_t)ff_read_bytes(in, 4); break;
+        case FF_MSG_CAPS:
+            out->u.list = read_list(in);
+            keep_error(in, check_caps(out->u.list));
+            break;
+        case FF_MSG_ABOUT:
+            out->u.list = read_list(in);
+            keep_error(in, ff_about_check(out->u.list));
+            break;
+        case FF_MSG_GET_ABOUT: out->u.get_about.entries = ff_read_varint(in); break;
         case FF_MSG_WELCOME: read_welcome(in, &out->u.welcome); break;
         case FF_MSG_FAILED:
         case FF_MSG_GOODBYE: read_failed(in, &out->u.failed, out->type); break;

@@ -10,12 +10,14 @@
 #define FF_MESSAGE_H
 
 #include "../codec/ff_codec.h"
+#include "../ff_about.h"
 #include "../ff_kind.h"
 
-#define FF_PROTOCOL_VERSION   4
+#define FF_PROTOCOL_VERSION   5
 #define FF_MESSAGE_BODY_MAX   (1u << 18) /* a longer length is a protocol error */
 #define FF_MESSAGE_HEADER_MAX 4
-#define FF_REQUEST_BYTES_MAX  48 /* any client message but HELLO fits */
+#define FF_REQUEST_BYTES_MAX  48  /* any client message but CAPS fits */
+#define FF_CAPS_BYTES_MAX     512 /* of the lists in CAPS and in WELCOME */
 #define FF_FACE_COUNT         6
 #define FF_FACE_SIZE_MAX      1024
 
@@ -31,12 +33,41 @@ FF_STATIC_ASSERT(2 + FF_PAYLOAD_BYTES_MAX <= FF_MESSAGE_BODY_MAX);
     X(HELLO,      1, CLIENT) /* ff_hello */ \
     X(CANCEL,     5, CLIENT) /* ff_cancel: the answer is no longer wanted */ \
     X(PING,       6, CLIENT) /* ff_ping */ \
+    X(CAPS,       7, CLIENT) /* ff_list: what the client can, FF_CAPS_LIST */ \
+    X(GET_ABOUT,  8, CLIENT) /* ff_get_about: what does the pack say of itself */ \
     X(WELCOME,   65, SERVER) /* ff_welcome: the terrain */ \
     X(FAILED,    69, SERVER) /* ff_failed: this request has no answer */ \
     X(CANCELLED, 70, SERVER) /* ff_cancel */ \
     X(PONG,      71, SERVER) /* ff_ping */ \
-    X(GOODBYE,   72, SERVER) /* ff_failed with id 0: the server closes, and says why */
+    X(GOODBYE,   72, SERVER) /* ff_failed with id 0: the server closes, and says why */ \
+    X(ABOUT,     73, SERVER) /* ff_list: FF_ABOUT_LIST */
+
+/* Lists that open a connection: X(ENTRY, type, least, most bytes). Types that nobody sends yet are
+ * given, so that who begins to send them need not raise the version. */
+#define FF_CAPS_LIST(X) \
+    X(CODECS,   1, 1, 16)  /* of heights that the client decodes, u8 each */ \
+    X(DEVICE,   2, 1, 64)  /* which device it is, any bytes */ \
+    X(TOKEN,    3, 1, 255) /* what it may have, any bytes */ \
+    X(SCREEN,   4, 4, 4)   /* u16 width, height */ \
+    X(BUDGETS,  5, 8, 8)   /* u32 bytes a second, u32 bytes of memory; 0: not told */ \
+    X(FEATURES, 6, 4, 4)   /* u32 bits: 0 images, 1 panoramas */
+#define FF_WELCOME_LIST(X) \
+    X(TERRAIN,  1, FF_TERRAIN_BYTES, FF_TERRAIN_BYTES) /* needed */ \
+    X(PIXELS,   2, 6, 6) /* u16 face_size at most, u32 pixels of faces in a minute */ \
+    X(REQUESTS, 3, 2, 2) /* u16 unanswered at once */ \
+    X(BYTES,    4, 4, 4) /* u32 bytes a second */
 /* clang-format on */
+
+enum ff_caps_entry {
+#define X(entry, type, least, most) FF_CAPS_##entry = type,
+    FF_CAPS_LIST(X)
+#undef X
+};
+enum ff_welcome_entry {
+#define X(entry, type, least, most) FF_WELCOME_##entry = type,
+    FF_WELCOME_LIST(X)
+#undef X
+};
 
 enum ff_message_type {
 #define X(name, type, sender) FF_MSG_##name = type,
@@ -91,7 +122,11 @@ typedef struct ff_ping {
 typedef struct ff_welcome {
     uint32_t version;
     ff_terrain_info info;
+    ff_list more; /* entries behind the terrain's, inside the message */
 } ff_welcome;
+typedef struct ff_get_about {
+    uint32_t entries; /* FF_ABOUT_BIT of those wanted */
+} ff_get_about;
 typedef struct ff_data {
     uint16_t id;
     const uint8_t *bytes; /* inside the message, not copied */
@@ -145,6 +180,8 @@ typedef struct ff_message {
         ff_get_panorama panorama; /* GET, FF_ASKS_PANORAMA */
         ff_cancel cancel;
         ff_ping ping;
+        ff_list list; /* CAPS, ABOUT: inside the message */
+        ff_get_about get_about;
         ff_welcome welcome;
         ff_data data; /* ANSWER, FF_BRINGS_PAYLOAD */
         ff_face face; /* ANSWER, FF_BRINGS_FACE */

@@ -10,10 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define IN_BYTES            128 /* the longest client message, with room for longer HELLOs to come */
-#define SHORT_ANSWER_BYTES  64  /* WELCOME aside, more than any answer without a payload needs */
-#define WELCOME_BYTES       256
-#define SHORT_ANSWERS_BYTES 4096 /* reserve for short answers */
+#define IN_BYTES            (FF_CAPS_BYTES_MAX + 128) /* the longest client message, and more */
+#define SHORT_ANSWER_BYTES  64 /* ABOUT aside, more than any answer without a payload needs */
+#define ABOUT_BYTES         (FF_MESSAGE_HEADER_MAX + FF_ABOUT_BYTES_MAX) /* WELCOME is shorter */
+#define SHORT_ANSWERS_BYTES 8192 /* reserve for short answers */
 #define FACE_BYTES          (FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX)
 #define MINUTE_US           60000000
 
@@ -26,8 +26,8 @@ typedef struct request {
 struct ff_session {
     ff_session_desc desc;
     ff_session_stats stats;
-    int error; /* not 0: the session is over */
-    int welcomed;
+    int error;             /* not 0: the session is over */
+    int greeted, welcomed; /* HELLO has come; CAPS has, too */
     int64_t now_us, last_message_us;
 
     uint8_t in[IN_BYTES]; /* the beginning of one message, never a whole one */
@@ -105,7 +105,7 @@ static uint8_t *out_room(ff_session *session, size_t bytes)
 
 static void answer_short(ff_session *session, const ff_message *message)
 {
-    size_t room = message->type == FF_MSG_WELCOME ? WELCOME_BYTES : SHORT_ANSWER_BYTES;
+    size_t room = ff_message_bytes_max(message);
     int bytes = ff_message_encode(message, out_room(session, room), room);
     assert(bytes > 0);
     session->out_end += (size_t)bytes;
@@ -130,7 +130,7 @@ static void answer_cancelled(ff_session *session, uint16_t id)
  * supersedes and is refused), and a GOODBYE after it needs room of its own. */
 static int short_answers_fit(const ff_session *session)
 {
-    return out_pending(session) + WELCOME_BYTES + 3 * SHORT_ANSWER_BYTES <=
+    return out_pending(session) + ABOUT_BYTES + 3 * SHORT_ANSWER_BYTES <=
            session->out_capacity - FACE_BYTES;
 }
 
@@ -321,14 +321,35 @@ static void cancel(ff_session *session, uint16_t id)
 
 static int hello(ff_session *session, const ff_hello *greeting)
 {
-    if (session->welcomed) return end_session(session, FF_ERR_FORMAT);
+    if (session->greeted) return end_session(session, FF_ERR_FORMAT);
     if (greeting->version != FF_PROTOCOL_VERSION) return end_session(session, FF_ERR_VERSION);
+    session->greeted = 1;
+    return FF_OK;
+}
+
+/* Nothing that a client says of itself changes the answers yet. */
+static int caps(ff_session *session)
+{
+    if (!session->greeted || session->welcomed) return end_session(session, FF_ERR_FORMAT);
     ff_message welcome = { .type = FF_MSG_WELCOME };
     welcome.u.welcome.version = FF_PROTOCOL_VERSION;
     welcome.u.welcome.info = session->desc.pack->header.info;
     session->welcomed = 1;
     answer_short(session, &welcome);
     return FF_OK;
+}
+
+/* A pack that says nothing of itself, or nonsense, is an empty list. */
+static void about(ff_session *session, uint32_t entries)
+{
+    uint8_t bytes[FF_ABOUT_BYTES_MAX];
+    ff_list all;
+    int count = ff_pack_about(session->desc.pack, &all) == FF_OK
+                    ? ff_about_select(all, entries, bytes, sizeof bytes)
+                    : 0;
+    assert(count >= 0);
+    answer_short(session,
+                 &(ff_message){ .type = FF_MSG_ABOUT, .u.list = { bytes, (uint32_t)count } });
 }
 
 static int take_request(ff_session *session, const ff_message *message)
@@ -347,9 +368,11 @@ static int take_request(ff_session *session, const ff_message *message)
 static int handle(ff_session *session, const ff_message *message)
 {
     if (message->type == FF_MSG_HELLO) return hello(session, &message->u.hello);
+    if (message->type == FF_MSG_CAPS) return caps(session);
     if (!session->welcomed) return end_session(session, FF_ERR_FORMAT);
     switch (message->type) {
         case FF_MSG_GET: return take_request(session, message);
+        case FF_MSG_GET_ABOUT: about(session, message->u.get_about.entries); return FF_OK;
         case FF_MSG_CANCEL: cancel(session, message->u.cancel.id); return FF_OK;
         case FF_MSG_PING:
             answer_short(session, &(ff_message){ .type = FF_MSG_PONG, .u.ping = message->u.ping });
@@ -381,8 +404,8 @@ static int take_message(ff_session *session, const uint8_t *bytes, size_t count,
     }
     assert((size_t)used > held);
     session->in_count = 0;
-    session->last_message_us = session->now_us;
     int rc = handle(session, &message);
+    if (session->welcomed) session->last_message_us = session->now_us;
     return rc < 0 ? rc : used - (int)held;
 }
 

@@ -20,7 +20,7 @@ typedef struct ff_session_desc {
     uint32_t requests_max;
     uint32_t panoramas_per_minute; /* 0: 120; more are answered FAILED(FULL) */
     uint32_t idle_ms_max;          /* no message for this long closes; 0: 10 minutes */
-    int64_t now_us; /* time of the connection: idle counts from here until the first message */
+    int64_t now_us; /* time of the connection: idle counts from here until it is welcomed */
 } ff_session_desc;
 
 typedef struct ff_session_stats {

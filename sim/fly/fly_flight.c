@@ -374,7 +374,8 @@ static int judge_server(const fly_flight *flight, const ff_client_stats *stats)
     if (stats->terrain_error != FF_OK)
         return fail("this terrain does not fit into --memory", ff_error_text(stats->terrain_error));
     if (flight->options->server && !stats->have_terrain)
-        return fail(name, stats->protocol_errors
+        return fail(name, stats->refusal ? ff_error_text(stats->refusal)
+                          : stats->protocol_errors
                               ? "does not speak Farfield's protocol, or another version of it"
                               : "no terrain came from there");
     if (stats->protocol_errors)

@@ -5,6 +5,7 @@
 #ifndef HANDHELD_H
 #define HANDHELD_H
 
+#include "../options/sim_about.h"
 #include "../options/sim_client_options.h"
 #include "../tape/sim_tape.h"
 
@@ -74,6 +75,7 @@ typedef struct handheld {
     size_t memory_bytes;
     ff_client *client;
     handheld_totals totals;
+    uint32_t about_frames; /* in which it was told whose the ground is */
 } handheld;
 
 /* 0, or -1 with one line on stderr; close in both cases. */
@@ -90,8 +92,11 @@ int handheld_report(handheld *device);
 /* Prints, instead of flying, how blocks of several sizes would be shared out. */
 void handheld_plan(const handheld *device);
 
-/* Draws figures over the picture; does nothing in a build without HUD. */
+/* Draws figures over the picture, and at the start whose the ground is; does nothing in a build
+ * without HUD. */
 void handheld_hud(handheld *device);
+/* What of what the pack says of itself is shown there: FF_ABOUT_BIT of each; 0 without HUD. */
+uint32_t handheld_hud_about(void);
 
 /* ---- marks: where tools/scripts/tcg_count.c cuts time into phases; each is a function of its own
  * that does next to nothing ---- */

@@ -83,6 +83,7 @@ static int open_client(handheld *device)
     desc.memory_bytes = device->memory_bytes;
     desc.pack = options->pack_path ? &device->pack : NULL;
     desc.stream = options->pack_path ? NULL : &device->stream;
+    desc.about = options->hud && !options->tape_path ? handheld_hud_about() : 0;
     int rc = ff_client_create(&desc, &device->client);
     if (rc == FF_OK) return 0;
     device->client = NULL;
@@ -244,7 +245,10 @@ static int fly_server(handheld *device)
             if (!work(device, now_us)) sys_sleep_us(WAIT_US);
         (void)step_frame(device, frame, due_us, 1);
     }
-    return ff_client_terrain(device->client) ? 0 : fail(device->options->server, FF_ERR_CLOSED);
+    if (ff_client_terrain(device->client)) return 0;
+    ff_client_stats stats;
+    ff_client_get_stats(device->client, &stats);
+    return fail(device->options->server, stats.refusal ? stats.refusal : FF_ERR_CLOSED);
 }
 
 int handheld_fly(handheld *device)

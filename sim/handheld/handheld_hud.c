@@ -8,6 +8,39 @@
 #define WIDTH  128
 #define HEIGHT 16
 
+#define ABOUT_WIDTH  256
+#define ABOUT_HEIGHT 32
+#define ABOUT_LINES  3
+#define ABOUT_FRAMES 300 /* ten seconds */
+#define MARGIN       2
+
+uint32_t handheld_hud_about(void) { return SIM_ABOUT_SHOWN; }
+
+static void show(c3d_device *c3d, uint8_t *rgba, int width, int height, int y, const char *text)
+{
+    memset(rgba, 0, (size_t)width * (size_t)height * 4);
+    c3d_text(rgba, width, height, MARGIN, MARGIN, 0xFFFFFFFFu, text);
+    c3d_texture picture = c3d_texture_make(c3d, C3D_RGBA8888, width, height, rgba);
+    c3d_overlay(c3d, picture, 0, y, width, height);
+    c3d_texture_free(c3d, picture);
+}
+
+/* At the foot of the picture, for a while: name and attribution are to be seen, not in the way. */
+static void show_about(handheld *device, c3d_device *c3d)
+{
+    static uint8_t rgba[ABOUT_WIDTH * ABOUT_HEIGHT * 4];
+    char text[ABOUT_LINES * (ABOUT_WIDTH / C3D_TEXT_ADVANCE_PX + 1) + 1];
+    int width = device->width < ABOUT_WIDTH ? device->width : ABOUT_WIDTH;
+    if (device->about_frames >= ABOUT_FRAMES) return;
+    int lines = (int)sim_about_lines(device->client,
+                                     (unsigned)((width - 2 * MARGIN) / C3D_TEXT_ADVANCE_PX),
+                                     ABOUT_LINES, text, sizeof text);
+    if (!lines) return;
+    device->about_frames++;
+    show(c3d, rgba, ABOUT_WIDTH, ABOUT_HEIGHT,
+         device->height - lines * C3D_TEXT_LINE_PX - 2 * MARGIN, text);
+}
+
 void handheld_hud(handheld *device)
 {
     static uint8_t rgba[WIDTH * HEIGHT * 4];
@@ -18,9 +51,6 @@ void handheld_hud(handheld *device)
     ff_client_get_stats(device->client, &stats);
     snprintf(text, sizeof text, "%u T %u N %u KB", (unsigned)stats.tree.triangles,
              (unsigned)stats.tree.nodes_held, (unsigned)(stats.bytes_down / 1024));
-    memset(rgba, 0, sizeof rgba);
-    c3d_text(rgba, WIDTH, HEIGHT, 2, 2, 0xFFFFFFFFu, text);
-    c3d_texture picture = c3d_texture_make(c3d, C3D_RGBA8888, WIDTH, HEIGHT, rgba);
-    c3d_overlay(c3d, picture, 0, 0, WIDTH, HEIGHT);
-    c3d_texture_free(c3d, picture);
+    show(c3d, rgba, WIDTH, HEIGHT, 0, text);
+    show_about(device, c3d);
 }

@@ -2,3 +2,4 @@
 #include "handheld.h"
 
 void handheld_hud(handheld *device) { (void)device; }
+uint32_t handheld_hud_about(void) { return 0; }

@@ -81,6 +81,7 @@ static int create_client(view_app *app, const char *backend)
                             .panorama = app->panorama,
                             .balance = o->balance,
                             .use_thread = 1,
+                            .about = SIM_ABOUT_SHOWN,
                             .use_plain_arrays = (uint8_t)o->plain_arrays };
     return ff_client_create(&desc, &app->client);
 }

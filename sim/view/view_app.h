@@ -3,6 +3,7 @@
 #ifndef VIEW_APP_H
 #define VIEW_APP_H
 
+#include "../options/sim_about.h"
 #include "view_blit.h"
 #include "view_fly.h"
 #include "view_hud.h"

@@ -10,6 +10,7 @@
 #define MARGIN_PX   4
 #define SHADE       150 /* opacity of the ground behind the text, of 255 */
 #define TEXT_COLOUR 0xffffffffu
+#define ABOUT_LINES 6
 #define LARGE_PX    900 /* windows this high get text twice as large */
 
 static const char help[] = "w s a d   fly (or up, down)\n"
@@ -49,6 +50,7 @@ static void put_link(view_hud *hud, const view_app *app, const ff_client_stats *
         state[stats->link]);
     if (app->link)
         put(hud, "  %.1f kB/s rtt %u ms", stats->bandwidth_bytes_s / 1000.0, stats->rtt_ms);
+    if (stats->refusal && !stats->have_terrain) put(hud, "  %s", ff_error_text(stats->refusal));
     put(hud, "\n%.1f kB down %.1f kB up\nqueue %u in flight %u\n", (double)stats->bytes_down / 1000,
         (double)stats->bytes_up / 1000, stats->queued, stats->in_flight);
 }
@@ -89,6 +91,14 @@ static void put_pools(view_hud *hud, const view_app *app)
                 pool[i].name, pool[i].held, pool[i].high, pool[i].count);
 }
 
+static void put_about(view_hud *hud, const view_app *app)
+{
+    char lines[ABOUT_LINES * (VIEW_HUD_SIZE / C3D_TEXT_ADVANCE_PX + 1) + 1];
+    unsigned columns = (VIEW_HUD_SIZE - 2 * MARGIN_PX) / C3D_TEXT_ADVANCE_PX;
+    if (sim_about_lines(app->client, columns, ABOUT_LINES, lines, sizeof lines))
+        put(hud, "%s", lines);
+}
+
 static void put_figures(view_hud *hud, const view_app *app)
 {
     ff_client_stats stats;
@@ -106,6 +116,7 @@ static void put_figures(view_hud *hud, const view_app *app)
         camera->yaw * 360 / 65536);
     put(hud, "%d km/h%s\n", app->fly.speed_wu_s * 36 / (10 * FF_WU_PER_METRE),
         app->fly.cruise ? " cruise" : "");
+    if (!app->show_help) put_about(hud, app);
     if (app->interrupted) put(hud, "interrupted\n");
     if (stats.low_power) put(hud, "low power\n");
 }

@@ -120,11 +120,11 @@ static void who_asks_gets_what_was_asked_for(void **state)
     (void)state;
     assert_int_equal(ff_about_select(all, FF_ABOUT_BIT(1) | FF_ABOUT_BIT(3), out, sizeof out), 6);
     assert_memory_equal(out, "\1\1a\3\1d", 6);
-    assert_int_equal(ff_about_select(all, FF_ABOUT_ALL, out, sizeof out), all.byte_count - 5);
+    assert_int_equal(ff_about_select(all, UINT32_MAX, out, sizeof out), all.byte_count - 5);
     assert_int_equal(ff_about_select(all, 0, out, sizeof out), 0);
-    assert_int_equal(ff_about_select(all, FF_ABOUT_ALL, out, 5), FF_ERR_FULL);
+    assert_int_equal(ff_about_select(all, FF_ABOUT_KNOWN, out, 5), FF_ERR_FULL);
     assert_int_equal(ff_about_bytes_max(FF_ABOUT_BIT(1) | FF_ABOUT_BIT(2)), 508);
-    assert_in_range(ff_about_bytes_max(FF_ABOUT_ALL), 508, FF_ABOUT_BYTES_MAX);
+    assert_in_range(ff_about_bytes_max(FF_ABOUT_KNOWN), 508, FF_ABOUT_BYTES_MAX);
 }
 
 static void numbers_of_a_projection_come_back(void **state)

@@ -8,6 +8,10 @@
 #include <cmocka.h>
 
 #define STREAM_MAX (1 << 16)
+#define LIST(text)                                \
+    {                                             \
+        (const uint8_t *)(text), sizeof(text) - 1 \
+    }
 
 static const uint8_t payload[300] = { 0xff, 0xd8, 1, 2, 3 };
 
@@ -71,7 +75,18 @@ static size_t samples(ff_message *list)
     list[n++] = (ff_message){ .type = FF_MSG_CANCEL, .u.cancel = { 65535 } };
     list[n++] = (ff_message){ .type = FF_MSG_PING, .u.ping = { UINT32_MAX } };
     list[n++] = (ff_message){ .type = FF_MSG_WELCOME,
-                              .u.welcome = { FF_PROTOCOL_VERSION, terrain() } };
+                              .u.welcome = { FF_PROTOCOL_VERSION, terrain(), { NULL, 0 } } };
+    list[n++] = (ff_message){ .type = FF_MSG_WELCOME,
+                              .u.welcome = { FF_PROTOCOL_VERSION, terrain(),
+                                             LIST("\3\2\x20\0\4\4\0\1\0\0\xff\1?") } };
+    list[n++] = (ff_message){ .type = FF_MSG_CAPS };
+    list[n++] = (ff_message){ .type = FF_MSG_CAPS,
+                              .u.list = LIST("\1\3\0\1\2\2\1#\3\2##\4\4\xf0\0\x40\1"
+                                             "\5\x08\0\0\0\0\0\0\x10\0\6\4\3\0\0\0\xc8\0") };
+    list[n++] = (ff_message){ .type = FF_MSG_GET_ABOUT, .u.get_about = { UINT32_MAX } };
+    list[n++] = (ff_message){ .type = FF_MSG_GET_ABOUT, .u.get_about = { 3 } };
+    list[n++] = (ff_message){ .type = FF_MSG_ABOUT };
+    list[n++] = (ff_message){ .type = FF_MSG_ABOUT, .u.list = LIST("\1\5Hills\2\6nobody") };
     list[n++] =
         (ff_message){ .type = FF_MSG_ANSWER, .kind = FF_KIND_ROOT, .u.data = { 1, payload, 1 } };
     list[n++] =
@@ -123,6 +138,12 @@ static void assert_same_terrain(const ff_terrain_info *a, const ff_terrain_info 
     assert_int_equal(a->epsg, b->epsg);
     assert_true(a->origin_x_mm == b->origin_x_mm && a->origin_y_mm == b->origin_y_mm);
     assert_int_equal(a->checksum, b->checksum);
+}
+
+static void assert_same_list(const ff_list *a, const ff_list *b)
+{
+    assert_int_equal(a->byte_count, b->byte_count);
+    assert_bytes(a->bytes, b->bytes, a->byte_count);
 }
 
 static void assert_same_face(const ff_face *a, const ff_face *b)
@@ -190,6 +211,12 @@ static void assert_same(const ff_message *a, const ff_message *b)
         case FF_MSG_WELCOME:
             assert_int_equal(a->u.welcome.version, b->u.welcome.version);
             assert_same_terrain(&a->u.welcome.info, &b->u.welcome.info);
+            assert_same_list(&a->u.welcome.more, &b->u.welcome.more);
+            break;
+        case FF_MSG_CAPS:
+        case FF_MSG_ABOUT: assert_same_list(&a->u.list, &b->u.list); break;
+        case FF_MSG_GET_ABOUT:
+            assert_int_equal(a->u.get_about.entries, b->u.get_about.entries);
             break;
         default:
             assert_int_equal(a->u.failed.id, b->u.failed.id);
@@ -228,8 +255,8 @@ static int byte_of_a_kind(unsigned byte)
 
 static void first_bytes_are_those_of_the_specification(void **state)
 {
-    static const uint8_t client[] = { 1, 2, 3, 4, 5, 6 },
-                         server[] = { 65, 66, 67, 68, 69, 70, 71, 72 };
+    static const uint8_t client[] = { 1, 2, 3, 4, 5, 6, 7, 8 },
+                         server[] = { 65, 66, 67, 68, 69, 70, 71, 72, 73 };
     (void)state;
     for (unsigned byte = 0, c = 0, s = 0; byte < 256; byte++) {
         int from_client = c < sizeof client && client[c] == byte,
@@ -252,7 +279,7 @@ static void there_and_back_in_exact_room(void **state)
         uint8_t bytes[512];
         int used = ff_message_encode(&list[i], bytes, sizeof(bytes));
         assert_in_range(used, 2, ff_message_bytes_max(&list[i]));
-        if (ff_message_from_client(bytes[0]) && list[i].type != FF_MSG_HELLO)
+        if (ff_message_from_client(bytes[0]) && list[i].type != FF_MSG_CAPS)
             assert_in_range(used, 2, FF_REQUEST_BYTES_MAX);
         assert_int_equal(ff_message_decode(bytes, (size_t)used, &again), used);
         assert_same(&list[i], &again);
@@ -338,7 +365,9 @@ static void bodies_of_wrong_length_are_errors(void **state)
         uint8_t bytes[512] = { 0 }, shorter[512] = { 0 };
         int used = ff_message_encode(&list[i], bytes, sizeof(bytes) - 1);
         int header = bytes[1] < 128 ? 2 : 3;
-        int open_ended = list[i].type == FF_MSG_ANSWER;
+        int open_ended = list[i].type == FF_MSG_ANSWER || list[i].type == FF_MSG_CAPS ||
+                         list[i].type == FF_MSG_ABOUT ||
+                         (list[i].type == FF_MSG_WELCOME && list[i].u.welcome.more.byte_count);
         if (bytes[1] >= 127 || bytes[1] == 0 || open_ended) continue;
         bytes[1]++;
         assert_true(ff_message_decode(bytes, (size_t)used + 1, &out) < 0);
@@ -399,7 +428,9 @@ static void lengths_and_headers(void **state)
     /* tile 2^28 */
     assert_decode("\x02\x09\x01\x00\x01\x80\x80\x80\x80\x01\x00", 11, FF_ERR_RANGE);
     assert_decode("\x41\x04\x03\x00\x00\x00", 6, FF_ERR_VERSION); /* older */
-    assert_decode("\x41\x04\x05\x00\x00\x00", 6, FF_ERR_VERSION); /* newer */
+    assert_decode("\x41\x04\x06\x00\x00\x00", 6, FF_ERR_VERSION); /* newer */
+    uint8_t old[74] = { 0x41, 72, 4 };                            /* a whole WELCOME of version 4 */
+    assert_decode((const char *)old, sizeof old, FF_ERR_VERSION);
 }
 
 static void ranges_hold_both_ways(void **state)

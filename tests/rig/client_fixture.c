@@ -63,6 +63,7 @@ static void count_messages(client_rig *rig, const uint8_t *bytes, size_t count)
          bytes += used, count -= (size_t)used) {
         if (message.type == FF_MSG_GET) rig->asked[message.kind]++;
         rig->pings += message.type == FF_MSG_PING;
+        rig->asked_about += message.type == FF_MSG_GET_ABOUT;
     }
 }
 
@@ -91,6 +92,7 @@ static int rig_send(void *state, const uint8_t *bytes, size_t count)
     if (rig->inbox_count + count > sizeof rig->inbox) return 0;
     count_messages(rig, bytes, count);
     memcpy(rig->inbox + rig->inbox_count, bytes, count);
+    if (rig->version && bytes[0] == FF_MSG_HELLO) rig->inbox[rig->inbox_count + 6] = rig->version;
     rig->inbox_count += count;
     serve(rig);
     return (int)count;
@@ -154,7 +156,8 @@ static void open_pack(client_rig *rig, unsigned texture_log2, unsigned node_log2
     pack_fixture_desc desc = { .info = pack_fixture_info(6, 2, 2),
                                .height = pack_fixture_hills,
                                .filled = variant == FILLED ? pack_fixture_hole : NULL,
-                               .colour = colour };
+                               .colour = colour,
+                               .about = rig->about };
     size_t bytes;
     desc.info.node_log2 = (uint8_t)node_log2;
     desc.info.texture_log2 = (uint8_t)texture_log2;
@@ -202,6 +205,12 @@ void rig_use_samples(client_rig *rig, uint32_t samples_x, uint32_t samples_y, un
 }
 
 void rig_use_filled(client_rig *rig) { open_pack(rig, 0, 3, FILLED, SAMPLES, SAMPLES); }
+
+void rig_use_about(client_rig *rig, ff_list about)
+{
+    rig->about = about;
+    open_pack(rig, 0, 3, USUAL, SAMPLES, SAMPLES);
+}
 
 void rig_change_terrain(client_rig *rig)
 {

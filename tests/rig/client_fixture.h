@@ -20,13 +20,15 @@ typedef struct client_rig {
     uint64_t cut_at, silent_at, spoil_at;
     uint8_t spoil_with; /* the byte at spoil_at becomes this, and all after it */
     int refuse;         /* no new connection */
+    uint8_t version;    /* not 0: what the server hears of a HELLO's version */
     int no_faces;       /* the renderer never answers */
     unsigned chop;      /* recv gives at most this many bytes; 0: all there are */
 
     uint64_t bytes_down;
     unsigned connections;
     uint32_t asked[FF_KIND_COUNT]; /* messages from the client, by kind */
-    uint32_t pings;
+    uint32_t pings, asked_about;
+    ff_list about;            /* what the pack says of itself */
     int64_t now_us, frame_us; /* of server and worker; of the frames */
 
     void *memory;
@@ -46,6 +48,8 @@ void rig_use_samples(client_rig *rig, uint32_t samples_x, uint32_t samples_y,
                      unsigned texture_log2);
 /* As rig_open, with a filled void (pack_fixture_hole). */
 void rig_use_filled(client_rig *rig);
+/* As rig_open, with a pack that says this of itself. */
+void rig_use_about(client_rig *rig, ff_list about);
 /* Serves another terrain on all further connections. */
 void rig_change_terrain(client_rig *rig);
 /* Makes a client with a block of `bytes` over the stream; the test sets rig->desc's other fields

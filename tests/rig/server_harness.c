@@ -157,14 +157,15 @@ harness_client *harness_connect(const harness_server *server, int greet)
     harness_client *client = calloc(1, sizeof *client);
     struct sockaddr_in address = { .sin_family = AF_INET,
                                    .sin_port = htons((uint16_t)server->port) };
-    ff_message message = { .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION, 0 } };
+    ff_message message = { .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION, 0 } },
+               caps = { .type = FF_MSG_CAPS };
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     if (!client) return NULL;
     client->fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     int ok = connect(client->fd, (struct sockaddr *)&address, sizeof address) == 0;
     if (ok && greet)
-        ok = harness_tell(client, &message) && harness_hear(client, &message) == 1 &&
-             message.type == FF_MSG_WELCOME;
+        ok = harness_tell(client, &message) && harness_tell(client, &caps) &&
+             harness_hear(client, &message) == 1 && message.type == FF_MSG_WELCOME;
     if (ok) return client;
     harness_close(client);
     return NULL;

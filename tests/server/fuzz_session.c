@@ -16,7 +16,8 @@ static const ff_pack *the_pack(void)
     static uint8_t *bytes;
     if (!bytes) {
         pack_fixture_desc desc = { .info = pack_fixture_info(5, 2, 1),
-                                   .height = pack_fixture_hills };
+                                   .height = pack_fixture_hills,
+                                   .about = { (const uint8_t *)"\1\5Hills\2\2us", 11 } };
         size_t size;
         bytes = pack_fixture_make(&desc, &size);
         if (!bytes || ff_pack_open(&pack, bytes, size) != FF_OK) abort();

@@ -78,7 +78,7 @@ for child in $children; do [ -e "/proc/$child" ] && left=1; done
 [ -n "$children" ] && [ "$left" = 0 ]
 result $? "no process is left"
 
-# HELLO, and GET_NODE of tile 0's root, whose record is damaged (the server does not read records before they are asked for)
+# HELLO, CAPS, and GET_NODE of tile 0's root, whose record is damaged (the server does not read records before they are asked for)
 cp "$work/hills.ffp" "$work/good.ffp"
 python3 - "$work/hills.ffp" <<'END'
 import struct, sys
@@ -91,9 +91,9 @@ ask_root() {
     python3 -c '
 import socket, sys
 s = socket.create_connection(("127.0.0.1", int(sys.argv[1])))
-s.sendall(b"\1\x0cFFLD\4\0\0\0\0\0\0\0" + b"\2\5\1\0\0\0\0")
+s.sendall(b"\1\x0cFFLD\5\0\0\0\0\0\0\0" + b"\7\0" + b"\2\5\1\0\0\0\0")
 answer = b""
-while len(answer) < 74 + 5:
+while len(answer) < 76 + 5:
     more = s.recv(4096)
     answer += more or sys.exit("the server closed the connection")
 ' "$port"

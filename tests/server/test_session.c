@@ -39,7 +39,7 @@ static ff_session *session_with(ff_session_desc desc)
 
 static int tell_at(ff_session *session, const ff_message *message, int64_t now_us)
 {
-    uint8_t bytes[64];
+    uint8_t bytes[FF_CAPS_BYTES_MAX + FF_MESSAGE_HEADER_MAX];
     int count = ff_message_encode(message, bytes, sizeof bytes);
     assert_true(count > 0);
     int rc = ff_session_receive(session, bytes, (size_t)count, now_us);
@@ -52,10 +52,21 @@ static int tell(ff_session *session, const ff_message *message)
     return tell_at(session, message, 0);
 }
 
-static int greet(ff_session *session)
+static int say_hello(ff_session *session)
 {
     return tell(session,
                 &(ff_message){ .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION, 0 } });
+}
+
+static int say_caps(ff_session *session)
+{
+    return tell(session, &(ff_message){ .type = FF_MSG_CAPS });
+}
+
+static int greet(ff_session *session)
+{
+    int rc = say_hello(session);
+    return rc < 0 ? rc : say_caps(session);
 }
 
 /* The first kind that is answered so: roots stand for refinements. */
@@ -266,7 +277,7 @@ static void servers_messages_and_endless_ones_end_the_session(void **state)
     assert_int_equal(tell(session, &(ff_message){ .type = FF_MSG_PONG, .u.ping = { 1 } }),
                      FF_ERR_FORMAT);
     expect_goodbye(session, FF_ERR_FORMAT);
-    uint8_t long_one[300] = { FF_MSG_HELLO, 0x80, 0x80, 1 }; /* 16 kB announced */
+    uint8_t long_one[1000] = { FF_MSG_HELLO, 0x80, 0x80, 1 }; /* 16 kB announced */
     session = session_with((ff_session_desc){ 0 });
     assert_int_equal(ff_session_receive(session, long_one, sizeof long_one, 0), FF_ERR_FORMAT);
     expect_goodbye(session, FF_ERR_FORMAT);
@@ -344,6 +355,8 @@ static void silence_makes_a_session_idle(void **state)
     assert_true(ff_session_idle(session, 6000001));
     tell_at(session, &(ff_message){ .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION, 0 } },
             6000000);
+    assert_true(ff_session_idle(session, 6000001)); /* HELLO alone is not enough */
+    tell_at(session, &(ff_message){ .type = FF_MSG_CAPS }, 6000000);
     assert_false(ff_session_idle(session, 7000000));
     /* half a message is not a message */
     ff_session_receive(session, (const uint8_t *)"\x06", 1, 6900000);

@@ -3,11 +3,12 @@
 
 #include <string.h>
 
-static int take_welcome(ff_stream *stream, const ff_welcome *welcome)
+static int take_welcome(ff_stream *stream, const ff_welcome *welcome, int64_t now_us)
 {
     if (stream->state != FF_STREAM_GREETING) return FF_ERR_FORMAT;
-    if (welcome->version != FF_PROTOCOL_VERSION) return FF_ERR_VERSION;
+    FF_ASSERT(welcome->version == FF_PROTOCOL_VERSION); /* others are not decoded */
     stream->awaiting = 0;
+    stream->welcomed_us = now_us;
     stream->backoff_us = FF_BACKOFF_US_MIN;
     if (stream->has_terrain && ff_terrain_same(&stream->held, &welcome->info)) {
         stream->state = FF_STREAM_UP;
@@ -15,6 +16,9 @@ static int take_welcome(ff_stream *stream, const ff_welcome *welcome)
     }
     sys_mutex_lock(&stream->intake->requests->mutex);
     stream->shared.welcome = welcome->info;
+    stream->shared.refusal = FF_OK;
+    stream->about.state = FF_ABOUT_UNKNOWN; /* another pack's */
+    stream->about.byte_count = 0;
     sys_mutex_unlock(&stream->intake->requests->mutex);
     stream->state = FF_STREAM_WELCOMED;
     return FF_OK;
@@ -59,11 +63,41 @@ static int take_failed(ff_stream *stream, uint16_t id, int error)
     return ff_intake_failed(stream->intake, &request, error);
 }
 
+/* What was asked for, and nothing else: so there is room for it. */
+static int take_about(ff_stream *stream, ff_list list)
+{
+    ff_stream_about *about = &stream->about;
+    ff_list rest = list;
+    ff_list_entry entry;
+    if (about->state != FF_ABOUT_ASKED) return FF_ERR_FORMAT;
+    while (ff_list_next(&rest, &entry) > 0)
+        if (entry.type > 32 || !(about->entries & FF_ABOUT_BIT(entry.type))) return FF_ERR_FORMAT;
+    if (list.byte_count > ff_about_bytes_max(about->entries)) return FF_ERR_RANGE;
+    sys_mutex_lock(&stream->intake->requests->mutex);
+    if (list.byte_count) memcpy(about->bytes, list.bytes, list.byte_count);
+    about->byte_count = list.byte_count;
+    about->state = FF_ABOUT_HERE;
+    sys_mutex_unlock(&stream->intake->requests->mutex);
+    stream->awaiting = 0;
+    return FF_OK;
+}
+
+/* The reason is kept for those who wait in vain. */
+static void note_refusal(ff_stream *stream, int error)
+{
+    sys_mutex_lock(&stream->intake->requests->mutex);
+    stream->shared.refusal = (int8_t)error;
+    sys_mutex_unlock(&stream->intake->requests->mutex);
+}
+
 /* Takes in a message. FF_OK, FF_ERR_AGAIN when the new-data list is full, or another error. */
 static int take(ff_stream *stream, const ff_message *message, uint32_t bytes, int64_t now_us)
 {
-    if (message->type == FF_MSG_GOODBYE) return FF_ERR_CLOSED;
-    if (message->type == FF_MSG_WELCOME) return take_welcome(stream, &message->u.welcome);
+    if (message->type == FF_MSG_GOODBYE) {
+        note_refusal(stream, message->u.failed.error);
+        return FF_ERR_CLOSED;
+    }
+    if (message->type == FF_MSG_WELCOME) return take_welcome(stream, &message->u.welcome, now_us);
     if (stream->state != FF_STREAM_UP) return FF_ERR_FORMAT;
     switch (message->type) {
         case FF_MSG_ANSWER: return take_answer(stream, message, bytes, now_us);
@@ -71,6 +105,7 @@ static int take(ff_stream *stream, const ff_message *message, uint32_t bytes, in
             return take_failed(stream, message->u.failed.id, message->u.failed.error);
         case FF_MSG_CANCELLED: return take_failed(stream, message->u.cancel.id, FF_ERR_CLOSED);
         case FF_MSG_PONG: stream->awaiting = 0; return FF_OK;
+        case FF_MSG_ABOUT: return take_about(stream, message->u.list);
         default: return FF_ERR_FORMAT; /* a client's message */
     }
 }
@@ -124,6 +159,7 @@ int ff_receive_messages(ff_stream *stream, int64_t now_us)
         FF_ASSERT(stream->skip == 0 && at < stream->recv_count);
         ff_message message;
         int count = ff_message_decode(stream->recv + at, stream->recv_count - at, &message);
+        if (count == FF_ERR_VERSION) note_refusal(stream, count);
         if (count < 0) return count;
         FF_ASSERT((uint32_t)count <= stream->recv_count - at);
         if (count == 0) {

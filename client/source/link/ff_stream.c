@@ -12,6 +12,7 @@
  * PATIENCE_MAX times. Later it is at least PATIENCE_ROUND_TRIPS round trips. */
 #define PATIENCE_MAX         4
 #define PATIENCE_ROUND_TRIPS 4
+#define ABOUT_AFTER_US       20000000 /* so long ground in view goes first, always */
 
 FF_STATIC_ASSERT(FF_REQUEST_BYTES_MAX <= FF_STREAM_SEND_BYTES);
 FF_STATIC_ASSERT(FF_BACKOFF_US_MIN < FF_BACKOFF_US_MAX && FF_BACKOFF_US_MAX <= INT64_MAX / 2);
@@ -35,6 +36,25 @@ void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsign
     ff_link_estimate_reset(&stream->link);
 }
 
+void ff_stream_want_about(ff_stream *stream, uint32_t entries, uint8_t *bytes)
+{
+    FF_ASSERT(stream->state == FF_STREAM_CONNECTING);
+    stream->about.entries = entries;
+    stream->about.bytes = bytes;
+}
+
+int ff_stream_about_entry(ff_stream *stream, unsigned entry, uint8_t *value, size_t room)
+{
+    const uint8_t *found;
+    sys_mutex_lock(&stream->intake->requests->mutex);
+    ff_list list = { stream->about.bytes, stream->about.byte_count };
+    int bytes = ff_list_find(list, entry, &found);
+    if (bytes > 0 && (size_t)bytes > room) bytes = FF_ERR_FULL;
+    if (bytes > 0) memcpy(value, found, (size_t)bytes);
+    sys_mutex_unlock(&stream->intake->requests->mutex);
+    return bytes;
+}
+
 static void publish(ff_stream *stream)
 {
     ff_stream_shared *shared = &stream->shared;
@@ -51,6 +71,7 @@ static void publish(ff_stream *stream)
     shared->received = stream->recv_count;
     shared->received_high = stream->recv_high;
     shared->losses = stream->losses;
+    shared->about_bytes = stream->about.byte_count;
     shared->rtt_us = stream->link.rtt_us;
     shared->bytes_s = stream->link.bytes_s;
     sys_mutex_unlock(&stream->intake->requests->mutex);
@@ -81,6 +102,7 @@ static void give_up(ff_stream *stream, int64_t now_us)
     ff_requests_lost(stream->intake->requests);
     stream->recv_count = stream->send_count = stream->skip = 0;
     stream->awaiting = stream->blocked = 0;
+    if (stream->about.state == FF_ABOUT_ASKED) stream->about.state = FF_ABOUT_UNKNOWN;
     stream->losses++;
     stream->link.since_us = INT64_MIN;
     stream->state = stream->io->reconnect ? FF_STREAM_DOWN : FF_STREAM_DEAD;
@@ -143,6 +165,8 @@ static void greet(ff_stream *stream, int64_t now_us)
     hello.u.hello.version = FF_PROTOCOL_VERSION;
     hello.u.hello.known_checksum = stream->has_terrain ? stream->held.checksum : 0;
     append(stream, &hello);
+    /* in one piece with HELLO: nothing of this client has to be told */
+    append(stream, &(ff_message){ .type = FF_MSG_CAPS });
     FF_ASSERT(stream->send_count > 0);
     stream->state = FF_STREAM_GREETING;
     stream->heard_us = stream->sent_us = now_us;
@@ -227,6 +251,23 @@ static void keep_alive(ff_stream *stream, int64_t now_us)
     stream->awaiting = 1;
 }
 
+/* Whose the ground is can wait until some of it is here and nothing in view is left to be asked
+ * for, but not for ever. */
+static void ask_about(ff_stream *stream, int64_t now_us)
+{
+    ff_request_counts counts;
+    if (!stream->about.entries || stream->about.state != FF_ABOUT_UNKNOWN || stream->awaiting ||
+        !has_send_room(stream))
+        return;
+    ff_requests_get_counts(stream->intake->requests, &counts, NULL);
+    int in_view = !counts.done || ff_requests_waiting(stream->intake->requests, FF_CLASS_IN_VIEW);
+    if (in_view && now_us - stream->welcomed_us < ABOUT_AFTER_US) return;
+    append(stream,
+           &(ff_message){ .type = FF_MSG_GET_ABOUT, .u.get_about = { stream->about.entries } });
+    stream->about.state = FF_ABOUT_ASKED;
+    stream->awaiting = 1;
+}
+
 /* 1 while requests wait for answers. */
 static int outstanding(ff_stream *stream)
 {
@@ -302,6 +343,7 @@ static int link_step(ff_stream *stream, int64_t now_us)
         /* no answer was owed until now */
         if (!outstanding(stream) && !stream->awaiting) stream->heard_us = now_us;
         moved |= ask(stream, now_us);
+        ask_about(stream, now_us);
         keep_alive(stream, now_us);
     }
     if (rc == FF_OK) rc = flush(stream, now_us, &moved);

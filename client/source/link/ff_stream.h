@@ -35,12 +35,25 @@ typedef struct ff_stream_shared {
     uint32_t received; /* bytes of messages that have not come whole yet */
     uint64_t bytes_down, bytes_up, answer_bytes[FF_KIND_COUNT];
     uint32_t received_high; /* the most ever */
+    uint32_t about_bytes;   /* of what the pack says of itself */
     uint32_t protocol_errors, reconnects, rtt_us, bytes_s;
     uint32_t losses;         /* connections lost: what was asked is to be ranked again */
+    int8_t refusal;          /* why the server would not have this client: an error, or FF_OK */
     ff_terrain_info welcome; /* valid in WELCOMED */
     uint8_t quiet;           /* main: ask nothing new (interruption) */
     uint8_t no_prefetch;
 } ff_stream_shared;
+
+/* What the pack says of itself, asked for once the first ground is here. */
+enum ff_stream_about_state { FF_ABOUT_UNKNOWN, FF_ABOUT_ASKED, FF_ABOUT_HERE };
+
+typedef struct ff_stream_about {
+    uint32_t entries; /* FF_ABOUT_BIT of those wanted; 0: it is not asked for */
+    uint8_t *bytes;   /* room for ff_about_bytes_max(entries) */
+    /* under the request queue's lock */
+    uint32_t byte_count;
+    enum ff_stream_about_state state;
+} ff_stream_about;
 
 typedef struct ff_stream {
     sys_stream *io;
@@ -58,16 +71,23 @@ typedef struct ff_stream {
     uint8_t send[FF_STREAM_SEND_BYTES];
     uint32_t send_count;
     int64_t retry_us, backoff_us, connect_us, heard_us, sent_us;
-    uint8_t awaiting; /* HELLO or PING unanswered */
+    uint8_t awaiting; /* HELLO, PING or GET_ABOUT unanswered */
     uint8_t patience; /* how often the time-out has been doubled */
     ff_link_estimate link;
     uint64_t bytes_down, bytes_up, answer_bytes[FF_KIND_COUNT];
     uint32_t protocol_errors, reconnects, losses;
+    ff_stream_about about; /* of the terrain held */
+    int64_t welcomed_us;
     ff_stream_shared shared;
 } ff_stream;
 
 void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsigned in_flight_max,
                     uint32_t answer_timeout_ms, uint8_t *recv, uint32_t recv_bytes);
+/* Before the first step: wants what the pack says of itself, those entries, in `bytes` of
+ * ff_about_bytes_max(entries). */
+void ff_stream_want_about(ff_stream *stream, uint32_t entries, uint8_t *bytes);
+/* Copies an entry into `value`: its bytes, or FF_ERR_NOT_FOUND: it is not here, FF_ERR_FULL. */
+int ff_stream_about_entry(ff_stream *stream, unsigned entry, uint8_t *value, size_t room);
 /* Sends, receives, decodes. 1 when anything moved. */
 int ff_stream_step(ff_stream *stream, int64_t now_us);
 /* Says that the pools for the terrain of WELCOME are ready (ok), or that the terrain does not fit:

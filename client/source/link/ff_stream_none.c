@@ -12,6 +12,16 @@ void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsign
         (void)recv_bytes;
 }
 
+void ff_stream_want_about(ff_stream *stream, uint32_t entries, uint8_t *bytes)
+{
+    (void)stream, (void)entries, (void)bytes;
+}
+
+int ff_stream_about_entry(ff_stream *stream, unsigned entry, uint8_t *value, size_t room)
+{
+    return (void)stream, (void)entry, (void)value, (void)room, FF_ERR_NOT_FOUND;
+}
+
 int ff_stream_step(ff_stream *stream, int64_t now_us) { return (void)stream, (void)now_us, 0; }
 void ff_stream_accept(ff_stream *stream, int ok) { (void)stream, (void)ok; }
 void ff_stream_restart(ff_stream *stream) { (void)stream; }

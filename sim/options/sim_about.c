@@ -1,0 +1,78 @@
+#include "sim_about.h"
+
+#include <string.h>
+
+#define VALUE_ROOM  512
+#define FIRST_LATIN 0xC0
+
+/* From FIRST_LATIN on. */
+static const char latin[] = "AAAAAAACEEEEIIIIDNOOOOOXOUUUUYTSaaaaaaaceeeeiiiidnooooo/ouuuuyty"
+                            "AaAaAaCcCcCcCcDdDdEeEeEeEeEeGgGgGgGgHhHhIiIiIiIiIiJjJjKkkLlLlLlL"
+                            "lLlNnNnNnnNnOoOoOoOoRrRrRrSsSsSsSsTtTtTtUuUuUuUuUuUuWwYyYZzZzZzs";
+FF_STATIC_ASSERT(sizeof latin - 1 == 0x180 - FIRST_LATIN);
+
+/* Whole characters of UTF-8, which the client has checked, in letters of the font. */
+static size_t plain(const uint8_t *bytes, size_t count, char *to, size_t room)
+{
+    size_t made = 0;
+    for (size_t at = 0; at < count && made + 4 < room;) {
+        uint32_t code = bytes[at++];
+        if (code >= 0xC0) code &= code < 0xE0 ? 0x1F : code < 0xF0 ? 0x0F : 0x07;
+        while (at < count && (bytes[at] & 0xC0) == 0x80) code = code << 6 | (bytes[at++] & 0x3Fu);
+        if (code == 0xA9) {
+            memcpy(to + made, "(c)", 3);
+            made += 3;
+            continue;
+        }
+        to[made++] = code < 0x80                           ? (char)code
+                     : code >= FIRST_LATIN && code < 0x180 ? latin[code - FIRST_LATIN]
+                                                           : '?';
+    }
+    return made;
+}
+
+/* Where a line ends: behind its last whole word, or within a word that is longer. */
+static size_t line_end(const char *text, size_t count, size_t columns)
+{
+    size_t end = columns;
+    if (count <= columns) return count;
+    while (end && text[end] != ' ') end--;
+    return end ? end : columns;
+}
+
+static unsigned wrap(const char *from, size_t count, unsigned columns, unsigned lines, char *text,
+                     size_t room)
+{
+    size_t used = strlen(text);
+    unsigned made = 0;
+    while (count && made < lines) {
+        size_t end = line_end(from, count, columns);
+        if (used + end + 2 > room) break;
+        memcpy(text + used, from, end);
+        used += end;
+        text[used++] = '\n';
+        text[used] = 0;
+        made++;
+        if (end < count && from[end] == ' ') end++;
+        from += end;
+        count -= end;
+    }
+    return made;
+}
+
+unsigned sim_about_lines(ff_client *client, unsigned columns, unsigned lines, char *text,
+                         size_t room)
+{
+    static const enum ff_about_entry shown[] = { FF_ABOUT_NAME, FF_ABOUT_ATTRIBUTION };
+    unsigned made = 0;
+    *text = 0;
+    for (unsigned i = 0; i < 2; i++) {
+        uint8_t value[VALUE_ROOM];
+        char letters[VALUE_ROOM];
+        int bytes = ff_client_about(client, shown[i], value, sizeof value);
+        if (bytes <= 0) continue;
+        size_t count = plain(value, (size_t)bytes, letters, sizeof letters);
+        made += wrap(letters, count, columns, lines - made, text, room);
+    }
+    return made;
+}

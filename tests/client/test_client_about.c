@@ -1,0 +1,200 @@
+/* What a pack says of itself, at the client: asked for by those who show it, once, and not in the
+ * way of ground; and a server of another version. */
+#include "../rig/client_fixture.h"
+#include "../../client/ff_client_local.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define MB    ((size_t)1 << 20)
+#define SHOWN (FF_ABOUT_BIT(FF_ABOUT_NAME) | FF_ABOUT_BIT(FF_ABOUT_ATTRIBUTION))
+
+static const uint8_t said[] = "\1\5Hills\2\6nobody\3\2CC\x63\3xyz";
+static const ff_list about = { said, sizeof said - 1 };
+
+static void assert_says(client_rig *rig, enum ff_about_entry entry, const char *text)
+{
+    char value[64];
+    int bytes = ff_client_about(rig->client, entry, value, sizeof value);
+    if (!text) {
+        assert_int_equal(bytes, FF_ERR_NOT_FOUND);
+        return;
+    }
+    assert_int_equal(bytes, strlen(text));
+    assert_memory_equal(value, text, strlen(text));
+}
+
+static ff_pool_use pool(const client_rig *rig, const char *name)
+{
+    ff_pool_use list[FF_POOLS_MAX];
+    unsigned count = ff_client_pools(rig->client, list);
+    for (unsigned i = 0; i < count; i++)
+        if (!strcmp(list[i].name, name)) return list[i];
+    fail();
+    return list[0];
+}
+
+static void who_does_not_show_it_pays_nothing(void **state)
+{
+    client_rig plain, rig;
+
+    (void)state;
+    rig_open(&plain, 0);
+    rig_client(&plain, 2 * MB);
+    assert_true(rig_settle(&plain, 400));
+    rig_open(&rig, 0);
+    rig_use_about(&rig, about);
+    rig_client(&rig, 2 * MB);
+    assert_true(rig_settle(&rig, 400));
+    assert_int_equal(rig.asked_about, 0);
+    assert_int_equal(rig.bytes_down, plain.bytes_down);
+    assert_int_equal(rig_stats(&rig).bytes_up, rig_stats(&plain).bytes_up);
+    assert_int_equal(pool(&rig, "about").bytes, 0);
+    assert_says(&rig, FF_ABOUT_NAME, NULL);
+    rig_close(&rig);
+    rig_close(&plain);
+}
+
+static void who_shows_it_asks_once_and_gets_what_was_asked_for(void **state)
+{
+    client_rig rig;
+    char value[4];
+
+    (void)state;
+    rig_open(&rig, 0);
+    rig_use_about(&rig, about);
+    rig.desc.about = SHOWN;
+    rig_client(&rig, 2 * MB);
+    assert_true(rig_settle(&rig, 400));
+    assert_int_equal(rig.asked_about, 1);
+    assert_says(&rig, FF_ABOUT_NAME, "Hills");
+    assert_says(&rig, FF_ABOUT_ATTRIBUTION, "nobody");
+    assert_says(&rig, FF_ABOUT_LICENCE, NULL); /* not wanted */
+    assert_int_equal(ff_client_about(rig.client, FF_ABOUT_NAME, value, sizeof value), FF_ERR_FULL);
+    assert_int_equal(pool(&rig, "about").bytes, ff_about_bytes_max(SHOWN));
+    assert_int_equal(pool(&rig, "about").held, 15);
+    /* the same terrain again: it is kept */
+    rig.cut_at = rig.bytes_down;
+    for (int i = 0; i < 60; i++) rig_step(&rig, 100000);
+    assert_true(rig_settle(&rig, 400));
+    assert_int_equal(rig.connections, 2);
+    assert_int_equal(rig.asked_about, 1);
+    assert_says(&rig, FF_ABOUT_NAME, "Hills");
+    /* another one: it is not */
+    rig.about = (ff_list){ (const uint8_t *)"\1\1B", 3 };
+    rig_change_terrain(&rig);
+    for (int i = 0; i < 60; i++) rig_step(&rig, 100000);
+    assert_true(rig_settle(&rig, 400));
+    assert_int_equal(rig.asked_about, 2);
+    assert_says(&rig, FF_ABOUT_NAME, "B");
+    assert_says(&rig, FF_ABOUT_ATTRIBUTION, NULL);
+    rig_close(&rig);
+}
+
+/* The picture comes as if nobody had asked, and a connection cut anywhere loses nothing. */
+static void ground_goes_first(void **state)
+{
+    client_rig plain, rig;
+
+    (void)state;
+    rig_open(&plain, 0);
+    rig_client(&plain, 2 * MB);
+    assert_true(rig_settle(&plain, 400));
+    for (uint64_t at = plain.bytes_down - 200; at < plain.bytes_down + 40; at += 17) {
+        rig_open(&rig, 0);
+        rig_use_about(&rig, about);
+        rig.desc.about = SHOWN;
+        rig.cut_at = at;
+        rig_client(&rig, 2 * MB);
+        for (int i = 0; i < 200; i++) rig_step(&rig, 100000);
+        assert_true(rig_settle(&rig, 400));
+        assert_true(rig_same_picture(&rig, &plain));
+        assert_says(&rig, FF_ABOUT_NAME, "Hills");
+        rig_close(&rig);
+    }
+    rig_close(&plain);
+}
+
+static void a_pack_that_says_nothing_is_an_empty_list(void **state)
+{
+    client_rig rig;
+
+    (void)state;
+    rig_open(&rig, 0);
+    rig.desc.about = FF_ABOUT_KNOWN;
+    rig_client(&rig, 2 * MB);
+    assert_true(rig_settle(&rig, 400));
+    for (int i = 0; i < 50; i++) rig_step(&rig, 100000);
+    assert_int_equal(rig.asked_about, 1);
+    assert_says(&rig, FF_ABOUT_NAME, NULL);
+    assert_int_equal(rig_stats(&rig).protocol_errors, 0);
+    rig_close(&rig);
+}
+
+static void a_pack_on_the_device_is_read_at_once(void **state)
+{
+    client_rig rig;
+
+    (void)state;
+    rig_open(&rig, 0);
+    rig_use_about(&rig, about);
+    rig.desc.about = SHOWN;
+    rig_local_client(&rig, 2 * MB);
+    assert_says(&rig, FF_ABOUT_ATTRIBUTION, "nobody");
+    assert_says(&rig, FF_ABOUT_LICENCE, NULL);
+    assert_int_equal(pool(&rig, "about").bytes, 0);
+    rig_close(&rig);
+}
+
+/* A server that sends more than was asked for, or unasked, talks nonsense. */
+static void answers_that_nobody_asked_for_are_nonsense(void **state)
+{
+    client_rig rig;
+
+    (void)state;
+    rig_open(&rig, 0);
+    rig_use_about(&rig, about);
+    rig_client(&rig, 2 * MB);
+    assert_true(rig_settle(&rig, 400));
+    uint8_t ask[] = { FF_MSG_GET_ABOUT, 1, 1 };
+    ff_session_receive(rig.session, ask, sizeof ask, rig.now_us);
+    rig_step(&rig, 100000);
+    assert_int_equal(rig_stats(&rig).protocol_errors, 1);
+    rig_close(&rig);
+}
+
+static void a_server_of_another_version_is_told(void **state)
+{
+    client_rig rig;
+
+    (void)state;
+    rig_open(&rig, 0);
+    rig.version = 4;
+    rig_client(&rig, 2 * MB);
+    for (int i = 0; i < 20; i++) rig_step(&rig, 100000);
+    assert_int_equal(rig_stats(&rig).refusal, FF_ERR_VERSION);
+    assert_false(rig_stats(&rig).have_terrain);
+    rig.version = 0;
+    assert_true(rig_settle(&rig, 4000));
+    assert_int_equal(rig_stats(&rig).refusal, FF_OK);
+    rig_close(&rig);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(who_does_not_show_it_pays_nothing),
+        cmocka_unit_test(who_shows_it_asks_once_and_gets_what_was_asked_for),
+        cmocka_unit_test(ground_goes_first),
+        cmocka_unit_test(a_pack_that_says_nothing_is_an_empty_list),
+        cmocka_unit_test(a_pack_on_the_device_is_read_at_once),
+        cmocka_unit_test(answers_that_nobody_asked_for_are_nonsense),
+        cmocka_unit_test(a_server_of_another_version_is_told),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

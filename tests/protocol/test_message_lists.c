@@ -1,0 +1,156 @@
+/* Messages that are lists, CAPS, WELCOME and ABOUT: unknown entries pass, faults of form do not. */
+#include "../../protocol/message/ff_message.h"
+#include "../rig/slow_pack.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#define LIST(text)                                \
+    {                                             \
+        (const uint8_t *)(text), sizeof(text) - 1 \
+    }
+
+static const ff_terrain_info terrain = { .node_log2 = 3,
+                                         .tile_log2 = 6,
+                                         .tiles_x = 1,
+                                         .tiles_y = 1,
+                                         .samples_x = 65,
+                                         .samples_y = 65,
+                                         .spacing_wu = 256,
+                                         .hscale_q24 = 1 << 24 };
+
+/* What decoding answers to a message of this type with this list as its body; exact room, so that
+ * reading beyond its end is seen. */
+static int decode(unsigned type, ff_list list, ff_message *out)
+{
+    size_t head = list.byte_count < 128 ? 2 : 3;
+    static uint8_t *bytes;
+    free(bytes);
+    bytes = malloc(head + list.byte_count);
+    bytes[0] = (uint8_t)type;
+    bytes[1] = (uint8_t)(head == 2 ? list.byte_count : (list.byte_count & 127) | 128);
+    bytes[head - 1] = (uint8_t)(head == 2 ? list.byte_count : list.byte_count >> 7);
+    memcpy(bytes + head, list.bytes, list.byte_count);
+    int rc = ff_message_decode(bytes, head + list.byte_count, out);
+    if (rc > 0) assert_int_equal(rc, head + list.byte_count);
+    return rc;
+}
+
+static void unknown_entries_pass(void **state)
+{
+    ff_message out;
+    const uint8_t *value, *other;
+    ff_list list = LIST("\3\2ok\6\4\1\0\0\0\x07\3new\xff\0");
+
+    (void)state;
+    assert_true(decode(FF_MSG_CAPS, list, &out) > 0);
+    assert_int_equal(ff_list_find(out.u.list, FF_CAPS_TOKEN, &value), 2);
+    assert_memory_equal(value, "ok", 2);
+    assert_int_equal(ff_list_find(out.u.list, FF_CAPS_SCREEN, &value), FF_ERR_NOT_FOUND);
+    assert_int_equal(ff_list_find(out.u.list, FF_CAPS_FEATURES, &value), 4);
+    assert_int_equal(slow_list_find(out.u.list.bytes, out.u.list.byte_count, 6, &other), 4);
+    assert_ptr_equal(value, other);
+    assert_true(decode(FF_MSG_ABOUT, (ff_list)LIST("\1\1a\x64\2\0\0"), &out) > 0);
+}
+
+static void faults_of_form_are_errors(void **state)
+{
+    const struct {
+        ff_list list;
+        int expected;
+    } row[] = {
+        { LIST("\2"), FF_ERR_TRUNCATED },
+        { LIST("\2\5abc"), FF_ERR_TRUNCATED },
+        { LIST("\2\1a\2\1b"), FF_ERR_RANGE },             /* twice */
+        { LIST("\3\1a\2\1b"), FF_ERR_RANGE },             /* falling */
+        { LIST("\0\1a"), FF_ERR_RANGE },                  /* no type */
+        { LIST("\2\x81\0a"), FF_ERR_RANGE },              /* a length longer than it need be */
+        { LIST("\4\3\0\1\0"), FF_ERR_RANGE },             /* a screen of three bytes */
+        { LIST("\4\5\0\1\0\1\0"), FF_ERR_RANGE },         /* of five */
+        { LIST("\1\0"), FF_ERR_RANGE },                   /* no codec */
+        { LIST("\5\4\0\1\0\1"), FF_ERR_RANGE },           /* half the budgets */
+        { LIST("\1\21ABCDEFGHIJKLMNOPQ"), FF_ERR_RANGE }, /* 17 codecs */
+    };
+    ff_message out;
+
+    (void)state;
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
+        uint8_t room[64];
+        ff_message message = { .type = FF_MSG_CAPS, .u.list = row[i].list };
+        assert_int_equal(decode(FF_MSG_CAPS, row[i].list, &out), row[i].expected);
+        assert_int_equal(ff_message_encode(&message, room, sizeof room), FF_ERR_RANGE);
+    }
+    assert_int_equal(decode(FF_MSG_ABOUT, (ff_list)LIST("\1\1\x1b"), &out), FF_ERR_RANGE);
+    assert_int_equal(decode(FF_MSG_ABOUT, (ff_list)LIST("\1\2\xc3\x28"), &out), FF_ERR_RANGE);
+    assert_int_equal(decode(FF_MSG_ABOUT, (ff_list)LIST("\2\1a\1\1b"), &out), FF_ERR_RANGE);
+}
+
+static void lists_are_bounded(void **state)
+{
+    uint8_t bytes[FF_CAPS_BYTES_MAX + 1] = { 200, ((FF_CAPS_BYTES_MAX - 3) & 127) | 128,
+                                             (FF_CAPS_BYTES_MAX - 3) >> 7 };
+    ff_message out;
+
+    (void)state;
+    assert_true(decode(FF_MSG_CAPS, (ff_list){ bytes, FF_CAPS_BYTES_MAX }, &out) > 0);
+    bytes[1]++;
+    assert_int_equal(decode(FF_MSG_CAPS, (ff_list){ bytes, FF_CAPS_BYTES_MAX + 1 }, &out),
+                     FF_ERR_RANGE);
+}
+
+static void welcome_needs_its_terrain(void **state)
+{
+    uint8_t bytes[256];
+    ff_message message = { .type = FF_MSG_WELCOME,
+                           .u.welcome = { FF_PROTOCOL_VERSION, terrain, LIST("\3\2\0\1") } },
+               out;
+    const uint8_t *value;
+
+    (void)state;
+    int count = ff_message_encode(&message, bytes, sizeof bytes);
+    assert_int_equal(count, 2 + 4 + 2 + 68 + 4);
+    assert_int_equal(ff_message_decode(bytes, (size_t)count, &out), count);
+    assert_int_equal(out.u.welcome.info.samples_x, 65);
+    assert_int_equal(ff_list_find(out.u.welcome.more, FF_WELCOME_REQUESTS, &value), 2);
+    /* as the specification has it: version, then the list */
+    assert_int_equal(slow_list_find(bytes + 6, (size_t)count - 6, 1, &value), 68);
+    assert_ptr_equal(value, bytes + 8);
+    assert_int_equal(slow_list_find(bytes + 6, (size_t)count - 6, 3, &value), 2);
+    bytes[6] = 2; /* another type */
+    assert_int_equal(ff_message_decode(bytes, (size_t)count, &out), FF_ERR_RANGE);
+    bytes[6] = 1;
+    bytes[8] = 99; /* no such terrain */
+    assert_int_equal(ff_message_decode(bytes, (size_t)count, &out), FF_ERR_RANGE);
+    assert_int_equal(ff_message_decode((const uint8_t *)"\x41\4\5\0\0\0", 6, &out), FF_ERR_RANGE);
+    assert_int_equal(ff_message_decode((const uint8_t *)"\x41\x06\5\0\0\0\1\0", 8, &out),
+                     FF_ERR_RANGE);
+}
+
+static void a_client_that_needs_nothing_says_two_bytes(void **state)
+{
+    uint8_t bytes[8];
+
+    (void)state;
+    assert_int_equal(ff_message_encode(&(ff_message){ .type = FF_MSG_CAPS }, bytes, sizeof bytes),
+                     2);
+    assert_int_equal(
+        ff_message_encode(&(ff_message){ .type = FF_MSG_GET_ABOUT, .u.get_about = { 3 } }, bytes,
+                          sizeof bytes),
+        3);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(unknown_entries_pass),
+        cmocka_unit_test(faults_of_form_are_errors),
+        cmocka_unit_test(lists_are_bounded),
+        cmocka_unit_test(welcome_needs_its_terrain),
+        cmocka_unit_test(a_client_that_needs_nothing_says_two_bytes),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
