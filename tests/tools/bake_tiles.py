@@ -186,6 +186,22 @@ def _():
     assert "--rgb" in refused(folder, "--bbox", BOX, "--t-srs", "EPSG:32632")
 
 
+@case("name and attribution of tiles are those of the pack, without HTML")
+def _():
+    metadata = b'{"vector_layers": [{"name": "not this"}], "name": "L\\u00e4nd\\u002fer", "encoding": "terrarium", "attribution": "<a href=\\"https://x\\">&copy; Survey &amp; Sons</a>"}'
+    path = os.path.join(work, "whose.mbtiles")
+    table = sqlite3.connect(path)
+    table.executescript("create table metadata (name text, value text); create table tiles (zoom_level integer, tile_column integer, tile_row integer, tile_data blob)")
+    table.executemany("insert into metadata values (?, ?)", {"encoding": "terrarium", "name": "L\u00e4nd/er", "attribution": "<a href='x'>\u00a9 Survey & Sons</a>"}.items())
+    table.executemany("insert into tiles values (?, ?, ?, ?)", [(zoom, x, 2**zoom - 1 - y, image) for (zoom, x, y), image in images.items()])
+    table.commit()
+    table.close()
+    for source in pmtiles("whose.pmtiles", images, metadata=metadata), path:
+        assert bake(source, "--bbox", BOX)[0]
+        said = json.loads(run("info", "--json", "out.ffp").stdout)["about"]
+        assert said["name"] == "L\u00e4nd/er" and said["attribution"] == "\u00a9 Survey & Sons", said
+
+
 @case("a tile that is not there is void; a box across the antimeridian is one piece")
 def _():
     holed = dict(images)
