@@ -19,7 +19,7 @@ refused() {
 }
 
 awk 'BEGIN { for (i = 0; i < 65 * 65; i++) printf "%c%c", 1 + i % 120, 1 }' | LC_ALL=C head -c 8450 >"$work/hills.r16"
-"$BIN/farfield-bake" --quiet --raw 65x65 --spacing 30 "$work/hills.r16" -o "$work/hills.ffp"
+"$BIN/farfield-bake" --quiet --raw 65x65 --spacing 30 --name Hills --attribution nobody --licence CC "$work/hills.r16" -o "$work/hills.ffp"
 result $? "a pack to serve"
 head -c 3000 "$work/hills.ffp" >"$work/short.ffp"
 { head -c 100 "$work/hills.ffp"; printf 'x'; tail -c +102 "$work/hills.ffp"; } >"$work/flipped.ffp"
@@ -36,6 +36,8 @@ refused 1 "an empty pack" "empty.ffp" --pack "$work/empty.ffp"
 refused 1 "a truncated pack" "short.ffp" --pack "$work/short.ffp"
 refused 1 "a damaged pack" "flipped.ffp: checksum" --pack "$work/flipped.ffp"
 refused 1 "a foreign file" "hills.r16: not a Farfield" --pack "$work/hills.r16"
+refused 1 "a pack of version 4" "version 4, this program reads 5: bake it again: farfield-bake HEIGHTS" --pack tests/corpus/pack/version-4
+refused 1 "a pack with an unknown part that is needed" "section MARK" --pack tests/corpus/pack/unknown-needed
 refused 2 "an address without a port" "listen" --pack "$work/hills.ffp" --listen 127.0.0.1
 refused 1 "a foreign address" "listen" --pack "$work/hills.ffp" --listen 192.0.2.1:7788
 refused 2 "no workers" "--workers" --pack "$work/hills.ffp" --workers 0
@@ -103,10 +105,50 @@ with_server ask_root
 result $? "a damaged record is told to the operator"
 mv "$work/good.ffp" "$work/hills.ffp"
 
+ask_about() { # name and attribution are asked for; a client of version 4 is sent away with the error of versions
+    python3 -c '
+import socket, sys
+def hear(said, count):
+    s = socket.create_connection(("127.0.0.1", int(sys.argv[1])))
+    s.sendall(said)
+    heard = b""
+    while len(heard) < count:
+        heard += s.recv(4096) or sys.exit("the server closed the connection")
+    return heard
+about = b"\1\5Hills\2\6nobody"
+heard = hear(b"\1\x0cFFLD\5\0\0\0\0\0\0\0" + b"\7\0" + b"\x08\1\3", 76 + 2 + len(about))
+heard[76:] == b"\x49" + bytes([len(about)]) + about or sys.exit(repr(heard))
+heard = hear(b"\1\x0cFFLD\4\0\0\0\0\0\0\0", 5)
+heard == b"\x48\3\0\0\xfb" or sys.exit(repr(heard))
+' "$port" >"$work/asked" 2>&1
+}
+with_server ask_about
+[ "$status" = 0 ] && [ -f "$work/asked" ] && [ ! -s "$work/asked" ]
+result $? "a server tells whose the ground is, and sends older clients away"
+
 nothing() { :; }
 with_server nothing --json --gl egl
 [ "$(grep -c '^{.*}$' "$work/log")" = "$(wc -l <"$work/log")" ] && grep -q '"event":"listening"' "$work/log" &&
     grep -q '"event":"stopped"' "$work/log"
 result $? "--json prints JSON lines only, and --gl egl comes up"
+
+# A server of another version, as far as it goes: it says GOODBYE to whoever greets.
+python3 -c '
+import socket
+s = socket.create_server(("127.0.0.1", 0))
+print(s.getsockname()[1], flush=True)
+while True:
+    client, _ = s.accept()
+    client.recv(100)
+    client.sendall(b"\x48\3\0\0\xfb")
+    client.close()
+' >"$work/port" &
+old=$!
+for ((tries = 0; tries < 1000; tries++)); do [ -s "$work/port" ] && break; sleep 0.02; done
+"$BIN/farfield-handheld" --server "127.0.0.1:$(cat "$work/port")" --frames 30 >"$work/out" 2>"$work/err"
+[ $? = 1 ] && [ "$(wc -l <"$work/err")" = 1 ] && grep -q "another version of Farfield" "$work/err"
+result $? "a server of another version is told in one line"
+kill "$old"
+wait "$old" 2>/dev/null
 
 exit $((failures > 0))
