@@ -221,7 +221,7 @@ static int is_known(const ff_pack_section *section)
     if (section->kind == FF_PACK_ABOUT) return section->codec == 0;
     for (unsigned kind = 0; kind < FF_KIND_COUNT; kind++)
         if (ff_kind[kind].section == section->kind && section->kind)
-            return ff_kind[kind].data == FF_DATA_HEIGHTS ? section->codec < FF_CODEC_COUNT
+            return ff_kind[kind].data == FF_DATA_HEIGHTS ? ff_codec_name(section->codec) != NULL
                                                          : section->codec == 0;
     return 0;
 }

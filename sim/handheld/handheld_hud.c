@@ -16,8 +16,9 @@
 
 uint32_t handheld_hud_about(void) { return SIM_ABOUT_SHOWN; }
 
-static void show(c3d_device *c3d, uint8_t *rgba, int width, int height, int y, const char *text)
+static void show(c3d_device *c3d, int width, int height, int y, const char *text)
 {
+    static uint8_t rgba[ABOUT_WIDTH * ABOUT_HEIGHT * 4]; /* the larger of the two */
     memset(rgba, 0, (size_t)width * (size_t)height * 4);
     c3d_text(rgba, width, height, MARGIN, MARGIN, 0xFFFFFFFFu, text);
     c3d_texture picture = c3d_texture_make(c3d, C3D_RGBA8888, width, height, rgba);
@@ -28,7 +29,6 @@ static void show(c3d_device *c3d, uint8_t *rgba, int width, int height, int y, c
 /* At the foot of the picture, for a while: name and attribution are to be seen, not in the way. */
 static void show_about(handheld *device, c3d_device *c3d)
 {
-    static uint8_t rgba[ABOUT_WIDTH * ABOUT_HEIGHT * 4];
     char text[ABOUT_LINES * (ABOUT_WIDTH / C3D_TEXT_ADVANCE_PX + 1) + 1];
     int width = device->width < ABOUT_WIDTH ? device->width : ABOUT_WIDTH;
     if (device->about_frames >= ABOUT_FRAMES) return;
@@ -37,13 +37,12 @@ static void show_about(handheld *device, c3d_device *c3d)
                                      ABOUT_LINES, text, sizeof text);
     if (!lines) return;
     device->about_frames++;
-    show(c3d, rgba, ABOUT_WIDTH, ABOUT_HEIGHT,
-         device->height - lines * C3D_TEXT_LINE_PX - 2 * MARGIN, text);
+    show(c3d, ABOUT_WIDTH, ABOUT_HEIGHT, device->height - lines * C3D_TEXT_LINE_PX - 2 * MARGIN,
+         text);
 }
 
 void handheld_hud(handheld *device)
 {
-    static uint8_t rgba[WIDTH * HEIGHT * 4];
     char text[48];
     ff_client_stats stats;
     c3d_device *c3d = ff_client_device(device->client);
@@ -51,6 +50,6 @@ void handheld_hud(handheld *device)
     ff_client_get_stats(device->client, &stats);
     snprintf(text, sizeof text, "%u T %u N %u KB", (unsigned)stats.tree.triangles,
              (unsigned)stats.tree.nodes_held, (unsigned)(stats.bytes_down / 1024));
-    show(c3d, rgba, WIDTH, HEIGHT, 0, text);
+    show(c3d, WIDTH, HEIGHT, 0, text);
     show_about(device, c3d);
 }

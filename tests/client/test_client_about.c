@@ -165,6 +165,15 @@ static void answers_that_nobody_asked_for_are_nonsense(void **state)
     rig_step(&rig, 100000);
     assert_int_equal(rig_stats(&rig).protocol_errors, 1);
     rig_close(&rig);
+    rig_open(&rig, 0);
+    rig_use_about(&rig, about);
+    rig.desc.about = FF_ABOUT_BIT(FF_ABOUT_NAME);
+    rig.about_set = SHOWN; /* the attribution comes, too */
+    rig_client(&rig, 2 * MB);
+    for (int i = 0; i < 200 && !rig_stats(&rig).protocol_errors; i++) rig_step(&rig, 100000);
+    assert_int_equal(rig_stats(&rig).protocol_errors, 1);
+    assert_says(&rig, FF_ABOUT_NAME, NULL);
+    rig_close(&rig);
 }
 
 static void a_server_of_another_version_is_told(void **state)

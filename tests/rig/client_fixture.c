@@ -93,6 +93,8 @@ static int rig_send(void *state, const uint8_t *bytes, size_t count)
     count_messages(rig, bytes, count);
     memcpy(rig->inbox + rig->inbox_count, bytes, count);
     if (rig->version && bytes[0] == FF_MSG_HELLO) rig->inbox[rig->inbox_count + 6] = rig->version;
+    if (rig->about_set && bytes[0] == FF_MSG_GET_ABOUT)
+        rig->inbox[rig->inbox_count + 2] = rig->about_set;
     rig->inbox_count += count;
     serve(rig);
     return (int)count;

@@ -21,6 +21,7 @@ typedef struct client_rig {
     uint8_t spoil_with; /* the byte at spoil_at becomes this, and all after it */
     int refuse;         /* no new connection */
     uint8_t version;    /* not 0: what the server hears of a HELLO's version */
+    uint8_t about_set;  /* not 0: and of the entries that GET_ABOUT asks for */
     int no_faces;       /* the renderer never answers */
     unsigned chop;      /* recv gives at most this many bytes; 0: all there are */
 
