@@ -85,6 +85,17 @@ static void serve(client_rig *rig)
 
 /* ---- the client's end ---- */
 
+/* What the server hears differently from what was said. */
+static void mishear(client_rig *rig, uint8_t *bytes, size_t count)
+{
+    ff_message message;
+    for (int used; count && (used = ff_message_decode(bytes, count, &message)) > 0;
+         bytes += used, count -= (size_t)used) {
+        if (rig->version && message.type == FF_MSG_HELLO) bytes[6] = rig->version;
+        if (rig->about_set && message.type == FF_MSG_GET_ABOUT) bytes[2] = rig->about_set;
+    }
+}
+
 static int rig_send(void *state, const uint8_t *bytes, size_t count)
 {
     client_rig *rig = state;
@@ -92,9 +103,7 @@ static int rig_send(void *state, const uint8_t *bytes, size_t count)
     if (rig->inbox_count + count > sizeof rig->inbox) return 0;
     count_messages(rig, bytes, count);
     memcpy(rig->inbox + rig->inbox_count, bytes, count);
-    if (rig->version && bytes[0] == FF_MSG_HELLO) rig->inbox[rig->inbox_count + 6] = rig->version;
-    if (rig->about_set && bytes[0] == FF_MSG_GET_ABOUT)
-        rig->inbox[rig->inbox_count + 2] = rig->about_set;
+    mishear(rig, rig->inbox + rig->inbox_count, count);
     rig->inbox_count += count;
     serve(rig);
     return (int)count;
