@@ -167,11 +167,12 @@ uint32_t bake_about_list(const bake_about *about, OGRSpatialReferenceH srs,
             ff_list_write(&out, i + 1, (const uint8_t *)about->text[i],
                           (uint32_t)strlen(about->text[i]));
     char *wkt = srs ? bake_projection_wkt(srs) : NULL;
+    uint32_t count = wkt ? bake_projection_numbers(srs, wkt, numbers) : 0;
+    if (wkt) bake_projection_shorten(srs, wkt);
     size_t wkt_bytes = wkt ? strlen(wkt) : 0;
     if (wkt_bytes && wkt_bytes <= limit(FF_ABOUT_WKT) &&
         ff_about_is_text((const uint8_t *)wkt, (uint32_t)wkt_bytes))
         ff_list_write(&out, FF_ABOUT_WKT, (const uint8_t *)wkt, (uint32_t)wkt_bytes);
-    uint32_t count = wkt ? bake_projection_numbers(srs, wkt, numbers) : 0;
     if (count) ff_list_write(&out, FF_ABOUT_PROJECTION, numbers, count);
     CPLFree(wkt);
     FF_ASSERT(out.error == FF_OK);

@@ -14,7 +14,7 @@
 
 char *bake_projection_wkt(OGRSpatialReferenceH srs)
 {
-    static const char *const form[] = { "FORMAT=WKT2_2019", "MULTILINE=NO", NULL };
+    static const char *const form[] = { "FORMAT=WKT2_2015", "MULTILINE=NO", NULL };
     char *wkt = NULL;
     if (OSRExportToWktEx(srs, &wkt, form) == OGRERR_NONE && wkt && *wkt) return wkt;
     CPLFree(wkt);
@@ -34,6 +34,29 @@ static const char *closing(const char *at)
         if (*at == ']' && --depth == 0) return at;
     }
     return NULL;
+}
+
+static void leave_out(char *wkt, const char *part)
+{
+    for (char *at = wkt; (at = strstr(at, part));) {
+        const char *end = closing(at);
+        if (!end) return;
+        memmove(at, end + 1, strlen(end + 1) + 1);
+    }
+}
+
+void bake_projection_shorten(OGRSpatialReferenceH srs, char *wkt)
+{
+    char *shorter = CPLStrdup(wkt), *at = shorter;
+    OGRSpatialReferenceH again = OSRNewSpatialReference(NULL);
+    OSRSetAxisMappingStrategy(again, OSRGetAxisMappingStrategy(srs));
+    leave_out(shorter, ",SCOPE[");
+    leave_out(shorter, ",AREA[");
+    leave_out(shorter, ",BBOX[");
+    leave_out(shorter, ",ID[");
+    if (OSRImportFromWkt(again, &at) == OGRERR_NONE && OSRIsSame(srs, again)) strcpy(wkt, shorter);
+    OSRDestroySpatialReference(again);
+    CPLFree(shorter);
 }
 
 /* The code in ID["EPSG",code], of what begins at `at` and ends before `end`; 0: it has none. */
