@@ -186,7 +186,8 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
     client->camera = *camera;
     client->last_view = view;
     client->has_camera = 1;
-    client->dirty = client->unranked = 0;
+    client->dirty = 0;
+    client->unranked = ff_tree_to_make(client->tree) > 0;
     client->frame_hash = hash;
     if (!changed) {
         client->frames_skipped++;

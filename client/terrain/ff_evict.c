@@ -45,7 +45,7 @@ static uint32_t family_worth(const ff_tree *tree, const ff_node *parent)
     for (unsigned q = 0; q < 4; q++) {
         if (parent->child[q] == FF_SLOT_NONE) continue;
         const ff_node *child = &tree->node[parent->child[q]];
-        FF_ASSERT(child->flags & FF_NODE_HELD && child->key == ff_key_child(parent->key, q));
+        FF_ASSERT(child->key == ff_key_child(parent->key, q));
         if (child->flags & FF_NODE_WANTED && child->value > worth) worth = child->value;
     }
     return worth;
@@ -66,7 +66,7 @@ uint32_t ff_evict_candidates(const ff_tree *tree, uint64_t *keys)
     uint32_t count = 0;
     for (uint32_t slot = 0; slot < tree->node_count; slot++) {
         const ff_node *node = &tree->node[slot];
-        if (!(node->flags & FF_NODE_HELD)) continue;
+        if (!ff_node_held(node)) continue;
         if (is_idle_root(tree, node))
             keys[count++] = slot;
         else if (has_leaf_family(tree, node))
@@ -114,10 +114,10 @@ static int drop_one(ff_tree *tree, uint32_t keep, uint64_t below)
     uint32_t keep_parent = keep == FF_SLOT_NONE ? FF_SLOT_NONE : tree->node[keep].parent,
              victim = FF_SLOT_NONE;
     FF_ASSERT(tree->free_count < 4);
-    FF_ASSERT(keep == FF_SLOT_NONE || tree->node[keep].flags & FF_NODE_HELD);
+    FF_ASSERT(keep == FF_SLOT_NONE || ff_node_held(&tree->node[keep]));
     for (uint32_t slot = 0; slot < tree->node_count; slot++) {
         const ff_node *node = &tree->node[slot];
-        if (!(node->flags & FF_NODE_HELD) || slot == keep || slot == keep_parent) continue;
+        if (!ff_node_held(node) || slot == keep || slot == keep_parent) continue;
         uint64_t worth;
         if (is_idle_root(tree, node))
             worth = 0;

@@ -106,7 +106,8 @@ static void foresee_children_of(const ff_tree *tree, foresight *f, const ff_node
     uint32_t next = ff_key_level(node->key) + 1;
     FF_ASSERT(!ff_node_has_children(node));
     if (next >= ff_terrain_levels(&tree->info) ||
-        (tree->quality.depth_max && next >= tree->quality.depth_max) || node->error_code == 0)
+        (tree->quality.depth_max && next >= tree->quality.depth_max) ||
+        node->flags & FF_NODE_LEAF || ff_node_is_exact(tree, node))
         return;
     if (node->flags & FF_NODE_NEEDED) { /* wished for already, unless its tile waits for it */
         if (ff_tile_waits(tree, node)) note(f, node->key, FF_KIND_REFINEMENT, node->value);

@@ -17,7 +17,6 @@ uint32_t ff_tree_find(const ff_tree *tree, ff_key key)
 {
     uint32_t slot = tree->hash[hash_of(tree, key)];
     while (slot != FF_SLOT_NONE && tree->node[slot].key != key) slot = tree->node[slot].hash_next;
-    FF_ASSERT(slot == FF_SLOT_NONE || tree->node[slot].flags & FF_NODE_HELD);
     return slot;
 }
 
@@ -37,7 +36,7 @@ uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent)
     FF_ASSERT(slot < tree->node_count && tree->free_count > 0);
     FF_ASSERT((parent == FF_SLOT_NONE) == (ff_key_level(key) == 0));
     ff_node *node = &tree->node[slot];
-    FF_ASSERT(!(node->flags & FF_NODE_HELD));
+    FF_ASSERT(!ff_node_held(node));
     tree->free_head = node->hash_next;
     tree->free_count--;
     FF_ASSERT((tree->free_head == FF_SLOT_NONE) == (tree->free_count == 0));
@@ -45,7 +44,6 @@ uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent)
     memset(node, 0, sizeof *node);
     node->key = key;
     node->parent = parent;
-    node->flags = FF_NODE_HELD;
     for (unsigned q = 0; q < 4; q++) node->child[q] = FF_SLOT_NONE;
     node->placed = ff_shape_put(&tree->info, &tree->view.frame, key);
     node->hash_next = tree->hash[bucket];
@@ -61,7 +59,7 @@ uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent)
 
 static void forget_user(ff_tree *tree, ff_node *node)
 {
-    FF_ASSERT(node->flags & FF_NODE_HELD);
+    FF_ASSERT(ff_node_held(node));
     if (node->user && tree->on_evict) tree->on_evict(tree->evict_context, node->user);
     node->user = 0;
 }
@@ -97,6 +95,7 @@ static void give_slot(ff_tree *tree, uint32_t slot)
     }
     *link = node->hash_next;
     node->flags = 0;
+    node->key = FF_KEY_NONE;
     node->hash_next = tree->free_head;
     tree->free_head = slot;
     tree->free_count++;

@@ -43,7 +43,7 @@ unsigned ff_coarser_mask(const ff_tree *tree, const ff_node *node)
 void ff_want(ff_tree *tree, uint32_t slot, uint32_t value)
 {
     ff_node *node = &tree->node[slot];
-    FF_ASSERT(value > FF_VALUE_ONE && node->flags & FF_NODE_HELD);
+    FF_ASSERT(value > FF_VALUE_ONE && ff_node_held(node));
     if (node->flags & FF_NODE_WANTED) {
         if (value > node->value) node->value = value;
         return;

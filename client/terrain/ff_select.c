@@ -54,7 +54,7 @@ static void enter_frame(ff_tree *tree, const ff_frame *frame)
     if (ff_shape_same_frame(&tree->info, frame, &tree->view.frame)) return;
     for (uint32_t slot = 0; slot < tree->node_count; slot++) {
         ff_node *node = &tree->node[slot];
-        if (node->flags & FF_NODE_HELD) node->placed = ff_shape_put(&tree->info, frame, node->key);
+        if (ff_node_held(node)) node->placed = ff_shape_put(&tree->info, frame, node->key);
     }
     tree->dirty = 1;
 }
@@ -79,7 +79,7 @@ static void mark_active_roots(ff_tree *tree)
 {
     for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
         ff_node *root = &tree->node[slot];
-        FF_ASSERT(root->flags & FF_NODE_HELD && ff_key_level(root->key) == 0);
+        FF_ASSERT(ff_node_held(root) && ff_key_level(root->key) == 0);
         root->flags = (root->flags & FF_NODE_KEPT) |
                       (ff_tile_active(tree, ff_key_tile(root->key)) ? FF_NODE_ACTIVE : 0);
     }
@@ -114,7 +114,7 @@ static uint32_t own_value(ff_tree *tree, const ff_node *node)
         return 0;
     uint32_t value = ff_value_of_split(tree, node);
     if (value <= FF_VALUE_ONE) return 0;
-    if (node->error_code == 0) { /* already exact: finer nodes would show the same */
+    if (ff_node_is_exact(tree, node)) { /* finer nodes would show the same */
         tree->stats.flat++;
         return 0;
     }
@@ -164,7 +164,7 @@ static void split_cut(ff_tree *tree)
 static void fill_drawn(const ff_tree *tree, uint32_t slot, unsigned coarser, ff_drawn *drawn)
 {
     const ff_node *node = &tree->node[slot];
-    FF_ASSERT((node->flags & (FF_NODE_HELD | FF_NODE_SPLIT)) == FF_NODE_HELD);
+    FF_ASSERT(ff_node_held(node) && !(node->flags & FF_NODE_SPLIT));
     drawn->key = node->key;
     drawn->node = node;
     drawn->heights = tree->heights + slot * ff_heights_per_node(tree);
@@ -268,6 +268,7 @@ static void list_cut(ff_tree *tree)
 int ff_tree_select(ff_tree *tree, const ff_view *view, const ff_quality *quality)
 {
     enter_frame(tree, &view->frame);
+    ff_tree_make_children(tree);
     if (tree->has_view && !tree->dirty && same_view(view, &tree->asked_view) &&
         same_quality(quality, &tree->asked_quality)) {
         tree->stats.selects_skipped++;

@@ -83,8 +83,10 @@ ff_tree *ff_tree_create(const ff_tree_desc *desc, void *memory, size_t bytes)
     FF_ASSERT((tree->hash_mask & (tree->hash_mask + 1)) == 0);
     memset(tree->hash, 0xFF, (tree->hash_mask + 1) * sizeof *tree->hash);
     memset(tree->node, 0, tree->node_count * sizeof *tree->node);
-    for (uint32_t slot = 0; slot < tree->node_count; slot++)
+    for (uint32_t slot = 0; slot < tree->node_count; slot++) {
+        tree->node[slot].key = FF_KEY_NONE;
         tree->node[slot].hash_next = slot + 1 < tree->node_count ? slot + 1 : FF_SLOT_NONE;
+    }
     tree->root_head = FF_SLOT_NONE;
     memset(tree->want_head, 0xFF, sizeof tree->want_head);
     tree->stats.nodes_capacity = tree->node_count;
@@ -99,7 +101,8 @@ static uint16_t *heights_of(const ff_tree *tree, uint32_t slot)
 
 FF_STATIC_ASSERT(FF_NODE_HEIGHTS_MAX <= UINT32_MAX / UINT16_MAX); /* a sum of heights */
 
-static void measure_heights(ff_tree *tree, uint32_t slot, uint8_t error_code)
+/* Of a node whose heights are there: what the payload says of it, and what its heights say. */
+static void take_node(ff_tree *tree, uint32_t slot, const ff_residuals *residuals, uint32_t q)
 {
     const uint16_t *height = heights_of(tree, slot);
     size_t count = ff_heights_per_node(tree);
@@ -114,9 +117,11 @@ static void measure_heights(ff_tree *tree, uint32_t slot, uint8_t error_code)
     node->height_min = lowest;
     node->height_max = highest;
     node->height_mean = (uint16_t)(sum / count);
-    node->error_code = error_code;
+    node->error_code = residuals->child_error[q];
+    if (residuals->filled >> q & 1u) node->flags |= FF_NODE_FILLED;
+    if (residuals->leaf >> q & 1u) node->flags |= FF_NODE_LEAF;
     FF_ASSERT(node->height_min <= node->height_mean && node->height_mean <= node->height_max);
-    FF_ASSERT(ff_geometric_error_decode(error_code) <= 65536);
+    FF_ASSERT(ff_geometric_error_decode(node->error_code) <= 65536);
 }
 
 int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, const ff_residuals *residuals)
@@ -135,11 +140,35 @@ int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, const ff_residuals *resid
         ff_tree_drop_root(tree, &tree->node[slot]);
         return rc;
     }
-    measure_heights(tree, slot, residuals->child_error[0]);
-    if (residuals->filled & 1u) tree->node[slot].flags |= FF_NODE_FILLED;
+    take_node(tree, slot, residuals, 0);
     ff_tree_reshade_beside(tree, key);
     tree->dirty = 1;
     return FF_OK;
+}
+
+/* Room for the children of a node that has none. FF_OK or FF_ERR_FULL. */
+static int make_room(ff_tree *tree, uint32_t slot)
+{
+    if (!ff_evict_for_children(tree, slot)) {
+        tree->stats.pool_full++;
+        return FF_ERR_FULL;
+    }
+    return FF_OK;
+}
+
+/* Takes the children of a node out of tree->refined into slots, for which there is room. */
+static void take_children(ff_tree *tree, uint32_t slot, const ff_residuals *residuals)
+{
+    for (uint32_t q = 0; q < 4; q++) {
+        ff_key key = ff_key_child(tree->node[slot].key, q);
+        if (!ff_shape_has_ground(&tree->info, key)) continue;
+        uint32_t child = ff_tree_take_slot(tree, key, slot);
+        ff_refined_child(&tree->info, tree->refined, q, heights_of(tree, child));
+        take_node(tree, child, residuals, q);
+        tree->node[slot].child[q] = child;
+        ff_tree_reshade_beside(tree, key);
+    }
+    tree->dirty = 1;
 }
 
 int ff_tree_deliver_children(ff_tree *tree, ff_key key, const ff_residuals *residuals)
@@ -153,26 +182,34 @@ int ff_tree_deliver_children(ff_tree *tree, ff_key key, const ff_residuals *resi
         return FF_ERR_NOT_FOUND;
     }
     if (ff_node_has_children(&tree->node[slot])) return FF_OK;
-    if (!ff_evict_for_children(tree, slot)) {
-        tree->stats.pool_full++;
-        return FF_ERR_FULL;
-    }
-    FF_ASSERT(tree->node[slot].key == key); /* it was spared itself */
-    int rc = ff_reconstruct_refinement(&tree->info, heights_of(tree, slot), residuals,
-                                       tree->refined);
+    int rc = make_room(tree, slot);
     if (rc != FF_OK) return rc;
-    for (uint32_t q = 0; q < 4; q++) {
-        if (!ff_shape_has_ground(&tree->info, ff_key_child(key, q))) continue;
-        uint32_t child = ff_tree_take_slot(tree, ff_key_child(key, q), slot);
-        ff_refined_child(&tree->info, tree->refined, q, heights_of(tree, child));
-        measure_heights(tree, child, residuals->child_error[q]);
-        if (residuals->filled >> q & 1u) tree->node[child].flags |= FF_NODE_FILLED;
-        tree->node[slot].child[q] = child;
-        ff_tree_reshade_beside(tree, ff_key_child(key, q));
-    }
-    tree->dirty = 1;
+    FF_ASSERT(tree->node[slot].key == key); /* it was spared itself */
+    rc = ff_reconstruct_refinement(&tree->info, heights_of(tree, slot), residuals, tree->refined);
+    if (rc != FF_OK) return rc;
+    take_children(tree, slot, residuals);
     return FF_OK;
 }
+
+void ff_tree_make_children(ff_tree *tree)
+{
+    for (uint32_t i = 0; i < tree->made_count; i++) {
+        uint32_t slot = ff_tree_find(tree, tree->made[i]);
+        if (slot == FF_SLOT_NONE || ff_node_has_children(&tree->node[slot]) ||
+            make_room(tree, slot) != FF_OK)
+            continue;
+        const ff_node *node = &tree->node[slot];
+        ff_residuals all = { .filled = node->flags & FF_NODE_FILLED ? 15 : 0, .leaf = 15 };
+        FF_ASSERT(node->flags & FF_NODE_LEAF &&
+                  ff_key_level(node->key) + 1 < ff_terrain_levels(&tree->info));
+        memset(all.child_error, ff_geometric_error_below(&tree->info, node->error_code), 4);
+        ff_predict_children(&tree->info, heights_of(tree, slot), tree->refined);
+        take_children(tree, slot, &all);
+    }
+    tree->made_count = 0;
+}
+
+uint32_t ff_tree_to_make(const ff_tree *tree) { return tree->made_count; }
 
 uint32_t ff_tree_drawn(const ff_tree *tree, const ff_drawn **list)
 {

@@ -3,7 +3,8 @@
  *
  * One tree serves the client (nodes arrive from a link), the server's renderer and the tests (nodes
  * are read from a pack): behind it stands a `source` that is asked for roots and refinements and
- * answers at once or later by ff_tree_deliver_*. Geometry and requests only: nothing here knows a
+ * answers at once or later by ff_tree_deliver_*. Below leaves, where nothing is stored, it is not
+ * asked: the tree predicts. Geometry and requests only: nothing here knows a
  * graphics API, a socket, a clock or a floating-point number.
  *
  * A frame: ff_tree_select() walks the active tiles and chooses the cut; ff_tree_drawn() lists the
@@ -134,6 +135,9 @@ const ff_placed *ff_tree_placed(const ff_node *node);
 /* What would make the picture better, most urgent first. The tree does not remember asking: the
  * caller does. */
 uint32_t ff_tree_wishes(const ff_tree *tree, const ff_wish **list);
+/* Of how many nodes the next selection makes the children itself, because nothing finer is stored:
+ * until it is 0, the same view selected again gives another cut. */
+uint32_t ff_tree_to_make(const ff_tree *tree);
 
 /* What the viewer would wish for in view if it were at pos_wu and looked yaw, pitch further
  * (brad16), and does not wish for in view now: for prefetch, most urgent first, at most `capacity`.

@@ -17,7 +17,7 @@ FF_STATIC_ASSERT(FF_SLOT_NONE == UINT32_MAX); /* so only four of them have all b
 #define FF_VALUE_MAX UINT32_MAX
 
 enum ff_node_flags {
-    FF_NODE_HELD = 1,
+    FF_NODE_LEAF = 1,   /* nothing finer is stored: children are made by prediction */
     FF_NODE_ACTIVE = 2, /* a root that takes part in the last selection: inside the window */
     /* its children are desired, by itself or by a neighbour that may not be two levels finer */
     FF_NODE_WANTED = 4,
@@ -28,11 +28,11 @@ enum ff_node_flags {
     FF_NODE_JOINED = 64, /* a root that has been in the cut since it came into the window */
     /* of the cut, in view, and by nearer ground, whatever comes of it; stale when out of view */
     FF_NODE_HIDDEN = 128,
-    FF_NODE_KEPT = FF_NODE_HELD | FF_NODE_FILLED | FF_NODE_JOINED /* by selections */
+    FF_NODE_KEPT = FF_NODE_LEAF | FF_NODE_FILLED | FF_NODE_JOINED /* by selections */
 };
 
 struct ff_node {
-    ff_key key;
+    ff_key key;         /* FF_KEY_NONE: the slot is free */
     uint32_t hash_next; /* next in the hash chain, or in the list of free slots */
     uint32_t list_next; /* roots: next root */
     uint32_t want_next; /* next wanted node of the same level */
@@ -47,7 +47,8 @@ struct ff_node {
     uint8_t flags;
 };
 
-#define FF_PLANES 5
+#define FF_PLANES   5
+#define FF_MADE_MAX 32u /* families a selection makes */
 
 typedef struct ff_horizon ff_horizon; /* ff_horizon.h */
 
@@ -74,6 +75,9 @@ struct ff_tree {
     ff_quality asked_quality, finest, quality;
     uint16_t limit_step; /* how much coarser, see ff_limit.c */
     uint8_t limit_rests; /* selections before a finer step is tried again */
+    /* leaves whose children the next selection makes first: what would be wished for of others */
+    uint32_t made_count;
+    ff_key made[FF_MADE_MAX];
     uint32_t wish_value; /* what is in view and worth less is not wished for */
     uint8_t has_view, dirty;
     /* 1: nodes have gone since the last selection, so the lists of wanted nodes are broken */
@@ -104,6 +108,7 @@ static inline size_t ff_heights_per_node(const ff_tree *tree)
 {
     return (size_t)ff_node_side(&tree->info) * ff_node_side(&tree->info);
 }
+static inline int ff_node_held(const ff_node *node) { return node->key != FF_KEY_NONE; }
 static inline int ff_node_has_children(const ff_node *node)
 {
     return (node->child[0] & node->child[1] & node->child[2] & node->child[3]) != FF_SLOT_NONE;
@@ -113,6 +118,13 @@ static inline uint32_t ff_node_children(const ff_node *node)
     uint32_t count = 0;
     for (unsigned q = 0; q < 4; q++) count += node->child[q] != FF_SLOT_NONE;
     return count;
+}
+/* 1 when the source is known no better than the node shows it. */
+static inline int ff_node_is_exact(const ff_tree *tree, const ff_node *node)
+{
+    return node->error_code == 0 ||
+           (node->flags & FF_NODE_LEAF &&
+            ff_geometric_error_decode(node->error_code) <= tree->info.max_error);
 }
 /* Slots that the children of a node take: those that are not padding. */
 uint32_t ff_family_size(const ff_tree *tree, ff_key parent);
@@ -129,6 +141,9 @@ static inline ff_extent ff_drawn_cells(const ff_tree *tree, ff_key key)
 }
 
 #define FF_COARSER_UNKNOWN 0xFFu /* ff_drawn.coarser of a node that is not seen */
+
+/* ff_tree.c: makes the children of tree->made. */
+void ff_tree_make_children(ff_tree *tree);
 
 /* ff_pool.c */
 uint32_t ff_tree_find(const ff_tree *tree, ff_key key);

@@ -132,7 +132,12 @@ static void wish_children(ff_tree *tree)
     FF_ASSERT(missing + room.victims <= tree->node_count - tree->free_count);
     for (uint32_t i = 0; i < missing && tree->wish_count < tree->wish_capacity; i++) {
         const ff_node *node = &tree->node[tree->sort[i] & SLOT_MASK];
+        if (node->flags & FF_NODE_LEAF && tree->made_count == FF_MADE_MAX) continue;
         if (!ff_room_take(tree, &room, node)) continue;
+        if (node->flags & FF_NODE_LEAF) {
+            tree->made[tree->made_count++] = node->key;
+            continue;
+        }
         ff_wish *wish = &tree->wish[tree->wish_count++];
         wish->key = node->key;
         wish->kind = FF_KIND_REFINEMENT;
@@ -145,7 +150,7 @@ static void wish_children(ff_tree *tree)
 
 void ff_wish_make(ff_tree *tree)
 {
-    tree->wish_count = 0;
+    tree->wish_count = tree->made_count = 0;
     wish_roots(tree);
     wish_children(tree);
 }

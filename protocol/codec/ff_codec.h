@@ -47,9 +47,9 @@ FF_STATIC_ASSERT(FF_NODE_HEIGHTS_MAX ==
                  ((1 << FF_NODE_LOG2_MAX) + 1) * ((1 << FF_NODE_LOG2_MAX) + 1));
 FF_STATIC_ASSERT(FF_REFINED_HEIGHTS_MAX ==
                  ((2 << FF_NODE_LOG2_MAX) + 1) * ((2 << FF_NODE_LOG2_MAX) + 1));
-/* A byte of filled children, four error codes and every residual in 16 bits: what codec raw writes,
- * and no other exceeds. */
-FF_STATIC_ASSERT(5 + 2 * FF_REFINED_HEIGHTS_MAX <= FF_PAYLOAD_BYTES_MAX);
+/* A byte of leaves, one of filled children, four error codes and every residual in 16 bits: what
+ * codec raw writes, and no other exceeds. */
+FF_STATIC_ASSERT(6 + 2 * FF_REFINED_HEIGHTS_MAX <= FF_PAYLOAD_BYTES_MAX);
 
 /* The rows' numbers have no gaps, and fit ff_terrain_info.codec. */
 /* clang-format off */
@@ -64,6 +64,9 @@ FF_STATIC_ASSERT((0 FF_CODEC_LIST(ROW)) == FF_CODEC_COUNT && FF_CODEC_COUNT <= U
  * one. */
 uint8_t ff_geometric_error_encode(uint32_t steps);
 uint32_t ff_geometric_error_decode(uint8_t code);
+/* What stands for the children of a leaf of this code: half its error, while that is more than the
+ * terrain's max_error. */
+uint8_t ff_geometric_error_below(const ff_terrain_info *info, uint8_t code);
 
 /* What decoding needs beyond the payload. */
 enum ff_codec_needs {
@@ -92,6 +95,9 @@ typedef struct ff_residuals {
     /* bit q: below child q (a root: bit 0, itself) are samples that were void and have been filled
      */
     uint8_t filled;
+    /* bit q: child q (a root: bit 0, itself) is a leaf: nothing finer is stored, and what is wanted
+     * below it is predicted (ff_predict_children) */
+    uint8_t leaf;
     uint16_t count;         /* valid entries of value[]; 0 while the payload is carried */
     uint16_t carried_bytes; /* of the payload, in the memory of value[]: FF_NEEDS_PARENT alone */
     /* caller's array of at least ff_refined_side()^2 entries; quantised residuals */
@@ -110,6 +116,10 @@ int ff_reconstruct_root(const ff_terrain_info *info, const ff_residuals *res, ui
 /* `parent` ff_node_side()^2 values, `refined` receives ff_refined_side()^2 values. */
 int ff_reconstruct_refinement(const ff_terrain_info *info, const uint16_t *parent,
                               const ff_residuals *res, uint16_t *refined);
+/* The four children of a leaf, which are all prediction, in place of ff_reconstruct_refinement.
+ * Each is a leaf itself, filled when its parent is, with the error code ff_geometric_error_below.
+ */
+void ff_predict_children(const ff_terrain_info *info, const uint16_t *parent, uint16_t *refined);
 /* Cuts the child in `quadrant` out of a refined grid. */
 void ff_refined_child(const ff_terrain_info *info, const uint16_t *refined, uint32_t quadrant,
                       uint16_t *child);
@@ -122,10 +132,9 @@ void ff_refined_child(const ff_terrain_info *info, const uint16_t *refined, uint
  * (NULL: a root). `out->value` receives the residuals, `decoded` what every decoder will see. */
 void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *source,
                        ff_residuals *out, uint16_t *decoded);
-/* Then the payload, `res->child_error` and `filled` set by the caller; the rest as the first step
- * had it.
- * Bytes written to `out` (capacity at least FF_PAYLOAD_BYTES_MAX), or FF_ERR_RANGE for an error
- * code above 208. */
+/* Then the payload, `res->child_error`, `filled` and `leaf` set by the caller; the rest as the
+ * first step had it. Bytes written to `out` (capacity at least FF_PAYLOAD_BYTES_MAX), or
+ * FF_ERR_RANGE for an error code above 208. */
 int ff_encode_payload(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *decoded,
                       const ff_residuals *res, uint8_t *out);
 /* Both, where the error codes are known beforehand. */

@@ -83,13 +83,15 @@ static inline size_t ff_align_up(size_t bytes)
 
 /* ---- parts of payloads that codecs share ---- */
 
-/* How error codes are stored: none (all are 0), one for all, each. Before codes that are stored may
- * stand a byte of FF_FILLED and ff_residuals.filled. */
-enum ff_errors_form { FF_ERRORS_ZERO, FF_ERRORS_SAME, FF_ERRORS_EACH };
+/* How error codes are stored: none (all are 0), one for all, each, or none and all children are
+ * leaves. Before codes that are stored may stand a byte of FF_LEAF and ff_residuals.leaf, then one
+ * of FF_FILLED and ff_residuals.filled. */
+enum ff_errors_form { FF_ERRORS_ZERO, FF_ERRORS_SAME, FF_ERRORS_EACH, FF_ERRORS_LEAF };
+#define FF_LEAF   0xe0u
 #define FF_FILLED 0xf0u
-FF_STATIC_ASSERT(FF_FILLED > FF_ERROR_CODE_MAX);
+FF_STATIC_ASSERT(FF_LEAF > FF_ERROR_CODE_MAX && FF_FILLED == FF_LEAF + 16);
 
-/* Sets child_error and filled. */
+/* Sets child_error, leaf and filled. */
 int ff_take_errors(ff_payload *in, unsigned form, uint32_t errors, ff_residuals *out);
 /* 16 bits each, low byte first: `corners` unsigned values, then signed ones, `count` in all. */
 int ff_take_words(ff_payload *in, uint32_t corners, int32_t *value, uint32_t count);

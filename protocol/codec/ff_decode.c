@@ -27,6 +27,14 @@ uint8_t ff_geometric_error_encode(uint32_t steps)
     return (uint8_t)code;
 }
 
+uint8_t ff_geometric_error_below(const ff_terrain_info *info, uint8_t code)
+{
+    uint32_t steps = ff_geometric_error_decode(code);
+    uint32_t least = steps < info->max_error ? steps : info->max_error;
+
+    return ff_geometric_error_encode(steps / 2 > least ? steps / 2 : least);
+}
+
 const char *ff_codec_name(int codec)
 {
     const ff_codec *row = ff_codec_row(codec);
@@ -71,24 +79,26 @@ ff_decoder *ff_decoder_create(const ff_terrain_info *info, void *memory, size_t 
 
 /* ---- payload to residuals ---- */
 
-/* Takes the byte of filled children off when there is one. */
-static int take_filled(ff_payload *in, uint32_t errors, uint8_t *filled)
+/* Takes a byte of `mark` and one bit a child off when there is one. */
+static int take_mark(ff_payload *in, uint32_t mark, uint32_t errors, uint8_t *bits)
 {
-    *filled = 0;
-    if (ff_payload_left(in) < 1 || *in->at < FF_FILLED) return FF_OK;
-    *filled = *in->at++ & (uint8_t)~FF_FILLED;
-    return *filled == 0 || *filled >> errors ? FF_ERR_RANGE : FF_OK;
+    *bits = 0;
+    if (ff_payload_left(in) < 1 || (*in->at & FF_FILLED) != mark) return FF_OK;
+    *bits = *in->at++ & 0x0fu;
+    return *bits == 0 || *bits >> errors ? FF_ERR_RANGE : FF_OK;
 }
 
 int ff_take_errors(ff_payload *in, unsigned form, uint32_t errors, ff_residuals *out)
 {
     uint32_t stored = form == FF_ERRORS_EACH ? errors : form == FF_ERRORS_SAME ? 1 : 0;
-    int rc;
+    int rc = FF_OK;
 
     FF_ASSERT(errors == 1 || errors == 4);
     out->filled = 0;
-    if (form > FF_ERRORS_EACH) return FF_ERR_FORMAT;
-    rc = stored ? take_filled(in, errors, &out->filled) : FF_OK;
+    if (form > FF_ERRORS_LEAF) return FF_ERR_FORMAT;
+    out->leaf = form == FF_ERRORS_LEAF ? (uint8_t)((1u << errors) - 1) : 0;
+    if (stored) rc = take_mark(in, FF_LEAF, errors, &out->leaf);
+    if (stored && rc == FF_OK) rc = take_mark(in, FF_FILLED, errors, &out->filled);
     if (rc != FF_OK) return rc;
     if (ff_payload_left(in) < stored) return FF_ERR_TRUNCATED;
     memset(out->child_error, 0, 4);
@@ -203,6 +213,17 @@ int ff_reconstruct_refinement(const ff_terrain_info *info, const uint16_t *paren
                               const ff_residuals *res, uint16_t *refined)
 {
     return reconstruct(info, parent, res, refined);
+}
+
+static uint16_t take_prediction(void *context, uint32_t at, int32_t predicted)
+{
+    (void)context, (void)at;
+    return (uint16_t)predicted;
+}
+
+void ff_predict_children(const ff_terrain_info *info, const uint16_t *parent, uint16_t *refined)
+{
+    ff_predict_refinement(info, parent, refined, take_prediction, NULL);
 }
 
 void ff_refined_child(const ff_terrain_info *info, const uint16_t *refined, uint32_t quadrant,

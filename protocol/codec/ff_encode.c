@@ -94,12 +94,15 @@ size_t ff_put_errors(const ff_residuals *res, enum ff_errors_form form, uint32_t
                      uint8_t *out)
 {
     size_t bytes = form == FF_ERRORS_EACH ? errors : form == FF_ERRORS_SAME;
+    uint8_t *at = out;
 
     FF_ASSERT(errors == 1 || errors == 4);
     FF_ASSERT(res->filled >> errors == 0 && (bytes > 0 || !res->filled));
-    if (res->filled) *out++ = (uint8_t)(FF_FILLED | res->filled);
-    memcpy(out, res->child_error, bytes);
-    return bytes + (res->filled != 0);
+    FF_ASSERT(res->leaf >> errors == 0 && (bytes > 0 || !res->leaf == (form == FF_ERRORS_ZERO)));
+    if (res->leaf && bytes > 0) *at++ = (uint8_t)(FF_LEAF | res->leaf);
+    if (res->filled) *at++ = (uint8_t)(FF_FILLED | res->filled);
+    memcpy(at, res->child_error, bytes);
+    return (size_t)(at - out) + bytes;
 }
 
 size_t ff_put_words(const int32_t *value, uint32_t count, uint8_t *out)

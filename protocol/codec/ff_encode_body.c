@@ -119,7 +119,9 @@ static enum ff_errors_form errors_form(const ff_residuals *res, uint32_t errors)
 
     for (uint32_t i = 1; i < errors; i++) same &= error[i] == error[0];
     if (!same) return FF_ERRORS_EACH;
-    return error[0] == 0 && !res->filled ? FF_ERRORS_ZERO : FF_ERRORS_SAME;
+    if (error[0] == 0 && !res->filled && !res->leaf) return FF_ERRORS_ZERO;
+    if (error[0] == 0 && !res->filled && res->leaf == (1u << errors) - 1) return FF_ERRORS_LEAF;
+    return FF_ERRORS_SAME;
 }
 
 size_t ff_put_body(const ff_terrain_info *info, const ff_contents *contents,

@@ -120,7 +120,7 @@ void panorama_ground_load(panorama_ground *ground, const ff_frame *frame,
     memcpy(view.centre_wu, request->position_wu, sizeof view.centre_wu);
     for (int round = 0; round < LOAD_ROUNDS_MAX; round++) {
         ff_tree_select(ground->tree, &view, &quality);
-        if (serve_wishes(ground) == 0) break;
+        if (serve_wishes(ground) == 0 && ff_tree_to_make(ground->tree) == 0) break;
     }
 }
 

@@ -143,7 +143,7 @@ static int load_until(fly_reference *reference, uint32_t cell)
     for (;;) {
         ff_tree_select(reference->tree, &reference->view, &quality);
         int served = serve_wishes(reference);
-        if (served <= 0) {
+        if (served < 0 || (served == 0 && ff_tree_to_make(reference->tree) == 0)) {
             ff_tree_get_stats(reference->tree, &stats);
             int full = !reference->holds_all && stats.nodes_held + 4 > stats.nodes_capacity;
             return served < 0 ? served : full ? FF_ERR_FULL : FF_OK;

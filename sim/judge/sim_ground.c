@@ -32,25 +32,49 @@ static void place(loader *load, ff_key key, const uint16_t *heights, unsigned fi
                heights + (size_t)j * side, columns * sizeof *heights);
 }
 
-static int refine(loader *load, ff_key key, const uint16_t *heights, unsigned filled)
+/* What a payload said of a node: is it filled, and is it a leaf? */
+typedef struct marks {
+    unsigned filled, leaf;
+} marks;
+
+static marks marks_of(const ff_residuals *residuals, unsigned quadrant)
+{
+    return (marks){ residuals->filled >> quadrant & 1u, residuals->leaf >> quadrant & 1u };
+}
+
+/* The heights of a node's children and their marks, from the pack, or, below a leaf, predicted. */
+static int children_of(loader *load, ff_key key, const uint16_t *heights, marks mark,
+                       ff_residuals *residuals, uint16_t *refined)
+{
+    const ff_terrain_info *info = &load->pack->header.info;
+    const uint8_t *payload;
+    if (mark.leaf) {
+        residuals->filled = mark.filled ? 15 : 0;
+        residuals->leaf = 15;
+        ff_predict_children(info, heights, refined);
+        return FF_OK;
+    }
+    int bytes = ff_pack_record(load->pack, FF_SECTION_REFINEMENT, key, &payload);
+    if (bytes < 0) return bytes;
+    int rc = ff_decode_refinement(load->decoder, payload, (size_t)bytes, residuals);
+    return rc < 0 ? rc : ff_reconstruct_refinement(info, heights, residuals, refined);
+}
+
+static int refine(loader *load, ff_key key, const uint16_t *heights, marks mark)
 {
     const ff_terrain_info *info = &load->pack->header.info;
     if (ff_key_level(key) == load->ground->level) {
-        place(load, key, heights, filled);
+        place(load, key, heights, mark.filled);
         return FF_OK;
     }
-    const uint8_t *payload;
     ff_residuals residuals = { .value = load->residual };
     uint16_t refined[FF_REFINED_HEIGHTS_MAX], child[FF_NODE_HEIGHTS_MAX];
-    int bytes = ff_pack_record(load->pack, FF_SECTION_REFINEMENT, key, &payload);
-    if (bytes < 0) return bytes;
-    int rc = ff_decode_refinement(load->decoder, payload, (size_t)bytes, &residuals);
-    if (rc == FF_OK) rc = ff_reconstruct_refinement(info, heights, &residuals, refined);
+    int rc = children_of(load, key, heights, mark, &residuals, refined);
     if (rc != FF_OK) return rc;
     for (uint32_t quadrant = 0; quadrant < 4 && rc == FF_OK; quadrant++) {
         if (!ff_shape_has_ground(info, ff_key_child(key, quadrant))) continue;
         ff_refined_child(info, refined, quadrant, child);
-        rc = refine(load, ff_key_child(key, quadrant), child, residuals.filled >> quadrant & 1u);
+        rc = refine(load, ff_key_child(key, quadrant), child, marks_of(&residuals, quadrant));
     }
     return rc;
 }
@@ -65,7 +89,7 @@ static int decode_tile(loader *load, uint32_t tile)
     int rc = ff_decode_root(load->decoder, payload, (size_t)bytes, &residuals);
     if (rc == FF_OK) rc = ff_reconstruct_root(&load->pack->header.info, &residuals, heights);
     if (rc != FF_OK) return rc;
-    return refine(load, ff_key_make(tile, 0, 0), heights, residuals.filled & 1u);
+    return refine(load, ff_key_make(tile, 0, 0), heights, marks_of(&residuals, 0));
 }
 
 static int decode_all(sim_ground *ground, const ff_pack *pack)

@@ -161,38 +161,53 @@ static int plain_part(const uint8_t *at, long left, int stored, int corners, lon
     return 0;
 }
 
-/* What a byte before the error codes says; 0 when there is none, -1 when it may not be. */
-static int filled_part(int root, const uint8_t *at, long left)
+/* What bytes before the error codes say: 16 times the children that are leaves, and those that are
+ * filled. *used: how many there are. -1 when they may not be. */
+static int marks_part(int root, const uint8_t *at, long left, int *used)
 {
-    if (left < 1 || at[0] < 240) return 0;
-    return at[0] == 240 || (root && at[0] != 241) ? -1 : at[0] - 240;
+    int leaf = 0, filled = 0;
+
+    *used = 0;
+    if (left > 0 && at[0] >= 224 && at[0] < 240) {
+        leaf = at[0] - 224;
+        if (leaf == 0 || (root && leaf != 1)) return -1;
+        *used = 1;
+    }
+    if (left > *used && at[*used] >= 240) {
+        filled = at[*used] - 240;
+        if (filled == 0 || (root && filled != 1)) return -1;
+        ++*used;
+    }
+    return 16 * leaf + filled;
 }
 
 static int raw(int root, const uint8_t *at, long left, long *residual, int count)
 {
-    int errors = root ? 1 : 4, filled = filled_part(root, at, left), more = filled > 0;
+    int errors = root ? 1 : 4, more, marks = marks_part(root, at, left, &more);
 
-    if (filled < 0 || left != more + errors + 2 * count) return -1;
-    return plain_part(at + more, left - more, errors, root ? 4 : 0, residual, count) ? -1 : filled;
+    if (marks < 0 || left != more + errors + 2 * count) return -1;
+    return plain_part(at + more, left - more, errors, root ? 4 : 0, residual, count) ? -1 : marks;
 }
 
 static int head_and_body(int codec, int root, const uint8_t *at, long left, long *residual,
                          int count)
 {
     int form = at[0] >> 2 & 3, corners = root ? 4 : 0;
-    int stored = form == 0 ? 0 : form == 1 || root ? 1 : 4;
-    int filled = stored ? filled_part(root, at + 1, left - 1) : 0, first = 1 + (filled > 0),
-        before = first + stored + 2 * corners;
+    int stored = form == 0 || form == 3 ? 0 : form == 1 || root ? 1 : 4, more = 0;
+    int marks = stored      ? marks_part(root, at + 1, left - 1, &more)
+                : form == 0 ? 0
+                : root      ? 16
+                            : 240;
+    int first = 1 + more, before = first + stored + 2 * corners;
 
-    if (form == 3 || filled < 0 ||
-        plain_part(at + first, left - first, stored, corners, residual, corners) != 0)
+    if (marks < 0 || plain_part(at + first, left - first, stored, corners, residual, corners) != 0)
         return -1;
     return body(codec, at[0], at + before, left - before, residual + corners, count - corners)
                ? -1
-               : filled;
+               : marks;
 }
 
-/* All residuals of a payload, corners first; gives the bits of filled children. */
+/* All residuals of a payload, corners first; gives the marks. */
 static int residuals(int codec, int root, const uint8_t *at, long left, long *residual, int count)
 {
     if (left < 1) return -1;
@@ -209,14 +224,14 @@ int slow_decode(const ff_terrain_info *info, const uint16_t *parent, const uint8
 {
     static long residual[SIDE_MAX * SIDE_MAX];
     static field f;
-    int node = 1 << info->node_log2, count = (node + 1) * (node + 1), filled;
+    int node = 1 << info->node_log2, count = (node + 1) * (node + 1), marks;
 
     f.last = parent ? 2 * node : node;
     f.maximum_error = info->max_error;
     f.residual = residual;
-    filled = residuals(info->codec, !parent, payload, (long)bytes, residual,
-                       parent ? (2 * node + 1) * (2 * node + 1) - count : count);
-    if (filled < 0) return -1;
+    marks = residuals(info->codec, !parent, payload, (long)bytes, residual,
+                      parent ? (2 * node + 1) * (2 * node + 1) - count : count);
+    if (marks < 0) return -1;
     if (parent) {
         for (int i = 0; i < count; i++)
             f.height[2 * (i / (node + 1))][2 * (i % (node + 1))] = parent[i];
@@ -227,5 +242,5 @@ int slow_decode(const ff_terrain_info *info, const uint16_t *parent, const uint8
     }
     for (int i = 0; i < (f.last + 1) * (f.last + 1); i++)
         heights[i] = (uint16_t)f.height[i / (f.last + 1)][i % (f.last + 1)];
-    return filled;
+    return marks;
 }

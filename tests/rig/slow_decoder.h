@@ -9,7 +9,8 @@
 #include <stddef.h>
 
 /* `parent` NULL: a root. Gives the heights row by row, and a bit for each child that holds filled
- * ground, or -1 when the payload breaks a rule of the specification. */
+ * ground plus 16 times a bit for each that is a leaf, or -1 when the payload breaks a rule of the
+ * specification. */
 int slow_decode(const ff_terrain_info *info, const uint16_t *parent, const uint8_t *payload,
                 size_t bytes, uint16_t *heights);
 

@@ -61,6 +61,7 @@ void fixture_make(terrain_fixture *fx, unsigned node_log2, unsigned tile_log2, u
     memset(fx, 0, sizeof *fx);
     fx->height = height;
     fx->hidden = FF_HIDDEN_FETCHED;
+    fx->leaf_level = UINT32_MAX;
     fx->info = (ff_terrain_info){
         .node_log2 = (uint8_t)node_log2,
         .tile_log2 = (uint8_t)tile_log2,
@@ -222,6 +223,7 @@ int fixture_deliver(terrain_fixture *fx, ff_key key, int refinement)
         bytes = ff_encode_root(&fx->info, source, error_of(fx, key, held), payload, decoded);
         assert_true(bytes > 0);
         assert_int_equal(ff_decode_root(fx->decoder, payload, (size_t)bytes, &residuals), FF_OK);
+        residuals.leaf = fx->leaf_level == 0;
         return ff_tree_deliver_root(fx->tree, ff_key_tile(key), &residuals);
     }
     uint8_t error[4];
@@ -234,6 +236,7 @@ int fixture_deliver(terrain_fixture *fx, ff_key key, int refinement)
     bytes = ff_encode_refinement(&fx->info, held, source, error, payload, decoded);
     assert_true(bytes > 0);
     assert_int_equal(ff_decode_refinement(fx->decoder, payload, (size_t)bytes, &residuals), FF_OK);
+    residuals.leaf = fx->leaf_level == ff_key_level(key) + 1 ? 15 : 0;
     return ff_tree_deliver_children(fx->tree, key, &residuals);
 }
 
@@ -248,7 +251,7 @@ uint32_t fixture_settle(terrain_fixture *fx, const ff_view *view, const ff_quali
         ff_wish wish[FIXTURE_BAG];
         ff_tree_select(fx->tree, view, quality);
         uint32_t count = ff_tree_wishes(fx->tree, &list);
-        if (count == 0) break;
+        if (count == 0 && ff_tree_to_make(fx->tree) == 0) break;
         count = count > FIXTURE_BAG ? FIXTURE_BAG : count;
         memcpy(wish, list, count * sizeof *wish);
         for (uint32_t i = 0; i < count; i++)

@@ -18,6 +18,7 @@ typedef struct terrain_fixture {
     ff_terrain_info info;
     fixture_height height;
     enum ff_hidden hidden; /* fixture_make: FETCHED */
+    uint32_t leaf_level;   /* nodes of this level come as leaves; fixture_make: none */
     ff_decoder *decoder;
     ff_tree *tree;
     void *tree_memory;

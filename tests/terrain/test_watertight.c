@@ -44,32 +44,38 @@ static ff_view random_view(sys_random *random, const ff_terrain_info *info)
     return view;
 }
 
-static void fly_randomly(uint64_t seed, unsigned node_log2, unsigned tile_log2, uint32_t tiles_x,
-                         uint32_t tiles_y, fixture_height height, uint32_t nodes)
+/* A random flight over ground that is made; frees the fixture. */
+static void fly(terrain_fixture *fx, uint64_t seed, uint32_t nodes)
 {
     sys_random random;
     sys_random_seed(&random, seed, 1);
-    terrain_fixture fx;
-    fixture_make(&fx, node_log2, tile_log2, tiles_x, tiles_y, height);
-    fixture_tree(&fx, nodes, 40);
+    fixture_tree(fx, nodes, 40);
     fixture_link link = { .loss_percent = sys_random_below(&random, 40),
                           .per_frame = 1 + sys_random_below(&random, 12) };
     sys_random_seed(&link.random, seed, 2);
     ff_quality quality = random_quality(&random);
-    ff_view view = random_view(&random, &fx.info);
+    ff_view view = random_view(&random, &fx->info);
     for (unsigned frame = 0; frame < 40; frame++) {
         uint32_t what = sys_random_below(&random, 10);
         if (what == 0)
-            view = random_view(&random, &fx.info); /* teleport */
+            view = random_view(&random, &fx->info); /* teleport */
         else if (what == 1)
             quality = random_quality(&random);
         view.camera.pos_wu[0] += 20 * FF_WU_PER_METRE;
         view.centre_wu[0] += 20 * FF_WU_PER_METRE;
-        ff_tree_select(fx.tree, &view, &quality);
-        fixture_assert_whole(&fx);
-        fixture_link_step(&fx, &link);
+        ff_tree_select(fx->tree, &view, &quality);
+        fixture_assert_whole(fx);
+        fixture_link_step(fx, &link);
     }
-    fixture_free(&fx);
+    fixture_free(fx);
+}
+
+static void fly_randomly(uint64_t seed, unsigned node_log2, unsigned tile_log2, uint32_t tiles_x,
+                         uint32_t tiles_y, fixture_height height, uint32_t nodes)
+{
+    terrain_fixture fx;
+    fixture_make(&fx, node_log2, tile_log2, tiles_x, tiles_y, height);
+    fly(&fx, seed, nodes);
 }
 
 static void random_flights_are_watertight(void **state)
@@ -104,6 +110,18 @@ static void random_flights_tiny_pools(void **state)
     (void)state;
     for (uint32_t nodes = 8; nodes < 40; nodes++)
         fly_randomly(3000 + nodes, 3, 7, 2, 2, fixture_hills, nodes);
+}
+
+/* Below leaves the tree makes the ground itself. */
+static void ground_below_leaves_is_watertight(void **state)
+{
+    (void)state;
+    for (uint64_t seed = 0; seed < 40; seed++) {
+        terrain_fixture fx;
+        fixture_make(&fx, 3, 7, 3, 2, fixture_hills);
+        fx.leaf_level = seed % 4;
+        fly(&fx, 4000 + seed, seed % 3 == 0 ? 60 : 1200);
+    }
 }
 
 static void lossy_ground_is_watertight(void **state)
@@ -352,6 +370,7 @@ int main(void)
         cmocka_unit_test(random_flights_every_node_size),
         cmocka_unit_test(random_flights_over_hard_ground),
         cmocka_unit_test(random_flights_tiny_pools),
+        cmocka_unit_test(ground_below_leaves_is_watertight),
         cmocka_unit_test(lossy_ground_is_watertight),
         cmocka_unit_test(judge_finds_missing_stitch),
         cmocka_unit_test(judge_finds_wrong_height),

@@ -22,11 +22,13 @@ int bake_blob_add(bake_blob *blob, const uint8_t *payload, size_t count)
                             &blob->record_capacity);
     if (!length) return bake_fail("out of memory");
     blob->length = length;
-    uint8_t *bytes = grow(blob->bytes, blob->byte_count, count, 1, &blob->byte_capacity);
-    if (!bytes) return bake_fail("out of memory");
-    blob->bytes = bytes;
-    memcpy(bytes + blob->byte_count, payload, count);
-    blob->byte_count += count;
+    if (count > 0) {
+        uint8_t *bytes = grow(blob->bytes, blob->byte_count, count, 1, &blob->byte_capacity);
+        if (!bytes) return bake_fail("out of memory");
+        blob->bytes = bytes;
+        memcpy(bytes + blob->byte_count, payload, count);
+        blob->byte_count += count;
+    }
     length[blob->record_count++] = (uint32_t)count;
     return 0;
 }

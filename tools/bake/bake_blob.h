@@ -12,7 +12,7 @@ typedef struct bake_blob {
     size_t record_count, record_capacity;
 } bake_blob;
 
-/* Appends one record. 0 or -1 (said). */
+/* Appends one record; `count` 0: there is none at this place. 0 or -1 (said). */
 int bake_blob_add(bake_blob *blob, const uint8_t *payload, size_t count);
 /* Empties the blob, and keeps its memory. */
 void bake_blob_clear(bake_blob *blob);

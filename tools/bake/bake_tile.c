@@ -109,6 +109,83 @@ static int add_payload(bake_tile *tile, uint32_t level, const uint16_t *parent,
     return bake_blob_add(&tile->level[level], payload, (size_t)bytes);
 }
 
+/* What is known of a node before its children are looked at, and `leaf`, what is found out below:
+ * nothing finer need be stored. */
+typedef struct encoded {
+    uint8_t code;
+    unsigned filled, leaf;
+} encoded;
+
+/* Appends no record for a node, and none for all below it. */
+static int leave_out(bake_tile *tile, uint32_t level)
+{
+    uint64_t count = 1;
+    for (uint32_t l = level + 1; l < ff_terrain_levels(tile->info); l++, count *= 4)
+        for (uint64_t i = 0; i < count; i++)
+            if (bake_blob_add(&tile->level[l], NULL, 0)) return -1;
+    return 0;
+}
+
+/* Is a node all prediction: its own refinement, which leads to `child`, and all below? */
+static unsigned is_leaf(const bake_tile *tile, ff_key key, const encoded *node,
+                        const ff_residuals *residuals, const encoded child[4])
+{
+    for (uint32_t i = 0; i < residuals->count; i++)
+        if (residuals->value[i] != 0) return 0;
+    for (uint32_t q = 0; q < 4; q++)
+        if (ff_shape_has_ground(tile->info, ff_key_child(key, q)) &&
+            (!child[q].leaf || child[q].filled != node->filled ||
+             child[q].code > ff_geometric_error_below(tile->info, node->code)))
+            return 0;
+    return 1;
+}
+
+/* Marks the children that are leaves. Those of the finest level are not marked. Those without
+ * ground are when it makes all alike. */
+static void mark_leaves(const bake_tile *tile, ff_key key, const encoded child[4],
+                        ff_residuals *residuals)
+{
+    unsigned ground = 0;
+    if (ff_key_level(key) + 2 >= ff_terrain_levels(tile->info)) return;
+    for (uint32_t q = 0; q < 4; q++)
+        ground |= (unsigned)(ff_shape_has_ground(tile->info, ff_key_child(key, q)) != 0) << q;
+    for (uint32_t q = 0; q < 4; q++) residuals->leaf |= (uint8_t)(child[q].leaf << q);
+    residuals->leaf &= (uint8_t)ground;
+    if (residuals->leaf == ground) residuals->leaf = 15;
+}
+
+/* Encodes the refinement of the node whose south-west sample is `at`, its cells `cell` samples
+ * wide, and all below it. Records lie in Morton order in each level, whichever level is first. */
+static int encode_below(bake_tile *tile, ff_key key, size_t at, uint32_t cell, encoded *node)
+{
+    const ff_terrain_info *info = tile->info;
+    uint16_t parent[FF_NODE_HEIGHTS_MAX], source[FF_REFINED_HEIGHTS_MAX],
+        decoded[FF_REFINED_HEIGHTS_MAX];
+    int32_t value[FF_REFINED_HEIGHTS_MAX];
+    ff_residuals residuals = { .value = value };
+    encoded child[4];
+    size_t pitch = pitch_of(info), edge = (size_t)(cell / 2) << info->node_log2;
+    node->leaf = 1;
+    if (cell == 1) return 0;
+    if (!ff_shape_has_ground(info, key)) return leave_out(tile, ff_key_level(key));
+    gather(tile->decoded + at, pitch, ff_node_side(info), cell, parent);
+    gather(tile->source + at, pitch, ff_refined_side(info), cell / 2, source);
+    ff_encode_heights(info, parent, source, &residuals, decoded);
+    scatter(decoded, pitch, ff_refined_side(info), cell / 2, tile->decoded + at);
+    for (uint32_t q = 0; q < 4; q++) {
+        size_t below = at + (q & 1) * edge + (q >> 1) * edge * pitch;
+        ff_key child_key = ff_key_child(key, q);
+        child[q].code = residuals.child_error[q] = error_code(tile, child_key, below, cell / 2);
+        child[q].filled = is_filled(tile, child_key, below);
+        residuals.filled |= (uint8_t)(child[q].filled << q);
+        if (encode_below(tile, child_key, below, cell / 2, &child[q])) return -1;
+    }
+    node->leaf = is_leaf(tile, key, node, &residuals, child);
+    if (node->leaf) return bake_blob_add(&tile->level[ff_key_level(key) + 1], NULL, 0);
+    mark_leaves(tile, key, child, &residuals);
+    return add_payload(tile, ff_key_level(key) + 1, parent, decoded, &residuals);
+}
+
 static int encode_root(bake_tile *tile)
 {
     const ff_terrain_info *info = tile->info;
@@ -122,44 +199,14 @@ static int encode_root(bake_tile *tile)
     ff_key key = ff_key_make(tile->number, 0, 0);
     residuals.child_error[0] = error_code(tile, key, 0, cell);
     residuals.filled = (uint8_t)is_filled(tile, key, 0);
+    encoded root = { residuals.child_error[0], residuals.filled, 0 };
+    if (encode_below(tile, key, 0, cell, &root)) return -1;
+    residuals.leaf = (uint8_t)(root.leaf && ff_terrain_levels(info) > 1);
     return add_payload(tile, 0, NULL, decoded, &residuals);
-}
-
-/* Encodes the refinement of the node whose south-west sample is `at`, its cells `cell` samples
- * wide. */
-static int encode_refinement(bake_tile *tile, ff_key key, size_t at, uint32_t cell)
-{
-    const ff_terrain_info *info = tile->info;
-    uint16_t parent[FF_NODE_HEIGHTS_MAX], source[FF_REFINED_HEIGHTS_MAX],
-        decoded[FF_REFINED_HEIGHTS_MAX];
-    int32_t value[FF_REFINED_HEIGHTS_MAX];
-    ff_residuals residuals = { .value = value };
-    size_t pitch = pitch_of(info), edge = (size_t)(cell / 2) << info->node_log2;
-    gather(tile->decoded + at, pitch, ff_node_side(info), cell, parent);
-    gather(tile->source + at, pitch, ff_refined_side(info), cell / 2, source);
-    ff_encode_heights(info, parent, source, &residuals, decoded);
-    scatter(decoded, pitch, ff_refined_side(info), cell / 2, tile->decoded + at);
-    for (uint32_t q = 0; q < 4; q++) {
-        size_t child = at + (q & 1) * edge + (q >> 1) * edge * pitch;
-        residuals.child_error[q] = error_code(tile, ff_key_child(key, q), child, cell / 2);
-        residuals.filled |= (uint8_t)(is_filled(tile, ff_key_child(key, q), child) << q);
-    }
-    return add_payload(tile, ff_key_level(key) + 1, parent, decoded, &residuals);
 }
 
 int bake_tile_encode(bake_tile *tile)
 {
-    const ff_terrain_info *info = tile->info;
     for (uint32_t l = 0; l < BAKE_LEVELS_MAX; l++) bake_blob_clear(&tile->level[l]);
-    if (encode_root(tile)) return -1;
-    for (uint32_t level = 0; level + 1 < ff_terrain_levels(info); level++) {
-        size_t edge = (size_t)1 << (info->tile_log2 - level);
-        uint32_t cell = (uint32_t)(edge >> info->node_log2);
-        for (uint32_t code = 0; code >> (2 * level) == 0; code++) {
-            size_t at = ff_morton_y(code) * edge * pitch_of(info) + ff_morton_x(code) * edge;
-            if (encode_refinement(tile, ff_key_make(tile->number, level, code), at, cell))
-                return -1;
-        }
-    }
-    return 0;
+    return encode_root(tile);
 }

@@ -92,19 +92,21 @@ int pack_writer_add(pack_writer *writer, uint32_t number, const bake_blob *blob)
 {
     pack_section_file *section = &writer->section[number];
     size_t index_bytes = blob->record_count * 8,
-           data_bytes = blob->byte_count + blob->record_count * RECORD_CRC_BYTES;
-    uint8_t *memory = malloc(index_bytes + data_bytes + 1);
+           data_most = blob->byte_count + blob->record_count * RECORD_CRC_BYTES;
+    uint8_t *memory = malloc(index_bytes + data_most + 1);
     if (!memory) return bake_fail("out of memory");
     uint8_t *data = memory + index_bytes, *at = data;
     const uint8_t *payload = blob->bytes;
     for (size_t i = 0; i < blob->record_count; i++) {
         put_le(memory + 8 * i, section->data_bytes + (uint64_t)(at - data), 8);
+        if (blob->length[i] == 0) continue;
         put_le(at, ff_crc32(0, payload, blob->length[i]), RECORD_CRC_BYTES);
         section->records_crc = ff_crc32(section->records_crc, at, RECORD_CRC_BYTES);
         memcpy(at + RECORD_CRC_BYTES, payload, blob->length[i]);
         at += RECORD_CRC_BYTES + blob->length[i];
         payload += blob->length[i];
     }
+    size_t data_bytes = (size_t)(at - data);
     int rc = bake_pwrite(section->index_fd, memory, index_bytes, section->records * 8);
     if (!rc) rc = bake_pwrite(section->data_fd, data, data_bytes, section->data_bytes);
     section->records += blob->record_count;

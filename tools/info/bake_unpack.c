@@ -1,5 +1,6 @@
 #include "bake_unpack.h"
 
+#include "../../protocol/shape/ff_shape.h"
 #include "../bake/bake_fault.h"
 #include "../bake/bake_say.h"
 
@@ -63,8 +64,9 @@ static void gather(const uint16_t *in, uint32_t side, size_t pitch, size_t strid
         for (uint32_t i = 0; i < side; i++) *out++ = in[(j * pitch + i) * stride];
 }
 
+/* *leaf: 1 when nothing finer is stored. */
 static int decode_root(const bake_unpack *unpack, uint32_t tile, size_t pitch, size_t stride,
-                       uint16_t *heights)
+                       uint16_t *heights, unsigned *leaf)
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
     int32_t value[FF_REFINED_HEIGHTS_MAX];
@@ -77,23 +79,46 @@ static int decode_root(const bake_unpack *unpack, uint32_t tile, size_t pitch, s
     if (rc >= 0) rc = ff_reconstruct_root(info, &residuals, node);
     if (rc < 0) return fail_at(unpack, "the root", key, rc);
     scatter(node, ff_node_side(info), pitch, stride, heights);
+    *leaf = residuals.leaf;
     return 0;
 }
 
+/* *leaf: on entry bit 0 tells whether the node is a leaf, after it a bit for each child. */
 static int decode_refinement(const bake_unpack *unpack, ff_key key, size_t pitch, size_t stride,
-                             uint16_t *at)
+                             uint16_t *at, unsigned *leaf)
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
     int32_t value[FF_REFINED_HEIGHTS_MAX];
     uint16_t parent[FF_NODE_HEIGHTS_MAX], refined[FF_REFINED_HEIGHTS_MAX];
-    ff_residuals residuals = { .value = value };
+    ff_residuals residuals = { .leaf = 15, .value = value };
     const uint8_t *payload;
-    int rc = ff_pack_record(&unpack->pack, FF_SECTION_REFINEMENT, key, &payload);
-    if (rc >= 0) rc = ff_decode_refinement(unpack->decoder, payload, (size_t)rc, &residuals);
+    int rc = 0;
     gather(at, ff_node_side(info), pitch, stride, parent);
-    if (rc >= 0) rc = ff_reconstruct_refinement(info, parent, &residuals, refined);
+    if (*leaf & 1u || !ff_shape_has_ground(info, key)) {
+        ff_predict_children(info, parent, refined);
+    } else {
+        rc = ff_pack_record(&unpack->pack, FF_SECTION_REFINEMENT, key, &payload);
+        if (rc >= 0) rc = ff_decode_refinement(unpack->decoder, payload, (size_t)rc, &residuals);
+        if (rc >= 0) rc = ff_reconstruct_refinement(info, parent, &residuals, refined);
+    }
     if (rc < 0) return fail_at(unpack, "the refinement", key, rc);
     scatter(refined, ff_refined_side(info), pitch, stride / 2, at);
+    *leaf = residuals.leaf;
+    return 0;
+}
+
+/* All below a node, whose heights stand at `at`, `stride` apart, down to where they stand side by
+ * side. */
+static int decode_below(const bake_unpack *unpack, ff_key key, unsigned leaf, size_t pitch,
+                        size_t stride, uint16_t *at)
+{
+    if (stride == 1) return 0;
+    if (decode_refinement(unpack, key, pitch, stride, at, &leaf)) return -1;
+    size_t edge = stride / 2 << unpack->pack.header.info.node_log2;
+    for (uint32_t q = 0; q < 4; q++)
+        if (decode_below(unpack, ff_key_child(key, q), leaf >> q & 1u, pitch, stride / 2,
+                         at + (q & 1) * edge + (q >> 1) * edge * pitch))
+            return -1;
     return 0;
 }
 
@@ -101,13 +126,7 @@ int bake_unpack_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level, u
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
     size_t pitch = bake_unpack_side(info, level);
-    if (decode_root(unpack, tile, pitch, (size_t)1 << level, heights)) return -1;
-    for (uint32_t l = 0; l < level; l++) {
-        size_t stride = (size_t)1 << (level - l), edge = stride << info->node_log2;
-        for (uint32_t code = 0; code >> (2 * l) == 0; code++) {
-            uint16_t *at = heights + ff_morton_y(code) * edge * pitch + ff_morton_x(code) * edge;
-            if (decode_refinement(unpack, ff_key_make(tile, l, code), pitch, stride, at)) return -1;
-        }
-    }
-    return 0;
+    unsigned leaf;
+    if (decode_root(unpack, tile, pitch, (size_t)1 << level, heights, &leaf)) return -1;
+    return decode_below(unpack, ff_key_make(tile, 0, 0), leaf, pitch, (size_t)1 << level, heights);
 }

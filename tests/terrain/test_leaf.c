@@ -1,0 +1,92 @@
+/* Below leaves nothing is stored: the tree makes the ground there itself, and asks for none. */
+#include "../../client/terrain/ff_tree_local.h"
+#include "../rig/terrain_fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+#include <cmocka.h>
+
+/* Settles a view and fails the test when a wish goes below the leaves. */
+static void settle(terrain_fixture *fx, const ff_view *view, const ff_quality *quality)
+{
+    for (int round = 0; round < 500; round++) {
+        const ff_wish *list;
+        ff_wish wish[FIXTURE_BAG];
+        ff_tree_select(fx->tree, view, quality);
+        uint32_t count = ff_tree_wishes(fx->tree, &list);
+        if (count == 0 && ff_tree_to_make(fx->tree) == 0) return;
+        count = count > FIXTURE_BAG ? FIXTURE_BAG : count;
+        memcpy(wish, list, count * sizeof *wish);
+        for (uint32_t i = 0; i < count; i++) {
+            assert_true(wish[i].kind == FF_KIND_ROOT || ff_key_level(wish[i].key) < fx->leaf_level);
+            (void)fixture_deliver(fx, wish[i].key, wish[i].kind);
+        }
+    }
+    fail_msg("the tree does not settle");
+}
+
+/* A node held below a leaf: what its parent predicts, half the parent's error, and a leaf too. */
+static void expect_predicted(const terrain_fixture *fx, const ff_node *node)
+{
+    const ff_tree *tree = fx->tree;
+    size_t heights = ff_heights_per_node(tree);
+    uint16_t refined[FF_REFINED_HEIGHTS_MAX], child[FF_NODE_HEIGHTS_MAX];
+    ff_predict_children(&tree->info, tree->heights + node->parent * heights, refined);
+    ff_refined_child(&tree->info, refined, ff_key_quadrant(node->key), child);
+    assert_memory_equal(child, tree->heights + ff_slot_of(tree, node) * heights,
+                        heights * sizeof *child);
+    assert_int_equal(node->error_code,
+                     ff_geometric_error_below(&tree->info, tree->node[node->parent].error_code));
+    assert_true(node->flags & FF_NODE_LEAF);
+}
+
+static void the_tree_makes_what_is_not_stored(void **state)
+{
+    (void)state;
+    for (uint32_t leaf_level = 0; leaf_level < 3; leaf_level++)
+        for (int measure = FF_MEASURE_DISTANCE; measure <= FF_MEASURE_PIXELS; measure++) {
+            terrain_fixture fx;
+            uint32_t below = 0;
+            fixture_usual(&fx, 3000);
+            fx.leaf_level = leaf_level;
+            ff_view view = fixture_view_above(&fx, 1500, 1100, 100, 0, -30);
+            ff_quality quality = fixture_quality((enum ff_measure)measure);
+            settle(&fx, &view, &quality);
+            fixture_assert_whole(&fx);
+            for (uint32_t slot = 0; slot < fx.tree->node_count; slot++) {
+                const ff_node *node = &fx.tree->node[slot];
+                if (!ff_node_held(node) || ff_key_level(node->key) <= leaf_level) continue;
+                expect_predicted(&fx, node);
+                below++;
+            }
+            assert_true(below > 40);
+            fixture_free(&fx);
+        }
+}
+
+/* Also where there is no room for all: it does not make and drop the same nodes again and again. */
+static void pools_of_any_size_settle(void **state)
+{
+    (void)state;
+    for (uint32_t nodes = 8; nodes < 400; nodes += nodes < 40 ? 1 : 23) {
+        terrain_fixture fx;
+        fixture_usual(&fx, nodes);
+        fx.leaf_level = 1;
+        ff_view view = fixture_view_above(&fx, 1400, 1100, 50, 20, -15);
+        ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
+        settle(&fx, &view, &quality);
+        fixture_assert_whole(&fx);
+        for (unsigned frame = 0; frame < 20; frame++)
+            assert_int_equal(ff_tree_select(fx.tree, &view, &quality), 0);
+        fixture_free(&fx);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = { cmocka_unit_test(the_tree_makes_what_is_not_stored),
+                                        cmocka_unit_test(pools_of_any_size_settle) };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
