@@ -1,10 +1,11 @@
-/* Pack format: one file, one terrain (protocol/SPEC.md, "Pack"). Pure bytes: the caller maps or
- * reads the file.
+/* Pack format: one file, one terrain (protocol/SPEC.md, "Pack"). Pure bytes: the caller maps the
+ * file, or gives a function that reads parts of it.
  *
  * Sections: heights level 0 (roots), refinements of level 0, of level 1, ..., textures of level 0,
- * 1, ... Within a section records lie in order of tile, then Morton code; the section's index gives
- * any record's place in constant time. Every record is preceded by its CRC-32, checked whenever it
- * is read. What the pack says of itself is a section of one record. Sections that this reader does
+ * 1, ... Within a section records lie in order of tile, then Morton code; the sections' indexes
+ * (ff_index.h) give any record's place in a step for each level above it. Every record is preceded
+ * by its CRC, checked whenever it is read. What the pack says of itself is a section of its own.
+ * Sections that this reader does
  * not know are passed over, or the pack is refused where the section says that it is needed.
  */
 #ifndef FF_PACK_H
@@ -12,6 +13,7 @@
 
 #include "codec/ff_codec.h"
 #include "ff_about.h"
+#include "ff_index.h"
 #include "ff_kind.h"
 
 #define FF_PACK_VERSION      5
@@ -30,15 +32,13 @@ typedef struct ff_pack_section {
     uint8_t level;      /* of the node refined, or textured */
     uint8_t flags;      /* enum ff_pack_section_flags */
     uint32_t index_crc; /* CRC-32 of the index bytes */
-    /* CRC-32 of the records' own CRC words, in order, as stored: it stands for all the section's
-     * data */
-    uint32_t records_crc;
-    uint64_t record_count; /* tiles * 4^level */
-    /* where the index lies in the file: record_count + 1 offsets from data_offset, each 8 bytes,
-     * little-endian */
-    uint64_t index_offset;
-    /* where the records lie in the file. A record is the CRC-32 of its payload (4 bytes,
-     * little-endian) and the payload; a record of no bytes at all does not exist */
+    uint32_t data_crc;  /* of the data bytes */
+    /* its places follow from the records of the level above, and are not stored; what the pack says
+     * of itself has no index */
+    ff_index index;
+    uint64_t index_offset; /* where the index lies in the file */
+    /* where the records lie in the file. A record is the CRC-16 of its payload (2 bytes,
+     * little-endian) and the payload; what the pack says of itself is bytes alone */
     uint64_t data_offset, data_bytes;
 } ff_pack_section;
 
@@ -51,10 +51,17 @@ typedef struct ff_pack_header {
     ff_pack_section about; /* without records: the pack says nothing of itself */
 } ff_pack_header;
 
-/* A view on a mapped pack: plain data that owns nothing. The mapping must outlive the view; any
- * number of threads may read through one view at once. */
+/* Reads `count` bytes from `offset` on, all of them: FF_OK or an error. */
+typedef int ff_pack_read_fn(void *context, uint64_t offset, void *out, size_t count);
+
+/* A view on a pack: plain data that owns nothing. A mapping must outlive its view; any number of
+ * threads may read through one view of a mapping at once, and one through a view that reads. */
 typedef struct ff_pack {
-    const uint8_t *bytes;
+    const uint8_t *bytes;  /* the mapping, or NULL: */
+    ff_pack_read_fn *read; /* parts are read into `room`, each over the one before */
+    void *context;
+    uint8_t *room;
+    size_t room_bytes;
     uint64_t size;
     ff_pack_header header;
     char refusal[112]; /* why it was not opened, where the error alone does not say; else "" */
@@ -64,43 +71,43 @@ typedef struct ff_pack {
  * negative error: FORMAT (not a pack), VERSION, TRUNCATED, CHECKSUM, RANGE, UNSUPPORTED (a section
  * that is needed and not known). */
 int ff_pack_open(ff_pack *pack, const void *bytes, uint64_t size);
+/* The same where no file can be mapped: `room` takes the header, then each payload, and lies
+ * somewhere until the view is done with. FULL: it has fewer than FF_PACK_HEADER_BYTES. */
+int ff_pack_open_reader(ff_pack *pack, ff_pack_read_fn *read, void *context, uint64_t size,
+                        void *room, size_t room_bytes);
 /* The error of ff_pack_open, or of what came before it, in words for people: which section, and
  * what to do about an old pack. */
 const char *ff_pack_error_text(const ff_pack *pack, int error);
 
-/* Reads record `key` of a kind; *payload points into the mapping. Payload bytes (0 or more) or
- * NOT_FOUND, CHECKSUM, RANGE. Root: key level 0. Refinement: key of the node to refine. */
+/* Reads record `key` of a kind; *payload points into the mapping, or into the room, where it stands
+ * until the next record is read. Payload bytes (1 or more) or NOT_FOUND, CHECKSUM, RANGE; FULL: it
+ * does not fit the room; what a reader returned. Root: key level 0. Refinement: key of the node to
+ * refine. */
 int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
                    const uint8_t **payload);
 
-/* What the pack says of itself, inside the mapping, checked. FF_OK, NOT_FOUND: nothing; CHECKSUM,
- * RANGE, TRUNCATED. */
+/* What the pack says of itself, in the mapping or the room, checked. FF_OK, NOT_FOUND: nothing;
+ * CHECKSUM, RANGE, TRUNCATED; FULL. */
 int ff_pack_about(const ff_pack *pack, ff_list *about);
 
 /* What section `number` of this terrain's packs holds: fills all but places, counts and CRCs. 1, or
  * 0: they have fewer sections. */
 int ff_pack_section_at(const ff_terrain_info *info, uint32_t number, ff_pack_section *section);
 
-/* Checks indexes and every record of every section; *bad receives the number of damaged records.
- * FF_OK or error. */
+/* Checks indexes, data and every record of every section; *bad receives the number of damaged
+ * records. FF_OK or error. */
 int ff_pack_verify(const ff_pack *pack, uint64_t *bad);
 
 /* The section of what a pack says of itself: the same, for a list in one record. */
 ff_pack_section ff_pack_about_section(void);
 
 /* Header to bytes, for writers; `out` has FF_PACK_HEADER_BYTES. The function works out
- * info.checksum itself and ignores the one in `header`: it is a CRC over the header, which by
- * index_crc and records_crc stands for everything in the pack. FF_OK or FF_ERR_RANGE. */
-int ff_pack_header_encode(const ff_pack_header *header, uint8_t *out);
+ * info.checksum itself and ignores the one in `header`, and sets the places of the sections'
+ * indexes: the checksum is a CRC over the header, which by
+ * index_crc and data_crc stands for everything in the pack. FF_OK or FF_ERR_RANGE. */
+int ff_pack_header_encode(ff_pack_header *header, uint8_t *out);
 
 /* CRC-32 (zlib's polynomial), crc 0 to start. */
 uint32_t ff_crc32(uint32_t crc, const void *bytes, size_t count);
-
-/* The record's number within its section for `key`: constant time. */
-static inline uint64_t ff_pack_record_number(ff_key key)
-{
-    FF_ASSERT((uint64_t)ff_key_code(key) >> (2 * ff_key_level(key)) == 0);
-    return ((uint64_t)ff_key_tile(key) << (2 * ff_key_level(key))) + ff_key_code(key);
-}
 
 #endif

@@ -46,7 +46,7 @@ static void use_pack(const uint8_t *bytes, size_t count)
     if (ff_pack_open(&pack, bytes, count) != FF_OK) return;
     for (uint32_t s = 0; s < pack.header.section_count; s++) {
         const ff_pack_section *section = &pack.header.section[s];
-        records += section->record_count;
+        records += section->index.records;
         for (uint32_t i = 0; i < NODES_TRIED; i++) {
             const uint8_t *payload;
             ff_key key = ff_key_make(i >> (2 * section->level), section->level,
@@ -66,7 +66,6 @@ static void use_pack(const uint8_t *bytes, size_t count)
         while (ff_list_next(&about, &entry) > 0)
             sum += read_all(entry.value, (int)entry.byte_count);
     }
-    records += pack.header.about.record_count;
     ff_pack_verify(&pack, &bad);
     assert(bad <= records);
 }

@@ -246,31 +246,36 @@ static void exchanged_records_are_found_by_verify(void **state)
     ff_pack pack;
 
     assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
-    pack.header.section[1].records_crc ^= 1;
+    pack.header.section[1].data_crc ^= 1;
     assert_int_equal(ff_pack_verify(&pack, &bad), FF_ERR_CHECKSUM);
     assert_int_equal(bad, 0);
 }
 
+/* A rank, a length or an offset that leads out of the section is noticed, whatever stands there. */
 static void wild_indexes_are_out_of_range(void **state)
 {
-    static const uint64_t wild[][2] = {
-        { 8, 4 }, { 0, UINT64_MAX }, { UINT64_MAX, UINT64_MAX }, { 0, 3 }, { UINT64_MAX - 3, 0 }
-    };
+    static const uint64_t offsets[] = { UINT64_MAX, UINT64_MAX - 40, (uint64_t)1 << 40, 1 << 20 };
     fixture *f = *state;
     const uint8_t *payload;
     ff_pack pack;
 
     assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
-    uint8_t *index = f->bytes + pack.header.section[0].index_offset;
-    for (unsigned i = 0; i < sizeof(wild) / sizeof(wild[0]); i++) {
-        put(index, wild[i][0], 8);
-        put(index + 8, wild[i][1], 8);
-        assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(0, 0, 0), &payload),
+    uint8_t *roots = f->bytes + pack.header.section[0].index_offset,
+            *presence = f->bytes + pack.header.section[1].index_offset;
+    for (unsigned i = 0; i < sizeof(offsets) / sizeof(offsets[0]); i++) {
+        put(roots, offsets[i], 8);
+        assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(1, 0, 0), &payload),
                          FF_ERR_RANGE);
     }
-    put(index, 4, 8);
-    put(index + 8, 4, 8);
+    put(roots, 0, 8);
+    put(roots + 8, 0, 8); /* lengths */
     assert_int_equal(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(0, 0, 0), &payload),
+                     FF_ERR_RANGE);
+    put(presence, 3, 4); /* records before */
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_REFINEMENT, ff_key_make(0, 0, 0), &payload),
+                     FF_ERR_RANGE);
+    memset(presence, 0, FF_INDEX_PRESENCE_BYTES);
+    assert_int_equal(ff_pack_record(&pack, FF_SECTION_REFINEMENT, ff_key_make(0, 0, 0), &payload),
                      FF_ERR_NOT_FOUND);
 }
 
@@ -292,9 +297,14 @@ static void lying_section_tables_are_refused(void **state)
         { SECTION_AT(0, 0), 4, FF_SECTION_TEXTURE, FF_ERR_RANGE },
         { SECTION_AT(0, 5), 1, FF_CODEC_RICE, FF_ERR_RANGE }, /* not the terrain's */
         { SECTION_AT(1, 6), 1, 1, FF_ERR_RANGE },
-        { SECTION_AT(1, 7), 1, 0, FF_ERR_RANGE }, /* heights are needed */
-        { SECTION_AT(1, 16), 8, 3, FF_ERR_RANGE },
-        { SECTION_AT(1, 16), 8, UINT64_MAX, FF_ERR_RANGE },
+        { SECTION_AT(1, 7), 1, 0, FF_ERR_RANGE },  /* heights are needed */
+        { SECTION_AT(0, 16), 4, 1, FF_ERR_RANGE }, /* every tile has a root */
+        { SECTION_AT(1, 16), 4, 3, FF_ERR_RANGE },
+        { SECTION_AT(1, 16), 4, UINT32_MAX, FF_ERR_RANGE },
+        { SECTION_AT(2, 16), 4, 9, FF_ERR_RANGE },
+        { SECTION_AT(1, 16), 4, 0, FF_ERR_RANGE }, /* lengths of nothing */
+        { SECTION_AT(1, 20), 1, 0, FF_ERR_RANGE },
+        { SECTION_AT(1, 20), 1, 19, FF_ERR_RANGE },
         { SECTION_AT(0, 24), 8, 0, FF_ERR_TRUNCATED },
         { SECTION_AT(0, 24), 8, UINT64_MAX - 8, FF_ERR_TRUNCATED },
         { SECTION_AT(0, 32), 8, UINT64_MAX, FF_ERR_TRUNCATED },
@@ -302,9 +312,11 @@ static void lying_section_tables_are_refused(void **state)
         { SECTION_AT(2, 40), 8, UINT64_MAX, FF_ERR_TRUNCATED },
         { SECTION_AT(3, 6), 1, 1, FF_ERR_RANGE }, /* what it says of itself has no levels */
         { SECTION_AT(3, 7), 1, FF_PACK_NEEDED, FF_ERR_RANGE },
-        { SECTION_AT(3, 16), 8, 2, FF_ERR_RANGE },
-        { SECTION_AT(3, 24), 8, 0, FF_ERR_TRUNCATED },
-        { SECTION_AT(3, 40), 8, UINT64_MAX, FF_ERR_TRUNCATED },
+        { SECTION_AT(3, 16), 4, 1, FF_ERR_RANGE }, /* nor records */
+        { SECTION_AT(3, 20), 1, 5, FF_ERR_RANGE },
+        { SECTION_AT(3, 32), 8, 0, FF_ERR_TRUNCATED },
+        { SECTION_AT(3, 40), 8, UINT64_MAX, FF_ERR_RANGE },
+        { SECTION_AT(3, 40), 8, 4000, FF_ERR_TRUNCATED },
         { 12, 1, 9, FF_ERR_RANGE },
         { 24, 4, 0, FF_ERR_RANGE },
         { 24, 4, UINT32_MAX, FF_ERR_RANGE },
@@ -337,7 +349,7 @@ static void bad_headers_are_not_written(void **state)
     header.section[1].level = 7;
     assert_int_equal(ff_pack_header_encode(&header, out), FF_ERR_RANGE);
     header = pack.header;
-    header.about.record_count = 2;
+    header.about.index.records = 1;
     assert_int_equal(ff_pack_header_encode(&header, out), FF_ERR_RANGE);
     header = pack.header;
     header.section_count--;
@@ -498,22 +510,25 @@ static void the_second_reader_finds_the_same_bytes(void **state)
 
     insert_section(f, 1, "MARK", 1, 0, 0);
     assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
-    for (uint32_t s = 0; s < 3; s++)
-        for (uint32_t i = 0; i < pack.header.section[s].record_count; i++) {
-            uint32_t level = pack.header.section[s].level, per_tile = 1u << 2 * level;
+    for (uint32_t s = 0; s < 3; s++) {
+        uint32_t level = pack.header.section[s].level, per_tile = 1u << 2 * level;
+        for (uint32_t i = 0; i < 2 * per_tile; i++) {
             int bytes = ff_pack_record(&pack, (enum ff_section_kind)pack.header.section[s].kind,
                                        ff_key_make(i / per_tile, level, i % per_tile), &mine);
-            assert_int_equal(slow_pack_record(f->bytes, f->count, letters[s], level, i, &other),
+            assert_int_equal(slow_pack_record(f->bytes, f->count, letters[s], level, i / per_tile,
+                                              i % per_tile, &other),
                              bytes);
             assert_ptr_equal(mine, other);
         }
+    }
     assert_int_equal(ff_pack_about(&pack, &about), FF_OK);
-    assert_int_equal(slow_pack_record(f->bytes, f->count, "ABOU", 0, 0, &other), about.byte_count);
+    assert_int_equal(slow_pack_record(f->bytes, f->count, "ABOU", 0, 0, 0, &other),
+                     about.byte_count);
     assert_ptr_equal(other, about.bytes);
     assert_int_equal(slow_list_find(other, about.byte_count, 2, &other), 6);
     assert_memory_equal(other, "nobody", 6);
     insert_section(f, 1, "MARK", 1, 0, FF_PACK_NEEDED);
-    assert_int_equal(slow_pack_record(f->bytes, f->count, "ROOT", 0, 0, &other), -1);
+    assert_int_equal(slow_pack_record(f->bytes, f->count, "ROOT", 0, 0, 0, &other), -1);
 }
 
 int main(void)

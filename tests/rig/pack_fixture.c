@@ -129,7 +129,7 @@ static int node_payload(const pack_fixture_desc *desc, enum ff_section_kind kind
                         uint8_t *out, const uint16_t *decoded, uint16_t *next)
 {
     uint32_t node_heights = ff_node_side(&desc->info) * ff_node_side(&desc->info);
-    uint64_t number = ff_pack_record_number(key);
+    uint64_t number = ((uint64_t)ff_key_tile(key) << 2 * ff_key_level(key)) + ff_key_code(key);
     uint16_t source[FF_REFINED_HEIGHTS_MAX], refined[FF_REFINED_HEIGHTS_MAX];
     int32_t value[FF_REFINED_HEIGHTS_MAX];
     ff_residuals res = { .value = value };
@@ -152,39 +152,63 @@ static int node_payload(const pack_fixture_desc *desc, enum ff_section_kind kind
     return ff_encode_payload(&desc->info, parent, refined, &res, out);
 }
 
+/* The index of records of these lengths, none of them missing, at the end of what is written. */
+static void put_index(writer *w, ff_pack_section *s, const uint32_t *length)
+{
+    for (uint32_t r = 0; r < s->index.records; r++)
+        while (length[r] >> s->index.length_bits) s->index.length_bits++;
+    s->index.places = s->kind == FF_SECTION_ROOT ? 0 : s->index.records;
+    s->index_offset = w->count;
+    size_t index_bytes = (size_t)ff_index_bytes(&s->index);
+    uint8_t *out = grow(w, index_bytes);
+    if (!out) return;
+    uint8_t *at = out;
+    for (uint32_t r = 0; r < s->index.places; r += FF_INDEX_PLACES, at += FF_INDEX_PRESENCE_BYTES)
+        ff_index_put_presence(
+            length + r,
+            s->index.records - r < FF_INDEX_PLACES ? s->index.records - r : FF_INDEX_PLACES, r, at);
+    uint64_t offset = 0;
+    for (uint32_t r = 0; r < s->index.records; at += ff_index_block_bytes(&s->index)) {
+        uint32_t count = s->index.records - r < FF_INDEX_RECORDS ? s->index.records - r
+                                                                 : FF_INDEX_RECORDS;
+        ff_index_put_lengths(&s->index, length + r, count, offset, at);
+        for (uint32_t end = r + count; r < end; r++) offset += FF_RECORD_CRC_BYTES + length[r];
+    }
+    s->index_crc = ff_crc32(0, out, index_bytes);
+}
+
 static void section(writer *w, enum ff_section_kind kind, uint32_t level, const uint16_t *decoded,
                     uint16_t *next)
 {
     static uint8_t payload[1 << 18];
     const ff_terrain_info *info = &w->desc->info;
-    uint64_t per_tile = (uint64_t)1 << (2 * level),
-             records = (uint64_t)info->tiles_x * info->tiles_y * per_tile;
+    uint32_t per_tile = 1u << (2 * level), records = info->tiles_x * info->tiles_y * per_tile;
+    uint32_t *length = calloc(records, sizeof *length);
     ff_pack_section *s = &w->header.section[w->header.section_count++];
     ff_pack_section_at(info, w->header.section_count - 1, s);
-    s->record_count = records;
-    s->index_offset = w->count;
-    size_t index_bytes = (size_t)(records + 1) * 8;
-    grow(w, index_bytes);
+    s->index.records = records;
     s->data_offset = w->count;
-    for (uint64_t r = 0; r < records && !w->failed; r++) {
-        ff_key key = ff_key_make((uint32_t)(r / per_tile), level, (uint32_t)(r % per_tile));
+    for (uint32_t r = 0; r < records && length && !w->failed; r++) {
+        ff_key key = ff_key_make(r / per_tile, level, r % per_tile);
         int bytes = kind == FF_SECTION_TEXTURE
                         ? texture_payload(w->desc, key, payload, sizeof payload)
                         : node_payload(w->desc, kind, key, payload, decoded, next);
-        uint8_t *out = bytes >= 0 ? grow(w, 4 + (size_t)bytes) : NULL;
+        uint8_t *out = bytes > 0 ? grow(w, FF_RECORD_CRC_BYTES + (size_t)bytes) : NULL;
         if (!out) {
             w->failed = 1;
-            return;
+            break;
         }
-        put_le(out, ff_crc32(0, payload, (size_t)bytes), 4);
-        s->records_crc = ff_crc32(s->records_crc, out, 4);
-        memcpy(out + 4, payload, (size_t)bytes);
-        put_le(w->bytes + s->index_offset + 8 * (r + 1), w->count - s->data_offset, 8);
+        length[r] = (uint32_t)bytes;
+        put_le(out, ff_crc16(payload, (size_t)bytes), FF_RECORD_CRC_BYTES);
+        memcpy(out + FF_RECORD_CRC_BYTES, payload, (size_t)bytes);
     }
     s->data_bytes = w->count - s->data_offset;
-    s->index_crc = ff_crc32(0, w->bytes + s->index_offset, index_bytes);
-    w->header.info.checksum = ff_crc32(w->header.info.checksum, w->bytes + s->index_offset,
-                                       w->count - s->index_offset);
+    s->data_crc = ff_crc32(0, w->bytes + s->data_offset, (size_t)s->data_bytes);
+    if (length && !w->failed)
+        put_index(w, s, length);
+    else
+        w->failed = 1;
+    free(length);
 }
 
 static void sections(writer *w)
@@ -216,16 +240,11 @@ static void about(writer *w)
     ff_pack_section *s = &w->header.about;
     if (!list.byte_count) return;
     *s = ff_pack_about_section();
-    s->index_offset = w->count;
-    s->data_offset = w->count + 16;
-    s->data_bytes = 4 + (uint64_t)list.byte_count;
-    uint8_t *out = grow(w, 16 + (size_t)s->data_bytes);
-    if (!out) return;
-    put_le(out + 8, s->data_bytes, 8);
-    put_le(out + 16, ff_crc32(0, list.bytes, list.byte_count), 4);
-    memcpy(out + 20, list.bytes, list.byte_count);
-    s->index_crc = ff_crc32(0, out, 16);
-    s->records_crc = ff_crc32(0, out + 16, 4);
+    s->index_offset = s->data_offset = w->count;
+    s->data_bytes = list.byte_count;
+    s->data_crc = ff_crc32(0, list.bytes, list.byte_count);
+    uint8_t *out = grow(w, list.byte_count);
+    if (out) memcpy(out, list.bytes, list.byte_count);
 }
 
 uint8_t *pack_fixture_make(const pack_fixture_desc *desc, size_t *bytes)

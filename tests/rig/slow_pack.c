@@ -39,24 +39,85 @@ static int can_be_read(const uint8_t *pack, size_t bytes)
     return 1;
 }
 
-long slow_pack_record(const uint8_t *pack, size_t bytes, const char *letters, unsigned level,
-                      uint64_t number, const uint8_t **payload)
+static unsigned crc16(const uint8_t *at, size_t bytes)
 {
-    if (!can_be_read(pack, bytes)) return -1;
+    unsigned rest = 0xFFFF;
+    for (size_t i = 0; i < 8 * bytes; i++) {
+        unsigned bit = at[i / 8] >> (7 - i % 8) & 1;
+        rest = rest >> 15 != bit ? (2 * rest ^ 0x1021) & 0xFFFF : 2 * rest & 0xFFFF;
+    }
+    return rest;
+}
+
+static int bit_at(const uint8_t *bytes, uint64_t bit) { return bytes[bit / 8] >> bit % 8 & 1; }
+
+/* The row of a section, by its letters and level; NULL: there is none. */
+static const uint8_t *section_of(const uint8_t *pack, const char *letters, unsigned level)
+{
     for (uint64_t i = 0; i < number_at(pack + 80, 4); i++) {
         const uint8_t *section = pack + 84 + 48 * i;
-        uint64_t count = number_at(section + 16, 8), index = number_at(section + 24, 8),
-                 data = number_at(section + 32, 8), data_bytes = number_at(section + 40, 8);
-        if (memcmp(section, letters, 4) || section[6] != level || number >= count) continue;
-        if (crc(pack + index, 8 * (count + 1)) != number_at(section + 8, 4)) return -1;
-        uint64_t begin = number_at(pack + index + 8 * number, 8),
-                 end = number_at(pack + index + 8 * number + 8, 8);
-        if (begin + 4 > end || end > data_bytes) return -1;
-        *payload = pack + data + begin + 4;
-        if (crc(*payload, end - begin - 4) != number_at(pack + data + begin, 4)) return -1;
-        return (long)(end - begin - 4);
+        if (!memcmp(section, letters, 4) && section[6] == level) return section;
     }
-    return -1;
+    return NULL;
+}
+
+/* Bits of presence of a section: 0 for roots. */
+static uint64_t places_of(const uint8_t *pack, const char *letters, unsigned level)
+{
+    const uint8_t *above = section_of(pack, level ? letters : "ROOT", level ? level - 1 : 0);
+    if (!memcmp(letters, "ROOT", 4)) return 0;
+    return number_at(above + 16, 4) * (level ? 4 : 1);
+}
+
+/* The record at a place: it counts all bits before. -1: there is none. */
+static int64_t record_at(const uint8_t *pack, const char *letters, unsigned level, uint64_t place)
+{
+    const uint8_t *index = pack + number_at(section_of(pack, letters, level) + 24, 8);
+    int64_t before = 0;
+    if (!memcmp(letters, "ROOT", 4)) return (int64_t)place;
+    for (uint64_t p = 0; p < place; p++) before += bit_at(index + p / 256 * 36 + 4, p % 256);
+    if (number_at(index + place / 256 * 36, 4) + 256 < (uint64_t)before) return -1;
+    return bit_at(index + place / 256 * 36 + 4, place % 256) ? before : -1;
+}
+
+static long payload_of(const uint8_t *pack, const char *letters, unsigned level, uint64_t number,
+                       const uint8_t **payload)
+{
+    const uint8_t *section = section_of(pack, letters, level);
+    unsigned bits = section[20];
+    uint64_t count = number_at(section + 16, 4), at = number_at(section + 32, 8), bytes = 0;
+    uint64_t blocks = (places_of(pack, letters, level) + 255) / 256 * 36;
+    const uint8_t *lengths = pack + number_at(section + 24, 8) + blocks;
+    if (number >= count) return -1;
+    for (uint64_t r = 0; r <= number; r++) { /* all records before lie before it */
+        const uint8_t *block = lengths + r / 64 * (8 + 8 * bits);
+        if (r > 0) at += bytes + 2;
+        if (r % 64 == 0 && number_at(block, 8) + number_at(section + 32, 8) != at) return -1;
+        bytes = 0;
+        for (unsigned bit = 0; bit < bits; bit++)
+            bytes += (uint64_t)bit_at(block + 8, r % 64 * bits + bit) << bit;
+    }
+    if (number_at(pack + at, 2) != crc16(pack + at + 2, bytes)) return -1;
+    *payload = pack + at + 2;
+    return (long)bytes;
+}
+
+long slow_pack_record(const uint8_t *pack, size_t bytes, const char *letters, unsigned level,
+                      uint64_t tile, uint32_t code, const uint8_t **payload)
+{
+    if (!can_be_read(pack, bytes) || !section_of(pack, letters, level)) return -1;
+    const uint8_t *section = section_of(pack, letters, level);
+    int64_t number = (int64_t)tile;
+    if (!memcmp(letters, "ABOU", 4)) {
+        *payload = pack + number_at(section + 32, 8);
+        return (long)number_at(section + 40, 8);
+    }
+    for (unsigned l = 0; l <= level && number >= 0; l++) {
+        unsigned quadrant = code >> 2 * (level - l) & 3;
+        number = record_at(pack, letters, l,
+                           l ? 4 * (uint64_t)number + quadrant : (uint64_t)number);
+    }
+    return number < 0 ? -1 : payload_of(pack, letters, level, (uint64_t)number, payload);
 }
 
 long slow_list_find(const uint8_t *list, size_t bytes, unsigned type, const uint8_t **value)

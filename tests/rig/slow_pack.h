@@ -6,10 +6,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The payload of record `number` of the section of those four letters and that level: its bytes, or
- * -1 when the specification says that there is none, or that the pack is not to be read. */
+/* The payload of a node in the section of those four letters: its bytes, or -1 when the
+ * specification says that there is none, or that the pack is not to be read. */
 long slow_pack_record(const uint8_t *pack, size_t bytes, const char *letters, unsigned level,
-                      uint64_t number, const uint8_t **payload);
+                      uint64_t tile, uint32_t code, const uint8_t **payload);
 /* The value of a type in a list, -1: there is none; -2: the list breaks a rule. */
 long slow_list_find(const uint8_t *list, size_t bytes, unsigned type, const uint8_t **value);
 

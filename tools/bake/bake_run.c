@@ -176,11 +176,13 @@ static int take_tile(void *context, int worker, uint32_t job)
 {
     bake *b = context;
     uint32_t levels = ff_terrain_levels(&b->info);
+    const bake_blob *level = b->tile[worker].level, *texture = b->texture[worker];
     (void)job;
     for (uint32_t l = 0; l < levels; l++)
-        if (pack_writer_add(&b->writer, l, &b->tile[worker].level[l])) return -1;
+        if (pack_writer_add(&b->writer, l, &level[l], l ? &level[l - 1] : NULL)) return -1;
     for (uint32_t l = 0; l < b->image.levels; l++)
-        if (pack_writer_add(&b->writer, levels + l, &b->texture[worker][l])) return -1;
+        if (pack_writer_add(&b->writer, levels + l, &texture[l], l ? &texture[l - 1] : level))
+            return -1;
     return 0;
 }
 
@@ -213,7 +215,7 @@ static void report(const bake *b, uint64_t file_bytes)
     uint64_t height_bytes = 0, texture_bytes = 0, samples = (uint64_t)source.x * source.y;
     for (uint32_t i = 0; i < b->writer.section_count; i++)
         *(i < ff_terrain_levels(info) ? &height_bytes : &texture_bytes) +=
-            b->writer.section[i].data_bytes - 4 * b->writer.section[i].records;
+            b->writer.section[i].data_bytes - FF_RECORD_CRC_BYTES * b->writer.section[i].records;
     double seconds = (double)(sys_time_us() - b->started_us) / 1e6,
            bits = 8.0 * (double)height_bytes / (double)samples;
     double spacing_m = (double)info->spacing_wu / FF_WU_PER_METRE;

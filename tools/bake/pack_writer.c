@@ -13,10 +13,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define PATH_BYTES       4096
-#define COPY_BYTES       (1u << 18)
-#define RECORD_CRC_BYTES 4
-#define TEMP_MARK        ".tmp-"
+#define PATH_BYTES   4096
+#define COPY_BYTES   (1u << 18)
+#define LENGTH_BYTES sizeof(uint32_t)
+#define TEMP_MARK    ".tmp-"
 
 static void put_le(uint8_t *out, uint64_t value, int bytes)
 {
@@ -67,11 +67,11 @@ int pack_writer_open(pack_writer *writer, const ff_terrain_info *info)
     *writer = (pack_writer){ .info = *info,
                              .section_count = ff_terrain_levels(info) + info->texture_levels };
     for (uint32_t i = 0; i < FF_PACK_SECTIONS_MAX; i++)
-        writer->section[i].data_fd = writer->section[i].index_fd = -1;
+        writer->section[i].data_fd = writer->section[i].length_fd = -1;
     for (uint32_t i = 0; i < writer->section_count; i++) {
         writer->section[i].data_fd = bake_temp_open();
-        writer->section[i].index_fd = writer->section[i].data_fd < 0 ? -1 : bake_temp_open();
-        if (writer->section[i].index_fd < 0) {
+        writer->section[i].length_fd = writer->section[i].data_fd < 0 ? -1 : bake_temp_open();
+        if (writer->section[i].length_fd < 0) {
             pack_writer_close(writer);
             return -1;
         }
@@ -83,36 +83,139 @@ void pack_writer_close(pack_writer *writer)
 {
     for (uint32_t i = 0; i < writer->section_count; i++) {
         if (writer->section[i].data_fd >= 0) close(writer->section[i].data_fd);
-        if (writer->section[i].index_fd >= 0) close(writer->section[i].index_fd);
-        writer->section[i].data_fd = writer->section[i].index_fd = -1;
+        if (writer->section[i].length_fd >= 0) close(writer->section[i].length_fd);
+        writer->section[i].data_fd = writer->section[i].length_fd = -1;
     }
 }
 
-int pack_writer_add(pack_writer *writer, uint32_t number, const bake_blob *blob)
+/* The lengths of those records that have a place. How many, or -1 (said). */
+static int64_t take_lengths(pack_section_file *section, const bake_blob *blob,
+                            const bake_blob *above, uint32_t *length)
 {
-    pack_section_file *section = &writer->section[number];
-    size_t index_bytes = blob->record_count * 8,
-           data_most = blob->byte_count + blob->record_count * RECORD_CRC_BYTES;
-    uint8_t *memory = malloc(index_bytes + data_most + 1);
-    if (!memory) return bake_fail("out of memory");
-    uint8_t *data = memory + index_bytes, *at = data;
+    size_t each = above ? blob->record_count / above->record_count : 1;
+    int64_t places = 0;
+    for (size_t i = 0; i < blob->record_count; i++) {
+        if (above && above->length[i / each] == 0) {
+            if (blob->length[i]) return bake_fail("a record has no parent");
+            continue;
+        }
+        length[places++] = blob->length[i];
+        section->records += blob->length[i] > 0;
+        if (blob->length[i] > section->length_max) section->length_max = blob->length[i];
+    }
+    return places;
+}
+
+/* CRC and payload of each record; bytes of all. */
+static size_t put_records(const bake_blob *blob, uint8_t *out)
+{
+    uint8_t *at = out;
     const uint8_t *payload = blob->bytes;
     for (size_t i = 0; i < blob->record_count; i++) {
-        put_le(memory + 8 * i, section->data_bytes + (uint64_t)(at - data), 8);
-        if (blob->length[i] == 0) continue;
-        put_le(at, ff_crc32(0, payload, blob->length[i]), RECORD_CRC_BYTES);
-        section->records_crc = ff_crc32(section->records_crc, at, RECORD_CRC_BYTES);
-        memcpy(at + RECORD_CRC_BYTES, payload, blob->length[i]);
-        at += RECORD_CRC_BYTES + blob->length[i];
-        payload += blob->length[i];
+        uint32_t bytes = blob->length[i];
+        if (bytes == 0) continue;
+        put_le(at, ff_crc16(payload, bytes), FF_RECORD_CRC_BYTES);
+        memcpy(at + FF_RECORD_CRC_BYTES, payload, bytes);
+        at += FF_RECORD_CRC_BYTES + bytes;
+        payload += bytes;
     }
-    size_t data_bytes = (size_t)(at - data);
-    int rc = bake_pwrite(section->index_fd, memory, index_bytes, section->records * 8);
-    if (!rc) rc = bake_pwrite(section->data_fd, data, data_bytes, section->data_bytes);
-    section->records += blob->record_count;
-    section->data_bytes += data_bytes;
-    free(memory);
+    return (size_t)(at - out);
+}
+
+int pack_writer_add(pack_writer *writer, uint32_t number, const bake_blob *blob,
+                    const bake_blob *above)
+{
+    pack_section_file *section = &writer->section[number];
+    uint8_t *data = malloc(blob->byte_count + blob->record_count * FF_RECORD_CRC_BYTES + 1);
+    uint32_t *length = malloc((blob->record_count + 1) * LENGTH_BYTES);
+    int64_t places = data && length ? take_lengths(section, blob, above, length)
+                                    : bake_fail("out of memory");
+    int rc = places < 0 ? -1
+                        : bake_pwrite(section->length_fd, length, (size_t)places * LENGTH_BYTES,
+                                      section->places * LENGTH_BYTES);
+    if (!rc) {
+        size_t bytes = put_records(blob, data);
+        rc = bake_pwrite(section->data_fd, data, bytes, section->data_bytes);
+        section->places += (uint64_t)places;
+        section->data_bytes += bytes;
+    }
+    free(data);
+    free(length);
     return rc;
+}
+
+/* ---- the index ---- */
+
+typedef struct index_file {
+    int fd;
+    uint64_t at;
+    uint32_t crc;
+} index_file;
+
+static int put_block(index_file *to, const uint8_t *block, size_t bytes)
+{
+    int rc = bake_pwrite(to->fd, block, bytes, to->at);
+    to->crc = ff_crc32(to->crc, block, bytes);
+    to->at += bytes;
+    return rc;
+}
+
+static int put_presence(const pack_section_file *from, index_file *to)
+{
+    uint32_t length[FF_INDEX_PLACES], rank = 0;
+    uint8_t block[FF_INDEX_PRESENCE_BYTES];
+    for (uint64_t place = 0; place < from->places; place += FF_INDEX_PLACES) {
+        uint32_t count = from->places - place < FF_INDEX_PLACES ? (uint32_t)(from->places - place)
+                                                                : FF_INDEX_PLACES;
+        if (bake_pread(from->length_fd, length, count * LENGTH_BYTES, place * LENGTH_BYTES))
+            return -1;
+        ff_index_put_presence(length, count, rank, block);
+        for (uint32_t i = 0; i < count; i++) rank += length[i] > 0;
+        if (put_block(to, block, sizeof block)) return -1;
+    }
+    return 0;
+}
+
+static int put_lengths(const pack_section_file *from, const ff_index *index, index_file *to)
+{
+    uint32_t length[FF_INDEX_PLACES], some[FF_INDEX_RECORDS], held = 0;
+    uint8_t block[FF_INDEX_BLOCK_MAX];
+    uint64_t first = 0, offset = 0;
+    for (uint64_t place = 0; place < from->places; place += FF_INDEX_PLACES) {
+        uint32_t count = from->places - place < FF_INDEX_PLACES ? (uint32_t)(from->places - place)
+                                                                : FF_INDEX_PLACES;
+        if (bake_pread(from->length_fd, length, count * LENGTH_BYTES, place * LENGTH_BYTES))
+            return -1;
+        for (uint32_t i = 0; i < count; i++) {
+            if (length[i] == 0) continue;
+            some[held++] = length[i];
+            offset += FF_RECORD_CRC_BYTES + length[i];
+            if (held < FF_INDEX_RECORDS) continue;
+            ff_index_put_lengths(index, some, held, first, block);
+            if (put_block(to, block, ff_index_block_bytes(index))) return -1;
+            first = offset;
+            held = 0;
+        }
+    }
+    if (held == 0) return 0;
+    ff_index_put_lengths(index, some, held, first, block);
+    return put_block(to, block, ff_index_block_bytes(index));
+}
+
+/* Roots have all their places. */
+static int put_index(const pack_section_file *from, int fd, ff_pack_section *section)
+{
+    index_file to = { fd, section->index_offset, 0 };
+    ff_index *index = &section->index;
+    if (from->records > UINT32_MAX) return bake_fail("more than 2^32 nodes of a level");
+    index->records = (uint32_t)from->records;
+    while (from->length_max >> index->length_bits) index->length_bits++;
+    if (index->length_bits > FF_INDEX_LENGTH_BITS) return bake_fail("a record is too long");
+    if (section->kind != FF_SECTION_ROOT) index->places = from->places;
+    if (index->places && put_presence(from, &to)) return -1;
+    if (put_lengths(from, index, &to)) return -1;
+    section->index_crc = to.crc;
+    return 0;
 }
 
 /* ---- the file ---- */
@@ -140,21 +243,13 @@ static int write_sections(const pack_writer *writer, int fd, ff_pack_header *hea
     for (uint32_t i = 0; i < writer->section_count; i++) {
         const pack_section_file *from = &writer->section[i];
         ff_pack_section *section = &header->section[i];
-        uint8_t last[8];
-        uint32_t unused = 0;
         ff_pack_section_at(&writer->info, i, section);
-        section->record_count = from->records;
-        section->records_crc = from->records_crc;
         section->index_offset = *end;
-        section->data_offset = *end + 8 * (from->records + 1);
+        if (put_index(from, fd, section)) return -1;
+        section->data_offset = *end + ff_index_bytes(&section->index);
         section->data_bytes = from->data_bytes;
-        put_le(last, from->data_bytes, 8);
-        if (copy_part(from->index_fd, fd, 8 * from->records, section->index_offset,
-                      &section->index_crc))
-            return -1;
-        if (bake_pwrite(fd, last, 8, section->data_offset - 8)) return -1;
-        section->index_crc = ff_crc32(section->index_crc, last, 8);
-        if (copy_part(from->data_fd, fd, from->data_bytes, section->data_offset, &unused))
+        if (copy_part(from->data_fd, fd, from->data_bytes, section->data_offset,
+                      &section->data_crc))
             return -1;
         *end = section->data_offset + section->data_bytes;
         bake_progress("writing", i + 1, writer->section_count);
@@ -162,23 +257,17 @@ static int write_sections(const pack_writer *writer, int fd, ff_pack_header *hea
     return 0;
 }
 
-/* A section of one record, with its index. */
+/* A section of its bytes alone. */
 static int write_about(const pack_writer *writer, int fd, ff_pack_section *section, uint64_t *end)
 {
-    uint8_t bytes[16 + RECORD_CRC_BYTES + FF_ABOUT_BYTES_MAX] = { 0 }, *record = bytes + 16;
     uint32_t count = writer->about.byte_count;
     if (!count) return 0;
     *section = ff_pack_about_section();
-    section->index_offset = *end;
-    section->data_offset = *end + 16;
-    section->data_bytes = RECORD_CRC_BYTES + count;
-    put_le(bytes + 8, section->data_bytes, 8);
-    put_le(record, ff_crc32(0, writer->about.bytes, count), RECORD_CRC_BYTES);
-    memcpy(record + RECORD_CRC_BYTES, writer->about.bytes, count);
-    section->index_crc = ff_crc32(0, bytes, 16);
-    section->records_crc = ff_crc32(0, record, RECORD_CRC_BYTES);
-    *end = section->data_offset + section->data_bytes;
-    return bake_pwrite(fd, bytes, 16 + (size_t)section->data_bytes, section->index_offset);
+    section->index_offset = section->data_offset = *end;
+    section->data_bytes = count;
+    section->data_crc = ff_crc32(0, writer->about.bytes, count);
+    *end += count;
+    return bake_pwrite(fd, writer->about.bytes, count, section->data_offset);
 }
 
 static int write_file(const pack_writer *writer, int fd, uint64_t *file_bytes)

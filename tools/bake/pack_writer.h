@@ -12,10 +12,11 @@
 #include "bake_blob.h"
 
 typedef struct pack_section_file {
-    int data_fd, index_fd; /* unnamed temporary files */
-    uint64_t data_bytes;   /* so far, record CRCs included */
-    uint64_t records;
-    uint32_t records_crc;
+    int data_fd, length_fd; /* unnamed temporary files; u32 lengths of payloads by place */
+    uint64_t data_bytes;    /* so far, record CRCs included */
+    uint64_t places;        /* so far: those whose parent is stored */
+    uint64_t records;       /* of them */
+    uint32_t length_max;
 } pack_section_file;
 
 typedef struct pack_writer {
@@ -29,8 +30,10 @@ typedef struct pack_writer {
 int pack_writer_prepare(const char *path);
 /* Sections in order: root, refinements of level 0.., textures of level 0... 0 or -1 (said). */
 int pack_writer_open(pack_writer *writer, const ff_terrain_info *info);
-/* Appends a tile's records to a section. 0 or -1 (said). */
-int pack_writer_add(pack_writer *writer, uint32_t section, const bake_blob *blob);
+/* Appends a tile's records to a section; `above` holds those of their parents, as many or a quarter
+ * as many, NULL: roots. Where there is no parent there is no record. 0 or -1 (said). */
+int pack_writer_add(pack_writer *writer, uint32_t section, const bake_blob *blob,
+                    const bake_blob *above);
 /* Puts the sections together as `path`; *file_bytes receives its size. 0 or -1 (said). */
 int pack_writer_finish(pack_writer *writer, const char *path, uint64_t *file_bytes);
 void pack_writer_close(pack_writer *writer);

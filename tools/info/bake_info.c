@@ -7,9 +7,6 @@
 #include <math.h>
 #include <stdio.h>
 
-#define INDEX_ENTRY_BYTES 8
-#define RECORD_CRC_BYTES  4
-
 /* Distinct heights of the whole terrain at a level, neighbours' shared rims counted once. */
 static uint64_t lattice_samples(const ff_terrain_info *info, uint32_t level)
 {
@@ -24,16 +21,8 @@ static uint64_t source_samples(const ff_terrain_info *info)
     return (uint64_t)samples.x * samples.y;
 }
 
-static uint64_t offset_of(const ff_pack *pack, const ff_pack_section *section, uint64_t record)
-{
-    const uint8_t *entry = pack->bytes + section->index_offset + INDEX_ENTRY_BYTES * record;
-    uint64_t offset = 0;
-    for (int i = INDEX_ENTRY_BYTES; i-- > 0;) offset = offset << 8 | entry[i];
-    return offset;
-}
-
 typedef struct section_sum {
-    uint64_t records;       /* that exist */
+    uint64_t records;
     uint64_t payload_bytes; /* CRCs and index not counted */
     uint64_t new_samples;   /* heights that no coarser level has; 0 for textures */
 } section_sum;
@@ -44,14 +33,21 @@ static section_sum sum_up(const ff_pack *pack, uint32_t number)
     const ff_pack_section *section = &pack->header.section[number];
     const ff_terrain_info *info = &pack->header.info;
     section_sum sum = { 0 };
-    for (uint64_t r = 0; r < section->record_count; r++)
-        sum.records += offset_of(pack, section, r) != offset_of(pack, section, r + 1);
-    sum.payload_bytes = section->data_bytes - RECORD_CRC_BYTES * sum.records;
+    sum.records = section->index.records;
+    sum.payload_bytes = section->data_bytes - FF_RECORD_CRC_BYTES * sum.records;
     if (section->kind == FF_SECTION_ROOT) sum.new_samples = lattice_samples(info, 0);
     if (section->kind == FF_SECTION_REFINEMENT)
         sum.new_samples = lattice_samples(info, section->level + 1u) -
                           lattice_samples(info, section->level);
     return sum;
+}
+
+static uint64_t index_bytes(const ff_pack *pack)
+{
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < pack->header.section_count; i++)
+        bytes += ff_index_bytes(&pack->header.section[i].index);
+    return bytes;
 }
 
 static double per(uint64_t bytes, uint64_t count)
@@ -122,12 +118,14 @@ void bake_info_print(const ff_pack *pack, const char *path)
         if (sum.new_samples) printf(" %16.3f", per(sum.payload_bytes, sum.new_samples));
         putchar('\n');
     }
-    uint64_t source = source_samples(&pack->header.info);
+    uint64_t source = source_samples(&pack->header.info), index = index_bytes(pack);
     printf("\nheights   %12" PRIu64 " bytes, %.3f bits a sample of the source\n",
            heights.payload_bytes, per(heights.payload_bytes, source));
     printf("textures  %12" PRIu64 " bytes\n", textures.payload_bytes);
     printf("overhead  %12" PRIu64 " bytes (header, indexes, checksums, what is said of it)\n",
            pack->size - heights.payload_bytes - textures.payload_bytes);
+    printf("  indexes %12" PRIu64 " bytes, %.2f a record\n", index,
+           per(index, heights.records + textures.records) / 8);
 }
 
 static void print_terrain_json(const ff_terrain_info *info)

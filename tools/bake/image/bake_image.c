@@ -264,6 +264,10 @@ int bake_texture_encode(const bake_image *image, const ff_terrain_info *info, in
     for (uint32_t code = 0; !rc && code >> (2 * level) == 0; code++) {
         uint32_t column = ((at.x << level) + ff_morton_x(code)) * (side - 1),
                  row = ((at.y << level) + ff_morton_y(code)) * (side - 1);
+        if (!ff_shape_has_ground(info, ff_key_make(tile, level, code))) {
+            rc = bake_blob_add(blob, NULL, 0);
+            continue;
+        }
         rc = read_texture(&image->lattice[level], side, column, row, rgb);
         if (rc) break;
         int bytes = sys_jpeg_encode(rgb, side, side, quality, jpeg, capacity);
