@@ -56,6 +56,13 @@ typedef struct ff_terrain_info {
     uint32_t checksum;
 } ff_terrain_info;
 
+/* Columns and rows of cells of a payload's grid that have ground, from the south-west: of a node's
+ * grid for a root, of its children's for a refinement; the last ones may end inside their cell
+ * (ff_shape_cells). 0: all of the grid. Samples beyond repeat the last ones, and are not coded. */
+typedef struct ff_cells {
+    uint8_t columns, rows;
+} ff_cells;
+
 #define FF_CURVE_MAX (UINT32_C(1) << 31)
 
 /* 0 when every field is in range and the terrain's far corner fits int32_t wu; else a negative

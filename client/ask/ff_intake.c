@@ -1,5 +1,6 @@
 #include "ff_intake_local.h"
 #include "../../protocol/ff_assert.h"
+#include "../../protocol/shape/ff_shape.h"
 
 static ff_new_item *begin(ff_intake *intake, const ff_request *request, uint32_t bytes)
 {
@@ -62,6 +63,7 @@ int ff_intake_root(ff_intake *intake, const ff_message *answer, ff_new_item *ite
 {
     FF_ASSERT(ff_key_level(item->key) == 0);
     item->u.residuals.value = item->room;
+    item->u.residuals.cells = ff_shape_cells(&intake->info, item->key, 0);
     return ff_decode_root(intake->decoder, answer->u.data.bytes, answer->u.data.byte_count,
                           &item->u.residuals);
 }
@@ -71,6 +73,7 @@ int ff_intake_refinement(ff_intake *intake, const ff_message *answer, ff_new_ite
     FF_ASSERT(ff_refined_side(&intake->info) * ff_refined_side(&intake->info) <=
               intake->news->room_words);
     item->u.residuals.value = item->room;
+    item->u.residuals.cells = ff_shape_cells(&intake->info, item->key, 1);
     return ff_decode_refinement(intake->decoder, answer->u.data.bytes, answer->u.data.byte_count,
                                 &item->u.residuals);
 }

@@ -5,7 +5,9 @@ int ff_pack_source_serve(const ff_pack *pack, ff_decoder *decoder, int32_t *valu
                          enum ff_kind kind, ff_key key)
 {
     const uint8_t *payload;
-    ff_residuals residuals = { .value = values };
+    ff_residuals residuals = { .cells = ff_shape_cells(&pack->header.info, key,
+                                                       kind == FF_KIND_REFINEMENT),
+                               .value = values };
     FF_ASSERT(kind == FF_KIND_REFINEMENT || (kind == FF_KIND_ROOT && ff_key_level(key) == 0));
     int bytes = ff_pack_record(pack, (enum ff_section_kind)ff_kind[kind].section, key, &payload);
     if (bytes < 0) return bytes;

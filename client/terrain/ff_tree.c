@@ -203,7 +203,8 @@ void ff_tree_make_children(ff_tree *tree)
         FF_ASSERT(node->flags & FF_NODE_LEAF &&
                   ff_key_level(node->key) + 1 < ff_terrain_levels(&tree->info));
         memset(all.child_error, ff_geometric_error_below(&tree->info, node->error_code), 4);
-        ff_predict_children(&tree->info, heights_of(tree, slot), tree->refined);
+        ff_predict_children(&tree->info, ff_shape_cells(&tree->info, node->key, 1),
+                            heights_of(tree, slot), tree->refined);
         take_children(tree, slot, &all);
     }
     tree->made_count = 0;

@@ -62,7 +62,7 @@ int ff_take_body(const ff_decoder *dec, ff_payload *in, const ff_contents *conte
     int rc;
 
     FF_ASSERT(ff_payload_left(in) >= 1); /* decode() refuses an empty payload */
-    FF_ASSERT(corners < contents->count && contents->count <= FF_REFINED_HEIGHTS_MAX);
+    FF_ASSERT(corners <= contents->count && contents->count <= FF_REFINED_HEIGHTS_MAX);
     head = *in->at++;
     rc = ff_take_errors(in, (head & FF_HEAD_ERRORS) >> 2, contents->errors, out);
     if (rc == FF_OK) rc = ff_take_words(in, corners, out->value, corners);

@@ -90,6 +90,7 @@ ff_decoder *ff_decoder_create(const ff_terrain_info *info, void *memory, size_t 
 
 /* What the first stage makes of a payload. Corner values of a root are absolute. */
 typedef struct ff_residuals {
+    ff_cells cells; /* given by the caller of ff_decode_* and ff_encode_heights */
     /* geometric error codes of the children, by quadrant; a root uses [0] for itself */
     uint8_t child_error[4];
     /* bit q: below child q (a root: bit 0, itself) are samples that were void and have been filled
@@ -119,7 +120,8 @@ int ff_reconstruct_refinement(const ff_terrain_info *info, const uint16_t *paren
 /* The four children of a leaf, which are all prediction, in place of ff_reconstruct_refinement.
  * Each is a leaf itself, filled when its parent is, with the error code ff_geometric_error_below.
  */
-void ff_predict_children(const ff_terrain_info *info, const uint16_t *parent, uint16_t *refined);
+void ff_predict_children(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
+                         uint16_t *refined);
 /* Cuts the child in `quadrant` out of a refined grid. */
 void ff_refined_child(const ff_terrain_info *info, const uint16_t *refined, uint32_t quadrant,
                       uint16_t *child);

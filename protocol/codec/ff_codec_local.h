@@ -110,15 +110,17 @@ size_t ff_put_words(const int32_t *value, uint32_t count, uint8_t *out);
 typedef uint16_t (*ff_sample_fn)(void *context, uint32_t at, int32_t predicted);
 
 /* A root from its corners (already in the grid): node_log2 doublings. */
-void ff_predict_root(const ff_terrain_info *info, uint16_t *grid, ff_sample_fn sample,
-                     void *context);
+void ff_predict_root(const ff_terrain_info *info, ff_cells cells, uint16_t *grid,
+                     ff_sample_fn sample, void *context);
 /* Spreads a parent over the even points of a refined grid, then one doubling. */
-void ff_predict_refinement(const ff_terrain_info *info, const uint16_t *parent, uint16_t *grid,
-                           ff_sample_fn sample, void *context);
+void ff_predict_refinement(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
+                           uint16_t *grid, ff_sample_fn sample, void *context);
+/* How many samples a payload codes, root corners included; never more than the two below. */
+uint32_t ff_coded_count(const ff_terrain_info *info, ff_cells cells, int root);
 /* Grid index of root corner 0..3: south-west, south-east, north-west, north-east. */
 uint32_t ff_corner_at(const ff_terrain_info *info, uint32_t corner);
 
-/* Number of residuals in a payload, root corners included. */
+/* Number of residuals in a payload without padding, root corners included. */
 static inline uint32_t ff_root_count(const ff_terrain_info *info)
 {
     return ff_node_side(info) * ff_node_side(info);

@@ -150,14 +150,14 @@ static int decode(ff_decoder *dec, const uint8_t *payload, size_t bytes,
 
 int ff_decode_root(ff_decoder *dec, const uint8_t *payload, size_t bytes, ff_residuals *out)
 {
-    ff_contents contents = { 1, FF_CORNERS, ff_root_count(&dec->info) };
+    ff_contents contents = { 1, FF_CORNERS, ff_coded_count(&dec->info, out->cells, 1) };
 
     return decode(dec, payload, bytes, &contents, out);
 }
 
 int ff_decode_refinement(ff_decoder *dec, const uint8_t *payload, size_t bytes, ff_residuals *out)
 {
-    ff_contents contents = { 4, 0, ff_refinement_count(&dec->info) };
+    ff_contents contents = { 4, 0, ff_coded_count(&dec->info, out->cells, 0) };
 
     return decode(dec, payload, bytes, &contents, out);
 }
@@ -182,15 +182,15 @@ int ff_add_residuals(const ff_terrain_info *info, const uint16_t *parent, const 
 {
     reconstruction r = { res->value, ff_quantum(info) };
 
-    FF_ASSERT(res->count == (parent ? ff_refinement_count(info) : ff_root_count(info)));
+    FF_ASSERT(res->count == ff_coded_count(info, res->cells, !parent));
     if (parent) {
-        ff_predict_refinement(info, parent, heights, add_residual, &r);
+        ff_predict_refinement(info, res->cells, parent, heights, add_residual, &r);
         FF_ASSERT(r.next == res->value + res->count);
         return FF_OK;
     }
     for (uint32_t corner = 0; corner < FF_CORNERS; corner++)
         heights[ff_corner_at(info, corner)] = ff_dequantise(r.quantum, 0, *r.next++);
-    ff_predict_root(info, heights, add_residual, &r);
+    ff_predict_root(info, res->cells, heights, add_residual, &r);
     FF_ASSERT(r.next == res->value + res->count);
     return FF_OK;
 }
@@ -200,7 +200,7 @@ static int reconstruct(const ff_terrain_info *info, const uint16_t *parent, cons
 {
     const ff_codec *codec = ff_codec_row(info->codec);
 
-    FF_ASSERT((res->count == 0) == ((codec->needs & FF_NEEDS_PARENT) != 0));
+    FF_ASSERT(!(codec->needs & FF_NEEDS_PARENT) || res->count == 0);
     return codec->reconstruct(info, parent, res, heights);
 }
 
@@ -221,9 +221,10 @@ static uint16_t take_prediction(void *context, uint32_t at, int32_t predicted)
     return (uint16_t)predicted;
 }
 
-void ff_predict_children(const ff_terrain_info *info, const uint16_t *parent, uint16_t *refined)
+void ff_predict_children(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
+                         uint16_t *refined)
 {
-    ff_predict_refinement(info, parent, refined, take_prediction, NULL);
+    ff_predict_refinement(info, cells, parent, refined, take_prediction, NULL);
 }
 
 void ff_refined_child(const ff_terrain_info *info, const uint16_t *refined, uint32_t quadrant,

@@ -37,10 +37,10 @@ void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, cons
 {
     quantisation q = { source, out->value, ff_quantum(info) };
 
-    out->count = (uint16_t)(parent ? ff_refinement_count(info) : ff_root_count(info));
+    out->count = (uint16_t)ff_coded_count(info, out->cells, !parent);
     out->carried_bytes = 0;
     if (parent) {
-        ff_predict_refinement(info, parent, decoded, take_residual, &q);
+        ff_predict_refinement(info, out->cells, parent, decoded, take_residual, &q);
         FF_ASSERT(q.next == out->value + out->count);
         return;
     }
@@ -49,7 +49,7 @@ void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, cons
         *q.next = (source[at] + info->max_error) / q.quantum;
         decoded[at] = ff_dequantise(q.quantum, 0, *q.next++);
     }
-    ff_predict_root(info, decoded, take_residual, &q);
+    ff_predict_root(info, out->cells, decoded, take_residual, &q);
     FF_ASSERT(q.next == out->value + out->count);
 }
 

@@ -131,7 +131,7 @@ size_t ff_put_body(const ff_terrain_info *info, const ff_contents *contents,
     uint32_t corners = contents->corners;
     size_t bytes = 1;
 
-    FF_ASSERT(corners < contents->count && contents->count <= FF_REFINED_HEIGHTS_MAX);
+    FF_ASSERT(corners <= contents->count && contents->count <= FF_REFINED_HEIGHTS_MAX);
     out[0] = (uint8_t)(form << 2);
     bytes += ff_put_errors(res, form, contents->errors, out + bytes);
     bytes += ff_put_words(res->value, corners, out + bytes);

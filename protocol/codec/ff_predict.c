@@ -23,12 +23,13 @@ static int32_t predict_middle(const uint16_t *known, uint32_t step, uint32_t i, 
     return clamp_height(9 * (a + b) - known[(i - 1) * step] - known[(i + 2) * step] + 8, 4);
 }
 
-/* Makes the odd points of one line; `stride` is the distance of its points in memory. */
+/* Makes the first `count` odd points of one line; `stride` is the distance of its points in
+ * memory. */
 static void predict_line(uint16_t *grid, uint32_t first, uint32_t stride, uint32_t cells,
-                         ff_sample_fn sample, void *context)
+                         uint32_t count, ff_sample_fn sample, void *context)
 {
-    FF_ASSERT(first + 2 * cells * stride < FF_REFINED_HEIGHTS_MAX);
-    for (uint32_t i = 0; i < cells; i++) {
+    FF_ASSERT(first + 2 * cells * stride < FF_REFINED_HEIGHTS_MAX && count <= cells);
+    for (uint32_t i = 0; i < count; i++) {
         uint32_t at = first + (2 * i + 1) * stride;
         grid[at] = sample(context, at, predict_middle(grid + first, 2 * stride, i, cells));
     }
@@ -45,35 +46,106 @@ static int32_t predict_centre(const uint16_t *p, uint32_t dx, uint32_t dy)
     return clamp_height(7 * cross - 3 * corners + 8, 4);
 }
 
+/* ---- padding ---- */
+
+/* Of the points of a line that a doubling makes, those before its ground ends: odd multiples of
+ * `stride` below `ground`. */
+static uint32_t coded_points(uint32_t stride, uint32_t ground)
+{
+    return ground > stride ? (ground - stride - 1) / (2 * stride) + 1 : 0;
+}
+
+/* The first known point at or beyond the end of the ground. */
+static uint32_t last_point(uint32_t stride, uint32_t ground)
+{
+    return (ground + 2 * stride - 1) / (2 * stride) * (2 * stride);
+}
+
+/* The column, or row, whose height stands in column `at` after a doubling. */
+static uint32_t shown_at(uint32_t at, uint32_t stride, uint32_t ground, uint32_t last)
+{
+    return at > last || ((at / stride & 1u) && at >= ground) ? last : at;
+}
+
+/* All that lies beyond the ground repeats the last points that do not. */
+static void repeat_last(uint16_t *grid, uint32_t side, uint32_t stride, ff_cells cells)
+{
+    uint32_t last_x = last_point(stride, cells.columns), last_y = last_point(stride, cells.rows);
+
+    FF_ASSERT(last_x < side && last_y < side);
+    if (cells.columns == side - 1 && cells.rows == side - 1) return;
+    for (uint32_t y = 0; y < side; y += stride) {
+        const uint16_t *from = grid + shown_at(y, stride, cells.rows, last_y) * side;
+        for (uint32_t x = 0; x < side; x += stride)
+            grid[y * side + x] = from[shown_at(x, stride, cells.columns, last_x)];
+    }
+}
+
+static uint32_t coded_in_doubling(uint32_t stride, ff_cells cells)
+{
+    uint32_t columns = coded_points(stride, cells.columns), rows = coded_points(stride, cells.rows);
+
+    return columns * (last_point(stride, cells.rows) / (2 * stride) + 1) +
+           rows * (last_point(stride, cells.columns) / (2 * stride) + 1) + columns * rows;
+}
+
+/* ---- grids ---- */
+
 /* One doubling of resolution in place: grid points at even multiples of `stride` are known, points
  * at odd multiples are made. */
-static void predict_doubling(uint16_t *grid, uint32_t side, uint32_t stride, ff_sample_fn sample,
-                             void *context)
+static void predict_doubling(uint16_t *grid, uint32_t side, uint32_t stride, ff_cells ground,
+                             ff_sample_fn sample, void *context)
 {
     uint32_t cells = (side - 1) / (2 * stride), row = side * stride;
+    uint32_t columns = coded_points(stride, ground.columns),
+             rows = coded_points(stride, ground.rows);
 
     FF_ASSERT(stride >= 1 && cells >= 1 && cells * 2 * stride == side - 1);
-    for (uint32_t j = 0; j <= cells; j++)
-        predict_line(grid, 2 * j * row, stride, cells, sample, context);
-    for (uint32_t i = 0; i <= cells; i++)
-        predict_line(grid, 2 * i * stride, row, cells, sample, context);
-    for (uint32_t j = 0; j < cells; j++) {
-        for (uint32_t i = 0; i < cells; i++) {
+    for (uint32_t j = 0; j <= last_point(stride, ground.rows) / (2 * stride); j++)
+        predict_line(grid, 2 * j * row, stride, cells, columns, sample, context);
+    for (uint32_t i = 0; i <= last_point(stride, ground.columns) / (2 * stride); i++)
+        predict_line(grid, 2 * i * stride, row, cells, rows, sample, context);
+    for (uint32_t j = 0; j < rows; j++) {
+        for (uint32_t i = 0; i < columns; i++) {
             uint32_t at = (2 * j + 1) * row + (2 * i + 1) * stride;
             grid[at] = sample(context, at, predict_centre(grid + at, stride, row));
         }
     }
+    repeat_last(grid, side, stride, ground);
 }
 
-void ff_predict_root(const ff_terrain_info *info, uint16_t *grid, ff_sample_fn sample,
-                     void *context)
+/* What a payload says of its ground, 0 standing for all. */
+static ff_cells cells_of(ff_cells cells, uint32_t side)
 {
-    for (uint32_t stride = 1u << info->node_log2; stride > 1; stride /= 2)
-        predict_doubling(grid, ff_node_side(info), stride / 2, sample, context);
+    FF_ASSERT(cells.columns < side && cells.rows < side);
+    if (!cells.columns || !cells.rows) cells.columns = cells.rows = (uint8_t)(side - 1);
+    return cells;
 }
 
-void ff_predict_refinement(const ff_terrain_info *info, const uint16_t *parent, uint16_t *grid,
-                           ff_sample_fn sample, void *context)
+uint32_t ff_coded_count(const ff_terrain_info *info, ff_cells cells, int root)
+{
+    uint32_t side = root ? ff_node_side(info) : ff_refined_side(info), count = FF_CORNERS;
+
+    cells = cells_of(cells, side);
+    if (!root) return coded_in_doubling(1, cells);
+    for (uint32_t stride = (side - 1) / 2; stride >= 1; stride /= 2)
+        count += coded_in_doubling(stride, cells);
+    FF_ASSERT(count <= side * side);
+    return count;
+}
+
+void ff_predict_root(const ff_terrain_info *info, ff_cells cells, uint16_t *grid,
+                     ff_sample_fn sample, void *context)
+{
+    uint32_t side = ff_node_side(info);
+
+    cells = cells_of(cells, side);
+    for (uint32_t stride = (side - 1) / 2; stride >= 1; stride /= 2)
+        predict_doubling(grid, side, stride, cells, sample, context);
+}
+
+void ff_predict_refinement(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
+                           uint16_t *grid, ff_sample_fn sample, void *context)
 {
     uint32_t node_side = ff_node_side(info), side = ff_refined_side(info);
 
@@ -81,7 +153,7 @@ void ff_predict_refinement(const ff_terrain_info *info, const uint16_t *parent, 
     for (uint32_t j = 0; j < node_side; j++)
         for (uint32_t i = 0; i < node_side; i++)
             grid[2 * j * side + 2 * i] = parent[j * node_side + i];
-    predict_doubling(grid, side, 1, sample, context);
+    predict_doubling(grid, side, 1, cells_of(cells, side), sample, context);
 }
 
 uint32_t ff_corner_at(const ff_terrain_info *info, uint32_t corner)

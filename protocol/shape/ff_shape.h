@@ -86,6 +86,16 @@ static inline ff_extent ff_shape_extent(const ff_terrain_info *info, ff_key key)
 {
     return FF_SHAPE_CALL(info, extent, (info, key));
 }
+/* The same in cells of the grid of a payload: the root's own, or that of a node's children. */
+static inline ff_cells ff_shape_cells(const ff_terrain_info *info, ff_key key, int refinement)
+{
+    ff_extent extent = ff_shape_extent(info, key);
+    uint32_t levels = ff_key_level(key) + (refinement != 0);
+    FF_ASSERT(info->node_log2 + levels <= info->tile_log2 && extent.columns && extent.rows);
+    unsigned cell_log2 = info->tile_log2 - info->node_log2 - levels;
+    return (ff_cells){ (uint8_t)(((extent.columns - 1) >> cell_log2) + 1),
+                       (uint8_t)(((extent.rows - 1) >> cell_log2) + 1) };
+}
 /* 0 when all of a node is padding: it is neither drawn nor asked for. Every root has ground. */
 static inline int ff_shape_has_ground(const ff_terrain_info *info, ff_key key)
 {

@@ -51,7 +51,7 @@ static int children_of(loader *load, ff_key key, const uint16_t *heights, marks 
     if (mark.leaf) {
         residuals->filled = mark.filled ? 15 : 0;
         residuals->leaf = 15;
-        ff_predict_children(info, heights, refined);
+        ff_predict_children(info, ff_shape_cells(info, key, 1), heights, refined);
         return FF_OK;
     }
     int bytes = ff_pack_record(load->pack, FF_SECTION_REFINEMENT, key, &payload);
@@ -67,7 +67,7 @@ static int refine(loader *load, ff_key key, const uint16_t *heights, marks mark)
         place(load, key, heights, mark.filled);
         return FF_OK;
     }
-    ff_residuals residuals = { .value = load->residual };
+    ff_residuals residuals = { .cells = ff_shape_cells(info, key, 1), .value = load->residual };
     uint16_t refined[FF_REFINED_HEIGHTS_MAX], child[FF_NODE_HEIGHTS_MAX];
     int rc = children_of(load, key, heights, mark, &residuals, refined);
     if (rc != FF_OK) return rc;
@@ -82,9 +82,11 @@ static int refine(loader *load, ff_key key, const uint16_t *heights, marks mark)
 static int decode_tile(loader *load, uint32_t tile)
 {
     const uint8_t *payload;
-    ff_residuals residuals = { .value = load->residual };
+    ff_key key = ff_key_make(tile, 0, 0);
+    ff_residuals residuals = { .cells = ff_shape_cells(&load->pack->header.info, key, 0),
+                               .value = load->residual };
     uint16_t heights[FF_NODE_HEIGHTS_MAX];
-    int bytes = ff_pack_record(load->pack, FF_SECTION_ROOT, ff_key_make(tile, 0, 0), &payload);
+    int bytes = ff_pack_record(load->pack, FF_SECTION_ROOT, key, &payload);
     if (bytes < 0) return bytes;
     int rc = ff_decode_root(load->decoder, payload, (size_t)bytes, &residuals);
     if (rc == FF_OK) rc = ff_reconstruct_root(&load->pack->header.info, &residuals, heights);

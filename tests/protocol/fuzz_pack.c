@@ -1,6 +1,7 @@
 /* Any bytes as a pack: once as they are, once with a right checksum in the header, so that the
  * reader gets past it. */
 #include "../../protocol/ff_pack.h"
+#include "../../protocol/shape/ff_shape.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -18,8 +19,8 @@ static int read_all(const uint8_t *bytes, int count)
     return sum;
 }
 
-static void decode_payload(const ff_terrain_info *info, int refinement, const uint8_t *payload,
-                           int bytes)
+static void decode_payload(const ff_terrain_info *info, ff_key key, int refinement,
+                           const uint8_t *payload, int bytes)
 {
     static int32_t value[FF_REFINED_HEIGHTS_MAX];
     static uint16_t parent[FF_NODE_HEIGHTS_MAX], heights[FF_REFINED_HEIGHTS_MAX];
@@ -29,6 +30,7 @@ static void decode_payload(const ff_terrain_info *info, int refinement, const ui
     ff_decoder *dec = ff_decoder_create(info, memory, memory_bytes);
 
     assert(dec != NULL);
+    if (ff_shape_has_ground(info, key)) residuals.cells = ff_shape_cells(info, key, refinement);
     if (refinement && ff_decode_refinement(dec, payload, (size_t)bytes, &residuals) == FF_OK)
         ff_reconstruct_refinement(info, parent, &residuals, heights);
     if (!refinement && ff_decode_root(dec, payload, (size_t)bytes, &residuals) == FF_OK)
@@ -55,8 +57,8 @@ static void use_pack(const uint8_t *bytes, size_t count)
             if (rc < 0) continue;
             sum += read_all(payload, rc);
             if (section->kind != FF_SECTION_TEXTURE)
-                decode_payload(&pack.header.info, section->kind == FF_SECTION_REFINEMENT, payload,
-                               rc);
+                decode_payload(&pack.header.info, key, section->kind == FF_SECTION_REFINEMENT,
+                               payload, rc);
         }
     }
     if (ff_pack_about(&pack, &about) == FF_OK) {

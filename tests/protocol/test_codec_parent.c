@@ -142,9 +142,9 @@ static int second_stage(const ff_terrain_info *info, const uint16_t *parent,
     for (uint32_t i = 0; i < FF_CORNERS && !parent; i++)
         heights[ff_corner_at(info, i)] = ff_dequantise(ff_quantum(info), 0, corner[i]);
     if (parent)
-        ff_predict_refinement(info, parent, heights, take_sample, &c);
+        ff_predict_refinement(info, res->cells, parent, heights, take_sample, &c);
     else
-        ff_predict_root(info, heights, take_sample, &c);
+        ff_predict_root(info, res->cells, heights, take_sample, &c);
     if (c.bits.error) return c.bits.error;
     return (c.bits.at + 7) / 8 == ff_payload_left(&in) ? FF_OK : FF_ERR_FORMAT;
 }
@@ -167,9 +167,9 @@ static size_t encode(const ff_terrain_info *info, const uint16_t *parent, const 
     for (uint32_t i = 0; i < contents->corners; i++)
         grid[ff_corner_at(info, i)] = decoded[ff_corner_at(info, i)];
     if (parent)
-        ff_predict_refinement(info, parent, grid, put_sample, &c);
+        ff_predict_refinement(info, res->cells, parent, grid, put_sample, &c);
     else
-        ff_predict_root(info, grid, put_sample, &c);
+        ff_predict_root(info, res->cells, grid, put_sample, &c);
     bytes += (c.bits.at + 7) / 8;
     if (add_a_byte_each && ++payloads_made % add_a_byte_each == 0) out[bytes++] = 0;
     return bytes;

@@ -1,4 +1,6 @@
 #include "pack_fixture.h"
+
+#include "../../protocol/shape/ff_shape.h"
 #include "../../platform/sys.h"
 
 #include <stdlib.h>
@@ -133,6 +135,8 @@ static int node_payload(const pack_fixture_desc *desc, enum ff_section_kind kind
     uint16_t source[FF_REFINED_HEIGHTS_MAX], refined[FF_REFINED_HEIGHTS_MAX];
     int32_t value[FF_REFINED_HEIGHTS_MAX];
     ff_residuals res = { .value = value };
+    if (ff_shape_has_ground(&desc->info, key))
+        res.cells = ff_shape_cells(&desc->info, key, kind != FF_SECTION_ROOT);
     if (kind == FF_SECTION_ROOT) {
         source_grid(desc, key, 1u << desc->info.node_log2, source);
         res.child_error[0] = node_error(desc, key);

@@ -8,6 +8,7 @@
 typedef struct field {
     long height[SIDE_MAX][SIDE_MAX]; /* [y][x] */
     int last;                        /* largest x and y */
+    int ground_x, ground_y;          /* cells with ground */
     long maximum_error;
     const long *residual;
 } field;
@@ -66,18 +67,52 @@ static void add(field *f, int x, int y, long prediction)
     f->height[y][x] = height < 0 ? 0 : height > 65535 ? 65535 : height;
 }
 
+/* Where the height of a point comes from that the payload does not tell: the first known one at or
+ * beyond the ground's end, when it lies there. */
+static int shown(int at, int gap, int ground)
+{
+    int end = 0;
+
+    while (end < ground) end += gap;
+    return (at % gap != 0 && at >= ground) || at > end ? end : at;
+}
+
+/* A point that a doubling makes: told, or repeated. */
+static void make(field *f, int x, int y, int gap, long prediction)
+{
+    int from_x = shown(x, gap, f->ground_x), from_y = shown(y, gap, f->ground_y);
+
+    if (from_x == x && from_y == y)
+        add(f, x, y, prediction);
+    else
+        f->height[y][x] = f->height[from_y][from_x];
+}
+
 static void double_resolution(field *f, int gap)
 {
     int half = gap / 2;
 
     for (int y = 0; y <= f->last; y += gap)
         for (int x = half; x <= f->last; x += gap)
-            add(f, x, y, line_prediction(f, x, y, 1, 0, gap));
+            make(f, x, y, gap, line_prediction(f, x, y, 1, 0, gap));
     for (int x = 0; x <= f->last; x += gap)
         for (int y = half; y <= f->last; y += gap)
-            add(f, x, y, line_prediction(f, x, y, 0, 1, gap));
+            make(f, x, y, gap, line_prediction(f, x, y, 0, 1, gap));
     for (int y = half; y <= f->last; y += gap)
-        for (int x = half; x <= f->last; x += gap) add(f, x, y, centre_prediction(f, x, y, half));
+        for (int x = half; x <= f->last; x += gap)
+            make(f, x, y, gap, centre_prediction(f, x, y, half));
+}
+
+/* How many points a doubling tells. */
+static int told(const field *f, int gap)
+{
+    int count = 0;
+
+    for (int y = 0; y <= f->last; y += gap / 2)
+        for (int x = 0; x <= f->last; x += gap / 2)
+            count += (x % gap || y % gap) && shown(x, gap, f->ground_x) == x &&
+                     shown(y, gap, f->ground_y) == y;
+    return count;
 }
 
 static long bits_at(const uint8_t *bytes, long first, int count)
@@ -222,15 +257,26 @@ static int residuals(int codec, int root, const uint8_t *at, long left, long *re
 int slow_decode(const ff_terrain_info *info, const uint16_t *parent, const uint8_t *payload,
                 size_t bytes, uint16_t *heights)
 {
+    int cells = (parent ? 2 : 1) << info->node_log2;
+
+    return slow_decode_part(info, cells, cells, parent, payload, bytes, heights);
+}
+
+int slow_decode_part(const ff_terrain_info *info, int columns, int rows, const uint16_t *parent,
+                     const uint8_t *payload, size_t bytes, uint16_t *heights)
+{
     static long residual[SIDE_MAX * SIDE_MAX];
     static field f;
-    int node = 1 << info->node_log2, count = (node + 1) * (node + 1), marks;
+    int node = 1 << info->node_log2, count = (node + 1) * (node + 1), values = 4, marks;
 
     f.last = parent ? 2 * node : node;
     f.maximum_error = info->max_error;
     f.residual = residual;
-    marks = residuals(info->codec, !parent, payload, (long)bytes, residual,
-                      parent ? (2 * node + 1) * (2 * node + 1) - count : count);
+    f.ground_x = columns;
+    f.ground_y = rows;
+    if (parent) values = told(&f, 2);
+    for (int gap = node; gap > 1 && !parent; gap /= 2) values += told(&f, gap);
+    marks = residuals(info->codec, !parent, payload, (long)bytes, residual, values);
     if (marks < 0) return -1;
     if (parent) {
         for (int i = 0; i < count; i++)

@@ -13,5 +13,8 @@
  * specification. */
 int slow_decode(const ff_terrain_info *info, const uint16_t *parent, const uint8_t *payload,
                 size_t bytes, uint16_t *heights);
+/* The same where so many columns and rows of the grid's cells have ground, the others padding. */
+int slow_decode_part(const ff_terrain_info *info, int columns, int rows, const uint16_t *parent,
+                     const uint8_t *payload, size_t bytes, uint16_t *heights);
 
 #endif

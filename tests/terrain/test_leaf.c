@@ -33,7 +33,8 @@ static void expect_predicted(const terrain_fixture *fx, const ff_node *node)
     const ff_tree *tree = fx->tree;
     size_t heights = ff_heights_per_node(tree);
     uint16_t refined[FF_REFINED_HEIGHTS_MAX], child[FF_NODE_HEIGHTS_MAX];
-    ff_predict_children(&tree->info, tree->heights + node->parent * heights, refined);
+    ff_predict_children(&tree->info, ff_shape_cells(&tree->info, tree->node[node->parent].key, 1),
+                        tree->heights + node->parent * heights, refined);
     ff_refined_child(&tree->info, refined, ff_key_quadrant(node->key), child);
     assert_memory_equal(child, tree->heights + ff_slot_of(tree, node) * heights,
                         heights * sizeof *child);

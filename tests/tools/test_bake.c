@@ -252,6 +252,7 @@ static void check_records(uint16_t max_error)
     void *memory = test_malloc(bytes);
     ff_decoder *decoder = ff_decoder_create(&info, memory, bytes);
     assert_non_null(decoder);
+    residuals.cells = ff_shape_cells(&info, ff_key_make(tile.number, 0, 0), 0);
     assert_int_equal(
         ff_decode_root(decoder, tile.level[0].bytes, tile.level[0].length[0], &residuals), FF_OK);
     ff_reconstruct_root(&info, &residuals, node);
@@ -264,6 +265,7 @@ static void check_records(uint16_t max_error)
         assert_int_equal(tile.level[l].record_count, 1u << (2 * (l - 1)));
     /* first refinement of level 1: children of 8 x 8 samples at the south-west */
     const bake_blob *middle = &tile.level[2];
+    residuals.cells = ff_shape_cells(&info, ff_key_make(0, 1, 0), 1);
     assert_int_equal(ff_decode_refinement(decoder, middle->bytes, middle->length[0], &residuals),
                      FF_OK);
     for (int q = 0; q < 4; q++) {
@@ -274,6 +276,7 @@ static void check_records(uint16_t max_error)
     }
     /* refinements of level 2: their children are the data itself */
     const bake_blob *finest = &tile.level[3];
+    residuals.cells = ff_shape_cells(&info, ff_key_make(0, 2, 0), 1);
     assert_int_equal(ff_decode_refinement(decoder, finest->bytes, finest->length[0], &residuals),
                      FF_OK);
     for (int q = 0; q < 4; q++)
@@ -350,6 +353,7 @@ static void records_tell_filled_nodes(void **state)
     size_t bytes = ff_decoder_bytes(&info);
     void *memory = test_malloc(bytes);
     ff_decoder *decoder = ff_decoder_create(&info, memory, bytes);
+    residuals.cells = ff_shape_cells(&info, ff_key_make(tile.number, 0, 0), 0);
     assert_int_equal(
         ff_decode_root(decoder, tile.level[0].bytes, tile.level[0].length[0], &residuals), FF_OK);
     assert_int_equal(residuals.filled, 1);
@@ -362,6 +366,7 @@ static void records_tell_filled_nodes(void **state)
                 assert_int_equal(records->length[code], 0);
                 continue;
             }
+            residuals.cells = ff_shape_cells(&info, ff_key_make(1, level, code), 1);
             assert_int_equal(ff_decode_refinement(decoder, records->bytes + at,
                                                   records->length[code], &residuals),
                              FF_OK);

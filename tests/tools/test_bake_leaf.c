@@ -95,13 +95,14 @@ static void walk(baked *b, ff_key key, const uint16_t *heights, int leaf)
         show(b, key, heights);
         return;
     }
+    if (ff_shape_has_ground(&b->info, key)) residuals.cells = ff_shape_cells(&b->info, key, 1);
     const uint8_t *record = next_record(b, level + 1, &bytes);
     assert_int_equal(record == NULL, leaf || !ff_shape_has_ground(&b->info, key));
     if (record) {
         assert_int_equal(ff_decode_refinement(b->decoder, record, bytes, &residuals), FF_OK);
         assert_int_equal(ff_reconstruct_refinement(&b->info, heights, &residuals, refined), FF_OK);
     } else {
-        ff_predict_children(&b->info, heights, refined);
+        ff_predict_children(&b->info, residuals.cells, heights, refined);
     }
     for (uint32_t q = 0; q < 4; q++) {
         ff_refined_child(&b->info, refined, q, child);
@@ -113,7 +114,8 @@ static void walk_tile(baked *b, uint32_t tile)
 {
     int32_t value[FF_REFINED_HEIGHTS_MAX];
     uint16_t root[FF_NODE_HEIGHTS_MAX];
-    ff_residuals residuals = { .value = value };
+    ff_residuals residuals = { .cells = ff_shape_cells(&b->info, ff_key_make(tile, 0, 0), 0),
+                               .value = value };
     size_t bytes;
     const uint8_t *record = next_record(b, 0, &bytes);
     assert_int_equal(ff_decode_root(b->decoder, record, bytes, &residuals), FF_OK);

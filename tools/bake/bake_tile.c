@@ -170,6 +170,7 @@ static int encode_below(bake_tile *tile, ff_key key, size_t at, uint32_t cell, e
     if (!ff_shape_has_ground(info, key)) return leave_out(tile, ff_key_level(key));
     gather(tile->decoded + at, pitch, ff_node_side(info), cell, parent);
     gather(tile->source + at, pitch, ff_refined_side(info), cell / 2, source);
+    residuals.cells = ff_shape_cells(info, key, 1);
     ff_encode_heights(info, parent, source, &residuals, decoded);
     scatter(decoded, pitch, ff_refined_side(info), cell / 2, tile->decoded + at);
     for (uint32_t q = 0; q < 4; q++) {
@@ -194,6 +195,7 @@ static int encode_root(bake_tile *tile)
     ff_residuals residuals = { .value = value };
     uint32_t side = ff_node_side(info), cell = 1u << (info->tile_log2 - info->node_log2);
     gather(tile->source, pitch_of(info), side, cell, source);
+    residuals.cells = ff_shape_cells(info, ff_key_make(tile->number, 0, 0), 0);
     ff_encode_heights(info, NULL, source, &residuals, decoded);
     scatter(decoded, pitch_of(info), side, cell, tile->decoded);
     ff_key key = ff_key_make(tile->number, 0, 0);

@@ -71,9 +71,9 @@ static int decode_root(const bake_unpack *unpack, uint32_t tile, size_t pitch, s
     const ff_terrain_info *info = &unpack->pack.header.info;
     int32_t value[FF_REFINED_HEIGHTS_MAX];
     uint16_t node[FF_NODE_HEIGHTS_MAX];
-    ff_residuals residuals = { .value = value };
-    const uint8_t *payload;
     ff_key key = ff_key_make(tile, 0, 0);
+    ff_residuals residuals = { .cells = ff_shape_cells(info, key, 0), .value = value };
+    const uint8_t *payload;
     int rc = ff_pack_record(&unpack->pack, FF_SECTION_ROOT, key, &payload);
     if (rc >= 0) rc = ff_decode_root(unpack->decoder, payload, (size_t)rc, &residuals);
     if (rc >= 0) rc = ff_reconstruct_root(info, &residuals, node);
@@ -90,12 +90,14 @@ static int decode_refinement(const bake_unpack *unpack, ff_key key, size_t pitch
     const ff_terrain_info *info = &unpack->pack.header.info;
     int32_t value[FF_REFINED_HEIGHTS_MAX];
     uint16_t parent[FF_NODE_HEIGHTS_MAX], refined[FF_REFINED_HEIGHTS_MAX];
+    int is_ground = ff_shape_has_ground(info, key);
     ff_residuals residuals = { .leaf = 15, .value = value };
     const uint8_t *payload;
     int rc = 0;
+    if (is_ground) residuals.cells = ff_shape_cells(info, key, 1);
     gather(at, ff_node_side(info), pitch, stride, parent);
-    if (*leaf & 1u || !ff_shape_has_ground(info, key)) {
-        ff_predict_children(info, parent, refined);
+    if (*leaf & 1u || !is_ground) {
+        ff_predict_children(info, residuals.cells, parent, refined);
     } else {
         rc = ff_pack_record(&unpack->pack, FF_SECTION_REFINEMENT, key, &payload);
         if (rc >= 0) rc = ff_decode_refinement(unpack->decoder, payload, (size_t)rc, &residuals);
