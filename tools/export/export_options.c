@@ -8,7 +8,7 @@
 
 /* By number of the enums. */
 static const char *const export_voids_words[] = { "keep", "nodata", NULL };
-static const char *const export_encoding_words[] = { "terrarium", "mapbox", NULL };
+static const char *const export_encoding_words[] = { "auto", "terrarium", "mapbox", NULL };
 static const char *const export_picture_words[] = { "jpeg", "png", NULL };
 
 static int take_zooms(const sys_option *option, const char *text, void *field)

@@ -7,7 +7,7 @@
 #define EXPORT_ZOOM_MAX 24
 
 enum export_voids_word { EXPORT_VOIDS_KEEP, EXPORT_VOIDS_NODATA };
-enum export_encoding_word { EXPORT_TERRARIUM, EXPORT_MAPBOX };
+enum export_encoding_word { EXPORT_AUTO, EXPORT_TERRARIUM, EXPORT_MAPBOX };
 enum export_picture_word { EXPORT_JPEG, EXPORT_PNG };
 
 typedef struct export_zooms { /* --zoom A-B, or one alone */
@@ -32,8 +32,8 @@ extern const sys_option_type export_zooms_option;
     HEADING("Map tiles") \
     OPTION(export_zooms, zooms, "zoom", "A-B", NULL, SYS_ANY, \
            "these zooms; default: from one tile to the first whose pixels are no larger than samples") \
-    OPTION(sys_word, encoding, "encoding", "NAME", "terrarium", SYS_WORDS(export_encoding_words), \
-           "how colours encode heights; mapbox: Terrain-RGB, steps of 0.1 m") \
+    OPTION(sys_word, encoding, "encoding", "NAME", "auto", SYS_WORDS(export_encoding_words), \
+           "how colours encode heights; auto: mapbox (Terrain-RGB, steps of 0.1 m) unless the pack's are finer") \
     OPTION(sys_word, picture, "tile-images", "NAME", "jpeg", SYS_WORDS(export_picture_words), \
            "of --images; png: without loss, and clear beyond the ground") \
     HEADING("Run") \

@@ -108,15 +108,14 @@ static export_bounds plane_box(const ff_terrain_info *info)
                             south + (double)size_wu[1] / FF_WU_PER_METRE };
 }
 
-int export_place_bounds(const ff_terrain_info *info, OGRSpatialReferenceH srs,
-                        export_bounds *bounds)
+int export_place_degrees(OGRSpatialReferenceH srs, const export_bounds *plane,
+                         export_bounds *bounds)
 {
-    export_bounds plane = plane_box(info);
     OGRCoordinateTransformationH how = transformation(srs, 1);
     if (!how) return -1;
-    double x = (plane.west + plane.east) / 2, y = (plane.south + plane.north) / 2;
+    double x = (plane->west + plane->east) / 2, y = (plane->south + plane->north) / 2;
     int rc = !OCTTransform(how, 1, &x, &y, NULL) || !isfinite(x) ||
-                     project_box(how, &plane, x, bounds)
+                     project_box(how, plane, x, bounds)
                  ? bake_fail("the pack's place cannot be told in degrees")
                  : 0;
     OCTDestroyCoordinateTransformation(how);
@@ -159,8 +158,8 @@ static int choose_points(double from, double to, uint32_t count, uint32_t *low, 
 static int choose_window(const ff_terrain_info *info, const export_lattice *lattice,
                          OGRSpatialReferenceH srs, const bake_box *region, export_window *window)
 {
-    export_bounds bounds, part, plane;
-    if (export_place_bounds(info, srs, &bounds)) return -1;
+    export_bounds all = plane_box(info), bounds, part, plane;
+    if (export_place_degrees(srs, &all, &bounds)) return -1;
     int rc = clip_region(region, &bounds, &part);
     if (!rc) {
         OGRCoordinateTransformationH how = transformation(srs, 0);

@@ -32,9 +32,9 @@ OGRSpatialReferenceH export_place_srs(const ff_terrain_info *info);
 /* GDAL's geotransform of a window whose first row is its northern one, cells round the points. */
 void export_place_geotransform(const ff_terrain_info *info, const export_lattice *lattice,
                                const export_window *window, double geotransform[6]);
-/* Holds the terrain. 0 or -1 (said). */
-int export_place_bounds(const ff_terrain_info *info, OGRSpatialReferenceH srs,
-                        export_bounds *bounds);
+/* Holds all points of a box in the pack's plane. 0 or -1 (said). */
+int export_place_degrees(OGRSpatialReferenceH srs, const export_bounds *plane,
+                         export_bounds *bounds);
 /* The smallest window that holds the region's part of the terrain, at least 2 x 2 points; all of it
  * without a region. 0 or -1 (said). */
 int export_place_window(const ff_terrain_info *info, const export_lattice *lattice,

@@ -67,6 +67,12 @@ static int warp(const export_view *view, GDALDatasetH source, int bands, GDALRes
 
 static double clamp(double value, double low, double high) { return fmin(fmax(value, low), high); }
 
+/* Cubic filters overshoot. */
+static double metres_of(const export_ground *ground, float cell)
+{
+    return clamp((double)cell * ground->scale + ground->offset, ground->low, ground->high);
+}
+
 /* The bands of the ground's cell that is nearest to a place in its columns and rows. 0 or -1
  * (said).
  */
@@ -105,7 +111,8 @@ static int reach_beyond(const export_view *view, uint32_t width, uint32_t row, s
         float nearest[3], *at = values + (size_t)row * width + i;
         if (!isnan(*at)) continue;
         if (read_nearest(view->ground, ok[i] ? x[i] : NAN, ok[i] ? y[i] : NAN, nearest)) return -1;
-        for (int b = 0; b < view->ground->bands; b++) at[(size_t)b * band_cells] = nearest[b];
+        for (int b = 0; b < view->ground->bands; b++)
+            at[(size_t)b * band_cells] = (float)metres_of(view->ground, nearest[b]);
     }
     return 0;
 }
@@ -133,22 +140,30 @@ static int64_t make_mask(const export_view *view, uint32_t width, uint32_t heigh
     return rc ? rc : found;
 }
 
+int export_view_reach(const export_view *view, const double geotransform[6], uint32_t width,
+                      uint32_t height, float *values)
+{
+    double *place = malloc(width * (3 * sizeof *place + sizeof(int)));
+    if (!place) return bake_fail("out of memory");
+    GDALSetGenImgProjTransformerDstGeoTransform(view->transform, geotransform);
+    int rc = 0;
+    for (uint32_t row = 0; !rc && row < height; row++)
+        rc = reach_beyond(view, width, row, (size_t)width * height, place, values);
+    free(place);
+    return rc;
+}
+
 int64_t export_view_read(const export_view *view, const double geotransform[6], uint32_t width,
                          uint32_t height, float *values, uint8_t *mask)
 {
     const export_ground *ground = view->ground;
-    size_t band_cells = (size_t)width * height, count = band_cells * (size_t)ground->bands;
-    double *place = malloc(width * (3 * sizeof *place + sizeof(int)));
-    if (!place) return bake_fail("out of memory");
+    size_t count = (size_t)width * height * (size_t)ground->bands;
     for (size_t i = 0; i < count; i++) values[i] = NAN;
     GDALSetGenImgProjTransformerDstGeoTransform(view->transform, geotransform);
-    int rc = warp(view, ground->set, ground->bands, GRA_Cubic, width, height, values);
-    int64_t found = rc ? -1 : make_mask(view, width, height, values, mask);
-    for (uint32_t row = 0; found >= 0 && row < height; row++)
-        if (reach_beyond(view, width, row, band_cells, place, values)) found = -1;
-    for (size_t i = 0; found >= 0 && i < count; i++) /* cubic filters overshoot */
-        values[i] = (float)clamp(values[i] * ground->scale + ground->offset, ground->low,
-                                 ground->high);
-    free(place);
+    if (warp(view, ground->set, ground->bands, GRA_Cubic, width, height, values)) return -1;
+    int64_t found = make_mask(view, width, height, values, mask);
+    for (size_t i = 0; i < count; i++)
+        if (!isnan(values[i])) values[i] = (float)metres_of(ground, values[i]);
+    if (found >= 0 && export_view_reach(view, geotransform, width, height, values)) return -1;
     return found;
 }

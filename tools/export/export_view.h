@@ -21,5 +21,8 @@ void export_view_close(export_view *view);
  * ground, or -1 (said). */
 int64_t export_view_read(const export_view *view, const double geotransform[6], uint32_t width,
                          uint32_t height, float *values, uint8_t *mask);
+/* Values that are NAN become those of the nearest ground. 0 or -1 (said). */
+int export_view_reach(const export_view *view, const double geotransform[6], uint32_t width,
+                      uint32_t height, float *values);
 
 #endif
