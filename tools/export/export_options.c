@@ -50,7 +50,7 @@ static const sys_program program = {
     .more = "Map tiles are those of Web Mercator, 256 pixels wide. Tiles beside the ground are not "
             "written; in tiles that the ground ends in, what lies beyond has the height or colour "
             "of the nearest ground, since maps read heights of clear pixels as they stand; with "
-            "--voids nodata it is clear. Memory: about 130 MiB for GDAL and its caches and 2 bytes "
+            "--voids nodata it is clear. Memory: about 80 MiB for GDAL and its caches and 2 bytes "
             "x 4^N for tiles of 2^N, whatever the pack's size. Disk: 2 to 4 bytes a sample beside "
             "OUT, or in FARFIELD_TMP or TMPDIR when set.",
     .option = row,
