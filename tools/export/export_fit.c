@@ -7,7 +7,7 @@
 
 #define SIDE        EXPORT_TILE_SIDE
 #define EDGE_POINTS 16
-#define PLACE_PX    0.002 /* how exactly samples are placed among pixels */
+#define PLACE_PX    0.0002 /* how exactly samples are placed among pixels */
 
 /* Columns and rows of the ground. */
 typedef struct sample_range {

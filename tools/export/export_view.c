@@ -7,7 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define TRANSFORM_ERROR_PX 0.001
+#define TRANSFORM_ERROR_PX 0.0002
 #define WARP_MEMORY_BYTES  (64 << 20)
 
 int export_view_open(const export_ground *ground, OGRSpatialReferenceH target, export_view *view)
