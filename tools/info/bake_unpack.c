@@ -64,6 +64,18 @@ static void gather(const uint16_t *in, uint32_t side, size_t pitch, size_t strid
         for (uint32_t i = 0; i < side; i++) *out++ = in[(j * pitch + i) * stride];
 }
 
+/* The first stage of decoding. FF_OK or a negative ff_error. */
+static int decode_residuals(const bake_unpack *unpack, enum ff_section_kind kind, ff_key key,
+                            ff_residuals *residuals)
+{
+    const uint8_t *payload;
+    int bytes = ff_pack_record(&unpack->pack, kind, key, &payload);
+    if (bytes < 0) return bytes;
+    return kind == FF_SECTION_ROOT
+               ? ff_decode_root(unpack->decoder, payload, (size_t)bytes, residuals)
+               : ff_decode_refinement(unpack->decoder, payload, (size_t)bytes, residuals);
+}
+
 /* *leaf: 1 when nothing finer is stored. */
 static int decode_root(const bake_unpack *unpack, uint32_t tile, size_t pitch, size_t stride,
                        uint16_t *heights, unsigned *leaf)
@@ -73,9 +85,7 @@ static int decode_root(const bake_unpack *unpack, uint32_t tile, size_t pitch, s
     uint16_t node[FF_NODE_HEIGHTS_MAX];
     ff_key key = ff_key_make(tile, 0, 0);
     ff_residuals residuals = { .cells = ff_shape_cells(info, key, 0), .value = value };
-    const uint8_t *payload;
-    int rc = ff_pack_record(&unpack->pack, FF_SECTION_ROOT, key, &payload);
-    if (rc >= 0) rc = ff_decode_root(unpack->decoder, payload, (size_t)rc, &residuals);
+    int rc = decode_residuals(unpack, FF_SECTION_ROOT, key, &residuals);
     if (rc >= 0) rc = ff_reconstruct_root(info, &residuals, node);
     if (rc < 0) return fail_at(unpack, "the root", key, rc);
     scatter(node, ff_node_side(info), pitch, stride, heights);
@@ -92,15 +102,13 @@ static int decode_refinement(const bake_unpack *unpack, ff_key key, size_t pitch
     uint16_t parent[FF_NODE_HEIGHTS_MAX], refined[FF_REFINED_HEIGHTS_MAX];
     int is_ground = ff_shape_has_ground(info, key);
     ff_residuals residuals = { .leaf = 15, .value = value };
-    const uint8_t *payload;
     int rc = 0;
     if (is_ground) residuals.cells = ff_shape_cells(info, key, 1);
     gather(at, ff_node_side(info), pitch, stride, parent);
     if (*leaf & 1u || !is_ground) {
         ff_predict_children(info, residuals.cells, parent, refined);
     } else {
-        rc = ff_pack_record(&unpack->pack, FF_SECTION_REFINEMENT, key, &payload);
-        if (rc >= 0) rc = ff_decode_refinement(unpack->decoder, payload, (size_t)rc, &residuals);
+        rc = decode_residuals(unpack, FF_SECTION_REFINEMENT, key, &residuals);
         if (rc >= 0) rc = ff_reconstruct_refinement(info, parent, &residuals, refined);
     }
     if (rc < 0) return fail_at(unpack, "the refinement", key, rc);
@@ -131,4 +139,40 @@ int bake_unpack_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level, u
     unsigned leaf;
     if (decode_root(unpack, tile, pitch, (size_t)1 << level, heights, &leaf)) return -1;
     return decode_below(unpack, ff_key_make(tile, 0, 0), leaf, pitch, (size_t)1 << level, heights);
+}
+
+static bake_told told_of(const ff_residuals *residuals, unsigned q)
+{
+    return (bake_told){ residuals->child_error[q], residuals->filled >> q & 1u,
+                        residuals->leaf >> q & 1u };
+}
+
+int bake_unpack_told_root(const bake_unpack *unpack, uint32_t tile, bake_told *told)
+{
+    int32_t value[FF_REFINED_HEIGHTS_MAX];
+    ff_key key = ff_key_make(tile, 0, 0);
+    ff_residuals residuals = { .cells = ff_shape_cells(&unpack->pack.header.info, key, 0),
+                               .value = value };
+    int rc = decode_residuals(unpack, FF_SECTION_ROOT, key, &residuals);
+    if (rc < 0) return fail_at(unpack, "the root", key, rc);
+    *told = told_of(&residuals, 0);
+    return 0;
+}
+
+int bake_unpack_told_below(const bake_unpack *unpack, ff_key key, const bake_told *node,
+                           bake_told told[4])
+{
+    const ff_terrain_info *info = &unpack->pack.header.info;
+    int32_t value[FF_REFINED_HEIGHTS_MAX];
+    ff_residuals residuals = { .value = value };
+    if (node->is_leaf || !ff_shape_has_ground(info, key)) {
+        uint8_t code = ff_geometric_error_below(info, node->error_code);
+        for (int q = 0; q < 4; q++) told[q] = (bake_told){ code, node->has_filled, 1 };
+        return 0;
+    }
+    residuals.cells = ff_shape_cells(info, key, 1);
+    int rc = decode_residuals(unpack, FF_SECTION_REFINEMENT, key, &residuals);
+    if (rc < 0) return fail_at(unpack, "the refinement", key, rc);
+    for (unsigned q = 0; q < 4; q++) told[q] = told_of(&residuals, q);
+    return 0;
 }

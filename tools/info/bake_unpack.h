@@ -13,6 +13,13 @@ typedef struct bake_unpack {
     void *decoder_memory;
 } bake_unpack;
 
+/* What a pack tells of a node besides its heights. */
+typedef struct bake_told {
+    uint8_t error_code; /* its geometric error (ff_codec.h) */
+    uint8_t has_filled; /* some of the ground below it was void in the source */
+    uint8_t is_leaf;    /* nothing finer is stored */
+} bake_told;
+
 /* Maps and checks a pack. 0 or -1 (said). */
 int bake_unpack_open(bake_unpack *unpack, const char *path);
 void bake_unpack_close(bake_unpack *unpack);
@@ -21,5 +28,9 @@ void bake_unpack_close(bake_unpack *unpack);
 uint32_t bake_unpack_side(const ff_terrain_info *info, uint32_t level);
 /* Decodes one tile down to `level` into `heights` (side^2, south to north). 0 or -1 (said). */
 int bake_unpack_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level, uint16_t *heights);
+/* What is told of a tile's root, and of the four children of a node. 0 or -1 (said). */
+int bake_unpack_told_root(const bake_unpack *unpack, uint32_t tile, bake_told *told);
+int bake_unpack_told_below(const bake_unpack *unpack, ff_key key, const bake_told *node,
+                           bake_told told[4]);
 
 #endif
