@@ -20,8 +20,9 @@
 #define DEVIATIONS        2          /* from the middle to the ends of a range */
 #define PROBES            32
 #define PLACES            (5 * WINDOWS_MAX + PROBES * PROBES)
+#define RIM_WINDOWS       3u   /* on each of two rims */
 #define ROWS_APART        3    /* for roughness */
-#define MODEL_DEVIATION   0.02 /* of what is not sampled but reckoned */
+#define MODEL_DEVIATION   0.04 /* of what is not sampled but reckoned */
 #define MEMORY_BYTES      (130.0 * (1 << 20))
 #define TILE_SAMPLE_BYTES 9.0
 #define DISK_SAMPLE_BYTES 12.0
@@ -95,7 +96,7 @@ static int describe(estimate *e)
 
 /* ---- windows ---- */
 
-static double samples_of(const bake *b) { return (double)b->info.samples_x * b->info.samples_y; }
+static double samples_of(const bake *b) { return (double)b->heights.width * b->heights.height; }
 
 static uint32_t window_log2(const bake *b)
 {
@@ -241,15 +242,31 @@ static bake_guess regress(const estimate *e, double roughness)
                          n > 2 ? sqrt(rest / (n - 2) / n) : 0 };
 }
 
-/* What a window of nothing but padding costs: one whose ground is a single column. */
-static int make_padding(const estimate *e, uint32_t log2, double *bytes)
+/* Bytes of the padding: it repeats the ground's last column in the east and its last row in the
+ * north, so windows that show only a little of those cost as much. */
+static int guess_padding(const estimate *e, uint32_t log2, double *bytes)
 {
-    bake_window_count count;
+    const bake_grid *ground = &e->place.grid;
+    const bake_warp *warp = &e->plan.warp;
+    const ff_terrain_info *info = &e->b->info;
+    ff_sheet tiles = ff_shape_sheet_tiles(info);
     uint32_t size = (1u << log2) / e->b->options->densify + 1,
-             height = e->plan.warp.height < size ? e->plan.warp.height : size;
-    bake_window edge = { e->plan.warp.width / 2, (e->plan.warp.height - height) / 2, 2, height };
-    if (bake_window_make(e->b, &e->plan, &edge, log2, &count)) return -1;
-    *bytes = refinement_bytes(&count);
+             width = warp->width < size ? warp->width : size,
+             height = warp->height < size ? warp->height : size;
+    double tile = 1u << info->tile_log2, x = tiles.x * tile - ground->width + 1,
+           y = tiles.y * tile - ground->height + 1;
+    double window = pow(4, log2), cells[2] = { x * tiles.y * tile, y * (ground->width - 1.0) };
+    *bytes = 0;
+    for (uint32_t i = 0; i < 2 * RIM_WINDOWS; i++) {
+        bake_window_count count;
+        uint32_t along = 2 * (i / 2) + 1, north = warp->to[5] < 0 ? 0 : warp->height - 2;
+        bake_window edge = { (warp->width - width) * along / (2 * RIM_WINDOWS), north, width, 2 };
+        if (!(i & 1))
+            edge = (bake_window){ warp->width - 2,
+                                  (warp->height - height) * along / (2 * RIM_WINDOWS), 2, height };
+        if (bake_window_make(e->b, &e->plan, &edge, log2, &count)) return -1;
+        *bytes += refinement_bytes(&count) / window * cells[i & 1] / RIM_WINDOWS;
+    }
     return 0;
 }
 
@@ -287,13 +304,12 @@ static int guess_heights(estimate *e)
     bake_part whole = { 0, 0, e->b->ground.grid.width - 1, e->b->ground.grid.height - 1 };
     double roughness;
     if (bake_roughness(&e->b->ground.grid, &whole, ROWS_APART, quantum_m(e->b), &roughness) ||
-        make_padding(e, window_log2(e->b), &padding))
+        guess_padding(e, window_log2(e->b), &padding))
         return -1;
     bake_guess refinements = regress(e, roughness);
-    double window = refinements.value / e->window_cells,
-           fine = window * ground + fmin(padding / e->window_cells, window) * (all - ground);
+    double cell = refinements.value / e->window_cells, fine = cell * ground + padding;
     double share = fmin(1, e->count * e->window_cells / ground);
-    e->heights.value = fine + coarse_bytes(e) * fine / (window * all);
+    e->heights.value = fine + coarse_bytes(e) * fine / (cell * all);
     e->heights.deviation = hypot(refinements.deviation / e->window_cells * ground * sqrt(1 - share),
                                  MODEL_DEVIATION * fine);
     e->share = share;

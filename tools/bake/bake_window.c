@@ -26,6 +26,17 @@ static int copy_part(const bake_grid *from, const bake_window *window, bake_grid
     return rc;
 }
 
+/* Ground beyond the source is filled from its border: far away it is nearly flat. */
+static int make_flat(const bake *b, const bake_grid *grid)
+{
+    float height_m = (float)b->steps.min_m;
+    int rc = 0;
+    for (uint32_t j = 0; !rc && j < grid->height; j++)
+        for (uint32_t i = 0; !rc && i < grid->width; i++)
+            rc = bake_grid_write(grid, j, i, 1, &height_m);
+    return rc;
+}
+
 /* Makes the window's samples in metres, without voids. */
 static int make_samples(const bake *b, const bake_plan *plan, const bake_window *window,
                         bake_ground *ground)
@@ -45,8 +56,9 @@ static int make_samples(const bake *b, const bake_plan *plan, const bake_window 
                                 : copy_part(&b->ground.grid, window, &ground->grid);
     uint64_t all = (uint64_t)window->width * window->height;
     if (!rc && count.outside == all)
-        rc = bake_fail("the projected ground shows nothing of its middle");
-    if (!rc && count.outside) rc = bake_fill_voids(&ground->grid);
+        rc = make_flat(b, &ground->grid);
+    else if (!rc && count.outside)
+        rc = bake_fill_voids(&ground->grid);
     return rc ? rc : bake_densify(&ground->grid, ground->geotransform, b->options->densify);
 }
 

@@ -33,7 +33,7 @@ static int encode_part(const sampling *s, const bake_image *image, double *root,
     ff_terrain_info one = *s->info;
     bake_blob blob = { 0 };
     int rc = 0;
-    one.tiles_x = one.tiles_y = 1;
+    ff_shape_cover(&one, 2, 2); /* the only tile */
     *all = 0;
     for (uint32_t l = 0; !rc && l < image->levels; l++) {
         bake_blob_clear(&blob);
