@@ -63,6 +63,18 @@ static void gather(const uint16_t *in, uint32_t side, size_t pitch, size_t strid
         for (uint32_t i = 0; i < side; i++) *out++ = in[(j * pitch + i) * stride];
 }
 
+/* The first stage of decoding. FF_OK or a negative ff_error. */
+static int decode_residuals(const bake_unpack *unpack, enum ff_section_kind kind, ff_key key,
+                            ff_residuals *residuals)
+{
+    const uint8_t *payload;
+    int bytes = ff_pack_record(&unpack->pack, kind, key, &payload);
+    if (bytes < 0) return bytes;
+    return kind == FF_SECTION_ROOT
+               ? ff_decode_root(unpack->decoder, payload, (size_t)bytes, residuals)
+               : ff_decode_refinement(unpack->decoder, payload, (size_t)bytes, residuals);
+}
+
 static int decode_root(const bake_unpack *unpack, uint32_t tile, size_t pitch, size_t stride,
                        uint16_t *heights)
 {
@@ -70,10 +82,8 @@ static int decode_root(const bake_unpack *unpack, uint32_t tile, size_t pitch, s
     int32_t value[FF_REFINED_HEIGHTS_MAX];
     uint16_t node[FF_NODE_HEIGHTS_MAX];
     ff_residuals residuals = { .value = value };
-    const uint8_t *payload;
     ff_key key = ff_key_make(tile, 0, 0);
-    int rc = ff_pack_record(&unpack->pack, FF_SECTION_ROOT, key, &payload);
-    if (rc >= 0) rc = ff_decode_root(unpack->decoder, payload, (size_t)rc, &residuals);
+    int rc = decode_residuals(unpack, FF_SECTION_ROOT, key, &residuals);
     if (rc >= 0) rc = ff_reconstruct_root(info, &residuals, node);
     if (rc < 0) return fail_at(unpack, "the root", key, rc);
     scatter(node, ff_node_side(info), pitch, stride, heights);
@@ -87,9 +97,7 @@ static int decode_refinement(const bake_unpack *unpack, ff_key key, size_t pitch
     int32_t value[FF_REFINED_HEIGHTS_MAX];
     uint16_t parent[FF_NODE_HEIGHTS_MAX], refined[FF_REFINED_HEIGHTS_MAX];
     ff_residuals residuals = { .value = value };
-    const uint8_t *payload;
-    int rc = ff_pack_record(&unpack->pack, FF_SECTION_REFINEMENT, key, &payload);
-    if (rc >= 0) rc = ff_decode_refinement(unpack->decoder, payload, (size_t)rc, &residuals);
+    int rc = decode_residuals(unpack, FF_SECTION_REFINEMENT, key, &residuals);
     gather(at, ff_node_side(info), pitch, stride, parent);
     if (rc >= 0) rc = ff_reconstruct_refinement(info, parent, &residuals, refined);
     if (rc < 0) return fail_at(unpack, "the refinement", key, rc);
@@ -108,6 +116,21 @@ int bake_unpack_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level, u
             uint16_t *at = heights + ff_morton_y(code) * edge * pitch + ff_morton_x(code) * edge;
             if (decode_refinement(unpack, ff_key_make(tile, l, code), pitch, stride, at)) return -1;
         }
+    }
+    return 0;
+}
+
+int bake_unpack_told(const bake_unpack *unpack, enum ff_section_kind kind, ff_key key,
+                     bake_told told[4])
+{
+    int32_t value[FF_REFINED_HEIGHTS_MAX];
+    ff_residuals residuals = { .value = value };
+    int rc = decode_residuals(unpack, kind, key, &residuals);
+    if (rc < 0)
+        return fail_at(unpack, kind == FF_SECTION_ROOT ? "the root" : "the refinement", key, rc);
+    for (int q = 0; q < (kind == FF_SECTION_ROOT ? 1 : 4); q++) {
+        told[q].error_steps = ff_geometric_error_decode(residuals.child_error[q]);
+        told[q].has_filled = residuals.filled >> q & 1;
     }
     return 0;
 }

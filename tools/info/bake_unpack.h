@@ -13,6 +13,12 @@ typedef struct bake_unpack {
     void *decoder_memory;
 } bake_unpack;
 
+/* What a pack tells of a node besides its heights. */
+typedef struct bake_told {
+    uint32_t error_steps; /* its geometric error */
+    int has_filled;       /* some of the ground below it was void in the source */
+} bake_told;
+
 /* Maps and checks a pack. 0 or -1 (said). */
 int bake_unpack_open(bake_unpack *unpack, const char *path);
 void bake_unpack_close(bake_unpack *unpack);
@@ -21,5 +27,9 @@ void bake_unpack_close(bake_unpack *unpack);
 uint32_t bake_unpack_side(const ff_terrain_info *info, uint32_t level);
 /* Decodes one tile down to `level` into `heights` (side^2, south to north). 0 or -1 (said). */
 int bake_unpack_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level, uint16_t *heights);
+/* What a root's record tells of the root, in told[0], or a refinement's of the four children of
+ * `key`. 0 or -1 (said). */
+int bake_unpack_told(const bake_unpack *unpack, enum ff_section_kind kind, ff_key key,
+                     bake_told told[4]);
 
 #endif

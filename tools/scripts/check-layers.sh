@@ -88,6 +88,7 @@ tools/bake/raster   tools/bake protocol/ platform/sys.h
 tools/bake/image    tools/bake tools/bake/raster protocol/ platform/sys.h
 tools/bake/tiles    tools/bake tools/bake/raster platform/sys.h
 tools/info          platform/options tools/bake tools/bake/raster client/farfield.h protocol/ platform/sys.h
+tools/export        platform/options tools/bake tools/bake/raster tools/bake/tiles tools/info client/farfield.h protocol/ platform/sys.h
 tools/report        platform/options client/farfield.h common3d platform/sys.h
 tools/scripts
 END
@@ -174,7 +175,7 @@ shape_words() { # PATTERN that no code may have but protocol/shape, the tests, a
     tools/bake/bake_run.c      describes the raster; reports it
     tools/bake/bake_estimate.c  the same, beforehand
     tools/bake/bake_fault.c    says which field is out of range
-    tools/info/bake_export.c   writes it into a raster's head
+    tools/export/export_place.c  writes it into a raster's head
     tools/info/bake_info.c     reports it
 ff_node_(edge|cell)_wu
     protocol/ff_terrain.h      defines them: nominal lengths

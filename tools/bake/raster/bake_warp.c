@@ -51,8 +51,6 @@ int bake_warp_measure(void *transform, int to_source, uint32_t width, uint32_t h
     return 0;
 }
 
-/* Tells the filter how much coarser the new grid is. Left to itself the warper takes the ratio of
- * each block to the upright window round it in the source, and blurs whatever is turned. */
 static char **add_scale(char **list, const char *name, double cells)
 {
     char text[40];
@@ -60,11 +58,18 @@ static char **add_scale(char **list, const char *name, double cells)
     return CSLSetNameValue(list, name, text);
 }
 
+char **bake_warp_sharpness(char **list, void *transform, uint32_t width, uint32_t height)
+{
+    bake_warp_cell cell;
+    if (bake_warp_measure(transform, 1, width, height, &cell)) return list;
+    list = add_scale(list, "XSCALE", hypot(cell.x[0], cell.x[1]));
+    return add_scale(list, "YSCALE", hypot(cell.y[0], cell.y[1]));
+}
+
 /* Takes `transform` over. */
 static GDALDatasetH make_warped(const bake_warp *w, GDALDatasetH source, void *transform)
 {
     char threads[16];
-    bake_warp_cell cell;
     snprintf(threads, sizeof threads, "%d", w->jobs);
     GDALWarpOptions *warp = GDALCreateWarpOptions();
     warp->eResampleAlg = GRA_Cubic;
@@ -80,11 +85,8 @@ static GDALDatasetH make_warped(const bake_warp *w, GDALDatasetH source, void *t
     warp->papszWarpOptions = CSLSetNameValue(warp->papszWarpOptions, "INIT_DEST", "NO_DATA");
     warp->papszWarpOptions = CSLSetNameValue(warp->papszWarpOptions, "NUM_THREADS", threads);
     GDALSetGenImgProjTransformerDstGeoTransform(transform, w->to);
-    if (!bake_warp_measure(transform, 1, w->width, w->height, &cell)) {
-        double across = hypot(cell.x[0], cell.x[1]), down = hypot(cell.y[0], cell.y[1]);
-        warp->papszWarpOptions = add_scale(warp->papszWarpOptions, "XSCALE", across);
-        warp->papszWarpOptions = add_scale(warp->papszWarpOptions, "YSCALE", down);
-    }
+    warp->papszWarpOptions = bake_warp_sharpness(warp->papszWarpOptions, transform, w->width,
+                                                 w->height);
     warp->pfnTransformer = GDALApproxTransform;
     warp->pTransformerArg = GDALCreateApproxTransformer(GDALGenImgProjTransform, transform,
                                                         TRANSFORM_ERROR_PX);

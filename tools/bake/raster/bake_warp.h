@@ -32,6 +32,10 @@ void *bake_warp_transform(GDALDatasetH source, OGRSpatialReferenceH target);
  * cells of the source. 0, or -1: it has none. */
 int bake_warp_measure(void *transform, int to_source, uint32_t width, uint32_t height,
                       bake_warp_cell *cell);
+/* Tells the warper's filter, by options that are added to `list`, how much coarser the new grid is
+ * in its middle. Left to itself the warper takes the ratio of each block to the upright window
+ * round it in the source, and blurs whatever is turned. Returns the list. */
+char **bake_warp_sharpness(char **list, void *transform, uint32_t width, uint32_t height);
 /* A data set over `grid` as `warp` tells where it comes from. NULL after saying why. */
 GDALDatasetH bake_warp_source(const bake_warp *warp, const bake_grid *grid);
 /* Takes places of the new grid, in its columns and rows, back to those of the source. A place that

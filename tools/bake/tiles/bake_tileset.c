@@ -202,7 +202,7 @@ static int open_pmtiles(bake_tileset *set)
     if (!json) return -1;
     find_text(json, "\"encoding\"", set->encoding, sizeof set->encoding);
     free(json);
-    set->zoom_max = set->pmtiles.zoom_max;
+    set->zoom_max = set->pmtiles.head.zoom_max;
     return 0;
 }
 
@@ -212,7 +212,7 @@ static uint32_t tile_at(double at, uint32_t zoom)
 }
 
 /* The header tells where tiles are. */
-static int pmtiles_area(const bake_pmtiles *file, uint32_t zoom, bake_tiles_area *area)
+static int pmtiles_area(const bake_pm_header *file, uint32_t zoom, bake_tiles_area *area)
 {
     if (!(file->west < file->east && file->south < file->north) || zoom < file->zoom_min) return -1;
     *area = (bake_tiles_area){ tile_at(bake_tiles_x(file->west, zoom), zoom),
@@ -263,7 +263,7 @@ void bake_tileset_close(bake_tileset *set)
 
 int bake_tileset_area(const bake_tileset *set, uint32_t zoom, bake_tiles_area *area)
 {
-    int rc = set->kind == BAKE_TILES_PM   ? pmtiles_area(&set->pmtiles, zoom, area)
+    int rc = set->kind == BAKE_TILES_PM   ? pmtiles_area(&set->pmtiles.head, zoom, area)
              : set->kind == BAKE_TILES_MB ? table_area(set, zoom, area)
                                           : folder_area(set, zoom, area);
     if (rc || area->south >> zoom || area->east < area->west || area->south < area->north)

@@ -1,0 +1,101 @@
+/* What is said of a set of map tiles. */
+#include "../bake/bake_say.h"
+#include "export_store_local.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define VALUE_BYTES 128
+#define JSON_BYTES  8192
+
+int export_facts(const export_tiles_about *t, export_fact_fn put, void *context)
+{
+    char text[VALUE_BYTES];
+    const export_bounds *b = &t->bounds;
+    int rc = put(context, "name", t->about.name, 1) || put(context, "type", "baselayer", 1) ||
+             put(context, "format", t->format, 1);
+    if (!rc && *t->about.attribution) rc = put(context, "attribution", t->about.attribution, 1);
+    if (!rc && t->encoding) rc = put(context, "encoding", t->encoding, 1);
+    if (!rc && *t->about.error) {
+        snprintf(text, sizeof text, "%.6g", t->about.error_m);
+        rc = put(context, "description", t->about.error, 1) || put(context, "error_m", text, 0);
+    }
+    snprintf(text, sizeof text, "%u", t->side);
+    if (!rc) rc = put(context, "tileSize", text, 0);
+    snprintf(text, sizeof text, "%u", t->zoom_min);
+    if (!rc) rc = put(context, "minzoom", text, 0);
+    snprintf(text, sizeof text, "%u", t->zoom_max);
+    if (!rc) rc = put(context, "maxzoom", text, 0);
+    snprintf(text, sizeof text, "%.7f,%.7f,%.7f,%.7f", b->west, b->south, b->east, b->north);
+    if (!rc) rc = put(context, "bounds", text, 0);
+    snprintf(text, sizeof text, "%.7f,%.7f,%u", (b->west + b->east) / 2, (b->south + b->north) / 2,
+             t->zoom_min);
+    if (!rc) rc = put(context, "center", text, 0);
+    return rc;
+}
+
+/* ---- JSON ---- */
+
+typedef struct json_text {
+    char *text;
+    size_t used;
+} json_text;
+
+static void add(json_text *json, const char *bytes)
+{
+    size_t count = strlen(bytes);
+    if (json->used + count >= JSON_BYTES) return;
+    memcpy(json->text + json->used, bytes, count + 1);
+    json->used += count;
+}
+
+static void add_quoted(json_text *json, const char *text)
+{
+    char one[8];
+    add(json, "\"");
+    for (; *text; text++) {
+        unsigned char c = (unsigned char)*text;
+        if (c == '"' || c == '\\')
+            snprintf(one, sizeof one, "\\%c", c);
+        else if (c < ' ')
+            snprintf(one, sizeof one, "\\u%04x", c);
+        else
+            snprintf(one, sizeof one, "%c", c);
+        add(json, one);
+    }
+    add(json, "\"");
+}
+
+static int add_fact(void *context, const char *name, const char *value, int is_text)
+{
+    json_text *json = context;
+    int is_list = strchr(value, ',') && !is_text;
+    if (json->used > 1) add(json, ", ");
+    add_quoted(json, name);
+    add(json, is_list ? ": [" : ": ");
+    if (is_text)
+        add_quoted(json, value);
+    else
+        add(json, value);
+    if (is_list) add(json, "]");
+    return 0;
+}
+
+char *export_facts_json(const export_tiles_about *tiles, const char *pattern)
+{
+    json_text json = { malloc(JSON_BYTES), 0 };
+    if (!json.text) {
+        bake_fail("out of memory");
+        return NULL;
+    }
+    add(&json, "{");
+    if (pattern) {
+        add_fact(&json, "tilejson", "3.0.0", 1);
+        add(&json, ", \"tiles\": [");
+        add_quoted(&json, pattern);
+        add(&json, "]");
+    }
+    export_facts(tiles, add_fact, &json);
+    add(&json, "}\n");
+    return json.text;
+}

@@ -1,0 +1,85 @@
+/* The textures of a level, put together. */
+#include "../../platform/sys.h"
+#include "../../protocol/shape/ff_shape.h"
+#include "../bake/bake_say.h"
+#include "export_ground_local.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define RGB 3
+
+typedef struct image_reader {
+    export_ground *ground;
+    uint8_t *rgb; /* of a texture, top row first */
+    uint64_t missing;
+} image_reader;
+
+static int read_texture(image_reader *reader, ff_key key, uint32_t column, uint32_t row)
+{
+    const bake_unpack *unpack = reader->ground->unpack;
+    uint32_t side = 1u << unpack->pack.header.info.texture_log2;
+    const uint8_t *bytes;
+    int rc = ff_pack_record(&unpack->pack, FF_SECTION_TEXTURE, key, &bytes);
+    if (rc == FF_ERR_NOT_FOUND) reader->missing++;
+    if (rc == FF_ERR_NOT_FOUND) return 0;
+    if (rc >= 0) rc = sys_jpeg_decode(bytes, (size_t)rc, side, side, reader->rgb);
+    if (rc < 0)
+        return bake_fail("%s: the texture of tile %u, level %u, code %u: %s", unpack->path,
+                         ff_key_tile(key), ff_key_level(key), ff_key_code(key), ff_error_text(rc));
+    for (uint32_t j = 0; j < side; j++)
+        if (export_put_row(reader->ground, column, row + j, side,
+                           reader->rgb + (size_t)(side - 1 - j) * side * RGB))
+            return -1;
+    return 0;
+}
+
+static int read_tile(void *context, uint32_t tile)
+{
+    image_reader *reader = context;
+    const ff_terrain_info *info = &reader->ground->unpack->pack.header.info;
+    uint32_t level = reader->ground->level, cells = (1u << info->texture_log2) - 1;
+    ff_sheet at = ff_shape_sheet(info, tile);
+    for (uint32_t code = 0; code >> (2 * level) == 0; code++) {
+        uint32_t column = ((at.x << level) + ff_morton_x(code)) * cells,
+                 row = ((at.y << level) + ff_morton_y(code)) * cells;
+        const export_window *w = &reader->ground->window;
+        if (column >= w->left + w->width || column + cells < w->left ||
+            row >= w->bottom + w->height || row + cells < w->bottom)
+            continue;
+        if (read_texture(reader, ff_key_make(tile, level, code), column, row)) return -1;
+    }
+    return 0;
+}
+
+/* What has no texture is black. */
+static int read_textures(export_ground *ground)
+{
+    const ff_terrain_info *info = &ground->unpack->pack.header.info;
+    const bake_grid *cells = &ground->cells;
+    if (ftruncate(cells->fd, (off_t)cells->width * cells->height * RGB))
+        return bake_fail("cannot make a temporary file: %s", strerror(errno));
+    image_reader reader = { ground, malloc((size_t)RGB << (2 * info->texture_log2)), 0 };
+    uint32_t tile_texels = ((1u << info->texture_log2) - 1) << ground->level;
+    int rc = reader.rgb ? export_each_tile(ground, tile_texels, read_tile, &reader)
+                        : bake_fail("out of memory");
+    if (reader.missing)
+        bake_note("%" PRIu64 " textures are not in the pack: black", reader.missing);
+    free(reader.rgb);
+    return rc;
+}
+
+int export_ground_open_images(const bake_unpack *unpack, uint32_t level, const bake_box *region,
+                              export_ground *ground)
+{
+    *ground = (export_ground){
+        .unpack = unpack, .level = level, .bands = RGB, .scale = 1, .high = UINT8_MAX
+    };
+    ground->lattice = export_lattice_texels(&unpack->pack.header.info, level);
+    int rc = export_ground_begin(ground, region, RGB);
+    if (!rc) rc = read_textures(ground);
+    return export_ground_finish(ground, rc);
+}

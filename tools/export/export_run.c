@@ -1,0 +1,76 @@
+#include "export_run.h"
+
+#include "../bake/bake_say.h"
+#include "export_pyramid.h"
+#include "export_raster.h"
+#include "export_store.h"
+
+#include <string.h>
+
+#define GDAL_CACHE_BYTES (48 << 20)
+
+/* The level asked for, or the finest, of heights or of images. 0 or -1 (said). */
+static int choose_level(const export_options *o, const ff_terrain_info *info, uint32_t *level)
+{
+    uint32_t levels = o->images ? info->texture_levels : ff_terrain_levels(info);
+    if (!levels) return bake_fail("--images: %s has none", o->pack_path);
+    *level = o->has_level ? o->level : levels - 1;
+    if (*level < levels) return 0;
+    return bake_fail("--level %u: %s has levels 0 to %u%s", *level, o->pack_path, levels - 1,
+                     o->images ? " of images" : "");
+}
+
+static int write_ground(const export_options *o, export_ground *ground)
+{
+    if (export_raster_is(o->out_path)) return export_raster_write(o, ground);
+    return export_pyramid_write(o, ground);
+}
+
+/* Temporary files lie beside the output, which may be a folder that is not there yet. */
+static void set_temp_folder(const char *out_path)
+{
+    char path[EXPORT_PATH_BYTES];
+    size_t length = strnlen(out_path, sizeof path - 1);
+    while (length > 1 && out_path[length - 1] == '/') length--;
+    memcpy(path, out_path, length);
+    path[length] = 0;
+    bake_temp_setup(path);
+}
+
+static int export_pack(const export_options *o, const bake_unpack *unpack)
+{
+    export_ground ground;
+    uint32_t level = 0;
+    int is_raster = export_raster_is(o->out_path);
+    if (!is_raster && export_pyramid_check(o, &unpack->pack.header.info)) return -1;
+    if (choose_level(o, &unpack->pack.header.info, &level)) return -1;
+    set_temp_folder(o->out_path);
+    if (o->images ? export_ground_open_images(unpack, level, &o->region, &ground)
+                  : export_ground_open(unpack, level, &o->region, &ground))
+        return -1;
+    int rc = write_ground(o, &ground);
+    export_ground_close(&ground);
+    return rc;
+}
+
+static int check_output(const export_options *o)
+{
+    if (export_raster_is(o->out_path)) return export_raster_check(o);
+    if (export_store_kind_of(o->out_path) != EXPORT_STORE_NONE) return 0;
+    return bake_fail(
+        "%s: the ending must be .tif, .png, .jpg, .r16, .pmtiles, .mbtiles, or a slash "
+        "for a folder of map tiles",
+        o->out_path);
+}
+
+int export_run(const export_options *o)
+{
+    bake_unpack unpack;
+    GDALAllRegister();
+    GDALSetCacheMax(GDAL_CACHE_BYTES);
+    CPLSetErrorHandler(CPLQuietErrorHandler);
+    if (check_output(o) || bake_unpack_open(&unpack, o->pack_path)) return -1;
+    int rc = export_pack(o, &unpack);
+    bake_unpack_close(&unpack);
+    return rc;
+}

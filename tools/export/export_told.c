@@ -1,0 +1,156 @@
+/* What the nodes of a pack tell: geometric errors, and where ground was filled. */
+#include "../../protocol/shape/ff_shape.h"
+#include "../bake/bake_say.h"
+#include "export_ground_local.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const ff_terrain_info *info_of(const export_ground *ground)
+{
+    return &ground->unpack->pack.header.info;
+}
+
+static uint32_t tile_points(const export_ground *ground)
+{
+    return bake_unpack_side(info_of(ground), ground->level) - 1;
+}
+
+/* ---- geometric errors ---- */
+
+typedef struct error_search {
+    const export_ground *ground;
+    uint32_t steps;
+} error_search;
+
+static int search_tile(void *context, uint32_t tile)
+{
+    error_search *search = context;
+    uint32_t level = search->ground->level;
+    bake_told told[4] = { { 0, 0 } };
+    if (!level &&
+        bake_unpack_told(search->ground->unpack, FF_SECTION_ROOT, ff_key_make(tile, 0, 0), told))
+        return -1;
+    if (!level && told[0].error_steps > search->steps) search->steps = told[0].error_steps;
+    for (uint32_t code = 0; level && code >> (2 * (level - 1)) == 0; code++) {
+        if (bake_unpack_told(search->ground->unpack, FF_SECTION_REFINEMENT,
+                             ff_key_make(tile, level - 1, code), told))
+            return -1;
+        for (int q = 0; q < 4; q++)
+            if (told[q].error_steps > search->steps) search->steps = told[q].error_steps;
+    }
+    return 0;
+}
+
+int export_told_error(const export_ground *ground, double *error_m)
+{
+    error_search search = { ground, info_of(ground)->max_error };
+    /* there is nothing between the finest samples */
+    int finest = ground->level + 1 == ff_terrain_levels(info_of(ground));
+    int rc = finest ? 0 : export_each_tile(ground, tile_points(ground), search_tile, &search);
+    *error_m = search.steps * ground->scale;
+    return rc;
+}
+
+/* ---- filled ground ---- */
+
+/* Nodes of the finest level, a byte each, row 0 south: 1 where some of the ground was filled. */
+typedef struct filled_nodes {
+    const export_ground *ground;
+    bake_grid nodes;
+    int found;
+} filled_nodes;
+
+static int mark_node(filled_nodes *filled, ff_key key)
+{
+    uint32_t level = ff_key_level(key);
+    ff_sheet at = ff_shape_sheet(info_of(filled->ground), ff_key_tile(key));
+    uint8_t one = 1;
+    filled->found = 1;
+    return bake_grid_write(&filled->nodes, (at.y << level) + ff_morton_y(ff_key_code(key)),
+                           (at.x << level) + ff_morton_x(ff_key_code(key)), 1, &one);
+}
+
+/* Goes down where something was filled. */
+static int mark_below(filled_nodes *filled, ff_key key)
+{
+    bake_told told[4];
+    if (ff_key_level(key) + 1 == ff_terrain_levels(info_of(filled->ground)))
+        return mark_node(filled, key);
+    if (bake_unpack_told(filled->ground->unpack, FF_SECTION_REFINEMENT, key, told)) return -1;
+    for (uint32_t q = 0; q < 4; q++)
+        if (told[q].has_filled && mark_below(filled, ff_key_child(key, q))) return -1;
+    return 0;
+}
+
+static int mark_tile(void *context, uint32_t tile)
+{
+    filled_nodes *filled = context;
+    bake_told told[4];
+    ff_key root = ff_key_make(tile, 0, 0);
+    if (bake_unpack_told(filled->ground->unpack, FF_SECTION_ROOT, root, told)) return -1;
+    return told[0].has_filled ? mark_below(filled, root) : 0;
+}
+
+/* Clears the marks of samples that touch a node of this row that is all measured: had they been
+ * filled, that node would tell. */
+static void keep_touched(const export_ground *ground, const uint8_t *nodes, uint32_t count,
+                         uint8_t *row)
+{
+    const ff_terrain_info *info = info_of(ground);
+    uint32_t skip = ff_terrain_levels(info) - 1 - ground->level, k = info->node_log2;
+    for (uint32_t i = 0; i < ground->window.width; i++) {
+        uint64_t sample = (uint64_t)(ground->window.left + i) << skip, node = sample >> k;
+        int on_rim = (sample & ((1u << k) - 1)) == 0;
+        if (node < count && !nodes[node]) row[i] = EXPORT_MEASURED;
+        if (on_rim && node > 0 && !nodes[node - 1]) row[i] = EXPORT_MEASURED;
+    }
+}
+
+static int spread_row(const filled_nodes *filled, uint32_t j, uint8_t *nodes, uint8_t *row)
+{
+    const ff_terrain_info *info = info_of(filled->ground);
+    uint32_t skip = ff_terrain_levels(info) - 1 - filled->ground->level, k = info->node_log2;
+    uint64_t sample = (uint64_t)(filled->ground->window.bottom + j) << skip, node = sample >> k;
+    int on_rim = (sample & ((1u << k) - 1)) == 0;
+    memset(row, EXPORT_FILLED, filled->ground->window.width);
+    for (uint64_t n = on_rim && node ? node - 1 : node; n <= node; n++) {
+        if (n >= filled->nodes.height) continue;
+        if (bake_grid_read(&filled->nodes, (uint32_t)n, 0, filled->nodes.width, nodes)) return -1;
+        keep_touched(filled->ground, nodes, filled->nodes.width, row);
+    }
+    return 0;
+}
+
+static int spread(const filled_nodes *filled, bake_grid *mask)
+{
+    const export_window *w = &filled->ground->window;
+    uint8_t *nodes = malloc(filled->nodes.width), *row = malloc(w->width);
+    int rc = nodes && row ? bake_grid_open(mask, w->width, w->height, 1)
+                          : bake_fail("out of memory");
+    for (uint32_t j = 0; !rc && j < w->height; j++) {
+        rc = spread_row(filled, j, nodes, row);
+        if (!rc) rc = bake_grid_write(mask, w->height - 1 - j, 0, w->width, row);
+    }
+    free(nodes);
+    free(row);
+    return rc;
+}
+
+int export_told_filled(const export_ground *ground, bake_grid *mask)
+{
+    const ff_terrain_info *info = info_of(ground);
+    uint32_t finest = ff_terrain_levels(info) - 1;
+    ff_sheet tiles = ff_shape_sheet_tiles(info);
+    filled_nodes filled = { .ground = ground };
+    if (bake_grid_open(&filled.nodes, tiles.x << finest, tiles.y << finest, 1)) return -1;
+    int rc = 0;
+    if (ftruncate(filled.nodes.fd, (off_t)filled.nodes.width * filled.nodes.height))
+        rc = bake_fail("cannot make a temporary file: %s", strerror(errno));
+    if (!rc) rc = export_each_tile(ground, tile_points(ground), mark_tile, &filled);
+    if (!rc && filled.found) rc = spread(&filled, mask);
+    bake_grid_close(&filled.nodes);
+    return rc;
+}
