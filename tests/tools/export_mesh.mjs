@@ -1,12 +1,13 @@
-// export_mesh.mjs CESIUM FOLDER POINTS: reads the meshes in FOLDER with Cesium's own terrain provider (the npm package @cesium/engine in
+// export_mesh.mjs CESIUM FOLDER POINTS [METRES]: reads the meshes in FOLDER with Cesium's own terrain provider (the npm package @cesium/engine in
 // CESIUM), over HTTP, and compares heights at POINTS ("longitude latitude metres metres-to-the-rim", one a line) at every zoom for which
-// layer.json states an error. Prints "ok - what" / "not ok - what".
+// layer.json states an error, which for the finest
+// is METRES at most. Prints "ok - what" / "not ok - what".
 import fs from 'node:fs';
 import http from 'node:http';
 import path from 'node:path';
 import { pathToFileURL } from 'node:url';
 
-const [cesium, folder, pointsFile] = process.argv.slice(2);
+const [cesium, folder, pointsFile, finest] = process.argv.slice(2);
 const C = await import(pathToFileURL(path.join(cesium, 'node_modules/@cesium/engine/index.js')));
 const layer = JSON.parse(fs.readFileSync(path.join(folder, 'layer.json')));
 const packed = layer.encoding === 'gzip';
@@ -44,7 +45,7 @@ result(provider.hasVertexNormals === (layer.extensions || []).includes('octverte
 
 // ---- heights ----
 const points = fs.readFileSync(pointsFile, 'utf8').trim().split('\n').map(line => line.split(' ').map(Number));
-let zooms = 0, before = Infinity;
+let zooms = 0;
 for (let level = layer.maxzoom; level >= 0; level--) {
     const bound = layer.errors_m[level];
     if (bound === null) continue;
@@ -65,6 +66,7 @@ for (let level = layer.maxzoom; level >= 0; level--) {
     result(!missing && worst <= bound + 0.05, `zoom ${level}: heights at ${count} points are within the stated ${bound} m`,
         `${worst.toFixed(3)} m at most, ${Math.sqrt(sum / count).toFixed(3)} m rms, ${missing} without a tile`);
 }
+if (finest) result(layer.errors_m[layer.maxzoom] <= Number(finest), `the finest zoom states no more than ${finest} m`);
 result(zooms >= 3, `${zooms} zooms were compared`);
 
 // ---- what tiles say of themselves ----

@@ -29,7 +29,7 @@ static int measure(const mesh_ground *ground, uint32_t zoom, uint32_t x, uint32_
 static int ask_neighbours(const mesh_ground *ground, const mesh_range *range, uint32_t zoom,
                           uint32_t x, uint32_t y, float error_m, mesh_tile *tile, mesh_sides *sides)
 {
-    static const int step_x[] = { -1, 0, 1, 0 }, step_y[] = { 0, -1, 0, 1 };
+    static const int step_x[] = { -1, 1, 0, 0 }, step_y[] = { 0, 0, -1, 1 };
     memset(sides, 0, sizeof *sides);
     for (int side = 0; side < MESH_SIDES; side++) {
         int64_t to_x = (int64_t)x + step_x[side], to_y = (int64_t)y + step_y[side];
@@ -38,7 +38,7 @@ static int ask_neighbours(const mesh_ground *ground, const mesh_range *range, ui
             continue;
         if (measure(ground, zoom, (uint32_t)to_x, (uint32_t)to_y, tile)) return -1;
         mesh_rtin_sides(&tile->rtin, error_m, &theirs);
-        memcpy(sides->used[side], theirs.used[(side + 2) % MESH_SIDES], sizeof sides->used[side]);
+        memcpy(sides->used[side], theirs.used[side ^ 1], sizeof sides->used[side]);
     }
     return 0;
 }

@@ -24,8 +24,8 @@ typedef struct mesh_rtin {
     uint32_t triangle_count;
 } mesh_rtin;
 
-/* Points of a square's sides: bit i of [side][0..1] is point i, from the south or the west. */
-enum mesh_side { MESH_WEST, MESH_SOUTH, MESH_EAST, MESH_NORTH, MESH_SIDES };
+/* Points of a square's sides, from the south or the west. The side across is `side ^ 1`. */
+enum mesh_side { MESH_WEST, MESH_EAST, MESH_SOUTH, MESH_NORTH, MESH_SIDES };
 typedef struct mesh_sides {
     uint8_t used[MESH_SIDES][MESH_SIDE];
 } mesh_sides;
