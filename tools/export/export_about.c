@@ -28,9 +28,11 @@ void export_about_ground(const export_ground *ground, export_about *about)
     take_name(ground->unpack->path, about->name);
     if (ground->bands != 1) return;
     if (about->error_m > 0)
-        export_about_add(about, "heights within %.4g m of the pack's source", about->error_m);
+        export_about_add(about, "heights within %.4g m of those the pack was made from",
+                         about->error_m);
     else
-        export_about_add(about, "heights are the pack's source's");
+        export_about_add(about, "heights are those the pack was made from");
+    export_about_add(about, ", in steps of %.4g m", ground->scale);
     if (ground->error.between_m > ground->error.samples_m)
         export_about_add(about, ", ground between them within %.4g m (level %u)",
                          ground->error.between_m, ground->level);

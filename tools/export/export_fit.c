@@ -45,24 +45,39 @@ static int find_range(const export_view *view, sample_range *range)
     return range->left < range->right && range->top < range->bottom ? 0 : -1;
 }
 
-static double painted(const export_paint *paint, const export_tile *tile, size_t at)
+/* One tile judged. */
+typedef struct tile_judge {
+    const export_view *view;
+    const export_paint *paint;
+    const export_patch *patch;
+    void *place; /* from samples to pixels */
+    double map_px;
+    uint32_t stride;
+    sample_range range;
+    export_fit *fit;
+} tile_judge;
+
+static double painted(const tile_judge *judge, size_t at)
 {
     uint8_t rgb[3];
-    export_encode(paint->encoding, (double)tile->value[0][at], rgb);
-    return export_decode(paint->encoding, rgb);
+    export_encode(judge->paint->encoding, (double)judge->patch->metres[at], rgb);
+    return export_decode(judge->paint->encoding, rgb);
 }
 
-/* The tile's height between the centres of four pixels; NAN where one of them is no ground. */
-static double height_at(const export_paint *paint, const export_tile *tile, double x, double y)
+/* The height at a place in the tile's pixels, between the centres of four; NAN where one of them is
+ * no ground or not known, or where the place is not the tile's. */
+static double height_at(const tile_judge *judge, double x, double y)
 {
-    double u = x - 0.5, v = y - 0.5;
-    if (!(u >= 0 && v >= 0 && u < SIDE - 1 && v < SIDE - 1)) return NAN;
-    size_t i = (size_t)u, j = (size_t)v, at = j * SIDE + i;
-    const size_t four[4] = { at, at + 1, at + SIDE, at + SIDE + 1 };
+    const export_patch *patch = judge->patch;
+    if (!(x >= 0 && y >= 0 && x < SIDE && y < SIDE)) return NAN;
+    double u = x + patch->margin - 0.5, v = y + patch->margin - 0.5;
+    if (u < 0 || v < 0 || u >= patch->side - 1 || v >= patch->side - 1) return NAN;
+    size_t i = (size_t)u, j = (size_t)v, at = j * patch->side + i;
+    const size_t four[4] = { at, at + 1, at + patch->side, at + patch->side + 1 };
     double height[4];
     for (int n = 0; n < 4; n++) {
-        if (export_tile_is_void(paint, tile->mask[four[n]])) return NAN;
-        height[n] = painted(paint, tile, four[n]);
+        if (export_tile_is_void(judge->paint, patch->mask[four[n]])) return NAN;
+        height[n] = painted(judge, four[n]);
     }
     u -= (double)i;
     v -= (double)j;
@@ -70,56 +85,56 @@ static double height_at(const export_paint *paint, const export_tile *tile, doub
            v * ((1 - u) * height[2] + u * height[3]);
 }
 
+/* Memory for a row of samples. */
 typedef struct sample_row {
     uint16_t *steps;
     double *x, *y, *z;
     int *ok;
 } sample_row;
 
-static int judge_row(const export_view *view, const export_paint *paint, const export_tile *tile,
-                     void *place, sample_row row, const sample_range *range, uint32_t j,
-                     double map_cells, uint32_t stride, export_fit *fit)
+static int judge_row(const tile_judge *judge, const sample_row *row, uint32_t j)
 {
-    const export_ground *ground = view->ground;
-    uint32_t count = 0, width = range->right - range->left;
-    if (bake_grid_read(&ground->cells, j, range->left, width, row.steps)) return -1;
-    for (uint32_t i = 0; i < width; i += stride) {
-        row.x[count] = range->left + i + 0.5;
-        row.y[count] = j + 0.5;
-        row.z[count++] = 0;
+    const export_ground *ground = judge->view->ground;
+    uint32_t left = judge->range.left, width = judge->range.right - left, count = 0,
+             skipped = (judge->stride - left % judge->stride) % judge->stride;
+    if (bake_grid_read(&ground->cells, j, left, width, row->steps)) return -1;
+    for (uint32_t i = skipped; i < width; i += judge->stride) {
+        row->x[count] = left + i + 0.5;
+        row->y[count] = j + 0.5;
+        row->z[count++] = 0;
     }
-    GDALApproxTransform(place, FALSE, (int)count, row.x, row.y, row.z, row.ok);
+    GDALApproxTransform(judge->place, FALSE, (int)count, row->x, row->y, row->z, row->ok);
     for (uint32_t n = 0; n < count; n++) {
-        if (!row.ok[n]) continue;
-        double x = row.x[n] - map_cells * nearbyint((row.x[n] - SIDE / 2.0) / map_cells);
-        double off = height_at(paint, tile, x, row.y[n]) -
-                     (row.steps[n * stride] * ground->scale + ground->offset);
+        if (!row->ok[n]) continue;
+        double x = row->x[n] - judge->map_px * nearbyint((row->x[n] - SIDE / 2.0) / judge->map_px);
+        double off = height_at(judge, x, row->y[n]) -
+                     (row->steps[skipped + n * judge->stride] * ground->scale + ground->offset);
         if (isnan(off)) continue;
-        fit->count++;
-        fit->sum += off * off;
-        fit->worst_m = fmax(fit->worst_m, fabs(off));
+        judge->fit->count++;
+        judge->fit->sum += off * off;
+        judge->fit->worst_m = fmax(judge->fit->worst_m, fabs(off));
     }
     return 0;
 }
 
-int export_fit_add(const export_view *view, const export_paint *paint, const export_tile *tile,
-                   const double geotransform[6], double map_cells, uint32_t stride, export_fit *fit)
+int export_fit_add(const export_view *view, const export_paint *paint, const export_patch *patch,
+                   const double geotransform[6], double map_px, uint32_t stride, export_fit *fit)
 {
-    sample_range range;
+    tile_judge judge = { view, paint, patch, NULL, map_px, stride, { 0 }, fit };
     GDALSetGenImgProjTransformerDstGeoTransform(view->transform, geotransform);
-    if (find_range(view, &range)) return 0;
-    uint32_t width = range.right - range.left;
+    if (find_range(view, &judge.range)) return 0;
+    size_t width = judge.range.right - judge.range.left;
     double *memory = malloc(width * (3 * sizeof *memory + sizeof(int) + sizeof(uint16_t)));
     if (!memory) return bake_fail("out of memory");
-    sample_row row = { .x = memory, .y = memory + width, .z = memory + 2 * (size_t)width };
-    row.ok = (int *)(memory + 3 * (size_t)width);
+    sample_row row = { .x = memory, .y = memory + width, .z = memory + 2 * width };
+    row.ok = (int *)(memory + 3 * width);
     row.steps = (uint16_t *)(row.ok + width);
-    void *place = GDALCreateApproxTransformer(GDALGenImgProjTransform, view->transform, PLACE_PX);
+    judge.place = GDALCreateApproxTransformer(GDALGenImgProjTransform, view->transform, PLACE_PX);
     int rc = 0;
-    uint32_t first = (range.top + stride - 1) / stride * stride;
-    for (uint32_t j = first; !rc && j < range.bottom; j += stride)
-        rc = judge_row(view, paint, tile, place, row, &range, j, map_cells, stride, fit);
-    GDALDestroyApproxTransformer(place);
+    uint32_t first = (judge.range.top + stride - 1) / stride * stride;
+    for (uint32_t j = first; !rc && j < judge.range.bottom; j += stride)
+        rc = judge_row(&judge, &row, j);
+    GDALDestroyApproxTransformer(judge.place);
     free(memory);
     return rc;
 }

@@ -11,12 +11,18 @@ typedef struct export_fit {
     double sum, worst_m; /* of squares */
 } export_fit;
 
-/* Adds every `stride`-th sample along both axes that lies between four pixels of ground of one
- * tile, placed by its geotransform, as it is painted. `map_cells`: pixels once round the map. 0 or
+/* A tile's heights, with `margin` pixels of its neighbours round it where they are known. */
+typedef struct export_patch {
+    const float *metres;
+    const uint8_t *mask; /* enum export_cell */
+    uint32_t side, margin;
+} export_patch;
+
+/* Adds every `stride`-th sample along both axes that lies in the tile, placed by its geotransform,
+ * and between four pixels of ground, as they are painted. `map_px`: pixels once round the map. 0 or
  * -1 (said). */
-int export_fit_add(const export_view *view, const export_paint *paint, const export_tile *tile,
-                   const double geotransform[6], double map_cells, uint32_t stride,
-                   export_fit *fit);
+int export_fit_add(const export_view *view, const export_paint *paint, const export_patch *patch,
+                   const double geotransform[6], double map_px, uint32_t stride, export_fit *fit);
 double export_fit_rms(const export_fit *fit);
 
 #endif

@@ -47,14 +47,13 @@ static const sys_program program = {
              "cloud-optimised GeoTIFF, 16-bit PNG, raw little-endian 16 bit (top row north), or "
              "map tiles. GeoTIFF has place, scale and offset; PNG and raw the height steps alone. "
              "What is written says how far its heights may be off.",
-    .more =
-        "Map tiles are those of Web Mercator, 256 pixels wide. Tiles beside the ground are not "
-        "written; in tiles that the ground ends in, what lies beyond has the height or colour "
-        "of the nearest ground, since maps read heights of clear pixels as they stand; with "
-        "--voids nodata it is clear. Meshes are tiles of degrees on WGS84, heights above it those of the "
-        "pack; what lies beyond the ground has the height 0. Memory: about 130 MiB for GDAL and its caches and 2 bytes "
-        "x 4^N for tiles of 2^N, whatever the pack's size. Disk: 2 to 4 bytes a sample beside "
-        "OUT, or in FARFIELD_TMP or TMPDIR when set.",
+    .more = "Map tiles are those of Web Mercator, 256 pixels wide. Tiles beside the ground are not "
+            "written; in tiles that the ground ends in, what lies beyond has the height or colour "
+            "of the nearest ground, since maps read heights of clear pixels as they stand; with "
+            "--voids nodata it is clear. Meshes are tiles of degrees on WGS84, and the height is 0 "
+            "beyond the ground. Memory: about 80 MiB for GDAL and its caches and 2 bytes "
+            "x 4^N for tiles of 2^N, whatever the pack's size. Disk: 2 to 4 bytes a sample beside "
+            "OUT, or in FARFIELD_TMP or TMPDIR when set.",
     .option = row,
     .option_count = sizeof row / sizeof *row
 };

@@ -19,7 +19,7 @@ extern const sys_option_type export_zooms_option;
 /* clang-format off */
 #define EXPORT_OPTIONS(OPTION, HEADING) \
     OPTION(sys_text, pack_path, NULL, "PACK", NULL, SYS_FLAGS(SYS_NEEDED), "the pack") \
-    OPTION(sys_text, out_path, "output", "OUT", NULL, SYS_FLAGS(SYS_NEEDED | SYS_LETTER), \
+    OPTION(sys_text, out_path, "output", "FILE", NULL, SYS_FLAGS(SYS_NEEDED | SYS_LETTER), \
            "OUT.tif, .png or .r16; map tiles: OUT.pmtiles, OUT.mbtiles, or a folder OUT/") \
     OPTION(sys_flag, images, "images", NULL, NULL, SYS_ANY, \
            "the images laid over the ground (OUT.jpg, too) instead of its heights") \

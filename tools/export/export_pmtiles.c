@@ -175,7 +175,7 @@ static int place_tiles(archive *a)
 
 static int write_bytes(const archive *a, const void *bytes, size_t count)
 {
-    if (fwrite(bytes, 1, count, a->file) == count) return 0;
+    if (!count || fwrite(bytes, 1, count, a->file) == count) return 0;
     return bake_fail("cannot write %s: %s", a->store->whole.path, strerror(errno));
 }
 

@@ -15,6 +15,8 @@
 #include <string.h>
 
 #define SIDE          EXPORT_TILE_SIDE
+#define RIM           1 /* of its neighbours' pixels, round a tile that is judged */
+#define WIDE          (SIDE + 2 * RIM)
 #define EDGE_M        20037508.342789244 /* of Web Mercator, from its middle */
 #define EARTH_ROUND_M (2 * EDGE_M)
 #define EPSG_MERCATOR 3857
@@ -31,6 +33,8 @@ typedef struct pyramid {
     double west, north, east, south; /* the ground, in tiles of zoom 0; east may be beyond 1 */
     uint32_t zoom_low, zoom_high;
     export_tile *tile[EXPORT_ZOOM_MAX + 1]; /* one being made at each zoom */
+    float wide[WIDE * WIDE]; /* the one of the finest zoom with a rim of its neighbours: heights */
+    uint8_t wide_mask[WIDE * WIDE];
     export_fit fit[EXPORT_ZOOM_MAX + 1];
     uint64_t written, bytes, finest, finest_all; /* tiles; those of the finest zoom, about */
 } pyramid;
@@ -59,28 +63,52 @@ static void place_tile(uint32_t zoom, uint32_t x, uint32_t y, double geotransfor
 
 /* ---- making tiles ---- */
 
+static int measure_tile(pyramid *p, uint32_t zoom, const double geotransform[6])
+{
+    export_patch patch = { p->tile[zoom]->value[0], p->tile[zoom]->mask, SIDE, 0 };
+    if (zoom == p->zoom_high) patch = (export_patch){ p->wide, p->wide_mask, WIDE, RIM };
+    return export_fit_add(&p->view, &p->paint, &patch, geotransform,
+                          (double)SIDE * (double)(1u << zoom), 1u << (p->zoom_high - zoom),
+                          &p->fit[zoom]);
+}
+
 static int write_tile(pyramid *p, uint32_t zoom, uint32_t x, uint32_t y)
 {
     double geotransform[6];
     size_t count;
     place_tile(zoom, x, y, geotransform);
-    if (p->paint.encoding && export_fit_add(&p->view, &p->paint, p->tile[zoom], geotransform,
-                                            (double)SIDE * (double)(1u << zoom),
-                                            1u << (p->zoom_high - zoom), &p->fit[zoom]))
-        return -1;
+    if (p->paint.encoding && measure_tile(p, zoom, geotransform)) return -1;
     uint8_t *bytes = export_tile_paint(&p->paint, p->tile[zoom], &count);
-    int rc = bytes ? export_store_put(p->store, zoom, x, y, bytes, count) : -1;
+    if (!bytes) return -1;
+    int rc = export_store_put(p->store, zoom, x, y, bytes, count);
     VSIFree(bytes);
     p->written++;
     p->bytes += count;
     return rc;
 }
 
-/* 1, or 0: the tile has no ground; -1 (said). */
-static int project_tile(const pyramid *p, export_tile *tile, const double geotransform[6])
+static int read_wide(pyramid *p, export_tile *tile, const double geotransform[6])
 {
-    if (export_view_read(&p->view, geotransform, SIDE, SIDE, tile->value[0], tile->mask) < 0)
-        return -1;
+    double wide[6];
+    memcpy(wide, geotransform, sizeof wide);
+    wide[0] -= RIM * wide[1];
+    wide[3] -= RIM * wide[5];
+    if (export_view_read(&p->view, wide, WIDE, WIDE, p->wide, p->wide_mask) < 0) return -1;
+    for (size_t j = 0; j < SIDE; j++) {
+        size_t from = (j + RIM) * WIDE + RIM;
+        memcpy(tile->value[0] + j * SIDE, p->wide + from, SIDE * sizeof *p->wide);
+        memcpy(tile->mask + j * SIDE, p->wide_mask + from, SIDE);
+    }
+    return 0;
+}
+
+/* 1, or 0: the tile has no ground; -1 (said). */
+static int project_tile(pyramid *p, export_tile *tile, const double geotransform[6])
+{
+    int rc = p->paint.encoding ? read_wide(p, tile, geotransform)
+                               : export_view_read(&p->view, geotransform, SIDE, SIDE,
+                                                  tile->value[0], tile->mask) < 0;
+    if (rc) return -1;
     for (size_t i = 0; i < EXPORT_TILE_CELLS; i++)
         if (!export_tile_is_void(&p->paint, tile->mask[i])) return 1;
     return 0;
@@ -268,21 +296,24 @@ static int make_tiles(const export_options *o, pyramid *p)
 
 int export_pyramid_write(const export_options *o, const export_ground *ground)
 {
-    pyramid p = { .ground = ground };
-    choose_paint(o, &ground->unpack->pack.header.info, &p.paint);
-    export_about_ground(ground, &p.about.about);
-    if (open_view(&p)) return -1;
-    int rc = choose_box(o, &p);
-    p.about.format = p.paint.is_jpeg ? "jpg" : "png";
-    p.about.encoding = p.paint.encoding ? p.paint.encoding->name : NULL;
-    p.about.side = SIDE;
-    p.about.zoom_min = p.zoom_low;
-    p.about.zoom_max = p.zoom_high;
-    if (!rc) rc = make_tiles(o, &p);
-    export_view_close(&p.view);
+    pyramid *p = calloc(1, sizeof *p);
+    if (!p) return bake_fail("out of memory");
+    p->ground = ground;
+    choose_paint(o, &ground->unpack->pack.header.info, &p->paint);
+    export_about_ground(ground, &p->about.about);
+    int rc = open_view(p);
+    if (!rc) rc = choose_box(o, p);
+    p->about.format = p->paint.is_jpeg ? "jpg" : "png";
+    p->about.encoding = p->paint.encoding ? p->paint.encoding->name : NULL;
+    p->about.side = SIDE;
+    p->about.zoom_min = p->zoom_low;
+    p->about.zoom_max = p->zoom_high;
+    if (!rc) rc = make_tiles(o, p);
+    export_view_close(&p->view);
     if (!rc)
         bake_note("%s: %" PRIu64 " tiles of zooms %u to %u, %" PRIu64 " bytes%s%s", o->out_path,
-                  p.written, p.zoom_low, p.zoom_high, p.bytes, *p.about.about.error ? "; " : "",
-                  p.about.about.error);
+                  p->written, p->zoom_low, p->zoom_high, p->bytes,
+                  *p->about.about.error ? "; " : "", p->about.about.error);
+    free(p);
     return rc;
 }
