@@ -25,6 +25,24 @@ gdal_translate -q -of GTiff -a_srs EPSG:32633 -a_ullr 500000 5212000 512000 5200
 "$BIN/farfield-bake" ground.tif --max-error 1 --quiet -o ground.ffp
 result $? "a pack is made"
 
+/usr/bin/python3 - <<'PY' # a small ground across 180 degrees
+import array, math
+from osgeo import gdal, osr
+gdal.UseExceptions()
+degrees, plane = osr.SpatialReference(), osr.SpatialReference()
+degrees.ImportFromEPSG(4326)
+plane.ImportFromEPSG(32601)
+degrees.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+x, y, _ = osr.CoordinateTransformation(degrees, plane).TransformPoint(180.0, 68.0)
+raster = gdal.GetDriverByName('GTiff').Create('across.tif', 200, 150, 1, gdal.GDT_Int16)
+raster.SetProjection(plane.ExportToWkt())
+raster.SetGeoTransform([round(x) - 6000, 60, 0, round(y) + 4500, 0, -60])
+heights = [int(500 + 300 * math.sin(i / 20) * math.cos(j / 17)) for j in range(150) for i in range(200)]
+raster.GetRasterBand(1).WriteRaster(0, 0, 200, 150, array.array('h', heights).tobytes())
+PY
+"$BIN/farfield-bake" across.tif --quiet -o across.ffp
+result $? "and one of ground across 180 degrees"
+
 refused "end its name in a slash" ground.ffp --mesh -o meshes
 result $? "meshes go to a folder"
 refused "--zoom 0-9" ground.ffp --mesh --zoom 5-9 -o meshes/
@@ -93,6 +111,8 @@ if why=$(get_cesium); then
         result $? "Cesium reads plain meshes"
         read_by_cesium ground.ffp 8 --normals --gzip --mesh-error 2
         result $? "and packed ones with normals, closer to the ground"
+        read_by_cesium across.ffp 10
+        result $? "and those of ground across 180 degrees"
     fi
 else
     echo "ok - Cesium reads the meshes # skip $why"
