@@ -147,13 +147,13 @@ int mesh_ground_read(const mesh_ground *g, uint32_t zoom, uint32_t x, uint32_t y
                      float block[MESH_BLOCK_SIDE * MESH_BLOCK_SIDE])
 {
     uint32_t down = g->zoom - zoom;
-    int64_t left = (((int64_t)x * MESH_CELLS - 1) << down) - (int64_t)g->range.west * MESH_CELLS,
-            bottom = (((int64_t)y * MESH_CELLS - 1) << down) - (int64_t)g->range.south * MESH_CELLS;
+    int64_t apart = (int64_t)1 << down;
+    int64_t left = ((int64_t)x * MESH_CELLS - 1) * apart - (int64_t)g->range.west * MESH_CELLS,
+            bottom = ((int64_t)y * MESH_CELLS - 1) * apart - (int64_t)g->range.south * MESH_CELLS;
     float *room = malloc(g->points.width * sizeof *room);
     int rc = room ? 0 : bake_fail("out of memory");
     for (int j = 0; !rc && j < MESH_BLOCK_SIDE; j++)
-        rc = read_row(g, down, left, bottom + ((int64_t)j << down), room,
-                      block + j * MESH_BLOCK_SIDE);
+        rc = read_row(g, down, left, bottom + j * apart, room, block + j * MESH_BLOCK_SIDE);
     free(room);
     return rc;
 }
