@@ -161,6 +161,7 @@ int bake_options_parse(bake_options *o, int argc, char **argv)
     bake_say_setup("farfield-bake", 0);
     int rc = sys_options_parse(&program, o, argc, argv);
     if (rc) return rc;
+    if (!o->heights_path) return bake_fail("HEIGHTS is missing; try --help");
     if (o->tile_log2 && (o->tile_log2 < o->node_log2 || o->tile_log2 > o->node_log2 + 15))
         return bake_fail("--tile-log2 %u: not from --node-log2 %u up", o->tile_log2, o->node_log2);
     if (o->no_project && o->target_epsg)

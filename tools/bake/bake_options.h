@@ -94,6 +94,8 @@ extern const sys_option_type bake_raw_option, bake_nodata_option, bake_box_optio
     HEADING("Run") \
     OPTION(sys_whole, jobs, "jobs", "N", NULL, SYS_WHOLE(1, 64, ""), \
            "threads; default: the processors, at most 16; any N gives the same bytes") \
+    OPTION(sys_flag, estimate, "estimate", NULL, NULL, SYS_FLAGS(SYS_ALONE), \
+           "tells size, time and memory beforehand, by windows spread over the ground; writes no pack") \
     OPTION(sys_flag, json, "json", NULL, NULL, SYS_ANY, "a summary on stdout") \
     OPTION(sys_flag, quiet, "quiet", NULL, NULL, SYS_ANY, "errors only")
 /* clang-format on */

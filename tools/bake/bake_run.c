@@ -1,4 +1,4 @@
-#include "bake_run.h"
+#include "bake_estimate.h"
 
 #include "../../protocol/shape/ff_shape.h"
 #include "../../platform/sys.h"
@@ -6,17 +6,13 @@
 #include "raster/bake_densify.h"
 #include "raster/bake_fill.h"
 #include "raster/bake_given.h"
-#include "image/bake_image.h"
 #include "bake_fault.h"
 #include "bake_jobs.h"
 #include "raster/bake_project.h"
-#include "raster/bake_quantise.h"
 #include "raster/bake_reference.h"
 #include "raster/bake_voids.h"
 #include "tiles/bake_mosaic.h"
 #include "bake_say.h"
-#include "bake_tile.h"
-#include "pack_writer.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -27,23 +23,6 @@
 #define TILE_LOG2_DEFAULT 10
 #define PADDING_MAX       1.5 /* padded samples to samples, for the default tile size */
 #define GDAL_CACHE_BYTES  (48 << 20)
-
-/* Everything between raster and pack; one per run. */
-typedef struct bake {
-    const bake_options *options;
-    bake_ground ground;
-    bake_steps steps;
-    ff_terrain_info info;
-    bake_grid heights; /* uint16, rows south to north */
-    bake_grid marks;   /* of filled samples, as the ground is; closed: there are none */
-    bake_grid filled;  /* the same beside the heights, a byte each */
-    bake_image image;
-    bake_tile *tile; /* one per job */
-    bake_blob (*texture)[BAKE_TEXTURE_LEVELS_MAX];
-    pack_writer writer;
-    uint8_t about[FF_ABOUT_BYTES_MAX];
-    int64_t started_us;
-} bake;
 
 /* ---- ground ---- */
 
@@ -86,19 +65,27 @@ static void say_filled(const bake_ground *ground)
                   ground->outside);
 }
 
+int bake_read(bake *b)
+{
+    if (read_source(b->options, &b->ground)) return -1;
+    if (bake_given_heights(b->options, &b->ground)) return -1;
+    return fill(b, b->ground.voids);
+}
+
+uint32_t bake_spacing_wu(const bake_options *o, double spacing_m)
+{
+    return (uint32_t)fmin(nearbyint(spacing_m * FF_WU_PER_METRE / o->densify), UINT32_MAX);
+}
+
 static int make_ground(bake *b)
 {
     double spacing_m;
-    if (read_source(b->options, &b->ground)) return -1;
-    if (bake_given_heights(b->options, &b->ground)) return -1;
-    if (fill(b, b->ground.voids)) return -1;
+    if (bake_read(b)) return -1;
     if (bake_project(b->options, &b->ground, &b->marks, &spacing_m)) return -1;
     if (fill(b, b->ground.outside)) return -1;
     say_filled(&b->ground);
     if (bake_densify(&b->ground.grid, b->ground.geotransform, b->options->densify)) return -1;
-    /* one out of range is refused when the terrain is described */
-    b->info.spacing_wu = (uint32_t)fmin(
-        nearbyint(spacing_m * FF_WU_PER_METRE / b->options->densify), UINT32_MAX);
+    b->info.spacing_wu = bake_spacing_wu(b->options, spacing_m);
     if (bake_steps_choose(b->options, &b->ground, &b->steps)) return -1;
     if (bake_quantise(b->options, &b->ground, &b->steps, &b->info, &b->heights)) return -1;
     int rc = b->marks.fd < 0 ? 0
@@ -134,7 +121,7 @@ static void describe_place(const bake_ground *ground, ff_terrain_info *info)
     if (!info->epsg) bake_note("the reference system has no EPSG code: the pack will not name it");
 }
 
-static int describe(bake *b)
+int bake_describe(bake *b)
 {
     const bake_options *o = b->options;
     ff_terrain_info *info = &b->info;
@@ -244,7 +231,7 @@ static void report(const bake *b, uint64_t file_bytes)
 static int make_pack(bake *b)
 {
     uint64_t file_bytes;
-    if (make_ground(b) || describe(b)) return -1;
+    if (make_ground(b) || bake_describe(b)) return -1;
     if (b->options->color_path && bake_image_make(b->options, &b->ground, &b->info, &b->image))
         return -1;
     if (pack_writer_open(&b->writer, &b->info)) return -1;
@@ -265,19 +252,24 @@ static int is_same_file(const char *path, const char *other)
            a.st_ino == b.st_ino;
 }
 
+/* Makes sure that the pack can be written, and writes over no input. */
+static int prepare(const bake_options *o)
+{
+    if (is_same_file(o->heights_path, o->out_path) || is_same_file(o->color_path, o->out_path))
+        return bake_fail("%s is the input: not overwritten", o->out_path);
+    return pack_writer_prepare(o->out_path);
+}
+
 int bake_run(const bake_options *options)
 {
     bake b = { .options = options, .started_us = sys_time_us() };
     b.ground.grid = b.heights = b.marks = b.filled = BAKE_GRID_CLOSED;
-    if (is_same_file(options->heights_path, options->out_path) ||
-        is_same_file(options->color_path, options->out_path))
-        return bake_fail("%s is the input: not overwritten", options->out_path);
-    bake_temp_setup(options->out_path);
-    if (pack_writer_prepare(options->out_path)) return -1;
+    bake_temp_setup(options->out_path ? options->out_path : "/tmp/");
+    if (!options->estimate && prepare(options)) return -1;
     GDALAllRegister();
     GDALSetCacheMax64(GDAL_CACHE_BYTES);
     CPLSetErrorHandler(CPLQuietErrorHandler);
-    int rc = make_pack(&b);
+    int rc = options->estimate ? bake_estimate(&b) : make_pack(&b);
     pack_writer_close(&b.writer);
     bake_image_close(&b.image);
     bake_grid_close(&b.heights);

@@ -7,13 +7,14 @@
 
 #define VALUE_BYTES 128
 #define JSON_BYTES  8192
+#define MESH_FORMAT "quantized-mesh-1.0"
 
 int export_facts(const export_tiles_about *t, export_fact_fn put, void *context)
 {
     char text[VALUE_BYTES];
     const export_bounds *b = &t->bounds;
     int rc = put(context, "name", t->about.name, 1) || put(context, "type", "baselayer", 1) ||
-             put(context, "format", t->format, 1);
+             put(context, "format", t->layer ? MESH_FORMAT : t->format, 1);
     if (!rc && *t->about.attribution) rc = put(context, "attribution", t->about.attribution, 1);
     if (!rc && *t->about.licence) rc = put(context, "licence", t->about.licence, 1);
     if (!rc && *t->about.date) rc = put(context, "date", t->about.date, 1);
@@ -25,7 +26,7 @@ int export_facts(const export_tiles_about *t, export_fact_fn put, void *context)
         rc = put(context, "description", t->about.error, 1) || put(context, "error_m", text, 0);
     }
     snprintf(text, sizeof text, "%u", t->side);
-    if (!rc) rc = put(context, "tileSize", text, 0);
+    if (!rc && t->side) rc = put(context, "tileSize", text, 0);
     snprintf(text, sizeof text, "%u", t->zoom_min);
     if (!rc) rc = put(context, "minzoom", text, 0);
     snprintf(text, sizeof text, "%u", t->zoom_max);
@@ -94,12 +95,16 @@ char *export_facts_json(const export_tiles_about *tiles, const char *pattern)
     }
     add(&json, "{");
     if (pattern) {
-        add_fact(&json, "tilejson", "3.0.0", 1);
+        add_fact(&json, "tilejson", tiles->layer ? "2.1.0" : "3.0.0", 1);
         add(&json, ", \"tiles\": [");
         add_quoted(&json, pattern);
         add(&json, "]");
     }
     export_facts(tiles, add_fact, &json);
+    if (tiles->layer) {
+        add(&json, ", ");
+        add(&json, tiles->layer);
+    }
     add(&json, "}\n");
     return json.text;
 }

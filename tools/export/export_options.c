@@ -50,7 +50,8 @@ static const sys_program program = {
     .more = "Map tiles are those of Web Mercator, 256 pixels wide. Tiles beside the ground are not "
             "written; in tiles that the ground ends in, what lies beyond has the height or colour "
             "of the nearest ground, since maps read heights of clear pixels as they stand; with "
-            "--voids nodata it is clear. Memory: about 80 MiB for GDAL and its caches and 2 bytes "
+            "--voids nodata it is clear. Meshes are tiles of degrees on WGS84, and the height is 0 "
+            "beyond the ground. Memory: about 80 MiB for GDAL and its caches and 2 bytes "
             "x 4^N for tiles of 2^N, whatever the pack's size. Disk: 2 to 4 bytes a sample beside "
             "OUT, or in FARFIELD_TMP or TMPDIR when set.",
     .option = row,
@@ -66,6 +67,8 @@ int export_options_parse(export_options *o, int argc, char **argv)
     o->has_level = o->level != NOT_GIVEN;
     if (o->images && o->voids == EXPORT_VOIDS_NODATA)
         return bake_fail("--voids nodata marks heights, not --images");
+    if (!o->mesh && (o->mesh_error_m > 0 || o->normals || o->gzip))
+        return bake_fail("--mesh-error, --normals and --gzip are for --mesh");
     bake_say_setup("farfield-export", o->quiet);
     return 0;
 }

@@ -36,6 +36,14 @@ extern const sys_option_type export_zooms_option;
            "how colours encode heights; auto: mapbox (Terrain-RGB, steps of 0.1 m) unless the pack's are finer") \
     OPTION(sys_word, picture, "tile-images", "NAME", "jpeg", SYS_WORDS(export_picture_words), \
            "of --images; png: without loss, and clear beyond the ground") \
+    HEADING("Meshes for Cesium") \
+    OPTION(sys_flag, mesh, "mesh", NULL, NULL, SYS_ANY, \
+           "quantized-mesh tiles with layer.json in the folder OUT/") \
+    OPTION(sys_real, mesh_error_m, "mesh-error", "M", NULL, SYS_REAL(0.001, 1e6, "m"), \
+           "of the finest zoom's meshes; each coarser one's is twice as large; default: 1/8 of the spacing") \
+    OPTION(sys_flag, normals, "normals", NULL, NULL, SYS_ANY, "with octvertexnormals") \
+    OPTION(sys_flag, gzip, "gzip", NULL, NULL, SYS_ANY, \
+           "packed: to be served with Content-Encoding: gzip") \
     HEADING("Run") \
     OPTION(sys_whole, jpeg_quality, "jpeg-quality", "Q", "85", SYS_WHOLE(1, 100, ""), \
            "of JPEGs that are written") \

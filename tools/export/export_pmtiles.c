@@ -3,14 +3,13 @@
 #include "../bake/bake_say.h"
 #include "../bake/raster/bake_grid.h"
 #include "../bake/tiles/bake_pmtiles_format.h"
+#include "export_gzip.h"
 #include "export_store_local.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
 
-#define GZIP_WINDOW  (16 + MAX_WBITS)
 #define LEAF_ENTRIES 4096
 
 typedef struct growing {
@@ -73,22 +72,20 @@ static int by_number(const void *a, const void *b)
 /* ---- directories ---- */
 
 /* Appends bytes, packed. 0 or -1 (said). */
-static int add_packed(growing *to, const void *plain, size_t count, uint32_t *bytes)
+static int add_packed(growing *to, const void *plain, size_t plain_count, uint32_t *bytes)
 {
-    size_t room = compressBound((uLong)count) + 64;
-    uint8_t *grown = realloc(to->bytes, to->count + room);
-    z_stream stream = { .next_in = (Bytef *)plain, .avail_in = (uInt)count };
-    if (grown) to->bytes = grown;
-    if (!grown ||
-        deflateInit2(&stream, Z_BEST_COMPRESSION, Z_DEFLATED, GZIP_WINDOW, 8, Z_DEFAULT_STRATEGY))
-        return bake_fail("out of memory");
-    stream.next_out = to->bytes + to->count;
-    stream.avail_out = (uInt)room;
-    (void)deflate(&stream, Z_FINISH); /* there is room for all of it */
-    *bytes = (uint32_t)stream.total_out;
-    to->count += stream.total_out;
-    deflateEnd(&stream);
-    return 0;
+    size_t count = 0;
+    uint8_t *packed = export_gzip(plain, plain_count, &count);
+    uint8_t *grown = packed ? realloc(to->bytes, to->count + count) : NULL;
+    if (!packed) return -1;
+    if (grown) {
+        memcpy(grown + to->count, packed, count);
+        to->bytes = grown;
+        to->count += count;
+        *bytes = (uint32_t)count;
+    }
+    free(packed);
+    return grown ? 0 : bake_fail("out of memory");
 }
 
 static int add_directory(growing *to, const bake_pm_entry *entry, size_t count, uint32_t *bytes)

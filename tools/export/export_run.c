@@ -1,6 +1,7 @@
 #include "export_run.h"
 
 #include "../bake/bake_say.h"
+#include "export_mesh.h"
 #include "export_pyramid.h"
 #include "export_raster.h"
 #include "export_store.h"
@@ -22,6 +23,7 @@ static int choose_level(const export_options *o, const ff_terrain_info *info, ui
 
 static int write_ground(const export_options *o, export_ground *ground)
 {
+    if (o->mesh) return export_mesh_write(o, ground);
     if (export_raster_is(o->out_path)) return export_raster_write(o, ground);
     return export_pyramid_write(o, ground);
 }
@@ -42,7 +44,7 @@ static int export_pack(const export_options *o, const bake_unpack *unpack)
     export_ground ground;
     uint32_t level = 0;
     int is_raster = export_raster_is(o->out_path);
-    if (!is_raster && export_pyramid_check(o, &unpack->pack.header.info)) return -1;
+    if (!is_raster && !o->mesh && export_pyramid_check(o, &unpack->pack.header.info)) return -1;
     if (choose_level(o, &unpack->pack.header.info, &level)) return -1;
     set_temp_folder(o->out_path);
     if (o->images ? export_ground_open_images(unpack, level, &o->region, &ground)
@@ -55,6 +57,7 @@ static int export_pack(const export_options *o, const bake_unpack *unpack)
 
 static int check_output(const export_options *o)
 {
+    if (o->mesh) return export_mesh_check(o);
     if (export_raster_is(o->out_path)) return export_raster_check(o);
     if (export_store_kind_of(o->out_path) != EXPORT_STORE_NONE) return 0;
     return bake_fail(

@@ -91,7 +91,8 @@ static int folder_close(export_store *store, int rc)
 {
     char path[sizeof store->whole.temp + 64], pattern[64];
     if (rc) return rc;
-    snprintf(path, sizeof path, "%s/tiles.json", store->whole.temp);
+    snprintf(path, sizeof path, "%s/%s.json", store->whole.temp,
+             store->tiles->layer ? "layer" : "tiles");
     snprintf(pattern, sizeof pattern, "{z}/{x}/{y}.%s", store->tiles->format);
     char *json = export_facts_json(store->tiles, pattern);
     rc = json ? write_file(store, path, json, strlen(json)) : -1;

@@ -1,5 +1,5 @@
-/* Where map tiles go: a folder {z}/{x}/{y} with tiles.json, MBTiles, or PMTiles version 3. Whatever
- * it is appears whole or not at all. */
+/* Where map tiles go: a folder {z}/{x}/{y} with tiles.json (of meshes layer.json), MBTiles, or
+ * PMTiles version 3. Whatever it is appears whole or not at all. */
 #ifndef EXPORT_STORE_H
 #define EXPORT_STORE_H
 
@@ -14,9 +14,10 @@ enum export_store_kind { EXPORT_STORE_NONE, EXPORT_FOLDER, EXPORT_MBTILES, EXPOR
 /* What is said of all tiles. */
 typedef struct export_tiles_about {
     export_about about;
-    const char *format;   /* "png" or "jpg" */
+    const char *format;   /* "png", "jpg" or "terrain" */
     const char *encoding; /* of heights; NULL: colours */
     uint32_t side;        /* of a tile in pixels */
+    const char *layer;    /* of meshes: what layer.json says besides, as members of its object */
     uint32_t zoom_min, zoom_max;
     export_bounds bounds; /* west < east, within +-180 */
 } export_tiles_about;

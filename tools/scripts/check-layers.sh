@@ -173,6 +173,7 @@ shape_words() { # PATTERN that no code may have but protocol/shape, the tests, a
     sim/judge/sim_ground.c     compares two terrains
     client/ground/ff_ground_frame.c  a vertex is placed in units of a sample
     tools/bake/bake_run.c      describes the raster; reports it
+    tools/bake/bake_estimate.c  the same, beforehand
     tools/bake/bake_fault.c    says which field is out of range
     tools/export/export_place.c  writes it into a raster's head
     tools/info/bake_info.c     reports it

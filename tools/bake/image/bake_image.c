@@ -23,6 +23,13 @@ typedef struct row_ring {
     uint8_t *source; /* one row of the image */
 } row_ring;
 
+/* Where texels of the finest lattice lie: `samples` apart, the first one (first_x, first_y) texels
+ * from the south-west; those beyond the ground's last sample lie on it. */
+typedef struct texel_place {
+    double samples, last_x, last_y;
+    uint32_t first_x, first_y;
+} texel_place;
+
 /* The stretch *from .. *to of pixels round a centre, kept inside 0..size and never empty. */
 static void footprint(double centre, double wide, uint32_t size, double *from, double *to)
 {
@@ -45,15 +52,15 @@ static void mean_pixels(const uint8_t *rgba, double from, double to, float *out)
 }
 
 static const float *filtered_row(const bake_picture *picture, row_ring *ring, uint32_t row,
-                                 double texel_samples, double last_sample)
+                                 const texel_place *place)
 {
     float *out = ring->row + (size_t)(row % ring->slots) * ring->width * RGBA;
     if (ring->held[row % ring->slots] == row) return out;
     if (bake_picture_row(picture, row, ring->source)) return NULL;
     double px_per_sample = picture->width / (picture->east - picture->west);
     for (uint32_t i = 0; i < ring->width; i++) {
-        double from, to, x = fmin(i * texel_samples, last_sample);
-        footprint((x - picture->west) * px_per_sample, texel_samples * px_per_sample,
+        double from, to, x = fmin((place->first_x + (double)i) * place->samples, place->last_x);
+        footprint((x - picture->west) * px_per_sample, place->samples * px_per_sample,
                   picture->width, &from, &to);
         mean_pixels(ring->source, from, to, out + (size_t)i * RGBA);
     }
@@ -86,12 +93,12 @@ static uint64_t finish_row(const lattice_row *out, uint32_t width)
 
 /* Sums the rows from..to of the image, weighted, into one row of the finest lattice. */
 static int sample_row(const bake_picture *picture, row_ring *ring, double from, double to,
-                      double texel_samples, double last_sample, float *sum)
+                      const texel_place *place, float *sum)
 {
     size_t values = (size_t)ring->width * RGBA;
     memset(sum, 0, values * sizeof *sum);
     for (uint32_t row = (uint32_t)from; row < to; row++) {
-        const float *filtered = filtered_row(picture, ring, row, texel_samples, last_sample);
+        const float *filtered = filtered_row(picture, ring, row, place);
         if (!filtered) return -1;
         float weight = (float)((fmin(row + 1, to) - fmax(row, from)) / (to - from));
         for (size_t i = 0; i < values; i++) sum[i] += weight * filtered[i];
@@ -99,34 +106,33 @@ static int sample_row(const bake_picture *picture, row_ring *ring, double from, 
     return 0;
 }
 
-static int sample_rows(const bake_picture *picture, const bake_ground *ground, row_ring *ring,
-                       double texel_samples, const bake_grid *lattice, const bake_grid *distance,
-                       const lattice_row *out)
+/* *covered receives how many texels the image covers. */
+static int sample_rows(const bake_picture *picture, row_ring *ring, const texel_place *place,
+                       const bake_grid *lattice, const bake_grid *distance, const lattice_row *out,
+                       uint64_t *covered)
 {
     double px_per_sample = picture->height / (picture->north - picture->south);
-    uint64_t covered = 0;
+    *covered = 0;
     for (uint32_t j = lattice->height; j-- > 0;) {
-        double from, to, y = fmin(j * texel_samples, ground->grid.height - 1.0);
-        footprint((picture->north - y) * px_per_sample, texel_samples * px_per_sample,
+        double from, to, y = fmin((place->first_y + (double)j) * place->samples, place->last_y);
+        footprint((picture->north - y) * px_per_sample, place->samples * px_per_sample,
                   picture->height, &from, &to);
-        if (sample_row(picture, ring, from, to, texel_samples, ground->grid.width - 1.0, out->sum))
-            return -1;
-        covered += finish_row(out, lattice->width);
+        if (sample_row(picture, ring, from, to, place, out->sum)) return -1;
+        *covered += finish_row(out, lattice->width);
         if (bake_grid_write(lattice, j, 0, lattice->width, out->rgb)) return -1;
         if (bake_grid_write(distance, j, 0, lattice->width, out->distance)) return -1;
         bake_progress("colour", lattice->height - j, lattice->height);
     }
-    if (covered == 0) return bake_fail("the image shows nothing of this ground");
-    return covered < (uint64_t)lattice->width * lattice->height
+    return *covered && *covered < (uint64_t)lattice->width * lattice->height
                ? bake_nearest_fill(lattice, distance)
                : 0;
 }
 
-static int sample_image(const bake_picture *picture, const bake_ground *ground,
-                        double texel_samples, const bake_grid *lattice)
+static int sample_image(const bake_picture *picture, const texel_place *place,
+                        const bake_grid *lattice, uint64_t *covered)
 {
     double px_per_sample = picture->height / (picture->north - picture->south);
-    row_ring ring = { .slots = (uint32_t)ceil(fmax(1, texel_samples * px_per_sample)) + 2,
+    row_ring ring = { .slots = (uint32_t)ceil(fmax(1, place->samples * px_per_sample)) + 2,
                       .width = lattice->width };
     lattice_row out = { malloc((size_t)ring.width * RGBA * sizeof(float)),
                         malloc((size_t)ring.width * RGB), malloc(ring.width * sizeof(uint32_t)) };
@@ -138,7 +144,7 @@ static int sample_image(const bake_picture *picture, const bake_ground *ground,
     if (!rc && !(ring.row && ring.held && ring.source && out.sum && out.rgb && out.distance))
         rc = bake_fail("out of memory");
     for (uint32_t i = 0; !rc && i < ring.slots; i++) ring.held[i] = -1;
-    if (!rc) rc = sample_rows(picture, ground, &ring, texel_samples, lattice, &distance, &out);
+    if (!rc) rc = sample_rows(picture, &ring, place, lattice, &distance, &out, covered);
     bake_grid_close(&distance);
     free(out.sum);
     free(out.rgb);
@@ -204,32 +210,64 @@ static uint32_t choose_levels(const bake_options *o, const bake_picture *picture
     return levels;
 }
 
+/* The lattices of all levels below a node of a sheet of `columns` x `rows` nodes. */
 static int make_lattices(const bake_picture *picture, const bake_ground *ground,
-                         const ff_terrain_info *info, bake_image *image)
+                         const ff_terrain_info *info, ff_sheet node, uint32_t columns,
+                         uint32_t rows, bake_image *image, uint64_t *covered)
 {
     uint32_t steps = (1u << info->texture_log2) - 1, top = image->levels - 1;
-    ff_sheet tiles = ff_shape_sheet_tiles(info);
     for (uint32_t l = 0; l <= top; l++)
-        if (bake_grid_open(&image->lattice[l], (tiles.x * steps << l) + 1,
-                           (tiles.y * steps << l) + 1, RGB))
+        if (bake_grid_open(&image->lattice[l], (columns * steps << l) + 1, (rows * steps << l) + 1,
+                           RGB))
             return -1;
-    double texel_samples = (double)(1u << (info->tile_log2 - top)) / steps;
-    if (sample_image(picture, ground, texel_samples, &image->lattice[top])) return -1;
+    texel_place place = {
+        .samples = (double)(1u << (info->tile_log2 - (info->texture_levels - 1u))) / steps,
+        .last_x = ground->grid.width - 1.0,
+        .last_y = ground->grid.height - 1.0,
+        .first_x = node.x * steps << top,
+        .first_y = node.y * steps << top
+    };
+    if (sample_image(picture, &place, &image->lattice[top], covered)) return -1;
     for (uint32_t l = top; l > 0; l--)
         if (halve_lattice(&image->lattice[l], &image->lattice[l - 1])) return -1;
     return 0;
+}
+
+int bake_picture_levels(const bake_options *o, const bake_ground *ground, ff_terrain_info *info,
+                        bake_picture *picture)
+{
+    if (bake_picture_open(o, ground, picture)) return -1;
+    info->texture_log2 = (uint8_t)o->texture_log2;
+    info->texture_levels = (uint8_t)choose_levels(o, picture, info);
+    return 0;
+}
+
+static void open_image(bake_image *image, uint32_t levels)
+{
+    for (int l = 0; l < BAKE_TEXTURE_LEVELS_MAX; l++) image->lattice[l] = BAKE_GRID_CLOSED;
+    image->levels = levels;
+}
+
+int bake_image_part(const bake_picture *picture, const bake_ground *ground,
+                    const ff_terrain_info *info, uint32_t level, ff_sheet node, bake_image *image)
+{
+    uint64_t covered;
+    open_image(image, info->texture_levels - level);
+    return make_lattices(picture, ground, info, node, 1, 1, image, &covered);
 }
 
 int bake_image_make(const bake_options *o, const bake_ground *ground, ff_terrain_info *info,
                     bake_image *image)
 {
     bake_picture picture;
-    for (int l = 0; l < BAKE_TEXTURE_LEVELS_MAX; l++) image->lattice[l] = BAKE_GRID_CLOSED;
-    if (bake_picture_open(o, ground, &picture)) return -1;
-    image->levels = choose_levels(o, &picture, info);
-    info->texture_log2 = (uint8_t)o->texture_log2;
-    info->texture_levels = (uint8_t)image->levels;
-    int rc = make_lattices(&picture, ground, info, image);
+    uint64_t covered;
+    ff_sheet tiles = ff_shape_sheet_tiles(info);
+    open_image(image, 0);
+    if (bake_picture_levels(o, ground, info, &picture)) return -1;
+    image->levels = info->texture_levels;
+    int rc = make_lattices(&picture, ground, info, (ff_sheet){ 0, 0 }, tiles.x, tiles.y, image,
+                           &covered);
+    if (!rc && !covered) rc = bake_fail("the image shows nothing of this ground");
     bake_picture_close(&picture);
     return rc;
 }

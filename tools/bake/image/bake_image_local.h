@@ -1,8 +1,9 @@
-/* Private to bake_image_*.c: an opened image and where it lies. */
+/* Private to bake_image_*.c: an opened image and where it lies, and parts of it. */
 #ifndef BAKE_IMAGE_LOCAL_H
 #define BAKE_IMAGE_LOCAL_H
 
 #include "../raster/bake_colour.h"
+#include "../../../protocol/shape/ff_shape.h"
 #include "bake_image.h"
 
 typedef struct bake_picture {
@@ -19,8 +20,15 @@ typedef struct bake_picture {
  * (said). */
 int bake_picture_open(const bake_options *options, const bake_ground *ground,
                       bake_picture *picture);
+/* The same; sets info->texture_log2 and texture_levels. */
+int bake_picture_levels(const bake_options *options, const bake_ground *ground,
+                        ff_terrain_info *info, bake_picture *picture);
 void bake_picture_close(bake_picture *picture);
 /* Reads one row as RGBA. 0 or -1 (said). */
 int bake_picture_row(const bake_picture *picture, uint32_t row, uint8_t *rgba);
+/* The part of the image below the node in a column and row of a level's sheet, as if it were all of
+ * a terrain's only tile; black where the image shows nothing of it. 0 or -1 (said). */
+int bake_image_part(const bake_picture *picture, const bake_ground *ground,
+                    const ff_terrain_info *info, uint32_t level, ff_sheet node, bake_image *image);
 
 #endif

@@ -116,18 +116,14 @@ static int plan_warp(const bake_options *o, const bake_ground *ground, bake_warp
     return 0;
 }
 
-/* Replaces the grid, and the marks of what was filled in it, by their image in `target` (NULL: the
- * same plane). Takes `target` over. */
-static int warp_ground(const bake_options *o, OGRSpatialReferenceH target, bake_ground *ground,
-                       bake_grid *marks, double *spacing_m)
+/* Replaces the grid, and the marks of what was filled in it, by their image; the ground takes
+ * plan->warp.target over. */
+static int warp_ground(const bake_plan *plan, bake_ground *ground, bake_grid *marks)
 {
     bake_warp_count count, ignored;
-    bake_warp warp = { .srs = ground->srs, .target = target, .jobs = (int)o->jobs };
-    memcpy(warp.from, ground->geotransform, sizeof warp.from);
-    int rc = plan_warp(o, ground, &warp, spacing_m);
-    if (!rc && target) bake_target_note(ground, target);
-    if (!rc) rc = bake_warp_grid(&warp, &ground->grid, &count);
-    if (!rc && marks->fd >= 0) rc = bake_warp_grid(&warp, marks, &ignored);
+    OGRSpatialReferenceH target = plan->warp.target;
+    int rc = bake_warp_grid(&plan->warp, &ground->grid, &count);
+    if (!rc && marks->fd >= 0) rc = bake_warp_grid(&plan->warp, marks, &ignored);
     if (rc) {
         if (target) OSRDestroySpatialReference(target);
         return rc;
@@ -136,7 +132,7 @@ static int warp_ground(const bake_options *o, OGRSpatialReferenceH target, bake_
         bake_note("resampling went beyond the source's lowest or highest height at %" PRIu64
                   " samples, by up to %.1f m: kept to it",
                   count.beyond, count.beyond_m);
-    memcpy(ground->geotransform, warp.to, sizeof warp.to);
+    memcpy(ground->geotransform, plan->warp.to, sizeof plan->warp.to);
     ground->outside = count.outside;
     ground->resampled = 1;
     ground->is_geographic = 0;
@@ -211,27 +207,63 @@ static int refuse_projection(const bake_options *o, bake_ground *ground)
     return 0;
 }
 
-int bake_project(const bake_options *o, bake_ground *ground, bake_grid *marks, double *spacing_m)
+/* Plans a grid whose samples all stay. */
+static int plan_kept(const bake_ground *ground, double spacing_m, bake_plan *plan)
 {
-    OGRSpatialReferenceH target = NULL;
+    memcpy(plan->warp.to, ground->geotransform, sizeof plan->warp.to);
+    plan->warp.width = ground->grid.width;
+    plan->warp.height = ground->grid.height;
+    plan->spacing_m = spacing_m;
+    return 0;
+}
+
+/* Plans a grid that is resampled into plan->warp.target (NULL: the same plane). */
+static int plan_resampled(const bake_options *o, const bake_ground *ground, bake_plan *plan)
+{
+    plan->is_resampled = 1;
+    plan->warp.srs = ground->srs;
+    plan->warp.jobs = (int)o->jobs;
+    memcpy(plan->warp.from, ground->geotransform, sizeof plan->warp.from);
+    if (!plan_warp(o, ground, &plan->warp, &plan->spacing_m)) {
+        if (plan->warp.target) bake_target_note(ground, plan->warp.target);
+        return 0;
+    }
+    if (plan->warp.target) OSRDestroySpatialReference(plan->warp.target);
+    return -1;
+}
+
+int bake_project_plan(const bake_options *o, bake_ground *ground, bake_plan *plan)
+{
+    double spacing_m = 0;
+    *plan = (bake_plan){ 0 };
     if (o->target_epsg && !ground->srs)
         return bake_fail("%s names no reference system: nothing to project from", o->heights_path);
     if (!ground->has_place && o->spacing_m <= 0)
         return bake_fail("%s: no georeference: give --spacing", o->heights_path);
     if (ground->has_place && o->no_project && refuse_projection(o, ground)) return -1;
-    if (ground->has_place && bake_target_choose(o, ground, &target)) return -1;
-    if (o->no_project) return take_samples(o, ground, spacing_m);
+    if (ground->has_place && bake_target_choose(o, ground, &plan->warp.target)) return -1;
+    if (o->no_project)
+        return take_samples(o, ground, &spacing_m) ? -1 : plan_kept(ground, spacing_m, plan);
     if (!ground->has_place) space_out(ground, o->spacing_m);
     double wanted = o->spacing_m > 0 ? o->spacing_m : ground->geotransform[1];
     int same_spacing = fabs(wanted / ground->geotransform[1] - 1) < 1e-6;
-    *spacing_m = round_spacing(o, wanted);
-    if (!target && same_spacing && drift_of(ground, *spacing_m) <= DRIFT_MAX) {
-        keep_samples(ground, *spacing_m);
-        return 0;
+    spacing_m = round_spacing(o, wanted);
+    if (!plan->warp.target && same_spacing && drift_of(ground, spacing_m) <= DRIFT_MAX) {
+        keep_samples(ground, spacing_m);
+        return plan_kept(ground, spacing_m, plan);
     }
-    int is_forced = !target && same_spacing;
-    if (warp_ground(o, target, ground, marks, spacing_m)) return -1;
-    if (is_forced)
+    plan->is_forced = !plan->warp.target && same_spacing;
+    return plan_resampled(o, ground, plan);
+}
+
+int bake_project(const bake_options *o, bake_ground *ground, bake_grid *marks, double *spacing_m)
+{
+    bake_plan plan;
+    if (bake_project_plan(o, ground, &plan)) return -1;
+    *spacing_m = plan.spacing_m;
+    if (!plan.is_resampled) return 0;
+    if (warp_ground(&plan, ground, marks)) return -1;
+    if (plan.is_forced)
         bake_note("%s: its cells are turned, unlike or no multiple of 1/%d m: resampled to squares "
                   "of %.8g m",
                   o->heights_path, FF_WU_PER_METRE, *spacing_m);

@@ -3,6 +3,7 @@
 #include "../bake_say.h"
 #include "bake_grid_gdal.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -153,20 +154,55 @@ static int warp_from(const bake_warp *w, GDALDatasetH source, value_range range,
     return rc;
 }
 
+int bake_warp_back(const bake_warp *w, const bake_grid *grid, int count, double *column,
+                   double *row)
+{
+    GDALDatasetH source = bake_warp_source(w, grid);
+    void *transform = source ? bake_warp_transform(source, w->target) : NULL;
+    double *z = calloc((size_t)count, sizeof *z);
+    int *ok = calloc((size_t)count, sizeof *ok);
+    int rc = !transform ? -1 : z && ok ? 0 : bake_fail("out of memory");
+    if (!rc) {
+        GDALSetGenImgProjTransformerDstGeoTransform(transform, w->to);
+        GDALGenImgProjTransform(transform, 1, count, column, row, z, ok);
+        for (int i = 0; i < count; i++)
+            if (!ok[i] || column[i] < 0 || row[i] < 0 || column[i] > grid->width ||
+                row[i] > grid->height)
+                column[i] = row[i] = NAN;
+    }
+    free(z);
+    free(ok);
+    if (transform) GDALDestroyGenImgProjTransformer(transform);
+    if (source) GDALClose(source);
+    return rc;
+}
+
+/* Makes the image of a grid within a range. */
+static int warp_into(const bake_warp *w, const bake_grid *grid, value_range range, bake_grid *image,
+                     bake_warp_count *out)
+{
+    *out = (bake_warp_count){ 0 };
+    *image = BAKE_GRID_CLOSED;
+    GDALDatasetH source = bake_warp_source(w, grid);
+    if (!source) return -1;
+    int rc = warp_from(w, source, range, image, out);
+    GDALClose(source);
+    if (rc) bake_grid_close(image);
+    return rc;
+}
+
+int bake_warp_part(const bake_warp *w, const bake_grid *grid, bake_grid *image,
+                   bake_warp_count *out)
+{
+    return warp_into(w, grid, (value_range){ -FLT_MAX, FLT_MAX }, image, out);
+}
+
 int bake_warp_grid(const bake_warp *w, bake_grid *grid, bake_warp_count *out)
 {
     value_range range;
-    *out = (bake_warp_count){ 0 };
+    bake_grid image;
     if (bake_grid_range(grid, &range.low, &range.high)) return -1;
-    bake_grid image = BAKE_GRID_CLOSED;
-    GDALDatasetH source = bake_warp_source(w, grid);
-    if (!source) return -1;
-    int rc = warp_from(w, source, range, &image, out);
-    GDALClose(source);
-    if (rc) {
-        bake_grid_close(&image);
-        return rc;
-    }
+    if (warp_into(w, grid, range, &image, out)) return -1;
     bake_grid_close(grid);
     *grid = image;
     return 0;

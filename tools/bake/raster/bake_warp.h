@@ -38,6 +38,14 @@ int bake_warp_measure(void *transform, int to_source, uint32_t width, uint32_t h
 char **bake_warp_sharpness(char **list, void *transform, uint32_t width, uint32_t height);
 /* A data set over `grid` as `warp` tells where it comes from. NULL after saying why. */
 GDALDatasetH bake_warp_source(const bake_warp *warp, const bake_grid *grid);
+/* Takes places of the new grid, in its columns and rows, back to those of the source. A place that
+ * the source does not reach becomes NaN. 0 or -1 (said). */
+int bake_warp_back(const bake_warp *warp, const bake_grid *grid, int count, double *column,
+                   double *row);
+/* Makes the image of a float grid as a new one, as bake_warp_grid does, but within no range. Of a
+ * part of the image only that part is computed. 0 or -1 (said). */
+int bake_warp_part(const bake_warp *warp, const bake_grid *grid, bake_grid *image,
+                   bake_warp_count *out);
 /* Replaces a float grid by its image: sharp, averaged only where the new grid is coarser, and
  * within the range of its source. Samples outside the source's area become NaN. 0 or -1 (said). */
 int bake_warp_grid(const bake_warp *warp, bake_grid *grid, bake_warp_count *out);

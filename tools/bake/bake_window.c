@@ -1,0 +1,125 @@
+#include "bake_window.h"
+
+#include "../../platform/sys.h"
+#include "../../protocol/shape/ff_shape.h"
+#include "raster/bake_densify.h"
+#include "raster/bake_fill.h"
+#include "bake_say.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double now_s(void) { return (double)sys_time_us() / 1e6; }
+
+/* Copies a part of a grid. */
+static int copy_part(const bake_grid *from, const bake_window *window, bake_grid *to)
+{
+    if (bake_grid_open(to, window->width, window->height, sizeof(float))) return -1;
+    float *row = malloc(window->width * sizeof *row);
+    int rc = row ? 0 : bake_fail("out of memory");
+    for (uint32_t j = 0; !rc && j < window->height; j++) {
+        rc = bake_grid_read(from, window->row + j, window->column, window->width, row);
+        if (!rc) rc = bake_grid_write(to, j, 0, window->width, row);
+    }
+    free(row);
+    return rc;
+}
+
+/* Ground beyond the source is filled from its border: far away it is nearly flat. */
+static int make_flat(const bake *b, const bake_grid *grid)
+{
+    float height_m = (float)b->steps.min_m;
+    int rc = 0;
+    for (uint32_t j = 0; !rc && j < grid->height; j++)
+        for (uint32_t i = 0; !rc && i < grid->width; i++)
+            rc = bake_grid_write(grid, j, i, 1, &height_m);
+    return rc;
+}
+
+/* Makes the window's samples in metres, without voids. */
+static int make_samples(const bake *b, const bake_plan *plan, const bake_window *window,
+                        bake_ground *ground)
+{
+    const double *to = plan->warp.to;
+    double gt[6] = {
+        to[0] + to[1] * window->column, to[1], 0, to[3] + to[5] * window->row, 0, to[5]
+    };
+    bake_warp warp = plan->warp;
+    bake_warp_count count = { 0 };
+    memcpy(ground->geotransform, gt, sizeof gt);
+    memcpy(warp.to, gt, sizeof gt);
+    warp.width = window->width;
+    warp.height = window->height;
+    ground->grid = BAKE_GRID_CLOSED;
+    int rc = plan->is_resampled ? bake_warp_part(&warp, &b->ground.grid, &ground->grid, &count)
+                                : copy_part(&b->ground.grid, window, &ground->grid);
+    uint64_t all = (uint64_t)window->width * window->height;
+    if (!rc && count.outside == all)
+        rc = make_flat(b, &ground->grid);
+    else if (!rc && count.outside)
+        rc = bake_fill_voids(&ground->grid);
+    return rc ? rc : bake_densify(&ground->grid, ground->geotransform, b->options->densify);
+}
+
+/* Bakes heights in tiles, and counts their records. */
+static int encode(const ff_terrain_info *info, const bake_grid *heights, bake_window_count *count)
+{
+    bake_tile tile;
+    bake_grid none = BAKE_GRID_CLOSED;
+    if (bake_tile_open(&tile, info)) return -1;
+    int rc = 0;
+    count->levels = ff_terrain_levels(info);
+    for (uint32_t number = 0; !rc && number < ff_shape_tiles(info); number++) {
+        rc = bake_tile_load(&tile, heights, &none, number) || bake_tile_encode(&tile) ? -1 : 0;
+        for (uint32_t l = 0; !rc && l < count->levels; l++) {
+            const bake_blob *level = &tile.level[l];
+            for (size_t i = 0; i < level->record_count; i++)
+                count->records[l] += level->length[i] > 0;
+            count->bytes[l] += level->byte_count;
+        }
+    }
+    bake_tile_close(&tile);
+    return rc;
+}
+
+int bake_window_make(const bake *b, const bake_plan *plan, const bake_window *window,
+                     uint32_t tile_log2, bake_window_count *count)
+{
+    bake_ground ground = b->ground;
+    ff_terrain_info info = b->info;
+    bake_grid heights = BAKE_GRID_CLOSED;
+    *count = (bake_window_count){ 0 };
+    double started_s = now_s();
+    int rc = make_samples(b, plan, window, &ground);
+    if (!rc) rc = bake_quantise(b->options, &ground, &b->steps, &info, &heights);
+    double made_s = now_s();
+    info.tile_log2 = (uint8_t)tile_log2;
+    if (!rc) ff_shape_cover(&info, heights.width, heights.height);
+    if (!rc) rc = encode(&info, &heights, count);
+    count->ground_s = made_s - started_s;
+    count->encode_s = now_s() - made_s;
+    bake_grid_close(&ground.grid);
+    bake_grid_close(&heights);
+    return rc;
+}
+
+int bake_roughness(const bake_grid *grid, const bake_part *part, uint32_t stride, double quantum_m,
+                   double *roughness)
+{
+    uint32_t width = part->east - part->west + 1;
+    float *z = malloc(width * sizeof *z);
+    double sum = 0, count = 0;
+    int rc = z ? 0 : bake_fail("out of memory");
+    for (uint32_t j = part->north; !rc && j <= part->south; j += stride) {
+        rc = bake_grid_read(grid, j, part->west, width, z);
+        for (uint32_t i = 1; !rc && i + 1 < width; i++) {
+            double e = fabs(z[i] - (z[i - 1] + z[i + 1]) / 2.0);
+            sum += log2(1 + e / quantum_m);
+            count++;
+        }
+    }
+    free(z);
+    *roughness = count > 0 ? sum / count : 0;
+    return rc;
+}
