@@ -160,6 +160,19 @@ static int place_of(const char *name)
     return 0;
 }
 
+/* A header always tells a place, and netCDF knows few projections (CF's). */
+static void settle_place(property_draw *d)
+{
+    static const char *const none[] = { "oblique Mercator", "Swiss LV95", "Krovak", "no place" };
+    int *level = d->level, file = level[PROPERTY_FILE];
+    const char *place = places[level[PROPERTY_PLACE]].name;
+    if (file == FILE_AAIGRID && !strcmp(place, "no place"))
+        level[PROPERTY_PLACE] = place_of("local metres");
+    for (size_t i = 0; i < sizeof none / sizeof *none; i++)
+        if (file == FILE_NETCDF && !strcmp(place, none[i]))
+            level[PROPERTY_PLACE] = place_of("UTM north");
+}
+
 /* What the file's format can hold. */
 static void settle_file(property_draw *d)
 {
@@ -174,6 +187,7 @@ static void settle_file(property_draw *d)
     if (file == FILE_PNG) level[PROPERTY_PLACE] = place_of("local metres");
     if (file == FILE_RAW) level[PROPERTY_PLACE] = place_of("no place");
     if (is_hgt) level[PROPERTY_PLACE] = place_of("degrees");
+    settle_place(d);
     /* a header tells one cell size, or one per axis */
     if (file != FILE_GTIFF && file != FILE_VRT &&
         (file != FILE_PNG || level[PROPERTY_TRANSFORM] == TRANSFORM_POINT) &&

@@ -13,11 +13,11 @@
     0.25 /* samples, from end to end: kept samples may be so far off, and are told \
           */
 #define SIGMAS     5
-#define FILTER_SUM 1.6  /* of a cubic's weights, without their signs */
-#define ASKED_PART 0.01 /* of --max-error that goes along with the ground's waves */
+#define FILTER_SUM 1.6 /* of a cubic's weights, without their signs */
+#define ASKED_PART 0.1 /* of --max-error that goes along with the ground's waves */
 #define WU_M       (1.0 / 256)
 #define FLOAT_PART 1.2e-7 /* metres pass through single precision */
-#define CUBIC      0.05   /* the part of a wave of 1 radian a sample that a cubic misses */
+#define CUBIC      0.02   /* the part of a wave of 1 radian a sample that a cubic misses */
 #define APPROX_PX  3e-4   /* GDAL's approximate transformer, and millimetres */
 #define TIMEOUT_S  "120"
 
@@ -301,12 +301,23 @@ static double given_m(const property_draw *d, int mark)
     return given ? d->void_m : NAN;
 }
 
+/* Resampled heights are kept between the source's lowest and highest, void heights among them. */
+static double in_range(const property_draw *d, const property_raster *r, double wanted)
+{
+    int has_given = (property_has(d, OPTION_VOID_HEIGHT) && r->holes + r->rims) ||
+                    (property_has(d, OPTION_RIM_HEIGHT) && r->rims);
+    double highest = has_given ? fmax(r->highest_m, d->void_m) : r->highest_m;
+    return fmin(fmax(wanted, r->lowest_m), highest);
+}
+
 /* Leaves what is to be judged in `wanted`; looks at the middles of voids. */
-static int sort_out(const property_draw *d, property_run *run, const property_raster *r, ground *g)
+static int sort_out(const property_draw *d, property_run *run, const property_raster *r, ground *g,
+                    int is_kept)
 {
     int reach = 3 + (int)ceil(2 * g->ratio);
     for (size_t n = 0; n < (size_t)g->columns * g->rows; n++) {
         int mark = mark_round(d, r, g->u[n], g->v[n], reach);
+        if (mark == MARK_GROUND && !is_kept) g->wanted[n] = in_range(d, r, g->wanted[n]);
         if (mark == MARK_GROUND) continue;
         g->wanted[n] = NAN;
         if (mark < 0) continue;
@@ -395,12 +406,12 @@ static allowance allow(const property_draw *d, const ground *g, const property_f
     allowance a = { .sigma_m = sqrt((step * step + hscale * hscale) / 12 + asked * asked +
                                     cubic * cubic / 9) };
     double side = 0.28 * fmin(g->columns, g->rows), drift_m = drift * 2 * side * property_slope(d);
-    a.bias_m = asked + WU_M + cubic + SIGMAS * a.sigma_m / root;
+    a.bias_m = asked + WU_M + cubic + drift_m / 10 + SIGMAS * a.sigma_m / root;
     a.rms_m = a.sigma_m + WU_M + cubic + drift_m;
-    a.shift = SHIFT_MAX + SIGMAS * a.sigma_m / root / f->slope_m;
+    a.shift = SHIFT_MAX + (SIGMAS * a.sigma_m / root + asked * ASKED_PART) / f->slope_m;
     a.scale = SCALE_MAX + drift +
               SIGMAS * (a.sigma_m / root + asked * ASKED_PART) / f->slope_m / side;
-    a.gain = SCALE_MAX + (SIGMAS * a.sigma_m / root + asked + cubic / 2) / f->relief_m;
+    a.gain = SCALE_MAX + (SIGMAS * a.sigma_m / root + asked + cubic) / f->relief_m;
     return a;
 }
 
@@ -440,7 +451,7 @@ static void judge(const property_draw *d, property_run *run, const property_rast
         return;
     }
     run->allowed_m = d->max_error_m + hscale + WU_M; /* in the middle of voids */
-    int rc = sort_out(d, run, r, &g);
+    int rc = sort_out(d, run, r, &g, is_kept);
     if (!rc && is_kept) rc = judge_kept(d, run, r, &g, hscale);
     if (!rc) judge_fit(d, run, &g, hscale, is_kept);
     free_ground(&g);

@@ -29,7 +29,7 @@ typedef struct worst {
         share; /* share: of the error allowed */
 } worst;
 
-static worst table[PROPERTY_FACTORS][LEVELS_MAX], all, drifting;
+static worst table[PROPERTY_FACTORS][LEVELS_MAX], all, lossy, drifting;
 static uint32_t refused[REFUSALS_MAX];
 static uint8_t seen[PROPERTY_FACTORS][LEVELS_MAX][PROPERTY_FACTORS][LEVELS_MAX];
 
@@ -53,13 +53,14 @@ static void widen(worst *w, const property_run *run)
     w->share = fmax(w->share, f->error_m / run->allowed_m);
 }
 
-/* Counts a draw to all its kinds; one whose kept cells were rounded to those alone. */
+/* Counts a draw to all its kinds; one whose error was asked for, or whose kept cells were rounded,
+ * to those alone. */
 static void count(const property_draw *d, const property_run *run)
 {
-    int is_drifting = run->drift > 1e-6;
-    widen(is_drifting ? &drifting : &all, run);
+    int is_drifting = run->drift > 1e-6, is_plain = !is_drifting && d->max_error_m <= 0;
+    widen(is_drifting ? &drifting : d->max_error_m > 0 ? &lossy : &all, run);
     for (int a = 0; a < PROPERTY_FACTORS; a++) {
-        if (!is_drifting) widen(&table[a][d->level[a]], run);
+        if (is_plain) widen(&table[a][d->level[a]], run);
         for (int b = 0; b < PROPERTY_FACTORS; b++) seen[a][d->level[a]][b][d->level[b]] = 1;
     }
 }
@@ -95,7 +96,8 @@ static void print_table(FILE *out)
         for (int l = 0; property_level_name(f, l); l++)
             print_row(out, property_factor_name(f), property_level_name(f, l), &table[f][l]);
     print_row(out, "all", "", &all);
-    print_row(out, "cells rounded, and told", "", &drifting);
+    print_row(out, "--max-error", "", &lossy);
+    print_row(out, "kept cells rounded", "", &drifting);
     for (int k = 0; property_refusal(k); k++)
         if (refused[k]) fprintf(out, "\nrefused: %u, %s\n", refused[k], property_refusal(k));
     count_pairs(&met, &pairs);
