@@ -10,7 +10,8 @@ typedef struct property_fit {
     double gain;                   /* how much higher: a part of 1 */
     double rotation;               /* radians, of a turn or a shear */
     double bias_m, rms_m, error_m; /* mean (signed), root of the mean square, largest */
-    double slope_m, relief_m;      /* of the surface, root mean square: a sample's step, height */
+    /* how far errors of 1 m, by chance in each sample, move the four above: one sigma */
+    double shift_sd, scale_sd, gain_sd;
     uint32_t samples;
 } property_fit;
 

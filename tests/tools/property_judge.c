@@ -18,7 +18,8 @@
 #define WU_M       (1.0 / 256)
 #define FLOAT_PART 1.2e-7 /* metres pass through single precision */
 #define CUBIC      0.02   /* the part of a wave of 1 radian a sample that a cubic misses */
-#define APPROX_PX  3e-4   /* GDAL's approximate transformer, and millimetres */
+#define APPROX_PX  3e-4   /* GDAL's approximate transformer */
+#define ORIGIN_M   0.001  /* a pack tells its origin in millimetres, both ways */
 #define TIMEOUT_S  "120"
 
 /* What may be refused, with a piece of the one line that says so. */
@@ -393,11 +394,12 @@ static double sample_m(const property_draw *d, const ground *g, double drift, do
     double drift_m = drift * fmax(d->columns, d->rows) * slope;
     double top = fabs(d->middle_m) + d->swing_m;
     return d->max_error_m + step / 2 * (is_kept ? 1 : FILTER_SUM) + hscale / 2 + WU_M +
-           cubic_m(d, g, is_kept) + drift_m + top * FLOAT_PART + slope * g->ratio * APPROX_PX;
+           cubic_m(d, g, is_kept) + drift_m + top * FLOAT_PART +
+           slope * g->ratio * (APPROX_PX + ORIGIN_M / (fabs(g->gt[1]) * d->densify));
 }
 
 /* Of the whole fit. Errors that were asked for go along with the ground's waves: SIGMAS of chance
- * are not all that they do. */
+ * are not all that they do, and drift lets waves out of step. */
 static allowance allow(const property_draw *d, const ground *g, const property_fit *f, double drift,
                        double hscale, int is_kept)
 {
@@ -405,13 +407,13 @@ static allowance allow(const property_draw *d, const ground *g, const property_f
     double asked = d->max_error_m, root = sqrt(f->samples);
     allowance a = { .sigma_m = sqrt((step * step + hscale * hscale) / 12 + asked * asked +
                                     cubic * cubic / 9) };
-    double side = 0.28 * fmin(g->columns, g->rows), drift_m = drift * 2 * side * property_slope(d);
+    double drift_m = drift * fmax(d->columns, d->rows) * property_slope(d);
+    double chance = SIGMAS * a.sigma_m + asked * ASKED_PART * root;
     a.bias_m = asked + WU_M + cubic + drift_m / 10 + SIGMAS * a.sigma_m / root;
     a.rms_m = a.sigma_m + WU_M + cubic + drift_m;
-    a.shift = SHIFT_MAX + (SIGMAS * a.sigma_m / root + asked * ASKED_PART) / f->slope_m;
-    a.scale = SCALE_MAX + drift +
-              SIGMAS * (a.sigma_m / root + asked * ASKED_PART) / f->slope_m / side;
-    a.gain = SCALE_MAX + (SIGMAS * a.sigma_m / root + asked + cubic) / f->relief_m;
+    a.shift = SHIFT_MAX + chance * f->shift_sd;
+    a.scale = SCALE_MAX + drift + chance * f->scale_sd;
+    a.gain = SCALE_MAX + (chance + cubic * root) * f->gain_sd;
     return a;
 }
 

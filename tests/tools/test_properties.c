@@ -53,6 +53,14 @@ static void widen(worst *w, const property_run *run)
     w->share = fmax(w->share, f->error_m / run->allowed_m);
 }
 
+/* Whether a draw's heights are fine enough that places are told well; files that have no such ones
+ * count as they are. Whole metres are rows of their own, by type. */
+static int is_told_well(const property_draw *d)
+{
+    int file = d->level[PROPERTY_FILE];
+    return !property_is_whole(d) || file == FILE_PNG || file == FILE_RAW || file == FILE_HGT;
+}
+
 /* Counts a draw to all its kinds; one whose error was asked for, or whose kept cells were rounded,
  * to those alone. */
 static void count(const property_draw *d, const property_run *run)
@@ -60,7 +68,7 @@ static void count(const property_draw *d, const property_run *run)
     int is_drifting = run->drift > 1e-6, is_plain = !is_drifting && d->max_error_m <= 0;
     widen(is_drifting ? &drifting : d->max_error_m > 0 ? &lossy : &all, run);
     for (int a = 0; a < PROPERTY_FACTORS; a++) {
-        if (is_plain) widen(&table[a][d->level[a]], run);
+        if (is_plain && (a == PROPERTY_TYPE || is_told_well(d))) widen(&table[a][d->level[a]], run);
         for (int b = 0; b < PROPERTY_FACTORS; b++) seen[a][d->level[a]][b][d->level[b]] = 1;
     }
 }
