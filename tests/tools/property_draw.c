@@ -160,7 +160,8 @@ static int place_of(const char *name)
     return 0;
 }
 
-/* A header always tells a place, and netCDF knows few projections (CF's). */
+/* A header always tells a place, and netCDF knows few projections (CF's). Grads do not survive
+ * GDAL's .prj files: they come back as degrees from a meridian that is none. */
 static void settle_place(property_draw *d)
 {
     static const char *const none[] = { "oblique Mercator", "Swiss LV95", "Krovak", "no place" };
@@ -168,6 +169,8 @@ static void settle_place(property_draw *d)
     const char *place = places[level[PROPERTY_PLACE]].name;
     if (file == FILE_AAIGRID && !strcmp(place, "no place"))
         level[PROPERTY_PLACE] = place_of("local metres");
+    if (file == FILE_AAIGRID && !strcmp(place, "grads from Paris"))
+        level[PROPERTY_PLACE] = place_of("degrees");
     for (size_t i = 0; i < sizeof none / sizeof *none; i++)
         if (file == FILE_NETCDF && !strcmp(place, none[i]))
             level[PROPERTY_PLACE] = place_of("UTM north");

@@ -153,6 +153,7 @@ typedef struct ground {
     double *height, *wanted;
     double *u, *v; /* samples of the source, 0 in the middle of the first */
     double ratio;  /* samples of the source in one, along the longer way */
+    double copies; /* samples made of one of the source, where the source is coarser */
 } ground;
 
 /* The system that the pack's plane is in: as the export says; what a note says; the source's. */
@@ -248,6 +249,7 @@ static int find_sources(const property_draw *d, ground *g)
     double ux = fabs(g->u[n + 1] - g->u[n]), vx = fabs(g->v[n + 1] - g->v[n]);
     double uy = fabs(g->u[n + g->columns] - g->u[n]), vy = fabs(g->v[n + g->columns] - g->v[n]);
     g->ratio = fmax(fmax(ux + uy, vx + vy), 1);
+    g->copies = fmax(1, 1 / hypot(ux, uy)) * fmax(1, 1 / hypot(vx, vy));
     return 0;
 }
 
@@ -386,6 +388,12 @@ static double cubic_m(const property_draw *d, const ground *g, int is_kept)
     return is_kept ? 0 : d->swing_m * CUBIC * wave * wave * wave;
 }
 
+/* What places that are told by millimetres, or reckoned about, do to a height. */
+static double place_m(const property_draw *d, const ground *g)
+{
+    return property_slope(d) * g->ratio * (APPROX_PX + ORIGIN_M / (fabs(g->gt[1]) * d->densify));
+}
+
 /* Of one sample. A cubic filter widens what the file's steps round by up to FILTER_SUM. */
 static double sample_m(const property_draw *d, const ground *g, double drift, double hscale,
                        int is_kept)
@@ -394,8 +402,7 @@ static double sample_m(const property_draw *d, const ground *g, double drift, do
     double drift_m = drift * fmax(d->columns, d->rows) * slope;
     double top = fabs(d->middle_m) + d->swing_m;
     return d->max_error_m + step / 2 * (is_kept ? 1 : FILTER_SUM) + hscale / 2 + WU_M +
-           cubic_m(d, g, is_kept) + drift_m + top * FLOAT_PART +
-           slope * g->ratio * (APPROX_PX + ORIGIN_M / (fabs(g->gt[1]) * d->densify));
+           cubic_m(d, g, is_kept) + drift_m + top * FLOAT_PART + place_m(d, g);
 }
 
 /* Of the whole fit. Errors that were asked for go along with the ground's waves: SIGMAS of chance
@@ -405,12 +412,12 @@ static allowance allow(const property_draw *d, const ground *g, const property_f
 {
     double step = property_is_whole(d) ? d->scale * d->unit_m : 0, cubic = cubic_m(d, g, is_kept);
     double asked = d->max_error_m, root = sqrt(f->samples);
-    allowance a = { .sigma_m = sqrt((step * step + hscale * hscale) / 12 + asked * asked +
-                                    cubic * cubic / 9) };
+    double rounded = (step * step * g->copies + hscale * hscale) / 12;
+    allowance a = { .sigma_m = sqrt(rounded + asked * asked + cubic * cubic / 9) };
     double drift_m = drift * fmax(d->columns, d->rows) * property_slope(d);
     double chance = SIGMAS * a.sigma_m + asked * ASKED_PART * root;
     a.bias_m = asked + WU_M + cubic + drift_m / 10 + SIGMAS * a.sigma_m / root;
-    a.rms_m = a.sigma_m + WU_M + cubic + drift_m;
+    a.rms_m = a.sigma_m + WU_M + cubic + drift_m + place_m(d, g);
     a.shift = SHIFT_MAX + chance * f->shift_sd;
     a.scale = SCALE_MAX + drift + chance * f->scale_sd;
     a.gain = SCALE_MAX + (chance + cubic * root) * f->gain_sd;
