@@ -191,10 +191,11 @@ static void settle_file(property_draw *d)
     if (file == FILE_RAW) level[PROPERTY_PLACE] = place_of("no place");
     if (is_hgt) level[PROPERTY_PLACE] = place_of("degrees");
     settle_place(d);
-    /* a header tells one cell size, or one per axis */
-    if (file != FILE_GTIFF && file != FILE_VRT &&
-        (file != FILE_PNG || level[PROPERTY_TRANSFORM] == TRANSFORM_POINT) &&
-        (!is_upright(d) || level[PROPERTY_TRANSFORM] == TRANSFORM_POINT || is_hgt))
+    /* a header tells one cell size, or one per axis; a world file any cell */
+    int t = level[PROPERTY_TRANSFORM],
+        fits = (is_upright(d) || t == TRANSFORM_UNLIKE) && t != TRANSFORM_POINT;
+    if (file == FILE_PNG) fits = t != TRANSFORM_POINT;
+    if (file >= FILE_PNG && (!fits || is_hgt || file == FILE_RAW))
         level[PROPERTY_TRANSFORM] = TRANSFORM_NORTH_UP;
 }
 

@@ -12,7 +12,7 @@
 #define DRIFT_MAX                                                                  \
     0.25 /* samples, from end to end: kept samples may be so far off, and are told \
           */
-#define SIGMAS     5
+#define SIGMAS     8
 #define FILTER_SUM 1.6 /* of a cubic's weights, without their signs */
 #define ASKED_PART 0.1 /* of --max-error that goes along with the ground's waves */
 #define WU_M       (1.0 / 256)
