@@ -7,7 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#define DEGREE_M 111195.0 /* of the Earth, mean */
+#define AREA_DEGREES 0.1
+#define DEGREE_M     111195.0 /* of the Earth, mean */
 
 /* clang-format off */
 static const property_place places[] = {
@@ -124,6 +125,20 @@ OGRSpatialReferenceH property_degrees(const property_draw *d)
     if (d->place->radius_m <= 0) return property_reference("EPSG:4326");
     snprintf(text, sizeof text, "+proj=longlat +R=%.9g +no_defs", d->place->radius_m);
     return property_reference(text);
+}
+
+OGRCoordinateTransformationH property_transformation(const property_draw *d,
+                                                     OGRSpatialReferenceH from,
+                                                     OGRSpatialReferenceH to)
+{
+    OGRCoordinateTransformationOptionsH options = OCTNewCoordinateTransformationOptions();
+    if (d->place->radius_m <= 0 && fabs(d->longitude) < 179)
+        OCTCoordinateTransformationOptionsSetAreaOfInterest(
+            options, fmax(d->longitude - AREA_DEGREES, -180), fmax(d->latitude - AREA_DEGREES, -90),
+            fmin(d->longitude + AREA_DEGREES, 180), fmin(d->latitude + AREA_DEGREES, 90));
+    OGRCoordinateTransformationH made = OCTNewCoordinateTransformationEx(from, to, options);
+    OCTDestroyCoordinateTransformationOptions(options);
+    return made;
 }
 
 /* ---- levels ---- */
@@ -287,7 +302,7 @@ static int lay_on_body(property_draw *d)
     double cell = choose_cell(d), along, down, x, y;
     d->longitude = x = between(d, at->west, at->east);
     d->latitude = y = between(d, at->south, at->north);
-    OGRCoordinateTransformationH to = OCTNewCoordinateTransformation(degrees, srs);
+    OGRCoordinateTransformationH to = property_transformation(d, degrees, srs);
     int ok = to && OCTTransform(to, 1, &x, &y, NULL);
     along = down = cell / OSRGetLinearUnits(srs, NULL);
     if (OSRIsGeographic(srs)) {

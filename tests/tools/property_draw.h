@@ -123,5 +123,10 @@ int property_is_whole(const property_draw *d);
 OGRSpatialReferenceH property_reference(const char *name);
 /* The degrees that the surface is told in: WGS 84 on the Earth, the body's own elsewhere. */
 OGRSpatialReferenceH property_degrees(const property_draw *d);
+/* From one system to another, by the operation that PROJ holds to be best round the draw's middle:
+ * without grids there are several between old datums, metres apart. */
+OGRCoordinateTransformationH property_transformation(const property_draw *d,
+                                                     OGRSpatialReferenceH from,
+                                                     OGRSpatialReferenceH to);
 
 #endif

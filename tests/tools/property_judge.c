@@ -172,7 +172,7 @@ static OGRSpatialReferenceH find_reference(const property_draw *d, const propert
     OGRSpatialReferenceH degrees = property_degrees(d);
     double x = d->gt[0] + d->gt[1] * d->columns / 2 + d->gt[2] * d->rows / 2;
     double y = d->gt[3] + d->gt[4] * d->columns / 2 + d->gt[5] * d->rows / 2;
-    OGRCoordinateTransformationH to = OCTNewCoordinateTransformation(srs, degrees);
+    OGRCoordinateTransformationH to = property_transformation(d, srs, degrees);
     OCTTransform(to, 1, &x, &y, NULL);
     OCTDestroyCoordinateTransformation(to);
     OSRDestroySpatialReference(srs);
@@ -232,7 +232,7 @@ static int find_sources(const property_draw *d, ground *g)
     double inverse[6];
     size_t count = (size_t)g->columns * g->rows;
     OGRSpatialReferenceH srs = property_reference(d->place->srs);
-    OGRCoordinateTransformationH to = g->srs ? OCTNewCoordinateTransformation(g->srs, srs) : NULL;
+    OGRCoordinateTransformationH to = g->srs ? property_transformation(d, g->srs, srs) : NULL;
     int ok = !g->srs || (to && OCTTransform(to, (int)count, g->u, g->v, NULL));
     double circle = whole_circle(srs),
            middle = d->gt[0] + d->gt[1] * d->columns / 2 + d->gt[2] * d->rows / 2;
@@ -449,6 +449,24 @@ static int judge_fit(const property_draw *d, property_run *run, const ground *g,
     return 0;
 }
 
+/* The pack reaches to all four sides of the raster. */
+static int judge_extent(const property_draw *d, property_run *run, const ground *g)
+{
+    double low_u = INFINITY, high_u = -INFINITY, low_v = INFINITY, high_v = -INFINITY;
+    double slack = 2 + 2 * g->ratio;
+    for (size_t n = 0; n < (size_t)g->columns * g->rows; n++) {
+        low_u = fmin(low_u, g->u[n]);
+        high_u = fmax(high_u, g->u[n]);
+        low_v = fmin(low_v, g->v[n]);
+        high_v = fmax(high_v, g->v[n]);
+    }
+    if (low_u <= slack && low_v <= slack && high_u >= d->columns - 1 - slack &&
+        high_v >= d->rows - 1 - slack)
+        return 0;
+    return wrong(run, "the pack shows columns %g to %g and rows %g to %g alone", low_u, high_u,
+                 low_v, high_v);
+}
+
 static void judge(const property_draw *d, property_run *run, const property_raster *r,
                   const char *json)
 {
@@ -460,7 +478,7 @@ static void judge(const property_draw *d, property_run *run, const property_rast
         return;
     }
     run->allowed_m = d->max_error_m + hscale + WU_M; /* in the middle of voids */
-    int rc = sort_out(d, run, r, &g, is_kept);
+    int rc = judge_extent(d, run, &g) ? -1 : sort_out(d, run, r, &g, is_kept);
     if (!rc && is_kept) rc = judge_kept(d, run, r, &g, hscale);
     if (!rc) judge_fit(d, run, &g, hscale, is_kept);
     free_ground(&g);

@@ -37,7 +37,7 @@ static int to_metres(const property_draw *d, OGRSpatialReferenceH srs, int count
         for (int i = 0; i < count; i++) x[i] -= x0, y[i] -= y0;
         return 0;
     }
-    OGRCoordinateTransformationH to = OCTNewCoordinateTransformation(srs, degrees);
+    OGRCoordinateTransformationH to = property_transformation(d, srs, degrees);
     int ok = to && OCTTransform(to, count, x, y, NULL);
     for (int i = 0; ok && i < count; i++) to_local(d, x[i], y[i], &x[i], &y[i]);
     if (to) OCTDestroyCoordinateTransformation(to);
