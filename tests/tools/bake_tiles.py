@@ -153,6 +153,15 @@ def _():
     assert coarse < 6 and abs(summary["spacing_m"] / summary_all["spacing_m"] - 2) < 0.05, (coarse, summary)
 
 
+@case("PMTiles whose header tells no bounds, or wrong ones, are found by their tiles")
+def _():
+    for box in ((0, 0, 0, 0), (-170, -80, -169, -79)):
+        error, summary, said = worst(pmtiles("bounds.pmtiles", images, box=box))
+        assert error < 0.6 and summary["voids"] == 0 and summary["samples_x"] > 400, (box, error, summary, said)
+        error, summary, said = worst(pmtiles("bounds.pmtiles", images, box=box), "--bbox", BOX)
+        assert error < 0.6, (box, error, said)
+
+
 @case("without --t-srs they are projected to the local UTM zone, true to scale, and told; with --no-project they stay")
 def _():
     path = pmtiles("world.pmtiles", images)

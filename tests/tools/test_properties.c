@@ -1,7 +1,7 @@
 /* Any projection, any geotransform, any type, any voids, any option: what farfield-bake makes and
  * farfield-export gives back lies where PROJ says, and is as high.
  *
- * DRAWS rasters (default 60) of seed SEED (1), from number FIRST (0) on; `make properties`. The
+ * DRAWS rasters (default 48) of seed SEED (1), from number FIRST (0) on; `make properties`. The
  * worst of each kind is printed, and written to PROPERTIES when set. BIN: the programs. */
 #include "property_judge.h"
 
@@ -147,7 +147,7 @@ static int try_draw(uint32_t seed, uint32_t number, const char *folder)
 
 static void what_is_baked_lies_where_proj_says_and_is_as_high(void **state)
 {
-    uint32_t draws = number_of("DRAWS", 60), seed = number_of("SEED", 1),
+    uint32_t draws = number_of("DRAWS", 48), seed = number_of("SEED", 1),
              first = number_of("FIRST", 0);
     uint32_t failed = 0, refusals = 0;
     const char *out = getenv("PROPERTIES"), *folder = out && *out ? out : "build/tests/properties";
