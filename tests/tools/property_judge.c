@@ -405,8 +405,9 @@ static double sample_m(const property_draw *d, const ground *g, double drift, do
            cubic_m(d, g, is_kept) + drift_m + top * FLOAT_PART + place_m(d, g);
 }
 
-/* Of the whole fit. Errors that were asked for go along with the ground's waves: SIGMAS of chance
- * are not all that they do, and drift lets waves out of step. */
+/* Of the whole fit. Errors that were asked for, and those of resampled ground that is rounded to
+ * the source's steps once more (by less than half a step nothing moves), go along with the ground's
+ * waves: SIGMAS of chance are not all that they do, and drift lets waves out of step. */
 static allowance allow(const property_draw *d, const ground *g, const property_fit *f, double drift,
                        double hscale, int is_kept)
 {
@@ -415,7 +416,8 @@ static allowance allow(const property_draw *d, const ground *g, const property_f
     double rounded = (step * step * g->copies + hscale * hscale) / 12;
     allowance a = { .sigma_m = sqrt(rounded + asked * asked + cubic * cubic / 9) };
     double drift_m = drift * fmax(d->columns, d->rows) * property_slope(d);
-    double chance = SIGMAS * a.sigma_m + asked * ASKED_PART * root;
+    double along = asked + (is_kept ? 0 : hscale / 2);
+    double chance = SIGMAS * a.sigma_m + along * ASKED_PART * root;
     a.bias_m = asked + WU_M + cubic + drift_m / 10 + SIGMAS * a.sigma_m / root;
     a.rms_m = a.sigma_m + WU_M + cubic + drift_m + place_m(d, g);
     a.shift = SHIFT_MAX + chance * f->shift_sd;
