@@ -251,6 +251,8 @@ static void choose_options(property_draw *d)
     if (!d->level[PROPERTY_VOIDS]) never |= 1u << OPTION_VOID_HEIGHT | 1u << OPTION_RIM_HEIGHT;
     if (d->level[PROPERTY_FILE] >= FILE_PNG) never |= 1u << OPTION_SCALE;
     if (d->place->srs && !has_reference) never |= 1u << OPTION_SPACING;
+    /* 20 million samples take their time */
+    if (d->level[PROPERTY_FILE] == FILE_HGT) never |= 1u << OPTION_DENSIFY;
     d->options &= ~never;
     if (property_has(d, OPTION_NO_PROJECT))
         d->options &= ~(1u << OPTION_SPACING | 1u << OPTION_T_SRS);
