@@ -45,7 +45,7 @@ LIBS := $(LIB)/libffsim.a $(LIB)/libffserver.a $(LIB)/libfftools.a $(LIB)/libffc
 LINK_LIBS = -Wl,--start-group $(LIBS) -Wl,--end-group $(LDLIBS_core) $(LDLIBS_surface) $(LDLIBS_host)
 
 .DEFAULT_GOAL := all
-.PHONY: all help null deps asserts format server emulator flyover front hashes demo test test-build check extremes numbers soak man install uninstall clean lib fuzz FORCE
+.PHONY: all help null deps asserts format server emulator flyover front hashes demo test test-build check extremes numbers properties soak man install uninstall clean lib fuzz FORCE
 
 all: $(PROGRAMS) lib null ## build all programs and libraries into build/
 
@@ -182,6 +182,12 @@ SEEDS ?= 100
 FIRST ?= 1
 soak: $(BUILD)/bin/farfield-fly $(BUILD)/bin/farfield-bake $(BUILD)/bin/farfield-link ## random flights over random links (SEEDS=100 FIRST=1 PACKS=...); a failure tells the command that repeats it
 	@tests/sim/soak.py --first $(FIRST) --seeds $(SEEDS) --bin $(BUILD)/bin --work $(BUILD)/soak $(SOAK) $(PACKS)
+
+N ?= 1000
+SEED ?= 1
+properties: $(BUILD)/bin/farfield-bake $(BUILD)/bin/farfield-export $(BUILD)/tests/test_properties ## rasters by chance, baked, exported and fitted to their surface; the worst of each kind in build/properties/table.md (N=1000 SEED=1)
+	@BIN=$(BUILD)/bin DRAWS=$(N) SEED=$(SEED) FIRST=$(FIRST) PROPERTIES=$(BUILD)/properties $(BUILD)/tests/test_properties; \
+	    rc=$$?; cat $(BUILD)/properties/table.md; exit $$rc
 
 # With clang there is libFuzzer: build/fuzz/fuzz_message -max_total_time=60 NEW-INPUTS-DIR tests/corpus/message. Saved inputs run in `make test`.
 FUZZ_OPT := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined

@@ -20,6 +20,24 @@ done)
 [ -z "$missing" ]
 result $? "links in documents lead somewhere $missing"
 
+# Every public report of tests/REPORTS.md names a test that is there.
+reports() { # FILE: the rows whose test is not found, or whose report stands twice
+    awk -F' \\| ' '/^\| [^ ]*#[0-9]+ \|/ { print $1 "|" $3 }' "$1" | sed 's/^| //; s/ |$//' | while IFS='|' read -r report test; do
+        [ "$test" = PROPERTIES ] && test=$(sed -n 's/.*PROPERTIES stands for \(`.*\)\.$/\1/p' "$1" | tr -d '`') || test=${test//\`/}
+        file=$(git ls-files "tests/*/${test%%: *}")
+        [ -n "$file" ] && [ -n "$test" ] && grep -qF -- "${test#*: }" "$file" || echo "$report: ${test:-no test}"
+    done
+    sed -n 's/^| \([^ ]*#[0-9]*\) .*/\1/p' "$1" | sort | uniq -d
+}
+rows=$(grep -c '^| [^ ]*#[0-9]* |' tests/REPORTS.md)
+missing=$(reports tests/REPORTS.md)
+[ -z "$missing" ] && [ "$rows" -ge 40 ]
+result $? "the tests that tests/REPORTS.md names are there, for $rows reports $missing"
+mkdir -p build/tests
+sed '0,/PROPERTIES |/s//`bake_place.sh`: pigs fly |/' tests/REPORTS.md >build/tests/reports.md
+[ "$(reports build/tests/reports.md | grep -c 'pigs fly')" = 1 ]
+result $? "and one that is not there is found"
+
 # ---- features that can be left out: features.mk has the list ----
 features=$(make -s features)
 told=$(sed -n 's/.*`make handheld NO="\([^"]*\)"`.*/\1/p' README.md)

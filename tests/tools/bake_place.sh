@@ -152,6 +152,17 @@ result $? "a plane of a whole continent is projected at its rim"
 placed bare.asc moon.vrt "+proj=eqc +R=1737400 +units=m" 30323 100 0 1819405 0 -100
 bake moon.vrt && noted "projected to local transverse Mercator" && near "$(field spacing_m)" 73.7 .1
 result $? "on the Moon the local projection is one of the Moon"
+placed bare.asc lo29.vrt EPSG:2053 20000 30 0 3000000 0 -30 # axes west and south
+bake lo29.vrt && noted "Lo29 points west: projected to WGS 84 / UTM zone 35S" && [ "$(field epsg)" = 32735 ]
+result $? "a plane whose axes point west and south, turned round in a pack, is projected"
+placed bare.asc krovak.vrt EPSG:5513 1100000 30 0 650000 0 -30 # axes south and west
+bake krovak.vrt && noted "Krovak points west: projected to WGS 84 / UTM zone 33N" && "$BIN/farfield-export" OUT.ffp -o OUT.tif --quiet
+status=$?
+# its rows run east: from 499 at the first row's last sample down to the last row
+near "$(gdallocationinfo -valonly -l_srs EPSG:5513 OUT.tif 1100300 649300 2>/dev/null)" 482 3 && [ $status = 0 ]
+result $? "so is one whose axes point south and west, a mirrored one"
+bake lo29.vrt --no-project && noted "pack's north is another: kept" && refused "whose axes point east and north" utm.vrt --t-srs EPSG:2053
+result $? "with --no-project it stays, and the note tells; --t-srs to such a plane is refused"
 
 # ---- resampling ----
 placed cliff.asc cliff.vrt EPSG:32632 500000 25.98 15 5000000 15 -25.98
@@ -216,6 +227,26 @@ refused "cut a part with gdal_translate -projwin" crop.vrt
 result $? "half the Earth is refused"
 gdal_translate -q -projwin 179 -16 180 -17 both.vrt part.tif && bake part.tif
 result $? "and the advice works: the part is baked"
+
+# ---- mosaics ----
+gdal_translate -q -of GTiff utm.vrt whole.tif
+for part in "0 0 31 25" "29 0 31 25" "0 24 31 24" "29 24 31 24"; do # shellcheck disable=SC2086
+    gdal_translate -q -srcwin $part whole.tif "part-${part// /-}.tif"
+    gdal_translate -q -srcwin $part -a_nodata -9999 whole.tif "void-${part// /-}.tif"
+done
+/usr/bin/python3 - <<'PY'
+# the second of the overlapping parts knows nothing of what the first one knows
+from osgeo import gdal
+raster = gdal.Open("void-29-0-31-25.tif", gdal.GA_Update)
+values = raster.GetRasterBand(1).ReadAsArray()
+values[:, :2] = -9999
+raster.GetRasterBand(1).WriteArray(values)
+PY
+gdalbuildvrt -q parts.vrt part-*.tif && gdalbuildvrt -q voids.vrt void-*.tif
+bake whole.tif && mv OUT.ffp first.ffp && bake parts.vrt && cmp OUT.ffp first.ffp && bake voids.vrt && cmp OUT.ffp first.ffp
+result $? "a mosaic of overlapping parts (gdalbuildvrt) is the ground that they were cut from, without seams"
+bake utm.vrt --t-srs EPSG:32633 && mv OUT.ffp first.ffp && bake parts.vrt --t-srs EPSG:32633 && cmp OUT.ffp first.ffp
+result $? "projected, too"
 
 # ---- other ways of telling where a raster lies ----
 gcps() { # NAME: with control points at three corners, and whatever follows

@@ -153,6 +153,14 @@ def _():
     assert coarse < 6 and abs(summary["spacing_m"] / summary_all["spacing_m"] - 2) < 0.05, (coarse, summary)
 
 
+@case("PMTiles whose header tells no bounds are read where --bbox says, and ask for it")
+def _():
+    path = pmtiles("bounds.pmtiles", images, box=(0, 0, 0, 0))
+    error, summary, said = worst(path, "--bbox", BOX)
+    assert error < 0.6 and summary["voids"] == 0, (error, summary, said)
+    assert "give --bbox W,S,E,N" in refused(path)
+
+
 @case("without --t-srs they are projected to the local UTM zone, true to scale, and told; with --no-project they stay")
 def _():
     path = pmtiles("world.pmtiles", images)

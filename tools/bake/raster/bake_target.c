@@ -41,13 +41,22 @@ static int middle_of(const bake_ground *ground, OGRSpatialReferenceH degrees, do
     return ok ? 0 : bake_fail_gdal("cannot tell where on the Earth the raster lies");
 }
 
+/* Whether an axis of a plane points west, as in southern Africa or Bohemia: kept as it is, ground
+ * would lie turned round in a pack, or mirrored. */
+static int runs_west(OGRSpatialReferenceH srs)
+{
+    OGRAxisOrientation axis[2] = { OAO_Other, OAO_Other };
+    for (int i = 0; i < 2; i++) OSRGetAxis(srs, "PROJCS", i, &axis[i]);
+    return OSRIsProjected(srs) && (axis[0] == OAO_West || axis[1] == OAO_West);
+}
+
 static int set_epsg(OGRSpatialReferenceH target, int epsg)
 {
     CPLErrorReset();
     if (OSRImportFromEPSG(target, epsg) == OGRERR_NONE && OSRIsProjected(target) &&
-        fabs(OSRGetLinearUnits(target, NULL) - 1) < 1e-9)
+        fabs(OSRGetLinearUnits(target, NULL) - 1) < 1e-9 && !runs_west(target))
         return 0;
-    return bake_fail("EPSG:%d is no projection in metres", epsg);
+    return bake_fail("EPSG:%d is no projection in metres whose axes point east and north", epsg);
 }
 
 /* Makes `target` the local projection of the ground. */
@@ -98,11 +107,26 @@ static void note_scale(OGRSpatialReferenceH srs, const bake_scale *scale, const 
               scale->least, scale->most, what);
 }
 
+/* Projects ground whose plane has an axis that points west, unless it is told to stay. */
+static int turn_east(const bake_options *o, const bake_ground *ground, OGRSpatialReferenceH target)
+{
+    int better = !o->no_project && !set_local(ground, target);
+    if (better)
+        bake_note("an axis of %s points west: projected to %s", name_of(ground->srs),
+                  name_of(target));
+    else
+        bake_note("an axis of %s points west, and so the pack's north is another: kept; --t-srs "
+                  "names another",
+                  name_of(ground->srs));
+    return better;
+}
+
 /* Whether the ground is better projected to the local projection, which `target` becomes, than kept
  * in its plane of metres: that is far from true to scale, and the local one much nearer. */
 static int is_better(const bake_options *o, const bake_ground *ground, OGRSpatialReferenceH target)
 {
     bake_scale now, then;
+    if (runs_west(ground->srs)) return turn_east(o, ground, target);
     if (bake_true_scale(ground, ground->srs, &now) || bake_scale_error(&now) <= ERROR_NOTED)
         return 0;
     int better = !o->no_project && bake_scale_error(&now) > ERROR_MAX &&

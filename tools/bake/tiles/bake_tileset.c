@@ -212,10 +212,14 @@ static uint32_t tile_at(double at, uint32_t zoom)
     return (uint32_t)fmin(fmax(floor(at), 0), (1u << zoom) - 1.0);
 }
 
-/* The header tells where tiles are. */
+/* The header tells where tiles are; one whose bounds are none (many have zeros there): anywhere. */
 static int pmtiles_area(const bake_pm_header *file, uint32_t zoom, bake_tiles_area *area)
 {
-    if (!(file->west < file->east && file->south < file->north) || zoom < file->zoom_min) return -1;
+    if (zoom < file->zoom_min || zoom > file->zoom_max) return -1;
+    if (!(file->west < file->east && file->south < file->north)) {
+        *area = (bake_tiles_area){ 0, 0, (1u << zoom) - 1, (1u << zoom) - 1 };
+        return 0;
+    }
     *area = (bake_tiles_area){ tile_at(bake_tiles_x(file->west, zoom), zoom),
                                tile_at(bake_tiles_y(file->north, zoom), zoom),
                                tile_at(bake_tiles_x(file->east, zoom) - 1e-9, zoom),
