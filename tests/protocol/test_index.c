@@ -1,13 +1,17 @@
 /* Indexes of sections: every record is found and no other, whatever is missing, in a mapping and by
  * a function that reads, below and beyond 4 GB. */
+#include "../../platform/sys.h"
 #include "../../protocol/ff_pack.h"
 #include "../rig/pack_fixture.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #define PLACES 3000
 
@@ -153,35 +157,83 @@ static void a_pack_is_read_through_a_function(void **state)
     free(bytes);
 }
 
-/* The last section's data lie beyond 4 GB: a hole of 5 GB before them, which no disk holds. */
-static void records_beyond_4_gb_are_found(void **state)
+/* The usual pack, its last section's data behind a hole of 5 GB. */
+typedef struct large_pack {
+    uint8_t *bytes;
+    ff_pack mapped; /* without the hole */
+    source from;
+    uint64_t size;
+    uint32_t level; /* of the last section */
+} large_pack;
+
+static void make_large(large_pack *p)
 {
-    static uint8_t room[FF_PACK_HEADER_BYTES + FF_PAYLOAD_BYTES_MAX];
     size_t count;
-    uint8_t *bytes = pack_fixture_usual(&count);
-    ff_pack mapped, read;
-    const uint8_t *a, *b;
-    (void)state;
-    assert_int_equal(ff_pack_open(&mapped, bytes, count), FF_OK);
-    ff_pack_header header = mapped.header;
+    p->bytes = pack_fixture_usual(&count);
+    assert_int_equal(ff_pack_open(&p->mapped, p->bytes, count), FF_OK);
+    ff_pack_header header = p->mapped.header;
     ff_pack_section *last = &header.section[header.section_count - 1];
-    source from = {
-        .bytes = bytes, .size = count, .hole_at = last->data_offset, .hole_bytes = UINT64_C(5) << 30
-    };
-    if (last->index_offset >= last->data_offset) last->index_offset += from.hole_bytes;
-    last->data_offset += from.hole_bytes;
-    assert_int_equal(ff_pack_header_encode(&header, bytes), FF_OK);
-    assert_int_equal(
-        ff_pack_open_reader(&read, read_source, &from, count + from.hole_bytes, room, sizeof room),
-        FF_OK);
-    for (uint32_t code = 0; code < 1u << 2 * last->level; code++) {
-        ff_key key = ff_key_make(3, last->level, code);
-        int a_bytes = ff_pack_record(&mapped, FF_SECTION_REFINEMENT, key, &a);
+    p->level = last->level;
+    p->from = (source){ .bytes = p->bytes,
+                        .size = count,
+                        .hole_at = last->data_offset,
+                        .hole_bytes = UINT64_C(5) << 30 };
+    p->size = count + p->from.hole_bytes;
+    if (last->index_offset >= last->data_offset) last->index_offset += p->from.hole_bytes;
+    last->data_offset += p->from.hole_bytes;
+    assert_int_equal(ff_pack_header_encode(&header, p->bytes), FF_OK);
+}
+
+static void expect_same(const large_pack *p, const ff_pack *large)
+{
+    const uint8_t *a, *b;
+    for (uint32_t code = 0; code < 1u << 2 * p->level; code++) {
+        ff_key key = ff_key_make(3, p->level, code);
+        int a_bytes = ff_pack_record(&p->mapped, FF_SECTION_REFINEMENT, key, &a);
         assert_true(a_bytes > 0);
-        assert_int_equal(ff_pack_record(&read, FF_SECTION_REFINEMENT, key, &b), a_bytes);
+        assert_int_equal(ff_pack_record(large, FF_SECTION_REFINEMENT, key, &b), a_bytes);
         assert_memory_equal(a, b, (size_t)a_bytes);
     }
-    free(bytes);
+}
+
+static void records_beyond_4_gb_are_read(void **state)
+{
+    static uint8_t room[FF_PACK_HEADER_BYTES + FF_PAYLOAD_BYTES_MAX];
+    static large_pack p;
+    ff_pack read;
+    (void)state;
+    make_large(&p);
+    assert_int_equal(ff_pack_open_reader(&read, read_source, &p.from, p.size, room, sizeof room),
+                     FF_OK);
+    expect_same(&p, &read);
+    free(p.bytes);
+}
+
+/* A file with a real hole; skipped where the disk makes none. */
+static void records_beyond_4_gb_are_found_in_a_mapping(void **state)
+{
+    static const char path[] = "build/test_index.ffp";
+    static large_pack p;
+    sys_mapping mapping;
+    ff_pack large;
+    (void)state;
+    make_large(&p);
+    uint64_t at = p.from.hole_at, behind = p.from.size - at;
+    int fd = open(path, O_RDWR | O_CREAT | O_TRUNC, 0666);
+    assert_true(fd >= 0);
+    int made = pwrite(fd, p.bytes, at, 0) == (ssize_t)at &&
+               pwrite(fd, p.bytes + at, behind, (off_t)(at + p.from.hole_bytes)) == (ssize_t)behind;
+    close(fd);
+    int rc = made ? sys_map_file(path, &mapping) : FF_ERR_SYSTEM;
+    unlink(path);
+    if (rc == FF_OK) {
+        assert_true(mapping.size == p.size);
+        assert_int_equal(ff_pack_open(&large, mapping.bytes, mapping.size), FF_OK);
+        expect_same(&p, &large);
+        sys_unmap_file(&mapping);
+    }
+    free(p.bytes);
+    if (rc != FF_OK) skip();
 }
 
 int main(void)
@@ -189,6 +241,8 @@ int main(void)
     const struct CMUnitTest tests[] = { cmocka_unit_test(every_record_is_found_and_no_other),
                                         cmocka_unit_test(crc16_is_the_usual_one),
                                         cmocka_unit_test(a_pack_is_read_through_a_function),
-                                        cmocka_unit_test(records_beyond_4_gb_are_found) };
+                                        cmocka_unit_test(records_beyond_4_gb_are_read),
+                                        cmocka_unit_test(
+                                            records_beyond_4_gb_are_found_in_a_mapping) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
