@@ -489,7 +489,7 @@ int ff_pack_verify(const ff_pack *pack, uint64_t *bad)
     if (pack->header.about.kind) {
         one = ff_pack_about(pack, &about);
         rc = rc == FF_OK ? one : rc;
-        *bad += one != FF_OK;
+        *bad += one == FF_ERR_CHECKSUM;
     }
     return rc == FF_OK && *bad ? FF_ERR_CHECKSUM : rc;
 }

@@ -21,10 +21,12 @@ def first_texture(pack):
     """Side and payload."""
     side = 1 << pack[12 + 4]
     for i in range(struct.unpack_from("<I", pack, 80)[0]):
-        kind, _, _, level, _, _, _, _, index, data, _ = struct.unpack_from("<4sBBBBIIQQQQ", pack, 84 + 48 * i)
+        kind, level, bits, index, data = struct.unpack_from("<4s2xB13xB3xQQ", pack, 84 + 48 * i)
         if kind == b"IMAG" and level == 0:
-            begin, end = struct.unpack_from("<QQ", pack, index)
-            return side, pack[data + begin + 4:data + end]
+            roots = struct.unpack_from("<I", pack, 84 + 16)[0]  # the first section's records: places of this one
+            lengths = index + (roots + 255) // 256 * 36 + 8
+            length = struct.unpack_from("<I", pack, lengths)[0] & (1 << bits) - 1
+            return side, pack[data + 2:data + 2 + length]
     sys.exit("no textures")
 
 

@@ -17,7 +17,7 @@ PLAIN_CODEC = """\
 int ff_plain_decode(const ff_decoder *dec, ff_payload *in, const ff_contents *contents,
                     ff_residuals *out)
 {
-    int rc = ff_take_errors(in, FF_ERRORS_EACH, contents->errors, out->child_error);
+    int rc = ff_take_errors(in, FF_ERRORS_EACH, contents->errors, out);
     (void)dec;
     if (rc != FF_OK) return rc;
     if (ff_payload_left(in) < 2 * (size_t)contents->count) return FF_ERR_FORMAT;
@@ -32,7 +32,7 @@ int ff_plain_decode(const ff_decoder *dec, ff_payload *in, const ff_contents *co
 size_t ff_plain_encode(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *decoded,
                        const ff_contents *contents, const ff_residuals *res, uint8_t *out)
 {
-    size_t bytes = ff_put_errors(res->child_error, FF_ERRORS_EACH, contents->errors, out);
+    size_t bytes = ff_put_errors(res, FF_ERRORS_EACH, contents->errors, out);
     (void)info, (void)parent, (void)decoded;
     for (uint32_t i = 0; i < contents->count; i++) {
         out[bytes++] = (uint8_t)((uint32_t)res->value[i] >> 8);
@@ -160,7 +160,7 @@ CHANGES = [
       ("build/bin/farfield-fly --pack hills.ffp --laps 10 || [ $? = 2 ]", "farfield-fly: --laps: 10 is not a whole number from 1 to 9 laps"),
       ("build/bin/farfield-fly --pack hills.ffp --laps 7 --link lan --seconds 2 --settle 5 --backend none", "laps 7")]),
     ("a kind", 5, [("protocol/ff_kind.h", "    X(FACE,",
-                    "@LINE@ \\\n    X(NOTE,       note,       7, 0, NODE,     73, PAYLOAD, 0, 0,                           OVERHEAD, 0, note)\n"),
+                    "@LINE@ \\\n    X(NOTE,       note,       9, 0, NODE,     74, PAYLOAD, 0, 0,                           OVERHEAD, 0, note)\n"),
                    ("client/ff_client_local.h", "    ff_refusals refusals;", "    char note[32];\n")],
      {"client/ask/ff_intake_note.c": NOTE_CLIENT, "server/session/ff_session_note.c": NOTE_SERVER, "tests/client/test_note.c": NOTE_TEST},
      ["build/bin/farfield-fly", "build/tests/test_note", "build/tests/test_client", "build/tests/test_message", "build/tests/test_pack"],
