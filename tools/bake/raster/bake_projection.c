@@ -2,6 +2,7 @@
 
 #include "../../../protocol/ff_about.h"
 #include "../../../protocol/ff_error.h"
+#include "bake_reference.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,8 +16,13 @@
 char *bake_projection_wkt(OGRSpatialReferenceH srs)
 {
     static const char *const form[] = { "FORMAT=WKT2_2015", "MULTILINE=NO", NULL };
+    OGRSpatialReferenceH named = OSRNewSpatialReference(NULL);
+    int epsg = bake_reference_epsg(srs);
+    if (epsg && OSRImportFromEPSG(named, epsg) == OGRERR_NONE) srs = named;
     char *wkt = NULL;
-    if (OSRExportToWktEx(srs, &wkt, form) == OGRERR_NONE && wkt && *wkt) return wkt;
+    OGRErr rc = OSRExportToWktEx(srs, &wkt, form);
+    OSRDestroySpatialReference(named);
+    if (rc == OGRERR_NONE && wkt && *wkt) return wkt;
     CPLFree(wkt);
     return NULL;
 }
