@@ -190,6 +190,15 @@ static void a_server_of_another_version_is_told(void **state)
     rig.version = 0;
     assert_true(rig_settle(&rig, 4000));
     assert_int_equal(rig_stats(&rig).refusal, FF_OK);
+    /* and once more with the terrain held, which the next server has, too */
+    rig.version = 4;
+    rig.cut_at = rig.bytes_down;
+    for (int i = 0; i < 20; i++) rig_step(&rig, 100000);
+    assert_int_equal(rig_stats(&rig).refusal, FF_ERR_VERSION);
+    rig.version = 0;
+    for (int i = 0; i < 200; i++) rig_step(&rig, 100000);
+    assert_int_equal(rig_stats(&rig).link, FF_LINK_UP);
+    assert_int_equal(rig_stats(&rig).refusal, FF_OK);
     rig_close(&rig);
 }
 
