@@ -281,7 +281,7 @@ static int about_of_pack(const ff_pack *pack, unsigned entry, void *value, size_
 
 int ff_client_about(ff_client *client, enum ff_about_entry entry, void *value, size_t room)
 {
-    if (!(client->desc.about & FF_ABOUT_BIT(entry))) return FF_ERR_NOT_FOUND;
+    if (!ff_about_in(client->desc.about, entry)) return FF_ERR_NOT_FOUND;
     if (client->desc.pack) return about_of_pack(client->desc.pack, entry, value, room);
     return ff_stream_about_entry(&client->stream, entry, value, room);
 }

@@ -73,7 +73,9 @@ static void who_shows_it_asks_once_and_gets_what_was_asked_for(void **state)
     assert_int_equal(rig.asked_about, 1);
     assert_says(&rig, FF_ABOUT_NAME, "Hills");
     assert_says(&rig, FF_ABOUT_ATTRIBUTION, "nobody");
-    assert_says(&rig, FF_ABOUT_LICENCE, NULL); /* not wanted */
+    assert_says(&rig, FF_ABOUT_LICENCE, NULL);       /* not wanted */
+    assert_says(&rig, (enum ff_about_entry)0, NULL); /* none */
+    assert_says(&rig, (enum ff_about_entry)33, NULL);
     assert_int_equal(ff_client_about(rig.client, FF_ABOUT_NAME, value, sizeof value), FF_ERR_FULL);
     assert_int_equal(pool(&rig, "about").bytes, ff_about_bytes_max(SHOWN));
     assert_int_equal(pool(&rig, "about").held, 15);

@@ -79,7 +79,7 @@ static int take_about(ff_stream *stream, ff_list list)
     ff_list_entry entry;
     if (about->state != FF_ABOUT_ASKED) return FF_ERR_FORMAT;
     while (ff_list_next(&rest, &entry) > 0)
-        if (entry.type > 32 || !(about->entries & FF_ABOUT_BIT(entry.type))) return FF_ERR_FORMAT;
+        if (!ff_about_in(about->entries, entry.type)) return FF_ERR_FORMAT;
     if (list.byte_count > ff_about_bytes_max(about->entries)) return FF_ERR_RANGE;
     sys_mutex_lock(&stream->intake->requests->mutex);
     if (list.byte_count) memcpy(about->bytes, list.bytes, list.byte_count);
