@@ -117,7 +117,7 @@ typedef struct ff_client_desc {
     void *memory;
     size_t memory_bytes; /* at least ff_client_bytes_min(); more memory holds finer ground */
     sys_stream *stream;  /* to a server; or NULL */
-    const ff_pack *pack; /* a pack in memory instead; or NULL */
+    const ff_pack *pack; /* a pack on this device instead, mapped or read; or NULL */
     const struct c3d_backend *backend;  /* NULL: no pictures */
     const sys_surface_api *surface_api; /* its context is current */
     /* viewport, default 240x320; a back end without a GL draws nothing in a larger one */

@@ -5,6 +5,7 @@
 
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -152,6 +153,49 @@ static void a_pack_on_the_device_is_read_at_once(void **state)
     rig_close(&rig);
 }
 
+typedef struct source {
+    const uint8_t *bytes;
+    atomic_int inside, met;
+} source;
+
+/* Slow enough for another thread to come in, and tells when one does. */
+static int read_slowly(void *context, uint64_t offset, void *out, size_t count)
+{
+    source *from = context;
+    if (atomic_fetch_add(&from->inside, 1)) atomic_store(&from->met, 1);
+    memcpy(out, from->bytes + offset, count);
+    sys_sleep_us(100);
+    atomic_fetch_sub(&from->inside, 1);
+    return FF_OK;
+}
+
+/* A view that reads has room for one: the worker reads ground there while the program asks. */
+static void a_pack_that_is_read_is_read_by_one_at_a_time(void **state)
+{
+    static uint8_t room[32768];
+    client_rig rig;
+    unsigned asked = 0;
+
+    (void)state;
+    rig_open(&rig, 0);
+    rig_use_about(&rig, about);
+    source from = { .bytes = rig.pack.bytes };
+    assert_int_equal(
+        ff_pack_open_reader(&rig.pack, read_slowly, &from, rig.pack.size, room, sizeof room),
+        FF_OK);
+    rig.desc.about = SHOWN;
+    rig.desc.use_thread = 1;
+    rig_local_client(&rig, 2 * MB);
+    do {
+        rig_step(&rig, 100000);
+        for (int i = 0; i < 10; i++, asked++) assert_says(&rig, FF_ABOUT_ATTRIBUTION, "nobody");
+    } while (asked < 300);
+    assert_true(rig_stats(&rig).tree.nodes_held > 20);
+    assert_int_equal(rig_stats(&rig).requests_failed, 0);
+    assert_int_equal(atomic_load(&from.met), 0);
+    rig_close(&rig);
+}
+
 /* A server that sends more than was asked for, or unasked, talks nonsense. */
 static void answers_that_nobody_asked_for_are_nonsense(void **state)
 {
@@ -212,6 +256,7 @@ int main(void)
         cmocka_unit_test(ground_goes_first),
         cmocka_unit_test(a_pack_that_says_nothing_is_an_empty_list),
         cmocka_unit_test(a_pack_on_the_device_is_read_at_once),
+        cmocka_unit_test(a_pack_that_is_read_is_read_by_one_at_a_time),
         cmocka_unit_test(answers_that_nobody_asked_for_are_nonsense),
         cmocka_unit_test(a_server_of_another_version_is_told),
     };
