@@ -268,21 +268,24 @@ const ff_terrain_info *ff_client_terrain(const ff_client *client)
     return client->have_terrain ? &client->info : NULL;
 }
 
-static int about_of_pack(const ff_pack *pack, unsigned entry, void *value, size_t room)
+/* Under the gate: a pack that is read has one room, which the worker reads into, too. */
+static int about_of_pack(ff_client *client, unsigned entry, void *value, size_t room)
 {
     const uint8_t *found;
     ff_list about;
-    int bytes = ff_pack_about(pack, &about);
+    sys_mutex_lock(&client->gate);
+    int bytes = ff_pack_about(client->desc.pack, &about);
     if (bytes == FF_OK) bytes = ff_list_find(about, entry, &found);
-    if (bytes > 0 && (size_t)bytes > room) return FF_ERR_FULL;
+    if (bytes > 0 && (size_t)bytes > room) bytes = FF_ERR_FULL;
     if (bytes > 0) memcpy(value, found, (size_t)bytes);
+    sys_mutex_unlock(&client->gate);
     return bytes;
 }
 
 int ff_client_about(ff_client *client, enum ff_about_entry entry, void *value, size_t room)
 {
-    if (!(client->desc.about & FF_ABOUT_BIT(entry))) return FF_ERR_NOT_FOUND;
-    if (client->desc.pack) return about_of_pack(client->desc.pack, entry, value, room);
+    if (!ff_about_in(client->desc.about, entry)) return FF_ERR_NOT_FOUND;
+    if (client->desc.pack) return about_of_pack(client, entry, value, room);
     return ff_stream_about_entry(&client->stream, entry, value, room);
 }
 

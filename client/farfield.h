@@ -117,7 +117,7 @@ typedef struct ff_client_desc {
     void *memory;
     size_t memory_bytes; /* at least ff_client_bytes_min(); more memory holds finer ground */
     sys_stream *stream;  /* to a server; or NULL */
-    const ff_pack *pack; /* a pack in memory instead; or NULL */
+    const ff_pack *pack; /* a pack on this device instead, mapped or read; or NULL */
     const struct c3d_backend *backend;  /* NULL: no pictures */
     const sys_surface_api *surface_api; /* its context is current */
     /* viewport, default 240x320; a back end without a GL draws nothing in a larger one */
@@ -229,8 +229,7 @@ void ff_client_set_show(ff_client *client, unsigned show);
 const ff_terrain_info *ff_client_terrain(const ff_client *client);
 /* An entry of what the pack says of itself, of those in desc.about: its bytes in `value`, a text
  * without an end mark; FF_ERR_NOT_FOUND: the pack does not say, or it has not come yet;
- * FF_ERR_FULL.
- */
+ * FF_ERR_FULL: `value` is too small; of a local pack what is wrong with it. */
 int ff_client_about(ff_client *client, enum ff_about_entry entry, void *value, size_t room);
 const ff_tree *ff_client_tree(const ff_client *client);
 /* For checks and the emulator: the c3d device; NULL without a back end and where the block has no

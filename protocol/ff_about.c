@@ -84,13 +84,11 @@ int ff_about_check(ff_list about)
     return rc;
 }
 
-static int is_in(uint32_t set, unsigned type) { return type <= 32 && (set & FF_ABOUT_BIT(type)); }
-
 uint32_t ff_about_bytes_max(uint32_t set)
 {
     uint32_t bytes = 0;
     for (unsigned i = 0; i < RULES; i++)
-        if (is_in(set, rule[i].type)) bytes += HEAD_BYTES + rule[i].most;
+        if (ff_about_in(set, rule[i].type)) bytes += HEAD_BYTES + rule[i].most;
     return bytes;
 }
 
@@ -99,7 +97,7 @@ int ff_about_select(ff_list about, uint32_t set, uint8_t *out, uint32_t capacity
     ff_writer writer = { out, out + capacity, FF_OK };
     ff_list_entry entry;
     while (ff_list_next(&about, &entry) > 0)
-        if (is_in(set, entry.type))
+        if (ff_about_in(set, entry.type))
             ff_list_write(&writer, entry.type, entry.value, entry.byte_count);
     return writer.error != FF_OK ? writer.error : (int)(writer.at - out);
 }

@@ -34,6 +34,10 @@ enum ff_about_set {
 #undef X
 };
 /* clang-format on */
+static inline int ff_about_in(uint32_t set, unsigned type)
+{
+    return type >= 1 && type <= 32 && (set & FF_ABOUT_BIT(type));
+}
 
 /* How the reference system is projected. Parameters follow, see ff_about_parameter. */
 typedef struct ff_about_projection {

@@ -128,7 +128,7 @@ static void read_section(ff_reader *in, ff_pack_section *section)
     section->version = (uint8_t)ff_read_bytes(in, 1);
     section->codec = (uint8_t)ff_read_bytes(in, 1);
     section->level = (uint8_t)ff_read_bytes(in, 1);
-    section->flags = (uint8_t)ff_read_bytes(in, 1);
+    section->flags = (uint8_t)(ff_read_bytes(in, 1) & FF_PACK_NEEDED); /* others are reserved */
     section->index_crc = (uint32_t)ff_read_bytes(in, 4);
     section->data_crc = (uint32_t)ff_read_bytes(in, 4);
     section->index.places = 0;
@@ -362,7 +362,7 @@ static int read_record(const ff_pack *pack, const ff_pack_section *section, uint
 {
     const ff_index *index = &section->index;
     uint64_t offset, block_at = section->index_offset + ff_index_blocks_at(index) +
-                                number / FF_INDEX_RECORDS * ff_index_block_bytes(index);
+                                (uint64_t)(number / FF_INDEX_RECORDS) * ff_index_block_bytes(index);
     uint8_t room[FF_INDEX_BLOCK_MAX];
     const uint8_t *record;
     uint32_t bytes;

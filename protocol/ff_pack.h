@@ -5,8 +5,8 @@
  * 1, ... Within a section records lie in order of tile, then Morton code; the sections' indexes
  * (ff_index.h) give any record's place in a step for each level above it. Every record is preceded
  * by its CRC, checked whenever it is read. What the pack says of itself is a section of its own.
- * Sections that this reader does
- * not know are passed over, or the pack is refused where the section says that it is needed.
+ * Sections that this reader does not know are passed over, or the pack is refused where the section
+ * says that it is needed.
  */
 #ifndef FF_PACK_H
 #define FF_PACK_H
@@ -48,7 +48,7 @@ typedef struct ff_pack_header {
     ff_terrain_info info;
     uint32_t section_count; /* of the kinds in ff_kind.h */
     ff_pack_section section[FF_PACK_SECTIONS_MAX];
-    ff_pack_section about; /* without records: the pack says nothing of itself */
+    ff_pack_section about; /* of kind 0: the pack says nothing of itself */
 } ff_pack_header;
 
 /* Reads `count` bytes from `offset` on, all of them: FF_OK or an error. */
@@ -98,13 +98,13 @@ int ff_pack_section_at(const ff_terrain_info *info, uint32_t number, ff_pack_sec
  * records. FF_OK or error. */
 int ff_pack_verify(const ff_pack *pack, uint64_t *bad);
 
-/* The section of what a pack says of itself: the same, for a list in one record. */
+/* The same for the section of what a pack says of itself, which has no records. */
 ff_pack_section ff_pack_about_section(void);
 
 /* Header to bytes, for writers; `out` has FF_PACK_HEADER_BYTES. The function works out
  * info.checksum itself and ignores the one in `header`, and sets the places of the sections'
- * indexes: the checksum is a CRC over the header, which by
- * index_crc and data_crc stands for everything in the pack. FF_OK or FF_ERR_RANGE. */
+ * indexes: the checksum is a CRC over the header, which by index_crc and data_crc stands for
+ * everything in the pack. FF_OK or FF_ERR_RANGE. */
 int ff_pack_header_encode(ff_pack_header *header, uint8_t *out);
 
 /* CRC-32 (zlib's polynomial), crc 0 to start. */

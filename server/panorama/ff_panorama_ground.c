@@ -7,9 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ERROR_PX_Q8     256 /* one texel of the face */
-#define SIGMA_Q8        320
-#define LOAD_ROUNDS_MAX 64 /* a bound for damaged packs: every round refines a level, or stops */
+#define ERROR_PX_Q8 256 /* one texel of the face */
+#define SIGMA_Q8    320
+/* a bound for damaged packs: every round refines a level or makes 32 families of leaves, of which
+ * the tree holds 1024, or it is the last */
+#define LOAD_ROUNDS_MAX 64
 
 void panorama_ground_desc(const ff_pack *pack, const sys_surface_api *surface_api, c3d_desc *desc)
 {

@@ -192,7 +192,7 @@ static int write_screenshot(view_app *app, c3d_device *device)
     if (rc >= 0) rc = sys_png_write(path, rgb, camera->width, camera->height);
     free(rgb);
     app->screenshot = NULL;
-    return rc < 0 ? view_fail("%s: %s", path, ff_pack_error_text(&app->pack, rc)) : 0;
+    return rc < 0 ? view_fail("%s: %s", path, ff_error_text(rc)) : 0;
 }
 
 static int draw(view_app *app)

@@ -5,6 +5,7 @@
 
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -73,7 +74,9 @@ static void who_shows_it_asks_once_and_gets_what_was_asked_for(void **state)
     assert_int_equal(rig.asked_about, 1);
     assert_says(&rig, FF_ABOUT_NAME, "Hills");
     assert_says(&rig, FF_ABOUT_ATTRIBUTION, "nobody");
-    assert_says(&rig, FF_ABOUT_LICENCE, NULL); /* not wanted */
+    assert_says(&rig, FF_ABOUT_LICENCE, NULL);       /* not wanted */
+    assert_says(&rig, (enum ff_about_entry)0, NULL); /* none */
+    assert_says(&rig, (enum ff_about_entry)33, NULL);
     assert_int_equal(ff_client_about(rig.client, FF_ABOUT_NAME, value, sizeof value), FF_ERR_FULL);
     assert_int_equal(pool(&rig, "about").bytes, ff_about_bytes_max(SHOWN));
     assert_int_equal(pool(&rig, "about").held, 15);
@@ -104,7 +107,14 @@ static void ground_goes_first(void **state)
     rig_open(&plain, 0);
     rig_client(&plain, 2 * MB);
     assert_true(rig_settle(&plain, 400));
-    for (uint64_t at = plain.bytes_down - 200; at < plain.bytes_down + 40; at += 17) {
+    rig_open(&rig, 0);
+    rig.desc.about = SHOWN;
+    rig_client(&rig, 2 * MB);
+    assert_true(rig_settle(&rig, 400));
+    assert_true(rig.about_at > 2 * FF_TERRAIN_BYTES); /* WELCOME, and ground */
+    uint64_t asked_at = rig.about_at;
+    rig_close(&rig);
+    for (uint64_t at = asked_at - 20; at < asked_at + 60; at += 4) {
         rig_open(&rig, 0);
         rig_use_about(&rig, about);
         rig.desc.about = SHOWN;
@@ -150,6 +160,49 @@ static void a_pack_on_the_device_is_read_at_once(void **state)
     rig_close(&rig);
 }
 
+typedef struct source {
+    const uint8_t *bytes;
+    atomic_int inside, met;
+} source;
+
+/* Slow enough for another thread to come in, and tells when one does. */
+static int read_slowly(void *context, uint64_t offset, void *out, size_t count)
+{
+    source *from = context;
+    if (atomic_fetch_add(&from->inside, 1)) atomic_store(&from->met, 1);
+    memcpy(out, from->bytes + offset, count);
+    sys_sleep_us(100);
+    atomic_fetch_sub(&from->inside, 1);
+    return FF_OK;
+}
+
+/* A view that reads has room for one: the worker reads ground there while the program asks. */
+static void a_pack_that_is_read_is_read_by_one_at_a_time(void **state)
+{
+    static uint8_t room[32768];
+    client_rig rig;
+
+    (void)state;
+    rig_open(&rig, 0);
+    rig_use_about(&rig, about);
+    source from = { .bytes = rig.pack.bytes };
+    assert_int_equal(
+        ff_pack_open_reader(&rig.pack, read_slowly, &from, rig.pack.size, room, sizeof room),
+        FF_OK);
+    rig.desc.about = SHOWN;
+    rig.desc.use_thread = 1;
+    rig_local_client(&rig, 2 * MB);
+    for (unsigned asked = 0; asked < 100 || rig_stats(&rig).tree.nodes_held <= 20; asked++) {
+        rig_step(&rig, 100000);
+        assert_says(&rig, FF_ABOUT_ATTRIBUTION, "nobody");
+        sys_sleep_us(300); /* the worker comes to its turn */
+        assert_true(asked < 30000);
+    }
+    assert_int_equal(rig_stats(&rig).requests_failed, 0);
+    assert_int_equal(atomic_load(&from.met), 0);
+    rig_close(&rig);
+}
+
 /* A server that sends more than was asked for, or unasked, talks nonsense. */
 static void answers_that_nobody_asked_for_are_nonsense(void **state)
 {
@@ -190,6 +243,15 @@ static void a_server_of_another_version_is_told(void **state)
     rig.version = 0;
     assert_true(rig_settle(&rig, 4000));
     assert_int_equal(rig_stats(&rig).refusal, FF_OK);
+    /* and once more with the terrain held, which the next server has, too */
+    rig.version = 4;
+    rig.cut_at = rig.bytes_down;
+    for (int i = 0; i < 20; i++) rig_step(&rig, 100000);
+    assert_int_equal(rig_stats(&rig).refusal, FF_ERR_VERSION);
+    rig.version = 0;
+    for (int i = 0; i < 200; i++) rig_step(&rig, 100000);
+    assert_int_equal(rig_stats(&rig).link, FF_LINK_UP);
+    assert_int_equal(rig_stats(&rig).refusal, FF_OK);
     rig_close(&rig);
 }
 
@@ -201,6 +263,7 @@ int main(void)
         cmocka_unit_test(ground_goes_first),
         cmocka_unit_test(a_pack_that_says_nothing_is_an_empty_list),
         cmocka_unit_test(a_pack_on_the_device_is_read_at_once),
+        cmocka_unit_test(a_pack_that_is_read_is_read_by_one_at_a_time),
         cmocka_unit_test(answers_that_nobody_asked_for_are_nonsense),
         cmocka_unit_test(a_server_of_another_version_is_told),
     };

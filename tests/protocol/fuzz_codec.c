@@ -1,6 +1,7 @@
 /* Any bytes as a payload. Byte 0: node_log2 - 1 (bits 0-2, modulo 5), refinement (bit 3), codec
- * (bits 4-7, modulo the number of codecs); bytes 1-2: max_error. When the payload decodes, its
- * heights must be the slow decoder's. */
+ * (bits 4-7, modulo the number of codecs); bytes 1-2: max_error, and in the highest bit whether the
+ * ground ends inside the grid: then bytes 3 and 4 say after how many columns and rows of cells.
+ * When the payload decodes, its heights and marks must be the slow decoder's. */
 #include "../../protocol/codec/ff_codec.h"
 #include "../rig/slow_decoder.h"
 
@@ -10,6 +11,27 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
+/* The cells of a grid of `side` samples that have ground, from two bytes, or all of them. */
+static ff_cells cells_from(const uint8_t *two, uint32_t side)
+{
+    uint32_t all = side - 1;
+    return two ? (ff_cells){ (uint8_t)(1 + two[0] % all), (uint8_t)(1 + two[1] % all) }
+               : (ff_cells){ (uint8_t)all, (uint8_t)all };
+}
+
+/* A parent of such a refinement: beyond its ground it repeats the last sample, as all decoded
+ * grids do. */
+static void make_parent(const ff_terrain_info *info, ff_cells cells, uint16_t *parent)
+{
+    uint32_t side = ff_node_side(info), last_x = (cells.columns + 1u) / 2,
+             last_y = (cells.rows + 1u) / 2;
+    for (uint32_t i = 0; i < side * side; i++) {
+        uint32_t x = i % side < last_x ? i % side : last_x,
+                 y = i / side < last_y ? i / side : last_y, at = y * side + x;
+        parent[i] = (uint16_t)(at * at * 40503u >> 3);
+    }
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
     static int32_t value[FF_REFINED_HEIGHTS_MAX];
@@ -18,30 +40,33 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     ff_residuals residuals = { .value = value };
     ff_terrain_info info = { .tile_log2 = 15 };
     int rc, slow_rc, refinement;
+    size_t head = 3;
 
-    if (count < 3) return 0;
+    if (count < head || (bytes[2] & 0x80 && count < (head = 5))) return 0;
     refinement = bytes[0] >> 3 & 1;
     info.node_log2 = (uint8_t)((bytes[0] & 7) % FF_NODE_LOG2_MAX + 1);
     info.codec = (uint8_t)((bytes[0] >> 4) % FF_CODEC_COUNT);
     info.max_error = (uint16_t)((bytes[1] | bytes[2] << 8) & INT16_MAX);
-    for (uint32_t i = 0; i < FF_NODE_HEIGHTS_MAX; i++) parent[i] = (uint16_t)(i * i * 40503u >> 3);
+    uint32_t side = refinement ? ff_refined_side(&info) : ff_node_side(&info);
+    residuals.cells = cells_from(head == 5 ? bytes + 3 : NULL, side);
+    make_parent(&info, residuals.cells, parent);
 
     size_t memory_bytes = ff_decoder_bytes(&info);
     void *memory = malloc(memory_bytes);
     ff_decoder *dec = ff_decoder_create(&info, memory, memory_bytes);
     assert(dec != NULL);
-    bytes += 3;
-    count -= 3;
+    bytes += head;
+    count -= head;
     rc = refinement ? ff_decode_refinement(dec, bytes, count, &residuals)
                     : ff_decode_root(dec, bytes, count, &residuals);
     if (rc == FF_OK)
         rc = refinement ? ff_reconstruct_refinement(&info, parent, &residuals, heights)
                         : ff_reconstruct_root(&info, &residuals, heights);
-    slow_rc = slow_decode(&info, refinement ? parent : NULL, bytes, count, slow);
+    slow_rc = slow_decode_part(&info, residuals.cells.columns, residuals.cells.rows,
+                               refinement ? parent : NULL, bytes, count, slow);
     assert((rc == FF_OK) == (slow_rc >= 0));
     if (rc == FF_OK) {
-        assert(residuals.filled == slow_rc);
-        uint32_t side = refinement ? ff_refined_side(&info) : ff_node_side(&info);
+        assert(residuals.filled + 16 * residuals.leaf == slow_rc);
         assert(memcmp(heights, slow, 2u * side * side) == 0);
     }
     free(memory);

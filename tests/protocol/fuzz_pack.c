@@ -1,5 +1,5 @@
 /* Any bytes as a pack: once as they are, once with a right checksum in the header, so that the
- * reader gets past it. */
+ * reader gets past it; mapped, and read part by part, which must give the same. */
 #include "../../protocol/ff_pack.h"
 #include "../../protocol/shape/ff_shape.h"
 
@@ -38,14 +38,36 @@ static void decode_payload(const ff_terrain_info *info, ff_key key, int refineme
     free(memory);
 }
 
+static int read_part(void *context, uint64_t offset, void *out, size_t count)
+{
+    memcpy(out, (const uint8_t *)context + offset, count);
+    return FF_OK;
+}
+
+/* A record from the mapping: its bytes, or an error, and the other view's answer is the same. */
+static int both_records(const ff_pack *pack, const ff_pack *read, uint32_t kind, ff_key key,
+                        const uint8_t **payload)
+{
+    const uint8_t *other;
+    int rc = ff_pack_record(pack, (enum ff_section_kind)kind, key, payload);
+
+    assert(ff_pack_record(read, (enum ff_section_kind)kind, key, &other) == rc);
+    assert(rc < 0 || memcmp(*payload, other, (size_t)rc) == 0);
+    return rc;
+}
+
 static void use_pack(const uint8_t *bytes, size_t count)
 {
-    ff_pack pack;
+    static uint8_t room[(1u << FF_INDEX_LENGTH_BITS) + FF_RECORD_CRC_BYTES];
+    ff_pack pack, read;
     uint64_t bad, records = 0;
     ff_list about;
     volatile int sum = 0;
 
-    if (ff_pack_open(&pack, bytes, count) != FF_OK) return;
+    int rc = ff_pack_open(&pack, bytes, count);
+    assert(ff_pack_open_reader(&read, read_part, (void *)(uintptr_t)bytes, count, room,
+                               sizeof room) == rc);
+    if (rc != FF_OK) return;
     for (uint32_t s = 0; s < pack.header.section_count; s++) {
         const ff_pack_section *section = &pack.header.section[s];
         records += section->index.records;
@@ -53,7 +75,7 @@ static void use_pack(const uint8_t *bytes, size_t count)
             const uint8_t *payload;
             ff_key key = ff_key_make(i >> (2 * section->level), section->level,
                                      section->level ? i : 0);
-            int rc = ff_pack_record(&pack, (enum ff_section_kind)section->kind, key, &payload);
+            rc = both_records(&pack, &read, section->kind, key, &payload);
             if (rc < 0) continue;
             sum += read_all(payload, rc);
             if (section->kind != FF_SECTION_TEXTURE)
@@ -63,11 +85,11 @@ static void use_pack(const uint8_t *bytes, size_t count)
     }
     if (ff_pack_about(&pack, &about) == FF_OK) {
         ff_list_entry entry;
-        records++;
         for (int n = 0; n < 8; n++) sum += ff_pack_error_text(&pack, -n)[0];
         while (ff_list_next(&about, &entry) > 0)
             sum += read_all(entry.value, (int)entry.byte_count);
     }
+    records += pack.header.about.kind != 0;
     ff_pack_verify(&pack, &bad);
     assert(bad <= records);
 }

@@ -416,6 +416,25 @@ static void unknown_sections_are_passed_over_wherever_they_stand(void **state)
     assert_int_equal(about.byte_count, 15);
 }
 
+/* SPEC.md: reserved bits and bytes are not looked at. */
+static void reserved_bits_are_not_looked_at(void **state)
+{
+    fixture *f = *state;
+    const uint8_t *payload;
+    ff_list about;
+    ff_pack pack;
+
+    for (unsigned number = 0; number < 4; number++) {
+        f->bytes[SECTION_AT(number, 7)] |= 0xfe;
+        memset(f->bytes + SECTION_AT(number, 21), 0xff, 3);
+    }
+    memset(f->bytes + SECTION_AT(4, 0), 0xff, 4000 - SECTION_AT(4, 0));
+    reseal(f);
+    assert_int_equal(ff_pack_open(&pack, f->bytes, f->count), FF_OK);
+    assert_true(ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(1, 0, 0), &payload) > 0);
+    assert_int_equal(ff_pack_about(&pack, &about), FF_OK);
+}
+
 /* What a pack says of itself may be in a form that this reader does not know. */
 static void an_unknown_form_of_what_is_not_needed_is_passed_over(void **state)
 {
@@ -548,6 +567,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(bad_headers_are_not_written, make, drop),
         cmocka_unit_test_setup_teardown(unknown_sections_are_passed_over_wherever_they_stand, make,
                                         drop),
+        cmocka_unit_test_setup_teardown(reserved_bits_are_not_looked_at, make, drop),
         cmocka_unit_test_setup_teardown(an_unknown_form_of_what_is_not_needed_is_passed_over, make,
                                         drop),
         cmocka_unit_test_setup_teardown(unknown_sections_that_are_needed_are_refused_by_name, make,

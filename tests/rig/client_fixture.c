@@ -63,7 +63,8 @@ static void count_messages(client_rig *rig, const uint8_t *bytes, size_t count)
          bytes += used, count -= (size_t)used) {
         if (message.type == FF_MSG_GET) rig->asked[message.kind]++;
         rig->pings += message.type == FF_MSG_PING;
-        rig->asked_about += message.type == FF_MSG_GET_ABOUT;
+        if (message.type == FF_MSG_GET_ABOUT && !rig->asked_about++)
+            rig->about_at = rig->bytes_down;
     }
 }
 

@@ -29,6 +29,7 @@ typedef struct client_rig {
     unsigned connections;
     uint32_t asked[FF_KIND_COUNT]; /* messages from the client, by kind */
     uint32_t pings, asked_about;
+    uint64_t about_at;        /* bytes_down when that was asked first */
     ff_list about;            /* what the pack says of itself */
     int64_t now_us, frame_us; /* of server and worker; of the frames */
 

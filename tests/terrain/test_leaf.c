@@ -67,6 +67,53 @@ static void the_tree_makes_what_is_not_stored(void **state)
         }
 }
 
+/* A flat root of that error, a filled leaf, seen from near by: how many leaves are to be split. */
+static uint32_t split_of_flat(terrain_fixture *fx, uint8_t error_code, uint16_t max_error)
+{
+    static int32_t value[FF_NODE_HEIGHTS_MAX];
+    fixture_make(fx, 3, 7, 1, 1, fixture_flat);
+    fx->info.max_error = max_error;
+    fixture_tree(fx, 200, 40);
+    uint32_t side = ff_node_side(&fx->info);
+    ff_residuals root = { .child_error = { error_code },
+                          .filled = 1,
+                          .leaf = 1,
+                          .count = (uint16_t)(side * side),
+                          .value = value };
+    ff_view view = fixture_view(640, 640, 100, 0, -30);
+    ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
+    assert_int_equal(ff_tree_deliver_root(fx->tree, 0, &root), FF_OK);
+    ff_tree_select(fx->tree, &view, &quality);
+    uint32_t count = ff_tree_to_make(fx->tree);
+    ff_tree_select(fx->tree, &view, &quality);
+    return count;
+}
+
+/* What lies within the bound of the source is not made finer: nothing better is known. */
+static void leaves_within_the_bound_are_not_split(void **state)
+{
+    (void)state;
+    for (uint8_t max_error = 0; max_error <= 5; max_error += 5)
+        for (uint8_t error = 0; error <= 7; error++) {
+            terrain_fixture fx;
+            assert_int_equal(split_of_flat(&fx, error, max_error), error > max_error);
+            assert_int_equal(fixture_stats(&fx).nodes_held, error > max_error ? 5 : 1);
+            fixture_free(&fx);
+        }
+}
+
+static void what_was_filled_is_filled_below_leaves(void **state)
+{
+    (void)state;
+    terrain_fixture fx;
+    assert_int_equal(split_of_flat(&fx, 7, 0), 1);
+    for (uint32_t q = 0; q < 4; q++) {
+        uint32_t slot = ff_tree_find(fx.tree, ff_key_child(ff_key_make(0, 0, 0), q));
+        assert_true(slot != FF_SLOT_NONE && fx.tree->node[slot].flags & FF_NODE_FILLED);
+    }
+    fixture_free(&fx);
+}
+
 /* Also where there is no room for all: it does not make and drop the same nodes again and again. */
 static void pools_of_any_size_settle(void **state)
 {
@@ -88,6 +135,8 @@ static void pools_of_any_size_settle(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(the_tree_makes_what_is_not_stored),
+                                        cmocka_unit_test(leaves_within_the_bound_are_not_split),
+                                        cmocka_unit_test(what_was_filled_is_filled_below_leaves),
                                         cmocka_unit_test(pools_of_any_size_settle) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -44,9 +44,11 @@ static int verify(const bake_unpack *unpack)
     uint32_t finest = ff_terrain_levels(info) - 1, side = bake_unpack_side(info, finest);
     uint64_t bad;
     int rc = ff_pack_verify(&unpack->pack, &bad);
-    if (rc && bad) return bake_fail("%s: %" PRIu64 " damaged records", unpack->path, bad);
+    if (rc == FF_ERR_CHECKSUM && bad)
+        return bake_fail("%s: %" PRIu64 " damaged records", unpack->path, bad);
     if (rc == FF_ERR_CHECKSUM) return bake_fail("%s: %s", unpack->path, ff_error_text(rc));
-    if (rc) return bake_fail("%s: what it says of itself: %s", unpack->path, ff_error_text(rc));
+    if (rc) /* its bytes are sound, and records are */
+        return bake_fail("%s: what it says of itself: %s", unpack->path, ff_error_text(rc));
     uint16_t *heights = malloc((size_t)side * side * sizeof *heights);
     if (!heights) return bake_fail("out of memory");
     for (uint32_t tile = 0; !rc && tile < ff_shape_tiles(info); tile++)

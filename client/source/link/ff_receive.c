@@ -3,6 +3,14 @@
 
 #include <string.h>
 
+/* The reason is kept for those who wait in vain; FF_OK: they wait no longer. */
+static void note_refusal(ff_stream *stream, int error)
+{
+    sys_mutex_lock(&stream->intake->requests->mutex);
+    stream->shared.refusal = (int8_t)error;
+    sys_mutex_unlock(&stream->intake->requests->mutex);
+}
+
 static int take_welcome(ff_stream *stream, const ff_welcome *welcome, int64_t now_us)
 {
     if (stream->state != FF_STREAM_GREETING) return FF_ERR_FORMAT;
@@ -10,13 +18,13 @@ static int take_welcome(ff_stream *stream, const ff_welcome *welcome, int64_t no
     stream->awaiting = 0;
     stream->welcomed_us = now_us;
     stream->backoff_us = FF_BACKOFF_US_MIN;
+    note_refusal(stream, FF_OK);
     if (stream->has_terrain && ff_terrain_same(&stream->held, &welcome->info)) {
         stream->state = FF_STREAM_UP;
         return FF_OK;
     }
     sys_mutex_lock(&stream->intake->requests->mutex);
     stream->shared.welcome = welcome->info;
-    stream->shared.refusal = FF_OK;
     stream->about.state = FF_ABOUT_UNKNOWN; /* another pack's */
     stream->about.byte_count = 0;
     sys_mutex_unlock(&stream->intake->requests->mutex);
@@ -71,7 +79,7 @@ static int take_about(ff_stream *stream, ff_list list)
     ff_list_entry entry;
     if (about->state != FF_ABOUT_ASKED) return FF_ERR_FORMAT;
     while (ff_list_next(&rest, &entry) > 0)
-        if (entry.type > 32 || !(about->entries & FF_ABOUT_BIT(entry.type))) return FF_ERR_FORMAT;
+        if (!ff_about_in(about->entries, entry.type)) return FF_ERR_FORMAT;
     if (list.byte_count > ff_about_bytes_max(about->entries)) return FF_ERR_RANGE;
     sys_mutex_lock(&stream->intake->requests->mutex);
     if (list.byte_count) memcpy(about->bytes, list.bytes, list.byte_count);
@@ -80,14 +88,6 @@ static int take_about(ff_stream *stream, ff_list list)
     sys_mutex_unlock(&stream->intake->requests->mutex);
     stream->awaiting = 0;
     return FF_OK;
-}
-
-/* The reason is kept for those who wait in vain. */
-static void note_refusal(ff_stream *stream, int error)
-{
-    sys_mutex_lock(&stream->intake->requests->mutex);
-    stream->shared.refusal = (int8_t)error;
-    sys_mutex_unlock(&stream->intake->requests->mutex);
 }
 
 /* Takes in a message. FF_OK, FF_ERR_AGAIN when the new-data list is full, or another error. */
