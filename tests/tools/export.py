@@ -389,6 +389,16 @@ def _():
             elif os.path.exists(done):
                 assert os.path.getsize(done) > 1000, out
         write("land.ffp", out)
+    for name in ("odd[12].tif", "*.tif", "odd[12].ffp"):  # characters that stand for others in patterns
+        for text in (name, name.replace("[12]", "1").replace("*", "x")):
+            open(os.path.join(work, text + ".tmp-99999999"), "w").close()
+    write("land.ffp", "odd[12].tif")
+    write("land.ffp", "*.tif")
+    assert run("bake", "land.ffp.tif", "-o", "odd[12].ffp", "--quiet").returncode == 0
+    others = sorted(name for name in os.listdir(work) if ".tmp-" in name)
+    assert others == ["odd1.ffp.tmp-99999999", "odd1.tif.tmp-99999999", "x.tif.tmp-99999999"], others
+    for name in others:
+        os.remove(os.path.join(work, name))
     left = [name for name in os.listdir(work) if ".tmp-" in name or name.startswith(".farfield")]
     assert not left, left
 
