@@ -335,6 +335,21 @@ def _():
     assert "do not fit a JPEG" in refused_export("land.ffp", "x.jpg")
 
 
+@case("attributions are text, not HTML that a page would run; they come back as they were")
+def _():
+    text = 'Survey & <img src=x onerror="x"> &copy; ' + "&" * 300
+    ground("theirs.ffp", 60, 50, options=("--attribution", text))
+    shown = text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+    write("theirs.ffp", "theirs/")
+    write("theirs.ffp", "meshes/", "--mesh")
+    assert folder_tiles("theirs")[1]["attribution"] == shown == json.load(open(os.path.join(work, "meshes/layer.json")))["attribution"]
+    for out in ("theirs.mbtiles", "theirs.pmtiles"):
+        write("theirs.ffp", out)
+        assert run("bake", out, "-o", "mine.ffp").returncode == 0
+        assert json.loads(run("info", "--json", "mine.ffp").stdout)["about"]["attribution"] == text, out
+    assert table_tiles("theirs.mbtiles")[1]["attribution"] == shown
+
+
 @case("ground across the antimeridian has tiles at both ends of the map")
 def _():
     place = (800000, 300, 0, -1800000, 0, -300)  # UTM zone 60 goes on beyond 180 degrees
