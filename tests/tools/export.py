@@ -370,6 +370,9 @@ def _():
     write("seam.ffp", "seam.tif", "--region", "179.9,-17,-179.5,-16.5")
     part, _ = metres("seam.tif")
     assert part.shape[1] < 200, part.shape
+    for region in ("-180,-90,180,90", "-180,-30,179.99,0"):  # both ends of the map are all of it
+        write("seam.ffp", "seam.tif", "--region", region)
+        assert metres("seam.tif")[0].shape == (120, 200), region
 
 
 @case("what cannot be done is refused in one line")
