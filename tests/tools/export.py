@@ -370,6 +370,11 @@ def _():
     write("seam.ffp", "seam.tif", "--region", "179.9,-17,-179.5,-16.5")
     part, _ = metres("seam.tif")
     assert part.shape[1] < 200, part.shape
+    centre = told["center"]
+    assert any((zoom, x, y) == (9, int((centre[0] + 180) / 360 * 512), y) for zoom, x, y in tiles) and -18 < centre[1] < -16, centre
+    write("seam.ffp", "seam.pmtiles", "--zoom", 9)
+    head = open(os.path.join(work, "seam.pmtiles"), "rb").read(127)
+    assert abs(int.from_bytes(head[119:123], "little", signed=True) / 1e7 - centre[0]) < 1e-6, centre
     for region in ("-180,-90,180,90", "-180,-30,179.99,0"):  # both ends of the map are all of it
         write("seam.ffp", "seam.tif", "--region", region)
         assert metres("seam.tif")[0].shape == (120, 200), region

@@ -11,6 +11,17 @@
 #define HTML_BYTES  (5 * EXPORT_TEXT_BYTES)
 #define MESH_FORMAT "quantized-mesh-1.0"
 
+export_told_place export_facts_place(const export_tiles_about *tiles)
+{
+    export_bounds b = tiles->bounds;
+    export_told_place told = { b, (b.west + b.east) / 2, (b.south + b.north) / 2 };
+    if (b.east <= 180) return told;
+    if (told.middle_x > 180) told.middle_x -= 360;
+    told.bounds.west = -180;
+    told.bounds.east = 180;
+    return told;
+}
+
 /* Attributions of map tiles are HTML, and readers put them into their pages: a pack's is text. */
 static void to_html(const char *text, char html[HTML_BYTES])
 {
@@ -27,7 +38,8 @@ static void to_html(const char *text, char html[HTML_BYTES])
 int export_facts(const export_tiles_about *t, export_fact_fn put, void *context)
 {
     char text[VALUE_BYTES], html[HTML_BYTES];
-    const export_bounds *b = &t->bounds;
+    const export_told_place place = export_facts_place(t);
+    const export_bounds *b = &place.bounds;
     int rc = put(context, "name", t->about.name, 1) || put(context, "type", "baselayer", 1) ||
              put(context, "format", t->layer ? MESH_FORMAT : t->format, 1);
     to_html(t->about.attribution, html);
@@ -49,8 +61,7 @@ int export_facts(const export_tiles_about *t, export_fact_fn put, void *context)
     if (!rc) rc = put(context, "maxzoom", text, 0);
     snprintf(text, sizeof text, "%.7f,%.7f,%.7f,%.7f", b->west, b->south, b->east, b->north);
     if (!rc) rc = put(context, "bounds", text, 0);
-    snprintf(text, sizeof text, "%.7f,%.7f,%u", (b->west + b->east) / 2, (b->south + b->north) / 2,
-             t->zoom_min);
+    snprintf(text, sizeof text, "%.7f,%.7f,%u", place.middle_x, place.middle_y, t->zoom_min);
     if (!rc) rc = put(context, "center", text, 0);
     return rc;
 }

@@ -190,9 +190,6 @@ static void describe(mesh_export *m)
     m->about.layer = m->layer;
     m->about.zoom_max = m->points.zoom;
     m->about.bounds = m->points.bounds;
-    if (m->about.bounds.east <= 180) return;
-    m->about.bounds.west = -180;
-    m->about.bounds.east = 180;
 }
 
 static int make_all(mesh_export *m)

@@ -205,9 +205,6 @@ static int choose_box(const export_options *o, pyramid *p)
     p->south = bake_tiles_y(b.south, 0);
     if (choose_zooms(o, &b, p)) return -1;
     p->about.bounds = b;
-    if (b.east <= 180) return 0;
-    p->about.bounds.west = -180;
-    p->about.bounds.east = 180;
     return 0;
 }
 
