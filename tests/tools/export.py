@@ -397,6 +397,17 @@ def _():
     write("deep.ffp", "deep.pmtiles", "--encoding", "terrarium", "--zoom", 9)
 
 
+@case("zooms that show no ground are refused, those that cannot be measured say so")
+def _():
+    ground("tiny.ffp", 2, 2, wave=lambda x, y: 100 + (x - 500000) / 2)
+    for out in ("x.pmtiles", "x/"):
+        assert "no pixel on the ground" in refused_export("tiny.ffp", out, "--zoom", 0)
+    assert "zoom 11 too coarse to be measured" in write("tiny.ffp", "tiny/", "--zoom", 11)
+    assert 15 < folder_tiles("tiny")[1]["error_m"] < 17, folder_tiles("tiny")[1]  # all that lies between its heights
+    assert "zoom 0 too coarse to be measured" in write("tiny.ffp", "flat/", "--mesh", "--zoom", 0)
+    assert json.load(open(os.path.join(work, "flat/layer.json")))["error_m"] > 115
+
+
 @case("outputs appear whole or not at all, whatever kills the run; the next run cleans up")
 def _():
     for out in ("kill/", "kill.pmtiles", "kill.mbtiles", "kill.tif"):
