@@ -101,7 +101,7 @@ def make_ground():
                     at = way.TransformPoint(place[0] + (column + 0.5) * place[1], place[3] + (row + 0.5) * place[5])
                     points.append((at[0], at[1], heights[row, column]))
             groups.append(points)
-    return groups
+    return sorted(groups, key=lambda points: max(point[2] for point in points), reverse=True)  # the picture is of the highest
 
 
 class Handler(http.server.BaseHTTPRequestHandler):
