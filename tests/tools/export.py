@@ -335,6 +335,21 @@ def _():
     assert "do not fit a JPEG" in refused_export("land.ffp", "x.jpg")
 
 
+@case("attributions are text, not HTML that a page would run; they come back as they were")
+def _():
+    text = 'Survey & <img src=x onerror="x"> &copy; ' + "&" * 300
+    ground("theirs.ffp", 60, 50, options=("--attribution", text))
+    shown = text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+    write("theirs.ffp", "theirs/")
+    write("theirs.ffp", "meshes/", "--mesh")
+    assert folder_tiles("theirs")[1]["attribution"] == shown == json.load(open(os.path.join(work, "meshes/layer.json")))["attribution"]
+    for out in ("theirs.mbtiles", "theirs.pmtiles"):
+        write("theirs.ffp", out)
+        assert run("bake", out, "-o", "mine.ffp").returncode == 0
+        assert json.loads(run("info", "--json", "mine.ffp").stdout)["about"]["attribution"] == text, out
+    assert table_tiles("theirs.mbtiles")[1]["attribution"] == shown
+
+
 @case("ground across the antimeridian has tiles at both ends of the map")
 def _():
     place = (800000, 300, 0, -1800000, 0, -300)  # UTM zone 60 goes on beyond 180 degrees
@@ -355,6 +370,14 @@ def _():
     write("seam.ffp", "seam.tif", "--region", "179.9,-17,-179.5,-16.5")
     part, _ = metres("seam.tif")
     assert part.shape[1] < 200, part.shape
+    centre = told["center"]
+    assert any((zoom, x, y) == (9, int((centre[0] + 180) / 360 * 512), y) for zoom, x, y in tiles) and -18 < centre[1] < -16, centre
+    write("seam.ffp", "seam.pmtiles", "--zoom", 9)
+    head = open(os.path.join(work, "seam.pmtiles"), "rb").read(127)
+    assert abs(int.from_bytes(head[119:123], "little", signed=True) / 1e7 - centre[0]) < 1e-6, centre
+    for region in ("-180,-90,180,90", "-180,-30,179.99,0"):  # both ends of the map are all of it
+        write("seam.ffp", "seam.tif", "--region", region)
+        assert metres("seam.tif")[0].shape == (120, 200), region
 
 
 @case("what cannot be done is refused in one line")
@@ -374,6 +397,17 @@ def _():
     write("deep.ffp", "deep.pmtiles", "--encoding", "terrarium", "--zoom", 9)
 
 
+@case("zooms that show no ground are refused, those that cannot be measured say so")
+def _():
+    ground("tiny.ffp", 2, 2, wave=lambda x, y: 100 + (x - 500000) / 2)
+    for out in ("x.pmtiles", "x/"):
+        assert "no pixel on the ground" in refused_export("tiny.ffp", out, "--zoom", 0)
+    assert "zoom 11 too coarse to be measured" in write("tiny.ffp", "tiny/", "--zoom", 11)
+    assert 15 < folder_tiles("tiny")[1]["error_m"] < 17, folder_tiles("tiny")[1]  # all that lies between its heights
+    assert "zoom 0 too coarse to be measured" in write("tiny.ffp", "flat/", "--mesh", "--zoom", 0)
+    assert json.load(open(os.path.join(work, "flat/layer.json")))["error_m"] > 115
+
+
 @case("outputs appear whole or not at all, whatever kills the run; the next run cleans up")
 def _():
     for out in ("kill/", "kill.pmtiles", "kill.mbtiles", "kill.tif"):
@@ -389,6 +423,16 @@ def _():
             elif os.path.exists(done):
                 assert os.path.getsize(done) > 1000, out
         write("land.ffp", out)
+    for name in ("odd[12].tif", "*.tif", "odd[12].ffp"):  # characters that stand for others in patterns
+        for text in (name, name.replace("[12]", "1").replace("*", "x")):
+            open(os.path.join(work, text + ".tmp-99999999"), "w").close()
+    write("land.ffp", "odd[12].tif")
+    write("land.ffp", "*.tif")
+    assert run("bake", "land.ffp.tif", "-o", "odd[12].ffp", "--quiet").returncode == 0
+    others = sorted(name for name in os.listdir(work) if ".tmp-" in name)
+    assert others == ["odd1.ffp.tmp-99999999", "odd1.tif.tmp-99999999", "x.tif.tmp-99999999"], others
+    for name in others:
+        os.remove(os.path.join(work, name))
     left = [name for name in os.listdir(work) if ".tmp-" in name or name.startswith(".farfield")]
     assert not left, left
 

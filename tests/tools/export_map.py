@@ -14,6 +14,7 @@ from rasters import *
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 WAIT_S = 240
+OWNER = "U.S. Geological Survey <i>& others</i>"
 NAME = "MapLibre shows exported tiles as terrain; its heights are the ground's, within what was told"
 
 
@@ -51,20 +52,40 @@ def find_maplibre():
     return kept + "/package/dist"
 
 
+def find_trinidad():
+    """The demo's ground, or None where it cannot be fetched."""
+    try:
+        done = subprocess.run([os.path.join(HERE, "../../tools/scripts/trinidad.sh"), "build/demo"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, timeout=120)
+    except subprocess.TimeoutExpired:
+        return None
+    return done.stdout.strip() if done.returncode == 0 else None
+
+
+def choose_raster():
+    """(path, options of the bake)"""
+    if os.environ.get("RASTER"):
+        return os.environ["RASTER"], ()
+    trinidad = find_trinidad()
+    if trinidad:  # whole metres, kept as 3.28 times as many
+        return trinidad, ("--scale", 0.3048780488)
+    print("# no Trinidad to be had: hills")
+    rows, columns = np.mgrid[0:400, 0:500]
+    hills = 700 + 350 * np.sin(columns / 23) * np.cos(rows / 31) + 120 * np.sin(columns / 9 + rows / 14)
+    return put("hills.tif", hills.astype(np.float32), place=(520000, 60, 0, 4140000, 0, -60), reference="EPSG:32613"), ()
+
+
 def make_ground():
     """A pack, its tiles, and (longitude, latitude, height) at samples of it, in groups."""
-    raster = os.environ.get("RASTER")
-    if not raster:
-        rows, columns = np.mgrid[0:400, 0:500]
-        hills = 700 + 350 * np.sin(columns / 23) * np.cos(rows / 31) + 120 * np.sin(columns / 9 + rows / 14)
-        raster = put("hills.tif", hills.astype(np.float32), place=(520000, 60, 0, 4140000, 0, -60), reference="EPSG:32613")
-    for program, arguments in (("bake", (os.path.abspath(raster), "-o", "map.ffp")), ("export", ("map.ffp", "-o", "map.tif")), ("export", ("map.ffp", "-o", "tiles/"))):
+    raster, options = choose_raster()
+    for program, arguments in (("bake", (os.path.abspath(raster), "-o", "map.ffp", "--attribution", OWNER, *options)), ("export", ("map.ffp", "-o", "map.tif")), ("export", ("map.ffp", "-o", "tiles/"))):
         done = run(program, *arguments)
         assert done.returncode == 0, done.stderr
     print("# " + done.stderr.strip())
     raster = gdal.Open(os.path.join(work, "map.tif"))
     band, place = raster.GetRasterBand(1), raster.GetGeoTransform()
     heights = band.ReadAsArray() * (band.GetScale() or 1) + (band.GetOffset() or 0)
+    if options:
+        assert 4250 < heights.max() < 4374, heights.max()  # metres: Blanca Peak, which samples 80 m apart miss
     wgs84 = osr.SpatialReference()
     wgs84.ImportFromEPSG(4326)
     wgs84.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
@@ -80,7 +101,7 @@ def make_ground():
                     at = way.TransformPoint(place[0] + (column + 0.5) * place[1], place[3] + (row + 0.5) * place[5])
                     points.append((at[0], at[1], heights[row, column]))
             groups.append(points)
-    return groups
+    return sorted(groups, key=lambda points: max(point[2] for point in points), reverse=True)  # the picture is of the highest
 
 
 class Handler(http.server.BaseHTTPRequestHandler):
@@ -139,6 +160,7 @@ def judge(groups, answer):
     gdal.FileFromMemBuffer("/vsimem/picture", picture)
     colours = gdal.Open("/vsimem/picture").ReadAsArray()[:3].astype(int)
     wanted = np.array([height for points in groups for _, _, height in points])
+    assert OWNER in answer["attribution"], answer["attribution"]
     assert None not in answer["heights"], answer["heights"]
     off = np.array(answer["heights"]) - wanted
     print("# %d heights: %.3f m rms, %.3f m at most, %.3f m told; heights %.0f to %.0f m" % (len(off), (off**2).mean()**0.5, abs(off).max(), told["error_m"], wanted.min(), wanted.max()))

@@ -1,12 +1,11 @@
 #include "pack_writer.h"
 
 #include "raster/bake_grid.h"
+#include "bake_leftovers.h"
 #include "bake_say.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <glob.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +15,6 @@
 #define PATH_BYTES   4096
 #define COPY_BYTES   (1u << 18)
 #define LENGTH_BYTES sizeof(uint32_t)
-#define TEMP_MARK    ".tmp-"
 
 static void put_le(uint8_t *out, uint64_t value, int bytes)
 {
@@ -25,38 +23,20 @@ static void put_le(uint8_t *out, uint64_t value, int bytes)
 
 /* ---- before ---- */
 
-static void remove_leftovers(const char *path)
-{
-    char pattern[PATH_BYTES];
-    glob_t found;
-    snprintf(pattern, sizeof pattern, "%s" TEMP_MARK "*", path);
-    if (glob(pattern, GLOB_NOSORT, NULL, &found)) return;
-    for (size_t i = 0; i < found.gl_pathc; i++) {
-        long pid = strtol(found.gl_pathv[i] + strlen(path) + strlen(TEMP_MARK), NULL, 10);
-        if (pid > 0 && kill((pid_t)pid, 0) && errno == ESRCH) unlink(found.gl_pathv[i]);
-    }
-    globfree(&found);
-}
-
-static int temp_name(const char *path, char *temp)
-{
-    if (snprintf(temp, PATH_BYTES, "%s" TEMP_MARK "%ld", path, (long)getpid()) >= PATH_BYTES)
-        return bake_fail("%s: the name is too long", path);
-    return 0;
-}
+static void remove_one(const char *leftover) { unlink(leftover); }
 
 int pack_writer_prepare(const char *path)
 {
     char temp[PATH_BYTES];
     struct stat status;
-    if (temp_name(path, temp)) return -1;
+    if (bake_temp_name(path, temp, sizeof temp)) return -1;
     if (!stat(path, &status) && !S_ISREG(status.st_mode))
         return bake_fail("%s: not a plain file", path);
     int fd = open(temp, O_WRONLY | O_CREAT | O_EXCL, 0666);
     if (fd < 0) return bake_fail("cannot write %s: %s", path, strerror(errno));
     close(fd);
     unlink(temp);
-    remove_leftovers(path);
+    bake_leftovers_remove(path, remove_one);
     return 0;
 }
 
@@ -288,7 +268,7 @@ static int write_file(const pack_writer *writer, int fd, uint64_t *file_bytes)
 int pack_writer_finish(pack_writer *writer, const char *path, uint64_t *file_bytes)
 {
     char temp[PATH_BYTES];
-    if (temp_name(path, temp)) return -1;
+    if (bake_temp_name(path, temp, sizeof temp)) return -1;
     int fd = open(temp, O_RDWR | O_CREAT | O_TRUNC, 0666);
     if (fd < 0) return bake_fail("cannot write %s: %s", path, strerror(errno));
     int rc = write_file(writer, fd, file_bytes);

@@ -1,4 +1,5 @@
 /* What is said of a set of map tiles. */
+#include "../../protocol/ff_assert.h"
 #include "../bake/bake_say.h"
 #include "export_store_local.h"
 
@@ -6,16 +7,43 @@
 #include <string.h>
 
 #define VALUE_BYTES 128
-#define JSON_BYTES  8192
+#define JSON_BYTES  (1 << 14) /* more than all that is said takes */
+#define HTML_BYTES  (5 * EXPORT_TEXT_BYTES)
 #define MESH_FORMAT "quantized-mesh-1.0"
+
+export_told_place export_facts_place(const export_tiles_about *tiles)
+{
+    export_bounds b = tiles->bounds;
+    export_told_place told = { b, (b.west + b.east) / 2, (b.south + b.north) / 2 };
+    if (b.east <= 180) return told;
+    if (told.middle_x > 180) told.middle_x -= 360;
+    told.bounds.west = -180;
+    told.bounds.east = 180;
+    return told;
+}
+
+/* Attributions of map tiles are HTML, and readers put them into their pages: a pack's is text. */
+static void to_html(const char *text, char html[HTML_BYTES])
+{
+    for (; *text; text++) {
+        const char *mark = *text == '&'   ? "&amp;"
+                           : *text == '<' ? "&lt;"
+                           : *text == '>' ? "&gt;"
+                                          : NULL;
+        html += sprintf(html, mark ? "%s" : "%.1s", mark ? mark : text);
+    }
+    *html = 0;
+}
 
 int export_facts(const export_tiles_about *t, export_fact_fn put, void *context)
 {
-    char text[VALUE_BYTES];
-    const export_bounds *b = &t->bounds;
+    char text[VALUE_BYTES], html[HTML_BYTES];
+    const export_told_place place = export_facts_place(t);
+    const export_bounds *b = &place.bounds;
     int rc = put(context, "name", t->about.name, 1) || put(context, "type", "baselayer", 1) ||
              put(context, "format", t->layer ? MESH_FORMAT : t->format, 1);
-    if (!rc && *t->about.attribution) rc = put(context, "attribution", t->about.attribution, 1);
+    to_html(t->about.attribution, html);
+    if (!rc && *html) rc = put(context, "attribution", html, 1);
     if (!rc && *t->about.licence) rc = put(context, "licence", t->about.licence, 1);
     if (!rc && *t->about.date) rc = put(context, "date", t->about.date, 1);
     if (!rc && *t->about.vertical_datum)
@@ -33,8 +61,7 @@ int export_facts(const export_tiles_about *t, export_fact_fn put, void *context)
     if (!rc) rc = put(context, "maxzoom", text, 0);
     snprintf(text, sizeof text, "%.7f,%.7f,%.7f,%.7f", b->west, b->south, b->east, b->north);
     if (!rc) rc = put(context, "bounds", text, 0);
-    snprintf(text, sizeof text, "%.7f,%.7f,%u", (b->west + b->east) / 2, (b->south + b->north) / 2,
-             t->zoom_min);
+    snprintf(text, sizeof text, "%.7f,%.7f,%u", place.middle_x, place.middle_y, t->zoom_min);
     if (!rc) rc = put(context, "center", text, 0);
     return rc;
 }
@@ -49,7 +76,7 @@ typedef struct json_text {
 static void add(json_text *json, const char *bytes)
 {
     size_t count = strlen(bytes);
-    if (json->used + count >= JSON_BYTES) return;
+    FF_ASSERT(json->used + count < JSON_BYTES);
     memcpy(json->text + json->used, bytes, count + 1);
     json->used += count;
 }

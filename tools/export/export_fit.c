@@ -2,12 +2,14 @@
 
 #include "../bake/bake_say.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 
 #define SIDE        EXPORT_TILE_SIDE
 #define EDGE_POINTS 16
 #define PLACE_PX    0.0002 /* how exactly samples are placed among pixels */
+#define ZOOMS_TOLD  3      /* the finest */
 
 /* Columns and rows of the ground. */
 typedef struct sample_range {
@@ -110,9 +112,7 @@ static int judge_row(const tile_judge *judge, const sample_row *row, uint32_t j)
         double off = height_at(judge, x, row->y[n]) -
                      (row->steps[skipped + n * judge->stride] * ground->scale + ground->offset);
         if (isnan(off)) continue;
-        judge->fit->count++;
-        judge->fit->sum += off * off;
-        judge->fit->worst_m = fmax(judge->fit->worst_m, fabs(off));
+        export_fit_take(judge->fit, off);
     }
     return 0;
 }
@@ -139,7 +139,20 @@ int export_fit_add(const export_view *view, const export_paint *paint, const exp
     return rc;
 }
 
-double export_fit_rms(const export_fit *fit)
+void export_fit_take(export_fit *fit, double off_m)
 {
-    return fit->count ? sqrt(fit->sum / (double)fit->count) : 0;
+    fit->count++;
+    fit->sum += off_m * off_m;
+    fit->worst_m = fmax(fit->worst_m, fabs(off_m));
+}
+
+void export_fit_tell(const export_fit *fit, uint32_t low, uint32_t high, export_about *about)
+{
+    for (uint32_t z = high + 1; z-- > low && z + ZOOMS_TOLD > high;)
+        if (fit[z].count)
+            export_about_add(
+                about, "; zoom %u measured at %" PRIu64 " samples: %.3g m rms, %.4g m at most", z,
+                fit[z].count, sqrt(fit[z].sum / (double)fit[z].count), fit[z].worst_m);
+        else
+            export_about_add(about, "; zoom %u too coarse to be measured", z);
 }

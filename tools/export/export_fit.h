@@ -3,6 +3,7 @@
 #ifndef EXPORT_FIT_H
 #define EXPORT_FIT_H
 
+#include "export_about.h"
 #include "export_tile.h"
 #include "export_view.h"
 
@@ -23,6 +24,10 @@ typedef struct export_patch {
  * -1 (said). */
 int export_fit_add(const export_view *view, const export_paint *paint, const export_patch *patch,
                    const double geotransform[6], double map_px, uint32_t stride, export_fit *fit);
-double export_fit_rms(const export_fit *fit);
+/* One more sample that is so far off. */
+void export_fit_take(export_fit *fit, double off_m);
+/* Says how far a zoom is off in the finest zooms of those that end with `high`; of what is not
+ * measured it says that. */
+void export_fit_tell(const export_fit *fit, uint32_t low, uint32_t high, export_about *about);
 
 #endif

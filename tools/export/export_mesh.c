@@ -18,7 +18,6 @@
 /* What became of a zoom. */
 typedef struct zoom_sum {
     uint64_t tiles, bytes, vertices;
-    mesh_fit fit;
 } zoom_sum;
 
 /* All of one export of meshes. */
@@ -34,6 +33,7 @@ typedef struct mesh_export {
     char layer[LAYER_BYTES]; /* what layer.json says besides */
     size_t used;             /* of it */
     zoom_sum zoom[EXPORT_ZOOM_MAX + 1];
+    export_fit fit[EXPORT_ZOOM_MAX + 1];
 } mesh_export;
 
 int export_mesh_check(const export_options *o)
@@ -81,8 +81,7 @@ static int make_tile(mesh_export *m, const mesh_range *range, uint32_t zoom, uin
         return -1;
     mesh_surface surface = { tile->rtin.index, tile->rtin.triangle_count, tile->decoded,
                              tile->block };
-    if (mesh_probes_measure(&m->probes, &m->points, zoom, x, y, &surface, &m->zoom[zoom].fit))
-        return -1;
+    if (mesh_probes_measure(&m->probes, &m->points, zoom, x, y, &surface, &m->fit[zoom])) return -1;
     return put_tile(m, zoom, x, y);
 }
 
@@ -123,17 +122,14 @@ static void add_available(mesh_export *m, uint32_t zoom)
     add(m, "]");
 }
 
-static double rms(const mesh_fit *fit)
-{
-    return fit->count ? sqrt(fit->sum / (double)fit->count) : 0;
-}
-
-/* How far a zoom's meshes are from the pack's source: measured at samples, and what the pack may be
- * off itself. */
+/* How far a zoom's meshes are from the pack's source: measured at samples, else all that lies
+ * between heights, of which 0 is one; and what the pack may be off itself. */
 static double bound_of(const mesh_export *m, uint32_t zoom)
 {
-    const export_error *error = &m->ground->error;
-    return fmax(error->between_m, error->samples_m) + m->zoom[zoom].fit.worst_m;
+    const export_ground *ground = m->ground;
+    double between_m = fmax(ground->high, 0) - fmin(ground->low, 0);
+    return fmax(ground->error.between_m, ground->error.samples_m) +
+           (m->fit[zoom].count ? m->fit[zoom].worst_m : between_m);
 }
 
 static void describe_layer(mesh_export *m)
@@ -144,7 +140,7 @@ static void describe_layer(mesh_export *m)
     add(m, "\"errors_m\": [");
     for (uint32_t z = 0; z <= m->points.zoom; z++) {
         add(m, "%s", z ? ", " : "");
-        if (m->zoom[z].fit.count)
+        if (m->fit[z].count)
             add(m, "%.4g", bound_of(m, z));
         else
             add(m, "null");
@@ -159,10 +155,7 @@ static void tell_errors(mesh_export *m)
 {
     export_about *about = &m->about.about;
     about->error_m = bound_of(m, m->points.zoom);
-    for (uint32_t z = m->points.zoom + 1; z-- > 0 && z + 3 > m->points.zoom;)
-        export_about_add(about,
-                         "; zoom %u measured at %" PRIu64 " samples: %.3g m rms, %.4g m at most", z,
-                         m->zoom[z].fit.count, rms(&m->zoom[z].fit), m->zoom[z].fit.worst_m);
+    export_fit_tell(m->fit, 0, m->points.zoom, about);
     describe_layer(m);
 }
 
@@ -190,9 +183,6 @@ static void describe(mesh_export *m)
     m->about.layer = m->layer;
     m->about.zoom_max = m->points.zoom;
     m->about.bounds = m->points.bounds;
-    if (m->about.bounds.east <= 180) return;
-    m->about.bounds.west = -180;
-    m->about.bounds.east = 180;
 }
 
 static int make_all(mesh_export *m)

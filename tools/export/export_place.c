@@ -119,17 +119,22 @@ int export_place_degrees(OGRSpatialReferenceH srs, const export_bounds *plane,
 /* ---- a region ---- */
 
 /* The part of the region that is within the bounds, widened by a little since bounds are those of
- * points. 0, or -1: none. */
+ * points; a region of both ends of the map may have two parts, and all between them is taken. 0, or
+ * -1: none. */
 static int clip_region(const bake_box *region, const export_bounds *bounds, export_bounds *part)
 {
     double width = bounds->east - bounds->west, height = bounds->north - bounds->south,
            slack_x = width / EDGE_POINTS, slack_y = height / EDGE_POINTS;
     double west = region->west, east = region->east <= west ? region->east + 360 : region->east;
-    double turns = 360 * nearbyint((bounds->west + width / 2 - (west + east) / 2) / 360);
-    part->west = fmax(west + turns, bounds->west - slack_x);
-    part->east = fmin(east + turns, bounds->east + slack_x);
-    part->south = fmax(region->south, bounds->south - slack_y);
-    part->north = fmin(region->north, bounds->north + slack_y);
+    *part = (export_bounds){ INFINITY, fmax(region->south, bounds->south - slack_y), -INFINITY,
+                             fmin(region->north, bounds->north + slack_y) };
+    for (int turn = -360; turn <= 360; turn += 360) {
+        double from = fmax(west + turn, bounds->west - slack_x),
+               to = fmin(east + turn, bounds->east + slack_x);
+        if (from >= to) continue;
+        part->west = fmin(part->west, from);
+        part->east = fmax(part->east, to);
+    }
     return part->west < part->east && part->south < part->north ? 0 : -1;
 }
 

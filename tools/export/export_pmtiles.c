@@ -215,12 +215,13 @@ static void describe(archive *a, size_t metadata_bytes)
     head->kind = strcmp(t->format, "png") ? BAKE_PM_JPEG : BAKE_PM_PNG;
     head->zoom_min = head->zoom_middle = t->zoom_min;
     head->zoom_max = t->zoom_max;
-    head->west = t->bounds.west;
-    head->south = t->bounds.south;
-    head->east = t->bounds.east;
-    head->north = t->bounds.north;
-    head->middle_x = (t->bounds.west + t->bounds.east) / 2;
-    head->middle_y = (t->bounds.south + t->bounds.north) / 2;
+    export_told_place place = export_facts_place(t);
+    head->west = place.bounds.west;
+    head->south = place.bounds.south;
+    head->east = place.bounds.east;
+    head->north = place.bounds.north;
+    head->middle_x = place.middle_x;
+    head->middle_y = place.middle_y;
 }
 
 static int write_archive(archive *a)

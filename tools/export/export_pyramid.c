@@ -205,9 +205,6 @@ static int choose_box(const export_options *o, pyramid *p)
     p->south = bake_tiles_y(b.south, 0);
     if (choose_zooms(o, &b, p)) return -1;
     p->about.bounds = b;
-    if (b.east <= 180) return 0;
-    p->about.bounds.west = -180;
-    p->about.bounds.east = 180;
     return 0;
 }
 
@@ -248,7 +245,7 @@ int export_pyramid_check(const export_options *o, const ff_terrain_info *info)
 
 /* ---- what is said of them ---- */
 
-/* The bound of the finest zoom, as far as it is measured. */
+/* The bound of the finest zoom, as far as it is measured; else no height is beyond the ground's. */
 static void tell_error(pyramid *p)
 {
     export_about *about = &p->about.about;
@@ -256,12 +253,9 @@ static void tell_error(pyramid *p)
     if (!p->paint.encoding) return;
     double quantised_m = p->paint.encoding->step_m / 2;
     about->error_m = fmax(p->ground->error.between_m, p->ground->error.samples_m) + quantised_m +
-                     fit->worst_m;
+                     (fit->count ? fit->worst_m : p->ground->high - p->ground->low);
     export_about_add(about, "; encoded within %.2g m", quantised_m);
-    for (uint32_t z = p->zoom_high + 1; z-- > p->zoom_low && z + 3 > p->zoom_high;)
-        export_about_add(about,
-                         "; zoom %u measured at %" PRIu64 " samples: %.3g m rms, %.4g m at most", z,
-                         p->fit[z].count, export_fit_rms(&p->fit[z]), p->fit[z].worst_m);
+    export_fit_tell(p->fit, p->zoom_low, p->zoom_high, about);
 }
 
 static int open_view(pyramid *p)
@@ -286,6 +280,9 @@ static int make_tiles(const export_options *o, pyramid *p)
     if (!rc && !p->store) rc = -1;
     if (p->store) {
         rc = make_tile(p, 0, 0, 0) < 0 ? -1 : 0;
+        if (!rc && !p->written)
+            rc = bake_fail("zoom %u has no pixel on the ground: give finer ones by --zoom A-B",
+                           p->zoom_high);
         bake_progress("tiles", p->finest_all, p->finest_all);
         tell_error(p);
         rc = export_store_close(p->store, rc);

@@ -19,7 +19,7 @@ typedef struct export_tiles_about {
     uint32_t side;        /* of a tile in pixels */
     const char *layer;    /* of meshes: what layer.json says besides, as members of its object */
     uint32_t zoom_min, zoom_max;
-    export_bounds bounds; /* west < east, within +-180 */
+    export_bounds bounds; /* of the ground */
 } export_tiles_about;
 
 typedef struct export_store export_store;

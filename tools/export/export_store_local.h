@@ -26,6 +26,13 @@ extern const export_store_ops export_folder_ops, export_mbtiles_ops, export_pmti
 
 /* ---- what is said of the tiles, as JSON and as rows ---- */
 
+/* Where the tiles lie, as formats have it: within +-180, and all around where ground goes beyond;
+ * its middle is its own. */
+typedef struct export_told_place {
+    export_bounds bounds;
+    double middle_x, middle_y;
+} export_told_place;
+export_told_place export_facts_place(const export_tiles_about *tiles);
 /* Calls `put` for each name and value; `is_text`: the value is no number and no JSON. */
 typedef int (*export_fact_fn)(void *context, const char *name, const char *value, int is_text);
 int export_facts(const export_tiles_about *tiles, export_fact_fn put, void *context);

@@ -1,19 +1,17 @@
 #include "export_whole.h"
 
+#include "../bake/bake_leftovers.h"
 #include "../bake/bake_say.h"
 
 #include <dirent.h>
 #include <errno.h>
 #include <ftw.h>
-#include <glob.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#define TEMP_MARK    ".tmp-"
 #define OPEN_FOLDERS 16
 
 static int remove_one(const char *path, const struct stat *status, int kind, struct FTW *place)
@@ -25,20 +23,6 @@ static int remove_one(const char *path, const struct stat *status, int kind, str
 static void remove_all(const char *path)
 {
     nftw(path, remove_one, OPEN_FOLDERS, FTW_DEPTH | FTW_PHYS);
-}
-
-/* What processes that are no more have left. */
-static void remove_leftovers(const char *path)
-{
-    char pattern[EXPORT_PATH_BYTES + 32];
-    glob_t found;
-    snprintf(pattern, sizeof pattern, "%s" TEMP_MARK "*", path);
-    if (glob(pattern, GLOB_NOSORT, NULL, &found)) return;
-    for (size_t i = 0; i < found.gl_pathc; i++) {
-        long pid = strtol(found.gl_pathv[i] + strlen(path) + strlen(TEMP_MARK), NULL, 10);
-        if (pid > 0 && kill((pid_t)pid, 0) && errno == ESRCH) remove_all(found.gl_pathv[i]);
-    }
-    globfree(&found);
 }
 
 static int is_empty_folder(const char *path)
@@ -70,9 +54,9 @@ int export_whole_begin(const char *path, int is_folder, export_whole *whole)
     if (length >= sizeof whole->path) return bake_fail("%s: the name is too long", path);
     memcpy(whole->path, path, length);
     whole->path[length] = 0;
-    snprintf(whole->temp, sizeof whole->temp, "%s" TEMP_MARK "%ld", whole->path, (long)getpid());
-    if (check_there(whole)) return -1;
-    remove_leftovers(whole->path);
+    if (bake_temp_name(whole->path, whole->temp, sizeof whole->temp) || check_there(whole))
+        return -1;
+    bake_leftovers_remove(whole->path, remove_all);
     FILE *file = is_folder ? NULL : fopen(whole->temp, "wb");
     if (is_folder ? mkdir(whole->temp, 0777) : !file)
         return bake_fail("cannot write %s: %s", path, strerror(errno));

@@ -173,7 +173,7 @@ static void index_cells(tile_probes *t)
 
 /* A probe that a triangle has measured is taken out, since its neighbour may hold it, too. */
 static void measure_probe(const double x[3], const double y[3], const double h[3],
-                          mesh_probe *probe, mesh_fit *fit)
+                          mesh_probe *probe, export_fit *fit)
 {
     if (isnan(probe->height_m)) return;
     double area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
@@ -181,13 +181,12 @@ static void measure_probe(const double x[3], const double y[3], const double h[3
            c = ((x[1] - x[0]) * (probe->y - y[0]) - (probe->x - x[0]) * (y[1] - y[0])) / area;
     if (b < -OUTSIDE || c < -OUTSIDE || b + c > 1 + OUTSIDE) return;
     double off = h[0] + b * (h[1] - h[0]) + c * (h[2] - h[0]) - probe->height_m;
-    fit->count++;
-    fit->sum += off * off;
-    fit->worst_m = fmax(fit->worst_m, fabs(off));
+    export_fit_take(fit, off);
     probe->height_m = NAN;
 }
 
-static void measure_triangle(const mesh_surface *s, uint32_t number, tile_probes *t, mesh_fit *fit)
+static void measure_triangle(const mesh_surface *s, uint32_t number, tile_probes *t,
+                             export_fit *fit)
 {
     double x[3], y[3], h[3];
     for (int i = 0; i < 3; i++) {
@@ -205,7 +204,7 @@ static void measure_triangle(const mesh_surface *s, uint32_t number, tile_probes
 }
 
 int mesh_probes_measure(const mesh_probes *p, const mesh_ground *g, uint32_t zoom, uint32_t x,
-                        uint32_t y, const mesh_surface *s, mesh_fit *fit)
+                        uint32_t y, const mesh_surface *s, export_fit *fit)
 {
     tile_probes *t = malloc(sizeof *t);
     uint32_t all = p->first[p->columns * p->rows];

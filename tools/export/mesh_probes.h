@@ -2,6 +2,7 @@
 #ifndef MESH_PROBES_H
 #define MESH_PROBES_H
 
+#include "export_fit.h"
 #include "mesh_ground.h"
 
 typedef struct mesh_probe {
@@ -23,17 +24,12 @@ typedef struct mesh_surface {
     const float *block;  /* mesh_ground_read */
 } mesh_surface;
 
-typedef struct mesh_fit {
-    uint64_t count;
-    double sum, worst_m; /* of squares */
-} mesh_fit;
-
 /* Every so many samples of the ground. 0 or -1 (said). */
 int mesh_probes_open(const mesh_ground *ground, mesh_probes *probes);
 void mesh_probes_close(mesh_probes *probes);
 /* Adds how far the mesh of a tile is from the probes in it that have ground on all sides. 0 or -1
  * (said). */
 int mesh_probes_measure(const mesh_probes *probes, const mesh_ground *ground, uint32_t zoom,
-                        uint32_t x, uint32_t y, const mesh_surface *surface, mesh_fit *fit);
+                        uint32_t x, uint32_t y, const mesh_surface *surface, export_fit *fit);
 
 #endif
