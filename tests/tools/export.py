@@ -142,6 +142,20 @@ def _():
     assert np.array_equal(raw, gdal.Open(os.path.join(work, "all.png")).ReadAsArray()) and not os.path.exists(os.path.join(work, "all.png.aux.xml"))
 
 
+@case("the last row and column are the source's, wherever in a node of whichever level they lie")
+def _():
+    heights = np.random.default_rng(1).integers(0, 65536, (65, 65)).astype("<u2")
+    for side in range(33, 66, 4):
+        for node_log2 in 1, 2, 3:
+            part = heights[:side, :98 - side]
+            part.tofile(os.path.join(work, "rim.raw"))
+            done = run("bake", "rim.raw", "--raw", "%dx%d" % part.shape[::-1], "--spacing", 30, "--tile-log2", 5, "--node-log2", node_log2, "-o", "rim.ffp")
+            assert done.returncode == 0, done.stderr
+            write("rim.ffp", "rim.r16")
+            back = np.fromfile(os.path.join(work, "rim.r16"), "<u2").reshape(part.shape)
+            assert np.array_equal(back, part), (part.shape, node_log2, np.argwhere(back != part)[:3].tolist())
+
+
 @case("folder, MBTiles and PMTiles hold the same tiles, say what they are, and nothing of what is not ground")
 def _():
     write("land.ffp", "tiles/", "--zoom", "9-12")

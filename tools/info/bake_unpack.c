@@ -118,14 +118,15 @@ static int decode_refinement(const bake_unpack *unpack, ff_key key, size_t pitch
 }
 
 /* All below a node, whose heights stand at `at`, `stride` apart, down to where they stand side by
- * side. */
+ * side. The child in the south-west comes last: a node without ground, which is made of predictions
+ * alone, shares its western or southern rim, the last samples, with one that has ground. */
 static int decode_below(const bake_unpack *unpack, ff_key key, unsigned leaf, size_t pitch,
                         size_t stride, uint16_t *at)
 {
     if (stride == 1) return 0;
     if (decode_refinement(unpack, key, pitch, stride, at, &leaf)) return -1;
     size_t edge = stride / 2 << unpack->pack.header.info.node_log2;
-    for (uint32_t q = 0; q < 4; q++)
+    for (uint32_t q = 4; q-- > 0;)
         if (decode_below(unpack, ff_key_child(key, q), leaf >> q & 1u, pitch, stride / 2,
                          at + (q & 1) * edge + (q >> 1) * edge * pitch))
             return -1;
