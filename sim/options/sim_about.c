@@ -11,6 +11,18 @@ static const char latin[] = "AAAAAAACEEEEIIIIDNOOOOOXOUUUUYTSaaaaaaaceeeeiiiidno
                             "lLlNnNnNnnNnOoOoOoOoRrRrRrSsSsSsSsTtTtTtUuUuUuUuUuUuWwYyYZzZzZzs";
 FF_STATIC_ASSERT(sizeof latin - 1 == 0x180 - FIRST_LATIN);
 
+/* Signs that sources like in what they ask to have shown: spaces, dashes, quotation marks. */
+static char letter(uint32_t code)
+{
+    if (code < 0x80) return (char)code;
+    if (code >= FIRST_LATIN && code < 0x180) return latin[code - FIRST_LATIN];
+    if (code == 0xA0 || code == 0x202F || (code >= 0x2000 && code <= 0x200A)) return ' ';
+    if (code == 0xB7 || (code >= 0x2010 && code <= 0x2015) || code == 0x2022) return '-';
+    if (code >= 0x2018 && code <= 0x201B) return '\'';
+    if (code == 0xAB || code == 0xBB || (code >= 0x201C && code <= 0x201F)) return '"';
+    return '?';
+}
+
 /* Whole characters of UTF-8, which the client has checked, in letters of the font. */
 static size_t plain(const uint8_t *bytes, size_t count, char *to, size_t room)
 {
@@ -24,9 +36,7 @@ static size_t plain(const uint8_t *bytes, size_t count, char *to, size_t room)
             made += 3;
             continue;
         }
-        to[made++] = code < 0x80                           ? (char)code
-                     : code >= FIRST_LATIN && code < 0x180 ? latin[code - FIRST_LATIN]
-                                                           : '?';
+        to[made++] = letter(code);
     }
     return made;
 }

@@ -9,8 +9,8 @@
 #define SIM_ABOUT_SHOWN (FF_ABOUT_BIT(FF_ABOUT_NAME) | FF_ABOUT_BIT(FF_ABOUT_ATTRIBUTION))
 
 /* Name and attribution, each from a new line on, lines of at most `columns` that end with \n, at
- * most `lines`: how many there are; 0 while nothing is known. Letters with marks lose them, those
- * of other scripts are '?'. */
+ * most `lines`: how many there are; 0 while nothing is known. Letters with marks lose them, dashes
+ * and quotation marks of all kinds are the plain ones, letters of other scripts are '?'. */
 unsigned sim_about_lines(ff_client *client, unsigned columns, unsigned lines, char *text,
                          size_t room);
 
