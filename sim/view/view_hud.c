@@ -91,10 +91,15 @@ static void put_pools(view_hud *hud, const view_app *app)
                 pool[i].name, pool[i].held, pool[i].high, pool[i].count);
 }
 
+/* Pixels of the window to one of the text's. */
+static int scale_of(const view_app *app) { return app->fly.camera.height >= LARGE_PX ? 2 : 1; }
+
 static void put_about(view_hud *hud, const view_app *app)
 {
     char lines[ABOUT_LINES * (VIEW_HUD_SIZE / C3D_TEXT_ADVANCE_PX + 1) + 1];
-    unsigned columns = (VIEW_HUD_SIZE - 2 * MARGIN_PX) / C3D_TEXT_ADVANCE_PX;
+    int width = app->fly.camera.width / scale_of(app);
+    if (width > VIEW_HUD_SIZE) width = VIEW_HUD_SIZE;
+    unsigned columns = (unsigned)(width - 2 * MARGIN_PX) / C3D_TEXT_ADVANCE_PX;
     if (sim_about_lines(app->client, columns, ABOUT_LINES, lines, sizeof lines))
         put(hud, "%s", lines);
 }
@@ -148,7 +153,7 @@ void view_hud_draw(view_hud *hud, const view_app *app, c3d_device *device)
 {
     const ff_terrain_info *info = ff_client_terrain(app->client);
     uint32_t checksum = info ? info->checksum : 0;
-    int size = app->fly.camera.height >= LARGE_PX ? 2 * VIEW_HUD_SIZE : VIEW_HUD_SIZE;
+    int size = scale_of(app) * VIEW_HUD_SIZE;
     /* another terrain has another device: the texture went with the old one */
     if (device != hud->device || checksum != hud->checksum) hud->texture.id = 0;
     hud->device = device;
