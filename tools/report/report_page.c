@@ -200,7 +200,7 @@ static int put_comparison(FILE *out, const report_content *content, char *why, s
         add_curve(&error, flight, REPORT_t_s, REPORT_err_px_rms, flight->name);
         add_curve(&work, flight, REPORT_bytes_down, REPORT_err_px_rms, flight->name);
     }
-    fputs("<h2>All flights</h2>\n<div class=\"plots\">\n", out);
+    fputs("<div class=\"plots\">\n", out);
     if (report_plot_put(out, content->folder, &bytes, why, why_bytes) ||
         report_plot_put(out, content->folder, &error, why, why_bytes) ||
         report_plot_put(out, content->folder, &work, why, why_bytes))
@@ -249,14 +249,17 @@ int report_page_html(const report_content *content, char *why, size_t why_bytes)
     FILE *out = open_page(content, "index.html", why, why_bytes);
     int rc = 0;
     if (!out) return -1;
-    fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>", out);
+    fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+          "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>",
+          out);
     report_put_html(out, content->title);
     fputs(
         "</title>\n<style>\n"
         "body{font:15px/1.5 sans-serif;margin:2em auto;max-width:1340px;padding:0 1em;color:#222}\n"
         "table{border-collapse:collapse}td,th{padding:.2em .7em;border-bottom:1px solid #ddd;text-align:right}\n"
-        "th{vertical-align:bottom}td:first-child,th:first-child{text-align:left}.wide{overflow-x:auto}\n"
-        ".plots{display:flex;flex-wrap:wrap;gap:1em}figure{margin:0}figure svg{width:640px;height:300px}\n"
+        "th{vertical-align:bottom}td:first-child,th:first-child{text-align:left}.wide{overflow-x:auto;margin:1em 0}\n"
+        ".plots{display:flex;flex-wrap:wrap;gap:1em}figure{margin:0;max-width:100%}\n"
+        "figure svg{width:640px;max-width:100%}.plots img{max-width:100%}\n"
         "figcaption{color:#666;font-size:13px}\n</style></head><body>\n<h1>",
         out);
     report_put_html(out, content->title);
@@ -264,7 +267,7 @@ int report_page_html(const report_content *content, char *why, size_t why_bytes)
     if (content->paper) rc = report_matrix_html(out, content, why, why_bytes);
     if (!rc && content->work) rc = report_work_html(out, content, why, why_bytes);
     report_findings(out, content, 1);
-    if (content->paper) fputs("<h2>All flights</h2>\n", out);
+    fputs("<h2>All flights</h2>\n", out);
     put_html_table(out, content);
     if (!content->paper && content->flight_count > 1)
         rc = put_comparison(out, content, why, why_bytes);
@@ -292,8 +295,7 @@ int report_page_markdown(const report_content *content, char *why, size_t why_by
     fputs("\n", out);
     if (content->paper) report_matrix_markdown(out, content);
     report_findings(out, content, 0);
-    if (content->paper) fputs("\n## All flights\n", out);
-    fputs("\n", out);
+    fputs("\n## All flights\n\n", out);
     fputs("| flight |", out);
     for (int c = 0; c < SUMMARY_COLUMNS; c++)
         if (shown[c]) fprintf(out, " %s |", summary_columns[c].heading);
@@ -318,7 +320,7 @@ int report_page_markdown(const report_content *content, char *why, size_t why_by
     fputs("\n", out);
     for (size_t i = 0; i < content->sheet_count; i++) {
         const report_sheet *sheet = &content->sheet[i];
-        fprintf(out, "\n![](%s)\n\n", sheet->file);
+        fprintf(out, "\n![%s](%s)\n\n", sheet->heading, sheet->file);
         report_put_markdown(out, sheet->name[0]);
         fputs(" and ", out);
         report_put_markdown(out, sheet->name[1]);
