@@ -36,7 +36,7 @@ void sim_client_read(const char **quality_text, uint32_t triangles, const sys_si
 /* clang-format off */
 #define SIM_CLIENT_OPTIONS(OPTION, memory, memory_help) \
     OPTION(sim_quality, quality_text, "quality", "Q", NULL, SYS_ANY, \
-           "how fine the ground is drawn; default medium, with a budget of triangles px:1. low, medium, high: 4, 2 and 1 pixels of error, and at " \
+           "how fine the ground is drawn; default medium; with a budget of triangles (--balance) px:1. low, medium, high: 4, 2 and 1 pixels of error, and at " \
            "most a triangle for 24, 14 and 4 pixels. paper-low, paper-high: Hybrid's, 3:4 and " \
            "9:8. These and the others: at most a triangle for 2 pixels") \
     OPTION(sys_whole, triangles, "triangles", "N", NULL, \
