@@ -106,8 +106,9 @@ static int open_picture(view_app *app)
     if (rc == FF_ERR_MEMORY)
         return view_fail("--memory: %u bytes are too few", app->options->memory_bytes);
     if (rc < 0)
-        return view_fail("no picture with %s%s: %s", backend,
-                         app->options->headless ? " (headless)" : "", ff_error_text(rc));
+        return view_fail("no picture with %s%s: %s%s", backend,
+                         app->options->headless ? " (headless)" : "", ff_error_text(rc),
+                         app->options->headless ? "" : "; --headless needs no display");
     return 0;
 }
 
