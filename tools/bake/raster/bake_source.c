@@ -65,7 +65,12 @@ static GDALDatasetH open_raster(const bake_options *o)
     if (o->raw.width && check_raw_size(o)) return NULL;
     GDALDatasetH set = o->raw.width ? open_raw_file(o) : GDALOpen(o->heights_path, GA_ReadOnly);
     if (!set) {
-        bake_fail_gdal("cannot read %s", o->heights_path);
+        VSIStatBufL there;
+        if (!VSIStatL(o->heights_path, &there) && !GDALIdentifyDriver(o->heights_path, NULL))
+            bake_fail("cannot read %s: no raster that GDAL knows; bare 16-bit heights need --raw",
+                      o->heights_path);
+        else
+            bake_fail_gdal("cannot read %s", o->heights_path);
         return NULL;
     }
     int width = GDALGetRasterXSize(set), height = GDALGetRasterYSize(set);
