@@ -40,6 +40,9 @@ def _():
     export()
     tags = gdal.Open(os.path.join(work, "out.tif")).GetMetadata()
     assert tags["TIFFTAG_COPYRIGHT"] == ALL["attribution"] and tags["TIFFTAG_IMAGEDESCRIPTION"] == ALL["name"], tags
+    assert run("export", "out.ffp", "-o", "out.png").returncode == 0
+    tags = gdal.Open(os.path.join(work, "out.png")).GetMetadata()
+    assert tags["Copyright"] == ALL["attribution"] and tags["Title"] == ALL["name"], tags
     os.rename(os.path.join(work, "out.tif"), os.path.join(work, "again.tif"))
     assert bake("again.tif")[0] and texts() == ALL, texts()
 

@@ -98,7 +98,8 @@ static int mark_voids(export_ground *ground)
     return rc;
 }
 
-static char **settings_of(const export_options *o, const char *driver)
+/* What an image's driver is to do, and what it may say of whose the image is. */
+static char **settings_of(const export_options *o, const export_about *about, const char *driver)
 {
     char quality[16];
     char **list = NULL;
@@ -109,11 +110,19 @@ static char **settings_of(const export_options *o, const char *driver)
         list = CSLSetNameValue(list, "OVERVIEW_RESAMPLING", "AVERAGE");
         list = CSLSetNameValue(list, "BIGTIFF", "IF_SAFER");
     }
-    if (!strcmp(driver, "JPEG")) list = CSLSetNameValue(list, "QUALITY", quality);
+    if (!strcmp(driver, "JPEG")) {
+        list = CSLSetNameValue(list, "QUALITY", quality);
+        if (*about->attribution) list = CSLSetNameValue(list, "COMMENT", about->attribution);
+    }
+    if (!strcmp(driver, "PNG")) {
+        list = CSLSetNameValue(list, "TITLE", about->name);
+        if (*about->attribution) list = CSLSetNameValue(list, "COPYRIGHT", about->attribution);
+    }
     return list;
 }
 
-static int write_image(const export_options *o, const export_whole *whole, export_ground *ground)
+static int write_image(const export_options *o, const export_about *about,
+                       const export_whole *whole, export_ground *ground)
 {
     const char *ending = ending_of(whole->path), *driver = !strcmp(ending, ".tif")   ? "COG"
                                                            : !strcmp(ending, ".png") ? "PNG"
@@ -122,7 +131,7 @@ static int write_image(const export_options *o, const export_whole *whole, expor
         return bake_fail("%s: %u x %u texels do not fit a JPEG: write .tif, or give --level or "
                          "--region",
                          whole->path, ground->cells.width, ground->cells.height);
-    char **settings = settings_of(o, driver);
+    char **settings = settings_of(o, about, driver);
     /* nothing beside the image: no .aux.xml */
     CPLSetConfigOption("GDAL_PAM_ENABLED", "NO");
     CPLErrorReset();
@@ -146,7 +155,7 @@ int export_raster_write(const export_options *o, export_ground *ground)
                                              (GDALColorInterp)(GCI_RedBand + b));
     if (o->voids == EXPORT_VOIDS_NODATA && mark_voids(ground)) return -1;
     if (export_whole_begin(o->out_path, 0, &whole)) return -1;
-    int rc = strcmp(ending_of(o->out_path), ".r16") ? write_image(o, &whole, ground)
+    int rc = strcmp(ending_of(o->out_path), ".r16") ? write_image(o, &about, &whole, ground)
                                                     : write_raw(&whole, ground);
     rc = export_whole_end(&whole, rc);
     if (!rc)
