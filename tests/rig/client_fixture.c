@@ -160,7 +160,7 @@ static void colour(void *context, int64_t x_wu, int64_t y_wu, uint8_t rgb[3])
 
 #define SAMPLES 129 /* that fill the usual pack's tiles, each way */
 
-enum variant { USUAL, OTHER, FILLED };
+enum variant { USUAL, OTHER, FILLED, LEAVES };
 
 static void open_pack(client_rig *rig, unsigned texture_log2, unsigned node_log2,
                       enum variant variant, uint32_t samples_x, uint32_t samples_y)
@@ -169,7 +169,8 @@ static void open_pack(client_rig *rig, unsigned texture_log2, unsigned node_log2
                                .height = pack_fixture_hills,
                                .filled = variant == FILLED ? pack_fixture_hole : NULL,
                                .colour = colour,
-                               .about = rig->about };
+                               .about = rig->about,
+                               .leaf_level = variant == LEAVES };
     size_t bytes;
     desc.info.node_log2 = (uint8_t)node_log2;
     desc.info.texture_log2 = (uint8_t)texture_log2;
@@ -217,6 +218,8 @@ void rig_use_samples(client_rig *rig, uint32_t samples_x, uint32_t samples_y, un
 }
 
 void rig_use_filled(client_rig *rig) { open_pack(rig, 0, 3, FILLED, SAMPLES, SAMPLES); }
+
+void rig_use_leaves(client_rig *rig) { open_pack(rig, 0, 3, LEAVES, SAMPLES, SAMPLES); }
 
 void rig_use_about(client_rig *rig, ff_list about)
 {

@@ -50,6 +50,8 @@ void rig_use_samples(client_rig *rig, uint32_t samples_x, uint32_t samples_y,
                      unsigned texture_log2);
 /* As rig_open, with a filled void (pack_fixture_hole). */
 void rig_use_filled(client_rig *rig);
+/* As rig_open, with nothing stored below level 1. */
+void rig_use_leaves(client_rig *rig);
 /* As rig_open, with a pack that says this of itself. */
 void rig_use_about(client_rig *rig, ff_list about);
 /* Serves another terrain on all further connections. */

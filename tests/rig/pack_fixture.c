@@ -148,6 +148,7 @@ static int node_payload(const pack_fixture_desc *desc, enum ff_section_kind kind
         res.child_error[q] = node_error(desc, ff_key_child(key, q));
         res.filled |= (uint8_t)(node_filled(desc, ff_key_child(key, q)) << q);
     }
+    if (desc->leaf_level == ff_key_level(key) + 1u) res.leaf = 15;
     const uint16_t *parent = decoded + number * node_heights;
     source_grid(desc, key, 2u << desc->info.node_log2, source);
     ff_encode_heights(&desc->info, parent, source, &res, refined);
@@ -156,21 +157,22 @@ static int node_payload(const pack_fixture_desc *desc, enum ff_section_kind kind
     return ff_encode_payload(&desc->info, parent, refined, &res, out);
 }
 
-/* The index of records of these lengths, none of them missing, at the end of what is written. */
-static void put_index(writer *w, ff_pack_section *s, const uint32_t *length)
+/* The index of records of these lengths, all of their places or none, at the end of what is
+ * written. */
+static void put_index(writer *w, ff_pack_section *s, const uint32_t *length, uint32_t places)
 {
     for (uint32_t r = 0; r < s->index.records; r++)
         while (length[r] >> s->index.length_bits) s->index.length_bits++;
-    s->index.places = s->kind == FF_SECTION_ROOT ? 0 : s->index.records;
+    s->index.places = s->kind == FF_SECTION_ROOT ? 0 : places;
     s->index_offset = w->count;
     size_t index_bytes = (size_t)ff_index_bytes(&s->index);
     uint8_t *out = grow(w, index_bytes);
     if (!out) return;
     uint8_t *at = out;
     for (uint32_t r = 0; r < s->index.places; r += FF_INDEX_PLACES, at += FF_INDEX_PRESENCE_BYTES)
-        ff_index_put_presence(
-            length + r,
-            s->index.records - r < FF_INDEX_PLACES ? s->index.records - r : FF_INDEX_PLACES, r, at);
+        ff_index_put_presence(length + r,
+                              places - r < FF_INDEX_PLACES ? places - r : FF_INDEX_PLACES,
+                              s->index.records ? r : 0, at);
     uint64_t offset = 0;
     for (uint32_t r = 0; r < s->index.records; at += ff_index_block_bytes(&s->index)) {
         uint32_t count = s->index.records - r < FF_INDEX_RECORDS ? s->index.records - r
@@ -179,6 +181,12 @@ static void put_index(writer *w, ff_pack_section *s, const uint32_t *length)
         for (uint32_t end = r + count; r < end; r++) offset += FF_RECORD_CRC_BYTES + length[r];
     }
     s->index_crc = ff_crc32(0, out, index_bytes);
+}
+
+/* 1 when refinements of this level are not stored. */
+static int below_leaves(const pack_fixture_desc *desc, enum ff_section_kind kind, uint32_t level)
+{
+    return kind == FF_SECTION_REFINEMENT && desc->leaf_level && level >= desc->leaf_level;
 }
 
 static void section(writer *w, enum ff_section_kind kind, uint32_t level, const uint16_t *decoded,
@@ -190,9 +198,9 @@ static void section(writer *w, enum ff_section_kind kind, uint32_t level, const 
     uint32_t *length = calloc(records, sizeof *length);
     ff_pack_section *s = &w->header.section[w->header.section_count++];
     ff_pack_section_at(info, w->header.section_count - 1, s);
-    s->index.records = records;
+    s->index.records = below_leaves(w->desc, kind, level) ? 0 : records;
     s->data_offset = w->count;
-    for (uint32_t r = 0; r < records && length && !w->failed; r++) {
+    for (uint32_t r = 0; r < s->index.records && length && !w->failed; r++) {
         ff_key key = ff_key_make(r / per_tile, level, r % per_tile);
         int bytes = kind == FF_SECTION_TEXTURE
                         ? texture_payload(w->desc, key, payload, sizeof payload)
@@ -209,7 +217,7 @@ static void section(writer *w, enum ff_section_kind kind, uint32_t level, const 
     s->data_bytes = w->count - s->data_offset;
     s->data_crc = ff_crc32(0, w->bytes + s->data_offset, (size_t)s->data_bytes);
     if (length && !w->failed)
-        put_index(w, s, length);
+        put_index(w, s, length, level && below_leaves(w->desc, kind, level - 1) ? 0 : records);
     else
         w->failed = 1;
     free(length);

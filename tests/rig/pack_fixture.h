@@ -15,6 +15,8 @@ typedef struct pack_fixture_desc {
     void (*colour)(void *context, int64_t x_wu, int64_t y_wu, uint8_t rgb[3]);
     void *context;
     ff_list about; /* what the pack says of itself; empty: nothing */
+    /* nodes of this level are leaves, and nothing is stored below; 0: nowhere */
+    uint32_t leaf_level;
 } pack_fixture_desc;
 
 /* The pack's bytes (free them), or NULL. Textures are JPEGs, north up, texel i at i/(T-1) of the
