@@ -195,13 +195,13 @@ void ff_tree_make_children(ff_tree *tree)
 {
     for (uint32_t i = 0; i < tree->made_count; i++) {
         uint32_t slot = ff_tree_find(tree, tree->made[i]);
-        if (slot == FF_SLOT_NONE || ff_node_has_children(&tree->node[slot]) ||
+        const ff_node *node = slot == FF_SLOT_NONE ? NULL : &tree->node[slot];
+        /* it may have gone meanwhile, and come again as a server that errs now tells it */
+        if (!node || !(node->flags & FF_NODE_LEAF) || ff_node_has_children(node) ||
             make_room(tree, slot) != FF_OK)
             continue;
-        const ff_node *node = &tree->node[slot];
         ff_residuals all = { .filled = node->flags & FF_NODE_FILLED ? 15 : 0, .leaf = 15 };
-        FF_ASSERT(node->flags & FF_NODE_LEAF &&
-                  ff_key_level(node->key) + 1 < ff_terrain_levels(&tree->info));
+        FF_ASSERT(ff_key_level(node->key) + 1 < ff_terrain_levels(&tree->info));
         memset(all.child_error, ff_geometric_error_below(&tree->info, node->error_code), 4);
         ff_predict_children(&tree->info, ff_shape_cells(&tree->info, node->key, 1),
                             heights_of(tree, slot), tree->refined);

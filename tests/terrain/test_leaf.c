@@ -132,11 +132,38 @@ static void pools_of_any_size_settle(void **state)
     }
 }
 
+/* A node that was to be split goes, and comes again from a server that calls it no leaf now. */
+static void a_leaf_may_come_again_as_none(void **state)
+{
+    (void)state;
+    terrain_fixture fx;
+    fixture_usual(&fx, 3000);
+    fx.leaf_level = 0;
+    ff_view view = fixture_view_above(&fx, 1500, 1100, 100, 0, -30);
+    ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
+    const ff_wish *list;
+    ff_tree_select(fx.tree, &view, &quality);
+    assert_true(ff_tree_wishes(fx.tree, &list) > 0);
+    uint32_t tile = ff_key_tile(list[0].key);
+    (void)fixture_deliver(&fx, list[0].key, 0);
+    ff_tree_select(fx.tree, &view, &quality);
+    assert_int_equal(ff_tree_to_make(fx.tree), 1);
+    ff_tree_drop_root(fx.tree, &fx.tree->node[ff_tree_find(fx.tree, ff_key_make(tile, 0, 0))]);
+    fx.leaf_level = UINT32_MAX;
+    (void)fixture_deliver(&fx, ff_key_make(tile, 0, 0), 0);
+    ff_tree_select(fx.tree, &view, &quality);
+    assert_int_equal(ff_tree_to_make(fx.tree), 0);
+    assert_false(
+        ff_node_has_children(&fx.tree->node[ff_tree_find(fx.tree, ff_key_make(tile, 0, 0))]));
+    fixture_free(&fx);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(the_tree_makes_what_is_not_stored),
                                         cmocka_unit_test(leaves_within_the_bound_are_not_split),
                                         cmocka_unit_test(what_was_filled_is_filled_below_leaves),
-                                        cmocka_unit_test(pools_of_any_size_settle) };
+                                        cmocka_unit_test(pools_of_any_size_settle),
+                                        cmocka_unit_test(a_leaf_may_come_again_as_none) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
