@@ -29,7 +29,8 @@ THROUGH_POINTERS = [
     (r"^ff_decoder_|ff_decode\.c:(decode|reconstruct)$|^ff_(decode|reconstruct)_",
      r"^ff_[a-z]+_(memory|decode|reconstruct)$|^ff_add_residuals$"),  # ff_codec_list.h
     (r"ff_body\.c:|^ff_take_body$", r"ff_codec_deflate\.c:take_deflated$"),
-    (r"ff_predict\.c:|^ff_predict_", r"ff_decode\.c:add_residual$"),
+    (r"ff_predict\.c:|^ff_predict_", r"ff_decode\.c:(add_residual|take_prediction)$"),
+    (r"ff_pack\.c:|^ff_pack_", None),  # reads parts of a file: packs are mapped
     (r"ff_pool\.c:|^ff_tree_reshade_beside$", r"ff_terrain_view\.c:on_evict$"),
     (r"^ff_box_in_view$", r"ff_view_cull\.c:(narrow_)?beyond_plane$"),
     (r"ff_stream\.c:|^ff_stream_", r"posix/tcp\.c:tcp_|sim_tape\.c:play_"),
