@@ -332,7 +332,8 @@ static verdict conclude(const estimate *e)
     uint32_t sections = ff_terrain_levels(info) + info->texture_levels,
              jobs = b->options->jobs < ff_shape_tiles(info) ? b->options->jobs
                                                             : ff_shape_tiles(info);
-    double known = FF_PACK_HEADER_BYTES + SECTION_BYTES * (double)sections +
+    uint32_t about = bake_about_of(e->b, &e->place).byte_count;
+    double known = FF_PACK_HEADER_BYTES + about + SECTION_BYTES * (double)sections +
                    RECORD_BYTES * (e->records + textures);
     double spread = DEVIATIONS * hypot(e->heights.deviation, e->textures.deviation);
     verdict v = { .file_bytes = known + e->heights.value + e->textures.bytes,
@@ -406,10 +407,11 @@ static int find_out(estimate *e)
 int bake_estimate(bake *b)
 {
     estimate e = { .b = b };
+    verdict v = { 0 };
     int rc = find_out(&e);
+    if (!rc) v = conclude(&e);
     if (e.plan.warp.target) OSRDestroySpatialReference(e.plan.warp.target);
     if (rc) return rc;
-    verdict v = conclude(&e);
     (b->options->json ? tell_json : tell)(&e, &v);
     return 0;
 }

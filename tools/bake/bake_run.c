@@ -228,6 +228,13 @@ static void report(const bake *b, uint64_t file_bytes)
         height_bytes, bits, texture_bytes, file_bytes, seconds);
 }
 
+ff_list bake_about_of(bake *b, const bake_ground *ground)
+{
+    int is_placed = ground->has_place && !ground->is_geographic;
+    return (ff_list){ b->about,
+                      bake_about_list(&ground->about, is_placed ? ground->srs : NULL, b->about) };
+}
+
 static int make_pack(bake *b)
 {
     uint64_t file_bytes;
@@ -236,10 +243,7 @@ static int make_pack(bake *b)
         return -1;
     if (pack_writer_open(&b->writer, &b->info)) return -1;
     if (make_tiles(b)) return -1;
-    int is_placed = b->ground.has_place && !b->ground.is_geographic;
-    b->writer.about = (ff_list){
-        b->about, bake_about_list(&b->ground.about, is_placed ? b->ground.srs : NULL, b->about)
-    };
+    b->writer.about = bake_about_of(b, &b->ground);
     if (pack_writer_finish(&b->writer, b->options->out_path, &file_bytes)) return -1;
     report(b, file_bytes);
     return 0;

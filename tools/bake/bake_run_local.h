@@ -29,6 +29,8 @@ typedef struct bake {
 int bake_read(bake *b);
 /* Describes the terrain of heights of b->heights' size, where the ground lies. 0 or -1 (said). */
 int bake_describe(bake *b);
+/* What the pack of a ground will say of itself, in b->about. */
+ff_list bake_about_of(bake *b, const bake_ground *ground);
 /* In world units; one out of range is refused when the terrain is described. */
 uint32_t bake_spacing_wu(const bake_options *options, double spacing_m);
 
