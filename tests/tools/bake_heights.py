@@ -48,6 +48,8 @@ def _():
     for kind, nodata in ((gdal.GDT_Int16, -32768), (gdal.GDT_UInt16, 0), (gdal.GDT_Int32, -2147483648), (gdal.GDT_Float32, float("nan")),
                          (gdal.GDT_Float32, -3.4028234663852886e38), (gdal.GDT_Float64, -1.7976931348623157e308), (gdal.GDT_Float64, 9999)):
         holed(put("nodata.tif", np.where(hole, nodata, plane), kind, nodata=nodata))
+    for nodata in "0.1", "-9999.9":  # no float is that number, and the nearest is meant
+        holed(put("nodata.tif", np.where(hole, float(nodata), plane), gdal.GDT_Float32), "--nodata", nodata)
 
 
 @case("sentinels that no tag declares are voids where they lie apart, and told in one line")

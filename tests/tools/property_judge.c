@@ -161,6 +161,7 @@ static OGRSpatialReferenceH find_reference(const property_draw *d, const propert
                                            GDALDatasetH set)
 {
     OGRSpatialReferenceH own = GDALGetSpatialRef(set);
+    if (!d->place->srs) return NULL; /* an engineering system that a driver made up says nothing */
     if (own) {
         own = OSRClone(own);
         OSRSetAxisMappingStrategy(own, OAMS_TRADITIONAL_GIS_ORDER);
