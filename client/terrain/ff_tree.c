@@ -200,9 +200,9 @@ void ff_tree_make_children(ff_tree *tree)
         if (!node || !(node->flags & FF_NODE_LEAF) || ff_node_has_children(node) ||
             make_room(tree, slot) != FF_OK)
             continue;
-        ff_residuals all = { .filled = node->flags & FF_NODE_FILLED ? 15 : 0, .leaf = 15 };
+        ff_residuals all = ff_leaf_residuals(&tree->info, node->error_code,
+                                             node->flags & FF_NODE_FILLED);
         FF_ASSERT(ff_key_level(node->key) + 1 < ff_terrain_levels(&tree->info));
-        memset(all.child_error, ff_geometric_error_below(&tree->info, node->error_code), 4);
         ff_predict_children(&tree->info, ff_shape_cells(&tree->info, node->key, 1),
                             heights_of(tree, slot), tree->refined);
         take_children(tree, slot, &all);

@@ -117,9 +117,10 @@ int ff_reconstruct_root(const ff_terrain_info *info, const ff_residuals *res, ui
 /* `parent` ff_node_side()^2 values, `refined` receives ff_refined_side()^2 values. */
 int ff_reconstruct_refinement(const ff_terrain_info *info, const uint16_t *parent,
                               const ff_residuals *res, uint16_t *refined);
-/* The four children of a leaf, which are all prediction, in place of ff_reconstruct_refinement.
- * Each is a leaf itself, filled when its parent is, with the error code ff_geometric_error_below.
- */
+/* What stands for the payload of a leaf of this error code: its children are leaves, filled when it
+ * is, with the code ff_geometric_error_below. Without values. */
+ff_residuals ff_leaf_residuals(const ff_terrain_info *info, uint8_t code, int filled);
+/* The heights of those children, in place of ff_reconstruct_refinement. */
 void ff_predict_children(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
                          uint16_t *refined);
 /* Cuts the child in `quadrant` out of a refined grid. */

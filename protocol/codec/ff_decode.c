@@ -215,6 +215,14 @@ int ff_reconstruct_refinement(const ff_terrain_info *info, const uint16_t *paren
     return reconstruct(info, parent, res, refined);
 }
 
+ff_residuals ff_leaf_residuals(const ff_terrain_info *info, uint8_t code, int filled)
+{
+    ff_residuals all = { .filled = filled ? 15 : 0, .leaf = 15 };
+
+    memset(all.child_error, ff_geometric_error_below(info, code), sizeof(all.child_error));
+    return all;
+}
+
 static uint16_t take_prediction(void *context, uint32_t at, int32_t predicted)
 {
     (void)context, (void)at;

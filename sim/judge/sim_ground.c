@@ -49,9 +49,8 @@ static int children_of(loader *load, ff_key key, const uint16_t *heights, marks 
     const ff_terrain_info *info = &load->pack->header.info;
     const uint8_t *payload;
     if (mark.leaf) {
-        residuals->filled = mark.filled ? 15 : 0;
-        residuals->leaf = 15;
-        ff_predict_children(info, ff_shape_cells(info, key, 1), heights, refined);
+        ff_predict_children(info, residuals->cells, heights, refined);
+        *residuals = ff_leaf_residuals(info, 0, (int)mark.filled);
         return FF_OK;
     }
     int bytes = ff_pack_record(load->pack, FF_SECTION_REFINEMENT, key, &payload);

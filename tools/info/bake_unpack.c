@@ -167,13 +167,12 @@ int bake_unpack_told_below(const bake_unpack *unpack, ff_key key, const bake_tol
     int32_t value[FF_REFINED_HEIGHTS_MAX];
     ff_residuals residuals = { .value = value };
     if (node->is_leaf || !ff_shape_has_ground(info, key)) {
-        uint8_t code = ff_geometric_error_below(info, node->error_code);
-        for (int q = 0; q < 4; q++) told[q] = (bake_told){ code, node->has_filled, 1 };
-        return 0;
+        residuals = ff_leaf_residuals(info, node->error_code, node->has_filled);
+    } else {
+        residuals.cells = ff_shape_cells(info, key, 1);
+        int rc = decode_residuals(unpack, FF_SECTION_REFINEMENT, key, &residuals);
+        if (rc < 0) return fail_at(unpack, "the refinement", key, rc);
     }
-    residuals.cells = ff_shape_cells(info, key, 1);
-    int rc = decode_residuals(unpack, FF_SECTION_REFINEMENT, key, &residuals);
-    if (rc < 0) return fail_at(unpack, "the refinement", key, rc);
     for (unsigned q = 0; q < 4; q++) told[q] = told_of(&residuals, q);
     return 0;
 }
