@@ -134,6 +134,7 @@ static int carve_all(ff_client *client, unsigned economy)
     ff_motion_reset(&client->motion);
     ff_turn_reset(&client->turn);
     memset(&client->refusals, 0, sizeof client->refusals);
+    client->no_views = 0;
     return FF_OK;
 }
 
@@ -176,7 +177,8 @@ void ff_client_carve_sky(ff_client *client)
 
 void ff_client_uncarve(ff_client *client)
 {
-    ff_requests_clear(&client->requests);
+    /* without a terrain only what was asked for with the greeting is out, and still to come */
+    if (client->have_terrain) ff_requests_clear(&client->requests);
     if (client->device) c3d_close(client->device); /* meshes and textures go with it */
     client->device = NULL;
     client->tree = NULL;

@@ -1,5 +1,6 @@
 /* What to ask for next, most urgent first:
- *   FIRST        roots in view, panorama faces in view
+ *   FIRST        roots in view, panorama faces in view, and all of a view's ground at once where
+ *                several levels of it are missing (client_view.c)
  *   IN_VIEW      refinements and images in view: pixels of error removed for each byte expected
  *   PREFETCH     ground and panorama faces that a viewer who goes on as it flies and turns will
  *                see; leaves only while the link has room and nothing else waits
@@ -153,6 +154,7 @@ void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *qu
     ff_requests_rank_begin(&client->requests);
     if (!ff_client_own_ground(client))
         ff_panorama_want(&client->panorama, &client->requests, view, faces_ahead(view, &a), now_us);
+    ff_client_want_view(client, view, quality);
     want_tree(client);
     if (client->has_textures) want_textures(client, view, quality);
     want_ahead(client, &a);

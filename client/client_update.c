@@ -113,6 +113,7 @@ static int update_sky(ff_client *client, const c3d_camera *camera)
     client->camera = *camera;
     client->has_camera = 1;
     client->dirty = 0;
+    ff_client_greet_view(client, camera);
     *(changed ? &client->frames_updated : &client->frames_skipped) += 1;
     return changed;
 }

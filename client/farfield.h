@@ -132,10 +132,15 @@ typedef struct ff_client_desc {
     ff_balance_desc balance;
     uint8_t use_thread;       /* 1: ff_client_create starts a thread that calls ff_client_work */
     uint8_t use_plain_arrays; /* 1: no vertex buffers */
-    uint8_t no_textures;      /* 1: images of the terrain are not asked for */
-    uint8_t no_prefetch;      /* 1: what motion and turns will show is not asked for ahead */
-    uint8_t no_reserve;       /* 1: no coarse ground all round while the link is idle */
-    enum ff_hidden hidden;    /* default: ground that nearer ground hides is left out */
+    /* 1: cameras given before a terrain is known are places on it already, as of a device that
+     * knows which ground it is on: what they show is asked for with the greeting, a round trip
+     * earlier */
+    uint8_t place_known;
+    uint8_t no_textures;   /* 1: images of the terrain are not asked for */
+    uint8_t no_views;      /* 1: ground is asked for level by level, not for a view at once */
+    uint8_t no_prefetch;   /* 1: what motion and turns will show is not asked for ahead */
+    uint8_t no_reserve;    /* 1: no coarse ground all round while the link is idle */
+    enum ff_hidden hidden; /* default: ground that nearer ground hides is left out */
     /* what is to be known of what the pack says of itself (protocol/ff_about.h): FF_ABOUT_BIT of
      * each entry; a server is asked for those alone, and they have room in the block. Default:
      * nothing */

@@ -64,6 +64,7 @@ struct ff_client {
     ff_turn turn;
     ff_refusals refusals;
 
+    uint8_t no_views; /* the server refused to answer for a view: things are asked for singly */
     uint8_t has_camera, battery_low, interrupted, has_textures;
     uint8_t dirty; /* 1: the picture has to be made anew */
     /* 1: requests have to be ranked anew, because the connection was lost, or the viewer stopped */
@@ -97,6 +98,10 @@ unsigned ff_client_take_new_data(ff_client *client, int64_t now_us, int *changed
     int ff_client_take_##name(ff_client *client, ff_new_item *item, int64_t now_us);
 FF_KIND_LIST(X)
 #undef X
+/* client_view.c: where several levels are missing in view, one request for all of them. */
+void ff_client_want_view(ff_client *client, const ff_view *view, const ff_quality *quality);
+/* The same while no terrain is known, for who knows where it is. */
+void ff_client_greet_view(ff_client *client, const c3d_camera *camera);
 /* client_rank.c: fills the request queue anew with what tree, images, panorama and prediction
  * want. */
 void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality,

@@ -36,6 +36,8 @@
     TOLD(uint32_t, panorama_bytes, (uint32_t)from->link.answer_bytes[FF_KIND_FACE], "of their messages") \
     KEPT(uint32_t, panoramas_in_flight_high, from->requests.of[FF_KIND_FACE].in_flight_high, \
          "requests sent and unanswered at once; 1 at most unless hold_back is 1") \
+    TOLD(uint32_t, view_requests, from->requests.of[FF_KIND_VIEW].sent, \
+         "sent, each for all that a view lacks") \
     TOLD(uint32_t, requests_sent, from->requests.sent, "of all kinds") \
     TOLD(uint32_t, requests_done, from->requests.done, "answered, and the answer was of use") \
     TOLD(uint32_t, requests_failed, from->requests.failed, "refused, or answered with nonsense") \

@@ -33,6 +33,7 @@
     X(ROOT,       root,       2, 0, NODE,     66, PAYLOAD, FF_LETTERS('R', 'O', 'O', 'T'), 1,                           HEIGHTS, 0, record) \
     X(REFINEMENT, refinement, 2, 1, NODE,     66, PAYLOAD, FF_LETTERS('R', 'E', 'F', 'I'), ff_terrain_levels(info) - 1, HEIGHTS, 0, record) \
     X(TEXTURE,    texture,    3, 0, NODE,     67, PAYLOAD, FF_LETTERS('I', 'M', 'A', 'G'), info->texture_levels,        IMAGES,  1, record) \
+    X(VIEW,       view,       9, 0, VIEW,     74, PARTS,   0,                               0,                           HEIGHTS, 0, view)   \
     X(FACE,       face,       4, 0, PANORAMA, 68, FACE,    0,                               0,                           FACES,   1, faces)
 /* clang-format on */
 
@@ -53,10 +54,12 @@ enum ff_section_kind {
 
 enum ff_kind_asks {
     FF_ASKS_NODE,    /* ff_get: the thing of one node; the request's key is the node's */
+    FF_ASKS_VIEW,    /* ff_get_view: roots and refinements, as many as a view needs; key 0 */
     FF_ASKS_PANORAMA /* ff_get_panorama; the request's key is a number of the client's own */
 };
 enum ff_kind_brings {
     FF_BRINGS_PAYLOAD, /* ff_data, in one message */
+    FF_BRINGS_PARTS,   /* ff_part, in as many messages as the server finds; the last says so */
     FF_BRINGS_FACE     /* ff_face, in as many messages as faces were asked for; the last says so */
 };
 enum ff_data_class {

@@ -18,7 +18,6 @@ static ff_new_item *begin(ff_intake *intake, const ff_request *request, uint32_t
 
 static int put(ff_intake *intake, ff_new_item *item)
 {
-    FF_ASSERT(item->last || ff_kind[item->kind].brings == FF_BRINGS_FACE);
     if (item->last) /* before the main thread can see the item */
         ff_requests_arrived(intake->requests, item->id, item->bytes);
     ff_new_data_put(intake->news, item);
@@ -50,6 +49,23 @@ int ff_intake_answer(ff_intake *intake, const ff_request *request, const ff_mess
     return put(intake, item);
 }
 
+int ff_intake_part(ff_intake *intake, const ff_request *request, const ff_part *part)
+{
+    ff_request own = *request;
+    FF_ASSERT(request->kind == FF_KIND_VIEW && part->what != FF_PART_END);
+    own.kind = part->what == FF_PART_ROOT ? FF_KIND_ROOT : FF_KIND_REFINEMENT;
+    own.key = part->key;
+    ff_new_item *item = begin(intake, &own, part->byte_count);
+    if (!item) return FF_ERR_AGAIN;
+    ff_message answer = { .type = FF_MSG_ANSWER, .kind = (enum ff_kind)own.kind };
+    answer.u.data = (ff_data){ part->id, part->bytes, part->byte_count };
+    item->last = 0;
+    item->error = decode(intake, &answer, item);
+    FF_ASSERT(item->error <= FF_OK && item->error > FF_ERR_LAST && item->error != FF_ERR_AGAIN);
+    ff_requests_part(intake->requests, item->id, (enum ff_kind)item->kind, item->key, item->bytes);
+    return put(intake, item);
+}
+
 int ff_intake_failed(ff_intake *intake, const ff_request *request, int error)
 {
     ff_new_item *item = begin(intake, request, 0);
@@ -57,6 +73,17 @@ int ff_intake_failed(ff_intake *intake, const ff_request *request, int error)
     item->refused = 1;
     item->error = error < 0 ? error : FF_ERR_FORMAT;
     return put(intake, item);
+}
+
+/* The end of a view's answers. */
+int ff_intake_view(ff_intake *intake, const ff_message *answer, ff_new_item *item)
+{
+    ff_request request;
+    const ff_get_view *view = &intake->requests->view;
+    int known = ff_requests_answered(intake->requests, answer->u.part.id, &request);
+    FF_ASSERT(known && answer->u.part.what == FF_PART_END);
+    item->u.missing = (uint16_t)(known ? ((1u << view->count) - 1) & ~(uint32_t)request.named : 0);
+    return FF_OK;
 }
 
 int ff_intake_root(ff_intake *intake, const ff_message *answer, ff_new_item *item)

@@ -22,6 +22,9 @@ typedef struct ff_intake {
  * try later. */
 int ff_intake_answer(ff_intake *intake, const ff_request *request, const ff_message *answer,
                      uint32_t bytes);
+/* The same for a root or refinement among the answers to a view, which the view covers; its end is
+ * an answer as above. */
+int ff_intake_part(ff_intake *intake, const ff_request *request, const ff_part *part);
 /* No answer will come: FF_ERR_CLOSED stands for cancelled. */
 int ff_intake_failed(ff_intake *intake, const ff_request *request, int error);
 

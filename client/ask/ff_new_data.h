@@ -12,7 +12,8 @@ typedef struct ff_new_item {
     ff_key key; /* of the request, as are id and kind */
     uint16_t id;
     uint8_t kind;     /* enum ff_kind */
-    uint8_t last;     /* ends its request: always, but for kinds with several answers */
+    uint8_t last;     /* ends its request: always, but for kinds with several answers; a part of a
+                       * view has key and kind of its own */
     uint8_t refused;  /* no answer came: `error` says why, and nothing below counts */
     int32_t error;    /* FF_OK, or why there is nothing to take in */
     uint32_t bytes;   /* of the answer, for the counters */
@@ -22,6 +23,8 @@ typedef struct ff_new_item {
     union {
         /* ROOT, REFINEMENT; value lies in `room` */
         ff_residuals residuals;
+        /* VIEW, its end: bit i: what it names at i has not come */
+        uint16_t missing;
         /* TEXTURE has nothing of its own. pixels: RGB565, width x width, row 0 south */
         /* FACE. pixels: RGBA5551 of width x height (a power of two), row 0 lowest, texels without
          * ground transparent; none when the face is empty */

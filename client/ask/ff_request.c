@@ -6,6 +6,7 @@
 #define HASH_START         UINT64_C(0xcbf29ce484222325)
 #define HASH_PRIME         UINT64_C(0x100000001b3)
 #define ANSWER_BYTES_START 200u /* before the first answer of a kind: Hybrid's 9x9 node is 182 */
+#define SEVERAL            16u /* so many times that of an image, or of a view's answers together */
 #define IN_FLIGHT_ALWAYS   2u
 #define RESERVE_SHARE      8u /* of the bytes that may be in flight */
 
@@ -38,8 +39,9 @@ void ff_requests_init(ff_requests *requests, unsigned in_flight_max, void *memor
     memset(requests->slot, 0, ff_requests_bytes(in_flight_max));
     for (unsigned kind = 0; kind < FF_KIND_COUNT; kind++)
         for (unsigned level = 0; level < 16; level++)
-            requests->answer_q4[kind][level] = ANSWER_BYTES_START
-                                               << (ff_kind[kind].has_image ? 7 : 4);
+            requests->answer_q4[kind][level] =
+                16 * ANSWER_BYTES_START *
+                (ff_kind[kind].has_image || ff_kind[kind].brings == FF_BRINGS_PARTS ? SEVERAL : 1);
 }
 
 static unsigned level_of(const ff_request *request)
@@ -75,6 +77,7 @@ static void free_slot(ff_requests *requests, ff_request *request, uint32_t *fina
     FF_ASSERT(request->state != FF_REQUEST_FREE);
     leave_state(requests, request);
     request->state = FF_REQUEST_FREE;
+    if (request->id == requests->view_id) requests->view_id = 0;
     ++*final_count;
 }
 
@@ -83,6 +86,8 @@ static void enqueue(ff_requests *requests, ff_request *request)
     ff_request_counts *counts = &requests->counts;
     FF_ASSERT(request->state == FF_REQUEST_FREE || request->state == FF_REQUEST_SENT);
     request->state = FF_REQUEST_QUEUED;
+    request->named = 0;
+    request->bytes_came = 0;
     if (++counts->queued > counts->queued_high) counts->queued_high = counts->queued;
     uint32_t held = counts->queued + counts->in_flight + counts->arriving;
     FF_ASSERT(held <= requests->slot_count);
@@ -153,19 +158,16 @@ static ff_request *slot_for_new(ff_requests *requests)
     return find_free(requests);
 }
 
-int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
-                     enum ff_request_class rank, uint32_t priority, const ff_get_panorama *panorama)
+/* The request of this kind and key, marked, queued now if there was none; NULL: the queue is
+ * full. */
+static ff_request *mark(ff_requests *requests, enum ff_kind kind, ff_key key)
 {
-    FF_ASSERT(rank <= FF_CLASS_RESERVE);
-    FF_ASSERT((panorama != NULL) == (ff_kind[kind].asks == FF_ASKS_PANORAMA));
-    sys_mutex_lock(&requests->mutex);
     ff_request *request = find(requests, kind, key);
     if (!request) {
         request = slot_for_new(requests);
         if (!request) {
             requests->counts.queue_full++;
-            sys_mutex_unlock(&requests->mutex);
-            return 0;
+            return NULL;
         }
         memset(request, 0, sizeof *request);
         request->key = key;
@@ -176,13 +178,73 @@ int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
         enqueue(requests, request);
     }
     request->marked = 1;
-    if (request->state == FF_REQUEST_QUEUED) {
+    return request;
+}
+
+static ff_request *view_of(ff_requests *requests)
+{
+    FF_ASSERT(requests->view_id <= requests->slot_count);
+    return requests->view_id ? &requests->slot[requests->view_id - 1] : NULL;
+}
+
+/* Is it among what the view brings that is out, or wanted by the ranking under way? */
+static int in_view(ff_requests *requests, enum ff_kind kind, ff_key key)
+{
+    const ff_request *view = view_of(requests);
+    if (!view || (view->state == FF_REQUEST_QUEUED && !view->marked)) return 0;
+    return (kind == FF_KIND_ROOT || kind == FF_KIND_REFINEMENT) &&
+           ff_view_covers(&requests->view, kind, key);
+}
+
+int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
+                     enum ff_request_class rank, uint32_t priority, const ff_get_panorama *panorama)
+{
+    FF_ASSERT(rank <= FF_CLASS_RESERVE && kind != FF_KIND_VIEW);
+    FF_ASSERT((panorama != NULL) == (ff_kind[kind].asks == FF_ASKS_PANORAMA));
+    sys_mutex_lock(&requests->mutex);
+    int brought = in_view(requests, kind, key);
+    ff_request *request = brought ? NULL : mark(requests, kind, key);
+    if (request && request->state == FF_REQUEST_QUEUED) {
         request->rank = (uint8_t)rank;
         request->value = value_of(requests, kind, level_of(request), priority);
         if (panorama) request->panorama = *panorama;
     }
     sys_mutex_unlock(&requests->mutex);
-    return 1;
+    return brought || request;
+}
+
+int ff_requests_want_view(ff_requests *requests, const ff_get_view *view)
+{
+    FF_ASSERT(view->count <= FF_VIEW_KEYS_MAX);
+    sys_mutex_lock(&requests->mutex);
+    ff_request *request = mark(requests, FF_KIND_VIEW, 0);
+    int taken = request && request->state == FF_REQUEST_QUEUED;
+    if (taken) {
+        request->rank = FF_CLASS_FIRST;
+        request->value = UINT32_MAX;
+        requests->view_id = request->id;
+        requests->view = *view;
+        requests->view.id = request->id;
+    }
+    sys_mutex_unlock(&requests->mutex);
+    return taken;
+}
+
+int ff_requests_out(ff_requests *requests, enum ff_kind kind, ff_key key)
+{
+    sys_mutex_lock(&requests->mutex);
+    const ff_request *request = find(requests, kind, key);
+    int out = request && request->state != FF_REQUEST_QUEUED;
+    sys_mutex_unlock(&requests->mutex);
+    return out;
+}
+
+int ff_requests_in_view(ff_requests *requests, enum ff_kind kind, ff_key key)
+{
+    sys_mutex_lock(&requests->mutex);
+    int brought = in_view(requests, kind, key);
+    sys_mutex_unlock(&requests->mutex);
+    return brought;
 }
 
 void ff_requests_rank_end(ff_requests *requests)
@@ -268,13 +330,23 @@ static unsigned answers_to(const ff_request *request)
     return request->panorama.face_count;
 }
 
-static void hash_request(uint64_t *hash, const ff_request *request)
+static void hash_view(uint64_t *hash, const ff_get_view *view)
+{
+    for (int i = 0; i < 3; i++) hash_word(hash, (uint32_t)view->position_wu[i]);
+    hash_word(hash, (uint32_t)view->yaw << 16 | view->pitch);
+    hash_word(hash, view->bytes_max);
+    hash_word(hash, view->roots);
+    for (unsigned i = 0; i < view->count; i++) hash_word(hash, view->below[i]);
+}
+
+static void hash_request(uint64_t *hash, const ff_request *request, const ff_get_view *view)
 {
     const ff_get_panorama *panorama = &request->panorama;
     FF_ASSERT(request->panorama.id == request->id);
     hash_word(hash, request->kind);
     switch ((enum ff_kind_asks)ff_kind[request->kind].asks) {
         case FF_ASKS_NODE: hash_word(hash, request->key); break;
+        case FF_ASKS_VIEW: hash_view(hash, view); break;
         case FF_ASKS_PANORAMA:
             for (int i = 0; i < 3; i++) hash_word(hash, (uint32_t)panorama->position_wu[i]);
             for (int i = 0; i < panorama->face_count; i++) hash_word(hash, panorama->face[i]);
@@ -298,7 +370,7 @@ static void count_sent(ff_requests *requests, const ff_request *request)
     counts->bytes_in_flight += request->bytes_expected;
     counts->reserve_sent += request->rank == FF_CLASS_RESERVE;
     counts->reserve_in_flight += request->rank == FF_CLASS_RESERVE;
-    hash_request(&requests->hash, request);
+    hash_request(&requests->hash, request, &requests->view);
 }
 
 /* The last class that may leave now: the reserve is for a link that has nothing else to do. */
@@ -372,6 +444,24 @@ int ff_requests_answered(ff_requests *requests, uint16_t id, ff_request *copy)
     return known;
 }
 
+void ff_requests_part(ff_requests *requests, uint16_t id, enum ff_kind kind, ff_key key,
+                      uint32_t bytes)
+{
+    sys_mutex_lock(&requests->mutex);
+    FF_ASSERT(id >= 1 && id <= requests->slot_count && id == requests->view_id);
+    ff_request *request = &requests->slot[id - 1];
+    FF_ASSERT(request->state == FF_REQUEST_SENT);
+    for (unsigned i = 0; i < requests->view.count; i++)
+        if (requests->view.below[i] == key &&
+            (kind == FF_KIND_ROOT) == (requests->view.roots >> i & 1u))
+            request->named |= (uint16_t)(1u << i);
+    uint32_t less = bytes < request->bytes_expected ? bytes : request->bytes_expected;
+    request->bytes_expected -= less;
+    requests->counts.bytes_in_flight -= less;
+    request->bytes_came += bytes;
+    sys_mutex_unlock(&requests->mutex);
+}
+
 void ff_requests_arrived(ff_requests *requests, uint16_t id, uint32_t bytes)
 {
     sys_mutex_lock(&requests->mutex);
@@ -381,6 +471,7 @@ void ff_requests_arrived(ff_requests *requests, uint16_t id, uint32_t bytes)
     leave_state(requests, request);
     request->state = FF_REQUEST_ARRIVING;
     requests->counts.arriving++;
+    bytes += request->bytes_came;
     if (request->rank == FF_CLASS_RESERVE) requests->counts.reserve_bytes += bytes;
     if (bytes) {
         uint32_t *mean_q4 = &requests->answer_q4[request->kind][level_of(request)];

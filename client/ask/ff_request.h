@@ -22,6 +22,9 @@
  * A request that is no longer wanted is dropped while it is not sent. Once it is sent, the answer
  * is let come: some hundred bytes cost less than the message that cancels them. Who asks for
  * kilobytes, or for work of the server's, as panoramas do, cancels them.
+ *
+ * At most one request is of FF_KIND_VIEW. It stands for all that its answers may bring: who wants
+ * such a thing is told that it is under way.
  */
 #ifndef FF_REQUEST_H
 #define FF_REQUEST_H
@@ -53,6 +56,8 @@ typedef struct ff_request {
     uint8_t kind, state, rank; /* enums ff_kind, ff_request_state, ff_request_class */
     uint8_t marked;            /* wanted by the ranking under way */
     uint8_t cancel;            /* 1: to be cancelled; 2: the cancellation was sent */
+    uint16_t named;            /* FF_KIND_VIEW: bit i: what its view names at i has come */
+    uint32_t bytes_came;       /* the same: of the answers so far */
     ff_get_panorama panorama;  /* of FF_ASKS_PANORAMA */
 } ff_request;
 
@@ -75,6 +80,10 @@ typedef struct ff_requests {
     uint32_t sequence;
     uint64_t hash; /* over requests as sent */
     ff_request_counts counts;
+    /* of FF_KIND_VIEW: its slot + 1, 0: there is none; what it asks. Main writes that while the
+     * request is not sent, the worker reads it while it is */
+    uint16_t view_id;
+    ff_get_view view;
     /* bytes of an answer by kind and level, running mean, Q4 */
     uint32_t answer_q4[FF_KIND_COUNT][16];
 } ff_requests;
@@ -93,7 +102,13 @@ void ff_requests_rank_begin(ff_requests *requests);
 int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
                      enum ff_request_class rank, uint32_t priority,
                      const ff_get_panorama *panorama);
+/* The same for a view, before all else; 0 also while an older one is sent or arriving. */
+int ff_requests_want_view(ff_requests *requests, const ff_get_view *view);
 void ff_requests_rank_end(ff_requests *requests);
+/* 1 while a request of this kind and key waits for its answer, or for being taken in. */
+int ff_requests_out(ff_requests *requests, enum ff_kind kind, ff_key key);
+/* 1 when a view that is out may bring it. */
+int ff_requests_in_view(ff_requests *requests, enum ff_kind kind, ff_key key);
 /* Bytes that an answer of a kind is expected to have, of a node's level. */
 uint32_t ff_requests_answer_bytes(ff_requests *requests, enum ff_kind kind, unsigned level);
 /* 1 when something of class `last` or one before it is queued: wanted and not yet sent. */
@@ -119,6 +134,9 @@ uint16_t ff_requests_next_cancel(ff_requests *requests);
 /* A request waiting for an answer: 1 and *copy, or 0: unknown id (stale or nonsense). Checks ask
  * it, too. */
 int ff_requests_answered(ff_requests *requests, uint16_t id, ff_request *copy);
+/* A part of a view's answer lies on the new-data list. */
+void ff_requests_part(ff_requests *requests, uint16_t id, enum ff_kind kind, ff_key key,
+                      uint32_t bytes);
 /* SENT to ARRIVING once the answer lies on the new-data list; bytes: size of the answer, for the
  * means. */
 void ff_requests_arrived(ff_requests *requests, uint16_t id, uint32_t bytes);

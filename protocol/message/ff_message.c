@@ -1,22 +1,14 @@
 /* Messages: one field list a type, each with its range; see SPEC.md, "Messages". */
-#include "ff_message.h"
-
-#include "../ff_bytes.h"
+#include "ff_message_local.h"
 
 #include <string.h>
 
 static const uint8_t hello_magic[4] = { 'F', 'F', 'L', 'D' };
 
-/* GET_PANORAMA, the longest of requests: id, position, front and back, size, quality, count. */
+/* GET_PANORAMA: id, position, front and back, size, quality, count. */
 #define PANORAMA_BYTES (2 + 3 * 4 + 2 * 4 + 2 + 1 + 1)
-FF_STATIC_ASSERT(FF_MESSAGE_HEADER_MAX + PANORAMA_BYTES + FF_FACE_COUNT <= FF_REQUEST_BYTES_MAX);
+FF_STATIC_ASSERT(FF_MESSAGE_HEADER_MAX + PANORAMA_BYTES + FF_FACE_COUNT <= FF_SHORT_BYTES_MAX);
 FF_STATIC_ASSERT(FF_ERR_LAST >= INT8_MIN); /* as FAILED has it */
-
-static void require(int *error, int condition)
-{
-    FF_ASSERT(*error <= FF_OK);
-    if (!condition && *error == FF_OK) *error = FF_ERR_RANGE;
-}
 
 /* ---- lists ---- */
 
@@ -38,13 +30,13 @@ static int check_caps(ff_list list)
 
 static void write_list(ff_writer *out, ff_list list, int check)
 {
-    require(&out->error, check == FF_OK);
+    ff_message_require(&out->error, check == FF_OK);
     ff_write_span(out, list.bytes, list.byte_count);
 }
 
-/* ---- ranges, the same for both directions ---- */
+/* ---- what forms share ---- */
 
-static int get_ok(const ff_get *get, enum ff_kind kind)
+int ff_message_get_ok(const ff_get *get, enum ff_kind kind)
 {
     uint32_t level = ff_key_level(get->key);
 
@@ -52,6 +44,31 @@ static int get_ok(const ff_get *get, enum ff_kind kind)
     return (uint64_t)ff_key_code(get->key) >> (2 * level) == 0 &&
            (kind != FF_KIND_ROOT || level == 0);
 }
+
+void ff_message_write_key(ff_writer *out, uint32_t what, ff_key key)
+{
+    ff_write_bytes(out, what | ff_key_level(key) << 4, 1);
+    ff_write_varint(out, ff_key_tile(key));
+    ff_write_varint(out, ff_key_code(key));
+}
+
+/* Behind the byte of what it is of and its level. */
+ff_key ff_message_read_key(ff_reader *in, uint32_t form)
+{
+    uint32_t tile = ff_read_varint(in), code = ff_read_varint(in);
+
+    ff_message_require(&in->error, tile < FF_KEY_TILES_MAX);
+    return ff_key_make(tile, form >> 4, code);
+}
+
+void ff_message_read_rest(ff_reader *in, const uint8_t **bytes, uint32_t *count)
+{
+    FF_ASSERT(in->end - in->at <= FF_MESSAGE_BODY_MAX);
+    *count = (uint32_t)(in->end - in->at);
+    *bytes = ff_read_span(in, *count);
+}
+
+/* ---- ranges, the same for both directions ---- */
 
 static int panorama_ok(const ff_get_panorama *panorama)
 {
@@ -86,16 +103,14 @@ static int face_ok(const ff_face *face)
 
 static void write_get(ff_writer *out, const ff_get *get, enum ff_kind kind)
 {
-    require(&out->error, get_ok(get, kind));
+    ff_message_require(&out->error, ff_message_get_ok(get, kind));
     ff_write_bytes(out, get->id, 2);
-    ff_write_bytes(out, ff_kind[kind].what | ff_key_level(get->key) << 4, 1);
-    ff_write_varint(out, ff_key_tile(get->key));
-    ff_write_varint(out, ff_key_code(get->key));
+    ff_message_write_key(out, ff_kind[kind].what, get->key);
 }
 
 static void write_panorama(ff_writer *out, const ff_get_panorama *panorama)
 {
-    require(&out->error, panorama_ok(panorama));
+    ff_message_require(&out->error, panorama_ok(panorama));
     ff_write_bytes(out, panorama->id, 2);
     for (int axis = 0; axis < 3; axis++)
         ff_write_bytes(out, (uint32_t)panorama->position_wu[axis], 4);
@@ -109,7 +124,7 @@ static void write_panorama(ff_writer *out, const ff_get_panorama *panorama)
 
 static void write_face(ff_writer *out, const ff_face *face)
 {
-    require(&out->error, face_ok(face));
+    ff_message_require(&out->error, face_ok(face));
     ff_write_bytes(out, face->id, 2);
     ff_write_bytes(out, face->face | (uint32_t)face->flags << 4, 1);
     ff_write_bytes(out, face->face_size, 2);
@@ -123,15 +138,16 @@ static void write_face(ff_writer *out, const ff_face *face)
 
 static void write_failed(ff_writer *out, const ff_failed *failed, enum ff_message_type type)
 {
-    require(&out->error, failed->error < 0 && (type == FF_MSG_FAILED || failed->id == 0));
+    ff_message_require(&out->error,
+                       failed->error < 0 && (type == FF_MSG_FAILED || failed->id == 0));
     ff_write_bytes(out, failed->id, 2);
     ff_write_bytes(out, (uint8_t)failed->error, 1);
 }
 
 static void write_welcome(ff_writer *out, const ff_welcome *welcome)
 {
-    require(&out->error,
-            welcome->version == FF_PROTOCOL_VERSION && ff_terrain_check(&welcome->info) == FF_OK);
+    ff_message_require(&out->error, welcome->version == FF_PROTOCOL_VERSION &&
+                                        ff_terrain_check(&welcome->info) == FF_OK);
     ff_write_bytes(out, welcome->version, 4);
     ff_write_bytes(out, FF_WELCOME_TERRAIN, 1);
     ff_write_varint(out, FF_TERRAIN_BYTES);
@@ -144,6 +160,7 @@ static void write_request(ff_writer *out, const ff_message *message)
     FF_ASSERT((unsigned)message->kind < FF_KIND_COUNT);
     switch ((enum ff_kind_asks)ff_kind[message->kind].asks) {
         case FF_ASKS_NODE: write_get(out, &message->u.get, message->kind); break;
+        case FF_ASKS_VIEW: ff_message_write_view(out, &message->u.view); break;
         case FF_ASKS_PANORAMA: write_panorama(out, &message->u.panorama); break;
     }
 }
@@ -156,6 +173,7 @@ static void write_answer(ff_writer *out, const ff_message *message)
             ff_write_bytes(out, message->u.data.id, 2);
             ff_write_span(out, message->u.data.bytes, message->u.data.byte_count);
             break;
+        case FF_BRINGS_PARTS: ff_message_write_part(out, &message->u.part); break;
         case FF_BRINGS_FACE: write_face(out, &message->u.face); break;
     }
 }
@@ -180,7 +198,7 @@ static void write_body(ff_writer *out, const ff_message *message)
         case FF_MSG_WELCOME: write_welcome(out, &message->u.welcome); break;
         case FF_MSG_FAILED:
         case FF_MSG_GOODBYE: write_failed(out, &message->u.failed, message->type); break;
-        default: require(&out->error, 0);
+        default: ff_message_require(&out->error, 0);
     }
 }
 
@@ -196,6 +214,9 @@ static size_t answer_bytes_max(const ff_message *message)
     switch ((enum ff_kind_brings)ff_kind[message->kind].brings) {
         case FF_BRINGS_PAYLOAD:
             return FF_MESSAGE_HEADER_MAX + 2 + (size_t)message->u.data.byte_count;
+        case FF_BRINGS_PARTS:
+            return FF_MESSAGE_HEADER_MAX + 2 + FF_MESSAGE_KEY_BYTES +
+                   (size_t)message->u.part.byte_count;
         case FF_BRINGS_FACE: break;
     }
     return FF_MESSAGE_HEADER_MAX + 14 + (size_t)message->u.face.columns_bytes +
@@ -211,8 +232,12 @@ size_t ff_message_bytes_max(const ff_message *message)
         case FF_MSG_CAPS:
         case FF_MSG_ABOUT: return FF_MESSAGE_HEADER_MAX + (size_t)message->u.list.byte_count;
         case FF_MSG_ANSWER: return answer_bytes_max(message);
-        default: return FF_REQUEST_BYTES_MAX;
+        case FF_MSG_GET:
+            if (ff_kind[message->kind].asks == FF_ASKS_VIEW) return FF_REQUEST_BYTES_MAX;
+            break;
+        default: break;
     }
+    return FF_SHORT_BYTES_MAX;
 }
 
 int ff_message_encode(const ff_message *message, uint8_t *out, size_t capacity)
@@ -252,19 +277,16 @@ static void read_hello(ff_reader *in, ff_hello *hello)
 /* *kind comes as the first of those asked for by this type of message, and leaves as the one. */
 static void read_get(ff_reader *in, ff_get *get, enum ff_kind *kind)
 {
-    uint32_t form, what, tile, code, asked_by = ff_kind[*kind].asked_by;
+    uint32_t form, what, asked_by = ff_kind[*kind].asked_by;
 
     get->id = (uint16_t)ff_read_bytes(in, 2);
     form = (uint32_t)ff_read_bytes(in, 1);
-    tile = ff_read_varint(in);
-    code = ff_read_varint(in);
-    require(&in->error, tile < FF_KEY_TILES_MAX);
-    get->key = ff_key_make(tile, form >> 4, code);
+    get->key = ff_message_read_key(in, form);
     what = form & 15u;
     while (*kind < FF_KIND_COUNT &&
            (ff_kind[*kind].asked_by != asked_by || ff_kind[*kind].what != what))
         *kind = (enum ff_kind)(*kind + 1);
-    require(&in->error, *kind < FF_KIND_COUNT && get_ok(get, *kind));
+    ff_message_require(&in->error, *kind < FF_KIND_COUNT && ff_message_get_ok(get, *kind));
 }
 
 static void read_panorama(ff_reader *in, ff_get_panorama *panorama)
@@ -279,26 +301,19 @@ static void read_panorama(ff_reader *in, ff_get_panorama *panorama)
     panorama->face_size = (uint16_t)ff_read_bytes(in, 2);
     panorama->quality = (uint8_t)ff_read_bytes(in, 1);
     panorama->face_count = (uint8_t)ff_read_bytes(in, 1);
-    require(&in->error, panorama->face_count <= FF_FACE_COUNT);
+    ff_message_require(&in->error, panorama->face_count <= FF_FACE_COUNT);
     face = ff_read_span(in, panorama->face_count);
     if (face) {
         FF_ASSERT(panorama->face_count <= FF_FACE_COUNT); /* else there was an error, and no span */
         memcpy(panorama->face, face, panorama->face_count);
     }
-    require(&in->error, face && panorama_ok(panorama));
-}
-
-static void read_rest(ff_reader *in, const uint8_t **bytes, uint32_t *count)
-{
-    FF_ASSERT(in->end - in->at <= FF_MESSAGE_BODY_MAX);
-    *count = (uint32_t)(in->end - in->at);
-    *bytes = ff_read_span(in, *count);
+    ff_message_require(&in->error, face && panorama_ok(panorama));
 }
 
 static ff_list read_list(ff_reader *in)
 {
     ff_list list = { 0 };
-    read_rest(in, &list.bytes, &list.byte_count);
+    ff_message_read_rest(in, &list.bytes, &list.byte_count);
     return list;
 }
 
@@ -320,8 +335,8 @@ static void read_welcome(ff_reader *in, ff_welcome *welcome)
     keep_error(in,
                check_list(welcome->more, welcome_rule, sizeof welcome_rule / sizeof *welcome_rule));
     if (in->error != FF_OK) return;
-    require(&in->error,
-            ff_list_next(&welcome->more, &terrain) == 1 && terrain.type == FF_WELCOME_TERRAIN);
+    ff_message_require(&in->error, ff_list_next(&welcome->more, &terrain) == 1 &&
+                                       terrain.type == FF_WELCOME_TERRAIN);
     if (in->error != FF_OK) return;
     FF_ASSERT(terrain.byte_count == FF_TERRAIN_BYTES);
     value.at = terrain.value;
@@ -344,9 +359,9 @@ static void read_face(ff_reader *in, ff_face *face)
         face->row_count = (uint16_t)ff_read_bytes(in, 2);
         face->columns_bytes = ff_read_varint(in);
         face->columns = ff_read_span(in, face->columns_bytes);
-        read_rest(in, &face->image, &face->image_bytes);
+        ff_message_read_rest(in, &face->image, &face->image_bytes);
     }
-    require(&in->error, face_ok(face));
+    ff_message_require(&in->error, face_ok(face));
     FF_ASSERT(in->error != FF_OK || face->columns_bytes + face->image_bytes <= FF_MESSAGE_BODY_MAX);
 }
 
@@ -354,13 +369,14 @@ static void read_failed(ff_reader *in, ff_failed *failed, enum ff_message_type t
 {
     failed->id = (uint16_t)ff_read_bytes(in, 2);
     failed->error = (int8_t)ff_read_signed(in, 1);
-    require(&in->error, failed->error < 0 && (type == FF_MSG_FAILED || failed->id == 0));
+    ff_message_require(&in->error, failed->error < 0 && (type == FF_MSG_FAILED || failed->id == 0));
 }
 
 static void read_request(ff_reader *in, ff_message *out)
 {
     switch ((enum ff_kind_asks)ff_kind[out->kind].asks) {
         case FF_ASKS_NODE: read_get(in, &out->u.get, &out->kind); break;
+        case FF_ASKS_VIEW: ff_message_read_view(in, &out->u.view); break;
         case FF_ASKS_PANORAMA: read_panorama(in, &out->u.panorama); break;
     }
 }
@@ -370,8 +386,9 @@ static void read_answer(ff_reader *in, ff_message *out)
     switch ((enum ff_kind_brings)ff_kind[out->kind].brings) {
         case FF_BRINGS_PAYLOAD:
             out->u.data.id = (uint16_t)ff_read_bytes(in, 2);
-            read_rest(in, &out->u.data.bytes, &out->u.data.byte_count);
+            ff_message_read_rest(in, &out->u.data.bytes, &out->u.data.byte_count);
             break;
+        case FF_BRINGS_PARTS: ff_message_read_part(in, &out->u.part); break;
         case FF_BRINGS_FACE: read_face(in, &out->u.face); break;
     }
 }
@@ -455,8 +472,12 @@ uint16_t ff_message_id(const ff_message *message)
 
     FF_ASSERT(message->type == FF_MSG_GET || message->type == FF_MSG_ANSWER);
     if (message->type == FF_MSG_GET)
-        return kind->asks == FF_ASKS_NODE ? message->u.get.id : message->u.panorama.id;
-    return kind->brings == FF_BRINGS_PAYLOAD ? message->u.data.id : message->u.face.id;
+        return kind->asks == FF_ASKS_NODE   ? message->u.get.id
+               : kind->asks == FF_ASKS_VIEW ? message->u.view.id
+                                            : message->u.panorama.id;
+    return kind->brings == FF_BRINGS_PAYLOAD ? message->u.data.id
+           : kind->brings == FF_BRINGS_PARTS ? message->u.part.id
+                                             : message->u.face.id;
 }
 
 int ff_message_decode(const uint8_t *bytes, size_t byte_count, ff_message *out)

@@ -13,10 +13,11 @@
 #include "../ff_about.h"
 #include "../ff_kind.h"
 
-#define FF_PROTOCOL_VERSION   5
+#define FF_PROTOCOL_VERSION   6
 #define FF_MESSAGE_BODY_MAX   (1u << 18) /* a longer length is a protocol error */
 #define FF_MESSAGE_HEADER_MAX 4
-#define FF_REQUEST_BYTES_MAX  48  /* any client message but CAPS fits */
+#define FF_REQUEST_BYTES_MAX  224 /* any client message but CAPS fits */
+#define FF_SHORT_BYTES_MAX    48  /* any message without a list, a payload, an image or keys fits */
 #define FF_CAPS_BYTES_MAX     512 /* of the lists in CAPS and in WELCOME */
 #define FF_FACE_COUNT         6
 #define FF_FACE_SIZE_MAX      1024
@@ -113,6 +114,45 @@ typedef struct ff_get_panorama {
     uint8_t face[FF_FACE_COUNT]; /* enum ff_face_name, in the order in which they are to come */
 } ff_get_panorama;
 
+/* What is missing for a view: the server answers with these roots and refinements, and with all
+ * below them that the view needs, as a client's own selection finds it (client/terrain/ff_tree.h):
+ * one round trip instead of one for each level. A client has at most one such request out. */
+#define FF_VIEW_KEYS_MAX 16
+#define FF_VIEW_SIDE_MAX 4096
+enum ff_view_measure { FF_VIEW_BY_DISTANCE, FF_VIEW_BY_PIXELS };
+
+typedef struct ff_get_view {
+    uint16_t id;
+    uint16_t yaw, pitch, roll; /* 1/65536 turn, as in common3d/c3d.h */
+    int32_t position_wu[3];    /* of the camera, in world axes */
+    int32_t focal_q8;          /* 256.. */
+    uint16_t width, height;    /* of the picture, pixels, 1..FF_VIEW_SIDE_MAX */
+    uint8_t measure;           /* enum ff_view_measure: what `allowed_q8` is */
+    uint8_t depth_max;         /* levels used; 0: all */
+    int32_t allowed_q8;        /* C of Hybrid eq. 3, or pixels of error; 1.. */
+    int32_t reach_wu;          /* ground farther than this is not drawn; 1.. */
+    uint32_t triangles_max;    /* in the picture; 0: any number */
+    uint32_t bytes_max;        /* of payloads, all answers together; the last may pass it */
+    uint16_t roots;            /* bit i: below[i] is a root that is missing, else a node whose
+                                * refinement is */
+    uint8_t count;             /* of below: 0: all that the view needs; ..FF_VIEW_KEYS_MAX */
+    ff_key below[FF_VIEW_KEYS_MAX];
+} ff_get_view;
+
+/* 1 when an answer to the request may bring this root or refinement. */
+int ff_view_covers(const ff_get_view *view, enum ff_kind kind, ff_key key);
+
+/* One answer to it: a root, a refinement, or the news that there are no more. */
+enum ff_part_what { FF_PART_ROOT, FF_PART_REFINEMENT, FF_PART_END };
+
+typedef struct ff_part {
+    uint16_t id;
+    uint8_t what;         /* enum ff_part_what */
+    ff_key key;           /* 0 with FF_PART_END, which has no payload either */
+    const uint8_t *bytes; /* inside the message, not copied */
+    uint32_t byte_count;
+} ff_part;
+
 typedef struct ff_cancel {
     uint16_t id;
 } ff_cancel;
@@ -177,6 +217,7 @@ typedef struct ff_message {
     union {
         ff_hello hello;
         ff_get get;               /* GET, FF_ASKS_NODE */
+        ff_get_view view;         /* GET, FF_ASKS_VIEW */
         ff_get_panorama panorama; /* GET, FF_ASKS_PANORAMA */
         ff_cancel cancel;
         ff_ping ping;
@@ -184,6 +225,7 @@ typedef struct ff_message {
         ff_get_about get_about;
         ff_welcome welcome;
         ff_data data; /* ANSWER, FF_BRINGS_PAYLOAD */
+        ff_part part; /* ANSWER, FF_BRINGS_PARTS */
         ff_face face; /* ANSWER, FF_BRINGS_FACE */
         ff_failed failed;
     } u;

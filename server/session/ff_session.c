@@ -5,6 +5,7 @@
  * reader costs a fixed amount of memory, and its own reading says when to go on.
  */
 #include "ff_session_local.h"
+#include "../view/ff_view_parts.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -16,12 +17,25 @@
 #define SHORT_ANSWERS_BYTES 8192 /* reserve for short answers */
 #define FACE_BYTES          (FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX)
 #define MINUTE_US           60000000
+#define VIEW_BYTES          4096 /* of parts that wait in the buffer, so that a CANCEL stops the rest */
 
 typedef struct request {
     ff_session_fetch *fetch; /* NULL: cancelled */
     enum ff_kind kind;
     ff_get get;
 } request;
+
+/* How often something dear may be asked for: a minute's worth at once, then as time goes by. */
+typedef struct allowance {
+    int64_t credit_us, time_us;
+} allowance;
+
+/* The parts of the view being served, which waits in the queue like any request. */
+typedef struct view_parts {
+    ff_view_part *part; /* FF_VIEW_PARTS_MAX; NULL until the first view is asked for */
+    uint32_t count, next;
+    int on;
+} view_parts;
 
 struct ff_session {
     ff_session_desc desc;
@@ -39,7 +53,8 @@ struct ff_session {
     ff_get_panorama panorama; /* the one being served, if panorama_on */
     int panorama_on, job_out, job_stale;
     uint8_t next_face; /* index into panorama.face */
-    int64_t panorama_credit_us, credit_time_us;
+    allowance panoramas, views;
+    view_parts view;
 
     uint8_t *out; /* [out_first, out_end) waits to be sent */
     size_t out_first, out_end, out_capacity;
@@ -53,6 +68,7 @@ static ff_session_desc desc_with_defaults(const ff_session_desc *desc)
     full.out_bytes_max = or_default(desc->out_bytes_max, 256u << 10);
     full.requests_max = or_default(desc->requests_max, 256);
     full.panoramas_per_minute = or_default(desc->panoramas_per_minute, 120);
+    full.views_per_minute = or_default(desc->views_per_minute, 60);
     full.idle_ms_max = or_default(desc->idle_ms_max, 10u * 60u * 1000u);
     return full;
 }
@@ -71,8 +87,8 @@ ff_session *ff_session_create(const ff_session_desc *desc)
         ff_session_destroy(session);
         return NULL;
     }
-    session->now_us = session->last_message_us = session->credit_time_us = desc->now_us;
-    session->panorama_credit_us = MINUTE_US;
+    session->now_us = session->last_message_us = desc->now_us;
+    session->panoramas = session->views = (allowance){ MINUTE_US, desc->now_us };
     return session;
 }
 
@@ -80,8 +96,21 @@ void ff_session_destroy(ff_session *session)
 {
     if (!session) return;
     free(session->queue);
+    free(session->view.part);
     free(session->out);
     free(session);
+}
+
+static int allowed(const ff_session *session, allowance *of, uint32_t per_minute)
+{
+    int64_t cost_us = MINUTE_US / per_minute, gained_us = session->now_us - of->time_us;
+    of->time_us = session->now_us;
+    if (gained_us > 0)
+        of->credit_us = gained_us >= MINUTE_US - of->credit_us ? MINUTE_US
+                                                               : of->credit_us + gained_us;
+    if (of->credit_us < cost_us) return 0;
+    of->credit_us -= cost_us;
+    return 1;
 }
 
 /* ---- answers ---- */
@@ -155,26 +184,75 @@ static int fetch_answer(const ff_session *session, const request *wanted, ff_mes
     return ff_message_bytes_max(message) <= FACE_BYTES ? FF_OK : FF_ERR_FULL;
 }
 
-/* Answers a request; 1 when answered, 0 when the buffer has no room for the answer yet. */
-static int serve(ff_session *session, const request *wanted)
+/* Puts an answer of a kind into the buffer while less than `bytes_max` waits there. 1, 0: there is
+ * no room for it yet, or a negative error: it is too long. */
+static int put_answer(ff_session *session, const ff_message *message, size_t bytes_max)
+{
+    size_t room = ff_message_bytes_max(message);
+    int alone = out_pending(session) == 0 && !session->job_out;
+    if (out_pending(session) + room > bytes_max && !alone) return 0;
+    int rc = ff_message_encode(message, out_room(session, room), room);
+    if (rc < 0) return rc;
+    session->out_end += (size_t)rc;
+    return 1;
+}
+
+/* What cannot be answered; 1, or 0 when the buffer has no room for that yet. */
+static int put_error(ff_session *session, uint16_t id, int error)
+{
+    if (!short_answers_fit(session)) return 0;
+    session->stats.damaged += error == FF_ERR_CHECKSUM;
+    answer_failed(session, id, error);
+    return 1;
+}
+
+static int serve_payload(ff_session *session, const request *wanted)
 {
     ff_message message;
     int rc = fetch_answer(session, wanted, &message);
-    if (rc == FF_OK) {
-        size_t room = ff_message_bytes_max(&message);
-        int alone = out_pending(session) == 0 && !session->job_out;
-        if (out_pending(session) + room > session->desc.out_bytes_max && !alone) return 0;
-        rc = ff_message_encode(&message, out_room(session, room), room);
+    if (rc == FF_OK) rc = put_answer(session, &message, session->desc.out_bytes_max);
+    if (rc < 0) return put_error(session, wanted->get.id, rc);
+    session->stats.answers[ff_kind[wanted->kind].data] += (uint32_t)rc;
+    return rc;
+}
+
+/* The next part of a view, or its end. As put_answer; a part that cannot be read is left out. */
+static int put_part(ff_session *session, uint16_t id)
+{
+    view_parts *view = &session->view;
+    ff_message message = { .type = FF_MSG_ANSWER, .kind = FF_KIND_VIEW };
+    message.u.part = (ff_part){ .id = id, .what = FF_PART_END };
+    if (view->next < view->count) {
+        const ff_view_part *part = &view->part[view->next];
+        const ff_kind_row *kind = &ff_kind[part->kind];
+        int bytes = ff_pack_record(session->desc.pack, (enum ff_section_kind)kind->section,
+                                   part->key, &message.u.part.bytes);
+        if (bytes < 0) return bytes;
+        message.u.part.what = kind->what;
+        message.u.part.key = part->key;
+        message.u.part.byte_count = (uint32_t)bytes;
     }
-    if (rc < 0) {
-        if (!short_answers_fit(session)) return 0;
-        session->stats.damaged += rc == FF_ERR_CHECKSUM;
-        answer_failed(session, wanted->get.id, rc);
-        return 1;
-    }
-    session->out_end += (size_t)rc;
-    session->stats.answers[ff_kind[wanted->kind].data]++;
+    size_t bytes_max = VIEW_BYTES < session->desc.out_bytes_max ? VIEW_BYTES
+                                                                : session->desc.out_bytes_max;
+    int rc = put_answer(session, &message, bytes_max);
+    if (message.u.part.what != FF_PART_END && rc > 0) session->stats.answers[FF_DATA_HEIGHTS]++;
+    return rc;
+}
+
+static int serve_view(ff_session *session, const request *wanted)
+{
+    view_parts *view = &session->view;
+    for (; view->next <= view->count; view->next++)
+        if (put_part(session, wanted->get.id) == 0) return 0;
+    view->on = 0;
     return 1;
+}
+
+/* Answers a request; 1 when answered, 0 when the buffer has no room for the answer yet. */
+static int serve(ff_session *session, const request *wanted)
+{
+    return wanted->kind == FF_KIND_VIEW ? serve_view(session, wanted)
+                                        : serve_payload(session, wanted);
 }
 
 static void serve_queue(ff_session *session)
@@ -199,16 +277,21 @@ static void queue_compact(ff_session *session)
     session->queue_end = kept;
 }
 
+static int enqueue(ff_session *session, request wanted)
+{
+    if (session->queue_live == session->desc.requests_max) return end_session(session, FF_ERR_FULL);
+    if (session->queue_end == session->desc.requests_max) queue_compact(session);
+    session->queue[session->queue_end++] = wanted;
+    session->queue_live++;
+    serve_queue(session);
+    return FF_OK;
+}
+
 int ff_session_queue(ff_session *session, const ff_message *ask, ff_session_fetch *fetch)
 {
     assert(ff_kind[ask->kind].asks == FF_ASKS_NODE &&
            ff_kind[ask->kind].brings == FF_BRINGS_PAYLOAD);
-    if (session->queue_live == session->desc.requests_max) return end_session(session, FF_ERR_FULL);
-    if (session->queue_end == session->desc.requests_max) queue_compact(session);
-    session->queue[session->queue_end++] = (request){ fetch, ask->kind, ask->u.get };
-    session->queue_live++;
-    serve_queue(session);
-    return FF_OK;
+    return enqueue(session, (request){ fetch, ask->kind, ask->u.get });
 }
 
 static int fetch_record(const ff_session *session, enum ff_kind kind, ff_key key,
@@ -223,6 +306,35 @@ int ff_session_ask_record(ff_session *session, const ff_message *ask)
     return ff_session_queue(session, ask, fetch_record);
 }
 
+/* ---- views ---- */
+
+/* Who asks for views too often gets what it names: that costs no more than single requests. */
+static int find_parts(ff_session *session, const ff_get_view *wanted)
+{
+    view_parts *view = &session->view;
+    if (view->on) return FF_ERR_FULL;
+    if (!view->part) view->part = malloc(FF_VIEW_PARTS_MAX * sizeof *view->part);
+    if (!view->part) return FF_ERR_MEMORY;
+    return allowed(session, &session->views, session->desc.views_per_minute)
+               ? ff_view_parts(session->desc.pack, wanted, view->part)
+               : ff_view_named(wanted, view->part);
+}
+
+int ff_session_ask_view(ff_session *session, const ff_message *ask)
+{
+    const ff_get_view *wanted = &ask->u.view;
+    int count = find_parts(session, wanted);
+    if (count < 0) {
+        answer_failed(session, wanted->id, count);
+        return FF_OK;
+    }
+    session->stats.views++;
+    session->view.count = (uint32_t)count;
+    session->view.next = 0;
+    session->view.on = 1;
+    return enqueue(session, (request){ fetch_record, ask->kind, { wanted->id, 0 } });
+}
+
 /* ---- panoramas ---- */
 
 static void panorama_drop(ff_session *session)
@@ -231,24 +343,10 @@ static void panorama_drop(ff_session *session)
     session->job_stale = session->job_out;
 }
 
-static int panorama_allowed(ff_session *session)
-{
-    int64_t cost_us = MINUTE_US / session->desc.panoramas_per_minute;
-    int64_t gained_us = session->now_us - session->credit_time_us;
-    session->credit_time_us = session->now_us;
-    if (gained_us > 0)
-        session->panorama_credit_us = gained_us >= MINUTE_US - session->panorama_credit_us
-                                          ? MINUTE_US
-                                          : session->panorama_credit_us + gained_us;
-    if (session->panorama_credit_us < cost_us) return 0;
-    session->panorama_credit_us -= cost_us;
-    return 1;
-}
-
 int ff_session_ask_faces(ff_session *session, const ff_message *ask)
 {
     const ff_get_panorama *wanted = &ask->u.panorama;
-    if (!panorama_allowed(session)) {
+    if (!allowed(session, &session->panoramas, session->desc.panoramas_per_minute)) {
         answer_failed(session, wanted->id, FF_ERR_FULL);
         return FF_OK;
     }
@@ -310,6 +408,7 @@ static void cancel(ff_session *session, uint16_t id)
         request *waiting = &session->queue[i];
         if (waiting->fetch && waiting->get.id == id) {
             waiting->fetch = NULL;
+            if (waiting->kind == FF_KIND_VIEW) session->view.on = 0;
             session->queue_live--;
             answer_cancelled(session, id);
             serve_queue(session); /* the cancelled request may have been the one without room */

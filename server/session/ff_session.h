@@ -19,6 +19,7 @@ typedef struct ff_session_desc {
     /* requests waiting; 0: 256; more closes the session (GOODBYE, FULL) */
     uint32_t requests_max;
     uint32_t panoramas_per_minute; /* 0: 120; more are answered FAILED(FULL) */
+    uint32_t views_per_minute;     /* 0: 60; more get what they name and nothing below it */
     uint32_t idle_ms_max;          /* no message for this long closes; 0: 10 minutes */
     int64_t now_us; /* time of the connection: idle counts from here until it is welcomed */
 } ff_session_desc;
@@ -26,7 +27,7 @@ typedef struct ff_session_desc {
 typedef struct ff_session_stats {
     uint64_t bytes_in, bytes_out;
     uint32_t answers[FF_DATA_CLASSES]; /* those that brought something */
-    uint32_t panoramas, failed, cancelled;
+    uint32_t panoramas, views, failed, cancelled;
     uint32_t damaged; /* of the failed: records whose checksum is wrong */
 } ff_session_stats;
 

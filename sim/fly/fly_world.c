@@ -89,7 +89,8 @@ static int open_tape(fly_world *world)
                            .height = options->size.height,
                            .quality = options->quality,
                            .panorama = options->panorama,
-                           .hidden = (enum ff_hidden)options->hidden };
+                           .hidden = (enum ff_hidden)options->hidden,
+                           .no_views = !options->views };
     int rc = options->tape_path
                  ? sim_tape_record(&world->tape, options->tape_path, &head, &world->stream)
                  : FF_OK;
@@ -160,6 +161,9 @@ static int open_client(fly_world *world)
                             .balance = options->balance,
                             .use_thread = options->server != NULL,
                             .use_plain_arrays = (uint8_t)options->plain_arrays,
+                            /* to whom a server is a stranger, so is its ground */
+                            .place_known = options->server == NULL,
+                            .no_views = !options->views,
                             .no_reserve = !options->reserve,
                             .hidden = (enum ff_hidden)options->hidden };
     desc.backend = backend_of(options->backend);

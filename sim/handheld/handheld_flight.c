@@ -63,6 +63,8 @@ ff_client_desc handheld_client_desc(const handheld *device)
                              .surface_api = device->surface_api,
                              .backend = device->surface ? c3d_backend_soft() : NULL,
                              .use_plain_arrays = 1,
+                             .place_known = head != NULL, /* as of who recorded it */
+                             .no_views = head ? head->no_views : 0,
                              .no_textures = (uint8_t)options->no_textures,
                              .hidden = head ? head->hidden : FF_HIDDEN_LEFT_OUT,
                              .balance = options->balance };

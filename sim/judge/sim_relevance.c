@@ -128,7 +128,10 @@ static void take_answer(sim_relevance *relevance, const ff_message *message, siz
     const asked *q = &relevance->asked[ff_message_id(message)];
     answer a = { .kind = q->kind, .key = q->key, .bytes = (uint32_t)bytes, .reserve = q->reserve };
     const ff_face *face = &message->u.face;
-    if (ff_kind[a.kind].brings == FF_BRINGS_FACE) {
+    if (ff_kind[a.kind].brings == FF_BRINGS_PARTS) {
+        a.kind = message->u.part.what == FF_PART_ROOT ? FF_KIND_ROOT : FF_KIND_REFINEMENT;
+        a.key = message->u.part.key;
+    } else if (ff_kind[a.kind].brings == FF_BRINGS_FACE) {
         memcpy(a.position_wu, q->position_wu, sizeof a.position_wu);
         a.face = face->face;
         a.face_size = face->face_size;
@@ -142,6 +145,7 @@ static int is_to_be_judged(const sim_relevance *relevance, const ff_message *mes
 {
     if (message->type != FF_MSG_ANSWER) return 0;
     const ff_kind_row *kind = &ff_kind[relevance->asked[ff_message_id(message)].kind];
+    if (kind->brings == FF_BRINGS_PARTS && message->u.part.what == FF_PART_END) return 0;
     return kind->answered_by == ff_kind[message->kind].answered_by &&
            kind->data != FF_DATA_OVERHEAD;
 }
@@ -163,6 +167,7 @@ static void take_up(sim_relevance *relevance, const ff_message *message)
         q->reserve = relevance->is_reserve(relevance->reserve_context, ff_message_id(message));
     switch ((enum ff_kind_asks)ff_kind[q->kind].asks) {
         case FF_ASKS_NODE: q->key = message->u.get.key; break;
+        case FF_ASKS_VIEW: break; /* each part says what it is of */
         case FF_ASKS_PANORAMA:
             memcpy(q->position_wu, message->u.panorama.position_wu, sizeof q->position_wu);
             break;

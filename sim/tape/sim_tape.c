@@ -76,7 +76,8 @@ static void take_head(sim_tape_player *player)
                              .height = (uint16_t)n[2],
                              .hidden = n[18] == FF_HIDDEN_FETCHED ? FF_HIDDEN_FETCHED
                                        : n[18] == FF_HIDDEN_DRAWN ? FF_HIDDEN_DRAWN
-                                                                  : FF_HIDDEN_LEFT_OUT };
+                                                                  : FF_HIDDEN_LEFT_OUT,
+                             .no_views = n[19] != 0 };
     *q = (ff_quality){ .measure = n[3] == FF_MEASURE_PIXELS ? FF_MEASURE_PIXELS
                                                             : FF_MEASURE_DISTANCE,
                        .c_q8 = n[4],

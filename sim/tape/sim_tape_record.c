@@ -66,7 +66,8 @@ static void put_head(FILE *file, const sim_tape_head *head)
                                             p->jpeg_quality,
                                             p->hold_back,
                                             (int32_t)q->triangles_max,
-                                            (int32_t)head->hidden };
+                                            (int32_t)head->hidden,
+                                            head->no_views };
     fwrite(SIM_TAPE_MAGIC, 1, SIM_TAPE_MAGIC_BYTES, file);
     for (unsigned i = 0; i < SIM_TAPE_HEAD; i++) put(file, (uint32_t)number[i], 4);
 }

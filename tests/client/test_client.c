@@ -118,7 +118,7 @@ static void what_is_off_costs_nothing(void **state)
     assert_true(rig_settle(&rig, 400));
     assert_int_equal(rig.asked[FF_KIND_TEXTURE], 0);
     assert_int_equal(rig.asked[FF_KIND_FACE], 0);
-    assert_true(rig.asked[FF_KIND_REFINEMENT] > 10);
+    assert_true(rig_heights(&rig) > 10);
     assert_null(rig.client->textures.slot);
     assert_null(rig.client->intake.rgb);
     assert_null(rig.client->news.images);

@@ -373,6 +373,7 @@ static void refused_by_the_tree(void **state)
         payloads_made = 0;
         open_with(&rig, CODEC_BY_PARENT);
         add_a_byte_each = 0;
+        rig.desc.no_views = 1; /* each refusal ends a request */
         rig_client(&rig, 2u << 20);
         for (int i = 0; i < 400; i++) rig_step(&rig, 50000);
         ff_client_stats stats = rig_stats(&rig);

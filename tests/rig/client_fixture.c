@@ -280,6 +280,13 @@ void rig_step(client_rig *rig, int64_t us)
     rig->updates += (unsigned)ff_client_update(rig->client, rig->frame_us, &rig->camera);
 }
 
+uint32_t rig_heights(const client_rig *rig)
+{
+    ff_session_stats stats;
+    ff_session_get_stats(rig->session, &stats);
+    return stats.answers[FF_DATA_HEIGHTS];
+}
+
 ff_client_stats rig_stats(const client_rig *rig)
 {
     ff_client_stats stats;

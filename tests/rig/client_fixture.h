@@ -69,6 +69,8 @@ void rig_step(client_rig *rig, int64_t us);
  * when settled. */
 int rig_settle(client_rig *rig, unsigned frames);
 ff_client_stats rig_stats(const client_rig *rig);
+/* Roots and refinements that the present connection's server has answered with. */
+uint32_t rig_heights(const client_rig *rig);
 /* 1 when both show the same nodes, borders and heights. */
 int rig_same_picture(const client_rig *a, const client_rig *b);
 

@@ -72,7 +72,8 @@ client/ground       client/farfield.h client/images client/terrain protocol/ com
 client/panorama     client client/ask client/ahead protocol/ common3d
 client/balance      client
 client              client/ protocol/ common3d platform/sys.h
-server/session      protocol/ platform/sys.h
+server/view         client/terrain protocol/ common3d
+server/session      server/view protocol/ platform/sys.h
 server/panorama     client/terrain client/ground client/images protocol/ common3d platform/sys.h
 server/net          server server/session server/panorama protocol/ platform/sys.h
 server              server/ platform/options client/farfield.h protocol/ platform/sys.h

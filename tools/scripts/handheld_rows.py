@@ -33,7 +33,7 @@ PLACES = {  # what each counts to under each mark; None: it has nothing to do th
     "client/balance/": (None, MEASURE, STITCH),
     "client/client.o client/client_update.o client/client_figures.o": (LINK, MEASURE, STITCH),
     "client/client_carve.o client/ff_budget.o client/ff_arena.o": (None, PANORAMA, None),
-    "client/client_rank.o": (None, WISHES, None),
+    "client/client_rank.o client/client_view.o": (None, WISHES, None),
     "client/client_take.o": (None, TAKE_IN, None),
     "client/ff_sky.o": (None, PANORAMA, STITCH),
     "client/ground/": (None, MEASURE, STITCH),

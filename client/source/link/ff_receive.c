@@ -49,12 +49,38 @@ static int answers(const ff_message *message, const ff_request *request)
     return kind->brings != FF_BRINGS_FACE || asked_for(&request->panorama, message->u.face.face);
 }
 
+/* A node that the view may bring and the terrain has. */
+static int is_part_of(const ff_stream *stream, const ff_part *part)
+{
+    const ff_terrain_info *info = &stream->intake->info;
+    int root = part->what == FF_PART_ROOT;
+    return ff_terrain_has_node(info, part->key) &&
+           (root || ff_key_level(part->key) + 1 < ff_terrain_levels(info)) &&
+           ff_view_covers(&stream->intake->requests->view, root ? FF_KIND_ROOT : FF_KIND_REFINEMENT,
+                          part->key);
+}
+
+static int take_part(ff_stream *stream, const ff_request *request, const ff_message *message,
+                     uint32_t bytes, int64_t now_us)
+{
+    const ff_part *part = &message->u.part;
+    int end = part->what == FF_PART_END;
+    if (!end && !is_part_of(stream, part)) return FF_ERR_FORMAT;
+    int rc = end ? ff_intake_answer(stream->intake, request, message, bytes)
+                 : ff_intake_part(stream->intake, request, part);
+    if (rc != FF_OK) return rc;
+    stream->answer_bytes[request->kind] += bytes;
+    if (!request->bytes_came) ff_link_estimate_answer(&stream->link, request->sent_us, now_us);
+    return FF_OK;
+}
+
 static int take_answer(ff_stream *stream, const ff_message *message, uint32_t bytes, int64_t now_us)
 {
     ff_request request;
     if (!ff_requests_answered(stream->intake->requests, ff_message_id(message), &request) ||
         !answers(message, &request))
         return FF_ERR_FORMAT;
+    if (request.kind == FF_KIND_VIEW) return take_part(stream, &request, message, bytes, now_us);
     int rc = ff_intake_answer(stream->intake, &request, message, bytes);
     if (rc != FF_OK) return rc;
     stream->answer_bytes[request.kind] += bytes;

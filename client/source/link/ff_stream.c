@@ -203,6 +203,7 @@ static void encode_request(ff_stream *stream, const ff_request *request)
     ff_message message = { .type = FF_MSG_GET, .kind = (enum ff_kind)request->kind };
     switch ((enum ff_kind_asks)ff_kind[request->kind].asks) {
         case FF_ASKS_NODE: message.u.get = (ff_get){ request->id, request->key }; break;
+        case FF_ASKS_VIEW: message.u.view = stream->intake->requests->view; break;
         case FF_ASKS_PANORAMA: message.u.panorama = request->panorama; break;
     }
     append(stream, &message);
@@ -218,7 +219,7 @@ static int ask(ff_stream *stream, int64_t now_us)
     int prefetch = !stream->shared.no_prefetch &&
                    requests->counts.in_flight < stream->in_flight_max / 2u;
     sys_mutex_unlock(&requests->mutex);
-    FF_ASSERT(stream->state == FF_STREAM_UP);
+    FF_ASSERT(stream->state == FF_STREAM_UP || stream->state == FF_STREAM_GREETING);
     uint32_t window = ff_link_estimate_window(&stream->link);
     int moved = 0;
     ff_request request;
@@ -346,6 +347,9 @@ static int link_step(ff_stream *stream, int64_t now_us)
         ask_about(stream, now_us);
         keep_alive(stream, now_us);
     }
+    /* without a terrain nothing is asked for but what the greeting may bring */
+    if (rc == FF_OK && stream->state == FF_STREAM_GREETING && !stream->has_terrain)
+        moved |= ask(stream, now_us);
     if (rc == FF_OK) rc = flush(stream, now_us, &moved);
     if (rc == FF_OK && silent_too_long(stream, now_us)) rc = FF_ERR_CLOSED;
     if (rc != FF_OK) {

@@ -1,0 +1,135 @@
+/* Ground of which several levels are missing, after the start, a turn or a leap: the server is
+ * asked for all that the view needs, instead of level by level, a round trip each (FF_KIND_VIEW).
+ */
+#include "ff_client_local.h"
+#include "../protocol/ff_assert.h"
+
+#include <string.h>
+
+/* A node is off by so many times what is allowed: more than its children will be needed, since each
+ * level halves the error as a rule. */
+#define DEEP 4
+
+/* What the answers may take of the link: what comes is in the server's order, and the viewer moves
+ * meanwhile. */
+#define VIEW_SECONDS       3u
+#define VIEW_BYTES_MIN     4096u
+#define VIEW_BYTES_MAX     32768u
+#define VIEW_BYTES_UNTIMED 16384u /* while nothing is known of the link */
+
+static int is_deep(const ff_client *client, const ff_wish *wish)
+{
+    const ff_quality *quality = ff_tree_quality(client->tree);
+    uint32_t allowed = quality->measure == FF_MEASURE_PIXELS ? (uint32_t)quality->error_px_q8 : 256;
+    return wish->kind == FF_KIND_ROOT || wish->priority / DEEP >= allowed;
+}
+
+static uint32_t bytes_for(ff_client *client)
+{
+    ff_stream_shared shared;
+    ff_stream_get_shared(&client->stream, &shared);
+    if (!shared.bytes_s) return VIEW_BYTES_UNTIMED;
+    uint64_t bytes = (uint64_t)shared.bytes_s * VIEW_SECONDS;
+    return bytes < VIEW_BYTES_MIN   ? VIEW_BYTES_MIN
+           : bytes > VIEW_BYTES_MAX ? VIEW_BYTES_MAX
+                                    : (uint32_t)bytes;
+}
+
+/* Names what is wished for in view and not on its way. 1 when some of it is deep. */
+static int name_wishes(ff_client *client, ff_get_view *asked)
+{
+    const ff_wish *list;
+    uint32_t count = ff_tree_wishes(client->tree, &list);
+    int deep = 0;
+    for (uint32_t i = 0; i < count && asked->count < FF_VIEW_KEYS_MAX; i++) {
+        enum ff_kind kind = (enum ff_kind)list[i].kind;
+        if (!list[i].in_view || ff_refusals_final(&client->refusals, kind, list[i].key) ||
+            ff_requests_out(&client->requests, kind, list[i].key))
+            continue;
+        deep |= is_deep(client, &list[i]);
+        if (kind == FF_KIND_ROOT) asked->roots |= (uint16_t)(1u << asked->count);
+        asked->below[asked->count++] = list[i].key;
+    }
+    return deep;
+}
+
+/* All but where the camera is. */
+static void describe(ff_client *client, const c3d_camera *camera, const ff_quality *quality,
+                     ff_get_view *asked)
+{
+    int by_pixels = quality->measure == FF_MEASURE_PIXELS;
+    asked->yaw = (uint16_t)camera->yaw;
+    asked->pitch = (uint16_t)camera->pitch;
+    asked->roll = (uint16_t)camera->roll;
+    asked->focal_q8 = camera->focal_q8;
+    asked->width = camera->width ? camera->width : client->desc.width;
+    asked->height = camera->height ? camera->height : client->desc.height;
+    asked->measure = by_pixels ? FF_VIEW_BY_PIXELS : FF_VIEW_BY_DISTANCE;
+    asked->allowed_q8 = by_pixels ? quality->error_px_q8 : quality->c_q8;
+    asked->depth_max = quality->depth_max;
+    asked->reach_wu = quality->view_wu;
+    asked->triangles_max = quality->triangles_max;
+    asked->bytes_max = bytes_for(client);
+}
+
+/* The view that is out brings nothing that is wished for now: the viewer is somewhere else. */
+static int is_stale(ff_client *client)
+{
+    const ff_wish *list;
+    uint32_t count = ff_tree_wishes(client->tree, &list);
+    int elsewhere = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        enum ff_kind kind = (enum ff_kind)list[i].kind;
+        if (!list[i].in_view) continue;
+        if (ff_requests_in_view(&client->requests, kind, list[i].key)) return 0;
+        elsewhere |= is_deep(client, &list[i]);
+    }
+    return elsewhere;
+}
+
+void ff_client_want_view(ff_client *client, const ff_view *view, const ff_quality *quality)
+{
+    ff_get_view asked = { 0 };
+    if (!client->desc.stream || client->desc.no_views || client->no_views) return;
+    if (ff_requests_out(&client->requests, FF_KIND_VIEW, 0)) {
+        if (is_stale(client)) ff_requests_cancel(&client->requests, FF_KIND_VIEW, 0);
+        return;
+    }
+    if (!name_wishes(client, &asked)) return;
+    describe(client, &view->camera, quality, &asked);
+    ff_shape_leave(&client->info, &view->frame, view->camera.pos_wu, asked.position_wu);
+    ff_requests_want_view(&client->requests, &asked);
+}
+
+void ff_client_greet_view(ff_client *client, const c3d_camera *camera)
+{
+    const ff_quality quality = ff_client_quality(client);
+    ff_get_view asked = { 0 };
+    if (!client->desc.stream || client->desc.no_views || !client->desc.place_known) return;
+    ff_requests_rank_begin(&client->requests);
+    if (!ff_requests_out(&client->requests, FF_KIND_VIEW, 0)) {
+        describe(client, camera, &quality, &asked);
+        memcpy(asked.position_wu, camera->pos_wu, sizeof asked.position_wu);
+        ff_requests_want_view(&client->requests, &asked);
+    }
+    ff_requests_rank_end(&client->requests);
+}
+
+/* Its ground has come, each part as if it had been asked for alone; what was named and is missing
+ * was refused. */
+int ff_client_take_view(ff_client *client, ff_new_item *item, int64_t now_us)
+{
+    const ff_get_view *asked = &client->requests.view;
+    (void)now_us;
+    if (item->refused) {
+        client->no_views |= item->error != FF_ERR_CLOSED;
+        return 0;
+    }
+    FF_ASSERT(item->error == FF_OK && asked->count <= FF_VIEW_KEYS_MAX);
+    for (unsigned i = 0; i < asked->count; i++)
+        if (item->u.missing >> i & 1u)
+            ff_refusals_note(&client->refusals,
+                             asked->roots >> i & 1u ? FF_KIND_ROOT : FF_KIND_REFINEMENT,
+                             asked->below[i]);
+    return 0;
+}

@@ -1,0 +1,28 @@
+/* What the forms of messages share; for ff_message*.c only. */
+#ifndef FF_MESSAGE_LOCAL_H
+#define FF_MESSAGE_LOCAL_H
+
+#include "ff_message.h"
+#include "../ff_bytes.h"
+
+static inline void ff_message_require(int *error, int condition)
+{
+    FF_ASSERT(*error <= FF_OK);
+    if (!condition && *error == FF_OK) *error = FF_ERR_RANGE;
+}
+
+#define FF_MESSAGE_KEY_BYTES (1 + 4 + 5) /* at most: level, tile, code */
+
+/* 1 when a message of this kind may ask for it. */
+int ff_message_get_ok(const ff_get *get, enum ff_kind kind);
+/* A node: a byte of what it is asked for and of its level, tile, code. Read behind that byte. */
+void ff_message_write_key(ff_writer *out, uint32_t what, ff_key key);
+ff_key ff_message_read_key(ff_reader *in, uint32_t form);
+void ff_message_read_rest(ff_reader *in, const uint8_t **bytes, uint32_t *count);
+
+void ff_message_write_view(ff_writer *out, const ff_get_view *view);
+void ff_message_read_view(ff_reader *in, ff_get_view *view);
+void ff_message_write_part(ff_writer *out, const ff_part *part);
+void ff_message_read_part(ff_reader *in, ff_part *part);
+
+#endif

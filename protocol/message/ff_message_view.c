@@ -1,0 +1,123 @@
+/* GET_VIEW and its answers, PART; see SPEC.md, "Messages". */
+#include "ff_message_local.h"
+
+/* GET_VIEW, the longest of requests: id, angles, position, focal length, size, measure, depth,
+ * error allowed, reach, triangles, bytes, count. */
+#define VIEW_BYTES (2 + 3 * 2 + 3 * 4 + 4 + 2 * 2 + 1 + 1 + 4 + 4 + 5 + 5 + 1)
+FF_STATIC_ASSERT(FF_MESSAGE_HEADER_MAX + VIEW_BYTES + FF_VIEW_KEYS_MAX * FF_MESSAGE_KEY_BYTES <=
+                 FF_REQUEST_BYTES_MAX);
+FF_STATIC_ASSERT(FF_VIEW_KEYS_MAX <= 16); /* bits of `roots` */
+
+/* Of a root or a refinement, whose kinds share GET_NODE's form. */
+static int part_ok(const ff_part *part)
+{
+    if (part->what == FF_PART_END) return part->key == 0 && part->byte_count == 0;
+    const ff_get get = { part->id, part->key };
+    return part->what <= FF_PART_REFINEMENT && part->byte_count > 0 &&
+           ff_message_get_ok(&get, part->what == FF_PART_ROOT ? FF_KIND_ROOT : FF_KIND_REFINEMENT);
+}
+
+static int view_ok(const ff_get_view *view)
+{
+    if (view->focal_q8 < 256 || view->width < 1 || view->width > FF_VIEW_SIDE_MAX ||
+        view->height < 1 || view->height > FF_VIEW_SIDE_MAX || view->measure > FF_VIEW_BY_PIXELS ||
+        view->depth_max > FF_KEY_LEVEL_MAX + 1 || view->allowed_q8 < 1 || view->reach_wu < 1 ||
+        view->count > FF_VIEW_KEYS_MAX || view->roots >> view->count != 0)
+        return 0;
+    for (unsigned i = 0; i < view->count; i++) {
+        const ff_get get = { view->id, view->below[i] };
+        if (!ff_message_get_ok(&get, view->roots >> i & 1u ? FF_KIND_ROOT : FF_KIND_REFINEMENT))
+            return 0;
+    }
+    return 1;
+}
+
+int ff_view_covers(const ff_get_view *view, enum ff_kind kind, ff_key key)
+{
+    FF_ASSERT(kind == FF_KIND_ROOT || kind == FF_KIND_REFINEMENT);
+    if (view->count == 0) return 1;
+    for (unsigned i = 0; i < view->count; i++) {
+        ff_key top = view->below[i];
+        uint32_t above = ff_key_level(top), level = ff_key_level(key);
+        if (ff_key_tile(top) != ff_key_tile(key)) continue;
+        if (view->roots >> i & 1u) return 1;
+        if (kind == FF_KIND_REFINEMENT && level >= above &&
+            ff_key_code(key) >> 2 * (level - above) == ff_key_code(top))
+            return 1;
+    }
+    return 0;
+}
+
+void ff_message_write_view(ff_writer *out, const ff_get_view *view)
+{
+    ff_message_require(&out->error, view_ok(view));
+    ff_write_bytes(out, view->id, 2);
+    ff_write_bytes(out, view->yaw, 2);
+    ff_write_bytes(out, view->pitch, 2);
+    ff_write_bytes(out, view->roll, 2);
+    for (int axis = 0; axis < 3; axis++) ff_write_bytes(out, (uint32_t)view->position_wu[axis], 4);
+    ff_write_bytes(out, (uint32_t)view->focal_q8, 4);
+    ff_write_bytes(out, view->width, 2);
+    ff_write_bytes(out, view->height, 2);
+    ff_write_bytes(out, view->measure, 1);
+    ff_write_bytes(out, view->depth_max, 1);
+    ff_write_bytes(out, (uint32_t)view->allowed_q8, 4);
+    ff_write_bytes(out, (uint32_t)view->reach_wu, 4);
+    ff_write_varint(out, view->triangles_max);
+    ff_write_varint(out, view->bytes_max);
+    ff_write_bytes(out, view->count, 1);
+    for (unsigned i = 0; out->error == FF_OK && i < view->count; i++)
+        ff_message_write_key(out, view->roots >> i & 1u ? FF_PART_ROOT : FF_PART_REFINEMENT,
+                             view->below[i]);
+}
+
+void ff_message_write_part(ff_writer *out, const ff_part *part)
+{
+    ff_message_require(&out->error, part_ok(part));
+    ff_write_bytes(out, part->id, 2);
+    if (part->what == FF_PART_END)
+        ff_write_bytes(out, FF_PART_END, 1);
+    else
+        ff_message_write_key(out, part->what, part->key);
+    ff_write_span(out, part->bytes, part->byte_count);
+}
+
+void ff_message_read_view(ff_reader *in, ff_get_view *view)
+{
+    view->id = (uint16_t)ff_read_bytes(in, 2);
+    view->yaw = (uint16_t)ff_read_bytes(in, 2);
+    view->pitch = (uint16_t)ff_read_bytes(in, 2);
+    view->roll = (uint16_t)ff_read_bytes(in, 2);
+    for (int axis = 0; axis < 3; axis++) view->position_wu[axis] = (int32_t)ff_read_signed(in, 4);
+    view->focal_q8 = (int32_t)ff_read_signed(in, 4);
+    view->width = (uint16_t)ff_read_bytes(in, 2);
+    view->height = (uint16_t)ff_read_bytes(in, 2);
+    view->measure = (uint8_t)ff_read_bytes(in, 1);
+    view->depth_max = (uint8_t)ff_read_bytes(in, 1);
+    view->allowed_q8 = (int32_t)ff_read_signed(in, 4);
+    view->reach_wu = (int32_t)ff_read_signed(in, 4);
+    view->triangles_max = ff_read_varint(in);
+    view->bytes_max = ff_read_varint(in);
+    view->count = (uint8_t)ff_read_bytes(in, 1);
+    ff_message_require(&in->error, view->count <= FF_VIEW_KEYS_MAX);
+    for (unsigned i = 0; in->error == FF_OK && i < view->count; i++) {
+        uint32_t form = (uint32_t)ff_read_bytes(in, 1), what = form & 15u;
+        ff_message_require(&in->error, what == FF_PART_ROOT || what == FF_PART_REFINEMENT);
+        if (what == FF_PART_ROOT) view->roots |= (uint16_t)(1u << i);
+        view->below[i] = ff_message_read_key(in, form);
+    }
+    ff_message_require(&in->error, view_ok(view));
+}
+
+void ff_message_read_part(ff_reader *in, ff_part *part)
+{
+    part->id = (uint16_t)ff_read_bytes(in, 2);
+    uint32_t form = (uint32_t)ff_read_bytes(in, 1);
+    part->what = form & 15u;
+    if (part->what == FF_PART_END)
+        ff_message_require(&in->error, form == FF_PART_END);
+    else
+        part->key = ff_message_read_key(in, form);
+    ff_message_read_rest(in, &part->bytes, &part->byte_count);
+    ff_message_require(&in->error, part_ok(part));
+}

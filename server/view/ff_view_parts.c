@@ -1,0 +1,153 @@
+#include "ff_view_parts.h"
+#include "../../client/terrain/ff_pack_source.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define NODES    4096u /* slots of the tree: bounds memory and work */
+#define WISHES   256u
+#define SIGMA_Q8 320
+#define NEAR_WU  64
+/* every round refines a level or makes a list of leaves, or it is the last */
+#define ROUNDS_MAX 64
+
+typedef struct search {
+    const ff_pack *pack;
+    const ff_get_view *view;
+    ff_view_part *part;
+    uint32_t count;
+    uint64_t bytes;
+    ff_tree *tree;
+    ff_decoder *decoder;
+    void *tree_memory, *decoder_memory;
+    ff_wish wish[WISHES];
+    int32_t values[FF_REFINED_HEIGHTS_MAX];
+} search;
+
+static int search_open(search *s)
+{
+    const ff_terrain_info *info = &s->pack->header.info;
+    ff_tree_desc desc = { .info = *info, .node_count = NODES, .wish_count = WISHES };
+    size_t tree_bytes = ff_tree_bytes(&desc), decoder_bytes = ff_decoder_bytes(info);
+    s->tree_memory = malloc(tree_bytes);
+    s->decoder_memory = malloc(decoder_bytes);
+    if (!s->tree_memory || !s->decoder_memory) return FF_ERR_MEMORY;
+    s->tree = ff_tree_create(&desc, s->tree_memory, tree_bytes);
+    s->decoder = ff_decoder_create(info, s->decoder_memory, decoder_bytes);
+    return s->tree && s->decoder ? FF_OK : FF_ERR_MEMORY;
+}
+
+static void search_close(search *s)
+{
+    free(s->tree_memory);
+    free(s->decoder_memory);
+}
+
+static ff_quality quality_of(const ff_get_view *view)
+{
+    return (ff_quality){ .measure = view->measure == FF_VIEW_BY_PIXELS ? FF_MEASURE_PIXELS
+                                                                       : FF_MEASURE_DISTANCE,
+                         .c_q8 = view->allowed_q8,
+                         .error_px_q8 = view->allowed_q8,
+                         .depth_max = view->depth_max,
+                         .sigma_q8 = SIGMA_Q8,
+                         .view_wu = view->reach_wu,
+                         .triangles_max = view->triangles_max };
+}
+
+static ff_view view_of(const ff_terrain_info *info, const ff_get_view *asked)
+{
+    ff_view view = { .frame = ff_shape_frame(info, asked->position_wu) };
+    c3d_camera *camera = &view.camera;
+    ff_shape_enter(info, &view.frame, asked->position_wu, camera->pos_wu);
+    memcpy(view.centre_wu, camera->pos_wu, sizeof view.centre_wu);
+    camera->yaw = asked->yaw;
+    camera->pitch = (int16_t)asked->pitch;
+    camera->roll = asked->roll;
+    camera->focal_q8 = asked->focal_q8;
+    camera->width = asked->width;
+    camera->height = asked->height;
+    camera->near_wu = NEAR_WU;
+    camera->far_wu = INT32_MAX;
+    return view;
+}
+
+static int is_full(const search *s)
+{
+    return s->count == FF_VIEW_PARTS_MAX || s->bytes > s->view->bytes_max;
+}
+
+static int is_named(const search *s, const ff_wish *wish)
+{
+    for (uint32_t i = 0; i < s->view->count; i++)
+        if (s->part[i].key == wish->key && s->part[i].kind == wish->kind) return 1;
+    return 0;
+}
+
+static void count_bytes(search *s, enum ff_kind kind, ff_key key)
+{
+    const uint8_t *payload;
+    int bytes = ff_pack_record(s->pack, (enum ff_section_kind)ff_kind[kind].section, key, &payload);
+    s->bytes += bytes > 0 ? (uint64_t)bytes : 0;
+}
+
+/* Takes one wish from the pack into the tree, and on the list when it is asked for. 1 when it was
+ * delivered. */
+static int serve(search *s, const ff_wish *wish)
+{
+    enum ff_kind kind = (enum ff_kind)wish->kind;
+    if (ff_pack_source_serve(s->pack, s->decoder, s->values, s->tree, kind, wish->key) != FF_OK)
+        return 0;
+    if (!ff_view_covers(s->view, kind, wish->key) || is_named(s, wish)) return 1;
+    s->part[s->count++] = (ff_view_part){ wish->key, wish->kind };
+    count_bytes(s, kind, wish->key);
+    return 1;
+}
+
+/* Serves what is wished for in view, from a copy of the list, because it changes as nodes come in.
+ * How many were delivered. */
+static uint32_t serve_wishes(search *s)
+{
+    const ff_wish *list;
+    uint32_t count = ff_tree_wishes(s->tree, &list), delivered = 0;
+    memcpy(s->wish, list, count * sizeof *list);
+    for (uint32_t i = 0; i < count && !is_full(s); i++)
+        if (s->wish[i].in_view) delivered += (uint32_t)serve(s, &s->wish[i]);
+    return delivered;
+}
+
+static void find_parts(search *s)
+{
+    const ff_view view = view_of(&s->pack->header.info, s->view);
+    const ff_quality quality = quality_of(s->view);
+    for (int round = 0; round < ROUNDS_MAX && !is_full(s); round++) {
+        ff_tree_select(s->tree, &view, &quality);
+        if (serve_wishes(s) == 0 && ff_tree_to_make(s->tree) == 0) break;
+    }
+}
+
+int ff_view_named(const ff_get_view *view, ff_view_part *part)
+{
+    for (unsigned i = 0; i < view->count; i++)
+        part[i] = (ff_view_part){ view->below[i],
+                                  view->roots >> i & 1u ? FF_KIND_ROOT : FF_KIND_REFINEMENT };
+    return view->count;
+}
+
+int ff_view_parts(const ff_pack *pack, const ff_get_view *view,
+                  ff_view_part part[FF_VIEW_PARTS_MAX])
+{
+    search *s = malloc(sizeof *s);
+    if (!s) return FF_ERR_MEMORY;
+    *s = (search){ .pack = pack, .view = view, .part = part };
+    s->count = (uint32_t)ff_view_named(view, part);
+    for (uint32_t i = 0; i < s->count; i++) count_bytes(s, (enum ff_kind)part[i].kind, part[i].key);
+    int rc = search_open(s);
+    if (rc == FF_OK) {
+        find_parts(s);
+        rc = (int)s->count;
+    }
+    search_close(s);
+    free(s);
+    return rc;
+}
