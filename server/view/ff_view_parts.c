@@ -24,10 +24,18 @@ typedef struct search {
     int32_t values[FF_REFINED_HEIGHTS_MAX];
 } search;
 
+/* No more than the terrain has, and than the tree takes. */
+static uint32_t nodes_for(const ff_terrain_info *info)
+{
+    uint64_t level = ff_shape_tiles(info), all = 8;
+    for (uint32_t l = 0; l < ff_terrain_levels(info) && all < NODES; l++, level *= 4) all += level;
+    return all < NODES ? (uint32_t)all : NODES;
+}
+
 static int search_open(search *s)
 {
     const ff_terrain_info *info = &s->pack->header.info;
-    ff_tree_desc desc = { .info = *info, .node_count = NODES, .wish_count = WISHES };
+    ff_tree_desc desc = { .info = *info, .node_count = nodes_for(info), .wish_count = WISHES };
     size_t tree_bytes = ff_tree_bytes(&desc), decoder_bytes = ff_decoder_bytes(info);
     s->tree_memory = malloc(tree_bytes);
     s->decoder_memory = malloc(decoder_bytes);
