@@ -1,5 +1,7 @@
 #include "property_judge.h"
 
+#include "property_told.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -31,6 +33,7 @@ static const struct {
     { "turned cells with --no-project", "cells are turned or no squares" },
     { "a field out of its range", "do not make a terrain" },
     { "heights do not fit", "span more than 65536 steps" },
+    { "no shift known between two datums", "PROJ knows no shift from" },
 };
 
 const char *property_refusal(int kind)
@@ -150,6 +153,7 @@ typedef struct ground {
     uint32_t columns, rows; /* of densified ground the samples that were measured */
     double gt[6];
     OGRSpatialReferenceH srs; /* NULL: a plane without one */
+    property_told told;       /* of a shift between datums */
     double *height, *wanted;
     double *u, *v; /* samples of the source, 0 in the middle of the first */
     double ratio;  /* samples of the source in one, along the longer way */
@@ -228,17 +232,26 @@ static double whole_circle(OGRSpatialReferenceH srs)
     return srs && OSRIsGeographic(srs) ? 6.283185307179586 / OSRGetAngularUnits(srs, NULL) : 0;
 }
 
-static int find_sources(const property_draw *d, ground *g)
+/* Takes places of the pack's plane to the source's: the way that was told, or PROJ's best. */
+static int to_source(const property_draw *d, const ground *g, OGRSpatialReferenceH srs, double *x,
+                     double *y)
+{
+    int count = (int)(g->columns * g->rows);
+    if (!g->srs) return 0;
+    if (g->told.to_source) return OCTTransform(g->told.to_source, count, x, y, NULL) ? 0 : -1;
+    OGRCoordinateTransformationH to = property_transformation(d, g->srs, srs);
+    int ok = to && OCTTransform(to, count, x, y, NULL);
+    if (to) OCTDestroyCoordinateTransformation(to);
+    return ok ? 0 : -1;
+}
+
+static int find_sources(const property_draw *d, ground *g, OGRSpatialReferenceH srs)
 {
     double inverse[6];
     size_t count = (size_t)g->columns * g->rows;
-    OGRSpatialReferenceH srs = property_reference(d->place->srs);
-    OGRCoordinateTransformationH to = g->srs ? property_transformation(d, g->srs, srs) : NULL;
-    int ok = !g->srs || (to && OCTTransform(to, (int)count, g->u, g->v, NULL));
+    int ok = !to_source(d, g, srs, g->u, g->v);
     double circle = whole_circle(srs),
            middle = d->gt[0] + d->gt[1] * d->columns / 2 + d->gt[2] * d->rows / 2;
-    if (to) OCTDestroyCoordinateTransformation(to);
-    if (srs) OSRDestroySpatialReference(srs);
     if (!ok || !GDALInvGeoTransform((double *)d->gt, inverse)) return -1;
     for (size_t n = 0; n < count; n++) {
         double x = g->u[n], y = g->v[n];
@@ -254,6 +267,21 @@ static int find_sources(const property_draw *d, ground *g)
     return 0;
 }
 
+/* A shift that was told is one of PROJ's for the place, and no further than told from the best. */
+static int judge_shift(const property_draw *d, property_run *run, ground *g)
+{
+    if (!g->srs) return 0;
+    if (property_told_read(d, run->said, g->srs, &g->told))
+        return wrong(run, "PROJ has no such shift between datums");
+    if (!g->told.to_source) return 0;
+    double x = g->gt[0] + g->gt[1] * g->columns * d->densify / 2,
+           y = g->gt[3] + g->gt[5] * g->rows * d->densify / 2,
+           off = property_told_offset(d, &g->told, g->srs, x, y);
+    return off <= g->told.accuracy_m
+               ? 0
+               : wrong(run, "shifted by %g m, told %g", off, g->told.accuracy_m);
+}
+
 static int look_up(const property_draw *d, property_run *run, ground *g)
 {
     size_t count = (size_t)g->columns * g->rows;
@@ -264,8 +292,13 @@ static int look_up(const property_draw *d, property_run *run, ground *g)
     int rc = x && y && g->wanted && g->u && g->v ? 0 : -1;
     if (!rc) places_of(d, g, x, y);
     if (!rc) places_of(d, g, g->u, g->v);
-    if (!rc) rc = property_heights(d, g->srs, (int)count, x, y, g->wanted);
-    if (!rc) rc = find_sources(d, g);
+    /* a shift that was told is judged by itself: the surface is asked where the source lies */
+    OGRSpatialReferenceH srs = property_reference(d->place->srs);
+    if (!rc && g->told.to_source) rc = to_source(d, g, srs, x, y);
+    if (!rc)
+        rc = property_heights(d, g->told.to_source ? srs : g->srs, (int)count, x, y, g->wanted);
+    if (!rc) rc = find_sources(d, g, srs);
+    if (srs) OSRDestroySpatialReference(srs);
     free(x);
     free(y);
     return rc ? wrong(run, "the pack lies where PROJ shows nothing") : 0;
@@ -278,6 +311,7 @@ static void free_ground(ground *g)
     free(g->u);
     free(g->v);
     if (g->srs) OSRDestroySpatialReference(g->srs);
+    property_told_free(&g->told);
 }
 
 /* ---- the judgement ---- */
@@ -476,7 +510,8 @@ static void judge(const property_draw *d, property_run *run, const property_rast
     ground g = { 0 };
     double hscale = field(json, "hscale_m");
     int is_kept = field(json, "resampled") == 0;
-    if (judge_voids(d, run, r, json) || read_export(d, run, &g) || look_up(d, run, &g)) {
+    if (judge_voids(d, run, r, json) || read_export(d, run, &g) || judge_shift(d, run, &g) ||
+        look_up(d, run, &g)) {
         free_ground(&g);
         return;
     }
