@@ -14,15 +14,16 @@
 #define DRIFT_MAX                                                                  \
     0.25 /* samples, from end to end: kept samples may be so far off, and are told \
           */
-#define SIGMAS     8
-#define FILTER_SUM 1.6 /* of a cubic's weights, without their signs */
-#define ASKED_PART 0.1 /* of --max-error that goes along with the ground's waves */
-#define WU_M       (1.0 / 256)
-#define FLOAT_PART 1.2e-7 /* metres pass through single precision */
-#define CUBIC      0.02   /* the part of a wave of 1 radian a sample that a cubic misses */
-#define APPROX_PX  3e-4   /* GDAL's approximate transformer */
-#define ORIGIN_M   0.001  /* a pack tells its origin in millimetres, both ways */
-#define TIMEOUT_S  "120"
+#define SIGMAS      8
+#define FILTER_SUM  1.6 /* of a cubic's weights, without their signs */
+#define ASKED_PART  0.1 /* of --max-error that goes along with the ground's waves */
+#define WU_M        (1.0 / 256)
+#define FLOAT_PART  1.2e-7 /* metres pass through single precision */
+#define CUBIC       0.02   /* the part of a wave of 1 radian a sample that a cubic misses */
+#define APPROX_PX   3e-4   /* GDAL's approximate transformer */
+#define ORIGIN_M    0.001  /* a pack tells its origin in millimetres, both ways */
+#define CELLS_SHARP 1.99   /* of the source in a sample: with more they are averaged */
+#define TIMEOUT_S   "120"
 
 /* What may be refused, with a piece of the one line that says so. */
 static const struct {
@@ -155,9 +156,11 @@ typedef struct ground {
     OGRSpatialReferenceH srs; /* NULL: a plane without one */
     property_told told;       /* of a shift between datums */
     double *height, *wanted;
-    double *u, *v; /* samples of the source, 0 in the middle of the first */
-    double ratio;  /* samples of the source in one, along the longer way */
-    double copies; /* samples made of one of the source, where the source is coarser */
+    double *u, *v;    /* samples of the source, 0 in the middle of the first */
+    double ratio;     /* samples of the source in one, along the longer way */
+    double copies;    /* samples made of one of the source, where the source is coarser */
+    int is_sharp;     /* the filter sees four samples along each axis, no more */
+    int is_unrounded; /* what rounding did to `height` was taken out */
 } ground;
 
 /* The system that the pack's plane is in: as the export says; what a note says; the source's. */
@@ -263,6 +266,7 @@ static int find_sources(const property_draw *d, ground *g, OGRSpatialReferenceH 
     double ux = fabs(g->u[n + 1] - g->u[n]), vx = fabs(g->v[n + 1] - g->v[n]);
     double uy = fabs(g->u[n + g->columns] - g->u[n]), vy = fabs(g->v[n + g->columns] - g->v[n]);
     g->ratio = fmax(fmax(ux + uy, vx + vy), 1);
+    g->is_sharp = fmax(hypot(ux, uy), hypot(vx, vy)) < CELLS_SHARP;
     g->copies = fmax(1, 1 / hypot(ux, uy)) * fmax(1, 1 / hypot(vx, vy));
     return 0;
 }
@@ -370,6 +374,22 @@ static int sort_out(const property_draw *d, property_run *run, const property_ra
     return 0;
 }
 
+/* Whole heights that are resampled are rounded to whole steps once more, and that is no chance:
+ * where the filter moves a height by less than half a step, it stays as it was. Takes out what
+ * rounding does to the samples that the filter makes of the file's, so that what is left is held to
+ * the bounds of all others. Returns whether it could. */
+static int take_rounding_out(const property_draw *d, const property_raster *r, ground *g,
+                             double hscale, double hoffset)
+{
+    if (!property_is_whole(d) || !g->is_sharp) return 0;
+    for (size_t n = 0; n < (size_t)g->columns * g->rows; n++) {
+        if (isnan(g->wanted[n])) continue;
+        double exact = property_raster_between(d, r, g->u[n], g->v[n]);
+        g->height[n] -= nearbyint((exact - hoffset) / hscale) * hscale + hoffset - exact;
+    }
+    return 1;
+}
+
 /* Samples that are kept are the file's, to a step; all of them are there. */
 static int judge_kept(const property_draw *d, property_run *run, const property_raster *r,
                       const ground *g, double hscale)
@@ -440,14 +460,15 @@ static double sample_m(const property_draw *d, const ground *g, double drift, do
            cubic_m(d, g, is_kept) + drift_m + top * FLOAT_PART + place_m(d, g);
 }
 
-/* Of the whole fit. Errors that were asked for, and those of resampled ground that is rounded to
- * the source's steps once more (by less than half a step nothing moves), go along with the ground's
- * waves: SIGMAS of chance are not all that they do, and drift lets waves out of step. */
+/* Of the whole fit. Errors that were asked for, and those of averaged ground that is rounded to the
+ * source's steps once more, go along with the ground's waves: SIGMAS of chance are not all that
+ * they do, and drift lets waves out of step. */
 static allowance allow(const property_draw *d, const ground *g, const property_fit *f, double drift,
                        double hscale, int is_kept)
 {
     double step = property_is_whole(d) ? d->scale * d->unit_m : 0, cubic = cubic_m(d, g, is_kept);
     double asked = d->max_error_m, root = sqrt(f->samples);
+    if (g->is_unrounded) hscale = 0;
     double rounded = (step * step * g->copies + hscale * hscale) / 12;
     allowance a = { .sigma_m = sqrt(rounded + asked * asked + cubic * cubic / 9) };
     double drift_m = drift * fmax(d->columns, d->rows) * property_slope(d);
@@ -461,14 +482,26 @@ static allowance allow(const property_draw *d, const ground *g, const property_f
     return a;
 }
 
+/* Fits the ground, without what rounding did to it; the largest error is that of the samples as
+ * they came. */
+static int fit_ground(const property_draw *d, property_run *run, const property_raster *r,
+                      ground *g, double hscale, double hoffset, int is_kept)
+{
+    property_fit *f = &run->fit;
+    int rc = property_fit_grid(g->height, g->wanted, g->columns, g->rows, f);
+    double error_m = f->error_m;
+    g->is_unrounded = !rc && !is_kept && take_rounding_out(d, r, g, hscale, hoffset);
+    if (g->is_unrounded) rc = property_fit_grid(g->height, g->wanted, g->columns, g->rows, f);
+    f->error_m = error_m;
+    return !rc ? 0
+               : wrong(run, "too few samples to judge: %u of %u x %u", f->samples, g->columns,
+                       g->rows);
+}
+
 static int judge_fit(const property_draw *d, property_run *run, const ground *g, double hscale,
                      int is_kept)
 {
     property_fit *f = &run->fit;
-    run->allowed_m = sample_m(d, g, run->drift, hscale, is_kept);
-    if (property_fit_grid(g->height, g->wanted, g->columns, g->rows, f))
-        return wrong(run, "too few samples to judge: %u of %u x %u", f->samples, g->columns,
-                     g->rows);
     allowance a = allow(d, g, f, run->drift, hscale, is_kept);
     const struct {
         const char *name;
@@ -518,6 +551,8 @@ static void judge(const property_draw *d, property_run *run, const property_rast
     run->allowed_m = d->max_error_m + hscale + WU_M; /* in the middle of voids */
     int rc = judge_extent(d, run, &g) ? -1 : sort_out(d, run, r, &g, is_kept);
     if (!rc && is_kept) rc = judge_kept(d, run, r, &g, hscale);
+    if (!rc) rc = fit_ground(d, run, r, &g, hscale, field(json, "hoffset_m"), is_kept);
+    run->allowed_m = sample_m(d, &g, run->drift, hscale, is_kept);
     if (!rc) judge_fit(d, run, &g, hscale, is_kept);
     free_ground(&g);
 }
