@@ -443,10 +443,16 @@ static double cubic_m(const property_draw *d, const ground *g, int is_kept)
     return is_kept ? 0 : d->swing_m * CUBIC * wave * wave * wave;
 }
 
-/* What places that are told by millimetres, or reckoned about, do to a height. */
+/* How many samples places are off that are told by millimetres, or reckoned about. */
+static double place_px(const property_draw *d, const ground *g)
+{
+    return APPROX_PX + ORIGIN_M / (fabs(g->gt[1]) * d->densify);
+}
+
+/* What that does to a height. */
 static double place_m(const property_draw *d, const ground *g)
 {
-    return property_slope(d) * g->ratio * (APPROX_PX + ORIGIN_M / (fabs(g->gt[1]) * d->densify));
+    return property_slope(d) * g->ratio * place_px(d, g);
 }
 
 /* Of one sample. A cubic filter widens what the file's steps round by up to FILTER_SUM. */
@@ -474,7 +480,8 @@ static allowance allow(const property_draw *d, const ground *g, const property_f
     double drift_m = drift * fmax(d->columns, d->rows) * property_slope(d);
     double along = asked + (is_kept ? 0 : hscale / 2);
     double chance = SIGMAS * a.sigma_m + along * ASKED_PART * root;
-    a.bias_m = asked + WU_M + cubic + drift_m / 10 + SIGMAS * a.sigma_m / root;
+    a.bias_m = asked + WU_M + cubic + drift_m / 10 + SIGMAS * a.sigma_m / root +
+               f->tilt_m * place_px(d, g);
     a.rms_m = a.sigma_m + WU_M + cubic + drift_m + place_m(d, g);
     a.shift = SHIFT_MAX + chance * f->shift_sd;
     a.scale = SCALE_MAX + drift + chance * f->scale_sd;
