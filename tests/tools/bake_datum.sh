@@ -64,8 +64,13 @@ result $? "--estimate tells the same beforehand"
 placed bare.asc coarse.vrt EPSG:4267 -95.05 .001 40.05
 bake coarse.vrt && unsaid && placed bare.asc etrs89.vrt EPSG:4258 9 .00003 50 && bake etrs89.vrt && unsaid
 result $? "what is less than half a sample is not told"
+[ "$(field datum_shift), $(field datum_shift_m)" = "ETRS89 to WGS 84 (1), 1" ] && bake etrs89.vrt --t-srs EPSG:25832 && [ "$(field datum_shift), $(field datum_shift_m)" = ", 0" ]
+result $? "but the summary has it"
+placed bare.asc rim.vrt EPSG:4314 7 .003 47.36
+bake rim.vrt && noted "where it is meant for, but not all of this lies there"
+result $? "ground that reaches beyond where a shift is meant for is told, however coarse"
 placed bare.asc given.vrt '+proj=longlat +ellps=krass +towgs84=23,-123,-98' 40 .001 55
-bake given.vrt && noted "of unknown accuracy"
+bake given.vrt && noted "of unknown accuracy" && [ "$(field datum_shift_m)" = null ]
 result $? "a shift that the raster itself gives is one of unknown accuracy"
 placed bare.asc west.vrt EPSG:4167 179.9998 .00001 -31
 bake west.vrt && noted 'accurate to 1 m' && [ "$(field samples_x)" -lt 80 ] &&

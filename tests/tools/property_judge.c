@@ -272,11 +272,12 @@ static int find_sources(const property_draw *d, ground *g, OGRSpatialReferenceH 
 }
 
 /* A shift that was told is one of PROJ's for the place, and no further than told from the best. */
-static int judge_shift(const property_draw *d, property_run *run, ground *g)
+static int judge_shift(const property_draw *d, property_run *run, const char *json, ground *g)
 {
     if (!g->srs) return 0;
-    if (property_told_read(d, run->said, g->srs, &g->told))
-        return wrong(run, "PROJ has no such shift between datums");
+    double cell_m = fabs(g->gt[1]) * d->densify;
+    if (property_told_read(d, json, run->said, g->srs, cell_m, &g->told))
+        return wrong(run, "a shift between datums that is not PROJ's, or not told");
     if (!g->told.to_source) return 0;
     double x = g->gt[0] + g->gt[1] * g->columns * d->densify / 2,
            y = g->gt[3] + g->gt[5] * g->rows * d->densify / 2,
@@ -550,7 +551,7 @@ static void judge(const property_draw *d, property_run *run, const property_rast
     ground g = { 0 };
     double hscale = field(json, "hscale_m");
     int is_kept = field(json, "resampled") == 0;
-    if (judge_voids(d, run, r, json) || read_export(d, run, &g) || judge_shift(d, run, &g) ||
+    if (judge_voids(d, run, r, json) || read_export(d, run, &g) || judge_shift(d, run, json, &g) ||
         look_up(d, run, &g)) {
         free_ground(&g);
         return;

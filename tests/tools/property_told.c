@@ -17,6 +17,22 @@ static PJ *system_of(PJ_CONTEXT *context, OGRSpatialReferenceH srs)
     return system;
 }
 
+/* Whether the name, steps with " + " between them, tells steps of the operation. */
+static int is_named(PJ_CONTEXT *context, const PJ *way, const char *name)
+{
+    char whole[1000] = "";
+    int steps = proj_concatoperation_get_step_count(context, way);
+    for (int i = 0; i < steps; i++) {
+        PJ *step = proj_concatoperation_get_step(context, way, i);
+        if (proj_get_type(step) != PJ_TYPE_CONVERSION &&
+            proj_coordoperation_get_accuracy(context, step) != 0)
+            snprintf(whole + strlen(whole), sizeof whole - strlen(whole), "%s%s",
+                     *whole ? " + " : "", proj_get_name(step));
+        proj_destroy(step);
+    }
+    return !strcmp(steps > 0 ? whole : proj_get_name(way), name);
+}
+
 /* PROJ's words for the operation of that name and accuracy; empty: there is none. */
 static void find_operation(const property_draw *d, OGRSpatialReferenceH pack, const char *name,
                            double accuracy_m, char *words, size_t size)
@@ -25,9 +41,10 @@ static void find_operation(const property_draw *d, OGRSpatialReferenceH pack, co
     OGRSpatialReferenceH srs = property_reference(d->place->srs);
     PJ *from = system_of(context, srs), *to = system_of(context, pack);
     PJ_OPERATION_FACTORY_CONTEXT *factory = proj_create_operation_factory_context(context, NULL);
+    double west = remainder(d->longitude - AREA_DEGREES, 360),
+           east = remainder(d->longitude + AREA_DEGREES, 360);
     proj_operation_factory_context_set_area_of_interest(
-        context, factory, d->longitude - AREA_DEGREES, d->latitude - AREA_DEGREES,
-        d->longitude + AREA_DEGREES, d->latitude + AREA_DEGREES);
+        context, factory, west, d->latitude - AREA_DEGREES, east, d->latitude + AREA_DEGREES);
     proj_operation_factory_context_set_spatial_criterion(
         context, factory, PROJ_SPATIAL_CRITERION_PARTIAL_INTERSECTION);
     PJ_OBJ_LIST *list = proj_create_operations(context, from, to, factory);
@@ -35,7 +52,9 @@ static void find_operation(const property_draw *d, OGRSpatialReferenceH pack, co
     for (int i = 0; i < proj_list_get_count(list) && !*words; i++) {
         PJ *way = proj_list_get(context, list, i);
         double accuracy = proj_coordoperation_get_accuracy(context, way);
-        if (strstr(proj_get_name(way), name) && fabs(accuracy / accuracy_m - 1) < 0.01)
+        if (accuracy < 0) accuracy = INFINITY;
+        if (is_named(context, way, name) &&
+            (accuracy == accuracy_m || fabs(accuracy / accuracy_m - 1) < 0.01))
             snprintf(words, size, "%s", proj_as_proj_string(context, way, PJ_PROJ_5, NULL));
         proj_destroy(way);
     }
@@ -47,14 +66,26 @@ static void find_operation(const property_draw *d, OGRSpatialReferenceH pack, co
     OSRDestroySpatialReference(srs);
 }
 
-int property_told_read(const property_draw *d, const char *said, OGRSpatialReferenceH pack,
-                       property_told *told)
+/* Reads name and accuracy from the summary; 0: there is a shift. */
+static int read_summary(const char *json, char name[300], double *accuracy_m)
+{
+    const char *at = strstr(json, "\"datum_shift\": \"");
+    int got = at ? sscanf(at, "\"datum_shift\": \"%299[^\"]\", \"datum_shift_m\": %lf", name,
+                          accuracy_m)
+                 : 0;
+    if (got == 1) *accuracy_m = INFINITY;
+    return got > 0 ? 0 : -1;
+}
+
+int property_told_read(const property_draw *d, const char *json, const char *said,
+                       OGRSpatialReferenceH pack, double cell_m, property_told *told)
 {
     char name[300], words[2000];
-    const char *note = strstr(said, ": shifted from "), *at = note ? strchr(note, '"') : NULL;
     *told = (property_told){ 0 };
-    if (!at) return 0;
-    if (sscanf(at, "\"%299[^\"]\", accurate to %lf m", name, &told->accuracy_m) != 2) return -1;
+    if (read_summary(json, name, &told->accuracy_m)) return 0;
+    int is_noted = strstr(said, ": shifted from ") ||
+                   strstr(said, "names no datum that PROJ knows");
+    if (!is_noted && told->accuracy_m > cell_m / 2) return -1;
     find_operation(d, pack, name, told->accuracy_m, words, sizeof words);
     if (!*words) return -1;
     OGRSpatialReferenceH srs = property_reference(d->place->srs);
@@ -63,6 +94,7 @@ int property_told_read(const property_draw *d, const char *said, OGRSpatialRefer
     told->to_source = OCTNewCoordinateTransformationEx(pack, srs, options);
     OCTDestroyCoordinateTransformationOptions(options);
     OSRDestroySpatialReference(srs);
+    if (strstr(said, "not all of this lies there")) told->accuracy_m = INFINITY;
     return told->to_source ? 0 : -1;
 }
 

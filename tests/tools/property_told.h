@@ -5,15 +5,16 @@
 #include "property_draw.h"
 
 typedef struct property_told {
-    double accuracy_m;                      /* as it was told */
+    double accuracy_m;                      /* infinite: not known */
     OGRCoordinateTransformationH to_source; /* from the pack's plane, the way that was told back;
-                                               NULL: nothing was told */
+                                               NULL: no shift was told */
 } property_told;
 
-/* Reads the note in `said`, and finds the operation that it names in PROJ's list for the place. 0,
- * or -1: PROJ knows none of that name and accuracy. */
-int property_told_read(const property_draw *d, const char *said, OGRSpatialReferenceH pack,
-                       property_told *told);
+/* Reads the bake's summary and notes, and finds the operation of that name and accuracy in PROJ's
+ * list for the place. 0, or -1: PROJ knows none, or no note told one that may be off by more than
+ * half of `cell_m`. */
+int property_told_read(const property_draw *d, const char *json, const char *said,
+                       OGRSpatialReferenceH pack, double cell_m, property_told *told);
 void property_told_free(property_told *told);
 
 /* How far, in metres, a place of the pack lies from where PROJ's best operation puts it. */

@@ -135,6 +135,7 @@ static int warp_ground(const bake_plan *plan, bake_ground *ground, bake_grid *ma
     memcpy(ground->geotransform, plan->warp.to, sizeof plan->warp.to);
     ground->outside = count.outside;
     ground->resampled = 1;
+    ground->shift = plan->warp.shift;
     ground->is_geographic = 0;
     if (target) {
         if (ground->srs) OSRDestroySpatialReference(ground->srs);

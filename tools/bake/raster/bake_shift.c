@@ -15,7 +15,7 @@ typedef struct search {
     PJ_CONTEXT *context;
     PJ *from, *to;
     const bake_area *area;
-    double x[5], y[5]; /* middle and corners of the area, in `from` */
+    double x[5], y[5]; /* middle and corners of the area, in `from`; infinite where it has none */
 } search;
 
 static void copy_text(char *text, size_t size, const char *from)
@@ -56,7 +56,8 @@ static int reaches(const search *s, PJ *operation)
     PJ *plain = proj_normalize_for_visualization(s->context, operation);
     int ok = plain != NULL;
     for (int i = 0; ok && i < 5; i++) {
-        PJ_COORD c = proj_trans(plain, PJ_FWD, proj_coord(s->x[i], s->y[i], 0, 0));
+        if (!isfinite(s->x[i]) || !isfinite(s->y[i])) continue;
+        PJ_COORD c = proj_trans(plain, PJ_FWD, proj_coord(s->x[i], s->y[i], 0, HUGE_VAL));
         ok = isfinite(c.xy.x) && isfinite(c.xy.y);
     }
     if (plain) proj_destroy(plain);
@@ -139,21 +140,25 @@ static void find_better(const search *s, bake_shift *shift)
 
 /* ---- the area ---- */
 
-/* Widens `area` by places whose longitudes are taken round that of the first, and brings them back.
- */
-static void bound(const double *x, const double *y, int count, bake_area *area)
+/* The box of all places that are known, their longitudes taken round that of the first of them. 0,
+ * or -1: none is. */
+static int bound(const double *x, const double *y, int count, bake_area *area)
 {
+    double first = NAN;
     *area = (bake_area){ 0, INFINITY, 0, -INFINITY };
     for (int i = 0; i < count; i++) {
-        double beside = remainder(x[i] - x[0], 360);
+        if (!isfinite(x[i]) || !isfinite(y[i])) continue;
+        if (isnan(first)) first = x[i];
+        double beside = remainder(x[i] - first, 360);
         area->west = fmin(area->west, beside);
         area->east = fmax(area->east, beside);
         area->south = fmin(area->south, y[i]);
         area->north = fmax(area->north, y[i]);
     }
     int is_round = area->east - area->west > 180;
-    area->west = is_round ? -180 : remainder(x[0] + area->west, 360);
-    area->east = is_round ? 180 : remainder(x[0] + area->east, 360);
+    area->west = is_round ? -180 : remainder(first + area->west, 360);
+    area->east = is_round ? 180 : remainder(first + area->east, 360);
+    return isnan(first) ? -1 : 0;
 }
 
 static OGRSpatialReferenceH wgs84(void)
@@ -175,11 +180,11 @@ int bake_shift_area(OGRSpatialReferenceH srs, const double *gt, uint32_t width, 
     }
     OGRSpatialReferenceH degrees = wgs84();
     OGRCoordinateTransformationH to = OCTNewCoordinateTransformation(srs, degrees);
-    int ok = to && OCTTransform(to, 9, x, y, NULL);
-    if (to) OCTDestroyCoordinateTransformation(to);
+    if (to) OCTTransform(to, 9, x, y, NULL);
     OSRDestroySpatialReference(degrees);
-    if (ok) bound(x, y, 9, area);
-    return ok ? 0 : -1;
+    if (!to) return -1;
+    OCTDestroyCoordinateTransformation(to);
+    return bound(x, y, 9, area);
 }
 
 /* ---- the search ---- */
@@ -200,6 +205,8 @@ static void name_shift(const search *s, PJ *operation, bake_shift *shift)
         proj_destroy(step);
     }
     if (!*shift->name) copy_text(shift->name, sizeof shift->name, proj_get_name(operation));
+    for (char *c = shift->name; *c; c++)
+        if (*c == '"' || *c == '\\') *c = ' ';
 }
 
 static void name_degrees(const search *s, const PJ *system, char *name, size_t size)
@@ -217,6 +224,8 @@ static void describe(const search *s, PJ *operation, bake_shift *shift)
     const char *text = proj_as_proj_string(s->context, operation, PJ_PROJ_5, NULL);
     if (!text || strlen(text) >= sizeof shift->operation) return;
     copy_text(shift->operation, sizeof shift->operation, text);
+    double size;
+    shift->is_beyond = !is_meant_for(s, operation, &size);
     name_shift(s, operation, shift);
     name_degrees(s, s->from, shift->from, sizeof shift->from);
     name_degrees(s, s->to, shift->to, sizeof shift->to);
@@ -233,21 +242,20 @@ static PJ *take_system(PJ_CONTEXT *context, OGRSpatialReferenceH srs)
     return system;
 }
 
-/* Takes middle and corners of the area to `from`; 0, or -1: PROJ cannot. */
-static int take_places(search *s, OGRSpatialReferenceH from)
+/* Takes middle and corners of the area to `from`. */
+static void take_places(search *s, OGRSpatialReferenceH from)
 {
     const bake_area *a = s->area;
     double east = a->east < a->west ? a->east + 360 : a->east;
     OGRSpatialReferenceH degrees = wgs84();
     OGRCoordinateTransformationH to = OCTNewCoordinateTransformation(degrees, from);
     for (int i = 0; i < 5; i++) {
-        s->x[i] = i == 4 ? (a->west + east) / 2 : i & 1 ? east : a->west;
+        s->x[i] = !to ? INFINITY : i == 4 ? (a->west + east) / 2 : i & 1 ? east : a->west;
         s->y[i] = i == 4 ? (a->south + a->north) / 2 : i & 2 ? a->north : a->south;
     }
-    int ok = to && OCTTransform(to, 5, s->x, s->y, NULL);
+    if (to) OCTTransform(to, 5, s->x, s->y, NULL);
     if (to) OCTDestroyCoordinateTransformation(to);
     OSRDestroySpatialReference(degrees);
-    return ok ? 0 : -1;
 }
 
 /* Refuses to take degrees of one known datum for those of another, with what to do. */
@@ -279,7 +287,8 @@ int bake_shift_find(const char *path, OGRSpatialReferenceH from, OGRSpatialRefer
     s.from = take_system(s.context, from);
     s.to = take_system(s.context, to);
     int is_moved = s.from && s.to && !bake_datum_is_same(s.context, s.from, s.to);
-    PJ *operation = is_moved && !take_places(&s, from) ? choose(&s) : NULL;
+    if (is_moved) take_places(&s, from);
+    PJ *operation = is_moved ? choose(&s) : NULL;
     if (operation) describe(&s, operation, shift);
     if (*shift->operation) {
         shift->is_known = bake_datum_is_known(s.context, s.from) &&
@@ -295,8 +304,9 @@ int bake_shift_find(const char *path, OGRSpatialReferenceH from, OGRSpatialRefer
 
 void bake_shift_note(const char *path, const bake_shift *shift, double cell_m)
 {
-    char accuracy[60] = "of unknown accuracy", grids[300] = "", stay[60] = "";
-    int is_fine = shift->accuracy_m >= 0 && shift->accuracy_m <= NOTED_PART * cell_m;
+    char accuracy[120] = "of unknown accuracy", grids[300] = "", stay[60] = "";
+    int is_fine = !shift->is_beyond && shift->accuracy_m >= 0 &&
+                  shift->accuracy_m <= NOTED_PART * cell_m;
     if (!*shift->operation || is_fine) return;
     if (shift->is_ballpark) {
         bake_note("%s names no datum that PROJ knows: its degrees are taken for those of %s; "
@@ -305,7 +315,8 @@ void bake_shift_note(const char *path, const bake_shift *shift, double cell_m)
         return;
     }
     if (shift->accuracy_m >= 0)
-        snprintf(accuracy, sizeof accuracy, "accurate to %.3g m", shift->accuracy_m);
+        snprintf(accuracy, sizeof accuracy, "accurate to %.3g m%s", shift->accuracy_m,
+                 shift->is_beyond ? " where it is meant for, but not all of this lies there" : "");
     if (*shift->grids)
         snprintf(grids, sizeof grids, " (%.3g m if PROJ had %s)", shift->grids_m, shift->grids);
     if (shift->stay_epsg)

@@ -16,6 +16,7 @@ typedef struct bake_shift {
     char from[100], to[100]; /* the systems of degrees */
     double accuracy_m;       /* negative: PROJ does not know */
     int is_ballpark;         /* nothing is shifted: degrees are taken for those of `to` */
+    int is_beyond;           /* some of the area lies where the operation is not meant for */
     int is_known;            /* PROJ knows the datum that the ground comes from */
     char grids[200];         /* files of a better operation that are not here; empty: none */
     double grids_m;          /* its accuracy */
