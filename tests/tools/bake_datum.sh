@@ -54,8 +54,10 @@ bake nad27.vrt && noted 'shifted from NAD27 to WGS 84 by "NAD27 to WGS 84 (6)", 
 result $? "NAD27 to WGS 84: the note tells by which shift, and how accurate that is"
 near "$(shown -95.05 .00001 40.05 "$(helmert -8 159 175)")" 550 4
 result $? "the shift that is told is the one that is used"
-bake nad27.vrt --t-srs EPSG:32615 && noted '"NAD27 to WGS 84 (6)"' && near "$(shown -95.05 .00001 40.05 "$(helmert -8 159 175)")" 550 4
+placed bare.asc gulf.vrt EPSG:4267 -94.37 .00001 30.04 # where several shifts are meant to be used, and GDAL takes another one for each point
+bake gulf.vrt --t-srs EPSG:32615 && noted '"NAD27 to WGS 84 (81)", accurate to 5 m' && near "$(shown -94.37 .00001 30.04 "$(helmert -7 151 175)")" 550 4
 result $? "with --t-srs, too"
+bake nad27.vrt
 stay=$(sed -n 's/.*; --t-srs \(EPSG:[0-9]*\) keeps its datum$/\1/p' bake.err)
 bake nad27.vrt --t-srs "$stay" && unsaid && [ "EPSG:$(field epsg)" = "$stay" ]
 result $? "the --t-srs that it advises keeps the datum, without a word"
