@@ -17,7 +17,7 @@ typedef struct bake_shift {
     double accuracy_m;       /* negative: PROJ does not know */
     int is_ballpark;         /* nothing is shifted: degrees are taken for those of `to` */
     int is_beyond;           /* some of the area lies where the operation is not meant for */
-    int is_known;            /* PROJ knows the datum that the ground comes from */
+    int is_known;            /* PROJ knows both datums */
     char grids[200];         /* files of a better operation that are not here; empty: none */
     double grids_m;          /* its accuracy */
     int stay_epsg;           /* a plane in metres on the ground's own datum; 0: none found */
