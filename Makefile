@@ -20,8 +20,8 @@ STD_host := -std=c11
 LDLIBS_core := -lz -ljpeg -lpthread
 LDLIBS_surface := -lEGL -lOSMesa -lglfw -ldl
 LDLIBS_host := -lpng16 -lm
-GDAL_CFLAGS = $(shell $(PKG_CONFIG) --cflags gdal 2>/dev/null)
-GDAL_LIBS = $(shell $(PKG_CONFIG) --libs gdal sqlite3 2>/dev/null)
+GDAL_CFLAGS = $(shell $(PKG_CONFIG) --cflags gdal proj 2>/dev/null)
+GDAL_LIBS = $(shell $(PKG_CONFIG) --libs gdal proj sqlite3 2>/dev/null)
 
 # ---- sources, by layer: every folder of it, however deep. *_main.c are programs; *_none.c stand in for features left out (features.mk) ----
 tree = $(sort $(wildcard $(1)/*.c $(1)/*/*.c $(1)/*/*/*.c))
@@ -54,7 +54,7 @@ help: ## this list
 
 # ---- what Debian 12 must have ----
 DEPS := gcc make pkg-config zlib1g-dev libjpeg62-turbo-dev libpng-dev libosmesa6-dev libegl-dev libegl1 libgl1-mesa-dri \
-        libglfw3-dev libgdal-dev gdal-bin libsqlite3-dev libcmocka-dev xvfb xauth python3 help2man gnuplot-nox man-db \
+        libglfw3-dev libgdal-dev libproj-dev gdal-bin libsqlite3-dev libcmocka-dev xvfb xauth python3 help2man gnuplot-nox man-db \
         clang-format python3-gdal
 DEPS_STAMP := build/.deps
 

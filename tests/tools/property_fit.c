@@ -97,6 +97,7 @@ int property_fit_grid(const double *height, const double *wanted, uint32_t colum
             for (int r = 0; r < UNKNOWNS; r++)
                 for (int c = 0; c <= UNKNOWNS; c++) m[r][c] += row[r] * row[c];
         }
+    if (fit->samples) fit->tilt_m = hypot(m[0][1], m[0][2]) / fit->samples;
     for (int r = 0; r < UNKNOWNS; r++) m[r][UNKNOWNS + 1 + r] = 1;
     if (fit->samples < SAMPLES_MIN || solve(m)) return -1;
     fit->bias_m /= fit->samples;

@@ -10,6 +10,7 @@ typedef struct property_fit {
     double gain;                   /* how much higher: a part of 1 */
     double rotation;               /* radians, of a turn or a shear */
     double bias_m, rms_m, error_m; /* mean (signed), root of the mean square, largest */
+    double tilt_m; /* mean gradient, a sample: what a shift of one does to the bias */
     /* how far errors of 1 m, by chance in each sample, move the four above: one sigma */
     double shift_sd, scale_sd, gain_sd;
     uint32_t samples;

@@ -1,5 +1,7 @@
 #include "property_judge.h"
 
+#include "property_told.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -12,15 +14,16 @@
 #define DRIFT_MAX                                                                  \
     0.25 /* samples, from end to end: kept samples may be so far off, and are told \
           */
-#define SIGMAS     8
-#define FILTER_SUM 1.6 /* of a cubic's weights, without their signs */
-#define ASKED_PART 0.1 /* of --max-error that goes along with the ground's waves */
-#define WU_M       (1.0 / 256)
-#define FLOAT_PART 1.2e-7 /* metres pass through single precision */
-#define CUBIC      0.02   /* the part of a wave of 1 radian a sample that a cubic misses */
-#define APPROX_PX  3e-4   /* GDAL's approximate transformer */
-#define ORIGIN_M   0.001  /* a pack tells its origin in millimetres, both ways */
-#define TIMEOUT_S  "120"
+#define SIGMAS      8
+#define FILTER_SUM  1.6 /* of a cubic's weights, without their signs */
+#define ASKED_PART  0.1 /* of --max-error that goes along with the ground's waves */
+#define WU_M        (1.0 / 256)
+#define FLOAT_PART  1.2e-7 /* metres pass through single precision */
+#define CUBIC       0.02   /* the part of a wave of 1 radian a sample that a cubic misses */
+#define APPROX_PX   3e-4   /* GDAL's approximate transformer */
+#define ORIGIN_M    0.001  /* a pack tells its origin in millimetres, both ways */
+#define CELLS_SHARP 1.99   /* of the source in a sample: with more they are averaged */
+#define TIMEOUT_S   "120"
 
 /* What may be refused, with a piece of the one line that says so. */
 static const struct {
@@ -31,6 +34,7 @@ static const struct {
     { "turned cells with --no-project", "cells are turned or no squares" },
     { "a field out of its range", "do not make a terrain" },
     { "heights do not fit", "span more than 65536 steps" },
+    { "no shift known between two datums", "PROJ knows no shift from" },
 };
 
 const char *property_refusal(int kind)
@@ -150,10 +154,13 @@ typedef struct ground {
     uint32_t columns, rows; /* of densified ground the samples that were measured */
     double gt[6];
     OGRSpatialReferenceH srs; /* NULL: a plane without one */
+    property_told told;       /* of a shift between datums */
     double *height, *wanted;
-    double *u, *v; /* samples of the source, 0 in the middle of the first */
-    double ratio;  /* samples of the source in one, along the longer way */
-    double copies; /* samples made of one of the source, where the source is coarser */
+    double *u, *v;    /* samples of the source, 0 in the middle of the first */
+    double ratio;     /* samples of the source in one, along the longer way */
+    double copies;    /* samples made of one of the source, where the source is coarser */
+    int is_sharp;     /* the filter sees four samples along each axis, no more */
+    int is_unrounded; /* what rounding did to `height` was taken out */
 } ground;
 
 /* The system that the pack's plane is in: as the export says; what a note says; the source's. */
@@ -228,17 +235,26 @@ static double whole_circle(OGRSpatialReferenceH srs)
     return srs && OSRIsGeographic(srs) ? 6.283185307179586 / OSRGetAngularUnits(srs, NULL) : 0;
 }
 
-static int find_sources(const property_draw *d, ground *g)
+/* Takes places of the pack's plane to the source's: the way that was told, or PROJ's best. */
+static int to_source(const property_draw *d, const ground *g, OGRSpatialReferenceH srs, double *x,
+                     double *y)
+{
+    int count = (int)(g->columns * g->rows);
+    if (!g->srs) return 0;
+    if (g->told.to_source) return OCTTransform(g->told.to_source, count, x, y, NULL) ? 0 : -1;
+    OGRCoordinateTransformationH to = property_transformation(d, g->srs, srs);
+    int ok = to && OCTTransform(to, count, x, y, NULL);
+    if (to) OCTDestroyCoordinateTransformation(to);
+    return ok ? 0 : -1;
+}
+
+static int find_sources(const property_draw *d, ground *g, OGRSpatialReferenceH srs)
 {
     double inverse[6];
     size_t count = (size_t)g->columns * g->rows;
-    OGRSpatialReferenceH srs = property_reference(d->place->srs);
-    OGRCoordinateTransformationH to = g->srs ? property_transformation(d, g->srs, srs) : NULL;
-    int ok = !g->srs || (to && OCTTransform(to, (int)count, g->u, g->v, NULL));
+    int ok = !to_source(d, g, srs, g->u, g->v);
     double circle = whole_circle(srs),
            middle = d->gt[0] + d->gt[1] * d->columns / 2 + d->gt[2] * d->rows / 2;
-    if (to) OCTDestroyCoordinateTransformation(to);
-    if (srs) OSRDestroySpatialReference(srs);
     if (!ok || !GDALInvGeoTransform((double *)d->gt, inverse)) return -1;
     for (size_t n = 0; n < count; n++) {
         double x = g->u[n], y = g->v[n];
@@ -250,8 +266,25 @@ static int find_sources(const property_draw *d, ground *g)
     double ux = fabs(g->u[n + 1] - g->u[n]), vx = fabs(g->v[n + 1] - g->v[n]);
     double uy = fabs(g->u[n + g->columns] - g->u[n]), vy = fabs(g->v[n + g->columns] - g->v[n]);
     g->ratio = fmax(fmax(ux + uy, vx + vy), 1);
+    g->is_sharp = fmax(hypot(ux, uy), hypot(vx, vy)) < CELLS_SHARP;
     g->copies = fmax(1, 1 / hypot(ux, uy)) * fmax(1, 1 / hypot(vx, vy));
     return 0;
+}
+
+/* A shift that was told is one of PROJ's for the place, and no further than told from the best. */
+static int judge_shift(const property_draw *d, property_run *run, const char *json, ground *g)
+{
+    if (!g->srs) return 0;
+    double cell_m = fabs(g->gt[1]) * d->densify;
+    if (property_told_read(d, json, run->said, g->srs, cell_m, &g->told))
+        return wrong(run, "a shift between datums that is not PROJ's, or not told");
+    if (!g->told.to_source) return 0;
+    double x = g->gt[0] + g->gt[1] * g->columns * d->densify / 2,
+           y = g->gt[3] + g->gt[5] * g->rows * d->densify / 2,
+           off = property_told_offset(d, &g->told, g->srs, x, y);
+    return off <= g->told.accuracy_m
+               ? 0
+               : wrong(run, "shifted by %g m, told %g", off, g->told.accuracy_m);
 }
 
 static int look_up(const property_draw *d, property_run *run, ground *g)
@@ -264,8 +297,13 @@ static int look_up(const property_draw *d, property_run *run, ground *g)
     int rc = x && y && g->wanted && g->u && g->v ? 0 : -1;
     if (!rc) places_of(d, g, x, y);
     if (!rc) places_of(d, g, g->u, g->v);
-    if (!rc) rc = property_heights(d, g->srs, (int)count, x, y, g->wanted);
-    if (!rc) rc = find_sources(d, g);
+    /* a shift that was told is judged by itself: the surface is asked where the source lies */
+    OGRSpatialReferenceH srs = property_reference(d->place->srs);
+    if (!rc && g->told.to_source) rc = to_source(d, g, srs, x, y);
+    if (!rc)
+        rc = property_heights(d, g->told.to_source ? srs : g->srs, (int)count, x, y, g->wanted);
+    if (!rc) rc = find_sources(d, g, srs);
+    if (srs) OSRDestroySpatialReference(srs);
     free(x);
     free(y);
     return rc ? wrong(run, "the pack lies where PROJ shows nothing") : 0;
@@ -278,6 +316,7 @@ static void free_ground(ground *g)
     free(g->u);
     free(g->v);
     if (g->srs) OSRDestroySpatialReference(g->srs);
+    property_told_free(&g->told);
 }
 
 /* ---- the judgement ---- */
@@ -336,6 +375,22 @@ static int sort_out(const property_draw *d, property_run *run, const property_ra
     return 0;
 }
 
+/* Whole heights that are resampled are rounded to whole steps once more, and that is no chance:
+ * where the filter moves a height by less than half a step, it stays as it was. Takes out what
+ * rounding does to the samples that the filter makes of the file's, so that what is left is held to
+ * the bounds of all others. Returns whether it could. */
+static int take_rounding_out(const property_draw *d, const property_raster *r, ground *g,
+                             double hscale, double hoffset)
+{
+    if (!property_is_whole(d) || !g->is_sharp) return 0;
+    for (size_t n = 0; n < (size_t)g->columns * g->rows; n++) {
+        if (isnan(g->wanted[n])) continue;
+        double exact = property_raster_between(d, r, g->u[n], g->v[n]);
+        g->height[n] -= nearbyint((exact - hoffset) / hscale) * hscale + hoffset - exact;
+    }
+    return 1;
+}
+
 /* Samples that are kept are the file's, to a step; all of them are there. */
 static int judge_kept(const property_draw *d, property_run *run, const property_raster *r,
                       const ground *g, double hscale)
@@ -389,10 +444,16 @@ static double cubic_m(const property_draw *d, const ground *g, int is_kept)
     return is_kept ? 0 : d->swing_m * CUBIC * wave * wave * wave;
 }
 
-/* What places that are told by millimetres, or reckoned about, do to a height. */
+/* How many samples places are off that are told by millimetres, or reckoned about. */
+static double place_px(const property_draw *d, const ground *g)
+{
+    return APPROX_PX + ORIGIN_M / (fabs(g->gt[1]) * d->densify);
+}
+
+/* What that does to a height. */
 static double place_m(const property_draw *d, const ground *g)
 {
-    return property_slope(d) * g->ratio * (APPROX_PX + ORIGIN_M / (fabs(g->gt[1]) * d->densify));
+    return property_slope(d) * g->ratio * place_px(d, g);
 }
 
 /* Of one sample. A cubic filter widens what the file's steps round by up to FILTER_SUM. */
@@ -406,20 +467,22 @@ static double sample_m(const property_draw *d, const ground *g, double drift, do
            cubic_m(d, g, is_kept) + drift_m + top * FLOAT_PART + place_m(d, g);
 }
 
-/* Of the whole fit. Errors that were asked for, and those of resampled ground that is rounded to
- * the source's steps once more (by less than half a step nothing moves), go along with the ground's
- * waves: SIGMAS of chance are not all that they do, and drift lets waves out of step. */
+/* Of the whole fit. Errors that were asked for, and those of averaged ground that is rounded to the
+ * source's steps once more, go along with the ground's waves: SIGMAS of chance are not all that
+ * they do, and drift lets waves out of step. */
 static allowance allow(const property_draw *d, const ground *g, const property_fit *f, double drift,
                        double hscale, int is_kept)
 {
     double step = property_is_whole(d) ? d->scale * d->unit_m : 0, cubic = cubic_m(d, g, is_kept);
     double asked = d->max_error_m, root = sqrt(f->samples);
+    if (g->is_unrounded) hscale = 0;
     double rounded = (step * step * g->copies + hscale * hscale) / 12;
     allowance a = { .sigma_m = sqrt(rounded + asked * asked + cubic * cubic / 9) };
     double drift_m = drift * fmax(d->columns, d->rows) * property_slope(d);
     double along = asked + (is_kept ? 0 : hscale / 2);
     double chance = SIGMAS * a.sigma_m + along * ASKED_PART * root;
-    a.bias_m = asked + WU_M + cubic + drift_m / 10 + SIGMAS * a.sigma_m / root;
+    a.bias_m = asked + WU_M + cubic + drift_m / 10 + SIGMAS * a.sigma_m / root +
+               f->tilt_m * place_px(d, g);
     a.rms_m = a.sigma_m + WU_M + cubic + drift_m + place_m(d, g);
     a.shift = SHIFT_MAX + chance * f->shift_sd;
     a.scale = SCALE_MAX + drift + chance * f->scale_sd;
@@ -427,14 +490,26 @@ static allowance allow(const property_draw *d, const ground *g, const property_f
     return a;
 }
 
+/* Fits the ground, without what rounding did to it; the largest error is that of the samples as
+ * they came. */
+static int fit_ground(const property_draw *d, property_run *run, const property_raster *r,
+                      ground *g, double hscale, double hoffset, int is_kept)
+{
+    property_fit *f = &run->fit;
+    int rc = property_fit_grid(g->height, g->wanted, g->columns, g->rows, f);
+    double error_m = f->error_m;
+    g->is_unrounded = !rc && !is_kept && take_rounding_out(d, r, g, hscale, hoffset);
+    if (g->is_unrounded) rc = property_fit_grid(g->height, g->wanted, g->columns, g->rows, f);
+    f->error_m = error_m;
+    return !rc ? 0
+               : wrong(run, "too few samples to judge: %u of %u x %u", f->samples, g->columns,
+                       g->rows);
+}
+
 static int judge_fit(const property_draw *d, property_run *run, const ground *g, double hscale,
                      int is_kept)
 {
     property_fit *f = &run->fit;
-    run->allowed_m = sample_m(d, g, run->drift, hscale, is_kept);
-    if (property_fit_grid(g->height, g->wanted, g->columns, g->rows, f))
-        return wrong(run, "too few samples to judge: %u of %u x %u", f->samples, g->columns,
-                     g->rows);
     allowance a = allow(d, g, f, run->drift, hscale, is_kept);
     const struct {
         const char *name;
@@ -476,13 +551,16 @@ static void judge(const property_draw *d, property_run *run, const property_rast
     ground g = { 0 };
     double hscale = field(json, "hscale_m");
     int is_kept = field(json, "resampled") == 0;
-    if (judge_voids(d, run, r, json) || read_export(d, run, &g) || look_up(d, run, &g)) {
+    if (judge_voids(d, run, r, json) || read_export(d, run, &g) || judge_shift(d, run, json, &g) ||
+        look_up(d, run, &g)) {
         free_ground(&g);
         return;
     }
     run->allowed_m = d->max_error_m + hscale + WU_M; /* in the middle of voids */
     int rc = judge_extent(d, run, &g) ? -1 : sort_out(d, run, r, &g, is_kept);
     if (!rc && is_kept) rc = judge_kept(d, run, r, &g, hscale);
+    if (!rc) rc = fit_ground(d, run, r, &g, hscale, field(json, "hoffset_m"), is_kept);
+    run->allowed_m = sample_m(d, &g, run->drift, hscale, is_kept);
     if (!rc) judge_fit(d, run, &g, hscale, is_kept);
     free_ground(&g);
 }

@@ -181,3 +181,24 @@ void property_raster_free(property_raster *raster)
     free(raster->metres);
     free(raster->mark);
 }
+
+static void cubic_weights(double t, double weight[4])
+{
+    for (int i = 0; i < 4; i++) {
+        double x = fabs(t + 1 - i);
+        weight[i] = x < 1 ? (1.5 * x - 2.5) * x * x + 1 : ((-0.5 * x + 2.5) * x - 4) * x + 2;
+    }
+}
+
+double property_raster_between(const property_draw *d, const property_raster *r, double u, double v)
+{
+    double across[4], down[4], sum = 0;
+    int i0 = (int)floor(u) - 1, j0 = (int)floor(v) - 1;
+    if (i0 < 0 || j0 < 0 || i0 + 3 >= d->columns || j0 + 3 >= d->rows) return NAN;
+    cubic_weights(u - floor(u), across);
+    cubic_weights(v - floor(v), down);
+    for (int j = 0; j < 4; j++)
+        for (int i = 0; i < 4; i++)
+            sum += across[i] * down[j] * r->metres[(j0 + j) * d->columns + i0 + i];
+    return isnan(sum) ? NAN : fmin(fmax(sum, r->lowest_m), r->highest_m);
+}

@@ -33,6 +33,11 @@ double property_cell_m(const property_draw *d);
 int property_raster_make(property_draw *d, property_raster *raster);
 void property_raster_free(property_raster *raster);
 
+/* What a cubic filter (Keys 1981, a = -1/2) makes of the samples round (u, v), 0 in the middle of
+ * the first, kept to their range; NaN where one of them is void or beyond the rim. */
+double property_raster_between(const property_draw *d, const property_raster *raster, double u,
+                               double v);
+
 /* Writes the raster in the draw's format: `path` gets the name, in folder `folder`. 0 or -1. */
 int property_raster_write(const property_draw *d, const property_raster *raster, const char *folder,
                           char *path, size_t size);

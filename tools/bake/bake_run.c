@@ -195,6 +195,17 @@ static int make_tiles(bake *b)
 
 /* ---- what was made ---- */
 
+/* Ends the summary with the shift between datums: no name, 0 m where there is none; an accuracy
+ * that is not known is null. */
+static void print_shift(const bake_shift *shift)
+{
+    printf("\"datum_shift\": \"%s\", \"datum_shift_m\": ", shift->name);
+    if (shift->accuracy_m >= 0)
+        printf("%.9g}\n", shift->accuracy_m);
+    else
+        printf("null}\n");
+}
+
 static void report(const bake *b, uint64_t file_bytes)
 {
     const ff_terrain_info *info = &b->info;
@@ -220,12 +231,13 @@ static void report(const bake *b, uint64_t file_bytes)
         ", \"given\": %" PRIu64 ", \"outside\": %" PRIu64
         ", \"resampled\": %s, \"texture_levels\": %u, \"height_bytes\": %" PRIu64
         ", \"bits_per_sample\": %.4f, "
-        "\"texture_bytes\": %" PRIu64 ", \"file_bytes\": %" PRIu64 ", \"seconds\": %.3f}\n",
+        "\"texture_bytes\": %" PRIu64 ", \"file_bytes\": %" PRIu64 ", \"seconds\": %.3f, ",
         source.x, source.y, spacing_m, b->steps.step_m, (double)info->hoffset_wu / FF_WU_PER_METRE,
         info->max_error * b->steps.step_m, b->steps.min_m, b->steps.max_m, tiles.x, tiles.y,
         info->tile_log2, info->node_log2, info->epsg, b->ground.voids, b->ground.given,
         b->ground.outside, b->ground.resampled ? "true" : "false", info->texture_levels,
         height_bytes, bits, texture_bytes, file_bytes, seconds);
+    print_shift(&b->ground.shift);
 }
 
 ff_list bake_about_of(bake *b, const bake_ground *ground)

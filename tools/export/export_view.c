@@ -10,6 +10,21 @@
 #define TRANSFORM_ERROR_PX 0.0002
 #define WARP_MEMORY_BYTES  (64 << 20)
 
+/* Chooses how the ground gets from its datum to that of the target. 0 or -1 (said). */
+static int find_shift(const export_ground *ground, OGRSpatialReferenceH target, bake_shift *shift)
+{
+    bake_area degrees;
+    double gt[6];
+    GDALGetGeoTransform(ground->set, gt);
+    if (bake_shift_area(ground->srs, gt, ground->cells.width, ground->cells.height, &degrees))
+        return 0;
+    if (bake_shift_find(ground->unpack->path, ground->srs, target, &degrees,
+                        "write .tif, .png or .r16, which stay on its datum", shift))
+        return -1;
+    bake_shift_note(ground->unpack->path, shift, gt[1]);
+    return 0;
+}
+
 int export_view_open(const export_ground *ground, OGRSpatialReferenceH target, export_view *view)
 {
     *view = (export_view){ .ground = ground };
@@ -17,7 +32,8 @@ int export_view_open(const export_ground *ground, OGRSpatialReferenceH target, e
         return bake_fail("%s: no reference system, or none that is known here: it cannot be laid "
                          "on a map; .tif, .png and .r16 can be written",
                          ground->unpack->path);
-    view->transform = bake_warp_transform(ground->set, target);
+    if (find_shift(ground, target, &view->shift)) return -1;
+    view->transform = bake_warp_transform(ground->set, target, &view->shift);
     if (!view->transform) return -1;
     if (ground->mask.fd < 0) return 0;
     view->marks = bake_grid_dataset(&ground->mask, GDT_Byte, 1);

@@ -3,15 +3,18 @@
 #ifndef EXPORT_VIEW_H
 #define EXPORT_VIEW_H
 
+#include "../bake/raster/bake_shift.h"
 #include "export_ground.h"
 
 typedef struct export_view {
     const export_ground *ground;
+    bake_shift shift;   /* from the pack's datum to the window's */
     void *transform;    /* between cells of the ground and those of the window */
     GDALDatasetH marks; /* over the ground's mask, or NULL */
 } export_view;
 
-/* The ground must have a reference system. `target`'s axes: east, north. 0 or -1 (said). */
+/* The ground must have a reference system. `target`'s axes: east, north. A note tells of a shift
+ * between datums that may be off by more than half a sample. 0 or -1 (said). */
 int export_view_open(const export_ground *ground, OGRSpatialReferenceH target, export_view *view);
 void export_view_close(export_view *view);
 

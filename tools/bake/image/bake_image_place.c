@@ -75,7 +75,8 @@ static GDALDatasetH lay_over_source(const bake_ground *ground, GDALDatasetH set)
 
 /* Makes a view of the image warped onto the ground's plane and area, in about its own resolution.
  */
-static GDALDatasetH warp_onto_ground(const bake_ground *ground, GDALDatasetH set)
+static GDALDatasetH warp_onto_ground(const bake_ground *ground, GDALDatasetH set,
+                                     const bake_shift *shift)
 {
     const double *gt = ground->geotransform;
     double y0 = gt[3], y1 = gt[3] + gt[5] * ground->grid.height;
@@ -86,6 +87,7 @@ static GDALDatasetH warp_onto_ground(const bake_ground *ground, GDALDatasetH set
     list = CSLAddString(CSLAddString(list, "-wo"), "XSCALE=1"); /* else what is turned blurs */
     list = CSLAddString(CSLAddString(list, "-wo"), "YSCALE=1");
     list = add_reference(list, "-t_srs", ground->srs);
+    if (*shift->operation) list = CSLAddString(CSLAddString(list, "-ct"), shift->operation);
     list = add_numbers(list, "-te", area, 4);
     GDALWarpAppOptions *options = GDALWarpAppOptionsNew(list, NULL);
     GDALDatasetH warped = GDALWarp("", NULL, 1, &set, options, NULL);
@@ -110,9 +112,9 @@ static OGRSpatialReferenceH reference_for(const bake_ground *ground, GDALDataset
 }
 
 /* Whether any of the image comes to lie on the ground, told before a pixel is read; -1 (said). */
-static int meets_ground(const bake_ground *ground, GDALDatasetH set)
+static int meets_ground(const bake_ground *ground, GDALDatasetH set, const bake_shift *shift)
 {
-    void *transform = bake_warp_transform(set, ground->srs);
+    void *transform = bake_warp_transform(set, ground->srs, shift);
     double gt[6], extent[4];
     int columns, rows;
     if (!transform) return -1;
@@ -174,6 +176,21 @@ static int find_reference(const bake_ground *ground, const char *path, bake_pict
     return stack_view(picture, name_reference(picture->set, srs), path);
 }
 
+/* Chooses how the image gets from its datum to the ground's: over the ground's own area, so that an
+ * image on the datum that the heights came from goes their way. 0 or -1 (said). */
+static int find_shift(const bake_ground *ground, const char *path, GDALDatasetH set,
+                      bake_shift *shift)
+{
+    bake_area degrees;
+    *shift = (bake_shift){ 0 };
+    if (!ground->srs || !ground->source_srs ||
+        bake_shift_area(ground->source_srs, ground->source_geotransform, ground->source_width,
+                        ground->source_height, &degrees))
+        return 0;
+    return bake_shift_find(path, GDALGetSpatialRef(set), ground->srs, &degrees,
+                           "project it first with gdalwarp", shift);
+}
+
 static int lay_picture(const bake_ground *ground, const char *path, bake_picture *picture)
 {
     double gt[6];
@@ -186,10 +203,12 @@ static int lay_picture(const bake_ground *ground, const char *path, bake_picture
     }
     if (!own_place && stack_view(picture, lay_over_source(ground, picture->set), path)) return -1;
     if (own_place && find_reference(ground, path, picture)) return -1;
-    int meets = meets_ground(ground, picture->set);
+    bake_shift shift;
+    if (find_shift(ground, path, picture->set, &shift)) return -1;
+    int meets = meets_ground(ground, picture->set, &shift);
     if (meets < 0) return -1;
     if (!meets) return bake_fail("%s: the image shows nothing of this ground", path);
-    if (stack_view(picture, warp_onto_ground(ground, picture->set), path)) return -1;
+    if (stack_view(picture, warp_onto_ground(ground, picture->set, &shift), path)) return -1;
     double columns = GDALGetRasterXSize(picture->set), rows = GDALGetRasterYSize(picture->set);
     if (columns * rows > BAKE_SAMPLES_MAX)
         return bake_fail(
@@ -197,6 +216,7 @@ static int lay_picture(const bake_ground *ground, const char *path, bake_picture
             "make it coarser (gdalwarp -tr), or the heights fewer (gdal_translate -projwin)",
             path, columns, rows, BAKE_SAMPLES_MAX);
     GDALGetGeoTransform(picture->set, gt);
+    if (own_place) bake_shift_note(path, &shift, gt[1]);
     place(ground, picture, gt);
     return 0;
 }

@@ -66,7 +66,7 @@ static int plan_extent(const bake_ground *ground, const bake_warp *warp, bake_ar
     double suggested[6], extent[4];
     int columns, rows;
     GDALDatasetH source = bake_warp_source(warp, &ground->grid);
-    void *transform = source ? bake_warp_transform(source, warp->target) : NULL;
+    void *transform = source ? bake_warp_transform(source, warp->target, &warp->shift) : NULL;
     bake_warp_cell cell;
     int rc = transform ? 0 : -1, is_turned = transform && !is_upright(gt) &&
                                              !bake_warp_measure(transform, 0, ground->grid.width,
@@ -135,6 +135,7 @@ static int warp_ground(const bake_plan *plan, bake_ground *ground, bake_grid *ma
     memcpy(ground->geotransform, plan->warp.to, sizeof plan->warp.to);
     ground->outside = count.outside;
     ground->resampled = 1;
+    ground->shift = plan->warp.shift;
     ground->is_geographic = 0;
     if (target) {
         if (ground->srs) OSRDestroySpatialReference(ground->srs);
@@ -217,6 +218,17 @@ static int plan_kept(const bake_ground *ground, double spacing_m, bake_plan *pla
     return 0;
 }
 
+/* Chooses how the ground gets from its datum to that of the target. 0 or -1 (said). */
+static int plan_shift(const bake_options *o, const bake_ground *ground, bake_warp *warp)
+{
+    bake_area degrees;
+    if (!warp->target || bake_shift_area(ground->srs, ground->geotransform, ground->grid.width,
+                                         ground->grid.height, &degrees))
+        return 0;
+    return bake_shift_find(o->heights_path, ground->srs, warp->target, &degrees, NULL,
+                           &warp->shift);
+}
+
 /* Plans a grid that is resampled into plan->warp.target (NULL: the same plane). */
 static int plan_resampled(const bake_options *o, const bake_ground *ground, bake_plan *plan)
 {
@@ -224,8 +236,10 @@ static int plan_resampled(const bake_options *o, const bake_ground *ground, bake
     plan->warp.srs = ground->srs;
     plan->warp.jobs = (int)o->jobs;
     memcpy(plan->warp.from, ground->geotransform, sizeof plan->warp.from);
-    if (!plan_warp(o, ground, &plan->warp, &plan->spacing_m)) {
+    if (!plan_shift(o, ground, &plan->warp) &&
+        !plan_warp(o, ground, &plan->warp, &plan->spacing_m)) {
         if (plan->warp.target) bake_target_note(ground, plan->warp.target);
+        bake_shift_note(o->heights_path, &plan->warp.shift, plan->spacing_m);
         return 0;
     }
     if (plan->warp.target) OSRDestroySpatialReference(plan->warp.target);

@@ -7,6 +7,7 @@
 #include "bake_grid.h"
 #include "../bake_options.h"
 #include "bake_about.h"
+#include "bake_shift.h"
 
 typedef struct bake_ground {
     bake_grid grid; /* float32 metres; NaN: void */
@@ -25,6 +26,7 @@ typedef struct bake_ground {
     uint64_t voids, outside;
     uint64_t given; /* samples void in the source that were given a height */
     int resampled;
+    bake_shift shift; /* from the source's datum to that of `srs` */
     bake_about about; /* whose it is */
 } bake_ground;
 

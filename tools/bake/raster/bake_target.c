@@ -50,12 +50,25 @@ static int runs_west(OGRSpatialReferenceH srs)
     return OSRIsProjected(srs) && (axis[0] == OAO_West || axis[1] == OAO_West);
 }
 
-static int set_epsg(OGRSpatialReferenceH target, int epsg)
+/* Whether the code is one of a plane in metres; `target` becomes that. */
+static int is_plane(OGRSpatialReferenceH target, int epsg)
 {
     CPLErrorReset();
-    if (OSRImportFromEPSG(target, epsg) == OGRERR_NONE && OSRIsProjected(target) &&
-        fabs(OSRGetLinearUnits(target, NULL) - 1) < 1e-9 && !runs_west(target))
-        return 0;
+    return OSRImportFromEPSG(target, epsg) == OGRERR_NONE && OSRIsProjected(target) &&
+           fabs(OSRGetLinearUnits(target, NULL) - 1) < 1e-9 && !runs_west(target);
+}
+
+int bake_target_suits(int epsg)
+{
+    OGRSpatialReferenceH target = OSRNewSpatialReference(NULL);
+    int suits = is_plane(target, epsg);
+    OSRDestroySpatialReference(target);
+    return suits;
+}
+
+static int set_epsg(OGRSpatialReferenceH target, int epsg)
+{
+    if (is_plane(target, epsg)) return 0;
     return bake_fail("EPSG:%d is no projection in metres whose axes point east and north", epsg);
 }
 

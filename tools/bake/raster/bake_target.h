@@ -10,6 +10,9 @@
  * *target (owned) is NULL when the ground stays in its plane. 0 or -1 (said). */
 int bake_target_choose(const bake_options *options, const bake_ground *ground,
                        OGRSpatialReferenceH *target);
+/* Whether ground can be projected to the system of an EPSG code: a plane in metres whose axes point
+ * east and north. */
+int bake_target_suits(int epsg);
 /* Says so when the ground is not true to scale in `target` either. */
 void bake_target_note(const bake_ground *ground, OGRSpatialReferenceH target);
 

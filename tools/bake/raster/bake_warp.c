@@ -13,7 +13,7 @@
 #define TRANSFORM_ERROR_PX 0.0001
 #define CELLS_SHARP        1.99 /* of the source in a sample: up to here a cubic sees them all */
 
-void *bake_warp_transform(GDALDatasetH source, OGRSpatialReferenceH target)
+void *bake_warp_transform(GDALDatasetH source, OGRSpatialReferenceH target, const bake_shift *shift)
 {
     char **settings = NULL;
     char *wkt = NULL;
@@ -21,6 +21,8 @@ void *bake_warp_transform(GDALDatasetH source, OGRSpatialReferenceH target)
         OSRExportToWkt(target, &wkt);
         settings = CSLSetNameValue(settings, "DST_SRS", wkt);
     }
+    if (*shift->operation)
+        settings = CSLSetNameValue(settings, "COORDINATE_OPERATION", shift->operation);
     CPLErrorReset();
     void *transform = GDALCreateGenImgProjTransformer2(source, NULL, settings);
     CSLDestroy(settings);
@@ -145,7 +147,7 @@ static int copy_warped(GDALDatasetH warped, value_range range, bake_grid *grid,
 static int warp_from(const bake_warp *w, GDALDatasetH source, value_range range, bake_grid *grid,
                      bake_warp_count *out)
 {
-    void *transform = bake_warp_transform(source, w->target);
+    void *transform = bake_warp_transform(source, w->target, &w->shift);
     GDALDatasetH warped = transform ? make_warped(w, source, transform) : NULL;
     if (!warped) return -1;
     int rc = bake_grid_open(grid, w->width, w->height, sizeof(float));
@@ -158,7 +160,7 @@ int bake_warp_back(const bake_warp *w, const bake_grid *grid, int count, double 
                    double *row)
 {
     GDALDatasetH source = bake_warp_source(w, grid);
-    void *transform = source ? bake_warp_transform(source, w->target) : NULL;
+    void *transform = source ? bake_warp_transform(source, w->target, &w->shift) : NULL;
     double *z = calloc((size_t)count, sizeof *z);
     int *ok = calloc((size_t)count, sizeof *ok);
     int rc = !transform ? -1 : z && ok ? 0 : bake_fail("out of memory");

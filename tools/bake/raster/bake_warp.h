@@ -4,10 +4,12 @@
 
 #include "bake_gdal.h"
 #include "bake_grid.h"
+#include "bake_shift.h"
 
 /* Where samples come from and where they go. */
 typedef struct bake_warp {
     OGRSpatialReferenceH srs, target; /* NULL: the same plane, or none */
+    bake_shift shift;                 /* from the datum of `srs` to that of `target` */
     double from[6], to[6];            /* geotransforms, GDAL's */
     uint32_t width, height;           /* of the new grid */
     int jobs;
@@ -27,7 +29,8 @@ typedef struct bake_warp_cell {
 
 /* What lies where after warping: the transformer that GDAL's functions take, from `source`, a data
  * set that has place and reference system. NULL after saying why. */
-void *bake_warp_transform(GDALDatasetH source, OGRSpatialReferenceH target);
+void *bake_warp_transform(GDALDatasetH source, OGRSpatialReferenceH target,
+                          const bake_shift *shift);
 /* The image of the cell in the middle of a grid: of the source, or, `to_source`, of the new grid in
  * cells of the source. 0, or -1: it has none. */
 int bake_warp_measure(void *transform, int to_source, uint32_t width, uint32_t height,
