@@ -140,7 +140,7 @@ static const sys_program program = {
         "encoded heights (PMTiles, MBTiles, folders), or raw 16 bit. Degrees, and planes far from "
         "true to scale, are projected to the local UTM zone; voids are filled and counted.",
     .more = "Memory: about 130 MiB for GDAL and its caches (more for inputs packed in large "
-            "blocks), plus 9 bytes x 4^N a job (9 MiB at N = 10), whatever the raster's size. "
+            "blocks), plus 9 MiB a job, whatever the raster's size and the tiles'. "
             "Disk while baking: about 12 bytes a sample beside OUT.ffp, or in FARFIELD_TMP or "
             "TMPDIR when set.",
     .option = row,

@@ -62,25 +62,32 @@ static int make_samples(const bake *b, const bake_plan *plan, const bake_window 
     return rc ? rc : bake_densify(&ground->grid, ground->geotransform, b->options->densify);
 }
 
+static int count_records(void *context, uint32_t section, const bake_blob *records,
+                         const bake_blob *above)
+{
+    bake_window_count *count = context;
+    (void)above;
+    for (size_t i = 0; i < records->record_count; i++)
+        count->records[section] += records->length[i] > 0;
+    count->bytes[section] += records->byte_count;
+    return 0;
+}
+
 /* Bakes heights in tiles, and counts their records. */
 static int encode(const ff_terrain_info *info, const bake_grid *heights, bake_window_count *count)
 {
-    bake_tile tile;
     bake_grid none = BAKE_GRID_CLOSED;
-    if (bake_tile_open(&tile, info)) return -1;
-    int rc = 0;
+    bake_image no_image = { .levels = 0 };
+    bake_tiles tiles = { .info = info,
+                         .heights = heights,
+                         .filled = &none,
+                         .image = &no_image,
+                         .block_log2 = BAKE_BLOCK_LOG2,
+                         .jobs = 1,
+                         .context = count,
+                         .take = count_records };
     count->levels = ff_terrain_levels(info);
-    for (uint32_t number = 0; !rc && number < ff_shape_tiles(info); number++) {
-        rc = bake_tile_load(&tile, heights, &none, number) || bake_tile_encode(&tile) ? -1 : 0;
-        for (uint32_t l = 0; !rc && l < count->levels; l++) {
-            const bake_blob *level = &tile.level[l];
-            for (size_t i = 0; i < level->record_count; i++)
-                count->records[l] += level->length[i] > 0;
-            count->bytes[l] += level->byte_count;
-        }
-    }
-    bake_tile_close(&tile);
-    return rc;
+    return bake_tiles_make(&tiles);
 }
 
 int bake_window_make(const bake *b, const bake_plan *plan, const bake_window *window,

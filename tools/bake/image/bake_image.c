@@ -292,17 +292,18 @@ static int read_texture(const bake_grid *lattice, uint32_t side, uint32_t column
 }
 
 int bake_texture_encode(const bake_image *image, const ff_terrain_info *info, int quality,
-                        uint32_t tile, uint32_t level, bake_blob *blob)
+                        ff_key node, uint32_t below, bake_blob *blob)
 {
-    uint32_t side = 1u << info->texture_log2;
-    ff_sheet at = ff_shape_sheet(info, tile);
+    uint32_t side = 1u << info->texture_log2, level = ff_key_level(node) + below;
+    ff_sheet tile = ff_shape_sheet(info, ff_key_tile(node));
     size_t capacity = (size_t)4 * side * side + 8192;
     uint8_t *rgb = malloc((size_t)side * side * RGB), *jpeg = malloc(capacity);
     int rc = rgb && jpeg ? 0 : bake_fail("out of memory");
-    for (uint32_t code = 0; !rc && code >> (2 * level) == 0; code++) {
-        uint32_t column = ((at.x << level) + ff_morton_x(code)) * (side - 1),
-                 row = ((at.y << level) + ff_morton_y(code)) * (side - 1);
-        if (!ff_shape_has_ground(info, ff_key_make(tile, level, code))) {
+    for (uint32_t i = 0; !rc && i >> (2 * below) == 0; i++) {
+        uint32_t code = ff_key_code(node) << 2 * below | i;
+        uint32_t column = ((tile.x << level) + ff_morton_x(code)) * (side - 1),
+                 row = ((tile.y << level) + ff_morton_y(code)) * (side - 1);
+        if (!ff_shape_has_ground(info, ff_key_make(ff_key_tile(node), level, code))) {
             rc = bake_blob_add(blob, NULL, 0);
             continue;
         }
