@@ -162,7 +162,8 @@ int bake_options_parse(bake_options *o, int argc, char **argv)
     int rc = sys_options_parse(&program, o, argc, argv);
     if (rc) return rc;
     if (!o->heights_path) return bake_fail("HEIGHTS is missing; try --help");
-    if (o->tile_log2 && (o->tile_log2 < o->node_log2 || o->tile_log2 > o->node_log2 + 15))
+    if (o->tile_log2 &&
+        (o->tile_log2 < o->node_log2 || o->tile_log2 > o->node_log2 + FF_KEY_LEVEL_MAX))
         return bake_fail("--tile-log2 %u: not from --node-log2 %u up", o->tile_log2, o->node_log2);
     if (o->no_project && o->target_epsg)
         return bake_fail("--no-project and --t-srs exclude each other");
