@@ -176,15 +176,19 @@ static void densify_keeps_samples_and_flat_water(void **state)
 
 /* ---- tiles ---- */
 
-static void tile_size_suits_the_raster(void **state)
+static void one_tile_holds_the_raster(void **state)
 {
     (void)state;
-    assert_int_equal(bake_choose_tile_log2(3, 5, 5), 3);
-    assert_int_equal(bake_choose_tile_log2(3, 2, 2), 3);
-    assert_int_equal(bake_choose_tile_log2(3, 1025, 1025), 10);
-    assert_int_equal(bake_choose_tile_log2(3, 1026, 1026), 7); /* 8 would add 55 % of padding */
-    assert_int_equal(bake_choose_tile_log2(3, 13000, 5000), 10);
-    assert_true(bake_choose_tile_log2(5, 17, 17) == 5);
+    assert_int_equal(bake_choose_tile_log2(3, 5, 5, 256), 3);
+    assert_int_equal(bake_choose_tile_log2(3, 2, 2, 256), 3);
+    assert_int_equal(bake_choose_tile_log2(3, 1025, 1025, 256), 10);
+    assert_int_equal(bake_choose_tile_log2(3, 1026, 2, 256), 11);
+    assert_int_equal(bake_choose_tile_log2(3, 5000, 13000, 256), 14);
+    assert_int_equal(bake_choose_tile_log2(5, 17, 17, 256), 5);
+    assert_int_equal(bake_choose_tile_log2(1, 100000, 3, 256), 16); /* the last level of keys */
+    assert_int_equal(bake_choose_tile_log2(3, 50000, 9, 90 * 256), 16);
+    /* 2^17 samples of 90 m end beyond 8388 km, and 3 * 2^15, too: 5 * 2^14 do not */
+    assert_int_equal(bake_choose_tile_log2(3, 70000, 9, 90 * 256), 14);
 }
 
 static ff_terrain_info small_info(uint16_t max_error)
@@ -529,7 +533,7 @@ int main(void)
         cmocka_unit_test(fill_keeps_what_is_known),
         cmocka_unit_test(fill_from_a_single_sample),
         cmocka_unit_test(densify_keeps_samples_and_flat_water),
-        cmocka_unit_test(tile_size_suits_the_raster),
+        cmocka_unit_test(one_tile_holds_the_raster),
         cmocka_unit_test(tile_repeats_the_rim),
         cmocka_unit_test(marks_follow_the_heights),
         cmocka_unit_test(records_tell_filled_nodes),

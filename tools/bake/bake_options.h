@@ -75,7 +75,7 @@ extern const sys_option_type bake_raw_option, bake_nodata_option, bake_box_optio
            "no decoded height is further from its source") \
     OPTION(sys_whole, node_log2, "node-log2", "K", "3", BAKE_NODES, "nodes of (2^K+1)^2 heights") \
     OPTION(sys_whole, tile_log2, "tile-log2", "N", NULL, BAKE_TILES, \
-           "tiles of (2^N+1)^2 heights; default: at most 10, little padding") \
+           "tiles of (2^N+1)^2 heights; default: one tile for all") \
     OPTION(sys_whole, texture_log2, "texture-log2", "T", "6", SYS_WHOLE(4, 8, ""), \
            "textures of (2^T)^2 texels") \
     OPTION(sys_whole, texture_levels, "texture-levels", "L", NULL, BAKE_LEVELS, \

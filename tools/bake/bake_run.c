@@ -19,9 +19,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
-#define TILE_LOG2_DEFAULT 10
-#define PADDING_MAX       1.5 /* padded samples to samples, for the default tile size */
-#define GDAL_CACHE_BYTES  (48 << 20)
+#define GDAL_CACHE_BYTES (48 << 20)
 
 /* ---- ground ---- */
 
@@ -98,14 +96,20 @@ static int make_ground(bake *b)
 
 /* ---- the terrain's description ---- */
 
-uint32_t bake_choose_tile_log2(uint32_t node_log2, uint32_t width, uint32_t height)
+/* 1 when tiles of 2^n along the longer side end where places still fit int32_t. */
+static int tiles_fit(uint32_t n, uint32_t samples, uint32_t spacing_wu)
 {
-    for (uint32_t n = TILE_LOG2_DEFAULT; n > node_log2; n--) {
-        double tile = (double)(1u << n), columns = ceil((width - 1) / tile),
-               rows = ceil((height - 1) / tile);
-        if (columns * rows * tile * tile <= PADDING_MAX * (width - 1.0) * (height - 1.0)) return n;
-    }
-    return node_log2;
+    uint64_t tiles = ((samples - 2) >> n) + 1;
+    return (tiles << n) * spacing_wu <= INT32_MAX;
+}
+
+uint32_t bake_choose_tile_log2(uint32_t node_log2, uint32_t width, uint32_t height,
+                               uint32_t spacing_wu)
+{
+    uint32_t samples = width > height ? width : height, n = node_log2;
+    while (n < node_log2 + FF_KEY_LEVEL_MAX && (samples - 2) >> n) n++;
+    while (n > node_log2 && !tiles_fit(n, samples, spacing_wu)) n--;
+    return n;
 }
 
 static void describe_place(const bake_ground *ground, ff_terrain_info *info)
@@ -127,7 +131,8 @@ int bake_describe(bake *b)
     uint32_t width = b->heights.width, height = b->heights.height;
     info->node_log2 = (uint8_t)o->node_log2;
     info->tile_log2 = (uint8_t)(o->tile_log2 ? o->tile_log2
-                                             : bake_choose_tile_log2(o->node_log2, width, height));
+                                             : bake_choose_tile_log2(o->node_log2, width, height,
+                                                                     info->spacing_wu));
     info->codec = (uint8_t)o->codec;
     if (o->densify > 1) info->flags |= FF_TERRAIN_DENSIFIED;
     ff_shape_cover(info, width, height);

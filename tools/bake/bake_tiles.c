@@ -200,14 +200,14 @@ static void close_crew(crew *c, uint32_t workers)
     free(c->worker);
 }
 
-/* Blocks of all tiles, those of padding too, and how many workers have work. */
+/* Blocks of all tiles, those of padding too. */
 static uint64_t count_blocks(const ff_terrain_info *info, uint32_t block_log2)
 {
     uint32_t bottom = info->tile_log2 > block_log2 ? info->tile_log2 - block_log2 : 0;
     return (uint64_t)ff_shape_tiles(info) << 2 * bottom;
 }
 
-static uint32_t workers_for(const ff_terrain_info *info, uint32_t block_log2, uint32_t jobs)
+uint32_t bake_tiles_workers(const ff_terrain_info *info, uint32_t block_log2, uint32_t jobs)
 {
     uint64_t blocks = count_blocks(info, block_log2);
     return jobs < blocks ? jobs : (uint32_t)blocks;
@@ -215,7 +215,7 @@ static uint32_t workers_for(const ff_terrain_info *info, uint32_t block_log2, ui
 
 int bake_tiles_make(const bake_tiles *tiles)
 {
-    uint32_t workers = workers_for(tiles->info, tiles->block_log2, tiles->jobs);
+    uint32_t workers = bake_tiles_workers(tiles->info, tiles->block_log2, tiles->jobs);
     uint64_t blocks = count_blocks(tiles->info, tiles->block_log2);
     crew c = { .levels = 0 };
     if (blocks > UINT32_MAX) return bake_fail("more than 2^32 blocks of ground");
@@ -231,5 +231,5 @@ double bake_tiles_bytes(const ff_terrain_info *info, uint32_t block_log2, uint32
     uint32_t log2 = info->tile_log2 < block_log2 ? info->tile_log2 : block_log2;
     double block = (double)(1u << log2),
            top = (double)(1u << (info->tile_log2 - log2 + info->node_log2));
-    return (9 * block * block + 4 * top * top) * workers_for(info, block_log2, jobs);
+    return (9 * block * block + 4 * top * top) * bake_tiles_workers(info, block_log2, jobs);
 }

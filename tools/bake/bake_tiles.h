@@ -22,7 +22,9 @@ typedef struct bake_tiles {
 
 /* 0 or -1 (said). */
 int bake_tiles_make(const bake_tiles *tiles);
-/* Bytes of memory that it takes, textures and records not counted. */
+/* How many of so many jobs have work, and bytes of memory that they take: textures, and the records
+ * of the tile's top, not counted. */
+uint32_t bake_tiles_workers(const ff_terrain_info *info, uint32_t block_log2, uint32_t jobs);
 double bake_tiles_bytes(const ff_terrain_info *info, uint32_t block_log2, uint32_t jobs);
 
 #endif
