@@ -13,11 +13,6 @@ static const ff_terrain_info *info_of(const export_ground *ground)
     return &ground->unpack->pack.header.info;
 }
 
-static uint32_t tile_points(const export_ground *ground)
-{
-    return bake_unpack_side(info_of(ground), ground->level) - 1;
-}
-
 /* ---- geometric errors ---- */
 
 typedef struct error_search {
@@ -28,24 +23,23 @@ typedef struct error_search {
 /* Of the nodes of the level, those below `key`. */
 static int search_below(error_search *search, ff_key key, const bake_told *node)
 {
-    const bake_unpack *unpack = search->ground->unpack;
     bake_told told[4];
+    if (!export_meets_samples(search->ground, key)) return 0;
     if (ff_key_level(key) == search->ground->level) {
         uint32_t steps = ff_geometric_error_decode(node->error_code);
         if (steps > search->steps) search->steps = steps;
         return 0;
     }
-    if (!ff_shape_has_ground(&unpack->pack.header.info, key)) return 0;
-    if (bake_unpack_told_below(unpack, key, node, told)) return -1;
+    if (bake_unpack_told_below(search->ground->unpack, key, node, told)) return -1;
     for (uint32_t q = 0; q < 4; q++)
         if (search_below(search, ff_key_child(key, q), &told[q])) return -1;
     return 0;
 }
 
-static int search_tile(void *context, uint32_t tile)
+static int search_tile(error_search *search, uint32_t tile)
 {
-    error_search *search = context;
     bake_told root;
+    if (!export_meets_samples(search->ground, ff_key_make(tile, 0, 0))) return 0;
     if (bake_unpack_told_root(search->ground->unpack, tile, &root)) return -1;
     return search_below(search, ff_key_make(tile, 0, 0), &root);
 }
@@ -55,14 +49,17 @@ int export_told_error(const export_ground *ground, double *error_m)
     error_search search = { ground, info_of(ground)->max_error };
     /* there is nothing between the finest samples */
     int finest = ground->level + 1 == ff_terrain_levels(info_of(ground));
-    int rc = finest ? 0 : export_each_tile(ground, tile_points(ground), search_tile, &search);
+    int rc = 0;
+    for (uint32_t tile = 0; !rc && !finest && tile < ff_shape_tiles(info_of(ground)); tile++)
+        rc = search_tile(&search, tile);
     *error_m = search.steps * ground->scale;
     return rc;
 }
 
 /* ---- filled ground ---- */
 
-/* Nodes of the finest level, a byte each, row 0 south: 1 where some of the ground was filled. */
+/* Nodes of the finest level that have ground, a byte each, row 0 south: 1 where some of it was
+ * filled. */
 typedef struct filled_nodes {
     const export_ground *ground;
     bake_grid nodes;
@@ -83,19 +80,19 @@ static int mark_node(filled_nodes *filled, ff_key key)
 static int mark_below(filled_nodes *filled, ff_key key, const bake_told *node)
 {
     bake_told told[4];
+    if (!export_meets_samples(filled->ground, key)) return 0;
     if (ff_key_level(key) + 1 == ff_terrain_levels(info_of(filled->ground)))
         return mark_node(filled, key);
-    if (!ff_shape_has_ground(info_of(filled->ground), key)) return 0;
     if (bake_unpack_told_below(filled->ground->unpack, key, node, told)) return -1;
     for (uint32_t q = 0; q < 4; q++)
         if (told[q].has_filled && mark_below(filled, ff_key_child(key, q), &told[q])) return -1;
     return 0;
 }
 
-static int mark_tile(void *context, uint32_t tile)
+static int mark_tile(filled_nodes *filled, uint32_t tile)
 {
-    filled_nodes *filled = context;
     bake_told root;
+    if (!export_meets_samples(filled->ground, ff_key_make(tile, 0, 0))) return 0;
     if (bake_unpack_told_root(filled->ground->unpack, tile, &root)) return -1;
     return root.has_filled ? mark_below(filled, ff_key_make(tile, 0, 0), &root) : 0;
 }
@@ -148,14 +145,16 @@ static int spread(const filled_nodes *filled, bake_grid *mask)
 int export_told_filled(const export_ground *ground, bake_grid *mask)
 {
     const ff_terrain_info *info = info_of(ground);
-    uint32_t finest = ff_terrain_levels(info) - 1;
-    ff_sheet tiles = ff_shape_sheet_tiles(info);
+    ff_sheet samples = ff_shape_sheet_samples(info);
     filled_nodes filled = { .ground = ground };
-    if (bake_grid_open(&filled.nodes, tiles.x << finest, tiles.y << finest, 1)) return -1;
+    if (bake_grid_open(&filled.nodes, ((samples.x - 2) >> info->node_log2) + 1,
+                       ((samples.y - 2) >> info->node_log2) + 1, 1))
+        return -1;
     int rc = 0;
     if (ftruncate(filled.nodes.fd, (off_t)filled.nodes.width * filled.nodes.height))
         rc = bake_fail("cannot make a temporary file: %s", strerror(errno));
-    if (!rc) rc = export_each_tile(ground, tile_points(ground), mark_tile, &filled);
+    for (uint32_t tile = 0; !rc && tile < ff_shape_tiles(info); tile++)
+        rc = mark_tile(&filled, tile);
     if (!rc && filled.found) rc = spread(&filled, mask);
     bake_grid_close(&filled.nodes);
     return rc;

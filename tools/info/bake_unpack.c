@@ -39,18 +39,13 @@ void bake_unpack_close(bake_unpack *unpack)
     unpack->decoder_memory = unpack->decoder = NULL;
 }
 
-uint32_t bake_unpack_side(const ff_terrain_info *info, uint32_t level)
-{
-    return (1u << (info->node_log2 + level)) + 1;
-}
-
 static int fail_at(const bake_unpack *unpack, const char *what, ff_key key, int rc)
 {
     return bake_fail("%s: %s of tile %u, level %u, code %u: %s", unpack->path, what,
                      ff_key_tile(key), ff_key_level(key), ff_key_code(key), ff_error_text(rc));
 }
 
-/* Spreads a node or refined grid of `side` samples over a tile's grid; gather takes a node from
+/* Spreads a node or refined grid of `side` samples over a larger grid; gather takes a node from
  * it. */
 static void scatter(const uint16_t *in, uint32_t side, size_t pitch, size_t stride, uint16_t *out)
 {
@@ -77,18 +72,14 @@ static int decode_residuals(const bake_unpack *unpack, enum ff_section_kind kind
 }
 
 /* *leaf: 1 when nothing finer is stored. */
-static int decode_root(const bake_unpack *unpack, uint32_t tile, size_t pitch, size_t stride,
-                       uint16_t *heights, unsigned *leaf)
+static int decode_root(const bake_unpack *unpack, ff_key key, uint16_t *node, unsigned *leaf)
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
     int32_t value[FF_REFINED_HEIGHTS_MAX];
-    uint16_t node[FF_NODE_HEIGHTS_MAX];
-    ff_key key = ff_key_make(tile, 0, 0);
     ff_residuals residuals = { .cells = ff_shape_cells(info, key, 0), .value = value };
     int rc = decode_residuals(unpack, FF_SECTION_ROOT, key, &residuals);
     if (rc >= 0) rc = ff_reconstruct_root(info, &residuals, node);
     if (rc < 0) return fail_at(unpack, "the root", key, rc);
-    scatter(node, ff_node_side(info), pitch, stride, heights);
     *leaf = residuals.leaf;
     return 0;
 }
@@ -133,14 +124,65 @@ static int decode_below(const bake_unpack *unpack, ff_key key, unsigned leaf, si
     return 0;
 }
 
-int bake_unpack_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level, uint16_t *heights)
+/* ---- blocks ---- */
+
+#define BLOCK_LEVELS 7 /* below a block's node */
+
+uint32_t bake_unpack_block_level(uint32_t level)
+{
+    return level > BLOCK_LEVELS ? level - BLOCK_LEVELS : 0;
+}
+
+typedef struct walker {
+    const bake_unpack *unpack;
+    const bake_unpack_walk *walk;
+    uint32_t level; /* of the blocks' nodes */
+    uint32_t stride, side;
+    uint16_t *heights; /* of a block */
+} walker;
+
+static int take_block(const walker *w, ff_key key, unsigned leaf, const uint16_t *node)
+{
+    scatter(node, ff_node_side(&w->unpack->pack.header.info), w->side, w->stride, w->heights);
+    if (decode_below(w->unpack, key, leaf, w->side, w->stride, w->heights)) return -1;
+    return w->walk->take(w->walk->context, key, w->side, w->heights);
+}
+
+static int walk_below(const walker *w, ff_key key, unsigned leaf, const uint16_t *node)
+{
+    const ff_terrain_info *info = &w->unpack->pack.header.info;
+    uint16_t refined[FF_REFINED_HEIGHTS_MAX], child[FF_NODE_HEIGHTS_MAX];
+    uint32_t side = ff_refined_side(info);
+    if (!ff_shape_has_ground(info, key) || !w->walk->wants(w->walk->context, key)) return 0;
+    if (ff_key_level(key) == w->level) return take_block(w, key, leaf, node);
+    scatter(node, ff_node_side(info), side, 2, refined);
+    if (decode_refinement(w->unpack, key, side, 2, refined, &leaf)) return -1;
+    for (uint32_t q = 0; q < 4; q++) {
+        ff_refined_child(info, refined, q, child);
+        if (walk_below(w, ff_key_child(key, q), leaf >> q & 1u, child)) return -1;
+    }
+    return 0;
+}
+
+int bake_unpack_heights(const bake_unpack *unpack, uint32_t level, const bake_unpack_walk *walk)
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
-    size_t pitch = bake_unpack_side(info, level);
-    unsigned leaf;
-    if (decode_root(unpack, tile, pitch, (size_t)1 << level, heights, &leaf)) return -1;
-    return decode_below(unpack, ff_key_make(tile, 0, 0), leaf, pitch, (size_t)1 << level, heights);
+    uint32_t top = bake_unpack_block_level(level), stride = 1u << (level - top),
+             side = (stride << info->node_log2) + 1;
+    walker w = { unpack, walk, top, stride, side, malloc((size_t)side * side * sizeof(uint16_t)) };
+    int rc = w.heights ? 0 : bake_fail("out of memory");
+    for (uint32_t tile = 0; !rc && tile < ff_shape_tiles(info); tile++) {
+        ff_key key = ff_key_make(tile, 0, 0);
+        uint16_t root[FF_NODE_HEIGHTS_MAX];
+        unsigned leaf = 0;
+        if (!walk->wants(walk->context, key)) continue;
+        rc = decode_root(unpack, key, root, &leaf) ? -1 : walk_below(&w, key, leaf, root);
+    }
+    free(w.heights);
+    return rc;
 }
+
+/* ---- what is told ---- */
 
 static bake_told told_of(const ff_residuals *residuals, unsigned q)
 {

@@ -24,10 +24,19 @@ typedef struct bake_told {
 int bake_unpack_open(bake_unpack *unpack, const char *path);
 void bake_unpack_close(bake_unpack *unpack);
 
-/* Heights along a tile's side at a level: 2^(k+level) + 1. */
-uint32_t bake_unpack_side(const ff_terrain_info *info, uint32_t level);
-/* Decodes one tile down to `level` into `heights` (side^2, south to north). 0 or -1 (said). */
-int bake_unpack_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level, uint16_t *heights);
+/* Who goes over the heights of a level, block by block: memory does not grow with a tile. */
+typedef struct bake_unpack_walk {
+    void *context;
+    /* 0: nothing is wanted of a node with ground, or of what is below it */
+    int (*wants)(void *context, ff_key key);
+    /* Takes what is below a node: side^2 heights of the level, south to north. 0 or -1 (said). */
+    int (*take)(void *context, ff_key key, uint32_t side, const uint16_t *heights);
+} bake_unpack_walk;
+
+/* The level of the nodes that blocks are of, when the heights are those of `level`. */
+uint32_t bake_unpack_block_level(uint32_t level);
+/* Decodes all tiles down to `level`. 0 or -1 (said). */
+int bake_unpack_heights(const bake_unpack *unpack, uint32_t level, const bake_unpack_walk *walk);
 /* What is told of a tile's root, and of the four children of a node. 0 or -1 (said). */
 int bake_unpack_told_root(const bake_unpack *unpack, uint32_t tile, bake_told *told);
 int bake_unpack_told_below(const bake_unpack *unpack, ff_key key, const bake_told *node,
