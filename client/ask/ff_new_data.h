@@ -22,7 +22,8 @@ typedef struct ff_new_item {
     union {
         /* ROOT, REFINEMENT; value lies in `room` */
         ff_residuals residuals;
-        /* TEXTURE has nothing of its own. pixels: RGB565, width x width, row 0 south */
+        /* TEXTURE: ff_image.bare. pixels: RGB565, width x width, row 0 south */
+        uint8_t bare;
         /* FACE. pixels: RGBA5551 of width x height (a power of two), row 0 lowest, texels without
          * ground transparent; none when the face is empty */
         struct {

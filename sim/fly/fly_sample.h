@@ -62,6 +62,7 @@
     X(frames_drawn, "%.0f", TOTAL, from->client.frames_updated) \
     X(square_px_waiting, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_WAITING]) \
     X(square_px_depth, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_DEPTH]) \
+    X(square_px_stub, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_STUB]) \
     X(square_px_quality, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_QUALITY]) \
     X(square_px_panorama, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_PANORAMA]) \
     X(square_px_undrawn, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_UNDRAWN]) \

@@ -32,17 +32,19 @@ static void place(loader *load, ff_key key, const uint16_t *heights, unsigned fi
                heights + (size_t)j * side, columns * sizeof *heights);
 }
 
-/* What a payload said of a node: is it filled, and is it a leaf? */
+/* What a payload said of a node: is it filled, is it a leaf, is it a stub? */
 typedef struct marks {
-    unsigned filled, leaf;
+    unsigned filled, leaf, stub;
 } marks;
 
 static marks marks_of(const ff_residuals *residuals, unsigned quadrant)
 {
-    return (marks){ residuals->filled >> quadrant & 1u, residuals->leaf >> quadrant & 1u };
+    return (marks){ residuals->filled >> quadrant & 1u, residuals->leaf >> quadrant & 1u,
+                    residuals->stub >> quadrant & 1u };
 }
 
-/* The heights of a node's children and their marks, from the pack, or, below a leaf, predicted. */
+/* The heights of a node's children and their marks: from the pack; below a leaf, predicted; below a
+ * stub, on its triangles. */
 static int children_of(loader *load, ff_key key, const uint16_t *heights, marks mark,
                        ff_residuals *residuals, uint16_t *refined)
 {
@@ -51,6 +53,13 @@ static int children_of(loader *load, ff_key key, const uint16_t *heights, marks 
     if (mark.leaf) {
         ff_predict_children(info, residuals->cells, heights, refined);
         *residuals = ff_leaf_residuals(info, 0, (int)mark.filled);
+        return FF_OK;
+    }
+    if (mark.stub) {
+        ff_interpolate_children(info, residuals->cells, heights, refined);
+        residuals->filled = mark.filled ? 15 : 0;
+        residuals->leaf = 0;
+        residuals->stub = 15;
         return FF_OK;
     }
     int bytes = ff_pack_record(load->pack, FF_SECTION_REFINEMENT, key, &payload);

@@ -96,7 +96,6 @@ static void describe_heights(export_ground *ground)
     ground->offset = (double)info->hoffset_wu / FF_WU_PER_METRE;
     ground->low = (double)range_wu[0] / FF_WU_PER_METRE;
     ground->high = (double)(range_wu[1] + 1) / FF_WU_PER_METRE;
-    ground->error.samples_m = info->max_error * ground->scale;
 }
 
 /* ---- both ---- */
@@ -138,7 +137,7 @@ int export_ground_open(const bake_unpack *unpack, uint32_t level, const bake_box
     describe_heights(ground);
     int rc = export_ground_begin(ground, region, sizeof(uint16_t));
     if (!rc) rc = read_heights(ground);
-    if (!rc) rc = export_told_error(ground, &ground->error.between_m);
+    if (!rc) rc = export_told_error(ground, &ground->error);
     if (!rc) rc = export_told_filled(ground, &ground->mask);
     if (export_ground_finish(ground, rc)) return -1;
     GDALRasterBandH band = GDALGetRasterBand(ground->set, 1);

@@ -1,5 +1,6 @@
 /* The textures of a level, put together. */
 #include "../../platform/sys.h"
+#include "../../protocol/ff_image.h"
 #include "../../protocol/shape/ff_shape.h"
 #include "../bake/bake_say.h"
 #include "export_ground_local.h"
@@ -14,25 +15,60 @@
 
 typedef struct image_reader {
     export_ground *ground;
-    uint8_t *rgb; /* of a texture, top row first */
+    uint8_t *rgb, *enlarged; /* of a texture, top row first */
     uint64_t missing;
 } image_reader;
 
+/* A channel of the point of an image that lies at (x, y) from its south-west texel, in parts of
+ * 2^depth to a texel. */
+static uint8_t channel_at(const uint8_t *rgb, uint32_t side, uint32_t depth, uint64_t x, uint64_t y,
+                          unsigned channel)
+{
+    uint64_t one = UINT64_C(1) << depth, right = x & (one - 1), up = y & (one - 1), sum = 0;
+    for (unsigned i = 0; i < 4; i++) {
+        uint64_t weight = (i & 1 ? right : one - right) * (i >> 1 ? up : one - up);
+        size_t column = (x >> depth) + (i & 1), row = side - 1 - (y >> depth) - (i >> 1);
+        if (weight) sum += weight * rgb[(row * side + column) * RGB + channel];
+    }
+    return (uint8_t)((sum + one * one / 2) >> 2 * depth);
+}
+
+/* The part of an image that lies over a node below the image's own. */
+static void enlarge(const image_reader *reader, ff_key image, ff_key node)
+{
+    uint32_t side = 1u << reader->ground->unpack->pack.header.info.texture_log2,
+             depth = ff_key_level(node) - ff_key_level(image), within = (1u << depth) - 1;
+    uint64_t west = (uint64_t)(ff_morton_x(ff_key_code(node)) & within) * (side - 1),
+             south = (uint64_t)(ff_morton_y(ff_key_code(node)) & within) * (side - 1);
+    uint8_t *to = reader->enlarged;
+    for (uint32_t row = side; row-- > 0;)
+        for (uint32_t i = 0; i < side; i++)
+            for (unsigned channel = 0; channel < RGB; channel++)
+                *to++ = channel_at(reader->rgb, side, depth, west + i, south + row, channel);
+}
+
+/* The image of the nearest ancestor stands for one that is not stored. */
 static int read_texture(image_reader *reader, ff_key key, uint32_t column, uint32_t row)
 {
     const bake_unpack *unpack = reader->ground->unpack;
     uint32_t side = 1u << unpack->pack.header.info.texture_log2;
-    const uint8_t *bytes;
-    int rc = ff_pack_record(&unpack->pack, FF_SECTION_TEXTURE, key, &bytes);
+    const uint8_t *payload;
+    ff_image image;
+    ff_key held = key;
+    int rc = ff_pack_image(&unpack->pack, &held, &payload);
     if (rc == FF_ERR_NOT_FOUND) reader->missing++;
     if (rc == FF_ERR_NOT_FOUND) return 0;
-    if (rc >= 0) rc = sys_jpeg_decode(bytes, (size_t)rc, side, side, reader->rgb);
+    if (rc >= 0) rc = ff_image_read(payload, (size_t)rc, &image);
+    if (rc >= 0) rc = sys_jpeg_decode(image.jpeg, image.jpeg_bytes, side, side, reader->rgb);
     if (rc < 0)
         return bake_fail("%s: the texture of tile %u, level %u, code %u: %s", unpack->path,
-                         ff_key_tile(key), ff_key_level(key), ff_key_code(key), ff_error_text(rc));
+                         ff_key_tile(held), ff_key_level(held), ff_key_code(held),
+                         ff_error_text(rc));
+    if (held != key) enlarge(reader, held, key);
+    const uint8_t *rgb = held == key ? reader->rgb : reader->enlarged;
     for (uint32_t j = 0; j < side; j++)
         if (export_put_row(reader->ground, column, row + j, side,
-                           reader->rgb + (size_t)(side - 1 - j) * side * RGB))
+                           rgb + (size_t)(side - 1 - j) * side * RGB))
             return -1;
     return 0;
 }
@@ -55,20 +91,23 @@ static int read_tile(void *context, uint32_t tile)
     return 0;
 }
 
-/* What has no texture is black. */
+/* What has no texture, nor any ancestor of it, is black. */
 static int read_textures(export_ground *ground)
 {
     const ff_terrain_info *info = &ground->unpack->pack.header.info;
     const bake_grid *cells = &ground->cells;
     if (ftruncate(cells->fd, (off_t)cells->width * cells->height * RGB))
         return bake_fail("cannot make a temporary file: %s", strerror(errno));
-    image_reader reader = { ground, malloc((size_t)RGB << (2 * info->texture_log2)), 0 };
+    size_t bytes = (size_t)RGB << (2 * info->texture_log2);
+    image_reader reader = { ground, malloc(bytes), malloc(bytes), 0 };
     uint32_t tile_texels = ((1u << info->texture_log2) - 1) << ground->level;
-    int rc = reader.rgb ? export_each_tile(ground, tile_texels, read_tile, &reader)
-                        : bake_fail("out of memory");
+    int rc = reader.rgb && reader.enlarged
+                 ? export_each_tile(ground, tile_texels, read_tile, &reader)
+                 : bake_fail("out of memory");
     if (reader.missing)
         bake_note("%" PRIu64 " textures are not in the pack: black", reader.missing);
     free(reader.rgb);
+    free(reader.enlarged);
     return rc;
 }
 

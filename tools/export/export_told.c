@@ -22,20 +22,45 @@ static uint32_t tile_points(const export_ground *ground)
 
 typedef struct error_search {
     const export_ground *ground;
-    uint32_t steps;
+    uint32_t samples, between; /* the largest in steps, at samples and on the triangles */
 } error_search;
 
-/* Of the nodes of the level, those below `key`. */
+static void raise(uint32_t *most, uint32_t steps)
+{
+    if (steps > *most) *most = steps;
+}
+
+/* 1 when the node shows some of the window. */
+static int in_window(const export_ground *ground, ff_key key)
+{
+    const export_window *w = &ground->window;
+    const ff_terrain_info *info = info_of(ground);
+    ff_sheet tile = ff_shape_sheet(info, ff_key_tile(key));
+    uint32_t level = ff_key_level(key), log2 = info->node_log2 + ground->level - level;
+    uint64_t column = (((uint64_t)tile.x << level) + ff_morton_x(ff_key_code(key))) << log2,
+             row = (((uint64_t)tile.y << level) + ff_morton_y(ff_key_code(key))) << log2,
+             edge = UINT64_C(1) << log2;
+    return column < (uint64_t)w->left + w->width && column + edge >= w->left &&
+           row < (uint64_t)w->bottom + w->height && row + edge >= w->bottom;
+}
+
+/* Of the nodes of the level, those below `key`. Samples below a stub lie on its triangles, up to a
+ * step above them. */
 static int search_below(error_search *search, ff_key key, const bake_told *node)
 {
     const bake_unpack *unpack = search->ground->unpack;
     bake_told told[4];
+    uint32_t steps = ff_geometric_error_decode(node->error_code);
+    if (!ff_shape_has_ground(&unpack->pack.header.info, key) || !in_window(search->ground, key))
+        return 0;
     if (ff_key_level(key) == search->ground->level) {
-        uint32_t steps = ff_geometric_error_decode(node->error_code);
-        if (steps > search->steps) search->steps = steps;
+        raise(&search->between, steps);
         return 0;
     }
-    if (!ff_shape_has_ground(&unpack->pack.header.info, key)) return 0;
+    if (node->is_stub) {
+        raise(&search->samples, steps + 1);
+        return 0;
+    }
     if (bake_unpack_told_below(unpack, key, node, told)) return -1;
     for (uint32_t q = 0; q < 4; q++)
         if (search_below(search, ff_key_child(key, q), &told[q])) return -1;
@@ -50,13 +75,14 @@ static int search_tile(void *context, uint32_t tile)
     return search_below(search, ff_key_make(tile, 0, 0), &root);
 }
 
-int export_told_error(const export_ground *ground, double *error_m)
+int export_told_error(const export_ground *ground, export_error *error)
 {
-    error_search search = { ground, info_of(ground)->max_error };
+    error_search search = { ground, info_of(ground)->max_error, 0 };
+    int rc = export_each_tile(ground, tile_points(ground), search_tile, &search);
     /* there is nothing between the finest samples */
-    int finest = ground->level + 1 == ff_terrain_levels(info_of(ground));
-    int rc = finest ? 0 : export_each_tile(ground, tile_points(ground), search_tile, &search);
-    *error_m = search.steps * ground->scale;
+    if (ground->level + 1 == ff_terrain_levels(info_of(ground))) search.between = 0;
+    raise(&search.between, search.samples);
+    *error = (export_error){ search.samples * ground->scale, search.between * ground->scale };
     return rc;
 }
 

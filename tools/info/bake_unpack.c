@@ -76,9 +76,13 @@ static int decode_residuals(const bake_unpack *unpack, enum ff_section_kind kind
                : ff_decode_refinement(unpack->decoder, payload, (size_t)bytes, residuals);
 }
 
-/* *leaf: 1 when nothing finer is stored. */
+/* What is told of nodes of which nothing finer is stored: a bit each. */
+typedef struct ends {
+    unsigned leaf, stub;
+} ends;
+
 static int decode_root(const bake_unpack *unpack, uint32_t tile, size_t pitch, size_t stride,
-                       uint16_t *heights, unsigned *leaf)
+                       uint16_t *heights, ends *root)
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
     int32_t value[FF_REFINED_HEIGHTS_MAX];
@@ -89,13 +93,13 @@ static int decode_root(const bake_unpack *unpack, uint32_t tile, size_t pitch, s
     if (rc >= 0) rc = ff_reconstruct_root(info, &residuals, node);
     if (rc < 0) return fail_at(unpack, "the root", key, rc);
     scatter(node, ff_node_side(info), pitch, stride, heights);
-    *leaf = residuals.leaf;
+    *root = (ends){ residuals.leaf, residuals.stub };
     return 0;
 }
 
-/* *leaf: on entry bit 0 tells whether the node is a leaf, after it a bit for each child. */
+/* *end: on entry bit 0 tells of the node, after it a bit of each child. */
 static int decode_refinement(const bake_unpack *unpack, ff_key key, size_t pitch, size_t stride,
-                             uint16_t *at, unsigned *leaf)
+                             uint16_t *at, ends *end)
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
     int32_t value[FF_REFINED_HEIGHTS_MAX];
@@ -105,30 +109,34 @@ static int decode_refinement(const bake_unpack *unpack, ff_key key, size_t pitch
     int rc = 0;
     if (is_ground) residuals.cells = ff_shape_cells(info, key, 1);
     gather(at, ff_node_side(info), pitch, stride, parent);
-    if (*leaf & 1u || !is_ground) {
+    if (end->leaf & 1u || !is_ground) {
         ff_predict_children(info, residuals.cells, parent, refined);
+    } else if (end->stub & 1u) {
+        ff_interpolate_children(info, residuals.cells, parent, refined);
+        residuals.leaf = 0;
+        residuals.stub = 15;
     } else {
         rc = decode_residuals(unpack, FF_SECTION_REFINEMENT, key, &residuals);
         if (rc >= 0) rc = ff_reconstruct_refinement(info, parent, &residuals, refined);
     }
     if (rc < 0) return fail_at(unpack, "the refinement", key, rc);
     scatter(refined, ff_refined_side(info), pitch, stride / 2, at);
-    *leaf = residuals.leaf;
+    *end = (ends){ residuals.leaf, residuals.stub };
     return 0;
 }
 
 /* All below a node, whose heights stand at `at`, `stride` apart, down to where they stand side by
  * side. The child in the south-west comes last: a node without ground, which is made of predictions
  * alone, shares its western or southern rim, the last samples, with one that has ground. */
-static int decode_below(const bake_unpack *unpack, ff_key key, unsigned leaf, size_t pitch,
+static int decode_below(const bake_unpack *unpack, ff_key key, ends end, size_t pitch,
                         size_t stride, uint16_t *at)
 {
     if (stride == 1) return 0;
-    if (decode_refinement(unpack, key, pitch, stride, at, &leaf)) return -1;
+    if (decode_refinement(unpack, key, pitch, stride, at, &end)) return -1;
     size_t edge = stride / 2 << unpack->pack.header.info.node_log2;
     for (uint32_t q = 4; q-- > 0;)
-        if (decode_below(unpack, ff_key_child(key, q), leaf >> q & 1u, pitch, stride / 2,
-                         at + (q & 1) * edge + (q >> 1) * edge * pitch))
+        if (decode_below(unpack, ff_key_child(key, q), (ends){ end.leaf >> q, end.stub >> q },
+                         pitch, stride / 2, at + (q & 1) * edge + (q >> 1) * edge * pitch))
             return -1;
     return 0;
 }
@@ -137,24 +145,33 @@ int bake_unpack_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level, u
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
     size_t pitch = bake_unpack_side(info, level);
-    unsigned leaf;
-    if (decode_root(unpack, tile, pitch, (size_t)1 << level, heights, &leaf)) return -1;
-    return decode_below(unpack, ff_key_make(tile, 0, 0), leaf, pitch, (size_t)1 << level, heights);
+    ends root;
+    if (decode_root(unpack, tile, pitch, (size_t)1 << level, heights, &root)) return -1;
+    return decode_below(unpack, ff_key_make(tile, 0, 0), root, pitch, (size_t)1 << level, heights);
 }
 
 static bake_told told_of(const ff_residuals *residuals, unsigned q)
 {
     return (bake_told){ residuals->child_error[q], residuals->filled >> q & 1u,
-                        residuals->leaf >> q & 1u };
+                        residuals->leaf >> q & 1u, residuals->stub >> q & 1u };
+}
+
+/* Of a root, or of a node's children. FF_OK or a negative ff_error. */
+static int read_told(const bake_unpack *unpack, enum ff_section_kind kind, ff_key key,
+                     ff_residuals *told)
+{
+    const uint8_t *payload;
+    int bytes = ff_pack_record(&unpack->pack, kind, key, &payload);
+    if (bytes < 0) return bytes;
+    return ff_read_marks(&unpack->pack.header.info, kind == FF_SECTION_ROOT, payload, (size_t)bytes,
+                         told);
 }
 
 int bake_unpack_told_root(const bake_unpack *unpack, uint32_t tile, bake_told *told)
 {
-    int32_t value[FF_REFINED_HEIGHTS_MAX];
     ff_key key = ff_key_make(tile, 0, 0);
-    ff_residuals residuals = { .cells = ff_shape_cells(&unpack->pack.header.info, key, 0),
-                               .value = value };
-    int rc = decode_residuals(unpack, FF_SECTION_ROOT, key, &residuals);
+    ff_residuals residuals = { 0 };
+    int rc = read_told(unpack, FF_SECTION_ROOT, key, &residuals);
     if (rc < 0) return fail_at(unpack, "the root", key, rc);
     *told = told_of(&residuals, 0);
     return 0;
@@ -164,15 +181,13 @@ int bake_unpack_told_below(const bake_unpack *unpack, ff_key key, const bake_tol
                            bake_told told[4])
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
-    int32_t value[FF_REFINED_HEIGHTS_MAX];
-    ff_residuals residuals = { .value = value };
-    if (node->is_leaf || !ff_shape_has_ground(info, key)) {
+    ff_residuals residuals = { 0 };
+    int rc = 0;
+    if (node->is_leaf || !ff_shape_has_ground(info, key))
         residuals = ff_leaf_residuals(info, node->error_code, node->has_filled);
-    } else {
-        residuals.cells = ff_shape_cells(info, key, 1);
-        int rc = decode_residuals(unpack, FF_SECTION_REFINEMENT, key, &residuals);
-        if (rc < 0) return fail_at(unpack, "the refinement", key, rc);
-    }
-    for (unsigned q = 0; q < 4; q++) told[q] = told_of(&residuals, q);
+    else if (!node->is_stub)
+        rc = read_told(unpack, FF_SECTION_REFINEMENT, key, &residuals);
+    if (rc < 0) return fail_at(unpack, "the refinement", key, rc);
+    for (unsigned q = 0; q < 4; q++) told[q] = node->is_stub ? *node : told_of(&residuals, q);
     return 0;
 }

@@ -17,7 +17,8 @@ typedef struct bake_unpack {
 typedef struct bake_told {
     uint8_t error_code; /* its geometric error (ff_codec.h) */
     uint8_t has_filled; /* some of the ground below it was void in the source */
-    uint8_t is_leaf;    /* nothing finer is stored */
+    uint8_t is_leaf;    /* nothing finer is stored: it is prediction */
+    uint8_t is_stub;    /* nothing finer is stored, though there is finer ground */
 } bake_told;
 
 /* Maps and checks a pack. 0 or -1 (said). */
@@ -26,7 +27,8 @@ void bake_unpack_close(bake_unpack *unpack);
 
 /* Heights along a tile's side at a level: 2^(k+level) + 1. */
 uint32_t bake_unpack_side(const ff_terrain_info *info, uint32_t level);
-/* Decodes one tile down to `level` into `heights` (side^2, south to north). 0 or -1 (said). */
+/* Decodes one tile down to `level`, below stubs their triangles, into `heights` (side^2, south to
+ * north). 0 or -1 (said). */
 int bake_unpack_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level, uint16_t *heights);
 /* What is told of a tile's root, and of the four children of a node. 0 or -1 (said). */
 int bake_unpack_told_root(const bake_unpack *unpack, uint32_t tile, bake_told *told);
