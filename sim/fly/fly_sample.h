@@ -52,6 +52,7 @@
     X(panorama_faces, "%.0f", TOTAL, from->client.panorama_faces) \
     X(panorama_faces_empty, "%.0f", TOTAL, from->client.panorama_faces_empty) \
     X(panorama_bytes, "%.0f", TOTAL, from->client.panorama_bytes) \
+    X(requests_failed, "%.0f", TOTAL, from->client.requests_failed) \
     X(requests_dropped, "%.0f", TOTAL, from->client.requests_dropped) \
     X(requests_cancelled, "%.0f", TOTAL, from->client.requests_cancelled) \
     X(textures_held, "%.0f", MEAN, from->client.textures_held) \

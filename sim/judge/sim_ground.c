@@ -15,6 +15,8 @@ typedef struct loader {
     const ff_pack *pack;
     ff_decoder *decoder;
     int32_t *residual;
+    int with_stubs; /* 1: what is below stubs is made, 0: it stays as it is */
+    int has_stubs;  /* some were met */
 } loader;
 
 static void place(loader *load, ff_key key, const uint16_t *heights, unsigned filled)
@@ -75,6 +77,8 @@ static int refine(loader *load, ff_key key, const uint16_t *heights, marks mark)
         place(load, key, heights, mark.filled);
         return FF_OK;
     }
+    load->has_stubs |= mark.stub & 1u;
+    if (mark.stub && !load->with_stubs) return FF_OK;
     ff_residuals residuals = { .cells = ff_shape_cells(info, key, 1), .value = load->residual };
     uint16_t refined[FF_REFINED_HEIGHTS_MAX], child[FF_NODE_HEIGHTS_MAX];
     int rc = children_of(load, key, heights, mark, &residuals, refined);
@@ -102,6 +106,19 @@ static int decode_tile(loader *load, uint32_t tile)
     return refine(load, ff_key_make(tile, 0, 0), heights, marks_of(&residuals, 0));
 }
 
+/* Where a stub meets finer ground its triangles give way: all else is placed over them. */
+static int decode_tiles(loader *load)
+{
+    int rc = FF_OK;
+    do {
+        load->with_stubs = !load->has_stubs;
+        for (uint32_t tile = 0; rc == FF_OK && tile < ff_shape_tiles(&load->pack->header.info);
+             tile++)
+            rc = decode_tile(load, tile);
+    } while (rc == FF_OK && load->with_stubs && load->has_stubs);
+    return rc;
+}
+
 static int decode_all(sim_ground *ground, const ff_pack *pack)
 {
     const ff_terrain_info *info = &pack->header.info;
@@ -120,8 +137,7 @@ static int decode_all(sim_ground *ground, const ff_pack *pack)
     load.residual = malloc(FF_REFINED_HEIGHTS_MAX * sizeof *load.residual);
     load.decoder = memory ? ff_decoder_create(info, memory, bytes) : NULL;
     int rc = load.decoder && load.residual ? FF_OK : FF_ERR_MEMORY;
-    for (uint32_t tile = 0; rc == FF_OK && tile < ff_shape_tiles(info); tile++)
-        rc = decode_tile(&load, tile);
+    if (rc == FF_OK) rc = decode_tiles(&load);
     free(load.residual);
     free(memory);
     return rc;

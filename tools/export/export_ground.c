@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define Q24 16777216.0
 
@@ -59,30 +60,53 @@ int export_put_row(const export_ground *ground, uint32_t column, uint32_t row, u
 typedef struct height_reader {
     const export_ground *ground;
     uint16_t *heights; /* of a tile */
+    bake_rims known;
 } height_reader;
+
+/* What a tile does not know of rims that others have written stays as those know it. */
+static int put_tile_row(const height_reader *reader, uint32_t column, uint32_t row, uint32_t side,
+                        uint32_t j)
+{
+    const export_ground *ground = reader->ground;
+    const uint16_t *heights = reader->heights + (size_t)j * side;
+    uint32_t first = column > ground->window.left && !reader->known.west[j];
+    int all = j > 0 || row <= ground->window.bottom || !memchr(reader->known.south, 0, side);
+    if (all)
+        return export_put_row(ground, column + first, row + j, side - first,
+                              (const uint8_t *)(heights + first));
+    for (uint32_t i = first; i < side; i++)
+        if (reader->known.south[i] &&
+            export_put_row(ground, column + i, row, 1, (const uint8_t *)(heights + i)))
+            return -1;
+    return 0;
+}
 
 static int read_tile(void *context, uint32_t tile)
 {
-    const height_reader *reader = context;
+    height_reader *reader = context;
     const export_ground *ground = reader->ground;
     const ff_terrain_info *info = &ground->unpack->pack.header.info;
     uint32_t side = bake_unpack_side(info, ground->level);
     ff_sheet at = ff_shape_sheet(info, tile);
-    if (bake_unpack_tile(ground->unpack, tile, ground->level, reader->heights)) return -1;
+    if (bake_unpack_tile(ground->unpack, tile, ground->level, reader->heights, &reader->known))
+        return -1;
     for (uint32_t j = 0; j < side; j++)
-        if (export_put_row(ground, at.x * (side - 1), at.y * (side - 1) + j, side,
-                           (const uint8_t *)(reader->heights + (size_t)j * side)))
-            return -1;
+        if (put_tile_row(reader, at.x * (side - 1), at.y * (side - 1), side, j)) return -1;
     return 0;
 }
 
 static int read_heights(const export_ground *ground)
 {
     uint32_t side = bake_unpack_side(&ground->unpack->pack.header.info, ground->level);
-    height_reader reader = { ground, malloc((size_t)side * side * sizeof(uint16_t)) };
-    int rc = reader.heights ? export_each_tile(ground, side - 1, read_tile, &reader)
-                            : bake_fail("out of memory");
+    height_reader reader = { ground,
+                             malloc((size_t)side * side * sizeof(uint16_t)),
+                             { malloc(side), malloc(side) } };
+    int rc = reader.heights && reader.known.west && reader.known.south
+                 ? export_each_tile(ground, side - 1, read_tile, &reader)
+                 : bake_fail("out of memory");
     free(reader.heights);
+    free(reader.known.west);
+    free(reader.known.south);
     return rc;
 }
 

@@ -30,7 +30,8 @@ static void raise(uint32_t *most, uint32_t steps)
     if (steps > *most) *most = steps;
 }
 
-/* 1 when the node shows some of the window. */
+/* 1 when the node shows some of the window, more than its rim: what lies on that is known as well
+ * as the best of the nodes that share it. */
 static int in_window(const export_ground *ground, ff_key key)
 {
     const export_window *w = &ground->window;
@@ -40,8 +41,8 @@ static int in_window(const export_ground *ground, ff_key key)
     uint64_t column = (((uint64_t)tile.x << level) + ff_morton_x(ff_key_code(key))) << log2,
              row = (((uint64_t)tile.y << level) + ff_morton_y(ff_key_code(key))) << log2,
              edge = UINT64_C(1) << log2;
-    return column < (uint64_t)w->left + w->width && column + edge >= w->left &&
-           row < (uint64_t)w->bottom + w->height && row + edge >= w->bottom;
+    return column < (uint64_t)w->left + w->width - 1 && column + edge > w->left &&
+           row < (uint64_t)w->bottom + w->height - 1 && row + edge > w->bottom;
 }
 
 /* Of the nodes of the level, those below `key`. Samples below a stub lie on its triangles, up to a

@@ -125,29 +125,62 @@ static int decode_refinement(const bake_unpack *unpack, ff_key key, size_t pitch
     return 0;
 }
 
+/* A tile on its way into a grid. */
+typedef struct tile_writer {
+    const bake_unpack *unpack;
+    bake_rims *known; /* NULL: not asked for */
+    size_t pitch;
+    int with_stubs; /* 1: what is below stubs is made, 0: it stays as it is */
+    int has_stubs;  /* some were met */
+} tile_writer;
+
+/* Of a node of the finest level wanted. */
+static void mark_known(const tile_writer *to, ff_key key)
+{
+    uint32_t cells = 1u << to->unpack->pack.header.info.node_log2,
+             x = ff_morton_x(ff_key_code(key)), y = ff_morton_y(ff_key_code(key));
+    if (to->known && x == 0) memset(to->known->west + (size_t)y * cells, 1, cells + 1);
+    if (to->known && y == 0) memset(to->known->south + (size_t)x * cells, 1, cells + 1);
+}
+
 /* All below a node, whose heights stand at `at`, `stride` apart, down to where they stand side by
  * side. The child in the south-west comes last: a node without ground, which is made of predictions
  * alone, shares its western or southern rim, the last samples, with one that has ground. */
-static int decode_below(const bake_unpack *unpack, ff_key key, ends end, size_t pitch,
-                        size_t stride, uint16_t *at)
+static int decode_below(tile_writer *to, ff_key key, ends end, size_t stride, uint16_t *at)
 {
-    if (stride == 1) return 0;
-    if (decode_refinement(unpack, key, pitch, stride, at, &end)) return -1;
-    size_t edge = stride / 2 << unpack->pack.header.info.node_log2;
+    if (stride == 1) {
+        mark_known(to, key);
+        return 0;
+    }
+    to->has_stubs |= end.stub & 1u;
+    if (end.stub & 1u && !to->with_stubs) return 0;
+    if (decode_refinement(to->unpack, key, to->pitch, stride, at, &end)) return -1;
+    size_t edge = stride / 2 << to->unpack->pack.header.info.node_log2;
     for (uint32_t q = 4; q-- > 0;)
-        if (decode_below(unpack, ff_key_child(key, q), (ends){ end.leaf >> q, end.stub >> q },
-                         pitch, stride / 2, at + (q & 1) * edge + (q >> 1) * edge * pitch))
+        if (decode_below(to, ff_key_child(key, q), (ends){ end.leaf >> q, end.stub >> q },
+                         stride / 2, at + (q & 1) * edge + (q >> 1) * edge * to->pitch))
             return -1;
     return 0;
 }
 
-int bake_unpack_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level, uint16_t *heights)
+static int decode_tile(tile_writer *to, uint32_t tile, uint32_t level, uint16_t *heights)
 {
-    const ff_terrain_info *info = &unpack->pack.header.info;
-    size_t pitch = bake_unpack_side(info, level);
+    size_t stride = (size_t)1 << level;
     ends root;
-    if (decode_root(unpack, tile, pitch, (size_t)1 << level, heights, &root)) return -1;
-    return decode_below(unpack, ff_key_make(tile, 0, 0), root, pitch, (size_t)1 << level, heights);
+    if (to->known) memset(to->known->west, 0, to->pitch);
+    if (to->known) memset(to->known->south, 0, to->pitch);
+    if (decode_root(to->unpack, tile, to->pitch, stride, heights, &root)) return -1;
+    return decode_below(to, ff_key_make(tile, 0, 0), root, stride, heights);
+}
+
+/* Where a stub meets finer ground its triangles give way: all else is written over them. */
+int bake_unpack_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level, uint16_t *heights,
+                     bake_rims *known)
+{
+    tile_writer to = { unpack, known, bake_unpack_side(&unpack->pack.header.info, level), 1, 0 };
+    int rc = decode_tile(&to, tile, level, heights);
+    to.with_stubs = 0;
+    return rc || !to.has_stubs ? rc : decode_tile(&to, tile, level, heights);
 }
 
 static bake_told told_of(const ff_residuals *residuals, unsigned q)

@@ -52,7 +52,7 @@ static int verify(const bake_unpack *unpack)
     uint16_t *heights = malloc((size_t)side * side * sizeof *heights);
     if (!heights) return bake_fail("out of memory");
     for (uint32_t tile = 0; !rc && tile < ff_shape_tiles(info); tile++)
-        rc = bake_unpack_tile(unpack, tile, finest, heights);
+        rc = bake_unpack_tile(unpack, tile, finest, heights, NULL);
     free(heights);
     return rc;
 }
