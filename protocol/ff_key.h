@@ -23,10 +23,11 @@ typedef uint64_t ff_key;
 #define FF_KEY_TILES_MAX (1u << 28)
 #define FF_KEY_LEVEL_MAX 15u
 
-/* Tile, level and code fill a key. No terrain has nodes of level 15 (ff_terrain.c), so the key of
- * all ones is no node's. */
+/* Tile, level and code fill a key. A code has two bits a level, so the key of all ones is no
+ * node's. */
 FF_STATIC_ASSERT(((ff_key)(FF_KEY_TILES_MAX - 1) << 36 | (ff_key)FF_KEY_LEVEL_MAX << 32 |
                   UINT32_MAX) == FF_KEY_NONE);
+FF_STATIC_ASSERT(2 * FF_KEY_LEVEL_MAX < 32);
 
 /* Of a node's grid: its first row, last column, last row, first column. They run round it. */
 enum ff_side { FF_SIDE_SOUTH, FF_SIDE_EAST, FF_SIDE_NORTH, FF_SIDE_WEST, FF_SIDE_COUNT };

@@ -23,7 +23,8 @@ static int textures_ok(const ff_terrain_info *info)
 int ff_terrain_check(const ff_terrain_info *info)
 {
     int levels_ok = info->node_log2 >= 1 && info->node_log2 <= FF_NODE_LOG2_MAX &&
-                    info->tile_log2 >= info->node_log2 && info->tile_log2 <= FF_TILE_LOG2_MAX;
+                    info->tile_log2 >= info->node_log2 &&
+                    info->tile_log2 <= info->node_log2 + FF_KEY_LEVEL_MAX;
     int flags_ok = (info->flags & ~(FF_TERRAIN_DENSIFIED | FF_TERRAIN_LOSSY)) == 0;
 
     if (!levels_ok || !flags_ok || !ff_shape_check(info) || !heights_ok(info) || !textures_ok(info))

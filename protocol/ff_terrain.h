@@ -17,12 +17,9 @@
 
 #define FF_WU_PER_METRE  256
 #define FF_NODE_LOG2_MAX 5
-#define FF_TILE_LOG2_MAX 15
+#define FF_TILE_LOG2_MAX 20
 
-/* The highest level of a tile with the smallest nodes, of 2^1 cells, is below FF_KEY_LEVEL_MAX: so
- * no node's key is FF_KEY_NONE. */
-FF_STATIC_ASSERT(FF_TILE_LOG2_MAX - 1 < FF_KEY_LEVEL_MAX);
-FF_STATIC_ASSERT(FF_NODE_LOG2_MAX <= FF_TILE_LOG2_MAX);
+FF_STATIC_ASSERT(FF_TILE_LOG2_MAX == FF_NODE_LOG2_MAX + FF_KEY_LEVEL_MAX);
 
 enum ff_terrain_flags {
     FF_TERRAIN_DENSIFIED = 1, /* part of the detail is invented (farfield-bake --densify) */
@@ -31,7 +28,7 @@ enum ff_terrain_flags {
 
 typedef struct ff_terrain_info {
     uint8_t node_log2; /* k: a node holds (2^k+1)^2 heights; 1..5 */
-    uint8_t tile_log2; /* n: a tile holds (2^n+1)^2 heights; k..k+15, at most 15 */
+    uint8_t tile_log2; /* n: a tile holds (2^n+1)^2 heights; k..k+15 */
     uint8_t codec;     /* enum ff_codec_id, codec/ff_codec_list.h */
     uint8_t flags;     /* enum ff_terrain_flags */
     /* a texture holds (2^t)^2 texels, t 4..8; 0: the terrain has no images */
@@ -75,7 +72,8 @@ int ff_terrain_same(const ff_terrain_info *a, const ff_terrain_info *b);
 /* Number of levels of every tile: n - k + 1. */
 static inline uint32_t ff_terrain_levels(const ff_terrain_info *info)
 {
-    FF_ASSERT(info->node_log2 <= info->tile_log2 && info->tile_log2 <= FF_TILE_LOG2_MAX);
+    FF_ASSERT(info->node_log2 <= info->tile_log2 &&
+              info->tile_log2 - info->node_log2 <= (int)FF_KEY_LEVEL_MAX);
     return (uint32_t)info->tile_log2 - info->node_log2 + 1u;
 }
 /* Heights along a node's side: 2^k + 1; along the grid of its four children: 2^(k+1) + 1. */

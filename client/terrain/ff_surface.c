@@ -193,8 +193,8 @@ static const ff_node *node_at(const ff_tree *tree, const ff_node *node, const ff
                               grid_point *at)
 {
     /* in samples, Q16, from the node's south-west corner */
-    uint32_t column = spot->column_q16, row = spot->row_q16,
-             half = 1u << (15 + tree->info.tile_log2);
+    uint64_t column = spot->column_q16, row = spot->row_q16,
+             half = UINT64_C(1) << (15 + tree->info.tile_log2);
     for (; node->flags & FF_NODE_SPLIT; half >>= 1) {
         FF_ASSERT(ff_node_has_children(node));
         /* the last sample may lie in the middle: then nothing is held beyond it */
@@ -206,7 +206,7 @@ static const ff_node *node_at(const ff_tree *tree, const ff_node *node, const ff
     }
     unsigned cell_log2 = tree->info.tile_log2 - tree->info.node_log2 - ff_key_level(node->key);
     FF_ASSERT(column <= 2 * half && row <= 2 * half); /* the node's edge by now */
-    *at = (grid_point){ column >> cell_log2, row >> cell_log2 };
+    *at = (grid_point){ (int64_t)(column >> cell_log2), (int64_t)(row >> cell_log2) };
     return node;
 }
 

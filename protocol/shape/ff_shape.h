@@ -41,7 +41,8 @@ typedef struct ff_beside {
 
 /* A point of a tile's ground: 0 .. 2^tile_log2 samples of the finest level, Q16. */
 typedef struct ff_spot {
-    uint32_t tile, column_q16, row_q16;
+    uint32_t tile;
+    uint64_t column_q16, row_q16;
 } ff_spot;
 
 /* How far the ground reaches along a node's columns and rows, in samples of the finest level from

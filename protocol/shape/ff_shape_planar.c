@@ -3,7 +3,7 @@
 /* ---- place ---- */
 
 /* ff_planar_check: a terrain's longest edge, in samples. */
-FF_STATIC_ASSERT((uint64_t)FF_KEY_TILES_MAX << FF_TILE_LOG2_MAX <= 1ull << 43);
+FF_STATIC_ASSERT((uint64_t)FF_KEY_TILES_MAX << FF_TILE_LOG2_MAX <= 1ull << 48);
 
 static uint32_t tiles_for(const ff_terrain_info *info, uint32_t samples)
 {
@@ -26,7 +26,7 @@ int ff_planar_check(const ff_terrain_info *info)
         tiles_for(info, info->samples_x) != info->tiles_x ||
         tiles_for(info, info->samples_y) != info->tiles_y)
         return 0;
-    /* An edge of 43 bits times a spacing of 32 bits would overflow: so the spacing is compared with
+    /* An edge of 48 bits times a spacing of 32 bits would overflow: so the spacing is compared with
      * the quotient. */
     return info->spacing_wu >= 1 && info->spacing_wu <= INT32_MAX / edge_x &&
            info->spacing_wu <= INT32_MAX / edge_y;
@@ -123,15 +123,15 @@ ff_key ff_planar_across(const ff_terrain_info *info, ff_key key, enum ff_side si
 /* Along one axis: 1, the tile and the place in it, samples Q16; 0 outside. The terrain's far rim
  * belongs to its last tile. */
 static int locate_along(const ff_terrain_info *info, int32_t at_wu, int32_t last_wu, uint32_t tiles,
-                        uint32_t *tile, uint32_t *sample_q16)
+                        uint32_t *tile, uint64_t *sample_q16)
 {
     uint32_t tile_wu = (uint32_t)ff_node_edge_wu(info, 0), at = (uint32_t)at_wu;
 
     FF_ASSERT((uint64_t)tiles * tile_wu <= INT32_MAX);
     if (at_wu < 0 || at_wu > last_wu) return 0;
     *tile = at == tiles * tile_wu ? tiles - 1 : at / tile_wu;
-    *sample_q16 = (uint32_t)(((uint64_t)(at - *tile * tile_wu) << 16) / info->spacing_wu);
-    FF_ASSERT(*tile < tiles && *sample_q16 <= 1u << (info->tile_log2 + 16));
+    *sample_q16 = ((uint64_t)(at - *tile * tile_wu) << 16) / info->spacing_wu;
+    FF_ASSERT(*tile < tiles && *sample_q16 <= UINT64_C(1) << (info->tile_log2 + 16));
     return 1;
 }
 

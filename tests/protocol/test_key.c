@@ -109,7 +109,21 @@ static void terrain_ranges(void **state)
     BAD(node_log2, 0);
     BAD(node_log2, 6);
     BAD(tile_log2, 2);
-    BAD(tile_log2, 16);
+    for (uint8_t k = 1; k <= FF_NODE_LOG2_MAX; k++) {
+        t = good;
+        t.node_log2 = k;
+        t.tile_log2 = k + FF_KEY_LEVEL_MAX;
+        t.samples_x = t.samples_y = (1u << t.tile_log2) + 1;
+        t.tiles_x = t.tiles_y = 1;
+        t.spacing_wu = 2047;
+        assert_int_equal(ff_terrain_check(&t), FF_OK);
+        assert_int_equal(ff_terrain_levels(&t), FF_KEY_LEVEL_MAX + 1);
+        assert_true(ff_terrain_has_node(&t, ff_key_make(0, FF_KEY_LEVEL_MAX, (1u << 30) - 1)));
+        assert_false(ff_terrain_has_node(&t, FF_KEY_NONE));
+        t.tile_log2++;
+        assert_int_equal(ff_terrain_check(&t), FF_ERR_RANGE);
+    }
+    BAD(tile_log2, 19);
     BAD(flags, 4);
     BAD(texture_log2, 3);
     BAD(texture_log2, 9);

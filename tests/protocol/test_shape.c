@@ -195,6 +195,41 @@ static void points_are_found_in_their_tile(void **state)
     for (int i = 0; i < 4; i++) assert_false(ff_shape_locate(&info, &frame, outside[i], &spot));
 }
 
+/* The largest tile of the usual nodes, as wide as places reach. */
+static void points_are_found_in_one_tile_for_all(void **state)
+{
+    (void)state;
+    ff_terrain_info info = { .node_log2 = 3,
+                             .tile_log2 = 18,
+                             .tiles_x = 1,
+                             .tiles_y = 1,
+                             .samples_x = (1u << 18) + 1,
+                             .samples_y = (1u << 17) + 7,
+                             .spacing_wu = 8191 };
+    ff_frame frame = ff_shape_frame(&info, nowhere);
+    sys_random random;
+    ff_spot spot;
+    sys_random_seed(&random, 2, 1);
+    assert_true(ff_shape_check(&info));
+    for (int i = 0; i < 20000; i++) {
+        int32_t place_wu[3] = { (int32_t)sys_random_below(&random, (1u << 18) * 8191 + 1),
+                                (int32_t)sys_random_below(&random, (1u << 17) * 8191), 0 };
+        if (i % 7 == 0) place_wu[0] = (1 << 18) * 8191; /* the last sample */
+        assert_true(ff_shape_locate(&info, &frame, place_wu, &spot));
+        assert_int_equal(spot.column_q16, ((uint64_t)place_wu[0] << 16) / 8191);
+        assert_int_equal(spot.row_q16, ((uint64_t)place_wu[1] << 16) / 8191);
+    }
+    ff_key last = ff_key_make(0, 15, ff_morton_encode((1u << 15) - 1, 1u << 14));
+    ff_placed placed = ff_shape_put(&info, &frame, last);
+    assert_int_equal(placed.planar.x_wu, ((1 << 18) - 8) * 8191);
+    ff_extent extent = ff_shape_extent(&info, last);
+    assert_true(extent.columns == 8 && extent.rows == 6);
+    assert_true(ff_shape_neighbour(&info, last, FF_SIDE_EAST).key == FF_KEY_NONE);
+    assert_true(ff_shape_neighbour(&info, last, FF_SIDE_NORTH).key == FF_KEY_NONE);
+    ff_key south = ff_shape_neighbour(&info, last, FF_SIDE_SOUTH).key;
+    assert_int_equal(ff_morton_y(ff_key_code(south)), (1u << 14) - 1);
+}
+
 /* ---- where the samples end ---- */
 
 static ff_terrain_info ending_terrain(void)
@@ -465,6 +500,7 @@ int main(void)
         cmocka_unit_test(shared_rims_lie_in_one_place),
         cmocka_unit_test(places_are_products),
         cmocka_unit_test(points_are_found_in_their_tile),
+        cmocka_unit_test(points_are_found_in_one_tile_for_all),
         cmocka_unit_test(nodes_end_with_the_samples),
         cmocka_unit_test(nothing_is_found_beyond_the_samples),
         cmocka_unit_test(walks_cover_what_is_in_reach),

@@ -88,8 +88,10 @@ static inline int ff_turned_locate(const ff_terrain_info *info, const ff_frame *
                                    const int32_t place_wu[3], ff_spot *spot)
 {
     if (!ff_planar_locate(info, frame, place_wu, spot)) return 0;
-    turned_place((4 - turned_by(spot->tile)) % 4, 1u << (info->tile_log2 + 16), &spot->column_q16,
-                 &spot->row_q16);
+    uint32_t column = (uint32_t)spot->column_q16, row = (uint32_t)spot->row_q16; /* small tiles */
+    turned_place((4 - turned_by(spot->tile)) % 4, 1u << (info->tile_log2 + 16), &column, &row);
+    spot->column_q16 = column;
+    spot->row_q16 = row;
     return 1;
 }
 

@@ -11,8 +11,8 @@
 #include "../../tools/bake/bake_jobs.h"
 #include "../../tools/bake/bake_run.h"
 #include "../../tools/bake/bake_say.h"
-#include "../../tools/bake/bake_tile.h"
 #include "../../tools/bake/raster/bake_voids.h"
+#include "../rig/whole_tile.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -176,15 +176,19 @@ static void densify_keeps_samples_and_flat_water(void **state)
 
 /* ---- tiles ---- */
 
-static void tile_size_suits_the_raster(void **state)
+static void one_tile_holds_the_raster(void **state)
 {
     (void)state;
-    assert_int_equal(bake_choose_tile_log2(3, 5, 5), 3);
-    assert_int_equal(bake_choose_tile_log2(3, 2, 2), 3);
-    assert_int_equal(bake_choose_tile_log2(3, 1025, 1025), 10);
-    assert_int_equal(bake_choose_tile_log2(3, 1026, 1026), 7); /* 8 would add 55 % of padding */
-    assert_int_equal(bake_choose_tile_log2(3, 13000, 5000), 10);
-    assert_true(bake_choose_tile_log2(5, 17, 17) == 5);
+    assert_int_equal(bake_choose_tile_log2(3, 5, 5, 256), 3);
+    assert_int_equal(bake_choose_tile_log2(3, 2, 2, 256), 3);
+    assert_int_equal(bake_choose_tile_log2(3, 1025, 1025, 256), 10);
+    assert_int_equal(bake_choose_tile_log2(3, 1026, 2, 256), 11);
+    assert_int_equal(bake_choose_tile_log2(3, 5000, 13000, 256), 14);
+    assert_int_equal(bake_choose_tile_log2(5, 17, 17, 256), 5);
+    assert_int_equal(bake_choose_tile_log2(1, 100000, 3, 256), 16); /* the last level of keys */
+    assert_int_equal(bake_choose_tile_log2(3, 50000, 9, 90 * 256), 16);
+    /* 2^17 samples of 90 m end beyond 8388 km, and 3 * 2^15, too: 5 * 2^14 do not */
+    assert_int_equal(bake_choose_tile_log2(3, 70000, 9, 90 * 256), 14);
 }
 
 static ff_terrain_info small_info(uint16_t max_error)
@@ -203,8 +207,8 @@ static ff_terrain_info small_info(uint16_t max_error)
                               .hscale_q24 = 1 << 24 };
 }
 
-static void load_noise(bake_tile *tile, const ff_terrain_info *info, bake_grid *grid,
-                       uint32_t number)
+static void load_noise(whole_tile *tile, const ff_terrain_info *info, bake_grid *grid,
+                       const bake_grid *filled, uint32_t number)
 {
     uint16_t row[50];
     uint32_t seed = 77;
@@ -214,23 +218,22 @@ static void load_noise(bake_tile *tile, const ff_terrain_info *info, bake_grid *
             row[i] = (uint16_t)(20000 + 40 * j + (next_random(&seed) >> 23));
         assert_int_equal(bake_grid_write(grid, j, 0, 50, row), 0);
     }
-    assert_int_equal(bake_tile_open(tile, info), 0);
-    assert_int_equal(bake_tile_load(tile, grid, &BAKE_GRID_CLOSED, number), 0);
+    whole_tile_open(tile, info, grid, filled, number);
 }
 
 static void tile_repeats_the_rim(void **state)
 {
     ff_terrain_info info = small_info(0);
-    bake_tile tile;
+    whole_tile tile;
     bake_grid grid;
     uint16_t row[50];
     (void)state;
-    load_noise(&tile, &info, &grid, 1);
+    load_noise(&tile, &info, &grid, &BAKE_GRID_CLOSED, 1);
     assert_int_equal(bake_grid_read(&grid, 19, 0, 50, row), 0);
     assert_int_equal(tile.source[19 * 33 + 3], row[35]);
     assert_int_equal(tile.source[32 * 33 + 3], row[35]);
     assert_int_equal(tile.source[32 * 33 + 32], row[49]);
-    bake_tile_close(&tile);
+    whole_tile_close(&tile);
     bake_grid_close(&grid);
 }
 
@@ -239,13 +242,13 @@ static void tile_repeats_the_rim(void **state)
 static void check_records(uint16_t max_error)
 {
     ff_terrain_info info = small_info(max_error);
-    bake_tile tile;
+    whole_tile tile;
     bake_grid grid;
     int32_t value[FF_REFINED_HEIGHTS_MAX];
     uint16_t node[FF_NODE_HEIGHTS_MAX];
     ff_residuals residuals = { .value = value };
-    load_noise(&tile, &info, &grid, 0);
-    assert_int_equal(bake_tile_encode(&tile), 0);
+    load_noise(&tile, &info, &grid, &BAKE_GRID_CLOSED, 0);
+    whole_tile_encode(&tile);
     for (int i = 0; i < 20 * 33; i++) /* what is ground */
         assert_true(abs(tile.decoded[i] - tile.source[i]) <= max_error);
     size_t bytes = ff_decoder_bytes(&info);
@@ -282,7 +285,7 @@ static void check_records(uint16_t max_error)
     for (int q = 0; q < 4; q++)
         assert_true(ff_geometric_error_decode(residuals.child_error[q]) <= max_error);
     test_free(memory);
-    bake_tile_close(&tile);
+    whole_tile_close(&tile);
     bake_grid_close(&grid);
 }
 
@@ -338,18 +341,17 @@ static void records_tell_filled_nodes(void **state)
 {
     (void)state;
     ff_terrain_info info = small_info(0);
-    bake_tile tile;
+    whole_tile tile;
     bake_grid grid, filled;
     uint8_t marks[20 * 50] = { 0 };
     int32_t value[FF_REFINED_HEIGHTS_MAX];
     ff_residuals residuals = { .value = value };
     marks[6 * 50 + 37] = marks[19 * 50 + 49] = marks[8 * 50 + 40] = 1;
-    load_noise(&tile, &info, &grid, 1);
     assert_int_equal(bake_grid_open(&filled, 50, 20, 1), 0);
     for (uint32_t j = 0; j < 20; j++)
         assert_int_equal(bake_grid_write(&filled, j, 0, 50, marks + j * 50), 0);
-    assert_int_equal(bake_tile_load(&tile, &grid, &filled, 1), 0);
-    assert_int_equal(bake_tile_encode(&tile), 0);
+    load_noise(&tile, &info, &grid, &filled, 1);
+    whole_tile_encode(&tile);
     size_t bytes = ff_decoder_bytes(&info);
     void *memory = test_malloc(bytes);
     ff_decoder *decoder = ff_decoder_create(&info, memory, bytes);
@@ -378,7 +380,7 @@ static void records_tell_filled_nodes(void **state)
     }
     assert_in_range(told, 5, 12);
     test_free(memory);
-    bake_tile_close(&tile);
+    whole_tile_close(&tile);
     bake_grid_close(&grid);
     bake_grid_close(&filled);
 }
@@ -531,7 +533,7 @@ int main(void)
         cmocka_unit_test(fill_keeps_what_is_known),
         cmocka_unit_test(fill_from_a_single_sample),
         cmocka_unit_test(densify_keeps_samples_and_flat_water),
-        cmocka_unit_test(tile_size_suits_the_raster),
+        cmocka_unit_test(one_tile_holds_the_raster),
         cmocka_unit_test(tile_repeats_the_rim),
         cmocka_unit_test(marks_follow_the_heights),
         cmocka_unit_test(records_tell_filled_nodes),

@@ -1,7 +1,7 @@
 /* What is all prediction is not stored: records of a tile, and the ground that they lead to. */
 #include "../../protocol/codec/ff_codec.h"
 #include "../../protocol/shape/ff_shape.h"
-#include "../../tools/bake/bake_tile.h"
+#include "../rig/whole_tile.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -17,7 +17,7 @@
 typedef struct baked {
     ff_terrain_info info;
     bake_grid grid;
-    bake_tile tile;
+    whole_tile tile;
     void *memory;
     ff_decoder *decoder;
     size_t taken[BAKE_LEVELS_MAX], number[BAKE_LEVELS_MAX]; /* bytes and records, walking */
@@ -47,9 +47,8 @@ static void bake(baked *b, uint32_t tile, uint16_t height, uint16_t max_error)
             row[i] = (uint16_t)(1000 + (abs(i - 40) < 3 && abs(j - 10) < 3 ? height : 0));
         assert_int_equal(bake_grid_write(&b->grid, (uint32_t)j, 0, WIDTH, row), 0);
     }
-    assert_int_equal(bake_tile_open(&b->tile, &b->info), 0);
-    assert_int_equal(bake_tile_load(&b->tile, &b->grid, &BAKE_GRID_CLOSED, tile), 0);
-    assert_int_equal(bake_tile_encode(&b->tile), 0);
+    whole_tile_open(&b->tile, &b->info, &b->grid, &BAKE_GRID_CLOSED, tile);
+    whole_tile_encode(&b->tile);
     size_t bytes = ff_decoder_bytes(&b->info);
     b->memory = test_malloc(bytes);
     b->decoder = ff_decoder_create(&b->info, b->memory, bytes);
@@ -59,7 +58,7 @@ static void bake(baked *b, uint32_t tile, uint16_t height, uint16_t max_error)
 static void end(baked *b)
 {
     test_free(b->memory);
-    bake_tile_close(&b->tile);
+    whole_tile_close(&b->tile);
     bake_grid_close(&b->grid);
 }
 

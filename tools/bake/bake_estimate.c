@@ -24,7 +24,6 @@
 #define ROWS_APART        3    /* for roughness */
 #define MODEL_DEVIATION   0.04 /* of what is not sampled but reckoned */
 #define MEMORY_BYTES      (130.0 * (1 << 20))
-#define TILE_SAMPLE_BYTES 9.0
 #define DISK_SAMPLE_BYTES 12.0
 
 /* All that is found out. */
@@ -38,7 +37,7 @@ typedef struct estimate {
     int whole;           /* the only window is the ground */
     double inside;       /* part of the new grid that the source reaches */
     bake_guess heights;
-    double records; /* of heights */
+    double index; /* bytes of indexes and checksums of heights */
     bake_image_guess textures;
     double read_s, ground_s, encode_s;
     double share; /* of the samples that were made */
@@ -244,19 +243,19 @@ static bake_guess regress(const estimate *e, double roughness)
 }
 
 /* Bytes and records of the levels that are coarser than a window's, and of the roots: by the
- * record, as the windows' coarsest ones. `tiles_of_ground`: tiles, without their padding. */
-static void add_coarse(const estimate *e, double tiles_of_ground, double *all_bytes,
-                       double *all_records)
+ * record, as the windows' coarsest ones. `cells`: of ground. */
+static void add_coarse(const estimate *e, double cells, double *all_bytes, double *all_records)
 {
     const ff_terrain_info *info = &e->b->info;
     uint32_t above = ff_terrain_levels(info) - e->window[0].levels;
-    double bytes[2] = { 0 }, records[2] = { 0 }, roots = ff_shape_tiles(info);
+    double bytes[2] = { 0 }, records[2] = { 0 }, roots = ff_shape_tiles(info), refinements = 0;
     for (uint32_t i = 0; i < e->count; i++)
         for (uint32_t l = 0; l < 2 && l < e->window[i].levels; l++) {
             bytes[l] += (double)e->window[i].bytes[l];
             records[l] += (double)e->window[i].records[l];
         }
-    double refinements = tiles_of_ground * (pow(4, above) - 1) / 3;
+    for (uint32_t l = 0; l < above; l++)
+        refinements += fmax(roots, cells / pow(4, info->tile_log2 - l));
     *all_bytes += roots * bytes[0] / records[0] +
                   (records[1] > 0 ? refinements * bytes[1] / records[1] : 0);
     *all_records += roots + refinements;
@@ -275,8 +274,6 @@ static double refinement_records(const estimate *e)
 /* Bytes of all heights, from windows that are a part of the ground. */
 static int guess_heights(estimate *e)
 {
-    const ff_terrain_info *info = &e->b->info;
-    double tile_cells = pow(4, info->tile_log2);
     double ground = (e->place.grid.width - 1.0) * (e->place.grid.height - 1.0) * e->inside;
     bake_part whole = { 0, 0, e->b->ground.grid.width - 1, e->b->ground.grid.height - 1 };
     double roughness;
@@ -286,8 +283,9 @@ static int guess_heights(estimate *e)
     double cell = refinements.value / e->window_cells, fine = cell * ground;
     double share = fmin(1, e->count * e->window_cells / ground);
     e->heights.value = fine;
-    e->records = refinement_records(e) / e->window_cells * ground;
-    add_coarse(e, ground / tile_cells, &e->heights.value, &e->records);
+    double records = refinement_records(e) / e->window_cells * ground;
+    add_coarse(e, ground, &e->heights.value, &records);
+    e->index = SECTION_BYTES * (double)ff_terrain_levels(&e->b->info) + RECORD_BYTES * records;
     e->heights.deviation = hypot(refinements.deviation / e->window_cells * ground * sqrt(1 - share),
                                  MODEL_DEVIATION * fine);
     e->share = share;
@@ -297,9 +295,11 @@ static int guess_heights(estimate *e)
 /* The only window is the ground. */
 static void take_heights(estimate *e)
 {
-    for (uint32_t l = 0; l < e->window[0].levels; l++) {
-        e->heights.value += (double)e->window[0].bytes[l];
-        e->records += (double)e->window[0].records[l];
+    const bake_window_count *w = &e->window[0];
+    e->index = (double)w->index_bytes;
+    for (uint32_t l = 0; l < w->levels; l++) {
+        e->heights.value += (double)w->bytes[l];
+        e->index += FF_RECORD_CRC_BYTES * (double)w->records[l];
     }
     e->share = 1;
 }
@@ -328,18 +328,16 @@ static verdict conclude(const estimate *e)
     const ff_terrain_info *info = &b->info;
     double samples = (double)e->place.grid.width * e->place.grid.height, textures = 0;
     for (uint32_t l = 0; l < info->texture_levels; l++)
-        textures += fmax(1, samples / pow(4, info->tile_log2)) * pow(4, l);
-    uint32_t sections = ff_terrain_levels(info) + info->texture_levels,
-             jobs = b->options->jobs < ff_shape_tiles(info) ? b->options->jobs
-                                                            : ff_shape_tiles(info);
+        textures += fmax(1, samples / pow(4, info->tile_log2 - l));
+    uint32_t jobs = bake_tiles_workers(info, BAKE_BLOCK_LOG2, b->options->jobs);
     uint32_t about = bake_about_of(e->b, &e->place).byte_count;
-    double known = FF_PACK_HEADER_BYTES + about + SECTION_BYTES * (double)sections +
-                   RECORD_BYTES * (e->records + textures);
+    double known = FF_PACK_HEADER_BYTES + about + e->index +
+                   SECTION_BYTES * (double)info->texture_levels + RECORD_BYTES * textures;
     double spread = DEVIATIONS * hypot(e->heights.deviation, e->textures.deviation);
     verdict v = { .file_bytes = known + e->heights.value + e->textures.bytes,
                   .seconds = e->read_s + e->ground_s + e->textures.lattice_s +
                              (e->encode_s + e->textures.encode_s) / jobs,
-                  .memory_bytes = MEMORY_BYTES + TILE_SAMPLE_BYTES * pow(4, info->tile_log2) * jobs,
+                  .memory_bytes = MEMORY_BYTES + bake_tiles_bytes(info, BAKE_BLOCK_LOG2, jobs),
                   .disk_bytes = DISK_SAMPLE_BYTES * samples,
                   .spent_s = (double)(sys_time_us() - b->started_us) / 1e6 };
     v.low_bytes = fmax(known, v.file_bytes - spread);

@@ -34,7 +34,7 @@ int bake_fault(const ff_terrain_info *i, char *text, size_t room)
         int64_t value, low, high;
     } field[] = {
         { "node_log2", i->node_log2, 1, FF_NODE_LOG2_MAX },
-        { "tile_log2", log2, i->node_log2, FF_TILE_LOG2_MAX },
+        { "tile_log2", log2, i->node_log2, i->node_log2 + (int64_t)FF_KEY_LEVEL_MAX },
         { "flags", i->flags, 0, TERRAIN_FLAGS },
         { "tiles_x", i->tiles_x, 1, FF_KEY_TILES_MAX },
         { "tiles_y", i->tiles_y, 1, i->tiles_x ? FF_KEY_TILES_MAX / i->tiles_x : 0 },

@@ -140,7 +140,7 @@ static const sys_program program = {
         "encoded heights (PMTiles, MBTiles, folders), or raw 16 bit. Degrees, and planes far from "
         "true to scale, are projected to the local UTM zone; voids are filled and counted.",
     .more = "Memory: about 130 MiB for GDAL and its caches (more for inputs packed in large "
-            "blocks), plus 9 bytes x 4^N a job (9 MiB at N = 10), whatever the raster's size. "
+            "blocks), plus 9 MiB a job, whatever the raster's size and the tiles'. "
             "Disk while baking: about 12 bytes a sample beside OUT.ffp, or in FARFIELD_TMP or "
             "TMPDIR when set.",
     .option = row,
@@ -162,7 +162,8 @@ int bake_options_parse(bake_options *o, int argc, char **argv)
     int rc = sys_options_parse(&program, o, argc, argv);
     if (rc) return rc;
     if (!o->heights_path) return bake_fail("HEIGHTS is missing; try --help");
-    if (o->tile_log2 && (o->tile_log2 < o->node_log2 || o->tile_log2 > o->node_log2 + 15))
+    if (o->tile_log2 &&
+        (o->tile_log2 < o->node_log2 || o->tile_log2 > o->node_log2 + FF_KEY_LEVEL_MAX))
         return bake_fail("--tile-log2 %u: not from --node-log2 %u up", o->tile_log2, o->node_log2);
     if (o->no_project && o->target_epsg)
         return bake_fail("--no-project and --t-srs exclude each other");

@@ -29,6 +29,7 @@ extern const sys_option_type bake_raw_option, bake_nodata_option, bake_box_optio
 #define BAKE_SPACING SYS_REAL(1.0 / FF_WU_PER_METRE, 1e6, "m")
 #define BAKE_HEIGHT  SYS_REAL(-1e6, 1e6, "m")
 #define BAKE_LEVELS  SYS_WHOLE(1, FF_KEY_LEVEL_MAX, "")
+#define BAKE_TILES   SYS_WHOLE(1, FF_TILE_LOG2_MAX, "")
 #define BAKE_NODES   SYS_WHOLE(1, FF_NODE_LOG2_MAX, "")
 
 /* clang-format off */
@@ -73,8 +74,8 @@ extern const sys_option_type bake_raw_option, bake_nodata_option, bake_box_optio
     OPTION(sys_real, max_error_m, "max-error", "M", "0", SYS_REAL(0, 1e6, "m"), \
            "no decoded height is further from its source") \
     OPTION(sys_whole, node_log2, "node-log2", "K", "3", BAKE_NODES, "nodes of (2^K+1)^2 heights") \
-    OPTION(sys_whole, tile_log2, "tile-log2", "N", NULL, BAKE_LEVELS, \
-           "tiles of (2^N+1)^2 heights; default: at most 10, little padding") \
+    OPTION(sys_whole, tile_log2, "tile-log2", "N", NULL, BAKE_TILES, \
+           "tiles of (2^N+1)^2 heights; default: one tile for all") \
     OPTION(sys_whole, texture_log2, "texture-log2", "T", "6", SYS_WHOLE(4, 8, ""), \
            "textures of (2^T)^2 texels") \
     OPTION(sys_whole, texture_levels, "texture-levels", "L", NULL, BAKE_LEVELS, \

@@ -7,7 +7,6 @@
 #include "raster/bake_fill.h"
 #include "raster/bake_given.h"
 #include "bake_fault.h"
-#include "bake_jobs.h"
 #include "bake_leftovers.h"
 #include "raster/bake_project.h"
 #include "raster/bake_reference.h"
@@ -20,9 +19,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define TILE_LOG2_DEFAULT 10
-#define PADDING_MAX       1.5 /* padded samples to samples, for the default tile size */
-#define GDAL_CACHE_BYTES  (48 << 20)
+#define GDAL_CACHE_BYTES (48 << 20)
 
 /* ---- ground ---- */
 
@@ -99,14 +96,20 @@ static int make_ground(bake *b)
 
 /* ---- the terrain's description ---- */
 
-uint32_t bake_choose_tile_log2(uint32_t node_log2, uint32_t width, uint32_t height)
+/* 1 when tiles of 2^n along the longer side end where places still fit int32_t. */
+static int tiles_fit(uint32_t n, uint32_t samples, uint32_t spacing_wu)
 {
-    for (uint32_t n = TILE_LOG2_DEFAULT; n > node_log2; n--) {
-        double tile = (double)(1u << n), columns = ceil((width - 1) / tile),
-               rows = ceil((height - 1) / tile);
-        if (columns * rows * tile * tile <= PADDING_MAX * (width - 1.0) * (height - 1.0)) return n;
-    }
-    return node_log2;
+    uint64_t tiles = ((samples - 2) >> n) + 1;
+    return (tiles << n) * spacing_wu <= INT32_MAX;
+}
+
+uint32_t bake_choose_tile_log2(uint32_t node_log2, uint32_t width, uint32_t height,
+                               uint32_t spacing_wu)
+{
+    uint32_t samples = width > height ? width : height, n = node_log2;
+    while (n < node_log2 + FF_KEY_LEVEL_MAX && (samples - 2) >> n) n++;
+    while (n > node_log2 && !tiles_fit(n, samples, spacing_wu)) n--;
+    return n;
 }
 
 static void describe_place(const bake_ground *ground, ff_terrain_info *info)
@@ -128,7 +131,8 @@ int bake_describe(bake *b)
     uint32_t width = b->heights.width, height = b->heights.height;
     info->node_log2 = (uint8_t)o->node_log2;
     info->tile_log2 = (uint8_t)(o->tile_log2 ? o->tile_log2
-                                             : bake_choose_tile_log2(o->node_log2, width, height));
+                                             : bake_choose_tile_log2(o->node_log2, width, height,
+                                                                     info->spacing_wu));
     info->codec = (uint8_t)o->codec;
     if (o->densify > 1) info->flags |= FF_TERRAIN_DENSIFIED;
     ff_shape_cover(info, width, height);
@@ -145,52 +149,25 @@ int bake_describe(bake *b)
 
 /* ---- tiles ---- */
 
-static int make_tile(void *context, int worker, uint32_t job)
+static int take_records(void *context, uint32_t section, const bake_blob *records,
+                        const bake_blob *above)
 {
     bake *b = context;
-    bake_tile *tile = &b->tile[worker];
-    if (bake_tile_load(tile, &b->heights, &b->filled, job) || bake_tile_encode(tile)) return -1;
-    for (uint32_t l = 0; l < b->image.levels; l++) {
-        bake_blob_clear(&b->texture[worker][l]);
-        if (bake_texture_encode(&b->image, &b->info, b->options->texture_quality, job, l,
-                                &b->texture[worker][l]))
-            return -1;
-    }
-    return 0;
-}
-
-static int take_tile(void *context, int worker, uint32_t job)
-{
-    bake *b = context;
-    uint32_t levels = ff_terrain_levels(&b->info);
-    const bake_blob *level = b->tile[worker].level, *texture = b->texture[worker];
-    (void)job;
-    for (uint32_t l = 0; l < levels; l++)
-        if (pack_writer_add(&b->writer, l, &level[l], l ? &level[l - 1] : NULL)) return -1;
-    for (uint32_t l = 0; l < b->image.levels; l++)
-        if (pack_writer_add(&b->writer, levels + l, &texture[l], l ? &texture[l - 1] : level))
-            return -1;
-    return 0;
+    return pack_writer_add(&b->writer, section, records, above);
 }
 
 static int make_tiles(bake *b)
 {
-    uint32_t tiles = ff_shape_tiles(&b->info);
-    int workers = b->options->jobs < tiles ? (int)b->options->jobs : (int)tiles;
-    b->tile = calloc((size_t)workers, sizeof *b->tile);
-    b->texture = calloc((size_t)workers, sizeof *b->texture);
-    int rc = b->tile && b->texture ? 0 : bake_fail("out of memory");
-    for (int w = 0; !rc && w < workers; w++) rc = bake_tile_open(&b->tile[w], &b->info);
-    bake_jobs jobs = { "tiles", tiles, workers, b, make_tile, take_tile };
-    if (!rc) rc = bake_jobs_run(&jobs);
-    for (int w = 0; w < workers; w++) {
-        if (b->tile) bake_tile_close(&b->tile[w]);
-        for (uint32_t l = 0; b->texture && l < BAKE_TEXTURE_LEVELS_MAX; l++)
-            bake_blob_free(&b->texture[w][l]);
-    }
-    free(b->tile);
-    free(b->texture);
-    return rc;
+    bake_tiles tiles = { .info = &b->info,
+                         .heights = &b->heights,
+                         .filled = &b->filled,
+                         .image = &b->image,
+                         .texture_quality = (int)b->options->texture_quality,
+                         .block_log2 = BAKE_BLOCK_LOG2,
+                         .jobs = b->options->jobs,
+                         .context = b,
+                         .take = take_records };
+    return bake_tiles_make(&tiles);
 }
 
 /* ---- what was made ---- */

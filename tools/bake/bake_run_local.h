@@ -5,7 +5,7 @@
 #include "image/bake_image.h"
 #include "raster/bake_quantise.h"
 #include "bake_run.h"
-#include "bake_tile.h"
+#include "bake_tiles.h"
 #include "pack_writer.h"
 
 /* One per run. */
@@ -18,8 +18,6 @@ typedef struct bake {
     bake_grid marks;   /* of filled samples, as the ground is; closed: there are none */
     bake_grid filled;  /* the same beside the heights, a byte each */
     bake_image image;
-    bake_tile *tile; /* one per job */
-    bake_blob (*texture)[BAKE_TEXTURE_LEVELS_MAX];
     pack_writer writer;
     uint8_t about[FF_ABOUT_BYTES_MAX];
     int64_t started_us;

@@ -62,24 +62,56 @@ static int make_samples(const bake *b, const bake_plan *plan, const bake_window 
     return rc ? rc : bake_densify(&ground->grid, ground->geotransform, b->options->densify);
 }
 
+/* Of a window, while its records come. */
+typedef struct counting {
+    bake_window_count *count;
+    uint32_t length_max[BAKE_LEVELS_MAX];
+} counting;
+
+static int count_records(void *context, uint32_t section, const bake_blob *records,
+                         const bake_blob *above)
+{
+    counting *c = context;
+    (void)above;
+    for (size_t i = 0; i < records->record_count; i++) {
+        c->count->records[section] += records->length[i] > 0;
+        if (records->length[i] > c->length_max[section])
+            c->length_max[section] = records->length[i];
+    }
+    c->count->bytes[section] += records->byte_count;
+    return 0;
+}
+
+/* What ff_pack_section_at's sections have: roots no places, refinements one for each child of a
+ * record above, the first ones for each root. */
+static void count_indexes(counting *c)
+{
+    const uint64_t *records = c->count->records;
+    for (uint32_t l = 0; l < c->count->levels; l++) {
+        ff_index index = { .records = (uint32_t)records[l] };
+        if (l) index.places = records[l - 1] * (l > 1 ? 4 : 1);
+        while (c->length_max[l] >> index.length_bits) index.length_bits++;
+        c->count->index_bytes += ff_index_bytes(&index);
+    }
+}
+
 /* Bakes heights in tiles, and counts their records. */
 static int encode(const ff_terrain_info *info, const bake_grid *heights, bake_window_count *count)
 {
-    bake_tile tile;
     bake_grid none = BAKE_GRID_CLOSED;
-    if (bake_tile_open(&tile, info)) return -1;
-    int rc = 0;
+    bake_image no_image = { .levels = 0 };
+    counting c = { .count = count };
+    bake_tiles tiles = { .info = info,
+                         .heights = heights,
+                         .filled = &none,
+                         .image = &no_image,
+                         .block_log2 = BAKE_BLOCK_LOG2,
+                         .jobs = 1,
+                         .context = &c,
+                         .take = count_records };
     count->levels = ff_terrain_levels(info);
-    for (uint32_t number = 0; !rc && number < ff_shape_tiles(info); number++) {
-        rc = bake_tile_load(&tile, heights, &none, number) || bake_tile_encode(&tile) ? -1 : 0;
-        for (uint32_t l = 0; !rc && l < count->levels; l++) {
-            const bake_blob *level = &tile.level[l];
-            for (size_t i = 0; i < level->record_count; i++)
-                count->records[l] += level->length[i] > 0;
-            count->bytes[l] += level->byte_count;
-        }
-    }
-    bake_tile_close(&tile);
+    int rc = bake_tiles_make(&tiles);
+    count_indexes(&c);
     return rc;
 }
 

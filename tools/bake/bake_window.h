@@ -14,6 +14,7 @@ typedef struct bake_window_count {
     uint32_t levels;                   /* sections: roots, then refinements */
     uint64_t records[BAKE_LEVELS_MAX]; /* of each, that are stored */
     uint64_t bytes[BAKE_LEVELS_MAX];
+    uint64_t index_bytes;      /* of all sections */
     double ground_s, encode_s; /* processor time */
     double roughness;          /* of the source there: bake_roughness */
 } bake_window_count;

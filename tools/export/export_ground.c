@@ -7,41 +7,46 @@
 #include "export_ground_local.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
-#define Q24 16777216.0
+#define Q24      16777216.0
+#define PROGRESS 1000
 
-/* ---- tiles of a window ---- */
+/* ---- nodes of a window ---- */
 
-/* Places of the first and the last tile that have points of the window along an axis, of tiles
- * that are so many points wide. */
-static void tile_range(uint32_t first, uint32_t count, uint32_t tile_points, uint32_t tiles,
-                       uint32_t range[2])
+/* 1 when the points first .. first + count touch those of a window, made finer. */
+static int meets_along(uint64_t first, uint64_t count, uint64_t from, uint64_t width,
+                       uint32_t finer_log2)
 {
-    range[0] = first / tile_points;
-    range[1] = (first + count - 1) / tile_points;
-    /* a rim is the last of a tile and the first of the next one, which the last tile has not */
-    if (range[0] >= tiles) range[0] = tiles - 1;
-    if (range[1] >= tiles) range[1] = tiles - 1;
+    return first <= (from + width - 1) << finer_log2 && first + count >= from << finer_log2;
 }
 
-int export_each_tile(const export_ground *ground, uint32_t tile_points, export_tile_fn visit,
-                     void *context)
+int export_meets(const export_ground *ground, ff_key key, uint32_t points, uint32_t finer_log2)
 {
     const ff_terrain_info *info = &ground->unpack->pack.header.info;
     const export_window *w = &ground->window;
-    ff_sheet tiles = ff_shape_sheet_tiles(info);
-    uint32_t count = ff_shape_tiles(info), columns[2], rows[2];
-    tile_range(w->left, w->width, tile_points, tiles.x, columns);
-    tile_range(w->bottom, w->height, tile_points, tiles.y, rows);
-    for (uint32_t tile = 0; tile < count; tile++) {
-        ff_sheet at = ff_shape_sheet(info, tile);
-        int inside = at.x >= columns[0] && at.x <= columns[1] && at.y >= rows[0] && at.y <= rows[1];
-        if (inside && visit(context, tile)) return -1;
-        bake_progress("reading", tile + 1, count);
-    }
-    return 0;
+    uint32_t level = ff_key_level(key), code = ff_key_code(key);
+    ff_sheet at = ff_shape_sheet(info, ff_key_tile(key));
+    uint64_t x = ((uint64_t)at.x << level) + ff_morton_x(code),
+             y = ((uint64_t)at.y << level) + ff_morton_y(code);
+    return ff_shape_has_ground(info, key) &&
+           meets_along(x * points, points, w->left, w->width, finer_log2) &&
+           meets_along(y * points, points, w->bottom, w->height, finer_log2);
+}
+
+int export_meets_samples(const export_ground *ground, ff_key key)
+{
+    const ff_terrain_info *info = &ground->unpack->pack.header.info;
+    return export_meets(ground, key, 1u << (info->tile_log2 - ff_key_level(key)),
+                        ff_terrain_levels(info) - 1 - ground->level);
+}
+
+void export_reading(const export_ground *ground, ff_key key, uint32_t level)
+{
+    uint32_t down = level - ff_key_level(key);
+    uint64_t each = UINT64_C(1) << 2 * level,
+             all = each * ff_shape_tiles(&ground->unpack->pack.header.info),
+             done = each * ff_key_tile(key) + (((uint64_t)ff_key_code(key) + 1) << 2 * down);
+    bake_progress("reading", (uint32_t)(done * PROGRESS / all), PROGRESS);
 }
 
 int export_put_row(const export_ground *ground, uint32_t column, uint32_t row, uint32_t count,
@@ -57,57 +62,42 @@ int export_put_row(const export_ground *ground, uint32_t column, uint32_t row, u
 
 /* ---- heights ---- */
 
-typedef struct height_reader {
-    const export_ground *ground;
-    uint16_t *heights; /* of a tile */
-    bake_rims known;
-} height_reader;
+static int wants(void *context, ff_key key) { return export_meets_samples(context, key); }
 
-/* What a tile does not know of rims that others have written stays as those know it. */
-static int put_tile_row(const height_reader *reader, uint32_t column, uint32_t row, uint32_t side,
-                        uint32_t j)
+/* What a block does not know of rims that those before it have written stays as those know it. */
+static int put_block_row(const export_ground *ground, uint32_t column, uint32_t row, uint32_t side,
+                         const uint16_t *heights, const uint8_t *known, int on_rim)
 {
-    const export_ground *ground = reader->ground;
-    const uint16_t *heights = reader->heights + (size_t)j * side;
-    uint32_t first = column > ground->window.left && !reader->known.west[j];
-    int all = j > 0 || row <= ground->window.bottom || !memchr(reader->known.south, 0, side);
-    if (all)
-        return export_put_row(ground, column + first, row + j, side - first,
+    uint32_t first = known && column > ground->window.left && !known[0];
+    if (!known || !on_rim || row <= ground->window.bottom)
+        return export_put_row(ground, column + first, row, side - first,
                               (const uint8_t *)(heights + first));
     for (uint32_t i = first; i < side; i++)
-        if (reader->known.south[i] &&
-            export_put_row(ground, column + i, row, 1, (const uint8_t *)(heights + i)))
+        if (known[i] && export_put_row(ground, column + i, row, 1, (const uint8_t *)(heights + i)))
             return -1;
     return 0;
 }
 
-static int read_tile(void *context, uint32_t tile)
+static int take_block(void *context, ff_key key, uint32_t side, const uint16_t *heights,
+                      const uint8_t *known)
 {
-    height_reader *reader = context;
-    const export_ground *ground = reader->ground;
-    const ff_terrain_info *info = &ground->unpack->pack.header.info;
-    uint32_t side = bake_unpack_side(info, ground->level);
-    ff_sheet at = ff_shape_sheet(info, tile);
-    if (bake_unpack_tile(ground->unpack, tile, ground->level, reader->heights, &reader->known))
-        return -1;
+    const export_ground *ground = context;
+    uint32_t level = ff_key_level(key), code = ff_key_code(key);
+    ff_sheet at = ff_shape_sheet(&ground->unpack->pack.header.info, ff_key_tile(key));
+    uint32_t column = ((at.x << level) + ff_morton_x(code)) * (side - 1),
+             row = ((at.y << level) + ff_morton_y(code)) * (side - 1);
     for (uint32_t j = 0; j < side; j++)
-        if (put_tile_row(reader, at.x * (side - 1), at.y * (side - 1), side, j)) return -1;
+        if (put_block_row(ground, column, row + j, side, heights + (size_t)j * side,
+                          known ? known + (size_t)j * side : NULL, j == 0))
+            return -1;
+    export_reading(ground, key, level);
     return 0;
 }
 
-static int read_heights(const export_ground *ground)
+static int read_heights(export_ground *ground)
 {
-    uint32_t side = bake_unpack_side(&ground->unpack->pack.header.info, ground->level);
-    height_reader reader = { ground,
-                             malloc((size_t)side * side * sizeof(uint16_t)),
-                             { malloc(side), malloc(side) } };
-    int rc = reader.heights && reader.known.west && reader.known.south
-                 ? export_each_tile(ground, side - 1, read_tile, &reader)
-                 : bake_fail("out of memory");
-    free(reader.heights);
-    free(reader.known.west);
-    free(reader.known.south);
-    return rc;
+    const bake_unpack_walk walk = { ground, wants, take_block };
+    return bake_unpack_heights(ground->unpack, ground->level, &walk);
 }
 
 static void describe_heights(export_ground *ground)

@@ -1,8 +1,8 @@
 /* The ground of a pack at one level, or a part of it, as a raster that is read by windows of any
  * reference system.
  *
- * The level is decoded once, into temporary files: memory does not grow with the pack, but with its
- * tiles (2 bytes x 4^tile_log2). To read heights of 65 x 65 points in degrees:
+ * The level is decoded once, into temporary files: memory does not grow with the pack. To read
+ * heights of 65 x 65 points in degrees:
  *
  *   export_ground ground;
  *   export_view view;                               (export_view.h)

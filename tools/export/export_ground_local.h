@@ -10,11 +10,13 @@ int export_ground_begin(export_ground *ground, const bake_box *region, uint32_t 
 /* Opens the data set, unless `rc` tells that reading failed: then all is closed. 0 or -1 (said). */
 int export_ground_finish(export_ground *ground, int rc);
 
-typedef int (*export_tile_fn)(void *context, uint32_t tile);
-/* Calls `visit` for every tile that has points of the window, of tiles that are so many points
- * wide, until one answers -1. 0 or -1. */
-int export_each_tile(const export_ground *ground, uint32_t tile_points, export_tile_fn visit,
-                     void *context);
+/* 1 when a node of so many points along its side has ground, and points of the window. Where the
+ * points are finer than the window's lattice, so many times two. */
+int export_meets(const export_ground *ground, ff_key key, uint32_t points, uint32_t finer_log2);
+/* The same of heights, whatever the node's level. */
+int export_meets_samples(const export_ground *ground, ff_key key);
+/* Tells how far a walk over the nodes of `level` is that has come to `key` or beyond. */
+void export_reading(const export_ground *ground, ff_key key, uint32_t level);
 /* Writes what lies in the window of a row of cells that begins at a point of the lattice. 0 or -1
  * (said). */
 int export_put_row(const export_ground *ground, uint32_t column, uint32_t row, uint32_t count,

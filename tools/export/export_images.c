@@ -73,21 +73,21 @@ static int read_texture(image_reader *reader, ff_key key, uint32_t column, uint3
     return 0;
 }
 
-static int read_tile(void *context, uint32_t tile)
+/* Reads the textures of the level below a node that meet the window. */
+static int read_below(image_reader *reader, ff_key key)
 {
-    image_reader *reader = context;
     const ff_terrain_info *info = &reader->ground->unpack->pack.header.info;
-    uint32_t level = reader->ground->level, cells = (1u << info->texture_log2) - 1;
-    ff_sheet at = ff_shape_sheet(info, tile);
-    for (uint32_t code = 0; code >> (2 * level) == 0; code++) {
-        uint32_t column = ((at.x << level) + ff_morton_x(code)) * cells,
-                 row = ((at.y << level) + ff_morton_y(code)) * cells;
-        const export_window *w = &reader->ground->window;
-        if (column >= w->left + w->width || column + cells < w->left ||
-            row >= w->bottom + w->height || row + cells < w->bottom)
-            continue;
-        if (read_texture(reader, ff_key_make(tile, level, code), column, row)) return -1;
+    uint32_t level = ff_key_level(key), down = reader->ground->level - level,
+             cells = (1u << info->texture_log2) - 1;
+    if (!export_meets(reader->ground, key, cells << down, 0)) return 0;
+    if (!down) {
+        ff_sheet at = ff_shape_sheet(info, ff_key_tile(key));
+        export_reading(reader->ground, key, level);
+        return read_texture(reader, key, ((at.x << level) + ff_morton_x(ff_key_code(key))) * cells,
+                            ((at.y << level) + ff_morton_y(ff_key_code(key))) * cells);
     }
+    for (uint32_t q = 0; q < 4; q++)
+        if (read_below(reader, ff_key_child(key, q))) return -1;
     return 0;
 }
 
@@ -100,10 +100,9 @@ static int read_textures(export_ground *ground)
         return bake_fail("cannot make a temporary file: %s", strerror(errno));
     size_t bytes = (size_t)RGB << (2 * info->texture_log2);
     image_reader reader = { ground, malloc(bytes), malloc(bytes), 0 };
-    uint32_t tile_texels = ((1u << info->texture_log2) - 1) << ground->level;
-    int rc = reader.rgb && reader.enlarged
-                 ? export_each_tile(ground, tile_texels, read_tile, &reader)
-                 : bake_fail("out of memory");
+    int rc = reader.rgb && reader.enlarged ? 0 : bake_fail("out of memory");
+    for (uint32_t tile = 0; !rc && tile < ff_shape_tiles(info); tile++)
+        rc = read_below(&reader, ff_key_make(tile, 0, 0));
     if (reader.missing)
         bake_note("%" PRIu64 " textures are not in the pack: black", reader.missing);
     free(reader.rgb);

@@ -13,11 +13,6 @@ static const ff_terrain_info *info_of(const export_ground *ground)
     return &ground->unpack->pack.header.info;
 }
 
-static uint32_t tile_points(const export_ground *ground)
-{
-    return bake_unpack_side(info_of(ground), ground->level) - 1;
-}
-
 /* ---- geometric errors ---- */
 
 typedef struct error_search {
@@ -30,48 +25,49 @@ static void raise(uint32_t *most, uint32_t steps)
     if (steps > *most) *most = steps;
 }
 
-/* 1 when the node shows some of the window, more than its rim: what lies on that is known as well
- * as the best of the nodes that share it. */
+/* 1 when the window shows more of a node than its rim: what lies on that is known as well as by the
+ * best of the nodes that share it. */
 static int in_window(const export_ground *ground, ff_key key)
 {
     const export_window *w = &ground->window;
     const ff_terrain_info *info = info_of(ground);
     ff_sheet tile = ff_shape_sheet(info, ff_key_tile(key));
-    uint32_t level = ff_key_level(key), log2 = info->node_log2 + ground->level - level;
+    uint32_t level = ff_key_level(key), log2 = info->tile_log2 - level,
+             skip = ff_terrain_levels(info) - 1 - ground->level;
     uint64_t column = (((uint64_t)tile.x << level) + ff_morton_x(ff_key_code(key))) << log2,
              row = (((uint64_t)tile.y << level) + ff_morton_y(ff_key_code(key))) << log2,
              edge = UINT64_C(1) << log2;
-    return column < (uint64_t)w->left + w->width - 1 && column + edge > w->left &&
-           row < (uint64_t)w->bottom + w->height - 1 && row + edge > w->bottom;
+    return column < (uint64_t)(w->left + w->width - 1) << skip &&
+           column + edge > (uint64_t)w->left << skip &&
+           row < (uint64_t)(w->bottom + w->height - 1) << skip &&
+           row + edge > (uint64_t)w->bottom << skip;
 }
 
 /* Of the nodes of the level, those below `key`. Samples below a stub lie on its triangles, up to a
  * step above them. */
 static int search_below(error_search *search, ff_key key, const bake_told *node)
 {
-    const bake_unpack *unpack = search->ground->unpack;
     bake_told told[4];
     uint32_t steps = ff_geometric_error_decode(node->error_code);
-    if (!ff_shape_has_ground(&unpack->pack.header.info, key) || !in_window(search->ground, key))
-        return 0;
+    if (!export_meets_samples(search->ground, key)) return 0;
     if (ff_key_level(key) == search->ground->level) {
         raise(&search->between, steps);
         return 0;
     }
     if (node->is_stub) {
-        raise(&search->samples, steps + 1);
+        if (in_window(search->ground, key)) raise(&search->samples, steps + 1);
         return 0;
     }
-    if (bake_unpack_told_below(unpack, key, node, told)) return -1;
+    if (bake_unpack_told_below(search->ground->unpack, key, node, told)) return -1;
     for (uint32_t q = 0; q < 4; q++)
         if (search_below(search, ff_key_child(key, q), &told[q])) return -1;
     return 0;
 }
 
-static int search_tile(void *context, uint32_t tile)
+static int search_tile(error_search *search, uint32_t tile)
 {
-    error_search *search = context;
     bake_told root;
+    if (!export_meets_samples(search->ground, ff_key_make(tile, 0, 0))) return 0;
     if (bake_unpack_told_root(search->ground->unpack, tile, &root)) return -1;
     return search_below(search, ff_key_make(tile, 0, 0), &root);
 }
@@ -79,7 +75,9 @@ static int search_tile(void *context, uint32_t tile)
 int export_told_error(const export_ground *ground, export_error *error)
 {
     error_search search = { ground, info_of(ground)->max_error, 0 };
-    int rc = export_each_tile(ground, tile_points(ground), search_tile, &search);
+    int rc = 0;
+    for (uint32_t tile = 0; !rc && tile < ff_shape_tiles(info_of(ground)); tile++)
+        rc = search_tile(&search, tile);
     /* there is nothing between the finest samples */
     if (ground->level + 1 == ff_terrain_levels(info_of(ground))) search.between = 0;
     raise(&search.between, search.samples);
@@ -89,7 +87,8 @@ int export_told_error(const export_ground *ground, export_error *error)
 
 /* ---- filled ground ---- */
 
-/* Nodes of the finest level, a byte each, row 0 south: 1 where some of the ground was filled. */
+/* Nodes of the finest level that have ground, a byte each, row 0 south: 1 where some of it was
+ * filled. */
 typedef struct filled_nodes {
     const export_ground *ground;
     bake_grid nodes;
@@ -110,19 +109,19 @@ static int mark_node(filled_nodes *filled, ff_key key)
 static int mark_below(filled_nodes *filled, ff_key key, const bake_told *node)
 {
     bake_told told[4];
+    if (!export_meets_samples(filled->ground, key)) return 0;
     if (ff_key_level(key) + 1 == ff_terrain_levels(info_of(filled->ground)))
         return mark_node(filled, key);
-    if (!ff_shape_has_ground(info_of(filled->ground), key)) return 0;
     if (bake_unpack_told_below(filled->ground->unpack, key, node, told)) return -1;
     for (uint32_t q = 0; q < 4; q++)
         if (told[q].has_filled && mark_below(filled, ff_key_child(key, q), &told[q])) return -1;
     return 0;
 }
 
-static int mark_tile(void *context, uint32_t tile)
+static int mark_tile(filled_nodes *filled, uint32_t tile)
 {
-    filled_nodes *filled = context;
     bake_told root;
+    if (!export_meets_samples(filled->ground, ff_key_make(tile, 0, 0))) return 0;
     if (bake_unpack_told_root(filled->ground->unpack, tile, &root)) return -1;
     return root.has_filled ? mark_below(filled, ff_key_make(tile, 0, 0), &root) : 0;
 }
@@ -175,14 +174,16 @@ static int spread(const filled_nodes *filled, bake_grid *mask)
 int export_told_filled(const export_ground *ground, bake_grid *mask)
 {
     const ff_terrain_info *info = info_of(ground);
-    uint32_t finest = ff_terrain_levels(info) - 1;
-    ff_sheet tiles = ff_shape_sheet_tiles(info);
+    ff_sheet samples = ff_shape_sheet_samples(info);
     filled_nodes filled = { .ground = ground };
-    if (bake_grid_open(&filled.nodes, tiles.x << finest, tiles.y << finest, 1)) return -1;
+    if (bake_grid_open(&filled.nodes, ((samples.x - 2) >> info->node_log2) + 1,
+                       ((samples.y - 2) >> info->node_log2) + 1, 1))
+        return -1;
     int rc = 0;
     if (ftruncate(filled.nodes.fd, (off_t)filled.nodes.width * filled.nodes.height))
         rc = bake_fail("cannot make a temporary file: %s", strerror(errno));
-    if (!rc) rc = export_each_tile(ground, tile_points(ground), mark_tile, &filled);
+    for (uint32_t tile = 0; !rc && tile < ff_shape_tiles(info); tile++)
+        rc = mark_tile(&filled, tile);
     if (!rc && filled.found) rc = spread(&filled, mask);
     bake_grid_close(&filled.nodes);
     return rc;

@@ -7,12 +7,12 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Distinct heights of the whole terrain at a level, neighbours' shared rims counted once. */
+/* Distinct heights of the ground at a level, neighbours' shared rims counted once. */
 static uint64_t lattice_samples(const ff_terrain_info *info, uint32_t level)
 {
-    uint32_t cells_log2 = info->node_log2 + level;
-    ff_sheet tiles = ff_shape_sheet_tiles(info);
-    return (((uint64_t)tiles.x << cells_log2) + 1) * (((uint64_t)tiles.y << cells_log2) + 1);
+    uint32_t cell_log2 = info->tile_log2 - info->node_log2 - level;
+    ff_sheet samples = ff_shape_sheet_samples(info);
+    return ((uint64_t)((samples.x - 2) >> cell_log2) + 2) * (((samples.y - 2) >> cell_log2) + 2);
 }
 
 static uint64_t source_samples(const ff_terrain_info *info)
@@ -27,7 +27,7 @@ typedef struct section_sum {
     uint64_t new_samples;   /* heights that no coarser level has; 0 for textures */
 } section_sum;
 
-/* New heights per level count every lattice point of the padded terrain once. */
+/* New heights per level count every lattice point of the ground once. */
 static section_sum sum_up(const ff_pack *pack, uint32_t number)
 {
     const ff_pack_section *section = &pack->header.section[number];

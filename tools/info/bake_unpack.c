@@ -39,18 +39,13 @@ void bake_unpack_close(bake_unpack *unpack)
     unpack->decoder_memory = unpack->decoder = NULL;
 }
 
-uint32_t bake_unpack_side(const ff_terrain_info *info, uint32_t level)
-{
-    return (1u << (info->node_log2 + level)) + 1;
-}
-
 static int fail_at(const bake_unpack *unpack, const char *what, ff_key key, int rc)
 {
     return bake_fail("%s: %s of tile %u, level %u, code %u: %s", unpack->path, what,
                      ff_key_tile(key), ff_key_level(key), ff_key_code(key), ff_error_text(rc));
 }
 
-/* Spreads a node or refined grid of `side` samples over a tile's grid; gather takes a node from
+/* Spreads a node or refined grid of `side` samples over a larger grid; gather takes a node from
  * it. */
 static void scatter(const uint16_t *in, uint32_t side, size_t pitch, size_t stride, uint16_t *out)
 {
@@ -81,19 +76,15 @@ typedef struct ends {
     unsigned leaf, stub;
 } ends;
 
-static int decode_root(const bake_unpack *unpack, uint32_t tile, size_t pitch, size_t stride,
-                       uint16_t *heights, ends *root)
+static int decode_root(const bake_unpack *unpack, ff_key key, uint16_t *node, ends *end)
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
     int32_t value[FF_REFINED_HEIGHTS_MAX];
-    uint16_t node[FF_NODE_HEIGHTS_MAX];
-    ff_key key = ff_key_make(tile, 0, 0);
     ff_residuals residuals = { .cells = ff_shape_cells(info, key, 0), .value = value };
     int rc = decode_residuals(unpack, FF_SECTION_ROOT, key, &residuals);
     if (rc >= 0) rc = ff_reconstruct_root(info, &residuals, node);
     if (rc < 0) return fail_at(unpack, "the root", key, rc);
-    scatter(node, ff_node_side(info), pitch, stride, heights);
-    *root = (ends){ residuals.leaf, residuals.stub };
+    *end = (ends){ residuals.leaf, residuals.stub };
     return 0;
 }
 
@@ -125,63 +116,106 @@ static int decode_refinement(const bake_unpack *unpack, ff_key key, size_t pitch
     return 0;
 }
 
-/* A tile on its way into a grid. */
-typedef struct tile_writer {
-    const bake_unpack *unpack;
-    bake_rims *known; /* NULL: not asked for */
-    size_t pitch;
-    int with_stubs; /* 1: what is below stubs is made, 0: it stays as it is */
-    int has_stubs;  /* some were met */
-} tile_writer;
+/* ---- blocks ---- */
 
-/* Of a node of the finest level wanted. */
-static void mark_known(const tile_writer *to, ff_key key)
+#define BLOCK_LEVELS 7 /* below a block's node */
+
+uint32_t bake_unpack_block_level(uint32_t level)
 {
-    uint32_t cells = 1u << to->unpack->pack.header.info.node_log2,
-             x = ff_morton_x(ff_key_code(key)), y = ff_morton_y(ff_key_code(key));
-    if (to->known && x == 0) memset(to->known->west + (size_t)y * cells, 1, cells + 1);
-    if (to->known && y == 0) memset(to->known->south + (size_t)x * cells, 1, cells + 1);
+    return level > BLOCK_LEVELS ? level - BLOCK_LEVELS : 0;
+}
+
+typedef struct walker {
+    const bake_unpack *unpack;
+    const bake_unpack_walk *walk;
+    uint32_t level; /* of the blocks' nodes */
+    uint32_t stride, side;
+    uint16_t *heights; /* of a block */
+    uint8_t *known;    /* the same, a byte each: 1 where one does not lie on a stub's triangles */
+    int with_stubs;    /* 1: what is below stubs is made; 0: it stays as it is, the rest is known */
+    int has_stubs;     /* some were met */
+} walker;
+
+static void mark_known(const walker *w, size_t at)
+{
+    uint32_t side = ff_node_side(&w->unpack->pack.header.info);
+    for (uint32_t j = 0; j < side && !w->with_stubs; j++)
+        memset(w->known + at + j * w->side, 1, side);
 }
 
 /* All below a node, whose heights stand at `at`, `stride` apart, down to where they stand side by
  * side. The child in the south-west comes last: a node without ground, which is made of predictions
  * alone, shares its western or southern rim, the last samples, with one that has ground. */
-static int decode_below(tile_writer *to, ff_key key, ends end, size_t stride, uint16_t *at)
+static int decode_below(walker *w, ff_key key, ends end, size_t stride, size_t at)
 {
     if (stride == 1) {
-        mark_known(to, key);
+        mark_known(w, at);
         return 0;
     }
-    to->has_stubs |= end.stub & 1u;
-    if (end.stub & 1u && !to->with_stubs) return 0;
-    if (decode_refinement(to->unpack, key, to->pitch, stride, at, &end)) return -1;
-    size_t edge = stride / 2 << to->unpack->pack.header.info.node_log2;
+    w->has_stubs |= end.stub & 1u;
+    if (end.stub & 1u && !w->with_stubs) return 0;
+    if (decode_refinement(w->unpack, key, w->side, stride, w->heights + at, &end)) return -1;
+    size_t edge = stride / 2 << w->unpack->pack.header.info.node_log2;
     for (uint32_t q = 4; q-- > 0;)
-        if (decode_below(to, ff_key_child(key, q), (ends){ end.leaf >> q, end.stub >> q },
-                         stride / 2, at + (q & 1) * edge + (q >> 1) * edge * to->pitch))
+        if (decode_below(w, ff_key_child(key, q), (ends){ end.leaf >> q, end.stub >> q },
+                         stride / 2, at + (q & 1) * edge + (q >> 1) * edge * w->side))
             return -1;
     return 0;
 }
 
-static int decode_tile(tile_writer *to, uint32_t tile, uint32_t level, uint16_t *heights)
+/* Where a stub meets finer ground its triangles give way: all else is written over them. */
+static int take_block(walker *w, ff_key key, ends end, const uint16_t *node)
 {
-    size_t stride = (size_t)1 << level;
-    ends root;
-    if (to->known) memset(to->known->west, 0, to->pitch);
-    if (to->known) memset(to->known->south, 0, to->pitch);
-    if (decode_root(to->unpack, tile, to->pitch, stride, heights, &root)) return -1;
-    return decode_below(to, ff_key_make(tile, 0, 0), root, stride, heights);
+    w->with_stubs = 1;
+    w->has_stubs = 0;
+    scatter(node, ff_node_side(&w->unpack->pack.header.info), w->side, w->stride, w->heights);
+    if (decode_below(w, key, end, w->stride, 0)) return -1;
+    w->with_stubs = 0;
+    memset(w->known, 0, (size_t)w->side * w->side);
+    if (w->has_stubs && decode_below(w, key, end, w->stride, 0)) return -1;
+    return w->walk->take(w->walk->context, key, w->side, w->heights,
+                         w->has_stubs ? w->known : NULL);
 }
 
-/* Where a stub meets finer ground its triangles give way: all else is written over them. */
-int bake_unpack_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level, uint16_t *heights,
-                     bake_rims *known)
+static int walk_below(walker *w, ff_key key, ends end, const uint16_t *node)
 {
-    tile_writer to = { unpack, known, bake_unpack_side(&unpack->pack.header.info, level), 1, 0 };
-    int rc = decode_tile(&to, tile, level, heights);
-    to.with_stubs = 0;
-    return rc || !to.has_stubs ? rc : decode_tile(&to, tile, level, heights);
+    const ff_terrain_info *info = &w->unpack->pack.header.info;
+    uint16_t refined[FF_REFINED_HEIGHTS_MAX], child[FF_NODE_HEIGHTS_MAX];
+    uint32_t side = ff_refined_side(info);
+    if (!ff_shape_has_ground(info, key) || !w->walk->wants(w->walk->context, key)) return 0;
+    if (ff_key_level(key) == w->level) return take_block(w, key, end, node);
+    scatter(node, ff_node_side(info), side, 2, refined);
+    if (decode_refinement(w->unpack, key, side, 2, refined, &end)) return -1;
+    for (uint32_t q = 0; q < 4; q++) {
+        ff_refined_child(info, refined, q, child);
+        if (walk_below(w, ff_key_child(key, q), (ends){ end.leaf >> q, end.stub >> q }, child))
+            return -1;
+    }
+    return 0;
 }
+
+int bake_unpack_heights(const bake_unpack *unpack, uint32_t level, const bake_unpack_walk *walk)
+{
+    const ff_terrain_info *info = &unpack->pack.header.info;
+    uint32_t top = bake_unpack_block_level(level), stride = 1u << (level - top),
+             side = (stride << info->node_log2) + 1;
+    size_t samples = (size_t)side * side;
+    walker w = { unpack,          walk, top, stride, side, malloc(samples * sizeof(uint16_t)),
+                 malloc(samples), 0,    0 };
+    int rc = w.heights && w.known ? 0 : bake_fail("out of memory");
+    for (uint32_t tile = 0; !rc && tile < ff_shape_tiles(info); tile++) {
+        ff_key key = ff_key_make(tile, 0, 0);
+        uint16_t root[FF_NODE_HEIGHTS_MAX];
+        ends end = { 0, 0 };
+        if (!walk->wants(walk->context, key)) continue;
+        rc = decode_root(unpack, key, root, &end) ? -1 : walk_below(&w, key, end, root);
+    }
+    free(w.heights);
+    free(w.known);
+    return rc;
+}
+
+/* ---- what is told ---- */
 
 static bake_told told_of(const ff_residuals *residuals, unsigned q)
 {

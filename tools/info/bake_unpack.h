@@ -25,17 +25,22 @@ typedef struct bake_told {
 int bake_unpack_open(bake_unpack *unpack, const char *path);
 void bake_unpack_close(bake_unpack *unpack);
 
-/* Heights along a tile's side at a level: 2^(k+level) + 1. */
-uint32_t bake_unpack_side(const ff_terrain_info *info, uint32_t level);
-/* Samples along a tile's western and southern rim, a byte each: 0 where one lies on a stub's
- * triangles, so that the tile beside may know it better. */
-typedef struct bake_rims {
-    uint8_t *west, *south;
-} bake_rims;
-/* Decodes one tile down to `level`, below stubs their triangles, into `heights` (side^2, south to
- * north). `known`: NULL, or room for a side's samples each. 0 or -1 (said). */
-int bake_unpack_tile(const bake_unpack *unpack, uint32_t tile, uint32_t level, uint16_t *heights,
-                     bake_rims *known);
+/* Who goes over the heights of a level, block by block: memory does not grow with a tile. */
+typedef struct bake_unpack_walk {
+    void *context;
+    /* 0: nothing is wanted of a node with ground, or of what is below it */
+    int (*wants)(void *context, ff_key key);
+    /* Takes what is below a node: side^2 heights of the level, south to north; below stubs those of
+     * their triangles. `known` is 0 for such: on a rim the block beside may know better. NULL:
+     * there are none. 0 or -1 (said). */
+    int (*take)(void *context, ff_key key, uint32_t side, const uint16_t *heights,
+                const uint8_t *known);
+} bake_unpack_walk;
+
+/* The level of the nodes that blocks are of, when the heights are those of `level`. */
+uint32_t bake_unpack_block_level(uint32_t level);
+/* Decodes all tiles down to `level`. 0 or -1 (said). */
+int bake_unpack_heights(const bake_unpack *unpack, uint32_t level, const bake_unpack_walk *walk);
 /* What is told of a tile's root, and of the four children of a node. 0 or -1 (said). */
 int bake_unpack_told_root(const bake_unpack *unpack, uint32_t tile, bake_told *told);
 int bake_unpack_told_below(const bake_unpack *unpack, ff_key key, const bake_told *node,

@@ -1,14 +1,12 @@
 /* farfield-info: what is inside a pack. */
 #include "../../client/farfield.h"
 #include "../../platform/options/sys_options.h"
-#include "../../protocol/shape/ff_shape.h"
 #include "bake_info.h"
 #include "../bake/bake_say.h"
 #include "bake_unpack.h"
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 /* clang-format off */
 #define INFO_OPTIONS(OPTION) \
@@ -36,12 +34,19 @@ static const sys_program program = {
     .option_count = sizeof row / sizeof *row
 };
 
+static int want_all(void *context, ff_key key) { return (void)context, (void)key, 1; }
+
+static int leave(void *context, ff_key key, uint32_t side, const uint16_t *heights,
+                 const uint8_t *known)
+{
+    return (void)context, (void)key, (void)side, (void)heights, (void)known, 0;
+}
+
 /* Checks the checksums of all records, then decodes every tile: intact bytes may still make no
  * sense. */
 static int verify(const bake_unpack *unpack)
 {
-    const ff_terrain_info *info = &unpack->pack.header.info;
-    uint32_t finest = ff_terrain_levels(info) - 1, side = bake_unpack_side(info, finest);
+    const bake_unpack_walk walk = { .wants = want_all, .take = leave };
     uint64_t bad;
     int rc = ff_pack_verify(&unpack->pack, &bad);
     if (rc == FF_ERR_CHECKSUM && bad)
@@ -49,12 +54,7 @@ static int verify(const bake_unpack *unpack)
     if (rc == FF_ERR_CHECKSUM) return bake_fail("%s: %s", unpack->path, ff_error_text(rc));
     if (rc) /* its bytes are sound, and records are */
         return bake_fail("%s: what it says of itself: %s", unpack->path, ff_error_text(rc));
-    uint16_t *heights = malloc((size_t)side * side * sizeof *heights);
-    if (!heights) return bake_fail("out of memory");
-    for (uint32_t tile = 0; !rc && tile < ff_shape_tiles(info); tile++)
-        rc = bake_unpack_tile(unpack, tile, finest, heights, NULL);
-    free(heights);
-    return rc;
+    return bake_unpack_heights(unpack, ff_terrain_levels(&unpack->pack.header.info) - 1, &walk);
 }
 
 int main(int argc, char **argv)

@@ -6,7 +6,7 @@ set -eu
 bin=$1 work=$2 here=$(dirname "$0")
 mkdir -p "$work"
 [ -f "$work/ground.raw" ] || "$here/bench_terrain.py" "$work"
-"$bin/farfield-bake" "$work/ground.raw" --raw 2049x2049 --scale 0.1 --spacing 50 --quiet --color "$work/ground.ppm" --texture-levels 3 \
+"$bin/farfield-bake" "$work/ground.raw" --raw 2049x2049 --scale 0.1 --spacing 50 --quiet --color "$work/ground.ppm" --texture-levels 4 \
     -o "$work/ground.ffp"
 "$bin/farfield-bake" "$work/ground.raw" --raw 2049x2049 --scale 0.1 --spacing 10 --codec rice --max-error 2 --quiet -o "$work/rice.ffp"
 dem=$("$here/trinidad.sh" "$work")

@@ -156,13 +156,13 @@ static int sample_image(const bake_picture *picture, const texel_place *place,
 }
 
 /* Makes a row of every second point of the finer lattice, weighted 1-2-1 along both axes; points
- * beyond the rim repeat the rim. */
+ * beyond its rim repeat it. */
 static void halve_row(uint8_t *const fine[3], uint32_t fine_width, uint32_t coarse_width,
                       uint8_t *out)
 {
     for (uint32_t i = 0; i < coarse_width; i++) {
-        size_t at = (size_t)2 * i, west = at ? at - 1 : at,
-               east = at + 1 < fine_width ? at + 1 : at;
+        size_t last = fine_width - 1, at = 2 * (size_t)i < last ? 2 * (size_t)i : last,
+               west = at ? at - 1 : at, east = at < last ? at + 1 : at;
         for (int c = 0; c < RGB; c++) {
             unsigned sum = 8;
             for (int r = 0; r < 3; r++) {
@@ -210,15 +210,18 @@ static uint32_t choose_levels(const bake_options *o, const bake_picture *picture
     return levels;
 }
 
-/* The lattices of all levels below a node of a sheet of `columns` x `rows` nodes. */
+/* The lattices of all levels from that of a node on, as far as nodes have ground: `samples` of it,
+ * less one, from the node's first. */
 static int make_lattices(const bake_picture *picture, const bake_ground *ground,
-                         const ff_terrain_info *info, ff_sheet node, uint32_t columns,
-                         uint32_t rows, bake_image *image, uint64_t *covered)
+                         const ff_terrain_info *info, ff_sheet node, ff_sheet samples,
+                         bake_image *image, uint64_t *covered)
 {
-    uint32_t steps = (1u << info->texture_log2) - 1, top = image->levels - 1;
+    uint32_t steps = (1u << info->texture_log2) - 1, top = image->levels - 1,
+             edge_log2 = info->tile_log2 - (info->texture_levels - image->levels);
     for (uint32_t l = 0; l <= top; l++)
-        if (bake_grid_open(&image->lattice[l], (columns * steps << l) + 1, (rows * steps << l) + 1,
-                           RGB))
+        if (bake_grid_open(&image->lattice[l],
+                           (((samples.x - 1) >> (edge_log2 - l)) + 1) * steps + 1,
+                           (((samples.y - 1) >> (edge_log2 - l)) + 1) * steps + 1, RGB))
             return -1;
     texel_place place = {
         .samples = (double)(1u << (info->tile_log2 - (info->texture_levels - 1u))) / steps,
@@ -252,8 +255,9 @@ int bake_image_part(const bake_picture *picture, const bake_ground *ground,
                     const ff_terrain_info *info, uint32_t level, ff_sheet node, bake_image *image)
 {
     uint64_t covered;
+    uint32_t edge = 1u << (info->tile_log2 - level);
     open_image(image, info->texture_levels - level);
-    return make_lattices(picture, ground, info, node, 1, 1, image, &covered);
+    return make_lattices(picture, ground, info, node, (ff_sheet){ edge, edge }, image, &covered);
 }
 
 int bake_image_make(const bake_options *o, const bake_ground *ground, ff_terrain_info *info,
@@ -261,12 +265,11 @@ int bake_image_make(const bake_options *o, const bake_ground *ground, ff_terrain
 {
     bake_picture picture;
     uint64_t covered;
-    ff_sheet tiles = ff_shape_sheet_tiles(info);
+    ff_sheet samples = { ground->grid.width - 1, ground->grid.height - 1 };
     open_image(image, 0);
     if (bake_picture_levels(o, ground, info, &picture)) return -1;
     image->levels = info->texture_levels;
-    int rc = make_lattices(&picture, ground, info, (ff_sheet){ 0, 0 }, tiles.x, tiles.y, image,
-                           &covered);
+    int rc = make_lattices(&picture, ground, info, (ff_sheet){ 0, 0 }, samples, image, &covered);
     if (!rc && !covered) rc = bake_fail("the image shows nothing of this ground");
     bake_picture_close(&picture);
     return rc;
@@ -292,17 +295,18 @@ static int read_texture(const bake_grid *lattice, uint32_t side, uint32_t column
 }
 
 int bake_texture_encode(const bake_image *image, const ff_terrain_info *info, int quality,
-                        uint32_t tile, uint32_t level, bake_blob *blob)
+                        ff_key node, uint32_t below, bake_blob *blob)
 {
-    uint32_t side = 1u << info->texture_log2;
-    ff_sheet at = ff_shape_sheet(info, tile);
+    uint32_t side = 1u << info->texture_log2, level = ff_key_level(node) + below;
+    ff_sheet tile = ff_shape_sheet(info, ff_key_tile(node));
     size_t capacity = (size_t)4 * side * side + 8192;
     uint8_t *rgb = malloc((size_t)side * side * RGB), *jpeg = malloc(capacity);
     int rc = rgb && jpeg ? 0 : bake_fail("out of memory");
-    for (uint32_t code = 0; !rc && code >> (2 * level) == 0; code++) {
-        uint32_t column = ((at.x << level) + ff_morton_x(code)) * (side - 1),
-                 row = ((at.y << level) + ff_morton_y(code)) * (side - 1);
-        if (!ff_shape_has_ground(info, ff_key_make(tile, level, code))) {
+    for (uint32_t i = 0; !rc && i >> (2 * below) == 0; i++) {
+        uint32_t code = ff_key_code(node) << 2 * below | i;
+        uint32_t column = ((tile.x << level) + ff_morton_x(code)) * (side - 1),
+                 row = ((tile.y << level) + ff_morton_y(code)) * (side - 1);
+        if (!ff_shape_has_ground(info, ff_key_make(ff_key_tile(node), level, code))) {
             rc = bake_blob_add(blob, NULL, 0);
             continue;
         }

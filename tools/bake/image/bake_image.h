@@ -26,9 +26,9 @@ int bake_image_make(const bake_options *options, const bake_ground *ground, ff_t
                     bake_image *image);
 void bake_image_close(bake_image *image);
 
-/* Appends the JPEGs of one tile and level, in Morton order, to `blob`. May run in several threads.
- * 0 or -1 (said). */
+/* Appends the JPEGs of all nodes so many levels below a node, in Morton order, to `blob`. May run
+ * in several threads. 0 or -1 (said). */
 int bake_texture_encode(const bake_image *image, const ff_terrain_info *info, int quality,
-                        uint32_t tile, uint32_t level, bake_blob *blob);
+                        ff_key node, uint32_t below, bake_blob *blob);
 
 #endif

@@ -38,7 +38,8 @@ static int encode_part(const sampling *s, const bake_image *image, double *root,
     *all = 0;
     for (uint32_t l = 0; !rc && l < image->levels; l++) {
         bake_blob_clear(&blob);
-        rc = bake_texture_encode(image, &one, s->options->texture_quality, 0, l, &blob);
+        rc = bake_texture_encode(image, &one, s->options->texture_quality, ff_key_make(0, 0, 0), l,
+                                 &blob);
         *all += (double)blob.byte_count;
         if (!l) *root = (double)blob.byte_count;
     }
