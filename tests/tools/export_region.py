@@ -162,6 +162,32 @@ def _():
             assert out["requests_failed"] == 0 and out["crack_frames"] == 0 and out["undrawn_px_percent"] < 0.5 and out["square_px_stub"] > 0, out
 
 
+@case("images of sea are left out, asked for by nobody, and exported as the sea; the same with any --jobs, and a part keeps the marks")
+def _():
+    rows, columns = np.mgrid[0:HEIGHT, 0:WIDTH] + 0.5
+    waves = np.array([np.clip(128 + 100 * np.sin(columns / (4 + band)) * np.cos(rows / 3), 0, 255) for band in range(3)])
+    sea = np.where(columns > 200, np.array([30, 60, 120])[:, None, None], waves).astype(np.uint8)
+    size_of = {}
+    for name, colours in ("waves", waves.astype(np.uint8)), ("sea", sea):
+        image = put(name + ".tif", colours, kind=gdal.GDT_Byte, place=PLACE)
+        for jobs in 1, 2:
+            done = run("bake", "land.tif", "-o", f"{name}{jobs}.ffp", "--color", image, "--texture-levels", 4, "--jobs", jobs)
+            assert done.returncode == 0, done.stderr
+        assert open(os.path.join(work, name + "1.ffp"), "rb").read() == open(os.path.join(work, name + "2.ffp"), "rb").read()
+        size_of[name] = sum(count for (kind, level), count in sections(name + "1.ffp").items() if kind == "texture")
+    assert size_of["sea"] < 0.75 * size_of["waves"], size_of
+    ours, place, _ = raster("sea1.ffp", "a.tif", "--images")
+    j, i = np.mgrid[0:ours.shape[1], 0:ours.shape[2]]
+    at_sea = place[0] + i * place[1] > PLACE[0] + 260 * SPACING  # images coarser by a level or two are blurred across the coast
+    assert abs(ours - np.array([30, 60, 120])[:, None, None]).max(axis=0)[at_sea].max() < 6
+    assert part("sea1.ffp", "all.ffp") == open(os.path.join(work, "sea1.ffp"), "rb").read()
+    assert told("sea1.ffp", "--region=" + REGIONS[0]) == len(part("sea1.ffp", "part.ffp", "--region=" + REGIONS[0]))
+    for pack in "sea1.ffp", "part.ffp":
+        for panorama in "off", "on":
+            flight = fly(pack, "--seconds", 40, "--speed", 1200, "--height", 300, "--panorama", panorama, "--back-plane", 3000)
+            assert flight["requests_failed"] == 0 and (panorama == "on" or flight["bytes_images"] > 0), (pack, panorama, flight["requests_failed"])
+
+
 @case("what cannot be cut is refused in one line")
 def _():
     refused_part("beside the pack", "land7.ffp", "x.ffp", "--region=20,45,21,46")

@@ -2,6 +2,7 @@
 #include "../../platform/sys.h"
 #include "../../protocol/ff_image.h"
 #include "../../protocol/shape/ff_shape.h"
+#include "../bake/bake_enlarge.h"
 #include "../bake/bake_say.h"
 #include "export_ground_local.h"
 
@@ -18,34 +19,6 @@ typedef struct image_reader {
     uint8_t *rgb, *enlarged; /* of a texture, top row first */
     uint64_t missing;
 } image_reader;
-
-/* A channel of the point of an image that lies at (x, y) from its south-west texel, in parts of
- * 2^depth to a texel. */
-static uint8_t channel_at(const uint8_t *rgb, uint32_t side, uint32_t depth, uint64_t x, uint64_t y,
-                          unsigned channel)
-{
-    uint64_t one = UINT64_C(1) << depth, right = x & (one - 1), up = y & (one - 1), sum = 0;
-    for (unsigned i = 0; i < 4; i++) {
-        uint64_t weight = (i & 1 ? right : one - right) * (i >> 1 ? up : one - up);
-        size_t column = (x >> depth) + (i & 1), row = side - 1 - (y >> depth) - (i >> 1);
-        if (weight) sum += weight * rgb[(row * side + column) * RGB + channel];
-    }
-    return (uint8_t)((sum + one * one / 2) >> 2 * depth);
-}
-
-/* The part of an image that lies over a node below the image's own. */
-static void enlarge(const image_reader *reader, ff_key image, ff_key node)
-{
-    uint32_t side = 1u << reader->ground->unpack->pack.header.info.texture_log2,
-             depth = ff_key_level(node) - ff_key_level(image), within = (1u << depth) - 1;
-    uint64_t west = (uint64_t)(ff_morton_x(ff_key_code(node)) & within) * (side - 1),
-             south = (uint64_t)(ff_morton_y(ff_key_code(node)) & within) * (side - 1);
-    uint8_t *to = reader->enlarged;
-    for (uint32_t row = side; row-- > 0;)
-        for (uint32_t i = 0; i < side; i++)
-            for (unsigned channel = 0; channel < RGB; channel++)
-                *to++ = channel_at(reader->rgb, side, depth, west + i, south + row, channel);
-}
 
 /* The image of the nearest ancestor stands for one that is not stored. */
 static int read_texture(image_reader *reader, ff_key key, uint32_t column, uint32_t row)
@@ -64,7 +37,8 @@ static int read_texture(image_reader *reader, ff_key key, uint32_t column, uint3
         return bake_fail("%s: the texture of tile %u, level %u, code %u: %s", unpack->path,
                          ff_key_tile(held), ff_key_level(held), ff_key_code(held),
                          ff_error_text(rc));
-    if (held != key) enlarge(reader, held, key);
+    if (held != key)
+        bake_enlarge(&unpack->pack.header.info, reader->rgb, held, key, reader->enlarged);
     const uint8_t *rgb = held == key ? reader->rgb : reader->enlarged;
     for (uint32_t j = 0; j < side; j++)
         if (export_put_row(reader->ground, column, row + j, side,
