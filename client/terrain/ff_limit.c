@@ -125,6 +125,22 @@ static unsigned bucket_of(uint32_t value)
     return bucket < BUCKETS ? bucket : BUCKETS - 1;
 }
 
+/* How many children of a node are in view, by the quarters of its box: all of them when it is far
+ * away, one when it is seen out of the middle of it. */
+static uint32_t quarters_in_view(const ff_tree *tree, const ff_box *box)
+{
+    const int64_t middle[2] = { box->lo[0] + (box->hi[0] - box->lo[0]) / 2,
+                                box->lo[1] + (box->hi[1] - box->lo[1]) / 2 };
+    uint32_t count = 0;
+    for (unsigned q = 0; q < 4; q++) {
+        ff_box quarter = *box;
+        for (unsigned axis = 0; axis < 2; axis++)
+            *(q >> axis & 1u ? &quarter.lo[axis] : &quarter.hi[axis]) = middle[axis];
+        count += !ff_box_beyond_view(tree, &quarter) && ff_box_in_view(tree, &quarter);
+    }
+    return count ? count : 1;
+}
+
 /* Nodes that splits of each value bring into view: those here already, or those to come. Returns
  * how many. */
 static uint32_t count_splits(const ff_tree *tree, int here, uint32_t nodes[BUCKETS])
@@ -139,9 +155,10 @@ static uint32_t count_splits(const ff_tree *tree, int here, uint32_t nodes[BUCKE
             ff_node_box(tree, node, &box);
             if (!ff_node_seen(tree, node, &box)) continue;
             unsigned bucket = bucket_of(node->value), levels = here ? 1 : FINER_LEVELS;
+            uint32_t quarters = quarters_in_view(tree, &box);
             for (unsigned k = 0; k < levels && level + k + 1 < ff_terrain_levels(&tree->info);
                  k++) {
-                uint32_t more = 3u << 2 * k;
+                uint32_t more = k ? 3 * quarters << 2 * (k - 1) : quarters - 1;
                 nodes[bucket] += more;
                 count += more;
                 if (bucket < LEVEL_BUCKETS) break;

@@ -219,7 +219,10 @@ static const ff_node *drawn_at(const ff_tree *tree, const int32_t place_wu[3], g
     FF_ASSERT(spot.tile < ff_shape_tiles(&tree->info));
     uint32_t slot = ff_tree_find(tree, ff_key_make(spot.tile, 0, 0));
     if (slot == FF_SLOT_NONE || !ff_tile_active(tree, spot.tile)) return NULL;
-    return node_at(tree, &tree->node[slot], &spot, at);
+    const ff_node *node = node_at(tree, &tree->node[slot], &spot, at);
+    ff_box box;
+    ff_node_box(tree, node, &box);
+    return ff_box_beyond_view(tree, &box) ? NULL : node;
 }
 
 /* z need not be the ground's: it is looked for under or over the point. */

@@ -20,14 +20,16 @@
 
 /* ---- memory ---- */
 
-/* Slots for all nodes of the terrain, or as many as may be. */
+/* Slots for all nodes of the terrain that have ground, or as many as may be. */
 static void choose_slots(fly_reference *reference)
 {
     ff_tree_desc *desc = &reference->tree_desc;
-    uint64_t all = ff_shape_tiles(&desc->info), sum = 0;
+    const ff_sheet samples = ff_shape_sheet_samples(&desc->info);
+    uint64_t sum = 0;
     for (uint32_t level = 0; level < ff_terrain_levels(&desc->info) && sum < NODES_MAX; level++) {
-        sum += all;
-        all *= 4;
+        uint32_t edge_log2 = desc->info.tile_log2 - level;
+        sum += (uint64_t)(((samples.x - 2) >> edge_log2) + 1) *
+               (((samples.y - 2) >> edge_log2) + 1);
     }
     desc->node_count = sum < NODES_MAX ? (uint32_t)(sum < 8 ? 8 : sum) : NODES_MAX;
     while (ff_tree_bytes(desc) > TREE_BYTES_MAX) desc->node_count /= 2;

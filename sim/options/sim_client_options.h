@@ -38,7 +38,7 @@ void sim_client_read(const char **quality_text, uint32_t triangles, const sys_si
     OPTION(sim_quality, quality_text, "quality", "Q", NULL, SYS_ANY, \
            "how fine the ground is drawn; default medium; with a budget of triangles (--balance) px:1. low, medium, high: 4, 2 and 1 pixels of error, and at " \
            "most a triangle for 24, 14 and 4 pixels. paper-low, paper-high: Hybrid's, 3:4 and " \
-           "9:8. These and the others: at most a triangle for 2 pixels") \
+           "9:8, their levels counted from a tile's root (farfield-bake --tile-log2 10). These and the others: at most a triangle for 2 pixels") \
     OPTION(sys_whole, triangles, "triangles", "N", NULL, \
            SYS_WHOLE(FF_TRIANGLES_MIN, SIM_BUDGET_MAX, ""), \
            "the most triangles of ground in a picture: where --quality asks for more, all of it " \

@@ -166,6 +166,28 @@ static void repeats(void **state)
     assert_memory_equal(triangles[0], triangles[1], sizeof triangles[0]);
 }
 
+/* One root for all of the ground: nodes of its coarse levels are in view by a part of them, and
+ * their splits bring as much. Over views all round, what comes is most of what may be drawn. */
+static void fetches_what_fits_of_one_root(void **state)
+{
+    (void)state;
+    uint64_t drawn = 0, views = 0;
+    terrain_fixture fx;
+    fixture_make(&fx, 3, 10, 1, 1, fixture_hills);
+    ff_quality quality = limited(FF_MEASURE_PIXELS, 1500);
+    for (int yaw = 0; yaw < 360; yaw += 30, views++) {
+        ff_view view = fixture_view_above(&fx, 5000, 5200, 400, yaw, -60);
+        fixture_tree(&fx, 2000, 64);
+        while (deliver_in_view(&fx, &view, &quality)) {
+        }
+        uint32_t triangles = fixture_stats(&fx).triangles;
+        assert_in_range(triangles, 1, 1500);
+        drawn += triangles;
+    }
+    assert_true(drawn > views * 1500 * 3 / 4);
+    fixture_free(&fx);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -173,6 +195,7 @@ int main(void)
         cmocka_unit_test(shortens_the_reach_when_roots_are_too_many),
         cmocka_unit_test(settles_in_pools_of_every_size),
         cmocka_unit_test(fetches_what_it_lets_be_drawn),
+        cmocka_unit_test(fetches_what_fits_of_one_root),
         cmocka_unit_test(repeats),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
