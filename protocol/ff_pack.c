@@ -427,6 +427,17 @@ int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
     return read_record(pack, section + level, number, payload);
 }
 
+int ff_pack_image(const ff_pack *pack, ff_key *key, const uint8_t **payload)
+{
+    int bytes = ff_pack_record(pack, FF_SECTION_TEXTURE, *key, payload);
+
+    while (bytes == FF_ERR_NOT_FOUND && ff_key_level(*key) > 0) {
+        *key = ff_key_parent(*key);
+        bytes = ff_pack_record(pack, FF_SECTION_TEXTURE, *key, payload);
+    }
+    return bytes;
+}
+
 int ff_pack_about(const ff_pack *pack, ff_list *about)
 {
     const ff_pack_section *section = &pack->header.about;

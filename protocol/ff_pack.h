@@ -16,7 +16,7 @@
 #include "ff_index.h"
 #include "ff_kind.h"
 
-#define FF_PACK_VERSION      5
+#define FF_PACK_VERSION      6
 #define FF_PACK_HEADER_BYTES 4096 /* with the directory of sections; the sections follow */
 #define FF_PACK_SECTIONS_MAX 48   /* that this reader knows */
 #define FF_PACK_LISTED_MAX   80   /* with those that it does not */
@@ -85,6 +85,10 @@ const char *ff_pack_error_text(const ff_pack *pack, int error);
  * refine. */
 int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
                    const uint8_t **payload);
+
+/* The image over a node: its own, or that of the nearest ancestor that has one, whose key *key is
+ * then. As ff_pack_record. */
+int ff_pack_image(const ff_pack *pack, ff_key *key, const uint8_t **payload);
 
 /* What the pack says of itself, in the mapping or the room, checked. FF_OK, NOT_FOUND: nothing;
  * CHECKSUM, RANGE, TRUNCATED; FULL. */

@@ -25,7 +25,8 @@ typedef struct ff_new_item {
         ff_residuals residuals;
         /* VIEW, its end: bit i: what it names at i has not come */
         uint16_t missing;
-        /* TEXTURE has nothing of its own. pixels: RGB565, width x width, row 0 south */
+        /* TEXTURE: ff_image.bare. pixels: RGB565, width x width, row 0 south */
+        uint8_t bare;
         /* FACE. pixels: RGBA5551 of width x height (a power of two), row 0 lowest, texels without
          * ground transparent; none when the face is empty */
         struct {

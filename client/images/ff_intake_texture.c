@@ -2,6 +2,7 @@
 #include "../ask/ff_intake_local.h"
 #include "ff_texture_map.h"
 #include "../../protocol/ff_assert.h"
+#include "../../protocol/ff_image.h"
 
 #include <stddef.h>
 
@@ -13,8 +14,11 @@ int ff_intake_texture(ff_intake *intake, const ff_message *answer, ff_new_item *
     item->width = item->height = (uint16_t)side;
     if ((size_t)side * side * 3 > intake->rgb_bytes) return FF_ERR_FULL;
     FF_ASSERT((size_t)side * side * sizeof *item->pixels <= intake->news->image_bytes);
-    int rc = sys_jpeg_decode(answer->u.data.bytes, answer->u.data.byte_count, side, side,
-                             intake->rgb);
-    if (rc == FF_OK) ff_texture_texels(&intake->info, intake->rgb, item->pixels);
-    return rc;
+    ff_image image;
+    int rc = ff_image_read(answer->u.data.bytes, answer->u.data.byte_count, &image);
+    if (rc == FF_OK) rc = sys_jpeg_decode(image.jpeg, image.jpeg_bytes, side, side, intake->rgb);
+    if (rc != FF_OK) return rc;
+    item->u.bare = image.bare;
+    ff_texture_texels(&intake->info, intake->rgb, item->pixels);
+    return FF_OK;
 }

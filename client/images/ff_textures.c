@@ -113,6 +113,7 @@ uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32
         }
         if (held && held->key == finest) continue;
         ff_texture_wish wish = { .key = next_finer(held, finest) };
+        if (held && held->bare >> ff_key_quadrant(wish.key) & 1u) continue;
         wish.priority = priority_of(textures, wish.key, view, quality);
         insert(list, &count, capacity, wish);
     }
@@ -156,10 +157,10 @@ static ff_texture_slot *take_slot(ff_textures *textures)
 int ff_textures_take(ff_textures *textures, const ff_new_item *item)
 {
     FF_ASSERT(item->width == 1u << textures->info.texture_log2);
-    return ff_textures_put(textures, item->key, item->pixels);
+    return ff_textures_put(textures, item->key, item->u.bare, item->pixels);
 }
 
-int ff_textures_put(ff_textures *textures, ff_key key, const uint16_t *texels)
+int ff_textures_put(ff_textures *textures, ff_key key, uint8_t bare, const uint16_t *texels)
 {
     if (find(textures, key)) return 0;
     ff_texture_slot *slot = take_slot(textures);
@@ -179,6 +180,7 @@ int ff_textures_put(ff_textures *textures, ff_key key, const uint16_t *texels)
     }
     slot->key = key;
     slot->held = 1;
+    slot->bare = bare;
     slot->used = textures->stamp;
     slot->next = textures->bucket[bucket_of(key)];
     textures->bucket[bucket_of(key)] = (uint16_t)(slot - textures->slot + 1);

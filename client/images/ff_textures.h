@@ -1,7 +1,7 @@
-/* Images of the ground: a tree of its own depth over the same keys (Planet: linked height and
- * texture trees). A node is drawn with its own image or its nearest held ancestor's. The image
- * drawn least lately makes room. A client's images come over the link from coarse to fine (wishes,
- * take), those of the server's renderer from the pack (touch, put).
+/* Images of the ground: a tree of its own depth, which differs from place to place, over the same
+ * keys (Planet: linked height and texture trees). A node is drawn with its own image or its nearest
+ * held ancestor's. The image drawn least lately makes room. A client's images come over the link
+ * from coarse to fine (wishes, take), those of the server's renderer from the pack (touch, put).
  *
  * The owner zeroes the cache and sets the first part; the slots are the owner's memory. */
 #ifndef FF_TEXTURES_H
@@ -20,6 +20,7 @@ typedef struct ff_texture_slot {
     uint32_t used;       /* stamp of the last frame it was of use in */
     uint16_t next;       /* hash chain: slot + 1 */
     uint8_t held;
+    uint8_t bare; /* children without an image: ff_image.bare */
 } ff_texture_slot;
 
 typedef struct ff_textures {
@@ -48,8 +49,9 @@ uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32
                             const ff_view *view, const ff_quality *quality, ff_texture_wish *list,
                             uint32_t capacity);
 /* Takes an image in, RGB565, south row first; NULL: there is none, and ground below `key` shows its
- * colours. 1 when the picture may have changed; 0: no room (counted). */
-int ff_textures_put(ff_textures *textures, ff_key key, const uint16_t *texels);
+ * colours. `bare`: of its children, ff_image.bare. 1 when the picture may have changed; 0: no room
+ * (counted). */
+int ff_textures_put(ff_textures *textures, ff_key key, uint8_t bare, const uint16_t *texels);
 /* The same, for an item of the new-data list. */
 int ff_textures_take(ff_textures *textures, const ff_new_item *item);
 /* For an owner whose images come at once (a pack): 1 when this image is held; it is then the last

@@ -107,7 +107,7 @@ static void foresee_children_of(const ff_tree *tree, foresight *f, const ff_node
     FF_ASSERT(!ff_node_has_children(node));
     if (next >= ff_terrain_levels(&tree->info) ||
         (tree->quality.depth_max && next >= tree->quality.depth_max) ||
-        node->flags & FF_NODE_LEAF || node->error_code == 0)
+        node->flags & FF_NODE_LEAF || ff_node_is_stub(node) || node->error_code == 0)
         return;
     if (node->flags & FF_NODE_NEEDED) { /* wished for already, unless its tile waits for it */
         if (ff_tile_waits(tree, node)) note(f, node->key, FF_KIND_REFINEMENT, node->value);

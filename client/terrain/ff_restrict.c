@@ -44,6 +44,7 @@ void ff_want(ff_tree *tree, uint32_t slot, uint32_t value)
 {
     ff_node *node = &tree->node[slot];
     FF_ASSERT(value > FF_VALUE_ONE && ff_node_held(node));
+    if (ff_node_is_stub(node)) return;
     if (node->flags & FF_NODE_WANTED) {
         if (value > node->value) node->value = value;
         return;
@@ -153,7 +154,8 @@ void ff_want_close(ff_tree *tree)
                 if (nearest == FF_SLOT_NONE) continue;
                 FF_ASSERT(ff_key_level(tree->node[nearest].key) < level);
                 ff_want(tree, nearest, node->value);
-                if (through && is_needed_in_view(tree, node))
+                if (through && !ff_node_is_stub(&tree->node[nearest]) &&
+                    is_needed_in_view(tree, node))
                     tree->node[nearest].flags |= FF_NODE_NEEDED;
             }
         }

@@ -114,6 +114,10 @@ static uint32_t own_value(ff_tree *tree, const ff_node *node)
         return 0;
     uint32_t value = ff_value_of_split(tree, node);
     if (value <= FF_VALUE_ONE) return 0;
+    if (ff_node_is_stub(node)) {
+        tree->stats.stubs++;
+        return 0;
+    }
     if (ff_node_is_exact(tree, node)) { /* finer nodes would show the same */
         tree->stats.flat++;
         return 0;
@@ -127,7 +131,7 @@ static void want_by_measure(ff_tree *tree)
 {
     forget_flags(tree);
     mark_active_roots(tree);
-    tree->stats.flat = 0;
+    tree->stats.flat = tree->stats.stubs = 0;
     uint32_t count = push_active_roots(tree);
     for (uint32_t i = 0; i < count; i++) {
         const ff_node *node = &tree->node[tree->order[i]];
@@ -136,7 +140,7 @@ static void want_by_measure(ff_tree *tree)
         ff_want(tree, tree->order[i], value);
         if (ff_node_has_children(node)) count = push_children(tree, node, count);
     }
-    FF_ASSERT(tree->stats.flat <= count);
+    FF_ASSERT(tree->stats.flat + tree->stats.stubs <= count);
 }
 
 /* Decides who splits, level by level from the roots, so that all decisions about a level are made
@@ -170,6 +174,7 @@ static void fill_drawn(const ff_tree *tree, uint32_t slot, unsigned coarser, ff_
     drawn->heights = tree->heights + slot * ff_heights_per_node(tree);
     drawn->coarser = (uint8_t)coarser;
     drawn->filled = (node->flags & FF_NODE_FILLED) != 0;
+    drawn->stub = (uint8_t)ff_node_is_stub(node);
     ff_shape_place(&tree->info, node->key, &node->placed, 0, 0, 32768, drawn->origin_wu);
     drawn->cell_wu = ff_node_cell_wu(&tree->info, ff_key_level(node->key));
     FF_ASSERT(drawn->cell_wu > 0);

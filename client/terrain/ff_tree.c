@@ -120,6 +120,8 @@ static void take_node(ff_tree *tree, uint32_t slot, const ff_residuals *residual
     node->error_code = residuals->child_error[q];
     if (residuals->filled >> q & 1u) node->flags |= FF_NODE_FILLED;
     if (residuals->leaf >> q & 1u) node->flags |= FF_NODE_LEAF;
+    if (residuals->stub >> q & 1u) node->want_next = FF_SLOT_NEVER;
+    FF_ASSERT(!(ff_node_is_stub(node) && node->flags & FF_NODE_LEAF));
     FF_ASSERT(node->height_min <= node->height_mean && node->height_mean <= node->height_max);
     FF_ASSERT(ff_geometric_error_decode(node->error_code) <= 65536);
 }
@@ -182,6 +184,7 @@ int ff_tree_deliver_children(ff_tree *tree, ff_key key, const ff_residuals *resi
         return FF_ERR_NOT_FOUND;
     }
     if (ff_node_has_children(&tree->node[slot])) return FF_OK;
+    if (ff_node_is_stub(&tree->node[slot])) return FF_ERR_NOT_FOUND; /* nobody asked */
     int rc = make_room(tree, slot);
     if (rc != FF_OK) return rc;
     FF_ASSERT(tree->node[slot].key == key); /* it was spared itself */

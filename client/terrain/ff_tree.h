@@ -4,7 +4,8 @@
  * One tree serves the client (nodes arrive from a link), the server's renderer and the tests (nodes
  * are read from a pack): behind it stands a `source` that is asked for roots and refinements and
  * answers at once or later by ff_tree_deliver_*. Below leaves, where nothing is stored, it is not
- * asked: the tree predicts. Geometry and requests only: nothing here knows a
+ * asked: the tree predicts. Nor is it below stubs, where nothing is stored though there is finer
+ * ground: they are the finest that is drawn. Geometry and requests only: nothing here knows a
  * graphics API, a socket, a clock or a floating-point number.
  *
  * A frame: ff_tree_select() walks the active tiles and chooses the cut; ff_tree_drawn() lists the
@@ -83,6 +84,7 @@ typedef struct ff_drawn {
     const uint16_t *heights; /* ff_node_side()^2, decoded */
     uint8_t coarser;         /* bit FF_SIDE_x: the neighbour there is one level coarser */
     uint8_t filled;          /* 1: some of its ground was void in the source, and filled */
+    uint8_t stub;            /* 1: there is finer ground, but none is stored */
     int32_t origin_wu[3];    /* place of vertex (0,0,z=0) in the frame; see ff_tree_vertices */
     int32_t cell_wu;
 } ff_drawn;
@@ -97,6 +99,7 @@ typedef struct ff_tree_stats {
     uint32_t selects, selects_skipped;
     /* nodes of the last selection near enough to split but exact already: not asked for */
     uint32_t flat;
+    uint32_t stubs;                          /* near enough to split, but nothing finer is stored */
     uint32_t nodes_hidden, triangles_hidden; /* of the cut, in view, by nearer ground */
 } ff_tree_stats;
 
@@ -112,7 +115,8 @@ size_t ff_tree_bytes(const ff_tree_desc *desc);
 ff_tree *ff_tree_create(const ff_tree_desc *desc, void *memory, size_t bytes);
 
 /* Results of a request. Residuals from ff_decode_*. FF_OK; FF_ERR_FULL (counted, coarser),
- * FF_ERR_NOT_FOUND (node gone: counted); an error of ff_reconstruct_*: nothing is held of it. */
+ * FF_ERR_NOT_FOUND (node gone: counted; or a stub); an error of ff_reconstruct_*: nothing is held
+ * of it. */
 int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, const ff_residuals *residuals);
 int ff_tree_deliver_children(ff_tree *tree, ff_key key, const ff_residuals *residuals);
 

@@ -10,6 +10,8 @@
 #define FF_SLOT_BITS  20
 #define FF_LEVELS_MAX (FF_KEY_LEVEL_MAX + 1u)
 FF_STATIC_ASSERT(FF_NODES_MAX == 1u << FF_SLOT_BITS && FF_SLOT_NONE >= FF_NODES_MAX);
+#define FF_SLOT_NEVER (UINT32_MAX - 1)
+FF_STATIC_ASSERT(FF_SLOT_NEVER >= FF_NODES_MAX);
 FF_STATIC_ASSERT(FF_SLOT_NONE == UINT32_MAX); /* so only four of them have all bits in common */
 
 /* Value of splitting a node, Q16: 1/f, above 1.0 the measure asks for it. Saturates. */
@@ -35,7 +37,9 @@ struct ff_node {
     ff_key key;         /* FF_KEY_NONE: the slot is free */
     uint32_t hash_next; /* next in the hash chain, or in the list of free slots */
     uint32_t list_next; /* roots: next root */
-    uint32_t want_next; /* next wanted node of the same level */
+    /* next wanted node of the same level; FF_SLOT_NEVER: a stub, which is wanted never: it is drawn
+     * as if it were of the finest level */
+    uint32_t want_next;
     uint32_t parent;
     /* all that have ground, or none; FF_SLOT_NONE in the other quadrants */
     uint32_t child[4];
@@ -119,6 +123,8 @@ static inline uint32_t ff_node_children(const ff_node *node)
     for (unsigned q = 0; q < 4; q++) count += node->child[q] != FF_SLOT_NONE;
     return count;
 }
+/* 1 when there is finer ground, and none is stored. */
+static inline int ff_node_is_stub(const ff_node *node) { return node->want_next == FF_SLOT_NEVER; }
 /* 1 when the source is known no better than the node shows it. */
 static inline int ff_node_is_exact(const ff_tree *tree, const ff_node *node)
 {

@@ -64,7 +64,7 @@ int ff_take_body(const ff_decoder *dec, ff_payload *in, const ff_contents *conte
     FF_ASSERT(ff_payload_left(in) >= 1); /* decode() refuses an empty payload */
     FF_ASSERT(corners <= contents->count && contents->count <= FF_REFINED_HEIGHTS_MAX);
     head = *in->at++;
-    rc = ff_take_errors(in, (head & FF_HEAD_ERRORS) >> 2, contents->errors, out);
+    rc = ff_take_errors(in, (head & FF_HEAD_ERRORS) >> FF_HEAD_ERRORS_SHIFT, contents->errors, out);
     if (rc == FF_OK) rc = ff_take_words(in, corners, out->value, corners);
     return rc == FF_OK ? take_values(dec, in, head, deflated, out->value + corners,
                                      contents->count - corners)

@@ -5,8 +5,9 @@
 
 #include "ff_codec_local.h"
 
-#define FF_HEAD_BODY   0x03u /* enum ff_body */
-#define FF_HEAD_ERRORS 0x0cu /* enum ff_errors_form, shifted by 2 */
+#define FF_HEAD_BODY         0x03u /* enum ff_body */
+#define FF_HEAD_ERRORS       0x0cu /* enum ff_errors_form */
+#define FF_HEAD_ERRORS_SHIFT 2
 /* From this bit on, the head says how many low bits of every value are stored plainly (for
  * FF_BODY_PACKED that number less one). */
 #define FF_HEAD_DETAIL_SHIFT 4
@@ -14,7 +15,8 @@
 
 enum ff_body { FF_BODY_ZERO, FF_BODY_PACKED, FF_BODY_DEFLATE, FF_BODY_UNARY };
 
-FF_STATIC_ASSERT(FF_BODY_UNARY <= FF_HEAD_BODY && FF_ERRORS_LEAF <= FF_HEAD_ERRORS >> 2);
+FF_STATIC_ASSERT(FF_BODY_UNARY <= FF_HEAD_BODY &&
+                 FF_ERRORS_LEAF <= FF_HEAD_ERRORS >> FF_HEAD_ERRORS_SHIFT);
 FF_STATIC_ASSERT((FF_HEAD_BODY | FF_HEAD_ERRORS) == (1u << FF_HEAD_DETAIL_SHIFT) - 1);
 /* A body of form PACKED, whose head says one less, may have all bits. */
 FF_STATIC_ASSERT((UINT8_MAX >> FF_HEAD_DETAIL_SHIFT) + 1 == FF_WIDTH_MAX);

@@ -47,9 +47,9 @@ FF_STATIC_ASSERT(FF_NODE_HEIGHTS_MAX ==
                  ((1 << FF_NODE_LOG2_MAX) + 1) * ((1 << FF_NODE_LOG2_MAX) + 1));
 FF_STATIC_ASSERT(FF_REFINED_HEIGHTS_MAX ==
                  ((2 << FF_NODE_LOG2_MAX) + 1) * ((2 << FF_NODE_LOG2_MAX) + 1));
-/* A byte of leaves, one of filled children, four error codes and every residual in 16 bits: what
- * codec raw writes, and no other exceeds. */
-FF_STATIC_ASSERT(6 + 2 * FF_REFINED_HEIGHTS_MAX <= FF_PAYLOAD_BYTES_MAX);
+/* A byte of stubs, one of leaves, one of filled children, four error codes and every residual in 16
+ * bits: what codec raw writes, and no other exceeds. */
+FF_STATIC_ASSERT(7 + 2 * FF_REFINED_HEIGHTS_MAX <= FF_PAYLOAD_BYTES_MAX);
 
 /* The rows' numbers have no gaps, and fit ff_terrain_info.codec. */
 /* clang-format off */
@@ -99,6 +99,9 @@ typedef struct ff_residuals {
     /* bit q: child q (a root: bit 0, itself) is a leaf: nothing finer is stored, and what is wanted
      * below it is predicted (ff_predict_children) */
     uint8_t leaf;
+    /* bit q: child q (a root: bit 0, itself), which is no leaf, is a stub: there is finer ground,
+     * but none is stored here */
+    uint8_t stub;
     uint16_t count;         /* valid entries of value[]; 0 while the payload is carried */
     uint16_t carried_bytes; /* of the payload, in the memory of value[]: FF_NEEDS_PARENT alone */
     /* caller's array of at least ff_refined_side()^2 entries; quantised residuals */
@@ -135,11 +138,23 @@ void ff_refined_child(const ff_terrain_info *info, const uint16_t *refined, uint
  * (NULL: a root). `out->value` receives the residuals, `decoded` what every decoder will see. */
 void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *source,
                        ff_residuals *out, uint16_t *decoded);
-/* Then the payload, `res->child_error`, `filled` and `leaf` set by the caller; the rest as the
- * first step had it. Bytes written to `out` (capacity at least FF_PAYLOAD_BYTES_MAX), or
+/* Then the payload, `res->child_error`, `filled`, `leaf` and `stub` set by the caller; the rest as
+ * the first step had it. Bytes written to `out` (capacity at least FF_PAYLOAD_BYTES_MAX), or
  * FF_ERR_RANGE for an error code above 208. */
 int ff_encode_payload(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *decoded,
                       const ff_residuals *res, uint8_t *out);
+/* Error codes and marks alone: out->value may be NULL. FF_OK or an error of ff_decode_*. */
+int ff_read_marks(const ff_terrain_info *info, int root, const uint8_t *payload, size_t bytes,
+                  ff_residuals *out);
+/* A payload in which the children of the bits in `stub` are marked as stubs, too; nothing else
+ * changes, and the residuals are not read. Bytes written to `out` (capacity at least
+ * FF_PAYLOAD_BYTES_MAX), or an error of ff_decode_*; FF_ERR_RANGE: one is a leaf. */
+int ff_mark_stubs(const ff_terrain_info *info, int root, const uint8_t *payload, size_t bytes,
+                  uint8_t stub, uint8_t *out);
+/* What stands for the children of a stub where ground of their level is wanted: heights on the
+ * stub's triangles, rounded up. */
+void ff_interpolate_children(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
+                             uint16_t *refined);
 /* Both, where the error codes are known beforehand. */
 int ff_encode_root(const ff_terrain_info *info, const uint16_t *source, uint8_t error_code,
                    uint8_t *out, uint16_t *decoded);

@@ -58,13 +58,15 @@ typedef struct ff_codec {
     ff_reconstruct_fn *reconstruct;
 } ff_codec;
 
-/* Both NULL when no row has this number. They alone stand in ff_codec_table.c, so that a test can
+/* NULL, or 0, when no row has this number. They alone stand in ff_codec_table.c, so that a test can
  * link a longer table in place of that file. */
 const ff_codec *ff_codec_row(int codec);
 ff_encode_fn *ff_codec_encoder(int codec);
+/* Bytes before the error codes of an encoded payload. */
+size_t ff_codec_head(int codec);
 
 /* clang-format off */
-#define ROW(number, constant, name, needs, memory, decode, reconstruct, encode) \
+#define ROW(number, constant, name, needs, head, memory, decode, reconstruct, encode) \
     ff_memory_fn memory; ff_decode_fn decode; ff_reconstruct_fn reconstruct; ff_encode_fn encode;
 /* clang-format on */
 FF_CODEC_LIST(ROW)
@@ -84,14 +86,17 @@ static inline size_t ff_align_up(size_t bytes)
 /* ---- parts of payloads that codecs share ---- */
 
 /* How error codes are stored: none (all are 0), one for all, each, or none and all children are
- * leaves. Before codes that are stored may stand a byte of FF_LEAF and ff_residuals.leaf, then one
- * of FF_FILLED and ff_residuals.filled. */
+ * leaves. Before codes that are stored may stand a byte of FF_STUB and ff_residuals.stub, then one
+ * of FF_LEAF and ff_residuals.leaf, then one of FF_FILLED and ff_residuals.filled. */
 enum ff_errors_form { FF_ERRORS_ZERO, FF_ERRORS_SAME, FF_ERRORS_EACH, FF_ERRORS_LEAF };
+#define FF_STUB   0xd0u
 #define FF_LEAF   0xe0u
 #define FF_FILLED 0xf0u
-FF_STATIC_ASSERT(FF_LEAF > FF_ERROR_CODE_MAX && FF_FILLED == FF_LEAF + 16);
+/* Without a bit a byte of FF_STUB is the largest error code. */
+FF_STATIC_ASSERT(FF_STUB >= FF_ERROR_CODE_MAX);
+FF_STATIC_ASSERT(FF_LEAF == FF_STUB + 16 && FF_FILLED == FF_LEAF + 16);
 
-/* Sets child_error, leaf and filled. */
+/* Sets child_error, stub, leaf and filled. */
 int ff_take_errors(ff_payload *in, unsigned form, uint32_t errors, ff_residuals *out);
 /* 16 bits each, low byte first: `corners` unsigned values, then signed ones, `count` in all. */
 int ff_take_words(ff_payload *in, uint32_t corners, int32_t *value, uint32_t count);

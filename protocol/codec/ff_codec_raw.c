@@ -18,7 +18,7 @@ size_t ff_raw_encode(const ff_terrain_info *info, const uint16_t *parent, const 
 {
     size_t bytes = ff_put_errors(res, FF_ERRORS_EACH, contents->errors, out);
 
-    FF_ASSERT(bytes == contents->errors + (res->filled != 0) + (res->leaf != 0));
+    FF_ASSERT(bytes == contents->errors + (res->filled != 0) + (res->leaf != 0) + (res->stub != 0));
     (void)info, (void)parent, (void)decoded;
     return bytes + ff_put_words(res->value, contents->count, out + bytes);
 }

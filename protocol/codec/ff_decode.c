@@ -79,27 +79,25 @@ ff_decoder *ff_decoder_create(const ff_terrain_info *info, void *memory, size_t 
 
 /* ---- payload to residuals ---- */
 
-/* Takes a byte of `mark` and one bit a child off when there is one. */
-static int take_mark(ff_payload *in, uint32_t mark, uint32_t errors, uint8_t *bits)
+/* Takes a byte of `mark` and one bit a child off when there is one: the bits. */
+static uint8_t take_mark(ff_payload *in, uint32_t mark)
 {
-    *bits = 0;
-    if (ff_payload_left(in) < 1 || (*in->at & FF_FILLED) != mark) return FF_OK;
-    *bits = *in->at++ & 0x0fu;
-    return *bits == 0 || *bits >> errors ? FF_ERR_RANGE : FF_OK;
+    if (ff_payload_left(in) < 1 || *in->at <= mark || *in->at > mark + 15) return 0;
+    return *in->at++ & 0x0fu;
 }
 
 int ff_take_errors(ff_payload *in, unsigned form, uint32_t errors, ff_residuals *out)
 {
     uint32_t stored = form == FF_ERRORS_EACH ? errors : form == FF_ERRORS_SAME ? 1 : 0;
-    int rc = FF_OK;
 
     FF_ASSERT(errors == 1 || errors == 4);
-    out->filled = 0;
     if (form > FF_ERRORS_LEAF) return FF_ERR_FORMAT;
-    out->leaf = form == FF_ERRORS_LEAF ? (uint8_t)((1u << errors) - 1) : 0;
-    if (stored) rc = take_mark(in, FF_LEAF, errors, &out->leaf);
-    if (stored && rc == FF_OK) rc = take_mark(in, FF_FILLED, errors, &out->filled);
-    if (rc != FF_OK) return rc;
+    out->stub = stored ? take_mark(in, FF_STUB) : 0;
+    out->leaf = stored ? take_mark(in, FF_LEAF) : 0;
+    out->filled = stored ? take_mark(in, FF_FILLED) : 0;
+    if (form == FF_ERRORS_LEAF) out->leaf = (uint8_t)((1u << errors) - 1);
+    if ((out->stub | out->leaf | out->filled) >> errors || out->stub & out->leaf)
+        return FF_ERR_RANGE;
     if (ff_payload_left(in) < stored) return FF_ERR_TRUNCATED;
     memset(out->child_error, 0, 4);
     for (uint32_t i = 0; i < errors && stored > 0; i++) {

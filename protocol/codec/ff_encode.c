@@ -2,7 +2,7 @@
  * then the codec's own function makes the payload. */
 #ifdef FF_ENCODER
 
-#include "ff_codec_local.h"
+#include "ff_body.h"
 
 #include <string.h>
 
@@ -88,6 +88,74 @@ int ff_encode_refinement(const ff_terrain_info *info, const uint16_t *parent,
     return ff_encode_payload(info, parent, decoded, &res, out);
 }
 
+/* ---- marks of payloads that are there ---- */
+
+/* Takes head, marks and error codes off a payload: how the codes are stored, or an error. */
+static int take_marks(const ff_terrain_info *info, int root, ff_payload *in, ff_residuals *out)
+{
+    int form = FF_ERRORS_EACH, rc;
+
+    if (ff_payload_left(in) < 1) return FF_ERR_TRUNCATED;
+    if (ff_codec_head(info->codec)) form = (*in->at++ & FF_HEAD_ERRORS) >> FF_HEAD_ERRORS_SHIFT;
+    rc = ff_take_errors(in, (unsigned)form, root ? 1 : 4, out);
+    return rc == FF_OK ? form : rc;
+}
+
+int ff_read_marks(const ff_terrain_info *info, int root, const uint8_t *payload, size_t bytes,
+                  ff_residuals *out)
+{
+    ff_payload in = { payload, payload + bytes };
+    int form = take_marks(info, root, &in, out);
+
+    return form < 0 ? form : FF_OK;
+}
+
+int ff_mark_stubs(const ff_terrain_info *info, int root, const uint8_t *payload, size_t bytes,
+                  uint8_t stub, uint8_t *out)
+{
+    size_t head = ff_codec_head(info->codec), put;
+    ff_payload in = { payload, payload + bytes };
+    ff_residuals res;
+    int form = take_marks(info, root, &in, &res);
+
+    if (form < 0) return form;
+    res.stub |= stub;
+    if (res.stub >> (root ? 1 : 4) || res.stub & res.leaf) return FF_ERR_RANGE;
+    if (form == FF_ERRORS_ZERO && res.stub) form = FF_ERRORS_SAME;
+    if (head)
+        out[0] = (uint8_t)((payload[0] & ~FF_HEAD_ERRORS) | (unsigned)form << FF_HEAD_ERRORS_SHIFT);
+    put = head + ff_put_errors(&res, (enum ff_errors_form)form, root ? 1 : 4, out + head);
+    if (ff_payload_left(&in) > FF_PAYLOAD_BYTES_MAX - put) return FF_ERR_FORMAT;
+    memcpy(out + put, in.at, ff_payload_left(&in));
+    return (int)(put + ff_payload_left(&in));
+}
+
+/* ---- below stubs ---- */
+
+typedef struct triangles {
+    const uint16_t *grid;
+    uint32_t side;
+} triangles;
+
+/* New points lie in the middle of an edge, or of the diagonal from south-west to north-east. */
+static uint16_t take_middle(void *context, uint32_t at, int32_t predicted)
+{
+    const triangles *t = context;
+    uint32_t step = at % t->side % 2 + at / t->side % 2 * t->side;
+
+    (void)predicted;
+    FF_ASSERT(step > 0);
+    return (uint16_t)((t->grid[at - step] + t->grid[at + step] + 1) / 2);
+}
+
+void ff_interpolate_children(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
+                             uint16_t *refined)
+{
+    triangles t = { refined, ff_refined_side(info) };
+
+    ff_predict_refinement(info, cells, parent, refined, take_middle, &t);
+}
+
 /* ---- parts of payloads that codecs share ---- */
 
 size_t ff_put_errors(const ff_residuals *res, enum ff_errors_form form, uint32_t errors,
@@ -99,6 +167,8 @@ size_t ff_put_errors(const ff_residuals *res, enum ff_errors_form form, uint32_t
     FF_ASSERT(errors == 1 || errors == 4);
     FF_ASSERT(res->filled >> errors == 0 && (bytes > 0 || !res->filled));
     FF_ASSERT(res->leaf >> errors == 0 && (bytes > 0 || !res->leaf == (form == FF_ERRORS_ZERO)));
+    FF_ASSERT(res->stub >> errors == 0 && (bytes > 0 || !res->stub) && !(res->stub & res->leaf));
+    if (res->stub) *at++ = (uint8_t)(FF_STUB | res->stub);
     if (res->leaf && bytes > 0) *at++ = (uint8_t)(FF_LEAF | res->leaf);
     if (res->filled) *at++ = (uint8_t)(FF_FILLED | res->filled);
     memcpy(at, res->child_error, bytes);

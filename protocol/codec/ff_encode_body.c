@@ -119,9 +119,9 @@ static enum ff_errors_form errors_form(const ff_residuals *res, uint32_t errors)
 
     for (uint32_t i = 1; i < errors; i++) same &= error[i] == error[0];
     if (!same) return FF_ERRORS_EACH;
-    if (error[0] == 0 && !res->filled && !res->leaf) return FF_ERRORS_ZERO;
-    if (error[0] == 0 && !res->filled && res->leaf == (1u << errors) - 1) return FF_ERRORS_LEAF;
-    return FF_ERRORS_SAME;
+    if (error[0] > 0 || res->filled || res->stub) return FF_ERRORS_SAME;
+    if (!res->leaf) return FF_ERRORS_ZERO;
+    return res->leaf == (1u << errors) - 1 ? FF_ERRORS_LEAF : FF_ERRORS_SAME;
 }
 
 size_t ff_put_body(const ff_terrain_info *info, const ff_contents *contents,
@@ -132,7 +132,7 @@ size_t ff_put_body(const ff_terrain_info *info, const ff_contents *contents,
     size_t bytes = 1;
 
     FF_ASSERT(corners <= contents->count && contents->count <= FF_REFINED_HEIGHTS_MAX);
-    out[0] = (uint8_t)(form << 2);
+    out[0] = (uint8_t)(form << FF_HEAD_ERRORS_SHIFT);
     bytes += ff_put_errors(res, form, contents->errors, out + bytes);
     bytes += ff_put_words(res->value, corners, out + bytes);
     return bytes + put_values(info, deflated, res->value + corners, contents->count - corners, out,

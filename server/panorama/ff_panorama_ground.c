@@ -3,6 +3,7 @@
 #include "ff_face_view.h"
 #include "../../client/terrain/ff_pack_source.h"
 #include "../../client/images/ff_texture_map.h"
+#include "../../protocol/ff_image.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -157,15 +158,16 @@ int panorama_ground_seen(const panorama_ground *ground, const ff_get_panorama *r
 
 /* ---- drawing ---- */
 
-/* Reads an image into texture_texels. FF_OK, or why the texels are not there. */
-static int read_image(const panorama_ground *ground, ff_key key)
+/* Makes texture_texels of an image's payload, or of the error in its place. FF_OK, or why the
+ * texels are not there. */
+static int make_texels(const panorama_ground *ground, const uint8_t *payload, int bytes)
 {
     const ff_terrain_info *info = &ground->pack->header.info;
     uint32_t size = 1u << info->texture_log2;
-    const uint8_t *jpeg;
-    int bytes = ff_pack_record(ground->pack, FF_SECTION_TEXTURE, key, &jpeg);
-    if (bytes < 0) return bytes;
-    int rc = sys_jpeg_decode(jpeg, (size_t)bytes, size, size, ground->texture_rgb);
+    ff_image image;
+    int rc = bytes < 0 ? bytes : ff_image_read(payload, (size_t)bytes, &image);
+    if (rc == FF_OK)
+        rc = sys_jpeg_decode(image.jpeg, image.jpeg_bytes, size, size, ground->texture_rgb);
     if (rc < 0) return rc;
     ff_texture_texels(info, ground->texture_rgb, ground->texture_texels);
     for (uint32_t i = 0; i < size * size; i++)
@@ -173,15 +175,18 @@ static int read_image(const panorama_ground *ground, ff_key key)
     return FF_OK;
 }
 
-/* Puts the image over a node into the cache; the least recently used image makes room. A damaged
- * image is remembered as such until its slot is needed. */
+/* Puts the finest image over a node into the cache; the least recently used image makes room. A
+ * damaged image is remembered as such until its slot is needed. */
 static void fetch_image(panorama_ground *ground, ff_key node)
 {
     ff_key key = ff_texture_key(&ground->pack->header.info, node);
+    const uint8_t *payload;
     if (key == FF_KEY_NONE || ff_textures_touch(&ground->textures, key)) return;
-    int rc = read_image(ground, key);
+    int bytes = ff_pack_image(ground->pack, &key, &payload);
+    if (ff_textures_touch(&ground->textures, key)) return;
+    int rc = make_texels(ground, payload, bytes);
     if (rc < 0) ground->stats->nodes_damaged++;
-    ff_textures_put(&ground->textures, key, rc < 0 ? NULL : ground->texture_texels);
+    ff_textures_put(&ground->textures, key, 0, rc < 0 ? NULL : ground->texture_texels);
 }
 
 static int by_key(const void *a, const void *b)

@@ -2,6 +2,7 @@
 
 #include "../../client/images/ff_texture_map.h"
 #include "../../client/terrain/ff_pack_source.h"
+#include "../../protocol/ff_image.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -202,15 +203,18 @@ static int fetch_image(fly_reference *reference, ff_key key)
 {
     const ff_terrain_info *info = &reference->tree_desc.info;
     uint32_t side = 1u << info->texture_log2;
-    const uint8_t *jpeg;
+    const uint8_t *payload;
+    ff_image image;
     if (key == FF_KEY_NONE || ff_textures_touch(&reference->textures, key)) return FF_OK;
-    int bytes = ff_pack_record(reference->pack, FF_SECTION_TEXTURE, key, &jpeg);
-    if (bytes < 0) return bytes;
-    int rc = sys_jpeg_decode(jpeg, (size_t)bytes, side, side, reference->image_rgb);
+    int rc = ff_pack_image(reference->pack, &key, &payload);
+    if (ff_textures_touch(&reference->textures, key)) return FF_OK;
+    if (rc >= 0) rc = ff_image_read(payload, (size_t)rc, &image);
+    if (rc >= 0)
+        rc = sys_jpeg_decode(image.jpeg, image.jpeg_bytes, side, side, reference->image_rgb);
     if (rc < 0) return rc;
     ff_texture_texels(info, reference->image_rgb, reference->image_texels);
-    return ff_textures_put(&reference->textures, key, reference->image_texels) ? FF_OK
-                                                                               : FF_ERR_MEMORY;
+    return ff_textures_put(&reference->textures, key, 0, reference->image_texels) ? FF_OK
+                                                                                  : FF_ERR_MEMORY;
 }
 
 /* ---- the picture ---- */

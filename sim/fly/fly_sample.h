@@ -52,6 +52,7 @@
     X(panorama_faces, "%.0f", TOTAL, from->client.panorama_faces) \
     X(panorama_faces_empty, "%.0f", TOTAL, from->client.panorama_faces_empty) \
     X(panorama_bytes, "%.0f", TOTAL, from->client.panorama_bytes) \
+    X(requests_failed, "%.0f", TOTAL, from->client.requests_failed) \
     X(requests_dropped, "%.0f", TOTAL, from->client.requests_dropped) \
     X(requests_cancelled, "%.0f", TOTAL, from->client.requests_cancelled) \
     X(textures_held, "%.0f", MEAN, from->client.textures_held) \
@@ -62,6 +63,7 @@
     X(frames_drawn, "%.0f", TOTAL, from->client.frames_updated) \
     X(square_px_waiting, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_WAITING]) \
     X(square_px_depth, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_DEPTH]) \
+    X(square_px_stub, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_STUB]) \
     X(square_px_quality, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_QUALITY]) \
     X(square_px_panorama, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_PANORAMA]) \
     X(square_px_undrawn, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_UNDRAWN]) \

@@ -118,7 +118,8 @@ static enum sim_audit_cause cause_of(const frame *of, const ff_drawn *drawn, dou
         splits = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) < edge_m * quality->c_q8 / 256.0;
     }
     if (!splits || next >= ff_terrain_levels(&auditor->mesh.info)) return SIM_CAUSE_QUALITY;
-    return quality->depth_max && next >= quality->depth_max ? SIM_CAUSE_DEPTH : SIM_CAUSE_WAITING;
+    if (quality->depth_max && next >= quality->depth_max) return SIM_CAUSE_DEPTH;
+    return drawn->stub ? SIM_CAUSE_STUB : SIM_CAUSE_WAITING;
 }
 
 /* The direction in which the panorama shows a point, and where on its cube: 1, or 0 when it does

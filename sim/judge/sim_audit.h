@@ -41,6 +41,7 @@ enum sim_audit_cause {
     /* the quality asks for finer ground here, and there is some: it has not come */
     SIM_CAUSE_WAITING,
     SIM_CAUSE_DEPTH,    /* the quality would ask for finer ground, but its depth_max forbids it */
+    SIM_CAUSE_STUB,     /* the quality asks for finer ground, and there is some: not in the pack */
     SIM_CAUSE_QUALITY,  /* fine enough for the quality, or as fine as the terrain is */
     SIM_CAUSE_PANORAMA, /* parallax, and the size of a face's texels */
     SIM_CAUSE_UNDRAWN,  /* nothing is drawn there */

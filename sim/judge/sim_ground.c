@@ -15,6 +15,8 @@ typedef struct loader {
     const ff_pack *pack;
     ff_decoder *decoder;
     int32_t *residual;
+    int with_stubs; /* 1: what is below stubs is made, 0: it stays as it is */
+    int has_stubs;  /* some were met */
 } loader;
 
 static void place(loader *load, ff_key key, const uint16_t *heights, unsigned filled)
@@ -32,17 +34,19 @@ static void place(loader *load, ff_key key, const uint16_t *heights, unsigned fi
                heights + (size_t)j * side, columns * sizeof *heights);
 }
 
-/* What a payload said of a node: is it filled, and is it a leaf? */
+/* What a payload said of a node: is it filled, is it a leaf, is it a stub? */
 typedef struct marks {
-    unsigned filled, leaf;
+    unsigned filled, leaf, stub;
 } marks;
 
 static marks marks_of(const ff_residuals *residuals, unsigned quadrant)
 {
-    return (marks){ residuals->filled >> quadrant & 1u, residuals->leaf >> quadrant & 1u };
+    return (marks){ residuals->filled >> quadrant & 1u, residuals->leaf >> quadrant & 1u,
+                    residuals->stub >> quadrant & 1u };
 }
 
-/* The heights of a node's children and their marks, from the pack, or, below a leaf, predicted. */
+/* The heights of a node's children and their marks: from the pack; below a leaf, predicted; below a
+ * stub, on its triangles. */
 static int children_of(loader *load, ff_key key, const uint16_t *heights, marks mark,
                        ff_residuals *residuals, uint16_t *refined)
 {
@@ -51,6 +55,13 @@ static int children_of(loader *load, ff_key key, const uint16_t *heights, marks 
     if (mark.leaf) {
         ff_predict_children(info, residuals->cells, heights, refined);
         *residuals = ff_leaf_residuals(info, 0, (int)mark.filled);
+        return FF_OK;
+    }
+    if (mark.stub) {
+        ff_interpolate_children(info, residuals->cells, heights, refined);
+        residuals->filled = mark.filled ? 15 : 0;
+        residuals->leaf = 0;
+        residuals->stub = 15;
         return FF_OK;
     }
     int bytes = ff_pack_record(load->pack, FF_SECTION_REFINEMENT, key, &payload);
@@ -66,6 +77,8 @@ static int refine(loader *load, ff_key key, const uint16_t *heights, marks mark)
         place(load, key, heights, mark.filled);
         return FF_OK;
     }
+    load->has_stubs |= mark.stub & 1u;
+    if (mark.stub && !load->with_stubs) return FF_OK;
     ff_residuals residuals = { .cells = ff_shape_cells(info, key, 1), .value = load->residual };
     uint16_t refined[FF_REFINED_HEIGHTS_MAX], child[FF_NODE_HEIGHTS_MAX];
     int rc = children_of(load, key, heights, mark, &residuals, refined);
@@ -93,6 +106,19 @@ static int decode_tile(loader *load, uint32_t tile)
     return refine(load, ff_key_make(tile, 0, 0), heights, marks_of(&residuals, 0));
 }
 
+/* Where a stub meets finer ground its triangles give way: all else is placed over them. */
+static int decode_tiles(loader *load)
+{
+    int rc = FF_OK;
+    do {
+        load->with_stubs = !load->has_stubs;
+        for (uint32_t tile = 0; rc == FF_OK && tile < ff_shape_tiles(&load->pack->header.info);
+             tile++)
+            rc = decode_tile(load, tile);
+    } while (rc == FF_OK && load->with_stubs && load->has_stubs);
+    return rc;
+}
+
 static int decode_all(sim_ground *ground, const ff_pack *pack)
 {
     const ff_terrain_info *info = &pack->header.info;
@@ -111,8 +137,7 @@ static int decode_all(sim_ground *ground, const ff_pack *pack)
     load.residual = malloc(FF_REFINED_HEIGHTS_MAX * sizeof *load.residual);
     load.decoder = memory ? ff_decoder_create(info, memory, bytes) : NULL;
     int rc = load.decoder && load.residual ? FF_OK : FF_ERR_MEMORY;
-    for (uint32_t tile = 0; rc == FF_OK && tile < ff_shape_tiles(info); tile++)
-        rc = decode_tile(&load, tile);
+    if (rc == FF_OK) rc = decode_tiles(&load);
     free(load.residual);
     free(memory);
     return rc;

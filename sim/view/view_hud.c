@@ -68,6 +68,7 @@ static void put_quality(view_hud *hud, const view_app *app, const ff_client_stat
     else
         put(hud, "c %.2f depth %u", stats->quality.c_q8 / 256.0, stats->quality.depth_max);
     put(hud, "  error about %.1f px\n", ff_client_error_px_q8(app->client) / 256.0);
+    if (stats->tree.stubs) put(hud, "nothing finer of %u nodes\n", stats->tree.stubs);
     if (!app->panorama.enabled) {
         put(hud, "panorama off\n");
         return;

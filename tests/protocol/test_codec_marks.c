@@ -1,5 +1,5 @@
-/* Payloads tell which children hold filled ground, and which are leaves: both decoders say the
- * same, whatever the codec. */
+/* Payloads tell which children hold filled ground, which are leaves, and which are stubs: both
+ * decoders say the same, whatever the codec. */
 #include "../../protocol/codec/ff_codec.h"
 #include "../rig/slow_decoder.h"
 
@@ -42,20 +42,50 @@ static void expect_marks(const payload_test *test, int bytes, int marks)
     assert_int_equal(slow_decode(test->info, test->parent, test->payload, (size_t)bytes, slow),
                      marks);
     if (marks < 0) return;
-    assert_int_equal(16 * out.leaf + out.filled, marks);
+    assert_int_equal(256 * out.stub + 16 * out.leaf + out.filled, marks);
     assert_memory_equal(out.child_error, test->errors, test->parent ? 4 : 1);
 }
 
-/* A byte of marks may not be empty, nor tell of a child that is not there. */
+/* A byte of marks may not be empty, nor tell of a child that is not there, nor of a leaf that it is
+ * a stub. */
 static void spoil(payload_test *test, int bytes, uint8_t *mark, int marks, int unit)
 {
     uint8_t was = *mark;
-    *mark = was & 0xF0;
-    expect_marks(test, bytes, -1);
+    if (unit < 256) { /* 208 is an error code, the others are none */
+        *mark = was & 0xF0;
+        expect_marks(test, bytes, -1);
+    }
     *mark = (was & 0xF0) + 2; /* a root has no second child */
-    int others = unit == 16 ? marks & 15 : marks & ~15;
-    expect_marks(test, bytes, test->parent ? others + 2 * unit : -1);
+    int changed = (marks & ~(15 * unit)) + 2 * unit, both = changed >> 8 & changed >> 4 & 15;
+    expect_marks(test, bytes, test->parent && !both ? changed : -1);
     *mark = was;
+}
+
+static int encode_marked(payload_test *test, int marks)
+{
+    test->res.filled = marks & 15;
+    test->res.leaf = marks >> 4 & 15;
+    test->res.stub = (uint8_t)(marks >> 8);
+    return ff_encode_payload(test->info, test->parent, test->decoded, &test->res, test->payload);
+}
+
+/* Stubs are marked in a payload that is there, as if it had been encoded with them. */
+static void check_marking(payload_test *test, int marks)
+{
+    static uint8_t marked[FF_PAYLOAD_BYTES_MAX];
+    int stub = marks >> 8, root = !test->parent,
+        before = encode_marked(test, marks & (stub & 5 ? 0x2FF : 0xFF)),
+        bytes = ff_mark_stubs(test->info, root, test->payload, (size_t)before, (uint8_t)stub,
+                              marked);
+    assert_int_equal(bytes, encode_marked(test, marks));
+    assert_memory_equal(marked, test->payload, (size_t)bytes);
+    if (marks >> 4 & 15)
+        assert_int_equal(ff_mark_stubs(test->info, root, test->payload, (size_t)bytes,
+                                       (uint8_t)(marks >> 4 & 15), marked),
+                         FF_ERR_RANGE);
+    if (root)
+        assert_int_equal(ff_mark_stubs(test->info, root, test->payload, (size_t)bytes, 2, marked),
+                         FF_ERR_RANGE);
 }
 
 /* A mark costs one byte beside the error codes, two where those would take none; none costs
@@ -63,25 +93,26 @@ static void spoil(payload_test *test, int bytes, uint8_t *mark, int marks, int u
 static void check(payload_test *test, const uint16_t *source)
 {
     static int32_t value[FF_REFINED_HEIGHTS_MAX];
-    int each = test->parent ? 16 : 2, unmarked = 0;
+    int all = test->parent ? 15 : 1, unmarked = 0;
     test->res = (ff_residuals){ .value = value };
     memcpy(test->res.child_error, test->errors, 4);
     ff_encode_heights(test->info, test->parent, source, &test->res, test->decoded);
-    for (int marks = 0; marks < each * each; marks++) {
-        int leaf = marks / each, filled = marks % each, kinds = (leaf > 0) + (filled > 0);
-        test->res.filled = (uint8_t)filled;
-        test->res.leaf = (uint8_t)leaf;
-        int bytes = ff_encode_payload(test->info, test->parent, test->decoded, &test->res,
-                                      test->payload);
+    for (int marks = 0; marks < 4096; marks++) {
+        int stub = marks >> 8, leaf = marks >> 4 & 15, filled = marks & 15,
+            kinds = (stub > 0) + (leaf > 0) + (filled > 0);
+        if ((stub | leaf | filled) > all || stub & leaf) continue;
+        int bytes = encode_marked(test, marks);
         int raw = test->info->codec == FF_CODEC_RAW;
-        int exact = !raw && leaf == each - 1 && !filled && memcmp(test->errors, "\0\0\0", 4) == 0;
+        int exact = !raw && leaf == all && !filled && memcmp(test->errors, "\0\0\0", 4) == 0;
         if (!marks) unmarked = bytes;
         if (exact) assert_int_equal(bytes, unmarked);
         if (!exact) assert_in_range(bytes - unmarked, kinds, kinds ? kinds + 1 : 0);
-        expect_marks(test, bytes, 16 * leaf + filled);
+        expect_marks(test, bytes, marks);
         uint8_t *mark = test->payload + !raw;
-        if (leaf && !exact) spoil(test, bytes, mark, 16 * leaf + filled, 16);
-        if (filled) spoil(test, bytes, mark + (leaf > 0), 16 * leaf + filled, 1);
+        if (stub) spoil(test, bytes, mark, marks, 256);
+        if (leaf && !exact) spoil(test, bytes, mark + (stub > 0), marks, 16);
+        if (filled) spoil(test, bytes, mark + (stub > 0) + (leaf > 0), marks, 1);
+        if (stub) check_marking(test, marks);
     }
 }
 

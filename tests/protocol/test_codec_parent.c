@@ -180,7 +180,7 @@ static size_t encode(const ff_terrain_info *info, const uint16_t *parent, const 
 /* clang-format off */
 const ff_codec *ff_codec_row(int codec)
 {
-#define ROW(number, constant, name, needs, memory, decode, reconstruct, encode) \
+#define ROW(number, constant, name, needs, head, memory, decode, reconstruct, encode) \
     { name, FF_NEEDS_##needs, memory, decode, reconstruct },
     static const ff_codec rows[] = { FF_CODEC_LIST(ROW)
         { "parent", FF_NEEDS_PARENT, ff_no_memory, first_stage, second_stage } };
@@ -190,10 +190,18 @@ const ff_codec *ff_codec_row(int codec)
 
 ff_encode_fn *ff_codec_encoder(int codec)
 {
-#define ROW(number, constant, name, needs, memory, decode, reconstruct, encode) encode,
+#define ROW(number, constant, name, needs, head, memory, decode, reconstruct, encode) encode,
     static ff_encode_fn *const encoders[] = { FF_CODEC_LIST(ROW) encode };
 #undef ROW
     return codec >= 0 && codec <= CODEC_BY_PARENT ? encoders[codec] : NULL;
+}
+
+size_t ff_codec_head(int codec)
+{
+#define ROW(number, constant, name, needs, head, memory, decode, reconstruct, encode) head,
+    static const uint8_t heads[] = { FF_CODEC_LIST(ROW) 0 };
+#undef ROW
+    return codec >= 0 && codec <= CODEC_BY_PARENT ? heads[codec] : 0;
 }
 /* clang-format on */
 

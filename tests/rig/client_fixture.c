@@ -160,7 +160,7 @@ static void colour(void *context, int64_t x_wu, int64_t y_wu, uint8_t rgb[3])
 
 #define SAMPLES 129 /* that fill the usual pack's tiles, each way */
 
-enum variant { USUAL, OTHER, FILLED, LEAVES };
+enum variant { USUAL, OTHER, FILLED, LEAVES, STUBS };
 
 static void open_pack(client_rig *rig, unsigned texture_log2, unsigned node_log2,
                       enum variant variant, uint32_t samples_x, uint32_t samples_y)
@@ -170,7 +170,9 @@ static void open_pack(client_rig *rig, unsigned texture_log2, unsigned node_log2
                                .filled = variant == FILLED ? pack_fixture_hole : NULL,
                                .colour = colour,
                                .about = rig->about,
-                               .leaf_level = variant == LEAVES };
+                               .leaf_level = variant == LEAVES,
+                               .stub_level = variant == STUBS,
+                               .bare_level = variant == STUBS };
     size_t bytes;
     desc.info.node_log2 = (uint8_t)node_log2;
     desc.info.texture_log2 = (uint8_t)texture_log2;
@@ -220,6 +222,11 @@ void rig_use_samples(client_rig *rig, uint32_t samples_x, uint32_t samples_y, un
 void rig_use_filled(client_rig *rig) { open_pack(rig, 0, 3, FILLED, SAMPLES, SAMPLES); }
 
 void rig_use_leaves(client_rig *rig) { open_pack(rig, 0, 3, LEAVES, SAMPLES, SAMPLES); }
+
+void rig_use_stubs(client_rig *rig, unsigned texture_log2)
+{
+    open_pack(rig, texture_log2, 3, STUBS, SAMPLES, SAMPLES);
+}
 
 void rig_use_about(client_rig *rig, ff_list about)
 {

@@ -52,6 +52,8 @@ void rig_use_samples(client_rig *rig, uint32_t samples_x, uint32_t samples_y,
 void rig_use_filled(client_rig *rig);
 /* As rig_open, with nothing stored below level 1. */
 void rig_use_leaves(client_rig *rig);
+/* One in which nothing finer is stored of the roots' children, of heights and of images. */
+void rig_use_stubs(client_rig *rig, unsigned texture_log2);
 /* As rig_open, with a pack that says this of itself. */
 void rig_use_about(client_rig *rig, ff_list about);
 /* Serves another terrain on all further connections. */

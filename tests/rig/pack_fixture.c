@@ -2,6 +2,7 @@
 
 #include "../../protocol/shape/ff_shape.h"
 #include "../../platform/sys.h"
+#include "../../protocol/ff_image.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -109,9 +110,11 @@ static int texture_payload(const pack_fixture_desc *desc, ff_key key, uint8_t *o
             desc->colour(desc->context, x + edge * i / (texels - 1),
                          y + edge * (texels - 1 - row) / (texels - 1),
                          rgb + 3 * (row * texels + i));
-    int bytes = sys_jpeg_encode(rgb, texels, texels, JPEG_QUALITY, out, capacity);
+    size_t mark = desc->bare_level && ff_key_level(key) == desc->bare_level;
+    if (mark) *out = FF_IMAGE_BARE + 15;
+    int bytes = sys_jpeg_encode(rgb, texels, texels, JPEG_QUALITY, out + mark, capacity - mark);
     free(rgb);
-    return bytes;
+    return bytes < 0 ? bytes : bytes + (int)mark;
 }
 
 /* decoded[]: heights of all nodes of the section's level; a section of refinements replaces them by
@@ -149,6 +152,7 @@ static int node_payload(const pack_fixture_desc *desc, enum ff_section_kind kind
         res.filled |= (uint8_t)(node_filled(desc, ff_key_child(key, q)) << q);
     }
     if (desc->leaf_level == ff_key_level(key) + 1u) res.leaf = 15;
+    if (desc->stub_level == ff_key_level(key) + 1u) res.stub = 15;
     const uint16_t *parent = decoded + number * node_heights;
     source_grid(desc, key, 2u << desc->info.node_log2, source);
     ff_encode_heights(&desc->info, parent, source, &res, refined);
@@ -183,10 +187,12 @@ static void put_index(writer *w, ff_pack_section *s, const uint32_t *length, uin
     s->index_crc = ff_crc32(0, out, index_bytes);
 }
 
-/* 1 when refinements of this level are not stored. */
-static int below_leaves(const pack_fixture_desc *desc, enum ff_section_kind kind, uint32_t level)
+/* 1 when records of this level are not stored. */
+static int is_left_out(const pack_fixture_desc *desc, enum ff_section_kind kind, uint32_t level)
 {
-    return kind == FF_SECTION_REFINEMENT && desc->leaf_level && level >= desc->leaf_level;
+    if (kind == FF_SECTION_TEXTURE) return desc->bare_level && level > desc->bare_level;
+    return kind == FF_SECTION_REFINEMENT && ((desc->leaf_level && level >= desc->leaf_level) ||
+                                             (desc->stub_level && level >= desc->stub_level));
 }
 
 static void section(writer *w, enum ff_section_kind kind, uint32_t level, const uint16_t *decoded,
@@ -198,7 +204,7 @@ static void section(writer *w, enum ff_section_kind kind, uint32_t level, const 
     uint32_t *length = calloc(records, sizeof *length);
     ff_pack_section *s = &w->header.section[w->header.section_count++];
     ff_pack_section_at(info, w->header.section_count - 1, s);
-    s->index.records = below_leaves(w->desc, kind, level) ? 0 : records;
+    s->index.records = is_left_out(w->desc, kind, level) ? 0 : records;
     s->data_offset = w->count;
     for (uint32_t r = 0; r < s->index.records && length && !w->failed; r++) {
         ff_key key = ff_key_make(r / per_tile, level, r % per_tile);
@@ -217,7 +223,7 @@ static void section(writer *w, enum ff_section_kind kind, uint32_t level, const 
     s->data_bytes = w->count - s->data_offset;
     s->data_crc = ff_crc32(0, w->bytes + s->data_offset, (size_t)s->data_bytes);
     if (length && !w->failed)
-        put_index(w, s, length, level && below_leaves(w->desc, kind, level - 1) ? 0 : records);
+        put_index(w, s, length, level && is_left_out(w->desc, kind, level - 1) ? 0 : records);
     else
         w->failed = 1;
     free(length);

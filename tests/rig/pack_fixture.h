@@ -17,6 +17,10 @@ typedef struct pack_fixture_desc {
     ff_list about; /* what the pack says of itself; empty: nothing */
     /* nodes of this level are leaves, and nothing is stored below; 0: nowhere */
     uint32_t leaf_level;
+    /* nodes of this level are stubs, and nothing is stored below; 0: nowhere */
+    uint32_t stub_level;
+    /* images of this level have none below them; 0: all levels have images */
+    uint32_t bare_level;
 } pack_fixture_desc;
 
 /* The pack's bytes (free them), or NULL. Textures are JPEGs, north up, texel i at i/(T-1) of the

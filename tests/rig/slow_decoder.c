@@ -196,24 +196,27 @@ static int plain_part(const uint8_t *at, long left, int stored, int corners, lon
     return 0;
 }
 
-/* What bytes before the error codes say: 16 times the children that are leaves, and those that are
- * filled. *used: how many there are. -1 when they may not be. */
+/* Takes the byte of a mark off, when it is there: one bit a child. */
+static int mark_part(const uint8_t *at, long left, int mark, int *used)
+{
+    if (left <= *used || at[*used] < mark + 1 || at[*used] > mark + 15) return 0;
+    return at[(*used)++] - mark;
+}
+
+/* What bytes before the error codes say: 256 times the children that are stubs, 16 times those that
+ * are leaves, and those that are filled. *used: how many there are. -1 when they may not be. */
 static int marks_part(int root, const uint8_t *at, long left, int *used)
 {
-    int leaf = 0, filled = 0;
+    int stub, leaf, filled;
 
     *used = 0;
-    if (left > 0 && at[0] >= 224 && at[0] < 240) {
-        leaf = at[0] - 224;
-        if (leaf == 0 || (root && leaf != 1)) return -1;
-        *used = 1;
-    }
-    if (left > *used && at[*used] >= 240) {
-        filled = at[*used] - 240;
-        if (filled == 0 || (root && filled != 1)) return -1;
-        ++*used;
-    }
-    return 16 * leaf + filled;
+    stub = mark_part(at, left, 208, used);
+    leaf = mark_part(at, left, 224, used);
+    filled = mark_part(at, left, 240, used);
+    if (root && (stub > 1 || leaf > 1 || filled > 1)) return -1;
+    for (int child = 1; child < 16; child *= 2)
+        if (stub / child % 2 && leaf / child % 2) return -1;
+    return 256 * stub + 16 * leaf + filled;
 }
 
 static int raw(int root, const uint8_t *at, long left, long *residual, int count)

@@ -224,6 +224,7 @@ int fixture_deliver(terrain_fixture *fx, ff_key key, int refinement)
         assert_true(bytes > 0);
         assert_int_equal(ff_decode_root(fx->decoder, payload, (size_t)bytes, &residuals), FF_OK);
         residuals.leaf = fx->leaf_level == 0;
+        residuals.stub = fx->is_stub && fx->is_stub(key);
         return ff_tree_deliver_root(fx->tree, ff_key_tile(key), &residuals);
     }
     uint8_t error[4];
@@ -237,6 +238,8 @@ int fixture_deliver(terrain_fixture *fx, ff_key key, int refinement)
     assert_true(bytes > 0);
     assert_int_equal(ff_decode_refinement(fx->decoder, payload, (size_t)bytes, &residuals), FF_OK);
     residuals.leaf = fx->leaf_level == ff_key_level(key) + 1 ? 15 : 0;
+    for (uint32_t q = 0; q < 4 && fx->is_stub; q++)
+        residuals.stub |= (uint8_t)(fx->is_stub(ff_key_child(key, q)) << q);
     return ff_tree_deliver_children(fx->tree, key, &residuals);
 }
 

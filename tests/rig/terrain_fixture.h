@@ -17,8 +17,9 @@ uint16_t fixture_half_flat(uint32_t x, uint32_t y);
 typedef struct terrain_fixture {
     ff_terrain_info info;
     fixture_height height;
-    enum ff_hidden hidden; /* fixture_make: FETCHED */
-    uint32_t leaf_level;   /* nodes of this level come as leaves; fixture_make: none */
+    enum ff_hidden hidden;      /* fixture_make: FETCHED */
+    uint32_t leaf_level;        /* nodes of this level come as leaves; fixture_make: none */
+    int (*is_stub)(ff_key key); /* nodes that come as stubs; NULL: none */
     ff_decoder *decoder;
     ff_tree *tree;
     void *tree_memory;

@@ -327,7 +327,7 @@ refuses 1 "a missing image" "cannot read" "$BAKE" metric.asc --color nowhere.png
 gdal_translate -q -of GTiff -a_srs EPSG:4326 -a_ullr 10 50 11 49 image.ppm far.tif
 refuses 1 "an image of other ground" "image" "$BAKE" south.asc --color far.tif --quiet -o OUT.ffp
 refuses 2 "densify by three" "power of two" "$BAKE" metric.asc --densify 3 -o OUT.ffp
-refuses 1 "an unknown ending" "ending must be" "$EXPORT" jobs1.ffp -o OUT.ffp
+refuses 1 "an unknown ending" "ending must be" "$EXPORT" jobs1.ffp -o OUT.xyz
 refuses 1 "a level the pack has not" "has levels 0 to" "$EXPORT" jobs1.ffp --level 12 -o OUT.tif
 head -c 9000 jobs1.ffp >cut.ffp
 refuses 1 "a truncated pack" "cut.ffp: data ends too early" "$INFO" cut.ffp

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #define MARK       ".tmp-"
@@ -41,4 +42,11 @@ void bake_leftovers_remove(const char *path, void (*discard)(const char *leftove
             snprintf(found, sizeof found, "%.*s%s", folder_bytes, path, entry->d_name) < PATH_BYTES)
             discard(found);
     closedir(folder);
+}
+
+int bake_same_file(const char *path, const char *other)
+{
+    struct stat a, b;
+    return path && other && !stat(path, &a) && !stat(other, &b) && a.st_dev == b.st_dev &&
+           a.st_ino == b.st_ino;
 }

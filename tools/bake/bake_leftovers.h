@@ -9,4 +9,7 @@ int bake_temp_name(const char *path, char *temp, size_t room);
 /* Calls `discard` for temporary names of this output whose processes are no more. */
 void bake_leftovers_remove(const char *path, void (*discard)(const char *leftover));
 
+/* 1 when both paths, NULL for none, lead to one file. */
+int bake_same_file(const char *path, const char *other);
+
 #endif

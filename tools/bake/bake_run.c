@@ -7,6 +7,7 @@
 #include "raster/bake_fill.h"
 #include "raster/bake_given.h"
 #include "bake_fault.h"
+#include "bake_leftovers.h"
 #include "raster/bake_project.h"
 #include "raster/bake_reference.h"
 #include "raster/bake_voids.h"
@@ -17,7 +18,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/stat.h>
 
 #define GDAL_CACHE_BYTES (48 << 20)
 
@@ -238,17 +238,10 @@ static int make_pack(bake *b)
     return 0;
 }
 
-static int is_same_file(const char *path, const char *other)
-{
-    struct stat a, b;
-    return path && !stat(path, &a) && !stat(other, &b) && a.st_dev == b.st_dev &&
-           a.st_ino == b.st_ino;
-}
-
 /* Makes sure that the pack can be written, and writes over no input. */
 static int prepare(const bake_options *o)
 {
-    if (is_same_file(o->heights_path, o->out_path) || is_same_file(o->color_path, o->out_path))
+    if (bake_same_file(o->heights_path, o->out_path) || bake_same_file(o->color_path, o->out_path))
         return bake_fail("%s is the input: not overwritten", o->out_path);
     return pack_writer_prepare(o->out_path);
 }

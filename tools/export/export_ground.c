@@ -64,7 +64,22 @@ int export_put_row(const export_ground *ground, uint32_t column, uint32_t row, u
 
 static int wants(void *context, ff_key key) { return export_meets_samples(context, key); }
 
-static int take_block(void *context, ff_key key, uint32_t side, const uint16_t *heights)
+/* What a block does not know of rims that those before it have written stays as those know it. */
+static int put_block_row(const export_ground *ground, uint32_t column, uint32_t row, uint32_t side,
+                         const uint16_t *heights, const uint8_t *known, int on_rim)
+{
+    uint32_t first = known && column > ground->window.left && !known[0];
+    if (!known || !on_rim || row <= ground->window.bottom)
+        return export_put_row(ground, column + first, row, side - first,
+                              (const uint8_t *)(heights + first));
+    for (uint32_t i = first; i < side; i++)
+        if (known[i] && export_put_row(ground, column + i, row, 1, (const uint8_t *)(heights + i)))
+            return -1;
+    return 0;
+}
+
+static int take_block(void *context, ff_key key, uint32_t side, const uint16_t *heights,
+                      const uint8_t *known)
 {
     const export_ground *ground = context;
     uint32_t level = ff_key_level(key), code = ff_key_code(key);
@@ -72,8 +87,8 @@ static int take_block(void *context, ff_key key, uint32_t side, const uint16_t *
     uint32_t column = ((at.x << level) + ff_morton_x(code)) * (side - 1),
              row = ((at.y << level) + ff_morton_y(code)) * (side - 1);
     for (uint32_t j = 0; j < side; j++)
-        if (export_put_row(ground, column, row + j, side,
-                           (const uint8_t *)(heights + (size_t)j * side)))
+        if (put_block_row(ground, column, row + j, side, heights + (size_t)j * side,
+                          known ? known + (size_t)j * side : NULL, j == 0))
             return -1;
     export_reading(ground, key, level);
     return 0;
@@ -95,7 +110,6 @@ static void describe_heights(export_ground *ground)
     ground->offset = (double)info->hoffset_wu / FF_WU_PER_METRE;
     ground->low = (double)range_wu[0] / FF_WU_PER_METRE;
     ground->high = (double)(range_wu[1] + 1) / FF_WU_PER_METRE;
-    ground->error.samples_m = info->max_error * ground->scale;
 }
 
 /* ---- both ---- */
@@ -137,7 +151,7 @@ int export_ground_open(const bake_unpack *unpack, uint32_t level, const bake_box
     describe_heights(ground);
     int rc = export_ground_begin(ground, region, sizeof(uint16_t));
     if (!rc) rc = read_heights(ground);
-    if (!rc) rc = export_told_error(ground, &ground->error.between_m);
+    if (!rc) rc = export_told_error(ground, &ground->error);
     if (!rc) rc = export_told_filled(ground, &ground->mask);
     if (export_ground_finish(ground, rc)) return -1;
     GDALRasterBandH band = GDALGetRasterBand(ground->set, 1);

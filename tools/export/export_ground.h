@@ -26,7 +26,7 @@ enum export_cell {
 
 /* How far exported heights may be from the pack's source, in metres. */
 typedef struct export_error {
-    double samples_m; /* at samples: what the pack was baked with */
+    double samples_m; /* at samples: what the pack was baked with, or more where it has stubs */
     double between_m; /* on the triangles between them: the level's geometric error */
 } export_error;
 

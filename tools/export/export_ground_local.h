@@ -22,8 +22,8 @@ void export_reading(const export_ground *ground, ff_key key, uint32_t level);
 int export_put_row(const export_ground *ground, uint32_t column, uint32_t row, uint32_t count,
                    const uint8_t *cells);
 
-/* How far the triangles between samples may be from the source, in metres. 0 or -1 (said). */
-int export_told_error(const export_ground *ground, double *error_m);
+/* How far samples, and the triangles between them, may be from the source. 0 or -1 (said). */
+int export_told_error(const export_ground *ground, export_error *error);
 /* Opens the mask, unless all of the window's ground is measured. 0 or -1 (said). */
 int export_told_filled(const export_ground *ground, bake_grid *mask);
 

@@ -1,6 +1,8 @@
 /* The textures of a level, put together. */
 #include "../../platform/sys.h"
+#include "../../protocol/ff_image.h"
 #include "../../protocol/shape/ff_shape.h"
+#include "../bake/bake_enlarge.h"
 #include "../bake/bake_say.h"
 #include "export_ground_local.h"
 
@@ -14,25 +16,33 @@
 
 typedef struct image_reader {
     export_ground *ground;
-    uint8_t *rgb; /* of a texture, top row first */
+    uint8_t *rgb, *enlarged; /* of a texture, top row first */
     uint64_t missing;
 } image_reader;
 
+/* The image of the nearest ancestor stands for one that is not stored. */
 static int read_texture(image_reader *reader, ff_key key, uint32_t column, uint32_t row)
 {
     const bake_unpack *unpack = reader->ground->unpack;
     uint32_t side = 1u << unpack->pack.header.info.texture_log2;
-    const uint8_t *bytes;
-    int rc = ff_pack_record(&unpack->pack, FF_SECTION_TEXTURE, key, &bytes);
+    const uint8_t *payload;
+    ff_image image;
+    ff_key held = key;
+    int rc = ff_pack_image(&unpack->pack, &held, &payload);
     if (rc == FF_ERR_NOT_FOUND) reader->missing++;
     if (rc == FF_ERR_NOT_FOUND) return 0;
-    if (rc >= 0) rc = sys_jpeg_decode(bytes, (size_t)rc, side, side, reader->rgb);
+    if (rc >= 0) rc = ff_image_read(payload, (size_t)rc, &image);
+    if (rc >= 0) rc = sys_jpeg_decode(image.jpeg, image.jpeg_bytes, side, side, reader->rgb);
     if (rc < 0)
         return bake_fail("%s: the texture of tile %u, level %u, code %u: %s", unpack->path,
-                         ff_key_tile(key), ff_key_level(key), ff_key_code(key), ff_error_text(rc));
+                         ff_key_tile(held), ff_key_level(held), ff_key_code(held),
+                         ff_error_text(rc));
+    if (held != key)
+        bake_enlarge(&unpack->pack.header.info, reader->rgb, held, key, reader->enlarged);
+    const uint8_t *rgb = held == key ? reader->rgb : reader->enlarged;
     for (uint32_t j = 0; j < side; j++)
         if (export_put_row(reader->ground, column, row + j, side,
-                           reader->rgb + (size_t)(side - 1 - j) * side * RGB))
+                           rgb + (size_t)(side - 1 - j) * side * RGB))
             return -1;
     return 0;
 }
@@ -55,20 +65,22 @@ static int read_below(image_reader *reader, ff_key key)
     return 0;
 }
 
-/* What has no texture is black. */
+/* What has no texture, nor any ancestor of it, is black. */
 static int read_textures(export_ground *ground)
 {
     const ff_terrain_info *info = &ground->unpack->pack.header.info;
     const bake_grid *cells = &ground->cells;
     if (ftruncate(cells->fd, (off_t)cells->width * cells->height * RGB))
         return bake_fail("cannot make a temporary file: %s", strerror(errno));
-    image_reader reader = { ground, malloc((size_t)RGB << (2 * info->texture_log2)), 0 };
-    int rc = reader.rgb ? 0 : bake_fail("out of memory");
+    size_t bytes = (size_t)RGB << (2 * info->texture_log2);
+    image_reader reader = { ground, malloc(bytes), malloc(bytes), 0 };
+    int rc = reader.rgb && reader.enlarged ? 0 : bake_fail("out of memory");
     for (uint32_t tile = 0; !rc && tile < ff_shape_tiles(info); tile++)
         rc = read_below(&reader, ff_key_make(tile, 0, 0));
     if (reader.missing)
         bake_note("%" PRIu64 " textures are not in the pack: black", reader.missing);
     free(reader.rgb);
+    free(reader.enlarged);
     return rc;
 }
 

@@ -1,6 +1,7 @@
 #include "export_options.h"
 
 #include "../bake/bake_say.h"
+#include "export_pack.h"
 
 #include <stdio.h>
 
@@ -43,10 +44,12 @@ static const sys_program program = {
     .name = "farfield-export",
     .version = FARFIELD_VERSION,
     .usage = "PACK [OPTION]... -o OUT",
-    .about = "Writes a pack's ground for other programs: heights, or the images laid over it, as "
-             "cloud-optimised GeoTIFF, 16-bit PNG, raw little-endian 16 bit (top row north), or "
-             "map tiles. GeoTIFF has place, scale and offset; PNG and raw the height steps alone. "
-             "What is written says how far its heights may be off.",
+    .about =
+        "Writes a pack's ground for other programs: heights, or the images laid over it, as "
+        "cloud-optimised GeoTIFF, 16-bit PNG, raw little-endian 16 bit (top row north), or "
+        "map tiles. GeoTIFF has place, scale and offset; PNG and raw the height steps alone. A "
+        "part as a pack is drawn as the whole is, up to its edge; ground beyond is coarse. "
+        "What is written says how far its heights may be off.",
     .more = "Map tiles are those of Web Mercator, 256 pixels wide. Tiles beside the ground are not "
             "written; in tiles that the ground ends in, what lies beyond has the height or colour "
             "of the nearest ground, since maps read heights of clear pixels as they stand; with "
@@ -65,6 +68,9 @@ int export_options_parse(export_options *o, int argc, char **argv)
     int rc = sys_options_parse(&program, o, argc, argv);
     if (rc) return rc;
     o->has_level = o->level != NOT_GIVEN;
+    if (!o->pack_path) return bake_fail("--estimate needs PACK");
+    if (o->estimate && o->out_path && !export_pack_is(o->out_path))
+        return bake_fail("--estimate tells the size of a part as a pack: -o OUT.ffp, or none");
     if (o->images && o->voids == EXPORT_VOIDS_NODATA)
         return bake_fail("--voids nodata marks heights, not --images");
     if (!o->mesh && (o->mesh_error_m > 0 || o->normals || o->gzip))

@@ -20,7 +20,7 @@ extern const sys_option_type export_zooms_option;
 #define EXPORT_OPTIONS(OPTION, HEADING) \
     OPTION(sys_text, pack_path, NULL, "PACK", NULL, SYS_FLAGS(SYS_NEEDED), "the pack") \
     OPTION(sys_text, out_path, "output", "FILE", NULL, SYS_FLAGS(SYS_NEEDED | SYS_LETTER), \
-           "OUT.tif, .png or .r16; map tiles: OUT.pmtiles, OUT.mbtiles, or a folder OUT/") \
+           "OUT.tif, .png or .r16; a part as a pack: OUT.ffp; map tiles: OUT.pmtiles, OUT.mbtiles, or a folder OUT/") \
     OPTION(sys_flag, images, "images", NULL, NULL, SYS_ANY, \
            "the images laid over the ground (OUT.jpg, too) instead of its heights") \
     OPTION(sys_whole, level, "level", "L", NULL, SYS_WHOLE(0, FF_KEY_LEVEL_MAX, ""), \
@@ -29,6 +29,9 @@ extern const sys_option_type export_zooms_option;
            "this part, in degrees") \
     OPTION(sys_word, voids, "voids", "NAME", "keep", SYS_WORDS(export_voids_words), \
            "nodata: what the source lacked, and was filled, is marked as void") \
+    HEADING("A part as a pack") \
+    OPTION(sys_flag, estimate, "estimate", NULL, NULL, SYS_FLAGS(SYS_ALONE), \
+           "tells the size of OUT.ffp beforehand; writes nothing") \
     HEADING("Map tiles") \
     OPTION(export_zooms, zooms, "zoom", "A-B", NULL, SYS_ANY, \
            "these zooms; default: from one tile to the first whose pixels are no larger than samples") \

@@ -2,6 +2,7 @@
 
 #include "../bake/bake_say.h"
 #include "export_mesh.h"
+#include "export_pack.h"
 #include "export_pyramid.h"
 #include "export_raster.h"
 #include "export_store.h"
@@ -9,6 +10,8 @@
 #include <string.h>
 
 #define GDAL_CACHE_BYTES (48 << 20)
+
+static int is_pack(const export_options *o) { return o->estimate || export_pack_is(o->out_path); }
 
 /* The level asked for, or the finest, of heights or of images. 0 or -1 (said). */
 static int choose_level(const export_options *o, const ff_terrain_info *info, uint32_t *level)
@@ -43,10 +46,13 @@ static int export_pack(const export_options *o, const bake_unpack *unpack)
 {
     export_ground ground;
     uint32_t level = 0;
+    if (is_pack(o))
+        return choose_level(o, &unpack->pack.header.info, &level)
+                   ? -1
+                   : export_pack_write(o, unpack, level);
     int is_raster = export_raster_is(o->out_path);
     if (!is_raster && !o->mesh && export_pyramid_check(o, &unpack->pack.header.info)) return -1;
     if (choose_level(o, &unpack->pack.header.info, &level)) return -1;
-    set_temp_folder(o->out_path);
     if (o->images ? export_ground_open_images(unpack, level, &o->region, &ground)
                   : export_ground_open(unpack, level, &o->region, &ground))
         return -1;
@@ -57,11 +63,12 @@ static int export_pack(const export_options *o, const bake_unpack *unpack)
 
 static int check_output(const export_options *o)
 {
+    if (is_pack(o)) return export_pack_check(o);
     if (o->mesh) return export_mesh_check(o);
     if (export_raster_is(o->out_path)) return export_raster_check(o);
     if (export_store_kind_of(o->out_path) != EXPORT_STORE_NONE) return 0;
     return bake_fail(
-        "%s: the ending must be .tif, .png, .jpg, .r16, .pmtiles, .mbtiles, or a slash "
+        "%s: the ending must be .tif, .png, .jpg, .r16, .ffp, .pmtiles, .mbtiles, or a slash "
         "for a folder of map tiles",
         o->out_path);
 }
@@ -72,6 +79,7 @@ int export_run(const export_options *o)
     GDALAllRegister();
     GDALSetCacheMax(GDAL_CACHE_BYTES);
     CPLSetErrorHandler(CPLQuietErrorHandler);
+    if (o->out_path) set_temp_folder(o->out_path);
     if (check_output(o) || bake_unpack_open(&unpack, o->pack_path)) return -1;
     int rc = export_pack(o, &unpack);
     bake_unpack_close(&unpack);

@@ -17,17 +17,45 @@ static const ff_terrain_info *info_of(const export_ground *ground)
 
 typedef struct error_search {
     const export_ground *ground;
-    uint32_t steps;
+    uint32_t samples, between; /* the largest in steps, at samples and on the triangles */
 } error_search;
 
-/* Of the nodes of the level, those below `key`. */
+static void raise(uint32_t *most, uint32_t steps)
+{
+    if (steps > *most) *most = steps;
+}
+
+/* 1 when the window shows more of a node than its rim: what lies on that is known as well as by the
+ * best of the nodes that share it. */
+static int in_window(const export_ground *ground, ff_key key)
+{
+    const export_window *w = &ground->window;
+    const ff_terrain_info *info = info_of(ground);
+    ff_sheet tile = ff_shape_sheet(info, ff_key_tile(key));
+    uint32_t level = ff_key_level(key), log2 = info->tile_log2 - level,
+             skip = ff_terrain_levels(info) - 1 - ground->level;
+    uint64_t column = (((uint64_t)tile.x << level) + ff_morton_x(ff_key_code(key))) << log2,
+             row = (((uint64_t)tile.y << level) + ff_morton_y(ff_key_code(key))) << log2,
+             edge = UINT64_C(1) << log2;
+    return column < (uint64_t)(w->left + w->width - 1) << skip &&
+           column + edge > (uint64_t)w->left << skip &&
+           row < (uint64_t)(w->bottom + w->height - 1) << skip &&
+           row + edge > (uint64_t)w->bottom << skip;
+}
+
+/* Of the nodes of the level, those below `key`. Samples below a stub lie on its triangles, up to a
+ * step above them. */
 static int search_below(error_search *search, ff_key key, const bake_told *node)
 {
     bake_told told[4];
+    uint32_t steps = ff_geometric_error_decode(node->error_code);
     if (!export_meets_samples(search->ground, key)) return 0;
     if (ff_key_level(key) == search->ground->level) {
-        uint32_t steps = ff_geometric_error_decode(node->error_code);
-        if (steps > search->steps) search->steps = steps;
+        raise(&search->between, steps);
+        return 0;
+    }
+    if (node->is_stub) {
+        if (in_window(search->ground, key)) raise(&search->samples, steps + 1);
         return 0;
     }
     if (bake_unpack_told_below(search->ground->unpack, key, node, told)) return -1;
@@ -44,15 +72,16 @@ static int search_tile(error_search *search, uint32_t tile)
     return search_below(search, ff_key_make(tile, 0, 0), &root);
 }
 
-int export_told_error(const export_ground *ground, double *error_m)
+int export_told_error(const export_ground *ground, export_error *error)
 {
-    error_search search = { ground, info_of(ground)->max_error };
-    /* there is nothing between the finest samples */
-    int finest = ground->level + 1 == ff_terrain_levels(info_of(ground));
+    error_search search = { ground, info_of(ground)->max_error, 0 };
     int rc = 0;
-    for (uint32_t tile = 0; !rc && !finest && tile < ff_shape_tiles(info_of(ground)); tile++)
+    for (uint32_t tile = 0; !rc && tile < ff_shape_tiles(info_of(ground)); tile++)
         rc = search_tile(&search, tile);
-    *error_m = search.steps * ground->scale;
+    /* there is nothing between the finest samples */
+    if (ground->level + 1 == ff_terrain_levels(info_of(ground))) search.between = 0;
+    raise(&search.between, search.samples);
+    *error = (export_error){ search.samples * ground->scale, search.between * ground->scale };
     return rc;
 }
 

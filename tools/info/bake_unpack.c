@@ -71,8 +71,12 @@ static int decode_residuals(const bake_unpack *unpack, enum ff_section_kind kind
                : ff_decode_refinement(unpack->decoder, payload, (size_t)bytes, residuals);
 }
 
-/* *leaf: 1 when nothing finer is stored. */
-static int decode_root(const bake_unpack *unpack, ff_key key, uint16_t *node, unsigned *leaf)
+/* What is told of nodes of which nothing finer is stored: a bit each. */
+typedef struct ends {
+    unsigned leaf, stub;
+} ends;
+
+static int decode_root(const bake_unpack *unpack, ff_key key, uint16_t *node, ends *end)
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
     int32_t value[FF_REFINED_HEIGHTS_MAX];
@@ -80,13 +84,13 @@ static int decode_root(const bake_unpack *unpack, ff_key key, uint16_t *node, un
     int rc = decode_residuals(unpack, FF_SECTION_ROOT, key, &residuals);
     if (rc >= 0) rc = ff_reconstruct_root(info, &residuals, node);
     if (rc < 0) return fail_at(unpack, "the root", key, rc);
-    *leaf = residuals.leaf;
+    *end = (ends){ residuals.leaf, residuals.stub };
     return 0;
 }
 
-/* *leaf: on entry bit 0 tells whether the node is a leaf, after it a bit for each child. */
+/* *end: on entry bit 0 tells of the node, after it a bit of each child. */
 static int decode_refinement(const bake_unpack *unpack, ff_key key, size_t pitch, size_t stride,
-                             uint16_t *at, unsigned *leaf)
+                             uint16_t *at, ends *end)
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
     int32_t value[FF_REFINED_HEIGHTS_MAX];
@@ -96,31 +100,19 @@ static int decode_refinement(const bake_unpack *unpack, ff_key key, size_t pitch
     int rc = 0;
     if (is_ground) residuals.cells = ff_shape_cells(info, key, 1);
     gather(at, ff_node_side(info), pitch, stride, parent);
-    if (*leaf & 1u || !is_ground) {
+    if (end->leaf & 1u || !is_ground) {
         ff_predict_children(info, residuals.cells, parent, refined);
+    } else if (end->stub & 1u) {
+        ff_interpolate_children(info, residuals.cells, parent, refined);
+        residuals.leaf = 0;
+        residuals.stub = 15;
     } else {
         rc = decode_residuals(unpack, FF_SECTION_REFINEMENT, key, &residuals);
         if (rc >= 0) rc = ff_reconstruct_refinement(info, parent, &residuals, refined);
     }
     if (rc < 0) return fail_at(unpack, "the refinement", key, rc);
     scatter(refined, ff_refined_side(info), pitch, stride / 2, at);
-    *leaf = residuals.leaf;
-    return 0;
-}
-
-/* All below a node, whose heights stand at `at`, `stride` apart, down to where they stand side by
- * side. The child in the south-west comes last: a node without ground, which is made of predictions
- * alone, shares its western or southern rim, the last samples, with one that has ground. */
-static int decode_below(const bake_unpack *unpack, ff_key key, unsigned leaf, size_t pitch,
-                        size_t stride, uint16_t *at)
-{
-    if (stride == 1) return 0;
-    if (decode_refinement(unpack, key, pitch, stride, at, &leaf)) return -1;
-    size_t edge = stride / 2 << unpack->pack.header.info.node_log2;
-    for (uint32_t q = 4; q-- > 0;)
-        if (decode_below(unpack, ff_key_child(key, q), leaf >> q & 1u, pitch, stride / 2,
-                         at + (q & 1) * edge + (q >> 1) * edge * pitch))
-            return -1;
+    *end = (ends){ residuals.leaf, residuals.stub };
     return 0;
 }
 
@@ -139,27 +131,65 @@ typedef struct walker {
     uint32_t level; /* of the blocks' nodes */
     uint32_t stride, side;
     uint16_t *heights; /* of a block */
+    uint8_t *known;    /* the same, a byte each: 1 where one does not lie on a stub's triangles */
+    int with_stubs;    /* 1: what is below stubs is made; 0: it stays as it is, the rest is known */
+    int has_stubs;     /* some were met */
 } walker;
 
-static int take_block(const walker *w, ff_key key, unsigned leaf, const uint16_t *node)
+static void mark_known(const walker *w, size_t at)
 {
-    scatter(node, ff_node_side(&w->unpack->pack.header.info), w->side, w->stride, w->heights);
-    if (decode_below(w->unpack, key, leaf, w->side, w->stride, w->heights)) return -1;
-    return w->walk->take(w->walk->context, key, w->side, w->heights);
+    uint32_t side = ff_node_side(&w->unpack->pack.header.info);
+    for (uint32_t j = 0; j < side && !w->with_stubs; j++)
+        memset(w->known + at + j * w->side, 1, side);
 }
 
-static int walk_below(const walker *w, ff_key key, unsigned leaf, const uint16_t *node)
+/* All below a node, whose heights stand at `at`, `stride` apart, down to where they stand side by
+ * side. The child in the south-west comes last: a node without ground, which is made of predictions
+ * alone, shares its western or southern rim, the last samples, with one that has ground. */
+static int decode_below(walker *w, ff_key key, ends end, size_t stride, size_t at)
+{
+    if (stride == 1) {
+        mark_known(w, at);
+        return 0;
+    }
+    w->has_stubs |= end.stub & 1u;
+    if (end.stub & 1u && !w->with_stubs) return 0;
+    if (decode_refinement(w->unpack, key, w->side, stride, w->heights + at, &end)) return -1;
+    size_t edge = stride / 2 << w->unpack->pack.header.info.node_log2;
+    for (uint32_t q = 4; q-- > 0;)
+        if (decode_below(w, ff_key_child(key, q), (ends){ end.leaf >> q, end.stub >> q },
+                         stride / 2, at + (q & 1) * edge + (q >> 1) * edge * w->side))
+            return -1;
+    return 0;
+}
+
+/* Where a stub meets finer ground its triangles give way: all else is written over them. */
+static int take_block(walker *w, ff_key key, ends end, const uint16_t *node)
+{
+    w->with_stubs = 1;
+    w->has_stubs = 0;
+    scatter(node, ff_node_side(&w->unpack->pack.header.info), w->side, w->stride, w->heights);
+    if (decode_below(w, key, end, w->stride, 0)) return -1;
+    w->with_stubs = 0;
+    memset(w->known, 0, (size_t)w->side * w->side);
+    if (w->has_stubs && decode_below(w, key, end, w->stride, 0)) return -1;
+    return w->walk->take(w->walk->context, key, w->side, w->heights,
+                         w->has_stubs ? w->known : NULL);
+}
+
+static int walk_below(walker *w, ff_key key, ends end, const uint16_t *node)
 {
     const ff_terrain_info *info = &w->unpack->pack.header.info;
     uint16_t refined[FF_REFINED_HEIGHTS_MAX], child[FF_NODE_HEIGHTS_MAX];
     uint32_t side = ff_refined_side(info);
     if (!ff_shape_has_ground(info, key) || !w->walk->wants(w->walk->context, key)) return 0;
-    if (ff_key_level(key) == w->level) return take_block(w, key, leaf, node);
+    if (ff_key_level(key) == w->level) return take_block(w, key, end, node);
     scatter(node, ff_node_side(info), side, 2, refined);
-    if (decode_refinement(w->unpack, key, side, 2, refined, &leaf)) return -1;
+    if (decode_refinement(w->unpack, key, side, 2, refined, &end)) return -1;
     for (uint32_t q = 0; q < 4; q++) {
         ff_refined_child(info, refined, q, child);
-        if (walk_below(w, ff_key_child(key, q), leaf >> q & 1u, child)) return -1;
+        if (walk_below(w, ff_key_child(key, q), (ends){ end.leaf >> q, end.stub >> q }, child))
+            return -1;
     }
     return 0;
 }
@@ -169,16 +199,19 @@ int bake_unpack_heights(const bake_unpack *unpack, uint32_t level, const bake_un
     const ff_terrain_info *info = &unpack->pack.header.info;
     uint32_t top = bake_unpack_block_level(level), stride = 1u << (level - top),
              side = (stride << info->node_log2) + 1;
-    walker w = { unpack, walk, top, stride, side, malloc((size_t)side * side * sizeof(uint16_t)) };
-    int rc = w.heights ? 0 : bake_fail("out of memory");
+    size_t samples = (size_t)side * side;
+    walker w = { unpack,          walk, top, stride, side, malloc(samples * sizeof(uint16_t)),
+                 malloc(samples), 0,    0 };
+    int rc = w.heights && w.known ? 0 : bake_fail("out of memory");
     for (uint32_t tile = 0; !rc && tile < ff_shape_tiles(info); tile++) {
         ff_key key = ff_key_make(tile, 0, 0);
         uint16_t root[FF_NODE_HEIGHTS_MAX];
-        unsigned leaf = 0;
+        ends end = { 0, 0 };
         if (!walk->wants(walk->context, key)) continue;
-        rc = decode_root(unpack, key, root, &leaf) ? -1 : walk_below(&w, key, leaf, root);
+        rc = decode_root(unpack, key, root, &end) ? -1 : walk_below(&w, key, end, root);
     }
     free(w.heights);
+    free(w.known);
     return rc;
 }
 
@@ -187,16 +220,25 @@ int bake_unpack_heights(const bake_unpack *unpack, uint32_t level, const bake_un
 static bake_told told_of(const ff_residuals *residuals, unsigned q)
 {
     return (bake_told){ residuals->child_error[q], residuals->filled >> q & 1u,
-                        residuals->leaf >> q & 1u };
+                        residuals->leaf >> q & 1u, residuals->stub >> q & 1u };
+}
+
+/* Of a root, or of a node's children. FF_OK or a negative ff_error. */
+static int read_told(const bake_unpack *unpack, enum ff_section_kind kind, ff_key key,
+                     ff_residuals *told)
+{
+    const uint8_t *payload;
+    int bytes = ff_pack_record(&unpack->pack, kind, key, &payload);
+    if (bytes < 0) return bytes;
+    return ff_read_marks(&unpack->pack.header.info, kind == FF_SECTION_ROOT, payload, (size_t)bytes,
+                         told);
 }
 
 int bake_unpack_told_root(const bake_unpack *unpack, uint32_t tile, bake_told *told)
 {
-    int32_t value[FF_REFINED_HEIGHTS_MAX];
     ff_key key = ff_key_make(tile, 0, 0);
-    ff_residuals residuals = { .cells = ff_shape_cells(&unpack->pack.header.info, key, 0),
-                               .value = value };
-    int rc = decode_residuals(unpack, FF_SECTION_ROOT, key, &residuals);
+    ff_residuals residuals = { 0 };
+    int rc = read_told(unpack, FF_SECTION_ROOT, key, &residuals);
     if (rc < 0) return fail_at(unpack, "the root", key, rc);
     *told = told_of(&residuals, 0);
     return 0;
@@ -206,15 +248,13 @@ int bake_unpack_told_below(const bake_unpack *unpack, ff_key key, const bake_tol
                            bake_told told[4])
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
-    int32_t value[FF_REFINED_HEIGHTS_MAX];
-    ff_residuals residuals = { .value = value };
-    if (node->is_leaf || !ff_shape_has_ground(info, key)) {
+    ff_residuals residuals = { 0 };
+    int rc = 0;
+    if (node->is_leaf || !ff_shape_has_ground(info, key))
         residuals = ff_leaf_residuals(info, node->error_code, node->has_filled);
-    } else {
-        residuals.cells = ff_shape_cells(info, key, 1);
-        int rc = decode_residuals(unpack, FF_SECTION_REFINEMENT, key, &residuals);
-        if (rc < 0) return fail_at(unpack, "the refinement", key, rc);
-    }
-    for (unsigned q = 0; q < 4; q++) told[q] = told_of(&residuals, q);
+    else if (!node->is_stub)
+        rc = read_told(unpack, FF_SECTION_REFINEMENT, key, &residuals);
+    if (rc < 0) return fail_at(unpack, "the refinement", key, rc);
+    for (unsigned q = 0; q < 4; q++) told[q] = node->is_stub ? *node : told_of(&residuals, q);
     return 0;
 }

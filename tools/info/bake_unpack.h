@@ -17,7 +17,8 @@ typedef struct bake_unpack {
 typedef struct bake_told {
     uint8_t error_code; /* its geometric error (ff_codec.h) */
     uint8_t has_filled; /* some of the ground below it was void in the source */
-    uint8_t is_leaf;    /* nothing finer is stored */
+    uint8_t is_leaf;    /* nothing finer is stored: it is prediction */
+    uint8_t is_stub;    /* nothing finer is stored, though there is finer ground */
 } bake_told;
 
 /* Maps and checks a pack. 0 or -1 (said). */
@@ -29,8 +30,11 @@ typedef struct bake_unpack_walk {
     void *context;
     /* 0: nothing is wanted of a node with ground, or of what is below it */
     int (*wants)(void *context, ff_key key);
-    /* Takes what is below a node: side^2 heights of the level, south to north. 0 or -1 (said). */
-    int (*take)(void *context, ff_key key, uint32_t side, const uint16_t *heights);
+    /* Takes what is below a node: side^2 heights of the level, south to north; below stubs those of
+     * their triangles. `known` is 0 for such: on a rim the block beside may know better. NULL:
+     * there are none. 0 or -1 (said). */
+    int (*take)(void *context, ff_key key, uint32_t side, const uint16_t *heights,
+                const uint8_t *known);
 } bake_unpack_walk;
 
 /* The level of the nodes that blocks are of, when the heights are those of `level`. */

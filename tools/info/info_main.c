@@ -36,9 +36,10 @@ static const sys_program program = {
 
 static int want_all(void *context, ff_key key) { return (void)context, (void)key, 1; }
 
-static int leave(void *context, ff_key key, uint32_t side, const uint16_t *heights)
+static int leave(void *context, ff_key key, uint32_t side, const uint16_t *heights,
+                 const uint8_t *known)
 {
-    return (void)context, (void)key, (void)side, (void)heights, 0;
+    return (void)context, (void)key, (void)side, (void)heights, (void)known, 0;
 }
 
 /* Checks the checksums of all records, then decodes every tile: intact bytes may still make no

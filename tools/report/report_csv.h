@@ -29,6 +29,7 @@
     X(truth_error_m, MAY_LACK) \
     X(square_px_waiting, MAY_LACK) \
     X(square_px_depth, MAY_LACK) \
+    X(square_px_stub, MAY_LACK) \
     X(square_px_quality, MAY_LACK) \
     X(square_px_panorama, MAY_LACK) \
     X(square_px_undrawn, MAY_LACK) \

@@ -21,6 +21,7 @@ static const kind bytes_kinds[] = { { REPORT_bytes_heights, "heights" },
                                     { REPORT_bytes_overhead, "greetings, pongs, refusals" },
                                     { REPORT_bytes_up, "requests (up)" } };
 static const kind error_kinds[] = { { REPORT_square_px_depth, "depth limit of the quality" },
+                                    { REPORT_square_px_stub, "finer ground not in the pack" },
                                     { REPORT_square_px_quality, "as coarse as the quality allows" },
                                     { REPORT_square_px_panorama,
                                       "parallax and texels of the panorama" },
@@ -29,7 +30,7 @@ static const kind error_kinds[] = { { REPORT_square_px_depth, "depth limit of th
 enum {
     BYTES_KINDS = sizeof bytes_kinds / sizeof *bytes_kinds,
     ERROR_KINDS = sizeof error_kinds / sizeof *error_kinds,
-    KINDS_MAX = 5
+    KINDS_MAX = 6
 };
 
 static double last(const report_flight *flight, enum report_column column)

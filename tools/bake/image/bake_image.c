@@ -2,6 +2,8 @@
 
 #include "../../../protocol/shape/ff_shape.h"
 #include "../../../platform/sys.h"
+#include "../../../protocol/ff_image.h"
+#include "bake_bare.h"
 #include "bake_image_local.h"
 #include "bake_nearest.h"
 #include "../bake_say.h"
@@ -247,7 +249,9 @@ int bake_picture_levels(const bake_options *o, const bake_ground *ground, ff_ter
 
 static void open_image(bake_image *image, uint32_t levels)
 {
-    for (int l = 0; l < BAKE_TEXTURE_LEVELS_MAX; l++) image->lattice[l] = BAKE_GRID_CLOSED;
+    for (int l = 0; l < BAKE_TEXTURE_LEVELS_MAX; l++)
+        image->lattice[l] = image->bare[l] = BAKE_GRID_CLOSED;
+    image->has_bare = 0;
     image->levels = levels;
 }
 
@@ -272,53 +276,63 @@ int bake_image_make(const bake_options *o, const bake_ground *ground, ff_terrain
     int rc = make_lattices(&picture, ground, info, (ff_sheet){ 0, 0 }, samples, image, &covered);
     if (!rc && !covered) rc = bake_fail("the image shows nothing of this ground");
     bake_picture_close(&picture);
-    return rc;
+    return rc ? rc : bake_bare_find(image, info, (int)o->texture_quality);
 }
 
 void bake_image_close(bake_image *image)
 {
-    for (uint32_t l = 0; l < image->levels; l++) bake_grid_close(&image->lattice[l]);
+    for (uint32_t l = 0; l < image->levels; l++) {
+        bake_grid_close(&image->lattice[l]);
+        if (image->has_bare) bake_grid_close(&image->bare[l]);
+    }
     image->levels = 0;
 }
 
 /* ---- textures of nodes ---- */
 
-/* Reads the texture whose south-west texel lies at lattice point (column, row), top row first. */
-static int read_texture(const bake_grid *lattice, uint32_t side, uint32_t column, uint32_t row,
-                        uint8_t *rgb)
+int bake_texture_read(const bake_image *image, const ff_terrain_info *info, ff_key key,
+                      uint8_t *rgb)
 {
+    uint32_t side = 1u << info->texture_log2, level = ff_key_level(key), code = ff_key_code(key);
+    ff_sheet tile = ff_shape_sheet(info, ff_key_tile(key));
+    uint32_t column = ((tile.x << level) + ff_morton_x(code)) * (side - 1),
+             row = ((tile.y << level) + ff_morton_y(code)) * (side - 1);
     for (uint32_t j = 0; j < side; j++)
-        if (bake_grid_read(lattice, row + j, column, side,
+        if (bake_grid_read(&image->lattice[level], row + j, column, side,
                            rgb + (size_t)(side - 1 - j) * side * RGB))
             return -1;
     return 0;
 }
 
+/* A node's image: its JPEG, and before it which children have none. */
+static int encode_texture(const bake_image *image, const ff_terrain_info *info, int quality,
+                          ff_key key, uint8_t *rgb, uint8_t *payload, bake_blob *blob)
+{
+    uint32_t side = 1u << info->texture_log2;
+    int bare = 0;
+    if (!ff_shape_has_ground(info, key)) return bake_blob_add(blob, NULL, 0);
+    if (bake_bare_of(image, info, key, &bare)) return -1;
+    if (bare < 0) return bake_blob_add(blob, NULL, 0);
+    if (bake_texture_read(image, info, key, rgb)) return -1;
+    if (bare) *payload = (uint8_t)(FF_IMAGE_BARE + (unsigned)bare);
+    int bytes = sys_jpeg_encode(rgb, side, side, quality, payload + (bare > 0),
+                                BAKE_JPEG_BYTES(info));
+    if (bytes <= 0) return bake_fail("cannot encode a texture: %s", ff_error_text(bytes));
+    return bake_blob_add(blob, payload, (size_t)bytes + (bare > 0));
+}
+
 int bake_texture_encode(const bake_image *image, const ff_terrain_info *info, int quality,
                         ff_key node, uint32_t below, bake_blob *blob)
 {
-    uint32_t side = 1u << info->texture_log2, level = ff_key_level(node) + below;
-    ff_sheet tile = ff_shape_sheet(info, ff_key_tile(node));
-    size_t capacity = (size_t)4 * side * side + 8192;
-    uint8_t *rgb = malloc((size_t)side * side * RGB), *jpeg = malloc(capacity);
-    int rc = rgb && jpeg ? 0 : bake_fail("out of memory");
+    uint32_t level = ff_key_level(node) + below;
+    uint8_t *rgb = malloc((size_t)RGB << 2 * info->texture_log2),
+            *payload = malloc(1 + BAKE_JPEG_BYTES(info));
+    int rc = rgb && payload ? 0 : bake_fail("out of memory");
     for (uint32_t i = 0; !rc && i >> (2 * below) == 0; i++) {
-        uint32_t code = ff_key_code(node) << 2 * below | i;
-        uint32_t column = ((tile.x << level) + ff_morton_x(code)) * (side - 1),
-                 row = ((tile.y << level) + ff_morton_y(code)) * (side - 1);
-        if (!ff_shape_has_ground(info, ff_key_make(ff_key_tile(node), level, code))) {
-            rc = bake_blob_add(blob, NULL, 0);
-            continue;
-        }
-        rc = read_texture(&image->lattice[level], side, column, row, rgb);
-        if (rc) break;
-        int bytes = sys_jpeg_encode(rgb, side, side, quality, jpeg, capacity);
-        if (bytes <= 0)
-            rc = bake_fail("cannot encode a texture: %s", ff_error_text(bytes));
-        else
-            rc = bake_blob_add(blob, jpeg, (size_t)bytes);
+        ff_key key = ff_key_make(ff_key_tile(node), level, ff_key_code(node) << 2 * below | i);
+        rc = encode_texture(image, info, quality, key, rgb, payload, blob);
     }
     free(rgb);
-    free(jpeg);
+    free(payload);
     return rc;
 }

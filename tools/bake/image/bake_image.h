@@ -4,7 +4,8 @@
  * A node's texture has T = 2^t texels a side, the outermost on the node's very edges, so that
  * neighbours share them and bilinear filtering shows no seam. All texels of a level therefore form
  * one lattice of 2^l * (T-1) * tiles + 1 texels; each coarser lattice is every second point of the
- * finer one, weighted 1-2-1. Points beyond the ground repeat its rim.
+ * finer one, weighted 1-2-1. Points beyond the ground repeat its rim. Images that would show no
+ * more than one above them are left out (bake_bare.h).
  */
 #ifndef BAKE_IMAGE_H
 #define BAKE_IMAGE_H
@@ -18,6 +19,10 @@
 typedef struct bake_image {
     bake_grid lattice[BAKE_TEXTURE_LEVELS_MAX]; /* RGB, rows south to north */
     uint32_t levels;
+    /* of all levels but the last, a byte for each node: which children have no image (bake_bare.h)
+     */
+    bake_grid bare[BAKE_TEXTURE_LEVELS_MAX];
+    int has_bare; /* 0: all nodes with ground have one, and `bare` is not looked at */
 } bake_image;
 
 /* Reads the image of `options` onto the ground; sets info->texture_log2 and texture_levels. 0 or -1
@@ -26,7 +31,7 @@ int bake_image_make(const bake_options *options, const bake_ground *ground, ff_t
                     bake_image *image);
 void bake_image_close(bake_image *image);
 
-/* Appends the JPEGs of all nodes so many levels below a node, in Morton order, to `blob`. May run
+/* Appends the images of all nodes so many levels below a node, in Morton order, to `blob`. May run
  * in several threads. 0 or -1 (said). */
 int bake_texture_encode(const bake_image *image, const ff_terrain_info *info, int quality,
                         ff_key node, uint32_t below, bake_blob *blob);

@@ -1,6 +1,7 @@
 #include "bake_image_sample.h"
 
 #include "../../../platform/sys.h"
+#include "bake_bare.h"
 #include "bake_image_local.h"
 
 #include <math.h>
@@ -28,7 +29,7 @@ typedef struct sampling {
 static double now_s(void) { return (double)sys_time_us() / 1e6; }
 
 /* Bytes of all JPEGs of a part: of its topmost one, and of all. */
-static int encode_part(const sampling *s, const bake_image *image, double *root, double *all)
+static int encode_part(const sampling *s, bake_image *image, double *root, double *all)
 {
     ff_terrain_info one = *s->info;
     bake_blob blob = { 0 };
@@ -36,6 +37,7 @@ static int encode_part(const sampling *s, const bake_image *image, double *root,
     uint32_t side = (1u << one.tile_log2) + 1;
     ff_shape_cover(&one, side, side); /* the only tile */
     *all = 0;
+    rc = bake_bare_find(image, &one, (int)s->options->texture_quality);
     for (uint32_t l = 0; !rc && l < image->levels; l++) {
         bake_blob_clear(&blob);
         rc = bake_texture_encode(image, &one, s->options->texture_quality, ff_key_make(0, 0, 0), l,
