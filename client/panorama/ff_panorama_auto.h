@@ -2,7 +2,8 @@
  * its ground, its link and its motion alone.
  *
  * Both ways are held to one error, that of the ground now drawn: pixels of error are a bound, and
- * ground stays within a quarter of them in 19 pixels of 20 (make front). A set of faces stays
+ * ground stays within a quarter of them in 19 pixels of 20 (make front), and above 24 is taken as
+ * 24: a set that may be worse stays while ground would get better. A set of faces stays
  * within it only where half its texels are smaller, and only for as long as the viewer moves less
  * than the rest of it allows (Hybrid eq. 6, 7). A panorama is worth it when
  *   - the limit of triangles makes ground half as coarse again as was asked for, or more;

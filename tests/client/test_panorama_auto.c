@@ -40,6 +40,8 @@ static void the_rule_keeps_its_numbers(void **state)
     assert_false(ff_panorama_worth_q8(&c, 0));
     c.ground_px_q8 = 836;
     assert_int_equal(ff_panorama_worth_q8(&c, 0), 1);
+    c.ground_px_q8 = 2 * 4 * 24 * 256; /* twice as coarse as what it is taken for */
+    assert_int_equal(ff_panorama_worth_q8(&c, 0), 24 * 256 - 208);
     c = usual;
     c.far_triangles = 1666;
     assert_false(ff_panorama_worth_q8(&c, 0));

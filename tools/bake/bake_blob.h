@@ -1,4 +1,4 @@
-/* Records of one tile in one section, waiting for their turn to be written. */
+/* Records of a tile, or of a part of it, in one section, waiting for their turn to be written. */
 #ifndef BAKE_BLOB_H
 #define BAKE_BLOB_H
 

@@ -97,18 +97,18 @@ static int make_ground(bake *b)
 /* ---- the terrain's description ---- */
 
 /* 1 when tiles of 2^n along the longer side end where places still fit int32_t. */
-static int tiles_fit(uint32_t n, uint32_t samples, uint32_t spacing_wu)
+static int tiles_fit(uint32_t n, uint32_t samples, uint32_t apart_wu)
 {
     uint64_t tiles = ((samples - 2) >> n) + 1;
-    return (tiles << n) * spacing_wu <= INT32_MAX;
+    return (tiles << n) * apart_wu <= INT32_MAX;
 }
 
 uint32_t bake_choose_tile_log2(uint32_t node_log2, uint32_t width, uint32_t height,
-                               uint32_t spacing_wu)
+                               uint32_t apart_wu)
 {
     uint32_t samples = width > height ? width : height, n = node_log2;
     while (n < node_log2 + FF_KEY_LEVEL_MAX && (samples - 2) >> n) n++;
-    while (n > node_log2 && !tiles_fit(n, samples, spacing_wu)) n--;
+    while (n > node_log2 && !tiles_fit(n, samples, apart_wu)) n--;
     return n;
 }
 

@@ -220,7 +220,7 @@ int bake_tiles_make(const bake_tiles *tiles)
     crew c = { .levels = 0 };
     if (blocks > UINT32_MAX) return bake_fail("more than 2^32 blocks of ground");
     int rc = open_crew(&c, tiles, workers);
-    bake_jobs jobs = { "tiles", (uint32_t)blocks, (int)workers, &c, make_block, take_block };
+    bake_jobs jobs = { "blocks", (uint32_t)blocks, (int)workers, &c, make_block, take_block };
     if (!rc) rc = bake_jobs_run(&jobs);
     close_crew(&c, workers);
     return rc;

@@ -30,8 +30,9 @@ typedef struct pack_writer {
 int pack_writer_prepare(const char *path);
 /* Sections in order: root, refinements of level 0.., textures of level 0... 0 or -1 (said). */
 int pack_writer_open(pack_writer *writer, const ff_terrain_info *info);
-/* Appends a tile's records to a section; `above` holds those of their parents, as many or a quarter
- * as many, NULL: roots. Where there is no parent there is no record. 0 or -1 (said). */
+/* Appends records of a tile, or of a part of it, to a section; `above` holds those of their
+ * parents, as many or a quarter as many, NULL: roots. Where there is no parent there is no record.
+ * 0 or -1 (said). */
 int pack_writer_add(pack_writer *writer, uint32_t section, const bake_blob *blob,
                     const bake_blob *above);
 /* Puts the sections together as `path`; *file_bytes receives its size. 0 or -1 (said). */

@@ -69,7 +69,7 @@ done
 say "pictures at 640x480 in high quality, and the wireframe"
 fly large-panorama umts 10 on 640x480 --every 5 --quality high --memory 8M --face 512
 fly large umts 10 off 640x480 --every 5 --quality high --memory 8M
-fly wireframe umts 10 off 640x480 --every 5 --wireframe --quality 2:4 --height 1500
+fly wireframe umts 10 off 640x480 --every 5 --wireframe --quality 2:7 --height 1500
 
 say "integers beside GL ES: the same minute twice"
 "$(dirname "$0")/look.sh" "$bin" "$pack" "$out/look" --start 0.35 --speed 900 --height 300 --quality high --memory 8M
