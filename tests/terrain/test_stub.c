@@ -95,6 +95,27 @@ static void the_cut_is_whole_beside_stubs(void **state)
     fixture_free(&fx);
 }
 
+/* Nobody looks at a mark of the last level. */
+static void stubs_of_the_last_level_are_nothing_special(void **state)
+{
+    (void)state;
+    terrain_fixture fx;
+    const ff_drawn *list;
+    uint32_t finest = 0;
+    fixture_usual(&fx, 3000);
+    stub_level = ff_terrain_levels(&fx.info) - 1;
+    fx.is_stub = is_of_stub_level;
+    ff_view view = fixture_view_above(&fx, 1500, 1100, 30, 0, -30);
+    ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
+    settle(&fx, &view, &quality);
+    uint32_t count = ff_tree_cut(fx.tree, &list);
+    for (uint32_t i = 0; i < count; i++)
+        if (ff_key_level(list[i].key) > finest) finest = ff_key_level(list[i].key);
+    assert_int_equal(finest, stub_level);
+    assert_int_equal(fixture_stats(&fx).stubs, 0);
+    fixture_free(&fx);
+}
+
 static void nothing_below_stubs_is_foreseen_or_reserved(void **state)
 {
     (void)state;
@@ -150,7 +171,9 @@ static void pools_of_any_size_settle(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_tree_ends_at_stubs), cmocka_unit_test(the_cut_is_whole_beside_stubs),
+        cmocka_unit_test(the_tree_ends_at_stubs),
+        cmocka_unit_test(the_cut_is_whole_beside_stubs),
+        cmocka_unit_test(stubs_of_the_last_level_are_nothing_special),
         cmocka_unit_test(nothing_below_stubs_is_foreseen_or_reserved),
         cmocka_unit_test(what_a_server_sends_below_a_stub_is_not_taken),
         cmocka_unit_test(pools_of_any_size_settle)

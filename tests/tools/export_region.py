@@ -85,7 +85,7 @@ def _():
 def _():
     for log2 in 10, 7:
         for region in REGIONS:
-            for level in range(LEVELS if log2 == 10 else LEVELS - 3):
+            for level in range(0, LEVELS if log2 == 10 else LEVELS - 3, 2 if log2 == 10 else 1):
                 options = "--region=" + region, "--level", level
                 part(f"land{log2}.ffp", "part.ffp", *options)
                 assert told(f"land{log2}.ffp", *options) == size("part.ffp"), (log2, options)
@@ -107,7 +107,7 @@ def _():
                 options = "--images", "--region=" + region, "--level", level
                 ours, theirs = raster("part.ffp", "a.tif", *options), raster(f"land{log2}.ffp", "b.tif", *options)
                 assert np.array_equal(ours[0], theirs[0]), (log2, options, abs(ours[0] - theirs[0]).max())
-        for west, south in np.random.default_rng(3).uniform((9.0, 45.94), (9.15, 46.03), (24, 2)).round(4):  # some end where nodes do
+        for west, south in np.random.default_rng(3).uniform((9.0, 45.94), (9.15, 46.03), (12, 2)).round(4):  # some end where nodes do
             region = f"--region={west},{south},{west + 0.03:.4f},{south + 0.02:.4f}"
             part(f"land{log2}.ffp", "part.ffp", region)
             assert np.array_equal(raster("part.ffp", "a.tif", region)[0], raster(f"land{log2}.ffp", "b.tif", region)[0]), (log2, region)
