@@ -184,12 +184,14 @@ static int fetch_answer(const ff_session *session, const request *wanted, ff_mes
     return ff_message_bytes_max(message) <= FACE_BYTES ? FF_OK : FF_ERR_FULL;
 }
 
-/* Puts an answer of a kind into the buffer while less than `bytes_max` waits there. 1, 0: there is
- * no room for it yet, or a negative error: it is too long. */
+/* Puts an answer of a kind into the buffer while less than `bytes_max` waits there, or nothing:
+ * what is longer goes alone, and where it leaves no room for the face being drawn, after that. 1,
+ * 0: there is no room for it yet, or a negative error: it is too long. */
 static int put_answer(ff_session *session, const ff_message *message, size_t bytes_max)
 {
     size_t room = ff_message_bytes_max(message);
-    int alone = out_pending(session) == 0 && !session->job_out;
+    int alone = out_pending(session) == 0 &&
+                (room <= session->desc.out_bytes_max || !session->job_out);
     if (out_pending(session) + room > bytes_max && !alone) return 0;
     int rc = ff_message_encode(message, out_room(session, room), room);
     if (rc < 0) return rc;
@@ -379,7 +381,11 @@ void ff_session_face_done(ff_session *session, const ff_face_job *job, const uin
 {
     assert(session->job_out);
     session->job_out = 0;
-    if (session->error || session->job_stale) return;
+    if (session->error) return;
+    if (session->job_stale) {
+        serve_queue(session); /* an answer may have waited for the face */
+        return;
+    }
     assert(session->panorama_on && session->panorama.id == job->request.id);
     if (bytes_or_error > (int)FACE_BYTES || bytes_or_error == 0) bytes_or_error = FF_ERR_RANGE;
     if (bytes_or_error < 0) {
