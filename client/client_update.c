@@ -21,7 +21,7 @@ ff_quality ff_client_quality(const ff_client *client)
     if (client->far_painted) quality.view_wu = ff_panorama_front_wu(&client->panorama);
     FF_ASSERT(quality.view_wu > 0);
     if (ff_client_low_power(client)) {
-        quality.c_q8 /= LOW_POWER_DIVISOR;
+        if (quality.c_q8 > 1) quality.c_q8 /= LOW_POWER_DIVISOR; /* never none */
         quality.error_px_q8 *= LOW_POWER_DIVISOR;
         quality.triangles_max = quality.triangles_max / LOW_POWER_DIVISOR + 1;
     }

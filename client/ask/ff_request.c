@@ -451,10 +451,7 @@ void ff_requests_part(ff_requests *requests, uint16_t id, enum ff_kind kind, ff_
     FF_ASSERT(id >= 1 && id <= requests->slot_count && id == requests->view_id);
     ff_request *request = &requests->slot[id - 1];
     FF_ASSERT(request->state == FF_REQUEST_SENT);
-    for (unsigned i = 0; i < requests->view.count; i++)
-        if (requests->view.below[i] == key &&
-            (kind == FF_KIND_ROOT) == (requests->view.roots >> i & 1u))
-            request->named |= (uint16_t)(1u << i);
+    request->named |= (uint16_t)ff_view_names(&requests->view, kind, key);
     uint32_t less = bytes < request->bytes_expected ? bytes : request->bytes_expected;
     request->bytes_expected -= less;
     requests->counts.bytes_in_flight -= less;

@@ -141,6 +141,8 @@ typedef struct ff_get_view {
 
 /* 1 when an answer to the request may bring this root or refinement. */
 int ff_view_covers(const ff_get_view *view, enum ff_kind kind, ff_key key);
+/* Bit i: this is what view->below[i] names. */
+uint32_t ff_view_names(const ff_get_view *view, enum ff_kind kind, ff_key key);
 
 /* One answer to it: a root, a refinement, or the news that there are no more. */
 enum ff_part_what { FF_PART_ROOT, FF_PART_REFINEMENT, FF_PART_END };

@@ -48,6 +48,16 @@ int ff_view_covers(const ff_get_view *view, enum ff_kind kind, ff_key key)
     return 0;
 }
 
+uint32_t ff_view_names(const ff_get_view *view, enum ff_kind kind, ff_key key)
+{
+    uint32_t named = 0;
+    FF_ASSERT(kind == FF_KIND_ROOT || kind == FF_KIND_REFINEMENT);
+    for (unsigned i = 0; i < view->count; i++)
+        if (view->below[i] == key && (kind == FF_KIND_ROOT) == (view->roots >> i & 1u))
+            named |= 1u << i;
+    return named;
+}
+
 void ff_message_write_view(ff_writer *out, const ff_get_view *view)
 {
     ff_message_require(&out->error, view_ok(view));

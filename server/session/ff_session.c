@@ -17,6 +17,7 @@
 #define SHORT_ANSWERS_BYTES 8192 /* reserve for short answers */
 #define FACE_BYTES          (FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX)
 #define MINUTE_US           60000000
+#define VIEWS_AT_ONCE       8 /* one can take 0.1 s, in which no other client is heard */
 #define VIEW_BYTES          4096 /* of parts that wait in the buffer, so that a CANCEL stops the rest */
 
 typedef struct request {
@@ -25,7 +26,7 @@ typedef struct request {
     ff_get get;
 } request;
 
-/* How often something dear may be asked for: a minute's worth at once, then as time goes by. */
+/* How often something dear may be asked for: some at once, then as time goes by. */
 typedef struct allowance {
     int64_t credit_us, time_us;
 } allowance;
@@ -101,13 +102,13 @@ void ff_session_destroy(ff_session *session)
     free(session);
 }
 
-static int allowed(const ff_session *session, allowance *of, uint32_t per_minute)
+static int allowed(const ff_session *session, allowance *of, uint32_t per_minute, uint32_t at_once)
 {
-    int64_t cost_us = MINUTE_US / per_minute, gained_us = session->now_us - of->time_us;
+    int64_t cost_us = MINUTE_US / per_minute, most_us = cost_us * at_once,
+            gained_us = session->now_us - of->time_us;
     of->time_us = session->now_us;
-    if (gained_us > 0)
-        of->credit_us = gained_us >= MINUTE_US - of->credit_us ? MINUTE_US
-                                                               : of->credit_us + gained_us;
+    if (gained_us >= 0)
+        of->credit_us = gained_us >= most_us - of->credit_us ? most_us : of->credit_us + gained_us;
     if (of->credit_us < cost_us) return 0;
     of->credit_us -= cost_us;
     return 1;
@@ -184,12 +185,14 @@ static int fetch_answer(const ff_session *session, const request *wanted, ff_mes
     return ff_message_bytes_max(message) <= FACE_BYTES ? FF_OK : FF_ERR_FULL;
 }
 
-/* Puts an answer of a kind into the buffer while less than `bytes_max` waits there. 1, 0: there is
- * no room for it yet, or a negative error: it is too long. */
+/* Puts an answer of a kind into the buffer while less than `bytes_max` waits there, or nothing:
+ * what is longer goes alone, and where it leaves no room for the face being drawn, after that. 1,
+ * 0: there is no room for it yet, or a negative error: it is too long. */
 static int put_answer(ff_session *session, const ff_message *message, size_t bytes_max)
 {
     size_t room = ff_message_bytes_max(message);
-    int alone = out_pending(session) == 0 && !session->job_out;
+    int alone = out_pending(session) == 0 &&
+                (room <= session->desc.out_bytes_max || !session->job_out);
     if (out_pending(session) + room > bytes_max && !alone) return 0;
     int rc = ff_message_encode(message, out_room(session, room), room);
     if (rc < 0) return rc;
@@ -315,7 +318,7 @@ static int find_parts(ff_session *session, const ff_get_view *wanted)
     if (view->on) return FF_ERR_FULL;
     if (!view->part) view->part = malloc(FF_VIEW_PARTS_MAX * sizeof *view->part);
     if (!view->part) return FF_ERR_MEMORY;
-    return allowed(session, &session->views, session->desc.views_per_minute)
+    return allowed(session, &session->views, session->desc.views_per_minute, VIEWS_AT_ONCE)
                ? ff_view_parts(session->desc.pack, wanted, view->part)
                : ff_view_named(wanted, view->part);
 }
@@ -346,7 +349,8 @@ static void panorama_drop(ff_session *session)
 int ff_session_ask_faces(ff_session *session, const ff_message *ask)
 {
     const ff_get_panorama *wanted = &ask->u.panorama;
-    if (!allowed(session, &session->panoramas, session->desc.panoramas_per_minute)) {
+    if (!allowed(session, &session->panoramas, session->desc.panoramas_per_minute,
+                 session->desc.panoramas_per_minute)) {
         answer_failed(session, wanted->id, FF_ERR_FULL);
         return FF_OK;
     }
@@ -379,7 +383,11 @@ void ff_session_face_done(ff_session *session, const ff_face_job *job, const uin
 {
     assert(session->job_out);
     session->job_out = 0;
-    if (session->error || session->job_stale) return;
+    if (session->error) return;
+    if (session->job_stale) {
+        serve_queue(session); /* an answer may have waited for the face */
+        return;
+    }
     assert(session->panorama_on && session->panorama.id == job->request.id);
     if (bytes_or_error > (int)FACE_BYTES || bytes_or_error == 0) bytes_or_error = FF_ERR_RANGE;
     if (bytes_or_error < 0) {

@@ -85,13 +85,6 @@ static int is_full(const search *s)
     return s->count == FF_VIEW_PARTS_MAX || s->bytes > s->view->bytes_max;
 }
 
-static int is_named(const search *s, const ff_wish *wish)
-{
-    for (uint32_t i = 0; i < s->view->count; i++)
-        if (s->part[i].key == wish->key && s->part[i].kind == wish->kind) return 1;
-    return 0;
-}
-
 static void count_bytes(search *s, enum ff_kind kind, ff_key key)
 {
     const uint8_t *payload;
@@ -106,7 +99,8 @@ static int serve(search *s, const ff_wish *wish)
     enum ff_kind kind = (enum ff_kind)wish->kind;
     if (ff_pack_source_serve(s->pack, s->decoder, s->values, s->tree, kind, wish->key) != FF_OK)
         return 0;
-    if (!ff_view_covers(s->view, kind, wish->key) || is_named(s, wish)) return 1;
+    if (!ff_view_covers(s->view, kind, wish->key) || ff_view_names(s->view, kind, wish->key))
+        return 1;
     s->part[s->count++] = (ff_view_part){ wish->key, wish->kind };
     count_bytes(s, kind, wish->key);
     return 1;

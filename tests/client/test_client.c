@@ -457,6 +457,21 @@ static void low_power_is_coarser_and_recovers(void **state)
     rig_close(&rig);
 }
 
+/* The least distance is halved to none nowhere: a view cannot be asked for with that. */
+static void the_least_quality_has_no_half(void **state)
+{
+    (void)state;
+    client_rig rig;
+    sys_event event = { .type = SYS_EVENT_BATTERY, .u.battery.low = 1 };
+    rig_open(&rig, 0);
+    rig.desc.quality = (ff_quality){ .c_q8 = 1 };
+    rig_client(&rig, 2 * MB);
+    ff_client_event(rig.client, &event);
+    assert_true(rig_settle(&rig, 400));
+    assert_true(rig_stats(&rig).low_power && rig_stats(&rig).tree.nodes_held > 0);
+    rig_close(&rig);
+}
+
 static void interruption_asks_for_nothing(void **state)
 {
     (void)state;
@@ -520,6 +535,7 @@ int main(void)
         cmocka_unit_test(little_memory_draws_coarser),
         cmocka_unit_test(wrong_descriptions_are_refused),
         cmocka_unit_test(low_power_is_coarser_and_recovers),
+        cmocka_unit_test(the_least_quality_has_no_half),
         cmocka_unit_test(interruption_asks_for_nothing),
         cmocka_unit_test(prefetch_asks_ahead_only_in_motion),
     };

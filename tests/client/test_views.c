@@ -11,7 +11,8 @@
 
 #include <cmocka.h>
 
-#define MB (1 << 20)
+#define MB      (1 << 20)
+#define UNTIMED 16384 /* bytes of a view while nothing is known of the link */
 
 static client_rig whole; /* asked level by level */
 
@@ -153,8 +154,9 @@ static void damaged_records_are_left_out(void **state)
 
 typedef struct liar {
     ff_pack *pack;
-    ff_part part; /* its answer to the first view */
-    uint8_t bytes[1024];
+    ff_part part;   /* its answer to views */
+    unsigned times; /* so often */
+    uint8_t bytes[1 << 15];
     size_t count;
     unsigned connections;
 } liar;
@@ -181,7 +183,7 @@ static int liar_send(void *state, const uint8_t *bytes, size_t count)
         answer = (ff_message){ .type = FF_MSG_ANSWER, .kind = FF_KIND_VIEW };
         answer.u.part = server->part;
         answer.u.part.id = heard.u.view.id;
-        say(server, &answer);
+        for (unsigned i = 0; i < server->times; i++) say(server, &answer);
     }
     return (int)count;
 }
@@ -205,14 +207,15 @@ static int liar_reconnect(void *state)
 }
 
 /* Protocol errors that an answer makes. */
-static uint32_t errors_of(client_rig *rig, ff_part part)
+static uint32_t errors_of(client_rig *rig, ff_part part, unsigned times)
 {
-    liar server = { .pack = &rig->pack, .part = part };
+    static liar server;
+    server = (liar){ .pack = &rig->pack, .part = part, .times = times };
     rig->stream = (sys_stream){ &server, liar_send, liar_recv, liar_close, liar_reconnect };
     rig_client(rig, 2 * MB);
     ff_session_destroy(rig->session); /* the other server's */
     rig->session = NULL;
-    for (int i = 0; i < 6; i++) {
+    for (int i = 0; i < 40; i++) {
         rig->now_us += 50000;
         ff_client_work(rig->client, rig->now_us);
         ff_client_update(rig->client, rig->now_us, &rig->camera);
@@ -235,21 +238,38 @@ static void parts_nobody_asked_for_end_the_connection(void **state)
     ff_part good = { .what = FF_PART_ROOT, .key = ff_key_make(0, 0, 0) };
     good.byte_count = (uint32_t)ff_pack_record(&rig.pack, FF_SECTION_ROOT, good.key, &payload);
     good.bytes = payload;
-    assert_int_equal(errors_of(&rig, good), 0);
+    assert_int_equal(errors_of(&rig, good, 1), 0);
     ff_part bad = good;
     bad.key = ff_key_make(4, 0, 0); /* there are four tiles */
-    assert_true(errors_of(&rig, bad) > 0);
+    assert_true(errors_of(&rig, bad, 1) > 0);
     bad = good;
     bad.what = FF_PART_REFINEMENT;
     bad.key = ff_key_make(0, 3, 0); /* of the finest level */
-    assert_true(errors_of(&rig, bad) > 0);
+    assert_true(errors_of(&rig, bad, 1) > 0);
     rig.desc.place_known = 0;
     rig.camera.pos_wu[0] = rig.camera.pos_wu[1] = 200 * FF_WU_PER_METRE;
     rig.camera.yaw = 40960; /* sees one tile alone */
     rig.camera.pos_wu[2] = 1500 * FF_WU_PER_METRE;
     bad = good;
     bad.key = ff_key_make(3, 0, 0);
-    assert_true(errors_of(&rig, bad) > 0);
+    assert_true(errors_of(&rig, bad, 1) > 0);
+    rig_close(&rig);
+}
+
+/* A server could else keep the client from asking for anything for ever. */
+static void parts_are_no_more_than_was_asked_for(void **state)
+{
+    (void)state;
+    client_rig rig;
+    const uint8_t *payload;
+    rig_open(&rig, 0);
+    rig.desc.no_reserve = 1;
+    ff_part part = { .what = FF_PART_ROOT, .key = ff_key_make(0, 0, 0) };
+    part.byte_count = (uint32_t)ff_pack_record(&rig.pack, FF_SECTION_ROOT, part.key, &payload);
+    part.bytes = payload;
+    unsigned most = UNTIMED / part.byte_count + 1; /* the last may pass it */
+    assert_int_equal(errors_of(&rig, part, most), 0);
+    assert_true(errors_of(&rig, part, most + 1) > 0);
     rig_close(&rig);
 }
 
@@ -262,6 +282,7 @@ int main(void)
         cmocka_unit_test(refused_views_are_asked_for_singly),
         cmocka_unit_test(damaged_records_are_left_out),
         cmocka_unit_test(parts_nobody_asked_for_end_the_connection),
+        cmocka_unit_test(parts_are_no_more_than_was_asked_for),
     };
     return cmocka_run_group_tests(tests, make_whole, free_whole);
 }

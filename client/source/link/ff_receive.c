@@ -49,15 +49,19 @@ static int answers(const ff_message *message, const ff_request *request)
     return kind->brings != FF_BRINGS_FACE || asked_for(&request->panorama, message->u.face.face);
 }
 
-/* A node that the view may bring and the terrain has. */
-static int is_part_of(const ff_stream *stream, const ff_part *part)
+/* A node that the view may bring and the terrain has. Once the parts have more bytes than were
+ * asked for, only what is named and has not come: so they end. */
+static int is_part_of(const ff_stream *stream, const ff_request *request, const ff_part *part)
 {
     const ff_terrain_info *info = &stream->intake->info;
+    const ff_get_view *view = &stream->intake->requests->view;
     int root = part->what == FF_PART_ROOT;
+    enum ff_kind kind = root ? FF_KIND_ROOT : FF_KIND_REFINEMENT;
     return ff_terrain_has_node(info, part->key) &&
            (root || ff_key_level(part->key) + 1 < ff_terrain_levels(info)) &&
-           ff_view_covers(&stream->intake->requests->view, root ? FF_KIND_ROOT : FF_KIND_REFINEMENT,
-                          part->key);
+           ff_view_covers(view, kind, part->key) &&
+           (request->bytes_came <= view->bytes_max ||
+            ff_view_names(view, kind, part->key) & ~(uint32_t)request->named);
 }
 
 static int take_part(ff_stream *stream, const ff_request *request, const ff_message *message,
@@ -65,7 +69,7 @@ static int take_part(ff_stream *stream, const ff_request *request, const ff_mess
 {
     const ff_part *part = &message->u.part;
     int end = part->what == FF_PART_END;
-    if (!end && !is_part_of(stream, part)) return FF_ERR_FORMAT;
+    if (!end && !is_part_of(stream, request, part)) return FF_ERR_FORMAT;
     int rc = end ? ff_intake_answer(stream->intake, request, message, bytes)
                  : ff_intake_part(stream->intake, request, part);
     if (rc != FF_OK) return rc;

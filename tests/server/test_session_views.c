@@ -1,0 +1,175 @@
+/* Views and long answers in a session: they wait for a reader, not for a renderer, and are few. */
+#include "../rig/pack_fixture.h"
+#include "../../server/session/ff_session.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define LONG 4096 /* more than this of a view's parts does not wait in the buffer */
+
+static ff_pack pack;
+static uint8_t *pack_bytes;
+
+/* A tile whose refinement is LONG, and more. */
+static int open_pack(void **state)
+{
+    pack_fixture_desc desc = { .info = pack_fixture_info(6, 1, 1), .height = pack_fixture_hills };
+    const uint8_t *payload;
+    size_t bytes;
+    (void)state;
+    desc.info.node_log2 = 5;
+    desc.info.codec = FF_CODEC_RAW;
+    pack_bytes = pack_fixture_make(&desc, &bytes);
+    return !pack_bytes || ff_pack_open(&pack, pack_bytes, bytes) != FF_OK ||
+           ff_pack_record(&pack, FF_SECTION_REFINEMENT, 0, &payload) <= LONG;
+}
+
+static int close_pack(void **state)
+{
+    (void)state;
+    free(pack_bytes);
+    return 0;
+}
+
+static void tell_at(ff_session *session, const ff_message *message, int64_t now_us)
+{
+    uint8_t bytes[FF_REQUEST_BYTES_MAX];
+    int count = ff_message_encode(message, bytes, sizeof bytes);
+    assert_true(count > 0);
+    assert_int_equal(ff_session_receive(session, bytes, (size_t)count, now_us), count);
+}
+
+static void tell(ff_session *session, const ff_message *message) { tell_at(session, message, 0); }
+
+/* Takes the next message off the output; type 0 when there is none. */
+static ff_message heard(ff_session *session)
+{
+    ff_message message = { 0 };
+    const uint8_t *bytes;
+    size_t count = ff_session_output(session, &bytes);
+    int used = ff_message_decode(bytes, count, &message);
+    assert_true(used >= 0);
+    ff_session_sent(session, (size_t)used);
+    return used ? message : (ff_message){ 0 };
+}
+
+static ff_session *greeted(uint32_t out_bytes_max)
+{
+    ff_session *session = ff_session_create(
+        &(ff_session_desc){ .pack = &pack, .out_bytes_max = out_bytes_max });
+    assert_non_null(session);
+    tell(session, &(ff_message){ .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION, 0 } });
+    tell(session, &(ff_message){ .type = FF_MSG_CAPS });
+    assert_int_equal(heard(session).type, FF_MSG_WELCOME);
+    return session;
+}
+
+/* A session whose client has asked for a panorama that is being drawn. */
+static ff_session *drawing(uint32_t out_bytes_max, ff_face_job *job)
+{
+    ff_session *session = greeted(out_bytes_max);
+    ff_message faces = { .type = FF_MSG_GET, .kind = FF_KIND_FACE };
+    faces.u.panorama = (ff_get_panorama){
+        .id = 1, .back_wu = 90000, .face_size = 64, .quality = 70, .face_count = 1
+    };
+    tell(session, &faces);
+    assert_true(ff_session_next_face(session, job));
+    return session;
+}
+
+static void a_long_part_does_not_wait_for_a_face(void **state)
+{
+    ff_message ask = { .type = FF_MSG_GET, .kind = FF_KIND_VIEW };
+    ff_face_job job;
+    (void)state;
+    ff_session *session = drawing(0, &job);
+    ask.u.view = (ff_get_view){ .id = 2,
+                                .focal_q8 = 256,
+                                .width = 1,
+                                .height = 1,
+                                .allowed_q8 = INT32_MAX,
+                                .reach_wu = 1,
+                                .count = 1 };
+    tell(session, &ask);
+    ff_message part = heard(session);
+    assert_int_equal(part.type, FF_MSG_ANSWER);
+    assert_int_equal(part.u.part.what, FF_PART_REFINEMENT);
+    assert_true(part.u.part.byte_count > LONG);
+    assert_int_equal(heard(session).u.part.what, FF_PART_END);
+    ff_session_destroy(session);
+}
+
+/* How many of `count` views, asked for one after the other, bring more than they name. */
+static unsigned searched(ff_session *session, unsigned count, int64_t now_us)
+{
+    unsigned with_more = 0;
+    ff_message ask = { .type = FF_MSG_GET, .kind = FF_KIND_VIEW }, part;
+    ask.u.view = (ff_get_view){ .id = 2,
+                                .pitch = (uint16_t)-16000,
+                                .position_wu = { 1000 * FF_WU_PER_METRE, 1000 * FF_WU_PER_METRE,
+                                                 5000 * FF_WU_PER_METRE },
+                                .focal_q8 = 256 * 256,
+                                .width = 256,
+                                .height = 256,
+                                .measure = FF_VIEW_BY_PIXELS,
+                                .allowed_q8 = 1,
+                                .reach_wu = INT32_MAX,
+                                .bytes_max = UINT32_MAX,
+                                .roots = 1,
+                                .count = 1 };
+    for (unsigned i = 0; i < count; i++) {
+        unsigned parts = 0;
+        tell_at(session, &ask, now_us);
+        for (; (part = heard(session)).u.part.what != FF_PART_END; parts++)
+            assert_int_equal(part.type, FF_MSG_ANSWER);
+        assert_in_range(parts, 1, 2); /* the root, and its refinement */
+        with_more += parts == 2;
+    }
+    return with_more;
+}
+
+/* A search is dear: nobody asks for a minute's worth of them at once, and the others wait. */
+static void searches_for_views_are_few_at_once(void **state)
+{
+    const int64_t second_us = 1000000;
+    (void)state;
+    ff_session *session = greeted(0);
+    assert_int_equal(searched(session, 20, 0), 8);
+    assert_int_equal(searched(session, 5, second_us - 1), 0);
+    assert_int_equal(searched(session, 5, second_us), 1);
+    assert_int_equal(searched(session, 5, 4 * second_us), 3);
+    assert_int_equal(searched(session, 20, 3600 * second_us), 8);
+    ff_session_destroy(session);
+}
+
+/* What leaves no room beside a face waits for it, also when nobody wants the face any more. */
+static void an_answer_behind_a_cancelled_face_comes(void **state)
+{
+    ff_face_job job;
+    (void)state;
+    ff_session *session = drawing(LONG, &job);
+    tell(session, &(ff_message){ .type = FF_MSG_GET, .kind = FF_KIND_REFINEMENT, .u.get.id = 2 });
+    assert_int_equal(heard(session).type, 0);
+    tell(session, &(ff_message){ .type = FF_MSG_CANCEL, .u.cancel.id = 1 });
+    assert_int_equal(heard(session).type, FF_MSG_CANCELLED);
+    assert_int_equal(heard(session).type, 0);
+    ff_session_face_done(session, &job, NULL, FF_ERR_SYSTEM);
+    ff_message node = heard(session);
+    assert_int_equal(node.type, FF_MSG_ANSWER);
+    assert_int_equal(node.u.data.id, 2);
+    ff_session_destroy(session);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_long_part_does_not_wait_for_a_face),
+        cmocka_unit_test(searches_for_views_are_few_at_once),
+        cmocka_unit_test(an_answer_behind_a_cancelled_face_comes),
+    };
+    return cmocka_run_group_tests(tests, open_pack, close_pack);
+}
