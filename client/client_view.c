@@ -101,9 +101,23 @@ void ff_client_want_view(ff_client *client, const ff_view *view, const ff_qualit
     ff_requests_want_view(&client->requests, &asked);
 }
 
+/* As far as the client will draw: whether a panorama comes behind its ground is known beforehand
+ * only where it is told to. */
+static ff_quality quality_to_be(const ff_client *client)
+{
+    ff_quality quality = ff_client_quality(client);
+    int32_t back_wu = client->desc.balance.mode == FF_BALANCE_ALL_SERVER
+                          ? client->desc.balance.back_plane_min_wu
+                          : client->desc.panorama.back_plane_wu;
+    int painted = client->desc.panorama.enabled == FF_PANORAMA_ON &&
+                  client->desc.balance.mode != FF_BALANCE_ALL_CLIENT;
+    if (painted && back_wu < quality.view_wu) quality.view_wu = back_wu;
+    return quality;
+}
+
 void ff_client_greet_view(ff_client *client, const c3d_camera *camera)
 {
-    const ff_quality quality = ff_client_quality(client);
+    const ff_quality quality = quality_to_be(client);
     ff_get_view asked = { 0 };
     if (!client->desc.stream || client->desc.no_views || !client->desc.place_known) return;
     ff_requests_rank_begin(&client->requests);
