@@ -17,7 +17,7 @@ typedef struct ff_view_part {
 int ff_view_named(const ff_get_view *view, ff_view_part *part);
 /* The same, and behind it what lies below and the view needs, which is in the pack: parents before
  * children, else the most urgent first. Stops behind the one that passes view->bytes_max. Their
- * number, at most FF_VIEW_PARTS_MAX, or FF_ERR_MEMORY. Takes some milliseconds. */
+ * number, at most FF_VIEW_PARTS_MAX, or FF_ERR_MEMORY. Takes some milliseconds, 0.1 s at worst. */
 int ff_view_parts(const ff_pack *pack, const ff_get_view *view,
                   ff_view_part part[FF_VIEW_PARTS_MAX]);
 
