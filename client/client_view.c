@@ -17,22 +17,26 @@
 #define VIEW_BYTES_MAX     32768u
 #define VIEW_BYTES_UNTIMED 16384u /* while nothing is known of the link */
 
+/* A root that comes into view while others are here is far away, and needs little below. */
 static int is_deep(const ff_client *client, const ff_wish *wish)
 {
     const ff_quality *quality = ff_tree_quality(client->tree);
+    const ff_drawn *drawn;
     uint32_t allowed = quality->measure == FF_MEASURE_PIXELS ? (uint32_t)quality->error_px_q8 : 256;
-    return wish->kind == FF_KIND_ROOT || wish->priority / DEEP >= allowed;
+    return wish->kind == FF_KIND_ROOT ? !ff_tree_in_view(client->tree, &drawn)
+                                      : wish->priority / DEEP >= allowed;
 }
 
 static uint32_t bytes_for(ff_client *client)
 {
     ff_stream_shared shared;
+    uint32_t budget = client->desc.balance.mode == FF_BALANCE_ON ? client->desc.balance.link_bytes_s
+                                                                 : 0;
     ff_stream_get_shared(&client->stream, &shared);
-    if (!shared.bytes_s) return VIEW_BYTES_UNTIMED;
-    uint64_t bytes = (uint64_t)shared.bytes_s * VIEW_SECONDS;
-    return bytes < VIEW_BYTES_MIN   ? VIEW_BYTES_MIN
-           : bytes > VIEW_BYTES_MAX ? VIEW_BYTES_MAX
-                                    : (uint32_t)bytes;
+    uint64_t bytes = shared.bytes_s ? (uint64_t)shared.bytes_s * VIEW_SECONDS : VIEW_BYTES_UNTIMED;
+    if (bytes < VIEW_BYTES_MIN) bytes = VIEW_BYTES_MIN;
+    if (budget && bytes > (uint64_t)budget * VIEW_SECONDS) bytes = (uint64_t)budget * VIEW_SECONDS;
+    return bytes < VIEW_BYTES_MAX ? (uint32_t)bytes : VIEW_BYTES_MAX;
 }
 
 /* Names what is wished for in view and not on its way. 1 when some of it is deep. */
@@ -106,9 +110,7 @@ void ff_client_want_view(ff_client *client, const ff_view *view, const ff_qualit
 static ff_quality quality_to_be(const ff_client *client)
 {
     ff_quality quality = ff_client_quality(client);
-    int32_t back_wu = client->desc.balance.mode == FF_BALANCE_ALL_SERVER
-                          ? client->desc.balance.back_plane_min_wu
-                          : client->desc.panorama.back_plane_wu;
+    int32_t back_wu = client->desc.panorama.back_plane_wu;
     int painted = client->desc.panorama.enabled == FF_PANORAMA_ON &&
                   client->desc.balance.mode != FF_BALANCE_ALL_CLIENT;
     if (painted && back_wu < quality.view_wu) quality.view_wu = back_wu;

@@ -61,7 +61,7 @@ int ff_intake_part(ff_intake *intake, const ff_request *request, const ff_part *
     answer.u.data = (ff_data){ part->id, part->bytes, part->byte_count };
     item->last = 0;
     item->error = decode(intake, &answer, item);
-    FF_ASSERT(item->error <= FF_OK && item->error > FF_ERR_LAST && item->error != FF_ERR_AGAIN);
+    FF_ASSERT(item->error <= FF_OK && item->error >= FF_ERR_LAST && item->error != FF_ERR_AGAIN);
     ff_requests_part(intake->requests, item->id, (enum ff_kind)item->kind, item->key, item->bytes);
     return put(intake, item);
 }

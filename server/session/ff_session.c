@@ -245,8 +245,11 @@ static int put_part(ff_session *session, uint16_t id)
 static int serve_view(ff_session *session, const request *wanted)
 {
     view_parts *view = &session->view;
-    for (; view->next <= view->count; view->next++)
-        if (put_part(session, wanted->get.id) == 0) return 0;
+    for (; view->next <= view->count; view->next++) {
+        int rc = put_part(session, wanted->get.id);
+        if (rc == 0) return 0;
+        session->stats.damaged += rc == FF_ERR_CHECKSUM;
+    }
     view->on = 0;
     return 1;
 }

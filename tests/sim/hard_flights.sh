@@ -90,7 +90,9 @@ END
 # ---- the link ----
 slow="umts,down.bytes_s=5,up.bytes_s=5"
 hard outage calm 15 45 45 4 0 2 --seconds 60 --event 15:link=umts,connect_ms=30000 --event 15:cut
-hard outage-fast calm-fast 15 45 60 5 0 15 --seconds 60 --speed 450 --start 0.3 --event 15:link=umts,connect_ms=30000 --event 15:cut
+# What a view lacks is one request, which is made anew and not dropped: single ones are, once nobody wants them any more.
+hard outage-fast calm-fast 15 45 60 5 0 0 --seconds 60 --speed 450 --start 0.3 --event 15:link=umts,connect_ms=30000 --event 15:cut
+hard outage-fast-singly calm-fast 15 45 60 5 0 15 --views off --seconds 60 --speed 450 --start 0.3 --event 15:link=umts,connect_ms=30000 --event 15:cut
 hard silence calm 15 45 45 4 0 0 --seconds 60 --event 15:link=$slow --event 45:link=umts
 hard stalls calm 20 50 23 4 0 0 --seconds 60 --link gprs,stall_every_ms=6000,stall_ms_min=4000,stall_ms_max=15000 --event 50:link=umts
 # How far a panorama is off while the next one has to be asked for again depends on when in its life the link is cut: three phases. It
@@ -103,8 +105,11 @@ hard trace calm 15 50 15 2 0 0 --seconds 60 --down-trace "$work/trace" --up-trac
 
 # ---- the client ----
 # The first turn of all waits a round trip of GPRS for the far ground behind it.
-hard turn calm-turn 20 50 66 2 0 3 --seconds 60 --path turn --link gprs --event 50:link=umts
-hard circle calm-circle 20 50 14 2 0 2 --seconds 60 --path circle --speed 300 --link gprs --event 50:link=umts
+hard turn calm-turn 20 50 66 2 0 0 --seconds 60 --path turn --link gprs --event 50:link=umts
+hard turn-singly calm-turn 20 50 66 2 0 3 --views off --seconds 60 --path turn --link gprs --event 50:link=umts
+# A set that comes late over GPRS, near the 20th second, is up to 19 px off until it is there (three seeds, views on and off).
+hard circle calm-circle 20 50 19 2 0 0 --seconds 60 --path circle --speed 300 --link gprs --event 50:link=umts
+hard circle-singly calm-circle 20 50 19 2 0 2 --views off --seconds 60 --path circle --speed 300 --link gprs --event 50:link=umts
 hard hover calm-hover 20 20 4 2 0 0 --seconds 60 --path hover --link gprs
 hard teleport calm-teleport 20 20 4 2 1 0 --seconds 40 --event 20:teleport=0.85,0.15
 hard teleport-near calm-near 20 20 26 2 0 0 --seconds 40 --event 20:teleport=0.5,0.45
