@@ -168,10 +168,10 @@ same_bytes() {
 check "same bytes for any number of jobs, projected or not" same_bytes
 
 one_tile() { # 1193 x 1041 samples: a tile of 2^11, four blocks
-    local big=(plain.r16 --raw 150x131 --spacing 80 --densify 8 --color image.ppm --quiet --json)
-    for jobs in 1 3; do "$BAKE" "${big[@]}" --jobs $jobs -o one$jobs.ffp >one.json || return 1; done
+    big="plain.r16 --raw 150x131 --spacing 80 --densify 8 --color image.ppm --quiet --json"
+    for jobs in 1 3; do "$BAKE" $big --jobs $jobs -o one$jobs.ffp >one.json || return 1; done
     cmp one1.ffp one3.ffp && [ "$(field tile_log2 one.json)" = 11 ] && [ "$(field tiles_x one.json)$(field tiles_y one.json)" = 11 ] \
-        && "$INFO" --verify one1.ffp >/dev/null && "$BAKE" "${big[@]}" --tile-log2 8 -o grid.ffp >grid.json \
+        && "$INFO" --verify one1.ffp >/dev/null && "$BAKE" $big --tile-log2 8 -o grid.ffp >grid.json \
         && [ "$(field tiles_x grid.json)$(field tiles_y grid.json)" = 55 ] && "$EXPORT" one1.ffp -o one.r16 && "$EXPORT" grid.ffp -o grid.r16 \
         && cmp one.r16 grid.r16
 }
