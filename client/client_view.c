@@ -85,7 +85,7 @@ static int is_stale(ff_client *client)
     for (uint32_t i = 0; i < count; i++) {
         enum ff_kind kind = (enum ff_kind)list[i].kind;
         if (!list[i].in_view) continue;
-        if (ff_requests_in_view(&client->requests, kind, list[i].key)) return 0;
+        if (ff_requests_view_brings(&client->requests, kind, list[i].key)) return 0;
         elsewhere |= is_deep(client, &list[i]);
     }
     return elsewhere;

@@ -188,7 +188,7 @@ static ff_request *view_of(ff_requests *requests)
 }
 
 /* Is it among what the view brings that is out, or wanted by the ranking under way? */
-static int in_view(ff_requests *requests, enum ff_kind kind, ff_key key)
+static int view_brings(ff_requests *requests, enum ff_kind kind, ff_key key)
 {
     const ff_request *view = view_of(requests);
     if (!view || (view->state == FF_REQUEST_QUEUED && !view->marked)) return 0;
@@ -202,7 +202,7 @@ int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
     FF_ASSERT(rank <= FF_CLASS_RESERVE && kind != FF_KIND_VIEW);
     FF_ASSERT((panorama != NULL) == (ff_kind[kind].asks == FF_ASKS_PANORAMA));
     sys_mutex_lock(&requests->mutex);
-    int brought = in_view(requests, kind, key);
+    int brought = view_brings(requests, kind, key);
     ff_request *request = brought ? NULL : mark(requests, kind, key);
     if (request && request->state == FF_REQUEST_QUEUED) {
         request->rank = (uint8_t)rank;
@@ -239,10 +239,10 @@ int ff_requests_out(ff_requests *requests, enum ff_kind kind, ff_key key)
     return out;
 }
 
-int ff_requests_in_view(ff_requests *requests, enum ff_kind kind, ff_key key)
+int ff_requests_view_brings(ff_requests *requests, enum ff_kind kind, ff_key key)
 {
     sys_mutex_lock(&requests->mutex);
-    int brought = in_view(requests, kind, key);
+    int brought = view_brings(requests, kind, key);
     sys_mutex_unlock(&requests->mutex);
     return brought;
 }

@@ -108,7 +108,7 @@ void ff_requests_rank_end(ff_requests *requests);
 /* 1 while a request of this kind and key waits for its answer, or for being taken in. */
 int ff_requests_out(ff_requests *requests, enum ff_kind kind, ff_key key);
 /* 1 when a view that is out may bring it. */
-int ff_requests_in_view(ff_requests *requests, enum ff_kind kind, ff_key key);
+int ff_requests_view_brings(ff_requests *requests, enum ff_kind kind, ff_key key);
 /* Bytes that an answer of a kind is expected to have, of a node's level. */
 uint32_t ff_requests_answer_bytes(ff_requests *requests, enum ff_kind kind, unsigned level);
 /* 1 when something of class `last` or one before it is queued: wanted and not yet sent. */

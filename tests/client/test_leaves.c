@@ -60,12 +60,7 @@ static void a_client_in_flight_asks_for_none(void **state)
     rig.camera.pos_wu[0] = 300 * FF_WU_PER_METRE;
     rig.camera.yaw = 8192;
     rig_client(&rig, 4 << 20);
-    for (int i = 0; i < 400; i++) {
-        rig.camera.pos_wu[0] += 6 * FF_WU_PER_METRE;
-        rig.camera.pos_wu[1] += 6 * FF_WU_PER_METRE;
-        rig.camera.yaw += 40;
-        rig_step(&rig, 50000);
-    }
+    rig_fly(&rig, 400);
     assert_in_range(rig_heights(&rig), 5, 8);
     assert_int_equal(rig_stats(&rig).requests_failed, 0);
     assert_int_equal(finest_drawn(&rig), ff_terrain_levels(&rig.pack.header.info) - 1);

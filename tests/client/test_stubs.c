@@ -66,12 +66,7 @@ static void a_client_in_flight_asks_for_nothing_that_is_not_there(void **state)
     rig.camera.pos_wu[0] = 300 * FF_WU_PER_METRE;
     rig.camera.yaw = 8192;
     rig_client(&rig, 8 << 20);
-    for (int i = 0; i < 400; i++) {
-        rig.camera.pos_wu[0] += 6 * FF_WU_PER_METRE;
-        rig.camera.pos_wu[1] += 6 * FF_WU_PER_METRE;
-        rig.camera.yaw += 40;
-        rig_step(&rig, 50000);
-    }
+    rig_fly(&rig, 400);
     finest(&rig, &ground, &image);
     assert_int_equal(ground, 1);
     assert_int_equal(image, 1);

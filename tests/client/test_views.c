@@ -228,16 +228,20 @@ static uint32_t errors_of(client_rig *rig, ff_part part, unsigned times)
     return errors;
 }
 
+static ff_part root_part(const client_rig *rig)
+{
+    ff_part part = { .what = FF_PART_ROOT, .key = ff_key_make(0, 0, 0) };
+    part.byte_count = (uint32_t)ff_pack_record(&rig->pack, FF_SECTION_ROOT, part.key, &part.bytes);
+    return part;
+}
+
 static void parts_nobody_asked_for_end_the_connection(void **state)
 {
     (void)state;
     client_rig rig;
-    const uint8_t *payload;
     rig_open(&rig, 0);
     rig.desc.no_reserve = 1;
-    ff_part good = { .what = FF_PART_ROOT, .key = ff_key_make(0, 0, 0) };
-    good.byte_count = (uint32_t)ff_pack_record(&rig.pack, FF_SECTION_ROOT, good.key, &payload);
-    good.bytes = payload;
+    ff_part good = root_part(&rig);
     assert_int_equal(errors_of(&rig, good, 1), 0);
     ff_part bad = good;
     bad.key = ff_key_make(4, 0, 0); /* there are four tiles */
@@ -261,12 +265,9 @@ static void parts_are_no_more_than_was_asked_for(void **state)
 {
     (void)state;
     client_rig rig;
-    const uint8_t *payload;
     rig_open(&rig, 0);
     rig.desc.no_reserve = 1;
-    ff_part part = { .what = FF_PART_ROOT, .key = ff_key_make(0, 0, 0) };
-    part.byte_count = (uint32_t)ff_pack_record(&rig.pack, FF_SECTION_ROOT, part.key, &payload);
-    part.bytes = payload;
+    ff_part part = root_part(&rig);
     unsigned most = UNTIMED / part.byte_count + 1; /* the last may pass it */
     assert_int_equal(errors_of(&rig, part, most), 0);
     assert_true(errors_of(&rig, part, most + 1) > 0);

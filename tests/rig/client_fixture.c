@@ -301,6 +301,16 @@ ff_client_stats rig_stats(const client_rig *rig)
     return stats;
 }
 
+void rig_fly(client_rig *rig, unsigned frames)
+{
+    for (unsigned i = 0; i < frames; i++) {
+        rig->camera.pos_wu[0] += 6 * FF_WU_PER_METRE;
+        rig->camera.pos_wu[1] += 6 * FF_WU_PER_METRE;
+        rig->camera.yaw += 40;
+        rig_step(rig, 50000);
+    }
+}
+
 int rig_settle(client_rig *rig, unsigned frames)
 {
     unsigned calm = 0;

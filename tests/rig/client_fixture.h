@@ -67,6 +67,8 @@ void rig_close(client_rig *rig);
 
 /* Runs one frame, `us` later: server, worker, update. */
 void rig_step(client_rig *rig, int64_t us);
+/* Runs frames of 50 ms, 6 m north and east each, turning slowly. */
+void rig_fly(client_rig *rig, unsigned frames);
 /* Runs frames of 50 ms, at most `frames`, until for a while no request is queued or unanswered. 1
  * when settled. */
 int rig_settle(client_rig *rig, unsigned frames);

@@ -107,9 +107,9 @@ hard trace calm 15 50 15 2 0 0 --seconds 60 --down-trace "$work/trace" --up-trac
 # The first turn of all waits a round trip of GPRS for the far ground behind it.
 hard turn calm-turn 20 50 66 2 0 0 --seconds 60 --path turn --link gprs --event 50:link=umts
 hard turn-singly calm-turn 20 50 66 2 0 3 --views off --seconds 60 --path turn --link gprs --event 50:link=umts
-# A set that comes late over GPRS, near the 20th second, is up to 19 px off until it is there (three seeds, views on and off).
-hard circle calm-circle 20 50 19 2 0 0 --seconds 60 --path circle --speed 300 --link gprs --event 50:link=umts
-hard circle-singly calm-circle 20 50 19 2 0 2 --views off --seconds 60 --path circle --speed 300 --link gprs --event 50:link=umts
+# The first set after setting off comes late over GPRS, in the 20th second: from the 21st on the bound holds.
+hard circle calm-circle 21 50 14 2 0 0 --seconds 60 --path circle --speed 300 --link gprs --event 50:link=umts
+hard circle-singly calm-circle 21 50 14 2 0 2 --views off --seconds 60 --path circle --speed 300 --link gprs --event 50:link=umts
 hard hover calm-hover 20 20 4 2 0 0 --seconds 60 --path hover --link gprs
 hard teleport calm-teleport 20 20 4 2 1 0 --seconds 40 --event 20:teleport=0.85,0.15
 hard teleport-near calm-near 20 20 26 2 0 0 --seconds 40 --event 20:teleport=0.5,0.45

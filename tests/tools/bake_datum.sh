@@ -6,31 +6,15 @@ set -u
 BIN=$(cd "${BIN:-build/bin}" && pwd) || exit 1
 # shellcheck source=../rig/result.bash
 . tests/rig/result.bash
+# shellcheck source=../rig/bake.bash
+. tests/rig/bake.bash
 here=$PWD DIR=$PWD/build/tests/bake_datum.$$
 mkdir -p "$DIR/grids" && cd "$DIR" || exit 1
 trap 'rm -rf "$DIR"' EXIT
 
-bake() { timeout 30 "$BIN/farfield-bake" "$@" -o OUT.ffp --json >bake.json 2>bake.err; }
-field() { sed -n "s/.*\"$1\": \"\{0,1\}\([^,\"}]*\).*/\1/p" bake.json; } # NAME: a number or word of the last bake's summary
-noted() { grep -qF "$1" bake.err || { sed 's/^/#   /' bake.err; return 1; }; }
 unsaid() { if grep -E 'shifted|datum' bake.err; then return 1; fi; }
-refused() { # TEXT BAKE-ARGUMENTS...: in one line, and nothing is left
-    local text=$1
-    shift
-    rm -f OUT.ffp
-    bake "$@"
-    [ $? = 1 ] && [ "$(wc -l <bake.err)" = 1 ] && noted "$text" && [ ! -e OUT.ffp ]
-}
 
-# Heights of 500 + 3 x - 2 y in 60 x 48 samples, and an image of 60 x 48 whose red grows to the right, green downwards.
-python3 - <<'PY'
-with open('bare.asc', 'w') as out:
-    out.write('ncols 60\nnrows 48\nxllcorner 0\nyllcorner 0\ncellsize 1\n')
-    for y in range(48):
-        out.write(' '.join(str(500 + 3 * x - 2 * y) for x in range(60)) + '\n')
-with open('bare.ppm', 'wb') as out:
-    out.write(b'P6\n60 48\n255\n' + b''.join(bytes((4 * x, 5 * y, 40)) for y in range(48) for x in range(60)))
-PY
+bare_rasters
 placed() { # SOURCE OUT.vrt SRS WEST CELL NORTH
     [ -e "$1.vrt" ] || gdal_translate -q -of VRT "$1" "$1.vrt" || return 1
     sed "/<GeoTransform>/d; 1s|\$|<SRS>$3</SRS><GeoTransform>$4,$5,0,$6,0,-$5</GeoTransform>|" "$1.vrt" >"$2"

@@ -5,30 +5,15 @@ set -u
 BIN=$(cd "${BIN:-build/bin}" && pwd) || exit 1
 # shellcheck source=../rig/result.bash
 . tests/rig/result.bash
+# shellcheck source=../rig/bake.bash
+. tests/rig/bake.bash
 here=$PWD DIR=$PWD/build/tests/bake_place.$$
 mkdir -p "$DIR" && cd "$DIR" || exit 1
 trap 'rm -rf "$DIR"' EXIT
 
-bake() { timeout 30 "$BIN/farfield-bake" "$@" -o OUT.ffp --json >bake.json 2>bake.err; }
-field() { sed -n "s/.*\"$1\": \"\{0,1\}\([^,\"}]*\).*/\1/p" bake.json; } # NAME: a number or word of the last bake's summary
-noted() { grep -q "$1" bake.err || { sed 's/^/#   /' bake.err; return 1; }; }
-
-refused() { # PATTERN BAKE-ARGUMENTS...: at once, in one line, and nothing is left
-    local pattern=$1
-    shift
-    rm -f OUT.ffp
-    bake "$@"
-    [ $? = 1 ] && [ "$(wc -l <bake.err)" = 1 ] && noted "$pattern" && [ ! -e OUT.ffp ]
-}
-
-# ---- rasters: heights of 500 + 3 x - 2 y in 60 x 48 samples, and an image of 60 x 48 whose red grows to the right, green downwards ----
+# ---- rasters ----
+bare_rasters
 python3 - <<'PY'
-with open('bare.asc', 'w') as out:
-    out.write('ncols 60\nnrows 48\nxllcorner 0\nyllcorner 0\ncellsize 1\n')
-    for y in range(48):
-        out.write(' '.join(str(500 + 3 * x - 2 * y) for x in range(60)) + '\n')
-with open('bare.ppm', 'wb') as out:
-    out.write(b'P6\n60 48\n255\n' + b''.join(bytes((4 * x, 5 * y, 40)) for y in range(48) for x in range(60)))
 with open('cliff.asc', 'w') as out:
     out.write('ncols 60\nnrows 48\nxllcorner 0\nyllcorner 0\ncellsize 1\n')
     for y in range(48):
