@@ -171,7 +171,10 @@ void ff_want_close(ff_tree *tree)
                 ff_key beside = parent_beside(tree, node, (enum ff_side)side);
                 if (beside == FF_KEY_NONE) continue;
                 uint32_t nearest = ff_tree_find_nearest(tree, beside);
-                if (nearest == FF_SLOT_NONE || is_beyond(tree, nearest)) continue;
+                if (nearest == FF_SLOT_NONE) continue;
+                /* what is wanted lies within the view */
+                if (!(tree->node[nearest].flags & FF_NODE_WANTED) && is_beyond(tree, nearest))
+                    continue;
                 FF_ASSERT(ff_key_level(tree->node[nearest].key) < level);
                 ff_want(tree, nearest, node->value);
                 if (through && !ff_node_is_stub(&tree->node[nearest]) &&
