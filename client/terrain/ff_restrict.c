@@ -22,33 +22,13 @@ static ff_key parent_beside(const ff_tree *tree, const ff_node *node, enum ff_si
     return root != FF_SLOT_NONE && tree->node[root].flags & FF_NODE_ACTIVE ? beside : FF_KEY_NONE;
 }
 
-/* A node beyond the view is not drawn, so nobody has to meet its rim: without this, ground far out
- * of sight would come in a ring for each level of a large tile. */
-static int is_beyond(const ff_tree *tree, uint32_t slot)
-{
-    ff_box box;
-    ff_node_box(tree, &tree->node[slot], &box);
-    return ff_box_beyond_view(tree, &box);
-}
-
-/* 1 when the node of the cut that lies over `key` is not drawn; levels above it are decided. */
-static int cut_ends_at(const ff_tree *tree, ff_key key)
-{
-    uint32_t slot = ff_tree_find_nearest(tree, key);
-    if (slot == FF_SLOT_NONE) return 0;
-    for (uint32_t above; (above = tree->node[slot].parent) != FF_SLOT_NONE; slot = above)
-        if (tree->node[above].flags & FF_NODE_SPLIT) break;
-    return is_beyond(tree, slot);
-}
-
 static int side_coarser(const ff_tree *tree, const ff_node *node, enum ff_side side)
 {
     ff_key beside = parent_beside(tree, node, side);
     if (beside == FF_KEY_NONE) return 0;
     FF_ASSERT(beside != ff_key_parent(node->key));
     uint32_t parent = ff_tree_find(tree, beside);
-    if (parent != FF_SLOT_NONE && tree->node[parent].flags & FF_NODE_SPLIT) return 0;
-    return !cut_ends_at(tree, beside);
+    return parent == FF_SLOT_NONE || !(tree->node[parent].flags & FF_NODE_SPLIT);
 }
 
 unsigned ff_coarser_mask(const ff_tree *tree, const ff_node *node)
@@ -172,9 +152,6 @@ void ff_want_close(ff_tree *tree)
                 if (beside == FF_KEY_NONE) continue;
                 uint32_t nearest = ff_tree_find_nearest(tree, beside);
                 if (nearest == FF_SLOT_NONE) continue;
-                /* what is wanted lies within the view */
-                if (!(tree->node[nearest].flags & FF_NODE_WANTED) && is_beyond(tree, nearest))
-                    continue;
                 FF_ASSERT(ff_key_level(tree->node[nearest].key) < level);
                 ff_want(tree, nearest, node->value);
                 if (through && !ff_node_is_stub(&tree->node[nearest]) &&

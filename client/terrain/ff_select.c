@@ -249,8 +249,7 @@ static void list_view(ff_tree *tree)
     tree->drawn_count = tree->hidden == FF_HIDDEN_DRAWN ? tree->view_count : seen;
 }
 
-/* Lists the cut: first the nodes that are in view, then the others. What lies beyond the view is
- * not part of it. */
+/* Lists the cut: first the nodes that are in view, then the others. */
 static void list_cut(ff_tree *tree)
 {
     uint32_t seen = 0, unseen = 0;
@@ -258,14 +257,12 @@ static void list_cut(ff_tree *tree)
         uint32_t slot = tree->order[i];
         ff_box box;
         ff_node_box(tree, &tree->node[slot], &box);
-        if (ff_box_beyond_view(tree, &box)) continue;
-        if (ff_box_in_view(tree, &box))
+        if (!ff_box_beyond_view(tree, &box) && ff_box_in_view(tree, &box))
             tree->sort[seen++] = (uint64_t)ff_box_distance(&box) << FF_SLOT_BITS | slot;
         else
             tree->order[unseen++] = slot;
     }
     FF_ASSERT(tree->cut_count <= tree->node_count - tree->free_count);
-    tree->cut_count = seen + unseen;
     ff_sort_keys(tree->sort, seen);
     tree->view_count = seen;
     list_view(tree);

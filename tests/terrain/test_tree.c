@@ -129,7 +129,7 @@ static void only_tiles_in_the_window_are_drawn(void **state)
 {
     (void)state;
     terrain_fixture fx;
-    fixture_make(&fx, 3, 5, 9, 9, fixture_flat); /* tiles of 320 m */
+    fixture_make(&fx, 3, 5, 9, 9, fixture_hills); /* tiles of 320 m */
     fixture_tree(&fx, 400, 100);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
     quality.c_q8 = 0;

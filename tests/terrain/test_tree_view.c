@@ -3,7 +3,6 @@
 #include "../rig/terrain_fixture.h"
 
 #include <setjmp.h>
-#include <string.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <cmocka.h>
@@ -219,40 +218,6 @@ static void nothing_drawn_beyond_view(void **state)
     fixture_free(&fx);
 }
 
-/* In one large tile each level above what is near would bring a ring of nodes, were those beyond
- * the view to meet their neighbours. */
-static void nothing_is_wished_for_beyond_the_view(void **state)
-{
-    static const int32_t place[][2] = { { 10240, 10240 }, { 10100, 10500 }, { 3333, 7777 } };
-    terrain_fixture fx;
-    (void)state;
-    fixture_make(&fx, 3, 11, 1, 1, fixture_hills); /* a tile of 20 km */
-    fixture_tree(&fx, 2000, 200);
-    ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
-    quality.view_wu = 1500 * FF_WU_PER_METRE;
-    for (unsigned i = 0; i < sizeof place / sizeof place[0]; i++) {
-        uint32_t brought[FF_KEY_LEVEL_MAX + 1] = { 0 }, count;
-        ff_view view = fixture_view_above(&fx, place[i][0], place[i][1], 150, 40 * (int)i, -10);
-        fixture_tree(&fx, 2000, 200);
-        do {
-            const ff_wish *list;
-            ff_wish wish[200];
-            ff_tree_select(fx.tree, &view, &quality);
-            count = ff_tree_wishes(fx.tree, &list);
-            memcpy(wish, list, count * sizeof *list);
-            for (uint32_t k = 0; k < count; k++) {
-                brought[ff_key_level(wish[k].key)] += wish[k].kind == FF_KIND_REFINEMENT;
-                fixture_deliver(&fx, wish[k].key, wish[k].kind == FF_KIND_REFINEMENT);
-            }
-        } while (count);
-        fixture_assert_whole(&fx);
-        assert_true(fixture_stats(&fx).nodes_drawn > 20);
-        /* nodes of more than 3 km, of which a view of 3 km meets four at most */
-        for (uint32_t level = 0; level <= 2; level++) assert_in_range(brought[level], 1, 4);
-    }
-    fixture_free(&fx);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -262,7 +227,6 @@ int main(void)
         cmocka_unit_test(nodes_are_drawn_nearest_first),
         cmocka_unit_test(vertices_and_height_agree),
         cmocka_unit_test(height_has_no_steps),
-        cmocka_unit_test(nothing_is_wished_for_beyond_the_view),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
