@@ -75,9 +75,23 @@ void ff_client_default_desc(ff_client_desc *desc)
     desc->about &= FF_ABOUT_KNOWN;
 }
 
+static int check_sources(const ff_client_desc *desc)
+{
+    int links = desc->stream != NULL, good = (desc->stream != NULL) != (desc->pack != NULL) &&
+                                             desc->more_count < FF_SOURCES_MAX;
+    for (unsigned i = 0; good && i < desc->more_count; i++) {
+        const ff_source_desc *more = &desc->more[i];
+        good = (more->stream != NULL) != (more->pack != NULL);
+        links |= more->stream != NULL;
+    }
+    if (!good) return FF_ERR_ARGUMENT;
+    return (links && !ff_link_built) || (desc->more_count && !ff_grounds_built) ? FF_ERR_UNSUPPORTED
+                                                                                : FF_OK;
+}
+
 static int check_desc(const ff_client_desc *desc)
 {
-    if (!desc->memory || (desc->stream != NULL) == (desc->pack != NULL) ||
+    if (!desc->memory ||
         desc->width > FF_PICTURE_SIDE_MAX || desc->height > FF_PICTURE_SIDE_MAX ||
         desc->in_flight_max > IN_FLIGHT_LIMIT || desc->panorama.jpeg_quality > 100 ||
         (desc->panorama.face_size && desc->panorama.face_size < FF_PANORAMA_FACE_MIN) ||
@@ -91,7 +105,8 @@ static int check_desc(const ff_client_desc *desc)
         desc->panorama.enabled > FF_PANORAMA_AUTO)
         return FF_ERR_ARGUMENT;
     if (desc->backend && !desc->surface_api) return FF_ERR_ARGUMENT;
-    if (desc->stream && !ff_link_built) return FF_ERR_UNSUPPORTED;
+    int rc = check_sources(desc);
+    if (rc != FF_OK) return rc;
     return desc->memory_bytes < CLIENT_BYTES_MIN ? FF_ERR_MEMORY : FF_OK;
 }
 
@@ -113,25 +128,30 @@ static int make_fixed_part(ff_client *client)
 {
     ff_budget budget;
     ff_budget_fixed(&budget, &client->desc, client->arena.bytes);
-    client->recv = ff_client_take(&client->arena, &budget, FF_POOL_received);
-    void *slots = ff_client_take(&client->arena, &budget, FF_POOL_requests);
+    client->more = ff_client_take(&client->arena, &budget, FF_POOL_sources);
+    uint8_t *recv = ff_client_take(&client->arena, &budget, FF_POOL_received);
+    uint8_t *slots = ff_client_take(&client->arena, &budget, FF_POOL_requests);
     uint8_t *about = ff_client_take(&client->arena, &budget, FF_POOL_about);
-    if (!slots || (client->desc.stream && !client->recv) ||
+    unsigned links = ff_budget_links(&client->desc);
+    if (!slots || (client->desc.more_count && !client->more) || (links && !recv) ||
         (budget.pool[FF_POOL_about].count && !about))
         return FF_ERR_MEMORY;
     client->fixed_bytes = client->arena.used;
-    ff_requests_init(&client->requests, client->desc.in_flight_max, slots);
-    FF_ASSERT(client->requests.slot_count == budget.pool[FF_POOL_requests].count);
-    FF_ASSERT(!client->desc.stream || budget.pool[FF_POOL_received].count >= FF_RECEIVED_MIN);
+    client->source_count = (uint8_t)(1 + client->desc.more_count);
     sys_mutex_init(&client->news.mutex);
     sys_mutex_init(&client->gate);
-    client->intake.requests = &client->requests;
-    client->intake.news = &client->news;
-    if (client->desc.stream)
-        ff_stream_init(&client->stream, client->desc.stream, &client->intake,
-                       client->desc.in_flight_max, client->desc.answer_timeout_ms, client->recv,
-                       budget.pool[FF_POOL_received].count);
-    if (about) ff_stream_want_about(&client->stream, client->desc.about, about);
+    for (unsigned i = 0; i < client->source_count; i++) {
+        ff_source_room room = { .slots = slots };
+        slots += ff_requests_bytes(client->desc.in_flight_max);
+        if (ff_client_source_desc(client, i).stream) {
+            room.recv = recv;
+            room.recv_bytes = budget.pool[FF_POOL_received].count / links;
+            room.about = about;
+            if (recv) recv += room.recv_bytes;
+            if (about) about += ff_about_bytes_max(client->desc.about);
+        }
+        ff_source_make(client, i, &room);
+    }
     return FF_OK;
 }
 
@@ -139,7 +159,8 @@ static void destroy_locks(ff_client *client)
 {
     sys_mutex_destroy(&client->gate);
     sys_mutex_destroy(&client->news.mutex);
-    sys_mutex_destroy(&client->requests.mutex);
+    for (unsigned i = 0; i < client->source_count; i++)
+        sys_mutex_destroy(&ff_client_source(client, i)->requests.mutex);
 }
 
 int ff_client_create(const ff_client_desc *desc, ff_client **result)
@@ -158,6 +179,7 @@ int ff_client_create(const ff_client_desc *desc, ff_client **result)
     rc = make_fixed_part(client);
     if (rc != FF_OK) return rc;
     if (desc->pack) {
+        ff_client_take_pack(&client->first);
         client->info = desc->pack->header.info;
         rc = ff_client_carve(client);
     } else {
@@ -185,7 +207,8 @@ void ff_client_destroy(ff_client *client)
         sys_mutex_unlock(&client->gate);
         sys_thread_join(&client->thread);
     }
-    if (client->desc.stream) ff_stream_close(&client->stream);
+    for (unsigned i = 0; i < client->source_count; i++)
+        if (ff_client_source(client, i)->io) ff_stream_close(&ff_client_source(client, i)->stream);
     ff_client_uncarve(client);
     destroy_locks(client);
 }
@@ -194,11 +217,8 @@ int ff_client_work(ff_client *client, int64_t now_us)
 {
     sys_mutex_lock(&client->gate);
     int moved = 0;
-    if (client->desc.stream)
-        moved = ff_stream_step(&client->stream, now_us);
-    else if (client->have_terrain && !client->interrupted)
-        moved = ff_local_step(&client->intake, client->desc.pack, !ff_client_low_power(client),
-                              now_us);
+    for (unsigned i = 0; i < client->source_count; i++)
+        moved |= ff_client_step_source(client, ff_client_source(client, i), now_us);
     sys_mutex_unlock(&client->gate);
     return moved;
 }
@@ -215,8 +235,10 @@ void ff_client_event(ff_client *client, const sys_event *event)
         client->interrupted = event->u.interruption.begins != 0;
     client->dirty = 1;
     sys_mutex_unlock(&client->gate);
-    if (client->desc.stream)
-        ff_stream_say(&client->stream, client->interrupted, ff_client_low_power(client));
+    for (unsigned i = 0; i < client->source_count; i++)
+        if (ff_client_source(client, i)->io)
+            ff_stream_say(&ff_client_source(client, i)->stream, client->interrupted,
+                          ff_client_low_power(client));
 }
 
 void ff_client_set_quality(ff_client *client, const ff_quality *quality)
@@ -244,11 +266,11 @@ void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama)
         sys_mutex_lock(&client->gate);
         ff_client_uncarve(client);
         ff_client_carve_sky(client);
-        ff_stream_restart(&client->stream);
+        ff_stream_restart(&client->first.stream);
         sys_mutex_unlock(&client->gate);
         return;
     }
-    ff_requests_cancel_all(&client->requests, FF_KIND_FACE);
+    ff_requests_cancel_all(&client->first.requests, FF_KIND_FACE);
     ff_panorama_drop(&client->panorama);
     client->panorama.desc = client->desc.panorama;
     ff_client_auto_begin(client);
@@ -269,12 +291,13 @@ const ff_terrain_info *ff_client_terrain(const ff_client *client)
 }
 
 /* Under the gate: a pack that is read has one room, which the worker reads into, too. */
-static int about_of_pack(ff_client *client, unsigned entry, void *value, size_t room)
+static int about_of_pack(ff_client *client, const ff_pack *pack, unsigned entry, void *value,
+                         size_t room)
 {
     const uint8_t *found;
     ff_list about;
     sys_mutex_lock(&client->gate);
-    int bytes = ff_pack_about(client->desc.pack, &about);
+    int bytes = ff_pack_about(pack, &about);
     if (bytes == FF_OK) bytes = ff_list_find(about, entry, &found);
     if (bytes > 0 && (size_t)bytes > room) bytes = FF_ERR_FULL;
     if (bytes > 0) memcpy(value, found, (size_t)bytes);
@@ -282,11 +305,25 @@ static int about_of_pack(ff_client *client, unsigned entry, void *value, size_t 
     return bytes;
 }
 
+int ff_client_source_about(ff_client *client, unsigned number, enum ff_about_entry entry,
+                           void *value, size_t room)
+{
+    if (number >= client->source_count) return FF_ERR_ARGUMENT;
+    if (!ff_about_in(client->desc.about, entry)) return FF_ERR_NOT_FOUND;
+    ff_source *source = ff_client_source(client, number);
+    if (source->pack) return about_of_pack(client, source->pack, entry, value, room);
+    return ff_stream_about_entry(&source->stream, entry, value, room);
+}
+
 int ff_client_about(ff_client *client, enum ff_about_entry entry, void *value, size_t room)
 {
-    if (!ff_about_in(client->desc.about, entry)) return FF_ERR_NOT_FOUND;
-    if (client->desc.pack) return about_of_pack(client, entry, value, room);
-    return ff_stream_about_entry(&client->stream, entry, value, room);
+    return ff_client_source_about(client, 0, entry, value, room);
+}
+
+int ff_client_source_state(const ff_client *client, unsigned number)
+{
+    if (number >= client->source_count) return FF_ERR_ARGUMENT;
+    return ff_client_source((ff_client *)client, number)->error;
 }
 
 const ff_tree *ff_client_tree(const ff_client *client) { return client->tree; }
@@ -319,8 +356,13 @@ uint64_t ff_client_geometry_hash(const ff_client *client) { return client->geome
 uint64_t ff_client_request_hash(const ff_client *client)
 {
     ff_request_counts counts;
-    uint64_t hash;
-    /* only its lock is written */
-    ff_requests_get_counts((ff_requests *)&client->requests, &counts, &hash);
+    uint64_t hash = 0;
+    /* only their locks are written; the first one's is the last: alone it is the hash */
+    for (unsigned i = client->source_count; i-- > 0;) {
+        uint64_t of_source;
+        ff_requests_get_counts(&ff_client_source((ff_client *)client, i)->requests, &counts,
+                               &of_source);
+        hash = hash * UINT64_C(0x100000001b3) ^ of_source;
+    }
     return hash;
 }

@@ -1,5 +1,5 @@
 /* The pools of a terrain, taken as the budget says, and what lives in them. */
-#include "ff_client_local.h"
+#include "several/ff_several.h"
 #include "../protocol/ff_assert.h"
 
 #include <string.h>
@@ -17,16 +17,26 @@ static void *take(ff_client *client, const ff_budget *budget, enum ff_pool_id po
 
 static int carve_decoder(ff_client *client, const ff_budget *budget)
 {
-    client->intake.info = client->info;
     void *memory = take(client, budget, FF_POOL_decoder);
-    client->intake.decoder = ff_decoder_create(&client->info, memory,
-                                               budget->pool[FF_POOL_decoder].bytes);
-    return client->intake.decoder ? FF_OK : FF_ERR_MEMORY;
+    client->first.intake.decoder = ff_decoder_create(&client->info, memory,
+                                                     budget->pool[FF_POOL_decoder].bytes);
+    return client->first.intake.decoder ? FF_OK : FF_ERR_MEMORY;
+}
+
+int ff_client_decode(ff_client *client, ff_source *source)
+{
+    const ff_intake *first = &client->first.intake;
+    source->intake.decoder = first->decoder;
+    source->intake.rgb_bytes = first->rgb_bytes;
+    source->intake.rgb = first->rgb;
+    for (unsigned i = 0; i < source->intake.ground_count; i++)
+        if (!ff_codec_supported(source->intake.info[i].codec)) return FF_ERR_UNSUPPORTED;
+    return FF_OK;
 }
 
 static void carve_arriving(ff_client *client, const ff_budget *budget)
 {
-    ff_intake *intake = &client->intake;
+    ff_intake *intake = &client->first.intake;
     FF_ASSERT(budget->face_size <= FF_FACE_SIZE_MAX);
     FF_ASSERT((size_t)budget->face_size * budget->face_size <= budget->texels);
     FF_ASSERT(budget->pool[FF_POOL_decoded_image].bytes == 3 * budget->texels);
@@ -99,7 +109,9 @@ static int carve_tree(ff_client *client, const ff_budget *budget)
     ff_tree_desc desc = { .info = client->info,
                           .node_count = budget->pool[FF_POOL_nodes].count,
                           .wish_count = FF_TREE_WISHES,
-                          .hidden = client->desc.hidden };
+                          .hidden = client->desc.hidden,
+                          .ground_max = budget->grounds_max,
+                          .source_max = client->source_count };
     void *memory = take(client, budget, FF_POOL_nodes);
     client->tree = ff_tree_create(&desc, memory, budget->pool[FF_POOL_nodes].bytes);
     return client->tree ? FF_OK : FF_ERR_MEMORY;
@@ -133,9 +145,17 @@ static int carve_all(ff_client *client, unsigned economy)
     ff_client_auto_begin(client);
     ff_motion_reset(&client->motion);
     ff_turn_reset(&client->turn);
-    memset(&client->refusals, 0, sizeof client->refusals);
-    client->no_views = 0;
+    ff_several_join(client);
     return FF_OK;
+}
+
+void ff_client_serve(ff_client *client, ff_source *source)
+{
+    source->serves = 1;
+    source->error = FF_OK;
+    source->no_views = 0;
+    memset(&source->refusals, 0, sizeof source->refusals);
+    client->unranked = 1;
 }
 
 /* Where memory is short for this terrain, panoramas are left out, then images: coarser, never
@@ -178,7 +198,10 @@ void ff_client_carve_sky(ff_client *client)
 void ff_client_uncarve(ff_client *client)
 {
     /* without a terrain only what was asked for with the greeting is out, and still to come */
-    if (client->have_terrain) ff_requests_clear(&client->requests);
+    for (unsigned i = 0; client->have_terrain && i < client->source_count; i++) {
+        ff_requests_clear(&ff_client_source(client, i)->requests);
+        ff_client_source(client, i)->serves = 0;
+    }
     if (client->device) c3d_close(client->device); /* meshes and textures go with it */
     client->device = NULL;
     client->tree = NULL;

@@ -27,8 +27,8 @@ static void read_parts(const ff_client *client, ff_readings *readings)
     readings->client = client;
     if (client->tree) ff_tree_get_stats(client->tree, &readings->tree);
     if (client->device) c3d_get_stats(client->device, &readings->c3d);
-    if (client->desc.stream) ff_stream_get_shared(&asked->stream, &readings->link);
-    ff_requests_get_counts(&asked->requests, requests, NULL);
+    ff_client_link(asked, &readings->link);
+    ff_client_counts(asked, requests);
     readings->requests_held = requests->queued + requests->in_flight + requests->arriving;
     FF_ASSERT(readings->requests_held <= requests->held_high);
     FF_ASSERT(readings->tree.nodes_held <= readings->tree.nodes_high);
@@ -47,7 +47,7 @@ static enum ff_link_state link_state(const ff_readings *from)
                                                [FF_STREAM_DOWN] = FF_LINK_DOWN,
                                                [FF_STREAM_DEAD] = FF_LINK_DOWN };
     FF_ASSERT(from->link.state < sizeof link / sizeof link[0]);
-    return from->client->desc.stream ? link[from->link.state] : FF_LINK_NONE;
+    return ff_budget_links(&from->client->desc) ? link[from->link.state] : FF_LINK_NONE;
 }
 
 static int32_t back_plane_wu(const ff_client *client)
@@ -75,7 +75,7 @@ void ff_client_get_stats(const ff_client *client, ff_client_stats *stats)
 int ff_client_asked_for_reserve(ff_client *client, uint16_t id)
 {
     ff_request request;
-    return ff_requests_answered(&client->requests, id, &request) &&
+    return ff_requests_answered(&client->first.requests, id, &request) &&
            request.rank == FF_CLASS_RESERVE;
 }
 
@@ -126,7 +126,7 @@ unsigned ff_client_pools(const ff_client *client, ff_pool_use list[FF_POOLS_MAX]
     ff_budget_fixed(b, &client->desc, client->arena.bytes);
     if (client->have_terrain) {
         b->info = &client->info;
-        b->face_size = client->intake.face_size_max;
+        b->face_size = client->first.intake.face_size_max;
         b->has_textures = client->has_textures;
         (void)ff_budget_terrain(b, from->c3d.vertex_buffers_used);
     }

@@ -30,6 +30,17 @@
 /* what is in view finds room in the queue: ground, images, and the faces of the set that comes */
 FF_STATIC_ASSERT(FF_TREE_WISHES + FF_TEXTURE_WISHES + 1 <= FF_REQUESTS_QUEUED_MAX);
 
+/* Of whoever is to be asked, if anybody is. */
+static void want(ff_client *client, const ff_wish *wish, enum ff_request_class rank,
+                 uint32_t priority)
+{
+    enum ff_kind kind = (enum ff_kind)wish->kind;
+    ff_source *source = ff_client_route(client, kind, wish->key, wish->lacks);
+    if (source)
+        ff_requests_want(&source->requests, kind, ff_source_own_key(source, wish->key), rank,
+                         priority, NULL);
+}
+
 static void want_tree(ff_client *client)
 {
     const ff_wish *list;
@@ -37,14 +48,13 @@ static void want_tree(ff_client *client)
     FF_ASSERT(count <= FF_TREE_WISHES);
     for (uint32_t i = 0; i < count; i++) {
         const ff_wish *wish = &list[i];
-        enum ff_kind kind = (enum ff_kind)wish->kind;
+        int root = wish->kind == FF_KIND_ROOT;
         /* a root is wished for at level 0, children below a node that is not of the last level */
-        FF_ASSERT(kind == FF_KIND_ROOT
-                      ? ff_key_level(wish->key) == 0
-                      : ff_key_level(wish->key) + 1 < ff_terrain_levels(&client->info));
-        enum ff_request_class rank = kind == FF_KIND_ROOT ? FF_CLASS_FIRST : FF_CLASS_IN_VIEW;
-        if (wish->in_view && !ff_refusals_final(&client->refusals, kind, wish->key))
-            ff_requests_want(&client->requests, kind, wish->key, rank, wish->priority, NULL);
+        FF_ASSERT(root ? ff_key_level(wish->key) == 0
+                       : ff_key_level(wish->key) + 1 <
+                             ff_terrain_levels(ff_tree_ground(client->tree, wish->key)));
+        if (wish->in_view)
+            want(client, wish, root ? FF_CLASS_FIRST : FF_CLASS_IN_VIEW, wish->priority);
     }
 }
 
@@ -57,10 +67,8 @@ static void want_textures(ff_client *client, const ff_view *view, const ff_quali
                                         FF_TEXTURE_WISHES);
     FF_ASSERT(count <= FF_TEXTURE_WISHES);
     for (uint32_t i = 0; i < count; i++) {
-        FF_ASSERT(ff_key_level(wish[i].key) < client->info.texture_levels);
-        if (!ff_refusals_final(&client->refusals, FF_KIND_TEXTURE, wish[i].key))
-            ff_requests_want(&client->requests, FF_KIND_TEXTURE, wish[i].key, FF_CLASS_IN_VIEW,
-                             wish[i].priority, NULL);
+        const ff_wish image = { .key = wish[i].key, .kind = FF_KIND_TEXTURE };
+        want(client, &image, FF_CLASS_IN_VIEW, wish[i].priority);
     }
 }
 
@@ -99,12 +107,8 @@ static void want_ahead(ff_client *client, const ahead *a)
         uint32_t count = ff_tree_foresee(client->tree, a->pos_wu[v], a->yaw[v], a->pitch[v], wish,
                                          FF_PREFETCH_WISHES);
         FF_ASSERT(count <= FF_PREFETCH_WISHES);
-        for (uint32_t i = 0; i < count; i++) {
-            enum ff_kind kind = (enum ff_kind)wish[i].kind;
-            if (!ff_refusals_final(&client->refusals, kind, wish[i].key))
-                ff_requests_want(&client->requests, kind, wish[i].key, FF_CLASS_PREFETCH,
-                                 wish[i].priority, NULL);
-        }
+        for (uint32_t i = 0; i < count; i++)
+            want(client, &wish[i], FF_CLASS_PREFETCH, wish[i].priority);
     }
 }
 
@@ -113,20 +117,17 @@ static void want_reserve(ff_client *client, const ff_view *view, int64_t now_us)
 {
     ff_wish wish[FF_RESERVE_WISHES];
     if (client->desc.no_reserve || ff_client_low_power(client) ||
-        ff_requests_waiting(&client->requests, FF_CLASS_PREFETCH))
+        ff_client_waiting(client, FF_CLASS_PREFETCH))
         return;
     uint32_t count = ff_tree_reserve(client->tree, wish, FF_RESERVE_WISHES);
     FF_ASSERT(count <= FF_RESERVE_WISHES);
     for (uint32_t i = 0; i < count; i++) {
-        enum ff_kind kind = (enum ff_kind)wish[i].kind;
         uint32_t priority = wish[i].priority < RESERVE_ROOT ? wish[i].priority : RESERVE_ROOT - 1;
-        if (kind == FF_KIND_ROOT) priority += RESERVE_ROOT;
-        if (!ff_refusals_final(&client->refusals, kind, wish[i].key))
-            ff_requests_want(&client->requests, kind, wish[i].key, FF_CLASS_RESERVE, priority,
-                             NULL);
+        if (wish[i].kind == FF_KIND_ROOT) priority += RESERVE_ROOT;
+        want(client, &wish[i], FF_CLASS_RESERVE, priority);
     }
     if (client->resting && !ff_client_own_ground(client))
-        ff_panorama_want_reserve(&client->panorama, &client->requests, view, now_us);
+        ff_panorama_want_reserve(&client->panorama, &client->first.requests, view, now_us);
 }
 
 /* Bits of the faces that the views ahead show. */
@@ -146,18 +147,21 @@ static unsigned faces_ahead(const ff_view *view, const ahead *a)
 void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality,
                     int64_t now_us)
 {
-    ff_stream_shared shared = { .rtt_us = 0 };
+    ff_stream_shared shared;
     ahead a = { .views = 0 };
-    if (client->desc.stream) ff_stream_get_shared(&client->stream, &shared);
+    ff_client_link(client, &shared);
     if (!client->desc.no_prefetch && !ff_client_low_power(client))
         look_ahead(client, view, shared.rtt_us, &a);
-    ff_requests_rank_begin(&client->requests);
+    for (unsigned i = 0; i < client->source_count; i++)
+        ff_requests_rank_begin(&ff_client_source(client, i)->requests);
     if (!ff_client_own_ground(client))
-        ff_panorama_want(&client->panorama, &client->requests, view, faces_ahead(view, &a), now_us);
-    ff_client_want_view(client, view, quality);
+        ff_panorama_want(&client->panorama, &client->first.requests, view, faces_ahead(view, &a), now_us);
+    for (unsigned i = 0; i < client->source_count; i++)
+        ff_client_want_view(client, ff_client_source(client, i), view, quality);
     want_tree(client);
     if (client->has_textures) want_textures(client, view, quality);
     want_ahead(client, &a);
     want_reserve(client, view, now_us);
-    ff_requests_rank_end(&client->requests);
+    for (unsigned i = 0; i < client->source_count; i++)
+        ff_requests_rank_end(&ff_client_source(client, i)->requests);
 }

@@ -1,5 +1,5 @@
 /* New data into what the client holds, kind by kind, and how the requests for it end. */
-#include "ff_client_local.h"
+#include "several/ff_several.h"
 #include "../protocol/ff_assert.h"
 
 /* Heights. A codec may find only here, with the parent's heights, that a payload is bad: the item
@@ -17,21 +17,24 @@ int ff_client_take_root(ff_client *client, ff_new_item *item, int64_t now_us)
     (void)now_us;
     FF_ASSERT(ff_key_level(item->key) == 0);
     uint32_t tile = ff_key_tile(item->key);
-    return heights_taken(item, ff_tree_deliver_root(client->tree, tile, &item->u.residuals));
+    return heights_taken(item, ff_tree_deliver_root(client->tree, tile, item->source,
+                                                    &item->u.residuals));
 }
 
 int ff_client_take_refinement(ff_client *client, ff_new_item *item, int64_t now_us)
 {
     (void)now_us;
-    FF_ASSERT(ff_key_level(item->key) + 1 < ff_terrain_levels(&client->info));
-    return heights_taken(item,
-                         ff_tree_deliver_children(client->tree, item->key, &item->u.residuals));
+    FF_ASSERT(ff_key_level(item->key) + 1 <
+              ff_terrain_levels(ff_tree_ground(client->tree, item->key)));
+    return heights_taken(item, ff_tree_deliver_children(client->tree, item->key, item->source,
+                                                        &item->u.residuals));
 }
 
 int ff_client_take_texture(ff_client *client, ff_new_item *item, int64_t now_us)
 {
     (void)now_us;
-    FF_ASSERT(ff_key_level(item->key) < client->info.texture_levels);
+    FF_ASSERT(ff_key_level(item->key) < ff_tree_ground(client->tree, item->key)->texture_levels);
+    if (ff_several_shares(client, item->key)) item->u.bare = 0; /* others may have them */
     FF_ASSERT(item->width == 1u << client->info.texture_log2 && item->height == item->width);
     return ff_textures_take(&client->textures, item);
 }
@@ -60,9 +63,15 @@ static int take(ff_client *client, ff_new_item *item, int64_t now_us)
 static int take_item(ff_client *client, ff_new_item *item, int64_t now_us)
 {
     FF_ASSERT(item->kind < FF_KIND_COUNT && item->error <= FF_OK);
+    ff_source *source = ff_client_source(client, item->source);
     int changed = 0, of_node = ff_kind[item->kind].asks == FF_ASKS_NODE;
+    const ff_key own = item->key;
+    if (of_node) item->key = ff_source_key(source, own);
     if (item->error == FF_OK || !of_node) changed = take(client, item, now_us);
-    if (item->error != FF_OK && of_node) ff_refusals_note(&client->refusals, item->kind, item->key);
+    if (item->error != FF_OK && of_node) ff_refusals_note(&source->refusals, item->kind, own);
+    if (item->error == FF_ERR_NOT_FOUND && item->kind == FF_KIND_REFINEMENT &&
+        client->source_count > 1)
+        ff_tree_lacks(client->tree, item->key, item->source);
     return changed;
 }
 
@@ -83,7 +92,8 @@ unsigned ff_client_take_new_data(ff_client *client, int64_t now_us, int *changed
     ff_new_item *item;
     while (taken < client->news.item_slots && (item = ff_new_data_first(&client->news)) != NULL) {
         *changed |= take_item(client, item, now_us);
-        if (item->last) ff_requests_finish(&client->requests, item->id, final_state(item));
+        if (item->last) ff_requests_finish(&ff_client_source(client, item->source)->requests, item->id,
+                               final_state(item));
         ff_new_data_release(&client->news);
         taken++;
     }

@@ -1,6 +1,6 @@
 /* A frame: take in new data, apply the panorama's rules, choose the cut, rank what is missing; then
  * draw. */
-#include "ff_client_local.h"
+#include "several/ff_several.h"
 #include "../protocol/ff_assert.h"
 
 #include <string.h>
@@ -33,27 +33,36 @@ static void settle_welcome(ff_client *client, const ff_stream_shared *shared)
 {
     sys_mutex_lock(&client->gate);
     ff_client_uncarve(client);
-    client->info = shared->welcome;
+    ff_client_take_welcome(&client->first, shared);
+    client->info = shared->welcome[0];
     client->has_camera = 0; /* another frame, too */
     int rc = ff_client_carve(client);
     FF_ASSERT(client->have_terrain == (rc == FF_OK));
     client->terrain_error = rc;
     if (rc != FF_OK) ff_client_carve_sky(client);
-    ff_stream_accept(&client->stream, rc == FF_OK);
+    ff_stream_accept(&client->first.stream, rc == FF_OK);
     sys_mutex_unlock(&client->gate);
 }
 
-static void look_at_link(ff_client *client)
+void ff_client_note_link(ff_client *client, ff_source *source, const ff_stream_shared *shared)
 {
-    if (!client->desc.stream) return;
+    uint8_t down = shared->state == FF_STREAM_DOWN || shared->state == FF_STREAM_DEAD;
+    FF_ASSERT(shared->losses >= source->losses_seen);
+    /* what was asked is queued again: is it still wanted, and who is to be asked? */
+    if (shared->losses != source->losses_seen || down != source->down) client->unranked = 1;
+    source->losses_seen = shared->losses;
+    source->down = down;
+}
+
+static void look_at_links(ff_client *client)
+{
     ff_stream_shared shared;
-    ff_stream_get_shared(&client->stream, &shared);
-    if (shared.state == FF_STREAM_WELCOMED) settle_welcome(client, &shared);
-    FF_ASSERT(shared.losses >= client->losses_seen);
-    if (shared.losses != client->losses_seen) {
-        client->losses_seen = shared.losses;
-        client->unranked = 1; /* what was asked is queued again: is it still wanted? */
+    if (client->desc.stream) {
+        ff_stream_get_shared(&client->first.stream, &shared);
+        if (shared.state == FF_STREAM_WELCOMED) settle_welcome(client, &shared);
+        ff_client_note_link(client, &client->first, &shared);
     }
+    ff_several_look(client);
 }
 
 static int same_camera(const c3d_camera *a, const c3d_camera *b)
@@ -129,7 +138,7 @@ static uint8_t is_far_painted(const ff_client *client, const c3d_camera *camera)
 static void leave_panorama(ff_client *client)
 {
     if (!ff_client_own_ground(client) || client->panorama.active < 0 || client->dirty ||
-        ff_requests_waiting(&client->requests, FF_CLASS_IN_VIEW))
+        ff_client_waiting(client, FF_CLASS_IN_VIEW))
         return;
     ff_panorama_drop(&client->panorama);
     client->dirty = 1;
@@ -147,7 +156,7 @@ static void look_for_rest(ff_client *client)
 int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
 {
     int pictures_changed = 0;
-    look_at_link(client);
+    look_at_links(client);
     if (!can_look(given)) {
         client->frames_skipped++;
         return 0;
@@ -166,7 +175,7 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
     look_for_rest(client);
     ff_client_auto_step(client, camera, now_us);
     int hold = ff_client_low_power(client) || ff_client_own_ground(client);
-    int turned = ff_panorama_update(&client->panorama, &client->requests, &view.camera,
+    int turned = ff_panorama_update(&client->panorama, &client->first.requests, &view.camera,
                                     &client->motion, hold, now_us);
     client->far_painted = is_far_painted(client, camera);
     if (!taken && !moved && !turned && !client->dirty && !client->unranked) {

@@ -27,39 +27,41 @@ static int is_deep(const ff_client *client, const ff_wish *wish)
                                       : wish->priority / DEEP >= allowed;
 }
 
-static uint32_t bytes_for(ff_client *client)
+static uint32_t bytes_for(ff_client *client, ff_source *source)
 {
     ff_stream_shared shared;
     uint32_t budget = client->desc.balance.mode == FF_BALANCE_ON ? client->desc.balance.link_bytes_s
                                                                  : 0;
-    ff_stream_get_shared(&client->stream, &shared);
+    ff_stream_get_shared(&source->stream, &shared);
     uint64_t bytes = shared.bytes_s ? (uint64_t)shared.bytes_s * VIEW_SECONDS : VIEW_BYTES_UNTIMED;
     if (bytes < VIEW_BYTES_MIN) bytes = VIEW_BYTES_MIN;
     if (budget && bytes > (uint64_t)budget * VIEW_SECONDS) bytes = (uint64_t)budget * VIEW_SECONDS;
     return bytes < VIEW_BYTES_MAX ? (uint32_t)bytes : VIEW_BYTES_MAX;
 }
 
-/* Names what is wished for in view and not on its way. 1 when some of it is deep. */
-static int name_wishes(ff_client *client, ff_get_view *asked)
+/* Names what is wished for of a source in view and not on its way. 1 when some of it is deep. */
+static int name_wishes(ff_client *client, ff_source *source, ff_get_view *asked)
 {
     const ff_wish *list;
     uint32_t count = ff_tree_wishes(client->tree, &list);
     int deep = 0;
     for (uint32_t i = 0; i < count && asked->count < FF_VIEW_KEYS_MAX; i++) {
         enum ff_kind kind = (enum ff_kind)list[i].kind;
-        if (!list[i].in_view || ff_refusals_final(&client->refusals, kind, list[i].key) ||
-            ff_requests_out(&client->requests, kind, list[i].key))
+        if (!list[i].in_view ||
+            ff_client_route(client, kind, list[i].key, list[i].lacks) != source)
             continue;
+        ff_key key = ff_source_own_key(source, list[i].key);
+        if (ff_requests_out(&source->requests, kind, key)) continue;
         deep |= is_deep(client, &list[i]);
         if (kind == FF_KIND_ROOT) asked->roots |= (uint16_t)(1u << asked->count);
-        asked->below[asked->count++] = list[i].key;
+        asked->below[asked->count++] = key;
     }
     return deep;
 }
 
 /* All but where the camera is. */
-static void describe(ff_client *client, const c3d_camera *camera, const ff_quality *quality,
-                     ff_get_view *asked)
+static void describe(ff_client *client, ff_source *source, const c3d_camera *camera,
+                     const ff_quality *quality, ff_get_view *asked)
 {
     int by_pixels = quality->measure == FF_MEASURE_PIXELS;
     asked->yaw = (uint16_t)camera->yaw;
@@ -73,36 +75,51 @@ static void describe(ff_client *client, const c3d_camera *camera, const ff_quali
     asked->depth_max = quality->depth_max;
     asked->reach_wu = quality->view_wu;
     asked->triangles_max = quality->triangles_max;
-    asked->bytes_max = bytes_for(client);
+    asked->bytes_max = bytes_for(client, source);
 }
 
 /* The view that is out brings nothing that is wished for now: the viewer is somewhere else. */
-static int is_stale(ff_client *client)
+static int is_stale(ff_client *client, ff_source *source)
 {
     const ff_wish *list;
     uint32_t count = ff_tree_wishes(client->tree, &list);
     int elsewhere = 0;
     for (uint32_t i = 0; i < count; i++) {
         enum ff_kind kind = (enum ff_kind)list[i].kind;
-        if (!list[i].in_view) continue;
-        if (ff_requests_view_brings(&client->requests, kind, list[i].key)) return 0;
+        if (!list[i].in_view ||
+            ff_client_route(client, kind, list[i].key, list[i].lacks) != source)
+            continue;
+        if (ff_requests_view_brings(&source->requests, kind,
+                                    ff_source_own_key(source, list[i].key)))
+            return 0;
         elsewhere |= is_deep(client, &list[i]);
     }
     return elsewhere;
 }
 
-void ff_client_want_view(ff_client *client, const ff_view *view, const ff_quality *quality)
+/* From a place to another along an axis, as near as numbers go. */
+static int32_t away_wu(int32_t to_wu, int32_t from_wu)
+{
+    int64_t away = (int64_t)to_wu - from_wu;
+    return away < -INT32_MAX ? -INT32_MAX : away > INT32_MAX ? INT32_MAX : (int32_t)away;
+}
+
+void ff_client_want_view(ff_client *client, ff_source *source, const ff_view *view,
+                         const ff_quality *quality)
 {
     ff_get_view asked = { 0 };
-    if (!client->desc.stream || client->desc.no_views || client->no_views) return;
-    if (ff_requests_out(&client->requests, FF_KIND_VIEW, 0)) {
-        if (is_stale(client)) ff_requests_cancel(&client->requests, FF_KIND_VIEW, 0);
+    if (!source->io || !source->serves || client->desc.no_views || source->no_views) return;
+    if (ff_requests_out(&source->requests, FF_KIND_VIEW, 0)) {
+        if (is_stale(client, source)) ff_requests_cancel(&source->requests, FF_KIND_VIEW, 0);
         return;
     }
-    if (!name_wishes(client, &asked)) return;
-    describe(client, &view->camera, quality, &asked);
+    if (!name_wishes(client, source, &asked)) return;
+    describe(client, source, &view->camera, quality, &asked);
     ff_shape_leave(&client->info, &view->frame, view->camera.pos_wu, asked.position_wu);
-    ff_requests_want_view(&client->requests, &asked);
+    /* the server's world begins at its own ground */
+    asked.position_wu[0] = away_wu(asked.position_wu[0], source->ground[0].south_west_wu[0]);
+    asked.position_wu[1] = away_wu(asked.position_wu[1], source->ground[0].south_west_wu[1]);
+    ff_requests_want_view(&source->requests, &asked);
 }
 
 /* As far as the client will draw: whether a panorama comes behind its ground is known beforehand
@@ -122,29 +139,30 @@ void ff_client_greet_view(ff_client *client, const c3d_camera *camera)
     const ff_quality quality = quality_to_be(client);
     ff_get_view asked = { 0 };
     if (!client->desc.stream || client->desc.no_views || !client->desc.place_known) return;
-    ff_requests_rank_begin(&client->requests);
-    if (!ff_requests_out(&client->requests, FF_KIND_VIEW, 0)) {
-        describe(client, camera, &quality, &asked);
+    ff_requests_rank_begin(&client->first.requests);
+    if (!ff_requests_out(&client->first.requests, FF_KIND_VIEW, 0)) {
+        describe(client, &client->first, camera, &quality, &asked);
         memcpy(asked.position_wu, camera->pos_wu, sizeof asked.position_wu);
-        ff_requests_want_view(&client->requests, &asked);
+        ff_requests_want_view(&client->first.requests, &asked);
     }
-    ff_requests_rank_end(&client->requests);
+    ff_requests_rank_end(&client->first.requests);
 }
 
 /* Its ground has come, each part as if it had been asked for alone; what was named and is missing
  * was refused. */
 int ff_client_take_view(ff_client *client, ff_new_item *item, int64_t now_us)
 {
-    const ff_get_view *asked = &client->requests.view;
+    ff_source *source = ff_client_source(client, item->source);
+    const ff_get_view *asked = &source->requests.view;
     (void)now_us;
     if (item->refused) {
-        client->no_views |= item->error != FF_ERR_CLOSED;
+        source->no_views |= item->error != FF_ERR_CLOSED;
         return 0;
     }
     FF_ASSERT(item->error == FF_OK && asked->count <= FF_VIEW_KEYS_MAX);
     for (unsigned i = 0; i < asked->count; i++)
         if (item->u.missing >> i & 1u)
-            ff_refusals_note(&client->refusals,
+            ff_refusals_note(&source->refusals,
                              asked->roots >> i & 1u ? FF_KIND_ROOT : FF_KIND_REFINEMENT,
                              asked->below[i]);
     return 0;

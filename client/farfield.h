@@ -54,6 +54,12 @@ typedef struct ff_client ff_client;
  * back_plane_wu; or whichever is cheaper for the error allowed (panorama/ff_panorama_auto.h). */
 enum ff_panorama_use { FF_PANORAMA_OFF, FF_PANORAMA_ON, FF_PANORAMA_AUTO };
 
+/* One who answers: a server or a pack on this device, mapped or read. The other is NULL. */
+typedef struct ff_source_desc {
+    const ff_pack *pack;
+    sys_stream *stream;
+} ff_source_desc;
+
 /* Zero in any field takes the default given. */
 typedef struct ff_panorama_desc {
     uint8_t enabled; /* enum ff_panorama_use; default FF_PANORAMA_OFF */
@@ -118,6 +124,12 @@ typedef struct ff_client_desc {
     size_t memory_bytes; /* at least ff_client_bytes_min(); more memory holds finer ground */
     sys_stream *stream;  /* to a server; or NULL */
     const ff_pack *pack; /* a pack on this device instead, mapped or read; or NULL */
+    /* More packs and servers, drawn together with that one, whose place on its ground is the
+     * client's frame. One of the same ground (the same pack, or parts cut from it) is asked for
+     * what those named before it lack; others are grounds of their own in the same reference
+     * system: where they lie over each other the finer is shown, else the one named first. */
+    const ff_source_desc *more;
+    unsigned more_count; /* at most FF_SOURCES_MAX - 1: ff_tree.h */
     const struct c3d_backend *backend;  /* NULL: no pictures */
     const sys_surface_api *surface_api; /* its context is current */
     /* viewport, default 240x320; a back end without a GL draws nothing in a larger one */
@@ -236,6 +248,14 @@ const ff_terrain_info *ff_client_terrain(const ff_client *client);
  * without an end mark; FF_ERR_NOT_FOUND: the pack does not say, or it has not come yet;
  * FF_ERR_FULL: `value` is too small; of a local pack what is wrong with it. */
 int ff_client_about(ff_client *client, enum ff_about_entry entry, void *value, size_t room);
+/* The same of one of several sources: 0 the first, 1 the first of desc.more. All of their
+ * attributions are to be shown. */
+int ff_client_source_about(ff_client *client, unsigned source, enum ff_about_entry entry,
+                           void *value, size_t room);
+/* FF_OK, or why a source gives nothing: FF_ERR_AGAIN, its server has not answered yet;
+ * FF_ERR_UNSUPPORTED: its ground has no reference system in common with the first one's, or nodes
+ * of another size; FF_ERR_RANGE: it lies too far away; FF_ERR_FULL. */
+int ff_client_source_state(const ff_client *client, unsigned source);
 const ff_tree *ff_client_tree(const ff_client *client);
 /* For checks and the emulator: the c3d device; NULL without a back end and where the block has no
  * room for one. Until the terrain is known it is one for the sky; another one with every

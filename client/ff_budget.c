@@ -156,7 +156,9 @@ static size_t tree_bytes(const ff_budget *b, uint32_t nodes)
     ff_tree_desc desc = { .info = *b->info,
                           .node_count = nodes,
                           .wish_count = FF_TREE_WISHES,
-                          .hidden = b->desc->hidden };
+                          .hidden = b->desc->hidden,
+                          .ground_max = b->grounds_max,
+                          .source_max = 1 + b->desc->more_count };
     return ff_tree_bytes(&desc);
 }
 
@@ -196,11 +198,31 @@ static uint32_t between(size_t wanted, uint32_t least, uint32_t most)
         b->pool[FF_POOL_##name].bytes = (size_t)(bytes_of_n); \
     }
 
+unsigned ff_budget_links(const ff_client_desc *desc)
+{
+    unsigned links = desc->stream != NULL;
+    for (unsigned i = 0; i < desc->more_count; i++) links += desc->more[i].stream != NULL;
+    return links;
+}
+
+/* A server may have more than one, a pack on this device has what it was joined with. */
+uint32_t ff_budget_grounds(const ff_client_desc *desc)
+{
+    uint32_t grounds = ff_grounds_built ? ff_budget_links(desc) * FF_WELCOME_GROUNDS : 1;
+    for (unsigned i = 0; ff_grounds_built && i <= desc->more_count; i++) {
+        const ff_pack *pack = i ? desc->more[i - 1].pack : desc->pack;
+        for (; pack; pack = pack->next) grounds++;
+    }
+    return grounds < FF_GROUNDS_MAX ? grounds : FF_GROUNDS_MAX;
+}
+
 void ff_budget_fixed(ff_budget *b, const ff_client_desc *desc, size_t block)
 {
     memset(b, 0, sizeof *b);
     b->desc = desc;
     b->block = block;
+    b->links = ff_budget_links(desc);
+    b->grounds_max = ff_budget_grounds(desc);
     FF_POOLS_FIXED(X, PART)
     b->fixed = b->used;
 }

@@ -51,24 +51,28 @@
     X(client, 1, 1, 1, 1, \
       sizeof(ff_client), 1, 1, \
       "all that is no pool: settings, state, what waits to be sent") \
-    X(received, b->desc->stream != NULL, \
-      b->desc->memory_bytes / 32, FF_RECEIVED_MIN, FF_RECEIVED_MAX, \
+    X(sources, b->desc->more_count != 0, \
+      b->desc->more_count, 1, FF_SOURCES_MAX - 1, \
+      n * sizeof(ff_source), n, n, \
+      "packs and servers besides the first: what is asked of each") \
+    X(received, b->links != 0, \
+      b->desc->memory_bytes / 32, FF_RECEIVED_MIN * b->links, FF_RECEIVED_MAX * b->links, \
       n, from->link.received, from->link.received_high, \
-      "bytes of messages that have not come whole yet") \
+      "bytes of messages that have not come whole yet, as many for each link") \
     X(requests, 1, \
-      b->desc->in_flight_max + FF_REQUESTS_QUEUED_MAX, 1, UINT16_MAX, \
-      ff_requests_bytes(b->desc->in_flight_max), from->requests_held, from->requests.held_high, \
+      (b->desc->in_flight_max + FF_REQUESTS_QUEUED_MAX) * (1 + b->desc->more_count), 1, UINT32_MAX, \
+      ff_requests_bytes(b->desc->in_flight_max) * (1 + b->desc->more_count), from->requests_held, from->requests.held_high, \
       "those sent and unanswered, and behind them all that a ranking can want") \
-    X(about, b->desc->stream != NULL && b->desc->about != 0, \
-      ff_about_bytes_max(b->desc->about), 1, FF_ABOUT_BYTES_MAX, \
+    X(about, b->links != 0 && b->desc->about != 0, \
+      ff_about_bytes_max(b->desc->about) * b->links, 1, FF_ABOUT_BYTES_MAX * FF_SOURCES_MAX, \
       n, from->link.about_bytes, from->link.about_bytes, \
       "bytes of what the pack says of itself, of the entries that the program shows")
 
 /* What comes, on its way to the tree and the device. */
 #define FF_POOLS_ARRIVING(X, PART) \
     X(decoder, 1, 1, 1, 1, \
-      ff_decoder_bytes(b->info), 1, 1, \
-      "the network worker's state of the height codec") \
+      b->grounds_max > 1 ? ff_decoder_bytes_any(b->info) : ff_decoder_bytes(b->info), 1, 1, \
+      "the network worker's state of the height codec: where several grounds may come, of any") \
     X(decoded_image, b->texels != 0, 1, 1, 1, \
       b->texels * 3, 1, 1, \
       "the one image that the network worker decodes, RGB888") \
@@ -137,6 +141,8 @@ typedef struct ff_budget {
     unsigned face_size; /* 0: no panoramas */
     uint8_t has_textures;
     /* what rows have in common */
+    unsigned links;       /* sources that are servers */
+    uint32_t grounds_max; /* that may come */
     size_t texels;        /* of the largest image that comes; 0: none does */
     size_t texture_bytes; /* of an image of the ground, on the device */
     uint32_t heights;     /* of a node */
@@ -151,6 +157,10 @@ typedef struct ff_budget {
 
 #define FF_ECONOMY_STEPS 3
 
+/* Sources that are servers. */
+unsigned ff_budget_links(const ff_client_desc *desc);
+/* Grounds that may come of all sources. */
+uint32_t ff_budget_grounds(const ff_client_desc *desc);
 /* The pools that outlive a terrain, in a block of so many bytes. */
 void ff_budget_fixed(ff_budget *budget, const ff_client_desc *desc, size_t block);
 /* What of panoramas and images a block can have at a step of economy. */

@@ -10,14 +10,12 @@
 #include "ff_arena.h"
 #include "ff_budget.h"
 #include "balance/ff_balance.h"
-#include "source/ff_local.h"
 #include "ahead/ff_motion.h"
 #include "ahead/ff_turn.h"
 #include "panorama/ff_panorama.h"
 #include "panorama/ff_panorama_auto.h"
-#include "ask/ff_refusals.h"
 #include "ff_sky.h"
-#include "source/link/ff_stream.h"
+#include "ff_source.h"
 #include "ground/ff_terrain_view.h"
 #include "images/ff_textures.h"
 
@@ -34,11 +32,10 @@ struct ff_client {
     sys_thread thread;
     uint8_t threaded, stop; /* stop: under the gate */
 
-    ff_requests requests;
+    ff_source first; /* its ground's frame is the client's */
+    ff_source *more; /* source_count - 1 of them */
+    uint8_t source_count;
     ff_new_data news;
-    ff_intake intake;
-    ff_stream stream;
-    uint8_t *recv;
 
     uint8_t have_terrain;
     uint8_t economy;   /* left out for want of memory: 1 panoramas, 2 images too */
@@ -62,9 +59,7 @@ struct ff_client {
     ff_sky sky;
     ff_motion motion;
     ff_turn turn;
-    ff_refusals refusals;
 
-    uint8_t no_views; /* the server refused to answer for a view: things are asked for singly */
     uint8_t has_camera, battery_low, interrupted, has_textures;
     uint8_t dirty; /* 1: the picture has to be made anew */
     /* 1: requests have to be ranked anew, because the connection was lost, or the viewer stopped */
@@ -73,10 +68,44 @@ struct ff_client {
     unsigned show;
     c3d_camera camera; /* of the last update, as given but in last_view's frame */
     ff_view last_view;
-    uint32_t losses_seen;
     uint64_t frame_hash, geometry_hash;
     uint32_t frames_updated, frames_skipped;
 };
+
+static inline ff_source *ff_client_source(ff_client *client, unsigned number)
+{
+    FF_ASSERT(number < client->source_count);
+    return number ? &client->more[number - 1] : &client->first;
+}
+/* client_source.c: the source of a number, in rooms of the block that outlive a terrain: `slots` for
+ * ff_requests_bytes, and for one with a link `recv`, and `about` where that is wanted. */
+typedef struct ff_source_room {
+    uint8_t *slots, *recv, *about;
+    uint32_t recv_bytes;
+} ff_source_room;
+void ff_source_make(ff_client *client, unsigned number, const ff_source_room *room);
+int ff_client_step_source(ff_client *client, ff_source *source, int64_t now_us);
+/* Who it is, as the embedder says. */
+static inline ff_source_desc ff_client_source_desc(const ff_client *client, unsigned number)
+{
+    return number ? client->desc.more[number - 1]
+                  : (ff_source_desc){ client->desc.pack, client->desc.stream };
+}
+/* What is counted of all requests, together. */
+void ff_client_counts(ff_client *client, ff_request_counts *counts);
+/* What all links are doing together, zero without any: bytes and rates are sums, the round trip is
+ * the longest; the state and the refusal are the first one's. */
+void ff_client_link(ff_client *client, ff_stream_shared *shared);
+/* 1 when something of class `last` or one before it waits at any source. */
+int ff_client_waiting(ff_client *client, enum ff_request_class last);
+/* The grounds of a source, as its pack or its server's WELCOME says: it does not serve them yet. */
+void ff_client_take_pack(ff_source *source);
+void ff_client_take_welcome(ff_source *source, const ff_stream_shared *shared);
+/* client_update.c: what a link has met since the last update. */
+void ff_client_note_link(ff_client *client, ff_source *source, const ff_stream_shared *shared);
+/* several/: of the sources that serve a key's ground and may have it the one to be asked, or NULL. `lacks`:
+ * ff_wish.lacks. */
+ff_source *ff_client_route(ff_client *client, enum ff_kind kind, ff_key key, unsigned lacks);
 
 /* client.c: the defaults of all that is zero. */
 void ff_client_default_desc(ff_client_desc *desc);
@@ -86,6 +115,11 @@ void *ff_client_take(ff_arena *arena, const ff_budget *budget, enum ff_pool_id p
  * FF_ERR_MEMORY, FF_ERR_UNSUPPORTED. */
 int ff_client_carve(ff_client *client);
 void ff_client_uncarve(ff_client *client);
+/* Gives a source the worker's decoder and scratch. FF_OK, or FF_ERR_UNSUPPORTED: this build has not
+ * the codec of one of its grounds. */
+int ff_client_decode(ff_client *client, ff_source *source);
+/* From now on the source is asked. */
+void ff_client_serve(ff_client *client, ff_source *source);
 /* What draws the sky until a terrain is known, where the block has room for it; under the gate (or
  * before the worker runs), nothing being carved. ff_client_uncarve gives it back. */
 void ff_client_carve_sky(ff_client *client);
@@ -98,8 +132,10 @@ unsigned ff_client_take_new_data(ff_client *client, int64_t now_us, int *changed
     int ff_client_take_##name(ff_client *client, ff_new_item *item, int64_t now_us);
 FF_KIND_LIST(X)
 #undef X
-/* client_view.c: where several levels are missing in view, one request for all of them. */
-void ff_client_want_view(ff_client *client, const ff_view *view, const ff_quality *quality);
+/* client_view.c: where several levels are missing in view, one request for all that a source is to
+ * be asked of them. */
+void ff_client_want_view(ff_client *client, ff_source *source, const ff_view *view,
+                         const ff_quality *quality);
 /* The same while no terrain is known, for who knows where it is. */
 void ff_client_greet_view(ff_client *client, const c3d_camera *camera);
 /* client_rank.c: fills the request queue anew with what tree, images, panorama and prediction

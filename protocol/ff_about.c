@@ -7,11 +7,12 @@
 #define PARAMETER_BYTES  (2 + 8)
 #define HEAD_BYTES       4 /* of an entry: type, and the longest length */
 
-enum about_form { TEXT, NUMBERS };
+enum about_form { TEXT, NUMBERS, CHECKSUM };
+#define LEAST_OF(form, most) ((form) == TEXT ? 1 : (form) == NUMBERS ? PROJECTION_BYTES : (most))
 
 /* clang-format off */
 static const ff_list_rule rule[] = {
-#define X(entry, name, type, form, most) { type, form == TEXT ? 1 : PROJECTION_BYTES, most },
+#define X(entry, name, type, form, most) { type, LEAST_OF(form, most), most },
     FF_ABOUT_LIST(X)
 #undef X
 };
@@ -68,8 +69,9 @@ static int value_ok(const ff_list_entry *entry)
 {
     for (unsigned i = 0; i < RULES; i++) {
         if (rule[i].type != entry->type) continue;
-        return form_of[i] == TEXT ? ff_about_is_text(entry->value, entry->byte_count)
-                                  : (entry->byte_count - PROJECTION_BYTES) % PARAMETER_BYTES == 0;
+        if (form_of[i] == TEXT) return ff_about_is_text(entry->value, entry->byte_count);
+        return form_of[i] != NUMBERS ||
+               (entry->byte_count - PROJECTION_BYTES) % PARAMETER_BYTES == 0;
     }
     return 1;
 }
@@ -100,6 +102,14 @@ int ff_about_select(ff_list about, uint32_t set, uint8_t *out, uint32_t capacity
         if (ff_about_in(set, entry.type))
             ff_list_write(&writer, entry.type, entry.value, entry.byte_count);
     return writer.error != FF_OK ? writer.error : (int)(writer.at - out);
+}
+
+uint32_t ff_about_whole(ff_list about, uint32_t checksum)
+{
+    const uint8_t *value;
+    if (ff_list_find(about, FF_ABOUT_WHOLE, &value) != 4) return checksum;
+    ff_reader in = { value, value + 4, FF_OK };
+    return (uint32_t)ff_read_bytes(&in, 4);
 }
 
 int ff_about_get_projection(ff_list about, ff_about_projection *projection)

@@ -18,7 +18,8 @@
     X(DATE,        date,            4, TEXT,    40) \
     X(VERTICAL,    vertical_datum,  5, TEXT,    100) \
     X(WKT,         projection_wkt,  6, TEXT,    2500) /* of the origin's reference system, WKT 2 */ \
-    X(PROJECTION,  projection,      7, NUMBERS, 256)  /* ff_about_projection */
+    X(PROJECTION,  projection,      7, NUMBERS, 256)  /* ff_about_projection */ \
+    X(WHOLE,       part_of,         8, CHECKSUM, 4)   /* u32, of the pack that this one is cut from */
 
 enum ff_about_entry {
 #define X(entry, name, type, form, most) FF_ABOUT_##entry = type,
@@ -58,6 +59,9 @@ int ff_about_is_text(const uint8_t *bytes, uint32_t byte_count);
 uint32_t ff_about_bytes_max(uint32_t set);
 /* The entries of a set, in `out`: bytes written, or FF_ERR_FULL. */
 int ff_about_select(ff_list about, uint32_t set, uint8_t *out, uint32_t capacity);
+/* The checksum of the whole pack that the one with this list and this checksum is a part of: its own
+ * where it is whole. Of a list that was checked. */
+uint32_t ff_about_whole(ff_list about, uint32_t checksum);
 /* FF_OK, or FF_ERR_NOT_FOUND. Of a list that was checked. */
 int ff_about_get_projection(ff_list about, ff_about_projection *projection);
 /* Parameter `number`: EPSG's code of it, and its value: angles in 10^-9 degrees, lengths in

@@ -413,11 +413,14 @@ static int has_level(const ff_pack *pack, const ff_pack_section *first, uint32_t
 int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
                    const uint8_t **payload)
 {
-    uint32_t level = ff_key_level(key), code = ff_key_code(key), number = ff_key_tile(key);
-    const ff_pack_section *section = first_section(pack, kind);
+    uint32_t level = ff_key_level(key), code = ff_key_code(key), number;
+    const ff_pack_section *section;
 
-    if (!section || !has_level(pack, section, level) || (uint64_t)code >> (2 * level) != 0 ||
-        number >= pack->header.section[0].index.records)
+    pack = ff_pack_of(pack, key);
+    if (!pack) return FF_ERR_NOT_FOUND;
+    number = ff_key_tile(key) - pack->header.info.first_tile;
+    section = first_section(pack, kind);
+    if (!section || !has_level(pack, section, level) || (uint64_t)code >> (2 * level) != 0)
         return FF_ERR_NOT_FOUND;
     for (uint32_t l = 0; kind != FF_SECTION_ROOT && l <= level; l++) {
         uint64_t place = l ? 4 * (uint64_t)number + (code >> 2 * (level - l) & 3u) : number;

@@ -65,7 +65,10 @@ typedef struct ff_pack {
     uint64_t size;
     ff_pack_header header;
     char refusal[112]; /* why it was not opened, where the error alone does not say; else "" */
+    struct ff_pack *next; /* another ground's, see ff_pack_join; NULL */
 } ff_pack;
+
+#define FF_PACKS_JOINED_MAX 7 /* with the first: as many as a WELCOME can tell of */
 
 /* Checks magic, version, checksum and ranges, and that all sections lie inside `size`. FF_OK or a
  * negative error: FORMAT (not a pack), VERSION, TRUNCATED, CHECKSUM, RANGE, UNSUPPORTED (a section
@@ -78,6 +81,22 @@ int ff_pack_open_reader(ff_pack *pack, ff_pack_read_fn *read, void *context, uin
 /* The error of ff_pack_open, or of what came before it, in words for people: which section, and
  * what to do about an old pack. */
 const char *ff_pack_error_text(const ff_pack *pack, int error);
+
+/* Has `other` go with `pack`, and what was joined to it before, as one more ground: the tiles of
+ * its keys are numbered on, and whatever takes `pack` has both. FF_OK, or an error of
+ * ff_terrain_join; FF_ERR_ARGUMENT: it holds ground of one that is there already, whole or a part;
+ * FF_ERR_FULL. Both stay where they are. */
+int ff_pack_join(ff_pack *pack, ff_pack *other);
+/* The checksum of the whole pack that this one is a part of: its own where it is none. */
+uint32_t ff_pack_whole(const ff_pack *pack);
+/* The one of those joined that has the key's tile, or NULL. */
+static inline const ff_pack *ff_pack_of(const ff_pack *pack, ff_key key)
+{
+    while (pack && ff_key_tile(key) - pack->header.info.first_tile >=
+                       (uint64_t)pack->header.section[0].index.records)
+        pack = pack->next;
+    return pack;
+}
 
 /* Reads record `key` of a kind; *payload points into the mapping, or into the room, where it stands
  * until the next record is read. Payload bytes (1 or more) or NOT_FOUND, CHECKSUM, RANGE; FULL: it

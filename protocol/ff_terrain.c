@@ -42,6 +42,33 @@ int ff_terrain_same(const ff_terrain_info *a, const ff_terrain_info *b)
            a->texture_levels == b->texture_levels;
 }
 
+/* Millimetres as world units, to the nearest. */
+static int64_t wu_of_mm(int64_t mm)
+{
+    int64_t doubled = mm * 2 * FF_WU_PER_METRE + 1000;
+
+    return doubled >= 0 ? doubled / 2000 : -((1999 - doubled) / 2000);
+}
+
+int ff_terrain_join(ff_terrain_info *info, const ff_terrain_info *first,
+                    const ff_terrain_info *last)
+{
+    const int64_t far_mm = INT64_C(8000000000); /* so that its own places fit as well */
+    int64_t east_mm = info->origin_x_mm / 2 - first->origin_x_mm / 2,
+            north_mm = info->origin_y_mm / 2 - first->origin_y_mm / 2;
+    uint64_t tiles = (uint64_t)last->first_tile + ff_shape_tiles(last);
+
+    if (!first->epsg || info->epsg != first->epsg || info->node_log2 != first->node_log2)
+        return FF_ERR_UNSUPPORTED;
+    if (east_mm < -far_mm / 2 || east_mm > far_mm / 2 || north_mm < -far_mm / 2 ||
+        north_mm > far_mm / 2 || tiles + ff_shape_tiles(info) > FF_KEY_TILES_MAX)
+        return FF_ERR_RANGE;
+    info->first_tile = (uint32_t)tiles;
+    info->west_wu = (int32_t)wu_of_mm(info->origin_x_mm - first->origin_x_mm);
+    info->south_wu = (int32_t)wu_of_mm(info->origin_y_mm - first->origin_y_mm);
+    return ff_terrain_check(info);
+}
+
 int ff_terrain_has_node(const ff_terrain_info *info, ff_key key)
 {
     uint32_t level = ff_key_level(key);

@@ -51,6 +51,11 @@ typedef struct ff_terrain_info {
     uint32_t curve_q60;
     /* of the pack's contents: a client knows by it whether its cache is of this pack */
     uint32_t checksum;
+    /* What follows is in no pack and no message, and 0 but for grounds that are held together
+     * (ff_tree.h): the number of the ground's first tile among those of all of them, as keys name
+     * it, and where its south-west sample lies in the axes of the first one. */
+    uint32_t first_tile;
+    int32_t west_wu, south_wu;
 } ff_terrain_info;
 
 /* Columns and rows of cells of a payload's grid that have ground, from the south-west: of a node's
@@ -119,6 +124,23 @@ static inline void ff_terrain_range_wu(const ff_terrain_info *info, int64_t heig
     height_wu[1] = ff_height_wu(info, info->height_max) + slack;
     FF_ASSERT(height_wu[0] <= height_wu[1]);
 }
+/* 1 when it is the same ground apart from what is stored of it: whole packs of the same bake, or
+ * parts of one, whose `whole` is the checksum of the whole one. Then a key means the same node, and
+ * payloads go together. */
+static inline int ff_terrain_same_ground(const ff_terrain_info *a, uint32_t a_whole,
+                                         const ff_terrain_info *b, uint32_t b_whole)
+{
+    ff_terrain_info other = *b;
+    other.checksum = a->checksum;
+    return a_whole == b_whole && ff_terrain_same(a, &other);
+}
+
+/* Gives `info` its place among grounds that are held together: behind those up to `last`, in the
+ * axes of `first`, by its origin in their reference system. FF_OK, or FF_ERR_UNSUPPORTED: they have
+ * no system in common, or nodes of other sizes; FF_ERR_RANGE: too far away, or too many tiles. */
+int ff_terrain_join(ff_terrain_info *info, const ff_terrain_info *first,
+                    const ff_terrain_info *last);
+
 /* 1 when `key` names a node of this terrain. */
 int ff_terrain_has_node(const ff_terrain_info *info, ff_key key);
 

@@ -13,8 +13,7 @@ typedef struct server_counters {
 
 typedef struct server {
     server_options options;
-    sys_mapping mapping;
-    ff_pack pack;
+    ff_packs packs;
     int listen_fd;
     uint16_t port;
     server_channels channels;

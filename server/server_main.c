@@ -10,14 +10,10 @@
 
 #define OTHER_FILES 512 /* descriptors for channels, standard streams and GL */
 
-static int open_pack(server *shared)
+static int open_packs(server *shared)
 {
-    int rc = sys_map_file(shared->options.pack, &shared->mapping);
-    if (rc == FF_OK) rc = ff_pack_open(&shared->pack, shared->mapping.bytes, shared->mapping.size);
-    if (rc < 0)
-        server_complain("%s: %s", shared->options.pack,
-                        rc == FF_ERR_SYSTEM && errno ? strerror(errno)
-                                                     : ff_pack_error_text(&shared->pack, rc));
+    int rc = ff_packs_open(&shared->packs, shared->options.pack, shared->options.packs.count);
+    if (rc < 0) server_complain("%s", shared->packs.why);
     return rc;
 }
 
@@ -78,7 +74,7 @@ int main(int argc, char **argv)
     int rc = server_options_parse(&shared.options, argc, argv);
     if (rc) return rc < 0 ? SYS_EXIT_USAGE : SYS_EXIT_DONE;
     shared.master_pid = (int)getpid();
-    if (open_pack(&shared) < 0 || open_listening(&shared) < 0 || open_shared(&shared) < 0)
+    if (open_packs(&shared) < 0 || open_listening(&shared) < 0 || open_shared(&shared) < 0)
         return SYS_EXIT_FAILED;
     return shared.options.single ? run_single(&shared) : server_master_run(&shared);
 }

@@ -2,6 +2,7 @@
 #ifndef SERVER_OPTIONS_H
 #define SERVER_OPTIONS_H
 
+#include "packs/ff_packs.h"
 #include "../platform/options/sys_options.h"
 
 #define SERVER_WORKERS_MAX   64
@@ -11,8 +12,9 @@ enum server_gl { SERVER_GL_OSMESA, SERVER_GL_EGL, SERVER_GL_EGL_GLES1 };
 
 /* clang-format off */
 #define SERVER_OPTIONS(OPTION) \
-    OPTION(sys_text, pack, "pack", "PACK", NULL, SYS_FLAGS(SYS_NEEDED), \
-           "the terrain, made by farfield-bake") \
+    OPTION(sys_texts, packs, "pack", "PACK", NULL, SYS_FLAGS(SYS_NEEDED | SYS_REPEATABLE), \
+           "the terrain, made by farfield-bake; up to 7 of one reference system are shown together: " \
+           "the finer where they lie over each other, else the one named first") \
     OPTION(sys_listening, listen, "listen", "ADDR:PORT", "127.0.0.1:7788", SYS_ANY, \
            "where to listen; port 0: any, printed") \
     OPTION(sys_whole, workers, "workers", "N", "2", SYS_WHOLE(1, SERVER_WORKERS_MAX, ""), \
@@ -36,6 +38,7 @@ enum server_gl { SERVER_GL_OSMESA, SERVER_GL_EGL, SERVER_GL_EGL_GLES1 };
 
 typedef struct server_options {
     SERVER_OPTIONS(SYS_FIELD)
+    const char *pack[FF_PACKS_JOINED_MAX];
 } server_options;
 
 /* 0: go on; 1: --help or --version has been answered; -1: wrong usage, said on stderr. */

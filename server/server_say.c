@@ -18,7 +18,7 @@ static void bound_address(const server *shared, char *out, size_t capacity)
 void server_say_listening(const server *shared)
 {
     char address[256];
-    ff_sheet samples = ff_shape_sheet_samples(&shared->pack.header.info);
+    ff_sheet samples = ff_shape_sheet_samples(&shared->packs.pack[0].header.info);
     bound_address(shared, address, sizeof address);
     if (shared->options.json)
         printf(

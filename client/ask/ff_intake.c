@@ -2,6 +2,23 @@
 #include "../../protocol/ff_assert.h"
 #include "../../protocol/shape/ff_shape.h"
 
+int ff_intake_ground(const ff_intake *intake, ff_key key)
+{
+    for (int i = 0; i < intake->ground_count; i++)
+        if (ff_key_tile(key) - intake->info[i].first_tile < ff_shape_tiles(&intake->info[i]))
+            return i;
+    return -1;
+}
+
+/* The terrain of what was asked for, with the decoder turned to it. */
+static const ff_terrain_info *turn_to(ff_intake *intake, ff_key key)
+{
+    int ground = ff_intake_ground(intake, key);
+    FF_ASSERT(ground >= 0); /* nothing else was asked for */
+    if (ff_decoder_turn(intake->decoder, &intake->info[ground]) != FF_OK) return NULL;
+    return &intake->info[ground];
+}
+
 static ff_new_item *begin(ff_intake *intake, const ff_request *request, uint32_t bytes)
 {
     FF_ASSERT(request->state == FF_REQUEST_SENT && request->id >= 1);
@@ -9,6 +26,7 @@ static ff_new_item *begin(ff_intake *intake, const ff_request *request, uint32_t
     if (item) {
         item->key = request->key;
         item->id = request->id;
+        item->source = intake->source;
         item->kind = request->kind;
         item->last = 1;
         item->bytes = bytes;
@@ -89,18 +107,21 @@ int ff_intake_view(ff_intake *intake, const ff_message *answer, ff_new_item *ite
 int ff_intake_root(ff_intake *intake, const ff_message *answer, ff_new_item *item)
 {
     FF_ASSERT(ff_key_level(item->key) == 0);
+    const ff_terrain_info *info = turn_to(intake, item->key);
+    if (!info) return FF_ERR_UNSUPPORTED;
     item->u.residuals.value = item->room;
-    item->u.residuals.cells = ff_shape_cells(&intake->info, item->key, 0);
+    item->u.residuals.cells = ff_shape_cells(info, item->key, 0);
     return ff_decode_root(intake->decoder, answer->u.data.bytes, answer->u.data.byte_count,
                           &item->u.residuals);
 }
 
 int ff_intake_refinement(ff_intake *intake, const ff_message *answer, ff_new_item *item)
 {
-    FF_ASSERT(ff_refined_side(&intake->info) * ff_refined_side(&intake->info) <=
-              intake->news->room_words);
+    const ff_terrain_info *info = turn_to(intake, item->key);
+    if (!info) return FF_ERR_UNSUPPORTED;
+    FF_ASSERT(ff_refined_side(info) * ff_refined_side(info) <= intake->news->room_words);
     item->u.residuals.value = item->room;
-    item->u.residuals.cells = ff_shape_cells(&intake->info, item->key, 1);
+    item->u.residuals.cells = ff_shape_cells(info, item->key, 1);
     return ff_decode_refinement(intake->decoder, answer->u.data.bytes, answer->u.data.byte_count,
                                 &item->u.residuals);
 }

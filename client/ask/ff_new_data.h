@@ -11,6 +11,7 @@
 typedef struct ff_new_item {
     ff_key key; /* of the request, as are id and kind */
     uint16_t id;
+    uint8_t source;   /* whose answer it is: key and id are of its pack and queue */
     uint8_t kind;     /* enum ff_kind */
     uint8_t last;     /* ends its request: always, but for kinds with several answers; a part of a
                        * view has key and kind of its own */

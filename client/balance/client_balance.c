@@ -16,7 +16,7 @@ static void apply(ff_client *client)
     client->panorama.desc.error_px_q8 = knobs.panorama_error_q8;
     client->all_client = !knobs.back_plane_wu;
     if (knobs.back_plane_wu) client->panorama.desc.back_plane_wu = knobs.back_plane_wu;
-    if (client->all_client) ff_requests_cancel_all(&client->requests, FF_KIND_FACE);
+    if (client->all_client) ff_requests_cancel_all(&client->first.requests, FF_KIND_FACE);
 }
 
 void ff_client_balance_begin(ff_client *client, int fresh)
@@ -40,13 +40,13 @@ void ff_client_balance_step(ff_client *client, const c3d_camera *camera, int64_t
                                  .triangles = tree.triangles,
                                  .c_q8 = in_force->c_q8,
                                  .error_px_q8 = in_force->error_px_q8 };
-    if (client->desc.stream) {
+    if (ff_budget_links(&client->desc)) {
         ff_stream_shared shared;
-        ff_stream_get_shared(&client->stream, &shared);
+        ff_client_link(client, &shared);
         sample.bytes_down = shared.bytes_down;
         sample.rate_bytes_s = shared.bytes_s;
         sample.rtt_us = shared.rtt_us;
-        sample.waiting = ff_requests_waiting(&client->requests, FF_CLASS_IN_VIEW) ||
+        sample.waiting = ff_client_waiting(client, FF_CLASS_IN_VIEW) ||
                          ff_panorama_late(&client->panorama, camera);
     }
     if (ff_client_low_power(client) || !tree.nodes_held)

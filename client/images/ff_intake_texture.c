@@ -9,7 +9,8 @@
 int ff_intake_texture(ff_intake *intake, const ff_message *answer, ff_new_item *item)
 {
     if (!ff_new_data_image(intake->news, item)) return FF_ERR_AGAIN;
-    unsigned side = 1u << intake->info.texture_log2;
+    const ff_terrain_info *info = &intake->info[ff_intake_ground(intake, item->key)];
+    unsigned side = 1u << info->texture_log2;
     FF_ASSERT(side <= 1u << 8);
     item->width = item->height = (uint16_t)side;
     if ((size_t)side * side * 3 > intake->rgb_bytes) return FF_ERR_FULL;
@@ -19,6 +20,6 @@ int ff_intake_texture(ff_intake *intake, const ff_message *answer, ff_new_item *
     if (rc == FF_OK) rc = sys_jpeg_decode(image.jpeg, image.jpeg_bytes, side, side, intake->rgb);
     if (rc != FF_OK) return rc;
     item->u.bare = image.bare;
-    ff_texture_texels(&intake->info, intake->rgb, item->pixels);
+    ff_texture_texels(info, intake->rgb, item->pixels);
     return FF_OK;
 }

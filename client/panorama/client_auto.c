@@ -49,16 +49,16 @@ static void look_at_ground(ff_client *client, const c3d_camera *camera)
 static void look_at_link(ff_client *client, const c3d_camera *camera)
 {
     ff_panorama_case *now = &client->far_ground;
-    ff_stream_shared shared = { .bytes_s = 0 };
+    ff_stream_shared shared;
     unsigned faces = 0;
-    if (client->desc.stream) ff_stream_get_shared(&client->stream, &shared);
+    ff_client_link(client, &shared);
     for (unsigned seen = ff_panorama_faces_in_view(camera); seen; seen &= seen - 1) faces++;
     now->focal_q8 = camera->focal_q8;
     now->half_width_q8 = (camera->width ? camera->width : client->desc.width) * 128;
     now->face_size = client->panorama.face_size;
     now->speed_wu_s = speed_wu_s(client, camera);
     now->link_bytes_s = shared.bytes_s;
-    now->set_bytes = faces * ff_requests_answer_bytes(&client->requests, FF_KIND_FACE, 0);
+    now->set_bytes = faces * ff_requests_answer_bytes(&client->first.requests, FF_KIND_FACE, 0);
 }
 
 static void decide(ff_client *client, int32_t allowed_q8)
@@ -68,7 +68,7 @@ static void decide(ff_client *client, int32_t allowed_q8)
     client->auto_ground = (uint8_t)ground;
     client->dirty = 1;
     if (ground) {
-        ff_requests_cancel_all(&client->requests, FF_KIND_FACE);
+        ff_requests_cancel_all(&client->first.requests, FF_KIND_FACE);
         client->auto_us += AGAIN_US - DECIDE_US;
     } else {
         client->panorama.desc.error_px_q8 = allowed_q8;
@@ -88,7 +88,7 @@ void ff_client_auto_step(ff_client *client, const c3d_camera *camera, int64_t no
     if (now_us - client->auto_us < (drawn ? LEAVE_US : DECIDE_US)) return;
     client->auto_us = now_us;
     /* faces do not make ground wait */
-    if (!drawn && ff_requests_waiting(&client->requests, FF_CLASS_IN_VIEW)) return;
+    if (!drawn && ff_client_waiting(client, FF_CLASS_IN_VIEW)) return;
     if (!drawn) look_at_ground(client, camera);
     look_at_link(client, camera);
     decide(client, ff_panorama_worth_q8(&client->far_ground, drawn));

@@ -87,6 +87,10 @@ typedef struct ff_decoder ff_decoder;
 size_t ff_decoder_bytes(const ff_terrain_info *info);
 /* NULL when `bytes` is too small or the codec not supported. `memory` aligned for any type. */
 ff_decoder *ff_decoder_create(const ff_terrain_info *info, void *memory, size_t bytes);
+/* What any terrain with nodes of this size needs, whatever its codec; a decoder that was given so
+ * much can be turned to another one. FF_OK or FF_ERR_UNSUPPORTED: this build has no such codec. */
+size_t ff_decoder_bytes_any(const ff_terrain_info *info);
+int ff_decoder_turn(ff_decoder *dec, const ff_terrain_info *info);
 
 /* What the first stage makes of a payload. Corner values of a root are absolute. */
 typedef struct ff_residuals {

@@ -77,6 +77,29 @@ ff_decoder *ff_decoder_create(const ff_terrain_info *info, void *memory, size_t 
     return codec_bytes >= 0 ? dec : NULL;
 }
 
+size_t ff_decoder_bytes_any(const ff_terrain_info *info)
+{
+    ff_terrain_info any = *info;
+    size_t most = 0, bytes;
+
+    for (int codec = 0; ff_codec_name(codec); codec++) {
+        any.codec = (uint8_t)codec;
+        bytes = ff_codec_supported(codec) ? ff_decoder_bytes(&any) : 0;
+        most = bytes > most ? bytes : most;
+    }
+    return most;
+}
+
+int ff_decoder_turn(ff_decoder *dec, const ff_terrain_info *info)
+{
+    int turns = dec->codec != ff_codec_row(info->codec);
+
+    if (!ff_codec_supported(info->codec)) return FF_ERR_UNSUPPORTED;
+    dec->info = *info;
+    dec->codec = ff_codec_row(info->codec);
+    return turns && dec->codec->memory(info, dec->memory) < 0 ? FF_ERR_UNSUPPORTED : FF_OK;
+}
+
 /* ---- payload to residuals ---- */
 
 /* Takes a byte of `mark` and one bit a child off when there is one: the bits. */

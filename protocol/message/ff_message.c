@@ -343,6 +343,7 @@ static void read_welcome(ff_reader *in, ff_welcome *welcome)
     value.end = terrain.value + terrain.byte_count;
     ff_read_terrain(&value, &welcome->info);
     in->error = value.error;
+    if (in->error == FF_OK && ff_welcome_count(welcome) < 1) in->error = FF_ERR_RANGE;
 }
 
 static void read_face(ff_reader *in, ff_face *face)

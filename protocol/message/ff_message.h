@@ -52,11 +52,14 @@ FF_STATIC_ASSERT(2 + FF_PAYLOAD_BYTES_MAX <= FF_MESSAGE_BODY_MAX);
     X(SCREEN,   4, 4, 4)   /* u16 width, height */ \
     X(BUDGETS,  5, 8, 8)   /* u32 bytes a second, u32 bytes of memory; 0: not told */ \
     X(FEATURES, 6, 4, 4)   /* u32 bits: 0 images, 1 panoramas */
+#define FF_WELCOME_GROUNDS 7 /* that a server has, at most */
 #define FF_WELCOME_LIST(X) \
     X(TERRAIN,  1, FF_TERRAIN_BYTES, FF_TERRAIN_BYTES) /* needed */ \
     X(PIXELS,   2, 6, 6) /* u16 face_size at most, u32 pixels of faces in a minute */ \
     X(REQUESTS, 3, 2, 2) /* u16 unanswered at once */ \
-    X(BYTES,    4, 4, 4) /* u32 bytes a second */
+    X(BYTES,    4, 4, 4) /* u32 bytes a second */ \
+    X(WHOLE,    5, 4, 4 * FF_WELCOME_GROUNDS) /* u32 of each: checksum of the whole that it is of */ \
+    X(TERRAINS, 6, FF_TERRAIN_BYTES, FF_TERRAIN_BYTES * (FF_WELCOME_GROUNDS - 1)) /* more terrains */
 /* clang-format on */
 
 enum ff_caps_entry {
@@ -164,7 +167,7 @@ typedef struct ff_ping {
 typedef struct ff_welcome {
     uint32_t version;
     ff_terrain_info info;
-    ff_list more; /* entries behind the terrain's, inside the message */
+    ff_list more; /* entries behind the terrain's, inside the message: see ff_welcome_ground */
 } ff_welcome;
 typedef struct ff_get_about {
     uint32_t entries; /* FF_ABOUT_BIT of those wanted */
@@ -251,5 +254,13 @@ int ff_message_from_client(uint8_t byte);
  * fields), after which the stream is lost and must be closed. Pointers in `out` refer into `bytes`.
  * All fields are range-checked here. */
 int ff_message_decode(const uint8_t *bytes, size_t byte_count, ff_message *out);
+
+/* The grounds that a server tells of, at most FF_WELCOME_GROUNDS: the terrain, and those of the entry
+ * TERRAINS, which lie beside it and whose tiles are numbered on (ff_terrain_join); or an error of
+ * them. A WELCOME that was decoded has one at least. */
+int ff_welcome_count(const ff_welcome *welcome);
+/* One of them, and the checksum of the whole pack that it is a part of, or its own. */
+void ff_welcome_ground(const ff_welcome *welcome, unsigned number, ff_terrain_info *info,
+                       uint32_t *whole);
 
 #endif

@@ -15,7 +15,7 @@ int server_renderer_open(const server *shared, ff_panorama_renderer **renderer)
                                                                 : sys_surface_egl();
     const struct c3d_backend *backend = gl == SERVER_GL_EGL_GLES1 ? c3d_backend_gles1()
                                                                   : c3d_backend_gl();
-    return ff_panorama_renderer_open(&shared->pack, surface_api, backend, renderer);
+    return ff_panorama_renderer_open(&shared->packs.pack[0], surface_api, backend, renderer);
 }
 
 int server_renderer_face(ff_panorama_renderer *renderer, const ff_face_job *job,

@@ -44,7 +44,7 @@ static void count_session(worker *w, const server_client *client)
     if (stats.damaged)
         server_complain(
             "%s is damaged: %u answers to a client were lost (farfield-info --verify shows where)",
-            w->shared->options.pack, stats.damaged);
+            w->shared->options.pack[0], stats.damaged);
 }
 
 static void remove_closed(worker *w)
@@ -65,7 +65,7 @@ static void remove_closed(worker *w)
 static void accept_clients(worker *w)
 {
     const server_options *o = &w->shared->options;
-    ff_session_desc desc = { .pack = &w->shared->pack,
+    ff_session_desc desc = { .pack = &w->shared->packs.pack[0],
                              .idle_ms_max = o->idle_s * 1000u,
                              .panoramas_per_minute = o->panoramas_per_minute };
     while (w->count < o->max_clients) {

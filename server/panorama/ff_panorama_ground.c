@@ -59,8 +59,9 @@ int panorama_ground_open(panorama_ground *ground, const ff_pack *pack, c3d_devic
     ff_tree_desc desc = { .info = *info,
                           .node_count = FF_PANORAMA_NODES,
                           .wish_count = FF_PANORAMA_WISHES,
-                          .hidden = FF_HIDDEN_FETCHED };
-    size_t tree_bytes = ff_tree_bytes(&desc), decoder_bytes = ff_decoder_bytes(info);
+                          .hidden = FF_HIDDEN_FETCHED,
+                          .ground_max = ff_pack_source_grounds(pack) };
+    size_t tree_bytes = ff_tree_bytes(&desc), decoder_bytes = ff_pack_source_decoder_bytes(pack);
     memset(ground, 0, sizeof *ground);
     ground->pack = pack;
     ground->stats = stats;
@@ -71,7 +72,8 @@ int panorama_ground_open(panorama_ground *ground, const ff_pack *pack, c3d_devic
     ground->tree = ff_tree_create(&desc, ground->tree_memory, tree_bytes);
     ground->decoder = ff_decoder_create(info, ground->decoder_memory, decoder_bytes);
     if (!ground->tree || !ground->decoder) return FF_ERR_MEMORY;
-    int rc = make_texture_memory(ground);
+    int rc = ff_pack_source_add(pack, ground->tree);
+    if (rc == FF_OK) rc = make_texture_memory(ground);
     return rc == FF_OK ? make_view(ground, device) : rc;
 }
 
@@ -133,7 +135,7 @@ void panorama_ground_load(panorama_ground *ground, const ff_frame *frame,
 static int node_seen(const panorama_ground *ground, const ff_drawn *drawn,
                      const ff_get_panorama *request, enum ff_face_name face)
 {
-    const ff_terrain_info *info = &ground->pack->header.info;
+    const ff_terrain_info *info = ff_tree_ground(ground->tree, drawn->key);
     uint32_t count = ff_node_side(info) * ff_node_side(info);
     uint16_t lowest = UINT16_MAX, highest = 0;
     for (uint32_t i = 0; i < count; i++) {
@@ -179,7 +181,10 @@ static int make_texels(const panorama_ground *ground, const uint8_t *payload, in
  * damaged image is remembered as such until its slot is needed. */
 static void fetch_image(panorama_ground *ground, ff_key node)
 {
-    ff_key key = ff_texture_key(&ground->pack->header.info, node);
+    const ff_terrain_info *info = &ff_pack_of(ground->pack, node)->header.info;
+    ff_key key = info->texture_log2 == ground->textures.info.texture_log2
+                     ? ff_texture_key(info, node)
+                     : FF_KEY_NONE;
     const uint8_t *payload;
     if (key == FF_KEY_NONE || ff_textures_touch(&ground->textures, key)) return;
     int bytes = ff_pack_image(ground->pack, &key, &payload);

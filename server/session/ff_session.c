@@ -437,13 +437,36 @@ static int hello(ff_session *session, const ff_hello *greeting)
     return FF_OK;
 }
 
+/* What a client has to know to have this pack's ground together with that of others. */
+static ff_list welcome_more(const ff_session *session, uint8_t *bytes, size_t room)
+{
+    const ff_pack *first = session->desc.pack;
+    uint8_t whole[4 * FF_WELCOME_GROUNDS], terrains[FF_TERRAIN_BYTES * FF_WELCOME_GROUNDS];
+    ff_writer wholes = { whole, whole + sizeof whole, FF_OK },
+              rest = { terrains, terrains + sizeof terrains, FF_OK },
+              out = { bytes, bytes + room, FF_OK };
+    int parts = 0;
+    for (const ff_pack *pack = first; pack; pack = pack->next) {
+        parts |= ff_pack_whole(pack) != pack->header.info.checksum;
+        ff_write_bytes(&wholes, ff_pack_whole(pack), 4);
+        if (pack != first) ff_write_terrain(&rest, &pack->header.info);
+    }
+    if (parts) ff_list_write(&out, FF_WELCOME_WHOLE, whole, (uint32_t)(wholes.at - whole));
+    if (first->next)
+        ff_list_write(&out, FF_WELCOME_TERRAINS, terrains, (uint32_t)(rest.at - terrains));
+    assert(wholes.error == FF_OK && rest.error == FF_OK && out.error == FF_OK);
+    return (ff_list){ bytes, (uint32_t)(out.at - bytes) };
+}
+
 /* Nothing that a client says of itself changes the answers yet. */
 static int caps(ff_session *session)
 {
+    uint8_t more[FF_CAPS_BYTES_MAX];
     if (!session->greeted || session->welcomed) return end_session(session, FF_ERR_FORMAT);
     ff_message welcome = { .type = FF_MSG_WELCOME };
     welcome.u.welcome.version = FF_PROTOCOL_VERSION;
     welcome.u.welcome.info = session->desc.pack->header.info;
+    welcome.u.welcome.more = welcome_more(session, more, sizeof more);
     session->welcomed = 1;
     answer_short(session, &welcome);
     return FF_OK;

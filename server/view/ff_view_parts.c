@@ -35,14 +35,18 @@ static uint32_t nodes_for(const ff_terrain_info *info)
 static int search_open(search *s)
 {
     const ff_terrain_info *info = &s->pack->header.info;
-    ff_tree_desc desc = { .info = *info, .node_count = nodes_for(info), .wish_count = WISHES };
-    size_t tree_bytes = ff_tree_bytes(&desc), decoder_bytes = ff_decoder_bytes(info);
+    ff_tree_desc desc = { .info = *info,
+                          .node_count = s->pack->next ? NODES : nodes_for(info),
+                          .wish_count = WISHES,
+                          .ground_max = ff_pack_source_grounds(s->pack) };
+    size_t tree_bytes = ff_tree_bytes(&desc),
+           decoder_bytes = ff_pack_source_decoder_bytes(s->pack);
     s->tree_memory = malloc(tree_bytes);
     s->decoder_memory = malloc(decoder_bytes);
     if (!s->tree_memory || !s->decoder_memory) return FF_ERR_MEMORY;
     s->tree = ff_tree_create(&desc, s->tree_memory, tree_bytes);
     s->decoder = ff_decoder_create(info, s->decoder_memory, decoder_bytes);
-    return s->tree && s->decoder ? FF_OK : FF_ERR_MEMORY;
+    return s->tree && s->decoder ? ff_pack_source_add(s->pack, s->tree) : FF_ERR_MEMORY;
 }
 
 static void search_close(search *s)

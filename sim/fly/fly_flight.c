@@ -280,7 +280,7 @@ static void check_cracks(fly_flight *flight, double t_s)
     const ff_drawn *list;
     const ff_tree *tree = ff_client_tree(flight->world->client);
     uint32_t count = tree ? ff_tree_cut(tree, &list) : 0;
-    if (!count || sim_watertight_check(&flight->world->pack.header.info, ff_tree_frame(tree), list,
+    if (!count || sim_watertight_check(&flight->world->pack->header.info, ff_tree_frame(tree), list,
                                        count, why, sizeof why))
         return;
     if (!flight->totals.crack_frames++)
@@ -292,7 +292,7 @@ static void check_cracks(fly_flight *flight, double t_s)
 static int check_terrain(const fly_flight *flight)
 {
     const ff_terrain_info *info = ff_client_terrain(flight->world->client);
-    if (!info || info->checksum == flight->world->pack.header.info.checksum) return 0;
+    if (!info || info->checksum == flight->world->pack->header.info.checksum) return 0;
     return fail(flight->options->server ? flight->options->server : flight->options->pack_path,
                 "serves another terrain than --pack");
 }

@@ -30,6 +30,7 @@ static int fail(const char *what) { return sys_options_fail(&program, "%s", what
 /* What is not said follows from what is. */
 static void complete(fly_options *options)
 {
+    options->pack_path = options->pack[0];
     (void)sim_link_parse(options->link_text, &options->link);
     options->link.way[SIM_DOWN].trace = options->down_trace;
     options->link.way[SIM_UP].trace = options->up_trace;
@@ -48,13 +49,18 @@ static void complete(fly_options *options)
 
 int fly_options_parse(fly_options *options, int argc, char **argv)
 {
-    *options = (fly_options){ .seconds = -1, .check = SYS_UNSET };
+    *options = (fly_options){ .seconds = -1,
+                              .check = SYS_UNSET,
+                              .packs = { options->pack, 0, FF_PACKS_JOINED_MAX },
+                              .locals = { options->local, 0, FF_SOURCES_MAX - 1 } };
     int rc = sys_options_parse(&program, options, argc, argv);
     if (rc) return rc;
     complete(options);
     if (options->tape_path && (options->server || options->events.count || options->events_path ||
                                options->balance.mode != FF_BALANCE_OFF))
         return fail("--tape records simulated flights without events and without --balance");
+    if (options->locals.count && options->tape_path)
+        return fail("--tape records flights of one source: without --local");
     if (options->truth_path && !options->audit) return fail("--truth needs --audit on");
     if (options->reference_dir && !options->png_dir) return fail("--reference needs --png");
     if (options->png_dir && options->backend == FLY_NONE)

@@ -5,6 +5,7 @@
 #include "../../protocol/message/ff_message.h"
 #include "../link/sim_link_option.h"
 #include "../options/sim_client_options.h"
+#include "../../server/packs/ff_packs.h"
 #include "fly_recording.h"
 
 #define FLY_EVENTS_MAX 64
@@ -50,8 +51,12 @@ extern const sys_option_type fly_events_option;
 
 /* clang-format off */
 #define FLY_OPTIONS(OPTION, HEADING, SHOW) \
-    OPTION(sys_text, pack_path, "pack", "PACK", NULL, SYS_FLAGS(SYS_NEEDED), \
-           "the terrain, also with --server (the true ground the flight keeps above)") \
+    OPTION(sys_texts, packs, "pack", "PACK", NULL, SYS_FLAGS(SYS_NEEDED | SYS_REPEATABLE), \
+           "the terrain, also with --server (the true ground the flight keeps above); more packs in " \
+           "its reference system are shown with it, the finer where they lie over each other") \
+    OPTION(sys_texts, locals, "local", "PACK", NULL, SYS_FLAGS(SYS_REPEATABLE), \
+           "a pack on the device: parts cut from that of the server, which is asked for the rest, or " \
+           "other ground") \
     OPTION(sys_text, csv_path, "csv", "FILE", NULL, SYS_ANY, "one row per --sample seconds") \
     OPTION(sys_flag, json, "json", NULL, NULL, SYS_ANY, \
            "a summary on stdout: means and totals after settling") \
@@ -139,7 +144,9 @@ extern const sys_option_type fly_events_option;
 
 typedef struct fly_options {
     FLY_OPTIONS(SYS_FIELD, SYS_NO_FIELD, sys_bits show;)
+    const char *pack[FF_PACKS_JOINED_MAX], *local[FF_SOURCES_MAX - 1];
     /* what follows from them */
+    const char *pack_path; /* the first pack */
     sim_link_desc link;
     ff_quality quality;
     ff_panorama_desc panorama;

@@ -12,6 +12,12 @@ static int fail_with(const char *what, const char *why)
     return -1;
 }
 
+static int fail_text(const char *text)
+{
+    fprintf(stderr, "farfield-fly: %s\n", text);
+    return -1;
+}
+
 static int fail(const char *what, int rc) { return fail_with(what, ff_error_text(rc)); }
 
 /* The ground that the audit judges by: the pack's, or that of a pack which is needed no longer once
@@ -20,7 +26,7 @@ static int open_truth(fly_world *world)
 {
     const fly_options *options = world->options;
     sys_mapping mapping = { 0 };
-    ff_pack other = { .refusal = "" }, *pack = &world->pack;
+    ff_pack other = { .refusal = "" }, 
     int rc = FF_OK;
     if (options->truth_path) {
         pack = &other;
@@ -29,7 +35,7 @@ static int open_truth(fly_world *world)
         rc = ff_pack_open(&other, mapping.bytes, mapping.size);
     }
     const ff_terrain_info *info = &pack->header.info;
-    const char *why = rc == FF_OK ? sim_ground_differs(&world->pack.header.info, info) : NULL;
+    const char *why = rc == FF_OK ? sim_ground_differs(&world->pack->header.info, info) : NULL;
     if (rc == FF_OK && !why)
         rc = sim_ground_load_cached(&world->true_ground, pack, UINT64_MAX, options->ground_cache);
     if (rc == FF_OK) world->truth_error_m = (double)info->hscale_q24 / (1 << 24) * info->max_error;
@@ -46,11 +52,17 @@ static int open_truth(fly_world *world)
 static int open_ground(fly_world *world)
 {
     const fly_options *options = world->options;
-    int rc = sys_map_file(options->pack_path, &world->mapping);
-    if (rc == FF_OK) rc = ff_pack_open(&world->pack, world->mapping.bytes, world->mapping.size);
-    if (rc == FF_OK) rc = sim_ground_load(&world->path_ground, &world->pack, PATH_SAMPLES_MAX);
-    if (rc != FF_OK) return fail_with(options->pack_path, ff_pack_error_text(&world->pack, rc));
-    const ff_terrain_info *info = &world->pack.header.info;
+    int rc = ff_packs_open(&world->packs, options->pack, options->packs.count);
+    if (rc != FF_OK) return fail_text(world->packs.why);
+    world->pack = &world->packs.pack[0];
+    for (size_t i = 0; i < options->locals.count; i++) {
+        if (ff_packs_add(&world->locals, options->local[i]) != FF_OK)
+            return fail_text(world->locals.why);
+        world->more[i].pack = &world->locals.pack[i];
+    }
+    rc = sim_ground_load(&world->path_ground, world->pack, PATH_SAMPLES_MAX);
+    if (rc != FF_OK) return fail(options->pack_path, rc);
+    const ff_terrain_info *info = &world->pack->header.info;
     fly_path_init(&world->path, options, info, &world->path_ground);
     if (options->audit) {
         if (open_truth(world)) return -1;
@@ -73,10 +85,10 @@ static int open_link(fly_world *world)
                                 ? FF_ERR_FORMAT
                                 : FF_ERR_MEMORY);
     sim_stream_client(&world->client_end, world->link, &world->now_us, &world->stream);
-    world->relevance = sim_relevance_create(&world->stream, &world->pack.header.info,
+    world->relevance = sim_relevance_create(&world->stream, &world->pack->header.info,
                                             &world->now_us);
     if (!world->relevance) return fail("relevance", FF_ERR_MEMORY);
-    int rc = sim_server_init(&world->server, &world->pack, world->link, &world->now_us);
+    int rc = sim_server_init(&world->server, world->pack, world->link, &world->now_us);
     return rc == FF_OK ? 0 : fail("server", rc);
 }
 
@@ -114,7 +126,7 @@ static int open_reference(fly_world *world)
 {
     const fly_options *options = world->options;
     if (!options->reference_dir && !options->diff) return 0;
-    int rc = fly_reference_open(&world->reference, &world->pack, options->size.width,
+    int rc = fly_reference_open(&world->reference, world->pack, options->size.width,
                                 options->size.height);
     return rc == FF_OK ? 0 : fail("reference", rc);
 }
@@ -153,6 +165,8 @@ static int open_client(fly_world *world)
     ff_client_desc desc = { .memory = world->memory,
                             .memory_bytes = options->memory_bytes,
                             .stream = &world->stream,
+                            .more = world->more,
+                            .more_count = (unsigned)options->locals.count,
                             .surface_api = world->surface_api,
                             .width = options->size.width,
                             .height = options->size.height,
@@ -204,6 +218,7 @@ void fly_world_close(fly_world *world)
     sim_auditor_destroy(world->auditor);
     sim_ground_free(&world->true_ground);
     sim_ground_free(&world->path_ground);
-    if (world->mapping.bytes) sys_unmap_file(&world->mapping);
+    ff_packs_close(&world->locals);
+    ff_packs_close(&world->packs);
     free(world->memory);
 }

@@ -14,8 +14,10 @@
 typedef struct fly_world {
     const fly_options *options;
     int64_t now_us; /* the clock of the flight */
-    sys_mapping mapping;
-    ff_pack pack;
+    ff_packs packs;       /* the server's: its grounds */
+    ff_packs locals;      /* on the device, each for itself */
+    const ff_pack *pack;  /* the first of the server's */
+    ff_source_desc more[FF_SOURCES_MAX - 1];
     /* a moderate level, for the path; the whole ground, with an audit */
     sim_ground path_ground, true_ground;
     double truth_error_m; /* no true height is further than this from its source */

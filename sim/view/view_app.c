@@ -71,7 +71,9 @@ static int create_client(view_app *app, const char *backend)
     ff_client_desc desc = { .memory = app->memory,
                             .memory_bytes = o->memory_bytes,
                             .stream = app->link ? &app->stream : NULL,
-                            .pack = app->link ? NULL : &app->pack,
+                            .pack = app->link ? NULL : &app->packs.pack[0],
+                            .more = app->more,
+                            .more_count = (unsigned)o->packs.count,
                             .backend = app->backend,
                             .surface_api = app->surface_api,
                             .width = o->size.width,
@@ -112,12 +114,9 @@ static int open_picture(view_app *app)
     return 0;
 }
 
-static int open_pack(view_app *app)
+static int open_pack(view_app *app, const char *path)
 {
-    const char *path = app->options->target;
-    int rc = sys_map_file(path, &app->mapping);
-    if (rc == FF_OK) rc = ff_pack_open(&app->pack, app->mapping.bytes, app->mapping.size);
-    return rc < 0 ? view_fail("%s: %s", path, ff_pack_error_text(&app->pack, rc)) : 0;
+    return ff_packs_add(&app->packs, path) == FF_OK ? 0 : view_fail("%s", app->packs.why);
 }
 
 /* A target that is a file is a pack, all else is an address. A pack behind a link, or with
@@ -128,12 +127,16 @@ static int open_terrain(view_app *app)
     FILE *file = fopen(o->target, "rb");
     int is_pack = file || !strchr(o->target, ':'), rc;
     if (file) fclose(file);
-    if (is_pack && open_pack(app)) return -1;
+    if (is_pack && open_pack(app, o->target)) return -1;
+    for (size_t i = 0; i < o->packs.count; i++) {
+        if (open_pack(app, o->packs.text[i])) return -1;
+        app->more[i].pack = &app->packs.pack[app->packs.count - 1];
+    }
     app->panorama.enabled = o->use_panorama != SYS_UNSET ? (uint8_t)o->use_panorama
                             : is_pack                    ? FF_PANORAMA_OFF
                                                          : FF_PANORAMA_AUTO;
     if (is_pack && !o->link && !app->panorama.enabled) return 0;
-    rc = view_link_create(is_pack ? NULL : o->target, &app->pack, o->link, &app->link,
+    rc = view_link_create(is_pack ? NULL : o->target, &app->packs.pack[0], o->link, &app->link,
                           &app->stream);
     if (rc == FF_ERR_ARGUMENT) return view_fail("%s: neither a pack nor ADDR:PORT", o->target);
     return rc < 0 ? view_fail("%s: %s", o->target, ff_error_text(rc)) : 0;
@@ -177,7 +180,7 @@ int view_app_close(view_app *app)
     view_blit_close(&app->blit);
     if (app->surface) app->surface_api->close(app->surface);
     view_link_destroy(app->link);
-    if (app->mapping.bytes) sys_unmap_file(&app->mapping);
+    ff_packs_close(&app->packs);
     view_script_free(&app->script);
     free(app->memory);
     return rc;

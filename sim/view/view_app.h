@@ -3,6 +3,7 @@
 #ifndef VIEW_APP_H
 #define VIEW_APP_H
 
+#include "../../server/packs/ff_packs.h"
 #include "../options/sim_about.h"
 #include "view_blit.h"
 #include "view_fly.h"
@@ -18,8 +19,8 @@ typedef struct view_app {
     const struct c3d_backend *backend;
     const sys_surface_api *surface_api;
     sys_surface *surface;
-    sys_mapping mapping; /* the pack's; bytes NULL: a server */
-    ff_pack pack;
+    ff_packs packs; /* those on this machine, each for itself; the target first, if it is one */
+    ff_source_desc more[FF_SOURCES_MAX - 1];
     sys_stream stream;
     view_link *link; /* NULL: the pack without a link */
     void *memory;

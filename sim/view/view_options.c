@@ -68,6 +68,7 @@ int view_options_parse(view_options *o, int argc, char **argv)
 {
     *o = (view_options){ .use_panorama = SYS_UNSET,
                          .at = { .above_wu = VIEW_START_ABOVE_WU },
+                         .packs = { o->pack, 0, FF_SOURCES_MAX },
                          .quality = { .view_wu = INT32_MAX } };
     int rc = sys_options_parse(&program, o, argc, argv);
     if (rc) return rc;
@@ -76,5 +77,14 @@ int view_options_parse(view_options *o, int argc, char **argv)
     o->fov_brad16 = (int32_t)(o->fov_degrees * 65536 / 360 + 0.5);
     o->yaw_brad16 = (int32_t)(o->yaw_degrees * 65536 / 360) & 65535;
     if (o->script && o->keys) return view_fail("--script and --keys exclude each other");
+    if (!o->target && !o->packs.count)
+        return view_fail("ADDR:PORT or a pack is wanted; try --help");
+    if (!o->target) { /* the first pack is */
+        o->target = o->packs.text[0];
+        o->packs.text++;
+        o->packs.count--;
+    }
+    if (o->packs.count >= FF_SOURCES_MAX)
+        return view_fail("--pack: at most %d besides %s", FF_SOURCES_MAX - 1, o->target);
     return 0;
 }

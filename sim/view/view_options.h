@@ -13,8 +13,12 @@ extern const sys_option_type view_place_option;
 
 /* clang-format off */
 #define VIEW_OPTIONS(OPTION, HEADING, SHOW) \
-    OPTION(sys_text, target, NULL, "ADDR:PORT | PACK", NULL, SYS_FLAGS(SYS_NEEDED), \
+    OPTION(sys_text, target, NULL, "ADDR:PORT | PACK", NULL, SYS_ANY, \
            "a server, or a pack on this machine") \
+    OPTION(sys_texts, packs, "pack", "PACK", NULL, SYS_FLAGS(SYS_REPEATABLE), \
+           "a pack on this machine: instead, or together with that and with others: parts of the " \
+           "same ground, or grounds of one reference system, the finer shown where they lie over " \
+           "each other") \
     HEADING("Display") \
     OPTION(sys_choice, backend, "backend", "KIND", NULL, SYS_WORDS(backend_words), \
            "graphics library, or integers alone; default: gles1, else gl") \
@@ -50,6 +54,7 @@ extern const sys_option_type view_place_option;
 
 typedef struct view_options {
     VIEW_OPTIONS(SYS_FIELD, SYS_NO_FIELD, sys_bits show;)
+    const char *pack[FF_SOURCES_MAX];
     /* what follows from them */
     ff_quality quality;
     ff_balance_desc balance;

@@ -154,7 +154,7 @@ static void a_client_is_carved_as_planned(void **state)
     assert_int_equal(carved[FF_POOL_textures].count, client->textures.slot_count);
     assert_int_equal(carved[FF_POOL_items].count, client->news.item_slots);
     assert_int_equal(carved[FF_POOL_images].count, client->news.image_slots);
-    assert_int_equal(carved[FF_POOL_requests].count, client->requests.slot_count);
+    assert_int_equal(carved[FF_POOL_requests].count, client->first.requests.slot_count);
     ff_client_destroy(client);
     free(rig.pack_bytes);
 }

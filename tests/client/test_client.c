@@ -17,7 +17,7 @@
 static ff_request_counts counts_of(client_rig *rig)
 {
     ff_request_counts counts;
-    ff_requests_get_counts(&rig->client->requests, &counts, NULL);
+    ff_requests_get_counts(&rig->client->first.requests, &counts, NULL);
     return counts;
 }
 
@@ -120,7 +120,7 @@ static void what_is_off_costs_nothing(void **state)
     assert_int_equal(rig.asked[FF_KIND_FACE], 0);
     assert_true(rig_heights(&rig) > 10);
     assert_null(rig.client->textures.slot);
-    assert_null(rig.client->intake.rgb);
+    assert_null(rig.client->first.intake.rgb);
     assert_null(rig.client->news.images);
     assert_int_equal(rig_stats(&rig).textures_held, 0);
     rig_close(&rig);

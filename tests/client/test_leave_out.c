@@ -25,8 +25,8 @@ static void assert_heights_alone(client_rig *rig)
     assert_int_equal(stats.panorama_requests | stats.panorama_faces | stats.panorama_bytes, 0);
     assert_null(rig->client->textures.slot);
     assert_int_equal(rig->client->textures.slot_count, 0);
-    assert_null(rig->client->intake.rgb);
-    assert_null(rig->client->intake.columns);
+    assert_null(rig->client->first.intake.rgb);
+    assert_null(rig->client->first.intake.columns);
     assert_int_equal(rig->client->news.image_slots, 0);
     assert_int_equal(rig->client->panorama.face_size, 0);
 }
@@ -74,7 +74,7 @@ static void memory_goes_to_the_ground(void **state)
     ff_client_stats more = rig_stats(&without), less = rig_stats(&with);
     assert_true(more.tree.nodes_capacity > less.tree.nodes_capacity);
     assert_true(less.textures_high > 0);
-    assert_null(without.client->recv);
+    assert_null(without.client->first.recv);
     assert_int_equal(more.bytes_up + more.bytes_down, 0);
     rig_close(&with);
     rig_close(&without);

@@ -36,7 +36,7 @@ static int free_whole(void **state)
 static void assert_adds_up(client_rig *rig)
 {
     ff_request_counts c;
-    ff_requests_get_counts(&rig->client->requests, &c, NULL);
+    ff_requests_get_counts(&rig->client->first.requests, &c, NULL);
     assert_int_equal(c.made, c.done + c.failed + c.cancelled + c.dropped + c.queued + c.in_flight +
                                  c.arriving);
 }
@@ -249,7 +249,7 @@ static void too_long_a_message_fails_alone(void **state)
     client_rig rig;
     rig_open(&rig, 8); /* 256 x 256 images */
     rig_client(&rig, 2 * MB);
-    rig.client->stream.recv_bytes = 2000; /* nodes fit, images do not */
+    rig.client->first.stream.recv_bytes = 2000; /* nodes fit, images do not */
     assert_true(rig_settle(&rig, 2000));
     ff_client_stats stats = rig_stats(&rig);
     assert_true(stats.requests_failed > 0);
@@ -267,12 +267,12 @@ static void undecodable_payloads_are_tried_thrice(void **state)
     rig.desc.no_views = 1; /* each refusal ends a request */
     rig_client(&rig, 2 * MB);
     rig_settle(&rig, 3);
-    rig.client->intake.info.texture_log2 = 0;
-    ff_decoder *decoder = rig.client->intake.decoder;
+    rig.client->first.intake.info.texture_log2 = 0;
+    ff_decoder *decoder = rig.client->first.intake.decoder;
     ff_terrain_info other = rig.client->info;
     other.codec = FF_CODEC_RAW;
     /* the peer speaks another version */
-    rig.client->intake.decoder = ff_decoder_create(&other, decoder, ff_decoder_bytes(&other));
+    rig.client->first.intake.decoder = ff_decoder_create(&other, decoder, ff_decoder_bytes(&other));
     for (int i = 0; i < 200; i++) rig_step(&rig, 50000);
     ff_client_stats stats = rig_stats(&rig);
     assert_true(stats.requests_failed > 0);

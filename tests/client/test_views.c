@@ -118,9 +118,9 @@ static void refused_views_are_asked_for_singly(void **state)
     rig_client(&rig, 2 * MB);
     for (int i = 0; i < 6; i++) rig_step(&rig, 50000);
     assert_int_equal(rig.asked[FF_KIND_VIEW], 1);
-    uint16_t id = rig.client->requests.view_id;
-    assert_true(ff_requests_answered(&rig.client->requests, id, &request));
-    assert_int_equal(ff_intake_failed(&rig.client->intake, &request, FF_ERR_UNSUPPORTED), FF_OK);
+    uint16_t id = rig.client->first.requests.view_id;
+    assert_true(ff_requests_answered(&rig.client->first.requests, id, &request));
+    assert_int_equal(ff_intake_failed(&rig.client->first.intake, &request, FF_ERR_UNSUPPORTED), FF_OK);
     rig.cut_at = rig.bytes_down; /* with the answers of this server, which does answer */
     assert_true(rig_settle(&rig, 400));
     assert_int_equal(rig.asked[FF_KIND_VIEW], 1);

@@ -98,7 +98,7 @@ NOTE_TEST = """\
 
 static ff_request_counts ask(client_rig *rig, uint32_t tile)
 {
-    ff_requests *requests = &rig->client->requests;
+    ff_requests *requests = &rig->client->first.requests;
     ff_request_counts counts;
     ff_requests_rank_begin(requests);
     ff_requests_want(requests, FF_KIND_NOTE, ff_key_make(tile, 0, 0), FF_CLASS_FIRST, 1, NULL);

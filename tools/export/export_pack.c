@@ -26,6 +26,8 @@ typedef struct cutter {
     const ff_terrain_info *info;
     export_part part;
     ff_list about;
+    uint8_t about_bytes[FF_ABOUT_BYTES_MAX];
+    int is_part; /* something was left out */
     pack_writer *writer; /* NULL: sections are counted alone */
     section_count count[FF_PACK_SECTIONS_MAX];
     bake_blob blob[FF_PACK_SECTIONS_MAX];                /* records on their way to the writer */
@@ -106,6 +108,7 @@ static int put_heights(cutter *c, enum ff_section_kind kind, ff_key key, ff_resi
     uint8_t stub = root ? !(marks->leaf | marks->stub) && ff_terrain_levels(c->info) > 1 &&
                               !export_part_splits(&c->part, key)
                         : stubs_below(c, key, marks);
+    c->is_part |= stub;
     rc = ff_mark_stubs(c->info, root, payload, (size_t)bytes, stub, c->payload);
     if (rc < 0) return fail_at(c, kind, key, rc);
     return put(c, root ? 0 : ff_key_level(key) + 1, c->payload, (size_t)rc);
@@ -146,6 +149,7 @@ static int put_image(cutter *c, ff_key key, uint8_t *bare)
     if (rc >= 0) rc = ff_image_read(payload, (size_t)rc, &image);
     if (rc < 0) return fail_at(c, FF_SECTION_TEXTURE, key, rc);
     *bare = image.bare | bare_below(c, key);
+    c->is_part |= *bare != image.bare;
     if (*bare) c->payload[0] = (uint8_t)(FF_IMAGE_BARE + *bare);
     memcpy(c->payload + (*bare > 0), image.jpeg, image.jpeg_bytes);
     return put(c, ff_terrain_levels(c->info) + ff_key_level(key), c->payload,
@@ -181,6 +185,30 @@ static int cut_tiles(cutter *c)
     return 0;
 }
 
+/* What the pack said of itself, and of which whole it is a part now. */
+static int tell_whole(cutter *c)
+{
+    uint8_t whole[4];
+    ff_writer value = { whole, whole + sizeof whole, FF_OK },
+              out = { c->about_bytes, c->about_bytes + sizeof c->about_bytes, FF_OK };
+    ff_list_entry entry;
+    int told = 0;
+    if (!c->is_part) return 0;
+    ff_write_bytes(&value, ff_about_whole(c->about, c->info->checksum), sizeof whole);
+    for (ff_list rest = c->about; ff_list_next(&rest, &entry) > 0;) {
+        if (entry.type > FF_ABOUT_WHOLE && !told++)
+            ff_list_write(&out, FF_ABOUT_WHOLE, whole, sizeof whole);
+        if (entry.type != FF_ABOUT_WHOLE)
+            ff_list_write(&out, entry.type, entry.value, entry.byte_count);
+    }
+    if (!told) ff_list_write(&out, FF_ABOUT_WHOLE, whole, sizeof whole);
+    if (out.error != FF_OK)
+        return bake_fail("%s: what it says of itself leaves no room to say what it is a part of",
+                         c->unpack->path);
+    c->about = (ff_list){ c->about_bytes, (uint32_t)(out.at - c->about_bytes) };
+    return 0;
+}
+
 /* The file that the sections make. */
 static uint64_t file_bytes(const cutter *c)
 {
@@ -201,8 +229,9 @@ static int write_part(cutter *c, const char *path)
     uint64_t bytes;
     if (pack_writer_open(&writer, c->info)) return -1;
     c->writer = &writer;
-    writer.about = c->about;
     int rc = cut_tiles(c);
+    if (!rc) rc = tell_whole(c);
+    writer.about = c->about;
     if (!rc) rc = pack_writer_finish(&writer, path, &bytes);
     pack_writer_close(&writer);
     for (uint32_t s = 0; s < FF_PACK_SECTIONS_MAX; s++) bake_blob_free(&c->blob[s]);
@@ -233,7 +262,7 @@ int export_pack_write(const export_options *o, const bake_unpack *unpack, uint32
     c = (cutter){ .unpack = unpack, .info = &unpack->pack.header.info };
     if (choose_part(&c, &o->region, level)) return -1;
     if (!o->estimate) return write_part(&c, o->out_path);
-    if (cut_tiles(&c)) return -1;
+    if (cut_tiles(&c) || tell_whole(&c)) return -1;
     printf("size            %" PRIu64 " bytes, %.1f %% of %s\n", file_bytes(&c),
            100.0 * (double)file_bytes(&c) / (double)unpack->pack.size, unpack->path);
     return 0;

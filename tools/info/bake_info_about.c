@@ -34,6 +34,7 @@ void bake_info_about(const ff_pack *pack)
     static const char *const label[] = { "",        "name", "attribution",
                                          "licence", "date", "heights above" };
     ff_about_projection projection;
+    const uint8_t *whole;
     ff_list_entry entry;
     ff_list about, rest;
     int rc = ff_pack_about(pack, &about);
@@ -46,6 +47,8 @@ void bake_info_about(const ff_pack *pack)
         if (entry.type <= FF_ABOUT_VERTICAL)
             printf("%-15s %.*s\n", label[entry.type], (int)entry.byte_count,
                    (const char *)entry.value);
+    if (ff_list_find(about, FF_ABOUT_WHOLE, &whole) > 0)
+        printf("part of         the pack with checksum %08" PRIx32 "\n", ff_about_whole(about, 0));
     if (ff_about_get_projection(about, &projection) == FF_OK) print_projection(&projection);
 }
 
@@ -94,6 +97,8 @@ void bake_info_about_json(const ff_pack *pack)
             first = 0;
             if (entry.type == FF_ABOUT_PROJECTION)
                 print_numbers(about);
+            else if (entry.type == FF_ABOUT_WHOLE)
+                printf("\"%08" PRIx32 "\"", ff_about_whole(about, 0));
             else
                 print_text(&entry);
         }

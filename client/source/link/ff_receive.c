@@ -11,20 +11,38 @@ static void note_refusal(ff_stream *stream, int error)
     sys_mutex_unlock(&stream->intake->requests->mutex);
 }
 
+/* 1 when the grounds are those that the client has pools for. */
+static int holds_all_of(const ff_stream *stream, const ff_welcome *welcome)
+{
+    const ff_intake *intake = stream->intake;
+    int same = ff_welcome_count(welcome) == intake->ground_count;
+    for (unsigned i = 0; same && i < intake->ground_count; i++) {
+        ff_terrain_info info;
+        uint32_t whole;
+        ff_welcome_ground(welcome, i, &info, &whole);
+        same = ff_terrain_same(&intake->info[i], &info);
+    }
+    return same;
+}
+
 static int take_welcome(ff_stream *stream, const ff_welcome *welcome, int64_t now_us)
 {
     if (stream->state != FF_STREAM_GREETING) return FF_ERR_FORMAT;
     FF_ASSERT(welcome->version == FF_PROTOCOL_VERSION); /* others are not decoded */
+    const unsigned count = (unsigned)ff_welcome_count(welcome);
+    FF_ASSERT(count >= 1 && count <= FF_WELCOME_GROUNDS);
     stream->awaiting = 0;
     stream->welcomed_us = now_us;
     stream->backoff_us = FF_BACKOFF_US_MIN;
     note_refusal(stream, FF_OK);
-    if (stream->has_terrain && ff_terrain_same(&stream->held, &welcome->info)) {
+    if (stream->has_terrain && holds_all_of(stream, welcome)) {
         stream->state = FF_STREAM_UP;
         return FF_OK;
     }
     sys_mutex_lock(&stream->intake->requests->mutex);
-    stream->shared.welcome = welcome->info;
+    for (unsigned i = 0; i < count; i++)
+        ff_welcome_ground(welcome, i, &stream->shared.welcome[i], &stream->shared.whole[i]);
+    stream->shared.welcome_count = (uint8_t)count;
     stream->about.state = FF_ABOUT_UNKNOWN; /* another pack's */
     stream->about.byte_count = 0;
     sys_mutex_unlock(&stream->intake->requests->mutex);
@@ -53,11 +71,13 @@ static int answers(const ff_message *message, const ff_request *request)
  * asked for, only what is named and has not come: so they end. */
 static int is_part_of(const ff_stream *stream, const ff_request *request, const ff_part *part)
 {
-    const ff_terrain_info *info = &stream->intake->info;
+    const ff_intake *intake = stream->intake;
+    int ground = ff_intake_ground(intake, part->key);
+    const ff_terrain_info *info = &intake->info[ground < 0 ? 0 : ground];
     const ff_get_view *view = &stream->intake->requests->view;
     int root = part->what == FF_PART_ROOT;
     enum ff_kind kind = root ? FF_KIND_ROOT : FF_KIND_REFINEMENT;
-    return ff_terrain_has_node(info, part->key) &&
+    return ground >= 0 && ff_terrain_has_node(info, part->key) &&
            (root || ff_key_level(part->key) + 1 < ff_terrain_levels(info)) &&
            ff_view_covers(view, kind, part->key) &&
            (request->bytes_came <= view->bytes_max ||

@@ -115,7 +115,6 @@ void ff_stream_accept(ff_stream *stream, int ok)
 {
     FF_ASSERT(stream->state == FF_STREAM_WELCOMED);
     stream->has_terrain = (uint8_t)ok;
-    stream->held = stream->shared.welcome;
     if (ok) {
         stream->state = FF_STREAM_UP;
     } else {
@@ -163,7 +162,7 @@ static void greet(ff_stream *stream, int64_t now_us)
     FF_ASSERT(stream->send_count == 0 && stream->recv_count == 0 && stream->skip == 0);
     ff_message hello = { .type = FF_MSG_HELLO };
     hello.u.hello.version = FF_PROTOCOL_VERSION;
-    hello.u.hello.known_checksum = stream->has_terrain ? stream->held.checksum : 0;
+    hello.u.hello.known_checksum = stream->has_terrain ? stream->intake->info[0].checksum : 0;
     append(stream, &hello);
     /* in one piece with HELLO: nothing of this client has to be told */
     append(stream, &(ff_message){ .type = FF_MSG_CAPS });

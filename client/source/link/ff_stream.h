@@ -39,7 +39,10 @@ typedef struct ff_stream_shared {
     uint32_t protocol_errors, reconnects, rtt_us, bytes_s;
     uint32_t losses;         /* connections lost: what was asked is to be ranked again */
     int8_t refusal;          /* why the server would not have this client: an error, or FF_OK */
-    ff_terrain_info welcome; /* valid in WELCOMED */
+    /* valid in WELCOMED: the grounds, and the checksum of the whole pack that each is a part of */
+    ff_terrain_info welcome[FF_WELCOME_GROUNDS];
+    uint32_t whole[FF_WELCOME_GROUNDS];
+    uint8_t welcome_count;
     uint8_t quiet;           /* main: ask nothing new (interruption) */
     uint8_t no_prefetch;
 } ff_stream_shared;
@@ -62,8 +65,7 @@ typedef struct ff_stream {
     int64_t answer_timeout_us;
     /* worker only */
     enum ff_stream_state state;
-    ff_terrain_info held; /* terrain the client's pools hold */
-    uint8_t has_terrain;
+    uint8_t has_terrain; /* the client's pools hold the grounds of `intake` */
     uint8_t attempt; /* CONNECTING: 1 when reconnect() has to be called */
     uint8_t blocked; /* the new-data list is full */
     uint8_t *recv;

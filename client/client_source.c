@@ -1,0 +1,131 @@
+/* The sources of a client: made, stepped, closed; what their links and queues say together. Which
+ * of several is asked, and how their grounds come together, is said in several/. */
+#include "ff_client_local.h"
+#include "../protocol/ff_assert.h"
+
+#include <string.h>
+
+void ff_source_make(ff_client *client, unsigned number, const ff_source_room *room)
+{
+    ff_source *source = ff_client_source(client, number);
+    const ff_client_desc *desc = &client->desc;
+    const ff_source_desc who = ff_client_source_desc(client, number);
+    memset(source, 0, sizeof *source);
+    source->pack = who.pack;
+    source->io = who.stream;
+    source->error = FF_ERR_AGAIN;
+    source->number = (uint8_t)number;
+    source->recv = room->recv;
+    ff_requests_init(&source->requests, desc->in_flight_max, room->slots);
+    source->intake.requests = &source->requests;
+    source->intake.news = &client->news;
+    source->intake.source = (uint8_t)number;
+    if (!source->io) return;
+    ff_stream_init(&source->stream, source->io, &source->intake, desc->in_flight_max,
+                   desc->answer_timeout_ms, room->recv, room->recv_bytes);
+    if (room->about) ff_stream_want_about(&source->stream, desc->about, room->about);
+}
+
+void ff_client_take_pack(ff_source *source)
+{
+    ff_intake *intake = &source->intake;
+    intake->ground_count = 0;
+    for (const ff_pack *pack = source->pack; pack; pack = pack->next) {
+        FF_ASSERT(intake->ground_count < FF_WELCOME_GROUNDS);
+        source->ground[intake->ground_count].whole = ff_pack_whole(pack);
+        intake->info[intake->ground_count++] = pack->header.info;
+    }
+}
+
+void ff_client_take_welcome(ff_source *source, const ff_stream_shared *shared)
+{
+    ff_intake *intake = &source->intake;
+    FF_ASSERT(shared->welcome_count >= 1 && shared->welcome_count <= FF_WELCOME_GROUNDS);
+    intake->ground_count = shared->welcome_count;
+    for (unsigned i = 0; i < intake->ground_count; i++) {
+        source->ground[i].whole = shared->whole[i];
+        intake->info[i] = shared->welcome[i];
+    }
+}
+
+int ff_client_step_source(ff_client *client, ff_source *source, int64_t now_us)
+{
+    if (source->io) return ff_stream_step(&source->stream, now_us);
+    if (!source->serves || client->interrupted) return 0;
+    return ff_local_step(&source->intake, source->pack, !ff_client_low_power(client), now_us);
+}
+
+static void add_link(ff_stream_shared *sum, const ff_stream_shared *link)
+{
+    sum->received += link->received;
+    sum->received_high += link->received_high;
+    sum->bytes_down += link->bytes_down;
+    sum->bytes_up += link->bytes_up;
+    for (unsigned kind = 0; kind < FF_KIND_COUNT; kind++)
+        sum->answer_bytes[kind] += link->answer_bytes[kind];
+    sum->about_bytes += link->about_bytes;
+    sum->protocol_errors += link->protocol_errors;
+    sum->reconnects += link->reconnects;
+    sum->losses += link->losses;
+    sum->bytes_s += link->bytes_s;
+    if (link->rtt_us > sum->rtt_us) sum->rtt_us = link->rtt_us;
+}
+
+void ff_client_link(ff_client *client, ff_stream_shared *shared)
+{
+    unsigned links = 0;
+    memset(shared, 0, sizeof *shared);
+    for (unsigned i = 0; i < client->source_count; i++) {
+        ff_source *source = ff_client_source(client, i);
+        ff_stream_shared link;
+        if (!source->io) continue;
+        ff_stream_get_shared(&source->stream, &link);
+        if (links++)
+            add_link(shared, &link);
+        else
+            *shared = link;
+    }
+}
+
+static void add_counts(ff_request_counts *sum, const ff_request_counts *counts)
+{
+    sum->made += counts->made;
+    sum->sent += counts->sent;
+    sum->done += counts->done;
+    sum->failed += counts->failed;
+    sum->cancelled += counts->cancelled;
+    sum->dropped += counts->dropped;
+    sum->queue_full += counts->queue_full;
+    sum->queued += counts->queued;
+    sum->queued_high += counts->queued_high;
+    sum->in_flight += counts->in_flight;
+    sum->in_flight_high += counts->in_flight_high;
+    sum->arriving += counts->arriving;
+    sum->bytes_in_flight += counts->bytes_in_flight;
+    sum->held_high += counts->held_high;
+    sum->reserve_sent += counts->reserve_sent;
+    sum->reserve_in_flight += counts->reserve_in_flight;
+    sum->reserve_bytes += counts->reserve_bytes;
+    for (unsigned kind = 0; kind < FF_KIND_COUNT; kind++) {
+        sum->of[kind].sent += counts->of[kind].sent;
+        sum->of[kind].in_flight += counts->of[kind].in_flight;
+        sum->of[kind].in_flight_high += counts->of[kind].in_flight_high;
+    }
+}
+
+void ff_client_counts(ff_client *client, ff_request_counts *counts)
+{
+    ff_requests_get_counts(&client->first.requests, counts, NULL);
+    for (unsigned i = 1; i < client->source_count; i++) {
+        ff_request_counts more;
+        ff_requests_get_counts(&ff_client_source(client, i)->requests, &more, NULL);
+        add_counts(counts, &more);
+    }
+}
+
+int ff_client_waiting(ff_client *client, enum ff_request_class last)
+{
+    for (unsigned i = 0; i < client->source_count; i++)
+        if (ff_requests_waiting(&ff_client_source(client, i)->requests, last)) return 1;
+    return 0;
+}

@@ -1,0 +1,23 @@
+/* Packs in files, mapped, and joined as the grounds of one server (protocol/ff_pack.h). */
+#ifndef FF_PACKS_H
+#define FF_PACKS_H
+
+#include "../../platform/sys.h"
+#include "../../protocol/ff_pack.h"
+
+#define FF_PACKS_MAX (FF_PACKS_JOINED_MAX + 1) /* of those that are not joined */
+
+typedef struct ff_packs {
+    ff_pack pack[FF_PACKS_MAX]; /* the first one has the others joined to it */
+    sys_mapping mapping[FF_PACKS_MAX];
+    unsigned count;
+    char why[200]; /* what was wrong, in words, with the file first */
+} ff_packs;
+
+/* Opens and joins them; close it whatever comes back. FF_OK or an error, which `why` tells. */
+int ff_packs_open(ff_packs *packs, const char *const *path, size_t count);
+/* Opens one more, joined to none. The same. */
+int ff_packs_add(ff_packs *packs, const char *path);
+void ff_packs_close(ff_packs *packs);
+
+#endif
