@@ -139,6 +139,7 @@ void ff_client_greet_view(ff_client *client, const c3d_camera *camera)
     const ff_quality quality = quality_to_be(client);
     ff_get_view asked = { 0 };
     if (!client->desc.stream || client->desc.no_views || !client->desc.place_known) return;
+    if (client->source_count > ff_budget_links(&client->desc)) return; /* a pack here may have it */
     ff_requests_rank_begin(&client->first.requests);
     if (!ff_requests_out(&client->first.requests, FF_KIND_VIEW, 0)) {
         describe(client, &client->first, camera, &quality, &asked);

@@ -53,7 +53,7 @@
       "all that is no pool: settings, state, what waits to be sent") \
     X(sources, b->desc->more_count != 0, \
       b->desc->more_count, 1, FF_SOURCES_MAX - 1, \
-      n * sizeof(ff_source), n, n, \
+      n * sizeof(ff_source), b->desc->more_count, b->desc->more_count, \
       "packs and servers besides the first: what is asked of each") \
     X(received, b->links != 0, \
       b->desc->memory_bytes / 32, FF_RECEIVED_MIN * b->links, FF_RECEIVED_MAX * b->links, \

@@ -134,6 +134,13 @@ static int may_have(const ff_client *client, const ff_source *source, enum ff_ki
     return !ff_refusals_final(&source->refusals, kind, ff_source_own_key(source, key));
 }
 
+/* Packs on this device cost nothing, a lost link brings nothing; else the one named first. */
+static int goes_before(const ff_source *a, const ff_source *b)
+{
+    if ((a->pack != NULL) != (b->pack != NULL)) return a->pack != NULL;
+    return b->down && !a->down;
+}
+
 ff_source *ff_client_route(ff_client *client, enum ff_kind kind, ff_key key, unsigned lacks)
 {
     ff_source *best = NULL;
@@ -143,7 +150,7 @@ ff_source *ff_client_route(ff_client *client, enum ff_kind kind, ff_key key, uns
         if (client->source_count > 1 &&
             ff_requests_out(&source->requests, kind, ff_source_own_key(source, key)))
             return source; /* it is on its way */
-        if (!best || (best->down && !source->down)) best = source;
+        if (!best || goes_before(source, best)) best = source;
     }
     return best;
 }

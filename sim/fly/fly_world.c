@@ -26,7 +26,8 @@ static int open_truth(fly_world *world)
 {
     const fly_options *options = world->options;
     sys_mapping mapping = { 0 };
-    ff_pack other = { .refusal = "" }, 
+    ff_pack other = { .refusal = "" };
+    const ff_pack *pack = world->pack;
     int rc = FF_OK;
     if (options->truth_path) {
         pack = &other;

@@ -267,12 +267,8 @@ static void undecodable_payloads_are_tried_thrice(void **state)
     rig.desc.no_views = 1; /* each refusal ends a request */
     rig_client(&rig, 2 * MB);
     rig_settle(&rig, 3);
-    rig.client->first.intake.info.texture_log2 = 0;
-    ff_decoder *decoder = rig.client->first.intake.decoder;
-    ff_terrain_info other = rig.client->info;
-    other.codec = FF_CODEC_RAW;
-    /* the peer speaks another version */
-    rig.client->first.intake.decoder = ff_decoder_create(&other, decoder, ff_decoder_bytes(&other));
+    rig.client->first.intake.info[0].texture_log2 = 0;
+    rig.client->first.intake.info[0].codec = FF_CODEC_RAW; /* the peer speaks another version */
     for (int i = 0; i < 200; i++) rig_step(&rig, 50000);
     ff_client_stats stats = rig_stats(&rig);
     assert_true(stats.requests_failed > 0);
