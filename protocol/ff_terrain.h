@@ -51,6 +51,11 @@ typedef struct ff_terrain_info {
     uint32_t curve_q60;
     /* of the pack's contents: a client knows by it whether its cache is of this pack */
     uint32_t checksum;
+    /* What follows is in no pack and no message, and 0 but for grounds that are held together
+     * (ff_tree.h): the number of the ground's first tile among those of all of them, as keys name
+     * it, and where its south-west sample lies in the axes of the first one. */
+    uint32_t first_tile;
+    int32_t west_wu, south_wu;
 } ff_terrain_info;
 
 /* Columns and rows of cells of a payload's grid that have ground, from the south-west: of a node's
@@ -121,5 +126,17 @@ static inline void ff_terrain_range_wu(const ff_terrain_info *info, int64_t heig
 }
 /* 1 when `key` names a node of this terrain. */
 int ff_terrain_has_node(const ff_terrain_info *info, ff_key key);
+
+/* The key, among grounds held together, of a node that has the key `own` in its pack and in
+ * messages; and back. */
+static inline ff_key ff_terrain_key(const ff_terrain_info *info, ff_key own)
+{
+    return own + ((ff_key)info->first_tile << FF_KEY_TILE_SHIFT);
+}
+static inline ff_key ff_terrain_own_key(const ff_terrain_info *info, ff_key key)
+{
+    FF_ASSERT(ff_terrain_has_node(info, key));
+    return key - ((ff_key)info->first_tile << FF_KEY_TILE_SHIFT);
+}
 
 #endif
