@@ -17,7 +17,7 @@ int ff_client_take_root(ff_client *client, ff_new_item *item, int64_t now_us)
     (void)now_us;
     FF_ASSERT(ff_key_level(item->key) == 0);
     uint32_t tile = ff_key_tile(item->key);
-    return heights_taken(item, ff_tree_deliver_root(client->tree, tile, &item->u.residuals));
+    return heights_taken(item, ff_tree_deliver_root(client->tree, tile, 0, &item->u.residuals));
 }
 
 int ff_client_take_refinement(ff_client *client, ff_new_item *item, int64_t now_us)
@@ -25,7 +25,7 @@ int ff_client_take_refinement(ff_client *client, ff_new_item *item, int64_t now_
     (void)now_us;
     FF_ASSERT(ff_key_level(item->key) + 1 < ff_terrain_levels(&client->info));
     return heights_taken(item,
-                         ff_tree_deliver_children(client->tree, item->key, &item->u.residuals));
+                         ff_tree_deliver_children(client->tree, item->key, 0, &item->u.residuals));
 }
 
 int ff_client_take_texture(ff_client *client, ff_new_item *item, int64_t now_us)
