@@ -138,7 +138,7 @@ static int carve_all(ff_client *client, unsigned economy)
     }
     FF_ASSERT(client->arena.used == budget.used);
     client->has_textures = budget.has_textures;
-    ff_terrain_view_attach(&client->view, client->tree, &client->info,
+    ff_terrain_view_attach(&client->view, client->tree,
                            client->has_textures ? &client->textures : NULL);
     ff_panorama_init(&client->panorama, client->device, &client->desc.panorama, &client->info,
                      budget.face_size);

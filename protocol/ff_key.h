@@ -19,14 +19,15 @@
 
 typedef uint64_t ff_key;
 
-#define FF_KEY_NONE      UINT64_MAX
-#define FF_KEY_TILES_MAX (1u << 28)
-#define FF_KEY_LEVEL_MAX 15u
+#define FF_KEY_NONE       UINT64_MAX
+#define FF_KEY_TILES_MAX  (1u << 28)
+#define FF_KEY_TILE_SHIFT 36
+#define FF_KEY_LEVEL_MAX  15u
 
 /* Tile, level and code fill a key. A code has two bits a level, so the key of all ones is no
  * node's. */
-FF_STATIC_ASSERT(((ff_key)(FF_KEY_TILES_MAX - 1) << 36 | (ff_key)FF_KEY_LEVEL_MAX << 32 |
-                  UINT32_MAX) == FF_KEY_NONE);
+FF_STATIC_ASSERT(((ff_key)(FF_KEY_TILES_MAX - 1) << FF_KEY_TILE_SHIFT |
+                  (ff_key)FF_KEY_LEVEL_MAX << 32 | UINT32_MAX) == FF_KEY_NONE);
 FF_STATIC_ASSERT(2 * FF_KEY_LEVEL_MAX < 32);
 
 /* Of a node's grid: its first row, last column, last row, first column. They run round it. */
@@ -35,10 +36,10 @@ enum ff_side { FF_SIDE_SOUTH, FF_SIDE_EAST, FF_SIDE_NORTH, FF_SIDE_WEST, FF_SIDE
 static inline ff_key ff_key_make(uint32_t tile, uint32_t level, uint32_t code)
 {
     FF_ASSERT(level <= FF_KEY_LEVEL_MAX);
-    return ((ff_key)tile << 36) | ((ff_key)(level & 15u) << 32) | code;
+    return ((ff_key)tile << FF_KEY_TILE_SHIFT) | ((ff_key)(level & 15u) << 32) | code;
 }
 
-static inline uint32_t ff_key_tile(ff_key key) { return (uint32_t)(key >> 36); }
+static inline uint32_t ff_key_tile(ff_key key) { return (uint32_t)(key >> FF_KEY_TILE_SHIFT); }
 static inline uint32_t ff_key_level(ff_key key) { return (uint32_t)(key >> 32) & 15u; }
 static inline uint32_t ff_key_code(ff_key key) { return (uint32_t)key; }
 static inline uint32_t ff_key_quadrant(ff_key key) { return (uint32_t)key & 3u; }

@@ -73,6 +73,6 @@ int ff_terrain_has_node(const ff_terrain_info *info, ff_key key)
 {
     uint32_t level = ff_key_level(key);
 
-    return ff_key_tile(key) < ff_shape_tiles(info) && level < ff_terrain_levels(info) &&
-           ((uint64_t)ff_key_code(key) >> (2 * level)) == 0;
+    return ff_key_tile(key) - info->first_tile < ff_shape_tiles(info) &&
+           level < ff_terrain_levels(info) && ((uint64_t)ff_key_code(key) >> (2 * level)) == 0;
 }

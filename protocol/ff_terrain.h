@@ -144,4 +144,16 @@ int ff_terrain_join(ff_terrain_info *info, const ff_terrain_info *first,
 /* 1 when `key` names a node of this terrain. */
 int ff_terrain_has_node(const ff_terrain_info *info, ff_key key);
 
+/* The key, among grounds held together, of a node that has the key `own` in its pack and in
+ * messages; and back. */
+static inline ff_key ff_terrain_key(const ff_terrain_info *info, ff_key own)
+{
+    return own + ((ff_key)info->first_tile << FF_KEY_TILE_SHIFT);
+}
+static inline ff_key ff_terrain_own_key(const ff_terrain_info *info, ff_key key)
+{
+    FF_ASSERT(ff_terrain_has_node(info, key));
+    return key - ((ff_key)info->first_tile << FF_KEY_TILE_SHIFT);
+}
+
 #endif

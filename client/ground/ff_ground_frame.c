@@ -11,41 +11,65 @@ static int32_t base_height(const ff_terrain_info *info)
     return info->height_min + (info->height_max - info->height_min) / 2;
 }
 
-/* Samples from the frame to the node's south-west corner along an axis. Both lie on the terrain,
+static ff_box level_bounds(const ff_terrain_info *info)
+{
+    static const int64_t height_wu[2] = { 0, 0 };
+    static const int32_t from_wu[3] = { 0, 0, 0 };
+    const ff_frame world = { 0 };
+    return ff_shape_bounds(info, &world, height_wu, from_wu);
+}
+
+/* A ground's origin along an axis: its last sample up to the frame's, or its nearest one. */
+static int32_t origin_of(const ff_ground_frame *frame, const ff_terrain_info *info, int axis)
+{
+    ff_box ground = level_bounds(info);
+    int64_t at_wu = frame->origin_wu[axis], spacing = info->spacing_wu;
+    at_wu = at_wu < ground.lo[axis] ? ground.lo[axis] : at_wu;
+    at_wu = at_wu > ground.hi[axis] ? ground.hi[axis] : at_wu;
+    return (int32_t)(at_wu - (at_wu - ground.lo[axis]) % spacing);
+}
+
+/* Samples from the origin to the node's south-west corner along an axis. Both lie on the ground,
  * and both on samples. */
 static int32_t samples_to(const ff_ground_frame *frame, const ff_terrain_info *info,
                           const ff_drawn *drawn, int axis)
 {
-    int32_t away_wu = drawn->origin_wu[axis] - frame->origin_wu[axis];
+    int32_t away_wu = drawn->origin_wu[axis] - origin_of(frame, info, axis);
     FF_ASSERT(away_wu % (int32_t)info->spacing_wu == 0);
     return away_wu / (int32_t)info->spacing_wu;
 }
 
-int ff_ground_frame_follow(ff_ground_frame *frame, const ff_terrain_info *info,
+/* Keeps a coordinate within all grounds. */
+static int32_t place_on(const ff_terrain_info *grounds, uint32_t count, int axis, int32_t at_wu)
+{
+    int64_t lo = INT64_MAX, hi = INT64_MIN;
+    for (uint32_t g = 0; g < count; g++) {
+        ff_box ground = level_bounds(&grounds[g]);
+        lo = ground.lo[axis] < lo ? ground.lo[axis] : lo;
+        hi = ground.hi[axis] > hi ? ground.hi[axis] : hi;
+    }
+    FF_ASSERT(lo >= INT32_MIN && lo < hi && hi <= INT32_MAX);
+    return (int32_t)(at_wu < lo ? lo : at_wu > hi ? hi : at_wu);
+}
+
+int ff_ground_frame_follow(ff_ground_frame *frame, const ff_terrain_info *grounds, uint32_t count,
                            const c3d_camera *camera)
 {
-    int64_t spacing = info->spacing_wu, reach = spacing > FOLLOW_WU ? spacing : FOLLOW_WU;
-    static const int64_t height_wu[2] = { 0, 0 };
-    static const int32_t from_wu[3] = { 0, 0, 0 };
-    const ff_frame world = { 0 };
-    ff_box ground = ff_shape_bounds(info, &world, height_wu, from_wu);
+    int64_t spacing = grounds->spacing_wu, reach = spacing > FOLLOW_WU ? spacing : FOLLOW_WU;
+    ff_box first = level_bounds(grounds);
     int32_t place_wu[2], near = frame->set;
     for (int axis = 0; axis < 2; axis++) {
-        int64_t at_wu = camera->pos_wu[axis];
-        FF_ASSERT(ground.lo[axis] >= INT32_MIN && ground.hi[axis] <= INT32_MAX);
-        at_wu = at_wu < ground.lo[axis] ? ground.lo[axis] : at_wu;
-        place_wu[axis] = (int32_t)(at_wu > ground.hi[axis] ? ground.hi[axis] : at_wu);
+        place_wu[axis] = place_on(grounds, count, axis, camera->pos_wu[axis]);
         int64_t away_wu = (int64_t)place_wu[axis] - frame->origin_wu[axis];
         near = near && away_wu <= reach && away_wu >= -reach;
         away_wu = (int64_t)camera->pos_wu[axis] - frame->centre_wu[axis];
-        near = near && (!info->curve_q60 || (away_wu <= FOLLOW_WU && away_wu >= -FOLLOW_WU));
+        near = near && (!grounds->curve_q60 || (away_wu <= FOLLOW_WU && away_wu >= -FOLLOW_WU));
     }
     if (near) return 0;
     for (int axis = 0; axis < 2; axis++) {
         frame->centre_wu[axis] = camera->pos_wu[axis];
-        frame->origin_wu[axis] = (int32_t)(place_wu[axis] / spacing * spacing);
-        FF_ASSERT(frame->origin_wu[axis] >= ground.lo[axis] &&
-                  frame->origin_wu[axis] <= ground.hi[axis]);
+        frame->origin_wu[axis] = (int32_t)(place_wu[axis] -
+                                           (place_wu[axis] - first.lo[axis]) % spacing);
     }
     frame->set = 1;
     return 1;
@@ -60,7 +84,7 @@ static void bend(const ff_ground_frame *frame, const ff_terrain_info *info, c3d_
     unsigned shift = 32;
     for (; per_wu >> 33; per_wu >>= 1) shift--;
     for (int axis = 0; axis < 2; axis++)
-        from_wu[axis] = (int64_t)frame->origin_wu[axis] - frame->centre_wu[axis];
+        from_wu[axis] = (int64_t)origin_of(frame, info, axis) - frame->centre_wu[axis];
     FF_ASSERT(shift > 16 && per_wu > 0);
     for (uint32_t i = 0; i < count; i++) {
         int64_t spacing = info->spacing_wu;
@@ -103,7 +127,7 @@ void ff_ground_frame_draw(const ff_ground_frame *frame, const ff_terrain_info *i
 {
     FF_ASSERT(frame->set == 1 && info->spacing_wu <= INT32_MAX);
     for (int axis = 0; axis < 2; axis++)
-        draw->origin_wu[axis] = (int64_t)frame->origin_wu[axis] - camera->pos_wu[axis];
+        draw->origin_wu[axis] = (int64_t)origin_of(frame, info, axis) - camera->pos_wu[axis];
     draw->origin_wu[2] = (int64_t)ff_height_wu(info, (uint32_t)base_height(info)) -
                          camera->pos_wu[2];
     draw->xy_scale_wu = (int32_t)info->spacing_wu;

@@ -7,7 +7,8 @@
  * finest samples, counted from a sample near the camera, in the 32 bits that reach over any
  * terrain. All nodes then use the same matrix, equal vertices give equal pixels, and the numbers
  * stay small enough for single precision (no jitter far from the origin). Heights, too, count from
- * one near those of the terrain.
+ * one near those of the terrain. Grounds that a tree holds together share no vertices: each has
+ * units of its own, and an origin on its own samples by the common one.
  */
 #ifndef FF_GROUND_FRAME_H
 #define FF_GROUND_FRAME_H
@@ -15,16 +16,16 @@
 #include "../terrain/ff_tree.h"
 
 typedef struct ff_ground_frame {
-    int32_t origin_wu[2]; /* the position of a sample of the terrain */
+    int32_t origin_wu[2]; /* the position of a sample of the first ground; see below for others */
     int32_t centre_wu[2]; /* from here curved ground falls away */
     uint8_t set;          /* 0: not chosen yet */
 } ff_ground_frame;
 
-/* Keeps the origin within about 512 m (at least one sample) of the camera, or of the terrain's edge
- * nearest to it, and on curved ground the centre within 512 m of the camera: what lies there is
- * tilted by less than 8e-5, a sixtieth of a pixel on a handheld. 1 when one of them moved: all
- * vertices made with it are void. */
-int ff_ground_frame_follow(ff_ground_frame *frame, const ff_terrain_info *info,
+/* Keeps the origin within about 512 m (at least one sample) of the camera, or of the nearest edge
+ * of what holds all grounds of the tree, and on curved ground the centre within 512 m of the
+ * camera: what lies there is tilted by less than 8e-5, a sixtieth of a pixel on a handheld. 1 when
+ * one of them moved: all vertices made with it are void. */
+int ff_ground_frame_follow(ff_ground_frame *frame, const ff_terrain_info *grounds, uint32_t count,
                            const c3d_camera *camera);
 
 /* Moves ff_tree_vertices' output, `count` vertices of `drawn`, into the frame. Columns and rows

@@ -39,13 +39,10 @@ static void on_evict(void *context, uint32_t user)
     if (user) release(view, &view->entry[user - 1]);
 }
 
-void ff_terrain_view_attach(ff_terrain_view *view, ff_tree *tree, const ff_terrain_info *info,
-                            const ff_textures *textures)
+void ff_terrain_view_attach(ff_terrain_view *view, ff_tree *tree, const ff_textures *textures)
 {
-    FF_ASSERT(view->heights_per_node == ff_node_side(info) * ff_node_side(info));
     FF_ASSERT(view->held == 0); /* no entry is another tree's */
     view->tree = tree;
-    view->info = info;
     view->textures = textures;
     ff_tree_on_evict(tree, on_evict, view);
 }
@@ -119,12 +116,11 @@ uint64_t ff_terrain_view_hash(ff_terrain_view *view, const ff_drawn *list, uint3
     return hash;
 }
 
-static c3d_mesh make_mesh(ff_terrain_view *view, const ff_drawn *drawn)
+static c3d_mesh make_mesh(ff_terrain_view *view, const ff_terrain_info *info, const ff_drawn *drawn)
 {
     FF_ASSERT(view->frame.set == 1);
     ff_tree_vertices(view->tree, drawn, 1, view->vertices);
-    ff_ground_frame_vertices(&view->frame, view->info, drawn, view->vertices,
-                             view->heights_per_node);
+    ff_ground_frame_vertices(&view->frame, info, drawn, view->vertices, view->heights_per_node);
     return c3d_mesh_make(view->device, view->vertices, view->heights_per_node);
 }
 
@@ -168,18 +164,22 @@ void ff_terrain_view_draw(ff_terrain_view *view, const ff_drawn *list, uint32_t 
                           const c3d_camera *camera, unsigned show)
 {
     c3d_draw ground = { .flags = C3D_DRAW_COLOURED };
-    if (ff_ground_frame_follow(&view->frame, view->info, camera)) free_meshes(view);
-    ff_ground_frame_draw(&view->frame, view->info, camera, &ground);
-    FF_ASSERT((uint32_t)ground.tex_columns * ground.tex_columns == view->heights_per_node);
+    uint32_t ground_count;
+    const ff_terrain_info *grounds = ff_tree_grounds(view->tree, &ground_count), *last = NULL;
+    if (ff_ground_frame_follow(&view->frame, grounds, ground_count, camera)) free_meshes(view);
     for (uint32_t i = 0; i < count; i++) {
         const ff_drawn *drawn = &list[i];
+        const ff_terrain_info *info = ff_tree_ground(view->tree, drawn->key);
+        if (info != last) ff_ground_frame_draw(&view->frame, info, camera, &ground);
+        FF_ASSERT((uint32_t)ground.tex_columns * ground.tex_columns == view->heights_per_node);
+        last = info;
         ff_view_node *entry = entry_of(view, drawn);
         c3d_draw draw = ground;
-        draw.mesh = entry && entry->mesh.id ? entry->mesh : make_mesh(view, drawn);
-        if (!draw.mesh.id && free_one_mesh(view)) draw.mesh = make_mesh(view, drawn);
+        draw.mesh = entry && entry->mesh.id ? entry->mesh : make_mesh(view, info, drawn);
+        if (!draw.mesh.id && free_one_mesh(view)) draw.mesh = make_mesh(view, info, drawn);
         if (entry) entry->mesh = draw.mesh;
         if (view->textures) ff_textures_lay(view->textures, drawn->key, &draw);
-        if (draw.flags & C3D_DRAW_TEXTURED) ff_ground_frame_last(view->info, drawn, &draw);
+        if (draw.flags & C3D_DRAW_TEXTURED) ff_ground_frame_last(info, drawn, &draw);
         draw_strips(view, drawn, draw);
         if (show) ff_show_over(view, drawn, &draw, show);
         if (!entry && draw.mesh.id) c3d_mesh_free(view->device, draw.mesh);

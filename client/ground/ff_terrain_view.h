@@ -31,7 +31,6 @@ typedef struct ff_terrain_view {
     uint32_t entry_count, heights_per_node;
 
     ff_tree *tree; /* see ff_terrain_view_attach */
-    const ff_terrain_info *info;
     const ff_textures *textures;
     uint32_t hand, stamp;
     uint32_t held, held_high;
@@ -41,10 +40,9 @@ typedef struct ff_terrain_view {
 
 /* Makes the strips on the device. `strips` is scratch, free afterwards. FF_OK or FF_ERR_MEMORY. */
 int ff_terrain_view_strips(ff_terrain_view *view, unsigned node_log2, ff_strips *strips);
-/* The tree that will be drawn, which tells when nodes go, its terrain, and the images that lie on
- * it (NULL: none). All three outlive the view. */
-void ff_terrain_view_attach(ff_terrain_view *view, ff_tree *tree, const ff_terrain_info *info,
-                            const ff_textures *textures);
+/* The tree that will be drawn, which tells when nodes go, and the images that lie on it (NULL:
+ * none). Both outlive the view. */
+void ff_terrain_view_attach(ff_terrain_view *view, ff_tree *tree, const ff_textures *textures);
 /* A picture of these nodes of the tree begins: none of them loses its entry to another. */
 void ff_terrain_view_begin(ff_terrain_view *view, const ff_drawn *list, uint32_t count);
 /* FNV-1a (by 64-bit words) over nodes of the picture begun: keys, border masks, origins,

@@ -267,12 +267,13 @@ typedef struct descent {
 static void place_cells(const gaze *at, const ff_drawn *drawn, descent *to)
 {
     const ff_tree *tree = at->tree;
-    uint32_t side = ff_node_side(&tree->info), cells = to->piece[2] / CELL_Q8;
+    const ff_terrain_info *info = ff_ground_of(tree, drawn->key);
+    uint32_t side = ff_node_side(info), cells = to->piece[2] / CELL_Q8;
     for (unsigned i = 0; i < 4; i++) {
         uint32_t column = to->piece[0] / CELL_Q8 + (i & 1 ? cells : 0),
                  row = to->piece[1] / CELL_Q8 + (i >> 1 ? cells : 0);
         int32_t place_wu[3];
-        ff_shape_place(&tree->info, drawn->key, ff_tree_placed(drawn->node), column, row,
+        ff_shape_place(info, drawn->key, ff_tree_placed(drawn->node), column, row,
                        drawn->heights[row * side + column], place_wu);
         for (unsigned axis = 0; axis < 3; axis++)
             to->ground.corner[i][axis] =
@@ -324,7 +325,7 @@ static void take_quarter(const gaze *at, const ff_drawn *drawn, descent *of, des
 /* Walks over the pieces of a node, from near ones to far ones. */
 static void look_at_node(gaze *at, const ff_drawn *drawn)
 {
-    const ff_terrain_info *info = &at->tree->info;
+    const ff_terrain_info *info = ff_ground_of(at->tree, drawn->key);
     int64_t error_wu = ff_steps_wu(info, ff_geometric_error_decode(drawn->node->error_code));
     uint32_t side = ff_node_side(info), most = 0;
     descent path[STEPS_MAX];
@@ -357,16 +358,46 @@ static void look_at_node(gaze *at, const ff_drawn *drawn)
 
 /* ---- beyond ---- */
 
-/* Where the terrain's mean ground lies, as far as it is known. */
-static int32_t mean_ground_wu(const ff_tree *tree)
+/* Where a ground's mean lies, as far as it is known: by `roots` of its roots. */
+static int32_t mean_of(const ff_tree *tree, const ff_terrain_info *info, uint32_t *roots)
 {
     uint64_t sum = 0, count = 0;
     for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
+        if (!ff_terrain_has_node(info, tree->node[slot].key)) continue;
         sum += tree->node[slot].height_mean;
         count++;
     }
-    uint32_t middle = ((uint32_t)tree->info.height_min + tree->info.height_max) / 2;
-    return ff_height_wu(&tree->info, count ? (uint32_t)(sum / count) : middle);
+    uint32_t middle = ((uint32_t)info->height_min + info->height_max) / 2;
+    *roots = (uint32_t)count;
+    return ff_height_wu(info, count ? (uint32_t)(sum / count) : middle);
+}
+
+static int32_t mean_ground_wu(const ff_tree *tree)
+{
+    int64_t sum_wu = 0, count = 0;
+    uint32_t roots;
+    for (uint32_t g = 0; g < tree->ground_count; g++) {
+        int32_t mean_wu = mean_of(tree, &tree->ground[g], &roots);
+        sum_wu += (int64_t)mean_wu * roots;
+        count += roots;
+    }
+    return count ? (int32_t)(sum_wu / count) : mean_of(tree, tree->ground, &roots);
+}
+
+/* Holds all grounds, were they level. */
+static ff_box bounds_of(const ff_tree *tree)
+{
+    const int64_t height_wu[2] = { mean_ground_wu(tree), mean_ground_wu(tree) };
+    const int32_t *eye_wu = tree->view.camera.pos_wu;
+    ff_box all = ff_shape_bounds(tree->ground, &tree->view.frame, height_wu, eye_wu);
+    for (uint32_t g = 1; g < tree->ground_count; g++) {
+        ff_box box = ff_shape_bounds(&tree->ground[g], &tree->view.frame, height_wu, eye_wu);
+        for (unsigned axis = 0; axis < 3; axis++) {
+            if (box.lo[axis] < all.lo[axis]) all.lo[axis] = box.lo[axis];
+            if (box.hi[axis] > all.hi[axis]) all.hi[axis] = box.hi[axis];
+        }
+    }
+    return all;
 }
 
 static int64_t most_of(const int64_t vector[3])
@@ -448,28 +479,31 @@ static int lacks_roots(const ff_tree *tree)
     return 0;
 }
 
-/* 1 when the ground in the square's middle is in reach and has not come. */
+/* 1 when the ground in the square's middle is in reach and has not come, of any that lies there. */
 static int lacks_ground(const gaze *at, const square *s)
 {
     const ff_tree *tree = at->tree;
     int32_t place_wu[3];
     ff_spot spot;
+    int lacks = 0;
     for (unsigned i = 0; i < 3; i++) {
         int64_t wu = tree->view.camera.pos_wu[i] + s->middle[i] * (1 << UNIT_LOG2);
         place_wu[i] = (int32_t)within(wu, INT32_MAX);
     }
-    return further(at, s, 0) < 0 &&
-           ff_shape_locate(&tree->info, &tree->view.frame, place_wu, &spot) &&
-           ff_tree_find(tree, ff_key_make(spot.tile, 0, 0)) == FF_SLOT_NONE;
+    if (further(at, s, 0) >= 0) return 0;
+    for (uint32_t g = 0; g < tree->ground_count; g++) {
+        if (!ff_shape_locate(&tree->ground[g], &tree->view.frame, place_wu, &spot)) continue;
+        if (ff_tree_find(tree, ff_key_make(spot.tile, 0, 0)) != FF_SLOT_NONE) return 0;
+        lacks = 1;
+    }
+    return lacks;
 }
 
 static void look_beyond(gaze *at, const ff_beyond *beyond)
 {
     static const ff_beyond nothing = { 0 };
     const ff_tree *tree = at->tree;
-    int64_t height_wu[2] = { mean_ground_wu(tree), mean_ground_wu(tree) };
-    ff_box box = ff_shape_bounds(&tree->info, &tree->view.frame, height_wu,
-                                 tree->view.camera.pos_wu);
+    ff_box box = bounds_of(tree);
     int lacks = lacks_roots(tree);
     int64_t wide = box.hi[0] - box.lo[0], deep = box.hi[1] - box.lo[1];
     int32_t pile[LEVELS_MAX][3] = { { (int32_t)(box.lo[0] >> UNIT_LOG2),

@@ -15,18 +15,35 @@ typedef struct foresight {
     uint8_t looked; /* 1: the horizon ahead is known */
 } foresight;
 
-static void note(foresight *f, ff_key key, enum ff_kind kind, uint32_t priority)
+static void note(foresight *f, const ff_wish *wish)
 {
     uint32_t at = f->count;
     FF_ASSERT(f->capacity > 0 && f->count <= f->capacity);
     if (at == f->capacity) {
-        if (f->list[--at].priority >= priority) return;
+        if (f->list[--at].priority >= wish->priority) return;
     } else {
         f->count++;
     }
-    for (; at > 0 && f->list[at - 1].priority < priority; at--) f->list[at] = f->list[at - 1];
-    f->list[at] = (ff_wish){ .key = key, .kind = (uint8_t)kind, .priority = priority };
-    FF_ASSERT(at + 1 == f->count || f->list[at + 1].priority < priority);
+    for (; at > 0 && f->list[at - 1].priority < wish->priority; at--) f->list[at] = f->list[at - 1];
+    f->list[at] = *wish;
+    FF_ASSERT(at + 1 == f->count || f->list[at + 1].priority < wish->priority);
+}
+
+static void note_root(foresight *f, uint32_t tile)
+{
+    const ff_wish wish = { .key = ff_key_make(tile, 0, 0),
+                           .kind = FF_KIND_ROOT,
+                           .priority = FF_VALUE_ONE };
+    note(f, &wish);
+}
+
+static void note_children(foresight *f, const ff_node *node, uint32_t value)
+{
+    const ff_wish wish = { .key = node->key,
+                           .kind = FF_KIND_REFINEMENT,
+                           .lacks = ff_node_lacked(&f->ahead, node),
+                           .priority = value };
+    note(f, &wish);
 }
 
 /* The horizon there, of the ground that is drawn here, and in `order` 1 for every node in view
@@ -84,20 +101,18 @@ static int comes_into_view(const ff_tree *tree, foresight *f, uint32_t slot, con
            seen_there(tree, f, slot, here, there);
 }
 
-/* Notes roots that are not held, of tiles that will come into view. */
-static void foresee_roots(const ff_tree *tree, foresight *f)
+/* Notes roots of a ground that are not held, of tiles that will come into view. */
+static void foresee_roots(const ff_tree *tree, uint32_t g, foresight *f)
 {
-    ff_walk walk = ff_shape_walk(&tree->info, &f->ahead.window);
+    const ff_terrain_info *info = &tree->ground[g];
+    ff_walk walk = ff_shape_walk(info, &f->ahead.window[g]);
     uint32_t tile;
-    for (unsigned i = 0; i < TILES_LOOKED_AT && ff_shape_next(&tree->info, &walk, &tile); i++) {
-        ff_key root = ff_key_make(tile, 0, 0);
-        FF_ASSERT(ff_terrain_has_node(&tree->info, root));
-        if (ff_tree_find(tree, root) != FF_SLOT_NONE) continue;
+    for (unsigned i = 0; i < TILES_LOOKED_AT && ff_shape_next(info, &walk, &tile); i++) {
+        if (ff_tree_find(tree, ff_key_make(tile, 0, 0)) != FF_SLOT_NONE) continue;
         ff_box here, there;
         ff_tile_box(tree, tile, &here);
         ff_tile_box(&f->ahead, tile, &there);
-        if (comes_into_view(tree, f, FF_SLOT_NONE, &here, &there))
-            note(f, root, FF_KIND_ROOT, FF_VALUE_ONE);
+        if (comes_into_view(tree, f, FF_SLOT_NONE, &here, &there)) note_root(f, tile);
     }
 }
 
@@ -105,12 +120,12 @@ static void foresee_children_of(const ff_tree *tree, foresight *f, const ff_node
 {
     uint32_t next = ff_key_level(node->key) + 1;
     FF_ASSERT(!ff_node_has_children(node));
-    if (next >= ff_terrain_levels(&tree->info) ||
+    if (next >= ff_terrain_levels(ff_ground_of(tree, node->key)) ||
         (tree->quality.depth_max && next >= tree->quality.depth_max) ||
         node->flags & FF_NODE_LEAF || ff_node_is_stub(node) || node->error_code == 0)
         return;
     if (node->flags & FF_NODE_NEEDED) { /* wished for already, unless its tile waits for it */
-        if (ff_tile_waits(tree, node)) note(f, node->key, FF_KIND_REFINEMENT, node->value);
+        if (ff_tile_waits(tree, node)) note_children(f, node, node->value);
         return;
     }
     uint32_t value = ff_value_of_split(&f->ahead, node);
@@ -122,7 +137,7 @@ static void foresee_children_of(const ff_tree *tree, foresight *f, const ff_node
     if (!ff_box_beyond_view(&f->ahead, &there) &&
         (node->flags & FF_NODE_WANTED ? comes_into_view(tree, f, slot, &here, &there)
                                       : seen_there(tree, f, slot, &here, &there)))
-        note(f, node->key, FF_KIND_REFINEMENT, value);
+        note_children(f, node, value);
 }
 
 static void foresee_cut(const ff_tree *tree, foresight *f)
@@ -163,11 +178,12 @@ uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], int32_t y
     for (int axis = 0; axis < 3; axis++)
         f.ahead.view.camera.pos_wu[axis] = f.ahead.view.centre_wu[axis] = pos_wu[axis];
     f.ahead.horizon = tree->horizon_ahead;
+    f.ahead.window = tree->window_ahead;
     f.ahead.view.camera.yaw = (f.ahead.view.camera.yaw + yaw) & 0xFFFF;
     f.ahead.view.camera.pitch = (f.ahead.view.camera.pitch + pitch) & 0xFFFF;
     ff_window_make(&f.ahead);
     ff_pyramid_make(&f.ahead);
-    foresee_roots(tree, &f);
+    for (uint32_t g = 0; g < tree->ground_count; g++) foresee_roots(tree, g, &f);
     foresee_cut(tree, &f);
     foresee_tiles(tree, &f);
 

@@ -114,7 +114,11 @@ static void clear(const ff_tree *tree, ff_horizon *horizon)
     horizon->half_pixel = (int32_t)c3d_divide_saturated(UINT64_C(128) << 16,
                                                         (uint64_t)tree->view.camera.focal_q8) +
                           1;
-    horizon->rounding_wu = ff_steps_wu(&tree->info, 1) / 2 + 1;
+    horizon->rounding_wu = 0;
+    for (uint32_t g = 0; g < tree->ground_count; g++) {
+        int32_t rounding_wu = ff_steps_wu(&tree->ground[g], 1) / 2 + 1;
+        if (rounding_wu > horizon->rounding_wu) horizon->rounding_wu = rounding_wu;
+    }
     for (unsigned wedge = 0; wedge < FF_HORIZON_WEDGES; wedge++) {
         horizon->first[wedge] = FF_HORIZON_COLUMNS;
         horizon->last[wedge] = -1;
@@ -160,8 +164,8 @@ ff_box ff_horizon_drawn_box(const ff_tree *tree, const ff_horizon *horizon, cons
 {
     ff_box box;
     ff_node_box(tree, node, &box);
-    box.hi[2] += horizon->rounding_wu -
-                 ff_steps_wu(&tree->info, ff_geometric_error_decode(node->error_code));
+    box.hi[2] += horizon->rounding_wu - ff_steps_wu(ff_ground_of(tree, node->key),
+                                                    ff_geometric_error_decode(node->error_code));
     return box;
 }
 

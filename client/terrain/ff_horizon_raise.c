@@ -81,6 +81,7 @@ typedef struct aspect {
     const ff_tree *tree;
     const ff_horizon *horizon;
     const ff_node *node;
+    const ff_terrain_info *info;
     const uint16_t *heights;
     enum wedge wedge;
     unsigned cells, coarser;
@@ -121,8 +122,7 @@ static inline vertex vertex_at(const aspect *of, unsigned number, unsigned along
     unsigned column = of->by_columns ? number : along, row = of->by_columns ? along : number;
     uint32_t height = of->coarser ? drawn_height_at(of, column, row) : height_at(of, column, row);
     int32_t place_wu[3];
-    ff_shape_place(&of->tree->info, of->node->key, &of->node->placed, column, row, height,
-                   place_wu);
+    ff_shape_place(of->info, of->node->key, &of->node->placed, column, row, height, place_wu);
     /* the node's box is within the depths */
     int32_t east = place_wu[0] - eye_wu[0], north = place_wu[1] - eye_wu[1],
             up = place_wu[2] - eye_wu[2];
@@ -138,7 +138,7 @@ static inline vertex vertex_at(const aspect *of, unsigned number, unsigned along
 static int32_t lowered_wu(const aspect *of, const vertex *at)
 {
     int64_t across = at->across < 0 ? -(int64_t)at->across : at->across;
-    return ff_shape_drop_wu(&of->tree->info, at->ahead + (int64_t)FF_SHAPE_DROP_SLACK_WU,
+    return ff_shape_drop_wu(of->info, at->ahead + (int64_t)FF_SHAPE_DROP_SLACK_WU,
                             across + FF_SHAPE_DROP_SLACK_WU);
 }
 
@@ -150,7 +150,7 @@ static int32_t highest_of(const aspect *of, unsigned number)
     uint32_t highest = 0;
     for (unsigned i = 0; i <= of->cells; i++, height += step)
         if (*height > highest) highest = *height;
-    return ff_height_wu(&of->tree->info, highest) - of->tree->view.camera.pos_wu[2];
+    return ff_height_wu(of->info, highest) - of->tree->view.camera.pos_wu[2];
 }
 
 /* 1 when a line between two vertices may hide something: it is before the eye, in whole ground, in
@@ -216,8 +216,9 @@ void ff_horizon_raise(const ff_tree *tree, ff_horizon *horizon, const uint64_t *
     aspect of = { .tree = tree,
                   .horizon = horizon,
                   .node = node,
+                  .info = ff_ground_of(tree, node->key),
                   .heights = tree->heights + ff_slot_of(tree, node) * ff_heights_per_node(tree),
-                  .cells = ff_node_side(&tree->info) - 1,
+                  .cells = ff_node_side(tree->ground) - 1,
                   .need = (int32_t)(uint32_t)keys[count + i],
                   .coarser = coarser };
     sector part;
@@ -225,7 +226,7 @@ void ff_horizon_raise(const ff_tree *tree, ff_horizon *horizon, const uint64_t *
     if (horizon->reach_wu == 0 || of.need >= ONE) return;
     ff_box box = ff_horizon_drawn_box(tree, horizon, node);
     if (!within_depths(&box)) return;
-    of.error_wu = ff_steps_wu(&tree->info, ff_geometric_error_decode(node->error_code));
+    of.error_wu = ff_steps_wu(of.info, ff_geometric_error_decode(node->error_code));
     if (coarser == FF_COARSER_UNKNOWN) of.coarser = ff_coarser_mask(tree, node);
     for (unsigned wedge = 0; wedge < FF_HORIZON_WEDGES; wedge++) {
         if (horizon->first[wedge] > horizon->last[wedge] ||

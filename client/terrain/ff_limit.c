@@ -156,7 +156,8 @@ static uint32_t count_splits(const ff_tree *tree, int here, uint32_t nodes[BUCKE
             if (!ff_node_seen(tree, node, &box)) continue;
             unsigned bucket = bucket_of(node->value), levels = here ? 1 : FINER_LEVELS;
             uint32_t quarters = quarters_in_view(tree, &box);
-            for (unsigned k = 0; k < levels && level + k + 1 < ff_terrain_levels(&tree->info);
+            for (unsigned k = 0;
+                 k < levels && level + k + 1 < ff_terrain_levels(ff_ground_of(tree, node->key));
                  k++) {
                 uint32_t more = k ? 3 * quarters << 2 * (k - 1) : quarters - 1;
                 nodes[bucket] += more;
@@ -175,7 +176,7 @@ void ff_limit_wishes(ff_tree *tree)
     unsigned bucket = 0;
     tree->wish_value = FF_VALUE_ONE;
     if (!limit) return;
-    uint32_t to_come = count_splits(tree, 0, nodes), each = 2u << 2 * tree->info.node_log2;
+    uint32_t to_come = count_splits(tree, 0, nodes), each = 2u << 2 * tree->ground->node_log2;
     uint64_t triangles = tree->stats.triangles + (uint64_t)to_come * each;
     if (!to_come || triangles <= limit) return;
     (void)count_splits(tree, 1, nodes);

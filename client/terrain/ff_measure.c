@@ -5,26 +5,28 @@ void ff_window_make(ff_tree *tree)
 {
     const ff_view *view = &tree->view;
     int64_t height_wu[2];
-    ff_terrain_range_wu(&tree->info, height_wu);
-    FF_ASSERT(height_wu[0] <= height_wu[1] && tree->quality.view_wu >= 0);
-    tree->window = ff_shape_reach(&tree->info, &view->frame, view->centre_wu, tree->quality.view_wu,
-                                  height_wu);
+    for (uint32_t g = 0; g < tree->ground_count; g++) {
+        ff_terrain_range_wu(&tree->ground[g], height_wu);
+        FF_ASSERT(height_wu[0] <= height_wu[1] && tree->quality.view_wu >= 0);
+        tree->window[g] = ff_shape_reach(&tree->ground[g], &view->frame, view->centre_wu,
+                                         tree->quality.view_wu, height_wu);
+    }
 }
 
 int ff_tile_active(const ff_tree *tree, uint32_t tile)
 {
-    FF_ASSERT(tile < ff_shape_tiles(&tree->info));
-    return ff_shape_reaches(&tree->info, &tree->window, tile);
+    uint32_t g = ff_ground_number(tree, tile);
+    return ff_shape_reaches(&tree->ground[g], &tree->window[g], tile);
 }
 
-/* The first tile in view, from the window's middle outwards, whose root is not held. 0: there is
- * none. */
-static int first_missing(ff_tree *tree, uint32_t *tile)
+/* The first tile of a ground in view, from the window's middle outwards, whose root is not held. 0:
+ * there is none. */
+static int first_missing(ff_tree *tree, uint32_t g, uint32_t *tile)
 {
-    ff_walk walk = ff_shape_walk_out(&tree->info, &tree->view.frame, &tree->window,
+    const ff_terrain_info *info = &tree->ground[g];
+    ff_walk walk = ff_shape_walk_out(info, &tree->view.frame, &tree->window[g],
                                      tree->view.centre_wu);
-    tree->roots_missing = 0;
-    while (ff_shape_next(&tree->info, &walk, tile)) {
+    while (ff_shape_next(info, &walk, tile)) {
         if (ff_tree_find(tree, ff_key_make(*tile, 0, 0)) != FF_SLOT_NONE) continue;
         tree->roots_missing = 1;
         ff_box box;
@@ -40,23 +42,26 @@ void ff_whole_make(ff_tree *tree)
 {
     uint32_t tile;
     tree->whole_wu = tree->quality.view_wu;
-    if (!first_missing(tree, &tile)) return;
-    int64_t near_wu = ff_tile_distance(tree, tile) - ff_node_edge_wu(&tree->info, 0);
-    near_wu = near_wu > 0 ? near_wu : 0;
-    if (near_wu < tree->whole_wu) tree->whole_wu = (int32_t)near_wu;
+    tree->roots_missing = 0;
+    for (uint32_t g = 0; g < tree->ground_count; g++) {
+        if (!first_missing(tree, g, &tile)) continue;
+        int64_t near_wu = ff_tile_distance(tree, tile) - ff_node_edge_wu(&tree->ground[g], 0);
+        near_wu = near_wu > 0 ? near_wu : 0;
+        if (near_wu < tree->whole_wu) tree->whole_wu = (int32_t)near_wu;
+    }
 }
 
 int64_t ff_tile_distance(const ff_tree *tree, uint32_t tile)
 {
-    int64_t distance = ff_shape_tile_distance(&tree->info, &tree->view.frame, tree->view.centre_wu,
-                                              tile);
+    int64_t distance = ff_shape_tile_distance(ff_ground_of_tile(tree, tile), &tree->view.frame,
+                                              tree->view.centre_wu, tile);
     FF_ASSERT(distance >= 0 && distance < INT64_C(1) << 33);
     return distance;
 }
 
 void ff_node_box(const ff_tree *tree, const ff_node *node, ff_box *box)
 {
-    const ff_terrain_info *info = &tree->info;
+    const ff_terrain_info *info = ff_ground_of(tree, node->key);
     int64_t error = ff_steps_wu(info, ff_geometric_error_decode(node->error_code));
     FF_ASSERT(error >= 0 && node->height_min <= node->height_max);
     const int64_t height_wu[2] = { ff_height_wu(info, node->height_min) - error,
@@ -66,11 +71,12 @@ void ff_node_box(const ff_tree *tree, const ff_node *node, ff_box *box)
 
 void ff_tile_box(const ff_tree *tree, uint32_t tile, ff_box *box)
 {
+    const ff_terrain_info *info = ff_ground_of_tile(tree, tile);
     ff_key key = ff_key_make(tile, 0, 0);
-    ff_placed placed = ff_shape_put(&tree->info, &tree->view.frame, key);
+    ff_placed placed = ff_shape_put(info, &tree->view.frame, key);
     int64_t height_wu[2];
-    ff_terrain_range_wu(&tree->info, height_wu);
-    *box = ff_shape_box(&tree->info, key, &placed, height_wu, tree->view.camera.pos_wu);
+    ff_terrain_range_wu(info, height_wu);
+    *box = ff_shape_box(info, key, &placed, height_wu, tree->view.camera.pos_wu);
     FF_ASSERT(box->lo[2] <= box->hi[2] && box->hi[2] - box->lo[2] < INT64_C(1) << 33);
 }
 
@@ -113,7 +119,7 @@ int64_t ff_box_distance(const ff_box *box)
 
 uint32_t ff_projected_error_q8(const ff_tree *tree, const ff_node *node, uint64_t distance)
 {
-    uint64_t error = (uint64_t)ff_steps_wu(&tree->info,
+    uint64_t error = (uint64_t)ff_steps_wu(ff_ground_of(tree, node->key),
                                            ff_geometric_error_decode(node->error_code));
     FF_ASSERT(error <= INT32_MAX && tree->view.camera.focal_q8 > 0);
     return c3d_divide_saturated(error * (uint64_t)tree->view.camera.focal_q8,
@@ -123,9 +129,10 @@ uint32_t ff_projected_error_q8(const ff_tree *tree, const ff_node *node, uint64_
 /* Hybrid, eq. 3: f = d / (e * C), from the viewer to the middle of the node at its mean height. */
 static uint32_t value_by_distance(const ff_tree *tree, const ff_node *node)
 {
-    int64_t edge = ff_node_edge_wu(&tree->info, ff_key_level(node->key)), way[3];
-    ff_shape_to_middle(&tree->info, node->key, &node->placed,
-                       ff_height_wu(&tree->info, node->height_mean), tree->view.camera.pos_wu, way);
+    const ff_terrain_info *info = ff_ground_of(tree, node->key);
+    int64_t edge = ff_node_edge_wu(info, ff_key_level(node->key)), way[3];
+    ff_shape_to_middle(info, node->key, &node->placed, ff_height_wu(info, node->height_mean),
+                       tree->view.camera.pos_wu, way);
     uint64_t d = (uint64_t)c3d_length64(way[0], way[1], way[2]);
     uint64_t reach = (uint64_t)edge * (uint64_t)tree->quality.c_q8;
     FF_ASSERT(reach <= UINT64_C(1) << (31 + 24));
@@ -134,7 +141,7 @@ static uint32_t value_by_distance(const ff_tree *tree, const ff_node *node)
 
 uint32_t ff_value_of_split(const ff_tree *tree, const ff_node *node)
 {
-    FF_ASSERT(ff_key_level(node->key) < ff_terrain_levels(&tree->info));
+    FF_ASSERT(ff_key_level(node->key) < ff_terrain_levels(ff_ground_of(tree, node->key)));
     if (tree->quality.measure == FF_MEASURE_DISTANCE) return value_by_distance(tree, node);
     ff_box box;
     ff_node_box(tree, node, &box);

@@ -22,7 +22,7 @@ uint32_t ff_tree_find(const ff_tree *tree, ff_key key)
 
 uint32_t ff_tree_find_nearest(const ff_tree *tree, ff_key key)
 {
-    FF_ASSERT(ff_terrain_has_node(&tree->info, key));
+    FF_ASSERT(ff_terrain_has_node(ff_ground_of(tree, key), key));
     for (;;) {
         uint32_t slot = ff_tree_find(tree, key);
         if (slot != FF_SLOT_NONE || ff_key_level(key) == 0) return slot;
@@ -45,7 +45,9 @@ uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent)
     node->key = key;
     node->parent = parent;
     for (unsigned q = 0; q < 4; q++) node->child[q] = FF_SLOT_NONE;
-    node->placed = ff_shape_put(&tree->info, &tree->view.frame, key);
+    /* who has none of the parent's refinement has none of its children's */
+    if (tree->lacks) tree->lacks[slot] = parent == FF_SLOT_NONE ? 0 : tree->lacks[parent];
+    node->placed = ff_shape_put(ff_ground_of(tree, key), &tree->view.frame, key);
     node->hash_next = tree->hash[bucket];
     tree->hash[bucket] = slot;
     if (parent == FF_SLOT_NONE) {
@@ -66,19 +68,27 @@ static void forget_user(ff_tree *tree, ff_node *node)
 
 void ff_tree_reshade_beside(ff_tree *tree, ff_key key)
 {
+    const ff_terrain_info *info = ff_ground_of(tree, key);
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
-        ff_key beside = ff_shape_neighbour(&tree->info, key, (enum ff_side)side).key;
+        ff_key beside = ff_shape_neighbour(info, key, (enum ff_side)side).key;
         FF_ASSERT(beside == FF_KEY_NONE || ff_key_level(beside) == ff_key_level(key));
         uint32_t slot = beside == FF_KEY_NONE ? FF_SLOT_NONE : ff_tree_find(tree, beside);
         if (slot != FF_SLOT_NONE) forget_user(tree, &tree->node[slot]);
     }
 }
 
+void ff_tree_reshade(ff_tree *tree)
+{
+    for (uint32_t slot = 0; slot < tree->node_count; slot++)
+        if (ff_node_held(&tree->node[slot])) forget_user(tree, &tree->node[slot]);
+}
+
 uint32_t ff_family_size(const ff_tree *tree, ff_key parent)
 {
+    const ff_terrain_info *info = ff_ground_of(tree, parent);
     uint32_t count = 0;
     for (uint32_t q = 0; q < 4; q++)
-        count += ff_shape_has_ground(&tree->info, ff_key_child(parent, q)) != 0;
+        count += ff_shape_has_ground(info, ff_key_child(parent, q)) != 0;
     FF_ASSERT(count > 0); /* of a node with ground */
     return count;
 }
@@ -111,6 +121,7 @@ void ff_tree_drop_children(ff_tree *tree, ff_node *parent)
         parent->child[q] = FF_SLOT_NONE;
     }
     parent->flags &= (uint8_t)~FF_NODE_SPLIT;
+    if (tree->lacks) ff_node_settle(tree, ff_slot_of(tree, parent));
 }
 
 void ff_tree_drop_root(ff_tree *tree, ff_node *root)

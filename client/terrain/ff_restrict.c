@@ -15,7 +15,8 @@ static ff_key parent_beside(const ff_tree *tree, const ff_node *node, enum ff_si
     };
     if (ff_key_level(node->key) == 0 || !(towards[side] >> ff_key_quadrant(node->key) & 1u))
         return FF_KEY_NONE;
-    ff_key beside = ff_shape_neighbour(&tree->info, ff_key_parent(node->key), side).key;
+    ff_key beside =
+        ff_shape_neighbour(ff_ground_of(tree, node->key), ff_key_parent(node->key), side).key;
     FF_ASSERT(beside == FF_KEY_NONE || ff_key_level(beside) + 1 == ff_key_level(node->key));
     if (beside == FF_KEY_NONE || ff_key_tile(beside) == ff_key_tile(node->key)) return beside;
     uint32_t root = ff_tree_find(tree, ff_key_make(ff_key_tile(beside), 0, 0));
@@ -50,7 +51,7 @@ void ff_want(ff_tree *tree, uint32_t slot, uint32_t value)
         return;
     }
     uint32_t level = ff_key_level(node->key);
-    FF_ASSERT(level + 1 < ff_terrain_levels(&tree->info));
+    FF_ASSERT(level + 1 < ff_terrain_levels(ff_ground_of(tree, node->key)));
     node->flags = (uint8_t)((node->flags & ~FF_NODE_HIDDEN) | FF_NODE_WANTED);
     node->value = value;
     node->want_next = tree->want_head[level];

@@ -38,8 +38,11 @@ static void set_view(ff_tree *tree, const ff_view *view, const ff_quality *quali
     tree->quality.c_q8 = within(quality->c_q8, 0, C_Q8_MAX);
     tree->quality.error_px_q8 = within(quality->error_px_q8, 1, INT32_MAX);
     tree->quality.view_wu = within(quality->view_wu, 0, INT32_MAX);
-    int32_t horizon_wu = ff_shape_horizon_wu(&tree->info, &view->frame, view->centre_wu);
-    FF_ASSERT(horizon_wu >= 0);
+    int32_t horizon_wu = 0;
+    for (uint32_t g = 0; g < tree->ground_count; g++) {
+        int32_t of_wu = ff_shape_horizon_wu(&tree->ground[g], &view->frame, view->centre_wu);
+        horizon_wu = of_wu > horizon_wu ? of_wu : horizon_wu;
+    }
     if (tree->quality.view_wu > horizon_wu) tree->quality.view_wu = horizon_wu;
     if (tree->quality.triangles_max && tree->quality.triangles_max < FF_TRIANGLES_MIN)
         tree->quality.triangles_max = FF_TRIANGLES_MIN;
@@ -51,10 +54,11 @@ static void set_view(ff_tree *tree, const ff_view *view, const ff_quality *quali
 /* Places the held nodes anew when the view comes in another frame. */
 static void enter_frame(ff_tree *tree, const ff_frame *frame)
 {
-    if (ff_shape_same_frame(&tree->info, frame, &tree->view.frame)) return;
+    if (ff_shape_same_frame(tree->ground, frame, &tree->view.frame)) return;
     for (uint32_t slot = 0; slot < tree->node_count; slot++) {
         ff_node *node = &tree->node[slot];
-        if (ff_node_held(node)) node->placed = ff_shape_put(&tree->info, frame, node->key);
+        if (!ff_node_held(node)) continue;
+        node->placed = ff_shape_put(ff_ground_of(tree, node->key), frame, node->key);
     }
     tree->dirty = 1;
 }
@@ -107,11 +111,10 @@ static uint32_t push_children(ff_tree *tree, const ff_node *node, uint32_t count
  * split. */
 static uint32_t own_value(ff_tree *tree, const ff_node *node)
 {
-    uint32_t next = ff_key_level(node->key) + 1;
-    FF_ASSERT(next <= ff_terrain_levels(&tree->info));
-    if (next >= ff_terrain_levels(&tree->info) ||
-        (tree->quality.depth_max && next >= tree->quality.depth_max))
-        return 0;
+    uint32_t next = ff_key_level(node->key) + 1,
+             levels = ff_terrain_levels(ff_ground_of(tree, node->key));
+    FF_ASSERT(next <= levels);
+    if (next >= levels || (tree->quality.depth_max && next >= tree->quality.depth_max)) return 0;
     uint32_t value = ff_value_of_split(tree, node);
     if (value <= FF_VALUE_ONE) return 0;
     if (ff_node_is_stub(node)) {
@@ -152,7 +155,8 @@ static void split_cut(ff_tree *tree)
         ff_node *node = &tree->node[tree->order[i]];
         if (node->flags & FF_NODE_WANTED && ff_node_has_children(node) &&
             ff_coarser_mask(tree, node) == 0) {
-            FF_ASSERT(ff_key_level(node->key) + 1 < ff_terrain_levels(&tree->info));
+            FF_ASSERT(ff_key_level(node->key) + 1 <
+                      ff_terrain_levels(ff_ground_of(tree, node->key)));
             node->flags |= FF_NODE_SPLIT;
             count = push_children(tree, node, count);
         }
@@ -168,6 +172,7 @@ static void split_cut(ff_tree *tree)
 static void fill_drawn(const ff_tree *tree, uint32_t slot, unsigned coarser, ff_drawn *drawn)
 {
     const ff_node *node = &tree->node[slot];
+    const ff_terrain_info *info = ff_ground_of(tree, node->key);
     FF_ASSERT(ff_node_held(node) && !(node->flags & FF_NODE_SPLIT));
     drawn->key = node->key;
     drawn->node = node;
@@ -175,8 +180,8 @@ static void fill_drawn(const ff_tree *tree, uint32_t slot, unsigned coarser, ff_
     drawn->coarser = (uint8_t)coarser;
     drawn->filled = (node->flags & FF_NODE_FILLED) != 0;
     drawn->stub = (uint8_t)ff_node_is_stub(node);
-    ff_shape_place(&tree->info, node->key, &node->placed, 0, 0, 32768, drawn->origin_wu);
-    drawn->cell_wu = ff_node_cell_wu(&tree->info, ff_key_level(node->key));
+    ff_shape_place(info, node->key, &node->placed, 0, 0, 32768, drawn->origin_wu);
+    drawn->cell_wu = ff_node_cell_wu(info, ff_key_level(node->key));
     FF_ASSERT(drawn->cell_wu > 0);
 }
 

@@ -14,11 +14,11 @@
 #define ROCK_TO_Q8   420
 FF_STATIC_ASSERT(ROCK_FROM_Q8 < ROCK_TO_Q8 && ROCK_TO_Q8 < SLOPE_MAX_Q8);
 
-static const uint8_t ramp[][3] = {
+static const uint8_t soil_at[][3] = {
     { 86, 125, 70 },  { 118, 148, 82 },  { 164, 168, 100 }, { 196, 172, 112 }, { 178, 140, 96 },
     { 150, 118, 92 }, { 148, 136, 126 }, { 184, 180, 176 }, { 232, 234, 238 }, { 250, 251, 253 },
 };
-#define RAMP_STEPS (sizeof ramp / sizeof ramp[0] - 1)
+#define RAMP_STEPS (sizeof soil_at / sizeof soil_at[0] - 1)
 static const uint8_t rock[3] = { 128, 120, 112 };
 static const uint8_t water[3] = { 62, 106, 150 };
 
@@ -33,11 +33,12 @@ static int32_t slope_q8(const ff_terrain_info *info, int32_t doubled, int32_t ce
                                    : (int32_t)slope;
 }
 
-static void ground_colour(const ff_terrain_info *info, uint32_t height, uint32_t steep_q8,
+static void ground_colour(const int32_t ramp[2], int32_t height, uint32_t steep_q8,
                           int32_t colour[3])
 {
-    uint32_t lo = info->height_min, span = info->height_max > lo ? info->height_max - lo : 1u;
-    uint32_t above = height > lo ? height - lo : 0;
+    int32_t lo = ramp[0];
+    uint32_t span = ramp[1] > lo ? (uint32_t)(ramp[1] - lo) : 1u,
+             above = height > lo ? (uint32_t)(height - lo) : 0;
     uint32_t at_q8 = above >= span ? RAMP_STEPS << 8
                                    : (uint32_t)(((uint64_t)above * RAMP_STEPS << 8) / span);
     uint32_t step = at_q8 >> 8, part = at_q8 & 255u;
@@ -51,7 +52,8 @@ static void ground_colour(const ff_terrain_info *info, uint32_t height, uint32_t
                         : (steep_q8 - ROCK_FROM_Q8) * 256 / (ROCK_TO_Q8 - ROCK_FROM_Q8);
     FF_ASSERT(step < RAMP_STEPS && part <= 256 && bare <= 256);
     for (unsigned c = 0; c < 3; c++) {
-        int32_t soil = (int32_t)(ramp[step][c] * (256 - part) + ramp[step + 1][c] * part) / 256;
+        int32_t soil = (int32_t)(soil_at[step][c] * (256 - part) + soil_at[step + 1][c] * part) /
+                       256;
         colour[c] = (soil * (int32_t)(256 - bare) + rock[c] * (int32_t)bare) / 256;
     }
 }
@@ -91,7 +93,7 @@ void ff_shade(const ff_shade_grid *grid, uint32_t i, uint32_t j, uint8_t rgba[4]
     int32_t colour[3] = { water[0], water[1], water[2] };
     if (!is_water(info, *here)) {
         int64_t steep_square = (int64_t)east * east + (int64_t)north * north;
-        ground_colour(info, *here, c3d_isqrt64((uint64_t)steep_square), colour);
+        ground_colour(grid->ramp, *here, c3d_isqrt64((uint64_t)steep_square), colour);
     }
     int32_t light = light_q8(east, north);
     for (unsigned c = 0; c < 3; c++) {

@@ -12,11 +12,11 @@ typedef struct ff_shade_grid {
     ff_key key;
     int32_t cell_wu; /* between its samples */
     const uint16_t *framed;
+    int32_t ramp[2]; /* the heights that colours span, in steps */
 } ff_shade_grid;
 
 /* rgba of the sample in column i, row j of the node's grid. Light from the north-west, 45 degrees
- * high. The ramp spans the terrain's height_min..height_max; the lowest step of terrains touching
- * zero is water. */
+ * high. The lowest step of terrains touching zero is water. */
 void ff_shade(const ff_shade_grid *grid, uint32_t i, uint32_t j, uint8_t rgba[4]);
 
 #endif

@@ -32,9 +32,9 @@ static uint16_t beyond(int32_t rim, int32_t inside, int32_t further)
 static void frame_side(const ff_tree *tree, const ff_drawn *drawn, enum ff_side side,
                        uint16_t *framed)
 {
-    uint32_t samples = ff_node_side(&tree->info), last = samples - 1;
+    uint32_t samples = ff_node_side(tree->ground), last = samples - 1;
     FF_ASSERT(last >= 2); /* the slope of two cells */
-    ff_beside beside = ff_shape_neighbour(&tree->info, drawn->key, side);
+    ff_beside beside = ff_shape_neighbour(ff_ground_of(tree, drawn->key), drawn->key, side);
     uint32_t slot = beside.key == FF_KEY_NONE ? FF_SLOT_NONE : ff_tree_find(tree, beside.key);
     for (uint32_t along = 0; along < samples; along++) {
         uint16_t *out = &framed[side_index(side, along + 1, 0, last + 2, samples + 2)];
@@ -54,7 +54,7 @@ static void frame_side(const ff_tree *tree, const ff_drawn *drawn, enum ff_side 
  * padding would make its rim level. */
 static void frame_edge(const ff_tree *tree, const ff_drawn *drawn, uint16_t *framed)
 {
-    uint32_t samples = ff_node_side(&tree->info), stride = samples + 2;
+    uint32_t samples = ff_node_side(tree->ground), stride = samples + 2;
     ff_extent drawn_cells = ff_drawn_cells(tree, drawn->key);
     uint32_t column = drawn_cells.columns + 1, row = drawn_cells.rows + 1;
     for (uint32_t i = 1; column < samples && i <= samples; i++) {
@@ -69,7 +69,7 @@ static void frame_edge(const ff_tree *tree, const ff_drawn *drawn, uint16_t *fra
 
 static void frame_heights(const ff_tree *tree, const ff_drawn *drawn, uint16_t *framed)
 {
-    uint32_t samples = ff_node_side(&tree->info);
+    uint32_t samples = ff_node_side(tree->ground);
     FF_ASSERT((samples + 2) * (samples + 2) <= FRAMED_MAX);
     for (uint32_t row = 0; row < samples; row++)
         memcpy(framed + (row + 1) * (samples + 2) + 1, drawn->heights + row * samples,
@@ -82,8 +82,12 @@ static void frame_heights(const ff_tree *tree, const ff_drawn *drawn, uint16_t *
 void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3d_vertex *out)
 {
     uint16_t framed[FRAMED_MAX];
-    const ff_shade_grid grid = { &tree->info, drawn->key, drawn->cell_wu, framed };
-    uint32_t side = ff_node_side(&tree->info);
+    const ff_terrain_info *info = ff_ground_of(tree, drawn->key);
+    ff_shade_grid grid = {
+        info, drawn->key, drawn->cell_wu, framed, { info->height_min, info->height_max }
+    };
+    uint32_t side = ff_node_side(info);
+    if (tree->ground_count > 1) ff_grounds_ramp(tree, info, grid.ramp);
     if (shaded) frame_heights(tree, drawn, framed);
     for (uint32_t row = 0; row < side; row++) {
         for (uint32_t column = 0; column < side; column++, out++) {
@@ -158,7 +162,7 @@ static uint64_t height_in_sides(const ff_tree *tree, const drawn_grid *grid, uns
     uint64_t height_q16 = 0;
     FF_ASSERT(coarser < 1u << FF_SIDE_COUNT);
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
-        unsigned count = ff_side_triangles(tree->info.node_log2, (enum ff_side)side,
+        unsigned count = ff_side_triangles(tree->ground->node_log2, (enum ff_side)side,
                                            coarser >> side & 1u, triangle);
         for (unsigned i = 0; i < count; i++) {
             if (height_in_triangle(grid, triangle[i], at, &height_q16)) return height_q16;
@@ -170,9 +174,10 @@ static uint64_t height_in_sides(const ff_tree *tree, const drawn_grid *grid, uns
 
 static uint64_t height_in_node(const ff_tree *tree, const ff_node *node, grid_point at)
 {
-    unsigned side = ff_node_side(&tree->info), last = side - 2,
-             cell_log2 = tree->info.tile_log2 - tree->info.node_log2 - ff_key_level(node->key);
-    ff_extent extent = ff_shape_extent(&tree->info, node->key);
+    const ff_terrain_info *info = ff_ground_of(tree, node->key);
+    unsigned side = ff_node_side(info), last = side - 2,
+             cell_log2 = info->tile_log2 - info->node_log2 - ff_key_level(node->key);
+    ff_extent extent = ff_shape_extent(info, node->key);
     const drawn_grid grid = { .heights = tree->heights +
                                          ff_slot_of(tree, node) * ff_heights_per_node(tree),
                               .side = side,
@@ -192,9 +197,10 @@ static uint64_t height_in_node(const ff_tree *tree, const ff_node *node, grid_po
 static const ff_node *node_at(const ff_tree *tree, const ff_node *node, const ff_spot *spot,
                               grid_point *at)
 {
+    const ff_terrain_info *info = ff_ground_of_tile(tree, spot->tile);
     /* in samples, Q16, from the node's south-west corner */
     uint64_t column = spot->column_q16, row = spot->row_q16,
-             half = UINT64_C(1) << (15 + tree->info.tile_log2);
+             half = UINT64_C(1) << (15 + info->tile_log2);
     for (; node->flags & FF_NODE_SPLIT; half >>= 1) {
         FF_ASSERT(ff_node_has_children(node));
         /* the last sample may lie in the middle: then nothing is held beyond it */
@@ -204,25 +210,33 @@ static const ff_node *node_at(const ff_tree *tree, const ff_node *node, const ff
         row -= north ? half : 0;
         node = &tree->node[node->child[2 * north + east]];
     }
-    unsigned cell_log2 = tree->info.tile_log2 - tree->info.node_log2 - ff_key_level(node->key);
+    unsigned cell_log2 = info->tile_log2 - info->node_log2 - ff_key_level(node->key);
     FF_ASSERT(column <= 2 * half && row <= 2 * half); /* the node's edge by now */
     *at = (grid_point){ (int64_t)(column >> cell_log2), (int64_t)(row >> cell_log2) };
     return node;
 }
 
-/* The node drawn over or under a place, NULL where there is none; *at is the place in its grid. */
-static const ff_node *drawn_at(const ff_tree *tree, const int32_t place_wu[3], grid_point *at)
+/* A ground's node drawn over or under a place, NULL where there is none; *at is the place in its
+ * grid. */
+static const ff_node *drawn_of(const ff_tree *tree, const ff_terrain_info *info,
+                               const int32_t place_wu[3], grid_point *at)
 {
     ff_spot spot;
-    if (!tree->has_view || !ff_shape_locate(&tree->info, &tree->view.frame, place_wu, &spot))
-        return NULL;
-    FF_ASSERT(spot.tile < ff_shape_tiles(&tree->info));
+    if (!ff_shape_locate(info, &tree->view.frame, place_wu, &spot)) return NULL;
     uint32_t slot = ff_tree_find(tree, ff_key_make(spot.tile, 0, 0));
     if (slot == FF_SLOT_NONE || !ff_tile_active(tree, spot.tile)) return NULL;
     const ff_node *node = node_at(tree, &tree->node[slot], &spot, at);
     ff_box box;
     ff_node_box(tree, node, &box);
     return ff_box_beyond_view(tree, &box) ? NULL : node;
+}
+
+static const ff_node *drawn_at(const ff_tree *tree, const int32_t place_wu[3], grid_point *at)
+{
+    const ff_node *node = NULL;
+    for (uint32_t g = 0; tree->has_view && !node && g < tree->ground_count; g++)
+        node = drawn_of(tree, &tree->ground[g], place_wu, at);
+    return node;
 }
 
 /* z need not be the ground's: it is looked for under or over the point. */
@@ -232,7 +246,8 @@ int ff_tree_drawn_height(const ff_tree *tree, int32_t x_wu, int32_t y_wu, int32_
     grid_point at;
     const ff_node *node = drawn_at(tree, place_wu, &at);
     if (!node) return 0;
-    *z_wu = ff_shape_z_wu(&tree->info, &tree->view.frame, place_wu, height_in_node(tree, node, at));
+    *z_wu = ff_shape_z_wu(ff_ground_of(tree, node->key), &tree->view.frame, place_wu,
+                          height_in_node(tree, node, at));
     return 1;
 }
 

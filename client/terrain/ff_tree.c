@@ -28,13 +28,24 @@ static uint32_t hash_size(uint32_t node_count)
     return size;
 }
 
+static uint32_t grounds_of(const ff_tree_desc *desc)
+{
+    return desc->ground_max ? desc->ground_max : 1;
+}
+static uint32_t sources_of(const ff_tree_desc *desc)
+{
+    return desc->source_max ? desc->source_max : 1;
+}
+
 static ff_tree *carve(const ff_tree_desc *desc, block *from)
 {
     size_t n = desc->node_count, side = ff_node_side(&desc->info),
            refined = ff_refined_side(&desc->info);
     FF_ASSERT(side * side <= FF_NODE_HEIGHTS_MAX && refined * refined <= FF_REFINED_HEIGHTS_MAX);
     ff_tree *tree = take(from, sizeof *tree);
-    ff_tree parts = { 0 };
+    ff_tree parts = { .ground_max = grounds_of(desc), .source_max = sources_of(desc) };
+    parts.ground = take(from, parts.ground_max * sizeof *parts.ground);
+    parts.window = take(from, 2 * parts.ground_max * sizeof *parts.window);
     parts.node = take(from, n * sizeof *parts.node);
     parts.heights = take(from, n * side * side * sizeof *parts.heights);
     parts.hash = take(from, hash_size(desc->node_count) * sizeof *parts.hash);
@@ -47,6 +58,10 @@ static ff_tree *carve(const ff_tree_desc *desc, block *from)
         parts.horizon = take(from, sizeof *parts.horizon);
         parts.horizon_ahead = take(from, sizeof *parts.horizon);
     }
+    if (parts.source_max > 1) {
+        parts.sources = take(from, parts.ground_max);
+        parts.lacks = take(from, n);
+    }
     if (tree) *tree = parts;
     return tree;
 }
@@ -54,7 +69,9 @@ static ff_tree *carve(const ff_tree_desc *desc, block *from)
 static int desc_ok(const ff_tree_desc *desc)
 {
     return desc->node_count >= 8 && desc->node_count <= FF_NODES_MAX &&
-           desc->wish_count <= FF_NODES_MAX && ff_terrain_check(&desc->info) >= 0;
+           desc->wish_count <= FF_NODES_MAX && ff_terrain_check(&desc->info) >= 0 &&
+           grounds_of(desc) <= (ff_grounds_built ? FF_GROUNDS_MAX : 1) &&
+           sources_of(desc) <= (ff_grounds_built ? FF_SOURCES_MAX : 1);
 }
 
 size_t ff_tree_bytes(const ff_tree_desc *desc)
@@ -71,7 +88,10 @@ ff_tree *ff_tree_create(const ff_tree_desc *desc, void *memory, size_t bytes)
     block from = { memory, (BLOCK_ALIGN - (uintptr_t)memory % BLOCK_ALIGN) % BLOCK_ALIGN };
     ff_tree *tree = carve(desc, &from);
     FF_ASSERT(from.used <= bytes);
-    tree->info = desc->info;
+    tree->window_ahead = tree->window + tree->ground_max;
+    tree->ground[0] = desc->info;
+    tree->ground_count = 1;
+    if (tree->lacks) memset(tree->sources, 1, tree->ground_max);
     tree->node_count = tree->free_count = desc->node_count;
     tree->wish_capacity = desc->wish_count;
     tree->hidden = desc->hidden;
@@ -102,7 +122,8 @@ static uint16_t *heights_of(const ff_tree *tree, uint32_t slot)
 FF_STATIC_ASSERT(FF_NODE_HEIGHTS_MAX <= UINT32_MAX / UINT16_MAX); /* a sum of heights */
 
 /* Of a node whose heights are there: what the payload says of it, and what its heights say. */
-static void take_node(ff_tree *tree, uint32_t slot, const ff_residuals *residuals, uint32_t q)
+static void take_node(ff_tree *tree, uint32_t slot, const ff_residuals *residuals, uint32_t q,
+                      unsigned source)
 {
     const uint16_t *height = heights_of(tree, slot);
     size_t count = ff_heights_per_node(tree);
@@ -120,16 +141,24 @@ static void take_node(ff_tree *tree, uint32_t slot, const ff_residuals *residual
     node->error_code = residuals->child_error[q];
     if (residuals->filled >> q & 1u) node->flags |= FF_NODE_FILLED;
     if (residuals->leaf >> q & 1u) node->flags |= FF_NODE_LEAF;
-    if (residuals->stub >> q & 1u) node->want_next = FF_SLOT_NEVER;
+    if (residuals->stub >> q & 1u) {
+        if (tree->lacks)
+            ff_node_lacks(tree, slot, source);
+        else
+            node->want_next = FF_SLOT_NEVER;
+    }
     FF_ASSERT(!(ff_node_is_stub(node) && node->flags & FF_NODE_LEAF));
     FF_ASSERT(node->height_min <= node->height_mean && node->height_mean <= node->height_max);
     FF_ASSERT(ff_geometric_error_decode(node->error_code) <= 65536);
 }
 
-int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, const ff_residuals *residuals)
+int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, unsigned source,
+                         const ff_residuals *residuals)
 {
     ff_key key = ff_key_make(tile, 0, 0);
-    if (!ff_terrain_has_node(&tree->info, key)) return FF_ERR_RANGE;
+    const ff_terrain_info *info = ff_ground_of_tile(tree, tile);
+    FF_ASSERT(source < tree->source_max);
+    if (!ff_terrain_has_node(info, key)) return FF_ERR_RANGE;
     if (ff_tree_find(tree, key) != FF_SLOT_NONE) return FF_OK;
     if (!ff_evict_for_root(tree, tile)) {
         tree->stats.pool_full++;
@@ -137,12 +166,12 @@ int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, const ff_residuals *resid
     }
     FF_ASSERT(tree->free_count > 0);
     uint32_t slot = ff_tree_take_slot(tree, key, FF_SLOT_NONE);
-    int rc = ff_reconstruct_root(&tree->info, residuals, heights_of(tree, slot));
+    int rc = ff_reconstruct_root(info, residuals, heights_of(tree, slot));
     if (rc != FF_OK) {
         ff_tree_drop_root(tree, &tree->node[slot]);
         return rc;
     }
-    take_node(tree, slot, residuals, 0);
+    take_node(tree, slot, residuals, 0, source);
     ff_tree_reshade_beside(tree, key);
     tree->dirty = 1;
     return FF_OK;
@@ -159,24 +188,28 @@ static int make_room(ff_tree *tree, uint32_t slot)
 }
 
 /* Takes the children of a node out of tree->refined into slots, for which there is room. */
-static void take_children(ff_tree *tree, uint32_t slot, const ff_residuals *residuals)
+static void take_children(ff_tree *tree, uint32_t slot, const ff_residuals *residuals,
+                          unsigned source)
 {
+    const ff_terrain_info *info = ff_ground_of(tree, tree->node[slot].key);
     for (uint32_t q = 0; q < 4; q++) {
         ff_key key = ff_key_child(tree->node[slot].key, q);
-        if (!ff_shape_has_ground(&tree->info, key)) continue;
+        if (!ff_shape_has_ground(info, key)) continue;
         uint32_t child = ff_tree_take_slot(tree, key, slot);
-        ff_refined_child(&tree->info, tree->refined, q, heights_of(tree, child));
-        take_node(tree, child, residuals, q);
+        ff_refined_child(info, tree->refined, q, heights_of(tree, child));
+        take_node(tree, child, residuals, q, source);
         tree->node[slot].child[q] = child;
         ff_tree_reshade_beside(tree, key);
     }
     tree->dirty = 1;
 }
 
-int ff_tree_deliver_children(ff_tree *tree, ff_key key, const ff_residuals *residuals)
+int ff_tree_deliver_children(ff_tree *tree, ff_key key, unsigned source,
+                             const ff_residuals *residuals)
 {
-    if (!ff_terrain_has_node(&tree->info, key) ||
-        ff_key_level(key) + 1 >= ff_terrain_levels(&tree->info))
+    const ff_terrain_info *info = ff_ground_of(tree, key);
+    FF_ASSERT(source < tree->source_max);
+    if (!ff_terrain_has_node(info, key) || ff_key_level(key) + 1 >= ff_terrain_levels(info))
         return FF_ERR_RANGE;
     uint32_t slot = ff_tree_find(tree, key);
     if (slot == FF_SLOT_NONE) {
@@ -188,9 +221,9 @@ int ff_tree_deliver_children(ff_tree *tree, ff_key key, const ff_residuals *resi
     int rc = make_room(tree, slot);
     if (rc != FF_OK) return rc;
     FF_ASSERT(tree->node[slot].key == key); /* it was spared itself */
-    rc = ff_reconstruct_refinement(&tree->info, heights_of(tree, slot), residuals, tree->refined);
+    rc = ff_reconstruct_refinement(info, heights_of(tree, slot), residuals, tree->refined);
     if (rc != FF_OK) return rc;
-    take_children(tree, slot, residuals);
+    take_children(tree, slot, residuals, source);
     return FF_OK;
 }
 
@@ -203,12 +236,12 @@ void ff_tree_make_children(ff_tree *tree)
         if (!node || !(node->flags & FF_NODE_LEAF) || ff_node_has_children(node) ||
             make_room(tree, slot) != FF_OK)
             continue;
-        ff_residuals all = ff_leaf_residuals(&tree->info, node->error_code,
-                                             node->flags & FF_NODE_FILLED);
-        FF_ASSERT(ff_key_level(node->key) + 1 < ff_terrain_levels(&tree->info));
-        ff_predict_children(&tree->info, ff_shape_cells(&tree->info, node->key, 1),
-                            heights_of(tree, slot), tree->refined);
-        take_children(tree, slot, &all);
+        const ff_terrain_info *info = ff_ground_of(tree, node->key);
+        ff_residuals all = ff_leaf_residuals(info, node->error_code, node->flags & FF_NODE_FILLED);
+        FF_ASSERT(ff_key_level(node->key) + 1 < ff_terrain_levels(info));
+        ff_predict_children(info, ff_shape_cells(info, node->key, 1), heights_of(tree, slot),
+                            tree->refined);
+        take_children(tree, slot, &all, 0);
     }
     tree->made_count = 0;
 }
@@ -236,6 +269,17 @@ uint32_t ff_tree_cut(const ff_tree *tree, const ff_drawn **list)
     }
     *list = tree->drawn;
     return tree->cut_count;
+}
+
+const ff_terrain_info *ff_tree_ground(const ff_tree *tree, ff_key key)
+{
+    return ff_ground_of(tree, key);
+}
+
+const ff_terrain_info *ff_tree_grounds(const ff_tree *tree, uint32_t *count)
+{
+    *count = tree->ground_count;
+    return tree->ground;
 }
 
 const ff_frame *ff_tree_frame(const ff_tree *tree) { return &tree->view.frame; }

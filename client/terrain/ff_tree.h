@@ -14,6 +14,10 @@
  * that side leaves out every second vertex (the finer side is lowered), so both sides run through
  * the same vertices: no crack and no T-junction, whatever has or has not arrived.
  *
+ * A tree holds one ground or several at once, of different extent, depth, spacing and steps of
+ * height, in one reference system: their tiles have numbers of their own in keys, and their nodes
+ * share the pool, the view and the wishes.
+ *
  * Memory: one block at ff_tree_create; `node_count` slots. Full pools make the ground coarser and
  * are counted.
  */
@@ -75,6 +79,7 @@ typedef struct ff_wish {
     ff_key key;
     uint8_t kind;      /* FF_KIND_ROOT or FF_KIND_REFINEMENT */
     uint8_t in_view;   /* or a neighbour without which something in view may not split */
+    uint8_t lacks;     /* bits of the sources known not to have a refinement */
     uint32_t priority; /* of the same class: pixels of error removed, Q8 (DISTANCE: Q8 of 1/f) */
 } ff_wish;
 
@@ -103,22 +108,50 @@ typedef struct ff_tree_stats {
     uint32_t nodes_hidden, triangles_hidden; /* of the cut, in view, by nearer ground */
 } ff_tree_stats;
 
+#define FF_GROUNDS_MAX 16
+#define FF_SOURCES_MAX 8
+/* 0: this build has one ground and one source alone (features.mk). */
+extern const uint8_t ff_grounds_built;
+
 typedef struct ff_tree_desc {
-    ff_terrain_info info;
-    uint32_t node_count; /* slots; at least 8 */
-    uint32_t wish_count; /* most wishes one selection lists */
+    ff_terrain_info info; /* of the first ground */
+    uint32_t node_count;  /* slots, shared by all grounds; at least 8 */
+    uint32_t wish_count;  /* most wishes one selection lists */
     enum ff_hidden hidden;
+    uint32_t ground_max; /* grounds at most; 0: 1 */
+    uint32_t source_max; /* who may serve a ground, at most; 0: 1 */
 } ff_tree_desc;
 
 size_t ff_tree_bytes(const ff_tree_desc *desc);
 /* NULL when desc is out of range or the block too small. */
 ff_tree *ff_tree_create(const ff_tree_desc *desc, void *memory, size_t bytes);
 
-/* Results of a request. Residuals from ff_decode_*. FF_OK; FF_ERR_FULL (counted, coarser),
- * FF_ERR_NOT_FOUND (node gone: counted; or a stub); an error of ff_reconstruct_*: nothing is held
- * of it. */
-int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, const ff_residuals *residuals);
-int ff_tree_deliver_children(ff_tree *tree, ff_key key, const ff_residuals *residuals);
+/* Adds a ground, which the caller has given its place among the others: first_tile is no less than
+ * the tiles of those before, west_wu and south_wu are in the axes of the first. Its number (the
+ * first one's is 0); FF_ERR_UNSUPPORTED: its nodes are of another size; FF_ERR_FULL;
+ * FF_ERR_RANGE. The tree takes it to fall away as the first one does (curve_q60). */
+int ff_tree_add_ground(ff_tree *tree, const ff_terrain_info *info);
+/* That a key belongs to. */
+const ff_terrain_info *ff_tree_ground(const ff_tree *tree, ff_key key);
+/* All of them, by number. */
+const ff_terrain_info *ff_tree_grounds(const ff_tree *tree, uint32_t *count);
+
+/* Several servers and packs may hold the same ground, each some of it: sources, 0 to source_max - 1
+ * of the tree. The tree keeps for each node which of them are known not to have its refinement;
+ * when that is all that serve the ground, the node is a stub. One that comes later is asked again.
+ * mask: a bit for each that serves a ground now; as a tree is made, source 0 serves all. */
+void ff_tree_set_sources(ff_tree *tree, uint32_t ground, uint8_t mask);
+/* A source has answered that it has no refinement of a node. Told only where there may be several.
+ */
+void ff_tree_lacks(ff_tree *tree, ff_key key, unsigned source);
+
+/* Results of a request, from a source. Residuals from ff_decode_*. FF_OK; FF_ERR_FULL (counted,
+ * coarser), FF_ERR_NOT_FOUND (node gone: counted; or a stub); an error of ff_reconstruct_*: nothing
+ * is held of it. */
+int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, unsigned source,
+                         const ff_residuals *residuals);
+int ff_tree_deliver_children(ff_tree *tree, ff_key key, unsigned source,
+                             const ff_residuals *residuals);
 
 /* Chooses the cut for a view. Returns 1 when anything changed (view, quality, nodes) and the cut
  * was made anew, 0 when skipped. */
@@ -158,7 +191,7 @@ uint32_t ff_tree_reserve(const ff_tree *tree, ff_wish *list, uint32_t capacity);
 
 /* Vertices of a node for c3d: x, y = column, row (0..2^k), z = height - 32768, colour from height
  * and slope (ff_shade.h) or white when `shaded` is 0. `out` has ff_node_side()^2 entries. Draw with
- * origin ff_drawn.origin_wu - camera, xy_scale cell_wu, z_scale_q16 = hscale_q24. */
+ * origin ff_drawn.origin_wu - camera, xy_scale cell_wu, z_scale_q16 = hscale_q24 of its ground. */
 void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3d_vertex *out);
 
 /* A caller's word per node slot (mesh handle, say), zeroed when the slot is given to another node,

@@ -57,7 +57,13 @@ struct ff_node {
 typedef struct ff_horizon ff_horizon; /* ff_horizon.h */
 
 struct ff_tree {
-    ff_terrain_info info;
+    /* in the order of their tiles; places are in the axes of the first */
+    ff_terrain_info *ground;
+    ff_reach *window; /* of each: its tiles whose ground is drawn and asked for */
+    ff_reach *window_ahead;
+    uint8_t *sources; /* of each: the bits of who serves it; NULL: one source serves all */
+    uint8_t *lacks;   /* of each slot: the bits of who has no refinement of the node; NULL alike */
+    uint32_t ground_count, ground_max, source_max;
     uint32_t node_count, wish_capacity, hash_mask;
     ff_node *node;
     uint16_t *heights; /* node_count grids */
@@ -86,7 +92,6 @@ struct ff_tree {
     uint8_t has_view, dirty;
     /* 1: nodes have gone since the last selection, so the lists of wanted nodes are broken */
     uint8_t dropped;
-    ff_reach window; /* tiles whose ground is drawn and asked for */
     /* inward normals of the view pyramid, largest component below 2^28 */
     int32_t plane[FF_PLANES][3];
     uint32_t want_head[FF_LEVELS_MAX];
@@ -108,9 +113,36 @@ static inline uint32_t ff_slot_of(const ff_tree *tree, const ff_node *node)
     FF_ASSERT(node >= tree->node && node < tree->node + tree->node_count);
     return (uint32_t)(node - tree->node);
 }
+/* ---- grounds (ff_grounds.c) ---- */
+
+/* Of several: the last one whose tiles begin at `tile` or before. */
+uint32_t ff_ground_search(const ff_tree *tree, uint32_t tile);
+/* `source` has no refinement of the node. Once that is so of all that serve its ground it is a
+ * stub. */
+void ff_node_lacks(ff_tree *tree, uint32_t slot, unsigned source);
+/* Makes a node a stub, or none, by what its sources lack now. */
+void ff_node_settle(ff_tree *tree, uint32_t slot);
+/* The lowest and highest height of all grounds, in a ground's steps: what colours span. */
+void ff_grounds_ramp(const ff_tree *tree, const ff_terrain_info *info, int32_t ramp[2]);
+
+static inline uint32_t ff_ground_number(const ff_tree *tree, uint32_t tile)
+{
+    return tree->ground_count > 1 ? ff_ground_search(tree, tile) : 0;
+}
+/* The ground that a tile or a node belongs to, or would, were it one. */
+static inline const ff_terrain_info *ff_ground_of_tile(const ff_tree *tree, uint32_t tile)
+{
+    return &tree->ground[ff_ground_number(tree, tile)];
+}
+static inline const ff_terrain_info *ff_ground_of(const ff_tree *tree, ff_key key)
+{
+    return ff_ground_of_tile(tree, ff_key_tile(key));
+}
+
+/* All grounds have nodes of one size. */
 static inline size_t ff_heights_per_node(const ff_tree *tree)
 {
-    return (size_t)ff_node_side(&tree->info) * ff_node_side(&tree->info);
+    return (size_t)ff_node_side(tree->ground) * ff_node_side(tree->ground);
 }
 static inline int ff_node_held(const ff_node *node) { return node->key != FF_KEY_NONE; }
 static inline int ff_node_has_children(const ff_node *node)
@@ -125,12 +157,17 @@ static inline uint32_t ff_node_children(const ff_node *node)
 }
 /* 1 when there is finer ground, and none is stored. */
 static inline int ff_node_is_stub(const ff_node *node) { return node->want_next == FF_SLOT_NEVER; }
+/* The bits of the sources that are known not to have the node's refinement. */
+static inline uint8_t ff_node_lacked(const ff_tree *tree, const ff_node *node)
+{
+    return tree->lacks ? tree->lacks[ff_slot_of(tree, node)] : 0;
+}
 /* 1 when the source is known no better than the node shows it. */
 static inline int ff_node_is_exact(const ff_tree *tree, const ff_node *node)
 {
     return node->error_code == 0 ||
-           (node->flags & FF_NODE_LEAF &&
-            ff_geometric_error_decode(node->error_code) <= tree->info.max_error);
+           (node->flags & FF_NODE_LEAF && ff_geometric_error_decode(node->error_code) <=
+                                              ff_ground_of(tree, node->key)->max_error);
 }
 /* Slots that the children of a node take: those that are not padding. */
 uint32_t ff_family_size(const ff_tree *tree, ff_key parent);
@@ -138,8 +175,9 @@ uint32_t ff_family_size(const ff_tree *tree, ff_key parent);
 /* A node's columns and rows of cells that have ground: the last ones may end inside the cell. */
 static inline ff_extent ff_drawn_cells(const ff_tree *tree, ff_key key)
 {
-    unsigned cell_log2 = tree->info.tile_log2 - tree->info.node_log2 - ff_key_level(key);
-    ff_extent extent = ff_shape_extent(&tree->info, key);
+    const ff_terrain_info *info = ff_ground_of(tree, key);
+    unsigned cell_log2 = info->tile_log2 - info->node_log2 - ff_key_level(key);
+    ff_extent extent = ff_shape_extent(info, key);
     FF_ASSERT(extent.columns > 0 && extent.rows > 0);
     extent.columns = ((extent.columns - 1) >> cell_log2) + 1;
     extent.rows = ((extent.rows - 1) >> cell_log2) + 1;
@@ -158,6 +196,8 @@ uint32_t ff_tree_find_nearest(const ff_tree *tree, ff_key key);
 uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent);
 /* The colours of nodes beside a new node change: forgets what their users made of them. */
 void ff_tree_reshade_beside(ff_tree *tree, ff_key key);
+/* The same of all nodes. */
+void ff_tree_reshade(ff_tree *tree);
 void ff_tree_drop_children(ff_tree *tree, ff_node *parent);
 void ff_tree_drop_root(ff_tree *tree, ff_node *root);
 

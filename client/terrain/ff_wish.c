@@ -25,25 +25,35 @@ static uint32_t times_q16(uint32_t value_q16, uint32_t factor)
 
 /* ---- roots ---- */
 
-/* Looks for missing roots in the window of tiles, from its middle outwards, and puts them into
- * `sort`, those in view first. */
+/* Adds at most `limit` missing roots of a ground, as they lie from the window's middle outwards, to
+ * the `count` found in others; returns how many there are then. Grounds take turns. */
+static uint32_t missing_of(ff_tree *tree, uint32_t g, uint32_t count, uint32_t limit)
+{
+    const ff_terrain_info *info = &tree->ground[g];
+    uint32_t found = 0, tile;
+    ff_walk walk = ff_shape_walk_out(info, &tree->view.frame, &tree->window[g],
+                                     tree->view.centre_wu);
+    while (found < limit && ff_shape_next(info, &walk, &tile)) {
+        if (ff_tree_find(tree, ff_key_make(tile, 0, 0)) != FF_SLOT_NONE) continue;
+        ff_box box;
+        ff_tile_box(tree, tile, &box);
+        uint64_t unseen = ff_box_seen(tree, &box) ? 0 : OUT_OF_VIEW,
+                 turn = (uint64_t)found * tree->ground_count + g;
+        tree->sort[count + found++] = unseen | turn << TILE_BITS | tile;
+    }
+    return count + found;
+}
+
+/* Looks for missing roots in the windows of tiles, and puts them into `sort`, those in view
+ * first. */
 static uint32_t missing_roots(ff_tree *tree)
 {
     uint32_t limit = tree->wish_capacity < tree->node_count / 2 ? 4 * tree->wish_capacity
                                                                 : 2 * tree->node_count;
-    uint32_t found = 0, tile;
+    uint32_t found = 0;
     FF_ASSERT(limit <= 2 * tree->node_count);
-    ff_walk walk = ff_shape_walk_out(&tree->info, &tree->view.frame, &tree->window,
-                                     tree->view.centre_wu);
-    while (found < limit && ff_shape_next(&tree->info, &walk, &tile)) {
-        if (ff_tree_find(tree, ff_key_make(tile, 0, 0)) != FF_SLOT_NONE) continue;
-        ff_box box;
-        FF_ASSERT(tile < ff_shape_tiles(&tree->info));
-        ff_tile_box(tree, tile, &box);
-        uint64_t unseen = ff_box_seen(tree, &box) ? 0 : OUT_OF_VIEW;
-        tree->sort[found] = unseen | (uint64_t)found << TILE_BITS | tile;
-        found++;
-    }
+    for (uint32_t g = 0; g < tree->ground_count; g++)
+        found = missing_of(tree, g, found, limit / tree->ground_count);
     ff_sort_keys(tree->sort, found);
     return found;
 }
@@ -69,7 +79,7 @@ static uint32_t root_priority(const ff_tree *tree, uint32_t tile)
     ff_box box;
     ff_tile_box(tree, tile, &box);
     uint64_t distance = (uint64_t)ff_box_distance(&box),
-             reach = (uint64_t)ff_node_edge_wu(&tree->info, 0) << 16;
+             reach = (uint64_t)ff_node_edge_wu(ff_ground_of_tile(tree, tile), 0) << 16;
     FF_ASSERT(reach > 0 && reach <= (uint64_t)INT32_MAX << 16);
     uint64_t priority = reach / (distance + 1);
     return priority > UINT32_MAX ? UINT32_MAX : (uint32_t)priority;
@@ -88,10 +98,10 @@ static void wish_roots(ff_tree *tree)
             continue;
         FF_ASSERT(ff_tree_find(tree, ff_key_make(tile, 0, 0)) == FF_SLOT_NONE);
         ff_wish *wish = &tree->wish[tree->wish_count++];
-        wish->key = ff_key_make(tile, 0, 0);
-        wish->kind = FF_KIND_ROOT;
-        wish->in_view = !(tree->sort[i] & OUT_OF_VIEW);
-        wish->priority = root_priority(tree, tile);
+        *wish = (ff_wish){ .key = ff_key_make(tile, 0, 0),
+                           .kind = FF_KIND_ROOT,
+                           .in_view = !(tree->sort[i] & OUT_OF_VIEW),
+                           .priority = root_priority(tree, tile) };
     }
 }
 
@@ -142,6 +152,7 @@ static void wish_children(ff_tree *tree)
         wish->key = node->key;
         wish->kind = FF_KIND_REFINEMENT;
         wish->in_view = !(tree->sort[i] & OUT_OF_VIEW);
+        wish->lacks = ff_node_lacked(tree, node);
         wish->priority = times_q16(node->value, tree->quality.measure == FF_MEASURE_PIXELS
                                                     ? (uint32_t)tree->quality.error_px_q8
                                                     : ONE_Q8);

@@ -72,6 +72,7 @@ static inline int ff_shape_check(const ff_terrain_info *info)
 {
     return FF_SHAPE_CALL(info, check, (info));
 }
+/* How many tiles there are: their numbers are info->first_tile and those that follow. */
 static inline uint32_t ff_shape_tiles(const ff_terrain_info *info)
 {
     return FF_SHAPE_CALL(info, tiles, (info));
@@ -226,14 +227,14 @@ static inline ff_reach ff_shape_reach(const ff_terrain_info *info, const ff_fram
 static inline int ff_shape_reaches(const ff_terrain_info *info, const ff_reach *reach,
                                    uint32_t tile)
 {
-    FF_ASSERT(tile < ff_shape_tiles(info));
+    FF_ASSERT(tile - info->first_tile < ff_shape_tiles(info));
     return FF_SHAPE_CALL(info, reaches, (info, reach, tile));
 }
 /* How far beyond the place a tile begins: an order among tiles that are in reach. */
 static inline int64_t ff_shape_tile_distance(const ff_terrain_info *info, const ff_frame *frame,
                                              const int32_t centre_wu[3], uint32_t tile)
 {
-    FF_ASSERT(tile < ff_shape_tiles(info));
+    FF_ASSERT(tile - info->first_tile < ff_shape_tiles(info));
     return FF_SHAPE_CALL(info, tile_distance, (info, frame, centre_wu, tile));
 }
 /* Walks over the tiles in reach: from the place outwards, or in the order of their numbers.
@@ -258,7 +259,7 @@ static inline int ff_shape_next(const ff_terrain_info *info, ff_walk *walk, uint
  * number of tiles each way. */
 static inline ff_sheet ff_shape_sheet(const ff_terrain_info *info, uint32_t tile)
 {
-    FF_ASSERT(tile < ff_shape_tiles(info));
+    FF_ASSERT(tile - info->first_tile < ff_shape_tiles(info));
     return FF_SHAPE_CALL(info, sheet, (info, tile));
 }
 static inline ff_sheet ff_shape_sheet_tiles(const ff_terrain_info *info)

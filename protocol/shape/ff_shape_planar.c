@@ -29,7 +29,10 @@ int ff_planar_check(const ff_terrain_info *info)
     /* An edge of 48 bits times a spacing of 32 bits would overflow: so the spacing is compared with
      * the quotient. */
     return info->spacing_wu >= 1 && info->spacing_wu <= INT32_MAX / edge_x &&
-           info->spacing_wu <= INT32_MAX / edge_y;
+           info->spacing_wu <= INT32_MAX / edge_y &&
+           info->west_wu <= INT32_MAX - (int64_t)(edge_x * info->spacing_wu) &&
+           info->south_wu <= INT32_MAX - (int64_t)(edge_y * info->spacing_wu) &&
+           info->first_tile <= FF_KEY_TILES_MAX - ff_planar_tiles(info);
 }
 
 /* Of `width` samples from `first` on, how many there are before the last of `samples`. */
@@ -41,11 +44,11 @@ static uint32_t extent_along(uint32_t first, uint32_t width, uint32_t samples)
 
 ff_extent ff_planar_extent(const ff_terrain_info *info, ff_key key)
 {
-    uint32_t tile = ff_key_tile(key), code = ff_key_code(key),
+    uint32_t tile = ff_planar_own_tile(info, ff_key_tile(key)), code = ff_key_code(key),
              edge_log2 = info->tile_log2 - ff_key_level(key);
     ff_extent extent = { 1u << edge_log2, 1u << edge_log2 };
 
-    FF_ASSERT(tile < ff_planar_tiles(info) && ff_key_level(key) < ff_terrain_levels(info));
+    FF_ASSERT(ff_key_level(key) < ff_terrain_levels(info));
     if (!(((info->samples_x - 1) | (info->samples_y - 1)) & ((1u << info->tile_log2) - 1)))
         return extent; /* the samples fill the tiles */
     extent.columns = extent_along((tile % info->tiles_x << info->tile_log2) +
@@ -59,20 +62,21 @@ ff_extent ff_planar_extent(const ff_terrain_info *info, ff_key key)
 
 ff_placed ff_planar_put(const ff_terrain_info *info, const ff_frame *frame, ff_key key)
 {
-    uint32_t tile = ff_key_tile(key), code = ff_key_code(key);
+    uint32_t tile = ff_planar_own_tile(info, ff_key_tile(key)), code = ff_key_code(key);
     int32_t tile_wu = ff_node_edge_wu(info, 0), edge_wu = ff_node_edge_wu(info, ff_key_level(key));
     ff_placed placed;
 
     (void)frame;
-    FF_ASSERT(tile < ff_planar_tiles(info) && (uint64_t)code >> (2 * ff_key_level(key)) == 0);
-    placed.planar.x_wu = (int32_t)(tile % info->tiles_x) * tile_wu;
-    placed.planar.y_wu = (int32_t)(tile / info->tiles_x) * tile_wu;
+    FF_ASSERT((uint64_t)code >> (2 * ff_key_level(key)) == 0);
+    placed.planar.x_wu = info->west_wu + (int32_t)(tile % info->tiles_x) * tile_wu;
+    placed.planar.y_wu = info->south_wu + (int32_t)(tile / info->tiles_x) * tile_wu;
     if (code) {
         placed.planar.x_wu += (int32_t)ff_morton_x(code) * edge_wu;
         placed.planar.y_wu += (int32_t)ff_morton_y(code) * edge_wu;
     }
-    FF_ASSERT(placed.planar.x_wu >= 0 && placed.planar.x_wu % edge_wu == 0);
-    FF_ASSERT(placed.planar.y_wu >= 0 && placed.planar.y_wu % edge_wu == 0);
+    FF_ASSERT(placed.planar.x_wu >= info->west_wu && placed.planar.y_wu >= info->south_wu);
+    FF_ASSERT(((int64_t)placed.planar.x_wu - info->west_wu) % edge_wu == 0);
+    FF_ASSERT(((int64_t)placed.planar.y_wu - info->south_wu) % edge_wu == 0);
     return placed;
 }
 
@@ -82,9 +86,8 @@ ff_placed ff_planar_put(const ff_terrain_info *info, const ff_frame *frame, ff_k
  * tile. */
 static int next_tile(const ff_terrain_info *info, enum ff_side side, uint32_t *tile)
 {
-    uint32_t x = *tile % info->tiles_x, y = *tile / info->tiles_x;
-
-    FF_ASSERT(y < info->tiles_y);
+    uint32_t own = ff_planar_own_tile(info, *tile), x = own % info->tiles_x,
+             y = own / info->tiles_x;
     switch (side) {
         case FF_SIDE_SOUTH: *tile -= info->tiles_x; return y > 0;
         case FF_SIDE_EAST: *tile += 1; return x + 1 < info->tiles_x;
@@ -112,7 +115,6 @@ ff_key ff_planar_across(const ff_terrain_info *info, ff_key key, enum ff_side si
     uint32_t tile = ff_key_tile(key), code;
 
     if (ff_key_step(key, side, &code) && !next_tile(info, side, &tile)) return FF_KEY_NONE;
-    FF_ASSERT(tile < ff_planar_tiles(info));
     key = ff_key_make(tile, ff_key_level(key), code);
     if (side == FF_SIDE_SOUTH || side == FF_SIDE_WEST) return key;
     return is_padding(info, key, side == FF_SIDE_NORTH) ? FF_KEY_NONE : key;
@@ -120,15 +122,15 @@ ff_key ff_planar_across(const ff_terrain_info *info, ff_key key, enum ff_side si
 
 /* ---- locate ---- */
 
-/* Along one axis: 1, the tile and the place in it, samples Q16; 0 outside. The terrain's far rim
- * belongs to its last tile. */
-static int locate_along(const ff_terrain_info *info, int32_t at_wu, int32_t last_wu, uint32_t tiles,
-                        uint32_t *tile, uint64_t *sample_q16)
+/* Along one axis, counted from the first of `samples`: 1, the tile and the place in it, samples
+ * Q16; 0 outside. The terrain's far rim belongs to its last tile. */
+static int locate_along(const ff_terrain_info *info, int64_t at_wu, uint32_t samples,
+                        uint32_t tiles, uint32_t *tile, uint64_t *sample_q16)
 {
     uint32_t tile_wu = (uint32_t)ff_node_edge_wu(info, 0), at = (uint32_t)at_wu;
 
     FF_ASSERT((uint64_t)tiles * tile_wu <= INT32_MAX);
-    if (at_wu < 0 || at_wu > last_wu) return 0;
+    if (at_wu < 0 || at_wu > ff_planar_length_wu(info, samples)) return 0;
     *tile = at == tiles * tile_wu ? tiles - 1 : at / tile_wu;
     *sample_q16 = ((uint64_t)(at - *tile * tile_wu) << 16) / info->spacing_wu;
     FF_ASSERT(*tile < tiles && *sample_q16 <= UINT64_C(1) << (info->tile_log2 + 16));
@@ -141,12 +143,12 @@ int ff_planar_locate(const ff_terrain_info *info, const ff_frame *frame, const i
     uint32_t x, y;
 
     (void)frame;
-    if (!locate_along(info, place_wu[0], ff_planar_east_wu(info), info->tiles_x, &x,
-                      &spot->column_q16) ||
-        !locate_along(info, place_wu[1], ff_planar_north_wu(info), info->tiles_y, &y,
-                      &spot->row_q16))
+    if (!locate_along(info, (int64_t)place_wu[0] - info->west_wu, info->samples_x, info->tiles_x,
+                      &x, &spot->column_q16) ||
+        !locate_along(info, (int64_t)place_wu[1] - info->south_wu, info->samples_y, info->tiles_y,
+                      &y, &spot->row_q16))
         return 0;
-    spot->tile = y * info->tiles_x + x;
+    spot->tile = info->first_tile + y * info->tiles_x + x;
     return 1;
 }
 
@@ -187,6 +189,7 @@ static int64_t floor_div(int64_t a, int64_t b)
     return a % b < 0 ? quotient - 1 : quotient;
 }
 
+/* Along one axis, counted from the first sample. */
 static void reach_along(int64_t centre_wu, int64_t view_wu, int64_t last_wu, int64_t tile_wu,
                         int64_t tiles, int32_t *first, int32_t *last)
 {
@@ -205,9 +208,11 @@ ff_reach ff_planar_reach(const ff_terrain_info *info, const ff_frame *frame,
     ff_reach reach;
 
     (void)frame;
-    reach_along(centre_wu[0], view_wu, ff_planar_east_wu(info), tile_wu, info->tiles_x,
+    reach_along((int64_t)centre_wu[0] - info->west_wu, view_wu,
+                ff_planar_length_wu(info, info->samples_x), tile_wu, info->tiles_x,
                 &reach.planar.x0, &reach.planar.x1);
-    reach_along(centre_wu[1], view_wu, ff_planar_north_wu(info), tile_wu, info->tiles_y,
+    reach_along((int64_t)centre_wu[1] - info->south_wu, view_wu,
+                ff_planar_length_wu(info, info->samples_y), tile_wu, info->tiles_y,
                 &reach.planar.y0, &reach.planar.y1);
     if (reach.planar.y1 < reach.planar.y0 || height_wu[0] - centre_wu[2] > view_wu ||
         centre_wu[2] - height_wu[1] > view_wu)
@@ -235,9 +240,9 @@ int64_t ff_planar_tile_distance(const ff_terrain_info *info, const ff_frame *fra
     return away_x > away_y ? away_x : away_y;
 }
 
-static int32_t clamp(int32_t value, int32_t lo, int32_t hi)
+static int32_t clamp(int64_t value, int32_t lo, int32_t hi)
 {
-    return value < lo ? lo : value > hi ? hi : value;
+    return value < lo ? lo : value > hi ? hi : (int32_t)value;
 }
 
 /* Square rings round the middle, from the inside: the row south of it, the one north of it, the
@@ -249,8 +254,10 @@ ff_walk ff_planar_walk_out(const ff_terrain_info *info, const ff_frame *frame,
     ff_walk walk = { .planar = { .reach = *reach, .side = -1 } };
 
     (void)frame;
-    walk.planar.x = clamp(centre_wu[0] / edge_wu, reach->planar.x0, reach->planar.x1);
-    walk.planar.y = clamp(centre_wu[1] / edge_wu, reach->planar.y0, reach->planar.y1);
+    walk.planar.x = clamp(((int64_t)centre_wu[0] - info->west_wu) / edge_wu, reach->planar.x0,
+                          reach->planar.x1);
+    walk.planar.y = clamp(((int64_t)centre_wu[1] - info->south_wu) / edge_wu, reach->planar.y0,
+                          reach->planar.y1);
     return walk;
 }
 
@@ -327,8 +334,7 @@ int ff_planar_next(const ff_terrain_info *info, ff_walk *walk, uint32_t *tile)
 {
     while (!walk->planar.left)
         if (!next_run(info, walk)) return 0;
-    *tile = walk->planar.tile;
-    FF_ASSERT(*tile < ff_planar_tiles(info));
+    *tile = info->first_tile + walk->planar.tile;
     walk->planar.tile += walk->planar.step;
     walk->planar.left--;
     return 1;

@@ -1,7 +1,8 @@
 /* The plane, flat or bent about the viewer (ff_terrain_info.curve_q60): tiles_x by tiles_y tiles in
- * a rectangle, tile number = y * tiles_x + x, x to the east, y to the north; a column is spacing_wu
- * of x, a row of y, a height is z. One frame: world axes, the south-west sample at x = y = 0. What
- * ff_shape.h says of each function is not said again; it includes this file. */
+ * a rectangle, tile number = first_tile + y * tiles_x + x, x to the east, y to the north; a column
+ * is spacing_wu of x, a row of y, a height is z. One frame: world axes, the south-west sample at
+ * west_wu, south_wu. What ff_shape.h says of each function is not said again; it includes this
+ * file. */
 #ifndef FF_SHAPE_PLANAR_H
 #define FF_SHAPE_PLANAR_H
 
@@ -49,17 +50,29 @@ static inline uint32_t ff_planar_tiles(const ff_terrain_info *info)
     return info->tiles_x * info->tiles_y;
 }
 
+/* A tile counted from the terrain's own first. */
+static inline uint32_t ff_planar_own_tile(const ff_terrain_info *info, uint32_t tile)
+{
+    FF_ASSERT(tile - info->first_tile < ff_planar_tiles(info));
+    return tile - info->first_tile;
+}
+
+/* From the first of so many samples to the last. */
+static inline int32_t ff_planar_length_wu(const ff_terrain_info *info, uint32_t samples)
+{
+    FF_ASSERT(samples >= 2 && samples - 1 <= INT32_MAX / info->spacing_wu);
+    return (int32_t)((samples - 1) * info->spacing_wu);
+}
+
 /* x and y of the last sample. */
 static inline int32_t ff_planar_east_wu(const ff_terrain_info *info)
 {
-    FF_ASSERT(info->samples_x >= 2 && info->samples_x - 1 <= INT32_MAX / info->spacing_wu);
-    return (int32_t)((info->samples_x - 1) * info->spacing_wu);
+    return info->west_wu + ff_planar_length_wu(info, info->samples_x);
 }
 
 static inline int32_t ff_planar_north_wu(const ff_terrain_info *info)
 {
-    FF_ASSERT(info->samples_y >= 2 && info->samples_y - 1 <= INT32_MAX / info->spacing_wu);
-    return (int32_t)((info->samples_y - 1) * info->spacing_wu);
+    return info->south_wu + ff_planar_length_wu(info, info->samples_y);
 }
 
 static inline int32_t ff_planar_least(int32_t a, int32_t b) { return a < b ? a : b; }
@@ -98,17 +111,16 @@ static inline int64_t ff_planar_coarse_drop_wu(const ff_terrain_info *info, uint
     return (int64_t)((uint64_t)(east * east + north * north) * info->curve_q60 >> 30);
 }
 
-/* A square, as far as there is ground in it. */
-static inline ff_box ff_planar_square(const ff_terrain_info *info, int32_t x_wu, int32_t y_wu,
-                                      int32_t edge_wu, const int64_t height_wu[2],
-                                      const int32_t from_wu[3])
+/* From a south-west corner to the ground's end, or to a place before it. */
+static inline ff_box ff_planar_part(const ff_terrain_info *info, int32_t x_wu, int32_t y_wu,
+                                    int32_t east_wu, int32_t north_wu, const int64_t height_wu[2],
+                                    const int32_t from_wu[3])
 {
     ff_box box;
-    FF_ASSERT(x_wu <= INT32_MAX - edge_wu && y_wu <= INT32_MAX - edge_wu);
     box.lo[0] = (int64_t)x_wu - from_wu[0];
-    box.hi[0] = (int64_t)ff_planar_least(x_wu + edge_wu, ff_planar_east_wu(info)) - from_wu[0];
+    box.hi[0] = (int64_t)ff_planar_least(east_wu, ff_planar_east_wu(info)) - from_wu[0];
     box.lo[1] = (int64_t)y_wu - from_wu[1];
-    box.hi[1] = (int64_t)ff_planar_least(y_wu + edge_wu, ff_planar_north_wu(info)) - from_wu[1];
+    box.hi[1] = (int64_t)ff_planar_least(north_wu, ff_planar_north_wu(info)) - from_wu[1];
     FF_ASSERT(box.lo[0] < box.hi[0] && box.lo[1] < box.hi[1]); /* no node of padding is held */
     box.lo[2] = height_wu[0] - from_wu[2];
     box.hi[2] = height_wu[1] - from_wu[2];
@@ -124,8 +136,10 @@ static inline ff_box ff_planar_square(const ff_terrain_info *info, int32_t x_wu,
 static inline ff_box ff_planar_box(const ff_terrain_info *info, ff_key key, const ff_placed *placed,
                                    const int64_t height_wu[2], const int32_t from_wu[3])
 {
-    return ff_planar_square(info, placed->planar.x_wu, placed->planar.y_wu,
-                            ff_node_edge_wu(info, ff_key_level(key)), height_wu, from_wu);
+    int32_t edge_wu = ff_node_edge_wu(info, ff_key_level(key)), x_wu = placed->planar.x_wu,
+            y_wu = placed->planar.y_wu;
+    FF_ASSERT(x_wu <= INT32_MAX - edge_wu && y_wu <= INT32_MAX - edge_wu);
+    return ff_planar_part(info, x_wu, y_wu, x_wu + edge_wu, y_wu + edge_wu, height_wu, from_wu);
 }
 
 static inline void ff_planar_to_middle(const ff_terrain_info *info, ff_key key,
@@ -145,7 +159,8 @@ static inline ff_box ff_planar_bounds(const ff_terrain_info *info, const ff_fram
                                       const int64_t height_wu[2], const int32_t from_wu[3])
 {
     (void)frame;
-    return ff_planar_square(info, 0, 0, INT32_MAX, height_wu, from_wu);
+    return ff_planar_part(info, info->west_wu, info->south_wu, INT32_MAX, INT32_MAX, height_wu,
+                          from_wu);
 }
 
 /* Columns run east, rows north, and cells are square. */
@@ -208,7 +223,8 @@ static inline void ff_planar_leave(const ff_terrain_info *info, const ff_frame *
 static inline int ff_planar_reaches(const ff_terrain_info *info, const ff_reach *reach,
                                     uint32_t tile)
 {
-    int32_t x = (int32_t)(tile % info->tiles_x), y = (int32_t)(tile / info->tiles_x);
+    uint32_t own = ff_planar_own_tile(info, tile);
+    int32_t x = (int32_t)(own % info->tiles_x), y = (int32_t)(own / info->tiles_x);
     return x >= reach->planar.x0 && x <= reach->planar.x1 && y >= reach->planar.y0 &&
            y <= reach->planar.y1;
 }
@@ -217,7 +233,8 @@ static inline int ff_planar_reaches(const ff_terrain_info *info, const ff_reach 
 
 static inline ff_sheet ff_planar_sheet(const ff_terrain_info *info, uint32_t tile)
 {
-    return (ff_sheet){ tile % info->tiles_x, tile / info->tiles_x };
+    uint32_t own = ff_planar_own_tile(info, tile);
+    return (ff_sheet){ own % info->tiles_x, own / info->tiles_x };
 }
 
 static inline ff_sheet ff_planar_sheet_tiles(const ff_terrain_info *info)
@@ -232,8 +249,8 @@ static inline ff_sheet ff_planar_sheet_samples(const ff_terrain_info *info)
 
 static inline void ff_planar_size_wu(const ff_terrain_info *info, int64_t size_wu[2])
 {
-    size_wu[0] = ff_planar_east_wu(info);
-    size_wu[1] = ff_planar_north_wu(info);
+    size_wu[0] = ff_planar_length_wu(info, info->samples_x);
+    size_wu[1] = ff_planar_length_wu(info, info->samples_y);
 }
 
 #endif

@@ -39,7 +39,7 @@ static int make_view(panorama_ground *ground, c3d_device *device)
     ground->textures = (ff_textures){
         .device = device, .info = *info, .slot = ground->slot, .slot_count = FF_PANORAMA_TEXTURES
     };
-    ff_terrain_view_attach(&ground->view, ground->tree, info, &ground->textures);
+    ff_terrain_view_attach(&ground->view, ground->tree, &ground->textures);
     return ff_terrain_view_strips(&ground->view, info->node_log2, &strips);
 }
 

@@ -256,7 +256,7 @@ static int open_device(fly_reference *reference)
                                            .vertices = reference->vertices,
                                            .heights_per_node = ff_node_side(info) *
                                                                ff_node_side(info) };
-    ff_terrain_view_attach(&reference->ground, reference->tree, info, &reference->textures);
+    ff_terrain_view_attach(&reference->ground, reference->tree, &reference->textures);
     ff_sky_make(&reference->sky, reference->device);
     return ff_terrain_view_strips(&reference->ground, info->node_log2, &strips);
 }

@@ -76,7 +76,7 @@ static void far_nodes_lie_in_the_same_frame_as_near_ones(void **state)
     ff_ground_frame frame = { .set = 0 };
     c3d_draw draw = { .flags = 0 };
     c3d_vertex fine[COUNT], coarse[COUNT], near[COUNT];
-    ff_ground_frame_follow(&frame, &info, &camera);
+    ff_ground_frame_follow(&frame, &info, 1, &camera);
     ff_ground_frame_draw(&frame, &info, &camera, &draw);
     /* the borders of both lie at sample 20 000 */
     ff_drawn a = place(&frame, &info, 0, 12, 20000 / 8, 20000 / 8, fine),
@@ -111,8 +111,8 @@ static void frames_follow_any_camera(void **state)
         c3d_draw draw = { .flags = 0 };
         c3d_vertex vertex[COUNT];
         assert_int_equal(ff_terrain_check(&info), FF_OK);
-        assert_int_equal(ff_ground_frame_follow(&frame, &info, &camera), 1);
-        assert_int_equal(ff_ground_frame_follow(&frame, &info, &camera), 0);
+        assert_int_equal(ff_ground_frame_follow(&frame, &info, 1, &camera), 1);
+        assert_int_equal(ff_ground_frame_follow(&frame, &info, 1, &camera), 0);
         ff_ground_frame_draw(&frame, &info, &camera, &draw);
         uint32_t level = sys_random_below(&random, 13);
         ff_drawn drawn = place(&frame, &info, sys_random_below(&random, 4), level,
@@ -151,11 +151,11 @@ static double off_by(sys_random *random, double radius_m)
     c3d_vertex vertex[COUNT];
     info.curve_q60 = (uint32_t)(ldexp(1, 60) / (2 * radius_m * FF_WU_PER_METRE) + 0.5);
     info.hscale_q24 = 1u << (18 + sys_random_u32(random) % 6); /* ground up to 8 km */
-    ff_ground_frame_follow(&frame, &info, &camera);
+    ff_ground_frame_follow(&frame, &info, 1, &camera);
     for (int axis = 0; axis < 2; axis++)
         camera.pos_wu[axis] += ((int32_t)(sys_random_u32(random) % 1001) - 500) * FF_WU_PER_METRE;
     camera.pos_wu[2] = (int32_t)(sys_random_u32(random) % (12000 * FF_WU_PER_METRE));
-    assert_int_equal(ff_ground_frame_follow(&frame, &info, &camera), 0);
+    assert_int_equal(ff_ground_frame_follow(&frame, &info, 1, &camera), 0);
     ff_ground_frame_draw(&frame, &info, &camera, &draw);
     uint32_t at = sys_random_u32(random) % (1u << 24);
     place(&frame, &info, sys_random_u32(random) % 4, level, at % (1u << level),

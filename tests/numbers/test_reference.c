@@ -106,7 +106,7 @@ static int try_ordinary_ground(sys_random *random, const c3d_camera *camera, gro
     for (int axis = 0; axis < 2; axis++)
         earlier.pos_wu[axis] += ref_between(random, -500 * M, 500 * M);
     ff_ground_frame frame = { .set = 0 };
-    ff_ground_frame_follow(&frame, &info, &earlier);
+    ff_ground_frame_follow(&frame, &info, 1, &earlier);
     double point[3];
     ref_camera_of(&view->camera, &view->ref);
     ref_point_in_view(random, &view->ref, point);
@@ -340,22 +340,22 @@ static void culling_drops_nothing_seen(void **state)
 
 static void random_node(sys_random *random, struct ff_tree *tree, ff_node *node)
 {
+    static ff_terrain_info ground;
     tree->view.camera = ref_ordinary_camera(random);
-    tree->info = (ff_terrain_info){ .node_log2 = 3,
-                                    .tile_log2 = 10,
-                                    .tiles_x = 64, /* the node lies well inside */
-                                    .tiles_y = 64,
-                                    .samples_x = (64 << 10) + 1,
-                                    .samples_y = (64 << 10) + 1,
-                                    .spacing_wu = 10 * M,
-                                    .hscale_q24 = (uint32_t)ref_between(random, 1 << 20, 1 << 25),
-                                    .hoffset_wu = ref_between(random, -500 * M, 500 * M) };
+    ground = (ff_terrain_info){ .node_log2 = 3,
+                                .tile_log2 = 10,
+                                .tiles_x = 64, /* the node lies well inside */
+                                .tiles_y = 64,
+                                .samples_x = (64 << 10) + 1,
+                                .samples_y = (64 << 10) + 1,
+                                .spacing_wu = 10 * M,
+                                .hscale_q24 = (uint32_t)ref_between(random, 1 << 20, 1 << 25),
+                                .hoffset_wu = ref_between(random, -500 * M, 500 * M) };
     tree->view.camera.pos_wu[0] = ref_between(random, 0, 163840 * M);
     tree->view.camera.pos_wu[1] = ref_between(random, 0, 163840 * M);
-    uint32_t level = sys_random_below(random, 8);
-    node->key = ff_key_make(0, level, 0);
-    /* near enough for the threshold to be met */
-    int32_t reach = 8 * ff_node_edge_wu(&tree->info, level);
+    tree->ground = &ground;
+    node->key = ff_key_make(0, sys_random_below(random, 8), 0);
+    int32_t reach = 8 * ff_node_edge_wu(&ground, ff_key_level(node->key)); /* for the threshold */
     node->placed.planar.x_wu = tree->view.camera.pos_wu[0] + ref_between(random, -reach, reach);
     node->placed.planar.y_wu = tree->view.camera.pos_wu[1] + ref_between(random, -reach, reach);
     node->height_min = (uint16_t)ref_between(random, 0, 3000);
@@ -380,10 +380,10 @@ static void node_choice_by_distance(void **state)
         tree.quality = (ff_quality){ .measure = FF_MEASURE_DISTANCE,
                                      .c_q8 = ref_between(&random, 128, 12 * 256) };
         ref_camera_of(&tree.view.camera, &ref);
-        double edge = ff_node_edge_wu(&tree.info, ff_key_level(node.key));
+        double edge = ff_node_edge_wu(tree.ground, ff_key_level(node.key));
         double middle[3] = { node.placed.planar.x_wu + edge / 2, node.placed.planar.y_wu + edge / 2,
-                             tree.info.hoffset_wu +
-                                 node.height_mean * (tree.info.hscale_q24 / 65536.0) };
+                             tree.ground->hoffset_wu +
+                                 node.height_mean * (tree.ground->hscale_q24 / 65536.0) };
         double c = tree.quality.c_q8 / 256.0, f = ref_node_f(&ref, middle, edge, c);
         double band = 1.0 / 32768 + 3 / (edge * c);
         int wants = ff_value_of_split(&tree, &node) > FF_VALUE_ONE;
@@ -412,13 +412,13 @@ static void node_choice_by_pixels(void **state)
         tree.quality = (ff_quality){ .measure = FF_MEASURE_PIXELS,
                                      .error_px_q8 = ref_between(&random, 64, 8 * 256) };
         ref_camera_of(&tree.view.camera, &ref);
-        double edge = ff_node_edge_wu(&tree.info, ff_key_level(node.key)),
-               step = tree.info.hscale_q24 / 65536.0;
+        double edge = ff_node_edge_wu(tree.ground, ff_key_level(node.key)),
+               step = tree.ground->hscale_q24 / 65536.0;
         double error = ff_geometric_error_decode(node.error_code) * step;
         double low[3] = { node.placed.planar.x_wu, node.placed.planar.y_wu,
-                          tree.info.hoffset_wu + node.height_min * step - error };
+                          tree.ground->hoffset_wu + node.height_min * step - error };
         double high[3] = { node.placed.planar.x_wu + edge, node.placed.planar.y_wu + edge,
-                           tree.info.hoffset_wu + node.height_max * step + error };
+                           tree.ground->hoffset_wu + node.height_max * step + error };
         double px = ref_error_px(&ref, low, high, error),
                allowed = tree.quality.error_px_q8 / 256.0;
         int wants = ff_value_of_split(&tree, &node) > FF_VALUE_ONE;

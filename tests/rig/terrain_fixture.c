@@ -84,7 +84,7 @@ void fixture_samples(terrain_fixture *fx, uint32_t samples_x, uint32_t samples_y
 void fixture_tree(terrain_fixture *fx, uint32_t node_count, uint32_t wish_count)
 {
     fixture_free(fx);
-    ff_tree_desc desc = { fx->info, node_count, wish_count, fx->hidden };
+    ff_tree_desc desc = { fx->info, node_count, wish_count, fx->hidden, 0, 0 };
     size_t bytes = ff_tree_bytes(&desc), decoder_bytes = ff_decoder_bytes(&fx->info);
     assert_true(bytes > 0);
     fx->tree_memory = malloc(bytes);
@@ -126,7 +126,8 @@ static patch patch_of(const terrain_fixture *fx, ff_key key)
     ff_shape_place(&fx->info, key, &placed, 0, last, 0, row_wu);
     patch p = { .edge = edge };
     for (int axis = 0; axis < 2; axis++) {
-        p.from[axis] = from_wu[axis] / (int32_t)fx->info.spacing_wu;
+        int32_t corner_wu = axis ? fx->info.south_wu : fx->info.west_wu;
+        p.from[axis] = (from_wu[axis] - corner_wu) / (int32_t)fx->info.spacing_wu;
         p.column[axis] = sign(column_wu[axis] - from_wu[axis]);
         p.row[axis] = sign(row_wu[axis] - from_wu[axis]);
     }
@@ -207,7 +208,7 @@ void fixture_decoded(const terrain_fixture *fx, ff_key key, uint16_t *heights)
     }
 }
 
-int fixture_deliver(terrain_fixture *fx, ff_key key, int refinement)
+int fixture_deliver_from(terrain_fixture *fx, ff_key key, int refinement, unsigned by)
 {
     uint32_t side = ff_node_side(&fx->info);
     patch p = patch_of(fx, key);
@@ -225,7 +226,7 @@ int fixture_deliver(terrain_fixture *fx, ff_key key, int refinement)
         assert_int_equal(ff_decode_root(fx->decoder, payload, (size_t)bytes, &residuals), FF_OK);
         residuals.leaf = fx->leaf_level == 0;
         residuals.stub = fx->is_stub && fx->is_stub(key);
-        return ff_tree_deliver_root(fx->tree, ff_key_tile(key), &residuals);
+        return ff_tree_deliver_root(fx->tree, ff_key_tile(key), by, &residuals);
     }
     uint8_t error[4];
     for (uint32_t q = 0; q < 4; q++) {
@@ -240,7 +241,12 @@ int fixture_deliver(terrain_fixture *fx, ff_key key, int refinement)
     residuals.leaf = fx->leaf_level == ff_key_level(key) + 1 ? 15 : 0;
     for (uint32_t q = 0; q < 4 && fx->is_stub; q++)
         residuals.stub |= (uint8_t)(fx->is_stub(ff_key_child(key, q)) << q);
-    return ff_tree_deliver_children(fx->tree, key, &residuals);
+    return ff_tree_deliver_children(fx->tree, key, by, &residuals);
+}
+
+int fixture_deliver(terrain_fixture *fx, ff_key key, int refinement)
+{
+    return fixture_deliver_from(fx, key, refinement, 0);
 }
 
 /* ---- feeding ---- */

@@ -42,6 +42,7 @@ ff_tree_stats fixture_stats(const terrain_fixture *fx);
 void fixture_decoded(const terrain_fixture *fx, ff_key key, uint16_t *heights);
 /* Encodes, decodes and delivers one wish; the tree's answer. */
 int fixture_deliver(terrain_fixture *fx, ff_key key, int refinement);
+int fixture_deliver_from(terrain_fixture *fx, ff_key key, int refinement, unsigned by);
 /* Selects and delivers until the tree wishes for nothing more (or `rounds` are over), then selects;
  * number of deliveries. */
 uint32_t fixture_settle(terrain_fixture *fx, const ff_view *view, const ff_quality *quality,

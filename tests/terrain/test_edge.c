@@ -99,7 +99,10 @@ static void judge_cut(terrain_fixture *fx, const ff_strips *strips)
     int64_t area = 0;
     uint32_t triangles = 0, drawn = ff_tree_drawn(fx->tree, &seen),
              count = ff_tree_cut(fx->tree, &cut);
-    ff_ground_frame frame = { .origin_wu = { 7 * CELL_WU, 3 * CELL_WU }, .set = 1 };
+    int32_t east = (int32_t)fx->info.samples_x - 1, north = (int32_t)fx->info.samples_y - 1;
+    ff_ground_frame frame = { .origin_wu = { (east < 7 ? east : 7) * CELL_WU,
+                                             (north < 3 ? north : 3) * CELL_WU },
+                              .set = 1 };
     fixture_assert_whole(fx);
     if (!slow_watertight_check(&fx->info, cut, count, why, sizeof why)) fail_msg("%s", why);
     for (uint32_t i = 0; i < count; i++) {

@@ -33,13 +33,13 @@ static void expect_predicted(const terrain_fixture *fx, const ff_node *node)
     const ff_tree *tree = fx->tree;
     size_t heights = ff_heights_per_node(tree);
     uint16_t refined[FF_REFINED_HEIGHTS_MAX], child[FF_NODE_HEIGHTS_MAX];
-    ff_predict_children(&tree->info, ff_shape_cells(&tree->info, tree->node[node->parent].key, 1),
+    ff_predict_children(tree->ground, ff_shape_cells(tree->ground, tree->node[node->parent].key, 1),
                         tree->heights + node->parent * heights, refined);
-    ff_refined_child(&tree->info, refined, ff_key_quadrant(node->key), child);
+    ff_refined_child(tree->ground, refined, ff_key_quadrant(node->key), child);
     assert_memory_equal(child, tree->heights + ff_slot_of(tree, node) * heights,
                         heights * sizeof *child);
     assert_int_equal(node->error_code,
-                     ff_geometric_error_below(&tree->info, tree->node[node->parent].error_code));
+                     ff_geometric_error_below(tree->ground, tree->node[node->parent].error_code));
     assert_true(node->flags & FF_NODE_LEAF);
 }
 
@@ -82,7 +82,7 @@ static uint32_t split_of_flat(terrain_fixture *fx, uint8_t error_code, uint16_t 
                           .value = value };
     ff_view view = fixture_view(640, 640, 100, 0, -30);
     ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
-    assert_int_equal(ff_tree_deliver_root(fx->tree, 0, &root), FF_OK);
+    assert_int_equal(ff_tree_deliver_root(fx->tree, 0, 0, &root), FF_OK);
     ff_tree_select(fx->tree, &view, &quality);
     uint32_t count = ff_tree_to_make(fx->tree);
     ff_tree_select(fx->tree, &view, &quality);

@@ -22,7 +22,9 @@ static void slope_colour(int east, int north, uint8_t rgba[4])
         for (int column = 0; column < 11; column++)
             framed[row * 11 + column] = (uint16_t)(1500 + (column - 5) * east + (row - 5) * north);
     }
-    const ff_shade_grid grid = { &info, ff_key_make(0, 0, 0), 2560, framed };
+    const ff_shade_grid grid = {
+        &info, ff_key_make(0, 0, 0), 2560, framed, { info.height_min, info.height_max }
+    };
     ff_shade(&grid, 4, 4, rgba);
 }
 
@@ -62,7 +64,9 @@ static void water_at_zero_only(void **state)
     ff_terrain_info info = {
         .node_log2 = 3, .hscale_q24 = 1 << 24, .height_min = 0, .height_max = 3000
     };
-    const ff_shade_grid grid = { &info, ff_key_make(0, 0, 0), 2560, framed };
+    const ff_shade_grid grid = {
+        &info, ff_key_make(0, 0, 0), 2560, framed, { info.height_min, info.height_max }
+    };
     ff_shade(&grid, 0, 8, sea);
     assert_true(sea[2] > sea[0]);
     info.hoffset_wu = 100 * FF_WU_PER_METRE; /* the lowest ground lies 100 m high */

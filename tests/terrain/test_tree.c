@@ -352,12 +352,12 @@ static void bad_deliveries_are_refused(void **state)
     fixture_usual(&fx, 100);
     int32_t value[FF_REFINED_HEIGHTS_MAX] = { 0 };
     ff_residuals residuals = { .count = 81, .value = value };
-    assert_int_equal(ff_tree_deliver_root(fx.tree, 6, &residuals), FF_ERR_RANGE);
-    assert_int_equal(ff_tree_deliver_children(fx.tree, ff_key_make(0, 4, 0), &residuals),
+    assert_int_equal(ff_tree_deliver_root(fx.tree, 6, 0, &residuals), FF_ERR_RANGE);
+    assert_int_equal(ff_tree_deliver_children(fx.tree, ff_key_make(0, 4, 0), 0, &residuals),
                      FF_ERR_RANGE);
-    assert_int_equal(ff_tree_deliver_children(fx.tree, ff_key_make(0, 1, 7), &residuals),
+    assert_int_equal(ff_tree_deliver_children(fx.tree, ff_key_make(0, 1, 7), 0, &residuals),
                      FF_ERR_RANGE);
-    assert_int_equal(ff_tree_deliver_children(fx.tree, ff_key_make(0, 1, 3), &residuals),
+    assert_int_equal(ff_tree_deliver_children(fx.tree, ff_key_make(0, 1, 3), 0, &residuals),
                      FF_ERR_NOT_FOUND);
     assert_int_equal(fixture_stats(&fx).orphans, 1);
     fixture_free(&fx);
@@ -368,7 +368,7 @@ static void trees_need_their_memory(void **state)
     (void)state;
     terrain_fixture fx;
     fixture_make(&fx, 3, 7, 2, 2, fixture_hills);
-    ff_tree_desc desc = { fx.info, 7, 10, FF_HIDDEN_FETCHED };
+    ff_tree_desc desc = { fx.info, 7, 10, FF_HIDDEN_FETCHED, 0, 0 };
     assert_int_equal(ff_tree_bytes(&desc), 0);
     desc.node_count = 4096;
     size_t bytes = ff_tree_bytes(&desc), per_node = bytes / desc.node_count;

@@ -1,0 +1,27 @@
+/* Stands in for ff_grounds.c in builds for one ground and one source. */
+#include "ff_tree_local.h"
+
+const uint8_t ff_grounds_built = 0;
+
+uint32_t ff_ground_search(const ff_tree *tree, uint32_t tile) { return (void)tree, (void)tile, 0; }
+int ff_tree_add_ground(ff_tree *tree, const ff_terrain_info *info)
+{
+    return (void)tree, (void)info, FF_ERR_FULL;
+}
+void ff_grounds_ramp(const ff_tree *tree, const ff_terrain_info *info, int32_t ramp[2])
+{
+    (void)tree, (void)info, (void)ramp;
+}
+void ff_node_lacks(ff_tree *tree, uint32_t slot, unsigned source)
+{
+    (void)tree, (void)slot, (void)source;
+}
+void ff_node_settle(ff_tree *tree, uint32_t slot) { (void)tree, (void)slot; }
+void ff_tree_lacks(ff_tree *tree, ff_key key, unsigned source)
+{
+    (void)tree, (void)key, (void)source;
+}
+void ff_tree_set_sources(ff_tree *tree, uint32_t ground, uint8_t mask)
+{
+    (void)tree, (void)ground, (void)mask;
+}
