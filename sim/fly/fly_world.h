@@ -13,10 +13,10 @@
 
 typedef struct fly_world {
     const fly_options *options;
-    int64_t now_us; /* the clock of the flight */
-    ff_packs packs;       /* the server's: its grounds */
-    ff_packs locals;      /* on the device, each for itself */
-    const ff_pack *pack;  /* the first of the server's */
+    int64_t now_us;      /* the clock of the flight */
+    ff_packs packs;      /* the server's: its grounds */
+    ff_packs locals;     /* on the device, each for itself */
+    const ff_pack *pack; /* the first of the server's */
     ff_source_desc more[FF_SOURCES_MAX - 1];
     /* a moderate level, for the path; the whole ground, with an audit */
     sim_ground path_ground, true_ground;

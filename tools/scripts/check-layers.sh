@@ -71,7 +71,9 @@ client/images       client/ask client/terrain protocol/ common3d
 client/ground       client/farfield.h client/images client/terrain protocol/ common3d
 client/panorama     client client/ask client/ahead protocol/ common3d
 client/balance      client
+client/several      client client/terrain protocol/ platform/sys.h
 client              client/ protocol/ common3d platform/sys.h
+server/packs        protocol/ platform/sys.h
 server/view         client/terrain protocol/ common3d
 server/session      server/view protocol/ platform/sys.h
 server/panorama     client/terrain client/ground client/images protocol/ common3d platform/sys.h
@@ -81,8 +83,8 @@ sim/options         platform/options client/farfield.h
 sim/link            platform/options server/session server/panorama client/farfield.h protocol/ platform/sys.h
 sim/judge           client/terrain client/images protocol/ common3d platform/sys.h
 sim/tape            client/farfield.h protocol/ platform/sys.h
-sim/fly             platform/options sim/options sim/link sim/judge sim/tape client/farfield.h client/ff_sky.h client/terrain client/ground client/images protocol/ common3d platform/sys.h
-sim/view            platform/options sim/options sim/link client/farfield.h protocol/ common3d platform/sys.h
+sim/fly             platform/options sim/options sim/link sim/judge sim/tape server/packs client/farfield.h client/ff_sky.h client/terrain client/ground client/images protocol/ common3d platform/sys.h
+sim/view            platform/options sim/options sim/link server/packs client/farfield.h protocol/ common3d platform/sys.h
 sim/handheld        platform/options sim/options sim/tape client/farfield.h protocol/ common3d platform/sys.h
 tools/bake          platform/options tools/bake/ client/farfield.h protocol/ platform/sys.h
 tools/bake/raster   tools/bake protocol/ platform/sys.h
