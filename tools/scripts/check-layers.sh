@@ -175,6 +175,7 @@ shape_words() { # PATTERN that no code may have but protocol/shape, the tests, a
     protocol/ff_bytes.c        reads and writes it
     sim/judge/sim_ground.c     compares two terrains
     client/ground/ff_ground_frame.c  a vertex is placed in units of a sample
+    client/terrain/ff_cover.c  the finer of two grounds
     tools/bake/bake_run.c      describes the raster; reports it
     tools/bake/bake_estimate.c  the same, beforehand
     tools/bake/bake_fault.c    says which field is out of range
@@ -184,6 +185,7 @@ ff_node_(edge|cell)_wu
     protocol/ff_terrain.h      defines them: nominal lengths
     client/terrain/ff_measure.c  the e of f = d / (e C)
     client/terrain/ff_wish.c   the same, of roots
+    client/terrain/ff_cover.c  how far grounds over each other keep from each other's rims, and the steps between tiles
     client/terrain/ff_select.c  hands a node's cell to who draws it
     client/images/ff_textures.c  the e of images
     client/client_update.c     how far beyond its middle a node reaches, at most
