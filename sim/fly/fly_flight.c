@@ -143,14 +143,21 @@ static int read_audit(fly_flight *flight, fly_sources *from)
                       .back_wu = panorama->server_back_wu ? panorama->server_back_wu : INT32_MAX,
                       .face_size = from->client.face_size }
     };
+    uint32_t all;
     sim_audit_result *audit = &from->audit;
-    if (tree) view.drawn_count = ff_tree_in_view(tree, &view.drawn);
+    if (tree) {
+        view.drawn_count = ff_tree_in_view(tree, &view.drawn);
+        view.grounds.info = ff_tree_grounds(tree, &view.grounds.count);
+    }
     (void)ff_client_panorama(world->client, view.panorama.pos_wu, &view.faces);
     int rc = sim_audit_frame(world->auditor, &view, audit);
     if (rc != FF_OK) return fail("auditor", ff_error_text(rc));
-    from->truth_error_m = world->truth_error_m;
-    uint32_t all = audit->ground_pixels + audit->panorama_pixels + audit->undrawn_pixels;
+    from->truth_error_m = world->grounds.truth_error_m;
+    all = audit->ground_pixels + audit->panorama_pixels + audit->undrawn_pixels;
     from->panorama_px_percent = all ? 100.0 * audit->panorama_pixels / all : 0;
+    for (unsigned i = 0; i < FF_GROUNDS_MAX; i++)
+        from->ground_px_percent[i] = all ? 100.0 * audit->drawn_pixels[i] / all : 0;
+    if (!audit->seam_pixels) audit->seam_px_p95 = audit->seam_px_max = NAN;
     if (!all && !audit->sky_pixels) no_errors(audit);
     if (!audit->skyline_columns) no_skyline(audit);
     return 0;
@@ -168,6 +175,8 @@ static void judge_nothing(fly_sources *from)
     sim_relevance_figures *f = &from->relevance;
     no_errors(&from->audit);
     no_skyline(&from->audit);
+    from->audit.seam_px_p95 = from->audit.seam_px_max = NAN;
+    for (unsigned i = 0; i < FF_GROUNDS_MAX; i++) from->ground_px_percent[i] = NAN;
     for (unsigned kind = 0; kind < FF_DATA_CLASSES; kind++) f->came[kind] = f->unused[kind] = NAN;
     from->audit.undrawn_percent = from->audit.filled_percent = from->panorama_px_percent =
         from->truth_error_m = NAN;
@@ -279,22 +288,31 @@ static void check_cracks(fly_flight *flight, double t_s)
     char why[256];
     const ff_drawn *list;
     const ff_tree *tree = ff_client_tree(flight->world->client);
-    uint32_t count = tree ? ff_tree_cut(tree, &list) : 0;
-    if (!count || sim_watertight_check(&flight->world->pack->header.info, ff_tree_frame(tree), list,
-                                       count, why, sizeof why))
+    uint32_t count = tree ? ff_tree_cut(tree, &list) : 0, grounds;
+    const ff_terrain_info *info = count ? ff_tree_grounds(tree, &grounds) : NULL;
+    if (!count || sim_watertight_check_grounds(info, grounds, ff_tree_frame(tree), list, count, why,
+                                               sizeof why))
         return;
     if (!flight->totals.crack_frames++)
         fprintf(stderr, "farfield-fly: crack at %.3f s: %s\n", t_s, why);
 }
 
-/* The path, the auditor and the search for cracks look at --pack: a server of other ground makes
- * them meaningless. */
+/* The path and the auditor look at --pack and --local: a server of other ground makes them
+ * meaningless. */
 static int check_terrain(const fly_flight *flight)
 {
-    const ff_terrain_info *info = ff_client_terrain(flight->world->client);
-    if (!info || info->checksum == flight->world->pack->header.info.checksum) return 0;
-    return fail(flight->options->server ? flight->options->server : flight->options->pack_path,
-                "serves another terrain than --pack");
+    const ff_tree *tree = ff_client_tree(flight->world->client);
+    const ff_packs *packs = &flight->world->grounds.packs;
+    const char *server = flight->options->server ? flight->options->server
+                                                 : flight->options->pack_path;
+    uint32_t count;
+    if (!tree) return 0;
+    const ff_terrain_info *info = ff_tree_grounds(tree, &count);
+    for (uint32_t i = 0; i < count && i < packs->count; i++)
+        if (info[i].checksum != packs->pack[i].header.info.checksum)
+            return fail(server, "serves another terrain than --pack");
+    if (count > packs->count) return fail(server, "serves more packs than --pack");
+    return count == packs->count ? 0 : fail(flight->world->grounds.path[count], "is not shown");
 }
 
 /* Tells the relevance what the frame draws. */
@@ -306,6 +324,7 @@ static void tell_relevance(fly_flight *flight)
     if (!flight->world->relevance || !tree) return;
     view.drawn_count = ff_tree_drawn(tree, &view.drawn);
     view.in_view_count = ff_tree_in_view(tree, &view.drawn);
+    view.grounds.info = ff_tree_grounds(tree, &view.grounds.count);
     view.panorama = ff_client_panorama(flight->world->client, view.panorama_pos_wu, &faces);
     sim_relevance_frame(flight->world->relevance, &view);
 }
@@ -344,7 +363,8 @@ static int begin(fly_flight *flight, fly_world *world, FILE *csv)
                             .options = options,
                             .csv = csv,
                             .reference_t_s = -1,
-                            .totals = { .frame_hash = FNV_START } };
+                            .totals = { .frame_hash = FNV_START,
+                                        .grounds = world->grounds.packs.count } };
     flight->camera = (c3d_camera){ .width = options->size.width,
                                    .height = options->size.height,
                                    .focal_q8 = focal_q8(options->fov_degrees, options) };

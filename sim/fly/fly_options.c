@@ -31,6 +31,8 @@ static int fail(const char *what) { return sys_options_fail(&program, "%s", what
 static void complete(fly_options *options)
 {
     options->pack_path = options->pack[0];
+    if (options->audit)
+        options->truth_path = options->truths.count ? options->truth[0] : options->pack[0];
     (void)sim_link_parse(options->link_text, &options->link);
     options->link.way[SIM_DOWN].trace = options->down_trace;
     options->link.way[SIM_UP].trace = options->up_trace;
@@ -52,7 +54,8 @@ int fly_options_parse(fly_options *options, int argc, char **argv)
     *options = (fly_options){ .seconds = -1,
                               .check = SYS_UNSET,
                               .packs = { options->pack, 0, FF_PACKS_JOINED_MAX },
-                              .locals = { options->local, 0, FF_SOURCES_MAX - 1 } };
+                              .locals = { options->local, 0, FF_SOURCES_MAX - 1 },
+                              .truths = { options->truth, 0, FF_PACKS_JOINED_MAX } };
     int rc = sys_options_parse(&program, options, argc, argv);
     if (rc) return rc;
     complete(options);
@@ -61,7 +64,8 @@ int fly_options_parse(fly_options *options, int argc, char **argv)
         return fail("--tape records simulated flights without events and without --balance");
     if (options->locals.count && options->tape_path)
         return fail("--tape records flights of one source: without --local");
-    if (options->truth_path && !options->audit) return fail("--truth needs --audit on");
+    if (options->truths.count && !options->audit) return fail("--truth needs --audit on");
+    if (options->truths.count > options->packs.count) return fail("--truth: one for each --pack");
     if (options->reference_dir && !options->png_dir) return fail("--reference needs --png");
     if (options->png_dir && options->backend == FLY_NONE)
         return fail("--png needs a --backend other than none");
@@ -124,6 +128,6 @@ void fly_options_print(const fly_options *options)
             options->height_m, options->quality_text, sim_panorama_words[options->use_panorama],
             options->balance_text, options->size.width, options->size.height, options->fov_degrees,
             options->fps, fly_backend_name((enum fly_backend)options->backend),
-            options->memory_bytes, options->audit ? "on" : "off", options->truth_path ? " by " : "",
-            options->truth_path ? options->truth_path : "");
+            options->memory_bytes, options->audit ? "on" : "off",
+            options->truths.count ? " by " : "", options->truths.count ? options->truth_path : "");
 }

@@ -53,7 +53,8 @@ extern const sys_option_type fly_events_option;
 #define FLY_OPTIONS(OPTION, HEADING, SHOW) \
     OPTION(sys_texts, packs, "pack", "PACK", NULL, SYS_FLAGS(SYS_NEEDED | SYS_REPEATABLE), \
            "the terrain, also with --server (the true ground the flight keeps above); more packs in " \
-           "its reference system are shown with it, the finer where they lie over each other") \
+           "its reference system are shown with it, the finer where they lie over each other. The path and " \
+           "the events' places are the first one's, in whose metres the CSV is") \
     OPTION(sys_texts, locals, "local", "PACK", NULL, SYS_FLAGS(SYS_REPEATABLE), \
            "a pack on the device: parts cut from that of the server, which is asked for the rest, or " \
            "other ground") \
@@ -126,11 +127,13 @@ extern const sys_option_type fly_events_option;
     OPTION(sys_switch, diff, "diff", "on|off", "off", SYS_ANY, \
            "diff_mean, diff_p95 and ssim: each row's picture against the one that --reference " \
            "draws, by luminance; some seconds a row") \
-    OPTION(sys_text, truth_path, "truth", "PACK", NULL, SYS_ANY, \
+    OPTION(sys_texts, truths, "truth", "PACK", NULL, SYS_FLAGS(SYS_REPEATABLE), \
            "the ground the audit judges by, where it is not that of --pack: the same samples, the " \
-           "same spacing and place, such as the same raster baked without error") \
+           "same spacing and place, such as the same raster baked without error; of several the first " \
+           "for the first --pack, and so on") \
     OPTION(sys_text, ground_cache, "ground-cache", "FILE", NULL, SYS_ANY, \
-           "keeps the decoded true ground there for further flights over it") \
+           "keeps the decoded true ground there for further flights over it; of several the second in " \
+           "FILE.2, and so on") \
     OPTION(sys_switch, check, "check", "on|off", NULL, SYS_ANY, \
            "every frame searched for cracks on integer vertices; default: as --audit") \
     OPTION(sys_word, hidden, "hidden", "WHAT", "left-out", SYS_WORDS(fly_hidden_words), \
@@ -145,8 +148,10 @@ extern const sys_option_type fly_events_option;
 typedef struct fly_options {
     FLY_OPTIONS(SYS_FIELD, SYS_NO_FIELD, sys_bits show;)
     const char *pack[FF_PACKS_JOINED_MAX], *local[FF_SOURCES_MAX - 1];
+    const char *truth[FF_PACKS_JOINED_MAX];
     /* what follows from them */
-    const char *pack_path; /* the first pack */
+    const char *pack_path;  /* the first pack */
+    const char *truth_path; /* what that is judged by, or NULL */
     sim_link_desc link;
     ff_quality quality;
     ff_panorama_desc panorama;

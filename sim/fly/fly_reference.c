@@ -20,17 +20,26 @@
 
 /* ---- memory ---- */
 
-/* Slots for all nodes of the terrain that have ground, or as many as may be. */
-static void choose_slots(fly_reference *reference)
+/* Nodes of a ground that have some. */
+static uint64_t nodes_of(const ff_terrain_info *info)
 {
-    ff_tree_desc *desc = &reference->tree_desc;
-    const ff_sheet samples = ff_shape_sheet_samples(&desc->info);
+    const ff_sheet samples = ff_shape_sheet_samples(info);
     uint64_t sum = 0;
-    for (uint32_t level = 0; level < ff_terrain_levels(&desc->info) && sum < NODES_MAX; level++) {
-        uint32_t edge_log2 = desc->info.tile_log2 - level;
+    for (uint32_t level = 0; level < ff_terrain_levels(info) && sum < NODES_MAX; level++) {
+        uint32_t edge_log2 = info->tile_log2 - level;
         sum += (uint64_t)(((samples.x - 2) >> edge_log2) + 1) *
                (((samples.y - 2) >> edge_log2) + 1);
     }
+    return sum;
+}
+
+/* Slots for all nodes that have ground, or as many as may be. */
+static void choose_slots(fly_reference *reference)
+{
+    ff_tree_desc *desc = &reference->tree_desc;
+    uint64_t sum = 0;
+    for (const ff_pack *pack = reference->pack; pack; pack = pack->next)
+        sum += nodes_of(&pack->header.info);
     desc->node_count = sum < NODES_MAX ? (uint32_t)(sum < 8 ? 8 : sum) : NODES_MAX;
     while (ff_tree_bytes(desc) > TREE_BYTES_MAX) desc->node_count /= 2;
     reference->holds_all = desc->node_count >= sum;
@@ -47,8 +56,10 @@ static void describe(fly_reference *reference)
     const ff_terrain_info *info = &reference->pack->header.info;
     size_t one = image_bytes(info), images = one ? IMAGE_BYTES / one : 0;
     if (images > IMAGES_MAX) images = IMAGES_MAX;
-    reference->tree_desc =
-        (ff_tree_desc){ .info = *info, .wish_count = WISHES, .hidden = FF_HIDDEN_FETCHED };
+    reference->tree_desc = (ff_tree_desc){ .info = *info,
+                                           .wish_count = WISHES,
+                                           .hidden = FF_HIDDEN_FETCHED,
+                                           .ground_max = ff_pack_source_grounds(reference->pack) };
     choose_slots(reference);
     reference->device_desc = (c3d_desc){
         .mesh_count = 2, /* of the node being drawn, and of the sky */
@@ -68,7 +79,8 @@ int fly_reference_open(fly_reference *reference, const ff_pack *pack, uint16_t w
 {
     const ff_terrain_info *info = &pack->header.info;
     unsigned largest = width > height ? width : height;
-    size_t texels = (size_t)1 << (2 * info->texture_log2), decoder_bytes = ff_decoder_bytes(info);
+    size_t texels = (size_t)1 << (2 * info->texture_log2),
+           decoder_bytes = ff_pack_source_decoder_bytes(pack);
     memset(reference, 0, sizeof *reference);
     reference->pack = pack;
     reference->width = width;
@@ -143,6 +155,8 @@ static int load_until(fly_reference *reference, uint32_t cell)
     reference->tree = ff_tree_create(&reference->tree_desc, reference->tree_memory,
                                      reference->tree_bytes);
     if (!reference->tree) return FF_ERR_MEMORY;
+    int rc = ff_pack_source_add(reference->pack, reference->tree);
+    if (rc < 0) return rc;
     for (;;) {
         ff_tree_select(reference->tree, &reference->view, &quality);
         int served = serve_wishes(reference);
@@ -172,7 +186,7 @@ static double outside(int64_t lo, int64_t hi)
 /* How near the ground under a node's image may be, wu. */
 static double image_distance(const fly_reference *reference, ff_key key)
 {
-    const ff_terrain_info *info = &reference->tree_desc.info;
+    const ff_terrain_info *info = ff_tree_ground(reference->tree, key);
     ff_placed placed = ff_shape_put(info, &reference->view.frame, key);
     int64_t height_wu[2];
     ff_terrain_range_wu(info, height_wu);
@@ -183,13 +197,15 @@ static double image_distance(const fly_reference *reference, ff_key key)
 
 /* The finest image over a node whose texels are not smaller than a sample at the nearest place that
  * the image covers. So a node takes every image above it that another node takes, and what is held
- * for one is right for all. */
+ * for one is right for all. Grounds whose images are not as large as the first one's show none. */
 static ff_key image_of(const fly_reference *reference, const ff_drawn *drawn)
 {
-    const ff_terrain_info *info = &reference->tree_desc.info;
+    const ff_terrain_info *info = ff_tree_ground(reference->tree, drawn->key);
     double focal_px = reference->view.camera.focal_q8 / 256.0,
            edge_wu = ldexp(drawn->cell_wu, info->node_log2);
-    ff_key key = ff_texture_key(info, drawn->key);
+    ff_key key = info->texture_log2 == reference->tree_desc.info.texture_log2
+                     ? ff_texture_key(info, drawn->key)
+                     : FF_KEY_NONE;
     while (key != FF_KEY_NONE && ff_key_level(key) > 0) {
         double texel_wu = ldexp(edge_wu, (int)ff_key_level(drawn->key) - (int)ff_key_level(key) -
                                              info->texture_log2);
@@ -219,23 +235,34 @@ static int fetch_image(fly_reference *reference, ff_key key)
 
 /* ---- the picture ---- */
 
+/* No ground of the terrain is further away from a place. */
+static double farthest(const fly_reference *reference, const ff_terrain_info *info,
+                       const int32_t place_wu[3])
+{
+    int64_t height_wu[2];
+    double away = 0;
+    ff_terrain_range_wu(info, height_wu);
+    ff_box box = ff_shape_bounds(info, &reference->view.frame, height_wu, place_wu);
+    for (unsigned axis = 0; axis < 3; axis++)
+        away = hypot(away, fmax(fabs((double)box.lo[axis]), fabs((double)box.hi[axis])));
+    return away;
+}
+
 /* Near and far planes: an eighth of the height above ground, and all of the terrain. */
 static void set_planes(const fly_reference *reference, c3d_camera *camera)
 {
-    const ff_terrain_info *info = &reference->tree_desc.info;
-    int64_t height_wu[2], near_wu = 2 * NEAR_WU_MIN;
-    double away = 0;
+    int64_t near_wu = 2 * NEAR_WU_MIN;
+    uint32_t grounds;
+    const ff_terrain_info *info = ff_tree_grounds(reference->tree, &grounds);
     int32_t ground_wu;
     if (ff_tree_drawn_height(reference->tree, camera->pos_wu[0], camera->pos_wu[1], &ground_wu))
         near_wu = ((int64_t)camera->pos_wu[2] - ground_wu) / 8;
     camera->near_wu = near_wu < NEAR_WU_MIN   ? NEAR_WU_MIN
                       : near_wu > NEAR_WU_MAX ? NEAR_WU_MAX
                                               : (int32_t)near_wu;
-    ff_terrain_range_wu(info, height_wu);
-    ff_box box = ff_shape_bounds(info, &reference->view.frame, height_wu, camera->pos_wu);
-    for (unsigned axis = 0; axis < 3; axis++)
-        away = hypot(away, fmax(fabs((double)box.lo[axis]), fabs((double)box.hi[axis])));
-    away = fmax(away, 16.0 * camera->near_wu); /* the sky lies within */
+    double away = 16.0 * camera->near_wu; /* the sky lies within */
+    for (uint32_t i = 0; i < grounds; i++)
+        away = fmax(away, farthest(reference, &info[i], camera->pos_wu));
     camera->far_wu = away < INT32_MAX ? (int32_t)ceil(away) : INT32_MAX;
 }
 

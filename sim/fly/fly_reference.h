@@ -1,4 +1,4 @@
-/* The picture as it should be: the same view of the same pack, with no link and no panorama,
+/* The picture as it should be: the same view of the same packs, with no link and no panorama,
  * however long it takes.
  *
  * Ground is drawn as far as the terrain reaches (its horizon, if its shape has one), in clear air,
@@ -16,7 +16,7 @@
 #include "../../protocol/ff_pack.h"
 
 typedef struct fly_reference {
-    const ff_pack *pack; /* NULL: not open */
+    const ff_pack *pack; /* with those joined to it; NULL: not open */
     unsigned samples;    /* of a pixel, each way */
     uint16_t width, height;
     ff_tree_desc tree_desc;

@@ -3,8 +3,9 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stddef.h>
+#include <string.h>
 
-enum column_kind { PLACE, MEAN, TOTAL, MOST, LAST };
+enum column_kind { PLACE, MEAN, SOME, TOTAL, MOST, LAST };
 typedef struct column {
     const char *name, *format;
     enum column_kind kind;
@@ -39,6 +40,7 @@ void fly_sample_take(fly_sample *sample, const fly_sources *from)
     FLY_COLUMNS_FIRST(X)
     FLY_COLUMNS_LAST(X)
 #undef X
+    memcpy(sample->ground_px_percent, from->ground_px_percent, sizeof sample->ground_px_percent);
     sample->geometry_hash = from->geometry_hash;
     sample->request_hash = from->request_hash;
 }
@@ -84,15 +86,19 @@ static double settle_s(const fly_sample *sample, size_t count)
 static double summarise(const column *c, const fly_sample *sample, size_t from, size_t count)
 {
     double sum = 0, most = -INFINITY;
+    size_t counted = 0;
     if (from >= count) return NAN;
     if (c->kind == TOTAL)
         return value(&sample[count - 1], c) - (from ? value(&sample[from - 1], c) : 0);
     if (c->kind == LAST) return value(&sample[count - 1], c);
     for (size_t i = from; i < count; i++) {
-        sum += value(&sample[i], c);
-        most = fmax(most, value(&sample[i], c));
+        double one = value(&sample[i], c);
+        most = fmax(most, one);
+        if (c->kind == SOME && isnan(one)) continue;
+        sum += one;
+        counted++;
     }
-    return c->kind == MOST ? most : sum / (double)(count - from);
+    return c->kind == MOST ? most : sum / (double)counted;
 }
 
 static void json_columns(FILE *file, const column *c, int columns, const fly_sample *sample,
@@ -108,9 +114,9 @@ static void json_columns(FILE *file, const column *c, int columns, const fly_sam
     }
 }
 
-static void json_text(FILE *file, const char *name, const char *text)
+static void json_string(FILE *file, const char *text)
 {
-    fprintf(file, ",\n  \"%s\": \"", name);
+    fputc('"', file);
     for (; *text; text++) {
         if (*text == '"' || *text == '\\')
             fprintf(file, "\\%c", *text);
@@ -120,6 +126,39 @@ static void json_text(FILE *file, const char *name, const char *text)
             fputc(*text, file);
     }
     fputc('"', file);
+}
+
+static void json_text(FILE *file, const char *name, const char *text)
+{
+    fprintf(file, ",\n  \"%s\": ", name);
+    json_string(file, text);
+}
+
+static void json_texts(FILE *file, const char *name, const sys_texts *texts)
+{
+    fprintf(file, ",\n  \"%s\": [", name);
+    for (size_t i = 0; i < texts->count; i++) {
+        if (i) fputs(", ", file);
+        json_string(file, texts->text[i]);
+    }
+    fputc(']', file);
+}
+
+/* Mean shares over the rows from `from`: a number for each ground. */
+static void json_grounds(FILE *file, const fly_sample *sample, size_t from, size_t count,
+                         uint32_t grounds)
+{
+    fputs(",\n  \"ground_px_percent\": ", file);
+    if (from >= count || isnan(sample[from].ground_px_percent[0])) {
+        fputs("null", file);
+        return;
+    }
+    for (uint32_t ground = 0; ground < grounds; ground++) {
+        double sum = 0;
+        for (size_t i = from; i < count; i++) sum += sample[i].ground_px_percent[ground];
+        fprintf(file, "%s%.3f", ground ? ", " : "[", sum / (double)(count - from));
+    }
+    fputc(']', file);
 }
 
 void fly_json(FILE *file, const fly_options *options, const fly_sample *sample, size_t count,
@@ -132,8 +171,10 @@ void fly_json(FILE *file, const fly_options *options, const fly_sample *sample, 
     fprintf(file, "{\n  \"seed\": %" PRIu64 ",\n  \"frames\": %" PRIu32 ",\n  \"settle_s\": %.3f",
             options->seed, totals->frames, settle_s(sample, count));
     json_text(file, "pack", options->pack_path);
-    if (options->audit)
-        json_text(file, "truth", options->truth_path ? options->truth_path : options->pack_path);
+    json_texts(file, "packs", &options->packs);
+    json_texts(file, "local", &options->locals);
+    if (options->truth_path)
+        json_text(file, "truth", options->truth_path);
     else
         fputs(",\n  \"truth\": null", file);
     json_text(file, "link", options->server ? options->server : options->link_text);
@@ -143,6 +184,7 @@ void fly_json(FILE *file, const fly_options *options, const fly_sample *sample, 
             options->speed_kmh, options->seconds, options->panorama.enabled ? "true" : "false");
     json_columns(file, first_column, FIRST_COUNT, sample, from, count);
     json_columns(file, last_column, LAST_COUNT, sample, from, count);
+    json_grounds(file, sample, from, count, totals->grounds);
     fprintf(file,
             ",\n  \"stitched_frames\": %" PRIu32 ",\n  \"crack_frames\": %" PRIu32
             ",\n  \"empty_frames\": %" PRIu32 ",\n  \"panoramas_in_flight_high\": %" PRIu32,

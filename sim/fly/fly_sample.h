@@ -12,12 +12,12 @@
 /* X(name, printf format, kind, where from): the CSV's columns before and after the three hashes.
  * `from` is a fly_sources; figures of the client have their names from client/ff_figures.h. The
  * kind says how the summary treats a column: PLACE leaves it out, MEAN takes the mean over the rows
- * after settling, TOTAL what was gained after settling, MOST the largest value, LAST the last one.
- * Columns without a value are nan. diff_*, ssim: sim_picture.h. square_px_*: mean squared error by
- * cause (sim_audit.h); bytes_*, unused_*: by class of data (sim_relevance.h), bytes_judged with the
- * overhead, bytes_reserve and unused_reserve a part of them, unused_supporting and unused_hidden
- * parts of unused_heights; relevance_percent and the same without the reserve's bytes,
- * relevance_no_reserve_percent: since the start. */
+ * after settling, SOME that over those that have a value, TOTAL what was gained after settling,
+ * MOST the largest value, LAST the last one. Columns without a value are nan. diff_*, ssim:
+ * sim_picture.h. square_px_*: mean squared error by cause (sim_audit.h); bytes_*, unused_*: by
+ * class of data (sim_relevance.h), bytes_judged with the overhead, bytes_reserve and unused_reserve
+ * a part of them, unused_supporting and unused_hidden parts of unused_heights; relevance_percent
+ * and the same without the reserve's bytes, relevance_no_reserve_percent: since the start. */
 /* clang-format off */
 #define FLY_COLUMNS_FIRST(X) \
     X(t_s, "%.3f", PLACE, from->t_s) \
@@ -94,7 +94,9 @@
     X(filled_px_percent, "%.3f", MEAN, from->audit.filled_percent) \
     X(nodes_hidden, "%.0f", MEAN, from->client.tree.nodes_hidden) \
     X(triangles_hidden, "%.0f", MEAN, from->client.tree.triangles_hidden) \
-    X(unused_hidden, "%.0f", TOTAL, from->relevance.hidden)
+    X(unused_hidden, "%.0f", TOTAL, from->relevance.hidden) \
+    X(seam_px_p95, "%.3f", SOME, from->audit.seam_px_p95) \
+    X(seam_px_max, "%.3f", MOST, from->audit.seam_px_max)
 /* clang-format on */
 
 /* What a row is made from. NAN in all that nobody judges. */
@@ -105,6 +107,8 @@ typedef struct fly_sources {
     double estimate_px; /* the client's own of its err_px_p95 */
     sim_audit_result audit;
     double panorama_px_percent; /* of the pixels that truly show ground */
+    /* of them, by the ground that a node drawn there is of */
+    double ground_px_percent[FF_GROUNDS_MAX];
     sim_picture_figures picture;
     double truth_error_m; /* no height judged by is further than this from its source */
     sim_relevance_figures relevance;
@@ -116,6 +120,7 @@ typedef struct fly_sample {
     FLY_COLUMNS_FIRST(X)
     FLY_COLUMNS_LAST(X)
 #undef X
+    double ground_px_percent[FF_GROUNDS_MAX];
     uint64_t frame_hash; /* FNV-1a over the picture's RGB bytes; 0 without pictures */
     uint64_t geometry_hash, request_hash; /* since the start, the same on every back end */
 } fly_sample;
@@ -125,6 +130,7 @@ typedef struct fly_totals {
     uint32_t frames, stitched_frames, crack_frames;
     uint32_t empty_frames; /* without a node drawn, after one with */
     uint32_t panoramas_in_flight_high;
+    uint32_t grounds;
     uint64_t frame_hash; /* over the rows' hashes */
     double bytes_down_all, bytes_up_all;
     uint64_t memory_used;

@@ -4,50 +4,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PATH_SAMPLES_MAX (4097u * 4097u) /* 34 MB: the level of ground that paths keep above */
-
-static int fail_with(const char *what, const char *why)
-{
-    fprintf(stderr, "farfield-fly: %s: %s\n", what, why);
-    return -1;
-}
-
 static int fail_text(const char *text)
 {
     fprintf(stderr, "farfield-fly: %s\n", text);
     return -1;
 }
 
-static int fail(const char *what, int rc) { return fail_with(what, ff_error_text(rc)); }
-
-/* The ground that the audit judges by: the pack's, or that of a pack which is needed no longer once
- * it is decoded. */
-static int open_truth(fly_world *world)
+static int fail(const char *what, int rc)
 {
-    const fly_options *options = world->options;
-    sys_mapping mapping = { 0 };
-    ff_pack other = { .refusal = "" };
-    const ff_pack *pack = world->pack;
-    int rc = FF_OK;
-    if (options->truth_path) {
-        pack = &other;
-        rc = sys_map_file(options->truth_path, &mapping);
-        if (rc != FF_OK) return fail(options->truth_path, rc);
-        rc = ff_pack_open(&other, mapping.bytes, mapping.size);
-    }
-    const ff_terrain_info *info = &pack->header.info;
-    const char *why = rc == FF_OK ? sim_ground_differs(&world->pack->header.info, info) : NULL;
-    if (rc == FF_OK && !why)
-        rc = sim_ground_load_cached(&world->true_ground, pack, UINT64_MAX, options->ground_cache);
-    if (rc == FF_OK) world->truth_error_m = (double)info->hscale_q24 / (1 << 24) * info->max_error;
-    if (mapping.bytes) sys_unmap_file(&mapping);
-    if (why)
-        fprintf(stderr, "farfield-fly: %s: no truth for %s: %s\n", options->truth_path,
-                options->pack_path, why);
-    if (rc != FF_OK)
-        return fail_with(options->truth_path ? options->truth_path : options->pack_path,
-                         ff_pack_error_text(pack, rc));
-    return why ? -1 : 0;
+    fprintf(stderr, "farfield-fly: %s: %s\n", what, ff_error_text(rc));
+    return -1;
 }
 
 static int open_ground(fly_world *world)
@@ -61,13 +27,11 @@ static int open_ground(fly_world *world)
             return fail_text(world->locals.why);
         world->more[i].pack = &world->locals.pack[i];
     }
-    rc = sim_ground_load(&world->path_ground, world->pack, PATH_SAMPLES_MAX);
-    if (rc != FF_OK) return fail(options->pack_path, rc);
+    if (fly_grounds_open(&world->grounds, options, &world->packs, &world->locals)) return -1;
     const ff_terrain_info *info = &world->pack->header.info;
-    fly_path_init(&world->path, options, info, &world->path_ground);
+    fly_path_init(&world->path, options, info, &world->grounds.moderate[0]);
     if (options->audit) {
-        if (open_truth(world)) return -1;
-        world->auditor = sim_auditor_create(&world->true_ground, info, options->audit_step_px);
+        world->auditor = sim_auditor_create(&world->grounds.truth[0], info, options->audit_step_px);
         if (!world->auditor) return fail("auditor", FF_ERR_MEMORY);
     }
     return 0;
@@ -127,8 +91,8 @@ static int open_reference(fly_world *world)
 {
     const fly_options *options = world->options;
     if (!options->reference_dir && !options->diff) return 0;
-    int rc = fly_reference_open(&world->reference, world->pack, options->size.width,
-                                options->size.height);
+    int rc = fly_reference_open(&world->reference, &world->grounds.packs.pack[0],
+                                options->size.width, options->size.height);
     return rc == FF_OK ? 0 : fail("reference", rc);
 }
 
@@ -217,8 +181,7 @@ void fly_world_close(fly_world *world)
     sim_link_destroy(world->link);
     sim_relevance_destroy(world->relevance);
     sim_auditor_destroy(world->auditor);
-    sim_ground_free(&world->true_ground);
-    sim_ground_free(&world->path_ground);
+    fly_grounds_close(&world->grounds);
     ff_packs_close(&world->locals);
     ff_packs_close(&world->packs);
     free(world->memory);

@@ -3,7 +3,7 @@
 #ifndef FLY_WORLD_H
 #define FLY_WORLD_H
 
-#include "fly_options.h"
+#include "fly_grounds.h"
 #include "fly_path.h"
 #include "fly_reference.h"
 #include "../judge/sim_audit.h"
@@ -15,12 +15,10 @@ typedef struct fly_world {
     const fly_options *options;
     int64_t now_us;      /* the clock of the flight */
     ff_packs packs;      /* the server's: its grounds */
-    ff_packs locals;     /* on the device, each for itself */
+    ff_packs locals;     /* on the device, each by itself */
     const ff_pack *pack; /* the first of the server's */
     ff_source_desc more[FF_SOURCES_MAX - 1];
-    /* a moderate level, for the path; the whole ground, with an audit */
-    sim_ground path_ground, true_ground;
-    double truth_error_m; /* no true height is further than this from its source */
+    fly_grounds grounds; /* of both */
     sim_auditor *auditor;
     fly_path path;
     sim_link *link; /* NULL with a real server */

@@ -81,16 +81,22 @@ int sim_audit_project(const c3d_camera *camera, const double point_m[3], double 
 
 /* ---- what the client draws ---- */
 
-/* The node drawn over or under a point and its height there, or NULL. */
+/* The node drawn over or under a point and its height there, or NULL. Only several grounds have
+ * more than one: the upper is seen. */
 static const ff_drawn *drawn_at(const sim_auditor *auditor, const ff_drawn *drawn, uint32_t count,
                                 const double point_m[3], double *z_m)
 {
-    double cell[2];
-    for (uint32_t i = 0; i < count; i++)
-        if (sim_place_in_node(&auditor->mesh.info, &drawn[i], point_m, cell) &&
-            sim_mesh_height(&auditor->mesh, &drawn[i], cell, z_m))
-            return &drawn[i];
-    return NULL;
+    const ff_drawn *found = NULL;
+    double cell[2], height_m;
+    for (uint32_t i = 0; i < count && (!found || auditor->mesh.grounds > 1); i++) {
+        if (!sim_place_in_node(auditor->mesh.info, &drawn[i], point_m, cell) ||
+            !sim_mesh_height(&auditor->mesh, &drawn[i], cell, &height_m) ||
+            (found && height_m <= *z_m))
+            continue;
+        found = &drawn[i];
+        *z_m = height_m;
+    }
+    return found;
 }
 
 int sim_audit_drawn_height(const sim_auditor *auditor, const ff_drawn *drawn, uint32_t count,
@@ -106,18 +112,19 @@ static enum sim_audit_cause cause_of(const frame *of, const ff_drawn *drawn, dou
 {
     const sim_auditor *auditor = of->auditor;
     const ff_quality *quality = &of->view->quality;
+    const ff_terrain_info *info = sim_mesh_info(&auditor->mesh, drawn);
     uint32_t next = ff_key_level(drawn->key) + 1;
-    double edge_m = (double)drawn->cell_wu * (1u << auditor->mesh.info.node_log2) / FF_WU_PER_METRE;
+    double edge_m = (double)drawn->cell_wu * (1u << info->node_log2) / FF_WU_PER_METRE;
     int splits = error_px > quality->error_px_q8 / 256.0;
     if (quality->measure == FF_MEASURE_DISTANCE) {
         double middle_m[3], d[3];
-        sim_place_middle(&auditor->mesh.info, drawn, middle_m);
+        sim_place_middle(info, drawn, middle_m);
         sim_place_lift(auditor->ground, of->e.pos_m, middle_m,
                        sim_ground_height_m(auditor->ground, middle_m[0], middle_m[1]), middle_m);
         for (int i = 0; i < 3; i++) d[i] = middle_m[i] - of->e.pos_m[i];
         splits = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) < edge_m * quality->c_q8 / 256.0;
     }
-    if (!splits || next >= ff_terrain_levels(&auditor->mesh.info)) return SIM_CAUSE_QUALITY;
+    if (!splits || next >= ff_terrain_levels(info)) return SIM_CAUSE_QUALITY;
     if (quality->depth_max && next >= quality->depth_max) return SIM_CAUSE_DEPTH;
     return drawn->stub ? SIM_CAUSE_STUB : SIM_CAUSE_WAITING;
 }
@@ -165,9 +172,11 @@ static double half_texel_px(const sim_eye *e, unsigned size, const sim_cube_plac
 /* A pixel of the grid: what it truly shows and what is drawn there. */
 typedef struct look {
     double pixel[2], error_px;
-    int ground, drawn; /* it truly shows ground; and that is drawn, somewhere */
-    int filled;        /* it truly shows ground that was void in the source */
-    int wrong;         /* it has an error: it truly shows ground, or shows ground over the sky */
+    int ground, drawn;    /* it truly shows ground; and that is drawn, somewhere */
+    int filled;           /* it truly shows ground that was void in the source */
+    int seam;             /* it truly shows ground near another one's */
+    const ff_drawn *node; /* that draws the ground there, or NULL */
+    int wrong;            /* it has an error: it truly shows ground, or shows ground over the sky */
     enum sim_audit_cause cause;
 } look;
 
@@ -176,7 +185,7 @@ static int true_point(const frame *of, const double pixel[2], double point_m[3])
 {
     const sim_ground *ground = of->auditor->ground;
     const sim_eye *e = &of->e;
-    double along[3], t, reach_m = 4.0 * ground->cell_m * ((double)ground->columns + ground->rows);
+    double along[3], t, reach_m = sim_ground_reach_m(ground);
     sim_eye_ray(e, pixel, along);
     if (!sim_ground_cast(ground, e->pos_m, along, reach_m, &t) || t <= NEAREST_M) return 0;
     for (int i = 0; i < 3; i++) point_m[i] = e->pos_m[i] + t * along[i];
@@ -216,8 +225,10 @@ static void look_at(const frame *of, look *at)
     at->wrong = at->ground = true_point(of, at->pixel, point_m);
     if (!at->ground) return;
     at->filled = sim_ground_filled(of->auditor->ground, point_m[0], point_m[1]);
+    at->seam = sim_ground_near_border(of->auditor->ground, point_m[0], point_m[1], SIM_SEAM_CELLS);
     const ff_drawn *node = drawn_at(of->auditor, of->view->drawn, of->view->drawn_count, point_m,
                                     &z_m);
+    at->node = node;
     if (node) {
         sim_place_lift(of->auditor->ground, of->e.pos_m, point_m, z_m, shown);
         for (int i = 0; i < 3; i++) shown[i] -= of->e.pos_m[i];
@@ -350,10 +361,23 @@ static void find_skylines(frame *of)
         auditor->drawn_px[i] = fmin(auditor->drawn_px[i], auditor->cover.top_px[i]);
 }
 
+/* 1 when the sky shows through between drawn ground and drawn ground: none is drawn at pixel i, but
+ * some above it. */
+static int is_gap(const frame *of, size_t i)
+{
+    const sim_auditor *auditor = of->auditor;
+    const look *at = &auditor->look[i];
+    return at->node && !auditor->cover.node[i] &&
+           auditor->cover.top_px[(unsigned)at->pixel[0]] < at->pixel[1] &&
+           !ask_faces(of, at->pixel, sim_faces_show);
+}
+
 /* The errors that hang on other pixels: ground not drawn, and ground drawn over the sky. */
 static void look_around(frame *of)
 {
     sim_auditor *auditor = of->auditor;
+    for (size_t i = 0; auditor->mesh.grounds > 1 && i < of->looks; i++)
+        if (is_gap(of, i)) auditor->look[i].cause = SIM_CAUSE_UNDRAWN;
     for (size_t i = 0; i < of->looks; i++) {
         look *at = &auditor->look[i];
         uint32_t node = auditor->cover.node[i];
@@ -364,6 +388,20 @@ static void look_around(frame *of)
         at->cause = node ? cause_of(of, &of->view->drawn[node - 1], at->error_px)
                          : SIM_CAUSE_PANORAMA;
     }
+}
+
+/* The errors near borders, by way of auditor->error. */
+static void summarise_seam(const frame *of, sim_audit_result *result)
+{
+    sim_auditor *auditor = of->auditor;
+    size_t count = 0;
+    for (size_t i = 0; i < of->looks; i++)
+        if (auditor->look[i].wrong && auditor->look[i].seam)
+            auditor->error[count++] = auditor->look[i].error_px;
+    sim_spread seam = sim_spread_of(auditor->error, count);
+    result->seam_pixels = (uint32_t)count;
+    result->seam_px_p95 = seam.p95;
+    result->seam_px_max = seam.max;
 }
 
 static void summarise(const frame *of, sim_audit_result *result)
@@ -380,6 +418,8 @@ static void summarise(const frame *of, sim_audit_result *result)
         filled += at->ground && at->filled;
         result->undrawn_pixels += at->cause == SIM_CAUSE_UNDRAWN;
         result->panorama_pixels += at->ground && at->cause == SIM_CAUSE_PANORAMA;
+        if (at->node && at->cause != SIM_CAUSE_UNDRAWN)
+            result->drawn_pixels[sim_mesh_ground(&auditor->mesh, at->node)]++;
     }
     result->ground_pixels = (uint32_t)count - result->undrawn_pixels - result->panorama_pixels -
                             result->sky_pixels;
@@ -408,6 +448,7 @@ int sim_audit_frame(sim_auditor *auditor, const sim_audit_view *view, sim_audit_
     const c3d_camera *camera = &view->camera;
     frame of = { .auditor = auditor, .view = view };
     memset(result, 0, sizeof *result);
+    sim_mesh_use(&auditor->mesh, &view->grounds);
     int rc = make_room(auditor,
                        (size_t)sim_looked_at(camera->width, auditor->step_px) *
                            sim_looked_at(camera->height, auditor->step_px),
@@ -422,5 +463,6 @@ int sim_audit_frame(sim_auditor *auditor, const sim_audit_view *view, sim_audit_
     find_skylines(&of);
     look_around(&of);
     summarise(&of, result);
+    summarise_seam(&of, result);
     return FF_OK;
 }

@@ -26,6 +26,10 @@
  * eye and by the texels of panoramas. Where only one of the two exists the other counts as the
  * picture's lower border; columns without ground do not count.
  *
+ * Of several grounds the upper is what is drawn at a place. Where the drawn grounds of two meet and
+ * do not touch, the sky shows through below drawn ground: such a pixel counts as undrawn, too, with
+ * the error that it has.
+ *
  * Each pixel's error has one cause (enum sim_audit_cause), found from the quality asked for, not
  * from the client's selection. The auditor does not depend on the client's estimates: it makes
  * triangles anew from the drawn list's heights and border masks.
@@ -33,9 +37,11 @@
 #ifndef SIM_AUDIT_H
 #define SIM_AUDIT_H
 
-#include "../../client/terrain/ff_tree.h"
 #include "sim_faces.h"
 #include "sim_ground.h"
+#include "sim_mesh.h"
+
+#define SIM_SEAM_CELLS 4 /* of the coarser ground: what is near a border */
 
 enum sim_audit_cause {
     /* the quality asks for finer ground here, and there is some: it has not come */
@@ -53,6 +59,7 @@ typedef struct sim_audit_view {
     ff_quality quality;    /* for the causes alone: measure, c, error_px, depth_max */
     const ff_drawn *drawn; /* what is drawn */
     uint32_t drawn_count;
+    sim_drawn_grounds grounds;
     unsigned faces; /* of the panorama in use, bit per enum ff_face_name held; 0: none is */
     sim_panorama panorama;
 } sim_audit_view;
@@ -66,7 +73,12 @@ typedef struct sim_audit_result {
     double undrawn_percent;       /* of all pixels that truly show ground */
     uint32_t skyline_columns;     /* of pixels, with true or drawn ground */
     double skyline_px_rms, skyline_px_p95, skyline_px_max; /* over these; 0 without any */
-    double filled_percent; /* of them: those whose ground was void in the source */
+    double filled_percent;                 /* of them: those whose ground was void in the source */
+    uint32_t drawn_pixels[FF_GROUNDS_MAX]; /* of ground_pixels, by the ground drawn there */
+    /* pixels whose true ground lies within SIM_SEAM_CELLS of another one's; their errors; 0 without
+     * any */
+    uint32_t seam_pixels;
+    double seam_px_p95, seam_px_max;
 } sim_audit_result;
 
 typedef struct sim_auditor sim_auditor;

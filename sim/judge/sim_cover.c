@@ -31,7 +31,7 @@ static int make_room(sim_cover *cover, size_t columns, size_t pixels, size_t poi
 /* An empty picture. */
 static int begin(sim_cover *cover, const sim_mesh *mesh, const c3d_camera *camera, unsigned step_px)
 {
-    uint32_t side = ff_node_side(&mesh->info);
+    uint32_t side = ff_node_side(mesh->info);
     size_t pixels = (size_t)sim_looked_at(camera->width, step_px) *
                     sim_looked_at(camera->height, step_px);
     int rc = make_room(cover, camera->width, pixels, side * side);
@@ -151,14 +151,15 @@ static unsigned cut_triangle(const sim_eye *e, const sim_vertex *const point[3],
 static void place_vertices(sim_cover *cover, const sim_mesh *mesh, const sim_eye *e,
                            const ff_drawn *drawn)
 {
-    uint32_t side = ff_node_side(&mesh->info);
+    const ff_terrain_info *info = sim_mesh_info(mesh, drawn);
+    uint32_t side = ff_node_side(info);
     double last[2];
-    sim_place_last(&mesh->info, drawn, last);
+    sim_place_last(info, drawn, last);
     for (uint32_t i = 0; i < side * side; i++) {
         sim_vertex *point = &cover->point[i];
         double cell[2], way[3];
-        sim_mesh_vertex_cell(mesh, last, i, cell);
-        sim_place_of_cell(drawn, cell, sim_mesh_vertex_m(mesh, drawn, i), way);
+        sim_mesh_vertex_cell(info, last, i, cell);
+        sim_place_of_cell(drawn, cell, sim_mesh_vertex_m(info, drawn, i), way);
         for (int k = 0; k < 3; k++) way[k] -= e->pos_m[k];
         way[2] -= mesh->curve_per_m * (way[0] * way[0] + way[1] * way[1]);
         sim_eye_turn(e, way, point->eye);

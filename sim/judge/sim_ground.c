@@ -109,12 +109,12 @@ static int decode_tile(loader *load, uint32_t tile)
 /* Where a stub meets finer ground its triangles give way: all else is placed over them. */
 static int decode_tiles(loader *load)
 {
+    const ff_terrain_info *info = &load->pack->header.info;
     int rc = FF_OK;
     do {
         load->with_stubs = !load->has_stubs;
-        for (uint32_t tile = 0; rc == FF_OK && tile < ff_shape_tiles(&load->pack->header.info);
-             tile++)
-            rc = decode_tile(load, tile);
+        for (uint32_t tile = 0; rc == FF_OK && tile < ff_shape_tiles(info); tile++)
+            rc = decode_tile(load, info->first_tile + tile);
     } while (rc == FF_OK && load->with_stubs && load->has_stubs);
     return rc;
 }
@@ -213,6 +213,8 @@ static void measure(sim_ground *ground, const ff_terrain_info *info, uint64_t sa
     ground->node_rows = ((ground->rows - 2) >> info->node_log2) + 1;
     ground->cell_m = (double)ff_node_cell_wu(info, ground->level) / FF_WU_PER_METRE;
     ground->hscale_m = (double)info->hscale_q24 / (1 << 24);
+    ground->west_m = (double)info->west_wu / FF_WU_PER_METRE;
+    ground->south_m = (double)info->south_wu / FF_WU_PER_METRE;
     ground->curve_per_m = sim_place_curve_per_m(info);
     ground->hoffset_m = (double)info->hoffset_wu / FF_WU_PER_METRE;
 }

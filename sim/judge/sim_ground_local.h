@@ -1,5 +1,5 @@
-/* Between sim_ground.c and sim_ground_cache.c: a ground's heights in memory and on disk follow the
- * same head. */
+/* Between sim_ground.c and the files beside it: a ground's heights in memory and on disk follow the
+ * same head; what is asked of one ground alone, whatever it is joined with. */
 #ifndef SIM_GROUND_LOCAL_H
 #define SIM_GROUND_LOCAL_H
 
@@ -31,5 +31,23 @@ static inline void sim_ground_lie(sim_ground *ground, const void *bytes)
 int sim_ground_cache_open(sim_ground *ground, uint32_t checksum, const char *path);
 /* FF_OK or FF_ERR_SYSTEM. */
 int sim_ground_cache_write(const sim_ground *ground, uint32_t checksum, const char *path);
+
+/* ---- one ground alone: sim_ground_plane.c ---- */
+
+int sim_ground_own_has(const sim_ground *ground, double x_m, double y_m);
+/* The place of the ground that is nearest to another one. */
+void sim_ground_own_nearest(const sim_ground *ground, double x_m, double y_m, double place_m[2]);
+/* Of a place that it has. */
+int sim_ground_own_filled(const sim_ground *ground, double x_m, double y_m);
+double sim_ground_own_height_m(const sim_ground *ground, double x_m, double y_m);
+/* Cuts t[0]..t[1] of a ray down to what lies over the ground: 1, or 0 when nothing is left. */
+int sim_ground_own_span(const sim_ground *ground, const double from_m[3], const double direction[3],
+                        double t[2]);
+/* How much higher the ray, bent up by t * t * bend_m, is than the ground under or over it. */
+double sim_ground_own_above_m(const sim_ground *ground, const double from_m[3],
+                              const double direction[3], double bend_m, double t);
+/* First ground on t[0]..t[1], which lies over it, as sim_ground_cast. */
+int sim_ground_own_cast(const sim_ground *ground, const double from_m[3], const double direction[3],
+                        double bend_m, const double t[2], double *t_hit);
 
 #endif

@@ -1,7 +1,8 @@
 /* The true ground of a planar terrain: x and y are columns and rows, z is height. Curved ground is
  * not bent for that: the ray is bent up instead, by as much as the ground has fallen away, and so
- * is a parabola over the plane. Another shape asks the same questions of another file. */
-#include "sim_ground.h"
+ * is a parabola over the plane. Another shape asks the same questions of another file. One ground
+ * alone: those beside and over it are sim_ground_chain.c's. */
+#include "sim_ground_local.h"
 
 #include <math.h>
 
@@ -35,25 +36,33 @@ static double clamp(double value, double low, double high)
     return value < low ? low : value > high ? high : value;
 }
 
-int sim_ground_has(const sim_ground *ground, double x_m, double y_m)
+int sim_ground_own_has(const sim_ground *ground, double x_m, double y_m)
 {
+    x_m -= ground->west_m;
+    y_m -= ground->south_m;
     return x_m >= 0 && y_m >= 0 && x_m <= ground->size[0] * ground->cell_m &&
            y_m <= ground->size[1] * ground->cell_m;
 }
 
-int sim_ground_filled(const sim_ground *ground, double x_m, double y_m)
+void sim_ground_own_nearest(const sim_ground *ground, double x_m, double y_m, double place_m[2])
 {
-    if (!sim_ground_has(ground, x_m, y_m)) return 0;
+    place_m[0] = ground->west_m + clamp(x_m - ground->west_m, 0, ground->size[0] * ground->cell_m);
+    place_m[1] = ground->south_m +
+                 clamp(y_m - ground->south_m, 0, ground->size[1] * ground->cell_m);
+}
+
+int sim_ground_own_filled(const sim_ground *ground, double x_m, double y_m)
+{
     double node_m = ground->cell_m * ground->node_cells;
-    uint32_t column = (uint32_t)fmin(x_m / node_m, ground->node_columns - 1),
-             row = (uint32_t)fmin(y_m / node_m, ground->node_rows - 1);
+    uint32_t column = (uint32_t)fmin((x_m - ground->west_m) / node_m, ground->node_columns - 1),
+             row = (uint32_t)fmin((y_m - ground->south_m) / node_m, ground->node_rows - 1);
     return ground->filled[(size_t)row * ground->node_columns + column];
 }
 
-double sim_ground_height_m(const sim_ground *ground, double x_m, double y_m)
+double sim_ground_own_height_m(const sim_ground *ground, double x_m, double y_m)
 {
-    double x = clamp(x_m / ground->cell_m, 0, ground->size[0]),
-           y = clamp(y_m / ground->cell_m, 0, ground->size[1]);
+    double x = clamp((x_m - ground->west_m) / ground->cell_m, 0, ground->size[0]),
+           y = clamp((y_m - ground->south_m) / ground->cell_m, 0, ground->size[1]);
     uint32_t column = (uint32_t)clamp(floor(x), 0, ground->columns - 2),
              row = (uint32_t)clamp(floor(y), 0, ground->rows - 2);
     double u = (x - column) / width(ground, 0, column), v = (y - row) / width(ground, 1, row);
@@ -155,39 +164,50 @@ static int cast_block(const ray *r, unsigned log2, uint32_t column, uint32_t row
     return 0;
 }
 
-double sim_ground_drop_m(const sim_ground *ground, double east_m, double north_m)
+/* The ray of sim_ground_cast, over this ground. */
+static ray ray_over(const sim_ground *ground, const double from_m[3], const double direction[3],
+                    double bend_m)
 {
-    return ground->curve_per_m * (east_m * east_m + north_m * north_m);
-}
-
-static double edge_height_m(const sim_ground *ground, const double from_m[3],
-                            const double direction[3], double t)
-{
-    return sim_ground_height_m(ground, from_m[0] + t * direction[0], from_m[1] + t * direction[1]);
-}
-
-int sim_ground_cast(const sim_ground *ground, const double from_m[3], const double direction[3],
-                    double t_max, double *t_hit)
-{
-    ray r = { .ground = ground, .side = 1 };
-    double t0 = 0, t1 = t_max;
+    ray r = { .ground = ground, .bend = bend_m, .side = 1 };
+    const double south_west_m[3] = { ground->west_m, ground->south_m, 0 };
     for (int axis = 0; axis < 3; axis++) {
         double scale = axis < 2 ? ground->cell_m : 1;
-        r.from[axis] = from_m[axis] / scale;
+        r.from[axis] = (from_m[axis] - south_west_m[axis]) / scale;
         r.along[axis] = direction[axis] / scale;
     }
-    r.bend = sim_ground_drop_m(ground, direction[0], direction[1]);
-    for (int axis = 0; axis < 2; axis++) { /* the part of the ray over the ground */
+    return r;
+}
+
+int sim_ground_own_span(const sim_ground *ground, const double from_m[3], const double direction[3],
+                        double t[2])
+{
+    ray r = ray_over(ground, from_m, direction, 0);
+    for (int axis = 0; axis < 2; axis++) {
         if (r.along[axis] == 0) {
             if (r.from[axis] < 0 || r.from[axis] > ground->size[axis]) return 0;
             continue;
         }
         double a = -r.from[axis] / r.along[axis],
                b = (ground->size[axis] - r.from[axis]) / r.along[axis];
-        t0 = fmax(t0, fmin(a, b));
-        t1 = fmin(t1, fmax(a, b));
+        t[0] = fmax(t[0], fmin(a, b));
+        t[1] = fmin(t[1], fmax(a, b));
     }
-    if (t0 > 0 && t0 < t1 && ray_height(&r, t0) < edge_height_m(ground, from_m, direction, t0))
+    return t[0] < t[1];
+}
+
+double sim_ground_own_above_m(const sim_ground *ground, const double from_m[3],
+                              const double direction[3], double bend_m, double t)
+{
+    ray r = ray_over(ground, from_m, direction, bend_m);
+    return ray_height(&r, t) - sim_ground_own_height_m(ground, from_m[0] + t * direction[0],
+                                                       from_m[1] + t * direction[1]);
+}
+
+int sim_ground_own_cast(const sim_ground *ground, const double from_m[3], const double direction[3],
+                        double bend_m, const double t[2], double *t_hit)
+{
+    ray r = ray_over(ground, from_m, direction, bend_m);
+    if (t[0] > 0 && sim_ground_own_above_m(ground, from_m, direction, bend_m, t[0]) < 0)
         r.side = -1; /* it comes in below the ground's edge */
-    return t0 < t1 && cast_block(&r, ground->top, 0, 0, t0, t1, t_hit);
+    return cast_block(&r, ground->top, 0, 0, t[0], t[1], t_hit);
 }

@@ -24,7 +24,8 @@ static int unpack_strip(sim_triangles *out, const uint16_t *index, uint32_t leng
 int sim_mesh_make(sim_mesh *mesh, const ff_terrain_info *info)
 {
     ff_strips *strips = malloc(sizeof *strips);
-    *mesh = (sim_mesh){ .info = *info, .curve_per_m = sim_place_curve_per_m(info) };
+    *mesh =
+        (sim_mesh){ .info = { *info }, .grounds = 1, .curve_per_m = sim_place_curve_per_m(info) };
     int rc = strips ? ff_strips_make(strips, info->node_log2) : FF_ERR_MEMORY;
     for (uint32_t i = 0; rc == FF_OK && i < strips->count; i++)
         rc = unpack_strip(&mesh->strip[i], strips->index + strips->first[i], strips->length[i]);
@@ -39,25 +40,40 @@ void sim_mesh_free(sim_mesh *mesh)
     memset(mesh, 0, sizeof *mesh);
 }
 
-double sim_mesh_vertex_m(const sim_mesh *mesh, const ff_drawn *drawn, uint32_t vertex)
+void sim_mesh_use(sim_mesh *mesh, const sim_drawn_grounds *grounds)
 {
-    return (double)mesh->info.hoffset_wu / FF_WU_PER_METRE +
-           (double)mesh->info.hscale_q24 / (1 << 24) * drawn->heights[vertex];
+    if (!grounds->info) return;
+    FF_ASSERT(grounds->count >= 1 && grounds->count <= FF_GROUNDS_MAX);
+    memcpy(mesh->info, grounds->info, grounds->count * sizeof *mesh->info);
+    mesh->grounds = grounds->count;
 }
 
-void sim_mesh_vertex_cell(const sim_mesh *mesh, const double last[2], uint32_t vertex,
+uint32_t sim_mesh_ground(const sim_mesh *mesh, const ff_drawn *drawn)
+{
+    uint32_t i = 0;
+    while (i + 1 < mesh->grounds && ff_key_tile(drawn->key) >= mesh->info[i + 1].first_tile) i++;
+    return i;
+}
+
+double sim_mesh_vertex_m(const ff_terrain_info *info, const ff_drawn *drawn, uint32_t vertex)
+{
+    return (double)info->hoffset_wu / FF_WU_PER_METRE +
+           (double)info->hscale_q24 / (1 << 24) * drawn->heights[vertex];
+}
+
+void sim_mesh_vertex_cell(const ff_terrain_info *info, const double last[2], uint32_t vertex,
                           double cell[2])
 {
-    uint32_t side = ff_node_side(&mesh->info);
+    uint32_t side = ff_node_side(info);
     cell[0] = fmin(vertex % side, last[0]);
     cell[1] = fmin(vertex / side, last[1]);
 }
 
-static int triangle_height(const sim_mesh *mesh, const ff_drawn *drawn, const double last[2],
+static int triangle_height(const ff_terrain_info *info, const ff_drawn *drawn, const double last[2],
                            const uint16_t vertex[3], const double cell[2], double *z_m)
 {
     double at[3][2], z[3], x = cell[0], y = cell[1];
-    for (int i = 0; i < 3; i++) sim_mesh_vertex_cell(mesh, last, vertex[i], at[i]);
+    for (int i = 0; i < 3; i++) sim_mesh_vertex_cell(info, last, vertex[i], at[i]);
     double area = (at[1][0] - at[0][0]) * (at[2][1] - at[0][1]) -
                   (at[2][0] - at[0][0]) * (at[1][1] - at[0][1]);
     if (area == 0) return 0; /* of padding */
@@ -66,21 +82,22 @@ static int triangle_height(const sim_mesh *mesh, const ff_drawn *drawn, const do
     double c = ((at[1][0] - at[0][0]) * (y - at[0][1]) - (x - at[0][0]) * (at[1][1] - at[0][1])) /
                area;
     if (!(b >= -1e-9 && c >= -1e-9 && b + c <= 1 + 1e-9)) return 0;
-    for (int i = 0; i < 3; i++) z[i] = sim_mesh_vertex_m(mesh, drawn, vertex[i]);
+    for (int i = 0; i < 3; i++) z[i] = sim_mesh_vertex_m(info, drawn, vertex[i]);
     *z_m = z[0] + b * (z[1] - z[0]) + c * (z[2] - z[0]);
     return 1;
 }
 
 int sim_mesh_height(const sim_mesh *mesh, const ff_drawn *drawn, const double cell[2], double *z_m)
 {
+    const ff_terrain_info *info = sim_mesh_info(mesh, drawn);
     uint8_t strip[5];
     unsigned count = ff_strips_for(drawn->coarser, strip);
     double last[2];
-    sim_place_last(&mesh->info, drawn, last);
+    sim_place_last(info, drawn, last);
     for (unsigned i = 0; i < count; i++) {
         const sim_triangles *list = &mesh->strip[strip[i]];
         for (uint32_t j = 0; j < list->count; j++)
-            if (triangle_height(mesh, drawn, last, list->vertex[j], cell, z_m)) return 1;
+            if (triangle_height(info, drawn, last, list->vertex[j], cell, z_m)) return 1;
     }
     return 0;
 }

@@ -19,11 +19,13 @@ double sim_place_curve_per_m(const ff_terrain_info *info)
 
 void sim_place_last(const ff_terrain_info *info, const ff_drawn *drawn, double cell[2])
 {
+    const int32_t south_west_wu[2] = { info->west_wu, info->south_wu };
     int64_t size_wu[2];
     ff_shape_size_wu(info, size_wu);
     for (int i = 0; i < 2; i++)
         cell[i] = fmin(1u << info->node_log2,
-                       (double)(size_wu[i] - drawn->origin_wu[i]) / drawn->cell_wu);
+                       (double)(south_west_wu[i] + size_wu[i] - drawn->origin_wu[i]) /
+                           drawn->cell_wu);
 }
 
 void sim_place_of_cell(const ff_drawn *drawn, const double cell[2], double height_m,

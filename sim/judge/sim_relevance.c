@@ -48,7 +48,6 @@ typedef struct half {
 
 struct sim_relevance {
     sys_stream inner;
-    ff_terrain_info info;
     const int64_t *now_us;
     half down, up;
     asked *asked;   /* by id */
@@ -252,7 +251,6 @@ sim_relevance *sim_relevance_create(sys_stream *stream, const ff_terrain_info *i
         return NULL;
     }
     for (size_t i = 0; i < BUCKETS; i++) relevance->bucket[i] = NONE;
-    relevance->info = *info;
     relevance->now_us = now_us;
     relevance->inner = *stream;
     stream->state = relevance;
@@ -305,22 +303,22 @@ static answer *bringer(sim_relevance *relevance, ff_key node)
 /* Marks the answers that brought the nodes beside a drawn node, without which vertices of its side
  * would be left out, or beside one above it, without which its children could not be drawn, because
  * the cut is restricted; and what these need in turn. */
-static void mark_support(sim_relevance *relevance, ff_key node)
+static void mark_support(sim_relevance *relevance, const ff_terrain_info *info, ff_key node)
 {
     for (unsigned side = 0; side < FF_SIDE_COUNT && ff_key_level(node) > 0; side++) {
-        ff_key beside = ff_shape_neighbour(&relevance->info, node, (enum ff_side)side).key;
+        ff_key beside = ff_shape_neighbour(info, node, (enum ff_side)side).key;
         answer *a = beside == FF_KEY_NONE ? NULL : bringer(relevance, beside);
         if (!a || a->support_frame == relevance->frame) continue;
         a->support_frame = relevance->frame;
         a->supports |= is_young(relevance, a);
-        mark_support(relevance, ff_key_parent(beside));
+        mark_support(relevance, info, ff_key_parent(beside));
     }
 }
 
-static void mark_heights(sim_relevance *relevance, ff_key node)
+static void mark_heights(sim_relevance *relevance, const ff_terrain_info *info, ff_key node)
 {
     for (;; node = ff_key_parent(node)) {
-        mark_support(relevance, node);
+        mark_support(relevance, info, node);
         answer *a = bringer(relevance, node);
         if (a && a->frame == relevance->frame) return; /* and all above it */
         if (a) mark(relevance, a);
@@ -339,11 +337,10 @@ static void mark_hidden(sim_relevance *relevance, ff_key node)
 }
 
 /* Images come from coarse to fine: a node is drawn with the last one that came over it. */
-static void mark_image(sim_relevance *relevance, ff_key node)
+static void mark_image(sim_relevance *relevance, const ff_terrain_info *info, ff_key node)
 {
     answer *last = NULL;
-    for (ff_key key = ff_texture_key(&relevance->info, node); key != FF_KEY_NONE;
-         key = ff_key_parent(key)) {
+    for (ff_key key = ff_texture_key(info, node); key != FF_KEY_NONE; key = ff_key_parent(key)) {
         answer *a = find(relevance, FF_KIND_TEXTURE, key);
         if (a && (!last || a > last)) last = a;
         if (ff_key_level(key) == 0) break;
@@ -434,13 +431,15 @@ static void mark_faces(sim_relevance *relevance, const sim_relevance_view *view)
 void sim_relevance_frame(sim_relevance *relevance, const sim_relevance_view *view)
 {
     relevance->frame++;
+    sim_mesh_use(&relevance->mesh, &view->grounds);
     while (relevance->first_young<relevance->count && * relevance->now_us -
                                   relevance->answer[relevance->first_young].came_us>
                SIM_RELEVANCE_US)
         relevance->first_young++;
     for (uint32_t i = 0; i < view->drawn_count; i++) {
-        mark_heights(relevance, view->drawn[i].key);
-        mark_image(relevance, view->drawn[i].key);
+        const ff_terrain_info *info = sim_mesh_info(&relevance->mesh, &view->drawn[i]);
+        mark_heights(relevance, info, view->drawn[i].key);
+        mark_image(relevance, info, view->drawn[i].key);
     }
     for (uint32_t i = view->drawn_count; i < view->in_view_count; i++)
         mark_hidden(relevance, view->drawn[i].key);

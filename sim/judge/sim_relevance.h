@@ -26,9 +26,9 @@
 #ifndef SIM_RELEVANCE_H
 #define SIM_RELEVANCE_H
 
-#include "../../client/terrain/ff_tree.h"
 #include "../../platform/sys.h"
 #include "../../protocol/ff_kind.h"
+#include "sim_mesh.h"
 
 #define SIM_RELEVANCE_US 5000000
 
@@ -52,7 +52,8 @@ typedef struct sim_relevance_view {
     c3d_camera camera;
     const ff_drawn *drawn; /* drawn_count of them, then those in view that nearer ground hides */
     uint32_t drawn_count, in_view_count;
-    int panorama; /* 1: a panorama is in use, taken at position_wu */
+    sim_drawn_grounds grounds; /* their keys number those of the stream's messages first */
+    int panorama;              /* 1: a panorama is in use, taken at position_wu */
     int32_t panorama_pos_wu[3];
 } sim_relevance_view;
 

@@ -264,3 +264,25 @@ int sim_watertight_check(const ff_terrain_info *info, const ff_frame *frame, con
     free(c);
     return ok;
 }
+
+int sim_watertight_check_grounds(const ff_terrain_info *info, uint32_t grounds,
+                                 const ff_frame *frame, const ff_drawn *list, uint32_t count,
+                                 char *why, size_t why_bytes)
+{
+    if (grounds == 1) return sim_watertight_check(info, frame, list, count, why, why_bytes);
+    ff_drawn *own = malloc((count + 1u) * sizeof *own);
+    uint32_t listed = 0;
+    int ok = own != NULL;
+    if (!ok && why && why_bytes) snprintf(why, why_bytes, "out of memory");
+    for (uint32_t i = 0; ok && i < grounds; i++) {
+        uint32_t of_it = 0;
+        for (uint32_t k = 0; k < count; k++)
+            if (ff_terrain_has_node(&info[i], list[k].key)) own[of_it++] = list[k];
+        listed += of_it;
+        ok = sim_watertight_check(&info[i], frame, own, of_it, why, why_bytes);
+    }
+    free(own);
+    if (ok && listed != count && why && why_bytes)
+        snprintf(why, why_bytes, "%u nodes are of no ground", count - listed);
+    return ok && listed == count;
+}

@@ -27,5 +27,9 @@
  * says what and where in one line; also 0 when out of memory. */
 int sim_watertight_check(const ff_terrain_info *info, const ff_frame *frame, const ff_drawn *list,
                          uint32_t count, char *why, size_t why_bytes);
+/* The same of the nodes of several grounds, each ground by itself. */
+int sim_watertight_check_grounds(const ff_terrain_info *info, uint32_t grounds,
+                                 const ff_frame *frame, const ff_drawn *list, uint32_t count,
+                                 char *why, size_t why_bytes);
 
 #endif

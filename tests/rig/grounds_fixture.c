@@ -84,14 +84,9 @@ void grounds_assert_whole(grounds_fixture *g)
     const ff_drawn *list;
     char why[160] = "";
     uint32_t count = ff_tree_cut(g->tree, &list);
-    ff_drawn *own = malloc((count + 1) * sizeof *own);
-    for (uint32_t i = 0; i < g->count; i++) {
-        uint32_t of = 0;
-        for (uint32_t k = 0; k < count; k++)
-            if (ff_terrain_has_node(&g->ground[i].info, list[k].key)) own[of++] = list[k];
-        if (!sim_watertight_check(&g->ground[i].info, ff_tree_frame(g->tree), own, of, why,
-                                  sizeof why))
-            fail_msg("ground %u: %s", i, why);
-    }
-    free(own);
+    ff_terrain_info info[FF_GROUNDS_MAX];
+    for (uint32_t i = 0; i < g->count; i++) info[i] = g->ground[i].info;
+    if (!sim_watertight_check_grounds(info, g->count, ff_tree_frame(g->tree), list, count, why,
+                                      sizeof why))
+        fail_msg("%s", why);
 }
