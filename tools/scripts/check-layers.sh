@@ -75,7 +75,7 @@ client/several      client client/terrain protocol/ platform/sys.h
 client              client/ protocol/ common3d platform/sys.h
 server/packs        protocol/ platform/sys.h
 server/view         client/terrain protocol/ common3d
-server/session      server/view protocol/ platform/sys.h
+server/session      server/view server/packs protocol/ platform/sys.h
 server/panorama     client/terrain client/ground client/images protocol/ common3d platform/sys.h
 server/net          server server/session server/panorama protocol/ platform/sys.h
 server              server/ platform/options client/farfield.h protocol/ platform/sys.h
