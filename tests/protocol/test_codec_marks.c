@@ -96,7 +96,7 @@ static void check(payload_test *test, const uint16_t *source)
     int all = test->parent ? 15 : 1, unmarked = 0;
     test->res = (ff_residuals){ .value = value };
     memcpy(test->res.child_error, test->errors, 4);
-    ff_encode_heights(test->info, test->parent, source, &test->res, test->decoded);
+    ff_encode_heights(test->info, test->parent, source, NULL, &test->res, test->decoded);
     for (int marks = 0; marks < 4096; marks++) {
         int stub = marks >> 8, leaf = marks >> 4 & 15, filled = marks & 15,
             kinds = (stub > 0) + (leaf > 0) + (filled > 0);

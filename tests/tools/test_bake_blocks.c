@@ -129,9 +129,9 @@ static void close_ground(ground *g)
 
 static void make(const ground *g, uint32_t block_log2, uint32_t jobs, made *m)
 {
+    bake_grid_samples samples = bake_samples_of(&g->heights, &g->filled);
     bake_tiles tiles = { .info = &g->info,
-                         .heights = &g->heights,
-                         .filled = &g->filled,
+                         .samples = &samples.samples,
                          .image = &g->image,
                          .texture_quality = 50,
                          .block_log2 = block_log2,

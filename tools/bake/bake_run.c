@@ -158,9 +158,9 @@ static int take_records(void *context, uint32_t section, const bake_blob *record
 
 static int make_tiles(bake *b)
 {
+    bake_grid_samples samples = bake_samples_of(&b->heights, &b->filled);
     bake_tiles tiles = { .info = &b->info,
-                         .heights = &b->heights,
-                         .filled = &b->filled,
+                         .samples = &samples.samples,
                          .image = &b->image,
                          .texture_quality = (int)b->options->texture_quality,
                          .block_log2 = BAKE_BLOCK_LOG2,
