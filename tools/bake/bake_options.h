@@ -106,6 +106,9 @@ typedef struct bake_options {
     BAKE_OPTIONS(SYS_FIELD, SYS_NO_FIELD)
 } bake_options;
 
+/* Threads when none are told. */
+uint32_t bake_processors(void);
+
 /* Fills `options` from the command line. 0: go on; 1: --help or --version answered; -1: wrong
  * usage, said in one line on stderr. */
 int bake_options_parse(bake_options *options, int argc, char **argv);

@@ -12,6 +12,7 @@
 #define Q24             16777216.0
 #define COARSEST_M      100.0 /* a step in Q24 ends at 128 m */
 #define OFFSET_ERROR_M  1e-4
+#define SAME_ERROR_M    1e-9 /* of two steps that are told as well the higher one is chosen */
 #define TRIES_MAX       4096
 
 /* Chooses the height of step 0: zero when all heights fit above it, else just below the lowest
@@ -41,13 +42,21 @@ static double choose_first_above(double base_m, double step_m, double low, doubl
     double best = low, best_m = INFINITY;
     for (double first = low; first > low - TRIES_MAX && high - first <= STEPS_MAX; first--) {
         double error_m = offset_error_m(base_m, step_m, first);
-        if (error_m < best_m) {
+        if (error_m < best_m - SAME_ERROR_M) {
             best = first;
             best_m = error_m;
         }
         if (best_m <= OFFSET_ERROR_M) break;
     }
     return best;
+}
+
+double bake_steps_first(double base_m, double step_m, double low, double high)
+{
+    double first = choose_first(step_m, low, high);
+    return offset_error_m(base_m, step_m, first) > OFFSET_ERROR_M
+               ? choose_first_above(base_m, step_m, low, high)
+               : first;
 }
 
 static int set_step(bake_steps *steps, double wanted_m)
@@ -74,8 +83,7 @@ static int set_own_step(bake_steps *steps, double own_m, double base_m)
     steps->min_m += base_m;
     steps->max_m += base_m;
     if (!fits) return 0;
-    if (offset_error_m(base_m, own_m, steps->first_step) > OFFSET_ERROR_M)
-        steps->first_step = choose_first_above(base_m, own_m, low, high);
+    steps->first_step = bake_steps_first(base_m, own_m, low, high);
     steps->base_m = base_m + steps->first_step * (own_m - steps->step_m);
     double drift_m = (high - low) * fabs(own_m - steps->step_m),
            float_m = fmax(fabs(steps->min_m), fabs(steps->max_m)) * FLT_EPSILON;
