@@ -106,4 +106,112 @@ def _():
         assert data("joint.ffp") == data("whole.ffp"), name
 
 
+COUNTRY = ground(640, 2)
+
+
+def inset(left, bottom, columns, rows):
+    """A fine pack of a part of COUNTRY: (name, heights, x, y)."""
+    heights = COUNTRY[bottom:bottom + rows, left:left + columns]
+    return pack("fine", heights, x=10 * left, y=10 * bottom), heights, 10 * left, 10 * bottom
+
+
+@case("fine ground in coarse country: all samples of both stay, the pack is no larger than both, what is coarse costs nothing finer")
+def _():
+    coarse = pack("coarse", COUNTRY[::4, ::4] + 30, spacing=40)  # 30 m higher: one is told from the other
+    for left, bottom, columns, rows in (160, 160, 129, 129), (203, 301, 150, 97), (0, 0, 100, 641), (37, 2, 20, 9):
+        fine, heights, x, y = inset(left, bottom, columns, rows)
+        summary = merge(coarse, fine)
+        joint = read("joint.ffp")
+        assert joint[1:] == (0, 0, 10) and joint[0].shape == (641, 641)
+        assert holds(joint, heights, 10, x, y)
+        under = np.zeros((161, 161), bool)
+        under[-(-bottom // 4):(bottom + rows - 1) // 4 + 1, -(-left // 4):(left + columns - 1) // 4 + 1] = True
+        assert holds(joint, COUNTRY[::4, ::4] + 30, 40, 0, 0, but=under)
+        assert summary["file_bytes"] <= 1.05 * summary["packs_bytes"] and summary["uncovered"] == 0, summary
+        merge(fine, coarse, out="other.ffp", options=("--jobs", 1))
+        assert data("joint.ffp") == data("other.ffp")
+
+
+def flies(name, *options):
+    """Flies over a pack: all is drawn, without cracks, and nothing is asked for that is not stored."""
+    flight = fly(name, "--check", "on", "--path", "diagonal", "--start", 0.1, "--speed", 900, "--height", 120, "--panorama", "off", *options)
+    assert flight["requests_failed"] == 0 and flight["crack_frames"] == 0 and flight["undrawn_px_percent"] < 0.5, flight
+    return flight
+
+
+@case("over the rim of fine ground all is drawn, nothing is asked for below leaves, and coarse ground is no rougher than it was")
+def _():
+    coarse = pack("coarse", COUNTRY[::4, ::4], spacing=40)
+    fine, *_ = inset(203, 211, 150, 137)
+    merge(coarse, fine)
+    flies("joint.ffp")
+    flies("joint.ffp", "--memory", "1M", "--panorama", "on", "--back-plane", 2000)
+    levels = max(s["level"] for s in json.loads(run("info", "--json", "joint.ffp").stdout)["sections"] if s["kind"] == "refinement") + 2
+    for region, rough in ("9.0013,46.0545,9.0129,46.0615", False), ("9.03,46.08,9.035,46.085", True):
+        done = run("export", "joint.ffp", "-o", "level.tif", "--level", levels - 3, "--region", region)
+        assert done.returncode == 0, done.stderr
+        error = gdal.Open(os.path.join(work, "level.tif")).GetMetadataItem("error")
+        assert ("between" in error) == rough, (region, error)  # of the coarse pack's level there
+
+
+
+def joins(parts):
+    """Joins packs (name, heights, spacing, x, y), the later ones finer or named later, and compares all samples with the sources."""
+    summary = merge(*(part[0] for part in parts))
+    joint = read("joint.ffp")
+    have, left, bottom, fine = joint
+    owner = np.full(have.shape, -1)
+    for number, (_, heights, spacing, x, y) in sorted(enumerate(parts), key=lambda part: (part[1][2], part[0]), reverse=True):
+        column, row, apart = round((x - left) / fine), round((y - bottom) / fine), round(spacing / fine)
+        owner[row:row + (heights.shape[0] - 1) * apart + 1, column:column + (heights.shape[1] - 1) * apart + 1] = number
+    for number, (name, heights, spacing, x, y) in enumerate(parts):
+        column, row, apart = round((x - left) / fine), round((y - bottom) / fine), round(spacing / fine)
+        own = owner[row:row + (heights.shape[0] - 1) * apart + 1:apart, column:column + (heights.shape[1] - 1) * apart + 1:apart]
+        assert holds(joint, heights, spacing, x, y, but=own != number), name
+    return summary
+
+
+@case("three spacings, fine ground that reaches beyond the country, and packs apart: what nobody covers is filled, and told so")
+def _():
+    coarse = pack("coarse", COUNTRY[::4, ::4], spacing=40), COUNTRY[::4, ::4], 40, 0, 0
+    middle = pack("middle", COUNTRY[40:401:2, 80:501:2], spacing=20, x=800, y=400), COUNTRY[40:401:2, 80:501:2], 20, 800, 400
+    inner = pack("inner", COUNTRY[100:200, 150:263], x=1500, y=1000), COUNTRY[100:200, 150:263], 10, 1500, 1000
+    out = pack("out", LAND[:, :101], x=5930, y=5170), LAND[:, :101], 10, 5930, 5170
+    far = pack("far", LAND[:90, :77], x=9010, y=-1270), LAND[:90, :77], 10, 9010, -1270
+    assert joins([coarse, middle, inner])["uncovered"] == 0
+    flies("joint.ffp")
+    assert 0.1 < joins([coarse, out, inner])["uncovered"] < 0.3
+    flies("joint.ffp", "--start", 0.6)
+    summary = joins([far, middle, out])
+    assert 0.6 < summary["uncovered"] < 0.95 and summary["file_bytes"] < 1.05 * summary["packs_bytes"], summary
+    flies("joint.ffp", "--seconds", 60)
+    done = run("export", "joint.ffp", "-o", "told.tif", "--voids", "nodata")
+    assert done.returncode == 0, done.stderr
+    told = gdal.Open(os.path.join(work, "told.tif"))
+    void = (told.ReadAsArray() == told.GetRasterBand(1).GetNoDataValue()).mean()
+    assert abs(void - summary["uncovered"]) < 0.1, (void, summary["uncovered"])
+
+
+@case(f"{DRAWS} draws of packs by chance: spacings, sizes and places of all kinds keep all their samples, whatever --jobs")
+def _():
+    for seed in range(DRAWS):
+        chance = random.Random(1000 + seed)
+        land = ground(300, seed, rough=chance.choice((0, 5, 60)))
+        apart = [chance.choice((1, 1, 2, 4, 8, 32)) for _ in range(chance.randint(2, 5))]
+        parts, coarsest = [], max(apart)
+        shift = chance.choice((0, 0, -1200, 900))
+        for number, times in enumerate(apart):
+            columns, rows = chance.randint(2, 300 // times), chance.randint(2, 300 // times)
+            left, bottom = times * chance.randint(0, 300 // times - columns), times * chance.randint(0, 300 // times - rows)
+            heights = land[bottom:bottom + (rows - 1) * times + 1:times, left:left + (columns - 1) * times + 1:times] + chance.choice((0, 40)) + shift
+            x, y = 10 * left + chance.choice((0, 0, 10 * coarsest * 20)), 10 * bottom
+            parts.append((pack(f"draw{number}", heights, *(() if chance.random() < 0.7 else ("--node-log2", 3)), spacing=10 * times, x=x, y=y), heights, 10 * times, x, y))
+        try:
+            joins(parts)
+            merge(*(part[0] for part in parts), out="other.ffp", options=("--jobs", chance.choice((1, 3))))
+            assert data("joint.ffp") == data("other.ffp"), "jobs"
+        except Exception as fault:
+            raise AssertionError(f"draw {seed}: {[(name, heights.shape, *place) for name, heights, *place in parts]}: {fault}")
+
+
 finish()
