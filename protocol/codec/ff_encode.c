@@ -125,9 +125,11 @@ int ff_mark_stubs(const ff_terrain_info *info, int root, const uint8_t *payload,
     int form = take_marks(info, root, &in, &res);
 
     if (form < 0) return form;
-    res.stub |= stub;
+    res.stub = stub;
     if (res.stub >> (root ? 1 : 4) || res.stub & res.leaf) return FF_ERR_RANGE;
-    if (form == FF_ERRORS_ZERO && res.stub) form = FF_ERRORS_SAME;
+    if (form == FF_ERRORS_ZERO && stub) form = FF_ERRORS_SAME;
+    if (form == FF_ERRORS_SAME && !stub && !res.leaf && !res.filled && !res.child_error[0])
+        form = FF_ERRORS_ZERO;
     if (head)
         out[0] = (uint8_t)((payload[0] & ~FF_HEAD_ERRORS) | (unsigned)form << FF_HEAD_ERRORS_SHIFT);
     put = head + ff_put_errors(&res, (enum ff_errors_form)form, root ? 1 : 4, out + head);

@@ -69,7 +69,7 @@ static int encode_marked(payload_test *test, int marks)
     return ff_encode_payload(test->info, test->parent, test->decoded, &test->res, test->payload);
 }
 
-/* Stubs are marked in a payload that is there, as if it had been encoded with them. */
+/* Stubs are marked in a payload that is there, and taken back, as if it had been encoded so. */
 static void check_marking(payload_test *test, int marks)
 {
     static uint8_t marked[FF_PAYLOAD_BYTES_MAX];
@@ -78,6 +78,9 @@ static void check_marking(payload_test *test, int marks)
         bytes = ff_mark_stubs(test->info, root, test->payload, (size_t)before, (uint8_t)stub,
                               marked);
     assert_int_equal(bytes, encode_marked(test, marks));
+    assert_memory_equal(marked, test->payload, (size_t)bytes);
+    bytes = ff_mark_stubs(test->info, root, test->payload, (size_t)bytes, 0, marked);
+    assert_int_equal(bytes, encode_marked(test, marks & 0xFF));
     assert_memory_equal(marked, test->payload, (size_t)bytes);
     if (marks >> 4 & 15)
         assert_int_equal(ff_mark_stubs(test->info, root, test->payload, (size_t)bytes,

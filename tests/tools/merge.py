@@ -192,6 +192,38 @@ def _():
     assert abs(void - summary["uncovered"]) < 0.1, (void, summary["uncovered"])
 
 
+WAVES = np.array([np.clip(128 + 100 * np.sin(np.arange(641)[None, :] / (9 + band)) * np.cos(np.arange(641)[:, None] / 7), 0, 255) for band in range(3)])
+
+
+def cut(whole, out, region, *options):
+    done = run("export", whole, "-o", out, "--region", region, *options)
+    assert done.returncode == 0, done.stderr
+    return out
+
+
+@case("parts cut from a pack give that pack again, and a part of it where they leave some out: lossy, with voids, images and tiles of any size")
+def _():
+    land = np.where((np.arange(641) % 97 < 5)[:, None] & (np.arange(641) % 71 < 9)[None, :], -9999, COUNTRY)
+    colour = put("colour.tif", WAVES.astype(np.uint8), kind=gdal.GDT_Byte, place=(EAST - 5, 10, 0, NORTH + 6405, 0, -10))
+    west, middle, east = "8.9,46,9.03,46.2", "9.02,46,9.06,46.2", "9.04,46,9.2,46.2"
+    for options in (), ("--max-error", 3, "--color", colour, "--codec", "rice"), ("--tile-log2", 7, "--color", colour, "--texture-levels", 3), ("--codec", "raw", "--tile-log2", 8):
+        whole = pack("whole", land, "--name", "Waves", "--attribution", "Nobody", *options, nodata=-9999)
+        parts = [cut(whole, f"part{i}.ffp", region) for i, region in enumerate((west, middle, east))]
+        merge(*parts)
+        assert data("joint.ffp") == data("whole.ffp"), options
+        merge(parts[2], parts[0], out="two.ffp")  # what lies between them is left out
+        assert max(map(len, map(data, parts))) < len(data("two.ffp")) < len(data("whole.ffp"))
+        merge("two.ffp", parts[1])
+        assert data("joint.ffp") == data("whole.ffp"), options
+        flies("two.ffp")
+        coarse = cut(whole, "coarse.ffp", west, "--level", 2)
+        merge(coarse, parts[0])
+        assert data("joint.ffp") == data(parts[0])
+    other, first = pack("other", COUNTRY), pack("first", COUNTRY[::-1])  # of one size, from the same lowest to the same highest sample
+    refused_merge("not parts of one pack", cut(other, "a.ffp", west), cut(first, "b.ffp", east))
+    refused_merge("is a part cut from a pack", cut(other, "a.ffp", west), pack("far", LAND, x=9000))
+
+
 @case(f"{DRAWS} draws of packs by chance: spacings, sizes and places of all kinds keep all their samples, whatever --jobs")
 def _():
     for seed in range(DRAWS):

@@ -8,6 +8,7 @@
 #include "../bake/bake_tiles.h"
 #include "../bake/pack_writer.h"
 #include "merge_about.h"
+#include "merge_parts.h"
 #include "merge_samples.h"
 
 #include <inttypes.h>
@@ -25,6 +26,7 @@ typedef struct merge {
     merge_samples samples;
     bake_image image;
     pack_writer writer;
+    int are_parts; /* of one pack */
     uint8_t list[FF_ABOUT_BYTES_MAX];
     int64_t started_us;
 } merge;
@@ -188,18 +190,38 @@ static void report(const merge *m, uint64_t file_bytes)
            info->texture_levels, sum, file_bytes, seconds);
 }
 
-static int make_pack(merge *m)
+/* Parts of one pack go by records, all else by samples. */
+static int join_parts(merge *m)
 {
-    uint64_t file_bytes;
-    ff_list about;
-    if (merge_about_make(m->options, m->unpack, m->count, m->list, &about)) return -1;
+    m->lattice.info = m->unpack[0].pack.header.info;
+    ff_sheet samples = ff_shape_sheet_samples(&m->lattice.info);
+    m->lattice.width = samples.x;
+    m->lattice.height = samples.y;
+    return pack_writer_open(&m->writer, &m->lattice.info) ||
+                   merge_parts_write(m->unpack, m->count, &m->writer)
+               ? -1
+               : 0;
+}
+
+static int join_samples(merge *m)
+{
+    if (find_lattice(m) || describe(m)) return -1;
     if (merge_samples_open(m->unpack, m->place, m->count, &m->lattice, &m->samples) ||
         check_whole(m))
         return -1;
     if (m->samples.gap > 0)
         bake_note("no pack covers %.2g %% of the rectangle round them: filled from around it",
                   100 * m->samples.gap);
-    if (pack_writer_open(&m->writer, &m->lattice.info) || make_tiles(m)) return -1;
+    return pack_writer_open(&m->writer, &m->lattice.info) || make_tiles(m) ? -1 : 0;
+}
+
+static int make_pack(merge *m)
+{
+    uint64_t file_bytes;
+    ff_list about;
+    if (merge_about_make(m->options, m->unpack, m->count, m->list, &about)) return -1;
+    if (merge_parts_are(m->unpack, m->count, &m->are_parts)) return -1;
+    if (m->are_parts ? join_parts(m) : join_samples(m)) return -1;
     m->writer.about = about;
     if (pack_writer_finish(&m->writer, m->options->out_path, &file_bytes)) return -1;
     report(m, file_bytes);
@@ -216,9 +238,7 @@ int merge_run(const merge_options *options)
     GDALAllRegister();
     GDALSetCacheMax64(GDAL_CACHE_BYTES);
     CPLSetErrorHandler(CPLQuietErrorHandler);
-    int rc = prepare(options) || open_packs(&m) || find_lattice(&m) || describe(&m) || make_pack(&m)
-                 ? -1
-                 : 0;
+    int rc = prepare(options) || open_packs(&m) || make_pack(&m) ? -1 : 0;
     pack_writer_close(&m.writer);
     bake_image_close(&m.image);
     merge_samples_close(&m.samples);
