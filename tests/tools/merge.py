@@ -224,6 +224,82 @@ def _():
     refused_merge("is a part cut from a pack", cut(other, "a.ffp", west), pack("far", LAND, x=9000))
 
 
+@case("what does not fit is refused in one line with the bake that makes it fit, and that bake does")
+def _():
+    first = pack("first", LAND)
+    def refits(pattern, name, heights, *options, again=None, **written):
+        refused_merge(pattern + r".*farfield-bake HEIGHTS --lattice first\.ffp", first, pack(name, heights, *options, **written))
+        done = run("bake", f"{name}.tif", "-o", f"{name}.ffp", "--lattice", first, *(again or ()))
+        assert done.returncode == 0, done.stderr
+        summary = merge(first, f"{name}.ffp")
+        return summary, read(f"{name}.ffp")
+    east = dict(x=2600)
+    _, (heights, x, y, spacing) = refits("reference systems", "zone", LAND, "--t-srs", "EPSG:32633", **east)
+    assert spacing == 10 and x % 10 == 0 and y % 10 == 0
+    assert refits("spacings of 15 and 10 m", "fifteen", LAND, spacing=15, **east)[1][3] == 20
+    assert refits("spacings of 35 and 10 m", "forty", LAND[::4, ::4], spacing=35, again=("--spacing", 40), **east)[1][3] == 40
+    _, (heights, x, y, spacing) = refits("each other's places", "between", LAND, x=2604, y=3)
+    assert (x, y) in ((2600, 0), (2610, 10)) and spacing == 10  # as resampling fills the source's area
+    _, (heights, x, y, spacing) = refits("each other's places", "near", LAND, x=2601, y=-1)
+    assert (x, y) == (2600, 0) and (heights == LAND).all()  # within an eighth of a sample: kept
+    _, (heights, *place) = refits("heights in steps of 0.1 and 1 m", "tenths", LAND, "--hscale", 0.1, **east)
+    assert (heights == LAND).all()
+    assert (refits("nodes of unlike size or codec", "rice", LAND, "--codec", "rice", **east)[1][0] == LAND).all()
+    assert (refits("nodes of unlike size or codec", "nodes", LAND, "--node-log2", 4, **east)[1][0] == LAND).all()
+    assert (refits("fall away differently", "flat", LAND, "--flat", **east)[1][0] == LAND).all()
+    refused_merge("has an error of 2 m.*--max-error", first, pack("lossy", LAND, "--max-error", 2, **east))
+    refused_merge("span more than 65536 steps.*--hscale", pack("low", LAND * 0.01 - 400, "--hscale", 0.01, kind=gdal.GDT_Float32), pack("high", LAND * 0.01 + 400, "--hscale", 0.01, kind=gdal.GDT_Float32, **east))
+    degrees = put("degrees.tif", LAND, kind=gdal.GDT_Int16, place=(9.1, 1e-4, 0, 46.06, 0, -1e-4), reference="EPSG:4326")
+    done = run("bake", degrees, "-o", "degrees.ffp", "--lattice", first)
+    assert done.returncode == 0, done.stderr
+    merge(first, "degrees.ffp")
+    for pattern, options in ("not a power of two times", ("--spacing", 30)), ("takes all that", ("--t-srs", "EPSG:32632")):
+        done = run("bake", "first.tif", "-o", "never.ffp", "--lattice", first, *options)
+        assert done.returncode != 0 and re.search(pattern, done.stderr) and done.stderr.count("\n") == 1, done.stderr
+    merge(first, first)
+    assert data("joint.ffp") == data(first)
+
+
+@case("an input is never written over, one pack alone and what is no pack are refused, and damage leaves nothing behind")
+def _():
+    left, right = pack("left", LAND[:, :131]), pack("right", LAND[:, 130:], x=1300)
+    before = data(left)
+    merge(left, right)
+    done = run("merge", left, right, "-o", left)
+    assert done.returncode == 1 and "not overwritten" in done.stderr and data(left) == before
+    refused_merge("two packs or more", left)
+    refused_merge("nowhere.ffp: ", left, "nowhere.ffp")
+    chance = random.Random(5)
+    for at in [chance.randrange(4096, len(before)) for _ in range(40)] + [9, 30, 700]:
+        with open(os.path.join(work, "bad.ffp"), "wb") as out:
+            out.write(before[:at] + bytes((before[at] ^ 1 << chance.randrange(8),)) + before[at + 1:])
+        done = run("merge", right, "bad.ffp", "-o", "never.ffp", "--quiet")
+        assert done.returncode in (0, 1) and done.stderr.count("\n") == done.returncode, (at, done.stderr)
+        if done.returncode == 0:  # a bit that says nothing
+            assert data("never.ffp") == data("joint.ffp"), at
+            os.remove(os.path.join(work, "never.ffp"))
+        assert not [name for name in os.listdir(work) if name.startswith("never")]
+
+
+@case("what packs say of themselves is joined, each word once, as told or as there is room for")
+def _():
+    a = pack("a", LAND[:, :100], "--name", "Alps", "--attribution", "Alpha", "--licence", "CC0", "--date", "2020")
+    b = pack("b", LAND[:, 99:200], "--name", "Alps", "--attribution", "Beta; Alpha", "--vertical-datum", "EGM96 height", x=990)
+    c = pack("c", LAND[:, 199:], "--name", "Jura", "--attribution", "Al", x=1990)
+    def about(*packs, options=()):
+        merge(*packs, options=options)
+        return json.loads(run("info", "--json", "joint.ffp").stdout)["about"]
+    told = about(a, b, c)
+    assert [told.get(key) for key in ("name", "attribution", "licence", "date", "vertical_datum")] == ["Alps; Jura", "Alpha; Beta; Al", "CC0", "2020", "EGM96 height"], told
+    os.rename(os.path.join(work, "joint.ffp"), os.path.join(work, "all.ffp"))
+    assert about("all.ffp", b)["attribution"] == "Alpha; Beta; Al"
+    assert about(b, a, options=("--attribution", "Who", "--name", "Where"))["attribution"] == "Who"
+    long = [pack(f"long{i}", LAND[:, 100 * i:100 * i + 61], "--attribution", chr(97 + i) * 300, x=1000 * i) for i in (0, 1)]
+    refused_merge("--attribution have 602 bytes together, at most 400", *long)
+    merge(*long, options=("--attribution", "both"))
+    assert about(a, b)["projection_wkt"] == json.loads(run("info", "--json", a).stdout)["about"]["projection_wkt"]
+
+
 @case(f"{DRAWS} draws of packs by chance: spacings, sizes and places of all kinds keep all their samples, whatever --jobs")
 def _():
     for seed in range(DRAWS):

@@ -167,6 +167,9 @@ int bake_options_parse(bake_options *o, int argc, char **argv)
         return bake_fail("--tile-log2 %u: not from --node-log2 %u up", o->tile_log2, o->node_log2);
     if (o->no_project && o->target_epsg)
         return bake_fail("--no-project and --t-srs exclude each other");
+    if (o->lattice_path && (o->target_epsg || o->no_project || o->hscale_m > 0 || o->densify > 1))
+        return bake_fail("--lattice takes all that --t-srs, --no-project, --hscale and --densify "
+                         "tell from its pack");
     if (bake_about_check(o)) return -1;
     bake_say_setup("farfield-bake", o->quiet);
     return 0;

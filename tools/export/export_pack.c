@@ -5,7 +5,7 @@
 #include "../bake/bake_leftovers.h"
 #include "../bake/bake_say.h"
 #include "../bake/pack_append.h"
-#include "../info/bake_about_gdal.h"
+#include "../bake/raster/bake_reference.h"
 #include "export_part.h"
 
 #include <inttypes.h>
@@ -197,7 +197,7 @@ static int choose_part(cutter *c, const bake_box *region, uint32_t level)
     const ff_pack *pack = &c->unpack->pack;
     export_lattice lattice = export_lattice_samples(c->info, ff_terrain_levels(c->info) - 1);
     export_window window;
-    OGRSpatialReferenceH srs = bake_about_reference(pack);
+    OGRSpatialReferenceH srs = bake_reference_of(pack);
     int rc = export_place_window(c->info, srs, &lattice, region, &window);
     if (srs) OSRDestroySpatialReference(srs);
     if (rc) return rc;

@@ -1,6 +1,7 @@
 #include "merge_about.h"
 
 #include "../bake/bake_say.h"
+#include "../bake/raster/bake_reference.h"
 
 #include <string.h>
 
@@ -118,17 +119,11 @@ int merge_about_make(const merge_options *o, const bake_unpack unpack[], uint32_
 
 int merge_about_same_system(const ff_pack *a, const ff_pack *b)
 {
-    const ff_pack *pack[2] = { a, b };
-    const uint8_t *wkt[2] = { NULL, NULL };
-    int bytes[2];
     if (a->header.info.epsg || b->header.info.epsg)
         return a->header.info.epsg == b->header.info.epsg;
-    for (int i = 0; i < 2; i++) {
-        ff_list about;
-        bytes[i] = ff_pack_about(pack[i], &about) == FF_OK
-                       ? ff_list_find(about, FF_ABOUT_WKT, &wkt[i])
-                       : FF_ERR_NOT_FOUND;
-    }
-    if (bytes[0] < 0 || bytes[1] < 0) return bytes[0] < 0 && bytes[1] < 0;
-    return bytes[0] == bytes[1] && !memcmp(wkt[0], wkt[1], (size_t)bytes[0]);
+    OGRSpatialReferenceH first = bake_reference_of(a), second = bake_reference_of(b);
+    int same = first && second ? OSRIsSame(first, second) : !first && !second;
+    if (first) OSRDestroySpatialReference(first);
+    if (second) OSRDestroySpatialReference(second);
+    return same;
 }

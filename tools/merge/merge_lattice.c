@@ -6,14 +6,11 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define Q24            16777216.0
-#define MM_PER_METRE   1000
-#define TOLERANCE_MM   1 /* origins are told in whole millimetres */
-#define TOLERANCE_WU   1 /* and heights of step 0 in whole units */
-#define STEPS_MAX      65535
-#define PLACES_MAX     (INT64_C(1) << 31)
-#define MM_TOLERANCE_M 4e-4
-#define BASE_TOLERANCE 0.02 /* of a step: how far step 0 may be from whole steps above 0 m */
+#define MM_PER_METRE 1000
+#define TOLERANCE_MM 1 /* origins are told in whole millimetres */
+#define TOLERANCE_WU 1 /* and heights of step 0 in whole units */
+#define STEPS_MAX    65535
+#define PLACES_MAX   (INT64_C(1) << 31)
 
 /* ---- places ---- */
 
@@ -134,23 +131,6 @@ static void place_all(const ff_terrain_info *const info[], const span each[], ui
 
 /* ---- heights ---- */
 
-/* The step as it was before it was rounded to what a pack tells, where it is a part of a metre or
- * whole metres. */
-static double own_step_m(uint32_t hscale_q24)
-{
-    double step_m = hscale_q24 / Q24, parts = nearbyint(1 / step_m);
-    return parts >= 1 && nearbyint(Q24 / parts) == hscale_q24 ? 1 / parts : step_m;
-}
-
-/* How far whole steps lie from 0 m, before that was rounded to what a pack tells: not at all, or
- * whole millimetres. */
-static double own_base_m(double base_m, double step_m)
-{
-    double mm = nearbyint(base_m * MM_PER_METRE) / MM_PER_METRE;
-    if (fabs(base_m) <= fmax(BASE_TOLERANCE * step_m, 0.5 / FF_WU_PER_METRE)) return 0;
-    return fabs(base_m - mm) < MM_TOLERANCE_M ? mm : base_m;
-}
-
 /* How many steps a pack's step 0 lies above the first one's; 0 where it is not a whole number. */
 static int count_steps(const ff_terrain_info *info, const ff_terrain_info *first, int64_t *steps)
 {
@@ -174,9 +154,9 @@ static enum merge_fault find_steps(const ff_terrain_info *const info[], uint32_t
         if (info[i]->height_max + steps[i] > high) high = info[i]->height_max + steps[i];
         if (high - low > STEPS_MAX) return MERGE_RANGE;
     }
-    double step_m = own_step_m(joint->hscale_q24),
-           zero_m = (double)info[0]->hoffset_wu / FF_WU_PER_METRE,
-           zero = nearbyint(zero_m / step_m), base_m = own_base_m(zero_m - zero * step_m, step_m);
+    double step_m, base_m;
+    bake_steps_of(info[0], &step_m, &base_m);
+    double zero = nearbyint(((double)info[0]->hoffset_wu / FF_WU_PER_METRE - base_m) / step_m);
     double first = bake_steps_first(base_m, step_m, zero + (double)low, zero + (double)high);
     joint->hoffset_wu = (int32_t)nearbyint((base_m + first * step_m) * FF_WU_PER_METRE);
     for (uint32_t i = 0; i < count; i++)

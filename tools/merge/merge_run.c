@@ -7,6 +7,7 @@
 #include "../bake/bake_say.h"
 #include "../bake/bake_tiles.h"
 #include "../bake/pack_writer.h"
+#include "../bake/raster/bake_quantise.h"
 #include "merge_about.h"
 #include "merge_parts.h"
 #include "merge_samples.h"
@@ -55,6 +56,13 @@ static double spacing_m(const ff_terrain_info *info)
     return (double)info->spacing_wu / FF_WU_PER_METRE;
 }
 
+static double step_m(const ff_terrain_info *info)
+{
+    double own_m, base_m;
+    bake_steps_of(info, &own_m, &base_m);
+    return own_m;
+}
+
 /* How one pack's source is baked so that it joins the first. */
 static int refuse(const merge *m, uint32_t which, const char *why)
 {
@@ -81,15 +89,15 @@ static int refuse_fault(const merge *m, uint32_t which, enum merge_fault fault)
         case MERGE_PLACES:
             return refuse(m, which, "have samples between each other's places, on unlike lattices");
         case MERGE_STEP:
-            snprintf(why, sizeof why, "have heights in steps of %.9g and %.9g m%s",
-                     info->hscale_q24 / 16777216.0, first->hscale_q24 / 16777216.0,
+            snprintf(why, sizeof why, "have heights in steps of %.9g and %.9g m%s", step_m(info),
+                     step_m(first),
                      info->hscale_q24 == first->hscale_q24 ? " from unlike heights" : "");
             return refuse(m, which, why);
         case MERGE_RANGE:
             return bake_fail(
                 "%s: its heights and those before span more than 65536 steps of %g m: bake "
                 "all in coarser steps, farfield-bake HEIGHTS --hscale M -o OUT.ffp",
-                m->unpack[which].path, info->hscale_q24 / 16777216.0);
+                m->unpack[which].path, step_m(info));
         case MERGE_NODES:
             return refuse(m, which, "have nodes of unlike size or codec (--node-log2, --codec)");
         case MERGE_LOSSY:
@@ -98,7 +106,7 @@ static int refuse_fault(const merge *m, uint32_t which, enum merge_fault fault)
                 "merge packs baked with --max-error 0, or bake all sources in one, "
                 "gdalbuildvrt ALL.vrt HEIGHTS... and farfield-bake ALL.vrt --max-error M "
                 "-o OUT.ffp",
-                m->unpack[which].path, info->max_error * info->hscale_q24 / 16777216.0);
+                m->unpack[which].path, info->max_error * step_m(info));
         case MERGE_FAR: break;
     }
     return bake_fail("%s and %s lie too far from each other for one terrain", m->unpack[which].path,

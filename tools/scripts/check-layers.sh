@@ -177,6 +177,7 @@ shape_words() { # PATTERN that no code may have but protocol/shape, the tests, a
     tools/bake/bake_run.c      describes the raster; reports it
     tools/bake/bake_estimate.c  the same, beforehand
     tools/bake/bake_fault.c    says which field is out of range
+    tools/bake/raster/bake_lattice.c  chooses spacings that go with it
     tools/export/export_place.c  writes it into a raster's head
     tools/info/bake_info.c     reports it
     tools/merge/merge_lattice.c  compares the packs', and describes the joint one

@@ -1,6 +1,7 @@
 #include "bake_quantise.h"
 
 #include "../bake_say.h"
+#include "bake_lattice.h"
 
 #include <float.h>
 #include <math.h>
@@ -13,6 +14,8 @@
 #define COARSEST_M      100.0 /* a step in Q24 ends at 128 m */
 #define OFFSET_ERROR_M  1e-4
 #define SAME_ERROR_M    1e-9 /* of two steps that are told as well the higher one is chosen */
+#define BASE_TOLERANCE  0.02 /* of a step */
+#define MM_TOLERANCE_M  4e-4
 #define TRIES_MAX       4096
 
 /* Chooses the height of step 0: zero when all heights fit above it, else just below the lowest
@@ -57,6 +60,25 @@ double bake_steps_first(double base_m, double step_m, double low, double high)
     return offset_error_m(base_m, step_m, first) > OFFSET_ERROR_M
                ? choose_first_above(base_m, step_m, low, high)
                : first;
+}
+
+/* A part of a metre, where it is one. */
+static double step_of(uint32_t hscale_q24)
+{
+    double step_m = hscale_q24 / Q24, parts = nearbyint(1 / step_m);
+    return parts >= 1 && nearbyint(Q24 / parts) == hscale_q24 ? 1 / parts : step_m;
+}
+
+void bake_steps_of(const ff_terrain_info *info, double *step_m, double *base_m)
+{
+    double zero_m = (double)info->hoffset_wu / FF_WU_PER_METRE;
+    *step_m = step_of(info->hscale_q24);
+    *base_m = zero_m - nearbyint(zero_m / *step_m) * *step_m;
+    double mm = nearbyint(*base_m * 1000) / 1000;
+    if (fabs(*base_m) <= fmax(BASE_TOLERANCE * *step_m, 0.5 / FF_WU_PER_METRE))
+        *base_m = 0;
+    else if (fabs(*base_m - mm) < MM_TOLERANCE_M)
+        *base_m = mm;
 }
 
 static int set_step(bake_steps *steps, double wanted_m)
@@ -109,6 +131,13 @@ int bake_steps_choose(const bake_options *o, const bake_ground *ground, bake_ste
         if (set_step(steps, o->hscale_m)) return 0;
         return bake_fail("--hscale %g: heights from %g to %g m span more than 65536 steps",
                          o->hscale_m, steps->min_m, steps->max_m);
+    }
+    if (o->lattice) {
+        double step_m, base_m;
+        bake_steps_of(&o->lattice->info, &step_m, &base_m);
+        if (set_own_step(steps, step_m, base_m)) return 0;
+        return bake_fail("heights from %g to %g m span more than 65536 of the %.9g m steps of %s",
+                         steps->min_m, steps->max_m, step_m, o->lattice->path);
     }
     if (ground->step_m > 0) {
         /* Invented detail needs finer steps than the source's, as far as they fit. */
