@@ -300,6 +300,43 @@ def _():
     assert about(a, b)["projection_wkt"] == json.loads(run("info", "--json", a).stdout)["about"]["projection_wkt"]
 
 
+def texels(name):
+    """(colours, geotransform) of a pack's finest images."""
+    done = run("export", name, "-o", "texels.tif", "--images")
+    assert done.returncode == 0, done.stderr
+    made = gdal.Open(os.path.join(work, "texels.tif"))
+    return made.ReadAsArray().astype(float), made.GetGeoTransform()
+
+
+def sampled(name, x, y):
+    """The colours of a pack's images at places in metres from EAST, NORTH."""
+    colours, place = texels(name)
+    column, row = ((EAST + x - place[0]) / place[1]).astype(int), ((NORTH + y - place[3]) / place[5]).astype(int)
+    return colours[:, np.clip(row, 0, colours.shape[1] - 1), np.clip(column, 0, colours.shape[2] - 1)]
+
+
+@case("images are put together without a seam: about as near to their source as in the parts, in a pack no larger")
+def _():
+    colour = put("colour.tif", WAVES.astype(np.uint8), kind=gdal.GDT_Byte, place=(EAST - 5, 10, 0, NORTH + 6405, 0, -10))
+    y, x = np.mgrid[20:6390:10, 20:6390:10].astype(float)
+    source = WAVES[:, (640 - y / 10).round().astype(int), (x / 10).round().astype(int)]
+    whole = pack("whole", COUNTRY, "--color", colour)
+    left, right = pack("left", COUNTRY[:, :311], "--color", colour), pack("right", COUNTRY[:, 310:], "--color", colour, x=3100)
+    bare = pack("bare", COUNTRY[:, 310:], x=3100)
+    summary = merge(left, right)
+    assert summary["file_bytes"] < 1.05 * summary["packs_bytes"] and summary["texture_levels"] > 1, summary
+    once, twice = (np.abs(sampled(name, x, y) - source) for name in (whole, "joint.ffp"))
+    print("#", once.mean(), twice.mean(), twice[:, :, 305:312].mean(), summary["file_bytes"] / summary["packs_bytes"])
+    assert twice.mean() < 2 * once.mean() + 2 and twice[:, :, 305:312].mean() < 1.2 * twice.mean() + 1, (once.mean(), twice.mean(), twice[:, :, 305:312].mean())
+    one = data("joint.ffp")
+    merge(left, right, options=("--jobs", 1))
+    assert data("joint.ffp") == one
+    assert flies("joint.ffp")["bytes_images"] > 0
+    assert (read("joint.ffp")[0] == COUNTRY).all()
+    merge(left, bare)
+    assert np.abs(sampled("joint.ffp", x, y) - source)[:, :, :300].mean() < 2 * once.mean() + 2
+
+
 @case(f"{DRAWS} draws of packs by chance: spacings, sizes and places of all kinds keep all their samples, whatever --jobs")
 def _():
     for seed in range(DRAWS):

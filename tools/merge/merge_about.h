@@ -10,7 +10,8 @@
  * be too long, or what a pack says is damaged. */
 int merge_about_make(const merge_options *options, const bake_unpack unpack[], uint32_t count,
                      uint8_t list[FF_ABOUT_BYTES_MAX], ff_list *about);
-/* 1 when two packs have the same reference system: by its code, else by its words. */
+/* 1 when two packs have the same reference system, or both have none: by its code, else by its
+ * words. */
 int merge_about_same_system(const ff_pack *a, const ff_pack *b);
 
 #endif

@@ -185,6 +185,7 @@ enum merge_fault merge_lattice_find(const ff_terrain_info *const info[], uint32_
     FF_ASSERT(count >= 1 && count <= MERGE_PACKS_MAX);
     *lattice = (merge_lattice){ .info = *info[0] };
     lattice->info.spacing_wu = finest_wu;
+    lattice->spacing_m = (double)finest_wu / FF_WU_PER_METRE;
     lattice->info.flags = lattice->info.texture_log2 = lattice->info.texture_levels = 0;
     for (uint32_t i = 0; i < count; i++) {
         *which = i;

@@ -21,7 +21,8 @@ typedef struct merge_place {
 typedef struct merge_lattice {
     uint32_t width, height; /* places, both ends within */
     uint32_t apart_log2;    /* of the coarsest pack */
-    ff_terrain_info info;   /* of the joint terrain: all but its tiles, samples and textures */
+    double spacing_m;
+    ff_terrain_info info; /* of the joint terrain: all but its tiles, samples and textures */
 } merge_lattice;
 
 /* Why a pack is not joined with the first one. */
