@@ -184,6 +184,8 @@ def _():
     flies("joint.ffp", "--start", 0.6)
     summary = joins([far, middle, out])
     assert 0.6 < summary["uncovered"] < 0.95 and summary["file_bytes"] < 1.05 * summary["packs_bytes"], summary
+    heights = read("joint.ffp")[0]
+    assert 550 < heights.min() and heights.max() < 1250, (heights.min(), heights.max())  # as the packs
     flies("joint.ffp", "--seconds", 60)
     done = run("export", "joint.ffp", "-o", "told.tif", "--voids", "nodata")
     assert done.returncode == 0, done.stderr
@@ -333,6 +335,12 @@ def _():
     assert data("joint.ffp") == one
     assert flies("joint.ffp")["bytes_images"] > 0
     assert (read("joint.ffp")[0] == COUNTRY).all()
+    night = put("night.tif", np.full((3, 60, 60), 20, np.uint8), kind=gdal.GDT_Byte, place=(EAST - 5, 100, 0, NORTH + 6005, 0, -100))
+    dark, light = pack("dark", COUNTRY[::4, ::4], "--color", night, spacing=40), pack("light", COUNTRY[200:301, 200:301], "--color", colour, x=2000, y=2000)
+    for order in (dark, light), (light, dark):
+        merge(*order)
+        joint = sampled("joint.ffp", x, y)
+        assert np.abs(joint - source)[:, 200:296, 200:296].mean() < 2 * once.mean() + 2 and np.abs(joint[:, :150] - 20).mean() < 4
     merge(left, bare)
     assert np.abs(sampled("joint.ffp", x, y) - source)[:, :, :300].mean() < 2 * once.mean() + 2
 

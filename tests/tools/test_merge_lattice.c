@@ -164,6 +164,7 @@ static void what_no_pack_reaches_is_measured(void **state)
     (void)state;
     assert_int_equal(find(&a, &b, NULL), MERGE_FITS); /* side by side: 5 + 5 columns */
     assert_true(merge_lattice_gap(&lattice, place, 2) == 0.25);
+    assert_true(merge_place_precedes(place, 0, 1) && !merge_place_precedes(place, 1, 0));
     a = pack(5120, 0, 0, 5, 10); /* places between packs side by side belong to them */
     b = pack(5120, 100000, 0, 5, 10);
     ff_terrain_info c = pack(2560, 0, 0, 3, 3);
