@@ -360,7 +360,8 @@ def _():
             x, y = 10 * left + chance.choice((0, 0, 10 * coarsest * 20)), 10 * bottom
             parts.append((pack(f"draw{number}", heights, *(() if chance.random() < 0.7 else ("--node-log2", 3)), spacing=10 * times, x=x, y=y), heights, 10 * times, x, y))
         try:
-            joins(parts)
+            summary = joins(parts)
+            assert summary["file_bytes"] <= 1.05 * summary["packs_bytes"], summary
             merge(*(part[0] for part in parts), out="other.ffp", options=("--jobs", chance.choice((1, 3))))
             assert data("joint.ffp") == data("other.ffp"), "jobs"
         except Exception as fault:
