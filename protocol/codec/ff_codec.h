@@ -148,8 +148,8 @@ int ff_encode_payload(const ff_terrain_info *info, const uint16_t *parent, const
 /* Error codes and marks alone: out->value may be NULL. FF_OK or an error of ff_decode_*. */
 int ff_read_marks(const ff_terrain_info *info, int root, const uint8_t *payload, size_t bytes,
                   ff_residuals *out);
-/* A payload in which the children of the bits in `stub`, and no others, are marked as stubs; nothing
- * else changes, and the residuals are not read. Bytes written to `out` (capacity at least
+/* A payload in which the children of the bits in `stub`, and no others, are marked as stubs;
+ * nothing else changes, and the residuals are not read. Bytes written to `out` (capacity at least
  * FF_PAYLOAD_BYTES_MAX), or an error of ff_decode_*; FF_ERR_RANGE: one is a leaf. */
 int ff_mark_stubs(const ff_terrain_info *info, int root, const uint8_t *payload, size_t bytes,
                   uint8_t stub, uint8_t *out);
