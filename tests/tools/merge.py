@@ -222,7 +222,7 @@ def _():
         merge(coarse, parts[0])
         assert data("joint.ffp") == data(parts[0])
     other, first = pack("other", COUNTRY), pack("first", COUNTRY[::-1])  # of one size, from the same lowest to the same highest sample
-    refused_merge("not parts of one pack", cut(other, "a.ffp", west), cut(first, "b.ffp", east))
+    refused_merge("is a part cut from a pack", cut(other, "a.ffp", west), cut(first, "b.ffp", east))
     refused_merge("is a part cut from a pack", cut(other, "a.ffp", west), pack("far", LAND, x=9000))
 
 

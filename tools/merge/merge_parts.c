@@ -27,34 +27,6 @@ static part_set all_of(uint32_t count)
 
 /* ---- whether they are parts ---- */
 
-/* 1: there is a stub from the node on; 0: none; -1 (said). */
-static int find_stub(const bake_unpack *unpack, ff_key key, const bake_told *node)
-{
-    const ff_terrain_info *info = &unpack->pack.header.info;
-    bake_told told[4];
-    if (node->is_stub) return 1;
-    if (node->is_leaf || ff_key_level(key) + 1 == ff_terrain_levels(info) ||
-        !ff_shape_has_ground(info, key))
-        return 0;
-    if (bake_unpack_told_below(unpack, key, node, told)) return -1;
-    for (uint32_t q = 0; q < 4; q++) {
-        int found = find_stub(unpack, ff_key_child(key, q), &told[q]);
-        if (found) return found;
-    }
-    return 0;
-}
-
-static int has_stubs(const bake_unpack *unpack)
-{
-    bake_told root;
-    for (uint32_t tile = 0; tile < ff_shape_tiles(&unpack->pack.header.info); tile++) {
-        if (bake_unpack_told_root(unpack, tile, &root)) return -1;
-        int found = find_stub(unpack, ff_key_make(tile, 0, 0), &root);
-        if (found) return found;
-    }
-    return 0;
-}
-
 /* A terrain's description as it is stored, but for the checksum. */
 static void describe(const bake_unpack *unpack, uint8_t bytes[FF_TERRAIN_BYTES])
 {
@@ -65,18 +37,18 @@ static void describe(const bake_unpack *unpack, uint8_t bytes[FF_TERRAIN_BYTES])
     FF_ASSERT(out.error == FF_OK);
 }
 
-int merge_parts_are(const bake_unpack unpack[], uint32_t count, int *are)
+int merge_parts_are(const bake_unpack unpack[], uint32_t count)
 {
     uint8_t first[FF_TERRAIN_BYTES], other[FF_TERRAIN_BYTES];
-    *are = 0;
+    uint32_t whole = ff_pack_whole(&unpack[0].pack);
+    int parts = 0;
     describe(&unpack[0], first);
-    for (uint32_t i = 1; i < count; i++) {
+    for (uint32_t i = 0; i < count; i++) {
         describe(&unpack[i], other);
-        if (memcmp(first, other, sizeof first)) return 0;
+        if (memcmp(first, other, sizeof first) || ff_pack_whole(&unpack[i].pack) != whole) return 0;
+        parts |= unpack[i].pack.header.info.checksum != whole;
     }
-    for (uint32_t i = 0; i < count && !*are; i++)
-        if ((*are = has_stubs(&unpack[i])) < 0) return -1;
-    return 0;
+    return parts;
 }
 
 /* ---- heights ---- */

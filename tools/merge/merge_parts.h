@@ -7,8 +7,8 @@
 #include "../info/bake_unpack.h"
 #include "merge_lattice.h"
 
-/* *are: 1 when the packs tell of one terrain, and one of them has stubs. 0 or -1 (said). */
-int merge_parts_are(const bake_unpack unpack[], uint32_t count, int *are);
+/* 1 when all packs are of the same whole, and one of them is a part of it. */
+int merge_parts_are(const bake_unpack unpack[], uint32_t count);
 /* Puts all records of the parts into a writer of their terrain. 0 or -1 (said): they differ. */
 int merge_parts_write(const bake_unpack unpack[], uint32_t count, pack_writer *writer);
 

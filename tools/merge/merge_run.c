@@ -226,15 +226,38 @@ static int join_samples(merge *m)
     return pack_writer_open(&m->writer, &m->lattice.info) || make_tiles(m) ? -1 : 0;
 }
 
+/* Parts that together are not the whole yet are a part: that is known by the joint pack's checksum,
+ * and it is put together once more to say so. */
+static int tell_whole(merge *m, uint64_t *file_bytes)
+{
+    uint32_t whole = ff_pack_whole(&m->unpack[0].pack);
+    uint8_t value[4];
+    ff_writer number = { value, value + sizeof value, FF_OK },
+              out = { m->list + m->writer.about.byte_count, m->list + sizeof m->list, FF_OK };
+    bake_unpack joint;
+    if (bake_unpack_open(&joint, m->options->out_path)) return -1;
+    int is_whole = joint.pack.header.info.checksum == whole;
+    bake_unpack_close(&joint);
+    if (is_whole) return 0;
+    ff_write_bytes(&number, whole, sizeof value);
+    ff_list_write(&out, FF_ABOUT_WHOLE, value, sizeof value);
+    if (out.error != FF_OK)
+        return bake_fail("what the packs say of themselves leaves no room to say what they are "
+                         "parts of");
+    m->writer.about = (ff_list){ m->list, (uint32_t)(out.at - m->list) };
+    return pack_writer_finish(&m->writer, m->options->out_path, file_bytes);
+}
+
 static int make_pack(merge *m)
 {
     uint64_t file_bytes;
     ff_list about;
     if (merge_about_make(m->options, m->unpack, m->count, m->list, &about)) return -1;
-    if (merge_parts_are(m->unpack, m->count, &m->are_parts)) return -1;
+    m->are_parts = merge_parts_are(m->unpack, m->count);
     if (m->are_parts ? join_parts(m) : join_samples(m)) return -1;
     m->writer.about = about;
     if (pack_writer_finish(&m->writer, m->options->out_path, &file_bytes)) return -1;
+    if (m->are_parts && tell_whole(m, &file_bytes)) return -1;
     report(m, file_bytes);
     return 0;
 }
