@@ -77,8 +77,8 @@ void ff_client_default_desc(ff_client_desc *desc)
 
 static int check_sources(const ff_client_desc *desc)
 {
-    int links = desc->stream != NULL, good = (desc->stream != NULL) != (desc->pack != NULL) &&
-                                             desc->more_count < FF_SOURCES_MAX;
+    int links = desc->stream != NULL,
+        good = (desc->stream != NULL) != (desc->pack != NULL) && desc->more_count < FF_SOURCES_MAX;
     for (unsigned i = 0; good && i < desc->more_count; i++) {
         const ff_source_desc *more = &desc->more[i];
         good = (more->stream != NULL) != (more->pack != NULL);
@@ -91,8 +91,7 @@ static int check_sources(const ff_client_desc *desc)
 
 static int check_desc(const ff_client_desc *desc)
 {
-    if (!desc->memory ||
-        desc->width > FF_PICTURE_SIDE_MAX || desc->height > FF_PICTURE_SIDE_MAX ||
+    if (!desc->memory || desc->width > FF_PICTURE_SIDE_MAX || desc->height > FF_PICTURE_SIDE_MAX ||
         desc->in_flight_max > IN_FLIGHT_LIMIT || desc->panorama.jpeg_quality > 100 ||
         (desc->panorama.face_size && desc->panorama.face_size < FF_PANORAMA_FACE_MIN) ||
         desc->panorama.face_size > FF_FACE_SIZE_MAX)

@@ -63,8 +63,8 @@ static void want_textures(ff_client *client, const ff_view *view, const ff_quali
     ff_texture_wish wish[FF_TEXTURE_WISHES];
     const ff_drawn *drawn;
     uint32_t drawn_count = ff_tree_drawn(client->tree, &drawn);
-    uint32_t count = ff_textures_wishes(&client->textures, drawn, drawn_count, view, quality, wish,
-                                        FF_TEXTURE_WISHES);
+    uint32_t count = ff_textures_wishes(&client->textures, client->tree, drawn, drawn_count, view,
+                                        quality, wish, FF_TEXTURE_WISHES);
     FF_ASSERT(count <= FF_TEXTURE_WISHES);
     for (uint32_t i = 0; i < count; i++) {
         const ff_wish image = { .key = wish[i].key, .kind = FF_KIND_TEXTURE };
@@ -155,7 +155,8 @@ void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *qu
     for (unsigned i = 0; i < client->source_count; i++)
         ff_requests_rank_begin(&ff_client_source(client, i)->requests);
     if (!ff_client_own_ground(client))
-        ff_panorama_want(&client->panorama, &client->first.requests, view, faces_ahead(view, &a), now_us);
+        ff_panorama_want(&client->panorama, &client->first.requests, view, faces_ahead(view, &a),
+                         now_us);
     for (unsigned i = 0; i < client->source_count; i++)
         ff_client_want_view(client, ff_client_source(client, i), view, quality);
     want_tree(client);

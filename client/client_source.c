@@ -57,6 +57,7 @@ int ff_client_step_source(ff_client *client, ff_source *source, int64_t now_us)
 
 static void add_link(ff_stream_shared *sum, const ff_stream_shared *link)
 {
+    if (link->state == FF_STREAM_UP) sum->state = FF_STREAM_UP;
     sum->received += link->received;
     sum->received_high += link->received_high;
     sum->bytes_down += link->bytes_down;

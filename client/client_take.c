@@ -17,8 +17,8 @@ int ff_client_take_root(ff_client *client, ff_new_item *item, int64_t now_us)
     (void)now_us;
     FF_ASSERT(ff_key_level(item->key) == 0);
     uint32_t tile = ff_key_tile(item->key);
-    return heights_taken(item, ff_tree_deliver_root(client->tree, tile, item->source,
-                                                    &item->u.residuals));
+    return heights_taken(
+        item, ff_tree_deliver_root(client->tree, tile, item->source, &item->u.residuals));
 }
 
 int ff_client_take_refinement(ff_client *client, ff_new_item *item, int64_t now_us)
@@ -26,8 +26,8 @@ int ff_client_take_refinement(ff_client *client, ff_new_item *item, int64_t now_
     (void)now_us;
     FF_ASSERT(ff_key_level(item->key) + 1 <
               ff_terrain_levels(ff_tree_ground(client->tree, item->key)));
-    return heights_taken(item, ff_tree_deliver_children(client->tree, item->key, item->source,
-                                                        &item->u.residuals));
+    return heights_taken(
+        item, ff_tree_deliver_children(client->tree, item->key, item->source, &item->u.residuals));
 }
 
 int ff_client_take_texture(ff_client *client, ff_new_item *item, int64_t now_us)
@@ -68,9 +68,10 @@ static int take_item(ff_client *client, ff_new_item *item, int64_t now_us)
     const ff_key own = item->key;
     if (of_node) item->key = ff_source_key(source, own);
     if (item->error == FF_OK || !of_node) changed = take(client, item, now_us);
-    if (item->error != FF_OK && of_node) ff_refusals_note(&source->refusals, item->kind, own);
-    if (item->error == FF_ERR_NOT_FOUND && item->kind == FF_KIND_REFINEMENT &&
-        client->source_count > 1)
+    int lacks = item->error == FF_ERR_NOT_FOUND && client->source_count > 1;
+    if (item->error != FF_OK && of_node)
+        ff_refusals_note(&source->refusals, item->kind, own, lacks);
+    if (lacks && item->kind == FF_KIND_REFINEMENT)
         ff_tree_lacks(client->tree, item->key, item->source);
     return changed;
 }
@@ -92,7 +93,8 @@ unsigned ff_client_take_new_data(ff_client *client, int64_t now_us, int *changed
     ff_new_item *item;
     while (taken < client->news.item_slots && (item = ff_new_data_first(&client->news)) != NULL) {
         *changed |= take_item(client, item, now_us);
-        if (item->last) ff_requests_finish(&ff_client_source(client, item->source)->requests, item->id,
+        if (item->last)
+            ff_requests_finish(&ff_client_source(client, item->source)->requests, item->id,
                                final_state(item));
         ff_new_data_release(&client->news);
         taken++;

@@ -47,8 +47,7 @@ static int name_wishes(ff_client *client, ff_source *source, ff_get_view *asked)
     int deep = 0;
     for (uint32_t i = 0; i < count && asked->count < FF_VIEW_KEYS_MAX; i++) {
         enum ff_kind kind = (enum ff_kind)list[i].kind;
-        if (!list[i].in_view ||
-            ff_client_route(client, kind, list[i].key, list[i].lacks) != source)
+        if (!list[i].in_view || ff_client_route(client, kind, list[i].key, list[i].lacks) != source)
             continue;
         ff_key key = ff_source_own_key(source, list[i].key);
         if (ff_requests_out(&source->requests, kind, key)) continue;
@@ -86,8 +85,7 @@ static int is_stale(ff_client *client, ff_source *source)
     int elsewhere = 0;
     for (uint32_t i = 0; i < count; i++) {
         enum ff_kind kind = (enum ff_kind)list[i].kind;
-        if (!list[i].in_view ||
-            ff_client_route(client, kind, list[i].key, list[i].lacks) != source)
+        if (!list[i].in_view || ff_client_route(client, kind, list[i].key, list[i].lacks) != source)
             continue;
         if (ff_requests_view_brings(&source->requests, kind,
                                     ff_source_own_key(source, list[i].key)))
@@ -165,6 +163,6 @@ int ff_client_take_view(ff_client *client, ff_new_item *item, int64_t now_us)
         if (item->u.missing >> i & 1u)
             ff_refusals_note(&source->refusals,
                              asked->roots >> i & 1u ? FF_KIND_ROOT : FF_KIND_REFINEMENT,
-                             asked->below[i]);
+                             asked->below[i], 0);
     return 0;
 }

@@ -129,7 +129,7 @@ typedef struct ff_client_desc {
      * what those named before it lack; others are grounds of their own in the same reference
      * system: where they lie over each other the finer is shown, else the one named first. */
     const ff_source_desc *more;
-    unsigned more_count; /* at most FF_SOURCES_MAX - 1: ff_tree.h */
+    unsigned more_count;                /* at most FF_SOURCES_MAX - 1: ff_tree.h */
     const struct c3d_backend *backend;  /* NULL: no pictures */
     const sys_surface_api *surface_api; /* its context is current */
     /* viewport, default 240x320; a back end without a GL draws nothing in a larger one */

@@ -77,8 +77,8 @@ static inline ff_source *ff_client_source(ff_client *client, unsigned number)
     FF_ASSERT(number < client->source_count);
     return number ? &client->more[number - 1] : &client->first;
 }
-/* client_source.c: the source of a number, in rooms of the block that outlive a terrain: `slots` for
- * ff_requests_bytes, and for one with a link `recv`, and `about` where that is wanted. */
+/* client_source.c: the source of a number, in rooms of the block that outlive a terrain: `slots`
+ * for ff_requests_bytes, and for one with a link `recv`, and `about` where that is wanted. */
 typedef struct ff_source_room {
     uint8_t *slots, *recv, *about;
     uint32_t recv_bytes;
@@ -94,7 +94,7 @@ static inline ff_source_desc ff_client_source_desc(const ff_client *client, unsi
 /* What is counted of all requests, together. */
 void ff_client_counts(ff_client *client, ff_request_counts *counts);
 /* What all links are doing together, zero without any: bytes and rates are sums, the round trip is
- * the longest; the state and the refusal are the first one's. */
+ * the longest, one that is up stands for all; else state and refusal are the first one's. */
 void ff_client_link(ff_client *client, ff_stream_shared *shared);
 /* 1 when something of class `last` or one before it waits at any source. */
 int ff_client_waiting(ff_client *client, enum ff_request_class last);
@@ -103,8 +103,8 @@ void ff_client_take_pack(ff_source *source);
 void ff_client_take_welcome(ff_source *source, const ff_stream_shared *shared);
 /* client_update.c: what a link has met since the last update. */
 void ff_client_note_link(ff_client *client, ff_source *source, const ff_stream_shared *shared);
-/* several/: of the sources that serve a key's ground and may have it the one to be asked, or NULL. `lacks`:
- * ff_wish.lacks. */
+/* several/: of the sources that serve a key's ground and may have it the one to be asked, or NULL.
+ * `lacks`: ff_wish.lacks. */
 ff_source *ff_client_route(ff_client *client, enum ff_kind kind, ff_key key, unsigned lacks);
 
 /* client.c: the defaults of all that is zero. */

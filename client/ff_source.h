@@ -11,9 +11,9 @@
 
 /* One of its grounds, in the order of ff_intake.info. */
 typedef struct ff_source_ground {
-    uint32_t whole;         /* checksum of the pack that its own is a part of, or is */
-    uint8_t number;         /* among the tree's */
-    uint32_t first_tile;    /* there */
+    uint32_t whole;           /* checksum of the pack that its own is a part of, or is */
+    uint8_t number;           /* among the tree's */
+    uint32_t first_tile;      /* there */
     int32_t south_west_wu[2]; /* the place of its first sample there */
 } ff_source_ground;
 

@@ -59,8 +59,8 @@ int ff_about_is_text(const uint8_t *bytes, uint32_t byte_count);
 uint32_t ff_about_bytes_max(uint32_t set);
 /* The entries of a set, in `out`: bytes written, or FF_ERR_FULL. */
 int ff_about_select(ff_list about, uint32_t set, uint8_t *out, uint32_t capacity);
-/* The checksum of the whole pack that the one with this list and this checksum is a part of: its own
- * where it is whole. Of a list that was checked. */
+/* The checksum of the whole pack that the one with this list and this checksum is a part of: its
+ * own where it is whole. Of a list that was checked. */
 uint32_t ff_about_whole(ff_list about, uint32_t checksum);
 /* FF_OK, or FF_ERR_NOT_FOUND. Of a list that was checked. */
 int ff_about_get_projection(ff_list about, ff_about_projection *projection);

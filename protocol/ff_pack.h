@@ -64,7 +64,7 @@ typedef struct ff_pack {
     size_t room_bytes;
     uint64_t size;
     ff_pack_header header;
-    char refusal[112]; /* why it was not opened, where the error alone does not say; else "" */
+    char refusal[112];    /* why it was not opened, where the error alone does not say; else "" */
     struct ff_pack *next; /* another ground's, see ff_pack_join; NULL */
 } ff_pack;
 

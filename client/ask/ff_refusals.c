@@ -12,7 +12,7 @@ static int find(const ff_refusals *refusals, unsigned kind, ff_key key)
     return -1;
 }
 
-void ff_refusals_note(ff_refusals *refusals, unsigned kind, ff_key key)
+void ff_refusals_note(ff_refusals *refusals, unsigned kind, ff_key key, int final)
 {
     FF_ASSERT(ff_kind[kind].asks == FF_ASKS_NODE); /* of such a kind a key comes up again */
     int at = find(refusals, kind, key);
@@ -22,7 +22,10 @@ void ff_refusals_note(ff_refusals *refusals, unsigned kind, ff_key key)
         refusals->next = (uint8_t)((refusals->next + 1) % FF_REFUSALS_KEPT);
         refusals->entry[at] = (ff_refusal){ .key = key, .kind = (uint8_t)kind };
     }
-    if (refusals->entry[at].tries < FF_REFUSALS_TRIES) refusals->entry[at].tries++;
+    if (final)
+        refusals->entry[at].tries = FF_REFUSALS_TRIES;
+    else if (refusals->entry[at].tries < FF_REFUSALS_TRIES)
+        refusals->entry[at].tries++;
 }
 
 int ff_refusals_final(const ff_refusals *refusals, unsigned kind, ff_key key)

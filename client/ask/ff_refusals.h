@@ -17,7 +17,8 @@ typedef struct ff_refusals {
     uint8_t next;
 } ff_refusals;
 
-void ff_refusals_note(ff_refusals *refusals, unsigned kind, ff_key key);
+/* `final`: it need not be tried again. */
+void ff_refusals_note(ff_refusals *refusals, unsigned kind, ff_key key, int final);
 /* 1 when the key was refused FF_REFUSALS_TRIES times: it is not asked for again. */
 int ff_refusals_final(const ff_refusals *refusals, unsigned kind, ff_key key);
 

@@ -63,14 +63,13 @@ static ff_key next_finer(const ff_texture_slot *held, ff_key finest)
 }
 
 /* 1/f of Hybrid eq. 3 for the ground the image covers, Q8: the scale of the tree's wishes. */
-static uint32_t priority_of(const ff_textures *textures, ff_key key, const ff_view *view,
+static uint32_t priority_of(const ff_terrain_info *info, ff_key key, const ff_view *view,
                             const ff_quality *quality)
 {
-    int32_t edge_wu = ff_node_edge_wu(&textures->info, ff_key_level(key));
-    ff_placed placed = ff_shape_put(&textures->info, &view->frame, key);
+    int32_t edge_wu = ff_node_edge_wu(info, ff_key_level(key));
+    ff_placed placed = ff_shape_put(info, &view->frame, key);
     int64_t way[3];
-    ff_shape_to_middle(&textures->info, key, &placed, view->camera.pos_wu[2], view->camera.pos_wu,
-                       way);
+    ff_shape_to_middle(info, key, &placed, view->camera.pos_wu[2], view->camera.pos_wu, way);
     int64_t distance = c3d_length64(way[0], way[1], 0); /* as if the ground lay at our height */
     FF_ASSERT(edge_wu > 0 && distance >= 0 && distance < INT64_C(1) << 34);
     int64_t c_q8 = quality->c_q8 > 0 ? quality->c_q8 : 3 * 256;
@@ -97,9 +96,9 @@ static void insert(ff_texture_wish *list, uint32_t *count, uint32_t capacity, ff
     FF_ASSERT(at + 1 == *count || list[at + 1].priority < wish.priority);
 }
 
-uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32_t drawn_count,
-                            const ff_view *view, const ff_quality *quality, ff_texture_wish *list,
-                            uint32_t capacity)
+uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
+                            uint32_t drawn_count, const ff_view *view, const ff_quality *quality,
+                            ff_texture_wish *list, uint32_t capacity)
 {
     uint32_t count = 0, in_use = 0;
     textures->stamp++;
@@ -114,7 +113,7 @@ uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32
         if (held && held->key == finest) continue;
         ff_texture_wish wish = { .key = next_finer(held, finest) };
         if (held && held->bare >> ff_key_quadrant(wish.key) & 1u) continue;
-        wish.priority = priority_of(textures, wish.key, view, quality);
+        wish.priority = priority_of(ff_tree_ground(tree, wish.key), wish.key, view, quality);
         insert(list, &count, capacity, wish);
     }
     FF_ASSERT(in_use <= textures->held && textures->held <= textures->slot_count);
@@ -158,6 +157,11 @@ int ff_textures_take(ff_textures *textures, const ff_new_item *item)
 {
     FF_ASSERT(item->width == 1u << textures->info.texture_log2);
     return ff_textures_put(textures, item->key, item->u.bare, item->pixels);
+}
+
+void ff_textures_doubt(ff_textures *textures)
+{
+    for (unsigned i = 0; i < textures->slot_count; i++) textures->slot[i].bare = 0;
 }
 
 int ff_textures_put(ff_textures *textures, ff_key key, uint8_t bare, const uint16_t *texels)

@@ -43,17 +43,19 @@ typedef struct ff_texture_wish {
 /* Lays the nearest held image over `node` on the call that draws it, in place of colours; without
  * one the call stays as it is. */
 void ff_textures_lay(const ff_textures *textures, ff_key node, c3d_draw *draw);
-/* Marks what the drawn nodes use and lists what they lack, most urgent first; priorities are on the
- * tree's scale. */
-uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32_t drawn_count,
-                            const ff_view *view, const ff_quality *quality, ff_texture_wish *list,
-                            uint32_t capacity);
+/* Marks what the drawn nodes of the tree use and lists what they lack, most urgent first;
+ * priorities are on the tree's scale. */
+uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
+                            uint32_t drawn_count, const ff_view *view, const ff_quality *quality,
+                            ff_texture_wish *list, uint32_t capacity);
 /* Takes an image in, RGB565, south row first; NULL: there is none, and ground below `key` shows its
  * colours. `bare`: of its children, ff_image.bare. 1 when the picture may have changed; 0: no room
  * (counted). */
 int ff_textures_put(ff_textures *textures, ff_key key, uint8_t bare, const uint16_t *texels);
 /* The same, for an item of the new-data list. */
 int ff_textures_take(ff_textures *textures, const ff_new_item *item);
+/* Somebody else may have images where those that are held say that there are none. */
+void ff_textures_doubt(ff_textures *textures);
 /* For an owner whose images come at once (a pack): 1 when this image is held; it is then the last
  * to make room. */
 int ff_textures_touch(ff_textures *textures, ff_key key);

@@ -9,14 +9,16 @@ void ff_textures_lay(const ff_textures *textures, ff_key node, c3d_draw *draw)
     (void)textures, (void)node, (void)draw;
 }
 
-uint32_t ff_textures_wishes(ff_textures *textures, const ff_drawn *drawn, uint32_t drawn_count,
-                            const ff_view *view, const ff_quality *quality, ff_texture_wish *list,
-                            uint32_t capacity)
+uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
+                            uint32_t drawn_count, const ff_view *view, const ff_quality *quality,
+                            ff_texture_wish *list, uint32_t capacity)
 {
-    (void)textures, (void)drawn, (void)drawn_count, (void)view, (void)quality, (void)list,
-        (void)capacity;
+    (void)textures, (void)tree, (void)drawn, (void)drawn_count, (void)view, (void)quality,
+        (void)list, (void)capacity;
     return 0;
 }
+
+void ff_textures_doubt(ff_textures *textures) { (void)textures; }
 
 int ff_textures_take(ff_textures *textures, const ff_new_item *item)
 {

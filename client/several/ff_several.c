@@ -63,8 +63,7 @@ static int join(ff_client *client, ff_source *source, unsigned own)
 {
     int rc = ff_client_decode(client, source);
     for (unsigned i = own; rc == FF_OK && i < source->intake.ground_count; i++) {
-        if (!find_ground(client, source, i, &source->ground[i]))
-            rc = add_ground(client, source, i);
+        if (!find_ground(client, source, i, &source->ground[i])) rc = add_ground(client, source, i);
         if (rc != FF_OK) source->intake.ground_count = (uint8_t)i;
     }
     if (source->intake.ground_count) ff_client_serve(client, source);
@@ -99,7 +98,10 @@ static void settle(ff_client *client, ff_source *source, const ff_stream_shared 
         if (client->terrain_error != FF_OK) ff_client_carve_sky(client);
     }
     int rc = client->have_terrain ? join(client, source, 0) : FF_ERR_MEMORY;
-    if (rc == FF_OK) tell_sources(client);
+    if (rc == FF_OK) {
+        tell_sources(client);
+        ff_textures_doubt(&client->textures);
+    }
     client->dirty = 1;
     ff_stream_accept(&source->stream, rc == FF_OK);
 }

@@ -5,13 +5,18 @@
  * wants. */
 #include "ff_tree_local.h"
 
-#define IDLE_SHIFT 8 /* outside the window children are worth 1/256 of what they are inside */
+#define IDLE_SHIFT 8 /* what takes no part has children worth 1/256 of what they would be */
+
+/* Is it in the window, and no other ground drawn there? */
+static int takes_part(const ff_tree *tree, const ff_node *node)
+{
+    return ff_tile_active(tree, ff_key_tile(node->key)) && !ff_left_out(tree, node->key);
+}
 
 static int is_idle_root(const ff_tree *tree, const ff_node *node)
 {
     FF_ASSERT((node->parent == FF_SLOT_NONE) == (ff_key_level(node->key) == 0));
-    return node->parent == FF_SLOT_NONE && !ff_node_has_children(node) &&
-           !ff_tile_active(tree, ff_key_tile(node->key));
+    return node->parent == FF_SLOT_NONE && !ff_node_has_children(node) && !takes_part(tree, node);
 }
 
 static int has_leaf_family(const ff_tree *tree, const ff_node *node)
@@ -33,7 +38,7 @@ static uint32_t split_worth(const ff_tree *tree, const ff_node *node)
     if (node->flags & FF_NODE_WANTED) return node->value;
     uint32_t value = ff_value_of_split(tree, node);
     if (value > FF_VALUE_ONE) value = FF_VALUE_ONE;
-    return ff_tile_active(tree, ff_key_tile(node->key)) ? value : value >> IDLE_SHIFT;
+    return takes_part(tree, node) ? value : value >> IDLE_SHIFT;
 }
 
 /* What a leaf family, the children of `parent`, is worth: the value of splitting `parent`, or

@@ -108,7 +108,8 @@ static void foresee_roots(const ff_tree *tree, uint32_t g, foresight *f)
     ff_walk walk = ff_shape_walk(info, &f->ahead.window[g]);
     uint32_t tile;
     for (unsigned i = 0; i < TILES_LOOKED_AT && ff_shape_next(info, &walk, &tile); i++) {
-        if (ff_tree_find(tree, ff_key_make(tile, 0, 0)) != FF_SLOT_NONE) continue;
+        ff_key root = ff_key_make(tile, 0, 0);
+        if (ff_tree_find(tree, root) != FF_SLOT_NONE || ff_left_out(tree, root)) continue;
         ff_box here, there;
         ff_tile_box(tree, tile, &here);
         ff_tile_box(&f->ahead, tile, &there);
@@ -156,7 +157,9 @@ static void foresee_tiles(const ff_tree *tree, foresight *f)
     uint32_t stack[3 * FF_LEVELS_MAX + 1];
     for (uint32_t root = tree->root_head; root != FF_SLOT_NONE; root = tree->node[root].list_next) {
         uint32_t tile = ff_key_tile(tree->node[root].key), depth = 0;
-        if (tree->node[root].flags & FF_NODE_ACTIVE || !ff_tile_active(&f->ahead, tile)) continue;
+        if (tree->node[root].flags & FF_NODE_ACTIVE || !ff_tile_active(&f->ahead, tile) ||
+            ff_left_out(tree, tree->node[root].key))
+            continue;
         for (stack[depth++] = root; depth > 0;) {
             const ff_node *node = &tree->node[stack[--depth]];
             if (!ff_node_has_children(node)) {

@@ -23,6 +23,7 @@ int ff_tree_add_ground(ff_tree *tree, const ff_terrain_info *info)
     uint32_t g = tree->ground_count++;
     tree->ground[g] = *info;
     tree->ground[g].curve_q60 = tree->ground->curve_q60;
+    ff_cover_rank(tree);
     ff_tree_reshade(tree);
     tree->dirty = 1;
     return (int)g;

@@ -1,4 +1,4 @@
-/* Stands in for ff_grounds.c in builds for one ground and one source. */
+/* Stands in for ff_grounds.c and ff_cover.c in builds for one ground and one source. */
 #include "ff_tree_local.h"
 
 const uint8_t ff_grounds_built = 0;
@@ -12,6 +12,12 @@ void ff_grounds_ramp(const ff_tree *tree, const ff_terrain_info *info, int32_t r
 {
     (void)tree, (void)info, (void)ramp;
 }
+void ff_cover_rank(ff_tree *tree) { (void)tree; }
+int ff_cover_is_small(const ff_tree *tree, uint32_t ground) { return (void)tree, (void)ground, 0; }
+void ff_cover_stand(ff_tree *tree) { (void)tree; }
+int ff_cover_hides(const ff_tree *tree, ff_key key) { return (void)tree, (void)key, 0; }
+void ff_cover_roots(ff_tree *tree, uint32_t ground) { (void)tree, (void)ground; }
+int ff_cover_fills(const ff_tree *tree, uint32_t tile) { return (void)tree, (void)tile, 0; }
 void ff_node_lacks(ff_tree *tree, uint32_t slot, unsigned source)
 {
     (void)tree, (void)slot, (void)source;

@@ -8,8 +8,9 @@ void ff_window_make(ff_tree *tree)
     for (uint32_t g = 0; g < tree->ground_count; g++) {
         ff_terrain_range_wu(&tree->ground[g], height_wu);
         FF_ASSERT(height_wu[0] <= height_wu[1] && tree->quality.view_wu >= 0);
-        tree->window[g] = ff_shape_reach(&tree->ground[g], &view->frame, view->centre_wu,
-                                         tree->quality.view_wu, height_wu);
+        int32_t view_wu = tree->cover && ff_cover_is_small(tree, g) ? 0 : tree->quality.view_wu;
+        tree->window[g] = ff_shape_reach(&tree->ground[g], &view->frame, view->centre_wu, view_wu,
+                                         height_wu);
     }
 }
 
@@ -19,8 +20,8 @@ int ff_tile_active(const ff_tree *tree, uint32_t tile)
     return ff_shape_reaches(&tree->ground[g], &tree->window[g], tile);
 }
 
-/* The first tile of a ground in view, from the window's middle outwards, whose root is not held. 0:
- * there is none. */
+/* The first tile of a ground in view, from the window's middle outwards, whose root is not held,
+ * nor ground of another drawn there. 0: there is none. */
 static int first_missing(ff_tree *tree, uint32_t g, uint32_t *tile)
 {
     const ff_terrain_info *info = &tree->ground[g];
@@ -29,6 +30,7 @@ static int first_missing(ff_tree *tree, uint32_t g, uint32_t *tile)
     while (ff_shape_next(info, &walk, tile)) {
         if (ff_tree_find(tree, ff_key_make(*tile, 0, 0)) != FF_SLOT_NONE) continue;
         tree->roots_missing = 1;
+        if (tree->cover && ff_cover_fills(tree, *tile)) continue;
         ff_box box;
         ff_tile_box(tree, *tile, &box);
         if (ff_box_in_view(tree, &box)) return 1;

@@ -18,6 +18,7 @@ static ff_key parent_beside(const ff_tree *tree, const ff_node *node, enum ff_si
     ff_key beside =
         ff_shape_neighbour(ff_ground_of(tree, node->key), ff_key_parent(node->key), side).key;
     FF_ASSERT(beside == FF_KEY_NONE || ff_key_level(beside) + 1 == ff_key_level(node->key));
+    if (beside != FF_KEY_NONE && ff_left_out(tree, beside)) return FF_KEY_NONE;
     if (beside == FF_KEY_NONE || ff_key_tile(beside) == ff_key_tile(node->key)) return beside;
     uint32_t root = ff_tree_find(tree, ff_key_make(ff_key_tile(beside), 0, 0));
     return root != FF_SLOT_NONE && tree->node[root].flags & FF_NODE_ACTIVE ? beside : FF_KEY_NONE;
@@ -109,6 +110,10 @@ static void join_tiles(ff_tree *tree)
         ff_box box;
         if (!(root->flags & FF_NODE_ACTIVE)) root->flags &= (uint8_t)~FF_NODE_JOINED;
         if (!is_new(root)) continue;
+        if (tree->cover) { /* where several grounds lie, what is drawn is decided before */
+            root->flags |= FF_NODE_JOINED;
+            continue;
+        }
         ff_node_box(tree, root, &box);
         if (!ff_box_in_view(tree, &box) && lacks_needed(tree, ff_key_tile(root->key))) {
             root->flags &= (uint8_t)~FF_NODE_ACTIVE;

@@ -89,20 +89,31 @@ static void mark_active_roots(ff_tree *tree)
     }
 }
 
-static uint32_t push_active_roots(ff_tree *tree)
+/* Queues a ground's active roots behind the leaves of the cut so far. */
+static uint32_t push_active_roots(ff_tree *tree, uint32_t g)
 {
-    uint32_t count = 0;
+    uint32_t count = tree->cut_count;
     for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
+        const ff_node *root = &tree->node[slot];
+        if (!(root->flags & FF_NODE_ACTIVE) || ff_ground_number(tree, ff_key_tile(root->key)) != g)
+            continue;
         FF_ASSERT(count < tree->node_count - tree->free_count); /* or the list runs in a circle */
-        if (tree->node[slot].flags & FF_NODE_ACTIVE) tree->order[count++] = slot;
+        tree->order[count++] = slot;
     }
     return count;
 }
 
 static uint32_t push_children(ff_tree *tree, const ff_node *node, uint32_t count)
 {
-    for (unsigned q = 0; q < 4; q++)
-        if (node->child[q] != FF_SLOT_NONE) tree->order[count++] = node->child[q];
+    for (unsigned q = 0; q < 4; q++) {
+        if (node->child[q] == FF_SLOT_NONE) continue;
+        ff_node *child = &tree->node[node->child[q]];
+        child->flags &= ~FF_NODE_LEFT_OUT & UINT8_MAX;
+        if (ff_left_out(tree, child->key))
+            child->flags |= FF_NODE_LEFT_OUT;
+        else
+            tree->order[count++] = node->child[q];
+    }
     FF_ASSERT(count <= tree->node_count - tree->free_count); /* a node is pushed once */
     return count;
 }
@@ -130,28 +141,25 @@ static uint32_t own_value(ff_tree *tree, const ff_node *node)
     return ff_box_beyond_view(tree, &box) || ff_box_in_hole(tree, &box) ? 0 : value;
 }
 
-static void want_by_measure(ff_tree *tree)
+static void want_by_measure(ff_tree *tree, uint32_t g)
 {
-    forget_flags(tree);
-    mark_active_roots(tree);
-    tree->stats.flat = tree->stats.stubs = 0;
-    uint32_t count = push_active_roots(tree);
-    for (uint32_t i = 0; i < count; i++) {
+    uint32_t count = push_active_roots(tree, g);
+    for (uint32_t i = tree->cut_count; i < count; i++) {
         const ff_node *node = &tree->node[tree->order[i]];
         uint32_t value = own_value(tree, node);
         if (value == 0) continue;
         ff_want(tree, tree->order[i], value);
         if (ff_node_has_children(node)) count = push_children(tree, node, count);
     }
-    FF_ASSERT(tree->stats.flat + tree->stats.stubs <= count);
 }
 
-/* Decides who splits, level by level from the roots, so that all decisions about a level are made
- * before the next level looks at them. The leaves of the cut stay behind in `order`. */
-static void split_cut(ff_tree *tree)
+/* Decides who of a ground splits, level by level from the roots, so that all decisions about a
+ * level are made before the next level looks at them. The leaves of the cut stay behind in
+ * `order`. */
+static void split_cut(ff_tree *tree, uint32_t g)
 {
-    uint32_t count = push_active_roots(tree), leaves = 0;
-    for (uint32_t i = 0; i < count; i++) {
+    uint32_t count = push_active_roots(tree, g), leaves = tree->cut_count;
+    for (uint32_t i = tree->cut_count; i < count; i++) {
         ff_node *node = &tree->node[tree->order[i]];
         if (node->flags & FF_NODE_WANTED && ff_node_has_children(node) &&
             ff_coarser_mask(tree, node) == 0) {
@@ -161,12 +169,29 @@ static void split_cut(ff_tree *tree)
             count = push_children(tree, node, count);
         }
     }
-    for (uint32_t i = 0; i < count; i++) {
+    for (uint32_t i = tree->cut_count; i < count; i++) {
         if (!(tree->node[tree->order[i]].flags & FF_NODE_SPLIT))
             tree->order[leaves++] = tree->order[i];
     }
-    FF_ASSERT(leaves > 0 || count == 0); /* who splits has pushed children */
+    FF_ASSERT(leaves > 0 || count == 0 || tree->cover); /* who splits has pushed children */
     tree->cut_count = leaves;
+}
+
+/* A ground is cut once those before it are: what they cover of it is left out. */
+static void make_cut(ff_tree *tree)
+{
+    forget_flags(tree);
+    mark_active_roots(tree);
+    if (tree->cover) ff_cover_stand(tree);
+    tree->stats.flat = tree->stats.stubs = 0;
+    tree->cut_count = 0;
+    for (uint32_t rank = 0; rank < tree->ground_count; rank++) {
+        uint32_t g = ff_ground_ranked(tree, rank);
+        if (tree->cover) ff_cover_roots(tree, g);
+        want_by_measure(tree, g);
+        ff_want_close(tree);
+        split_cut(tree, g);
+    }
 }
 
 static void fill_drawn(const ff_tree *tree, uint32_t slot, unsigned coarser, ff_drawn *drawn)
@@ -293,9 +318,7 @@ int ff_tree_select(ff_tree *tree, const ff_view *view, const ff_quality *quality
     ff_limit_search search;
     ff_limit_begin(tree, &search);
     do {
-        want_by_measure(tree);
-        ff_want_close(tree);
-        split_cut(tree);
+        make_cut(tree);
         ff_whole_make(tree);
         list_cut(tree);
     } while (ff_limit_again(tree, &search));

@@ -193,7 +193,8 @@ static uint64_t height_in_node(const ff_tree *tree, const ff_node *node, grid_po
     return height_in_cell(&grid, column, row, at);
 }
 
-/* The drawn node below a root over which a spot lies; *at is the spot in its grid. */
+/* The drawn node below a root over which a spot lies; *at is the spot in its grid. NULL where it is
+ * left out. */
 static const ff_node *node_at(const ff_tree *tree, const ff_node *node, const ff_spot *spot,
                               grid_point *at)
 {
@@ -209,6 +210,7 @@ static const ff_node *node_at(const ff_tree *tree, const ff_node *node, const ff
         column -= east ? half : 0;
         row -= north ? half : 0;
         node = &tree->node[node->child[2 * north + east]];
+        if (node->flags & FF_NODE_LEFT_OUT) return NULL;
     }
     unsigned cell_log2 = info->tile_log2 - info->node_log2 - ff_key_level(node->key);
     FF_ASSERT(column <= 2 * half && row <= 2 * half); /* the node's edge by now */
@@ -225,36 +227,42 @@ static const ff_node *drawn_of(const ff_tree *tree, const ff_terrain_info *info,
     if (!ff_shape_locate(info, &tree->view.frame, place_wu, &spot)) return NULL;
     uint32_t slot = ff_tree_find(tree, ff_key_make(spot.tile, 0, 0));
     if (slot == FF_SLOT_NONE || !ff_tile_active(tree, spot.tile)) return NULL;
+    if (tree->cover && !(tree->node[slot].flags & FF_NODE_ACTIVE)) return NULL;
     const ff_node *node = node_at(tree, &tree->node[slot], &spot, at);
     ff_box box;
+    if (!node) return NULL;
     ff_node_box(tree, node, &box);
     return ff_box_beyond_view(tree, &box) ? NULL : node;
 }
 
-static const ff_node *drawn_at(const ff_tree *tree, const int32_t place_wu[3], grid_point *at)
-{
-    const ff_node *node = NULL;
-    for (uint32_t g = 0; tree->has_view && !node && g < tree->ground_count; g++)
-        node = drawn_of(tree, &tree->ground[g], place_wu, at);
-    return node;
-}
-
-/* z need not be the ground's: it is looked for under or over the point. */
-int ff_tree_drawn_height(const ff_tree *tree, int32_t x_wu, int32_t y_wu, int32_t *z_wu)
+/* The node that is seen there from above, and its height: the highest of those drawn. z need not be
+ * the ground's: it is looked for under or over the point. */
+static const ff_node *seen_at(const ff_tree *tree, int32_t x_wu, int32_t y_wu, int32_t *z_wu)
 {
     const int32_t place_wu[3] = { x_wu, y_wu, tree->view.camera.pos_wu[2] };
-    grid_point at;
-    const ff_node *node = drawn_at(tree, place_wu, &at);
-    if (!node) return 0;
-    *z_wu = ff_shape_z_wu(ff_ground_of(tree, node->key), &tree->view.frame, place_wu,
-                          height_in_node(tree, node, at));
-    return 1;
+    const ff_node *seen = NULL;
+    for (uint32_t rank = 0; tree->has_view && rank < tree->ground_count; rank++) {
+        const ff_terrain_info *info = &tree->ground[ff_ground_ranked(tree, rank)];
+        grid_point at;
+        const ff_node *node = drawn_of(tree, info, place_wu, &at);
+        if (!node) continue;
+        int32_t here_wu = ff_shape_z_wu(info, &tree->view.frame, place_wu,
+                                        height_in_node(tree, node, at));
+        if (seen && here_wu <= *z_wu) continue;
+        *z_wu = here_wu;
+        seen = node;
+    }
+    return seen;
+}
+
+int ff_tree_drawn_height(const ff_tree *tree, int32_t x_wu, int32_t y_wu, int32_t *z_wu)
+{
+    return seen_at(tree, x_wu, y_wu, z_wu) != NULL;
 }
 
 int ff_tree_drawn_filled(const ff_tree *tree, int32_t x_wu, int32_t y_wu)
 {
-    const int32_t place_wu[3] = { x_wu, y_wu, tree->view.camera.pos_wu[2] };
-    grid_point at;
-    const ff_node *node = drawn_at(tree, place_wu, &at);
+    int32_t z_wu;
+    const ff_node *node = seen_at(tree, x_wu, y_wu, &z_wu);
     return node && node->flags & FF_NODE_FILLED;
 }

@@ -58,6 +58,7 @@ static ff_tree *carve(const ff_tree_desc *desc, block *from)
         parts.horizon = take(from, sizeof *parts.horizon);
         parts.horizon_ahead = take(from, sizeof *parts.horizon);
     }
+    if (parts.ground_max > 1) parts.cover = take(from, sizeof *parts.cover);
     if (parts.source_max > 1) {
         parts.sources = take(from, parts.ground_max);
         parts.lacks = take(from, n);
@@ -91,6 +92,7 @@ ff_tree *ff_tree_create(const ff_tree_desc *desc, void *memory, size_t bytes)
     tree->window_ahead = tree->window + tree->ground_max;
     tree->ground[0] = desc->info;
     tree->ground_count = 1;
+    if (tree->cover) ff_cover_rank(tree);
     if (tree->lacks) memset(tree->sources, 1, tree->ground_max);
     tree->node_count = tree->free_count = desc->node_count;
     tree->wish_capacity = desc->wish_count;

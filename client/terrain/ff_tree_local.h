@@ -21,6 +21,9 @@ FF_STATIC_ASSERT(FF_SLOT_NONE == UINT32_MAX); /* so only four of them have all b
 enum ff_node_flags {
     FF_NODE_LEAF = 1,   /* nothing finer is stored: children are made by prediction */
     FF_NODE_ACTIVE = 2, /* a root that takes part in the last selection: inside the window */
+    /* not a root, and another ground is drawn there. Found when its parent splits, stale when not
+     */
+    FF_NODE_LEFT_OUT = 2,
     /* its children are desired, by itself or by a neighbour that may not be two levels finer */
     FF_NODE_WANTED = 4,
     FF_NODE_SPLIT = 8, /* the cut runs below it */
@@ -63,6 +66,8 @@ struct ff_tree {
     ff_reach *window_ahead;
     uint8_t *sources; /* of each: the bits of who serves it; NULL: one source serves all */
     uint8_t *lacks;   /* of each slot: the bits of who has no refinement of the node; NULL alike */
+    /* who is drawn where several lie (ff_cover.c): NULL for trees of one ground */
+    struct ff_cover *cover;
     uint32_t ground_count, ground_max, source_max;
     uint32_t node_count, wish_capacity, hash_mask;
     ff_node *node;
@@ -113,6 +118,43 @@ static inline uint32_t ff_slot_of(const ff_tree *tree, const ff_node *node)
     FF_ASSERT(node >= tree->node && node < tree->node + tree->node_count);
     return (uint32_t)(node - tree->node);
 }
+/* ---- cover (ff_cover.c) ---- */
+
+/* A rectangle of ground in the frame, wu; lo > hi: none. */
+typedef struct ff_area {
+    int32_t lo[2], hi[2];
+} ff_area;
+
+typedef struct ff_cover {
+    uint8_t ranked[FF_GROUNDS_MAX],
+        rank[FF_GROUNDS_MAX];       /* numbers in order, and the place there */
+    ff_area stands[FF_GROUNDS_MAX]; /* where each ground is drawn, unless one before it is */
+} ff_cover;
+
+/* Puts the grounds in order. */
+void ff_cover_rank(ff_tree *tree);
+/* 1 when a ground is too small in the picture to take part. */
+int ff_cover_is_small(const ff_tree *tree, uint32_t ground);
+/* Finds where each ground stands, once the roots in the window are marked; roots elsewhere stop
+ * being active where a ground after theirs stands. */
+void ff_cover_stand(ff_tree *tree);
+/* 1 when a node is left out because a ground before its own is drawn there: once the cut of those
+ * is made. */
+int ff_cover_hides(const ff_tree *tree, ff_key key);
+/* Roots of a ground that are left out stop being active. */
+void ff_cover_roots(ff_tree *tree, uint32_t ground);
+/* 1 when another ground stands all over a tile. */
+int ff_cover_fills(const ff_tree *tree, uint32_t tile);
+
+static inline int ff_left_out(const ff_tree *tree, ff_key key)
+{
+    return tree->cover && ff_cover_hides(tree, key);
+}
+static inline uint32_t ff_ground_ranked(const ff_tree *tree, uint32_t rank)
+{
+    return tree->cover ? tree->cover->ranked[rank] : rank;
+}
+
 /* ---- grounds (ff_grounds.c) ---- */
 
 /* Of several: the last one whose tiles begin at `tile` or before. */
@@ -137,6 +179,15 @@ static inline const ff_terrain_info *ff_ground_of_tile(const ff_tree *tree, uint
 static inline const ff_terrain_info *ff_ground_of(const ff_tree *tree, ff_key key)
 {
     return ff_ground_of_tile(tree, ff_key_tile(key));
+}
+
+static inline ff_area ff_area_of(const ff_tree *tree, ff_key key, const ff_placed *placed)
+{
+    static const int64_t height_wu[2] = { 0, 0 };
+    static const int32_t from_wu[3] = { 0, 0, 0 };
+    ff_box box = ff_shape_box(ff_ground_of(tree, key), key, placed, height_wu, from_wu);
+    return (ff_area){ { (int32_t)box.lo[0], (int32_t)box.lo[1] },
+                      { (int32_t)box.hi[0], (int32_t)box.hi[1] } };
 }
 
 /* All grounds have nodes of one size. */

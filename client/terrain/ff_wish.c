@@ -34,7 +34,8 @@ static uint32_t missing_of(ff_tree *tree, uint32_t g, uint32_t count, uint32_t l
     ff_walk walk = ff_shape_walk_out(info, &tree->view.frame, &tree->window[g],
                                      tree->view.centre_wu);
     while (found < limit && ff_shape_next(info, &walk, &tile)) {
-        if (ff_tree_find(tree, ff_key_make(tile, 0, 0)) != FF_SLOT_NONE) continue;
+        ff_key root = ff_key_make(tile, 0, 0);
+        if (ff_tree_find(tree, root) != FF_SLOT_NONE || ff_left_out(tree, root)) continue;
         ff_box box;
         ff_tile_box(tree, tile, &box);
         uint64_t unseen = ff_box_seen(tree, &box) ? 0 : OUT_OF_VIEW,

@@ -255,9 +255,9 @@ int ff_message_from_client(uint8_t byte);
  * All fields are range-checked here. */
 int ff_message_decode(const uint8_t *bytes, size_t byte_count, ff_message *out);
 
-/* The grounds that a server tells of, at most FF_WELCOME_GROUNDS: the terrain, and those of the entry
- * TERRAINS, which lie beside it and whose tiles are numbered on (ff_terrain_join); or an error of
- * them. A WELCOME that was decoded has one at least. */
+/* The grounds that a server tells of, at most FF_WELCOME_GROUNDS: the terrain, and those of the
+ * entry TERRAINS, which lie beside it and whose tiles are numbered on (ff_terrain_join); or an
+ * error of them. A WELCOME that was decoded has one at least. */
 int ff_welcome_count(const ff_welcome *welcome);
 /* One of them, and the checksum of the whole pack that it is a part of, or its own. */
 void ff_welcome_ground(const ff_welcome *welcome, unsigned number, ff_terrain_info *info,

@@ -2,7 +2,6 @@
 #include "ff_message_local.h"
 
 #include "../ff_assert.h"
-#include "../shape/ff_shape.h"
 
 /* How many values of `bytes` an entry has; 0: there is no such entry, or a part of one is left. */
 static unsigned entries(ff_list list, unsigned type, unsigned bytes, const uint8_t **value)
@@ -33,8 +32,7 @@ int ff_welcome_count(const ff_welcome *welcome)
     row r = { &welcome->info, welcome->info };
     unsigned more = entries(welcome->more, FF_WELCOME_TERRAINS, FF_TERRAIN_BYTES, &value),
              count = 1 + more;
-    if (!more && ff_list_find(welcome->more, FF_WELCOME_TERRAINS, &value) > 0)
-        return FF_ERR_RANGE;
+    if (!more && ff_list_find(welcome->more, FF_WELCOME_TERRAINS, &value) > 0) return FF_ERR_RANGE;
     for (unsigned i = 0; i < more; i++) {
         ff_terrain_info info;
         int rc = read_next(value + i * FF_TERRAIN_BYTES, &r, &info);

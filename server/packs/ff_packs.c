@@ -14,8 +14,7 @@ int ff_packs_add(ff_packs *packs, const char *path)
 {
     unsigned at = packs->count;
     if (at == FF_PACKS_MAX) {
-        snprintf(packs->why, sizeof packs->why, "%s: more than %d packs", path,
-                 FF_PACKS_MAX);
+        snprintf(packs->why, sizeof packs->why, "%s: more than %d packs", path, FF_PACKS_MAX);
         return FF_ERR_FULL;
     }
     errno = 0;

@@ -5,6 +5,7 @@
  * reader costs a fixed amount of memory, and its own reading says when to go on.
  */
 #include "ff_session_local.h"
+#include "../packs/ff_packs.h"
 #include "../view/ff_view_parts.h"
 
 #include <assert.h>
@@ -475,11 +476,9 @@ static int caps(ff_session *session)
 /* A pack that says nothing of itself, or nonsense, is an empty list. */
 static void about(ff_session *session, uint32_t entries)
 {
-    uint8_t bytes[FF_ABOUT_BYTES_MAX];
-    ff_list all;
-    int count = ff_pack_about(session->desc.pack, &all) == FF_OK
-                    ? ff_about_select(all, entries, bytes, sizeof bytes)
-                    : 0;
+    uint8_t all[FF_ABOUT_BYTES_MAX], bytes[FF_ABOUT_BYTES_MAX];
+    int count = ff_about_select(ff_packs_about(session->desc.pack, all), entries, bytes,
+                                sizeof bytes);
     assert(count >= 0);
     answer_short(session,
                  &(ff_message){ .type = FF_MSG_ABOUT, .u.list = { bytes, (uint32_t)count } });

@@ -39,8 +39,7 @@ static int search_open(search *s)
                           .node_count = s->pack->next ? NODES : nodes_for(info),
                           .wish_count = WISHES,
                           .ground_max = ff_pack_source_grounds(s->pack) };
-    size_t tree_bytes = ff_tree_bytes(&desc),
-           decoder_bytes = ff_pack_source_decoder_bytes(s->pack);
+    size_t tree_bytes = ff_tree_bytes(&desc), decoder_bytes = ff_pack_source_decoder_bytes(s->pack);
     s->tree_memory = malloc(tree_bytes);
     s->decoder_memory = malloc(decoder_bytes);
     if (!s->tree_memory || !s->decoder_memory) return FF_ERR_MEMORY;

@@ -70,17 +70,31 @@ static unsigned wrap(const char *from, size_t count, unsigned columns, unsigned 
     return made;
 }
 
+/* 1 when a source before says the same. */
+static int is_said(ff_client *client, enum ff_about_entry entry, unsigned source,
+                   const uint8_t *value, int bytes)
+{
+    uint8_t other[VALUE_ROOM];
+    while (source-- > 0)
+        if (ff_client_source_about(client, source, entry, other, sizeof other) == bytes &&
+            !memcmp(other, value, (size_t)bytes))
+            return 1;
+    return 0;
+}
+
 unsigned sim_about_lines(ff_client *client, unsigned columns, unsigned lines, char *text,
                          size_t room)
 {
     static const enum ff_about_entry shown[] = { FF_ABOUT_NAME, FF_ABOUT_ATTRIBUTION };
     unsigned made = 0;
     *text = 0;
-    for (unsigned i = 0; i < 2; i++) {
+    for (unsigned i = 0; i < 2 * FF_SOURCES_MAX; i++) {
+        enum ff_about_entry entry = shown[i / FF_SOURCES_MAX];
+        unsigned source = i % FF_SOURCES_MAX;
         uint8_t value[VALUE_ROOM];
         char letters[VALUE_ROOM];
-        int bytes = ff_client_about(client, shown[i], value, sizeof value);
-        if (bytes <= 0) continue;
+        int bytes = ff_client_source_about(client, source, entry, value, sizeof value);
+        if (bytes <= 0 || is_said(client, entry, source, value, bytes)) continue;
         size_t count = plain(value, (size_t)bytes, letters, sizeof letters);
         made += wrap(letters, count, columns, lines - made, text, room);
     }

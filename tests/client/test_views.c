@@ -120,7 +120,8 @@ static void refused_views_are_asked_for_singly(void **state)
     assert_int_equal(rig.asked[FF_KIND_VIEW], 1);
     uint16_t id = rig.client->first.requests.view_id;
     assert_true(ff_requests_answered(&rig.client->first.requests, id, &request));
-    assert_int_equal(ff_intake_failed(&rig.client->first.intake, &request, FF_ERR_UNSUPPORTED), FF_OK);
+    assert_int_equal(ff_intake_failed(&rig.client->first.intake, &request, FF_ERR_UNSUPPORTED),
+                     FF_OK);
     rig.cut_at = rig.bytes_down; /* with the answers of this server, which does answer */
     assert_true(rig_settle(&rig, 400));
     assert_int_equal(rig.asked[FF_KIND_VIEW], 1);

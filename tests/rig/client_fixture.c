@@ -178,6 +178,9 @@ static void open_pack(client_rig *rig, unsigned texture_log2, unsigned node_log2
     desc.info.texture_log2 = (uint8_t)texture_log2;
     desc.info.texture_levels = texture_log2 ? 3 : 0;
     desc.info.hoffset_wu = variant == OTHER ? 1000 : 0;
+    desc.info.epsg = rig->epsg;
+    desc.info.origin_x_mm = rig->origin_mm[0];
+    desc.info.origin_y_mm = rig->origin_mm[1];
     desc.info.samples_x = samples_x;
     desc.info.samples_y = samples_y;
     free(rig->pack_bytes);
@@ -228,6 +231,14 @@ void rig_use_stubs(client_rig *rig, unsigned texture_log2)
     open_pack(rig, texture_log2, 3, STUBS, SAMPLES, SAMPLES);
 }
 
+void rig_use_place(client_rig *rig, int32_t epsg, int east_m, int north_m)
+{
+    rig->epsg = epsg;
+    rig->origin_mm[0] = (int64_t)east_m * 1000;
+    rig->origin_mm[1] = (int64_t)north_m * 1000;
+    open_pack(rig, 0, 3, USUAL, SAMPLES, SAMPLES);
+}
+
 void rig_use_about(client_rig *rig, ff_list about)
 {
     rig->about = about;
@@ -240,7 +251,7 @@ void rig_change_terrain(client_rig *rig)
     open_pack(rig, 0, 3, OTHER, SAMPLES, SAMPLES);
 }
 
-static void make_client(client_rig *rig, size_t bytes)
+void rig_client_of(client_rig *rig, size_t bytes)
 {
     rig->memory = malloc(bytes);
     rig->memory_bytes = bytes;
@@ -257,13 +268,13 @@ void rig_client(client_rig *rig, size_t bytes)
 {
     begin_session(rig);
     rig->desc.stream = &rig->stream;
-    make_client(rig, bytes);
+    rig_client_of(rig, bytes);
 }
 
 void rig_local_client(client_rig *rig, size_t bytes)
 {
     rig->desc.pack = &rig->pack;
-    make_client(rig, bytes);
+    rig_client_of(rig, bytes);
 }
 
 void rig_close(client_rig *rig)

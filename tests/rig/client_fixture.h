@@ -29,8 +29,10 @@ typedef struct client_rig {
     unsigned connections;
     uint32_t asked[FF_KIND_COUNT]; /* messages from the client, by kind */
     uint32_t pings, asked_about;
-    uint64_t about_at;        /* bytes_down when that was asked first */
-    ff_list about;            /* what the pack says of itself */
+    uint64_t about_at; /* bytes_down when that was asked first */
+    ff_list about;     /* what the pack says of itself */
+    int32_t epsg;      /* of the place of its origin */
+    int64_t origin_mm[2];
     int64_t now_us, frame_us; /* of server and worker; of the frames */
 
     void *memory;
@@ -56,11 +58,16 @@ void rig_use_leaves(client_rig *rig);
 void rig_use_stubs(client_rig *rig, unsigned texture_log2);
 /* As rig_open, with a pack that says this of itself. */
 void rig_use_about(client_rig *rig, ff_list about);
+/* As rig_open, with ground that lies so many metres east and north in a reference system (0: none).
+ */
+void rig_use_place(client_rig *rig, int32_t epsg, int east_m, int north_m);
 /* Serves another terrain on all further connections. */
 void rig_change_terrain(client_rig *rig);
 /* Makes a client with a block of `bytes` over the stream; the test sets rig->desc's other fields
  * before. */
 void rig_client(client_rig *rig, size_t bytes);
+/* Makes a client of rig->desc as it is. */
+void rig_client_of(client_rig *rig, size_t bytes);
 /* Makes a client over the pack itself. */
 void rig_local_client(client_rig *rig, size_t bytes);
 void rig_close(client_rig *rig);

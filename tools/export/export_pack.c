@@ -27,7 +27,7 @@ typedef struct cutter {
     export_part part;
     ff_list about;
     uint8_t about_bytes[FF_ABOUT_BYTES_MAX];
-    int is_part; /* something was left out */
+    int is_part;         /* something was left out */
     pack_writer *writer; /* NULL: sections are counted alone */
     section_count count[FF_PACK_SECTIONS_MAX];
     bake_blob blob[FF_PACK_SECTIONS_MAX];                /* records on their way to the writer */

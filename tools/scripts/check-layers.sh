@@ -71,9 +71,11 @@ client/images       client/ask client/terrain protocol/ common3d
 client/ground       client/farfield.h client/images client/terrain protocol/ common3d
 client/panorama     client client/ask client/ahead protocol/ common3d
 client/balance      client
+client/several      client client/terrain protocol/ platform/sys.h
 client              client/ protocol/ common3d platform/sys.h
+server/packs        protocol/ platform/sys.h
 server/view         client/terrain protocol/ common3d
-server/session      server/view protocol/ platform/sys.h
+server/session      server/view server/packs protocol/ platform/sys.h
 server/panorama     client/terrain client/ground client/images protocol/ common3d platform/sys.h
 server/net          server server/session server/panorama protocol/ platform/sys.h
 server              server/ platform/options client/farfield.h protocol/ platform/sys.h
@@ -81,8 +83,8 @@ sim/options         platform/options client/farfield.h
 sim/link            platform/options server/session server/panorama client/farfield.h protocol/ platform/sys.h
 sim/judge           client/terrain client/images protocol/ common3d platform/sys.h
 sim/tape            client/farfield.h protocol/ platform/sys.h
-sim/fly             platform/options sim/options sim/link sim/judge sim/tape client/farfield.h client/ff_sky.h client/terrain client/ground client/images protocol/ common3d platform/sys.h
-sim/view            platform/options sim/options sim/link client/farfield.h protocol/ common3d platform/sys.h
+sim/fly             platform/options sim/options sim/link sim/judge sim/tape server/packs client/farfield.h client/ff_sky.h client/terrain client/ground client/images protocol/ common3d platform/sys.h
+sim/view            platform/options sim/options sim/link server/packs client/farfield.h protocol/ common3d platform/sys.h
 sim/handheld        platform/options sim/options sim/tape client/farfield.h protocol/ common3d platform/sys.h
 tools/bake          platform/options tools/bake/ client/farfield.h protocol/ platform/sys.h
 tools/bake/raster   tools/bake protocol/ platform/sys.h
@@ -173,6 +175,7 @@ shape_words() { # PATTERN that no code may have but protocol/shape, the tests, a
     protocol/ff_bytes.c        reads and writes it
     sim/judge/sim_ground.c     compares two terrains
     client/ground/ff_ground_frame.c  a vertex is placed in units of a sample
+    client/terrain/ff_cover.c  the finer of two grounds
     tools/bake/bake_run.c      describes the raster; reports it
     tools/bake/bake_estimate.c  the same, beforehand
     tools/bake/bake_fault.c    says which field is out of range
@@ -182,6 +185,7 @@ ff_node_(edge|cell)_wu
     protocol/ff_terrain.h      defines them: nominal lengths
     client/terrain/ff_measure.c  the e of f = d / (e C)
     client/terrain/ff_wish.c   the same, of roots
+    client/terrain/ff_cover.c  how far grounds over each other keep from each other's rims, and the steps between tiles
     client/terrain/ff_select.c  hands a node's cell to who draws it
     client/images/ff_textures.c  the e of images
     client/client_update.c     how far beyond its middle a node reaches, at most

@@ -37,13 +37,13 @@ typedef struct ff_stream_shared {
     uint32_t received_high; /* the most ever */
     uint32_t about_bytes;   /* of what the pack says of itself */
     uint32_t protocol_errors, reconnects, rtt_us, bytes_s;
-    uint32_t losses;         /* connections lost: what was asked is to be ranked again */
-    int8_t refusal;          /* why the server would not have this client: an error, or FF_OK */
+    uint32_t losses; /* connections lost: what was asked is to be ranked again */
+    int8_t refusal;  /* why the server would not have this client: an error, or FF_OK */
     /* valid in WELCOMED: the grounds, and the checksum of the whole pack that each is a part of */
     ff_terrain_info welcome[FF_WELCOME_GROUNDS];
     uint32_t whole[FF_WELCOME_GROUNDS];
     uint8_t welcome_count;
-    uint8_t quiet;           /* main: ask nothing new (interruption) */
+    uint8_t quiet; /* main: ask nothing new (interruption) */
     uint8_t no_prefetch;
 } ff_stream_shared;
 
@@ -66,8 +66,8 @@ typedef struct ff_stream {
     /* worker only */
     enum ff_stream_state state;
     uint8_t has_terrain; /* the client's pools hold the grounds of `intake` */
-    uint8_t attempt; /* CONNECTING: 1 when reconnect() has to be called */
-    uint8_t blocked; /* the new-data list is full */
+    uint8_t attempt;     /* CONNECTING: 1 when reconnect() has to be called */
+    uint8_t blocked;     /* the new-data list is full */
     uint8_t *recv;
     uint32_t recv_bytes, recv_count, recv_high, skip;
     uint8_t send[FF_STREAM_SEND_BYTES];

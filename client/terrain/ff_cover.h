@@ -1,0 +1,19 @@
+/* The cut of a ground, by places. */
+#ifndef FF_COVER_H
+#define FF_COVER_H
+
+#include "ff_tree_local.h"
+
+/* A walk over the nodes of a ground's cut, and those left out, that touch an area. */
+typedef struct ff_over {
+    const ff_tree *tree;
+    ff_area area;
+    uint32_t ground, root, depth;
+    uint32_t stack[3 * FF_LEVELS_MAX + 1];
+} ff_over;
+
+void ff_over_begin(ff_over *over, const ff_tree *tree, uint32_t ground, const ff_area *area);
+/* NULL: there are no more. */
+const ff_node *ff_over_next(ff_over *over);
+
+#endif

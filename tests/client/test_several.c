@@ -1,0 +1,278 @@
+/* A client with several packs and servers: what one lacks another gives, grounds come together, and
+ * one that fits none is told and harms nothing. */
+#include "../../client/ff_client_local.h"
+#include "../rig/client_fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <string.h>
+#include <cmocka.h>
+
+#define MB   (1u << 20)
+#define UTM  32632
+#define WIDE (128 * 32) /* metres, of the usual pack each way */
+
+/* A rig whose pack says that it is a part of another one's. */
+static void make_part(client_rig *part, const client_rig *of, unsigned texture_log2,
+                      uint8_t about[6])
+{
+    uint32_t whole = of->pack.header.info.checksum;
+    about[0] = FF_ABOUT_WHOLE;
+    about[1] = 4;
+    for (int i = 0; i < 4; i++) about[2 + i] = (uint8_t)(whole >> 8 * i);
+    rig_open(part, texture_log2);
+    part->about = (ff_list){ about, 6 };
+    rig_use_stubs(part, texture_log2);
+}
+
+static void close_server(client_rig *rig)
+{
+    rig->client = NULL;
+    rig->memory = NULL;
+    rig_close(rig);
+}
+
+static void look_around(client_rig *rig)
+{
+    for (int turn = 0; turn < 4; turn++) {
+        rig->camera.yaw += 1 << 14;
+        assert_true(rig_settle(rig, 400));
+    }
+}
+
+static void assert_shows_whole_ground(client_rig *rig, unsigned texture_log2)
+{
+    client_rig whole;
+    rig_open(&whole, texture_log2);
+    rig_local_client(&whole, 8 * MB);
+    look_around(&whole);
+    assert_true(rig_same_picture(rig, &whole));
+    assert_int_equal(rig->client->textures.held, whole.client->textures.held);
+    rig_close(&whole);
+}
+
+static void what_a_part_on_the_device_lacks_the_server_gives(void **state)
+{
+    (void)state;
+    for (unsigned texture_log2 = 0; texture_log2 <= 5; texture_log2 += 5)
+        for (int part_first = 0; part_first < 2; part_first++) {
+            uint8_t about[6];
+            client_rig server, rig;
+            rig_open(&server, texture_log2);
+            make_part(&rig, &server, texture_log2, about);
+            ff_source_desc more = { 0 };
+            rig.desc.more = &more;
+            rig.desc.more_count = 1;
+            if (part_first) {
+                more.stream = &server.stream;
+                rig_local_client(&rig, 8 * MB);
+            } else {
+                more.pack = &rig.pack;
+                rig.desc.stream = &server.stream;
+                rig_client_of(&rig, 8 * MB);
+            }
+            assert_true(rig_settle(&rig, 400));
+            look_around(&rig);
+            assert_shows_whole_ground(&rig, texture_log2);
+            /* the part has all roots and what they refine to, so nobody else is asked for it */
+            assert_int_equal(server.asked[FF_KIND_ROOT], 0);
+            assert_true(server.asked[FF_KIND_REFINEMENT] + server.asked[FF_KIND_VIEW] > 0);
+            if (!texture_log2) assert_int_equal(rig_stats(&rig).requests_failed, 0);
+            assert_int_equal(ff_client_source_state(rig.client, 0), FF_OK);
+            assert_int_equal(ff_client_source_state(rig.client, 1), FF_OK);
+            rig_close(&rig);
+            close_server(&server);
+        }
+}
+
+static void without_its_server_a_part_is_drawn_as_it_is(void **state)
+{
+    (void)state;
+    uint8_t about[6];
+    client_rig server, rig, alone;
+    rig_open(&server, 0);
+    server.refuse = 1;
+    make_part(&rig, &server, 0, about);
+    ff_source_desc more = { .stream = &server.stream };
+    rig.desc.more = &more;
+    rig.desc.more_count = 1;
+    rig_local_client(&rig, 8 * MB);
+    for (int i = 0; i < 100; i++) rig_step(&rig, 50000);
+    make_part(&alone, &server, 0, about);
+    rig_local_client(&alone, 8 * MB);
+    assert_true(rig_settle(&alone, 400));
+    assert_true(rig_same_picture(&rig, &alone));
+    assert_int_equal(ff_client_source_state(rig.client, 1), FF_ERR_AGAIN);
+    /* it comes */
+    server.refuse = 0;
+    for (int i = 0; i < 800; i++) rig_step(&rig, 50000);
+    assert_int_equal(ff_client_source_state(rig.client, 1), FF_OK);
+    look_around(&rig);
+    assert_shows_whole_ground(&rig, 0);
+    rig_close(&alone);
+    rig_close(&rig);
+    close_server(&server);
+}
+
+static void a_second_server_stands_in_for_one_that_is_lost(void **state)
+{
+    (void)state;
+    client_rig rig, second;
+    rig_open(&rig, 0);
+    rig_open(&second, 0);
+    rig.cut_at = 1500;
+    ff_source_desc more = { .stream = &second.stream };
+    rig.desc.more = &more;
+    rig.desc.more_count = 1;
+    rig_client(&rig, 8 * MB);
+    for (int i = 0; i < 400; i++) {
+        rig.refuse |= rig.session == NULL;
+        rig_step(&rig, 50000);
+    }
+    assert_null(rig.session);
+    look_around(&rig);
+    assert_shows_whole_ground(&rig, 0);
+    assert_true(second.asked[FF_KIND_REFINEMENT] + second.asked[FF_KIND_VIEW] > 0);
+    rig_close(&rig);
+    close_server(&second);
+}
+
+/* Height of the hills at a place of their ground, as far as the wish for it goes. */
+static int has_ground(const client_rig *rig, int east_m, int north_m)
+{
+    int32_t z_wu;
+    return ff_client_ground(rig->client, east_m * FF_WU_PER_METRE, north_m * FF_WU_PER_METRE,
+                            &z_wu);
+}
+
+static void expect_both(client_rig *rig, int east_m, int north_m)
+{
+    uint32_t count;
+    look_around(rig);
+    const ff_terrain_info *all = ff_tree_grounds(ff_client_tree(rig->client), &count);
+    assert_int_equal(count, 2);
+    assert_int_equal(all[1].west_wu, east_m * FF_WU_PER_METRE);
+    assert_int_equal(all[1].south_wu, north_m * FF_WU_PER_METRE);
+    assert_int_equal(all[1].first_tile, 4);
+    assert_true(has_ground(rig, 10, 10));
+    assert_true(has_ground(rig, east_m + 10, north_m + 10));
+    assert_int_equal(rig_stats(rig).requests_failed, 0);
+}
+
+static void grounds_of_two_servers_come_together(void **state)
+{
+    (void)state;
+    const int place[][2] = { { WIDE, 0 }, { -WIDE, 64 }, { 100, -WIDE } };
+    for (int i = 0; i < 3; i++) {
+        client_rig rig, beside;
+        rig_open(&rig, 0);
+        rig_use_place(&rig, UTM, 500000, 5000000);
+        rig_open(&beside, 0);
+        rig_use_place(&beside, UTM, 500000 + place[i][0], 5000000 + place[i][1]);
+        ff_source_desc more = { .stream = &beside.stream };
+        rig.desc.more = &more;
+        rig.desc.more_count = 1;
+        rig_client(&rig, 8 * MB);
+        for (int n = 0; n < 40; n++) rig_step(&rig, 50000);
+        assert_true(rig_settle(&rig, 400));
+        expect_both(&rig, place[i][0], place[i][1]);
+        rig_close(&rig);
+        close_server(&beside);
+    }
+}
+
+static void a_server_of_several_packs_gives_all_of_them(void **state)
+{
+    (void)state;
+    for (int local = 0; local < 2; local++) {
+        client_rig rig, beside;
+        rig_open(&rig, 0);
+        rig_use_place(&rig, UTM, 500000, 5000000);
+        rig_open(&beside, 0);
+        rig_use_place(&beside, UTM, 500000 + WIDE, 5000000);
+        assert_int_equal(ff_pack_join(&rig.pack, &beside.pack), FF_OK);
+        if (local)
+            rig_local_client(&rig, 8 * MB);
+        else
+            rig_client(&rig, 8 * MB);
+        assert_true(rig_settle(&rig, 400));
+        expect_both(&rig, WIDE, 0);
+        rig_close(&rig);
+        close_server(&beside);
+    }
+}
+
+static void what_fits_no_ground_is_told_and_left_out(void **state)
+{
+    (void)state;
+    const struct {
+        int32_t epsg;
+        int east_m, node_log2, expected;
+    } row[] = { { 32633, 0, 3, FF_ERR_UNSUPPORTED },
+                { 0, 0, 3, FF_ERR_UNSUPPORTED },
+                { UTM, 0, 4, FF_ERR_UNSUPPORTED },
+                { UTM, 20000000, 3, FF_ERR_RANGE } };
+    for (size_t i = 0; i < sizeof row / sizeof *row; i++)
+        for (int local = 0; local < 2; local++) {
+            client_rig rig, other;
+            rig_open(&rig, 0);
+            rig_use_place(&rig, UTM, 500000, 5000000);
+            rig_open(&other, 0);
+            rig_use_place(&other, row[i].epsg, 500000 + row[i].east_m, 5000000);
+            if (row[i].node_log2 != 3) rig_use_node_log2(&other, (unsigned)row[i].node_log2, 0);
+            ff_source_desc more = { .stream = local ? NULL : &other.stream,
+                                    .pack = local ? &other.pack : NULL };
+            rig.desc.more = &more;
+            rig.desc.more_count = 1;
+            rig_client(&rig, 8 * MB);
+            for (int n = 0; n < 40; n++) rig_step(&rig, 50000);
+            assert_true(rig_settle(&rig, 400));
+            assert_int_equal(ff_client_source_state(rig.client, 1), row[i].expected);
+            assert_int_equal(ff_client_source_state(rig.client, 0), FF_OK);
+            assert_int_equal(ff_client_source_state(rig.client, 2), FF_ERR_ARGUMENT);
+            assert_true(has_ground(&rig, 1000, 1000));
+            rig_close(&rig);
+            close_server(&other);
+        }
+}
+
+static void a_server_that_changes_its_pack_is_taken_anew(void **state)
+{
+    (void)state;
+    client_rig rig, beside;
+    rig_open(&rig, 0);
+    rig_use_place(&rig, UTM, 500000, 5000000);
+    rig_open(&beside, 0);
+    rig_use_place(&beside, UTM, 500000 + WIDE, 5000000);
+    ff_source_desc more = { .stream = &beside.stream };
+    rig.desc.more = &more;
+    rig.desc.more_count = 1;
+    rig_client(&rig, 8 * MB);
+    for (int n = 0; n < 40; n++) rig_step(&rig, 50000);
+    expect_both(&rig, WIDE, 0);
+    rig_change_terrain(&beside);
+    for (int n = 0; n < 200; n++) rig_step(&rig, 50000);
+    look_around(&rig);
+    uint32_t count;
+    const ff_terrain_info *all = ff_tree_grounds(ff_client_tree(rig.client), &count);
+    assert_int_equal(count, 2);
+    assert_int_equal(all[1].hoffset_wu, beside.pack.header.info.hoffset_wu);
+    assert_true(has_ground(&rig, WIDE + 10, 10));
+    rig_close(&rig);
+    close_server(&beside);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_a_part_on_the_device_lacks_the_server_gives),
+        cmocka_unit_test(without_its_server_a_part_is_drawn_as_it_is),
+        cmocka_unit_test(a_second_server_stands_in_for_one_that_is_lost),
+        cmocka_unit_test(grounds_of_two_servers_come_together),
+        cmocka_unit_test(a_server_of_several_packs_gives_all_of_them),
+        cmocka_unit_test(what_fits_no_ground_is_told_and_left_out),
+        cmocka_unit_test(a_server_that_changes_its_pack_is_taken_anew),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
