@@ -139,9 +139,11 @@ void ff_refined_child(const ff_terrain_info *info, const uint16_t *refined, uint
  *
  * First the closed loop: residuals of `source` (the true grid: ff_node_side()^2 samples of a root,
  * ff_refined_side()^2 of a refinement) against predictions from `parent`, the *decoded* parent
- * (NULL: a root). `out->value` receives the residuals, `decoded` what every decoder will see. */
+ * (NULL: a root). `between`, NULL or a byte beside each of `source`, is not 0 where the source has
+ * no sample and what is predicted will do; corners of a root have one. `out->value` receives the
+ * residuals, `decoded` what every decoder will see. */
 void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *source,
-                       ff_residuals *out, uint16_t *decoded);
+                       const uint8_t *between, ff_residuals *out, uint16_t *decoded);
 /* Then the payload, `res->child_error`, `filled`, `leaf` and `stub` set by the caller; the rest as
  * the first step had it. Bytes written to `out` (capacity at least FF_PAYLOAD_BYTES_MAX), or
  * FF_ERR_RANGE for an error code above 208. */
@@ -150,8 +152,8 @@ int ff_encode_payload(const ff_terrain_info *info, const uint16_t *parent, const
 /* Error codes and marks alone: out->value may be NULL. FF_OK or an error of ff_decode_*. */
 int ff_read_marks(const ff_terrain_info *info, int root, const uint8_t *payload, size_t bytes,
                   ff_residuals *out);
-/* A payload in which the children of the bits in `stub` are marked as stubs, too; nothing else
- * changes, and the residuals are not read. Bytes written to `out` (capacity at least
+/* A payload in which the children of the bits in `stub`, and no others, are marked as stubs;
+ * nothing else changes, and the residuals are not read. Bytes written to `out` (capacity at least
  * FF_PAYLOAD_BYTES_MAX), or an error of ff_decode_*; FF_ERR_RANGE: one is a leaf. */
 int ff_mark_stubs(const ff_terrain_info *info, int root, const uint8_t *payload, size_t bytes,
                   uint8_t stub, uint8_t *out);

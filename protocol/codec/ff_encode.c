@@ -8,6 +8,7 @@
 
 typedef struct quantisation {
     const uint16_t *source;
+    const uint8_t *between;
     int32_t *next;
     int32_t quantum;
 } quantisation;
@@ -15,6 +16,10 @@ typedef struct quantisation {
 static uint16_t take_residual(void *context, uint32_t at, int32_t predicted)
 {
     quantisation *q = context;
+    if (q->between && q->between[at]) {
+        *q->next++ = 0;
+        return ff_dequantise(q->quantum, predicted, 0);
+    }
     int32_t difference = q->source[at] - predicted, half = q->quantum / 2;
     int32_t residual;
     uint16_t height;
@@ -33,9 +38,9 @@ static uint16_t take_residual(void *context, uint32_t at, int32_t predicted)
 }
 
 void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *source,
-                       ff_residuals *out, uint16_t *decoded)
+                       const uint8_t *between, ff_residuals *out, uint16_t *decoded)
 {
-    quantisation q = { source, out->value, ff_quantum(info) };
+    quantisation q = { source, between, out->value, ff_quantum(info) };
 
     out->count = (uint16_t)ff_coded_count(info, out->cells, !parent);
     out->carried_bytes = 0;
@@ -46,6 +51,7 @@ void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, cons
     }
     for (uint32_t corner = 0; corner < FF_CORNERS; corner++) {
         uint32_t at = ff_corner_at(info, corner);
+        FF_ASSERT(!between || !between[at]);
         *q.next = (source[at] + info->max_error) / q.quantum;
         decoded[at] = ff_dequantise(q.quantum, 0, *q.next++);
     }
@@ -72,7 +78,7 @@ int ff_encode_root(const ff_terrain_info *info, const uint16_t *source, uint8_t 
     int32_t value[FF_NODE_HEIGHTS_MAX];
     ff_residuals res = { .child_error = { error_code }, .value = value };
 
-    ff_encode_heights(info, NULL, source, &res, decoded);
+    ff_encode_heights(info, NULL, source, NULL, &res, decoded);
     return ff_encode_payload(info, NULL, decoded, &res, out);
 }
 
@@ -84,7 +90,7 @@ int ff_encode_refinement(const ff_terrain_info *info, const uint16_t *parent,
     ff_residuals res = { .value = value };
 
     memcpy(res.child_error, child_error, sizeof(res.child_error));
-    ff_encode_heights(info, parent, source, &res, decoded);
+    ff_encode_heights(info, parent, source, NULL, &res, decoded);
     return ff_encode_payload(info, parent, decoded, &res, out);
 }
 
@@ -119,9 +125,11 @@ int ff_mark_stubs(const ff_terrain_info *info, int root, const uint8_t *payload,
     int form = take_marks(info, root, &in, &res);
 
     if (form < 0) return form;
-    res.stub |= stub;
+    res.stub = stub;
     if (res.stub >> (root ? 1 : 4) || res.stub & res.leaf) return FF_ERR_RANGE;
-    if (form == FF_ERRORS_ZERO && res.stub) form = FF_ERRORS_SAME;
+    if (form == FF_ERRORS_ZERO && stub) form = FF_ERRORS_SAME;
+    if (form == FF_ERRORS_SAME && !stub && !res.leaf && !res.filled && !res.child_error[0])
+        form = FF_ERRORS_ZERO;
     if (head)
         out[0] = (uint8_t)((payload[0] & ~FF_HEAD_ERRORS) | (unsigned)form << FF_HEAD_ERRORS_SHIFT);
     put = head + ff_put_errors(&res, (enum ff_errors_form)form, root ? 1 : 4, out + head);

@@ -69,7 +69,7 @@ static int encode_marked(payload_test *test, int marks)
     return ff_encode_payload(test->info, test->parent, test->decoded, &test->res, test->payload);
 }
 
-/* Stubs are marked in a payload that is there, as if it had been encoded with them. */
+/* Stubs are marked in a payload that is there, and taken back, as if it had been encoded so. */
 static void check_marking(payload_test *test, int marks)
 {
     static uint8_t marked[FF_PAYLOAD_BYTES_MAX];
@@ -78,6 +78,9 @@ static void check_marking(payload_test *test, int marks)
         bytes = ff_mark_stubs(test->info, root, test->payload, (size_t)before, (uint8_t)stub,
                               marked);
     assert_int_equal(bytes, encode_marked(test, marks));
+    assert_memory_equal(marked, test->payload, (size_t)bytes);
+    bytes = ff_mark_stubs(test->info, root, test->payload, (size_t)bytes, 0, marked);
+    assert_int_equal(bytes, encode_marked(test, marks & 0xFF));
     assert_memory_equal(marked, test->payload, (size_t)bytes);
     if (marks >> 4 & 15)
         assert_int_equal(ff_mark_stubs(test->info, root, test->payload, (size_t)bytes,
@@ -96,7 +99,7 @@ static void check(payload_test *test, const uint16_t *source)
     int all = test->parent ? 15 : 1, unmarked = 0;
     test->res = (ff_residuals){ .value = value };
     memcpy(test->res.child_error, test->errors, 4);
-    ff_encode_heights(test->info, test->parent, source, &test->res, test->decoded);
+    ff_encode_heights(test->info, test->parent, source, NULL, &test->res, test->decoded);
     for (int marks = 0; marks < 4096; marks++) {
         int stub = marks >> 8, leaf = marks >> 4 & 15, filled = marks & 15,
             kinds = (stub > 0) + (leaf > 0) + (filled > 0);

@@ -144,7 +144,7 @@ static int node_payload(const pack_fixture_desc *desc, enum ff_section_kind kind
         source_grid(desc, key, 1u << desc->info.node_log2, source);
         res.child_error[0] = node_error(desc, key);
         res.filled = (uint8_t)node_filled(desc, key);
-        ff_encode_heights(&desc->info, NULL, source, &res, next + number * node_heights);
+        ff_encode_heights(&desc->info, NULL, source, NULL, &res, next + number * node_heights);
         return ff_encode_payload(&desc->info, NULL, next + number * node_heights, &res, out);
     }
     for (uint32_t q = 0; q < 4; q++) {
@@ -155,7 +155,7 @@ static int node_payload(const pack_fixture_desc *desc, enum ff_section_kind kind
     if (desc->stub_level == ff_key_level(key) + 1u) res.stub = 15;
     const uint16_t *parent = decoded + number * node_heights;
     source_grid(desc, key, 2u << desc->info.node_log2, source);
-    ff_encode_heights(&desc->info, parent, source, &res, refined);
+    ff_encode_heights(&desc->info, parent, source, NULL, &res, refined);
     for (uint32_t q = 0; q < 4; q++)
         ff_refined_child(&desc->info, refined, q, next + (4 * number + q) * node_heights);
     return ff_encode_payload(&desc->info, parent, refined, &res, out);

@@ -10,11 +10,12 @@
 void whole_tile_open(whole_tile *tile, const ff_terrain_info *info, const bake_grid *grid,
                      const bake_grid *filled, uint32_t number)
 {
+    bake_grid_samples samples = bake_samples_of(grid, filled);
     *tile = (whole_tile){ .number = number };
     assert_int_equal(bake_top_open(&tile->top, info, info->tile_log2), 0);
     assert_int_equal(bake_block_open(&tile->block, &tile->top), 0);
-    assert_int_equal(bake_top_load(&tile->top, grid, number), 0);
-    assert_int_equal(bake_block_load(&tile->block, grid, filled, ff_key_make(number, 0, 0)), 0);
+    assert_int_equal(bake_top_load(&tile->top, &samples.samples, number), 0);
+    assert_int_equal(bake_block_load(&tile->block, &samples.samples, ff_key_make(number, 0, 0)), 0);
     tile->source = tile->block.levels.source;
     tile->decoded = tile->block.levels.decoded;
 }

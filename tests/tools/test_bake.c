@@ -61,7 +61,7 @@ static void check_error(uint32_t cells, uint32_t cell, ff_extent ground, uint32_
         for (uint32_t x = 0; x <= ground.columns; x++)
             worst = fmax(worst,
                          fabs(drawn_at(drawn, pitch, cell, x, y, ground) - source[y * pitch + x]));
-    assert_int_equal(bake_node_error(source, drawn, pitch, ground, cell),
+    assert_int_equal(bake_node_error(source, NULL, drawn, pitch, ground, cell),
                      (uint32_t)ceil(worst - 1e-6));
     test_free(source);
     test_free(drawn);
@@ -85,7 +85,7 @@ static void the_error_ends_with_the_ground(void **state)
             check_error(4, 8, (ff_extent){ columns, rows }, 100 * columns + rows);
     check_error(2, 512, (ff_extent){ 511, 1023 }, 6);
     uint16_t none[25] = { 0, 9, 0, 9, 0, 9 };
-    assert_int_equal(bake_node_error(none, none, 5, (ff_extent){ 0, 4 }, 1), 0);
+    assert_int_equal(bake_node_error(none, NULL, none, 5, (ff_extent){ 0, 4 }, 1), 0);
 }
 
 static void node_error_of_a_plane_is_nothing(void **state)
@@ -94,9 +94,9 @@ static void node_error_of_a_plane_is_nothing(void **state)
     (void)state;
     for (uint32_t i = 0; i < 33 * 33; i++)
         plane[i] = (uint16_t)(1000 + 17 * (i % 33) + 40 * (i / 33));
-    assert_int_equal(bake_node_error(plane, plane, 33, (ff_extent){ 32, 32 }, 8), 0);
+    assert_int_equal(bake_node_error(plane, NULL, plane, 33, (ff_extent){ 32, 32 }, 8), 0);
     plane[33 * 5 + 9] = (uint16_t)(plane[33 * 5 + 9] + 3);
-    assert_int_equal(bake_node_error(plane, plane, 33, (ff_extent){ 32, 32 }, 8), 3);
+    assert_int_equal(bake_node_error(plane, NULL, plane, 33, (ff_extent){ 32, 32 }, 8), 3);
 }
 
 /* ---- filling ---- */
@@ -262,8 +262,8 @@ static void check_records(uint16_t max_error)
     for (int i = 0; i < 25; i++)
         assert_int_equal(node[i], tile.decoded[i / 5 * 8 * 33 + i % 5 * 8]);
     assert_int_equal(residuals.child_error[0],
-                     ff_geometric_error_encode(
-                         bake_node_error(tile.source, tile.decoded, 33, (ff_extent){ 32, 19 }, 8)));
+                     ff_geometric_error_encode(bake_node_error(tile.source, NULL, tile.decoded, 33,
+                                                               (ff_extent){ 32, 19 }, 8)));
     for (uint32_t l = 1; l < ff_terrain_levels(&info); l++)
         assert_int_equal(tile.level[l].record_count, 1u << (2 * (l - 1)));
     /* first refinement of level 1: children of 8 x 8 samples at the south-west */
@@ -273,7 +273,7 @@ static void check_records(uint16_t max_error)
                      FF_OK);
     for (int q = 0; q < 4; q++) {
         int at = (q & 1) * 8 + (q >> 1) * 8 * 33;
-        uint32_t steps = bake_node_error(tile.source + at, tile.decoded + at, 33,
+        uint32_t steps = bake_node_error(tile.source + at, NULL, tile.decoded + at, 33,
                                          (ff_extent){ 8, 8 }, 2);
         assert_int_equal(residuals.child_error[q], ff_geometric_error_encode(steps));
     }

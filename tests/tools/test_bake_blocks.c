@@ -127,11 +127,11 @@ static void close_ground(ground *g)
     bake_grid_close(&g->filled);
 }
 
-static void make(const ground *g, uint32_t block_log2, uint32_t jobs, made *m)
+static void make_of(const ground *g, const bake_samples *samples, uint32_t block_log2,
+                    uint32_t jobs, made *m)
 {
     bake_tiles tiles = { .info = &g->info,
-                         .heights = &g->heights,
-                         .filled = &g->filled,
+                         .samples = samples,
                          .image = &g->image,
                          .texture_quality = 50,
                          .block_log2 = block_log2,
@@ -140,6 +140,12 @@ static void make(const ground *g, uint32_t block_log2, uint32_t jobs, made *m)
                          .take = take };
     *m = (made){ .section = { { 0 } } };
     assert_int_equal(bake_tiles_make(&tiles), 0);
+}
+
+static void make(const ground *g, uint32_t block_log2, uint32_t jobs, made *m)
+{
+    bake_grid_samples samples = bake_samples_of(&g->heights, &g->filled);
+    make_of(g, &samples.samples, block_log2, jobs, m);
 }
 
 static void compare_blocks(const ground *g)
@@ -173,6 +179,89 @@ static void blocks_give_what_one_piece_gives(void **state)
     }
 }
 
+/* ---- samples of unlike spacing ---- */
+
+/* Of a grid, those at multiples of 2^apart_log2, and all from first to last both ways. */
+typedef struct sparse_samples {
+    bake_samples samples;
+    const bake_grid *heights;
+    uint32_t apart_log2, first, last;
+} sparse_samples;
+
+static int is_fine(const sparse_samples *s, uint32_t at) { return at >= s->first && at <= s->last; }
+
+static int read_sparse(const bake_samples *samples, uint32_t row, uint32_t column, uint32_t count,
+                       uint16_t *heights, uint8_t *marks)
+{
+    const sparse_samples *s = (const sparse_samples *)samples;
+    uint32_t mask = (1u << s->apart_log2) - 1;
+    assert_int_equal(bake_grid_read(s->heights, row, column, count, heights), 0);
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t at = column + i;
+        int is_there = (is_fine(s, at) && is_fine(s, row)) || !(at & mask || row & mask);
+        marks[i] = is_there ? 0 : BAKE_BETWEEN;
+        if (!is_there) heights[i] = (uint16_t)(heights[i] * 31u + 5000u); /* nobody looks at it */
+    }
+    return 0;
+}
+
+static uint32_t apart_sparse(const bake_samples *samples, uint32_t column, uint32_t row,
+                             uint32_t side_log2)
+{
+    const sparse_samples *s = (const sparse_samples *)samples;
+    uint32_t side = 1u << side_log2;
+    return s->first <= s->last && column <= s->last && column + side >= s->first &&
+                   row <= s->last && row + side >= s->first
+               ? 0
+               : s->apart_log2;
+}
+
+static uint64_t bytes_of(const made *m)
+{
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < SECTIONS_MAX; i++) bytes += m->section[i].byte_count;
+    return bytes;
+}
+
+static void samples_apart_give_the_same_however_they_are_read(void **state)
+{
+    (void)state;
+    for (uint32_t seed = 1; seed <= 40; seed++) {
+        sys_random random;
+        sys_random_seed(&random, seed, 2);
+        uint32_t apart_log2 = 1 + sys_random_below(&random, 3),
+                 cells = (SIDE_MAX - 1) >> apart_log2, node_log2 = 1 + seed % 3,
+                 width = ((1 + sys_random_below(&random, cells)) << apart_log2) + 1,
+                 height = ((1 + sys_random_below(&random, cells)) << apart_log2) + 1;
+        ground g;
+        made whole, blocks, none;
+        make_ground(&g, (enum kind)(seed % KINDS), node_log2, 5 + sys_random_below(&random, 3),
+                    width, height, 0, &random);
+        sparse_samples s = { .samples = { width, height, 1, read_sparse, NULL },
+                             .heights = &g.heights,
+                             .apart_log2 = apart_log2,
+                             .first = sys_random_below(&random, 100),
+                             .last = sys_random_below(&random, 130) };
+        make_of(&g, &s.samples, g.info.tile_log2, 1, &whole);
+        for (uint32_t b = node_log2; b < g.info.tile_log2; b++) {
+            s.samples.apart_log2 = b % 2 ? apart_sparse : NULL;
+            make_of(&g, &s.samples, b, 1 + b % 2, &blocks);
+            same(&whole, &blocks);
+            forget(&blocks);
+        }
+        s.samples.apart_log2 = apart_sparse;
+        make_of(&g, &s.samples, g.info.tile_log2, 1, &blocks);
+        same(&whole, &blocks);
+        make(&g, g.info.tile_log2, 1, &none);
+        if (seed % KINDS == NOISE && s.first > s.last && g.info.tile_log2 > node_log2 + apart_log2)
+            assert_true(bytes_of(&whole) < bytes_of(&none)); /* of all samples */
+        forget(&none);
+        forget(&blocks);
+        forget(&whole);
+        close_ground(&g);
+    }
+}
+
 static void a_sea_is_a_root_however_it_is_cut(void **state)
 {
     (void)state;
@@ -195,6 +284,8 @@ static void a_sea_is_a_root_however_it_is_cut(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(blocks_give_what_one_piece_gives),
+                                        cmocka_unit_test(
+                                            samples_apart_give_the_same_however_they_are_read),
                                         cmocka_unit_test(a_sea_is_a_root_however_it_is_cut) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

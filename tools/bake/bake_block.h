@@ -5,12 +5,12 @@
 
 #include "bake_levels.h"
 #include "bake_top.h"
-#include "raster/bake_grid.h"
 
 typedef struct bake_block {
-    bake_levels levels; /* of all samples; records of the levels below the block's node */
-    uint8_t *filled;    /* the same grid, 1 for samples that were filled; NULL: there are none */
-    ff_key key;         /* the node */
+    bake_levels levels;  /* of its samples; records of the levels below the block's node */
+    uint32_t side_log2;  /* of a block: 2^that places further each way */
+    uint32_t apart_log2; /* places from a point of the levels' lattices to the next */
+    ff_key key;          /* the node */
     bake_known above[BAKE_LEVELS_MAX]; /* what the block adds to its node and those above, by
                                           level */
 } bake_block;
@@ -19,9 +19,9 @@ typedef struct bake_block {
  * comes back: 0 or -1 (said). */
 int bake_block_open(bake_block *block, const bake_top *top);
 void bake_block_close(bake_block *block);
-/* Reads the block of a node with ground from the grid (uint16, south to north), the grid's rim
- * repeated beyond its edge. `filled`: a byte beside each height, or closed. 0 or -1 (said). */
-int bake_block_load(bake_block *block, const bake_grid *grid, const bake_grid *filled, ff_key key);
+/* Reads the block of a node with ground, the last samples repeated beyond their edge; where samples
+ * are further apart, no more than there are. 0 or -1 (said). */
+int bake_block_load(bake_block *block, const bake_samples *samples, ff_key key);
 /* Encodes what is loaded, below the top of its tile. 0 or -1 (said). */
 int bake_block_encode(bake_block *block, const bake_top *top);
 

@@ -21,17 +21,18 @@ typedef struct bake_drawn {
  * both ends within. */
 typedef struct bake_patch {
     const uint16_t *sample; /* the south-western one */
+    const uint8_t *marks;   /* beside it, bits of enum bake_mark; NULL: all are measured */
     size_t pitch;           /* entries a row */
     ff_extent first, size;
 } bake_patch;
 
-/* The largest vertical distance, in height steps and rounded up, between a patch and the triangles
- * over it. So that of a node is the largest of the patches that make up its ground. 0 without
- * ground. Integers only: exact. */
+/* The largest vertical distance, in height steps and rounded up, between the samples of a patch and
+ * the triangles over it. So that of a node is the largest of the patches that make up its ground. 0
+ * without ground. Integers only: exact. */
 uint32_t bake_patch_error(const bake_patch *patch, const bake_drawn *drawn);
 /* Of a whole node, whose vertices lie among the samples of a grid like the source's: both start at
- * its south-west sample and have `pitch` entries a row. */
-uint32_t bake_node_error(const uint16_t *source, const uint16_t *drawn, size_t pitch,
-                         ff_extent extent, uint32_t cell);
+ * its south-west sample and have `pitch` entries a row, and so do the marks. */
+uint32_t bake_node_error(const uint16_t *source, const uint8_t *marks, const uint16_t *drawn,
+                         size_t pitch, ff_extent extent, uint32_t cell);
 
 #endif

@@ -17,8 +17,15 @@ void bake_levels_close(bake_levels *levels)
 {
     free(levels->source);
     free(levels->decoded);
+    free(levels->marks);
     for (int i = 0; i < BAKE_LEVELS_MAX; i++) bake_blob_free(&levels->level[i]);
     *levels = (bake_levels){ 0 };
+}
+
+int bake_levels_mark(bake_levels *levels, size_t side)
+{
+    if (!levels->marks) levels->marks = malloc(side * side);
+    return levels->marks ? 0 : bake_fail("out of memory");
 }
 
 /* Copies a square of `side` points, `stride` apart, from a lattice; scatter copies it back. */
@@ -40,10 +47,23 @@ static void scatter(const uint16_t *in, size_t pitch, uint32_t side, size_t stri
 
 /* A root or a refinement under way: decoded heights that it starts from and leads to. */
 typedef struct heights {
+    uint8_t between[FF_REFINED_HEIGHTS_MAX];
     uint16_t parent[FF_NODE_HEIGHTS_MAX], decoded[FF_REFINED_HEIGHTS_MAX];
     int32_t value[FF_REFINED_HEIGHTS_MAX];
     ff_residuals residuals;
 } heights;
+
+/* Which points of a square have no sample; NULL: all have one. */
+static const uint8_t *gather_between(const bake_levels *levels, size_t at, uint32_t side,
+                                     size_t stride, uint8_t *between)
+{
+    const uint8_t *from = levels->marks + at;
+    if (!levels->marks) return NULL;
+    for (uint32_t j = 0; j < side; j++)
+        for (uint32_t i = 0; i < side; i++)
+            between[j * side + i] = from[j * stride * levels->pitch + i * stride] & BAKE_BETWEEN;
+    return between;
+}
 
 static uint32_t root_cell(const bake_levels *levels) { return 1u << levels->bottom; }
 
@@ -55,7 +75,8 @@ static void decode_root(bake_levels *levels, uint32_t tile, heights *h)
     gather(levels->source, levels->pitch, side, cell, source);
     h->residuals = (ff_residuals){ .value = h->value,
                                    .cells = ff_shape_cells(info, ff_key_make(tile, 0, 0), 0) };
-    ff_encode_heights(info, NULL, source, &h->residuals, h->decoded);
+    ff_encode_heights(info, NULL, source, gather_between(levels, 0, side, cell, h->between),
+                      &h->residuals, h->decoded);
     scatter(h->decoded, levels->pitch, side, cell, levels->decoded);
 }
 
@@ -68,7 +89,9 @@ static void decode_children(bake_levels *levels, ff_key key, size_t at, uint32_t
     gather(levels->decoded + at, pitch, ff_node_side(info), cell, h->parent);
     gather(levels->source + at, pitch, ff_refined_side(info), cell / 2, source);
     h->residuals = (ff_residuals){ .value = h->value, .cells = ff_shape_cells(info, key, 1) };
-    ff_encode_heights(info, h->parent, source, &h->residuals, h->decoded);
+    ff_encode_heights(info, h->parent, source,
+                      gather_between(levels, at, ff_refined_side(info), cell / 2, h->between),
+                      &h->residuals, h->decoded);
     scatter(h->decoded, pitch, ff_refined_side(info), cell / 2, levels->decoded + at);
 }
 

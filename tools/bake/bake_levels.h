@@ -6,6 +6,7 @@
 
 #include "../../protocol/codec/ff_codec.h"
 #include "bake_blob.h"
+#include "bake_samples.h"
 
 #define BAKE_LEVELS_MAX 16
 
@@ -21,6 +22,7 @@ typedef struct bake_levels {
     uint32_t bottom;   /* the last level: the cells of its nodes are those of the lattice */
     size_t pitch;      /* of the lattice: points a row */
     uint16_t *source;  /* south to north */
+    uint8_t *marks;    /* beside the source, bits of enum bake_mark; NULL: all are measured */
     uint16_t *decoded; /* the same as every decoder will see it, filled level by level */
     bake_blob level[BAKE_LEVELS_MAX]; /* [0]: the root; [l]: refinements of level l-1 */
     /* What is known of a decoded node whose south-west point is `at`, its cells `cell` points wide.
@@ -33,6 +35,8 @@ typedef struct bake_levels {
 int bake_levels_open(bake_levels *levels, const ff_terrain_info *info, uint32_t bottom,
                      size_t side);
 void bake_levels_close(bake_levels *levels);
+/* Gives the lattices of `side` points a side, which are open, marks. 0 or -1 (said). */
+int bake_levels_mark(bake_levels *levels, size_t side);
 
 /* Decodes a tile down to the last level, and makes no records. */
 void bake_levels_decode(bake_levels *levels, uint32_t tile);

@@ -147,7 +147,7 @@ static const sys_program program = {
     .option_count = sizeof row / sizeof *row
 };
 
-static uint32_t processors(void)
+uint32_t bake_processors(void)
 {
     long count = sysconf(_SC_NPROCESSORS_ONLN);
     return count < 1 ? 1 : count > JOBS_DEFAULT_MAX ? JOBS_DEFAULT_MAX : (uint32_t)count;
@@ -156,7 +156,7 @@ static uint32_t processors(void)
 int bake_options_parse(bake_options *o, int argc, char **argv)
 {
     *o = (bake_options){
-        .jobs = processors(), .refraction = NAN, .void_height_m = NAN, .rim_void_height_m = NAN
+        .jobs = bake_processors(), .refraction = NAN, .void_height_m = NAN, .rim_void_height_m = NAN
     };
     bake_say_setup("farfield-bake", 0);
     int rc = sys_options_parse(&program, o, argc, argv);
@@ -167,6 +167,9 @@ int bake_options_parse(bake_options *o, int argc, char **argv)
         return bake_fail("--tile-log2 %u: not from --node-log2 %u up", o->tile_log2, o->node_log2);
     if (o->no_project && o->target_epsg)
         return bake_fail("--no-project and --t-srs exclude each other");
+    if (o->lattice_path && (o->target_epsg || o->no_project || o->hscale_m > 0 || o->densify > 1))
+        return bake_fail("--lattice takes all that --t-srs, --no-project, --hscale and --densify "
+                         "tell from its pack");
     if (bake_about_check(o)) return -1;
     bake_say_setup("farfield-bake", o->quiet);
     return 0;

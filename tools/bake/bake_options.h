@@ -62,6 +62,8 @@ extern const sys_option_type bake_raw_option, bake_nodata_option, bake_box_optio
            "projects to this CRS (units metres) instead of the local UTM zone") \
     OPTION(sys_flag, no_project, "no-project", NULL, NULL, SYS_ANY, \
            "takes the samples as they are, in their own plane") \
+    OPTION(sys_text, lattice_path, "lattice", "PACK", NULL, SYS_ANY, \
+           "on the places of this pack, in its system, height steps, nodes and codec: for farfield-merge") \
     OPTION(bake_power_two, densify, "densify", "N", "1", SYS_WHOLE(1, 64, ""), \
            "inserts N - 1 invented samples between neighbours") \
     OPTION(sys_flag, flat, "flat", NULL, NULL, SYS_ANY, \
@@ -104,7 +106,11 @@ extern const sys_option_type bake_raw_option, bake_nodata_option, bake_box_optio
 /* A number not given is 0: chosen while baking. */
 typedef struct bake_options {
     BAKE_OPTIONS(SYS_FIELD, SYS_NO_FIELD)
+    const struct bake_lattice *lattice; /* that lattice_path names, while there is one */
 } bake_options;
+
+/* Threads when none are told. */
+uint32_t bake_processors(void);
 
 /* Fills `options` from the command line. 0: go on; 1: --help or --version answered; -1: wrong
  * usage, said in one line on stderr. */

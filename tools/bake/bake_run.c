@@ -6,6 +6,7 @@
 #include "raster/bake_densify.h"
 #include "raster/bake_fill.h"
 #include "raster/bake_given.h"
+#include "raster/bake_lattice.h"
 #include "bake_fault.h"
 #include "bake_leftovers.h"
 #include "raster/bake_project.h"
@@ -158,9 +159,9 @@ static int take_records(void *context, uint32_t section, const bake_blob *record
 
 static int make_tiles(bake *b)
 {
+    bake_grid_samples samples = bake_samples_of(&b->heights, &b->filled);
     bake_tiles tiles = { .info = &b->info,
-                         .heights = &b->heights,
-                         .filled = &b->filled,
+                         .samples = &samples.samples,
                          .image = &b->image,
                          .texture_quality = (int)b->options->texture_quality,
                          .block_log2 = BAKE_BLOCK_LOG2,
@@ -241,13 +242,27 @@ static int make_pack(bake *b)
 /* Makes sure that the pack can be written, and writes over no input. */
 static int prepare(const bake_options *o)
 {
-    if (bake_same_file(o->heights_path, o->out_path) || bake_same_file(o->color_path, o->out_path))
+    if (bake_same_file(o->heights_path, o->out_path) ||
+        bake_same_file(o->color_path, o->out_path) || bake_same_file(o->lattice_path, o->out_path))
         return bake_fail("%s is the input: not overwritten", o->out_path);
     return pack_writer_prepare(o->out_path);
 }
 
-int bake_run(const bake_options *options)
+/* Takes over what has to be alike so that packs can be joined. 0 or -1 (said). */
+static int take_lattice(bake_options *o, bake_lattice *lattice)
 {
+    if (!o->lattice_path) return 0;
+    if (bake_lattice_open(o->lattice_path, lattice)) return -1;
+    o->lattice = lattice;
+    o->node_log2 = lattice->info.node_log2;
+    o->codec = lattice->info.codec;
+    return 0;
+}
+
+int bake_run(const bake_options *told)
+{
+    bake_options own = *told, *options = &own;
+    bake_lattice lattice = { .srs = NULL };
     bake b = { .options = options, .started_us = sys_time_us() };
     b.ground.grid = b.heights = b.marks = b.filled = BAKE_GRID_CLOSED;
     bake_temp_setup(options->out_path ? options->out_path : "/tmp/");
@@ -255,12 +270,14 @@ int bake_run(const bake_options *options)
     GDALAllRegister();
     GDALSetCacheMax64(GDAL_CACHE_BYTES);
     CPLSetErrorHandler(CPLQuietErrorHandler);
-    int rc = options->estimate ? bake_estimate(&b) : make_pack(&b);
+    int rc = take_lattice(options, &lattice);
+    if (!rc) rc = options->estimate ? bake_estimate(&b) : make_pack(&b);
     pack_writer_close(&b.writer);
     bake_image_close(&b.image);
     bake_grid_close(&b.heights);
     bake_grid_close(&b.marks);
     bake_grid_close(&b.filled);
     bake_ground_close(&b.ground);
+    bake_lattice_close(&lattice);
     return rc;
 }

@@ -69,10 +69,10 @@ static int make_block(void *context, int number, uint32_t job)
     ff_key key = key_of(c, job);
     int has_ground = ff_shape_has_ground(t->info, key);
     if (!has_ground && !is_last(c, job)) return 0;
-    if (bake_top_load(&w->top, t->heights, ff_key_tile(key))) return -1;
+    if (bake_top_load(&w->top, t->samples, ff_key_tile(key))) return -1;
     if (!has_ground) return 0;
-    return bake_block_load(&w->block, t->heights, t->filled, key) ||
-                   bake_block_encode(&w->block, &w->top) || make_textures(c, w, key)
+    return bake_block_load(&w->block, t->samples, key) || bake_block_encode(&w->block, &w->top) ||
+                   make_textures(c, w, key)
                ? -1
                : 0;
 }
@@ -121,7 +121,7 @@ static int take(const crew *c, uint32_t section, const bake_blob *records, const
 static int take_below(const crew *c, const worker *w)
 {
     const bake_blob *level = w->block.levels.level, *texture = w->texture;
-    for (uint32_t l = c->bottom + 2; l < c->levels; l++)
+    for (uint32_t l = c->bottom + 2; l < c->levels && level[l].record_count; l++)
         if (take(c, l, &level[l], &level[l - 1])) return -1;
     for (uint32_t l = c->bottom + 1; l < c->tiles->image->levels; l++)
         if (take(c, c->levels + l, &texture[l], &texture[l - 1])) return -1;

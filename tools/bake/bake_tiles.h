@@ -10,8 +10,8 @@
 
 typedef struct bake_tiles {
     const ff_terrain_info *info;
-    const bake_grid *heights, *filled; /* uint16, south to north; a byte beside each, or closed */
-    const bake_image *image;           /* without levels: no textures */
+    const bake_samples *samples; /* as many as the terrain has */
+    const bake_image *image;     /* without levels: no textures */
     int texture_quality;
     uint32_t block_log2; /* memory grows with 4^that a job */
     uint32_t jobs;

@@ -1,9 +1,7 @@
 #include "bake_top.h"
 
 #include "../../protocol/shape/ff_shape.h"
-#include "bake_say.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* The levels are the first part of a top. */
@@ -27,38 +25,28 @@ int bake_top_open(bake_top *top, const ff_terrain_info *info, uint32_t block_log
 
 void bake_top_close(bake_top *top) { bake_levels_close(&top->levels); }
 
-/* Every 2^stride_log2-th sample of a row, the last one repeated. */
-static void pick(const uint16_t *row, uint32_t columns, uint32_t stride_log2, uint16_t *out,
-                 size_t count)
+static int read_lattice(bake_top *top, const bake_samples *samples, ff_sheet first)
 {
-    for (size_t i = 0; i < count; i++) {
-        size_t at = i << stride_log2;
-        out[i] = row[at < columns ? at : columns - 1];
-    }
-}
-
-static int read_lattice(bake_top *top, const bake_grid *grid, ff_sheet first, uint16_t *row)
-{
-    const ff_terrain_info *info = top->levels.info;
-    uint32_t samples = (1u << info->tile_log2) + 1,
-             columns = grid->width - first.x < samples ? grid->width - first.x : samples;
-    size_t pitch = top->levels.pitch;
+    bake_levels *levels = &top->levels;
+    size_t pitch = levels->pitch;
     for (size_t j = 0; j < pitch; j++) {
-        uint16_t *to = top->levels.source + j * pitch;
+        uint16_t *to = levels->source + j * pitch;
+        uint8_t *marks = levels->marks ? levels->marks + j * pitch : NULL;
         uint64_t at = first.y + ((uint64_t)j << top->stride_log2);
         uint64_t before = at - (1u << top->stride_log2);
-        if (j && before >= grid->height - 1) { /* the row before is the last one */
+        if (j && before >= samples->height - 1) { /* the row before is the last one */
             memcpy(to, to - pitch, pitch * sizeof *to);
+            if (marks) memcpy(marks, marks - pitch, pitch);
             continue;
         }
-        uint32_t from = at < grid->height ? (uint32_t)at : grid->height - 1;
-        if (bake_grid_read(grid, from, first.x, columns, row)) return -1;
-        pick(row, columns, top->stride_log2, to, pitch);
+        uint32_t from = at < samples->height ? (uint32_t)at : samples->height - 1;
+        if (bake_samples_pick(samples, from, first.x, top->stride_log2, pitch, to, marks))
+            return -1;
     }
     return 0;
 }
 
-int bake_top_load(bake_top *top, const bake_grid *grid, uint32_t tile)
+int bake_top_load(bake_top *top, const bake_samples *samples, uint32_t tile)
 {
     const ff_terrain_info *info = top->levels.info;
     if (top->tile == tile) return 0;
@@ -66,10 +54,8 @@ int bake_top_load(bake_top *top, const bake_grid *grid, uint32_t tile)
     ff_sheet first = ff_shape_sheet(info, tile);
     first.x <<= info->tile_log2;
     first.y <<= info->tile_log2;
-    uint16_t *row = malloc(((size_t)1 << info->tile_log2) * sizeof *row + sizeof *row);
-    int rc = row ? read_lattice(top, grid, first, row) : bake_fail("out of memory");
-    free(row);
-    if (rc) return rc;
+    if (samples->has_marks && bake_levels_mark(&top->levels, top->levels.pitch)) return -1;
+    if (read_lattice(top, samples, first)) return -1;
     bake_levels_decode(&top->levels, tile);
     top->tile = tile;
     return 0;

@@ -7,7 +7,6 @@
 #define BAKE_TOP_H
 
 #include "bake_levels.h"
-#include "raster/bake_grid.h"
 
 typedef struct bake_top {
     bake_levels levels;
@@ -20,9 +19,9 @@ typedef struct bake_top {
  * the top. Close it whatever comes back: 0 or -1 (said). */
 int bake_top_open(bake_top *top, const ff_terrain_info *info, uint32_t block_log2);
 void bake_top_close(bake_top *top);
-/* Reads a tile's lattice from the grid, and decodes it; nothing when it is there already. 0 or -1
- * (said). */
-int bake_top_load(bake_top *top, const bake_grid *grid, uint32_t tile);
+/* Reads a tile's lattice from the samples, and decodes it; nothing when it is there already. 0 or
+ * -1 (said). */
+int bake_top_load(bake_top *top, const bake_samples *samples, uint32_t tile);
 /* Makes the records of the loaded tile, when all of its nodes are known. 0 or -1 (said). */
 int bake_top_encode(bake_top *top, const bake_known *known);
 

@@ -101,9 +101,9 @@ static int encode(const ff_terrain_info *info, const bake_grid *heights, bake_wi
     bake_grid none = BAKE_GRID_CLOSED;
     bake_image no_image = { .levels = 0 };
     counting c = { .count = count };
+    bake_grid_samples samples = bake_samples_of(heights, &none);
     bake_tiles tiles = { .info = info,
-                         .heights = heights,
-                         .filled = &none,
+                         .samples = &samples.samples,
                          .image = &no_image,
                          .block_log2 = BAKE_BLOCK_LOG2,
                          .jobs = 1,

@@ -2,7 +2,7 @@
 
 #include "../../protocol/shape/ff_shape.h"
 #include "../bake/bake_say.h"
-#include "../info/bake_about_gdal.h"
+#include "../bake/raster/bake_reference.h"
 #include "../bake/raster/bake_grid_gdal.h"
 #include "export_ground_local.h"
 
@@ -118,7 +118,7 @@ int export_ground_begin(export_ground *ground, const bake_box *region, uint32_t 
 {
     const ff_terrain_info *info = &ground->unpack->pack.header.info;
     ground->cells = ground->mask = BAKE_GRID_CLOSED;
-    ground->srs = bake_about_reference(&ground->unpack->pack);
+    ground->srs = bake_reference_of(&ground->unpack->pack);
     if (info->epsg && !ground->srs)
         bake_note("EPSG:%d is not known here: what is written will not name it", info->epsg);
     if (export_place_window(info, ground->srs, &ground->lattice, region, &ground->window))

@@ -4,16 +4,13 @@
 #include "../../protocol/shape/ff_shape.h"
 #include "../bake/bake_leftovers.h"
 #include "../bake/bake_say.h"
-#include "../bake/pack_writer.h"
-#include "../info/bake_about_gdal.h"
+#include "../bake/pack_append.h"
+#include "../bake/raster/bake_reference.h"
 #include "export_part.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-
-#define FLUSH_BYTES   (1u << 16)
-#define FLUSH_RECORDS (1u << 14)
 
 /* What a section will hold. */
 typedef struct section_count {
@@ -27,10 +24,9 @@ typedef struct cutter {
     export_part part;
     ff_list about;
     uint8_t about_bytes[FF_ABOUT_BYTES_MAX];
-    int is_part;         /* something was left out */
-    pack_writer *writer; /* NULL: sections are counted alone */
+    int is_part;        /* something was left out */
+    pack_append append; /* without a writer: sections are counted alone */
     section_count count[FF_PACK_SECTIONS_MAX];
-    bake_blob blob[FF_PACK_SECTIONS_MAX];                /* records on their way to the writer */
     uint8_t payload[(1u << FF_INDEX_LENGTH_BITS) + 16u]; /* with its marks */
 } cutter;
 
@@ -53,13 +49,6 @@ int export_pack_check(const export_options *o)
 
 /* ---- records ---- */
 
-static int flush(cutter *c, uint32_t section)
-{
-    int rc = c->writer ? pack_writer_add(c->writer, section, &c->blob[section], NULL) : 0;
-    bake_blob_clear(&c->blob[section]);
-    return rc;
-}
-
 /* Gives the next place of a section its record; `bytes` 0: it has none. */
 static int put(cutter *c, uint32_t section, const uint8_t *payload, size_t bytes)
 {
@@ -68,11 +57,7 @@ static int put(cutter *c, uint32_t section, const uint8_t *payload, size_t bytes
     count->records += bytes > 0;
     count->data_bytes += bytes ? FF_RECORD_CRC_BYTES + bytes : 0;
     if (bytes > count->length_max) count->length_max = (uint32_t)bytes;
-    if (!c->writer) return 0;
-    bake_blob *blob = &c->blob[section];
-    if (bake_blob_add(blob, payload, bytes)) return -1;
-    return blob->byte_count > FLUSH_BYTES || blob->record_count > FLUSH_RECORDS ? flush(c, section)
-                                                                                : 0;
+    return c->append.writer ? pack_append_add(&c->append, section, payload, bytes) : 0;
 }
 
 static int fail_at(const cutter *c, enum ff_section_kind kind, ff_key key, int rc)
@@ -109,7 +94,7 @@ static int put_heights(cutter *c, enum ff_section_kind kind, ff_key key, ff_resi
                               !export_part_splits(&c->part, key)
                         : stubs_below(c, key, marks);
     c->is_part |= stub;
-    rc = ff_mark_stubs(c->info, root, payload, (size_t)bytes, stub, c->payload);
+    rc = ff_mark_stubs(c->info, root, payload, (size_t)bytes, marks->stub | stub, c->payload);
     if (rc < 0) return fail_at(c, kind, key, rc);
     return put(c, root ? 0 : ff_key_level(key) + 1, c->payload, (size_t)rc);
 }
@@ -180,9 +165,7 @@ static int cut_tiles(cutter *c)
             cut_heights(c, root, marks.leaf | marks.stub) || cut_images(c, root, 0))
             return -1;
     }
-    for (uint32_t s = 0; c->writer && s < c->writer->section_count; s++)
-        if (flush(c, s)) return -1;
-    return 0;
+    return c->append.writer ? pack_append_end(&c->append) : 0;
 }
 
 /* What the pack said of itself, and of which whole it is a part now. */
@@ -228,13 +211,13 @@ static int write_part(cutter *c, const char *path)
     pack_writer writer;
     uint64_t bytes;
     if (pack_writer_open(&writer, c->info)) return -1;
-    c->writer = &writer;
+    c->append.writer = &writer;
     int rc = cut_tiles(c);
     if (!rc) rc = tell_whole(c);
     writer.about = c->about;
     if (!rc) rc = pack_writer_finish(&writer, path, &bytes);
     pack_writer_close(&writer);
-    for (uint32_t s = 0; s < FF_PACK_SECTIONS_MAX; s++) bake_blob_free(&c->blob[s]);
+    pack_append_close(&c->append);
     return rc;
 }
 
@@ -243,7 +226,7 @@ static int choose_part(cutter *c, const bake_box *region, uint32_t level)
     const ff_pack *pack = &c->unpack->pack;
     export_lattice lattice = export_lattice_samples(c->info, ff_terrain_levels(c->info) - 1);
     export_window window;
-    OGRSpatialReferenceH srs = bake_about_reference(pack);
+    OGRSpatialReferenceH srs = bake_reference_of(pack);
     int rc = export_place_window(c->info, srs, &lattice, region, &window);
     if (srs) OSRDestroySpatialReference(srs);
     if (rc) return rc;

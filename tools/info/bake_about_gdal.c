@@ -24,18 +24,3 @@ void bake_about_metadata(const ff_pack *pack, GDALDatasetH set)
             GDALSetMetadataItem(set, item[entry][i], text, NULL);
     }
 }
-
-OGRSpatialReferenceH bake_about_reference(const ff_pack *pack)
-{
-    OGRSpatialReferenceH srs = OSRNewSpatialReference(NULL);
-    char text[TEXT_ROOM] = "", *at = text;
-    ff_list about;
-    int epsg = pack->header.info.epsg;
-    OSRSetAxisMappingStrategy(srs, OAMS_TRADITIONAL_GIS_ORDER);
-    if (epsg && OSRImportFromEPSG(srs, epsg) == OGRERR_NONE) return srs;
-    if (ff_pack_about(pack, &about) == FF_OK)
-        bake_about_text(about, FF_ABOUT_WKT, text, sizeof text);
-    if (*text && OSRImportFromWkt(srs, &at) == OGRERR_NONE) return srs;
-    OSRDestroySpatialReference(srs);
-    return NULL;
-}

@@ -8,8 +8,4 @@
 /* Fills a data set's metadata, as farfield-bake reads it again: name, attribution, licence, date
  * and vertical_datum, and TIFF's own tags of those that have one. */
 void bake_about_metadata(const ff_pack *pack, GDALDatasetH set);
-/* The reference system of the pack's origin: by its EPSG code, else by its text. To be destroyed;
- * NULL: the pack names none that is known here. */
-OGRSpatialReferenceH bake_about_reference(const ff_pack *pack);
-
 #endif

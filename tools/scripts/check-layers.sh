@@ -92,6 +92,7 @@ tools/bake/image    tools/bake tools/bake/raster protocol/ platform/sys.h
 tools/bake/tiles    tools/bake tools/bake/raster platform/sys.h
 tools/info          platform/options tools/bake tools/bake/raster client/farfield.h protocol/ platform/sys.h
 tools/export        platform/options tools/bake tools/bake/raster tools/bake/tiles tools/info client/farfield.h protocol/ platform/sys.h
+tools/merge         platform/options tools/bake tools/bake/raster tools/bake/image tools/info tools/export client/farfield.h protocol/ platform/sys.h
 tools/report        platform/options client/farfield.h common3d platform/sys.h
 tools/scripts
 END
@@ -179,8 +180,11 @@ shape_words() { # PATTERN that no code may have but protocol/shape, the tests, a
     tools/bake/bake_run.c      describes the raster; reports it
     tools/bake/bake_estimate.c  the same, beforehand
     tools/bake/bake_fault.c    says which field is out of range
+    tools/bake/raster/bake_lattice.c  chooses spacings that go with it
     tools/export/export_place.c  writes it into a raster's head
     tools/info/bake_info.c     reports it
+    tools/merge/merge_lattice.c  compares the packs', and describes the joint one
+    tools/merge/merge_run.c    tells it
 ff_node_(edge|cell)_wu
     protocol/ff_terrain.h      defines them: nominal lengths
     client/terrain/ff_measure.c  the e of f = d / (e C)

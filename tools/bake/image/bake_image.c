@@ -238,12 +238,18 @@ static int make_lattices(const bake_picture *picture, const bake_ground *ground,
     return 0;
 }
 
+static void choose_textures(const bake_options *o, const bake_picture *picture,
+                            ff_terrain_info *info)
+{
+    info->texture_log2 = (uint8_t)o->texture_log2;
+    info->texture_levels = (uint8_t)choose_levels(o, picture, info);
+}
+
 int bake_picture_levels(const bake_options *o, const bake_ground *ground, ff_terrain_info *info,
                         bake_picture *picture)
 {
     if (bake_picture_open(o, ground, picture)) return -1;
-    info->texture_log2 = (uint8_t)o->texture_log2;
-    info->texture_levels = (uint8_t)choose_levels(o, picture, info);
+    choose_textures(o, picture, info);
     return 0;
 }
 
@@ -264,19 +270,37 @@ int bake_image_part(const bake_picture *picture, const bake_ground *ground,
     return make_lattices(picture, ground, info, node, (ff_sheet){ edge, edge }, image, &covered);
 }
 
+/* All of the image, of the levels that info tells. */
+static int make_image(const bake_options *o, const bake_picture *picture, const bake_ground *ground,
+                      const ff_terrain_info *info, bake_image *image)
+{
+    uint64_t covered;
+    ff_sheet samples = { ground->grid.width - 1, ground->grid.height - 1 };
+    image->levels = info->texture_levels;
+    if (make_lattices(picture, ground, info, (ff_sheet){ 0, 0 }, samples, image, &covered))
+        return -1;
+    if (!covered) return bake_fail("the image shows nothing of this ground");
+    return bake_bare_find(image, info, (int)o->texture_quality);
+}
+
 int bake_image_make(const bake_options *o, const bake_ground *ground, ff_terrain_info *info,
                     bake_image *image)
 {
     bake_picture picture;
-    uint64_t covered;
-    ff_sheet samples = { ground->grid.width - 1, ground->grid.height - 1 };
     open_image(image, 0);
     if (bake_picture_levels(o, ground, info, &picture)) return -1;
-    image->levels = info->texture_levels;
-    int rc = make_lattices(&picture, ground, info, (ff_sheet){ 0, 0 }, samples, image, &covered);
-    if (!rc && !covered) rc = bake_fail("the image shows nothing of this ground");
+    int rc = make_image(o, &picture, ground, info, image);
     bake_picture_close(&picture);
-    return rc ? rc : bake_bare_find(image, info, (int)o->texture_quality);
+    return rc;
+}
+
+int bake_image_lay(const bake_options *o, GDALDatasetH set, const bake_ground *ground,
+                   ff_terrain_info *info, bake_image *image)
+{
+    bake_picture picture = bake_picture_of(ground, set);
+    open_image(image, 0);
+    choose_textures(o, &picture, info);
+    return make_image(o, &picture, ground, info, image);
 }
 
 void bake_image_close(bake_image *image)

@@ -29,6 +29,10 @@ typedef struct bake_image {
  * (said). */
 int bake_image_make(const bake_options *options, const bake_ground *ground, ff_terrain_info *info,
                     bake_image *image);
+/* The same of an image that lies in the ground's own plane, its rows from north to south: `set`
+ * stays open. */
+int bake_image_lay(const bake_options *options, GDALDatasetH set, const bake_ground *ground,
+                   ff_terrain_info *info, bake_image *image);
 void bake_image_close(bake_image *image);
 
 /* Appends the images of all nodes so many levels below a node, in Morton order, to `blob`. May run

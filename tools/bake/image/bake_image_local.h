@@ -20,7 +20,10 @@ typedef struct bake_picture {
  * (said). */
 int bake_picture_open(const bake_options *options, const bake_ground *ground,
                       bake_picture *picture);
-/* The same; sets info->texture_log2 and texture_levels. */
+/* An open image in the ground's own plane, rows from north to south, which the picture does not
+ * own. */
+bake_picture bake_picture_of(const bake_ground *ground, GDALDatasetH set);
+/* As bake_picture_open; sets info->texture_log2 and texture_levels. */
 int bake_picture_levels(const bake_options *options, const bake_ground *ground,
                         ff_terrain_info *info, bake_picture *picture);
 void bake_picture_close(bake_picture *picture);

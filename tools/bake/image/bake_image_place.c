@@ -153,6 +153,15 @@ static void place(const bake_ground *ground, bake_picture *picture, const double
     picture->height = (uint32_t)GDALGetRasterYSize(picture->set);
 }
 
+bake_picture bake_picture_of(const bake_ground *ground, GDALDatasetH set)
+{
+    bake_picture picture = { .set = set };
+    double gt[6];
+    GDALGetGeoTransform(set, gt);
+    place(ground, &picture, gt);
+    return picture;
+}
+
 /* Puts a view in front of the present set. 0, or -1 when it could not be made (said). */
 static int stack_view(bake_picture *picture, GDALDatasetH view, const char *path)
 {

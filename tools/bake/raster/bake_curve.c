@@ -1,6 +1,7 @@
 #include "bake_curve.h"
 
 #include "bake_gdal.h"
+#include "bake_lattice.h"
 
 #include <math.h>
 
@@ -19,6 +20,7 @@ static double mean_radius_m(const bake_ground *ground)
 uint32_t bake_curve_q60(const bake_options *o, const bake_ground *ground)
 {
     double radius_m = mean_radius_m(ground), refraction = o->refraction;
+    if (o->lattice) return o->lattice->info.curve_q60;
     if (o->flat) return 0;
     if (isnan(refraction))
         refraction = fabs(radius_m / EARTH_RADIUS_M - 1) < 0.01 ? EARTH_REFRACTION : 0;

@@ -2,6 +2,7 @@
 
 #include "../../../protocol/ff_terrain.h"
 #include "bake_area.h"
+#include "bake_lattice.h"
 #include "bake_target.h"
 #include "bake_warp.h"
 #include "../bake_say.h"
@@ -22,6 +23,15 @@ static double round_spacing(const bake_options *o, double spacing_m)
 {
     double units = fmax(1, nearbyint(spacing_m * FF_WU_PER_METRE / o->densify));
     return units * o->densify / FF_WU_PER_METRE;
+}
+
+/* Makes of a spacing the one that is told, or that goes with a pack's lattice. 0 or -1 (said). */
+static int choose_spacing(const bake_options *o, double *spacing_m)
+{
+    if (o->spacing_m > 0) *spacing_m = o->spacing_m;
+    if (o->lattice) return bake_lattice_spacing(o->lattice, o->spacing_m > 0, spacing_m);
+    *spacing_m = round_spacing(o, *spacing_m);
+    return 0;
 }
 
 /* Refuses, before a sample is made, what would be no terrain or take for ever. 0 or -1 (said). */
@@ -84,10 +94,12 @@ static int plan_extent(const bake_ground *ground, const bake_warp *warp, bake_ar
 }
 
 /* One axis of the warped grid, from `low` to `high`: where its first sample lies, and how many
- * there are. Coarse grids begin on whole metres, fine ones fill the extent, on whole millimetres.
- */
-static double plan_axis(double low, double high, double spacing, double *first)
+ * there are. Coarse grids begin on whole metres, fine ones fill the extent, on whole millimetres;
+ * on a pack's lattice its places decide. */
+static double plan_axis(const bake_options *o, int axis, double low, double high, double spacing,
+                        double *first)
 {
+    if (o->lattice) return bake_lattice_axis(o->lattice, axis, low, high, spacing, first);
     if (spacing >= WHOLE_METRES_M) {
         *first = ceil(low + spacing / 2);
         return floor((high - spacing / 2 - *first) / spacing) + 1;
@@ -103,9 +115,9 @@ static int plan_warp(const bake_options *o, const bake_ground *ground, bake_warp
     bake_area area;
     double spacing, west, south;
     if (plan_extent(ground, warp, &area, &spacing)) return -1;
-    spacing = round_spacing(o, o->spacing_m > 0 ? o->spacing_m : spacing);
-    double columns = plan_axis(area.west, area.east, spacing, &west),
-           rows = plan_axis(area.south, area.north, spacing, &south);
+    if (choose_spacing(o, &spacing)) return -1;
+    double columns = plan_axis(o, 0, area.west, area.east, spacing, &west),
+           rows = plan_axis(o, 1, area.south, area.north, spacing, &south);
     double source_samples = (double)ground->grid.width * ground->grid.height;
     if (check_size(o, source_samples, spacing, columns, rows)) return -1;
     warp->width = (uint32_t)columns;
@@ -246,6 +258,20 @@ static int plan_resampled(const bake_options *o, const bake_ground *ground, bake
     return -1;
 }
 
+/* Plans a grid of a pack's lattice. */
+static int plan_on_lattice(const bake_options *o, bake_ground *ground, bake_plan *plan)
+{
+    double spacing_m = ground->geotransform[1];
+    if (bake_lattice_target(o->lattice, ground, &plan->warp.target)) return -1;
+    if (plan->warp.target) return plan_resampled(o, ground, plan);
+    if (choose_spacing(o, &spacing_m)) return -1;
+    if (bake_lattice_keeps(o->lattice, ground, spacing_m))
+        return plan_kept(ground, spacing_m, plan);
+    bake_note("%s: its samples are no places of the lattice of %s: resampled", o->heights_path,
+              o->lattice->path);
+    return plan_resampled(o, ground, plan);
+}
+
 int bake_project_plan(const bake_options *o, bake_ground *ground, bake_plan *plan)
 {
     double spacing_m = 0;
@@ -254,6 +280,7 @@ int bake_project_plan(const bake_options *o, bake_ground *ground, bake_plan *pla
         return bake_fail("%s names no reference system: nothing to project from", o->heights_path);
     if (!ground->has_place && o->spacing_m <= 0)
         return bake_fail("%s: no georeference: give --spacing", o->heights_path);
+    if (o->lattice) return plan_on_lattice(o, ground, plan);
     if (ground->has_place && o->no_project && refuse_projection(o, ground)) return -1;
     if (ground->has_place && bake_target_choose(o, ground, &plan->warp.target)) return -1;
     if (o->no_project)

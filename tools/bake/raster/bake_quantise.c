@@ -1,6 +1,7 @@
 #include "bake_quantise.h"
 
 #include "../bake_say.h"
+#include "bake_lattice.h"
 
 #include <float.h>
 #include <math.h>
@@ -12,6 +13,9 @@
 #define Q24             16777216.0
 #define COARSEST_M      100.0 /* a step in Q24 ends at 128 m */
 #define OFFSET_ERROR_M  1e-4
+#define SAME_ERROR_M    1e-9 /* of two steps that are told as well the higher one is chosen */
+#define BASE_TOLERANCE  0.02 /* of a step */
+#define MM_TOLERANCE_M  4e-4
 #define TRIES_MAX       4096
 
 /* Chooses the height of step 0: zero when all heights fit above it, else just below the lowest
@@ -41,13 +45,40 @@ static double choose_first_above(double base_m, double step_m, double low, doubl
     double best = low, best_m = INFINITY;
     for (double first = low; first > low - TRIES_MAX && high - first <= STEPS_MAX; first--) {
         double error_m = offset_error_m(base_m, step_m, first);
-        if (error_m < best_m) {
+        if (error_m < best_m - SAME_ERROR_M) {
             best = first;
             best_m = error_m;
         }
         if (best_m <= OFFSET_ERROR_M) break;
     }
     return best;
+}
+
+double bake_steps_first(double base_m, double step_m, double low, double high)
+{
+    double first = choose_first(step_m, low, high);
+    return offset_error_m(base_m, step_m, first) > OFFSET_ERROR_M
+               ? choose_first_above(base_m, step_m, low, high)
+               : first;
+}
+
+/* A part of a metre, where it is one. */
+static double step_of(uint32_t hscale_q24)
+{
+    double step_m = hscale_q24 / Q24, parts = nearbyint(1 / step_m);
+    return parts >= 1 && nearbyint(Q24 / parts) == hscale_q24 ? 1 / parts : step_m;
+}
+
+void bake_steps_of(const ff_terrain_info *info, double *step_m, double *base_m)
+{
+    double zero_m = (double)info->hoffset_wu / FF_WU_PER_METRE;
+    *step_m = step_of(info->hscale_q24);
+    *base_m = zero_m - nearbyint(zero_m / *step_m) * *step_m;
+    double mm = nearbyint(*base_m * 1000) / 1000;
+    if (fabs(*base_m) <= fmax(BASE_TOLERANCE * *step_m, 0.5 / FF_WU_PER_METRE))
+        *base_m = 0;
+    else if (fabs(*base_m - mm) < MM_TOLERANCE_M)
+        *base_m = mm;
 }
 
 static int set_step(bake_steps *steps, double wanted_m)
@@ -74,8 +105,7 @@ static int set_own_step(bake_steps *steps, double own_m, double base_m)
     steps->min_m += base_m;
     steps->max_m += base_m;
     if (!fits) return 0;
-    if (offset_error_m(base_m, own_m, steps->first_step) > OFFSET_ERROR_M)
-        steps->first_step = choose_first_above(base_m, own_m, low, high);
+    steps->first_step = bake_steps_first(base_m, own_m, low, high);
     steps->base_m = base_m + steps->first_step * (own_m - steps->step_m);
     double drift_m = (high - low) * fabs(own_m - steps->step_m),
            float_m = fmax(fabs(steps->min_m), fabs(steps->max_m)) * FLT_EPSILON;
@@ -101,6 +131,13 @@ int bake_steps_choose(const bake_options *o, const bake_ground *ground, bake_ste
         if (set_step(steps, o->hscale_m)) return 0;
         return bake_fail("--hscale %g: heights from %g to %g m span more than 65536 steps",
                          o->hscale_m, steps->min_m, steps->max_m);
+    }
+    if (o->lattice) {
+        double step_m, base_m;
+        bake_steps_of(&o->lattice->info, &step_m, &base_m);
+        if (set_own_step(steps, step_m, base_m)) return 0;
+        return bake_fail("heights from %g to %g m span more than 65536 of the %.9g m steps of %s",
+                         steps->min_m, steps->max_m, step_m, o->lattice->path);
     }
     if (ground->step_m > 0) {
         /* Invented detail needs finer steps than the source's, as far as they fit. */

@@ -16,6 +16,12 @@ typedef struct bake_steps {
  * 1-2-5 x 10^i from 1 cm up that fits. 0 or -1 (said). */
 int bake_steps_choose(const bake_options *options, const bake_ground *ground, bake_steps *steps);
 
+/* What a pack's steps were before they were rounded to what its description tells: metres each, and
+ * how far whole ones lie from 0 m. */
+void bake_steps_of(const ff_terrain_info *info, double *step_m, double *base_m);
+/* Which step becomes height 0 where heights are from `low` to `high` whole steps above base_m. */
+double bake_steps_first(double base_m, double step_m, double low, double high);
+
 /* Writes `grid` (uint16, rows south to north) from the ground's floats; sets hscale, hoffset,
  * height_min, height_max and max_error of `info`. 0 or -1 (said). */
 int bake_quantise(const bake_options *options, const bake_ground *ground, const bake_steps *steps,

@@ -1,8 +1,11 @@
 #include "bake_reference.h"
 
+#include "bake_about.h"
+
 #include <stdlib.h>
 
-#define SURE 90 /* of 100: all parameters are the same, names may differ */
+#define TEXT_ROOM 4096
+#define SURE      90 /* of 100: all parameters are the same, names may differ */
 
 static int epsg_of(OGRSpatialReferenceH srs)
 {
@@ -29,4 +32,21 @@ int bake_reference_epsg(OGRSpatialReferenceH srs)
     if (!epsg) epsg = find_match(plane);
     OSRDestroySpatialReference(plane);
     return epsg;
+}
+
+FF_STATIC_ASSERT(TEXT_ROOM >= FF_ABOUT_BYTES_MAX);
+
+OGRSpatialReferenceH bake_reference_of(const ff_pack *pack)
+{
+    OGRSpatialReferenceH srs = OSRNewSpatialReference(NULL);
+    char text[TEXT_ROOM] = "", *at = text;
+    ff_list about;
+    int epsg = pack->header.info.epsg;
+    OSRSetAxisMappingStrategy(srs, OAMS_TRADITIONAL_GIS_ORDER);
+    if (epsg && OSRImportFromEPSG(srs, epsg) == OGRERR_NONE) return srs;
+    if (ff_pack_about(pack, &about) == FF_OK)
+        bake_about_text(about, FF_ABOUT_WKT, text, sizeof text);
+    if (*text && OSRImportFromWkt(srs, &at) == OGRERR_NONE) return srs;
+    OSRDestroySpatialReference(srs);
+    return NULL;
 }
