@@ -1,4 +1,4 @@
-/* All that a flight needs, opened and closed: pack, true ground, link, server, surface and
+/* All that a flight needs, opened and closed: packs, grounds, link, server, surface and
  * client. */
 #ifndef FLY_WORLD_H
 #define FLY_WORLD_H

@@ -72,7 +72,8 @@ double sim_ground_height_m(const sim_ground *ground, double x_m, double y_m);
 double sim_ground_drop_m(const sim_ground *ground, double east_m, double north_m);
 /* From no place on it to another is it further. */
 double sim_ground_reach_m(const sim_ground *ground);
-/* 1 on ground no further from ground of another one than so many cells of the coarser. */
+/* 1 on ground no further from ground of another one than so many cells of the coarser; not at
+ * corners behind which one of them goes on below the other. */
 int sim_ground_near_border(const sim_ground *ground, double x_m, double y_m, double cells);
 /* First ground along from + t * direction, 0 < t <= t_max (direction of any length): 1 and *t_hit,
  * or 0. Curved ground has fallen away from `from`: the point met lies by sim_ground_drop_m lower

@@ -24,7 +24,8 @@ END
 flies() { # NAME ARGUMENTS...
     flown=$1
     shift
-    timeout 300 "$bin/farfield-fly" --pack "$work/hills.ffp" --csv "$work/$flown.csv" --json $usual "$@" >"$work/$flown.json" 2>"$work/$flown.err"
+    case " $* " in *" --pack "*) ;; *) set -- --pack "$work/hills.ffp" "$@" ;; esac
+    timeout 300 "$bin/farfield-fly" --csv "$work/$flown.csv" --json $usual "$@" >"$work/$flown.json" 2>"$work/$flown.err"
     result $? "flight: $flown $*"
     is 's["crack_frames"] == 0 and s["empty_frames"] == 0 and s["panoramas_in_flight_high"] <= 1' "no crack, no empty frame, no queue of panoramas"
 }

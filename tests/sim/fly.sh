@@ -19,10 +19,11 @@ sys.exit(0 if eval(sys.argv[3]) else 1)
 END
     result $? "$2"
 }
-flies() { # NAME ARGUMENTS...
+flies() { # NAME ARGUMENTS...: over the hills, unless they name packs
     flown=$1
     shift
-    timeout 300 "$fly" --pack "$work/hills.ffp" --csv "$work/$flown.csv" --json "$@" >"$work/$flown.json" 2>"$work/$flown.err"
+    case " $* " in *" --pack "*) ;; *) set -- --pack "$work/hills.ffp" "$@" ;; esac
+    timeout 300 "$fly" --csv "$work/$flown.csv" --json "$@" >"$work/$flown.json" 2>"$work/$flown.err"
 }
 
 hashes() { # NAME: of the flight's pictures

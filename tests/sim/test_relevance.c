@@ -210,6 +210,31 @@ static void a_supporting_node_is_counted_apart(void **state)
     sim_relevance_destroy(w.relevance);
 }
 
+/* Nodes of a second ground have neighbours in it alone: here it is one tile, the fifth of all. */
+static void nodes_of_a_second_ground_are_drawn_and_supported(void **state)
+{
+    (void)state;
+    static wire w;
+    ff_terrain_info ground[2] = { pack_fixture_info(6, 2, 2), pack_fixture_info(5, 1, 1) };
+    start(&w);
+    ground[1].first_tile = 4;
+    ground[1].west_wu = -1000;
+    w.view.grounds = (sim_drawn_grounds){ ground, 2 };
+    ff_key root = ff_key_make(4, 0, 0), child = ff_key_child(root, 1),
+           leaf = ff_key_child(child, 0);
+    (void)node(&w, root, FF_KIND_ROOT);
+    (void)node(&w, root, FF_KIND_REFINEMENT);
+    (void)node(&w, child, FF_KIND_REFINEMENT);
+    size_t beside = node(&w, ff_key_child(root, 0), FF_KIND_REFINEMENT),
+           away = node(&w, ff_key_make(3, 0, 0), FF_KIND_REFINEMENT);
+    receive(&w, 1024);
+    draw(&w, 1, 1, &leaf);
+    sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
+    assert_int_equal(f.unused[FF_DATA_HEIGHTS], beside + away);
+    assert_int_equal(f.supporting, beside);
+    sim_relevance_destroy(w.relevance);
+}
+
 /* What brought a node that is in view and hidden is counted apart, unless it is drawn, or a drawn
  * node needs it, or it was asked for the reserve, or it was hidden only after its time. */
 static void a_hidden_node_is_counted_apart(void **state)
@@ -486,6 +511,7 @@ int main(void)
         cmocka_unit_test(a_face_counts_by_its_best_frame),
         cmocka_unit_test(messages_without_picture_are_overhead),
         cmocka_unit_test(a_supporting_node_is_counted_apart),
+        cmocka_unit_test(nodes_of_a_second_ground_are_drawn_and_supported),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
