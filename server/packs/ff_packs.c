@@ -32,8 +32,7 @@ int ff_packs_add(ff_packs *packs, const char *path)
     return FF_OK;
 }
 
-/* Why a pack cannot be joined to the first. */
-static const char *why_apart(int rc)
+const char *ff_packs_why_apart(int rc)
 {
     switch (rc) {
         case FF_ERR_ARGUMENT: return "it is ground of another pack here: farfield-merge joins them";
@@ -53,7 +52,7 @@ int ff_packs_open(ff_packs *packs, const char *const *path, size_t count)
         if (rc != FF_OK) return rc;
         if (i == 0) continue;
         rc = ff_pack_join(&packs->pack[0], &packs->pack[i]);
-        if (rc != FF_OK) return fail(packs, path[i], why_apart(rc), rc);
+        if (rc != FF_OK) return fail(packs, path[i], ff_packs_why_apart(rc), rc);
     }
     return FF_OK;
 }

@@ -243,7 +243,8 @@ static void watch_settling(view_app *app, int changed)
 {
     ff_client_stats stats;
     ff_client_get_stats(app->client, &stats);
-    int busy = changed || !stats.have_terrain || stats.in_flight || stats.queued;
+    int heard = stats.have_terrain && ff_client_source_state(app->client, 0) != FF_ERR_AGAIN,
+        busy = changed || !heard || stats.in_flight || stats.queued;
     app->still_frames = busy ? 0 : app->still_frames + 1;
     if (app->still_frames < SETTLE_FRAMES && sys_time_us() < app->settle_until_us) return;
     if (busy) view_fail("still busy after %d s, going on", SETTLE_US_MAX / 1000000);
@@ -256,6 +257,17 @@ static void place_pilot(view_app *app)
     const ff_terrain_info *info = ff_client_terrain(app->client);
     if (!app->fly.placed && info)
         view_fly_place(&app->fly, info, !o->at.given, o->at.x_wu, o->at.y_wu, o->at.above_wu);
+}
+
+/* Once of each pack that is not shown, why. */
+static void tell_what_fits_not(view_app *app)
+{
+    for (unsigned i = 0; i < app->options->packs.count; i++) {
+        int rc = ff_client_source_state(app->client, 1 + i);
+        if (rc == FF_OK || rc == FF_ERR_AGAIN || app->told >> i & 1u) continue;
+        app->told |= (uint8_t)(1u << i);
+        view_fail("%s is not shown: %s", app->options->packs.text[i], ff_packs_why_apart(rc));
+    }
 }
 
 /* 1 when the text on the picture would change; looked at a few times a second. */
@@ -275,6 +287,7 @@ static int turn(view_app *app, int64_t now_us, int64_t dt_us)
     place_pilot(app);
     if (!app->interrupted) view_fly_step(&app->fly, app->settling ? 0 : dt_us, app->client);
     int changed = ff_client_update(app->client, now_us, &app->fly.camera);
+    tell_what_fits_not(app);
     if (app->settling) watch_settling(app, changed);
     /* During an interruption the screen is not ours: the last picture stays. */
     int wanted = (changed && !app->interrupted) || app->redraw || app->screenshot ||

@@ -36,6 +36,7 @@ typedef struct view_app {
     ff_quality quality;
     uint8_t show_hud, show_pools, show_help, battery_low, interrupted, tilted;
     uint8_t redraw, quit;
+    uint8_t told;           /* bit i: that more[i] is not shown */
     const char *screenshot; /* file to be written after the next drawing; or NULL */
     unsigned screenshots;   /* taken by key */
     /* the loop */

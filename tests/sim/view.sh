@@ -269,6 +269,13 @@ done
 [ $? = 0 ] && [ "$(value bytes_down)" -gt 1000 ] && [ "$(value panoramas)" -ge 1 ]; result $? "a pack behind a link of its own, with panoramas"
 
 # ---- wrong words ----
+python3 tests/rig/hills.py 65 "$work/far.raw" &&
+    python3 tests/rig/placed.py "$work/far.raw" 65 0,0,65,65 1 30 32632 "$work/far.vrt" &&
+    "$bin/farfield-bake" --quiet "$work/far.vrt" --t-srs EPSG:32632 -o "$work/far.ffp" &&
+    timeout 60 "$view" --headless --frames 20 "$pack" --pack "$work/far.ffp" 2>"$work/error" &&
+    [ "$(grep -c "far.ffp is not shown: it has no reference system" "$work/error")" = 1 ]
+result $? "tells once of a pack that fits not" || cat "$work/error"
+
 refuses() { # STATUS WHAT MESSAGE OPTION...
     local status=$1 what=$2 message=$3
     shift 3
@@ -279,7 +286,7 @@ refuses() { # STATUS WHAT MESSAGE OPTION...
 head -c 5000 "$pack" >"$work/short.ffp"
 echo "not a pack" >"$work/foreign.ffp"
 echo "0 jump high" >"$work/bad.txt"
-refuses 2 "no terrain" "ADDR:PORT | PACK is missing"
+refuses 2 "no terrain" "ADDR:PORT or a pack is wanted"
 refuses 1 "a missing pack" "$work/none.ffp: " "$work/none.ffp"
 refuses 1 "a foreign file" "$work/foreign.ffp: " "$work/foreign.ffp"
 refuses 1 "a truncated pack" "$work/short.ffp: " "$work/short.ffp"
