@@ -68,6 +68,7 @@ struct ff_tree {
     uint8_t *lacks;   /* of each slot: the bits of who has no refinement of the node; NULL alike */
     /* who is drawn where several lie (ff_cover.c): NULL for trees of one ground */
     struct ff_cover *cover;
+    struct ff_seams *seams; /* ff_seam.h; NULL alike */
     uint32_t ground_count, ground_max, source_max;
     uint32_t node_count, wish_capacity, hash_mask;
     ff_node *node;
@@ -154,6 +155,21 @@ static inline uint32_t ff_ground_ranked(const ff_tree *tree, uint32_t rank)
 {
     return tree->cover ? tree->cover->ranked[rank] : rank;
 }
+
+/* ---- seams (ff_seam.c) ---- */
+
+/* 1 when vertices of a node may be lowered for a seam. */
+int ff_seam_touches(const ff_tree *tree, const ff_node *node);
+/* Nothing of all ground lies lower, wherever it is drawn for a seam. */
+int64_t ff_seam_lowest_wu(const ff_tree *tree);
+/* Lowers what is in view, once the cut is listed. */
+void ff_seam_make(ff_tree *tree);
+
+/* How a node's vertices are taken: as they are held; lowered under the grounds before its own; or
+ * its rim under those after it, too, as they are drawn. */
+enum ff_lowered { FF_LOWERED_NOT, FF_LOWERED_DIVED, FF_LOWERED_DRAWN };
+/* How many steps each vertex is lower; NULL: none is. */
+const uint16_t *ff_seam_drop(const ff_tree *tree, uint32_t slot, enum ff_lowered how);
 
 /* ---- grounds (ff_grounds.c) ---- */
 
@@ -247,7 +263,8 @@ uint32_t ff_tree_find_nearest(const ff_tree *tree, ff_key key);
 uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent);
 /* The colours of nodes beside a new node change: forgets what their users made of them. */
 void ff_tree_reshade_beside(ff_tree *tree, ff_key key);
-/* The same of all nodes. */
+/* The same of a node whose vertices are drawn elsewhere, and of all nodes. */
+void ff_tree_reshape(ff_tree *tree, uint32_t slot);
 void ff_tree_reshade(ff_tree *tree);
 void ff_tree_drop_children(ff_tree *tree, ff_node *parent);
 void ff_tree_drop_root(ff_tree *tree, ff_node *root);
@@ -305,6 +322,14 @@ int ff_box_in_view(const ff_tree *tree, const ff_box *box);
 int ff_box_seen(const ff_tree *tree, const ff_box *box);
 /* The same of a node, once the cut is listed. */
 int ff_node_seen(const ff_tree *tree, const ff_node *node, const ff_box *box);
+
+/* ff_surface.c */
+/* A ground's node drawn over or under a place, NULL where there is none. */
+const ff_node *ff_surface_node(const ff_tree *tree, const ff_terrain_info *info,
+                               const int32_t place_wu[2]);
+/* Height of a node's surface at a place on it. */
+int32_t ff_surface_z_wu(const ff_tree *tree, const ff_node *node, const int32_t place_wu[2],
+                        enum ff_lowered how);
 
 /* ff_restrict.c */
 unsigned ff_coarser_mask(const ff_tree *tree, const ff_node *node);
