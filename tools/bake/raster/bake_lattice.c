@@ -36,7 +36,9 @@ int bake_lattice_target(const bake_lattice *lattice, const bake_ground *ground,
                         OGRSpatialReferenceH *target)
 {
     *target = NULL;
-    if (!ground->has_place) return bake_fail("no georeference: it lies nowhere on a lattice");
+    if (!ground->has_place)
+        return bake_fail("the raster has no georeference: it lies nowhere on the lattice of %s",
+                         lattice->path);
     if (!lattice->srs != !ground->srs)
         return bake_fail("%s names no reference system, and so no place on the other's lattice",
                          lattice->srs ? "the raster" : lattice->path);
