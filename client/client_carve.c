@@ -123,6 +123,7 @@ static int carve_all(ff_client *client, unsigned economy)
     FF_ASSERT(client->arena.used == client->fixed_bytes);
     ff_budget_fixed(&budget, &client->desc, client->arena.bytes);
     FF_ASSERT(budget.fixed == client->fixed_bytes);
+    budget.grounds_max = ff_budget_grounds(&client->desc, client->first.intake.ground_count);
     ff_budget_economise(&budget, &client->info, economy);
     int rc = ff_budget_terrain(&budget, !client->desc.use_plain_arrays);
     if (rc == FF_OK) rc = carve_decoder(client, &budget);
