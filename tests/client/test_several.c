@@ -263,6 +263,67 @@ static void a_server_that_changes_its_pack_is_taken_anew(void **state)
     close_server(&beside);
 }
 
+/* How many nodes both draw, all of them of the same heights; -1: some are not. */
+static int same_heights(const client_rig *a, const client_rig *b)
+{
+    const ff_drawn *list_a, *list_b;
+    uint32_t count_a = ff_tree_drawn(ff_client_tree(a->client), &list_a),
+             count_b = ff_tree_drawn(ff_client_tree(b->client), &list_b);
+    unsigned side = ff_node_side(ff_client_terrain(a->client));
+    int same = 0;
+    for (uint32_t i = 0; i < count_a; i++)
+        for (uint32_t j = 0; j < count_b; j++) {
+            if (list_a[i].key != list_b[j].key) continue;
+            if (memcmp(list_a[i].heights, list_b[j].heights, side * side * sizeof(uint16_t)) != 0)
+                return -1;
+            same++;
+        }
+    return same;
+}
+
+/* A slow server has answers on their way while another one's grounds are put together anew. */
+static void answers_on_their_way_are_not_taken_for_others(void **state)
+{
+    (void)state;
+    for (unsigned changed = 4; changed < 64; changed += 5) {
+        client_rig rig, beside, calm, other;
+        rig_open(&rig, 0);
+        rig_use_place(&rig, UTM, 500000, 5000000);
+        rig_open(&beside, 0);
+        rig_use_place(&beside, UTM, 500000 + WIDE, 5000000);
+        ff_source_desc more = { .stream = &beside.stream };
+        rig.desc.more = &more;
+        rig.desc.more_count = 1;
+        rig.chop = 3;
+        rig_client(&rig, 8 * MB);
+        for (unsigned n = 0; n < changed; n++) rig_step(&rig, 50000);
+        rig_change_terrain(&beside);
+        for (unsigned n = 0; n < 60; n++) rig_step(&rig, 50000);
+        rig.chop = 0;
+        look_around(&rig);
+        assert_int_equal(rig_stats(&rig).protocol_errors, 0);
+        assert_int_equal(rig_stats(&rig).requests_failed, 0);
+        assert_int_equal(rig.connections, 1);
+        /* the same as if it had always been so */
+        rig_open(&calm, 0);
+        rig_use_place(&calm, UTM, 500000, 5000000);
+        rig_open(&other, 0);
+        rig_use_place(&other, UTM, 500000 + WIDE, 5000000);
+        rig_change_terrain(&other);
+        ff_source_desc more_calm = { .stream = &other.stream };
+        calm.desc.more = &more_calm;
+        calm.desc.more_count = 1;
+        rig_client(&calm, 8 * MB);
+        for (int n = 0; n < 40; n++) rig_step(&calm, 50000);
+        look_around(&calm);
+        assert_true(same_heights(&rig, &calm) > 20);
+        rig_close(&calm);
+        close_server(&other);
+        rig_close(&rig);
+        close_server(&beside);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -273,6 +334,7 @@ int main(void)
         cmocka_unit_test(a_server_of_several_packs_gives_all_of_them),
         cmocka_unit_test(what_fits_no_ground_is_told_and_left_out),
         cmocka_unit_test(a_server_that_changes_its_pack_is_taken_anew),
+        cmocka_unit_test(answers_on_their_way_are_not_taken_for_others),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
