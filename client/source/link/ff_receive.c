@@ -11,12 +11,12 @@ static void note_refusal(ff_stream *stream, int error)
     sys_mutex_unlock(&stream->intake->requests->mutex);
 }
 
-/* 1 when the grounds are those that the client has pools for. */
+/* 1 when the grounds are those that the client was told of last. */
 static int holds_all_of(const ff_stream *stream, const ff_welcome *welcome)
 {
     const ff_intake *intake = stream->intake;
-    int same = ff_welcome_count(welcome) == intake->ground_count;
-    for (unsigned i = 0; same && i < intake->ground_count; i++) {
+    int same = ff_welcome_count(welcome) == intake->told_count;
+    for (unsigned i = 0; same && i < intake->told_count; i++) {
         ff_terrain_info info;
         uint32_t whole;
         ff_welcome_ground(welcome, i, &info, &whole);
