@@ -23,15 +23,12 @@ static int carve_decoder(ff_client *client, const ff_budget *budget)
     return client->first.intake.decoder ? FF_OK : FF_ERR_MEMORY;
 }
 
-int ff_client_decode(ff_client *client, ff_source *source)
+void ff_client_decode(ff_client *client, ff_source *source)
 {
     const ff_intake *first = &client->first.intake;
     source->intake.decoder = first->decoder;
     source->intake.rgb_bytes = first->rgb_bytes;
     source->intake.rgb = first->rgb;
-    for (unsigned i = 0; i < source->intake.ground_count; i++)
-        if (!ff_codec_supported(source->intake.info[i].codec)) return FF_ERR_UNSUPPORTED;
-    return FF_OK;
 }
 
 static void carve_arriving(ff_client *client, const ff_budget *budget)
