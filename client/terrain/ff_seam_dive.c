@@ -103,18 +103,30 @@ static int32_t higher_by(const ff_tree *tree, const ff_terrain_info *info,
     return by_wu > INT32_MAX ? INT32_MAX : by_wu < -INT32_MAX ? -INT32_MAX : (int32_t)by_wu;
 }
 
-/* The same at a vertex and half-way along the edges that meet there, at most; inside the
- * rectangle. */
+/* 1 when edges that meet in a place may run over the rim. */
+static int near_rim(const ff_area *stands, const int32_t place_wu[2], int32_t cell_wu)
+{
+    for (unsigned axis = 0; axis < 2; axis++)
+        if ((int64_t)place_wu[axis] - cell_wu <= stands->lo[axis] ||
+            (int64_t)place_wu[axis] + cell_wu >= stands->hi[axis])
+            return 1;
+    return 0;
+}
+
+/* The same at a vertex and half-way along the edges that meet there, at most. Near the rim at the
+ * vertex alone: how much further down it goes is seen as a ditch outside. */
 static int32_t highest_by(const ff_tree *tree, const ff_terrain_info *info, uint32_t f,
                           const int32_t place_wu[2], int32_t cell_wu)
 {
     static const int8_t way[][2] = { { 0, 0 },  { 1, 0 }, { -1, 0 }, { 0, 1 },
                                      { 0, -1 }, { 1, 1 }, { -1, -1 } };
+    unsigned count = near_rim(&tree->cover->stands[f], place_wu, cell_wu)
+                         ? 1
+                         : sizeof way / sizeof way[0];
     int32_t most = INT32_MIN;
-    for (unsigned i = 0; i < sizeof way / sizeof way[0]; i++) {
+    for (unsigned i = 0; i < count; i++) {
         const int32_t at_wu[2] = { place_wu[0] + way[i][0] * (cell_wu / 2),
                                    place_wu[1] + way[i][1] * (cell_wu / 2) };
-        if (!holds(&tree->cover->stands[f], at_wu)) continue;
         int32_t by_wu = higher_by(tree, info, &tree->ground[f], at_wu);
         most = by_wu > most ? by_wu : most;
     }
