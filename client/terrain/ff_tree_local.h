@@ -335,9 +335,17 @@ int ff_node_seen(const ff_tree *tree, const ff_node *node, const ff_box *box);
 /* A ground's node drawn over or under a place, NULL where there is none. */
 const ff_node *ff_surface_node(const ff_tree *tree, const ff_terrain_info *info,
                                const int32_t place_wu[2]);
-/* Height of a node's surface at a place on it. */
-int32_t ff_surface_z_wu(const ff_tree *tree, const ff_node *node, const int32_t place_wu[2],
-                        enum ff_lowered how);
+/* A drawn node that is asked for heights: found once, for its border is dear to know. */
+typedef struct ff_patch {
+    const ff_tree *tree;
+    const ff_node *node; /* NULL: none */
+    ff_area area;
+    unsigned coarser;
+    enum ff_lowered how;
+} ff_patch;
+void ff_patch_make(ff_patch *patch, const ff_tree *tree, const ff_node *node, enum ff_lowered how);
+/* Height of its surface at a place on it. */
+int32_t ff_patch_z_wu(const ff_patch *patch, const int32_t place_wu[2]);
 
 /* ff_restrict.c */
 unsigned ff_coarser_mask(const ff_tree *tree, const ff_node *node);
