@@ -45,7 +45,7 @@ LIBS := $(LIB)/libffsim.a $(LIB)/libffserver.a $(LIB)/libfftools.a $(LIB)/libffc
 LINK_LIBS = -Wl,--start-group $(LIBS) -Wl,--end-group $(LDLIBS_core) $(LDLIBS_surface) $(LDLIBS_host)
 
 .DEFAULT_GOAL := all
-.PHONY: all help null deps asserts format server emulator flyover front hashes demo test test-build check extremes numbers properties soak man install uninstall clean lib fuzz FORCE
+.PHONY: all help null deps asserts format server emulator flyover front hashes demo test test-build check extremes numbers parts properties soak man install uninstall clean lib fuzz FORCE
 
 all: $(PROGRAMS) lib null ## build all programs and libraries into build/
 
@@ -185,6 +185,9 @@ soak: $(BUILD)/bin/farfield-fly $(BUILD)/bin/farfield-bake $(BUILD)/bin/farfield
 
 N ?= 1000
 SEED ?= 1
+parts: $(PROGRAMS) ## parts of packs cut and joined again, packs joined by chance: more of it than make test has (some minutes)
+	@BIN=$(BUILD)/bin FULL=1 tests/tools/merge.sh && BIN=$(BUILD)/bin FULL=1 tests/tools/export_region.sh
+
 properties: $(BUILD)/bin/farfield-bake $(BUILD)/bin/farfield-export $(BUILD)/tests/test_properties ## rasters by chance, baked, exported and fitted to their surface; the worst of each kind in build/properties/table.md (N=1000 SEED=1)
 	@BIN=$(BUILD)/bin DRAWS=$(N) SEED=$(SEED) FIRST=$(FIRST) PROPERTIES=$(BUILD)/properties $(BUILD)/tests/test_properties; \
 	    rc=$$?; cat $(BUILD)/properties/table.md; exit $$rc

@@ -49,11 +49,13 @@ void ff_terrain_view_attach(ff_terrain_view *view, ff_tree *tree, const ff_textu
 
 static uint64_t hash_word(uint64_t hash, uint64_t word) { return (hash ^ word) * HASH_PRIME; }
 
-static uint64_t hash_heights(const ff_drawn *drawn, uint32_t count)
+static uint64_t hash_heights(const ff_tree *tree, const ff_drawn *drawn, uint32_t count)
 {
+    const uint16_t *drop = ff_tree_drop(tree, drawn);
     uint64_t hash = FF_TERRAIN_VIEW_HASH_START;
     FF_ASSERT(count <= FF_NODE_HEIGHTS_MAX);
     for (uint32_t i = 0; i < count; i++) hash = hash_word(hash, drawn->heights[i]);
+    for (uint32_t i = 0; drop && i < count; i++) hash = hash_word(hash, drop[i]);
     return hash;
 }
 
@@ -105,13 +107,13 @@ uint64_t ff_terrain_view_hash(ff_terrain_view *view, const ff_drawn *list, uint3
         ff_view_node *entry = entry_of(view, drawn);
         FF_ASSERT(drawn->coarser < 1u << FF_SIDE_COUNT);
         if (entry && !entry->heights_hash)
-            entry->heights_hash = hash_heights(drawn, view->heights_per_node);
+            entry->heights_hash = hash_heights(view->tree, drawn, view->heights_per_node);
         hash = hash_word(hash, drawn->key);
         hash = hash_word(hash, drawn->coarser);
         for (int axis = 0; axis < 3; axis++)
             hash = hash_word(hash, (uint32_t)drawn->origin_wu[axis]);
-        hash = hash_word(hash,
-                         entry ? entry->heights_hash : hash_heights(drawn, view->heights_per_node));
+        hash = hash_word(hash, entry ? entry->heights_hash
+                                     : hash_heights(view->tree, drawn, view->heights_per_node));
     }
     return hash;
 }

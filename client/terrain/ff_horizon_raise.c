@@ -224,6 +224,7 @@ void ff_horizon_raise(const ff_tree *tree, ff_horizon *horizon, const uint64_t *
     sector part;
     line l;
     if (horizon->reach_wu == 0 || of.need >= ONE) return;
+    if (tree->cover && ff_seam_touches(tree, node)) return; /* it may be drawn lower */
     ff_box box = ff_horizon_drawn_box(tree, horizon, node);
     if (!within_depths(&box)) return;
     of.error_wu = ff_steps_wu(of.info, ff_geometric_error_decode(node->error_code));

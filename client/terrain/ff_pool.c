@@ -77,6 +77,8 @@ void ff_tree_reshade_beside(ff_tree *tree, ff_key key)
     }
 }
 
+void ff_tree_reshape(ff_tree *tree, uint32_t slot) { forget_user(tree, &tree->node[slot]); }
+
 void ff_tree_reshade(ff_tree *tree)
 {
     for (uint32_t slot = 0; slot < tree->node_count; slot++)

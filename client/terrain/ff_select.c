@@ -191,6 +191,7 @@ static void make_cut(ff_tree *tree)
         want_by_measure(tree, g);
         ff_want_close(tree);
         split_cut(tree, g);
+        if (tree->cover) ff_cover_rims(tree, g);
     }
 }
 
@@ -287,8 +288,11 @@ static void list_cut(ff_tree *tree)
         uint32_t slot = tree->order[i];
         ff_box box;
         ff_node_box(tree, &tree->node[slot], &box);
+        int64_t distance = ff_box_distance(&box);
+        if (tree->cover && ff_seam_touches(tree, &tree->node[slot]))
+            box.lo[2] = ff_seam_lowest_wu(tree) - tree->view.camera.pos_wu[2];
         if (!ff_box_beyond_view(tree, &box) && ff_box_in_view(tree, &box))
-            tree->sort[seen++] = (uint64_t)ff_box_distance(&box) << FF_SLOT_BITS | slot;
+            tree->sort[seen++] = (uint64_t)distance << FF_SLOT_BITS | slot;
         else
             tree->order[unseen++] = slot;
     }
@@ -322,6 +326,7 @@ int ff_tree_select(ff_tree *tree, const ff_view *view, const ff_quality *quality
         ff_whole_make(tree);
         list_cut(tree);
     } while (ff_limit_again(tree, &search));
+    if (tree->seams) ff_seam_make(tree);
     ff_limit_wishes(tree);
     ff_wish_make(tree);
     FF_ASSERT(tree->wish_count <= tree->wish_capacity);

@@ -79,6 +79,11 @@ static void frame_heights(const ff_tree *tree, const ff_drawn *drawn, uint16_t *
     frame_edge(tree, drawn, framed);
 }
 
+const uint16_t *ff_tree_drop(const ff_tree *tree, const ff_drawn *drawn)
+{
+    return tree->seams ? ff_seam_drop(tree, ff_slot_of(tree, drawn->node), FF_LOWERED_DRAWN) : NULL;
+}
+
 void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3d_vertex *out)
 {
     uint16_t framed[FRAMED_MAX];
@@ -86,6 +91,7 @@ void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3
     ff_shade_grid grid = {
         info, drawn->key, drawn->cell_wu, framed, { info->height_min, info->height_max }
     };
+    const uint16_t *drop = ff_tree_drop(tree, drawn);
     uint32_t side = ff_node_side(info);
     if (tree->ground_count > 1) ff_grounds_ramp(tree, info, grid.ramp);
     if (shaded) frame_heights(tree, drawn, framed);
@@ -94,6 +100,7 @@ void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3
             out->x = (int32_t)column;
             out->y = (int32_t)row;
             out->z = drawn->heights[row * side + column] - 32768;
+            if (drop) out->z -= drop[row * side + column];
             if (shaded)
                 ff_shade(&grid, column, row, out->rgba);
             else
@@ -107,9 +114,10 @@ typedef struct grid_point {
     int64_t x, y;
 } grid_point;
 
-/* A node's heights as they are drawn: columns and rows beyond `last` lie on it. */
+/* A node's heights as they are drawn, less `drop` where it is not NULL: columns and rows beyond
+ * `last` lie on it. */
 typedef struct drawn_grid {
-    const uint16_t *heights;
+    const uint16_t *heights, *drop;
     unsigned side;
     grid_point last;
 } drawn_grid;
@@ -119,7 +127,7 @@ static int64_t least(int64_t a, int64_t b) { return a < b ? a : b; }
 /* Heights of a triangle weighted by the areas opposite its vertices; 0 when the point lies
  * outside. */
 static int height_in_triangle(const drawn_grid *grid, const uint16_t triangle[3], grid_point at,
-                              uint64_t *height_q16)
+                              int64_t *height_q16)
 {
     grid_point corner[3];
     for (unsigned i = 0; i < 3; i++) {
@@ -133,33 +141,39 @@ static int height_in_triangle(const drawn_grid *grid, const uint16_t triangle[3]
         if (weight < 0) return 0;
         area += weight;
         sum += weight * grid->heights[triangle[i]];
+        if (grid->drop) sum -= weight * grid->drop[triangle[i]];
     }
     if (area == 0) return 0; /* of padding */
-    *height_q16 = ((uint64_t)(sum / area) << 16) + ((uint64_t)(sum % area) << 16) / (uint64_t)area;
-    FF_ASSERT(*height_q16 <= (uint64_t)UINT16_MAX << 16);
+    int64_t whole = sum / area, part = sum % area;
+    if (part < 0) {
+        whole--;
+        part += area;
+    }
+    *height_q16 = whole * 65536 + (int64_t)(((uint64_t)part << 16) / (uint64_t)area);
+    FF_ASSERT(*height_q16 <= (int64_t)UINT16_MAX << 16);
     return 1;
 }
 
 /* Cells of FULL and INNER: two triangles, diagonal from south-west to north-east. */
-static uint64_t height_in_cell(const drawn_grid *grid, unsigned column, unsigned row, grid_point at)
+static int64_t height_in_cell(const drawn_grid *grid, unsigned column, unsigned row, grid_point at)
 {
     unsigned side = grid->side;
     uint16_t south_west = (uint16_t)(row * side + column),
              north_east = (uint16_t)(south_west + side + 1);
     uint16_t below[3] = { south_west, (uint16_t)(south_west + 1), north_east };
     uint16_t above[3] = { south_west, north_east, (uint16_t)(south_west + side) };
-    uint64_t height_q16 = 0;
+    int64_t height_q16 = 0;
     FF_ASSERT(column + 1 < side && row + 1 < side);
     if (!height_in_triangle(grid, below, at, &height_q16))
         (void)height_in_triangle(grid, above, at, &height_q16);
     return height_q16;
 }
 
-static uint64_t height_in_sides(const ff_tree *tree, const drawn_grid *grid, unsigned coarser,
-                                grid_point at)
+static int64_t height_in_sides(const ff_tree *tree, const drawn_grid *grid, unsigned coarser,
+                               grid_point at)
 {
     uint16_t triangle[2 << FF_NODE_LOG2_MAX][3];
-    uint64_t height_q16 = 0;
+    int64_t height_q16 = 0;
     FF_ASSERT(coarser < 1u << FF_SIDE_COUNT);
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
         unsigned count = ff_side_triangles(tree->ground->node_log2, (enum ff_side)side,
@@ -172,14 +186,17 @@ static uint64_t height_in_sides(const ff_tree *tree, const drawn_grid *grid, uns
     return 0;
 }
 
-static uint64_t height_in_node(const ff_tree *tree, const ff_node *node, grid_point at)
+/* `coarser` as of ff_drawn, or FF_COARSER_UNKNOWN. */
+static int64_t height_in_node(const ff_tree *tree, const ff_node *node, grid_point at,
+                              unsigned coarser, enum ff_lowered how)
 {
     const ff_terrain_info *info = ff_ground_of(tree, node->key);
     unsigned side = ff_node_side(info), last = side - 2,
              cell_log2 = info->tile_log2 - info->node_log2 - ff_key_level(node->key);
     ff_extent extent = ff_shape_extent(info, node->key);
-    const drawn_grid grid = { .heights = tree->heights +
-                                         ff_slot_of(tree, node) * ff_heights_per_node(tree),
+    uint32_t slot = ff_slot_of(tree, node);
+    const drawn_grid grid = { .heights = tree->heights + slot * ff_heights_per_node(tree),
+                              .drop = tree->seams ? ff_seam_drop(tree, slot, how) : NULL,
                               .side = side,
                               .last = { ((int64_t)extent.columns << 16) >> cell_log2,
                                         ((int64_t)extent.rows << 16) >> cell_log2 } };
@@ -188,7 +205,10 @@ static uint64_t height_in_node(const ff_tree *tree, const ff_node *node, grid_po
              row = (unsigned)(least(at.y, grid.last.y - 1) >> 16);
 
     int on_rim = column == 0 || row == 0 || column == last || row == last;
-    unsigned coarser = on_rim ? ff_coarser_mask(tree, node) : 0;
+    if (!on_rim)
+        coarser = 0;
+    else if (coarser == FF_COARSER_UNKNOWN)
+        coarser = ff_coarser_mask(tree, node);
     if (coarser) return height_in_sides(tree, &grid, coarser, at);
     return height_in_cell(&grid, column, row, at);
 }
@@ -235,6 +255,37 @@ static const ff_node *drawn_of(const ff_tree *tree, const ff_terrain_info *info,
     return ff_box_beyond_view(tree, &box) ? NULL : node;
 }
 
+const ff_node *ff_surface_node(const ff_tree *tree, const ff_terrain_info *info,
+                               const int32_t place_wu[2])
+{
+    const int32_t place[3] = { place_wu[0], place_wu[1], tree->view.camera.pos_wu[2] };
+    grid_point at;
+    return drawn_of(tree, info, place, &at);
+}
+
+void ff_patch_make(ff_patch *patch, const ff_tree *tree, const ff_node *node, enum ff_lowered how)
+{
+    patch->tree = tree;
+    patch->node = node;
+    patch->area = ff_area_of(tree, node->key, &node->placed);
+    patch->coarser = ff_coarser_mask(tree, node);
+    patch->how = how;
+}
+
+int32_t ff_patch_z_wu(const ff_patch *patch, const int32_t place_wu[2])
+{
+    const ff_terrain_info *info = ff_ground_of(patch->tree, patch->node->key);
+    const int32_t place[3] = { place_wu[0], place_wu[1], 0 };
+    const ff_area *area = &patch->area;
+    int32_t cell_wu = ff_node_cell_wu(info, ff_key_level(patch->node->key));
+    grid_point at = { (((int64_t)place_wu[0] - area->lo[0]) << 16) / cell_wu,
+                      (((int64_t)place_wu[1] - area->lo[1]) << 16) / cell_wu };
+    FF_ASSERT(place_wu[0] >= area->lo[0] && place_wu[0] <= area->hi[0]);
+    FF_ASSERT(place_wu[1] >= area->lo[1] && place_wu[1] <= area->hi[1]);
+    return ff_shape_z_wu(info, &patch->tree->view.frame, place,
+                         height_in_node(patch->tree, patch->node, at, patch->coarser, patch->how));
+}
+
 /* The node that is seen there from above, and its height: the highest of those drawn. z need not be
  * the ground's: it is looked for under or over the point. */
 static const ff_node *seen_at(const ff_tree *tree, int32_t x_wu, int32_t y_wu, int32_t *z_wu)
@@ -246,8 +297,9 @@ static const ff_node *seen_at(const ff_tree *tree, int32_t x_wu, int32_t y_wu, i
         grid_point at;
         const ff_node *node = drawn_of(tree, info, place_wu, &at);
         if (!node) continue;
-        int32_t here_wu = ff_shape_z_wu(info, &tree->view.frame, place_wu,
-                                        height_in_node(tree, node, at));
+        int32_t here_wu = ff_shape_z_wu(
+            info, &tree->view.frame, place_wu,
+            height_in_node(tree, node, at, FF_COARSER_UNKNOWN, FF_LOWERED_DRAWN));
         if (seen && here_wu <= *z_wu) continue;
         *z_wu = here_wu;
         seen = node;

@@ -1,6 +1,7 @@
 /* The tree as its users see it: creation in one block, arrival of nodes, answers to questions. */
 #include "ff_tree_local.h"
 #include "ff_horizon.h"
+#include "ff_seam.h"
 
 #include <string.h>
 
@@ -37,6 +38,20 @@ static uint32_t sources_of(const ff_tree_desc *desc)
     return desc->source_max ? desc->source_max : 1;
 }
 
+static ff_seams *carve_seams(const ff_tree_desc *desc, block *from)
+{
+    size_t side = ff_node_side(&desc->info);
+    ff_seams *seams = take(from, sizeof *seams);
+    ff_seams parts = { .count = desc->seam_max ? desc->seam_max : desc->node_count / 8 };
+    if (parts.count >= UINT16_MAX) parts.count = UINT16_MAX - 1;
+    parts.of_slot = take(from, desc->node_count * sizeof *parts.of_slot);
+    parts.seam = take(from, parts.count * sizeof *parts.seam);
+    parts.dive = take(from, parts.count * side * side * sizeof *parts.dive);
+    parts.drop = take(from, parts.count * side * side * sizeof *parts.drop);
+    if (seams) *seams = parts;
+    return seams;
+}
+
 static ff_tree *carve(const ff_tree_desc *desc, block *from)
 {
     size_t n = desc->node_count, side = ff_node_side(&desc->info),
@@ -58,7 +73,10 @@ static ff_tree *carve(const ff_tree_desc *desc, block *from)
         parts.horizon = take(from, sizeof *parts.horizon);
         parts.horizon_ahead = take(from, sizeof *parts.horizon);
     }
-    if (parts.ground_max > 1) parts.cover = take(from, sizeof *parts.cover);
+    if (parts.ground_max > 1) {
+        parts.cover = take(from, sizeof *parts.cover);
+        parts.seams = carve_seams(desc, from);
+    }
     if (parts.source_max > 1) {
         parts.sources = take(from, parts.ground_max);
         parts.lacks = take(from, n);
@@ -71,6 +89,7 @@ static int desc_ok(const ff_tree_desc *desc)
 {
     return desc->node_count >= 8 && desc->node_count <= FF_NODES_MAX &&
            desc->wish_count <= FF_NODES_MAX && ff_terrain_check(&desc->info) >= 0 &&
+           desc->seam_max < UINT16_MAX &&
            grounds_of(desc) <= (ff_grounds_built ? FF_GROUNDS_MAX : 1) &&
            sources_of(desc) <= (ff_grounds_built ? FF_SOURCES_MAX : 1);
 }
@@ -90,12 +109,18 @@ ff_tree *ff_tree_create(const ff_tree_desc *desc, void *memory, size_t bytes)
     ff_tree *tree = carve(desc, &from);
     FF_ASSERT(from.used <= bytes);
     tree->window_ahead = tree->window + tree->ground_max;
+    memset(tree->window, 0, 2 * tree->ground_max * sizeof *tree->window);
     tree->ground[0] = desc->info;
     tree->ground_count = 1;
-    if (tree->cover) ff_cover_rank(tree);
     if (tree->lacks) memset(tree->sources, 1, tree->ground_max);
     tree->node_count = tree->free_count = desc->node_count;
     tree->wish_capacity = desc->wish_count;
+    if (tree->cover) {
+        memset(tree->cover, 0, sizeof *tree->cover);
+        ff_cover_rank(tree);
+        memset(tree->seams->of_slot, 0, tree->node_count * sizeof *tree->seams->of_slot);
+        memset(tree->seams->seam, 0, tree->seams->count * sizeof *tree->seams->seam);
+    }
     tree->hidden = desc->hidden;
     if (tree->horizon) {
         memset(tree->horizon, 0, sizeof *tree->horizon);

@@ -86,7 +86,7 @@ typedef struct ff_wish {
 typedef struct ff_drawn {
     ff_key key;
     const ff_node *node;
-    const uint16_t *heights; /* ff_node_side()^2, decoded */
+    const uint16_t *heights; /* ff_node_side()^2, decoded; see ff_tree_drop */
     uint8_t coarser;         /* bit FF_SIDE_x: the neighbour there is one level coarser */
     uint8_t filled;          /* 1: some of its ground was void in the source, and filled */
     uint8_t stub;            /* 1: there is finer ground, but none is stored */
@@ -106,6 +106,8 @@ typedef struct ff_tree_stats {
     uint32_t flat;
     uint32_t stubs;                          /* near enough to split, but nothing finer is stored */
     uint32_t nodes_hidden, triangles_hidden; /* of the cut, in view, by nearer ground */
+    uint32_t seams;       /* nodes in view with vertices lowered for a seam between grounds */
+    uint32_t seams_short; /* that found no room, or could not be lowered far enough */
 } ff_tree_stats;
 
 #define FF_GROUNDS_MAX 16
@@ -120,6 +122,7 @@ typedef struct ff_tree_desc {
     enum ff_hidden hidden;
     uint32_t ground_max; /* grounds at most; 0: 1 */
     uint32_t source_max; /* who may serve a ground, at most; 0: 1 */
+    uint32_t seam_max;   /* of several grounds: nodes in seams; 0: an eighth of node_count */
 } ff_tree_desc;
 
 size_t ff_tree_bytes(const ff_tree_desc *desc);
@@ -189,10 +192,15 @@ uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], int32_t y
  * quarter of the pool. priority of refinements: pixels Q8, in either measure. */
 uint32_t ff_tree_reserve(const ff_tree *tree, ff_wish *list, uint32_t capacity);
 
-/* Vertices of a node for c3d: x, y = column, row (0..2^k), z = height - 32768, colour from height
- * and slope (ff_shade.h) or white when `shaded` is 0. `out` has ff_node_side()^2 entries. Draw with
- * origin ff_drawn.origin_wu - camera, xy_scale cell_wu, z_scale_q16 = hscale_q24 of its ground. */
+/* Vertices of a node for c3d: x, y = column, row (0..2^k), z = height - 32768 less ff_tree_drop,
+ * colour from height and slope (ff_shade.h) or white when `shaded` is 0. `out` has ff_node_side()^2
+ * entries. Draw with origin ff_drawn.origin_wu - camera, xy_scale cell_wu, z_scale_q16 = hscale_q24
+ * of its ground. */
 void ff_tree_vertices(const ff_tree *tree, const ff_drawn *drawn, int shaded, c3d_vertex *out);
+
+/* How many steps lower each of the node's vertices is drawn than its height says, for the seam with
+ * another ground; NULL: none is, or nobody knows, for the node is out of view. */
+const uint16_t *ff_tree_drop(const ff_tree *tree, const ff_drawn *drawn);
 
 /* A caller's word per node slot (mesh handle, say), zeroed when the slot is given to another node,
  * or when the node's shaded vertices have changed because a neighbour arrived. `on_evict` is called

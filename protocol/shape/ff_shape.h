@@ -167,11 +167,13 @@ static inline int ff_shape_locate(const ff_terrain_info *info, const ff_frame *f
     return FF_SHAPE_CALL(info, locate, (info, frame, place_wu, spot));
 }
 
-/* z in the frame of ground at a height of so many steps, Q16, under or over a point. */
+/* z in the frame of ground at a height of so many steps, Q16, under or over a point; below 0 where
+ * it is drawn lower than it is. */
 static inline int32_t ff_shape_z_wu(const ff_terrain_info *info, const ff_frame *frame,
-                                    const int32_t place_wu[3], uint64_t height_q16)
+                                    const int32_t place_wu[3], int64_t height_q16)
 {
-    FF_ASSERT(height_q16 <= (uint64_t)UINT16_MAX << 16);
+    FF_ASSERT(height_q16 <= (int64_t)UINT16_MAX << 16 &&
+              height_q16 >= -((int64_t)UINT16_MAX << 16));
     return FF_SHAPE_CALL(info, z_wu, (info, frame, place_wu, height_q16));
 }
 

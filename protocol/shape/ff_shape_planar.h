@@ -185,10 +185,10 @@ static inline ff_beside ff_planar_neighbour(const ff_terrain_info *info, ff_key 
 /* ---- locate ---- */
 
 static inline int32_t ff_planar_z_wu(const ff_terrain_info *info, const ff_frame *frame,
-                                     const int32_t place_wu[3], uint64_t height_q16)
+                                     const int32_t place_wu[3], int64_t height_q16)
 {
     (void)frame, (void)place_wu;
-    return info->hoffset_wu + (int32_t)(height_q16 * info->hscale_q24 >> 32);
+    return info->hoffset_wu + (int32_t)((height_q16 * (int64_t)info->hscale_q24) >> 32);
 }
 
 /* ---- frame ---- */

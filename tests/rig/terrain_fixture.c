@@ -84,7 +84,7 @@ void fixture_samples(terrain_fixture *fx, uint32_t samples_x, uint32_t samples_y
 void fixture_tree(terrain_fixture *fx, uint32_t node_count, uint32_t wish_count)
 {
     fixture_free(fx);
-    ff_tree_desc desc = { fx->info, node_count, wish_count, fx->hidden, 0, 0 };
+    ff_tree_desc desc = { fx->info, node_count, wish_count, fx->hidden, 0, 0, 0 };
     size_t bytes = ff_tree_bytes(&desc), decoder_bytes = ff_decoder_bytes(&fx->info);
     assert_true(bytes > 0);
     fx->tree_memory = malloc(bytes);

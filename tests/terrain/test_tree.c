@@ -368,7 +368,7 @@ static void trees_need_their_memory(void **state)
     (void)state;
     terrain_fixture fx;
     fixture_make(&fx, 3, 7, 2, 2, fixture_hills);
-    ff_tree_desc desc = { fx.info, 7, 10, FF_HIDDEN_FETCHED, 0, 0 };
+    ff_tree_desc desc = { fx.info, 7, 10, FF_HIDDEN_FETCHED, 0, 0, 0 };
     assert_int_equal(ff_tree_bytes(&desc), 0);
     desc.node_count = 4096;
     size_t bytes = ff_tree_bytes(&desc), per_node = bytes / desc.node_count;

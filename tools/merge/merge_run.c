@@ -8,6 +8,7 @@
 #include "../bake/bake_tiles.h"
 #include "../bake/pack_writer.h"
 #include "../bake/raster/bake_quantise.h"
+#include "../bake/raster/bake_reference.h"
 #include "merge_about.h"
 #include "merge_images.h"
 #include "merge_parts.h"
@@ -123,6 +124,9 @@ static int find_lattice(merge *m)
         if (!merge_about_same_system(&m->unpack[i].pack, &m->unpack[0].pack))
             return refuse_fault(m, i, MERGE_SYSTEM);
     }
+    OGRSpatialReferenceH srs = bake_reference_of(&m->unpack[0].pack);
+    if (!srs) bake_note("the packs name no reference system: taken as places of one plane");
+    if (srs) OSRDestroySpatialReference(srs);
     enum merge_fault fault = merge_lattice_find(info, m->count, &m->lattice, m->place, &which);
     return fault ? refuse_fault(m, which, fault) : 0;
 }

@@ -189,6 +189,9 @@ ff_node_(edge|cell)_wu
     protocol/ff_terrain.h      defines them: nominal lengths
     client/terrain/ff_measure.c  the e of f = d / (e C)
     client/terrain/ff_wish.c   the same, of roots
+    client/terrain/ff_surface.c  a place in a node's grid
+    client/terrain/ff_seam_dive.c  how far the edges of a mesh reach from a vertex
+    client/terrain/ff_seam_rim.c  the same
     client/terrain/ff_cover.c  how far grounds over each other keep from each other's rims, and the steps between tiles
     client/terrain/ff_select.c  hands a node's cell to who draws it
     client/images/ff_textures.c  the e of images

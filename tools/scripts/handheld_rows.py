@@ -44,7 +44,7 @@ PLACES = {  # what each counts to under each mark; None: it has nothing to do th
     "client/terrain/ff_estimate.o client/terrain/ff_spread.o": (None, None, None),  # only when asked for
     "client/terrain/ff_evict.o client/terrain/ff_tree.o": (None, TAKE_IN, STITCH),
     "client/terrain/ff_foresee.o client/terrain/ff_reserve.o client/terrain/ff_wish.o": (None, WISHES, STITCH),
-    "client/terrain/ff_grounds.o client/terrain/ff_cover.o": (None, MEASURE, STITCH),
+    "client/terrain/ff_grounds.o client/terrain/ff_cover.o client/terrain/ff_seam.o client/terrain/ff_seam_dive.o client/terrain/ff_seam_rim.o": (None, MEASURE, STITCH),
     "client/terrain/ff_limit.o client/terrain/ff_measure.o client/terrain/ff_pool.o client/terrain/ff_restrict.o client/terrain/ff_select.o": (None, MEASURE, STITCH),
     "client/terrain/ff_horizon.o client/terrain/ff_horizon_raise.o": (None, HORIZON, None),
     "client/terrain/ff_shade.o client/terrain/ff_sort.o client/terrain/ff_strips.o client/terrain/ff_surface.o": (None, MEASURE, STITCH),
