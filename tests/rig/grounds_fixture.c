@@ -30,7 +30,8 @@ void grounds_tree(grounds_fixture *g, uint32_t node_count, uint32_t wish_count)
                           .wish_count = wish_count,
                           .hidden = g->hidden,
                           .ground_max = g->count,
-                          .source_max = g->source_max };
+                          .source_max = g->source_max,
+                          .seam_max = g->seam_max };
     size_t bytes = ff_tree_bytes(&desc);
     g->memory = malloc(bytes);
     g->tree = ff_tree_create(&desc, g->memory, bytes);

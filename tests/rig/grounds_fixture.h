@@ -6,7 +6,7 @@
 
 typedef struct grounds_fixture {
     terrain_fixture ground[FF_GROUNDS_MAX]; /* each has the same tree */
-    uint32_t count, source_max;             /* source_max: 0 or set before the tree is made */
+    uint32_t count, source_max, seam_max;   /* the last two: 0, or set before the tree is made */
     enum ff_hidden hidden;                  /* alike */
     ff_tree *tree;
     void *memory;
