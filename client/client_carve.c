@@ -23,15 +23,12 @@ static int carve_decoder(ff_client *client, const ff_budget *budget)
     return client->first.intake.decoder ? FF_OK : FF_ERR_MEMORY;
 }
 
-int ff_client_decode(ff_client *client, ff_source *source)
+void ff_client_decode(ff_client *client, ff_source *source)
 {
     const ff_intake *first = &client->first.intake;
     source->intake.decoder = first->decoder;
     source->intake.rgb_bytes = first->rgb_bytes;
     source->intake.rgb = first->rgb;
-    for (unsigned i = 0; i < source->intake.ground_count; i++)
-        if (!ff_codec_supported(source->intake.info[i].codec)) return FF_ERR_UNSUPPORTED;
-    return FF_OK;
 }
 
 static void carve_arriving(ff_client *client, const ff_budget *budget)
@@ -123,6 +120,7 @@ static int carve_all(ff_client *client, unsigned economy)
     FF_ASSERT(client->arena.used == client->fixed_bytes);
     ff_budget_fixed(&budget, &client->desc, client->arena.bytes);
     FF_ASSERT(budget.fixed == client->fixed_bytes);
+    budget.grounds_max = ff_budget_grounds(&client->desc, client->first.intake.ground_count);
     ff_budget_economise(&budget, &client->info, economy);
     int rc = ff_budget_terrain(&budget, !client->desc.use_plain_arrays);
     if (rc == FF_OK) rc = carve_decoder(client, &budget);

@@ -35,13 +35,14 @@ void ff_client_take_pack(ff_source *source)
         source->ground[intake->ground_count].whole = ff_pack_whole(pack);
         intake->info[intake->ground_count++] = pack->header.info;
     }
+    intake->told_count = intake->ground_count;
 }
 
 void ff_client_take_welcome(ff_source *source, const ff_stream_shared *shared)
 {
     ff_intake *intake = &source->intake;
     FF_ASSERT(shared->welcome_count >= 1 && shared->welcome_count <= FF_WELCOME_GROUNDS);
-    intake->ground_count = shared->welcome_count;
+    intake->ground_count = intake->told_count = shared->welcome_count;
     for (unsigned i = 0; i < intake->ground_count; i++) {
         source->ground[i].whole = shared->whole[i];
         intake->info[i] = shared->welcome[i];

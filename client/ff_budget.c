@@ -205,12 +205,13 @@ unsigned ff_budget_links(const ff_client_desc *desc)
     return links;
 }
 
-/* A server may have more than one, a pack on this device has what it was joined with. */
-uint32_t ff_budget_grounds(const ff_client_desc *desc)
+/* Another server may tell of several, a pack on this device has what it was joined with. */
+uint32_t ff_budget_grounds(const ff_client_desc *desc, uint32_t first)
 {
-    uint32_t grounds = ff_grounds_built ? ff_budget_links(desc) * FF_WELCOME_GROUNDS : 1;
-    for (unsigned i = 0; ff_grounds_built && i <= desc->more_count; i++) {
-        const ff_pack *pack = i ? desc->more[i - 1].pack : desc->pack;
+    uint32_t grounds = first;
+    for (unsigned i = 0; ff_grounds_built && i < desc->more_count; i++) {
+        const ff_pack *pack = desc->more[i].pack;
+        if (!pack) grounds += FF_WELCOME_GROUNDS;
         for (; pack; pack = pack->next) grounds++;
     }
     return grounds < FF_GROUNDS_MAX ? grounds : FF_GROUNDS_MAX;
@@ -222,7 +223,7 @@ void ff_budget_fixed(ff_budget *b, const ff_client_desc *desc, size_t block)
     b->desc = desc;
     b->block = block;
     b->links = ff_budget_links(desc);
-    b->grounds_max = ff_budget_grounds(desc);
+    b->grounds_max = ff_budget_grounds(desc, 1);
     FF_POOLS_FIXED(X, PART)
     b->fixed = b->used;
 }

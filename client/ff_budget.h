@@ -142,7 +142,7 @@ typedef struct ff_budget {
     uint8_t has_textures;
     /* what rows have in common */
     unsigned links;       /* sources that are servers */
-    uint32_t grounds_max; /* that may come */
+    uint32_t grounds_max; /* that may come: ff_budget_fixed reckons with one of the first source */
     size_t texels;        /* of the largest image that comes; 0: none does */
     size_t texture_bytes; /* of an image of the ground, on the device */
     uint32_t heights;     /* of a node */
@@ -159,8 +159,8 @@ typedef struct ff_budget {
 
 /* Sources that are servers. */
 unsigned ff_budget_links(const ff_client_desc *desc);
-/* Grounds that may come of all sources. */
-uint32_t ff_budget_grounds(const ff_client_desc *desc);
+/* Grounds that may come of all sources, when the first has so many. */
+uint32_t ff_budget_grounds(const ff_client_desc *desc, uint32_t first);
 /* The pools that outlive a terrain, in a block of so many bytes. */
 void ff_budget_fixed(ff_budget *budget, const ff_client_desc *desc, size_t block);
 /* What of panoramas and images a block can have at a step of economy. */

@@ -117,7 +117,7 @@ int ff_client_carve(ff_client *client);
 void ff_client_uncarve(ff_client *client);
 /* Gives a source the worker's decoder and scratch. FF_OK, or FF_ERR_UNSUPPORTED: this build has not
  * the codec of one of its grounds. */
-int ff_client_decode(ff_client *client, ff_source *source);
+void ff_client_decode(ff_client *client, ff_source *source);
 /* From now on the source is asked. */
 void ff_client_serve(ff_client *client, ff_source *source);
 /* What draws the sky until a terrain is known, where the block has room for it; under the gate (or

@@ -11,8 +11,8 @@ typedef struct ff_intake {
     ff_decoder *decoder; /* common to all intakes of one worker: turned to the ground at hand */
     /* the grounds of who answers, their tiles as its messages number them */
     ff_terrain_info info[FF_WELCOME_GROUNDS];
-    uint8_t ground_count;
-    uint8_t *rgb; /* scratch of one image, RGB888 */
+    uint8_t ground_count, told_count; /* those the client has; all that it was told of */
+    uint8_t *rgb;                     /* scratch of one image, RGB888 */
     size_t rgb_bytes;
     uint16_t *columns; /* scratch: tops and bottoms of a face's columns, 2 * face_size_max */
     uint16_t face_size_max;

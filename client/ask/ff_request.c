@@ -99,13 +99,17 @@ void ff_requests_clear(ff_requests *requests)
     sys_mutex_lock(&requests->mutex);
     for (unsigned i = 0; i < requests->slot_count; i++) {
         ff_request *request = &requests->slot[i];
-        if (request->state == FF_REQUEST_QUEUED)
+        if (request->state == FF_REQUEST_SENT) {
+            request->forgotten = 1;
+            if (!request->cancel) request->cancel = 1;
+        } else if (request->state == FF_REQUEST_QUEUED) {
             free_slot(requests, request, &requests->counts.dropped);
-        else if (request->state != FF_REQUEST_FREE)
+        } else if (request->state != FF_REQUEST_FREE) {
             free_slot(requests, request, &requests->counts.cancelled);
+        }
     }
-    FF_ASSERT(requests->counts.queued + requests->counts.in_flight + requests->counts.arriving ==
-              0);
+    requests->view_id = 0;
+    FF_ASSERT(requests->counts.queued + requests->counts.arriving == 0);
     sys_mutex_unlock(&requests->mutex);
 }
 
@@ -113,7 +117,8 @@ static ff_request *find(ff_requests *requests, unsigned kind, ff_key key)
 {
     for (unsigned i = 0; i < requests->slot_count; i++) {
         ff_request *request = &requests->slot[i];
-        if (request->state != FF_REQUEST_FREE && request->kind == kind && request->key == key)
+        if (request->state != FF_REQUEST_FREE && !request->forgotten && request->kind == kind &&
+            request->key == key)
             return request;
     }
     return NULL;
@@ -442,6 +447,16 @@ int ff_requests_answered(ff_requests *requests, uint16_t id, ff_request *copy)
     }
     sys_mutex_unlock(&requests->mutex);
     return known;
+}
+
+void ff_requests_passed(ff_requests *requests, uint16_t id)
+{
+    sys_mutex_lock(&requests->mutex);
+    FF_ASSERT(id >= 1 && id <= requests->slot_count);
+    ff_request *request = &requests->slot[id - 1];
+    FF_ASSERT(request->state == FF_REQUEST_SENT && request->forgotten);
+    free_slot(requests, request, &requests->counts.cancelled);
+    sys_mutex_unlock(&requests->mutex);
 }
 
 void ff_requests_part(ff_requests *requests, uint16_t id, enum ff_kind kind, ff_key key,

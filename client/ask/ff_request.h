@@ -17,7 +17,8 @@
  *   CANCELLED  -        final: given up before an answer           slot is FREE again
  *
  * Every request ends in exactly one final state; `made` = done + failed + cancelled + dropped +
- * those still in a slot. No two requests with the same kind and key exist at a time.
+ * those still in a slot. No two requests with the same kind and key exist at a time, but for those
+ * that are forgotten: their numbers stay taken until their answers have come.
  *
  * A request that is no longer wanted is dropped while it is not sent. Once it is sent, the answer
  * is let come: some hundred bytes cost less than the message that cancels them. Who asks for
@@ -56,6 +57,7 @@ typedef struct ff_request {
     uint8_t kind, state, rank; /* enums ff_kind, ff_request_state, ff_request_class */
     uint8_t marked;            /* wanted by the ranking under way */
     uint8_t cancel;            /* 1: to be cancelled; 2: the cancellation was sent */
+    uint8_t forgotten;         /* sent for a terrain that is no more: its answer passes by */
     uint16_t named;            /* FF_KIND_VIEW: bit i: what its view names at i has come */
     uint32_t bytes_came;       /* the same: of the answers so far */
     ff_get_panorama panorama;  /* of FF_ASKS_PANORAMA */
@@ -90,7 +92,8 @@ typedef struct ff_requests {
 
 size_t ff_requests_bytes(unsigned in_flight_max);
 void ff_requests_init(ff_requests *requests, unsigned in_flight_max, void *memory);
-/* Forgets every request (another terrain); each one counts as cancelled or dropped. */
+/* Forgets every request (another terrain); each one counts as cancelled or dropped. The connection
+ * may be the same as before: those that are sent are cancelled, and their answers pass by. */
 void ff_requests_clear(ff_requests *requests);
 
 /* ---- main thread ---- */
@@ -134,6 +137,8 @@ uint16_t ff_requests_next_cancel(ff_requests *requests);
 /* A request waiting for an answer: 1 and *copy, or 0: unknown id (stale or nonsense). Checks ask
  * it, too. */
 int ff_requests_answered(ff_requests *requests, uint16_t id, ff_request *copy);
+/* The last answer to a forgotten request has passed by. */
+void ff_requests_passed(ff_requests *requests, uint16_t id);
 /* A part of a view's answer lies on the new-data list. */
 void ff_requests_part(ff_requests *requests, uint16_t id, enum ff_kind kind, ff_key key,
                       uint32_t bytes);

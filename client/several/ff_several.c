@@ -27,7 +27,8 @@ static int add_ground(ff_client *client, ff_source *source, unsigned own)
     ff_terrain_info info = source->intake.info[own];
     uint32_t count;
     const ff_terrain_info *all = ff_tree_grounds(client->tree, &count);
-    int rc = ff_terrain_join(&info, all, all + count - 1);
+    int rc = ff_codec_supported(info.codec) ? ff_terrain_join(&info, all, all + count - 1)
+                                            : FF_ERR_UNSUPPORTED;
     if (rc == FF_OK) rc = ff_tree_add_ground(client->tree, &info);
     if (rc < 0) return rc;
     ground->number = (uint8_t)rc;
@@ -61,7 +62,9 @@ static void tell_sources(ff_client *client)
  * not fit: the source serves those before it, if any. */
 static int join(ff_client *client, ff_source *source, unsigned own)
 {
-    int rc = ff_client_decode(client, source);
+    int rc = FF_OK;
+    ff_client_decode(client, source);
+    source->intake.ground_count = source->intake.told_count;
     for (unsigned i = own; rc == FF_OK && i < source->intake.ground_count; i++) {
         if (!find_ground(client, source, i, &source->ground[i])) rc = add_ground(client, source, i);
         if (rc != FF_OK) source->intake.ground_count = (uint8_t)i;

@@ -8,8 +8,8 @@
 
 /* Vertices of a rim are moved for the seam: so are triangles up to two cells inside of it. */
 #define RIM_CELLS 2
-/* What is drawn beside a node that is left out has cells up to twice as large: they are to lie
- * inside the rim. */
+/* What is drawn beside a node that is left out has cells up to twice as large: they go down deep,
+ * and are to lie inside of those triangles. */
 #define BESIDE_CELLS 2
 
 /* ---- areas ---- */
@@ -172,14 +172,14 @@ void ff_over_begin(ff_over *over, const ff_tree *tree, uint32_t ground, const ff
 {
     over->tree = tree;
     over->area = *area;
-    over->ground = ground;
+    over->info = &tree->ground[ground];
     over->root = tree->root_head;
     over->depth = 0;
 }
 
 static int touches(const ff_over *over, const ff_node *node)
 {
-    ff_area of = ff_area_of(over->tree, node->key, &node->placed);
+    ff_area of = ff_area_in(over->info, node->key, &node->placed);
     return of.lo[0] <= over->area.hi[0] && of.hi[0] >= over->area.lo[0] &&
            of.lo[1] <= over->area.hi[1] && of.hi[1] >= over->area.lo[1];
 }
@@ -192,8 +192,8 @@ static uint32_t next_root(ff_over *over)
         uint32_t slot = over->root;
         const ff_node *root = &tree->node[slot];
         over->root = root->list_next;
-        if (root->flags & FF_NODE_ACTIVE && touches(over, root) &&
-            ff_ground_number(tree, ff_key_tile(root->key)) == over->ground)
+        if (root->flags & FF_NODE_ACTIVE && ff_terrain_has_node(over->info, root->key) &&
+            touches(over, root))
             return slot;
     }
     return FF_SLOT_NONE;
@@ -214,24 +214,40 @@ const ff_node *ff_over_next(ff_over *over)
     }
 }
 
+/* The largest cell of a ground's cut along one side of where it stands, as far as an area goes. */
+static int32_t rim_cell(const ff_tree *tree, uint32_t ground, unsigned side, ff_area along)
+{
+    const ff_area *stands = &tree->cover->stands[ground];
+    int32_t largest_wu = 0;
+    along.lo[side & 1] = along.hi[side & 1] = side & 2 ? stands->hi[side & 1]
+                                                       : stands->lo[side & 1];
+    ff_over over;
+    ff_over_begin(&over, tree, ground, &along);
+    for (const ff_node *node; (node = ff_over_next(&over)) != NULL;) {
+        int32_t cell_wu = ff_node_cell_wu(&tree->ground[ground], ff_key_level(node->key));
+        largest_wu = cell_wu > largest_wu ? cell_wu : largest_wu;
+    }
+    return largest_wu;
+}
+
+void ff_cover_rims(ff_tree *tree, uint32_t ground)
+{
+    for (unsigned side = 0; side < 4; side++)
+        tree->cover->rim_cell_wu[ground][side] = rim_cell(tree, ground, side,
+                                                          tree->cover->stands[ground]);
+}
+
 /* 1 when an area is reached by the cells inside the rim of a ground's cut that the seam moves. */
 static int rim_reaches(const ff_tree *tree, uint32_t ground, const ff_area *area)
 {
     const ff_area *stands = &tree->cover->stands[ground];
-    const ff_terrain_info *info = &tree->ground[ground];
     for (unsigned side = 0; side < 4; side++) {
         unsigned axis = side & 1;
-        int32_t line = side & 2 ? stands->hi[axis] : stands->lo[axis];
-        int64_t away_wu = side & 2 ? (int64_t)line - area->hi[axis]
-                                   : (int64_t)area->lo[axis] - line;
-        if (away_wu > RIM_CELLS * (int64_t)ff_node_cell_wu(info, 0)) continue;
-        ff_area along = *area;
-        along.lo[axis] = along.hi[axis] = line;
-        ff_over over;
-        ff_over_begin(&over, tree, ground, &along);
-        for (const ff_node *node; (node = ff_over_next(&over)) != NULL;)
-            if (away_wu <= RIM_CELLS * (int64_t)ff_node_cell_wu(info, ff_key_level(node->key)))
-                return 1;
+        int64_t away_wu = side & 2 ? (int64_t)stands->hi[axis] - area->hi[axis]
+                                   : (int64_t)area->lo[axis] - stands->lo[axis];
+        if (away_wu <= RIM_CELLS * (int64_t)tree->cover->rim_cell_wu[ground][side] &&
+            away_wu <= RIM_CELLS * (int64_t)rim_cell(tree, ground, side, *area))
+            return 1;
     }
     return 0;
 }
@@ -244,10 +260,10 @@ int ff_cover_hides(const ff_tree *tree, ff_key key)
     ff_area area = key_area(tree, key);
     int64_t margin_wu = BESIDE_CELLS *
                         (int64_t)ff_node_cell_wu(&tree->ground[g], ff_key_level(key));
+    ff_area wide = ff_area_widened(area, margin_wu);
     for (uint32_t rank = 0; rank < cover->rank[g]; rank++) {
         uint32_t f = cover->ranked[rank];
-        if (lies_inside(&area, margin_wu, &cover->stands[f]) && !rim_reaches(tree, f, &area))
-            return 1;
+        if (lies_inside(&wide, 0, &cover->stands[f]) && !rim_reaches(tree, f, &wide)) return 1;
     }
     return 0;
 }

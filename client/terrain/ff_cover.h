@@ -17,8 +17,9 @@ static inline ff_area ff_area_widened(ff_area area, int64_t by_wu)
 /* A walk over the nodes of a ground's cut, and those left out, that touch an area. */
 typedef struct ff_over {
     const ff_tree *tree;
+    const ff_terrain_info *info;
     ff_area area;
-    uint32_t ground, root, depth;
+    uint32_t root, depth;
     uint32_t stack[3 * FF_LEVELS_MAX + 1];
 } ff_over;
 

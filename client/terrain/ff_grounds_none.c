@@ -16,6 +16,7 @@ void ff_cover_rank(ff_tree *tree) { (void)tree; }
 int ff_cover_is_small(const ff_tree *tree, uint32_t ground) { return (void)tree, (void)ground, 0; }
 void ff_cover_stand(ff_tree *tree) { (void)tree; }
 int ff_cover_hides(const ff_tree *tree, ff_key key) { return (void)tree, (void)key, 0; }
+void ff_cover_rims(ff_tree *tree, uint32_t ground) { (void)tree, (void)ground; }
 void ff_cover_roots(ff_tree *tree, uint32_t ground) { (void)tree, (void)ground; }
 int ff_cover_fills(const ff_tree *tree, uint32_t tile) { return (void)tree, (void)tile, 0; }
 int ff_seam_touches(const ff_tree *tree, const ff_node *node) { return (void)tree, (void)node, 0; }

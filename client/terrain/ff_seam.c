@@ -159,12 +159,15 @@ static void lower_rim(ff_tree *tree, uint32_t slot)
     ff_tree_reshape(tree, slot);
 }
 
-static void each_in_view(ff_tree *tree, uint32_t ground, void (*what)(ff_tree *tree, uint32_t slot))
+static void each_in_view(ff_tree *tree, uint32_t ground, int rims)
 {
     for (uint32_t i = 0; i < tree->view_count; i++) {
         const ff_drawn *drawn = &tree->drawn[i];
-        if (ff_ground_number(tree, ff_key_tile(drawn->key)) == ground)
-            what(tree, ff_slot_of(tree, drawn->node));
+        if (ff_ground_number(tree, ff_key_tile(drawn->key)) != ground) continue;
+        if (rims)
+            lower_rim(tree, ff_slot_of(tree, drawn->node));
+        else
+            dive(tree, ff_slot_of(tree, drawn->node));
     }
 }
 
@@ -174,9 +177,9 @@ void ff_seam_make(ff_tree *tree)
     tree->stats.seams = tree->stats.seams_short = 0;
     if (++seams->stamp == 0) seams->stamp = 1;
     for (uint32_t rank = 0; rank < tree->ground_count; rank++)
-        each_in_view(tree, ff_ground_ranked(tree, rank), dive);
+        each_in_view(tree, ff_ground_ranked(tree, rank), 0);
     for (uint32_t rank = tree->ground_count; rank-- > 0;)
-        each_in_view(tree, ff_ground_ranked(tree, rank), lower_rim);
+        each_in_view(tree, ff_ground_ranked(tree, rank), 1);
     for (uint32_t i = 0; i < seams->count; i++) {
         ff_seam *seam = &seams->seam[i];
         if (seam->stamp && seam->stamp != seams->stamp) release(tree, seam);

@@ -4,7 +4,8 @@
  * the rectangle, and inside of it in a ring along its border; beyond the ring it is left out. No
  * mesh changes, only heights:
  *   - g's vertices inside the rectangle are lowered to just below f's surface (the dive): by how
- *     much g is higher than f at the vertex and half-way along its edges. Along the ring's inner
+ *     much g is higher than f at the vertex and, a cell from the border on, half-way along its
+ *     edges. Along the ring's inner
  *     border, where g's sheet ends, they are lowered below all of f there may be along the edges
  *     that meet in them.
  *   - f's vertices on the border are lowered until f's rim lies below g's sheet, as it is drawn,

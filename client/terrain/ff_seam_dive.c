@@ -90,32 +90,60 @@ static meeting meeting_at(const ff_tree *tree, const ff_terrain_info *info,
     return found;
 }
 
-/* How much a ground is higher than one before it at a place where both are drawn; INT32_MIN where
- * not. */
-static int32_t higher_by(const ff_tree *tree, const ff_terrain_info *info,
-                         const ff_terrain_info *over, const int32_t place_wu[2])
+/* A ground that dives, and one that it dives under, where they were asked last. */
+typedef struct pair {
+    const ff_tree *tree;
+    const ff_terrain_info *info, *over;
+    uint32_t f; /* number of the one over it */
+    ff_patch own, other;
+} pair;
+
+/* The ground's node at a place; 0: none is drawn there. Inside the last one it is not looked for;
+ * on a border always, so that it does not matter who asks. */
+static int find_patch(const ff_tree *tree, const ff_terrain_info *info, const int32_t place_wu[2],
+                      enum ff_lowered how, ff_patch *patch)
 {
-    const ff_node *own = ff_surface_node(tree, info, place_wu),
-                  *other = ff_surface_node(tree, over, place_wu);
-    if (!own || !other) return INT32_MIN;
-    int64_t by_wu = (int64_t)ff_surface_z_wu(tree, own, place_wu, FF_LOWERED_NOT) -
-                    ff_surface_z_wu(tree, other, place_wu, FF_LOWERED_DIVED);
+    if (patch->node && holds(&patch->area, place_wu)) return 1;
+    const ff_node *node = ff_surface_node(tree, info, place_wu);
+    if (!node) return 0;
+    if (node != patch->node) ff_patch_make(patch, tree, node, how);
+    return 1;
+}
+
+/* How much it is higher at a place where both are drawn; INT32_MIN where not. */
+static int32_t higher_by(pair *p, const int32_t place_wu[2])
+{
+    if (!find_patch(p->tree, p->info, place_wu, FF_LOWERED_NOT, &p->own) ||
+        !find_patch(p->tree, p->over, place_wu, FF_LOWERED_DIVED, &p->other))
+        return INT32_MIN;
+    int64_t by_wu = (int64_t)ff_patch_z_wu(&p->own, place_wu) - ff_patch_z_wu(&p->other, place_wu);
     return by_wu > INT32_MAX ? INT32_MAX : by_wu < -INT32_MAX ? -INT32_MAX : (int32_t)by_wu;
 }
 
-/* The same at a vertex and half-way along the edges that meet there, at most; inside the
- * rectangle. */
-static int32_t highest_by(const ff_tree *tree, const ff_terrain_info *info, uint32_t f,
-                          const int32_t place_wu[2], int32_t cell_wu)
+/* 1 when edges that meet in a place may run over the rim. */
+static int near_rim(const ff_area *stands, const int32_t place_wu[2], int32_t cell_wu)
+{
+    for (unsigned axis = 0; axis < 2; axis++)
+        if ((int64_t)place_wu[axis] - cell_wu <= stands->lo[axis] ||
+            (int64_t)place_wu[axis] + cell_wu >= stands->hi[axis])
+            return 1;
+    return 0;
+}
+
+/* The same at a vertex and half-way along the edges that meet there, at most. Near the rim at the
+ * vertex alone: how much further down it goes is seen as a ditch outside. */
+static int32_t highest_by(pair *p, const int32_t place_wu[2], int32_t cell_wu)
 {
     static const int8_t way[][2] = { { 0, 0 },  { 1, 0 }, { -1, 0 }, { 0, 1 },
                                      { 0, -1 }, { 1, 1 }, { -1, -1 } };
+    unsigned count = near_rim(&p->tree->cover->stands[p->f], place_wu, cell_wu)
+                         ? 1
+                         : sizeof way / sizeof way[0];
     int32_t most = INT32_MIN;
-    for (unsigned i = 0; i < sizeof way / sizeof way[0]; i++) {
+    for (unsigned i = 0; i < count; i++) {
         const int32_t at_wu[2] = { place_wu[0] + way[i][0] * (cell_wu / 2),
                                    place_wu[1] + way[i][1] * (cell_wu / 2) };
-        if (!holds(&tree->cover->stands[f], at_wu)) continue;
-        int32_t by_wu = higher_by(tree, info, &tree->ground[f], at_wu);
+        int32_t by_wu = higher_by(p, at_wu);
         most = by_wu > most ? by_wu : most;
     }
     return most;
@@ -158,40 +186,51 @@ static int on_rim(const ff_area *stands, const int32_t place_wu[2])
            place_wu[1] == stands->lo[1] || place_wu[1] == stands->hi[1];
 }
 
-/* How far a vertex at a height dives under one ground. */
-static int64_t dive_under(const ff_tree *tree, const ff_terrain_info *info, uint32_t f,
-                          const int32_t place_wu[3], const meeting *meet)
+/* How far a vertex at a height dives. */
+static int64_t dive_of(pair *p, const int32_t place_wu[3], const meeting *meet)
 {
-    int64_t sag_wu = ff_shape_drop_wu(info, meet->cell_wu, 0),
-            by_wu = highest_by(tree, info, f, place_wu, meet->cell_wu);
+    const ff_area *own = &p->tree->cover->stands[p->info - p->tree->ground];
+    int64_t sag_wu = ff_shape_drop_wu(p->info, meet->cell_wu, 0),
+            by_wu = highest_by(p, place_wu, meet->cell_wu);
     /* as far below as one step is: what agrees is not to flicker */
-    if (by_wu > INT32_MIN) by_wu += ff_steps_wu(info, 1) + MARGIN_WU + sag_wu;
-    if (!meet->ends && !on_rim(&tree->cover->stands[info - tree->ground], place_wu)) return by_wu;
-    int32_t lowest_wu = lowest_beside(tree, f, place_wu, meet->cell_wu);
+    if (by_wu > INT32_MIN) by_wu += ff_steps_wu(p->info, 1) + MARGIN_WU + sag_wu;
+    if (!meet->ends && !on_rim(own, place_wu)) return by_wu;
+    int32_t lowest_wu = lowest_beside(p->tree, p->f, place_wu, meet->cell_wu);
     if (lowest_wu == INT32_MAX) return by_wu;
     int64_t end_wu = (int64_t)place_wu[2] - lowest_wu + MARGIN_WU + sag_wu;
     return end_wu > by_wu ? end_wu : by_wu;
 }
 
-int ff_seam_dive(const ff_tree *tree, const ff_node *node, uint16_t *dive)
+/* Dives under one ground. 0 when a vertex should go too deep. */
+static int dive_under(pair *p, const ff_node *node, uint16_t *dive)
 {
-    const ff_cover *cover = tree->cover;
-    const ff_terrain_info *info = ff_ground_of(tree, node->key);
+    const ff_tree *tree = p->tree;
     const uint16_t *height = tree->heights + ff_slot_of(tree, node) * ff_heights_per_node(tree);
-    uint32_t side = ff_node_side(info), before = cover->rank[info - tree->ground];
+    ff_area area = ff_area_of(tree, node->key, &node->placed);
+    uint32_t side = ff_node_side(p->info);
     int deep = 0;
     for (uint32_t i = 0; i < side * side; i++) {
         int32_t place_wu[3];
-        int64_t by_wu = 0;
-        meeting meet = { 0, 0 };
-        ff_shape_place(info, node->key, &node->placed, i % side, i / side, height[i], place_wu);
-        for (uint32_t rank = 0; rank < before; rank++) {
-            if (!holds(&cover->stands[cover->ranked[rank]], place_wu)) continue;
-            if (!meet.cell_wu) meet = meeting_at(tree, info, place_wu);
-            int64_t under_wu = dive_under(tree, info, cover->ranked[rank], place_wu, &meet);
-            by_wu = under_wu > by_wu ? under_wu : by_wu;
-        }
-        if (by_wu > 0) deep |= !ff_seam_lower(&dive[i], ff_seam_steps(info, by_wu));
+        meeting meet = { ff_node_cell_wu(p->info, ff_key_level(node->key)), 0 };
+        ff_shape_place(p->info, node->key, &node->placed, i % side, i / side, height[i], place_wu);
+        if (!holds(&tree->cover->stands[p->f], place_wu)) continue;
+        if (!holds(&area, place_wu)) meet = meeting_at(tree, p->info, place_wu);
+        int64_t by_wu = dive_of(p, place_wu, &meet);
+        if (by_wu > 0) deep |= !ff_seam_lower(&dive[i], ff_seam_steps(p->info, by_wu));
     }
     return !deep;
+}
+
+int ff_seam_dive(const ff_tree *tree, const ff_node *node, uint16_t *dive)
+{
+    const ff_cover *cover = tree->cover;
+    pair p = { .tree = tree, .info = ff_ground_of(tree, node->key) };
+    int enough = 1;
+    for (uint32_t rank = 0; rank < cover->rank[p.info - tree->ground]; rank++) {
+        p.f = cover->ranked[rank];
+        p.over = &tree->ground[p.f];
+        p.other.node = NULL;
+        enough &= dive_under(&p, node, dive);
+    }
+    return enough;
 }

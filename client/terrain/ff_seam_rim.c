@@ -58,8 +58,7 @@ typedef struct segment {
 
 /* A node of a ground after it, as the segment sees it: places of its vertices along and across. */
 typedef struct under {
-    const ff_tree *tree;
-    const ff_node *node;
+    ff_patch patch;
     int32_t along_wu[SIDE_MAX], across_wu[SIDE_MAX];
     int32_t from_wu, to_wu; /* the part of the segment that lies on it */
     unsigned last;
@@ -77,7 +76,7 @@ static int64_t above_at(const segment *s, const under *u, int64_t along_wu, int6
         place_wu[s->axis] = (int32_t)at;
         place_wu[!s->axis] = s->at_wu;
         int64_t z_wu = s->z_wu[0] + rise * (at - s->from_wu) / run + 1,
-                by_wu = z_wu - ff_surface_z_wu(u->tree, u->node, place_wu, FF_LOWERED_DRAWN);
+                by_wu = z_wu - ff_patch_z_wu(&u->patch, place_wu);
         most_wu = by_wu > most_wu ? by_wu : most_wu;
     }
     return most_wu;
@@ -102,7 +101,7 @@ static int64_t above_edge(const segment *s, const under *u, int i, int j, int k,
 static int64_t above_node(const segment *s, const under *u)
 {
     int64_t most_wu = above_at(s, u, u->from_wu, above_at(s, u, u->to_wu - 1, INT64_MIN));
-    int reach = ff_coarser_mask(u->tree, u->node) ? 2 : 1;
+    int reach = u->patch.coarser ? 2 : 1;
     for (int j = 0; j < (int)u->last; j++) {
         if (u->across_wu[j + 1] < s->at_wu || (j > 0 && u->across_wu[j - 1] > s->at_wu)) continue;
         for (int i = 0; i <= (int)u->last; i++) {
@@ -120,18 +119,20 @@ static int64_t above_node(const segment *s, const under *u)
 /* A place is rounded by no more than this makes of heights. */
 static int64_t slope_margin(const under *u)
 {
-    const ff_terrain_info *info = ff_ground_of(u->tree, u->node->key);
-    uint32_t slot = ff_slot_of(u->tree, u->node);
-    const uint16_t *drop = ff_seam_drop(u->tree, slot, FF_LOWERED_DRAWN),
-                   *height = u->tree->heights + slot * ff_heights_per_node(u->tree);
+    const ff_tree *tree = u->patch.tree;
+    const ff_node *node = u->patch.node;
+    const ff_terrain_info *info = ff_ground_of(tree, node->key);
+    uint32_t slot = ff_slot_of(tree, node);
+    const uint16_t *drop = ff_seam_drop(tree, slot, FF_LOWERED_DRAWN),
+                   *height = tree->heights + slot * ff_heights_per_node(tree);
     int32_t lowest = INT32_MAX, highest = INT32_MIN;
-    for (size_t i = 0; i < ff_heights_per_node(u->tree); i++) {
+    for (size_t i = 0; i < ff_heights_per_node(tree); i++) {
         int32_t at = height[i] - (drop ? drop[i] : 0);
         lowest = at < lowest ? at : lowest;
         highest = at > highest ? at : highest;
     }
     int64_t range_wu = ((int64_t)(highest - lowest) * info->hscale_q24) >> 16,
-            cell_wu = ff_node_cell_wu(info, ff_key_level(u->node->key));
+            cell_wu = ff_node_cell_wu(info, ff_key_level(node->key));
     return MARGIN_WU + 3 * (range_wu / cell_wu + 1) + ff_shape_drop_wu(info, cell_wu, 0);
 }
 
@@ -139,10 +140,11 @@ static int64_t slope_margin(const under *u)
 static int64_t need_under(const ff_tree *tree, const segment *s, const ff_node *node)
 {
     const ff_terrain_info *info = ff_ground_of(tree, node->key);
-    ff_area area = ff_area_of(tree, node->key, &node->placed);
-    under u = { .tree = tree, .node = node, .last = ff_node_side(info) - 1 };
-    u.from_wu = s->from_wu > area.lo[s->axis] ? s->from_wu : area.lo[s->axis];
-    u.to_wu = s->to_wu < area.hi[s->axis] ? s->to_wu : area.hi[s->axis];
+    under u = { .last = ff_node_side(info) - 1 };
+    ff_patch_make(&u.patch, tree, node, FF_LOWERED_DRAWN);
+    const ff_area *area = &u.patch.area;
+    u.from_wu = s->from_wu > area->lo[s->axis] ? s->from_wu : area->lo[s->axis];
+    u.to_wu = s->to_wu < area->hi[s->axis] ? s->to_wu : area->hi[s->axis];
     for (unsigned i = 0; i <= u.last; i++) {
         int32_t place_wu[3];
         ff_shape_place(info, node->key, &node->placed, i, i, 0, place_wu);

@@ -191,6 +191,7 @@ static void make_cut(ff_tree *tree)
         want_by_measure(tree, g);
         ff_want_close(tree);
         split_cut(tree, g);
+        if (tree->cover) ff_cover_rims(tree, g);
     }
 }
 

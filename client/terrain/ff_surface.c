@@ -186,8 +186,9 @@ static int64_t height_in_sides(const ff_tree *tree, const drawn_grid *grid, unsi
     return 0;
 }
 
+/* `coarser` as of ff_drawn, or FF_COARSER_UNKNOWN. */
 static int64_t height_in_node(const ff_tree *tree, const ff_node *node, grid_point at,
-                              enum ff_lowered how)
+                              unsigned coarser, enum ff_lowered how)
 {
     const ff_terrain_info *info = ff_ground_of(tree, node->key);
     unsigned side = ff_node_side(info), last = side - 2,
@@ -204,7 +205,10 @@ static int64_t height_in_node(const ff_tree *tree, const ff_node *node, grid_poi
              row = (unsigned)(least(at.y, grid.last.y - 1) >> 16);
 
     int on_rim = column == 0 || row == 0 || column == last || row == last;
-    unsigned coarser = on_rim ? ff_coarser_mask(tree, node) : 0;
+    if (!on_rim)
+        coarser = 0;
+    else if (coarser == FF_COARSER_UNKNOWN)
+        coarser = ff_coarser_mask(tree, node);
     if (coarser) return height_in_sides(tree, &grid, coarser, at);
     return height_in_cell(&grid, column, row, at);
 }
@@ -259,18 +263,27 @@ const ff_node *ff_surface_node(const ff_tree *tree, const ff_terrain_info *info,
     return drawn_of(tree, info, place, &at);
 }
 
-int32_t ff_surface_z_wu(const ff_tree *tree, const ff_node *node, const int32_t place_wu[2],
-                        enum ff_lowered how)
+void ff_patch_make(ff_patch *patch, const ff_tree *tree, const ff_node *node, enum ff_lowered how)
 {
-    const ff_terrain_info *info = ff_ground_of(tree, node->key);
+    patch->tree = tree;
+    patch->node = node;
+    patch->area = ff_area_of(tree, node->key, &node->placed);
+    patch->coarser = ff_coarser_mask(tree, node);
+    patch->how = how;
+}
+
+int32_t ff_patch_z_wu(const ff_patch *patch, const int32_t place_wu[2])
+{
+    const ff_terrain_info *info = ff_ground_of(patch->tree, patch->node->key);
     const int32_t place[3] = { place_wu[0], place_wu[1], 0 };
-    ff_area area = ff_area_of(tree, node->key, &node->placed);
-    int32_t cell_wu = ff_node_cell_wu(info, ff_key_level(node->key));
-    grid_point at = { (((int64_t)place_wu[0] - area.lo[0]) << 16) / cell_wu,
-                      (((int64_t)place_wu[1] - area.lo[1]) << 16) / cell_wu };
-    FF_ASSERT(place_wu[0] >= area.lo[0] && place_wu[0] <= area.hi[0]);
-    FF_ASSERT(place_wu[1] >= area.lo[1] && place_wu[1] <= area.hi[1]);
-    return ff_shape_z_wu(info, &tree->view.frame, place, height_in_node(tree, node, at, how));
+    const ff_area *area = &patch->area;
+    int32_t cell_wu = ff_node_cell_wu(info, ff_key_level(patch->node->key));
+    grid_point at = { (((int64_t)place_wu[0] - area->lo[0]) << 16) / cell_wu,
+                      (((int64_t)place_wu[1] - area->lo[1]) << 16) / cell_wu };
+    FF_ASSERT(place_wu[0] >= area->lo[0] && place_wu[0] <= area->hi[0]);
+    FF_ASSERT(place_wu[1] >= area->lo[1] && place_wu[1] <= area->hi[1]);
+    return ff_shape_z_wu(info, &patch->tree->view.frame, place,
+                         height_in_node(patch->tree, patch->node, at, patch->coarser, patch->how));
 }
 
 /* The node that is seen there from above, and its height: the highest of those drawn. z need not be
@@ -284,8 +297,9 @@ static const ff_node *seen_at(const ff_tree *tree, int32_t x_wu, int32_t y_wu, i
         grid_point at;
         const ff_node *node = drawn_of(tree, info, place_wu, &at);
         if (!node) continue;
-        int32_t here_wu = ff_shape_z_wu(info, &tree->view.frame, place_wu,
-                                        height_in_node(tree, node, at, FF_LOWERED_DRAWN));
+        int32_t here_wu = ff_shape_z_wu(
+            info, &tree->view.frame, place_wu,
+            height_in_node(tree, node, at, FF_COARSER_UNKNOWN, FF_LOWERED_DRAWN));
         if (seen && here_wu <= *z_wu) continue;
         *z_wu = here_wu;
         seen = node;

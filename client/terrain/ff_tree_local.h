@@ -130,6 +130,8 @@ typedef struct ff_cover {
     uint8_t ranked[FF_GROUNDS_MAX],
         rank[FF_GROUNDS_MAX];       /* numbers in order, and the place there */
     ff_area stands[FF_GROUNDS_MAX]; /* where each ground is drawn, unless one before it is */
+    /* of each, the largest cell along its west, south, east and north rim */
+    int32_t rim_cell_wu[FF_GROUNDS_MAX][4];
 } ff_cover;
 
 /* Puts the grounds in order. */
@@ -142,6 +144,8 @@ void ff_cover_stand(ff_tree *tree);
 /* 1 when a node is left out because a ground before its own is drawn there: once the cut of those
  * is made. */
 int ff_cover_hides(const ff_tree *tree, ff_key key);
+/* Looks at the rims of a ground's cut, once it is made. */
+void ff_cover_rims(ff_tree *tree, uint32_t ground);
 /* Roots of a ground that are left out stop being active. */
 void ff_cover_roots(ff_tree *tree, uint32_t ground);
 /* 1 when another ground stands all over a tile. */
@@ -197,13 +201,17 @@ static inline const ff_terrain_info *ff_ground_of(const ff_tree *tree, ff_key ke
     return ff_ground_of_tile(tree, ff_key_tile(key));
 }
 
-static inline ff_area ff_area_of(const ff_tree *tree, ff_key key, const ff_placed *placed)
+static inline ff_area ff_area_in(const ff_terrain_info *info, ff_key key, const ff_placed *placed)
 {
     static const int64_t height_wu[2] = { 0, 0 };
     static const int32_t from_wu[3] = { 0, 0, 0 };
-    ff_box box = ff_shape_box(ff_ground_of(tree, key), key, placed, height_wu, from_wu);
+    ff_box box = ff_shape_box(info, key, placed, height_wu, from_wu);
     return (ff_area){ { (int32_t)box.lo[0], (int32_t)box.lo[1] },
                       { (int32_t)box.hi[0], (int32_t)box.hi[1] } };
+}
+static inline ff_area ff_area_of(const ff_tree *tree, ff_key key, const ff_placed *placed)
+{
+    return ff_area_in(ff_ground_of(tree, key), key, placed);
 }
 
 /* All grounds have nodes of one size. */
@@ -327,9 +335,17 @@ int ff_node_seen(const ff_tree *tree, const ff_node *node, const ff_box *box);
 /* A ground's node drawn over or under a place, NULL where there is none. */
 const ff_node *ff_surface_node(const ff_tree *tree, const ff_terrain_info *info,
                                const int32_t place_wu[2]);
-/* Height of a node's surface at a place on it. */
-int32_t ff_surface_z_wu(const ff_tree *tree, const ff_node *node, const int32_t place_wu[2],
-                        enum ff_lowered how);
+/* A drawn node that is asked for heights: found once, for its border is dear to know. */
+typedef struct ff_patch {
+    const ff_tree *tree;
+    const ff_node *node; /* NULL: none */
+    ff_area area;
+    unsigned coarser;
+    enum ff_lowered how;
+} ff_patch;
+void ff_patch_make(ff_patch *patch, const ff_tree *tree, const ff_node *node, enum ff_lowered how);
+/* Height of its surface at a place on it. */
+int32_t ff_patch_z_wu(const ff_patch *patch, const int32_t place_wu[2]);
 
 /* ff_restrict.c */
 unsigned ff_coarser_mask(const ff_tree *tree, const ff_node *node);

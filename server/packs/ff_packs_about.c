@@ -48,6 +48,7 @@ static void collect(const ff_pack *pack, unsigned type, int is_text, text *t)
 ff_list ff_packs_about(const ff_pack *pack, uint8_t bytes[FF_ABOUT_BYTES_MAX])
 {
     ff_writer out = { bytes, bytes + FF_ABOUT_BYTES_MAX, FF_OK };
+    ff_list alone;
     enum { TEXT, NUMBERS, CHECKSUM };
     static const struct {
         uint8_t type, form;
@@ -57,6 +58,11 @@ ff_list ff_packs_about(const ff_pack *pack, uint8_t bytes[FF_ABOUT_BYTES_MAX])
         FF_ABOUT_LIST(X)
 #undef X
     };
+    if (!pack->next) {
+        if (ff_pack_about(pack, &alone) != FF_OK) return (ff_list){ bytes, 0 };
+        memcpy(bytes, alone.bytes, alone.byte_count);
+        return (ff_list){ bytes, alone.byte_count };
+    }
     for (size_t i = 0; i < sizeof row / sizeof *row; i++) {
         static text t; /* a process serves one request at a time */
         t.count = 0;

@@ -263,6 +263,117 @@ static void a_server_that_changes_its_pack_is_taken_anew(void **state)
     close_server(&beside);
 }
 
+static uint32_t asked_of(const client_rig *rig)
+{
+    uint32_t asked = 0;
+    for (int kind = 0; kind < FF_KIND_COUNT; kind++) asked += rig->asked[kind];
+    return asked;
+}
+
+/* It is told of again at each connection. */
+static void a_ground_that_fits_not_makes_nothing_come_twice(void **state)
+{
+    (void)state;
+    const int east_m[][2] = { { 0, 9000000 }, { 7000000, 9000000 } };
+    for (int i = 0; i < 2; i++) {
+        client_rig rig, beside, far;
+        rig_open(&rig, 0);
+        rig_use_place(&rig, UTM, 500000, 5000000);
+        rig_open(&beside, 0);
+        rig_use_place(&beside, UTM, 500000 + east_m[i][0], 5000000 + (i ? 0 : WIDE));
+        rig_open(&far, 0);
+        rig_use_place(&far, UTM, 500000 + east_m[i][1], 5000000);
+        if (i == 0) far.pack.header.info.codec = FF_CODEC_COUNT; /* one that is not built in */
+        ff_source_desc more[2] = { { .stream = &beside.stream } };
+        rig.desc.more = more;
+        rig.desc.more_count = 1;
+        if (i == 0) {
+            more[1].pack = &far.pack;
+            rig.desc.more_count = 2;
+        } else {
+            assert_int_equal(ff_pack_join(&beside.pack, &far.pack), FF_OK);
+        }
+        rig_client(&rig, 8 * MB);
+        for (int n = 0; n < 40; n++) rig_step(&rig, 50000);
+        look_around(&rig);
+        uint32_t count, of_rig = asked_of(&rig), of_beside = asked_of(&beside);
+        (void)ff_tree_grounds(ff_client_tree(rig.client), &count);
+        assert_int_equal(count, 2);
+        assert_int_equal(ff_client_source_state(rig.client, 1 + !i),
+                         i ? FF_ERR_RANGE : FF_ERR_UNSUPPORTED);
+        beside.cut_at = beside.bytes_down;
+        for (int n = 0; n < 200; n++) rig_step(&rig, 50000);
+        look_around(&rig);
+        assert_true(beside.connections > 1);
+        assert_int_equal(asked_of(&rig), of_rig);
+        assert_int_equal(asked_of(&beside), of_beside);
+        rig_close(&rig);
+        close_server(&beside);
+        close_server(&far);
+    }
+}
+
+/* How many nodes both draw, all of them of the same heights; -1: some are not. */
+static int same_heights(const client_rig *a, const client_rig *b)
+{
+    const ff_drawn *list_a, *list_b;
+    uint32_t count_a = ff_tree_drawn(ff_client_tree(a->client), &list_a),
+             count_b = ff_tree_drawn(ff_client_tree(b->client), &list_b);
+    unsigned side = ff_node_side(ff_client_terrain(a->client));
+    int same = 0;
+    for (uint32_t i = 0; i < count_a; i++)
+        for (uint32_t j = 0; j < count_b; j++) {
+            if (list_a[i].key != list_b[j].key) continue;
+            if (memcmp(list_a[i].heights, list_b[j].heights, side * side * sizeof(uint16_t)) != 0)
+                return -1;
+            same++;
+        }
+    return same;
+}
+
+/* A slow server has answers on their way while another one's grounds are put together anew. */
+static void answers_on_their_way_are_not_taken_for_others(void **state)
+{
+    (void)state;
+    for (unsigned changed = 4; changed < 64; changed += 5) {
+        client_rig rig, beside, calm, other;
+        rig_open(&rig, 0);
+        rig_use_place(&rig, UTM, 500000, 5000000);
+        rig_open(&beside, 0);
+        rig_use_place(&beside, UTM, 500000 + WIDE, 5000000);
+        ff_source_desc more = { .stream = &beside.stream };
+        rig.desc.more = &more;
+        rig.desc.more_count = 1;
+        rig.chop = 3;
+        rig_client(&rig, 8 * MB);
+        for (unsigned n = 0; n < changed; n++) rig_step(&rig, 50000);
+        rig_change_terrain(&beside);
+        for (unsigned n = 0; n < 60; n++) rig_step(&rig, 50000);
+        rig.chop = 0;
+        look_around(&rig);
+        assert_int_equal(rig_stats(&rig).protocol_errors, 0);
+        assert_int_equal(rig_stats(&rig).requests_failed, 0);
+        assert_int_equal(rig.connections, 1);
+        /* the same as if it had always been so */
+        rig_open(&calm, 0);
+        rig_use_place(&calm, UTM, 500000, 5000000);
+        rig_open(&other, 0);
+        rig_use_place(&other, UTM, 500000 + WIDE, 5000000);
+        rig_change_terrain(&other);
+        ff_source_desc more_calm = { .stream = &other.stream };
+        calm.desc.more = &more_calm;
+        calm.desc.more_count = 1;
+        rig_client(&calm, 8 * MB);
+        for (int n = 0; n < 40; n++) rig_step(&calm, 50000);
+        look_around(&calm);
+        assert_true(same_heights(&rig, &calm) > 20);
+        rig_close(&calm);
+        close_server(&other);
+        rig_close(&rig);
+        close_server(&beside);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -273,6 +384,8 @@ int main(void)
         cmocka_unit_test(a_server_of_several_packs_gives_all_of_them),
         cmocka_unit_test(what_fits_no_ground_is_told_and_left_out),
         cmocka_unit_test(a_server_that_changes_its_pack_is_taken_anew),
+        cmocka_unit_test(a_ground_that_fits_not_makes_nothing_come_twice),
+        cmocka_unit_test(answers_on_their_way_are_not_taken_for_others),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

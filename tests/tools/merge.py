@@ -210,6 +210,24 @@ def _():
     assert void[:261, :261][holed == -9999].all() and void.sum() < 2 * (holed == -9999).sum(), (void.sum(), (holed == -9999).sum())
 
 
+@case("ground that was filled in the finer pack gives way to coarse ground that was measured")
+def _():
+    coarse = pack("coarse", COUNTRY[::4, ::4] + 500, spacing=40)
+    holed = COUNTRY[200:361, 200:361].copy()
+    holed[40:121, 40:121] = -9999
+    fine = pack("fine", holed, x=2000, y=2000, nodata=-9999)
+    for order in (coarse, fine), (fine, coarse):
+        merge(*order)
+        have = read("joint.ffp")[0]
+        assert (have[256:305:4, 256:305:4] == COUNTRY[256:305:4, 256:305:4] + 500).all()  # well within the hole
+        assert (have[200:230, 200:361] == holed[:30]).all()  # well beside it
+        done = run("export", "joint.ffp", "-o", "told.tif", "--voids", "nodata")
+        assert done.returncode == 0, done.stderr
+        told = gdal.Open(os.path.join(work, "told.tif"))
+        void = told.GetRasterBand(1).GetNoDataValue()
+        assert void is None or not (told.ReadAsArray() == void).any()
+
+
 WAVES = np.array([np.clip(128 + 100 * np.sin(np.arange(641)[None, :] / (9 + band)) * np.cos(np.arange(641)[:, None] / 7), 0, 255) for band in range(3)])
 
 

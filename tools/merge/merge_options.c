@@ -16,8 +16,9 @@ static const sys_program program = {
     .about =
         "Joins packs on one lattice to one pack: parts that were baked apart, fine ground in coarse "
         "ground, or parts cut from one pack by farfield-export --region. Where packs lie over each "
-        "other the finer one holds, else the one named first; heights stay bit for bit. Parts of a "
-        "raster give the pack that the raster gives in one piece.",
+        "other the finer one holds, else the one named first; heights stay bit for bit, and ground "
+        "that was filled gives way. Parts of a raster give the pack that the raster gives in one "
+        "piece.",
     .more = "Packs are on one lattice when they have the same reference system and height step, "
             "spacings a power of two apart, and the coarser ones' samples among the places of the "
             "finer ones: farfield-bake --lattice PACK makes such packs. What no pack covers within "

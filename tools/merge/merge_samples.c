@@ -44,13 +44,14 @@ static int put_fill(const merge_samples *m, const stretch *s)
     return 0;
 }
 
-/* What is within a pack's reach is not filled. */
+/* What is within a pack's reach is between its samples, not filled. */
 static void put_reach(const merge_layer *layer, const stretch *s)
 {
     const merge_rectangle *r = &layer->reach;
-    uint32_t first = most(s->first, r->left), end = least(s->end, r->right + 1);
-    if (s->row < r->bottom || s->row > r->top || first >= end) return;
-    memset(s->marks + (first - s->first), BAKE_BETWEEN, end - first);
+    if (s->row < r->bottom || s->row > r->top) return;
+    for (uint32_t at = most(s->first, r->left); at < least(s->end, r->right + 1); at++)
+        if (s->marks[at - s->first] == (BAKE_BETWEEN | BAKE_FILLED))
+            s->marks[at - s->first] = BAKE_BETWEEN;
 }
 
 /* ---- packs ---- */
@@ -80,8 +81,10 @@ static int put_samples(const merge_layer *layer, uint32_t row, uint32_t first, u
         return -1;
     for (uint32_t i = 0; i < count; i++) {
         uint32_t at = layer->place.left + ((first + i) << layer->place.apart_log2) - s->first;
+        int is_filled = mask[i] == EXPORT_FILLED;
+        if (is_filled && !(s->marks[at] & BAKE_FILLED)) continue; /* there is other ground */
         if (put_height(layer, height[i], &s->heights[at])) return -1;
-        s->marks[at] = mask[i] == EXPORT_FILLED ? BAKE_FILLED : 0;
+        s->marks[at] = is_filled ? BAKE_FILLED : 0;
     }
     return 0;
 }
@@ -109,9 +112,10 @@ static int read_row(const bake_samples *samples, uint32_t row, uint32_t column, 
         stretch s = { row, first, first + some, heights + done, marks ? marks + done : unwanted };
         memset(s.heights, 0, some * sizeof *s.heights);
         if (put_fill(m, &s)) return -1;
-        for (uint32_t i = 0; i < m->count; i++) put_reach(&m->layer[i], &s);
-        for (uint32_t i = 0; i < m->count; i++)
+        for (uint32_t i = 0; i < m->count; i++) {
             if (put_layer(&m->layer[i], &s)) return -1;
+            put_reach(&m->layer[i], &s);
+        }
     }
     return 0;
 }

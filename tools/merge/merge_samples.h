@@ -1,8 +1,10 @@
 /* The samples of several packs on their joint lattice, as a bake takes them (bake_samples.h).
  *
  * A place has the sample of the finest pack that has one there, of the one named first among
- * equals. Where packs reach, all other places are between samples. Beyond their reach heights are
- * filled from around, on a lattice so coarse that it costs next to nothing. */
+ * equals; one that its pack tells as filled gives way wherever another pack reaches. Where packs
+ * reach, all other places are between samples. Beyond their reach heights are filled from around,
+ * on a lattice so coarse that it costs next to nothing.
+ */
 #ifndef MERGE_SAMPLES_H
 #define MERGE_SAMPLES_H
 

@@ -11,12 +11,12 @@ static void note_refusal(ff_stream *stream, int error)
     sys_mutex_unlock(&stream->intake->requests->mutex);
 }
 
-/* 1 when the grounds are those that the client has pools for. */
+/* 1 when the grounds are those that the client was told of last. */
 static int holds_all_of(const ff_stream *stream, const ff_welcome *welcome)
 {
     const ff_intake *intake = stream->intake;
-    int same = ff_welcome_count(welcome) == intake->ground_count;
-    for (unsigned i = 0; same && i < intake->ground_count; i++) {
+    int same = ff_welcome_count(welcome) == intake->told_count;
+    for (unsigned i = 0; same && i < intake->told_count; i++) {
         ff_terrain_info info;
         uint32_t whole;
         ff_welcome_ground(welcome, i, &info, &whole);
@@ -98,12 +98,24 @@ static int take_part(ff_stream *stream, const ff_request *request, const ff_mess
     return FF_OK;
 }
 
+/* No more messages answer its request after this one. */
+static int is_last(const ff_message *message)
+{
+    if (message->kind == FF_KIND_VIEW) return message->u.part.what == FF_PART_END;
+    return message->kind != FF_KIND_FACE || message->u.face.flags & FF_FACE_LAST;
+}
+
 static int take_answer(ff_stream *stream, const ff_message *message, uint32_t bytes, int64_t now_us)
 {
     ff_request request;
     if (!ff_requests_answered(stream->intake->requests, ff_message_id(message), &request) ||
         !answers(message, &request))
         return FF_ERR_FORMAT;
+    if (request.forgotten) {
+        stream->answer_bytes[request.kind] += bytes;
+        if (is_last(message)) ff_requests_passed(stream->intake->requests, request.id);
+        return FF_OK;
+    }
     if (request.kind == FF_KIND_VIEW) return take_part(stream, &request, message, bytes, now_us);
     int rc = ff_intake_answer(stream->intake, &request, message, bytes);
     if (rc != FF_OK) return rc;
@@ -118,6 +130,7 @@ static int take_failed(ff_stream *stream, uint16_t id, int error)
 {
     ff_request request;
     if (!ff_requests_answered(stream->intake->requests, id, &request)) return FF_ERR_FORMAT;
+    if (request.forgotten) return ff_requests_passed(stream->intake->requests, id), FF_OK;
     return ff_intake_failed(stream->intake, &request, error);
 }
 

@@ -59,14 +59,17 @@ int bake_lattice_spacing(const bake_lattice *lattice, int is_told, double *spaci
     double wanted_wu = *spacing_m * FF_WU_PER_METRE, best = INFINITY, best_wu = 0;
     for (int doublings = -DOUBLINGS; doublings <= DOUBLINGS; doublings++) {
         uint32_t wu = spacing_of(lattice, doublings);
-        double off = wu ? fabs(log2(wu / wanted_wu)) : INFINITY;
+        double off = wu ? fabs(log2((double)wu / wanted_wu)) : INFINITY;
         if (off >= best) continue;
         best = off;
         best_wu = wu;
     }
     if (is_told && best > SAME)
-        return bake_fail("--spacing %g: not a power of two times the %.9g m of %s", *spacing_m,
-                         (double)lattice->info.spacing_wu / FF_WU_PER_METRE, lattice->path);
+        return bake_fail(
+            "--spacing %g: not a power of two times the %.9g m of %s, in whole 1/%d m: "
+            "the nearest is %.9g m",
+            *spacing_m, (double)lattice->info.spacing_wu / FF_WU_PER_METRE, lattice->path,
+            FF_WU_PER_METRE, best_wu / FF_WU_PER_METRE);
     *spacing_m = best_wu / FF_WU_PER_METRE;
     return 0;
 }
