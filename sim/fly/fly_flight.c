@@ -299,6 +299,13 @@ static void check_cracks(fly_flight *flight, double t_s)
         fprintf(stderr, "farfield-fly: crack at %.3f s: %s\n", t_s, why);
 }
 
+/* Until then a part on the device may stand in for the server's ground. */
+static int is_heard(const fly_flight *flight)
+{
+    ff_client *client = flight->world->client;
+    return ff_client_tree(client) && ff_client_source_state(client, 0) != FF_ERR_AGAIN;
+}
+
 /* The path and the auditor look at --pack and --local: a server of other ground makes them
  * meaningless. */
 static int check_terrain(const fly_flight *flight)
@@ -308,7 +315,7 @@ static int check_terrain(const fly_flight *flight)
     const char *server = flight->options->server ? flight->options->server
                                                  : flight->options->pack_path;
     uint32_t count;
-    if (!tree) return 0;
+    if (!is_heard(flight)) return 0;
     const ff_terrain_info *info = ff_tree_grounds(tree, &count);
     for (uint32_t i = 0; i < count && i < packs->count; i++)
         if (info[i].checksum != packs->pack[i].header.info.checksum)
@@ -395,7 +402,7 @@ static int judge_server(const fly_flight *flight, const ff_client_stats *stats)
                                                : flight->options->pack_path;
     if (stats->terrain_error != FF_OK)
         return fail("this terrain does not fit into --memory", ff_error_text(stats->terrain_error));
-    if (flight->options->server && !stats->have_terrain)
+    if (flight->options->server && !is_heard(flight))
         return fail(name, stats->refusal ? ff_error_text(stats->refusal)
                           : stats->protocol_errors
                               ? "does not speak Farfield's protocol, or another version of it"

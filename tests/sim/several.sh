@@ -117,6 +117,15 @@ timeout 120 "$bin/farfield-fly" $inset --link lan --panorama off --backend soft 
     awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "ssim") at = i } END { exit !($at > 0.9) }' "$work/diff.csv"
 result $? "the picture as it should be has both grounds"
 
+refused() { # PATTERN WHAT ARGUMENTS...: one line, and no flight
+    local pattern=$1 what=$2 status
+    shift 2
+    timeout 60 "$bin/farfield-fly" --backend none --seconds 0 --settle 1 "$@" >"$work/out" 2>"$work/err"
+    status=$?
+    [ $status -ne 0 ] && [ $status -lt 124 ] && [ "$(grep -c -v '^farfield-fly: seed ' "$work/err")" = 1 ] && grep -q "^farfield-fly: .*$pattern" "$work/err"
+    result $? "one line for $what" || sed 's/^/# /' "$work/err"
+}
+
 # ---- a real server ----
 "$bin/farfield-server" $inset --listen 127.0.0.1:0 >"$work/server.log" 2>&1 &
 server_pid=$!
@@ -137,16 +146,10 @@ result $? "as is one whose second pack is another"
 kill "$server_pid"
 wait "$server_pid" 2>/dev/null
 server_pid=
+refused "127.0.0.1:$port: no terrain came from there" "a server that is not there, although a part of its ground is" $inset \
+    --server "127.0.0.1:$port" --local "$work/region.ffp"
 
 # ---- what does not go together ----
-refused() { # PATTERN WHAT ARGUMENTS...: one line, and no flight
-    local pattern=$1 what=$2 status
-    shift 2
-    timeout 60 "$bin/farfield-fly" --backend none --seconds 0 --settle 1 "$@" >"$work/out" 2>"$work/err"
-    status=$?
-    [ $status -ne 0 ] && [ $status -lt 124 ] && [ "$(grep -c -v '^farfield-fly: seed ' "$work/err")" = 1 ] && grep -q "^farfield-fly: .*$pattern" "$work/err"
-    result $? "one line for $what" || sed 's/^/# /' "$work/err"
-}
 for how in --pack --local; do
     refused "system.ffp: .*--t-srs" "$how of another system" --pack "$work/country.ffp" $how "$work/system.ffp"
     refused "nowhere.ffp: .*--t-srs" "$how that lies nowhere" --pack "$work/country.ffp" $how "$work/nowhere.ffp"
