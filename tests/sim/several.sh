@@ -38,6 +38,7 @@ pack country 0,0,129,129 4
 pack inset 160,160,193,193 1
 pack west 0,0,257,513 1
 pack east 256,0,65,129 4
+pack over 240,0,69,129 4
 pack lossy 0,0,129,129 4 --max-error 8
 pack nodes 160,160,193,193 1 --node-log2 4
 EPSG=32633 pack system 160,160,193,193 1
@@ -60,7 +61,7 @@ is 'inset.undrawn_px_percent == 0 and inset.crack_frames == inset.requests_faile
 is 'inset.seam_px_max >= inset.seam_px_p95 > 0 and alone.seam_px_p95 is None and alone.seam_px_max is None' \
     "errors at the border are told apart, where there is one"
 is 'alone.ground_px_percent == [100] and inset.packs[1].endswith("inset.ffp") and inset.local == []' "and the summary says what was flown over"
-# the truth is the inset's: drawn without it, its ground is wrong
+is 'inset.err_px_p95 < 0.3 and inset.seam_px_p95 < 0.6' "vertices are judged where the seam lowers them"
 python3 - "$work" <<'END'
 import csv, sys
 work = sys.argv[1]
@@ -88,6 +89,10 @@ is 'beside.undrawn_px_percent == 0 and beside.crack_frames == beside.requests_fa
 awk -F, 'BEGIN { OFS = "," } NR > 1 { $2 -= 2560 } { print }' "$work/there.path" >"$work/from-east.path"
 flies turned --path "$work/from-east.path" --settle 3 --fps 10 --link lan --pack "$work/east.ffp" --pack "$work/west.ffp"
 is 'abs(turned.ground_px_percent[0] - beside.ground_px_percent[1]) < 3 and turned.undrawn_px_percent == 0' "the other one may come first"
+
+flies over $there --link lan --pack "$work/west.ffp" --pack "$work/over.ffp"
+is 'over.undrawn_px_percent == 0 and over.crack_frames == over.requests_failed == 0 and over.ground_px_percent[1] > 20' \
+    "nor do two that overlap by 160 m"
 
 # ---- on the device ----
 flies local $there --link lan --pack "$work/country.ffp" --local "$work/inset.ffp"
