@@ -1,6 +1,6 @@
 /* Life of a client: the block, the worker, settings and what is known of the terrain. Frames are in
  * client_update.c, figures in client_figures.c. */
-#include "ff_client_local.h"
+#include "several/ff_several.h"
 #include "../protocol/ff_assert.h"
 
 #include <string.h>
@@ -162,6 +162,21 @@ static void destroy_locks(ff_client *client)
         sys_mutex_destroy(&ff_client_source(client, i)->requests.mutex);
 }
 
+/* Ground of this device, or none while the server has not told of its own: the sky. */
+static int begin_terrain(ff_client *client)
+{
+    const ff_pack *pack = client->desc.pack ? client->desc.pack : ff_several_stand_in(client);
+    int rc = FF_ERR_NOT_FOUND;
+    if (client->desc.pack) ff_client_take_pack(&client->first);
+    if (pack) {
+        client->info = pack->header.info;
+        rc = ff_client_carve(client);
+    }
+    if (rc == FF_OK || client->desc.pack) return rc;
+    ff_client_carve_sky(client);
+    return FF_OK;
+}
+
 int ff_client_create(const ff_client_desc *desc, ff_client **result)
 {
     *result = NULL;
@@ -177,13 +192,7 @@ int ff_client_create(const ff_client_desc *desc, ff_client **result)
     client->geometry_hash = FF_TERRAIN_VIEW_HASH_START;
     rc = make_fixed_part(client);
     if (rc != FF_OK) return rc;
-    if (desc->pack) {
-        ff_client_take_pack(&client->first);
-        client->info = desc->pack->header.info;
-        rc = ff_client_carve(client);
-    } else {
-        ff_client_carve_sky(client);
-    }
+    rc = begin_terrain(client);
     if (rc == FF_OK && desc->use_thread) {
         rc = sys_thread_start(&client->thread, worker_main, client);
         client->threaded = rc == FF_OK;
@@ -264,7 +273,8 @@ void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama)
          * again */
         sys_mutex_lock(&client->gate);
         ff_client_uncarve(client);
-        ff_client_carve_sky(client);
+        client->first.intake.told_count = 0;
+        (void)begin_terrain(client);
         ff_stream_restart(&client->first.stream);
         sys_mutex_unlock(&client->gate);
         return;

@@ -174,7 +174,7 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
     ff_turn_feed(&client->turn, now_us, camera->yaw, camera->pitch);
     look_for_rest(client);
     ff_client_auto_step(client, camera, now_us);
-    int hold = ff_client_low_power(client) || ff_client_own_ground(client);
+    int hold = ff_client_low_power(client) || ff_client_own_ground(client) || !client->first.serves;
     int turned = ff_panorama_update(&client->panorama, &client->first.requests, &view.camera,
                                     &client->motion, hold, now_us);
     client->far_painted = is_far_painted(client, camera);

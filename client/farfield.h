@@ -127,7 +127,9 @@ typedef struct ff_client_desc {
     /* More packs and servers, drawn together with that one, whose place on its ground is the
      * client's frame. One of the same ground (the same pack, or parts cut from it) is asked for
      * what those named before it lack; others are grounds of their own in the same reference
-     * system: where they lie over each other the finer is shown, else the one named first. */
+     * system: where they lie over each other the finer is shown, else the one named first.
+     * While that one is a server not heard yet, a pack here that is a part of another is drawn, in
+     * its own frame: the server's, if it has the whole. */
     const ff_source_desc *more;
     unsigned more_count;                /* at most FF_SOURCES_MAX - 1: ff_tree.h */
     const struct c3d_backend *backend;  /* NULL: no pictures */

@@ -115,8 +115,7 @@ void *ff_client_take(ff_arena *arena, const ff_budget *budget, enum ff_pool_id p
  * FF_ERR_MEMORY, FF_ERR_UNSUPPORTED. */
 int ff_client_carve(ff_client *client);
 void ff_client_uncarve(ff_client *client);
-/* Gives a source the worker's decoder and scratch. FF_OK, or FF_ERR_UNSUPPORTED: this build has not
- * the codec of one of its grounds. */
+/* Gives a source the worker's decoder and scratch. */
 void ff_client_decode(ff_client *client, ff_source *source);
 /* From now on the source is asked. */
 void ff_client_serve(ff_client *client, ff_source *source);

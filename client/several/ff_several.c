@@ -74,15 +74,42 @@ static int join(ff_client *client, ff_source *source, unsigned own)
     return source->intake.ground_count ? FF_OK : rc;
 }
 
+/* The number of a pack that is a part of another one, 0: there is none. Its whole is most likely
+ * what the first source has, and what it tells of the terrain is the same. */
+static unsigned stand_in(const ff_client *client)
+{
+    for (unsigned i = 0; client->desc.stream && i < client->desc.more_count; i++) {
+        const ff_pack *pack = client->desc.more[i].pack;
+        if (pack && ff_pack_whole(pack) != pack->header.info.checksum) return 1 + i;
+    }
+    return 0;
+}
+
+const ff_pack *ff_several_stand_in(const ff_client *client)
+{
+    unsigned number = stand_in(client);
+    return number ? client->desc.more[number - 1].pack : NULL;
+}
+
+/* Whose first ground the tree was made for. */
+static unsigned framing(const ff_client *client)
+{
+    return client->first.intake.told_count ? 0 : stand_in(client);
+}
+
 void ff_several_join(ff_client *client)
 {
     uint32_t count;
-    client->first.ground[0].first_tile = 0;
+    const unsigned frame = framing(client);
+    ff_source *first = ff_client_source(client, frame);
     (void)ff_tree_grounds(client->tree, &count);
     FF_ASSERT(count == 1);
-    (void)join(client, &client->first, 1);
+    if (first->pack) ff_client_take_pack(first);
+    first->ground[0] = (ff_source_ground){ .whole = first->ground[0].whole };
+    (void)join(client, first, 1);
     for (unsigned s = 1; s < client->source_count; s++) {
         ff_source *source = ff_client_source(client, s);
+        if (s == frame) continue;
         if (source->pack) ff_client_take_pack(source);
         if (source->pack || source->stream.has_terrain) (void)join(client, source, 0);
     }

@@ -5,6 +5,9 @@
 
 #include "../ff_client_local.h"
 
+/* The pack whose ground is drawn while the first source, a server, has not been heard: a part on
+ * this device of what it may have. NULL: there is none. */
+const ff_pack *ff_several_stand_in(const ff_client *client);
 /* Once the tree of the first ground is made: all others that are known. */
 void ff_several_join(ff_client *client);
 /* Once an update: servers that have answered. */

@@ -35,14 +35,16 @@ uint64_t ff_seam_dive_of(const ff_tree *tree, const ff_node *node)
     ff_area area = ff_area_of(tree, node->key, &node->placed),
             wide = ff_area_widened(area, 2 * cell_wu);
     uint64_t hash = ff_seam_hash(tree, g, &wide, FF_LOWERED_NOT, 0);
-    for (uint32_t rank = 0; rank < cover->rank[g]; rank++) {
+    /* its own, for its rim */
+    for (uint32_t rank = 0; rank <= cover->rank[g]; rank++) {
         const ff_area *stands = &cover->stands[cover->ranked[rank]];
         if (!overlaps(&wide, stands)) continue;
         for (unsigned axis = 0; axis < 2; axis++)
             hash = (hash ^ (uint32_t)stands->lo[axis] ^
                     (uint64_t)(uint32_t)stands->hi[axis] << 32) *
                    UINT64_C(0x9E3779B97F4A7C15);
-        hash = ff_seam_hash(tree, cover->ranked[rank], &wide, FF_LOWERED_DIVED, hash);
+        if (rank < cover->rank[g])
+            hash = ff_seam_hash(tree, cover->ranked[rank], &wide, FF_LOWERED_DIVED, hash);
     }
     return hash > 1 ? hash : 2;
 }

@@ -16,7 +16,9 @@
  *
  * A tree holds one ground or several at once, of different extent, depth, spacing and steps of
  * height, in one reference system: their tiles have numbers of their own in keys, and their nodes
- * share the pool, the view and the wishes.
+ * share the pool, the view and the wishes. Where they lie over each other the one of finer spacing
+ * is drawn, once its roots are here, or of equals the first; along its rim the other dives under it
+ * (ff_tree_drop), so that no gap is seen.
  *
  * Memory: one block at ff_tree_create; `node_count` slots. Full pools make the ground coarser and
  * are counted.

@@ -147,7 +147,7 @@ static int read_audit(fly_flight *flight, fly_sources *from)
     sim_audit_result *audit = &from->audit;
     if (tree) {
         view.drawn_count = ff_tree_in_view(tree, &view.drawn);
-        view.grounds.info = ff_tree_grounds(tree, &view.grounds.count);
+        view.grounds = sim_drawn_grounds_of(tree);
     }
     (void)ff_client_panorama(world->client, view.panorama.pos_wu, &view.faces);
     int rc = sim_audit_frame(world->auditor, &view, audit);
@@ -282,19 +282,28 @@ static int take_picture(fly_flight *flight, double t_s)
 
 /* ---- frames ---- */
 
-/* Searches the whole cut for cracks, and tells the first one. */
+/* Searches the whole cut for cracks, and what is in view as seams between grounds lower it; tells
+ * the first one. */
 static void check_cracks(fly_flight *flight, double t_s)
 {
     char why[256];
-    const ff_drawn *list;
+    const ff_drawn *cut, *view;
     const ff_tree *tree = ff_client_tree(flight->world->client);
-    uint32_t count = tree ? ff_tree_cut(tree, &list) : 0, grounds;
-    const ff_terrain_info *info = count ? ff_tree_grounds(tree, &grounds) : NULL;
-    if (!count || sim_watertight_check_grounds(info, grounds, ff_tree_frame(tree), list, count, why,
-                                               sizeof why))
+    if (!tree) return;
+    uint32_t in_cut = ff_tree_cut(tree, &cut), in_view = ff_tree_in_view(tree, &view);
+    if (sim_watertight_check_tree(tree, 0, cut, in_cut, why, sizeof why) &&
+        (flight->world->grounds.packs.count == 1 ||
+         sim_watertight_check_tree(tree, 1, view, in_view, why, sizeof why)))
         return;
     if (!flight->totals.crack_frames++)
         fprintf(stderr, "farfield-fly: crack at %.3f s: %s\n", t_s, why);
+}
+
+/* Until then a part on the device may stand in for the server's ground. */
+static int is_heard(const fly_flight *flight)
+{
+    ff_client *client = flight->world->client;
+    return ff_client_tree(client) && ff_client_source_state(client, 0) != FF_ERR_AGAIN;
 }
 
 /* The path and the auditor look at --pack and --local: a server of other ground makes them
@@ -306,7 +315,7 @@ static int check_terrain(const fly_flight *flight)
     const char *server = flight->options->server ? flight->options->server
                                                  : flight->options->pack_path;
     uint32_t count;
-    if (!tree) return 0;
+    if (!is_heard(flight)) return 0;
     const ff_terrain_info *info = ff_tree_grounds(tree, &count);
     for (uint32_t i = 0; i < count && i < packs->count; i++)
         if (info[i].checksum != packs->pack[i].header.info.checksum)
@@ -324,7 +333,7 @@ static void tell_relevance(fly_flight *flight)
     if (!flight->world->relevance || !tree) return;
     view.drawn_count = ff_tree_drawn(tree, &view.drawn);
     view.in_view_count = ff_tree_in_view(tree, &view.drawn);
-    view.grounds.info = ff_tree_grounds(tree, &view.grounds.count);
+    view.grounds = sim_drawn_grounds_of(tree);
     view.panorama = ff_client_panorama(flight->world->client, view.panorama_pos_wu, &faces);
     sim_relevance_frame(flight->world->relevance, &view);
 }
@@ -393,7 +402,7 @@ static int judge_server(const fly_flight *flight, const ff_client_stats *stats)
                                                : flight->options->pack_path;
     if (stats->terrain_error != FF_OK)
         return fail("this terrain does not fit into --memory", ff_error_text(stats->terrain_error));
-    if (flight->options->server && !stats->have_terrain)
+    if (flight->options->server && !is_heard(flight))
         return fail(name, stats->refusal ? ff_error_text(stats->refusal)
                           : stats->protocol_errors
                               ? "does not speak Farfield's protocol, or another version of it"

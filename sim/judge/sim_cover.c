@@ -159,7 +159,7 @@ static void place_vertices(sim_cover *cover, const sim_mesh *mesh, const sim_eye
         sim_vertex *point = &cover->point[i];
         double cell[2], way[3];
         sim_mesh_vertex_cell(info, last, i, cell);
-        sim_place_of_cell(drawn, cell, sim_mesh_vertex_m(info, drawn, i), way);
+        sim_place_of_cell(drawn, cell, sim_mesh_vertex_m(mesh, info, drawn, i), way);
         for (int k = 0; k < 3; k++) way[k] -= e->pos_m[k];
         way[2] -= mesh->curve_per_m * (way[0] * way[0] + way[1] * way[1]);
         sim_eye_turn(e, way, point->eye);

@@ -46,6 +46,7 @@ void sim_mesh_use(sim_mesh *mesh, const sim_drawn_grounds *grounds)
     FF_ASSERT(grounds->count >= 1 && grounds->count <= FF_GROUNDS_MAX);
     memcpy(mesh->info, grounds->info, grounds->count * sizeof *mesh->info);
     mesh->grounds = grounds->count;
+    mesh->tree = grounds->tree;
 }
 
 uint32_t sim_mesh_ground(const sim_mesh *mesh, const ff_drawn *drawn)
@@ -55,10 +56,13 @@ uint32_t sim_mesh_ground(const sim_mesh *mesh, const ff_drawn *drawn)
     return i;
 }
 
-double sim_mesh_vertex_m(const ff_terrain_info *info, const ff_drawn *drawn, uint32_t vertex)
+double sim_mesh_vertex_m(const sim_mesh *mesh, const ff_terrain_info *info, const ff_drawn *drawn,
+                         uint32_t vertex)
 {
+    const uint16_t *drop = mesh->tree ? ff_tree_drop(mesh->tree, drawn) : NULL;
+    int32_t steps = drawn->heights[vertex] - (drop ? drop[vertex] : 0);
     return (double)info->hoffset_wu / FF_WU_PER_METRE +
-           (double)info->hscale_q24 / (1 << 24) * drawn->heights[vertex];
+           (double)info->hscale_q24 / (1 << 24) * steps;
 }
 
 void sim_mesh_vertex_cell(const ff_terrain_info *info, const double last[2], uint32_t vertex,
@@ -69,8 +73,9 @@ void sim_mesh_vertex_cell(const ff_terrain_info *info, const double last[2], uin
     cell[1] = fmin(vertex / side, last[1]);
 }
 
-static int triangle_height(const ff_terrain_info *info, const ff_drawn *drawn, const double last[2],
-                           const uint16_t vertex[3], const double cell[2], double *z_m)
+static int triangle_height(const sim_mesh *mesh, const ff_terrain_info *info, const ff_drawn *drawn,
+                           const double last[2], const uint16_t vertex[3], const double cell[2],
+                           double *z_m)
 {
     double at[3][2], z[3], x = cell[0], y = cell[1];
     for (int i = 0; i < 3; i++) sim_mesh_vertex_cell(info, last, vertex[i], at[i]);
@@ -82,7 +87,7 @@ static int triangle_height(const ff_terrain_info *info, const ff_drawn *drawn, c
     double c = ((at[1][0] - at[0][0]) * (y - at[0][1]) - (x - at[0][0]) * (at[1][1] - at[0][1])) /
                area;
     if (!(b >= -1e-9 && c >= -1e-9 && b + c <= 1 + 1e-9)) return 0;
-    for (int i = 0; i < 3; i++) z[i] = sim_mesh_vertex_m(info, drawn, vertex[i]);
+    for (int i = 0; i < 3; i++) z[i] = sim_mesh_vertex_m(mesh, info, drawn, vertex[i]);
     *z_m = z[0] + b * (z[1] - z[0]) + c * (z[2] - z[0]);
     return 1;
 }
@@ -97,7 +102,7 @@ int sim_mesh_height(const sim_mesh *mesh, const ff_drawn *drawn, const double ce
     for (unsigned i = 0; i < count; i++) {
         const sim_triangles *list = &mesh->strip[strip[i]];
         for (uint32_t j = 0; j < list->count; j++)
-            if (triangle_height(info, drawn, last, list->vertex[j], cell, z_m)) return 1;
+            if (triangle_height(mesh, info, drawn, last, list->vertex[j], cell, z_m)) return 1;
     }
     return 0;
 }

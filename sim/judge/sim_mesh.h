@@ -13,6 +13,7 @@ typedef struct sim_triangles {
 typedef struct sim_mesh {
     ff_terrain_info info[FF_GROUNDS_MAX]; /* of the grounds whose nodes are drawn */
     uint32_t grounds;
+    const ff_tree *tree;
     double curve_per_m;      /* at a distance of d m ground is drawn d * d * curve_per_m lower */
     sim_triangles strip[32]; /* by strip id, degenerate ones left out */
 } sim_mesh;
@@ -22,11 +23,19 @@ typedef struct sim_mesh {
 typedef struct sim_drawn_grounds {
     const ff_terrain_info *info;
     uint32_t count;
+    const ff_tree *tree; /* whose seams between them lower vertices, or NULL */
 } sim_drawn_grounds;
+static inline sim_drawn_grounds sim_drawn_grounds_of(const ff_tree *tree)
+{
+    sim_drawn_grounds grounds = { .tree = tree };
+    grounds.info = ff_tree_grounds(tree, &grounds.count);
+    return grounds;
+}
 
 /* Of one ground. FF_OK, or FF_ERR_MEMORY. Call free in both cases. */
 int sim_mesh_make(sim_mesh *mesh, const ff_terrain_info *info);
-/* From now on nodes of these grounds are drawn; the first one is as before. */
+/* From now on nodes of these grounds are drawn, until the tree changes; the first one is as
+ * before. */
 void sim_mesh_use(sim_mesh *mesh, const sim_drawn_grounds *grounds);
 /* The number of the ground that a drawn node is of. */
 uint32_t sim_mesh_ground(const sim_mesh *mesh, const ff_drawn *drawn);
@@ -40,8 +49,9 @@ void sim_mesh_free(sim_mesh *mesh);
  * (sim_place_last): what is beyond is drawn there. */
 void sim_mesh_vertex_cell(const ff_terrain_info *info, const double last[2], uint32_t vertex,
                           double cell[2]);
-/* Height of a vertex of a drawn node, metres. */
-double sim_mesh_vertex_m(const ff_terrain_info *info, const ff_drawn *drawn, uint32_t vertex);
+/* Height of a vertex of a node of the ground as it is drawn, metres. */
+double sim_mesh_vertex_m(const sim_mesh *mesh, const ff_terrain_info *info, const ff_drawn *drawn,
+                         uint32_t vertex);
 /* Height of a node's triangles at (x, y), counted in the node's cells: 1 and *z_m, or 0 outside. */
 int sim_mesh_height(const sim_mesh *mesh, const ff_drawn *drawn, const double cell[2], double *z_m);
 

@@ -19,13 +19,14 @@ typedef struct entry {
  * sample agrees in both. */
 typedef struct corner {
     int32_t foot_wu[3];
-    uint16_t height;
+    int32_t height;
     uint8_t used;
 } corner;
 
 typedef struct check {
     const ff_terrain_info *info;
     const ff_frame *frame;
+    const ff_tree *lowered; /* whose seams lower vertices; NULL: none does */
     const ff_drawn *list;
     uint32_t count;
     unsigned n; /* cells of a node each way */
@@ -141,6 +142,13 @@ static int enter_above(check *c, ff_key key)
 
 /* ---- nodes that touch ---- */
 
+/* Steps. */
+static int32_t height_of(const check *c, const ff_drawn *drawn, uint32_t vertex)
+{
+    const uint16_t *drop = c->lowered ? ff_tree_drop(c->lowered, drawn) : NULL;
+    return drawn->heights[vertex] - (drop ? drop[vertex] : 0);
+}
+
 /* Compares the vertices drawn along one side of `drawn` with those of the listed node `across`,
  * which is `finer` levels coarser. `beside` is what lies across at the level of `drawn`. */
 static int rims_agree(check *c, const ff_drawn *drawn, enum ff_side side, const ff_beside *beside,
@@ -157,14 +165,14 @@ static int rims_agree(check *c, const ff_drawn *drawn, enum ff_side side, const 
     for (uint32_t j = (from + (1u << finer) - 1) >> finer; j << finer <= from + n; j++) {
         uint32_t i = ff_beside_along(beside, (j << finer) - from, n);
         if (!(other >> j & 1u)) continue;
-        uint16_t here = drawn->heights[sim_rim_vertex(n, side, i)],
-                 there = across->heights[sim_rim_vertex(n, back, j)];
+        int32_t here = height_of(c, drawn, sim_rim_vertex(n, side, i)),
+                there = height_of(c, across, sim_rim_vertex(n, back, j));
         if (!(used >> i & 1u))
             return fault(c, "crack: vertex %u on side %u of node %llx is drawn by node %llx alone",
                          i, side, (unsigned long long)drawn->key, (unsigned long long)across->key);
         if (here != there)
             return fault(
-                c, "crack: vertex %u on side %u of node %llx has heights %u and %u (node %llx)", i,
+                c, "crack: vertex %u on side %u of node %llx has heights %d and %d (node %llx)", i,
                 side, (unsigned long long)drawn->key, here, there, (unsigned long long)across->key);
         missing &= ~(UINT64_C(1) << i);
     }
@@ -208,11 +216,11 @@ static int corners_ok(check *c, const ff_drawn *drawn)
     for (unsigned i = 0; i < 4; i++) {
         uint32_t column = (i & 1) * c->n, row = (i >> 1) * c->n;
         if ((column && extent.columns < edge) || (row && extent.rows < edge)) continue;
-        corner at = { .height = drawn->heights[row * (c->n + 1) + column], .used = 1 };
+        corner at = { .height = height_of(c, drawn, row * (c->n + 1) + column), .used = 1 };
         ff_shape_place(c->info, drawn->key, &placed, column, row, 0, at.foot_wu);
         corner *place = corner_place(c, at.foot_wu);
         if (place->used && place->height != at.height)
-            return fault(c, "crack: corner %d,%d,%d has heights %u and %u", at.foot_wu[0],
+            return fault(c, "crack: corner %d,%d,%d has heights %d and %d", at.foot_wu[0],
                          at.foot_wu[1], at.foot_wu[2], place->height, at.height);
         *place = at;
     }
@@ -233,13 +241,14 @@ static int all_ok(check *c)
     return 1;
 }
 
-int sim_watertight_check(const ff_terrain_info *info, const ff_frame *frame, const ff_drawn *list,
-                         uint32_t count, char *why, size_t why_bytes)
+static int check_ground(const ff_terrain_info *info, const ff_frame *frame, const ff_tree *lowered,
+                        const ff_drawn *list, uint32_t count, char *why, size_t why_bytes)
 {
     check *c = calloc(1, sizeof *c);
     if (!c) return 0;
     *c = (check){ .info = info,
                   .frame = frame,
+                  .lowered = lowered,
                   .list = list,
                   .count = count,
                   .n = 1u << info->node_log2,
@@ -265,13 +274,18 @@ int sim_watertight_check(const ff_terrain_info *info, const ff_frame *frame, con
     return ok;
 }
 
-int sim_watertight_check_grounds(const ff_terrain_info *info, uint32_t grounds,
-                                 const ff_frame *frame, const ff_drawn *list, uint32_t count,
-                                 char *why, size_t why_bytes)
+int sim_watertight_check(const ff_terrain_info *info, const ff_frame *frame, const ff_drawn *list,
+                         uint32_t count, char *why, size_t why_bytes)
 {
-    if (grounds == 1) return sim_watertight_check(info, frame, list, count, why, why_bytes);
+    return check_ground(info, frame, NULL, list, count, why, why_bytes);
+}
+
+int sim_watertight_check_tree(const ff_tree *tree, int lowered, const ff_drawn *list,
+                              uint32_t count, char *why, size_t why_bytes)
+{
+    uint32_t grounds, listed = 0;
+    const ff_terrain_info *info = ff_tree_grounds(tree, &grounds);
     ff_drawn *own = malloc((count + 1u) * sizeof *own);
-    uint32_t listed = 0;
     int ok = own != NULL;
     if (!ok && why && why_bytes) snprintf(why, why_bytes, "out of memory");
     for (uint32_t i = 0; ok && i < grounds; i++) {
@@ -279,7 +293,8 @@ int sim_watertight_check_grounds(const ff_terrain_info *info, uint32_t grounds,
         for (uint32_t k = 0; k < count; k++)
             if (ff_terrain_has_node(&info[i], list[k].key)) own[of_it++] = list[k];
         listed += of_it;
-        ok = sim_watertight_check(&info[i], frame, own, of_it, why, why_bytes);
+        ok = check_ground(&info[i], ff_tree_frame(tree), lowered ? tree : NULL, own, of_it, why,
+                          why_bytes);
     }
     free(own);
     if (ok && listed != count && why && why_bytes)

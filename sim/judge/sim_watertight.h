@@ -27,9 +27,9 @@
  * says what and where in one line; also 0 when out of memory. */
 int sim_watertight_check(const ff_terrain_info *info, const ff_frame *frame, const ff_drawn *list,
                          uint32_t count, char *why, size_t why_bytes);
-/* The same of the nodes of several grounds, each ground by itself. */
-int sim_watertight_check_grounds(const ff_terrain_info *info, uint32_t grounds,
-                                 const ff_frame *frame, const ff_drawn *list, uint32_t count,
-                                 char *why, size_t why_bytes);
+/* The same of nodes of a tree with several grounds, each ground by itself. lowered: as its seams
+ * lower them, which is known of nodes in view. */
+int sim_watertight_check_tree(const ff_tree *tree, int lowered, const ff_drawn *list,
+                              uint32_t count, char *why, size_t why_bytes);
 
 #endif

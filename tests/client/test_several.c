@@ -89,30 +89,42 @@ static void what_a_part_on_the_device_lacks_the_server_gives(void **state)
 static void without_its_server_a_part_is_drawn_as_it_is(void **state)
 {
     (void)state;
-    uint8_t about[6];
-    client_rig server, rig, alone;
-    rig_open(&server, 0);
-    server.refuse = 1;
-    make_part(&rig, &server, 0, about);
-    ff_source_desc more = { .stream = &server.stream };
-    rig.desc.more = &more;
-    rig.desc.more_count = 1;
-    rig_local_client(&rig, 8 * MB);
-    for (int i = 0; i < 100; i++) rig_step(&rig, 50000);
-    make_part(&alone, &server, 0, about);
-    rig_local_client(&alone, 8 * MB);
-    assert_true(rig_settle(&alone, 400));
-    assert_true(rig_same_picture(&rig, &alone));
-    assert_int_equal(ff_client_source_state(rig.client, 1), FF_ERR_AGAIN);
-    /* it comes */
-    server.refuse = 0;
-    for (int i = 0; i < 800; i++) rig_step(&rig, 50000);
-    assert_int_equal(ff_client_source_state(rig.client, 1), FF_OK);
-    look_around(&rig);
-    assert_shows_whole_ground(&rig, 0);
-    rig_close(&alone);
-    rig_close(&rig);
-    close_server(&server);
+    for (unsigned part_first = 0; part_first < 2; part_first++) {
+        uint8_t about[6];
+        client_rig server, rig, alone;
+        rig_open(&server, 0);
+        server.refuse = 1;
+        make_part(&rig, &server, 0, about);
+        ff_source_desc more = { 0 };
+        rig.desc.more = &more;
+        rig.desc.more_count = 1;
+        if (part_first) {
+            more.stream = &server.stream;
+            rig_local_client(&rig, 8 * MB);
+        } else {
+            more.pack = &rig.pack;
+            rig.desc.stream = &server.stream;
+            rig.desc.panorama.enabled = FF_PANORAMA_AUTO;
+            rig_client_of(&rig, 8 * MB);
+        }
+        for (int i = 0; i < 100; i++) rig_step(&rig, 50000);
+        make_part(&alone, &server, 0, about);
+        rig_local_client(&alone, 8 * MB);
+        assert_true(rig_settle(&alone, 400));
+        assert_true(rig_same_picture(&rig, &alone));
+        assert_int_equal(ff_client_source_state(rig.client, part_first), FF_ERR_AGAIN);
+        assert_int_equal(ff_client_source_state(rig.client, !part_first), FF_OK);
+        /* it comes */
+        server.refuse = 0;
+        for (int i = 0; i < 800; i++) rig_step(&rig, 50000);
+        assert_int_equal(ff_client_source_state(rig.client, part_first), FF_OK);
+        look_around(&rig);
+        assert_shows_whole_ground(&rig, 0);
+        assert_int_equal(rig_stats(&rig).protocol_errors, 0);
+        rig_close(&alone);
+        rig_close(&rig);
+        close_server(&server);
+    }
 }
 
 static void a_second_server_stands_in_for_one_that_is_lost(void **state)

@@ -30,7 +30,8 @@ void grounds_tree(grounds_fixture *g, uint32_t node_count, uint32_t wish_count)
                           .wish_count = wish_count,
                           .hidden = g->hidden,
                           .ground_max = g->count,
-                          .source_max = g->source_max };
+                          .source_max = g->source_max,
+                          .seam_max = g->seam_max };
     size_t bytes = ff_tree_bytes(&desc);
     g->memory = malloc(bytes);
     g->tree = ff_tree_create(&desc, g->memory, bytes);
@@ -84,9 +85,10 @@ void grounds_assert_whole(grounds_fixture *g)
     const ff_drawn *list;
     char why[160] = "";
     uint32_t count = ff_tree_cut(g->tree, &list);
-    ff_terrain_info info[FF_GROUNDS_MAX];
-    for (uint32_t i = 0; i < g->count; i++) info[i] = g->ground[i].info;
-    if (!sim_watertight_check_grounds(info, g->count, ff_tree_frame(g->tree), list, count, why,
-                                      sizeof why))
-        fail_msg("%s", why);
+    if (!sim_watertight_check_tree(g->tree, 0, list, count, why, sizeof why)) fail_msg("%s", why);
+    ff_tree_stats stats;
+    ff_tree_get_stats(g->tree, &stats);
+    count = ff_tree_in_view(g->tree, &list);
+    if (!stats.seams_short && !sim_watertight_check_tree(g->tree, 1, list, count, why, sizeof why))
+        fail_msg("in view: %s", why);
 }

@@ -6,7 +6,7 @@
 
 typedef struct grounds_fixture {
     terrain_fixture ground[FF_GROUNDS_MAX]; /* each has the same tree */
-    uint32_t count, source_max;             /* source_max: 0 or set before the tree is made */
+    uint32_t count, source_max, seam_max;   /* the last two: 0, or set before the tree is made */
     enum ff_hidden hidden;                  /* alike */
     ff_tree *tree;
     void *memory;
@@ -22,7 +22,8 @@ terrain_fixture *grounds_of(grounds_fixture *g, ff_key key);
 /* As the functions of terrain_fixture.h do. */
 uint32_t grounds_settle(grounds_fixture *g, const ff_view *view, const ff_quality *quality,
                         uint32_t rounds);
-/* Each ground's part of the cut is whole by itself. */
+/* Each ground's part of the cut is whole by itself, and that in view as its seams lower it, where
+ * they had room. */
 void grounds_assert_whole(grounds_fixture *g);
 
 #endif

@@ -219,7 +219,7 @@ static void nodes_of_a_second_ground_are_drawn_and_supported(void **state)
     start(&w);
     ground[1].first_tile = 4;
     ground[1].west_wu = -1000;
-    w.view.grounds = (sim_drawn_grounds){ ground, 2 };
+    w.view.grounds = (sim_drawn_grounds){ .info = ground, .count = 2 };
     ff_key root = ff_key_make(4, 0, 0), child = ff_key_child(root, 1),
            leaf = ff_key_child(child, 0);
     (void)node(&w, root, FF_KIND_ROOT);

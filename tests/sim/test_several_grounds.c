@@ -331,7 +331,7 @@ static void pair_make(pair *p)
                                 .quality = { .measure = FF_MEASURE_PIXELS, .error_px_q8 = 256 },
                                 .drawn = p->drawn,
                                 .drawn_count = 2,
-                                .grounds = { p->info, 2 } };
+                                .grounds = { .info = p->info, .count = 2 } };
 }
 
 static void draw(pair *p, unsigned ground, uint16_t metres)

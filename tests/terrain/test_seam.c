@@ -335,6 +335,7 @@ static void add(grounds_fixture *g, sys_random *random, int32_t spacing_wu, uint
     while ((1u << log2) + 1 < samples_x || (1u << log2) + 1 < samples_y) log2++;
     stride[n] = (uint32_t)(spacing_wu * 64 / (10 * M));
     shift[n] = off_m;
+    if (log2 > 5 && sys_random_below(random, 3) == 0) log2 = 5; /* several tiles */
     fixture_make(&fx, 3, log2, 1, 1, height_of[n]);
     fixture_samples(&fx, samples_x, samples_y);
     fx.info.spacing_wu = (uint32_t)spacing_wu;
@@ -487,12 +488,34 @@ static void sheets_end_beyond_what_the_rim_pulls_down(void **state)
     grounds_free(&g);
 }
 
+/* What finds no room stays as it is held. */
+static void seams_that_find_no_room_are_counted(void **state)
+{
+    (void)state;
+    grounds_fixture g;
+    sys_random random;
+    sys_random_seed(&random, 5, 5);
+    make(&g, &random, 2);
+    free(g.memory);
+    for (uint32_t i = 0; i < g.count; i++) free(g.ground[i].decoder);
+    g.seam_max = 3;
+    grounds_tree(&g, 6000, 64);
+    ff_view view = view_by_chance(&g, &random);
+    ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
+    grounds_settle(&g, &view, &quality, 100);
+    ff_tree_stats stats = fixture_stats(&g.ground[0]);
+    assert_int_equal(stats.seams, 3);
+    assert_true(stats.seams_short > 0);
+    grounds_free(&g);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_fine_ground_in_a_coarse_one_leaves_no_gap),
         cmocka_unit_test(grounds_that_cross_leave_no_gap),
         cmocka_unit_test(sheets_end_beyond_what_the_rim_pulls_down),
+        cmocka_unit_test(seams_that_find_no_room_are_counted),
     };
     int rc = cmocka_run_group_tests(tests, NULL, NULL);
     free(drawn);
