@@ -72,6 +72,20 @@ static void the_corners_are_places_of_the_coarsest_pack(void **state)
     assert_int_equal(lattice.info.origin_y_mm, 5100000000);
 }
 
+static void origins_at_the_ends_of_numbers_lie_nowhere(void **state)
+{
+    (void)state;
+    const int64_t end_mm[] = { INT64_MIN, INT64_MAX, INT64_C(1) << 62 };
+    for (size_t i = 0; i < sizeof end_mm / sizeof *end_mm; i++) {
+        ff_terrain_info a = pack(10 * 256, 0, 0, 100, 100), b = a;
+        a.origin_x_mm = end_mm[i];
+        assert_int_equal(find(&a, &b, NULL), MERGE_PLACES);
+        assert_int_equal(find(&b, &a, NULL), MERGE_PLACES);
+        b.origin_x_mm = end_mm[i];
+        assert_int_equal(find(&a, &b, NULL), MERGE_PLACES);
+    }
+}
+
 static void origins_are_whole_millimetres_and_places_are_not(void **state)
 {
     /* 7 world units are 27.34375 mm */
@@ -181,6 +195,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(fine_packs_lie_on_the_places_of_coarse_ones),
         cmocka_unit_test(the_corners_are_places_of_the_coarsest_pack),
+        cmocka_unit_test(origins_at_the_ends_of_numbers_lie_nowhere),
         cmocka_unit_test(origins_are_whole_millimetres_and_places_are_not),
         cmocka_unit_test(what_lies_on_no_lattice_is_told_apart),
         cmocka_unit_test(lattices_that_are_not_in_each_other_do_not_fit),

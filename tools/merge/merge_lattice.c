@@ -6,11 +6,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define MM_PER_METRE 1000
-#define TOLERANCE_MM 1 /* origins are told in whole millimetres */
-#define TOLERANCE_WU 1 /* and heights of step 0 in whole units */
-#define STEPS_MAX    65535
-#define PLACES_MAX   (INT64_C(1) << 31)
+#define MM_PER_METRE  1000
+#define TOLERANCE_MM  1 /* origins are told in whole millimetres */
+#define TOLERANCE_WU  1 /* and heights of step 0 in whole units */
+#define STEPS_MAX     65535
+#define PLACES_MAX    (INT64_C(1) << 31)
+#define ORIGIN_MM_MAX (INT64_C(1) << 60) /* no reference system goes so far */
 
 /* ---- places ---- */
 
@@ -34,6 +35,13 @@ static int count_places(int64_t distance_mm, uint32_t spacing_wu, int64_t *place
     return fabs((double)distance_mm - count * apart_mm) <= TOLERANCE_MM;
 }
 
+/* Differences of such origins fit, and what a pack's ground adds to them. */
+static int is_somewhere(const ff_terrain_info *info)
+{
+    return llabs(info->origin_x_mm / 2) < ORIGIN_MM_MAX / 2 &&
+           llabs(info->origin_y_mm / 2) < ORIGIN_MM_MAX / 2;
+}
+
 /* Where the packs lie, counted from the first one's south-west sample. */
 typedef struct span {
     int64_t x, y, end_x, end_y;
@@ -54,7 +62,8 @@ static enum merge_fault find_span(const ff_terrain_info *info, const ff_terrain_
     ff_sheet samples = ff_shape_sheet_samples(info);
     int log2 = apart_log2(info->spacing_wu, finest_wu);
     if (log2 < 0) return MERGE_SPACING;
-    if (!count_places(info->origin_x_mm - first->origin_x_mm, finest_wu, &s->x) ||
+    if (!is_somewhere(first) || !is_somewhere(info) ||
+        !count_places(info->origin_x_mm - first->origin_x_mm, finest_wu, &s->x) ||
         !count_places(info->origin_y_mm - first->origin_y_mm, finest_wu, &s->y))
         return MERGE_PLACES;
     s->apart_log2 = (uint32_t)log2;
