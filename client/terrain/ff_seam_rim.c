@@ -165,7 +165,10 @@ static int64_t need_of(const ff_tree *tree, uint32_t ground, const segment *s)
     area.hi[s->axis] = s->to_wu;
     area.lo[!s->axis] = area.hi[!s->axis] = s->at_wu;
     for (uint32_t rank = cover->rank[ground] + 1u; rank < tree->ground_count; rank++) {
+        const ff_area *other = &cover->stands[cover->ranked[rank]];
         ff_over over;
+        /* one that ends there lies under nothing: it would be seen to end above the rim */
+        if (other->lo[!s->axis] >= s->at_wu || other->hi[!s->axis] <= s->at_wu) continue;
         ff_over_begin(&over, tree, cover->ranked[rank], &area);
         for (const ff_node *node; (node = ff_over_next(&over)) != NULL;) {
             if (node->parent != FF_SLOT_NONE && node->flags & FF_NODE_LEFT_OUT) continue;

@@ -238,17 +238,24 @@ static const ff_node *node_at(const ff_tree *tree, const ff_node *node, const ff
     return node;
 }
 
-/* A ground's node drawn over or under a place, NULL where there is none; *at is the place in its
- * grid. */
-static const ff_node *drawn_of(const ff_tree *tree, const ff_terrain_info *info,
-                               const int32_t place_wu[3], grid_point *at)
+/* A ground's node of the cut over or under a place, within the view or beyond it; NULL where there
+ * is none. *at is the place in its grid. */
+static const ff_node *cut_at(const ff_tree *tree, const ff_terrain_info *info,
+                             const int32_t place_wu[3], grid_point *at)
 {
     ff_spot spot;
     if (!ff_shape_locate(info, &tree->view.frame, place_wu, &spot)) return NULL;
     uint32_t slot = ff_tree_find(tree, ff_key_make(spot.tile, 0, 0));
     if (slot == FF_SLOT_NONE || !ff_tile_active(tree, spot.tile)) return NULL;
     if (tree->cover && !(tree->node[slot].flags & FF_NODE_ACTIVE)) return NULL;
-    const ff_node *node = node_at(tree, &tree->node[slot], &spot, at);
+    return node_at(tree, &tree->node[slot], &spot, at);
+}
+
+/* The same where it is drawn. */
+static const ff_node *drawn_of(const ff_tree *tree, const ff_terrain_info *info,
+                               const int32_t place_wu[3], grid_point *at)
+{
+    const ff_node *node = cut_at(tree, info, place_wu, at);
     ff_box box;
     if (!node) return NULL;
     ff_node_box(tree, node, &box);
@@ -260,7 +267,7 @@ const ff_node *ff_surface_node(const ff_tree *tree, const ff_terrain_info *info,
 {
     const int32_t place[3] = { place_wu[0], place_wu[1], tree->view.camera.pos_wu[2] };
     grid_point at;
-    return drawn_of(tree, info, place, &at);
+    return cut_at(tree, info, place, &at);
 }
 
 void ff_patch_make(ff_patch *patch, const ff_tree *tree, const ff_node *node, enum ff_lowered how)

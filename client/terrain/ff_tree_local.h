@@ -332,7 +332,8 @@ int ff_box_seen(const ff_tree *tree, const ff_box *box);
 int ff_node_seen(const ff_tree *tree, const ff_node *node, const ff_box *box);
 
 /* ff_surface.c */
-/* A ground's node drawn over or under a place, NULL where there is none. */
+/* A ground's node of the cut over or under a place, within the view or beyond it: what is kept of a
+ * seam must not depend on where the viewer is. NULL where there is none. */
 const ff_node *ff_surface_node(const ff_tree *tree, const ff_terrain_info *info,
                                const int32_t place_wu[2]);
 /* A drawn node that is asked for heights: found once, for its border is dear to know. */
