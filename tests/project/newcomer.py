@@ -161,7 +161,7 @@ CHANGES = [
       ("build/bin/farfield-fly --pack hills.ffp --laps 7 --link lan --seconds 2 --settle 5 --backend none", "laps 7")]),
     ("a kind", 5, [("protocol/ff_kind.h", "    X(FACE,",
                     "@LINE@ \\\n    X(NOTE,       note,       10, 0, NODE,     75, PAYLOAD, 0, 0,                           OVERHEAD, 0, note)\n"),
-                   ("client/ff_client_local.h", "    ff_refusals refusals;", "    char note[32];\n")],
+                   ("client/ff_client_local.h", "    ff_turn turn;", "    char note[32];\n")],
      {"client/ask/ff_intake_note.c": NOTE_CLIENT, "server/session/ff_session_note.c": NOTE_SERVER, "tests/client/test_note.c": NOTE_TEST},
      ["build/bin/farfield-fly", "build/tests/test_note", "build/tests/test_client", "build/tests/test_message", "build/tests/test_pack"],
      [("build/tests/test_%s" % suite, "PASSED") for suite in ("note", "client", "message", "pack")] +
