@@ -38,14 +38,15 @@ void ff_client_take_pack(ff_source *source)
     intake->told_count = intake->ground_count;
 }
 
-void ff_client_take_welcome(ff_source *source, const ff_stream_shared *shared)
+void ff_client_take_welcome(ff_source *source)
 {
+    const ff_stream *stream = &source->stream;
     ff_intake *intake = &source->intake;
-    FF_ASSERT(shared->welcome_count >= 1 && shared->welcome_count <= FF_WELCOME_GROUNDS);
-    intake->ground_count = intake->told_count = shared->welcome_count;
+    FF_ASSERT(stream->welcome_count >= 1 && stream->welcome_count <= FF_WELCOME_GROUNDS);
+    intake->ground_count = intake->told_count = stream->welcome_count;
     for (unsigned i = 0; i < intake->ground_count; i++) {
-        source->ground[i].whole = shared->whole[i];
-        intake->info[i] = shared->welcome[i];
+        source->ground[i].whole = stream->whole[i];
+        intake->info[i] = stream->welcome[i];
     }
 }
 

@@ -29,12 +29,12 @@ ff_quality ff_client_quality(const ff_client *client)
 }
 
 /* The worker has met a terrain: carves pools for it, or none when it does not fit. */
-static void settle_welcome(ff_client *client, const ff_stream_shared *shared)
+static void settle_welcome(ff_client *client)
 {
     sys_mutex_lock(&client->gate);
     ff_client_uncarve(client);
-    ff_client_take_welcome(&client->first, shared);
-    client->info = shared->welcome[0];
+    ff_client_take_welcome(&client->first);
+    client->info = client->first.intake.info[0];
     client->has_camera = 0; /* another frame, too */
     int rc = ff_client_carve(client);
     FF_ASSERT(client->have_terrain == (rc == FF_OK));
@@ -59,7 +59,7 @@ static void look_at_links(ff_client *client)
     ff_stream_shared shared;
     if (client->desc.stream) {
         ff_stream_get_shared(&client->first.stream, &shared);
-        if (shared.state == FF_STREAM_WELCOMED) settle_welcome(client, &shared);
+        if (shared.state == FF_STREAM_WELCOMED) settle_welcome(client);
         ff_client_note_link(client, &client->first, &shared);
     }
     ff_several_look(client);

@@ -100,7 +100,7 @@ void ff_client_link(ff_client *client, ff_stream_shared *shared);
 int ff_client_waiting(ff_client *client, enum ff_request_class last);
 /* The grounds of a source, as its pack or its server's WELCOME says: it does not serve them yet. */
 void ff_client_take_pack(ff_source *source);
-void ff_client_take_welcome(ff_source *source, const ff_stream_shared *shared);
+void ff_client_take_welcome(ff_source *source);
 /* client_update.c: what a link has met since the last update. */
 void ff_client_note_link(ff_client *client, ff_source *source, const ff_stream_shared *shared);
 /* several/: of the sources that serve a key's ground and may have it the one to be asked, or NULL.

@@ -117,10 +117,10 @@ void ff_several_join(ff_client *client)
 }
 
 /* Under the gate: a server has told its grounds, and waits for what is said to it. */
-static void settle(ff_client *client, ff_source *source, const ff_stream_shared *shared)
+static void settle(ff_client *client, ff_source *source)
 {
     int again = source->serves;
-    ff_client_take_welcome(source, shared);
+    ff_client_take_welcome(source);
     if (again) { /* it has other packs now: all grounds are put together anew */
         source->stream.has_terrain = 0;
         ff_client_uncarve(client);
@@ -145,7 +145,7 @@ void ff_several_look(ff_client *client)
         ff_stream_get_shared(&source->stream, &shared);
         if (shared.state == FF_STREAM_WELCOMED && client->have_terrain) {
             sys_mutex_lock(&client->gate);
-            settle(client, source, &shared);
+            settle(client, source);
             sys_mutex_unlock(&client->gate);
         }
         ff_client_note_link(client, source, &shared);

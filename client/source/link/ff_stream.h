@@ -39,11 +39,7 @@ typedef struct ff_stream_shared {
     uint32_t protocol_errors, reconnects, rtt_us, bytes_s;
     uint32_t losses; /* connections lost: what was asked is to be ranked again */
     int8_t refusal;  /* why the server would not have this client: an error, or FF_OK */
-    /* valid in WELCOMED: the grounds, and the checksum of the whole pack that each is a part of */
-    ff_terrain_info welcome[FF_WELCOME_GROUNDS];
-    uint32_t whole[FF_WELCOME_GROUNDS];
-    uint8_t welcome_count;
-    uint8_t quiet; /* main: ask nothing new (interruption) */
+    uint8_t quiet;   /* main: ask nothing new (interruption) */
     uint8_t no_prefetch;
 } ff_stream_shared;
 
@@ -81,6 +77,11 @@ typedef struct ff_stream {
     ff_stream_about about; /* of the terrain held */
     int64_t welcomed_us;
     ff_stream_shared shared;
+    /* in WELCOMED, where the worker waits, for the main thread: the grounds, and the checksum of
+     * the whole pack that each is a part of */
+    ff_terrain_info welcome[FF_WELCOME_GROUNDS];
+    uint32_t whole[FF_WELCOME_GROUNDS];
+    uint8_t welcome_count;
 } ff_stream;
 
 void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsigned in_flight_max,
