@@ -62,6 +62,12 @@ int ff_about_select(ff_list about, uint32_t set, uint8_t *out, uint32_t capacity
 /* The checksum of the whole pack that the one with this list and this checksum is a part of: its
  * own where it is whole. Of a list that was checked. */
 uint32_t ff_about_whole(ff_list about, uint32_t checksum);
+/* The list of a part of the pack with this checksum, in `out`: bytes written, or FF_ERR_FULL. */
+int ff_about_put_whole(ff_list about, uint32_t checksum, uint8_t *out, uint32_t capacity);
+/* Adds words to a text of several packs, "; " between them: those of another text that it does not
+ * have yet, as far as each has room. The text's bytes then. */
+uint32_t ff_about_add_words(uint8_t *text, uint32_t byte_count, uint32_t room, const uint8_t *from,
+                            uint32_t from_bytes);
 /* FF_OK, or FF_ERR_NOT_FOUND. Of a list that was checked. */
 int ff_about_get_projection(ff_list about, ff_about_projection *projection);
 /* Parameter `number`: EPSG's code of it, and its value: angles in 10^-9 degrees, lengths in

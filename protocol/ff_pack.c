@@ -177,9 +177,9 @@ int ff_pack_header_encode(ff_pack_header *header, uint8_t *out)
               writer.at - out ==
                   COUNT_AT + 4 + (ptrdiff_t)(header->section_count + has_about) * SECTION_BYTES);
     memset(out + CHECKSUM_AT, 0, 4);
-    checksum = ff_crc32(0, out, HEADER_CRC_AT);
+    header->info.checksum = ff_crc32(0, out, HEADER_CRC_AT);
     writer.at = out + CHECKSUM_AT;
-    ff_write_bytes(&writer, checksum, 4);
+    ff_write_bytes(&writer, header->info.checksum, 4);
     checksum = ff_crc32(0, out, HEADER_CRC_AT);
     writer.at = out + HEADER_CRC_AT;
     writer.end = out + FF_PACK_HEADER_BYTES;

@@ -124,10 +124,9 @@ int ff_pack_verify(const ff_pack *pack, uint64_t *bad);
 /* The same for the section of what a pack says of itself, which has no records. */
 ff_pack_section ff_pack_about_section(void);
 
-/* Header to bytes, for writers; `out` has FF_PACK_HEADER_BYTES. The function works out
- * info.checksum itself and ignores the one in `header`, and sets the places of the sections'
- * indexes: the checksum is a CRC over the header, which by index_crc and data_crc stands for
- * everything in the pack. FF_OK or FF_ERR_RANGE. */
+/* Header to bytes, for writers; `out` has FF_PACK_HEADER_BYTES. The function sets info.checksum,
+ * whatever it was, and the places of the sections' indexes: the checksum is a CRC over the header,
+ * which by index_crc and data_crc stands for everything in the pack. FF_OK or FF_ERR_RANGE. */
 int ff_pack_header_encode(ff_pack_header *header, uint8_t *out);
 
 /* CRC-32 (zlib's polynomial), crc 0 to start. */

@@ -23,8 +23,8 @@ void ff_packs_close(ff_packs *packs);
 /* Why a pack's ground cannot be joined to the first one's. */
 const char *ff_packs_why_apart(int rc);
 
-/* What a pack and those joined to it say of themselves, in `bytes`: texts that differ one after the
- * other with "; " between, as far as an entry has room; the rest is the first one's. */
+/* What a pack and those joined to it say of themselves, in `bytes`: of texts each word once
+ * (ff_about_add_words), as far as an entry has room; the rest is the first one's. */
 ff_list ff_packs_about(const ff_pack *pack, uint8_t bytes[FF_ABOUT_BYTES_MAX]);
 
 #endif

@@ -1,4 +1,5 @@
-/* Lists keep their form, and what a pack says of itself is text that can be shown. */
+/* Lists keep their form, and what a pack says of itself is text that can be shown; of several packs
+ * each word once. */
 #include "../../protocol/ff_about.h"
 #include "../../protocol/ff_error.h"
 #include "../rig/slow_pack.h"
@@ -164,6 +165,45 @@ static void numbers_of_a_projection_come_back(void **state)
     assert_int_equal(ff_about_get_projection(LIST("\1\1a"), &projection), FF_ERR_NOT_FOUND);
 }
 
+static uint32_t add(char *text, uint32_t room, const char *from)
+{
+    uint32_t bytes = ff_about_add_words((uint8_t *)text, (uint32_t)strlen(text), room,
+                                        (const uint8_t *)from, (uint32_t)strlen(from));
+    text[bytes] = 0;
+    return bytes;
+}
+
+static void words_of_several_texts_come_once(void **state)
+{
+    char text[64] = "";
+    (void)state;
+    assert_int_equal(add(text, 30, "Alpha"), 5);
+    add(text, 30, "Beta; Alpha; ");
+    add(text, 30, "Al; Alpha;Beta");
+    assert_string_equal(text, "Alpha; Beta; Al; Alpha;Beta");
+    add(text, 30, "Gamma; G; ; Beta; H"); /* the first word has no room, the second one just has */
+    assert_string_equal(text, "Alpha; Beta; Al; Alpha;Beta; G");
+    assert_int_equal(add(text, 30, "Beta"), 30);
+    assert_int_equal(add(text, 30, ""), 30);
+}
+
+static void a_part_says_of_which_whole_it_is(void **state)
+{
+    ff_list plain = LIST("\1\1a\x63\3xyz"), last = LIST("\1\1a"),
+            told = LIST("\1\1a\x08\4\1\2\3\4\x63\3xyz");
+    uint8_t out[14];
+    (void)state;
+    assert_int_equal(ff_about_put_whole(plain, 0x04030201, out, sizeof out), 14);
+    assert_memory_equal(out, told.bytes, 14);
+    assert_int_equal(ff_about_check((ff_list){ out, 14 }), FF_OK);
+    assert_int_equal(ff_about_whole((ff_list){ out, 14 }, 7), 0x04030201);
+    assert_int_equal(ff_about_put_whole(told, 5, out, sizeof out), 14);
+    assert_int_equal(ff_about_whole((ff_list){ out, 14 }, 7), 5);
+    assert_int_equal(ff_about_put_whole(last, 5, out, sizeof out), 9);
+    assert_int_equal(ff_about_whole((ff_list){ out, 9 }, 7), 5);
+    assert_int_equal(ff_about_put_whole(plain, 5, out, 13), FF_ERR_FULL);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -173,6 +213,8 @@ int main(void)
         cmocka_unit_test(only_text_that_can_be_shown_is_text),
         cmocka_unit_test(who_asks_gets_what_was_asked_for),
         cmocka_unit_test(numbers_of_a_projection_come_back),
+        cmocka_unit_test(words_of_several_texts_come_once),
+        cmocka_unit_test(a_part_says_of_which_whole_it_is),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

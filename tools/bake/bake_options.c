@@ -170,7 +170,8 @@ int bake_options_parse(bake_options *o, int argc, char **argv)
     if (o->lattice_path && (o->target_epsg || o->no_project || o->hscale_m > 0 || o->densify > 1))
         return bake_fail("--lattice takes all that --t-srs, --no-project, --hscale and --densify "
                          "tell from its pack");
-    if (bake_about_check(o)) return -1;
+    bake_texts told = BAKE_TEXTS(o);
+    if (bake_about_check(&told)) return -1;
     bake_say_setup("farfield-bake", o->quiet);
     return 0;
 }

@@ -33,6 +33,21 @@ extern const sys_option_type bake_raw_option, bake_nodata_option, bake_box_optio
 #define BAKE_NODES   SYS_WHOLE(1, FF_NODE_LOG2_MAX, "")
 
 /* clang-format off */
+/* rows that farfield-merge has, too */
+#define BAKE_ABOUT_OPTIONS(OPTION) \
+    OPTION(sys_text, name, "name", "TEXT", NULL, SYS_ANY, "what ground it is") \
+    OPTION(sys_text, attribution, "attribution", "TEXT", NULL, SYS_ANY, \
+           "whose it is, as it is to be shown") \
+    OPTION(sys_text, licence, "licence", "TEXT", NULL, SYS_ANY, "what may be done with it") \
+    OPTION(sys_text, date, "date", "TEXT", NULL, SYS_ANY, "of the source") \
+    OPTION(sys_text, vertical_datum, "vertical-datum", "TEXT", NULL, SYS_ANY, \
+           "what heights are above")
+#define BAKE_JOBS_OPTION(OPTION) \
+    OPTION(sys_whole, jobs, "jobs", "N", NULL, SYS_WHOLE(1, 64, ""), \
+           "threads; default: the processors, at most 16; any N gives the same bytes")
+#define BAKE_SAY_OPTIONS(OPTION) \
+    OPTION(sys_flag, json, "json", NULL, NULL, SYS_ANY, "a summary on stdout") \
+    OPTION(sys_flag, quiet, "quiet", NULL, NULL, SYS_ANY, "errors only")
 #define BAKE_OPTIONS(OPTION, HEADING) \
     OPTION(sys_text, heights_path, NULL, "HEIGHTS", NULL, SYS_FLAGS(SYS_NEEDED), "the raster") \
     HEADING("Input") \
@@ -87,20 +102,12 @@ extern const sys_option_type bake_raw_option, bake_nodata_option, bake_box_optio
     OPTION(sys_word, codec, "codec", "NAME", "deflate", SYS_WORDS(codec_words), \
            "rice: for devices without zlib") \
     HEADING("What the pack says of itself; default: what the source says") \
-    OPTION(sys_text, name, "name", "TEXT", NULL, SYS_ANY, "what ground it is") \
-    OPTION(sys_text, attribution, "attribution", "TEXT", NULL, SYS_ANY, \
-           "whose it is, as it is to be shown") \
-    OPTION(sys_text, licence, "licence", "TEXT", NULL, SYS_ANY, "what may be done with it") \
-    OPTION(sys_text, date, "date", "TEXT", NULL, SYS_ANY, "of the source") \
-    OPTION(sys_text, vertical_datum, "vertical-datum", "TEXT", NULL, SYS_ANY, \
-           "what heights are above") \
+    BAKE_ABOUT_OPTIONS(OPTION) \
     HEADING("Run") \
-    OPTION(sys_whole, jobs, "jobs", "N", NULL, SYS_WHOLE(1, 64, ""), \
-           "threads; default: the processors, at most 16; any N gives the same bytes") \
+    BAKE_JOBS_OPTION(OPTION) \
     OPTION(sys_flag, estimate, "estimate", NULL, NULL, SYS_FLAGS(SYS_ALONE), \
            "tells size, time and memory beforehand, by windows spread over the ground; writes no pack") \
-    OPTION(sys_flag, json, "json", NULL, NULL, SYS_ANY, "a summary on stdout") \
-    OPTION(sys_flag, quiet, "quiet", NULL, NULL, SYS_ANY, "errors only")
+    BAKE_SAY_OPTIONS(OPTION)
 /* clang-format on */
 
 /* A number not given is 0: chosen while baking. */

@@ -171,24 +171,13 @@ static int cut_tiles(cutter *c)
 /* What the pack said of itself, and of which whole it is a part now. */
 static int tell_whole(cutter *c)
 {
-    uint8_t whole[4];
-    ff_writer value = { whole, whole + sizeof whole, FF_OK },
-              out = { c->about_bytes, c->about_bytes + sizeof c->about_bytes, FF_OK };
-    ff_list_entry entry;
-    int told = 0;
     if (!c->is_part) return 0;
-    ff_write_bytes(&value, ff_about_whole(c->about, c->info->checksum), sizeof whole);
-    for (ff_list rest = c->about; ff_list_next(&rest, &entry) > 0;) {
-        if (entry.type > FF_ABOUT_WHOLE && !told++)
-            ff_list_write(&out, FF_ABOUT_WHOLE, whole, sizeof whole);
-        if (entry.type != FF_ABOUT_WHOLE)
-            ff_list_write(&out, entry.type, entry.value, entry.byte_count);
-    }
-    if (!told) ff_list_write(&out, FF_ABOUT_WHOLE, whole, sizeof whole);
-    if (out.error != FF_OK)
+    int bytes = ff_about_put_whole(c->about, ff_about_whole(c->about, c->info->checksum),
+                                   c->about_bytes, sizeof c->about_bytes);
+    if (bytes < 0)
         return bake_fail("%s: what it says of itself leaves no room to say what it is a part of",
                          c->unpack->path);
-    c->about = (ff_list){ c->about_bytes, (uint32_t)(out.at - c->about_bytes) };
+    c->about = (ff_list){ c->about_bytes, (uint32_t)bytes };
     return 0;
 }
 

@@ -1,6 +1,5 @@
 #include "merge_options.h"
 
-#include "../bake/bake_options.h"
 #include "../bake/bake_say.h"
 #include "../bake/raster/bake_about.h"
 
@@ -36,11 +35,7 @@ int merge_options_parse(merge_options *o, int argc, char **argv)
     bake_say_setup("farfield-merge", 0);
     int rc = sys_options_parse(&program, o, argc, argv);
     if (rc) return rc;
-    bake_options told = { .name = o->name,
-                          .attribution = o->attribution,
-                          .licence = o->licence,
-                          .date = o->date,
-                          .vertical_datum = o->vertical_datum };
+    bake_texts told = BAKE_TEXTS(o);
     if (bake_about_check(&told)) return -1;
     bake_say_setup("farfield-merge", o->quiet);
     return 0;

@@ -1,5 +1,6 @@
 #include "bake_about.h"
 
+#include "../../../protocol/ff_error.h"
 #include "bake_projection.h"
 #include "../bake_say.h"
 
@@ -22,9 +23,9 @@ static const char *const key[BAKE_ABOUT_TEXTS][KEYS_MAX] = {
 static const char *const option_name[BAKE_ABOUT_TEXTS] = { "name", "attribution", "licence", "date",
                                                            "vertical-datum" };
 
-static uint32_t limit(unsigned entry)
+uint32_t bake_about_most(enum ff_about_entry entry)
 {
-    switch ((enum ff_about_entry)entry) {
+    switch (entry) {
 #define X(entry, name, type, form, most) \
     case FF_ABOUT_##entry: return most;
         FF_ABOUT_LIST(X)
@@ -32,6 +33,8 @@ static uint32_t limit(unsigned entry)
     }
     return 0;
 }
+
+const char *bake_about_option(enum ff_about_entry entry) { return option_name[entry - 1]; }
 
 /* ---- texts of sources ---- */
 
@@ -80,7 +83,7 @@ static void plain(const char *from, char *to, size_t room)
 /* Not longer than allowed, and not cut within a character. */
 static void cut(char *text, unsigned entry)
 {
-    size_t most = limit(entry);
+    size_t most = bake_about_most(entry);
     if (strlen(text) <= most) return;
     bake_note("the source's %s is longer than %zu bytes: cut; --%s gives another",
               option_name[entry - 1], most, option_name[entry - 1]);
@@ -119,32 +122,25 @@ static void take_vertical(GDALDatasetH set, char *text)
     if (name) take(name, FF_ABOUT_VERTICAL, text);
 }
 
-/* An option's text, or NULL. */
-static const char *told(const bake_options *o, unsigned entry)
-{
-    const char *const text[BAKE_ABOUT_TEXTS] = { o->name, o->attribution, o->licence, o->date,
-                                                 o->vertical_datum };
-    return text[entry - 1];
-}
-
-int bake_about_check(const bake_options *o)
+int bake_about_check(const bake_texts *told)
 {
     for (unsigned entry = 1; entry <= BAKE_ABOUT_TEXTS; entry++) {
-        const char *text = told(o, entry), *name = option_name[entry - 1];
+        const char *text = told->text[entry - 1], *name = option_name[entry - 1];
         size_t length = text ? strlen(text) : 0;
-        if (length > limit(entry))
-            return bake_fail("--%s: %zu bytes; at most %u are kept", name, length, limit(entry));
+        if (length > bake_about_most(entry))
+            return bake_fail("--%s: %zu bytes; at most %u are kept", name, length,
+                             bake_about_most(entry));
         if (text && !ff_about_is_text((const uint8_t *)text, (uint32_t)length))
             return bake_fail("--%s: not one line of UTF-8", name);
     }
     return 0;
 }
 
-void bake_about_read(const bake_options *o, GDALDatasetH set, bake_about *about)
+void bake_about_read(const bake_texts *told, GDALDatasetH set, bake_about *about)
 {
     *about = (bake_about){ 0 };
     for (unsigned i = 0; i < BAKE_ABOUT_TEXTS; i++) {
-        const char *text = told(o, i + 1);
+        const char *text = told->text[i];
         if (text) snprintf(about->text[i], BAKE_ABOUT_TEXT_ROOM, "%s", text);
         for (unsigned k = 0; k < KEYS_MAX && key[i][k] && !text && !*about->text[i]; k++) {
             const char *found = GDALGetMetadataItem(set, key[i][k], NULL);
@@ -152,7 +148,7 @@ void bake_about_read(const bake_options *o, GDALDatasetH set, bake_about *about)
         }
     }
     char *vertical = about->text[FF_ABOUT_VERTICAL - 1];
-    if (!*vertical && !o->vertical_datum) take_vertical(set, vertical);
+    if (!*vertical && !told->text[FF_ABOUT_VERTICAL - 1]) take_vertical(set, vertical);
 }
 
 /* ---- the list ---- */
@@ -170,7 +166,7 @@ uint32_t bake_about_list(const bake_about *about, OGRSpatialReferenceH srs,
     uint32_t count = wkt ? bake_projection_numbers(srs, wkt, numbers) : 0;
     if (wkt) bake_projection_shorten(srs, wkt);
     size_t wkt_bytes = wkt ? strlen(wkt) : 0;
-    if (wkt_bytes && wkt_bytes <= limit(FF_ABOUT_WKT) &&
+    if (wkt_bytes && wkt_bytes <= bake_about_most(FF_ABOUT_WKT) &&
         ff_about_is_text((const uint8_t *)wkt, (uint32_t)wkt_bytes))
         ff_list_write(&out, FF_ABOUT_WKT, (const uint8_t *)wkt, (uint32_t)wkt_bytes);
     if (count) ff_list_write(&out, FF_ABOUT_PROJECTION, numbers, count);

@@ -199,8 +199,9 @@ int bake_source_read(const bake_options *o, GDALDatasetH set, bake_ground *groun
     *ground = (bake_ground){ .grid = BAKE_GRID_CLOSED };
     GDALDatasetH own = set ? NULL : open_raster(o);
     if (own && !o->raw.width) own = bake_seam_join(o->heights_path, own);
+    bake_texts told = BAKE_TEXTS(o);
     int rc = set || own ? read_set(o, set ? set : own, ground) : -1;
-    if (!rc) bake_about_read(o, set ? set : own, &ground->about);
+    if (!rc) bake_about_read(&told, set ? set : own, &ground->about);
     if (own) GDALClose(own);
     if (rc) bake_ground_close(ground);
     return rc;
