@@ -238,29 +238,37 @@ static int write_sections(const pack_writer *writer, int fd, ff_pack_header *hea
 }
 
 /* A section of its bytes alone. */
-static int write_about(const pack_writer *writer, int fd, ff_pack_section *section, uint64_t *end)
+/* What the pack says of itself, from `at` to *end, and its header, which tells the checksum. */
+static int write_head(ff_list about, int fd, ff_pack_header *header, uint64_t at, uint64_t *end)
 {
-    uint32_t count = writer->about.byte_count;
-    if (!count) return 0;
-    *section = ff_pack_about_section();
-    section->index_offset = section->data_offset = *end;
-    section->data_bytes = count;
-    section->data_crc = ff_crc32(0, writer->about.bytes, count);
-    *end += count;
-    return bake_pwrite(fd, writer->about.bytes, count, section->data_offset);
+    static uint8_t bytes[FF_PACK_HEADER_BYTES];
+    if (about.byte_count) {
+        header->about = ff_pack_about_section();
+        header->about.index_offset = header->about.data_offset = at;
+        header->about.data_bytes = about.byte_count;
+        header->about.data_crc = ff_crc32(0, about.bytes, about.byte_count);
+        if (bake_pwrite(fd, about.bytes, about.byte_count, at)) return -1;
+    }
+    *end = at + about.byte_count;
+    int rc = ff_pack_header_encode(header, bytes);
+    if (rc) return bake_fail("the pack's header does not hold: %s", ff_error_text(rc));
+    return bake_pwrite(fd, bytes, sizeof bytes, 0);
 }
 
 static int write_file(const pack_writer *writer, int fd, uint64_t *file_bytes)
 {
     static ff_pack_header header;
-    static uint8_t bytes[FF_PACK_HEADER_BYTES];
+    uint8_t list[FF_ABOUT_BYTES_MAX];
+    uint64_t at;
     header = (ff_pack_header){ .info = writer->info, .section_count = writer->section_count };
-    if (write_sections(writer, fd, &header, file_bytes) ||
-        write_about(writer, fd, &header.about, file_bytes))
+    if (write_sections(writer, fd, &header, &at) ||
+        write_head(writer->about, fd, &header, at, file_bytes))
         return -1;
-    int rc = ff_pack_header_encode(&header, bytes);
-    if (rc) return bake_fail("the pack's header does not hold: %s", ff_error_text(rc));
-    if (bake_pwrite(fd, bytes, sizeof bytes, 0)) return -1;
+    if (writer->has_whole && header.info.checksum != writer->whole) {
+        int bytes = ff_about_put_whole(writer->about, writer->whole, list, sizeof list);
+        FF_ASSERT(bytes > 0); /* entries that are known fit together */
+        if (write_head((ff_list){ list, (uint32_t)bytes }, fd, &header, at, file_bytes)) return -1;
+    }
     if (fsync(fd)) return bake_fail("cannot sync the pack: %s", strerror(errno));
     return 0;
 }

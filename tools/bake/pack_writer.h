@@ -24,6 +24,10 @@ typedef struct pack_writer {
     uint32_t section_count;
     pack_section_file section[FF_PACK_SECTIONS_MAX];
     ff_list about; /* what the pack says of itself, set before it is finished; may be empty */
+    /* Of parts joined: unless the pack has the checksum of their whole, it says that it is a part.
+     */
+    int has_whole;
+    uint32_t whole;
 } pack_writer;
 
 /* Checks that `path` can be written and removes leftovers of killed runs. 0 or -1 (said). */

@@ -29,7 +29,6 @@ typedef struct merge {
     merge_samples samples;
     bake_image image;
     pack_writer writer;
-    int are_parts; /* of one pack */
     uint8_t list[FF_ABOUT_BYTES_MAX];
     int64_t started_us;
 } merge;
@@ -210,10 +209,10 @@ static int join_parts(merge *m)
     ff_sheet samples = ff_shape_sheet_samples(&m->lattice.info);
     m->lattice.width = samples.x;
     m->lattice.height = samples.y;
-    return pack_writer_open(&m->writer, &m->lattice.info) ||
-                   merge_parts_write(m->unpack, m->count, &m->writer)
-               ? -1
-               : 0;
+    if (pack_writer_open(&m->writer, &m->lattice.info)) return -1;
+    m->writer.has_whole = 1;
+    m->writer.whole = ff_pack_whole(&m->unpack[0].pack);
+    return merge_parts_write(m->unpack, m->count, &m->writer);
 }
 
 static int join_samples(merge *m)
@@ -230,38 +229,14 @@ static int join_samples(merge *m)
     return pack_writer_open(&m->writer, &m->lattice.info) || make_tiles(m) ? -1 : 0;
 }
 
-/* Parts that together are not the whole yet are a part: that is known by the joint pack's checksum,
- * and it is put together once more to say so. */
-static int tell_whole(merge *m, uint64_t *file_bytes)
-{
-    uint32_t whole = ff_pack_whole(&m->unpack[0].pack);
-    uint8_t value[4];
-    ff_writer number = { value, value + sizeof value, FF_OK },
-              out = { m->list + m->writer.about.byte_count, m->list + sizeof m->list, FF_OK };
-    bake_unpack joint;
-    if (bake_unpack_open(&joint, m->options->out_path)) return -1;
-    int is_whole = joint.pack.header.info.checksum == whole;
-    bake_unpack_close(&joint);
-    if (is_whole) return 0;
-    ff_write_bytes(&number, whole, sizeof value);
-    ff_list_write(&out, FF_ABOUT_WHOLE, value, sizeof value);
-    if (out.error != FF_OK)
-        return bake_fail("what the packs say of themselves leaves no room to say what they are "
-                         "parts of");
-    m->writer.about = (ff_list){ m->list, (uint32_t)(out.at - m->list) };
-    return pack_writer_finish(&m->writer, m->options->out_path, file_bytes);
-}
-
 static int make_pack(merge *m)
 {
     uint64_t file_bytes;
     ff_list about;
     if (merge_about_make(m->options, m->unpack, m->count, m->list, &about)) return -1;
-    m->are_parts = merge_parts_are(m->unpack, m->count);
-    if (m->are_parts ? join_parts(m) : join_samples(m)) return -1;
+    if (merge_parts_are(m->unpack, m->count) ? join_parts(m) : join_samples(m)) return -1;
     m->writer.about = about;
     if (pack_writer_finish(&m->writer, m->options->out_path, &file_bytes)) return -1;
-    if (m->are_parts && tell_whole(m, &file_bytes)) return -1;
     report(m, file_bytes);
     return 0;
 }
