@@ -29,8 +29,8 @@ static int read_row(const merge_samples *m, uint32_t row, uint32_t width, float 
     for (uint32_t i = 0; i < width; i++) {
         uint16_t height;
         uint8_t mark;
-        if (m->samples.read(&m->samples, place_of(row, m->lattice.height - 1, m->fill_log2),
-                            place_of(i, m->lattice.width - 1, m->fill_log2), 1, &height, &mark))
+        if (m->samples.read(&m->samples, place_of(row, m->lattice->height - 1, m->fill_log2),
+                            place_of(i, m->lattice->width - 1, m->fill_log2), 1, &height, &mark))
             return -1;
         cells[i] = mark & BAKE_BETWEEN ? NAN : height;
     }
@@ -95,9 +95,9 @@ static uint32_t count_cells(uint32_t places, uint32_t log2)
 int merge_fill_make(merge_samples *m)
 {
     bake_grid cells = BAKE_GRID_CLOSED;
-    m->fill_log2 = choose_log2(&m->lattice);
-    int rc = bake_grid_open(&cells, count_cells(m->lattice.width, m->fill_log2),
-                            count_cells(m->lattice.height, m->fill_log2), sizeof(float));
+    m->fill_log2 = choose_log2(m->lattice);
+    int rc = bake_grid_open(&cells, count_cells(m->lattice->width, m->fill_log2),
+                            count_cells(m->lattice->height, m->fill_log2), sizeof(float));
     if (!rc) rc = read_cells(m, &cells);
     if (!rc) rc = bake_fill_voids(&cells);
     if (!rc) rc = round_rows(&cells, &m->fill);

@@ -49,7 +49,7 @@ static int join_images(mosaic *m)
 
 static int lay(const mosaic *m, uint32_t quality, merge_lattice *l, bake_image *image)
 {
-    double spacing_m = l->spacing_m, east_m = (double)l->info.origin_x_mm / 1000,
+    double spacing_m = merge_spacing_m(&l->info), east_m = (double)l->info.origin_x_mm / 1000,
            north_m = (double)l->info.origin_y_mm / 1000;
     bake_options options = { .texture_log2 = m->texture_log2, .texture_quality = quality };
     bake_ground ground = { .grid = { .fd = -1, .width = l->width, .height = l->height },

@@ -15,6 +15,11 @@
 
 /* ---- places ---- */
 
+double merge_spacing_m(const ff_terrain_info *info)
+{
+    return (double)info->spacing_wu / FF_WU_PER_METRE;
+}
+
 /* Log2 of how many times the finest spacing fits; -1: not a power of two. */
 static int apart_log2(uint32_t spacing_wu, uint32_t finest_wu)
 {
@@ -194,7 +199,6 @@ enum merge_fault merge_lattice_find(const ff_terrain_info *const info[], uint32_
     FF_ASSERT(count >= 1 && count <= MERGE_PACKS_MAX);
     *lattice = (merge_lattice){ .info = *info[0] };
     lattice->info.spacing_wu = finest_wu;
-    lattice->spacing_m = (double)finest_wu / FF_WU_PER_METRE;
     lattice->info.flags = lattice->info.texture_log2 = lattice->info.texture_levels = 0;
     for (uint32_t i = 0; i < count; i++) {
         *which = i;

@@ -21,8 +21,7 @@ typedef struct merge_place {
 typedef struct merge_lattice {
     uint32_t width, height; /* places, both ends within */
     uint32_t apart_log2;    /* of the coarsest pack */
-    double spacing_m;
-    ff_terrain_info info; /* of the joint terrain: all but its tiles, samples and textures */
+    ff_terrain_info info;   /* of the joint terrain: all but its tiles, samples and textures */
 } merge_lattice;
 
 /* Why a pack is not joined with the first one. */
@@ -44,6 +43,7 @@ enum merge_fault {
 enum merge_fault merge_lattice_find(const ff_terrain_info *const info[], uint32_t count,
                                     merge_lattice *lattice, merge_place place[], uint32_t *which);
 
+double merge_spacing_m(const ff_terrain_info *info);
 /* 1 when `a` holds where both have ground: it is finer, or as fine and named before. */
 int merge_place_precedes(const merge_place place[], uint32_t a, uint32_t b);
 /* Places, both ends within. */

@@ -52,11 +52,6 @@ static int open_packs(merge *m)
     return 0;
 }
 
-static double spacing_m(const ff_terrain_info *info)
-{
-    return (double)info->spacing_wu / FF_WU_PER_METRE;
-}
-
 static double step_m(const ff_terrain_info *info)
 {
     double own_m, base_m;
@@ -85,7 +80,7 @@ static int refuse_fault(const merge *m, uint32_t which, enum merge_fault fault)
             return refuse(m, which, "fall away differently (--flat, --refraction or ellipsoid)");
         case MERGE_SPACING:
             snprintf(why, sizeof why, "have spacings of %.9g and %.9g m, no power of two apart",
-                     spacing_m(info), spacing_m(first));
+                     merge_spacing_m(info), merge_spacing_m(first));
             return refuse(m, which, why);
         case MERGE_PLACES:
             return refuse(m, which, "have samples between each other's places, on unlike lattices");
@@ -139,12 +134,12 @@ static int describe(merge *m)
     info->tile_log2 = (uint8_t)bake_choose_tile_log2(info->node_log2, l->width, l->height,
                                                      info->spacing_wu);
     ff_shape_cover(info, l->width, l->height);
-    if (bake_fault(info, fault, sizeof fault) || l->apart_log2 > info->tile_log2)
+    const char *why = bake_fault(info, fault, sizeof fault) ? fault
+                      : l->apart_log2 > info->tile_log2     ? "spacings are too far apart"
+                                                            : NULL;
+    if (why)
         return bake_fail("%u x %u samples of %g m do not make a terrain: %s", l->width, l->height,
-                         spacing_m(info),
-                         l->apart_log2 > info->tile_log2 ? "spacings are too far "
-                                                           "apart"
-                                                         : fault);
+                         merge_spacing_m(info), why);
     return 0;
 }
 
@@ -192,13 +187,13 @@ static void report(const merge *m, uint64_t file_bytes)
     for (uint32_t i = 0; i < m->count; i++) sum += m->unpack[i].pack.size;
     bake_note("%s: %u x %u places of %g m; %" PRIu64 " bytes, %.1f %% of the packs' %" PRIu64
               ", %.1f s",
-              m->options->out_path, m->lattice.width, m->lattice.height, spacing_m(info),
+              m->options->out_path, m->lattice.width, m->lattice.height, merge_spacing_m(info),
               file_bytes, 100.0 * (double)file_bytes / (double)sum, sum, seconds);
     if (!m->options->json) return;
     printf("{\"packs\": %u, \"samples_x\": %u, \"samples_y\": %u, \"spacing_m\": %.9g, "
            "\"uncovered\": %.6f, \"texture_levels\": %u, \"packs_bytes\": %" PRIu64
            ", \"file_bytes\": %" PRIu64 ", \"seconds\": %.3f}\n",
-           m->count, m->lattice.width, m->lattice.height, spacing_m(info), m->samples.gap,
+           m->count, m->lattice.width, m->lattice.height, merge_spacing_m(info), m->samples.gap,
            info->texture_levels, sum, file_bytes, seconds);
 }
 

@@ -29,14 +29,14 @@ static int64_t fill_at(uint32_t at, uint32_t last, uint32_t log2)
 static int put_fill(const merge_samples *m, const stretch *s)
 {
     uint16_t height[PIECE + 2];
-    int64_t row = fill_at(s->row, m->lattice.height - 1, m->fill_log2);
+    int64_t row = fill_at(s->row, m->lattice->height - 1, m->fill_log2);
     memset(s->marks, BAKE_BETWEEN | BAKE_FILLED, s->end - s->first);
     if (row < 0 || m->fill.fd < 0) return 0;
     uint32_t from = s->first >> m->fill_log2,
              count = least((s->end - 1) >> m->fill_log2, m->fill.width - 2) + 2 - from;
     if (bake_grid_read(&m->fill, (uint32_t)row, from, count, height)) return -1;
     for (uint32_t at = s->first; at < s->end; at++) {
-        int64_t column = fill_at(at, m->lattice.width - 1, m->fill_log2);
+        int64_t column = fill_at(at, m->lattice->width - 1, m->fill_log2);
         if (column < 0) continue;
         s->heights[at - s->first] = height[column - from];
         s->marks[at - s->first] = BAKE_FILLED;
@@ -125,7 +125,7 @@ static uint32_t apart_log2(const bake_samples *samples, uint32_t column, uint32_
 {
     const merge_samples *m = (const merge_samples *)samples;
     uint64_t right = column + ((uint64_t)1 << side_log2), top = row + ((uint64_t)1 << side_log2);
-    uint32_t apart = m->lattice.apart_log2;
+    uint32_t apart = m->lattice->apart_log2;
     for (uint32_t i = 0; i < m->count; i++) {
         const merge_rectangle *r = &m->layer[i].reach;
         if (r->left > right || r->right < column || r->bottom > top || r->top < row) continue;
@@ -146,31 +146,36 @@ static int open_layer(const bake_unpack *unpack, const merge_place *place,
     return export_ground_open(unpack, finest, &everywhere, &layer->ground);
 }
 
+/* named[i]: the pack of layer i. A pack holds over as many as its layer's number. */
+static void order_layers(const merge_place place[], uint32_t count, uint32_t named[])
+{
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t under = 0;
+        for (uint32_t j = 0; j < count; j++) under += (uint32_t)merge_place_precedes(place, i, j);
+        named[under] = i;
+    }
+}
+
 /* Marks cost time: there are none where all places have a measured sample. */
 static int needs_marks(const merge_samples *m)
 {
     for (uint32_t i = 0; i < m->count; i++)
         if (m->layer[i].ground.mask.fd >= 0) return 1;
-    return m->lattice.apart_log2 || m->gap > 0;
+    return m->lattice->apart_log2 || m->gap > 0;
 }
 
 int merge_samples_open(const bake_unpack unpack[], const merge_place place[], uint32_t count,
                        const merge_lattice *lattice, merge_samples *m)
 {
+    uint32_t named[MERGE_PACKS_MAX];
     *m = (merge_samples){ .samples = { lattice->width, lattice->height, 1, read_row, apart_log2 },
-                          .lattice = *lattice,
+                          .lattice = lattice,
                           .fill = BAKE_GRID_CLOSED };
-    for (uint32_t opened = 0; opened < count; opened++) {
-        uint32_t last = count; /* of those that are not opened, the one that all others precede */
-        for (uint32_t i = 0; i < count; i++) {
-            uint32_t before = 0;
-            for (uint32_t j = 0; j < count; j++)
-                before += (uint32_t)merge_place_precedes(place, j, i);
-            if (before == count - 1 - opened) last = i;
-        }
-        if (open_layer(&unpack[last], &place[last], lattice, &m->layer[opened])) return -1;
-        m->count++;
-    }
+    order_layers(place, count, named);
+    for (; m->count < count; m->count++)
+        if (open_layer(&unpack[named[m->count]], &place[named[m->count]], lattice,
+                       &m->layer[m->count]))
+            return -1;
     m->gap = merge_lattice_gap(lattice, place, count);
     if (m->gap > 0 && merge_fill_make(m)) return -1;
     m->samples.has_marks = needs_marks(m);

@@ -21,7 +21,7 @@ typedef struct merge_layer {
 
 typedef struct merge_samples {
     bake_samples samples;
-    merge_lattice lattice;
+    const merge_lattice *lattice;
     uint32_t count;
     merge_layer layer[MERGE_PACKS_MAX]; /* each holds over those before it */
     double gap;                         /* the share of places that no pack reaches */
@@ -29,8 +29,8 @@ typedef struct merge_samples {
     uint32_t fill_log2; /* places from one to the next; the last column and row have some, too */
 } merge_samples;
 
-/* Decodes packs whose places are found, in the order they were named. Close it whatever comes back:
- * 0 or -1 (said). */
+/* Decodes packs whose places are found, in the order they were named. The lattice stays where it is
+ * meanwhile. Close it whatever comes back: 0 or -1 (said). */
 int merge_samples_open(const bake_unpack unpack[], const merge_place place[], uint32_t count,
                        const merge_lattice *lattice, merge_samples *samples);
 void merge_samples_close(merge_samples *samples);
