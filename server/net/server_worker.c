@@ -42,9 +42,10 @@ static void count_session(worker *w, const server_client *client)
     w->counters->faces += stats.answers[FF_DATA_FACES];
     w->counters->failed += stats.failed;
     if (stats.damaged)
-        server_complain(
-            "%s is damaged: %u answers to a client were lost (farfield-info --verify shows where)",
-            w->shared->options.pack[0], stats.damaged);
+        server_complain("%s%s is damaged: %u answers to a client were lost (farfield-info --verify "
+                        "shows where)",
+                        w->shared->options.pack[0],
+                        w->shared->packs.count > 1 ? ", or another pack," : "", stats.damaged);
 }
 
 static void remove_closed(worker *w)

@@ -438,6 +438,8 @@ static int hello(ff_session *session, const ff_hello *greeting)
     return FF_OK;
 }
 
+FF_STATIC_ASSERT(FF_PACKS_JOINED_MAX == FF_WELCOME_GROUNDS);
+
 /* What a client has to know to have this pack's ground together with that of others. */
 static ff_list welcome_more(const ff_session *session, uint8_t *bytes, size_t room)
 {
@@ -448,8 +450,9 @@ static ff_list welcome_more(const ff_session *session, uint8_t *bytes, size_t ro
               out = { bytes, bytes + room, FF_OK };
     int parts = 0;
     for (const ff_pack *pack = first; pack; pack = pack->next) {
-        parts |= ff_pack_whole(pack) != pack->header.info.checksum;
-        ff_write_bytes(&wholes, ff_pack_whole(pack), 4);
+        uint32_t of = ff_pack_whole(pack);
+        parts |= of != pack->header.info.checksum;
+        ff_write_bytes(&wholes, of, 4);
         if (pack != first) ff_write_terrain(&rest, &pack->header.info);
     }
     if (parts) ff_list_write(&out, FF_WELCOME_WHOLE, whole, (uint32_t)(wholes.at - whole));
