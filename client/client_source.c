@@ -15,7 +15,6 @@ void ff_source_make(ff_client *client, unsigned number, const ff_source_room *ro
     source->io = who.stream;
     source->error = FF_ERR_AGAIN;
     source->number = (uint8_t)number;
-    source->recv = room->recv;
     ff_requests_init(&source->requests, desc->in_flight_max, room->slots);
     source->intake.requests = &source->requests;
     source->intake.news = &client->news;
@@ -90,30 +89,13 @@ void ff_client_link(ff_client *client, ff_stream_shared *shared)
     }
 }
 
+/* All of them are sums, or the most of something: so many at most together. */
+FF_STATIC_ASSERT(sizeof(ff_request_counts) % sizeof(uint32_t) == 0);
 static void add_counts(ff_request_counts *sum, const ff_request_counts *counts)
 {
-    sum->made += counts->made;
-    sum->sent += counts->sent;
-    sum->done += counts->done;
-    sum->failed += counts->failed;
-    sum->cancelled += counts->cancelled;
-    sum->dropped += counts->dropped;
-    sum->queue_full += counts->queue_full;
-    sum->queued += counts->queued;
-    sum->queued_high += counts->queued_high;
-    sum->in_flight += counts->in_flight;
-    sum->in_flight_high += counts->in_flight_high;
-    sum->arriving += counts->arriving;
-    sum->bytes_in_flight += counts->bytes_in_flight;
-    sum->held_high += counts->held_high;
-    sum->reserve_sent += counts->reserve_sent;
-    sum->reserve_in_flight += counts->reserve_in_flight;
-    sum->reserve_bytes += counts->reserve_bytes;
-    for (unsigned kind = 0; kind < FF_KIND_COUNT; kind++) {
-        sum->of[kind].sent += counts->of[kind].sent;
-        sum->of[kind].in_flight += counts->of[kind].in_flight;
-        sum->of[kind].in_flight_high += counts->of[kind].in_flight_high;
-    }
+    uint32_t *to = (uint32_t *)sum;
+    const uint32_t *from = (const uint32_t *)counts;
+    for (size_t i = 0; i < sizeof *sum / sizeof *to; i++) to[i] += from[i];
 }
 
 void ff_client_counts(ff_client *client, ff_request_counts *counts)

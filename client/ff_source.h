@@ -24,7 +24,6 @@ typedef struct ff_source {
     ff_intake intake;
     ff_stream stream;
     ff_refusals refusals;
-    uint8_t *recv;
     uint8_t number; /* among the sources */
     uint8_t serves; /* its grounds are among the tree's */
     int8_t error;   /* why not: ff_client_source_state */
@@ -40,9 +39,8 @@ static inline ff_key ff_source_key(const ff_source *source, ff_key own)
 {
     int i = ff_intake_ground(&source->intake, own);
     FF_ASSERT(i >= 0);
-    return ff_key_make(ff_key_tile(own) - source->intake.info[i].first_tile +
-                           source->ground[i].first_tile,
-                       ff_key_level(own), ff_key_code(own));
+    return own + ((ff_key)source->ground[i].first_tile << FF_KEY_TILE_SHIFT) -
+           ((ff_key)source->intake.info[i].first_tile << FF_KEY_TILE_SHIFT);
 }
 /* The number of the source's ground that has a key of the tree, or -1. */
 static inline int ff_source_ground_of(const ff_source *source, ff_key key)
@@ -58,9 +56,8 @@ static inline ff_key ff_source_own_key(const ff_source *source, ff_key key)
 {
     int i = ff_source_ground_of(source, key);
     FF_ASSERT(i >= 0);
-    return ff_key_make(ff_key_tile(key) - source->ground[i].first_tile +
-                           source->intake.info[i].first_tile,
-                       ff_key_level(key), ff_key_code(key));
+    return key + ((ff_key)source->intake.info[i].first_tile << FF_KEY_TILE_SHIFT) -
+           ((ff_key)source->ground[i].first_tile << FF_KEY_TILE_SHIFT);
 }
 
 #endif

@@ -74,7 +74,7 @@ static void memory_goes_to_the_ground(void **state)
     ff_client_stats more = rig_stats(&without), less = rig_stats(&with);
     assert_true(more.tree.nodes_capacity > less.tree.nodes_capacity);
     assert_true(less.textures_high > 0);
-    assert_null(without.client->first.recv);
+    assert_null(without.client->first.stream.recv);
     assert_int_equal(more.bytes_up + more.bytes_down, 0);
     rig_close(&with);
     rig_close(&without);

@@ -150,6 +150,22 @@ static void a_second_server_stands_in_for_one_that_is_lost(void **state)
     close_server(&second);
 }
 
+/* Ground that lies so many metres east and north of the others'. */
+static void open_placed(client_rig *rig, int32_t epsg, int east_m, int north_m)
+{
+    rig_open(rig, 0);
+    rig_use_place(rig, epsg, 500000 + east_m, 5000000 + north_m);
+}
+
+/* A client of the rig's server and one source more, until both are heard. */
+static void client_with(client_rig *rig, const ff_source_desc *more)
+{
+    rig->desc.more = more;
+    rig->desc.more_count = 1;
+    rig_client(rig, 8 * MB);
+    for (int n = 0; n < 40; n++) rig_step(rig, 50000);
+}
+
 /* Height of the hills at a place of their ground, as far as the wish for it goes. */
 static int has_ground(const client_rig *rig, int east_m, int north_m)
 {
@@ -178,15 +194,10 @@ static void grounds_of_two_servers_come_together(void **state)
     const int place[][2] = { { WIDE, 0 }, { -WIDE, 64 }, { 100, -WIDE } };
     for (int i = 0; i < 3; i++) {
         client_rig rig, beside;
-        rig_open(&rig, 0);
-        rig_use_place(&rig, UTM, 500000, 5000000);
-        rig_open(&beside, 0);
-        rig_use_place(&beside, UTM, 500000 + place[i][0], 5000000 + place[i][1]);
+        open_placed(&rig, UTM, 0, 0);
+        open_placed(&beside, UTM, place[i][0], place[i][1]);
         ff_source_desc more = { .stream = &beside.stream };
-        rig.desc.more = &more;
-        rig.desc.more_count = 1;
-        rig_client(&rig, 8 * MB);
-        for (int n = 0; n < 40; n++) rig_step(&rig, 50000);
+        client_with(&rig, &more);
         assert_true(rig_settle(&rig, 400));
         expect_both(&rig, place[i][0], place[i][1]);
         rig_close(&rig);
@@ -199,10 +210,8 @@ static void a_server_of_several_packs_gives_all_of_them(void **state)
     (void)state;
     for (int local = 0; local < 2; local++) {
         client_rig rig, beside;
-        rig_open(&rig, 0);
-        rig_use_place(&rig, UTM, 500000, 5000000);
-        rig_open(&beside, 0);
-        rig_use_place(&beside, UTM, 500000 + WIDE, 5000000);
+        open_placed(&rig, UTM, 0, 0);
+        open_placed(&beside, UTM, WIDE, 0);
         assert_int_equal(ff_pack_join(&rig.pack, &beside.pack), FF_OK);
         if (local)
             rig_local_client(&rig, 8 * MB);
@@ -228,17 +237,12 @@ static void what_fits_no_ground_is_told_and_left_out(void **state)
     for (size_t i = 0; i < sizeof row / sizeof *row; i++)
         for (int local = 0; local < 2; local++) {
             client_rig rig, other;
-            rig_open(&rig, 0);
-            rig_use_place(&rig, UTM, 500000, 5000000);
-            rig_open(&other, 0);
-            rig_use_place(&other, row[i].epsg, 500000 + row[i].east_m, 5000000);
+            open_placed(&rig, UTM, 0, 0);
+            open_placed(&other, row[i].epsg, row[i].east_m, 0);
             if (row[i].node_log2 != 3) rig_use_node_log2(&other, (unsigned)row[i].node_log2, 0);
             ff_source_desc more = { .stream = local ? NULL : &other.stream,
                                     .pack = local ? &other.pack : NULL };
-            rig.desc.more = &more;
-            rig.desc.more_count = 1;
-            rig_client(&rig, 8 * MB);
-            for (int n = 0; n < 40; n++) rig_step(&rig, 50000);
+            client_with(&rig, &more);
             assert_true(rig_settle(&rig, 400));
             assert_int_equal(ff_client_source_state(rig.client, 1), row[i].expected);
             assert_int_equal(ff_client_source_state(rig.client, 0), FF_OK);
@@ -253,15 +257,10 @@ static void a_server_that_changes_its_pack_is_taken_anew(void **state)
 {
     (void)state;
     client_rig rig, beside;
-    rig_open(&rig, 0);
-    rig_use_place(&rig, UTM, 500000, 5000000);
-    rig_open(&beside, 0);
-    rig_use_place(&beside, UTM, 500000 + WIDE, 5000000);
+    open_placed(&rig, UTM, 0, 0);
+    open_placed(&beside, UTM, WIDE, 0);
     ff_source_desc more = { .stream = &beside.stream };
-    rig.desc.more = &more;
-    rig.desc.more_count = 1;
-    rig_client(&rig, 8 * MB);
-    for (int n = 0; n < 40; n++) rig_step(&rig, 50000);
+    client_with(&rig, &more);
     expect_both(&rig, WIDE, 0);
     rig_change_terrain(&beside);
     for (int n = 0; n < 200; n++) rig_step(&rig, 50000);
@@ -289,12 +288,9 @@ static void a_ground_that_fits_not_makes_nothing_come_twice(void **state)
     const int east_m[][2] = { { 0, 9000000 }, { 7000000, 9000000 } };
     for (int i = 0; i < 2; i++) {
         client_rig rig, beside, far;
-        rig_open(&rig, 0);
-        rig_use_place(&rig, UTM, 500000, 5000000);
-        rig_open(&beside, 0);
-        rig_use_place(&beside, UTM, 500000 + east_m[i][0], 5000000 + (i ? 0 : WIDE));
-        rig_open(&far, 0);
-        rig_use_place(&far, UTM, 500000 + east_m[i][1], 5000000);
+        open_placed(&rig, UTM, 0, 0);
+        open_placed(&beside, UTM, east_m[i][0], i ? 0 : WIDE);
+        open_placed(&far, UTM, east_m[i][1], 0);
         if (i == 0) far.pack.header.info.codec = FF_CODEC_COUNT; /* one that is not built in */
         ff_source_desc more[2] = { { .stream = &beside.stream } };
         rig.desc.more = more;
@@ -349,10 +345,8 @@ static void answers_on_their_way_are_not_taken_for_others(void **state)
     (void)state;
     for (unsigned changed = 4; changed < 64; changed += 5) {
         client_rig rig, beside, calm, other;
-        rig_open(&rig, 0);
-        rig_use_place(&rig, UTM, 500000, 5000000);
-        rig_open(&beside, 0);
-        rig_use_place(&beside, UTM, 500000 + WIDE, 5000000);
+        open_placed(&rig, UTM, 0, 0);
+        open_placed(&beside, UTM, WIDE, 0);
         ff_source_desc more = { .stream = &beside.stream };
         rig.desc.more = &more;
         rig.desc.more_count = 1;
@@ -367,10 +361,8 @@ static void answers_on_their_way_are_not_taken_for_others(void **state)
         assert_int_equal(rig_stats(&rig).requests_failed, 0);
         assert_int_equal(rig.connections, 1);
         /* the same as if it had always been so */
-        rig_open(&calm, 0);
-        rig_use_place(&calm, UTM, 500000, 5000000);
-        rig_open(&other, 0);
-        rig_use_place(&other, UTM, 500000 + WIDE, 5000000);
+        open_placed(&calm, UTM, 0, 0);
+        open_placed(&other, UTM, WIDE, 0);
         rig_change_terrain(&other);
         ff_source_desc more_calm = { .stream = &other.stream };
         calm.desc.more = &more_calm;
