@@ -249,11 +249,29 @@ void ff_client_event(ff_client *client, const sys_event *event)
                           ff_client_low_power(client));
 }
 
+/* Gives up the terrain, shares the block out anew and has the server tell of its ground again. */
+static void start_over(ff_client *client)
+{
+    sys_mutex_lock(&client->gate);
+    if (client->have_terrain) {
+        ff_client_uncarve(client);
+        client->first.intake.told_count = 0;
+        (void)begin_terrain(client);
+    }
+    client->first.stream.reach_wu = ff_client_reach_wu(client);
+    ff_stream_restart(&client->first.stream);
+    sys_mutex_unlock(&client->gate);
+}
+
 void ff_client_set_quality(ff_client *client, const ff_quality *quality)
 {
     client->desc.quality = *quality;
     default_quality(&client->desc);
     bound_quality(&client->desc.quality);
+    /* the server has left out levels that a farther view needs */
+    if (client->first.io && client->first.io->reconnect &&
+        client->first.stream.reach_wu < ff_client_reach_wu(client))
+        start_over(client);
     client->dirty = 1;
     ff_client_balance_begin(client, 0);
 }
@@ -269,14 +287,7 @@ void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama)
     client->dirty = 1;
     if (!client->have_terrain) return;
     if (panorama->enabled && !face_size && !client->economy && client->desc.stream) {
-        /* the block was shared out without panoramas: share it out anew, with the terrain asked for
-         * again */
-        sys_mutex_lock(&client->gate);
-        ff_client_uncarve(client);
-        client->first.intake.told_count = 0;
-        (void)begin_terrain(client);
-        ff_stream_restart(&client->first.stream);
-        sys_mutex_unlock(&client->gate);
+        start_over(client); /* the block was shared out without panoramas */
         return;
     }
     ff_requests_cancel_all(&client->first.requests, FF_KIND_FACE);

@@ -5,6 +5,11 @@
 
 #include <string.h>
 
+int32_t ff_client_reach_wu(const ff_client *client)
+{
+    return client->desc.more_count ? INT32_MAX : client->desc.quality.view_wu;
+}
+
 void ff_source_make(ff_client *client, unsigned number, const ff_source_room *room)
 {
     ff_source *source = ff_client_source(client, number);
@@ -22,6 +27,7 @@ void ff_source_make(ff_client *client, unsigned number, const ff_source_room *ro
     if (!source->io) return;
     ff_stream_init(&source->stream, source->io, &source->intake, desc->in_flight_max,
                    desc->answer_timeout_ms, room->recv, room->recv_bytes);
+    source->stream.reach_wu = ff_client_reach_wu(client);
     if (room->about) ff_stream_want_about(&source->stream, desc->about, room->about);
 }
 

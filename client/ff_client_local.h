@@ -83,6 +83,9 @@ typedef struct ff_source_room {
     uint8_t *slots, *recv, *about;
     uint32_t recv_bytes;
 } ff_source_room;
+/* How far the server is told that its ground is looked at; INT32_MAX: not told. Several sources may
+ * have the same ground, and then each hands out all levels of it, so that keys mean the same. */
+int32_t ff_client_reach_wu(const ff_client *client);
 void ff_source_make(ff_client *client, unsigned number, const ff_source_room *room);
 int ff_client_step_source(ff_client *client, ff_source *source, int64_t now_us);
 /* Who it is, as the embedder says. */

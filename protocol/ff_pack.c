@@ -5,6 +5,7 @@
 
 #include "ff_assert.h"
 #include "ff_bytes.h"
+#include "ff_entry.h"
 #include "shape/ff_shape.h"
 
 #include <limits.h>
@@ -332,7 +333,9 @@ static int open_pack(ff_pack *pack)
     if (memcmp(file, magic, begin) != 0) return FF_ERR_FORMAT;
     if (pack->size < FF_PACK_HEADER_BYTES) return FF_ERR_TRUNCATED;
     rc = fetch(pack, 0, FF_PACK_HEADER_BYTES, pack->room, &file);
-    return rc == FF_OK ? open_header(pack, file) : rc;
+    if (rc == FF_OK) rc = open_header(pack, file);
+    pack->tiles = pack->header.section[0].index.records; /* which are roots */
+    return rc;
 }
 
 int ff_pack_open(ff_pack *pack, const void *bytes, uint64_t size)
@@ -413,11 +416,20 @@ static int has_level(const ff_pack *pack, const ff_pack_section *first, uint32_t
 int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
                    const uint8_t **payload)
 {
-    uint32_t level = ff_key_level(key), code = ff_key_code(key), number;
+    uint32_t level, code, number;
     const ff_pack_section *section;
 
     pack = ff_pack_of(pack, key);
     if (!pack) return FF_ERR_NOT_FOUND;
+    if (pack->stored) {
+        if (kind == FF_SECTION_ROOT && ff_key_level(key) == 0)
+            return pack->make_root(pack->root_context, ff_key_tile(key), payload);
+        if (!ff_terrain_has_node(&pack->header.info, key)) return FF_ERR_NOT_FOUND;
+        key = ff_entry_key(&pack->stored->header.info, &pack->header.info, key);
+        pack = pack->stored;
+    }
+    level = ff_key_level(key);
+    code = ff_key_code(key);
     number = ff_key_tile(key) - pack->header.info.first_tile;
     section = first_section(pack, kind);
     if (!section || !has_level(pack, section, level) || (uint64_t)code >> (2 * level) != 0)

@@ -54,6 +54,10 @@ typedef struct ff_pack_header {
 /* Reads `count` bytes from `offset` on, all of them: FF_OK or an error. */
 typedef int ff_pack_read_fn(void *context, uint64_t offset, void *out, size_t count);
 
+/* Makes the root of a tile that is no stored one (ff_pack_enter): bytes of *payload, which stands
+ * until the next one is made, or an error. */
+typedef int ff_pack_root_fn(void *context, uint32_t tile, const uint8_t **payload);
+
 /* A view on a pack: plain data that owns nothing. A mapping must outlive its view; any number of
  * threads may read through one view of a mapping at once, and one through a view that reads. */
 typedef struct ff_pack {
@@ -64,8 +68,13 @@ typedef struct ff_pack {
     size_t room_bytes;
     uint64_t size;
     ff_pack_header header;
+    uint32_t tiles;       /* of its terrain */
     char refusal[112];    /* why it was not opened, where the error alone does not say; else "" */
     struct ff_pack *next; /* another ground's, see ff_pack_join; NULL */
+    /* entered below its top: the terrain as it is stored, and who makes roots; else NULL */
+    const struct ff_pack *stored;
+    ff_pack_root_fn *make_root;
+    void *root_context;
 } ff_pack;
 
 #define FF_PACKS_JOINED_MAX 7 /* with the first: as many as a WELCOME can tell of */
@@ -92,11 +101,19 @@ uint32_t ff_pack_whole(const ff_pack *pack);
 /* The one of those joined that has the key's tile, or NULL. */
 static inline const ff_pack *ff_pack_of(const ff_pack *pack, ff_key key)
 {
-    while (pack && ff_key_tile(key) - pack->header.info.first_tile >=
-                       (uint64_t)pack->header.section[0].index.records)
+    while (pack && ff_key_tile(key) - pack->header.info.first_tile >= pack->tiles)
         pack = pack->next;
     return pack;
 }
+
+/* The level at which a pack may be entered for views that reach so far along each axis
+ * (ff_entry_level), no deeper than every node has an image where there are images; 0: the top. A
+ * part of another pack may lack ground there. */
+uint32_t ff_pack_entry_level(const ff_pack *pack, int32_t reach_wu);
+/* A view on `whole`, which stays where it is, with the nodes of a level as tiles: for reading
+ * records and what it says of itself, and to be joined with others. */
+void ff_pack_enter(const ff_pack *whole, uint32_t level, ff_pack_root_fn *make_root, void *context,
+                   ff_pack *entered);
 
 /* Reads record `key` of a kind; *payload points into the mapping, or into the room, where it stands
  * until the next record is read. Payload bytes (1 or more) or NOT_FOUND, CHECKSUM, RANGE; FULL: it

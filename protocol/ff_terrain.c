@@ -39,7 +39,7 @@ int ff_terrain_same(const ff_terrain_info *a, const ff_terrain_info *b)
            a->tiles_y == b->tiles_y && a->spacing_wu == b->spacing_wu &&
            a->hscale_q24 == b->hscale_q24 && a->hoffset_wu == b->hoffset_wu &&
            a->curve_q60 == b->curve_q60 && a->texture_log2 == b->texture_log2 &&
-           a->texture_levels == b->texture_levels;
+           a->texture_levels == b->texture_levels && a->entered == b->entered;
 }
 
 /* Millimetres as world units, to the nearest. */

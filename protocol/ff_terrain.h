@@ -56,6 +56,9 @@ typedef struct ff_terrain_info {
      * it, and where its south-west sample lies in the axes of the first one. */
     uint32_t first_tile;
     int32_t west_wu, south_wu;
+    /* In no pack either: how many levels of it above these tiles are left out (ff_entry.h). Where
+     * some are, roots are coded exactly, whatever max_error is. */
+    uint8_t entered;
 } ff_terrain_info;
 
 /* Columns and rows of cells of a payload's grid that have ground, from the south-west: of a node's

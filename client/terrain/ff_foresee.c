@@ -119,10 +119,8 @@ static void foresee_roots(const ff_tree *tree, uint32_t g, foresight *f)
 
 static void foresee_children_of(const ff_tree *tree, foresight *f, const ff_node *node)
 {
-    uint32_t next = ff_key_level(node->key) + 1;
     FF_ASSERT(!ff_node_has_children(node));
-    if (next >= ff_terrain_levels(ff_ground_of(tree, node->key)) ||
-        (tree->quality.depth_max && next >= tree->quality.depth_max) ||
+    if (!ff_has_level(tree, ff_ground_of(tree, node->key), ff_key_level(node->key) + 1) ||
         node->flags & FF_NODE_LEAF || ff_node_is_stub(node) || node->error_code == 0)
         return;
     if (node->flags & FF_NODE_NEEDED) { /* wished for already, unless its tile waits for it */

@@ -122,10 +122,7 @@ static uint32_t push_children(ff_tree *tree, const ff_node *node, uint32_t count
  * split. */
 static uint32_t own_value(ff_tree *tree, const ff_node *node)
 {
-    uint32_t next = ff_key_level(node->key) + 1,
-             levels = ff_terrain_levels(ff_ground_of(tree, node->key));
-    FF_ASSERT(next <= levels);
-    if (next >= levels || (tree->quality.depth_max && next >= tree->quality.depth_max)) return 0;
+    if (!ff_has_level(tree, ff_ground_of(tree, node->key), ff_key_level(node->key) + 1)) return 0;
     uint32_t value = ff_value_of_split(tree, node);
     if (value <= FF_VALUE_ONE) return 0;
     if (ff_node_is_stub(node)) {

@@ -45,7 +45,9 @@ typedef struct ff_quality {
     enum ff_measure measure;
     int32_t c_q8;        /* C of eq. 3 */
     int32_t error_px_q8; /* for FF_MEASURE_PIXELS */
-    uint8_t depth_max;   /* levels used, 1: roots only; 0: all the terrain has */
+    /* levels used, 1: roots only; 0: all the terrain has. Of an entered terrain (ff_entry.h) those
+     * that are left out count, and its roots are used always */
+    uint8_t depth_max;
     /* children of a node are kept until f exceeds sigma (> 1.0); Listing 1's caching threshold */
     int32_t sigma_q8;
     /* ground further than this (largest of |dx|,|dy|,|dz| to `centre_wu`) is neither drawn nor

@@ -155,6 +155,13 @@ static inline int ff_left_out(const ff_tree *tree, ff_key key)
 {
     return tree->cover && ff_cover_hides(tree, key);
 }
+/* 1 where a ground has a level, and the quality uses it: it counts those that are left out. */
+static inline int ff_has_level(const ff_tree *tree, const ff_terrain_info *info, uint32_t level)
+{
+    FF_ASSERT(level <= ff_terrain_levels(info));
+    return level < ff_terrain_levels(info) &&
+           (!tree->quality.depth_max || level + info->entered < tree->quality.depth_max);
+}
 static inline uint32_t ff_ground_ranked(const ff_tree *tree, uint32_t rank)
 {
     return tree->cover ? tree->cover->ranked[rank] : rank;

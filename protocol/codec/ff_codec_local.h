@@ -135,11 +135,11 @@ static inline uint32_t ff_refinement_count(const ff_terrain_info *info)
     return ff_refined_side(info) * ff_refined_side(info) - ff_root_count(info);
 }
 
-/* Quantiser step. */
-static inline int32_t ff_quantum(const ff_terrain_info *info)
+/* Quantiser step; roots of an entered terrain are exact (ff_entry.h). */
+static inline int32_t ff_quantum(const ff_terrain_info *info, int root)
 {
     FF_ASSERT(info->max_error <= INT16_MAX);
-    return 2 * (int32_t)info->max_error + 1;
+    return root && info->entered ? 1 : 2 * (int32_t)info->max_error + 1;
 }
 
 /* A height from its prediction and quantised residual. Lossless residuals are differences modulo

@@ -201,7 +201,7 @@ static uint16_t add_residual(void *context, uint32_t at, int32_t predicted)
 int ff_add_residuals(const ff_terrain_info *info, const uint16_t *parent, const ff_residuals *res,
                      uint16_t *heights)
 {
-    reconstruction r = { res->value, ff_quantum(info) };
+    reconstruction r = { res->value, ff_quantum(info, !parent) };
 
     FF_ASSERT(res->count == ff_coded_count(info, res->cells, !parent));
     if (parent) {

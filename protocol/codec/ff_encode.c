@@ -40,7 +40,7 @@ static uint16_t take_residual(void *context, uint32_t at, int32_t predicted)
 void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *source,
                        const uint8_t *between, ff_residuals *out, uint16_t *decoded)
 {
-    quantisation q = { source, between, out->value, ff_quantum(info) };
+    quantisation q = { source, between, out->value, ff_quantum(info, !parent) };
 
     out->count = (uint16_t)ff_coded_count(info, out->cells, !parent);
     out->carried_bytes = 0;
@@ -52,7 +52,7 @@ void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, cons
     for (uint32_t corner = 0; corner < FF_CORNERS; corner++) {
         uint32_t at = ff_corner_at(info, corner);
         FF_ASSERT(!between || !between[at]);
-        *q.next = (source[at] + info->max_error) / q.quantum;
+        *q.next = (source[at] + q.quantum / 2) / q.quantum;
         decoded[at] = ff_dequantise(q.quantum, 0, *q.next++);
     }
     ff_predict_root(info, out->cells, decoded, take_residual, &q);

@@ -51,7 +51,8 @@ FF_STATIC_ASSERT(2 + FF_PAYLOAD_BYTES_MAX <= FF_MESSAGE_BODY_MAX);
     X(TOKEN,    3, 1, 255) /* what it may have, any bytes */ \
     X(SCREEN,   4, 4, 4)   /* u16 width, height */ \
     X(BUDGETS,  5, 8, 8)   /* u32 bytes a second, u32 bytes of memory; 0: not told */ \
-    X(FEATURES, 6, 4, 4)   /* u32 bits: 0 images, 1 panoramas */
+    X(FEATURES, 6, 4, 4)   /* u32 bits: 0 images, 1 panoramas */ \
+    X(REACH,    7, 4, 4)   /* u32: ground farther than this along an axis, wu, is not looked at */
 #define FF_WELCOME_GROUNDS 7 /* that a server has, at most */
 #define FF_WELCOME_LIST(X) \
     X(TERRAIN,  1, FF_TERRAIN_BYTES, FF_TERRAIN_BYTES) /* needed */ \
@@ -59,7 +60,8 @@ FF_STATIC_ASSERT(2 + FF_PAYLOAD_BYTES_MAX <= FF_MESSAGE_BODY_MAX);
     X(REQUESTS, 3, 2, 2) /* u16 unanswered at once */ \
     X(BYTES,    4, 4, 4) /* u32 bytes a second */ \
     X(WHOLE,    5, 4, 4 * FF_WELCOME_GROUNDS) /* u32 of each: checksum of the whole that it is of */ \
-    X(TERRAINS, 6, FF_TERRAIN_BYTES, FF_TERRAIN_BYTES * (FF_WELCOME_GROUNDS - 1)) /* more terrains */
+    X(TERRAINS, 6, FF_TERRAIN_BYTES, FF_TERRAIN_BYTES * (FF_WELCOME_GROUNDS - 1)) /* more terrains */ \
+    X(ENTRY,    7, 1, FF_WELCOME_GROUNDS) /* u8 of each: levels above its tiles that are left out */
 /* clang-format on */
 
 enum ff_caps_entry {

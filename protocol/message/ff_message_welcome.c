@@ -26,6 +26,21 @@ static int read_next(const uint8_t *bytes, row *r, ff_terrain_info *info)
     return rc;
 }
 
+/* Each ground says how many levels are left out above it, or none does; it has room for them. */
+static int entry_ok(const ff_welcome *welcome, unsigned count)
+{
+    const uint8_t *value;
+    int told = ff_list_find(welcome->more, FF_WELCOME_ENTRY, &value);
+    if (told < 0) return 1;
+    for (unsigned i = 0; i < count; i++) {
+        ff_terrain_info info;
+        uint32_t whole;
+        ff_welcome_ground(welcome, i, &info, &whole);
+        if (info.entered > FF_KEY_LEVEL_MAX + info.node_log2 - info.tile_log2) return 0;
+    }
+    return (unsigned)told == count;
+}
+
 int ff_welcome_count(const ff_welcome *welcome)
 {
     const uint8_t *value;
@@ -41,7 +56,7 @@ int ff_welcome_count(const ff_welcome *welcome)
     if (ff_list_find(welcome->more, FF_WELCOME_WHOLE, &value) > 0 &&
         entries(welcome->more, FF_WELCOME_WHOLE, 4, &value) != count)
         return FF_ERR_RANGE;
-    return (int)count;
+    return entry_ok(welcome, count) ? (int)count : FF_ERR_RANGE;
 }
 
 void ff_welcome_ground(const ff_welcome *welcome, unsigned number, ff_terrain_info *info,
@@ -57,6 +72,7 @@ void ff_welcome_ground(const ff_welcome *welcome, unsigned number, ff_terrain_in
         (void)rc;
     }
     *whole = info->checksum;
+    if (number < entries(welcome->more, FF_WELCOME_ENTRY, 1, &value)) info->entered = value[number];
     if (!entries(welcome->more, FF_WELCOME_WHOLE, 4, &value)) return;
     ff_reader in = { value + 4 * number, value + 4 * number + 4, FF_OK };
     *whole = (uint32_t)ff_read_bytes(&in, 4);

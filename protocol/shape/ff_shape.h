@@ -257,12 +257,16 @@ static inline int ff_shape_next(const ff_terrain_info *info, ff_walk *walk, uint
 
 /* ---- sheet ---- */
 
-/* Where a tile lies in the raster of the whole terrain, x to the east, y to the north; and the
- * number of tiles each way. */
+/* Where a tile lies in the raster of the whole terrain, x to the east, y to the north; the tile
+ * that lies there; and the number of tiles each way. */
 static inline ff_sheet ff_shape_sheet(const ff_terrain_info *info, uint32_t tile)
 {
     FF_ASSERT(tile - info->first_tile < ff_shape_tiles(info));
     return FF_SHAPE_CALL(info, sheet, (info, tile));
+}
+static inline uint32_t ff_shape_sheet_tile(const ff_terrain_info *info, ff_sheet at)
+{
+    return FF_SHAPE_CALL(info, sheet_tile, (info, at));
 }
 static inline ff_sheet ff_shape_sheet_tiles(const ff_terrain_info *info)
 {

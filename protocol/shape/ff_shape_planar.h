@@ -237,6 +237,12 @@ static inline ff_sheet ff_planar_sheet(const ff_terrain_info *info, uint32_t til
     return (ff_sheet){ own % info->tiles_x, own / info->tiles_x };
 }
 
+static inline uint32_t ff_planar_sheet_tile(const ff_terrain_info *info, ff_sheet at)
+{
+    FF_ASSERT(at.x < info->tiles_x && at.y < info->tiles_y);
+    return info->first_tile + at.y * info->tiles_x + at.x;
+}
+
 static inline ff_sheet ff_planar_sheet_tiles(const ff_terrain_info *info)
 {
     return (ff_sheet){ info->tiles_x, info->tiles_y };

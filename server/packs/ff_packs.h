@@ -4,6 +4,7 @@
 
 #include "../../platform/sys.h"
 #include "../../protocol/ff_pack.h"
+#include "../../protocol/message/ff_message.h"
 
 #define FF_PACKS_MAX (FF_PACKS_JOINED_MAX + 1) /* of those that are not joined */
 
@@ -26,5 +27,8 @@ const char *ff_packs_why_apart(int rc);
 /* What a pack and those joined to it say of themselves, in `bytes`: of texts each word once
  * (ff_about_add_words), as far as an entry has room; the rest is the first one's. */
 ff_list ff_packs_about(const ff_pack *pack, uint8_t bytes[FF_ABOUT_BYTES_MAX]);
+/* What a client has to know of them to have their ground together with that of others: the entries
+ * of a WELCOME behind the first one's terrain. */
+ff_list ff_packs_welcome(const ff_pack *pack, uint8_t bytes[FF_CAPS_BYTES_MAX]);
 
 #endif

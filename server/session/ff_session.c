@@ -6,6 +6,7 @@
  */
 #include "ff_session_local.h"
 #include "../packs/ff_packs.h"
+#include "../packs/ff_packs_entered.h"
 #include "../view/ff_view_parts.h"
 
 #include <assert.h>
@@ -42,8 +43,10 @@ typedef struct view_parts {
 struct ff_session {
     ff_session_desc desc;
     ff_session_stats stats;
-    int error;             /* not 0: the session is over */
-    int greeted, welcomed; /* HELLO has come; CAPS has, too */
+    int error;                 /* not 0: the session is over */
+    int greeted, welcomed;     /* HELLO has come; CAPS has, too */
+    const ff_pack *pack;       /* as the client has it: */
+    ff_packs_entered *entered; /* NULL: all of it */
     int64_t now_us, last_message_us;
 
     uint8_t in[IN_BYTES]; /* the beginning of one message, never a whole one */
@@ -80,6 +83,7 @@ ff_session *ff_session_create(const ff_session_desc *desc)
     ff_session *session = calloc(1, sizeof *session);
     if (!session) return NULL;
     session->desc = desc_with_defaults(desc);
+    session->pack = session->desc.pack;
     session->out_capacity = (size_t)session->desc.out_bytes_max + FACE_BYTES + SHORT_ANSWERS_BYTES +
                             2 * SHORT_ANSWER_BYTES;
     session->queue = calloc(session->desc.requests_max, sizeof *session->queue);
@@ -99,6 +103,7 @@ void ff_session_destroy(ff_session *session)
     if (!session) return;
     free(session->queue);
     free(session->view.part);
+    ff_packs_leave(session->entered);
     free(session->out);
     free(session);
 }
@@ -229,8 +234,8 @@ static int put_part(ff_session *session, uint16_t id)
     if (view->next < view->count) {
         const ff_view_part *part = &view->part[view->next];
         const ff_kind_row *kind = &ff_kind[part->kind];
-        int bytes = ff_pack_record(session->desc.pack, (enum ff_section_kind)kind->section,
-                                   part->key, &message.u.part.bytes);
+        int bytes = ff_pack_record(session->pack, (enum ff_section_kind)kind->section, part->key,
+                                   &message.u.part.bytes);
         if (bytes < 0) return bytes;
         message.u.part.what = kind->what;
         message.u.part.key = part->key;
@@ -305,7 +310,7 @@ static int fetch_record(const ff_session *session, enum ff_kind kind, ff_key key
                         const uint8_t **payload)
 {
     enum ff_section_kind section = (enum ff_section_kind)ff_kind[kind].section;
-    return ff_pack_record(session->desc.pack, section, key, payload);
+    return ff_pack_record(session->pack, section, key, payload);
 }
 
 int ff_session_ask_record(ff_session *session, const ff_message *ask)
@@ -323,7 +328,7 @@ static int find_parts(ff_session *session, const ff_get_view *wanted)
     if (!view->part) view->part = malloc(FF_VIEW_PARTS_MAX * sizeof *view->part);
     if (!view->part) return FF_ERR_MEMORY;
     return allowed(session, &session->views, session->desc.views_per_minute, VIEWS_AT_ONCE)
-               ? ff_view_parts(session->desc.pack, wanted, view->part)
+               ? ff_view_parts(session->pack, wanted, view->part)
                : ff_view_named(wanted, view->part);
 }
 
@@ -438,39 +443,29 @@ static int hello(ff_session *session, const ff_hello *greeting)
     return FF_OK;
 }
 
-FF_STATIC_ASSERT(FF_PACKS_JOINED_MAX == FF_WELCOME_GROUNDS);
-
-/* What a client has to know to have this pack's ground together with that of others. */
-static ff_list welcome_more(const ff_session *session, uint8_t *bytes, size_t room)
+/* Who looks no further than so far gets the packs without the levels that are too coarse for it. A
+ * server that has no memory for that hands out all of them. */
+static void enter_packs(ff_session *session, ff_list told)
 {
-    const ff_pack *first = session->desc.pack;
-    uint8_t whole[4 * FF_WELCOME_GROUNDS], terrains[FF_TERRAIN_BYTES * FF_WELCOME_GROUNDS];
-    ff_writer wholes = { whole, whole + sizeof whole, FF_OK },
-              rest = { terrains, terrains + sizeof terrains, FF_OK },
-              out = { bytes, bytes + room, FF_OK };
-    int parts = 0;
-    for (const ff_pack *pack = first; pack; pack = pack->next) {
-        uint32_t of = ff_pack_whole(pack);
-        parts |= of != pack->header.info.checksum;
-        ff_write_bytes(&wholes, of, 4);
-        if (pack != first) ff_write_terrain(&rest, &pack->header.info);
-    }
-    if (parts) ff_list_write(&out, FF_WELCOME_WHOLE, whole, (uint32_t)(wholes.at - whole));
-    if (first->next)
-        ff_list_write(&out, FF_WELCOME_TERRAINS, terrains, (uint32_t)(rest.at - terrains));
-    assert(wholes.error == FF_OK && rest.error == FF_OK && out.error == FF_OK);
-    return (ff_list){ bytes, (uint32_t)(out.at - bytes) };
+    const uint8_t *value;
+    if (ff_list_find(told, FF_CAPS_REACH, &value) != 4) return;
+    ff_reader in = { value, value + 4, FF_OK };
+    uint64_t reach_wu = ff_read_bytes(&in, 4);
+    if (reach_wu <= INT32_MAX)
+        (void)ff_packs_enter(session->desc.pack, (int32_t)reach_wu, &session->entered);
+    if (session->entered) session->pack = ff_packs_entered_first(session->entered);
 }
 
-/* Nothing that a client says of itself changes the answers yet. */
-static int caps(ff_session *session)
+/* Nothing else that a client says of itself changes the answers yet. */
+static int caps(ff_session *session, ff_list told)
 {
     uint8_t more[FF_CAPS_BYTES_MAX];
     if (!session->greeted || session->welcomed) return end_session(session, FF_ERR_FORMAT);
     ff_message welcome = { .type = FF_MSG_WELCOME };
     welcome.u.welcome.version = FF_PROTOCOL_VERSION;
-    welcome.u.welcome.info = session->desc.pack->header.info;
-    welcome.u.welcome.more = welcome_more(session, more, sizeof more);
+    enter_packs(session, told);
+    welcome.u.welcome.info = session->pack->header.info;
+    welcome.u.welcome.more = ff_packs_welcome(session->pack, more);
     session->welcomed = 1;
     answer_short(session, &welcome);
     return FF_OK;
@@ -503,7 +498,7 @@ static int take_request(ff_session *session, const ff_message *message)
 static int handle(ff_session *session, const ff_message *message)
 {
     if (message->type == FF_MSG_HELLO) return hello(session, &message->u.hello);
-    if (message->type == FF_MSG_CAPS) return caps(session);
+    if (message->type == FF_MSG_CAPS) return caps(session, message->u.list);
     if (!session->welcomed) return end_session(session, FF_ERR_FORMAT);
     switch (message->type) {
         case FF_MSG_GET: return take_request(session, message);

@@ -59,7 +59,7 @@ static unsigned low_bits(const coder *c, uint32_t at)
         lowest = h < lowest ? h : lowest;
         highest = h > highest ? h : highest;
     }
-    return length_of((highest - lowest) / (8u * (uint32_t)ff_quantum(c->info)));
+    return length_of((highest - lowest) / (8u * (uint32_t)ff_quantum(c->info, !c->parent)));
 }
 
 static unsigned take_bit(bits *b)
@@ -105,7 +105,7 @@ static uint16_t take_sample(void *context, uint32_t at, int32_t predicted)
     coder *c = context;
 
     c->before = c->bits.error ? 0 : take_value(&c->bits, low_bits(c, at));
-    return ff_dequantise(ff_quantum(c->info), predicted, ff_unzigzag(c->before));
+    return ff_dequantise(ff_quantum(c->info, !c->parent), predicted, ff_unzigzag(c->before));
 }
 
 static uint16_t put_sample(void *context, uint32_t at, int32_t predicted)
@@ -140,7 +140,7 @@ static int second_stage(const ff_terrain_info *info, const uint16_t *parent,
     if (rc != FF_OK) return rc;
     c.bits = (bits){ .in = in.at, .end = in.end };
     for (uint32_t i = 0; i < FF_CORNERS && !parent; i++)
-        heights[ff_corner_at(info, i)] = ff_dequantise(ff_quantum(info), 0, corner[i]);
+        heights[ff_corner_at(info, i)] = ff_dequantise(ff_quantum(info, !parent), 0, corner[i]);
     if (parent)
         ff_predict_refinement(info, res->cells, parent, heights, take_sample, &c);
     else

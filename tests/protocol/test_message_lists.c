@@ -43,7 +43,7 @@ static void unknown_entries_pass(void **state)
 {
     ff_message out;
     const uint8_t *value, *other;
-    ff_list list = LIST("\3\2ok\6\4\1\0\0\0\x07\3new\xff\0");
+    ff_list list = LIST("\3\2ok\6\4\1\0\0\0\x70\3new\xff\0");
 
     (void)state;
     assert_true(decode(FF_MSG_CAPS, list, &out) > 0);
@@ -73,6 +73,7 @@ static void faults_of_form_are_errors(void **state)
         { LIST("\1\0"), FF_ERR_RANGE },                   /* no codec */
         { LIST("\5\4\0\1\0\1"), FF_ERR_RANGE },           /* half the budgets */
         { LIST("\1\21ABCDEFGHIJKLMNOPQ"), FF_ERR_RANGE }, /* 17 codecs */
+        { LIST("\7\3\0\1\0"), FF_ERR_RANGE },             /* a reach of three bytes */
     };
     ff_message out;
 

@@ -116,6 +116,7 @@ static inline int ff_turned_locate(const ff_terrain_info *info, const ff_frame *
 #define ff_turned_walk          ff_planar_walk
 #define ff_turned_next          ff_planar_next
 #define ff_turned_sheet         ff_planar_sheet
+#define ff_turned_sheet_tile    ff_planar_sheet_tile
 #define ff_turned_sheet_tiles   ff_planar_sheet_tiles
 #define ff_turned_sheet_samples ff_planar_sheet_samples
 #define ff_turned_size_wu       ff_planar_size_wu

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """hills.py SIZE[:KIND] FILE [SIZE[:KIND] FILE]...: small ground of SIZE x SIZE samples as raw 16-bit little-endian heights. KIND: hills,
-the ground that script tests bake where they ask for nothing special; fractal, rough at every size; plateaus, level and steep by turns."""
+the ground that script tests bake where they ask for nothing special; fractal, rough at every size; plateaus, level and steep by turns; waves,
+the higher the longer they are, up to twice 1024 samples."""
 import math
 import random
 import struct
@@ -36,9 +37,15 @@ def plateaus(x, y):
     return int(step + 200 * min(1, max(0, (height - step - 150) / 50)))
 
 
+def waves(x, y):
+    return int(9000 + sum(2.5 * length * math.sin(x / length + o) * math.cos(y / length + 2 * o) for o, length in enumerate(lengths)))
+
+
+lengths = [2 ** (o / 2) for o in range(19)]
+
 for size, path in zip(sys.argv[1::2], sys.argv[2::2]):
     size, _, kind = size.partition(":")
-    ground = {"": hills, "hills": hills, "fractal": fractal, "plateaus": plateaus}[kind]
+    ground = {"": hills, "hills": hills, "fractal": fractal, "plateaus": plateaus, "waves": waves}[kind]
     with open(path, "wb") as out:
         for y in range(int(size)):
             out.write(struct.pack("<%sH" % size, *(ground(x, y) for x in range(int(size)))))

@@ -451,7 +451,8 @@ static void a_fault_is_told_where_the_core_finds_one(void **state)
     (void)state;
     for (int i = 0; i < 200000; i++) {
         ff_terrain_info info = { 3,    10,   FF_CODEC_DEFLATE, 0,     0, 0, 0, 43000, 0, 4, 2, 4097,
-                                 2000, 2560, 1677722,          -1000, 0, 0, 0, 0,     0, 0, 0, 0 };
+                                 2000, 2560, 1677722,          -1000, 0, 0, 0, 0,     0, 0, 0, 0,
+                                 0 };
         for (int n = next_random(&random) >> 30; n >= 0; n--) {
             uint32_t value = edge_number(&random);
             switch (next_random(&random) >> 28) {

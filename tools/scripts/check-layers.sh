@@ -187,6 +187,7 @@ shape_words() { # PATTERN that no code may have but protocol/shape, the tests, a
     tools/merge/merge_run.c    tells it
 ff_node_(edge|cell)_wu
     protocol/ff_terrain.h      defines them: nominal lengths
+    protocol/ff_entry.c        how many tiles a view reaches into, at most
     client/terrain/ff_measure.c  the e of f = d / (e C)
     client/terrain/ff_wish.c   the same, of roots
     client/terrain/ff_surface.c  a place in a node's grid

@@ -31,6 +31,7 @@ void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsign
     stream->answer_timeout_us = (int64_t)answer_timeout_ms * 1000;
     stream->recv = recv;
     stream->recv_bytes = recv_bytes;
+    stream->reach_wu = INT32_MAX;
     stream->backoff_us = FF_BACKOFF_US_MIN;
     stream->connect_us = stream->heard_us = stream->sent_us = INT64_MIN;
     ff_link_estimate_reset(&stream->link);
@@ -155,6 +156,20 @@ static int has_send_room(const ff_stream *stream)
     return stream->send_count + FF_REQUEST_BYTES_MAX <= sizeof stream->send;
 }
 
+static void append_caps(ff_stream *stream)
+{
+    uint8_t reach[4], entry[8];
+    ff_writer value = { reach, reach + sizeof reach, FF_OK },
+              list = { entry, entry + sizeof entry, FF_OK };
+    if (stream->reach_wu < INT32_MAX) {
+        ff_write_bytes(&value, (uint32_t)stream->reach_wu, 4);
+        ff_list_write(&list, FF_CAPS_REACH, reach, sizeof reach);
+    }
+    FF_ASSERT(value.error == FF_OK && list.error == FF_OK);
+    append(stream,
+           &(ff_message){ .type = FF_MSG_CAPS, .u.list = { entry, (uint32_t)(list.at - entry) } });
+}
+
 static void greet(ff_stream *stream, int64_t now_us)
 {
     FF_ASSERT(stream->state == FF_STREAM_CONNECTING);
@@ -164,8 +179,7 @@ static void greet(ff_stream *stream, int64_t now_us)
     hello.u.hello.version = FF_PROTOCOL_VERSION;
     hello.u.hello.known_checksum = stream->has_terrain ? stream->intake->info[0].checksum : 0;
     append(stream, &hello);
-    /* in one piece with HELLO: nothing of this client has to be told */
-    append(stream, &(ff_message){ .type = FF_MSG_CAPS });
+    append_caps(stream); /* in one piece with HELLO */
     FF_ASSERT(stream->send_count > 0);
     stream->state = FF_STREAM_GREETING;
     stream->heard_us = stream->sent_us = now_us;

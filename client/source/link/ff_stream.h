@@ -59,6 +59,9 @@ typedef struct ff_stream {
     ff_intake *intake;
     uint16_t in_flight_max;
     int64_t answer_timeout_us;
+    /* the server is told that nothing beyond is looked at (FF_CAPS_REACH); INT32_MAX: it is not.
+     * Changed before a restart alone */
+    int32_t reach_wu;
     /* worker only */
     enum ff_stream_state state;
     uint8_t has_terrain; /* the client's pools hold the grounds of `intake` */

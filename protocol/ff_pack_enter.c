@@ -1,0 +1,39 @@
+/* Packs entered below their top. */
+#include "ff_entry.h"
+#include "ff_pack.h"
+#include "shape/ff_shape.h"
+
+/* 1 when every node of a level that has ground has an image of its own. */
+static int has_images(const ff_pack *pack, uint32_t level)
+{
+    ff_terrain_info entered = ff_entry_terrain(&pack->header.info, level);
+
+    for (uint32_t i = 0; i < pack->header.section_count; i++) {
+        const ff_pack_section *section = &pack->header.section[i];
+        if (section->kind == FF_SECTION_TEXTURE && section->level == level)
+            return section->index.records == ff_shape_tiles(&entered);
+    }
+    return 0;
+}
+
+uint32_t ff_pack_entry_level(const ff_pack *pack, int32_t reach_wu)
+{
+    const ff_terrain_info *info = &pack->header.info;
+    uint32_t level = ff_entry_level(info, reach_wu);
+
+    while (level && info->texture_log2 && !has_images(pack, level)) level--;
+    return level;
+}
+
+void ff_pack_enter(const ff_pack *whole, uint32_t level, ff_pack_root_fn *make_root, void *context,
+                   ff_pack *entered)
+{
+    *entered = *whole;
+    entered->next = NULL;
+    if (level == 0) return;
+    entered->header.info = ff_entry_terrain(&whole->header.info, level);
+    entered->tiles = ff_shape_tiles(&entered->header.info);
+    entered->stored = whole;
+    entered->make_root = make_root;
+    entered->root_context = context;
+}

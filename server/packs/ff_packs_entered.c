@@ -1,0 +1,159 @@
+#include "ff_packs_entered.h"
+#include "../../protocol/ff_entry.h"
+#include "../../protocol/shape/ff_shape.h"
+
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The node that a root is made of: its heights, what is said of it, and what decoding needs. */
+typedef struct node {
+    ff_decoder *decoder;
+    ff_residuals residuals; /* child_error[0] and bit 0 of the marks are the node's */
+    int32_t value[FF_REFINED_HEIGHTS_MAX];
+    uint16_t heights[FF_NODE_HEIGHTS_MAX], refined[FF_REFINED_HEIGHTS_MAX];
+} node;
+
+struct ff_packs_entered {
+    ff_pack pack[FF_PACKS_JOINED_MAX];
+    node node;
+    uint16_t decoded[FF_NODE_HEIGHTS_MAX];
+    int made; /* bytes of the payload; 0: none has been made */
+    uint32_t tile;
+    uint8_t payload[FF_PAYLOAD_BYTES_MAX];
+    max_align_t decoder_memory[];
+};
+
+/* ---- a node's heights ---- */
+
+static int decode_root(node *n, const ff_pack *pack, ff_key key)
+{
+    const ff_terrain_info *info = &pack->header.info;
+    const uint8_t *payload;
+    int bytes = ff_pack_record(pack, FF_SECTION_ROOT, key, &payload);
+    if (bytes < 0) return bytes;
+    n->residuals = (ff_residuals){ .cells = ff_shape_cells(info, key, 0), .value = n->value };
+    int rc = ff_decode_root(n->decoder, payload, (size_t)bytes, &n->residuals);
+    return rc < 0 ? rc : ff_reconstruct_root(info, &n->residuals, n->heights);
+}
+
+/* The children of the node, all in n->refined. Nothing is known below a stub. */
+static int refine(node *n, const ff_pack *pack, ff_key key)
+{
+    const ff_terrain_info *info = &pack->header.info;
+    const ff_cells cells = ff_shape_cells(info, key, 1);
+    const uint8_t *payload;
+    if (n->residuals.stub & 1u) return FF_ERR_NOT_FOUND;
+    if (n->residuals.leaf & 1u) {
+        n->residuals = ff_leaf_residuals(info, n->residuals.child_error[0],
+                                         n->residuals.filled & 1u);
+        ff_predict_children(info, cells, n->heights, n->refined);
+        return FF_OK;
+    }
+    int bytes = ff_pack_record(pack, FF_SECTION_REFINEMENT, key, &payload);
+    if (bytes < 0) return bytes;
+    n->residuals = (ff_residuals){ .cells = cells, .value = n->value };
+    int rc = ff_decode_refinement(n->decoder, payload, (size_t)bytes, &n->residuals);
+    return rc < 0 ? rc : ff_reconstruct_refinement(info, n->heights, &n->residuals, n->refined);
+}
+
+static void take_child(node *n, const ff_terrain_info *info, uint32_t q)
+{
+    ff_residuals *r = &n->residuals;
+    ff_refined_child(info, n->refined, q, n->heights);
+    r->child_error[0] = r->child_error[q];
+    r->filled = r->filled >> q & 1u;
+    r->leaf = r->leaf >> q & 1u;
+    r->stub = r->stub >> q & 1u;
+}
+
+/* From the root down to the node of that key. */
+static int decode_node(node *n, const ff_pack *pack, ff_key key)
+{
+    uint32_t level = ff_key_level(key), code = ff_key_code(key);
+    ff_key at = ff_key_make(ff_key_tile(key), 0, 0);
+    int rc = ff_decoder_turn(n->decoder, &pack->header.info);
+    if (rc == FF_OK) rc = decode_root(n, pack, at);
+    while (rc == FF_OK && level-- > 0) {
+        uint32_t q = code >> 2 * level & 3u;
+        rc = refine(n, pack, at);
+        if (rc == FF_OK) take_child(n, &pack->header.info, q);
+        at = ff_key_child(at, q);
+    }
+    return rc;
+}
+
+/* ---- roots ---- */
+
+static int encode(ff_packs_entered *entered, const ff_terrain_info *info, ff_key root)
+{
+    node *n = &entered->node;
+    n->residuals.cells = ff_shape_cells(info, root, 0);
+    n->residuals.value = n->value;
+    ff_encode_heights(info, NULL, n->heights, NULL, &n->residuals, entered->decoded);
+    FF_ASSERT(!memcmp(entered->decoded, n->heights,
+                      (size_t)ff_node_side(info) * ff_node_side(info) * sizeof *n->heights));
+    return ff_encode_payload(info, NULL, entered->decoded, &n->residuals, entered->payload);
+}
+
+/* The last one made is kept: it is asked for more than once while a view is answered. */
+static int make_root(void *context, uint32_t tile, const uint8_t **payload)
+{
+    ff_packs_entered *entered = context;
+    *payload = entered->payload;
+    if (entered->made && entered->tile == tile) return entered->made;
+    ff_key root = ff_key_make(tile, 0, 0);
+    const ff_pack *pack = ff_pack_of(entered->pack, root);
+    const ff_terrain_info *info = &pack->header.info, *whole = &pack->stored->header.info;
+    entered->made = 0;
+    int rc = decode_node(&entered->node, pack->stored, ff_entry_key(whole, info, root));
+    if (rc == FF_OK) rc = encode(entered, info, root);
+    if (rc < 0) return rc;
+    entered->tile = tile;
+    entered->made = rc;
+    return rc;
+}
+
+/* ---- packs ---- */
+
+/* Not where one is a part of another: its client may have the rest from elsewhere, as it is. */
+static int is_entered(const ff_pack *pack, int32_t reach_wu)
+{
+    int entered = 0;
+    for (; pack; pack = pack->next) {
+        if (ff_pack_whole(pack) != pack->header.info.checksum) return 0;
+        entered |= ff_pack_entry_level(pack, reach_wu) > 0;
+    }
+    return entered;
+}
+
+static int enter(ff_packs_entered *entered, const ff_pack *pack, int32_t reach_wu)
+{
+    ff_pack *at = entered->pack;
+    for (; pack; pack = pack->next, at++) {
+        ff_pack_enter(pack, ff_pack_entry_level(pack, reach_wu), make_root, entered, at);
+        int rc = at == entered->pack ? FF_OK : ff_pack_join(entered->pack, at);
+        if (rc != FF_OK) return rc;
+    }
+    return FF_OK;
+}
+
+int ff_packs_enter(const ff_pack *pack, int32_t reach_wu, ff_packs_entered **entered)
+{
+    size_t decoder_bytes = ff_decoder_bytes_any(&pack->header.info);
+    *entered = NULL;
+    if (!is_entered(pack, reach_wu)) return FF_OK;
+    ff_packs_entered *made = calloc(1, sizeof *made + decoder_bytes);
+    if (!made) return FF_ERR_MEMORY;
+    made->node.decoder = ff_decoder_create(&pack->header.info, made->decoder_memory, decoder_bytes);
+    int rc = made->node.decoder ? enter(made, pack, reach_wu) : FF_ERR_UNSUPPORTED;
+    if (rc == FF_OK)
+        *entered = made;
+    else
+        ff_packs_leave(made);
+    return rc;
+}
+
+const ff_pack *ff_packs_entered_first(const ff_packs_entered *entered) { return entered->pack; }
+
+void ff_packs_leave(ff_packs_entered *entered) { free(entered); }

@@ -1,0 +1,44 @@
+/* What a WELCOME tells of packs, behind the first one's terrain. */
+#include "ff_packs.h"
+#include "../../protocol/ff_assert.h"
+
+FF_STATIC_ASSERT(FF_PACKS_JOINED_MAX == FF_WELCOME_GROUNDS);
+
+/* A row of values in the making, of one entry. */
+typedef struct row {
+    ff_writer out;
+    int needed;
+    uint8_t bytes[FF_TERRAIN_BYTES * FF_WELCOME_GROUNDS];
+} row;
+
+static void begin(row *r) { r->out = (ff_writer){ r->bytes, r->bytes + sizeof r->bytes, FF_OK }; }
+
+static void end(const row *r, enum ff_welcome_entry type, ff_writer *list)
+{
+    FF_ASSERT(r->out.error == FF_OK);
+    if (r->needed) ff_list_write(list, type, r->bytes, (uint32_t)(r->out.at - r->bytes));
+}
+
+ff_list ff_packs_welcome(const ff_pack *first, uint8_t bytes[FF_CAPS_BYTES_MAX])
+{
+    row wholes = { .needed = 0 }, rest = { .needed = 0 }, entries = { .needed = 0 };
+    ff_writer list = { bytes, bytes + FF_CAPS_BYTES_MAX, FF_OK };
+    begin(&wholes);
+    begin(&rest);
+    begin(&entries);
+    for (const ff_pack *pack = first; pack; pack = pack->next) {
+        const ff_terrain_info *info = &pack->header.info;
+        uint32_t of = ff_pack_whole(pack);
+        ff_write_bytes(&wholes.out, of, 4);
+        wholes.needed |= of != info->checksum;
+        if (pack != first) ff_write_terrain(&rest.out, info);
+        rest.needed |= pack != first;
+        ff_write_bytes(&entries.out, info->entered, 1);
+        entries.needed |= info->entered > 0;
+    }
+    end(&wholes, FF_WELCOME_WHOLE, &list);
+    end(&rest, FF_WELCOME_TERRAINS, &list);
+    end(&entries, FF_WELCOME_ENTRY, &list);
+    FF_ASSERT(list.error == FF_OK);
+    return (ff_list){ bytes, (uint32_t)(list.at - bytes) };
+}
