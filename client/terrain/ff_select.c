@@ -288,13 +288,15 @@ static void list_cut(ff_tree *tree)
         uint32_t slot = tree->order[i];
         ff_box box;
         ff_node_box(tree, &tree->node[slot], &box);
-        int64_t distance = ff_box_distance(&box);
+        int64_t lowest_wu = box.lo[2];
         if (tree->cover && ff_seam_touches(tree, &tree->node[slot]))
             box.lo[2] = ff_seam_lowest_wu(tree) - tree->view.camera.pos_wu[2];
-        if (!ff_box_beyond_view(tree, &box) && ff_box_in_view(tree, &box))
-            tree->sort[seen++] = (uint64_t)distance << FF_SLOT_BITS | slot;
-        else
+        if (ff_box_beyond_view(tree, &box) || !ff_box_in_view(tree, &box)) {
             tree->order[unseen++] = slot;
+            continue;
+        }
+        box.lo[2] = lowest_wu; /* a seam does not bring a node nearer */
+        tree->sort[seen++] = (uint64_t)ff_box_distance(&box) << FF_SLOT_BITS | slot;
     }
     FF_ASSERT(tree->cut_count <= tree->node_count - tree->free_count);
     ff_sort_keys(tree->sort, seen);
