@@ -103,16 +103,21 @@ static uint32_t push_active_roots(ff_tree *tree, uint32_t g)
     return count;
 }
 
+static int is_left_out(ff_tree *tree, uint32_t slot)
+{
+    ff_node *node = &tree->node[slot];
+    node->flags &= ~FF_NODE_LEFT_OUT & UINT8_MAX;
+    if (!ff_left_out(tree, node->key)) return 0;
+    node->flags |= FF_NODE_LEFT_OUT;
+    return 1;
+}
+
 static uint32_t push_children(ff_tree *tree, const ff_node *node, uint32_t count)
 {
     for (unsigned q = 0; q < 4; q++) {
-        if (node->child[q] == FF_SLOT_NONE) continue;
-        ff_node *child = &tree->node[node->child[q]];
-        child->flags &= ~FF_NODE_LEFT_OUT & UINT8_MAX;
-        if (ff_left_out(tree, child->key))
-            child->flags |= FF_NODE_LEFT_OUT;
-        else
-            tree->order[count++] = node->child[q];
+        uint32_t slot = node->child[q];
+        if (slot == FF_SLOT_NONE || (tree->cover && is_left_out(tree, slot))) continue;
+        tree->order[count++] = slot;
     }
     FF_ASSERT(count <= tree->node_count - tree->free_count); /* a node is pushed once */
     return count;
