@@ -58,8 +58,6 @@ flies inset $there --link lan $inset
 is 'inset.ground_px_percent[0] > 20 and inset.ground_px_percent[1] > 20 and abs(sum(inset.ground_px_percent) - 100) < 0.01' \
     "both of two grounds are seen"
 is 'inset.undrawn_px_percent == 0 and inset.crack_frames == inset.requests_failed == inset.empty_frames == 0' "and leave no gap, crack or question open"
-flies short --link lan $inset --settle 3 --fps 10 --seconds 42 --panorama off --view 1500 --height 600
-is 'short.crack_frames == 0 and short.triangles > 0' "with a short view, too"
 is 'inset.seam_px_max >= inset.seam_px_p95 > 0 and alone.seam_px_p95 is None and alone.seam_px_max is None' \
     "errors at the border are told apart, where there is one"
 is 'alone.ground_px_percent == [100] and inset.packs[1].endswith("inset.ffp") and inset.local == []' "and the summary says what was flown over"
