@@ -134,10 +134,7 @@ refused() { # PATTERN WHAT ARGUMENTS...: one line, and no flight
 # ---- a real server ----
 "$bin/farfield-server" $inset --listen 127.0.0.1:0 >"$work/server.log" 2>&1 &
 server_pid=$!
-for _ in $(seq 200); do
-    grep -q "listening on.*renderers" "$work/server.log" && break
-    sleep 0.05
-done
+wait_for "$work/server.log" "listening on.*renderers"
 port=$(sed -n 's/.*listening on [^ ]*:\([0-9]*\).*/\1/p' "$work/server.log")
 flies real $inset --server "127.0.0.1:$port" --local "$work/region.ffp" --start 0.4 --speed 400 --seconds 4 --settle 3
 is 'real.undrawn_px_percent == 0 and real.crack_frames == 0 and real.ground_px_percent[1] > 10 and real.bytes_down_all > 1000' \
