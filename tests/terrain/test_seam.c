@@ -459,19 +459,24 @@ static void sheets_end_beyond_what_the_rim_pulls_down(void **state)
 
 static uint16_t slope(uint32_t x, uint32_t y) { return (uint16_t)(LEAST_STEP + x / 2 + y); }
 
+static void make_touching(grounds_fixture *g)
+{
+    terrain_fixture fx;
+    memset(g, 0, sizeof *g);
+    fixture_make(&fx, 3, 6, 1, 1, slope);
+    grounds_add(g, &fx, 0, 0);
+    grounds_add(g, &fx, 640 * M, 0);
+    grounds_tree(g, 6000, 64);
+}
+
 /* Neither lies under the other's rim: the one lowered would end in sky. */
 static void grounds_that_only_touch_keep_their_rims(void **state)
 {
     (void)state;
     grounds_fixture g;
-    terrain_fixture fx;
     const ff_drawn *list;
     uint32_t of_ground[2] = { 0 };
-    memset(&g, 0, sizeof g);
-    fixture_make(&fx, 3, 6, 1, 1, slope);
-    grounds_add(&g, &fx, 0, 0);
-    grounds_add(&g, &fx, 640 * M, 0);
-    grounds_tree(&g, 6000, 64);
+    make_touching(&g);
     ff_view view = fixture_view(640, -200, LEAST_STEP + 500, 0, -40);
     ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
     grounds_settle(&g, &view, &quality, 300);
@@ -483,6 +488,31 @@ static void grounds_that_only_touch_keep_their_rims(void **state)
             assert_int_equal(drop[i], 0);
     }
     assert_true(of_ground[0] > 0 && of_ground[1] > 0);
+    grounds_free(&g);
+}
+
+/* A seam may lower a node's vertices to the depth of a viewer who stands below all ground: it is
+ * looked for there, and comes no sooner in the order. */
+static void nodes_of_a_seam_are_ordered_by_where_they_lie(void **state)
+{
+    (void)state;
+    grounds_fixture g;
+    const ff_drawn *list;
+    uint32_t touching = 0;
+    int64_t last = 0;
+    make_touching(&g);
+    ff_view view = fixture_view(740, 100, LEAST_STEP - 100, 270, 60);
+    ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
+    grounds_settle(&g, &view, &quality, 300);
+    uint32_t count = ff_tree_in_view(g.tree, &list);
+    for (uint32_t n = 0; n < count; n++) {
+        ff_box box;
+        ff_node_box(g.tree, list[n].node, &box);
+        assert_true(ff_box_distance(&box) >= last);
+        last = ff_box_distance(&box);
+        touching += (uint32_t)ff_seam_touches(g.tree, list[n].node);
+    }
+    assert_true(touching > 0 && touching < count);
     grounds_free(&g);
 }
 
@@ -550,6 +580,7 @@ int main(void)
         cmocka_unit_test(grounds_that_cross_leave_no_gap),
         cmocka_unit_test(sheets_end_beyond_what_the_rim_pulls_down),
         cmocka_unit_test(grounds_that_only_touch_keep_their_rims),
+        cmocka_unit_test(nodes_of_a_seam_are_ordered_by_where_they_lie),
         cmocka_unit_test(seams_fit_as_a_short_view_moves),
         cmocka_unit_test(seams_that_find_no_room_are_counted),
     };
