@@ -103,16 +103,21 @@ static uint32_t push_active_roots(ff_tree *tree, uint32_t g)
     return count;
 }
 
+static int is_left_out(ff_tree *tree, uint32_t slot)
+{
+    ff_node *node = &tree->node[slot];
+    node->flags &= ~FF_NODE_LEFT_OUT & UINT8_MAX;
+    if (!ff_left_out(tree, node->key)) return 0;
+    node->flags |= FF_NODE_LEFT_OUT;
+    return 1;
+}
+
 static uint32_t push_children(ff_tree *tree, const ff_node *node, uint32_t count)
 {
     for (unsigned q = 0; q < 4; q++) {
-        if (node->child[q] == FF_SLOT_NONE) continue;
-        ff_node *child = &tree->node[node->child[q]];
-        child->flags &= ~FF_NODE_LEFT_OUT & UINT8_MAX;
-        if (ff_left_out(tree, child->key))
-            child->flags |= FF_NODE_LEFT_OUT;
-        else
-            tree->order[count++] = node->child[q];
+        uint32_t slot = node->child[q];
+        if (slot == FF_SLOT_NONE || (tree->cover && is_left_out(tree, slot))) continue;
+        tree->order[count++] = slot;
     }
     FF_ASSERT(count <= tree->node_count - tree->free_count); /* a node is pushed once */
     return count;
@@ -285,13 +290,15 @@ static void list_cut(ff_tree *tree)
         uint32_t slot = tree->order[i];
         ff_box box;
         ff_node_box(tree, &tree->node[slot], &box);
-        int64_t distance = ff_box_distance(&box);
+        int64_t lowest_wu = box.lo[2];
         if (tree->cover && ff_seam_touches(tree, &tree->node[slot]))
             box.lo[2] = ff_seam_lowest_wu(tree) - tree->view.camera.pos_wu[2];
-        if (!ff_box_beyond_view(tree, &box) && ff_box_in_view(tree, &box))
-            tree->sort[seen++] = (uint64_t)distance << FF_SLOT_BITS | slot;
-        else
+        if (ff_box_beyond_view(tree, &box) || !ff_box_in_view(tree, &box)) {
             tree->order[unseen++] = slot;
+            continue;
+        }
+        box.lo[2] = lowest_wu; /* a seam does not bring a node nearer */
+        tree->sort[seen++] = (uint64_t)ff_box_distance(&box) << FF_SLOT_BITS | slot;
     }
     FF_ASSERT(tree->cut_count <= tree->node_count - tree->free_count);
     ff_sort_keys(tree->sort, seen);

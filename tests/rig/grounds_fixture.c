@@ -54,30 +54,13 @@ void grounds_free(grounds_fixture *g)
 
 terrain_fixture *grounds_of(grounds_fixture *g, ff_key key)
 {
-    for (uint32_t i = 0; i < g->count; i++)
-        if (ff_terrain_has_node(&g->ground[i].info, key)) return &g->ground[i];
-    fail_msg("no ground has node %llx", (unsigned long long)key);
-    return NULL;
+    return fixture_of(g->ground, g->count, key);
 }
 
 uint32_t grounds_settle(grounds_fixture *g, const ff_view *view, const ff_quality *quality,
                         uint32_t rounds)
 {
-    uint32_t delivered = 0;
-    for (uint32_t round = 0; round < rounds; round++) {
-        const ff_wish *list;
-        ff_wish wish[FIXTURE_BAG];
-        int changed = ff_tree_select(g->tree, view, quality);
-        uint32_t count = ff_tree_wishes(g->tree, &list);
-        if (count == 0 && ff_tree_to_make(g->tree) == 0 && !changed) break;
-        count = count > FIXTURE_BAG ? FIXTURE_BAG : count;
-        memcpy(wish, list, count * sizeof *wish);
-        for (uint32_t i = 0; i < count; i++)
-            delivered += fixture_deliver(grounds_of(g, wish[i].key), wish[i].key, wish[i].kind) ==
-                         FF_OK;
-    }
-    ff_tree_select(g->tree, view, quality);
-    return delivered;
+    return fixture_settle_all(g->ground, g->count, view, quality, rounds);
 }
 
 void grounds_assert_whole(grounds_fixture *g)

@@ -8,3 +8,11 @@ result() { # STATUS WHAT: "ok - WHAT" for status 0, or "not ok - WHAT" and statu
     failures=$((failures + 1))
     return 1
 }
+
+wait_for() { # FILE PATTERN: until a line of a program in the background matches, 20 s at most
+    for _ in $(seq 400); do
+        grep -q "$2" "$1" 2>/dev/null && return 0
+        sleep 0.05
+    done
+    return 1
+}

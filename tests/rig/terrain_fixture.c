@@ -251,23 +251,39 @@ int fixture_deliver(terrain_fixture *fx, ff_key key, int refinement)
 
 /* ---- feeding ---- */
 
+terrain_fixture *fixture_of(terrain_fixture *list, uint32_t count, ff_key key)
+{
+    for (uint32_t i = 0; i < count; i++)
+        if (ff_terrain_has_node(&list[i].info, key)) return &list[i];
+    fail_msg("no ground has node %llx", (unsigned long long)key);
+    return NULL;
+}
+
+uint32_t fixture_settle_all(terrain_fixture *list, uint32_t count, const ff_view *view,
+                            const ff_quality *quality, uint32_t rounds)
+{
+    ff_tree *tree = list->tree;
+    uint32_t delivered = 0;
+    for (uint32_t round = 0; round < rounds; round++) {
+        const ff_wish *wishes;
+        ff_wish wish[FIXTURE_BAG];
+        int changed = ff_tree_select(tree, view, quality);
+        uint32_t wish_count = ff_tree_wishes(tree, &wishes);
+        if (wish_count == 0 && ff_tree_to_make(tree) == 0 && !changed) break;
+        wish_count = wish_count > FIXTURE_BAG ? FIXTURE_BAG : wish_count;
+        memcpy(wish, wishes, wish_count * sizeof *wish);
+        for (uint32_t i = 0; i < wish_count; i++)
+            delivered += fixture_deliver(fixture_of(list, count, wish[i].key), wish[i].key,
+                                         wish[i].kind) == FF_OK;
+    }
+    ff_tree_select(tree, view, quality);
+    return delivered;
+}
+
 uint32_t fixture_settle(terrain_fixture *fx, const ff_view *view, const ff_quality *quality,
                         uint32_t rounds)
 {
-    uint32_t delivered = 0;
-    for (uint32_t round = 0; round < rounds; round++) {
-        const ff_wish *list;
-        ff_wish wish[FIXTURE_BAG];
-        ff_tree_select(fx->tree, view, quality);
-        uint32_t count = ff_tree_wishes(fx->tree, &list);
-        if (count == 0 && ff_tree_to_make(fx->tree) == 0) break;
-        count = count > FIXTURE_BAG ? FIXTURE_BAG : count;
-        memcpy(wish, list, count * sizeof *wish);
-        for (uint32_t i = 0; i < count; i++)
-            delivered += fixture_deliver(fx, wish[i].key, wish[i].kind) == FF_OK;
-    }
-    ff_tree_select(fx->tree, view, quality);
-    return delivered;
+    return fixture_settle_all(fx, 1, view, quality, rounds);
 }
 
 void fixture_link_step(terrain_fixture *fx, fixture_link *link)

@@ -47,6 +47,10 @@ int fixture_deliver_from(terrain_fixture *fx, ff_key key, int refinement, unsign
  * number of deliveries. */
 uint32_t fixture_settle(terrain_fixture *fx, const ff_view *view, const ff_quality *quality,
                         uint32_t rounds);
+/* The same of one tree with several grounds; and which of them has a node. */
+uint32_t fixture_settle_all(terrain_fixture *list, uint32_t count, const ff_view *view,
+                            const ff_quality *quality, uint32_t rounds);
+terrain_fixture *fixture_of(terrain_fixture *list, uint32_t count, ff_key key);
 
 /* A link that loses, delays and reorders: it keeps wishes in a bag and takes them out at random. */
 #define FIXTURE_BAG 64

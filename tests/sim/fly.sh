@@ -313,10 +313,7 @@ done
 # ---- a real server in real time, and one that vanishes ----
 "$bin/farfield-server" --pack "$work/hills.ffp" --listen 127.0.0.1:0 >"$work/server.log" 2>&1 &
 server_pid=$!
-for _ in $(seq 200); do
-    grep -q "listening on.*renderers" "$work/server.log" && break
-    sleep 0.05
-done
+wait_for "$work/server.log" "listening on.*renderers"
 port=$(sed -n 's/.*listening on [^ ]*:\([0-9]*\).*/\1/p' "$work/server.log")
 timeout 60 "$fly" --pack "$work/dense.ffp" --server "127.0.0.1:$port" --backend none --seconds 0 --settle 3 2>"$work/err"
 [ $? = 1 ] && grep -q "^farfield-fly: 127.0.0.1:$port: serves another terrain than --pack$" "$work/err"

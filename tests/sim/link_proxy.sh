@@ -57,13 +57,6 @@ threads = [threading.Thread(target=ask, args=(seed,)) for seed in range(count)]
 sys.exit(max(results))
 END
 
-wait_for() { # FILE PATTERN
-    for _ in $(seq 200); do
-        grep -q "$2" "$1" 2>/dev/null && return 0
-        sleep 0.05
-    done
-    return 1
-}
 start_link() { # NAME ARGUMENTS...: sets $port and $link_pid
     local name=$1
     shift

@@ -58,8 +58,6 @@ flies inset $there --link lan $inset
 is 'inset.ground_px_percent[0] > 20 and inset.ground_px_percent[1] > 20 and abs(sum(inset.ground_px_percent) - 100) < 0.01' \
     "both of two grounds are seen"
 is 'inset.undrawn_px_percent == 0 and inset.crack_frames == inset.requests_failed == inset.empty_frames == 0' "and leave no gap, crack or question open"
-flies short --link lan $inset --settle 3 --fps 10 --seconds 42 --panorama off --view 1500 --height 600
-is 'short.crack_frames == 0 and short.triangles > 0' "with a short view, too"
 is 'inset.seam_px_max >= inset.seam_px_p95 > 0 and alone.seam_px_p95 is None and alone.seam_px_max is None' \
     "errors at the border are told apart, where there is one"
 is 'alone.ground_px_percent == [100] and inset.packs[1].endswith("inset.ffp") and inset.local == []' "and the summary says what was flown over"
@@ -136,10 +134,7 @@ refused() { # PATTERN WHAT ARGUMENTS...: one line, and no flight
 # ---- a real server ----
 "$bin/farfield-server" $inset --listen 127.0.0.1:0 >"$work/server.log" 2>&1 &
 server_pid=$!
-for _ in $(seq 200); do
-    grep -q "listening on.*renderers" "$work/server.log" && break
-    sleep 0.05
-done
+wait_for "$work/server.log" "listening on.*renderers"
 port=$(sed -n 's/.*listening on [^ ]*:\([0-9]*\).*/\1/p' "$work/server.log")
 flies real $inset --server "127.0.0.1:$port" --local "$work/region.ffp" --start 0.4 --speed 400 --seconds 4 --settle 3
 is 'real.undrawn_px_percent == 0 and real.crack_frames == 0 and real.ground_px_percent[1] > 10 and real.bytes_down_all > 1000' \

@@ -187,6 +187,27 @@ static void the_reserve_is_told_apart(void **state)
     sim_relevance_destroy(w.relevance);
 }
 
+/* What brings a leaf below a root. */
+static ff_key leaf_of(wire *w, ff_key root)
+{
+    ff_key child = ff_key_child(root, 1);
+    (void)node(w, root, FF_KIND_ROOT);
+    (void)node(w, root, FF_KIND_REFINEMENT);
+    (void)node(w, child, FF_KIND_REFINEMENT);
+    return ff_key_child(child, 0);
+}
+
+/* Of what has come apart from a drawn leaf, `beside` bytes support it and `away` do not. */
+static void expect_supporting(wire *w, ff_key leaf, size_t beside, size_t away)
+{
+    receive(w, 1024);
+    draw(w, 1, 1, &leaf);
+    sim_relevance_figures f = figures(w, SIM_RELEVANCE_US + 1);
+    assert_int_equal(f.unused[FF_DATA_HEIGHTS], beside + away);
+    assert_int_equal(f.supporting, beside);
+    sim_relevance_destroy(w->relevance);
+}
+
 /* A node beside a drawn one, which lets it be so fine, does not count as drawn, but is counted
  * apart. */
 static void a_supporting_node_is_counted_apart(void **state)
@@ -194,20 +215,11 @@ static void a_supporting_node_is_counted_apart(void **state)
     (void)state;
     static wire w;
     start(&w);
-    ff_key root = ff_key_make(0, 0, 0), child = ff_key_child(root, 1),
-           leaf = ff_key_child(child, 0);
-    (void)node(&w, root, FF_KIND_ROOT);
-    (void)node(&w, root, FF_KIND_REFINEMENT);
-    (void)node(&w, child, FF_KIND_REFINEMENT);
+    ff_key leaf = leaf_of(&w, ff_key_make(0, 0, 0));
     size_t beside = node(&w, ff_key_make(1, 0, 0), FF_KIND_REFINEMENT),
            away = node(&w, ff_key_make(3, 0, 0), FF_KIND_REFINEMENT);
-    receive(&w, 1024);
     /* its parent's eastern neighbour is a child of the next tile's root */
-    draw(&w, 1, 1, &leaf);
-    sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
-    assert_int_equal(f.unused[FF_DATA_HEIGHTS], beside + away);
-    assert_int_equal(f.supporting, beside);
-    sim_relevance_destroy(w.relevance);
+    expect_supporting(&w, leaf, beside, away);
 }
 
 /* Nodes of a second ground have neighbours in it alone: here it is one tile, the fifth of all. */
@@ -220,19 +232,10 @@ static void nodes_of_a_second_ground_are_drawn_and_supported(void **state)
     ground[1].first_tile = 4;
     ground[1].west_wu = -1000;
     w.view.grounds = (sim_drawn_grounds){ .info = ground, .count = 2 };
-    ff_key root = ff_key_make(4, 0, 0), child = ff_key_child(root, 1),
-           leaf = ff_key_child(child, 0);
-    (void)node(&w, root, FF_KIND_ROOT);
-    (void)node(&w, root, FF_KIND_REFINEMENT);
-    (void)node(&w, child, FF_KIND_REFINEMENT);
+    ff_key root = ff_key_make(4, 0, 0), leaf = leaf_of(&w, root);
     size_t beside = node(&w, ff_key_child(root, 0), FF_KIND_REFINEMENT),
            away = node(&w, ff_key_make(3, 0, 0), FF_KIND_REFINEMENT);
-    receive(&w, 1024);
-    draw(&w, 1, 1, &leaf);
-    sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
-    assert_int_equal(f.unused[FF_DATA_HEIGHTS], beside + away);
-    assert_int_equal(f.supporting, beside);
-    sim_relevance_destroy(w.relevance);
+    expect_supporting(&w, leaf, beside, away);
 }
 
 /* What brought a node that is in view and hidden is counted apart, unless it is drawn, or a drawn

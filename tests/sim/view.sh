@@ -246,11 +246,8 @@ result $? "keys and mouse arrive from the window" || cat "$work/person.log"
 # ---- a server, a link that changes, a server that vanishes ----
 "$bin/farfield-server" --pack "$pack" --listen 127.0.0.1:0 --workers 1 --renderers 1 >"$work/server.log" 2>&1 &
 server_pid=$!
-for _ in $(seq 200); do
-    address=$(sed -n 's/.*listening on \([^ ,]*\).*/\1/p' "$work/server.log")
-    [ -n "$address" ] && break
-    sleep 0.1
-done
+wait_for "$work/server.log" "listening on.*renderers"
+address=$(sed -n 's/.*listening on \([^ ,]*\).*/\1/p' "$work/server.log")
 printf '0 settle\n0 screenshot %s\n1 key l\n2 key l\n30 settle\n' "$work/server.png" >"$work/link.txt"
 "$view" "$address" --headless --link lan --panorama off --script "$work/link.txt" --json >"$work/said" 2>"$work/error"
 result $? "over a link to a server" && [ ! -s "$work/error" ] || cat "$work/error"

@@ -28,6 +28,17 @@ static void make_three(grounds_fixture *g)
     grounds_add(g, &fx, -3700 * M, 1000 * M);
 }
 
+/* Each ground in a tree of its own. */
+static void make_alone(const grounds_fixture *g, terrain_fixture alone[3])
+{
+    for (int i = 0; i < 3; i++) {
+        alone[i] = g->ground[i];
+        alone[i].decoder = NULL;
+        alone[i].tree_memory = NULL;
+        fixture_tree(&alone[i], 6000, 64);
+    }
+}
+
 static ff_view view_of(int step)
 {
     static const int32_t place[][4] = { { 1900, 1100, 900, 0 },   { 4100, 300, 700, 90 },
@@ -72,12 +83,7 @@ static void grounds_apart_are_drawn_as_each_by_itself(void **state)
     uint32_t drawn[3] = { 0 };
     make_three(&g);
     grounds_tree(&g, 6000, 64);
-    for (int i = 0; i < 3; i++) {
-        alone[i] = g.ground[i];
-        alone[i].decoder = NULL;
-        alone[i].tree_memory = NULL;
-        fixture_tree(&alone[i], 6000, 64);
-    }
+    make_alone(&g, alone);
     for (int step = 0; step < 12; step++) {
         ff_view view = view_of(step);
         ff_quality quality = fixture_quality((enum ff_measure)(step / 6));
@@ -106,13 +112,8 @@ static void the_height_of_drawn_ground_is_that_of_the_ground_there(void **state)
     ff_view view = view_of(3);
     ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
     grounds_settle(&g, &view, &quality, 200);
-    for (int i = 0; i < 3; i++) {
-        alone[i] = g.ground[i];
-        alone[i].decoder = NULL;
-        alone[i].tree_memory = NULL;
-        fixture_tree(&alone[i], 6000, 64);
-        fixture_settle(&alone[i], &view, &quality, 200);
-    }
+    make_alone(&g, alone);
+    for (int i = 0; i < 3; i++) fixture_settle(&alone[i], &view, &quality, 200);
     for (int32_t x = -4000; x < 7000; x += 130)
         for (int32_t y = -600; y < 5000; y += 130) {
             int32_t all_wu, own_wu, any = 0;

@@ -3,7 +3,6 @@
  * are piecewise linear, so who is lower at every bend of either is lower everywhere. */
 #include "../../client/terrain/ff_strips.h"
 #include "../../client/terrain/ff_tree_local.h"
-#include "../../sim/judge/sim_watertight.h"
 #include "../rig/grounds_fixture.h"
 
 #include <setjmp.h>
@@ -14,7 +13,7 @@
 #include <cmocka.h>
 
 #define M          FF_WU_PER_METRE
-#define LEAST_STEP 5000 /* of made-up heights: so that lowered ones still fit 16 bits */
+#define LEAST_STEP 5000 /* of made-up heights */
 
 __extension__ typedef __int128 wide;
 
@@ -274,36 +273,6 @@ static proved prove(grounds_fixture *g)
     return sum;
 }
 
-/* Lowered nodes of each ground still fit each other, bit for bit. */
-static void expect_whole(grounds_fixture *g)
-{
-    const ff_drawn *list;
-    uint32_t count = ff_tree_in_view(g->tree, &list);
-    size_t each = ff_heights_per_node(g->tree);
-    uint16_t *heights = malloc((count + 1) * each * sizeof *heights);
-    ff_drawn *own = malloc((count + 1) * sizeof *own);
-    char why[160] = "";
-    for (uint32_t k = 0; k < g->count; k++) {
-        uint32_t of = 0;
-        for (uint32_t n = 0; n < count; n++) {
-            if (ff_ground_number(g->tree, ff_key_tile(list[n].key)) != k) continue;
-            own[of] = list[n];
-            own[of].heights = heights + of * each;
-            const uint16_t *drop = ff_tree_drop(g->tree, &list[n]);
-            for (size_t i = 0; i < each; i++) {
-                assert_true(!drop || drop[i] <= list[n].heights[i]);
-                heights[of * each + i] = (uint16_t)(list[n].heights[i] - (drop ? drop[i] : 0));
-            }
-            of++;
-        }
-        if (!sim_watertight_check(&g->ground[k].info, ff_tree_frame(g->tree), own, of, why,
-                                  sizeof why))
-            fail_msg("ground %u: %s", k, why);
-    }
-    free(heights);
-    free(own);
-}
-
 /* ---- grounds by chance ---- */
 
 static uint32_t stride[FF_GROUNDS_MAX], shift[FF_GROUNDS_MAX], ground_made;
@@ -432,7 +401,7 @@ static void run(uint64_t seed, unsigned grounds, int terrains)
             assert_int_equal(fixture_stats(&g.ground[0]).seams_short, 0);
             seams += fixture_stats(&g.ground[0]).seams;
             collect(&g);
-            expect_whole(&g);
+            grounds_assert_whole(&g);
             proved of = prove(&g);
             all.rim += of.rim;
             all.end += of.end;
@@ -482,10 +451,105 @@ static void sheets_end_beyond_what_the_rim_pulls_down(void **state)
     quality.error_px_q8 = 16;
     grounds_settle(&g, &view, &quality, 300);
     collect(&g);
-    expect_whole(&g);
+    grounds_assert_whole(&g);
     proved of = prove(&g);
     assert_true(of.rim > 50 && of.end > 50);
     grounds_free(&g);
+}
+
+static uint16_t slope(uint32_t x, uint32_t y) { return (uint16_t)(LEAST_STEP + x / 2 + y); }
+
+static void make_touching(grounds_fixture *g)
+{
+    terrain_fixture fx;
+    memset(g, 0, sizeof *g);
+    fixture_make(&fx, 3, 6, 1, 1, slope);
+    grounds_add(g, &fx, 0, 0);
+    grounds_add(g, &fx, 640 * M, 0);
+    grounds_tree(g, 6000, 64);
+}
+
+/* Neither lies under the other's rim: the one lowered would end in sky. */
+static void grounds_that_only_touch_keep_their_rims(void **state)
+{
+    (void)state;
+    grounds_fixture g;
+    const ff_drawn *list;
+    uint32_t of_ground[2] = { 0 };
+    make_touching(&g);
+    ff_view view = fixture_view(640, -200, LEAST_STEP + 500, 0, -40);
+    ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
+    grounds_settle(&g, &view, &quality, 300);
+    uint32_t count = ff_tree_in_view(g.tree, &list);
+    for (uint32_t n = 0; n < count; n++) {
+        const uint16_t *drop = ff_tree_drop(g.tree, &list[n]);
+        of_ground[ff_ground_number(g.tree, ff_key_tile(list[n].key))]++;
+        for (size_t i = 0; drop && i < ff_heights_per_node(g.tree); i++)
+            assert_int_equal(drop[i], 0);
+    }
+    assert_true(of_ground[0] > 0 && of_ground[1] > 0);
+    grounds_free(&g);
+}
+
+/* A seam may lower a node's vertices to the depth of a viewer who stands below all ground: it is
+ * looked for there, and comes no sooner in the order. */
+static void nodes_of_a_seam_are_ordered_by_where_they_lie(void **state)
+{
+    (void)state;
+    grounds_fixture g;
+    const ff_drawn *list;
+    uint32_t touching = 0;
+    int64_t last = 0;
+    make_touching(&g);
+    ff_view view = fixture_view(740, 100, LEAST_STEP - 100, 270, 60);
+    ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
+    grounds_settle(&g, &view, &quality, 300);
+    uint32_t count = ff_tree_in_view(g.tree, &list);
+    for (uint32_t n = 0; n < count; n++) {
+        ff_box box;
+        ff_node_box(g.tree, list[n].node, &box);
+        assert_true(ff_box_distance(&box) >= last);
+        last = ff_box_distance(&box);
+        touching += (uint32_t)ff_seam_touches(g.tree, list[n].node);
+    }
+    assert_true(touching > 0 && touching < count);
+    grounds_free(&g);
+}
+
+/* Half-way up the hills of `make`. */
+static ff_view view_along(int32_t x_m, int32_t y_m)
+{
+    ff_view view = fixture_view(x_m, y_m, LEAST_STEP + 700, 45, -30);
+    view.camera.focal_q8 = 60 * 256;
+    return view;
+}
+
+/* What is kept of a seam is made of the cut, not of what of it is within the view: nodes that come
+ * into it fit those that were there. */
+static void seams_fit_as_a_short_view_moves(void **state)
+{
+    (void)state;
+    sys_random random;
+    uint32_t seams = 0;
+    sys_random_seed(&random, 9, 3);
+    for (int i = 0; i < 6; i++) {
+        grounds_fixture g;
+        make(&g, &random, 2);
+        ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
+        quality.error_px_q8 = 2048;
+        ff_view view = view_along(0, 500);
+        grounds_settle(&g, &view, &quality, 300);
+        for (int step = 0; step < 100; step++) {
+            view = view_along(20 * step, 500 + 10 * step);
+            quality.view_wu = 900 * M;
+            ff_tree_select(g.tree, &view, &quality);
+            grounds_assert_whole(&g);
+            seams += fixture_stats(&g.ground[0]).seams;
+        }
+        grounds_free(&g);
+    }
+    print_message("# %u nodes in seams\n", seams);
+    assert_true(seams > 1000);
 }
 
 /* What finds no room stays as it is held. */
@@ -515,6 +579,9 @@ int main(void)
         cmocka_unit_test(a_fine_ground_in_a_coarse_one_leaves_no_gap),
         cmocka_unit_test(grounds_that_cross_leave_no_gap),
         cmocka_unit_test(sheets_end_beyond_what_the_rim_pulls_down),
+        cmocka_unit_test(grounds_that_only_touch_keep_their_rims),
+        cmocka_unit_test(nodes_of_a_seam_are_ordered_by_where_they_lie),
+        cmocka_unit_test(seams_fit_as_a_short_view_moves),
         cmocka_unit_test(seams_that_find_no_room_are_counted),
     };
     int rc = cmocka_run_group_tests(tests, NULL, NULL);
