@@ -1,6 +1,7 @@
 /* Life of a client: the block, the worker, settings and what is known of the terrain. Frames are in
  * client_update.c, figures in client_figures.c. */
 #include "several/ff_several.h"
+#include "terrain/ff_pack_source.h"
 #include "../protocol/ff_assert.h"
 
 #include <string.h>
@@ -79,9 +80,11 @@ static int check_sources(const ff_client_desc *desc)
 {
     int links = desc->stream != NULL,
         good = (desc->stream != NULL) != (desc->pack != NULL) && desc->more_count < FF_SOURCES_MAX;
+    good &= !desc->pack || ff_pack_source_grounds(desc->pack) <= FF_WELCOME_GROUNDS;
     for (unsigned i = 0; good && i < desc->more_count; i++) {
         const ff_source_desc *more = &desc->more[i];
-        good = (more->stream != NULL) != (more->pack != NULL);
+        good = (more->stream != NULL) != (more->pack != NULL) &&
+               (!more->pack || ff_pack_source_grounds(more->pack) <= FF_WELCOME_GROUNDS);
         links |= more->stream != NULL;
     }
     if (!good) return FF_ERR_ARGUMENT;

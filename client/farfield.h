@@ -54,7 +54,8 @@ typedef struct ff_client ff_client;
  * back_plane_wu; or whichever is cheaper for the error allowed (panorama/ff_panorama_auto.h). */
 enum ff_panorama_use { FF_PANORAMA_OFF, FF_PANORAMA_ON, FF_PANORAMA_AUTO };
 
-/* One who answers: a server or a pack on this device, mapped or read. The other is NULL. */
+/* One who answers: a server or a pack on this device, mapped or read, with at most
+ * FF_WELCOME_GROUNDS packs joined. The other is NULL. */
 typedef struct ff_source_desc {
     const ff_pack *pack;
     sys_stream *stream;

@@ -77,7 +77,7 @@ typedef struct ff_pack {
     void *root_context;
 } ff_pack;
 
-#define FF_PACKS_JOINED_MAX 7 /* with the first: as many as a WELCOME can tell of */
+#define FF_PACKS_JOINED_MAX 14 /* with the first; a server tells of FF_WELCOME_GROUNDS at most */
 
 /* Checks magic, version, checksum and ranges, and that all sections lie inside `size`. FF_OK or a
  * negative error: FORMAT (not a pack), VERSION, TRUNCATED, CHECKSUM, RANGE, UNSUPPORTED (a section

@@ -24,7 +24,7 @@ static const sys_program program = {
 int server_options_parse(server_options *options, int argc, char **argv)
 {
     *options = (server_options){ 0 };
-    options->packs = (sys_texts){ options->pack, 0, FF_PACKS_JOINED_MAX };
+    options->packs = (sys_texts){ options->pack, 0, FF_WELCOME_GROUNDS };
     return sys_options_parse(&program, options, argc, argv);
 }
 

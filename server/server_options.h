@@ -38,7 +38,7 @@ enum server_gl { SERVER_GL_OSMESA, SERVER_GL_EGL, SERVER_GL_EGL_GLES1 };
 
 typedef struct server_options {
     SERVER_OPTIONS(SYS_FIELD)
-    const char *pack[FF_PACKS_JOINED_MAX];
+    const char *pack[FF_WELCOME_GROUNDS];
 } server_options;
 
 /* 0: go on; 1: --help or --version has been answered; -1: wrong usage, said on stderr. */

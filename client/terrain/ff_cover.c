@@ -219,6 +219,7 @@ static int32_t rim_cell(const ff_tree *tree, uint32_t ground, unsigned side, ff_
 {
     const ff_area *stands = &tree->cover->stands[ground];
     int32_t largest_wu = 0;
+    if (stands->lo[0] > stands->hi[0]) return 0; /* nowhere */
     along.lo[side & 1] = along.hi[side & 1] = side & 2 ? stands->hi[side & 1]
                                                        : stands->lo[side & 1];
     ff_over over;

@@ -7,9 +7,13 @@ const uint8_t ff_grounds_built = 1;
 
 uint32_t ff_ground_search(const ff_tree *tree, uint32_t tile)
 {
+    ff_cover *cover = tree->cover;
     uint32_t g = tree->ground_count - 1;
-    while (g > 0 && tile < tree->ground[g].first_tile) g--;
-    return g;
+    cover->end_tile = FF_KEY_TILES_MAX;
+    for (; g > 0 && tile < tree->ground[g].first_tile; g--)
+        cover->end_tile = tree->ground[g].first_tile;
+    cover->first_tile = tree->ground[g].first_tile;
+    return cover->found = g;
 }
 
 int ff_tree_add_ground(ff_tree *tree, const ff_terrain_info *info)
@@ -23,6 +27,7 @@ int ff_tree_add_ground(ff_tree *tree, const ff_terrain_info *info)
     uint32_t g = tree->ground_count++;
     tree->ground[g] = *info;
     tree->ground[g].curve_q60 = tree->ground->curve_q60;
+    tree->cover->end_tile = 0; /* what was found last may have been of no ground */
     ff_cover_rank(tree);
     ff_tree_reshade(tree);
     tree->dirty = 1;

@@ -1,17 +1,33 @@
 /* Distances and the two node measures, all in integers. Boxes are relative to the camera. */
 #include "ff_tree_local.h"
 
+static ff_reach reach_of(const ff_tree *tree, uint32_t g, int32_t view_wu)
+{
+    int64_t height_wu[2];
+    ff_terrain_range_wu(&tree->ground[g], height_wu);
+    FF_ASSERT(height_wu[0] <= height_wu[1] && view_wu >= 0);
+    return ff_shape_reach(&tree->ground[g], &tree->view.frame, tree->view.centre_wu, view_wu,
+                          height_wu);
+}
+
+static int has_tiles(const ff_tree *tree, uint32_t g)
+{
+    ff_walk walk = ff_shape_walk(&tree->ground[g], &tree->window[g]);
+    uint32_t tile;
+    return ff_shape_next(&tree->ground[g], &walk, &tile);
+}
+
+/* Of several grounds those that show as too little have no window. */
 void ff_window_make(ff_tree *tree)
 {
-    const ff_view *view = &tree->view;
-    int64_t height_wu[2];
+    uint32_t in_reach = 0;
     for (uint32_t g = 0; g < tree->ground_count; g++) {
-        ff_terrain_range_wu(&tree->ground[g], height_wu);
-        FF_ASSERT(height_wu[0] <= height_wu[1] && tree->quality.view_wu >= 0);
-        int32_t view_wu = tree->cover && ff_cover_is_small(tree, g) ? 0 : tree->quality.view_wu;
-        tree->window[g] = ff_shape_reach(&tree->ground[g], &view->frame, view->centre_wu, view_wu,
-                                         height_wu);
+        tree->window[g] = reach_of(tree, g, tree->quality.view_wu);
+        if (!tree->cover || !has_tiles(tree, g)) continue;
+        if (ff_cover_is_small(tree, g)) tree->window[g] = reach_of(tree, g, 0);
+        in_reach += (uint32_t)has_tiles(tree, g);
     }
+    if (tree->cover) tree->cover->alone = in_reach <= 1;
 }
 
 int ff_tile_active(const ff_tree *tree, uint32_t tile)

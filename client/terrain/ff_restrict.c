@@ -102,15 +102,15 @@ static int has_new_tiles(const ff_tree *tree)
     return 0;
 }
 
-static void join_tiles(ff_tree *tree)
+static void join_tiles(ff_tree *tree, uint32_t g)
 {
-    tree->tiles_wait = 0;
     for (uint32_t slot = tree->root_head; slot != FF_SLOT_NONE; slot = tree->node[slot].list_next) {
         ff_node *root = &tree->node[slot];
         ff_box box;
+        if (ff_ground_number(tree, ff_key_tile(root->key)) != g) continue;
         if (!(root->flags & FF_NODE_ACTIVE)) root->flags &= (uint8_t)~FF_NODE_JOINED;
         if (!is_new(root)) continue;
-        if (tree->cover) { /* where several grounds lie, what is drawn is decided before */
+        if (tree->cover && !tree->cover->alone) { /* what is drawn is decided before */
             root->flags |= FF_NODE_JOINED;
             continue;
         }
@@ -143,13 +143,13 @@ static void forget_needs(ff_tree *tree)
         }
 }
 
-/* From the finest level up: what a level adds concerns coarser levels only. What nodes in view need
- * is marked where there are new tiles, for them. */
-void ff_want_close(ff_tree *tree)
+/* From the finest level up: what a level adds concerns coarser levels of the same ground only. What
+ * nodes in view need is marked where there are new tiles, for them. */
+void ff_want_close(ff_tree *tree, uint32_t g, const uint32_t before[FF_LEVELS_MAX])
 {
     int through = has_new_tiles(tree);
     for (uint32_t level = FF_LEVELS_MAX; level-- > 1;) {
-        for (uint32_t slot = tree->want_head[level]; slot != FF_SLOT_NONE;
+        for (uint32_t slot = tree->want_head[level]; slot != before[level];
              slot = tree->node[slot].want_next) {
             const ff_node *node = &tree->node[slot];
             FF_ASSERT(ff_key_level(node->key) == level);
@@ -166,7 +166,7 @@ void ff_want_close(ff_tree *tree)
             }
         }
     }
-    join_tiles(tree);
+    join_tiles(tree, g);
     if (through) forget_needs(tree);
 }
 

@@ -174,12 +174,14 @@ static void each_in_view(ff_tree *tree, uint32_t ground, int rims)
 void ff_seam_make(ff_tree *tree)
 {
     ff_seams *seams = tree->seams;
+    int none_held = tree->stats.seams == 0;
     tree->stats.seams = tree->stats.seams_short = 0;
+    if (tree->cover->alone && none_held) return;
     if (++seams->stamp == 0) seams->stamp = 1;
-    for (uint32_t rank = 0; rank < tree->ground_count; rank++)
+    uint32_t count = tree->cover->alone ? 0 : tree->ground_count;
+    for (uint32_t rank = 0; rank < count; rank++)
         each_in_view(tree, ff_ground_ranked(tree, rank), 0);
-    for (uint32_t rank = tree->ground_count; rank-- > 0;)
-        each_in_view(tree, ff_ground_ranked(tree, rank), 1);
+    for (uint32_t rank = count; rank-- > 0;) each_in_view(tree, ff_ground_ranked(tree, rank), 1);
     for (uint32_t i = 0; i < seams->count; i++) {
         ff_seam *seam = &seams->seam[i];
         if (seam->stamp && seam->stamp != seams->stamp) release(tree, seam);

@@ -3,6 +3,8 @@
 #include "ff_horizon.h"
 #include "ff_strips.h"
 
+#include <string.h>
+
 #define C_Q8_MAX (1 << 24)
 
 static int same_view(const ff_view *a, const ff_view *b)
@@ -182,16 +184,18 @@ static void split_cut(ff_tree *tree, uint32_t g)
 /* A ground is cut once those before it are: what they cover of it is left out. */
 static void make_cut(ff_tree *tree)
 {
+    uint32_t before[FF_LEVELS_MAX];
     forget_flags(tree);
     mark_active_roots(tree);
     if (tree->cover) ff_cover_stand(tree);
     tree->stats.flat = tree->stats.stubs = 0;
-    tree->cut_count = 0;
+    tree->cut_count = tree->tiles_wait = 0;
     for (uint32_t rank = 0; rank < tree->ground_count; rank++) {
         uint32_t g = ff_ground_ranked(tree, rank);
         if (tree->cover) ff_cover_roots(tree, g);
+        memcpy(before, tree->want_head, sizeof before);
         want_by_measure(tree, g);
-        ff_want_close(tree);
+        ff_want_close(tree, g, before);
         split_cut(tree, g);
         if (tree->cover) ff_cover_rims(tree, g);
     }
@@ -291,7 +295,7 @@ static void list_cut(ff_tree *tree)
         ff_box box;
         ff_node_box(tree, &tree->node[slot], &box);
         int64_t lowest_wu = box.lo[2];
-        if (tree->cover && ff_seam_touches(tree, &tree->node[slot]))
+        if (tree->cover && !tree->cover->alone && ff_seam_touches(tree, &tree->node[slot]))
             box.lo[2] = ff_seam_lowest_wu(tree) - tree->view.camera.pos_wu[2];
         if (ff_box_beyond_view(tree, &box) || !ff_box_in_view(tree, &box)) {
             tree->order[unseen++] = slot;

@@ -128,7 +128,12 @@ typedef struct ff_area {
 
 typedef struct ff_cover {
     uint8_t ranked[FF_GROUNDS_MAX],
-        rank[FF_GROUNDS_MAX];       /* numbers in order, and the place there */
+        rank[FF_GROUNDS_MAX]; /* numbers in order, and the place there */
+    /* 1: no more than one ground has tiles in the window, so nothing is left out, and there are no
+     * seams */
+    uint8_t alone;
+    /* the ground that ff_ground_search found last, the tiles it was found for */
+    uint32_t found, first_tile, end_tile;
     ff_area stands[FF_GROUNDS_MAX]; /* where each ground is drawn, unless one before it is */
     /* of each, the largest cell along its west, south, east and north rim */
     int32_t rim_cell_wu[FF_GROUNDS_MAX][4];
@@ -153,7 +158,7 @@ int ff_cover_fills(const ff_tree *tree, uint32_t tile);
 
 static inline int ff_left_out(const ff_tree *tree, ff_key key)
 {
-    return tree->cover && ff_cover_hides(tree, key);
+    return tree->cover && !tree->cover->alone && ff_cover_hides(tree, key);
 }
 /* 1 where a ground has a level, and the quality uses it: it counts those that are left out. */
 static inline int ff_has_level(const ff_tree *tree, const ff_terrain_info *info, uint32_t level)
@@ -196,7 +201,10 @@ void ff_grounds_ramp(const ff_tree *tree, const ff_terrain_info *info, int32_t r
 
 static inline uint32_t ff_ground_number(const ff_tree *tree, uint32_t tile)
 {
-    return tree->ground_count > 1 ? ff_ground_search(tree, tile) : 0;
+    if (tree->ground_count <= 1) return 0;
+    return tile >= tree->cover->first_tile && tile < tree->cover->end_tile
+               ? tree->cover->found
+               : ff_ground_search(tree, tile);
 }
 /* The ground that a tile or a node belongs to, or would, were it one. */
 static inline const ff_terrain_info *ff_ground_of_tile(const ff_tree *tree, uint32_t tile)
@@ -358,9 +366,10 @@ int32_t ff_patch_z_wu(const ff_patch *patch, const int32_t place_wu[2]);
 /* ff_restrict.c */
 unsigned ff_coarser_mask(const ff_tree *tree, const ff_node *node);
 void ff_want(ff_tree *tree, uint32_t slot, uint32_t value);
-/* Makes everything wanted that wanted nodes need beside them. Then tiles out of view that are new
- * and lack what nodes in view need there stop being active: they do not join the cut yet. */
-void ff_want_close(ff_tree *tree);
+/* Makes everything wanted that nodes of ground `g` need beside them: those that became wanted since
+ * the lists began with `before`. Then its tiles out of view that are new and lack what nodes in
+ * view need there stop being active: they do not join the cut yet. */
+void ff_want_close(ff_tree *tree, uint32_t g, const uint32_t before[FF_LEVELS_MAX]);
 /* Marks what a node that is seen needs beside it: to split, or to be drawn without leaving out
  * vertices at a side. */
 void ff_need_beside(ff_tree *tree, const ff_node *node);

@@ -6,7 +6,7 @@
 #include "../../protocol/ff_pack.h"
 #include "../../protocol/message/ff_message.h"
 
-#define FF_PACKS_MAX (FF_PACKS_JOINED_MAX + 1) /* of those that are not joined */
+#define FF_PACKS_MAX FF_PACKS_JOINED_MAX
 
 typedef struct ff_packs {
     ff_pack pack[FF_PACKS_MAX]; /* the first one has the others joined to it */
@@ -15,7 +15,8 @@ typedef struct ff_packs {
     char why[200]; /* what was wrong, in words, with the file first */
 } ff_packs;
 
-/* Opens and joins them; close it whatever comes back. FF_OK or an error, which `why` tells. */
+/* Opens and joins them, a server no more than FF_WELCOME_GROUNDS; close it whatever comes back.
+ * FF_OK or an error, which `why` tells. */
 int ff_packs_open(ff_packs *packs, const char *const *path, size_t count);
 /* Opens one more, joined to none. The same. */
 int ff_packs_add(ff_packs *packs, const char *path);

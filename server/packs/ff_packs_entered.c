@@ -1,5 +1,6 @@
 #include "ff_packs_entered.h"
 #include "../../protocol/ff_entry.h"
+#include "../../protocol/message/ff_message.h"
 #include "../../protocol/shape/ff_shape.h"
 
 #include <stddef.h>
@@ -15,7 +16,7 @@ typedef struct node {
 } node;
 
 struct ff_packs_entered {
-    ff_pack pack[FF_PACKS_JOINED_MAX];
+    ff_pack pack[FF_WELCOME_GROUNDS];
     node node;
     uint16_t decoded[FF_NODE_HEIGHTS_MAX];
     int made; /* bytes of the payload; 0: none has been made */

@@ -2,8 +2,6 @@
 #include "ff_packs.h"
 #include "../../protocol/ff_assert.h"
 
-FF_STATIC_ASSERT(FF_PACKS_JOINED_MAX == FF_WELCOME_GROUNDS);
-
 /* A row of values in the making, of one entry. */
 typedef struct row {
     ff_writer out;

@@ -53,9 +53,9 @@ int fly_options_parse(fly_options *options, int argc, char **argv)
 {
     *options = (fly_options){ .seconds = -1,
                               .check = SYS_UNSET,
-                              .packs = { options->pack, 0, FF_PACKS_JOINED_MAX },
+                              .packs = { options->pack, 0, FF_WELCOME_GROUNDS },
                               .locals = { options->local, 0, FF_SOURCES_MAX - 1 },
-                              .truths = { options->truth, 0, FF_PACKS_JOINED_MAX } };
+                              .truths = { options->truth, 0, FF_WELCOME_GROUNDS } };
     int rc = sys_options_parse(&program, options, argc, argv);
     if (rc) return rc;
     complete(options);

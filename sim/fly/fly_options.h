@@ -147,8 +147,8 @@ extern const sys_option_type fly_events_option;
 
 typedef struct fly_options {
     FLY_OPTIONS(SYS_FIELD, SYS_NO_FIELD, sys_bits show;)
-    const char *pack[FF_PACKS_JOINED_MAX], *local[FF_SOURCES_MAX - 1];
-    const char *truth[FF_PACKS_JOINED_MAX];
+    const char *pack[FF_WELCOME_GROUNDS], *local[FF_SOURCES_MAX - 1];
+    const char *truth[FF_WELCOME_GROUNDS];
     /* what follows from them */
     const char *pack_path;  /* the first pack */
     const char *truth_path; /* what that is judged by, or NULL */

@@ -101,6 +101,60 @@ static void grounds_apart_are_drawn_as_each_by_itself(void **state)
     grounds_free(&g);
 }
 
+static void expect_same_wishes(const ff_tree *a, const ff_tree *b)
+{
+    const ff_wish *list_a, *list_b;
+    uint32_t count = ff_tree_wishes(a, &list_a);
+    assert_int_equal(count, ff_tree_wishes(b, &list_b));
+    for (uint32_t i = 0; i < count; i++) {
+        assert_int_equal(list_a[i].key, list_b[i].key);
+        assert_int_equal(list_a[i].in_view, list_b[i].in_view);
+        assert_int_equal(list_a[i].priority, list_b[i].priority);
+    }
+}
+
+/* Brings the first few things wished for to both trees. */
+static void bring(grounds_fixture *g, terrain_fixture *alone, uint32_t few)
+{
+    const ff_wish *list;
+    ff_wish wish[4];
+    uint32_t count = ff_tree_wishes(alone->tree, &list);
+    count = count < few ? count : few;
+    memcpy(wish, list, count * sizeof *wish);
+    for (uint32_t i = 0; i < count; i++) {
+        fixture_deliver(alone, wish[i].key, wish[i].kind == FF_KIND_REFINEMENT);
+        fixture_deliver(grounds_of(g, wish[i].key), wish[i].key,
+                        wish[i].kind == FF_KIND_REFINEMENT);
+    }
+}
+
+static void ground_out_of_reach_changes_nothing(void **state)
+{
+    (void)state;
+    grounds_fixture g;
+    terrain_fixture alone[3];
+    make_three(&g);
+    g.hidden = g.ground[0].hidden;
+    grounds_tree(&g, 6000, 64);
+    make_alone(&g, alone);
+    for (int step = 0; step < 200; step++) {
+        /* over all tiles of the first ground, which begins where the third ends; the second begins
+         * 160 m beyond it */
+        ff_view view = fixture_view(300 + 15 * step, 700 + 5 * step, 900, (uint16_t)(7 * step),
+                                    -25);
+        ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
+        quality.view_wu = 240 * M;
+        view.camera.pos_wu[2] = view.centre_wu[2] = 300 * M;
+        ff_tree_select(g.tree, &view, &quality);
+        ff_tree_select(alone[0].tree, &view, &quality);
+        expect_alike(&g, &alone[0]);
+        expect_same_wishes(g.tree, alone[0].tree);
+        bring(&g, &alone[0], 3);
+    }
+    for (int i = 0; i < 3; i++) fixture_free(&alone[i]);
+    grounds_free(&g);
+}
+
 static void the_height_of_drawn_ground_is_that_of_the_ground_there(void **state)
 {
     (void)state;
@@ -234,6 +288,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(grounds_apart_are_drawn_as_each_by_itself),
+        cmocka_unit_test(ground_out_of_reach_changes_nothing),
         cmocka_unit_test(the_height_of_drawn_ground_is_that_of_the_ground_there),
         cmocka_unit_test(grounds_share_a_pool),
         cmocka_unit_test(prefetch_looks_at_all_grounds),
