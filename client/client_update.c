@@ -28,18 +28,25 @@ ff_quality ff_client_quality(const ff_client *client)
     return quality;
 }
 
-/* The worker has met a terrain: carves pools for it, or none when it does not fit. */
-static void settle_welcome(ff_client *client)
+/* Carves pools for another terrain than before, or none when it does not fit. */
+static int carve_anew(ff_client *client)
 {
-    sys_mutex_lock(&client->gate);
     ff_client_uncarve(client);
-    ff_client_take_welcome(&client->first);
-    client->info = client->first.intake.info[0];
     client->has_camera = 0; /* another frame, too */
     int rc = ff_client_carve(client);
     FF_ASSERT(client->have_terrain == (rc == FF_OK));
-    client->terrain_error = rc;
     if (rc != FF_OK) ff_client_carve_sky(client);
+    return rc;
+}
+
+/* The worker has met a terrain. */
+static void settle_welcome(ff_client *client)
+{
+    sys_mutex_lock(&client->gate);
+    ff_client_take_welcome(&client->first);
+    client->info = client->first.intake.info[0];
+    int rc = ff_several_keep(client) ? FF_OK : carve_anew(client);
+    client->terrain_error = rc;
     ff_stream_accept(&client->first.stream, rc == FF_OK);
     sys_mutex_unlock(&client->gate);
 }

@@ -116,6 +116,26 @@ void ff_several_join(ff_client *client)
     tell_sources(client);
 }
 
+static void joined(ff_client *client)
+{
+    tell_sources(client);
+    ff_textures_doubt(&client->textures);
+    client->dirty = 1;
+}
+
+int ff_several_keep(ff_client *client)
+{
+    ff_source *first = &client->first;
+    unsigned drawn = stand_in(client);
+    if (!client->have_terrain || !drawn || first->serves || first->intake.told_count != 1 ||
+        !find_ground(client, first, 0, &first->ground[0]) || first->ground[0].number != 0)
+        return 0;
+    (void)join(client, first, 0); /* it finds the ground again */
+    ff_tree_set_checksum(client->tree, 0, first->intake.info[0].checksum);
+    joined(client);
+    return 1;
+}
+
 /* Under the gate: a server has told its grounds, and waits for what is said to it. */
 static void settle(ff_client *client, ff_source *source)
 {
@@ -128,10 +148,7 @@ static void settle(ff_client *client, ff_source *source)
         if (client->terrain_error != FF_OK) ff_client_carve_sky(client);
     }
     int rc = client->have_terrain ? join(client, source, 0) : FF_ERR_MEMORY;
-    if (rc == FF_OK) {
-        tell_sources(client);
-        ff_textures_doubt(&client->textures);
-    }
+    if (rc == FF_OK) joined(client);
     client->dirty = 1;
     ff_stream_accept(&source->stream, rc == FF_OK);
 }

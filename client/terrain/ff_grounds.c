@@ -86,6 +86,12 @@ void ff_tree_lacks(ff_tree *tree, ff_key key, unsigned source)
     tree->dirty = 1; /* its wish says so */
 }
 
+void ff_tree_set_checksum(ff_tree *tree, uint32_t ground, uint32_t checksum)
+{
+    FF_ASSERT(ground < tree->ground_count);
+    tree->ground[ground].checksum = checksum;
+}
+
 void ff_tree_set_sources(ff_tree *tree, uint32_t ground, uint8_t mask)
 {
     FF_ASSERT(ground < tree->ground_count);

@@ -127,6 +127,40 @@ static void without_its_server_a_part_is_drawn_as_it_is(void **state)
     }
 }
 
+/* Until its server is heard a part is drawn alone; then the server gives the rest of the same
+ * ground, and nothing of it is drawn or asked for anew. */
+static void what_a_part_shows_stays_when_its_server_is_heard(void **state)
+{
+    uint8_t about[6];
+    client_rig server, rig;
+    (void)state;
+    rig_open(&server, 0);
+    server.refuse = 1;
+    make_part(&rig, &server, 0, about);
+    ff_source_desc more = { .pack = &rig.pack };
+    rig.desc.more = &more;
+    rig.desc.more_count = 1;
+    rig.desc.stream = &server.stream;
+    rig_client_of(&rig, 8 * MB);
+    for (int n = 0; n < 40; n++) rig_step(&rig, 50000);
+    uint32_t held = rig_stats(&rig).tree.nodes_held, asked = rig_stats(&rig).requests_sent;
+    assert_int_equal(ff_client_source_state(rig.client, 0), FF_ERR_AGAIN);
+    assert_true(held > 4 && rig_stats(&rig).tree.nodes_drawn > 0);
+    server.refuse = 0;
+    for (int n = 0; n < 200; n++) {
+        rig_step(&rig, 50000);
+        assert_true(rig_stats(&rig).tree.nodes_held >= held);
+        assert_true(rig_stats(&rig).tree.nodes_drawn > 0);
+    }
+    assert_int_equal(ff_client_source_state(rig.client, 0), FF_OK);
+    assert_true(rig_stats(&rig).requests_sent > asked);
+    assert_int_equal(server.asked[FF_KIND_ROOT], 0);
+    look_around(&rig);
+    assert_shows_whole_ground(&rig, 0);
+    rig_close(&rig);
+    close_server(&server);
+}
+
 static void a_second_server_stands_in_for_one_that_is_lost(void **state)
 {
     (void)state;
@@ -383,6 +417,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_a_part_on_the_device_lacks_the_server_gives),
         cmocka_unit_test(without_its_server_a_part_is_drawn_as_it_is),
+        cmocka_unit_test(what_a_part_shows_stays_when_its_server_is_heard),
         cmocka_unit_test(a_second_server_stands_in_for_one_that_is_lost),
         cmocka_unit_test(grounds_of_two_servers_come_together),
         cmocka_unit_test(a_server_of_several_packs_gives_all_of_them),

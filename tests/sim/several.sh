@@ -104,7 +104,7 @@ flies near $hover --pack "$work/country.ffp" --local "$work/region.ffp" --png "$
 cmp -s "$work/far/frame-0090.00.png" "$work/near/frame-0090.00.png"
 result $? "a part of the server's ground on the device: the same picture, once all has come"
 held=$(stat -c %s "$work/region.ffp")
-is "0.4 * $held < far.bytes_down_all - near.bytes_down_all < 1.1 * $held and near.requests_failed == 0 and near.ground_px_percent == [100]" \
+is "0.4 * $held < far.bytes_down_all - near.bytes_down_all < 1.1 * $held and near.requests_failed == near.empty_frames == 0 and near.ground_px_percent == [100]" \
     "and what the part holds has not come over the link"
 
 # ---- truths ----
