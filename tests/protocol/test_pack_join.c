@@ -183,6 +183,7 @@ static void a_welcome_tells_of_all_grounds(void **state)
                 ff_terrain_info info;
                 uint32_t whole;
                 ff_welcome_ground(&out.u.welcome, i, &info, &whole);
+                assert_int_equal(info.entered, 0);
                 assert_int_equal(info.checksum, 0x1000 + i);
                 assert_int_equal(info.first_tile, 2 * i);
                 assert_int_equal(info.west_wu, 256000 * i);
