@@ -7,7 +7,8 @@
 
 int32_t ff_client_reach_wu(const ff_client *client)
 {
-    return client->desc.more_count ? INT32_MAX : client->desc.quality.view_wu;
+    const ff_client_desc *desc = &client->desc;
+    return desc->more_count || desc->no_entry ? INT32_MAX : desc->quality.view_wu;
 }
 
 void ff_source_make(ff_client *client, unsigned number, const ff_source_room *room)

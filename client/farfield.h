@@ -151,8 +151,11 @@ typedef struct ff_client_desc {
      * knows which ground it is on: what they show is asked for with the greeting, a round trip
      * earlier */
     uint8_t place_known;
-    uint8_t no_textures;   /* 1: images of the terrain are not asked for */
-    uint8_t no_views;      /* 1: ground is asked for level by level, not for a view at once */
+    uint8_t no_textures; /* 1: images of the terrain are not asked for */
+    uint8_t no_views;    /* 1: ground is asked for level by level, not for a view at once */
+    /* 1: the server hands out all levels of its ground, however near quality.view_wu ends (SPEC.md,
+     * "Entry") */
+    uint8_t no_entry;
     uint8_t no_prefetch;   /* 1: what motion and turns will show is not asked for ahead */
     uint8_t no_reserve;    /* 1: no coarse ground all round while the link is idle */
     enum ff_hidden hidden; /* default: ground that nearer ground hides is left out */

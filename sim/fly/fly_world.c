@@ -143,6 +143,7 @@ static int open_client(fly_world *world)
                             /* to whom a server is a stranger, so is its ground */
                             .place_known = options->server == NULL,
                             .no_views = !options->views,
+                            .no_entry = !options->entry,
                             .no_reserve = !options->reserve,
                             .hidden = (enum ff_hidden)options->hidden };
     desc.backend = backend_of(options->backend);

@@ -78,15 +78,22 @@ static void a_near_view_is_the_same_ground(void **state)
 
 static void what_is_left_out_is_not_sent(void **state)
 {
-    client_rig near, far;
+    client_rig near, far, asked;
     (void)state;
     open_near(&near, 0, NEAR);
     rig_client(&near, 8 * MB);
     open_near(&far, 0, 0);
     rig_client(&far, 8 * MB);
+    open_near(&asked, 0, NEAR); /* who asks for all levels has them */
+    asked.desc.no_entry = 1;
+    rig_client(&asked, 8 * MB);
     assert_true(rig_settle(&near, 400));
     assert_true(rig_settle(&far, 400));
+    assert_true(rig_settle(&asked, 400));
     assert_int_equal(ff_client_terrain(far.client)->entered, 0);
+    assert_int_equal(ff_client_terrain(asked.client)->entered, 0);
+    assert_true(near.bytes_down < asked.bytes_down);
+    rig_close(&asked);
     assert_true(near.bytes_down < far.bytes_down);
     /* at most four tiles lie within reach */
     assert_in_range(near.asked[FF_KIND_ROOT], 0, 4);
