@@ -109,8 +109,7 @@ static void foresee_roots(const ff_tree *tree, uint32_t g, foresight *f)
     uint32_t tile;
     for (unsigned i = 0; i < TILES_LOOKED_AT && ff_shape_next(info, &walk, &tile); i++) {
         ff_key root = ff_key_make(tile, 0, 0);
-        if (ff_tree_find(tree, root) != FF_SLOT_NONE || (tree->cover && ff_cover_hides(tree, root)))
-            continue;
+        if (ff_tree_find(tree, root) != FF_SLOT_NONE || ff_left_out_ahead(tree, root)) continue;
         ff_box here, there;
         ff_tile_box(tree, tile, &here);
         ff_tile_box(&f->ahead, tile, &there);
@@ -157,7 +156,7 @@ static void foresee_tiles(const ff_tree *tree, foresight *f)
     for (uint32_t root = tree->root_head; root != FF_SLOT_NONE; root = tree->node[root].list_next) {
         uint32_t tile = ff_key_tile(tree->node[root].key), depth = 0;
         if (tree->node[root].flags & FF_NODE_ACTIVE || !ff_tile_active(&f->ahead, tile) ||
-            (tree->cover && ff_cover_hides(tree, tree->node[root].key)))
+            ff_left_out_ahead(tree, tree->node[root].key))
             continue;
         for (stack[depth++] = root; depth > 0;) {
             const ff_node *node = &tree->node[stack[--depth]];

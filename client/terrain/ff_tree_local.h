@@ -160,6 +160,11 @@ static inline int ff_left_out(const ff_tree *tree, ff_key key)
 {
     return tree->cover && !tree->cover->alone && ff_cover_hides(tree, key);
 }
+/* The same of nodes that are not in the window, as another ground may come into it. */
+static inline int ff_left_out_ahead(const ff_tree *tree, ff_key key)
+{
+    return tree->cover && ff_cover_hides(tree, key);
+}
 /* 1 where a ground has a level, and the quality uses it: it counts those that are left out. */
 static inline int ff_has_level(const ff_tree *tree, const ff_terrain_info *info, uint32_t level)
 {
