@@ -6,6 +6,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
 
@@ -155,6 +156,10 @@ static void what_a_part_shows_stays_when_its_server_is_heard(void **state)
     assert_int_equal(ff_client_source_state(rig.client, 0), FF_OK);
     assert_true(rig_stats(&rig).requests_sent > asked);
     assert_int_equal(server.asked[FF_KIND_ROOT], 0);
+    uint32_t count;
+    const ff_terrain_info *all = ff_tree_grounds(ff_client_tree(rig.client), &count);
+    assert_int_equal(count, 1);
+    assert_int_equal(all->checksum, server.pack.header.info.checksum);
     look_around(&rig);
     assert_shows_whole_ground(&rig, 0);
     rig_close(&rig);
@@ -256,6 +261,60 @@ static void a_server_of_several_packs_gives_all_of_them(void **state)
         rig_close(&rig);
         close_server(&beside);
     }
+}
+
+/* More of them than the part's stead has room for are put together anew. */
+static void a_server_of_several_packs_is_heard_beside_a_part(void **state)
+{
+    uint8_t about[6];
+    client_rig server, beside, rig;
+    (void)state;
+    open_placed(&server, UTM, 0, 0);
+    open_placed(&beside, UTM, WIDE, 0);
+    make_part(&rig, &server, 0, about);
+    rig.epsg = server.epsg;
+    memcpy(rig.origin_mm, server.origin_mm, sizeof rig.origin_mm);
+    rig_use_stubs(&rig, 0);
+    assert_int_equal(ff_pack_join(&server.pack, &beside.pack), FF_OK);
+    server.refuse = 1;
+    ff_source_desc more = { .pack = &rig.pack };
+    rig.desc.more = &more;
+    rig.desc.more_count = 1;
+    rig.desc.stream = &server.stream;
+    rig_client_of(&rig, 8 * MB);
+    for (int n = 0; n < 40; n++) rig_step(&rig, 50000);
+    assert_true(rig_stats(&rig).tree.nodes_drawn > 0);
+    server.refuse = 0;
+    for (int n = 0; n < 200; n++) rig_step(&rig, 50000);
+    expect_both(&rig, WIDE, 0);
+    rig_close(&rig);
+    close_server(&server);
+    close_server(&beside);
+}
+
+static void more_packs_than_a_server_has_are_refused(void **state)
+{
+    (void)state;
+    client_rig rig, more[FF_WELCOME_GROUNDS];
+    ff_source_desc source = { 0 };
+    open_placed(&rig, UTM, 0, 0);
+    for (int i = 0; i < FF_WELCOME_GROUNDS; i++) {
+        open_placed(&more[i], UTM, (i + 1) * WIDE, 0);
+        assert_int_equal(ff_pack_join(&rig.pack, &more[i].pack), FF_OK);
+    }
+    rig.memory = malloc(8 * MB);
+    rig.desc.memory = rig.memory;
+    rig.desc.memory_bytes = 8 * MB;
+    rig.desc.pack = &rig.pack;
+    assert_int_equal(ff_client_create(&rig.desc, &rig.client), FF_ERR_ARGUMENT);
+    source.pack = &rig.pack;
+    rig.desc.pack = NULL;
+    rig.desc.stream = &rig.stream;
+    rig.desc.more = &source;
+    rig.desc.more_count = 1;
+    assert_int_equal(ff_client_create(&rig.desc, &rig.client), FF_ERR_ARGUMENT);
+    for (int i = 0; i < FF_WELCOME_GROUNDS; i++) close_server(&more[i]);
+    rig_close(&rig);
 }
 
 static void what_fits_no_ground_is_told_and_left_out(void **state)
@@ -421,6 +480,8 @@ int main(void)
         cmocka_unit_test(a_second_server_stands_in_for_one_that_is_lost),
         cmocka_unit_test(grounds_of_two_servers_come_together),
         cmocka_unit_test(a_server_of_several_packs_gives_all_of_them),
+        cmocka_unit_test(a_server_of_several_packs_is_heard_beside_a_part),
+        cmocka_unit_test(more_packs_than_a_server_has_are_refused),
         cmocka_unit_test(what_fits_no_ground_is_told_and_left_out),
         cmocka_unit_test(a_server_that_changes_its_pack_is_taken_anew),
         cmocka_unit_test(a_ground_that_fits_not_makes_nothing_come_twice),

@@ -263,6 +263,26 @@ static void colours_span_the_heights_of_all_grounds(void **state)
     grounds_free(&g);
 }
 
+/* What was found last of two grounds does not stand for a third. */
+static void a_ground_that_comes_later_is_found(void **state)
+{
+    (void)state;
+    grounds_fixture g;
+    make_three(&g);
+    ff_tree_desc desc = {
+        .info = g.ground[0].info, .node_count = 2000, .wish_count = 64, .ground_max = 3
+    };
+    void *memory = malloc(ff_tree_bytes(&desc));
+    ff_tree *tree = ff_tree_create(&desc, memory, ff_tree_bytes(&desc));
+    for (int i = 1; i < 3; i++) {
+        const ff_terrain_info *info = &g.ground[i].info;
+        assert_int_equal(ff_tree_add_ground(tree, info), i);
+        const ff_terrain_info *found = ff_tree_ground(tree, ff_key_make(info->first_tile, 0, 0));
+        assert_int_equal(found->first_tile, info->first_tile);
+    }
+    free(memory);
+}
+
 static void a_tree_takes_only_grounds_that_fit(void **state)
 {
     (void)state;
@@ -293,6 +313,7 @@ int main(void)
         cmocka_unit_test(grounds_share_a_pool),
         cmocka_unit_test(prefetch_looks_at_all_grounds),
         cmocka_unit_test(colours_span_the_heights_of_all_grounds),
+        cmocka_unit_test(a_ground_that_comes_later_is_found),
         cmocka_unit_test(a_tree_takes_only_grounds_that_fit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
