@@ -249,6 +249,45 @@ static void a_ground_that_does_not_stand_changes_nothing(void **state)
     }
 }
 
+static uint32_t lowered_in_view(const grounds_fixture *g)
+{
+    const ff_drawn *list;
+    uint32_t count = ff_tree_in_view(g->tree, &list), lowered = 0;
+    for (uint32_t i = 0; i < count; i++) lowered += ff_tree_drop(g->tree, &list[i]) != NULL;
+    return lowered;
+}
+
+/* A coarse node that dived under a fine ground is drawn as it is held once that is out of reach. */
+static void nothing_is_lowered_where_one_ground_is_alone(void **state)
+{
+    (void)state;
+    grounds_fixture g;
+    terrain_fixture fx;
+    memset(&g, 0, sizeof g);
+    fixture_make(&fx, 3, 7, 1, 1, fixture_hills);
+    fx.info.spacing_wu = 40 * M;
+    grounds_add(&g, &fx, 0, 0);
+    fixture_make(&fx, 3, 6, 1, 1, fixture_hills);
+    grounds_add(&g, &fx, 2500 * M, 2000 * M);
+    grounds_tree(&g, 2000, 64);
+    ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
+    quality.error_px_q8 = 1 << 20; /* roots alone */
+    ff_view view = fixture_view(2300, 2300, 1500, 90, -60);
+    grounds_settle(&g, &view, &quality, 300);
+    assert_true(lowered_in_view(&g) > 0);
+    quality.view_wu = 150 * M;
+    for (int again = 0; again < 3; again++) {
+        view.camera.pos_wu[0] -= 10 * M; /* it is not the same selection */
+        view.camera.pos_wu[2] = view.centre_wu[2] = 300 * M;
+        view.centre_wu[0] = view.camera.pos_wu[0];
+        ff_tree_select(g.tree, &view, &quality);
+        assert_true(fixture_stats(&g.ground[0]).nodes_drawn > 0);
+        assert_int_equal(lowered_in_view(&g), 0);
+        assert_int_equal(fixture_stats(&g.ground[0]).seams, 0);
+    }
+    grounds_free(&g);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -256,6 +295,7 @@ int main(void)
         cmocka_unit_test(no_place_is_left_empty_on_the_way),
         cmocka_unit_test(nothing_is_asked_for_below_a_ground_that_stands),
         cmocka_unit_test(a_ground_that_does_not_stand_changes_nothing),
+        cmocka_unit_test(nothing_is_lowered_where_one_ground_is_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -526,45 +526,6 @@ static ff_view view_along(int32_t x_m, int32_t y_m)
 
 /* What is kept of a seam is made of the cut, not of what of it is within the view: nodes that come
  * into it fit those that were there. */
-static uint32_t lowered_in_view(const grounds_fixture *g)
-{
-    const ff_drawn *list;
-    uint32_t count = ff_tree_in_view(g->tree, &list), lowered = 0;
-    for (uint32_t i = 0; i < count; i++) lowered += ff_tree_drop(g->tree, &list[i]) != NULL;
-    return lowered;
-}
-
-/* A coarse node that dived under a fine ground is drawn as it is held once that is out of reach. */
-static void nothing_is_lowered_where_one_ground_is_alone(void **state)
-{
-    (void)state;
-    grounds_fixture g;
-    terrain_fixture fx;
-    memset(&g, 0, sizeof g);
-    fixture_make(&fx, 3, 7, 1, 1, fixture_hills);
-    fx.info.spacing_wu = 40 * M;
-    grounds_add(&g, &fx, 0, 0);
-    fixture_make(&fx, 3, 6, 1, 1, fixture_hills);
-    grounds_add(&g, &fx, 2500 * M, 2000 * M);
-    grounds_tree(&g, 2000, 64);
-    ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
-    quality.error_px_q8 = 1 << 20; /* roots alone */
-    ff_view view = fixture_view(2300, 2300, 1500, 90, -60);
-    grounds_settle(&g, &view, &quality, 300);
-    assert_true(lowered_in_view(&g) > 0);
-    quality.view_wu = 150 * M;
-    for (int again = 0; again < 3; again++) {
-        view.camera.pos_wu[0] -= 10 * M; /* it is not the same selection */
-        view.camera.pos_wu[2] = view.centre_wu[2] = 300 * M;
-        view.centre_wu[0] = view.camera.pos_wu[0];
-        ff_tree_select(g.tree, &view, &quality);
-        assert_true(fixture_stats(&g.ground[0]).nodes_drawn > 0);
-        assert_int_equal(lowered_in_view(&g), 0);
-        assert_int_equal(fixture_stats(&g.ground[0]).seams, 0);
-    }
-    grounds_free(&g);
-}
-
 static void seams_fit_as_a_short_view_moves(void **state)
 {
     (void)state;
@@ -620,7 +581,6 @@ int main(void)
         cmocka_unit_test(sheets_end_beyond_what_the_rim_pulls_down),
         cmocka_unit_test(grounds_that_only_touch_keep_their_rims),
         cmocka_unit_test(nodes_of_a_seam_are_ordered_by_where_they_lie),
-        cmocka_unit_test(nothing_is_lowered_where_one_ground_is_alone),
         cmocka_unit_test(seams_fit_as_a_short_view_moves),
         cmocka_unit_test(seams_that_find_no_room_are_counted),
     };
