@@ -75,8 +75,23 @@ enum c3d_draw_flags {
     C3D_DRAW_BACKDROP = 8,    /* the sky, a panorama: no depth test, no depth written, no fog */
     C3D_DRAW_ALPHA_TEST = 16, /* texels with alpha below one half are not drawn */
     /* tests depth with a bias towards the viewer of 1/64 of the distance: wireframe over ground */
-    C3D_DRAW_ON_TOP = 32
+    C3D_DRAW_ON_TOP = 32,
+    /* `texture` is thrown on the mesh by `projector`, not modulated: where it has an opaque texel
+     * that stands in place of the vertex colour, elsewhere the vertex colour stays. With ALPHA_TEST
+     * nothing is drawn elsewhere: several projectors are drawn one after the other, the first
+     * without; equal depths pass. Fog comes over it as over the rest. Without TEXTURED; wireframes
+     * and backdrops have no pictures thrown on them. */
+    C3D_DRAW_PROJECTED = 64
 };
+
+/* A picture thrown from one point on whatever stands before it (projective texturing): a place
+ * whose offset from that point is (x, y, z) has the texture coordinates s = a/c, t = b/c, where a,
+ * b, c are the rows times the offset; 0..1 over the texture, t = 0 its first row. Nothing is thrown
+ * where c <= 0, nor beyond the texture. */
+typedef struct c3d_projector {
+    int64_t origin_wu[3]; /* the point, relative to the camera */
+    int32_t row_q24[3][3];
+} c3d_projector;
 
 typedef struct c3d_draw {
     c3d_mesh mesh;
@@ -86,6 +101,8 @@ typedef struct c3d_draw {
     uint32_t z_scale_q16; /* wu per vertex unit in z, Q16 */
     uint32_t flags;       /* enum c3d_draw_flags */
     uint32_t colour;      /* 0xAABBGGRR, when not C3D_DRAW_COLOURED */
+    /* A projected one has alpha, and is transparent in its outermost rows and columns: those are
+     * repeated without end. */
     c3d_texture texture;
     /* A texture lies on the grid of the mesh, not on its places: vertex i is in column
      * i % tex_columns and row i / tex_columns. s = column * scale + offset in texture widths, t
@@ -94,8 +111,9 @@ typedef struct c3d_draw {
     /* columns and rows beyond these places have their s and t: vertices moved there; 0: all their
      * own */
     uint32_t tex_last_q16[2];
-    uint16_t tex_columns; /* at least 1 */
-    uint8_t point_px;     /* c3d_draw_points alone: edge of a point, 1..64 pixels */
+    uint16_t tex_columns;           /* at least 1 */
+    uint8_t point_px;               /* c3d_draw_points alone: edge of a point, 1..64 pixels */
+    const c3d_projector *projector; /* C3D_DRAW_PROJECTED alone; read before the draw returns */
 } c3d_draw;
 
 /* A label's text stands upright on the screen, whatever the camera does, 7 pixels high and 6 pixels
@@ -202,6 +220,10 @@ int c3d_read_rgb(c3d_device *device, uint8_t *rgb);
 /* The finished frame in the back end's own memory, top row first, rows packed (RGBA8888: bytes r,
  * g, b, a); NULL when a GL holds it. Valid until the next c3d_begin. */
 const void *c3d_frame_pixels(c3d_device *device, enum c3d_texture_format *format);
+/* How far from the eye, along its axis, the finished frame's pixels are: width*height values, wu,
+ * top row first; INT32_MAX where nothing was drawn. FF_ERR_UNSUPPORTED: the back end cannot say
+ * (only soft can). */
+int c3d_read_depth(c3d_device *device, int32_t *depth_wu);
 void c3d_get_stats(const c3d_device *device, c3d_stats *stats);
 
 #endif

@@ -82,6 +82,8 @@ struct c3d_backend {
     int (*read_rows)(void *state, uint32_t width, uint32_t first_row, uint32_t rows, uint8_t *rgba);
     /* see c3d_frame_pixels; or NULL */
     const void *(*pixels)(void *state, enum c3d_texture_format *format);
+    /* see c3d_read_depth; NULL: it cannot say */
+    void (*read_depth)(void *state, int32_t *depth_wu);
 };
 
 /* c3d_to_eye with C3D_EYE_SHIFT fraction bits. */

@@ -414,9 +414,25 @@ static void find_origin(c3d_device *device, const int64_t origin_wu[3])
     c3d_to_eye_q14(&device->rotation, last, device->eye_q14);
 }
 
-void c3d_draw_strip(c3d_device *device, const c3d_draw *draw)
+void c3d_draw_strip(c3d_device *device, const c3d_draw *given)
 {
-    int textured = (draw->flags & C3D_DRAW_TEXTURED) != 0;
+    c3d_draw plain;
+    const c3d_draw *draw = given;
+    if ((given->flags & C3D_DRAW_PROJECTED) &&
+        (!given->projector || !c3d_pool_get(&device->textures, given->texture.id))) {
+        device->stats.stale_handles++;
+        if (given->flags & C3D_DRAW_ALPHA_TEST) return;
+        plain = *given;
+        plain.flags &= ~(uint32_t)C3D_DRAW_PROJECTED;
+        draw = &plain;
+    }
+    if ((draw->flags & C3D_DRAW_PROJECTED) &&
+        (draw->flags & (C3D_DRAW_WIREFRAME | C3D_DRAW_BACKDROP))) {
+        plain = *draw;
+        plain.flags &= ~(uint32_t)C3D_DRAW_PROJECTED;
+        draw = &plain;
+    }
+    int textured = (draw->flags & (C3D_DRAW_TEXTURED | C3D_DRAW_PROJECTED)) != 0;
     const mesh_slot *mesh = c3d_pool_get(&device->meshes, draw->mesh.id);
     const strip_slot *strip = c3d_pool_get(&device->strips, draw->strip.id);
     const texture_slot *texture = textured ? c3d_pool_get(&device->textures, draw->texture.id)
@@ -425,7 +441,9 @@ void c3d_draw_strip(c3d_device *device, const c3d_draw *draw)
         device->stats.stale_handles++;
         return;
     }
-    C3D_ASSERT(!textured || draw->tex_columns >= 1);
+    C3D_ASSERT(!(draw->flags & C3D_DRAW_TEXTURED) || draw->tex_columns >= 1);
+    C3D_ASSERT((draw->flags & (C3D_DRAW_TEXTURED | C3D_DRAW_PROJECTED)) !=
+               (C3D_DRAW_TEXTURED | C3D_DRAW_PROJECTED));
     find_origin(device, draw->origin_wu);
     c3d_resolved_draw resolved = { draw,
                                    &mesh->data,
@@ -522,6 +540,14 @@ int c3d_read_rgb(c3d_device *device, uint8_t *rgb)
 const void *c3d_frame_pixels(c3d_device *device, enum c3d_texture_format *format)
 {
     return device->backend->pixels ? device->backend->pixels(device->state, format) : NULL;
+}
+
+int c3d_read_depth(c3d_device *device, int32_t *depth_wu)
+{
+    if (device->frame.camera.width == 0) return FF_ERR_ARGUMENT; /* no frame was begun yet */
+    if (!device->backend->read_depth) return FF_ERR_UNSUPPORTED;
+    device->backend->read_depth(device->state, depth_wu);
+    return FF_OK;
 }
 
 void c3d_get_stats(const c3d_device *device, c3d_stats *stats)

@@ -10,6 +10,7 @@ static int gl_open(void *opaque, const c3d_desc *desc, int *buffers)
     /* GL ES begins its version with a word, which gives 0 */
     int version = text ? c3d_gl_version((const char *)text) : 0;
     if (version < 12) return FF_ERR_UNSUPPORTED;
+    state->gl.ClipPlanef = NULL; /* GL ES's, which some loaders find anyway */
     *buffers = *buffers && version >= 15;
     state->buffers = *buffers;
     return FF_OK;

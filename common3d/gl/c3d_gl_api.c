@@ -18,7 +18,8 @@ int c3d_gl_load(c3d_gl_api *gl, const sys_surface_api *surface_api, int *buffers
     C3D_GL_FUNCTIONS(X)
     if (!all) return FF_ERR_UNSUPPORTED;
     C3D_GL_BUFFER_FUNCTIONS(X)
-#undef X
     *buffers = *buffers && all;
+    C3D_GL_CLIP_FUNCTIONS(X)
+#undef X
     return FF_OK;
 }

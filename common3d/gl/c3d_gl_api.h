@@ -19,6 +19,7 @@ enum {
     GL_GEQUAL = 0x0206,
     GL_DEPTH_BUFFER_BIT = 0x0100,
     GL_COLOR_BUFFER_BIT = 0x4000,
+    GL_CLIP_PLANE0 = 0x3000,
     GL_CULL_FACE = 0x0B44,
     GL_LIGHTING = 0x0B50,
     GL_FOG = 0x0B60,
@@ -44,7 +45,9 @@ enum {
     GL_RGB = 0x1907,
     GL_RGBA = 0x1908,
     GL_VERSION = 0x1F02,
+    GL_REPLACE = 0x1E01,
     GL_MODULATE = 0x2100,
+    GL_DECAL = 0x2101,
     GL_TEXTURE_ENV_MODE = 0x2200,
     GL_TEXTURE_ENV = 0x2300,
     GL_LINEAR = 0x2601,
@@ -61,7 +64,8 @@ enum {
     GL_STATIC_DRAW = 0x88E4
 };
 
-/* X(result, name, arguments): functions every context must have, then those of vertex buffers. */
+/* X(result, name, arguments): functions every context must have, then those of vertex buffers, then
+ * those of which a context has one. */
 #define C3D_GL_FUNCTIONS(X)                                                                \
     X(void, AlphaFunc, (unsigned function, float reference))                               \
     X(void, BindTexture, (unsigned target, unsigned texture))                              \
@@ -107,10 +111,15 @@ enum {
     X(void, DeleteBuffers, (int count, const unsigned *buffers))                             \
     X(void, GenBuffers, (int count, unsigned *buffers))
 
+#define C3D_GL_CLIP_FUNCTIONS(X)                                                    \
+    X(void, ClipPlane, (unsigned plane, const double equation[4])) /* desktop GL */ \
+    X(void, ClipPlanef, (unsigned plane, const float equation[4])) /* GL ES */
+
 typedef struct c3d_gl_api {
 #define X(result, name, arguments) result(*name) arguments;
     C3D_GL_FUNCTIONS(X)
     C3D_GL_BUFFER_FUNCTIONS(X)
+    C3D_GL_CLIP_FUNCTIONS(X)
 #undef X
 } c3d_gl_api;
 

@@ -202,14 +202,19 @@ static void set_flags(c3d_gl_state *state, uint32_t flags)
 {
     c3d_gl_api *gl = &state->gl;
     if (state->flags == flags) return;
-    int backdrop = (flags & C3D_DRAW_BACKDROP) != 0;
+    int backdrop = (flags & C3D_DRAW_BACKDROP) != 0, thrown = (flags & C3D_DRAW_PROJECTED) != 0,
+        textured = thrown || (flags & C3D_DRAW_TEXTURED);
+    unsigned mode = !thrown                       ? GL_MODULATE
+                    : flags & C3D_DRAW_ALPHA_TEST ? GL_REPLACE /* the texture's alpha is tested */
+                                                  : GL_DECAL;
+    gl->TexEnvf(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, (float)mode);
     enable(state, GL_DEPTH_TEST, !backdrop);
     gl->DepthMask((unsigned char)!backdrop);
     enable(state, GL_FOG, state->fog && !backdrop);
     enable(state, GL_ALPHA_TEST, (flags & C3D_DRAW_ALPHA_TEST) != 0);
     gl->Disable(GL_BLEND);
-    enable(state, GL_TEXTURE_2D, (flags & C3D_DRAW_TEXTURED) != 0);
-    enable_array(state, GL_TEXTURE_COORD_ARRAY, (flags & C3D_DRAW_TEXTURED) != 0);
+    enable(state, GL_TEXTURE_2D, textured);
+    enable_array(state, GL_TEXTURE_COORD_ARRAY, textured);
     enable_array(state, GL_COLOR_ARRAY, (flags & C3D_DRAW_COLOURED) != 0);
     gl->MatrixMode(GL_PROJECTION);
     gl->LoadMatrixf(backdrop ? state->backdrop_projection : state->projection);
@@ -254,17 +259,29 @@ static void set_texture(c3d_gl_state *state, const c3d_resolved_draw *resolved)
     state->gl.MatrixMode(GL_MODELVIEW);
 }
 
-static void set_mesh(c3d_gl_state *state, const c3d_resolved_draw *resolved)
+/* Vertices are their own texture coordinates; their array is bound. */
+static void set_thrown(c3d_gl_state *state, const c3d_resolved_draw *resolved,
+                       const float matrix[16])
+{
+    const c3d_vertex *base = resolved->mesh->vertices;
+    bind_texture(state, resolved->texture);
+    state->gl.TexCoordPointer(3, GL_FLOAT, (int)sizeof *base, base);
+    state->gl.MatrixMode(GL_TEXTURE);
+    state->gl.LoadMatrixf(matrix);
+    state->gl.MatrixMode(GL_MODELVIEW);
+}
+
+static void set_mesh(c3d_gl_state *state, const c3d_resolved_draw *resolved, uint32_t flags)
 {
     c3d_gl_api *gl = &state->gl;
     const c3d_draw *draw = resolved->draw;
     /* NULL with a vertex buffer: GL then takes pointers as offsets */
     const c3d_vertex *base = resolved->mesh->vertices;
     float matrix[16];
-    set_flags(state, draw->flags);
+    set_flags(state, flags);
     c3d_gl_modelview(matrix, resolved, &state->rotation);
     gl->LoadMatrixf(matrix);
-    if (draw->flags & C3D_DRAW_TEXTURED) set_texture(state, resolved);
+    if (flags & C3D_DRAW_TEXTURED) set_texture(state, resolved);
     bind_array(state, resolved->mesh->buffer);
     gl->VertexPointer(3, GL_FLOAT, (int)sizeof *base, base);
     if (draw->flags & C3D_DRAW_COLOURED) {
@@ -277,24 +294,69 @@ static void set_mesh(c3d_gl_state *state, const c3d_resolved_draw *resolved)
     }
 }
 
+static void draw_elements(c3d_gl_state *state, const c3d_strip_data *strip, uint32_t flags)
+{
+    bind_elements(state, strip->buffer);
+    if (flags & C3D_DRAW_WIREFRAME)
+        state->gl.DrawElements(
+            GL_LINES, (int)strip->edge_count, GL_UNSIGNED_SHORT,
+            offset_pointer(strip->indices, strip->count * sizeof *strip->indices));
+    else
+        state->gl.DrawElements(GL_TRIANGLE_STRIP, (int)strip->count, GL_UNSIGNED_SHORT,
+                               strip->indices);
+}
+
+static void clip_by(c3d_gl_state *state, const double plane[4])
+{
+    const float rounded[4] = { (float)plane[0], (float)plane[1], (float)plane[2], (float)plane[3] };
+    if (state->gl.ClipPlane)
+        state->gl.ClipPlane(GL_CLIP_PLANE0, plane);
+    else
+        state->gl.ClipPlanef(GL_CLIP_PLANE0, rounded);
+    state->gl.Enable(GL_CLIP_PLANE0);
+}
+
+/* What lies behind the projector, where texture coordinates would come out as before it, is drawn
+ * without it; then the rest is drawn over that. */
+static void draw_thrown(c3d_gl_state *state, const c3d_resolved_draw *resolved)
+{
+    const uint32_t flags = resolved->draw->flags, plain = flags & ~(uint32_t)C3D_DRAW_PROJECTED;
+    float matrix[16];
+    double plane[4];
+    enum c3d_gl_thrown where = c3d_gl_throw_matrix(matrix, plane, resolved);
+    int over = (flags & C3D_DRAW_ALPHA_TEST) != 0;
+    if (where == C3D_GL_ACROSS && !state->gl.ClipPlane && !state->gl.ClipPlanef)
+        where = C3D_GL_BEHIND;
+    if (where != C3D_GL_BEFORE && !over) {
+        set_mesh(state, resolved, plain);
+        draw_elements(state, resolved->strip, plain);
+    }
+    if (where == C3D_GL_BEHIND) return;
+    set_mesh(state, resolved,
+             where == C3D_GL_ACROSS ? flags | (uint32_t)C3D_DRAW_ALPHA_TEST : flags);
+    if (where == C3D_GL_ACROSS) clip_by(state, plane);
+    set_thrown(state, resolved, matrix);
+    draw_elements(state, resolved->strip, flags);
+    if (where == C3D_GL_ACROSS) state->gl.Disable(GL_CLIP_PLANE0);
+}
+
 void c3d_gl_draw(void *opaque, const c3d_resolved_draw *resolved)
 {
     c3d_gl_state *state = opaque;
-    c3d_gl_api *gl = &state->gl;
-    const c3d_strip_data *strip = resolved->strip;
-    set_mesh(state, resolved);
-    bind_elements(state, strip->buffer);
-    if (resolved->draw->flags & C3D_DRAW_WIREFRAME)
-        gl->DrawElements(GL_LINES, (int)strip->edge_count, GL_UNSIGNED_SHORT,
-                         offset_pointer(strip->indices, strip->count * sizeof *strip->indices));
-    else
-        gl->DrawElements(GL_TRIANGLE_STRIP, (int)strip->count, GL_UNSIGNED_SHORT, strip->indices);
+    uint32_t flags = resolved->draw->flags;
+    if ((flags & C3D_DRAW_PROJECTED) && !(flags & C3D_DRAW_WIREFRAME)) {
+        draw_thrown(state, resolved);
+        return;
+    }
+    flags &= ~(uint32_t)C3D_DRAW_PROJECTED;
+    set_mesh(state, resolved, flags);
+    draw_elements(state, resolved->strip, flags);
 }
 
 void c3d_gl_points(void *opaque, const c3d_resolved_draw *resolved)
 {
     c3d_gl_state *state = opaque;
-    set_mesh(state, resolved);
+    set_mesh(state, resolved, resolved->draw->flags);
     state->gl.PointSize((float)resolved->draw->point_px);
     state->gl.DrawArrays(GL_POINTS, 0, (int)resolved->mesh->count);
 }

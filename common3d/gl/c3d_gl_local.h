@@ -54,6 +54,11 @@ void c3d_gl_backdrop_projection(float matrix[16], const c3d_camera *camera);
 void c3d_gl_modelview(float matrix[16], const c3d_resolved_draw *resolved,
                       const c3d_rotation *rotation);
 void c3d_gl_texture_matrix(float matrix[16], const c3d_draw *draw);
+/* Of vertices to a thrown texture, q being c; and where the mesh lies. `plane` cuts off of it what
+ * is behind the projector. */
+enum c3d_gl_thrown { C3D_GL_BEHIND, C3D_GL_ACROSS, C3D_GL_BEFORE };
+enum c3d_gl_thrown c3d_gl_throw_matrix(float matrix[16], double plane[4],
+                                       const c3d_resolved_draw *resolved);
 void c3d_gl_colour(float rgba[4], uint32_t colour);
 
 #endif

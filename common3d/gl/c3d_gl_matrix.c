@@ -9,6 +9,8 @@
  * in the picture. Unlike glPolygonOffset the bias works for lines, and it grows with distance as
  * the steps of the depth buffer do. */
 #define ON_TOP_BIAS (1.0f / 64.0f)
+/* Parts of a mesh so much nearer to the projector than its farthest are taken to be behind it. */
+#define NEAREST_THROWN (1.0 / 4096.0)
 
 void c3d_gl_colour(float rgba[4], uint32_t colour)
 {
@@ -71,4 +73,42 @@ void c3d_gl_texture_matrix(float matrix[16], const c3d_draw *draw)
         matrix[12 + i] = (float)draw->tex_offset_q16[i] * (1.0f / 65536.0f);
     }
     matrix[15] = 1.0f;
+}
+
+/* Row by row: what a vertex's x, y, z and 1 are multiplied with, in wu. */
+static void throw_rows(double rows[3][4], const c3d_draw *draw)
+{
+    const c3d_projector *projector = draw->projector;
+    for (int i = 0; i < 3; i++) {
+        rows[i][3] = 0;
+        for (int axis = 0; axis < 3; axis++) {
+            double part = projector->row_q24[i][axis] * (1.0 / (1 << 24));
+            rows[i][axis] = part * (axis < 2 ? draw->xy_scale_wu : draw->z_scale_q16 / 65536.0);
+            rows[i][3] += part * (double)(draw->origin_wu[axis] - projector->origin_wu[axis]);
+        }
+    }
+}
+
+enum c3d_gl_thrown c3d_gl_throw_matrix(float matrix[16], double plane[4],
+                                       const c3d_resolved_draw *resolved)
+{
+    static const int place[3] = { 0, 1, 3 };
+    const c3d_mesh_data *mesh = resolved->mesh;
+    double rows[3][4], least, most;
+    throw_rows(rows, resolved->draw);
+    least = most = rows[2][3];
+    for (int axis = 0; axis < 3; axis++) {
+        double low = rows[2][axis] * mesh->least[axis], high = rows[2][axis] * mesh->most[axis];
+        least += low < high ? low : high;
+        most += low < high ? high : low;
+    }
+    memset(matrix, 0, 16 * sizeof *matrix);
+    for (int i = 0; i < 3; i++)
+        for (int column = 0; column < 4; column++)
+            matrix[column * 4 + place[i]] = (float)(rows[i][column] * (double)METRES_PER_WU);
+    for (int i = 0; i < 4; i++) plane[i] = rows[2][i] / most;
+    plane[3] -= NEAREST_THROWN;
+    return most <= 0                       ? C3D_GL_BEHIND
+           : least > most * NEAREST_THROWN ? C3D_GL_BEFORE
+                                           : C3D_GL_ACROSS;
 }

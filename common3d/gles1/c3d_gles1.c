@@ -13,6 +13,8 @@ static int gles1_open(void *opaque, const c3d_desc *desc, int *buffers)
     if (!text || strncmp(text, prefix, sizeof prefix - 1) != 0) return FF_ERR_UNSUPPORTED;
     int version = c3d_gl_version(text + sizeof prefix - 1);
     if (version / 10 != 1) return FF_ERR_UNSUPPORTED;
+    state->gl.ClipPlane = NULL; /* desktop GL's, which some loaders find anyway */
+    if (version < 11) state->gl.ClipPlanef = NULL;
     *buffers = *buffers && version >= 11;
     state->buffers = *buffers;
     return FF_OK;

@@ -137,13 +137,16 @@ static void set_paint(soft_state *state, const c3d_resolved_draw *resolved, enum
     soft_paint *paint = &state->paint;
     C3D_ASSERT(resolved->texture <= state->texture_count);
     C3D_ASSERT(!(flags & C3D_DRAW_TEXTURED) || resolved->texture >= 1);
-    paint->texture = (flags & C3D_DRAW_TEXTURED) && !wireframe
+    C3D_ASSERT(!(flags & C3D_DRAW_PROJECTED) || !(wireframe || backdrop));
+    paint->thrown = (flags & C3D_DRAW_PROJECTED) != 0;
+    paint->alpha_test = (flags & C3D_DRAW_ALPHA_TEST) != 0;
+    paint->texture = (flags & (C3D_DRAW_TEXTURED | C3D_DRAW_PROJECTED)) && !wireframe
                          ? &state->textures[resolved->texture - 1]
                          : NULL;
     paint->depth = depth;
     paint->coloured = (flags & C3D_DRAW_COLOURED) != 0;
     paint->white = !paint->coloured && (draw->colour & 0xFFFFFFu) == (WHITE & 0xFFFFFFu);
-    paint->alpha_test = (flags & C3D_DRAW_ALPHA_TEST) != 0;
+    if (paint->thrown) paint->white = paint->alpha_test; /* no other colours are seen */
     paint->fog = state->frame.fog_end_wu > 0 && !backdrop;
     paint->on_top = (flags & C3D_DRAW_ON_TOP) != 0;
     paint->unmarked = depth == SOFT_DEPTH_UNCOVERED && !state->deferred_count;
@@ -159,6 +162,8 @@ static void draw_now(soft_state *state, const c3d_resolved_draw *resolved, enum 
     soft_choose_span(state);
     if (resolved->draw->flags & C3D_DRAW_WIREFRAME)
         soft_lines(state, strip->indices + strip->count, strip->edge_count);
+    else if (strip->count && state->paint.thrown)
+        soft_thrown_strip(state, strip->indices, strip->count);
     else if (strip->count) /* lines have edges alone */
         soft_strip(state, strip->indices, strip->count);
 }
@@ -270,6 +275,18 @@ static int soft_read_rows(void *opaque, uint32_t width, uint32_t first_row, uint
     return FF_OK;
 }
 
+static void soft_read_depth(void *opaque, int32_t *depth_wu)
+{
+    const soft_state *state = opaque;
+    uint64_t near_q30 = (uint64_t)(uint32_t)state->frame.camera.near_wu << 30;
+    uint32_t pixels = (uint32_t)state->width * state->height;
+    for (uint32_t i = 0; i < pixels; i++) {
+        uint32_t w = state->depth[i]; /* 0 and 1: nothing, or a backdrop */
+        uint64_t far_wu = w > 1 ? near_q30 / w : INT32_MAX;
+        depth_wu[i] = far_wu < INT32_MAX ? (int32_t)far_wu : INT32_MAX;
+    }
+}
+
 static const void *soft_pixels(void *opaque, enum c3d_texture_format *format)
 {
     const soft_state *state = opaque;
@@ -293,6 +310,7 @@ const struct c3d_backend *c3d_backend_soft(void)
                                                 .overlay = soft_overlay,
                                                 .end = soft_end,
                                                 .read_rows = soft_read_rows,
-                                                .pixels = soft_pixels };
+                                                .pixels = soft_pixels,
+                                                .read_depth = soft_read_depth };
     return &backend;
 }

@@ -25,12 +25,18 @@
  *       in colours alone where it is off by at most 4/255. So is a row of a larger triangle under a
  *       texture alone, where that is off by at most 1/4 texel. Everything else is divided exactly
  *       every 8 to 64 pixels, by how fast depth changes: at one texel a pixel, the error between
- * two divisions is 1/4 texel, too. Colours: fog and vertex colours are interpolated with 16
- * fraction bits and rounded to the frame's format. Backdrops: those drawn before everything else
- * wait until the end of the frame, with copies of their meshes. Then they fill, the last one first,
- * what nothing has covered: the picture is the same, and no pixel is painted twice. The frame's
- * format is C3D_RGB565 or C3D_RGBA8888 (c3d_desc.frame_format); c3d_frame_pixels gives the finished
- * picture.
+ *       two divisions is 1/4 texel, too.
+ *   Thrown pictures (C3D_DRAW_PROJECTED): s and t are right within 1/4 texel (2048 texels a side,
+ *       5 to 300 km away, a pixel as large as a texel). What is thrown over what was drawn before
+ *       counts as nearer by 1/1024 of its distance and a little, because other ways of drawing
+ *       round depths in theirs.
+ *   Colours: fog and vertex colours are interpolated with 16 fraction bits and rounded to the
+ *       frame's format.
+ *   Backdrops: those drawn before everything else wait until the end of the frame, with copies of
+ *       their meshes. Then they fill, the last one first, what nothing has covered: the picture is
+ *       the same, and no pixel is painted twice.
+ *   The frame's format is C3D_RGB565 or C3D_RGBA8888 (c3d_desc.frame_format); c3d_frame_pixels
+ *       gives the finished picture.
  */
 #ifndef C3D_SOFT_H
 #define C3D_SOFT_H

@@ -3,17 +3,38 @@
  * end: so triangles that share the edge get the same vertex. */
 #include "soft_local.h"
 
-enum { NEAR_PLANE, FAR_PLANE, GUARD_PLANES, PLANES = 6, CORNERS_MAX = 3 + PLANES };
+enum {
+    NEAR_PLANE,
+    FAR_PLANE,
+    GUARD_PLANES,
+    SCREEN_PLANES = 6,
+    BEHIND_PLANE = SCREEN_PLANES, /* of a projector, and the edges of its picture */
+    PICTURE_PLANES,
+    PLANES = 11,
+    CORNERS_MAX = 3 + PLANES
+};
 
 typedef struct corner {
     soft_vertex at;
-    int32_t eye[3];
+    int32_t eye[3], sum[3]; /* sum: a, b, c under a projector */
 } corner;
+
+/* The same for the planes of a thrown picture: its outermost texels are beyond them. */
+static int64_t within_picture(const soft_state *state, const corner *from, int plane)
+{
+    const soft_texture *texture = state->paint.texture;
+    if (plane == BEHIND_PLANE) return (int64_t)from->sum[2] - SOFT_THROWN_C;
+    int axis = (plane - PICTURE_PLANES) >> 1;
+    int64_t size = 2 * (int64_t)(axis ? texture->height : texture->width),
+            at = size * from->sum[axis]; /* 2^13 * 2^30 */
+    return (plane - PICTURE_PLANES) & 1 ? (size - 1) * from->sum[2] - at : at - from->sum[2];
+}
 
 /* A measure of a corner's distance from a plane, positive inside. */
 static int64_t distance(const soft_state *state, const corner *from, int plane)
 {
     const int32_t *eye = from->eye;
+    if (plane >= SCREEN_PLANES) return within_picture(state, from, plane);
     if (plane == NEAR_PLANE) return (int64_t)eye[2] - state->space.near_eye;
     if (plane == FAR_PLANE) return (int64_t)state->space.far_eye - eye[2];
     int64_t wide = (int64_t)eye[2] * (SOFT_GUARD_CLIP_PX * SOFT_ONE),
@@ -55,7 +76,11 @@ static void cut(const soft_state *state, int plane, const corner *inner, const c
     if (plane == FAR_PLANE) new->eye[2] = state->space.far_eye;
     new->at.s = between(inner->at.s, outer->at.s, p);
     new->at.t = between(inner->at.t, outer->at.t, p);
-    new->at.fog_q8 = between(inner->at.fog_q8, outer->at.fog_q8, p);
+    if (state->paint.thrown) {
+        for (int i = 0; i < 3; i++) new->sum[i] = between(inner->sum[i], outer->sum[i], p);
+        soft_throw_vertex(state, new->sum, &new->at);
+    }
+    new->at.fog_q8 = (int16_t)between(inner->at.fog_q8, outer->at.fog_q8, p);
     for (int i = 0; i < 4; i++)
         new->at.rgba[i] = (uint8_t)between(inner->at.rgba[i], outer->at.rgba[i], p);
     soft_project(state, new->eye, &new->at);
@@ -66,6 +91,7 @@ static void take(const soft_state *state, const soft_vertex *vertex, corner *new
 {
     new->at = *vertex;
     soft_eye(state, vertex, new->eye);
+    if (state->paint.thrown) soft_thrown_sums(state, vertex, new->sum);
 }
 
 static int clip_plane(const soft_state *state, int plane, const corner *in, int count, corner *out)
@@ -100,7 +126,7 @@ static uint32_t out_of(const corner *in, int count, uint32_t *all)
  * gets its other bits when it is cut there. */
 static int beyond(uint32_t out, int plane)
 {
-    C3D_ASSERT(plane >= 0 && plane < PLANES);
+    C3D_ASSERT(plane >= 0 && plane < SCREEN_PLANES);
     return (out & (plane == NEAR_PLANE  ? SOFT_NEAR
                    : plane == FAR_PLANE ? SOFT_FAR
                                         : SOFT_GUARD)) != 0;
@@ -122,11 +148,13 @@ static void draw_fan(soft_state *state, const corner *in, int count)
     for (int i = 2; i < count; i++) {
         int64_t area = area_of(&in[0].at, &in[i - 1].at, &in[i].at);
         if (all > 0 ? area > 0 : area < 0)
-            soft_triangle(state, &in[0].at, &in[i - 1].at, &in[i].at);
+            (state->paint.thrown ? soft_thrown_triangle : soft_triangle)(state, &in[0].at,
+                                                                         &in[i - 1].at, &in[i].at);
     }
 }
 
-void soft_clip(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
+static void clip(soft_state *state, const soft_vertex *a, const soft_vertex *b,
+                 const soft_vertex *c, int planes)
 {
     corner corners[2][CORNERS_MAX], *now = corners[0], *then = corners[1];
     int count = 3;
@@ -134,8 +162,8 @@ void soft_clip(soft_state *state, const soft_vertex *a, const soft_vertex *b, co
     take(state, a, &now[0]);
     take(state, b, &now[1]);
     take(state, c, &now[2]);
-    for (int plane = 0; plane < PLANES; plane++) {
-        if (!beyond(some, plane)) continue;
+    for (int plane = 0; plane < planes; plane++) {
+        if (plane < SCREEN_PLANES && !beyond(some, plane)) continue;
         count = clip_plane(state, plane, now, count, then);
         if (count < 3) return;
         some = out_of(then, count, &all);
@@ -147,13 +175,25 @@ void soft_clip(soft_state *state, const soft_vertex *a, const soft_vertex *b, co
     draw_fan(state, now, count);
 }
 
+void soft_clip(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
+{
+    clip(state, a, b, c, SCREEN_PLANES);
+}
+
+void soft_clip_thrown(soft_state *state, const soft_vertex *a, const soft_vertex *b,
+                      const soft_vertex *c)
+{
+    C3D_ASSERT(state->paint.thrown);
+    clip(state, a, b, c, PLANES);
+}
+
 int soft_clip_line(const soft_state *state, const soft_vertex *a, const soft_vertex *b,
                    soft_vertex cut_line[2])
 {
     corner end[2], new;
     take(state, a, &end[0]);
     take(state, b, &end[1]);
-    for (int plane = 0; plane < PLANES; plane++) {
+    for (int plane = 0; plane < SCREEN_PLANES; plane++) {
         if (!beyond(end[0].at.out | end[1].at.out, plane)) continue;
         int inside[2] = { distance(state, &end[0], plane) >= 0,
                           distance(state, &end[1], plane) >= 0 };

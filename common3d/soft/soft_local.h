@@ -31,13 +31,29 @@ enum {
 #define SOFT_MUST_CLIP (SOFT_NEAR | SOFT_FAR | SOFT_GUARD)
 
 typedef struct soft_vertex {
-    int32_t x, y; /* pixels, Q4; undefined where `out` says near */
-    uint32_t w;   /* near/z, Q30; below 2^30 */
-    int32_t s, t; /* texels less one half, Q16; below 2^28 */
-    uint32_t out;
-    int32_t fog_q8; /* 256: clear, 0: all fog; may go on beyond both, within +-2^14 */
+    int32_t x, y;     /* pixels, Q4; undefined where `out` says near */
+    uint32_t w;       /* near/z, Q30; below 2^30 */
+    int32_t s, t;     /* texels less one half, Q16; below 2^28 */
+    int32_t c;        /* of a projector, below 2^30; undefined where `off` says so */
+    int16_t fog_q8;   /* 256: clear, 0: all fog; may go on beyond both, within +-2^14 */
+    uint8_t out, off; /* SOFT_LEFT ..; under a projector: SOFT_OFF_LEFT .. */
     uint8_t rgba[4];
 } soft_vertex;
+FF_STATIC_ASSERT(sizeof(soft_vertex) == 32);
+
+/* Where a vertex lies beside a thrown picture: beyond its opaque texels, behind the projector, or
+ * so far off that s and t cannot tell. */
+enum {
+    SOFT_OFF_LEFT = 1,
+    SOFT_OFF_RIGHT = 2,
+    SOFT_OFF_ABOVE = 4,
+    SOFT_OFF_BELOW = 8,
+    SOFT_OFF_BEHIND = 16,
+    SOFT_OFF_FAR = 32
+};
+#define SOFT_OFF_SIDES (SOFT_OFF_FAR - 1)
+#define SOFT_MUST_CUT  (SOFT_OFF_BEHIND | SOFT_OFF_FAR)
+#define SOFT_THROWN_C  (1 << 16) /* c of what is not yet behind */
 
 typedef struct soft_texture {
     uint8_t *texels;                /* from texel (-1, -1) on, which is in the rim */
@@ -54,6 +70,7 @@ typedef struct soft_paint {
     uint8_t coloured; /* vertices differ in colour */
     uint8_t white;    /* all vertices are white: the texture is drawn as it is */
     uint8_t alpha_test, fog, on_top;
+    uint8_t thrown;   /* the texture stands in place of the colours, where it is opaque */
     uint8_t unmarked; /* the last backdrop marks no depths: nothing after it asks for them */
 } soft_paint;
 
@@ -64,6 +81,7 @@ enum { SOFT_S, SOFT_T, SOFT_R, SOFT_G, SOFT_B, SOFT_F, SOFT_ATTRIBUTES };
 typedef struct soft_segment {
     uint32_t first, count; /* of the frame's pixels */
     uint32_t w, dw;        /* wraps */
+    int w_shift;           /* under a thrown texture w is shifted up by this */
     int32_t value[SOFT_ATTRIBUTES], step[SOFT_ATTRIBUTES];
 } soft_segment;
 
@@ -80,6 +98,16 @@ typedef struct soft_space {
     uint32_t near_norm; /* the near plane's distance in wu, shifted up until bit 31 is set */
     int near_shift;     /* near_norm times 1/z, shifted right by this, is near/z in Q30 */
 } soft_space;
+
+/* From vertices to a thrown picture, for one draw: a, b and c. */
+typedef struct soft_throw {
+    int32_t row_q24[3][3];
+    int64_t from_wu[3]; /* the mesh's origin, from the projector's point */
+    int32_t scale_wu;
+    uint32_t z_scale_q16;
+    int shift;     /* wu to units in which offsets have 30 bits */
+    int sum_shift; /* brings sums down to 30 bits */
+} soft_throw;
 
 /* From eye space to the screen, for one frame. */
 typedef struct soft_view {
@@ -142,6 +170,8 @@ struct soft_state {
     soft_space space;
     c3d_draw cached; /* the draw whose vertices are in `vertices` */
     const c3d_vertex *cached_mesh;
+    c3d_projector projector; /* of a thrown texture */
+    soft_throw throw;
     uint8_t off_texture;  /* 1: some vertex lies beyond the texture's edges */
     uint8_t tiny_rows;    /* 1: texture_rows, and the texture is small enough for soft_tiny */
     uint8_t texture_rows; /* 1: nothing but a texture, never off it, into RGB565, depth tested */
@@ -218,9 +248,34 @@ void soft_transform(soft_state *state, const c3d_resolved_draw *resolved);
 void soft_eye(const soft_state *state, const soft_vertex *vertex, int32_t eye[3]);
 void soft_project(const soft_state *state, const int32_t eye[3], soft_vertex *vertex);
 
+/* soft_thrown.c: s, t, c and `off` of the vertices transformed last, under a projector. */
+void soft_transform_thrown(soft_state *state, const c3d_draw *draw, const c3d_mesh_data *mesh);
+/* a, b and c of one of them, below 2^30; and what a corner of a part gets that has them. Where
+ * parts of triangles end, rounding puts no corner behind the projector or too far off. */
+void soft_thrown_sums(const soft_state *state, const soft_vertex *vertex, int32_t sum[3]);
+void soft_throw_vertex(const soft_state *state, const int32_t sum[3], soft_vertex *vertex);
+
+/* soft_thrown_strip.c: draws a strip under a projector; and a triangle that needs no clipping. */
+void soft_thrown_strip(soft_state *state, const uint16_t *indices, uint32_t count);
+void soft_thrown_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b,
+                          const soft_vertex *c);
+/* soft_thrown_rows.c: draws any such triangle; a.y <= b.y <= c.y. */
+void soft_thrown_rows(soft_state *state, const soft_vertex *a, const soft_vertex *b,
+                      const soft_vertex *c, int64_t area);
+void soft_span_thrown(soft_state *state, const soft_segment *segment); /* RGBA5551, into RGB565 */
+/* How much nearer than they are a segment's pixels count as that are thrown over others, which
+ * other ways have drawn: those round depths in theirs. */
+static inline uint32_t soft_thrown_bias(uint32_t w, int32_t dw)
+{
+    return (w >> 10) + (uint32_t)(dw < 0 ? -dw : dw) / 4 + 64;
+}
+
 /* soft_clip.c, for vertices of the mesh transformed last: cuts a triangle at the planes and draws
  * the rest. */
 void soft_clip(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c);
+/* The same, at the edges of the thrown picture, too. */
+void soft_clip_thrown(soft_state *state, const soft_vertex *a, const soft_vertex *b,
+                      const soft_vertex *c);
 /* Cuts a line at the planes; 0 when nothing is left of it. */
 int soft_clip_line(const soft_state *state, const soft_vertex *a, const soft_vertex *b,
                    soft_vertex cut[2]);

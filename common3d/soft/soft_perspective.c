@@ -13,10 +13,9 @@
 #define SEGMENT_MAX    64 /* pixels */
 
 FF_STATIC_ASSERT(SEGMENT_MAX < SOFT_EDGE_TABLE);
-static void vertex_values(const soft_vertex *vertex, const soft_planes *planes,
+static void vertex_values(const soft_vertex *vertex, int64_t w, const soft_planes *planes,
                           int64_t value[SOFT_PLANES])
 {
-    int64_t w = vertex->w;
     C3D_ASSERT(w > 0 && w < 1 << 30);
     C3D_ASSERT(vertex->fog_q8 >= -(1 << 14) && vertex->fog_q8 <= 1 << 14);
     value[SOFT_PLANE_W] = w * 4096;
@@ -75,7 +74,8 @@ static uint32_t scaled(uint64_t value, int down)
 /* Makes the planes through three vertices: those that `planes` says are in use, shifted by `down`.
  */
 static void make_planes(const soft_state *state, soft_planes *planes,
-                        const soft_vertex *const vertex[3], int64_t area, int32_t row, int down)
+                        const soft_vertex *const vertex[3], const uint32_t w[3], int64_t area,
+                        int32_t row, int down)
 {
     int64_t value[3][SOFT_PLANES];
     quotient per_area = one_over(state, area);
@@ -85,7 +85,7 @@ static void make_planes(const soft_state *state, soft_planes *planes,
     C3D_ASSERT(dy1 >= 0 && dy1 <= dy2 && dy2 < 1 << 17);
     uint64_t to_x = (uint64_t)(int64_t)(SOFT_HALF - vertex[0]->x),
              to_y = (uint64_t)(int64_t)(row * SOFT_ONE + SOFT_HALF - vertex[0]->y);
-    for (int i = 0; i < 3; i++) vertex_values(vertex[i], planes, value[i]);
+    for (int i = 0; i < 3; i++) vertex_values(vertex[i], w[i], planes, value[i]);
     for (int i = planes->first; i < SOFT_PLANES; i++) {
         int64_t d1 = value[1][i] - value[0][i], d2 = value[2][i] - value[0][i];
         C3D_ASSERT(d1 > -DIFFERENCE_MAX && d1 < DIFFERENCE_MAX);
@@ -100,6 +100,24 @@ static void make_planes(const soft_state *state, soft_planes *planes,
                         plane->down * (uint32_t)row;
         if (i == planes->last) i = SOFT_PLANE_W - 1;
     }
+}
+
+/* The shift that brings the largest w to 30 bits, from Q42. */
+static int down_of(const uint32_t w[3])
+{
+    uint32_t most = w[0] > w[1] ? w[0] : w[1];
+    if (w[2] > most) most = w[2];
+    C3D_ASSERT(most < UINT32_C(1) << 30);
+    return 12 + 2 - soft_leading_zeros(most);
+}
+
+void soft_make_planes(const soft_state *state, soft_planes *planes,
+                      const soft_vertex *const vertex[3], const uint32_t w[3], int64_t area,
+                      int32_t row)
+{
+    int down = down_of(w);
+    planes->w_shift = 12 - down;
+    make_planes(state, planes, vertex, w, area, row, down);
 }
 
 /* 1 when colours may be interpolated linearly over the whole triangle, because that is off by at
@@ -122,23 +140,16 @@ static int colours_are_linear(const soft_vertex *a, const soft_vertex *b, const 
     return (uint64_t)(near - far) * (uint32_t)range <= (uint64_t)far * 16;
 }
 
-/* Says which attributes are interpolated; returns the shift that brings the nearest w to 30 bits.
- */
-static int set_up(const soft_state *state, soft_planes *planes, const soft_vertex *a,
-                  const soft_vertex *b, const soft_vertex *c)
+/* Says which attributes are interpolated. */
+static void set_up(const soft_state *state, soft_planes *planes, const soft_vertex *a,
+                   const soft_vertex *b, const soft_vertex *c)
 {
     const soft_paint *paint = &state->paint;
-    uint32_t w = a->w > b->w ? a->w : b->w;
-    if (c->w > w) w = c->w;
     int fog = paint->fog && (a->fog_q8 < 256 || b->fog_q8 < 256 || c->fog_q8 < 256);
     planes->first = paint->texture ? SOFT_S : SOFT_R;
     planes->last = fog ? SOFT_F : paint->texture && paint->white ? SOFT_T : SOFT_B;
     planes->linear = planes->last == SOFT_B && !paint->texture && colours_are_linear(a, b, c);
-    C3D_ASSERT(w < UINT32_C(1) << 30);
-    int down = 12 + 2 - soft_leading_zeros(w); /* of Q42 */
-    planes->w_shift = 12 - down;
     C3D_ASSERT(planes->first <= planes->last && planes->last < SOFT_PLANE_W);
-    return down;
 }
 
 /* Attributes from the planes' values at a pixel: each attribute times w, divided by w. Q16, below
@@ -154,6 +165,16 @@ static void divide(const soft_state *state, const soft_planes *planes,
         out[i] = soft_quotient((uint32_t)(part > w ? w : part < -w ? -w : part), reciprocal, lead);
         C3D_ASSERT(out[i] >= -(1 << 28) && out[i] <= 1 << 28);
     }
+}
+
+void soft_attributes_at(const soft_state *state, const soft_planes *planes, int32_t row,
+                        int32_t column, int32_t out[SOFT_ATTRIBUTES])
+{
+    uint32_t value[SOFT_PLANES];
+    for (int i = planes->first; i <= planes->last; i++)
+        value[i] = soft_plane_at(&planes->of[i], row, column);
+    value[SOFT_PLANE_W] = soft_plane_at(&planes->of[SOFT_PLANE_W], row, column);
+    divide(state, planes, value, out);
 }
 
 /* The number of pixels after which to divide again. Linear interpolation over them is off by
@@ -241,8 +262,9 @@ void soft_perspective(soft_state *state, const soft_vertex *a, const soft_vertex
     if (state->paint.depth == SOFT_DEPTH_UNCOVERED && walk.end > state->open_end)
         walk.end = state->open_end;
     if (walk.row >= walk.end || !soft_walk_to_pixels(state, &walk, 0)) return;
-    int down = set_up(state, &planes, a, b, c);
-    make_planes(state, &planes, vertex, area, walk.row, down);
+    const uint32_t w[3] = { a->w, b->w, c->w };
+    set_up(state, &planes, a, b, c);
+    soft_make_planes(state, &planes, vertex, w, area, walk.row);
     state->segment.dw = (uint32_t)((int32_t)planes.of[SOFT_PLANE_W].across >> planes.w_shift);
     state->segment.value[SOFT_F] = 256 << 16; /* clear */
     state->segment.step[SOFT_F] = 0;

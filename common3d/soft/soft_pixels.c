@@ -51,10 +51,11 @@ static int take_pixel(const soft_state *state, uint32_t at, uint32_t w)
 
 static void mark_pixel(soft_state *state, uint32_t at, uint32_t w)
 {
-    if (state->paint.depth == SOFT_DEPTH_TEST)
-        state->depth[at] = w;
-    else if (state->paint.depth == SOFT_DEPTH_UNCOVERED && !state->paint.unmarked)
+    if (state->paint.depth == SOFT_DEPTH_TEST) {
+        if (w > state->depth[at]) state->depth[at] = w;
+    } else if (state->paint.depth == SOFT_DEPTH_UNCOVERED && !state->paint.unmarked) {
         state->depth[at] = 1;
+    }
 }
 
 /* The pixel's colour before fog; 0 when the alpha test leaves it out. */
@@ -64,7 +65,11 @@ static int shade(const soft_paint *paint, const int32_t value[SOFT_ATTRIBUTES], 
     if (!paint->texture) return 1;
     int32_t texel[4];
     soft_sample(paint->texture, value[SOFT_S], value[SOFT_T], texel);
-    if (paint->alpha_test && texel[3] < 128) return 0;
+    if (texel[3] < 128 && (paint->alpha_test || paint->thrown)) return !paint->alpha_test;
+    if (paint->thrown) {
+        for (int i = 0; i < 3; i++) rgb[i] = texel[i];
+        return 1;
+    }
     for (int i = 0; i < 3; i++)
         rgb[i] = paint->white ? texel[i] : (texel[i] * rgb[i] * 257 + 32768) >> 16;
     return 1;
@@ -75,18 +80,21 @@ void soft_segment_paint(soft_state *state, const soft_segment *segment)
     C3D_ASSERT(soft_in_frame(state, segment->first, segment->count));
     const soft_paint *paint = &state->paint;
     int32_t value[SOFT_ATTRIBUTES], rgb[3];
-    uint32_t w = segment->w, fog_colour = state->frame.fog_colour;
+    uint32_t w = segment->w, fog_colour = state->frame.fog_colour, bias = 0;
+    int shift = segment->w_shift;
+    if (paint->thrown && paint->alpha_test)
+        bias = soft_thrown_bias(w >> shift, (int32_t)segment->dw >> shift);
     for (int i = 0; i < SOFT_ATTRIBUTES; i++) value[i] = segment->value[i];
     for (uint32_t at = segment->first, end = at + segment->count; at < end;
          at++, w += segment->dw) {
-        if (take_pixel(state, at, w) && shade(paint, value, rgb)) {
+        if (take_pixel(state, at, (w >> shift) + bias) && shade(paint, value, rgb)) {
             int32_t clear = value[SOFT_F] >> 8; /* Q16: 65536 is clear */
             clear = clear < 0 ? 0 : clear > 65536 ? 65536 : clear;
             for (int i = 0; paint->fog && i < 3; i++) {
                 int32_t fog = (int32_t)(fog_colour >> (8 * i) & 255);
                 rgb[i] = fog + (((rgb[i] - fog) * clear + 32768) >> 16);
             }
-            mark_pixel(state, at, w);
+            mark_pixel(state, at, w >> shift);
             soft_put(state, at, rgb[0], rgb[1], rgb[2]);
         }
         for (int i = 0; i < SOFT_ATTRIBUTES; i++)

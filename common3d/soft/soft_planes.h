@@ -114,6 +114,13 @@ static inline int soft_walk_to_pixels(const soft_state *state, soft_walk *walk, 
     return 0;
 }
 
+/* soft_perspective.c: makes the planes of the attributes first .. last through three vertices, with
+ * what they are multiplied with, `w`; y grows from vertex to vertex. Their values at a pixel. */
+void soft_make_planes(const soft_state *state, soft_planes *planes,
+                      const soft_vertex *const vertex[3], const uint32_t w[3], int64_t area,
+                      int32_t row);
+void soft_attributes_at(const soft_state *state, const soft_planes *planes, int32_t row,
+                        int32_t column, int32_t out[SOFT_ATTRIBUTES]);
 /* soft_perspective.c: draws a row, divided at the ends of segments. */
 void soft_segments(soft_state *state, const soft_planes *planes, const soft_walk *walk);
 /* soft_texture_rows.c: draws a triangle under a texture alone, from the walk's row on. */

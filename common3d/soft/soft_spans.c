@@ -134,8 +134,13 @@ void soft_choose_span(soft_state *state)
     C3D_ASSERT(!texture || (texture->width <= 4096 && texture->height <= 4096));
     state->span = soft_segment_paint;
     state->texture_rows = state->tiny_rows = 0;
+    state->segment.w_shift = 0;
     if (state->wide || paint->depth == SOFT_DEPTH_NONE) return;
     int test = paint->depth == SOFT_DEPTH_TEST;
+    if (paint->thrown) {
+        if (texture->format == C3D_RGBA5551 && test) state->span = soft_span_thrown;
+        return;
+    }
     if (!texture) state->span = test ? span_colour : soft_span_backdrop;
     if (texture && paint->white && texture->format == C3D_RGB565 && test) {
         state->span = span_texture;

@@ -387,7 +387,7 @@ static void transform_fog(soft_state *state, uint32_t count)
         clear = clear > most ? most : clear < -most ? -most : clear;
         int64_t fog_q8 = (clear * per_wu_q24) >> 24;
         C3D_ASSERT(fog_q8 >= -(1 << 14) && fog_q8 <= 1 << 14);
-        state->vertices[i].fog_q8 = (int32_t)fog_q8;
+        state->vertices[i].fog_q8 = (int16_t)fog_q8;
     }
 }
 
@@ -405,12 +405,21 @@ static int same_vertices(const c3d_draw *a, const c3d_draw *b)
            a->texture.id == b->texture.id && a->tex_columns == b->tex_columns;
 }
 
+static int same_projector(const soft_state *state, const c3d_draw *draw)
+{
+    return !state->paint.thrown ||
+           memcmp(&state->projector, draw->projector, sizeof state->projector) == 0;
+}
+
 /* The strips of a node share its mesh: its vertices are transformed with the first. */
 void soft_transform(soft_state *state, const c3d_resolved_draw *resolved)
 {
     const c3d_draw *draw = resolved->draw;
     const c3d_mesh_data *mesh = resolved->mesh;
-    if (state->cached_mesh == mesh->vertices && same_vertices(&state->cached, draw)) return;
+    if (state->cached_mesh == mesh->vertices && same_vertices(&state->cached, draw) &&
+        same_projector(state, draw))
+        return;
+    if (state->paint.thrown) state->projector = *draw->projector;
     state->cached = *draw;
     state->cached_mesh = mesh->vertices;
     C3D_ASSERT(mesh->count > 0);
@@ -419,7 +428,10 @@ void soft_transform(soft_state *state, const c3d_resolved_draw *resolved)
     (state->space.near ? transform_near : transform_far)(state, mesh);
     for (uint32_t i = 0; state->paint.on_top && i < mesh->count; i++)
         put_on_top(&state->vertices[i]);
-    if (state->paint.texture) transform_textured(state, draw, mesh->count);
+    if (state->paint.thrown)
+        soft_transform_thrown(state, draw, mesh);
+    else if (state->paint.texture)
+        transform_textured(state, draw, mesh->count);
     if (!state->paint.texture || !state->paint.white || state->paint.fog)
         transform_colours(state, draw, mesh);
     if (state->paint.fog) transform_fog(state, mesh->count);
