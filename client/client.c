@@ -64,6 +64,18 @@ static void default_panorama(ff_panorama_desc *panorama, unsigned width)
     FF_ASSERT(panorama->error_px_q8 > 0 && panorama->server_back_wu >= panorama->back_plane_wu);
 }
 
+static void default_far(ff_client_desc *desc)
+{
+    ff_far_desc *far = &desc->far;
+    if (!ff_sets_built || !desc->stream) far->enabled = FF_FAR_OFF;
+    if (far->enabled) desc->panorama.enabled = FF_PANORAMA_OFF;
+    if (far->front_wu <= 0) far->front_wu = 7500 * METRES;
+    if (far->front_wu > FF_PANORAMA_BACK_WU_MAX) far->front_wu = FF_PANORAMA_BACK_WU_MAX;
+    if (!far->coarse) far->coarse = 4;
+    if (!far->jpeg_quality) far->jpeg_quality = 40;
+    if (!far->tolerance_q2) far->tolerance_q2 = 2;
+}
+
 void ff_client_default_desc(ff_client_desc *desc)
 {
     if (!desc->width) desc->width = 240;
@@ -72,6 +84,7 @@ void ff_client_default_desc(ff_client_desc *desc)
     if (!desc->answer_timeout_ms) desc->answer_timeout_ms = 60000;
     default_quality(desc);
     default_panorama(&desc->panorama, desc->width);
+    default_far(desc);
     desc->no_textures |= !ff_textures_built;
     desc->about &= FF_ABOUT_KNOWN;
 }
@@ -102,6 +115,9 @@ static int check_desc(const ff_client_desc *desc)
     if (desc->quality.c_q8 > FF_QUALITY_C_MAX << 8 ||
         desc->quality.error_px_q8 > FF_QUALITY_ERROR_PX_MAX << 8 ||
         desc->quality.depth_max > FF_QUALITY_DEPTH_MAX)
+        return FF_ERR_ARGUMENT;
+    if (desc->far.enabled > FF_FAR_PAINT || desc->far.coarse > FF_FAR_COARSE_MAX ||
+        desc->far.paint_shift > FF_FAR_SHIFT_MAX || desc->far.jpeg_quality > 100)
         return FF_ERR_ARGUMENT;
     if ((unsigned)desc->balance.mode > FF_BALANCE_ALL_CLIENT ||
         desc->panorama.enabled > FF_PANORAMA_AUTO)
@@ -283,13 +299,14 @@ void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama)
 {
     unsigned face_size = client->panorama.face_size;
     client->desc.panorama = *panorama;
+    if (client->desc.far.enabled) client->desc.panorama.enabled = FF_PANORAMA_OFF;
     uint16_t *size = &client->desc.panorama.face_size;
     if (*size > FF_FACE_SIZE_MAX) *size = FF_FACE_SIZE_MAX;
     if (*size && *size < FF_PANORAMA_FACE_MIN) *size = FF_PANORAMA_FACE_MIN;
     default_panorama(&client->desc.panorama, client->desc.width);
     client->dirty = 1;
     if (!client->have_terrain) return;
-    if (panorama->enabled && !face_size && !client->economy && client->desc.stream) {
+    if (client->desc.panorama.enabled && !face_size && !client->economy && client->desc.stream) {
         start_over(client); /* the block was shared out without panoramas */
         return;
     }
@@ -372,6 +389,28 @@ int ff_client_panorama(const ff_client *client, int32_t position_wu[3], unsigned
     ff_shape_leave(&client->info, &client->last_view.frame, set->position_wu, position_wu);
     *faces = (unsigned)set->held | set->empty;
     return 1;
+}
+
+int ff_client_far(const ff_client *client, ff_far_in_use *use)
+{
+    const ff_sets *sets = client->sets;
+    if (!sets || sets->active < 0) return 0;
+    FF_ASSERT(sets->active < 2);
+    const ff_set *set = &sets->set[sets->active];
+    use->set = set->key;
+    use->sectors = ff_sets_in_view(&client->last_view.camera) & ((unsigned)set->held | set->empty);
+    memcpy(use->position_wu, set->position_wu, sizeof use->position_wu);
+    ff_shape_leave(&client->info, &client->last_view.frame, set->position_wu, use->world_wu);
+    return 1;
+}
+
+void ff_client_watch_fins(ff_client *client, ff_fins_made made, void *context)
+{
+    client->fins_made = made;
+    client->fins_context = context;
+    if (!client->sets) return;
+    client->sets->watch = made;
+    client->sets->watch_context = context;
 }
 
 uint64_t ff_client_geometry_hash(const ff_client *client) { return client->geometry_hash; }

@@ -44,7 +44,7 @@ static void carve_arriving(ff_client *client, const ff_budget *budget)
     void *items = take(client, budget, FF_POOL_items);
     void *images = take(client, budget, FF_POOL_images);
     ff_new_data_init(&client->news, budget->pool[FF_POOL_items].count, budget->values, items,
-                     budget->pool[FF_POOL_images].count, budget->texels * sizeof(uint16_t), images);
+                     budget->pool[FF_POOL_images].count, budget->image_bytes, images);
 }
 
 static void carve_textures(ff_client *client, const ff_budget *budget)
@@ -129,6 +129,8 @@ static int carve_all(ff_client *client, unsigned economy)
     if (rc == FF_OK) rc = carve_device(client, &budget);
     client->textures.device = client->device;
     if (rc == FF_OK) rc = carve_view(client, &budget);
+    ff_sets *sets = rc == FF_OK ? take(client, &budget, FF_POOL_far_sets) : NULL;
+    uint16_t *fin_indices = rc == FF_OK ? take(client, &budget, FF_POOL_fin_indices) : NULL;
     if (rc == FF_OK) rc = carve_tree(client, &budget);
     if (rc != FF_OK) {
         ff_client_uncarve(client);
@@ -140,6 +142,16 @@ static int carve_all(ff_client *client, unsigned economy)
                            client->has_textures ? &client->textures : NULL);
     ff_panorama_init(&client->panorama, client->device, &client->desc.panorama, &client->info,
                      budget.face_size);
+    client->sets = sets;
+    if (sets) {
+        ff_sets_init(sets, client->device, &client->desc.far, &client->info, budget.far_side);
+        ff_sets_scratch(sets, client->view.vertices, fin_indices, client->view.heights_per_node);
+        sets->watch = client->fins_made;
+        sets->watch_context = client->fins_context;
+    }
+    client->view.throws = (ff_throws){ budget.far_side && client->device ? ff_sets_lay : NULL,
+                                       sets };
+    client->fine_wu = client->coarse = 0;
     ff_client_auto_begin(client);
     ff_motion_reset(&client->motion);
     ff_turn_reset(&client->turn);
@@ -203,6 +215,7 @@ void ff_client_uncarve(ff_client *client)
     if (client->device) c3d_close(client->device); /* meshes and textures go with it */
     client->device = NULL;
     client->tree = NULL;
+    client->sets = NULL;
     client->have_terrain = 0;
     memset(&client->sky, 0, sizeof client->sky);
     memset(&client->view, 0, sizeof client->view);

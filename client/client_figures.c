@@ -128,6 +128,7 @@ unsigned ff_client_pools(const ff_client *client, ff_pool_use list[FF_POOLS_MAX]
         b->info = &client->info;
         b->grounds_max = ff_budget_grounds(&client->desc, client->first.intake.ground_count);
         b->face_size = client->first.intake.face_size_max;
+        b->far_side = client->sets ? client->sets->side : 0;
         b->has_textures = client->has_textures;
         (void)ff_budget_terrain(b, from->c3d.vertex_buffers_used);
     }

@@ -144,6 +144,19 @@ static unsigned faces_ahead(const ff_view *view, const ahead *a)
     return faces;
 }
 
+/* Bits of the sectors that the views ahead show. */
+static unsigned sectors_ahead(const ff_view *view, const ahead *a)
+{
+    unsigned sectors = 0;
+    for (unsigned v = 0; v < a->views; v++) {
+        c3d_camera camera = view->camera;
+        camera.yaw = (camera.yaw + a->yaw[v]) & 0xFFFF;
+        camera.pitch = (int16_t)((camera.pitch + a->pitch[v]) & 0xFFFF);
+        sectors |= ff_sets_in_view(&camera);
+    }
+    return sectors;
+}
+
 void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality,
                     int64_t now_us)
 {
@@ -157,6 +170,8 @@ void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *qu
     if (!ff_client_own_ground(client))
         ff_panorama_want(&client->panorama, &client->first.requests, view, faces_ahead(view, &a),
                          now_us);
+    if (client->sets)
+        ff_sets_want(client->sets, &client->first.requests, view, sectors_ahead(view, &a), now_us);
     for (unsigned i = 0; i < client->source_count; i++)
         ff_client_want_view(client, ff_client_source(client, i), view, quality);
     want_tree(client);

@@ -46,6 +46,12 @@ int ff_client_take_face(ff_client *client, ff_new_item *item, int64_t now_us)
     return ff_panorama_take(&client->panorama, item, now_us);
 }
 
+int ff_client_take_far(ff_client *client, ff_new_item *item, int64_t now_us)
+{
+    FF_ASSERT(item->u.far.sector < FF_FAR_SECTORS);
+    return client->sets ? ff_sets_take(client->sets, item, now_us) : 0;
+}
+
 static int take(ff_client *client, ff_new_item *item, int64_t now_us)
 {
     switch ((enum ff_kind)item->kind) {
@@ -83,7 +89,8 @@ static enum ff_request_state final_state(const ff_new_item *item)
     FF_ASSERT(item->last && item->error <= FF_OK);
     if (item->error == FF_OK) return FF_REQUEST_DONE;
     if (item->error == FF_ERR_CLOSED) return FF_REQUEST_CANCELLED;
-    int face_came = ff_kind[item->kind].brings == FF_BRINGS_FACE && !item->refused;
+    int brings = ff_kind[item->kind].brings,
+        face_came = (brings == FF_BRINGS_FACE || brings == FF_BRINGS_FAR) && !item->refused;
     return face_came ? FF_REQUEST_DONE : FF_REQUEST_FAILED;
 }
 

@@ -19,6 +19,8 @@ ff_quality ff_client_quality(const ff_client *client)
     ff_quality quality = client->desc.quality;
     ff_client_balance_quality(client, &quality);
     if (client->far_painted) quality.view_wu = ff_panorama_front_wu(&client->panorama);
+    quality.fine_wu = client->fine_wu;
+    quality.coarse = client->coarse;
     FF_ASSERT(quality.view_wu > 0);
     if (ff_client_low_power(client)) {
         if (quality.c_q8 > 1) quality.c_q8 /= LOW_POWER_DIVISOR; /* never none */
@@ -160,6 +162,27 @@ static void look_for_rest(ff_client *client)
     client->resting = resting;
 }
 
+/* How high the camera is above the ground; 0 where that is not known. */
+static int32_t above_ground_wu(const ff_client *client, const c3d_camera *camera)
+{
+    int32_t ground_wu;
+    if (!ff_client_ground(client, camera->pos_wu[0], camera->pos_wu[1], &ground_wu)) return 0;
+    int64_t above_wu = (int64_t)camera->pos_wu[2] - ground_wu;
+    return above_wu > INT32_MAX ? INT32_MAX : above_wu < 0 ? 0 : (int32_t)above_wu;
+}
+
+static int update_sets(ff_client *client, const c3d_camera *camera, int64_t now_us)
+{
+    if (!client->sets) return 0;
+    int hold = ff_client_low_power(client) || !client->first.serves;
+    int turned = ff_sets_update(client->sets, &client->first.requests, camera, &client->motion,
+                                above_ground_wu(client, camera), hold, now_us);
+    client->coarse = 0;
+    if (!ff_sets_in_use(client->sets, camera, &client->fine_wu, &client->coarse))
+        client->fine_wu = 0;
+    return turned;
+}
+
 int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
 {
     int pictures_changed = 0;
@@ -184,6 +207,7 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
     int hold = ff_client_low_power(client) || ff_client_own_ground(client) || !client->first.serves;
     int turned = ff_panorama_update(&client->panorama, &client->first.requests, &view.camera,
                                     &client->motion, hold, now_us);
+    turned |= update_sets(client, &view.camera, now_us);
     client->far_painted = is_far_painted(client, camera);
     if (!taken && !moved && !turned && !client->dirty && !client->unranked) {
         client->frames_skipped++;
@@ -303,6 +327,8 @@ void ff_client_draw(ff_client *client)
     ff_panorama_draw(&client->panorama, frame.camera.near_wu);
     const ff_drawn *list;
     uint32_t count = ff_tree_drawn(client->tree, &list);
+    if (client->sets) ff_sets_aim(client->sets, &frame.camera);
     ff_terrain_view_draw(&client->view, list, count, &frame.camera, client->show);
+    if (client->sets) ff_sets_draw(client->sets, &frame.camera);
     c3d_end(client->device);
 }

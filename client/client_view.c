@@ -73,6 +73,8 @@ static void describe(ff_client *client, ff_source *source, const c3d_camera *cam
     asked->allowed_q8 = by_pixels ? quality->error_px_q8 : quality->c_q8;
     asked->depth_max = quality->depth_max;
     asked->reach_wu = quality->view_wu;
+    asked->fine_wu = quality->fine_wu > 0 ? quality->fine_wu : INT32_MAX;
+    asked->coarse = quality->coarse > 1 ? quality->coarse : 1;
     asked->triangles_max = quality->triangles_max;
     asked->bytes_max = bytes_for(client, source);
 }
@@ -129,6 +131,10 @@ static ff_quality quality_to_be(const ff_client *client)
     int painted = client->desc.panorama.enabled == FF_PANORAMA_ON &&
                   client->desc.balance.mode != FF_BALANCE_ALL_CLIENT;
     if (painted && back_wu < quality.view_wu) quality.view_wu = back_wu;
+    if (client->desc.far.enabled) {
+        quality.fine_wu = client->desc.far.front_wu;
+        quality.coarse = client->desc.far.coarse;
+    }
     return quality;
 }
 

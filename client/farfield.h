@@ -30,6 +30,7 @@ extern "C" {
 
 #include "ff_figures.h"
 #include "terrain/ff_tree.h"
+#include "../protocol/far/ff_far.h"
 #include "../protocol/ff_pack.h"
 
 #define FARFIELD_VERSION "0.1.0"
@@ -38,6 +39,7 @@ extern "C" {
 #define FF_PICTURE_SIDE_MAX     4096
 #define FF_PANORAMA_BACK_WU_MAX (8000000 * 256) /* of back_plane_wu: 8000 km */
 #define FF_PANORAMA_FACE_MIN    64 /* the largest is FF_FACE_SIZE_MAX of ff_message.h */
+#define FF_FAR_COARSE_MAX       16
 #define FF_QUALITY_C_MAX        1000
 #define FF_QUALITY_ERROR_PX_MAX 1000
 #define FF_QUALITY_DEPTH_MAX    16 /* all levels of a key */
@@ -76,6 +78,22 @@ typedef struct ff_panorama_desc {
      * last is outdated, whatever is still on its way (Hybrid's congestion flag) */
     uint8_t hold_back;
 } ff_panorama_desc;
+
+/* What stands in for fine far ground (client/far): nothing; fins, the outlines of ridges; or fins
+ * and paint, their colours. */
+enum ff_far_use { FF_FAR_OFF, FF_FAR_FINS, FF_FAR_PAINT };
+
+/* Far ground as a coarse tree with sets of fins and paint on it, taken by the server. Not together
+ * with panoramas: where sets are used those are off. Zero in any field takes the default given. */
+typedef struct ff_far_desc {
+    uint8_t enabled;  /* enum ff_far_use; default FF_FAR_OFF */
+    int32_t front_wu; /* from here on, measured as back_plane_wu; default 7500 m */
+    /* ground beyond may be so many times as wrong as quality allows, up to 16; default 4 */
+    uint8_t coarse;
+    uint8_t paint_shift;  /* texels of paint are 2^this as large as pixels, 0 to 3 */
+    uint8_t jpeg_quality; /* of the paint; default 40 */
+    uint8_t tolerance_q2; /* quarter pixels that a fin may be off; default 2 */
+} ff_far_desc;
 
 /* The work follows what a frame may cost and what the link carries (client/balance/ff_balance.h),
  * between the limits given here (coarsest) and the quality and panorama set (finest). A frame's
@@ -144,6 +162,7 @@ typedef struct ff_client_desc {
      * at most, where a field is zero */
     ff_quality quality;
     ff_panorama_desc panorama;
+    ff_far_desc far;
     ff_balance_desc balance;
     uint8_t use_thread;       /* 1: ff_client_create starts a thread that calls ff_client_work */
     uint8_t use_plain_arrays; /* 1: no vertex buffers */
@@ -289,6 +308,20 @@ int ff_client_plan(const ff_client_desc *desc, const ff_terrain_info *info,
 /* The panorama in use: 1 and where it was taken, or 0. *faces: bit per enum ff_face_name held
  * (empty ones included). */
 int ff_client_panorama(const ff_client *client, int32_t position_wu[3], unsigned *faces);
+
+/* The far set in use: 1, or 0. */
+typedef struct ff_far_in_use {
+    ff_key set;             /* its number, which rises from set to set */
+    int32_t position_wu[3]; /* O, where it was taken, in the client's frame */
+    int32_t world_wu[3];    /* the same as it was asked for */
+    unsigned sectors;       /* bit per sector that is here and that the last picture may show */
+} ff_far_in_use;
+int ff_client_far(const ff_client *client, ff_far_in_use *use);
+/* For checks: who is told, from now on, of fins that come: part by part, each a strip of triangles
+ * as it is drawn, its places relative to its set's O, wu. The arrays are gone afterwards. */
+typedef void (*ff_fins_made)(void *context, ff_key set, unsigned sector, const c3d_vertex *vertex,
+                             uint32_t vertices, const uint16_t *index, uint32_t indices);
+void ff_client_watch_fins(ff_client *client, ff_fins_made made, void *context);
 
 /* 1 while the request of this id on the wire is out and was made for the reserve. For checks, from
  * the thread that calls ff_client_work. */

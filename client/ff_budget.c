@@ -26,11 +26,13 @@ FF_STATIC_ASSERT(FF_SHARE_OF_AN_IMAGE(BLOCK) + FF_SHARE_OF_WAITING_IMAGES(BLOCK)
 
 /* ---- what comes ---- */
 
-/* An image of side * side texels, once as RGB888 and once as 16 bit. */
-static int image_fits(const ff_budget *b, size_t side)
+/* An image, once as RGB888 and once as 16 bit. */
+static int texels_fit(const ff_budget *b, size_t texels)
 {
-    return side * side * 5 <= FF_SHARE_OF_AN_IMAGE(b->block);
+    return texels * 5 <= FF_SHARE_OF_AN_IMAGE(b->block);
 }
+
+static int image_fits(const ff_budget *b, size_t side) { return texels_fit(b, side * side); }
 
 /* Largest power of two up to the size set whose images fit. */
 static unsigned fit_face_size(const ff_budget *b)
@@ -41,6 +43,17 @@ static unsigned fit_face_size(const ff_budget *b)
     while (size > FACE_SIZE_MIN && !image_fits(b, size)) size /= 2;
     FF_ASSERT(size > 0 && size <= b->desc->panorama.face_size);
     return size;
+}
+
+/* Width of the largest picture of a sector, for a view of 60 degrees or more across the width; it
+ * is twice as high: seen from high above, far ground reaches far down. */
+static unsigned fit_far_side(const ff_budget *b)
+{
+    unsigned side = 0;
+    if (!b->desc->far.enabled || b->desc->pack) return 0;
+    side = ff_sets_side((int32_t)b->desc->width * 7 / 8 * 256);
+    while (side > FF_SETS_SIDE_MIN && !texels_fit(b, FF_SETS_TEXELS((size_t)side))) side /= 2;
+    return texels_fit(b, FF_SETS_TEXELS((size_t)side)) ? side : 0;
 }
 
 static int can_have_textures(const ff_budget *b)
@@ -54,6 +67,7 @@ void ff_budget_economise(ff_budget *b, const ff_terrain_info *info, unsigned eco
     FF_ASSERT(economy < FF_ECONOMY_STEPS);
     b->info = info;
     b->face_size = economy < 1 ? fit_face_size(b) : 0;
+    b->far_side = economy < 1 ? fit_far_side(b) : 0;
     b->has_textures = (uint8_t)(economy < 2 && can_have_textures(b));
 }
 
@@ -70,25 +84,37 @@ static uint32_t texel_bytes(const ff_budget *b)
     size_t ground = b->pool[FF_POOL_textures].count * (side * side * 4 + TEXTURE_ROUNDING);
     size_t faces = FF_PANORAMA_MESHES * (face * face * 2 + TEXTURE_ROUNDING);
     faces = !b->face_size ? 0 : faces < share ? faces : share;
-    return (uint32_t)(ground + faces + FF_SHARE_OF_TEXT(b->block));
+    size_t side_far = (size_t)b->far_side + 2,
+           far = b->far_side ? FF_SETS_TEXTURES * (FF_SETS_TEXELS(side_far) * 2 + TEXTURE_ROUNDING)
+                             : 0;
+    far = far < share ? far : share;
+    return (uint32_t)(ground + faces + far + FF_SHARE_OF_TEXT(b->block));
+}
+
+/* Of fins: ridges grow with the picture's width. */
+static unsigned fin_meshes(const ff_budget *b)
+{
+    return FF_SETS_TEXTURES * (1 + b->desc->width * 2 / 3 / (b->heights / 2));
 }
 
 static void describe_device(ff_budget *b, uint32_t entries, int buffers)
 {
-    unsigned faces = b->face_size ? FF_PANORAMA_MESHES : 0;
+    unsigned faces = b->face_size ? FF_PANORAMA_MESHES : 0, fins = b->far_side ? fin_meshes(b) : 0,
+             paint = b->far_side ? FF_SETS_TEXTURES : 0,
+             vertices = b->heights > FF_SKY_VERTICES ? b->heights : FF_SKY_VERTICES;
     FF_ASSERT(entries <= FF_ENTRIES_MAX);
-    FF_ASSERT(b->pool[FF_POOL_textures].count + 1 + faces <= UINT16_MAX);
+    FF_ASSERT(b->pool[FF_POOL_textures].count + 1 + faces + paint <= UINT16_MAX);
     b->entries = entries;
     b->device =
         (c3d_desc){ .surface_api = b->desc->surface_api,
                     .use_vertex_buffers = (uint8_t)buffers,
-                    .mesh_count = (uint16_t)(entries + 1 /* spare */ + 1 /* sky */ + faces),
-                    .strip_count = FF_STRIP_COUNT_MAX + EXTRA_STRIPS,
+                    .mesh_count = (uint16_t)(entries + 1 /* spare */ + 1 /* sky */ + faces + fins),
+                    .strip_count = (uint16_t)(FF_STRIP_COUNT_MAX + EXTRA_STRIPS + fins),
                     .texture_count = (uint16_t)(b->pool[FF_POOL_textures].count +
-                                                1 /* the caller's text */ + faces),
-                    .mesh_vertices_max = (uint16_t)(b->heights > FF_SKY_VERTICES ? b->heights
-                                                                                 : FF_SKY_VERTICES),
-                    .strip_indices_max = ff_strips_indices(b->info->node_log2) + EXTRA_INDICES,
+                                                1 /* the caller's text */ + faces + paint),
+                    .mesh_vertices_max = (uint16_t)vertices,
+                    .strip_indices_max = ff_strips_indices(b->info->node_log2) + EXTRA_INDICES +
+                                         fins * (b->heights * 3 / 2),
                     .width = b->desc->width,
                     .height = b->desc->height,
                     .frame_format = b->desc->frame_format,
@@ -247,8 +273,10 @@ void ff_budget_sky(ff_budget *b)
 static void add_arriving(ff_budget *b)
 {
     size_t texture_side = b->has_textures ? (size_t)1 << b->info->texture_log2 : 0,
-           side = b->face_size > texture_side ? b->face_size : texture_side;
-    b->texels = side * side;
+           side = b->face_size > texture_side ? b->face_size : texture_side,
+           far = FF_SETS_TEXELS((size_t)b->far_side);
+    b->texels = far > side * side ? far : side * side;
+    b->image_bytes = b->texels * sizeof(uint16_t) + (b->far_side ? FF_NEW_FINS_BYTES : 0);
     b->texture_bytes = (size_t)4 << (2 * b->info->texture_log2);
     b->heights = ff_node_side(b->info) * ff_node_side(b->info);
     b->values = ff_refined_side(b->info) * ff_refined_side(b->info);

@@ -85,8 +85,8 @@
       "answers with their residuals, decoded and not taken in; a full list stops the worker") \
     X(images, b->texels != 0, \
       b->texels * 4 <= FF_SHARE_OF_WAITING_IMAGES(b->block) ? 2 : 1, 1, 2, \
-      n * b->texels * 2, from->news.images, from->news.images_high, \
-      "images decoded and not taken in, 16 bits a texel: one waits while the next is decoded") \
+      n * b->image_bytes, from->news.images, from->news.images_high, \
+      "images decoded and not taken in, 16 bits a texel, fins with them: one waits while the next is decoded") \
     X(textures, b->has_textures, \
       FF_SHARE_OF_TEXTURES(b->block) / b->texture_bytes, 8, 512, \
       n * sizeof(ff_texture_slot), from->client->textures.held, from->client->textures.high, \
@@ -99,21 +99,28 @@
       "the back end: the picture and its depths where no GL has them, and what follows") \
     PART(meshes, b->device.mesh_count, \
       meshes_bytes(b), from->c3d.mesh_held, from->c3d.mesh_high, \
-      "one for each entry, one that lives for a frame, the sky, and two panoramas of six faces") \
+      "one for each entry, one that lives for a frame, the sky, two panoramas of six faces, fins") \
     PART(strips, b->device.strip_count, \
       strips_bytes(b), from->c3d.strip_held, from->c3d.strip_high, \
-      "the masks of a node, and four for sky, faces and the caller") \
+      "the masks of a node, four for sky, faces and the caller, one for each mesh of fins") \
     PART(device_textures, b->device.texture_count, \
       textures_bytes(b), from->c3d.texture_held, from->c3d.texture_high, \
-      "images of the ground, two panoramas of six faces, the caller's text") \
+      "images of the ground, two panoramas of six faces, sectors of paint, the caller's text") \
     X(entries, 1, \
       b->entries, FF_ENTRIES_MIN, FF_ENTRIES_MAX, \
       n * sizeof(ff_view_node), from->client->view.held, from->client->view.held_high, \
       "nodes drawn lately, with their meshes: halved from the most until they fit their share") \
-    X(vertices, b->desc->backend != NULL, \
+    X(vertices, b->desc->backend != NULL || b->far_side != 0, \
       b->heights, 1, UINT16_MAX, \
       n * sizeof(c3d_vertex), b->heights, b->heights, \
       "of the one mesh that is being made") \
+    X(far_sets, b->far_side != 0, 1, 1, 1, \
+      sizeof(ff_sets), 1, 1, \
+      "the set that is drawn and the one that is coming, by name: meshes and texels are the device's") \
+    X(fin_indices, b->far_side != 0, \
+      ff_sets_indices(b->heights), 1, UINT16_MAX, \
+      n * sizeof(uint16_t), ff_sets_indices(b->heights), ff_sets_indices(b->heights), \
+      "of the one strip of fins that is being made") \
     X(nodes, 1, \
       nodes_left(b), 8, 16384, \
       tree_bytes(b, n), from->tree.nodes_held, from->tree.nodes_high, \
@@ -137,13 +144,16 @@ typedef struct ff_budget {
     const ff_client_desc *desc;  /* defaults filled in */
     const ff_terrain_info *info; /* NULL: only what outlives a terrain */
     size_t block, used, fixed;   /* fixed: used by what outlives a terrain */
-    /* what depends on the economy: 1 leaves out panoramas, 2 images of the ground too */
+    /* what depends on the economy: 1 leaves out panoramas and far sets, 2 images of the ground too
+     */
     unsigned face_size; /* 0: no panoramas */
+    unsigned far_side;  /* 0: no far sets */
     uint8_t has_textures;
     /* what rows have in common */
     unsigned links;       /* sources that are servers */
     uint32_t grounds_max; /* that may come: ff_budget_fixed reckons with one of the first source */
     size_t texels;        /* of the largest image that comes; 0: none does */
+    size_t image_bytes;   /* of its texels, in 16 bits, and of a sector's fins */
     size_t texture_bytes; /* of an image of the ground, on the device */
     uint32_t heights;     /* of a node */
     uint32_t values;      /* residuals of a refinement */

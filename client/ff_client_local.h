@@ -14,6 +14,7 @@
 #include "ahead/ff_turn.h"
 #include "panorama/ff_panorama.h"
 #include "panorama/ff_panorama_auto.h"
+#include "far/ff_sets.h"
 #include "ff_sky.h"
 #include "ff_source.h"
 #include "ground/ff_terrain_view.h"
@@ -56,6 +57,11 @@ struct ff_client {
     ff_panorama_case far_ground;
     uint8_t far_painted; /* the client's ground ends at the back plane */
     int64_t auto_us;
+    ff_fins_made fins_made; /* ff_client_watch_fins */
+    void *fins_context;
+    ff_sets *sets;   /* in a pool of the terrain; NULL: none are used */
+    int32_t fine_wu; /* ff_quality's, while sets are in use */
+    uint8_t coarse;
     ff_sky sky;
     ff_motion motion;
     ff_turn turn;

@@ -36,6 +36,11 @@
     TOLD(uint32_t, panorama_bytes, (uint32_t)from->link.answer_bytes[FF_KIND_FACE], "of their messages") \
     KEPT(uint32_t, panoramas_in_flight_high, from->requests.of[FF_KIND_FACE].in_flight_high, \
          "requests sent and unanswered at once; 1 at most unless hold_back is 1") \
+    TOLD(uint32_t, far_requests, from->requests.of[FF_KIND_FAR].sent, "sent, for sectors of far sets") \
+    TOLD(uint32_t, far_sets, from->client->sets ? from->client->sets->serial : 0, "planned") \
+    TOLD(uint32_t, far_sectors, from->client->sets ? from->client->sets->sectors : 0, "that came, with fins or paint") \
+    TOLD(uint32_t, far_sectors_empty, from->client->sets ? from->client->sets->sectors_empty : 0, "that show nothing") \
+    TOLD(uint32_t, far_bytes, (uint32_t)from->link.answer_bytes[FF_KIND_FAR], "of their messages") \
     TOLD(uint32_t, view_requests, from->requests.of[FF_KIND_VIEW].sent, \
          "sent, each for all that a view lacks") \
     TOLD(uint32_t, requests_sent, from->requests.sent, "of all kinds") \

@@ -34,7 +34,8 @@
     X(REFINEMENT, refinement, 2, 1, NODE,     66, PAYLOAD, FF_LETTERS('R', 'E', 'F', 'I'), ff_terrain_levels(info) - 1, HEIGHTS, 0, record) \
     X(TEXTURE,    texture,    3, 0, NODE,     67, PAYLOAD, FF_LETTERS('I', 'M', 'A', 'G'), info->texture_levels,        IMAGES,  1, record) \
     X(VIEW,       view,       9, 0, VIEW,     74, PARTS,   0,                               0,                           HEIGHTS, 0, view)   \
-    X(FACE,       face,       4, 0, PANORAMA, 68, FACE,    0,                               0,                           FACES,   1, faces)
+    X(FACE,       face,       4, 0, PANORAMA, 68, FACE,    0,                               0,                           FACES,   1, faces)  \
+    X(FAR,        far,       10, 0, FAR,      75, FAR,     0,                               0,                           FAR,     1, far)
 /* clang-format on */
 
 enum ff_kind {
@@ -53,19 +54,22 @@ enum ff_section_kind {
 };
 
 enum ff_kind_asks {
-    FF_ASKS_NODE,    /* ff_get: the thing of one node; the request's key is the node's */
-    FF_ASKS_VIEW,    /* ff_get_view: roots and refinements, as many as a view needs; key 0 */
-    FF_ASKS_PANORAMA /* ff_get_panorama; the request's key is a number of the client's own */
+    FF_ASKS_NODE,     /* ff_get: the thing of one node; the request's key is the node's */
+    FF_ASKS_VIEW,     /* ff_get_view: roots and refinements, as many as a view needs; key 0 */
+    FF_ASKS_PANORAMA, /* ff_get_panorama; the request's key is a number of the client's own */
+    FF_ASKS_FAR       /* ff_get_far; the key likewise */
 };
 enum ff_kind_brings {
     FF_BRINGS_PAYLOAD, /* ff_data, in one message */
     FF_BRINGS_PARTS,   /* ff_part, in as many messages as the server finds; the last says so */
-    FF_BRINGS_FACE     /* ff_face, in as many messages as faces were asked for; the last says so */
+    FF_BRINGS_FACE,    /* ff_face, in as many messages as faces were asked for; the last says so */
+    FF_BRINGS_FAR      /* ff_far, in as many messages as sectors were asked for; the last says so */
 };
 enum ff_data_class {
     FF_DATA_HEIGHTS,
     FF_DATA_IMAGES,
     FF_DATA_FACES,
+    FF_DATA_FAR,      /* fins and paint */
     FF_DATA_OVERHEAD, /* whatever no picture shows, such as greetings */
     FF_DATA_CLASSES
 };

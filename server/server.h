@@ -9,6 +9,7 @@
 typedef struct server_counters {
     uint64_t clients, bytes_in, bytes_out, nodes, textures, panoramas, faces, failed;
     uint64_t face_bytes, face_us, faces_empty;
+    uint64_t far_sets, sectors, sector_bytes, sector_us, sectors_empty;
 } server_counters;
 
 typedef struct server {

@@ -78,6 +78,17 @@ static void add(server_counters *sum, const server_counters *one)
     sum->face_bytes += one->face_bytes;
     sum->face_us += one->face_us;
     sum->faces_empty += one->faces_empty;
+    sum->far_sets += one->far_sets;
+    sum->sectors += one->sectors;
+    sum->sector_bytes += one->sector_bytes;
+    sum->sector_us += one->sector_us;
+    sum->sectors_empty += one->sectors_empty;
+}
+
+/* Of so many, but for those that do not count. */
+static uint64_t a_piece(uint64_t sum, uint64_t count, uint64_t without)
+{
+    return count > without ? sum / (count - without) : 0;
 }
 
 void server_say_stopped(const server *shared)
@@ -87,26 +98,28 @@ void server_say_stopped(const server *shared)
         add(&workers, &shared->worker_counters[i]);
     for (unsigned i = 0; i < shared->options.renderers; i++)
         add(&renderers, &shared->renderer_counters[i]);
-    uint64_t drawn = renderers.faces > renderers.faces_empty
-                         ? renderers.faces - renderers.faces_empty
-                         : 0;
-    uint64_t us_a_face = renderers.faces ? renderers.face_us / renderers.faces : 0;
-    uint64_t bytes_a_face = drawn ? renderers.face_bytes / drawn : 0;
-    const char *format = shared->options.json
-                             ? "{\"event\":\"stopped\",\"clients\":%" PRIu64
-                               ",\"bytes_in\":%" PRIu64 ",\"bytes_out\":%" PRIu64
-                               ",\"nodes\":%" PRIu64 ",\"textures\":%" PRIu64
-                               ",\"panoramas\":%" PRIu64 ",\"faces\":%" PRIu64
-                               ",\"faces_empty\":%" PRIu64 ",\"failed\":%" PRIu64
-                               ",\"us_a_face\":%" PRIu64 ",\"bytes_a_face\":%" PRIu64 "}\n"
-                             : "farfield-server: stopped: %" PRIu64 " clients, %" PRIu64
-                               " bytes in, %" PRIu64 " out, %" PRIu64 " nodes, %" PRIu64
-                               " textures, %" PRIu64 " panoramas, %" PRIu64 " faces (%" PRIu64
-                               " empty), %" PRIu64 " failed, %" PRIu64 " us and %" PRIu64
-                               " bytes a face\n";
+    uint64_t us_a_face = a_piece(renderers.face_us, renderers.faces, 0),
+             bytes_a_face = a_piece(renderers.face_bytes, renderers.faces, renderers.faces_empty),
+             us_a_sector = a_piece(renderers.sector_us, renderers.sectors, 0),
+             bytes_a_sector = a_piece(renderers.sector_bytes, renderers.sectors,
+                                      renderers.sectors_empty);
+    const char *format =
+        shared->options.json
+            ? "{\"event\":\"stopped\",\"clients\":%" PRIu64 ",\"bytes_in\":%" PRIu64
+              ",\"bytes_out\":%" PRIu64 ",\"nodes\":%" PRIu64 ",\"textures\":%" PRIu64
+              ",\"panoramas\":%" PRIu64 ",\"faces\":%" PRIu64 ",\"faces_empty\":%" PRIu64
+              ",\"failed\":%" PRIu64 ",\"us_a_face\":%" PRIu64 ",\"bytes_a_face\":%" PRIu64
+              ",\"far_sets\":%" PRIu64 ",\"sectors\":%" PRIu64 ",\"sectors_empty\":%" PRIu64
+              ",\"us_a_sector\":%" PRIu64 ",\"bytes_a_sector\":%" PRIu64 "}\n"
+            : "farfield-server: stopped: %" PRIu64 " clients, %" PRIu64 " bytes in, %" PRIu64
+              " out, %" PRIu64 " nodes, %" PRIu64 " textures, %" PRIu64 " panoramas, %" PRIu64
+              " faces (%" PRIu64 " empty), %" PRIu64 " failed, %" PRIu64 " us and %" PRIu64
+              " bytes a face, %" PRIu64 " far sets, %" PRIu64 " sectors (%" PRIu64
+              " empty), %" PRIu64 " us and %" PRIu64 " bytes a sector\n";
     if (shared->options.json || !shared->options.quiet)
         printf(format, workers.clients, workers.bytes_in, workers.bytes_out, workers.nodes,
                workers.textures, workers.panoramas, renderers.faces, renderers.faces_empty,
-               workers.failed, us_a_face, bytes_a_face);
+               workers.failed, us_a_face, bytes_a_face, workers.far_sets, renderers.sectors,
+               renderers.sectors_empty, us_a_sector, bytes_a_sector);
     fflush(stdout);
 }

@@ -7,6 +7,9 @@
 
 #include "ff_request.h"
 
+/* Of the fins in an image slot, before the paint. */
+#define FF_NEW_FINS_BYTES (FF_FAR_VERTICES_MAX * sizeof(ff_fin_vertex))
+
 /* One answer, or the news that none will come. */
 typedef struct ff_new_item {
     ff_key key; /* of the request, as are id and kind */
@@ -34,6 +37,14 @@ typedef struct ff_new_item {
             uint8_t face, empty; /* enum ff_face_name */
             uint16_t top_row, row_count;
         } face;
+        /* FAR. pixels: `fins` vertices (ff_fin_vertex) in room for FF_FAR_VERTICES_MAX, then the
+         * paint: RGBA5551 of width x height (powers of two; 0: none), row 0 the highest, texels
+         * without paint transparent, the outermost always; `middle` and `top`: of ff_set_sector */
+        struct {
+            uint8_t sector, empty;
+            uint16_t fins;
+            int16_t middle, top;
+        } far;
     } u;
 } ff_new_item;
 

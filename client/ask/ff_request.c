@@ -77,6 +77,8 @@ static void free_slot(ff_requests *requests, ff_request *request, uint32_t *fina
     FF_ASSERT(request->state != FF_REQUEST_FREE);
     leave_state(requests, request);
     request->state = FF_REQUEST_FREE;
+    if (request->ask) requests->asks_taken &= (uint8_t) ~(1u << (request->ask - 1));
+    request->ask = 0;
     if (request->id == requests->view_id) requests->view_id = 0;
     ++*final_count;
 }
@@ -201,19 +203,35 @@ static int view_brings(ff_requests *requests, enum ff_kind kind, ff_key key)
            ff_view_covers(&requests->view, kind, key);
 }
 
+/* 0: there is no room, and the request is given up. */
+static int keep_ask(ff_requests *requests, ff_request *request, const ff_ask *ask)
+{
+    if (request->state != FF_REQUEST_QUEUED) return 1; /* it is asked as it was */
+    for (unsigned i = 0; !request->ask && i < FF_REQUESTS_ASKS_MAX; i++) {
+        if (requests->asks_taken >> i & 1u) continue;
+        requests->asks_taken |= (uint8_t)(1u << i);
+        request->ask = (uint8_t)(i + 1);
+    }
+    if (request->ask)
+        requests->ask[request->ask - 1] = *ask;
+    else
+        free_slot(requests, request, &requests->counts.dropped);
+    return request->ask != 0;
+}
+
 int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
-                     enum ff_request_class rank, uint32_t priority, const ff_get_panorama *panorama)
+                     enum ff_request_class rank, uint32_t priority, const ff_ask *ask)
 {
     FF_ASSERT(rank <= FF_CLASS_RESERVE && kind != FF_KIND_VIEW);
-    FF_ASSERT((panorama != NULL) == (ff_kind[kind].asks == FF_ASKS_PANORAMA));
+    FF_ASSERT((ask != NULL) == (ff_kind[kind].asks != FF_ASKS_NODE));
     sys_mutex_lock(&requests->mutex);
     int brought = view_brings(requests, kind, key);
     ff_request *request = brought ? NULL : mark(requests, kind, key);
     if (request && request->state == FF_REQUEST_QUEUED) {
         request->rank = (uint8_t)rank;
         request->value = value_of(requests, kind, level_of(request), priority);
-        if (panorama) request->panorama = *panorama;
     }
+    if (request && ask && !keep_ask(requests, request, ask)) request = NULL;
     sys_mutex_unlock(&requests->mutex);
     return brought || request;
 }
@@ -328,11 +346,15 @@ static int goes_before(const ff_request *a, const ff_request *b)
 
 static void hash_word(uint64_t *hash, uint64_t word) { *hash = (*hash ^ word) * HASH_PRIME; }
 
-static unsigned answers_to(const ff_request *request)
+static unsigned answers_to(const ff_requests *requests, const ff_request *request)
 {
-    if (ff_kind[request->kind].asks != FF_ASKS_PANORAMA) return 1;
-    FF_ASSERT(request->panorama.face_count >= 1 && request->panorama.face_count <= FF_FACE_COUNT);
-    return request->panorama.face_count;
+    switch ((enum ff_kind_asks)ff_kind[request->kind].asks) {
+        case FF_ASKS_PANORAMA: return ff_requests_ask_of(requests, request)->panorama.face_count;
+        case FF_ASKS_FAR: return ff_requests_ask_of(requests, request)->far.sector_count;
+        case FF_ASKS_NODE:
+        case FF_ASKS_VIEW: break;
+    }
+    return 1;
 }
 
 static void hash_view(uint64_t *hash, const ff_get_view *view)
@@ -344,18 +366,28 @@ static void hash_view(uint64_t *hash, const ff_get_view *view)
     for (unsigned i = 0; i < view->count; i++) hash_word(hash, view->below[i]);
 }
 
-static void hash_request(uint64_t *hash, const ff_request *request, const ff_get_view *view)
+static void hash_panorama(uint64_t *hash, const ff_get_panorama *panorama)
 {
-    const ff_get_panorama *panorama = &request->panorama;
-    FF_ASSERT(request->panorama.id == request->id);
+    for (int i = 0; i < 3; i++) hash_word(hash, (uint32_t)panorama->position_wu[i]);
+    for (int i = 0; i < panorama->face_count; i++) hash_word(hash, panorama->face[i]);
+}
+
+static void hash_far(uint64_t *hash, const ff_get_far *far)
+{
+    for (int i = 0; i < 3; i++) hash_word(hash, (uint32_t)far->position_wu[i]);
+    for (int i = 0; i < far->sector_count; i++) hash_word(hash, far->sector[i]);
+}
+
+static void hash_request(uint64_t *hash, const ff_requests *requests, const ff_request *request)
+{
     hash_word(hash, request->kind);
     switch ((enum ff_kind_asks)ff_kind[request->kind].asks) {
         case FF_ASKS_NODE: hash_word(hash, request->key); break;
-        case FF_ASKS_VIEW: hash_view(hash, view); break;
+        case FF_ASKS_VIEW: hash_view(hash, &requests->view); break;
         case FF_ASKS_PANORAMA:
-            for (int i = 0; i < 3; i++) hash_word(hash, (uint32_t)panorama->position_wu[i]);
-            for (int i = 0; i < panorama->face_count; i++) hash_word(hash, panorama->face[i]);
+            hash_panorama(hash, &ff_requests_ask_of(requests, request)->panorama);
             break;
+        case FF_ASKS_FAR: hash_far(hash, &ff_requests_ask_of(requests, request)->far); break;
     }
 }
 
@@ -375,7 +407,7 @@ static void count_sent(ff_requests *requests, const ff_request *request)
     counts->bytes_in_flight += request->bytes_expected;
     counts->reserve_sent += request->rank == FF_CLASS_RESERVE;
     counts->reserve_in_flight += request->rank == FF_CLASS_RESERVE;
-    hash_request(&requests->hash, request, &requests->view);
+    hash_request(&requests->hash, requests, request);
 }
 
 /* The last class that may leave now: the reserve is for a link that has nothing else to do. */
@@ -409,9 +441,9 @@ int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_m
         best->state = FF_REQUEST_SENT;
         best->sent_us = now_us;
         best->cancel = 0;
-        best->panorama.id = best->id;
+        if (best->ask) requests->ask[best->ask - 1].id = best->id;
         best->bytes_expected = (requests->answer_q4[best->kind][level_of(best)] >> 4) *
-                               answers_to(best);
+                               answers_to(requests, best);
         count_sent(requests, best);
         FF_ASSERT(counts->in_flight <= in_flight_max || counts->in_flight <= IN_FLIGHT_ALWAYS);
         *copy = *best;

@@ -34,6 +34,7 @@
 #include "../../protocol/message/ff_message.h"
 
 #define FF_REQUESTS_QUEUED_MAX 128 /* queued at a time, besides those in flight */
+#define FF_REQUESTS_ASKS_MAX   8   /* of kinds whose key is the client's own, in any state */
 
 enum ff_request_state {
     FF_REQUEST_FREE,
@@ -60,7 +61,7 @@ typedef struct ff_request {
     uint8_t forgotten;         /* sent for a terrain that is no more: its answer passes by */
     uint16_t named;            /* FF_KIND_VIEW: bit i: what its view names at i has come */
     uint32_t bytes_came;       /* the same: of the answers so far */
-    ff_get_panorama panorama;  /* of FF_ASKS_PANORAMA */
+    uint8_t ask;               /* of FF_ASKS_PANORAMA, FF_ASKS_FAR: ff_requests_ask_of */
 } ff_request;
 
 typedef struct ff_request_counts {
@@ -86,9 +87,20 @@ typedef struct ff_requests {
      * request is not sent, the worker reads it while it is */
     uint16_t view_id;
     ff_get_view view;
+    /* of those whose key is the client's own; written and read likewise. Bit i: ask[i] is taken */
+    ff_ask ask[FF_REQUESTS_ASKS_MAX];
+    uint8_t asks_taken;
     /* bytes of an answer by kind and level, running mean, Q4 */
     uint32_t answer_q4[FF_KIND_COUNT][16];
 } ff_requests;
+
+/* What a request of FF_ASKS_PANORAMA or FF_ASKS_FAR has besides its key. */
+static inline const ff_ask *ff_requests_ask_of(const ff_requests *requests,
+                                               const ff_request *request)
+{
+    FF_ASSERT(request->ask >= 1 && request->ask <= FF_REQUESTS_ASKS_MAX);
+    return &requests->ask[request->ask - 1];
+}
 
 size_t ff_requests_bytes(unsigned in_flight_max);
 void ff_requests_init(ff_requests *requests, unsigned in_flight_max, void *memory);
@@ -100,11 +112,10 @@ void ff_requests_clear(ff_requests *requests);
 /* A ranking: begin, want everything worth having (most urgent first), end. Queued requests that
  * were not wanted again are dropped. */
 void ff_requests_rank_begin(ff_requests *requests);
-/* 1 when queued or already under way, 0 when the queue is full. priority per byte decides within
- * `rank`. */
+/* 1 when queued or already under way, 0 when the queue is full, or FF_REQUESTS_ASKS_MAX are out.
+ * priority per byte decides within `rank`. */
 int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
-                     enum ff_request_class rank, uint32_t priority,
-                     const ff_get_panorama *panorama);
+                     enum ff_request_class rank, uint32_t priority, const ff_ask *ask);
 /* The same for a view, before all else; 0 also while an older one is sent or arriving. */
 int ff_requests_want_view(ff_requests *requests, const ff_get_view *view);
 void ff_requests_rank_end(ff_requests *requests);

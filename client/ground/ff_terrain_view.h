@@ -23,6 +23,15 @@ typedef struct ff_view_node {
     uint32_t used; /* stamp of the last frame it was drawn in */
 } ff_view_node;
 
+/* Pictures thrown on nodes: what becomes of a node's draw. `draws` has it as it is; the answer is
+ * how many there are now, FF_THROWS_MAX at most, drawn one over the other. */
+#define FF_THROWS_MAX 5
+typedef struct ff_throws {
+    unsigned (*lay)(const void *context, const ff_terrain_info *info, const ff_drawn *drawn,
+                    c3d_draw draws[FF_THROWS_MAX]);
+    const void *context;
+} ff_throws;
+
 typedef struct ff_terrain_view {
     /* NULL: geometry only. Holds a mesh for each entry, and one more where nodes may lack one. */
     c3d_device *device;
@@ -36,6 +45,7 @@ typedef struct ff_terrain_view {
     uint32_t held, held_high;
     ff_ground_frame frame; /* of all meshes */
     c3d_strip strip[FF_STRIP_COUNT_MAX];
+    ff_throws throws; /* lay NULL: none */
 } ff_terrain_view;
 
 /* Makes the strips on the device. `strips` is scratch, free afterwards. FF_OK or FF_ERR_MEMORY. */

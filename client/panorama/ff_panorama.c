@@ -202,6 +202,7 @@ static void list_faces(ff_get_panorama *request, unsigned missing, const c3d_cam
 static void want_faces(const ff_panorama *panorama, ff_requests *requests, const ff_view *view,
                        const ff_panorama_set *set, unsigned missing, enum ff_request_class rank)
 {
+    ff_ask ask;
     ff_get_panorama request = { .front_wu = set->front_wu,
                                 .back_wu = panorama->desc.server_back_wu > set->front_wu
                                                ? panorama->desc.server_back_wu
@@ -211,8 +212,9 @@ static void want_faces(const ff_panorama *panorama, ff_requests *requests, const
     ff_shape_leave(panorama->info, &view->frame, set->position_wu, request.position_wu);
     list_faces(&request, missing, &view->camera);
     FF_ASSERT(request.face_count > 0 && request.face_count <= FF_FACE_COUNT);
+    ask.panorama = request;
     ff_requests_want(requests, FF_KIND_FACE, set->key, rank,
-                     rank == FF_CLASS_FIRST ? PRIORITY_FACE : 1, &request);
+                     rank == FF_CLASS_FIRST ? PRIORITY_FACE : 1, &ask);
 }
 
 void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const ff_view *view,

@@ -144,6 +144,17 @@ uint32_t ff_projected_error_q8(const ff_tree *tree, const ff_node *node, uint64_
                                 distance ? distance : 1);
 }
 
+/* How many times as wrong as others a node may be. */
+static uint32_t coarse_times(const ff_tree *tree, const ff_box *box)
+{
+    int32_t fine_wu = tree->quality.fine_wu;
+    if (tree->quality.coarse <= 1) return 1;
+    return box->lo[0] > fine_wu || box->hi[0] < -fine_wu || box->lo[1] > fine_wu ||
+                   box->hi[1] < -fine_wu
+               ? tree->quality.coarse
+               : 1;
+}
+
 /* Hybrid, eq. 3: f = d / (e * C), from the viewer to the middle of the node at its mean height. */
 static uint32_t value_by_distance(const ff_tree *tree, const ff_node *node)
 {
@@ -160,10 +171,11 @@ static uint32_t value_by_distance(const ff_tree *tree, const ff_node *node)
 uint32_t ff_value_of_split(const ff_tree *tree, const ff_node *node)
 {
     FF_ASSERT(ff_key_level(node->key) < ff_terrain_levels(ff_ground_of(tree, node->key)));
-    if (tree->quality.measure == FF_MEASURE_DISTANCE) return value_by_distance(tree, node);
     ff_box box;
     ff_node_box(tree, node, &box);
+    uint32_t times = coarse_times(tree, &box);
+    if (tree->quality.measure == FF_MEASURE_DISTANCE) return value_by_distance(tree, node) / times;
     uint64_t error_q8 = ff_projected_error_q8(tree, node, (uint64_t)ff_box_distance(&box));
     FF_ASSERT(tree->quality.error_px_q8 > 0);
-    return c3d_divide_saturated(error_q8 << 16, (uint64_t)tree->quality.error_px_q8);
+    return c3d_divide_saturated(error_q8 << 16, (uint64_t)tree->quality.error_px_q8 * times);
 }

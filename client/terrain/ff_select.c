@@ -22,7 +22,8 @@ static int same_quality(const ff_quality *a, const ff_quality *b)
 {
     return a->measure == b->measure && a->c_q8 == b->c_q8 && a->error_px_q8 == b->error_px_q8 &&
            a->depth_max == b->depth_max && a->sigma_q8 == b->sigma_q8 && a->view_wu == b->view_wu &&
-           a->hole_wu == b->hole_wu && a->triangles_max == b->triangles_max;
+           a->hole_wu == b->hole_wu && a->triangles_max == b->triangles_max &&
+           a->fine_wu == b->fine_wu && a->coarse == b->coarse;
 }
 
 static int32_t within(int32_t value, int32_t lo, int32_t hi)

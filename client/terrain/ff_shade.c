@@ -12,6 +12,9 @@
  */
 #define ROCK_FROM_Q8 160
 #define ROCK_TO_Q8   420
+/* A ridge of which nothing but its place is known: as steep and as lit as ridges mostly are. */
+#define RIDGE_SLOPE_Q8 200
+#define RIDGE_LIGHT_Q8 200
 FF_STATIC_ASSERT(ROCK_FROM_Q8 < ROCK_TO_Q8 && ROCK_TO_Q8 < SLOPE_MAX_Q8);
 
 static const uint8_t soil_at[][3] = {
@@ -80,6 +83,26 @@ static int32_t light_q8(int32_t east_q8, int32_t north_q8)
     return (int32_t)(90 + cosine_q8 * 166 / 181);
 }
 
+static void lit(const int32_t colour[3], int32_t light, uint8_t rgba[4])
+{
+    for (unsigned c = 0; c < 3; c++) {
+        int32_t value = colour[c] * light / 256;
+        FF_ASSERT(value >= 0);
+        rgba[c] = (uint8_t)(value > 255 ? 255 : value);
+    }
+    rgba[3] = 255;
+}
+
+void ff_shade_ridge(const ff_terrain_info *info, int32_t height_wu, uint8_t rgba[4])
+{
+    int64_t step = (((int64_t)height_wu - info->hoffset_wu) << 16) / (int64_t)info->hscale_q24;
+    const int32_t ramp[2] = { info->height_min, info->height_max };
+    int32_t colour[3];
+    int32_t height = (int32_t)(step < 0 ? 0 : step > UINT16_MAX ? UINT16_MAX : step);
+    ground_colour(ramp, height, RIDGE_SLOPE_Q8, colour);
+    lit(colour, RIDGE_LIGHT_Q8, rgba);
+}
+
 void ff_shade(const ff_shade_grid *grid, uint32_t i, uint32_t j, uint8_t rgba[4])
 {
     const ff_terrain_info *info = grid->info;
@@ -95,11 +118,5 @@ void ff_shade(const ff_shade_grid *grid, uint32_t i, uint32_t j, uint8_t rgba[4]
         int64_t steep_square = (int64_t)east * east + (int64_t)north * north;
         ground_colour(grid->ramp, *here, c3d_isqrt64((uint64_t)steep_square), colour);
     }
-    int32_t light = light_q8(east, north);
-    for (unsigned c = 0; c < 3; c++) {
-        int32_t lit = colour[c] * light / 256;
-        FF_ASSERT(lit >= 0);
-        rgba[c] = (uint8_t)(lit > 255 ? 255 : lit);
-    }
-    rgba[3] = 255;
+    lit(colour, light_q8(east, north), rgba);
 }

@@ -18,5 +18,7 @@ typedef struct ff_shade_grid {
 /* rgba of the sample in column i, row j of the node's grid. Light from the north-west, 45 degrees
  * high. The lowest step of terrains touching zero is water. */
 void ff_shade(const ff_shade_grid *grid, uint32_t i, uint32_t j, uint8_t rgba[4]);
+/* rgba of a ridge at that height of which nothing else is known. */
+void ff_shade_ridge(const ff_terrain_info *info, int32_t height_wu, uint8_t rgba[4]);
 
 #endif

@@ -60,6 +60,10 @@ typedef struct ff_quality {
     /* the most triangles in view; where the measure asks for more, it is made as much coarser as it
      * takes, and then the reach shorter. 0: no limit; less than FF_TRIANGLES_MIN is that many */
     uint32_t triangles_max;
+    /* ground farther than this from the camera, along x or y, may be `coarse` times as wrong:
+     * something else mends it (client/far). coarse 0 or 1: none */
+    int32_t fine_wu;
+    uint8_t coarse;
 } ff_quality;
 #define FF_TRIANGLES_MIN 1024u /* room for the roots round the viewer */
 

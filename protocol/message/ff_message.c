@@ -162,6 +162,7 @@ static void write_request(ff_writer *out, const ff_message *message)
         case FF_ASKS_NODE: write_get(out, &message->u.get, message->kind); break;
         case FF_ASKS_VIEW: ff_message_write_view(out, &message->u.view); break;
         case FF_ASKS_PANORAMA: write_panorama(out, &message->u.panorama); break;
+        case FF_ASKS_FAR: ff_message_write_get_far(out, &message->u.get_far); break;
     }
 }
 
@@ -175,6 +176,7 @@ static void write_answer(ff_writer *out, const ff_message *message)
             break;
         case FF_BRINGS_PARTS: ff_message_write_part(out, &message->u.part); break;
         case FF_BRINGS_FACE: write_face(out, &message->u.face); break;
+        case FF_BRINGS_FAR: ff_message_write_far(out, &message->u.far); break;
     }
 }
 
@@ -217,6 +219,9 @@ static size_t answer_bytes_max(const ff_message *message)
         case FF_BRINGS_PARTS:
             return FF_MESSAGE_HEADER_MAX + 2 + FF_MESSAGE_KEY_BYTES +
                    (size_t)message->u.part.byte_count;
+        case FF_BRINGS_FAR:
+            return FF_MESSAGE_HEADER_MAX + 17 + (size_t)message->u.far.fins_bytes +
+                   message->u.far.blocks_bytes + message->u.far.image_bytes;
         case FF_BRINGS_FACE: break;
     }
     return FF_MESSAGE_HEADER_MAX + 14 + (size_t)message->u.face.columns_bytes +
@@ -379,6 +384,7 @@ static void read_request(ff_reader *in, ff_message *out)
         case FF_ASKS_NODE: read_get(in, &out->u.get, &out->kind); break;
         case FF_ASKS_VIEW: ff_message_read_view(in, &out->u.view); break;
         case FF_ASKS_PANORAMA: read_panorama(in, &out->u.panorama); break;
+        case FF_ASKS_FAR: ff_message_read_get_far(in, &out->u.get_far); break;
     }
 }
 
@@ -391,6 +397,7 @@ static void read_answer(ff_reader *in, ff_message *out)
             break;
         case FF_BRINGS_PARTS: ff_message_read_part(in, &out->u.part); break;
         case FF_BRINGS_FACE: read_face(in, &out->u.face); break;
+        case FF_BRINGS_FAR: ff_message_read_far(in, &out->u.far); break;
     }
 }
 
@@ -475,9 +482,11 @@ uint16_t ff_message_id(const ff_message *message)
     if (message->type == FF_MSG_GET)
         return kind->asks == FF_ASKS_NODE   ? message->u.get.id
                : kind->asks == FF_ASKS_VIEW ? message->u.view.id
+               : kind->asks == FF_ASKS_FAR  ? message->u.get_far.id
                                             : message->u.panorama.id;
     return kind->brings == FF_BRINGS_PAYLOAD ? message->u.data.id
            : kind->brings == FF_BRINGS_PARTS ? message->u.part.id
+           : kind->brings == FF_BRINGS_FAR   ? message->u.far.id
                                              : message->u.face.id;
 }
 

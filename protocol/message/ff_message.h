@@ -10,14 +10,15 @@
 #define FF_MESSAGE_H
 
 #include "../codec/ff_codec.h"
+#include "../far/ff_far.h"
 #include "../ff_about.h"
 #include "../ff_kind.h"
 
-#define FF_PROTOCOL_VERSION   6
+#define FF_PROTOCOL_VERSION   7
 #define FF_MESSAGE_BODY_MAX   (1u << 18) /* a longer length is a protocol error */
 #define FF_MESSAGE_HEADER_MAX 4
 #define FF_REQUEST_BYTES_MAX  224 /* any client message but CAPS fits */
-#define FF_SHORT_BYTES_MAX    48  /* any message without a list, a payload, an image or keys fits */
+#define FF_SHORT_BYTES_MAX    60  /* any message without a list, a payload, an image or keys fits */
 #define FF_CAPS_BYTES_MAX     512 /* of the lists in CAPS and in WELCOME */
 #define FF_FACE_COUNT         6
 #define FF_FACE_SIZE_MAX      1024
@@ -119,11 +120,40 @@ typedef struct ff_get_panorama {
     uint8_t face[FF_FACE_COUNT]; /* enum ff_face_name, in the order in which they are to come */
 } ff_get_panorama;
 
+/* Far ground as fins and paint, taken at one point O: the sectors of a set (protocol/far/ff_far.h
+ * says what they are made of and how places stand in them). Nothing of it travels that no viewer in
+ * the region round O can see. The region: from behind_m behind O to ahead_m ahead of it along
+ * `heading`, aside_m to either side, at heights from low_m to high_m above O. O itself, the eye of
+ * the picture, may lie above all of it. */
+typedef struct ff_get_far {
+    uint16_t id;
+    int32_t position_wu[3]; /* O */
+    int32_t front_wu;       /* ground nearer to O (in x or y, whichever differs more) is left out */
+    uint16_t heading;       /* 1/65536 turn, 0 north, clockwise */
+    uint16_t behind_m, ahead_m, aside_m;
+    int16_t low_m, high_m; /* heights above O, low_m <= high_m: both may be below it */
+    uint16_t focal;        /* texels a unit of tangent: FF_FAR_FOCAL_MIN..FF_FAR_FOCAL_MAX */
+    uint16_t down;         /* texels below O's horizon that anybody looks at, 1..2 * FOCAL_MAX */
+    uint8_t paint_shift;   /* texels of the paint are 2^this as large, 0..3 */
+    uint8_t quality;       /* JPEG quality of the paint, 1..100; 0: no paint */
+    uint8_t tolerance_q2;  /* quarter texels that a fin may be off; 0: no fins */
+    uint8_t sector_count;  /* 1..FF_FAR_SECTORS */
+    uint8_t sector[FF_FAR_SECTORS]; /* all different, in the order in which they are to come */
+} ff_get_far;
+
+/* What a request has besides its key, of the kinds whose key is a number of the client's own. */
+typedef union ff_ask {
+    uint16_t id;
+    ff_get_panorama panorama; /* FF_ASKS_PANORAMA */
+    ff_get_far far;           /* FF_ASKS_FAR */
+} ff_ask;
+
 /* What is missing for a view: the server answers with these roots and refinements, and with all
  * below them that the view needs, as a client's own selection finds it (client/terrain/ff_tree.h):
  * one round trip instead of one for each level. A client has at most one such request out. */
-#define FF_VIEW_KEYS_MAX 16
-#define FF_VIEW_SIDE_MAX 4096
+#define FF_VIEW_KEYS_MAX   16
+#define FF_VIEW_SIDE_MAX   4096
+#define FF_VIEW_COARSE_MAX 16
 enum ff_view_measure { FF_VIEW_BY_DISTANCE, FF_VIEW_BY_PIXELS };
 
 typedef struct ff_get_view {
@@ -136,11 +166,14 @@ typedef struct ff_get_view {
     uint8_t depth_max;         /* levels used; 0: all */
     int32_t allowed_q8;        /* C of Hybrid eq. 3, or pixels of error; 1.. */
     int32_t reach_wu;          /* ground farther than this is not drawn; 1.. */
-    uint32_t triangles_max;    /* in the picture; 0: any number */
-    uint32_t bytes_max;        /* of payloads, all answers together; the last may pass it */
-    uint16_t roots;            /* bit i: below[i] is a root that is missing, else a node whose
-                                * refinement is */
-    uint8_t count;             /* of below: 0: all that the view needs; ..FF_VIEW_KEYS_MAX */
+    /* ground farther than fine_wu along x or y may be `coarse` times as wrong, 1..16 */
+    int32_t fine_wu;
+    uint8_t coarse;
+    uint32_t triangles_max; /* in the picture; 0: any number */
+    uint32_t bytes_max;     /* of payloads, all answers together; the last may pass it */
+    uint16_t roots;         /* bit i: below[i] is a root that is missing, else a node whose
+                             * refinement is */
+    uint8_t count;          /* of below: 0: all that the view needs; ..FF_VIEW_KEYS_MAX */
     ff_key below[FF_VIEW_KEYS_MAX];
 } ff_get_view;
 
@@ -207,6 +240,20 @@ typedef struct ff_face {
     uint32_t image_bytes;
 } ff_face;
 
+/* One sector of a set. Flags as a face's. */
+typedef struct ff_far {
+    uint16_t id;
+    uint8_t sector, flags; /* enum ff_face_flags: FF_FACE_EMPTY, nothing follows; FF_FACE_LAST */
+    const uint8_t *fins;   /* ff_fins_decode; no bytes: none */
+    uint32_t fins_bytes;
+    uint8_t blocks_x, blocks_y; /* of the paint, each of 16 x 16 texels; 0: no paint */
+    int16_t top;           /* rows of texels that the first block row begins above O's horizon */
+    const uint8_t *blocks; /* which of them are there: ff_blocks_decode */
+    uint32_t blocks_bytes;
+    const uint8_t *image; /* bare JPEG, 16 texels high, 16 wide for each block that is there */
+    uint32_t image_bytes;
+} ff_far;
+
 /* Packed spans: `top` and `bottom` have `count` (face_size) entries, each 0..row_count. Encode:
  * bytes written, or FF_ERR_FULL (capacity 4*count+8 always fits). Decode: FF_OK or TRUNCATED,
  * RANGE; top <= bottom is guaranteed. */
@@ -226,6 +273,7 @@ typedef struct ff_message {
         ff_get get;               /* GET, FF_ASKS_NODE */
         ff_get_view view;         /* GET, FF_ASKS_VIEW */
         ff_get_panorama panorama; /* GET, FF_ASKS_PANORAMA */
+        ff_get_far get_far;       /* GET, FF_ASKS_FAR */
         ff_cancel cancel;
         ff_ping ping;
         ff_list list; /* CAPS, ABOUT: inside the message */
@@ -234,6 +282,7 @@ typedef struct ff_message {
         ff_data data; /* ANSWER, FF_BRINGS_PAYLOAD */
         ff_part part; /* ANSWER, FF_BRINGS_PARTS */
         ff_face face; /* ANSWER, FF_BRINGS_FACE */
+        ff_far far;   /* ANSWER, FF_BRINGS_FAR */
         ff_failed failed;
     } u;
 } ff_message;

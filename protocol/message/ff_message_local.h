@@ -22,6 +22,10 @@ void ff_message_read_rest(ff_reader *in, const uint8_t **bytes, uint32_t *count)
 
 void ff_message_write_view(ff_writer *out, const ff_get_view *view);
 void ff_message_read_view(ff_reader *in, ff_get_view *view);
+void ff_message_write_get_far(ff_writer *out, const ff_get_far *get);
+void ff_message_read_get_far(ff_reader *in, ff_get_far *get);
+void ff_message_write_far(ff_writer *out, const ff_far *far);
+void ff_message_read_far(ff_reader *in, ff_far *far);
 void ff_message_write_part(ff_writer *out, const ff_part *part);
 void ff_message_read_part(ff_reader *in, ff_part *part);
 

@@ -2,8 +2,8 @@
 #include "ff_message_local.h"
 
 /* GET_VIEW, the longest of requests: id, angles, position, focal length, size, measure, depth,
- * error allowed, reach, triangles, bytes, count. */
-#define VIEW_BYTES (2 + 3 * 2 + 3 * 4 + 4 + 2 * 2 + 1 + 1 + 4 + 4 + 5 + 5 + 1)
+ * error allowed, reach, fine, coarse, triangles, bytes, count. */
+#define VIEW_BYTES (2 + 3 * 2 + 3 * 4 + 4 + 2 * 2 + 1 + 1 + 4 + 4 + 4 + 1 + 5 + 5 + 1)
 FF_STATIC_ASSERT(FF_MESSAGE_HEADER_MAX + VIEW_BYTES + FF_VIEW_KEYS_MAX * FF_MESSAGE_KEY_BYTES <=
                  FF_REQUEST_BYTES_MAX);
 FF_STATIC_ASSERT(FF_VIEW_KEYS_MAX <= 16); /* bits of `roots` */
@@ -22,6 +22,7 @@ static int view_ok(const ff_get_view *view)
     if (view->focal_q8 < 256 || view->width < 1 || view->width > FF_VIEW_SIDE_MAX ||
         view->height < 1 || view->height > FF_VIEW_SIDE_MAX || view->measure > FF_VIEW_BY_PIXELS ||
         view->depth_max > FF_KEY_LEVEL_MAX + 1 || view->allowed_q8 < 1 || view->reach_wu < 1 ||
+        view->fine_wu < 1 || view->coarse < 1 || view->coarse > FF_VIEW_COARSE_MAX ||
         view->count > FF_VIEW_KEYS_MAX || view->roots >> view->count != 0)
         return 0;
     for (unsigned i = 0; i < view->count; i++) {
@@ -73,6 +74,8 @@ void ff_message_write_view(ff_writer *out, const ff_get_view *view)
     ff_write_bytes(out, view->depth_max, 1);
     ff_write_bytes(out, (uint32_t)view->allowed_q8, 4);
     ff_write_bytes(out, (uint32_t)view->reach_wu, 4);
+    ff_write_bytes(out, (uint32_t)view->fine_wu, 4);
+    ff_write_bytes(out, view->coarse, 1);
     ff_write_varint(out, view->triangles_max);
     ff_write_varint(out, view->bytes_max);
     ff_write_bytes(out, view->count, 1);
@@ -106,6 +109,8 @@ void ff_message_read_view(ff_reader *in, ff_get_view *view)
     view->depth_max = (uint8_t)ff_read_bytes(in, 1);
     view->allowed_q8 = (int32_t)ff_read_signed(in, 4);
     view->reach_wu = (int32_t)ff_read_signed(in, 4);
+    view->fine_wu = (int32_t)ff_read_signed(in, 4);
+    view->coarse = (uint8_t)ff_read_bytes(in, 1);
     view->triangles_max = ff_read_varint(in);
     view->bytes_max = ff_read_varint(in);
     view->count = (uint8_t)ff_read_bytes(in, 1);

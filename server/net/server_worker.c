@@ -23,8 +23,9 @@ typedef struct worker {
     uint64_t next_serial;
     unsigned first_job; /* whose turn it is */
     int64_t now_us, accept_again_us;
-    server_assembly *assembly;          /* of each renderer */
-    ff_panorama_renderer *own_renderer; /* --single */
+    server_assembly *assembly;    /* of each renderer */
+    server_renderer own_renderer; /* --single: */
+    int draws;
     uint8_t *own_face;
 } worker;
 
@@ -40,6 +41,8 @@ static void count_session(worker *w, const server_client *client)
     w->counters->textures += stats.answers[FF_DATA_IMAGES];
     w->counters->panoramas += stats.panoramas;
     w->counters->faces += stats.answers[FF_DATA_FACES];
+    w->counters->far_sets += stats.far_sets;
+    w->counters->sectors += stats.answers[FF_DATA_FAR];
     w->counters->failed += stats.failed;
     if (stats.damaged)
         server_complain("%s%s is damaged: %u answers to a client were lost (farfield-info --verify "
@@ -87,7 +90,7 @@ static void accept_clients(worker *w)
     }
 }
 
-/* ---- panoramas ---- */
+/* ---- panoramas and far sets ---- */
 
 static void face_back(server_client *client, const uint8_t *message, int bytes_or_error)
 {
@@ -111,7 +114,8 @@ static void take_results(worker *w)
     }
 }
 
-/* Gives the client's next face to somebody who draws it; 0 when the queue of jobs is full. */
+/* Gives the client's next face or sector to somebody who draws it; 0 when the queue of jobs is
+ * full. */
 static int place_job(worker *w, server_client *client)
 {
     if (client->job_state == SERVER_JOB_NONE &&
@@ -123,9 +127,9 @@ static int place_job(worker *w, server_client *client)
         client->job_state = SERVER_JOB_WAITING;
     }
     if (client->job_state != SERVER_JOB_WAITING) return 1;
-    if (w->own_renderer) {
+    if (w->draws) {
         face_back(client, w->own_face,
-                  server_renderer_face(w->own_renderer, &client->job.face,
+                  server_renderer_draw(&w->own_renderer, &client->job.face,
                                        w->shared->renderer_counters, w->own_face,
                                        SERVER_FACE_BYTES));
         return 1;
@@ -219,7 +223,9 @@ static int open_worker(worker *w, server *shared, unsigned number)
     if (!w->client || !w->poll || !w->assembly) return FF_ERR_MEMORY;
     if (!o->single || o->renderers == 0) return FF_OK;
     w->own_face = malloc(SERVER_FACE_BYTES);
-    return w->own_face ? server_renderer_open(shared, &w->own_renderer) : FF_ERR_MEMORY;
+    int rc = w->own_face ? server_renderer_open(shared, &w->own_renderer) : FF_ERR_MEMORY;
+    w->draws = rc == FF_OK;
+    return rc;
 }
 
 int server_worker_run(server *shared, unsigned number)
@@ -233,7 +239,7 @@ int server_worker_run(server *shared, unsigned number)
         server_child_ready(shared);
         run(&w);
     }
-    ff_panorama_renderer_close(w.own_renderer);
+    server_renderer_close(&w.own_renderer);
     free(w.own_face);
     free(w.assembly);
     free(w.poll);

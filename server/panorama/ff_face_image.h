@@ -5,16 +5,6 @@
 
 #include "../../protocol/message/ff_message.h"
 
-/* Pixels of this colour show no ground: the sky is the client's own. Ground is kept clear of it by
- * ff_face_not_key. */
-#define FF_FACE_KEY_RGB565 0xF81Fu
-#define FF_FACE_KEY_ABGR   0xFFFF00FFu
-
-static inline uint16_t ff_face_not_key(uint16_t rgb565)
-{
-    return rgb565 == FF_FACE_KEY_RGB565 ? (uint16_t)(rgb565 | 1u << 6) : rgb565;
-}
-
 typedef struct ff_face_spans {
     uint16_t top_row, row_count; /* row_count 0: no ground at all */
     /* relative to top_row; equal where a column has none */

@@ -2,7 +2,7 @@
 #include "ff_panorama_render.h"
 #include "ff_face_image.h"
 #include "ff_face_view.h"
-#include "ff_panorama_ground.h"
+#include "../ground/ff_pack_ground.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -13,19 +13,21 @@
 #define COLUMNS_BYTES_MAX  (4 * FF_FACE_SIZE_MAX + 8)
 #define IMAGE_BYTES_MAX    (FF_MESSAGE_BODY_MAX - COLUMNS_BYTES_MAX - 64)
 #define QUALITY_STEP       15
+#define ERROR_PX_Q8        256 /* one texel of the face */
 
 struct ff_panorama_renderer {
     const ff_pack *pack;
     const sys_surface_api *surface_api;
     const struct c3d_backend *backend;
     ff_panorama_render_stats stats;
+    ff_pack_ground_stats drawn;
 
     /* The stage: made anew when a face larger than the surface is asked for. */
     uint16_t surface_size;
     sys_surface *surface;
     void *device_memory;
     c3d_device *device;
-    panorama_ground ground;
+    ff_pack_ground ground;
 
     ff_face_spans spans;
     uint8_t *rgb; /* surface_size^2 pixels */
@@ -38,7 +40,7 @@ struct ff_panorama_renderer {
 static void stage_close(ff_panorama_renderer *renderer)
 {
     if (renderer->surface) renderer->surface_api->make_current(renderer->surface);
-    panorama_ground_close(&renderer->ground);
+    ff_pack_ground_close(&renderer->ground);
     if (renderer->device) c3d_close(renderer->device);
     if (renderer->surface) renderer->surface_api->close(renderer->surface);
     free(renderer->device_memory);
@@ -62,7 +64,7 @@ static int stage_try_open(ff_panorama_renderer *renderer, uint16_t size)
         renderer->surface = NULL;
         return rc;
     }
-    panorama_ground_desc(renderer->pack, renderer->surface_api, &device_desc);
+    ff_pack_ground_desc(renderer->pack, renderer->surface_api, &device_desc);
     size_t bytes = c3d_bytes(renderer->backend, &device_desc);
     renderer->device_memory = malloc(bytes);
     renderer->rgb = malloc((size_t)3 * size * size);
@@ -74,8 +76,8 @@ static int stage_try_open(ff_panorama_renderer *renderer, uint16_t size)
         return rc;
     }
     renderer->surface_size = size;
-    return panorama_ground_open(&renderer->ground, renderer->pack, renderer->device,
-                                &renderer->stats);
+    return ff_pack_ground_open(&renderer->ground, renderer->pack, renderer->device,
+                               &renderer->drawn);
 }
 
 static int stage_open(ff_panorama_renderer *renderer, uint16_t size)
@@ -125,6 +127,7 @@ void ff_panorama_renderer_get_stats(const ff_panorama_renderer *renderer,
                                     ff_panorama_render_stats *stats)
 {
     *stats = renderer->stats;
+    stats->ground = renderer->drawn;
 }
 
 /* ---- a face ---- */
@@ -156,9 +159,10 @@ static int encode_image(ff_panorama_renderer *renderer, uint16_t size, int quali
 }
 
 /* Draws and encodes into `face`; leaves it empty when no ground shows. FF_OK or an error. */
-static int draw_face(ff_panorama_renderer *renderer, const ff_get_panorama *request, ff_face *face)
+static int draw_face(ff_panorama_renderer *renderer, const ff_get_panorama *request,
+                     const ff_ground_look *look, ff_face *face)
 {
-    panorama_ground_draw(&renderer->ground, request, face->face);
+    ff_pack_ground_draw(&renderer->ground, look);
     int rc = c3d_read_rgb(renderer->device, renderer->rgb);
     if (rc < 0) return rc;
     ff_face_find_spans(renderer->rgb, request->face_size, &renderer->spans);
@@ -184,6 +188,17 @@ static int draw_face(ff_panorama_renderer *renderer, const ff_get_panorama *requ
     return FF_OK;
 }
 
+typedef struct face_look {
+    const ff_get_panorama *request;
+    enum ff_face_name face;
+} face_look;
+
+static int face_sees(const void *context, const ff_box *box)
+{
+    const face_look *of = context;
+    return ff_face_sees_box(of->request, of->face, box);
+}
+
 /* O comes in world axes; from here on it is a point of the frame at O. */
 static int render_face(ff_panorama_renderer *renderer, const ff_get_panorama *asked, ff_face *face)
 {
@@ -197,12 +212,20 @@ static int render_face(ff_panorama_renderer *renderer, const ff_get_panorama *as
     }
     int rc = stage_fit(renderer, request->face_size);
     if (rc < 0) return rc;
-    panorama_ground_load(&renderer->ground, &frame, request, face->face);
-    if (!panorama_ground_seen(&renderer->ground, request, face->face)) {
+    face_look of = { request, face->face };
+    ff_ground_look look = { .frame = frame,
+                            .view_wu = request->back_wu,
+                            .hole_wu = ff_face_near_wu(request),
+                            .error_px_q8 = ERROR_PX_Q8,
+                            .sees = face_sees,
+                            .context = &of };
+    ff_face_camera(request, face->face, &look.camera);
+    ff_pack_ground_load(&renderer->ground, &look);
+    if (!ff_pack_ground_seen(&renderer->ground, &look)) {
         renderer->stats.empty_by_bounds++;
         return FF_OK;
     }
-    return draw_face(renderer, request, face);
+    return draw_face(renderer, request, &look, face);
 }
 
 int ff_panorama_render_face(ff_panorama_renderer *renderer, const ff_get_panorama *request,

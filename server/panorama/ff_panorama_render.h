@@ -9,6 +9,7 @@
 #include "../../common3d/c3d.h"
 #include "../../protocol/message/ff_message.h"
 #include "../../protocol/ff_pack.h"
+#include "../ground/ff_pack_ground.h"
 
 typedef struct ff_panorama_renderer ff_panorama_renderer;
 
@@ -17,11 +18,8 @@ typedef struct ff_panorama_render_stats {
     uint32_t faces;
     uint32_t empty_by_bounds; /* found empty from bounds of terrain or nodes, without drawing */
     uint32_t empty_drawn;     /* found empty in the picture */
-    /* roots and refinements taken from the pack, damaged ones not counted */
-    uint32_t nodes_read;
-    uint32_t nodes_damaged; /* their ground is drawn coarser */
-    uint32_t nodes_drawn;
-    uint64_t triangles, bytes;
+    ff_pack_ground_stats ground;
+    uint64_t bytes;
     int64_t time_us; /* by sys_time_us */
 } ff_panorama_render_stats;
 

@@ -1,8 +1,9 @@
 /* One client's session: a small parser, a queue of requests and a buffer of answers.
  *
- * Room in the buffer: nodes and textures up to out_bytes_max, above that one face of a panorama,
- * above that short answers (FAILED, CANCELLED, PONG), and a last reserve for the GOODBYE. So a slow
- * reader costs a fixed amount of memory, and its own reading says when to go on.
+ * Room in the buffer: nodes and textures up to out_bytes_max, above that one face of a panorama or
+ * sector of a far set, above that short answers (FAILED, CANCELLED, PONG), and a last reserve for
+ * the GOODBYE. So a slow reader costs a fixed amount of memory, and its own reading says when to go
+ * on.
  */
 #include "ff_session_local.h"
 #include "../packs/ff_packs.h"
@@ -55,10 +56,10 @@ struct ff_session {
     request *queue; /* [queue_first, queue_end) wait, some of them cancelled */
     uint32_t queue_first, queue_end, queue_live;
 
-    ff_get_panorama panorama; /* the one being served, if panorama_on */
-    int panorama_on, job_out, job_stale;
-    uint8_t next_face; /* index into panorama.face */
-    allowance panoramas, views;
+    ff_face_job drawing; /* the panorama or far set being served, if drawing_on */
+    int drawing_on, job_out, job_stale;
+    uint8_t next_face; /* index into its list of faces or sectors */
+    allowance drawings, views;
     view_parts view;
 
     uint8_t *out; /* [out_first, out_end) waits to be sent */
@@ -94,7 +95,7 @@ ff_session *ff_session_create(const ff_session_desc *desc)
         return NULL;
     }
     session->now_us = session->last_message_us = desc->now_us;
-    session->panoramas = session->views = (allowance){ MINUTE_US, desc->now_us };
+    session->drawings = session->views = (allowance){ MINUTE_US, desc->now_us };
     return session;
 }
 
@@ -347,41 +348,56 @@ int ff_session_ask_view(ff_session *session, const ff_message *ask)
     return enqueue(session, (request){ fetch_record, ask->kind, { wanted->id, 0 } });
 }
 
-/* ---- panoramas ---- */
+/* ---- panoramas and far sets ---- */
 
-static void panorama_drop(ff_session *session)
+static void drawing_drop(ff_session *session)
 {
-    session->panorama_on = 0;
+    session->drawing_on = 0;
     session->job_stale = session->job_out;
 }
 
-int ff_session_ask_faces(ff_session *session, const ff_message *ask)
+static uint16_t drawing_id(const ff_face_job *job)
 {
-    const ff_get_panorama *wanted = &ask->u.panorama;
-    if (!allowed(session, &session->panoramas, session->desc.panoramas_per_minute,
+    return job->kind == FF_KIND_FAR ? job->far.id : job->request.id;
+}
+
+static int draw(ff_session *session, ff_face_job job)
+{
+    if (!allowed(session, &session->drawings, session->desc.panoramas_per_minute,
                  session->desc.panoramas_per_minute)) {
-        answer_failed(session, wanted->id, FF_ERR_FULL);
+        answer_failed(session, drawing_id(&job), FF_ERR_FULL);
         return FF_OK;
     }
-    if (session->panorama_on) {
-        answer_cancelled(session, session->panorama.id);
-        panorama_drop(session);
+    if (session->drawing_on) {
+        answer_cancelled(session, drawing_id(&session->drawing));
+        drawing_drop(session);
     }
-    session->stats.panoramas++;
-    session->panorama = *wanted;
-    session->panorama_on = 1;
+    *(job.kind == FF_KIND_FAR ? &session->stats.far_sets : &session->stats.panoramas) += 1;
+    session->drawing = job;
+    session->drawing_on = 1;
     session->next_face = 0;
     return FF_OK;
 }
 
+int ff_session_ask_faces(ff_session *session, const ff_message *ask)
+{
+    return draw(session, (ff_face_job){ .kind = ask->kind, .request = ask->u.panorama });
+}
+
+int ff_session_ask_far(ff_session *session, const ff_message *ask)
+{
+    return draw(session, (ff_face_job){ .kind = ask->kind, .far = ask->u.get_far });
+}
+
 int ff_session_next_face(ff_session *session, ff_face_job *job)
 {
-    if (session->error || !session->panorama_on || session->job_out ||
+    if (session->error || !session->drawing_on || session->job_out ||
         out_pending(session) > session->desc.out_bytes_max)
         return 0;
-    job->request = session->panorama;
-    job->face = session->panorama.face[session->next_face];
-    job->last = session->next_face + 1 == session->panorama.face_count;
+    *job = session->drawing;
+    int far = job->kind == FF_KIND_FAR;
+    job->face = (far ? job->far.sector : job->request.face)[session->next_face];
+    job->last = session->next_face + 1 == (far ? job->far.sector_count : job->request.face_count);
     session->job_out = 1;
     session->job_stale = 0;
     return 1;
@@ -397,18 +413,18 @@ void ff_session_face_done(ff_session *session, const ff_face_job *job, const uin
         serve_queue(session); /* an answer may have waited for the face */
         return;
     }
-    assert(session->panorama_on && session->panorama.id == job->request.id);
+    assert(session->drawing_on && drawing_id(&session->drawing) == drawing_id(job));
     if (bytes_or_error > (int)FACE_BYTES || bytes_or_error == 0) bytes_or_error = FF_ERR_RANGE;
     if (bytes_or_error < 0) {
-        session->panorama_on = 0;
-        answer_failed(session, session->panorama.id, bytes_or_error);
+        session->drawing_on = 0;
+        answer_failed(session, drawing_id(job), bytes_or_error);
         return;
     }
     memcpy(out_room(session, (size_t)bytes_or_error), message, (size_t)bytes_or_error);
     session->out_end += (size_t)bytes_or_error;
-    session->stats.answers[FF_DATA_FACES]++;
+    session->stats.answers[ff_kind[job->kind].data]++;
     session->next_face++;
-    if (job->last) session->panorama_on = 0;
+    if (job->last) session->drawing_on = 0;
     serve_queue(session);
 }
 
@@ -416,8 +432,8 @@ void ff_session_face_done(ff_session *session, const ff_face_job *job, const uin
 
 static void cancel(ff_session *session, uint16_t id)
 {
-    if (session->panorama_on && session->panorama.id == id) {
-        panorama_drop(session);
+    if (session->drawing_on && drawing_id(&session->drawing) == id) {
+        drawing_drop(session);
         answer_cancelled(session, id);
         return;
     }

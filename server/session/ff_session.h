@@ -18,7 +18,7 @@ typedef struct ff_session_desc {
     uint32_t out_bytes_max;
     /* requests waiting; 0: 256; more closes the session (GOODBYE, FULL) */
     uint32_t requests_max;
-    uint32_t panoramas_per_minute; /* 0: 120; more are answered FAILED(FULL) */
+    uint32_t panoramas_per_minute; /* and far sets; 0: 120; more are answered FAILED(FULL) */
     uint32_t views_per_minute; /* 0: 60, 8 at once; more get what they name and nothing below it */
     uint32_t idle_ms_max;      /* no message for this long closes; 0: 10 minutes */
     int64_t now_us; /* time of the connection: idle counts from here until it is welcomed */
@@ -27,7 +27,7 @@ typedef struct ff_session_desc {
 typedef struct ff_session_stats {
     uint64_t bytes_in, bytes_out;
     uint32_t answers[FF_DATA_CLASSES]; /* those that brought something */
-    uint32_t panoramas, views, failed, cancelled;
+    uint32_t panoramas, far_sets, views, failed, cancelled;
     uint32_t damaged; /* of the failed: records whose checksum is wrong */
 } ff_session_stats;
 
@@ -47,12 +47,14 @@ void ff_session_end(ff_session *session, int reason);
 /* 1 when idle for too long. */
 int ff_session_idle(const ff_session *session, int64_t now_us);
 
-/* Panoramas are rendered elsewhere: the next face to render, 1 and the job, or 0. At most one face
- * of a session is out at a time, and a newer panorama request supersedes the faces of an older one
- * not yet rendered (its id is answered CANCELLED). */
+/* Panoramas and far sets are rendered elsewhere: the next face or sector to render, 1 and the job,
+ * or 0. At most one of a session is out at a time, and a newer request for either supersedes the
+ * faces or sectors of an older one not yet rendered (its id is answered CANCELLED). */
 typedef struct ff_face_job {
-    ff_get_panorama request;
-    uint8_t face;
+    enum ff_kind kind;       /* FF_KIND_FACE or FF_KIND_FAR */
+    ff_get_panorama request; /* of a face */
+    ff_get_far far;          /* of a sector */
+    uint8_t face;            /* or sector */
     uint8_t last;
 } ff_face_job;
 int ff_session_next_face(ff_session *session, ff_face_job *job);

@@ -63,6 +63,8 @@ static ff_quality quality_of(const ff_get_view *view)
                          .depth_max = view->depth_max,
                          .sigma_q8 = SIGMA_Q8,
                          .view_wu = view->reach_wu,
+                         .fine_wu = view->fine_wu,
+                         .coarse = view->coarse,
                          .triangles_max = view->triangles_max };
 }
 

@@ -150,6 +150,14 @@ static int read_audit(fly_flight *flight, fly_sources *from)
         view.grounds = sim_drawn_grounds_of(tree);
     }
     (void)ff_client_panorama(world->client, view.panorama.pos_wu, &view.faces);
+    if (world->fins.rc != FF_OK) return fail("auditor", ff_error_text(world->fins.rc));
+    ff_far_in_use far;
+    if (ff_client_far(world->client, &far)) {
+        view.fins =
+            (sim_drawn_fins){ .fins = &world->fins, .set = far.set, .sectors = far.sectors };
+        memcpy(view.fins.position_wu, far.position_wu, sizeof far.position_wu);
+        sim_fins_forget(&world->fins, far.set);
+    }
     int rc = sim_audit_frame(world->auditor, &view, audit);
     if (rc != FF_OK) return fail("auditor", ff_error_text(rc));
     from->truth_error_m = world->grounds.truth_error_m;
@@ -181,7 +189,7 @@ static void judge_nothing(fly_sources *from)
     from->audit.undrawn_percent = from->audit.filled_percent = from->panorama_px_percent =
         from->truth_error_m = NAN;
     f->judged_all = f->supporting = f->hidden = f->percent = f->no_reserve_percent = NAN;
-    f->reserve_came = f->reserve_unused = NAN;
+    f->reserve_came = f->reserve_unused = f->fins_came = NAN;
     from->picture = (sim_picture_figures){ NAN, NAN, NAN };
 }
 
@@ -335,6 +343,11 @@ static void tell_relevance(fly_flight *flight)
     view.in_view_count = ff_tree_in_view(tree, &view.drawn);
     view.grounds = sim_drawn_grounds_of(tree);
     view.panorama = ff_client_panorama(flight->world->client, view.panorama_pos_wu, &faces);
+    ff_far_in_use far;
+    if (ff_client_far(flight->world->client, &far)) {
+        view.far_sectors = far.sectors;
+        memcpy(view.far_pos_wu, far.world_wu, sizeof far.world_wu);
+    }
     sim_relevance_frame(flight->world->relevance, &view);
 }
 

@@ -44,6 +44,7 @@ static void complete(fly_options *options)
         (ff_panorama_desc){ .enabled = (uint8_t)options->use_panorama,
                             .back_plane_wu = (int32_t)(options->back_plane_m * FF_WU_PER_METRE),
                             .face_size = (uint16_t)options->face_texels };
+    options->far = SIM_FAR_DESC(options);
     int path = sys_word_index(path_words, options->path_text);
     options->path = path < 0 ? FLY_RECORDED : (enum fly_path_kind)path;
     if (options->check == SYS_UNSET) options->check = options->audit;
@@ -119,15 +120,16 @@ void fly_options_print(const fly_options *options)
 {
     fprintf(stderr,
             "farfield-fly: seed %llu, pack %s, %s %s, %g km/h, %g s after %g s, %s from %g, "
-            "%g m up, quality %s, panorama %s, balance %s, %ux%u at %g degrees, %u fps, "
+            "%g m up, quality %s, panorama %s, far %s, balance %s, %ux%u at %g degrees, %u fps, "
             "backend %s, %u bytes, audit %s%s%s\n",
             (unsigned long long)options->seed, options->pack_path,
             options->server ? "server" : "link",
             options->server ? options->server : options->link_text, options->speed_kmh,
             options->seconds, options->settle_s, options->path_text, options->start,
             options->height_m, options->quality_text, sim_panorama_words[options->use_panorama],
-            options->balance_text, options->size.width, options->size.height, options->fov_degrees,
-            options->fps, fly_backend_name((enum fly_backend)options->backend),
-            options->memory_bytes, options->audit ? "on" : "off",
-            options->truths.count ? " by " : "", options->truths.count ? options->truth_path : "");
+            sim_far_words[options->use_far], options->balance_text, options->size.width,
+            options->size.height, options->fov_degrees, options->fps,
+            fly_backend_name((enum fly_backend)options->backend), options->memory_bytes,
+            options->audit ? "on" : "off", options->truths.count ? " by " : "",
+            options->truths.count ? options->truth_path : "");
 }

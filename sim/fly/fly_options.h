@@ -105,6 +105,7 @@ extern const sys_option_type fly_events_option;
            "where the panorama takes over; default 7500") \
     OPTION(sys_whole, face_texels, "face", "N", NULL, FLY_TEXELS, \
            "a panorama's face each way; default 256; a larger one needs more --memory") \
+    SIM_FAR_OPTIONS(OPTION) \
     OPTION(sys_real, view_m, "view", "M", NULL, FLY_DISTANCE, \
            "how far ground is drawn without panorama; default: to the horizon") \
     SIM_PLAIN_ARRAYS_OPTION(OPTION) \
@@ -157,6 +158,7 @@ typedef struct fly_options {
     sim_link_desc link;
     ff_quality quality;
     ff_panorama_desc panorama;
+    ff_far_desc far;
     ff_balance_desc balance;
     enum fly_path_kind path;
     fly_recording recording; /* of FLY_RECORDED */

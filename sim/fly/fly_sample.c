@@ -180,6 +180,7 @@ void fly_json(FILE *file, const fly_options *options, const fly_sample *sample, 
     json_text(file, "link", options->server ? options->server : options->link_text);
     json_text(file, "quality", options->quality_text);
     json_text(file, "backend", fly_backend_name(options->backend));
+    json_text(file, "far", sim_far_words[options->use_far]);
     fprintf(file, ",\n  \"speed_kmh\": %g,\n  \"seconds\": %g,\n  \"panorama\": %s",
             options->speed_kmh, options->seconds, options->panorama.enabled ? "true" : "false");
     json_columns(file, first_column, FIRST_COUNT, sample, from, count);

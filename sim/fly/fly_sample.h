@@ -96,7 +96,16 @@
     X(triangles_hidden, "%.0f", MEAN, from->client.tree.triangles_hidden) \
     X(unused_hidden, "%.0f", TOTAL, from->relevance.hidden) \
     X(seam_px_p95, "%.3f", SOME, from->audit.seam_px_p95) \
-    X(seam_px_max, "%.3f", MOST, from->audit.seam_px_max)
+    X(seam_px_max, "%.3f", MOST, from->audit.seam_px_max) \
+    X(far_sets, "%.0f", TOTAL, from->client.far_sets) \
+    X(far_requests, "%.0f", TOTAL, from->client.far_requests) \
+    X(far_sectors, "%.0f", TOTAL, from->client.far_sectors) \
+    X(far_sectors_empty, "%.0f", TOTAL, from->client.far_sectors_empty) \
+    X(far_bytes, "%.0f", TOTAL, from->client.far_bytes) \
+    X(far_fins_bytes, "%.0f", TOTAL, from->relevance.fins_came) \
+    X(bytes_far, "%.0f", TOTAL, from->relevance.came[FF_DATA_FAR]) \
+    X(unused_far, "%.0f", TOTAL, from->relevance.unused[FF_DATA_FAR]) \
+    X(square_px_far, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_FAR])
 /* clang-format on */
 
 /* What a row is made from. NAN in all that nobody judges. */

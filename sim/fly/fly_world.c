@@ -66,6 +66,7 @@ static int open_tape(fly_world *world)
                            .height = options->size.height,
                            .quality = options->quality,
                            .panorama = options->panorama,
+                           .far = options->far,
                            .hidden = (enum ff_hidden)options->hidden,
                            .no_views = !options->views };
     int rc = options->tape_path
@@ -137,6 +138,7 @@ static int open_client(fly_world *world)
                             .height = options->size.height,
                             .quality = options->quality,
                             .panorama = options->panorama,
+                            .far = options->far,
                             .balance = options->balance,
                             .use_thread = options->server != NULL,
                             .use_plain_arrays = (uint8_t)options->plain_arrays,
@@ -154,6 +156,7 @@ static int open_client(fly_world *world)
         return fail("client", rc);
     }
     ff_client_set_show(world->client, options->show);
+    if (world->auditor) ff_client_watch_fins(world->client, sim_fins_take, &world->fins);
     if (world->relevance) sim_relevance_ask(world->relevance, asked_for_reserve, world->client);
     return 0;
 }
@@ -182,6 +185,7 @@ void fly_world_close(fly_world *world)
     sim_link_destroy(world->link);
     sim_relevance_destroy(world->relevance);
     sim_auditor_destroy(world->auditor);
+    sim_fins_free(&world->fins);
     fly_grounds_close(&world->grounds);
     ff_packs_close(&world->locals);
     ff_packs_close(&world->packs);

@@ -20,6 +20,7 @@ typedef struct fly_world {
     ff_source_desc more[FF_SOURCES_MAX - 1];
     fly_grounds grounds; /* of both */
     sim_auditor *auditor;
+    sim_fins fins; /* of the client's far sets, for the auditor */
     fly_path path;
     sim_link *link; /* NULL with a real server */
     sim_stream client_end;

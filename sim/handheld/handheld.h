@@ -22,6 +22,7 @@
     SIM_CLIENT_OPTIONS(OPTION, NULL, "the client's one block; default 4M, or what the tape says") \
     SIM_PANORAMA_OPTION(OPTION, "auto", \
            "far ground as panoramas, with --server; a tape has its own") \
+    SIM_FAR_OPTIONS(OPTION) \
     OPTION(sys_whole, speed_kmh, "speed", "KMH", "150", SYS_WHOLE(0, SIM_SPEED_KMH_MAX, "km/h"), \
            "how fast") \
     OPTION(sys_whole, height_m, "height", "M", "100", SYS_WHOLE(1, SIM_HEIGHT_M_MAX, "m"), \
@@ -45,6 +46,7 @@ typedef struct handheld_options {
     /* what follows from them */
     ff_quality quality;
     ff_panorama_desc panorama;
+    ff_far_desc far;
     ff_balance_desc balance;
 } handheld_options;
 

@@ -60,6 +60,7 @@ ff_client_desc handheld_client_desc(const handheld *device)
                              .height = device->height,
                              .quality = head ? head->quality : options->quality,
                              .panorama = head ? head->panorama : options->panorama,
+                             .far = head ? head->far : options->far,
                              .surface_api = device->surface_api,
                              .backend = device->surface ? c3d_backend_soft() : NULL,
                              .use_plain_arrays = 1,

@@ -25,6 +25,7 @@ int handheld_options_parse(handheld_options *options, int argc, char **argv)
     sim_client_read(&options->quality_text, options->triangles, &options->size,
                     options->balance_text, &options->quality, &options->balance);
     options->panorama.enabled = (uint8_t)options->use_panorama;
+    options->far = SIM_FAR_DESC(options);
     if (!options->pack_path + !options->server + !options->tape_path != 2)
         return fail("one of --pack, --server and --tape is wanted; try --help");
     if (options->plan && !options->pack_path) return fail("--plan: --pack is wanted with it");

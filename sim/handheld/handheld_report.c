@@ -9,7 +9,7 @@ typedef struct figure {
     uint64_t value;
 } figure;
 
-#define FIGURES_MAX 48
+#define FIGURES_MAX 64
 
 /* Where the back end has the finished frame, for counters of memory accesses; NULL: no picture. */
 static const void *pixels_of(const handheld *device, uint64_t *bytes)

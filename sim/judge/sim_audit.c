@@ -106,6 +106,22 @@ int sim_audit_drawn_height(const sim_auditor *auditor, const ff_drawn *drawn, ui
     return drawn_at(auditor, drawn, count, point_m, z_m) != NULL;
 }
 
+/* How many times as wrong as near ground a node may be: the quality allows it when all of the node
+ * is far away. */
+static double coarse_times(const frame *of, const ff_terrain_info *info, const ff_drawn *drawn)
+{
+    const ff_quality *quality = &of->view->quality;
+    double middle_m[3],
+        half_m = (double)drawn->cell_wu * (1u << info->node_log2) / 2 / FF_WU_PER_METRE,
+        fine_m = (double)quality->fine_wu / FF_WU_PER_METRE;
+    if (quality->coarse <= 1) return 1;
+    sim_place_middle(info, drawn, middle_m);
+    return fabs(middle_m[0] - of->e.pos_m[0]) - half_m > fine_m ||
+                   fabs(middle_m[1] - of->e.pos_m[1]) - half_m > fine_m
+               ? quality->coarse
+               : 1;
+}
+
 /* Why is the ground no finer here? Asked in the terms of the quality, not of the client's
  * selection. */
 static enum sim_audit_cause cause_of(const frame *of, const ff_drawn *drawn, double error_px)
@@ -115,14 +131,16 @@ static enum sim_audit_cause cause_of(const frame *of, const ff_drawn *drawn, dou
     const ff_terrain_info *info = sim_mesh_info(&auditor->mesh, drawn);
     uint32_t next = ff_key_level(drawn->key) + 1;
     double edge_m = (double)drawn->cell_wu * (1u << info->node_log2) / FF_WU_PER_METRE;
-    int splits = error_px > quality->error_px_q8 / 256.0;
+    double times = coarse_times(of, info, drawn);
+    int splits = error_px > times * quality->error_px_q8 / 256.0;
     if (quality->measure == FF_MEASURE_DISTANCE) {
         double middle_m[3], d[3];
         sim_place_middle(info, drawn, middle_m);
         sim_place_lift(auditor->ground, of->e.pos_m, middle_m,
                        sim_ground_height_m(auditor->ground, middle_m[0], middle_m[1]), middle_m);
         for (int i = 0; i < 3; i++) d[i] = middle_m[i] - of->e.pos_m[i];
-        splits = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) < edge_m * quality->c_q8 / 256.0;
+        splits = times * sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]) <
+                 edge_m * quality->c_q8 / 256.0;
     }
     if (!splits || next >= ff_terrain_levels(info)) return SIM_CAUSE_QUALITY;
     if (quality->depth_max && next >= quality->depth_max) return SIM_CAUSE_DEPTH;
@@ -385,8 +403,10 @@ static void look_around(frame *of)
         if (at->ground || (!node && !ask_faces(of, at->pixel, sim_faces_show))) continue;
         at->wrong = 1;
         at->error_px = sky_error(of, at);
-        at->cause = node ? cause_of(of, &of->view->drawn[node - 1], at->error_px)
-                         : SIM_CAUSE_PANORAMA;
+        at->cause = !node ? SIM_CAUSE_PANORAMA
+                    : node == SIM_COVER_FIN
+                        ? SIM_CAUSE_FAR
+                        : cause_of(of, &of->view->drawn[node - 1], at->error_px);
     }
 }
 
@@ -457,6 +477,7 @@ int sim_audit_frame(sim_auditor *auditor, const sim_audit_view *view, sim_audit_
         rc = sim_cover_make(&auditor->cover, &auditor->mesh, camera, auditor->step_px, view->drawn,
                             view->drawn_count);
     if (rc != FF_OK) return rc;
+    sim_cover_fins(&auditor->cover, camera, &view->fins);
     sim_eye_of(camera, &of.e);
     if (view->faces) sim_faces_use(&auditor->faces, &view->panorama);
     look_at_all(&of);

@@ -16,15 +16,16 @@
  *             for the ground there (one-sided Hausdorff: how far the drawn ground's edge would have
  *             to come), the picture's diagonal where there is none. Counted in undrawn_percent too.
  *
- * A pixel that truly shows the sky has an error, too, when ground is drawn there: by a triangle, or
- * by a texel of a panorama (sim_faces.h). The error is the distance to the nearest true ground of
- * the picture, where ground would be right, the picture's diagonal where there is none. Its cause
- * is what keeps that node, or the panorama, from being right.
+ * A pixel that truly shows the sky has an error, too, when ground is drawn there: by a triangle, a
+ * fin's too, or by a texel of a panorama (sim_faces.h). The error is the distance to the nearest
+ * true ground of the picture, where ground would be right, the picture's diagonal where there is
+ * none. Its cause is what keeps that node, or the panorama, from being right.
  *
  * The skyline is judged apart, over the whole picture: in each column of pixels the topmost true
  * ground, found by rays to 1/16 pixel, against the topmost drawn ground, by triangles cut at the
- * eye and by the texels of panoramas. Where only one of the two exists the other counts as the
- * picture's lower border; columns without ground do not count.
+ * eye, fins' among them, and by the texels of panoramas. Where ground is drawn by nodes and a fin
+ * is before it the error of its pixels is still that of the nodes. Where only one of the two exists
+ * the other counts as the picture's lower border; columns without ground do not count.
  *
  * Of several grounds the upper is what is drawn at a place. Where the drawn grounds of two meet and
  * do not touch, the sky shows through below drawn ground: such a pixel counts as undrawn, too, with
@@ -38,6 +39,7 @@
 #define SIM_AUDIT_H
 
 #include "sim_faces.h"
+#include "sim_fins.h"
 #include "sim_ground.h"
 #include "sim_mesh.h"
 
@@ -50,6 +52,7 @@ enum sim_audit_cause {
     SIM_CAUSE_STUB,     /* the quality asks for finer ground, and there is some: not in the pack */
     SIM_CAUSE_QUALITY,  /* fine enough for the quality, or as fine as the terrain is */
     SIM_CAUSE_PANORAMA, /* parallax, and the size of a face's texels */
+    SIM_CAUSE_FAR,      /* a fin over the sky */
     SIM_CAUSE_UNDRAWN,  /* nothing is drawn there */
     SIM_CAUSES
 };
@@ -62,6 +65,7 @@ typedef struct sim_audit_view {
     sim_drawn_grounds grounds;
     unsigned faces; /* of the panorama in use, bit per enum ff_face_name held; 0: none is */
     sim_panorama panorama;
+    sim_drawn_fins fins;
 } sim_audit_view;
 
 typedef struct sim_audit_result {

@@ -196,3 +196,37 @@ int sim_cover_make(sim_cover *cover, const sim_mesh *mesh, const c3d_camera *cam
         cover_node(cover, mesh, &e, &drawn[i], i + 1);
     return rc;
 }
+
+/* ---- fins ---- */
+
+/* As they are drawn: ground has fallen away from O in them, and does not once more. */
+static void cover_fin(sim_cover *cover, const sim_eye *e, const double origin_m[3],
+                      const sim_fin *fin)
+{
+    sim_vertex corner[3];
+    const sim_vertex *const point[3] = { &corner[0], &corner[1], &corner[2] };
+    sim_corner polygon[CORNERS_MAX];
+    for (int i = 0; i < 3; i++) {
+        double way[3];
+        for (int k = 0; k < 3; k++) way[k] = origin_m[k] + fin->corner_m[i][k] - e->pos_m[k];
+        sim_eye_turn(e, way, corner[i].eye);
+        corner[i].before = corner[i].eye[2] >= NEAREST_M;
+        if (corner[i].before) corner[i].at = project(e, corner[i].eye);
+    }
+    unsigned count = cut_triangle(e, point, polygon);
+    if (count) cover_polygon(cover, polygon, count, SIM_COVER_FIN);
+}
+
+void sim_cover_fins(sim_cover *cover, const c3d_camera *camera, const sim_drawn_fins *drawn)
+{
+    sim_eye e;
+    double origin_m[3];
+    if (!drawn->fins) return;
+    sim_eye_of(camera, &e);
+    for (int k = 0; k < 3; k++) origin_m[k] = (double)drawn->position_wu[k] / FF_WU_PER_METRE;
+    for (size_t i = 0; i < drawn->fins->count; i++) {
+        const sim_fin *fin = &drawn->fins->fin[i];
+        if (fin->set == drawn->set && (drawn->sectors >> fin->sector & 1u))
+            cover_fin(cover, &e, origin_m, fin);
+    }
+}

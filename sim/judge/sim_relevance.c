@@ -18,15 +18,15 @@
 typedef struct asked {
     enum ff_kind kind;
     ff_key key;
-    int32_t position_wu[3]; /* faces */
+    int32_t position_wu[3]; /* faces and sectors */
     int reserve;
 } asked;
 
 typedef struct answer {
     enum ff_kind kind;
     ff_key key;             /* heights: the node made (roots) or refined; images */
-    int32_t position_wu[3]; /* faces */
-    unsigned face, face_size;
+    int32_t position_wu[3]; /* faces and sectors */
+    unsigned sector, face, face_size;
     /* of each column of the face the rows that show ground: first[column] to before
      * first[face_size + column]; NULL: the face is empty */
     uint16_t *first;
@@ -135,6 +135,10 @@ static void take_answer(sim_relevance *relevance, const ff_message *message, siz
         a.face = face->face;
         a.face_size = face->face_size;
         if (!(face->flags & FF_FACE_EMPTY)) a.first = take_spans(relevance, face);
+    } else if (ff_kind[a.kind].brings == FF_BRINGS_FAR) {
+        memcpy(a.position_wu, q->position_wu, sizeof a.position_wu);
+        a.sector = message->u.far.sector;
+        relevance->figures.fins_came += message->u.far.fins_bytes;
     }
     keep(relevance, a);
 }
@@ -167,6 +171,9 @@ static void take_up(sim_relevance *relevance, const ff_message *message)
     switch ((enum ff_kind_asks)ff_kind[q->kind].asks) {
         case FF_ASKS_NODE: q->key = message->u.get.key; break;
         case FF_ASKS_VIEW: break; /* each part says what it is of */
+        case FF_ASKS_FAR:
+            memcpy(q->position_wu, message->u.get_far.position_wu, sizeof q->position_wu);
+            break;
         case FF_ASKS_PANORAMA:
             memcpy(q->position_wu, message->u.panorama.position_wu, sizeof q->position_wu);
             break;
@@ -428,6 +435,16 @@ static void mark_faces(sim_relevance *relevance, const sim_relevance_view *view)
     end_faces(relevance, view);
 }
 
+static void mark_sectors(sim_relevance *relevance, const sim_relevance_view *view)
+{
+    for (size_t i = relevance->first_young; view->far_sectors && i < relevance->count; i++) {
+        answer *a = &relevance->answer[i];
+        if (a->kind == FF_KIND_FAR && (view->far_sectors >> a->sector & 1u) &&
+            memcmp(a->position_wu, view->far_pos_wu, sizeof a->position_wu) == 0)
+            mark(relevance, a);
+    }
+}
+
 void sim_relevance_frame(sim_relevance *relevance, const sim_relevance_view *view)
 {
     relevance->frame++;
@@ -444,6 +461,7 @@ void sim_relevance_frame(sim_relevance *relevance, const sim_relevance_view *vie
     for (uint32_t i = view->drawn_count; i < view->in_view_count; i++)
         mark_hidden(relevance, view->drawn[i].key);
     mark_faces(relevance, view);
+    mark_sectors(relevance, view);
 }
 
 /* Adds up an answer whose time is over. */

@@ -15,6 +15,8 @@
  *             ground hides, in the frame with the largest share; an empty face wholly, when any
  *             direction of it is seen. Four times a second every fourth pixel each way is looked
  *             at.
+ *   sector    of a far set: its set is the one in use, and the sector may be seen; an empty one
+ *             likewise.
  *   reserve   what the client asked for on an idle link without a use in sight. By its purpose most
  *             of it is not drawn in time: the shares with and without it stand side by side.
  *             Whether a request was made for it cannot be seen on the wire, and is all that the
@@ -38,6 +40,7 @@ typedef struct sim_relevance_figures {
     double judged[FF_DATA_CLASSES]; /* came at least SIM_RELEVANCE_US ago; overhead: at once */
     double unused[FF_DATA_CLASSES]; /* of the judged: not drawn in time */
     double judged_all;              /* sum of judged */
+    double fins_came;               /* within came[FF_DATA_FAR]: fins alone, without paint */
     double reserve_came, reserve_judged, reserve_unused; /* within those above */
     /* of unused heights, not the reserve's: those without which a drawn node could not be drawn,
      * and of the others those that nearer ground hid */
@@ -55,6 +58,8 @@ typedef struct sim_relevance_view {
     sim_drawn_grounds grounds; /* their keys number those of the stream's messages first */
     int panorama;              /* 1: a panorama is in use, taken at position_wu */
     int32_t panorama_pos_wu[3];
+    unsigned far_sectors;  /* of the far set in use, bit per sector that may be seen; 0: none */
+    int32_t far_pos_wu[3]; /* where that was taken */
 } sim_relevance_view;
 
 typedef struct sim_relevance sim_relevance;

@@ -18,6 +18,7 @@ void sim_server_free(sim_server *server)
 {
     if (server->session) ff_session_destroy(server->session);
     if (server->renderer) ff_panorama_renderer_close(server->renderer);
+    ff_far_renderer_close(server->far_renderer);
     free(server->face);
     memset(server, 0, sizeof *server);
 }
@@ -64,6 +65,26 @@ static int open_renderer(sim_server *server)
     return server->renderer_error;
 }
 
+static int draw_face(sim_server *server)
+{
+    const ff_face_job *job = &server->job;
+    int rc = open_renderer(server);
+    if (rc != FF_OK) return rc;
+    server->faces_rendered++;
+    return ff_panorama_render_face(server->renderer, &job->request, job->face, job->last,
+                                   server->face, FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX);
+}
+
+static int draw_sector(sim_server *server)
+{
+    const ff_face_job *job = &server->job;
+    int rc = server->far_renderer ? FF_OK
+                                  : ff_far_renderer_open(server->pack, &server->far_renderer);
+    if (rc != FF_OK) return rc;
+    return ff_far_render_sector(server->far_renderer, &job->far, job->face, job->last, server->face,
+                                FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX);
+}
+
 static void render(sim_server *server)
 {
     if (server->job_done_us && *server->now_us >= server->job_done_us) {
@@ -71,13 +92,7 @@ static void render(sim_server *server)
         server->job_done_us = 0;
     }
     if (server->job_done_us || !ff_session_next_face(server->session, &server->job)) return;
-    server->face_bytes = open_renderer(server);
-    if (server->face_bytes == FF_OK) {
-        server->face_bytes = ff_panorama_render_face(
-            server->renderer, &server->job.request, server->job.face, server->job.last,
-            server->face, FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX);
-        server->faces_rendered++;
-    }
+    server->face_bytes = server->job.kind == FF_KIND_FAR ? draw_sector(server) : draw_face(server);
     server->job_done_us = *server->now_us + SIM_SERVER_FACE_US;
 }
 

@@ -140,7 +140,28 @@ static int take_memory(const sys_option *option, const char *text, void *field)
     return 0;
 }
 
+/* ---- where far sets begin ---- */
+
+static int front_range(const sys_option *option, char *text, size_t room)
+{
+    (void)option;
+    return snprintf(text, room, "1 to %d m", FF_PANORAMA_BACK_WU_MAX / FF_WU_PER_METRE);
+}
+
+static int take_front(const sys_option *option, const char *text, void *field)
+{
+    uint64_t wu;
+    (void)option;
+    if (sys_decimal(&text, FF_WU_PER_METRE, FF_PANORAMA_BACK_WU_MAX, &wu) || *text ||
+        wu < FF_WU_PER_METRE)
+        return SYS_NOT_ONE;
+    *(sim_front *)field = (sim_front)wu;
+    return 0;
+}
+
+const char *const sim_far_words[] = { "off", "fins", "paint", NULL };
 const char *const sim_panorama_words[] = { "off", "on", "auto", NULL };
 const sys_option_type sim_quality_option = { "", quality_range, take_quality },
                       sim_balance_option = { "", balance_range, take_balance },
-                      sim_memory_option = { "a number of ", memory_range, take_memory };
+                      sim_memory_option = { "a number of ", memory_range, take_memory },
+                      sim_front_option = { "", front_range, take_front };

@@ -13,9 +13,12 @@
 typedef const char *sim_quality; /* low, medium, high, paper-low, paper-high, C:DEPTH or px:E */
 typedef const char *sim_balance; /* off, server, client or TRIANGLES[,BYTES] */
 typedef uint32_t sim_memory;     /* bytes, with K or M; at least ff_client_bytes_min() */
+typedef int32_t sim_front;       /* wu, of decimal metres */
 
 extern const char *const sim_panorama_words[]; /* by enum ff_panorama_use */
-extern const sys_option_type sim_quality_option, sim_balance_option, sim_memory_option;
+extern const char *const sim_far_words[];      /* by enum ff_far_use */
+extern const sys_option_type sim_quality_option, sim_balance_option, sim_memory_option,
+    sim_front_option;
 
 /* Sets all of `quality` but view_wu, for a picture of a size; `triangles`, where they are not 0,
  * stand for the text's limit. 0, or SYS_NOT_ONE. */
@@ -52,6 +55,29 @@ void sim_client_read(const char **quality_text, uint32_t triangles, const sys_si
     OPTION(sim_memory, memory_bytes, "memory", "BYTES", memory, SYS_ANY, memory_help)
 #define SIM_PANORAMA_OPTION(OPTION, fallback, help) \
     OPTION(sys_word, use_panorama, "panorama", "USE", fallback, SYS_WORDS(sim_panorama_words), help "; auto: where that is cheaper for the error allowed")
+#define SIM_FAR_OPTIONS(OPTION) \
+    OPTION(sys_word, use_far, "far", "USE", "off", SYS_WORDS(sim_far_words), \
+           "far ground as a coarse tree with fins, the outlines of ridges, and paint on them, taken by " \
+           "the server; no panoramas then") \
+    OPTION(sim_front, far_front_wu, "far-front", "M", NULL, SYS_ANY, \
+           "where that begins; default 7500") \
+    OPTION(sys_whole, far_coarse, "far-coarse", "N", NULL, SYS_WHOLE(1, FF_FAR_COARSE_MAX, ""), \
+           "how many times as wrong as --quality allows the tree may be there; default 4") \
+    OPTION(sys_whole, far_shift, "far-shift", "N", "0", SYS_WHOLE(0, FF_FAR_SHIFT_MAX, ""), \
+           "texels of paint are 2^N pixels wide") \
+    OPTION(sys_whole, far_quality, "far-quality", "Q", NULL, SYS_WHOLE(1, 100, ""), \
+           "JPEG quality of the paint; default 40") \
+    OPTION(sys_whole, far_tolerance, "far-tolerance", "N", NULL, SYS_WHOLE(1, 64, ""), \
+           "quarter pixels that a fin may be off; default 2")
+/* Of a struct that has the fields of those rows. */
+#define SIM_FAR_DESC(options) \
+    (ff_far_desc) { \
+        .enabled = (uint8_t)(options)->use_far, \
+        .front_wu = (options)->far_front_wu, \
+        .coarse = (uint8_t)(options)->far_coarse, .paint_shift = (uint8_t)(options)->far_shift, \
+        .jpeg_quality = (uint8_t)(options)->far_quality, \
+        .tolerance_q2 = (uint8_t)(options)->far_tolerance \
+    }
 #define SIM_SIZE_OPTION(OPTION, help) \
     OPTION(sys_size, size, "size", "WxH", "240x320", SYS_WHOLE(16, FF_PICTURE_SIDE_MAX, "pixels"), \
            help)

@@ -2,7 +2,7 @@
  * machine, another back end) can be flown through the very same flight without server and link.
  * farfield-fly records, farfield-handheld plays.
  *
- * Little endian. "fftape 3", then SIM_TAPE_HEAD signed 32-bit numbers (sim_tape_head), then
+ * Little endian. "fftape 4", then SIM_TAPE_HEAD signed 32-bit numbers (sim_tape_head), then
  * records, each begun by a letter:
  *   W time:i64               ff_client_work
  *   U time:i64 x y z yaw pitch roll focal:i32 flying:u8
@@ -27,6 +27,7 @@ typedef struct sim_tape_head {
     uint16_t width, height;
     ff_quality quality;
     ff_panorama_desc panorama;
+    ff_far_desc far;
     enum ff_hidden hidden;
     uint8_t no_views;
 } sim_tape_head;

@@ -48,6 +48,7 @@ static void put_head(FILE *file, const sim_tape_head *head)
 {
     const ff_quality *q = &head->quality;
     const ff_panorama_desc *p = &head->panorama;
+    const ff_far_desc *f = &head->far;
     const int32_t number[SIM_TAPE_HEAD] = { (int32_t)head->memory_bytes,
                                             head->width,
                                             head->height,
@@ -67,7 +68,13 @@ static void put_head(FILE *file, const sim_tape_head *head)
                                             p->hold_back,
                                             (int32_t)q->triangles_max,
                                             (int32_t)head->hidden,
-                                            head->no_views };
+                                            head->no_views,
+                                            f->enabled,
+                                            f->front_wu,
+                                            f->coarse,
+                                            f->paint_shift,
+                                            f->jpeg_quality,
+                                            f->tolerance_q2 };
     fwrite(SIM_TAPE_MAGIC, 1, SIM_TAPE_MAGIC_BYTES, file);
     for (unsigned i = 0; i < SIM_TAPE_HEAD; i++) put(file, (uint32_t)number[i], 4);
 }

@@ -81,6 +81,7 @@ static int create_client(view_app *app, const char *backend)
                             .frame_format = C3D_RGBA8888,
                             .quality = app->quality,
                             .panorama = app->panorama,
+                            .far = o->far,
                             .balance = o->balance,
                             .use_thread = 1,
                             .about = SIM_ABOUT_SHOWN,
@@ -120,7 +121,7 @@ static int open_pack(view_app *app, const char *path)
 }
 
 /* A target that is a file is a pack, all else is an address. A pack behind a link, or with
- * panoramas, is served from inside this process. */
+ * panoramas or far sets, is served from inside this process. */
 static int open_terrain(view_app *app)
 {
     const view_options *o = app->options;
@@ -135,7 +136,7 @@ static int open_terrain(view_app *app)
     app->panorama.enabled = o->use_panorama != SYS_UNSET ? (uint8_t)o->use_panorama
                             : is_pack                    ? FF_PANORAMA_OFF
                                                          : FF_PANORAMA_AUTO;
-    if (is_pack && !o->link && !app->panorama.enabled) return 0;
+    if (is_pack && !o->link && !app->panorama.enabled && !o->far.enabled) return 0;
     rc = view_link_create(is_pack ? NULL : o->target, &app->packs.pack[0], o->link, &app->link,
                           &app->stream);
     if (rc == FF_ERR_ARGUMENT) return view_fail("%s: neither a pack nor ADDR:PORT", o->target);

@@ -69,6 +69,11 @@ static void put_quality(view_hud *hud, const view_app *app, const ff_client_stat
         put(hud, "c %.2f depth %u", stats->quality.c_q8 / 256.0, stats->quality.depth_max);
     put(hud, "  error about %.1f px\n", ff_client_error_px_q8(app->client) / 256.0);
     if (stats->tree.stubs) put(hud, "nothing finer of %u nodes\n", stats->tree.stubs);
+    if (app->options->far.enabled) {
+        put(hud, "far %s %u sets %.1f kB\n", sim_far_words[app->options->use_far], stats->far_sets,
+            stats->far_bytes / 1000.0);
+        return;
+    }
     if (!app->panorama.enabled) {
         put(hud, "panorama off\n");
         return;

@@ -74,6 +74,7 @@ int view_options_parse(view_options *o, int argc, char **argv)
     if (rc) return rc;
     sim_client_read(&o->quality_text, o->triangles, &o->size, o->balance_text, &o->quality,
                     &o->balance);
+    o->far = SIM_FAR_DESC(o);
     o->fov_brad16 = (int32_t)(o->fov_degrees * 65536 / 360 + 0.5);
     o->yaw_brad16 = (int32_t)(o->yaw_degrees * 65536 / 360) & 65535;
     if (o->script && o->keys) return view_fail("--script and --keys exclude each other");

@@ -112,6 +112,7 @@ def fields_of(text, shared):
 def unread(path, text, shared):
     room = os.path.dirname(path)
     code = "".join(open(name).read() for name in glob.glob(room + "/**/*.[ch]", recursive=True))
+    code += "".join(body for name, body in shared.items() if re.search(r"= %s\(" % name, code))
     return ["%s: nobody reads %s" % (path, field) for field in fields_of(text, shared) if not re.search(r"(\.|->)%s\b" % field, code)]
 
 
@@ -121,6 +122,8 @@ def try_fields():
     for path in ("sim/options/sim_client_options.h", "sim/link/sim_link_option.h"):
         for name, body in re.findall(r"#define (SIM_\w+)\(OPTION[^\n]*\\\n((?:.*\\\n)*.*\n)", open(path).read()):
             shared[name] = body
+        for name, body in re.findall(r"#define (SIM_\w+)\(options\)[^\n]*\\\n((?:.*\\\n)*.*\n)", open(path).read()):
+            shared[name] = body # what makes one value of several options
     result(["%d programs have a list: %s" % (len(lists), lists)] * (len(lists) != len(PROGRAMS)), "each program has its list of options")
     wrong, count = [], 0
     for path in lists:

@@ -255,8 +255,8 @@ static int byte_of_a_kind(unsigned byte)
 
 static void first_bytes_are_those_of_the_specification(void **state)
 {
-    static const uint8_t client[] = { 1, 2, 3, 4, 5, 6, 7, 8, 9 },
-                         server[] = { 65, 66, 67, 68, 69, 70, 71, 72, 73, 74 };
+    static const uint8_t client[] = { 1, 2, 3, 4, 5, 6, 7, 8, 9, 10 },
+                         server[] = { 65, 66, 67, 68, 69, 70, 71, 72, 73, 74, 75 };
     (void)state;
     for (unsigned byte = 0, c = 0, s = 0; byte < 256; byte++) {
         int from_client = c < sizeof client && client[c] == byte,
@@ -428,8 +428,8 @@ static void lengths_and_headers(void **state)
     /* tile 2^28 */
     assert_decode("\x02\x09\x01\x00\x01\x80\x80\x80\x80\x01\x00", 11, FF_ERR_RANGE);
     assert_decode("\x41\x04\x03\x00\x00\x00", 6, FF_ERR_VERSION); /* older */
-    assert_decode("\x41\x04\x07\x00\x00\x00", 6, FF_ERR_VERSION); /* newer */
-    uint8_t old[74] = { 0x41, 72, 5 };                            /* a whole WELCOME of version 5 */
+    assert_decode("\x41\x04\x08\x00\x00\x00", 6, FF_ERR_VERSION); /* newer */
+    uint8_t old[74] = { 0x41, 72, 6 };                            /* a whole WELCOME of version 6 */
     assert_decode((const char *)old, sizeof old, FF_ERR_VERSION);
 }
 

@@ -23,8 +23,13 @@ static ff_message part_of(ff_part part)
 
 static ff_get_view least_view(void)
 {
-    return (
-        ff_get_view){ .focal_q8 = 256, .width = 1, .height = 1, .allowed_q8 = 1, .reach_wu = 1 };
+    return (ff_get_view){ .focal_q8 = 256,
+                          .width = 1,
+                          .height = 1,
+                          .allowed_q8 = 1,
+                          .reach_wu = 1,
+                          .fine_wu = 1,
+                          .coarse = 1 };
 }
 
 static ff_get_view largest_view(void)
@@ -41,6 +46,8 @@ static ff_get_view largest_view(void)
                          .depth_max = 16,
                          .allowed_q8 = INT32_MAX,
                          .reach_wu = INT32_MAX - 1,
+                         .fine_wu = INT32_MAX - 2,
+                         .coarse = FF_VIEW_COARSE_MAX,
                          .triangles_max = UINT32_MAX,
                          .bytes_max = UINT32_MAX - 1,
                          .roots = 0x8002,
@@ -83,6 +90,7 @@ static void views_there_and_back(void **state)
         assert_true(a->width == b->width && a->height == b->height);
         assert_true(a->measure == b->measure && a->depth_max == b->depth_max);
         assert_true(a->allowed_q8 == b->allowed_q8 && a->reach_wu == b->reach_wu);
+        assert_true(a->fine_wu == b->fine_wu && a->coarse == b->coarse);
         assert_true(a->triangles_max == b->triangles_max && a->bytes_max == b->bytes_max);
         assert_true(a->roots == b->roots && a->count == b->count);
         assert_memory_equal(a->below, b->below, sizeof a->below);
@@ -129,6 +137,9 @@ static void ranges_hold_both_ways(void **state)
     BAD(depth_max = 17);
     BAD(allowed_q8 = 0);
     BAD(reach_wu = 0);
+    BAD(fine_wu = 0);
+    BAD(coarse = 0);
+    BAD(coarse = FF_VIEW_COARSE_MAX + 1);
     BAD(count = FF_VIEW_KEYS_MAX + 1);
     BAD(count = 15); /* a root beyond them */
     BAD(below[2] = ff_key_make(0, 2, 16));

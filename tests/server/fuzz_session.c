@@ -1,7 +1,8 @@
-/* A session under any bytes, cut anyhow, read anyhow, with faces that come late, wrong or never.
- * Input: steps of one byte each: kind in the two lowest bits, amount n in the rest.
+/* A session under any bytes, cut anyhow, read anyhow, with faces and sectors that come late, wrong
+ * or never. Input: a byte of limits, then steps of one byte each: kind in the two lowest bits,
+ * amount n in the rest.
  *   0, 1: the next n bytes come from the client; 2: it reads 16*n bytes; 3: n/4 seconds pass, and a
- *       face is asked for or comes back.
+ *       face or sector is asked for or comes back.
  */
 #include "../rig/pack_fixture.h"
 #include "../../server/session/ff_session.h"
@@ -56,21 +57,30 @@ static void drain(fuzz_run *run, size_t most)
     ff_session_sent(run->session, sent);
 }
 
+static ff_message drawn(const ff_face_job *job)
+{
+    uint8_t flags = (uint8_t)(FF_FACE_EMPTY | (job->last ? FF_FACE_LAST : 0));
+    ff_message message = { .type = FF_MSG_ANSWER, .kind = (enum ff_kind)job->kind };
+    if (job->kind == FF_KIND_FAR)
+        message.u.far = (ff_far){ .id = job->far.id, .sector = job->face, .flags = flags };
+    else
+        message.u.face = (ff_face){ .id = job->request.id,
+                                    .face = job->face,
+                                    .face_size = job->request.face_size,
+                                    .flags = flags };
+    return message;
+}
+
 static void face(fuzz_run *run, unsigned amount)
 {
     uint8_t bytes[64];
-    ff_message message = { .type = FF_MSG_ANSWER, .kind = FF_KIND_FACE };
     run->now_us += amount * INT64_C(250000);
     ff_session_idle(run->session, run->now_us);
     if (!run->job_out) {
         run->job_out = ff_session_next_face(run->session, &run->job);
         return;
     }
-    message.u.face =
-        (ff_face){ .id = run->job.request.id,
-                   .face = run->job.face,
-                   .face_size = run->job.request.face_size,
-                   .flags = (uint8_t)(FF_FACE_EMPTY | (run->job.last ? FF_FACE_LAST : 0)) };
+    ff_message message = drawn(&run->job);
     int count = amount % 3 == 0 ? FF_ERR_SYSTEM : ff_message_encode(&message, bytes, sizeof bytes);
     run->job_out = 0;
     ff_session_face_done(run->session, &run->job, bytes, count);

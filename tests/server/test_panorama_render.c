@@ -2,9 +2,9 @@
  * kinds of GL. */
 #include "../rig/pack_fixture.h"
 #include "../../platform/sys.h"
+#include "../../server/ground/ff_pack_ground.h"
 #include "../../server/panorama/ff_face_image.h"
 #include "../../server/panorama/ff_face_view.h"
-#include "../../server/panorama/ff_panorama_ground.h"
 #include "../../server/panorama/ff_panorama_render.h"
 
 #include <setjmp.h>
@@ -219,7 +219,7 @@ static void faces_without_far_ground_are_empty(void **state)
     ff_panorama_renderer_get_stats(renderer, &after);
     assert_int_equal(after.empty_by_bounds - before.empty_by_bounds, 3);
     assert_int_equal(after.empty_drawn, before.empty_drawn);
-    assert_int_equal(after.nodes_drawn, before.nodes_drawn);
+    assert_int_equal(after.ground.nodes_drawn, before.ground.nodes_drawn);
 }
 
 static void the_back_plane_cuts(void **state)
@@ -315,24 +315,28 @@ static void same_requests_same_bytes(void **state)
 static void frame_is_the_position_s(void **state)
 {
     (void)state;
-    static panorama_ground ground;
-    ff_panorama_render_stats stats = { .faces = 0 };
+    static ff_pack_ground ground;
+    ff_pack_ground_stats stats = { .nodes_read = 0 };
     sys_surface *surface;
     sys_surface_desc surface_desc = { "test", SIZE, SIZE, SYS_GL_DESKTOP };
     c3d_desc device_desc;
     c3d_device *device;
     assert_int_equal(sys_surface_osmesa()->open(&surface_desc, &surface), FF_OK);
-    panorama_ground_desc(&hills, sys_surface_osmesa(), &device_desc);
+    ff_pack_ground_desc(&hills, sys_surface_osmesa(), &device_desc);
     size_t bytes = c3d_bytes(c3d_backend_gl(), &device_desc);
     void *memory = malloc(bytes);
     assert_int_equal(c3d_open(c3d_backend_gl(), &device_desc, memory, bytes, &device), FF_OK);
-    assert_int_equal(panorama_ground_open(&ground, &hills, device, &stats), FF_OK);
+    assert_int_equal(ff_pack_ground_open(&ground, &hills, device, &stats), FF_OK);
     ff_get_panorama request = request_at(1800, 400, 100000);
     for (int i = 0; i < 5; i++) {
         for (enum ff_face_name face = FF_FACE_NORTH; face <= FF_FACE_WEST; face++) {
-            ff_frame frame = ff_shape_frame(&hills.header.info, request.position_wu);
-            panorama_ground_load(&ground, &frame, &request, face);
-            panorama_ground_draw(&ground, &request, face);
+            ff_ground_look look = { .frame = ff_shape_frame(&hills.header.info,
+                                                            request.position_wu),
+                                    .view_wu = request.back_wu,
+                                    .error_px_q8 = 256 };
+            ff_face_camera(&request, face, &look.camera);
+            ff_pack_ground_load(&ground, &look);
+            ff_pack_ground_draw(&ground, &look);
         }
         for (int axis = 0; axis < 2; axis++) {
             int32_t away_wu = request.position_wu[axis] - ground.view.frame.origin_wu[axis];
@@ -341,7 +345,7 @@ static void frame_is_the_position_s(void **state)
         }
     }
     assert_true(stats.nodes_drawn > 0);
-    panorama_ground_close(&ground);
+    ff_pack_ground_close(&ground);
     c3d_close(device);
     sys_surface_osmesa()->close(surface);
     free(memory);

@@ -77,6 +77,35 @@ static void nodes_and_panoramas_come(void **state)
     harness_close(client);
 }
 
+static void far_sets_come_sector_by_sector(void **state)
+{
+    (void)state;
+    static const uint8_t wanted[] = { 0, 2, 8 };
+    ff_message message = { .type = FF_MSG_GET, .kind = FF_KIND_FAR };
+    message.u.get_far = (ff_get_far){ .id = 9,
+                                      .position_wu = { 500000, 300000, 500000 },
+                                      .front_wu = 100000,
+                                      .focal = 64,
+                                      .down = 64,
+                                      .quality = 40,
+                                      .tolerance_q2 = 4,
+                                      .sector_count = sizeof wanted,
+                                      .sector = { 0, 2, 8 } };
+    harness_client *client = harness_connect(&server, 1);
+    assert_non_null(client);
+    assert_true(harness_tell(client, &message));
+    for (size_t i = 0; i < sizeof wanted; i++) {
+        assert_int_equal(harness_hear(client, &message), 1);
+        assert_int_equal(message.type, FF_MSG_ANSWER);
+        assert_int_equal(message.kind, FF_KIND_FAR);
+        assert_int_equal(message.u.far.id, 9);
+        assert_int_equal(message.u.far.sector, wanted[i]);
+        assert_int_equal((message.u.far.flags & FF_FACE_LAST) != 0, i + 1 == sizeof wanted);
+        if (i == 0) assert_true(message.u.far.blocks_x > 0);
+    }
+    harness_close(client);
+}
+
 static void killed_worker_is_replaced_and_others_go_on(void **state)
 {
     (void)state;
@@ -322,6 +351,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(nodes_and_panoramas_come, start, stop),
+        cmocka_unit_test_setup_teardown(far_sets_come_sector_by_sector, start, stop),
         cmocka_unit_test_setup_teardown(killed_worker_is_replaced_and_others_go_on, start, stop),
         cmocka_unit_test_setup_teardown(killed_renderers_cost_their_panorama_only, start, stop),
         cmocka_unit_test_setup_teardown(nonsense_closes_its_own_connection_only, start, stop),

@@ -93,6 +93,8 @@ static void a_long_part_does_not_wait_for_a_face(void **state)
                                 .height = 1,
                                 .allowed_q8 = INT32_MAX,
                                 .reach_wu = 1,
+                                .fine_wu = 1,
+                                .coarse = 1,
                                 .count = 1 };
     tell(session, &ask);
     ff_message part = heard(session);
@@ -118,6 +120,8 @@ static unsigned searched(ff_session *session, unsigned count, int64_t now_us)
                                 .measure = FF_VIEW_BY_PIXELS,
                                 .allowed_q8 = 1,
                                 .reach_wu = INT32_MAX,
+                                .fine_wu = INT32_MAX,
+                                .coarse = 1,
                                 .bytes_max = UINT32_MAX,
                                 .roots = 1,
                                 .count = 1 };

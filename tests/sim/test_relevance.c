@@ -474,6 +474,57 @@ static void a_face_counts_by_its_best_frame(void **state)
     }
 }
 
+static size_t sector(wire *w, unsigned number, int32_t taken_wu, uint32_t fins, int empty)
+{
+    static const uint8_t bytes[64];
+    ff_message get = { .type = FF_MSG_GET,
+                       .kind = FF_KIND_FAR,
+                       .u.get_far = { .id = ++w->id,
+                                      .position_wu = { taken_wu, 0, 0 },
+                                      .front_wu = 1,
+                                      .focal = 200,
+                                      .down = 100,
+                                      .tolerance_q2 = 2,
+                                      .sector_count = 1,
+                                      .sector = { (uint8_t)number } } };
+    ff_message answer = { .type = FF_MSG_ANSWER,
+                          .kind = FF_KIND_FAR,
+                          .u.far = { .id = w->id,
+                                     .sector = (uint8_t)number,
+                                     .flags = (uint8_t)(empty ? FF_FACE_LAST | FF_FACE_EMPTY
+                                                              : FF_FACE_LAST),
+                                     .fins = bytes,
+                                     .fins_bytes = empty ? 0 : fins } };
+    ask(w, &get);
+    return put(w, &answer);
+}
+
+/* Sectors that may be seen, empty ones too, of the set in use, and no others; and not too late. */
+static void sectors_in_view_of_the_set_in_use_are_drawn(void **state)
+{
+    (void)state;
+    static wire w;
+    start(&w);
+    size_t used = sector(&w, 0, 500, 40, 0) + sector(&w, 7, 500, 0, 1);
+    size_t unused = sector(&w, 1, 500, 20, 0) + sector(&w, 0, 501, 30, 0);
+    receive(&w, 7);
+    w.view.far_sectors = 1u << 0 | 1u << 7 | 1u << 6;
+    w.view.far_pos_wu[0] = 500;
+    draw(&w, SIM_RELEVANCE_US, 0, NULL);
+    w.view.far_sectors = 255;
+    draw(&w, SIM_RELEVANCE_US + 1, 0, NULL);
+    w.view.far_sectors = 0; /* there is none */
+    size_t later = sector(&w, 0, 500, 10, 0);
+    receive(&w, 7);
+    draw(&w, SIM_RELEVANCE_US + 2, 0, NULL);
+    sim_relevance_figures f = figures(&w, 3 * SIM_RELEVANCE_US);
+    assert_int_equal(f.came[FF_DATA_FAR], used + unused + later);
+    assert_int_equal(f.fins_came, 40 + 20 + 30 + 10);
+    assert_int_equal(f.judged[FF_DATA_FAR], used + unused + later);
+    assert_int_equal(f.unused[FF_DATA_FAR], unused + later);
+    sim_relevance_destroy(w.relevance);
+}
+
 /* Messages that bring no picture, and those that a cut leaves in pieces. */
 static void messages_without_picture_are_overhead(void **state)
 {
@@ -512,6 +563,7 @@ int main(void)
         cmocka_unit_test(faces_in_the_window_are_drawn),
         cmocka_unit_test(hidden_faces_are_not_drawn),
         cmocka_unit_test(a_face_counts_by_its_best_frame),
+        cmocka_unit_test(sectors_in_view_of_the_set_in_use_are_drawn),
         cmocka_unit_test(messages_without_picture_are_overhead),
         cmocka_unit_test(a_supporting_node_is_counted_apart),
         cmocka_unit_test(nodes_of_a_second_ground_are_drawn_and_supported),

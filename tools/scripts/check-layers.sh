@@ -46,7 +46,8 @@ rooms() {
     cat <<'END'
 protocol            protocol/codec protocol/shape
 protocol/codec      protocol protocol/zlib
-protocol/message    protocol protocol/codec
+protocol/far        protocol
+protocol/message    protocol protocol/codec protocol/far
 protocol/shape      protocol
 protocol/zlib       protocol
 platform            protocol/ff_error.h
@@ -70,17 +71,20 @@ client/source/link  client/ask protocol/ platform/sys.h
 client/images       client/ask client/terrain protocol/ common3d
 client/ground       client/farfield.h client/images client/terrain protocol/ common3d
 client/panorama     client client/ask client/ahead protocol/ common3d
+client/far          client client/ask client/ahead client/ground client/terrain protocol/ common3d
 client/balance      client
 client/several      client client/terrain protocol/ platform/sys.h
 client              client/ protocol/ common3d platform/sys.h
 server/packs        protocol/ platform/sys.h
 server/view         client/terrain protocol/ common3d
 server/session      server/view server/packs protocol/ platform/sys.h
-server/panorama     client/terrain client/ground client/images protocol/ common3d platform/sys.h
-server/net          server server/session server/panorama protocol/ platform/sys.h
+server/ground       client/terrain client/ground client/images protocol/ common3d platform/sys.h
+server/panorama     server/ground client/terrain client/ground client/images protocol/ common3d platform/sys.h
+server/far          server/ground client/terrain client/ground client/images protocol/ common3d platform/sys.h
+server/net          server server/session server/panorama server/far protocol/ platform/sys.h
 server              server/ platform/options client/farfield.h protocol/ platform/sys.h
 sim/options         platform/options client/farfield.h
-sim/link            platform/options server/session server/panorama client/farfield.h protocol/ platform/sys.h
+sim/link            platform/options server/session server/panorama server/far client/farfield.h protocol/ platform/sys.h
 sim/judge           client/terrain client/images protocol/ common3d platform/sys.h
 sim/tape            client/farfield.h protocol/ platform/sys.h
 sim/fly             platform/options sim/options sim/link sim/judge sim/tape server/packs client/farfield.h client/ff_sky.h client/terrain client/ground client/images protocol/ common3d platform/sys.h

@@ -8,11 +8,11 @@ import os
 import sys
 
 # ---- instructions: rows of the table "where it goes" (phase, what) ----
-JPEG = ("decode", "JPEG: images and faces")
+JPEG = ("decode", "JPEG: images, faces, paint")
 INFLATE = ("decode", "inflate and residuals")
 LINK = ("decode", "link, messages, queue")
 TAKE_IN = ("take in", "")
-PANORAMA = ("select", "panorama rules")
+PANORAMA = ("select", "panorama and far set rules")
 WISHES = ("select", "wishes, queue, prefetch")
 IMAGES = ("select", "images")
 HORIZON = ("select", "what near ground hides")
@@ -37,6 +37,8 @@ PLACES = {  # what each counts to under each mark; None: it has nothing to do th
     "client/client_source.o": (LINK, WISHES, None),
     "client/client_take.o": (None, TAKE_IN, None),
     "client/ff_sky.o": (None, PANORAMA, STITCH),
+    "client/far/": (None, PANORAMA, STITCH),
+    "client/far/ff_intake_far.o": (JPEG, None, None),
     "client/ground/": (None, MEASURE, STITCH),
     "client/images/": (JPEG, IMAGES, STITCH),
     "client/panorama/": (None, PANORAMA, STITCH),
@@ -60,12 +62,15 @@ PLACES = {  # what each counts to under each mark; None: it has nothing to do th
     "common3d/soft/soft_line.o common3d/soft/soft_pixels.o common3d/soft/soft_spans.o": (None, TAKE_IN, SPANS),
     "common3d/soft/soft_label.o common3d/soft/soft_point.o": (None, None, STRIPS),
     "common3d/soft/soft_perspective.o": (None, TAKE_IN, PERSPECTIVE),
+    "common3d/soft/soft_thrown.o common3d/soft/soft_thrown_strip.o": (None, TAKE_IN, TRANSFORM),
+    "common3d/soft/soft_thrown_rows.o": (None, TAKE_IN, PERSPECTIVE),
     "common3d/soft/soft_small.o common3d/soft/soft_tiny.o": (None, TAKE_IN, SMALL),
     "platform/": (LINK, MEASURE, STITCH),
     "platform/posix/jpeg.o platform/posix/jpeg_tables.o": (JPEG, None, None),
     "protocol/": (LINK, MEASURE, STITCH),
     "protocol/codec/": (INFLATE, TAKE_IN, None),
     "protocol/codec/ff_decode.o": (INFLATE, TAKE_IN, STITCH),  # a node's error: is it within the view?
+    "protocol/far/": (JPEG, TAKE_IN, STITCH),
     "protocol/shape/": (LINK, MEASURE, STITCH),
     "protocol/message/": (LINK, None, None),
     "protocol/message/ff_message_view.o": (LINK, WISHES, None),

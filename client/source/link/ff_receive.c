@@ -50,21 +50,26 @@ static int take_welcome(ff_stream *stream, const ff_welcome *welcome, int64_t no
     return FF_OK;
 }
 
-static int asked_for(const ff_get_panorama *panorama, unsigned face)
+static int asked_for(const uint8_t *list, unsigned count, unsigned one)
 {
-    FF_ASSERT(panorama->face_count >= 1 && panorama->face_count <= FF_FACE_COUNT);
-    for (unsigned i = 0; i < panorama->face_count; i++)
-        if (panorama->face[i] == face) return 1;
+    FF_ASSERT(count >= 1 && count <= FF_FAR_SECTORS);
+    for (unsigned i = 0; i < count; i++)
+        if (list[i] == one) return 1;
     return 0;
 }
 
 /* Whether this is an answer to that request. */
-static int answers(const ff_message *message, const ff_request *request)
+static int answers(const ff_requests *requests, const ff_message *message,
+                   const ff_request *request)
 {
     FF_ASSERT(message->kind < FF_KIND_COUNT && request->kind < FF_KIND_COUNT);
     const ff_kind_row *kind = &ff_kind[request->kind];
     if (ff_kind[message->kind].answered_by != kind->answered_by) return 0;
-    return kind->brings != FF_BRINGS_FACE || asked_for(&request->panorama, message->u.face.face);
+    if (kind->brings != FF_BRINGS_FACE && kind->brings != FF_BRINGS_FAR) return 1;
+    const ff_ask *ask = ff_requests_ask_of(requests, request);
+    return kind->brings == FF_BRINGS_FACE
+               ? asked_for(ask->panorama.face, ask->panorama.face_count, message->u.face.face)
+               : asked_for(ask->far.sector, ask->far.sector_count, message->u.far.sector);
 }
 
 /* A node that the view may bring and the terrain has. Once the parts have more bytes than were
@@ -102,6 +107,7 @@ static int take_part(ff_stream *stream, const ff_request *request, const ff_mess
 static int is_last(const ff_message *message)
 {
     if (message->kind == FF_KIND_VIEW) return message->u.part.what == FF_PART_END;
+    if (message->kind == FF_KIND_FAR) return message->u.far.flags & FF_FACE_LAST;
     return message->kind != FF_KIND_FACE || message->u.face.flags & FF_FACE_LAST;
 }
 
@@ -109,7 +115,7 @@ static int take_answer(ff_stream *stream, const ff_message *message, uint32_t by
 {
     ff_request request;
     if (!ff_requests_answered(stream->intake->requests, ff_message_id(message), &request) ||
-        !answers(message, &request))
+        !answers(stream->intake->requests, message, &request))
         return FF_ERR_FORMAT;
     if (request.forgotten) {
         stream->answer_bytes[request.kind] += bytes;

@@ -213,11 +213,15 @@ static int connect_step(ff_stream *stream, int64_t now_us)
 static void encode_request(ff_stream *stream, const ff_request *request)
 {
     FF_ASSERT(request->state == FF_REQUEST_SENT && has_send_room(stream));
+    const ff_requests *requests = stream->intake->requests;
     ff_message message = { .type = FF_MSG_GET, .kind = (enum ff_kind)request->kind };
     switch ((enum ff_kind_asks)ff_kind[request->kind].asks) {
         case FF_ASKS_NODE: message.u.get = (ff_get){ request->id, request->key }; break;
         case FF_ASKS_VIEW: message.u.view = stream->intake->requests->view; break;
-        case FF_ASKS_PANORAMA: message.u.panorama = request->panorama; break;
+        case FF_ASKS_PANORAMA:
+            message.u.panorama = ff_requests_ask_of(requests, request)->panorama;
+            break;
+        case FF_ASKS_FAR: message.u.get_far = ff_requests_ask_of(requests, request)->far; break;
     }
     append(stream, &message);
 }

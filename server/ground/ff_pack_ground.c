@@ -1,6 +1,4 @@
-#include "ff_panorama_ground.h"
-#include "ff_face_image.h"
-#include "ff_face_view.h"
+#include "ff_pack_ground.h"
 #include "../../client/terrain/ff_pack_source.h"
 #include "../../client/images/ff_texture_map.h"
 #include "../../protocol/ff_image.h"
@@ -8,42 +6,41 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ERROR_PX_Q8 256 /* one texel of the face */
-#define SIGMA_Q8    320
+#define SIGMA_Q8 320
 /* a bound for damaged packs: every round refines a level or makes 32 families of leaves, of which
  * the tree holds 1024, or it is the last */
 #define LOAD_ROUNDS_MAX 64
 
-void panorama_ground_desc(const ff_pack *pack, const sys_surface_api *surface_api, c3d_desc *desc)
+void ff_pack_ground_desc(const ff_pack *pack, const sys_surface_api *surface_api, c3d_desc *desc)
 {
     uint32_t side = ff_node_side(&pack->header.info);
     *desc = (c3d_desc){ .surface_api = surface_api,
-                        .mesh_count = FF_PANORAMA_NODES,
+                        .mesh_count = FF_GROUND_NODES,
                         .strip_count = 32,
-                        .texture_count = FF_PANORAMA_TEXTURES,
+                        .texture_count = FF_GROUND_TEXTURES,
                         .mesh_vertices_max = (uint16_t)(side * side),
                         .strip_indices_max = sizeof((ff_strips *)0)->index / sizeof(uint16_t),
                         .use_vertex_buffers = 1 };
 }
 
 /* Makes the view and the cache of images; their memory is part of `ground`. */
-static int make_view(panorama_ground *ground, c3d_device *device)
+static int make_view(ff_pack_ground *ground, c3d_device *device)
 {
     const ff_terrain_info *info = &ground->pack->header.info;
     ff_strips strips;
     ground->view = (ff_terrain_view){ .device = device,
                                       .entry = ground->entry,
-                                      .entry_count = FF_PANORAMA_NODES,
+                                      .entry_count = FF_GROUND_NODES,
                                       .vertices = ground->vertices,
                                       .heights_per_node = ff_node_side(info) * ff_node_side(info) };
     ground->textures = (ff_textures){
-        .device = device, .info = *info, .slot = ground->slot, .slot_count = FF_PANORAMA_TEXTURES
+        .device = device, .info = *info, .slot = ground->slot, .slot_count = FF_GROUND_TEXTURES
     };
     ff_terrain_view_attach(&ground->view, ground->tree, &ground->textures);
     return ff_terrain_view_strips(&ground->view, info->node_log2, &strips);
 }
 
-static int make_texture_memory(panorama_ground *ground)
+static int make_texture_memory(ff_pack_ground *ground)
 {
     size_t texels = (size_t)1 << (2 * ground->pack->header.info.texture_log2);
     if (ground->pack->header.info.texture_log2 == 0) return FF_OK;
@@ -52,13 +49,13 @@ static int make_texture_memory(panorama_ground *ground)
     return ground->texture_rgb && ground->texture_texels ? FF_OK : FF_ERR_MEMORY;
 }
 
-int panorama_ground_open(panorama_ground *ground, const ff_pack *pack, c3d_device *device,
-                         ff_panorama_render_stats *stats)
+int ff_pack_ground_open(ff_pack_ground *ground, const ff_pack *pack, c3d_device *device,
+                        ff_pack_ground_stats *stats)
 {
     const ff_terrain_info *info = &pack->header.info;
     ff_tree_desc desc = { .info = *info,
-                          .node_count = FF_PANORAMA_NODES,
-                          .wish_count = FF_PANORAMA_WISHES,
+                          .node_count = FF_GROUND_NODES,
+                          .wish_count = FF_GROUND_WISHES,
                           .hidden = FF_HIDDEN_FETCHED,
                           .ground_max = ff_pack_source_grounds(pack) };
     size_t tree_bytes = ff_tree_bytes(&desc), decoder_bytes = ff_pack_source_decoder_bytes(pack);
@@ -77,7 +74,7 @@ int panorama_ground_open(panorama_ground *ground, const ff_pack *pack, c3d_devic
     return rc == FF_OK ? make_view(ground, device) : rc;
 }
 
-void panorama_ground_close(panorama_ground *ground)
+void ff_pack_ground_close(ff_pack_ground *ground)
 {
     free(ground->tree_memory);
     free(ground->decoder_memory);
@@ -90,11 +87,11 @@ void panorama_ground_close(panorama_ground *ground)
 
 /* Answers the tree's wishes from the pack; returns how many nodes were delivered. The list of
  * wishes is copied first, because it may change as nodes come in. */
-static uint32_t serve_wishes(panorama_ground *ground)
+static uint32_t serve_wishes(ff_pack_ground *ground)
 {
     const ff_wish *list;
     uint32_t count = ff_tree_wishes(ground->tree, &list), delivered = 0;
-    if (count > FF_PANORAMA_WISHES) count = FF_PANORAMA_WISHES;
+    if (count > FF_GROUND_WISHES) count = FF_GROUND_WISHES;
     memcpy(ground->wishes, list, count * sizeof *list);
     for (uint32_t i = 0; i < count; i++) {
         const ff_wish *wish = &ground->wishes[i];
@@ -110,31 +107,31 @@ static uint32_t serve_wishes(panorama_ground *ground)
     return delivered;
 }
 
-void panorama_ground_load(panorama_ground *ground, const ff_frame *frame,
-                          const ff_get_panorama *request, enum ff_face_name face)
+void ff_pack_ground_load(ff_pack_ground *ground, const ff_ground_look *look)
 {
     ff_quality quality = { .measure = FF_MEASURE_PIXELS,
                            .c_q8 = 256,
-                           .error_px_q8 = ERROR_PX_Q8,
+                           .error_px_q8 = look->error_px_q8,
                            .sigma_q8 = SIGMA_Q8,
-                           .view_wu = request->back_wu,
-                           .hole_wu = ff_face_near_wu(request) };
-    ff_view view = { .frame = *frame };
-    ground->frame = *frame;
-    ff_face_camera(request, face, &view.camera);
-    memcpy(view.centre_wu, request->position_wu, sizeof view.centre_wu);
+                           .view_wu = look->view_wu,
+                           .hole_wu = look->hole_wu };
+    ff_view view = { .frame = look->frame, .camera = look->camera };
+    memcpy(view.centre_wu, look->camera.pos_wu, sizeof view.centre_wu);
     for (int round = 0; round < LOAD_ROUNDS_MAX; round++) {
         ff_tree_select(ground->tree, &view, &quality);
-        if (serve_wishes(ground) == 0 && ff_tree_to_make(ground->tree) == 0) break;
+        if (serve_wishes(ground) == 0 && ff_tree_to_make(ground->tree) == 0) return;
     }
+    /* what came last may have driven out what was to be drawn */
+    ff_tree_select(ground->tree, &view, &quality);
 }
 
 /* ---- seeing ---- */
 
 /* Exact: what is drawn of a node lies between its lowest and highest vertex. */
-static int node_seen(const panorama_ground *ground, const ff_drawn *drawn,
-                     const ff_get_panorama *request, enum ff_face_name face)
+static int node_seen(const ff_pack_ground *ground, const ff_drawn *drawn,
+                     const ff_ground_look *look)
 {
+    if (!look->sees) return 1;
     const ff_terrain_info *info = ff_tree_ground(ground->tree, drawn->key);
     uint32_t count = ff_node_side(info) * ff_node_side(info);
     uint16_t lowest = UINT16_MAX, highest = 0;
@@ -144,17 +141,16 @@ static int node_seen(const panorama_ground *ground, const ff_drawn *drawn,
     }
     const int64_t height_wu[2] = { ff_height_wu(info, lowest), ff_height_wu(info, highest) };
     ff_box box = ff_shape_box(info, drawn->key, ff_tree_placed(drawn->node), height_wu,
-                              request->position_wu);
-    return ff_face_sees_box(request, face, &box);
+                              look->camera.pos_wu);
+    return look->sees(look->context, &box);
 }
 
-int panorama_ground_seen(const panorama_ground *ground, const ff_get_panorama *request,
-                         enum ff_face_name face)
+int ff_pack_ground_seen(const ff_pack_ground *ground, const ff_ground_look *look)
 {
     const ff_drawn *list;
     uint32_t count = ff_tree_drawn(ground->tree, &list);
     for (uint32_t i = 0; i < count; i++)
-        if (node_seen(ground, &list[i], request, face)) return 1;
+        if (node_seen(ground, &list[i], look)) return 1;
     return 0;
 }
 
@@ -162,7 +158,7 @@ int panorama_ground_seen(const panorama_ground *ground, const ff_get_panorama *r
 
 /* Makes texture_texels of an image's payload, or of the error in its place. FF_OK, or why the
  * texels are not there. */
-static int make_texels(const panorama_ground *ground, const uint8_t *payload, int bytes)
+static int make_texels(const ff_pack_ground *ground, const uint8_t *payload, int bytes)
 {
     const ff_terrain_info *info = &ground->pack->header.info;
     uint32_t size = 1u << info->texture_log2;
@@ -173,13 +169,13 @@ static int make_texels(const panorama_ground *ground, const uint8_t *payload, in
     if (rc < 0) return rc;
     ff_texture_texels(info, ground->texture_rgb, ground->texture_texels);
     for (uint32_t i = 0; i < size * size; i++)
-        ground->texture_texels[i] = ff_face_not_key(ground->texture_texels[i]);
+        ground->texture_texels[i] = ff_ground_not_key(ground->texture_texels[i]);
     return FF_OK;
 }
 
 /* Puts the finest image over a node into the cache; the least recently used image makes room. A
  * damaged image is remembered as such until its slot is needed. */
-static void fetch_image(panorama_ground *ground, ff_key node)
+static void fetch_image(ff_pack_ground *ground, ff_key node)
 {
     const ff_terrain_info *info = &ff_pack_of(ground->pack, node)->header.info;
     ff_key key = info->texture_log2 == ground->textures.info.texture_log2
@@ -202,41 +198,40 @@ static int by_key(const void *a, const void *b)
 
 /* Lists the nodes seen, in an order that does not depend on what was drawn before: where two
  * triangles are equally deep, the first one stays. */
-static uint32_t list_seen(panorama_ground *ground, const ff_get_panorama *request,
-                          enum ff_face_name face)
+static uint32_t list_seen(ff_pack_ground *ground, const ff_ground_look *look)
 {
     const ff_drawn *list;
     uint32_t count = ff_tree_drawn(ground->tree, &list), seen = 0;
     for (uint32_t i = 0; i < count; i++)
-        if (node_seen(ground, &list[i], request, face)) ground->seen[seen++] = list[i];
+        if (node_seen(ground, &list[i], look)) ground->seen[seen++] = list[i];
     qsort(ground->seen, seen, sizeof *ground->seen, by_key);
     return seen;
 }
 
-/* Faces of one panorama share a frame of coordinates, and no other does: what a face shows must not
+/* Pictures from one place share a frame of coordinates, and no others do: what one shows must not
  * depend on who asked before. */
-static void choose_frame(panorama_ground *ground, const ff_get_panorama *request)
+static void choose_frame(ff_pack_ground *ground, const ff_ground_look *look)
 {
-    if (memcmp(ground->position_wu, request->position_wu, sizeof ground->position_wu) == 0 &&
-        ff_shape_same_frame(&ground->pack->header.info, &ground->frame, &ground->drawn_frame))
+    const int32_t *pos_wu = look->camera.pos_wu;
+    if (memcmp(ground->position_wu, pos_wu, sizeof ground->position_wu) == 0 &&
+        ff_shape_same_frame(&ground->pack->header.info, &look->frame, &ground->drawn_frame))
         return;
-    memcpy(ground->position_wu, request->position_wu, sizeof ground->position_wu);
-    ground->drawn_frame = ground->frame;
+    memcpy(ground->position_wu, pos_wu, sizeof ground->position_wu);
+    ground->drawn_frame = look->frame;
     ff_terrain_view_new_frame(&ground->view);
 }
 
-void panorama_ground_draw(panorama_ground *ground, const ff_get_panorama *request,
-                          enum ff_face_name face)
+void ff_pack_ground_draw(ff_pack_ground *ground, const ff_ground_look *look)
 {
-    c3d_frame frame = { .clear_colour = FF_FACE_KEY_ABGR };
+    c3d_frame frame = { .camera = look->camera, .clear_colour = FF_GROUND_KEY_ABGR };
     c3d_stats stats;
-    uint32_t count = list_seen(ground, request, face);
-    ff_face_camera(request, face, &frame.camera);
-    choose_frame(ground, request);
+    uint32_t count = list_seen(ground, look);
+    choose_frame(ground, look);
     c3d_begin(ground->device, &frame);
+    ground->view.textures = look->bare ? NULL : &ground->textures;
     ff_terrain_view_begin(&ground->view, ground->seen, count);
     for (uint32_t i = 0; i < count; i++) {
-        fetch_image(ground, ground->seen[i].key);
+        if (!look->bare) fetch_image(ground, ground->seen[i].key);
         ff_terrain_view_draw(&ground->view, &ground->seen[i], 1, &frame.camera, 0);
     }
     ground->stats->nodes_drawn += count;

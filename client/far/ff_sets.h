@@ -1,0 +1,128 @@
+/* Far ground by a coarse tree, fins and paint: at most two sets of sectors, the one drawn and the
+ * one that is coming (protocol/far/ff_far.h says what a sector is).
+ *
+ * The client's own tree draws all ground, what lies beyond the sets' front more coarsely
+ * (ff_quality.fine_wu). A set, taken by the server from one point O, lays on it what that lacks:
+ * the outlines of ridges as fins, upright strips that stand where the ridge stands, and their
+ * colours as paint, thrown from O on tree and fins. So whoever moves sees the tree's parallax, and
+ * a set is good for as long as no ground comes into view that O did not see: in the region round O
+ * for which it was asked. O lies ahead on the path and above it, because what a climb uncovers is
+ * the worst that can happen to it.
+ *
+ * Sectors in view are asked for first, those that a turn will show when nothing else waits. The set
+ * that is coming replaces the drawn one when all its sectors in view are here. At most one request
+ * is out. Ground that no paint covers shows its own colour. */
+#ifndef FF_SETS_H
+#define FF_SETS_H
+
+#include "../farfield.h"
+#include "../ahead/ff_motion.h"
+#include "../ask/ff_new_data.h"
+#include "../ground/ff_terrain_view.h"
+#include "../../protocol/ff_assert.h"
+
+extern const uint8_t ff_sets_built; /* 0: left out of this build */
+
+/* Meshes of a sector's fins at most; those of all sectors share a pool. */
+#define FF_SETS_CHUNKS 24
+/* Sectors that have room for their paint on the device, of both sets. */
+#define FF_SETS_TEXTURES 16
+#define FF_SETS_SIDE_MIN 64
+/* Of the largest picture of a width, all that a power of two makes of it included. */
+#define FF_SETS_TEXELS(side) (2 * (side) * (side))
+
+typedef struct ff_set_sector {
+    c3d_mesh mesh[FF_SETS_CHUNKS];
+    c3d_strip strip[FF_SETS_CHUNKS];
+    c3d_texture paint;
+    uint8_t chunks;
+    uint16_t width, height; /* of the texture */
+    int16_t middle, top;    /* column and row of the texture where the sector's middle and O's
+                             * horizon are */
+} ff_set_sector;
+
+/* Where a set is good: from behind_wu behind O to ahead_wu ahead of it along a way, aside_wu to
+ * either side, from low_wu to high_wu above O (which may be negative). */
+typedef struct ff_set_region {
+    uint16_t heading; /* brad16 */
+    int32_t behind_wu, ahead_wu, aside_wu, low_wu, high_wu;
+} ff_set_region;
+
+typedef struct ff_set {
+    int32_t position_wu[3]; /* O, in the client's frame */
+    ff_set_region region;
+    int32_t front_wu;
+    uint16_t focal;      /* texels a unit of tangent, of the fins */
+    uint8_t paint_shift; /* texels of the paint are 2^this as large */
+    uint8_t painted;     /* paint was asked for */
+    uint8_t ready;       /* its sectors in view are here, or were */
+    ff_key key;          /* of its requests; 0: no set */
+    int64_t asked_us;
+    uint16_t held, empty, failed; /* bit per sector */
+    ff_set_sector sector[FF_FAR_SECTORS];
+} ff_set;
+FF_STATIC_ASSERT(FF_FAR_SECTORS <= 16);
+
+typedef struct ff_sets {
+    c3d_device *device;
+    const ff_terrain_info *info;
+    ff_far_desc desc;
+    uint16_t side;       /* width of the largest picture, texels: what memory allows; 0: no sets */
+    uint16_t vertices;   /* of a mesh at most */
+    c3d_vertex *scratch; /* for one mesh */
+    uint16_t *indices;   /* for one strip */
+    int8_t active, next; /* index in set[] of the drawn and the coming set; -1: none */
+    uint8_t refusals;    /* in a row */
+    uint8_t off;         /* the server has no sets */
+    uint16_t seen;       /* bit per sector: in the last view */
+    uint32_t serial;
+    int64_t retry_us, lead_us;
+    ff_set set[2];
+    uint32_t sectors, sectors_empty;
+    ff_fins_made watch; /* NULL: nobody */
+    void *watch_context;
+    c3d_projector projector[FF_FAR_SECTORS]; /* of the picture under way: ff_sets_aim */
+} ff_sets;
+
+/* `info`, `scratch` (of `vertices`) and `indices` (of ff_sets_indices) stay where they are. */
+void ff_sets_init(ff_sets *sets, c3d_device *device, const ff_far_desc *desc,
+                  const ff_terrain_info *info, unsigned side);
+void ff_sets_scratch(ff_sets *sets, c3d_vertex *scratch, uint16_t *indices, unsigned vertices);
+/* Indices of a strip through a mesh of so many vertices, at most. */
+static inline uint32_t ff_sets_indices(uint32_t vertices) { return 2 * vertices; }
+/* Side of a texture that holds any sector's picture at a focal length. */
+unsigned ff_sets_side(int32_t focal_q8);
+/* 1 while sets are drawn or waited for: ground beyond `*fine_wu` of the camera, along x or y, may
+ * then be `*coarse` times as wrong. */
+int ff_sets_in_use(const ff_sets *sets, const c3d_camera *camera, int32_t *fine_wu,
+                   uint8_t *coarse);
+/* Plans sets. `clearance_wu`: how high the camera is above ground. 1 when the drawn set or what is
+ * wanted changed. */
+int ff_sets_update(ff_sets *sets, ff_requests *requests, const c3d_camera *camera,
+                   const ff_motion *motion, int32_t clearance_wu, int hold, int64_t now_us);
+/* Puts what is missing into the ranking under way. `soon`: bit per sector that will be in view. */
+void ff_sets_want(const ff_sets *sets, ff_requests *requests, const ff_view *view, unsigned soon,
+                  int64_t now_us);
+unsigned ff_sets_in_view(const c3d_camera *camera);
+/* Takes in a sector or a refusal; 1 when it belongs to a set still wanted. */
+int ff_sets_take(ff_sets *sets, const ff_new_item *item, int64_t now_us);
+void ff_sets_drop(ff_sets *sets);
+
+/* ff_sets_plan.c: where a set asked for now is best taken and for which region; and whether a place
+ * lies in a set's region. */
+void ff_sets_plan(const ff_sets *sets, const c3d_camera *camera, const ff_motion *motion,
+                  int32_t clearance_wu, ff_set *set);
+int ff_sets_good(const ff_set *set, const int32_t position_wu[3]);
+
+/* ff_sets_draw.c: makes a sector's meshes from its fins. */
+void ff_sets_make_fins(ff_sets *sets, const ff_set *set, unsigned sector, const ff_fin_vertex *fin,
+                       uint32_t count);
+/* Before a picture: where the projectors stand. */
+void ff_sets_aim(ff_sets *sets, const c3d_camera *camera);
+/* What is thrown on a node of the ground: an ff_throws' `lay`. */
+unsigned ff_sets_lay(const void *sets, const ff_terrain_info *info, const ff_drawn *drawn,
+                     c3d_draw draws[FF_THROWS_MAX]);
+/* The drawn set's fins, after the ground. */
+void ff_sets_draw(const ff_sets *sets, const c3d_camera *camera);
+
+#endif

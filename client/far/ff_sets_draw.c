@@ -1,0 +1,192 @@
+/* Fins as meshes, and paint thrown on what is drawn.
+ *
+ * Places are taken relative to O as they lie there, where curved ground falls away from O. In the
+ * picture it falls away from the viewer: seen from s away the two differ by a tilt of s / R, 0.06
+ * pixels of 240 for 2 km, which is let be. */
+#include "ff_sets.h"
+#include "../terrain/ff_shade.h"
+#include "../../protocol/shape/ff_shape.h"
+
+#include <string.h>
+
+#define FOOT_PAINTED_PX 30    /* ground in front of a ridge that coarse ground may lack */
+#define FOOT_BARE_PX    2     /* without paint a fin is an outline */
+#define TAN_HALF_Q16    13036 /* of 11.25 degrees */
+
+/* ---- fins ---- */
+
+/* A fin's vertex and the foot below it, relative to O. */
+static void place(const ff_sets *sets, const ff_set *set, unsigned sector, const ff_fin_vertex *fin,
+                  c3d_vertex out[2])
+{
+    int32_t forward_q30[2], right_q30[2];
+    ff_far_axes(sector, forward_q30, right_q30);
+    int64_t f = ff_far_distance_wu(fin->distance), r = f * fin->column / set->focal,
+            up = f * fin->up_q2 / (4 * (int64_t)set->focal),
+            foot = f * (set->painted ? FOOT_PAINTED_PX : FOOT_BARE_PX) / set->focal;
+    int32_t x = (int32_t)((f * forward_q30[0] + r * right_q30[0]) >> 30),
+            y = (int32_t)((f * forward_q30[1] + r * right_q30[1]) >> 30);
+    out[0] = out[1] = (c3d_vertex){ .x = x, .y = y, .z = (int32_t)up };
+    out[1].z = (int32_t)(up - foot);
+    int64_t height_wu = set->position_wu[2] + up + (int64_t)ff_shape_drop_wu(sets->info, x, y);
+    ff_shade_ridge(sets->info, (int32_t)(height_wu > INT32_MAX ? INT32_MAX : height_wu),
+                   out[0].rgba);
+    memcpy(out[1].rgba, out[0].rgba, sizeof out[1].rgba);
+}
+
+/* On the device, if there is one. 0: no room. */
+static int make_strip(ff_sets *sets, ff_set_sector *made, uint32_t vertices, uint32_t indices)
+{
+    c3d_strip strip = { 0 };
+    if (!sets->device) return 1;
+    c3d_mesh mesh = c3d_mesh_make(sets->device, sets->scratch, vertices);
+    if (mesh.id) strip = c3d_strip_make(sets->device, sets->indices, indices);
+    if (mesh.id && !strip.id) c3d_mesh_free(sets->device, mesh);
+    if (!strip.id) return 0;
+    made->mesh[made->chunks] = mesh;
+    made->strip[made->chunks++] = strip;
+    return 1;
+}
+
+/* One mesh of `count` fin vertices, with the strip that joins those of one fin. 0: no room. */
+static int make_chunk(ff_sets *sets, const ff_set *set, unsigned sector, const ff_fin_vertex *fin,
+                      uint32_t count)
+{
+    ff_set_sector *made = &((ff_set *)set)->sector[sector];
+    uint32_t indices = 0;
+    if (made->chunks == FF_SETS_CHUNKS) return 0;
+    for (uint32_t i = 0; i < count; i++) {
+        place(sets, set, sector, &fin[i], sets->scratch + 2 * i);
+        uint16_t top = (uint16_t)(2 * i), foot = (uint16_t)(top + 1);
+        if (i > 0 && fin[i].begins) { /* degenerate triangles lead to the next fin */
+            sets->indices[indices] = sets->indices[indices - 1];
+            sets->indices[indices + 1] = top;
+            indices += 2;
+        }
+        sets->indices[indices++] = top;
+        sets->indices[indices++] = foot;
+    }
+    if (indices < 4) return 1;
+    if (!make_strip(sets, made, 2 * count, indices)) return 0;
+    if (sets->watch)
+        sets->watch(sets->watch_context, set->key, sector, sets->scratch, 2 * count, sets->indices,
+                    indices);
+    return 1;
+}
+
+void ff_sets_make_fins(ff_sets *sets, const ff_set *set, unsigned sector, const ff_fin_vertex *fin,
+                       uint32_t count)
+{
+    uint32_t room = sets->vertices / 2u;
+    FF_ASSERT(room >= 2);
+    for (uint32_t from = 0; from + 1 < count;) {
+        uint32_t part = count - from < room ? count - from : room;
+        if (!make_chunk(sets, set, sector, fin + from, part)) return;
+        from += part;
+        if (from < count && !fin[from].begins) from--; /* a fin that goes on in the next mesh */
+    }
+}
+
+void ff_sets_draw(const ff_sets *sets, const c3d_camera *camera)
+{
+    if (sets->active < 0) return;
+    const ff_set *set = &sets->set[sets->active];
+    unsigned seen = ff_sets_in_view(camera);
+    for (unsigned s = 0; s < FF_FAR_SECTORS; s++) {
+        const ff_set_sector *sector = &set->sector[s];
+        c3d_draw draw = {
+            .xy_scale_wu = 1, .z_scale_q16 = 65536, .flags = C3D_DRAW_COLOURED, .tex_columns = 1
+        };
+        if (!(seen >> s & 1u)) continue;
+        for (int axis = 0; axis < 3; axis++)
+            draw.origin_wu[axis] = (int64_t)set->position_wu[axis] - camera->pos_wu[axis];
+        if (sector->paint.id) {
+            draw.flags |= C3D_DRAW_PROJECTED;
+            draw.texture = sector->paint;
+            draw.projector = &sets->projector[s];
+        }
+        for (unsigned i = 0; i < sector->chunks; i++) {
+            draw.mesh = sector->mesh[i];
+            draw.strip = sector->strip[i];
+            c3d_draw_strip(sets->device, &draw);
+        }
+    }
+}
+
+/* ---- paint ---- */
+
+void ff_sets_aim(ff_sets *sets, const c3d_camera *camera)
+{
+    if (sets->active < 0) return;
+    const ff_set *set = &sets->set[sets->active];
+    int32_t focal = set->focal >> set->paint_shift;
+    for (unsigned s = 0; s < FF_FAR_SECTORS; s++) {
+        const ff_set_sector *sector = &set->sector[s];
+        c3d_projector *projector = &sets->projector[s];
+        int32_t forward_q30[2], right_q30[2];
+        if (!sector->paint.id) continue;
+        memset(projector, 0, sizeof *projector);
+        ff_far_axes(s, forward_q30, right_q30);
+        for (int axis = 0; axis < 3; axis++)
+            projector->origin_wu[axis] = (int64_t)set->position_wu[axis] - camera->pos_wu[axis];
+        for (int axis = 0; axis < 2; axis++) {
+            int64_t f = forward_q30[axis], r = right_q30[axis];
+            projector->row_q24[0][axis] =
+                (int32_t)((f * sector->middle + r * focal) / sector->width >> 6);
+            projector->row_q24[1][axis] = (int32_t)(f * sector->top / sector->height >> 6);
+            projector->row_q24[2][axis] = (int32_t)(f >> 6);
+        }
+        projector->row_q24[1][2] = (int32_t)(-((int64_t)focal << 24) / sector->height);
+    }
+}
+
+/* Whether ground between x, y = lo and hi, relative to O, lies in a sector's wedge; a little more
+ * than that. */
+static int in_wedge(unsigned sector, const ff_box *box)
+{
+    int32_t forward_q30[2], right_q30[2];
+    int before = 0, left = 1, right = 1;
+    ff_far_axes(sector, forward_q30, right_q30);
+    for (unsigned corner = 0; corner < 4; corner++) {
+        int64_t x = (corner & 1u ? box->hi : box->lo)[0], y = (corner & 2u ? box->hi : box->lo)[1];
+        int64_t f = ((x >> 4) * forward_q30[0] + (y >> 4) * forward_q30[1]) >> 26,
+                r = ((x >> 4) * right_q30[0] + (y >> 4) * right_q30[1]) >> 26,
+                half = (f * TAN_HALF_Q16) >> 16;
+        before |= f > 0;
+        left &= r < -half;
+        right &= r > half;
+    }
+    return before && !left && !right;
+}
+
+unsigned ff_sets_lay(const void *context, const ff_terrain_info *info, const ff_drawn *drawn,
+                     c3d_draw draws[FF_THROWS_MAX])
+{
+    const ff_sets *sets = context;
+    static const int64_t level_wu[2] = { 0, 0 };
+    if (sets->active < 0) return 1;
+    const ff_set *set = &sets->set[sets->active];
+    ff_box box = ff_shape_box(info, drawn->key, ff_tree_placed(drawn->node), level_wu,
+                              set->position_wu);
+    if (box.lo[0] < set->front_wu && box.hi[0] > -set->front_wu && box.lo[1] < set->front_wu &&
+        box.hi[1] > -set->front_wu)
+        return 1;
+    unsigned count = 1, thrown = 0;
+    const c3d_draw plain = draws[0];
+    for (unsigned s = 0; s < FF_FAR_SECTORS; s++) {
+        if (!set->sector[s].paint.id || !in_wedge(s, &box)) continue;
+        c3d_draw draw = plain;
+        draw.flags = (plain.flags & ~(uint32_t)C3D_DRAW_TEXTURED) | C3D_DRAW_PROJECTED;
+        draw.texture = set->sector[s].paint;
+        draw.projector = &sets->projector[s];
+        if (thrown || (plain.flags & C3D_DRAW_TEXTURED)) {
+            draw.flags |= C3D_DRAW_ALPHA_TEST;
+            if (count == FF_THROWS_MAX) break;
+            draws[count++] = draw;
+        } else {
+            draws[0] = draw;
+        }
+        thrown = 1;
+    }
+    return count;
+}

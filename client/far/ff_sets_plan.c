@@ -1,0 +1,94 @@
+/* Where a set is taken, and for which region it is asked. */
+#include "ff_sets.h"
+
+#include <string.h>
+
+#define M        FF_WU_PER_METRE
+#define SLACK_WU (100 * M)
+
+/* How far a set is good along the way, and how much O lies above the path, by the height above
+ * ground: from the measurements in DESIGN.md. Between the rows in proportion. */
+typedef struct plan_row {
+    int32_t clearance_m, life_m, lift_m;
+} plan_row;
+static const plan_row rows[] = {
+    { 0, 1500, 100 },    { 100, 1800, 150 },   { 600, 3200, 300 },
+    { 2000, 4400, 400 }, { 12000, 9000, 400 }, { INT32_MAX, 9000, 0 }
+};
+
+static void look_up(int32_t clearance_wu, int32_t *life_wu, int32_t *lift_wu)
+{
+    int64_t at_m = clearance_wu > 0 ? clearance_wu / M : 0;
+    unsigned i = 0;
+    while (at_m >= rows[i + 1].clearance_m) i++;
+    const plan_row *low = &rows[i], *high = &rows[i + 1];
+    FF_ASSERT(high->clearance_m > low->clearance_m);
+    int64_t part = at_m - low->clearance_m, whole = high->clearance_m - low->clearance_m;
+    *life_wu = (int32_t)(low->life_m + (high->life_m - low->life_m) * part / whole) * M;
+    *lift_wu = (int32_t)(low->lift_m + (high->lift_m - low->lift_m) * part / whole) * M;
+}
+
+/* atan2 in brad16, 0 north, clockwise; within a 256th of a turn. */
+static uint16_t azimuth(int64_t east, int64_t north)
+{
+    uint16_t best = 0;
+    int64_t most = INT64_MIN;
+    for (uint32_t at = 0; at < 65536; at += 256) {
+        c3d_camera camera = { .yaw = (int32_t)at };
+        c3d_rotation rotation;
+        c3d_rotation_from_camera(&camera, &rotation);
+        int64_t along = (east * rotation.m[2][0] + north * rotation.m[2][1]) >> 15;
+        if (along > most) most = along, best = (uint16_t)at;
+    }
+    return best;
+}
+
+void ff_sets_plan(const ff_sets *sets, const c3d_camera *camera, const ff_motion *motion,
+                  int32_t clearance_wu, ff_set *set)
+{
+    int32_t life_wu, lift_wu, then_wu[3], later_wu[3];
+    look_up(clearance_wu, &life_wu, &lift_wu);
+    memcpy(then_wu, camera->pos_wu, sizeof then_wu);
+    int moves = ff_motion_level(motion, sets->lead_us + 1000000, later_wu);
+    ff_set_region *region = &set->region;
+    region->aside_wu = life_wu / 6;
+    region->behind_wu = region->ahead_wu = life_wu / 2;
+    region->heading = (uint16_t)camera->yaw;
+    if (moves) {
+        (void)ff_motion_level(motion, sets->lead_us, then_wu);
+        int64_t way[2] = { (int64_t)later_wu[0] - camera->pos_wu[0],
+                           (int64_t)later_wu[1] - camera->pos_wu[1] };
+        int64_t length = c3d_length64(way[0], way[1], 0);
+        region->heading = azimuth(way[0], way[1]);
+        /* from where the viewer is now: so it is good while it is on its way */
+        region->behind_wu = life_wu / 4 + SLACK_WU +
+                            (int32_t)c3d_length64((int64_t)then_wu[0] - camera->pos_wu[0],
+                                                  (int64_t)then_wu[1] - camera->pos_wu[1], 0);
+        region->ahead_wu = life_wu - life_wu / 4;
+        for (int axis = 0; axis < 2 && length > 0; axis++)
+            then_wu[axis] += (int32_t)(way[axis] * (life_wu / 4) / length);
+    } else {
+        region->aside_wu = life_wu / 2;
+    }
+    memcpy(set->position_wu, then_wu, sizeof then_wu);
+    set->position_wu[2] += lift_wu;
+    /* who sinks sees less; who climbs above O sees what O did not */
+    region->high_wu = 0;
+    region->low_wu = -lift_wu - life_wu / 4;
+}
+
+int ff_sets_good(const ff_set *set, const int32_t position_wu[3])
+{
+    const ff_set_region *region = &set->region;
+    c3d_camera along = { .yaw = region->heading };
+    c3d_rotation rotation;
+    int64_t away[3];
+    c3d_rotation_from_camera(&along, &rotation);
+    for (int axis = 0; axis < 3; axis++)
+        away[axis] = (int64_t)position_wu[axis] - set->position_wu[axis];
+    int64_t forward = (away[0] * rotation.m[2][0] + away[1] * rotation.m[2][1]) >> 30,
+            right = (away[0] * rotation.m[0][0] + away[1] * rotation.m[0][1]) >> 30;
+    return forward >= -region->behind_wu && forward <= region->ahead_wu &&
+           right >= -region->aside_wu && right <= region->aside_wu && away[2] >= region->low_wu &&
+           away[2] <= region->high_wu;
+}

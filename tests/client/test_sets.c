@@ -1,0 +1,362 @@
+/* Far sets without a server: which sectors a view shows, where a set is taken and how long it is
+ * good, and what fins and paint look like. */
+#include "../rig/picture.h"
+#include "../../client/far/ff_sets.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#define M FF_WU_PER_METRE
+
+enum { WIDE = 240, HIGH = 320, FOCAL = 208, LEAD_US = 2000000, SECOND_US = 1000000 };
+
+static ff_terrain_info flat_info(void)
+{
+    return (ff_terrain_info){ .node_log2 = 3,
+                              .tile_log2 = 8,
+                              .height_max = 2000,
+                              .tiles_x = 1,
+                              .tiles_y = 1,
+                              .samples_x = 257,
+                              .samples_y = 257,
+                              .spacing_wu = 90 * M,
+                              .hscale_q24 = 1 << 24 };
+}
+
+static c3d_camera level_camera(int32_t yaw)
+{
+    return (c3d_camera){ .pos_wu = { 100000 * M, 100000 * M, 2000 * M },
+                         .yaw = yaw,
+                         .focal_q8 = FOCAL * 256,
+                         .width = WIDE,
+                         .height = HIGH };
+}
+
+static void sectors_are_those_of_the_view(void **state)
+{
+    (void)state;
+    static const struct {
+        int32_t yaw, pitch, roll;
+        unsigned sectors;
+    } at[] = { { 0, 0, 0, 0x8003 },     { 2048, 0, 0, 0x8007 },      { 4096, 0, 0, 0x0007 },
+               { 63488, 0, 0, 0xC003 }, { 32768, -2000, 0, 0x0380 }, { 30720, 0, 0, 0x03C0 } };
+    for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
+        c3d_camera camera = level_camera(at[i].yaw);
+        camera.pitch = at[i].pitch;
+        assert_int_equal(ff_sets_in_view(&camera), at[i].sectors);
+        camera.roll = 16384; /* more of the horizon fits upright pictures that lie on their side */
+        assert_int_equal(ff_sets_in_view(&camera) & at[i].sectors, at[i].sectors);
+    }
+    c3d_camera down = level_camera(0);
+    down.pitch = -16384;
+    assert_true(ff_sets_in_view(&down) == 0 || ff_sets_in_view(&down) == 65535);
+}
+
+/* Flies `kmh` along x and y for some seconds. */
+static c3d_camera fly(ff_motion *motion, int32_t x_m_s, int32_t y_m_s)
+{
+    c3d_camera camera = level_camera(8192);
+    ff_motion_reset(motion);
+    for (int i = 0; i < 60; i++) {
+        int32_t pos_wu[3];
+        memcpy(pos_wu, camera.pos_wu, sizeof pos_wu);
+        pos_wu[0] += x_m_s * M * i / 10;
+        pos_wu[1] += y_m_s * M * i / 10;
+        ff_motion_feed(motion, (int64_t)i * SECOND_US / 10, pos_wu);
+        if (i == 59) memcpy(camera.pos_wu, pos_wu, sizeof pos_wu);
+    }
+    return camera;
+}
+
+static void a_set_is_taken_ahead_and_above(void **state)
+{
+    (void)state;
+    static const int32_t clearance_m[] = { 50, 100, 600, 2000, 12000 };
+    static ff_sets sets;
+    ff_motion motion;
+    ff_terrain_info info = flat_info();
+    const ff_far_desc desc = { .enabled = FF_FAR_PAINT, .front_wu = 7500 * M, .coarse = 4 };
+    int32_t life_before = 0;
+    ff_sets_init(&sets, NULL, &desc, &info, 256);
+    sets.lead_us = LEAD_US;
+    c3d_camera camera = fly(&motion, 40, 30);
+    for (size_t i = 0; i < sizeof clearance_m / sizeof *clearance_m; i++) {
+        ff_set set = { .front_wu = desc.front_wu };
+        ff_sets_plan(&sets, &camera, &motion, clearance_m[i] * M, &set);
+        /* of which a quarter lies before O */
+        int32_t life = set.region.ahead_wu / 3 * 4, at_wu[3];
+        assert_true(life > life_before && life >= 1500 * M);
+        assert_true(set.position_wu[2] > camera.pos_wu[2]);
+        assert_true(set.position_wu[0] > camera.pos_wu[0] + 40 * M); /* ahead */
+        /* good when it comes, good for its life along the way, and no longer */
+        for (int32_t m = -100; m < life / M + 400; m += 50) {
+            int32_t along = m * M + 50 * M * (LEAD_US / SECOND_US);
+            at_wu[0] = camera.pos_wu[0] + along / 5 * 4;
+            at_wu[1] = camera.pos_wu[1] + along / 5 * 3;
+            at_wu[2] = camera.pos_wu[2];
+            int good = ff_sets_good(&set, at_wu);
+            if (m >= 100 && m <= life / M - 100) assert_true(good);
+            if (m > life / M + 100) assert_false(good);
+        }
+        at_wu[0] = set.position_wu[0] - set.region.aside_wu * 2;
+        at_wu[1] = set.position_wu[1] + set.region.aside_wu * 2;
+        assert_false(ff_sets_good(&set, at_wu));
+        memcpy(at_wu, set.position_wu, sizeof at_wu);
+        at_wu[2] += M;
+        assert_false(ff_sets_good(&set, at_wu)); /* who climbs above O sees what O did not */
+        life_before = life;
+    }
+}
+
+static void who_stays_has_a_set_all_round(void **state)
+{
+    (void)state;
+    static ff_sets sets;
+    ff_motion motion;
+    ff_terrain_info info = flat_info();
+    const ff_far_desc desc = { .enabled = FF_FAR_PAINT, .front_wu = 7500 * M };
+    ff_set set = { .front_wu = desc.front_wu };
+    ff_sets_init(&sets, NULL, &desc, &info, 256);
+    c3d_camera camera = fly(&motion, 0, 0);
+    ff_sets_plan(&sets, &camera, &motion, 600 * M, &set);
+    assert_int_equal(set.position_wu[0], camera.pos_wu[0]);
+    assert_int_equal(set.position_wu[1], camera.pos_wu[1]);
+    assert_int_equal(set.region.ahead_wu, set.region.behind_wu);
+    assert_true(set.region.aside_wu >= set.region.ahead_wu - M);
+    assert_true(ff_sets_good(&set, camera.pos_wu));
+}
+
+/* A set is taken ahead of who flies fast: it is asked for once, not given up while it is on its
+ * way. */
+static void a_set_on_its_way_is_waited_for(void **state)
+{
+    (void)state;
+    static ff_sets sets;
+    static uint64_t memory[4096];
+    ff_requests requests;
+    ff_motion motion;
+    ff_terrain_info info = flat_info();
+    const ff_far_desc desc = { .enabled = FF_FAR_PAINT, .front_wu = 7500 * M };
+    assert_true(ff_requests_bytes(8) <= sizeof memory);
+    ff_requests_init(&requests, 8, memory);
+    ff_sets_init(&sets, NULL, &desc, &info, 256);
+    sets.serial = 0;
+    sets.lead_us = 5 * SECOND_US;
+    c3d_camera camera = fly(&motion, 200, 150);
+    int32_t from_wu[2] = { camera.pos_wu[0], camera.pos_wu[1] };
+    assert_int_equal(ff_sets_update(&sets, &requests, &camera, &motion, 600 * M, 0, 0), 1);
+    assert_int_equal(sets.serial, 1);
+    for (int i = 0; i < 50; i++) { /* while nothing comes, for longer than sets take */
+        int32_t moved_m = 250 * i / 5;
+        camera.pos_wu[0] = from_wu[0] + moved_m * M / 5 * 4;
+        camera.pos_wu[1] = from_wu[1] + moved_m * M / 5 * 3;
+        ff_motion_feed(&motion, (6 + (int64_t)i / 5) * SECOND_US + i % 5 * 200000, camera.pos_wu);
+        (void)ff_sets_update(&sets, &requests, &camera, &motion, 600 * M, 0, i * 200000);
+        assert_int_equal(sets.serial, 1);
+    }
+    /* he has flown past it: another one */
+    camera.pos_wu[0] += 4000 * M;
+    camera.pos_wu[1] += 3000 * M;
+    ff_motion_feed(&motion, 16 * SECOND_US, camera.pos_wu);
+    (void)ff_sets_update(&sets, &requests, &camera, &motion, 600 * M, 0, 10 * SECOND_US);
+    assert_int_equal(sets.serial, 2);
+}
+
+/* ---- pictures ---- */
+
+typedef struct stage {
+    picture_kit kit;
+    ff_sets sets;
+    ff_terrain_info info;
+    c3d_vertex scratch[81];
+    uint16_t indices[2 * 81];
+    uint8_t rgb[WIDE * HIGH * 3];
+} stage;
+
+static void open_stage(stage *s, enum ff_far_use use)
+{
+    const ff_far_desc desc = { .enabled = (uint8_t)use, .front_wu = 1000 * M, .coarse = 4 };
+    assert_int_equal(picture_open(&s->kit, PICTURE_SOFT, WIDE, HIGH, 0), FF_OK);
+    s->info = flat_info();
+    memset(&s->sets, 0, sizeof s->sets);
+    ff_sets_init(&s->sets, s->kit.device, &desc, &s->info, 256);
+    ff_sets_scratch(&s->sets, s->scratch, s->indices, 16);
+    s->kit.frame.camera = level_camera(0);
+    s->kit.frame.camera.near_wu = 50 * M;
+    s->kit.frame.camera.far_wu = 60000 * M;
+}
+
+static void show(stage *s)
+{
+    c3d_begin(s->kit.device, &s->kit.frame);
+    ff_sets_aim(&s->sets, &s->kit.frame.camera);
+    ff_sets_draw(&s->sets, &s->kit.frame.camera);
+    c3d_end(s->kit.device);
+    assert_int_equal(c3d_read_rgb(s->kit.device, s->rgb), FF_OK);
+}
+
+static int top_of_column(const stage *s, int x)
+{
+    for (int y = 0; y < HIGH; y++) {
+        const uint8_t *pixel = s->rgb + 3 * (y * WIDE + x);
+        if (pixel[0] | pixel[1] | pixel[2]) return y;
+    }
+    return HIGH;
+}
+
+/* Sector 0 with one fin, 10 km away, that rises from left to right; and paint if there are pixels.
+ */
+static void give_sector(stage *s, uint16_t *pixels, unsigned side)
+{
+    static uint8_t slot[FF_FAR_VERTICES_MAX * sizeof(ff_fin_vertex) + 256 * 256 * 2];
+    ff_set *set = &s->sets.set[0];
+    ff_fin_vertex *fin = (ff_fin_vertex *)(void *)slot;
+    memcpy(set->position_wu, s->kit.frame.camera.pos_wu, sizeof set->position_wu);
+    set->front_wu = 1000 * M;
+    set->focal = FOCAL;
+    set->painted = pixels != NULL;
+    set->key = 1;
+    for (int i = 0; i <= 20; i++)
+        fin[i] = (ff_fin_vertex){ .column = (int16_t)(8 * i - 80),
+                                  .up_q2 = (int16_t)(4 * i),
+                                  .distance = (uint16_t)ff_far_distance_step(10000 * M),
+                                  .begins = i == 0 };
+    ff_new_item item = { .key = 1, .kind = FF_KIND_FAR, .pixels = (uint16_t *)(void *)slot };
+    item.u.far.fins = 21;
+    if (pixels) {
+        memcpy(fin + FF_FAR_VERTICES_MAX, pixels, side * side * sizeof *pixels);
+        item.width = item.height = (uint16_t)side;
+        item.u.far.middle = (int16_t)(side / 2);
+        item.u.far.top = (int16_t)(side / 2);
+    }
+    assert_int_equal(ff_sets_take(&s->sets, &item, 0), 1);
+    assert_int_equal(ff_sets_take(&s->sets, &item, 0), 0); /* once */
+    s->sets.active = 0;
+}
+
+static void fins_stand_where_ridges_were_seen(void **state)
+{
+    (void)state;
+    static stage s;
+    open_stage(&s, FF_FAR_FINS);
+    give_sector(&s, NULL, 0);
+    show(&s);
+    for (int x = 45; x < 195; x++) {
+        double up = (x + 0.5 - 40) / 8; /* a texel is a pixel here */
+        assert_in_range(top_of_column(&s, x) + 1, (int)(HIGH / 2 - up), (int)(HIGH / 2 - up) + 2);
+    }
+    assert_int_equal(top_of_column(&s, 30), HIGH);
+    assert_int_equal(top_of_column(&s, 210), HIGH);
+    /* from a kilometre nearer it stands higher, from one side elsewhere: it has its distance */
+    s.kit.frame.camera.pos_wu[1] += 5000 * M;
+    show(&s);
+    assert_in_range(top_of_column(&s, WIDE / 2), HIGH / 2 - 22, HIGH / 2 - 18);
+    picture_close(&s.kit);
+}
+
+static void fins_wear_the_paint(void **state)
+{
+    (void)state;
+    enum { SIDE = 256 };
+    static stage s;
+    static uint16_t pixels[SIDE * SIDE];
+    open_stage(&s, FF_FAR_PAINT);
+    /* red left, green right, nothing in the outermost texels */
+    for (int y = 1; y < SIDE - 1; y++)
+        for (int x = 1; x < SIDE - 1; x++) pixels[y * SIDE + x] = x < SIDE / 2 ? 0xF801 : 0x07C1;
+    give_sector(&s, pixels, SIDE);
+    show(&s);
+    for (int x = 80; x < 160; x++) { /* a sector is 86 texels wide */
+        const uint8_t *pixel = s.rgb + 3 * ((top_of_column(&s, x) + 4) * WIDE + x);
+        if (x > 118 && x < 122) continue;
+        assert_int_equal(pixel[0], x < 120 ? 255 : 0);
+        assert_int_equal(pixel[1], x < 120 ? 0 : 255);
+    }
+    ff_sets_drop(&s.sets);
+    c3d_stats stats;
+    c3d_get_stats(s.kit.device, &stats);
+    assert_int_equal(stats.stale_handles, 0);
+    picture_close(&s.kit);
+}
+
+typedef struct told {
+    ff_key set;
+    unsigned sector, parts;
+    uint32_t triangles;
+    int32_t west_wu, east_wu;
+} told;
+
+static void tell(void *context, ff_key set, unsigned sector, const c3d_vertex *vertex,
+                 uint32_t vertices, const uint16_t *index, uint32_t indices)
+{
+    told *t = context;
+    t->set = set;
+    t->sector = sector;
+    t->parts++;
+    for (uint32_t i = 0; i + 2 < indices; i++)
+        t->triangles += index[i] != index[i + 1] && index[i + 1] != index[i + 2] &&
+                        index[i] != index[i + 2];
+    for (uint32_t i = 0; i < vertices; i++) {
+        t->west_wu = vertex[i].x < t->west_wu ? vertex[i].x : t->west_wu;
+        t->east_wu = vertex[i].x > t->east_wu ? vertex[i].x : t->east_wu;
+    }
+}
+
+/* In parts, as meshes have room, each joined to the one before; without a device, too. */
+static void who_watches_is_told_of_all_fins(void **state)
+{
+    (void)state;
+    for (int device = 0; device < 2; device++) {
+        static stage s;
+        told t = { 0 };
+        open_stage(&s, FF_FAR_FINS);
+        s.sets.watch = tell;
+        s.sets.watch_context = &t;
+        if (!device) s.sets.device = NULL;
+        give_sector(&s, NULL, 0);
+        assert_int_equal(t.set, 1);
+        assert_int_equal(t.sector, 0);
+        assert_int_equal(t.parts, 3); /* 8 vertices of the 21 and their feet in a mesh */
+        assert_int_equal(t.triangles, 40);
+        assert_in_range(t.east_wu - t.west_wu, 7700 * M * 98 / 100, 7700 * M * 102 / 100);
+        assert_in_range(t.east_wu + t.west_wu + 100, 0, 200);
+        picture_close(&s.kit);
+    }
+}
+
+/* All meshes and textures that a set had are free again. */
+static void a_set_gives_back_what_it_held(void **state)
+{
+    (void)state;
+    static stage s;
+    c3d_stats before, after;
+    open_stage(&s, FF_FAR_FINS);
+    c3d_get_stats(s.kit.device, &before);
+    give_sector(&s, NULL, 0);
+    c3d_get_stats(s.kit.device, &after);
+    assert_true(after.mesh_held > before.mesh_held);
+    ff_sets_drop(&s.sets);
+    c3d_get_stats(s.kit.device, &after);
+    assert_int_equal(after.mesh_held, before.mesh_held);
+    assert_int_equal(after.strip_held, before.strip_held);
+    picture_close(&s.kit);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sectors_are_those_of_the_view),
+        cmocka_unit_test(a_set_is_taken_ahead_and_above),
+        cmocka_unit_test(who_stays_has_a_set_all_round),
+        cmocka_unit_test(fins_stand_where_ridges_were_seen),
+        cmocka_unit_test(fins_wear_the_paint),
+        cmocka_unit_test(a_set_gives_back_what_it_held),
+        cmocka_unit_test(a_set_on_its_way_is_waited_for),
+        cmocka_unit_test(who_watches_is_told_of_all_fins),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,68 @@
+#!/bin/bash
+# farfield-fly with far sets: what they cost and mend, as the judge sees it; the same twice and on every back end; a tape of such a
+# flight, played by farfield-handheld.
+set -u
+cd "$(dirname "$0")/../.." || exit 2
+bin=${BIN:-build/bin}
+work=build/tests/far.$$
+mkdir -p "$work"
+. tests/rig/result.bash
+flies() { # NAME ARGUMENTS...
+    flown=$1
+    shift
+    timeout 300 "$bin/farfield-fly" --pack "$work/hills.ffp" --link lan --panorama off --quality px:2 --far-front 2000 --far-coarse 8 --height 300 \
+        --speed 600 --seconds 5 --settle 5 --csv "$work/$flown.csv" --json "$@" >"$work/$flown.json" 2>"$work/$flown.err"
+}
+is() { # EXPRESSION WHAT: over the summaries `s`, by flight
+    python3 - "$work" "$1" <<'END'
+import glob, json, os, sys
+s = {os.path.basename(path)[:-5]: json.load(open(path)) for path in glob.glob(sys.argv[1] + "/*.json")}
+sys.exit(0 if eval(sys.argv[2]) else 1)
+END
+    result $? "$2"
+}
+
+python3 tests/rig/hills.py 513 "$work/hills.raw" &&
+    "$bin/farfield-bake" "$work/hills.raw" --raw 513x513 --spacing 40 --tile-log2 6 --quiet -o "$work/hills.ffp"
+result $? "a pack to fly over"
+
+flies coarse --far off --quality px:16 --audit on --backend none
+result $? "coarse ground alone"
+flies fins --far fins --audit on --backend none
+result $? "fins on coarse far ground"
+is 's["fins"]["far"] == "fins" and s["coarse"]["far"] == "off"' "the summary says which"
+is 's["coarse"]["far_requests"] == s["coarse"]["far_bytes"] == s["coarse"]["bytes_far"] == 0' "without sets nothing is asked for"
+is 's["fins"]["far_requests"] > 0 and s["fins"]["far_sectors"] > 0 and s["fins"]["requests_failed"] == 0' "sets are asked for while flying"
+is '0 < s["fins"]["far_fins_bytes"] < s["fins"]["far_bytes"] == s["fins"]["bytes_far"]' "bytes of fins are counted, and those of their messages"
+is 's["fins"]["skyline_px_rms"] < s["coarse"]["skyline_px_rms"] / 2' "fins mend the skyline"
+is 's["fins"]["square_px_panorama"] == 0 and s["fins"]["undrawn_px_percent"] < 0.1 and s["fins"]["crack_frames"] == 0' \
+    "the ground below is whole, and no panorama"
+
+flies paint --far paint --backend soft565
+result $? "fins and paint"
+flies again --far paint --backend soft565
+cmp -s "$work/paint.csv" "$work/again.csv"
+result $? "the same twice"
+flies gl --far paint --backend gl
+is 's["paint"]["geometry_hash"] == s["gl"]["geometry_hash"] and s["paint"]["request_hash"] == s["gl"]["request_hash"]' \
+    "the same requests and geometry on another back end"
+is 's["paint"]["bytes_far"] > 2 * s["fins"]["bytes_far"] and s["paint"]["relevance_percent"] > 0' "paint weighs more than fins"
+flies half --far paint --far-shift 1 --backend none
+is 's["half"]["bytes_far"] < 0.6 * s["paint"]["bytes_far"]' "texels twice as large cost less than half"
+
+flies high --far paint --backend none --height 6000
+is 's["high"]["far_sectors"] > 0' "pictures from high above are tall, and taken in"
+
+flies taped --far paint --backend soft565 --tape "$work/tape"
+"$bin/farfield-handheld" --tape "$work/tape" --json >"$work/played.json" 2>"$work/played.err"
+result $? "a tape plays the same flight"
+is 's["played"]["far_sectors"] > 0 and s["played"]["far_sets"] >= s["taped"]["far_sets"]' "with its sets"
+
+for wrong in "far on" "far-front 0" "far-front 1.2.3" "far-front 9000000" "far-coarse 17" "far-shift 4" "far-quality 0" "far-quality 101"; do
+    set -- $wrong
+    "$bin/farfield-fly" --pack "$work/hills.ffp" "--$1" "$2" >/dev/null 2>"$work/err"
+    [ $? = 2 ] && [ "$(wc -l <"$work/err")" = 1 ]
+    result $? "--$wrong is refused in one line"
+done
+[ $failures = 0 ] && rm -rf "$work"
+exit $((failures > 0))
