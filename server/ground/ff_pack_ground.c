@@ -119,9 +119,9 @@ void ff_pack_ground_load(ff_pack_ground *ground, const ff_ground_look *look)
     memcpy(view.centre_wu, look->camera.pos_wu, sizeof view.centre_wu);
     for (int round = 0; round < LOAD_ROUNDS_MAX; round++) {
         ff_tree_select(ground->tree, &view, &quality);
-        if (serve_wishes(ground) == 0 && ff_tree_to_make(ground->tree) == 0) return;
+        if (serve_wishes(ground) == 0 && ff_tree_to_make(ground->tree) == 0) break;
     }
-    /* what came last may have driven out what was to be drawn */
+    /* what came last, or found no room, may have driven out what was to be drawn */
     ff_tree_select(ground->tree, &view, &quality);
 }
 
