@@ -41,6 +41,9 @@ static int32_t larger(int32_t a, int32_t b)
     return a > b ? a : b;
 }
 
+/* The largest difference of w: a negative one, too, has 19 bits after it is shifted down by 4. */
+#define STEP_MAX ((1 << 23) - 16)
+
 /* The slope per pixel, 16 * n / area, of a numerator n. */
 static inline int32_t slope(const soft_shape *shape, int32_t n)
 {
@@ -71,7 +74,7 @@ static int is_flat(const soft_state *state, const soft_shape *shape, int32_t dw)
     uint32_t least = a->w < b->w ? a->w : b->w;
     int32_t range = 0;
     if (c->w < least) least = c->w;
-    if (dw >= 1 << 23) return 0;
+    if (dw > STEP_MAX) return 0;
     if (state->paint.texture) {
         int32_t texels = larger(larger(b->s - a->s, c->s - a->s), larger(b->t - a->t, c->t - a->t));
         if (texels > TEXELS_MAX) return 0;
