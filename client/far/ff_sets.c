@@ -3,6 +3,7 @@
 #include <string.h>
 
 #define SECTOR            (65536u / FF_FAR_SECTORS)
+#define TILTED            4096     /* 22.5 degrees */
 #define RETRY_US          2000000  /* the server was busy */
 #define RETRY_LATER_US    30000000 /* after REFUSALS_IN_A_ROW refusals */
 #define REFUSALS_IN_A_ROW 3
@@ -59,53 +60,48 @@ static void drop_set(ff_sets *sets, int index)
     memset(set, 0, sizeof *set);
 }
 
-void ff_sets_drop(ff_sets *sets)
-{
-    drop_set(sets, 0);
-    drop_set(sets, 1);
-    sets->active = sets->next = -1;
-}
-
 static unsigned known(const ff_set *set)
 {
     FF_ASSERT(!(set->held & set->empty) && !((set->held | set->empty) & set->failed));
     return (unsigned)set->held | set->empty | set->failed;
 }
 
-/* Twice as much as half the picture's diagonal at most: conservative for any roll. */
+/* Whether the picture may show the horizon's direction east, north. A picture that lies on its
+ * side, or looks far up or down, shows more of the horizon than its width: there its diagonal
+ * counts. */
+static int shows(const c3d_camera *camera, const c3d_rotation *rotation, int32_t east,
+                 int32_t north)
+{
+    int64_t eye[3], focal = camera->focal_q8 / 256;
+    int tilted = camera->roll != 0 || camera->pitch > TILTED || camera->pitch < -TILTED;
+    for (int row = 0; row < 3; row++)
+        eye[row] = ((int64_t)rotation->m[row][0] * east + (int64_t)rotation->m[row][1] * north) >>
+                   30;
+    if (eye[2] <= 0) return 0;
+    if (!tilted) return (eye[0] < 0 ? -eye[0] : eye[0]) * focal <= eye[2] * (camera->width / 2);
+    int64_t half = c3d_length64(camera->width / 2, camera->height / 2, 0);
+    return eye[2] * c3d_length64(half, focal, 0) > focal << 30;
+}
+
 unsigned ff_sets_in_view(const c3d_camera *camera)
 {
     c3d_rotation rotation;
     unsigned seen = 0;
     c3d_rotation_from_camera(camera, &rotation);
-    int64_t half = c3d_length64(camera->width / 2, camera->height / 2, 0),
-            cone = c3d_length64(half, camera->focal_q8 / 256, 0);
-    for (unsigned s = 0; s < FF_FAR_SECTORS; s++) {
-        /* some azimuth of the sector, in steps of an eighth, lies within the width of the view */
+    for (unsigned s = 0; s < FF_FAR_SECTORS; s++)
         for (int step = -4; step <= 4 && !(seen >> s & 1u); step++) {
-            c3d_camera level = { .yaw = (int32_t)(s * SECTOR) + step * (int32_t)(SECTOR / 8) };
-            c3d_rotation along;
-            c3d_rotation_from_camera(&level, &along);
-            int64_t eye[3];
-            for (int row = 0; row < 3; row++)
-                eye[row] = ((int64_t)rotation.m[row][0] * along.m[2][0] +
-                            (int64_t)rotation.m[row][1] * along.m[2][1]) >>
-                           30;
-            /* within the picture's width at its focal length, or too far up or down to tell */
-            int64_t across = eye[0] < 0 ? -eye[0] : eye[0];
-            int in_width = eye[2] > 0 &&
-                           across * (camera->focal_q8 / 256) <= eye[2] * (camera->width / 2);
-            int rolled = camera->roll != 0 || camera->pitch > 4096 || camera->pitch < -4096;
-            int in_cone = eye[2] * cone > (INT64_C(1) << 30) / 1 * (camera->focal_q8 / 256);
-            if (in_width || (rolled && in_cone)) seen |= 1u << s;
+            int32_t azimuth = (int32_t)(s * SECTOR) + step * (int32_t)(SECTOR / 8);
+            if (shows(camera, &rotation, c3d_sin_q30(azimuth), c3d_cos_q30(azimuth)))
+                seen |= 1u << s;
         }
-    }
     return seen;
 }
 
 int ff_sets_in_use(const ff_sets *sets, const c3d_camera *camera, int32_t *fine_wu, uint8_t *coarse)
 {
     if (!sets->desc.enabled || !sets->side || sets->off) return 0;
+    if (sets->active < 0 && sets->refusals >= REFUSALS_IN_A_ROW)
+        return 0; /* nothing will mend it */
     int64_t away_wu = 0;
     const ff_set *set = sets->active >= 0 ? &sets->set[sets->active] : NULL;
     for (int axis = 0; set && axis < 2; axis++) {
@@ -148,7 +144,7 @@ static int take_over(ff_sets *sets, const c3d_camera *camera, int64_t now_us)
     if (sets->next < 0) return 0;
     FF_ASSERT(sets->next < 2 && sets->next != sets->active);
     ff_set *next = &sets->set[sets->next];
-    if (ff_sets_in_view(camera) & ~known(next)) return 0;
+    if (sets->seen & ~known(next)) return 0;
     if (!next->ready) {
         int64_t took_us = now_us - next->asked_us < LEAD_US_MAX ? now_us - next->asked_us
                                                                 : LEAD_US_MAX;
@@ -288,7 +284,7 @@ void ff_sets_want(const ff_sets *sets, ff_requests *requests, const ff_view *vie
     int newest = sets->next >= 0 ? sets->next : sets->active;
     if (!sets->desc.enabled || sets->off || newest < 0 || now_us < sets->retry_us) return;
     const ff_set *set = &sets->set[newest];
-    unsigned in_view = ff_sets_in_view(&view->camera) & ~known(set), missing = in_view;
+    unsigned in_view = sets->seen & ~known(set), missing = in_view;
     if (!in_view && sets->next < 0) missing = soon & ~known(set);
     if (missing)
         want_sectors(sets, requests, view, set, missing,

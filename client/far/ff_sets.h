@@ -106,7 +106,6 @@ void ff_sets_want(const ff_sets *sets, ff_requests *requests, const ff_view *vie
 unsigned ff_sets_in_view(const c3d_camera *camera);
 /* Takes in a sector or a refusal; 1 when it belongs to a set still wanted. */
 int ff_sets_take(ff_sets *sets, const ff_new_item *item, int64_t now_us);
-void ff_sets_drop(ff_sets *sets);
 
 /* ff_sets_plan.c: where a set asked for now is best taken and for which region; and whether a place
  * lies in a set's region. */
@@ -115,7 +114,7 @@ void ff_sets_plan(const ff_sets *sets, const c3d_camera *camera, const ff_motion
 int ff_sets_good(const ff_set *set, const int32_t position_wu[3]);
 
 /* ff_sets_draw.c: makes a sector's meshes from its fins. */
-void ff_sets_make_fins(ff_sets *sets, const ff_set *set, unsigned sector, const ff_fin_vertex *fin,
+void ff_sets_make_fins(ff_sets *sets, ff_set *set, unsigned sector, const ff_fin_vertex *fin,
                        uint32_t count);
 /* Before a picture: where the projectors stand. */
 void ff_sets_aim(ff_sets *sets, const c3d_camera *camera);

@@ -49,10 +49,10 @@ static int make_strip(ff_sets *sets, ff_set_sector *made, uint32_t vertices, uin
 }
 
 /* One mesh of `count` fin vertices, with the strip that joins those of one fin. 0: no room. */
-static int make_chunk(ff_sets *sets, const ff_set *set, unsigned sector, const ff_fin_vertex *fin,
+static int make_chunk(ff_sets *sets, ff_set *set, unsigned sector, const ff_fin_vertex *fin,
                       uint32_t count)
 {
-    ff_set_sector *made = &((ff_set *)set)->sector[sector];
+    ff_set_sector *made = &set->sector[sector];
     uint32_t indices = 0;
     if (made->chunks == FF_SETS_CHUNKS) return 0;
     for (uint32_t i = 0; i < count; i++) {
@@ -74,7 +74,7 @@ static int make_chunk(ff_sets *sets, const ff_set *set, unsigned sector, const f
     return 1;
 }
 
-void ff_sets_make_fins(ff_sets *sets, const ff_set *set, unsigned sector, const ff_fin_vertex *fin,
+void ff_sets_make_fins(ff_sets *sets, ff_set *set, unsigned sector, const ff_fin_vertex *fin,
                        uint32_t count)
 {
     uint32_t room = sets->vertices / 2u;

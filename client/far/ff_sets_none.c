@@ -48,8 +48,6 @@ int ff_sets_take(ff_sets *sets, const ff_new_item *item, int64_t now_us)
     return (void)sets, (void)item, (void)now_us, 0;
 }
 
-void ff_sets_drop(ff_sets *sets) { (void)sets; }
-
 void ff_sets_aim(ff_sets *sets, const c3d_camera *camera) { (void)sets, (void)camera; }
 
 unsigned ff_sets_lay(const void *sets, const ff_terrain_info *info, const ff_drawn *drawn,

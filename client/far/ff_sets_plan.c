@@ -34,10 +34,7 @@ static uint16_t azimuth(int64_t east, int64_t north)
     uint16_t best = 0;
     int64_t most = INT64_MIN;
     for (uint32_t at = 0; at < 65536; at += 256) {
-        c3d_camera camera = { .yaw = (int32_t)at };
-        c3d_rotation rotation;
-        c3d_rotation_from_camera(&camera, &rotation);
-        int64_t along = (east * rotation.m[2][0] + north * rotation.m[2][1]) >> 15;
+        int64_t along = (east * c3d_sin_q30((int32_t)at) + north * c3d_cos_q30((int32_t)at)) >> 15;
         if (along > most) most = along, best = (uint16_t)at;
     }
     return best;
@@ -80,14 +77,11 @@ void ff_sets_plan(const ff_sets *sets, const c3d_camera *camera, const ff_motion
 int ff_sets_good(const ff_set *set, const int32_t position_wu[3])
 {
     const ff_set_region *region = &set->region;
-    c3d_camera along = { .yaw = region->heading };
-    c3d_rotation rotation;
-    int64_t away[3];
-    c3d_rotation_from_camera(&along, &rotation);
+    int64_t away[3], east = c3d_sin_q30(region->heading), north = c3d_cos_q30(region->heading);
     for (int axis = 0; axis < 3; axis++)
         away[axis] = (int64_t)position_wu[axis] - set->position_wu[axis];
-    int64_t forward = (away[0] * rotation.m[2][0] + away[1] * rotation.m[2][1]) >> 30,
-            right = (away[0] * rotation.m[0][0] + away[1] * rotation.m[0][1]) >> 30;
+    int64_t forward = (away[0] * east + away[1] * north) >> 30,
+            right = (away[0] * north - away[1] * east) >> 30;
     return forward >= -region->behind_wu && forward <= region->ahead_wu &&
            right >= -region->aside_wu && right <= region->aside_wu && away[2] >= region->low_wu &&
            away[2] <= region->high_wu;

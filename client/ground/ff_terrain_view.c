@@ -160,13 +160,12 @@ static void draw_strips(ff_terrain_view *view, const ff_drawn *drawn, c3d_draw d
     }
 }
 
-static void draw_node(ff_terrain_view *view, const ff_terrain_info *info, const ff_drawn *drawn,
-                      const c3d_draw *draw)
+static void draw_thrown(ff_terrain_view *view, const ff_terrain_info *info, const ff_drawn *drawn,
+                        const c3d_draw *draw)
 {
     c3d_draw draws[FF_THROWS_MAX];
-    unsigned count = 1;
     draws[0] = *draw;
-    if (view->throws.lay) count = view->throws.lay(view->throws.context, info, drawn, draws);
+    unsigned count = view->throws.lay(view->throws.context, info, drawn, draws);
     FF_ASSERT(count >= 1 && count <= FF_THROWS_MAX);
     for (unsigned i = 0; i < count; i++) draw_strips(view, drawn, draws[i]);
 }
@@ -193,7 +192,10 @@ void ff_terrain_view_draw(ff_terrain_view *view, const ff_drawn *list, uint32_t 
         if (entry) entry->mesh = draw.mesh;
         if (view->textures) ff_textures_lay(view->textures, drawn->key, &draw);
         if (draw.flags & C3D_DRAW_TEXTURED) ff_ground_frame_last(info, drawn, &draw);
-        draw_node(view, info, drawn, &draw);
+        if (view->throws.lay)
+            draw_thrown(view, info, drawn, &draw);
+        else
+            draw_strips(view, drawn, draw);
         if (show) ff_show_over(view, drawn, &draw, show);
         if (!entry && draw.mesh.id) c3d_mesh_free(view->device, draw.mesh);
     }

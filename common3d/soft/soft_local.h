@@ -217,6 +217,13 @@ static inline int soft_leading_zeros(uint32_t n)
 #endif
 }
 
+static inline int soft_log2(uint64_t n)
+{
+    C3D_ASSERT(n > 0);
+    return n >> 32 ? 63 - soft_leading_zeros((uint32_t)(n >> 32))
+                   : 31 - soft_leading_zeros((uint32_t)n);
+}
+
 static inline int64_t soft_scale64(int64_t value, int shift) /* times 2^shift */
 {
     C3D_ASSERT(shift > -64 && shift < 63);

@@ -30,13 +30,6 @@ static void vertex_values(const soft_vertex *vertex, int64_t w, const soft_plane
     value[SOFT_F] = (vertex->fog_q8 * w) >> 6; /* Q10: within 2^24 */
 }
 
-static int log2_of(uint64_t n)
-{
-    C3D_ASSERT(n > 0);
-    return n >> 32 ? 63 - soft_leading_zeros((uint32_t)(n >> 32))
-                   : 31 - soft_leading_zeros((uint32_t)n);
-}
-
 /* 1/area as a mantissa of 31 bits, 2^60 / (area scaled into bits 30..), and its exponent: a
  * division costs hundreds of instructions. */
 typedef struct quotient {
@@ -47,7 +40,7 @@ typedef struct quotient {
 static quotient one_over(const soft_state *state, int64_t area)
 {
     int64_t size = area < 0 ? -area : area;
-    int lead = 30 - log2_of((uint64_t)size);
+    int lead = 30 - soft_log2((uint64_t)size);
     C3D_ASSERT(size < (int64_t)1 << 35); /* two products of 17 bits each way */
     int32_t mantissa = (int32_t)(soft_fine_reciprocal(state, (uint32_t)soft_scale64(size, lead)) >>
                                  1);
@@ -59,7 +52,7 @@ static quotient one_over(const soft_state *state, int64_t area)
 static int64_t over_area(int64_t value, quotient per_area)
 {
     if (value == 0) return 0;
-    int down = log2_of((uint64_t)(value < 0 ? -value : value)) - 30;
+    int down = soft_log2((uint64_t)(value < 0 ? -value : value)) - 30;
     C3D_ASSERT(down <= 62 - 30);
     int shift = down + per_area.exponent;
     int64_t product = (int64_t)(int32_t)soft_scale64(value, -down) * per_area.mantissa;

@@ -14,8 +14,6 @@ static uint32_t kept_bytes(enum c3d_texture_format format)
     return format == C3D_RGBA5551 ? 2 : 4;
 }
 
-static int log2_of(uint32_t power) { return 31 - soft_leading_zeros(power); }
-
 /* The first of `units` free units in a row; heap_units when there is no such run. */
 static uint32_t find_units(const soft_state *state, uint32_t units)
 {
@@ -65,8 +63,8 @@ uint32_t soft_texture_upload(void *opaque, enum c3d_texture_format format, uint3
                                .height = (uint16_t)height,
                                .stride = (uint16_t)(width + 2),
                                .format = (uint8_t)format,
-                               .width_log2 = (uint8_t)log2_of(width),
-                               .height_log2 = (uint8_t)log2_of(height) };
+                               .width_log2 = (uint8_t)soft_log2(width),
+                               .height_log2 = (uint8_t)soft_log2(height) };
     C3D_ASSERT(1u << texture->width_log2 == width && 1u << texture->height_log2 == height);
     memset(state->heap_used + first, 1, units);
     for (uint32_t row = 0; row < height + 2; row++) {

@@ -8,13 +8,6 @@
 
 #define TEXEL_MAX ((1 << 28) - 1)
 
-static int log2_of(uint64_t n)
-{
-    C3D_ASSERT(n > 0);
-    return n >> 32 ? 63 - soft_leading_zeros((uint32_t)(n >> 32))
-                   : 31 - soft_leading_zeros((uint32_t)n);
-}
-
 static int64_t size_of(int64_t n) { return n < 0 ? -n : n; }
 
 /* The farthest that a vertex may lie from the projector's point along an axis, wu. */
@@ -43,9 +36,9 @@ static void begin(soft_throw *space, const c3d_draw *draw, const c3d_projector *
         }
         most_sum = sum > most_sum ? sum : most_sum;
     }
-    space->shift = 29 - log2_of((uint64_t)most_wu);
+    space->shift = 29 - soft_log2((uint64_t)most_wu);
     if (space->shift > 14) space->shift = 14;
-    space->sum_shift = log2_of(most_sum) - 29;
+    space->sum_shift = soft_log2(most_sum) - 29;
     C3D_ASSERT(most_wu < (int64_t)1 << 36 && most_sum < (uint64_t)1 << 63);
 }
 
@@ -103,7 +96,7 @@ static void throw_at(const soft_state *state, const int64_t exact[3], const int3
     vertex->c = sum[2];
     vertex->off = SOFT_OFF_BEHIND;
     if (sum[2] >= SOFT_THROWN_C) {
-        int shift = log2_of((uint64_t)exact[2]) - 30;
+        int shift = soft_log2((uint64_t)exact[2]) - 30;
         uint32_t r = soft_fine_reciprocal(state, (uint32_t)soft_scale64(exact[2], -shift));
         vertex->s = texel_q16(exact[0], shift, r, texture->width_log2);
         vertex->t = texel_q16(exact[1], shift, r, texture->height_log2);

@@ -10,13 +10,6 @@ typedef struct thrown_planes {
     soft_planes picture, own; /* s, t and c * w; the rest and w */
 } thrown_planes;
 
-static int log2_of(uint64_t n)
-{
-    C3D_ASSERT(n > 0);
-    return n >> 32 ? 63 - soft_leading_zeros((uint32_t)(n >> 32))
-                   : 31 - soft_leading_zeros((uint32_t)n);
-}
-
 /* c * w, so that the largest has 29 bits. */
 static void weigh(const soft_vertex *const vertex[3], uint32_t weight[3])
 {
@@ -25,7 +18,7 @@ static void weigh(const soft_vertex *const vertex[3], uint32_t weight[3])
         product[i] = (uint64_t)(uint32_t)vertex[i]->c * vertex[i]->w;
         any |= product[i];
     }
-    int shift = log2_of(any) - 28;
+    int shift = soft_log2(any) - 28;
     for (int i = 0; i < 3; i++) {
         weight[i] = (uint32_t)soft_scale64((int64_t)product[i], -shift);
         if (!weight[i]) weight[i] = 1;

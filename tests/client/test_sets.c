@@ -166,6 +166,35 @@ static void a_set_on_its_way_is_waited_for(void **state)
     assert_int_equal(sets.serial, 2);
 }
 
+/* Whom the server refuses sets three times in a row draws ground as finely as without. */
+static void without_sets_far_ground_is_fine(void **state)
+{
+    (void)state;
+    static ff_sets sets;
+    const ff_terrain_info info = flat_info();
+    const ff_far_desc desc = { .enabled = FF_FAR_PAINT, .front_wu = 7500 * M, .coarse = 4 };
+    ff_new_item refusal = { .key = 1, .kind = FF_KIND_FAR, .refused = 1, .error = FF_ERR_FULL };
+    c3d_camera camera = level_camera(0);
+    int32_t fine_wu = 0;
+    uint8_t coarse = 0;
+    ff_sets_init(&sets, NULL, &desc, &info, 256);
+    sets.set[0].key = 1;
+    sets.next = 0;
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(ff_sets_in_use(&sets, &camera, &fine_wu, &coarse), 1);
+        assert_int_equal(coarse, 4);
+        assert_int_equal(fine_wu, 7500 * M);
+        assert_int_equal(ff_sets_take(&sets, &refusal, i), 1);
+    }
+    assert_int_equal(ff_sets_in_use(&sets, &camera, &fine_wu, &coarse), 0);
+    ff_sets_init(&sets, NULL, &desc, &info, 256);
+    sets.set[0].key = 1;
+    sets.next = 0;
+    refusal.error = FF_ERR_UNSUPPORTED; /* once will do */
+    assert_int_equal(ff_sets_take(&sets, &refusal, 0), 1);
+    assert_int_equal(ff_sets_in_use(&sets, &camera, &fine_wu, &coarse), 0);
+}
+
 /* ---- pictures ---- */
 
 typedef struct stage {
@@ -188,6 +217,15 @@ static void open_stage(stage *s, enum ff_far_use use)
     s->kit.frame.camera = level_camera(0);
     s->kit.frame.camera.near_wu = 50 * M;
     s->kit.frame.camera.far_wu = 60000 * M;
+}
+
+/* The viewer is far away: the set goes. */
+static void leave(stage *s)
+{
+    c3d_camera camera = s->kit.frame.camera;
+    camera.pos_wu[0] += 50000 * M;
+    assert_int_equal(ff_sets_update(&s->sets, NULL, &camera, NULL, 0, 1, 0), 1);
+    assert_int_equal(s->sets.active, -1);
 }
 
 static void show(stage *s)
@@ -276,7 +314,7 @@ static void fins_wear_the_paint(void **state)
         assert_int_equal(pixel[0], x < 120 ? 255 : 0);
         assert_int_equal(pixel[1], x < 120 ? 0 : 255);
     }
-    ff_sets_drop(&s.sets);
+    leave(&s);
     c3d_stats stats;
     c3d_get_stats(s.kit.device, &stats);
     assert_int_equal(stats.stale_handles, 0);
@@ -339,7 +377,7 @@ static void a_set_gives_back_what_it_held(void **state)
     give_sector(&s, NULL, 0);
     c3d_get_stats(s.kit.device, &after);
     assert_true(after.mesh_held > before.mesh_held);
-    ff_sets_drop(&s.sets);
+    leave(&s);
     c3d_get_stats(s.kit.device, &after);
     assert_int_equal(after.mesh_held, before.mesh_held);
     assert_int_equal(after.strip_held, before.strip_held);
@@ -352,6 +390,7 @@ int main(void)
         cmocka_unit_test(sectors_are_those_of_the_view),
         cmocka_unit_test(a_set_is_taken_ahead_and_above),
         cmocka_unit_test(who_stays_has_a_set_all_round),
+        cmocka_unit_test(without_sets_far_ground_is_fine),
         cmocka_unit_test(fins_stand_where_ridges_were_seen),
         cmocka_unit_test(fins_wear_the_paint),
         cmocka_unit_test(a_set_gives_back_what_it_held),
