@@ -172,9 +172,11 @@ uint32_t ff_value_of_split(const ff_tree *tree, const ff_node *node)
 {
     FF_ASSERT(ff_key_level(node->key) < ff_terrain_levels(ff_ground_of(tree, node->key)));
     ff_box box;
+    int by_distance = tree->quality.measure == FF_MEASURE_DISTANCE;
+    if (by_distance && tree->quality.coarse <= 1) return value_by_distance(tree, node);
     ff_node_box(tree, node, &box);
     uint32_t times = coarse_times(tree, &box);
-    if (tree->quality.measure == FF_MEASURE_DISTANCE) return value_by_distance(tree, node) / times;
+    if (by_distance) return value_by_distance(tree, node) / times;
     uint64_t error_q8 = ff_projected_error_q8(tree, node, (uint64_t)ff_box_distance(&box));
     FF_ASSERT(tree->quality.error_px_q8 > 0);
     return c3d_divide_saturated(error_q8 << 16, (uint64_t)tree->quality.error_px_q8 * times);
