@@ -103,6 +103,53 @@ static void culling_is_of_use(void **state)
     fixture_free(&fx);
 }
 
+/* Nodes of the cut that lie beyond fine_wu of the camera along x or y, and the others. */
+static void count_beyond(const terrain_fixture *fx, const ff_view *view, int32_t fine_wu,
+                         uint32_t count[2])
+{
+    const ff_drawn *cut;
+    uint32_t nodes = ff_tree_cut(fx->tree, &cut);
+    count[0] = count[1] = 0;
+    for (uint32_t i = 0; i < nodes; i++) {
+        int beyond = 0;
+        for (int axis = 0; axis < 2; axis++) {
+            int32_t from = cut[i].origin_wu[axis] - view->camera.pos_wu[axis];
+            beyond |= from > fine_wu || from + 8 * cut[i].cell_wu < -fine_wu;
+        }
+        count[beyond]++;
+    }
+}
+
+static void far_ground_may_be_coarser_and_near_ground_stays_as_it_is(void **state)
+{
+    (void)state;
+    static const enum ff_measure measures[] = { FF_MEASURE_PIXELS, FF_MEASURE_DISTANCE };
+    for (int m = 0; m < 2; m++) {
+        terrain_fixture fx;
+        uint32_t plain[2], coarse[2];
+        fixture_usual(&fx, 3000);
+        ff_view view = fixture_view(1920, 1280, 300, 0, 0);
+        ff_quality quality = fixture_quality(measures[m]);
+        quality.c_q8 = 900;
+        quality.error_px_q8 = 256;
+        quality.view_wu = INT32_MAX;
+        fixture_settle(&fx, &view, &quality, 200);
+        count_beyond(&fx, &view, 500 * M, plain);
+        quality.fine_wu = 500 * M;
+        quality.coarse = 1; /* as wrong as others */
+        ff_tree_select(fx.tree, &view, &quality);
+        count_beyond(&fx, &view, 500 * M, coarse);
+        assert_memory_equal(coarse, plain, sizeof plain);
+        quality.coarse = 8;
+        ff_tree_select(fx.tree, &view, &quality);
+        count_beyond(&fx, &view, 500 * M, coarse);
+        assert_true(coarse[1] * 3 < plain[1] * 2);
+        assert_true(coarse[0] * 10 >=
+                    plain[0] * 9); /* but for those whose neighbours are coarser */
+        fixture_free(&fx);
+    }
+}
+
 static void nodes_are_drawn_nearest_first(void **state)
 {
     (void)state;
@@ -224,6 +271,7 @@ int main(void)
         cmocka_unit_test(culling_never_drops_what_is_visible),
         cmocka_unit_test(culling_is_of_use),
         cmocka_unit_test(nothing_drawn_beyond_view),
+        cmocka_unit_test(far_ground_may_be_coarser_and_near_ground_stays_as_it_is),
         cmocka_unit_test(nodes_are_drawn_nearest_first),
         cmocka_unit_test(vertices_and_height_agree),
         cmocka_unit_test(height_has_no_steps),
