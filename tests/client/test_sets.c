@@ -2,6 +2,7 @@
  * good, and what fins and paint look like. */
 #include "../rig/picture.h"
 #include "../../client/far/ff_sets.h"
+#include "../../client/terrain/ff_tree_local.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -106,6 +107,7 @@ static void a_set_is_taken_ahead_and_above(void **state)
         at_wu[1] = set.position_wu[1] + set.region.aside_wu * 2;
         assert_false(ff_sets_good(&set, at_wu));
         memcpy(at_wu, set.position_wu, sizeof at_wu);
+        assert_true(ff_sets_good(&set, at_wu));
         at_wu[2] += M;
         assert_false(ff_sets_good(&set, at_wu)); /* who climbs above O sees what O did not */
         life_before = life;
@@ -193,6 +195,59 @@ static void without_sets_far_ground_is_fine(void **state)
     refusal.error = FF_ERR_UNSUPPORTED; /* once will do */
     assert_int_equal(ff_sets_take(&sets, &refusal, 0), 1);
     assert_int_equal(ff_sets_in_use(&sets, &camera, &fine_wu, &coarse), 0);
+}
+
+/* ---- what is thrown on a node ---- */
+
+/* Bits of the sectors whose pictures are thrown on a root that begins east_m, north_m of O. */
+static unsigned thrown_on(const ff_sets *sets, const ff_terrain_info *info, uint32_t texture_of,
+                          int *plain)
+{
+    const ff_frame world = { 0 };
+    ff_node node = { .key = ff_key_make(0, 0, 0) };
+    ff_drawn drawn = { .key = node.key, .node = &node };
+    c3d_draw draws[FF_THROWS_MAX] = { { .flags = C3D_DRAW_COLOURED | texture_of } };
+    node.placed = ff_shape_put(info, &world, node.key);
+    unsigned count = ff_sets_lay(sets, info, &drawn, draws), sectors = 0;
+    assert_in_range(count, 1, FF_THROWS_MAX);
+    *plain = !(draws[0].flags & C3D_DRAW_PROJECTED);
+    for (unsigned i = 0; i < count; i++) {
+        if (!(draws[i].flags & C3D_DRAW_PROJECTED)) continue;
+        assert_int_equal(draws[i].flags & C3D_DRAW_TEXTURED, 0);
+        /* the first without the test where nothing lies below it */
+        assert_int_equal(!(draws[i].flags & C3D_DRAW_ALPHA_TEST), i == 0);
+        sectors |= 1u << (draws[i].texture.id - 1);
+        assert_ptr_equal(draws[i].projector, &sets->projector[draws[i].texture.id - 1]);
+    }
+    return sectors;
+}
+
+static void nodes_wear_the_sectors_that_they_lie_in(void **state)
+{
+    (void)state;
+    static ff_sets sets;
+    /* a root of 23 km, by where O lies from its south-west corner */
+    static const struct {
+        int32_t east_km, north_km;
+        unsigned sectors;
+    } at[] = { { 11, -40, 0x8003 }, { -40, 11, 0x0038 }, { -20, -20, 0x000E },
+               { 11, 11, 0 },       { 11, -5, 0 },       { 11, 63, 0x0380 } };
+    ff_terrain_info info = flat_info();
+    const ff_far_desc desc = { .enabled = FF_FAR_PAINT, .front_wu = 7500 * M };
+    int plain;
+    ff_sets_init(&sets, NULL, &desc, &info, 256);
+    sets.active = 0;
+    sets.set[0].front_wu = desc.front_wu;
+    for (unsigned s = 0; s < FF_FAR_SECTORS; s++) sets.set[0].sector[s].paint.id = s + 1;
+    for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
+        sets.set[0].position_wu[0] = at[i].east_km * 1000 * M;
+        sets.set[0].position_wu[1] = at[i].north_km * 1000 * M;
+        assert_int_equal(thrown_on(&sets, &info, 0, &plain), at[i].sectors);
+        assert_int_equal(plain, at[i].sectors == 0);
+        /* over an image all are thrown on top */
+        assert_int_equal(thrown_on(&sets, &info, C3D_DRAW_TEXTURED, &plain), at[i].sectors);
+        assert_true(plain);
+    }
 }
 
 /* ---- pictures ---- */
@@ -314,6 +369,11 @@ static void fins_wear_the_paint(void **state)
         assert_int_equal(pixel[0], x < 120 ? 255 : 0);
         assert_int_equal(pixel[1], x < 120 ? 0 : 255);
     }
+    /* beyond the sector the picture is made up: there the fin has its own colour */
+    for (int x = 45; x < 75; x++) {
+        const uint8_t *pixel = s.rgb + 3 * ((top_of_column(&s, x) + 4) * WIDE + x);
+        assert_true(pixel[1] > 20);
+    }
     leave(&s);
     c3d_stats stats;
     c3d_get_stats(s.kit.device, &stats);
@@ -366,6 +426,53 @@ static void who_watches_is_told_of_all_fins(void **state)
     }
 }
 
+/* A set that lacks a sector in view is not shown; nor while the drawn one is good and it is not. */
+static void a_set_takes_over_when_all_in_view_is_here(void **state)
+{
+    (void)state;
+    static stage s;
+    open_stage(&s, FF_FAR_FINS);
+    c3d_camera *camera = &s.kit.frame.camera;
+    unsigned in_view = ff_sets_in_view(camera);
+    ff_set *next = &s.sets.set[1];
+    *next = (ff_set){ .key = 2, .region = { .high_wu = 1, .low_wu = -1 } };
+    memcpy(next->position_wu, camera->pos_wu, sizeof next->position_wu);
+    s.sets.next = 1;
+    next->empty = (uint16_t)(in_view & (in_view - 1)); /* all but one */
+    (void)ff_sets_update(&s.sets, NULL, camera, NULL, 0, 1, 0);
+    assert_int_equal(s.sets.active, -1);
+    next->empty = (uint16_t)in_view;
+    assert_int_equal(ff_sets_update(&s.sets, NULL, camera, NULL, 0, 1, 0), 1);
+    assert_int_equal(s.sets.active, 1);
+    picture_close(&s.kit);
+}
+
+/* Paint in view finds room where only pictures out of view are in the way. */
+static void sectors_out_of_view_give_way(void **state)
+{
+    (void)state;
+    enum { SIDE = 64 };
+    static stage s;
+    static uint16_t pixels[SIDE * SIDE];
+    open_stage(&s, FF_FAR_PAINT);
+    give_sector(&s, pixels, SIDE);
+    while (c3d_texture_make(s.kit.device, C3D_RGBA5551, SIDE, SIDE, pixels).id) {
+    }
+    static uint8_t slot[FF_FAR_VERTICES_MAX * sizeof(ff_fin_vertex) + SIDE * SIDE * 2];
+    ff_new_item item = { .key = 1, .kind = FF_KIND_FAR, .pixels = (uint16_t *)(void *)slot };
+    item.width = item.height = SIDE;
+    item.u.far.sector = 1;
+    s.sets.seen = 1 << 0 | 1 << 1; /* all are in view */
+    assert_int_equal(ff_sets_take(&s.sets, &item, 0), 1);
+    assert_int_equal(s.sets.set[0].sector[1].paint.id, 0);
+    item.u.far.sector = 2;
+    s.sets.seen = 1 << 1 | 1 << 2;
+    assert_int_equal(ff_sets_take(&s.sets, &item, 0), 1);
+    assert_true(s.sets.set[0].sector[2].paint.id);
+    assert_int_equal(s.sets.set[0].held, 1 << 1 | 1 << 2); /* the first is to be asked for again */
+    picture_close(&s.kit);
+}
+
 /* All meshes and textures that a set had are free again. */
 static void a_set_gives_back_what_it_held(void **state)
 {
@@ -391,8 +498,11 @@ int main(void)
         cmocka_unit_test(a_set_is_taken_ahead_and_above),
         cmocka_unit_test(who_stays_has_a_set_all_round),
         cmocka_unit_test(without_sets_far_ground_is_fine),
+        cmocka_unit_test(nodes_wear_the_sectors_that_they_lie_in),
         cmocka_unit_test(fins_stand_where_ridges_were_seen),
         cmocka_unit_test(fins_wear_the_paint),
+        cmocka_unit_test(a_set_takes_over_when_all_in_view_is_here),
+        cmocka_unit_test(sectors_out_of_view_give_way),
         cmocka_unit_test(a_set_gives_back_what_it_held),
         cmocka_unit_test(a_set_on_its_way_is_waited_for),
         cmocka_unit_test(who_watches_is_told_of_all_fins),

@@ -67,6 +67,31 @@ static void all_levels_come_in_one_answer(void **state)
     assert_true(steps[1] >= steps[2]);
 }
 
+/* Beside far sets the server's views are as coarse far away as the client's own. */
+static void far_ground_comes_as_coarsely_as_asked_for(void **state)
+{
+    uint32_t heights[2];
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        client_rig rig;
+        rig_open(&rig, 0);
+        rig.desc.far = (ff_far_desc){ .enabled = FF_FAR_PAINT,
+                                      .front_wu = 300 * FF_WU_PER_METRE,
+                                      .coarse = 16 };
+        rig.desc.no_views = i == 0;
+        rig.desc.place_known = i == 1;
+        rig.no_faces = 1; /* nor sectors */
+        rig_client(&rig, 2 * MB);
+        for (int step = 0; step < 200; step++) rig_step(&rig, 50000);
+        heights[i] = rig_heights(&rig);
+        assert_int_equal(rig.asked[FF_KIND_VIEW] > 0, i);
+        assert_true(rig.asked[FF_KIND_FAR] > 0);
+        rig_close(&rig);
+    }
+    assert_true(heights[0] < rig_heights(&whole) * 3 / 4);
+    assert_int_equal(heights[1], heights[0]);
+}
+
 /* The greeting and the view leave before any answer has come; so does nothing else. */
 static void the_greeting_brings_a_known_place(void **state)
 {
@@ -279,6 +304,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_levels_come_in_one_answer),
+        cmocka_unit_test(far_ground_comes_as_coarsely_as_asked_for),
         cmocka_unit_test(the_greeting_brings_a_known_place),
         cmocka_unit_test(a_leap_is_answered_at_once),
         cmocka_unit_test(refused_views_are_asked_for_singly),

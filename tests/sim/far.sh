@@ -43,10 +43,17 @@ result $? "fins and paint"
 flies again --far paint --backend soft565
 cmp -s "$work/paint.csv" "$work/again.csv"
 result $? "the same twice"
-flies gl --far paint --backend gl
+flies shown --far paint --backend soft --diff on
+flies outlined --far fins --backend soft --diff on
+is 's["shown"]["diff_mean"] < 0.6 * s["outlined"]["diff_mean"] and s["shown"]["ssim"] > s["outlined"]["ssim"] + 0.02' \
+    "paint is nearer to the truth than fins alone"
+flies gl --far paint --backend gl --diff on
+is 'abs(s["gl"]["ssim"] - s["shown"]["ssim"]) < 0.005' "as near on another back end"
 is 's["paint"]["geometry_hash"] == s["gl"]["geometry_hash"] and s["paint"]["request_hash"] == s["gl"]["request_hash"]' \
     "the same requests and geometry on another back end"
 is 's["paint"]["bytes_far"] > 2 * s["fins"]["bytes_far"] and s["paint"]["relevance_percent"] > 0' "paint weighs more than fins"
+flies single --far paint --backend none --views off
+is 's["paint"]["bytes_heights"] < 1.1 * s["single"]["bytes_heights"]' "a view at once brings far ground as coarsely as asked for"
 flies half --far paint --far-shift 1 --backend none
 is 's["half"]["bytes_far"] < 0.6 * s["paint"]["bytes_far"]' "texels twice as large cost less than half"
 
