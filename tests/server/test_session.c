@@ -1,6 +1,6 @@
 /* Sessions: order, limits, cancels, superseded panoramas, nonsense and slow readers. */
 #include "../rig/pack_fixture.h"
-#include "../../server/session/ff_session.h"
+#include "../rig/session_talk.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -37,30 +37,15 @@ static ff_session *session_with(ff_session_desc desc)
     return session;
 }
 
-static int tell_at(ff_session *session, const ff_message *message, int64_t now_us)
-{
-    uint8_t bytes[FF_CAPS_BYTES_MAX + FF_MESSAGE_HEADER_MAX];
-    int count = ff_message_encode(message, bytes, sizeof bytes);
-    assert_true(count > 0);
-    int rc = ff_session_receive(session, bytes, (size_t)count, now_us);
-    if (rc >= 0) assert_int_equal(rc, count);
-    return rc;
-}
-
-static int tell(ff_session *session, const ff_message *message)
-{
-    return tell_at(session, message, 0);
-}
-
 static int say_hello(ff_session *session)
 {
-    return tell(session,
-                &(ff_message){ .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION, 0 } });
+    return session_tell(
+        session, &(ff_message){ .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION, 0 } });
 }
 
 static int say_caps(ff_session *session)
 {
-    return tell(session, &(ff_message){ .type = FF_MSG_CAPS });
+    return session_tell(session, &(ff_message){ .type = FF_MSG_CAPS });
 }
 
 static int greet(ff_session *session)
@@ -78,14 +63,14 @@ static void assert_answer(ff_message message, enum ff_kind kind)
 
 static int get_root(ff_session *session, uint16_t id, uint32_t tile)
 {
-    return tell(session, &(ff_message){ .type = FF_MSG_GET,
-                                        .kind = FF_KIND_ROOT,
-                                        .u.get = { id, ff_key_make(tile, 0, 0) } });
+    return session_tell(session, &(ff_message){ .type = FF_MSG_GET,
+                                                .kind = FF_KIND_ROOT,
+                                                .u.get = { id, ff_key_make(tile, 0, 0) } });
 }
 
 static int cancel(ff_session *session, uint16_t id)
 {
-    return tell(session, &(ff_message){ .type = FF_MSG_CANCEL, .u.cancel = { id } });
+    return session_tell(session, &(ff_message){ .type = FF_MSG_CANCEL, .u.cancel = { id } });
 }
 
 static int get_panorama_at(ff_session *session, uint16_t id, uint8_t faces, int64_t now_us)
@@ -98,7 +83,7 @@ static int get_panorama_at(ff_session *session, uint16_t id, uint8_t faces, int6
                                             .quality = 70,
                                             .face_count = faces,
                                             .face = { 3, 2, 1, 0, 4, 5 } };
-    return tell_at(session, &message, now_us);
+    return session_tell_at(session, &message, now_us);
 }
 
 static int get_panorama(ff_session *session, uint16_t id, uint8_t faces)
@@ -106,28 +91,11 @@ static int get_panorama(ff_session *session, uint16_t id, uint8_t faces)
     return get_panorama_at(session, id, faces, 0);
 }
 
-/* Takes the next message off the output; type 0 when there is none. Its pointers live until the
- * next call. */
-static ff_message heard(ff_session *session)
-{
-    static uint8_t copy[FF_MESSAGE_BODY_MAX + 8];
-    const uint8_t *bytes;
-    ff_message message;
-    memset(&message, 0, sizeof message);
-    size_t count = ff_session_output(session, &bytes);
-    if (count == 0) return message;
-    memcpy(copy, bytes, count < sizeof copy ? count : sizeof copy);
-    int used = ff_message_decode(copy, count < sizeof copy ? count : sizeof copy, &message);
-    assert_true(used > 0);
-    ff_session_sent(session, (size_t)used);
-    return message;
-}
-
 static ff_session *welcomed_with(ff_session_desc desc)
 {
     ff_session *session = session_with(desc);
     assert_true(greet(session) > 0);
-    ff_message welcome = heard(session);
+    ff_message welcome = session_heard(session);
     assert_int_equal(welcome.type, FF_MSG_WELCOME);
     assert_int_equal(welcome.u.welcome.info.checksum, pack.header.info.checksum);
     return session;
@@ -138,7 +106,7 @@ static ff_session *welcomed(void) { return welcomed_with((ff_session_desc){ 0 })
 static void expect_goodbye(ff_session *session, int error)
 {
     ff_message last = { 0 }, message;
-    while ((message = heard(session)).type) last = message;
+    while ((message = session_heard(session)).type) last = message;
     assert_int_equal(last.type, FF_MSG_GOODBYE);
     assert_int_equal(last.u.failed.error, error);
     assert_int_equal(ff_session_receive(session, (const uint8_t *)"x", 1, 0), error);
@@ -147,7 +115,7 @@ static void expect_goodbye(ff_session *session, int error)
 
 static void expect_failed(ff_session *session, uint16_t id, int error)
 {
-    ff_message failed = heard(session);
+    ff_message failed = session_heard(session);
     assert_int_equal(failed.type, FF_MSG_FAILED);
     assert_int_equal(failed.u.failed.id, id);
     assert_int_equal(failed.u.failed.error, error);
@@ -162,14 +130,14 @@ static void nodes_come_from_the_pack_in_order(void **state)
     ff_key keys[] = { ff_key_make(0, 0, 0), ff_key_make(3, 0, 0), ff_key_make(2, 1, 3),
                       ff_key_make(1, 2, 7) };
     for (uint16_t i = 0; i < 4; i++)
-        tell(session, &(ff_message){ .type = FF_MSG_GET,
-                                     .kind = i < 2 ? FF_KIND_ROOT : FF_KIND_REFINEMENT,
-                                     .u.get = { i, keys[i] } });
+        session_tell(session, &(ff_message){ .type = FF_MSG_GET,
+                                             .kind = i < 2 ? FF_KIND_ROOT : FF_KIND_REFINEMENT,
+                                             .u.get = { i, keys[i] } });
     for (uint16_t i = 0; i < 4; i++) {
         const uint8_t *payload;
         int bytes = ff_pack_record(&pack, i < 2 ? FF_SECTION_ROOT : FF_SECTION_REFINEMENT, keys[i],
                                    &payload);
-        ff_message node = heard(session);
+        ff_message node = session_heard(session);
         assert_answer(node, FF_KIND_ROOT);
         assert_int_equal(node.u.data.id, i);
         assert_int_equal(node.u.data.byte_count, bytes);
@@ -188,16 +156,16 @@ static void unknown_nodes_and_textures_fail(void **state)
     get_root(session, 7, 4); /* four tiles: 0..3 */
     expect_failed(session, 7, FF_ERR_NOT_FOUND);
     /* The finest level has nothing below it. */
-    tell(session, &(ff_message){ .type = FF_MSG_GET,
-                                 .kind = FF_KIND_REFINEMENT,
-                                 .u.get = { 8, ff_key_make(0, 3, 0) } });
+    session_tell(session, &(ff_message){ .type = FF_MSG_GET,
+                                         .kind = FF_KIND_REFINEMENT,
+                                         .u.get = { 8, ff_key_make(0, 3, 0) } });
     expect_failed(session, 8, FF_ERR_NOT_FOUND);
-    tell(session, &(ff_message){ .type = FF_MSG_GET,
-                                 .kind = FF_KIND_TEXTURE,
-                                 .u.get = { 9, ff_key_make(0, 0, 0) } });
+    session_tell(session, &(ff_message){ .type = FF_MSG_GET,
+                                         .kind = FF_KIND_TEXTURE,
+                                         .u.get = { 9, ff_key_make(0, 0, 0) } });
     expect_failed(session, 9, FF_ERR_NOT_FOUND);
     get_root(session, 10, 0);
-    assert_answer(heard(session), FF_KIND_ROOT);
+    assert_answer(session_heard(session), FF_KIND_ROOT);
     ff_session_destroy(session);
 }
 
@@ -216,7 +184,7 @@ static void a_damaged_record_fails_alone(void **state)
     assert_int_equal(stats.damaged, 1);
     *victim ^= 1;
     get_root(session, 2, 1);
-    assert_answer(heard(session), FF_KIND_ROOT);
+    assert_answer(session_heard(session), FF_KIND_ROOT);
     ff_session_destroy(session);
 }
 
@@ -229,10 +197,10 @@ static void bytes_one_by_one(void **state)
         &(ff_message){ .type = FF_MSG_GET, .kind = FF_KIND_ROOT, .u.get = { 5, 0 } }, bytes,
         sizeof bytes);
     for (int i = 0; i < count; i++) {
-        assert_int_equal(heard(session).type, 0);
+        assert_int_equal(session_heard(session).type, 0);
         assert_int_equal(ff_session_receive(session, bytes + i, 1, 0), 1);
     }
-    assert_int_equal(heard(session).u.data.id, 5);
+    assert_int_equal(session_heard(session).u.data.id, 5);
     ff_session_destroy(session);
 }
 
@@ -253,7 +221,8 @@ static void other_version_is_sent_away(void **state)
 {
     (void)state;
     ff_session *session = session_with((ff_session_desc){ 0 });
-    tell(session, &(ff_message){ .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION + 1, 0 } });
+    session_tell(session,
+                 &(ff_message){ .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION + 1, 0 } });
     expect_goodbye(session, FF_ERR_VERSION);
 }
 
@@ -274,7 +243,7 @@ static void servers_messages_and_endless_ones_end_the_session(void **state)
 {
     (void)state;
     ff_session *session = welcomed();
-    assert_int_equal(tell(session, &(ff_message){ .type = FF_MSG_PONG, .u.ping = { 1 } }),
+    assert_int_equal(session_tell(session, &(ff_message){ .type = FF_MSG_PONG, .u.ping = { 1 } }),
                      FF_ERR_FORMAT);
     expect_goodbye(session, FF_ERR_FORMAT);
     uint8_t long_one[1000] = { FF_MSG_HELLO, 0x80, 0x80, 1 }; /* 16 kB announced */
@@ -294,11 +263,11 @@ static void slow_reader_waits_and_loses_nothing(void **state)
     for (uint16_t id = 1; id <= 40; id++) assert_true(get_root(session, id, id % 4u) > 0);
     assert_true(ff_session_output(session, &bytes) <= 400);
     for (uint16_t id = 1; id <= 40; id++) {
-        ff_message node = heard(session);
+        ff_message node = session_heard(session);
         assert_answer(node, FF_KIND_ROOT);
         assert_int_equal(node.u.data.id, id);
     }
-    assert_int_equal(heard(session).type, 0);
+    assert_int_equal(session_heard(session).type, 0);
     ff_session_destroy(session);
 }
 
@@ -308,8 +277,8 @@ static void an_answer_larger_than_the_buffer_goes_alone(void **state)
     ff_session *session = welcomed_with((ff_session_desc){ .out_bytes_max = 1 });
     get_root(session, 1, 0);
     get_root(session, 2, 1);
-    assert_int_equal(heard(session).u.data.id, 1);
-    assert_int_equal(heard(session).u.data.id, 2);
+    assert_int_equal(session_heard(session).u.data.id, 1);
+    assert_int_equal(session_heard(session).u.data.id, 2);
     ff_session_destroy(session);
 }
 
@@ -338,7 +307,7 @@ static void pings_without_reading_are_left_unread(void **state)
         assert_true(rc >= 0);
         taken += (size_t)rc;
         if (answered == 0) assert_true(taken < sizeof pings);
-        for (ff_message pong; (pong = heard(session)).type; answered++) {
+        for (ff_message pong; (pong = session_heard(session)).type; answered++) {
             assert_int_equal(pong.type, FF_MSG_PONG);
             assert_int_equal(pong.u.ping.stamp, answered);
         }
@@ -353,10 +322,11 @@ static void silence_makes_a_session_idle(void **state)
     ff_session *session = session_with((ff_session_desc){ .idle_ms_max = 1000, .now_us = 5000000 });
     assert_false(ff_session_idle(session, 6000000));
     assert_true(ff_session_idle(session, 6000001));
-    tell_at(session, &(ff_message){ .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION, 0 } },
-            6000000);
+    session_tell_at(session,
+                    &(ff_message){ .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION, 0 } },
+                    6000000);
     assert_true(ff_session_idle(session, 6000001)); /* HELLO alone is not enough */
-    tell_at(session, &(ff_message){ .type = FF_MSG_CAPS }, 6000000);
+    session_tell_at(session, &(ff_message){ .type = FF_MSG_CAPS }, 6000000);
     assert_false(ff_session_idle(session, 7000000));
     /* half a message is not a message */
     ff_session_receive(session, (const uint8_t *)"\x06", 1, 6900000);
@@ -384,11 +354,11 @@ static void cancelled_requests_are_not_served(void **state)
                      { FF_MSG_ANSWER, 4 }, { FF_MSG_ANSWER, 5 },    { FF_MSG_ANSWER, 6 },
                      { FF_MSG_ANSWER, 7 } };
     for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
-        ff_message answer = heard(session);
+        ff_message answer = session_heard(session);
         assert_int_equal(answer.type, expected[i].type);
         assert_int_equal(answer.u.data.id, expected[i].id);
     }
-    assert_int_equal(heard(session).type, 0);
+    assert_int_equal(session_heard(session).type, 0);
     ff_session_destroy(session);
 }
 
@@ -425,7 +395,7 @@ static void faces_one_at_a_time_in_the_order_wanted(void **state)
         assert_int_equal(job.face, 3 - i);
         assert_int_equal(job.last, i == 2);
         render(session, &job);
-        ff_message face = heard(session);
+        ff_message face = session_heard(session);
         assert_answer(face, FF_KIND_FACE);
         assert_int_equal(face.u.face.flags, FF_FACE_EMPTY | (i == 2 ? FF_FACE_LAST : 0));
     }
@@ -442,16 +412,16 @@ static void a_newer_panorama_supersedes(void **state)
     assert_true(ff_session_next_face(session, &old));
     /* the new request has the same id: the old face must not pass for the new one */
     get_panorama(session, 1, 1);
-    ff_message answer = heard(session);
+    ff_message answer = session_heard(session);
     assert_int_equal(answer.type, FF_MSG_CANCELLED);
     assert_int_equal(answer.u.cancel.id, 1);
     assert_false(ff_session_next_face(session, &job));
     render(session, &old);
-    assert_int_equal(heard(session).type, 0);
+    assert_int_equal(session_heard(session).type, 0);
     assert_true(ff_session_next_face(session, &job));
     assert_true(job.last);
     render(session, &job);
-    assert_answer(heard(session), FF_KIND_FACE);
+    assert_answer(session_heard(session), FF_KIND_FACE);
     ff_session_destroy(session);
 }
 
@@ -463,9 +433,9 @@ static void a_cancelled_panorama_is_not_drawn(void **state)
     get_panorama(session, 4, 2);
     assert_true(ff_session_next_face(session, &job));
     cancel(session, 4);
-    assert_int_equal(heard(session).type, FF_MSG_CANCELLED);
+    assert_int_equal(session_heard(session).type, FF_MSG_CANCELLED);
     render(session, &job);
-    assert_int_equal(heard(session).type, 0);
+    assert_int_equal(session_heard(session).type, 0);
     assert_false(ff_session_next_face(session, &job));
     ff_session_destroy(session);
 }
@@ -496,7 +466,7 @@ static void panoramas_per_minute_are_limited(void **state)
         if (id <= 3) {
             assert_true(ff_session_next_face(session, &job));
             render(session, &job);
-            assert_answer(heard(session), FF_KIND_FACE);
+            assert_answer(session_heard(session), FF_KIND_FACE);
         }
     }
     expect_failed(session, 4, FF_ERR_FULL);

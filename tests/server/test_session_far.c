@@ -1,7 +1,7 @@
 /* Far sets in a session: sectors in order, superseded, cancelled, refused, limited together with
  * panoramas. */
 #include "../rig/pack_fixture.h"
-#include "../../server/session/ff_session.h"
+#include "../rig/session_talk.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -28,36 +28,12 @@ static int close_pack(void **state)
     return 0;
 }
 
-static void tell_at(ff_session *session, const ff_message *message, int64_t now_us)
-{
-    uint8_t bytes[FF_REQUEST_BYTES_MAX];
-    int count = ff_message_encode(message, bytes, sizeof bytes);
-    assert_true(count > 0);
-    assert_int_equal(ff_session_receive(session, bytes, (size_t)count, now_us), count);
-}
-
-/* The next message of the output; type 0: none. */
-static ff_message heard(ff_session *session)
-{
-    const uint8_t *bytes;
-    size_t count = ff_session_output(session, &bytes);
-    ff_message message = { .type = (enum ff_message_type)0 };
-    if (count == 0) return message;
-    int used = ff_message_decode(bytes, count, &message);
-    assert_true(used > 0);
-    ff_session_sent(session, (size_t)used);
-    return message;
-}
-
 static ff_session *greeted(uint32_t per_minute)
 {
     ff_session_desc desc = { .pack = &pack, .panoramas_per_minute = per_minute };
     ff_session *session = ff_session_create(&desc);
     assert_non_null(session);
-    tell_at(session, &(ff_message){ .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION, 0 } },
-            0);
-    tell_at(session, &(ff_message){ .type = FF_MSG_CAPS }, 0);
-    assert_int_equal(heard(session).type, FF_MSG_WELCOME);
+    session_greet(session);
     return session;
 }
 
@@ -72,7 +48,7 @@ static void get_far(ff_session *session, uint16_t id, uint8_t sectors, int64_t n
                                       .tolerance_q2 = 4,
                                       .sector_count = sectors,
                                       .sector = { 6, 0, 5, 3, 4, 1, 2, 7 } };
-    tell_at(session, &message, now_us);
+    session_tell_at(session, &message, now_us);
 }
 
 static void get_panorama(ff_session *session, uint16_t id, int64_t now_us)
@@ -84,7 +60,7 @@ static void get_panorama(ff_session *session, uint16_t id, int64_t now_us)
                                             .face_size = 64,
                                             .quality = 70,
                                             .face_count = 1 };
-    tell_at(session, &message, now_us);
+    session_tell_at(session, &message, now_us);
 }
 
 static void draw(ff_session *session, const ff_face_job *job)
@@ -100,7 +76,7 @@ static void draw(ff_session *session, const ff_face_job *job)
 
 static void assert_failed(ff_session *session, uint16_t id, int error)
 {
-    ff_message answer = heard(session);
+    ff_message answer = session_heard(session);
     assert_int_equal(answer.type, FF_MSG_FAILED);
     assert_int_equal(answer.u.failed.id, id);
     assert_int_equal(answer.u.failed.error, error);
@@ -122,7 +98,7 @@ static void sectors_one_at_a_time_in_the_order_wanted(void **state)
         assert_int_equal(job.last, i == 2);
         assert_int_equal(job.far.focal, 208);
         draw(session, &job);
-        ff_message sector = heard(session);
+        ff_message sector = session_heard(session);
         assert_int_equal(sector.type, FF_MSG_ANSWER);
         assert_int_equal(sector.kind, FF_KIND_FAR);
         assert_int_equal(sector.u.far.sector, wanted[i]);
@@ -145,19 +121,19 @@ static void a_newer_set_or_panorama_supersedes(void **state)
     get_far(session, 1, 8, 0);
     assert_true(ff_session_next_face(session, &old));
     get_panorama(session, 2, 0);
-    ff_message answer = heard(session);
+    ff_message answer = session_heard(session);
     assert_int_equal(answer.type, FF_MSG_CANCELLED);
     assert_int_equal(answer.u.cancel.id, 1);
     draw(session, &old);
-    assert_int_equal(heard(session).type, 0);
+    assert_int_equal(session_heard(session).type, 0);
     assert_true(ff_session_next_face(session, &job));
     assert_int_equal(job.kind, FF_KIND_FACE);
     get_far(session, 3, 1, 0);
-    answer = heard(session);
+    answer = session_heard(session);
     assert_int_equal(answer.type, FF_MSG_CANCELLED);
     assert_int_equal(answer.u.cancel.id, 2);
     ff_session_face_done(session, &job, NULL, FF_ERR_SYSTEM); /* nobody's any more */
-    assert_int_equal(heard(session).type, 0);
+    assert_int_equal(session_heard(session).type, 0);
     assert_true(ff_session_next_face(session, &job));
     assert_int_equal(job.kind, FF_KIND_FAR);
     assert_int_equal(job.far.id, 3);
@@ -171,10 +147,10 @@ static void a_cancelled_set_is_not_drawn(void **state)
     ff_face_job job;
     get_far(session, 4, 2, 0);
     assert_true(ff_session_next_face(session, &job));
-    tell_at(session, &(ff_message){ .type = FF_MSG_CANCEL, .u.cancel = { 4 } }, 0);
-    assert_int_equal(heard(session).type, FF_MSG_CANCELLED);
+    session_tell_at(session, &(ff_message){ .type = FF_MSG_CANCEL, .u.cancel = { 4 } }, 0);
+    assert_int_equal(session_heard(session).type, FF_MSG_CANCELLED);
     draw(session, &job);
-    assert_int_equal(heard(session).type, 0);
+    assert_int_equal(session_heard(session).type, 0);
     assert_false(ff_session_next_face(session, &job));
     ff_session_destroy(session);
 }
@@ -202,12 +178,12 @@ static void sets_and_panoramas_share_a_limit(void **state)
     get_far(session, 1, 1, 1000);
     get_panorama(session, 2, 1000);
     get_far(session, 3, 1, 1000);
-    assert_int_equal(heard(session).type, FF_MSG_CANCELLED);
-    assert_int_equal(heard(session).type, FF_MSG_CANCELLED);
+    assert_int_equal(session_heard(session).type, FF_MSG_CANCELLED);
+    assert_int_equal(session_heard(session).type, FF_MSG_CANCELLED);
     get_far(session, 4, 1, 1000);
     assert_failed(session, 4, FF_ERR_FULL);
     get_far(session, 5, 1, 20001000);
-    assert_int_equal(heard(session).type, FF_MSG_CANCELLED); /* the third gives way to it */
+    assert_int_equal(session_heard(session).type, FF_MSG_CANCELLED); /* the third gives way to it */
     ff_session_destroy(session);
 }
 

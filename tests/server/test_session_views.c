@@ -1,6 +1,6 @@
 /* Views and long answers in a session: they wait for a reader, not for a renderer, and are few. */
 #include "../rig/pack_fixture.h"
-#include "../../server/session/ff_session.h"
+#include "../rig/session_talk.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -35,36 +35,12 @@ static int close_pack(void **state)
     return 0;
 }
 
-static void tell_at(ff_session *session, const ff_message *message, int64_t now_us)
-{
-    uint8_t bytes[FF_REQUEST_BYTES_MAX];
-    int count = ff_message_encode(message, bytes, sizeof bytes);
-    assert_true(count > 0);
-    assert_int_equal(ff_session_receive(session, bytes, (size_t)count, now_us), count);
-}
-
-static void tell(ff_session *session, const ff_message *message) { tell_at(session, message, 0); }
-
-/* Takes the next message off the output; type 0 when there is none. */
-static ff_message heard(ff_session *session)
-{
-    ff_message message = { 0 };
-    const uint8_t *bytes;
-    size_t count = ff_session_output(session, &bytes);
-    int used = ff_message_decode(bytes, count, &message);
-    assert_true(used >= 0);
-    ff_session_sent(session, (size_t)used);
-    return used ? message : (ff_message){ 0 };
-}
-
 static ff_session *greeted(uint32_t out_bytes_max)
 {
     ff_session *session = ff_session_create(
         &(ff_session_desc){ .pack = &pack, .out_bytes_max = out_bytes_max });
     assert_non_null(session);
-    tell(session, &(ff_message){ .type = FF_MSG_HELLO, .u.hello = { FF_PROTOCOL_VERSION, 0 } });
-    tell(session, &(ff_message){ .type = FF_MSG_CAPS });
-    assert_int_equal(heard(session).type, FF_MSG_WELCOME);
+    session_greet(session);
     return session;
 }
 
@@ -76,7 +52,7 @@ static ff_session *drawing(uint32_t out_bytes_max, ff_face_job *job)
     faces.u.panorama = (ff_get_panorama){
         .id = 1, .back_wu = 90000, .face_size = 64, .quality = 70, .face_count = 1
     };
-    tell(session, &faces);
+    session_tell(session, &faces);
     assert_true(ff_session_next_face(session, job));
     return session;
 }
@@ -96,12 +72,12 @@ static void a_long_part_does_not_wait_for_a_face(void **state)
                                 .fine_wu = 1,
                                 .coarse = 1,
                                 .count = 1 };
-    tell(session, &ask);
-    ff_message part = heard(session);
+    session_tell(session, &ask);
+    ff_message part = session_heard(session);
     assert_int_equal(part.type, FF_MSG_ANSWER);
     assert_int_equal(part.u.part.what, FF_PART_REFINEMENT);
     assert_true(part.u.part.byte_count > LONG);
-    assert_int_equal(heard(session).u.part.what, FF_PART_END);
+    assert_int_equal(session_heard(session).u.part.what, FF_PART_END);
     ff_session_destroy(session);
 }
 
@@ -127,8 +103,8 @@ static unsigned searched(ff_session *session, unsigned count, int64_t now_us)
                                 .count = 1 };
     for (unsigned i = 0; i < count; i++) {
         unsigned parts = 0;
-        tell_at(session, &ask, now_us);
-        for (; (part = heard(session)).u.part.what != FF_PART_END; parts++)
+        session_tell_at(session, &ask, now_us);
+        for (; (part = session_heard(session)).u.part.what != FF_PART_END; parts++)
             assert_int_equal(part.type, FF_MSG_ANSWER);
         assert_in_range(parts, 1, 2); /* the root, and its refinement */
         with_more += parts == 2;
@@ -156,13 +132,14 @@ static void an_answer_behind_a_cancelled_face_comes(void **state)
     ff_face_job job;
     (void)state;
     ff_session *session = drawing(LONG, &job);
-    tell(session, &(ff_message){ .type = FF_MSG_GET, .kind = FF_KIND_REFINEMENT, .u.get.id = 2 });
-    assert_int_equal(heard(session).type, 0);
-    tell(session, &(ff_message){ .type = FF_MSG_CANCEL, .u.cancel.id = 1 });
-    assert_int_equal(heard(session).type, FF_MSG_CANCELLED);
-    assert_int_equal(heard(session).type, 0);
+    session_tell(session,
+                 &(ff_message){ .type = FF_MSG_GET, .kind = FF_KIND_REFINEMENT, .u.get.id = 2 });
+    assert_int_equal(session_heard(session).type, 0);
+    session_tell(session, &(ff_message){ .type = FF_MSG_CANCEL, .u.cancel.id = 1 });
+    assert_int_equal(session_heard(session).type, FF_MSG_CANCELLED);
+    assert_int_equal(session_heard(session).type, 0);
     ff_session_face_done(session, &job, NULL, FF_ERR_SYSTEM);
-    ff_message node = heard(session);
+    ff_message node = session_heard(session);
     assert_int_equal(node.type, FF_MSG_ANSWER);
     assert_int_equal(node.u.data.id, 2);
     ff_session_destroy(session);
