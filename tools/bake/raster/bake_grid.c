@@ -3,6 +3,7 @@
 #include "../bake_say.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,6 +33,10 @@ void bake_temp_setup(const char *near_path)
 int bake_temp_open(void)
 {
     char path[sizeof temp_directory + 32];
+#ifdef O_TMPFILE /* it never has a name: whoever is killed leaves none */
+    int unnamed = open(temp_directory, O_TMPFILE | O_RDWR, 0600);
+    if (unnamed >= 0) return unnamed;
+#endif
     snprintf(path, sizeof path, "%s/.farfield-XXXXXX", temp_directory);
     int fd = mkstemp(path);
     if (fd < 0)
