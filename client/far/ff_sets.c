@@ -16,13 +16,16 @@ const uint8_t ff_sets_built = 1;
 void ff_sets_init(ff_sets *sets, c3d_device *device, const ff_far_desc *desc,
                   const ff_terrain_info *info, unsigned side)
 {
-    *sets = (ff_sets){ .device = device,
-                       .desc = *desc,
-                       .info = info,
-                       .side = (uint16_t)side,
-                       .active = -1,
-                       .next = -1,
-                       .retry_us = INT64_MIN };
+    *sets =
+        (ff_sets){ .device = device,
+                   .desc = *desc,
+                   .info = info,
+                   .side = (uint16_t)side,
+                   .active = -1,
+                   .next = -1,
+                   .front_wu = desc->front_wu,
+                   .choice = { .use = desc->enabled == FF_FAR_AUTO ? FF_FAR_OFF : desc->enabled },
+                   .retry_us = INT64_MIN };
 }
 
 void ff_sets_scratch(ff_sets *sets, c3d_vertex *scratch, uint16_t *indices, unsigned vertices)
@@ -99,9 +102,11 @@ unsigned ff_sets_in_view(const c3d_camera *camera)
 
 int ff_sets_in_use(const ff_sets *sets, const c3d_camera *camera, int32_t *fine_wu, uint8_t *coarse)
 {
-    if (!sets->desc.enabled || !sets->side || sets->off) return 0;
+    if (!sets->choice.use || !sets->side || sets->off) return 0;
     if (sets->active < 0 && sets->refusals >= REFUSALS_IN_A_ROW)
         return 0; /* nothing will mend it */
+    if (sets->active < 0 && sets->desc.enabled == FF_FAR_AUTO)
+        return 0; /* fine ground is here already */
     int64_t away_wu = 0;
     const ff_set *set = sets->active >= 0 ? &sets->set[sets->active] : NULL;
     for (int axis = 0; set && axis < 2; axis++) {
@@ -111,7 +116,7 @@ int ff_sets_in_use(const ff_sets *sets, const c3d_camera *camera, int32_t *fine_
     }
     int64_t step_wu = 512 * FF_WU_PER_METRE;
     away_wu = (away_wu + step_wu - 1) / step_wu * step_wu;
-    int64_t wu = (set ? set->front_wu : sets->desc.front_wu) + away_wu;
+    int64_t wu = (set ? set->front_wu : sets->front_wu) + away_wu;
     *fine_wu = wu > INT32_MAX ? INT32_MAX : (int32_t)wu;
     *coarse = sets->desc.coarse;
     return 1;
@@ -127,11 +132,11 @@ static void begin_set(ff_sets *sets, const c3d_camera *camera, const ff_motion *
     set->focal = (uint16_t)(focal > FF_FAR_FOCAL_MAX   ? FF_FAR_FOCAL_MAX
                             : focal < FF_FAR_FOCAL_MIN ? FF_FAR_FOCAL_MIN
                                                        : focal);
-    set->paint_shift = sets->desc.paint_shift;
+    set->paint_shift = sets->desc.paint_shift > sets->choice.shift ? sets->desc.paint_shift
+                                                                   : sets->choice.shift;
     while (ff_sets_side((int32_t)(set->focal >> set->paint_shift) * 256) > sets->side)
         set->paint_shift++;
-    set->painted = sets->desc.enabled != FF_FAR_FINS;
-    set->front_wu = sets->desc.front_wu;
+    set->painted = sets->choice.use != FF_FAR_FINS;
     ff_sets_plan(sets, camera, motion, clearance_wu, set);
     set->key = ++sets->serial;
     set->asked_us = now_us;
@@ -188,13 +193,21 @@ static int good_soon(const ff_sets *sets, const c3d_camera *camera, const ff_mot
     return ff_sets_good(&sets->set[newest], then_wu);
 }
 
+void ff_sets_leave(ff_sets *sets, ff_requests *requests)
+{
+    ff_requests_cancel_all(requests, FF_KIND_FAR);
+    for (int i = 0; i < 2; i++) drop_set(sets, i);
+    sets->active = sets->next = -1;
+}
+
 int ff_sets_update(ff_sets *sets, ff_requests *requests, const c3d_camera *camera,
                    const ff_motion *motion, int32_t clearance_wu, int hold, int64_t now_us)
 {
-    if (!sets->desc.enabled || !sets->side) return 0;
+    if (!sets->side) return 0;
+    sets->front_wu = ff_sets_front_wu(sets, clearance_wu);
     sets->seen = (uint16_t)ff_sets_in_view(camera);
     int changed = take_over(sets, camera, now_us) | leave_behind(sets, camera);
-    if (hold || sets->off || now_us < sets->retry_us) return changed;
+    if (hold || sets->off || !sets->choice.use || now_us < sets->retry_us) return changed;
     if (sets->retry_us != INT64_MIN) { /* the wait is over: want again */
         sets->retry_us = INT64_MIN;
         changed = 1;
@@ -282,7 +295,7 @@ void ff_sets_want(const ff_sets *sets, ff_requests *requests, const ff_view *vie
                   int64_t now_us)
 {
     int newest = sets->next >= 0 ? sets->next : sets->active;
-    if (!sets->desc.enabled || sets->off || newest < 0 || now_us < sets->retry_us) return;
+    if (!sets->choice.use || sets->off || newest < 0 || now_us < sets->retry_us) return;
     const ff_set *set = &sets->set[newest];
     unsigned in_view = sets->seen & ~known(set), missing = in_view;
     if (!in_view && sets->next < 0) missing = soon & ~known(set);

@@ -15,6 +15,7 @@
 #ifndef FF_SETS_H
 #define FF_SETS_H
 
+#include "ff_far_rule.h"
 #include "../farfield.h"
 #include "../ahead/ff_motion.h"
 #include "../ask/ff_new_data.h"
@@ -74,7 +75,10 @@ typedef struct ff_sets {
     int8_t active, next; /* index in set[] of the drawn and the coming set; -1: none */
     uint8_t refusals;    /* in a row */
     uint8_t off;         /* the server has no sets */
-    uint16_t seen;       /* bit per sector: in the last view */
+    /* what is asked for next; use FF_FAR_OFF: nothing, and ground is drawn as if there were none */
+    ff_far_choice choice;
+    int32_t front_wu; /* the nearest front, as high as the camera is */
+    uint16_t seen;    /* bit per sector: in the last view */
     uint32_t serial;
     int64_t retry_us, lead_us;
     ff_set set[2];
@@ -92,10 +96,16 @@ void ff_sets_scratch(ff_sets *sets, c3d_vertex *scratch, uint16_t *indices, unsi
 static inline uint32_t ff_sets_indices(uint32_t vertices) { return 2 * vertices; }
 /* Side of a texture that holds any sector's picture at a focal length. */
 unsigned ff_sets_side(int32_t focal_q8);
-/* 1 while sets are drawn or waited for: ground beyond `*fine_wu` of the camera, along x or y, may
- * then be `*coarse` times as wrong. */
+/* 1 while sets are drawn or waited for (by FF_FAR_AUTO: drawn): ground beyond `*fine_wu` of the
+ * camera, along x or y, may then be `*coarse` times as wrong. */
 int ff_sets_in_use(const ff_sets *sets, const c3d_camera *camera, int32_t *fine_wu,
                    uint8_t *coarse);
+/* Where sets are to begin at the nearest, and how long they are good there, for a camera so high
+ * above ground. */
+int32_t ff_sets_front_wu(const ff_sets *sets, int32_t clearance_wu);
+int32_t ff_sets_life_wu(const ff_sets *sets, int32_t clearance_wu);
+/* Drops the drawn set and what is coming. */
+void ff_sets_leave(ff_sets *sets, ff_requests *requests);
 /* Plans sets. `clearance_wu`: how high the camera is above ground. 1 when the drawn set or what is
  * wanted changed. */
 int ff_sets_update(ff_sets *sets, ff_requests *requests, const c3d_camera *camera,

@@ -94,11 +94,13 @@ static void count_ground(ff_gaze *at, const ff_square *s, const uint16_t piece[3
     if (slope < at->horizon_q12[sector]) return;
     at->horizon_q12[sector] = slope;
     uint32_t pixels_q4 = ff_gaze_covers_q4(at, s, 0);
-    if (!pixels_q4) return;
+    if (!pixels_q4 && !at->far) return;
     int64_t error_q8 = ff_gaze_pixels_q8(at, s, error_wu) * rise_q14(at, s) >>
                        (14 + FF_GAZE_UNIT_LOG2);
-    unsigned step = error_q8 > 0 ? ff_spread_step(ff_log2_q8((uint64_t)error_q8) + more_log_q8) : 0;
-    at->spread.most[step] += pixels_q4;
+    int32_t log_q8 = error_q8 > 0 ? ff_log2_q8((uint64_t)error_q8) + more_log_q8 : -1;
+    if (at->far) ff_gaze_far(at, s, pixels_q4, log_q8);
+    if (!pixels_q4) return;
+    at->spread.most[ff_spread_step(log_q8)] += pixels_q4;
     count_patch(at, piece, pixels_q4);
 }
 
@@ -170,7 +172,7 @@ static void take_quarter(const ff_gaze *at, const ff_drawn *drawn, descent *of, 
 }
 
 /* Walks over the pieces of a node, from near ones to far ones. */
-static void look_at_node(ff_gaze *at, const ff_drawn *drawn)
+void ff_gaze_node(ff_gaze *at, const ff_drawn *drawn)
 {
     const ff_terrain_info *info = ff_ground_of(at->tree, drawn->key);
     int64_t error_wu = ff_steps_wu(info, ff_geometric_error_decode(drawn->node->error_code));
@@ -210,7 +212,7 @@ uint32_t ff_estimate_p95_q8(const ff_tree *tree, const ff_beyond *beyond)
     ff_gaze at;
     if (!tree->has_view) return 0;
     ff_gaze_open(&at, tree);
-    for (uint32_t i = 0; i < tree->drawn_count; i++) look_at_node(&at, &tree->drawn[i]);
+    for (uint32_t i = 0; i < tree->drawn_count; i++) ff_gaze_node(&at, &tree->drawn[i]);
     ff_gaze_beyond(&at, beyond);
     uint32_t p95_q8 = ff_spread_p95_q8(&at.spread);
     int64_t most_q8 = 2 * about_length(at.half_q8[0], at.half_q8[1], 0);

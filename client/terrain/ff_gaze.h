@@ -21,6 +21,7 @@ typedef struct ff_gaze {
     uint8_t under;                        /* 1: the eye is below the drawn ground */
     uint64_t cell_pixels_q4;              /* of the cell being looked at */
     uint16_t cell[2];
+    struct ff_far_sum *far; /* what is counted of far ground; NULL: nobody asks */
 } ff_gaze;
 
 /* A piece of ground: its corners (south-west, south-east, north-west, north-east), and what is
@@ -60,6 +61,11 @@ unsigned ff_gaze_sector(const ff_square *s);
 int32_t ff_gaze_slope_q12(const ff_square *s);
 /* An eye where the last selection's camera is. */
 void ff_gaze_open(ff_gaze *at, const ff_tree *tree);
+/* ff_estimate.c: counts a drawn node. */
+void ff_gaze_node(ff_gaze *at, const ff_drawn *drawn);
+/* ff_estimate_far.c: counts a square of drawn ground that nothing before it hides, of so many
+ * pixels Q4, off by 2^error_log_q8 pixels Q8. */
+void ff_gaze_far(ff_gaze *at, const ff_square *s, uint32_t pixels_q4, int32_t error_log_q8);
 /* ff_estimate_beyond.c: counts what lies beyond the drawn ground, once that has been looked at. */
 void ff_gaze_beyond(ff_gaze *at, const ff_beyond *beyond);
 
