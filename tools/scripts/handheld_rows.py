@@ -67,7 +67,7 @@ PLACES = {  # what each counts to under each mark; None: it has nothing to do th
     "common3d/soft/soft_label.o common3d/soft/soft_point.o": (None, None, STRIPS),
     "common3d/soft/soft_perspective.o": (None, TAKE_IN, PERSPECTIVE),
     "common3d/soft/soft_thrown.o": (None, TAKE_IN, THROW),
-    "common3d/soft/soft_thrown_rows.o common3d/soft/soft_thrown_strip.o": (None, TAKE_IN, THROWN),
+    "common3d/soft/soft_thrown_rows.o common3d/soft/soft_thrown_strip.o common3d/soft/soft_thrown_tiny.o": (None, TAKE_IN, THROWN),
     "common3d/soft/soft_small.o common3d/soft/soft_tiny.o": (None, TAKE_IN, SMALL),
     "platform/": (LINK, MEASURE, STITCH),
     "platform/posix/jpeg.o platform/posix/jpeg_tables.o": (JPEG, None, None),
