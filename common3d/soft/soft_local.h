@@ -71,6 +71,7 @@ typedef struct soft_paint {
     uint8_t white;    /* all vertices are white: the texture is drawn as it is */
     uint8_t alpha_test, fog, on_top;
     uint8_t thrown;   /* the texture stands in place of the colours, where it is opaque */
+    uint8_t through;  /* of that, 256ths of what is below it */
     uint8_t unmarked; /* the last backdrop marks no depths: nothing after it asks for them */
 } soft_paint;
 

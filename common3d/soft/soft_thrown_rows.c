@@ -2,7 +2,6 @@
  * and fog by that of w, as without a projector; depths are those of every pixel's own place. */
 #include "soft_planes.h"
 #include "soft_ramp.h"
-#include "soft_sample.h"
 #include "soft_thrown_texels.h"
 
 #define SEGMENT_MAX 64 /* pixels */
@@ -164,6 +163,7 @@ static SOFT_INLINE void span(soft_state *state, const soft_segment *segment, con
     int shift = segment->w_shift, over = state->paint.alpha_test;
     uint32_t w = segment->w, dw = segment->dw,
              bias = over ? soft_thrown_bias(w >> shift, (int32_t)dw >> shift) : 0;
+    uint32_t through = soft_thrown_of_32(&state->paint);
     uint32_t *first = state->depth + segment->first, *depth = first, *end = first + segment->count;
     uint16_t *pixel = (uint16_t *)(void *)state->colour + segment->first;
     for (; depth < end; depth++, pixel++, w += dw, s += ds, t += dt) {
@@ -172,9 +172,10 @@ static SOFT_INLINE void span(soft_state *state, const soft_segment *segment, con
         const uint16_t *texel = all_on || is_on(texture, s, t)
                                     ? texels + (t >> 16) * stride + (s >> 16)
                                     : NULL;
-        if (texel && soft_thrown_opaque(texel, (uint32_t)stride, x, y))
-            *pixel = soft_thrown_blend(texel, (uint32_t)stride, x, y);
-        else if (!over)
+        if (texel && soft_thrown_opaque(texel, (uint32_t)stride, x, y)) {
+            uint16_t colour = soft_thrown_blend(texel, (uint32_t)stride, x, y);
+            *pixel = through ? soft_thrown_through(*pixel, colour, through) : colour;
+        } else if (!over)
             *pixel = own_colour(segment, (int32_t)(depth - first));
         else
             continue;

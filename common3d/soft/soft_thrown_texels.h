@@ -2,7 +2,7 @@
 #ifndef SOFT_THROWN_TEXELS_H
 #define SOFT_THROWN_TEXELS_H
 
-#include "soft_local.h"
+#include "soft_sample.h"
 
 /* A texel's fields spread over 32 bits: ggggg000000rrrrr00000bbbbb0, five bits of room or more
  * above each: so four texels are blended with weights that add up to 32. Alpha falls away. */
@@ -37,6 +37,19 @@ static inline int soft_thrown_opaque(const uint16_t *texel, uint32_t stride, uin
     if (!((a | b | c | d) & 1)) return 0;
     uint32_t xy = x * y >> 5, right = x - xy, below = y - xy;
     return (a & 1) * (32 - right - y) + (b & 1) * right + (c & 1) * below + (d & 1) * xy >= 16;
+}
+
+/* Lets the 32ths of a pixel that is there show through. */
+static inline uint16_t soft_thrown_through(uint16_t below, uint16_t pixel, uint32_t of_32)
+{
+    return soft_pixel_of(
+        (soft_spread(below) * of_32 + soft_spread(pixel) * (32 - of_32) + 16 * SOFT_SPREAD_ONE) >>
+            5 &
+        SOFT_SPREAD);
+}
+static inline uint32_t soft_thrown_of_32(const soft_paint *paint)
+{
+    return (paint->through + 4u) >> 3;
 }
 
 #endif

@@ -45,16 +45,18 @@ static inline void paint(soft_state *state, const part *picture, uint32_t first,
 {
     C3D_ASSERT(soft_in_frame(state, first, (uint32_t)count));
     uint32_t over = state->paint.alpha_test, stride = picture->stride,
-             bias = over ? soft_thrown_bias(w, (int32_t)dw) : 0;
+             bias = over ? soft_thrown_bias(w, (int32_t)dw) : 0,
+             through = soft_thrown_of_32(&state->paint);
     uint32_t *depth = state->depth + first, *end = depth + count;
     uint16_t *pixel = (uint16_t *)(void *)state->colour + first;
     for (; depth < end; depth++, pixel++, w += dw, st += dst) {
         if (w + bias < *depth) continue;
         const uint16_t *texel = picture->texels + (st >> 8 & 255) * stride + (st >> 24);
         uint32_t x = st >> 19 & 31, y = st >> 3 & 31;
-        if (soft_thrown_opaque(texel, stride, x, y))
-            *pixel = soft_thrown_blend(texel, stride, x, y);
-        else if (!over)
+        if (soft_thrown_opaque(texel, stride, x, y)) {
+            uint16_t colour = soft_thrown_blend(texel, stride, x, y);
+            *pixel = through ? soft_thrown_through(*pixel, colour, through) : colour;
+        } else if (!over)
             *pixel = picture->colour;
         else
             continue;
