@@ -23,6 +23,7 @@ void ff_sets_init(ff_sets *sets, c3d_device *device, const ff_far_desc *desc,
                    .side = (uint16_t)side,
                    .active = -1,
                    .next = -1,
+                   .under = -1,
                    .front_wu = desc->front_wu,
                    .choice = { .use = desc->enabled == FF_FAR_AUTO ? FF_FAR_OFF : desc->enabled },
                    .retry_us = INT64_MIN };
@@ -61,6 +62,38 @@ static void drop_set(ff_sets *sets, int index)
     ff_set *set = &sets->set[index];
     for (unsigned s = 0; s < FF_FAR_SECTORS; s++) drop_sector(sets, &set->sector[s]);
     memset(set, 0, sizeof *set);
+}
+
+/* ---- from set to set ---- */
+
+static void end_fade(ff_sets *sets)
+{
+    if (sets->under >= 0) drop_set(sets, sets->under);
+    sets->under = -1;
+    sets->through = 0;
+}
+
+/* The drawn set, if there is one, stays below the coming one, which is drawn from now on. */
+static void begin_fade(ff_sets *sets, int64_t now_us)
+{
+    FF_ASSERT(sets->next >= 0 && sets->under < 0);
+    sets->under = sets->active;
+    sets->active = sets->next;
+    sets->next = -1;
+    sets->through = UINT8_MAX;
+    sets->fade_us = now_us;
+}
+
+/* 1 while sets fade, and when that ends. */
+static int step_fade(ff_sets *sets, int64_t now_us)
+{
+    int64_t past_us = now_us - sets->fade_us;
+    if (!sets->through) return 0;
+    if (past_us >= 0 && past_us < FF_SETS_FADE_US)
+        sets->through = (uint8_t)(UINT8_MAX - past_us * (UINT8_MAX - 1) / FF_SETS_FADE_US);
+    else
+        end_fade(sets);
+    return 1;
 }
 
 static unsigned known(const ff_set *set)
@@ -159,10 +192,8 @@ static int take_over(ff_sets *sets, const c3d_camera *camera, int64_t now_us)
     if (sets->active >= 0) {
         const ff_set *drawn = &sets->set[sets->active];
         if (ff_sets_good(drawn, camera->pos_wu) && !ff_sets_good(next, camera->pos_wu)) return 0;
-        drop_set(sets, sets->active);
     }
-    sets->active = sets->next;
-    sets->next = -1;
+    begin_fade(sets, now_us);
     return 1;
 }
 
@@ -175,6 +206,7 @@ static int leave_behind(ff_sets *sets, const c3d_camera *camera)
     for (int axis = 0; axis < 3; axis++) {
         int64_t away_wu = (int64_t)camera->pos_wu[axis] - set->position_wu[axis];
         if (away_wu <= LEFT_BEHIND * reach_wu && away_wu >= -LEFT_BEHIND * reach_wu) continue;
+        end_fade(sets);
         drop_set(sets, sets->active);
         sets->active = -1;
         return 1;
@@ -196,6 +228,7 @@ static int good_soon(const ff_sets *sets, const c3d_camera *camera, const ff_mot
 void ff_sets_leave(ff_sets *sets, ff_requests *requests)
 {
     ff_requests_cancel_all(requests, FF_KIND_FAR);
+    end_fade(sets);
     for (int i = 0; i < 2; i++) drop_set(sets, i);
     sets->active = sets->next = -1;
 }
@@ -206,7 +239,10 @@ int ff_sets_update(ff_sets *sets, ff_requests *requests, const c3d_camera *camer
     if (!sets->side) return 0;
     sets->front_wu = ff_sets_front_wu(sets, clearance_wu);
     sets->seen = (uint16_t)ff_sets_in_view(camera);
-    int changed = take_over(sets, camera, now_us) | leave_behind(sets, camera);
+    int changed = step_fade(sets, now_us);
+    changed |= take_over(sets, camera, now_us);
+    changed |= leave_behind(sets, camera);
+    if (sets->through) return changed; /* the next one has no room yet */
     if (hold || sets->off || !sets->choice.use || now_us < sets->retry_us) return changed;
     if (sets->retry_us != INT64_MIN) { /* the wait is over: want again */
         sets->retry_us = INT64_MIN;
@@ -313,10 +349,10 @@ static void take_refusal(ff_sets *sets, int error, int64_t now_us)
     sets->retry_us = now_us + (sets->refusals < REFUSALS_IN_A_ROW ? RETRY_US : RETRY_LATER_US);
 }
 
-/* A sector of the drawn set that is out of view gives way. 0: there is none. */
-static int make_room(ff_sets *sets)
+/* A sector of a set that is out of view gives way. 0: there is none. */
+static int make_room_in(ff_sets *sets, int index)
 {
-    ff_set *set = sets->active >= 0 ? &sets->set[sets->active] : NULL;
+    ff_set *set = index >= 0 ? &sets->set[index] : NULL;
     unsigned idle = set ? set->held & ~(unsigned)sets->seen : 0;
     for (unsigned s = 0; s < FF_FAR_SECTORS; s++) {
         if (!(idle >> s & 1u)) continue;
@@ -325,6 +361,11 @@ static int make_room(ff_sets *sets)
         return 1;
     }
     return 0;
+}
+
+static int make_room(ff_sets *sets)
+{
+    return make_room_in(sets, sets->under) || make_room_in(sets, sets->active);
 }
 
 /* What lies beyond the sector in its outermost blocks is the neighbour's: here it is made up. */

@@ -12,7 +12,7 @@ void ff_sets_init(ff_sets *sets, c3d_device *device, const ff_far_desc *desc,
     (void)device, (void)info, (void)side;
     memset(sets, 0, sizeof *sets);
     sets->desc = *desc;
-    sets->active = sets->next = -1;
+    sets->active = sets->next = sets->under = -1;
 }
 
 void ff_sets_scratch(ff_sets *sets, c3d_vertex *scratch, uint16_t *indices, unsigned vertices)
