@@ -122,7 +122,7 @@ static int good_for(const ff_set *set, const c3d_camera *camera, const ff_motion
                                   : at_wu < INT32_MIN ? INT32_MIN
                                                       : at_wu);
     }
-    return ff_sets_good(set, camera->pos_wu) && ff_sets_good(set, then_wu);
+    return ff_sets_good(set, then_wu);
 }
 
 /* Seconds for which the set must be good, that so many sectors are worth their bytes. */

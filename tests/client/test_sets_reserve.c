@@ -205,6 +205,11 @@ static void the_reserve_is_for_a_drawn_set_that_is_good_and_whole_in_view(void *
     assert_true(asked(&s, &request, &ask));
     assert_int_equal(request.rank, FF_CLASS_FIRST);
     assert_int_equal(sectors_of(&ask), 0x8000);
+    /* and while it is on its way */
+    ff_requests_rank_begin(&s.requests);
+    ff_sets_want_reserve(&s.sets, &s.requests, &s.view, &s.motion, 0);
+    assert_false(ff_requests_waiting(&s.requests, FF_CLASS_RESERVE));
+    ff_requests_rank_end(&s.requests);
     picture_close(&s.kit);
 }
 
@@ -239,6 +244,24 @@ static void fins_alone_give_way_to_fins_with_paint(void **state)
     assert_int_equal(answer(&s, request.key, 2, 0), 0); /* too late */
     assert_true(s.set->sector[2].paint.id);
     assert_int_equal(answer(&s, again.key, 2, 1), 0);
+    picture_close(&s.kit);
+}
+
+static void who_has_fins_and_stays_gets_the_paint(void **state)
+{
+    (void)state;
+    static stage s;
+    ff_request request;
+    ff_get_far ask;
+    open_stage(&s, 1);
+    s.set->held = FF_SETS_ALL;
+    s.set->bare = 1 << 7;
+    fly(&s, 200);
+    assert_false(asked(&s, &request, &ask));
+    fly(&s, 0);
+    assert_true(asked(&s, &request, &ask));
+    assert_int_equal(ask.quality, 40);
+    assert_int_equal(sectors_of(&ask), 1 << 7);
     picture_close(&s.kit);
 }
 
@@ -309,8 +332,9 @@ static void the_reserve_keeps_to_the_share_of_paint(void **state)
     open_stage(&s, 1);
     s.sets.paint_bytes = 2 * 2 * (SIDE + 2) * (SIDE + 2); /* for two sectors */
     assert_true(asked(&s, &request, &ask));
-    for (unsigned sector = 2; sector < 5; sector++)
-        assert_int_equal(answer(&s, request.key, sector, 1), 1);
+    assert_int_equal(answer(&s, request.key, 3, 1), 1);
+    assert_int_equal(answer(&s, request.key, 6, 1), 1);
+    assert_int_equal(answer(&s, request.key, 4, 1), 1);
     assert_int_equal(s.set->bare, 1 << 4);
     assert_int_equal(stats_of(&s).texture_held, 2);
     assert_false(asked(&s, &request, &ask));
@@ -319,7 +343,7 @@ static void the_reserve_keeps_to_the_share_of_paint(void **state)
     assert_int_equal(s.set->held, 0x8003 | 1 << 3 | 1 << 4);
     assert_true(s.set->sector[4].paint.id);
     assert_int_equal(stats_of(&s).texture_held, 2);
-    s.sets.seen = 1 << 3 | 1 << 4 | 1 << 5; /* what is in view may have more, if there is any */
+    s.sets.seen = 1 << 3 | 1 << 4 | 1 << 5; /* all in view may have more, if there is any */
     assert_int_equal(answer(&s, s.set->key, 5, 1), 1);
     assert_true(s.set->sector[5].paint.id);
     assert_int_equal(stats_of(&s).texture_held, 3);
@@ -359,6 +383,7 @@ int main(void)
         cmocka_unit_test(who_passes_gets_what_is_worth_its_bytes),
         cmocka_unit_test(the_reserve_is_for_a_drawn_set_that_is_good_and_whole_in_view),
         cmocka_unit_test(fins_alone_give_way_to_fins_with_paint),
+        cmocka_unit_test(who_has_fins_and_stays_gets_the_paint),
         cmocka_unit_test(no_fins_and_no_paint_are_told_apart),
         cmocka_unit_test(the_reserve_pushes_no_paint_out),
         cmocka_unit_test(the_reserve_keeps_to_the_share_of_paint),
