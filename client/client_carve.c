@@ -146,6 +146,7 @@ static int carve_all(ff_client *client, unsigned economy)
     if (sets) {
         ff_sets_init(sets, client->device, &client->desc.far, &client->info, budget.far_side);
         ff_sets_scratch(sets, client->view.vertices, fin_indices, client->view.heights_per_node);
+        sets->paint_bytes = ff_budget_paint_bytes(&budget);
         sets->watch = client->fins_made;
         sets->watch_context = client->fins_context;
     }

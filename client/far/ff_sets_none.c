@@ -47,6 +47,12 @@ void ff_sets_want(const ff_sets *sets, ff_requests *requests, const ff_view *vie
     (void)sets, (void)requests, (void)view, (void)soon, (void)now_us;
 }
 
+void ff_sets_want_reserve(const ff_sets *sets, ff_requests *requests, const ff_view *view,
+                          const ff_motion *motion, int64_t now_us)
+{
+    (void)sets, (void)requests, (void)view, (void)motion, (void)now_us;
+}
+
 unsigned ff_sets_in_view(const c3d_camera *camera) { return (void)camera, 0; }
 
 int ff_sets_take(ff_sets *sets, const ff_new_item *item, int64_t now_us)

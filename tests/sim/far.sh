@@ -57,6 +57,13 @@ is 's["paint"]["bytes_heights"] < 1.1 * s["single"]["bytes_heights"]' "a view at
 flies half --far paint --far-shift 1 --backend none
 is 's["half"]["bytes_far"] < 0.6 * s["paint"]["bytes_far"]' "texels twice as large cost less than half"
 
+# a turn right round while the link is down
+down="--event 9:link=lan,down.bytes_s=1,up.bytes_s=1 --event 9.5:turn=180 --speed 60 --settle 9 --seconds 4 --audit on --backend none"
+flies unready --far paint --reserve off $down
+flies ready --far paint $down
+is '0 < s["ready"]["skyline_px_rms"] < s["unready"]["skyline_px_rms"] / 2' "a turn while the link is down shows its ridges"
+is 's["unready"]["bytes_reserve"] == 0 < s["paint"]["bytes_reserve"]' "without the reserve it is not asked for"
+
 flies high --far paint --backend none --height 6000
 is 's["high"]["far_sectors"] > 0' "pictures from high above are tall, and taken in"
 
