@@ -270,7 +270,7 @@ int report_page_html(const report_content *content, char *why, size_t why_bytes)
         "</title>\n<style>\n"
         "body{font:15px/1.5 sans-serif;margin:2em auto;max-width:1340px;padding:0 1em;color:#222}\n"
         "table{border-collapse:collapse}td,th{padding:.2em .7em;border-bottom:1px solid #ddd;text-align:right}\n"
-        "th{vertical-align:bottom}td:first-child,th:first-child{text-align:left}.wide{overflow-x:auto;margin:1em 0}\n"
+        "th{vertical-align:bottom}td:first-child,th:first-child{text-align:left;white-space:nowrap}@media(max-width:500px){table{font-size:13px}}.wide{overflow-x:auto;margin:1em 0}\n"
         ".plots{display:flex;flex-wrap:wrap;gap:1em}figure{margin:0;max-width:100%}\n"
         "figure svg{width:600px;max-width:100%}.plots img{max-width:100%}\n"
         "figcaption{color:#666;font-size:13px}\n",

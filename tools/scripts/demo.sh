@@ -69,9 +69,9 @@ stop
 server_pid="" link_pid=""
 
 say "simulated: GPRS, 60 seconds, 960x600, and as it should be"
-large="960x600 $far --fov 50 --fps 10 --every 60"
-fly gprs-large gprs 45 $large --audit on --reference "$out/gprs-large.true"
-fly gprs-wireframe gprs 45 $large --wireframe
+large="960x600 $far --fov 50 --every 60"
+fly gprs-large gprs 45 $large --fps 10 --audit on --reference "$out/gprs-large.true"
+fly gprs-wireframe gprs 45 $large --fps 2 --wireframe
 
 against=""
 for field in far panorama tree; do
