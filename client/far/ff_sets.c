@@ -248,7 +248,7 @@ int ff_sets_update(ff_sets *sets, ff_requests *requests, const c3d_camera *camer
         sets->retry_us = INT64_MIN;
         changed = 1;
     }
-    if (good_soon(sets, camera, motion)) return changed;
+    if (sets->unpaid || good_soon(sets, camera, motion)) return changed;
     /* one set outstanding at most: one that comes too late gives way when it is cancelled */
     if (sets->next >= 0) {
         if (ff_requests_cancel(requests, FF_KIND_FAR, sets->set[sets->next].key)) return changed;

@@ -113,6 +113,7 @@ typedef struct ff_sets {
     uint16_t seen;        /* bit per sector: in the last view */
     /* what is asked for next; use FF_FAR_OFF: nothing, and ground is drawn as if there were none */
     ff_far_choice choice;
+    uint8_t unpaid;   /* no new set is begun for now */
     int32_t front_wu; /* the nearest front, as high as the camera is */
     uint32_t serial;
     int64_t retry_us, lead_us;
