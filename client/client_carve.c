@@ -146,12 +146,15 @@ static int carve_all(ff_client *client, unsigned economy)
     if (sets) {
         ff_sets_init(sets, client->device, &client->desc.far, &client->info, budget.far_side);
         ff_sets_scratch(sets, client->view.vertices, fin_indices, client->view.heights_per_node);
+        sets->paint_bytes = ff_budget_paint_bytes(&budget);
         sets->watch = client->fins_made;
         sets->watch_context = client->fins_context;
     }
     client->view.throws = (ff_throws){ budget.far_side && client->device ? ff_sets_lay : NULL,
                                        sets };
     client->fine_wu = client->coarse = 0;
+    client->far_asked = 0;
+    client->far_turns = 0;
     ff_client_auto_begin(client);
     ff_motion_reset(&client->motion);
     ff_turn_reset(&client->turn);

@@ -5,8 +5,8 @@
  *   PREFETCH     ground and panorama faces that a viewer who goes on as it flies and turns will
  *                see; leaves only while the link has room and nothing else waits
  *   RESERVE      coarse ground in every direction, for a viewer who turns at once or while the link
- *                is silent (ff_tree_reserve), and the panorama's other faces for one who stays:
- *                leaves only while the link is idle
+ *                is silent (ff_tree_reserve), the other sectors of the far set that is drawn, and
+ *                the panorama's other faces for one who stays: leaves only while the link is idle
  * Nothing else is ever asked for: most of it would never be drawn. The queue's contents are
  * replaced each time; what is no longer wanted is dropped. */
 #include "ff_client_local.h"
@@ -128,6 +128,8 @@ static void want_reserve(ff_client *client, const ff_view *view, int64_t now_us)
     }
     if (client->resting && !ff_client_own_ground(client))
         ff_panorama_want_reserve(&client->panorama, &client->first.requests, view, now_us);
+    if (client->sets)
+        ff_sets_want_reserve(client->sets, &client->first.requests, view, &client->motion, now_us);
 }
 
 /* Bits of the faces that the views ahead show. */

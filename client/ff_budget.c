@@ -75,6 +75,14 @@ void ff_budget_economise(ff_budget *b, const ff_terrain_info *info, unsigned eco
 
 static size_t left(const ff_budget *b) { return b->used < b->block ? b->block - b->used : 0; }
 
+uint32_t ff_budget_paint_bytes(const ff_budget *b)
+{
+    size_t side = (size_t)b->far_side + 2, share = FF_SHARE_OF_FACES(b->block),
+           all = FF_SETS_TEXTURES * (FF_SETS_TEXELS(side) * 2 + TEXTURE_ROUNDING);
+    if (!b->far_side) return 0;
+    return (uint32_t)(all < share ? all : share);
+}
+
 /* What a back end without a GL keeps of images: each with a rim of a texel, rounded up; faces and
  * the caller's text by their share. */
 static uint32_t texel_bytes(const ff_budget *b)
@@ -84,11 +92,7 @@ static uint32_t texel_bytes(const ff_budget *b)
     size_t ground = b->pool[FF_POOL_textures].count * (side * side * 4 + TEXTURE_ROUNDING);
     size_t faces = FF_PANORAMA_MESHES * (face * face * 2 + TEXTURE_ROUNDING);
     faces = !b->face_size ? 0 : faces < share ? faces : share;
-    size_t side_far = (size_t)b->far_side + 2,
-           far = b->far_side ? FF_SETS_TEXTURES * (FF_SETS_TEXELS(side_far) * 2 + TEXTURE_ROUNDING)
-                             : 0;
-    far = far < share ? far : share;
-    return (uint32_t)(ground + faces + far + FF_SHARE_OF_TEXT(b->block));
+    return (uint32_t)(ground + faces + ff_budget_paint_bytes(b) + FF_SHARE_OF_TEXT(b->block));
 }
 
 /* Of fins: ridges grow with the picture's width. */

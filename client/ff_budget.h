@@ -181,5 +181,7 @@ void ff_budget_sky(ff_budget *budget);
 /* All pools, after the fixed ones and the economy; `buffers`: a GL holds the meshes. FF_OK or
  * FF_ERR_MEMORY. */
 int ff_budget_terrain(ff_budget *budget, int buffers);
+/* Of the device's texels what the paint of far sets may have; 0: no far sets. */
+uint32_t ff_budget_paint_bytes(const ff_budget *budget);
 
 #endif

@@ -64,6 +64,7 @@ int ff_intake_answer(ff_intake *intake, const ff_request *request, const ff_mess
     if (item->error == FF_ERR_AGAIN) return FF_ERR_AGAIN;
     FF_ASSERT(item->error <= FF_OK && item->error >= FF_ERR_LAST);
     if (item->error != FF_OK) item->pixels = NULL;
+    if (!item->last) ff_requests_came(intake->requests, item->id, item->bytes);
     return put(intake, item);
 }
 

@@ -506,6 +506,16 @@ void ff_requests_part(ff_requests *requests, uint16_t id, enum ff_kind kind, ff_
     sys_mutex_unlock(&requests->mutex);
 }
 
+void ff_requests_came(ff_requests *requests, uint16_t id, uint32_t bytes)
+{
+    sys_mutex_lock(&requests->mutex);
+    FF_ASSERT(id >= 1 && id <= requests->slot_count);
+    const ff_request *request = &requests->slot[id - 1];
+    FF_ASSERT(request->state == FF_REQUEST_SENT);
+    if (request->rank == FF_CLASS_RESERVE) requests->counts.reserve_bytes += bytes;
+    sys_mutex_unlock(&requests->mutex);
+}
+
 void ff_requests_arrived(ff_requests *requests, uint16_t id, uint32_t bytes)
 {
     sys_mutex_lock(&requests->mutex);

@@ -153,6 +153,8 @@ void ff_requests_passed(ff_requests *requests, uint16_t id);
 /* A part of a view's answer lies on the new-data list. */
 void ff_requests_part(ff_requests *requests, uint16_t id, enum ff_kind kind, ff_key key,
                       uint32_t bytes);
+/* One of several answers, not the last, lies on the new-data list. */
+void ff_requests_came(ff_requests *requests, uint16_t id, uint32_t bytes);
 /* SENT to ARRIVING once the answer lies on the new-data list; bytes: size of the answer, for the
  * means. */
 void ff_requests_arrived(ff_requests *requests, uint16_t id, uint32_t bytes);

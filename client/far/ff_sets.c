@@ -8,22 +8,25 @@
 #define RETRY_LATER_US    30000000 /* after REFUSALS_IN_A_ROW refusals */
 #define REFUSALS_IN_A_ROW 3
 #define LEAD_US_MAX       20000000
-#define PRIORITY_SECTOR   0x8000u /* among the first: behind roots */
-#define LEFT_BEHIND       3       /* so many times its region's length away a set is dropped */
+#define LEFT_BEHIND       3 /* so many times its region's length away a set is dropped */
 
 const uint8_t ff_sets_built = 1;
 
 void ff_sets_init(ff_sets *sets, c3d_device *device, const ff_far_desc *desc,
                   const ff_terrain_info *info, unsigned side)
 {
-    *sets = (ff_sets){ .device = device,
-                       .desc = *desc,
-                       .info = info,
-                       .side = (uint16_t)side,
-                       .active = -1,
-                       .next = -1,
-                       .under = -1,
-                       .retry_us = INT64_MIN };
+    *sets =
+        (ff_sets){ .device = device,
+                   .desc = *desc,
+                   .info = info,
+                   .side = (uint16_t)side,
+                   .paint_bytes = (uint32_t)(FF_SETS_TEXTURES * 2 * FF_SETS_TEXELS(side + 2)),
+                   .active = -1,
+                   .next = -1,
+                   .under = -1,
+                   .front_wu = desc->front_wu,
+                   .choice = { .use = desc->enabled == FF_FAR_AUTO ? FF_FAR_OFF : desc->enabled },
+                   .retry_us = INT64_MIN };
 }
 
 void ff_sets_scratch(ff_sets *sets, c3d_vertex *scratch, uint16_t *indices, unsigned vertices)
@@ -43,12 +46,18 @@ unsigned ff_sets_side(int32_t focal_q8)
     return side;
 }
 
-static void drop_sector(ff_sets *sets, ff_set_sector *sector)
+static void drop_fins(ff_sets *sets, ff_set_sector *sector)
 {
     for (unsigned i = 0; i < sector->chunks; i++) {
         c3d_mesh_free(sets->device, sector->mesh[i]);
         c3d_strip_free(sets->device, sector->strip[i]);
     }
+    sector->chunks = 0;
+}
+
+static void drop_sector(ff_sets *sets, ff_set_sector *sector)
+{
+    drop_fins(sets, sector);
     if (sector->paint.id) c3d_texture_free(sets->device, sector->paint);
     memset(sector, 0, sizeof *sector);
 }
@@ -93,12 +102,6 @@ static int step_fade(ff_sets *sets, int64_t now_us)
     return 1;
 }
 
-static unsigned known(const ff_set *set)
-{
-    FF_ASSERT(!(set->held & set->empty) && !((set->held | set->empty) & set->failed));
-    return (unsigned)set->held | set->empty | set->failed;
-}
-
 /* Whether the picture may show the horizon's direction east, north. A picture that lies on its
  * side, or looks far up or down, shows more of the horizon than its width: there its diagonal
  * counts. */
@@ -132,9 +135,11 @@ unsigned ff_sets_in_view(const c3d_camera *camera)
 
 int ff_sets_in_use(const ff_sets *sets, const c3d_camera *camera, int32_t *fine_wu, uint8_t *coarse)
 {
-    if (!sets->desc.enabled || !sets->side || sets->off) return 0;
+    if (!sets->choice.use || !sets->side || sets->off) return 0;
     if (sets->active < 0 && sets->refusals >= REFUSALS_IN_A_ROW)
         return 0; /* nothing will mend it */
+    if (sets->active < 0 && sets->desc.enabled == FF_FAR_AUTO)
+        return 0; /* fine ground is here already */
     int64_t away_wu = 0;
     const ff_set *set = sets->active >= 0 ? &sets->set[sets->active] : NULL;
     for (int axis = 0; set && axis < 2; axis++) {
@@ -144,7 +149,7 @@ int ff_sets_in_use(const ff_sets *sets, const c3d_camera *camera, int32_t *fine_
     }
     int64_t step_wu = 512 * FF_WU_PER_METRE;
     away_wu = (away_wu + step_wu - 1) / step_wu * step_wu;
-    int64_t wu = (set ? set->front_wu : sets->desc.front_wu) + away_wu;
+    int64_t wu = (set ? set->front_wu : sets->front_wu) + away_wu;
     *fine_wu = wu > INT32_MAX ? INT32_MAX : (int32_t)wu;
     *coarse = sets->desc.coarse;
     return 1;
@@ -160,11 +165,11 @@ static void begin_set(ff_sets *sets, const c3d_camera *camera, const ff_motion *
     set->focal = (uint16_t)(focal > FF_FAR_FOCAL_MAX   ? FF_FAR_FOCAL_MAX
                             : focal < FF_FAR_FOCAL_MIN ? FF_FAR_FOCAL_MIN
                                                        : focal);
-    set->paint_shift = sets->desc.paint_shift;
+    set->paint_shift = sets->desc.paint_shift > sets->choice.shift ? sets->desc.paint_shift
+                                                                   : sets->choice.shift;
     while (ff_sets_side((int32_t)(set->focal >> set->paint_shift) * 256) > sets->side)
         set->paint_shift++;
-    set->painted = sets->desc.enabled != FF_FAR_FINS;
-    set->front_wu = sets->desc.front_wu;
+    set->painted = sets->choice.use != FF_FAR_FINS;
     ff_sets_plan(sets, camera, motion, clearance_wu, set);
     set->key = ++sets->serial;
     set->asked_us = now_us;
@@ -177,7 +182,7 @@ static int take_over(ff_sets *sets, const c3d_camera *camera, int64_t now_us)
     if (sets->next < 0) return 0;
     FF_ASSERT(sets->next < 2 && sets->next != sets->active);
     ff_set *next = &sets->set[sets->next];
-    if (sets->seen & ~known(next)) return 0;
+    if (sets->seen & ~ff_sets_known(next)) return 0;
     if (!next->ready) {
         int64_t took_us = now_us - next->asked_us < LEAD_US_MAX ? now_us - next->asked_us
                                                                 : LEAD_US_MAX;
@@ -220,16 +225,25 @@ static int good_soon(const ff_sets *sets, const c3d_camera *camera, const ff_mot
     return ff_sets_good(&sets->set[newest], then_wu);
 }
 
+void ff_sets_leave(ff_sets *sets, ff_requests *requests)
+{
+    ff_requests_cancel_all(requests, FF_KIND_FAR);
+    end_fade(sets);
+    for (int i = 0; i < 2; i++) drop_set(sets, i);
+    sets->active = sets->next = -1;
+}
+
 int ff_sets_update(ff_sets *sets, ff_requests *requests, const c3d_camera *camera,
                    const ff_motion *motion, int32_t clearance_wu, int hold, int64_t now_us)
 {
-    if (!sets->desc.enabled || !sets->side) return 0;
+    if (!sets->side) return 0;
+    sets->front_wu = ff_sets_front_wu(sets, clearance_wu);
     sets->seen = (uint16_t)ff_sets_in_view(camera);
     int changed = step_fade(sets, now_us);
     changed |= take_over(sets, camera, now_us);
     changed |= leave_behind(sets, camera);
     if (sets->through) return changed; /* the next one has no room yet */
-    if (hold || sets->off || now_us < sets->retry_us) return changed;
+    if (hold || sets->off || !sets->choice.use || now_us < sets->retry_us) return changed;
     if (sets->retry_us != INT64_MIN) { /* the wait is over: want again */
         sets->retry_us = INT64_MIN;
         changed = 1;
@@ -248,84 +262,6 @@ int ff_sets_update(ff_sets *sets, ff_requests *requests, const c3d_camera *camer
     return 1;
 }
 
-/* ---- asking ---- */
-
-static uint16_t metres(int32_t wu)
-{
-    int32_t m = wu / FF_WU_PER_METRE;
-    return (uint16_t)(m < 0 ? 0 : m > UINT16_MAX ? UINT16_MAX : m);
-}
-
-/* Sectors in the order of how far they lie from the middle of the view. */
-static void list_sectors(ff_get_far *request, unsigned missing, const c3d_camera *camera)
-{
-    unsigned middle = (((uint32_t)camera->yaw + SECTOR / 2) & 65535u) / SECTOR;
-    int right_first = ((uint32_t)camera->yaw + SECTOR / 2) % SECTOR >= SECTOR / 2;
-    for (unsigned step = 0; step < 2 * FF_FAR_SECTORS; step++) {
-        unsigned way = (step + 1) / 2,
-                 s = (((step & 1u) == (unsigned)right_first) ? middle + way
-                                                             : middle + FF_FAR_SECTORS - way) %
-                     FF_FAR_SECTORS;
-        if (missing >> s & 1u) request->sector[request->sector_count++] = (uint8_t)s;
-        missing &= ~(1u << s);
-    }
-}
-
-/* Texels below O's horizon that the picture can show: where its lowest ray meets the front, as seen
- * from O, which stands above the viewer. */
-static uint16_t down_of(const ff_set *set, const c3d_camera *camera)
-{
-    c3d_rotation rotation;
-    c3d_camera level = { .pitch = camera->pitch };
-    c3d_rotation_from_camera(&level, &rotation);
-    int64_t half = c3d_length64(camera->roll ? camera->width / 2 : 0, camera->height / 2, 0),
-            cosine = rotation.m[2][1] > 1 << 24 ? rotation.m[2][1] : 1 << 24,
-            tilt = -(int64_t)rotation.m[2][2] * set->focal / cosine, /* of the view's middle */
-        lift = (int64_t)set->focal * (set->position_wu[2] - camera->pos_wu[2]) / set->front_wu;
-    int64_t down = half * (1 << 30) / cosine + (tilt > 0 ? tilt : 0) + (lift > 0 ? lift : 0) +
-                   FF_FAR_BLOCK;
-    int64_t most = 2 * (int64_t)set->focal;
-    return (uint16_t)(down > most ? most : down);
-}
-
-static void want_sectors(const ff_sets *sets, ff_requests *requests, const ff_view *view,
-                         const ff_set *set, unsigned missing, enum ff_request_class rank)
-{
-    ff_ask ask;
-    const ff_set_region *region = &set->region;
-    ff_get_far request = { .front_wu = set->front_wu,
-                           .heading = region->heading,
-                           .behind_m = metres(region->behind_wu),
-                           .ahead_m = metres(region->ahead_wu),
-                           .aside_m = metres(region->aside_wu),
-                           .low_m = (int16_t)(region->low_wu / FF_WU_PER_METRE),
-                           .high_m = (int16_t)(region->high_wu / FF_WU_PER_METRE),
-                           .focal = set->focal,
-                           .down = down_of(set, &view->camera),
-                           .paint_shift = set->paint_shift,
-                           .quality = set->painted ? sets->desc.jpeg_quality : 0,
-                           .tolerance_q2 = sets->desc.tolerance_q2 };
-    ff_shape_leave(sets->info, &view->frame, set->position_wu, request.position_wu);
-    list_sectors(&request, missing, &view->camera);
-    FF_ASSERT(request.sector_count > 0);
-    ask.far = request;
-    ff_requests_want(requests, FF_KIND_FAR, set->key, rank,
-                     rank == FF_CLASS_FIRST ? PRIORITY_SECTOR : 1, &ask);
-}
-
-void ff_sets_want(const ff_sets *sets, ff_requests *requests, const ff_view *view, unsigned soon,
-                  int64_t now_us)
-{
-    int newest = sets->next >= 0 ? sets->next : sets->active;
-    if (!sets->desc.enabled || sets->off || newest < 0 || now_us < sets->retry_us) return;
-    const ff_set *set = &sets->set[newest];
-    unsigned in_view = sets->seen & ~known(set), missing = in_view;
-    if (!in_view && sets->next < 0) missing = soon & ~known(set);
-    if (missing)
-        want_sectors(sets, requests, view, set, missing,
-                     in_view ? FF_CLASS_FIRST : FF_CLASS_PREFETCH);
-}
-
 /* ---- what comes ---- */
 
 static void take_refusal(ff_sets *sets, int error, int64_t now_us)
@@ -335,23 +271,45 @@ static void take_refusal(ff_sets *sets, int error, int64_t now_us)
     sets->retry_us = now_us + (sets->refusals < REFUSALS_IN_A_ROW ? RETRY_US : RETRY_LATER_US);
 }
 
-/* A sector of a set that is out of view gives way. 0: there is none. */
-static int make_room_in(ff_sets *sets, int index)
+static void lose_sector(ff_sets *sets, ff_set *set, unsigned s)
 {
-    ff_set *set = index >= 0 ? &sets->set[index] : NULL;
-    unsigned idle = set ? set->held & ~(unsigned)sets->seen : 0;
-    for (unsigned s = 0; s < FF_FAR_SECTORS; s++) {
-        if (!(idle >> s & 1u)) continue;
-        drop_sector(sets, &set->sector[s]);
-        set->held &= (uint16_t) ~(1u << s);
-        return 1;
-    }
-    return 0;
+    drop_sector(sets, &set->sector[s]);
+    set->held &= (uint16_t) ~(1u << s);
+    set->bare &= (uint16_t) ~(1u << s);
 }
 
-static int make_room(ff_sets *sets)
+/* Of some sectors the one that lies farthest from the view. */
+static unsigned farthest_of(unsigned sectors, unsigned seen)
 {
-    return make_room_in(sets, sets->under) || make_room_in(sets, sets->active);
+    unsigned s = 0;
+    while (seen && sectors & ~seen) {
+        sectors &= ~seen;
+        seen = (seen | seen << 1 | seen >> 1 | seen >> (FF_FAR_SECTORS - 1) |
+                seen << (FF_FAR_SECTORS - 1)) &
+               FF_SETS_ALL;
+    }
+    while (!(sectors >> s & 1u)) s++;
+    return s;
+}
+
+/* A sector of a set that is out of view gives way: one with paint, or one with fins. 0: there is
+ * none. */
+static int make_room_in(ff_sets *sets, int index, int for_paint)
+{
+    ff_set *set = index >= 0 ? &sets->set[index] : NULL;
+    unsigned idle = set ? set->held & ~(unsigned)sets->seen : 0, useful = 0;
+    for (unsigned s = 0; idle && s < FF_FAR_SECTORS; s++)
+        if (for_paint ? set->sector[s].paint.id != 0 : set->sector[s].chunks) useful |= 1u << s;
+    if (!(idle & useful)) return 0;
+    lose_sector(sets, set, farthest_of(idle & useful, sets->seen));
+    set->crowded = 1;
+    return 1;
+}
+
+static int make_room(ff_sets *sets, int for_paint)
+{
+    return make_room_in(sets, sets->under, for_paint) ||
+           make_room_in(sets, sets->active, for_paint);
 }
 
 /* What lies beyond the sector in its outermost blocks is the neighbour's: here it is made up. */
@@ -365,32 +323,95 @@ static void cut_off(const ff_set *set, const ff_new_item *item, uint16_t *texels
     }
 }
 
-static c3d_texture make_paint(ff_sets *sets, const ff_set *set, const ff_new_item *item,
-                              uint16_t *texels)
+/* Of paint on the device, with a rim of a texel. */
+static uint32_t paint_bytes(unsigned width, unsigned height)
 {
-    c3d_texture texture;
-    cut_off(set, item, texels);
-    do texture = c3d_texture_make(sets->device, C3D_RGBA5551, item->width, item->height, texels);
-    while (!texture.id && make_room(sets));
-    return texture;
+    return 2 * (uint32_t)(width + 2) * (height + 2);
 }
 
+/* Room for one more within paint's share: the reserve does not take what is the ground's. */
+static int has_room(const ff_sets *sets, const ff_new_item *item)
+{
+    uint32_t bytes = paint_bytes(item->width, item->height);
+    for (int i = 0; i < 2; i++)
+        for (unsigned s = 0; s < FF_FAR_SECTORS; s++) {
+            const ff_set_sector *sector = &sets->set[i].sector[s];
+            if (sector->paint.id) bytes += paint_bytes(sector->width, sector->height);
+        }
+    return bytes <= sets->paint_bytes;
+}
+
+static void make_paint(ff_sets *sets, const ff_set *set, ff_set_sector *sector,
+                       const ff_new_item *item, int first)
+{
+    uint16_t *texels = (uint16_t *)(void *)((uint8_t *)item->pixels + FF_NEW_FINS_BYTES);
+    while (!has_room(sets, item))
+        if (!first || !make_room(sets, 1)) break;
+    if (!first && !has_room(sets, item)) return;
+    cut_off(set, item, texels);
+    do
+        sector->paint = c3d_texture_make(sets->device, C3D_RGBA5551, item->width, item->height,
+                                         texels);
+    while (!sector->paint.id && first && make_room(sets, 1));
+    sector->width = item->width;
+    sector->height = item->height;
+    sector->middle = item->u.far.middle;
+    sector->top = item->u.far.top;
+}
+
+/* As many fins as there is room for. 0: not all of them. */
+static int make_fins(ff_sets *sets, ff_set *set, const ff_new_item *item, int first)
+{
+    unsigned s = item->u.far.sector;
+    const ff_fin_vertex *fin = (const ff_fin_vertex *)(const void *)item->pixels;
+    while (!ff_sets_make_fins(sets, set, s, fin, item->u.far.fins)) {
+        if (!first || !make_room(sets, 0)) return 0;
+        drop_fins(sets, &set->sector[s]);
+    }
+    return 1;
+}
+
+/* What the sector has already gives way to it. What came for the reserve pushes nothing out, and
+ * its fins are all kept or none. */
 static void take_sector(ff_sets *sets, ff_set *set, const ff_new_item *item)
 {
     unsigned s = item->u.far.sector;
     ff_set_sector *sector = &set->sector[s];
-    const ff_fin_vertex *fin = (const ff_fin_vertex *)(const void *)item->pixels;
-    set->held |= (uint16_t)(1u << s);
+    uint16_t bit = (uint16_t)(1u << s);
+    int first = !(item->key & FF_SETS_KEY_RESERVE) || (sets->seen & bit), no_room = 0;
+    lose_sector(sets, set, s);
     sets->sectors++;
     if (sets->device && item->width) {
-        sector->paint = make_paint(
-            sets, set, item, (uint16_t *)(void *)((uint8_t *)item->pixels + FF_NEW_FINS_BYTES));
-        sector->width = item->width;
-        sector->height = item->height;
-        sector->middle = item->u.far.middle;
-        sector->top = item->u.far.top;
+        make_paint(sets, set, sector, item, first);
+        no_room = !sector->paint.id && !first;
     }
-    ff_sets_make_fins(sets, set, s, fin, item->u.far.fins);
+    if (!make_fins(sets, set, item, first) && !first) {
+        drop_sector(sets, sector);
+        set->crowded = 1;
+        return;
+    }
+    set->crowded |= (uint8_t)no_room;
+    set->held |= bit;
+    if (item->key & FF_SETS_KEY_FINS || no_room) set->bare |= bit;
+}
+
+/* Nothing to be seen, or no fins: then its paint is still to come. */
+static void take_empty(ff_sets *sets, ff_set *set, const ff_new_item *item)
+{
+    uint16_t bit = (uint16_t)(1u << item->u.far.sector);
+    lose_sector(sets, set, item->u.far.sector);
+    sets->sectors_empty++;
+    if (item->key & FF_SETS_KEY_FINS)
+        set->held |= bit, set->bare |= bit;
+    else
+        set->empty |= bit;
+}
+
+/* It is not asked for again; its fins stay. */
+static void take_failure(ff_set *set, unsigned bit)
+{
+    if (!(set->held & bit)) set->failed |= (uint16_t)bit;
+    set->bare &= (uint16_t)~bit;
 }
 
 int ff_sets_take(ff_sets *sets, const ff_new_item *item, int64_t now_us)
@@ -398,17 +419,20 @@ int ff_sets_take(ff_sets *sets, const ff_new_item *item, int64_t now_us)
     for (int i = 0; i < 2; i++) {
         ff_set *set = &sets->set[i];
         unsigned bit = 1u << item->u.far.sector;
-        if (set->key != item->key || !set->key) continue;
+        if (set->key != (item->key & ~(FF_SETS_KEY_RESERVE | FF_SETS_KEY_FINS)) || !set->key)
+            continue;
         if (item->refused) {
             if (item->error != FF_ERR_CLOSED) take_refusal(sets, item->error, now_us);
             return 1;
         }
-        if (known(set) & bit) return 0;
+        int fins_alone = (item->key & FF_SETS_KEY_FINS) != 0;
+        if (ff_sets_known(set) & ~(fins_alone ? 0u : set->bare) & bit) return 0;
+        if (!fins_alone) set->whole++, set->whole_bytes += item->bytes;
         sets->refusals = 0;
         if (item->error != FF_OK)
-            set->failed |= (uint16_t)bit;
+            take_failure(set, bit);
         else if (item->u.far.empty)
-            set->empty |= (uint16_t)bit, sets->sectors_empty++;
+            take_empty(sets, set, item);
         else
             take_sector(sets, set, item);
         return 1;

@@ -9,9 +9,8 @@
 
 #include <string.h>
 
-#define FOOT_PAINTED_PX 30    /* ground in front of a ridge that coarse ground may lack */
-#define FOOT_BARE_PX    2     /* without paint a fin is an outline */
-#define TAN_HALF_Q16    13036 /* of 11.25 degrees */
+#define FOOT_PX      30    /* ground in front of a ridge that coarse ground may lack */
+#define TAN_HALF_Q16 13036 /* of 11.25 degrees */
 
 /* ---- fins ---- */
 
@@ -22,8 +21,7 @@ static void place(const ff_sets *sets, const ff_set *set, unsigned sector, const
     int32_t forward_q30[2], right_q30[2];
     ff_far_axes(sector, forward_q30, right_q30);
     int64_t f = ff_far_distance_wu(fin->distance), r = f * fin->column / set->focal,
-            up = f * fin->up_q2 / (4 * (int64_t)set->focal),
-            foot = f * (set->painted ? FOOT_PAINTED_PX : FOOT_BARE_PX) / set->focal;
+            up = f * fin->up_q2 / (4 * (int64_t)set->focal), foot = f * FOOT_PX / set->focal;
     int32_t x = (int32_t)((f * forward_q30[0] + r * right_q30[0]) >> 30),
             y = (int32_t)((f * forward_q30[1] + r * right_q30[1]) >> 30);
     out[0] = out[1] = (c3d_vertex){ .x = x, .y = y, .z = (int32_t)up };
@@ -54,7 +52,6 @@ static int make_chunk(ff_sets *sets, ff_set *set, unsigned sector, const ff_fin_
 {
     ff_set_sector *made = &set->sector[sector];
     uint32_t indices = 0;
-    if (made->chunks == FF_SETS_CHUNKS) return 0;
     for (uint32_t i = 0; i < count; i++) {
         place(sets, set, sector, &fin[i], sets->scratch + 2 * i);
         uint16_t top = (uint16_t)(2 * i), foot = (uint16_t)(top + 1);
@@ -74,17 +71,19 @@ static int make_chunk(ff_sets *sets, ff_set *set, unsigned sector, const ff_fin_
     return 1;
 }
 
-void ff_sets_make_fins(ff_sets *sets, ff_set *set, unsigned sector, const ff_fin_vertex *fin,
-                       uint32_t count)
+int ff_sets_make_fins(ff_sets *sets, ff_set *set, unsigned sector, const ff_fin_vertex *fin,
+                      uint32_t count)
 {
     uint32_t room = sets->vertices / 2u;
     FF_ASSERT(room >= 2);
     for (uint32_t from = 0; from + 1 < count;) {
         uint32_t part = count - from < room ? count - from : room;
-        if (!make_chunk(sets, set, sector, fin + from, part)) return;
+        if (set->sector[sector].chunks == FF_SETS_CHUNKS) return 1; /* as many as it may have */
+        if (!make_chunk(sets, set, sector, fin + from, part)) return 0;
         from += part;
         if (from < count && !fin[from].begins) from--; /* a fin that goes on in the next mesh */
     }
+    return 1;
 }
 
 /* ---- paint ---- */

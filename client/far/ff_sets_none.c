@@ -1,6 +1,6 @@
 /* Stands in for this room in builds without far sets. */
 #include "../ask/ff_intake_local.h"
-#include "ff_sets.h"
+#include "../ff_client_local.h"
 
 #include <string.h>
 
@@ -27,6 +27,12 @@ int ff_sets_in_use(const ff_sets *sets, const c3d_camera *camera, int32_t *fine_
     return (void)sets, (void)camera, (void)fine_wu, (void)coarse, 0;
 }
 
+void ff_client_far_step(ff_client *client, const c3d_camera *camera, int32_t clearance_wu,
+                        int64_t now_us)
+{
+    (void)client, (void)camera, (void)clearance_wu, (void)now_us;
+}
+
 int ff_sets_update(ff_sets *sets, ff_requests *requests, const c3d_camera *camera,
                    const ff_motion *motion, int32_t clearance_wu, int hold, int64_t now_us)
 {
@@ -39,6 +45,12 @@ void ff_sets_want(const ff_sets *sets, ff_requests *requests, const ff_view *vie
                   int64_t now_us)
 {
     (void)sets, (void)requests, (void)view, (void)soon, (void)now_us;
+}
+
+void ff_sets_want_reserve(const ff_sets *sets, ff_requests *requests, const ff_view *view,
+                          const ff_motion *motion, int64_t now_us)
+{
+    (void)sets, (void)requests, (void)view, (void)motion, (void)now_us;
 }
 
 unsigned ff_sets_in_view(const c3d_camera *camera) { return (void)camera, 0; }

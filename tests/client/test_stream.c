@@ -331,8 +331,10 @@ static void the_reserve_leaves_on_an_idle_link(void **state)
     assert_int_equal(requests.counts.reserve_sent, 3);
     ff_requests_want(&requests, FF_KIND_REFINEMENT, 30, FF_CLASS_IN_VIEW, 1, NULL);
     assert_true(ff_requests_next(&requests, 0, 8, 4000, 1, &other));
-    assert_int_equal(other.key, 30); /* what comes into view does not wait for it */
-    ff_requests_arrived(&requests, out.id, 150);
+    assert_int_equal(other.key, 30);            /* what comes into view does not wait for it */
+    ff_requests_came(&requests, other.id, 400); /* the first of several */
+    ff_requests_came(&requests, out.id, 70);
+    ff_requests_arrived(&requests, out.id, 80);
     assert_int_equal(requests.counts.reserve_bytes, 150);
     assert_int_equal(requests.counts.reserve_in_flight, 2);
     ff_requests_lost(&requests);
