@@ -61,12 +61,12 @@ static void choose(ff_client *client, const ff_far_choice *next, int64_t now_us)
 }
 
 /* All of the client's own ground is here, or was asked for: what is left of sets goes. */
-static void leave(ff_client *client)
+static void leave(ff_client *client, int64_t now_us)
 {
     if (client->sets->choice.use || client->dirty || client->unranked) return;
     if (client->sets->active < 0 && client->sets->next < 0) return;
     if (ff_client_waiting(client, FF_CLASS_IN_VIEW)) return;
-    ff_sets_leave(client->sets, &client->first.requests);
+    ff_sets_leave(client->sets, &client->first.requests, now_us);
     client->dirty = 1;
 }
 
@@ -90,7 +90,7 @@ void ff_client_far_step(ff_client *client, const c3d_camera *camera, int32_t cle
                         int64_t now_us)
 {
     if (client->desc.far.enabled != FF_FAR_AUTO || ff_client_low_power(client)) return;
-    leave(client);
+    leave(client, now_us);
     if (client->desc.balance.mode == FF_BALANCE_ALL_CLIENT)
         client->sets->choice.use = FF_FAR_OFF;
     else

@@ -20,7 +20,7 @@ void ff_sets_init(ff_sets *sets, c3d_device *device, const ff_far_desc *desc,
                    .desc = *desc,
                    .info = info,
                    .side = (uint16_t)side,
-                   .paint_bytes = (uint32_t)(FF_SETS_TEXTURES * 2 * FF_SETS_TEXELS(side + 2)),
+                   .paint_bytes = (uint32_t)(FF_SETS_TEXTURES * 2 * FF_SETS_TEXELS(2 + side)),
                    .active = -1,
                    .next = -1,
                    .under = -1,
@@ -79,10 +79,11 @@ static void end_fade(ff_sets *sets)
     sets->through = 0;
 }
 
-/* The drawn set, if there is one, stays below the coming one, which is drawn from now on. */
+/* The drawn set, if there is one, stays below the coming one, which is drawn from now on: or below
+ * none. */
 static void begin_fade(ff_sets *sets, int64_t now_us)
 {
-    FF_ASSERT(sets->next >= 0 && sets->under < 0);
+    FF_ASSERT(sets->under < 0);
     sets->under = sets->active;
     sets->active = sets->next;
     sets->next = -1;
@@ -225,12 +226,13 @@ static int good_soon(const ff_sets *sets, const c3d_camera *camera, const ff_mot
     return ff_sets_good(&sets->set[newest], then_wu);
 }
 
-void ff_sets_leave(ff_sets *sets, ff_requests *requests)
+void ff_sets_leave(ff_sets *sets, ff_requests *requests, int64_t now_us)
 {
     ff_requests_cancel_all(requests, FF_KIND_FAR);
     end_fade(sets);
-    for (int i = 0; i < 2; i++) drop_set(sets, i);
-    sets->active = sets->next = -1;
+    if (sets->next >= 0) drop_set(sets, sets->next);
+    sets->next = -1;
+    begin_fade(sets, now_us);
 }
 
 int ff_sets_update(ff_sets *sets, ff_requests *requests, const c3d_camera *camera,
