@@ -6,7 +6,7 @@ set -eu
 bin=$1
 out=$2
 pack=$out/trinidad.ffp
-far="--far paint" # how far ground comes
+far="" # how far ground comes
 owner="U.S. Geological Survey"
 server_pid=""
 link_pid=""
