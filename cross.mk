@@ -58,10 +58,12 @@ handheld-objects: # what the program is linked from, for tools/scripts/handheld_
 -include $(shell find build/handheld -name '*.d' 2>/dev/null)
 
 # ---- make bench-handheld: instructions by a plugin of qemu's translator. DATA=DIR (with puget-sound-gatech/, see flyover) flies over Puget
-# Sound, PACK=... over any pack; BENCH_OPTIONS=--functions prints the functions that cost most, --quick leaves out the sweep ----
+# Sound, PACK=... over any pack, FAR_PACK=... the flights with sets; BENCH_OPTIONS=--functions prints the functions that cost most, --far the
+# tables of sets, --quick leaves out the sweep ----
 BENCH := build/bench
 BENCH_TILE := 7
 PACK ?= $(BENCH)/$(if $(DATA),puget,ground).ffp
+FAR_PACK ?= $(BENCH)/mountains.ffp
 TCG_COUNT := build/handheld/libtcg_count.so
 $(TCG_COUNT): tools/scripts/tcg_count.c
 	@mkdir -p $(@D)
@@ -71,6 +73,8 @@ $(BENCH)/ground.ffp: tools/scripts/bench_terrain.py $(BUILD)/bin/farfield-bake
 	tools/scripts/bench_terrain.py $(@D)
 	$(BUILD)/bin/farfield-bake $(@D)/ground.raw --raw 2049x2049 --scale 0.1 --spacing 50 --tile-log2 $(BENCH_TILE) --quiet \
 	    --color $(@D)/ground.ppm --texture-levels 3 -o $@
+$(BENCH)/mountains.ffp: $(BENCH)/ground.ffp
+	$(BUILD)/bin/farfield-bake $(@D)/mountains.raw --raw 1025x1025 --scale 0.07 --spacing 90 --quiet -o $@
 # As tools/scripts/flyover.sh has it: minutes, once for a version of packs (ff_pack.h).
 PUGET := $(DATA)/puget-sound-gatech
 $(BENCH)/puget.ffp: protocol/ff_pack.h | $(BUILD)/bin/farfield-bake
@@ -79,8 +83,8 @@ $(BENCH)/puget.ffp: protocol/ff_pack.h | $(BUILD)/bin/farfield-bake
 	    --color $(PUGET)/ps_texture_1k.png --texture-levels 5 -o $@
 
 .PHONY: bench-handheld
-bench-handheld: build/handheld/farfield-handheld $(TCG_COUNT) $(BUILD)/bin/farfield-fly $(BUILD)/bin/farfield-handheld $(BUILD)/bin/farfield-report $(PACK) ## ARM instructions a frame, by phase, and the work-precision curve: build/bench/handheld.md
-	@tools/scripts/bench_handheld.py $(BUILD)/bin build/handheld/farfield-handheld $(TCG_COUNT) $(PACK) $(BENCH) $(BENCH_OPTIONS)
+bench-handheld: build/handheld/farfield-handheld $(TCG_COUNT) $(BUILD)/bin/farfield-fly $(BUILD)/bin/farfield-handheld $(BUILD)/bin/farfield-report $(PACK) $(FAR_PACK) ## ARM instructions a frame, by phase, and the work-precision curve: build/bench/handheld.md
+	@tools/scripts/bench_handheld.py $(BUILD)/bin build/handheld/farfield-handheld $(TCG_COUNT) $(PACK) $(FAR_PACK) $(BENCH) $(BENCH_OPTIONS)
 	@tools/scripts/look.sh $(BUILD)/bin $(PACK) $(BENCH)/look --start 0.3 --speed 900 --height 600
 	@$(BUILD)/bin/farfield-report $(BENCH)/look/soft.csv $(BENCH)/look/gles1.csv -o $(BENCH)/look --title "Integers beside GL ES" \
 	    --beside soft=$(BENCH)/look/soft --beside gles1=$(BENCH)/look/gles1

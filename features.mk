@@ -11,7 +11,7 @@ endef
 feature = $(eval $(call feature_row,$(strip $(1)),$(2),$(strip $(3))))
 
 $(call feature,panorama, client/panorama protocol/message/ff_face_columns.c, client/panorama/ff_panorama_none.c)
-$(call feature,far, client/far protocol/far, client/far/ff_sets_none.c)
+$(call feature,far, client/far client/terrain/ff_estimate_far.c protocol/far, client/far/ff_sets_none.c client/terrain/ff_estimate_far_none.c)
 $(call feature,textures, client/images, client/images/ff_textures_none.c)
 $(call feature,network, client/source/link protocol/message/ff_message.c platform/posix/tcp.c, \
     client/source/link/ff_stream_none.c platform/null/null_tcp.c)

@@ -116,7 +116,7 @@ static int check_desc(const ff_client_desc *desc)
         desc->quality.error_px_q8 > FF_QUALITY_ERROR_PX_MAX << 8 ||
         desc->quality.depth_max > FF_QUALITY_DEPTH_MAX)
         return FF_ERR_ARGUMENT;
-    if (desc->far.enabled > FF_FAR_PAINT || desc->far.coarse > FF_FAR_COARSE_MAX ||
+    if (desc->far.enabled > FF_FAR_AUTO || desc->far.coarse > FF_FAR_COARSE_MAX ||
         desc->far.paint_shift > FF_FAR_SHIFT_MAX || desc->far.jpeg_quality > 100)
         return FF_ERR_ARGUMENT;
     if ((unsigned)desc->balance.mode > FF_BALANCE_ALL_CLIENT ||

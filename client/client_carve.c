@@ -153,6 +153,8 @@ static int carve_all(ff_client *client, unsigned economy)
     client->view.throws = (ff_throws){ budget.far_side && client->device ? ff_sets_lay : NULL,
                                        sets };
     client->fine_wu = client->coarse = 0;
+    client->far_asked = 0;
+    client->far_turns = 0;
     ff_client_auto_begin(client);
     ff_motion_reset(&client->motion);
     ff_turn_reset(&client->turn);

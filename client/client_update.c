@@ -175,8 +175,10 @@ static int update_sets(ff_client *client, const c3d_camera *camera, int64_t now_
 {
     if (!client->sets) return 0;
     int hold = ff_client_low_power(client) || !client->first.serves;
+    int32_t clearance_wu = above_ground_wu(client, camera);
+    ff_client_far_step(client, camera, clearance_wu, now_us);
     int turned = ff_sets_update(client->sets, &client->first.requests, camera, &client->motion,
-                                above_ground_wu(client, camera), hold, now_us);
+                                clearance_wu, hold, now_us);
     client->coarse = 0;
     if (!ff_sets_in_use(client->sets, camera, &client->fine_wu, &client->coarse))
         client->fine_wu = 0;

@@ -131,7 +131,7 @@ static ff_quality quality_to_be(const ff_client *client)
     int painted = client->desc.panorama.enabled == FF_PANORAMA_ON &&
                   client->desc.balance.mode != FF_BALANCE_ALL_CLIENT;
     if (painted && back_wu < quality.view_wu) quality.view_wu = back_wu;
-    if (client->desc.far.enabled) {
+    if (client->desc.far.enabled && client->desc.far.enabled != FF_FAR_AUTO) {
         quality.fine_wu = client->desc.far.front_wu;
         quality.coarse = client->desc.far.coarse;
     }

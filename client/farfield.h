@@ -79,15 +79,18 @@ typedef struct ff_panorama_desc {
     uint8_t hold_back;
 } ff_panorama_desc;
 
-/* What stands in for fine far ground (client/far): nothing; fins, the outlines of ridges; or fins
- * and paint, their colours. */
-enum ff_far_use { FF_FAR_OFF, FF_FAR_FINS, FF_FAR_PAINT };
+/* What stands in for fine far ground (client/far): nothing; fins, the outlines of ridges; fins and
+ * paint, their colours; or what pays, by far/ff_far_rule.h. */
+enum ff_far_use { FF_FAR_OFF, FF_FAR_FINS, FF_FAR_PAINT, FF_FAR_AUTO };
 
 /* Far ground as a coarse tree with sets of fins and paint on it, taken by the server. Not together
  * with panoramas: where sets are used those are off. Zero in any field takes the default given. */
 typedef struct ff_far_desc {
     uint8_t enabled;  /* enum ff_far_use; default FF_FAR_OFF */
-    int32_t front_wu; /* from here on, measured as back_plane_wu; default 7500 m */
+    uint8_t no_paint; /* 1: FF_FAR_AUTO chooses fins at most, as for a display of two colours */
+    /* from here on, measured as back_plane_wu, or from as far as the camera is high above ground,
+     * if that is more; FF_FAR_AUTO may choose up to twice as far; default 7500 m */
+    int32_t front_wu;
     /* ground beyond may be so many times as wrong as quality allows, up to 16; default 4 */
     uint8_t coarse;
     uint8_t paint_shift;  /* texels of paint are 2^this as large as pixels, 0 to 3 */

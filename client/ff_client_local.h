@@ -62,6 +62,10 @@ struct ff_client {
     ff_sets *sets;   /* in a pool of the terrain; NULL: none are used */
     int32_t fine_wu; /* ff_quality's, while sets are in use */
     uint8_t coarse;
+    /* FF_FAR_AUTO: when its rule was asked last, and sets were begun or left */
+    uint8_t far_asked;
+    uint32_t far_turns;
+    int64_t far_us, far_turned_us;
     ff_sky sky;
     ff_motion motion;
     ff_turn turn;
@@ -163,6 +167,10 @@ ff_quality ff_client_quality(const ff_client *client);
  * update, while there is a terrain. */
 void ff_client_auto_begin(ff_client *client);
 void ff_client_auto_step(ff_client *client, const c3d_camera *camera, int64_t now_us);
+/* far/client_far.c: asks the rule of FF_FAR_AUTO now and then; once an update, while there are
+ * sets. */
+void ff_client_far_step(ff_client *client, const c3d_camera *camera, int32_t clearance_wu,
+                        int64_t now_us);
 /* 1 while no panoramas are wanted and the client draws far ground itself. */
 static inline int ff_client_own_ground(const ff_client *client)
 {

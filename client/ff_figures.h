@@ -41,6 +41,8 @@
     TOLD(uint32_t, far_sectors, from->client->sets ? from->client->sets->sectors : 0, "that came, with fins or paint") \
     TOLD(uint32_t, far_sectors_empty, from->client->sets ? from->client->sets->sectors_empty : 0, "that show nothing") \
     TOLD(uint32_t, far_bytes, (uint32_t)from->link.answer_bytes[FF_KIND_FAR], "of their messages") \
+    TOLD(uint32_t, far_use, from->client->sets ? from->client->sets->choice.use : 0, "asked for now: 0 nothing, 1 fins, 2 paint") \
+    TOLD(uint32_t, far_turns, from->client->far_turns, "times that far auto began or left sets") \
     TOLD(uint32_t, view_requests, from->requests.of[FF_KIND_VIEW].sent, \
          "sent, each for all that a view lacks") \
     TOLD(uint32_t, requests_sent, from->requests.sent, "of all kinds") \

@@ -111,8 +111,11 @@ typedef struct c3d_draw {
     /* columns and rows beyond these places have their s and t: vertices moved there; 0: all their
      * own */
     uint32_t tex_last_q16[2];
-    uint16_t tex_columns;           /* at least 1 */
-    uint8_t point_px;               /* c3d_draw_points alone: edge of a point, 1..64 pixels */
+    uint16_t tex_columns; /* at least 1 */
+    uint8_t point_px;     /* c3d_draw_points alone: edge of a point, 1..64 pixels */
+    /* C3D_DRAW_PROJECTED with ALPHA_TEST alone: so many 256ths of what is drawn there already show
+     * through what is thrown, a share of 32ths in RGB565; 0: none */
+    uint8_t through;
     const c3d_projector *projector; /* C3D_DRAW_PROJECTED alone; read before the draw returns */
 } c3d_draw;
 

@@ -15,14 +15,18 @@ const uint8_t ff_sets_built = 1;
 void ff_sets_init(ff_sets *sets, c3d_device *device, const ff_far_desc *desc,
                   const ff_terrain_info *info, unsigned side)
 {
-    *sets = (ff_sets){ .device = device,
-                       .desc = *desc,
-                       .info = info,
-                       .side = (uint16_t)side,
-                       .paint_bytes = (uint32_t)(FF_SETS_TEXTURES * 2 * FF_SETS_TEXELS(side + 2)),
-                       .active = -1,
-                       .next = -1,
-                       .retry_us = INT64_MIN };
+    *sets =
+        (ff_sets){ .device = device,
+                   .desc = *desc,
+                   .info = info,
+                   .side = (uint16_t)side,
+                   .paint_bytes = (uint32_t)(FF_SETS_TEXTURES * 2 * FF_SETS_TEXELS(side + 2)),
+                   .active = -1,
+                   .next = -1,
+                   .under = -1,
+                   .front_wu = desc->front_wu,
+                   .choice = { .use = desc->enabled == FF_FAR_AUTO ? FF_FAR_OFF : desc->enabled },
+                   .retry_us = INT64_MIN };
 }
 
 void ff_sets_scratch(ff_sets *sets, c3d_vertex *scratch, uint16_t *indices, unsigned vertices)
@@ -66,6 +70,38 @@ static void drop_set(ff_sets *sets, int index)
     memset(set, 0, sizeof *set);
 }
 
+/* ---- from set to set ---- */
+
+static void end_fade(ff_sets *sets)
+{
+    if (sets->under >= 0) drop_set(sets, sets->under);
+    sets->under = -1;
+    sets->through = 0;
+}
+
+/* The drawn set, if there is one, stays below the coming one, which is drawn from now on. */
+static void begin_fade(ff_sets *sets, int64_t now_us)
+{
+    FF_ASSERT(sets->next >= 0 && sets->under < 0);
+    sets->under = sets->active;
+    sets->active = sets->next;
+    sets->next = -1;
+    sets->through = UINT8_MAX;
+    sets->fade_us = now_us;
+}
+
+/* 1 while sets fade, and when that ends. */
+static int step_fade(ff_sets *sets, int64_t now_us)
+{
+    int64_t past_us = now_us - sets->fade_us;
+    if (!sets->through) return 0;
+    if (past_us >= 0 && past_us < FF_SETS_FADE_US)
+        sets->through = (uint8_t)(UINT8_MAX - past_us * (UINT8_MAX - 1) / FF_SETS_FADE_US);
+    else
+        end_fade(sets);
+    return 1;
+}
+
 /* Whether the picture may show the horizon's direction east, north. A picture that lies on its
  * side, or looks far up or down, shows more of the horizon than its width: there its diagonal
  * counts. */
@@ -99,9 +135,11 @@ unsigned ff_sets_in_view(const c3d_camera *camera)
 
 int ff_sets_in_use(const ff_sets *sets, const c3d_camera *camera, int32_t *fine_wu, uint8_t *coarse)
 {
-    if (!sets->desc.enabled || !sets->side || sets->off) return 0;
+    if (!sets->choice.use || !sets->side || sets->off) return 0;
     if (sets->active < 0 && sets->refusals >= REFUSALS_IN_A_ROW)
         return 0; /* nothing will mend it */
+    if (sets->active < 0 && sets->desc.enabled == FF_FAR_AUTO)
+        return 0; /* fine ground is here already */
     int64_t away_wu = 0;
     const ff_set *set = sets->active >= 0 ? &sets->set[sets->active] : NULL;
     for (int axis = 0; set && axis < 2; axis++) {
@@ -111,7 +149,7 @@ int ff_sets_in_use(const ff_sets *sets, const c3d_camera *camera, int32_t *fine_
     }
     int64_t step_wu = 512 * FF_WU_PER_METRE;
     away_wu = (away_wu + step_wu - 1) / step_wu * step_wu;
-    int64_t wu = (set ? set->front_wu : sets->desc.front_wu) + away_wu;
+    int64_t wu = (set ? set->front_wu : sets->front_wu) + away_wu;
     *fine_wu = wu > INT32_MAX ? INT32_MAX : (int32_t)wu;
     *coarse = sets->desc.coarse;
     return 1;
@@ -127,11 +165,11 @@ static void begin_set(ff_sets *sets, const c3d_camera *camera, const ff_motion *
     set->focal = (uint16_t)(focal > FF_FAR_FOCAL_MAX   ? FF_FAR_FOCAL_MAX
                             : focal < FF_FAR_FOCAL_MIN ? FF_FAR_FOCAL_MIN
                                                        : focal);
-    set->paint_shift = sets->desc.paint_shift;
+    set->paint_shift = sets->desc.paint_shift > sets->choice.shift ? sets->desc.paint_shift
+                                                                   : sets->choice.shift;
     while (ff_sets_side((int32_t)(set->focal >> set->paint_shift) * 256) > sets->side)
         set->paint_shift++;
-    set->painted = sets->desc.enabled != FF_FAR_FINS;
-    set->front_wu = sets->desc.front_wu;
+    set->painted = sets->choice.use != FF_FAR_FINS;
     ff_sets_plan(sets, camera, motion, clearance_wu, set);
     set->key = ++sets->serial;
     set->asked_us = now_us;
@@ -154,10 +192,8 @@ static int take_over(ff_sets *sets, const c3d_camera *camera, int64_t now_us)
     if (sets->active >= 0) {
         const ff_set *drawn = &sets->set[sets->active];
         if (ff_sets_good(drawn, camera->pos_wu) && !ff_sets_good(next, camera->pos_wu)) return 0;
-        drop_set(sets, sets->active);
     }
-    sets->active = sets->next;
-    sets->next = -1;
+    begin_fade(sets, now_us);
     return 1;
 }
 
@@ -170,6 +206,7 @@ static int leave_behind(ff_sets *sets, const c3d_camera *camera)
     for (int axis = 0; axis < 3; axis++) {
         int64_t away_wu = (int64_t)camera->pos_wu[axis] - set->position_wu[axis];
         if (away_wu <= LEFT_BEHIND * reach_wu && away_wu >= -LEFT_BEHIND * reach_wu) continue;
+        end_fade(sets);
         drop_set(sets, sets->active);
         sets->active = -1;
         return 1;
@@ -188,13 +225,25 @@ static int good_soon(const ff_sets *sets, const c3d_camera *camera, const ff_mot
     return ff_sets_good(&sets->set[newest], then_wu);
 }
 
+void ff_sets_leave(ff_sets *sets, ff_requests *requests)
+{
+    ff_requests_cancel_all(requests, FF_KIND_FAR);
+    end_fade(sets);
+    for (int i = 0; i < 2; i++) drop_set(sets, i);
+    sets->active = sets->next = -1;
+}
+
 int ff_sets_update(ff_sets *sets, ff_requests *requests, const c3d_camera *camera,
                    const ff_motion *motion, int32_t clearance_wu, int hold, int64_t now_us)
 {
-    if (!sets->desc.enabled || !sets->side) return 0;
+    if (!sets->side) return 0;
+    sets->front_wu = ff_sets_front_wu(sets, clearance_wu);
     sets->seen = (uint16_t)ff_sets_in_view(camera);
-    int changed = take_over(sets, camera, now_us) | leave_behind(sets, camera);
-    if (hold || sets->off || now_us < sets->retry_us) return changed;
+    int changed = step_fade(sets, now_us);
+    changed |= take_over(sets, camera, now_us);
+    changed |= leave_behind(sets, camera);
+    if (sets->through) return changed; /* the next one has no room yet */
+    if (hold || sets->off || !sets->choice.use || now_us < sets->retry_us) return changed;
     if (sets->retry_us != INT64_MIN) { /* the wait is over: want again */
         sets->retry_us = INT64_MIN;
         changed = 1;
@@ -243,11 +292,11 @@ static unsigned farthest_of(unsigned sectors, unsigned seen)
     return s;
 }
 
-/* A sector of the drawn set that is out of view gives way: one with paint, or one with fins. 0:
- * there is none. */
-static int make_room(ff_sets *sets, int for_paint)
+/* A sector of a set that is out of view gives way: one with paint, or one with fins. 0: there is
+ * none. */
+static int make_room_in(ff_sets *sets, int index, int for_paint)
 {
-    ff_set *set = sets->active >= 0 ? &sets->set[sets->active] : NULL;
+    ff_set *set = index >= 0 ? &sets->set[index] : NULL;
     unsigned idle = set ? set->held & ~(unsigned)sets->seen : 0, useful = 0;
     for (unsigned s = 0; idle && s < FF_FAR_SECTORS; s++)
         if (for_paint ? set->sector[s].paint.id != 0 : set->sector[s].chunks) useful |= 1u << s;
@@ -255,6 +304,12 @@ static int make_room(ff_sets *sets, int for_paint)
     lose_sector(sets, set, farthest_of(idle & useful, sets->seen));
     set->crowded = 1;
     return 1;
+}
+
+static int make_room(ff_sets *sets, int for_paint)
+{
+    return make_room_in(sets, sets->under, for_paint) ||
+           make_room_in(sets, sets->active, for_paint);
 }
 
 /* What lies beyond the sector in its outermost blocks is the neighbour's: here it is made up. */

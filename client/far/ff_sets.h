@@ -1,5 +1,6 @@
 /* Far ground by a coarse tree, fins and paint: at most two sets of sectors, the one drawn and the
- * one that is coming (protocol/far/ff_far.h says what a sector is).
+ * one that is coming or that the drawn one fades in over (protocol/far/ff_far.h says what a sector
+ * is).
  *
  * The client's own tree draws all ground, what lies beyond the sets' front more coarsely
  * (ff_quality.fine_wu). A set, taken by the server from one point O, lays on it what that lacks:
@@ -10,8 +11,9 @@
  * the worst that can happen to it.
  *
  * Sectors in view are asked for first, those that a turn will show when nothing else waits. The set
- * that is coming replaces the drawn one when all its sectors in view are here. Ground that no paint
- * covers shows its own colour.
+ * that is coming replaces the drawn one when all its sectors in view are here: within
+ * FF_SETS_FADE_US its paint comes over all that wears the other's, and until then the fins of both
+ * stand. Ground that no paint covers shows its own colour.
  *
  * While the link is idle the rest of the drawn set comes, too, for whoever turns while there is no
  * link: as fins alone, some 300 to 600 bytes, where the set will be good for FF_SETS_FINS_S more;
@@ -23,6 +25,7 @@
 #ifndef FF_SETS_H
 #define FF_SETS_H
 
+#include "ff_far_rule.h"
 #include "../farfield.h"
 #include "../ahead/ff_motion.h"
 #include "../ask/ff_new_data.h"
@@ -32,7 +35,8 @@
 extern const uint8_t ff_sets_built; /* 0: left out of this build */
 
 /* Meshes of a sector's fins at most; those of all sectors share a pool. */
-#define FF_SETS_CHUNKS 24
+#define FF_SETS_CHUNKS  24
+#define FF_SETS_FADE_US 300000
 /* Sectors that have room for their paint on the device, of both sets. */
 #define FF_SETS_TEXTURES 16
 #define FF_SETS_SIDE_MIN 64
@@ -101,16 +105,22 @@ typedef struct ff_sets {
     c3d_vertex *scratch;  /* for one mesh */
     uint16_t *indices;    /* for one strip */
     int8_t active, next;  /* index in set[] of the drawn and the coming set; -1: none */
+    int8_t under;         /* and of what the drawn one fades in over */
+    uint8_t through;      /* how much of that is seen, 256ths; 0: nothing fades */
+    int64_t fade_us;      /* when it began */
     uint8_t refusals;     /* in a row */
     uint8_t off;          /* the server has no sets */
     uint16_t seen;        /* bit per sector: in the last view */
+    /* what is asked for next; use FF_FAR_OFF: nothing, and ground is drawn as if there were none */
+    ff_far_choice choice;
+    int32_t front_wu; /* the nearest front, as high as the camera is */
     uint32_t serial;
     int64_t retry_us, lead_us;
     ff_set set[2];
     uint32_t sectors, sectors_empty;
     ff_fins_made watch; /* NULL: nobody */
     void *watch_context;
-    c3d_projector projector[FF_FAR_SECTORS]; /* of the picture under way: ff_sets_aim */
+    c3d_projector projector[2][FF_FAR_SECTORS]; /* of the picture under way: ff_sets_aim */
 } ff_sets;
 
 /* `info`, `scratch` (of `vertices`) and `indices` (of ff_sets_indices) stay where they are. */
@@ -121,12 +131,18 @@ void ff_sets_scratch(ff_sets *sets, c3d_vertex *scratch, uint16_t *indices, unsi
 static inline uint32_t ff_sets_indices(uint32_t vertices) { return 2 * vertices; }
 /* Side of a texture that holds any sector's picture at a focal length. */
 unsigned ff_sets_side(int32_t focal_q8);
-/* 1 while sets are drawn or waited for: ground beyond `*fine_wu` of the camera, along x or y, may
- * then be `*coarse` times as wrong. */
+/* 1 while sets are drawn or waited for (by FF_FAR_AUTO: drawn): ground beyond `*fine_wu` of the
+ * camera, along x or y, may then be `*coarse` times as wrong. */
 int ff_sets_in_use(const ff_sets *sets, const c3d_camera *camera, int32_t *fine_wu,
                    uint8_t *coarse);
+/* Where sets are to begin at the nearest, and how long they are good there, for a camera so high
+ * above ground. */
+int32_t ff_sets_front_wu(const ff_sets *sets, int32_t clearance_wu);
+int32_t ff_sets_life_wu(const ff_sets *sets, int32_t clearance_wu);
+/* Drops the drawn set and what is coming. */
+void ff_sets_leave(ff_sets *sets, ff_requests *requests);
 /* Plans sets. `clearance_wu`: how high the camera is above ground. 1 when the drawn set or what is
- * wanted changed. */
+ * wanted changed, and while sets fade. */
 int ff_sets_update(ff_sets *sets, ff_requests *requests, const c3d_camera *camera,
                    const ff_motion *motion, int32_t clearance_wu, int hold, int64_t now_us);
 /* ff_sets_want.c: puts what is missing into the ranking under way. `soon`: bit per sector that will
@@ -154,7 +170,7 @@ void ff_sets_aim(ff_sets *sets, const c3d_camera *camera);
 /* What is thrown on a node of the ground: an ff_throws' `lay`. */
 unsigned ff_sets_lay(const void *sets, const ff_terrain_info *info, const ff_drawn *drawn,
                      c3d_draw draws[FF_THROWS_MAX]);
-/* The drawn set's fins, after the ground. */
+/* The fins, after the ground. */
 void ff_sets_draw(const ff_sets *sets, const c3d_camera *camera);
 
 #endif

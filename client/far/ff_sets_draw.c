@@ -86,42 +86,15 @@ int ff_sets_make_fins(ff_sets *sets, ff_set *set, unsigned sector, const ff_fin_
     return 1;
 }
 
-void ff_sets_draw(const ff_sets *sets, const c3d_camera *camera)
-{
-    if (sets->active < 0) return;
-    const ff_set *set = &sets->set[sets->active];
-    unsigned seen = ff_sets_in_view(camera);
-    for (unsigned s = 0; s < FF_FAR_SECTORS; s++) {
-        const ff_set_sector *sector = &set->sector[s];
-        c3d_draw draw = {
-            .xy_scale_wu = 1, .z_scale_q16 = 65536, .flags = C3D_DRAW_COLOURED, .tex_columns = 1
-        };
-        if (!(seen >> s & 1u)) continue;
-        for (int axis = 0; axis < 3; axis++)
-            draw.origin_wu[axis] = (int64_t)set->position_wu[axis] - camera->pos_wu[axis];
-        if (sector->paint.id) {
-            draw.flags |= C3D_DRAW_PROJECTED;
-            draw.texture = sector->paint;
-            draw.projector = &sets->projector[s];
-        }
-        for (unsigned i = 0; i < sector->chunks; i++) {
-            draw.mesh = sector->mesh[i];
-            draw.strip = sector->strip[i];
-            c3d_draw_strip(sets->device, &draw);
-        }
-    }
-}
-
 /* ---- paint ---- */
 
-void ff_sets_aim(ff_sets *sets, const c3d_camera *camera)
+static void aim(const ff_set *set, c3d_projector projectors[FF_FAR_SECTORS],
+                const c3d_camera *camera)
 {
-    if (sets->active < 0) return;
-    const ff_set *set = &sets->set[sets->active];
     int32_t focal = set->focal >> set->paint_shift;
     for (unsigned s = 0; s < FF_FAR_SECTORS; s++) {
         const ff_set_sector *sector = &set->sector[s];
-        c3d_projector *projector = &sets->projector[s];
+        c3d_projector *projector = &projectors[s];
         int32_t forward_q30[2], right_q30[2];
         if (!sector->paint.id) continue;
         memset(projector, 0, sizeof *projector);
@@ -137,6 +110,12 @@ void ff_sets_aim(ff_sets *sets, const c3d_camera *camera)
         }
         projector->row_q24[1][2] = (int32_t)(-((int64_t)focal << 24) / sector->height);
     }
+}
+
+void ff_sets_aim(ff_sets *sets, const c3d_camera *camera)
+{
+    if (sets->under >= 0) aim(&sets->set[sets->under], sets->projector[sets->under], camera);
+    if (sets->active >= 0) aim(&sets->set[sets->active], sets->projector[sets->active], camera);
 }
 
 /* Whether ground between x, y = lo and hi, relative to O, lies in a sector's wedge; a little more
@@ -158,34 +137,86 @@ static int in_wedge(unsigned sector, const ff_box *box)
     return before && !left && !right;
 }
 
+/* Throws a set's paint of some sectors on what draws[0] draws, over the pictures that are thrown on
+ * it already. `through`: how much of those is seen. How many draws there are now. */
+static unsigned throw_set(const ff_sets *sets, int index, unsigned sectors, uint8_t through,
+                          c3d_draw draws[FF_THROWS_MAX], unsigned count)
+{
+    const uint32_t pictures = C3D_DRAW_TEXTURED | C3D_DRAW_PROJECTED;
+    for (unsigned s = 0; s < FF_FAR_SECTORS; s++) {
+        c3d_texture paint = sets->set[index].sector[s].paint;
+        if (!paint.id || !(sectors >> s & 1u)) continue;
+        c3d_draw draw = draws[0];
+        int first = !through && !(draw.flags & pictures);
+        draw.flags = (draw.flags & ~pictures) | C3D_DRAW_PROJECTED |
+                     (first ? 0 : C3D_DRAW_ALPHA_TEST);
+        draw.texture = paint;
+        draw.projector = &sets->projector[index][s];
+        draw.through = through;
+        if (!first && count == FF_THROWS_MAX) return count;
+        draws[first ? 0 : count++] = draw;
+    }
+    return count;
+}
+
+/* The sectors of a set in which a node lies, beyond the set's front. */
+static unsigned sectors_of(const ff_set *set, const ff_terrain_info *info, const ff_drawn *drawn)
+{
+    static const int64_t level_wu[2] = { 0, 0 };
+    ff_box box = ff_shape_box(info, drawn->key, ff_tree_placed(drawn->node), level_wu,
+                              set->position_wu);
+    unsigned sectors = 0;
+    if (box.lo[0] < set->front_wu && box.hi[0] > -set->front_wu && box.lo[1] < set->front_wu &&
+        box.hi[1] > -set->front_wu)
+        return 0;
+    for (unsigned s = 0; s < FF_FAR_SECTORS; s++)
+        if (set->sector[s].paint.id && in_wedge(s, &box)) sectors |= 1u << s;
+    return sectors;
+}
+
+/* Where the drawn set has no paint, that below it fades out. */
 unsigned ff_sets_lay(const void *context, const ff_terrain_info *info, const ff_drawn *drawn,
                      c3d_draw draws[FF_THROWS_MAX])
 {
     const ff_sets *sets = context;
-    static const int64_t level_wu[2] = { 0, 0 };
     if (sets->active < 0) return 1;
-    const ff_set *set = &sets->set[sets->active];
-    ff_box box = ff_shape_box(info, drawn->key, ff_tree_placed(drawn->node), level_wu,
-                              set->position_wu);
-    if (box.lo[0] < set->front_wu && box.hi[0] > -set->front_wu && box.lo[1] < set->front_wu &&
-        box.hi[1] > -set->front_wu)
-        return 1;
-    unsigned count = 1, thrown = 0;
-    const c3d_draw plain = draws[0];
-    for (unsigned s = 0; s < FF_FAR_SECTORS; s++) {
-        if (!set->sector[s].paint.id || !in_wedge(s, &box)) continue;
-        c3d_draw draw = plain;
-        draw.flags = (plain.flags & ~(uint32_t)C3D_DRAW_TEXTURED) | C3D_DRAW_PROJECTED;
-        draw.texture = set->sector[s].paint;
-        draw.projector = &sets->projector[s];
-        if (thrown || (plain.flags & C3D_DRAW_TEXTURED)) {
-            draw.flags |= C3D_DRAW_ALPHA_TEST;
-            if (count == FF_THROWS_MAX) break;
-            draws[count++] = draw;
-        } else {
-            draws[0] = draw;
+    unsigned sectors = sectors_of(&sets->set[sets->active], info, drawn), count = 1;
+    if (sets->under >= 0)
+        count = throw_set(sets, sets->under, sectors_of(&sets->set[sets->under], info, drawn),
+                          sectors ? 0 : (uint8_t)(256 - sets->through), draws, count);
+    return throw_set(sets, sets->active, sectors, sets->through, draws, count);
+}
+
+/* ---- fins on the screen ---- */
+
+/* A sector's fins; those of either set wear the paint of both. */
+static void draw_sector(const ff_sets *sets, int index, unsigned s, const c3d_camera *camera)
+{
+    const ff_set *set = &sets->set[index];
+    const ff_set_sector *sector = &set->sector[s];
+    c3d_draw draws[FF_THROWS_MAX] = {
+        { .xy_scale_wu = 1, .z_scale_q16 = 65536, .flags = C3D_DRAW_COLOURED, .tex_columns = 1 }
+    };
+    unsigned count = 1;
+    for (int axis = 0; axis < 3; axis++)
+        draws[0].origin_wu[axis] = (int64_t)set->position_wu[axis] - camera->pos_wu[axis];
+    if (sets->under >= 0) count = throw_set(sets, sets->under, 1u << s, 0, draws, count);
+    count = throw_set(sets, sets->active, 1u << s, sets->through, draws, count);
+    for (unsigned i = 0; i < sector->chunks; i++)
+        for (unsigned k = 0; k < count; k++) {
+            draws[k].mesh = sector->mesh[i];
+            draws[k].strip = sector->strip[i];
+            c3d_draw_strip(sets->device, &draws[k]);
         }
-        thrown = 1;
+}
+
+void ff_sets_draw(const ff_sets *sets, const c3d_camera *camera)
+{
+    if (sets->active < 0) return;
+    unsigned seen = ff_sets_in_view(camera);
+    for (unsigned s = 0; s < FF_FAR_SECTORS; s++) {
+        if (!(seen >> s & 1u)) continue;
+        if (sets->under >= 0) draw_sector(sets, sets->under, s, camera);
+        draw_sector(sets, sets->active, s, camera);
     }
-    return count;
 }

@@ -1,6 +1,6 @@
 /* Stands in for this room in builds without far sets. */
 #include "../ask/ff_intake_local.h"
-#include "ff_sets.h"
+#include "../ff_client_local.h"
 
 #include <string.h>
 
@@ -12,7 +12,7 @@ void ff_sets_init(ff_sets *sets, c3d_device *device, const ff_far_desc *desc,
     (void)device, (void)info, (void)side;
     memset(sets, 0, sizeof *sets);
     sets->desc = *desc;
-    sets->active = sets->next = -1;
+    sets->active = sets->next = sets->under = -1;
 }
 
 void ff_sets_scratch(ff_sets *sets, c3d_vertex *scratch, uint16_t *indices, unsigned vertices)
@@ -25,6 +25,12 @@ unsigned ff_sets_side(int32_t focal_q8) { return (void)focal_q8, 0; }
 int ff_sets_in_use(const ff_sets *sets, const c3d_camera *camera, int32_t *fine_wu, uint8_t *coarse)
 {
     return (void)sets, (void)camera, (void)fine_wu, (void)coarse, 0;
+}
+
+void ff_client_far_step(ff_client *client, const c3d_camera *camera, int32_t clearance_wu,
+                        int64_t now_us)
+{
+    (void)client, (void)camera, (void)clearance_wu, (void)now_us;
 }
 
 int ff_sets_update(ff_sets *sets, ff_requests *requests, const c3d_camera *camera,

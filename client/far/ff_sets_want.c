@@ -92,7 +92,7 @@ void ff_sets_want(const ff_sets *sets, ff_requests *requests, const ff_view *vie
                   int64_t now_us)
 {
     int newest = sets->next >= 0 ? sets->next : sets->active;
-    if (!sets->desc.enabled || sets->off || newest < 0 || now_us < sets->retry_us) return;
+    if (!sets->choice.use || sets->off || newest < 0 || now_us < sets->retry_us) return;
     const ff_set *set = &sets->set[newest];
     unsigned in_view = sets->seen & lacking(set), missing = in_view;
     if (!in_view && sets->next < 0) missing = soon & lacking(set);
@@ -136,7 +136,9 @@ static unsigned worth_s(const ff_set *set, unsigned sectors)
 void ff_sets_want_reserve(const ff_sets *sets, ff_requests *requests, const ff_view *view,
                           const ff_motion *motion, int64_t now_us)
 {
-    if (sets->off || sets->active < 0 || sets->next >= 0 || now_us < sets->retry_us) return;
+    if (!sets->choice.use || sets->off || sets->active < 0 || sets->next >= 0 ||
+        now_us < sets->retry_us)
+        return;
     const ff_set *set = &sets->set[sets->active];
     if (set->crowded || (sets->seen & lacking(set)) ||
         !good_for(set, &view->camera, motion, FF_SETS_FINS_S))

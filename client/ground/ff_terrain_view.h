@@ -25,7 +25,7 @@ typedef struct ff_view_node {
 
 /* Pictures thrown on nodes: what becomes of a node's draw. `draws` has it as it is; the answer is
  * how many there are now, FF_THROWS_MAX at most, drawn one over the other. */
-#define FF_THROWS_MAX 5
+#define FF_THROWS_MAX 8
 typedef struct ff_throws {
     unsigned (*lay)(const void *context, const ff_terrain_info *info, const ff_drawn *drawn,
                     c3d_draw draws[FF_THROWS_MAX]);

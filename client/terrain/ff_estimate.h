@@ -26,4 +26,17 @@ typedef struct ff_beyond {
  * was last selected; 0 where there are none. */
 uint32_t ff_estimate_p95_q8(const ff_tree *tree, const ff_beyond *beyond);
 
+/* Far ground in the picture: what a far set (client/far) could mend. */
+#define FF_FAR_RUNGS 5
+typedef struct ff_far_ground {
+    /* pixels of ground beyond front_wu * 2^(i/2) of the eye, along x or y */
+    uint32_t pixels[FF_FAR_RUNGS];
+    uint32_t error_q8;         /* how far off those beyond front_wu are, pixels, mean */
+    uint32_t skyline_q8;       /* and where they meet the sky, rms; 0: nowhere */
+    uint32_t nodes, far_nodes; /* drawn, and of them beyond front_wu */
+} ff_far_ground;
+
+/* As the tree was last selected. An error counts as 50 pixels at most. */
+void ff_estimate_far(const ff_tree *tree, int32_t front_wu, ff_far_ground *far);
+
 #endif

@@ -29,7 +29,7 @@ int32_t ff_log2_q8(uint64_t value)
     return (int32_t)(bits << 8) + (int32_t)(mantissa & 255);
 }
 
-static uint32_t exp2_q8(int32_t log_q8)
+uint32_t ff_exp2_q8(int32_t log_q8)
 {
     FF_ASSERT(log_q8 >= 0 && log_q8 < BOUND_Q8);
     uint64_t mantissa = 256 + (uint64_t)(log_q8 & 255);
@@ -92,10 +92,10 @@ uint32_t ff_spread_p95_q8(const ff_spread *spread)
     }
     if (bounded + known == 0) return 0;
     int32_t all_q8 = percentile_q8(spread, bounded + known, 0);
-    if (!spread->patches) return all_q8 ? exp2_q8(all_q8) : 0;
+    if (!spread->patches) return all_q8 ? ff_exp2_q8(all_q8) : 0;
     int32_t middle_q8 = percentile_q8(spread, bounded + known, 1);
     int64_t patches = (int64_t)(bounded * bounded / spread->patches);
     int32_t log_q8 = (int32_t)((all_q8 * patches + (int64_t)middle_q8 * PATCHES) /
                                (patches + PATCHES));
-    return log_q8 ? exp2_q8(log_q8) : 0;
+    return log_q8 ? ff_exp2_q8(log_q8) : 0;
 }

@@ -17,6 +17,8 @@ typedef struct ff_spread {
 
 /* log2 of a value of at least 1, 8 fraction bits, straight between powers of two. */
 int32_t ff_log2_q8(uint64_t value);
+/* 2^(log_q8 / 256), of at least 0 and below 32, alike. */
+uint32_t ff_exp2_q8(int32_t log_q8);
 /* The step of an error of 2^log_q8 pixels Q8. */
 unsigned ff_spread_step(int32_t log_q8);
 /* The error, pixels Q8, that 95 % of the pixels likely do not pass; 0 where there are none. */

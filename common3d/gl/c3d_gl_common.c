@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#define ALPHA_LEAST 0.5f /* of texels that the alpha test lets be drawn */
+
 static const void *offset_pointer(const void *base, size_t offset)
 {
     return (const void *)((uintptr_t)base + offset);
@@ -70,7 +72,7 @@ static void set_up(c3d_gl_state *state)
     gl->Disable(GL_CULL_FACE);
     gl->Disable(GL_LIGHTING);
     gl->DepthFunc(GL_LEQUAL);
-    gl->AlphaFunc(GL_GEQUAL, 0.5f);
+    gl->AlphaFunc(GL_GEQUAL, ALPHA_LEAST);
     gl->BlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
     gl->Fogf(GL_FOG_MODE, (float)GL_LINEAR);
     gl->TexEnvf(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, (float)GL_MODULATE);
@@ -316,6 +318,25 @@ static void clip_by(c3d_gl_state *state, const double plane[4])
     state->gl.Enable(GL_CLIP_PLANE0);
 }
 
+/* A thrown picture that lets through what is below it: all of it has the same alpha, which the test
+ * reckons with. */
+static void set_through(c3d_gl_state *state, uint8_t through)
+{
+    c3d_gl_api *gl = &state->gl;
+    float alpha = (float)(256 - through) * (1.0f / 256.0f);
+    gl->TexEnvf(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, (float)GL_MODULATE);
+    gl->AlphaFunc(GL_GEQUAL, ALPHA_LEAST * alpha);
+    gl->Enable(GL_BLEND);
+    enable_array(state, GL_COLOR_ARRAY, 0);
+    gl->Color4f(1, 1, 1, alpha);
+}
+
+static void end_through(c3d_gl_state *state)
+{
+    state->gl.AlphaFunc(GL_GEQUAL, ALPHA_LEAST);
+    state->flags = UINT32_MAX; /* the others are set again */
+}
+
 /* What lies behind the projector, where texture coordinates would come out as before it, is drawn
  * without it; then the rest is drawn over that. */
 static void draw_thrown(c3d_gl_state *state, const c3d_resolved_draw *resolved)
@@ -336,7 +357,9 @@ static void draw_thrown(c3d_gl_state *state, const c3d_resolved_draw *resolved)
              where == C3D_GL_ACROSS ? flags | (uint32_t)C3D_DRAW_ALPHA_TEST : flags);
     if (where == C3D_GL_ACROSS) clip_by(state, plane);
     set_thrown(state, resolved, matrix);
+    if (over && resolved->draw->through) set_through(state, resolved->draw->through);
     draw_elements(state, resolved->strip, flags);
+    if (over && resolved->draw->through) end_through(state);
     if (where == C3D_GL_ACROSS) state->gl.Disable(GL_CLIP_PLANE0);
 }
 

@@ -147,6 +147,7 @@ static void set_paint(soft_state *state, const c3d_resolved_draw *resolved, enum
     paint->coloured = (flags & C3D_DRAW_COLOURED) != 0;
     paint->white = !paint->coloured && (draw->colour & 0xFFFFFFu) == (WHITE & 0xFFFFFFu);
     if (paint->thrown) paint->white = paint->alpha_test; /* no other colours are seen */
+    paint->through = paint->thrown && paint->alpha_test ? draw->through : 0;
     paint->fog = state->frame.fog_end_wu > 0 && !backdrop;
     paint->on_top = (flags & C3D_DRAW_ON_TOP) != 0;
     paint->unmarked = depth == SOFT_DEPTH_UNCOVERED && !state->deferred_count;

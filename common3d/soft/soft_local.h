@@ -71,6 +71,7 @@ typedef struct soft_paint {
     uint8_t white;    /* all vertices are white: the texture is drawn as it is */
     uint8_t alpha_test, fog, on_top;
     uint8_t thrown;   /* the texture stands in place of the colours, where it is opaque */
+    uint8_t through;  /* of that, 256ths of what is below it */
     uint8_t unmarked; /* the last backdrop marks no depths: nothing after it asks for them */
 } soft_paint;
 
@@ -105,8 +106,10 @@ typedef struct soft_throw {
     int64_t from_wu[3]; /* the mesh's origin, from the projector's point */
     int32_t scale_wu;
     uint32_t z_scale_q16;
-    int shift;     /* wu to units in which offsets have 30 bits */
-    int sum_shift; /* brings sums down to 30 bits */
+    int shift;                /* wu to units in which offsets have 30 bits */
+    int sum_shift;            /* brings sums down to 30 bits */
+    uint8_t near;             /* 1: places fit 32 bits, and origin[] and scale are valid */
+    int32_t origin[3], scale; /* in those units */
 } soft_throw;
 
 /* From eye space to the screen, for one frame. */
@@ -224,6 +227,9 @@ static inline int soft_log2(uint64_t n)
                    : 31 - soft_leading_zeros((uint32_t)n);
 }
 
+/* The upper word of the product: one instruction. */
+static inline int32_t soft_high(int32_t a, int32_t b) { return (int32_t)(((int64_t)a * b) >> 32); }
+
 static inline int64_t soft_scale64(int64_t value, int shift) /* times 2^shift */
 {
     C3D_ASSERT(shift > -64 && shift < 63);
@@ -266,6 +272,10 @@ void soft_throw_vertex(const soft_state *state, const int32_t sum[3], soft_verte
 void soft_thrown_strip(soft_state *state, const uint16_t *indices, uint32_t count);
 void soft_thrown_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b,
                           const soft_vertex *c);
+/* soft_thrown_tiny.c: draws one of a few rows that shows the picture alone, and whose s and t may
+ * be interpolated linearly, or returns 0; a.y <= b.y <= c.y. */
+int soft_thrown_tiny(soft_state *state, const soft_vertex *a, const soft_vertex *b,
+                     const soft_vertex *c);
 /* soft_thrown_rows.c: draws any such triangle; a.y <= b.y <= c.y. */
 void soft_thrown_rows(soft_state *state, const soft_vertex *a, const soft_vertex *b,
                       const soft_vertex *c, int64_t area);

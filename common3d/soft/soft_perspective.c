@@ -113,10 +113,8 @@ void soft_make_planes(const soft_state *state, soft_planes *planes,
     make_planes(state, planes, vertex, w, area, row, down);
 }
 
-/* 1 when colours may be interpolated linearly over the whole triangle, because that is off by at
- * most 4/255, half a step of red in RGB565. With r = nearest w / farthest w it is off by (r - 1)/4
- * of the colours' largest difference. */
-static int colours_are_linear(const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
+/* With r = nearest w / farthest w it is off by (r - 1)/4 of the colours' largest difference. */
+int soft_colours_are_linear(const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
 {
     uint32_t near = a->w > b->w ? a->w : b->w, far = a->w < b->w ? a->w : b->w;
     if (c->w > near) near = c->w;
@@ -141,7 +139,7 @@ static void set_up(const soft_state *state, soft_planes *planes, const soft_vert
     int fog = paint->fog && (a->fog_q8 < 256 || b->fog_q8 < 256 || c->fog_q8 < 256);
     planes->first = paint->texture ? SOFT_S : SOFT_R;
     planes->last = fog ? SOFT_F : paint->texture && paint->white ? SOFT_T : SOFT_B;
-    planes->linear = planes->last == SOFT_B && !paint->texture && colours_are_linear(a, b, c);
+    planes->linear = planes->last == SOFT_B && !paint->texture && soft_colours_are_linear(a, b, c);
     C3D_ASSERT(planes->first <= planes->last && planes->last < SOFT_PLANE_W);
 }
 

@@ -75,6 +75,15 @@ static int shade(const soft_paint *paint, const int32_t value[SOFT_ATTRIBUTES], 
     return 1;
 }
 
+/* Lets what is drawn at a pixel show through. */
+static void let_through(const soft_state *state, uint32_t at, int32_t rgb[3])
+{
+    int32_t through = state->paint.through;
+    uint8_t below[3];
+    soft_get(state, at, below);
+    for (int i = 0; i < 3; i++) rgb[i] = (below[i] * through + rgb[i] * (256 - through) + 128) >> 8;
+}
+
 void soft_segment_paint(soft_state *state, const soft_segment *segment)
 {
     C3D_ASSERT(soft_in_frame(state, segment->first, segment->count));
@@ -94,6 +103,7 @@ void soft_segment_paint(soft_state *state, const soft_segment *segment)
                 int32_t fog = (int32_t)(fog_colour >> (8 * i) & 255);
                 rgb[i] = fog + (((rgb[i] - fog) * clear + 32768) >> 16);
             }
+            if (paint->through) let_through(state, at, rgb);
             mark_pixel(state, at, w >> shift);
             soft_put(state, at, rgb[0], rgb[1], rgb[2]);
         }

@@ -25,9 +25,6 @@ static inline uint32_t soft_plane_at(const soft_plane *plane, int32_t row, int32
     return plane->origin + plane->down * (uint32_t)row + plane->across * (uint32_t)column;
 }
 
-/* The upper word of the product: one instruction. */
-static inline int32_t soft_high(int32_t a, int32_t b) { return (int32_t)(((int64_t)a * b) >> 32); }
-
 /* 2^59 / (w * 2^*lead), with *lead such that the product takes 31 bits. w is 1 .. 2^31 - 1; for
  * other w the result means nothing. */
 static inline int32_t soft_one_over_w(const soft_state *state, uint32_t w, int *lead)
@@ -121,6 +118,9 @@ void soft_make_planes(const soft_state *state, soft_planes *planes,
                       int32_t row);
 void soft_attributes_at(const soft_state *state, const soft_planes *planes, int32_t row,
                         int32_t column, int32_t out[SOFT_ATTRIBUTES]);
+/* soft_perspective.c: 1 when colours may be interpolated linearly over the whole triangle, because
+ * that is off by at most 4/255, half a step of red in RGB565. */
+int soft_colours_are_linear(const soft_vertex *a, const soft_vertex *b, const soft_vertex *c);
 /* soft_perspective.c: draws a row, divided at the ends of segments. */
 void soft_segments(soft_state *state, const soft_planes *planes, const soft_walk *walk);
 /* soft_texture_rows.c: draws a triangle under a texture alone, from the walk's row on. */

@@ -25,4 +25,12 @@ static inline uint16_t soft_colour_565(int32_t red, int32_t green, int32_t blue)
     return (uint16_t)((red >> 8 & 0xF800) | (green >> 13 & 0x7E0) | (blue >> 19 & 0x1F));
 }
 
+/* One colour, rounded alike. */
+static inline uint16_t soft_flat_565(const uint8_t rgba[4])
+{
+    int32_t red = rgba[0] << 16, green = rgba[1] << 16, blue = rgba[2] << 16;
+    return soft_colour_565(red - (red >> 5) + (4 << 16), green - (green >> 6) + (2 << 16),
+                           blue - (blue >> 5) + (4 << 16));
+}
+
 #endif

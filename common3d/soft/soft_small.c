@@ -66,7 +66,8 @@ static inline void attribute(const soft_shape *shape, soft_slopes *slopes, int i
 }
 
 /* 1 when linear interpolation is good enough: it is off by at most (r - 1)/4 of an attribute's
- * range, with r = greatest w / least w. */
+ * range, with r = greatest w / least w. Texels of a thrown texture change with another weight:
+ * soft_thrown_strip.c has looked at them. */
 static int is_flat(const soft_state *state, const soft_shape *shape, int32_t dw)
 {
     C3D_ASSERT(dw >= 0 && dw < 1 << 30);
@@ -78,7 +79,7 @@ static int is_flat(const soft_state *state, const soft_shape *shape, int32_t dw)
     if (state->paint.texture) {
         int32_t texels = larger(larger(b->s - a->s, c->s - a->s), larger(b->t - a->t, c->t - a->t));
         if (texels > TEXELS_MAX) return 0;
-        range = texels >> 13;
+        if (!state->paint.thrown) range = texels >> 13;
     }
     if ((!state->paint.texture || !state->paint.white || state->paint.fog) && range < COLOUR_RANGE)
         range = COLOUR_RANGE;

@@ -2,7 +2,7 @@
  * and fog by that of w, as without a projector; depths are those of every pixel's own place. */
 #include "soft_planes.h"
 #include "soft_ramp.h"
-#include "soft_sample.h"
+#include "soft_thrown_texels.h"
 
 #define SEGMENT_MAX 64 /* pixels */
 
@@ -40,7 +40,7 @@ static void make_planes(const soft_state *state, thrown_planes *planes,
     planes->picture.linear = 0;
     planes->own.first = SOFT_R;
     planes->own.last = fog ? SOFT_F : SOFT_B;
-    planes->own.linear = 0;
+    planes->own.linear = !fog && soft_colours_are_linear(vertex[0], vertex[1], vertex[2]);
     soft_make_planes(state, &planes->picture, vertex, weight, area, row);
     soft_make_planes(state, &planes->own, vertex, w, area, row);
 }
@@ -66,17 +66,18 @@ static void attributes_at(const soft_state *state, const thrown_planes *planes, 
                           int32_t column, int32_t out[SOFT_ATTRIBUTES])
 {
     soft_attributes_at(state, &planes->picture, row, column, out);
-    if (!state->paint.white || planes->own.last == SOFT_F)
+    if (!planes->own.linear && (!state->paint.white || planes->own.last == SOFT_F))
         soft_attributes_at(state, &planes->own, row, column, out);
 }
 
-static void paint_segment(soft_state *state, const int32_t from[SOFT_ATTRIBUTES],
-                          const int32_t to[SOFT_ATTRIBUTES], int apart, int last)
+static void paint_segment(soft_state *state, const soft_planes *own,
+                          const int32_t from[SOFT_ATTRIBUTES], const int32_t to[SOFT_ATTRIBUTES],
+                          int apart)
 {
     soft_segment *segment = &state->segment;
-    int first = SOFT_S;
-    if (state->paint.white && last != SOFT_F) last = SOFT_T;
-    for (int i = first; i <= last; i++) {
+    int last = own->last;
+    if (own->linear || (state->paint.white && last != SOFT_F)) last = SOFT_T;
+    for (int i = SOFT_S; i <= last; i++) {
         segment->value[i] = from[i];
         segment->step[i] = soft_per_pixel(state, to[i] - from[i], apart);
     }
@@ -103,7 +104,11 @@ static void draw_row(soft_state *state, const thrown_planes *planes, const soft_
         segment->count = (uint32_t)(left <= length ? left : length);
         segment->w = soft_plane_at(&planes->own.of[SOFT_PLANE_W], walk->row, at);
         attributes_at(state, planes, walk->row, at + apart, attribute[now ^ 1]);
-        paint_segment(state, attribute[now], attribute[now ^ 1], apart, planes->own.last);
+        for (int i = SOFT_R; planes->own.linear && i <= SOFT_B; i++) {
+            segment->value[i] = (int32_t)soft_plane_at(&planes->own.of[i], walk->row, at);
+            segment->step[i] = (int32_t)planes->own.of[i].across;
+        }
+        paint_segment(state, &planes->own, attribute[now], attribute[now ^ 1], apart);
         at += length;
         now ^= 1;
     }
@@ -132,35 +137,6 @@ void soft_thrown_rows(soft_state *state, const soft_vertex *a, const soft_vertex
 
 /* ---- pixels, of RGBA5551 into RGB565 ---- */
 
-/* A texel's fields spread over 32 bits: ggggg000000rrrrr00000bbbbb0, five bits of room or more
- * above each: so four texels are blended with weights that add up to 32. Alpha falls away. */
-#define SPREAD      0x07C0F83Eu
-#define SPREAD_HALF (16u << 1 | 16u << 11 | 8u << 22) /* green is rounded to 6 bits */
-
-static inline uint32_t spread(uint32_t texel) { return (texel | texel << 16) & SPREAD; }
-
-/* Blends four texels, `texel` being the upper left one, x and y in 1/32 texel: RGB565. All of them
- * count in full, opaque or not. */
-static inline uint16_t blend(const uint16_t *texel, uint32_t stride, uint32_t x, uint32_t y)
-{
-    uint32_t xy = x * y >> 5, right = x - xy, below = y - xy;
-    uint32_t sum = spread(texel[0]) * (32 - right - y) + spread(texel[1]) * right;
-    texel += stride;
-    sum += spread(texel[0]) * below + spread(texel[1]) * xy + SPREAD_HALF;
-    uint32_t green = sum >> 26;
-    return (uint16_t)((sum >> 5 & 0xF800) | (green + (green >> 5)) << 5 | (sum >> 6 & 0x1F));
-}
-
-/* 1 when the texels round a place are opaque by more than half. */
-static inline int is_opaque(const uint16_t *texel, uint32_t stride, uint32_t x, uint32_t y)
-{
-    uint32_t a = texel[0], b = texel[1], c = texel[stride], d = texel[stride + 1];
-    if (a & b & c & d & 1) return 1;
-    if (!((a | b | c | d) & 1)) return 0;
-    uint32_t xy = x * y >> 5, right = x - xy, below = y - xy;
-    return (a & 1) * (32 - right - y) + (b & 1) * right + (c & 1) * below + (d & 1) * xy >= 16;
-}
-
 /* The colour that the mesh has by itself at a pixel of a segment. */
 static uint16_t own_colour(const soft_segment *segment, int32_t at)
 {
@@ -170,8 +146,15 @@ static uint16_t own_colour(const soft_segment *segment, int32_t at)
                            ramp.blue + ramp.db * at);
 }
 
-/* An inner loop: pixels that lie on the texture and its rim. */
-static inline void span_on_texture(soft_state *state, const soft_segment *segment)
+/* 1 on the texture and its rim; beyond them all is open. */
+static inline int is_on(const soft_texture *texture, int32_t s, int32_t t)
+{
+    return (uint32_t)s + 65536 < ((uint32_t)texture->width + 1) << 16 &&
+           (uint32_t)t + 65536 < ((uint32_t)texture->height + 1) << 16;
+}
+
+/* An inner loop. `all_on`: every pixel lies on the texture and its rim. */
+static SOFT_INLINE void span(soft_state *state, const soft_segment *segment, const int all_on)
 {
     const soft_texture *texture = state->paint.texture;
     const uint16_t *texels = (const uint16_t *)(const void *)texture->texels + texture->stride + 1;
@@ -180,15 +163,19 @@ static inline void span_on_texture(soft_state *state, const soft_segment *segmen
     int shift = segment->w_shift, over = state->paint.alpha_test;
     uint32_t w = segment->w, dw = segment->dw,
              bias = over ? soft_thrown_bias(w >> shift, (int32_t)dw >> shift) : 0;
+    uint32_t through = soft_thrown_of_32(&state->paint);
     uint32_t *first = state->depth + segment->first, *depth = first, *end = first + segment->count;
     uint16_t *pixel = (uint16_t *)(void *)state->colour + segment->first;
     for (; depth < end; depth++, pixel++, w += dw, s += ds, t += dt) {
         uint32_t here = w >> shift, x = (uint32_t)s >> 11 & 31, y = (uint32_t)t >> 11 & 31;
         if (here + bias < *depth) continue;
-        const uint16_t *texel = texels + (t >> 16) * stride + (s >> 16);
-        if (is_opaque(texel, (uint32_t)stride, x, y))
-            *pixel = blend(texel, (uint32_t)stride, x, y);
-        else if (!over)
+        const uint16_t *texel = all_on || is_on(texture, s, t)
+                                    ? texels + (t >> 16) * stride + (s >> 16)
+                                    : NULL;
+        if (texel && soft_thrown_opaque(texel, (uint32_t)stride, x, y)) {
+            uint16_t colour = soft_thrown_blend(texel, (uint32_t)stride, x, y);
+            *pixel = through ? soft_thrown_through(*pixel, colour, through) : colour;
+        } else if (!over)
             *pixel = own_colour(segment, (int32_t)(depth - first));
         else
             continue;
@@ -201,7 +188,7 @@ void soft_span_thrown(soft_state *state, const soft_segment *segment)
     C3D_ASSERT(soft_in_frame(state, segment->first, segment->count) && !state->wide);
     C3D_ASSERT(state->paint.texture->format == C3D_RGBA5551);
     if (!state->off_texture || soft_on_texture(state->paint.texture, segment))
-        span_on_texture(state, segment);
+        span(state, segment, 1);
     else
-        soft_segment_paint(state, segment);
+        span(state, segment, 0);
 }

@@ -23,25 +23,33 @@ static inline void use(soft_state *state, const soft_paint *paint)
 
 static inline int first_row(const soft_vertex *vertex) { return soft_first_row(vertex->y); }
 
+/* By how much to shift down what is below 2^32, so that it takes 16 bits. */
+static inline int to_16_bits(uint32_t any)
+{
+    int lead = soft_leading_zeros(any);
+    return lead < 16 ? 16 - lead : 0;
+}
+
 /* 1 when s and t may be interpolated linearly, because that is off by at most a quarter of a texel:
  * with r = greatest c * w / least c * w it is off by (r - 1)/4 of their largest difference. */
 static int is_flat(const soft_vertex *a, const soft_vertex *b, const soft_vertex *c)
 {
-    const soft_vertex *const vertex[3] = { a, b, c };
-    uint64_t least = UINT64_MAX, most = 0;
+    int c_shift = to_16_bits((uint32_t)(a->c | b->c | c->c)),
+        w_shift = to_16_bits(a->w | b->w | c->w);
+    uint32_t least = ((uint32_t)a->c >> c_shift) * (a->w >> w_shift), most = least,
+             of_b = ((uint32_t)b->c >> c_shift) * (b->w >> w_shift),
+             of_c = ((uint32_t)c->c >> c_shift) * (c->w >> w_shift);
     int32_t low_s = a->s, high_s = a->s, low_t = a->t, high_t = a->t;
-    for (int i = 0; i < 3; i++) {
-        const soft_vertex *v = vertex[i];
-        uint64_t weight = (uint64_t)(uint32_t)v->c * v->w >> 14; /* below 2^46 */
-        C3D_ASSERT(v->c >= SOFT_THROWN_C);
-        least = weight < least ? weight : least;
-        most = weight > most ? weight : most;
-        low_s = v->s < low_s ? v->s : low_s, high_s = v->s > high_s ? v->s : high_s;
-        low_t = v->t < low_t ? v->t : low_t, high_t = v->t > high_t ? v->t : high_t;
-    }
+    C3D_ASSERT(a->c >= SOFT_THROWN_C && b->c >= SOFT_THROWN_C && c->c >= SOFT_THROWN_C);
+    least = of_b < least ? of_b : least, most = of_b > most ? of_b : most;
+    least = of_c < least ? of_c : least, most = of_c > most ? of_c : most;
+    low_s = b->s < low_s ? b->s : low_s, high_s = b->s > high_s ? b->s : high_s;
+    low_s = c->s < low_s ? c->s : low_s, high_s = c->s > high_s ? c->s : high_s;
+    low_t = b->t < low_t ? b->t : low_t, high_t = b->t > high_t ? b->t : high_t;
+    low_t = c->t < low_t ? c->t : low_t, high_t = c->t > high_t ? c->t : high_t;
     int32_t range = high_s - low_s > high_t - low_t ? high_s - low_s : high_t - low_t;
     C3D_ASSERT(range >= 0 && range <= 1 << 29);
-    return (most - least) * (uint32_t)(range >> 13) <= 8 * least; /* 2^46 * 2^16 */
+    return (uint64_t)(most - least) * (uint32_t)(range >> 13) <= (uint64_t)least * 8;
 }
 
 static int is_opaque(const soft_texture *texture, const soft_vertex *vertex)
@@ -64,7 +72,7 @@ static int is_whole(const soft_state *state, const soft_vertex *a, const soft_ve
            is_opaque(texture, c);
 }
 
-/* soft_small, where that will do; 0 where it does not. */
+/* In the ways of small triangles, where one will do; 0 where none does. */
 static int draw_small(soft_state *state, const soft_vertex *a, const soft_vertex *b,
                       const soft_vertex *c)
 {
@@ -77,7 +85,9 @@ static int draw_small(soft_state *state, const soft_vertex *a, const soft_vertex
             state->segment.step[SOFT_R + i] = 0;
         }
     }
-    int drawn = soft_small(state, a, b, c);
+    int alone = !state->off_texture && state->paint.white && state->span == soft_span_thrown &&
+                !state->paint.fog;
+    int drawn = (alone && soft_thrown_tiny(state, a, b, c)) || soft_small(state, a, b, c);
     state->paint.white = state->paint.alpha_test;
     state->off_texture = 1;
     return drawn;

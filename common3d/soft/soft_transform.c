@@ -391,18 +391,25 @@ static void transform_fog(soft_state *state, uint32_t count)
     }
 }
 
-static int same_vertices(const c3d_draw *a, const c3d_draw *b)
+/* 1 when a draw's vertices stand where those of the last one stood. */
+static int same_places(const c3d_draw *a, const c3d_draw *b)
 {
+    const uint32_t moves = C3D_DRAW_ON_TOP | C3D_DRAW_BACKDROP;
     for (int i = 0; i < 3; i++)
         if (a->origin_wu[i] != b->origin_wu[i]) return 0;
+    return a->mesh.id == b->mesh.id && a->xy_scale_wu == b->xy_scale_wu &&
+           a->z_scale_q16 == b->z_scale_q16 && (a->flags & moves) == (b->flags & moves);
+}
+
+static int same_looks(const c3d_draw *a, const c3d_draw *b)
+{
     for (int i = 0; i < 2; i++)
         if (a->tex_scale_q16[i] != b->tex_scale_q16[i] ||
             a->tex_offset_q16[i] != b->tex_offset_q16[i] ||
             a->tex_last_q16[i] != b->tex_last_q16[i])
             return 0;
-    return a->mesh.id == b->mesh.id && a->xy_scale_wu == b->xy_scale_wu &&
-           a->z_scale_q16 == b->z_scale_q16 && a->flags == b->flags && a->colour == b->colour &&
-           a->texture.id == b->texture.id && a->tex_columns == b->tex_columns;
+    return a->flags == b->flags && a->colour == b->colour && a->texture.id == b->texture.id &&
+           a->tex_columns == b->tex_columns;
 }
 
 static int same_projector(const soft_state *state, const c3d_draw *draw)
@@ -411,28 +418,34 @@ static int same_projector(const soft_state *state, const c3d_draw *draw)
            memcmp(&state->projector, draw->projector, sizeof state->projector) == 0;
 }
 
-/* The strips of a node share its mesh: its vertices are transformed with the first. */
+static void transform_places(soft_state *state, const c3d_resolved_draw *resolved)
+{
+    const c3d_mesh_data *mesh = resolved->mesh;
+    begin_space(state, resolved);
+    (state->space.near ? transform_near : transform_far)(state, mesh);
+    for (uint32_t i = 0; state->paint.on_top && i < mesh->count; i++)
+        put_on_top(&state->vertices[i]);
+    if (state->paint.fog) transform_fog(state, mesh->count);
+}
+
+/* The strips of a node share its mesh: its vertices are transformed with the first. Further
+ * pictures thrown on it leave them where they are. */
 void soft_transform(soft_state *state, const c3d_resolved_draw *resolved)
 {
     const c3d_draw *draw = resolved->draw;
     const c3d_mesh_data *mesh = resolved->mesh;
-    if (state->cached_mesh == mesh->vertices && same_vertices(&state->cached, draw) &&
-        same_projector(state, draw))
-        return;
+    int placed = state->cached_mesh == mesh->vertices && same_places(&state->cached, draw);
+    if (placed && same_looks(&state->cached, draw) && same_projector(state, draw)) return;
     if (state->paint.thrown) state->projector = *draw->projector;
     state->cached = *draw;
     state->cached_mesh = mesh->vertices;
     C3D_ASSERT(mesh->count > 0);
-    begin_space(state, resolved);
+    if (!placed) transform_places(state, resolved);
     state->off_texture = 0;
-    (state->space.near ? transform_near : transform_far)(state, mesh);
-    for (uint32_t i = 0; state->paint.on_top && i < mesh->count; i++)
-        put_on_top(&state->vertices[i]);
     if (state->paint.thrown)
         soft_transform_thrown(state, draw, mesh);
     else if (state->paint.texture)
         transform_textured(state, draw, mesh->count);
     if (!state->paint.texture || !state->paint.white || state->paint.fog)
         transform_colours(state, draw, mesh);
-    if (state->paint.fog) transform_fog(state, mesh->count);
 }

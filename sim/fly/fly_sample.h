@@ -102,6 +102,8 @@
     X(far_sectors, "%.0f", TOTAL, from->client.far_sectors) \
     X(far_sectors_empty, "%.0f", TOTAL, from->client.far_sectors_empty) \
     X(far_bytes, "%.0f", TOTAL, from->client.far_bytes) \
+    X(far_use, "%.0f", MEAN, from->client.far_use) \
+    X(far_turns, "%.0f", TOTAL, from->client.far_turns) \
     X(far_fins_bytes, "%.0f", TOTAL, from->relevance.fins_came) \
     X(bytes_far, "%.0f", TOTAL, from->relevance.came[FF_DATA_FAR]) \
     X(unused_far, "%.0f", TOTAL, from->relevance.unused[FF_DATA_FAR]) \

@@ -159,7 +159,7 @@ static int take_front(const sys_option *option, const char *text, void *field)
     return 0;
 }
 
-const char *const sim_far_words[] = { "off", "fins", "paint", NULL };
+const char *const sim_far_words[] = { "off", "fins", "paint", "auto", NULL };
 const char *const sim_panorama_words[] = { "off", "on", "auto", NULL };
 const sys_option_type sim_quality_option = { "", quality_range, take_quality },
                       sim_balance_option = { "", balance_range, take_balance },

@@ -95,13 +95,12 @@ static void take_head(sim_tape_player *player)
                              .jpeg_quality = (uint8_t)n[15],
                              .hold_back = (uint8_t)n[16] };
     q->triangles_max = (uint32_t)n[17];
-    head->far =
-        (ff_far_desc){ .enabled = (uint8_t)(n[20] >= 0 && n[20] <= FF_FAR_PAINT ? n[20] : 0),
-                       .front_wu = n[21],
-                       .coarse = (uint8_t)n[22],
-                       .paint_shift = (uint8_t)n[23],
-                       .jpeg_quality = (uint8_t)n[24],
-                       .tolerance_q2 = (uint8_t)n[25] };
+    head->far = (ff_far_desc){ .enabled = (uint8_t)(n[20] >= 0 && n[20] <= FF_FAR_AUTO ? n[20] : 0),
+                               .front_wu = n[21],
+                               .coarse = (uint8_t)n[22],
+                               .paint_shift = (uint8_t)n[23],
+                               .jpeg_quality = (uint8_t)n[24],
+                               .tolerance_q2 = (uint8_t)n[25] };
 }
 
 int sim_tape_open(sim_tape_player *player, const void *bytes, uint64_t count, sys_stream *stream)

@@ -217,7 +217,7 @@ static unsigned thrown_on(const ff_sets *sets, const ff_terrain_info *info, uint
         /* the first without the test where nothing lies below it */
         assert_int_equal(!(draws[i].flags & C3D_DRAW_ALPHA_TEST), i == 0);
         sectors |= 1u << (draws[i].texture.id - 1);
-        assert_ptr_equal(draws[i].projector, &sets->projector[draws[i].texture.id - 1]);
+        assert_ptr_equal(draws[i].projector, &sets->projector[0][draws[i].texture.id - 1]);
     }
     return sectors;
 }

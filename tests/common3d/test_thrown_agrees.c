@@ -393,6 +393,46 @@ static void side_by_side_pictures_leave_no_gap(void **state)
         }
 }
 
+/* Two pictures over each other, of the upper one a share: as much of the lower one shows through.
+ */
+static void as_much_shows_through_as_is_said(void **state)
+{
+    (void)state;
+    static double below[THROWN_PIXELS][3];
+    for (int kind = 0; kind < PICTURE_KINDS; kind++)
+        for (int through = 0; through < 256; through += 85) {
+            picture_kit kit;
+            open_kit(&kit, kind);
+            make_hills(THROWN_SIDE, 200);
+            c3d_draw draw[2] = { hill_draw(&kit, 500) };
+            if (through & 1) kit.frame.fog_start_wu = 8000 * M, kit.frame.fog_end_wu = 25000 * M;
+            const int64_t at[3] = { 1000 * M, -700 * M, 300 * M };
+            thrown_picture picture = thrown_waves(C3D_RGBA5551, 256, 256);
+            c3d_projector projector[2] = { thrown_projector(at, -700, &picture, 230),
+                                           thrown_projector(at, 2500, &picture, 230) };
+            thrown_hits(&kit.frame, draw, &mesh, pixels);
+            thrown_paint(&projector[0], &picture, pixels);
+            for (int i = 0; i < THROWN_PIXELS; i++) memcpy(below[i], pixels[i].rgb, sizeof *below);
+            thrown_paint(&projector[1], &picture, pixels);
+            for (int i = 0; i < THROWN_PIXELS; i++)
+                for (int k = 0; k < 3; k++)
+                    pixels[i].rgb[k] += (below[i][k] - pixels[i].rgb[k]) * through / 256;
+            thrown_rgb(&kit.frame, pixels, expected);
+            draw[0].flags |= C3D_DRAW_PROJECTED;
+            draw[0].texture = thrown_upload(kit.device, &picture);
+            draw[1] = draw[0];
+            draw[1].flags |= C3D_DRAW_ALPHA_TEST;
+            draw[1].through = (uint8_t)through;
+            for (int i = 0; i < 2; i++) draw[i].projector = &projector[i];
+            picture_render(&kit, draw, 2, rgb);
+            char what[48];
+            (void)snprintf(what, sizeof what, "through-%d", through);
+            compare(&kit, what, PART_MAX);
+            free(picture.rgba);
+            picture_close(&kit);
+        }
+}
+
 /* ---- anything ---- */
 
 static int32_t any(sys_random *random, int bits)
@@ -514,6 +554,7 @@ int main(void)
         cmocka_unit_test(nothing_is_thrown_backwards),
         cmocka_unit_test(large_pictures_lie_right_far_away),
         cmocka_unit_test(side_by_side_pictures_leave_no_gap),
+        cmocka_unit_test(as_much_shows_through_as_is_said),
         cmocka_unit_test(any_projector_and_mesh_are_drawn),
         cmocka_unit_test(depths_are_those_of_what_is_drawn),
     };

@@ -67,6 +67,30 @@ is 's["unready"]["bytes_reserve"] == 0 < s["paint"]["bytes_reserve"]' "without t
 flies high --far paint --backend none --height 6000
 is 's["high"]["far_sectors"] > 0' "pictures from high above are tall, and taken in"
 
+# far auto: the same ground, with few triangles, with many, on a link that carries next to nothing, by the client alone; and a plain
+decides() { # NAME PACK ARGUMENTS...
+    flown=$1
+    pack=$2
+    shift 2
+    timeout 300 "$bin/farfield-fly" --pack "$work/$pack.ffp" --link lan --far auto --panorama off --far-front 2000 --height 300 --speed 600 \
+        --seconds 20 --backend none --triangles 3000 --json "$@" >"$work/$flown.json" 2>"$work/$flown.err"
+}
+decides few hills
+is 's["few"]["far"] == "auto" and s["few"]["far_use"] == 2 and s["few"]["far_sectors"] > 0 and s["few"]["far_turns"] == 0' \
+    "far auto takes paint where triangles are short, and keeps to it"
+decides many hills --quality px:1 --triangles 200000 --seconds 10
+is 's["many"]["far_requests"] == 0 and s["many"]["far_turns"] == 0' "where they are not, nothing is asked for"
+decides thin hills --speed 3000 --link gprs,down.bytes_s=1200
+is '0 < s["thin"]["far_bytes"] < s["few"]["far_bytes"] / 2' "less on a thin link"
+decides alone hills --balance client
+is 's["alone"]["far_requests"] == 0' "nothing by the client alone"
+python3 - "$work/plain.raw" <<'END' && "$bin/farfield-bake" "$work/plain.raw" --raw 513x513 --spacing 40 --tile-log2 6 --quiet -o "$work/plain.ffp"
+import array, sys
+array.array("H", [(i // 513 * 3 + i % 513 * 2) // 50 + 100 for i in range(513 * 513)]).tofile(open(sys.argv[1], "wb"))
+END
+decides plain plain
+is 's["plain"]["far_requests"] == 0 and s["plain"]["triangles"] > 0' "nothing over a plain"
+
 flies taped --far paint --backend soft565 --tape "$work/tape"
 "$bin/farfield-handheld" --tape "$work/tape" --json >"$work/played.json" 2>"$work/played.err"
 result $? "a tape plays the same flight"

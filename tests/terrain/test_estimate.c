@@ -190,6 +190,55 @@ static void beyond_the_ground_a_panorama_counts(void **state)
     fixture_free(&fx);
 }
 
+/* Level ground in view, a fifth of a kilometre below: what lies beyond F metres fills the rows from
+ * the horizon to 200 / F below it. */
+static void far_ground_is_counted_by_how_far_away_it_is(void **state)
+{
+    (void)state;
+    terrain_fixture fx;
+    ff_far_ground far;
+    fixture_make(&fx, 3, 7, 3, 3, fixture_flat);
+    fixture_tree(&fx, 400, 64);
+    ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
+    ff_view view = fixture_view_above(&fx, 1900, 100, 200, 0, 0);
+    ff_estimate_far(fx.tree, 500 * M, &far);
+    assert_int_equal(far.nodes, 0); /* nothing selected yet */
+    fixture_settle(&fx, &view, &quality, 100);
+    ff_estimate_far(fx.tree, 500 * M, &far);
+    const double focal = view.camera.focal_q8 / 256.0, end = 3840 - 100;
+    for (unsigned i = 0; i < FF_FAR_RUNGS; i++) {
+        double begin = 500 * pow(2, i / 2.0), rows = focal * 200 / begin - focal * 200 / end;
+        assert_true(about(far.pixels[i], rows * view.camera.width, 1.25));
+    }
+    assert_true(far.pixels[0] > far.pixels[1] && far.pixels[1] > far.pixels[2]);
+    assert_int_equal(far.error_q8, 0);
+    assert_int_equal(far.skyline_q8, 0);
+    assert_true(far.far_nodes > 0 && far.far_nodes < far.nodes);
+    fixture_free(&fx);
+}
+
+/* Coarser ground is further off, at its skyline, too, which is where ground is highest: more than
+ * in the mean. */
+static void far_ground_is_as_wrong_as_it_is_coarse(void **state)
+{
+    (void)state;
+    terrain_fixture fx;
+    ff_far_ground fine, coarse;
+    fixture_usual(&fx, 3000);
+    ff_view view = fixture_view_above(&fx, 1900, 600, 20, 0, -10);
+    ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
+    quality.error_px_q8 = 2 * 256;
+    fixture_settle(&fx, &view, &quality, 200);
+    ff_estimate_far(fx.tree, 500 * M, &fine);
+    quality.error_px_q8 = 32 * 256;
+    fixture_settle(&fx, &view, &quality, 200);
+    ff_estimate_far(fx.tree, 500 * M, &coarse);
+    assert_true(fine.error_q8 > 0 && fine.skyline_q8 > 0);
+    assert_true(coarse.error_q8 > 2 * fine.error_q8 && coarse.skyline_q8 > 2 * fine.skyline_q8);
+    assert_true(fine.error_q8 < 2 * 256 * 2 && coarse.error_q8 < 32 * 256 * 2);
+    fixture_free(&fx);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -202,6 +251,8 @@ int main(void)
         cmocka_unit_test(coarse_ground_near_the_eye_has_an_end),
         cmocka_unit_test(it_does_not_depend_on_roll),
         cmocka_unit_test(beyond_the_ground_a_panorama_counts),
+        cmocka_unit_test(far_ground_is_counted_by_how_far_away_it_is),
+        cmocka_unit_test(far_ground_is_as_wrong_as_it_is_coarse),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -198,6 +198,9 @@ int report_flight_has(const report_flight *flight, enum report_column column)
     return !isnan(largest(flight, column, 0));
 }
 
+/* NAN for 0, too: what a flight did not use is not told. */
+static double some(double value) { return value > 0 ? value : NAN; }
+
 void report_summarise(const report_flight *flight, double settle_s, report_summary *summary)
 {
     const double *last = flight->row[flight->row_count - 1].value;
@@ -212,6 +215,12 @@ void report_summarise(const report_flight *flight, double settle_s, report_summa
         .kb_up = last[REPORT_bytes_up] / 1000,
         .requests = last[REPORT_requests],
         .panoramas = last[REPORT_panoramas],
+        .far_sets = some(last[REPORT_far_sets]),
+        .far_sectors = some(last[REPORT_far_sectors]),
+        .kb_heights = some(last[REPORT_bytes_heights]) / 1000,
+        .kb_images = some(last[REPORT_bytes_images]) / 1000,
+        .kb_faces = some(last[REPORT_bytes_faces]) / 1000,
+        .kb_far = some(last[REPORT_far_bytes]) / 1000,
         .err_rms_mean = report_flight_mean(flight, REPORT_err_px_rms, settle_s),
         .err_p95_mean = report_flight_mean(flight, REPORT_err_px_p95, settle_s),
         .err_max = largest(flight, REPORT_err_px_max, settle_s),

@@ -46,7 +46,13 @@
     X(bytes_reserve, MAY_LACK) \
     X(unused_reserve, MAY_LACK) \
     X(relevance_no_reserve_percent, MAY_LACK) \
-    X(unused_hidden, MAY_LACK)
+    X(unused_hidden, MAY_LACK) \
+    X(far_sets, MAY_LACK) \
+    X(far_sectors, MAY_LACK) \
+    X(far_bytes, MAY_LACK) \
+    X(bytes_far, MAY_LACK) \
+    X(unused_far, MAY_LACK) \
+    X(square_px_far, MAY_LACK)
 /* clang-format on */
 enum report_column {
 #define X(name, need) REPORT_##name,
@@ -71,6 +77,8 @@ typedef struct report_summary {
     double seconds, triangles_mean, triangles_max, nodes_drawn_mean, nodes_held_max;
     /* 60 s: NAN when the flight is shorter */
     double kb_down_60s, kb_down, kb_up, requests, panoramas;
+    /* NAN where none came */
+    double far_sets, far_sectors, kb_heights, kb_images, kb_faces, kb_far;
     double err_rms_mean, err_p95_mean, err_max, skyline_rms_mean;
     double diff_mean, diff_p95_mean, ssim_mean;
     double truth_error_m; /* how far the ground judged by may be from its source */

@@ -18,6 +18,7 @@ typedef struct kind {
 static const kind bytes_kinds[] = { { REPORT_bytes_heights, "heights" },
                                     { REPORT_bytes_images, "images" },
                                     { REPORT_bytes_faces, "panorama faces" },
+                                    { REPORT_bytes_far, "sets of far ground" },
                                     { REPORT_bytes_overhead, "greetings, pongs, refusals" },
                                     { REPORT_bytes_up, "requests (up)" } };
 static const kind error_kinds[] = { { REPORT_square_px_depth, "depth limit of the quality" },
@@ -25,12 +26,13 @@ static const kind error_kinds[] = { { REPORT_square_px_depth, "depth limit of th
                                     { REPORT_square_px_quality, "as coarse as the quality allows" },
                                     { REPORT_square_px_panorama,
                                       "parallax and texels of the panorama" },
+                                    { REPORT_square_px_far, "outlines of far ground" },
                                     { REPORT_square_px_waiting, "ground not come yet" },
                                     { REPORT_square_px_undrawn, "ground not drawn" } };
 enum {
     BYTES_KINDS = sizeof bytes_kinds / sizeof *bytes_kinds,
     ERROR_KINDS = sizeof error_kinds / sizeof *error_kinds,
-    KINDS_MAX = 6
+    KINDS_MAX = 7
 };
 
 static double last(const report_flight *flight, enum report_column column)
@@ -97,18 +99,21 @@ static void put_relevance(FILE *out, const report_style *style, const report_con
                                         "kB heights",
                                         "kB images",
                                         "kB faces",
+                                        "kB sets",
                                         "kB other",
                                         "never drawn: kB heights",
                                         "of these beside drawn ones",
                                         "of these hidden by near ground",
                                         "kB images",
                                         "kB faces",
+                                        "kB sets",
                                         "of all these the reserve" };
-    static const enum report_column column[] = { REPORT_bytes_heights,  REPORT_bytes_images,
-                                                 REPORT_bytes_faces,    REPORT_bytes_overhead,
-                                                 REPORT_unused_heights, REPORT_unused_supporting,
-                                                 REPORT_unused_hidden,  REPORT_unused_images,
-                                                 REPORT_unused_faces,   REPORT_unused_reserve };
+    static const enum report_column column[] = { REPORT_bytes_heights,     REPORT_bytes_images,
+                                                 REPORT_bytes_faces,       REPORT_bytes_far,
+                                                 REPORT_bytes_overhead,    REPORT_unused_heights,
+                                                 REPORT_unused_supporting, REPORT_unused_hidden,
+                                                 REPORT_unused_images,     REPORT_unused_faces,
+                                                 REPORT_unused_far,        REPORT_unused_reserve };
     report_table_head(out, style, head, sizeof head / sizeof *head);
     for (size_t i = 0; i < content->flight_count; i++) {
         const report_flight *flight = &content->flight[i];
@@ -222,7 +227,7 @@ static void put_relevance_target(FILE *out, const report_style *style, const rep
            supporting = last(flight, REPORT_unused_supporting),
            hidden = zero_if_nan(last(flight, REPORT_unused_hidden)),
            all = last(flight, REPORT_unused_heights) + last(flight, REPORT_unused_images) +
-                 last(flight, REPORT_unused_faces),
+                 last(flight, REPORT_unused_faces) + zero_if_nan(last(flight, REPORT_unused_far)),
            with = last(flight, REPORT_relevance_percent),
            without = last(flight, REPORT_relevance_no_reserve_percent);
     if (isnan(without)) without = with;

@@ -1,6 +1,7 @@
 /* farfield-report: flights' CSV files become an HTML page with plots and a Markdown table. */
 #include "report_page.h"
 #include "report_sheet.h"
+#include "report_slider.h"
 
 #include "../../client/farfield.h"
 #include "../../platform/options/sys_options.h"
@@ -58,6 +59,12 @@ static const sys_option_type report_pairs_option = { "", pair_range, take_pair }
     OPTION(sys_texts, picture, "picture", "FILE", NULL, SYS_FLAGS(SYS_REPEATABLE | SYS_FOLLOWED), \
            "copies a picture into DIR and shows it; several files may follow until the next " \
            "option") \
+    OPTION(report_pairs, slider, "slider", "NAME=DIR", NULL, SYS_FLAGS(SYS_REPEATABLE), \
+           "given twice, for a flight's folder of farfield-fly --png and for that of its " \
+           "--reference: the page opens with their last picture, a slider between the two, and " \
+           "what the CSV that is named as the first folder tells of that moment") \
+    OPTION(sys_text, owner, "attribution", "TEXT", NULL, SYS_ANY, \
+           "whose ground it is, below those pictures") \
     OPTION(report_pairs, beside, "beside", "NAME=DIR", NULL, SYS_FLAGS(SYS_REPEATABLE), \
            "given twice, for folders of farfield-fly --png: up to five pictures of the same " \
            "moments from both and their difference become one, DIR/side-by-side.png") \
@@ -155,6 +162,13 @@ static int copy_pictures(const options *o, char **names)
     return 0;
 }
 
+/* The two folders of --slider or --beside. */
+static void series_of(const report_pairs *pairs, report_series both[2])
+{
+    for (int i = 0; i < 2; i++)
+        both[i] = (report_series){ pairs->pair[i].left, pairs->pair[i].right };
+}
+
 /* Makes all sheets; their number, or -1. */
 static int make_sheets(const options *o, report_sheet sheet[AGAINST_MAX + 1])
 {
@@ -162,8 +176,7 @@ static int make_sheets(const options *o, report_sheet sheet[AGAINST_MAX + 1])
     int count = 0;
     if (o->beside.count) {
         report_series both[2];
-        for (int i = 0; i < 2; i++)
-            both[i] = (report_series){ o->beside.pair[i].left, o->beside.pair[i].right };
+        series_of(&o->beside, both);
         sheet[count] = (report_sheet){ .heading = "Side by side",
                                        .file = "side-by-side.png",
                                        .amplified = BESIDE_AMPLIFIED };
@@ -188,6 +201,7 @@ static int make_report(const options *o, report_flight *flight, char **picture)
     char why[WHY_BYTES];
     report_content content = { .title = o->title,
                                .folder = o->folder,
+                               .owner = o->owner,
                                .flight = flight,
                                .flight_count = o->csv.count,
                                .picture = (const char *const *)picture,
@@ -195,6 +209,8 @@ static int make_report(const options *o, report_flight *flight, char **picture)
                                .settle_s = o->settle_s };
     report_paper paper;
     report_sheet sheet[AGAINST_MAX + 1];
+    report_series both[2];
+    report_slider slider;
     report_work work;
     if (o->instructions && report_work_load(&work, o->instructions, why, sizeof why))
         return fail("%s", why);
@@ -204,6 +220,11 @@ static int make_report(const options *o, report_flight *flight, char **picture)
     for (size_t i = 0; i < o->csv.count; i++)
         if (report_flight_load(&flight[i], o->csv.text[i], why, sizeof why)) return fail("%s", why);
     if (make_folder(o->folder) || copy_pictures(o, picture)) return -1;
+    series_of(&o->slider, both);
+    if (o->slider.count &&
+        report_slider_make(both, flight, o->csv.count, o->folder, &slider, why, sizeof why))
+        return fail("--slider: %s", why);
+    if (o->slider.count) content.slider = &slider;
     int sheets = make_sheets(o, sheet);
     if (sheets < 0) return -1;
     content.sheet = sheet;
@@ -222,12 +243,13 @@ static int parse(options *o, int argc, char **argv)
 {
     int rc = sys_options_parse(&program, o, argc, argv);
     if (rc) return rc;
+    if (o->slider.count == 1) return fail("--slider: give two folders");
     return o->beside.count == 1 ? fail("--beside: give two folders") : 0;
 }
 
 int main(int argc, char **argv)
 {
-    static options o = { .beside.room = 2, .against.room = AGAINST_MAX };
+    static options o = { .slider.room = 2, .beside.room = 2, .against.room = AGAINST_MAX };
     size_t room = (size_t)argc;
     const char **words = calloc(2 * room, sizeof *words);
     report_flight *flight = calloc(room, sizeof *flight);

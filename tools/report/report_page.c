@@ -33,6 +33,12 @@ static const summary_column summary_columns[] = {
     { "kB up", "kb_up", 1, AT(kb_up) },
     { "requests", "requests", 0, AT(requests) },
     { "panoramas", "panoramas", 0, AT(panoramas) },
+    { "sets of far ground", "far_sets", 0, AT(far_sets) },
+    { "their sectors", "far_sectors", 0, AT(far_sectors) },
+    { "kB heights", "kb_heights", 1, AT(kb_heights) },
+    { "kB images", "kb_images", 1, AT(kb_images) },
+    { "kB panoramas", "kb_faces", 1, AT(kb_faces) },
+    { "kB sets", "kb_far", 1, AT(kb_far) },
     { "error px, rms", "err_px_rms_mean", 2, AT(err_rms_mean) },
     { "error px, 95 %", "err_px_p95_mean", 2, AT(err_p95_mean) },
     { "error px, most", "err_px_max", 1, AT(err_max) },
@@ -244,6 +250,13 @@ static void put_sheet(FILE *out, const report_sheet *sheet)
             most_different(sheet), REPORT_SHEET_VISIBLE);
 }
 
+static void put_heading(FILE *out, const char *title)
+{
+    fputs("<h1>", out);
+    report_put_html(out, title);
+    fputs("</h1>\n", out);
+}
+
 int report_page_html(const report_content *content, char *why, size_t why_bytes)
 {
     FILE *out = open_page(content, "index.html", why, why_bytes);
@@ -257,13 +270,17 @@ int report_page_html(const report_content *content, char *why, size_t why_bytes)
         "</title>\n<style>\n"
         "body{font:15px/1.5 sans-serif;margin:2em auto;max-width:1340px;padding:0 1em;color:#222}\n"
         "table{border-collapse:collapse}td,th{padding:.2em .7em;border-bottom:1px solid #ddd;text-align:right}\n"
-        "th{vertical-align:bottom}td:first-child,th:first-child{text-align:left}.wide{overflow-x:auto;margin:1em 0}\n"
+        "th{vertical-align:bottom}td:first-child,th:first-child{text-align:left;white-space:nowrap}@media(max-width:500px){table{font-size:13px}}.wide{overflow-x:auto;margin:1em 0}\n"
         ".plots{display:flex;flex-wrap:wrap;gap:1em}figure{margin:0;max-width:100%}\n"
-        "figure svg{width:640px;max-width:100%}.plots img{max-width:100%}\n"
-        "figcaption{color:#666;font-size:13px}\n</style></head><body>\n<h1>",
+        "figure svg{width:600px;max-width:100%}.plots img{max-width:100%}\n"
+        "figcaption{color:#666;font-size:13px}\n",
         out);
-    report_put_html(out, content->title);
-    fputs("</h1>\n", out);
+    if (content->slider) fputs(report_slider_style, out);
+    fputs("</style></head><body>\n", out);
+    if (content->slider)
+        report_slider_html(out, content->slider, content->title, content->owner);
+    else
+        put_heading(out, content->title);
     if (content->paper) rc = report_matrix_html(out, content, why, why_bytes);
     if (!rc && content->work) rc = report_work_html(out, content, why, why_bytes);
     report_findings(out, content, 1);
@@ -293,6 +310,7 @@ int report_page_markdown(const report_content *content, char *why, size_t why_by
     fputs("# ", out);
     report_put_markdown(out, content->title);
     fputs("\n", out);
+    if (content->slider) report_slider_markdown(out, content->slider, content->owner);
     if (content->paper) report_matrix_markdown(out, content);
     report_findings(out, content, 0);
     fputs("\n## All flights\n\n", out);

@@ -5,10 +5,13 @@
 #include "report_csv.h"
 #include "report_paper.h"
 #include "report_sheet.h"
+#include "report_slider.h"
 #include "report_work.h"
 
 typedef struct report_content {
     const char *title, *folder;
+    const char *owner;           /* whose ground is shown, or NULL */
+    const report_slider *slider; /* what the page opens with, or NULL */
     const report_flight *flight;
     size_t flight_count;
     const char *const *picture; /* file names inside `folder` */

@@ -3,7 +3,7 @@
 #include "../../common3d/c3d_text.h"
 #include "../../platform/sys.h"
 
-#include <dirent.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -24,45 +24,16 @@ typedef struct canvas {
     size_t columns;
 } canvas;
 
-/* ---- moments ---- */
-
-static int is_picture(const struct dirent *entry)
-{
-    size_t length = strlen(entry->d_name);
-    return length > 4 && strcmp(entry->d_name + length - 4, ".png") == 0;
-}
-
 static int join_path(char path[PATH_BYTES], const char *folder, const char *name)
 {
     return (size_t)snprintf(path, PATH_BYTES, "%s/%s", folder, name) < PATH_BYTES;
 }
 
-/* Names in both folders, in order. */
-static struct dirent **shared_names(const report_series series[2], size_t *count)
-{
-    struct dirent **list;
-    int found = scandir(series[0].folder, &list, is_picture, alphasort);
-    *count = 0;
-    if (found < 0) return NULL;
-    for (int i = 0; i < found; i++) {
-        char path[PATH_BYTES];
-        sys_mapping mapping;
-        if (join_path(path, series[1].folder, list[i]->d_name) &&
-            sys_map_file(path, &mapping) == FF_OK) {
-            sys_unmap_file(&mapping);
-            list[(*count)++] = list[i];
-        } else {
-            free(list[i]);
-        }
-    }
-    return list;
-}
-
-/* "frame-0030.00.png" was taken at 30 s; other names stand for themselves. */
+/* Names without a time stand for themselves. */
 static void moment_text(const char *name, char *text, size_t bytes)
 {
-    double seconds;
-    if (sscanf(name, "frame-%lf", &seconds) == 1)
+    double seconds = report_moment_s(name);
+    if (!isnan(seconds))
         snprintf(text, bytes, "%g S", seconds);
     else
         snprintf(text, bytes, "%.*s", (int)(strlen(name) - 4), name);
@@ -182,7 +153,7 @@ int report_sheet_write(const report_series series[2], const char *folder, report
 {
     size_t count;
     canvas c = { .rgb = NULL };
-    struct dirent **name = shared_names(series, &count);
+    char **name = report_moments(series, &count);
     int rc = 0;
     char path[PATH_BYTES];
     for (int i = 0; i < 2; i++) sheet->name[i] = series[i].name;
@@ -193,16 +164,15 @@ int report_sheet_write(const report_series series[2], const char *folder, report
         rc = -1;
     }
     for (size_t i = 0; i < c.columns && !rc; i++)
-        rc = put_moment(series, name[c.columns < 2 ? 0 : i * (count - 1) / (c.columns - 1)]->d_name,
-                        &c, i, sheet, why, why_bytes);
+        rc = put_moment(series, name[c.columns < 2 ? 0 : i * (count - 1) / (c.columns - 1)], &c, i,
+                        sheet, why, why_bytes);
     if (!rc && !join_path(path, folder, sheet->file)) {
         snprintf(why, why_bytes, "%s: path too long", folder);
         rc = -1;
     }
     if (!rc && (rc = sys_png_write(path, c.rgb, c.width, c.height)) != FF_OK)
         snprintf(why, why_bytes, "%s: %s", path, ff_error_text(rc));
-    for (size_t i = 0; i < count; i++) free(name[i]);
-    free(name);
+    report_moments_free(name, count);
     free(c.rgb);
     return rc ? -1 : 0;
 }

@@ -3,15 +3,10 @@
 #ifndef REPORT_SHEET_H
 #define REPORT_SHEET_H
 
-#include <stddef.h>
+#include "report_moments.h"
 
 #define REPORT_SHEET_MOMENTS 5 /* columns at most: the first, the last, and evenly between */
 #define REPORT_SHEET_VISIBLE 8 /* of 255 in a channel: pixels further apart are counted */
-
-/* folder: of farfield-fly --png */
-typedef struct report_series {
-    const char *name, *folder;
-} report_series;
 
 #define REPORT_SHEET_FILE_BYTES 40
 

@@ -19,6 +19,9 @@ SECONDS, PLACE_SECONDS, SWEEP_SECONDS, SETTLE = "20", "10", "6", 20
 START, PLACES = "0.4", ("0.2", "0.3", "0.4", "0.5", "0.6")  # parts of the diagonal
 FLIGHT = ["--backend", "none", "--link", "umts", "--settle", str(SETTLE), "--sample", "0.5", "--audit", "on", "--check", "off"]
 SWEEP = ["2:4", "3:4", "4:5", "6:5", "px:4", "px:2", "px:1", "low", "medium", "high"]
+FAR_MEMORY, FAR_SECONDS, FAR_HEIGHTS = "8M", "10", ("600", "2000")
+FAR_FLIGHT = ["--backend", "soft565", "--diff", "on", "--speed", "900"]
+FAR_SETTINGS = (("off", "medium"), ("fins", "medium"), ("paint", "medium"), ("off", "px:2"))  # medium: 5486 triangles at most
 SWEEP_MEMORY = "16M"  # where a pool is full the flight depends on its capacity, which differs between machines
 BLOCKS = ("8M", "4M", "2M", "1M", "768K")
 TARGET = 4.0e6
@@ -32,8 +35,8 @@ def million(value):
 
 
 class Bench:
-    def __init__(self, options):
-        self.bin, self.handheld, self.plugin, self.pack, self.out = options.bin, options.handheld, options.plugin, options.pack, options.out
+    def __init__(self, options, pack):
+        self.bin, self.handheld, self.plugin, self.pack, self.out = options.bin, options.handheld, options.plugin, pack, options.out
         self.program = Program(self.handheld)
         wrong = without_row(set(self.program.places))
         if wrong:
@@ -42,11 +45,11 @@ class Bench:
     def count(self, name, arguments, options=""):
         return Counts(self.plugin, self.program, arguments, "%s/%s.counts" % (self.out, name), options)
 
-    def tape(self, name, quality, panorama, seconds, memory="4M", start=START):
+    def tape(self, name, quality, panorama, seconds, memory="4M", start=START, more=()):
         """A flight on this machine, on tape; its path and the auditor's rows after settling."""
         tape, table = "%s/%s.tape" % (self.out, name), "%s/%s.csv" % (self.out, name)
         run([self.bin + "/farfield-fly", "--pack", self.pack, *FLIGHT, "--seconds", seconds, "--quality", quality, "--panorama", panorama,
-             "--start", start, "--memory", memory, "--tape", tape, "--csv", table])
+             "--start", start, "--memory", memory, "--tape", tape, "--csv", table, *more])
         return tape, [r for r in csv.DictReader(open(table)) if float(r["t_s"]) > SETTLE and r["err_px_rms"] not in ("", "nan")]
 
     def phases(self, counts):
@@ -61,8 +64,8 @@ class Bench:
                     sums[row] = sums.get(row, 0) + cost / len(counts.frames)
         return sums
 
-    def fly(self, name, quality, panorama, seconds, memory="4M", start=START):
-        tape, rows = self.tape(name, quality, panorama, seconds, memory, start)
+    def fly(self, name, quality, panorama, seconds, memory="4M", start=START, more=()):
+        tape, rows = self.tape(name, quality, panorama, seconds, memory, start, more)
         counts = self.count(name, ["--tape", tape, "--fb", "%s/%s.ppm" % (self.out, name)])
         figures, frames, n = counts.figures, counts.frames, len(counts.frames)
         if not n or not rows:
@@ -80,7 +83,13 @@ class Bench:
                  "bytes_down": figures["bytes_down"], "high_water": {k: figures[k] for k in figures if "high" in k or "memory" in k},
                  "phases": [{"phase": p, "what": w, "per_frame": c} for (p, w), c in sorted(self.phases(counts).items(), key=lambda i: -i[1])]}
         flown.update({mark: sum(f[mark] for f in frames) / n for mark in MARKS})
+        flown.update({key: mean(key) for key in ("skyline_px_rms", "diff_mean") if rows[0].get(key)})
         return flown
+
+    def far(self):
+        """Sets beside none, at as many triangles and at as many as 2 pixels of error ask for."""
+        return [dict(self.fly("far", quality, "off", FAR_SECONDS, FAR_MEMORY, more=[*FAR_FLIGHT, "--far", far, "--height", height]), far=far, height=height)
+                for height in FAR_HEIGHTS for far, quality in FAR_SETTINGS]
 
     def calls(self, counts, name):
         return sum(e["draw"] for address, _, e, _ in counts.blocks if self.program.function_of(address) == (name, True))
@@ -130,7 +139,25 @@ def place_table(places):
             *[row(p["start"], p) for p in places], row("**mean** (target %s at 5000 triangles)" % million(TARGET), mean), ""]
 
 
-def report(bench, low, places, sweep, memory):
+def far_tables(bench, flights):
+    """Cost and error of each flight, then its rows side by side."""
+    cost = lambda f, row: sum(r["per_frame"] for r in f["phases"] if (r["phase"], r["what"]) == row)
+    rows = sorted({(r["phase"], r["what"]) for f in flights for r in f["phases"]}, key=lambda row: (PHASES.index(row[0]), row[1]))
+    out = ["## Far ground: fins and paint", "",
+           "Over %s, without panoramas, UMTS, 900 km/h, %s s; medium: 2 pixels of error and a triangle for 14 pixels at most." % (
+               os.path.basename(bench.pack), FAR_SECONDS), "",
+           "| height, m | far | quality | M a frame | p95 | decode | triangles, submitted | skyline px RMS | luminance off, of 255 |",
+           "|--:|---|---|--:|--:|--:|--:|--:|--:|"]
+    out += ["| %s | %s | %s | %s | %s | %s | %d, %d | %.2f | %.2f |" % (
+        f["height"], f["far"], f["quality"], million(f["instructions"]), million(f["instructions_p95"]), million(f["work"]), f["triangles"],
+        f["triangles_submitted"], f["skyline_px_rms"], f["diff_mean"]) for f in flights]
+    out += ["", "| M a frame | %s |" % " | ".join("%s m, %s, %s" % (f["height"], f["far"], f["quality"]) for f in flights),
+            "|---|" + "--:|" * len(flights)]
+    out += ["| %s | %s |" % (": ".join(filter(None, row)), " | ".join(million(cost(f, row)) for f in flights)) for row in rows]
+    return out + [""]
+
+
+def report(bench, low, places, sweep, memory, far_bench, far):
     pixels, known = low["pixels"], lambda n: "%d" % n if n else "not known"
     out = ["# A frame on the handheld, in ARM instructions", "",
            "armv6, soft float, `-O2`, counted exactly under qemu-arm; 240x320, RGB565, over %s; UMTS, 150 km/h, after %d s of settling." %
@@ -150,9 +177,9 @@ def report(bench, low, places, sweep, memory):
            "| of the picture's ground from the panorama | %.1f %% |" % low["panorama_px_percent"],
            "| at 332 MHz and 1.6 cycles an instruction | %.1f frames/s |" % (332e6 / 1.6 / low["instructions"]),
            "| all %d pictures, here and there | hash %s |" % (low["frames"], pixels["pictures_hash"]), "",
-           "## Where it goes", "", *phase_table(low)]
+           "## Where it goes", "", *phase_table(low), "", *far_tables(far_bench, far)]
     if sweep:
-        out += ["", "## Work and precision", "", "In a block of %s, so that every quality finds room; what smaller blocks show is told below." % SWEEP_MEMORY, "",
+        out += ["## Work and precision", "", "In a block of %s, so that every quality finds room; what smaller blocks show is told below." % SWEEP_MEMORY, "",
                 "| quality | panorama | M a frame | p95 | triangles | err_px RMS | err_px p95 | not drawn % |",
                 "|---|---|--:|--:|--:|--:|--:|--:|"]
     for s in sweep:
@@ -210,15 +237,20 @@ def write_curve(path, sweep):
 
 def main():
     parser = argparse.ArgumentParser(prog="bench_handheld.py", description=__doc__.split("\n\n")[0])
-    for name in ("bin", "handheld", "plugin", "pack", "out"):
+    for name in ("bin", "handheld", "plugin", "pack", "far_pack", "out"):
         parser.add_argument(name)
-    parser.add_argument("--quick", action="store_true", help="the low-quality flight only")
+    parser.add_argument("--quick", action="store_true", help="the low-quality flight and the sets only")
+    parser.add_argument("--far", action="store_true", help="print the tables of sets, and nothing else")
     parser.add_argument("--functions", nargs="?", type=int, const=40, metavar="N", help="print the N functions that cost most, and nothing else")
     options = parser.parse_args()
     os.makedirs(options.out, exist_ok=True)
-    bench = Bench(options)
+    bench, far_bench = Bench(options, options.pack), Bench(options, options.far_pack)
     if options.functions:
         functions(bench, options.functions)
+        return
+    far = far_bench.far()
+    if options.far:
+        print("\n".join(far_tables(far_bench, far)))
         return
     low = bench.fly("low", "paper-low", "on", SECONDS)
     places = [bench.fly("place", "paper-low", "on", PLACE_SECONDS, start=start) for start in PLACES]
@@ -227,9 +259,9 @@ def main():
         die("counted twice, different numbers")
     sweep = [] if options.quick else [bench.fly("sweep", quality, panorama, SWEEP_SECONDS, SWEEP_MEMORY) for panorama in ("on", "off") for quality in SWEEP]
     memory = [] if options.quick else memory_rows(bench)
-    text = report(bench, low, places, sweep, memory)
+    text = report(bench, low, places, sweep, memory, far_bench, far)
     open(options.out + "/handheld.md", "w").write(text)
-    json.dump({"low": low, "places": places, "sweep": sweep, "memory": memory, "target": TARGET}, open(options.out + "/handheld.json", "w"), indent=1)
+    json.dump({"low": low, "places": places, "far": far, "sweep": sweep, "memory": memory, "target": TARGET}, open(options.out + "/handheld.json", "w"), indent=1)
     if sweep:  # a quick run has no curve, and leaves that of an earlier one alone
         write_curve(options.out + "/work-precision.csv", sweep)
     print(text, end="")

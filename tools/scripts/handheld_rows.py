@@ -9,6 +9,7 @@ import sys
 
 # ---- instructions: rows of the table "where it goes" (phase, what) ----
 JPEG = ("decode", "JPEG: images, faces, paint")
+FINS = ("decode", "fins")
 INFLATE = ("decode", "inflate and residuals")
 LINK = ("decode", "link, messages, queue")
 TAKE_IN = ("take in", "")
@@ -17,10 +18,12 @@ WISHES = ("select", "wishes, queue, prefetch")
 IMAGES = ("select", "images")
 HORIZON = ("select", "what near ground hides")
 MEASURE = ("select", "measure, restrict, cull, order")
-TRANSFORM = ("transform", "")
+TRANSFORM = ("transform", "to the screen")
+THROW = ("transform", "to a thrown picture")
 PERSPECTIVE = ("rasterise", "triangles in perspective")
 SMALL = ("rasterise", "small triangles")
 SPANS = ("rasterise", "spans")
+THROWN = ("rasterise", "thrown pictures")
 BACKDROP = ("rasterise", "sky and panorama")
 STRIPS = ("rasterise", "strips, clearing")
 STITCH = ("stitch", "strips chosen, draws set up")
@@ -45,11 +48,12 @@ PLACES = {  # what each counts to under each mark; None: it has nothing to do th
     "client/panorama/ff_intake_face.o": (JPEG, None, None),
     "client/several/": (None, WISHES, None),
     "client/source/": (LINK, WISHES, None),
-    "client/terrain/ff_estimate.o client/terrain/ff_spread.o": (None, None, None),  # only when asked for
+    "client/terrain/ff_estimate.o client/terrain/ff_estimate_beyond.o client/terrain/ff_estimate_far.o client/terrain/ff_gaze.o": (None, None, None),  # only when asked for
     "client/terrain/ff_evict.o client/terrain/ff_tree.o": (None, TAKE_IN, STITCH),
     "client/terrain/ff_foresee.o client/terrain/ff_reserve.o client/terrain/ff_wish.o": (None, WISHES, STITCH),
     "client/terrain/ff_grounds.o client/terrain/ff_cover.o client/terrain/ff_seam.o client/terrain/ff_seam_dive.o client/terrain/ff_seam_rim.o": (None, MEASURE, STITCH),
     "client/terrain/ff_limit.o client/terrain/ff_measure.o client/terrain/ff_pool.o client/terrain/ff_restrict.o client/terrain/ff_select.o": (None, MEASURE, STITCH),
+    "client/terrain/ff_spread.o": (None, MEASURE, None),
     "client/terrain/ff_horizon.o client/terrain/ff_horizon_raise.o": (None, HORIZON, None),
     "client/terrain/ff_shade.o client/terrain/ff_sort.o client/terrain/ff_strips.o client/terrain/ff_surface.o": (None, MEASURE, STITCH),
     "client/terrain/ff_view_cull.o client/terrain/ff_pack_source.o": (None, MEASURE, STITCH),
@@ -62,15 +66,15 @@ PLACES = {  # what each counts to under each mark; None: it has nothing to do th
     "common3d/soft/soft_line.o common3d/soft/soft_pixels.o common3d/soft/soft_spans.o": (None, TAKE_IN, SPANS),
     "common3d/soft/soft_label.o common3d/soft/soft_point.o": (None, None, STRIPS),
     "common3d/soft/soft_perspective.o": (None, TAKE_IN, PERSPECTIVE),
-    "common3d/soft/soft_thrown.o common3d/soft/soft_thrown_strip.o": (None, TAKE_IN, TRANSFORM),
-    "common3d/soft/soft_thrown_rows.o": (None, TAKE_IN, PERSPECTIVE),
+    "common3d/soft/soft_thrown.o": (None, TAKE_IN, THROW),
+    "common3d/soft/soft_thrown_rows.o common3d/soft/soft_thrown_strip.o common3d/soft/soft_thrown_tiny.o": (None, TAKE_IN, THROWN),
     "common3d/soft/soft_small.o common3d/soft/soft_tiny.o": (None, TAKE_IN, SMALL),
     "platform/": (LINK, MEASURE, STITCH),
     "platform/posix/jpeg.o platform/posix/jpeg_tables.o": (JPEG, None, None),
     "protocol/": (LINK, MEASURE, STITCH),
     "protocol/codec/": (INFLATE, TAKE_IN, None),
     "protocol/codec/ff_decode.o": (INFLATE, TAKE_IN, STITCH),  # a node's error: is it within the view?
-    "protocol/far/": (JPEG, TAKE_IN, STITCH),
+    "protocol/far/": (FINS, TAKE_IN, STITCH),
     "protocol/shape/": (LINK, MEASURE, STITCH),
     "protocol/message/": (LINK, None, None),
     "protocol/message/ff_message_view.o": (LINK, WISHES, None),

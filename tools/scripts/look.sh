@@ -7,7 +7,7 @@ shift 3
 for backend in soft gles1; do
     rm -rf "$out/$backend"
     mkdir -p "$out/$backend"
-    "$bin/farfield-fly" --pack "$pack" --link umts --seconds 60 --every 15 --seed 1 --size 240x320 "$@" --backend "$backend" \
+    "$bin/farfield-fly" --pack "$pack" --link umts --seconds 45 --every 15 --seed 1 --size 240x320 "$@" --backend "$backend" \
         --csv "$out/$backend.csv" --png "$out/$backend"
     rm -f "$out/$backend/frame-0000.00.png" # nothing has arrived yet
 done
