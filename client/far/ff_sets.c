@@ -408,8 +408,9 @@ static void take_empty(ff_sets *sets, ff_set *set, const ff_new_item *item)
 }
 
 /* It is not asked for again; its fins stay. */
-static void take_failure(ff_set *set, unsigned bit)
+static void take_failure(ff_sets *sets, ff_set *set, unsigned bit)
 {
+    sets->sectors_failed++;
     if (!(set->held & bit)) set->failed |= (uint16_t)bit;
     set->bare &= (uint16_t)~bit;
 }
@@ -430,7 +431,7 @@ int ff_sets_take(ff_sets *sets, const ff_new_item *item, int64_t now_us)
         if (!fins_alone) set->whole++, set->whole_bytes += item->bytes;
         sets->refusals = 0;
         if (item->error != FF_OK)
-            take_failure(set, bit);
+            take_failure(sets, set, bit);
         else if (item->u.far.empty)
             take_empty(sets, set, item);
         else

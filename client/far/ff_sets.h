@@ -117,7 +117,7 @@ typedef struct ff_sets {
     uint32_t serial;
     int64_t retry_us, lead_us;
     ff_set set[2];
-    uint32_t sectors, sectors_empty;
+    uint32_t sectors, sectors_empty, sectors_failed;
     ff_fins_made watch; /* NULL: nobody */
     void *watch_context;
     c3d_projector projector[2][FF_FAR_SECTORS]; /* of the picture under way: ff_sets_aim */

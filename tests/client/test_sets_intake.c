@@ -1,4 +1,5 @@
 /* Sectors of far sets as the worker takes them in: fins and a picture ready for the device. */
+#include "../rig/client_fixture.h"
 #include "../../client/ask/ff_intake_local.h"
 
 #include <setjmp.h>
@@ -146,12 +147,40 @@ static void what_cannot_be_decoded_is_an_error(void **state)
     }
 }
 
+/* One sector in view is nonsense: it is told of, not asked for again, and its set is shown. */
+static void sectors_that_cannot_be_decoded_are_counted(void **state)
+{
+    (void)state;
+    client_rig spoilt, whole;
+    ff_far_in_use use;
+    for (int i = 0; i < 2; i++) {
+        client_rig *r = i ? &whole : &spoilt;
+        rig_open(r, 0);
+        r->desc.far = (ff_far_desc){ .enabled = FF_FAR_FINS, .front_wu = 300 * FF_WU_PER_METRE };
+        r->spoilt = i ? 0 : 1; /* north */
+        rig_client(r, 2 << 20);
+        assert_true(rig_settle(r, 400));
+    }
+    assert_int_equal(rig_stats(&spoilt).far_sectors_failed, 1);
+    assert_int_equal(rig_stats(&whole).far_sectors_failed, 0);
+    assert_int_equal(rig_stats(&spoilt).far_sectors + 1, rig_stats(&whole).far_sectors);
+    assert_int_equal(rig_stats(&spoilt).far_requests, rig_stats(&whole).far_requests);
+    assert_int_equal(rig_stats(&spoilt).protocol_errors, 0);
+    assert_true(ff_client_far(spoilt.client, &use));
+    assert_int_equal(use.sectors & 1, 0);
+    assert_true(ff_client_far(whole.client, &use));
+    assert_int_equal(use.sectors & 1, 1);
+    rig_close(&spoilt);
+    rig_close(&whole);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(paint_has_a_rim_of_its_colour),
         cmocka_unit_test(a_picture_that_is_too_high_lacks_its_lowest_blocks),
         cmocka_unit_test(what_cannot_be_decoded_is_an_error),
+        cmocka_unit_test(sectors_that_cannot_be_decoded_are_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

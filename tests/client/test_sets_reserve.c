@@ -292,6 +292,7 @@ static void no_fins_and_no_paint_are_told_apart(void **state)
     assert_int_equal(ff_sets_take(&s.sets, &bad, 0), 1);
     assert_int_equal(s.set->sector[3].chunks, 1);
     assert_int_equal(s.set->bare | s.set->failed, 0);
+    assert_int_equal(s.sets.sectors_failed, 1);
     assert_true(s.set->held >> 3 & 1);
     picture_close(&s.kit);
 }
