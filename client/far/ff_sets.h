@@ -100,7 +100,7 @@ typedef struct ff_sets {
     const ff_terrain_info *info;
     ff_far_desc desc;
     uint16_t side;        /* width of the largest picture, texels: what memory allows; 0: no sets */
-    uint32_t paint_bytes; /* on the device, of all sectors: what memory allows */
+    uint32_t paint_bytes; /* on the device, of all sectors, at most */
     uint16_t vertices;    /* of a mesh at most */
     c3d_vertex *scratch;  /* for one mesh */
     uint16_t *indices;    /* for one strip */
