@@ -198,6 +198,9 @@ static void the_reserve_is_for_a_drawn_set_that_is_good_and_whole_in_view(void *
     s.sets.off = 1;
     assert_false(asked(&s, &request, &ask));
     s.sets.off = 0;
+    s.sets.through = 1; /* another one is still there, below it */
+    assert_false(asked(&s, &request, &ask));
+    s.sets.through = 0;
     s.view.camera.pos_wu[0] += 600 * M; /* he is beside the region */
     assert_false(asked(&s, &request, &ask));
     s.view.camera.pos_wu[0] -= 600 * M;
