@@ -179,7 +179,7 @@ typedef struct ff_client_desc {
      * "Entry") */
     uint8_t no_entry;
     uint8_t no_prefetch;   /* 1: what motion and turns will show is not asked for ahead */
-    uint8_t no_reserve;    /* 1: no coarse ground all round while the link is idle */
+    uint8_t no_reserve;    /* 1: neither ground nor fins all round while the link idles */
     enum ff_hidden hidden; /* default: ground that nearer ground hides is left out */
     /* what is to be known of what the pack says of itself (protocol/ff_about.h): FF_ABOUT_BIT of
      * each entry; a server is asked for those alone, and they have room in the block. Default:

@@ -40,6 +40,8 @@
     TOLD(uint32_t, far_sets, from->client->sets ? from->client->sets->serial : 0, "planned") \
     TOLD(uint32_t, far_sectors, from->client->sets ? from->client->sets->sectors : 0, "that came, with fins or paint") \
     TOLD(uint32_t, far_sectors_empty, from->client->sets ? from->client->sets->sectors_empty : 0, "that show nothing") \
+    TOLD(uint32_t, far_sectors_failed, from->client->sets ? from->client->sets->sectors_failed : 0, \
+         "that came and could not be decoded") \
     TOLD(uint32_t, far_bytes, (uint32_t)from->link.answer_bytes[FF_KIND_FAR], "of their messages") \
     TOLD(uint32_t, far_use, from->client->sets ? from->client->sets->choice.use : 0, "asked for now: 0 nothing, 1 fins, 2 paint") \
     TOLD(uint32_t, far_turns, from->client->far_turns, "times that far auto began or left sets") \

@@ -24,7 +24,7 @@ void ff_sets_init(ff_sets *sets, c3d_device *device, const ff_far_desc *desc,
                        .desc = *desc,
                        .info = info,
                        .side = (uint16_t)side,
-                       .paint_bytes = (uint32_t)(FF_SETS_TEXTURES * 2 * FF_SETS_TEXELS(2 + side)),
+                       .paint_bytes = UINT32_MAX,
                        .active = -1,
                        .next = -1,
                        .under = -1,
@@ -425,8 +425,9 @@ static void take_empty(ff_sets *sets, ff_set *set, const ff_new_item *item)
 }
 
 /* It is not asked for again; its fins stay. */
-static void take_failure(ff_set *set, unsigned bit)
+static void take_failure(ff_sets *sets, ff_set *set, unsigned bit)
 {
+    sets->sectors_failed++;
     if (!(set->held & bit)) set->failed |= (uint16_t)bit;
     set->bare &= (uint16_t)~bit;
 }
@@ -447,7 +448,7 @@ int ff_sets_take(ff_sets *sets, const ff_new_item *item, int64_t now_us)
         if (!fins_alone) set->whole++, set->whole_bytes += item->bytes;
         sets->refusals = 0;
         if (item->error != FF_OK)
-            take_failure(set, bit);
+            take_failure(sets, set, bit);
         else if (item->u.far.empty)
             take_empty(sets, set, item);
         else

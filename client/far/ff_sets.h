@@ -100,7 +100,7 @@ typedef struct ff_sets {
     const ff_terrain_info *info;
     ff_far_desc desc;
     uint16_t side;        /* width of the largest picture, texels: what memory allows; 0: no sets */
-    uint32_t paint_bytes; /* on the device, of all sectors: what memory allows */
+    uint32_t paint_bytes; /* on the device, of all sectors, at most */
     uint16_t vertices;    /* of a mesh at most */
     c3d_vertex *scratch;  /* for one mesh */
     uint16_t *indices;    /* for one strip */
@@ -118,7 +118,7 @@ typedef struct ff_sets {
     uint32_t serial;
     int64_t retry_us, lead_us;
     ff_set set[2];
-    uint32_t sectors, sectors_empty;
+    uint32_t sectors, sectors_empty, sectors_failed;
     ff_fins_made watch; /* NULL: nobody */
     void *watch_context;
     c3d_projector projector[2][FF_FAR_SECTORS]; /* of the picture under way: ff_sets_aim */

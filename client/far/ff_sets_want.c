@@ -137,7 +137,7 @@ void ff_sets_want_reserve(const ff_sets *sets, ff_requests *requests, const ff_v
                           const ff_motion *motion, int64_t now_us)
 {
     if (!sets->choice.use || sets->off || sets->active < 0 || sets->next >= 0 ||
-        now_us < sets->retry_us)
+        now_us < sets->retry_us || sets->through) /* what fades has the room still */
         return;
     const ff_set *set = &sets->set[sets->active];
     if (set->crowded || (sets->seen & lacking(set)) ||

@@ -95,7 +95,7 @@ extern const sys_option_type fly_events_option;
     HEADING("The client") \
     SIM_CLIENT_OPTIONS(OPTION, "4M", "the client's one block") \
     OPTION(sys_switch, reserve, "reserve", "on|off", "on", SYS_ANY, \
-           "coarse ground in every direction while the link is idle") \
+           "coarse ground, fins and paint in every direction while the link is idle") \
     OPTION(sys_switch, views, "views", "on|off", "on", SYS_ANY, \
            "ground that a view lacks comes in one answer; off: level by level") \
     OPTION(sys_switch, entry, "entry", "on|off", "on", SYS_ANY, \

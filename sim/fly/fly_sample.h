@@ -101,6 +101,7 @@
     X(far_requests, "%.0f", TOTAL, from->client.far_requests) \
     X(far_sectors, "%.0f", TOTAL, from->client.far_sectors) \
     X(far_sectors_empty, "%.0f", TOTAL, from->client.far_sectors_empty) \
+    X(far_sectors_failed, "%.0f", TOTAL, from->client.far_sectors_failed) \
     X(far_bytes, "%.0f", TOTAL, from->client.far_bytes) \
     X(far_use, "%.0f", MEAN, from->client.far_use) \
     X(far_turns, "%.0f", TOTAL, from->client.far_turns) \

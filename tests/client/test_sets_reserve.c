@@ -198,6 +198,9 @@ static void the_reserve_is_for_a_drawn_set_that_is_good_and_whole_in_view(void *
     s.sets.off = 1;
     assert_false(asked(&s, &request, &ask));
     s.sets.off = 0;
+    s.sets.through = 1; /* another one is still there, below it */
+    assert_false(asked(&s, &request, &ask));
+    s.sets.through = 0;
     s.view.camera.pos_wu[0] += 600 * M; /* he is beside the region */
     assert_false(asked(&s, &request, &ask));
     s.view.camera.pos_wu[0] -= 600 * M;
@@ -292,6 +295,7 @@ static void no_fins_and_no_paint_are_told_apart(void **state)
     assert_int_equal(ff_sets_take(&s.sets, &bad, 0), 1);
     assert_int_equal(s.set->sector[3].chunks, 1);
     assert_int_equal(s.set->bare | s.set->failed, 0);
+    assert_int_equal(s.sets.sectors_failed, 1);
     assert_true(s.set->held >> 3 & 1);
     picture_close(&s.kit);
 }

@@ -190,6 +190,56 @@ static void the_ground_under_the_camera_has_no_hole(void **state)
     picture_close(&kit);
 }
 
+/* A triangle that hangs from its upper corner, the nearer one, to its lower two: what it shows in
+ * its middle, and how far away that is. */
+static int32_t look_at_steep(picture_kit *kit, int32_t upper_wu, int32_t lower_wu, uint8_t rgb[3])
+{
+    enum { WIDE = 96, HIGH = 72 };
+    static uint8_t frame[WIDE * HIGH * 3];
+    static int32_t depth_wu[WIDE * HIGH];
+    static const uint16_t index[3] = { 0, 1, 2 };
+    const c3d_vertex corner[3] = {
+        { .x = 0, .y = upper_wu, .z = upper_wu / 4, .rgba = { 255, 0, 0, 255 } },
+        { .x = -lower_wu / 2, .y = lower_wu, .z = -lower_wu / 4, .rgba = { 255, 0, 0, 255 } },
+        { .x = lower_wu / 2, .y = lower_wu, .z = -lower_wu / 4, .rgba = { 255, 0, 0, 255 } }
+    };
+    c3d_mesh mesh = c3d_mesh_make(kit->device, corner, 3);
+    c3d_strip strip = c3d_strip_make(kit->device, index, 3);
+    const c3d_draw draw = { .mesh = mesh,
+                            .strip = strip,
+                            .flags = C3D_DRAW_COLOURED,
+                            .xy_scale_wu = 1,
+                            .z_scale_q16 = 65536,
+                            .tex_columns = 1 };
+    picture_render(kit, &draw, 1, frame);
+    assert_int_equal(c3d_read_depth(kit->device, depth_wu), FF_OK);
+    c3d_mesh_free(kit->device, mesh);
+    c3d_strip_free(kit->device, strip);
+    memcpy(rgb, frame + 3 * (HIGH / 2 * WIDE + WIDE / 2), 3);
+    return depth_wu[HIGH / 2 * WIDE + WIDE / 2];
+}
+
+/* At corners of which near/z, in 30 bits, differs by about 2^23: those of smaller differences are
+ * interpolated without it, in numbers of 19 bits and a sign. */
+static void steep_triangles_have_their_depths(void **state)
+{
+    (void)state;
+    picture_kit kit;
+    const int32_t lower_wu = 8000 * M, upper_wu = 6430 * M + M / 10;
+    assert_int_equal(picture_open(&kit, PICTURE_SOFT, 96, 72, 0), FF_OK);
+    kit.frame.camera.near_wu = 256 * M;
+    kit.frame.camera.far_wu = 40000 * M;
+    kit.frame.camera.focal_q8 = 48 * 256;
+    for (int32_t i = 0; i < 400; i++) { /* some of them by 1 to 15 less than 2^23 */
+        uint8_t rgb[3];
+        int32_t depth_wu = look_at_steep(&kit, upper_wu + i / 8, lower_wu + i % 8, rgb);
+        assert_int_equal(rgb[0], 255);
+        /* half a pixel below the middle of 24: 24 / (11.5 / upper + 12.5 / lower) */
+        assert_in_range(depth_wu, 7155 * M, 7165 * M);
+    }
+    picture_close(&kit);
+}
+
 static void lines_cross_the_near_plane(void **state)
 {
     (void)state;
@@ -372,6 +422,7 @@ int main(void)
         cmocka_unit_test(every_pixel_of_a_surface_is_written_once),
         cmocka_unit_test(centres_on_left_and_upper_edges_are_inside),
         cmocka_unit_test(the_ground_under_the_camera_has_no_hole),
+        cmocka_unit_test(steep_triangles_have_their_depths),
         cmocka_unit_test(lines_cross_the_near_plane),
         cmocka_unit_test(textures_come_from_the_block_and_go_back),
         cmocka_unit_test(backdrops_outlive_what_they_are_made_of),

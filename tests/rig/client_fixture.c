@@ -56,6 +56,22 @@ static int make_face(const ff_face_job *job, uint8_t *out, size_t capacity)
     return ff_message_encode(&message, out, capacity);
 }
 
+/* A sector with one fin 2 km away. */
+static int make_sector(const client_rig *rig, const ff_face_job *job, uint8_t *out, size_t capacity)
+{
+    uint8_t fins[64] = { 0xFF };
+    const ff_fin_vertex fin[2] = { { .distance = 160, .begins = 1 }, { 8, 8, 160, 0 } };
+    unsigned sector = job->face;
+    int bytes = rig->spoilt >> sector & 1u ? 1 : ff_fins_encode(fin, 2, fins, sizeof fins);
+    ff_message message = { .type = FF_MSG_ANSWER, .kind = FF_KIND_FAR };
+    message.u.far = (ff_far){ .id = job->far.id,
+                              .sector = (uint8_t)sector,
+                              .flags = job->last ? FF_FACE_LAST : 0,
+                              .fins = fins,
+                              .fins_bytes = (uint32_t)bytes };
+    return ff_message_encode(&message, out, capacity);
+}
+
 static void count_messages(client_rig *rig, const uint8_t *bytes, size_t count)
 {
     ff_message message;
@@ -79,7 +95,8 @@ static void serve(client_rig *rig)
     }
     ff_face_job job;
     while (!rig->no_faces && ff_session_next_face(rig->session, &job)) {
-        int bytes = make_face(&job, face, sizeof face);
+        int bytes = job.kind == FF_KIND_FAR ? make_sector(rig, &job, face, sizeof face)
+                                            : make_face(&job, face, sizeof face);
         ff_session_face_done(rig->session, &job, face, bytes);
     }
 }

@@ -1,6 +1,6 @@
 /* A client over a server in the same process: the stream between them is an array that can be cut,
  * silenced, spoilt and chopped. Faces are made up: side faces show a strip of ground, UP and DOWN
- * are empty. Time is a number. */
+ * are empty; so are sectors of far sets: each has one fin. Time is a number. */
 #ifndef CLIENT_FIXTURE_H
 #define CLIENT_FIXTURE_H
 
@@ -23,6 +23,7 @@ typedef struct client_rig {
     uint8_t version;    /* not 0: what the server hears of a HELLO's version */
     uint8_t about_set;  /* not 0: and of the entries that GET_ABOUT asks for */
     int no_faces;       /* the renderer never answers */
+    unsigned spoilt;    /* bits of a far set's sectors whose fins are nonsense */
     unsigned chop;      /* recv gives at most this many bytes; 0: all there are */
 
     uint64_t bytes_down;

@@ -131,6 +131,20 @@ refused() { # PATTERN WHAT ARGUMENTS...: one line, and no flight
     result $? "one line for $what" || sed 's/^/# /' "$work/err"
 }
 
+# ---- a far set over grounds beside each other ----
+pack half 256,0,257,513 1
+pack whole 0,0,513,513 1
+printf 't_s,x_m,y_m,h_m,heading_deg,pitch_deg\n0,500,2400,300,90,-5\n8,620,2400,300,90,-5\n' >"$work/east.path"
+sets="--path $work/east.path --settle 3 --fps 10 --link lan --far paint --far-front 1200 --far-coarse 8"
+flies sets_whole $sets --pack "$work/whole.ffp"
+flies sets_half $sets --pack "$work/west.ffp"
+flies sets_halves $sets --pack "$work/west.ffp" --pack "$work/half.ffp"
+flies no_sets $sets --far off --quality px:16 --pack "$work/west.ffp" --pack "$work/half.ffp"
+is 'sets_halves.far_sectors == sets_whole.far_sectors > 0 and sets_halves.far_fins_bytes == sets_whole.far_fins_bytes > sets_half.far_fins_bytes' \
+    "the outlines of two grounds are those of the whole"
+is 'abs(sets_halves.far_bytes / sets_whole.far_bytes - 1) < 0.01 and sets_halves.requests_failed == 0' "and so are their colours"
+is 'sets_halves.skyline_px_rms < no_sets.skyline_px_rms / 2' "and they mend the skyline"
+
 # ---- a real server ----
 "$bin/farfield-server" $inset --listen 127.0.0.1:0 >"$work/server.log" 2>&1 &
 server_pid=$!
@@ -139,6 +153,8 @@ port=$(sed -n 's/.*listening on [^ ]*:\([0-9]*\).*/\1/p' "$work/server.log")
 flies real $inset --server "127.0.0.1:$port" --local "$work/region.ffp" --start 0.4 --speed 400 --seconds 4 --settle 3
 is 'real.undrawn_px_percent == 0 and real.crack_frames == 0 and real.ground_px_percent[1] > 10 and real.bytes_down_all > 1000' \
     "a server of both grounds, and a part on the device"
+flies real_sets $inset --server "127.0.0.1:$port" --far fins --far-front 1000 --speed 400 --seconds 2 --settle 2
+is 'real_sets.far_sectors > 0 and real_sets.requests_failed == 0' "and its far sets"
 timeout 60 "$bin/farfield-fly" --pack "$work/country.ffp" --server "127.0.0.1:$port" --backend none --seconds 0 --settle 3 2>"$work/err"
 [ $? = 1 ] && grep -q "^farfield-fly: 127.0.0.1:$port: serves more packs than --pack$" "$work/err"
 result $? "a server of more packs than were named is an error"
