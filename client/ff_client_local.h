@@ -62,10 +62,10 @@ struct ff_client {
     ff_sets *sets;   /* in a pool of the terrain; NULL: none are used */
     int32_t fine_wu; /* ff_quality's, while sets are in use */
     uint8_t coarse;
-    /* FF_FAR_AUTO: when its rule was asked last, and sets were begun or left */
+    /* FF_FAR_AUTO: when its rule was asked last, sets paid, and they were begun or left */
     uint8_t far_asked;
     uint32_t far_turns;
-    int64_t far_us, far_turned_us;
+    int64_t far_us, far_paid_us, far_turned_us;
     ff_sky sky;
     ff_motion motion;
     ff_turn turn;

@@ -5,6 +5,7 @@
 #define DECIDE_US     INT64_C(2000000)
 #define PATIENCE_US   INT64_C(6000000)  /* while ground in view is missing */
 #define AGAIN_US      INT64_C(20000000) /* between sets and none: it shall not go to and fro */
+#define LEAVE_US      INT64_C(30000000) /* since sets paid last */
 #define SPEED_OVER_US 1000000
 
 static int64_t speed_wu_s(const ff_client *client, const c3d_camera *camera)
@@ -41,11 +42,16 @@ static void describe(ff_client *client, const c3d_camera *camera, int32_t cleara
     ff_estimate_far(client->tree, ff_sets_front_wu(client->sets, clearance_wu), &now->ground);
 }
 
+/* Sets that do not pay now may do so in the next valley or to the other side: for a while no new
+ * one is asked for, and only then they are left. */
 static void choose(ff_client *client, const ff_far_choice *next, int64_t now_us)
 {
     ff_far_choice *choice = &client->sets->choice;
     int turns = !next->use != !choice->use;
+    if (next->use || !choice->use) client->far_paid_us = now_us;
+    client->sets->unpaid = !next->use;
     if (turns && client->far_turns && now_us - client->far_turned_us < AGAIN_US) return;
+    if (turns && !next->use && now_us - client->far_paid_us < LEAVE_US) return;
     if (turns) {
         client->far_turned_us = now_us;
         client->far_turns++;
@@ -55,12 +61,12 @@ static void choose(ff_client *client, const ff_far_choice *next, int64_t now_us)
 }
 
 /* All of the client's own ground is here, or was asked for: what is left of sets goes. */
-static void leave(ff_client *client)
+static void leave(ff_client *client, int64_t now_us)
 {
     if (client->sets->choice.use || client->dirty || client->unranked) return;
     if (client->sets->active < 0 && client->sets->next < 0) return;
     if (ff_client_waiting(client, FF_CLASS_IN_VIEW)) return;
-    ff_sets_leave(client->sets, &client->first.requests);
+    ff_sets_leave(client->sets, &client->first.requests, now_us);
     client->dirty = 1;
 }
 
@@ -77,7 +83,6 @@ static void decide(ff_client *client, const c3d_camera *camera, int32_t clearanc
     if (!now.ground.nodes) return;
     client->far_us = now_us;
     ff_far_choice next = ff_far_choose(&now, &client->sets->choice);
-    if (client->desc.balance.mode == FF_BALANCE_ALL_CLIENT) next.use = FF_FAR_OFF;
     choose(client, &next, now_us);
 }
 
@@ -85,6 +90,9 @@ void ff_client_far_step(ff_client *client, const c3d_camera *camera, int32_t cle
                         int64_t now_us)
 {
     if (client->desc.far.enabled != FF_FAR_AUTO || ff_client_low_power(client)) return;
-    leave(client);
-    decide(client, camera, clearance_wu, now_us);
+    leave(client, now_us);
+    if (client->desc.balance.mode == FF_BALANCE_ALL_CLIENT)
+        client->sets->choice.use = FF_FAR_OFF;
+    else
+        decide(client, camera, clearance_wu, now_us);
 }

@@ -79,10 +79,11 @@ static void end_fade(ff_sets *sets)
     sets->through = 0;
 }
 
-/* The drawn set, if there is one, stays below the coming one, which is drawn from now on. */
+/* The drawn set, if there is one, stays below the coming one, which is drawn from now on: or below
+ * none. */
 static void begin_fade(ff_sets *sets, int64_t now_us)
 {
-    FF_ASSERT(sets->next >= 0 && sets->under < 0);
+    FF_ASSERT(sets->under < 0);
     sets->under = sets->active;
     sets->active = sets->next;
     sets->next = -1;
@@ -225,12 +226,13 @@ static int good_soon(const ff_sets *sets, const c3d_camera *camera, const ff_mot
     return ff_sets_good(&sets->set[newest], then_wu);
 }
 
-void ff_sets_leave(ff_sets *sets, ff_requests *requests)
+void ff_sets_leave(ff_sets *sets, ff_requests *requests, int64_t now_us)
 {
     ff_requests_cancel_all(requests, FF_KIND_FAR);
     end_fade(sets);
-    for (int i = 0; i < 2; i++) drop_set(sets, i);
-    sets->active = sets->next = -1;
+    if (sets->next >= 0) drop_set(sets, sets->next);
+    sets->next = -1;
+    begin_fade(sets, now_us);
 }
 
 int ff_sets_update(ff_sets *sets, ff_requests *requests, const c3d_camera *camera,
@@ -248,7 +250,7 @@ int ff_sets_update(ff_sets *sets, ff_requests *requests, const c3d_camera *camer
         sets->retry_us = INT64_MIN;
         changed = 1;
     }
-    if (good_soon(sets, camera, motion)) return changed;
+    if (sets->unpaid || good_soon(sets, camera, motion)) return changed;
     /* one set outstanding at most: one that comes too late gives way when it is cancelled */
     if (sets->next >= 0) {
         if (ff_requests_cancel(requests, FF_KIND_FAR, sets->set[sets->next].key)) return changed;

@@ -113,6 +113,7 @@ typedef struct ff_sets {
     uint16_t seen;        /* bit per sector: in the last view */
     /* what is asked for next; use FF_FAR_OFF: nothing, and ground is drawn as if there were none */
     ff_far_choice choice;
+    uint8_t unpaid;   /* no new set is begun for now */
     int32_t front_wu; /* the nearest front, as high as the camera is */
     uint32_t serial;
     int64_t retry_us, lead_us;
@@ -139,8 +140,8 @@ int ff_sets_in_use(const ff_sets *sets, const c3d_camera *camera, int32_t *fine_
  * above ground. */
 int32_t ff_sets_front_wu(const ff_sets *sets, int32_t clearance_wu);
 int32_t ff_sets_life_wu(const ff_sets *sets, int32_t clearance_wu);
-/* Drops the drawn set and what is coming. */
-void ff_sets_leave(ff_sets *sets, ff_requests *requests);
+/* Drops the drawn set, which fades out, and what is coming, at once. */
+void ff_sets_leave(ff_sets *sets, ff_requests *requests, int64_t now_us);
 /* Plans sets. `clearance_wu`: how high the camera is above ground. 1 when the drawn set or what is
  * wanted changed, and while sets fade. */
 int ff_sets_update(ff_sets *sets, ff_requests *requests, const c3d_camera *camera,

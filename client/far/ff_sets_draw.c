@@ -174,17 +174,26 @@ static unsigned sectors_of(const ff_set *set, const ff_terrain_info *info, const
     return sectors;
 }
 
-/* Where the drawn set has no paint, that below it fades out. */
+/* Throws what is drawn of both sets on what draws[0] draws: of the drawn one some sectors, of that
+ * below it others. Where the drawn one has none, that below it fades out. */
+static unsigned throw_both(const ff_sets *sets, unsigned active, unsigned under,
+                           c3d_draw draws[FF_THROWS_MAX])
+{
+    unsigned count = 1;
+    if (sets->under >= 0)
+        count = throw_set(sets, sets->under, under, active ? 0 : (uint8_t)(256 - sets->through),
+                          draws, count);
+    return active ? throw_set(sets, sets->active, active, sets->through, draws, count) : count;
+}
+
 unsigned ff_sets_lay(const void *context, const ff_terrain_info *info, const ff_drawn *drawn,
                      c3d_draw draws[FF_THROWS_MAX])
 {
     const ff_sets *sets = context;
-    if (sets->active < 0) return 1;
-    unsigned sectors = sectors_of(&sets->set[sets->active], info, drawn), count = 1;
-    if (sets->under >= 0)
-        count = throw_set(sets, sets->under, sectors_of(&sets->set[sets->under], info, drawn),
-                          sectors ? 0 : (uint8_t)(256 - sets->through), draws, count);
-    return throw_set(sets, sets->active, sectors, sets->through, draws, count);
+    unsigned active = 0, under = 0;
+    if (sets->active >= 0) active = sectors_of(&sets->set[sets->active], info, drawn);
+    if (sets->under >= 0) under = sectors_of(&sets->set[sets->under], info, drawn);
+    return throw_both(sets, active, under, draws);
 }
 
 /* ---- fins on the screen ---- */
@@ -197,11 +206,10 @@ static void draw_sector(const ff_sets *sets, int index, unsigned s, const c3d_ca
     c3d_draw draws[FF_THROWS_MAX] = {
         { .xy_scale_wu = 1, .z_scale_q16 = 65536, .flags = C3D_DRAW_COLOURED, .tex_columns = 1 }
     };
-    unsigned count = 1;
     for (int axis = 0; axis < 3; axis++)
         draws[0].origin_wu[axis] = (int64_t)set->position_wu[axis] - camera->pos_wu[axis];
-    if (sets->under >= 0) count = throw_set(sets, sets->under, 1u << s, 0, draws, count);
-    count = throw_set(sets, sets->active, 1u << s, sets->through, draws, count);
+    int painted = sets->active >= 0 && sets->set[sets->active].sector[s].paint.id;
+    unsigned count = throw_both(sets, painted ? 1u << s : 0, 1u << s, draws);
     for (unsigned i = 0; i < sector->chunks; i++)
         for (unsigned k = 0; k < count; k++) {
             draws[k].mesh = sector->mesh[i];
@@ -212,11 +220,11 @@ static void draw_sector(const ff_sets *sets, int index, unsigned s, const c3d_ca
 
 void ff_sets_draw(const ff_sets *sets, const c3d_camera *camera)
 {
-    if (sets->active < 0) return;
+    if (sets->active < 0 && sets->under < 0) return;
     unsigned seen = ff_sets_in_view(camera);
     for (unsigned s = 0; s < FF_FAR_SECTORS; s++) {
         if (!(seen >> s & 1u)) continue;
         if (sets->under >= 0) draw_sector(sets, sets->under, s, camera);
-        draw_sector(sets, sets->active, s, camera);
+        if (sets->active >= 0) draw_sector(sets, sets->active, s, camera);
     }
 }

@@ -177,6 +177,7 @@ struct soft_state {
     soft_throw throw;
     uint8_t off_texture;  /* 1: some vertex lies beyond the texture's edges */
     uint8_t tiny_rows;    /* 1: texture_rows, and the texture is small enough for soft_tiny */
+    uint8_t tiny_colours; /* 1: nothing but colours, into RGB565, depth tested, no fog */
     uint8_t texture_rows; /* 1: nothing but a texture, never off it, into RGB565, depth tested */
     uint32_t deferred_count;
     soft_deferred deferred[C3D_SOFT_BACKDROPS];
@@ -272,8 +273,8 @@ void soft_throw_vertex(const soft_state *state, const int32_t sum[3], soft_verte
 void soft_thrown_strip(soft_state *state, const uint16_t *indices, uint32_t count);
 void soft_thrown_triangle(soft_state *state, const soft_vertex *a, const soft_vertex *b,
                           const soft_vertex *c);
-/* soft_thrown_tiny.c: draws one of a few rows that shows the picture alone, and whose s and t may
- * be interpolated linearly, or returns 0; a.y <= b.y <= c.y. */
+/* soft_thrown_tiny.c: draws one of a few rows on the texture, whose s and t may be interpolated
+ * linearly, or returns 0; a.y <= b.y <= c.y. */
 int soft_thrown_tiny(soft_state *state, const soft_vertex *a, const soft_vertex *b,
                      const soft_vertex *c);
 /* soft_thrown_rows.c: draws any such triangle; a.y <= b.y <= c.y. */
@@ -312,6 +313,10 @@ int soft_small(soft_state *state, const soft_vertex *a, const soft_vertex *b, co
 /* soft_tiny.c: draws a triangle of a few rows, or returns 0; only where state->tiny_rows. Corners
  * in any order. */
 int soft_tiny(soft_state *state, const soft_vertex *a, const soft_vertex *b, const soft_vertex *c);
+
+/* soft_tiny_colours.c: the same in colours; only where state->tiny_colours. */
+int soft_tiny_colours(soft_state *state, const soft_vertex *a, const soft_vertex *b,
+                      const soft_vertex *c);
 
 /* soft_spans.c: sets state->span for the paint; after soft_transform. */
 void soft_choose_span(soft_state *state);

@@ -25,12 +25,13 @@ static inline uint16_t soft_colour_565(int32_t red, int32_t green, int32_t blue)
     return (uint16_t)((red >> 8 & 0xF800) | (green >> 13 & 0x7E0) | (blue >> 19 & 0x1F));
 }
 
-/* One colour, rounded alike. */
-static inline uint16_t soft_flat_565(const uint8_t rgba[4])
+/* A vertex's colours as soft_make_ramp has them: below 2^24. */
+static inline void soft_take_colours(int32_t out[3], const uint8_t rgba[4])
 {
-    int32_t red = rgba[0] << 16, green = rgba[1] << 16, blue = rgba[2] << 16;
-    return soft_colour_565(red - (red >> 5) + (4 << 16), green - (green >> 6) + (2 << 16),
-                           blue - (blue >> 5) + (4 << 16));
+    out[0] = rgba[0] * 63488 + (4 << 16);
+    out[1] = rgba[1] * 64512 + (2 << 16);
+    out[2] = rgba[2] * 63488 + (4 << 16);
 }
+FF_STATIC_ASSERT(255 * 63488 + (4 << 16) < 1 << 24 && 255 * 64512 + (2 << 16) < 1 << 24);
 
 #endif

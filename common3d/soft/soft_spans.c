@@ -133,7 +133,7 @@ void soft_choose_span(soft_state *state)
     const soft_texture *texture = paint->texture;
     C3D_ASSERT(!texture || (texture->width <= 4096 && texture->height <= 4096));
     state->span = soft_segment_paint;
-    state->texture_rows = state->tiny_rows = 0;
+    state->texture_rows = state->tiny_rows = state->tiny_colours = 0;
     state->segment.w_shift = 0;
     if (state->wide || paint->depth == SOFT_DEPTH_NONE) return;
     int test = paint->depth == SOFT_DEPTH_TEST;
@@ -142,6 +142,7 @@ void soft_choose_span(soft_state *state)
         return;
     }
     if (!texture) state->span = test ? span_colour : soft_span_backdrop;
+    state->tiny_colours = !texture && test && !paint->fog;
     if (texture && paint->white && texture->format == C3D_RGB565 && test) {
         state->span = span_texture;
         state->texture_rows = !state->off_texture;

@@ -6,8 +6,6 @@
  * their neighbours. */
 #include "soft_edge.h"
 
-#define WHOLE_MAX_Q4 (16 * SOFT_ONE)
-
 /* How the triangles of a draw are drawn. */
 typedef struct ways {
     soft_paint bare, thrown, over;
@@ -52,43 +50,14 @@ static int is_flat(const soft_vertex *a, const soft_vertex *b, const soft_vertex
     return (uint64_t)(most - least) * (uint32_t)(range >> 13) <= (uint64_t)least * 8;
 }
 
-static int is_opaque(const soft_texture *texture, const soft_vertex *vertex)
-{
-    const uint16_t *texels = (const uint16_t *)(const void *)texture->texels + texture->stride + 1;
-    int32_t column = (vertex->s + 32768) >> 16, row = (vertex->t + 32768) >> 16;
-    C3D_ASSERT(column >= 0 && column < texture->width && row >= 0 && row < texture->height);
-    return texels[row * texture->stride + column] & 1;
-}
-
-/* 1 when a triangle of few pixels shows nothing but the picture: it is opaque at all corners. What
- * is open between them has the colour of one. */
-static int is_whole(const soft_state *state, const soft_vertex *a, const soft_vertex *b,
-                    const soft_vertex *c)
-{
-    const soft_texture *texture = state->paint.texture;
-    return state->span == soft_span_thrown && c->y - a->y < WHOLE_MAX_Q4 &&
-           b->x - a->x < WHOLE_MAX_Q4 && a->x - b->x < WHOLE_MAX_Q4 && c->x - a->x < WHOLE_MAX_Q4 &&
-           a->x - c->x < WHOLE_MAX_Q4 && is_opaque(texture, a) && is_opaque(texture, b) &&
-           is_opaque(texture, c);
-}
-
 /* In the ways of small triangles, where one will do; 0 where none does. */
 static int draw_small(soft_state *state, const soft_vertex *a, const soft_vertex *b,
                       const soft_vertex *c)
 {
     if (!is_flat(a, b, c)) return 0;
     state->off_texture = ((a->off | b->off | c->off) & SOFT_OFF_SIDES) != 0;
-    if (!state->off_texture && !state->paint.white && is_whole(state, a, b, c)) {
-        state->paint.white = 1;
-        for (int i = 0; i < 3; i++) {
-            state->segment.value[SOFT_R + i] = a->rgba[i] << 16;
-            state->segment.step[SOFT_R + i] = 0;
-        }
-    }
-    int alone = !state->off_texture && state->paint.white && state->span == soft_span_thrown &&
-                !state->paint.fog;
-    int drawn = (alone && soft_thrown_tiny(state, a, b, c)) || soft_small(state, a, b, c);
-    state->paint.white = state->paint.alpha_test;
+    int tiny = !state->off_texture && state->span == soft_span_thrown && !state->paint.fog;
+    int drawn = (tiny && soft_thrown_tiny(state, a, b, c)) || soft_small(state, a, b, c);
     state->off_texture = 1;
     return drawn;
 }
@@ -118,7 +87,7 @@ static void draw_bare(soft_state *state, const ways *by, const soft_vertex *a, c
     use(state, &by->bare);
     if ((a->out | b->out | c->out) & SOFT_MUST_CLIP)
         soft_clip(state, a, b, c);
-    else
+    else if (!state->tiny_colours || !soft_tiny_colours(state, a, b, c))
         soft_triangle(state, a, b, c);
 }
 

@@ -32,7 +32,8 @@ static inline void draw(soft_state *state, const soft_vertex *a, const soft_vert
     if (a->out & b->out & c->out) return;
     if (any & SOFT_MUST_CLIP)
         soft_clip(state, a, b, c);
-    else if (!state->tiny_rows || !soft_tiny(state, a, b, c))
+    else if (!(state->tiny_rows && soft_tiny(state, a, b, c)) &&
+             !(state->tiny_colours && soft_tiny_colours(state, a, b, c)))
         soft_triangle(state, a, b, c);
 }
 

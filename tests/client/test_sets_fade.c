@@ -223,6 +223,39 @@ static void the_first_set_fades_in(void **state)
     picture_close(&s.kit);
 }
 
+/* Whoever needs no sets any more: the drawn one goes as the first came; what is coming, at once. */
+static void the_last_set_fades_out(void **state)
+{
+    (void)state;
+    static stage s;
+    c3d_stats stats;
+    open_stage(&s);
+    give_set(&s, 0, 0x003F);
+    give_set(&s, 1, 0xF801);
+    s.sets.active = 0;
+    s.sets.next = 1;
+    assert_int_equal(show(&s)[1], 0);
+    ff_sets_leave(&s.sets, &s.requests, start_us);
+    assert_int_equal(s.sets.active, -1);
+    assert_int_equal(s.sets.next, -1);
+    c3d_get_stats(s.kit.device, &stats);
+    assert_int_equal(stats.texture_held, 1);
+    int last = show(&s)[1];
+    assert_in_range(last, 0, 4);
+    for (int64_t past_us = FRAME_US; past_us < FF_SETS_FADE_US; past_us += FRAME_US) {
+        assert_int_equal(update(&s, start_us + past_us, 1), 1);
+        int green = show(&s)[1]; /* of the fin's own colour */
+        assert_true(green >= last + 4);
+        last = green;
+    }
+    assert_true(last > 40);
+    assert_int_equal(update(&s, start_us + FF_SETS_FADE_US, 1), 1);
+    c3d_get_stats(s.kit.device, &stats);
+    assert_int_equal(stats.texture_held, 0);
+    assert_int_equal(update(&s, start_us + FF_SETS_FADE_US, 1), 0);
+    picture_close(&s.kit);
+}
+
 /* Of both sets on a node the lower one lies as it is; alone it fades out. */
 static void nodes_wear_both(void **state)
 {
@@ -275,6 +308,7 @@ int main(void)
         cmocka_unit_test(who_leaves_both_behind_has_none),
         cmocka_unit_test(colours_go_from_one_to_the_other),
         cmocka_unit_test(the_first_set_fades_in),
+        cmocka_unit_test(the_last_set_fades_out),
         cmocka_unit_test(nodes_wear_both),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

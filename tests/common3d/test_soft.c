@@ -29,7 +29,7 @@ typedef struct bench {
     void *memory;
     c3d_device *device;
     c3d_mesh mesh;
-    c3d_texture white;
+    c3d_texture white, thrown;
     c3d_strip triangle[TRIANGLES];
     c3d_frame frame;
 } bench;
@@ -39,7 +39,7 @@ static void open_bench(bench *b)
     c3d_desc desc = { .surface_api = sys_surface_memory(),
                       .mesh_count = 2,
                       .strip_count = TRIANGLES,
-                      .texture_count = 1,
+                      .texture_count = 2,
                       .mesh_vertices_max = SIDE * SIDE,
                       .strip_indices_max = 3 * TRIANGLES,
                       .width = WIDTH,
@@ -59,6 +59,10 @@ static void open_bench(bench *b)
     }
     static const uint16_t white[4] = { 0xFFFF, 0xFFFF, 0xFFFF, 0xFFFF };
     b->white = c3d_texture_make(b->device, C3D_RGB565, 2, 2, white);
+    uint16_t texels[64];
+    for (int i = 0; i < 64; i++)
+        texels[i] = i % 8 % 7 && i / 8 % 7 ? 0xFFFF : 0xFFFE; /* open at the outside */
+    b->thrown = c3d_texture_make(b->device, C3D_RGBA5551, 8, 8, texels);
     b->frame.camera = (c3d_camera){ .pitch = -16384,
                                     .focal_q8 = 40 * 256,
                                     .width = WIDTH,
@@ -104,7 +108,8 @@ static void count_writes(bench *b, c3d_draw *draw, uint8_t *writes)
 }
 
 /* Seen from far above, where triangles are smaller than a pixel, to so near that the guard band
- * clips them, at any angle; in one colour, and under a texture, whose triangles take other code. */
+ * clips them, at any angle; in one colour, under a texture, and under one that is thrown from
+ * above, whose triangles take other code. */
 static void every_pixel_of_a_surface_is_written_once(void **state)
 {
     (void)state;
@@ -114,7 +119,7 @@ static void every_pixel_of_a_surface_is_written_once(void **state)
     sys_random random;
     sys_random_seed(&random, 5, 5);
     open_bench(&b);
-    for (int round = 0; round < 60; round++) {
+    for (int round = 0; round < 90; round++) {
         int32_t above = above_m[round % 5] * M, scale = above < 100 * M ? 4 : 8;
         scatter(&b, &random);
         b.frame.camera.roll = (int32_t)sys_random_u32(&random);
@@ -125,7 +130,16 @@ static void every_pixel_of_a_surface_is_written_once(void **state)
         draw.origin_wu[0] = -scale * 3500 - (int32_t)sys_random_below(&random, 400);
         draw.origin_wu[1] = -scale * 3500 - (int32_t)sys_random_below(&random, 400);
         draw.origin_wu[2] = -above;
-        if (round & 1) {
+        const c3d_projector projector = {
+            { 0, 0, 0 },
+            { { 1 << 23, 0, -(1 << 23) }, { 0, 1 << 23, -(1 << 23) }, { 0, 0, -(1 << 24) } }
+        };
+        if (round % 3 == 2) {
+            draw.flags = C3D_DRAW_PROJECTED;
+            draw.texture = b.thrown;
+            draw.projector = &projector;
+        }
+        if (round % 3 == 1) {
             draw.flags = C3D_DRAW_TEXTURED;
             draw.texture = b.white;
             draw.tex_scale_q16[0] = draw.tex_scale_q16[1] = 7000;

@@ -462,6 +462,7 @@ static void throw_anything(picture_kit *kit, sys_random *random, c3d_texture tex
                                (sys_random_u32(random) & C3D_DRAW_ALPHA_TEST) |
                                (sys_random_u32(random) & C3D_DRAW_ON_TOP),
                       .texture = texture,
+                      .through = (uint8_t)sys_random_u32(random),
                       .projector = &projector };
     assert_true(draw.mesh.id && draw.strip.id);
     for (int axis = 0; axis < 3; axis++) {

@@ -68,7 +68,7 @@ PLACES = {  # what each counts to under each mark; None: it has nothing to do th
     "common3d/soft/soft_perspective.o": (None, TAKE_IN, PERSPECTIVE),
     "common3d/soft/soft_thrown.o": (None, TAKE_IN, THROW),
     "common3d/soft/soft_thrown_rows.o common3d/soft/soft_thrown_strip.o common3d/soft/soft_thrown_tiny.o": (None, TAKE_IN, THROWN),
-    "common3d/soft/soft_small.o common3d/soft/soft_tiny.o": (None, TAKE_IN, SMALL),
+    "common3d/soft/soft_small.o common3d/soft/soft_tiny.o common3d/soft/soft_tiny_colours.o": (None, TAKE_IN, SMALL),
     "platform/": (LINK, MEASURE, STITCH),
     "platform/posix/jpeg.o platform/posix/jpeg_tables.o": (JPEG, None, None),
     "protocol/": (LINK, MEASURE, STITCH),
