@@ -317,6 +317,26 @@ void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama)
     ff_client_balance_begin(client, 0);
 }
 
+void ff_client_set_far(ff_client *client, const ff_far_desc *far)
+{
+    client->desc.far = *far;
+    if (far->enabled > FF_FAR_AUTO) client->desc.far.enabled = FF_FAR_AUTO;
+    if (far->coarse > FF_FAR_COARSE_MAX) client->desc.far.coarse = FF_FAR_COARSE_MAX;
+    if (far->paint_shift > FF_FAR_SHIFT_MAX) client->desc.far.paint_shift = FF_FAR_SHIFT_MAX;
+    if (far->jpeg_quality > 100) client->desc.far.jpeg_quality = 100;
+    default_far(&client->desc);
+    client->dirty = 1;
+    if (client->desc.far.enabled && client->panorama.desc.enabled)
+        ff_client_set_panorama(client, &client->desc.panorama);
+    if (!client->have_terrain) return;
+    if (client->sets) {
+        ff_sets_set(client->sets, &client->first.requests, &client->desc.far);
+        client->far_asked = 0;
+    } else if (client->desc.far.enabled && !client->economy) {
+        start_over(client); /* the block was shared out without sets */
+    }
+}
+
 void ff_client_set_show(ff_client *client, unsigned show)
 {
     client->dirty |= client->show != show;

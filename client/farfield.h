@@ -238,12 +238,13 @@ void ff_client_draw(ff_client *client);
  * after. */
 void ff_client_event(ff_client *client, const sys_event *event);
 
-/* Settings that may change between frames. When panoramas are switched on and the block was shared
- * out without them, the client gives up the terrain, shares the block out anew and asks for the
+/* Settings that may change between frames. When panoramas or far sets are switched on and the block
+ * was shared out without them, the client gives up the terrain, shares the block out anew and asks for the
  * ground again. A face_size that ff_client_create would refuse becomes the nearest that it takes.
  */
 void ff_client_set_quality(ff_client *client, const ff_quality *quality);
 void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama);
+void ff_client_set_far(ff_client *client, const ff_far_desc *far); /* on: panoramas go off */
 /* New budgets and limits, or on and off. Share and fidelity stay where they are on their ladders
  * and move from there. */
 void ff_client_set_balance(ff_client *client, const ff_balance_desc *balance);

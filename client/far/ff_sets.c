@@ -12,21 +12,25 @@
 
 const uint8_t ff_sets_built = 1;
 
+static ff_far_choice first_choice(const ff_far_desc *desc)
+{
+    return (ff_far_choice){ .use = desc->enabled == FF_FAR_AUTO ? FF_FAR_OFF : desc->enabled };
+}
+
 void ff_sets_init(ff_sets *sets, c3d_device *device, const ff_far_desc *desc,
                   const ff_terrain_info *info, unsigned side)
 {
-    *sets =
-        (ff_sets){ .device = device,
-                   .desc = *desc,
-                   .info = info,
-                   .side = (uint16_t)side,
-                   .paint_bytes = UINT32_MAX,
-                   .active = -1,
-                   .next = -1,
-                   .under = -1,
-                   .front_wu = desc->front_wu,
-                   .choice = { .use = desc->enabled == FF_FAR_AUTO ? FF_FAR_OFF : desc->enabled },
-                   .retry_us = INT64_MIN };
+    *sets = (ff_sets){ .device = device,
+                       .desc = *desc,
+                       .info = info,
+                       .side = (uint16_t)side,
+                       .paint_bytes = UINT32_MAX,
+                       .active = -1,
+                       .next = -1,
+                       .under = -1,
+                       .front_wu = desc->front_wu,
+                       .choice = first_choice(desc),
+                       .retry_us = INT64_MIN };
 }
 
 void ff_sets_scratch(ff_sets *sets, c3d_vertex *scratch, uint16_t *indices, unsigned vertices)
@@ -224,6 +228,17 @@ static int good_soon(const ff_sets *sets, const c3d_camera *camera, const ff_mot
     memcpy(then_wu, camera->pos_wu, sizeof then_wu);
     if (sets->next < 0) (void)ff_motion_level(motion, sets->lead_us, then_wu);
     return ff_sets_good(&sets->set[newest], then_wu);
+}
+
+void ff_sets_set(ff_sets *sets, ff_requests *requests, const ff_far_desc *desc)
+{
+    ff_requests_cancel_all(requests, FF_KIND_FAR);
+    end_fade(sets);
+    for (int i = 0; i < 2; i++) drop_set(sets, i);
+    sets->active = sets->next = -1;
+    sets->desc = *desc;
+    sets->choice = first_choice(desc);
+    sets->unpaid = 0;
 }
 
 void ff_sets_leave(ff_sets *sets, ff_requests *requests, int64_t now_us)

@@ -140,6 +140,8 @@ int ff_sets_in_use(const ff_sets *sets, const c3d_camera *camera, int32_t *fine_
  * above ground. */
 int32_t ff_sets_front_wu(const ff_sets *sets, int32_t clearance_wu);
 int32_t ff_sets_life_wu(const ff_sets *sets, int32_t clearance_wu);
+/* Other settings: what there is of sets goes at once. */
+void ff_sets_set(ff_sets *sets, ff_requests *requests, const ff_far_desc *desc);
 /* Drops the drawn set, which fades out, and what is coming, at once. */
 void ff_sets_leave(ff_sets *sets, ff_requests *requests, int64_t now_us);
 /* Plans sets. `clearance_wu`: how high the camera is above ground. 1 when the drawn set or what is

@@ -15,6 +15,11 @@ void ff_sets_init(ff_sets *sets, c3d_device *device, const ff_far_desc *desc,
     sets->active = sets->next = sets->under = -1;
 }
 
+void ff_sets_set(ff_sets *sets, ff_requests *requests, const ff_far_desc *desc)
+{
+    (void)sets, (void)requests, (void)desc;
+}
+
 void ff_sets_scratch(ff_sets *sets, c3d_vertex *scratch, uint16_t *indices, unsigned vertices)
 {
     (void)sets, (void)scratch, (void)indices, (void)vertices;

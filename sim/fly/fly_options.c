@@ -40,6 +40,7 @@ static void complete(fly_options *options)
                                                    : INT32_MAX;
     sim_client_read(&options->quality_text, options->triangles, &options->size,
                     options->balance_text, &options->quality, &options->balance);
+    sim_far_read(&options->balance, &options->use_far, &options->use_panorama);
     options->panorama =
         (ff_panorama_desc){ .enabled = (uint8_t)options->use_panorama,
                             .back_plane_wu = (int32_t)(options->back_plane_m * FF_WU_PER_METRE),
@@ -53,6 +54,8 @@ static void complete(fly_options *options)
 int fly_options_parse(fly_options *options, int argc, char **argv)
 {
     *options = (fly_options){ .seconds = -1,
+                              .use_far = SYS_UNSET,
+                              .use_panorama = SYS_UNSET,
                               .check = SYS_UNSET,
                               .packs = { options->pack, 0, FF_WELCOME_GROUNDS },
                               .locals = { options->local, 0, FF_SOURCES_MAX - 1 },

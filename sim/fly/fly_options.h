@@ -100,7 +100,7 @@ extern const sys_option_type fly_events_option;
            "ground that a view lacks comes in one answer; off: level by level") \
     OPTION(sys_switch, entry, "entry", "on|off", "on", SYS_ANY, \
            "levels that are too coarse for --view do not come; off: they do") \
-    SIM_PANORAMA_OPTION(OPTION, "auto", "far ground as panoramas drawn by the server") \
+    SIM_PANORAMA_OPTION(OPTION, "far ground as panoramas drawn by the server") \
     OPTION(sys_real, back_plane_m, "back-plane", "M", NULL, FLY_DISTANCE, \
            "where the panorama takes over; default 7500") \
     OPTION(sys_whole, face_texels, "face", "N", NULL, FLY_TEXELS, \

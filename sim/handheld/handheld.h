@@ -20,7 +20,7 @@
            "30 a second (a tape has its own)") \
     SIM_SIZE_OPTION(OPTION, "of the picture (a tape has its own)") \
     SIM_CLIENT_OPTIONS(OPTION, NULL, "the client's one block; default 4M, or what the tape says") \
-    SIM_PANORAMA_OPTION(OPTION, "auto", \
+    SIM_PANORAMA_OPTION(OPTION, \
            "far ground as panoramas, with --server; a tape has its own") \
     SIM_FAR_OPTIONS(OPTION) \
     OPTION(sys_whole, speed_kmh, "speed", "KMH", "150", SYS_WHOLE(0, SIM_SPEED_KMH_MAX, "km/h"), \

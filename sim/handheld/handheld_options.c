@@ -19,11 +19,14 @@ static int fail(const char *what) { return sys_options_fail(&program, "%s", what
 
 int handheld_options_parse(handheld_options *options, int argc, char **argv)
 {
-    *options = (handheld_options){ .quality = { .view_wu = INT32_MAX } };
+    *options = (handheld_options){ .use_far = SYS_UNSET,
+                                   .use_panorama = SYS_UNSET,
+                                   .quality = { .view_wu = INT32_MAX } };
     int rc = sys_options_parse(&program, options, argc, argv);
     if (rc) return rc;
     sim_client_read(&options->quality_text, options->triangles, &options->size,
                     options->balance_text, &options->quality, &options->balance);
+    sim_far_read(&options->balance, &options->use_far, &options->use_panorama);
     options->panorama.enabled = (uint8_t)options->use_panorama;
     options->far = SIM_FAR_DESC(options);
     if (!options->pack_path + !options->server + !options->tape_path != 2)

@@ -140,6 +140,17 @@ static int take_memory(const sys_option *option, const char *text, void *field)
     return 0;
 }
 
+/* ---- who draws far ground ---- */
+
+void sim_far_read(const ff_balance_desc *balance, sys_word *use_far, sys_word *use_panorama)
+{
+    int by_server = balance->mode == FF_BALANCE_ALL_SERVER,
+        named = by_server || *use_panorama != SYS_UNSET;
+    if (*use_panorama == SYS_UNSET)
+        *use_panorama = by_server && *use_far == SYS_UNSET ? FF_PANORAMA_ON : FF_PANORAMA_OFF;
+    if (*use_far == SYS_UNSET) *use_far = named ? FF_FAR_OFF : FF_FAR_AUTO;
+}
+
 /* ---- where far sets begin ---- */
 
 static int front_range(const sys_option *option, char *text, size_t room)

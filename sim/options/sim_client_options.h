@@ -29,6 +29,10 @@ int sim_balance_read(const char *text, ff_balance_desc *balance);
 void sim_client_read(const char **quality_text, uint32_t triangles, const sys_size *size,
                      const char *balance_text, ff_quality *quality, ff_balance_desc *balance);
 
+/* What draws far ground where it is not said, SYS_UNSET: sets where they pay, or, for who names
+ * panoramas or wants the server to draw all it can, those. */
+void sim_far_read(const ff_balance_desc *balance, sys_word *use_far, sys_word *use_panorama);
+
 #define SIM_SPEED_KMH_MAX 100000
 #define SIM_HEIGHT_M_MAX  1000000
 #define SIM_FOV_MIN       0.1
@@ -53,12 +57,13 @@ void sim_client_read(const char **quality_text, uint32_t triangles, const sys_si
            "or C, and the panoramas' error give way to it. client: as set, without panoramas; " \
            "server: as few triangles as can be, up to the nearest back plane; off: all as set") \
     OPTION(sim_memory, memory_bytes, "memory", "BYTES", memory, SYS_ANY, memory_help)
-#define SIM_PANORAMA_OPTION(OPTION, fallback, help) \
-    OPTION(sys_word, use_panorama, "panorama", "USE", fallback, SYS_WORDS(sim_panorama_words), help "; auto: where that is cheaper for the error allowed")
+#define SIM_PANORAMA_OPTION(OPTION, help) \
+    OPTION(sys_word, use_panorama, "panorama", "USE", NULL, SYS_WORDS(sim_panorama_words), help "; default: off; auto: where that is cheaper for the error allowed")
 #define SIM_FAR_OPTIONS(OPTION) \
-    OPTION(sys_word, use_far, "far", "USE", "off", SYS_WORDS(sim_far_words), \
+    OPTION(sys_word, use_far, "far", "USE", NULL, SYS_WORDS(sim_far_words), \
            "far ground as a coarse tree with fins, the outlines of ridges, and paint on them, taken by " \
-           "the server; no panoramas then") \
+           "the server; no panoramas then. auto: where that pays, as much as the link carries; default: auto, " \
+           "or off where --panorama is given or the server draws all it can (--balance server)") \
     OPTION(sim_front, far_front_wu, "far-front", "M", NULL, SYS_ANY, \
            "where that begins; default 7500") \
     OPTION(sys_whole, far_coarse, "far-coarse", "N", NULL, SYS_WHOLE(1, FF_FAR_COARSE_MAX, ""), \

@@ -81,7 +81,7 @@ static int create_client(view_app *app, const char *backend)
                             .frame_format = C3D_RGBA8888,
                             .quality = app->quality,
                             .panorama = app->panorama,
-                            .far = o->far,
+                            .far = app->far,
                             .balance = o->balance,
                             .use_thread = 1,
                             .about = SIM_ABOUT_SHOWN,
@@ -133,10 +133,9 @@ static int open_terrain(view_app *app)
         if (open_pack(app, o->packs.text[i])) return -1;
         app->more[i].pack = &app->packs.pack[app->packs.count - 1];
     }
-    app->panorama.enabled = o->use_panorama != SYS_UNSET ? (uint8_t)o->use_panorama
-                            : is_pack                    ? FF_PANORAMA_OFF
-                                                         : FF_PANORAMA_AUTO;
-    if (is_pack && !o->link && !app->panorama.enabled && !o->far.enabled) return 0;
+    app->panorama.enabled = (uint8_t)o->use_panorama;
+    app->far = o->far;
+    if (is_pack && !o->link && !app->panorama.enabled && !o->far_given) return 0;
     rc = view_link_create(is_pack ? NULL : o->target, &app->packs.pack[0], o->link, &app->link,
                           &app->stream);
     if (rc == FF_ERR_ARGUMENT) return view_fail("%s: neither a pack nor ADDR:PORT", o->target);

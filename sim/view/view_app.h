@@ -33,6 +33,7 @@ typedef struct view_app {
     /* switched by keys and events */
     unsigned show; /* enum ff_show */
     ff_panorama_desc panorama;
+    ff_far_desc far;
     ff_quality quality;
     uint8_t show_hud, show_pools, show_help, battery_low, interrupted, tilted;
     uint8_t redraw, quit;

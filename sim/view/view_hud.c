@@ -25,7 +25,7 @@ static const char help[] = "w s a d   fly (or up, down)\n"
                            FF_SHOW_MODES(X)
 #undef X
     /* clang-format on */
-    "p panorama  l link\n"
+    "p far ground  l link\n"
     "h text   k pools\n"
     "r start   esc quit\n"
     "f1 help   f2 position fix\n"
@@ -69,8 +69,8 @@ static void put_quality(view_hud *hud, const view_app *app, const ff_client_stat
         put(hud, "c %.2f depth %u", stats->quality.c_q8 / 256.0, stats->quality.depth_max);
     put(hud, "  error about %.1f px\n", ff_client_error_px_q8(app->client) / 256.0);
     if (stats->tree.stubs) put(hud, "nothing finer of %u nodes\n", stats->tree.stubs);
-    if (app->options->far.enabled) {
-        put(hud, "far %s %u sets %.1f kB\n", sim_far_words[app->options->use_far], stats->far_sets,
+    if (app->far.enabled && stats->link != FF_LINK_NONE) {
+        put(hud, "far %s %u sets %.1f kB\n", sim_far_words[app->far.enabled], stats->far_sets,
             stats->far_bytes / 1000.0);
         return;
     }

@@ -130,14 +130,27 @@ static void start_again(view_app *app)
     app->fly.camera.roll = 0;
 }
 
+/* Far ground: by sets where they pay, by panoramas where they do, by panoramas, by the client. */
+static void next_far(view_app *app)
+{
+    uint8_t *sets = &app->far.enabled, *panorama = &app->panorama.enabled;
+    if (*sets)
+        *sets = FF_FAR_OFF, *panorama = FF_PANORAMA_AUTO;
+    else if (*panorama == FF_PANORAMA_AUTO)
+        *panorama = FF_PANORAMA_ON;
+    else if (*panorama == FF_PANORAMA_ON)
+        *panorama = FF_PANORAMA_OFF;
+    else
+        *sets = FF_FAR_AUTO;
+    ff_client_set_far(app->client, &app->far);
+    ff_client_set_panorama(app->client, &app->panorama);
+}
+
 static void press(view_app *app, int code)
 {
     static char path[64];
     switch (code) {
-        case 'p':
-            app->panorama.enabled = (uint8_t)((app->panorama.enabled + 1) % (FF_PANORAMA_AUTO + 1));
-            ff_client_set_panorama(app->client, &app->panorama);
-            break;
+        case 'p': next_far(app); break;
         case 'l':
             if (app->link) view_link_cycle(app->link);
             break;

@@ -66,7 +66,8 @@ int view_fail(const char *format, ...)
 
 int view_options_parse(view_options *o, int argc, char **argv)
 {
-    *o = (view_options){ .use_panorama = SYS_UNSET,
+    *o = (view_options){ .use_far = SYS_UNSET,
+                         .use_panorama = SYS_UNSET,
                          .at = { .above_wu = VIEW_START_ABOVE_WU },
                          .packs = { o->pack, 0, FF_SOURCES_MAX },
                          .quality = { .view_wu = INT32_MAX } };
@@ -74,6 +75,8 @@ int view_options_parse(view_options *o, int argc, char **argv)
     if (rc) return rc;
     sim_client_read(&o->quality_text, o->triangles, &o->size, o->balance_text, &o->quality,
                     &o->balance);
+    o->far_given = o->use_far > FF_FAR_OFF;
+    sim_far_read(&o->balance, &o->use_far, &o->use_panorama);
     o->far = SIM_FAR_DESC(o);
     o->fov_brad16 = (int32_t)(o->fov_degrees * 65536 / 360 + 0.5);
     o->yaw_brad16 = (int32_t)(o->yaw_degrees * 65536 / 360) & 65535;

@@ -30,7 +30,7 @@ extern const sys_option_type view_place_option;
     SHOW \
     HEADING("Terrain") \
     SIM_CLIENT_OPTIONS(OPTION, "16M", "the client's one block") \
-    SIM_PANORAMA_OPTION(OPTION, NULL, "far ground as panoramas; default: auto with a server") \
+    SIM_PANORAMA_OPTION(OPTION, "far ground as panoramas") \
     SIM_FAR_OPTIONS(OPTION) \
     OPTION(sim_link_spec, link, "link", "SPEC", NULL, SYS_WORDS(no_link_words), \
            "link model between client and server; with PACK the server's logic runs inside this " \
@@ -59,6 +59,7 @@ typedef struct view_options {
     /* what follows from them */
     ff_quality quality;
     ff_far_desc far;
+    uint8_t far_given;
     ff_balance_desc balance;
     int32_t fov_brad16, yaw_brad16;
 } view_options;
