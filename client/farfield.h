@@ -239,8 +239,9 @@ void ff_client_draw(ff_client *client);
 void ff_client_event(ff_client *client, const sys_event *event);
 
 /* Settings that may change between frames. When panoramas or far sets are switched on and the block
- * was shared out without them, the client gives up the terrain, shares the block out anew and asks for the
- * ground again. A face_size that ff_client_create would refuse becomes the nearest that it takes.
+ * was shared out without them, the client gives up the terrain, shares the block out anew and asks
+ * for the ground again. A face_size that ff_client_create would refuse becomes the nearest that it
+ * takes.
  */
 void ff_client_set_quality(ff_client *client, const ff_quality *quality);
 void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama);

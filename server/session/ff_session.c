@@ -472,20 +472,6 @@ static void enter_packs(ff_session *session, ff_list told)
     if (session->entered) session->pack = ff_packs_entered_first(session->entered);
 }
 
-/* What a WELCOME says besides the first ground. */
-static ff_list welcome_list(const ff_session *session, uint8_t bytes[FF_CAPS_BYTES_MAX])
-{
-    ff_list list = ff_packs_welcome(session->pack, bytes);
-    uint8_t lacks[4];
-    ff_writer value = { lacks, lacks + sizeof lacks, FF_OK },
-              out = { bytes + list.byte_count, bytes + FF_CAPS_BYTES_MAX, FF_OK };
-    if (!session->desc.lacks) return list;
-    ff_write_bytes(&value, session->desc.lacks, sizeof lacks);
-    ff_list_write(&out, FF_WELCOME_LACKS, lacks, sizeof lacks);
-    assert(out.error == FF_OK);
-    return (ff_list){ bytes, (uint32_t)(out.at - bytes) };
-}
-
 /* Nothing else that a client says of itself changes the answers yet. */
 static int caps(ff_session *session, ff_list told)
 {
@@ -495,7 +481,7 @@ static int caps(ff_session *session, ff_list told)
     welcome.u.welcome.version = FF_PROTOCOL_VERSION;
     enter_packs(session, told);
     welcome.u.welcome.info = session->pack->header.info;
-    welcome.u.welcome.more = welcome_list(session, more);
+    welcome.u.welcome.more = ff_packs_welcome(session->pack, session->desc.lacks, more);
     session->welcomed = 1;
     answer_short(session, &welcome);
     return FF_OK;
