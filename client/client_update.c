@@ -61,6 +61,7 @@ void ff_client_note_link(ff_client *client, ff_source *source, const ff_stream_s
     if (shared->losses != source->losses_seen || down != source->down) client->unranked = 1;
     source->losses_seen = shared->losses;
     source->down = down;
+    source->lacks = shared->lacks;
 }
 
 static void look_at_links(ff_client *client)
@@ -176,6 +177,7 @@ static int update_sets(ff_client *client, const c3d_camera *camera, int64_t now_
     if (!client->sets) return 0;
     int hold = ff_client_low_power(client) || !client->first.serves;
     int32_t clearance_wu = above_ground_wu(client, camera);
+    if (client->first.lacks & FF_LACKS_FAR) client->sets->off = 1;
     ff_client_far_step(client, camera, clearance_wu, now_us);
     int turned = ff_sets_update(client->sets, &client->first.requests, camera, &client->motion,
                                 clearance_wu, hold, now_us);
@@ -206,7 +208,8 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
     ff_turn_feed(&client->turn, now_us, camera->yaw, camera->pitch);
     look_for_rest(client);
     ff_client_auto_step(client, camera, now_us);
-    int hold = ff_client_low_power(client) || ff_client_own_ground(client) || !client->first.serves;
+    int hold = ff_client_low_power(client) || ff_client_own_ground(client) ||
+               !client->first.serves || (client->first.lacks & FF_LACKS_PANORAMAS) != 0;
     int turned = ff_panorama_update(&client->panorama, &client->first.requests, &view.camera,
                                     &client->motion, hold, now_us);
     turned |= update_sets(client, &view.camera, now_us);

@@ -28,6 +28,7 @@ typedef struct ff_source {
     uint8_t serves; /* its grounds are among the tree's */
     int8_t error;   /* why not: ff_client_source_state */
     uint8_t down;   /* its link is, as seen last */
+    uint32_t lacks; /* FF_LACKS_, as its server told: not asked for */
     /* the server refused to answer for a view: things are asked for singly */
     uint8_t no_views;
     uint32_t losses_seen;

@@ -20,7 +20,7 @@ enum server_gl { SERVER_GL_OSMESA, SERVER_GL_EGL, SERVER_GL_EGL_GLES1 };
     OPTION(sys_whole, workers, "workers", "N", "2", SYS_WHOLE(1, SERVER_WORKERS_MAX, ""), \
            "processes that serve clients") \
     OPTION(sys_whole, renderers, "renderers", "N", "1", SYS_WHOLE(0, SERVER_RENDERERS_MAX, ""), \
-           "processes that draw panoramas; 0: none") \
+           "processes that draw panoramas and far sets; 0: none, as clients are told") \
     OPTION(sys_word, gl, "gl", "KIND", "osmesa", SYS_WORDS(gl_words), "what they draw with") \
     OPTION(sys_flag, single, "single", NULL, NULL, SYS_ANY, \
            "everything in one process, for debugging") \

@@ -62,7 +62,8 @@ FF_STATIC_ASSERT(2 + FF_PAYLOAD_BYTES_MAX <= FF_MESSAGE_BODY_MAX);
     X(BYTES,    4, 4, 4) /* u32 bytes a second */ \
     X(WHOLE,    5, 4, 4 * FF_WELCOME_GROUNDS) /* u32 of each: checksum of the whole that it is of */ \
     X(TERRAINS, 6, FF_TERRAIN_BYTES, FF_TERRAIN_BYTES * (FF_WELCOME_GROUNDS - 1)) /* more terrains */ \
-    X(ENTRY,    7, 1, FF_WELCOME_GROUNDS) /* u8 of each: levels above its tiles that are left out */
+    X(ENTRY,    7, 1, FF_WELCOME_GROUNDS) /* u8 of each: levels above its tiles that are left out */ \
+    X(LACKS,    8, 4, 4) /* u32 bits of FF_LACKS_: what nobody draws here */
 /* clang-format on */
 
 enum ff_caps_entry {
@@ -70,6 +71,7 @@ enum ff_caps_entry {
     FF_CAPS_LIST(X)
 #undef X
 };
+enum { FF_LACKS_PANORAMAS = 2, FF_LACKS_FAR = 4 };
 enum ff_welcome_entry {
 #define X(entry, type, least, most) FF_WELCOME_##entry = type,
     FF_WELCOME_LIST(X)
@@ -313,5 +315,7 @@ int ff_welcome_count(const ff_welcome *welcome);
 /* One of them, and the checksum of the whole pack that it is a part of, or its own. */
 void ff_welcome_ground(const ff_welcome *welcome, unsigned number, ff_terrain_info *info,
                        uint32_t *whole);
+/* Bits of FF_LACKS_: of what a client need not ask for. */
+uint32_t ff_welcome_lacks(const ff_welcome *welcome);
 
 #endif

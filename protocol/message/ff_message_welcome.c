@@ -1,4 +1,4 @@
-/* The grounds that a WELCOME tells of. */
+/* The grounds that a WELCOME tells of, and what it says is not to be had. */
 #include "ff_message_local.h"
 
 #include "../ff_assert.h"
@@ -76,4 +76,12 @@ void ff_welcome_ground(const ff_welcome *welcome, unsigned number, ff_terrain_in
     if (!entries(welcome->more, FF_WELCOME_WHOLE, 4, &value)) return;
     ff_reader in = { value + 4 * number, value + 4 * number + 4, FF_OK };
     *whole = (uint32_t)ff_read_bytes(&in, 4);
+}
+
+uint32_t ff_welcome_lacks(const ff_welcome *welcome)
+{
+    const uint8_t *value;
+    if (ff_list_find(welcome->more, FF_WELCOME_LACKS, &value) != 4) return 0;
+    ff_reader in = { value, value + 4, FF_OK };
+    return (uint32_t)ff_read_bytes(&in, 4);
 }

@@ -66,11 +66,19 @@ static void remove_closed(worker *w)
     }
 }
 
+/* Bits of FF_LACKS_. What a renderer's process lacks is not known here. */
+static uint32_t lacks(const worker *w)
+{
+    if (w->draws) return w->own_renderer.faces ? 0 : FF_LACKS_PANORAMAS;
+    return w->shared->options.renderers ? 0 : FF_LACKS_PANORAMAS | FF_LACKS_FAR;
+}
+
 static void accept_clients(worker *w)
 {
     const server_options *o = &w->shared->options;
     ff_session_desc desc = { .pack = &w->shared->packs.pack[0],
                              .idle_ms_max = o->idle_s * 1000u,
+                             .lacks = lacks(w),
                              .panoramas_per_minute = o->panoramas_per_minute };
     while (w->count < o->max_clients) {
         int fd = sys_tcp_accept(w->shared->listen_fd);

@@ -1,4 +1,4 @@
-/* What a WELCOME tells of packs, behind the first one's terrain. */
+/* What a WELCOME tells of packs, behind the first one's terrain, and of what is not drawn. */
 #include "ff_packs.h"
 #include "../../protocol/ff_assert.h"
 
@@ -17,13 +17,16 @@ static void end(const row *r, enum ff_welcome_entry type, ff_writer *list)
     if (r->needed) ff_list_write(list, type, r->bytes, (uint32_t)(r->out.at - r->bytes));
 }
 
-ff_list ff_packs_welcome(const ff_pack *first, uint8_t bytes[FF_CAPS_BYTES_MAX])
+ff_list ff_packs_welcome(const ff_pack *first, uint32_t lacks, uint8_t bytes[FF_CAPS_BYTES_MAX])
 {
-    row wholes = { .needed = 0 }, rest = { .needed = 0 }, entries = { .needed = 0 };
+    row wholes = { .needed = 0 }, rest = { .needed = 0 }, entries = { .needed = 0 },
+        not_drawn = { .needed = lacks != 0 };
     ff_writer list = { bytes, bytes + FF_CAPS_BYTES_MAX, FF_OK };
     begin(&wholes);
     begin(&rest);
     begin(&entries);
+    begin(&not_drawn);
+    ff_write_bytes(&not_drawn.out, lacks, 4);
     for (const ff_pack *pack = first; pack; pack = pack->next) {
         const ff_terrain_info *info = &pack->header.info;
         uint32_t of = ff_pack_whole(pack);
@@ -37,6 +40,7 @@ ff_list ff_packs_welcome(const ff_pack *first, uint8_t bytes[FF_CAPS_BYTES_MAX])
     end(&wholes, FF_WELCOME_WHOLE, &list);
     end(&rest, FF_WELCOME_TERRAINS, &list);
     end(&entries, FF_WELCOME_ENTRY, &list);
+    end(&not_drawn, FF_WELCOME_LACKS, &list);
     FF_ASSERT(list.error == FF_OK);
     return (ff_list){ bytes, (uint32_t)(list.at - bytes) };
 }

@@ -481,7 +481,7 @@ static int caps(ff_session *session, ff_list told)
     welcome.u.welcome.version = FF_PROTOCOL_VERSION;
     enter_packs(session, told);
     welcome.u.welcome.info = session->pack->header.info;
-    welcome.u.welcome.more = ff_packs_welcome(session->pack, more);
+    welcome.u.welcome.more = ff_packs_welcome(session->pack, session->desc.lacks, more);
     session->welcomed = 1;
     answer_short(session, &welcome);
     return FF_OK;

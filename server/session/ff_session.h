@@ -19,6 +19,7 @@ typedef struct ff_session_desc {
     /* requests waiting; 0: 256; more closes the session (GOODBYE, FULL) */
     uint32_t requests_max;
     uint32_t panoramas_per_minute; /* and far sets; 0: 120; more are answered FAILED(FULL) */
+    uint32_t lacks;                /* bits of FF_LACKS_: what is never drawn, the client is told */
     uint32_t views_per_minute; /* 0: 60, 8 at once; more get what they name and nothing below it */
     uint32_t idle_ms_max;      /* no message for this long closes; 0: 10 minutes */
     int64_t now_us; /* time of the connection: idle counts from here until it is welcomed */

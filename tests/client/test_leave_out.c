@@ -56,6 +56,32 @@ static void images_that_are_not_wanted(void **state)
     rig_close(&rig);
 }
 
+/* Where nobody draws far sets or panoramas none is asked for, and ground is as without. */
+static void what_a_server_says_it_lacks(void **state)
+{
+    (void)state;
+    for (int far = 0; far < 2; far++) {
+        client_rig plain, rig;
+        for (int i = 0; i < 2; i++) {
+            client_rig *r = i ? &rig : &plain;
+            rig_open(r, 0);
+            r->lacks = i ? FF_LACKS_FAR | FF_LACKS_PANORAMAS : 0;
+            if (i && far)
+                r->desc.far = (ff_far_desc){ .enabled = FF_FAR_PAINT,
+                                             .front_wu = 300 * FF_WU_PER_METRE,
+                                             .coarse = 16 };
+            r->desc.panorama.enabled = (uint8_t)(i && !far);
+            rig_client(r, BLOCK_BYTES);
+            assert_true(rig_settle(r, 400));
+        }
+        assert_int_equal(rig.asked[FF_KIND_FAR] + rig.asked[FF_KIND_FACE], 0);
+        assert_int_equal(rig_stats(&rig).requests_failed, 0);
+        if (far) assert_true(rig_same_picture(&plain, &rig));
+        rig_close(&plain);
+        rig_close(&rig);
+    }
+}
+
 /* The same memory holds more ground when images and panoramas are left out; a pack on the device
  * takes no buffers for a link. */
 static void memory_goes_to_the_ground(void **state)
@@ -117,6 +143,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(a_terrain_without_images),
                                         cmocka_unit_test(images_that_are_not_wanted),
+                                        cmocka_unit_test(what_a_server_says_it_lacks),
                                         cmocka_unit_test(memory_goes_to_the_ground),
                                         cmocka_unit_test(rice_needs_no_zlib) };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -79,6 +79,9 @@ static size_t samples(ff_message *list)
     list[n++] = (ff_message){ .type = FF_MSG_WELCOME,
                               .u.welcome = { FF_PROTOCOL_VERSION, terrain(),
                                              LIST("\3\2\x20\0\4\4\0\1\0\0\xff\1?") } };
+    list[n++] =
+        (ff_message){ .type = FF_MSG_WELCOME,
+                      .u.welcome = { FF_PROTOCOL_VERSION, terrain(), LIST("\x08\4\6\0\0\0") } };
     list[n++] = (ff_message){ .type = FF_MSG_CAPS };
     list[n++] = (ff_message){ .type = FF_MSG_CAPS,
                               .u.list = LIST("\1\3\0\1\2\2\1#\3\2##\4\4\xf0\0\x40\1"

@@ -18,7 +18,7 @@ static void end_session(client_rig *rig)
 
 static void begin_session(client_rig *rig)
 {
-    ff_session_desc desc = { .pack = &rig->pack };
+    ff_session_desc desc = { .pack = &rig->pack, .lacks = rig->lacks };
     rig->session = ff_session_create(&desc);
     assert(rig->session);
     rig->connections++;

@@ -23,6 +23,7 @@ typedef struct client_rig {
     uint8_t version;    /* not 0: what the server hears of a HELLO's version */
     uint8_t about_set;  /* not 0: and of the entries that GET_ABOUT asks for */
     int no_faces;       /* the renderer never answers */
+    uint32_t lacks;     /* the server tells: bits of FF_LACKS_ */
     unsigned spoilt;    /* bits of a far set's sectors whose fins are nonsense */
     unsigned chop;      /* recv gives at most this many bytes; 0: all there are */
 

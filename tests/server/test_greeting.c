@@ -151,6 +151,23 @@ static void a_client_of_version_4_is_sent_away(void **state)
     assert_goodbye(session, FF_ERR_VERSION);
 }
 
+static void what_nobody_draws_is_told(void **state)
+{
+    (void)state;
+    for (uint32_t lacks = 0; lacks <= FF_LACKS_FAR; lacks += FF_LACKS_FAR) {
+        ff_session *session = ff_session_create(
+            &(ff_session_desc){ .pack = &pack, .lacks = lacks });
+        hello(session, FF_PROTOCOL_VERSION);
+        caps(session, NULL, 0);
+        ff_message message = heard(session);
+        assert_int_equal(message.type, FF_MSG_WELCOME);
+        assert_int_equal(ff_welcome_lacks(&message.u.welcome), lacks);
+        assert_int_equal(message.u.welcome.more.byte_count, lacks ? 6 : 0);
+        if (lacks) assert_memory_equal(message.u.welcome.more.bytes, "\x08\4\4\0\0\0", 6);
+        ff_session_destroy(session);
+    }
+}
+
 static void what_the_pack_says_is_told_as_asked(void **state)
 {
     (void)state;
@@ -217,6 +234,7 @@ int main(void)
         cmocka_unit_test(caps_of_the_longest_are_taken_in_crumbs),
         cmocka_unit_test(order_is_kept),
         cmocka_unit_test(a_client_of_version_4_is_sent_away),
+        cmocka_unit_test(what_nobody_draws_is_told),
         cmocka_unit_test(what_the_pack_says_is_told_as_asked),
         cmocka_unit_test(asking_without_reading_is_bounded),
     };

@@ -11,6 +11,13 @@ static void note_refusal(ff_stream *stream, int error)
     sys_mutex_unlock(&stream->intake->requests->mutex);
 }
 
+static void note_lacks(ff_stream *stream, uint32_t lacks)
+{
+    sys_mutex_lock(&stream->intake->requests->mutex);
+    stream->shared.lacks = lacks;
+    sys_mutex_unlock(&stream->intake->requests->mutex);
+}
+
 /* 1 when the grounds are those that the client was told of last. */
 static int holds_all_of(const ff_stream *stream, const ff_welcome *welcome)
 {
@@ -35,6 +42,7 @@ static int take_welcome(ff_stream *stream, const ff_welcome *welcome, int64_t no
     stream->welcomed_us = now_us;
     stream->backoff_us = FF_BACKOFF_US_MIN;
     note_refusal(stream, FF_OK);
+    note_lacks(stream, ff_welcome_lacks(welcome));
     if (stream->has_terrain && holds_all_of(stream, welcome)) {
         stream->state = FF_STREAM_UP;
         return FF_OK;

@@ -41,6 +41,7 @@ typedef struct ff_stream_shared {
     int8_t refusal;  /* why the server would not have this client: an error, or FF_OK */
     uint8_t quiet;   /* main: ask nothing new (interruption) */
     uint8_t no_prefetch;
+    uint32_t lacks; /* FF_LACKS_ of the last WELCOME */
 } ff_stream_shared;
 
 /* What the pack says of itself, asked for once the first ground is here. */
