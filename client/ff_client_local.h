@@ -65,7 +65,7 @@ struct ff_client {
     /* FF_FAR_AUTO: when its rule was asked last, sets paid, and they were begun or left */
     uint8_t far_asked;
     uint32_t far_turns;
-    int64_t far_us, far_paid_us, far_turned_us;
+    int64_t far_us, far_waiting_us, far_paid_us, far_turned_us;
     ff_sky sky;
     ff_motion motion;
     ff_turn turn;

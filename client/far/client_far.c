@@ -4,6 +4,7 @@
 
 #define DECIDE_US     INT64_C(2000000)
 #define PATIENCE_US   INT64_C(6000000)  /* while ground in view is missing */
+#define QUIET_US      INT64_C(1000000)  /* since something in view was waited for */
 #define AGAIN_US      INT64_C(20000000) /* between sets and none: it shall not go to and fro */
 #define LEAVE_US      INT64_C(30000000) /* since sets paid last */
 #define SPEED_OVER_US 1000000
@@ -73,11 +74,12 @@ static void leave(ff_client *client, int64_t now_us)
 static void decide(ff_client *client, const c3d_camera *camera, int32_t clearance_wu,
                    int64_t now_us)
 {
-    int64_t waited_us = now_us - client->far_us;
-    if (client->far_asked && waited_us < DECIDE_US) return;
     if (!client->far_asked) client->far_us = now_us;
+    if (!client->far_asked || ff_client_waiting(client, FF_CLASS_IN_VIEW))
+        client->far_waiting_us = now_us;
     client->far_asked = 1;
-    if (ff_client_waiting(client, FF_CLASS_IN_VIEW) && waited_us < PATIENCE_US) return;
+    int64_t past_us = now_us - client->far_us, quiet_us = now_us - client->far_waiting_us;
+    if (past_us < DECIDE_US || (quiet_us < QUIET_US && past_us < PATIENCE_US)) return;
     ff_far_case now;
     describe(client, camera, clearance_wu, &now);
     if (!now.ground.nodes) return;
