@@ -61,12 +61,22 @@ static void choose(ff_client *client, const ff_far_choice *next, int64_t now_us)
     *choice = *next;
 }
 
+/* Something in view waits to be asked for, or ground is on its way. */
+static int ground_is_missing(ff_client *client)
+{
+    ff_request_counts counts;
+    if (ff_client_waiting(client, FF_CLASS_IN_VIEW)) return 1;
+    ff_client_counts(client, &counts);
+    return counts.of[FF_KIND_ROOT].in_flight || counts.of[FF_KIND_REFINEMENT].in_flight ||
+           counts.of[FF_KIND_VIEW].in_flight;
+}
+
 /* All of the client's own ground is here, or was asked for: what is left of sets goes. */
 static void leave(ff_client *client, int64_t now_us)
 {
     if (client->sets->choice.use || client->dirty || client->unranked) return;
     if (client->sets->active < 0 && client->sets->next < 0) return;
-    if (ff_client_waiting(client, FF_CLASS_IN_VIEW)) return;
+    if (ground_is_missing(client)) return;
     ff_sets_leave(client->sets, &client->first.requests, now_us);
     client->dirty = 1;
 }
@@ -75,8 +85,7 @@ static void decide(ff_client *client, const c3d_camera *camera, int32_t clearanc
                    int64_t now_us)
 {
     if (!client->far_asked) client->far_us = now_us;
-    if (!client->far_asked || ff_client_waiting(client, FF_CLASS_IN_VIEW))
-        client->far_waiting_us = now_us;
+    if (!client->far_asked || ground_is_missing(client)) client->far_waiting_us = now_us;
     client->far_asked = 1;
     int64_t past_us = now_us - client->far_us, quiet_us = now_us - client->far_waiting_us;
     if (past_us < DECIDE_US || (quiet_us < QUIET_US && past_us < PATIENCE_US)) return;

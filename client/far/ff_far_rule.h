@@ -7,7 +7,7 @@
  *   - far ground shows, and
  *   - the skyline is off by 1.75 pixels of that estimate (of which a quarter is seen), or, on
  * ground without images, whose shading is as wrong as its shape, the mean error of far pixels times
- *     their share of the picture is 0.4 pixels or more.
+ *     their share of the picture is 0.55 pixels or more.
  * So it does not over plains and the sea, nor where triangles abound. Which set: fins and paint
  * where they take no more than a quarter of the link; else a front that lies farther away (half as
  * many bytes for a front 1.4 times as far: fewer pixels, and a longer life), then half as many
