@@ -88,8 +88,8 @@ enum ff_far_use { FF_FAR_OFF, FF_FAR_FINS, FF_FAR_PAINT, FF_FAR_AUTO };
 typedef struct ff_far_desc {
     uint8_t enabled;  /* enum ff_far_use; default FF_FAR_OFF */
     uint8_t no_paint; /* 1: FF_FAR_AUTO chooses fins at most, as for a display of two colours */
-    /* from here on, measured as back_plane_wu, or from as far as the camera is high above ground,
-     * if that is more; FF_FAR_AUTO may choose up to twice as far; default 7500 m */
+    /* from here on, measured as back_plane_wu, or from four fifths of how high the camera is above
+     * ground, if that is more; FF_FAR_AUTO may choose half to twice as far; default 7500 m */
     int32_t front_wu;
     /* ground beyond may be so many times as wrong as quality allows, up to 16; default 4 */
     uint8_t coarse;

@@ -11,6 +11,7 @@ static const uint32_t any_pixels[2] = { 10, 5 }, paint_pixels[2] = { 50, 30 };
 
 #define LINK_SHARE     4
 #define LINK_UNKNOWN   1000 /* bytes a second */
+#define IDLE_BYTES_S   10   /* what is next to nothing */
 #define RICHER_PERCENT 70   /* of its share of the link, for more than was chosen */
 #define PAINT_BYTES    600  /* of a set, and one for so many pixels: median of five grounds */
 #define PIXELS_A_BYTE  4
@@ -18,12 +19,14 @@ static const uint32_t any_pixels[2] = { 10, 5 }, paint_pixels[2] = { 50, 30 };
 #define FINER_Q8       205 /* and the other way round */
 
 /* From the richest to the one that takes least. */
-static const ff_far_choice steps[] = { { FF_FAR_PAINT, 0, 0 }, { FF_FAR_PAINT, 1, 0 },
-                                       { FF_FAR_PAINT, 2, 0 }, { FF_FAR_PAINT, 2, 1 },
-                                       { FF_FAR_FINS, 0, 0 },  { FF_FAR_FINS, 2, 0 },
+static const ff_far_choice steps[] = { { FF_FAR_PAINT, -2, 0 }, { FF_FAR_PAINT, -1, 0 },
+                                       { FF_FAR_PAINT, 0, 0 },  { FF_FAR_PAINT, 1, 0 },
+                                       { FF_FAR_PAINT, 2, 0 },  { FF_FAR_PAINT, 2, 1 },
+                                       { FF_FAR_FINS, 0, 0 },   { FF_FAR_FINS, 2, 0 },
                                        { FF_FAR_OFF, 0, 0 } };
-#define FINS_STEP 4
-#define NONE_STEP 6
+#define USUAL_STEP 2
+#define FINS_STEP  6
+#define NONE_STEP  8
 FF_STATIC_ASSERT(sizeof steps / sizeof *steps == NONE_STEP + 1);
 
 /* What error becomes, of 256, when far ground is drawn as finely as near ground, all of it as
@@ -52,32 +55,30 @@ static int pays(const ff_far_case *of, int kept)
 {
     const ff_far_ground *ground = &of->ground;
     if (!of->window ||
-        (uint64_t)ground->pixels[0] * 10000 < (uint64_t)of->window * any_pixels[kept])
+        (uint64_t)ground->pixels[FF_FAR_NEARER] * 10000 < (uint64_t)of->window * any_pixels[kept])
         return 0;
     uint64_t part_q8 = alone_q8(of), error_q16 = ground->error_q8 * part_q8;
     if (ground->skyline_q8 * part_q8 >= (uint64_t)skyline_q8[kept] << 8) return 1;
-    return !of->has_images &&
-           error_q16 * ground->pixels[0] / of->window >= (uint64_t)share_error_q8[kept] << 8;
+    return !of->has_images && error_q16 * ground->pixels[FF_FAR_NEARER] / of->window >=
+                                  (uint64_t)share_error_q8[kept] << 8;
 }
 
 static uint64_t bytes_of(const ff_far_case *of, const ff_far_choice *choice)
 {
     uint64_t fins = (uint64_t)of->width * 3 / 2;
     if (choice->use != FF_FAR_PAINT) return fins;
-    uint64_t paint = PAINT_BYTES + of->ground.pixels[choice->rung] / PIXELS_A_BYTE;
+    uint64_t paint = PAINT_BYTES + of->ground.pixels[choice->rung + FF_FAR_NEARER] / PIXELS_A_BYTE;
     return fins + (choice->shift ? paint * 2 / 5 : paint);
 }
 
 /* Whether sets of a kind take no more than a part of the link: bytes * speed / life. */
 static int affordable(const ff_far_case *of, const ff_far_choice *choice, unsigned percent)
 {
-    static const uint32_t root_q8[2] = { 256, 362 };
     if (choice->use == FF_FAR_OFF) return 1;
-    uint64_t link = of->link_bytes_s ? of->link_bytes_s : LINK_UNKNOWN;
-    uint64_t life_wu = ((uint64_t)of->life_wu * root_q8[choice->rung & 1u] << choice->rung / 2) >>
-                       8;
-    return bytes_of(of, choice) * (uint64_t)of->speed_wu_s * 100 <=
-           link * life_wu * percent / LINK_SHARE;
+    uint64_t bytes_s = (of->link_bytes_s ? of->link_bytes_s : LINK_UNKNOWN) / LINK_SHARE;
+    if (choice->rung < 0 && bytes_s > IDLE_BYTES_S) bytes_s = IDLE_BYTES_S;
+    uint64_t life_wu = (uint64_t)of->life_wu * ff_far_times_q8(choice->rung) >> 8;
+    return bytes_of(of, choice) * (uint64_t)of->speed_wu_s * 100 <= bytes_s * life_wu * percent;
 }
 
 static unsigned step_of(const ff_far_choice *choice)
@@ -92,10 +93,10 @@ static unsigned step_of(const ff_far_choice *choice)
 
 ff_far_choice ff_far_choose(const ff_far_case *of, const ff_far_choice *now)
 {
-    unsigned kept = step_of(now), step = 0;
+    unsigned kept = step_of(now), step = of->has_images ? USUAL_STEP : 0;
     FF_ASSERT(of->life_wu > 0 && of->speed_wu_s >= 0);
     if (!pays(of, kept != NONE_STEP)) return steps[NONE_STEP];
-    if (of->no_paint || (uint64_t)of->ground.pixels[0] * 10000 <
+    if (of->no_paint || (uint64_t)of->ground.pixels[FF_FAR_NEARER] * 10000 <
                             (uint64_t)of->window * paint_pixels[kept < FINS_STEP])
         step = FINS_STEP;
     while (!affordable(of, &steps[step], step < kept ? RICHER_PERCENT : 100)) step++;

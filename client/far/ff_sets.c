@@ -175,6 +175,7 @@ static void begin_set(ff_sets *sets, const c3d_camera *camera, const ff_motion *
     while (ff_sets_side((int32_t)(set->focal >> set->paint_shift) * 256) > sets->side)
         set->paint_shift++;
     set->painted = sets->choice.use != FF_FAR_FINS;
+    set->rung = sets->choice.rung;
     ff_sets_plan(sets, camera, motion, clearance_wu, set);
     set->key = ++sets->serial;
     set->asked_us = now_us;
@@ -241,6 +242,13 @@ void ff_sets_set(ff_sets *sets, ff_requests *requests, const ff_far_desc *desc)
     sets->unpaid = 0;
 }
 
+/* Who stays or walks has a set with a nearer front, although the newest is still good. */
+static int may_be_richer(const ff_sets *sets)
+{
+    int newest = sets->next >= 0 ? sets->next : sets->active;
+    return sets->choice.rung < 0 && newest >= 0 && sets->set[newest].rung > sets->choice.rung;
+}
+
 void ff_sets_leave(ff_sets *sets, ff_requests *requests, int64_t now_us)
 {
     ff_requests_cancel_all(requests, FF_KIND_FAR);
@@ -265,7 +273,7 @@ int ff_sets_update(ff_sets *sets, ff_requests *requests, const c3d_camera *camer
         sets->retry_us = INT64_MIN;
         changed = 1;
     }
-    if (sets->unpaid || good_soon(sets, camera, motion)) return changed;
+    if (sets->unpaid || (good_soon(sets, camera, motion) && !may_be_richer(sets))) return changed;
     /* one set outstanding at most: one that comes too late gives way when it is cancelled */
     if (sets->next >= 0) {
         if (ff_requests_cancel(requests, FF_KIND_FAR, sets->set[sets->next].key)) return changed;

@@ -77,6 +77,7 @@ typedef struct ff_set {
     uint16_t focal;      /* texels a unit of tangent, of the fins */
     uint8_t paint_shift; /* texels of the paint are 2^this as large */
     uint8_t painted;     /* paint was asked for */
+    int8_t rung;         /* of the choice it was asked by */
     uint8_t ready;       /* its sectors in view are here, or were */
     ff_key key;          /* of its requests; 0: no set */
     int64_t asked_us;

@@ -7,15 +7,15 @@
 #define SLACK_WU (100 * M)
 #define USUAL_WU (7500 * M)
 
-/* How far a set whose front is 7500 m away, or as far as the viewer is high, is good along the way,
- * and how much O lies above the path, by the height above ground: from the measurements in
+/* How far a set whose front is 7500 m away, or four fifths of how high the viewer is, is good along
+ * the way, and how much O lies above the path, by the height above ground: from the measurements in
  * DESIGN.md. Between the rows in proportion. */
 typedef struct plan_row {
     int32_t clearance_m, life_m, lift_m;
 } plan_row;
 static const plan_row rows[] = {
     { 0, 1500, 100 },    { 100, 1800, 150 },    { 600, 3200, 300 },
-    { 2000, 4400, 400 }, { 12000, 14400, 400 }, { INT32_MAX, 14400, 0 }
+    { 2000, 4400, 400 }, { 12000, 11500, 400 }, { INT32_MAX, 11500, 0 }
 };
 
 static void look_up(int32_t clearance_wu, int32_t *life_wu, int32_t *lift_wu)
@@ -32,7 +32,8 @@ static void look_up(int32_t clearance_wu, int32_t *life_wu, int32_t *lift_wu)
 
 int32_t ff_sets_front_wu(const ff_sets *sets, int32_t clearance_wu)
 {
-    int32_t front_wu = sets->desc.front_wu > clearance_wu ? sets->desc.front_wu : clearance_wu;
+    int32_t high_wu = clearance_wu / 5 * 4; /* what is nearer lies below a level view */
+    int32_t front_wu = sets->desc.front_wu > high_wu ? sets->desc.front_wu : high_wu;
     return front_wu < FF_PANORAMA_BACK_WU_MAX / 2 ? front_wu : FF_PANORAMA_BACK_WU_MAX / 2;
 }
 
@@ -45,7 +46,8 @@ static int32_t stretched(int32_t life_wu, int64_t front_wu, int64_t usual_wu)
 
 int32_t ff_sets_life_wu(const ff_sets *sets, int32_t clearance_wu)
 {
-    int32_t life_wu, lift_wu, usual_wu = clearance_wu > USUAL_WU ? clearance_wu : USUAL_WU;
+    int32_t life_wu, lift_wu, high_wu = clearance_wu / 5 * 4,
+                              usual_wu = high_wu > USUAL_WU ? high_wu : USUAL_WU;
     look_up(clearance_wu, &life_wu, &lift_wu);
     return stretched(life_wu, ff_sets_front_wu(sets, clearance_wu), usual_wu);
 }
@@ -65,9 +67,8 @@ static uint16_t azimuth(int64_t east, int64_t north)
 void ff_sets_plan(const ff_sets *sets, const c3d_camera *camera, const ff_motion *motion,
                   int32_t clearance_wu, ff_set *set)
 {
-    static const uint32_t root_q8[2] = { 256, 362 };
     int32_t life_wu, lift_wu, then_wu[3], later_wu[3];
-    uint32_t times_q8 = root_q8[sets->choice.rung & 1u] << sets->choice.rung / 2;
+    uint32_t times_q8 = ff_far_times_q8(sets->choice.rung);
     look_up(clearance_wu, &life_wu, &lift_wu);
     life_wu = (int32_t)((int64_t)ff_sets_life_wu(sets, clearance_wu) * times_q8 >> 8);
     set->front_wu = (int32_t)((int64_t)ff_sets_front_wu(sets, clearance_wu) * times_q8 >> 8);

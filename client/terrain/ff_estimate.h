@@ -27,9 +27,10 @@ typedef struct ff_beyond {
 uint32_t ff_estimate_p95_q8(const ff_tree *tree, const ff_beyond *beyond);
 
 /* Far ground in the picture: what a far set (client/far) could mend. */
-#define FF_FAR_RUNGS 5
+#define FF_FAR_RUNGS  7
+#define FF_FAR_NEARER 2 /* of those that begin nearer than front_wu */
 typedef struct ff_far_ground {
-    /* pixels of ground beyond front_wu * 2^(i/2) of the eye, along x or y */
+    /* pixels of ground beyond front_wu * 2^((i - FF_FAR_NEARER)/2) of the eye, along x or y */
     uint32_t pixels[FF_FAR_RUNGS];
     uint32_t error_q8;         /* how far off those beyond front_wu are, pixels, mean */
     uint32_t skyline_q8;       /* and where they meet the sky, rms; 0: nowhere */

@@ -30,8 +30,9 @@ void ff_gaze_far(ff_gaze *at, const ff_square *s, uint32_t pixels_q4, int32_t er
     if (away < sum->begin[0]) return;
     while (rung + 1 < FF_FAR_RUNGS && away >= sum->begin[rung + 1]) rung++;
     uint32_t error_q8 = error_of(error_log_q8);
-    sum->skyline_q8[sector] = error_q8;
     sum->pixels_q4[rung] += pixels_q4;
+    if (rung < FF_FAR_NEARER) return;
+    sum->skyline_q8[sector] = error_q8;
     sum->error += (uint64_t)pixels_q4 * error_q8;
 }
 
@@ -43,7 +44,8 @@ static void sum_up(const ff_far_sum *sum, ff_far_ground *far)
         pixels_q4 += sum->pixels_q4[rung];
         far->pixels[rung] = (uint32_t)(pixels_q4 >> 4);
     }
-    if (pixels_q4) far->error_q8 = (uint32_t)(sum->error / pixels_q4);
+    if (far->pixels[FF_FAR_NEARER])
+        far->error_q8 = (uint32_t)((sum->error >> 4) / far->pixels[FF_FAR_NEARER]);
     for (unsigned i = 0; i < FF_GAZE_SECTORS; i++) {
         if (sum->skyline_q8[i] == NOTHING) continue;
         squares += (uint64_t)sum->skyline_q8[i] * sum->skyline_q8[i];
@@ -55,7 +57,7 @@ static void sum_up(const ff_far_sum *sum, ff_far_ground *far)
 void ff_estimate_far(const ff_tree *tree, int32_t front_wu, ff_far_ground *far)
 {
     ff_gaze at;
-    ff_far_sum sum = { .begin = { front_wu >> FF_GAZE_UNIT_LOG2 } };
+    ff_far_sum sum = { .begin = { front_wu >> (FF_GAZE_UNIT_LOG2 + FF_FAR_NEARER / 2) } };
     memset(far, 0, sizeof *far);
     if (!tree->has_view) return;
     for (unsigned i = 1; i < FF_FAR_RUNGS; i++) sum.begin[i] = sum.begin[i - 1] * ROOT_2_Q12 >> 12;

@@ -13,7 +13,8 @@ static const ff_far_choice none = { FF_FAR_OFF, 0, 0 }, paint = { FF_FAR_PAINT, 
 
 /* 240x320 over mountains: a tenth of the picture is far, the skyline is off by 4 pixels. At 50 m/s
  * on 3000 bytes a second all of it may be had. */
-static const ff_far_case usual = { .ground = { .pixels = { 7680, 3840, 1920, 960, 480 },
+static const ff_far_case usual = { .ground = { .pixels = { 20000, 12000, 7680, 3840, 1920, 960,
+                                                           480 },
                                                .error_q8 = 768,
                                                .skyline_q8 = 1024,
                                                .nodes = 40,
@@ -29,7 +30,7 @@ static const ff_far_case usual = { .ground = { .pixels = { 7680, 3840, 1920, 960
                                    .speed_wu_s = 50 * M,
                                    .link_bytes_s = 3000 };
 
-static int is(ff_far_choice choice, uint8_t use, uint8_t rung, uint8_t shift)
+static int is(ff_far_choice choice, uint8_t use, int rung, uint8_t shift)
 {
     return choice.use == use && choice.rung == rung && choice.shift == shift;
 }
@@ -75,13 +76,13 @@ static void where_hardly_any_far_ground_shows_fins_do(void **state)
 {
     (void)state;
     ff_far_case c = usual;
-    c.ground.pixels[0] = 383;
+    c.ground.pixels[FF_FAR_NEARER] = 383;
     assert_true(is(ff_far_choose(&c, &none), FF_FAR_FINS, 0, 0));
     assert_true(is(ff_far_choose(&c, &paint), FF_FAR_PAINT, 0, 0));
-    c.ground.pixels[0] = 76;
+    c.ground.pixels[FF_FAR_NEARER] = 76;
     assert_false(ff_far_choose(&c, &none).use);
     assert_true(is(ff_far_choose(&c, &paint), FF_FAR_FINS, 0, 0));
-    c.ground.pixels[0] = 38;
+    c.ground.pixels[FF_FAR_NEARER] = 38;
     assert_false(ff_far_choose(&c, &paint).use);
     c = usual;
     c.no_paint = 1;
@@ -116,6 +117,26 @@ static void a_thinner_link_or_a_faster_flight_has_less(void **state)
     assert_true(is(ff_far_choose(&c, &farther), FF_FAR_PAINT, 1, 0));
     c.speed_wu_s = 550 * M;
     assert_true(is(ff_far_choose(&c, &farther), FF_FAR_PAINT, 0, 0));
+}
+
+/* 360 + 600 + 5000 bytes each 1600 m; with a front 1.4 times as far 360 + 600 + 3000 each 2263. */
+static void who_stays_or_walks_has_a_nearer_front(void **state)
+{
+    (void)state;
+    ff_far_case c = usual;
+    c.speed_wu_s = 0;
+    assert_true(is(ff_far_choose(&c, &paint), FF_FAR_PAINT, -2, 0));
+    c.speed_wu_s = 26 * M / 10;
+    const ff_far_choice nearest = { FF_FAR_PAINT, -2, 0 };
+    assert_true(is(ff_far_choose(&c, &nearest), FF_FAR_PAINT, -2, 0));
+    assert_true(is(ff_far_choose(&c, &paint), FF_FAR_PAINT, -1, 0));
+    c.speed_wu_s = 3 * M;
+    assert_true(is(ff_far_choose(&c, &nearest), FF_FAR_PAINT, -1, 0));
+    c.speed_wu_s = 6 * M;
+    assert_true(is(ff_far_choose(&c, &nearest), FF_FAR_PAINT, 0, 0));
+    c.speed_wu_s = 0;
+    c.has_images = 1;
+    assert_true(is(ff_far_choose(&c, &paint), FF_FAR_PAINT, 0, 0));
 }
 
 /* While sets are drawn far ground is coarse for their sake: with as many triangles as it could have
@@ -164,6 +185,7 @@ int main(void)
         cmocka_unit_test(bare_ground_needs_one_for_its_shading),
         cmocka_unit_test(where_hardly_any_far_ground_shows_fins_do),
         cmocka_unit_test(a_thinner_link_or_a_faster_flight_has_less),
+        cmocka_unit_test(who_stays_or_walks_has_a_nearer_front),
         cmocka_unit_test(triangles_in_plenty_need_none),
         cmocka_unit_test(the_rule_bears_any_numbers),
     };

@@ -207,7 +207,8 @@ static void far_ground_is_counted_by_how_far_away_it_is(void **state)
     ff_estimate_far(fx.tree, 500 * M, &far);
     const double focal = view.camera.focal_q8 / 256.0, end = 3840 - 100;
     for (unsigned i = 0; i < FF_FAR_RUNGS; i++) {
-        double begin = 500 * pow(2, i / 2.0), rows = focal * 200 / begin - focal * 200 / end;
+        double begin = 500 * pow(2, ((double)i - FF_FAR_NEARER) / 2.0),
+               rows = focal * 200 / begin - focal * 200 / end;
         assert_true(about(far.pixels[i], rows * view.camera.width, 1.25));
     }
     assert_true(far.pixels[0] > far.pixels[1] && far.pixels[1] > far.pixels[2]);
