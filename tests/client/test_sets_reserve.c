@@ -163,7 +163,7 @@ static void who_passes_gets_what_is_worth_its_bytes(void **state)
     /* it is good for 3000 m more; 13 sectors of 250 bytes are worth it where that is 325 s */
     static const struct {
         int m_s, quality; /* -1: nothing */
-    } at[] = { { 0, 40 }, { 2, 40 }, { 9, 40 }, { 10, 0 }, { 200, 0 }, { 320, -1 }, { 900, -1 } };
+    } at[] = { { 0, 40 }, { 2, 40 }, { 9, 40 }, { 10, 0 }, { 140, 0 }, { 160, -1 }, { 900, -1 } };
     for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
         static stage s;
         ff_request request;
