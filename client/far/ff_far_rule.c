@@ -12,6 +12,8 @@ static const uint32_t any_pixels[2] = { 10, 5 }, paint_pixels[2] = { 50, 30 };
 #define LINK_SHARE     4
 #define LINK_UNKNOWN   1000 /* bytes a second */
 #define IDLE_BYTES_S   10   /* what is next to nothing */
+#define SHORT_TIMES    4    /* as many pixels of error as were asked for */
+#define SHORT_SHARE    4    /* of the share of the link */
 #define RICHER_PERCENT 70   /* of its share of the link, for more than was chosen */
 #define PAINT_BYTES    600  /* of a set, and one for so many pixels: median of five grounds */
 #define PIXELS_A_BYTE  4
@@ -71,12 +73,21 @@ static uint64_t bytes_of(const ff_far_case *of, const ff_far_choice *choice)
     return fins + (choice->shift ? paint * 2 / 5 : paint);
 }
 
+/* Triangles are so short that near ground, too, is not what it should be. */
+static int is_short(const ff_far_case *of)
+{
+    return of->asked_px_q8 > 0 && of->ground_px_q8 / SHORT_TIMES >= of->asked_px_q8;
+}
+
 /* Whether sets of a kind take no more than a part of the link: bytes * speed / life. */
 static int affordable(const ff_far_case *of, const ff_far_choice *choice, unsigned percent)
 {
     if (choice->use == FF_FAR_OFF) return 1;
     uint64_t bytes_s = (of->link_bytes_s ? of->link_bytes_s : LINK_UNKNOWN) / LINK_SHARE;
-    if (choice->rung < 0 && bytes_s > IDLE_BYTES_S) bytes_s = IDLE_BYTES_S;
+    if (choice->rung < 0) {
+        uint64_t most = is_short(of) ? bytes_s / SHORT_SHARE : IDLE_BYTES_S;
+        bytes_s = bytes_s < most ? bytes_s : most;
+    }
     uint64_t life_wu = (uint64_t)of->life_wu * ff_far_times_q8(choice->rung) >> 8;
     return bytes_of(of, choice) * (uint64_t)of->speed_wu_s * 100 <= bytes_s * life_wu * percent;
 }
@@ -93,7 +104,7 @@ static unsigned step_of(const ff_far_choice *choice)
 
 ff_far_choice ff_far_choose(const ff_far_case *of, const ff_far_choice *now)
 {
-    unsigned kept = step_of(now), step = of->has_images ? USUAL_STEP : 0;
+    unsigned kept = step_of(now), step = of->has_images && !is_short(of) ? USUAL_STEP : 0;
     FF_ASSERT(of->life_wu > 0 && of->speed_wu_s >= 0);
     if (!pays(of, kept != NONE_STEP)) return steps[NONE_STEP];
     if (of->no_paint || (uint64_t)of->ground.pixels[FF_FAR_NEARER] * 10000 <

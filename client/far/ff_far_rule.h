@@ -12,9 +12,10 @@
  * where they take no more than a quarter of the link; else a front that lies farther away (half as
  * many bytes for a front 1.4 times as far: fewer pixels, and a longer life), then half as many
  * texels along both axes, then fins alone; then nothing. A nearer front where there are no images
- * and it costs next to nothing: for who stays or walks. Fins alone, too, where hardly any far
- * ground shows, or no paint is wanted. Who has chosen keeps to it while the figures are a little
- * worse. */
+ * and it costs next to nothing, for who stays or walks; and where triangles are so short that near
+ * ground is four times as coarse as was asked for, for a sixteenth of the link. Fins alone, too,
+ * where hardly any far ground shows, or no paint is wanted. Who has chosen keeps to it while the
+ * figures are a little worse. */
 #ifndef FF_FAR_RULE_H
 #define FF_FAR_RULE_H
 

@@ -139,6 +139,23 @@ static void who_stays_or_walks_has_a_nearer_front(void **state)
     assert_true(is(ff_far_choose(&c, &paint), FF_FAR_PAINT, 0, 0));
 }
 
+/* A sixteenth of the link is 187 bytes a second. */
+static void who_lacks_triangles_has_a_nearer_front(void **state)
+{
+    (void)state;
+    ff_far_case c = usual;
+    const ff_far_choice nearest = { FF_FAR_PAINT, -2, 0 };
+    c.has_images = 1;
+    c.speed_wu_s = 45 * M;
+    assert_true(is(ff_far_choose(&c, &nearest), FF_FAR_PAINT, 0, 0));
+    c.ground_px_q8 = 4 * c.asked_px_q8;
+    assert_true(is(ff_far_choose(&c, &nearest), FF_FAR_PAINT, -2, 0));
+    c.speed_wu_s = 60 * M;
+    assert_true(is(ff_far_choose(&c, &nearest), FF_FAR_PAINT, -1, 0));
+    c.speed_wu_s = 120 * M;
+    assert_true(is(ff_far_choose(&c, &nearest), FF_FAR_PAINT, 0, 0));
+}
+
 /* While sets are drawn far ground is coarse for their sake: with as many triangles as it could have
  * it would be right. */
 static void triangles_in_plenty_need_none(void **state)
@@ -186,6 +203,7 @@ int main(void)
         cmocka_unit_test(where_hardly_any_far_ground_shows_fins_do),
         cmocka_unit_test(a_thinner_link_or_a_faster_flight_has_less),
         cmocka_unit_test(who_stays_or_walks_has_a_nearer_front),
+        cmocka_unit_test(who_lacks_triangles_has_a_nearer_front),
         cmocka_unit_test(triangles_in_plenty_need_none),
         cmocka_unit_test(the_rule_bears_any_numbers),
     };
