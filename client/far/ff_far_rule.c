@@ -5,17 +5,18 @@
 #include "../../protocol/ff_assert.h"
 
 /* A pair: to begin with, and to keep to it. */
-static const uint32_t skyline_q8[2] = { 448, 320 }, share_error_q8[2] = { 141, 90 };
+static const uint32_t skyline_q8[2] = { 448, 205 }, share_error_q8[2] = { 141, 63 };
 /* So many in ten thousand pixels of the picture. */
 static const uint32_t any_pixels[2] = { 10, 5 }, paint_pixels[2] = { 50, 30 };
 
 #define LINK_SHARE     4
-#define LINK_UNKNOWN   1000 /* bytes a second */
-#define IDLE_BYTES_S   10   /* what is next to nothing */
-#define SHORT_TIMES    4    /* as many pixels of error as were asked for */
-#define SHORT_SHARE    4    /* of the share of the link */
-#define RICHER_PERCENT 70   /* of its share of the link, for more than was chosen */
-#define PAINT_BYTES    600  /* of a set, and one for so many pixels: median of five grounds */
+#define LINK_UNKNOWN   1000  /* bytes a second */
+#define IDLE_BYTES_S   10    /* what is next to nothing */
+#define NEARER_BYTES   10000 /* of a set with a nearer front, at most */
+#define SHORT_TIMES    4     /* as many pixels of error as were asked for */
+#define SHORT_SHARE    4     /* of the share of the link */
+#define RICHER_PERCENT 70    /* of its share of the link, for more than was chosen */
+#define PAINT_BYTES    600   /* of a set, and one for so many pixels: median of five grounds */
 #define PIXELS_A_BYTE  4
 #define TRIANGLES_Q8   320 /* log2 triangles for log2 of how much finer */
 #define FINER_Q8       205 /* and the other way round */
@@ -85,6 +86,7 @@ static int affordable(const ff_far_case *of, const ff_far_choice *choice, unsign
     if (choice->use == FF_FAR_OFF) return 1;
     uint64_t bytes_s = (of->link_bytes_s ? of->link_bytes_s : LINK_UNKNOWN) / LINK_SHARE;
     if (choice->rung < 0) {
+        if (bytes_of(of, choice) > NEARER_BYTES) return 0;
         uint64_t most = is_short(of) ? bytes_s / SHORT_SHARE : IDLE_BYTES_S;
         bytes_s = bytes_s < most ? bytes_s : most;
     }

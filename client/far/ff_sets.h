@@ -43,8 +43,9 @@ extern const uint8_t ff_sets_built; /* 0: left out of this build */
 #define FF_SETS_ALL      ((1u << FF_FAR_SECTORS) - 1)
 /* When a set's other sectors are worth asking for: seconds for which it must be good, for fins;
  * bytes a second until it is not, for paint. */
-#define FF_SETS_FINS_S       20
-#define FF_SETS_IDLE_BYTES_S 10
+#define FF_SETS_FINS_S        20
+#define FF_SETS_IDLE_BYTES_S  10
+#define FF_SETS_RESERVE_BYTES 10000 /* of paint all round at most; else fins alone */
 /* Of the largest picture of a width, all that a power of two makes of it included. */
 #define FF_SETS_TEXELS(side) (2 * (side) * (side))
 

@@ -125,11 +125,16 @@ static int good_for(const ff_set *set, const c3d_camera *camera, const ff_motion
     return ff_sets_good(set, then_wu);
 }
 
+/* Bytes of so many sectors, by those that have come. */
+static uint32_t bytes_of(const ff_set *set, unsigned sectors)
+{
+    return (set->whole ? set->whole_bytes / set->whole : 0) * count_of(sectors);
+}
+
 /* Seconds for which the set must be good, that so many sectors are worth their bytes. */
 static unsigned worth_s(const ff_set *set, unsigned sectors)
 {
-    uint32_t each = set->whole ? set->whole_bytes / set->whole : 0;
-    unsigned seconds = (unsigned)(each * count_of(sectors) / FF_SETS_IDLE_BYTES_S);
+    unsigned seconds = bytes_of(set, sectors) / FF_SETS_IDLE_BYTES_S;
     return seconds > FF_SETS_FINS_S ? seconds : FF_SETS_FINS_S;
 }
 
@@ -144,7 +149,8 @@ void ff_sets_want_reserve(const ff_sets *sets, ff_requests *requests, const ff_v
         !good_for(set, &view->camera, motion, FF_SETS_FINS_S))
         return;
     unsigned missing = lacking(set);
-    int whole = !set->painted || good_for(set, &view->camera, motion, worth_s(set, missing));
+    int whole = !set->painted || (bytes_of(set, missing) <= FF_SETS_RESERVE_BYTES &&
+                                  good_for(set, &view->camera, motion, worth_s(set, missing)));
     if (!whole) missing &= ~ff_sets_known(set);
     if (missing)
         want_sectors(sets, requests, view, set, missing, FF_CLASS_RESERVE,

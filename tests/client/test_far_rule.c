@@ -52,7 +52,7 @@ static void a_right_skyline_needs_none(void **state)
     c.ground.skyline_q8 = 447;
     assert_false(ff_far_choose(&c, &none).use);
     assert_true(ff_far_choose(&c, &paint).use); /* who has one keeps it a while */
-    c.ground.skyline_q8 = 319;
+    c.ground.skyline_q8 = 204;
     assert_false(ff_far_choose(&c, &paint).use);
 }
 
@@ -135,6 +135,8 @@ static void who_stays_or_walks_has_a_nearer_front(void **state)
     c.speed_wu_s = 6 * M;
     assert_true(is(ff_far_choose(&c, &nearest), FF_FAR_PAINT, 0, 0));
     c.speed_wu_s = 0;
+    c.ground.pixels[0] = 36200; /* 10 kB in all, and a little more */
+    assert_true(is(ff_far_choose(&c, &nearest), FF_FAR_PAINT, -1, 0));
     c.has_images = 1;
     assert_true(is(ff_far_choose(&c, &paint), FF_FAR_PAINT, 0, 0));
 }
@@ -165,6 +167,7 @@ static void triangles_in_plenty_need_none(void **state)
     c.has_images = 1;
     c.coarse = 4;
     c.ground_px_q8 = c.asked_px_q8;
+    c.ground.skyline_q8 = 700;
     assert_true(ff_far_choose(&c, &paint).use);
     c.triangles_max = 20000;
     assert_false(ff_far_choose(&c, &paint).use);

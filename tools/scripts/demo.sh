@@ -63,19 +63,19 @@ server=$(address_of "$out/server.log" farfield-server)
 "$bin/farfield-link" --profile umts --listen 127.0.0.1:0 --connect "$server" --seed 1 >"$out/link.log" 2>&1 &
 link_pid=$!
 link=$(address_of "$out/link.log" farfield-link)
-fly live-umts umts 15 240x320 --backend gles1 --every 5 --server "$link"
+fly live-umts umts 15 240x320 --far paint --backend gles1 --every 5 --server "$link"
 stop
 server_pid="" link_pid=""
 
 say "simulated: GPRS, 60 seconds, 960x600, and as it should be"
-large="960x600 --fov 50 --every 60"
+large="960x600 --far paint --fov 50 --every 60"
 fly gprs-large gprs 45 $large --fps 10 --audit on --reference "$out/gprs-large.true"
 fly gprs-wireframe gprs 45 $large --fps 2 --wireframe
 
 against=""
 for field in far panorama tree; do
     case $field in
-    far) how="--far auto" ;;
+    far) how="--far paint" ;;
     panorama) how="--panorama on" ;;
     tree) how="--far off" ;;
     esac
@@ -85,7 +85,7 @@ for field in far panorama tree; do
 done
 
 say "integers beside GL ES: the same minute twice"
-"$(dirname "$0")/look.sh" "$bin" "$pack" "$out/look" --path "$out/flight.csv" --quality high --memory 8M
+"$(dirname "$0")/look.sh" "$bin" "$pack" "$out/look" --path "$out/flight.csv" --far paint --quality high --memory 8M
 
 say "report"
 pictures=""
