@@ -47,4 +47,53 @@ static inline int32_t soft_along(int32_t from, int32_t to, int32_t part)
     return from + 2 * soft_high(to - from, part);
 }
 
+/* A corner with what is interpolated from it: of any number of values. */
+#define SOFT_MEET_VALUES 6
+typedef struct soft_corner {
+    const soft_vertex *at;
+    int32_t value[SOFT_MEET_VALUES];
+} soft_corner;
+
+/* A part of a row: its first pixel, how many, and values there and their steps. */
+typedef struct soft_run {
+    int32_t from, count, value[SOFT_MEET_VALUES], step[SOFT_MEET_VALUES];
+} soft_run;
+
+static SOFT_INLINE int soft_run_between(const soft_state *state, const soft_corner *alone,
+                                        const soft_corner *left_end, const soft_meeting *left,
+                                        const soft_corner *right_end, const soft_meeting *right,
+                                        int values, soft_run *run)
+{
+    int32_t from = soft_first_row(left->x), to = soft_first_row(right->x);
+    if (from < 0) from = 0;
+    if (to > state->width) to = state->width;
+    if (from >= to) return 0;
+    C3D_ASSERT(right->x > left->x && right->x - left->x <= SOFT_MEET_WIDE_Q4);
+    int32_t reciprocal = state->edge_reciprocal[right->x - left->x],
+            off = from * SOFT_ONE + SOFT_HALF - left->x;
+    run->from = from;
+    run->count = to - from;
+    for (int i = 0; i < values; i++) {
+        int32_t at = soft_along(alone->value[i], left_end->value[i], left->part),
+                end = soft_along(alone->value[i], right_end->value[i], right->part);
+        run->step[i] = soft_high((end - at) * 32, reciprocal);
+        run->value[i] = at + (run->step[i] * off >> SOFT_SUB);
+    }
+    return 1;
+}
+
+/* What lies in a row between the edges from `alone` to `one` and to `two`. 0: nothing. */
+static SOFT_INLINE int soft_run_of_row(const soft_state *state, const soft_corner *alone,
+                                       const soft_corner *one, const soft_corner *two, int32_t row,
+                                       int values, soft_run *run)
+{
+    soft_meeting at_one, at_two;
+    soft_meet(state, alone->at, one->at, row * SOFT_ONE + SOFT_HALF, &at_one);
+    soft_meet(state, alone->at, two->at, row * SOFT_ONE + SOFT_HALF, &at_two);
+    if (at_one.x < at_two.x)
+        return soft_run_between(state, alone, one, &at_one, two, &at_two, values, run);
+    return at_two.x < at_one.x &&
+           soft_run_between(state, alone, two, &at_two, one, &at_one, values, run);
+}
+
 #endif

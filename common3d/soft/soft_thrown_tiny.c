@@ -10,16 +10,12 @@
 
 /* What is interpolated: w, the texel's place, and the mesh's own colours where they may be seen. */
 enum { W, S, T, PICTURE_VALUES, RED = PICTURE_VALUES, GREEN, BLUE, VALUES };
+FF_STATIC_ASSERT(VALUES <= SOFT_MEET_VALUES);
 
 /* differences of differences, times the 32 of paint_row */
 FF_STATIC_ASSERT(2 * TEXELS_MAX * 65536 <= (1 << 28) / 32 && 2 * (1 << 24) * 32 <= 1 << 30);
 FF_STATIC_ASSERT((int64_t)W_RANGE * 32 <= INT32_MAX);
 FF_STATIC_ASSERT(TEXELS_MAX + 4 <= 256); /* packed */
-
-typedef struct corner {
-    const soft_vertex *at;
-    int32_t value[VALUES];
-} corner;
 
 /* The part of the texture that a triangle can reach. */
 typedef struct part {
@@ -48,11 +44,12 @@ static inline uint32_t packed(int32_t s, int32_t t)
 }
 
 /* An inner loop. */
-static SOFT_INLINE void paint(soft_state *state, const part *picture, uint32_t first, int32_t count,
-                              const int32_t value[VALUES], const int32_t step[VALUES],
-                              const int coloured)
+static SOFT_INLINE void paint(soft_state *state, const part *picture, uint32_t first,
+                              const soft_run *run, const int coloured)
 {
+    const int32_t *value = run->value, *step = run->step, count = run->count;
     C3D_ASSERT(soft_in_frame(state, first, (uint32_t)count));
+    C3D_ASSERT(value[S] >= 0 && value[T] >= 0 && value[S] < 255 << 16 && value[T] < 255 << 16);
     uint32_t over = state->paint.alpha_test, stride = picture->stride, w = (uint32_t)value[W],
              dw = (uint32_t)step[W], st = packed(value[S], value[T]),
              dst = packed(step[S], step[T]), bias = over ? soft_thrown_bias(w, (int32_t)dw) : 0,
@@ -77,42 +74,15 @@ static SOFT_INLINE void paint(soft_state *state, const part *picture, uint32_t f
     }
 }
 
-static SOFT_INLINE void paint_row(soft_state *state, const part *picture, const corner *alone,
-                                  const corner *left_end, const soft_meeting *left,
-                                  const corner *right_end, const soft_meeting *right, int32_t row,
-                                  const int coloured)
-{
-    int32_t from = soft_first_row(left->x), to = soft_first_row(right->x), value[VALUES],
-            step[VALUES];
-    if (from < 0) from = 0;
-    if (to > state->width) to = state->width;
-    if (from >= to) return;
-    C3D_ASSERT(right->x > left->x && right->x - left->x <= SOFT_MEET_WIDE_Q4);
-    int32_t reciprocal = state->edge_reciprocal[right->x - left->x],
-            off = from * SOFT_ONE + SOFT_HALF - left->x;
-    for (int i = 0; i < (coloured ? VALUES : PICTURE_VALUES); i++) {
-        int32_t at = soft_along(alone->value[i], left_end->value[i], left->part),
-                end = soft_along(alone->value[i], right_end->value[i], right->part);
-        step[i] = soft_high((end - at) * 32, reciprocal);
-        value[i] = at + (step[i] * off >> SOFT_SUB);
-    }
-    C3D_ASSERT(value[S] >= 0 && value[T] >= 0 && value[S] < 255 << 16 && value[T] < 255 << 16);
-    paint(state, picture, (uint32_t)(row * state->width + from), to - from, value, step, coloured);
-}
-
 /* Rows from `row` to `bottom` - 1, which lie on one side of the corners `one` and `two`. */
-static SOFT_INLINE void paint_rows(soft_state *state, const part *picture, const corner *alone,
-                                   const corner *one, const corner *two, int32_t row,
+static SOFT_INLINE void paint_rows(soft_state *state, const part *picture, const soft_corner *alone,
+                                   const soft_corner *one, const soft_corner *two, int32_t row,
                                    int32_t bottom, const int coloured)
 {
     for (; row < bottom; row++) {
-        soft_meeting at_one, at_two;
-        soft_meet(state, alone->at, one->at, row * SOFT_ONE + SOFT_HALF, &at_one);
-        soft_meet(state, alone->at, two->at, row * SOFT_ONE + SOFT_HALF, &at_two);
-        if (at_one.x < at_two.x)
-            paint_row(state, picture, alone, one, &at_one, two, &at_two, row, coloured);
-        else if (at_two.x < at_one.x)
-            paint_row(state, picture, alone, two, &at_two, one, &at_one, row, coloured);
+        soft_run run;
+        if (soft_run_of_row(state, alone, one, two, row, coloured ? VALUES : PICTURE_VALUES, &run))
+            paint(state, picture, (uint32_t)(row * state->width + run.from), &run, coloured);
     }
 }
 
@@ -139,7 +109,7 @@ static part find_part(const soft_texture *texture, const soft_vertex *a, const s
                    column * 65536, row * 65536 };
 }
 
-static SOFT_INLINE void take(corner *new, const soft_vertex *vertex, const part *picture,
+static SOFT_INLINE void take(soft_corner *new, const soft_vertex *vertex, const part *picture,
                              const int coloured)
 {
     new->at = vertex;
@@ -155,7 +125,7 @@ static SOFT_INLINE void draw(soft_state *state, const soft_vertex *a, const soft
     int32_t row = soft_first_row(a->y), middle = soft_first_row(b->y),
             bottom = soft_first_row(c->y);
     part picture = find_part(state->paint.texture, a, b, c);
-    corner top, bend, foot;
+    soft_corner top, bend, foot;
     if (row < 0) row = 0;
     if (bottom > state->height) bottom = state->height;
     if (row >= bottom) return;

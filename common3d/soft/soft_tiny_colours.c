@@ -9,17 +9,13 @@
 #define W_MAX (1u << 27)
 
 enum { W, RED, GREEN, BLUE, VALUES };
+FF_STATIC_ASSERT(VALUES <= SOFT_MEET_VALUES);
 
 /* differences times the 32 of paint_row: of w they are an eighth, twice, of colours below 2^24 */
 FF_STATIC_ASSERT(2 * (W_MAX / 8) * 32 < INT32_MAX);
 
-/* A corner with its w, and its colours as soft_make_ramp has them. */
-typedef struct corner {
-    const soft_vertex *at;
-    int32_t value[VALUES];
-} corner;
-
-static inline void take(corner *new, const soft_vertex *vertex)
+/* Its w, and its colours as soft_make_ramp has them. */
+static inline void take(soft_corner *new, const soft_vertex *vertex)
 {
     new->at = vertex;
     new->value[W] = (int32_t)vertex->w;
@@ -27,9 +23,9 @@ static inline void take(corner *new, const soft_vertex *vertex)
 }
 
 /* An inner loop. */
-static inline void paint(soft_state *state, uint32_t first, int32_t count,
-                         const int32_t value[VALUES], const int32_t step[VALUES])
+static inline void paint(soft_state *state, uint32_t first, const soft_run *run)
 {
+    const int32_t *value = run->value, *step = run->step, count = run->count;
     C3D_ASSERT(soft_in_frame(state, first, (uint32_t)count));
     int32_t red = value[RED], green = value[GREEN], blue = value[BLUE], dr = step[RED],
             dg = step[GREEN], db = step[BLUE];
@@ -45,39 +41,14 @@ static inline void paint(soft_state *state, uint32_t first, int32_t count,
     } while (depth < end);
 }
 
-static inline void paint_row(soft_state *state, const corner *alone, const corner *left_end,
-                             const soft_meeting *left, const corner *right_end,
-                             const soft_meeting *right, int32_t row)
-{
-    int32_t from = soft_first_row(left->x), to = soft_first_row(right->x), value[VALUES],
-            step[VALUES];
-    if (from < 0) from = 0;
-    if (to > state->width) to = state->width;
-    if (from >= to) return;
-    C3D_ASSERT(right->x > left->x && right->x - left->x <= SOFT_MEET_WIDE_Q4);
-    int32_t reciprocal = state->edge_reciprocal[right->x - left->x],
-            off = from * SOFT_ONE + SOFT_HALF - left->x;
-    for (int i = 0; i < VALUES; i++) {
-        int32_t at = soft_along(alone->value[i], left_end->value[i], left->part),
-                end = soft_along(alone->value[i], right_end->value[i], right->part);
-        step[i] = soft_high((end - at) * 32, reciprocal);
-        value[i] = at + (step[i] * off >> SOFT_SUB);
-    }
-    paint(state, (uint32_t)(row * state->width + from), to - from, value, step);
-}
-
 /* Rows from `row` to `bottom` - 1, which lie on one side of the corners `one` and `two`. */
-static inline void paint_rows(soft_state *state, const corner *alone, const corner *one,
-                              const corner *two, int32_t row, int32_t bottom)
+static inline void paint_rows(soft_state *state, const soft_corner *alone, const soft_corner *one,
+                              const soft_corner *two, int32_t row, int32_t bottom)
 {
     for (; row < bottom; row++) {
-        soft_meeting at_one, at_two;
-        soft_meet(state, alone->at, one->at, row * SOFT_ONE + SOFT_HALF, &at_one);
-        soft_meet(state, alone->at, two->at, row * SOFT_ONE + SOFT_HALF, &at_two);
-        if (at_one.x < at_two.x)
-            paint_row(state, alone, one, &at_one, two, &at_two, row);
-        else if (at_two.x < at_one.x)
-            paint_row(state, alone, two, &at_two, one, &at_one, row);
+        soft_run run;
+        if (soft_run_of_row(state, alone, one, two, row, VALUES, &run))
+            paint(state, (uint32_t)(row * state->width + run.from), &run);
     }
 }
 
@@ -100,7 +71,7 @@ int soft_tiny_colours(soft_state *state, const soft_vertex *a, const soft_vertex
     if (bottom > state->height) bottom = state->height;
     if (row >= bottom) return 1;
     if (row < state->top_row) state->top_row = row;
-    corner top, bend, foot;
+    soft_corner top, bend, foot;
     take(&top, a);
     take(&bend, b);
     take(&foot, c);
