@@ -326,14 +326,12 @@ void ff_client_set_far(ff_client *client, const ff_far_desc *far)
     if (far->jpeg_quality > 100) client->desc.far.jpeg_quality = 100;
     default_far(&client->desc);
     client->dirty = 1;
-    if (client->desc.far.enabled && client->panorama.desc.enabled)
-        ff_client_set_panorama(client, &client->desc.panorama);
     if (!client->have_terrain) return;
     if (client->sets) {
         ff_sets_set(client->sets, &client->first.requests, &client->desc.far);
         client->far_asked = 0;
     } else if (client->desc.far.enabled && !client->economy) {
-        start_over(client); /* the block was shared out without sets */
+        start_over(client); /* the block was shared out without sets, or with panoramas */
     }
 }
 

@@ -128,3 +128,9 @@ int ff_motion_level(const ff_motion *motion, int64_t ahead_us, int32_t pos_wu[3]
     for (int i = 0; i < 3; i++) pos_wu[i] = position(motion->last_wu[i] + (i < 2 ? way[i] : 0));
     return 1;
 }
+
+int64_t ff_motion_speed_wu_s(const ff_motion *motion)
+{
+    int64_t way[3];
+    return straight_way(motion, 1000, way) ? c3d_length64(way[0], way[1], 0) : 0;
+}

@@ -39,5 +39,7 @@ int ff_motion_predict(const ff_motion *motion, int64_t ahead_us, int32_t pos_wu[
 /* The same for longer times: straight on and level. Whoever climbs now need not be climbing ten
  * seconds later. */
 int ff_motion_level(const ff_motion *motion, int64_t ahead_us, int32_t pos_wu[3]);
+/* Over ground, of who goes on so: wu a second; 0: standing still or nothing known. */
+int64_t ff_motion_speed_wu_s(const ff_motion *motion);
 
 #endif

@@ -2,21 +2,11 @@
 #include "../ff_client_local.h"
 #include "../../protocol/ff_assert.h"
 
-#define DECIDE_US     INT64_C(2000000)
-#define PATIENCE_US   INT64_C(6000000)  /* while ground in view is missing */
-#define QUIET_US      INT64_C(1000000)  /* since something in view was waited for */
-#define AGAIN_US      INT64_C(20000000) /* between sets and none: it shall not go to and fro */
-#define LEAVE_US      INT64_C(30000000) /* since sets paid last */
-#define SPEED_OVER_US 1000000
-
-static int64_t speed_wu_s(const ff_client *client, const c3d_camera *camera)
-{
-    int32_t then_wu[3];
-    if (!ff_motion_level(&client->motion, SPEED_OVER_US, then_wu)) return 0;
-    return c3d_length64((int64_t)then_wu[0] - camera->pos_wu[0],
-                        (int64_t)then_wu[1] - camera->pos_wu[1],
-                        (int64_t)then_wu[2] - camera->pos_wu[2]);
-}
+#define DECIDE_US   INT64_C(2000000)
+#define PATIENCE_US INT64_C(6000000)  /* while ground in view is missing */
+#define QUIET_US    INT64_C(1000000)  /* since something in view was waited for */
+#define AGAIN_US    INT64_C(20000000) /* between sets and none: it shall not go to and fro */
+#define LEAVE_US    INT64_C(60000000) /* since sets paid last */
 
 static void describe(ff_client *client, const c3d_camera *camera, int32_t clearance_wu,
                      ff_far_case *now)
@@ -34,7 +24,7 @@ static void describe(ff_client *client, const c3d_camera *camera, int32_t cleara
                           .triangles = tree.triangles,
                           .triangles_max = quality->triangles_max,
                           .life_wu = ff_sets_life_wu(client->sets, clearance_wu),
-                          .speed_wu_s = speed_wu_s(client, camera),
+                          .speed_wu_s = ff_motion_speed_wu_s(&client->motion),
                           .link_bytes_s = shared.bytes_s };
     if (quality->measure == FF_MEASURE_PIXELS) {
         now->asked_px_q8 = ff_client_quality(client).error_px_q8;
@@ -84,10 +74,12 @@ static void leave(ff_client *client, int64_t now_us)
 static void decide(ff_client *client, const c3d_camera *camera, int32_t clearance_wu,
                    int64_t now_us)
 {
-    if (!client->far_asked) client->far_us = now_us;
-    if (!client->far_asked || ground_is_missing(client)) client->far_waiting_us = now_us;
+    if (!client->far_asked) client->far_us = client->far_waiting_us = now_us;
     client->far_asked = 1;
-    int64_t past_us = now_us - client->far_us, quiet_us = now_us - client->far_waiting_us;
+    int64_t past_us = now_us - client->far_us;
+    if (past_us < DECIDE_US - QUIET_US) return;
+    if (ground_is_missing(client)) client->far_waiting_us = now_us;
+    int64_t quiet_us = now_us - client->far_waiting_us;
     if (past_us < DECIDE_US || (quiet_us < QUIET_US && past_us < PATIENCE_US)) return;
     ff_far_case now;
     describe(client, camera, clearance_wu, &now);

@@ -15,7 +15,8 @@
  * and it costs next to nothing, for who stays or walks; and where triangles are so short that near
  * ground is four times as coarse as was asked for, for a sixteenth of the link. Fins alone, too,
  * where hardly any far ground shows, or no paint is wanted. Who has chosen keeps to it while the
- * figures are a little worse. */
+ * figures are about half as large: with sets, what ground would be without them is estimated too
+ * low. */
 #ifndef FF_FAR_RULE_H
 #define FF_FAR_RULE_H
 

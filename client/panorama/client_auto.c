@@ -7,7 +7,6 @@
 #define DECIDE_US INT64_C(2000000)
 #define LEAVE_US  INT64_C(250000)   /* while a panorama is drawn: the viewer may set off */
 #define AGAIN_US  INT64_C(20000000) /* after that: it shall not go to and fro */
-#define SECOND_US 1000000
 
 /* Triangles drawn of nodes that lie beyond the back plane; each node counts alike. */
 static uint32_t far_share(const ff_client *client, const c3d_camera *camera, int32_t front_wu,
@@ -22,15 +21,6 @@ static uint32_t far_share(const ff_client *client, const c3d_camera *camera, int
     }
     FF_ASSERT(beyond <= count);
     return count ? (uint32_t)((uint64_t)triangles * beyond / count) : 0;
-}
-
-static int64_t speed_wu_s(const ff_client *client, const c3d_camera *camera)
-{
-    int32_t then_wu[3];
-    if (!ff_motion_level(&client->motion, SECOND_US, then_wu)) return 0;
-    return c3d_length64((int64_t)then_wu[0] - camera->pos_wu[0],
-                        (int64_t)then_wu[1] - camera->pos_wu[1],
-                        (int64_t)then_wu[2] - camera->pos_wu[2]);
 }
 
 static void look_at_ground(ff_client *client, const c3d_camera *camera)
@@ -56,7 +46,7 @@ static void look_at_link(ff_client *client, const c3d_camera *camera)
     now->focal_q8 = camera->focal_q8;
     now->half_width_q8 = (camera->width ? camera->width : client->desc.width) * 128;
     now->face_size = client->panorama.face_size;
-    now->speed_wu_s = speed_wu_s(client, camera);
+    now->speed_wu_s = ff_motion_speed_wu_s(&client->motion);
     now->link_bytes_s = shared.bytes_s;
     now->set_bytes = faces * ff_requests_answer_bytes(&client->first.requests, FF_KIND_FACE, 0);
 }

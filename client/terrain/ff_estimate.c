@@ -94,12 +94,11 @@ static void count_ground(ff_gaze *at, const ff_square *s, const uint16_t piece[3
     if (slope < at->horizon_q12[sector]) return;
     at->horizon_q12[sector] = slope;
     uint32_t pixels_q4 = ff_gaze_covers_q4(at, s, 0);
-    if (!pixels_q4 && !at->far) return;
+    if (!pixels_q4) return;
     int64_t error_q8 = ff_gaze_pixels_q8(at, s, error_wu) * rise_q14(at, s) >>
                        (14 + FF_GAZE_UNIT_LOG2);
     int32_t log_q8 = error_q8 > 0 ? ff_log2_q8((uint64_t)error_q8) + more_log_q8 : -1;
     if (at->far) ff_gaze_far(at, s, pixels_q4, log_q8);
-    if (!pixels_q4) return;
     at->spread.most[ff_spread_step(log_q8)] += pixels_q4;
     count_patch(at, piece, pixels_q4);
 }

@@ -315,6 +315,48 @@ static void switched_panoramas_do_not_queue_up(void **state)
     rig_close(&rig);
 }
 
+/* Off, on, with panoramas, which go, and off again. */
+static void far_sets_may_be_switched_while_flying(void **state)
+{
+    (void)state;
+    client_rig rig;
+    rig_open(&rig, 0);
+    rig.desc.panorama.enabled = FF_PANORAMA_ON;
+    rig.desc.panorama.back_plane_wu = 1500 * METRE;
+    rig_client(&rig, 8 * MB);
+    ff_far_desc far = { .enabled = FF_FAR_FINS, .front_wu = 300 * METRE };
+    for (int i = 0; i < 60; i++) rig_step(&rig, 50000);
+    assert_int_equal(rig.asked[FF_KIND_FAR], 0);
+    assert_true(rig_stats(&rig).back_plane_wu > 0);
+    ff_client_set_far(rig.client, &far);
+    for (int i = 0; i < 60; i++) rig_step(&rig, 50000);
+    assert_true(rig.asked[FF_KIND_FAR] > 0);
+    assert_true(rig_stats(&rig).far_sectors > 0);
+    assert_int_equal(rig_stats(&rig).back_plane_wu, 0);
+    uint32_t faces = rig.asked[FF_KIND_FACE];
+    rig_fly(&rig, 200);
+    assert_int_equal(rig.asked[FF_KIND_FACE], faces);
+    far = (ff_far_desc){ .enabled = 200, .coarse = 200, .paint_shift = 200, .jpeg_quality = 200 };
+    ff_client_set_far(rig.client, &far); /* brought into range */
+    assert_int_equal(rig.client->desc.far.enabled, FF_FAR_AUTO);
+    far.enabled = FF_FAR_OFF;
+    ff_client_set_far(rig.client, &far);
+    uint32_t asked = rig.asked[FF_KIND_FAR];
+    for (int i = 0; i < 60; i++) rig_step(&rig, 50000);
+    assert_int_equal(rig.asked[FF_KIND_FAR], asked);
+    ff_client_set_panorama(rig.client, &rig.desc.panorama);
+    for (int i = 0; i < 60; i++) rig_step(&rig, 50000);
+    assert_true(rig_stats(&rig).back_plane_wu > 0);
+    far.enabled = FF_FAR_FINS;
+    ff_client_set_far(rig.client, &far);
+    faces = rig.asked[FF_KIND_FACE];
+    rig_fly(&rig, 200);
+    assert_int_equal(rig.asked[FF_KIND_FACE], faces);
+    assert_int_equal(rig_stats(&rig).back_plane_wu, 0);
+    assert_requests_add_up(&rig);
+    rig_close(&rig);
+}
+
 /* Angles of many turns, and a face size that ff_client_create would refuse. */
 static void wild_angles_and_sizes_are_made_whole(void **state)
 {
@@ -531,6 +573,7 @@ int main(void)
         cmocka_unit_test(one_set_outstanding_at_most),
         cmocka_unit_test(panorama_can_be_switched),
         cmocka_unit_test(switched_panoramas_do_not_queue_up),
+        cmocka_unit_test(far_sets_may_be_switched_while_flying),
         cmocka_unit_test(wild_angles_and_sizes_are_made_whole),
         cmocka_unit_test(little_memory_draws_coarser),
         cmocka_unit_test(wrong_descriptions_are_refused),

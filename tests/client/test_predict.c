@@ -25,6 +25,7 @@ static void straight_line_is_continued(void **state)
     assert_in_range(at[0], p[0] + 197 * METRE, p[0] + 203 * METRE);
     assert_int_equal(at[1], 0);
     assert_int_equal(at[2], p[2]);
+    assert_in_range(ff_motion_speed_wu_s(&motion), 39 * METRE, 41 * METRE);
 }
 
 static void acceleration_bends_the_way_by_half_at_most(void **state)

@@ -1,5 +1,6 @@
 /* Far sets without a server: which sectors a view shows, where a set is taken and how long it is
  * good, and what fins and paint look like. */
+#include "../rig/flat_ground.h"
 #include "../rig/picture.h"
 #include "../../client/far/ff_sets.h"
 #include "../../client/terrain/ff_tree_local.h"
@@ -7,6 +8,7 @@
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
@@ -15,26 +17,11 @@
 
 enum { WIDE = 240, HIGH = 320, FOCAL = 208, LEAD_US = 2000000, SECOND_US = 1000000 };
 
-static ff_terrain_info flat_info(void)
-{
-    return (ff_terrain_info){ .node_log2 = 3,
-                              .tile_log2 = 8,
-                              .height_max = 2000,
-                              .tiles_x = 1,
-                              .tiles_y = 1,
-                              .samples_x = 257,
-                              .samples_y = 257,
-                              .spacing_wu = 90 * M,
-                              .hscale_q24 = 1 << 24 };
-}
-
 static c3d_camera level_camera(int32_t yaw)
 {
-    return (c3d_camera){ .pos_wu = { 100000 * M, 100000 * M, 2000 * M },
-                         .yaw = yaw,
-                         .focal_q8 = FOCAL * 256,
-                         .width = WIDE,
-                         .height = HIGH };
+    c3d_camera camera = flat_ground_camera(WIDE, HIGH, FOCAL);
+    camera.yaw = yaw;
+    return camera;
 }
 
 static void sectors_are_those_of_the_view(void **state)
@@ -79,7 +66,7 @@ static void a_set_is_taken_ahead_and_above(void **state)
     static const int32_t clearance_m[] = { 50, 100, 600, 2000, 12000 };
     static ff_sets sets;
     ff_motion motion;
-    ff_terrain_info info = flat_info();
+    ff_terrain_info info = flat_ground();
     const ff_far_desc desc = { .enabled = FF_FAR_PAINT, .front_wu = 7500 * M, .coarse = 4 };
     int32_t life_before = 0;
     ff_sets_init(&sets, NULL, &desc, &info, 256);
@@ -119,7 +106,7 @@ static void who_stays_has_a_set_all_round(void **state)
     (void)state;
     static ff_sets sets;
     ff_motion motion;
-    ff_terrain_info info = flat_info();
+    ff_terrain_info info = flat_ground();
     const ff_far_desc desc = { .enabled = FF_FAR_PAINT, .front_wu = 7500 * M };
     ff_set set = { .front_wu = desc.front_wu };
     ff_sets_init(&sets, NULL, &desc, &info, 256);
@@ -141,7 +128,7 @@ static void a_set_on_its_way_is_waited_for(void **state)
     static uint64_t memory[4096];
     ff_requests requests;
     ff_motion motion;
-    ff_terrain_info info = flat_info();
+    ff_terrain_info info = flat_ground();
     const ff_far_desc desc = { .enabled = FF_FAR_PAINT, .front_wu = 7500 * M };
     assert_true(ff_requests_bytes(8) <= sizeof memory);
     ff_requests_init(&requests, 8, memory);
@@ -173,7 +160,7 @@ static void without_sets_far_ground_is_fine(void **state)
 {
     (void)state;
     static ff_sets sets;
-    const ff_terrain_info info = flat_info();
+    const ff_terrain_info info = flat_ground();
     const ff_far_desc desc = { .enabled = FF_FAR_PAINT, .front_wu = 7500 * M, .coarse = 4 };
     ff_new_item refusal = { .key = 1, .kind = FF_KIND_FAR, .refused = 1, .error = FF_ERR_FULL };
     c3d_camera camera = level_camera(0);
@@ -195,6 +182,85 @@ static void without_sets_far_ground_is_fine(void **state)
     refusal.error = FF_ERR_UNSUPPORTED; /* once will do */
     assert_int_equal(ff_sets_take(&sets, &refusal, 0), 1);
     assert_int_equal(ff_sets_in_use(&sets, &camera, &fine_wu, &coarse), 0);
+}
+
+/* From 9.4 km up the front is farther away than what is set: below a level view. A set is good for
+ * the longer the farther its front is, by whoever sets it or chooses it. */
+static void the_front_lies_below_a_level_view(void **state)
+{
+    (void)state;
+    static ff_sets sets;
+    ff_motion motion;
+    ff_terrain_info info = flat_ground();
+    ff_far_desc desc = { .enabled = FF_FAR_PAINT, .front_wu = 7500 * M };
+    ff_set set = { 0 };
+    c3d_camera camera = fly(&motion, 40, 30);
+    ff_sets_init(&sets, NULL, &desc, &info, 256);
+    assert_int_equal(ff_sets_front_wu(&sets, 600 * M), 7500 * M);
+    assert_int_equal(ff_sets_front_wu(&sets, 9000 * M), 7500 * M);
+    assert_int_equal(ff_sets_front_wu(&sets, 12000 * M), 9600 * M);
+    assert_true(ff_sets_front_wu(&sets, INT32_MAX) <= FF_PANORAMA_BACK_WU_MAX / 2);
+    int32_t life_wu = ff_sets_life_wu(&sets, 600 * M);
+    assert_int_equal(life_wu, 3200 * M);
+    for (int rung = -2; rung <= 2; rung++) {
+        const double times[] = { 0.5, 0.7071, 1, 1.4142, 2 };
+        sets.choice.rung = (int8_t)rung;
+        ff_sets_plan(&sets, &camera, &motion, 600 * M, &set);
+        assert_true(fabs(set.front_wu / (7500.0 * M) - times[rung + 2]) < 0.01);
+        assert_true(fabs(set.region.ahead_wu / (0.75 * life_wu) - times[rung + 2]) < 0.01);
+    }
+    desc.front_wu = 15000 * M;
+    ff_sets_init(&sets, NULL, &desc, &info, 256);
+    assert_int_equal(ff_sets_life_wu(&sets, 600 * M), 2 * life_wu);
+    desc.front_wu = 3750 * M;
+    ff_sets_init(&sets, NULL, &desc, &info, 256);
+    assert_int_equal(ff_sets_life_wu(&sets, 600 * M), life_wu / 2);
+}
+
+/* By FF_FAR_AUTO: nothing before a choice; then ground stays fine until a set is drawn; a nearer
+ * front for who stays gives another set; what does not pay is not renewed. */
+static void what_is_chosen_is_asked_for(void **state)
+{
+    (void)state;
+    static ff_sets sets;
+    static uint64_t memory[4096];
+    ff_requests requests;
+    ff_motion motion;
+    ff_terrain_info info = flat_ground();
+    const ff_far_desc desc = { .enabled = FF_FAR_AUTO, .front_wu = 7500 * M, .coarse = 4 };
+    int32_t fine_wu;
+    uint8_t coarse;
+    ff_requests_init(&requests, 8, memory);
+    ff_sets_init(&sets, NULL, &desc, &info, 256);
+    c3d_camera camera = fly(&motion, 0, 0);
+    assert_int_equal(ff_sets_update(&sets, &requests, &camera, &motion, 600 * M, 0, 0), 0);
+    assert_int_equal(sets.serial, 0);
+    sets.choice = (ff_far_choice){ FF_FAR_PAINT, 0, 1 };
+    assert_int_equal(ff_sets_update(&sets, &requests, &camera, &motion, 600 * M, 0, 0), 1);
+    assert_int_equal(sets.serial, 1);
+    assert_int_equal(sets.set[sets.next].paint_shift, 1);
+    assert_int_equal(ff_sets_in_use(&sets, &camera, &fine_wu, &coarse), 0);
+    sets.set[sets.next].empty = FF_SETS_ALL; /* all of it is here */
+    (void)ff_sets_update(&sets, &requests, &camera, &motion, 600 * M, 0, SECOND_US);
+    assert_int_equal(ff_sets_in_use(&sets, &camera, &fine_wu, &coarse), 1);
+    assert_int_equal(coarse, 4);
+    for (int i = 2; i < 5; i++)
+        (void)ff_sets_update(&sets, &requests, &camera, &motion, 600 * M, 0, i * SECOND_US);
+    assert_int_equal(sets.serial, 1); /* it is good */
+    sets.choice = (ff_far_choice){ FF_FAR_PAINT, -1, 0 };
+    sets.unpaid = 1;
+    (void)ff_sets_update(&sets, &requests, &camera, &motion, 600 * M, 0, 6 * SECOND_US);
+    assert_int_equal(sets.serial, 1);
+    sets.unpaid = 0;
+    for (int i = 7; i < 10; i++)
+        (void)ff_sets_update(&sets, &requests, &camera, &motion, 600 * M, 0, i * SECOND_US);
+    assert_int_equal(sets.serial, 2);
+    sets.choice.use = FF_FAR_OFF;
+    assert_int_equal(ff_sets_in_use(&sets, &camera, &fine_wu, &coarse), 0);
+    ff_sets_set(&sets, &requests, &desc);
+    assert_int_equal(sets.active, -1);
+    assert_int_equal(sets.next, -1);
+    assert_int_equal(sets.choice.use, FF_FAR_OFF);
 }
 
 /* ---- what is thrown on a node ---- */
@@ -232,7 +298,7 @@ static void nodes_wear_the_sectors_that_they_lie_in(void **state)
         unsigned sectors;
     } at[] = { { 11, -40, 0x8003 }, { -40, 11, 0x0038 }, { -20, -20, 0x000E },
                { 11, 11, 0 },       { 11, -5, 0 },       { 11, 63, 0x0380 } };
-    ff_terrain_info info = flat_info();
+    ff_terrain_info info = flat_ground();
     const ff_far_desc desc = { .enabled = FF_FAR_PAINT, .front_wu = 7500 * M };
     int plain;
     ff_sets_init(&sets, NULL, &desc, &info, 256);
@@ -265,13 +331,11 @@ static void open_stage(stage *s, enum ff_far_use use)
 {
     const ff_far_desc desc = { .enabled = (uint8_t)use, .front_wu = 1000 * M, .coarse = 4 };
     assert_int_equal(picture_open(&s->kit, PICTURE_SOFT, WIDE, HIGH, 0), FF_OK);
-    s->info = flat_info();
+    s->info = flat_ground();
     memset(&s->sets, 0, sizeof s->sets);
     ff_sets_init(&s->sets, s->kit.device, &desc, &s->info, 256);
     ff_sets_scratch(&s->sets, s->scratch, s->indices, 16);
     s->kit.frame.camera = level_camera(0);
-    s->kit.frame.camera.near_wu = 50 * M;
-    s->kit.frame.camera.far_wu = 60000 * M;
 }
 
 /* The viewer is far away: the set goes. */
@@ -498,6 +562,8 @@ int main(void)
         cmocka_unit_test(a_set_is_taken_ahead_and_above),
         cmocka_unit_test(who_stays_has_a_set_all_round),
         cmocka_unit_test(without_sets_far_ground_is_fine),
+        cmocka_unit_test(the_front_lies_below_a_level_view),
+        cmocka_unit_test(what_is_chosen_is_asked_for),
         cmocka_unit_test(nodes_wear_the_sectors_that_they_lie_in),
         cmocka_unit_test(fins_stand_where_ridges_were_seen),
         cmocka_unit_test(fins_wear_the_paint),

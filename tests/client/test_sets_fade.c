@@ -1,4 +1,5 @@
 /* From far set to far set: how long a fade lasts, and what is thrown and seen meanwhile. */
+#include "../rig/flat_ground.h"
 #include "../rig/picture.h"
 #include "../../client/far/ff_sets.h"
 #include "../../client/terrain/ff_tree_local.h"
@@ -32,25 +33,12 @@ static void open_stage(stage *s)
     const ff_far_desc desc = { .enabled = FF_FAR_PAINT, .front_wu = 1000 * M, .coarse = 4 };
     memset(s, 0, sizeof *s);
     assert_int_equal(picture_open(&s->kit, PICTURE_SOFT, WIDE, HIGH, 0), FF_OK);
-    s->info = (ff_terrain_info){ .node_log2 = 3,
-                                 .tile_log2 = 8,
-                                 .height_max = 2000,
-                                 .tiles_x = 1,
-                                 .tiles_y = 1,
-                                 .samples_x = 257,
-                                 .samples_y = 257,
-                                 .spacing_wu = 90 * M,
-                                 .hscale_q24 = 1 << 24 };
+    s->info = flat_ground();
     ff_sets_init(&s->sets, s->kit.device, &desc, &s->info, SIDE);
     ff_sets_scratch(&s->sets, s->scratch, s->indices, 81);
     assert_true(ff_requests_bytes(8) <= sizeof s->memory);
     ff_requests_init(&s->requests, 8, s->memory);
-    s->kit.frame.camera = (c3d_camera){ .pos_wu = { 100000 * M, 100000 * M, 2000 * M },
-                                        .focal_q8 = FOCAL * 256,
-                                        .width = WIDE,
-                                        .height = HIGH,
-                                        .near_wu = 50 * M,
-                                        .far_wu = 60000 * M };
+    s->kit.frame.camera = flat_ground_camera(WIDE, HIGH, FOCAL);
 }
 
 /* A set with one fin in sector 0, 10 km away, under paint of one colour; nothing in the others. */

@@ -1,5 +1,6 @@
 /* The reserve of far sets: what is asked for on an idle link of what lies out of view, and how it
  * gives way to what is in view. */
+#include "../rig/flat_ground.h"
 #include "../rig/picture.h"
 #include "../../client/far/ff_sets.h"
 
@@ -34,18 +35,8 @@ static void open_stage(stage *s, int device)
     };
     memset(s, 0, sizeof *s);
     assert_int_equal(picture_open(&s->kit, PICTURE_SOFT, WIDE, HIGH, 0), FF_OK);
-    s->info = (ff_terrain_info){ .node_log2 = 3,
-                                 .tile_log2 = 8,
-                                 .tiles_x = 1,
-                                 .tiles_y = 1,
-                                 .samples_x = 257,
-                                 .samples_y = 257,
-                                 .spacing_wu = 90 * M,
-                                 .hscale_q24 = 1 << 24 };
-    s->view.camera = (c3d_camera){ .pos_wu = { 100000 * M, 100000 * M, 2000 * M },
-                                   .focal_q8 = FOCAL * 256,
-                                   .width = WIDE,
-                                   .height = HIGH };
+    s->info = flat_ground();
+    s->view.camera = flat_ground_camera(WIDE, HIGH, FOCAL);
     assert_true(ff_requests_bytes(8) <= sizeof s->requests_memory);
     ff_requests_init(&s->requests, 8, s->requests_memory);
     ff_motion_reset(&s->motion);
@@ -177,6 +168,23 @@ static void who_passes_gets_what_is_worth_its_bytes(void **state)
             assert_int_equal(ask.sector_count, at[i].quality ? 4 : 13);
             assert_int_equal(sectors_of(&ask) & s.set->held, 0);
         }
+        picture_close(&s.kit);
+    }
+}
+
+/* 13 sectors of 769 bytes are 9997 together, of 770 they are 10 010: those come as fins alone,
+ * however long the viewer stays. */
+static void paint_all_round_is_ten_kilobytes_at_most(void **state)
+{
+    (void)state;
+    for (uint32_t bytes = 769; bytes <= 770; bytes++) {
+        static stage s;
+        ff_request request;
+        ff_get_far ask;
+        open_stage(&s, 0);
+        s.set->whole_bytes = 3 * bytes;
+        assert_true(asked(&s, &request, &ask));
+        assert_int_equal(ask.quality, bytes == 769 ? 40 : 0);
         picture_close(&s.kit);
     }
 }
@@ -385,6 +393,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(who_stays_gets_the_rest_with_paint),
         cmocka_unit_test(who_passes_gets_what_is_worth_its_bytes),
+        cmocka_unit_test(paint_all_round_is_ten_kilobytes_at_most),
         cmocka_unit_test(the_reserve_is_for_a_drawn_set_that_is_good_and_whole_in_view),
         cmocka_unit_test(fins_alone_give_way_to_fins_with_paint),
         cmocka_unit_test(who_has_fins_and_stays_gets_the_paint),

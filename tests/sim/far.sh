@@ -80,15 +80,28 @@ decides few hills
 is 's["few"]["far"] == "auto" and s["few"]["far_use"] == 2 and s["few"]["far_sectors"] > 0 and s["few"]["far_turns"] == 0' \
     "far auto takes paint where triangles are short, and keeps to it"
 decides many hills --quality px:1 --triangles 200000 --seconds 10
-is 's["many"]["far_requests"] == 0 and s["many"]["far_turns"] == 0' "where they are not, nothing is asked for"
+decides without hills --quality px:1 --triangles 200000 --seconds 10 --far off
+is 's["many"]["far_turns"] == 0 and s["many"]["request_hash"] == s["without"]["request_hash"]' "where they are not, all is as without"
 decides thin hills --speed 3000 --link gprs,down.bytes_s=1200
-is '0 < s["thin"]["far_bytes"] < s["few"]["far_bytes"] / 2' "less on a thin link"
+is '0 < s["thin"]["far_bytes"] < s["few"]["far_bytes"] / 2 and s["thin"]["far_use"] < 1.5' "less on a thin link"
 decides alone hills --balance client
 is 's["alone"]["far_requests"] == 0' "nothing by the client alone"
+timeout 300 "$bin/farfield-fly" --pack "$work/hills.ffp" --link lan --balance server --height 300 --speed 600 --seconds 2 --settle 5 --backend none --json \
+    >"$work/served.json" 2>"$work/served.err"
+is 's["served"]["far"] == "off" and s["served"]["panorama_bytes"] > 0 and s["served"]["far_requests"] == 0' "panoramas alone by the server alone"
 python3 - "$work/plain.raw" <<'END' && "$bin/farfield-bake" "$work/plain.raw" --raw 513x513 --spacing 40 --tile-log2 6 --quiet -o "$work/plain.ffp"
 import array, sys
 array.array("H", [(i // 513 * 3 + i % 513 * 2) // 50 + 100 for i in range(513 * 513)]).tofile(open(sys.argv[1], "wb"))
 END
+python3 - "$work/hills.raw" "$work/half.raw" <<'END' && "$bin/farfield-bake" "$work/half.raw" --raw 513x513 --spacing 40 --tile-log2 6 --quiet -o "$work/half.ffp"
+import array, sys
+heights = array.array("H", open(sys.argv[1], "rb").read())
+for i in range(256 * 513, 513 * 513):
+    heights[i] = 20000
+heights.tofile(open(sys.argv[2], "wb"))
+END
+decides turning half --path hover --start 0.6 --height 100 --settle 20 --seconds 70
+is 's["turning"]["far_use"] == 2 and s["turning"]["far_turns"] == 0' "who turns between hills and a plain keeps them"
 decides plain plain
 is 's["plain"]["far_requests"] == 0 and s["plain"]["triangles"] > 0' "nothing over a plain"
 

@@ -240,6 +240,25 @@ static void far_ground_is_as_wrong_as_it_is_coarse(void **state)
     fixture_free(&fx);
 }
 
+/* A front that all ground lies before, though it reaches beyond a nearer one. */
+static void ground_before_the_front_is_not_wrong(void **state)
+{
+    (void)state;
+    terrain_fixture fx;
+    ff_far_ground far;
+    fixture_usual(&fx, 3000);
+    ff_view view = fixture_view_above(&fx, 1900, 600, 20, 0, -10);
+    ff_quality quality = fixture_quality(FF_MEASURE_PIXELS);
+    quality.error_px_q8 = 32 * 256;
+    fixture_settle(&fx, &view, &quality, 200);
+    ff_estimate_far(fx.tree, 3400 * M, &far);
+    assert_true(far.pixels[0] > 0);
+    assert_int_equal(far.pixels[FF_FAR_NEARER], 0);
+    assert_int_equal(far.error_q8, 0);
+    assert_int_equal(far.skyline_q8, 0);
+    fixture_free(&fx);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -254,6 +273,7 @@ int main(void)
         cmocka_unit_test(beyond_the_ground_a_panorama_counts),
         cmocka_unit_test(far_ground_is_counted_by_how_far_away_it_is),
         cmocka_unit_test(far_ground_is_as_wrong_as_it_is_coarse),
+        cmocka_unit_test(ground_before_the_front_is_not_wrong),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
