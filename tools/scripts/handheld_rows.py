@@ -48,7 +48,7 @@ PLACES = {  # what each counts to under each mark; None: it has nothing to do th
     "client/panorama/ff_intake_face.o": (JPEG, None, None),
     "client/several/": (None, WISHES, None),
     "client/source/": (LINK, WISHES, None),
-    "client/terrain/ff_estimate.o client/terrain/ff_estimate_beyond.o client/terrain/ff_estimate_far.o client/terrain/ff_gaze.o": (None, None, None),  # only when asked for
+    "client/terrain/ff_estimate.o client/terrain/ff_estimate_beyond.o client/terrain/ff_estimate_far.o client/terrain/ff_gaze.o": (None, PANORAMA, None),  # by far auto alone
     "client/terrain/ff_evict.o client/terrain/ff_tree.o": (None, TAKE_IN, STITCH),
     "client/terrain/ff_foresee.o client/terrain/ff_reserve.o client/terrain/ff_wish.o": (None, WISHES, STITCH),
     "client/terrain/ff_grounds.o client/terrain/ff_cover.o client/terrain/ff_seam.o client/terrain/ff_seam_dive.o client/terrain/ff_seam_rim.o": (None, MEASURE, STITCH),
