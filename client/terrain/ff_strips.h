@@ -36,4 +36,25 @@ uint32_t ff_strips_indices(unsigned node_log2);
  * sides), ids into `strip`. */
 unsigned ff_strips_for(unsigned coarser, uint8_t strip[5]);
 
+/* Parts of a node: squares of one or more cells, 8 x 8 or, in smaller nodes, one for each cell. A
+ * bit each, row * 8 + column from the south-west. A triangle is part of the square in which its
+ * middle lies. */
+#define FF_SQUARES_LOG2 3
+#define FF_SQUARES_ROW  (1u << FF_SQUARES_LOG2)
+typedef uint64_t ff_squares;
+
+static inline unsigned ff_squares_log2(unsigned node_log2)
+{
+    return node_log2 < FF_SQUARES_LOG2 ? node_log2 : FF_SQUARES_LOG2;
+}
+
+/* What is left of such a strip without some squares, at most three times as many indices, written
+ * to out[count] and so on: how many there are then. Triangles keep their corners' order, so that
+ * they are drawn alike, pixel for pixel. */
+uint32_t ff_strips_without(const uint16_t *index, uint32_t length, unsigned node_log2,
+                           ff_squares squares, uint16_t *out, uint32_t count);
+/* Indices that all strips of such a node take so, at most: they have two for each height and four
+ * more. */
+static inline uint32_t ff_strips_part(uint32_t heights) { return 3 * (2 * heights + 4); }
+
 #endif

@@ -179,6 +179,56 @@ static void indices_add_up(void **state)
     }
 }
 
+/* Writes down a strip's triangles, corners in the order in which they are drawn: those whose middle
+ * lies in one of the squares, or in none of them. */
+static unsigned list_triangles(const uint16_t *index, unsigned length, unsigned k, ff_squares in,
+                               int wanted, uint16_t list[][3])
+{
+    unsigned count = 0, n = 1u << k, squares = n < 8 ? n : 8;
+    for (unsigned i = 0; i + 2 < length; i++) {
+        uint16_t v[3] = { index[i], index[i + 1 + (i & 1)], index[i + 2 - (i & 1)] };
+        if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
+        unsigned column = (v[0] % (n + 1) + v[1] % (n + 1) + v[2] % (n + 1)) * squares / (3 * n),
+                 row = (v[0] / (n + 1) + v[1] / (n + 1) + v[2] / (n + 1)) * squares / (3 * n);
+        if ((int)(in >> (8 * row + column) & 1) != wanted) continue;
+        memcpy(list[count++], v, sizeof v);
+    }
+    return count;
+}
+
+/* What is left of a node has the triangles of its strips that lie in none of the squares, and no
+ * others, each with its corners in the same order. */
+static void squares_are_left_out(void **state)
+{
+    (void)state;
+    static uint16_t part[3 * (2 * FF_NODE_HEIGHTS_MAX + 4)], listed[4096][3], left[4096][3];
+    static const ff_squares some[] = { 0,
+                                       1,
+                                       ~(ff_squares)0,
+                                       UINT64_C(0x55AA55AA55AA55AA),
+                                       UINT64_C(0x0103070F1F3F7FFF),
+                                       UINT64_C(0x9E3779B97F4A7C15) };
+    for (unsigned k = 1; k <= FF_NODE_LOG2_MAX; k++) {
+        assert_int_equal(ff_strips_make(&strips, k), FF_OK);
+        for (unsigned i = 0; i < 16 * (sizeof some / sizeof *some); i++) {
+            uint8_t id[5];
+            ff_squares squares = some[i / 16];
+            unsigned count = 0, expected = 0, ids = ff_strips_for(i % 16, id);
+            for (unsigned j = 0; j < ids; j++) {
+                const uint16_t *index = strips.index + strips.first[id[j]];
+                count = ff_strips_without(index, strips.length[id[j]], k, squares, part, count);
+                expected += list_triangles(index, strips.length[id[j]], k, squares, 0,
+                                           listed + expected);
+            }
+            unsigned heights = ((1u << k) + 1) * ((1u << k) + 1);
+            assert_true(count <= ff_strips_part(heights) && (count > 0) == (expected > 0));
+            assert_int_equal(list_triangles(part, count, k, squares, 1, left), 0);
+            assert_int_equal(list_triangles(part, count, k, squares, 0, left), expected);
+            assert_memory_equal(left, listed, expected * sizeof *left);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -188,6 +238,7 @@ int main(void)
         cmocka_unit_test(strips_of_a_mask),
         cmocka_unit_test(indices_add_up),
         cmocka_unit_test(node_sizes_out_of_range_are_errors),
+        cmocka_unit_test(squares_are_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

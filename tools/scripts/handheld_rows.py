@@ -55,7 +55,7 @@ PLACES = {  # what each counts to under each mark; None: it has nothing to do th
     "client/terrain/ff_limit.o client/terrain/ff_measure.o client/terrain/ff_pool.o client/terrain/ff_restrict.o client/terrain/ff_select.o": (None, MEASURE, STITCH),
     "client/terrain/ff_spread.o": (None, MEASURE, None),
     "client/terrain/ff_horizon.o client/terrain/ff_horizon_raise.o": (None, HORIZON, None),
-    "client/terrain/ff_shade.o client/terrain/ff_sort.o client/terrain/ff_strips.o client/terrain/ff_surface.o": (None, MEASURE, STITCH),
+    "client/terrain/ff_shade.o client/terrain/ff_sort.o client/terrain/ff_strips.o client/terrain/ff_strips_without.o client/terrain/ff_surface.o": (None, MEASURE, STITCH),
     "client/terrain/ff_view_cull.o client/terrain/ff_pack_source.o": (None, MEASURE, STITCH),
     "common3d/c3d_camera.o common3d/c3d_fixed.o": (LINK, MEASURE, STITCH),
     "common3d/c3d_device.o common3d/c3d_edges.o common3d/c3d_pool.o common3d/c3d_text.o": (None, TAKE_IN, STITCH),
