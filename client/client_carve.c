@@ -87,6 +87,8 @@ static int carve_view(ff_client *client, const ff_budget *budget)
     view->entry_count = budget->pool[FF_POOL_entries].count;
     view->entry = take(client, budget, FF_POOL_entries);
     view->vertices = take(client, budget, FF_POOL_vertices);
+    view->index = take(client, budget, FF_POOL_strip_indices);
+    view->kept = take(client, budget, FF_POOL_kept);
     FF_ASSERT(view->entry_count >= FF_ENTRIES_MIN && view->entry_count <= FF_ENTRIES_MAX);
     if (!client->device) return FF_OK;
     /* a mesh for each entry, one for a node without, and the sky's */
@@ -146,6 +148,7 @@ static int carve_all(ff_client *client, unsigned economy)
     if (sets) {
         ff_sets_init(sets, client->device, &client->desc.far, &client->info, budget.far_side);
         ff_sets_scratch(sets, client->view.vertices, fin_indices, client->view.heights_per_node);
+        client->view.part = fin_indices;
         sets->paint_bytes = ff_budget_paint_bytes(&budget);
         sets->watch = client->fins_made;
         sets->watch_context = client->fins_context;

@@ -105,24 +105,25 @@ static void describe_device(ff_budget *b, uint32_t entries, int buffers)
 {
     unsigned faces = b->face_size ? FF_PANORAMA_MESHES : 0, fins = b->far_side ? fin_meshes(b) : 0,
              paint = b->far_side ? FF_SETS_TEXTURES : 0,
+             part = b->far_side ? ff_strips_part(b->heights) : 0,
              vertices = b->heights > FF_SKY_VERTICES ? b->heights : FF_SKY_VERTICES;
     FF_ASSERT(entries <= FF_ENTRIES_MAX);
     FF_ASSERT(b->pool[FF_POOL_textures].count + 1 + faces + paint <= UINT16_MAX);
     b->entries = entries;
-    b->device =
-        (c3d_desc){ .surface_api = b->desc->surface_api,
-                    .use_vertex_buffers = (uint8_t)buffers,
-                    .mesh_count = (uint16_t)(entries + 1 /* spare */ + 1 /* sky */ + faces + fins),
-                    .strip_count = (uint16_t)(FF_STRIP_COUNT_MAX + EXTRA_STRIPS + fins),
-                    .texture_count = (uint16_t)(b->pool[FF_POOL_textures].count +
-                                                1 /* the caller's text */ + faces + paint),
-                    .mesh_vertices_max = (uint16_t)vertices,
-                    .strip_indices_max = ff_strips_indices(b->info->node_log2) + EXTRA_INDICES +
-                                         fins * (b->heights * 3 / 2),
-                    .width = b->desc->width,
-                    .height = b->desc->height,
-                    .frame_format = b->desc->frame_format,
-                    .texture_bytes = texel_bytes(b) };
+    b->device = (c3d_desc){
+        .surface_api = b->desc->surface_api,
+        .use_vertex_buffers = (uint8_t)buffers,
+        .mesh_count = (uint16_t)(entries + 1 /* spare */ + 1 /* sky */ + faces + fins),
+        .strip_count = (uint16_t)(FF_STRIP_COUNT_MAX + EXTRA_STRIPS + fins + (part > 0)),
+        .texture_count = (uint16_t)(b->pool[FF_POOL_textures].count + 1 /* the caller's text */ +
+                                    faces + paint),
+        .mesh_vertices_max = (uint16_t)vertices,
+        .strip_indices_max = b->indices + EXTRA_INDICES + fins * (b->heights * 3 / 2) + part,
+        .width = b->desc->width,
+        .height = b->desc->height,
+        .frame_format = b->desc->frame_format,
+        .texture_bytes = texel_bytes(b)
+    };
 }
 
 /* Bytes of the device described, or without some of its parts. */
@@ -283,6 +284,7 @@ static void add_arriving(ff_budget *b)
     b->image_bytes = b->texels * sizeof(uint16_t) + (b->far_side ? FF_NEW_FINS_BYTES : 0);
     b->texture_bytes = (size_t)4 << (2 * b->info->texture_log2);
     b->heights = ff_node_side(b->info) * ff_node_side(b->info);
+    b->indices = ff_strips_indices(b->info->node_log2);
     b->values = ff_refined_side(b->info) * ff_refined_side(b->info);
     FF_POOLS_ARRIVING(X, PART)
 }

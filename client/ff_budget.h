@@ -118,9 +118,17 @@
       sizeof(ff_sets), 1, 1, \
       "the set that is drawn and the one that is coming, by name: meshes and texels are the device's") \
     X(fin_indices, b->far_side != 0, \
-      ff_sets_indices(b->heights), 1, UINT16_MAX, \
-      n * sizeof(uint16_t), ff_sets_indices(b->heights), ff_sets_indices(b->heights), \
-      "of the one strip of fins that is being made") \
+      ff_strips_part(b->heights), 1, UINT16_MAX, \
+      n * sizeof(uint16_t), ff_strips_part(b->heights), ff_strips_part(b->heights), \
+      "of the one strip that is being made, of fins or of a part of a node") \
+    X(strip_indices, b->far_side != 0, \
+      b->indices, 1, UINT16_MAX, \
+      n * sizeof(uint16_t), b->indices, b->indices, \
+      "the masks of a node, for parts of them") \
+    X(kept, b->far_side != 0, \
+      b->entries, 1, FF_ENTRIES_MAX, \
+      n * sizeof(ff_view_kept), from->client->view.held, from->client->view.held_high, \
+      "of each entry what ridges hide of it from the points that sets were taken from") \
     X(nodes, 1, \
       nodes_left(b), 8, 16384, \
       tree_bytes(b, n), from->tree.nodes_held, from->tree.nodes_high, \
@@ -156,6 +164,7 @@ typedef struct ff_budget {
     size_t image_bytes;   /* of its texels, in 16 bits, and of a sector's fins */
     size_t texture_bytes; /* of an image of the ground, on the device */
     uint32_t heights;     /* of a node */
+    uint32_t indices;     /* of all strips of a node */
     uint32_t values;      /* residuals of a refinement */
     uint32_t entries;
     c3d_desc device;

@@ -415,6 +415,9 @@ static void take_sector(ff_sets *sets, ff_set *set, const ff_new_item *item)
         set->crowded = 1;
         return;
     }
+    ff_ridges_make(&sector->ridges, set->focal, (const ff_fin_vertex *)(const void *)item->pixels,
+                   item->u.far.fins);
+    set->stamp = ++sets->stamps;
     set->crowded |= (uint8_t)no_room;
     set->held |= bit;
     if (item->key & FF_SETS_KEY_FINS || no_room) set->bare |= bit;

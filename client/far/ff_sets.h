@@ -26,6 +26,7 @@
 #define FF_SETS_H
 
 #include "ff_far_rule.h"
+#include "ff_ridges.h"
 #include "../farfield.h"
 #include "../ahead/ff_motion.h"
 #include "../ask/ff_new_data.h"
@@ -57,6 +58,7 @@ typedef struct ff_set_sector {
     uint16_t width, height; /* of the texture */
     int16_t middle, top;    /* column and row of the texture where the sector's middle and O's
                              * horizon are */
+    ff_ridges ridges;       /* of its fins */
 } ff_set_sector;
 
 /* A set's requests have its key, those of its reserve these bits besides: a server lets go of them
@@ -85,6 +87,7 @@ typedef struct ff_set {
     uint16_t held, empty, failed; /* bit per sector */
     uint16_t bare;                /* of those held: their paint has not come, only their fins */
     uint8_t crowded;              /* it had no room for all: the reserve asks for no more of it */
+    uint32_t stamp;               /* another one whenever a sector has come */
     uint32_t whole, whole_bytes;  /* answers with all that was to be had of a sector, their bytes */
     ff_set_sector sector[FF_FAR_SECTORS];
 } ff_set;
@@ -117,7 +120,7 @@ typedef struct ff_sets {
     ff_far_choice choice;
     uint8_t unpaid;   /* no new set is begun for now */
     int32_t front_wu; /* the nearest front, as high as the camera is */
-    uint32_t serial;
+    uint32_t serial, stamps;
     int64_t retry_us, lead_us;
     ff_set set[2];
     uint32_t sectors, sectors_empty, sectors_failed;
@@ -174,7 +177,12 @@ int ff_sets_make_fins(ff_sets *sets, ff_set *set, unsigned sector, const ff_fin_
 void ff_sets_aim(ff_sets *sets, const c3d_camera *camera);
 /* What is thrown on a node of the ground: an ff_throws' `lay`. */
 unsigned ff_sets_lay(const void *sets, const ff_terrain_info *info, const ff_drawn *drawn,
-                     c3d_draw draws[FF_THROWS_MAX]);
+                     ff_view_kept *kept, c3d_draw draws[FF_THROWS_MAX],
+                     ff_squares without[FF_THROWS_MAX]);
+/* ff_sets_hidden.c: the squares of a node that ridges of a set hide from its O; `sectors`: bit per
+ * sector in which the node lies. */
+ff_squares ff_sets_hidden(const ff_set *set, unsigned sectors, const ff_terrain_info *info,
+                          const ff_drawn *drawn);
 /* The fins, after the ground. */
 void ff_sets_draw(const ff_sets *sets, const c3d_camera *camera);
 

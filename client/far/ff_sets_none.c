@@ -68,9 +68,10 @@ int ff_sets_take(ff_sets *sets, const ff_new_item *item, int64_t now_us)
 void ff_sets_aim(ff_sets *sets, const c3d_camera *camera) { (void)sets, (void)camera; }
 
 unsigned ff_sets_lay(const void *sets, const ff_terrain_info *info, const ff_drawn *drawn,
-                     c3d_draw draws[FF_THROWS_MAX])
+                     ff_view_kept *kept, c3d_draw draws[FF_THROWS_MAX],
+                     ff_squares without[FF_THROWS_MAX])
 {
-    return (void)sets, (void)info, (void)drawn, (void)draws, 1;
+    return (void)sets, (void)info, (void)drawn, (void)kept, (void)draws, (void)without, 1;
 }
 
 void ff_sets_draw(const ff_sets *sets, const c3d_camera *camera) { (void)sets, (void)camera; }

@@ -3,10 +3,22 @@
 #include "ff_show.h"
 #include "../../protocol/ff_assert.h"
 
+#include <string.h>
+
 #define HASH_PRIME UINT64_C(0x100000001b3)
 
 FF_STATIC_ASSERT(FF_STRIP_COUNT_MAX >= FF_STRIP_SIDE(0, FF_NODE_LOG2_MAX + 1));
 FF_STATIC_ASSERT(sizeof((ff_strips *)0)->length == FF_STRIP_COUNT_MAX * sizeof(uint16_t));
+
+/* For parts of it. */
+static void keep_strip(ff_terrain_view *view, unsigned i, const ff_strips *strips)
+{
+    if (!view->index) return;
+    view->first[i] = strips->first[i];
+    view->length[i] = strips->length[i];
+    memcpy(view->index + view->first[i], strips->index + strips->first[i],
+           strips->length[i] * sizeof *strips->index);
+}
 
 int ff_terrain_view_strips(ff_terrain_view *view, unsigned node_log2, ff_strips *strips)
 {
@@ -14,6 +26,7 @@ int ff_terrain_view_strips(ff_terrain_view *view, unsigned node_log2, ff_strips 
     for (unsigned i = 0; rc == FF_OK && i < strips->count; i++) {
         FF_ASSERT(strips->first[i] + strips->length[i] <= (int)ff_strips_indices(node_log2));
         view->strip[i].id = 0;
+        keep_strip(view, i, strips);
         if (strips->length[i] == 0) continue; /* INNER of the smallest nodes */
         view->strip[i] = c3d_strip_make(view->device, strips->index + strips->first[i],
                                         strips->length[i]);
@@ -81,6 +94,7 @@ static ff_view_node *entry_of(ff_terrain_view *view, const ff_drawn *drawn)
         entry->user = user;
         entry->used = view->stamp;
         entry->heights_hash = 0;
+        if (view->kept) memset(&view->kept[place], 0, sizeof *view->kept);
         *user = place + 1;
         if (++view->held > view->held_high) view->held_high = view->held;
         FF_ASSERT(view->held <= view->entry_count);
@@ -160,14 +174,44 @@ static void draw_strips(ff_terrain_view *view, const ff_drawn *drawn, c3d_draw d
     }
 }
 
+/* The node's strips without some squares, as one; id 0: nothing is left, or there is no room. */
+static c3d_strip make_part(ff_terrain_view *view, const ff_terrain_info *info,
+                           const ff_drawn *drawn, ff_squares without)
+{
+    uint8_t strip[5];
+    unsigned strips = ff_strips_for(drawn->coarser, strip);
+    uint32_t count = 0;
+    for (unsigned i = 0; i < strips; i++)
+        count = ff_strips_without(view->index + view->first[strip[i]], view->length[strip[i]],
+                                  info->node_log2, without, view->part, count);
+    FF_ASSERT(count <= ff_strips_part(view->heights_per_node));
+    return count ? c3d_strip_make(view->device, view->part, count) : (c3d_strip){ 0 };
+}
+
 static void draw_thrown(ff_terrain_view *view, const ff_terrain_info *info, const ff_drawn *drawn,
-                        const c3d_draw *draw)
+                        const ff_view_node *entry, const c3d_draw *draw)
 {
     c3d_draw draws[FF_THROWS_MAX];
+    ff_squares without[FF_THROWS_MAX] = { 0 }, made = 0;
+    c3d_strip part = { 0 };
+    ff_view_kept *kept = entry && view->kept ? &view->kept[entry - view->entry] : NULL;
     draws[0] = *draw;
-    unsigned count = view->throws.lay(view->throws.context, info, drawn, draws);
+    unsigned count = view->throws.lay(view->throws.context, info, drawn, kept, draws, without);
     FF_ASSERT(count >= 1 && count <= FF_THROWS_MAX);
-    for (unsigned i = 0; i < count; i++) draw_strips(view, drawn, draws[i]);
+    for (unsigned i = 0; i < count; i++) {
+        if (!without[i]) {
+            draw_strips(view, drawn, draws[i]);
+            continue;
+        }
+        if (without[i] != made) {
+            c3d_strip_free(view->device, part);
+            part = make_part(view, info, drawn, without[i]);
+            made = without[i];
+        }
+        draws[i].strip = part;
+        if (part.id) c3d_draw_strip(view->device, &draws[i]);
+    }
+    c3d_strip_free(view->device, part);
 }
 
 void ff_terrain_view_new_frame(ff_terrain_view *view) { view->frame.set = 0; }
@@ -193,7 +237,7 @@ void ff_terrain_view_draw(ff_terrain_view *view, const ff_drawn *list, uint32_t 
         if (view->textures) ff_textures_lay(view->textures, drawn->key, &draw);
         if (draw.flags & C3D_DRAW_TEXTURED) ff_ground_frame_last(info, drawn, &draw);
         if (view->throws.lay)
-            draw_thrown(view, info, drawn, &draw);
+            draw_thrown(view, info, drawn, entry, &draw);
         else
             draw_strips(view, drawn, draw);
         if (show) ff_show_over(view, drawn, &draw, show);

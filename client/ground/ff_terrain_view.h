@@ -23,12 +23,21 @@ typedef struct ff_view_node {
     uint32_t used; /* stamp of the last frame it was drawn in */
 } ff_view_node;
 
+/* What whoever throws pictures keeps of a node: two things that he found out, and what each is
+ * about. All zero at first. */
+typedef struct ff_view_kept {
+    ff_squares squares[2];
+    uint32_t about[2];
+} ff_view_kept;
+
 /* Pictures thrown on nodes: what becomes of a node's draw. `draws` has it as it is; the answer is
- * how many there are now, FF_THROWS_MAX at most, drawn one over the other. */
+ * how many there are now, FF_THROWS_MAX at most, drawn one over the other, each `without` some of
+ * the node's squares. `kept` may be NULL. */
 #define FF_THROWS_MAX 8
 typedef struct ff_throws {
     unsigned (*lay)(const void *context, const ff_terrain_info *info, const ff_drawn *drawn,
-                    c3d_draw draws[FF_THROWS_MAX]);
+                    ff_view_kept *kept, c3d_draw draws[FF_THROWS_MAX],
+                    ff_squares without[FF_THROWS_MAX]);
     const void *context;
 } ff_throws;
 
@@ -46,6 +55,11 @@ typedef struct ff_terrain_view {
     ff_ground_frame frame; /* of all meshes */
     c3d_strip strip[FF_STRIP_COUNT_MAX];
     ff_throws throws; /* lay NULL: none */
+    /* for throws, NULL where nothing is thrown: of each entry, the indices of all strips, and room
+     * for those of a node without some squares */
+    ff_view_kept *kept; /* zeroed */
+    uint16_t *index, *part;
+    uint16_t first[FF_STRIP_COUNT_MAX], length[FF_STRIP_COUNT_MAX];
 } ff_terrain_view;
 
 /* Makes the strips on the device. `strips` is scratch, free afterwards. FF_OK or FF_ERR_MEMORY. */

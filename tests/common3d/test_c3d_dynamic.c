@@ -147,15 +147,15 @@ static void strips_come_and_go(void **state)
             c3d_strip_free(kit.device, all);
         }
         for (int round = 0; round < 2; round++) {
-            c3d_strip eight[8];
-            for (unsigned i = 0; i < 8; i++) {
-                eight[i] = column_strip(kit.device, i, 4, 0);
-                assert_int_not_equal(eight[i].id, 0);
+            c3d_strip all[PICTURE_STRIPS];
+            for (unsigned i = 0; i < PICTURE_STRIPS; i++) {
+                all[i] = column_strip(kit.device, i % 8, 4, 0);
+                assert_int_not_equal(all[i].id, 0);
             }
             assert_int_equal(column_strip(kit.device, 0, 4, 0).id, 0);
-            for (unsigned i = 0; i < 8; i++) c3d_strip_free(kit.device, eight[i]);
+            for (unsigned i = 0; i < PICTURE_STRIPS; i++) c3d_strip_free(kit.device, all[i]);
         }
-        assert_int_equal(stats_of(&kit).strip_high, 8);
+        assert_int_equal(stats_of(&kit).strip_high, PICTURE_STRIPS);
     }
 }
 

@@ -36,7 +36,7 @@ static int open_device(picture_kit *kit, int use_vertex_buffers)
                                                                      : c3d_backend_gl();
     c3d_desc desc = { .surface_api = kit->api,
                       .mesh_count = 64,
-                      .strip_count = 8,
+                      .strip_count = PICTURE_STRIPS,
                       .texture_count = 8,
                       .label_count = 8,
                       .mesh_vertices_max = 1089,

@@ -16,7 +16,8 @@ enum picture_kind {
 
 /* Squares of PICTURE_UNITS vertex units from the origin: level (x to the east, y to the north), or
  * upright and facing south or west. */
-#define PICTURE_UNITS 64
+#define PICTURE_UNITS  64
+#define PICTURE_STRIPS 32 /* that a kit's device holds */
 enum picture_plane { PICTURE_LEVEL, PICTURE_SOUTH, PICTURE_WEST, PICTURE_PLANES };
 
 typedef struct picture_kit {
