@@ -4,6 +4,9 @@
 
 #include "../../protocol/shape/ff_shape.h"
 
+/* Ground may be higher than it is drawn, as a rule by half of the node's error. */
+#define HIGHER 2
+
 /* The middle of a square, which lies on the diagonal from its south-west corner, relative to O as
  * it lies there. */
 static void middle_of(const ff_set *set, const ff_terrain_info *info, const ff_drawn *drawn,
@@ -40,12 +43,14 @@ ff_squares ff_sets_hidden(const ff_set *set, unsigned sectors, const ff_terrain_
 {
     unsigned log2 = ff_squares_log2(info->node_log2);
     uint32_t cells = 1u << (info->node_log2 - log2);
+    int64_t higher_wu = ff_tree_error_wu(info, drawn->node) / HIGHER;
     ff_squares hidden = 0;
     for (uint32_t row = 0; row < 1u << log2; row++)
         for (uint32_t column = 0; column < 1u << log2; column++) {
             const uint32_t corner[2] = { column * cells, row * cells };
             int64_t away_wu[3];
             middle_of(set, info, drawn, corner, cells, away_wu);
+            away_wu[2] += higher_wu;
             if (is_hidden(set, sectors, away_wu))
                 hidden |= (ff_squares)1 << (row * FF_SQUARES_ROW + column);
         }

@@ -174,7 +174,7 @@ static void take_quarter(const ff_gaze *at, const ff_drawn *drawn, descent *of, 
 void ff_gaze_node(ff_gaze *at, const ff_drawn *drawn)
 {
     const ff_terrain_info *info = ff_ground_of(at->tree, drawn->key);
-    int64_t error_wu = ff_steps_wu(info, ff_geometric_error_decode(drawn->node->error_code));
+    int64_t error_wu = ff_tree_error_wu(info, drawn->node);
     uint32_t side = ff_node_side(info), most = 0;
     descent path[STEPS_MAX];
     path[0].piece[0] = path[0].piece[1] = 0;

@@ -315,6 +315,11 @@ const ff_quality *ff_tree_quality(const ff_tree *tree) { return &tree->quality; 
 
 const ff_placed *ff_tree_placed(const ff_node *node) { return &node->placed; }
 
+int64_t ff_tree_error_wu(const ff_terrain_info *info, const ff_node *node)
+{
+    return ff_steps_wu(info, ff_geometric_error_decode(node->error_code));
+}
+
 uint32_t ff_tree_wishes(const ff_tree *tree, const ff_wish **list)
 {
     *list = tree->wish;

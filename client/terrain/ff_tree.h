@@ -182,6 +182,8 @@ const ff_frame *ff_tree_frame(const ff_tree *tree);
 const ff_quality *ff_tree_quality(const ff_tree *tree);
 /* A node's place there, for ff_shape.h. */
 const ff_placed *ff_tree_placed(const ff_node *node);
+/* The largest distance between a node's triangles and the ground. */
+int64_t ff_tree_error_wu(const ff_terrain_info *info, const ff_node *node);
 /* What would make the picture better, most urgent first. The tree does not remember asking: the
  * caller does. */
 uint32_t ff_tree_wishes(const ff_tree *tree, const ff_wish **list);

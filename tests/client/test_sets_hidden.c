@@ -252,6 +252,25 @@ static void what_is_kept_is_of_this_set(void **state)
     close_stage(&s);
 }
 
+/* Ground that may be higher than it is drawn may have been seen. */
+static void what_is_coarse_is_hidden_less(void **state)
+{
+    (void)state;
+    static stage s;
+    const ff_frame world = { 0 };
+    const uint16_t heights[81] = { 0 };
+    ff_node node = { .key = ff_key_make(0, 1, 3) }; /* its north-east: 3000 to 6200 m from O */
+    ff_drawn drawn = { .key = node.key, .node = &node, .heights = heights };
+    open_stage(&s, PICTURE_SOFT, 0);
+    give_set(&s, 0, 0xF801);
+    node.placed = ff_shape_put(&s.ground.info, &world, node.key);
+    ff_squares exact = ff_sets_hidden(&s.sets.set[0], 1, &s.ground.info, &drawn);
+    assert_int_equal(exact, 3); /* of the first row what lies in the sector: up to 3300 m or so */
+    while (ff_tree_error_wu(&s.ground.info, &node) < 60 * M) node.error_code++;
+    assert_int_equal(ff_sets_hidden(&s.sets.set[0], 1, &s.ground.info, &drawn), 0);
+    close_stage(&s);
+}
+
 static void without_room_nothing_partly_hidden_is_painted(void **state)
 {
     (void)state;
@@ -276,6 +295,7 @@ int main(void)
         cmocka_unit_test(on_gles1),
         cmocka_unit_test(of_a_set_that_fades_out_too),
         cmocka_unit_test(what_is_kept_is_of_this_set),
+        cmocka_unit_test(what_is_coarse_is_hidden_less),
         cmocka_unit_test(without_room_nothing_partly_hidden_is_painted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
