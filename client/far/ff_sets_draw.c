@@ -154,15 +154,17 @@ static unsigned throw_set(const ff_sets *sets, int index, const cast *of, uint8_
         c3d_texture paint = sets->set[index].sector[s].paint;
         if (!paint.id || !(of->sectors >> s & 1u)) continue;
         c3d_draw draw = draws[0];
-        int first = !through && !of->without && !(draw.flags & pictures);
+        int first = !through && count == 1 && !(draw.flags & pictures);
         draw.flags = (draw.flags & ~pictures) | C3D_DRAW_PROJECTED |
                      (first ? 0 : C3D_DRAW_ALPHA_TEST);
         draw.texture = paint;
         draw.projector = &sets->projector[index][s];
         draw.through = through;
-        if (!first && count == FF_THROWS_MAX) return count;
-        without[first ? 0 : count] = of->without;
-        draws[first ? 0 : count++] = draw;
+        int alone = first && !of->without;
+        if (!alone && count == FF_THROWS_MAX) return count;
+        if (first && !alone) without[0] = ~of->without; /* the rest as it is */
+        without[alone ? 0 : count] = of->without;
+        draws[alone ? 0 : count++] = draw;
     }
     return count;
 }

@@ -6,11 +6,12 @@
 /* The bit of the square in which a triangle's middle lies. */
 static ff_squares square_of(const uint16_t *corner, unsigned node_log2)
 {
-    unsigned side = (1u << node_log2) + 1, columns = 0, rows = 0,
+    unsigned side = (1u << node_log2) + 1, inverse_q16 = 65536 / side + 1, columns = 0, rows = 0,
              shift = node_log2 - ff_squares_log2(node_log2);
     for (int i = 0; i < 3; i++) {
-        columns += corner[i] % side;
-        rows += corner[i] / side;
+        unsigned row = corner[i] * inverse_q16 >> 16; /* exact: there are so few */
+        columns += corner[i] - row * side;
+        rows += row;
     }
     FF_ASSERT(columns / 3 < side - 1 && rows / 3 < side - 1);
     return (ff_squares)1 << ((rows / 3 >> shift) * FF_SQUARES_ROW + (columns / 3 >> shift));
