@@ -126,7 +126,7 @@
       n * sizeof(uint16_t), b->indices, b->indices, \
       "the masks of a node, for parts of them") \
     X(kept, b->far_side != 0, \
-      b->entries, 1, FF_ENTRIES_MAX, \
+      b->entries + 1, 1, FF_ENTRIES_MAX + 1, \
       n * sizeof(ff_view_kept), from->client->view.held, from->client->view.held_high, \
       "of each entry what ridges hide of it from the points that sets were taken from") \
     X(nodes, 1, \

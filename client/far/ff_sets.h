@@ -178,7 +178,7 @@ void ff_sets_aim(ff_sets *sets, const c3d_camera *camera);
 /* What is thrown on a node of the ground: an ff_throws' `lay`. */
 unsigned ff_sets_lay(const void *sets, const ff_terrain_info *info, const ff_drawn *drawn,
                      ff_view_kept *kept, c3d_draw draws[FF_THROWS_MAX],
-                     ff_squares without[FF_THROWS_MAX]);
+                     const ff_squares *without[FF_THROWS_MAX]);
 /* ff_sets_hidden.c: the squares of a node that ridges of a set hide from its O; `sectors`: bit per
  * sector in which the node lies. */
 ff_squares ff_sets_hidden(const ff_set *set, unsigned sectors, const ff_terrain_info *info,

@@ -140,13 +140,13 @@ static int in_wedge(unsigned sector, const ff_box *box)
 /* What is thrown of a set: some sectors, on all but some squares of a node. */
 typedef struct cast {
     unsigned sectors;
-    ff_squares without;
+    const ff_squares *without; /* NULL: on all */
 } cast;
 
 /* Throws a set's paint on what draws[0] draws, over the pictures that are thrown on it already.
  * `through`: how much of those is seen. How many draws there are now. */
 static unsigned throw_set(const ff_sets *sets, int index, const cast *of, uint8_t through,
-                          c3d_draw draws[FF_THROWS_MAX], ff_squares without[FF_THROWS_MAX],
+                          c3d_draw draws[FF_THROWS_MAX], const ff_squares *without[FF_THROWS_MAX],
                           unsigned count)
 {
     const uint32_t pictures = C3D_DRAW_TEXTURED | C3D_DRAW_PROJECTED;
@@ -154,17 +154,15 @@ static unsigned throw_set(const ff_sets *sets, int index, const cast *of, uint8_
         c3d_texture paint = sets->set[index].sector[s].paint;
         if (!paint.id || !(of->sectors >> s & 1u)) continue;
         c3d_draw draw = draws[0];
-        int first = !through && count == 1 && !(draw.flags & pictures);
+        int first = !through && !of->without && !(draw.flags & pictures);
         draw.flags = (draw.flags & ~pictures) | C3D_DRAW_PROJECTED |
                      (first ? 0 : C3D_DRAW_ALPHA_TEST);
         draw.texture = paint;
         draw.projector = &sets->projector[index][s];
         draw.through = through;
-        int alone = first && !of->without;
-        if (!alone && count == FF_THROWS_MAX) return count;
-        if (first && !alone) without[0] = ~of->without; /* the rest as it is */
-        without[alone ? 0 : count] = of->without;
-        draws[alone ? 0 : count++] = draw;
+        if (!first && count == FF_THROWS_MAX) return count;
+        without[first ? 0 : count] = of->without;
+        draws[first ? 0 : count++] = draw;
     }
     return count;
 }
@@ -189,25 +187,24 @@ static unsigned sectors_of(const ff_set *set, const ff_terrain_info *info, const
 static cast cast_of(const ff_sets *sets, int index, const ff_terrain_info *info,
                     const ff_drawn *drawn, ff_view_kept *kept)
 {
-    cast of = { 0, 0 };
+    cast of = { 0, NULL };
     if (index < 0) return of;
     const ff_set *set = &sets->set[index];
     of.sectors = sectors_of(set, info, drawn);
     if (!of.sectors) return of;
-    if (kept && kept->about[index] == set->stamp) {
-        of.without = kept->squares[index];
-    } else {
-        of.without = ff_sets_hidden(set, of.sectors, info, drawn);
-        if (kept) kept->squares[index] = of.without, kept->about[index] = set->stamp;
+    if (kept->about[index] != set->stamp) {
+        kept->squares[index] = ff_sets_hidden(set, of.sectors, info, drawn);
+        kept->about[index] = set->stamp;
     }
-    if (!~of.without) of.sectors = 0;
+    if (kept->squares[index]) of.without = &kept->squares[index];
+    if (!~kept->squares[index]) of.sectors = 0;
     return of;
 }
 
 /* Throws what is drawn of both sets on what draws[0] draws: of the drawn one some sectors, of that
  * below it others. Where the drawn one has none, that below it fades out. */
 static unsigned throw_both(const ff_sets *sets, const cast *active, const cast *under,
-                           c3d_draw draws[FF_THROWS_MAX], ff_squares without[FF_THROWS_MAX])
+                           c3d_draw draws[FF_THROWS_MAX], const ff_squares *without[FF_THROWS_MAX])
 {
     unsigned count = 1;
     if (sets->under >= 0)
@@ -221,7 +218,7 @@ static unsigned throw_both(const ff_sets *sets, const cast *active, const cast *
 
 unsigned ff_sets_lay(const void *context, const ff_terrain_info *info, const ff_drawn *drawn,
                      ff_view_kept *kept, c3d_draw draws[FF_THROWS_MAX],
-                     ff_squares without[FF_THROWS_MAX])
+                     const ff_squares *without[FF_THROWS_MAX])
 {
     const ff_sets *sets = context;
     cast active = cast_of(sets, sets->active, info, drawn, kept),
@@ -242,9 +239,9 @@ static void draw_sector(const ff_sets *sets, int index, unsigned s, const c3d_ca
     for (int axis = 0; axis < 3; axis++)
         draws[0].origin_wu[axis] = (int64_t)set->position_wu[axis] - camera->pos_wu[axis];
     int painted = sets->active >= 0 && sets->set[sets->active].sector[s].paint.id;
-    ff_squares none[FF_THROWS_MAX] = { 0 };
-    unsigned count = throw_both(sets, &(cast){ painted ? 1u << s : 0, 0 }, &(cast){ 1u << s, 0 },
-                                draws, none);
+    const ff_squares *none[FF_THROWS_MAX] = { NULL };
+    unsigned count = throw_both(sets, &(cast){ painted ? 1u << s : 0, NULL },
+                                &(cast){ 1u << s, NULL }, draws, none);
     for (unsigned i = 0; i < sector->chunks; i++)
         for (unsigned k = 0; k < count; k++) {
             draws[k].mesh = sector->mesh[i];

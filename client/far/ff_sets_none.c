@@ -69,7 +69,7 @@ void ff_sets_aim(ff_sets *sets, const c3d_camera *camera) { (void)sets, (void)ca
 
 unsigned ff_sets_lay(const void *sets, const ff_terrain_info *info, const ff_drawn *drawn,
                      ff_view_kept *kept, c3d_draw draws[FF_THROWS_MAX],
-                     ff_squares without[FF_THROWS_MAX])
+                     const ff_squares *without[FF_THROWS_MAX])
 {
     return (void)sets, (void)info, (void)drawn, (void)kept, (void)draws, (void)without, 1;
 }

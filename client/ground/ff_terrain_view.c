@@ -174,9 +174,9 @@ static void draw_strips(ff_terrain_view *view, const ff_drawn *drawn, c3d_draw d
     }
 }
 
-/* The node's strips without some squares, as one. 0: there is no room for it. */
-static int draw_part(ff_terrain_view *view, const ff_terrain_info *info, const ff_drawn *drawn,
-                     ff_squares without, c3d_draw draw)
+/* The node's strips without some squares, as one; id 0: nothing is left, or there is no room. */
+static c3d_strip make_part(ff_terrain_view *view, const ff_terrain_info *info,
+                           const ff_drawn *drawn, ff_squares without)
 {
     uint8_t strip[5];
     unsigned strips = ff_strips_for(drawn->coarser, strip);
@@ -185,30 +185,33 @@ static int draw_part(ff_terrain_view *view, const ff_terrain_info *info, const f
         count = ff_strips_without(view->index + view->first[strip[i]], view->length[strip[i]],
                                   info->node_log2, without, view->part, count);
     FF_ASSERT(count <= ff_strips_part(view->heights_per_node));
-    if (!count) return 1;
-    draw.strip = c3d_strip_make(view->device, view->part, count);
-    if (!draw.strip.id) return 0;
-    c3d_draw_strip(view->device, &draw);
-    c3d_strip_free(view->device, draw.strip);
-    return 1;
+    return count ? c3d_strip_make(view->device, view->part, count) : (c3d_strip){ 0 };
 }
 
 static void draw_thrown(ff_terrain_view *view, const ff_terrain_info *info, const ff_drawn *drawn,
                         const ff_view_node *entry, const c3d_draw *draw)
 {
     c3d_draw draws[FF_THROWS_MAX];
-    ff_squares without[FF_THROWS_MAX] = { 0 };
-    ff_view_kept *kept = entry && view->kept ? &view->kept[entry - view->entry] : NULL;
-    int whole = 1;
+    const ff_squares *without[FF_THROWS_MAX] = { NULL };
+    c3d_strip part = { 0 };
+    ff_view_kept *kept = &view->kept[entry ? entry - view->entry : (ptrdiff_t)view->entry_count];
+    if (!entry) memset(kept, 0, sizeof *kept);
     draws[0] = *draw;
     unsigned count = view->throws.lay(view->throws.context, info, drawn, kept, draws, without);
     FF_ASSERT(count >= 1 && count <= FF_THROWS_MAX);
-    for (unsigned i = 0; i < count; i++)
-        if (without[i])
-            whole &= draw_part(view, info, drawn, without[i], draws[i]);
-        else
+    for (unsigned i = 0; i < count; i++) {
+        if (!without[i]) {
             draw_strips(view, drawn, draws[i]);
-    if (!whole) draw_strips(view, drawn, *draw); /* without pictures, but no hole */
+            continue;
+        }
+        if (i == 0 || without[i] != without[i - 1]) {
+            c3d_strip_free(view->device, part);
+            part = make_part(view, info, drawn, *without[i]);
+        }
+        draws[i].strip = part;
+        if (part.id) c3d_draw_strip(view->device, &draws[i]);
+    }
+    c3d_strip_free(view->device, part);
 }
 
 void ff_terrain_view_new_frame(ff_terrain_view *view) { view->frame.set = 0; }

@@ -32,12 +32,12 @@ typedef struct ff_view_kept {
 
 /* Pictures thrown on nodes: what becomes of a node's draw. `draws` has it as it is; the answer is
  * how many there are now, FF_THROWS_MAX at most, drawn one over the other, each `without` some of
- * the node's squares. `kept` may be NULL. */
+ * the node's squares; NULL: whole. */
 #define FF_THROWS_MAX 8
 typedef struct ff_throws {
     unsigned (*lay)(const void *context, const ff_terrain_info *info, const ff_drawn *drawn,
                     ff_view_kept *kept, c3d_draw draws[FF_THROWS_MAX],
-                    ff_squares without[FF_THROWS_MAX]);
+                    const ff_squares *without[FF_THROWS_MAX]);
     const void *context;
 } ff_throws;
 
@@ -55,8 +55,8 @@ typedef struct ff_terrain_view {
     ff_ground_frame frame; /* of all meshes */
     c3d_strip strip[FF_STRIP_COUNT_MAX];
     ff_throws throws; /* lay NULL: none */
-    /* for throws, NULL where nothing is thrown: of each entry, the indices of all strips, and room
-     * for those of a node without some squares */
+    /* for throws, NULL where nothing is thrown: of each entry, and one for nodes that lack one; the
+     * indices of all strips, and room for those of a node without some squares */
     ff_view_kept *kept; /* zeroed */
     uint16_t *index, *part;
     uint16_t first[FF_STRIP_COUNT_MAX], length[FF_STRIP_COUNT_MAX];

@@ -275,9 +275,10 @@ static unsigned thrown_on(const ff_sets *sets, const ff_terrain_info *info, uint
     c3d_draw draws[FF_THROWS_MAX] = { { .flags = C3D_DRAW_COLOURED | texture_of } };
     node.placed = ff_shape_put(info, &world, node.key);
     uint16_t heights[81] = { 0 };
-    ff_squares without[FF_THROWS_MAX] = { 0 };
+    ff_view_kept kept = { 0 };
+    const ff_squares *without[FF_THROWS_MAX] = { NULL };
     drawn.heights = heights;
-    unsigned count = ff_sets_lay(sets, info, &drawn, NULL, draws, without), sectors = 0;
+    unsigned count = ff_sets_lay(sets, info, &drawn, &kept, draws, without), sectors = 0;
     assert_in_range(count, 1, FF_THROWS_MAX);
     *plain = !(draws[0].flags & C3D_DRAW_PROJECTED);
     for (unsigned i = 0; i < count; i++) {

@@ -252,7 +252,7 @@ static void nodes_wear_both(void **state)
     const ff_frame world = { 0 };
     ff_node node = { .key = ff_key_make(0, 0, 0) };
     const uint16_t heights[81] = { 0 };
-    ff_squares without[FF_THROWS_MAX] = { 0 };
+    const ff_squares *without[FF_THROWS_MAX] = { NULL };
     ff_drawn drawn = { .key = node.key, .node = &node, .heights = heights };
     open_stage(&s);
     node.placed = ff_shape_put(&s.info, &world, node.key);
@@ -271,7 +271,8 @@ static void nodes_wear_both(void **state)
             s.sets.through = 200;
             c3d_draw draws[FF_THROWS_MAX] = { { .flags = image ? C3D_DRAW_TEXTURED
                                                                : C3D_DRAW_COLOURED } };
-            unsigned count = ff_sets_lay(&s.sets, &s.info, &drawn, NULL, draws, without),
+            ff_view_kept kept = { 0 };
+            unsigned count = ff_sets_lay(&s.sets, &s.info, &drawn, &kept, draws, without),
                      of[2] = { 0, 0 };
             int plain = image || !both;
             assert_int_equal(!(draws[0].flags & C3D_DRAW_PROJECTED), plain);

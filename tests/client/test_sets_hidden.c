@@ -40,7 +40,7 @@ typedef struct stage {
     ff_sets sets;
     ff_terrain_view view;
     ff_view_node entry[ENTRIES];
-    ff_view_kept kept[ENTRIES];
+    ff_view_kept kept[ENTRIES + 1];
     c3d_vertex vertices[81];
     uint16_t index[508], part[3 * (2 * 81 + 4)];
     ff_strips strips;
