@@ -90,12 +90,43 @@ bench-handheld: build/handheld/farfield-handheld $(TCG_COUNT) $(BUILD)/bin/farfi
 	    --beside soft=$(BENCH)/look/soft --beside gles1=$(BENCH)/look/gles1
 	@printf '\n## Look\n\n![The same flight by integers and by GL ES](look/side-by-side.png)\n' >>$(BENCH)/handheld.md
 
+# ---- make bench-codec: what heights take, ours and others', and what decoding them takes (decode_pack.c, the core alone). DATA=DIR: real
+# ground; BENCH_OPTIONS=--quick: a slice ----
+CODEC_PEERS := libcharls2 liblerc4 libopenjp2-tools libjxl-tools
+DECODE_PACK := build/handheld/decode_pack
+$(DECODE_PACK): $(HAND_OBJ)/tools/scripts/decode_pack.o $(patsubst %.c,$(HAND_OBJ)/%.o,$(filter protocol/%,$(DEVICE_CORE)))
+	$(ARM)gcc $(ARM_CPU) -static -Wl,--gc-sections $^ $(ARM_LIBS)/libz.a -o $@
+# Others' libraries, as Debian builds them for armel; without them the bench goes on.
+PEERS := build/peers
+PEER_LIBS := libcharls2 libcharls-dev liblerc4 liblerc-dev libopenjp2-7 libopenjp2-7-dev libjxl0.7 libjxl-dev libbrotli1 libhwy1 liblcms2-2 libstdc++6 \
+             libgcc-s1 libatomic1 libc6
+DECODE_PEER := build/handheld/decode_peer
+$(PEERS)/.fetched: tools/scripts/cross-libs.sh
+	@tools/scripts/cross-libs.sh $(PEERS) armel $(PEER_LIBS)
+	@touch $@
+$(DECODE_PEER): tools/scripts/decode_peer.c tools/scripts/count_marks.h $(PEERS)/.fetched | $(CROSS_STAMP)
+	$(ARM)gcc -O2 $(WARN) $(STD_host) -no-pie -isystem $(PEERS)/armel/usr/include -isystem $(PEERS)/armel/usr/include/openjpeg-2.5 $< \
+	    -L$(PEERS)/armel/usr/lib/arm-linux-gnueabi -Wl,--allow-shlib-undefined -lcharls -lLerc -lopenjp2 -ljxl -o $@
+# The baker and the exporter with the tables in the same folder, as farfield-train wrote them, in place of their own.
+FOLD_LINK = $(CC) $(OPT) $(WARN) $(STD_host) -DFF_ENCODER=1 -Iprotocol/trained $(LDFLAGS) $(filter %tables.c %_main.o,$^) $(LINK_LIBS) $(GDAL_LIBS) -o $@
+%/fold-bake: %/tables.c $(call obj,tools/bake/bake_main.c) $(LIBS)
+	$(FOLD_LINK)
+%/fold-export: %/tables.c $(call obj,tools/export/export_main.c) $(LIBS)
+	$(FOLD_LINK)
+
+.PHONY: bench-codec
+bench-codec: $(patsubst %,$(BUILD)/bin/farfield-%,bake export info train) $(DECODE_PACK) $(TCG_COUNT) ## bits, errors and instructions of heights, ours beside JPEG-LS, LERC, JPEG 2000 and JPEG XL (some minutes): build/bench/codec.md (DATA=DIR: real ground)
+	@tools/scripts/install-deps.sh $(CODEC_PEERS) || echo "bench-codec: goes on without what could not be installed" >&2
+	@$(MAKE) -s $(DECODE_PEER) || echo "bench-codec: does not count what others take" >&2
+	@MAKE="$(MAKE) -s" $(if $(DATA),FARFIELD_DATA=$(DATA)) tools/scripts/bench_codec.py $(BUILD)/bin $(BENCH) \
+	    --decoder $(DECODE_PACK) --plugin $(TCG_COUNT) --peer-decoder $(DECODE_PEER) --peer-libs $(PEERS)/armel $(BENCH_OPTIONS)
+
 # ---- make test-cross: the unit tests that need no graphics library, on 32-bit ARM and on a big-endian machine ----
-CROSS_TESTS := key shape codec far message pack fixed predict panorama_rules shade strips texture_map tree tree_pools tree_view watertight link \
+CROSS_TESTS := key shape codec codec_trained range far message pack fixed predict panorama_rules shade strips texture_map tree tree_pools tree_view watertight link \
                stream client budget soft c3d c3d_dynamic
 CROSS_SRC := $(filter-out common3d/gl%,$(SRC_core)) $(filter-out platform/posix/png.c,$(SRC_platform)) server/session/ff_session.c \
              $(filter-out sim/link/sim_server.c sim/link/link_%,$(foreach d,sim/link sim/judge sim/tape,$(call srcs,$d))) \
-             $(foreach t,client_fixture pack_fixture picture slow_decoder slow_far slow_watertight terrain_fixture no_graphics,tests/rig/$t.c)
+             $(foreach t,client_fixture pack_fixture picture slow_decoder slow_trained slow_far slow_watertight terrain_fixture no_graphics,tests/rig/$t.c)
 CROSS_MAINS := $(foreach t,$(CROSS_TESTS),$(filter %/test_$t.c,$(TEST_MAINS)))
 CROSS_CASES := $(patsubst %,build/s390x/%.tap,$(CROSS_TESTS)) $(patsubst %,build/arm/%.tap,$(CROSS_TESTS))
 # $(call cross_tests,NAME,COMPILER,DEBIAN ARCHITECTURE,TRIPLET,QEMU)

@@ -69,6 +69,7 @@ static ff_tree *carve(const ff_tree_desc *desc, block *from)
     parts.drawn = take(from, n * sizeof *parts.drawn);
     parts.wish = take(from, desc->wish_count * sizeof *parts.wish);
     parts.refined = take(from, refined * refined * sizeof *parts.refined);
+    parts.room = take(from, ff_codec_room(&desc->info));
     if (desc->hidden != FF_HIDDEN_FETCHED) {
         parts.horizon = take(from, sizeof *parts.horizon);
         parts.horizon_ahead = take(from, sizeof *parts.horizon);
@@ -193,7 +194,7 @@ int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, unsigned source,
     }
     FF_ASSERT(tree->free_count > 0);
     uint32_t slot = ff_tree_take_slot(tree, key, FF_SLOT_NONE);
-    int rc = ff_reconstruct_root(info, residuals, heights_of(tree, slot));
+    int rc = ff_reconstruct_root(info, residuals, heights_of(tree, slot), tree->room);
     if (rc != FF_OK) {
         ff_tree_drop_root(tree, &tree->node[slot]);
         return rc;
@@ -248,7 +249,8 @@ int ff_tree_deliver_children(ff_tree *tree, ff_key key, unsigned source,
     int rc = make_room(tree, slot);
     if (rc != FF_OK) return rc;
     FF_ASSERT(tree->node[slot].key == key); /* it was spared itself */
-    rc = ff_reconstruct_refinement(info, heights_of(tree, slot), residuals, tree->refined);
+    rc = ff_reconstruct_refinement(info, heights_of(tree, slot), residuals, tree->refined,
+                                   tree->room);
     if (rc != FF_OK) return rc;
     take_children(tree, slot, residuals, source);
     return FF_OK;
@@ -267,7 +269,7 @@ void ff_tree_make_children(ff_tree *tree)
         ff_residuals all = ff_leaf_residuals(info, node->error_code, node->flags & FF_NODE_FILLED);
         FF_ASSERT(ff_key_level(node->key) + 1 < ff_terrain_levels(info));
         ff_predict_children(info, ff_shape_cells(info, node->key, 1), heights_of(tree, slot),
-                            tree->refined);
+                            tree->refined, tree->room);
         take_children(tree, slot, &all, 0);
     }
     tree->made_count = 0;

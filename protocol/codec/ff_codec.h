@@ -13,21 +13,23 @@
  * absolute values. Residuals are quantised with step 2*max_error+1 against *decoded* heights, so no
  * error grows with depth. protocol/SPEC.md gives every bit.
  *
- * Prediction and residuals are the same for all codecs: a codec says how residuals become bytes.
- * All codecs therefore decode to the same heights. ff_codec_list.h has a row for each.
+ * A codec says how residuals become bytes; ff_codec_list.h has a row for each. The first three
+ * predict as above and decode to the same heights. Codec trained predicts rims alike, all other
+ * samples in an order and by weights of its own (protocol/trained): within max_error of the source,
+ * too, but not the same heights, unless that is 0.
  *
  * Decoding has two stages. ff_decode_* runs on the network worker, away from the tree;
  * ff_reconstruct_* runs on the main thread, with the parent's heights. A codec chooses in which of
- * the two it turns bits into residuals. The three of today do it in the first and share
+ * the two it turns bits into residuals. The first three do it in the first and share
  * ff_add_residuals as the second. A codec whose contexts need the parent's heights, or those
- * decoded just before, has FF_NEEDS_PARENT: its first stage reads the error codes and carries the
- * rest of the payload in ff_residuals.value (ff_carry); its second stage reads the bits while it
- * predicts. So the list of new data, the tree and the local source do not know which kind they
- * move, the memory of a carried payload is that of the residuals it stands for, and the other
- * codecs pay nothing. The price: the second stage can find the payload bad, so ff_reconstruct_* has
- * an error to give and whoever holds the answer must treat it as undecodable. Carrying such
- * payloads as a kind of new data of their own would have cost a branch and a buffer in each of
- * those places.
+ * decoded just before, has FF_NEEDS_PARENT, as trained has: its first stage reads the error codes
+ * and carries the rest of the payload in ff_residuals.value (ff_carry); its second stage reads the
+ * bits while it predicts. So the list of new data, the tree and the local source do not know which
+ * kind they move, the memory of a carried payload is that of the residuals it stands for, and the
+ * other codecs pay nothing. The price: the second stage can find the payload bad, so
+ * ff_reconstruct_* has an error to give and whoever holds the answer must treat it as undecodable.
+ * Carrying such payloads as a kind of new data of their own would have cost a branch and a buffer
+ * in each of those places.
  */
 #ifndef FF_CODEC_H
 #define FF_CODEC_H
@@ -71,8 +73,9 @@ uint8_t ff_geometric_error_below(const ff_terrain_info *info, uint8_t code);
 /* What decoding needs beyond the payload. */
 enum ff_codec_needs {
     FF_NEEDS_NOTHING = 0,
-    FF_NEEDS_ZLIB = 1,  /* ff_inflate.h */
-    FF_NEEDS_PARENT = 2 /* residuals are read by the second stage, with the parent's heights */
+    FF_NEEDS_ZLIB = 1,   /* ff_inflate.h */
+    FF_NEEDS_PARENT = 2, /* residuals are read by the second stage, with the parent's heights */
+    FF_NEEDS_TRAINED = FF_NEEDS_PARENT | 4 /* and protocol/trained */
 };
 
 /* Name of a codec, or NULL when no row of the list has this number. */
@@ -117,19 +120,24 @@ FF_STATIC_ASSERT(FF_REFINED_HEIGHTS_MAX * sizeof(int32_t) <= UINT16_MAX); /* car
 int ff_decode_root(ff_decoder *dec, const uint8_t *payload, size_t bytes, ff_residuals *out);
 int ff_decode_refinement(ff_decoder *dec, const uint8_t *payload, size_t bytes, ff_residuals *out);
 
+/* What prediction works in: as many bytes, aligned for uint16_t, of the caller's. */
+size_t ff_codec_room(const ff_terrain_info *info);
+#define FF_CODEC_ROOM_MAX (3 * (65 + 6) * (65 + 6))
+
 /* Second stage: prediction plus residual times step, clamped to 0..65535 (lossless: modulo 2^16, so
  * that 16 bits hold any residual). `heights` receives ff_node_side()^2 values. FF_OK; with
  * FF_NEEDS_PARENT also the errors of ff_decode_*, and no heights. */
-int ff_reconstruct_root(const ff_terrain_info *info, const ff_residuals *res, uint16_t *heights);
+int ff_reconstruct_root(const ff_terrain_info *info, const ff_residuals *res, uint16_t *heights,
+                        void *room);
 /* `parent` ff_node_side()^2 values, `refined` receives ff_refined_side()^2 values. */
 int ff_reconstruct_refinement(const ff_terrain_info *info, const uint16_t *parent,
-                              const ff_residuals *res, uint16_t *refined);
+                              const ff_residuals *res, uint16_t *refined, void *room);
 /* What stands for the payload of a leaf of this error code: its children are leaves, filled when it
  * is, with the code ff_geometric_error_below. Without values. */
 ff_residuals ff_leaf_residuals(const ff_terrain_info *info, uint8_t code, int filled);
 /* The heights of those children, in place of ff_reconstruct_refinement. */
 void ff_predict_children(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
-                         uint16_t *refined);
+                         uint16_t *refined, void *room);
 /* Cuts the child in `quadrant` out of a refined grid. */
 void ff_refined_child(const ff_terrain_info *info, const uint16_t *refined, uint32_t quadrant,
                       uint16_t *child);

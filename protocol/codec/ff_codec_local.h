@@ -41,9 +41,16 @@ typedef int32_t ff_memory_fn(const ff_terrain_info *info, void *memory);
  * FF_ERR_FORMAT; out->count is set already, out->value has room for ff_refined_side()^2 values. */
 typedef int ff_decode_fn(const ff_decoder *dec, ff_payload *in, const ff_contents *contents,
                          ff_residuals *out);
+/* Called once for every new sample, in coding order; returns its decoded height. `at` is its index
+ * in the grid. */
+typedef uint16_t (*ff_sample_fn)(void *context, uint32_t at, int32_t predicted);
+/* Makes a grid's new samples: a root's from its corners, which are in the grid; `parent` not NULL:
+ * a refinement's. */
+typedef void ff_predict_fn(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
+                           uint16_t *grid, void *room, ff_sample_fn sample, void *context);
 /* `parent` NULL: a root. */
 typedef int ff_reconstruct_fn(const ff_terrain_info *info, const uint16_t *parent,
-                              const ff_residuals *res, uint16_t *heights);
+                              const ff_residuals *res, uint16_t *heights, void *room);
 /* Bytes written. `decoded`: the heights that the residuals lead to, for contexts. */
 typedef size_t ff_encode_fn(const ff_terrain_info *info, const uint16_t *parent,
                             const uint16_t *decoded, const ff_contents *contents,
@@ -55,6 +62,7 @@ typedef struct ff_codec {
     uint32_t needs; /* enum ff_codec_needs */
     ff_memory_fn *memory;
     ff_decode_fn *decode;
+    ff_predict_fn *predict;
     ff_reconstruct_fn *reconstruct;
 } ff_codec;
 
@@ -66,8 +74,8 @@ ff_encode_fn *ff_codec_encoder(int codec);
 size_t ff_codec_head(int codec);
 
 /* clang-format off */
-#define ROW(number, constant, name, needs, head, memory, decode, reconstruct, encode) \
-    ff_memory_fn memory; ff_decode_fn decode; ff_reconstruct_fn reconstruct; ff_encode_fn encode;
+#define ROW(number, constant, name, needs, head, memory, decode, predict, reconstruct, encode) \
+    ff_memory_fn memory; ff_decode_fn decode; ff_predict_fn predict; ff_reconstruct_fn reconstruct; ff_encode_fn encode;
 /* clang-format on */
 FF_CODEC_LIST(ROW)
 #undef ROW
@@ -82,6 +90,9 @@ static inline size_t ff_align_up(size_t bytes)
 {
     return (bytes + FF_DECODER_ALIGNMENT - 1) & ~(size_t)(FF_DECODER_ALIGNMENT - 1);
 }
+
+/* 0: the build has left protocol/trained out. */
+extern const uint8_t ff_trained_built;
 
 /* ---- parts of payloads that codecs share ---- */
 
@@ -106,20 +117,27 @@ int ff_carry(const ff_terrain_info *info, ff_payload *in, ff_residuals *out);
 /* Encoder: the same the other way. Bytes written. */
 size_t ff_put_errors(const ff_residuals *res, enum ff_errors_form form, uint32_t errors,
                      uint8_t *out);
+/* How they are stored best. */
+enum ff_errors_form ff_errors_form_of(const ff_residuals *res, uint32_t errors);
 size_t ff_put_words(const int32_t *value, uint32_t count, uint8_t *out);
 
 /* ---- prediction and residuals ---- */
 
-/* Called once for every new sample, in coding order; returns its decoded height. `at` is its index
- * in the grid. */
-typedef uint16_t (*ff_sample_fn)(void *context, uint32_t at, int32_t predicted);
+/* The sample half-way between known[i] and known[i+1] of a line of `cells`+1 known samples, which
+ * are `step` apart in memory. */
+int32_t ff_predict_middle(const uint16_t *known, uint32_t step, uint32_t i, uint32_t cells);
+/* Of the points of a line that a doubling makes, `stride` apart from the known ones, those before
+ * its ground ends: odd multiples of `stride` below `ground`. */
+uint32_t ff_coded_points(uint32_t stride, uint32_t ground);
+/* The first known point at or beyond the end of the ground. */
+uint32_t ff_last_point(uint32_t stride, uint32_t ground);
+/* After a doubling: all that lies beyond the ground repeats the last points that do not. */
+void ff_repeat_last(uint16_t *grid, uint32_t side, uint32_t stride, ff_cells cells);
+/* What a payload says of its ground, 0 standing for all of a grid of this side. */
+ff_cells ff_cells_of(ff_cells cells, uint32_t side);
+/* A parent's heights at the even points of a refined grid. */
+void ff_spread_parent(const ff_terrain_info *info, const uint16_t *parent, uint16_t *grid);
 
-/* A root from its corners (already in the grid): node_log2 doublings. */
-void ff_predict_root(const ff_terrain_info *info, ff_cells cells, uint16_t *grid,
-                     ff_sample_fn sample, void *context);
-/* Spreads a parent over the even points of a refined grid, then one doubling. */
-void ff_predict_refinement(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
-                           uint16_t *grid, ff_sample_fn sample, void *context);
 /* How many samples a payload codes, root corners included; never more than the two below. */
 uint32_t ff_coded_count(const ff_terrain_info *info, ff_cells cells, int root);
 /* Grid index of root corner 0..3: south-west, south-east, north-west, north-east. */

@@ -4,8 +4,8 @@
 const ff_codec *ff_codec_row(int codec)
 {
 /* clang-format off */
-#define ROW(number, constant, name, needs, head, memory, decode, reconstruct, encode) \
-    [number] = { name, FF_NEEDS_##needs, memory, decode, reconstruct },
+#define ROW(number, constant, name, needs, head, memory, decode, predict, reconstruct, encode) \
+    [number] = { name, FF_NEEDS_##needs, memory, decode, predict, reconstruct },
     static const ff_codec rows[FF_CODEC_COUNT] = { FF_CODEC_LIST(ROW) };
 #undef ROW
     /* clang-format on */
@@ -17,7 +17,7 @@ const ff_codec *ff_codec_row(int codec)
 ff_encode_fn *ff_codec_encoder(int codec)
 {
 /* clang-format off */
-#define ROW(number, constant, name, needs, head, memory, decode, reconstruct, encode) [number] = encode,
+#define ROW(number, constant, name, needs, head, memory, decode, predict, reconstruct, encode) [number] = encode,
     static ff_encode_fn *const encoders[FF_CODEC_COUNT] = { FF_CODEC_LIST(ROW) };
 #undef ROW
     /* clang-format on */
@@ -28,7 +28,7 @@ ff_encode_fn *ff_codec_encoder(int codec)
 size_t ff_codec_head(int codec)
 {
 /* clang-format off */
-#define ROW(number, constant, name, needs, head, memory, decode, reconstruct, encode) [number] = head,
+#define ROW(number, constant, name, needs, head, memory, decode, predict, reconstruct, encode) [number] = head,
     static const uint8_t heads[FF_CODEC_COUNT] = { FF_CODEC_LIST(ROW) };
 #undef ROW
     /* clang-format on */

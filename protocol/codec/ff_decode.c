@@ -46,7 +46,8 @@ int ff_codec_supported(int codec)
 {
     const ff_codec *row = ff_codec_row(codec);
 
-    return row && (!(row->needs & FF_NEEDS_ZLIB) || ff_inflate_built);
+    return row && (!(row->needs & FF_NEEDS_ZLIB) || ff_inflate_built) &&
+           ((row->needs & FF_NEEDS_TRAINED) != FF_NEEDS_TRAINED || ff_trained_built);
 }
 
 int32_t ff_no_memory(const ff_terrain_info *info, void *memory)
@@ -199,41 +200,37 @@ static uint16_t add_residual(void *context, uint32_t at, int32_t predicted)
 }
 
 int ff_add_residuals(const ff_terrain_info *info, const uint16_t *parent, const ff_residuals *res,
-                     uint16_t *heights)
+                     uint16_t *heights, void *room)
 {
     reconstruction r = { res->value, ff_quantum(info, !parent) };
 
     FF_ASSERT(res->count == ff_coded_count(info, res->cells, !parent));
-    if (parent) {
-        ff_predict_refinement(info, res->cells, parent, heights, add_residual, &r);
-        FF_ASSERT(r.next == res->value + res->count);
-        return FF_OK;
-    }
-    for (uint32_t corner = 0; corner < FF_CORNERS; corner++)
+    for (uint32_t corner = 0; !parent && corner < FF_CORNERS; corner++)
         heights[ff_corner_at(info, corner)] = ff_dequantise(r.quantum, 0, *r.next++);
-    ff_predict_root(info, res->cells, heights, add_residual, &r);
+    ff_interpolate(info, res->cells, parent, heights, room, add_residual, &r);
     FF_ASSERT(r.next == res->value + res->count);
     return FF_OK;
 }
 
 static int reconstruct(const ff_terrain_info *info, const uint16_t *parent, const ff_residuals *res,
-                       uint16_t *heights)
+                       uint16_t *heights, void *room)
 {
     const ff_codec *codec = ff_codec_row(info->codec);
 
     FF_ASSERT(!(codec->needs & FF_NEEDS_PARENT) || res->count == 0);
-    return codec->reconstruct(info, parent, res, heights);
+    return codec->reconstruct(info, parent, res, heights, room);
 }
 
-int ff_reconstruct_root(const ff_terrain_info *info, const ff_residuals *res, uint16_t *heights)
+int ff_reconstruct_root(const ff_terrain_info *info, const ff_residuals *res, uint16_t *heights,
+                        void *room)
 {
-    return reconstruct(info, NULL, res, heights);
+    return reconstruct(info, NULL, res, heights, room);
 }
 
 int ff_reconstruct_refinement(const ff_terrain_info *info, const uint16_t *parent,
-                              const ff_residuals *res, uint16_t *refined)
+                              const ff_residuals *res, uint16_t *refined, void *room)
 {
-    return reconstruct(info, parent, res, refined);
+    return reconstruct(info, parent, res, refined, room);
 }
 
 ff_residuals ff_leaf_residuals(const ff_terrain_info *info, uint8_t code, int filled)
@@ -251,9 +248,9 @@ static uint16_t take_prediction(void *context, uint32_t at, int32_t predicted)
 }
 
 void ff_predict_children(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
-                         uint16_t *refined)
+                         uint16_t *refined, void *room)
 {
-    ff_predict_refinement(info, cells, parent, refined, take_prediction, NULL);
+    ff_codec_row(info->codec)->predict(info, cells, parent, refined, room, take_prediction, NULL);
 }
 
 void ff_refined_child(const ff_terrain_info *info, const uint16_t *refined, uint32_t quadrant,

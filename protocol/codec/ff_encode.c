@@ -40,22 +40,18 @@ static uint16_t take_residual(void *context, uint32_t at, int32_t predicted)
 void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *source,
                        const uint8_t *between, ff_residuals *out, uint16_t *decoded)
 {
+    uint16_t room[FF_CODEC_ROOM_MAX / 2 + 1];
     quantisation q = { source, between, out->value, ff_quantum(info, !parent) };
 
     out->count = (uint16_t)ff_coded_count(info, out->cells, !parent);
     out->carried_bytes = 0;
-    if (parent) {
-        ff_predict_refinement(info, out->cells, parent, decoded, take_residual, &q);
-        FF_ASSERT(q.next == out->value + out->count);
-        return;
-    }
-    for (uint32_t corner = 0; corner < FF_CORNERS; corner++) {
+    for (uint32_t corner = 0; !parent && corner < FF_CORNERS; corner++) {
         uint32_t at = ff_corner_at(info, corner);
         FF_ASSERT(!between || !between[at]);
         *q.next = (source[at] + q.quantum / 2) / q.quantum;
         decoded[at] = ff_dequantise(q.quantum, 0, *q.next++);
     }
-    ff_predict_root(info, out->cells, decoded, take_residual, &q);
+    ff_codec_row(info->codec)->predict(info, out->cells, parent, decoded, room, take_residual, &q);
     FF_ASSERT(q.next == out->value + out->count);
 }
 
@@ -161,7 +157,7 @@ void ff_interpolate_children(const ff_terrain_info *info, ff_cells cells, const 
 {
     triangles t = { refined, ff_refined_side(info) };
 
-    ff_predict_refinement(info, cells, parent, refined, take_middle, &t);
+    ff_interpolate(info, cells, parent, refined, NULL, take_middle, &t);
 }
 
 /* ---- parts of payloads that codecs share ---- */

@@ -112,7 +112,7 @@ static size_t put_values(const ff_terrain_info *info, ff_put_high_fn *deflated,
     return best.bytes;
 }
 
-static enum ff_errors_form errors_form(const ff_residuals *res, uint32_t errors)
+enum ff_errors_form ff_errors_form_of(const ff_residuals *res, uint32_t errors)
 {
     const uint8_t *error = res->child_error;
     int same = 1;
@@ -127,7 +127,7 @@ static enum ff_errors_form errors_form(const ff_residuals *res, uint32_t errors)
 size_t ff_put_body(const ff_terrain_info *info, const ff_contents *contents,
                    const ff_residuals *res, ff_put_high_fn *deflated, uint8_t *out)
 {
-    enum ff_errors_form form = errors_form(res, contents->errors);
+    enum ff_errors_form form = ff_errors_form_of(res, contents->errors);
     uint32_t corners = contents->corners;
     size_t bytes = 1;
 

@@ -9,10 +9,9 @@ static int32_t clamp_height(int32_t sum, int shift)
     return sum > UINT16_MAX ? UINT16_MAX : sum;
 }
 
-/* Predicts the sample half-way between known[i] and known[i+1] of a line of `cells`+1 known
- * samples, which are `step` apart in memory. The line read backwards gives the same value, so that
- * neighbours whose axes run against each other agree. */
-static int32_t predict_middle(const uint16_t *known, uint32_t step, uint32_t i, uint32_t cells)
+/* The line read backwards gives the same value, so that neighbours whose axes run against each
+ * other agree. */
+int32_t ff_predict_middle(const uint16_t *known, uint32_t step, uint32_t i, uint32_t cells)
 {
     int32_t a = known[i * step], b = known[(i + 1) * step];
 
@@ -31,7 +30,7 @@ static void predict_line(uint16_t *grid, uint32_t first, uint32_t stride, uint32
     FF_ASSERT(first + 2 * cells * stride < FF_REFINED_HEIGHTS_MAX && count <= cells);
     for (uint32_t i = 0; i < count; i++) {
         uint32_t at = first + (2 * i + 1) * stride;
-        grid[at] = sample(context, at, predict_middle(grid + first, 2 * stride, i, cells));
+        grid[at] = sample(context, at, ff_predict_middle(grid + first, 2 * stride, i, cells));
     }
 }
 
@@ -48,15 +47,12 @@ static int32_t predict_centre(const uint16_t *p, uint32_t dx, uint32_t dy)
 
 /* ---- padding ---- */
 
-/* Of the points of a line that a doubling makes, those before its ground ends: odd multiples of
- * `stride` below `ground`. */
-static uint32_t coded_points(uint32_t stride, uint32_t ground)
+uint32_t ff_coded_points(uint32_t stride, uint32_t ground)
 {
     return ground > stride ? (ground - stride - 1) / (2 * stride) + 1 : 0;
 }
 
-/* The first known point at or beyond the end of the ground. */
-static uint32_t last_point(uint32_t stride, uint32_t ground)
+uint32_t ff_last_point(uint32_t stride, uint32_t ground)
 {
     return (ground + 2 * stride - 1) / (2 * stride) * (2 * stride);
 }
@@ -67,10 +63,10 @@ static uint32_t shown_at(uint32_t at, uint32_t stride, uint32_t ground, uint32_t
     return at > last || ((at / stride & 1u) && at >= ground) ? last : at;
 }
 
-/* All that lies beyond the ground repeats the last points that do not. */
-static void repeat_last(uint16_t *grid, uint32_t side, uint32_t stride, ff_cells cells)
+void ff_repeat_last(uint16_t *grid, uint32_t side, uint32_t stride, ff_cells cells)
 {
-    uint32_t last_x = last_point(stride, cells.columns), last_y = last_point(stride, cells.rows);
+    uint32_t last_x = ff_last_point(stride, cells.columns),
+             last_y = ff_last_point(stride, cells.rows);
 
     FF_ASSERT(last_x < side && last_y < side);
     if (cells.columns == side - 1 && cells.rows == side - 1) return;
@@ -83,10 +79,11 @@ static void repeat_last(uint16_t *grid, uint32_t side, uint32_t stride, ff_cells
 
 static uint32_t coded_in_doubling(uint32_t stride, ff_cells cells)
 {
-    uint32_t columns = coded_points(stride, cells.columns), rows = coded_points(stride, cells.rows);
+    uint32_t columns = ff_coded_points(stride, cells.columns),
+             rows = ff_coded_points(stride, cells.rows);
 
-    return columns * (last_point(stride, cells.rows) / (2 * stride) + 1) +
-           rows * (last_point(stride, cells.columns) / (2 * stride) + 1) + columns * rows;
+    return columns * (ff_last_point(stride, cells.rows) / (2 * stride) + 1) +
+           rows * (ff_last_point(stride, cells.columns) / (2 * stride) + 1) + columns * rows;
 }
 
 /* ---- grids ---- */
@@ -97,13 +94,13 @@ static void predict_doubling(uint16_t *grid, uint32_t side, uint32_t stride, ff_
                              ff_sample_fn sample, void *context)
 {
     uint32_t cells = (side - 1) / (2 * stride), row = side * stride;
-    uint32_t columns = coded_points(stride, ground.columns),
-             rows = coded_points(stride, ground.rows);
+    uint32_t columns = ff_coded_points(stride, ground.columns),
+             rows = ff_coded_points(stride, ground.rows);
 
     FF_ASSERT(stride >= 1 && cells >= 1 && cells * 2 * stride == side - 1);
-    for (uint32_t j = 0; j <= last_point(stride, ground.rows) / (2 * stride); j++)
+    for (uint32_t j = 0; j <= ff_last_point(stride, ground.rows) / (2 * stride); j++)
         predict_line(grid, 2 * j * row, stride, cells, columns, sample, context);
-    for (uint32_t i = 0; i <= last_point(stride, ground.columns) / (2 * stride); i++)
+    for (uint32_t i = 0; i <= ff_last_point(stride, ground.columns) / (2 * stride); i++)
         predict_line(grid, 2 * i * stride, row, cells, rows, sample, context);
     for (uint32_t j = 0; j < rows; j++) {
         for (uint32_t i = 0; i < columns; i++) {
@@ -111,11 +108,10 @@ static void predict_doubling(uint16_t *grid, uint32_t side, uint32_t stride, ff_
             grid[at] = sample(context, at, predict_centre(grid + at, stride, row));
         }
     }
-    repeat_last(grid, side, stride, ground);
+    ff_repeat_last(grid, side, stride, ground);
 }
 
-/* What a payload says of its ground, 0 standing for all. */
-static ff_cells cells_of(ff_cells cells, uint32_t side)
+ff_cells ff_cells_of(ff_cells cells, uint32_t side)
 {
     FF_ASSERT(cells.columns < side && cells.rows < side);
     if (!cells.columns || !cells.rows) cells.columns = cells.rows = (uint8_t)(side - 1);
@@ -126,7 +122,7 @@ uint32_t ff_coded_count(const ff_terrain_info *info, ff_cells cells, int root)
 {
     uint32_t side = root ? ff_node_side(info) : ff_refined_side(info), count = FF_CORNERS;
 
-    cells = cells_of(cells, side);
+    cells = ff_cells_of(cells, side);
     if (!root) return coded_in_doubling(1, cells);
     for (uint32_t stride = (side - 1) / 2; stride >= 1; stride /= 2)
         count += coded_in_doubling(stride, cells);
@@ -134,18 +130,7 @@ uint32_t ff_coded_count(const ff_terrain_info *info, ff_cells cells, int root)
     return count;
 }
 
-void ff_predict_root(const ff_terrain_info *info, ff_cells cells, uint16_t *grid,
-                     ff_sample_fn sample, void *context)
-{
-    uint32_t side = ff_node_side(info);
-
-    cells = cells_of(cells, side);
-    for (uint32_t stride = (side - 1) / 2; stride >= 1; stride /= 2)
-        predict_doubling(grid, side, stride, cells, sample, context);
-}
-
-void ff_predict_refinement(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
-                           uint16_t *grid, ff_sample_fn sample, void *context)
+void ff_spread_parent(const ff_terrain_info *info, const uint16_t *parent, uint16_t *grid)
 {
     uint32_t node_side = ff_node_side(info), side = ff_refined_side(info);
 
@@ -153,7 +138,18 @@ void ff_predict_refinement(const ff_terrain_info *info, ff_cells cells, const ui
     for (uint32_t j = 0; j < node_side; j++)
         for (uint32_t i = 0; i < node_side; i++)
             grid[2 * j * side + 2 * i] = parent[j * node_side + i];
-    predict_doubling(grid, side, 1, cells_of(cells, side), sample, context);
+}
+
+void ff_interpolate(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
+                    uint16_t *grid, void *room, ff_sample_fn sample, void *context)
+{
+    uint32_t side = parent ? ff_refined_side(info) : ff_node_side(info);
+
+    (void)room;
+    cells = ff_cells_of(cells, side);
+    if (parent) ff_spread_parent(info, parent, grid);
+    for (uint32_t stride = parent ? 1 : (side - 1) / 2; stride >= 1; stride /= 2)
+        predict_doubling(grid, side, stride, cells, sample, context);
 }
 
 uint32_t ff_corner_at(const ff_terrain_info *info, uint32_t corner)

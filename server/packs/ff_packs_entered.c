@@ -13,6 +13,7 @@ typedef struct node {
     ff_residuals residuals; /* child_error[0] and bit 0 of the marks are the node's */
     int32_t value[FF_REFINED_HEIGHTS_MAX];
     uint16_t heights[FF_NODE_HEIGHTS_MAX], refined[FF_REFINED_HEIGHTS_MAX];
+    uint16_t room[FF_CODEC_ROOM_MAX / 2 + 1];
 } node;
 
 struct ff_packs_entered {
@@ -35,7 +36,7 @@ static int decode_root(node *n, const ff_pack *pack, ff_key key)
     if (bytes < 0) return bytes;
     n->residuals = (ff_residuals){ .cells = ff_shape_cells(info, key, 0), .value = n->value };
     int rc = ff_decode_root(n->decoder, payload, (size_t)bytes, &n->residuals);
-    return rc < 0 ? rc : ff_reconstruct_root(info, &n->residuals, n->heights);
+    return rc < 0 ? rc : ff_reconstruct_root(info, &n->residuals, n->heights, n->room);
 }
 
 /* The children of the node, all in n->refined. Nothing is known below a stub. */
@@ -48,14 +49,15 @@ static int refine(node *n, const ff_pack *pack, ff_key key)
     if (n->residuals.leaf & 1u) {
         n->residuals = ff_leaf_residuals(info, n->residuals.child_error[0],
                                          n->residuals.filled & 1u);
-        ff_predict_children(info, cells, n->heights, n->refined);
+        ff_predict_children(info, cells, n->heights, n->refined, n->room);
         return FF_OK;
     }
     int bytes = ff_pack_record(pack, FF_SECTION_REFINEMENT, key, &payload);
     if (bytes < 0) return bytes;
     n->residuals = (ff_residuals){ .cells = cells, .value = n->value };
     int rc = ff_decode_refinement(n->decoder, payload, (size_t)bytes, &n->residuals);
-    return rc < 0 ? rc : ff_reconstruct_refinement(info, n->heights, &n->residuals, n->refined);
+    return rc < 0 ? rc
+                  : ff_reconstruct_refinement(info, n->heights, &n->residuals, n->refined, n->room);
 }
 
 static void take_child(node *n, const ff_terrain_info *info, uint32_t q)

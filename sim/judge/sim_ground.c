@@ -17,6 +17,7 @@ typedef struct loader {
     int32_t *residual;
     int with_stubs; /* 1: what is below stubs is made, 0: it stays as it is */
     int has_stubs;  /* some were met */
+    uint16_t room[FF_CODEC_ROOM_MAX / 2 + 1];
 } loader;
 
 static void place(loader *load, ff_key key, const uint16_t *heights, unsigned filled)
@@ -53,7 +54,7 @@ static int children_of(loader *load, ff_key key, const uint16_t *heights, marks 
     const ff_terrain_info *info = &load->pack->header.info;
     const uint8_t *payload;
     if (mark.leaf) {
-        ff_predict_children(info, residuals->cells, heights, refined);
+        ff_predict_children(info, residuals->cells, heights, refined, load->room);
         *residuals = ff_leaf_residuals(info, 0, (int)mark.filled);
         return FF_OK;
     }
@@ -67,7 +68,7 @@ static int children_of(loader *load, ff_key key, const uint16_t *heights, marks 
     int bytes = ff_pack_record(load->pack, FF_SECTION_REFINEMENT, key, &payload);
     if (bytes < 0) return bytes;
     int rc = ff_decode_refinement(load->decoder, payload, (size_t)bytes, residuals);
-    return rc < 0 ? rc : ff_reconstruct_refinement(info, heights, residuals, refined);
+    return rc < 0 ? rc : ff_reconstruct_refinement(info, heights, residuals, refined, load->room);
 }
 
 static int refine(loader *load, ff_key key, const uint16_t *heights, marks mark)
@@ -101,7 +102,8 @@ static int decode_tile(loader *load, uint32_t tile)
     int bytes = ff_pack_record(load->pack, FF_SECTION_ROOT, key, &payload);
     if (bytes < 0) return bytes;
     int rc = ff_decode_root(load->decoder, payload, (size_t)bytes, &residuals);
-    if (rc == FF_OK) rc = ff_reconstruct_root(&load->pack->header.info, &residuals, heights);
+    if (rc == FF_OK)
+        rc = ff_reconstruct_root(&load->pack->header.info, &residuals, heights, load->room);
     if (rc != FF_OK) return rc;
     return refine(load, ff_key_make(tile, 0, 0), heights, marks_of(&residuals, 0));
 }

@@ -480,7 +480,7 @@ static void interpolation_of_the_codec(void **state)
                  base = sys_random_below(&random, 65536 - range + 1);
         for (uint32_t v = 0; v < side * side; v++)
             parent[v] = (uint16_t)(base + sys_random_below(&random, range));
-        ff_reconstruct_refinement(&info, parent, &none, refined);
+        ff_reconstruct_refinement(&info, parent, &none, refined, NULL);
         for (uint32_t row = 0; row < wide; row++) {
             for (uint32_t column = 0; column < wide; column++) {
                 const uint16_t *p = refined + row * wide + column;

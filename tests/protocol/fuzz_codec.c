@@ -1,13 +1,16 @@
 /* Any bytes as a payload. Byte 0: node_log2 - 1 (bits 0-2, modulo 5), refinement (bit 3), codec
- * (bits 4-7, modulo the number of codecs); bytes 1-2: max_error, and in the highest bit whether the
- * ground ends inside the grid: then bytes 3 and 4 say after how many columns and rows of cells.
- * When the payload decodes, its heights and marks must be the slow decoder's. */
+ * (bits 4-6, modulo the number of codecs), smooth parent or an entered root (bit 7); bytes 1-2:
+ * max_error, and in the highest bit whether the ground ends inside the grid: then bytes 3 and 4 say
+ * after how many columns and rows of cells. When the payload decodes, its heights and marks must be
+ * the slow decoder's. */
 #include "../../protocol/codec/ff_codec.h"
 #include "../rig/slow_decoder.h"
 
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
+
+static uint16_t codec_room[FF_CODEC_ROOM_MAX / 2 + 1];
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
 
@@ -21,14 +24,14 @@ static ff_cells cells_from(const uint8_t *two, uint32_t side)
 
 /* A parent of such a refinement: beyond its ground it repeats the last sample, as all decoded
  * grids do. */
-static void make_parent(const ff_terrain_info *info, ff_cells cells, uint16_t *parent)
+static void make_parent(const ff_terrain_info *info, ff_cells cells, int smooth, uint16_t *parent)
 {
     uint32_t side = ff_node_side(info), last_x = (cells.columns + 1u) / 2,
              last_y = (cells.rows + 1u) / 2;
     for (uint32_t i = 0; i < side * side; i++) {
         uint32_t x = i % side < last_x ? i % side : last_x,
                  y = i / side < last_y ? i / side : last_y, at = y * side + x;
-        parent[i] = (uint16_t)(at * at * 40503u >> 3);
+        parent[i] = (uint16_t)(smooth ? 9 * x * x + 50 * y + 20000 : at * at * 40503u >> 3);
     }
 }
 
@@ -39,17 +42,19 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
         slow[FF_REFINED_HEIGHTS_MAX];
     ff_residuals residuals = { .value = value };
     ff_terrain_info info = { .tile_log2 = 15 };
-    int rc, slow_rc, refinement;
+    int rc, slow_rc, refinement, other;
     size_t head = 3;
 
     if (count < head || (bytes[2] & 0x80 && count < (head = 5))) return 0;
     refinement = bytes[0] >> 3 & 1;
     info.node_log2 = (uint8_t)((bytes[0] & 7) % FF_NODE_LOG2_MAX + 1);
-    info.codec = (uint8_t)((bytes[0] >> 4) % FF_CODEC_COUNT);
+    info.codec = (uint8_t)((bytes[0] >> 4 & 7) % FF_CODEC_COUNT);
+    other = bytes[0] >> 7;
+    info.entered = !refinement && other;
     info.max_error = (uint16_t)((bytes[1] | bytes[2] << 8) & INT16_MAX);
     uint32_t side = refinement ? ff_refined_side(&info) : ff_node_side(&info);
     residuals.cells = cells_from(head == 5 ? bytes + 3 : NULL, side);
-    make_parent(&info, residuals.cells, parent);
+    make_parent(&info, residuals.cells, other, parent);
 
     size_t memory_bytes = ff_decoder_bytes(&info);
     void *memory = malloc(memory_bytes);
@@ -60,8 +65,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     rc = refinement ? ff_decode_refinement(dec, bytes, count, &residuals)
                     : ff_decode_root(dec, bytes, count, &residuals);
     if (rc == FF_OK)
-        rc = refinement ? ff_reconstruct_refinement(&info, parent, &residuals, heights)
-                        : ff_reconstruct_root(&info, &residuals, heights);
+        rc = refinement ? ff_reconstruct_refinement(&info, parent, &residuals, heights, codec_room)
+                        : ff_reconstruct_root(&info, &residuals, heights, codec_room);
+    if (info.entered) info.max_error = 0; /* SPEC.md, "Entry" */
     slow_rc = slow_decode_part(&info, residuals.cells.columns, residuals.cells.rows,
                                refinement ? parent : NULL, bytes, count, slow);
     assert((rc == FF_OK) == (slow_rc >= 0));

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+static uint16_t codec_room[FF_CODEC_ROOM_MAX / 2 + 1];
+
 #define NODES_TRIED 64
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count);
@@ -32,9 +34,9 @@ static void decode_payload(const ff_terrain_info *info, ff_key key, int refineme
     assert(dec != NULL);
     if (ff_shape_has_ground(info, key)) residuals.cells = ff_shape_cells(info, key, refinement);
     if (refinement && ff_decode_refinement(dec, payload, (size_t)bytes, &residuals) == FF_OK)
-        ff_reconstruct_refinement(info, parent, &residuals, heights);
+        ff_reconstruct_refinement(info, parent, &residuals, heights, codec_room);
     if (!refinement && ff_decode_root(dec, payload, (size_t)bytes, &residuals) == FF_OK)
-        ff_reconstruct_root(info, &residuals, heights);
+        ff_reconstruct_root(info, &residuals, heights, codec_room);
     free(memory);
 }
 

@@ -9,6 +9,8 @@
 #include <string.h>
 #include <cmocka.h>
 
+static uint16_t codec_room[FF_CODEC_ROOM_MAX / 2 + 1];
+
 static int decode(const ff_terrain_info *info, int root, const uint8_t *payload, int bytes,
                   ff_residuals *out)
 {
@@ -154,7 +156,7 @@ static void below_leaves_all_is_prediction(void **state)
             uint8_t payload[1] = { 0 }; /* no error, no residual */
             uint32_t side = ff_node_side(&info);
             for (uint32_t i = 0; i < side * side; i++) parent[i] = (uint16_t)(i * 40503u);
-            ff_predict_children(&info, (ff_cells){ 0 }, parent, made);
+            ff_predict_children(&info, (ff_cells){ 0 }, parent, made, codec_room);
             assert_int_equal(slow_decode(&info, parent, payload, sizeof payload, slow), 0);
             assert_memory_equal(made, slow, ff_refined_side(&info) * ff_refined_side(&info) * 2);
         }

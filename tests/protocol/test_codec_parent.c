@@ -12,6 +12,8 @@
 #include <string.h>
 #include <cmocka.h>
 
+static uint16_t codec_room[FF_CODEC_ROOM_MAX / 2 + 1];
+
 /* ---- the codec: Golomb-Rice, as many low bits as the parent is rough around the sample ----
  *
  * Head: form of the error codes; error codes; corners of a root, 16 bits each; then each residual
@@ -129,7 +131,7 @@ static int first_stage(const ff_decoder *dec, ff_payload *in, const ff_contents 
 }
 
 static int second_stage(const ff_terrain_info *info, const uint16_t *parent,
-                        const ff_residuals *res, uint16_t *heights)
+                        const ff_residuals *res, uint16_t *heights, void *room)
 {
     const uint8_t *carried = (const uint8_t *)res->value;
     ff_payload in = { carried, carried + res->carried_bytes };
@@ -137,14 +139,12 @@ static int second_stage(const ff_terrain_info *info, const uint16_t *parent,
     int32_t corner[FF_CORNERS];
     int rc = parent ? FF_OK : ff_take_words(&in, FF_CORNERS, corner, FF_CORNERS);
 
+    (void)room;
     if (rc != FF_OK) return rc;
     c.bits = (bits){ .in = in.at, .end = in.end };
     for (uint32_t i = 0; i < FF_CORNERS && !parent; i++)
         heights[ff_corner_at(info, i)] = ff_dequantise(ff_quantum(info, !parent), 0, corner[i]);
-    if (parent)
-        ff_predict_refinement(info, res->cells, parent, heights, take_sample, &c);
-    else
-        ff_predict_root(info, res->cells, heights, take_sample, &c);
+    ff_interpolate(info, res->cells, parent, heights, NULL, take_sample, &c);
     if (c.bits.error) return c.bits.error;
     return (c.bits.at + 7) / 8 == ff_payload_left(&in) ? FF_OK : FF_ERR_FORMAT;
 }
@@ -166,10 +166,7 @@ static size_t encode(const ff_terrain_info *info, const uint16_t *parent, const 
     c.bits.out = out + bytes;
     for (uint32_t i = 0; i < contents->corners; i++)
         grid[ff_corner_at(info, i)] = decoded[ff_corner_at(info, i)];
-    if (parent)
-        ff_predict_refinement(info, res->cells, parent, grid, put_sample, &c);
-    else
-        ff_predict_root(info, res->cells, grid, put_sample, &c);
+    ff_interpolate(info, res->cells, parent, grid, NULL, put_sample, &c);
     bytes += (c.bits.at + 7) / 8;
     if (add_a_byte_each && ++payloads_made % add_a_byte_each == 0) out[bytes++] = 0;
     return bytes;
@@ -180,17 +177,17 @@ static size_t encode(const ff_terrain_info *info, const uint16_t *parent, const 
 /* clang-format off */
 const ff_codec *ff_codec_row(int codec)
 {
-#define ROW(number, constant, name, needs, head, memory, decode, reconstruct, encode) \
-    { name, FF_NEEDS_##needs, memory, decode, reconstruct },
+#define ROW(number, constant, name, needs, head, memory, decode, predict, reconstruct, encode) \
+    { name, FF_NEEDS_##needs, memory, decode, predict, reconstruct },
     static const ff_codec rows[] = { FF_CODEC_LIST(ROW)
-        { "parent", FF_NEEDS_PARENT, ff_no_memory, first_stage, second_stage } };
+        { "parent", FF_NEEDS_PARENT, ff_no_memory, first_stage, ff_interpolate, second_stage } };
 #undef ROW
     return codec >= 0 && codec <= CODEC_BY_PARENT ? &rows[codec] : NULL;
 }
 
 ff_encode_fn *ff_codec_encoder(int codec)
 {
-#define ROW(number, constant, name, needs, head, memory, decode, reconstruct, encode) encode,
+#define ROW(number, constant, name, needs, head, memory, decode, predict, reconstruct, encode) encode,
     static ff_encode_fn *const encoders[] = { FF_CODEC_LIST(ROW) encode };
 #undef ROW
     return codec >= 0 && codec <= CODEC_BY_PARENT ? encoders[codec] : NULL;
@@ -198,7 +195,7 @@ ff_encode_fn *ff_codec_encoder(int codec)
 
 size_t ff_codec_head(int codec)
 {
-#define ROW(number, constant, name, needs, head, memory, decode, reconstruct, encode) head,
+#define ROW(number, constant, name, needs, head, memory, decode, predict, reconstruct, encode) head,
     static const uint8_t heads[] = { FF_CODEC_LIST(ROW) 0 };
 #undef ROW
     return codec >= 0 && codec <= CODEC_BY_PARENT ? heads[codec] : 0;
@@ -259,7 +256,7 @@ static int decode_exactly(const payload *p, const uint8_t *bytes, size_t count, 
     free(copy); /* the second stage sees only what the first one carried over */
     if (rc == FF_OK) {
         assert_int_equal(residuals.count, 0);
-        rc = ff_reconstruct_refinement(&p->info, p->parent, &residuals, heights);
+        rc = ff_reconstruct_refinement(&p->info, p->parent, &residuals, heights, codec_room);
     }
     free(dec);
     free(residuals.value);

@@ -9,6 +9,8 @@
 #include <string.h>
 #include <cmocka.h>
 
+static uint16_t codec_room[FF_CODEC_ROOM_MAX / 2 + 1];
+
 typedef struct fixture {
     uint8_t *bytes;
     size_t count;
@@ -102,7 +104,8 @@ static void walk(const ff_pack *pack, ff_decoder *dec, ff_key key, const uint16_
     int bytes = ff_pack_record(pack, FF_SECTION_REFINEMENT, key, &payload);
     assert_true(bytes > 0);
     assert_int_equal(ff_decode_refinement(dec, payload, (size_t)bytes, &residuals), FF_OK);
-    assert_int_equal(ff_reconstruct_refinement(info, heights, &residuals, refined), FF_OK);
+    assert_int_equal(ff_reconstruct_refinement(info, heights, &residuals, refined, codec_room),
+                     FF_OK);
     for (uint32_t q = 0; q < 4; q++) {
         ff_refined_child(info, refined, q, child);
         walk(pack, dec, ff_key_child(key, q), child, nodes);
@@ -130,7 +133,8 @@ static void whole_ground_comes_back(void **state)
         int bytes = ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(tile, 0, 0), &payload);
         assert_true(bytes > 0);
         assert_int_equal(ff_decode_root(dec, payload, (size_t)bytes, &residuals), FF_OK);
-        assert_int_equal(ff_reconstruct_root(&pack.header.info, &residuals, root), FF_OK);
+        assert_int_equal(ff_reconstruct_root(&pack.header.info, &residuals, root, codec_room),
+                         FF_OK);
         walk(&pack, dec, ff_key_make(tile, 0, 0), root, &nodes);
     }
     assert_int_equal(nodes, 2 * (1 + 4 + 16));

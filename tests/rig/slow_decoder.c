@@ -1,5 +1,7 @@
 #include "slow_decoder.h"
 
+#include "slow_trained.h"
+
 #include <string.h>
 #include <zlib.h>
 
@@ -227,8 +229,9 @@ static int raw(int root, const uint8_t *at, long left, long *residual, int count
     return plain_part(at + more, left - more, errors, root ? 4 : 0, residual, count) ? -1 : marks;
 }
 
-static int head_and_body(int codec, int root, const uint8_t *at, long left, long *residual,
-                         int count)
+/* Head, error codes and corners of all codecs but raw. Gives the marks, and how many bytes stand
+ * before the body. */
+static int front(int root, const uint8_t *at, long left, long *corner, long *before)
 {
     int form = at[0] >> 2 & 3, corners = root ? 4 : 0;
     int stored = form == 0 || form == 3 ? 0 : form == 1 || root ? 1 : 4, more = 0;
@@ -236,10 +239,22 @@ static int head_and_body(int codec, int root, const uint8_t *at, long left, long
                 : form == 0 ? 0
                 : root      ? 16
                             : 240;
-    int first = 1 + more, before = first + stored + 2 * corners;
+    int first = 1 + more;
 
-    if (marks < 0 || plain_part(at + first, left - first, stored, corners, residual, corners) != 0)
+    if (marks < 0 || plain_part(at + first, left - first, stored, corners, corner, corners) != 0)
         return -1;
+    *before = first + stored + 2 * corners;
+    return marks;
+}
+
+static int head_and_body(int codec, int root, const uint8_t *at, long left, long *residual,
+                         int count)
+{
+    int corners = root ? 4 : 0;
+    long before = 0;
+    int marks = front(root, at, left, residual, &before);
+
+    if (marks < 0) return -1;
     return body(codec, at[0], at + before, left - before, residual + corners, count - corners)
                ? -1
                : marks;
@@ -257,6 +272,21 @@ static int residuals(int codec, int root, const uint8_t *at, long left, long *re
     }
 }
 
+static int trained(const ff_terrain_info *info, int columns, int rows, const uint16_t *parent,
+                   const uint8_t *at, long left, uint16_t *heights)
+{
+    long corner[4], before = 0;
+    int marks;
+
+    if (left < 1 || (at[0] & 0xF2) != 0) return -1;
+    marks = front(!parent, at, left, corner, &before);
+    if (marks < 0) return -1;
+    return slow_trained(info, columns, rows, parent, corner, at[0] & 1, at + before, left - before,
+                        heights)
+               ? -1
+               : marks;
+}
+
 int slow_decode(const ff_terrain_info *info, const uint16_t *parent, const uint8_t *payload,
                 size_t bytes, uint16_t *heights)
 {
@@ -272,6 +302,8 @@ int slow_decode_part(const ff_terrain_info *info, int columns, int rows, const u
     static field f;
     int node = 1 << info->node_log2, count = (node + 1) * (node + 1), values = 4, marks;
 
+    if (info->codec == 3)
+        return trained(info, columns, rows, parent, payload, (long)bytes, heights);
     f.last = parent ? 2 * node : node;
     f.maximum_error = info->max_error;
     f.residual = residual;

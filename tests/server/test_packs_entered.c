@@ -13,6 +13,8 @@
 #include <string.h>
 #include <cmocka.h>
 
+static uint16_t codec_room[FF_CODEC_ROOM_MAX / 2 + 1];
+
 #define EDGE_WU (32 * 256 * 64) /* of the packs' tiles */
 
 typedef struct known_node {
@@ -53,7 +55,7 @@ static int know(const ff_pack *pack, ff_key key, known_node *node)
     if (bytes == FF_ERR_NOT_FOUND) return 0;
     assert_true(bytes > 0);
     assert_int_equal(ff_decode_root(decoder, payload, (size_t)bytes, &r), FF_OK);
-    assert_int_equal(ff_reconstruct_root(info, &r, node->heights), FF_OK);
+    assert_int_equal(ff_reconstruct_root(info, &r, node->heights, codec_room), FF_OK);
     take(node, &r, 0);
     for (uint32_t level = ff_key_level(key); level-- > 0;) {
         uint32_t q = ff_key_code(key) >> 2 * level & 3u;
@@ -62,12 +64,14 @@ static int know(const ff_pack *pack, ff_key key, known_node *node)
         if (node->leaf) {
             r = ff_leaf_residuals(info, node->code, node->filled);
             r.value = value;
-            ff_predict_children(info, ff_shape_cells(info, at, 1), node->heights, refined);
+            ff_predict_children(info, ff_shape_cells(info, at, 1), node->heights, refined,
+                                codec_room);
         } else {
             bytes = ff_pack_record(pack, FF_SECTION_REFINEMENT, at, &payload);
             assert_true(bytes > 0);
             assert_int_equal(ff_decode_refinement(decoder, payload, (size_t)bytes, &r), FF_OK);
-            assert_int_equal(ff_reconstruct_refinement(info, node->heights, &r, refined), FF_OK);
+            assert_int_equal(
+                ff_reconstruct_refinement(info, node->heights, &r, refined, codec_room), FF_OK);
         }
         ff_refined_child(info, refined, q, node->heights);
         take(node, &r, q);

@@ -8,6 +8,8 @@
 #include <string.h>
 #include <cmocka.h>
 
+static uint16_t codec_room[FF_CODEC_ROOM_MAX / 2 + 1];
+
 /* Settles a view and fails the test when a wish goes below the leaves. */
 static void settle(terrain_fixture *fx, const ff_view *view, const ff_quality *quality)
 {
@@ -34,7 +36,7 @@ static void expect_predicted(const terrain_fixture *fx, const ff_node *node)
     size_t heights = ff_heights_per_node(tree);
     uint16_t refined[FF_REFINED_HEIGHTS_MAX], child[FF_NODE_HEIGHTS_MAX];
     ff_predict_children(tree->ground, ff_shape_cells(tree->ground, tree->node[node->parent].key, 1),
-                        tree->heights + node->parent * heights, refined);
+                        tree->heights + node->parent * heights, refined, codec_room);
     ff_refined_child(tree->ground, refined, ff_key_quadrant(node->key), child);
     assert_memory_equal(child, tree->heights + ff_slot_of(tree, node) * heights,
                         heights * sizeof *child);

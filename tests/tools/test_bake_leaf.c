@@ -10,6 +10,8 @@
 #include <cmocka.h>
 #include <stdlib.h>
 
+static uint16_t codec_room[FF_CODEC_ROOM_MAX / 2 + 1];
+
 #define WIDTH  50
 #define HEIGHT 20
 #define PITCH  33
@@ -99,9 +101,10 @@ static void walk(baked *b, ff_key key, const uint16_t *heights, int leaf)
     assert_int_equal(record == NULL, leaf || !ff_shape_has_ground(&b->info, key));
     if (record) {
         assert_int_equal(ff_decode_refinement(b->decoder, record, bytes, &residuals), FF_OK);
-        assert_int_equal(ff_reconstruct_refinement(&b->info, heights, &residuals, refined), FF_OK);
+        assert_int_equal(
+            ff_reconstruct_refinement(&b->info, heights, &residuals, refined, codec_room), FF_OK);
     } else {
-        ff_predict_children(&b->info, residuals.cells, heights, refined);
+        ff_predict_children(&b->info, residuals.cells, heights, refined, codec_room);
     }
     for (uint32_t q = 0; q < 4; q++) {
         ff_refined_child(&b->info, refined, q, child);
@@ -118,7 +121,7 @@ static void walk_tile(baked *b, uint32_t tile)
     size_t bytes;
     const uint8_t *record = next_record(b, 0, &bytes);
     assert_int_equal(ff_decode_root(b->decoder, record, bytes, &residuals), FF_OK);
-    assert_int_equal(ff_reconstruct_root(&b->info, &residuals, root), FF_OK);
+    assert_int_equal(ff_reconstruct_root(&b->info, &residuals, root, codec_room), FF_OK);
     walk(b, ff_key_make(tile, 0, 0), root, residuals.leaf);
     for (uint32_t l = 0; l < ff_terrain_levels(&b->info); l++)
         assert_int_equal(b->number[l], b->tile.level[l].record_count);

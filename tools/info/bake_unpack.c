@@ -79,10 +79,11 @@ typedef struct ends {
 static int decode_root(const bake_unpack *unpack, ff_key key, uint16_t *node, ends *end)
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
+    uint16_t room[FF_CODEC_ROOM_MAX / 2 + 1];
     int32_t value[FF_REFINED_HEIGHTS_MAX];
     ff_residuals residuals = { .cells = ff_shape_cells(info, key, 0), .value = value };
     int rc = decode_residuals(unpack, FF_SECTION_ROOT, key, &residuals);
-    if (rc >= 0) rc = ff_reconstruct_root(info, &residuals, node);
+    if (rc >= 0) rc = ff_reconstruct_root(info, &residuals, node, room);
     if (rc < 0) return fail_at(unpack, "the root", key, rc);
     *end = (ends){ residuals.leaf, residuals.stub };
     return 0;
@@ -93,6 +94,7 @@ static int decode_refinement(const bake_unpack *unpack, ff_key key, size_t pitch
                              uint16_t *at, ends *end)
 {
     const ff_terrain_info *info = &unpack->pack.header.info;
+    uint16_t room[FF_CODEC_ROOM_MAX / 2 + 1];
     int32_t value[FF_REFINED_HEIGHTS_MAX];
     uint16_t parent[FF_NODE_HEIGHTS_MAX], refined[FF_REFINED_HEIGHTS_MAX];
     int is_ground = ff_shape_has_ground(info, key);
@@ -101,14 +103,14 @@ static int decode_refinement(const bake_unpack *unpack, ff_key key, size_t pitch
     if (is_ground) residuals.cells = ff_shape_cells(info, key, 1);
     gather(at, ff_node_side(info), pitch, stride, parent);
     if (end->leaf & 1u || !is_ground) {
-        ff_predict_children(info, residuals.cells, parent, refined);
+        ff_predict_children(info, residuals.cells, parent, refined, room);
     } else if (end->stub & 1u) {
         ff_interpolate_children(info, residuals.cells, parent, refined);
         residuals.leaf = 0;
         residuals.stub = 15;
     } else {
         rc = decode_residuals(unpack, FF_SECTION_REFINEMENT, key, &residuals);
-        if (rc >= 0) rc = ff_reconstruct_refinement(info, parent, &residuals, refined);
+        if (rc >= 0) rc = ff_reconstruct_refinement(info, parent, &residuals, refined, room);
     }
     if (rc < 0) return fail_at(unpack, "the refinement", key, rc);
     scatter(refined, ff_refined_side(info), pitch, stride / 2, at);

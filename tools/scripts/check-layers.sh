@@ -50,6 +50,7 @@ protocol/far        protocol
 protocol/message    protocol protocol/codec protocol/far
 protocol/shape      protocol
 protocol/zlib       protocol
+protocol/trained    protocol protocol/codec
 platform            protocol/ff_error.h
 platform/egl        platform
 platform/glfw       platform
@@ -97,8 +98,9 @@ tools/bake/tiles    tools/bake tools/bake/raster platform/sys.h
 tools/info          platform/options tools/bake tools/bake/raster client/farfield.h protocol/ platform/sys.h
 tools/export        platform/options tools/bake tools/bake/raster tools/bake/tiles tools/info client/farfield.h protocol/ platform/sys.h
 tools/merge         platform/options tools/bake tools/bake/raster tools/bake/image tools/info tools/export client/farfield.h protocol/ platform/sys.h
+tools/train         platform/options tools/bake tools/info client/farfield.h protocol/ platform/sys.h
 tools/report        platform/options client/farfield.h common3d platform/sys.h
-tools/scripts
+tools/scripts       protocol protocol/shape
 END
 }
 

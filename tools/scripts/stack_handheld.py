@@ -29,7 +29,10 @@ THROUGH_POINTERS = [
     (r"^ff_decoder_|ff_decode\.c:(decode|reconstruct)$|^ff_(decode|reconstruct)_",
      r"^ff_[a-z]+_(memory|decode|reconstruct)$|^ff_add_residuals$"),  # ff_codec_list.h
     (r"ff_body\.c:|^ff_take_body$", r"ff_codec_deflate\.c:take_deflated$"),
-    (r"ff_predict\.c:|^ff_predict_", r"ff_decode\.c:(add_residual|take_prediction)$"),
+    (r"^ff_predict_children$", r"^ff_(interpolate|trained_predict)$"),  # ff_codec_list.h
+    (r"ff_predict\.c:|^ff_interpolate$", r"ff_decode\.c:(add_residual|take_prediction)$"),
+    (r"ff_trained_expect\.c:|^ff_expect$", r"ff_codec_trained\.c:(take_height|take_word|pass_on)$"),
+    (r"ff_codec_trained\.c:pass_on$", r"ff_decode\.c:take_prediction$"),
     (r"ff_pack\.c:|^ff_pack_", None),  # reads parts of a file: packs are mapped
     (r"ff_pool\.c:|^ff_tree_resha(de_beside|de|pe)$", r"ff_terrain_view\.c:on_evict$"),
     (r"ff_sets_draw\.c:|^ff_sets_make_fins$", None),  # those who watch fins: checks

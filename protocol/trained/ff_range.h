@@ -1,0 +1,65 @@
+/* Private to codec trained: a binary range coder (SPEC.md, "Payload, codec 3"; Martin, "Range
+ * encoding", 1979).
+ *
+ * A decision takes the lower part of what is left of a range, as large as the decision's
+ * probability, when it is 1. The range grows by a byte whenever it has become small. Bytes read
+ * beyond a stream's end are 0, so it ends with the fewest that lead into the range. */
+#ifndef FF_RANGE_H
+#define FF_RANGE_H
+
+#include "../ff_assert.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define FF_RANGE_LEAST (UINT32_C(1) << 24)
+
+typedef struct ff_range {
+    uint32_t width, code; /* of the range; how far the stream is above its beginning */
+    const uint8_t *in, *end;
+} ff_range;
+
+static inline uint32_t ff_range_byte(ff_range *range)
+{
+    return range->in < range->end ? *range->in++ : 0;
+}
+
+static inline void ff_range_read(ff_range *range, const uint8_t *bytes, size_t count)
+{
+    *range = (ff_range){ .width = UINT32_MAX, .in = bytes, .end = bytes + count };
+    for (unsigned i = 0; i < 4; i++) range->code = range->code << 8 | ff_range_byte(range);
+}
+
+/* `one` of 65536 is how likely the decision is 1. */
+static inline unsigned ff_range_take(ff_range *range, uint32_t one)
+{
+    uint32_t part = (range->width >> 16) * one;
+    unsigned bit = range->code < part;
+    FF_ASSERT(range->width >= FF_RANGE_LEAST && one > 0 && one < 65536);
+    range->width = bit ? part : range->width - part;
+    range->code -= bit ? 0 : part;
+    while (range->width < FF_RANGE_LEAST) {
+        range->width <<= 8;
+        range->code = range->code << 8 | ff_range_byte(range);
+    }
+    return bit;
+}
+
+/* ---- encoder ---- */
+
+/* Bytes that a carry may still change are held back: one, and as many of 255 as follow it. */
+typedef struct ff_range_writer {
+    uint64_t low;
+    uint32_t width, held;
+    int begun; /* there is a byte held back */
+    uint8_t byte;
+    uint8_t *out, *begin, *limit;
+    int is_full; /* bytes did not fit */
+} ff_range_writer;
+
+void ff_range_write(ff_range_writer *to, uint8_t *bytes, size_t limit);
+void ff_range_put(ff_range_writer *to, uint32_t one, unsigned bit);
+/* Bytes in all, or -1: they did not fit. */
+int ff_range_end(ff_range_writer *to);
+
+#endif

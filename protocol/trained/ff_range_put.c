@@ -1,0 +1,62 @@
+/* The writing half of the range coder: for tools. */
+#ifdef FF_ENCODER
+
+#include "ff_range.h"
+
+void ff_range_write(ff_range_writer *to, uint8_t *bytes, size_t limit)
+{
+    *to = (ff_range_writer){
+        .width = UINT32_MAX, .out = bytes, .begin = bytes, .limit = bytes + limit
+    };
+}
+
+/* Zeros at the end are not kept: of those alone there may be too many. */
+static void emit(ff_range_writer *to, uint32_t byte)
+{
+    if (to->out < to->limit)
+        *to->out++ = (uint8_t)byte;
+    else if ((uint8_t)byte)
+        to->is_full = 1;
+}
+
+/* The highest byte of 32 bits leaves. */
+static void shift(ff_range_writer *to)
+{
+    uint32_t carry = (uint32_t)(to->low >> 32), byte = (uint32_t)to->low >> 24;
+    if (byte == 255 && !carry) {
+        to->held++;
+    } else {
+        if (to->begun) emit(to, to->byte + carry);
+        for (; to->held > 0; to->held--) emit(to, 255 + carry);
+        to->byte = (uint8_t)byte;
+        to->begun = 1;
+    }
+    to->low = (to->low & 0xFFFFFFu) << 8;
+}
+
+void ff_range_put(ff_range_writer *to, uint32_t one, unsigned bit)
+{
+    uint32_t part = (to->width >> 16) * one;
+    FF_ASSERT(to->width >= FF_RANGE_LEAST && one > 0 && one < 65536);
+    if (!bit) to->low += part;
+    to->width = bit ? part : to->width - part;
+    for (; to->width < FF_RANGE_LEAST; to->width <<= 8) shift(to);
+}
+
+/* Of all numbers in the range that with the most zeros at its end. */
+int ff_range_end(ff_range_writer *to)
+{
+    for (unsigned bits = 32;; bits -= 8) {
+        uint64_t rest = (UINT64_C(1) << bits) - 1, value = (to->low + rest) & ~rest;
+        if (value >= to->low + to->width) continue;
+        to->low = value;
+        break;
+    }
+    for (unsigned i = 0; i < 5; i++) shift(to);
+    while (to->out > to->begin && !to->out[-1]) to->out--;
+    return to->is_full ? -1 : (int)(to->out - to->begin);
+}
+
+#else
+typedef int ff_range_put_not_built; /* ISO C wants a declaration in every file */
+#endif

@@ -1,0 +1,449 @@
+/* What is expected of new heights, from known ones around them: integers only, the same on every
+ * machine (SPEC.md, "Expectation").
+ *
+ * A doubling is made in a copy of its points with a margin round it. Where a place lies beyond a
+ * side, the nearest one on that side stands for it: sides are made first. */
+#include "ff_trained.h"
+
+#include <string.h>
+
+#define MARGIN          FF_TRAINED_MARGIN
+#define HEIGHT_MAX_Q4   (UINT16_MAX * 16)
+#define DISTANCE_MAX_Q4 (1 << 22)
+#define SCALE_BIAS      90 /* of 256, of 1/16 step */
+
+#ifdef __GNUC__
+#define FF_ALWAYS_INLINE inline __attribute__((always_inline))
+#else
+#define FF_ALWAYS_INLINE inline
+#endif
+
+typedef struct walk {
+    const ff_trained *by;
+    ff_expected_fn *sample;
+    void *context;
+    uint16_t *grid; /* as the caller has it: `side` points, of which every `step` are made */
+    uint32_t side, step;
+    uint16_t *height; /* the copy's first point */
+    uint8_t *error;   /* the same of how far points were from what was expected */
+    int32_t pitch;    /* of both */
+    int with_errors;
+    int32_t last[2];  /* the last column and row, in steps: the sides */
+    int32_t coded[2]; /* before these, odd ones are coded */
+    int32_t quantum;
+    uint32_t reciprocal; /* of the quantum, Q31 */
+    uint32_t error_shift;
+} walk;
+
+static inline int32_t clamped(int32_t value, int32_t low, int32_t high)
+{
+    return value < low ? low : value > high ? high : value;
+}
+
+static inline int32_t size(int32_t value) { return value < 0 ? -value : value; }
+
+static inline int32_t bend(int32_t a, int32_t b, int32_t c) { return size(a - 2 * b + c); }
+
+static inline unsigned log2_of(uint32_t value)
+{
+#ifdef __GNUC__
+    return 31u - (unsigned)__builtin_clz(value | 1u);
+#else
+    unsigned log2 = 0;
+    while (value >> log2 >> 1) log2++;
+    return log2;
+#endif
+}
+
+static inline uint32_t divided(const walk *w, uint32_t value)
+{
+    return (uint32_t)((uint64_t)value * w->reciprocal >> 31);
+}
+
+/* ---- what is around a point ----
+ *
+ * Places are told along a side and away from it: `along` and `away` are the steps to the next ones.
+ * X(i, a, b): tap i is the height there. The base is the mean of the first ones: two of R, four. */
+
+/* clang-format off */
+#define TAPS_R(X) \
+    X(0, -1, 0) X(1, 1, 0) X(2, -3, 0) X(3, 3, 0) X(4, -1, 2) X(5, 1, 2) X(6, -3, 2) X(7, 3, 2) \
+    X(8, -1, 4) X(9, 1, 4) X(10, -2, 0)
+#define TAPS_OF_CENTRE(X) \
+    X(0, -1, -1) X(1, 1, -1) X(2, -1, 1) X(3, 1, 1) X(4, -3, -1) X(5, -3, 1) X(6, 3, -1) X(7, 3, 1) \
+    X(8, -1, 3) X(9, 1, 3) X(10, -3, 3) X(11, 3, 3)
+#define TAPS_N(X) TAPS_OF_CENTRE(X) X(12, 0, -1) X(13, -2, -1) X(14, 2, -1)
+#define TAPS_C(X) TAPS_OF_CENTRE(X) \
+    X(12, -1, -3) X(13, 1, -3) X(14, -3, -3) X(15, 3, -3) X(16, -2, 0) X(17, 0, -2) X(18, -2, -2) X(19, 2, -2)
+#define TAPS_OF_MIDDLE(X) \
+    X(0, -1, 0) X(1, 1, 0) X(2, 0, -1) X(3, 0, 1) X(4, -3, 0) X(5, 3, 0) X(6, 0, -3) X(7, 0, 3) \
+    X(8, -2, -1) X(9, 2, -1) X(10, -2, 1) X(11, 2, 1) X(12, -1, -2) X(13, 1, -2) X(14, -1, 2) X(15, 1, 2) \
+    X(16, -1, -1)
+#define TAPS_H(X) TAPS_OF_MIDDLE(X) X(17, 1, -1) X(18, -2, 0) X(19, 0, -2)
+#define TAPS_V(X) TAPS_OF_MIDDLE(X) X(17, -1, 1) X(18, 0, -2) X(19, -2, 0)
+/* clang-format on */
+
+#define AT(a, b)         (int32_t) at[(a)*along + (b)*away]
+#define ERROR(a, b)      (int32_t) error[(a)*along + (b)*away]
+#define KEEP(i, a, b)    known[i] = AT(a, b);
+#define COUNT(i, a, b)   +1
+#define WEIGHED(i, a, b) +(int64_t)tap[i] * AT(a, b)
+
+/* Measures of roughness, from the third on. They return that by which taps are chosen. */
+
+static FF_ALWAYS_INLINE int32_t traits_of_side(const uint16_t *at, int32_t along, int32_t away,
+                                               int32_t trait[FF_TRAINED_TRAITS])
+{
+    int32_t a = AT(-1, 0), b = AT(1, 0), c = AT(-1, 2), d = AT(1, 2);
+    trait[2] = size(AT(-3, 0) - a - b + AT(3, 0));
+    trait[3] = size(c + d - AT(-3, 2) - AT(3, 2));
+    trait[4] = size(a - b - c + d);
+    trait[5] = bend(a, c, AT(-1, 4)) + bend(b, d, AT(1, 4));
+    trait[6] = size(a - b);
+    return trait[2] + ((trait[3] + trait[4]) >> 1) + (trait[5] >> 2);
+}
+
+static FF_ALWAYS_INLINE int32_t traits_of_centre(const uint16_t *at, int32_t along, int32_t away,
+                                                 int32_t trait[FF_TRAINED_TRAITS])
+{
+    int32_t a = AT(-1, -1), b = AT(1, -1), c = AT(-1, 1), d = AT(1, 1);
+    trait[2] = size(a + d - b - c);
+    trait[3] = bend(AT(-3, -1), a, b) + bend(c, d, AT(3, 1)) + bend(AT(-1, 3), c, a) +
+               bend(AT(1, 3), d, b);
+    return trait[2] + (trait[3] >> 1);
+}
+
+static FF_ALWAYS_INLINE int32_t traits_of_middle(const uint16_t *at, int32_t along, int32_t away,
+                                                 int32_t trait[FF_TRAINED_TRAITS])
+{
+    int32_t a = AT(-1, 0), b = AT(1, 0), c = AT(0, -1), d = AT(0, 1);
+    trait[2] = size(a + b - c - d);
+    trait[3] = size(a - b) + size(c - d);
+    return trait[2];
+}
+
+static FF_ALWAYS_INLINE int32_t look(enum ff_trained_class kind, const uint16_t *at, int32_t along,
+                                     int32_t away, int32_t trait[FF_TRAINED_TRAITS])
+{
+    if (kind == FF_POINT_R) return traits_of_side(at, along, away, trait);
+    if (kind == FF_POINT_H || kind == FF_POINT_V) return traits_of_middle(at, along, away, trait);
+    if (kind == FF_POINT_N) trait[4] = size(2 * AT(0, -1) - AT(-1, -1) - AT(1, -1));
+    return traits_of_centre(at, along, away, trait);
+}
+
+/* Those that tell how far points beside were off. How many traits there are in all. */
+static FF_ALWAYS_INLINE unsigned look_at_errors(enum ff_trained_class kind, const uint8_t *error,
+                                                int32_t along, int32_t away, uint32_t shift,
+                                                int32_t trait[FF_TRAINED_TRAITS])
+{
+    switch (kind) {
+        case FF_POINT_R: trait[7] = ERROR(-2, 0) << shift; return 8;
+        case FF_POINT_N:
+            trait[5] = ERROR(0, -1) << shift;
+            trait[6] = (ERROR(-2, -1) + ERROR(2, -1)) << shift;
+            return 7;
+        case FF_POINT_C:
+            trait[4] = (ERROR(-2, 0) + ERROR(0, -2)) << shift;
+            trait[5] = (ERROR(-2, -2) + ERROR(2, -2)) << shift;
+            return 6;
+        default:
+            trait[4] = (ERROR(0, -1) + ERROR(0, 1)) << shift;
+            trait[5] = (ERROR(-1, -1) + (kind == FF_POINT_V ? ERROR(-1, 1) : ERROR(1, -1)))
+                       << shift;
+            trait[6] = (ERROR(-2, 0) + ERROR(0, -2)) << shift;
+            return 7;
+    }
+}
+
+static FF_ALWAYS_INLINE int64_t weighed(enum ff_trained_class kind, const int16_t *tap,
+                                        const uint16_t *at, int32_t along, int32_t away)
+{
+    switch (kind) {
+        case FF_POINT_R: return TAPS_R(WEIGHED);
+        case FF_POINT_N: return TAPS_N(WEIGHED);
+        case FF_POINT_C: return TAPS_C(WEIGHED);
+        case FF_POINT_H: return TAPS_H(WEIGHED);
+        default: return TAPS_V(WEIGHED);
+    }
+}
+
+static FF_ALWAYS_INLINE int32_t base_q2(enum ff_trained_class kind, const uint16_t *at,
+                                        int32_t along, int32_t away)
+{
+    if (kind == FF_POINT_R) return 2 * (AT(-1, 0) + AT(1, 0));
+    if (kind == FF_POINT_N || kind == FF_POINT_C)
+        return AT(-1, -1) + AT(1, -1) + AT(-1, 1) + AT(1, 1);
+    return AT(-1, 0) + AT(1, 0) + AT(0, -1) + AT(0, 1);
+}
+
+uint32_t ff_trained_known(const ff_expected *p, int32_t known[FF_TRAINED_TAPS])
+{
+    const uint16_t *at = p->height;
+    int32_t along = p->along, away = p->away;
+    switch (p->kind) {
+        case FF_POINT_R: TAPS_R(KEEP) return TAPS_R(COUNT);
+        case FF_POINT_N: TAPS_N(KEEP) return TAPS_N(COUNT);
+        case FF_POINT_C: TAPS_C(KEEP) return TAPS_C(COUNT);
+        case FF_POINT_H: TAPS_H(KEEP) return TAPS_H(COUNT);
+        default: TAPS_V(KEEP) return TAPS_V(COUNT);
+    }
+}
+
+uint32_t ff_trained_traits(const ff_expected *p, int32_t trait[FF_TRAINED_TRAITS])
+{
+    trait[0] = 4;
+    trait[1] = p->quantum;
+    look(p->kind, p->height, p->along, p->away, trait);
+    return look_at_errors(p->kind, p->error, p->along, p->away, p->error_shift, trait);
+}
+
+/* ---- a point ---- */
+
+static FF_ALWAYS_INLINE void weigh(const walk *w, enum ff_trained_class kind, int32_t rough,
+                                   ff_expected *p)
+{
+    unsigned bucket = log2_of(divided(w, (uint32_t)(4 * rough + w->quantum)));
+    if (bucket >= FF_TRAINED_BUCKETS) bucket = FF_TRAINED_BUCKETS - 1;
+    const ff_taps *taps = &w->by->taps[kind][bucket];
+    int32_t base = base_q2(kind, p->height, p->along, p->away);
+    int64_t sum = 4 * weighed(kind, taps->tap, p->height, p->along, p->away) -
+                  (int64_t)base * taps->sum + (1 << (FF_TRAINED_TAPS_LOG2 - 3));
+    p->bucket = (uint8_t)bucket;
+    p->base_q2 = base;
+    p->mean_q4 = clamped(4 * base + (int32_t)(sum >> (FF_TRAINED_TAPS_LOG2 - 2)), 0, HEIGHT_MAX_Q4);
+}
+
+/* The row of FF_TRAINED_SCALES, three to a doubling, for a distance. */
+static inline uint8_t scale_of(const walk *w, int32_t distance_q4)
+{
+    uint32_t steps_q8 = divided(w, (uint32_t)distance_q4 << 8) + SCALE_BIAS;
+    unsigned log2 = log2_of(steps_q8);
+    uint32_t mantissa = steps_q8 << (31 - log2);
+    int32_t row = 3 * ((int32_t)log2 - 8) + (mantissa >= 0xA1450000u) + (mantissa >= 0xCB300000u);
+    return (uint8_t)clamped(row + 5, 0, FF_TRAINED_SCALES - 1);
+}
+
+static FF_ALWAYS_INLINE void measure(const walk *w, enum ff_trained_class kind,
+                                     const int32_t *trait, unsigned traits, ff_expected *p)
+{
+    const int16_t *weight = w->by->trait[kind];
+    int64_t sum = 4 * weight[0] + (int64_t)weight[1] * w->quantum + (int64_t)weight[2] * trait[2] +
+                  (int64_t)weight[3] * trait[3] + (int64_t)weight[4] * trait[4] +
+                  (int64_t)weight[5] * trait[5];
+    if (traits > 6) sum += (int64_t)weight[6] * trait[6];
+    if (traits > 7) sum += (int64_t)weight[7] * trait[7];
+    sum >>= FF_TRAINED_TRAITS_LOG2 - 4;
+    p->distance_q4 = (int32_t)(sum < 1 ? 1 : sum > DISTANCE_MAX_Q4 ? DISTANCE_MAX_Q4 : sum);
+    p->scale = scale_of(w, p->distance_q4);
+}
+
+/* Where what is expected lies among the heights that residuals lead to: the likeliest one, and in
+ * which quarter around it. */
+static inline void place_mean(const walk *w, int side, ff_expected *p)
+{
+    int32_t off_q4 = p->mean_q4 - 16 * p->predicted + 8 * w->quantum, steps = off_q4 >> 4;
+    p->residual = 0;
+    if (side) {
+        p->residual = steps >= 0 ? (int32_t)divided(w, (uint32_t)steps)
+                                 : -1 - (int32_t)divided(w, (uint32_t)(-1 - steps));
+        p->residual = clamped(p->residual, -INT16_MAX, INT16_MAX);
+        off_q4 -= 16 * w->quantum * p->residual;
+    }
+    uint32_t phase = divided(w, (uint32_t)clamped(off_q4 >> 2, 0, 1 << 24));
+    p->phase = (uint8_t)(phase < 3 ? phase : 3);
+}
+
+/* `middle`: of a side, what it predicts itself. */
+static FF_ALWAYS_INLINE void make_point(const walk *w, enum ff_trained_class kind, int32_t column,
+                                        int32_t row, int32_t along, int32_t away, int32_t middle)
+{
+    int32_t index = row * w->pitch + column, trait[FF_TRAINED_TRAITS];
+    ff_expected p = { .at = ((uint32_t)row * w->side + (uint32_t)column) * w->step,
+                      .kind = (uint8_t)kind,
+                      .height = w->height + index,
+                      .error = w->error + index,
+                      .along = along,
+                      .away = away,
+                      .quantum = w->quantum,
+                      .error_shift = w->error_shift };
+    weigh(w, kind, look(kind, p.height, along, away, trait), &p);
+    p.predicted = kind == FF_POINT_R ? middle : clamped((p.mean_q4 + 8) >> 4, 0, UINT16_MAX);
+    if (w->with_errors) {
+        unsigned traits = look_at_errors(kind, p.error, along, away, w->error_shift, trait);
+        measure(w, kind, trait, traits, &p);
+        place_mean(w, kind == FF_POINT_R, &p);
+    }
+    uint16_t height = w->sample(w->context, &p);
+    w->height[index] = height;
+    if (!w->with_errors) return;
+    uint32_t off = (uint32_t)(size(16 * height - p.mean_q4) + 8) >> 4 >> w->error_shift;
+    w->error[index] = (uint8_t)(off < 255 ? off : 255);
+}
+
+/* ---- a doubling ---- */
+
+/* New points of a side, from `column`, `row` on along an axis. */
+static void make_side(const walk *w, int32_t column, int32_t row, unsigned axis, int inward)
+{
+    int32_t along = axis ? w->pitch : 1, away = axis ? inward : inward * w->pitch;
+    uint32_t cells = (w->side - 1) / (2 * w->step), apart = 2 * w->step * (axis ? w->side : 1);
+    const uint16_t *first = w->grid + ((uint32_t)row * w->side + (uint32_t)column) * w->step;
+    for (int32_t i = 1; i < w->coded[axis]; i += 2)
+        make_point(w, FF_POINT_R, axis ? column : i, axis ? i : row, along, away,
+                   ff_predict_middle(first, apart, (uint32_t)i / 2, cells));
+}
+
+/* Centres beside a side. */
+static void make_near(const walk *w, unsigned axis, int32_t beside, int inward)
+{
+    int32_t along = axis ? w->pitch : 1, away = axis ? inward : inward * w->pitch;
+    int32_t to = w->last[axis] - (axis ? 2 : 0);
+    if (beside >= w->coded[!axis]) return;
+    for (int32_t i = axis ? 3 : 1; i < w->coded[axis] && i < to; i += 2)
+        make_point(w, FF_POINT_N, axis ? beside : i, axis ? i : beside, along, away, 0);
+}
+
+static void make_centres(const walk *w)
+{
+    make_near(w, 0, 1, 1);
+    if (w->last[1] > 2) make_near(w, 0, w->last[1] - 1, -1);
+    make_near(w, 1, 1, 1);
+    if (w->last[0] > 2) make_near(w, 1, w->last[0] - 1, -1);
+    for (int32_t row = 3; row < w->coded[1] && row < w->last[1] - 2; row += 2)
+        for (int32_t column = 3; column < w->coded[0] && column < w->last[0] - 2; column += 2)
+            make_point(w, FF_POINT_C, column, row, 1, w->pitch, 0);
+}
+
+static void make_middles(const walk *w)
+{
+    for (int32_t row = 1; row < w->last[1]; row++) {
+        int32_t column = 2;
+        if (row % 2 == 0)
+            for (column = 1; column < w->coded[0]; column += 2)
+                make_point(w, FF_POINT_H, column, row, 1, w->pitch, 0);
+        else if (row < w->coded[1])
+            for (; column < w->last[0]; column += 2)
+                make_point(w, FF_POINT_V, column, row, w->pitch, 1, 0);
+    }
+}
+
+/* ---- the copy ---- */
+
+/* Points of an odd line that is not coded, until the doubling ends: the height of the last line, or
+ * between their four corners. */
+static void fill_line(const walk *w, unsigned axis)
+{
+    int32_t line = w->last[axis] - 1, on = axis ? w->pitch : 1, along = axis ? 1 : w->pitch;
+    uint16_t *at = w->height + line * on;
+    if (line < w->coded[axis]) return;
+    for (int32_t i = 0; i <= w->last[!axis]; i++, at += along)
+        *at = i % 2 == 0 ? at[on]
+                         : (uint16_t)((at[-on - along] + at[along - on] + at[on - along] +
+                                       at[on + along] + 2) >>
+                                      2);
+}
+
+/* Points of the margin are the nearest ones of the sides. */
+static void fill_margin(const walk *w)
+{
+    size_t count = (size_t)w->last[0] + 1 + 2 * MARGIN;
+    for (int32_t row = 0; row <= w->last[1]; row++) {
+        uint16_t *first = w->height + row * w->pitch, *last = first + w->last[0];
+        first[-1] = first[-2] = first[-3] = *first;
+        last[1] = last[2] = last[3] = *last;
+    }
+    for (int32_t i = 1; i <= MARGIN; i++) {
+        uint16_t *first = w->height - MARGIN, *last = first + w->last[1] * w->pitch;
+        memcpy(first - i * w->pitch, first, count * sizeof *first);
+        memcpy(last + i * w->pitch, last, count * sizeof *last);
+    }
+}
+
+/* Of how far points were off two columns beside the sides are looked at. */
+static void fill_error_margin(const walk *w)
+{
+    for (int32_t row = 0; row <= w->last[1]; row++) {
+        uint8_t *first = w->error + row * w->pitch, *last = first + w->last[0];
+        first[-1] = first[-2] = *first;
+        last[1] = last[2] = *last;
+    }
+    for (int32_t column = 0; column <= w->last[0]; column++) {
+        uint8_t *first = w->error + column, *last = first + w->last[1] * w->pitch;
+        *(first - w->pitch) = *(first - 2 * w->pitch) = *first;
+        last[w->pitch] = last[2 * w->pitch] = *last;
+    }
+}
+
+static void open_copy(const walk *w)
+{
+    uint32_t pitch = (uint32_t)w->pitch;
+    if (w->with_errors) memset(w->error - MARGIN * (pitch + 1), 0, (size_t)pitch * pitch);
+    for (int32_t row = 0; row <= w->last[1]; row += 2)
+        for (int32_t column = 0; column <= w->last[0]; column += 2)
+            w->height[row * w->pitch + column] =
+                w->grid[((uint32_t)row * w->side + (uint32_t)column) * w->step];
+}
+
+static void close_copy(const walk *w)
+{
+    for (int32_t row = 0; row <= w->last[1]; row++) {
+        uint16_t *to = w->grid + (uint32_t)row * w->side * w->step;
+        for (int32_t column = 0; column <= w->last[0]; column++, to += w->step)
+            *to = w->height[row * w->pitch + column];
+    }
+}
+
+static void make_doubling(walk *w, uint32_t step, ff_cells ground)
+{
+    const uint32_t end[2] = { ground.columns, ground.rows };
+    w->step = step;
+    for (unsigned axis = 0; axis < 2; axis++) {
+        w->last[axis] = (int32_t)(ff_last_point(step, end[axis]) / step);
+        w->coded[axis] = 2 * (int32_t)ff_coded_points(step, end[axis]);
+    }
+    open_copy(w);
+    for (unsigned axis = 0; axis < 2; axis++) fill_line(w, axis);
+    fill_margin(w);
+    make_side(w, 0, 0, 0, 1);
+    make_side(w, 0, w->last[1], 0, -1);
+    make_side(w, 0, 0, 1, 1);
+    make_side(w, w->last[0], 0, 1, -1);
+    fill_margin(w);
+    if (w->with_errors) fill_error_margin(w);
+    make_centres(w);
+    make_middles(w);
+    close_copy(w);
+    ff_repeat_last(w->grid, w->side, step, ground);
+}
+
+FF_STATIC_ASSERT(MARGIN == 3); /* fill_margin */
+FF_STATIC_ASSERT(FF_CODEC_ROOM_MAX == 3 * ((2 << FF_NODE_LOG2_MAX) + 1 + 2 * MARGIN) *
+                                          ((2 << FF_NODE_LOG2_MAX) + 1 + 2 * MARGIN));
+
+size_t ff_codec_room(const ff_terrain_info *info)
+{
+    size_t pitch = ff_refined_side(info) + 2 * MARGIN;
+    return pitch * pitch * (sizeof(uint16_t) + 1);
+}
+
+void ff_expect(const ff_trained *by, const ff_terrain_info *info, ff_cells cells,
+               const uint16_t *parent, uint16_t *grid, int with_errors, void *room,
+               ff_expected_fn *sample, void *context)
+{
+    walk w = { .by = by, .sample = sample, .context = context, .grid = grid };
+    size_t pitch, log2;
+    w.quantum = ff_quantum(info, !parent);
+    w.reciprocal = (UINT32_C(1) << 31) / (uint32_t)w.quantum + 1;
+    log2 = log2_of((uint32_t)w.quantum);
+    w.error_shift = log2 > 4 ? (uint32_t)log2 - 4 : 0;
+    w.side = parent ? ff_refined_side(info) : ff_node_side(info);
+    pitch = w.side + 2 * MARGIN;
+    w.pitch = (int32_t)pitch;
+    w.height = (uint16_t *)room + MARGIN * (pitch + 1);
+    w.with_errors = with_errors;
+    w.error = (uint8_t *)room + pitch * pitch * 2 + MARGIN * (pitch + 1);
+    cells = ff_cells_of(cells, w.side);
+    if (parent) ff_spread_parent(info, parent, grid);
+    for (uint32_t step = parent ? 1 : (w.side - 1) / 2; step >= 1; step /= 2)
+        make_doubling(&w, step, cells);
+}

@@ -1,0 +1,391 @@
+/* Codec trained beside the slow decoder: wild, flat and cut ground, any bytes; its streams, its
+ * numbers, and payloads that must stay as they are. */
+#include "../../protocol/trained/ff_trained.h"
+#include "../rig/slow_decoder.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+#include <zlib.h>
+
+static const uint16_t max_errors[] = { 0, 1, 4, 100, 32767 };
+#define MAX_ERRORS (sizeof max_errors / sizeof *max_errors)
+
+static uint16_t codec_room[FF_CODEC_ROOM_MAX / 2 + 1];
+static uint32_t random_state = 1;
+
+static uint32_t random_below(uint32_t limit)
+{
+    random_state = random_state * 1664525u + 1013904223u;
+    return (uint32_t)((uint64_t)random_state * limit >> 32);
+}
+
+/* ---- grids ---- */
+
+typedef struct grid_test {
+    ff_terrain_info info;
+    ff_cells cells;
+    int root;
+    uint16_t parent[FF_NODE_HEIGHTS_MAX], source[FF_REFINED_HEIGHTS_MAX],
+        decoded[FF_REFINED_HEIGHTS_MAX];
+    uint8_t payload[FF_PAYLOAD_BYTES_MAX];
+    uint32_t count; /* residuals, of corners none */
+} grid_test;
+
+static uint32_t side_of(const grid_test *t)
+{
+    return t->root ? ff_node_side(&t->info) : ff_refined_side(&t->info);
+}
+
+/* The whole of it has ground. */
+static void set_grid(grid_test *t, uint8_t k, int root, uint16_t max_error)
+{
+    t->info = (ff_terrain_info){
+        .node_log2 = k, .tile_log2 = 8, .codec = FF_CODEC_TRAINED, .max_error = max_error
+    };
+    t->root = root;
+    t->cells.columns = t->cells.rows = (uint8_t)(side_of(t) - 1);
+}
+
+enum { FLAT, NOISE, CLIFF, CHECKER, SMOOTH, ROUGH, EXTREMES, GROUNDS };
+
+static uint16_t height_at(int kind, uint32_t x, uint32_t y)
+{
+    switch (kind) {
+        case FLAT: return 4711;
+        case NOISE: return (uint16_t)random_below(65536);
+        case CLIFF: return x * 3 > y + 20 ? 65535 : 0;
+        case CHECKER: return (x + y) & 1 ? 65535 : 0;
+        case SMOOTH: return (uint16_t)(20000 + 7 * x * x - 3 * x * y + 90 * y);
+        case ROUGH: return (uint16_t)(20000 + 300 * x + 100 * y + random_below(400));
+        default: return random_below(2) ? 65535 : 0;
+    }
+}
+
+/* Beyond its ground it repeats the last sample, as decoded grids do; the parent has every other
+ * sample of it. */
+static void make_ground(grid_test *t, int kind)
+{
+    uint32_t side = side_of(t), node = ff_node_side(&t->info);
+    for (uint32_t y = 0; y < side; y++)
+        for (uint32_t x = 0; x < side; x++) t->source[y * side + x] = height_at(kind, x, y);
+    for (uint32_t y = 0; y < side; y++)
+        for (uint32_t x = 0; x < side; x++) {
+            uint32_t from_x = x < t->cells.columns ? x : t->cells.columns;
+            uint32_t from_y = y < t->cells.rows ? y : t->cells.rows;
+            t->source[y * side + x] = t->source[from_y * side + from_x];
+        }
+    for (uint32_t i = 0; i < node * node && !t->root; i++)
+        t->parent[i] = t->source[2 * (i / node) * side + 2 * (i % node)];
+}
+
+static const uint16_t *parent_of(const grid_test *t) { return t->root ? NULL : t->parent; }
+
+static int encode(grid_test *t)
+{
+    static int32_t value[FF_REFINED_HEIGHTS_MAX];
+    ff_residuals res = { .cells = t->cells, .value = value };
+    ff_encode_heights(&t->info, parent_of(t), t->source, NULL, &res, t->decoded);
+    t->count = res.count - (t->root ? FF_CORNERS : 0);
+    return ff_encode_payload(&t->info, parent_of(t), t->decoded, &res, t->payload);
+}
+
+static int decode(const grid_test *t, const uint8_t *payload, size_t bytes, uint16_t *heights)
+{
+    static int32_t value[FF_REFINED_HEIGHTS_MAX];
+    ff_residuals out = { .cells = t->cells, .value = value };
+    size_t memory_bytes = ff_decoder_bytes(&t->info);
+    void *memory = malloc(memory_bytes);
+    ff_decoder *dec = ff_decoder_create(&t->info, memory, memory_bytes);
+    int rc = t->root ? ff_decode_root(dec, payload, bytes, &out)
+                     : ff_decode_refinement(dec, payload, bytes, &out);
+    free(memory);
+    if (rc != FF_OK) return rc;
+    return t->root ? ff_reconstruct_root(&t->info, &out, heights, codec_room)
+                   : ff_reconstruct_refinement(&t->info, t->parent, &out, heights, codec_room);
+}
+
+/* Both decoders take the payload and make the same of it, or both refuse it. */
+static int decode_both(const grid_test *t, const uint8_t *payload, size_t bytes, uint16_t *heights)
+{
+    static uint16_t slow[FF_REFINED_HEIGHTS_MAX];
+    uint8_t *exact = malloc(bytes + 1); /* bytes beyond are not there */
+    ff_terrain_info info = t->info;
+    if (t->root && info.entered) info.max_error = 0;
+    memcpy(exact, payload, bytes);
+    exact = realloc(exact, bytes ? bytes : 1);
+    int rc = decode(t, exact, bytes, heights);
+    int slow_rc = slow_decode_part(&info, t->cells.columns, t->cells.rows, parent_of(t), exact,
+                                   bytes, slow);
+    free(exact);
+    assert_int_equal(rc == FF_OK, slow_rc >= 0);
+    if (rc == FF_OK) assert_memory_equal(heights, slow, 2 * side_of(t) * side_of(t));
+    return rc;
+}
+
+static void every_ground_comes_back(void **state)
+{
+    static grid_test t;
+    static uint16_t again[FF_REFINED_HEIGHTS_MAX];
+    (void)state;
+    for (uint32_t run = 0; run < 5 * MAX_ERRORS * GROUNDS * 8; run++) {
+        uint32_t e = run / 5 % MAX_ERRORS, way = run / 5 / MAX_ERRORS / GROUNDS;
+        set_grid(&t, (uint8_t)(1 + run % 5), way & 1, max_errors[e]);
+        t.info.entered = way == 7;
+        uint32_t side = side_of(&t);
+        if (way & 2) t.cells.columns = (uint8_t)(1 + random_below(side - 1));
+        if (way & 4) t.cells.rows = (uint8_t)(1 + random_below(side - 1));
+        make_ground(&t, (int)(run / 5 / MAX_ERRORS % GROUNDS));
+        int bytes = encode(&t), error = t.info.entered ? 0 : t.info.max_error;
+        assert_in_range(bytes, 1, 1 + 8 + 2 * t.count);
+        assert_int_equal(decode_both(&t, t.payload, (size_t)bytes, again), FF_OK);
+        assert_memory_equal(again, t.decoded, 2 * side * side);
+        for (uint32_t i = 0; i < side * side; i++)
+            assert_in_range(abs(again[i] - t.source[i]), 0, error);
+    }
+}
+
+/* ---- any bytes ---- */
+
+/* A stream of chance, or an encoded one of wild ground with a few bits turned. */
+static size_t spoilt_payload(grid_test *t)
+{
+    size_t bytes = (size_t)encode(t);
+    if (random_below(2)) {
+        uint32_t before = 1 + (t->root ? 8 : 0);
+        t->payload[0] = random_below(8) == 0; /* no errors; words now and then */
+        bytes = before + (t->payload[0] ? 2 * t->count : random_below(2 * t->count + 2));
+        for (size_t i = 1; i < bytes; i++) t->payload[i] = (uint8_t)random_below(256);
+    } else {
+        for (uint32_t i = random_below(4); i > 0; i--)
+            t->payload[random_below((uint32_t)bytes)] ^= (uint8_t)(1u << random_below(8));
+        if (random_below(4) == 0) bytes = random_below((uint32_t)bytes + 1);
+        if (random_below(4) == 0) t->payload[bytes++] = (uint8_t)random_below(256);
+    }
+    return bytes;
+}
+
+static void any_bytes_are_read_alike(void **state)
+{
+    static grid_test t;
+    static uint16_t heights[FF_REFINED_HEIGHTS_MAX];
+    uint32_t taken = 0, refused = 0;
+    (void)state;
+    for (int run = 0; run < 6000; run++) {
+        set_grid(&t, (uint8_t)(1 + random_below(5)), (int)random_below(2),
+                 random_below(2) ? max_errors[random_below(MAX_ERRORS)]
+                                 : (uint16_t)random_below(32768));
+        t.info.entered = random_below(8) == 0;
+        if (random_below(2)) {
+            t.cells.columns = (uint8_t)(1 + random_below(side_of(&t) - 1));
+            t.cells.rows = (uint8_t)(1 + random_below(side_of(&t) - 1));
+        }
+        make_ground(&t, (int)random_below(GROUNDS));
+        size_t bytes = spoilt_payload(&t);
+        if (decode_both(&t, t.payload, bytes, heights) == FF_OK)
+            taken++;
+        else
+            refused++;
+    }
+    assert_true(taken > 1500 && refused > 1000);
+}
+
+/* ---- sizes ---- */
+
+static void flat_ground_needs_no_stream(void **state)
+{
+    static grid_test t;
+    (void)state;
+    for (uint8_t k = 1; k <= FF_NODE_LOG2_MAX; k++)
+        for (uint32_t e = 0; e < MAX_ERRORS; e++)
+            for (int root = 0; root < 2; root++) {
+                set_grid(&t, k, root, max_errors[e]);
+                make_ground(&t, FLAT);
+                assert_int_equal(encode(&t), root ? 9 : 1);
+                for (; t.cells.columns > 0; t.cells.columns--)
+                    assert_int_equal(encode(&t), root ? 9 : 1);
+                set_grid(&t, k, root, max_errors[e]);
+                for (t.cells.columns = 1; t.cells.rows > 0; t.cells.rows--)
+                    assert_int_equal(encode(&t), root ? 9 : 1);
+            }
+}
+
+static void noise_is_stored_as_words(void **state)
+{
+    static grid_test t;
+    (void)state;
+    for (uint8_t k = 1; k <= FF_NODE_LOG2_MAX; k++)
+        for (int root = 0; root < 2; root++) {
+            set_grid(&t, k, root, 0);
+            make_ground(&t, NOISE);
+            uint32_t bytes = (uint32_t)encode(&t);
+            assert_int_equal(bytes, 1 + (root ? 8 : 0) + 2 * t.count);
+            assert_int_equal(t.payload[0], 1);
+        }
+}
+
+/* ---- streams ---- */
+
+static void streams_are_held_to_their_end(void **state)
+{
+    static grid_test t;
+    static uint16_t heights[FF_REFINED_HEIGHTS_MAX];
+    (void)state;
+    for (uint8_t k = 2; k <= FF_NODE_LOG2_MAX; k++)
+        for (int root = 0; root < 2; root++) {
+            set_grid(&t, k, root, 4);
+            make_ground(&t, ROUGH);
+            size_t bytes = (size_t)encode(&t);
+            assert_int_equal(t.payload[0], 0);
+            for (size_t more = 1; more <= 5; more++) {
+                memset(t.payload + bytes, 1, more - 1); /* a reader is up to four ahead */
+                t.payload[bytes + more - 1] = 0;
+                assert_int_equal(decode_both(&t, t.payload, bytes + more, heights), FF_ERR_FORMAT);
+                t.payload[bytes + more - 1] = 1;
+                int rc = decode_both(&t, t.payload, bytes + more, heights);
+                if (more == 5) assert_int_equal(rc, FF_ERR_FORMAT);
+            }
+        }
+}
+
+/* Words tell at once how many there are; a stream that would be no shorter is none. */
+static void bodies_are_no_longer_than_words(void **state)
+{
+    static grid_test t;
+    static uint16_t heights[FF_REFINED_HEIGHTS_MAX];
+    (void)state;
+    for (uint8_t k = 1; k <= FF_NODE_LOG2_MAX; k++)
+        for (int root = 0; root < 2; root++) {
+            set_grid(&t, k, root, 0);
+            make_ground(&t, EXTREMES);
+            encode(&t);
+            size_t words = 1 + (root ? 8 : 0) + 2 * t.count;
+            memset(t.payload + 1, 0xff, words + 1);
+            t.payload[0] = 1;
+            assert_int_equal(decode_both(&t, t.payload, words - 1, heights), FF_ERR_TRUNCATED);
+            assert_int_equal(decode_both(&t, t.payload, words, heights), FF_OK);
+            assert_int_equal(decode_both(&t, t.payload, words + 1, heights), FF_ERR_FORMAT);
+            t.payload[0] = 0;
+            assert_int_equal(decode_both(&t, t.payload, words, heights), FF_ERR_FORMAT);
+        }
+}
+
+/* All that is reserved in the head is refused. */
+static void heads_are_held_to_what_they_mean(void **state)
+{
+    static grid_test t;
+    static uint16_t heights[FF_REFINED_HEIGHTS_MAX];
+    (void)state;
+    set_grid(&t, 3, 0, 0);
+    make_ground(&t, FLAT);
+    for (uint32_t head = 0; head < 256; head++) {
+        uint8_t payload[1 + 4 + 2 * 208] = { (uint8_t)head };
+        uint32_t form = head >> 2 & 3, errors = form == 1 ? 1 : form == 2 ? 4 : 0;
+        size_t bytes = 1 + errors + (head & 1 ? 2 * 208 : 0);
+        assert_int_equal(decode_both(&t, payload, bytes, heights),
+                         head & 0xF2 ? FF_ERR_FORMAT : FF_OK);
+    }
+}
+
+/* ---- leaves ---- */
+
+/* What lies below a leaf has a residual of 0 everywhere, even where another one is likelier. */
+static void below_leaves_all_is_prediction(void **state)
+{
+    static grid_test t;
+    static uint16_t made[FF_REFINED_HEIGHTS_MAX], heights[FF_REFINED_HEIGHTS_MAX];
+    static uint8_t payload[FF_PAYLOAD_BYTES_MAX];
+    (void)state;
+    for (uint8_t k = 1; k <= FF_NODE_LOG2_MAX; k++)
+        for (uint32_t run = 0; run < MAX_ERRORS * GROUNDS * 2; run++) {
+            set_grid(&t, k, 0, max_errors[run % MAX_ERRORS]);
+            if (run % 2) t.cells.columns = (uint8_t)(1 + random_below(side_of(&t) - 1));
+            make_ground(&t, (int)(run / MAX_ERRORS / 2));
+            encode(&t);
+            payload[0] = 1;
+            assert_int_equal(decode_both(&t, payload, 1 + 2 * t.count, heights), FF_OK);
+            ff_predict_children(&t.info, t.cells, t.parent, made, codec_room);
+            assert_memory_equal(made, heights, 2 * side_of(&t) * side_of(&t));
+        }
+}
+
+/* ---- numbers ---- */
+
+static void expect_possible(const uint16_t *one, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) assert_in_range(one[i], 1, 65535);
+}
+
+/* A decision that cannot be would end the coder's interval. */
+static void every_decision_is_possible(void **state)
+{
+    const ff_trained *by = &ff_trained_tables;
+    (void)state;
+    expect_possible(by->zero, sizeof by->zero / 2);
+    expect_possible(by->beyond[0], sizeof by->beyond / 2);
+    expect_possible(by->below[0], sizeof by->below / 2);
+    expect_possible(by->second[1], sizeof by->second / 2 - FF_TRAINED_SCALES);
+    expect_possible(by->third[4], sizeof by->third / 2 - 4 * FF_TRAINED_SCALES);
+}
+
+/* Ground without chance, whatever machine made it: its payloads and heights are part of the
+ * format. Their CRC-32, by k; refinements, then roots. */
+static void payloads_stay_as_they_are(void **state)
+{
+    static const uint32_t golden[2][FF_NODE_LOG2_MAX][2] = { { { 0xe3ce9505, 0x433bb460 },
+                                                               { 0x69ef6983, 0x80bfbb1f },
+                                                               { 0xfc9e0191, 0xa3f7fe8a },
+                                                               { 0xe0a56f80, 0x47364859 },
+                                                               { 0x8480ad76, 0x33ca04e4 } },
+                                                             { { 0xa289a5c4, 0x2771a3c2 },
+                                                               { 0x82242719, 0x9602987b },
+                                                               { 0x8c6d1f91, 0xee3db754 },
+                                                               { 0x62bfbfab, 0x6c1b31cc },
+                                                               { 0x29473bfd, 0x54bd567e } } };
+    static grid_test t;
+    int differ = 0;
+    (void)state;
+    for (int root = 0; root < 2; root++)
+        for (uint8_t k = 1; k <= FF_NODE_LOG2_MAX; k++) {
+            uLong of_bytes = 0, of_heights = 0;
+            random_state = 1;
+            for (uint32_t e = 0; e < MAX_ERRORS; e++)
+                for (int kind = CLIFF; kind <= ROUGH; kind++)
+                    for (uint8_t cut = 0; cut < 2; cut++) {
+                        set_grid(&t, k, root, max_errors[e]);
+                        t.cells.rows = (uint8_t)(t.cells.rows - cut);
+                        make_ground(&t, kind);
+                        of_bytes = crc32(of_bytes, t.payload, (uInt)encode(&t));
+                        for (uint32_t i = 0; i < side_of(&t) * side_of(&t); i++) {
+                            const uint8_t two[2] = { (uint8_t)t.decoded[i],
+                                                     (uint8_t)(t.decoded[i] >> 8) };
+                            of_heights = crc32(of_heights, two, 2);
+                        }
+                    }
+            if (golden[root][k - 1][0] == of_bytes && golden[root][k - 1][1] == of_heights)
+                continue;
+            print_message("# root %d, k %d: 0x%08lx, 0x%08lx\n", root, k, of_bytes, of_heights);
+            differ++;
+        }
+    assert_int_equal(differ, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_ground_comes_back),
+        cmocka_unit_test(any_bytes_are_read_alike),
+        cmocka_unit_test(flat_ground_needs_no_stream),
+        cmocka_unit_test(noise_is_stored_as_words),
+        cmocka_unit_test(streams_are_held_to_their_end),
+        cmocka_unit_test(bodies_are_no_longer_than_words),
+        cmocka_unit_test(heads_are_held_to_what_they_mean),
+        cmocka_unit_test(below_leaves_all_is_prediction),
+        cmocka_unit_test(every_decision_is_possible),
+        cmocka_unit_test(payloads_stay_as_they_are),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

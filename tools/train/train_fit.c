@@ -1,0 +1,146 @@
+#include "train_fit.h"
+
+#include <math.h>
+#include <string.h>
+
+#define WIDEST (FF_TRAINED_TAPS + 1)
+#define HALF   32768
+#define ENOUGH 100
+
+/* ---- weights ---- */
+
+void train_begin(ff_trained *tables)
+{
+    memset(tables, 0, sizeof *tables);
+    for (unsigned kind = 0; kind < FF_POINTS; kind++) {
+        tables->trait[kind][0] = 1 << (FF_TRAINED_TRAITS_LOG2 - 3);
+        tables->trait[kind][1] = 1 << (FF_TRAINED_TRAITS_LOG2 - 3);
+        tables->trait[kind][2] = 1 << (FF_TRAINED_TRAITS_LOG2 - 2);
+        tables->trait[kind][3] = 1 << (FF_TRAINED_TRAITS_LOG2 - 4);
+    }
+}
+
+void train_sum(train_sums *sums, const ff_terrain_info *info, const ff_expected *p, int32_t height)
+{
+    int32_t known[FF_TRAINED_TAPS], trait[FF_TRAINED_TRAITS];
+    double scale = p->distance_q4 / 16.0 + 0.5 * (2 * info->max_error + 1) + 0.3,
+           weight = 1 / (scale * scale), base = p->base_q2 / 4.0, off = height - base,
+           distance = fabs(height - p->mean_q4 / 16.0);
+    unsigned taps = ff_trained_known(p, known), traits = ff_trained_traits(p, trait);
+    for (unsigned i = 0; i < taps; i++) {
+        double *row = sums->tap[p->kind][p->bucket][i], x = (known[i] - base) * weight;
+        if (x == 0) continue;
+        for (unsigned j = 0; j < taps; j++) row[j] += x * (known[j] - base);
+        row[FF_TRAINED_TAPS] += x * off;
+    }
+    for (unsigned i = 0; i < traits; i++) {
+        double *row = sums->trait[p->kind][i], x = trait[i] * weight;
+        for (unsigned j = 0; j < traits; j++) row[j] += x * trait[j];
+        row[FF_TRAINED_TRAITS] += x * distance;
+    }
+}
+
+/* Gauss and Jordan, with a ridge. a[i][n]: the right side, and then the solution. */
+static void solve(double a[WIDEST][WIDEST + 1], unsigned n, double ridge)
+{
+    double trace = 0;
+    for (unsigned i = 0; i < n; i++) trace += a[i][i];
+    for (unsigned i = 0; i < n; i++) a[i][i] += trace / n * ridge + 1e-6;
+    for (unsigned i = 0; i < n; i++) {
+        double pivot = a[i][i];
+        for (unsigned j = i; j <= n; j++) a[i][j] /= pivot;
+        for (unsigned r = 0; r < n; r++) {
+            double factor = r == i ? 0 : a[r][i];
+            for (unsigned j = i; j <= n && factor != 0; j++) a[r][j] -= factor * a[i][j];
+        }
+    }
+}
+
+static int16_t fixed(double value, unsigned log2)
+{
+    double steps = round(ldexp(value, (int)log2));
+    return (int16_t)(steps < INT16_MIN ? INT16_MIN : steps > INT16_MAX ? INT16_MAX : steps);
+}
+
+/* Buckets take a tenth of what their neighbours saw. */
+static void fit_taps(const train_sums *sums, unsigned kind, unsigned bucket, ff_taps *taps)
+{
+    double a[WIDEST][WIDEST + 1];
+    for (unsigned i = 0; i < FF_TRAINED_TAPS; i++)
+        for (unsigned j = 0; j <= FF_TRAINED_TAPS; j++) {
+            a[i][j] = sums->tap[kind][bucket][i][j];
+            if (bucket > 0) a[i][j] += 0.1 * sums->tap[kind][bucket - 1][i][j];
+            if (bucket + 1 < FF_TRAINED_BUCKETS) a[i][j] += 0.1 * sums->tap[kind][bucket + 1][i][j];
+        }
+    solve(a, FF_TRAINED_TAPS, 1e-4);
+    taps->sum = 0;
+    for (unsigned i = 0; i < FF_TRAINED_TAPS; i++) {
+        taps->tap[i] = fixed(a[i][FF_TRAINED_TAPS], FF_TRAINED_TAPS_LOG2);
+        taps->sum += taps->tap[i];
+    }
+}
+
+static void fit_traits(const train_sums *sums, unsigned kind, ff_trained *tables)
+{
+    double a[WIDEST][WIDEST + 1];
+    for (unsigned i = 0; i < FF_TRAINED_TRAITS; i++)
+        for (unsigned j = 0; j <= FF_TRAINED_TRAITS; j++) a[i][j] = sums->trait[kind][i][j];
+    solve(a, FF_TRAINED_TRAITS, 1e-5);
+    for (unsigned i = 0; i < FF_TRAINED_TRAITS; i++)
+        tables->trait[kind][i] = fixed(a[i][FF_TRAINED_TRAITS], FF_TRAINED_TRAITS_LOG2);
+}
+
+void train_weights(const train_sums *sums, ff_trained *tables)
+{
+    for (unsigned kind = 0; kind < FF_POINTS; kind++) {
+        for (unsigned bucket = 0; bucket < FF_TRAINED_BUCKETS; bucket++)
+            fit_taps(sums, kind, bucket, &tables->taps[kind][bucket]);
+        fit_traits(sums, kind, tables);
+    }
+}
+
+/* ---- probabilities ---- */
+
+void train_count(train_counts *counts, const ff_expected *p, int32_t residual)
+{
+    int32_t value = residual - p->residual;
+    uint32_t size = (uint32_t)(value < 0 ? -value : value);
+    unsigned bits = 0;
+    counts->zero[p->scale][value == 0]++;
+    if (!value) return;
+    counts->below[p->phase][p->scale][value < 0]++;
+    while (size >> bits >> 1) bits++;
+    for (unsigned i = 0; i < bits; i++) counts->beyond[i][p->scale][1]++;
+    if (bits < FF_TRAINED_CLASSES - 1) counts->beyond[bits][p->scale][0]++;
+    if (bits > 0) counts->second[bits][p->scale][size >> (bits - 1) & 1u]++;
+    if (bits > 1)
+        counts->third[2 * bits + (size >> (bits - 1) & 1u)][p->scale][size >> (bits - 2) & 1u]++;
+}
+
+/* Of 65536; `before`: what it is taken for until there are counts. */
+static uint16_t share(const double count[2], uint16_t before)
+{
+    double p = (count[1] + 2 * before / 65536.0) / (count[0] + count[1] + 2) * 65536;
+    return (uint16_t)(p < 32 ? 32 : p > 65503 ? 65503 : lrint(p));
+}
+
+/* A row that was hardly ever seen goes by the one beside it that was. */
+static void shares(double count[FF_TRAINED_SCALES][2], uint16_t *out)
+{
+    unsigned first = 0;
+    while (first + 1 < FF_TRAINED_SCALES && count[first][0] + count[first][1] < ENOUGH) first++;
+    uint16_t before = share(count[first], HALF);
+    for (unsigned i = 0; i < FF_TRAINED_SCALES; i++)
+        before = out[i] = i < first ? before : share(count[i], before);
+}
+
+void train_probabilities(train_counts *counts, ff_trained *tables)
+{
+    shares(counts->zero, tables->zero);
+    for (unsigned i = 0; i < FF_TRAINED_CLASSES - 1; i++)
+        shares(counts->beyond[i], tables->beyond[i]);
+    for (unsigned i = 0; i < 4; i++) shares(counts->below[i], tables->below[i]);
+    for (unsigned i = 0; i < FF_TRAINED_CLASSES; i++) shares(counts->second[i], tables->second[i]);
+    for (unsigned i = 0; i < 2 * FF_TRAINED_CLASSES; i++)
+        shares(counts->third[i], tables->third[i]);
+}

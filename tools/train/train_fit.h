@@ -1,0 +1,26 @@
+/* Weights by least squares, and probabilities by counting. */
+#ifndef TRAIN_FIT_H
+#define TRAIN_FIT_H
+
+#include "../../protocol/trained/ff_trained.h"
+
+/* Sums of products: of taps and the height they are to give, of traits and the distance. */
+typedef struct train_sums {
+    double tap[FF_POINTS][FF_TRAINED_BUCKETS][FF_TRAINED_TAPS][FF_TRAINED_TAPS + 1];
+    double trait[FF_POINTS][FF_TRAINED_TRAITS][FF_TRAINED_TRAITS + 1];
+} train_sums;
+
+/* Of each decision: how often it was 0, and 1. */
+typedef struct train_counts {
+    double zero[FF_TRAINED_SCALES][2], beyond[FF_TRAINED_CLASSES - 1][FF_TRAINED_SCALES][2],
+        below[4][FF_TRAINED_SCALES][2], second[FF_TRAINED_CLASSES][FF_TRAINED_SCALES][2],
+        third[2 * FF_TRAINED_CLASSES][FF_TRAINED_SCALES][2];
+} train_counts;
+
+void train_begin(ff_trained *tables); /* what the first round goes by */
+void train_sum(train_sums *sums, const ff_terrain_info *info, const ff_expected *p, int32_t height);
+void train_weights(const train_sums *sums, ff_trained *tables);
+void train_count(train_counts *counts, const ff_expected *p, int32_t residual);
+void train_probabilities(train_counts *counts, ff_trained *tables);
+
+#endif

@@ -1,0 +1,171 @@
+/* farfield-train: the tables of the codec "trained", from packs. */
+#include "../../client/farfield.h"
+#include "../../platform/options/sys_options.h"
+#include "../bake/bake_say.h"
+#include "train_fit.h"
+#include "train_ground.h"
+#include "train_write.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ROUNDS     3
+#define GROUNDS    32
+#define ERRORS     4
+#define FINE_M     0.02
+#define COARSE_M   0.5
+#define FIRST_LOG2 3 /* of nodes that are trained with: this and the next */
+
+static const double error_m[ERRORS] = { 0, 1, 4, 10 };
+
+/* clang-format off */
+#define TRAIN_OPTIONS(OPTION) \
+    OPTION(sys_text, out, "output", "FILE", NULL, SYS_ANY, "writes the tables there, as C") \
+    OPTION(sys_text, packs, NULL, "PACKS", NULL, SYS_FLAGS(SYS_NEEDED), \
+           "packs to train on, with commas between them") \
+    OPTION(sys_text, measured, "measure", "PACKS", NULL, SYS_ANY, "packs to code with the tables, likewise")
+/* clang-format on */
+
+typedef struct train_options {
+    TRAIN_OPTIONS(SYS_FIELD)
+} train_options;
+
+#define ROW(type, field, name, value, fallback, range, help) \
+    SYS_OPTION(train_options, type, field, name, value, fallback, help, range)
+static const sys_option row[] = { TRAIN_OPTIONS(ROW) };
+#undef ROW
+
+static const sys_program program = {
+    .name = "farfield-train",
+    .version = FARFIELD_VERSION,
+    .usage = "[--output FILE] [--measure PACKS] PACKS",
+    .about =
+        "Learns what heights to expect of ground, for the codec \"trained\": each pack is coded "
+        "with errors of 0, 1, 4 and 10 m, four times, where its steps are coarse in finer ones, too.",
+    .option = row,
+    .option_count = sizeof row / sizeof *row
+};
+
+typedef struct grounds {
+    train_ground ground[GROUNDS];
+    unsigned count;
+} grounds;
+
+/* `finer`: also as it would be in finer steps, where its own are coarse. */
+static int open_one(grounds *all, const char *name, int finer)
+{
+    if (all->count == GROUNDS) return bake_fail("more than %d grounds", GROUNDS);
+    train_ground *ground = &all->ground[all->count++];
+    if (train_ground_open(ground, name)) return -1;
+    if (!finer || ground->step_m < COARSE_M) return 0;
+    if (all->count == GROUNDS) return bake_fail("more than %d grounds", GROUNDS);
+    return train_ground_refine(&all->ground[all->count++], ground);
+}
+
+static int open_all(grounds *all, const char *names, int finer)
+{
+    char *text = strdup(names), *rest = NULL;
+    int rc = text ? 0 : bake_fail("out of memory");
+    for (char *name = rc ? NULL : strtok_r(text, ",", &rest); name && !rc;
+         name = strtok_r(NULL, ",", &rest))
+        rc = open_one(all, name, finer);
+    return rc; /* grounds keep their names */
+}
+
+/* Of ground told in centimetres a fortieth. */
+static uint32_t steps(const train_ground *ground, unsigned error)
+{
+    double metres = ground->step_m < FINE_M ? error_m[error] / 40 : error_m[error];
+    return (uint32_t)lrint(metres / ground->step_m);
+}
+
+/* ---- training ---- */
+
+typedef struct learner {
+    train_sums *sums; /* NULL: counting */
+    train_counts *counts;
+} learner;
+
+static void learn(void *context, const ff_terrain_info *info, const ff_expected *p, int32_t height,
+                  int32_t residual)
+{
+    learner *l = context;
+    if (l->sums)
+        train_sum(l->sums, info, p, height);
+    else
+        train_count(l->counts, p, residual);
+}
+
+static void go_over(const grounds *all, const ff_trained *by, learner *l)
+{
+    const train_eye eye = { .context = l, .point = learn };
+    for (unsigned i = 0; i < all->count; i++)
+        for (unsigned error = 0; error < ERRORS; error++)
+            train_ground_make(&all->ground[i], by, FIRST_LOG2 + (i + error) % 2,
+                              steps(&all->ground[i], error), &eye);
+}
+
+static int train(const grounds *all, ff_trained *tables)
+{
+    train_counts *counts = calloc(1, sizeof *counts);
+    train_sums *sums = malloc(sizeof *sums);
+    int rc = counts && sums ? 0 : bake_fail("out of memory");
+    learner l = { sums, counts };
+    train_begin(tables);
+    for (unsigned i = 0; i < ROUNDS && !rc; i++) {
+        memset(sums, 0, sizeof *sums);
+        go_over(all, tables, &l);
+        train_weights(sums, tables);
+    }
+    l.sums = NULL;
+    if (!rc) go_over(all, tables, &l);
+    if (!rc) train_probabilities(counts, tables);
+    free(sums);
+    free(counts);
+    return rc;
+}
+
+/* ---- measuring ---- */
+
+static void pass(void *context, const ff_terrain_info *info, const ff_expected *p, int32_t height,
+                 int32_t residual)
+{
+    (void)context, (void)info, (void)p, (void)height, (void)residual;
+}
+
+static void add(void *context, size_t bytes) { *(uint64_t *)context += bytes; }
+
+static void measure(const grounds *all, const ff_trained *tables)
+{
+    for (unsigned i = 0; i < all->count; i++)
+        for (unsigned log2 = FIRST_LOG2; log2 < FIRST_LOG2 + 2; log2++) {
+            printf("%s, nodes of %u:", all->ground[i].path, (1u << log2) + 1);
+            for (unsigned error = 0; error < ERRORS; error++) {
+                uint64_t bytes = 0;
+                const train_eye eye = { &bytes, pass, add };
+                uint64_t samples = train_ground_make(&all->ground[i], tables, log2,
+                                                     steps(&all->ground[i], error), &eye);
+                printf("  %g m %.3f", error_m[error], 8.0 * (double)bytes / (double)samples);
+            }
+            puts(" bits a sample");
+        }
+}
+
+int main(int argc, char **argv)
+{
+    static grounds taught, measured;
+    static ff_trained tables;
+    train_options options = { 0 };
+    bake_say_setup("farfield-train", 0);
+    int rc = sys_options_parse(&program, &options, argc, argv);
+    if (rc) return rc < 0 ? SYS_EXIT_USAGE : SYS_EXIT_DONE;
+    rc = open_all(&taught, options.packs, 1) ||
+         (options.measured && open_all(&measured, options.measured, 0)) || train(&taught, &tables);
+    if (!rc) measure(&measured, &tables);
+    if (!rc && options.out) rc = train_write(options.out, &tables);
+    for (unsigned i = 0; i < taught.count; i++) train_ground_close(&taught.ground[i]);
+    for (unsigned i = 0; i < measured.count; i++) train_ground_close(&measured.ground[i]);
+    return rc ? SYS_EXIT_FAILED : SYS_EXIT_DONE;
+}

@@ -1,0 +1,68 @@
+#include "train_write.h"
+
+#include "../bake/bake_say.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+
+#define A_LINE 16
+
+/* `count` numbers from `at` on, 16 bits each. */
+static void put_numbers(FILE *out, const void *at, size_t count, int is_signed)
+{
+    for (size_t i = 0; i < count; i++) {
+        int number = is_signed ? ((const int16_t *)at)[i] : ((const uint16_t *)at)[i];
+        fprintf(out, "%s%d", i == 0 ? "" : i % A_LINE ? "," : ",\n         ", number);
+    }
+}
+
+/* Rows of numbers, in braces; `depth` braces round each. */
+static void put_rows(FILE *out, const char *name, const void *at, size_t rows, size_t count,
+                     int is_signed)
+{
+    fprintf(out, "    .%s = {\n", name);
+    for (size_t i = 0; i < rows; i++) {
+        fprintf(out, "        {");
+        put_numbers(out, (const char *)at + i * count * sizeof(int16_t), count, is_signed);
+        fprintf(out, "},\n");
+    }
+    fprintf(out, "    },\n");
+}
+
+static void put_row(FILE *out, const char *name, const uint16_t *at, size_t count)
+{
+    fprintf(out, "    .%s = {", name);
+    put_numbers(out, at, count, 0);
+    fprintf(out, "},\n");
+}
+
+int train_write(const char *path, const ff_trained *t)
+{
+    FILE *out = fopen(path, "w");
+    if (!out) return bake_fail("cannot write %s: %s", path, strerror(errno));
+    fputs("/* What farfield-train has learned: part of the format (SPEC.md, \"Expectation\"). */\n"
+          "#include \"ff_trained.h\"\n\n"
+          "/* clang-format off */\n"
+          "const ff_trained ff_trained_tables = {\n    .taps = {\n",
+          out);
+    for (unsigned kind = 0; kind < FF_POINTS; kind++) {
+        fputs("        {\n", out);
+        for (unsigned bucket = 0; bucket < FF_TRAINED_BUCKETS; bucket++) {
+            fputs("        {{", out);
+            put_numbers(out, t->taps[kind][bucket].tap, FF_TRAINED_TAPS, 1);
+            fprintf(out, "}, %d},\n", (int)t->taps[kind][bucket].sum);
+        }
+        fputs("        },\n", out);
+    }
+    fputs("    },\n", out);
+    put_rows(out, "trait", t->trait, FF_POINTS, FF_TRAINED_TRAITS, 1);
+    put_row(out, "zero", t->zero, FF_TRAINED_SCALES);
+    put_rows(out, "beyond", t->beyond, FF_TRAINED_CLASSES - 1, FF_TRAINED_SCALES, 0);
+    put_rows(out, "below", t->below, 4, FF_TRAINED_SCALES, 0);
+    put_rows(out, "second", t->second, FF_TRAINED_CLASSES, FF_TRAINED_SCALES, 0);
+    put_rows(out, "third", t->third, FF_TRAINED_CLASSES * 2, FF_TRAINED_SCALES, 0);
+
+    fputs("};\n/* clang-format on */\n", out);
+    return fclose(out) ? bake_fail("cannot write %s: %s", path, strerror(errno)) : 0;
+}
