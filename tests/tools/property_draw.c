@@ -438,7 +438,7 @@ static void choose_numbers(property_draw *d)
     d->densify = property_has(d, OPTION_DENSIFY) ? 2 << pick(d, 2) : 1;
     d->node_log2 = property_has(d, OPTION_NODES) ? 1 + pick(d, 5) : 0;
     d->tile_log2 = d->node_log2 ? d->node_log2 + pick(d, 4) : 0;
-    d->codec = pick(d, 3);
+    d->codec = pick(d, 4);
     d->jobs = property_has(d, OPTION_JOBS) ? 1 + pick(d, 5) : 0;
     d->void_m = own + ceil((top - own) / step) * step;
 }

@@ -17,6 +17,7 @@
 #define SIGMAS      8
 #define FILTER_SUM  1.6 /* of a cubic's weights, without their signs */
 #define ASKED_PART  0.1 /* of --max-error that goes along with the ground's waves */
+#define LEAN_PART   0.2 /* of it by which heights lean towards what is expected: waves are lower */
 #define WU_M        (1.0 / 256)
 #define FLOAT_PART  1.2e-7 /* metres pass through single precision */
 #define CUBIC       0.02   /* the part of a wave of 1 radian a sample that a cubic misses */
@@ -70,7 +71,7 @@ static void name(const property_draw *d, const property_run *run, const char *en
 
 static void command_line(const property_draw *d, property_run *run, const char *source)
 {
-    static const char *const codecs[] = { "raw", "deflate", "rice" };
+    static const char *const codecs[] = { "raw", "deflate", "rice", "trained" };
     *run->command = 0;
     add(run, "timeout " TIMEOUT_S " %s/farfield-bake %s -o %s/draw-%u.ffp --json", run->programs,
         source, run->folder, d->number);
@@ -486,7 +487,7 @@ static allowance allow(const property_draw *d, const ground *g, const property_f
     a.rms_m = a.sigma_m + WU_M + cubic + drift_m + place_m(d, g);
     a.shift = SHIFT_MAX + chance * f->shift_sd;
     a.scale = SCALE_MAX + drift + chance * f->scale_sd;
-    a.gain = SCALE_MAX + (chance + cubic * root) * f->gain_sd;
+    a.gain = SCALE_MAX + (chance + (cubic + asked * LEAN_PART) * root) * f->gain_sd;
     return a;
 }
 

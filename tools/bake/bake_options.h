@@ -99,8 +99,8 @@ extern const sys_option_type bake_raw_option, bake_nodata_option, bake_box_optio
            "levels with textures; default: down to the image's resolution") \
     OPTION(sys_whole, texture_quality, "texture-quality", "Q", "75", SYS_WHOLE(1, 100, ""), \
            "JPEG quality") \
-    OPTION(sys_word, codec, "codec", "NAME", "deflate", SYS_WORDS(codec_words), \
-           "rice: for devices without zlib") \
+    OPTION(sys_word, codec, "codec", "NAME", "trained", SYS_WORDS(codec_words), \
+           "deflate, rice: cheaper to decode; rice: for devices without zlib and tables") \
     HEADING("What the pack says of itself; default: what the source says") \
     BAKE_ABOUT_OPTIONS(OPTION) \
     HEADING("Run") \

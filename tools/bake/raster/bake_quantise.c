@@ -175,7 +175,7 @@ static int set_units(const bake_options *o, const bake_steps *steps, ff_terrain_
         return bake_fail("heights of %g m lie outside the world", steps->min_m);
     info->hscale_q24 = (uint32_t)(steps->step_m * Q24);
     info->hoffset_wu = (int32_t)offset_wu;
-    double error_steps = floor(o->max_error_m / steps->step_m + 1e-6);
+    double error_steps = floor(o->max_error_m / step_of(info->hscale_q24) + 1e-6);
     info->max_error = (uint16_t)fmin(error_steps, MAX_ERROR_STEPS);
     if (info->max_error)
         info->flags |= FF_TERRAIN_LOSSY;
