@@ -5,8 +5,6 @@
 #include "ff_range.h"
 #include "ff_trained.h"
 
-#include <string.h>
-
 enum ff_trained_body { BODY_CODED, BODY_WORDS };
 
 #define HALF 32768u
@@ -35,32 +33,28 @@ void ff_trained_predict(const ff_terrain_info *info, ff_cells cells, const uint1
 
 /* ---- decoder ---- */
 
-/* Carries the body's kind and all that follows the error codes: no more than words would take. */
+/* A stream has fewer bytes than words, so what is carried tells by its size which it is. */
+static size_t words_of(uint32_t count) { return 2 * (size_t)count; }
+
 int ff_trained_decode(const ff_decoder *dec, ff_payload *in, const ff_contents *contents,
                       ff_residuals *out)
 {
-    uint8_t *carried = (uint8_t *)out->value, head = *in->at++;
-    size_t bytes, words = 2 * (size_t)contents->count;
+    uint8_t head = *in->at++;
+    size_t bytes, words = words_of(contents->count);
     int rc;
 
-    (void)dec;
     if (head & ~(FF_HEAD_ERRORS | BODY_WORDS)) return FF_ERR_FORMAT;
     rc = ff_take_errors(in, (head & FF_HEAD_ERRORS) >> FF_HEAD_ERRORS_SHIFT, contents->errors, out);
     if (rc != FF_OK) return rc;
     bytes = ff_payload_left(in);
-    carried[0] = head & BODY_WORDS;
-    if (bytes > words || (bytes == words && carried[0] == BODY_CODED)) return FF_ERR_FORMAT;
-    memcpy(carried + 1, in->at, bytes);
-    in->at = in->end;
-    out->count = 0;
-    out->carried_bytes = (uint16_t)(bytes + 1);
-    return FF_OK;
+    if (head & BODY_WORDS ? bytes > words : bytes >= words) return FF_ERR_FORMAT;
+    if (head & BODY_WORDS && bytes < words) return FF_ERR_TRUNCATED;
+    return ff_carry(&dec->info, in, out);
 }
 
 typedef struct taking {
     ff_range range;
-    const int32_t *value; /* of BODY_WORDS */
-    ff_payload words;
+    ff_payload words; /* of BODY_WORDS */
     int32_t quantum;
     int rc;
 } taking;
@@ -102,7 +96,8 @@ static uint16_t take_word(void *context, const ff_expected *p)
     taking *t = context;
     int32_t residual = 0;
     int rc = ff_take_words(&t->words, 0, &residual, 1);
-    if (rc != FF_OK) t->rc = rc;
+    FF_ASSERT(rc == FF_OK); /* the first stage has counted them */
+    (void)rc;
     return ff_dequantise(t->quantum, p->predicted, residual);
 }
 
@@ -116,9 +111,8 @@ static int take_corners(const ff_terrain_info *info, taking *t, uint16_t *height
 }
 
 /* A stream has no byte that says nothing. */
-static int is_all_taken(const taking *t, int coded)
+static int is_all_taken(const taking *t)
 {
-    if (!coded) return !ff_payload_left(&t->words);
     return t->range.in == t->range.end && (t->words.at == t->words.end || t->words.end[-1]);
 }
 
@@ -126,17 +120,17 @@ int ff_trained_reconstruct(const ff_terrain_info *info, const uint16_t *parent,
                            const ff_residuals *res, uint16_t *heights, void *room)
 {
     const uint8_t *carried = (const uint8_t *)res->value;
-    int coded = carried[0] == BODY_CODED;
-    ff_expected_fn *sample = coded ? take_height : take_word;
-    taking t = { .words = { carried + 1, carried + res->carried_bytes },
+    int coded = res->carried_bytes < words_of(ff_coded_count(info, res->cells, !parent));
+    taking t = { .words = { carried, carried + res->carried_bytes },
                  .quantum = ff_quantum(info, !parent) };
 
-    FF_ASSERT(res->carried_bytes >= 1);
     if (!parent) t.rc = take_corners(info, &t, heights);
     if (t.rc != FF_OK) return t.rc;
     if (coded) ff_range_read(&t.range, t.words.at, ff_payload_left(&t.words));
-    ff_expect(&ff_trained_tables, info, res->cells, parent, heights, coded, room, sample, &t);
-    return t.rc == FF_OK && !is_all_taken(&t, coded) ? FF_ERR_FORMAT : t.rc;
+    ff_expect(&ff_trained_tables, info, res->cells, parent, heights, coded, room,
+              coded ? take_height : take_word, &t);
+    FF_ASSERT(coded || !ff_payload_left(&t.words));
+    return t.rc == FF_OK && coded && !is_all_taken(&t) ? FF_ERR_FORMAT : t.rc;
 }
 
 /* ---- encoder ---- */

@@ -16,7 +16,6 @@
 enum ff_trained_class { FF_POINT_R, FF_POINT_N, FF_POINT_C, FF_POINT_H, FF_POINT_V, FF_POINTS };
 
 #define FF_TRAINED_TAPS        20 /* known heights that weigh in, at most */
-#define FF_TRAINED_MARGIN      3  /* points beyond a side that are looked at, at most */
 #define FF_TRAINED_TRAITS      8  /* measures of roughness, at most */
 #define FF_TRAINED_BUCKETS     7  /* by roughness */
 #define FF_TRAINED_SCALES      48

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-#define MARGIN          FF_TRAINED_MARGIN
+#define MARGIN          3 /* points beyond a side that are looked at */
 #define HEIGHT_MAX_Q4   (UINT16_MAX * 16)
 #define DISTANCE_MAX_Q4 (1 << 22)
 #define SCALE_BIAS      90 /* of 256, of 1/16 step */
