@@ -2,6 +2,7 @@
 
 #include "../../protocol/shape/ff_shape.h"
 #include "bake_say.h"
+#include "bake_square.h"
 
 #include <stdlib.h>
 
@@ -26,21 +27,6 @@ int bake_levels_mark(bake_levels *levels, size_t side)
 {
     if (!levels->marks) levels->marks = malloc(side * side);
     return levels->marks ? 0 : bake_fail("out of memory");
-}
-
-/* Copies a square of `side` points, `stride` apart, from a lattice; scatter copies it back. */
-static void gather(const uint16_t *lattice, size_t pitch, uint32_t side, size_t stride,
-                   uint16_t *out)
-{
-    for (uint32_t j = 0; j < side; j++)
-        for (uint32_t i = 0; i < side; i++) *out++ = lattice[j * stride * pitch + i * stride];
-}
-
-static void scatter(const uint16_t *in, size_t pitch, uint32_t side, size_t stride,
-                    uint16_t *lattice)
-{
-    for (uint32_t j = 0; j < side; j++)
-        for (uint32_t i = 0; i < side; i++) lattice[j * stride * pitch + i * stride] = *in++;
 }
 
 /* ---- heights ---- */
@@ -72,12 +58,12 @@ static void decode_root(bake_levels *levels, uint32_t tile, heights *h)
     const ff_terrain_info *info = levels->info;
     uint16_t source[FF_NODE_HEIGHTS_MAX];
     uint32_t side = ff_node_side(info), cell = root_cell(levels);
-    gather(levels->source, levels->pitch, side, cell, source);
+    bake_gather(levels->source, levels->pitch, side, cell, source);
     h->residuals = (ff_residuals){ .value = h->value,
                                    .cells = ff_shape_cells(info, ff_key_make(tile, 0, 0), 0) };
     ff_encode_heights(info, NULL, source, gather_between(levels, 0, side, cell, h->between),
                       &h->residuals, h->decoded);
-    scatter(h->decoded, levels->pitch, side, cell, levels->decoded);
+    bake_scatter(h->decoded, levels->pitch, side, cell, levels->decoded);
 }
 
 /* The children of the node whose south-west point is `at`, its cells `cell` points wide. */
@@ -86,13 +72,13 @@ static void decode_children(bake_levels *levels, ff_key key, size_t at, uint32_t
     const ff_terrain_info *info = levels->info;
     uint16_t source[FF_REFINED_HEIGHTS_MAX];
     size_t pitch = levels->pitch;
-    gather(levels->decoded + at, pitch, ff_node_side(info), cell, h->parent);
-    gather(levels->source + at, pitch, ff_refined_side(info), cell / 2, source);
+    bake_gather(levels->decoded + at, pitch, ff_node_side(info), cell, h->parent);
+    bake_gather(levels->source + at, pitch, ff_refined_side(info), cell / 2, source);
     h->residuals = (ff_residuals){ .value = h->value, .cells = ff_shape_cells(info, key, 1) };
     ff_encode_heights(info, h->parent, source,
                       gather_between(levels, at, ff_refined_side(info), cell / 2, h->between),
                       &h->residuals, h->decoded);
-    scatter(h->decoded, pitch, ff_refined_side(info), cell / 2, levels->decoded + at);
+    bake_scatter(h->decoded, pitch, ff_refined_side(info), cell / 2, levels->decoded + at);
 }
 
 /* The south-west point of child q. */

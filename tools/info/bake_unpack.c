@@ -3,6 +3,7 @@
 #include "../../protocol/shape/ff_shape.h"
 #include "../bake/bake_fault.h"
 #include "../bake/bake_say.h"
+#include "../bake/bake_square.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -43,20 +44,6 @@ static int fail_at(const bake_unpack *unpack, const char *what, ff_key key, int 
 {
     return bake_fail("%s: %s of tile %u, level %u, code %u: %s", unpack->path, what,
                      ff_key_tile(key), ff_key_level(key), ff_key_code(key), ff_error_text(rc));
-}
-
-/* Spreads a node or refined grid of `side` samples over a larger grid; gather takes a node from
- * it. */
-static void scatter(const uint16_t *in, uint32_t side, size_t pitch, size_t stride, uint16_t *out)
-{
-    for (uint32_t j = 0; j < side; j++)
-        for (uint32_t i = 0; i < side; i++) out[(j * pitch + i) * stride] = *in++;
-}
-
-static void gather(const uint16_t *in, uint32_t side, size_t pitch, size_t stride, uint16_t *out)
-{
-    for (uint32_t j = 0; j < side; j++)
-        for (uint32_t i = 0; i < side; i++) *out++ = in[(j * pitch + i) * stride];
 }
 
 /* The first stage of decoding. FF_OK or a negative ff_error. */
@@ -101,7 +88,7 @@ static int decode_refinement(const bake_unpack *unpack, ff_key key, size_t pitch
     ff_residuals residuals = { .leaf = 15, .value = value };
     int rc = 0;
     if (is_ground) residuals.cells = ff_shape_cells(info, key, 1);
-    gather(at, ff_node_side(info), pitch, stride, parent);
+    bake_gather(at, pitch, ff_node_side(info), stride, parent);
     if (end->leaf & 1u || !is_ground) {
         ff_predict_children(info, residuals.cells, parent, refined, room);
     } else if (end->stub & 1u) {
@@ -113,7 +100,7 @@ static int decode_refinement(const bake_unpack *unpack, ff_key key, size_t pitch
         if (rc >= 0) rc = ff_reconstruct_refinement(info, parent, &residuals, refined, room);
     }
     if (rc < 0) return fail_at(unpack, "the refinement", key, rc);
-    scatter(refined, ff_refined_side(info), pitch, stride / 2, at);
+    bake_scatter(refined, pitch, ff_refined_side(info), stride / 2, at);
     *end = (ends){ residuals.leaf, residuals.stub };
     return 0;
 }
@@ -170,7 +157,7 @@ static int take_block(walker *w, ff_key key, ends end, const uint16_t *node)
 {
     w->with_stubs = 1;
     w->has_stubs = 0;
-    scatter(node, ff_node_side(&w->unpack->pack.header.info), w->side, w->stride, w->heights);
+    bake_scatter(node, w->side, ff_node_side(&w->unpack->pack.header.info), w->stride, w->heights);
     if (decode_below(w, key, end, w->stride, 0)) return -1;
     w->with_stubs = 0;
     memset(w->known, 0, (size_t)w->side * w->side);
@@ -186,7 +173,7 @@ static int walk_below(walker *w, ff_key key, ends end, const uint16_t *node)
     uint32_t side = ff_refined_side(info);
     if (!ff_shape_has_ground(info, key) || !w->walk->wants(w->walk->context, key)) return 0;
     if (ff_key_level(key) == w->level) return take_block(w, key, end, node);
-    scatter(node, ff_node_side(info), side, 2, refined);
+    bake_scatter(node, side, ff_node_side(info), 2, refined);
     if (decode_refinement(w->unpack, key, side, 2, refined, &end)) return -1;
     for (uint32_t q = 0; q < 4; q++) {
         ff_refined_child(info, refined, q, child);

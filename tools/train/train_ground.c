@@ -2,6 +2,7 @@
 
 #include "../../protocol/shape/ff_shape.h"
 #include "../bake/bake_say.h"
+#include "../bake/bake_square.h"
 #include "../info/bake_unpack.h"
 
 #include <stdlib.h>
@@ -97,20 +98,6 @@ static uint16_t make_height(void *context, const ff_expected *p)
     return ff_dequantise(m->quantum, p->predicted, residual);
 }
 
-static void gather(const uint16_t *from, size_t pitch, uint32_t side, uint32_t cell, uint16_t *to)
-{
-    for (uint32_t j = 0; j < side; j++)
-        for (uint32_t i = 0; i < side; i++)
-            to[j * side + i] = from[(size_t)j * cell * pitch + i * cell];
-}
-
-static void scatter(const uint16_t *from, size_t pitch, uint32_t side, uint32_t cell, uint16_t *to)
-{
-    for (uint32_t j = 0; j < side; j++)
-        for (uint32_t i = 0; i < side; i++)
-            to[(size_t)j * cell * pitch + i * cell] = from[j * side + i];
-}
-
 static const uint16_t *source_at(const maker *m, uint32_t x, uint32_t y)
 {
     return m->ground->heights + (size_t)(m->south + y) * m->ground->width + m->west + x;
@@ -123,7 +110,7 @@ static void make_grid(maker *m, const uint16_t *parent, uint32_t x, uint32_t y, 
     static uint16_t source[FF_REFINED_HEIGHTS_MAX], grid[FF_REFINED_HEIGHTS_MAX];
     static uint16_t room[FF_CODEC_ROOM_MAX / 2 + 1];
     static uint8_t out[FF_PAYLOAD_BYTES_MAX];
-    gather(source_at(m, x, y), m->ground->width, side, cell, source);
+    bake_gather(source_at(m, x, y), m->ground->width, side, cell, source);
     m->source = source;
     m->next = m->residual;
     for (uint32_t i = 0; !parent && i < FF_CORNERS; i++) {
@@ -131,7 +118,7 @@ static void make_grid(maker *m, const uint16_t *parent, uint32_t x, uint32_t y, 
         grid[at] = ff_dequantise(m->quantum, 0, (source[at] + m->quantum / 2) / m->quantum);
     }
     ff_expect(m->by, &m->info, (ff_cells){ 0, 0 }, parent, grid, 1, room, make_height, m);
-    scatter(grid, m->side, side, cell, m->decoded + (size_t)y * m->side + x);
+    bake_scatter(grid, m->side, side, cell, m->decoded + (size_t)y * m->side + x);
     if (!m->eye->payload) return;
     size_t bytes = ff_trained_stream(m->by, &m->info, (ff_cells){ 0, 0 }, parent, grid, m->residual,
                                      out, sizeof out);
@@ -143,7 +130,8 @@ static void make_below(maker *m, uint32_t x, uint32_t y, uint32_t cell)
     static uint16_t parent[FF_NODE_HEIGHTS_MAX];
     if (cell == 1) return;
     uint32_t edge = cell / 2 << m->info.node_log2;
-    gather(m->decoded + (size_t)y * m->side + x, m->side, ff_node_side(&m->info), cell, parent);
+    bake_gather(m->decoded + (size_t)y * m->side + x, m->side, ff_node_side(&m->info), cell,
+                parent);
     make_grid(m, parent, x, y, cell / 2, ff_refined_side(&m->info));
     for (uint32_t q = 0; q < 4; q++)
         make_below(m, x + (q & 1) * edge, y + (q >> 1) * edge, cell / 2);
