@@ -19,15 +19,23 @@ for n in 257 1025; do
     "$bin/farfield-bake" "$work/$n.raw" --raw "${n}x$n" --spacing 30 --hscale 0.25 --max-error 0.5 --quiet -o "$work/$n.ffp" || result 1 "bakes $n"
 done
 
-# Flights over eight places from two heights; a line: flights, bytes, triangles, requests that failed.
+# Flights to the north-east from eight places, of two heights, the same over both grounds, whose diagonals are not alike.
+python3 - "$work" <<'END'
+import sys
+for height in 100, 600:
+    for place in 55, 70, 85, 100, 115, 130, 145, 160: # samples from west and south
+        with open("%s/%d.%d.csv" % (sys.argv[1], height, place), "w") as out:
+            out.write("t_s,x_m,y_m,h_m,heading_deg\n")
+            for t in range(21):
+                at = 30 * place + t * 150 / 3.6 / 2 ** 0.5
+                out.write("%d,%.3f,%.3f,%d,45\n" % (t, at, at, height))
+END
+# A line: flights, bytes, triangles, requests that failed.
 cost() { # SAMPLES OPTION...
-    local n=$1 place height
+    local n=$1 path
     shift
-    for height in 100 600; do
-        for place in 55 70 85 100 115 130 145 160; do # samples along the diagonal
-            "$bin/farfield-fly" --pack "$work/$n.ffp" --link gprs --height $height --speed 150 --start "$(python3 -c "print($place / ($n - 1))")" \
-                --seconds 20 --settle 0 --panorama off --backend none --json "$@" 2>>"$work/fly.err"
-        done
+    for path in "$work"/*.csv; do
+        "$bin/farfield-fly" --pack "$work/$n.ffp" --link gprs --path "$path" --settle 0 --panorama off --backend none --json "$@" 2>>"$work/fly.err"
     done | python3 -c '
 import json, sys
 rows = [json.loads(row) for row in sys.stdin.read().replace("}\n{", "}\0{").split("\0")]
