@@ -109,6 +109,7 @@ typedef struct ff_residuals {
     /* bit q: child q (a root: bit 0, itself), which is no leaf, is a stub: there is finer ground,
      * but none is stored here */
     uint8_t stub;
+    uint8_t way;            /* which of the codec's predictions the residuals are added to */
     uint16_t count;         /* valid entries of value[]; 0 while the payload is carried */
     uint16_t carried_bytes; /* of the payload, in the memory of value[]: FF_NEEDS_PARENT alone */
     /* caller's array of at least ff_refined_side()^2 entries; quantised residuals */
@@ -149,9 +150,12 @@ void ff_refined_child(const ff_terrain_info *info, const uint16_t *refined, uint
  * ff_refined_side()^2 of a refinement) against predictions from `parent`, the *decoded* parent
  * (NULL: a root). `between`, NULL or a byte beside each of `source`, is not 0 where the source has
  * no sample and what is predicted will do; corners of a root have one. `out->value` receives the
- * residuals, `decoded` what every decoder will see. */
+ * residuals, `decoded` what every decoder will see. Where the codec has several predictions,
+ * out->way is the one of the shortest payload. */
 void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *source,
                        const uint8_t *between, ff_residuals *out, uint16_t *decoded);
+/* 1: what ff_predict_children would make; this may be left out, below a leaf. */
+int ff_is_as_predicted(const ff_residuals *res);
 /* Then the payload, `res->child_error`, `filled`, `leaf` and `stub` set by the caller; the rest as
  * the first step had it. Bytes written to `out` (capacity at least FF_PAYLOAD_BYTES_MAX), or
  * FF_ERR_RANGE for an error code above 208. */

@@ -45,9 +45,10 @@ typedef int ff_decode_fn(const ff_decoder *dec, ff_payload *in, const ff_content
  * in the grid. */
 typedef uint16_t (*ff_sample_fn)(void *context, uint32_t at, int32_t predicted);
 /* Makes a grid's new samples: a root's from its corners, which are in the grid; `parent` not NULL:
- * a refinement's. */
-typedef void ff_predict_fn(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
-                           uint16_t *grid, void *room, ff_sample_fn sample, void *context);
+ * a refinement's. `way`: which of the codec's predictions, 0 where there is no payload. */
+typedef void ff_predict_fn(const ff_terrain_info *info, ff_cells cells, unsigned way,
+                           const uint16_t *parent, uint16_t *grid, void *room, ff_sample_fn sample,
+                           void *context);
 /* `parent` NULL: a root. */
 typedef int ff_reconstruct_fn(const ff_terrain_info *info, const uint16_t *parent,
                               const ff_residuals *res, uint16_t *heights, void *room);
@@ -72,9 +73,11 @@ const ff_codec *ff_codec_row(int codec);
 ff_encode_fn *ff_codec_encoder(int codec);
 /* Bytes before the error codes of an encoded payload. */
 size_t ff_codec_head(int codec);
+/* Predictions that an encoder has to choose from. */
+unsigned ff_codec_ways(int codec);
 
 /* clang-format off */
-#define ROW(number, constant, name, needs, head, memory, decode, predict, reconstruct, encode) \
+#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, encode) \
     ff_memory_fn memory; ff_decode_fn decode; ff_predict_fn predict; ff_reconstruct_fn reconstruct; ff_encode_fn encode;
 /* clang-format on */
 FF_CODEC_LIST(ROW)

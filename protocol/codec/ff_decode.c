@@ -207,7 +207,7 @@ int ff_add_residuals(const ff_terrain_info *info, const uint16_t *parent, const 
     FF_ASSERT(res->count == ff_coded_count(info, res->cells, !parent));
     for (uint32_t corner = 0; !parent && corner < FF_CORNERS; corner++)
         heights[ff_corner_at(info, corner)] = ff_dequantise(r.quantum, 0, *r.next++);
-    ff_interpolate(info, res->cells, parent, heights, room, add_residual, &r);
+    ff_interpolate(info, res->cells, 0, parent, heights, room, add_residual, &r);
     FF_ASSERT(r.next == res->value + res->count);
     return FF_OK;
 }
@@ -250,7 +250,8 @@ static uint16_t take_prediction(void *context, uint32_t at, int32_t predicted)
 void ff_predict_children(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
                          uint16_t *refined, void *room)
 {
-    ff_codec_row(info->codec)->predict(info, cells, parent, refined, room, take_prediction, NULL);
+    ff_codec_row(info->codec)
+        ->predict(info, cells, 0, parent, refined, room, take_prediction, NULL);
 }
 
 void ff_refined_child(const ff_terrain_info *info, const uint16_t *refined, uint32_t quadrant,

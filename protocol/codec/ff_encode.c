@@ -37,22 +37,67 @@ static uint16_t take_residual(void *context, uint32_t at, int32_t predicted)
     return height;
 }
 
-void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *source,
-                       const uint8_t *between, ff_residuals *out, uint16_t *decoded)
+/* Residuals and heights by prediction out->way. */
+static void make_heights(const ff_terrain_info *info, const uint16_t *parent,
+                         const uint16_t *source, const uint8_t *between, ff_residuals *out,
+                         uint16_t *decoded)
 {
     uint16_t room[FF_CODEC_ROOM_MAX / 2 + 1];
     quantisation q = { source, between, out->value, ff_quantum(info, !parent) };
 
-    out->count = (uint16_t)ff_coded_count(info, out->cells, !parent);
-    out->carried_bytes = 0;
     for (uint32_t corner = 0; !parent && corner < FF_CORNERS; corner++) {
         uint32_t at = ff_corner_at(info, corner);
         FF_ASSERT(!between || !between[at]);
         *q.next = (source[at] + q.quantum / 2) / q.quantum;
         decoded[at] = ff_dequantise(q.quantum, 0, *q.next++);
     }
-    ff_codec_row(info->codec)->predict(info, out->cells, parent, decoded, room, take_residual, &q);
+    ff_codec_row(info->codec)
+        ->predict(info, out->cells, out->way, parent, decoded, room, take_residual, &q);
     FF_ASSERT(q.next == out->value + out->count);
+}
+
+/* Bytes of the payload, but for errors and marks. */
+static int bytes_of(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *decoded,
+                    const ff_residuals *made)
+{
+    uint8_t payload[FF_PAYLOAD_BYTES_MAX];
+    ff_residuals alone = {
+        .cells = made->cells, .way = made->way, .count = made->count, .value = made->value
+    };
+
+    return ff_encode_payload(info, parent, decoded, &alone, payload);
+}
+
+int ff_is_as_predicted(const ff_residuals *res)
+{
+    for (uint32_t i = 0; i < res->count; i++)
+        if (res->value[i] != 0) return 0;
+    return res->way == 0;
+}
+
+/* Of a codec's predictions the one of the shortest payload; that of leaves where it is right. */
+void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *source,
+                       const uint8_t *between, ff_residuals *out, uint16_t *decoded)
+{
+    unsigned ways = ff_codec_ways(info->codec), best = 0;
+    int least;
+
+    out->count = (uint16_t)ff_coded_count(info, out->cells, !parent);
+    out->carried_bytes = 0;
+    out->way = 0;
+    make_heights(info, parent, source, between, out, decoded);
+    if (ways == 1 || ff_is_as_predicted(out)) return;
+    least = bytes_of(info, parent, decoded, out);
+    while (++out->way < ways) {
+        make_heights(info, parent, source, between, out, decoded);
+        int bytes = bytes_of(info, parent, decoded, out);
+        if (bytes >= least) continue;
+        least = bytes;
+        best = out->way;
+    }
+    if (best == --out->way) return;
+    out->way = (uint8_t)best;
+    make_heights(info, parent, source, between, out, decoded);
 }
 
 int ff_encode_payload(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *decoded,
@@ -157,7 +202,7 @@ void ff_interpolate_children(const ff_terrain_info *info, ff_cells cells, const 
 {
     triangles t = { refined, ff_refined_side(info) };
 
-    ff_interpolate(info, cells, parent, refined, NULL, take_middle, &t);
+    ff_interpolate(info, cells, 0, parent, refined, NULL, take_middle, &t);
 }
 
 /* ---- parts of payloads that codecs share ---- */

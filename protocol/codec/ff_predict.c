@@ -140,12 +140,13 @@ void ff_spread_parent(const ff_terrain_info *info, const uint16_t *parent, uint1
             grid[2 * j * side + 2 * i] = parent[j * node_side + i];
 }
 
-void ff_interpolate(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
-                    uint16_t *grid, void *room, ff_sample_fn sample, void *context)
+void ff_interpolate(const ff_terrain_info *info, ff_cells cells, unsigned way,
+                    const uint16_t *parent, uint16_t *grid, void *room, ff_sample_fn sample,
+                    void *context)
 {
     uint32_t side = parent ? ff_refined_side(info) : ff_node_side(info);
 
-    (void)room;
+    (void)room, (void)way;
     cells = ff_cells_of(cells, side);
     if (parent) ff_spread_parent(info, parent, grid);
     for (uint32_t stride = parent ? 1 : (side - 1) / 2; stride >= 1; stride /= 2)

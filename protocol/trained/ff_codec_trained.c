@@ -7,6 +7,9 @@
 
 enum ff_trained_body { BODY_CODED, BODY_WORDS };
 
+#define HEAD_SET_SHIFT 4
+#define HEAD_SET       (1u << HEAD_SET_SHIFT)
+
 #define HALF 32768u
 
 const uint8_t ff_trained_built = 1;
@@ -24,11 +27,12 @@ static uint16_t pass_on(void *context, const ff_expected *point)
     return p->sample(p->context, point->at, point->predicted);
 }
 
-void ff_trained_predict(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
-                        uint16_t *grid, void *room, ff_sample_fn sample, void *context)
+void ff_trained_predict(const ff_terrain_info *info, ff_cells cells, unsigned way,
+                        const uint16_t *parent, uint16_t *grid, void *room, ff_sample_fn sample,
+                        void *context)
 {
     prediction p = { sample, context };
-    ff_expect(&ff_trained_tables, info, cells, parent, grid, 0, room, pass_on, &p);
+    ff_expect(&ff_trained_tables, way, info, cells, parent, grid, 0, room, pass_on, &p);
 }
 
 /* ---- decoder ---- */
@@ -43,7 +47,8 @@ int ff_trained_decode(const ff_decoder *dec, ff_payload *in, const ff_contents *
     size_t bytes, words = words_of(contents->count);
     int rc;
 
-    if (head & ~(FF_HEAD_ERRORS | BODY_WORDS)) return FF_ERR_FORMAT;
+    if (head & ~(FF_HEAD_ERRORS | HEAD_SET | BODY_WORDS)) return FF_ERR_FORMAT;
+    out->way = (uint8_t)(head >> HEAD_SET_SHIFT);
     rc = ff_take_errors(in, (head & FF_HEAD_ERRORS) >> FF_HEAD_ERRORS_SHIFT, contents->errors, out);
     if (rc != FF_OK) return rc;
     bytes = ff_payload_left(in);
@@ -127,7 +132,7 @@ int ff_trained_reconstruct(const ff_terrain_info *info, const uint16_t *parent,
     if (!parent) t.rc = take_corners(info, &t, heights);
     if (t.rc != FF_OK) return t.rc;
     if (coded) ff_range_read(&t.range, t.words.at, ff_payload_left(&t.words));
-    ff_expect(&ff_trained_tables, info, res->cells, parent, heights, coded, room,
+    ff_expect(&ff_trained_tables, res->way, info, res->cells, parent, heights, coded, room,
               coded ? take_height : take_word, &t);
     FF_ASSERT(coded || !ff_payload_left(&t.words));
     return t.rc == FF_OK && coded && !is_all_taken(&t) ? FF_ERR_FORMAT : t.rc;
@@ -171,9 +176,9 @@ static uint16_t put_height(void *context, const ff_expected *p)
     return to->decoded[p->at];
 }
 
-size_t ff_trained_stream(const ff_trained *by, const ff_terrain_info *info, ff_cells cells,
-                         const uint16_t *parent, const uint16_t *decoded, const int32_t *residual,
-                         uint8_t *out, size_t limit)
+size_t ff_trained_stream(const ff_trained *by, unsigned set, const ff_terrain_info *info,
+                         ff_cells cells, const uint16_t *parent, const uint16_t *decoded,
+                         const int32_t *residual, uint8_t *out, size_t limit)
 {
     uint16_t grid[FF_REFINED_HEIGHTS_MAX];
     uint16_t room[FF_CODEC_ROOM_MAX / 2 + 1];
@@ -181,7 +186,7 @@ size_t ff_trained_stream(const ff_trained *by, const ff_terrain_info *info, ff_c
     ff_range_write(&to.range, out, limit);
     for (uint32_t i = 0; !parent && i < FF_CORNERS; i++)
         grid[ff_corner_at(info, i)] = decoded[ff_corner_at(info, i)];
-    ff_expect(by, info, cells, parent, grid, 1, room, put_height, &to);
+    ff_expect(by, set, info, cells, parent, grid, 1, room, put_height, &to);
     int bytes = ff_range_end(&to.range);
     return bytes < 0 ? limit : (size_t)bytes;
 }
@@ -197,9 +202,10 @@ size_t ff_trained_encode(const ff_terrain_info *info, const uint16_t *parent,
 
     bytes += ff_put_errors(res, form, contents->errors, out + bytes);
     bytes += ff_put_words(res->value, contents->corners, out + bytes);
-    out[0] = (uint8_t)((unsigned)form << FF_HEAD_ERRORS_SHIFT | BODY_CODED);
-    coded = ff_trained_stream(&ff_trained_tables, info, res->cells, parent, decoded, residual,
-                              out + bytes, 2 * (size_t)count);
+    out[0] = (uint8_t)((unsigned)form << FF_HEAD_ERRORS_SHIFT |
+                       (unsigned)res->way << HEAD_SET_SHIFT | BODY_CODED);
+    coded = ff_trained_stream(&ff_trained_tables, res->way, info, res->cells, parent, decoded,
+                              residual, out + bytes, 2 * (size_t)count);
     if (coded < 2 * (size_t)count) return bytes + coded;
     out[0] |= BODY_WORDS;
     return bytes + ff_put_words(residual, count, out + bytes);

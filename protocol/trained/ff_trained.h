@@ -15,6 +15,7 @@
 
 enum ff_trained_class { FF_POINT_R, FF_POINT_N, FF_POINT_C, FF_POINT_H, FF_POINT_V, FF_POINTS };
 
+#define FF_TRAINED_SETS        2  /* of weights: a payload says by which it was made */
 #define FF_TRAINED_TAPS        20 /* known heights that weigh in, at most */
 #define FF_TRAINED_TRAITS      8  /* measures of roughness, at most */
 #define FF_TRAINED_BUCKETS     7  /* by roughness */
@@ -28,9 +29,13 @@ typedef struct ff_taps {
     int32_t sum; /* of them */
 } ff_taps;
 
-typedef struct ff_trained {
+typedef struct ff_weights {
     ff_taps taps[FF_POINTS][FF_TRAINED_BUCKETS];
     int16_t trait[FF_POINTS][FF_TRAINED_TRAITS];
+} ff_weights;
+
+typedef struct ff_trained {
+    ff_weights weights[FF_TRAINED_SETS];
     /* of 65536, how often a decision is 1: the value is as expected; it is beyond class c */
     uint16_t zero[FF_TRAINED_SCALES], beyond[FF_TRAINED_CLASSES - 1][FF_TRAINED_SCALES];
     /* it lies below, by where in its step what is expected lies */
@@ -50,7 +55,7 @@ typedef struct ff_expected {
     uint8_t scale;     /* how far it may be from that, as a row of ff_trained's */
     uint8_t phase;     /* a row of ff_trained.below */
     /* for who trains: what it comes from, see ff_trained_known */
-    uint8_t kind, bucket; /* enum ff_trained_class; row of ff_trained.taps */
+    uint8_t kind, bucket; /* enum ff_trained_class; row of ff_weights.taps */
     int32_t base_q2, mean_q4, distance_q4, quantum;
     const uint16_t *height;
     const uint8_t *error;
@@ -61,15 +66,15 @@ typedef struct ff_expected {
 /* Returns a point's height. */
 typedef uint16_t ff_expected_fn(void *context, const ff_expected *point);
 
-/* As ff_predict_fn. Without errors, how far points were from what was expected, only ff_expected.at
- * and predicted are told. `room`: ff_codec_room() bytes. */
-void ff_expect(const ff_trained *by, const ff_terrain_info *info, ff_cells cells,
+/* As ff_predict_fn, by weights of number `set`. Without errors, how far points were from what was
+ * expected, only ff_expected.at and predicted are told. `room`: ff_codec_room() bytes. */
+void ff_expect(const ff_trained *by, unsigned set, const ff_terrain_info *info, ff_cells cells,
                const uint16_t *parent, uint16_t *grid, int with_errors, void *room,
                ff_expected_fn *sample, void *context);
 /* Encoder: the stream of a grid's residuals, of corners none. Bytes; `limit`: it takes no fewer. */
-size_t ff_trained_stream(const ff_trained *by, const ff_terrain_info *info, ff_cells cells,
-                         const uint16_t *parent, const uint16_t *decoded, const int32_t *residual,
-                         uint8_t *out, size_t limit);
+size_t ff_trained_stream(const ff_trained *by, unsigned set, const ff_terrain_info *info,
+                         ff_cells cells, const uint16_t *parent, const uint16_t *decoded,
+                         const int32_t *residual, uint8_t *out, size_t limit);
 /* For who trains: the known heights that a point's mean comes from, and the measures that its
  * distance comes from. How many there are. */
 uint32_t ff_trained_known(const ff_expected *p, int32_t known[FF_TRAINED_TAPS]);

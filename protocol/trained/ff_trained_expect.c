@@ -19,7 +19,7 @@
 #endif
 
 typedef struct walk {
-    const ff_trained *by;
+    const ff_weights *by;
     ff_expected_fn *sample;
     void *context;
     uint16_t *grid; /* as the caller has it: `side` points, of which every `step` are made */
@@ -426,11 +426,11 @@ size_t ff_codec_room(const ff_terrain_info *info)
     return pitch * pitch * (sizeof(uint16_t) + 1);
 }
 
-void ff_expect(const ff_trained *by, const ff_terrain_info *info, ff_cells cells,
+void ff_expect(const ff_trained *by, unsigned set, const ff_terrain_info *info, ff_cells cells,
                const uint16_t *parent, uint16_t *grid, int with_errors, void *room,
                ff_expected_fn *sample, void *context)
 {
-    walk w = { .by = by, .sample = sample, .context = context, .grid = grid };
+    walk w = { .by = &by->weights[set], .sample = sample, .context = context, .grid = grid };
     size_t pitch, log2;
     w.quantum = ff_quantum(info, !parent);
     w.reciprocal = (UINT32_C(1) << 31) / (uint32_t)w.quantum + 1;

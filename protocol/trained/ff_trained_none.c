@@ -12,10 +12,11 @@ int ff_trained_decode(const ff_decoder *dec, ff_payload *in, const ff_contents *
     return FF_ERR_UNSUPPORTED;
 }
 
-void ff_trained_predict(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
-                        uint16_t *grid, void *room, ff_sample_fn sample, void *context)
+void ff_trained_predict(const ff_terrain_info *info, ff_cells cells, unsigned way,
+                        const uint16_t *parent, uint16_t *grid, void *room, ff_sample_fn sample,
+                        void *context)
 {
-    ff_interpolate(info, cells, parent, grid, room, sample, context);
+    ff_interpolate(info, cells, way, parent, grid, room, sample, context);
 }
 
 int ff_trained_reconstruct(const ff_terrain_info *info, const uint16_t *parent,

@@ -144,7 +144,7 @@ static int second_stage(const ff_terrain_info *info, const uint16_t *parent,
     c.bits = (bits){ .in = in.at, .end = in.end };
     for (uint32_t i = 0; i < FF_CORNERS && !parent; i++)
         heights[ff_corner_at(info, i)] = ff_dequantise(ff_quantum(info, !parent), 0, corner[i]);
-    ff_interpolate(info, res->cells, parent, heights, NULL, take_sample, &c);
+    ff_interpolate(info, res->cells, 0, parent, heights, NULL, take_sample, &c);
     if (c.bits.error) return c.bits.error;
     return (c.bits.at + 7) / 8 == ff_payload_left(&in) ? FF_OK : FF_ERR_FORMAT;
 }
@@ -166,7 +166,7 @@ static size_t encode(const ff_terrain_info *info, const uint16_t *parent, const 
     c.bits.out = out + bytes;
     for (uint32_t i = 0; i < contents->corners; i++)
         grid[ff_corner_at(info, i)] = decoded[ff_corner_at(info, i)];
-    ff_interpolate(info, res->cells, parent, grid, NULL, put_sample, &c);
+    ff_interpolate(info, res->cells, 0, parent, grid, NULL, put_sample, &c);
     bytes += (c.bits.at + 7) / 8;
     if (add_a_byte_each && ++payloads_made % add_a_byte_each == 0) out[bytes++] = 0;
     return bytes;
@@ -177,7 +177,7 @@ static size_t encode(const ff_terrain_info *info, const uint16_t *parent, const 
 /* clang-format off */
 const ff_codec *ff_codec_row(int codec)
 {
-#define ROW(number, constant, name, needs, head, memory, decode, predict, reconstruct, encode) \
+#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, encode) \
     { name, FF_NEEDS_##needs, memory, decode, predict, reconstruct },
     static const ff_codec rows[] = { FF_CODEC_LIST(ROW)
         { "parent", FF_NEEDS_PARENT, ff_no_memory, first_stage, ff_interpolate, second_stage } };
@@ -187,7 +187,7 @@ const ff_codec *ff_codec_row(int codec)
 
 ff_encode_fn *ff_codec_encoder(int codec)
 {
-#define ROW(number, constant, name, needs, head, memory, decode, predict, reconstruct, encode) encode,
+#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, encode) encode,
     static ff_encode_fn *const encoders[] = { FF_CODEC_LIST(ROW) encode };
 #undef ROW
     return codec >= 0 && codec <= CODEC_BY_PARENT ? encoders[codec] : NULL;
@@ -195,10 +195,18 @@ ff_encode_fn *ff_codec_encoder(int codec)
 
 size_t ff_codec_head(int codec)
 {
-#define ROW(number, constant, name, needs, head, memory, decode, predict, reconstruct, encode) head,
+#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, encode) head,
     static const uint8_t heads[] = { FF_CODEC_LIST(ROW) 0 };
 #undef ROW
     return codec >= 0 && codec <= CODEC_BY_PARENT ? heads[codec] : 0;
+}
+
+unsigned ff_codec_ways(int codec)
+{
+#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, encode) ways,
+    static const uint8_t all[] = { FF_CODEC_LIST(ROW) 1 };
+#undef ROW
+    return codec >= 0 && codec <= CODEC_BY_PARENT ? all[codec] : 0;
 }
 /* clang-format on */
 

@@ -16,6 +16,7 @@ typedef struct doubling {
     int last_x, last_y;                                          /* E and F */
     int repeated_x, repeated_y; /* the odd column, the odd row that are not told, or -1 */
     int64_t told;               /* residuals up to now */
+    int set;                    /* of weights */
 } doubling;
 
 typedef struct stream {
@@ -152,7 +153,7 @@ static int64_t traits_of(const doubling *d, const place *at, int class, const in
     return t[2];
 }
 
-static int64_t mean_of(int class, int bucket, const int64_t *h)
+static int64_t mean_of(int set, int class, int bucket, const int64_t *h)
 {
     int64_t base = 0;
     int64_t sum = 0;
@@ -160,11 +161,12 @@ static int64_t mean_of(int class, int bucket, const int64_t *h)
     for (int i = 0; i < classes[class].base; i++) base += h[i];
     if (class == CLASS_R) base *= 2;
     for (int i = 0; i < classes[class].taps; i++)
-        sum += (int64_t)ff_trained_tables.taps[class][bucket].tap[i] * (4 * h[i] - base);
+        sum += (int64_t)ff_trained_tables.weights[set].taps[class][bucket].tap[i] *
+               (4 * h[i] - base);
     return within(0, 4 * base + floored((1 << 11) + sum, 1 << 12), 16 * 65535);
 }
 
-static int scale_of(int class, const int64_t *t, int64_t step)
+static int scale_of(int set, int class, const int64_t *t, int64_t step)
 {
     int64_t sum = 0;
     int64_t distance, y;
@@ -172,7 +174,7 @@ static int scale_of(int class, const int64_t *t, int64_t step)
     int n;
 
     for (int i = 0; i < classes[class].traits; i++)
-        sum += (int64_t)ff_trained_tables.trait[class][i] * t[i];
+        sum += (int64_t)ff_trained_tables.weights[set].trait[class][i] * t[i];
     distance = within(1, floored(sum, 1 << 8), 1 << 22);
     y = divided(256 * distance, step) + 90;
     n = highest_bit(y);
@@ -204,10 +206,10 @@ static expected expect(const doubling *d, const place *at, int class, int64_t st
     for (int i = 0; i < classes[class].taps; i++)
         h[i] = height_of(d, at, classes[class].tap[i].a, classes[class].tap[i].b);
     v = divided(4 * traits_of(d, at, class, h, t) + step, step);
-    is.mean_q4 = mean_of(class, (int)within(0, highest_bit(within(1, v, v)), 6), h);
+    is.mean_q4 = mean_of(d->set, class, (int)within(0, highest_bit(within(1, v, v)), 6), h);
     is.predicted = class == CLASS_R ? line_prediction(d, at)
                                     : within(0, floored(is.mean_q4 + 8, 16), 65535);
-    is.scale = scale_of(class, t, step);
+    is.scale = scale_of(d->set, class, t, step);
     o = is.mean_q4 - 16 * is.predicted + 8 * step;
     v = floored(o, 16);
     is.likeliest = class != CLASS_R ? 0 : v < 0 ? -1 - divided(-1 - v, step) : divided(v, step);
@@ -407,14 +409,16 @@ static void spread(doubling *d)
 }
 
 int slow_trained(const ff_terrain_info *info, int columns, int rows, const uint16_t *parent,
-                 const long *corner, int plain, const uint8_t *body, long bytes, uint16_t *heights)
+                 const long *corner, unsigned head, const uint8_t *body, long bytes,
+                 uint16_t *heights)
 {
     static doubling d;
-    stream s = opened(plain, body, bytes);
+    stream s = opened(head & 1, body, bytes);
     int64_t step = 2 * (int64_t)info->max_error + 1;
     int node = 1 << info->node_log2, cells = parent ? 2 * node : node;
 
     d.told = 0;
+    d.set = head >> 4 & 1;
     d.cells = parent ? node : 1;
     for (int y = 0; y <= d.cells; y++)
         for (int x = 0; x <= d.cells; x++)

@@ -7,10 +7,11 @@
 
 #include "../../protocol/ff_terrain.h"
 
-/* All heights of a grid, row by row, from a body: as one stream, or when it is `plain` as values of
- * 16 bits. `columns`, `rows`: cells with ground. A root has no `parent` but four `corner` values.
- * -1 when the body breaks a rule of the specification. */
+/* All heights of a grid, row by row, from a payload's head and its body. `columns`, `rows`: cells
+ * with ground. A root has no `parent` but four `corner` values. -1 when the body breaks a rule of
+ * the specification. */
 int slow_trained(const ff_terrain_info *info, int columns, int rows, const uint16_t *parent,
-                 const long *corner, int plain, const uint8_t *body, long bytes, uint16_t *heights);
+                 const long *corner, unsigned head, const uint8_t *body, long bytes,
+                 uint16_t *heights);
 
 #endif

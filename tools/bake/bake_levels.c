@@ -131,8 +131,7 @@ static int leave_out(bake_levels *levels, uint32_t level)
 static uint8_t is_leaf(const bake_levels *levels, ff_key key, const bake_known *node,
                        const ff_residuals *residuals, const bake_known child[4])
 {
-    for (uint32_t i = 0; i < residuals->count; i++)
-        if (residuals->value[i] != 0) return 0;
+    if (!ff_is_as_predicted(residuals)) return 0;
     for (uint32_t q = 0; q < 4; q++)
         if (ff_shape_has_ground(levels->info, ff_key_child(key, q)) &&
             (!child[q].leaf || child[q].filled != node->filled ||

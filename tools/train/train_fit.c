@@ -6,35 +6,39 @@
 #define WIDEST (FF_TRAINED_TAPS + 1)
 #define HALF   32768
 #define ENOUGH 100
+#define MIX    0.25
 
 /* ---- weights ---- */
 
 void train_begin(ff_trained *tables)
 {
     memset(tables, 0, sizeof *tables);
-    for (unsigned kind = 0; kind < FF_POINTS; kind++) {
-        tables->trait[kind][0] = 1 << (FF_TRAINED_TRAITS_LOG2 - 3);
-        tables->trait[kind][1] = 1 << (FF_TRAINED_TRAITS_LOG2 - 3);
-        tables->trait[kind][2] = 1 << (FF_TRAINED_TRAITS_LOG2 - 2);
-        tables->trait[kind][3] = 1 << (FF_TRAINED_TRAITS_LOG2 - 4);
-    }
+    for (unsigned set = 0; set < FF_TRAINED_SETS; set++)
+        for (unsigned kind = 0; kind < FF_POINTS; kind++) {
+            int16_t *trait = tables->weights[set].trait[kind];
+            trait[0] = trait[1] = 1 << (FF_TRAINED_TRAITS_LOG2 - 3);
+            trait[2] = 1 << (FF_TRAINED_TRAITS_LOG2 - 2);
+            trait[3] = 1 << (FF_TRAINED_TRAITS_LOG2 - 4);
+        }
 }
 
-void train_sum(train_sums *sums, const ff_terrain_info *info, const ff_expected *p, int32_t height)
+void train_sum(train_sums sums[FF_TRAINED_SETS], const train_point *point)
 {
+    const ff_expected *p = point->expected;
+    train_sums *of = &sums[point->set];
     int32_t known[FF_TRAINED_TAPS], trait[FF_TRAINED_TRAITS];
-    double scale = p->distance_q4 / 16.0 + 0.5 * (2 * info->max_error + 1) + 0.3,
-           weight = 1 / (scale * scale), base = p->base_q2 / 4.0, off = height - base,
-           distance = fabs(height - p->mean_q4 / 16.0);
+    double scale = p->distance_q4 / 16.0 + 0.5 * p->quantum + 0.3,
+           weight = point->share / (scale * scale), base = p->base_q2 / 4.0,
+           off = point->height - base, distance = fabs(point->height - p->mean_q4 / 16.0);
     unsigned taps = ff_trained_known(p, known), traits = ff_trained_traits(p, trait);
     for (unsigned i = 0; i < taps; i++) {
-        double *row = sums->tap[p->kind][p->bucket][i], x = (known[i] - base) * weight;
+        double *row = of->tap[p->kind][p->bucket][i], x = (known[i] - base) * weight;
         if (x == 0) continue;
         for (unsigned j = 0; j < taps; j++) row[j] += x * (known[j] - base);
         row[FF_TRAINED_TAPS] += x * off;
     }
     for (unsigned i = 0; i < traits; i++) {
-        double *row = sums->trait[p->kind][i], x = trait[i] * weight;
+        double *row = of->trait[p->kind][i], x = trait[i] * weight;
         for (unsigned j = 0; j < traits; j++) row[j] += x * trait[j];
         row[FF_TRAINED_TRAITS] += x * distance;
     }
@@ -80,41 +84,62 @@ static void fit_taps(const train_sums *sums, unsigned kind, unsigned bucket, ff_
     }
 }
 
-static void fit_traits(const train_sums *sums, unsigned kind, ff_trained *tables)
+static void fit_traits(const train_sums *sums, unsigned kind, ff_weights *weights)
 {
     double a[WIDEST][WIDEST + 1];
     for (unsigned i = 0; i < FF_TRAINED_TRAITS; i++)
         for (unsigned j = 0; j <= FF_TRAINED_TRAITS; j++) a[i][j] = sums->trait[kind][i][j];
     solve(a, FF_TRAINED_TRAITS, 1e-5);
     for (unsigned i = 0; i < FF_TRAINED_TRAITS; i++)
-        tables->trait[kind][i] = fixed(a[i][FF_TRAINED_TRAITS], FF_TRAINED_TRAITS_LOG2);
+        weights->trait[kind][i] = fixed(a[i][FF_TRAINED_TRAITS], FF_TRAINED_TRAITS_LOG2);
 }
 
-void train_weights(const train_sums *sums, ff_trained *tables)
+/* A set takes a part of what all saw: with little it fits the ground that is at hand, and other
+ * ground badly. */
+static void mix(train_sums sums[FF_TRAINED_SETS])
+{
+    size_t count = sizeof *sums / sizeof(double);
+    for (size_t i = 0; i < count; i++) {
+        double all = 0;
+        for (unsigned set = 0; set < FF_TRAINED_SETS; set++) all += ((double *)&sums[set])[i];
+        for (unsigned set = 0; set < FF_TRAINED_SETS; set++) ((double *)&sums[set])[i] += MIX * all;
+    }
+}
+
+static void fit_set(const train_sums *sums, ff_weights *weights)
 {
     for (unsigned kind = 0; kind < FF_POINTS; kind++) {
         for (unsigned bucket = 0; bucket < FF_TRAINED_BUCKETS; bucket++)
-            fit_taps(sums, kind, bucket, &tables->taps[kind][bucket]);
-        fit_traits(sums, kind, tables);
+            fit_taps(sums, kind, bucket, &weights->taps[kind][bucket]);
+        fit_traits(sums, kind, weights);
     }
+}
+
+void train_weights(train_sums sums[FF_TRAINED_SETS], ff_trained *tables)
+{
+    mix(sums);
+    for (unsigned set = 0; set < FF_TRAINED_SETS; set++) fit_set(&sums[set], &tables->weights[set]);
 }
 
 /* ---- probabilities ---- */
 
-void train_count(train_counts *counts, const ff_expected *p, int32_t residual)
+void train_count(train_counts *counts, const train_point *point)
 {
-    int32_t value = residual - p->residual;
+    const ff_expected *p = point->expected;
+    double share = point->share;
+    int32_t value = point->residual - p->residual;
     uint32_t size = (uint32_t)(value < 0 ? -value : value);
     unsigned bits = 0;
-    counts->zero[p->scale][value == 0]++;
+    counts->zero[p->scale][value == 0] += share;
     if (!value) return;
-    counts->below[p->phase][p->scale][value < 0]++;
+    counts->below[p->phase][p->scale][value < 0] += share;
     while (size >> bits >> 1) bits++;
-    for (unsigned i = 0; i < bits; i++) counts->beyond[i][p->scale][1]++;
-    if (bits < FF_TRAINED_CLASSES - 1) counts->beyond[bits][p->scale][0]++;
-    if (bits > 0) counts->second[bits][p->scale][size >> (bits - 1) & 1u]++;
+    for (unsigned i = 0; i < bits; i++) counts->beyond[i][p->scale][1] += share;
+    if (bits < FF_TRAINED_CLASSES - 1) counts->beyond[bits][p->scale][0] += share;
+    if (bits > 0) counts->second[bits][p->scale][size >> (bits - 1) & 1u] += share;
     if (bits > 1)
-        counts->third[2 * bits + (size >> (bits - 1) & 1u)][p->scale][size >> (bits - 2) & 1u]++;
+        counts->third[2 * bits + (size >> (bits - 1) & 1u)][p->scale][size >> (bits - 2) & 1u] +=
+            share;
 }
 
 /* Of 65536; `before`: what it is taken for until there are counts. */
@@ -143,4 +168,29 @@ void train_probabilities(train_counts *counts, ff_trained *tables)
     for (unsigned i = 0; i < FF_TRAINED_CLASSES; i++) shares(counts->second[i], tables->second[i]);
     for (unsigned i = 0; i < 2 * FF_TRAINED_CLASSES; i++)
         shares(counts->third[i], tables->third[i]);
+}
+
+static double bits_of(uint16_t probability, int is_one)
+{
+    static double bits[65536];
+    if (bits[1] == 0)
+        for (unsigned i = 1; i < 65536; i++) bits[i] = -log2(i / 65536.0);
+    return bits[is_one ? probability : 65536 - probability];
+}
+
+double train_bits(const ff_trained *tables, const ff_expected *p, int32_t residual)
+{
+    int32_t value = residual - p->residual;
+    uint32_t size = (uint32_t)(value < 0 ? -value : value);
+    unsigned bits = 0, scale = p->scale;
+    double sum = bits_of(tables->zero[scale], value == 0);
+    if (!value) return sum;
+    sum += bits_of(tables->below[p->phase][scale], value < 0);
+    while (size >> bits >> 1) sum += bits_of(tables->beyond[bits++][scale], 1);
+    if (bits < FF_TRAINED_CLASSES - 1) sum += bits_of(tables->beyond[bits][scale], 0);
+    if (bits > 0) sum += bits_of(tables->second[bits][scale], size >> (bits - 1) & 1u);
+    if (bits > 1)
+        sum += bits_of(tables->third[2 * bits + (size >> (bits - 1) & 1u)][scale],
+                       size >> (bits - 2) & 1u);
+    return bits > 2 ? sum + bits - 2 : sum;
 }

@@ -4,7 +4,17 @@
 
 #include "../../protocol/trained/ff_trained.h"
 
-/* Sums of products: of taps and the height they are to give, of traits and the distance. */
+/* A point that is made. */
+typedef struct train_point {
+    const ff_terrain_info *info;
+    const ff_expected *expected;
+    int32_t height, residual;
+    unsigned set; /* of weights that it is made by */
+    double share; /* how much it counts */
+} train_point;
+
+/* Sums of products, of a set of weights: of taps and the height they are to give, of traits and the
+ * distance. */
 typedef struct train_sums {
     double tap[FF_POINTS][FF_TRAINED_BUCKETS][FF_TRAINED_TAPS][FF_TRAINED_TAPS + 1];
     double trait[FF_POINTS][FF_TRAINED_TRAITS][FF_TRAINED_TRAITS + 1];
@@ -18,9 +28,12 @@ typedef struct train_counts {
 } train_counts;
 
 void train_begin(ff_trained *tables); /* what the first round goes by */
-void train_sum(train_sums *sums, const ff_terrain_info *info, const ff_expected *p, int32_t height);
-void train_weights(const train_sums *sums, ff_trained *tables);
-void train_count(train_counts *counts, const ff_expected *p, int32_t residual);
+void train_sum(train_sums sums[FF_TRAINED_SETS], const train_point *point);
+/* Of all sets; changes the sums. */
+void train_weights(train_sums sums[FF_TRAINED_SETS], ff_trained *tables);
+void train_count(train_counts *counts, const train_point *point);
+/* How many bits a residual takes. */
+double train_bits(const ff_trained *tables, const ff_expected *p, int32_t residual);
 void train_probabilities(train_counts *counts, ff_trained *tables);
 
 #endif

@@ -5,11 +5,13 @@
 #include "../bake/bake_square.h"
 #include "../info/bake_unpack.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define TILE_LOG2_MAX 9
 #define FINER         9
+#define COARSE_CELL   8 /* from here on the second set, before the first choice */
 
 /* ---- a pack's heights ---- */
 
@@ -80,20 +82,41 @@ void train_ground_close(train_ground *ground) { free(ground->heights); }
 typedef struct maker {
     const train_ground *ground;
     const ff_trained *by;
+    enum train_choice choice;
     const train_eye *eye;
     ff_terrain_info info;
     uint32_t side, west, south; /* of the tile, in samples */
     uint16_t *decoded;
-    const uint16_t *source; /* of the grid being made */
+    /* of the grid being made */
+    const uint16_t *source;
+    train_point point;
+    double bits;
     int32_t residual[FF_REFINED_HEIGHTS_MAX], *next, quantum;
 } maker;
+
+static int32_t residual_of(const maker *m, const ff_expected *p)
+{
+    int32_t off = m->source[p->at] - p->predicted, half = m->quantum / 2;
+    if (m->quantum == 1) return (int16_t)off; /* the shorter way round */
+    return off >= 0 ? (off + half) / m->quantum : -((half - off) / m->quantum);
+}
+
+static uint16_t try_height(void *context, const ff_expected *p)
+{
+    maker *m = context;
+    int32_t residual = residual_of(m, p);
+    m->bits += train_bits(m->by, p, residual);
+    return ff_dequantise(m->quantum, p->predicted, residual);
+}
 
 static uint16_t make_height(void *context, const ff_expected *p)
 {
     maker *m = context;
-    int32_t off = m->source[p->at] - p->predicted, half = m->quantum / 2,
-            residual = off >= 0 ? (off + half) / m->quantum : -((half - off) / m->quantum);
-    m->eye->point(m->eye->context, &m->info, p, m->source[p->at], residual);
+    int32_t residual = residual_of(m, p);
+    m->point.expected = p;
+    m->point.height = m->source[p->at];
+    m->point.residual = residual;
+    m->eye->point(m->eye->context, &m->point);
     *m->next++ = residual;
     return ff_dequantise(m->quantum, p->predicted, residual);
 }
@@ -101,6 +124,20 @@ static uint16_t make_height(void *context, const ff_expected *p)
 static const uint16_t *source_at(const maker *m, uint32_t x, uint32_t y)
 {
     return m->ground->heights + (size_t)(m->south + y) * m->ground->width + m->west + x;
+}
+
+static unsigned choose_set(maker *m, const uint16_t *parent, uint16_t *grid, uint32_t cell,
+                           void *room)
+{
+    double least = HUGE_VAL;
+    unsigned best = 0;
+    if (m->choice == TRAIN_BY_LEVEL) return cell >= COARSE_CELL;
+    for (unsigned set = 0; set < FF_TRAINED_SETS; set++) {
+        m->bits = 0;
+        ff_expect(m->by, set, &m->info, (ff_cells){ 0, 0 }, parent, grid, 1, room, try_height, m);
+        if (m->bits < least) best = set, least = m->bits;
+    }
+    return best;
 }
 
 /* One payload: of the root, parent NULL, or of the children of a node. */
@@ -117,11 +154,16 @@ static void make_grid(maker *m, const uint16_t *parent, uint32_t x, uint32_t y, 
         uint32_t at = ff_corner_at(&m->info, i);
         grid[at] = ff_dequantise(m->quantum, 0, (source[at] + m->quantum / 2) / m->quantum);
     }
-    ff_expect(m->by, &m->info, (ff_cells){ 0, 0 }, parent, grid, 1, room, make_height, m);
+    m->point.info = &m->info;
+    /* a level has a fourth of the next one's points, and flights take most of the coarser ones */
+    m->point.share = cell;
+    m->point.set = choose_set(m, parent, grid, cell, room);
+    ff_expect(m->by, m->point.set, &m->info, (ff_cells){ 0, 0 }, parent, grid, 1, room, make_height,
+              m);
     bake_scatter(grid, m->side, side, cell, m->decoded + (size_t)y * m->side + x);
     if (!m->eye->payload) return;
-    size_t bytes = ff_trained_stream(m->by, &m->info, (ff_cells){ 0, 0 }, parent, grid, m->residual,
-                                     out, sizeof out);
+    size_t bytes = ff_trained_stream(m->by, m->point.set, &m->info, (ff_cells){ 0, 0 }, parent,
+                                     grid, m->residual, out, sizeof out);
     m->eye->payload(m->eye->context, bytes + (parent ? 0 : 2 * FF_CORNERS));
 }
 
@@ -137,8 +179,9 @@ static void make_below(maker *m, uint32_t x, uint32_t y, uint32_t cell)
         make_below(m, x + (q & 1) * edge, y + (q >> 1) * edge, cell / 2);
 }
 
-uint64_t train_ground_make(const train_ground *ground, const ff_trained *by, unsigned node_log2,
-                           uint32_t max_error, const train_eye *eye)
+uint64_t train_ground_make(const train_ground *ground, const ff_trained *by,
+                           enum train_choice choice, unsigned node_log2, uint32_t max_error,
+                           const train_eye *eye)
 {
     static maker m;
     uint64_t samples = 0;
@@ -148,6 +191,7 @@ uint64_t train_ground_make(const train_ground *ground, const ff_trained *by, uns
         tile_log2--;
     m = (maker){ .ground = ground,
                  .by = by,
+                 .choice = choice,
                  .eye = eye,
                  .side = (1u << tile_log2) + 1,
                  .quantum = 2 * (int32_t)max_error + 1,

@@ -11,7 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define ROUNDS     3
+#define ROUNDS     6
+#define BY_LEVEL   3 /* the first of them */
 #define GROUNDS    32
 #define ERRORS     4
 #define FINE_M     0.02
@@ -43,7 +44,7 @@ static const sys_program program = {
     .usage = "[--output FILE] [--measure PACKS] PACKS",
     .about =
         "Learns what heights to expect of ground, for the codec \"trained\": each pack is coded "
-        "with errors of 0, 1, 4 and 10 m, four times, where its steps are coarse in finer ones, too.",
+        "with errors of 0, 1, 4 and 10 m, ten times, where its steps are coarse in finer ones, too.",
     .option = row,
     .option_count = sizeof row / sizeof *row
 };
@@ -88,40 +89,53 @@ typedef struct learner {
     train_counts *counts;
 } learner;
 
-static void learn(void *context, const ff_terrain_info *info, const ff_expected *p, int32_t height,
-                  int32_t residual)
+static void learn(void *context, const train_point *point)
 {
     learner *l = context;
     if (l->sums)
-        train_sum(l->sums, info, p, height);
+        train_sum(l->sums, point);
     else
-        train_count(l->counts, p, residual);
+        train_count(l->counts, point);
 }
 
-static void go_over(const grounds *all, const ff_trained *by, learner *l)
+static void go_over(const grounds *all, const ff_trained *by, enum train_choice choice, learner *l)
 {
     const train_eye eye = { .context = l, .point = learn };
     for (unsigned i = 0; i < all->count; i++)
         for (unsigned error = 0; error < ERRORS; error++)
-            train_ground_make(&all->ground[i], by, FIRST_LOG2 + (i + error) % 2,
+            train_ground_make(&all->ground[i], by, choice, FIRST_LOG2 + (i + error) % 2,
                               steps(&all->ground[i], error), &eye);
+}
+
+static void learn_weights(const grounds *all, enum train_choice choice, train_sums *sums,
+                          ff_trained *tables)
+{
+    learner l = { .sums = sums };
+    memset(sums, 0, FF_TRAINED_SETS * sizeof *sums);
+    go_over(all, tables, choice, &l);
+    train_weights(sums, tables);
+}
+
+static void learn_probabilities(const grounds *all, enum train_choice choice, train_counts *counts,
+                                ff_trained *tables)
+{
+    learner l = { .counts = counts };
+    memset(counts, 0, sizeof *counts);
+    go_over(all, tables, choice, &l);
+    train_probabilities(counts, tables);
 }
 
 static int train(const grounds *all, ff_trained *tables)
 {
-    train_counts *counts = calloc(1, sizeof *counts);
-    train_sums *sums = malloc(sizeof *sums);
+    train_counts *counts = malloc(sizeof *counts);
+    train_sums *sums = malloc(FF_TRAINED_SETS * sizeof *sums);
     int rc = counts && sums ? 0 : bake_fail("out of memory");
-    learner l = { sums, counts };
     train_begin(tables);
     for (unsigned i = 0; i < ROUNDS && !rc; i++) {
-        memset(sums, 0, sizeof *sums);
-        go_over(all, tables, &l);
-        train_weights(sums, tables);
+        enum train_choice choice = i < BY_LEVEL ? TRAIN_BY_LEVEL : TRAIN_AS_ENCODER;
+        learn_weights(all, choice, sums, tables);
+        if (i + 1 >= BY_LEVEL) learn_probabilities(all, choice, counts, tables);
     }
-    l.sums = NULL;
-    if (!rc) go_over(all, tables, &l);
-    if (!rc) train_probabilities(counts, tables);
     free(sums);
     free(counts);
     return rc;
@@ -129,11 +143,7 @@ static int train(const grounds *all, ff_trained *tables)
 
 /* ---- measuring ---- */
 
-static void pass(void *context, const ff_terrain_info *info, const ff_expected *p, int32_t height,
-                 int32_t residual)
-{
-    (void)context, (void)info, (void)p, (void)height, (void)residual;
-}
+static void pass(void *context, const train_point *point) { (void)context, (void)point; }
 
 static void add(void *context, size_t bytes) { *(uint64_t *)context += bytes; }
 
@@ -145,8 +155,8 @@ static void measure(const grounds *all, const ff_trained *tables)
             for (unsigned error = 0; error < ERRORS; error++) {
                 uint64_t bytes = 0;
                 const train_eye eye = { &bytes, pass, add };
-                uint64_t samples = train_ground_make(&all->ground[i], tables, log2,
-                                                     steps(&all->ground[i], error), &eye);
+                uint64_t samples = train_ground_make(&all->ground[i], tables, TRAIN_AS_ENCODER,
+                                                     log2, steps(&all->ground[i], error), &eye);
                 printf("  %g m %.3f", error_m[error], 8.0 * (double)bytes / (double)samples);
             }
             puts(" bits a sample");

@@ -17,7 +17,7 @@ static void put_numbers(FILE *out, const void *at, size_t count, int is_signed)
     }
 }
 
-/* Rows of numbers, in braces; `depth` braces round each. */
+/* Rows of numbers, in braces. */
 static void put_rows(FILE *out, const char *name, const void *at, size_t rows, size_t count,
                      int is_signed)
 {
@@ -37,6 +37,23 @@ static void put_row(FILE *out, const char *name, const uint16_t *at, size_t coun
     fprintf(out, "},\n");
 }
 
+static void put_weights(FILE *out, const ff_weights *w)
+{
+    fputs("    {\n    .taps = {\n", out);
+    for (unsigned kind = 0; kind < FF_POINTS; kind++) {
+        fputs("        {\n", out);
+        for (unsigned bucket = 0; bucket < FF_TRAINED_BUCKETS; bucket++) {
+            fputs("        {{", out);
+            put_numbers(out, w->taps[kind][bucket].tap, FF_TRAINED_TAPS, 1);
+            fprintf(out, "}, %d},\n", (int)w->taps[kind][bucket].sum);
+        }
+        fputs("        },\n", out);
+    }
+    fputs("    },\n", out);
+    put_rows(out, "trait", w->trait, FF_POINTS, FF_TRAINED_TRAITS, 1);
+    fputs("    },\n", out);
+}
+
 int train_write(const char *path, const ff_trained *t)
 {
     FILE *out = fopen(path, "w");
@@ -44,19 +61,10 @@ int train_write(const char *path, const ff_trained *t)
     fputs("/* What farfield-train has learned: part of the format (SPEC.md, \"Expectation\"). */\n"
           "#include \"ff_trained.h\"\n\n"
           "/* clang-format off */\n"
-          "const ff_trained ff_trained_tables = {\n    .taps = {\n",
+          "const ff_trained ff_trained_tables = {\n    .weights = {\n",
           out);
-    for (unsigned kind = 0; kind < FF_POINTS; kind++) {
-        fputs("        {\n", out);
-        for (unsigned bucket = 0; bucket < FF_TRAINED_BUCKETS; bucket++) {
-            fputs("        {{", out);
-            put_numbers(out, t->taps[kind][bucket].tap, FF_TRAINED_TAPS, 1);
-            fprintf(out, "}, %d},\n", (int)t->taps[kind][bucket].sum);
-        }
-        fputs("        },\n", out);
-    }
+    for (unsigned set = 0; set < FF_TRAINED_SETS; set++) put_weights(out, &t->weights[set]);
     fputs("    },\n", out);
-    put_rows(out, "trait", t->trait, FF_POINTS, FF_TRAINED_TRAITS, 1);
     put_row(out, "zero", t->zero, FF_TRAINED_SCALES);
     put_rows(out, "beyond", t->beyond, FF_TRAINED_CLASSES - 1, FF_TRAINED_SCALES, 0);
     put_rows(out, "below", t->below, 4, FF_TRAINED_SCALES, 0);
