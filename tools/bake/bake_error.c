@@ -41,6 +41,13 @@ static uint32_t cell_error(const uint16_t *sample, const uint8_t *marks, size_t 
     return (uint32_t)((worst + (uint64_t)scale - 1) / (uint64_t)scale);
 }
 
+/* The last sample of a cell that is looked at: the one that the next cell begins with is left to
+ * that, whose triangles are no other there. */
+static uint32_t last_of(uint32_t first, uint32_t cell, uint32_t end)
+{
+    return first + cell < end ? cell - 1 : end - first;
+}
+
 uint32_t bake_patch_error(const bake_patch *patch, const bake_drawn *drawn)
 {
     uint32_t worst = 0, cell = drawn->cell, west = patch->first.columns, south = patch->first.rows,
@@ -50,9 +57,9 @@ uint32_t bake_patch_error(const bake_patch *patch, const bake_drawn *drawn)
             looked_at at = { .wide = least(cell, drawn->extent.columns - column),
                              .deep = least(cell, drawn->extent.rows - row),
                              .west = most(column, west) - column,
-                             .east = least(column + cell, east) - column,
+                             .east = last_of(column, cell, east),
                              .south = most(row, south) - row,
-                             .north = least(row + cell, north) - row };
+                             .north = last_of(row, cell, north) };
             size_t first = (row + at.south - south) * patch->pitch + (column + at.west - west);
             const uint16_t *vertex = drawn->vertex + row / cell * drawn->north +
                                      column / cell * drawn->east;
