@@ -136,6 +136,25 @@ check "a 5 x 5 raster round trips exactly" round_trip five.r16 5x5 0
 check "--max-error 4 keeps its bound" round_trip plain.r16 150x131 4 --max-error 4
 check "--max-error 9 keeps its bound over small tiles" round_trip plain.r16 150x131 9 --max-error 9 --tile-log2 4
 check "--max-error keeps its bound on cliffs" round_trip cliff.r16 40x33 25 --max-error 25
+rms_bound() { # rms_bound METRES OPTIONS...: the root mean square is what is said, within METRES, and with one step of error more it is not
+    wanted=$1
+    shift
+    "$BAKE" plain.r16 --raw 150x131 --spacing 10 "$@" --rms-error "$wanted" --quiet --json -o rms.ffp >rms.json && "$EXPORT" rms.ffp -o rms.r16 || return 1
+    "$BAKE" plain.r16 --raw 150x131 --spacing 10 "$@" --max-error "$(($(field max_error_m rms.json) + 1))" --quiet --json -o more.ffp >more.json || return 1
+    python3 - "$wanted" <<'PY'
+import array, json, sys
+wanted, told, more = float(sys.argv[1]), json.load(open('rms.json')), json.load(open('more.json'))
+source, back = (array.array('H', open(name, 'rb').read()) for name in ('plain.r16', 'rms.r16'))
+rms = (sum((a - b) ** 2 for a, b in zip(source, back)) / len(source)) ** 0.5
+print('asked', wanted, 'told', told['rms_error_m'], 'is', rms, 'next', more['rms_error_m'])
+assert told['max_error_m'] > 0 and told['rms_error_m'] <= wanted < more['rms_error_m']
+assert abs(rms - told['rms_error_m']) < 0.02 * rms
+PY
+}
+for rms in 1 3 12; do check "--rms-error $rms is kept, and no step is left" rms_bound $rms; done
+check "--rms-error is kept over blocks and small tiles" rms_bound 3 --tile-log2 4
+check "--rms-error below a step is lossless" round_trip plain.r16 150x131 0 --rms-error 0.3
+refuses 2 "--rms-error beside --max-error" "rms-error chooses --max-error" "$BAKE" plain.r16 --raw 150x131 --rms-error 1 --max-error 1 -o OUT.ffp
 for steps in 0.1:10 0.05:20 0.3:3 0.01:100; do
     "$BAKE" plain.r16 --raw 150x131 --spacing 10 --hscale "${steps%:*}" --max-error 1 --quiet -o lossy.ffp
     check "--max-error 1 is ${steps#*:} steps of ${steps%:*} m" sh -c '"$1" --json lossy.ffp | grep -q "\"max_error\": $2,"' sh "$INFO" "${steps#*:}"

@@ -144,12 +144,28 @@ static int end_records(bake_block *block)
     return 0;
 }
 
+static bake_off measure(const bake_block *block)
+{
+    const bake_levels *levels = &block->levels;
+    ff_extent size = extent_of(block, block->key);
+    bake_off off = { 0, 0 };
+    for (size_t row = 0; row <= size.rows; row++)
+        for (size_t i = row * levels->pitch, end = i + size.columns; i <= end; i++) {
+            if (levels->marks && levels->marks[i] & BAKE_BETWEEN) continue;
+            double by = levels->decoded[i] - levels->source[i];
+            off.squares += by * by;
+            off.samples++;
+        }
+    return off;
+}
+
 int bake_block_encode(bake_block *block, const bake_top *top)
 {
     bake_known *node = &block->above[bake_top_bottom(top)];
     know_above(block, top);
     start(block, top);
     node->leaf = 1; /* where nothing is finer */
-    return bake_levels_encode_below(&block->levels, block->key, node) || end_records(block) ? -1
-                                                                                            : 0;
+    if (bake_levels_encode_below(&block->levels, block->key, node) || end_records(block)) return -1;
+    block->off = measure(block);
+    return 0;
 }

@@ -6,6 +6,13 @@
 #include "bake_levels.h"
 #include "bake_top.h"
 
+/* How far decoded heights are from their samples; one on the line between two blocks counts for
+ * both. */
+typedef struct bake_off {
+    double squares; /* sum of them, steps */
+    uint64_t samples;
+} bake_off;
+
 typedef struct bake_block {
     bake_levels levels;  /* of its samples; records of the levels below the block's node */
     uint32_t side_log2;  /* of a block: 2^that places further each way */
@@ -13,6 +20,7 @@ typedef struct bake_block {
     ff_key key;          /* the node */
     bake_known above[BAKE_LEVELS_MAX]; /* what the block adds to its node and those above, by
                                           level */
+    bake_off off;
 } bake_block;
 
 /* For blocks of nodes of the level `top` ends with; both must outlive the block. Close it whatever

@@ -165,6 +165,9 @@ int bake_options_parse(bake_options *o, int argc, char **argv)
     if (o->tile_log2 &&
         (o->tile_log2 < o->node_log2 || o->tile_log2 > o->node_log2 + FF_KEY_LEVEL_MAX))
         return bake_fail("--tile-log2 %u: not from --node-log2 %u up", o->tile_log2, o->node_log2);
+    if (o->rms_error_m > 0 && (o->max_error_m > 0 || o->estimate))
+        return bake_fail("--rms-error chooses --max-error, by baking: not with that, nor with "
+                         "--estimate");
     if (o->no_project && o->target_epsg)
         return bake_fail("--no-project and --t-srs exclude each other");
     if (o->lattice_path && (o->target_epsg || o->no_project || o->hscale_m > 0 || o->densify > 1))

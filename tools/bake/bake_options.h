@@ -90,6 +90,8 @@ extern const sys_option_type bake_raw_option, bake_nodata_option, bake_box_optio
            "the pack") \
     OPTION(sys_real, max_error_m, "max-error", "M", "0", SYS_REAL(0, 1e6, "m"), \
            "no decoded height is further from its source") \
+    OPTION(sys_real, rms_error_m, "rms-error", "M", "0", SYS_REAL(0, 1e6, "m"), \
+           "the largest --max-error at which the root mean square of all is no more; bakes some five times") \
     OPTION(sys_whole, node_log2, "node-log2", "K", "3", BAKE_NODES, "nodes of (2^K+1)^2 heights") \
     OPTION(sys_whole, tile_log2, "tile-log2", "N", NULL, BAKE_TILES, \
            "tiles of (2^N+1)^2 heights; default: one tile for all") \

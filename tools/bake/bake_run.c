@@ -157,18 +157,58 @@ static int take_records(void *context, uint32_t section, const bake_blob *record
     return pack_writer_add(&b->writer, section, records, above);
 }
 
-static int make_tiles(bake *b)
+typedef int take_fn(void *context, uint32_t section, const bake_blob *records,
+                    const bake_blob *above);
+
+/* Also how far decoded heights are from their samples: b->rms_m. */
+static int make_tiles(bake *b, const bake_image *image, take_fn *take)
 {
     bake_grid_samples samples = bake_samples_of(&b->heights, &b->filled);
+    bake_off off = { 0, 0 };
     bake_tiles tiles = { .info = &b->info,
                          .samples = &samples.samples,
-                         .image = &b->image,
+                         .image = image,
                          .texture_quality = (int)b->options->texture_quality,
                          .block_log2 = BAKE_BLOCK_LOG2,
                          .jobs = b->options->jobs,
+                         .off = &off,
                          .context = b,
-                         .take = take_records };
-    return bake_tiles_make(&tiles);
+                         .take = take };
+    int rc = bake_tiles_make(&tiles);
+    if (!rc) b->rms_m = sqrt(off.squares / (double)off.samples) * b->steps.step_m;
+    return rc;
+}
+
+static int drop_records(void *context, uint32_t section, const bake_blob *records,
+                        const bake_blob *above)
+{
+    (void)context, (void)section, (void)records, (void)above;
+    return 0;
+}
+
+/* The largest error with which the root mean square is within what was asked for. Errors are spread
+ * evenly as long as they are smaller than the ground is rough: their mean is 1/sqrt(3) of the
+ * largest then, else less. */
+static int choose_error(bake *b)
+{
+    static const bake_image no_image = { .levels = 0 };
+    double wanted_m = b->options->rms_error_m, next = wanted_m / b->steps.step_m * sqrt(3);
+    uint32_t fits = 0, fails = INT16_MAX + 1;
+    if (wanted_m <= 0) return 0;
+    while (fails - fits > 1) {
+        uint32_t steps = (uint32_t)fmin(fmax(next, fits + 1), fails - 1);
+        bake_set_error(&b->info, steps);
+        if (make_tiles(b, &no_image, drop_records)) return -1;
+        *(b->rms_m <= wanted_m ? &fits : &fails) = steps;
+        next = b->rms_m > 0 ? floor(steps * wanted_m / b->rms_m) : 2.0 * steps;
+        if (next <= fits && fails - fits > 1) next = fits + 1;
+    }
+    bake_set_error(&b->info, fits);
+    if (!fits)
+        bake_note(
+            "--rms-error %g m is less than that of an error of one height step of %g m: lossless",
+            wanted_m, b->steps.step_m);
+    return 0;
 }
 
 /* ---- what was made ---- */
@@ -204,15 +244,15 @@ static void report(const bake *b, uint64_t file_bytes)
     if (!b->options->json) return;
     printf(
         "{\"samples_x\": %u, \"samples_y\": %u, \"spacing_m\": %.9g, \"hscale_m\": %.9g, \"hoffset_m\": %.9g, "
-        "\"max_error_m\": %.9g, \"height_min_m\": %.9g, \"height_max_m\": %.9g, \"tiles_x\": %u, \"tiles_y\": %u, "
+        "\"max_error_m\": %.9g, \"rms_error_m\": %.9g, \"height_min_m\": %.9g, \"height_max_m\": %.9g, \"tiles_x\": %u, \"tiles_y\": %u, "
         "\"tile_log2\": %u, \"node_log2\": %u, \"epsg\": %d, \"voids\": %" PRIu64
         ", \"given\": %" PRIu64 ", \"outside\": %" PRIu64
         ", \"resampled\": %s, \"texture_levels\": %u, \"height_bytes\": %" PRIu64
         ", \"bits_per_sample\": %.4f, "
         "\"texture_bytes\": %" PRIu64 ", \"file_bytes\": %" PRIu64 ", \"seconds\": %.3f, ",
         source.x, source.y, spacing_m, b->steps.step_m, (double)info->hoffset_wu / FF_WU_PER_METRE,
-        info->max_error * b->steps.step_m, b->steps.min_m, b->steps.max_m, tiles.x, tiles.y,
-        info->tile_log2, info->node_log2, info->epsg, b->ground.voids, b->ground.given,
+        info->max_error * b->steps.step_m, b->rms_m, b->steps.min_m, b->steps.max_m, tiles.x,
+        tiles.y, info->tile_log2, info->node_log2, info->epsg, b->ground.voids, b->ground.given,
         b->ground.outside, b->ground.resampled ? "true" : "false", info->texture_levels,
         height_bytes, bits, texture_bytes, file_bytes, seconds);
     print_shift(&b->ground.shift);
@@ -228,11 +268,11 @@ ff_list bake_about_of(bake *b, const bake_ground *ground)
 static int make_pack(bake *b)
 {
     uint64_t file_bytes;
-    if (make_ground(b) || bake_describe(b)) return -1;
+    if (make_ground(b) || bake_describe(b) || choose_error(b)) return -1;
     if (b->options->color_path && bake_image_make(b->options, &b->ground, &b->info, &b->image))
         return -1;
     if (pack_writer_open(&b->writer, &b->info)) return -1;
-    if (make_tiles(b)) return -1;
+    if (make_tiles(b, &b->image, take_records)) return -1;
     b->writer.about = bake_about_of(b, &b->ground);
     if (pack_writer_finish(&b->writer, b->options->out_path, &file_bytes)) return -1;
     report(b, file_bytes);

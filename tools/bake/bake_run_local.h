@@ -18,6 +18,7 @@ typedef struct bake {
     bake_grid marks;   /* of filled samples, as the ground is; closed: there are none */
     bake_grid filled;  /* the same beside the heights, a byte each */
     bake_image image;
+    double rms_m; /* of decoded heights: how far they are from their samples */
     pack_writer writer;
     uint8_t about[FF_ABOUT_BYTES_MAX];
     int64_t started_us;

@@ -100,6 +100,14 @@ static void gather_known(crew *c, const bake_block *block)
     }
 }
 
+static void gather_off(const crew *c, const bake_block *block)
+{
+    bake_off *off = c->tiles->off;
+    if (!off) return;
+    off->squares += block->off.squares;
+    off->samples += block->off.samples;
+}
+
 /* Textures of the block's node and of those above; none where there is no ground. */
 static int gather_textures(crew *c, const worker *w, ff_key key, int has_ground)
 {
@@ -158,6 +166,7 @@ static int take_block(void *context, int number, uint32_t job)
         return -1;
     if (has_ground) {
         gather_known(c, &w->block);
+        gather_off(c, &w->block);
         if (take_below(c, w)) return -1;
     }
     return is_last(c, job) ? take_top(c, w) : 0;

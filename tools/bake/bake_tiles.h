@@ -15,6 +15,7 @@ typedef struct bake_tiles {
     int texture_quality;
     uint32_t block_log2; /* memory grows with 4^that a job */
     uint32_t jobs;
+    bake_off *off; /* NULL, or to be added to */
     void *context;
     /* Takes records of a section, as pack_writer_add does: one call at a time. 0 or -1 (said). */
     int (*take)(void *context, uint32_t section, const bake_blob *records, const bake_blob *above);

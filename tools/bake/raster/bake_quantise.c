@@ -167,6 +167,13 @@ static void quantise_row(const bake_steps *steps, const float *metres, uint16_t 
     }
 }
 
+void bake_set_error(ff_terrain_info *info, double steps)
+{
+    info->max_error = (uint16_t)fmin(steps, MAX_ERROR_STEPS);
+    info->flags &= (uint8_t)~FF_TERRAIN_LOSSY;
+    if (info->max_error) info->flags |= FF_TERRAIN_LOSSY;
+}
+
 static int set_units(const bake_options *o, const bake_steps *steps, ff_terrain_info *info)
 {
     double offset_wu = nearbyint((steps->base_m + steps->first_step * steps->step_m) *
@@ -176,10 +183,8 @@ static int set_units(const bake_options *o, const bake_steps *steps, ff_terrain_
     info->hscale_q24 = (uint32_t)(steps->step_m * Q24);
     info->hoffset_wu = (int32_t)offset_wu;
     double error_steps = floor(o->max_error_m / step_of(info->hscale_q24) + 1e-6);
-    info->max_error = (uint16_t)fmin(error_steps, MAX_ERROR_STEPS);
-    if (info->max_error)
-        info->flags |= FF_TERRAIN_LOSSY;
-    else if (o->max_error_m > 0)
+    bake_set_error(info, error_steps);
+    if (!info->max_error && o->max_error_m > 0)
         bake_note("--max-error %g m is less than a height step of %g m: lossless", o->max_error_m,
                   steps->step_m);
     return 0;

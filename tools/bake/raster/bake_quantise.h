@@ -22,6 +22,8 @@ void bake_steps_of(const ff_terrain_info *info, double *step_m, double *base_m);
 /* Which step becomes height 0 where heights are from `low` to `high` whole steps above base_m. */
 double bake_steps_first(double base_m, double step_m, double low, double high);
 
+/* The largest error, in steps, of decoded heights; 32767 at most. */
+void bake_set_error(ff_terrain_info *info, double steps);
 /* Writes `grid` (uint16, rows south to north) from the ground's floats; sets hscale, hoffset,
  * height_min, height_max and max_error of `info`. 0 or -1 (said). */
 int bake_quantise(const bake_options *options, const bake_ground *ground, const bake_steps *steps,
