@@ -72,9 +72,10 @@ void ff_client_get_stats(const ff_client *client, ff_client_stats *stats)
 #undef PART
 }
 
-int ff_client_asked_for_reserve(ff_client *client, uint16_t id)
+int ff_client_asked_for_reserve(ff_client *client, enum ff_kind kind, uint16_t id, ff_key key)
 {
     ff_request request;
+    if (!id) return ff_requests_is_reserve(&client->first.requests, kind, key);
     return ff_requests_answered(&client->first.requests, id, &request) &&
            request.rank == FF_CLASS_RESERVE;
 }

@@ -328,9 +328,9 @@ typedef void (*ff_fins_made)(void *context, ff_key set, unsigned sector, const c
                              uint32_t vertices, const uint16_t *index, uint32_t indices);
 void ff_client_watch_fins(ff_client *client, ff_fins_made made, void *context);
 
-/* 1 while the request of this id on the wire is out and was made for the reserve. For checks, from
- * the thread that calls ff_client_work. */
-int ff_client_asked_for_reserve(ff_client *client, uint16_t id);
+/* 1 while the request of this id on the wire, or where it has none (0) of this kind and node, is
+ * out and was made for the reserve. For checks, from the thread that calls ff_client_work. */
+int ff_client_asked_for_reserve(ff_client *client, enum ff_kind kind, uint16_t id, ff_key key);
 
 /* FNV-1a hash over what is drawn (keys, border masks, heights, origins) and another one over
  * requests made, since the start: the same on every back end. */

@@ -20,7 +20,8 @@
 /* clang-format off */
 /* X(kind, name, asked_by, what, asks, answered_by, brings, section, levels, data, has_image, server)
  *   asked_by, what   the message that asks for it: its type (SPEC.md, "Messages") and, where kinds
- *                    share a type, which of them
+ *                    share a type, which of them. 128: the short forms, of which all three are taken;
+ *                    what else belongs to one node has a type of its own, below 64
  *   asks             the body of that message: enum ff_kind_asks
  *   answered_by      the type of the message that answers; the request tells kinds that share one
  *   brings           the body of that message: enum ff_kind_brings
@@ -30,10 +31,10 @@
  *   has_image        1: its answer may hold an image
  *   server           how a session answers it; kinds may share a way */
 #define FF_KIND_LIST(X) \
-    X(ROOT,       root,       2, 0, NODE,     66, PAYLOAD, FF_LETTERS('R', 'O', 'O', 'T'), 1,                           HEIGHTS, 0, record) \
-    X(REFINEMENT, refinement, 2, 1, NODE,     66, PAYLOAD, FF_LETTERS('R', 'E', 'F', 'I'), ff_terrain_levels(info) - 1, HEIGHTS, 0, record) \
-    X(TEXTURE,    texture,    3, 0, NODE,     67, PAYLOAD, FF_LETTERS('I', 'M', 'A', 'G'), info->texture_levels,        IMAGES,  1, record) \
-    X(VIEW,       view,       9, 0, VIEW,     74, PARTS,   0,                               0,                           HEIGHTS, 0, view)   \
+    X(ROOT,       root,     128, 0, NODE,     96, PAYLOAD, FF_LETTERS('R', 'O', 'O', 'T'), 1,                           HEIGHTS, 0, record) \
+    X(REFINEMENT, refinement, 128, 1, NODE,   96, PAYLOAD, FF_LETTERS('R', 'E', 'F', 'I'), ff_terrain_levels(info) - 1, HEIGHTS, 0, record) \
+    X(TEXTURE,    texture,  128, 2, NODE,     96, PAYLOAD, FF_LETTERS('I', 'M', 'A', 'G'), info->texture_levels,        IMAGES,  1, record) \
+    X(VIEW,       view,       9, 0, VIEW,    224, PARTS,   0,                               0,                           HEIGHTS, 0, view)   \
     X(FACE,       face,       4, 0, PANORAMA, 68, FACE,    0,                               0,                           FACES,   1, faces)  \
     X(FAR,        far,       10, 0, FAR,      75, FAR,     0,                               0,                           FAR,     1, far)
 /* clang-format on */

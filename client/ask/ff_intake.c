@@ -68,20 +68,21 @@ int ff_intake_answer(ff_intake *intake, const ff_request *request, const ff_mess
     return put(intake, item);
 }
 
-int ff_intake_part(ff_intake *intake, const ff_request *request, const ff_part *part)
+int ff_intake_part(ff_intake *intake, const ff_request *request, enum ff_kind kind, ff_key key,
+                   const ff_part *part)
 {
     ff_request own = *request;
-    FF_ASSERT(request->kind == FF_KIND_VIEW && part->what != FF_PART_END);
-    own.kind = part->what == FF_PART_ROOT ? FF_KIND_ROOT : FF_KIND_REFINEMENT;
-    own.key = part->key;
+    FF_ASSERT(request->kind == FF_KIND_VIEW && part->byte_count > 0);
+    own.kind = (uint8_t)kind;
+    own.key = key;
     ff_new_item *item = begin(intake, &own, part->byte_count);
     if (!item) return FF_ERR_AGAIN;
-    ff_message answer = { .type = FF_MSG_ANSWER, .kind = (enum ff_kind)own.kind };
-    answer.u.data = (ff_data){ part->id, part->bytes, part->byte_count };
+    ff_message answer = { .type = FF_MSG_ANSWER, .kind = kind };
+    answer.u.data = (ff_data){ part->bytes, part->byte_count };
     item->last = 0;
     item->error = decode(intake, &answer, item);
     FF_ASSERT(item->error <= FF_OK && item->error >= FF_ERR_LAST && item->error != FF_ERR_AGAIN);
-    ff_requests_part(intake->requests, item->id, (enum ff_kind)item->kind, item->key, item->bytes);
+    ff_requests_part(intake->requests, item->id, kind, key, item->bytes);
     return put(intake, item);
 }
 
@@ -97,10 +98,11 @@ int ff_intake_failed(ff_intake *intake, const ff_request *request, int error)
 /* The end of a view's answers. */
 int ff_intake_view(ff_intake *intake, const ff_message *answer, ff_new_item *item)
 {
+    (void)answer;
     ff_request request;
     const ff_get_view *view = &intake->requests->view;
-    int known = ff_requests_answered(intake->requests, answer->u.part.id, &request);
-    FF_ASSERT(known && answer->u.part.what == FF_PART_END);
+    int known = ff_requests_answered(intake->requests, item->id, &request);
+    FF_ASSERT(known);
     item->u.missing = (uint16_t)(known ? ((1u << view->count) - 1) & ~(uint32_t)request.named : 0);
     return FF_OK;
 }

@@ -27,9 +27,9 @@ int ff_intake_ground(const ff_intake *intake, ff_key key);
  * try later. */
 int ff_intake_answer(ff_intake *intake, const ff_request *request, const ff_message *answer,
                      uint32_t bytes);
-/* The same for a root or refinement among the answers to a view, which the view covers; its end is
- * an answer as above. */
-int ff_intake_part(ff_intake *intake, const ff_request *request, const ff_part *part);
+/* The same for a root or refinement among the answers to a view; its end is an answer as above. */
+int ff_intake_part(ff_intake *intake, const ff_request *request, enum ff_kind kind, ff_key key,
+                   const ff_part *part);
 /* No answer will come: FF_ERR_CLOSED stands for cancelled. */
 int ff_intake_failed(ff_intake *intake, const ff_request *request, int error);
 

@@ -335,7 +335,6 @@ void ff_requests_finish(ff_requests *requests, uint16_t id, enum ff_request_stat
 }
 
 /* ---- worker ---- */
-
 static int goes_before(const ff_request *a, const ff_request *b)
 {
     if (a->rank != b->rank) return a->rank < b->rank;
@@ -366,28 +365,27 @@ static void hash_view(uint64_t *hash, const ff_get_view *view)
     for (unsigned i = 0; i < view->count; i++) hash_word(hash, view->below[i]);
 }
 
-static void hash_panorama(uint64_t *hash, const ff_get_panorama *panorama)
+static void hash_place(uint64_t *hash, const int32_t position_wu[3], const uint8_t *list,
+                       unsigned count)
 {
-    for (int i = 0; i < 3; i++) hash_word(hash, (uint32_t)panorama->position_wu[i]);
-    for (int i = 0; i < panorama->face_count; i++) hash_word(hash, panorama->face[i]);
-}
-
-static void hash_far(uint64_t *hash, const ff_get_far *far)
-{
-    for (int i = 0; i < 3; i++) hash_word(hash, (uint32_t)far->position_wu[i]);
-    for (int i = 0; i < far->sector_count; i++) hash_word(hash, far->sector[i]);
+    for (int i = 0; i < 3; i++) hash_word(hash, (uint32_t)position_wu[i]);
+    for (unsigned i = 0; i < count; i++) hash_word(hash, list[i]);
 }
 
 static void hash_request(uint64_t *hash, const ff_requests *requests, const ff_request *request)
 {
+    const ff_ask *ask = request->ask ? ff_requests_ask_of(requests, request) : NULL;
     hash_word(hash, request->kind);
     switch ((enum ff_kind_asks)ff_kind[request->kind].asks) {
         case FF_ASKS_NODE: hash_word(hash, request->key); break;
         case FF_ASKS_VIEW: hash_view(hash, &requests->view); break;
         case FF_ASKS_PANORAMA:
-            hash_panorama(hash, &ff_requests_ask_of(requests, request)->panorama);
+            hash_place(hash, ask->panorama.position_wu, ask->panorama.face,
+                       ask->panorama.face_count);
             break;
-        case FF_ASKS_FAR: hash_far(hash, &ff_requests_ask_of(requests, request)->far); break;
+        case FF_ASKS_FAR:
+            hash_place(hash, ask->far.position_wu, ask->far.sector, ask->far.sector_count);
+            break;
     }
 }
 
@@ -433,6 +431,7 @@ int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_m
     for (unsigned i = 0; room && i < requests->slot_count; i++) {
         ff_request *request = &requests->slot[i];
         if (request->state == FF_REQUEST_QUEUED && request->rank <= last &&
+            (request->kind != FF_KIND_VIEW || !counts->of[FF_KIND_VIEW].in_flight) &&
             (!best || goes_before(request, best)))
             best = request;
     }
@@ -440,6 +439,7 @@ int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_m
         leave_state(requests, best);
         best->state = FF_REQUEST_SENT;
         best->sent_us = now_us;
+        best->order = counts->sent;
         best->cancel = 0;
         if (best->ask) requests->ask[best->ask - 1].id = best->id;
         best->bytes_expected = (requests->answer_q4[best->kind][level_of(best)] >> 4) *
@@ -458,7 +458,8 @@ uint16_t ff_requests_next_cancel(ff_requests *requests)
     sys_mutex_lock(&requests->mutex);
     for (unsigned i = 0; !id && i < requests->slot_count; i++) {
         ff_request *request = &requests->slot[i];
-        if (request->state == FF_REQUEST_SENT && request->cancel == 1) {
+        if (request->state == FF_REQUEST_SENT && request->cancel == 1 &&
+            ff_kind[request->kind].asks != FF_ASKS_NODE) {
             FF_ASSERT(request->id == i + 1);
             request->cancel = 2;
             id = request->id;
@@ -479,6 +480,30 @@ int ff_requests_answered(ff_requests *requests, uint16_t id, ff_request *copy)
     }
     sys_mutex_unlock(&requests->mutex);
     return known;
+}
+
+int ff_requests_oldest(ff_requests *requests, enum ff_kind_asks asks, ff_request *copy)
+{
+    const ff_request *oldest = NULL;
+    sys_mutex_lock(&requests->mutex);
+    for (unsigned i = 0; i < requests->slot_count; i++) {
+        const ff_request *request = &requests->slot[i];
+        if (request->state == FF_REQUEST_SENT && ff_kind[request->kind].asks == asks &&
+            (!oldest || request->order - oldest->order > UINT32_MAX / 2))
+            oldest = request;
+    }
+    if (oldest) *copy = *oldest;
+    sys_mutex_unlock(&requests->mutex);
+    return oldest != NULL;
+}
+
+int ff_requests_is_reserve(ff_requests *requests, enum ff_kind kind, ff_key key)
+{
+    sys_mutex_lock(&requests->mutex);
+    const ff_request *request = find(requests, kind, key);
+    enum ff_request_class rank = request ? (enum ff_request_class)request->rank : FF_CLASS_FIRST;
+    sys_mutex_unlock(&requests->mutex);
+    return rank == FF_CLASS_RESERVE;
 }
 
 void ff_requests_passed(ff_requests *requests, uint16_t id)
@@ -541,12 +566,9 @@ void ff_requests_lost(ff_requests *requests)
     for (unsigned i = 0; i < requests->slot_count; i++) {
         ff_request *request = &requests->slot[i];
         if (request->state != FF_REQUEST_SENT) continue;
-        if (request->cancel)
-            free_slot(requests, request, &requests->counts.cancelled);
-        else {
-            leave_state(requests, request);
-            enqueue(requests, request);
-        }
+        leave_state(requests, request);
+        enqueue(requests, request);
+        if (request->cancel) free_slot(requests, request, &requests->counts.cancelled);
     }
     FF_ASSERT(requests->counts.in_flight == 0 && requests->counts.bytes_in_flight == 0);
     sys_mutex_unlock(&requests->mutex);

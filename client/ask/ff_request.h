@@ -21,11 +21,12 @@
  * that are forgotten: their numbers stay taken until their answers have come.
  *
  * A request that is no longer wanted is dropped while it is not sent. Once it is sent, the answer
- * is let come: some hundred bytes cost less than the message that cancels them. Who asks for
- * kilobytes, or for work of the server's, as panoramas do, cancels them.
+ * is let come: some hundred bytes cost less than the message that cancels them, so those for one
+ * node cannot be cancelled. Who asks for kilobytes, or for work of the server's, as panoramas do,
+ * cancels them.
  *
- * At most one request is of FF_KIND_VIEW. It stands for all that its answers may bring: who wants
- * such a thing is told that it is under way.
+ * At most one request is of FF_KIND_VIEW, and none is sent while a forgotten one is out. It stands
+ * for all that its answers may bring: who wants such a thing is told that it is under way.
  */
 #ifndef FF_REQUEST_H
 #define FF_REQUEST_H
@@ -53,8 +54,9 @@ typedef struct ff_request {
     uint32_t value;          /* within the class: priority per expected byte, higher first */
     uint32_t sequence;       /* ties: older first */
     uint32_t bytes_expected; /* of the answer */
+    uint32_t order;          /* of sending: node by node answers come in it */
     int64_t sent_us;
-    uint16_t id;               /* on the wire: slot + 1 */
+    uint16_t id;               /* slot + 1; on the wire, where its kind has one */
     uint8_t kind, state, rank; /* enums ff_kind, ff_request_state, ff_request_class */
     uint8_t marked;            /* wanted by the ranking under way */
     uint8_t cancel;            /* 1: to be cancelled; 2: the cancellation was sent */
@@ -148,6 +150,10 @@ uint16_t ff_requests_next_cancel(ff_requests *requests);
 /* A request waiting for an answer: 1 and *copy, or 0: unknown id (stale or nonsense). Checks ask
  * it, too. */
 int ff_requests_answered(ff_requests *requests, uint16_t id, ff_request *copy);
+/* The same for what is answered in order, or is one at a time: the oldest of those that ask so. */
+int ff_requests_oldest(ff_requests *requests, enum ff_kind_asks asks, ff_request *copy);
+/* 1 when that request is for the reserve. */
+int ff_requests_is_reserve(ff_requests *requests, enum ff_kind kind, ff_key key);
 /* The last answer to a forgotten request has passed by. */
 void ff_requests_passed(ff_requests *requests, uint16_t id);
 /* A part of a view's answer lies on the new-data list. */

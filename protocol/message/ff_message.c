@@ -101,13 +101,6 @@ static int face_ok(const ff_face *face)
 
 /* ---- encode ---- */
 
-static void write_get(ff_writer *out, const ff_get *get, enum ff_kind kind)
-{
-    ff_message_require(&out->error, ff_message_get_ok(get, kind));
-    ff_write_bytes(out, get->id, 2);
-    ff_message_write_key(out, ff_kind[kind].what, get->key);
-}
-
 static void write_panorama(ff_writer *out, const ff_get_panorama *panorama)
 {
     ff_message_require(&out->error, panorama_ok(panorama));
@@ -155,6 +148,32 @@ static void write_welcome(ff_writer *out, const ff_welcome *welcome)
     ff_write_span(out, welcome->more.bytes, welcome->more.byte_count);
 }
 
+/* A varint each, of tiles. */
+static int roots_ok(const ff_roots *roots)
+{
+    ff_reader in = { roots->bytes, roots->bytes + roots->byte_count, FF_OK };
+    unsigned count = 0;
+
+    while (in.error == FF_OK && in.at < in.end) {
+        ff_message_require(&in.error, ff_read_varint(&in) < FF_KEY_TILES_MAX);
+        count++;
+    }
+    return in.error == FF_OK && count <= FF_PARTS_MAX;
+}
+
+static void write_roots(ff_writer *out, const ff_roots *roots)
+{
+    ff_message_require(&out->error, roots_ok(roots));
+    ff_write_span(out, roots->bytes, roots->byte_count);
+}
+
+/* Kinds without a short form. */
+static void write_get(ff_writer *out, const ff_get *get, enum ff_kind kind)
+{
+    ff_message_require(&out->error, ff_message_get_ok(get, kind));
+    ff_message_write_key(out, 0, get->key);
+}
+
 static void write_request(ff_writer *out, const ff_message *message)
 {
     FF_ASSERT((unsigned)message->kind < FF_KIND_COUNT);
@@ -171,10 +190,7 @@ static void write_answer(ff_writer *out, const ff_message *message)
     FF_ASSERT((unsigned)message->kind < FF_KIND_COUNT);
     switch ((enum ff_kind_brings)ff_kind[message->kind].brings) {
         case FF_BRINGS_PAYLOAD:
-            ff_write_bytes(out, message->u.data.id, 2);
-            ff_write_span(out, message->u.data.bytes, message->u.data.byte_count);
-            break;
-        case FF_BRINGS_PARTS: ff_message_write_part(out, &message->u.part); break;
+        case FF_BRINGS_PARTS: ff_message_require(&out->error, 0); break; /* they have short forms */
         case FF_BRINGS_FACE: write_face(out, &message->u.face); break;
         case FF_BRINGS_FAR: ff_message_write_far(out, &message->u.far); break;
     }
@@ -197,6 +213,7 @@ static void write_body(ff_writer *out, const ff_message *message)
         case FF_MSG_CAPS: write_list(out, message->u.list, check_caps(message->u.list)); break;
         case FF_MSG_ABOUT: write_list(out, message->u.list, ff_about_check(message->u.list)); break;
         case FF_MSG_GET_ABOUT: ff_write_varint(out, message->u.get_about.entries); break;
+        case FF_MSG_ROOTS: write_roots(out, &message->u.roots); break;
         case FF_MSG_WELCOME: write_welcome(out, &message->u.welcome); break;
         case FF_MSG_FAILED:
         case FF_MSG_GOODBYE: write_failed(out, &message->u.failed, message->type); break;
@@ -214,13 +231,10 @@ static uint32_t type_byte(const ff_message *message)
 static size_t answer_bytes_max(const ff_message *message)
 {
     switch ((enum ff_kind_brings)ff_kind[message->kind].brings) {
-        case FF_BRINGS_PAYLOAD:
-            return FF_MESSAGE_HEADER_MAX + 2 + (size_t)message->u.data.byte_count;
-        case FF_BRINGS_PARTS:
-            return FF_MESSAGE_HEADER_MAX + 2 + FF_MESSAGE_KEY_BYTES +
-                   (size_t)message->u.part.byte_count;
+        case FF_BRINGS_PAYLOAD: return FF_MESSAGE_HEADER_MAX + (size_t)message->u.data.byte_count;
+        case FF_BRINGS_PARTS: return FF_MESSAGE_HEADER_MAX + (size_t)message->u.part.byte_count;
         case FF_BRINGS_FAR:
-            return FF_MESSAGE_HEADER_MAX + 17 + (size_t)message->u.far.fins_bytes +
+            return FF_MESSAGE_HEADER_MAX + 15 + (size_t)message->u.far.fins_bytes +
                    message->u.far.blocks_bytes + message->u.far.image_bytes;
         case FF_BRINGS_FACE: break;
     }
@@ -236,6 +250,7 @@ size_t ff_message_bytes_max(const ff_message *message)
                    (size_t)message->u.welcome.more.byte_count;
         case FF_MSG_CAPS:
         case FF_MSG_ABOUT: return FF_MESSAGE_HEADER_MAX + (size_t)message->u.list.byte_count;
+        case FF_MSG_ROOTS: return FF_MESSAGE_HEADER_MAX + (size_t)message->u.roots.byte_count;
         case FF_MSG_ANSWER: return answer_bytes_max(message);
         case FF_MSG_GET:
             if (ff_kind[message->kind].asks == FF_ASKS_VIEW) return FF_REQUEST_BYTES_MAX;
@@ -253,6 +268,7 @@ int ff_message_encode(const ff_message *message, uint8_t *out, size_t capacity)
     ff_writer body = { out + room, out + capacity, FF_OK };
     ff_writer head = { out, out + capacity, FF_OK };
 
+    if (ff_short_has(message)) return ff_short_encode(message, out, capacity);
     write_body(&body, message);
     if (body.error != FF_OK) return body.error;
     body_bytes = (size_t)(body.at - (out + room));
@@ -277,21 +293,6 @@ static void read_hello(ff_reader *in, ff_hello *hello)
     if (magic && memcmp(magic, hello_magic, sizeof(hello_magic)) != 0) in->error = FF_ERR_FORMAT;
     hello->version = (uint32_t)ff_read_bytes(in, 4);
     hello->known_checksum = (uint32_t)ff_read_bytes(in, 4);
-}
-
-/* *kind comes as the first of those asked for by this type of message, and leaves as the one. */
-static void read_get(ff_reader *in, ff_get *get, enum ff_kind *kind)
-{
-    uint32_t form, what, asked_by = ff_kind[*kind].asked_by;
-
-    get->id = (uint16_t)ff_read_bytes(in, 2);
-    form = (uint32_t)ff_read_bytes(in, 1);
-    get->key = ff_message_read_key(in, form);
-    what = form & 15u;
-    while (*kind < FF_KIND_COUNT &&
-           (ff_kind[*kind].asked_by != asked_by || ff_kind[*kind].what != what))
-        *kind = (enum ff_kind)(*kind + 1);
-    ff_message_require(&in->error, *kind < FF_KIND_COUNT && ff_message_get_ok(get, *kind));
 }
 
 static void read_panorama(ff_reader *in, ff_get_panorama *panorama)
@@ -378,10 +379,24 @@ static void read_failed(ff_reader *in, ff_failed *failed, enum ff_message_type t
     ff_message_require(&in->error, failed->error < 0 && (type == FF_MSG_FAILED || failed->id == 0));
 }
 
+static void read_roots(ff_reader *in, ff_roots *roots)
+{
+    ff_message_read_rest(in, &roots->bytes, &roots->byte_count);
+    ff_message_require(&in->error, roots_ok(roots));
+}
+
+static void read_get(ff_reader *in, ff_get *get, enum ff_kind kind)
+{
+    uint32_t form = (uint32_t)ff_read_bytes(in, 1);
+
+    get->key = ff_message_read_key(in, form);
+    ff_message_require(&in->error, (form & 15u) == 0 && ff_message_get_ok(get, kind));
+}
+
 static void read_request(ff_reader *in, ff_message *out)
 {
     switch ((enum ff_kind_asks)ff_kind[out->kind].asks) {
-        case FF_ASKS_NODE: read_get(in, &out->u.get, &out->kind); break;
+        case FF_ASKS_NODE: read_get(in, &out->u.get, out->kind); break;
         case FF_ASKS_VIEW: ff_message_read_view(in, &out->u.view); break;
         case FF_ASKS_PANORAMA: read_panorama(in, &out->u.panorama); break;
         case FF_ASKS_FAR: ff_message_read_get_far(in, &out->u.get_far); break;
@@ -392,10 +407,7 @@ static void read_answer(ff_reader *in, ff_message *out)
 {
     switch ((enum ff_kind_brings)ff_kind[out->kind].brings) {
         case FF_BRINGS_PAYLOAD:
-            out->u.data.id = (uint16_t)ff_read_bytes(in, 2);
-            ff_message_read_rest(in, &out->u.data.bytes, &out->u.data.byte_count);
-            break;
-        case FF_BRINGS_PARTS: ff_message_read_part(in, &out->u.part); break;
+        case FF_BRINGS_PARTS: break; /* they have short forms */
         case FF_BRINGS_FACE: read_face(in, &out->u.face); break;
         case FF_BRINGS_FAR: ff_message_read_far(in, &out->u.far); break;
     }
@@ -420,26 +432,28 @@ static void read_body(ff_reader *in, ff_message *out)
             keep_error(in, ff_about_check(out->u.list));
             break;
         case FF_MSG_GET_ABOUT: out->u.get_about.entries = ff_read_varint(in); break;
+        case FF_MSG_ROOTS: read_roots(in, &out->u.roots); break;
         case FF_MSG_WELCOME: read_welcome(in, &out->u.welcome); break;
         case FF_MSG_FAILED:
         case FF_MSG_GOODBYE: read_failed(in, &out->u.failed, out->type); break;
     }
 }
 
-/* Requests, and whatever else clients send, have types below the servers'. */
+/* Requests, and whatever else clients send, have types below the servers', but for short forms. */
 /* clang-format off */
 enum { SERVER, CLIENT };
-#define X(name, type, sender) && (sender == CLIENT ? type <= 64 : type > 64)
+#define X(name, type, sender) && type < 80 && (sender == CLIENT ? type <= 64 : type > 64)
 FF_STATIC_ASSERT(1 FF_MESSAGE_LIST(X));
 #undef X
-#define X(kind, name, asked_by, what, asks, answered_by, ...) && asked_by <= 64 && answered_by > 64
+#define X(kind, name, asked_by, what, asks, answered_by, ...) \
+    && (asked_by >= 80 || asked_by <= 64) && answered_by > 64
 FF_STATIC_ASSERT(1 FF_KIND_LIST(X));
 #undef X
 /* clang-format on */
 
-/* The type that a first byte stands for, 0: none; of GET and ANSWER the first such kind, too. */
-static int type_of(uint8_t byte, enum ff_kind *kind)
+int ff_message_type_of(uint8_t byte, enum ff_kind *kind)
 {
+    if (ff_short_type(byte, kind)) return ff_short_type(byte, kind);
     for (unsigned i = 0; i < FF_KIND_COUNT; i++) {
         int asked = ff_kind[i].asked_by == byte;
         if (!asked && ff_kind[i].answered_by != byte) continue;
@@ -455,16 +469,11 @@ static int type_of(uint8_t byte, enum ff_kind *kind)
     }
 }
 
-int ff_message_type_of(uint8_t byte)
+int ff_message_from_client(uint8_t byte)
 {
     enum ff_kind kind;
 
-    return type_of(byte, &kind);
-}
-
-int ff_message_from_client(uint8_t byte)
-{
-    switch (ff_message_type_of(byte)) {
+    switch (ff_message_type_of(byte, &kind)) {
 #define X(name, type, sender) \
     case FF_MSG_##name: return sender == CLIENT;
         FF_MESSAGE_LIST(X)
@@ -480,39 +489,45 @@ uint16_t ff_message_id(const ff_message *message)
 
     FF_ASSERT(message->type == FF_MSG_GET || message->type == FF_MSG_ANSWER);
     if (message->type == FF_MSG_GET)
-        return kind->asks == FF_ASKS_NODE   ? message->u.get.id
+        return kind->asks == FF_ASKS_NODE   ? 0
                : kind->asks == FF_ASKS_VIEW ? message->u.view.id
                : kind->asks == FF_ASKS_FAR  ? message->u.get_far.id
                                             : message->u.panorama.id;
-    return kind->brings == FF_BRINGS_PAYLOAD ? message->u.data.id
-           : kind->brings == FF_BRINGS_PARTS ? message->u.part.id
-           : kind->brings == FF_BRINGS_FAR   ? message->u.far.id
-                                             : message->u.face.id;
+    return kind->brings == FF_BRINGS_FACE ? message->u.face.id : 0;
+}
+
+int ff_message_measure(const uint8_t *bytes, size_t byte_count, uint32_t *header, uint32_t *body)
+{
+    ff_reader in = { bytes, bytes + byte_count, FF_OK };
+    uint8_t first = (uint8_t)ff_read_bytes(&in, 1);
+    enum ff_kind kind;
+
+    if (in.error != FF_OK) return 0;
+    if (ff_short_type(first, &kind) == FF_MSG_GET) return FF_ERR_FORMAT;
+    if (ff_short_type(first, &kind)) return ff_short_measure(bytes, byte_count, header, body);
+    *body = ff_read_varint(&in);
+    if (in.error == FF_ERR_TRUNCATED) return byte_count < FF_MESSAGE_HEADER_MAX ? 0 : FF_ERR_RANGE;
+    if (in.error != FF_OK || *body > FF_MESSAGE_BODY_MAX) return FF_ERR_RANGE;
+    *header = (uint32_t)(in.at - bytes);
+    FF_ASSERT(*header == 1 + ff_varint_bytes(*body));
+    return 1;
 }
 
 int ff_message_decode(const uint8_t *bytes, size_t byte_count, ff_message *out)
 {
-    ff_reader head = {
-        bytes, bytes + (byte_count < FF_MESSAGE_HEADER_MAX ? byte_count : FF_MESSAGE_HEADER_MAX),
-        FF_OK
-    };
-    ff_reader body = { NULL, NULL, FF_OK };
-    uint32_t body_bytes;
-    int type;
+    uint32_t header, body_bytes;
+    int type, rc;
 
     if (byte_count < 1) return 0;
     memset(out, 0, sizeof(*out));
-    type = type_of((uint8_t)ff_read_bytes(&head, 1), &out->kind);
+    if (ff_short_type(bytes[0], &out->kind)) return ff_short_decode(bytes, byte_count, out);
+    type = ff_message_type_of(bytes[0], &out->kind);
     if (!type) return FF_ERR_FORMAT;
     out->type = (enum ff_message_type)type;
-    body_bytes = ff_read_varint(&head);
-    if (head.error == FF_ERR_TRUNCATED)
-        return byte_count < FF_MESSAGE_HEADER_MAX ? 0 : FF_ERR_RANGE;
-    if (head.error != FF_OK || body_bytes > FF_MESSAGE_BODY_MAX) return FF_ERR_RANGE;
-    if ((size_t)(bytes + byte_count - head.at) < body_bytes) return 0;
-    FF_ASSERT(head.at - bytes == 1 + (ptrdiff_t)ff_varint_bytes(body_bytes));
-    body.at = head.at;
-    body.end = head.at + body_bytes;
+    rc = ff_message_measure(bytes, byte_count, &header, &body_bytes);
+    if (rc <= 0) return rc;
+    if (byte_count - header < body_bytes) return 0;
+    ff_reader body = { bytes + header, bytes + header + body_bytes, FF_OK };
     read_body(&body, out);
     if (body.error == FF_OK && body.at != body.end) body.error = FF_ERR_FORMAT;
     return body.error != FF_OK ? body.error : (int)(body.end - bytes);

@@ -1,8 +1,11 @@
 /* Messages between client and server over one long-lived byte stream (Hybrid, section 8.2, figure
  * 24).
  *
- * Every message: type (1 byte), body length (LEB128, 1..3 bytes), body. Numbers are little-endian;
- * `id` is the client's request number, unique among its unanswered requests. Every request gets
+ * A message: type (1 byte), body length (LEB128, 1..3 bytes), body. Numbers are little-endian.
+ * Those that come most often have shorter forms (ff_message_short.c). Requests have a number, `id`,
+ * not 0 and unique among the client's unanswered ones; those for what belongs to one node have none
+ * (0): they are answered in the order in which they were made. Parts of a view and sectors of far
+ * ground do without their request's: they are of the oldest such request. Every request gets
  * exactly one final answer (its kind's, with FF_FACE_LAST where there are several, or FAILED),
  * unless it was cancelled, when the answer may be CANCELLED instead. Pure bytes: no sockets here.
  */
@@ -14,7 +17,7 @@
 #include "../ff_about.h"
 #include "../ff_kind.h"
 
-#define FF_PROTOCOL_VERSION   7
+#define FF_PROTOCOL_VERSION   8
 #define FF_MESSAGE_BODY_MAX   (1u << 18) /* a longer length is a protocol error */
 #define FF_MESSAGE_HEADER_MAX 4
 #define FF_REQUEST_BYTES_MAX  224 /* any client message but CAPS fits */
@@ -42,7 +45,8 @@ FF_STATIC_ASSERT(2 + FF_PAYLOAD_BYTES_MAX <= FF_MESSAGE_BODY_MAX);
     X(CANCELLED, 70, SERVER) /* ff_cancel */ \
     X(PONG,      71, SERVER) /* ff_ping */ \
     X(GOODBYE,   72, SERVER) /* ff_failed with id 0: the server closes, and says why */ \
-    X(ABOUT,     73, SERVER) /* ff_list: FF_ABOUT_LIST */
+    X(ABOUT,     73, SERVER) /* ff_list: FF_ABOUT_LIST */ \
+    X(ROOTS,     74, SERVER) /* ff_roots: which a view that named nothing brings */
 
 /* Lists that open a connection: X(ENTRY, type, least, most bytes). Types that nobody sends yet are
  * given, so that who begins to send them need not raise the version. */
@@ -94,7 +98,6 @@ typedef struct ff_hello {
     uint32_t known_checksum; /* of the pack in the client's cache; 0: none */
 } ff_hello;
 typedef struct ff_get {
-    uint16_t id;
     ff_key key; /* of a root: level 0 */
 } ff_get;
 
@@ -184,16 +187,25 @@ int ff_view_covers(const ff_get_view *view, enum ff_kind kind, ff_key key);
 /* Bit i: this is what view->below[i] names. */
 uint32_t ff_view_names(const ff_get_view *view, enum ff_kind kind, ff_key key);
 
-/* One answer to it: a root, a refinement, or the news that there are no more. */
-enum ff_part_what { FF_PART_ROOT, FF_PART_REFINEMENT, FF_PART_END };
+/* One answer to it, a root or a refinement, or word that some come later. Of which node stands in
+ * none of them: ff_parts.h finds it. An answer has FF_PARTS_MAX at most. */
+#define FF_PARTS_MAX       512
+#define FF_PARTS_LATER_MAX 16
 
 typedef struct ff_part {
-    uint16_t id;
-    uint8_t what;         /* enum ff_part_what */
-    ff_key key;           /* 0 with FF_PART_END, which has no payload either */
+    /* bit q: the refinement of child q comes later in this answer; of a root: bit 0, its own */
+    uint8_t below;
     const uint8_t *bytes; /* inside the message, not copied */
-    uint32_t byte_count;
+    uint32_t byte_count;  /* 0: it cannot be read, and nothing below it comes */
+    uint8_t later; /* not 0: it is no part, but so many of the next ones come behind all others */
 } ff_part;
+
+/* The tiles whose roots come first, where the request named nothing: a varint each, inside the
+ * message, FF_PARTS_MAX at most. */
+typedef struct ff_roots {
+    const uint8_t *bytes;
+    uint32_t byte_count;
+} ff_roots;
 
 typedef struct ff_cancel {
     uint16_t id;
@@ -210,12 +222,11 @@ typedef struct ff_get_about {
     uint32_t entries; /* FF_ABOUT_BIT of those wanted */
 } ff_get_about;
 typedef struct ff_data {
-    uint16_t id;
     const uint8_t *bytes; /* inside the message, not copied */
     uint32_t byte_count;
 } ff_data;
 typedef struct ff_failed {
-    uint16_t id;
+    uint16_t id;  /* 0: of the oldest request without a number that is not answered */
     int8_t error; /* enum ff_error */
 } ff_failed;
 
@@ -244,7 +255,6 @@ typedef struct ff_face {
 
 /* One sector of a set. Flags as a face's. */
 typedef struct ff_far {
-    uint16_t id;
     uint8_t sector, flags; /* enum ff_face_flags: FF_FACE_EMPTY, nothing follows; FF_FACE_LAST */
     const uint8_t *fins;   /* ff_fins_decode; no bytes: none */
     uint32_t fins_bytes;
@@ -279,6 +289,7 @@ typedef struct ff_message {
         ff_cancel cancel;
         ff_ping ping;
         ff_list list; /* CAPS, ABOUT: inside the message */
+        ff_roots roots;
         ff_get_about get_about;
         ff_welcome welcome;
         ff_data data; /* ANSWER, FF_BRINGS_PAYLOAD */
@@ -294,14 +305,18 @@ int ff_message_encode(const ff_message *message, uint8_t *out, size_t capacity);
 /* Most bytes `message` can need, header included. */
 size_t ff_message_bytes_max(const ff_message *message);
 
-/* The request's number in a GET or an ANSWER. */
+/* The request's number in a GET or an ANSWER; 0: it has none. */
 uint16_t ff_message_id(const ff_message *message);
 
-/* What a message's first byte says of its type: 0 when there is no such type. */
-int ff_message_type_of(uint8_t byte);
+/* What a message's first byte says of its type: 0 when there is no such type; of GET and ANSWER the
+ * first of the kinds, too, that share it. */
+int ff_message_type_of(uint8_t byte, enum ff_kind *kind);
 /* 1 when it is the first byte of a message that clients send. */
 int ff_message_from_client(uint8_t byte);
 
+/* How long the message is that begins here: 1, *header and *body together its bytes; 0: more bytes
+ * are needed to know; FF_ERR_RANGE: longer than any; FF_ERR_FORMAT: no server sends it. */
+int ff_message_measure(const uint8_t *bytes, size_t byte_count, uint32_t *header, uint32_t *body);
 /* Takes one message off the front of `bytes`. Returns bytes consumed (> 0); 0 when more bytes are
  * needed, or a negative error (FORMAT: unknown type; RANGE; TRUNCATED: body shorter than its
  * fields), after which the stream is lost and must be closed. Pointers in `out` refer into `bytes`.

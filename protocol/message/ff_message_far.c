@@ -88,7 +88,6 @@ static int far_ok(const ff_far *far)
 void ff_message_write_far(ff_writer *out, const ff_far *far)
 {
     ff_message_require(&out->error, far_ok(far));
-    ff_write_bytes(out, far->id, 2);
     ff_write_bytes(out, far->sector | (uint32_t)far->flags << 4, 1);
     if (far->flags & FF_FACE_EMPTY) return;
     ff_write_varint(out, far->fins_bytes);
@@ -104,7 +103,6 @@ void ff_message_write_far(ff_writer *out, const ff_far *far)
 
 void ff_message_read_far(ff_reader *in, ff_far *far)
 {
-    far->id = (uint16_t)ff_read_bytes(in, 2);
     uint8_t form = (uint8_t)ff_read_bytes(in, 1);
     far->sector = form & 15u;
     far->flags = form >> 4;

@@ -26,7 +26,13 @@ void ff_message_write_get_far(ff_writer *out, const ff_get_far *get);
 void ff_message_read_get_far(ff_reader *in, ff_get_far *get);
 void ff_message_write_far(ff_writer *out, const ff_far *far);
 void ff_message_read_far(ff_reader *in, ff_far *far);
-void ff_message_write_part(ff_writer *out, const ff_part *part);
-void ff_message_read_part(ff_reader *in, ff_part *part);
+
+/* ff_message_short.c: the type that such a first byte stands for, FF_MSG_GET or FF_MSG_ANSWER, 0:
+ * it is none; whether a message has such a form; the rest as in ff_message.h. */
+int ff_short_type(uint8_t byte, enum ff_kind *kind);
+int ff_short_has(const ff_message *message);
+int ff_short_encode(const ff_message *message, uint8_t *out, size_t capacity);
+int ff_short_measure(const uint8_t *bytes, size_t count, uint32_t *header, uint32_t *body);
+int ff_short_decode(const uint8_t *bytes, size_t count, ff_message *out);
 
 #endif

@@ -1,4 +1,4 @@
-/* GET_VIEW and its answers, PART; see SPEC.md, "Messages". */
+/* GET_VIEW; see SPEC.md, "Messages". */
 #include "ff_message_local.h"
 
 /* GET_VIEW, the longest of requests: id, angles, position, focal length, size, measure, depth,
@@ -8,14 +8,7 @@ FF_STATIC_ASSERT(FF_MESSAGE_HEADER_MAX + VIEW_BYTES + FF_VIEW_KEYS_MAX * FF_MESS
                  FF_REQUEST_BYTES_MAX);
 FF_STATIC_ASSERT(FF_VIEW_KEYS_MAX <= 16); /* bits of `roots` */
 
-/* Of a root or a refinement, whose kinds share GET_NODE's form. */
-static int part_ok(const ff_part *part)
-{
-    if (part->what == FF_PART_END) return part->key == 0 && part->byte_count == 0;
-    const ff_get get = { part->id, part->key };
-    return part->what <= FF_PART_REFINEMENT && part->byte_count > 0 &&
-           ff_message_get_ok(&get, part->what == FF_PART_ROOT ? FF_KIND_ROOT : FF_KIND_REFINEMENT);
-}
+enum { NAMES_ROOT, NAMES_REFINEMENT };
 
 static int view_ok(const ff_get_view *view)
 {
@@ -26,7 +19,7 @@ static int view_ok(const ff_get_view *view)
         view->count > FF_VIEW_KEYS_MAX || view->roots >> view->count != 0)
         return 0;
     for (unsigned i = 0; i < view->count; i++) {
-        const ff_get get = { view->id, view->below[i] };
+        const ff_get get = { view->below[i] };
         if (!ff_message_get_ok(&get, view->roots >> i & 1u ? FF_KIND_ROOT : FF_KIND_REFINEMENT))
             return 0;
     }
@@ -80,19 +73,8 @@ void ff_message_write_view(ff_writer *out, const ff_get_view *view)
     ff_write_varint(out, view->bytes_max);
     ff_write_bytes(out, view->count, 1);
     for (unsigned i = 0; out->error == FF_OK && i < view->count; i++)
-        ff_message_write_key(out, view->roots >> i & 1u ? FF_PART_ROOT : FF_PART_REFINEMENT,
+        ff_message_write_key(out, view->roots >> i & 1u ? NAMES_ROOT : NAMES_REFINEMENT,
                              view->below[i]);
-}
-
-void ff_message_write_part(ff_writer *out, const ff_part *part)
-{
-    ff_message_require(&out->error, part_ok(part));
-    ff_write_bytes(out, part->id, 2);
-    if (part->what == FF_PART_END)
-        ff_write_bytes(out, FF_PART_END, 1);
-    else
-        ff_message_write_key(out, part->what, part->key);
-    ff_write_span(out, part->bytes, part->byte_count);
 }
 
 void ff_message_read_view(ff_reader *in, ff_get_view *view)
@@ -117,22 +99,9 @@ void ff_message_read_view(ff_reader *in, ff_get_view *view)
     ff_message_require(&in->error, view->count <= FF_VIEW_KEYS_MAX);
     for (unsigned i = 0; in->error == FF_OK && i < view->count; i++) {
         uint32_t form = (uint32_t)ff_read_bytes(in, 1), what = form & 15u;
-        ff_message_require(&in->error, what == FF_PART_ROOT || what == FF_PART_REFINEMENT);
-        if (what == FF_PART_ROOT) view->roots |= (uint16_t)(1u << i);
+        ff_message_require(&in->error, what <= NAMES_REFINEMENT);
+        if (what == NAMES_ROOT) view->roots |= (uint16_t)(1u << i);
         view->below[i] = ff_message_read_key(in, form);
     }
     ff_message_require(&in->error, view_ok(view));
-}
-
-void ff_message_read_part(ff_reader *in, ff_part *part)
-{
-    part->id = (uint16_t)ff_read_bytes(in, 2);
-    uint32_t form = (uint32_t)ff_read_bytes(in, 1);
-    part->what = form & 15u;
-    if (part->what == FF_PART_END)
-        ff_message_require(&in->error, form == FF_PART_END);
-    else
-        part->key = ff_message_read_key(in, form);
-    ff_message_read_rest(in, &part->bytes, &part->byte_count);
-    ff_message_require(&in->error, part_ok(part));
 }

@@ -315,8 +315,7 @@ int ff_far_render_sector(ff_far_renderer *renderer, const ff_get_far *request, u
         request->down < 1 || request->low_m > request->high_m)
         return FF_ERR_RANGE;
     ff_message message = { .type = FF_MSG_ANSWER, .kind = FF_KIND_FAR };
-    message.u.far = (ff_far){ .id = request->id,
-                              .sector = sector,
+    message.u.far = (ff_far){ .sector = sector,
                               .flags = (uint8_t)(FF_FACE_EMPTY | (last ? FF_FACE_LAST : 0)) };
     int64_t start_us = sys_time_us();
     int rc = render_sector(renderer, request, &message.u.far);

@@ -8,7 +8,7 @@
 #include "ff_session_local.h"
 #include "../packs/ff_packs.h"
 #include "../packs/ff_packs_entered.h"
-#include "../view/ff_view_parts.h"
+#include "../view/ff_view_answer.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -26,20 +26,14 @@
 typedef struct request {
     ff_session_fetch *fetch; /* NULL: cancelled */
     enum ff_kind kind;
-    ff_get get;
+    ff_key key;
+    uint16_t id; /* 0: it has none */
 } request;
 
 /* How often something dear may be asked for: some at once, then as time goes by. */
 typedef struct allowance {
     int64_t credit_us, time_us;
 } allowance;
-
-/* The parts of the view being served, which waits in the queue like any request. */
-typedef struct view_parts {
-    ff_view_part *part; /* FF_VIEW_PARTS_MAX; NULL until the first view is asked for */
-    uint32_t count, next;
-    int on;
-} view_parts;
 
 struct ff_session {
     ff_session_desc desc;
@@ -60,7 +54,7 @@ struct ff_session {
     int drawing_on, job_out, job_stale;
     uint8_t next_face; /* index into its list of faces or sectors */
     allowance drawings, views;
-    view_parts view;
+    ff_view_answer view; /* the one being served, which waits in the queue like any request */
 
     uint8_t *out; /* [out_first, out_end) waits to be sent */
     size_t out_first, out_end, out_capacity;
@@ -103,7 +97,7 @@ void ff_session_destroy(ff_session *session)
 {
     if (!session) return;
     free(session->queue);
-    free(session->view.part);
+    ff_view_answer_free(&session->view);
     ff_packs_leave(session->entered);
     free(session->out);
     free(session);
@@ -185,8 +179,7 @@ static int end_session(ff_session *session, int error)
 static int fetch_answer(const ff_session *session, const request *wanted, ff_message *message)
 {
     *message = (ff_message){ .type = FF_MSG_ANSWER, .kind = wanted->kind };
-    message->u.data.id = wanted->get.id;
-    int bytes = wanted->fetch(session, wanted->kind, wanted->get.key, &message->u.data.bytes);
+    int bytes = wanted->fetch(session, wanted->kind, wanted->key, &message->u.data.bytes);
     if (bytes < 0) return bytes;
     message->u.data.byte_count = (uint32_t)bytes;
     return ff_message_bytes_max(message) <= FACE_BYTES ? FF_OK : FF_ERR_FULL;
@@ -221,51 +214,32 @@ static int serve_payload(ff_session *session, const request *wanted)
     ff_message message;
     int rc = fetch_answer(session, wanted, &message);
     if (rc == FF_OK) rc = put_answer(session, &message, session->desc.out_bytes_max);
-    if (rc < 0) return put_error(session, wanted->get.id, rc);
+    if (rc < 0) return put_error(session, wanted->id, rc);
     session->stats.answers[ff_kind[wanted->kind].data] += (uint32_t)rc;
     return rc;
 }
 
-/* The next part of a view, or its end. As put_answer; a part that cannot be read is left out. */
-static int put_part(ff_session *session, uint16_t id)
+/* Sends the next messages of the view; 1 when it is whole, 0: there is no room for the next one. */
+static int serve_view(ff_session *session)
 {
-    view_parts *view = &session->view;
-    ff_message message = { .type = FF_MSG_ANSWER, .kind = FF_KIND_VIEW };
-    message.u.part = (ff_part){ .id = id, .what = FF_PART_END };
-    if (view->next < view->count) {
-        const ff_view_part *part = &view->part[view->next];
-        const ff_kind_row *kind = &ff_kind[part->kind];
-        int bytes = ff_pack_record(session->pack, (enum ff_section_kind)kind->section, part->key,
-                                   &message.u.part.bytes);
-        if (bytes < 0) return bytes;
-        message.u.part.what = kind->what;
-        message.u.part.key = part->key;
-        message.u.part.byte_count = (uint32_t)bytes;
-    }
+    ff_message message;
+    int error;
     size_t bytes_max = VIEW_BYTES < session->desc.out_bytes_max ? VIEW_BYTES
                                                                 : session->desc.out_bytes_max;
-    int rc = put_answer(session, &message, bytes_max);
-    if (message.u.part.what != FF_PART_END && rc > 0) session->stats.answers[FF_DATA_HEIGHTS]++;
-    return rc;
-}
-
-static int serve_view(ff_session *session, const request *wanted)
-{
-    view_parts *view = &session->view;
-    for (; view->next <= view->count; view->next++) {
-        int rc = put_part(session, wanted->get.id);
-        if (rc == 0) return 0;
-        session->stats.damaged += rc == FF_ERR_CHECKSUM;
+    while (ff_view_answer_next(&session->view, session->pack, &message, &error)) {
+        if (put_answer(session, &message, bytes_max) <= 0) return 0;
+        ff_view_answer_sent(&session->view, &message);
+        session->stats.damaged += error == FF_ERR_CHECKSUM;
+        session->stats.answers[FF_DATA_HEIGHTS] += message.type == FF_MSG_ANSWER &&
+                                                   message.u.part.byte_count;
     }
-    view->on = 0;
     return 1;
 }
 
 /* Answers a request; 1 when answered, 0 when the buffer has no room for the answer yet. */
 static int serve(ff_session *session, const request *wanted)
 {
-    return wanted->kind == FF_KIND_VIEW ? serve_view(session, wanted)
-                                        : serve_payload(session, wanted);
+    return wanted->kind == FF_KIND_VIEW ? serve_view(session) : serve_payload(session, wanted);
 }
 
 static void serve_queue(ff_session *session)
@@ -304,7 +278,7 @@ int ff_session_queue(ff_session *session, const ff_message *ask, ff_session_fetc
 {
     assert(ff_kind[ask->kind].asks == FF_ASKS_NODE &&
            ff_kind[ask->kind].brings == FF_BRINGS_PAYLOAD);
-    return enqueue(session, (request){ fetch, ask->kind, ask->u.get });
+    return enqueue(session, (request){ fetch, ask->kind, ask->u.get.key, 0 });
 }
 
 static int fetch_record(const ff_session *session, enum ff_kind kind, ff_key key,
@@ -322,30 +296,19 @@ int ff_session_ask_record(ff_session *session, const ff_message *ask)
 /* ---- views ---- */
 
 /* Who asks for views too often gets what it names: that costs no more than single requests. */
-static int find_parts(ff_session *session, const ff_get_view *wanted)
-{
-    view_parts *view = &session->view;
-    if (view->on) return FF_ERR_FULL;
-    if (!view->part) view->part = malloc(FF_VIEW_PARTS_MAX * sizeof *view->part);
-    if (!view->part) return FF_ERR_MEMORY;
-    return allowed(session, &session->views, session->desc.views_per_minute, VIEWS_AT_ONCE)
-               ? ff_view_parts(session->pack, wanted, view->part)
-               : ff_view_named(wanted, view->part);
-}
-
 int ff_session_ask_view(ff_session *session, const ff_message *ask)
 {
     const ff_get_view *wanted = &ask->u.view;
-    int count = find_parts(session, wanted);
-    if (count < 0) {
-        answer_failed(session, wanted->id, count);
+    int rc = ff_view_answer_begin(
+        &session->view, session->pack, wanted,
+        session->view.on ||
+            allowed(session, &session->views, session->desc.views_per_minute, VIEWS_AT_ONCE));
+    if (rc < 0) {
+        answer_failed(session, wanted->id, rc);
         return FF_OK;
     }
     session->stats.views++;
-    session->view.count = (uint32_t)count;
-    session->view.next = 0;
-    session->view.on = 1;
-    return enqueue(session, (request){ fetch_record, ask->kind, { wanted->id, 0 } });
+    return enqueue(session, (request){ fetch_record, ask->kind, 0, wanted->id });
 }
 
 /* ---- panoramas and far sets ---- */
@@ -439,7 +402,7 @@ static void cancel(ff_session *session, uint16_t id)
     }
     for (uint32_t i = session->queue_first; i < session->queue_end; i++) {
         request *waiting = &session->queue[i];
-        if (waiting->fetch && waiting->get.id == id) {
+        if (waiting->fetch && waiting->id && waiting->id == id) {
             waiting->fetch = NULL;
             if (waiting->kind == FF_KIND_VIEW) session->view.on = 0;
             session->queue_live--;

@@ -14,9 +14,10 @@
 typedef struct search {
     const ff_pack *pack;
     const ff_get_view *view;
-    ff_view_part *part;
+    ff_view_part part[FF_PARTS_MAX]; /* as they were found */
     uint32_t count;
     uint64_t bytes;
+    int full;
     ff_tree *tree;
     ff_decoder *decoder;
     void *tree_memory, *decoder_memory;
@@ -85,16 +86,22 @@ static ff_view view_of(const ff_terrain_info *info, const ff_get_view *asked)
     return view;
 }
 
-static int is_full(const search *s)
-{
-    return s->count == FF_VIEW_PARTS_MAX || s->bytes > s->view->bytes_max;
-}
-
-static void count_bytes(search *s, enum ff_kind kind, ff_key key)
+static uint64_t bytes_of(const search *s, enum ff_kind kind, ff_key key)
 {
     const uint8_t *payload;
     int bytes = ff_pack_record(s->pack, (enum ff_section_kind)ff_kind[kind].section, key, &payload);
-    s->bytes += bytes > 0 ? (uint64_t)bytes : 0;
+    return bytes > 0 ? (uint64_t)bytes : 0;
+}
+
+/* Puts it on the list, while there is room; 1 when it stands there. */
+static int add(search *s, enum ff_kind kind, ff_key key)
+{
+    uint64_t bytes = bytes_of(s, kind, key);
+    s->full |= s->count == FF_PARTS_MAX || s->bytes + bytes > s->view->bytes_max;
+    if (s->full) return 0;
+    s->part[s->count++] = (ff_view_part){ key, (uint8_t)kind, 0, 0, 0 };
+    s->bytes += bytes;
+    return 1;
 }
 
 /* Takes one wish from the pack into the tree, and on the list when it is asked for. 1 when it was
@@ -106,9 +113,7 @@ static int serve(search *s, const ff_wish *wish)
         return 0;
     if (!ff_view_covers(s->view, kind, wish->key) || ff_view_names(s->view, kind, wish->key))
         return 1;
-    s->part[s->count++] = (ff_view_part){ wish->key, wish->kind };
-    count_bytes(s, kind, wish->key);
-    return 1;
+    return add(s, kind, wish->key);
 }
 
 /* Serves what is wished for in view, from a copy of the list, because it changes as nodes come in.
@@ -118,7 +123,7 @@ static uint32_t serve_wishes(search *s)
     const ff_wish *list;
     uint32_t count = ff_tree_wishes(s->tree, &list), delivered = 0;
     memcpy(s->wish, list, count * sizeof *list);
-    for (uint32_t i = 0; i < count && !is_full(s); i++)
+    for (uint32_t i = 0; i < count && !s->full; i++)
         if (s->wish[i].in_view) delivered += (uint32_t)serve(s, &s->wish[i]);
     return delivered;
 }
@@ -127,7 +132,7 @@ static void find_parts(search *s)
 {
     const ff_view view = view_of(&s->pack->header.info, s->view);
     const ff_quality quality = quality_of(s->view);
-    for (int round = 0; round < ROUNDS_MAX && !is_full(s); round++) {
+    for (int round = 0; round < ROUNDS_MAX && !s->full; round++) {
         ff_tree_select(s->tree, &view, &quality);
         if (serve_wishes(s) == 0 && ff_tree_to_make(s->tree) == 0) break;
     }
@@ -137,22 +142,66 @@ int ff_view_named(const ff_get_view *view, ff_view_part *part)
 {
     for (unsigned i = 0; i < view->count; i++)
         part[i] = (ff_view_part){ view->below[i],
-                                  view->roots >> i & 1u ? FF_KIND_ROOT : FF_KIND_REFINEMENT };
+                                  view->roots >> i & 1u ? FF_KIND_ROOT : FF_KIND_REFINEMENT, 0, 0,
+                                  0 };
     return view->count;
 }
 
-int ff_view_parts(const ff_pack *pack, const ff_get_view *view,
-                  ff_view_part part[FF_VIEW_PARTS_MAX])
+/* Takes it off those that were found: its place among them, or -1. */
+static int take(search *s, enum ff_kind kind, ff_key key)
 {
-    search *s = malloc(sizeof *s);
+    for (uint32_t i = 0; i < s->count; i++)
+        if (s->part[i].key == key && s->part[i].kind == kind) {
+            s->part[i].kind = FF_KIND_COUNT;
+            return (int)i;
+        }
+    return -1;
+}
+
+/* Each behind what stands above it, breadth first. */
+static uint32_t arrange(search *s, ff_view_part *out, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        int root = out[i].kind == FF_KIND_ROOT;
+        out[i].first = (uint16_t)count;
+        if (!root && ff_key_level(out[i].key) == FF_KEY_LEVEL_MAX) continue;
+        for (unsigned q = 0; q < (root ? 1u : 4u); q++) {
+            ff_key key = root ? out[i].key : ff_key_child(out[i].key, q);
+            int turn = take(s, FF_KIND_REFINEMENT, key);
+            if (turn < 0) continue;
+            out[i].below |= (uint8_t)(1u << q);
+            out[count++] = (ff_view_part){ key, FF_KIND_REFINEMENT, 0, 0, (uint16_t)turn };
+        }
+    }
+    return count;
+}
+
+/* What comes first: what is named, or the roots that were found. */
+static uint32_t first_parts(search *s, ff_view_part *out)
+{
+    uint32_t count = (uint32_t)ff_view_named(s->view, out);
+    for (uint32_t i = 0; s->view->count == 0 && i < s->count; i++)
+        if (s->part[i].kind == FF_KIND_ROOT) out[count++] = s->part[i];
+    return count;
+}
+
+int ff_view_parts(const ff_pack *pack, const ff_get_view *view, ff_view_part part[FF_PARTS_MAX],
+                  uint32_t *told)
+{
+    search *s = calloc(1, sizeof *s);
+    *told = 0;
     if (!s) return FF_ERR_MEMORY;
-    *s = (search){ .pack = pack, .view = view, .part = part };
-    s->count = (uint32_t)ff_view_named(view, part);
-    for (uint32_t i = 0; i < s->count; i++) count_bytes(s, (enum ff_kind)part[i].kind, part[i].key);
+    s->pack = pack;
+    s->view = view;
+    for (unsigned i = 0; i < view->count; i++)
+        s->bytes += bytes_of(s, view->roots >> i & 1u ? FF_KIND_ROOT : FF_KIND_REFINEMENT,
+                             view->below[i]);
     int rc = search_open(s);
     if (rc == FF_OK) {
         find_parts(s);
-        rc = (int)s->count;
+        uint32_t first = first_parts(s, part);
+        if (view->count == 0) *told = first;
+        rc = (int)arrange(s, part, first);
     }
     search_close(s);
     free(s);

@@ -190,6 +190,7 @@ static void judge_nothing(fly_sources *from)
         from->truth_error_m = NAN;
     f->judged_all = f->supporting = f->hidden = f->percent = f->no_reserve_percent = NAN;
     f->reserve_came = f->reserve_unused = f->fins_came = NAN;
+    f->talk = (sim_talk){ NAN, NAN, NAN, NAN, NAN, 0 };
     from->picture = (sim_picture_figures){ NAN, NAN, NAN };
 }
 
@@ -203,6 +204,10 @@ static int read_sources(fly_flight *flight, double t_s, fly_sources *from)
     ff_client_get_stats(client, &from->client);
     from->estimate_px = ff_client_error_px_q8(client) / 256.0;
     judge_nothing(from);
+    for (int way = 0; way < 2; way++)
+        from->load[way] = flight->world->link
+                              ? sim_link_get_load(flight->world->link, (enum sim_direction)way)
+                              : (sim_link_load){ 0 };
     if (flight->world->auditor && read_audit(flight, from)) return -1;
     return flight->world->relevance ? read_relevance(flight, from) : 0;
 }

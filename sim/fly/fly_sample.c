@@ -34,6 +34,11 @@ static void print_value(FILE *file, const column *c, double number)
         fprintf(file, c->format, number);
 }
 
+double fly_delay_s(const sim_link_load *load)
+{
+    return load->packets ? (double)load->delay_us / (double)load->packets / 1e6 : 0;
+}
+
 void fly_sample_take(fly_sample *sample, const fly_sources *from)
 {
 #define X(name, format, kind, where_from) sample->name = (double)(where_from);

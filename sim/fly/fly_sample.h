@@ -6,6 +6,7 @@
 #include "../judge/sim_audit.h"
 #include "../judge/sim_picture.h"
 #include "../judge/sim_relevance.h"
+#include "../link/sim_link.h"
 
 #include <stdio.h>
 
@@ -16,8 +17,10 @@
  * MOST the largest value, LAST the last one. Columns without a value are nan. diff_*, ssim:
  * sim_picture.h. square_px_*: mean squared error by cause (sim_audit.h); bytes_*, unused_*: by
  * class of data (sim_relevance.h), bytes_judged with the overhead, bytes_reserve and unused_reserve
- * a part of them, unused_supporting and unused_hidden parts of unused_heights; relevance_percent
- * and the same without the reserve's bytes, relevance_no_reserve_percent: since the start. */
+ * a part of them, unused_supporting and unused_hidden parts of unused_heights; bytes_framing,
+ * node_*, round_trips: sim_talk.h; packets_*, delay_*_s: the link's packets, and how long each was
+ * under way as a mean (sim_link.h), 0 with a real server; relevance_percent and the same without
+ * the reserve's bytes, relevance_no_reserve_percent: since the start. */
 /* clang-format off */
 #define FLY_COLUMNS_FIRST(X) \
     X(t_s, "%.3f", PLACE, from->t_s) \
@@ -108,7 +111,17 @@
     X(far_fins_bytes, "%.0f", TOTAL, from->relevance.fins_came) \
     X(bytes_far, "%.0f", TOTAL, from->relevance.came[FF_DATA_FAR]) \
     X(unused_far, "%.0f", TOTAL, from->relevance.unused[FF_DATA_FAR]) \
-    X(square_px_far, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_FAR])
+    X(square_px_far, "%.4f", MEAN, from->audit.square_px[SIM_CAUSE_FAR]) \
+    X(bytes_framing, "%.0f", TOTAL, from->relevance.talk.framing) \
+    X(node_requests, "%.0f", TOTAL, from->relevance.talk.node_requests) \
+    X(node_request_bytes, "%.0f", TOTAL, from->relevance.talk.node_request_bytes) \
+    X(node_answers, "%.0f", TOTAL, from->relevance.talk.node_answers) \
+    X(node_header_bytes, "%.0f", TOTAL, from->relevance.talk.node_header_bytes) \
+    X(round_trips, "%.0f", LAST, from->relevance.talk.round_trips) \
+    X(packets_down, "%.0f", TOTAL, from->load[SIM_DOWN].packets) \
+    X(packets_up, "%.0f", TOTAL, from->load[SIM_UP].packets) \
+    X(delay_down_s, "%.3f", LAST, fly_delay_s(&from->load[SIM_DOWN])) \
+    X(delay_up_s, "%.3f", LAST, fly_delay_s(&from->load[SIM_UP]))
 /* clang-format on */
 
 /* What a row is made from. NAN in all that nobody judges. */
@@ -124,6 +137,7 @@ typedef struct fly_sources {
     sim_picture_figures picture;
     double truth_error_m; /* no height judged by is further than this from its source */
     sim_relevance_figures relevance;
+    sim_link_load load[2];
     uint64_t geometry_hash, request_hash;
 } fly_sources;
 
@@ -148,6 +162,8 @@ typedef struct fly_totals {
     uint64_t memory_used;
 } fly_totals;
 
+/* How long a packet was under way, as a mean. */
+double fly_delay_s(const sim_link_load *load);
 /* All of a row but the picture's hash. */
 void fly_sample_take(fly_sample *sample, const fly_sources *from);
 void fly_csv_header(FILE *file);

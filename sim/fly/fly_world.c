@@ -118,9 +118,9 @@ static int open_surface(fly_world *world)
     return fail(fly_backend_name(options->backend), rc);
 }
 
-static int asked_for_reserve(void *client, uint16_t id)
+static int asked_for_reserve(void *client, enum ff_kind kind, uint16_t id, ff_key key)
 {
-    return ff_client_asked_for_reserve(client, id);
+    return ff_client_asked_for_reserve(client, kind, id, key);
 }
 
 static int open_client(fly_world *world)

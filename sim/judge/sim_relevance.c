@@ -1,7 +1,7 @@
 #include "sim_relevance.h"
 
 #include "../../client/images/ff_texture_map.h"
-#include "../../protocol/message/ff_message.h"
+#include "../../protocol/message/ff_parts.h"
 #include "sim_cover.h"
 #include "sim_cube.h"
 
@@ -12,6 +12,7 @@
 #define BUCKETS     4096u
 #define NONE        SIZE_MAX
 #define RAY_STEP_PX 4
+#define FARS        64     /* far sets out at once; more are no client's */
 #define LOOK_US     250000 /* faces are looked for so often: pictures change little meanwhile */
 
 /* What a request asked for, by its id. */
@@ -20,6 +21,7 @@ typedef struct asked {
     ff_key key;
     int32_t position_wu[3]; /* faces and sectors */
     int reserve;
+    unsigned chain; /* sim_talk_asked */
 } asked;
 
 typedef struct answer {
@@ -50,7 +52,13 @@ struct sim_relevance {
     sys_stream inner;
     const int64_t *now_us;
     half down, up;
-    asked *asked;   /* by id */
+    asked *asked; /* by id */
+    asked *queue; /* without a number, [queue_first, queue_end): answered in this order */
+    size_t queue_first, queue_end, queue_capacity;
+    asked view;         /* the last one asked for */
+    uint16_t far[FARS]; /* the numbers of sets that are not whole, oldest first */
+    size_t far_count;
+    ff_parts parts;
     answer *answer; /* in order of arrival */
     size_t count, capacity, judged_count, first_young;
     size_t bucket[BUCKETS];
@@ -122,14 +130,54 @@ static uint16_t *take_spans(sim_relevance *relevance, const ff_face *face)
     return first;
 }
 
+/* What a message answers; NULL: nothing that was asked for. */
+static const asked *asked_by(sim_relevance *relevance, const ff_message *message)
+{
+    uint16_t id = message->type == FF_MSG_ANSWER ? ff_message_id(message) : message->u.failed.id;
+    if (message->type == FF_MSG_ANSWER && message->kind == FF_KIND_VIEW) return &relevance->view;
+    if (message->type == FF_MSG_ANSWER && message->kind == FF_KIND_FAR)
+        return relevance->far_count ? &relevance->asked[relevance->far[0]] : NULL;
+    if (id) return &relevance->asked[id];
+    return relevance->queue_first < relevance->queue_end
+               ? &relevance->queue[relevance->queue_first++]
+               : NULL;
+}
+
+/* A far set is whole, or will not be. */
+static void end_far(sim_relevance *relevance, uint16_t id)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < relevance->far_count; i++)
+        if (relevance->far[i] != id) relevance->far[kept++] = relevance->far[i];
+    relevance->far_count = kept;
+}
+
+/* Of a part: which node it is of. 0: of none. */
+static int find_part(sim_relevance *relevance, const ff_part *part, answer *a)
+{
+    int named;
+    return ff_parts_next(&relevance->parts, &a->kind, &a->key, &named) &&
+           ff_parts_take(&relevance->parts, part) == FF_OK && part->byte_count > 0;
+}
+
 static void take_answer(sim_relevance *relevance, const ff_message *message, size_t bytes)
 {
-    const asked *q = &relevance->asked[ff_message_id(message)];
-    answer a = { .kind = q->kind, .key = q->key, .bytes = (uint32_t)bytes, .reserve = q->reserve };
+    const asked *q = asked_by(relevance, message);
     const ff_face *face = &message->u.face;
+    answer a = { .bytes = (uint32_t)bytes };
+    if (!q || ff_kind[q->kind].answered_by != ff_kind[message->kind].answered_by) {
+        relevance->figures.came[FF_DATA_OVERHEAD] += (double)bytes;
+        return;
+    }
+    sim_talk_answered(&relevance->figures.talk, q->chain);
+    a.kind = q->kind;
+    a.key = q->key;
+    a.reserve = q->reserve;
     if (ff_kind[a.kind].brings == FF_BRINGS_PARTS) {
-        a.kind = message->u.part.what == FF_PART_ROOT ? FF_KIND_ROOT : FF_KIND_REFINEMENT;
-        a.key = message->u.part.key;
+        if (!find_part(relevance, &message->u.part, &a)) {
+            relevance->figures.came[FF_DATA_OVERHEAD] += (double)bytes;
+            return;
+        }
     } else if (ff_kind[a.kind].brings == FF_BRINGS_FACE) {
         memcpy(a.position_wu, q->position_wu, sizeof a.position_wu);
         a.face = face->face;
@@ -139,45 +187,74 @@ static void take_answer(sim_relevance *relevance, const ff_message *message, siz
         memcpy(a.position_wu, q->position_wu, sizeof a.position_wu);
         a.sector = message->u.far.sector;
         relevance->figures.fins_came += message->u.far.fins_bytes;
+        if (message->u.far.flags & FF_FACE_LAST) end_far(relevance, relevance->far[0]);
     }
     keep(relevance, a);
 }
 
 /* What no picture shows, and what answers nothing that was asked, is overhead. */
-static int is_to_be_judged(const sim_relevance *relevance, const ff_message *message)
-{
-    if (message->type != FF_MSG_ANSWER) return 0;
-    const ff_kind_row *kind = &ff_kind[relevance->asked[ff_message_id(message)].kind];
-    if (kind->brings == FF_BRINGS_PARTS && message->u.part.what == FF_PART_END) return 0;
-    return kind->answered_by == ff_kind[message->kind].answered_by &&
-           kind->data != FF_DATA_OVERHEAD;
-}
-
 static void take_down(sim_relevance *relevance, const ff_message *message, size_t bytes)
 {
-    if (is_to_be_judged(relevance, message))
+    sim_talk_down(&relevance->figures.talk, message, bytes);
+    if (message->type == FF_MSG_ANSWER) {
         take_answer(relevance, message, bytes);
-    else
-        relevance->figures.came[FF_DATA_OVERHEAD] += (double)bytes;
+        return;
+    }
+    relevance->figures.came[FF_DATA_OVERHEAD] += (double)bytes;
+    if (message->type == FF_MSG_ROOTS) (void)ff_parts_roots(&relevance->parts, &message->u.roots);
+    if (message->type == FF_MSG_FAILED && !message->u.failed.id) asked_by(relevance, message);
+    if (message->type == FF_MSG_FAILED) end_far(relevance, message->u.failed.id);
+    if (message->type == FF_MSG_CANCELLED) end_far(relevance, message->u.cancel.id);
 }
 
-static void take_up(sim_relevance *relevance, const ff_message *message)
+/* Where to note what is asked for: by its number, or last in the queue. NULL: out of memory. */
+static asked *place_for(sim_relevance *relevance, const ff_message *message)
 {
+    uint16_t id = ff_message_id(message);
+    if (message->kind == FF_KIND_VIEW) return &relevance->view;
+    if (id) return &relevance->asked[id];
+    if (relevance->queue_end == relevance->queue_capacity) {
+        size_t more = 2 * relevance->queue_capacity + 256;
+        asked *grown = realloc(relevance->queue, more * sizeof *grown);
+        if (!grown) {
+            relevance->rc = FF_ERR_MEMORY;
+            return NULL;
+        }
+        relevance->queue = grown;
+        relevance->queue_capacity = more;
+    }
+    return &relevance->queue[relevance->queue_end++];
+}
+
+static void take_up(sim_relevance *relevance, const ff_message *message, size_t bytes)
+{
+    sim_talk_up(&relevance->figures.talk, message, bytes);
     if (message->type != FF_MSG_GET) return;
-    asked *q = &relevance->asked[ff_message_id(message)];
-    *q = (asked){ .kind = message->kind };
-    if (relevance->is_reserve)
-        q->reserve = relevance->is_reserve(relevance->reserve_context, ff_message_id(message));
+    asked *q = place_for(relevance, message);
+    if (!q) return;
+    *q = (asked){ .kind = message->kind, .chain = sim_talk_asked(&relevance->figures.talk) };
     switch ((enum ff_kind_asks)ff_kind[q->kind].asks) {
         case FF_ASKS_NODE: q->key = message->u.get.key; break;
-        case FF_ASKS_VIEW: break; /* each part says what it is of */
+        case FF_ASKS_VIEW: ff_parts_begin(&relevance->parts, &message->u.view); break;
         case FF_ASKS_FAR:
+            if (relevance->far_count < FARS)
+                relevance->far[relevance->far_count++] = message->u.get_far.id;
             memcpy(q->position_wu, message->u.get_far.position_wu, sizeof q->position_wu);
             break;
         case FF_ASKS_PANORAMA:
             memcpy(q->position_wu, message->u.panorama.position_wu, sizeof q->position_wu);
             break;
     }
+    if (relevance->is_reserve)
+        q->reserve = relevance->is_reserve(relevance->reserve_context, message->kind,
+                                           ff_message_id(message), q->key);
+}
+
+/* Bytes down that are no message. */
+static void take_nothing(sim_relevance *relevance, size_t bytes)
+{
+    relevance->figures.came[FF_DATA_OVERHEAD] += (double)bytes;
+    relevance->figures.talk.framing += (double)bytes;
 }
 
 /* Adds bytes of one direction and takes whole messages off its front. */
@@ -203,12 +280,11 @@ static void take_bytes(sim_relevance *relevance, half *part, const uint8_t *byte
         if (part == &relevance->down)
             take_down(relevance, &message, (size_t)used);
         else
-            take_up(relevance, &message);
+            take_up(relevance, &message, (size_t)used);
         at += (size_t)used;
     }
     if (used < 0) { /* nonsense: the client will close */
-        if (part == &relevance->down)
-            relevance->figures.came[FF_DATA_OVERHEAD] += (double)(part->count - at);
+        if (part == &relevance->down) take_nothing(relevance, part->count - at);
         at = part->count;
     }
     memmove(part->bytes, part->bytes + at, part->count - at);
@@ -236,8 +312,9 @@ static int tap_recv(void *state, uint8_t *bytes, size_t capacity)
 static int tap_reconnect(void *state)
 {
     sim_relevance *relevance = state;
-    relevance->figures.came[FF_DATA_OVERHEAD] += (double)relevance->down.count;
+    take_nothing(relevance, relevance->down.count);
     relevance->down.count = relevance->up.count = 0;
+    relevance->queue_first = relevance->queue_end = relevance->far_count = 0;
     return relevance->inner.reconnect(relevance->inner.state);
 }
 
@@ -280,6 +357,7 @@ void sim_relevance_destroy(sim_relevance *relevance)
     free(relevance->down.bytes);
     free(relevance->up.bytes);
     free(relevance->asked);
+    free(relevance->queue);
     for (size_t i = 0; i < relevance->count; i++) free(relevance->answer[i].first);
     free(relevance->answer);
     sim_mesh_free(&relevance->mesh);

@@ -31,6 +31,7 @@
 #include "../../platform/sys.h"
 #include "../../protocol/ff_kind.h"
 #include "sim_mesh.h"
+#include "sim_talk.h"
 
 #define SIM_RELEVANCE_US 5000000
 
@@ -48,6 +49,7 @@ typedef struct sim_relevance_figures {
     /* share of judged_all that was drawn in time; NAN before anything was judged */
     double percent;
     double no_reserve_percent; /* the same without the reserve's answers */
+    sim_talk talk;
 } sim_relevance_figures;
 
 /* What a frame draws. */
@@ -68,9 +70,9 @@ typedef struct sim_relevance sim_relevance;
  * memory. */
 sim_relevance *sim_relevance_create(sys_stream *stream, const ff_terrain_info *info,
                                     const int64_t *now_us);
-/* Who tells from now on whether the request of an id, just made, is for the reserve; without, none
- * is. */
-typedef int (*sim_relevance_is_reserve)(void *context, uint16_t id);
+/* Who tells from now on whether the request of an id, or where it has none (0) of a node, just
+ * made, is for the reserve; without, none is. */
+typedef int (*sim_relevance_is_reserve)(void *context, enum ff_kind kind, uint16_t id, ff_key key);
 void sim_relevance_ask(sim_relevance *relevance, sim_relevance_is_reserve is_reserve,
                        void *context);
 void sim_relevance_destroy(sim_relevance *relevance);

@@ -127,6 +127,11 @@ void sim_link_cut(sim_link *link, int64_t now_us)
     link->state = LINK_CUT;
 }
 
+sim_link_load sim_link_get_load(const sim_link *link, enum sim_direction way)
+{
+    return link->pipe[way].load;
+}
+
 unsigned sim_link_connections(const sim_link *link) { return link->connections; }
 
 int sim_link_reconnect(sim_link *link, int64_t now_us)

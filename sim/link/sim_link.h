@@ -34,6 +34,8 @@ typedef struct sim_link_desc {
     /* the connection is lost after 0.5 .. 1.5 times this, uniform; 0: never */
     uint32_t cut_every_ms;
     uint32_t connect_ms; /* to connect (again) */
+    uint32_t
+        header_bytes; /* of IP and TCP before each packet: counted, no time is taken for them */
 } sim_link_desc;
 
 /* "gprs", "edge", "umts", "lan", ... or NULL. sim_link_profile_at(i) walks all of them, NULL at the
@@ -72,6 +74,12 @@ int64_t sim_link_next_us(const sim_link *link);
 int sim_link_change(sim_link *link, const sim_link_desc *desc, int64_t now_us);
 /* Loses the connection now. */
 void sim_link_cut(sim_link *link, int64_t now_us);
+/* What a direction has carried since the start: packets that left the transmitter, their bytes
+ * without headers, and how long they were under way from there, all together. */
+typedef struct sim_link_load {
+    uint64_t packets, bytes, delay_us;
+} sim_link_load;
+sim_link_load sim_link_get_load(const sim_link *link, enum sim_direction way);
 /* Connections made so far, the first included: the server's end notices a new connection by it. */
 unsigned sim_link_connections(const sim_link *link);
 /* After a cut: starts connecting; FF_ERR_AGAIN until connect_ms have passed, then FF_OK; all bytes

@@ -206,6 +206,9 @@ static void advance(sim_pipe *pipe, int64_t now_us)
         if (pipe->desc.jitter_us)
             arrival_us += sys_random_below(&pipe->jitter, pipe->desc.jitter_us);
         if (arrival_us > pipe->arrival_us) pipe->arrival_us = arrival_us;
+        pipe->load.packets++;
+        pipe->load.bytes += packet;
+        pipe->load.delay_us += (uint64_t)(pipe->arrival_us - pipe->free_us);
         span_push(&pipe->wire, pipe->arrival_us, packet);
     }
 }

@@ -47,6 +47,7 @@ typedef struct sim_pipe {
     uint64_t surplus;     /* part of a byte already paid for, in millionths of a byte */
     uint64_t opportunity; /* with a trace: the first opportunity not used up */
     int64_t arrival_us;   /* of the last packet: order is kept */
+    sim_link_load load;
 } sim_pipe;
 
 /* FF_OK, FF_ERR_MEMORY, or an error of the trace. */

@@ -184,12 +184,14 @@ static void answer(server *s, unsigned amount, int rightly)
 {
     if (!s->waiting_count) return;
     unsigned i = amount % s->waiting_count;
+    if (rightly && ff_kind[s->waiting[i].kind].asks == FF_ASKS_NODE) /* in their order */
+        for (i = 0; ff_kind[s->waiting[i].kind].asks != FF_ASKS_NODE;) i++;
     enum ff_kind kind = (enum ff_kind)s->waiting[i].kind;
     ff_key key = s->waiting[i].key;
     ff_message message = { .type = FF_MSG_FAILED };
     message.u.failed = (ff_failed){ s->waiting[i].id,
                                     amount & 8 ? FF_ERR_NOT_FOUND : FF_ERR_SYSTEM };
-    s->waiting[i] = s->waiting[--s->waiting_count];
+    memmove(&s->waiting[i], &s->waiting[i + 1], (--s->waiting_count - i) * sizeof s->waiting[i]);
     if (!rightly && amount & 4) {
         say(s, &message);
         return;
@@ -198,7 +200,7 @@ static void answer(server *s, unsigned amount, int rightly)
     message.type = FF_MSG_ANSWER;
     message.kind = kind;
     if (ff_kind[kind].brings == FF_BRINGS_PARTS) {
-        message.u.part = (ff_part){ .id = id, .what = FF_PART_END };
+        message.u.part = (ff_part){ .later = (uint8_t)(rightly ? 0 : amount) };
         say(s, &message);
     } else if (ff_kind[kind].brings == FF_BRINGS_FACE) {
         message.u.face = (ff_face){ .id = id,
@@ -207,7 +209,6 @@ static void answer(server *s, unsigned amount, int rightly)
                                     .flags = FF_FACE_EMPTY | (amount & 1 ? FF_FACE_LAST : 0) };
         say(s, &message);
     } else {
-        message.u.data.id = id;
         say_payload(s, rightly ? key : key + amount, kind, &message);
     }
 }
@@ -219,13 +220,15 @@ static void part(server *s, input *in, unsigned amount)
         ff_message message = { .type = FF_MSG_ANSWER, .kind = FF_KIND_VIEW };
         unsigned tile = next(in), what = next(in), level = what >> 1 & 3, root = what & 1;
         if (root) level = 0;
-        message.u.part =
-            (ff_part){ .id = s->waiting[i].id,
-                       .what = root ? FF_PART_ROOT : FF_PART_REFINEMENT,
-                       .key = amount & 1 ? s->waiting[i].key
-                                         : ff_key_make(amount & 2 ? tile : tile << 20, level,
-                                                       (what >> 3) & ((1u << 2 * level) - 1)) };
-        say_payload(s, message.u.part.key, root ? FF_KIND_ROOT : FF_KIND_REFINEMENT, &message);
+        const uint8_t tiles[2] = { (uint8_t)(tile & 127), (uint8_t)(what & 127) };
+        ff_key key = amount & 1 ? s->waiting[i].key
+                                : ff_key_make(amount & 2 ? tile : tile << 20, level,
+                                              (what >> 3) & ((1u << 2 * level) - 1));
+        message.u.part.below = (uint8_t)(amount >> 2 & 3);
+        if (what >> 7)
+            say(s, &(ff_message){ .type = FF_MSG_ROOTS, .u.roots = { tiles, 1 + (amount & 1) } });
+        else
+            say_payload(s, key, root ? FF_KIND_ROOT : FF_KIND_REFINEMENT, &message);
         return;
     }
 }

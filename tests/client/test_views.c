@@ -180,8 +180,9 @@ static void damaged_records_are_left_out(void **state)
 
 typedef struct liar {
     ff_pack *pack;
-    ff_part part;   /* its answer to views */
-    unsigned times; /* so often */
+    const ff_message *answer; /* to the first view */
+    unsigned answers;
+    int answered;
     uint8_t bytes[1 << 15];
     size_t count;
     unsigned connections;
@@ -206,10 +207,9 @@ static int liar_send(void *state, const uint8_t *bytes, size_t count)
         answer.u.welcome = (ff_welcome){ FF_PROTOCOL_VERSION, server->pack->header.info, { 0 } };
         if (heard.type == FF_MSG_CAPS) say(server, &answer);
         if (heard.type != FF_MSG_GET || heard.kind != FF_KIND_VIEW) continue;
-        answer = (ff_message){ .type = FF_MSG_ANSWER, .kind = FF_KIND_VIEW };
-        answer.u.part = server->part;
-        answer.u.part.id = heard.u.view.id;
-        for (unsigned i = 0; i < server->times; i++) say(server, &answer);
+        for (unsigned i = 0; !server->answered && i < server->answers; i++)
+            say(server, &server->answer[i]);
+        server->answered = 1;
     }
     return (int)count;
 }
@@ -233,18 +233,18 @@ static int liar_reconnect(void *state)
 }
 
 /* Protocol errors that an answer makes. */
-static uint32_t errors_of(client_rig *rig, ff_part part, unsigned times)
+static uint32_t errors_of(client_rig *rig, const ff_message *answer, unsigned answers)
 {
     static liar server;
-    server = (liar){ .pack = &rig->pack, .part = part, .times = times };
+    server = (liar){ .pack = &rig->pack, .answer = answer, .answers = answers };
     rig->stream = (sys_stream){ &server, liar_send, liar_recv, liar_close, liar_reconnect };
     rig_client(rig, 2 * MB);
     ff_session_destroy(rig->session); /* the other server's */
     rig->session = NULL;
     for (int i = 0; i < 40; i++) {
         rig->now_us += 50000;
-        ff_client_work(rig->client, rig->now_us);
         ff_client_update(rig->client, rig->now_us, &rig->camera);
+        ff_client_work(rig->client, rig->now_us);
     }
     uint32_t errors = rig_stats(rig).protocol_errors;
     ff_client_destroy(rig->client);
@@ -254,35 +254,56 @@ static uint32_t errors_of(client_rig *rig, ff_part part, unsigned times)
     return errors;
 }
 
-static ff_part root_part(const client_rig *rig)
+static ff_message roots(const char *tiles, size_t count)
 {
-    ff_part part = { .what = FF_PART_ROOT, .key = ff_key_make(0, 0, 0) };
-    part.byte_count = (uint32_t)ff_pack_record(&rig->pack, FF_SECTION_ROOT, part.key, &part.bytes);
+    return (ff_message){ .type = FF_MSG_ROOTS,
+                         .u.roots = { (const uint8_t *)tiles, (uint32_t)count } };
+}
+
+static ff_message part_of(const client_rig *rig, enum ff_kind kind, ff_key key, uint8_t below)
+{
+    ff_message part = { .type = FF_MSG_ANSWER, .kind = FF_KIND_VIEW, .u.part.below = below };
+    int bytes = ff_pack_record(&rig->pack, (enum ff_section_kind)ff_kind[kind].section, key,
+                               &part.u.part.bytes);
+    assert_true(bytes > 0);
+    part.u.part.byte_count = (uint32_t)bytes;
     return part;
+}
+
+/* The answer to a client that knows its place: a root, and what refines it to the finest level. */
+static void good_answer(const client_rig *rig, ff_message answer[6])
+{
+    ff_key key = ff_key_make(0, 0, 0);
+    answer[0] = roots("\0", 1);
+    answer[1] = part_of(rig, FF_KIND_ROOT, key, 1);
+    for (int level = 0; level < 3; level++, key = ff_key_child(key, 0))
+        answer[2 + level] = part_of(rig, FF_KIND_REFINEMENT, key, level < 2);
+    answer[5] = answer[4];
 }
 
 static void parts_nobody_asked_for_end_the_connection(void **state)
 {
     (void)state;
     client_rig rig;
+    ff_message answer[6];
     rig_open(&rig, 0);
     rig.desc.no_reserve = 1;
-    ff_part good = root_part(&rig);
-    assert_int_equal(errors_of(&rig, good, 1), 0);
-    ff_part bad = good;
-    bad.key = ff_key_make(4, 0, 0); /* there are four tiles */
-    assert_true(errors_of(&rig, bad, 1) > 0);
-    bad = good;
-    bad.what = FF_PART_REFINEMENT;
-    bad.key = ff_key_make(0, 3, 0); /* of the finest level */
-    assert_true(errors_of(&rig, bad, 1) > 0);
+    rig.desc.place_known = 1;
+    good_answer(&rig, answer);
+    assert_int_equal(errors_of(&rig, answer, 5), 0);
+    assert_true(errors_of(&rig, answer, 6) > 0); /* one more than were announced */
+    answer[4].u.part.below = 1;                  /* nothing refines the finest level */
+    assert_true(errors_of(&rig, answer, 6) > 0);
+    answer[0] = roots("\4", 1); /* there are four tiles */
+    assert_true(errors_of(&rig, answer, 2) > 0);
+    assert_true(errors_of(&rig, answer + 1, 1) > 0); /* of which tile? */
     rig.desc.place_known = 0;
     rig.camera.pos_wu[0] = rig.camera.pos_wu[1] = 200 * FF_WU_PER_METRE;
-    rig.camera.yaw = 40960; /* sees one tile alone */
+    rig.camera.yaw = 40960; /* sees one tile alone, and names it */
     rig.camera.pos_wu[2] = 1500 * FF_WU_PER_METRE;
-    bad = good;
-    bad.key = ff_key_make(3, 0, 0);
-    assert_true(errors_of(&rig, bad, 1) > 0);
+    answer[0] = roots("\0", 1);
+    assert_int_equal(errors_of(&rig, answer + 1, 1), 0);
+    assert_true(errors_of(&rig, answer, 2) > 0); /* it is told another one */
     rig_close(&rig);
 }
 
@@ -290,13 +311,19 @@ static void parts_nobody_asked_for_end_the_connection(void **state)
 static void parts_are_no_more_than_was_asked_for(void **state)
 {
     (void)state;
+    static ff_message answer[2 + FF_PARTS_MAX];
+    static const char tiles[FF_PARTS_MAX]; /* of tile 0, again and again */
     client_rig rig;
     rig_open(&rig, 0);
     rig.desc.no_reserve = 1;
-    ff_part part = root_part(&rig);
-    unsigned most = UNTIMED / part.byte_count + 1; /* the last may pass it */
-    assert_int_equal(errors_of(&rig, part, most), 0);
-    assert_true(errors_of(&rig, part, most + 1) > 0);
+    rig.desc.place_known = 1;
+    for (unsigned i = 1; i < 2 + FF_PARTS_MAX; i++)
+        answer[i] = part_of(&rig, FF_KIND_ROOT, ff_key_make(0, 0, 0), 0);
+    unsigned most = UNTIMED / answer[1].u.part.byte_count;
+    assert_in_range(most, 10, FF_PARTS_MAX - 1);
+    answer[0] = roots(tiles, most + 1);
+    assert_int_equal(errors_of(&rig, answer, 1 + most), 0);
+    assert_true(errors_of(&rig, answer, 1 + most + 1) > 0);
     rig_close(&rig);
 }
 

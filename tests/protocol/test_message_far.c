@@ -54,7 +54,7 @@ static ff_get_far largest_get(void)
 
 static ff_far sector_with(uint32_t fins_bytes, uint8_t blocks_x)
 {
-    ff_far far = { .id = 9, .sector = 15, .flags = FF_FACE_LAST };
+    ff_far far = { .sector = 15, .flags = FF_FACE_LAST };
     far.fins = some;
     far.fins_bytes = fins_bytes;
     if (blocks_x == 0) return far;
@@ -68,10 +68,7 @@ static ff_far sector_with(uint32_t fins_bytes, uint8_t blocks_x)
     return far;
 }
 
-static ff_far empty_sector(uint8_t flags)
-{
-    return (ff_far){ .id = 65535, .flags = FF_FACE_EMPTY | flags };
-}
+static ff_far empty_sector(uint8_t flags) { return (ff_far){ .flags = FF_FACE_EMPTY | flags }; }
 
 /* Decodes what was encoded, and neither needs nor takes another byte. */
 static int round_trip(const ff_message *message, ff_message *again)
@@ -141,8 +138,8 @@ static void bytes_are_those_of_the_specification(void **state)
     static const uint8_t request[] = { 10,   41, 2, 1, 1,  0, 0, 0,  2, 0, 0, 0, 0xfd, 0xff, 0xff,
                                        0xff, 4,  0, 0, 0,  5, 0, 6,  0, 7, 0, 8, 0,    0xf7, 0xff,
                                        10,   0,  0, 1, 12, 0, 3, 70, 2, 3, 5, 0, 4 };
-    static const uint8_t sector[] = { 75, 18,   2,    1, 0x23, 3,   'a', 'b', 'c', 4,
-                                      5,  0xfe, 0xff, 2, 'd',  'e', 'f', 'g', 'h', 'i' };
+    static const uint8_t sector[] = { 75,   16,   0x23, 3,   'a', 'b', 'c', 4,   5,
+                                      0xfe, 0xff, 2,    'd', 'e', 'f', 'g', 'h', 'i' };
     ff_message out;
     uint8_t again[64];
     (void)state;
@@ -158,7 +155,7 @@ static void bytes_are_those_of_the_specification(void **state)
     assert_memory_equal(again, request, sizeof request);
     assert_int_equal(ff_message_decode(sector, sizeof sector, &out), sizeof sector);
     const ff_far *far = &out.u.far;
-    assert_true(far->id == 258 && far->sector == 3 && far->flags == FF_FACE_LAST);
+    assert_true(far->sector == 3 && far->flags == FF_FACE_LAST);
     assert_true(far->fins_bytes == 3 && far->blocks_x == 4 && far->blocks_y == 5 && far->top == -2);
     assert_true(far->blocks_bytes == 2 && far->image_bytes == 4);
     assert_memory_equal(far->fins, "abc", 3);
@@ -243,23 +240,23 @@ static void assert_far(const char *body, size_t count, int expected)
 static void bad_sectors_are_refused(void **state)
 {
     (void)state;
-    assert_far("\1\0\x17", 3, FF_OK);
-    assert_far("\1\0\x37", 3, FF_OK);
-    assert_far("\1\0\x1f", 3, FF_OK);
-    assert_far("\1\0\x57", 3, FF_ERR_RANGE);             /* a third flag */
-    assert_far("\1\0\x17\0", 4, FF_ERR_FORMAT);          /* more than nothing */
-    assert_far("\1\0\7\0\0", 5, FF_ERR_RANGE);           /* less than something */
-    assert_far("\1\0\7\1f\0", 6, FF_OK);                 /* fins */
-    assert_far("\1\0\7\2f\0", 6, FF_ERR_TRUNCATED);      /* fewer fins than said */
-    assert_far("\1\0\7\1f\0\0", 7, FF_ERR_FORMAT);       /* behind them */
-    assert_far("\1\0\7\x81\0f\0", 7, FF_ERR_RANGE);      /* a length that is too long */
-    assert_far("\1\0\7\0\2\1\0\0\1bi", 11, FF_OK);       /* paint */
-    assert_far("\1\0\7\0\2\1\0\0\1b", 10, FF_ERR_RANGE); /* no image */
-    assert_far("\1\0\7\0\2\1\0\0\0i", 10, FF_ERR_RANGE); /* no blocks */
-    assert_far("\1\0\7\0\3\1\0\0\1bi", 11, FF_ERR_RANGE);
-    assert_far("\1\0\7\0\x82\1\0\0\1bi", 11, FF_ERR_RANGE);
-    assert_far("\1\0\7\0\2\0\0\0\1bi", 11, FF_ERR_RANGE);
-    assert_far("\1\0\7\0\2\x81\0\0\1bi", 11, FF_ERR_RANGE);
+    assert_far("\x17", 1, FF_OK);
+    assert_far("\x37", 1, FF_OK);
+    assert_far("\x1f", 1, FF_OK);
+    assert_far("\x57", 1, FF_ERR_RANGE);            /* a third flag */
+    assert_far("\x17\0", 2, FF_ERR_FORMAT);         /* more than nothing */
+    assert_far("\7\0\0", 3, FF_ERR_RANGE);          /* less than something */
+    assert_far("\7\1f\0", 4, FF_OK);                /* fins */
+    assert_far("\7\2f\0", 4, FF_ERR_TRUNCATED);     /* fewer fins than said */
+    assert_far("\7\1f\0\0", 5, FF_ERR_FORMAT);      /* behind them */
+    assert_far("\7\x81\0f\0", 5, FF_ERR_RANGE);     /* a length that is too long */
+    assert_far("\7\0\2\1\0\0\1bi", 9, FF_OK);       /* paint */
+    assert_far("\7\0\2\1\0\0\1b", 8, FF_ERR_RANGE); /* no image */
+    assert_far("\7\0\2\1\0\0\0i", 8, FF_ERR_RANGE); /* no blocks */
+    assert_far("\7\0\3\1\0\0\1bi", 9, FF_ERR_RANGE);
+    assert_far("\7\0\x82\1\0\0\1bi", 9, FF_ERR_RANGE);
+    assert_far("\7\0\2\0\0\0\1bi", 9, FF_ERR_RANGE);
+    assert_far("\7\0\2\x81\0\0\1bi", 9, FF_ERR_RANGE);
 }
 
 /* Whatever bit is flipped: what decodes encodes to the same bytes. */
@@ -290,7 +287,7 @@ static void sectors_end_where_messages_do(void **state)
     ff_message m = far_of(sector_with(5, 4)), out;
     (void)state;
     m.u.far.image = image;
-    m.u.far.image_bytes = FF_MESSAGE_BODY_MAX - (2 + 1 + 1 + 5 + 1 + 1 + 2 + 2 + 130);
+    m.u.far.image_bytes = FF_MESSAGE_BODY_MAX - (1 + 1 + 5 + 1 + 1 + 2 + 2 + 130);
     assert_int_equal(ff_message_encode(&m, room, sizeof room),
                      FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX);
     assert_int_equal(ff_message_decode(room, sizeof room, &out),

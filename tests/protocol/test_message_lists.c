@@ -125,8 +125,8 @@ static void welcome_needs_its_terrain(void **state)
     bytes[6] = 1;
     bytes[8] = 99; /* no such terrain */
     assert_int_equal(ff_message_decode(bytes, (size_t)count, &out), FF_ERR_RANGE);
-    assert_int_equal(ff_message_decode((const uint8_t *)"\x41\4\7\0\0\0", 6, &out), FF_ERR_RANGE);
-    assert_int_equal(ff_message_decode((const uint8_t *)"\x41\x06\7\0\0\0\1\0", 8, &out),
+    assert_int_equal(ff_message_decode((const uint8_t *)"\x41\4\x08\0\0\0", 6, &out), FF_ERR_RANGE);
+    assert_int_equal(ff_message_decode((const uint8_t *)"\x41\x06\x08\0\0\0\1\0", 8, &out),
                      FF_ERR_RANGE);
 }
 

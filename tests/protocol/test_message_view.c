@@ -1,5 +1,6 @@
-/* GET_VIEW and PART: there and back, at the ends of their fields and beyond them. */
-#include "../../protocol/message/ff_message.h"
+/* GET_VIEW and the parts that answer it: there and back, at the ends of their fields and beyond
+ * them; and which node each part is of. */
+#include "../../protocol/message/ff_parts.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -64,7 +65,7 @@ static void round_trip(const ff_message *message, ff_message *again)
 {
     uint8_t bytes[512], exact[512];
     int used = ff_message_encode(message, bytes, sizeof bytes);
-    assert_in_range(used, 2, ff_message_bytes_max(message));
+    assert_in_range(used, 1, ff_message_bytes_max(message));
     assert_int_equal(ff_message_decode(bytes, (size_t)used, again), used);
     for (int room = 0; room < used; room++) {
         ff_message half;
@@ -104,17 +105,17 @@ static void views_there_and_back(void **state)
 static void parts_there_and_back(void **state)
 {
     const ff_part list[] = {
-        { 65535, FF_PART_REFINEMENT, ff_key_make(FF_KEY_TILES_MAX - 1, 15, 0x3fffffff), payload,
-          sizeof payload },
-        { 1, FF_PART_ROOT, ff_key_make(3, 0, 0), payload, 1 },
-        { 2, FF_PART_END, 0, NULL, 0 },
+        { 15, payload, sizeof payload, 0 },
+        { 1, payload, 1, 0 },
+        { 0, NULL, 0, 0 },
+        { 0, NULL, 0, FF_PARTS_LATER_MAX },
     };
     (void)state;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 4; i++) {
         ff_message message = part_of(list[i]), again;
         round_trip(&message, &again);
-        assert_int_equal(again.u.part.what, list[i].what);
-        assert_int_equal(again.u.part.key, list[i].key);
+        assert_int_equal(again.u.part.below, list[i].below);
+        assert_int_equal(again.u.part.later, list[i].later);
         assert_int_equal(again.u.part.byte_count, list[i].byte_count);
         if (list[i].byte_count)
             assert_memory_equal(again.u.part.bytes, payload, list[i].byte_count);
@@ -145,25 +146,29 @@ static void ranges_hold_both_ways(void **state)
     BAD(below[2] = ff_key_make(0, 2, 16));
     BAD(below[1] = ff_key_make(0, 1, 0)); /* a root is of level 0 */
 #undef BAD
-#define BAD(assignment)                                                                \
-    m = part_of((ff_part){ 1, FF_PART_REFINEMENT, ff_key_make(0, 1, 3), payload, 5 }); \
-    m.u.part.assignment;                                                               \
+#define BAD(assignment)                         \
+    m = part_of((ff_part){ 3, payload, 5, 0 }); \
+    m.u.part.assignment;                        \
     assert_int_equal(ff_message_encode(&m, bytes, sizeof bytes), FF_ERR_RANGE)
-    BAD(what = 3);
-    BAD(what = FF_PART_ROOT);
-    BAD(what = FF_PART_END);
-    BAD(key = ff_key_make(0, 1, 4));
+    BAD(below = 16);
     BAD(byte_count = 0);
+    BAD(later = 1);
 #undef BAD
-    /* as bytes: a key that is neither root nor refinement; an end with a level, or with more */
+    m = part_of((ff_part){ .later = FF_PARTS_LATER_MAX + 1 });
+    assert_int_equal(ff_message_encode(&m, bytes, sizeof bytes), FF_ERR_RANGE);
+    /* as bytes: a key that is neither root nor refinement */
     m = get_view(least_view());
     m.u.view.count = 1;
     int used = ff_message_encode(&m, bytes, sizeof bytes);
     bytes[used - 3] = 2;
     assert_int_equal(ff_message_decode(bytes, (size_t)used, &m), FF_ERR_RANGE);
-    assert_int_equal(ff_message_decode((const uint8_t *)"\x4a\3\1\0\2", 5, &m), 5);
-    assert_int_equal(ff_message_decode((const uint8_t *)"\x4a\3\1\0\x12", 5, &m), FF_ERR_RANGE);
-    assert_int_equal(ff_message_decode((const uint8_t *)"\x4a\4\1\0\2\0", 6, &m), FF_ERR_RANGE);
+    /* roots: a tile that there cannot be, and one too many */
+    uint8_t roots[3 + FF_PARTS_MAX + 1] = { 74, 0x81, 4 };
+    assert_int_equal(ff_message_decode(roots, sizeof roots, &m), FF_ERR_RANGE);
+    roots[1] = 0x80;
+    assert_int_equal(ff_message_decode(roots, sizeof roots, &m), sizeof roots - 1);
+    assert_int_equal(ff_message_decode((const uint8_t *)"\x4a\5\x80\x80\x80\x80\1", 7, &m),
+                     FF_ERR_RANGE);
 }
 
 static void a_view_covers_what_lies_below(void **state)
@@ -188,6 +193,106 @@ static void a_view_covers_what_lies_below(void **state)
     assert_false(ff_view_covers(&view, FF_KIND_ROOT, ff_key_make(5, 0, 0)));
 }
 
+/* ---- which node a part is of ---- */
+
+static ff_key awaited(const ff_parts *parts, enum ff_kind expected)
+{
+    enum ff_kind kind;
+    ff_key key;
+    int named;
+    assert_true(ff_parts_next(parts, &kind, &key, &named));
+    assert_int_equal(kind, expected);
+    return key;
+}
+
+static int comes(ff_parts *parts, unsigned below)
+{
+    const ff_part part = { (uint8_t)below, payload, 1, 0 };
+    return ff_parts_take(parts, &part);
+}
+
+/* What is named, then what each announces, breadth first. */
+static void parts_come_as_they_were_announced(void **state)
+{
+    static ff_parts parts;
+    ff_get_view view = least_view();
+    const ff_key root = ff_key_make(7, 0, 0), node = ff_key_make(7, 2, 9);
+    (void)state;
+    view.count = 2;
+    view.roots = 2;
+    view.below[0] = node;
+    view.below[1] = root;
+    ff_parts_begin(&parts, &view);
+    assert_int_equal(awaited(&parts, FF_KIND_REFINEMENT), node);
+    assert_int_equal(comes(&parts, 1 + 8), FF_OK);
+    assert_int_equal(awaited(&parts, FF_KIND_ROOT), root);
+    assert_int_equal(comes(&parts, 1), FF_OK);
+    assert_int_equal(awaited(&parts, FF_KIND_REFINEMENT), ff_key_child(node, 0));
+    assert_int_equal(comes(&parts, 0), FF_OK);
+    assert_int_equal(awaited(&parts, FF_KIND_REFINEMENT), ff_key_child(node, 3));
+    assert_int_equal(comes(&parts, 0), FF_OK);
+    assert_int_equal(awaited(&parts, FF_KIND_REFINEMENT), root); /* what refines it */
+    assert_false(ff_parts_done(&parts));
+    assert_int_equal(comes(&parts, 0), FF_OK);
+    assert_true(ff_parts_done(&parts));
+    assert_int_equal(comes(&parts, 0), FF_ERR_FORMAT);
+}
+
+/* Those that are put off stand behind all others, and as they stood. */
+static void what_comes_later_goes_to_the_end(void **state)
+{
+    static ff_parts parts;
+    ff_get_view view = least_view();
+    (void)state;
+    view.count = 4;
+    for (uint32_t i = 0; i < 4; i++) view.below[i] = ff_key_make(0, 1, i);
+    ff_parts_begin(&parts, &view);
+    ff_part later = { .later = 4 };
+    assert_int_equal(ff_parts_take(&parts, &later), FF_ERR_FORMAT); /* all of them: behind what? */
+    later.later = 2;
+    assert_int_equal(ff_parts_take(&parts, &later), FF_OK);
+    static const uint32_t order[] = { 2, 3, 0, 1 };
+    for (int i = 0; i < 4; i++) {
+        assert_int_equal(ff_key_code(awaited(&parts, FF_KIND_REFINEMENT)), order[i]);
+        assert_int_equal(comes(&parts, 0), FF_OK);
+    }
+    assert_true(ff_parts_done(&parts));
+}
+
+static void roots_are_told_where_nothing_was_named(void **state)
+{
+    static ff_parts parts;
+    const ff_get_view view = least_view();
+    const ff_roots roots = { (const uint8_t *)"\5\2", 2 };
+    (void)state;
+    ff_parts_begin(&parts, &view);
+    assert_false(ff_parts_done(&parts));
+    assert_int_equal(comes(&parts, 0), FF_ERR_FORMAT); /* of what? */
+    assert_int_equal(ff_parts_roots(&parts, &roots), FF_OK);
+    assert_int_equal(ff_parts_roots(&parts, &roots), FF_ERR_FORMAT); /* again */
+    assert_int_equal(awaited(&parts, FF_KIND_ROOT), ff_key_make(5, 0, 0));
+    assert_int_equal(comes(&parts, 2), FF_ERR_FORMAT); /* a root has itself below it, alone */
+    ff_parts_begin(&parts, &view);
+    assert_int_equal(ff_parts_roots(&parts, &(ff_roots){ NULL, 0 }), FF_OK);
+    assert_true(ff_parts_done(&parts)); /* no ground in view */
+}
+
+static void an_answer_has_an_end(void **state)
+{
+    static ff_parts parts;
+    ff_get_view view = least_view();
+    unsigned count = 1;
+    (void)state;
+    view.count = 1;
+    view.below[0] = ff_key_make(0, FF_KEY_LEVEL_MAX, 0);
+    ff_parts_begin(&parts, &view);
+    assert_int_equal(comes(&parts, 1), FF_ERR_FORMAT); /* nothing is finer */
+    view.below[0] = ff_key_make(0, 0, 0);
+    ff_parts_begin(&parts, &view);
+    while (comes(&parts, 15) == FF_OK) count++;
+    assert_in_range(count, FF_PARTS_MAX / 4, FF_PARTS_MAX / 4 + 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -195,6 +300,10 @@ int main(void)
         cmocka_unit_test(parts_there_and_back),
         cmocka_unit_test(ranges_hold_both_ways),
         cmocka_unit_test(a_view_covers_what_lies_below),
+        cmocka_unit_test(parts_come_as_they_were_announced),
+        cmocka_unit_test(what_comes_later_goes_to_the_end),
+        cmocka_unit_test(roots_are_told_where_nothing_was_named),
+        cmocka_unit_test(an_answer_has_an_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

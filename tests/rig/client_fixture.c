@@ -64,8 +64,7 @@ static int make_sector(const client_rig *rig, const ff_face_job *job, uint8_t *o
     unsigned sector = job->face;
     int bytes = rig->spoilt >> sector & 1u ? 1 : ff_fins_encode(fin, 2, fins, sizeof fins);
     ff_message message = { .type = FF_MSG_ANSWER, .kind = FF_KIND_FAR };
-    message.u.far = (ff_far){ .id = job->far.id,
-                              .sector = (uint8_t)sector,
+    message.u.far = (ff_far){ .sector = (uint8_t)sector,
                               .flags = job->last ? FF_FACE_LAST : 0,
                               .fins = fins,
                               .fins_bytes = (uint32_t)bytes };

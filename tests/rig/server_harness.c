@@ -261,13 +261,13 @@ pid_t harness_served_by(const harness_server *server, const harness_client *clie
     return 0;
 }
 
-int harness_root_comes(harness_client *client, uint16_t id)
+int harness_root_comes(harness_client *client, uint32_t tile)
 {
     ff_message message = { .type = FF_MSG_GET,
                            .kind = FF_KIND_ROOT,
-                           .u.get = { id, ff_key_make(id % 4u, 0, 0) } };
+                           .u.get = { ff_key_make(tile % 4u, 0, 0) } };
     return harness_tell(client, &message) && harness_hear(client, &message) == 1 &&
-           message.type == FF_MSG_ANSWER && message.kind == FF_KIND_ROOT && message.u.data.id == id;
+           message.type == FF_MSG_ANSWER && message.kind == FF_KIND_ROOT;
 }
 
 int harness_panorama_comes(harness_client *client, uint16_t id)

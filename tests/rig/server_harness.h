@@ -48,7 +48,7 @@ int harness_hear(harness_client *client, ff_message *message);
 /* The child that serves this client, or 0. */
 pid_t harness_served_by(const harness_server *server, const harness_client *client);
 /* Asks for a root and waits for it. 1 when it came. */
-int harness_root_comes(harness_client *client, uint16_t id);
+int harness_root_comes(harness_client *client, uint32_t tile);
 /* Asks for a panorama of four faces and waits for them: 1, or 0 when the panorama failed; -1
  * otherwise. */
 int harness_panorama_comes(harness_client *client, uint16_t id);

@@ -62,7 +62,7 @@ static ff_message drawn(const ff_face_job *job)
     uint8_t flags = (uint8_t)(FF_FACE_EMPTY | (job->last ? FF_FACE_LAST : 0));
     ff_message message = { .type = FF_MSG_ANSWER, .kind = (enum ff_kind)job->kind };
     if (job->kind == FF_KIND_FAR)
-        message.u.far = (ff_far){ .id = job->far.id, .sector = job->face, .flags = flags };
+        message.u.far = (ff_far){ .sector = job->face, .flags = flags };
     else
         message.u.face = (ff_face){ .id = job->request.id,
                                     .face = job->face,

@@ -115,7 +115,7 @@ static void nodes_of_every_pack_are_answered(void **state)
     for (uint32_t tile = 0; tile <= 6; tile++) {
         ff_message ask = { .type = FF_MSG_GET, .kind = FF_KIND_REFINEMENT };
         const uint8_t *payload;
-        ask.u.get = (ff_get){ (uint16_t)(tile + 1), ff_key_make(tile, 1, 2) };
+        ask.u.get = (ff_get){ ff_key_make(tile, 1, 2) };
         say(session, &ask);
         ff_message answer = next_of(session);
         if (tile == 6) {
@@ -147,12 +147,13 @@ static void a_view_brings_ground_of_every_pack_in_sight(void **state)
                          .allowed_q8 = 512,
                          .reach_wu = INT32_MAX,
                          .bytes_max = 1 << 20 };
-    ff_view_part part[FF_VIEW_PARTS_MAX];
+    ff_view_part part[FF_PARTS_MAX];
+    uint32_t told;
     unsigned of[PACKS] = { 0 };
     (void)state;
     for (unsigned i = 0; i < PACKS; i++) write_pack(i, 32632);
     assert_int_equal(opened(&packs, 3), FF_OK);
-    int count = ff_view_parts(&packs.pack[0], &view, part);
+    int count = ff_view_parts(&packs.pack[0], &view, part, &told);
     assert_true(count > 0);
     for (int i = 0; i < count; i++) {
         const uint8_t *payload;
@@ -167,7 +168,7 @@ static void a_view_brings_ground_of_every_pack_in_sight(void **state)
     view.count = 1;
     view.roots = 1;
     view.below[0] = ff_key_make(4, 0, 0);
-    count = ff_view_parts(&packs.pack[0], &view, part);
+    count = ff_view_parts(&packs.pack[0], &view, part, &told);
     assert_true(count > 1);
     for (int i = 0; i < count; i++) assert_int_equal(ff_key_tile(part[i].key), 4);
     ff_packs_close(&packs);

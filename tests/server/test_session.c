@@ -61,11 +61,11 @@ static void assert_answer(ff_message message, enum ff_kind kind)
     assert_int_equal(message.kind, kind);
 }
 
-static int get_root(ff_session *session, uint16_t id, uint32_t tile)
+static int get_root(ff_session *session, uint32_t tile)
 {
     return session_tell(session, &(ff_message){ .type = FF_MSG_GET,
                                                 .kind = FF_KIND_ROOT,
-                                                .u.get = { id, ff_key_make(tile, 0, 0) } });
+                                                .u.get = { ff_key_make(tile, 0, 0) } });
 }
 
 static int cancel(ff_session *session, uint16_t id)
@@ -113,6 +113,17 @@ static void expect_goodbye(ff_session *session, int error)
     ff_session_destroy(session);
 }
 
+/* The root of a tile has come, and of no other. */
+static void expect_root(ff_session *session, uint32_t tile)
+{
+    const uint8_t *payload;
+    int bytes = ff_pack_record(&pack, FF_SECTION_ROOT, ff_key_make(tile, 0, 0), &payload);
+    ff_message node = session_heard(session);
+    assert_answer(node, FF_KIND_ROOT);
+    assert_int_equal(node.u.data.byte_count, bytes);
+    assert_memory_equal(node.u.data.bytes, payload, (size_t)bytes);
+}
+
 static void expect_failed(ff_session *session, uint16_t id, int error)
 {
     ff_message failed = session_heard(session);
@@ -132,14 +143,13 @@ static void nodes_come_from_the_pack_in_order(void **state)
     for (uint16_t i = 0; i < 4; i++)
         session_tell(session, &(ff_message){ .type = FF_MSG_GET,
                                              .kind = i < 2 ? FF_KIND_ROOT : FF_KIND_REFINEMENT,
-                                             .u.get = { i, keys[i] } });
+                                             .u.get = { keys[i] } });
     for (uint16_t i = 0; i < 4; i++) {
         const uint8_t *payload;
         int bytes = ff_pack_record(&pack, i < 2 ? FF_SECTION_ROOT : FF_SECTION_REFINEMENT, keys[i],
                                    &payload);
         ff_message node = session_heard(session);
         assert_answer(node, FF_KIND_ROOT);
-        assert_int_equal(node.u.data.id, i);
         assert_int_equal(node.u.data.byte_count, bytes);
         assert_memory_equal(node.u.data.bytes, payload, (size_t)bytes);
     }
@@ -153,19 +163,19 @@ static void unknown_nodes_and_textures_fail(void **state)
 {
     (void)state;
     ff_session *session = welcomed();
-    get_root(session, 7, 4); /* four tiles: 0..3 */
-    expect_failed(session, 7, FF_ERR_NOT_FOUND);
+    get_root(session, 4); /* four tiles: 0..3 */
+    expect_failed(session, 0, FF_ERR_NOT_FOUND);
     /* The finest level has nothing below it. */
     session_tell(session, &(ff_message){ .type = FF_MSG_GET,
                                          .kind = FF_KIND_REFINEMENT,
-                                         .u.get = { 8, ff_key_make(0, 3, 0) } });
-    expect_failed(session, 8, FF_ERR_NOT_FOUND);
+                                         .u.get = { ff_key_make(0, 3, 0) } });
+    expect_failed(session, 0, FF_ERR_NOT_FOUND);
     session_tell(session, &(ff_message){ .type = FF_MSG_GET,
                                          .kind = FF_KIND_TEXTURE,
-                                         .u.get = { 9, ff_key_make(0, 0, 0) } });
-    expect_failed(session, 9, FF_ERR_NOT_FOUND);
-    get_root(session, 10, 0);
-    assert_answer(session_heard(session), FF_KIND_ROOT);
+                                         .u.get = { ff_key_make(0, 0, 0) } });
+    expect_failed(session, 0, FF_ERR_NOT_FOUND);
+    get_root(session, 0);
+    expect_root(session, 0);
     ff_session_destroy(session);
 }
 
@@ -177,14 +187,14 @@ static void a_damaged_record_fails_alone(void **state)
     uint8_t *victim = pack_bytes + (payload - pack_bytes);
     *victim ^= 1;
     ff_session *session = welcomed();
-    get_root(session, 1, 1);
-    expect_failed(session, 1, FF_ERR_CHECKSUM);
+    get_root(session, 1);
+    expect_failed(session, 0, FF_ERR_CHECKSUM);
     ff_session_stats stats;
     ff_session_get_stats(session, &stats);
     assert_int_equal(stats.damaged, 1);
     *victim ^= 1;
-    get_root(session, 2, 1);
-    assert_answer(session_heard(session), FF_KIND_ROOT);
+    get_root(session, 1);
+    expect_root(session, 1);
     ff_session_destroy(session);
 }
 
@@ -194,13 +204,13 @@ static void bytes_one_by_one(void **state)
     ff_session *session = welcomed();
     uint8_t bytes[64];
     int count = ff_message_encode(
-        &(ff_message){ .type = FF_MSG_GET, .kind = FF_KIND_ROOT, .u.get = { 5, 0 } }, bytes,
+        &(ff_message){ .type = FF_MSG_GET, .kind = FF_KIND_ROOT, .u.get = { 0 } }, bytes,
         sizeof bytes);
     for (int i = 0; i < count; i++) {
         assert_int_equal(session_heard(session).type, 0);
         assert_int_equal(ff_session_receive(session, bytes + i, 1, 0), 1);
     }
-    assert_int_equal(session_heard(session).u.data.id, 5);
+    expect_root(session, 0);
     ff_session_destroy(session);
 }
 
@@ -210,7 +220,7 @@ static void hello_must_come_first_and_once(void **state)
 {
     (void)state;
     ff_session *session = session_with((ff_session_desc){ 0 });
-    assert_int_equal(get_root(session, 1, 0), FF_ERR_FORMAT);
+    assert_int_equal(get_root(session, 0), FF_ERR_FORMAT);
     expect_goodbye(session, FF_ERR_FORMAT);
     session = welcomed();
     assert_int_equal(greet(session), FF_ERR_FORMAT);
@@ -229,8 +239,9 @@ static void other_version_is_sent_away(void **state)
 static void nonsense_ends_the_session(void **state)
 {
     (void)state;
-    static const char *const nonsense[] = { "GET / HTTP/1.1\r\n\r\n", "\x02\xff\xff\xff\xff",
-                                            "\x02\x01\x01" };
+    static const char *const nonsense[] = { "GET / HTTP/1.1\r\n\r\n", "\x05\xff\xff\xff\xff",
+                                            "\x05\x01\x01", "\x9f\xff\xff\xff\xff\xff",
+                                            "\xa0\x01" };
     for (size_t i = 0; i < sizeof nonsense / sizeof *nonsense; i++) {
         ff_session *session = welcomed();
         int rc = ff_session_receive(session, (const uint8_t *)nonsense[i], strlen(nonsense[i]), 0);
@@ -260,13 +271,9 @@ static void slow_reader_waits_and_loses_nothing(void **state)
     ff_session *session = welcomed_with(
         (ff_session_desc){ .out_bytes_max = 400, .requests_max = 64 });
     const uint8_t *bytes;
-    for (uint16_t id = 1; id <= 40; id++) assert_true(get_root(session, id, id % 4u) > 0);
+    for (uint16_t id = 1; id <= 40; id++) assert_true(get_root(session, id % 4u) > 0);
     assert_true(ff_session_output(session, &bytes) <= 400);
-    for (uint16_t id = 1; id <= 40; id++) {
-        ff_message node = session_heard(session);
-        assert_answer(node, FF_KIND_ROOT);
-        assert_int_equal(node.u.data.id, id);
-    }
+    for (uint16_t id = 1; id <= 40; id++) expect_root(session, id % 4u);
     assert_int_equal(session_heard(session).type, 0);
     ff_session_destroy(session);
 }
@@ -275,10 +282,10 @@ static void an_answer_larger_than_the_buffer_goes_alone(void **state)
 {
     (void)state;
     ff_session *session = welcomed_with((ff_session_desc){ .out_bytes_max = 1 });
-    get_root(session, 1, 0);
-    get_root(session, 2, 1);
-    assert_int_equal(session_heard(session).u.data.id, 1);
-    assert_int_equal(session_heard(session).u.data.id, 2);
+    get_root(session, 0);
+    get_root(session, 1);
+    expect_root(session, 0);
+    expect_root(session, 1);
     ff_session_destroy(session);
 }
 
@@ -287,8 +294,8 @@ static void too_many_requests_end_the_session(void **state)
     (void)state;
     ff_session *session = welcomed_with((ff_session_desc){ .out_bytes_max = 1, .requests_max = 5 });
     for (uint16_t id = 1; id <= 6; id++) /* one is in the buffer, five wait */
-        assert_true(get_root(session, id, 0) > 0);
-    assert_int_equal(get_root(session, 7, 0), FF_ERR_FULL);
+        assert_true(get_root(session, 0) > 0);
+    assert_int_equal(get_root(session, 0), FF_ERR_FULL);
     expect_goodbye(session, FF_ERR_FULL);
 }
 
@@ -336,29 +343,31 @@ static void silence_makes_a_session_idle(void **state)
 
 /* ---- cancels ---- */
 
-static void cancelled_requests_are_not_served(void **state)
+/* Those for one node have no number: nothing of the sort cancels them, and their order stays. */
+static void what_has_no_number_is_not_cancelled(void **state)
 {
     (void)state;
     ff_session *session = welcomed_with((ff_session_desc){ .out_bytes_max = 1, .requests_max = 4 });
-    for (uint16_t id = 1; id <= 5; id++) get_root(session, id, 0);
-    cancel(session, 3);
+    for (uint32_t tile = 0; tile < 4; tile++) get_root(session, tile);
+    cancel(session, 0);
     cancel(session, 2);
-    cancel(session, 1); /* its answer is in the buffer already */
     cancel(session, 99);
-    get_root(session, 6, 0); /* the session has room again */
-    get_root(session, 7, 0);
-    static const struct {
-        enum ff_message_type type;
-        uint16_t id;
-    } expected[] = { { FF_MSG_ANSWER, 1 }, { FF_MSG_CANCELLED, 3 }, { FF_MSG_CANCELLED, 2 },
-                     { FF_MSG_ANSWER, 4 }, { FF_MSG_ANSWER, 5 },    { FF_MSG_ANSWER, 6 },
-                     { FF_MSG_ANSWER, 7 } };
-    for (size_t i = 0; i < sizeof expected / sizeof *expected; i++) {
-        ff_message answer = session_heard(session);
-        assert_int_equal(answer.type, expected[i].type);
-        assert_int_equal(answer.u.data.id, expected[i].id);
-    }
+    for (uint32_t tile = 0; tile < 4; tile++) expect_root(session, tile);
     assert_int_equal(session_heard(session).type, 0);
+    ff_session_destroy(session);
+}
+
+/* What fails does so in its turn, so that everybody knows which it was. */
+static void a_failure_keeps_its_place(void **state)
+{
+    (void)state;
+    ff_session *session = welcomed_with((ff_session_desc){ .out_bytes_max = 1 });
+    get_root(session, 2);
+    get_root(session, 4);
+    get_root(session, 3);
+    expect_root(session, 2);
+    expect_failed(session, 0, FF_ERR_NOT_FOUND);
+    expect_root(session, 3);
     ff_session_destroy(session);
 }
 
@@ -485,7 +494,7 @@ static void large_face_fits_beside_full_buffer(void **state)
     ff_face_job job;
     get_panorama(session, 100, 2);
     assert_true(ff_session_next_face(session, &job));
-    for (uint16_t id = 1; id <= 20; id++) get_root(session, id, 0);
+    for (int i = 0; i < 20; i++) get_root(session, 0);
     /* short answers fill the output's reserve for them */
     static const uint8_t ping[6] = { FF_MSG_PING, 4 };
     while (ff_session_receive(session, ping, sizeof ping, 0) > 0)
@@ -518,7 +527,8 @@ int main(void)
         cmocka_unit_test(too_many_requests_end_the_session),
         cmocka_unit_test(pings_without_reading_are_left_unread),
         cmocka_unit_test(silence_makes_a_session_idle),
-        cmocka_unit_test(cancelled_requests_are_not_served),
+        cmocka_unit_test(what_has_no_number_is_not_cancelled),
+        cmocka_unit_test(a_failure_keeps_its_place),
         cmocka_unit_test(faces_one_at_a_time_in_the_order_wanted),
         cmocka_unit_test(a_newer_panorama_supersedes),
         cmocka_unit_test(a_cancelled_panorama_is_not_drawn),

@@ -67,8 +67,7 @@ static void draw(ff_session *session, const ff_face_job *job)
 {
     uint8_t bytes[64];
     ff_message message = { .type = FF_MSG_ANSWER, .kind = FF_KIND_FAR };
-    message.u.far = (ff_far){ .id = job->far.id,
-                              .sector = job->face,
+    message.u.far = (ff_far){ .sector = job->face,
                               .flags = (uint8_t)(FF_FACE_EMPTY | (job->last ? FF_FACE_LAST : 0)) };
     int count = ff_message_encode(&message, bytes, sizeof bytes);
     ff_session_face_done(session, job, bytes, count);

@@ -93,10 +93,10 @@ static void receive(wire *w, size_t piece)
 static size_t node(wire *w, ff_key key, enum ff_kind kind)
 {
     static const uint8_t payload[40];
-    ff_message get = { .type = FF_MSG_GET, .kind = kind, .u.get = { ++w->id, key } };
+    ff_message get = { .type = FF_MSG_GET, .kind = kind, .u.get = { key } };
     ff_message data = { .type = FF_MSG_ANSWER,
                         .kind = kind,
-                        .u.data = { w->id, payload, kind == FF_KIND_ROOT ? 20 : 40 } };
+                        .u.data = { payload, kind == FF_KIND_ROOT ? 20 : 40 } };
     ask(w, &get);
     return put(w, &data);
 }
@@ -104,10 +104,10 @@ static size_t node(wire *w, ff_key key, enum ff_kind kind)
 static size_t image(wire *w, ff_key key)
 {
     static const uint8_t jpeg[100];
-    ff_message get = { .type = FF_MSG_GET, .kind = FF_KIND_TEXTURE, .u.get = { ++w->id, key } };
+    ff_message get = { .type = FF_MSG_GET, .kind = FF_KIND_TEXTURE, .u.get = { key } };
     ff_message data = { .type = FF_MSG_ANSWER,
                         .kind = FF_KIND_TEXTURE,
-                        .u.data = { w->id, jpeg, sizeof jpeg } };
+                        .u.data = { jpeg, sizeof jpeg } };
     ask(w, &get);
     return put(w, &data);
 }
@@ -160,7 +160,12 @@ static void a_node_draws_its_ancestors(void **state)
     sim_relevance_destroy(w.relevance);
 }
 
-static int is_second(void *context, uint16_t id) { return ++*(unsigned *)context && id == 2; }
+static int is_second(void *context, enum ff_kind kind, uint16_t id, ff_key key)
+{
+    assert_int_equal(id, 0); /* those for one node have none */
+    assert_true(ff_kind[kind].asks == FF_ASKS_NODE && key != FF_KEY_NONE);
+    return ++*(unsigned *)context == 2;
+}
 
 /* What was asked for the reserve is told apart, and both shares are given. */
 static void the_reserve_is_told_apart(void **state)
@@ -489,8 +494,7 @@ static size_t sector(wire *w, unsigned number, int32_t taken_wu, uint32_t fins, 
                                       .sector = { (uint8_t)number } } };
     ff_message answer = { .type = FF_MSG_ANSWER,
                           .kind = FF_KIND_FAR,
-                          .u.far = { .id = w->id,
-                                     .sector = (uint8_t)number,
+                          .u.far = { .sector = (uint8_t)number,
                                      .flags = (uint8_t)(empty ? FF_FACE_LAST | FF_FACE_EMPTY
                                                               : FF_FACE_LAST),
                                      .fins = bytes,

@@ -66,86 +66,123 @@ static int asked_for(const uint8_t *list, unsigned count, unsigned one)
     return 0;
 }
 
-/* Whether this is an answer to that request. */
+/* Whether this is an answer to that request, of a kind that has a number. */
 static int answers(const ff_requests *requests, const ff_message *message,
                    const ff_request *request)
 {
     FF_ASSERT(message->kind < FF_KIND_COUNT && request->kind < FF_KIND_COUNT);
-    const ff_kind_row *kind = &ff_kind[request->kind];
-    if (ff_kind[message->kind].answered_by != kind->answered_by) return 0;
-    if (kind->brings != FF_BRINGS_FACE && kind->brings != FF_BRINGS_FAR) return 1;
+    if (message->kind != request->kind) return 0;
     const ff_ask *ask = ff_requests_ask_of(requests, request);
-    return kind->brings == FF_BRINGS_FACE
+    return message->kind == FF_KIND_FACE
                ? asked_for(ask->panorama.face, ask->panorama.face_count, message->u.face.face)
                : asked_for(ask->far.sector, ask->far.sector_count, message->u.far.sector);
 }
 
-/* A node that the view may bring and the terrain has. Once the parts have more bytes than were
- * asked for, only what is named and has not come: so they end. */
-static int is_part_of(const ff_stream *stream, const ff_request *request, const ff_part *part)
+/* The terrain has this node, and there is room for it in what was asked for. */
+static int is_part_of(const ff_stream *stream, const ff_request *request, enum ff_kind kind,
+                      ff_key key, uint32_t bytes)
 {
     const ff_intake *intake = stream->intake;
-    int ground = ff_intake_ground(intake, part->key);
+    int ground = ff_intake_ground(intake, key);
     const ff_terrain_info *info = &intake->info[ground < 0 ? 0 : ground];
-    const ff_get_view *view = &stream->intake->requests->view;
-    int root = part->what == FF_PART_ROOT;
-    enum ff_kind kind = root ? FF_KIND_ROOT : FF_KIND_REFINEMENT;
-    return ground >= 0 && ff_terrain_has_node(info, part->key) &&
-           (root || ff_key_level(part->key) + 1 < ff_terrain_levels(info)) &&
-           ff_view_covers(view, kind, part->key) &&
-           (request->bytes_came <= view->bytes_max ||
-            ff_view_names(view, kind, part->key) & ~(uint32_t)request->named);
+    return ground >= 0 && ff_terrain_has_node(info, key) &&
+           (kind == FF_KIND_ROOT || ff_key_level(key) + 1 < ff_terrain_levels(info)) &&
+           request->bytes_came + bytes <= intake->requests->view.bytes_max;
 }
 
-static int take_part(ff_stream *stream, const ff_request *request, const ff_message *message,
-                     uint32_t bytes, int64_t now_us)
+static int take_part(ff_stream *stream, const ff_part *part, uint32_t bytes, int64_t now_us)
 {
-    const ff_part *part = &message->u.part;
-    int end = part->what == FF_PART_END;
-    if (!end && !is_part_of(stream, request, part)) return FF_ERR_FORMAT;
-    int rc = end ? ff_intake_answer(stream->intake, request, message, bytes)
-                 : ff_intake_part(stream->intake, request, part);
-    if (rc != FF_OK) return rc;
-    stream->answer_bytes[request->kind] += bytes;
-    if (!request->bytes_came) ff_link_estimate_answer(&stream->link, request->sent_us, now_us);
-    return FF_OK;
+    ff_request request;
+    enum ff_kind kind;
+    ff_key key;
+    int named;
+    if (!stream->view_out || !ff_parts_next(&stream->parts, &kind, &key, &named) ||
+        !ff_requests_oldest(stream->intake->requests, FF_ASKS_VIEW, &request))
+        return FF_ERR_FORMAT;
+    if (part->byte_count && !request.forgotten) {
+        if (!is_part_of(stream, &request, kind, key, named ? 0 : part->byte_count))
+            return FF_ERR_FORMAT;
+        int rc = ff_intake_part(stream->intake, &request, kind, key, part);
+        if (rc != FF_OK) return rc;
+        if (!request.bytes_came) ff_link_estimate_answer(&stream->link, request.sent_us, now_us);
+    }
+    stream->answer_bytes[FF_KIND_VIEW] += bytes;
+    return ff_parts_take(&stream->parts, part);
+}
+
+/* All parts of the view have come. FF_OK also when they have not. */
+static int end_view(ff_stream *stream)
+{
+    ff_request request;
+    const ff_message nothing = { .type = FF_MSG_ANSWER, .kind = FF_KIND_VIEW };
+    if (!stream->view_out || !ff_parts_done(&stream->parts)) return FF_OK;
+    if (!ff_requests_oldest(stream->intake->requests, FF_ASKS_VIEW, &request)) return FF_ERR_FORMAT;
+    int rc = FF_OK;
+    if (request.forgotten)
+        ff_requests_passed(stream->intake->requests, request.id);
+    else
+        rc = ff_intake_answer(stream->intake, &request, &nothing, 0);
+    if (rc == FF_OK) stream->view_out = 0;
+    return rc;
+}
+
+static int take_roots(ff_stream *stream, const ff_roots *roots)
+{
+    return stream->view_out ? ff_parts_roots(&stream->parts, roots) : FF_ERR_FORMAT;
 }
 
 /* No more messages answer its request after this one. */
 static int is_last(const ff_message *message)
 {
-    if (message->kind == FF_KIND_VIEW) return message->u.part.what == FF_PART_END;
     if (message->kind == FF_KIND_FAR) return message->u.far.flags & FF_FACE_LAST;
     return message->kind != FF_KIND_FACE || message->u.face.flags & FF_FACE_LAST;
+}
+
+/* The request of a number; 0: the oldest that asks so. */
+static int find_request(ff_stream *stream, uint16_t id, enum ff_kind_asks asks, ff_request *request)
+{
+    return id ? ff_requests_answered(stream->intake->requests, id, request)
+              : ff_requests_oldest(stream->intake->requests, asks, request);
 }
 
 static int take_answer(ff_stream *stream, const ff_message *message, uint32_t bytes, int64_t now_us)
 {
     ff_request request;
-    if (!ff_requests_answered(stream->intake->requests, ff_message_id(message), &request) ||
-        !answers(stream->intake->requests, message, &request))
+    if (message->kind == FF_KIND_VIEW) return take_part(stream, &message->u.part, bytes, now_us);
+    int payload = ff_kind[message->kind].brings == FF_BRINGS_PAYLOAD;
+    enum ff_kind_asks asks = (enum ff_kind_asks)ff_kind[message->kind].asks;
+    if (!find_request(stream, ff_message_id(message), asks, &request) ||
+        (!payload && !answers(stream->intake->requests, message, &request)))
         return FF_ERR_FORMAT;
     if (request.forgotten) {
         stream->answer_bytes[request.kind] += bytes;
         if (is_last(message)) ff_requests_passed(stream->intake->requests, request.id);
         return FF_OK;
     }
-    if (request.kind == FF_KIND_VIEW) return take_part(stream, &request, message, bytes, now_us);
     int rc = ff_intake_answer(stream->intake, &request, message, bytes);
     if (rc != FF_OK) return rc;
     stream->answer_bytes[request.kind] += bytes;
     /* what lies in a pack comes at once: it tells of the link, not of a server's work */
-    if (ff_kind[request.kind].section)
-        ff_link_estimate_answer(&stream->link, request.sent_us, now_us);
+    if (payload) ff_link_estimate_answer(&stream->link, request.sent_us, now_us);
     return FF_OK;
+}
+
+static int fail_request(ff_stream *stream, const ff_request *request, int error)
+{
+    int rc = FF_OK;
+    if (request->forgotten)
+        ff_requests_passed(stream->intake->requests, request->id);
+    else
+        rc = ff_intake_failed(stream->intake, request, error);
+    if (rc == FF_OK && request->kind == FF_KIND_VIEW) stream->view_out = 0;
+    return rc;
 }
 
 static int take_failed(ff_stream *stream, uint16_t id, int error)
 {
     ff_request request;
-    if (!ff_requests_answered(stream->intake->requests, id, &request)) return FF_ERR_FORMAT;
-    if (request.forgotten) return ff_requests_passed(stream->intake->requests, id), FF_OK;
-    return ff_intake_failed(stream->intake, &request, error);
+    return find_request(stream, id, FF_ASKS_NODE, &request) ? fail_request(stream, &request, error)
+                                                            : FF_ERR_FORMAT;
 }
 
 /* What was asked for, and nothing else: so there is room for it. */
@@ -181,29 +218,33 @@ static int take(ff_stream *stream, const ff_message *message, uint32_t bytes, in
         case FF_MSG_FAILED:
             return take_failed(stream, message->u.failed.id, message->u.failed.error);
         case FF_MSG_CANCELLED: return take_failed(stream, message->u.cancel.id, FF_ERR_CLOSED);
+        case FF_MSG_ROOTS: return take_roots(stream, &message->u.roots);
         case FF_MSG_PONG: stream->awaiting = 0; return FF_OK;
         case FF_MSG_ABOUT: return take_about(stream, message->u.list);
         default: return FF_ERR_FORMAT; /* a client's message */
     }
 }
 
-/* When a legal message is too long for the receive buffer, its request fails and its bytes pass by
+/* When a legal answer is too long for the receive buffer, its request fails and its bytes pass by
  * unread (stream->skip). FF_OK also for a message that is just not complete yet. */
 static int take_oversize(ff_stream *stream, uint32_t at)
 {
     const uint8_t *bytes = stream->recv + at;
-    uint32_t count = stream->recv_count - at, body = 0, header = 1;
-    for (unsigned shift = 0;; shift += 7, header++) {
-        if (header >= count || header >= FF_MESSAGE_HEADER_MAX) return FF_OK;
-        FF_ASSERT(shift <= 7 * (FF_MESSAGE_HEADER_MAX - 2));
-        body |= (uint32_t)(bytes[header] & 0x7f) << shift;
-        if (!(bytes[header] & 0x80)) break;
-    }
-    header++;
-    FF_ASSERT(header <= FF_MESSAGE_HEADER_MAX && header <= count);
-    if (header + body <= stream->recv_bytes || count < header + 2) return FF_OK;
-    if (ff_message_type_of(bytes[0]) != FF_MSG_ANSWER) return FF_ERR_RANGE;
-    int rc = take_failed(stream, (uint16_t)(bytes[header] | bytes[header + 1] << 8), FF_ERR_FULL);
+    uint32_t count = stream->recv_count - at, header, body;
+    int known = ff_message_measure(bytes, count, &header, &body);
+    if (known <= 0 || header + body <= stream->recv_bytes) return known < 0 ? known : FF_OK;
+    enum ff_kind kind;
+    /* no part of a view is that long */
+    if (ff_message_type_of(bytes[0], &kind) != FF_MSG_ANSWER || kind == FF_KIND_VIEW)
+        return FF_ERR_RANGE;
+    int numbered = kind == FF_KIND_FACE;
+    if (numbered && count < header + 2) return FF_OK;
+    uint16_t id = numbered ? (uint16_t)(bytes[header] | bytes[header + 1] << 8) : 0;
+    ff_request request;
+    if ((numbered && !id) ||
+        !find_request(stream, id, (enum ff_kind_asks)ff_kind[kind].asks, &request))
+        return FF_ERR_FORMAT;
+    int rc = fail_request(stream, &request, FF_ERR_FULL);
     if (rc == FF_OK) stream->skip = header + body;
     return rc;
 }
@@ -232,7 +273,8 @@ int ff_receive_messages(ff_stream *stream, int64_t now_us)
     stream->blocked = 0;
     while (rc == FF_OK && stream->state != FF_STREAM_WELCOMED) {
         at = skip_front(stream, at);
-        if (at == stream->recv_count) break;
+        rc = end_view(stream);
+        if (rc != FF_OK || at == stream->recv_count) break;
         FF_ASSERT(stream->skip == 0 && at < stream->recv_count);
         ff_message message;
         int count = ff_message_decode(stream->recv + at, stream->recv_count - at, &message);

@@ -102,7 +102,7 @@ static void give_up(ff_stream *stream, int64_t now_us)
     stream->io->close(stream->io->state);
     ff_requests_lost(stream->intake->requests);
     stream->recv_count = stream->send_count = stream->skip = 0;
-    stream->awaiting = stream->blocked = 0;
+    stream->awaiting = stream->blocked = stream->view_out = 0;
     if (stream->about.state == FF_ABOUT_ASKED) stream->about.state = FF_ABOUT_UNKNOWN;
     stream->losses++;
     stream->link.since_us = INT64_MIN;
@@ -216,8 +216,12 @@ static void encode_request(ff_stream *stream, const ff_request *request)
     const ff_requests *requests = stream->intake->requests;
     ff_message message = { .type = FF_MSG_GET, .kind = (enum ff_kind)request->kind };
     switch ((enum ff_kind_asks)ff_kind[request->kind].asks) {
-        case FF_ASKS_NODE: message.u.get = (ff_get){ request->id, request->key }; break;
-        case FF_ASKS_VIEW: message.u.view = stream->intake->requests->view; break;
+        case FF_ASKS_NODE: message.u.get = (ff_get){ request->key }; break;
+        case FF_ASKS_VIEW:
+            message.u.view = requests->view;
+            ff_parts_begin(&stream->parts, &requests->view);
+            stream->view_out = 1;
+            break;
         case FF_ASKS_PANORAMA:
             message.u.panorama = ff_requests_ask_of(requests, request)->panorama;
             break;
@@ -390,6 +394,7 @@ int ff_stream_step(ff_stream *stream, int64_t now_us)
     }
     if (stream->state == FF_STREAM_GREETING && stream->send_count) {
         int ignored = 0;
+        if (!stream->has_terrain) (void)ask(stream, now_us); /* in one piece with the greeting */
         if (flush(stream, now_us, &ignored) != FF_OK) give_up(stream, now_us);
     }
     publish(stream);

@@ -14,6 +14,7 @@
 #define FF_STREAM_H
 
 #include "../../ask/ff_intake.h"
+#include "../../../protocol/message/ff_parts.h"
 #include "ff_link_estimate.h"
 
 #define FF_STREAM_SEND_BYTES 2048
@@ -74,8 +75,10 @@ typedef struct ff_stream {
     uint32_t send_count;
     int64_t retry_us, backoff_us, connect_us, heard_us, sent_us;
     uint8_t awaiting; /* HELLO, PING or GET_ABOUT unanswered */
+    uint8_t view_out; /* 1: parts answer the view that was sent, or will */
     uint8_t patience; /* how often the time-out has been doubled */
     ff_link_estimate link;
+    ff_parts parts; /* of that view */
     uint64_t bytes_down, bytes_up, answer_bytes[FF_KIND_COUNT];
     uint32_t protocol_errors, reconnects, losses;
     ff_stream_about about; /* of the terrain held */

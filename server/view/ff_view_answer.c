@@ -1,0 +1,101 @@
+#include "ff_view_answer.h"
+#include "../../protocol/ff_bytes.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#define TURNS 8 /* so many parts go in the row's order, whatever their urgency */
+
+void ff_view_answer_free(ff_view_answer *answer) { free(answer->part); }
+
+static void append(ff_view_answer *answer, uint32_t number)
+{
+    assert(answer->count < FF_PARTS_MAX);
+    answer->row[(answer->first + answer->count++) % FF_PARTS_MAX] = (uint16_t)number;
+}
+
+static uint16_t take_front(ff_view_answer *answer)
+{
+    uint16_t number = answer->row[answer->first];
+    answer->first = (uint16_t)((answer->first + 1u) % FF_PARTS_MAX);
+    answer->count--;
+    return number;
+}
+
+int ff_view_answer_begin(ff_view_answer *answer, const ff_pack *pack, const ff_get_view *view,
+                         int deep)
+{
+    if (answer->on) return FF_ERR_FULL;
+    if (!answer->part) answer->part = malloc(FF_PARTS_MAX * sizeof *answer->part);
+    if (!answer->part) return FF_ERR_MEMORY;
+    answer->roots = 0;
+    int count = deep ? ff_view_parts(pack, view, answer->part, &answer->roots)
+                     : ff_view_named(view, answer->part);
+    if (count < 0) return count;
+    answer->first = answer->count = 0;
+    answer->turns = TURNS;
+    answer->tells_roots = view->count == 0;
+    answer->on = 1;
+    uint32_t at_front = view->count ? view->count : answer->roots;
+    for (uint32_t i = 0; i < at_front; i++) append(answer, i);
+    return FF_OK;
+}
+
+static void tell_roots(ff_view_answer *answer, ff_message *message)
+{
+    ff_writer out = { answer->tiles, answer->tiles + sizeof answer->tiles, FF_OK };
+    for (uint32_t i = 0; i < answer->roots; i++)
+        ff_write_varint(&out, ff_key_tile(answer->part[i].key));
+    assert(out.error == FF_OK);
+    *message = (ff_message){ .type = FF_MSG_ROOTS,
+                             .u.roots = { answer->tiles, (uint32_t)(out.at - answer->tiles) } };
+}
+
+/* How many at the front wait for their turn; not all of them. */
+static unsigned waiting(ff_view_answer *answer)
+{
+    for (;; answer->turns += TURNS)
+        for (unsigned i = 0; i < answer->count; i++) {
+            uint16_t number = answer->row[(answer->first + i) % FF_PARTS_MAX];
+            if (answer->part[number].turn < answer->turns) return i;
+        }
+}
+
+int ff_view_answer_next(ff_view_answer *answer, const ff_pack *pack, ff_message *message,
+                        int *error)
+{
+    *error = FF_OK;
+    if (answer->tells_roots) {
+        tell_roots(answer, message);
+        return 1;
+    }
+    if (!answer->count) return answer->on = 0;
+    *message = (ff_message){ .type = FF_MSG_ANSWER, .kind = FF_KIND_VIEW };
+    unsigned later = waiting(answer);
+    if (later) {
+        message->u.part.later = (uint8_t)(later < FF_PARTS_LATER_MAX ? later : FF_PARTS_LATER_MAX);
+        return 1;
+    }
+    const ff_view_part *part = &answer->part[answer->row[answer->first]];
+    int bytes = ff_pack_record(pack, (enum ff_section_kind)ff_kind[part->kind].section, part->key,
+                               &message->u.part.bytes);
+    message->u.part.below = bytes < 0 ? 0 : part->below;
+    message->u.part.byte_count = bytes < 0 ? 0 : (uint32_t)bytes;
+    *error = bytes < 0 ? bytes : FF_OK;
+    return 1;
+}
+
+void ff_view_answer_sent(ff_view_answer *answer, const ff_message *message)
+{
+    if (message->type == FF_MSG_ROOTS) {
+        answer->tells_roots = 0;
+        return;
+    }
+    const ff_part *sent = &message->u.part;
+    for (unsigned i = 0; i < sent->later; i++) append(answer, take_front(answer));
+    if (sent->later) return;
+    const ff_view_part *part = &answer->part[take_front(answer)];
+    uint32_t number = part->first;
+    for (unsigned q = 0; q < 4; q++)
+        if (sent->below >> q & 1u) append(answer, number++);
+}

@@ -1,0 +1,34 @@
+/* The answer to a view, message by message: which roots it brings, where the request named nothing,
+ * then part after part. The order is that of protocol/message/ff_parts.h, in which children follow
+ * far behind their parents; what is less urgent is put off, some parts at a time, so that the
+ * picture is right before all has come. */
+#ifndef FF_VIEW_ANSWER_H
+#define FF_VIEW_ANSWER_H
+
+#include "ff_view_parts.h"
+
+typedef struct ff_view_answer {
+    ff_view_part *part; /* FF_PARTS_MAX; NULL until the first view is asked for */
+    /* the row of those that were announced and not sent, a ring: their numbers */
+    uint16_t row[FF_PARTS_MAX];
+    uint16_t first, count;
+    uint16_t turns;  /* those whose turn is later wait */
+    uint32_t roots;  /* so many parts at the front the request did not name */
+    int tells_roots; /* 1: which those are is told first */
+    int on;          /* 1: it is not whole yet */
+    uint8_t tiles[FF_PARTS_MAX * 5];
+} ff_view_answer;
+
+void ff_view_answer_free(ff_view_answer *answer);
+/* Finds the parts; deep 0: those that are named alone. FF_OK, FF_ERR_FULL: another one is on, or
+ * FF_ERR_MEMORY. */
+int ff_view_answer_begin(ff_view_answer *answer, const ff_pack *pack, const ff_get_view *view,
+                         int deep);
+/* The next message: 1 and *message, which stays valid until the next call, or 0: there is none, and
+ * the answer is whole. *error: FF_OK, or why this part is empty. */
+int ff_view_answer_next(ff_view_answer *answer, const ff_pack *pack, ff_message *message,
+                        int *error);
+/* It has gone. */
+void ff_view_answer_sent(ff_view_answer *answer, const ff_message *message);
+
+#endif
