@@ -10,6 +10,7 @@
 #define NEAR_WU  64
 /* every round refines a level or makes a list of leaves, or it is the last */
 #define ROUNDS_MAX 64
+#define AGAIN_MAX  4 /* what hidden ground leaves room for is looked for so often */
 
 typedef struct search {
     const ff_pack *pack;
@@ -18,6 +19,7 @@ typedef struct search {
     uint32_t count;
     uint64_t bytes;
     int full;
+    uint8_t needed[FF_PARTS_MAX];
     ff_tree *tree;
     ff_decoder *decoder;
     void *tree_memory, *decoder_memory;
@@ -93,6 +95,15 @@ static uint64_t bytes_of(const search *s, enum ff_kind kind, ff_key key)
     return bytes > 0 ? (uint64_t)bytes : 0;
 }
 
+static uint64_t named_bytes(const search *s)
+{
+    uint64_t bytes = 0;
+    for (unsigned i = 0; i < s->view->count; i++)
+        bytes += bytes_of(s, s->view->roots >> i & 1u ? FF_KIND_ROOT : FF_KIND_REFINEMENT,
+                          s->view->below[i]);
+    return bytes;
+}
+
 /* Puts it on the list, while there is room; 1 when it stands there. */
 static int add(search *s, enum ff_kind kind, ff_key key)
 {
@@ -135,6 +146,64 @@ static void find_parts(search *s)
     for (int round = 0; round < ROUNDS_MAX && !s->full; round++) {
         ff_tree_select(s->tree, &view, &quality);
         if (serve_wishes(s) == 0 && ff_tree_to_make(s->tree) == 0) break;
+    }
+}
+
+/* Marks what brings a node. 1 when nobody had. */
+static int mark(search *s, ff_key node)
+{
+    int root = ff_key_level(node) == 0;
+    ff_key key = root ? node : ff_key_parent(node);
+    for (uint32_t i = 0; i < s->count; i++)
+        if (s->part[i].key == key && (s->part[i].kind == FF_KIND_ROOT) == root) {
+            int first = !s->needed[i];
+            s->needed[i] = 1;
+            return first;
+        }
+    return 0;
+}
+
+/* Marks all that a node needs to be drawn: what is above it, and beside each of these the nodes of
+ * its level, without which it could not be split off (the cut is restricted). */
+static void need(search *s, ff_key node)
+{
+    for (;; node = ff_key_parent(node)) {
+        const ff_terrain_info *info = ff_tree_ground(s->tree, node);
+        for (unsigned side = 0; side < FF_SIDE_COUNT && ff_key_level(node) > 0; side++) {
+            ff_key beside = ff_shape_neighbour(info, node, (enum ff_side)side).key;
+            if (beside != FF_KEY_NONE && mark(s, beside)) need(s, ff_key_parent(beside));
+        }
+        (void)mark(s, node);
+        if (ff_key_level(node) == 0) return;
+    }
+}
+
+/* Leaves out what was asked for before a ridge was there that hides it; 1 when there was any. */
+static int leave_out_hidden(search *s)
+{
+    const ff_drawn *drawn;
+    const ff_view view = view_of(&s->pack->header.info, s->view);
+    const ff_quality quality = quality_of(s->view);
+    ff_tree_select(s->tree, &view, &quality);
+    uint32_t count = ff_tree_drawn(s->tree, &drawn), kept = 0;
+    for (uint32_t i = 0; i < count; i++) need(s, drawn[i].key);
+    for (uint32_t i = 0; i < s->count; i++)
+        if (s->needed[i]) s->part[kept++] = s->part[i];
+    int fewer = kept < s->count;
+    s->count = kept;
+    memset(s->needed, 0, sizeof s->needed);
+    return fewer;
+}
+
+static void find_needed(search *s)
+{
+    for (int round = 0; round < AGAIN_MAX; round++) {
+        find_parts(s);
+        if (!leave_out_hidden(s) || !s->full) return;
+        s->full = 0;
+        s->bytes = named_bytes(s);
+        for (uint32_t i = 0; i < s->count; i++)
+            s->bytes += bytes_of(s, (enum ff_kind)s->part[i].kind, s->part[i].key);
     }
 }
 
@@ -193,12 +262,10 @@ int ff_view_parts(const ff_pack *pack, const ff_get_view *view, ff_view_part par
     if (!s) return FF_ERR_MEMORY;
     s->pack = pack;
     s->view = view;
-    for (unsigned i = 0; i < view->count; i++)
-        s->bytes += bytes_of(s, view->roots >> i & 1u ? FF_KIND_ROOT : FF_KIND_REFINEMENT,
-                             view->below[i]);
+    s->bytes = named_bytes(s);
     int rc = search_open(s);
     if (rc == FF_OK) {
-        find_parts(s);
+        find_needed(s);
         uint32_t first = first_parts(s, part);
         if (view->count == 0) *told = first;
         rc = (int)arrange(s, part, first);

@@ -190,6 +190,7 @@ static void judge_nothing(fly_sources *from)
         from->truth_error_m = NAN;
     f->judged_all = f->supporting = f->hidden = f->percent = f->no_reserve_percent = NAN;
     f->reserve_came = f->reserve_unused = f->fins_came = NAN;
+    f->views_came = f->views_wasted = f->wasted = NAN;
     f->talk = (sim_talk){ NAN, NAN, NAN, NAN, NAN, 0 };
     from->picture = (sim_picture_figures){ NAN, NAN, NAN };
 }

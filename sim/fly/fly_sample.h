@@ -117,6 +117,9 @@
     X(node_request_bytes, "%.0f", TOTAL, from->relevance.talk.node_request_bytes) \
     X(node_answers, "%.0f", TOTAL, from->relevance.talk.node_answers) \
     X(node_header_bytes, "%.0f", TOTAL, from->relevance.talk.node_header_bytes) \
+    X(bytes_views, "%.0f", TOTAL, from->relevance.views_came) \
+    X(wasted_views, "%.0f", LAST, from->relevance.views_wasted) \
+    X(wasted_heights, "%.0f", LAST, from->relevance.wasted) \
     X(round_trips, "%.0f", LAST, from->relevance.talk.round_trips) \
     X(packets_down, "%.0f", TOTAL, from->load[SIM_DOWN].packets) \
     X(packets_up, "%.0f", TOTAL, from->load[SIM_UP].packets) \

@@ -36,6 +36,8 @@ typedef struct answer {
     int64_t came_us;
     double drawn; /* the share of it that was drawn in time */
     int supports, hidden, reserve;
+    int view;               /* 1: a part of one */
+    int used;               /* 1: drawn or needed by what was drawn, whenever that was */
     uint64_t support_frame; /* the last in which it was found to */
     uint32_t pixels, seen;  /* of a face, in one frame: in the window; and not hidden */
     uint64_t frame;         /* the last frame that marked it */
@@ -94,6 +96,7 @@ static void keep(sim_relevance *relevance, answer a)
 {
     relevance->figures.came[ff_kind[a.kind].data] += a.bytes;
     relevance->figures.reserve_came += a.reserve ? a.bytes : 0;
+    relevance->figures.views_came += a.view ? a.bytes : 0;
     if (relevance->count == relevance->capacity) {
         size_t more = relevance->capacity ? 2 * relevance->capacity : 1024;
         answer *grown = realloc(relevance->answer, more * sizeof *grown);
@@ -174,6 +177,7 @@ static void take_answer(sim_relevance *relevance, const ff_message *message, siz
     a.key = q->key;
     a.reserve = q->reserve;
     if (ff_kind[a.kind].brings == FF_BRINGS_PARTS) {
+        a.view = 1;
         if (!find_part(relevance, &message->u.part, &a)) {
             relevance->figures.came[FF_DATA_OVERHEAD] += (double)bytes;
             return;
@@ -375,6 +379,7 @@ static int is_young(const sim_relevance *relevance, const answer *a)
 static void mark(sim_relevance *relevance, answer *a)
 {
     if (is_young(relevance, a)) a->drawn = 1;
+    a->used = 1;
     a->frame = relevance->frame;
 }
 
@@ -396,6 +401,7 @@ static void mark_support(sim_relevance *relevance, const ff_terrain_info *info, 
         if (!a || a->support_frame == relevance->frame) continue;
         a->support_frame = relevance->frame;
         a->supports |= is_young(relevance, a);
+        a->used = 1;
         mark_support(relevance, info, ff_key_parent(beside));
     }
 }
@@ -562,6 +568,18 @@ static double percent_of(double judged, double unused, double overhead)
     return judged > overhead ? 100 * (1 - unused / judged) : NAN;
 }
 
+/* Of what was judged: the heights that nothing drawn has needed. */
+static void find_waste(const sim_relevance *relevance, sim_relevance_figures *sum)
+{
+    sum->views_wasted = sum->wasted = 0;
+    for (size_t i = 0; i < relevance->judged_count; i++) {
+        const answer *a = &relevance->answer[i];
+        if (a->used || a->reserve || ff_kind[a->kind].data != FF_DATA_HEIGHTS) continue;
+        sum->wasted += a->bytes;
+        sum->views_wasted += a->view ? a->bytes : 0;
+    }
+}
+
 int sim_relevance_get(sim_relevance *relevance, sim_relevance_figures *figures)
 {
     sim_relevance_figures *sum = &relevance->figures;
@@ -570,6 +588,7 @@ int sim_relevance_get(sim_relevance *relevance, sim_relevance_figures *figures)
         if (*relevance->now_us - a->came_us <= SIM_RELEVANCE_US) break;
         judge(sum, a);
     }
+    find_waste(relevance, sum);
     double overhead = sum->came[FF_DATA_OVERHEAD], unused = 0;
     sum->judged[FF_DATA_OVERHEAD] = sum->unused[FF_DATA_OVERHEAD] = overhead;
     sum->judged_all = 0;

@@ -49,6 +49,9 @@ typedef struct sim_relevance_figures {
     /* share of judged_all that was drawn in time; NAN before anything was judged */
     double percent;
     double no_reserve_percent; /* the same without the reserve's answers */
+    /* of heights that came with views, and of all but the reserve's; of either what came at least
+     * SIM_RELEVANCE_US ago, and nothing drawn has needed so far */
+    double views_came, views_wasted, wasted;
     sim_talk talk;
 } sim_relevance_figures;
 

@@ -55,7 +55,7 @@ def back_since(rows):
 
 
 def settle(given, pack, link, height, seed, event):
-    """Seconds, round trips, bytes, the bound in seconds, and the percentage of the heights that nothing needed."""
+    """Seconds, round trips, bytes, the bound in seconds, bytes of views that nothing drawn ever needed, and of all views."""
     at = 0 if event == "start" else FAR_S
     options = ["--audit", "on", "--audit-step", "12", "--sample", "0.25", "--seconds", str(at + LOOK_S + (AWAY_S if event == "cut" else 0)), "--speed", "150"]
     for what in EVENTS[event]:
@@ -71,11 +71,8 @@ def settle(given, pack, link, height, seed, event):
     trip_s = float(row["delay_up_s"]) + float(row["delay_down_s"])
     seconds = float(row["t_s"]) - from_s
     bound = 2 * trip_s + less("bytes_down") / given.rate[link] + 1
-    waste_s = float(row["t_s"]) + 6
-    later = next((r for r in rows if float(r["t_s"]) >= waste_s), rows[-1])
-    gained = lambda name: float(later[name]) - (float(before[name]) if before else 0)
-    waste = gained("unused_heights") - gained("unused_supporting") - gained("unused_reserve")
-    return seconds, less("round_trips"), less("bytes_down"), bound, 100 * waste / max(1, gained("bytes_heights"))
+    gained = lambda name: float(rows[-1][name]) - (float(before[name]) if before else 0)
+    return seconds, less("round_trips"), less("bytes_down"), bound, gained("wasted_views"), gained("bytes_views")
 
 
 def steady(given, pack, link, height):
@@ -109,7 +106,7 @@ def main():
             print(line, flush=True)
             print(line, file=table, flush=True)
         if given.events:
-            say("| ground | height, m | link | after | seconds (bound) | round trips | kB | heights of no use, % | within the bound |\n" + "|---" * 9 + "|")
+            say("| ground | height, m | link | after | seconds (bound) | round trips | kB | views of no use, % | within the bound |\n" + "|---" * 9 + "|")
         jobs = [(case, event, [pool.submit(settle, given, case[0], case[2], case[1], seed + 1, event)
                                for seed in range(10 if case[2] == "nbiot" and event == "start" else given.seeds)])
                 for case in cases for event in given.events.split(",") if event]
@@ -119,10 +116,11 @@ def main():
             if not fine:
                 say(f"| {os.path.basename(pack)[:-4]} | {height:g} | {link} | {event} | never | | | | 0 of {len(got)} |")
                 continue
-            m = [statistics.median(g[i] for g in fine) for i in range(5)]
+            m = [statistics.median(g[i] for g in fine) for i in range(4)]
+            waste, views = sum(g[4] for g in fine), sum(g[5] for g in fine)
             within = sum(g[0] <= g[3] for g in fine)
             say(f"| {os.path.basename(pack)[:-4]} | {height:g} | {link} | {event} | {m[0]:.1f} ({m[3]:.1f}) | {m[1]:g} | {m[2] / 1000:.1f} | "
-                f"{m[4]:.1f} | {within} of {len(got)} |")
+                f"{100 * waste / max(1, views):.1f} | {within} of {len(got)} |")
         say("\n| ground | height, m | link | kB | bytes a request | bytes of a header | framing, % | up, % of down | packets down, up | kB of their headers |\n"
             + "|---" * 10 + "|")
         runs = [(case, pool.submit(steady, given, case[0], case[2], case[1])) for case in cases]
