@@ -101,6 +101,9 @@ flyover: $(PROGRAMS) ## fly all of Hybrid's Table 3 over emulated links; report 
 front: $(PROGRAMS) ## sweep settings over grounds, heights and links, about an hour: the front, and where named settings stand, in build/front (QUICK=1: a slice; FRONT="--grounds trinidad --links umts")
 	@QUICK=$(QUICK) $(if $(DATA),FARFIELD_DATA=$(DATA)) tools/scripts/front.py $(BUILD)/bin build/front $(FRONT)
 
+talk: $(BUILD)/bin/farfield-fly $(BUILD)/bin/farfield-link ## round trips after the start, a cut, a leap and a turn, and what requests and headers take, over PACKS="a.ffp b.ffp": build/talk/talk.md (TALK="--links gprs --seeds 1")
+	@tools/scripts/talk.py $(TALK) $(BUILD)/bin $(BUILD)/talk $(PACKS)
+
 hashes: $(PROGRAMS) ## hashes of packs, requests, geometry and pictures of ten flights: the same before and after a change that changes nothing
 	@tools/scripts/hashes.sh $(BUILD)/bin build/hashes
 

@@ -10,9 +10,10 @@
  * level halves the error as a rule. */
 #define DEEP 4
 
-/* What the answers may take of the link: what comes is in the server's order, and the viewer moves
- * meanwhile. */
+/* What the answers may take of the link, in seconds, and in round trips: what comes is in the
+ * server's order, and the viewer moves meanwhile; but what is left out costs another round trip. */
 #define VIEW_SECONDS       3u
+#define VIEW_ROUND_TRIPS   1u
 #define VIEW_BYTES_MIN     4096u
 #define VIEW_BYTES_MAX     32768u
 #define VIEW_BYTES_UNTIMED 16384u /* while nothing is known of the link */
@@ -33,9 +34,10 @@ static uint32_t bytes_for(ff_client *client, ff_source *source)
     uint32_t budget = client->desc.balance.mode == FF_BALANCE_ON ? client->desc.balance.link_bytes_s
                                                                  : 0;
     ff_stream_get_shared(&source->stream, &shared);
-    uint64_t bytes = shared.bytes_s ? (uint64_t)shared.bytes_s * VIEW_SECONDS : VIEW_BYTES_UNTIMED;
+    uint64_t view_ms = VIEW_SECONDS * 1000u + VIEW_ROUND_TRIPS * (shared.rtt_us / 1000u),
+             bytes = shared.bytes_s ? shared.bytes_s * view_ms / 1000u : VIEW_BYTES_UNTIMED;
     if (bytes < VIEW_BYTES_MIN) bytes = VIEW_BYTES_MIN;
-    if (budget && bytes > (uint64_t)budget * VIEW_SECONDS) bytes = (uint64_t)budget * VIEW_SECONDS;
+    if (budget && bytes > budget * view_ms / 1000u) bytes = budget * view_ms / 1000u;
     return bytes < VIEW_BYTES_MAX ? (uint32_t)bytes : VIEW_BYTES_MAX;
 }
 
@@ -56,6 +58,21 @@ static int name_wishes(ff_client *client, ff_source *source, ff_get_view *asked)
         asked->below[asked->count++] = key;
     }
     return deep;
+}
+
+/* What of the rest may be needed beside that. */
+static void name_edge(ff_client *client, ff_source *source, ff_get_view *asked)
+{
+    ff_wish edge[FF_VIEW_EDGE_MAX];
+    uint32_t count = ff_tree_edge(client->tree, edge, FF_VIEW_EDGE_MAX);
+    for (uint32_t i = 0; i < count; i++) {
+        if (ff_client_route(client, FF_KIND_REFINEMENT, edge[i].key, edge[i].lacks) != source)
+            continue;
+        ff_key key = ff_source_own_key(source, edge[i].key);
+        if (!ff_view_covers(asked, FF_KIND_REFINEMENT, key) &&
+            !ff_requests_out(&source->requests, FF_KIND_REFINEMENT, key))
+            asked->edge[asked->edge_count++] = key;
+    }
 }
 
 /* All but where the camera is. */
@@ -114,6 +131,7 @@ void ff_client_want_view(ff_client *client, ff_source *source, const ff_view *vi
         return;
     }
     if (!name_wishes(client, source, &asked)) return;
+    name_edge(client, source, &asked);
     describe(client, source, &view->camera, quality, &asked);
     ff_shape_leave(&client->info, &view->frame, view->camera.pos_wu, asked.position_wu);
     /* the server's world begins at its own ground */

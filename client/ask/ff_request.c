@@ -363,6 +363,7 @@ static void hash_view(uint64_t *hash, const ff_get_view *view)
     hash_word(hash, view->bytes_max);
     hash_word(hash, view->roots);
     for (unsigned i = 0; i < view->count; i++) hash_word(hash, view->below[i]);
+    for (unsigned i = 0; i < view->edge_count; i++) hash_word(hash, view->edge[i]);
 }
 
 static void hash_place(uint64_t *hash, const int32_t position_wu[3], const uint8_t *list,

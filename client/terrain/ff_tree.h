@@ -197,6 +197,11 @@ uint32_t ff_tree_to_make(const ff_tree *tree);
 uint32_t ff_tree_foresee(const ff_tree *tree, const int32_t pos_wu[3], int32_t yaw, int32_t pitch,
                          ff_wish *list, uint32_t capacity);
 
+/* Nodes of the cut of which nothing finer is held, though there is: what is wished for elsewhere
+ * may need them split, too, as neighbours. The largest for their distance first, at most
+ * `capacity`. */
+uint32_t ff_tree_edge(const ff_tree *tree, ff_wish *list, uint32_t capacity);
+
 /* The reserve: what the viewer would miss most if it turned at once. Missing roots out of view, and
  * refinements out of view of wanted nodes whose error, looked at, would pass a twentieth of the
  * picture's longer side; most urgent first, roots before refinements, at most `capacity`. Only what

@@ -75,15 +75,20 @@ static uint32_t active_roots(const ff_tree *tree, int64_t *farthest)
     return count;
 }
 
+/* Q16: a node's edge by its distance. */
+static uint32_t nearness(const ff_terrain_info *info, uint32_t level, const ff_box *box)
+{
+    uint64_t reach = (uint64_t)ff_node_edge_wu(info, level) << 16;
+    FF_ASSERT(reach > 0 && reach <= (uint64_t)INT32_MAX << 16);
+    uint64_t priority = reach / ((uint64_t)ff_box_distance(box) + 1);
+    return priority > UINT32_MAX ? UINT32_MAX : (uint32_t)priority;
+}
+
 static uint32_t root_priority(const ff_tree *tree, uint32_t tile)
 {
     ff_box box;
     ff_tile_box(tree, tile, &box);
-    uint64_t distance = (uint64_t)ff_box_distance(&box),
-             reach = (uint64_t)ff_node_edge_wu(ff_ground_of_tile(tree, tile), 0) << 16;
-    FF_ASSERT(reach > 0 && reach <= (uint64_t)INT32_MAX << 16);
-    uint64_t priority = reach / (distance + 1);
-    return priority > UINT32_MAX ? UINT32_MAX : (uint32_t)priority;
+    return nearness(ff_ground_of_tile(tree, tile), 0, &box);
 }
 
 static void wish_roots(ff_tree *tree)
@@ -165,4 +170,35 @@ void ff_wish_make(ff_tree *tree)
     tree->wish_count = tree->made_count = 0;
     wish_roots(tree);
     wish_children(tree);
+}
+
+/* ---- the edge ---- */
+
+static int ends_there(const ff_tree *tree, const ff_node *node)
+{
+    const ff_terrain_info *info = ff_tree_ground(tree, node->key);
+    return !ff_node_has_children(node) && !(node->flags & FF_NODE_LEAF) &&
+           node->want_next != FF_SLOT_NEVER &&
+           ff_has_level(tree, info, ff_key_level(node->key) + 1);
+}
+
+uint32_t ff_tree_edge(const ff_tree *tree, ff_wish *list, uint32_t capacity)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < tree->cut_count; i++) {
+        const ff_node *node = tree->drawn[i].node;
+        if (!ends_there(tree, node)) continue;
+        ff_box box;
+        ff_node_box(tree, node, &box);
+        const ff_wish wish = { .key = node->key,
+                               .kind = FF_KIND_REFINEMENT,
+                               .lacks = ff_node_lacked(tree, node),
+                               .priority = nearness(ff_tree_ground(tree, node->key),
+                                                    ff_key_level(node->key), &box) };
+        uint32_t at = count < capacity ? count++ : capacity;
+        for (; at > 0 && list[at - 1].priority < wish.priority; at--)
+            if (at < capacity) list[at] = list[at - 1];
+        if (at < capacity) list[at] = wish;
+    }
+    return count;
 }

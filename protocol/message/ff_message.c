@@ -214,6 +214,10 @@ static void write_body(ff_writer *out, const ff_message *message)
         case FF_MSG_ABOUT: write_list(out, message->u.list, ff_about_check(message->u.list)); break;
         case FF_MSG_GET_ABOUT: ff_write_varint(out, message->u.get_about.entries); break;
         case FF_MSG_ROOTS: write_roots(out, &message->u.roots); break;
+        case FF_MSG_EDGE:
+            ff_message_require(&out->error, message->u.edge.needed >> FF_VIEW_EDGE_MAX == 0);
+            ff_write_varint(out, message->u.edge.needed);
+            break;
         case FF_MSG_WELCOME: write_welcome(out, &message->u.welcome); break;
         case FF_MSG_FAILED:
         case FF_MSG_GOODBYE: write_failed(out, &message->u.failed, message->type); break;
@@ -433,6 +437,10 @@ static void read_body(ff_reader *in, ff_message *out)
             break;
         case FF_MSG_GET_ABOUT: out->u.get_about.entries = ff_read_varint(in); break;
         case FF_MSG_ROOTS: read_roots(in, &out->u.roots); break;
+        case FF_MSG_EDGE:
+            out->u.edge.needed = ff_read_varint(in);
+            ff_message_require(&in->error, out->u.edge.needed >> FF_VIEW_EDGE_MAX == 0);
+            break;
         case FF_MSG_WELCOME: read_welcome(in, &out->u.welcome); break;
         case FF_MSG_FAILED:
         case FF_MSG_GOODBYE: read_failed(in, &out->u.failed, out->type); break;

@@ -20,7 +20,7 @@
 #define FF_PROTOCOL_VERSION   8
 #define FF_MESSAGE_BODY_MAX   (1u << 18) /* a longer length is a protocol error */
 #define FF_MESSAGE_HEADER_MAX 4
-#define FF_REQUEST_BYTES_MAX  224 /* any client message but CAPS fits */
+#define FF_REQUEST_BYTES_MAX  480 /* any client message but CAPS fits */
 #define FF_SHORT_BYTES_MAX    60  /* any message without a list, a payload, an image or keys fits */
 #define FF_CAPS_BYTES_MAX     512 /* of the lists in CAPS and in WELCOME */
 #define FF_FACE_COUNT         6
@@ -46,7 +46,8 @@ FF_STATIC_ASSERT(2 + FF_PAYLOAD_BYTES_MAX <= FF_MESSAGE_BODY_MAX);
     X(PONG,      71, SERVER) /* ff_ping */ \
     X(GOODBYE,   72, SERVER) /* ff_failed with id 0: the server closes, and says why */ \
     X(ABOUT,     73, SERVER) /* ff_list: FF_ABOUT_LIST */ \
-    X(ROOTS,     74, SERVER) /* ff_roots: which a view that named nothing brings */
+    X(ROOTS,     74, SERVER) /* ff_roots: which a view that named nothing brings */ \
+    X(EDGE,      76, SERVER) /* ff_edge: which of a view's edge are refined in the answer */
 
 /* Lists that open a connection: X(ENTRY, type, least, most bytes). Types that nobody sends yet are
  * given, so that who begins to send them need not raise the version. */
@@ -157,6 +158,7 @@ typedef union ff_ask {
  * below them that the view needs, as a client's own selection finds it (client/terrain/ff_tree.h):
  * one round trip instead of one for each level. A client has at most one such request out. */
 #define FF_VIEW_KEYS_MAX   16
+#define FF_VIEW_EDGE_MAX   24
 #define FF_VIEW_SIDE_MAX   4096
 #define FF_VIEW_COARSE_MAX 16
 enum ff_view_measure { FF_VIEW_BY_DISTANCE, FF_VIEW_BY_PIXELS };
@@ -180,6 +182,10 @@ typedef struct ff_get_view {
                              * refinement is */
     uint8_t count;          /* of below: 0: all that the view needs; ..FF_VIEW_KEYS_MAX */
     ff_key below[FF_VIEW_KEYS_MAX];
+    /* Nodes that the client has, and lacks all below: they are refined where the view needs it,
+     * beside what is named. */
+    uint8_t edge_count; /* 0 where nothing is named */
+    ff_key edge[FF_VIEW_EDGE_MAX];
 } ff_get_view;
 
 /* 1 when an answer to the request may bring this root or refinement. */
@@ -206,6 +212,11 @@ typedef struct ff_roots {
     const uint8_t *bytes;
     uint32_t byte_count;
 } ff_roots;
+
+/* Comes first, where the request has an edge: bit i: what refines view->edge[i] comes. */
+typedef struct ff_edge {
+    uint32_t needed;
+} ff_edge;
 
 typedef struct ff_cancel {
     uint16_t id;
@@ -290,6 +301,7 @@ typedef struct ff_message {
         ff_ping ping;
         ff_list list; /* CAPS, ABOUT: inside the message */
         ff_roots roots;
+        ff_edge edge;
         ff_get_about get_about;
         ff_welcome welcome;
         ff_data data; /* ANSWER, FF_BRINGS_PAYLOAD */

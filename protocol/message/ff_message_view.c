@@ -3,8 +3,9 @@
 
 /* GET_VIEW, the longest of requests: id, angles, position, focal length, size, measure, depth,
  * error allowed, reach, fine, coarse, triangles, bytes, count. */
-#define VIEW_BYTES (2 + 3 * 2 + 3 * 4 + 4 + 2 * 2 + 1 + 1 + 4 + 4 + 4 + 1 + 5 + 5 + 1)
-FF_STATIC_ASSERT(FF_MESSAGE_HEADER_MAX + VIEW_BYTES + FF_VIEW_KEYS_MAX * FF_MESSAGE_KEY_BYTES <=
+#define VIEW_BYTES (2 + 3 * 2 + 3 * 4 + 4 + 2 * 2 + 1 + 1 + 4 + 4 + 4 + 1 + 5 + 5 + 1 + 1)
+FF_STATIC_ASSERT(FF_MESSAGE_HEADER_MAX + VIEW_BYTES +
+                     (FF_VIEW_KEYS_MAX + FF_VIEW_EDGE_MAX) * FF_MESSAGE_KEY_BYTES <=
                  FF_REQUEST_BYTES_MAX);
 FF_STATIC_ASSERT(FF_VIEW_KEYS_MAX <= 16); /* bits of `roots` */
 
@@ -16,8 +17,11 @@ static int view_ok(const ff_get_view *view)
         view->height < 1 || view->height > FF_VIEW_SIDE_MAX || view->measure > FF_VIEW_BY_PIXELS ||
         view->depth_max > FF_KEY_LEVEL_MAX + 1 || view->allowed_q8 < 1 || view->reach_wu < 1 ||
         view->fine_wu < 1 || view->coarse < 1 || view->coarse > FF_VIEW_COARSE_MAX ||
-        view->count > FF_VIEW_KEYS_MAX || view->roots >> view->count != 0)
+        view->count > FF_VIEW_KEYS_MAX || view->roots >> view->count != 0 ||
+        view->edge_count > (view->count ? FF_VIEW_EDGE_MAX : 0))
         return 0;
+    for (unsigned i = 0; i < view->edge_count; i++)
+        if (!ff_message_get_ok(&(ff_get){ view->edge[i] }, FF_KIND_REFINEMENT)) return 0;
     for (unsigned i = 0; i < view->count; i++) {
         const ff_get get = { view->below[i] };
         if (!ff_message_get_ok(&get, view->roots >> i & 1u ? FF_KIND_ROOT : FF_KIND_REFINEMENT))
@@ -26,19 +30,24 @@ static int view_ok(const ff_get_view *view)
     return 1;
 }
 
+/* 1 when it refines that node, or one below it. */
+static int is_below(ff_key top, enum ff_kind kind, ff_key key)
+{
+    uint32_t above = ff_key_level(top), level = ff_key_level(key);
+    return kind == FF_KIND_REFINEMENT && ff_key_tile(top) == ff_key_tile(key) && level >= above &&
+           ff_key_code(key) >> 2 * (level - above) == ff_key_code(top);
+}
+
 int ff_view_covers(const ff_get_view *view, enum ff_kind kind, ff_key key)
 {
     FF_ASSERT(kind == FF_KIND_ROOT || kind == FF_KIND_REFINEMENT);
     if (view->count == 0) return 1;
-    for (unsigned i = 0; i < view->count; i++) {
-        ff_key top = view->below[i];
-        uint32_t above = ff_key_level(top), level = ff_key_level(key);
-        if (ff_key_tile(top) != ff_key_tile(key)) continue;
-        if (view->roots >> i & 1u) return 1;
-        if (kind == FF_KIND_REFINEMENT && level >= above &&
-            ff_key_code(key) >> 2 * (level - above) == ff_key_code(top))
+    for (unsigned i = 0; i < view->count; i++)
+        if (view->roots >> i & 1u ? ff_key_tile(view->below[i]) == ff_key_tile(key)
+                                  : is_below(view->below[i], kind, key))
             return 1;
-    }
+    for (unsigned i = 0; i < view->edge_count; i++)
+        if (is_below(view->edge[i], kind, key)) return 1;
     return 0;
 }
 
@@ -75,6 +84,9 @@ void ff_message_write_view(ff_writer *out, const ff_get_view *view)
     for (unsigned i = 0; out->error == FF_OK && i < view->count; i++)
         ff_message_write_key(out, view->roots >> i & 1u ? NAMES_ROOT : NAMES_REFINEMENT,
                              view->below[i]);
+    ff_write_bytes(out, view->edge_count, 1);
+    for (unsigned i = 0; out->error == FF_OK && i < view->edge_count; i++)
+        ff_message_write_key(out, NAMES_REFINEMENT, view->edge[i]);
 }
 
 void ff_message_read_view(ff_reader *in, ff_get_view *view)
@@ -102,6 +114,13 @@ void ff_message_read_view(ff_reader *in, ff_get_view *view)
         ff_message_require(&in->error, what <= NAMES_REFINEMENT);
         if (what == NAMES_ROOT) view->roots |= (uint16_t)(1u << i);
         view->below[i] = ff_message_read_key(in, form);
+    }
+    view->edge_count = (uint8_t)ff_read_bytes(in, 1);
+    ff_message_require(&in->error, view->edge_count <= FF_VIEW_EDGE_MAX);
+    for (unsigned i = 0; in->error == FF_OK && i < view->edge_count; i++) {
+        uint32_t form = (uint32_t)ff_read_bytes(in, 1);
+        ff_message_require(&in->error, (form & 15u) == NAMES_REFINEMENT);
+        view->edge[i] = ff_message_read_key(in, form);
     }
     ff_message_require(&in->error, view_ok(view));
 }

@@ -1,7 +1,9 @@
 #include "ff_parts.h"
 #include "ff_message_local.h"
 
-FF_STATIC_ASSERT(FF_VIEW_KEYS_MAX <= FF_PARTS_MAX && FF_PARTS_MAX < UINT16_MAX);
+#include <string.h>
+
+FF_STATIC_ASSERT(FF_VIEW_KEYS_MAX + FF_VIEW_EDGE_MAX <= FF_PARTS_MAX && FF_PARTS_MAX < UINT16_MAX);
 
 enum { REFINEMENT = 0, ROOT = 1, NAMED = 2 };
 
@@ -28,6 +30,9 @@ void ff_parts_begin(ff_parts *parts, const ff_get_view *view)
     parts->awaits_roots = view->count == 0;
     for (unsigned i = 0; i < view->count; i++)
         (void)announce(parts, view->below[i], NAMED | (view->roots >> i & 1u ? ROOT : REFINEMENT));
+    parts->awaits_edge = view->edge_count > 0;
+    parts->edge_count = view->edge_count;
+    memcpy(parts->edge, view->edge, view->edge_count * sizeof *view->edge);
 }
 
 int ff_parts_roots(ff_parts *parts, const ff_roots *roots)
@@ -40,11 +45,22 @@ int ff_parts_roots(ff_parts *parts, const ff_roots *roots)
     return rc;
 }
 
-int ff_parts_done(const ff_parts *parts) { return !parts->awaits_roots && parts->count == 0; }
+int ff_parts_edge(ff_parts *parts, uint32_t needed)
+{
+    if (!parts->awaits_edge || needed >> parts->edge_count != 0) return FF_ERR_FORMAT;
+    parts->awaits_edge = 0;
+    for (unsigned i = 0; i < parts->edge_count; i++)
+        if (needed >> i & 1u) (void)announce(parts, parts->edge[i], REFINEMENT);
+    return FF_OK;
+}
+
+static int awaits_more(const ff_parts *parts) { return parts->awaits_roots || parts->awaits_edge; }
+
+int ff_parts_done(const ff_parts *parts) { return !awaits_more(parts) && parts->count == 0; }
 
 int ff_parts_next(const ff_parts *parts, enum ff_kind *kind, ff_key *key, int *named)
 {
-    if (parts->awaits_roots || parts->count == 0) return 0;
+    if (awaits_more(parts) || parts->count == 0) return 0;
     *kind = parts->what[parts->first] & ROOT ? FF_KIND_ROOT : FF_KIND_REFINEMENT;
     *key = parts->key[parts->first];
     *named = (parts->what[parts->first] & NAMED) != 0;

@@ -28,23 +28,25 @@ int ff_view_answer_begin(ff_view_answer *answer, const ff_pack *pack, const ff_g
     if (answer->on) return FF_ERR_FULL;
     if (!answer->part) answer->part = malloc(FF_PARTS_MAX * sizeof *answer->part);
     if (!answer->part) return FF_ERR_MEMORY;
-    answer->roots = 0;
-    int count = deep ? ff_view_parts(pack, view, answer->part, &answer->roots)
+    answer->front = (ff_view_front){ 0 };
+    int count = deep ? ff_view_parts(pack, view, answer->part, &answer->front)
                      : ff_view_named(view, answer->part);
     if (count < 0) return count;
     answer->first = answer->count = 0;
     answer->turns = TURNS;
     answer->tells_roots = view->count == 0;
+    answer->tells_edge = view->edge_count > 0;
     answer->on = 1;
-    uint32_t at_front = view->count ? view->count : answer->roots;
-    for (uint32_t i = 0; i < at_front; i++) append(answer, i);
+    for (uint32_t i = 0; i < view->count + answer->front.roots; i++) append(answer, i);
+    for (uint32_t edge = answer->front.edge, i = view->count; edge; edge &= edge - 1)
+        append(answer, i++);
     return FF_OK;
 }
 
 static void tell_roots(ff_view_answer *answer, ff_message *message)
 {
     ff_writer out = { answer->tiles, answer->tiles + sizeof answer->tiles, FF_OK };
-    for (uint32_t i = 0; i < answer->roots; i++)
+    for (uint32_t i = 0; i < answer->front.roots; i++)
         ff_write_varint(&out, ff_key_tile(answer->part[i].key));
     assert(out.error == FF_OK);
     *message = (ff_message){ .type = FF_MSG_ROOTS,
@@ -69,6 +71,10 @@ int ff_view_answer_next(ff_view_answer *answer, const ff_pack *pack, ff_message 
         tell_roots(answer, message);
         return 1;
     }
+    if (answer->tells_edge) {
+        *message = (ff_message){ .type = FF_MSG_EDGE, .u.edge = { answer->front.edge } };
+        return 1;
+    }
     if (!answer->count) return answer->on = 0;
     *message = (ff_message){ .type = FF_MSG_ANSWER, .kind = FF_KIND_VIEW };
     unsigned later = waiting(answer);
@@ -87,10 +93,9 @@ int ff_view_answer_next(ff_view_answer *answer, const ff_pack *pack, ff_message 
 
 void ff_view_answer_sent(ff_view_answer *answer, const ff_message *message)
 {
-    if (message->type == FF_MSG_ROOTS) {
-        answer->tells_roots = 0;
-        return;
-    }
+    if (message->type == FF_MSG_ROOTS) answer->tells_roots = 0;
+    if (message->type == FF_MSG_EDGE) answer->tells_edge = 0;
+    if (message->type != FF_MSG_ANSWER) return;
     const ff_part *sent = &message->u.part;
     for (unsigned i = 0; i < sent->later; i++) append(answer, take_front(answer));
     if (sent->later) return;

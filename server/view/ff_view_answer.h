@@ -1,7 +1,7 @@
 /* The answer to a view, message by message: which roots it brings, where the request named nothing,
- * then part after part. The order is that of protocol/message/ff_parts.h, in which children follow
- * far behind their parents; what is less urgent is put off, some parts at a time, so that the
- * picture is right before all has come. */
+ * or what of its edge, then part after part. The order is that of protocol/message/ff_parts.h, in
+ * which children follow far behind their parents; what is less urgent is put off, some parts at a
+ * time, so that the picture is right before all has come. */
 #ifndef FF_VIEW_ANSWER_H
 #define FF_VIEW_ANSWER_H
 
@@ -12,10 +12,10 @@ typedef struct ff_view_answer {
     /* the row of those that were announced and not sent, a ring: their numbers */
     uint16_t row[FF_PARTS_MAX];
     uint16_t first, count;
-    uint16_t turns;  /* those whose turn is later wait */
-    uint32_t roots;  /* so many parts at the front the request did not name */
-    int tells_roots; /* 1: which those are is told first */
-    int on;          /* 1: it is not whole yet */
+    uint16_t turns; /* those whose turn is later wait */
+    ff_view_front front;
+    int tells_roots, tells_edge; /* 1: that is told first */
+    int on;                      /* 1: it is not whole yet */
     uint8_t tiles[FF_PARTS_MAX * 5];
 } ff_view_answer;
 

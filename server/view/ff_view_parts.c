@@ -245,20 +245,28 @@ static uint32_t arrange(search *s, ff_view_part *out, uint32_t count)
     return count;
 }
 
-/* What comes first: what is named, or the roots that were found. */
-static uint32_t first_parts(search *s, ff_view_part *out)
+/* What comes first: what is named and of the edge, or the roots that were found. */
+static uint32_t first_parts(search *s, ff_view_part *out, ff_view_front *front)
 {
-    uint32_t count = (uint32_t)ff_view_named(s->view, out);
-    for (uint32_t i = 0; s->view->count == 0 && i < s->count; i++)
+    const ff_get_view *view = s->view;
+    uint32_t count = (uint32_t)ff_view_named(view, out);
+    for (unsigned i = 0; i < view->edge_count; i++) {
+        int turn = take(s, FF_KIND_REFINEMENT, view->edge[i]);
+        if (turn < 0) continue;
+        front->edge |= 1u << i;
+        out[count++] = (ff_view_part){ view->edge[i], FF_KIND_REFINEMENT, 0, 0, (uint16_t)turn };
+    }
+    for (uint32_t i = 0; view->count == 0 && i < s->count; i++)
         if (s->part[i].kind == FF_KIND_ROOT) out[count++] = s->part[i];
+    if (view->count == 0) front->roots = count;
     return count;
 }
 
 int ff_view_parts(const ff_pack *pack, const ff_get_view *view, ff_view_part part[FF_PARTS_MAX],
-                  uint32_t *told)
+                  ff_view_front *front)
 {
     search *s = calloc(1, sizeof *s);
-    *told = 0;
+    *front = (ff_view_front){ 0 };
     if (!s) return FF_ERR_MEMORY;
     s->pack = pack;
     s->view = view;
@@ -266,9 +274,7 @@ int ff_view_parts(const ff_pack *pack, const ff_get_view *view, ff_view_part par
     int rc = search_open(s);
     if (rc == FF_OK) {
         find_needed(s);
-        uint32_t first = first_parts(s, part);
-        if (view->count == 0) *told = first;
-        rc = (int)arrange(s, part, first);
+        rc = (int)arrange(s, part, first_parts(s, part, front));
     }
     search_close(s);
     free(s);

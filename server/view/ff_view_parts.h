@@ -14,13 +14,19 @@ typedef struct ff_view_part {
     uint16_t turn;  /* how many others are more urgent */
 } ff_view_part;
 
+/* What is told before the parts: how many roots stand first that were not named; the bits of the
+ * edge's nodes that stand behind what is named. */
+typedef struct ff_view_front {
+    uint32_t roots, edge;
+} ff_view_front;
+
 /* What `view` names, as it names it, in the pack or not: FF_VIEW_KEYS_MAX at most. Their number. */
 int ff_view_named(const ff_get_view *view, ff_view_part *part);
-/* The same, or where it names nothing the roots that it needs, and behind it what lies below and
- * the view needs, which is in the pack, in the order of ff_parts.h. What would pass view->bytes_max
- * is left out, the least urgent first. Their number, at most FF_PARTS_MAX, or FF_ERR_MEMORY; *told:
- * how many roots stand first that were not named. Takes some milliseconds, 0.1 s at worst. */
+/* The same, what is needed of the edge, or where it names nothing the roots that it needs, and
+ * behind it what lies below and the view needs, which is in the pack, in the order of ff_parts.h.
+ * What would pass view->bytes_max is left out, the least urgent first. Their number, at most
+ * FF_PARTS_MAX, or FF_ERR_MEMORY. Takes some milliseconds, 0.1 s at worst. */
 int ff_view_parts(const ff_pack *pack, const ff_get_view *view, ff_view_part part[FF_PARTS_MAX],
-                  uint32_t *told);
+                  ff_view_front *front);
 
 #endif

@@ -12,6 +12,7 @@
 #define BUCKETS     4096u
 #define NONE        SIZE_MAX
 #define RAY_STEP_PX 4
+#define ASKED       ((size_t)UINT16_MAX + 1)
 #define FARS        64     /* far sets out at once; more are no client's */
 #define LOOK_US     250000 /* faces are looked for so often: pictures change little meanwhile */
 
@@ -55,8 +56,8 @@ struct sim_relevance {
     const int64_t *now_us;
     half down, up;
     asked *asked; /* by id */
-    asked *queue; /* without a number, [queue_first, queue_end): answered in this order */
-    size_t queue_first, queue_end, queue_capacity;
+    asked *queue; /* without a number: a ring from queue_first to queue_end, answered in order */
+    size_t queue_first, queue_end;
     asked view;         /* the last one asked for */
     uint16_t far[FARS]; /* the numbers of sets that are not whole, oldest first */
     size_t far_count;
@@ -142,7 +143,7 @@ static const asked *asked_by(sim_relevance *relevance, const ff_message *message
         return relevance->far_count ? &relevance->asked[relevance->far[0]] : NULL;
     if (id) return &relevance->asked[id];
     return relevance->queue_first < relevance->queue_end
-               ? &relevance->queue[relevance->queue_first++]
+               ? &relevance->queue[relevance->queue_first++ % ASKED]
                : NULL;
 }
 
@@ -206,28 +207,20 @@ static void take_down(sim_relevance *relevance, const ff_message *message, size_
     }
     relevance->figures.came[FF_DATA_OVERHEAD] += (double)bytes;
     if (message->type == FF_MSG_ROOTS) (void)ff_parts_roots(&relevance->parts, &message->u.roots);
+    if (message->type == FF_MSG_EDGE)
+        (void)ff_parts_edge(&relevance->parts, message->u.edge.needed);
     if (message->type == FF_MSG_FAILED && !message->u.failed.id) asked_by(relevance, message);
     if (message->type == FF_MSG_FAILED) end_far(relevance, message->u.failed.id);
     if (message->type == FF_MSG_CANCELLED) end_far(relevance, message->u.cancel.id);
 }
 
-/* Where to note what is asked for: by its number, or last in the queue. NULL: out of memory. */
+/* Where to note what is asked for: by its number, or last in the queue. */
 static asked *place_for(sim_relevance *relevance, const ff_message *message)
 {
     uint16_t id = ff_message_id(message);
-    if (message->kind == FF_KIND_VIEW) return &relevance->view;
-    if (id) return &relevance->asked[id];
-    if (relevance->queue_end == relevance->queue_capacity) {
-        size_t more = 2 * relevance->queue_capacity + 256;
-        asked *grown = realloc(relevance->queue, more * sizeof *grown);
-        if (!grown) {
-            relevance->rc = FF_ERR_MEMORY;
-            return NULL;
-        }
-        relevance->queue = grown;
-        relevance->queue_capacity = more;
-    }
-    return &relevance->queue[relevance->queue_end++];
+    return message->kind == FF_KIND_VIEW ? &relevance->view
+           : id                          ? &relevance->asked[id]
+                                         : &relevance->queue[relevance->queue_end++ % ASKED];
 }
 
 static void take_up(sim_relevance *relevance, const ff_message *message, size_t bytes)
@@ -235,7 +228,6 @@ static void take_up(sim_relevance *relevance, const ff_message *message, size_t 
     sim_talk_up(&relevance->figures.talk, message, bytes);
     if (message->type != FF_MSG_GET) return;
     asked *q = place_for(relevance, message);
-    if (!q) return;
     *q = (asked){ .kind = message->kind, .chain = sim_talk_asked(&relevance->figures.talk) };
     switch ((enum ff_kind_asks)ff_kind[q->kind].asks) {
         case FF_ASKS_NODE: q->key = message->u.get.key; break;
@@ -333,8 +325,9 @@ sim_relevance *sim_relevance_create(sys_stream *stream, const ff_terrain_info *i
 {
     sim_relevance *relevance = calloc(1, sizeof *relevance);
     if (!relevance) return NULL;
-    relevance->asked = calloc((size_t)UINT16_MAX + 1, sizeof *relevance->asked);
-    if (sim_mesh_make(&relevance->mesh, info) != FF_OK || !relevance->asked) {
+    relevance->asked = calloc(ASKED, sizeof *relevance->asked);
+    relevance->queue = calloc(ASKED, sizeof *relevance->queue);
+    if (sim_mesh_make(&relevance->mesh, info) != FF_OK || !relevance->asked || !relevance->queue) {
         sim_relevance_destroy(relevance);
         return NULL;
     }

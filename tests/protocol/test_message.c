@@ -246,7 +246,7 @@ static void first_bytes_are_those_of_the_specification(void **state)
     static const struct {
         uint8_t first, last;
     } client[] = { { 1, 1 }, { 4, 10 }, { 128, 223 } },
-      server[] = { { 65, 65 }, { 68, 75 }, { 80, 127 }, { 224, 255 } };
+      server[] = { { 65, 65 }, { 68, 76 }, { 80, 127 }, { 224, 255 } };
     (void)state;
     for (unsigned byte = 0; byte < 256; byte++) {
         enum ff_kind kind;

@@ -57,6 +57,9 @@ static ff_get_view largest_view(void)
         view.below[i] = view.roots >> i & 1u ? ff_key_make(FF_KEY_TILES_MAX - 1 - i, 0, 0)
                                              : ff_key_make(FF_KEY_TILES_MAX - 1, i,
                                                            (uint32_t)((UINT64_C(1) << 2 * i) - 1));
+    view.edge_count = FF_VIEW_EDGE_MAX;
+    for (unsigned i = 0; i < FF_VIEW_EDGE_MAX; i++)
+        view.edge[i] = ff_key_make(FF_KEY_TILES_MAX - 1, 15, 0x3fffffff - i);
     return view;
 }
 
@@ -95,6 +98,8 @@ static void views_there_and_back(void **state)
         assert_true(a->triangles_max == b->triangles_max && a->bytes_max == b->bytes_max);
         assert_true(a->roots == b->roots && a->count == b->count);
         assert_memory_equal(a->below, b->below, sizeof a->below);
+        assert_true(a->edge_count == b->edge_count);
+        assert_memory_equal(a->edge, b->edge, sizeof a->edge);
     }
     /* the longest request is no longer than said */
     uint8_t bytes[FF_REQUEST_BYTES_MAX];
@@ -145,6 +150,13 @@ static void ranges_hold_both_ways(void **state)
     BAD(count = 15); /* a root beyond them */
     BAD(below[2] = ff_key_make(0, 2, 16));
     BAD(below[1] = ff_key_make(0, 1, 0)); /* a root is of level 0 */
+    BAD(edge_count = FF_VIEW_EDGE_MAX + 1);
+    BAD(edge[3] = ff_key_make(0, 2, 16));
+    m = get_view(least_view()); /* what names nothing has no edge */
+    m.u.view.edge_count = 1;
+    assert_int_equal(ff_message_encode(&m, bytes, sizeof bytes), FF_ERR_RANGE);
+    m = (ff_message){ .type = FF_MSG_EDGE, .u.edge = { 1u << FF_VIEW_EDGE_MAX } };
+    assert_int_equal(ff_message_encode(&m, bytes, sizeof bytes), FF_ERR_RANGE);
 #undef BAD
 #define BAD(assignment)                         \
     m = part_of((ff_part){ 3, payload, 5, 0 }); \
@@ -160,7 +172,7 @@ static void ranges_hold_both_ways(void **state)
     m = get_view(least_view());
     m.u.view.count = 1;
     int used = ff_message_encode(&m, bytes, sizeof bytes);
-    bytes[used - 3] = 2;
+    bytes[used - 4] = 2;
     assert_int_equal(ff_message_decode(bytes, (size_t)used, &m), FF_ERR_RANGE);
     /* roots: a tile that there cannot be, and one too many */
     uint8_t roots[3 + FF_PARTS_MAX + 1] = { 74, 0x81, 4 };
@@ -188,6 +200,10 @@ static void a_view_covers_what_lies_below(void **state)
     assert_false(ff_view_covers(&view, FF_KIND_REFINEMENT, ff_key_make(5, 4, 10 * 16)));
     assert_false(ff_view_covers(&view, FF_KIND_REFINEMENT, ff_key_make(5, 1, 2)));
     assert_false(ff_view_covers(&view, FF_KIND_ROOT, ff_key_make(5, 0, 0)));
+    view.edge_count = 1;
+    view.edge[0] = ff_key_make(5, 2, 10);
+    assert_true(ff_view_covers(&view, FF_KIND_REFINEMENT, ff_key_make(5, 4, 10 * 16)));
+    assert_int_equal(ff_view_names(&view, FF_KIND_REFINEMENT, view.edge[0]), 0);
     view.below[1] = ff_key_make(5, 0, 0); /* what refines a root is not the root */
     assert_true(ff_view_covers(&view, FF_KIND_REFINEMENT, ff_key_make(5, 15, 0x3fffffff)));
     assert_false(ff_view_covers(&view, FF_KIND_ROOT, ff_key_make(5, 0, 0)));
@@ -277,6 +293,35 @@ static void roots_are_told_where_nothing_was_named(void **state)
     assert_true(ff_parts_done(&parts)); /* no ground in view */
 }
 
+/* Of the edge what is told to come, behind what is named; all told before any part. */
+static void the_edge_comes_as_it_is_told(void **state)
+{
+    static ff_parts parts;
+    ff_get_view view = least_view();
+    (void)state;
+    view.count = 1;
+    view.below[0] = ff_key_make(0, 1, 0);
+    view.edge_count = 3;
+    for (uint32_t i = 0; i < 3; i++) view.edge[i] = ff_key_make(0, 1, 1 + i);
+    ff_parts_begin(&parts, &view);
+    assert_int_equal(comes(&parts, 0), FF_ERR_FORMAT); /* is any of it needed? */
+    assert_false(ff_parts_done(&parts));
+    assert_int_equal(ff_parts_edge(&parts, 8), FF_ERR_FORMAT); /* there is no fourth */
+    assert_int_equal(ff_parts_edge(&parts, 5), FF_OK);
+    assert_int_equal(ff_parts_edge(&parts, 5), FF_ERR_FORMAT); /* again */
+    for (int i = 0; i < 3; i++) {
+        static const uint32_t order[] = { 0, 1, 3 };
+        enum ff_kind kind;
+        ff_key key;
+        int named;
+        assert_true(ff_parts_next(&parts, &kind, &key, &named));
+        assert_int_equal(ff_key_code(key), order[i]);
+        assert_int_equal(named, i == 0);
+        assert_int_equal(comes(&parts, 0), FF_OK);
+    }
+    assert_true(ff_parts_done(&parts));
+}
+
 static void an_answer_has_an_end(void **state)
 {
     static ff_parts parts;
@@ -303,6 +348,7 @@ int main(void)
         cmocka_unit_test(parts_come_as_they_were_announced),
         cmocka_unit_test(what_comes_later_goes_to_the_end),
         cmocka_unit_test(roots_are_told_where_nothing_was_named),
+        cmocka_unit_test(the_edge_comes_as_it_is_told),
         cmocka_unit_test(an_answer_has_an_end),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

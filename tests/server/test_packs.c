@@ -148,12 +148,12 @@ static void a_view_brings_ground_of_every_pack_in_sight(void **state)
                          .reach_wu = INT32_MAX,
                          .bytes_max = 1 << 20 };
     ff_view_part part[FF_PARTS_MAX];
-    uint32_t told;
+    ff_view_front front;
     unsigned of[PACKS] = { 0 };
     (void)state;
     for (unsigned i = 0; i < PACKS; i++) write_pack(i, 32632);
     assert_int_equal(opened(&packs, 3), FF_OK);
-    int count = ff_view_parts(&packs.pack[0], &view, part, &told);
+    int count = ff_view_parts(&packs.pack[0], &view, part, &front);
     assert_true(count > 0);
     for (int i = 0; i < count; i++) {
         const uint8_t *payload;
@@ -168,7 +168,7 @@ static void a_view_brings_ground_of_every_pack_in_sight(void **state)
     view.count = 1;
     view.roots = 1;
     view.below[0] = ff_key_make(4, 0, 0);
-    count = ff_view_parts(&packs.pack[0], &view, part, &told);
+    count = ff_view_parts(&packs.pack[0], &view, part, &front);
     assert_true(count > 1);
     for (int i = 0; i < count; i++) assert_int_equal(ff_key_tile(part[i].key), 4);
     ff_packs_close(&packs);

@@ -16,7 +16,7 @@
 static ff_pack pack;
 static uint8_t *pack_bytes;
 static ff_view_part part[FF_PARTS_MAX];
-static uint32_t told;
+static ff_view_front front;
 
 static int open_pack(void **state)
 {
@@ -118,7 +118,7 @@ static void all_of_a_view_and_no_more(void **state)
         ff_get_view view = usual_view();
         view.allowed_q8 = allowed_q8;
         uint32_t singly = asked_singly(&view, asked);
-        int count = ff_view_parts(&pack, &view, part, &told);
+        int count = ff_view_parts(&pack, &view, part, &front);
         assert_int_equal(count, singly);
         for (uint32_t i = 0; i < singly; i++) {
             assert_true(is_among(part, singly, asked[i]));
@@ -132,12 +132,12 @@ static void what_is_named_comes_first_and_bounds_the_rest(void **state)
 {
     (void)state;
     ff_get_view view = usual_view();
-    int all = ff_view_parts(&pack, &view, part, &told);
+    int all = ff_view_parts(&pack, &view, part, &front);
     view.count = 2;
     view.roots = 2;
     view.below[0] = ff_key_make(1, 0, 0); /* what refines a root; and, of another, all */
     view.below[1] = ff_key_make(0, 0, 0);
-    int count = ff_view_parts(&pack, &view, part, &told);
+    int count = ff_view_parts(&pack, &view, part, &front);
     assert_in_range(count, 4, all - 1);
     assert_int_equal(part[0].kind, FF_KIND_REFINEMENT);
     assert_int_equal(part[0].key, view.below[0]);
@@ -153,19 +153,47 @@ static void what_is_named_comes_first_and_bounds_the_rest(void **state)
     view.allowed_q8 = INT32_MAX;
     view.count = 1;
     view.below[0] = ff_key_make(3, 2, 15);
-    assert_int_equal(ff_view_parts(&pack, &view, part, &told), 1);
+    assert_int_equal(ff_view_parts(&pack, &view, part, &front), 1);
     view.below[0] = ff_key_make(FF_KEY_TILES_MAX - 1, 15, 0x3fffffff);
-    assert_int_equal(ff_view_parts(&pack, &view, part, &told), 1);
+    assert_int_equal(ff_view_parts(&pack, &view, part, &front), 1);
     assert_int_equal(ff_view_named(&view, part), 1);
+}
+
+/* What a client lacks beside what it names comes where the view needs it, and is told. */
+static void the_edge_is_refined_where_it_is_needed(void **state)
+{
+    (void)state;
+    ff_get_view view = usual_view();
+    int all = ff_view_parts(&pack, &view, part, &front);
+    assert_int_equal(front.edge, 0);
+    assert_in_range(front.roots, 1, 4);
+    view.count = 1;
+    view.below[0] = ff_key_make(0, 0, 0);
+    int less = ff_view_parts(&pack, &view, part, &front);
+    assert_int_equal(front.roots, 0);
+    view.edge_count = 4; /* of a client that has the roots */
+    for (uint32_t i = 0; i < 3; i++) view.edge[i] = ff_key_make(1 + i, 0, 0);
+    view.edge[3] = ff_key_make(FF_KEY_TILES_MAX - 1, 0, 0);
+    int count = ff_view_parts(&pack, &view, part, &front);
+    assert_in_range(count, less + 1, all);
+    assert_true(front.edge != 0 && front.edge >> 3 == 0);
+    for (uint32_t i = 0, at = 1; i < 3; i++) {
+        if (!(front.edge >> i & 1u)) continue;
+        assert_int_equal(part[at].key, view.edge[i]);
+        assert_int_equal(part[at++].kind, FF_KIND_REFINEMENT);
+    }
+    view.allowed_q8 = INT32_MAX; /* nothing needs to be fine */
+    assert_int_equal(ff_view_parts(&pack, &view, part, &front), 1);
+    assert_int_equal(front.edge, 0);
 }
 
 static void bytes_are_bounded(void **state)
 {
     (void)state;
     ff_get_view view = usual_view();
-    int all = ff_view_parts(&pack, &view, part, &told), before = 0;
+    int all = ff_view_parts(&pack, &view, part, &front), before = 0;
     for (view.bytes_max = 0; view.bytes_max < 4000; view.bytes_max += 500) {
-        int count = ff_view_parts(&pack, &view, part, &told);
+        int count = ff_view_parts(&pack, &view, part, &front);
         uint64_t bytes = 0;
         for (int i = 0; i < count; i++) {
             const uint8_t *payload;
@@ -202,7 +230,7 @@ static void any_view_is_answered(void **state)
                              .reach_wu = 1 + (int32_t)((word[4] & 0x3fffffff) >> little),
                              .triangles_max = (uint32_t)word[5] >> little,
                              .bytes_max = (uint32_t)(word[5] >> 32) };
-        int count = ff_view_parts(&pack, &view, part, &told);
+        int count = ff_view_parts(&pack, &view, part, &front);
         assert_in_range(count, 0, FF_PARTS_MAX);
     }
 }
@@ -212,6 +240,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(all_of_a_view_and_no_more),
         cmocka_unit_test(what_is_named_comes_first_and_bounds_the_rest),
+        cmocka_unit_test(the_edge_is_refined_where_it_is_needed),
         cmocka_unit_test(bytes_are_bounded),
         cmocka_unit_test(any_view_is_answered),
     };

@@ -120,7 +120,7 @@ def main():
             waste, views = sum(g[4] for g in fine), sum(g[5] for g in fine)
             within = sum(g[0] <= g[3] for g in fine)
             say(f"| {os.path.basename(pack)[:-4]} | {height:g} | {link} | {event} | {m[0]:.1f} ({m[3]:.1f}) | {m[1]:g} | {m[2] / 1000:.1f} | "
-                f"{100 * waste / max(1, views):.1f} | {within} of {len(got)} |")
+                f"{f'{100 * waste / views:.1f}' if views > 2000 * len(fine) else ''} | {within} of {len(got)} |")
         say("\n| ground | height, m | link | kB | bytes a request | bytes of a header | framing, % | up, % of down | packets down, up | kB of their headers |\n"
             + "|---" * 10 + "|")
         runs = [(case, pool.submit(steady, given, case[0], case[2], case[1])) for case in cases]

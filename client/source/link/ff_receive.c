@@ -131,6 +131,11 @@ static int take_roots(ff_stream *stream, const ff_roots *roots)
     return stream->view_out ? ff_parts_roots(&stream->parts, roots) : FF_ERR_FORMAT;
 }
 
+static int take_edge(ff_stream *stream, uint32_t needed)
+{
+    return stream->view_out ? ff_parts_edge(&stream->parts, needed) : FF_ERR_FORMAT;
+}
+
 /* No more messages answer its request after this one. */
 static int is_last(const ff_message *message)
 {
@@ -219,6 +224,7 @@ static int take(ff_stream *stream, const ff_message *message, uint32_t bytes, in
             return take_failed(stream, message->u.failed.id, message->u.failed.error);
         case FF_MSG_CANCELLED: return take_failed(stream, message->u.cancel.id, FF_ERR_CLOSED);
         case FF_MSG_ROOTS: return take_roots(stream, &message->u.roots);
+        case FF_MSG_EDGE: return take_edge(stream, message->u.edge.needed);
         case FF_MSG_PONG: stream->awaiting = 0; return FF_OK;
         case FF_MSG_ABOUT: return take_about(stream, message->u.list);
         default: return FF_ERR_FORMAT; /* a client's message */
