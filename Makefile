@@ -45,7 +45,7 @@ LIBS := $(LIB)/libffsim.a $(LIB)/libffserver.a $(LIB)/libfftools.a $(LIB)/libffc
 LINK_LIBS = -Wl,--start-group $(LIBS) -Wl,--end-group $(LDLIBS_core) $(LDLIBS_surface) $(LDLIBS_host)
 
 .DEFAULT_GOAL := all
-.PHONY: all help null deps asserts format server emulator flyover front hashes demo test test-build check extremes numbers parts properties soak man install uninstall clean lib fuzz FORCE
+.PHONY: all help null deps asserts format server emulator flyover front talk hashes demo test test-build check extremes numbers parts properties soak man install uninstall clean lib fuzz FORCE
 
 all: $(PROGRAMS) lib null ## build all programs and libraries into build/
 

@@ -209,6 +209,24 @@ sys.exit(0 if rows > 300 and near >= 0.85 * rows else 1)
 END
 result $? "over three kinds of ground the client's estimate is within a factor of two of the judged p95 (from 0.1 px on) in 85 rows of 100"
 
+# ---- what the talk costs ----
+python3 tests/rig/hills.py 1025 "$work/wide.raw" && "$bin/farfield-bake" "$work/wide.raw" --raw 1025x1025 --spacing 40 --quiet -o "$work/wide.ffp"
+talk="--pack $work/wide.ffp --backend none --height 100 --settle 0 --check off"
+flies talk $talk --link gprs --seconds 120 --sample 1
+is 's["node_requests"] > 20 and s["node_request_bytes"] <= 4 * s["node_requests"]' "a request for a node has 4 bytes as a mean, at most"
+is 's["node_answers"] > 20 and s["node_header_bytes"] == 2 * s["node_answers"]' "an answer has 2 bytes before its payload"
+is 's["bytes_framing"] < 0.03 * s["bytes_down"] and s["bytes_up"] < 0.05 * s["bytes_down"]' "less than 3 % of what comes is no payload, and up goes less than 5 % of it"
+is 's["packets_up"] < s["requests"] and 0 < s["packets_down"]' "requests share packets"
+for link in gprs umts nbiot; do
+    flies "start-$link" $talk --link "$link" --seconds 30 --sample 0.25 --audit on --fps 8
+    is '(lambda a: a["round_trips"] <= 2 and a["t_s"] <= 2 * (a["delay_up_s"] + a["delay_down_s"]) + a["bytes_down"] / {"gprs": 5500, "umts": 48000, "nbiot": 3268}["'"$link"'"] + 1)(next(a for a in r if a["nodes_drawn"] > 0 and a["err_px_p95"] <= 2))' \
+        "over $link the picture is right in two round trips, as the link drew them, its bytes and a second"
+    is 'r[-1]["wasted_views"] <= 0.05 * r[-1]["bytes_views"]' "and what came so was of use"
+done
+flies leap $talk --link iridium,stall_every_ms=0 --seconds 40 --sample 0.25 --audit on --fps 8 --event 30:teleport=0.7,0.3
+is 'next(a["t_s"] for a in r if a["t_s"] > 30.3 and a["err_px_p95"] <= 2.5) <= 30 + 2 * (r[-1]["delay_up_s"] + r[-1]["delay_down_s"]) + (r[-1]["bytes_down"] - r[120]["bytes_down"]) / 11000 + 1' \
+    "after a leap, too"
+
 # ---- relevance ----
 flies still $usual --backend none --speed 0 --seconds 20 --reserve off
 is '0 < s["relevance_percent"] < 100 and r[-1]["unused_images"] == 0 and r[-1]["unused_heights"] == r[-1]["unused_supporting"] and r[-1]["bytes_reserve"] == 0 and s["relevance_percent"] == s["relevance_no_reserve_percent"] and abs(r[-1]["bytes_heights"] + r[-1]["bytes_images"] + r[-1]["bytes_faces"] + r[-1]["bytes_overhead"] - r[-1]["bytes_down"]) < 1' \

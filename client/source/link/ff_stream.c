@@ -12,7 +12,10 @@
  * PATIENCE_MAX times. Later it is at least PATIENCE_ROUND_TRIPS round trips. */
 #define PATIENCE_MAX         4
 #define PATIENCE_ROUND_TRIPS 4
-#define ABOUT_AFTER_US       20000000 /* so long ground in view goes first, always */
+/* What is asked for ahead waits for company so long, of the 3 s and some round trips that it is
+ * ahead. */
+#define COMPANY_US     1000000
+#define ABOUT_AFTER_US 20000000 /* so long ground in view goes first, always */
 
 FF_STATIC_ASSERT(FF_REQUEST_BYTES_MAX <= FF_STREAM_SEND_BYTES);
 FF_STATIC_ASSERT(FF_BACKOFF_US_MIN < FF_BACKOFF_US_MAX && FF_BACKOFF_US_MAX <= INT64_MAX / 2);
@@ -34,6 +37,7 @@ void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsign
     stream->reach_wu = INT32_MAX;
     stream->backoff_us = FF_BACKOFF_US_MIN;
     stream->connect_us = stream->heard_us = stream->sent_us = INT64_MIN;
+    stream->ahead_us = INT64_MIN / 2;
     ff_link_estimate_reset(&stream->link);
 }
 
@@ -230,6 +234,14 @@ static void encode_request(ff_stream *stream, const ff_request *request)
     append(stream, &message);
 }
 
+/* What is asked for ahead has time: it leaves together with what has not, or with more of its own.
+ * So fewer packets go, and come back, each with a header of IP and TCP. */
+static int in_company(ff_stream *stream, int64_t now_us)
+{
+    return now_us - stream->ahead_us >= COMPANY_US ||
+           ff_requests_waiting(stream->intake->requests, FF_CLASS_IN_VIEW);
+}
+
 /* Puts requests into the send buffer, as many as the link's window and the buffer take, so that
  * they leave in one piece. */
 static int ask(ff_stream *stream, int64_t now_us)
@@ -240,6 +252,8 @@ static int ask(ff_stream *stream, int64_t now_us)
     int prefetch = !stream->shared.no_prefetch &&
                    requests->counts.in_flight < stream->in_flight_max / 2u;
     sys_mutex_unlock(&requests->mutex);
+    int company = in_company(stream, now_us);
+    prefetch &= company;
     FF_ASSERT(stream->state == FF_STREAM_UP || stream->state == FF_STREAM_GREETING);
     uint32_t window = ff_link_estimate_window(&stream->link);
     int moved = 0;
@@ -253,6 +267,7 @@ static int ask(ff_stream *stream, int64_t now_us)
         } else if (!quiet && ff_requests_next(requests, now_us, stream->in_flight_max, window,
                                               prefetch, &request)) {
             encode_request(stream, &request);
+            if (request.rank >= FF_CLASS_PREFETCH) stream->ahead_us = now_us;
             ff_link_estimate_sent(&stream->link, now_us);
         } else {
             break;
@@ -260,7 +275,8 @@ static int ask(ff_stream *stream, int64_t now_us)
         moved = 1;
     }
     /* more requests would have gone; the reserve waits for other reasons */
-    stream->link.window_full |= (uint8_t)ff_requests_waiting(requests, FF_CLASS_PREFETCH);
+    stream->link.window_full |= (uint8_t)ff_requests_waiting(requests, company ? FF_CLASS_PREFETCH
+                                                                               : FF_CLASS_IN_VIEW);
     return moved;
 }
 

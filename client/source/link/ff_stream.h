@@ -74,6 +74,7 @@ typedef struct ff_stream {
     uint8_t send[FF_STREAM_SEND_BYTES];
     uint32_t send_count;
     int64_t retry_us, backoff_us, connect_us, heard_us, sent_us;
+    int64_t ahead_us; /* when something was last asked for ahead */
     uint8_t awaiting; /* HELLO, PING or GET_ABOUT unanswered */
     uint8_t view_out; /* 1: parts answer the view that was sent, or will */
     uint8_t patience; /* how often the time-out has been doubled */
