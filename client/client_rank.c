@@ -76,6 +76,7 @@ static void want_textures(ff_client *client, const ff_view *view, const ff_quali
  * views when the viewer turns far. */
 typedef struct ahead {
     unsigned views;
+    int turns; /* 1: the viewer turns */
     int32_t pos_wu[FF_TURN_VIEWS_MAX][3], yaw[FF_TURN_VIEWS_MAX], pitch[FF_TURN_VIEWS_MAX];
 } ahead;
 
@@ -90,6 +91,7 @@ static void look_ahead(const ff_client *client, const ff_view *view, int64_t rtt
     int64_t ahead_us = turns ? TURN_US + TURN_ROUND_TRIPS * rtt_us
                              : AHEAD_US + AHEAD_ROUND_TRIPS * rtt_us;
     a->views = 0;
+    a->turns = turns > 0;
     for (i = 0; i < views; i++) {
         int64_t at_us = ahead_us * (i + 1) / views;
         memcpy(a->pos_wu[i], view->camera.pos_wu, sizeof a->pos_wu[i]);
@@ -163,12 +165,15 @@ void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *qu
                     int64_t now_us)
 {
     ff_stream_shared shared;
-    ahead a = { .views = 0 };
+    ahead a = { .views = 0, .turns = 0 };
     ff_client_link(client, &shared);
     if (!client->desc.no_prefetch && !ff_client_low_power(client))
         look_ahead(client, view, shared.rtt_us, &a);
-    for (unsigned i = 0; i < client->source_count; i++)
-        ff_requests_rank_begin(&ff_client_source(client, i)->requests);
+    for (unsigned i = 0; i < client->source_count; i++) {
+        ff_source *source = ff_client_source(client, i);
+        if (source->io) ff_stream_hurry(&source->stream, a.turns);
+        ff_requests_rank_begin(&source->requests);
+    }
     if (!ff_client_own_ground(client))
         ff_panorama_want(&client->panorama, &client->first.requests, view, faces_ahead(view, &a),
                          now_us);

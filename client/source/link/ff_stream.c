@@ -97,6 +97,13 @@ void ff_stream_say(ff_stream *stream, int quiet, int no_prefetch)
     sys_mutex_unlock(&stream->intake->requests->mutex);
 }
 
+void ff_stream_hurry(ff_stream *stream, int hurry)
+{
+    sys_mutex_lock(&stream->intake->requests->mutex);
+    stream->shared.hurry = (uint8_t)hurry;
+    sys_mutex_unlock(&stream->intake->requests->mutex);
+}
+
 /* Closes a connection that is of no more use. Half-received messages and unsent bytes are dropped,
  * requests without an answer are queued again. */
 static void give_up(ff_stream *stream, int64_t now_us)
@@ -251,8 +258,9 @@ static int ask(ff_stream *stream, int64_t now_us)
     int quiet = stream->shared.quiet;
     int prefetch = !stream->shared.no_prefetch &&
                    requests->counts.in_flight < stream->in_flight_max / 2u;
+    int hurry = stream->shared.hurry;
     sys_mutex_unlock(&requests->mutex);
-    int company = in_company(stream, now_us);
+    int company = hurry || in_company(stream, now_us);
     prefetch &= company;
     FF_ASSERT(stream->state == FF_STREAM_UP || stream->state == FF_STREAM_GREETING);
     uint32_t window = ff_link_estimate_window(&stream->link);

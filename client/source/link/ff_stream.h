@@ -42,6 +42,7 @@ typedef struct ff_stream_shared {
     int8_t refusal;  /* why the server would not have this client: an error, or FF_OK */
     uint8_t quiet;   /* main: ask nothing new (interruption) */
     uint8_t no_prefetch;
+    uint8_t hurry;  /* main: the viewer turns, what is asked for ahead does not wait for company */
     uint32_t lacks; /* FF_LACKS_ of the last WELCOME */
 } ff_stream_shared;
 
@@ -108,6 +109,7 @@ void ff_stream_accept(ff_stream *stream, int ok);
 void ff_stream_restart(ff_stream *stream);
 void ff_stream_get_shared(ff_stream *stream, ff_stream_shared *shared);
 void ff_stream_say(ff_stream *stream, int quiet, int no_prefetch);
+void ff_stream_hurry(ff_stream *stream, int hurry);
 void ff_stream_close(ff_stream *stream);
 
 #endif

@@ -35,3 +35,9 @@ void ff_stream_say(ff_stream *stream, int quiet, int no_prefetch)
     (void)stream, (void)quiet, (void)no_prefetch;
 }
 void ff_stream_close(ff_stream *stream) { (void)stream; }
+
+void ff_stream_hurry(ff_stream *stream, int hurry)
+{
+    (void)stream;
+    (void)hurry;
+}
