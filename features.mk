@@ -19,6 +19,7 @@ $(call feature,jpeg, platform/posix/jpeg.c platform/posix/jpeg_tables.c, platfor
 $(call feature,hud, sim/handheld/handheld_hud.c common3d/c3d_text.c, sim/handheld/handheld_hud_none.c)
 $(call feature,deflate, protocol/zlib, protocol/zlib/ff_inflate_none.c protocol/zlib/ff_crc_none.c)
 $(call feature,trained, protocol/trained, protocol/trained/ff_trained_none.c)
+$(call feature,picture, protocol/picture client/images/ff_pack_images.c, protocol/picture/ff_picture_none.c)
 $(call feature,labels, common3d/soft/soft_label.c, common3d/soft/soft_label_none.c)
 $(call feature,grounds, client/terrain/ff_grounds.c client/terrain/ff_cover.c client/terrain/ff_seam.c client/terrain/ff_seam_dive.c client/terrain/ff_seam_rim.c client/several, \
     client/terrain/ff_grounds_none.c client/several/ff_several_none.c)

@@ -55,6 +55,10 @@ static void carve_textures(ff_client *client, const ff_budget *budget)
     textures->info = client->info;
     textures->slot_count = (uint16_t)budget->pool[FF_POOL_textures].count;
     textures->slot = take(client, budget, FF_POOL_textures);
+    uint8_t *pictures = take(client, budget, FF_POOL_pictures);
+    if (!pictures) return;
+    textures->room = (ff_picture_room *)(void *)pictures;
+    textures->texels = (uint16_t *)(void *)(pictures + sizeof *textures->room);
 }
 
 static int open_device(ff_client *client, const ff_budget *budget)

@@ -58,7 +58,8 @@ static unsigned fit_far_side(const ff_budget *b)
 
 static int can_have_textures(const ff_budget *b)
 {
-    return b->info->texture_log2 && b->info->texture_levels && !b->desc->no_textures &&
+    int built = ff_picture_built || !(b->info->flags & FF_TERRAIN_PICTURES);
+    return built && b->info->texture_log2 && b->info->texture_levels && !b->desc->no_textures &&
            image_fits(b, (size_t)1 << b->info->texture_log2);
 }
 
@@ -282,7 +283,10 @@ static void add_arriving(ff_budget *b)
            far = FF_SETS_TEXELS((size_t)b->far_side);
     b->texels = far > side * side ? far : side * side;
     b->image_bytes = b->texels * sizeof(uint16_t) + (b->far_side ? FF_NEW_FINS_BYTES : 0);
-    b->texture_bytes = (size_t)4 << (2 * b->info->texture_log2);
+    b->picture_bytes = b->has_textures && b->desc->backend && b->info->flags & FF_TERRAIN_PICTURES
+                           ? (size_t)2 << (2 * b->info->texture_log2)
+                           : 0;
+    b->texture_bytes = ((size_t)4 << (2 * b->info->texture_log2)) + b->picture_bytes;
     b->heights = ff_node_side(b->info) * ff_node_side(b->info);
     b->indices = ff_strips_indices(b->info->node_log2);
     b->values = ff_refined_side(b->info) * ff_refined_side(b->info);

@@ -422,8 +422,10 @@ int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
     pack = ff_pack_of(pack, key);
     if (!pack) return FF_ERR_NOT_FOUND;
     if (pack->stored) {
-        if (kind == FF_SECTION_ROOT && ff_key_level(key) == 0)
-            return pack->make_root(pack->root_context, ff_key_tile(key), payload);
+        int pictures = pack->header.info.flags & FF_TERRAIN_PICTURES;
+        if (ff_key_level(key) == 0 &&
+            (kind == FF_SECTION_ROOT || (kind == FF_SECTION_TEXTURE && pictures)))
+            return pack->make_root(pack->root_context, kind, ff_key_tile(key), payload);
         if (!ff_terrain_has_node(&pack->header.info, key)) return FF_ERR_NOT_FOUND;
         key = ff_entry_key(&pack->stored->header.info, &pack->header.info, key);
         pack = pack->stored;

@@ -16,7 +16,7 @@
 #include "ff_index.h"
 #include "ff_kind.h"
 
-#define FF_PACK_VERSION      6
+#define FF_PACK_VERSION      7
 #define FF_PACK_HEADER_BYTES 4096 /* with the directory of sections; the sections follow */
 #define FF_PACK_SECTIONS_MAX 48   /* that this reader knows */
 #define FF_PACK_LISTED_MAX   80   /* with those that it does not */
@@ -54,9 +54,10 @@ typedef struct ff_pack_header {
 /* Reads `count` bytes from `offset` on, all of them: FF_OK or an error. */
 typedef int ff_pack_read_fn(void *context, uint64_t offset, void *out, size_t count);
 
-/* Makes the root of a tile that is no stored one (ff_pack_enter): bytes of *payload, which stands
- * until the next one is made, or an error. */
-typedef int ff_pack_root_fn(void *context, uint32_t tile, const uint8_t **payload);
+/* Makes the root of a tile that is no stored one (ff_pack_enter), or, where images are pictures,
+ * its image: bytes of *payload, which stands until the next one is made, or an error. */
+typedef int ff_pack_root_fn(void *context, enum ff_section_kind kind, uint32_t tile,
+                            const uint8_t **payload);
 
 /* A view on a pack: plain data that owns nothing. A mapping must outlive its view; any number of
  * threads may read through one view of a mapping at once, and one through a view that reads. */

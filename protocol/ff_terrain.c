@@ -15,7 +15,8 @@ static int heights_ok(const ff_terrain_info *info)
 
 static int textures_ok(const ff_terrain_info *info)
 {
-    if (info->texture_log2 == 0) return info->texture_levels == 0;
+    if (info->texture_log2 == 0)
+        return info->texture_levels == 0 && !(info->flags & FF_TERRAIN_PICTURES);
     return info->texture_log2 >= 4 && info->texture_log2 <= 8 && info->texture_levels >= 1 &&
            info->texture_levels <= FF_KEY_LEVEL_MAX + 1;
 }
@@ -25,7 +26,7 @@ int ff_terrain_check(const ff_terrain_info *info)
     int levels_ok = info->node_log2 >= 1 && info->node_log2 <= FF_NODE_LOG2_MAX &&
                     info->tile_log2 >= info->node_log2 &&
                     info->tile_log2 <= info->node_log2 + FF_KEY_LEVEL_MAX;
-    int flags_ok = (info->flags & ~(FF_TERRAIN_DENSIFIED | FF_TERRAIN_LOSSY)) == 0;
+    int flags_ok = (info->flags & ~FF_TERRAIN_FLAGS) == 0;
 
     if (!levels_ok || !flags_ok || !ff_shape_check(info) || !heights_ok(info) || !textures_ok(info))
         return FF_ERR_RANGE;
@@ -39,7 +40,8 @@ int ff_terrain_same(const ff_terrain_info *a, const ff_terrain_info *b)
            a->tiles_y == b->tiles_y && a->spacing_wu == b->spacing_wu &&
            a->hscale_q24 == b->hscale_q24 && a->hoffset_wu == b->hoffset_wu &&
            a->curve_q60 == b->curve_q60 && a->texture_log2 == b->texture_log2 &&
-           a->texture_levels == b->texture_levels && a->entered == b->entered;
+           a->texture_levels == b->texture_levels && a->entered == b->entered &&
+           !((a->flags ^ b->flags) & FF_TERRAIN_PICTURES);
 }
 
 /* Millimetres as world units, to the nearest. */

@@ -23,8 +23,11 @@ FF_STATIC_ASSERT(FF_TILE_LOG2_MAX == FF_NODE_LOG2_MAX + FF_KEY_LEVEL_MAX);
 
 enum ff_terrain_flags {
     FF_TERRAIN_DENSIFIED = 1, /* part of the detail is invented (farfield-bake --densify) */
-    FF_TERRAIN_LOSSY = 2      /* max_error > 0 */
+    FF_TERRAIN_LOSSY = 2,     /* max_error > 0 */
+    FF_TERRAIN_PICTURES = 4   /* its images are pictures (picture/ff_picture.h), not JPEGs */
 };
+
+#define FF_TERRAIN_FLAGS (FF_TERRAIN_DENSIFIED | FF_TERRAIN_LOSSY | FF_TERRAIN_PICTURES)
 
 typedef struct ff_terrain_info {
     uint8_t node_log2; /* k: a node holds (2^k+1)^2 heights; 1..5 */

@@ -29,8 +29,12 @@ typedef struct ff_new_item {
         ff_residuals residuals;
         /* VIEW, its end: bit i: what it names at i has not come */
         uint16_t missing;
-        /* TEXTURE: ff_image.bare. pixels: RGB565, width x width, row 0 south */
-        uint8_t bare;
+        /* TEXTURE: ff_image.bare. pixels: RGB565, width x width, row 0 south; or, of a picture, so
+         * many bytes as they came: what it is a difference to is the main thread's */
+        struct {
+            uint8_t bare;
+            uint32_t coded_bytes; /* 0: texels */
+        } texture;
         /* FACE. pixels: RGBA5551 of width x height (a power of two), row 0 lowest, texels without
          * ground transparent; none when the face is empty */
         struct {

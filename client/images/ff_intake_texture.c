@@ -1,10 +1,28 @@
-/* Images of the ground, decoded. Left out with textures. */
+/* Images of the ground: JPEGs are decoded, pictures passed on. Left out with textures. */
 #include "../ask/ff_intake_local.h"
 #include "ff_texture_map.h"
 #include "../../protocol/ff_assert.h"
 #include "../../protocol/ff_image.h"
 
 #include <stddef.h>
+#include <string.h>
+
+static int decode_jpeg(const ff_intake *intake, const ff_terrain_info *info, const ff_image *image,
+                       ff_new_item *item)
+{
+    int rc = sys_jpeg_decode(image->coded, image->coded_bytes, item->width, item->height,
+                             intake->rgb);
+    if (rc == FF_OK) ff_texture_texels(info, intake->rgb, item->pixels);
+    return rc;
+}
+
+static int pass_on(const ff_intake *intake, const ff_image *image, ff_new_item *item)
+{
+    if (image->coded_bytes > intake->news->image_bytes) return FF_ERR_FULL;
+    memcpy(item->pixels, image->coded, image->coded_bytes);
+    item->u.texture.coded_bytes = (uint32_t)image->coded_bytes;
+    return FF_OK;
+}
 
 int ff_intake_texture(ff_intake *intake, const ff_message *answer, ff_new_item *item)
 {
@@ -17,9 +35,8 @@ int ff_intake_texture(ff_intake *intake, const ff_message *answer, ff_new_item *
     FF_ASSERT((size_t)side * side * sizeof *item->pixels <= intake->news->image_bytes);
     ff_image image;
     int rc = ff_image_read(answer->u.data.bytes, answer->u.data.byte_count, &image);
-    if (rc == FF_OK) rc = sys_jpeg_decode(image.jpeg, image.jpeg_bytes, side, side, intake->rgb);
     if (rc != FF_OK) return rc;
-    item->u.bare = image.bare;
-    ff_texture_texels(info, intake->rgb, item->pixels);
-    return FF_OK;
+    item->u.texture.bare = image.bare;
+    return info->flags & FF_TERRAIN_PICTURES ? pass_on(intake, &image, item)
+                                             : decode_jpeg(intake, info, &image, item);
 }

@@ -2,6 +2,9 @@
 
 #include "ff_texture_map.h"
 #include "../../protocol/ff_assert.h"
+#include "../../protocol/shape/ff_shape.h"
+
+#include <string.h>
 
 #define COLOUR_WHITE 0xFFFFFFFFu
 
@@ -153,11 +156,67 @@ static ff_texture_slot *take_slot(ff_textures *textures)
     return oldest;
 }
 
-int ff_textures_take(ff_textures *textures, const ff_new_item *item)
+/* ---- pictures ---- */
+
+static uint16_t *texels_of(const ff_textures *textures, size_t number)
+{
+    return textures->texels + (number << 2 * textures->info.texture_log2);
+}
+
+/* The code, in the whole terrain, of a root of an entered one. */
+static uint32_t code_above(const ff_terrain_info *info, ff_key root)
+{
+    ff_sheet at = ff_shape_sheet(info, ff_key_tile(root));
+    uint32_t within = (1u << info->entered) - 1u;
+    return ff_morton_encode(at.x & within, at.y & within);
+}
+
+/* To the place behind those of the slots. */
+static int decode(ff_textures *textures, const ff_terrain_info *info, const ff_new_item *item,
+                  const ff_texture_slot *parent)
+{
+    const uint8_t *bytes = (const uint8_t *)item->pixels;
+    uint16_t *texels = texels_of(textures, textures->slot_count);
+    unsigned log2 = textures->info.texture_log2;
+    if (info->entered && !parent)
+        return ff_picture_decode_row(bytes, item->u.texture.coded_bytes, log2, info->entered,
+                                     code_above(info, item->key), textures->room, texels,
+                                     texels_of(textures, textures->slot_count + 1u));
+    ff_picture_above above = { 0 };
+    if (parent)
+        above = (ff_picture_above){ texels_of(textures, (size_t)(parent - textures->slot)),
+                                    ff_key_quadrant(item->key) };
+    return ff_picture_decode(bytes, item->u.texture.coded_bytes, log2, above, textures->room,
+                             texels, NULL);
+}
+
+static int take_picture(ff_textures *textures, const ff_terrain_info *info, ff_new_item *item)
+{
+    uint32_t level = ff_key_level(item->key);
+    ff_texture_slot *parent = level ? find(textures, ff_key_parent(item->key)) : NULL;
+    if (!textures->texels) return ff_textures_put(textures, item->key, item->u.texture.bare, NULL);
+    if (level && !parent) {
+        textures->apart++;
+        return 0;
+    }
+    item->error = decode(textures, info, item, parent);
+    if (item->error != FF_OK) return 0;
+    const uint16_t *texels = texels_of(textures, textures->slot_count);
+    if (!ff_textures_put(textures, item->key, item->u.texture.bare, texels)) return 0;
+    ff_texture_slot *slot = find(textures, item->key);
+    memcpy(texels_of(textures, (size_t)(slot - textures->slot)), texels,
+           sizeof *texels << 2 * textures->info.texture_log2);
+    return 1;
+}
+
+int ff_textures_take(ff_textures *textures, const ff_terrain_info *info, ff_new_item *item)
 {
     FF_ASSERT(item->width == 1u << textures->info.texture_log2);
-    return ff_textures_put(textures, item->key, item->u.bare, item->pixels);
+    if (item->u.texture.coded_bytes) return take_picture(textures, info, item);
+    return ff_textures_put(textures, item->key, item->u.texture.bare, item->pixels);
 }
+
+/* ---- */
 
 void ff_textures_doubt(ff_textures *textures)
 {

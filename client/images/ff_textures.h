@@ -9,6 +9,7 @@
 
 #include "../ask/ff_new_data.h"
 #include "../terrain/ff_tree.h"
+#include "../../protocol/picture/ff_picture.h"
 
 extern const uint8_t ff_textures_built; /* 0: left out of this build */
 
@@ -28,10 +29,14 @@ typedef struct ff_textures {
     ff_terrain_info info;
     ff_texture_slot *slot; /* zeroed */
     uint16_t slot_count;
+    /* Of pictures, where they are to be drawn: what is held of each slot, RGB565, south row first,
+     * and of one more; else NULL. Those below are decoded by it: a GL gives no texels back. */
+    uint16_t *texels;
+    ff_picture_room *room;
 
     uint16_t held, high;
     uint16_t bucket[FF_TEXTURE_HASH]; /* slot + 1 */
-    uint32_t stamp, full;
+    uint32_t stamp, full, apart;      /* apart: pictures whose parent's was not held */
 } ff_textures;
 
 /* A wish for an image: the one that comes next on the way down to a drawn node. */
@@ -52,8 +57,9 @@ uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff
  * colours. `bare`: of its children, ff_image.bare. 1 when the picture may have changed; 0: no room
  * (counted). */
 int ff_textures_put(ff_textures *textures, ff_key key, uint8_t bare, const uint16_t *texels);
-/* The same, for an item of the new-data list. */
-int ff_textures_take(ff_textures *textures, const ff_new_item *item);
+/* The same, for an item of the new-data list, of a key of the ground `info`. A picture whose
+ * parent's is not held is not taken, a damaged one makes the item an error. */
+int ff_textures_take(ff_textures *textures, const ff_terrain_info *info, ff_new_item *item);
 /* Somebody else may have images where those that are held say that there are none. */
 void ff_textures_doubt(ff_textures *textures);
 /* For an owner whose images come at once (a pack): 1 when this image is held; it is then the last

@@ -20,9 +20,9 @@ uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff
 
 void ff_textures_doubt(ff_textures *textures) { (void)textures; }
 
-int ff_textures_take(ff_textures *textures, const ff_new_item *item)
+int ff_textures_take(ff_textures *textures, const ff_terrain_info *info, ff_new_item *item)
 {
-    (void)textures, (void)item;
+    (void)textures, (void)info, (void)item;
     return 0;
 }
 

@@ -178,6 +178,7 @@ static int may_have(const ff_client *client, const ff_source *source, enum ff_ki
     if (own < 0 || lacks >> source->number & 1u) return 0;
     const ff_terrain_info *info = &source->intake.info[own];
     if (kind == FF_KIND_TEXTURE && (info->texture_log2 != client->info.texture_log2 ||
+                                    (info->flags ^ client->info.flags) & FF_TERRAIN_PICTURES ||
                                     ff_key_level(key) >= info->texture_levels))
         return 0;
     return !ff_refusals_final(&source->refusals, kind, ff_source_own_key(source, key));

@@ -1,5 +1,5 @@
-/* Private to codec trained: a binary range coder (SPEC.md, "Payload, codec 3"; Martin, "Range
- * encoding", 1979).
+/* Private to codec trained and to pictures: a binary range coder (SPEC.md, "Payload, codec 3";
+ * Martin, "Range encoding", 1979).
  *
  * A decision takes the lower part of what is left of a range, as large as the decision's
  * probability, when it is 1. The range grows by a byte whenever it has become small. Bytes read

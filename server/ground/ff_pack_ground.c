@@ -1,7 +1,6 @@
 #include "ff_pack_ground.h"
 #include "../../client/terrain/ff_pack_source.h"
 #include "../../client/images/ff_texture_map.h"
-#include "../../protocol/ff_image.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -44,9 +43,11 @@ static int make_texture_memory(ff_pack_ground *ground)
 {
     size_t texels = (size_t)1 << (2 * ground->pack->header.info.texture_log2);
     if (ground->pack->header.info.texture_log2 == 0) return FF_OK;
-    ground->texture_rgb = malloc(texels * 3);
+    ground->image_memory = malloc(ff_pack_images_bytes(ground->pack));
     ground->texture_texels = malloc(texels * sizeof *ground->texture_texels);
-    return ground->texture_rgb && ground->texture_texels ? FF_OK : FF_ERR_MEMORY;
+    if (!ground->image_memory || !ground->texture_texels) return FF_ERR_MEMORY;
+    ff_pack_images_init(&ground->images, ground->pack, ground->image_memory);
+    return FF_OK;
 }
 
 int ff_pack_ground_open(ff_pack_ground *ground, const ff_pack *pack, c3d_device *device,
@@ -78,7 +79,7 @@ void ff_pack_ground_close(ff_pack_ground *ground)
 {
     free(ground->tree_memory);
     free(ground->decoder_memory);
-    free(ground->texture_rgb);
+    free(ground->image_memory);
     free(ground->texture_texels);
     memset(ground, 0, sizeof *ground);
 }
@@ -156,18 +157,12 @@ int ff_pack_ground_seen(const ff_pack_ground *ground, const ff_ground_look *look
 
 /* ---- drawing ---- */
 
-/* Makes texture_texels of an image's payload, or of the error in its place. FF_OK, or why the
- * texels are not there. */
-static int make_texels(const ff_pack_ground *ground, const uint8_t *payload, int bytes)
+/* Makes texture_texels of a node's image. FF_OK, or why they are not there. */
+static int make_texels(ff_pack_ground *ground, ff_key key)
 {
-    const ff_terrain_info *info = &ground->pack->header.info;
-    uint32_t size = 1u << info->texture_log2;
-    ff_image image;
-    int rc = bytes < 0 ? bytes : ff_image_read(payload, (size_t)bytes, &image);
-    if (rc == FF_OK)
-        rc = sys_jpeg_decode(image.jpeg, image.jpeg_bytes, size, size, ground->texture_rgb);
+    uint32_t size = 1u << ground->textures.info.texture_log2;
+    int rc = ff_pack_images_get(&ground->images, ground->pack, key, ground->texture_texels);
     if (rc < 0) return rc;
-    ff_texture_texels(info, ground->texture_rgb, ground->texture_texels);
     for (uint32_t i = 0; i < size * size; i++)
         ground->texture_texels[i] = ff_ground_not_key(ground->texture_texels[i]);
     return FF_OK;
@@ -183,9 +178,9 @@ static void fetch_image(ff_pack_ground *ground, ff_key node)
                      : FF_KEY_NONE;
     const uint8_t *payload;
     if (key == FF_KEY_NONE || ff_textures_touch(&ground->textures, key)) return;
-    int bytes = ff_pack_image(ground->pack, &key, &payload);
+    int rc = ff_pack_image(ground->pack, &key, &payload);
     if (ff_textures_touch(&ground->textures, key)) return;
-    int rc = make_texels(ground, payload, bytes);
+    if (rc >= 0) rc = make_texels(ground, key);
     if (rc < 0) ground->stats->nodes_damaged++;
     ff_textures_put(&ground->textures, key, 0, rc < 0 ? NULL : ground->texture_texels);
 }

@@ -4,6 +4,7 @@
 #define FF_PACK_GROUND_H
 
 #include "../../client/ground/ff_terrain_view.h"
+#include "../../client/images/ff_pack_images.h"
 #include "../../protocol/ff_pack.h"
 
 #define FF_GROUND_NODES    4096 /* slots of the tree: bounds the memory */
@@ -58,8 +59,9 @@ typedef struct ff_pack_ground {
     c3d_vertex vertices[FF_NODE_HEIGHTS_MAX];
     ff_textures textures;
     ff_texture_slot slot[FF_GROUND_TEXTURES];
-    uint8_t *texture_rgb; /* one decoded image, and the same as RGB565 */
-    uint16_t *texture_texels;
+    ff_pack_images images;
+    void *image_memory;
+    uint16_t *texture_texels; /* of one decoded image */
 } ff_pack_ground;
 
 /* What c3d_open must provide for the ground. */

@@ -1,11 +1,14 @@
 #include "ff_packs_entered.h"
 #include "../../protocol/ff_entry.h"
+#include "../../protocol/ff_image.h"
 #include "../../protocol/message/ff_message.h"
 #include "../../protocol/shape/ff_shape.h"
 
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
+
+#define IMAGE_BYTES_MAX (FF_MESSAGE_BODY_MAX - 2) /* behind its id */
 
 /* The node that a root is made of: its heights, what is said of it, and what decoding needs. */
 typedef struct node {
@@ -22,7 +25,7 @@ struct ff_packs_entered {
     uint16_t decoded[FF_NODE_HEIGHTS_MAX];
     int made; /* bytes of the payload; 0: none has been made */
     uint32_t tile;
-    uint8_t payload[FF_PAYLOAD_BYTES_MAX];
+    uint8_t payload[FF_PAYLOAD_BYTES_MAX], image[IMAGE_BYTES_MAX];
     max_align_t decoder_memory[];
 };
 
@@ -100,9 +103,8 @@ static int encode(ff_packs_entered *entered, const ff_terrain_info *info, ff_key
 }
 
 /* The last one made is kept: it is asked for more than once while a view is answered. */
-static int make_root(void *context, uint32_t tile, const uint8_t **payload)
+static int make_heights(ff_packs_entered *entered, uint32_t tile, const uint8_t **payload)
 {
-    ff_packs_entered *entered = context;
     *payload = entered->payload;
     if (entered->made && entered->tile == tile) return entered->made;
     ff_key root = ff_key_make(tile, 0, 0);
@@ -115,6 +117,44 @@ static int make_root(void *context, uint32_t tile, const uint8_t **payload)
     entered->tile = tile;
     entered->made = rc;
     return rc;
+}
+
+/* The pictures from the whole's root down to the node, each as it is stored, before each but the
+ * last how many bytes it has (16 bits, the higher ones first: below 128); before all of them what
+ * the node's own tells of its children. */
+static int make_image(ff_packs_entered *entered, uint32_t tile, const uint8_t **payload)
+{
+    ff_key root = ff_key_make(tile, 0, 0);
+    const ff_pack *pack = ff_pack_of(entered->pack, root);
+    ff_key key = ff_entry_key(&pack->stored->header.info, &pack->header.info, root);
+    uint32_t level = ff_key_level(key);
+    uint8_t *end = entered->image + IMAGE_BYTES_MAX, *to = end;
+    ff_image image = { 0 };
+    uint8_t bare = 0;
+    for (uint32_t i = 0; i <= level; i++, key = ff_key_parent(key)) {
+        const uint8_t *stored;
+        int rc = ff_pack_record(pack->stored, FF_SECTION_TEXTURE, key, &stored);
+        if (rc >= 0) rc = ff_image_read(stored, (size_t)rc, &image);
+        if (rc < 0) return rc;
+        if (image.coded_bytes + 3 > (size_t)(to - entered->image) || image.coded_bytes > INT16_MAX)
+            return FF_ERR_FULL;
+        to -= image.coded_bytes;
+        memcpy(to, image.coded, image.coded_bytes);
+        if (i == 0) bare = image.bare;
+        if (i > 0) *--to = (uint8_t)image.coded_bytes;
+        if (i > 0) *--to = (uint8_t)(image.coded_bytes >> 8);
+        if (ff_key_level(key) == 0) break;
+    }
+    if (bare) *--to = (uint8_t)(FF_IMAGE_BARE + bare);
+    *payload = to;
+    return (int)(end - to);
+}
+
+static int make_root(void *context, enum ff_section_kind kind, uint32_t tile,
+                     const uint8_t **payload)
+{
+    return kind == FF_SECTION_ROOT ? make_heights(context, tile, payload)
+                                   : make_image(context, tile, payload);
 }
 
 /* ---- packs ---- */

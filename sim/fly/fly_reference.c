@@ -96,12 +96,13 @@ int fly_reference_open(fly_reference *reference, const ff_pack *pack, uint16_t w
     reference->sampled = malloc((size_t)3 * reference->device_desc.width *
                                 reference->device_desc.height);
     reference->slot = malloc(IMAGES_MAX * sizeof *reference->slot);
-    reference->image_rgb = malloc(texels * 3);
+    reference->image_memory = malloc(ff_pack_images_bytes(pack) + 1);
     reference->image_texels = malloc(texels * sizeof *reference->image_texels);
     if (!reference->tree_memory || !reference->device_memory || !reference->decoder_memory ||
-        !reference->wish || !reference->sampled || !reference->slot || !reference->image_rgb ||
+        !reference->wish || !reference->sampled || !reference->slot || !reference->image_memory ||
         !reference->image_texels)
         return FF_ERR_MEMORY;
+    ff_pack_images_init(&reference->images, pack, reference->image_memory);
     reference->decoder = ff_decoder_create(info, reference->decoder_memory, decoder_bytes);
     return reference->decoder ? FF_OK : FF_ERR_UNSUPPORTED;
 }
@@ -114,7 +115,7 @@ void fly_reference_close(fly_reference *reference)
     free(reference->wish);
     free(reference->sampled);
     free(reference->slot);
-    free(reference->image_rgb);
+    free(reference->image_memory);
     free(reference->image_texels);
     memset(reference, 0, sizeof *reference);
 }
@@ -217,18 +218,13 @@ static ff_key image_of(const fly_reference *reference, const ff_drawn *drawn)
 
 static int fetch_image(fly_reference *reference, ff_key key)
 {
-    const ff_terrain_info *info = &reference->tree_desc.info;
-    uint32_t side = 1u << info->texture_log2;
     const uint8_t *payload;
-    ff_image image;
     if (key == FF_KEY_NONE || ff_textures_touch(&reference->textures, key)) return FF_OK;
     int rc = ff_pack_image(reference->pack, &key, &payload);
     if (ff_textures_touch(&reference->textures, key)) return FF_OK;
-    if (rc >= 0) rc = ff_image_read(payload, (size_t)rc, &image);
     if (rc >= 0)
-        rc = sys_jpeg_decode(image.jpeg, image.jpeg_bytes, side, side, reference->image_rgb);
+        rc = ff_pack_images_get(&reference->images, reference->pack, key, reference->image_texels);
     if (rc < 0) return rc;
-    ff_texture_texels(info, reference->image_rgb, reference->image_texels);
     return ff_textures_put(&reference->textures, key, 0, reference->image_texels) ? FF_OK
                                                                                   : FF_ERR_MEMORY;
 }

@@ -13,6 +13,7 @@
 
 #include "../../client/ff_sky.h"
 #include "../../client/ground/ff_terrain_view.h"
+#include "../../client/images/ff_pack_images.h"
 #include "../../protocol/ff_pack.h"
 
 typedef struct fly_reference {
@@ -29,8 +30,9 @@ typedef struct fly_reference {
     ff_wish *wish;    /* being served */
     uint8_t *sampled; /* RGB888, before samples become pixels */
     ff_texture_slot *slot;
-    uint8_t *image_rgb; /* one image as decoded, and as texels */
-    uint16_t *image_texels;
+    ff_pack_images images;
+    void *image_memory;
+    uint16_t *image_texels; /* of one decoded image */
     /* of the picture being drawn */
     ff_view view;
     ff_tree *tree;

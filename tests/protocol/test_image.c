@@ -19,8 +19,8 @@ static void a_byte_before_the_jpeg_says_which_children_have_none(void **state)
         int is_mark = first > 128 && first < 144;
         ff_image image;
         assert_int_equal(ff_image_read(bytes, sizeof bytes, &image), FF_OK);
-        assert_ptr_equal(image.jpeg, bytes + is_mark);
-        assert_int_equal(image.jpeg_bytes, sizeof bytes - (size_t)is_mark);
+        assert_ptr_equal(image.coded, bytes + is_mark);
+        assert_int_equal(image.coded_bytes, sizeof bytes - (size_t)is_mark);
         assert_int_equal(image.bare, is_mark ? first - 128 : 0);
         assert_int_equal(ff_image_read(bytes, 1, &image), is_mark ? FF_ERR_TRUNCATED : FF_OK);
         assert_int_equal(ff_image_read(bytes, 0, &image), FF_ERR_TRUNCATED);
@@ -60,7 +60,7 @@ static void the_nearest_image_above_stands_for_one_that_is_not_there(void **stat
             assert_int_equal(ff_key_code(found), level < 1 ? code : code >> 2 * (level - 1));
             assert_int_equal(ff_image_read(payload, (size_t)count, &image), FF_OK);
             assert_int_equal(image.bare, ff_key_level(found) == 1 ? 15 : 0);
-            assert_int_equal(sys_jpeg_decode(image.jpeg, image.jpeg_bytes, 16, 16, rgb), FF_OK);
+            assert_int_equal(sys_jpeg_decode(image.coded, image.coded_bytes, 16, 16, rgb), FF_OK);
         }
     free(file);
 }

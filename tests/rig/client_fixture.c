@@ -176,7 +176,7 @@ static void colour(void *context, int64_t x_wu, int64_t y_wu, uint8_t rgb[3])
 
 #define SAMPLES 129 /* that fill the usual pack's tiles, each way */
 
-enum variant { USUAL, OTHER, FILLED, LEAVES, STUBS };
+enum variant { USUAL, OTHER, FILLED, LEAVES, STUBS, PICTURES };
 
 static void open_pack(client_rig *rig, unsigned texture_log2, unsigned node_log2,
                       enum variant variant, uint32_t samples_x, uint32_t samples_y)
@@ -193,6 +193,7 @@ static void open_pack(client_rig *rig, unsigned texture_log2, unsigned node_log2
     desc.info.node_log2 = (uint8_t)node_log2;
     desc.info.texture_log2 = (uint8_t)texture_log2;
     desc.info.texture_levels = texture_log2 ? 3 : 0;
+    if (variant == PICTURES) desc.info.flags |= FF_TERRAIN_PICTURES;
     desc.info.hoffset_wu = variant == OTHER ? 1000 : 0;
     desc.info.epsg = rig->epsg;
     desc.info.origin_x_mm = rig->origin_mm[0];
@@ -236,6 +237,11 @@ void rig_use_node_log2(client_rig *rig, unsigned node_log2, unsigned texture_log
 void rig_use_samples(client_rig *rig, uint32_t samples_x, uint32_t samples_y, unsigned texture_log2)
 {
     open_pack(rig, texture_log2, 3, USUAL, samples_x, samples_y);
+}
+
+void rig_use_pictures(client_rig *rig, unsigned texture_log2)
+{
+    open_pack(rig, texture_log2, 3, PICTURES, SAMPLES, SAMPLES);
 }
 
 void rig_use_filled(client_rig *rig) { open_pack(rig, 0, 3, FILLED, SAMPLES, SAMPLES); }

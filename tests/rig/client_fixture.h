@@ -52,6 +52,8 @@ void rig_use_node_log2(client_rig *rig, unsigned node_log2, unsigned texture_log
 /* As rig_open, with ground that ends earlier: 66 to 129 samples each way. */
 void rig_use_samples(client_rig *rig, uint32_t samples_x, uint32_t samples_y,
                      unsigned texture_log2);
+/* As rig_open, with images that are pictures, not JPEGs. */
+void rig_use_pictures(client_rig *rig, unsigned texture_log2);
 /* As rig_open, with a filled void (pack_fixture_hole). */
 void rig_use_filled(client_rig *rig);
 /* As rig_open, with nothing stored below level 1. */

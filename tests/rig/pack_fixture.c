@@ -3,6 +3,7 @@
 #include "../../protocol/shape/ff_shape.h"
 #include "../../platform/sys.h"
 #include "../../protocol/ff_image.h"
+#include "../../protocol/picture/ff_picture.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -96,24 +97,59 @@ static uint8_t node_error(const pack_fixture_desc *desc, ff_key key)
 
 /* ---- records ---- */
 
-static int texture_payload(const pack_fixture_desc *desc, ff_key key, uint8_t *out, size_t capacity)
+static void colours_of(const pack_fixture_desc *desc, ff_key key, uint8_t *rgb)
 {
     uint32_t texels = 1u << desc->info.texture_log2;
     uint32_t column, row_of;
     int64_t spacing = desc->info.spacing_wu,
             edge = node_place(&desc->info, key, &column, &row_of) * spacing;
     int64_t x = column * spacing, y = row_of * spacing;
-    uint8_t *rgb = malloc((size_t)3 * texels * texels);
-    if (!rgb) return FF_ERR_MEMORY;
     for (uint32_t row = 0; row < texels; row++)
         for (uint32_t i = 0; i < texels; i++)
             desc->colour(desc->context, x + edge * i / (texels - 1),
                          y + edge * (texels - 1 - row) / (texels - 1),
                          rgb + 3 * (row * texels + i));
+}
+
+#define PICTURE_SIDE_MAX 32
+
+/* Its parent's is made first: it is a difference to that. */
+static int picture(const pack_fixture_desc *desc, ff_key key, uint16_t *texels, uint8_t *out,
+                   size_t capacity)
+{
+    static ff_picture_room room;
+    uint16_t parent[PICTURE_SIDE_MAX * PICTURE_SIDE_MAX];
+    uint8_t rgb[PICTURE_SIDE_MAX * PICTURE_SIDE_MAX * 3];
+    ff_picture_above above = { 0 };
+    if (ff_key_level(key)) {
+        int bytes = picture(desc, ff_key_parent(key), parent, out, capacity);
+        if (bytes < 0) return bytes;
+        above = (ff_picture_above){ parent, ff_key_quadrant(key) };
+    }
+    colours_of(desc, key, rgb);
+    return ff_picture_encode(rgb, desc->info.texture_log2, above, JPEG_QUALITY, &room, texels, NULL,
+                             out, capacity);
+}
+
+static int jpeg(const pack_fixture_desc *desc, ff_key key, uint8_t *out, size_t capacity)
+{
+    uint32_t texels = 1u << desc->info.texture_log2;
+    uint8_t *rgb = malloc((size_t)3 * texels * texels);
+    if (!rgb) return FF_ERR_MEMORY;
+    colours_of(desc, key, rgb);
+    int bytes = sys_jpeg_encode(rgb, texels, texels, JPEG_QUALITY, out, capacity);
+    free(rgb);
+    return bytes;
+}
+
+static int texture_payload(const pack_fixture_desc *desc, ff_key key, uint8_t *out, size_t capacity)
+{
+    uint16_t texels[PICTURE_SIDE_MAX * PICTURE_SIDE_MAX];
     size_t mark = desc->bare_level && ff_key_level(key) == desc->bare_level;
     if (mark) *out = FF_IMAGE_BARE + 15;
-    int bytes = sys_jpeg_encode(rgb, texels, texels, JPEG_QUALITY, out + mark, capacity - mark);
-    free(rgb);
+    int bytes = desc->info.flags & FF_TERRAIN_PICTURES
+                    ? picture(desc, key, texels, out + mark, capacity - mark)
+                    : jpeg(desc, key, out + mark, capacity - mark);
     return bytes < 0 ? bytes : bytes + (int)mark;
 }
 

@@ -23,7 +23,8 @@ typedef struct pack_fixture_desc {
     uint32_t bare_level;
 } pack_fixture_desc;
 
-/* The pack's bytes (free them), or NULL. Textures are JPEGs, north up, texel i at i/(T-1) of the
+/* The pack's bytes (free them), or NULL. Textures are JPEGs, or pictures
+ * of 32 x 32 texels at most where info.flags say so, north up, texel i at i/(T-1) of the
  * node's edge. */
 uint8_t *pack_fixture_make(const pack_fixture_desc *desc, size_t *bytes);
 

@@ -16,7 +16,7 @@ west = x < 40  # one colour in the west, another in the east
 
 def texture(image):
     """Colours at a place of the image: (row, column) -> (red, green, blue)."""
-    summary, said = bake(ground, "--color", image, "--tile-log2", "7", "--texture-log2", "6", "--texture-levels", "1", "--texture-quality", "98")
+    summary, said = bake(ground, "--color", image, "--tile-log2", "7", "--texture-log2", "6", "--texture-levels", "1", "--texture-quality", "98", "--image-codec", "jpeg")
     assert summary, said
     jpeg = os.path.join(work, "texture.jpg")
     subprocess.run([sys.executable, os.path.join(here, "..", "whole_jpeg.py"), os.path.join(work, "out.ffp"), jpeg], check=True)

@@ -55,7 +55,7 @@ for x, y, red, green in zip(*[iter(places)] * 4):
     if max(abs(d[i] - red), abs(d[i + 1] - green)) > 16:
         sys.exit("#   seen %s at %d, %d, wanted %d, %d" % (list(d[i:i + 3]), x, y, red, green))' "$@"
 }
-look=(--tile-log2 7 --texture-levels 1 --texture-quality 95)
+look=(--tile-log2 7 --texture-levels 1 --texture-quality 95 --image-codec jpeg)
 
 # ---- nothing runs without bound ----
 placed bare.asc degrees.vrt EPSG:4326 9 .001 0 45 0 -.001

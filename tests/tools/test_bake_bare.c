@@ -82,7 +82,7 @@ static int stored(ff_key key, uint8_t rgb[SIDE * SIDE * RGB], uint8_t *bare)
     assert_int_equal(blob.record_count, 1);
     if (blob.byte_count) {
         assert_int_equal(ff_image_read(blob.bytes, blob.byte_count, &read), FF_OK);
-        assert_int_equal(sys_jpeg_decode(read.jpeg, read.jpeg_bytes, SIDE, SIDE, rgb), FF_OK);
+        assert_int_equal(sys_jpeg_decode(read.coded, read.coded_bytes, SIDE, SIDE, rgb), FF_OK);
         *bare = read.bare;
     }
     int is_stored = blob.byte_count > 0;

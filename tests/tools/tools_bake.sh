@@ -308,7 +308,7 @@ textured() {
 check "an image becomes textures" textured
 
 right_way_up() { # the root's texture: red grows to the east, green to the north
-    "$BAKE" plain.r16 --raw 150x131 --spacing 10 --color image.ppm --tile-log2 8 --texture-quality 95 --quiet -o up.ffp \
+    "$BAKE" plain.r16 --raw 150x131 --spacing 10 --color image.ppm --tile-log2 8 --texture-quality 95 --image-codec jpeg --quiet -o up.ffp \
         && python3 "$here/../whole_jpeg.py" up.ffp up.jpg \
         && gdal_translate -q -of PNM up.jpg up.ppm && python3 -c '
 d=open("up.ppm","rb").read()[-64*64*3:]
@@ -321,7 +321,7 @@ check "textures lie as their ground does" right_way_up
 
 no_black() { # a placed image over half of the ground colours all of it
     gdal_translate -q -of GTiff -a_srs EPSG:4326 -a_ullr -70.09 -33.01 -70.04 -33.09 image.ppm half.tif \
-        && "$BAKE" south.asc --color half.tif --texture-levels 1 --texture-quality 95 --quiet -o half.ffp \
+        && "$BAKE" south.asc --color half.tif --texture-levels 1 --texture-quality 95 --image-codec jpeg --quiet -o half.ffp \
         && python3 "$here/../whole_jpeg.py" half.ffp half.jpg \
         && gdal_translate -q -of PNM half.jpg half.ppm \
         && python3 -c 'd=open("half.ppm","rb").read()[-64*64*3:]; assert min(d[2::3])>20, min(d[2::3])'

@@ -3,8 +3,6 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-#define TERRAIN_FLAGS (FF_TERRAIN_DENSIFIED | FF_TERRAIN_LOSSY)
-
 /* Samples along so many tiles; of a tile's size out of range, which is told before, some number. */
 static uint64_t product(uint32_t tiles, uint8_t tile_log2)
 {
@@ -35,7 +33,8 @@ int bake_fault(const ff_terrain_info *i, char *text, size_t room)
     } field[] = {
         { "node_log2", i->node_log2, 1, FF_NODE_LOG2_MAX },
         { "tile_log2", log2, i->node_log2, i->node_log2 + (int64_t)FF_KEY_LEVEL_MAX },
-        { "flags", i->flags, 0, TERRAIN_FLAGS },
+        { "flags", i->flags, 0,
+          textures ? FF_TERRAIN_FLAGS : FF_TERRAIN_FLAGS & ~FF_TERRAIN_PICTURES },
         { "tiles_x", i->tiles_x, 1, FF_KEY_TILES_MAX },
         { "tiles_y", i->tiles_y, 1, i->tiles_x ? FF_KEY_TILES_MAX / i->tiles_x : 0 },
         { "samples_x", i->samples_x, samples_low(i->tiles_x, log2),

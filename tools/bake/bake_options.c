@@ -18,6 +18,8 @@
 static const char *const codec_words[] = { FF_CODEC_LIST(ROW) NULL };
 #undef ROW
 
+static const char *const image_codec_words[] = { "picture", "jpeg", NULL };
+
 /* By number of enum bake_rgb_word. */
 static const char *const rgb_words[] = { "auto", "mapbox", "terrarium", "none", NULL };
 

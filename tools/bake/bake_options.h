@@ -100,7 +100,9 @@ extern const sys_option_type bake_raw_option, bake_nodata_option, bake_box_optio
     OPTION(sys_whole, texture_levels, "texture-levels", "L", NULL, BAKE_LEVELS, \
            "levels with textures; default: down to the image's resolution") \
     OPTION(sys_whole, texture_quality, "texture-quality", "Q", "75", SYS_WHOLE(1, 100, ""), \
-           "JPEG quality") \
+           "quality of textures, as of JPEGs") \
+    OPTION(sys_word, image_codec, "image-codec", "NAME", "picture", SYS_WORDS(image_codec_words), \
+           "jpeg: twice the bytes; for clients built without pictures") \
     OPTION(sys_word, codec, "codec", "NAME", "trained", SYS_WORDS(codec_words), \
            "deflate, rice: cheaper to decode; rice: for devices without zlib and tables") \
     HEADING("What the pack says of itself; default: what the source says") \

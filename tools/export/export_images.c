@@ -1,6 +1,7 @@
 /* The textures of a level, put together. */
 #include "../../platform/sys.h"
 #include "../../protocol/ff_image.h"
+#include "../../protocol/picture/ff_picture_path.h"
 #include "../../protocol/shape/ff_shape.h"
 #include "../bake/bake_enlarge.h"
 #include "../bake/bake_say.h"
@@ -18,7 +19,21 @@ typedef struct image_reader {
     export_ground *ground;
     uint8_t *rgb, *enlarged; /* of a texture, top row first */
     uint64_t missing;
+    ff_picture_path path;
 } image_reader;
+
+/* reader->rgb of the image of a node that has one, whose payload is at hand. FF_OK or an error. */
+static int decode_texture(image_reader *reader, ff_key key, const uint8_t *payload, size_t bytes)
+{
+    const ff_pack *pack = &reader->ground->unpack->pack;
+    uint32_t side = 1u << pack->header.info.texture_log2;
+    const uint16_t *texels;
+    ff_image image;
+    if (pack->header.info.flags & FF_TERRAIN_PICTURES)
+        return ff_picture_path_get(&reader->path, pack, key, reader->rgb, &texels);
+    int rc = ff_image_read(payload, bytes, &image);
+    return rc < 0 ? rc : sys_jpeg_decode(image.coded, image.coded_bytes, side, side, reader->rgb);
+}
 
 /* The image of the nearest ancestor stands for one that is not stored. */
 static int read_texture(image_reader *reader, ff_key key, uint32_t column, uint32_t row)
@@ -26,13 +41,11 @@ static int read_texture(image_reader *reader, ff_key key, uint32_t column, uint3
     const bake_unpack *unpack = reader->ground->unpack;
     uint32_t side = 1u << unpack->pack.header.info.texture_log2;
     const uint8_t *payload;
-    ff_image image;
     ff_key held = key;
     int rc = ff_pack_image(&unpack->pack, &held, &payload);
     if (rc == FF_ERR_NOT_FOUND) reader->missing++;
     if (rc == FF_ERR_NOT_FOUND) return 0;
-    if (rc >= 0) rc = ff_image_read(payload, (size_t)rc, &image);
-    if (rc >= 0) rc = sys_jpeg_decode(image.jpeg, image.jpeg_bytes, side, side, reader->rgb);
+    if (rc >= 0) rc = decode_texture(reader, held, payload, (size_t)rc);
     if (rc < 0)
         return bake_fail("%s: the texture of tile %u, level %u, code %u: %s", unpack->path,
                          ff_key_tile(held), ff_key_level(held), ff_key_code(held),
@@ -73,14 +86,18 @@ static int read_textures(export_ground *ground)
     if (ftruncate(cells->fd, (off_t)cells->width * cells->height * RGB))
         return bake_fail("cannot make a temporary file: %s", strerror(errno));
     size_t bytes = (size_t)RGB << (2 * info->texture_log2);
-    image_reader reader = { ground, malloc(bytes), malloc(bytes), 0 };
-    int rc = reader.rgb && reader.enlarged ? 0 : bake_fail("out of memory");
+    image_reader reader = { .ground = ground,
+                            .rgb = malloc(bytes),
+                            .enlarged = malloc(bytes),
+                            .path.texels = malloc(ff_picture_path_bytes(info)) };
+    int rc = reader.rgb && reader.enlarged && reader.path.texels ? 0 : bake_fail("out of memory");
     for (uint32_t tile = 0; !rc && tile < ff_shape_tiles(info); tile++)
         rc = read_below(&reader, ff_key_make(tile, 0, 0));
     if (reader.missing)
         bake_note("%" PRIu64 " textures are not in the pack: black", reader.missing);
     free(reader.rgb);
     free(reader.enlarged);
+    free(reader.path.texels);
     return rc;
 }
 

@@ -136,9 +136,9 @@ static int put_image(cutter *c, ff_key key, uint8_t *bare)
     *bare = image.bare | bare_below(c, key);
     c->is_part |= *bare != image.bare;
     if (*bare) c->payload[0] = (uint8_t)(FF_IMAGE_BARE + *bare);
-    memcpy(c->payload + (*bare > 0), image.jpeg, image.jpeg_bytes);
+    memcpy(c->payload + (*bare > 0), image.coded, image.coded_bytes);
     return put(c, ff_terrain_levels(c->info) + ff_key_level(key), c->payload,
-               image.jpeg_bytes + (*bare > 0));
+               image.coded_bytes + (*bare > 0));
 }
 
 /* All from a node on that has ground, or whose parent has an image; `ends`: it has none. */

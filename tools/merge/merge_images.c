@@ -56,7 +56,7 @@ static int lay(const mosaic *m, uint32_t quality, merge_lattice *l, bake_image *
                            .geotransform = { east_m - spacing_m / 2, spacing_m, 0,
                                              north_m + (l->height - 0.5) * spacing_m, 0,
                                              -spacing_m } };
-    bake_note("images are made anew, in JPEGs of quality %u", quality);
+    bake_note("images are made anew, with quality %u", quality);
     return bake_image_lay(&options, m->set, &ground, &l->info, image);
 }
 

@@ -126,18 +126,18 @@ static int put_image(joiner *j, ff_key key, part_set have, part_set below[4])
         int rc = ff_pack_record(&j->unpack[p].pack, FF_SECTION_TEXTURE, key, &payload);
         if (rc >= 0) rc = ff_image_read(payload, (size_t)rc, &image);
         if (rc < 0) return fail_at(j, p, "texture", key, ff_error_text(rc));
-        if (!first.jpeg) first = image;
-        if (image.jpeg_bytes != first.jpeg_bytes ||
-            memcmp(image.jpeg, first.jpeg, first.jpeg_bytes))
+        if (!first.coded) first = image;
+        if (image.coded_bytes != first.coded_bytes ||
+            memcmp(image.coded, first.coded, first.coded_bytes))
             return fail_at(j, p, "texture", key, unlike);
         bare &= image.bare;
         for (uint32_t q = 0; q < 4; q++)
             if (!(image.bare >> q & 1)) below[q] |= (part_set)1 << p;
     }
     if (bare) j->payload[0] = (uint8_t)(FF_IMAGE_BARE + bare);
-    memcpy(j->payload + (bare > 0), first.jpeg, first.jpeg_bytes);
+    memcpy(j->payload + (bare > 0), first.coded, first.coded_bytes);
     return pack_append_add(&j->append, ff_terrain_levels(j->info) + ff_key_level(key), j->payload,
-                           first.jpeg_bytes + (bare > 0));
+                           first.coded_bytes + (bare > 0));
 }
 
 /* All from a node on that has ground, or whose parent has an image. */

@@ -51,6 +51,7 @@ protocol/message    protocol protocol/codec protocol/far
 protocol/shape      protocol
 protocol/zlib       protocol
 protocol/trained    protocol protocol/codec
+protocol/picture    protocol protocol/trained
 platform            protocol/ff_error.h
 platform/egl        platform
 platform/glfw       platform

@@ -4,6 +4,7 @@
 #include "../bake/bake_say.h"
 #include "train_fit.h"
 #include "train_ground.h"
+#include "train_picture.h"
 #include "train_write.h"
 
 #include <math.h>
@@ -26,6 +27,8 @@ static const double error_m[ERRORS] = { 0, 1, 4, 10 };
     OPTION(sys_text, out, "output", "FILE", NULL, SYS_ANY, "writes the tables there, as C") \
     OPTION(sys_text, packs, NULL, "PACKS", NULL, SYS_FLAGS(SYS_NEEDED), \
            "packs to train on, with commas between them") \
+    OPTION(sys_flag, pictures, "pictures", NULL, NULL, SYS_ANY, \
+           "learns of their images, baked with --texture-quality 100") \
     OPTION(sys_text, measured, "measure", "PACKS", NULL, SYS_ANY, "packs to code with the tables, likewise")
 /* clang-format on */
 
@@ -41,10 +44,11 @@ static const sys_option row[] = { TRAIN_OPTIONS(ROW) };
 static const sys_program program = {
     .name = "farfield-train",
     .version = FARFIELD_VERSION,
-    .usage = "[--output FILE] [--measure PACKS] PACKS",
+    .usage = "[--pictures] [--output FILE] [--measure PACKS] PACKS",
     .about =
         "Learns what heights to expect of ground, for the codec \"trained\": each pack is coded "
-        "with errors of 0, 1, 4 and 10 m, ten times, where its steps are coarse in finer ones, too.",
+        "with errors of 0, 1, 4 and 10 m, ten times, where its steps are coarse in finer ones, too. "
+        "Or the tables of pictures, from images, with five qualities, three times.",
     .option = row,
     .option_count = sizeof row / sizeof *row
 };
@@ -163,19 +167,60 @@ static void measure(const grounds *all, const ff_trained *tables)
         }
 }
 
-int main(int argc, char **argv)
+static int train_heights(const train_options *options)
 {
     static grounds taught, measured;
     static ff_trained tables;
+    int rc = open_all(&taught, options->packs, 1) ||
+             (options->measured && open_all(&measured, options->measured, 0)) ||
+             train(&taught, &tables);
+    if (!rc) measure(&measured, &tables);
+    if (!rc && options->out) rc = train_write(options->out, &tables);
+    for (unsigned i = 0; i < taught.count; i++) train_ground_close(&taught.ground[i]);
+    for (unsigned i = 0; i < measured.count; i++) train_ground_close(&measured.ground[i]);
+    return rc;
+}
+
+/* ---- pictures ---- */
+
+typedef struct albums {
+    train_pictures album[GROUNDS];
+    unsigned count;
+} albums;
+
+static int open_albums(albums *all, const char *names)
+{
+    char *text = strdup(names), *rest = NULL;
+    int rc = text ? 0 : bake_fail("out of memory");
+    for (char *name = rc ? NULL : strtok_r(text, ",", &rest); name && !rc;
+         name = strtok_r(NULL, ",", &rest)) {
+        if (all->count == GROUNDS) return bake_fail("more than %d packs", GROUNDS);
+        rc = train_pictures_open(&all->album[all->count++], name);
+    }
+    return rc; /* albums keep their names */
+}
+
+static int train_images(const train_options *options)
+{
+    static albums taught, measured;
+    static ff_picture_tables tables;
+    int rc = open_albums(&taught, options->packs) ||
+             (options->measured && open_albums(&measured, options->measured)) ||
+             train_pictures_learn(taught.album, taught.count, &tables);
+    for (unsigned i = 0; !rc && i < measured.count; i++)
+        rc = train_pictures_measure(&measured.album[i], &tables);
+    if (!rc && options->out) rc = train_pictures_write(options->out, &tables);
+    for (unsigned i = 0; i < taught.count; i++) train_pictures_close(&taught.album[i]);
+    for (unsigned i = 0; i < measured.count; i++) train_pictures_close(&measured.album[i]);
+    return rc;
+}
+
+int main(int argc, char **argv)
+{
     train_options options = { 0 };
     bake_say_setup("farfield-train", 0);
     int rc = sys_options_parse(&program, &options, argc, argv);
     if (rc) return rc < 0 ? SYS_EXIT_USAGE : SYS_EXIT_DONE;
-    rc = open_all(&taught, options.packs, 1) ||
-         (options.measured && open_all(&measured, options.measured, 0)) || train(&taught, &tables);
-    if (!rc) measure(&measured, &tables);
-    if (!rc && options.out) rc = train_write(options.out, &tables);
-    for (unsigned i = 0; i < taught.count; i++) train_ground_close(&taught.ground[i]);
-    for (unsigned i = 0; i < measured.count; i++) train_ground_close(&measured.ground[i]);
+    rc = options.pictures ? train_images(&options) : train_heights(&options);
     return rc ? SYS_EXIT_FAILED : SYS_EXIT_DONE;
 }

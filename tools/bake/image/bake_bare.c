@@ -1,10 +1,10 @@
 #include "bake_bare.h"
 
-#include "../../../platform/sys.h"
 #include "../../../protocol/shape/ff_shape.h"
 #include "../bake_enlarge.h"
 #include "../bake_say.h"
 #include "bake_image_local.h"
+#include "bake_texture.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -24,8 +24,10 @@ typedef struct sifter {
     const ff_terrain_info *info;
     int quality;
     size_t bytes; /* of an image */
-    uint8_t *lattice, *jpeg, *enlarged;
+    uint8_t *lattice, *enlarged;
+    bake_texture_room room;
     uint8_t *decoded[BAKE_TEXTURE_LEVELS_MAX]; /* a level's image as clients see it */
+    uint16_t *texels[BAKE_TEXTURE_LEVELS_MAX]; /* of a picture */
 } sifter;
 
 /* ---- marks ---- */
@@ -60,7 +62,9 @@ int bake_bare_of(const bake_image *image, const ff_terrain_info *info, ff_key ke
     return 0;
 }
 
-/* A byte for each node that has ground, of all levels but the last. */
+static int is_picture(const ff_terrain_info *info) { return info->flags & FF_TERRAIN_PICTURES; }
+
+/* A byte for each node that has ground, of all levels but the last; texels of pictures. */
 static int open_marks(sifter *s)
 {
     uint32_t cells = (1u << s->info->texture_log2) - 1;
@@ -72,6 +76,9 @@ static int open_marks(sifter *s)
             return -1;
         if (ftruncate(marks->fd, (off_t)marks->width * marks->height))
             return bake_fail("cannot make a temporary file: %s", strerror(errno));
+        if (is_picture(s->info) && bake_grid_open(&s->image->texels[l], marks->width * (cells + 1),
+                                                  marks->height * (cells + 1), sizeof(uint16_t)))
+            return -1;
     }
     return 0;
 }
@@ -104,16 +111,18 @@ static int is_near(const sifter *s, const uint8_t *decoded)
     return 1;
 }
 
-/* Makes a node's image: its lattice, and what its JPEG shows. */
+/* Makes a node's image: its lattice, and what clients see of it. Its parent's is made already. */
 static int make_image(sifter *s, ff_key key)
 {
-    uint32_t side = 1u << s->info->texture_log2;
-    if (bake_texture_read(s->image, s->info, key, s->lattice)) return -1;
-    int bytes = sys_jpeg_encode(s->lattice, side, side, s->quality, s->jpeg,
-                                BAKE_JPEG_BYTES(s->info));
-    if (bytes > 0)
-        bytes = sys_jpeg_decode(s->jpeg, (size_t)bytes, side, side, s->decoded[ff_key_level(key)]);
-    return bytes < 0 ? bake_fail("cannot encode a texture: %s", ff_error_text(bytes)) : 0;
+    uint32_t level = ff_key_level(key);
+    bake_texture_above above = { level ? s->texels[level - 1] : NULL,
+                                 level ? ff_key_quadrant(key) : 0 };
+    if (bake_texture_read(s->image, s->info, key, s->lattice) ||
+        bake_texture_code(&s->room, s->info, s->quality, above, s->lattice, s->decoded[level]) < 0)
+        return -1;
+    if (!is_picture(s->info) || level + 1 == s->image->levels) return 0;
+    memcpy(s->texels[level], s->room.texels, sizeof(uint16_t) << 2 * s->info->texture_log2);
+    return bake_texture_texels(s->image, s->info, key, 1, s->texels[level]);
 }
 
 /* 1 when the image of a node, or one below it, shows more than that of `above`; -1 (said). Its own
@@ -169,16 +178,20 @@ int bake_bare_find(bake_image *image, const ff_terrain_info *info, int quality)
                  .bytes = (size_t)RGB << 2 * info->texture_log2 };
     s.lattice = malloc(s.bytes);
     s.enlarged = malloc(s.bytes);
-    s.jpeg = malloc(BAKE_JPEG_BYTES(info));
-    int rc = s.lattice && s.enlarged && s.jpeg ? 0 : bake_fail("out of memory");
+    int rc = bake_texture_room_make(&s.room, info);
+    if (!rc && !(s.lattice && s.enlarged)) rc = bake_fail("out of memory");
     for (uint32_t l = 0; !rc && l < image->levels; l++) {
         s.decoded[l] = malloc(s.bytes);
-        if (!s.decoded[l]) rc = bake_fail("out of memory");
+        s.texels[l] = malloc(sizeof(uint16_t) << 2 * info->texture_log2);
+        if (!s.decoded[l] || !s.texels[l]) rc = bake_fail("out of memory");
     }
     if (!rc) rc = open_marks(&s);
     if (!rc) rc = sift_tiles(&s);
-    for (uint32_t l = 0; l < image->levels; l++) free(s.decoded[l]);
-    free(s.jpeg);
+    for (uint32_t l = 0; l < image->levels; l++) {
+        free(s.decoded[l]);
+        free(s.texels[l]);
+    }
+    bake_texture_room_free(&s.room);
     free(s.enlarged);
     free(s.lattice);
     return rc;

@@ -1,11 +1,11 @@
 #include "bake_image.h"
 
 #include "../../../protocol/shape/ff_shape.h"
-#include "../../../platform/sys.h"
 #include "../../../protocol/ff_image.h"
 #include "bake_bare.h"
 #include "bake_image_local.h"
 #include "bake_nearest.h"
+#include "bake_texture.h"
 #include "../bake_say.h"
 
 #include <math.h>
@@ -243,6 +243,7 @@ static void choose_textures(const bake_options *o, const bake_picture *picture,
 {
     info->texture_log2 = (uint8_t)o->texture_log2;
     info->texture_levels = (uint8_t)choose_levels(o, picture, info);
+    if (!o->image_codec) info->flags |= FF_TERRAIN_PICTURES;
 }
 
 int bake_picture_levels(const bake_options *o, const bake_ground *ground, ff_terrain_info *info,
@@ -256,7 +257,7 @@ int bake_picture_levels(const bake_options *o, const bake_ground *ground, ff_ter
 static void open_image(bake_image *image, uint32_t levels)
 {
     for (int l = 0; l < BAKE_TEXTURE_LEVELS_MAX; l++)
-        image->lattice[l] = image->bare[l] = BAKE_GRID_CLOSED;
+        image->lattice[l] = image->bare[l] = image->texels[l] = BAKE_GRID_CLOSED;
     image->has_bare = 0;
     image->levels = levels;
 }
@@ -308,6 +309,7 @@ void bake_image_close(bake_image *image)
     for (uint32_t l = 0; l < image->levels; l++) {
         bake_grid_close(&image->lattice[l]);
         if (image->has_bare) bake_grid_close(&image->bare[l]);
+        if (image->has_bare) bake_grid_close(&image->texels[l]);
     }
     image->levels = 0;
 }
@@ -328,35 +330,71 @@ int bake_texture_read(const bake_image *image, const ff_terrain_info *info, ff_k
     return 0;
 }
 
-/* A node's image: its JPEG, and before it which children have none. */
-static int encode_texture(const bake_image *image, const ff_terrain_info *info, int quality,
-                          ff_key key, uint8_t *rgb, uint8_t *payload, bake_blob *blob)
+int bake_texture_texels(const bake_image *image, const ff_terrain_info *info, ff_key key, int put,
+                        uint16_t *texels)
 {
-    uint32_t side = 1u << info->texture_log2;
+    uint32_t side = 1u << info->texture_log2, level = ff_key_level(key), code = ff_key_code(key);
+    ff_sheet tile = ff_shape_sheet(info, ff_key_tile(key));
+    uint32_t column = ((tile.x << level) + ff_morton_x(code)) * side,
+             row = ((tile.y << level) + ff_morton_y(code)) * side;
+    const bake_grid *grid = &image->texels[level];
+    int rc = 0;
+    for (uint32_t j = 0; !rc && j < side; j++, texels += side)
+        rc = put ? bake_grid_write(grid, row + j, column, side, texels)
+                 : bake_grid_read(grid, row + j, column, side, texels);
+    return rc;
+}
+
+/* What encoding takes: a node's lattice, its parent's texels, and what is coded. */
+typedef struct encoder {
+    const bake_image *image;
+    const ff_terrain_info *info;
+    int quality;
+    uint8_t *rgb;
+    uint16_t *above;
+    bake_texture_room room;
+    bake_blob *blob;
+} encoder;
+
+static int find_above(const encoder *e, ff_key key, bake_texture_above *above)
+{
+    *above = (bake_texture_above){ 0 };
+    if (!ff_key_level(key) || !(e->info->flags & FF_TERRAIN_PICTURES)) return 0;
+    *above = (bake_texture_above){ e->above, ff_key_quadrant(key) };
+    return bake_texture_texels(e->image, e->info, ff_key_parent(key), 0, e->above);
+}
+
+/* A node's image, and before it which children have none. */
+static int encode_texture(const encoder *e, ff_key key)
+{
+    bake_texture_above above;
     int bare = 0;
-    if (!ff_shape_has_ground(info, key)) return bake_blob_add(blob, NULL, 0);
-    if (bake_bare_of(image, info, key, &bare)) return -1;
-    if (bare < 0) return bake_blob_add(blob, NULL, 0);
-    if (bake_texture_read(image, info, key, rgb)) return -1;
-    if (bare) *payload = (uint8_t)(FF_IMAGE_BARE + (unsigned)bare);
-    int bytes = sys_jpeg_encode(rgb, side, side, quality, payload + (bare > 0),
-                                BAKE_JPEG_BYTES(info));
-    if (bytes <= 0) return bake_fail("cannot encode a texture: %s", ff_error_text(bytes));
-    return bake_blob_add(blob, payload, (size_t)bytes + (bare > 0));
+    if (!ff_shape_has_ground(e->info, key)) return bake_blob_add(e->blob, NULL, 0);
+    if (bake_bare_of(e->image, e->info, key, &bare)) return -1;
+    if (bare < 0) return bake_blob_add(e->blob, NULL, 0);
+    if (bake_texture_read(e->image, e->info, key, e->rgb) || find_above(e, key, &above)) return -1;
+    int bytes = bake_texture_code(&e->room, e->info, e->quality, above, e->rgb, NULL);
+    if (bytes < 0) return -1;
+    if (!bare) return bake_blob_add(e->blob, e->room.coded, (size_t)bytes);
+    memmove(e->room.coded + 1, e->room.coded, (size_t)bytes);
+    *e->room.coded = (uint8_t)(FF_IMAGE_BARE + (unsigned)bare);
+    return bake_blob_add(e->blob, e->room.coded, 1 + (size_t)bytes);
 }
 
 int bake_texture_encode(const bake_image *image, const ff_terrain_info *info, int quality,
                         ff_key node, uint32_t below, bake_blob *blob)
 {
     uint32_t level = ff_key_level(node) + below;
-    uint8_t *rgb = malloc((size_t)RGB << 2 * info->texture_log2),
-            *payload = malloc(1 + BAKE_JPEG_BYTES(info));
-    int rc = rgb && payload ? 0 : bake_fail("out of memory");
-    for (uint32_t i = 0; !rc && i >> (2 * below) == 0; i++) {
-        ff_key key = ff_key_make(ff_key_tile(node), level, ff_key_code(node) << 2 * below | i);
-        rc = encode_texture(image, info, quality, key, rgb, payload, blob);
-    }
-    free(rgb);
-    free(payload);
+    encoder e = { .image = image, .info = info, .quality = quality, .blob = blob };
+    e.rgb = malloc((size_t)RGB << 2 * info->texture_log2);
+    e.above = malloc(sizeof *e.above << 2 * info->texture_log2);
+    int rc = bake_texture_room_make(&e.room, info);
+    if (!rc && !(e.rgb && e.above)) rc = bake_fail("out of memory");
+    for (uint32_t i = 0; !rc && i >> (2 * below) == 0; i++)
+        rc = encode_texture(
+            &e, ff_key_make(ff_key_tile(node), level, ff_key_code(node) << 2 * below | i));
+    bake_texture_room_free(&e.room);
+    free(e.above);
+    free(e.rgb);
     return rc;
 }

@@ -23,6 +23,9 @@ typedef struct bake_image {
      */
     bake_grid bare[BAKE_TEXTURE_LEVELS_MAX];
     int has_bare; /* 0: all nodes with ground have one, and `bare` is not looked at */
+    /* of pictures, of all levels but the last: what clients make of each node's, RGB565, south row
+     * first; those below are differences to it */
+    bake_grid texels[BAKE_TEXTURE_LEVELS_MAX];
 } bake_image;
 
 /* Reads the image of `options` onto the ground; sets info->texture_log2 and texture_levels. 0 or -1
@@ -35,8 +38,8 @@ int bake_image_lay(const bake_options *options, GDALDatasetH set, const bake_gro
                    ff_terrain_info *info, bake_image *image);
 void bake_image_close(bake_image *image);
 
-/* Appends the images of all nodes so many levels below a node, in Morton order, to `blob`. May run
- * in several threads. 0 or -1 (said). */
+/* Appends the images of all nodes so many levels below a node, in Morton order, to `blob`, after
+ * bake_bare_find. May run in several threads. 0 or -1 (said). */
 int bake_texture_encode(const bake_image *image, const ff_terrain_info *info, int quality,
                         ff_key node, uint32_t below, bake_blob *blob);
 

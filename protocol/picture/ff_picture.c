@@ -1,0 +1,222 @@
+/* Pictures: the walk through corners, lines and blocks, which both halves share, and decoding. */
+#include "ff_picture_local.h"
+
+#include <string.h>
+
+#define ROOT        3 /* kinds of roots begin there */
+#define QUALITY_MAX 100
+
+const uint8_t ff_picture_built = 1;
+
+int32_t ff_picture_step_q4(unsigned quality)
+{
+    if (quality < 1 || quality > QUALITY_MAX) return 0;
+    if (quality == QUALITY_MAX) return 8;
+    return (int32_t)(quality >= 50 ? 16 * (100 - quality) : 800 + 64 * (50 - quality));
+}
+
+int ff_picture_begin(ff_picture *p, unsigned log2, unsigned quality, ff_picture_above above)
+{
+    int32_t step_q4 = ff_picture_step_q4(quality);
+    FF_ASSERT(log2 >= FF_PICTURE_LOG2_MIN && log2 <= FF_PICTURE_LOG2_MAX && above.quadrant < 4);
+    if (!step_q4) return FF_ERR_FORMAT;
+    p->side = 1u << log2;
+    p->root = above.texels ? 0 : ROOT;
+    p->step_q4[0] = p->step_q4[2] = step_q4;
+    p->step_q4[1] = step_q4 * 5 / 4;
+    p->parent = above.texels;
+    p->column = (above.quadrant & 1u) * (p->side - 1);
+    p->row = (above.quadrant >> 1) * (p->side - 1);
+    memcpy(p->room->one, p->by->one, sizeof p->room->one);
+    return FF_OK;
+}
+
+/* ---- texels ---- */
+
+static uint8_t to_byte(int32_t value)
+{
+    return (uint8_t)(value < 0 ? 0 : value > 255 ? 255 : value);
+}
+
+/* The nearest there is. */
+static uint16_t to_texel(const uint8_t rgb[3])
+{
+    unsigned r = (rgb[0] * 249u + 1014u) >> 11, g = (rgb[1] * 253u + 505u) >> 10,
+             b = (rgb[2] * 249u + 1014u) >> 11;
+    return (uint16_t)(r << 11 | g << 5 | b);
+}
+
+static void store(const ff_picture *p, unsigned x, unsigned y, const uint8_t rgb[3])
+{
+    p->texels[y * p->side + x] = to_texel(rgb);
+    if (p->rgb) memcpy(p->rgb + ((size_t)(p->side - 1 - y) * p->side + x) * 3, rgb, 3);
+}
+
+/* Adds what is left; of parts of several texels not to the outermost ones, or to no others. */
+static void finish(const ff_picture *p, ff_picture_part part, uint8_t expected[64][3],
+                   int32_t left[3][64])
+{
+    unsigned last = p->side - 1, is_line = part.width != part.height;
+    for (unsigned i = 0; i < part.width * part.height; i++) {
+        unsigned x = part.x + i % part.width, y = part.y + i / part.width;
+        int32_t luma = left[0][i], co = left[1][i], cg = left[2][i];
+        uint8_t *rgb = expected[i];
+        int is_corner = (x == 0 || x == last) && (y == 0 || y == last),
+            is_rim = x == 0 || x == last || y == 0 || y == last;
+        if (part.width * part.height > 1 && (is_line ? is_corner : is_rim)) continue;
+        rgb[0] = to_byte(rgb[0] + luma + co - cg);
+        rgb[1] = to_byte(rgb[1] + luma + cg);
+        rgb[2] = to_byte(rgb[2] + luma - co - cg);
+        store(p, x, y, rgb);
+    }
+}
+
+static int16_t coefficient(const ff_picture *p, unsigned plane, int32_t value)
+{
+    int32_t whole = value * p->step_q4[plane];
+    return (int16_t)(whole < -INT16_MAX ? -INT16_MAX : whole > INT16_MAX ? INT16_MAX : whole);
+}
+
+/* ---- corners ---- */
+
+static void go_corner(ff_picture *p, ff_picture_part part)
+{
+    uint8_t expected[64][3];
+    int32_t value[3][64] = { { 0 } };
+    ff_picture_expect(p, part, expected);
+#ifdef FF_ENCODER
+    if (p->to) ff_picture_count_corner(p, part, expected, value);
+#endif
+    for (unsigned plane = 0; plane < 3; plane++) {
+        unsigned kind = plane + p->root;
+#ifdef FF_ENCODER
+        if (p->eye) p->eye->corner(p->eye->context, kind, value[plane][0]);
+#endif
+        int32_t number = ff_picture_number(p, kind, p->by->corner[kind], value[plane][0]);
+        value[plane][0] = (coefficient(p, plane, number) + 8) >> 4;
+    }
+    finish(p, part, expected, value);
+}
+
+/* ---- lines ---- */
+
+/* Numbers of eight texels of a line: sizes of those before, by plane, are known. */
+static void line_numbers(ff_picture *p, unsigned plane, int32_t value[8], uint8_t before[3][8])
+{
+    unsigned kind = plane + p->root;
+    int32_t size[FF_PICTURE_BLOCK + 2] = { 0 };
+    for (unsigned u = FF_PICTURE_BLOCK; u-- > 0;) {
+        unsigned weights = FF_PICTURE_OF_LINE(kind, u);
+        /* luma's are in the place of those before */
+        const int32_t known[FF_PICTURE_KNOWN] = { 1, size[u + 1], size[u + 2], before[plane][u],
+                                                  plane ? before[0][u] : 0 };
+        ff_picture_see(p, weights, known, value[u]);
+        value[u] = ff_picture_number(p, kind, ff_picture_scale(p, weights, known), value[u]);
+        size[u] = value[u] < 0 ? -value[u] : value[u];
+        if (size[u] > 255) size[u] = 255;
+    }
+    for (unsigned u = 0; u < FF_PICTURE_BLOCK; u++) before[plane][u] = (uint8_t)size[u];
+}
+
+static void go_eight(ff_picture *p, ff_picture_part part, uint8_t before[3][8])
+{
+    uint8_t expected[64][3];
+    int32_t value[3][64] = { { 0 } };
+    if (p->parent)
+        ff_picture_expect(p, part, expected);
+    else
+        ff_picture_between(p, part, expected);
+#ifdef FF_ENCODER
+    if (p->to) ff_picture_count_line(p, part, expected, value);
+#endif
+    for (unsigned plane = 0; plane < 3; plane++) {
+        int16_t whole[FF_PICTURE_BLOCK];
+        line_numbers(p, plane, value[plane], before);
+        for (unsigned u = 0; u < FF_PICTURE_BLOCK; u++)
+            whole[u] = coefficient(p, plane, value[plane][u]);
+        ff_picture_line(whole, value[plane]);
+    }
+    finish(p, part, expected, value);
+}
+
+static void go_lines(ff_picture *p)
+{
+    unsigned last = p->side - 1;
+    for (unsigned line = 0; line < 4; line++) {
+        uint8_t before[3][FF_PICTURE_BLOCK] = { { 0 } };
+        for (unsigned at = 0; at < p->side; at += FF_PICTURE_BLOCK) {
+            unsigned aside = line & 1u ? last : 0;
+            ff_picture_part part = line < 2 ? (ff_picture_part){ at, aside, FF_PICTURE_BLOCK, 1 }
+                                            : (ff_picture_part){ aside, at, 1, FF_PICTURE_BLOCK };
+            go_eight(p, part, before);
+        }
+    }
+}
+
+/* ---- blocks ---- */
+
+static void go_block(ff_picture *p, unsigned column, unsigned row)
+{
+    uint8_t expected[64][3];
+    int32_t value[3][64] = { { 0 } };
+    ff_picture_part part = { column * FF_PICTURE_BLOCK, row * FF_PICTURE_BLOCK, FF_PICTURE_BLOCK,
+                             FF_PICTURE_BLOCK };
+    ff_picture_expect(p, part, expected);
+#ifdef FF_ENCODER
+    if (p->to) ff_picture_count_block(p, part, expected, value);
+#endif
+    for (unsigned plane = 0; plane < 3; plane++) {
+        int16_t whole[64];
+        ff_picture_numbers(p, plane, column, row, value[plane]);
+        for (unsigned z = 0; z < 64; z++) whole[z] = coefficient(p, plane, value[plane][z]);
+        ff_picture_block(whole, value[plane]);
+    }
+    finish(p, part, expected, value);
+}
+
+void ff_picture_go(ff_picture *p)
+{
+    unsigned last = p->side - 1, blocks = p->side / FF_PICTURE_BLOCK;
+    for (unsigned corner = 0; corner < 4; corner++)
+        go_corner(p, (ff_picture_part){ (corner & 1u) * last, (corner >> 1) * last, 1, 1 });
+    go_lines(p);
+    for (unsigned row = 0; row < blocks; row++)
+        for (unsigned column = 0; column < blocks; column++) go_block(p, column, row);
+}
+
+int ff_picture_decode(const uint8_t *bytes, size_t count, unsigned log2, ff_picture_above above,
+                      ff_picture_room *room, uint16_t *texels, uint8_t *rgb)
+{
+    ff_picture p = { .by = &ff_picture_learned, .room = room, .texels = texels, .rgb = rgb };
+    if (count == 0) return FF_ERR_TRUNCATED;
+    int rc = ff_picture_begin(&p, log2, bytes[0], above);
+    if (rc != FF_OK) return rc;
+    ff_range_read(&p.range, bytes + 1, count - 1);
+    ff_picture_go(&p);
+    /* a stream has no byte that says nothing */
+    return p.range.in == p.range.end && (count == 1 || bytes[count - 1]) ? FF_OK : FF_ERR_FORMAT;
+}
+
+int ff_picture_decode_row(const uint8_t *bytes, size_t count, unsigned log2, unsigned levels,
+                          uint32_t code, ff_picture_room *room, uint16_t *texels, uint16_t *spare)
+{
+    uint16_t *to = levels & 1u ? spare : texels, *from = NULL;
+    for (unsigned level = 0; level <= levels; level++) {
+        size_t size = count;
+        if (level < levels) {
+            if (count < 2) return FF_ERR_TRUNCATED;
+            size = (size_t)bytes[0] << 8 | bytes[1];
+            bytes += 2;
+            count -= 2;
+            if (size > count) return FF_ERR_TRUNCATED;
+        }
+        ff_picture_above above = { from, from ? code >> 2 * (levels - level) & 3u : 0 };
+        int rc = ff_picture_decode(bytes, size, log2, above, room, to, NULL);
+        if (rc != FF_OK) return rc;
+        bytes += size;
+        count -= size;
+        from = to;
+        to = from == texels ? spare : texels;
+    }
+    return FF_OK;
+}

@@ -1,0 +1,25 @@
+/* A pack's pictures, any of them: each with those above it, which it is a difference to. For who
+ * has a whole pack at hand: servers, tools. */
+#ifndef FF_PICTURE_PATH_H
+#define FF_PICTURE_PATH_H
+
+#include "../ff_pack.h"
+#include "ff_picture.h"
+
+/* The pictures from a root down to the one that was asked for last: whoever asks for neighbours one
+ * after the other decodes few of them twice. The owner zeroes it but for `texels`. */
+typedef struct ff_picture_path {
+    uint16_t *texels; /* ff_picture_path_bytes() bytes */
+    ff_picture_room room;
+    uint32_t held; /* levels of the path */
+    ff_key key[FF_KEY_LEVEL_MAX + 1];
+} ff_picture_path;
+
+size_t ff_picture_path_bytes(const ff_terrain_info *info);
+/* The texels of a node's picture, RGB565, south row first; they stay until the next one is asked
+ * for. `rgb`: as of ff_picture_decode; NULL: not wanted. FF_OK, or an error of ff_pack_record or of
+ * decoding. */
+int ff_picture_path_get(ff_picture_path *path, const ff_pack *pack, ff_key key, uint8_t *rgb,
+                        const uint16_t **texels);
+
+#endif

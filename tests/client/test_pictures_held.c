@@ -1,0 +1,146 @@
+/* Pictures as a client holds them: each is decoded by its parent's, over a stream, from a pack, and
+ * below levels that are left out; damaged ones, and those whose parent's is not held. */
+#include "../../client/ff_client_local.h"
+#include "../../client/images/ff_pack_images.h"
+#include "../../common3d/soft/c3d_soft.h"
+#include "../../protocol/ff_entry.h"
+#include "../rig/client_fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <cmocka.h>
+
+#define MB     ((size_t)1 << 20)
+#define LOG2   5
+#define TEXELS (1 << 2 * LOG2)
+
+static void open_rig(client_rig *rig)
+{
+    rig_open(rig, 0);
+    rig_use_pictures(rig, LOG2);
+    rig->desc.backend = c3d_backend_soft();
+    rig->desc.surface_api = sys_surface_memory();
+}
+
+/* What is held of every picture is what the pack has there. How many are held. */
+static unsigned check_held(const client_rig *rig)
+{
+    const ff_textures *textures = &rig->client->textures;
+    static ff_pack_images images;
+    void *memory = malloc(ff_pack_images_bytes(&rig->pack));
+    unsigned held = 0;
+    ff_pack_images_init(&images, &rig->pack, memory);
+    assert_non_null(textures->texels);
+    for (unsigned i = 0; i < textures->slot_count; i++) {
+        uint16_t expected[TEXELS];
+        ff_key key = textures->slot[i].key;
+        if (!textures->slot[i].held) continue;
+        if (textures->info.entered)
+            key = ff_entry_key(&rig->pack.header.info, &textures->info, key);
+        assert_int_equal(ff_pack_images_get(&images, &rig->pack, key, expected), FF_OK);
+        assert_memory_equal(textures->texels + (size_t)i * TEXELS, expected, sizeof expected);
+        held++;
+    }
+    free(memory);
+    return held;
+}
+
+static void pictures_are_held_as_the_pack_has_them(void **state)
+{
+    (void)state;
+    for (int local = 0; local < 2; local++) {
+        client_rig rig;
+        open_rig(&rig);
+        if (local)
+            rig_local_client(&rig, 4 * MB);
+        else
+            rig_client(&rig, 4 * MB);
+        assert_true(rig_settle(&rig, 600));
+        assert_true(check_held(&rig) > 5);
+        const ff_drawn *drawn;
+        uint32_t count = ff_tree_drawn(ff_client_tree(rig.client), &drawn);
+        for (uint32_t i = 0; i < count; i++) {
+            c3d_draw call = { 0 };
+            ff_textures_lay(&rig.client->textures, drawn[i].key, &call);
+            assert_int_equal(call.flags, C3D_DRAW_TEXTURED);
+        }
+        assert_int_equal(rig.client->textures.apart, 0);
+        assert_int_equal(rig_stats(&rig).requests_failed, 0);
+        rig_close(&rig);
+    }
+}
+
+static void roots_below_levels_left_out_bring_what_is_above_them(void **state)
+{
+    (void)state;
+    for (int entered = 1; entered <= 2; entered++) {
+        client_rig rig;
+        open_rig(&rig);
+        rig.desc.quality = (ff_quality){ .c_q8 = 100 * 256,
+                                         .view_wu = 800 / (1 << entered) * FF_WU_PER_METRE };
+        rig.camera.pos_wu[2] = 1000 * FF_WU_PER_METRE;
+        rig.camera.pitch = -8000;
+        rig.desc.place_known = 1;
+        rig_client(&rig, 8 * MB);
+        assert_true(rig_settle(&rig, 600));
+        assert_int_equal(ff_client_terrain(rig.client)->entered, entered);
+        assert_true(check_held(&rig) >= 1);
+        assert_int_equal(rig_stats(&rig).requests_failed, 0);
+        rig_close(&rig);
+    }
+}
+
+static ff_new_item item_of(const client_rig *rig, ff_key key)
+{
+    static uint8_t bytes[4096];
+    const uint8_t *payload;
+    int count = ff_pack_record(&rig->pack, FF_SECTION_TEXTURE, key, &payload);
+    assert_in_range(count, 1, sizeof bytes);
+    memcpy(bytes, payload, (size_t)count);
+    ff_new_item item = { .key = key,
+                         .kind = FF_KIND_TEXTURE,
+                         .pixels = (uint16_t *)(void *)bytes,
+                         .width = 1 << LOG2,
+                         .height = 1 << LOG2 };
+    item.u.texture.coded_bytes = (uint32_t)count;
+    return item;
+}
+
+static void one_whose_parents_is_not_held_is_not_taken(void **state)
+{
+    (void)state;
+    client_rig rig;
+    open_rig(&rig);
+    rig_local_client(&rig, 4 * MB);
+    ff_textures *textures = &rig.client->textures;
+    const ff_terrain_info *info = &rig.pack.header.info;
+    ff_key root = ff_key_make(0, 0, 0), child = ff_key_child(root, 2);
+    ff_new_item item = item_of(&rig, child);
+    assert_int_equal(ff_textures_take(textures, info, &item), 0);
+    assert_int_equal(item.error, FF_OK);
+    assert_int_equal(textures->apart, 1);
+    item = item_of(&rig, root);
+    assert_int_equal(ff_textures_take(textures, info, &item), 1);
+    item = item_of(&rig, child);
+    assert_int_equal(ff_textures_take(textures, info, &item), 1);
+    assert_int_equal(check_held(&rig), 2);
+    item = item_of(&rig, ff_key_child(root, 1));
+    ((uint8_t *)item.pixels)[0] = 0;
+    assert_int_equal(ff_textures_take(textures, info, &item), 0);
+    assert_int_equal(item.error, FF_ERR_FORMAT);
+    assert_int_equal(textures->held, 2);
+    rig_close(&rig);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pictures_are_held_as_the_pack_has_them),
+        cmocka_unit_test(roots_below_levels_left_out_bring_what_is_above_them),
+        cmocka_unit_test(one_whose_parents_is_not_held_is_not_taken),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

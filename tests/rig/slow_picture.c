@@ -1,0 +1,398 @@
+#include "slow_picture.h"
+
+#include "../../protocol/picture/ff_picture_local.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define SIDE_MAX 256
+
+typedef struct stream {
+    const uint8_t *bytes;
+    long count, taken;
+    uint64_t width, code;
+} stream;
+
+typedef struct picture {
+    stream in;
+    int side, is_root, quadrant;
+    const uint16_t *parent;
+    int64_t step[3], one[FF_PICTURE_CONTEXTS];
+    uint8_t rgb[SIDE_MAX][SIDE_MAX][3]; /* [y][x], before they are kept */
+    uint16_t kept[SIDE_MAX][SIDE_MAX];
+    int numbers[SIDE_MAX / 8][SIDE_MAX / 8][3][8][8], counts[SIDE_MAX / 8][SIDE_MAX / 8][3];
+} picture;
+
+static const int quarter[8][4] = { { 64, 64, 64, 64 },   { 89, 75, 50, 18 },
+                                   { 83, 36, -36, -83 }, { 75, -18, -89, -50 },
+                                   { 64, -64, -64, 64 }, { 50, -89, 18, 75 },
+                                   { 36, -83, 83, -36 }, { 18, -50, 75, -89 } };
+
+static int m(int u, int x) { return x < 4 ? quarter[u][x] : u % 2 ? -m(u, 7 - x) : m(u, 7 - x); }
+
+static int64_t within(int64_t least, int64_t value, int64_t most)
+{
+    return value < least ? least : value > most ? most : value;
+}
+
+static int64_t floored(int64_t value, int64_t divisor)
+{
+    int64_t whole = value / divisor;
+
+    return whole * divisor > value ? whole - 1 : whole;
+}
+
+/* ---- decisions ---- */
+
+static uint64_t next_byte(stream *in) { return in->taken < in->count ? in->bytes[in->taken++] : 0; }
+
+static int chance(stream *in, int64_t probability)
+{
+    uint64_t part = in->width / 65536 * (uint64_t)probability;
+    int is_one = in->code < part;
+
+    if (is_one) in->width = part;
+    if (!is_one) in->width -= part;
+    if (!is_one) in->code -= part;
+    while (in->width < 1u << 24) {
+        in->width *= 256;
+        in->code = (in->code * 256 + next_byte(in)) % (UINT64_C(1) << 32);
+    }
+    return is_one;
+}
+
+static int even(picture *p) { return chance(&p->in, 32768); }
+
+static int decide(picture *p, int at)
+{
+    int is_one = chance(&p->in, p->one[at]);
+
+    p->one[at] += is_one ? (65536 - p->one[at]) / 32 : -(p->one[at] / 32);
+    return is_one;
+}
+
+/* ---- numbers ---- */
+
+static int64_t sum_of(int row, const int64_t known[5])
+{
+    int64_t sum = 0;
+
+    for (int i = 0; i < 5; i++) sum += ff_picture_learned.weight[row][i] * known[i];
+    return sum;
+}
+
+static int how_many(const int *list, int count, int64_t sum)
+{
+    int many = 0;
+
+    for (int i = 0; i < count; i++) many += list[i] <= sum;
+    return many;
+}
+
+static int scale(int row, const int64_t known[5])
+{
+    static const int from[] = { 11,  15,  20,  27,  35,  46,  59,   76,   97,   123,  156, 198,
+                                251, 318, 401, 507, 640, 808, 1019, 1285, 1621, 2043, 2575 };
+
+    return how_many(from, 23, sum_of(row, known));
+}
+
+static int64_t size_after_zero(picture *p, int k, int s)
+{
+    int64_t size = 1, rest = 1;
+    int bits = 0;
+
+    while (size <= 14 && decide(p, 144 + 336 * (k % 3 > 0) + 24 * ((int)size - 1) + s)) size++;
+    if (size <= 14) return size;
+    while (bits < 15 && even(p)) bits++;
+    for (; bits > 0; bits--) rest = 2 * rest + even(p);
+    return 14 + rest;
+}
+
+static int64_t not_zero(picture *p, int k, int s)
+{
+    int64_t size = size_after_zero(p, k, s);
+
+    return even(p) ? -size : size;
+}
+
+static int64_t number(picture *p, int k, int s)
+{
+    return decide(p, 24 * k + s) ? not_zero(p, k, s) : 0;
+}
+
+static int count(picture *p, int k, int s)
+{
+    int class = 0, value = 1, first = 0;
+
+    while (class < 7 && decide(p, 816 + 112 * k + 7 * s + class)) class ++;
+    if (class < 3) return class;
+    for (int i = 0; i < class - 2; i++) {
+        int at = 1488 + 24 * k + 3 * class, bit;
+        if (i == 0)
+            bit = first = decide(p, at);
+        else if (i == 1)
+            bit = decide(p, at + 1 + first);
+        else
+            bit = even(p);
+        value = 2 * value + bit;
+    }
+    return value + 1;
+}
+
+static int64_t coefficient(picture *p, int plane, int64_t value)
+{
+    return within(-32767, value * p->step[plane], 32767);
+}
+
+static int64_t size_of(int64_t value) { return within(0, llabs(value), 255); }
+
+/* ---- texels ---- */
+
+static void kept_rgb(uint16_t texel, int rgb[3])
+{
+    int r = texel / 2048, g = texel / 32 % 64, b = texel % 32;
+
+    rgb[0] = 8 * r + r / 4;
+    rgb[1] = 4 * g + g / 16;
+    rgb[2] = 8 * b + b / 4;
+}
+
+static void put(picture *p, int x, int y, const int expected[3], const int64_t left[3])
+{
+    int64_t r = within(0, expected[0] + left[0] + left[1] - left[2], 255),
+            g = within(0, expected[1] + left[0] + left[2], 255),
+            b = within(0, expected[2] + left[0] - left[1] - left[2], 255);
+
+    p->rgb[y][x][0] = (uint8_t)r;
+    p->rgb[y][x][1] = (uint8_t)g;
+    p->rgb[y][x][2] = (uint8_t)b;
+    p->kept[y][x] = (uint16_t)((249 * r + 1014) / 2048 * 2048 + (253 * g + 505) / 1024 * 32 +
+                               (249 * b + 1014) / 2048);
+}
+
+/* The weight, along an axis, of the parent's texel i at a place. */
+static int weight(int place, int side, int i)
+{
+    int at = place / 2, off = i - at;
+
+    if (place % 2 == 0 && (place == 0 || place == 2 * side - 2)) return off == 0 ? 16 : 0;
+    if (place % 2 == 0) return off == 0 ? 14 : abs(off) == 1 ? 1 : 0;
+    if (at == 0 || at == side - 2) return off == 0 || off == 1 ? 8 : 0;
+    return off == 0 || off == 1 ? 9 : off == -1 || off == 2 ? -1 : 0;
+}
+
+static void of_parent(picture *p, int x, int y, int rgb[3])
+{
+    int place_x = x + (p->side - 1) * (p->quadrant % 2),
+        place_y = y + (p->side - 1) * (p->quadrant / 2);
+    int64_t sum[3] = { 0, 0, 0 };
+
+    for (int j = place_y / 2 - 1; j <= place_y / 2 + 2; j++)
+        for (int i = place_x / 2 - 1; i <= place_x / 2 + 2; i++) {
+            int texel[3], both = weight(place_x, p->side, i) * weight(place_y, p->side, j);
+            if (!both) continue;
+            kept_rgb(p->parent[j * p->side + i], texel);
+            for (int c = 0; c < 3; c++) sum[c] += both * texel[c];
+        }
+    for (int c = 0; c < 3; c++) rgb[c] = (int)within(0, floored(sum[c] + 128, 256), 255);
+}
+
+static void of_block(picture *p, int x, int y, int rgb[3])
+{
+    int column = x ? x - 1 : 0, row = y ? y - 1 : 0, sum[3] = { 0, 0, 0 };
+
+    for (int i = 0; i < 8; i++) {
+        int west[3], south[3];
+        kept_rgb(p->kept[y + i][column], west);
+        kept_rgb(p->kept[row][x + i], south);
+        for (int c = 0; c < 3; c++) sum[c] += west[c] + south[c];
+    }
+    for (int c = 0; c < 3; c++) rgb[c] = (sum[c] + 8) / 16;
+}
+
+/* ---- corners and lines ---- */
+
+static void corner(picture *p, int x, int y)
+{
+    int expected[3] = { 128, 128, 128 };
+    int64_t left[3];
+
+    if (!p->is_root) of_parent(p, x, y, expected);
+    for (int plane = 0; plane < 3; plane++) {
+        int k = plane + 3 * p->is_root;
+        int64_t c = coefficient(p, plane, number(p, k, ff_picture_learned.corner[k]));
+        left[plane] = floored(c + 8, 16);
+    }
+    put(p, x, y, expected, left);
+}
+
+static void of_line(picture *p, int x, int y, int is_upright, int rgb[3])
+{
+    int last = p->side - 1, i = is_upright ? y : x, a[3], b[3];
+
+    if (!p->is_root) {
+        of_parent(p, x, y, rgb);
+        return;
+    }
+    kept_rgb(is_upright ? p->kept[0][x] : p->kept[y][0], a);
+    kept_rgb(is_upright ? p->kept[last][x] : p->kept[y][last], b);
+    for (int c = 0; c < 3; c++) rgb[c] = (a[c] * (last - i) + b[c] * i + last / 2) / last;
+}
+
+static void eight_numbers(picture *p, int plane, int64_t v[3][10], int64_t before[3][8])
+{
+    int k = plane + 3 * p->is_root;
+
+    for (int u = 7; u >= 0; u--) {
+        int64_t known[5] = { 1, size_of(v[plane][u + 1]), size_of(v[plane][u + 2]),
+                             size_of(before[plane][u]), plane ? size_of(v[0][u]) : 0 };
+        v[plane][u] = number(p, k, scale(90 + 8 * k + u, known));
+    }
+}
+
+static void line(picture *p, int is_upright, int aside)
+{
+    int64_t before[3][8] = { { 0 } };
+
+    for (int from = 0; from < p->side; from += 8) {
+        int64_t v[3][10] = { { 0 } };
+        for (int plane = 0; plane < 3; plane++) eight_numbers(p, plane, v, before);
+        for (int i = 0; i < 8; i++) {
+            int x = is_upright ? aside : from + i, y = is_upright ? from + i : aside, expected[3];
+            int64_t left[3] = { 1024, 1024, 1024 };
+            for (int plane = 0; plane < 3; plane++) {
+                for (int u = 0; u < 8; u++)
+                    left[plane] += m(u, i) *
+                                   floored(181 * coefficient(p, plane, v[plane][u]) + 128, 256);
+                left[plane] = floored(left[plane], 2048);
+            }
+            if (from + i == 0 || from + i == p->side - 1) continue;
+            of_line(p, x, y, is_upright, expected);
+            put(p, x, y, expected, left);
+        }
+        for (int plane = 0; plane < 3; plane++)
+            for (int u = 0; u < 8; u++) before[plane][u] = v[plane][u];
+    }
+}
+
+/* ---- blocks ---- */
+
+static int block_count(picture *p, int column, int row, int plane)
+{
+    static const int from[] = { 123,  177,  251,  358,  507,  720,   1019, 1444,
+                                2043, 2892, 4091, 5788, 8187, 11581, 16379 };
+    int k = plane + 3 * p->is_root, west = 8, south;
+
+    if (row) west = p->counts[row - 1][column][plane];
+    if (column) west = p->counts[row][column - 1][plane];
+    south = row ? p->counts[row - 1][column][plane] : west;
+    const int64_t known[5] = { 1, west, south, plane ? p->counts[row][column][0] : 0,
+                               plane == 2 ? p->counts[row][column][1] : 0 };
+    return count(p, k, how_many(from, 15, sum_of(138 + k, known)));
+}
+
+static int64_t size_at(int v[8][8], int row, int column)
+{
+    return row > 7 || column > 7 ? 0 : size_of(v[row][column]);
+}
+
+/* The zigzag, walked: up the diagonals and down. */
+static void order(int places[64])
+{
+    int at = 0;
+
+    for (int d = 0; d < 15; d++)
+        for (int i = 0; i <= d; i++) {
+            int v = d % 2 ? i : d - i, u = d - v;
+            if (u < 8 && v < 8) places[at++] = 8 * v + u;
+        }
+}
+
+static void block_numbers(picture *p, int column, int row, int plane)
+{
+    int places[64], k = plane + 3 * p->is_root, n = block_count(p, column, row, plane);
+    int(*v)[8] = p->numbers[row][column][plane];
+
+    order(places);
+    memset(v, 0, 64 * sizeof **v);
+    p->counts[row][column][plane] = n;
+    for (int i = n - 1; i >= 0; i--) {
+        int r = places[i] / 8, u = places[i] % 8;
+        int64_t west = column ? size_of(p->numbers[row][column - 1][plane][r][u]) : 0,
+                south = row ? size_of(p->numbers[row - 1][column][plane][r][u]) : 0;
+        const int64_t known[5] = { 1, size_at(v, r, u + 1) + size_at(v, r + 1, u),
+                                   size_at(v, r + 1, u + 1) + size_at(v, r, u + 2) +
+                                       size_at(v, r + 2, u),
+                                   west, south };
+        int s = scale(15 * k + r + u, known);
+        v[r][u] = (int)(i == n - 1 ? not_zero(p, k, s) : number(p, k, s));
+    }
+}
+
+static int64_t left_at(picture *p, int column, int row, int plane, int x, int y)
+{
+    int64_t sum = 2048;
+
+    for (int v = 0; v < 8; v++) {
+        int64_t t = 64;
+        for (int u = 0; u < 8; u++)
+            t += m(u, x) * coefficient(p, plane, p->numbers[row][column][plane][v][u]);
+        sum += m(v, y) * floored(t, 128);
+    }
+    return floored(sum, 4096);
+}
+
+static void block(picture *p, int column, int row)
+{
+    int flat[3] = { 0 };
+
+    if (p->is_root) of_block(p, 8 * column, 8 * row, flat);
+    for (int plane = 0; plane < 3; plane++) block_numbers(p, column, row, plane);
+    for (int i = 0; i < 64; i++) {
+        int x = 8 * column + i % 8, y = 8 * row + i / 8, last = p->side - 1, expected[3];
+        int64_t left[3];
+        if (x == 0 || y == 0 || x == last || y == last) continue;
+        memcpy(expected, flat, sizeof flat);
+        if (!p->is_root) of_parent(p, x, y, expected);
+        for (int plane = 0; plane < 3; plane++)
+            left[plane] = left_at(p, column, row, plane, i % 8, i / 8);
+        put(p, x, y, expected, left);
+    }
+}
+
+/* ---- all of it ---- */
+
+static int begin(picture *p, const uint8_t *bytes, long bytes_count)
+{
+    int q = bytes_count > 0 ? bytes[0] : 0;
+
+    if (q < 1 || q > 100) return -1;
+    p->step[0] = p->step[2] = q == 100 ? 8 : q >= 50 ? 16 * (100 - q) : 800 + 64 * (50 - q);
+    p->step[1] = p->step[0] * 5 / 4;
+    for (int i = 0; i < FF_PICTURE_CONTEXTS; i++) p->one[i] = ff_picture_learned.one[i];
+    p->in = (stream){ .bytes = bytes + 1, .count = bytes_count - 1, .width = UINT32_MAX };
+    for (int i = 0; i < 4; i++) p->in.code = 256 * p->in.code + next_byte(&p->in);
+    return 0;
+}
+
+int slow_picture(const uint8_t *bytes, long bytes_count, int side, const uint16_t *parent,
+                 int quadrant, uint16_t *texels, uint8_t *rgb)
+{
+    static picture made;
+    picture *p = &made;
+    int last = side - 1;
+
+    *p = (picture){ .side = side, .parent = parent, .is_root = !parent, .quadrant = quadrant };
+    if (begin(p, bytes, bytes_count)) return -1;
+    for (int c = 0; c < 4; c++) corner(p, c % 2 * last, c / 2 * last);
+    for (int l = 0; l < 4; l++) line(p, l / 2, l % 2 * last);
+    for (int row = 0; row < side / 8; row++)
+        for (int column = 0; column < side / 8; column++) block(p, column, row);
+    for (int y = 0; y < side; y++) {
+        memcpy(texels + y * side, p->kept[y], (size_t)side * sizeof *texels);
+        memcpy(rgb + (size_t)y * (size_t)side * 3, p->rgb[y], (size_t)side * 3);
+    }
+    if (p->in.taken < p->in.count) return -1;
+    return bytes_count > 1 && bytes[bytes_count - 1] == 0 ? -1 : 0;
+}

@@ -1,0 +1,48 @@
+#include "bake_texture.h"
+
+#include "../../../platform/sys.h"
+#include "../../../protocol/picture/ff_picture.h"
+#include "../bake_say.h"
+
+#include <stdlib.h>
+
+/* Of what is coded: JPEGs have a few hundred bytes more than their coefficients. */
+#define CODED_BYTES(info) (((size_t)16 << 2 * (info)->texture_log2) + 8192)
+
+int bake_texture_room_make(bake_texture_room *room, const ff_terrain_info *info)
+{
+    *room = (bake_texture_room){ malloc(sizeof(ff_picture_room)), malloc(1 + CODED_BYTES(info)),
+                                 malloc(sizeof(uint16_t) << 2 * info->texture_log2) };
+    return room->picture && room->coded && room->texels ? 0 : bake_fail("out of memory");
+}
+
+void bake_texture_room_free(bake_texture_room *room)
+{
+    free(room->picture);
+    free(room->coded);
+    free(room->texels);
+}
+
+static int code_jpeg(const bake_texture_room *room, const ff_terrain_info *info, int quality,
+                     const uint8_t *rgb, uint8_t *decoded)
+{
+    uint32_t side = 1u << info->texture_log2;
+    int bytes = sys_jpeg_encode(rgb, side, side, quality, room->coded, CODED_BYTES(info));
+    int rc = bytes > 0 && decoded ? sys_jpeg_decode(room->coded, (size_t)bytes, side, side, decoded)
+                                  : FF_OK;
+    return rc < 0 ? rc : bytes;
+}
+
+int bake_texture_code(const bake_texture_room *room, const ff_terrain_info *info, int quality,
+                      bake_texture_above above, const uint8_t *rgb, uint8_t *decoded)
+{
+    int bytes;
+    if (info->flags & FF_TERRAIN_PICTURES)
+        bytes = ff_picture_encode(rgb, info->texture_log2,
+                                  (ff_picture_above){ above.texels, above.quadrant },
+                                  (unsigned)quality, room->picture, room->texels, decoded,
+                                  room->coded, CODED_BYTES(info));
+    else
+        bytes = code_jpeg(room, info, quality, rgb, decoded);
+    return bytes > 0 ? bytes : bake_fail("cannot encode a texture: %s", ff_error_text(bytes));
+}

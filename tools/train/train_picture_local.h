@@ -1,0 +1,16 @@
+/* Private to train_picture*.c. */
+#ifndef TRAIN_PICTURE_LOCAL_H
+#define TRAIN_PICTURE_LOCAL_H
+
+#include "train_picture.h"
+
+/* Of each level: bytes, and the mean square of what texels are off. */
+typedef struct train_coded {
+    double bytes[TRAIN_PICTURE_LEVELS], squares[TRAIN_PICTURE_LEVELS];
+} train_coded;
+
+/* 0 or -1 (said). */
+int train_pictures_code(const train_pictures *pictures, const ff_picture_tables *tables,
+                        unsigned at_quality, train_coded *coded);
+
+#endif
