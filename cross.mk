@@ -96,6 +96,9 @@ CODEC_PEERS := libcharls2 liblerc4 libopenjp2-tools libjxl-tools
 DECODE_PACK := build/handheld/decode_pack
 $(DECODE_PACK): $(HAND_OBJ)/tools/scripts/decode_pack.o $(patsubst %.c,$(HAND_OBJ)/%.o,$(filter protocol/%,$(DEVICE_CORE)))
 	$(ARM)gcc $(ARM_CPU) -static -Wl,--gc-sections $^ $(ARM_LIBS)/libz.a -o $@
+DECODE_IMAGES := build/handheld/decode_images
+$(DECODE_IMAGES): $(HAND_OBJ)/tools/scripts/decode_images.o $(patsubst %.c,$(HAND_OBJ)/%.o,$(filter protocol/%,$(DEVICE_CORE)) $(DEVICE_PLATFORM))
+	$(ARM)gcc $(ARM_CPU) -static -Wl,--gc-sections $^ $(HAND_LIBS) -lpthread -o $@
 # Others' libraries, as Debian builds them for armel; without them the bench goes on.
 PEERS := build/peers
 PEER_LIBS := libcharls2 libcharls-dev liblerc4 liblerc-dev libopenjp2-7 libopenjp2-7-dev libjxl0.7 libjxl-dev libbrotli1 libhwy1 liblcms2-2 libstdc++6 \

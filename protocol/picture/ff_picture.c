@@ -46,29 +46,17 @@ static uint16_t to_texel(const uint8_t rgb[3])
     return (uint16_t)(r << 11 | g << 5 | b);
 }
 
-static void store(const ff_picture *p, unsigned x, unsigned y, const uint8_t rgb[3])
-{
-    p->texels[y * p->side + x] = to_texel(rgb);
-    if (p->rgb) memcpy(p->rgb + ((size_t)(p->side - 1 - y) * p->side + x) * 3, rgb, 3);
-}
-
-/* Adds what is left; of parts of several texels not to the outermost ones, or to no others. */
-static void finish(const ff_picture *p, ff_picture_part part, uint8_t expected[64][3],
+/* Adds what is left to the i-th texel of a part. */
+static void finish(const ff_picture *p, unsigned x, unsigned y, unsigned i, uint8_t expected[64][3],
                    int32_t left[3][64])
 {
-    unsigned last = p->side - 1, is_line = part.width != part.height;
-    for (unsigned i = 0; i < part.width * part.height; i++) {
-        unsigned x = part.x + i % part.width, y = part.y + i / part.width;
-        int32_t luma = left[0][i], co = left[1][i], cg = left[2][i];
-        uint8_t *rgb = expected[i];
-        int is_corner = (x == 0 || x == last) && (y == 0 || y == last),
-            is_rim = x == 0 || x == last || y == 0 || y == last;
-        if (part.width * part.height > 1 && (is_line ? is_corner : is_rim)) continue;
-        rgb[0] = to_byte(rgb[0] + luma + co - cg);
-        rgb[1] = to_byte(rgb[1] + luma + cg);
-        rgb[2] = to_byte(rgb[2] + luma - co - cg);
-        store(p, x, y, rgb);
-    }
+    int32_t luma = left[0][i], co = left[1][i], cg = left[2][i];
+    uint8_t *rgb = expected[i];
+    rgb[0] = to_byte(rgb[0] + luma + co - cg);
+    rgb[1] = to_byte(rgb[1] + luma + cg);
+    rgb[2] = to_byte(rgb[2] + luma - co - cg);
+    p->texels[y * p->side + x] = to_texel(rgb);
+    if (p->rgb) memcpy(p->rgb + ((size_t)(p->side - 1 - y) * p->side + x) * 3, rgb, 3);
 }
 
 static int16_t coefficient(const ff_picture *p, unsigned plane, int32_t value)
@@ -95,7 +83,7 @@ static void go_corner(ff_picture *p, ff_picture_part part)
         int32_t number = ff_picture_number(p, kind, p->by->corner[kind], value[plane][0]);
         value[plane][0] = (coefficient(p, plane, number) + 8) >> 4;
     }
-    finish(p, part, expected, value);
+    finish(p, part.x, part.y, 0, expected, value);
 }
 
 /* ---- lines ---- */
@@ -136,7 +124,10 @@ static void go_eight(ff_picture *p, ff_picture_part part, uint8_t before[3][8])
             whole[u] = coefficient(p, plane, value[plane][u]);
         ff_picture_line(whole, value[plane]);
     }
-    finish(p, part, expected, value);
+    unsigned upright = part.height > 1, from = upright ? part.y : part.x;
+    for (unsigned i = 0; i < FF_PICTURE_BLOCK; i++)
+        if (from + i != 0 && from + i != p->side - 1) /* corners are there */
+            finish(p, part.x + (upright ? 0 : i), part.y + (upright ? i : 0), i, expected, value);
 }
 
 static void go_lines(ff_picture *p)
@@ -167,11 +158,16 @@ static void go_block(ff_picture *p, unsigned column, unsigned row)
 #endif
     for (unsigned plane = 0; plane < 3; plane++) {
         int16_t whole[64];
-        ff_picture_numbers(p, plane, column, row, value[plane]);
+        if (!ff_picture_numbers(p, plane, column, row, value[plane]))
+            continue; /* nothing is left */
         for (unsigned z = 0; z < 64; z++) whole[z] = coefficient(p, plane, value[plane][z]);
         ff_picture_block(whole, value[plane]);
     }
-    finish(p, part, expected, value);
+    /* lines are there */
+    unsigned last = p->side - 1, i = 0;
+    for (unsigned y = part.y; y < part.y + FF_PICTURE_BLOCK; y++)
+        for (unsigned x = part.x; x < part.x + FF_PICTURE_BLOCK; x++, i++)
+            if (x != 0 && x != last && y != 0 && y != last) finish(p, x, y, i, expected, value);
 }
 
 void ff_picture_go(ff_picture *p)

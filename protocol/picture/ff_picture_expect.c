@@ -2,9 +2,9 @@
  * (SPEC.md, 5.2). */
 #include "ff_picture_local.h"
 
-#define TAPS     4
-#define ROWS_MAX 8
-#define GREY     128
+#define TAPS 4
+#define WIDE 8 /* of the parent's texels, as many lie around a part, each way */
+#define GREY 128
 
 void ff_picture_spread(uint16_t texel, uint8_t rgb[3])
 {
@@ -14,48 +14,43 @@ void ff_picture_spread(uint16_t texel, uint8_t rgb[3])
     rgb[2] = (uint8_t)(b << 3 | b >> 2);
 }
 
-/* How a place of the children's lattice weighs the four of the parent's texels from `first` on, in
- * sixteenths. At the rims nothing across them does. */
+/* How a place of the children's lattice weighs the parent's texels around it, in sixteenths: the
+ * one before it, those it is at or between, the one behind. At the rims nothing across them counts.
+ */
 typedef struct taps {
-    int first;
-    int8_t weight[TAPS];
+    int32_t before, here, next, behind;
 } taps;
 
 static taps taps_at(unsigned place, unsigned side)
 {
     unsigned at = place / 2;
-    taps t = { .first = (int)at - 1 };
     FF_ASSERT(place <= 2 * (side - 1));
-    if (place % 2 == 0 && (at == 0 || at == side - 1))
-        t.weight[1] = 16;
-    else if (place % 2 == 0)
-        t = (taps){ (int)at - 1, { 1, 14, 1, 0 } };
-    else if (at == 0 || at == side - 2)
-        t.weight[1] = t.weight[2] = 8;
-    else
-        t = (taps){ (int)at - 1, { -1, 9, 9, -1 } };
-    return t;
+    if (place % 2 == 0)
+        return at == 0 || at == side - 1 ? (taps){ 0, 16, 0, 0 } : (taps){ 1, 14, 1, 0 };
+    return at == 0 || at == side - 2 ? (taps){ 0, 8, 8, 0 } : (taps){ -1, 9, 9, -1 };
+}
+
+static inline int32_t weighed(taps t, const int16_t *value, unsigned apart)
+{
+    return t.before * value[0] + t.here * value[apart] + t.next * value[2 * apart] +
+           t.behind * value[3 * apart];
 }
 
 /* Texels beyond the parent have no weight; any will do. */
-static unsigned inside(int at, unsigned side)
+static unsigned inside(unsigned at, unsigned side)
 {
-    return at < 0 ? 0 : at >= (int)side ? side - 1 : (unsigned)at;
+    return at < 1 ? 0 : at > side ? side - 1 : at - 1;
 }
 
-/* A row of the parent at the columns of the part, times 16. */
-static void across(const ff_picture *p, const taps *column, unsigned width, const uint16_t *row,
-                   int16_t out[8][3])
+/* The parent's texels from one before place `x` on, a channel after the other; of row `row`,
+ * counted alike. */
+static void take_row(const ff_picture *p, unsigned x, unsigned row, int16_t channel[3][WIDE])
 {
-    for (unsigned i = 0; i < width; i++) {
-        int32_t sum[3] = { 0, 0, 0 };
-        for (unsigned k = 0; k < TAPS; k++) {
-            uint8_t rgb[3];
-            if (!column[i].weight[k]) continue;
-            ff_picture_spread(row[inside(column[i].first + (int)k, p->side)], rgb);
-            for (unsigned c = 0; c < 3; c++) sum[c] += column[i].weight[k] * rgb[c];
-        }
-        for (unsigned c = 0; c < 3; c++) out[i][c] = (int16_t)sum[c];
+    const uint16_t *texel = p->parent + inside(row, p->side) * p->side;
+    for (unsigned i = 0; i < WIDE; i++) {
+        uint8_t rgb[3];
+        ff_picture_spread(texel[inside(x / 2 + i, p->side)], rgb);
+        for (unsigned c = 0; c < 3; c++) channel[c][i] = rgb[c];
     }
 }
 
@@ -65,26 +60,35 @@ static uint8_t to_byte(int32_t value_q8)
     return (uint8_t)(value < 0 ? 0 : value > 255 ? 255 : value);
 }
 
+/* A row of the parent at the columns of the part, from place x on, times 16. */
+static void across(const ff_picture *p, const taps *column, unsigned x, unsigned width,
+                   unsigned row, int16_t out[3][FF_PICTURE_BLOCK])
+{
+    int16_t channel[3][WIDE];
+    take_row(p, x, row, channel);
+    for (unsigned i = 0; i < width; i++) {
+        const int16_t *first = channel[0] + (x + i) / 2 - x / 2;
+        const taps t = column[i];
+        for (unsigned c = 0; c < 3; c++) out[c][i] = (int16_t)weighed(t, first + c * WIDE, 1);
+    }
+}
+
 static void from_parent(const ff_picture *p, ff_picture_part part, uint8_t rgb[64][3])
 {
-    int16_t row[ROWS_MAX][8][3];
-    taps column[8];
-    unsigned x = p->column + part.x, y = p->row + part.y;
-    int first = (int)(y / 2) - 1, last = (int)((y + part.height - 1) / 2) + 2;
-    FF_ASSERT(last - first < ROWS_MAX);
+    int16_t row[WIDE][3][FF_PICTURE_BLOCK];
+    taps column[FF_PICTURE_BLOCK];
+    unsigned x = p->column + part.x, y = p->row + part.y,
+             rows = (y + part.height - 1) / 2 - y / 2 + TAPS;
+    FF_ASSERT(rows <= WIDE);
     for (unsigned i = 0; i < part.width; i++) column[i] = taps_at(x + i, p->side);
-    for (int j = first; j <= last; j++)
-        across(p, column, part.width, p->parent + inside(j, p->side) * p->side, row[j - first]);
-    for (unsigned j = 0; j < part.height; j++) {
-        taps t = taps_at(y + j, p->side);
-        int16_t(*at)[8][3] = &row[t.first - first];
-        for (unsigned i = 0; i < part.width; i++)
-            for (unsigned c = 0; c < 3; c++) {
-                int32_t sum = 0;
-                for (unsigned k = 0; k < TAPS; k++)
-                    if (t.weight[k]) sum += t.weight[k] * at[k][i][c];
-                rgb[j * part.width + i][c] = to_byte(sum);
-            }
+    for (unsigned j = 0; j < rows; j++) across(p, column, x, part.width, y / 2 + j, row[j]);
+    for (unsigned j = 0; j < part.height; j++, rgb += part.width) {
+        const int16_t *from = row[(y + j) / 2 - y / 2][0];
+        const taps t = taps_at(y + j, p->side);
+        for (unsigned c = 0; c < 3; c++)
+            for (unsigned i = 0; i < part.width; i++)
+                rgb[i][c] = to_byte(
+                    weighed(t, from + c * FF_PICTURE_BLOCK + i, 3 * FF_PICTURE_BLOCK));
     }
 }
 

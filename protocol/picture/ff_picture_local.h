@@ -83,11 +83,12 @@ void ff_picture_spread(uint16_t texel, uint8_t rgb[3]);
 void ff_picture_block(const int16_t coefficient[64], int32_t left[64]);
 void ff_picture_line(const int16_t coefficient[8], int32_t left[8]);
 
-/* Numbers, and a block's, to and from the range coder. ff_picture_numbers.c */
+/* Numbers, and a block's, to and from the range coder; of a block's how many are told.
+ * ff_picture_numbers.c */
 int32_t ff_picture_number(ff_picture *p, unsigned kind, unsigned scale, int32_t value);
 unsigned ff_picture_scale(const ff_picture *p, unsigned row, const int32_t known[FF_PICTURE_KNOWN]);
-void ff_picture_numbers(ff_picture *p, unsigned plane, unsigned column, unsigned row,
-                        int32_t value[64]);
+unsigned ff_picture_numbers(ff_picture *p, unsigned plane, unsigned column, unsigned row,
+                            int32_t value[64]);
 void ff_picture_see(const ff_picture *p, unsigned row, const int32_t known[FF_PICTURE_KNOWN],
                     int32_t size);
 

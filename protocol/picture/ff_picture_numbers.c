@@ -2,6 +2,8 @@
  */
 #include "ff_picture_local.h"
 
+#include <string.h>
+
 #define HALF     32768u
 #define RATE     5
 #define BITS_MAX 15
@@ -151,7 +153,7 @@ static unsigned take_count(ff_picture *p, unsigned plane, unsigned column, unsig
     const uint8_t *below = p->room->below_count[column];
     unsigned kind = plane + p->root, count = 64;
     int32_t known[FF_PICTURE_KNOWN] = { 1 };
-    while (count && !value[zigzag[count - 1]]) count--;
+    while (p->to && count && !value[zigzag[count - 1]]) count--;
     known[1] = column ? p->room->before_count[plane] : row ? below[plane] : UNKNOWN;
     known[2] = row ? below[plane] : known[1];
     /* of this block's planes before: they are in the places of the block that is below */
@@ -167,8 +169,8 @@ static uint8_t small(int32_t value)
     return (uint8_t)(size < 255 ? size : 255);
 }
 
-void ff_picture_numbers(ff_picture *p, unsigned plane, unsigned column, unsigned row,
-                        int32_t value[64])
+unsigned ff_picture_numbers(ff_picture *p, unsigned plane, unsigned column, unsigned row,
+                            int32_t value[64])
 {
     uint8_t near[WIDE * WIDE] = { 0 }, *before = p->room->before[plane],
                         *below = p->room->below[column][plane];
@@ -186,6 +188,10 @@ void ff_picture_numbers(ff_picture *p, unsigned plane, unsigned column, unsigned
                                   : ff_picture_number(p, kind, scale, value[z]);
         near[at] = small(value[z]);
     }
-    for (unsigned z = 0; z < 64; z++) before[z] = below[z] = near[z / 8 * WIDE + z % 8];
+    for (unsigned v = 0; v < FF_PICTURE_BLOCK; v++) {
+        memcpy(before + v * FF_PICTURE_BLOCK, near + v * WIDE, FF_PICTURE_BLOCK);
+        memcpy(below + v * FF_PICTURE_BLOCK, near + v * WIDE, FF_PICTURE_BLOCK);
+    }
     p->room->before_count[plane] = p->room->below_count[column][plane] = (uint8_t)count;
+    return count;
 }

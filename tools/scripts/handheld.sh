@@ -37,7 +37,8 @@ for y in range(n):
 open(sys.argv[1] + "/hills.ppm", "wb").write(b"P6 %d %d 255\n" % (n, n) + rgb)
 END
 image=(); codec=deflate
-if has textures && has jpeg; then image=(--color "$work/hills.ppm"); fi
+if has textures && { has picture || has jpeg; }; then image=(--color "$work/hills.ppm"); fi
+has picture || image+=(--image-codec jpeg)
 has deflate || codec=rice
 "$host/farfield-bake" "$work/hills.raw" --raw 257x257 --spacing 40 --tile-log2 6 --quiet --codec "$codec" "${image[@]}" -o "$work/hills.ffp"
 result $? "a pack to fly over ($codec${image:+, with images})"

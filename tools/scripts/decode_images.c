@@ -1,0 +1,75 @@
+/* decode_images PACK: decodes all images of a pack as a client does, for bench_pictures.py:
+ * cross-built for the handheld, counted by tcg_count.c. What is decoding lies in the phase "work".
+ * Prints how many texels were made and their sum: the same on every machine. */
+#include "../../platform/sys.h"
+#include "../../protocol/ff_image.h"
+#include "../../protocol/ff_pack.h"
+#include "../../protocol/picture/ff_picture.h"
+#include "count_marks.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+#define TEXELS_MAX (1u << 2 * FF_PICTURE_LOG2_MAX)
+
+static ff_pack pack;
+static ff_picture_room room;
+static unsigned long long texels, sum, bytes_read;
+
+static int fail(const char *what)
+{
+    fprintf(stderr, "decode_images: %s\n", what);
+    exit(1);
+}
+
+static void decode(const ff_image *image, ff_key key, const uint16_t *parent, uint16_t *out)
+{
+    static uint8_t rgb[TEXELS_MAX * 3];
+    const ff_terrain_info *info = &pack.header.info;
+    uint32_t side = 1u << info->texture_log2;
+    ff_picture_above above = { parent, parent ? ff_key_quadrant(key) : 0 };
+    handheld_mark_work();
+    int rc = info->flags & FF_TERRAIN_PICTURES
+                 ? ff_picture_decode(image->coded, image->coded_bytes, info->texture_log2, above,
+                                     &room, out, NULL)
+                 : sys_jpeg_decode(image->coded, image->coded_bytes, side, side, rgb);
+    handheld_mark_outside();
+    if (rc < 0) fail("an image is broken");
+    if (!(info->flags & FF_TERRAIN_PICTURES))
+        for (uint32_t i = 0; i < side * side * 3; i++) sum += rgb[i];
+    else
+        for (uint32_t i = 0; i < side * side; i++) sum += out[i];
+    texels += side * side;
+}
+
+static void below(ff_key key, const uint16_t *parent)
+{
+    const uint8_t *payload;
+    ff_image image;
+    int bytes = ff_pack_record(&pack, FF_SECTION_TEXTURE, key, &payload);
+    if (bytes == FF_ERR_NOT_FOUND) return;
+    if (bytes < 0 || ff_image_read(payload, (size_t)bytes, &image) < 0) fail("a record is broken");
+    uint16_t *own = malloc(sizeof *own << 2 * pack.header.info.texture_log2);
+    if (!own) fail("out of memory");
+    bytes_read += image.coded_bytes;
+    decode(&image, key, parent, own);
+    for (uint32_t q = 0; ff_key_level(key) + 1 < pack.header.info.texture_levels && q < 4; q++)
+        below(ff_key_child(key, q), own);
+    free(own);
+}
+
+int main(int argc, char **argv)
+{
+    FILE *file = argc == 2 ? fopen(argv[1], "rb") : NULL;
+    if (!file || fseek(file, 0, SEEK_END)) return fail("decode_images PACK");
+    size_t bytes = (size_t)ftell(file);
+    rewind(file);
+    void *text = malloc(bytes);
+    if (!text || fread(text, 1, bytes, file) != bytes) return fail("the pack cannot be read");
+    fclose(file);
+    if (ff_pack_open(&pack, text, bytes)) return fail("it is no pack");
+    handheld_mark_start();
+    for (uint32_t i = 0; i < pack.tiles; i++) below(ff_key_make(i, 0, 0), NULL);
+    printf("texels %llu\nbytes %llu\nsum %llu\n", texels, bytes_read, sum);
+    return 0;
+}
