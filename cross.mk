@@ -117,6 +117,10 @@ FOLD_LINK = $(CC) $(OPT) $(WARN) $(STD_host) -DFF_ENCODER=1 -Iprotocol/trained $
 %/fold-export: %/tables.c $(call obj,tools/export/export_main.c) $(LIBS)
 	$(FOLD_LINK)
 
+.PHONY: bench-pictures
+bench-pictures: $(patsubst %,$(BUILD)/bin/farfield-%,bake train) $(DECODE_IMAGES) $(TCG_COUNT) ## bytes of images of the ground beside JPEGs of the same error, and instructions a texel: build/bench/pictures.md (DATA=DIR)
+	@$(if $(DATA),FARFIELD_DATA=$(DATA)) tools/scripts/bench_pictures.py $(BUILD)/bin $(BENCH) --decoder $(DECODE_IMAGES) --plugin $(TCG_COUNT)
+
 .PHONY: bench-codec
 bench-codec: $(patsubst %,$(BUILD)/bin/farfield-%,bake export info train) $(DECODE_PACK) $(TCG_COUNT) ## bits, errors and instructions of heights, ours beside JPEG-LS, LERC, JPEG 2000 and JPEG XL (some minutes): build/bench/codec.md (DATA=DIR: real ground)
 	@tools/scripts/install-deps.sh $(CODEC_PEERS) || echo "bench-codec: goes on without what could not be installed" >&2

@@ -101,7 +101,7 @@ tools/export        platform/options tools/bake tools/bake/raster tools/bake/til
 tools/merge         platform/options tools/bake tools/bake/raster tools/bake/image tools/info tools/export client/farfield.h protocol/ platform/sys.h
 tools/train         platform/options tools/bake tools/info client/farfield.h protocol/ platform/sys.h
 tools/report        platform/options client/farfield.h common3d platform/sys.h
-tools/scripts       protocol protocol/shape
+tools/scripts       protocol protocol/shape protocol/picture platform/sys.h
 END
 }
 
