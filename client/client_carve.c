@@ -58,7 +58,7 @@ static void carve_textures(ff_client *client, const ff_budget *budget)
     uint8_t *pictures = take(client, budget, FF_POOL_pictures);
     if (!pictures) return;
     textures->room = (ff_picture_room *)(void *)pictures;
-    textures->texels = (uint16_t *)(void *)(pictures + sizeof *textures->room);
+    textures->rgb = pictures + sizeof *textures->room;
 }
 
 static int open_device(ff_client *client, const ff_budget *budget)

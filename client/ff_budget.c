@@ -284,7 +284,7 @@ static void add_arriving(ff_budget *b)
     b->texels = far > side * side ? far : side * side;
     b->image_bytes = b->texels * sizeof(uint16_t) + (b->far_side ? FF_NEW_FINS_BYTES : 0);
     b->picture_bytes = b->has_textures && b->desc->backend && b->info->flags & FF_TERRAIN_PICTURES
-                           ? (size_t)2 << (2 * b->info->texture_log2)
+                           ? (size_t)3 << (2 * b->info->texture_log2)
                            : 0;
     b->texture_bytes = ((size_t)4 << (2 * b->info->texture_log2)) + b->picture_bytes;
     b->heights = ff_node_side(b->info) * ff_node_side(b->info);

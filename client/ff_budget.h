@@ -31,7 +31,7 @@
 /* Two images may wait where both, in 16 bits, take so much at most. */
 #define FF_SHARE_OF_WAITING_IMAGES(block) ((block) / 16)
 #define FF_SHARE_OF_ITEMS(block)          ((block) / 10)
-/* Images of the ground, 4 bytes a texel on the device and 2 where they are pictures: the largest
+/* Images of the ground, 4 bytes a texel on the device and 3 where they are pictures: the largest
  * share, they are most of what is seen. */
 #define FF_SHARE_OF_TEXTURES(block) ((block) / 16 * 5)
 /* Of a device without a GL: texels of faces, and of the caller's text. */
@@ -94,7 +94,7 @@
     X(pictures, b->picture_bytes != 0, \
       b->pool[FF_POOL_textures].count + 2, 10, 514, \
       n * b->picture_bytes + sizeof(ff_picture_room), from->client->textures.held, from->client->textures.high, \
-      "their texels, which those below are told by, and of two that are being decoded")
+      "as they were decoded, which those below are differences to, and two that are being decoded")
 
 /* What is drawn; the tree takes what is left. */
 #define FF_POOLS_DRAWN(X, PART) \
@@ -167,7 +167,7 @@ typedef struct ff_budget {
     size_t texels;        /* of the largest image that comes; 0: none does */
     size_t image_bytes;   /* of its texels, in 16 bits, and of a sector's fins */
     size_t texture_bytes; /* of an image of the ground, with those on the device */
-    size_t picture_bytes; /* of its texels besides; 0: it is a JPEG, or there is no device */
+    size_t picture_bytes; /* of a picture besides; 0: it is a JPEG, or there is no device */
     uint32_t heights;     /* of a node */
     uint32_t indices;     /* of all strips of a node */
     uint32_t values;      /* residuals of a refinement */

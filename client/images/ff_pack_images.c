@@ -8,7 +8,7 @@
 
 #define RGB 3
 
-/* Of the largest image, RGB888, and of the longest path; rows of 16 bits lie even. */
+/* Of the largest image. */
 static size_t rgb_bytes(const ff_pack *pack)
 {
     size_t most = 0;
@@ -34,7 +34,7 @@ void ff_pack_images_init(ff_pack_images *images, const ff_pack *pack, void *memo
 {
     memset(images, 0, sizeof *images);
     images->rgb = memory;
-    images->path.texels = (uint16_t *)(void *)((uint8_t *)memory + rgb_bytes(pack));
+    images->path.rgb = images->rgb + rgb_bytes(pack);
 }
 
 static int get_jpeg(const ff_pack_images *images, const ff_pack *pack, ff_key key, uint16_t *texels)
@@ -53,10 +53,10 @@ static int get_jpeg(const ff_pack_images *images, const ff_pack *pack, ff_key ke
 int ff_pack_images_get(ff_pack_images *images, const ff_pack *pack, ff_key key, uint16_t *texels)
 {
     const ff_pack *own = ff_pack_of(pack, key);
-    const uint16_t *found;
+    const uint8_t *rgb;
     if (!own) return FF_ERR_NOT_FOUND;
     if (!(own->header.info.flags & FF_TERRAIN_PICTURES)) return get_jpeg(images, pack, key, texels);
-    int rc = ff_picture_path_get(&images->path, pack, key, NULL, &found);
-    if (rc == FF_OK) memcpy(texels, found, sizeof *texels << 2 * own->header.info.texture_log2);
+    int rc = ff_picture_path_get(&images->path, pack, key, &rgb);
+    if (rc == FF_OK) ff_texture_texels(&own->header.info, rgb, texels);
     return rc;
 }

@@ -5,7 +5,7 @@
 #include "../../protocol/picture/ff_picture_path.h"
 
 typedef struct ff_pack_images {
-    uint8_t *rgb; /* scratch */
+    uint8_t *rgb; /* scratch, of JPEGs */
     ff_picture_path path;
 } ff_pack_images;
 

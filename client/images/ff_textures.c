@@ -158,9 +158,14 @@ static ff_texture_slot *take_slot(ff_textures *textures)
 
 /* ---- pictures ---- */
 
-static uint16_t *texels_of(const ff_textures *textures, size_t number)
+static size_t picture_bytes(const ff_textures *textures)
 {
-    return textures->texels + (number << 2 * textures->info.texture_log2);
+    return (size_t)3 << 2 * textures->info.texture_log2;
+}
+
+static uint8_t *picture_of(const ff_textures *textures, size_t number)
+{
+    return textures->rgb + number * picture_bytes(textures);
 }
 
 /* The code, in the whole terrain, of a root of an entered one. */
@@ -176,36 +181,35 @@ static int decode(ff_textures *textures, const ff_terrain_info *info, const ff_n
                   const ff_texture_slot *parent)
 {
     const uint8_t *bytes = (const uint8_t *)item->pixels;
-    uint16_t *texels = texels_of(textures, textures->slot_count);
+    uint8_t *rgb = picture_of(textures, textures->slot_count);
     unsigned log2 = textures->info.texture_log2;
     if (info->entered && !parent)
         return ff_picture_decode_row(bytes, item->u.texture.coded_bytes, log2, info->entered,
-                                     code_above(info, item->key), textures->room, texels,
-                                     texels_of(textures, textures->slot_count + 1u));
+                                     code_above(info, item->key), textures->room, rgb,
+                                     picture_of(textures, textures->slot_count + 1u));
     ff_picture_above above = { 0 };
     if (parent)
-        above = (ff_picture_above){ texels_of(textures, (size_t)(parent - textures->slot)),
+        above = (ff_picture_above){ picture_of(textures, (size_t)(parent - textures->slot)),
                                     ff_key_quadrant(item->key) };
-    return ff_picture_decode(bytes, item->u.texture.coded_bytes, log2, above, textures->room,
-                             texels, NULL);
+    return ff_picture_decode(bytes, item->u.texture.coded_bytes, log2, above, textures->room, rgb);
 }
 
 static int take_picture(ff_textures *textures, const ff_terrain_info *info, ff_new_item *item)
 {
     uint32_t level = ff_key_level(item->key);
     ff_texture_slot *parent = level ? find(textures, ff_key_parent(item->key)) : NULL;
-    if (!textures->texels) return ff_textures_put(textures, item->key, item->u.texture.bare, NULL);
+    if (!textures->rgb) return ff_textures_put(textures, item->key, item->u.texture.bare, NULL);
     if (level && !parent) {
         textures->apart++;
         return 0;
     }
     item->error = decode(textures, info, item, parent);
     if (item->error != FF_OK) return 0;
-    const uint16_t *texels = texels_of(textures, textures->slot_count);
-    if (!ff_textures_put(textures, item->key, item->u.texture.bare, texels)) return 0;
+    const uint8_t *rgb = picture_of(textures, textures->slot_count);
+    ff_texture_texels(&textures->info, rgb, item->pixels); /* what was coded is done with */
+    if (!ff_textures_put(textures, item->key, item->u.texture.bare, item->pixels)) return 0;
     ff_texture_slot *slot = find(textures, item->key);
-    memcpy(texels_of(textures, (size_t)(slot - textures->slot)), texels,
-           sizeof *texels << 2 * textures->info.texture_log2);
+    memcpy(picture_of(textures, (size_t)(slot - textures->slot)), rgb, picture_bytes(textures));
     return 1;
 }
 

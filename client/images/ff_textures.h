@@ -29,9 +29,9 @@ typedef struct ff_textures {
     ff_terrain_info info;
     ff_texture_slot *slot; /* zeroed */
     uint16_t slot_count;
-    /* Of pictures, where they are to be drawn: what is held of each slot, RGB565, south row first,
-     * and of one more; else NULL. Those below are decoded by it: a GL gives no texels back. */
-    uint16_t *texels;
+    /* Of pictures, where they are to be drawn, those of each slot as they were decoded, RGB888, and
+     * two more; else NULL. Those below are differences to them. */
+    uint8_t *rgb;
     ff_picture_room *room;
 
     uint16_t held, high;

@@ -21,10 +21,10 @@ int ff_picture_begin(ff_picture *p, unsigned log2, unsigned quality, ff_picture_
     FF_ASSERT(log2 >= FF_PICTURE_LOG2_MIN && log2 <= FF_PICTURE_LOG2_MAX && above.quadrant < 4);
     if (!step_q4) return FF_ERR_FORMAT;
     p->side = 1u << log2;
-    p->root = above.texels ? 0 : ROOT;
+    p->root = above.rgb ? 0 : ROOT;
     p->step_q4[0] = p->step_q4[2] = step_q4;
     p->step_q4[1] = step_q4 * 5 / 4;
-    p->parent = above.texels;
+    p->parent = above.rgb;
     p->column = (above.quadrant & 1u) * (p->side - 1);
     p->row = (above.quadrant >> 1) * (p->side - 1);
     memcpy(p->room->one, p->by->one, sizeof p->room->one);
@@ -38,25 +38,16 @@ static uint8_t to_byte(int32_t value)
     return (uint8_t)(value < 0 ? 0 : value > 255 ? 255 : value);
 }
 
-/* The nearest there is. */
-static uint16_t to_texel(const uint8_t rgb[3])
-{
-    unsigned r = (rgb[0] * 249u + 1014u) >> 11, g = (rgb[1] * 253u + 505u) >> 10,
-             b = (rgb[2] * 249u + 1014u) >> 11;
-    return (uint16_t)(r << 11 | g << 5 | b);
-}
-
 /* Adds what is left to the i-th texel of a part. */
 static void finish(const ff_picture *p, unsigned x, unsigned y, unsigned i, uint8_t expected[64][3],
                    int32_t left[3][64])
 {
     int32_t luma = left[0][i], co = left[1][i], cg = left[2][i];
-    uint8_t *rgb = expected[i];
-    rgb[0] = to_byte(rgb[0] + luma + co - cg);
-    rgb[1] = to_byte(rgb[1] + luma + cg);
-    rgb[2] = to_byte(rgb[2] + luma - co - cg);
-    p->texels[y * p->side + x] = to_texel(rgb);
-    if (p->rgb) memcpy(p->rgb + ((size_t)(p->side - 1 - y) * p->side + x) * 3, rgb, 3);
+    const uint8_t *from = expected[i];
+    uint8_t *rgb = p->rgb + ff_picture_at(p, x, y);
+    rgb[0] = to_byte(from[0] + luma + co - cg);
+    rgb[1] = to_byte(from[1] + luma + cg);
+    rgb[2] = to_byte(from[2] + luma - co - cg);
 }
 
 static int16_t coefficient(const ff_picture *p, unsigned plane, int32_t value)
@@ -181,9 +172,9 @@ void ff_picture_go(ff_picture *p)
 }
 
 int ff_picture_decode(const uint8_t *bytes, size_t count, unsigned log2, ff_picture_above above,
-                      ff_picture_room *room, uint16_t *texels, uint8_t *rgb)
+                      ff_picture_room *room, uint8_t *rgb)
 {
-    ff_picture p = { .by = &ff_picture_learned, .room = room, .texels = texels, .rgb = rgb };
+    ff_picture p = { .by = &ff_picture_learned, .room = room, .rgb = rgb };
     if (count == 0) return FF_ERR_TRUNCATED;
     int rc = ff_picture_begin(&p, log2, bytes[0], above);
     if (rc != FF_OK) return rc;
@@ -194,9 +185,9 @@ int ff_picture_decode(const uint8_t *bytes, size_t count, unsigned log2, ff_pict
 }
 
 int ff_picture_decode_row(const uint8_t *bytes, size_t count, unsigned log2, unsigned levels,
-                          uint32_t code, ff_picture_room *room, uint16_t *texels, uint16_t *spare)
+                          uint32_t code, ff_picture_room *room, uint8_t *rgb, uint8_t *spare)
 {
-    uint16_t *to = levels & 1u ? spare : texels, *from = NULL;
+    uint8_t *to = levels & 1u ? spare : rgb, *from = NULL;
     for (unsigned level = 0; level <= levels; level++) {
         size_t size = count;
         if (level < levels) {
@@ -207,12 +198,12 @@ int ff_picture_decode_row(const uint8_t *bytes, size_t count, unsigned log2, uns
             if (size > count) return FF_ERR_TRUNCATED;
         }
         ff_picture_above above = { from, from ? code >> 2 * (levels - level) & 3u : 0 };
-        int rc = ff_picture_decode(bytes, size, log2, above, room, to, NULL);
+        int rc = ff_picture_decode(bytes, size, log2, above, room, to);
         if (rc != FF_OK) return rc;
         bytes += size;
         count -= size;
         from = to;
-        to = from == texels ? spare : texels;
+        to = from == rgb ? spare : rgb;
     }
     return FF_OK;
 }

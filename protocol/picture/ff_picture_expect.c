@@ -6,14 +6,6 @@
 #define WIDE 8 /* of the parent's texels, as many lie around a part, each way */
 #define GREY 128
 
-void ff_picture_spread(uint16_t texel, uint8_t rgb[3])
-{
-    unsigned r = texel >> 11, g = texel >> 5 & 63u, b = texel & 31u;
-    rgb[0] = (uint8_t)(r << 3 | r >> 2);
-    rgb[1] = (uint8_t)(g << 2 | g >> 4);
-    rgb[2] = (uint8_t)(b << 3 | b >> 2);
-}
-
 /* How a place of the children's lattice weighs the parent's texels around it, in sixteenths: the
  * one before it, those it is at or between, the one behind. At the rims nothing across them counts.
  */
@@ -46,10 +38,9 @@ static unsigned inside(unsigned at, unsigned side)
  * counted alike. */
 static void take_row(const ff_picture *p, unsigned x, unsigned row, int16_t channel[3][WIDE])
 {
-    const uint16_t *texel = p->parent + inside(row, p->side) * p->side;
+    const uint8_t *west = p->parent + ff_picture_at(p, 0, inside(row, p->side));
     for (unsigned i = 0; i < WIDE; i++) {
-        uint8_t rgb[3];
-        ff_picture_spread(texel[inside(x / 2 + i, p->side)], rgb);
+        const uint8_t *rgb = west + inside(x / 2 + i, p->side) * 3;
         for (unsigned c = 0; c < 3; c++) channel[c][i] = rgb[c];
     }
 }
@@ -97,9 +88,8 @@ static void from_neighbours(const ff_picture *p, ff_picture_part part, uint8_t r
 {
     unsigned column = part.x ? part.x - 1 : 0, row = part.y ? part.y - 1 : 0, sum[3] = { 8, 8, 8 };
     for (unsigned i = 0; i < FF_PICTURE_BLOCK; i++) {
-        uint8_t west[3], south[3];
-        ff_picture_spread(p->texels[(part.y + i) * p->side + column], west);
-        ff_picture_spread(p->texels[row * p->side + part.x + i], south);
+        const uint8_t *west = p->rgb + ff_picture_at(p, column, part.y + i),
+                      *south = p->rgb + ff_picture_at(p, part.x + i, row);
         for (unsigned c = 0; c < 3; c++) sum[c] += west[c] + south[c];
     }
     for (unsigned i = 0; i < 64; i++)
@@ -120,9 +110,8 @@ void ff_picture_expect(const ff_picture *p, ff_picture_part part, uint8_t rgb[64
 void ff_picture_between(const ff_picture *p, ff_picture_part part, uint8_t rgb[64][3])
 {
     unsigned last = p->side - 1, upright = part.height > 1, from = upright ? part.y : part.x;
-    uint8_t a[3], b[3];
-    ff_picture_spread(p->texels[upright ? part.x : part.y * p->side], a);
-    ff_picture_spread(p->texels[upright ? last * p->side + part.x : part.y * p->side + last], b);
+    const uint8_t *a = p->rgb + ff_picture_at(p, upright ? part.x : 0, upright ? 0 : part.y),
+                  *b = p->rgb + ff_picture_at(p, upright ? part.x : last, upright ? last : part.y);
     for (unsigned i = 0; i < FF_PICTURE_BLOCK; i++)
         for (unsigned c = 0; c < 3; c++)
             rgb[i][c] = (uint8_t)((a[c] * (last - from - i) + b[c] * (from + i) + last / 2) / last);

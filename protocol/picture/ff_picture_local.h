@@ -56,9 +56,8 @@ typedef struct ff_picture {
     unsigned side, root;  /* texels; 3 for roots, else 0 */
     int32_t step_q4[3];   /* of Y, Co and Cg */
     unsigned column, row; /* of the lattice of the parent's children: the south-west texel's */
-    const uint16_t *parent;
+    const uint8_t *parent;
     ff_picture_room *room;
-    uint16_t *texels;
     uint8_t *rgb;
     ff_range range;
     /* the encoder's; NULL: this is the decoder */
@@ -76,7 +75,11 @@ typedef struct ff_picture_part {
 void ff_picture_expect(const ff_picture *p, ff_picture_part part, uint8_t rgb[64][3]);
 /* The same of texels of roots on a line between two corners. */
 void ff_picture_between(const ff_picture *p, ff_picture_part part, uint8_t rgb[64][3]);
-void ff_picture_spread(uint16_t texel, uint8_t rgb[3]);
+/* Where texel (x, y) from the south-west is in an image. */
+static inline size_t ff_picture_at(const ff_picture *p, unsigned x, unsigned y)
+{
+    return ((size_t)(p->side - 1 - y) * p->side + x) * 3;
+}
 
 /* What is left of 8 x 8 texels, and of 8 in a line, from coefficients in steps of 1/16.
  * ff_picture_cosine.c */
@@ -108,6 +111,6 @@ void ff_picture_count_corner(const ff_picture *p, ff_picture_part part, uint8_t 
 /* As ff_picture_encode, by other tables, and for who trains. */
 int ff_picture_put(const ff_picture_tables *by, const ff_picture_eye *eye, const uint8_t *source,
                    unsigned log2, ff_picture_above above, unsigned quality, ff_picture_room *room,
-                   uint16_t *texels, uint8_t *rgb, uint8_t *out, size_t limit);
+                   uint8_t *rgb, uint8_t *out, size_t limit);
 
 #endif

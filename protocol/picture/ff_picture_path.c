@@ -4,20 +4,19 @@
 
 size_t ff_picture_path_bytes(const ff_terrain_info *info)
 {
-    return info->texture_log2 ? (info->texture_levels * sizeof(uint16_t)) << 2 * info->texture_log2
-                              : 0;
+    return info->texture_log2 ? ((size_t)info->texture_levels * 3) << 2 * info->texture_log2 : 0;
 }
 
-static uint16_t *texels_at(const ff_picture_path *path, const ff_terrain_info *info, uint32_t level)
+static uint8_t *picture_at(const ff_picture_path *path, const ff_terrain_info *info, uint32_t level)
 {
-    return path->texels + ((size_t)level << 2 * info->texture_log2);
+    return path->rgb + (((size_t)level * 3) << 2 * info->texture_log2);
 }
 
-static int decode(ff_picture_path *path, const ff_pack *pack, ff_key key, uint8_t *rgb)
+static int decode(ff_picture_path *path, const ff_pack *pack, ff_key key)
 {
     const ff_terrain_info *info = &ff_pack_of(pack, key)->header.info;
     uint32_t level = ff_key_level(key);
-    ff_picture_above above = { level ? texels_at(path, info, level - 1) : NULL,
+    ff_picture_above above = { level ? picture_at(path, info, level - 1) : NULL,
                                level ? ff_key_quadrant(key) : 0 };
     const uint8_t *payload;
     ff_image image;
@@ -25,7 +24,7 @@ static int decode(ff_picture_path *path, const ff_pack *pack, ff_key key, uint8_
     if (rc >= 0) rc = ff_image_read(payload, (size_t)rc, &image);
     if (rc >= 0)
         rc = ff_picture_decode(image.coded, image.coded_bytes, info->texture_log2, above,
-                               &path->room, texels_at(path, info, level), rgb);
+                               &path->room, picture_at(path, info, level));
     return rc;
 }
 
@@ -35,22 +34,20 @@ static ff_key above_by(ff_key key, uint32_t levels)
     return key;
 }
 
-int ff_picture_path_get(ff_picture_path *path, const ff_pack *pack, ff_key key, uint8_t *rgb,
-                        const uint16_t **texels)
+int ff_picture_path_get(ff_picture_path *path, const ff_pack *pack, ff_key key, const uint8_t **rgb)
 {
     uint32_t level = ff_key_level(key), at = 0;
     if (!ff_pack_of(pack, key)) return FF_ERR_NOT_FOUND;
     const ff_terrain_info *info = &ff_pack_of(pack, key)->header.info;
     if (level >= info->texture_levels) return FF_ERR_NOT_FOUND;
     while (at <= level && at < path->held && path->key[at] == above_by(key, level - at)) at++;
-    if (rgb && at > level) at = level; /* once more, for its colours */
     path->held = at;
     for (; at <= level; at++) {
         path->key[at] = above_by(key, level - at);
-        int rc = decode(path, pack, path->key[at], at == level ? rgb : NULL);
+        int rc = decode(path, pack, path->key[at]);
         if (rc != FF_OK) return rc;
         path->held = at + 1;
     }
-    *texels = texels_at(path, info, level);
+    *rgb = picture_at(path, info, level);
     return FF_OK;
 }

@@ -7,19 +7,18 @@
 #include "ff_picture.h"
 
 /* The pictures from a root down to the one that was asked for last: whoever asks for neighbours one
- * after the other decodes few of them twice. The owner zeroes it but for `texels`. */
+ * after the other decodes few of them twice. The owner zeroes it but for `rgb`. */
 typedef struct ff_picture_path {
-    uint16_t *texels; /* ff_picture_path_bytes() bytes */
+    uint8_t *rgb; /* ff_picture_path_bytes() bytes */
     ff_picture_room room;
     uint32_t held; /* levels of the path */
     ff_key key[FF_KEY_LEVEL_MAX + 1];
 } ff_picture_path;
 
 size_t ff_picture_path_bytes(const ff_terrain_info *info);
-/* The texels of a node's picture, RGB565, south row first; they stay until the next one is asked
- * for. `rgb`: as of ff_picture_decode; NULL: not wanted. FF_OK, or an error of ff_pack_record or of
- * decoding. */
-int ff_picture_path_get(ff_picture_path *path, const ff_pack *pack, ff_key key, uint8_t *rgb,
-                        const uint16_t **texels);
+/* A node's picture, RGB888, north row first; it stays until the next one is asked for. FF_OK, or an
+ * error of ff_pack_record or of decoding. */
+int ff_picture_path_get(ff_picture_path *path, const ff_pack *pack, ff_key key,
+                        const uint8_t **rgb);
 
 #endif

@@ -25,7 +25,7 @@ static int32_t steps_of(int64_t size, unsigned shift, int32_t step_q4)
 static void left_of(const ff_picture *p, unsigned x, unsigned y, const uint8_t expected[3],
                     int32_t left[3])
 {
-    const uint8_t *rgb = p->source + ((size_t)(p->side - 1 - y) * p->side + x) * 3;
+    const uint8_t *rgb = p->source + ff_picture_at(p, x, y);
     int32_t r = rgb[0] - expected[0], g = rgb[1] - expected[1], b = rgb[2] - expected[2];
     left[0] = r + 2 * g + b;
     left[1] = 2 * (r - b);
@@ -95,16 +95,10 @@ void ff_picture_count_block(const ff_picture *p, ff_picture_part part, uint8_t e
 
 int ff_picture_put(const ff_picture_tables *by, const ff_picture_eye *eye, const uint8_t *source,
                    unsigned log2, ff_picture_above above, unsigned quality, ff_picture_room *room,
-                   uint16_t *texels, uint8_t *rgb, uint8_t *out, size_t limit)
+                   uint8_t *rgb, uint8_t *out, size_t limit)
 {
     ff_range_writer to;
-    ff_picture p = { .by = by,
-                     .eye = eye,
-                     .room = room,
-                     .texels = texels,
-                     .rgb = rgb,
-                     .source = source,
-                     .to = &to };
+    ff_picture p = { .by = by, .eye = eye, .room = room, .rgb = rgb, .source = source, .to = &to };
     if (limit < 1) return FF_ERR_FULL;
     int rc = ff_picture_begin(&p, log2, quality, above);
     if (rc != FF_OK) return FF_ERR_ARGUMENT;
@@ -116,11 +110,11 @@ int ff_picture_put(const ff_picture_tables *by, const ff_picture_eye *eye, const
 }
 
 int ff_picture_encode(const uint8_t *source, unsigned log2, ff_picture_above above,
-                      unsigned quality, ff_picture_room *room, uint16_t *texels, uint8_t *rgb,
-                      uint8_t *out, size_t limit)
+                      unsigned quality, ff_picture_room *room, uint8_t *rgb, uint8_t *out,
+                      size_t limit)
 {
-    return ff_picture_put(&ff_picture_learned, NULL, source, log2, above, quality, room, texels,
-                          rgb, out, limit);
+    return ff_picture_put(&ff_picture_learned, NULL, source, log2, above, quality, room, rgb, out,
+                          limit);
 }
 
 #else

@@ -1,9 +1,9 @@
 /* Pictures as a client holds them: each is decoded by its parent's, over a stream, from a pack, and
  * below levels that are left out; damaged ones, and those whose parent's is not held. */
 #include "../../client/ff_client_local.h"
-#include "../../client/images/ff_pack_images.h"
 #include "../../common3d/soft/c3d_soft.h"
 #include "../../protocol/ff_entry.h"
+#include "../../protocol/picture/ff_picture_path.h"
 #include "../rig/client_fixture.h"
 
 #include <setjmp.h>
@@ -13,9 +13,9 @@
 #include <string.h>
 #include <cmocka.h>
 
-#define MB     ((size_t)1 << 20)
-#define LOG2   5
-#define TEXELS (1 << 2 * LOG2)
+#define MB    ((size_t)1 << 20)
+#define LOG2  5
+#define BYTES (3 << 2 * LOG2)
 
 static void open_rig(client_rig *rig)
 {
@@ -29,22 +29,21 @@ static void open_rig(client_rig *rig)
 static unsigned check_held(const client_rig *rig)
 {
     const ff_textures *textures = &rig->client->textures;
-    static ff_pack_images images;
-    void *memory = malloc(ff_pack_images_bytes(&rig->pack));
+    static ff_picture_path path;
     unsigned held = 0;
-    ff_pack_images_init(&images, &rig->pack, memory);
-    assert_non_null(textures->texels);
+    path = (ff_picture_path){ .rgb = malloc(ff_picture_path_bytes(&rig->pack.header.info)) };
+    assert_non_null(textures->rgb);
     for (unsigned i = 0; i < textures->slot_count; i++) {
-        uint16_t expected[TEXELS];
+        const uint8_t *expected;
         ff_key key = textures->slot[i].key;
         if (!textures->slot[i].held) continue;
         if (textures->info.entered)
             key = ff_entry_key(&rig->pack.header.info, &textures->info, key);
-        assert_int_equal(ff_pack_images_get(&images, &rig->pack, key, expected), FF_OK);
-        assert_memory_equal(textures->texels + (size_t)i * TEXELS, expected, sizeof expected);
+        assert_int_equal(ff_picture_path_get(&path, &rig->pack, key, &expected), FF_OK);
+        assert_memory_equal(textures->rgb + (size_t)i * BYTES, expected, BYTES);
         held++;
     }
-    free(memory);
+    free(path.rgb);
     return held;
 }
 

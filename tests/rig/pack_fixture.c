@@ -114,12 +114,12 @@ static void colours_of(const pack_fixture_desc *desc, ff_key key, uint8_t *rgb)
 #define PICTURE_SIDE_MAX 32
 
 /* Its parent's is made first: it is a difference to that. */
-static int picture(const pack_fixture_desc *desc, ff_key key, uint16_t *texels, uint8_t *out,
+static int picture(const pack_fixture_desc *desc, ff_key key, uint8_t *decoded, uint8_t *out,
                    size_t capacity)
 {
     static ff_picture_room room;
-    uint16_t parent[PICTURE_SIDE_MAX * PICTURE_SIDE_MAX];
-    uint8_t rgb[PICTURE_SIDE_MAX * PICTURE_SIDE_MAX * 3];
+    uint8_t parent[PICTURE_SIDE_MAX * PICTURE_SIDE_MAX * 3],
+        rgb[PICTURE_SIDE_MAX * PICTURE_SIDE_MAX * 3];
     ff_picture_above above = { 0 };
     if (ff_key_level(key)) {
         int bytes = picture(desc, ff_key_parent(key), parent, out, capacity);
@@ -127,8 +127,8 @@ static int picture(const pack_fixture_desc *desc, ff_key key, uint16_t *texels, 
         above = (ff_picture_above){ parent, ff_key_quadrant(key) };
     }
     colours_of(desc, key, rgb);
-    return ff_picture_encode(rgb, desc->info.texture_log2, above, JPEG_QUALITY, &room, texels, NULL,
-                             out, capacity);
+    return ff_picture_encode(rgb, desc->info.texture_log2, above, JPEG_QUALITY, &room, decoded, out,
+                             capacity);
 }
 
 static int jpeg(const pack_fixture_desc *desc, ff_key key, uint8_t *out, size_t capacity)
@@ -144,11 +144,11 @@ static int jpeg(const pack_fixture_desc *desc, ff_key key, uint8_t *out, size_t 
 
 static int texture_payload(const pack_fixture_desc *desc, ff_key key, uint8_t *out, size_t capacity)
 {
-    uint16_t texels[PICTURE_SIDE_MAX * PICTURE_SIDE_MAX];
+    uint8_t decoded[PICTURE_SIDE_MAX * PICTURE_SIDE_MAX * 3];
     size_t mark = desc->bare_level && ff_key_level(key) == desc->bare_level;
     if (mark) *out = FF_IMAGE_BARE + 15;
     int bytes = desc->info.flags & FF_TERRAIN_PICTURES
-                    ? picture(desc, key, texels, out + mark, capacity - mark)
+                    ? picture(desc, key, decoded, out + mark, capacity - mark)
                     : jpeg(desc, key, out + mark, capacity - mark);
     return bytes < 0 ? bytes : bytes + (int)mark;
 }

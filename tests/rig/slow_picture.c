@@ -16,10 +16,9 @@ typedef struct stream {
 typedef struct picture {
     stream in;
     int side, is_root, quadrant;
-    const uint16_t *parent;
+    const uint8_t *parent;
     int64_t step[3], one[FF_PICTURE_CONTEXTS];
-    uint8_t rgb[SIDE_MAX][SIDE_MAX][3]; /* [y][x], before they are kept */
-    uint16_t kept[SIDE_MAX][SIDE_MAX];
+    int rgb[SIDE_MAX][SIDE_MAX][3]; /* [y][x] */
     int numbers[SIDE_MAX / 8][SIDE_MAX / 8][3][8][8], counts[SIDE_MAX / 8][SIDE_MAX / 8][3];
 } picture;
 
@@ -149,26 +148,11 @@ static int64_t size_of(int64_t value) { return within(0, llabs(value), 255); }
 
 /* ---- texels ---- */
 
-static void kept_rgb(uint16_t texel, int rgb[3])
-{
-    int r = texel / 2048, g = texel / 32 % 64, b = texel % 32;
-
-    rgb[0] = 8 * r + r / 4;
-    rgb[1] = 4 * g + g / 16;
-    rgb[2] = 8 * b + b / 4;
-}
-
 static void put(picture *p, int x, int y, const int expected[3], const int64_t left[3])
 {
-    int64_t r = within(0, expected[0] + left[0] + left[1] - left[2], 255),
-            g = within(0, expected[1] + left[0] + left[2], 255),
-            b = within(0, expected[2] + left[0] - left[1] - left[2], 255);
-
-    p->rgb[y][x][0] = (uint8_t)r;
-    p->rgb[y][x][1] = (uint8_t)g;
-    p->rgb[y][x][2] = (uint8_t)b;
-    p->kept[y][x] = (uint16_t)((249 * r + 1014) / 2048 * 2048 + (253 * g + 505) / 1024 * 32 +
-                               (249 * b + 1014) / 2048);
+    p->rgb[y][x][0] = (int)within(0, expected[0] + left[0] + left[1] - left[2], 255);
+    p->rgb[y][x][1] = (int)within(0, expected[1] + left[0] + left[2], 255);
+    p->rgb[y][x][2] = (int)within(0, expected[2] + left[0] - left[1] - left[2], 255);
 }
 
 /* The weight, along an axis, of the parent's texel i at a place. */
@@ -190,10 +174,10 @@ static void of_parent(picture *p, int x, int y, int rgb[3])
 
     for (int j = place_y / 2 - 1; j <= place_y / 2 + 2; j++)
         for (int i = place_x / 2 - 1; i <= place_x / 2 + 2; i++) {
-            int texel[3], both = weight(place_x, p->side, i) * weight(place_y, p->side, j);
+            int both = weight(place_x, p->side, i) * weight(place_y, p->side, j);
             if (!both) continue;
-            kept_rgb(p->parent[j * p->side + i], texel);
-            for (int c = 0; c < 3; c++) sum[c] += both * texel[c];
+            for (int c = 0; c < 3; c++)
+                sum[c] += both * p->parent[((p->side - 1 - j) * p->side + i) * 3 + c];
         }
     for (int c = 0; c < 3; c++) rgb[c] = (int)within(0, floored(sum[c] + 128, 256), 255);
 }
@@ -202,12 +186,8 @@ static void of_block(picture *p, int x, int y, int rgb[3])
 {
     int column = x ? x - 1 : 0, row = y ? y - 1 : 0, sum[3] = { 0, 0, 0 };
 
-    for (int i = 0; i < 8; i++) {
-        int west[3], south[3];
-        kept_rgb(p->kept[y + i][column], west);
-        kept_rgb(p->kept[row][x + i], south);
-        for (int c = 0; c < 3; c++) sum[c] += west[c] + south[c];
-    }
+    for (int i = 0; i < 8; i++)
+        for (int c = 0; c < 3; c++) sum[c] += p->rgb[y + i][column][c] + p->rgb[row][x + i][c];
     for (int c = 0; c < 3; c++) rgb[c] = (sum[c] + 8) / 16;
 }
 
@@ -229,14 +209,14 @@ static void corner(picture *p, int x, int y)
 
 static void of_line(picture *p, int x, int y, int is_upright, int rgb[3])
 {
-    int last = p->side - 1, i = is_upright ? y : x, a[3], b[3];
+    int last = p->side - 1, i = is_upright ? y : x;
 
     if (!p->is_root) {
         of_parent(p, x, y, rgb);
         return;
     }
-    kept_rgb(is_upright ? p->kept[0][x] : p->kept[y][0], a);
-    kept_rgb(is_upright ? p->kept[last][x] : p->kept[y][last], b);
+    const int *a = is_upright ? p->rgb[0][x] : p->rgb[y][0],
+              *b = is_upright ? p->rgb[last][x] : p->rgb[y][last];
     for (int c = 0; c < 3; c++) rgb[c] = (a[c] * (last - i) + b[c] * i + last / 2) / last;
 }
 
@@ -376,8 +356,8 @@ static int begin(picture *p, const uint8_t *bytes, long bytes_count)
     return 0;
 }
 
-int slow_picture(const uint8_t *bytes, long bytes_count, int side, const uint16_t *parent,
-                 int quadrant, uint16_t *texels, uint8_t *rgb)
+int slow_picture(const uint8_t *bytes, long bytes_count, int side, const uint8_t *parent,
+                 int quadrant, uint8_t *rgb)
 {
     static picture made;
     picture *p = &made;
@@ -389,10 +369,10 @@ int slow_picture(const uint8_t *bytes, long bytes_count, int side, const uint16_
     for (int l = 0; l < 4; l++) line(p, l / 2, l % 2 * last);
     for (int row = 0; row < side / 8; row++)
         for (int column = 0; column < side / 8; column++) block(p, column, row);
-    for (int y = 0; y < side; y++) {
-        memcpy(texels + y * side, p->kept[y], (size_t)side * sizeof *texels);
-        memcpy(rgb + (size_t)y * (size_t)side * 3, p->rgb[y], (size_t)side * 3);
-    }
+    for (int y = 0; y < side; y++)
+        for (int x = 0; x < side; x++)
+            for (int c = 0; c < 3; c++)
+                rgb[((side - 1 - y) * side + x) * 3 + c] = (uint8_t)p->rgb[y][x][c];
     if (p->in.taken < p->in.count) return -1;
     return bytes_count > 1 && bytes[bytes_count - 1] == 0 ? -1 : 0;
 }

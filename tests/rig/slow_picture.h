@@ -6,10 +6,9 @@
 
 #include <stdint.h>
 
-/* Texels of a picture of `side` texels, RGB565, south row first, and RGB888 before that, likewise.
- * `parent`: the parent's texels, `quadrant` which child it is; NULL: a root. -1 when the bytes
- * break a rule. */
-int slow_picture(const uint8_t *bytes, long count, int side, const uint16_t *parent, int quadrant,
-                 uint16_t *texels, uint8_t *rgb);
+/* A picture of `side` texels, RGB888, north row first; so is `parent`, the parent's, of which it is
+ * child `quadrant`; NULL: a root. -1 when the bytes break a rule. */
+int slow_picture(const uint8_t *bytes, long count, int side, const uint8_t *parent, int quadrant,
+                 uint8_t *rgb);
 
 #endif

@@ -17,22 +17,23 @@
 
 typedef struct image_reader {
     export_ground *ground;
-    uint8_t *rgb, *enlarged; /* of a texture, top row first */
+    uint8_t *jpeg, *enlarged; /* of a texture, top row first */
+    const uint8_t *rgb;
     uint64_t missing;
     ff_picture_path path;
 } image_reader;
 
-/* reader->rgb of the image of a node that has one, whose payload is at hand. FF_OK or an error. */
+/* reader->rgb, of the image of a node that has one, whose payload is at hand. FF_OK or an error. */
 static int decode_texture(image_reader *reader, ff_key key, const uint8_t *payload, size_t bytes)
 {
     const ff_pack *pack = &reader->ground->unpack->pack;
     uint32_t side = 1u << pack->header.info.texture_log2;
-    const uint16_t *texels;
     ff_image image;
     if (pack->header.info.flags & FF_TERRAIN_PICTURES)
-        return ff_picture_path_get(&reader->path, pack, key, reader->rgb, &texels);
+        return ff_picture_path_get(&reader->path, pack, key, &reader->rgb);
+    reader->rgb = reader->jpeg;
     int rc = ff_image_read(payload, bytes, &image);
-    return rc < 0 ? rc : sys_jpeg_decode(image.coded, image.coded_bytes, side, side, reader->rgb);
+    return rc < 0 ? rc : sys_jpeg_decode(image.coded, image.coded_bytes, side, side, reader->jpeg);
 }
 
 /* The image of the nearest ancestor stands for one that is not stored. */
@@ -87,17 +88,17 @@ static int read_textures(export_ground *ground)
         return bake_fail("cannot make a temporary file: %s", strerror(errno));
     size_t bytes = (size_t)RGB << (2 * info->texture_log2);
     image_reader reader = { .ground = ground,
-                            .rgb = malloc(bytes),
+                            .jpeg = malloc(bytes),
                             .enlarged = malloc(bytes),
-                            .path.texels = malloc(ff_picture_path_bytes(info)) };
-    int rc = reader.rgb && reader.enlarged && reader.path.texels ? 0 : bake_fail("out of memory");
+                            .path.rgb = malloc(ff_picture_path_bytes(info)) };
+    int rc = reader.jpeg && reader.enlarged && reader.path.rgb ? 0 : bake_fail("out of memory");
     for (uint32_t tile = 0; !rc && tile < ff_shape_tiles(info); tile++)
         rc = read_below(&reader, ff_key_make(tile, 0, 0));
     if (reader.missing)
         bake_note("%" PRIu64 " textures are not in the pack: black", reader.missing);
-    free(reader.rgb);
+    free(reader.jpeg);
     free(reader.enlarged);
-    free(reader.path.texels);
+    free(reader.path.rgb);
     return rc;
 }
 

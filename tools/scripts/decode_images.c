@@ -10,8 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#define TEXELS_MAX (1u << 2 * FF_PICTURE_LOG2_MAX)
-
 static ff_pack pack;
 static ff_picture_room room;
 static unsigned long long texels, sum, bytes_read;
@@ -22,34 +20,30 @@ static int fail(const char *what)
     exit(1);
 }
 
-static void decode(const ff_image *image, ff_key key, const uint16_t *parent, uint16_t *out)
+static void decode(const ff_image *image, ff_key key, const uint8_t *parent, uint8_t *rgb)
 {
-    static uint8_t rgb[TEXELS_MAX * 3];
     const ff_terrain_info *info = &pack.header.info;
     uint32_t side = 1u << info->texture_log2;
     ff_picture_above above = { parent, parent ? ff_key_quadrant(key) : 0 };
     handheld_mark_work();
     int rc = info->flags & FF_TERRAIN_PICTURES
                  ? ff_picture_decode(image->coded, image->coded_bytes, info->texture_log2, above,
-                                     &room, out, NULL)
+                                     &room, rgb)
                  : sys_jpeg_decode(image->coded, image->coded_bytes, side, side, rgb);
     handheld_mark_outside();
     if (rc < 0) fail("an image is broken");
-    if (!(info->flags & FF_TERRAIN_PICTURES))
-        for (uint32_t i = 0; i < side * side * 3; i++) sum += rgb[i];
-    else
-        for (uint32_t i = 0; i < side * side; i++) sum += out[i];
+    for (uint32_t i = 0; i < side * side * 3; i++) sum += rgb[i];
     texels += side * side;
 }
 
-static void below(ff_key key, const uint16_t *parent)
+static void below(ff_key key, const uint8_t *parent)
 {
     const uint8_t *payload;
     ff_image image;
     int bytes = ff_pack_record(&pack, FF_SECTION_TEXTURE, key, &payload);
     if (bytes == FF_ERR_NOT_FOUND) return;
     if (bytes < 0 || ff_image_read(payload, (size_t)bytes, &image) < 0) fail("a record is broken");
-    uint16_t *own = malloc(sizeof *own << 2 * pack.header.info.texture_log2);
+    uint8_t *own = malloc((size_t)3 << 2 * pack.header.info.texture_log2);
     if (!own) fail("out of memory");
     bytes_read += image.coded_bytes;
     decode(&image, key, parent, own);

@@ -60,8 +60,7 @@ typedef struct coder {
     const ff_picture_eye *eye;
     unsigned quality;
     double bytes[TRAIN_PICTURE_LEVELS], squares[TRAIN_PICTURE_LEVELS], texels[TRAIN_PICTURE_LEVELS];
-    uint16_t *texels_of[TRAIN_PICTURE_LEVELS];
-    uint8_t *out, *decoded;
+    uint8_t *out, *decoded[TRAIN_PICTURE_LEVELS];
     size_t limit;
 } coder;
 
@@ -69,13 +68,13 @@ static void add_squares(coder *c, unsigned level, const uint8_t *source)
 {
     size_t values = (size_t)RGB << 2 * c->pictures->log2;
     for (size_t i = 0; i < values; i++) {
-        int off = source[i] - c->decoded[i];
+        int off = source[i] - c->decoded[level][i];
         c->squares[level] += off * off;
     }
     c->texels[level] += (double)values;
 }
 
-static void code(coder *c, unsigned level, uint32_t number, const uint16_t *parent)
+static void code(coder *c, unsigned level, uint32_t number, const uint8_t *parent)
 {
     static ff_picture_room room;
     const train_pictures *from = c->pictures;
@@ -84,11 +83,11 @@ static void code(coder *c, unsigned level, uint32_t number, const uint16_t *pare
     const uint8_t *source = from->rgb[level] + number * bytes;
     ff_picture_above above = { parent, number & 3u };
     int made = ff_picture_put(c->tables, c->eye, source, from->log2, above, c->quality, &room,
-                              c->texels_of[level], c->decoded, c->out, c->limit);
+                              c->decoded[level], c->out, c->limit);
     if (made < 0) return;
     c->bytes[level] += made;
     add_squares(c, level, source);
-    for (uint32_t q = 0; q < 4; q++) code(c, level + 1, 4 * number + q, c->texels_of[level]);
+    for (uint32_t q = 0; q < 4; q++) code(c, level + 1, 4 * number + q, c->decoded[level]);
 }
 
 static int code_all(coder *c)
@@ -97,15 +96,13 @@ static int code_all(coder *c)
     int rc = 0;
     c->limit = 16 * (size_t)texels;
     c->out = malloc(c->limit);
-    c->decoded = malloc((size_t)texels * RGB);
-    if (!c->out || !c->decoded) rc = bake_fail("out of memory");
+    if (!c->out) rc = bake_fail("out of memory");
     for (unsigned l = 0; !rc && l < c->pictures->levels; l++) {
-        c->texels_of[l] = malloc(texels * sizeof(uint16_t));
-        if (!c->texels_of[l]) rc = bake_fail("out of memory");
+        c->decoded[l] = malloc((size_t)texels * RGB);
+        if (!c->decoded[l]) rc = bake_fail("out of memory");
     }
     for (uint32_t tile = 0; !rc && tile < c->pictures->tiles; tile++) code(c, 0, tile, NULL);
-    for (unsigned l = 0; l < c->pictures->levels; l++) free(c->texels_of[l]);
-    free(c->decoded);
+    for (unsigned l = 0; l < c->pictures->levels; l++) free(c->decoded[l]);
     free(c->out);
     return rc;
 }

@@ -1,4 +1,4 @@
-/* The images of a pack of pictures, as they are decoded before texels are rounded. */
+/* The images of a pack of pictures. */
 #include "../../protocol/picture/ff_picture_path.h"
 #include "../../protocol/shape/ff_shape.h"
 #include "../bake/bake_say.h"
@@ -6,6 +6,7 @@
 #include "train_picture.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #define RGB 3
 
@@ -15,10 +16,11 @@ static int take(train_pictures *to, ff_picture_path *path, const ff_pack *pack, 
     uint32_t level = ff_key_level(key);
     size_t bytes = (size_t)RGB << 2 * to->log2,
            at = ((size_t)ff_key_tile(key) << 2 * level) + ff_key_code(key);
-    const uint16_t *texels;
-    int rc = ff_picture_path_get(path, pack, key, to->rgb[level] + at * bytes, &texels);
+    const uint8_t *rgb;
+    int rc = ff_picture_path_get(path, pack, key, &rgb);
     if (rc == FF_ERR_NOT_FOUND) return 0;
     if (rc < 0) return bake_fail("%s: %s", to->path, ff_error_text(rc));
+    memcpy(to->rgb[level] + at * bytes, rgb, bytes);
     to->has[level][at] = 1;
     for (uint32_t q = 0; level + 1 < to->levels && q < 4; q++)
         if (take(to, path, pack, ff_key_child(key, q))) return -1;
@@ -46,14 +48,14 @@ int train_pictures_open(train_pictures *pictures, const char *name)
                                   .tiles = ff_shape_tiles(info),
                                   .log2 = info->texture_log2,
                                   .levels = info->texture_levels };
-    path.texels = malloc(ff_picture_path_bytes(info) + 1);
+    path.rgb = malloc(ff_picture_path_bytes(info) + 1);
     path.held = 0;
-    int rc = path.texels ? make_room(pictures) : bake_fail("out of memory");
+    int rc = path.rgb ? make_room(pictures) : bake_fail("out of memory");
     if (!rc && !(info->flags & FF_TERRAIN_PICTURES))
         rc = bake_fail("%s has no pictures: bake it with --color", name);
     for (uint32_t tile = 0; !rc && tile < pictures->tiles; tile++)
         rc = take(pictures, &path, &unpack.pack, ff_key_make(tile, 0, 0));
-    free(path.texels);
+    free(path.rgb);
     bake_unpack_close(&unpack);
     return rc;
 }

@@ -27,7 +27,6 @@ typedef struct sifter {
     uint8_t *lattice, *enlarged;
     bake_texture_room room;
     uint8_t *decoded[BAKE_TEXTURE_LEVELS_MAX]; /* a level's image as clients see it */
-    uint16_t *texels[BAKE_TEXTURE_LEVELS_MAX]; /* of a picture */
 } sifter;
 
 /* ---- marks ---- */
@@ -64,7 +63,7 @@ int bake_bare_of(const bake_image *image, const ff_terrain_info *info, ff_key ke
 
 static int is_picture(const ff_terrain_info *info) { return info->flags & FF_TERRAIN_PICTURES; }
 
-/* A byte for each node that has ground, of all levels but the last; texels of pictures. */
+/* A byte for each node that has ground, of all levels but the last; what is seen of pictures. */
 static int open_marks(sifter *s)
 {
     uint32_t cells = (1u << s->info->texture_log2) - 1;
@@ -76,8 +75,8 @@ static int open_marks(sifter *s)
             return -1;
         if (ftruncate(marks->fd, (off_t)marks->width * marks->height))
             return bake_fail("cannot make a temporary file: %s", strerror(errno));
-        if (is_picture(s->info) && bake_grid_open(&s->image->texels[l], marks->width * (cells + 1),
-                                                  marks->height * (cells + 1), sizeof(uint16_t)))
+        if (is_picture(s->info) && bake_grid_open(&s->image->seen[l], marks->width * (cells + 1),
+                                                  marks->height * (cells + 1), RGB))
             return -1;
     }
     return 0;
@@ -115,14 +114,13 @@ static int is_near(const sifter *s, const uint8_t *decoded)
 static int make_image(sifter *s, ff_key key)
 {
     uint32_t level = ff_key_level(key);
-    bake_texture_above above = { level ? s->texels[level - 1] : NULL,
+    bake_texture_above above = { level ? s->decoded[level - 1] : NULL,
                                  level ? ff_key_quadrant(key) : 0 };
     if (bake_texture_read(s->image, s->info, key, s->lattice) ||
         bake_texture_code(&s->room, s->info, s->quality, above, s->lattice, s->decoded[level]) < 0)
         return -1;
     if (!is_picture(s->info) || level + 1 == s->image->levels) return 0;
-    memcpy(s->texels[level], s->room.texels, sizeof(uint16_t) << 2 * s->info->texture_log2);
-    return bake_texture_texels(s->image, s->info, key, 1, s->texels[level]);
+    return bake_texture_seen(s->image, s->info, key, 1, s->decoded[level]);
 }
 
 /* 1 when the image of a node, or one below it, shows more than that of `above`; -1 (said). Its own
@@ -182,15 +180,11 @@ int bake_bare_find(bake_image *image, const ff_terrain_info *info, int quality)
     if (!rc && !(s.lattice && s.enlarged)) rc = bake_fail("out of memory");
     for (uint32_t l = 0; !rc && l < image->levels; l++) {
         s.decoded[l] = malloc(s.bytes);
-        s.texels[l] = malloc(sizeof(uint16_t) << 2 * info->texture_log2);
-        if (!s.decoded[l] || !s.texels[l]) rc = bake_fail("out of memory");
+        if (!s.decoded[l]) rc = bake_fail("out of memory");
     }
     if (!rc) rc = open_marks(&s);
     if (!rc) rc = sift_tiles(&s);
-    for (uint32_t l = 0; l < image->levels; l++) {
-        free(s.decoded[l]);
-        free(s.texels[l]);
-    }
+    for (uint32_t l = 0; l < image->levels; l++) free(s.decoded[l]);
     bake_texture_room_free(&s.room);
     free(s.enlarged);
     free(s.lattice);

@@ -257,7 +257,7 @@ int bake_picture_levels(const bake_options *o, const bake_ground *ground, ff_ter
 static void open_image(bake_image *image, uint32_t levels)
 {
     for (int l = 0; l < BAKE_TEXTURE_LEVELS_MAX; l++)
-        image->lattice[l] = image->bare[l] = image->texels[l] = BAKE_GRID_CLOSED;
+        image->lattice[l] = image->bare[l] = image->seen[l] = BAKE_GRID_CLOSED;
     image->has_bare = 0;
     image->levels = levels;
 }
@@ -309,7 +309,7 @@ void bake_image_close(bake_image *image)
     for (uint32_t l = 0; l < image->levels; l++) {
         bake_grid_close(&image->lattice[l]);
         if (image->has_bare) bake_grid_close(&image->bare[l]);
-        if (image->has_bare) bake_grid_close(&image->texels[l]);
+        if (image->has_bare) bake_grid_close(&image->seen[l]);
     }
     image->levels = 0;
 }
@@ -330,28 +330,27 @@ int bake_texture_read(const bake_image *image, const ff_terrain_info *info, ff_k
     return 0;
 }
 
-int bake_texture_texels(const bake_image *image, const ff_terrain_info *info, ff_key key, int put,
-                        uint16_t *texels)
+int bake_texture_seen(const bake_image *image, const ff_terrain_info *info, ff_key key, int put,
+                      uint8_t *rgb)
 {
     uint32_t side = 1u << info->texture_log2, level = ff_key_level(key), code = ff_key_code(key);
     ff_sheet tile = ff_shape_sheet(info, ff_key_tile(key));
     uint32_t column = ((tile.x << level) + ff_morton_x(code)) * side,
              row = ((tile.y << level) + ff_morton_y(code)) * side;
-    const bake_grid *grid = &image->texels[level];
+    const bake_grid *grid = &image->seen[level];
     int rc = 0;
-    for (uint32_t j = 0; !rc && j < side; j++, texels += side)
-        rc = put ? bake_grid_write(grid, row + j, column, side, texels)
-                 : bake_grid_read(grid, row + j, column, side, texels);
+    for (uint32_t j = 0; !rc && j < side; j++, rgb += (size_t)side * RGB)
+        rc = put ? bake_grid_write(grid, row + j, column, side, rgb)
+                 : bake_grid_read(grid, row + j, column, side, rgb);
     return rc;
 }
 
-/* What encoding takes: a node's lattice, its parent's texels, and what is coded. */
+/* What encoding takes: a node's lattice, what is seen of its parent's, and what is coded. */
 typedef struct encoder {
     const bake_image *image;
     const ff_terrain_info *info;
     int quality;
-    uint8_t *rgb;
-    uint16_t *above;
+    uint8_t *rgb, *above, *decoded;
     bake_texture_room room;
     bake_blob *blob;
 } encoder;
@@ -361,7 +360,7 @@ static int find_above(const encoder *e, ff_key key, bake_texture_above *above)
     *above = (bake_texture_above){ 0 };
     if (!ff_key_level(key) || !(e->info->flags & FF_TERRAIN_PICTURES)) return 0;
     *above = (bake_texture_above){ e->above, ff_key_quadrant(key) };
-    return bake_texture_texels(e->image, e->info, ff_key_parent(key), 0, e->above);
+    return bake_texture_seen(e->image, e->info, ff_key_parent(key), 0, e->above);
 }
 
 /* A node's image, and before it which children have none. */
@@ -373,7 +372,7 @@ static int encode_texture(const encoder *e, ff_key key)
     if (bake_bare_of(e->image, e->info, key, &bare)) return -1;
     if (bare < 0) return bake_blob_add(e->blob, NULL, 0);
     if (bake_texture_read(e->image, e->info, key, e->rgb) || find_above(e, key, &above)) return -1;
-    int bytes = bake_texture_code(&e->room, e->info, e->quality, above, e->rgb, NULL);
+    int bytes = bake_texture_code(&e->room, e->info, e->quality, above, e->rgb, e->decoded);
     if (bytes < 0) return -1;
     if (!bare) return bake_blob_add(e->blob, e->room.coded, (size_t)bytes);
     memmove(e->room.coded + 1, e->room.coded, (size_t)bytes);
@@ -387,13 +386,15 @@ int bake_texture_encode(const bake_image *image, const ff_terrain_info *info, in
     uint32_t level = ff_key_level(node) + below;
     encoder e = { .image = image, .info = info, .quality = quality, .blob = blob };
     e.rgb = malloc((size_t)RGB << 2 * info->texture_log2);
-    e.above = malloc(sizeof *e.above << 2 * info->texture_log2);
+    e.above = malloc((size_t)RGB << 2 * info->texture_log2);
+    e.decoded = malloc((size_t)RGB << 2 * info->texture_log2);
     int rc = bake_texture_room_make(&e.room, info);
-    if (!rc && !(e.rgb && e.above)) rc = bake_fail("out of memory");
+    if (!rc && !(e.rgb && e.above && e.decoded)) rc = bake_fail("out of memory");
     for (uint32_t i = 0; !rc && i >> (2 * below) == 0; i++)
         rc = encode_texture(
             &e, ff_key_make(ff_key_tile(node), level, ff_key_code(node) << 2 * below | i));
     bake_texture_room_free(&e.room);
+    free(e.decoded);
     free(e.above);
     free(e.rgb);
     return rc;

@@ -23,9 +23,9 @@ typedef struct bake_image {
      */
     bake_grid bare[BAKE_TEXTURE_LEVELS_MAX];
     int has_bare; /* 0: all nodes with ground have one, and `bare` is not looked at */
-    /* of pictures, of all levels but the last: what clients make of each node's, RGB565, south row
-     * first; those below are differences to it */
-    bake_grid texels[BAKE_TEXTURE_LEVELS_MAX];
+    /* of pictures, of all levels but the last: what clients see of each node's, RGB, top row first;
+     * those below are differences to it */
+    bake_grid seen[BAKE_TEXTURE_LEVELS_MAX];
 } bake_image;
 
 /* Reads the image of `options` onto the ground; sets info->texture_log2 and texture_levels. 0 or -1

@@ -32,9 +32,9 @@ int bake_picture_row(const bake_picture *picture, uint32_t row, uint8_t *rgba);
 /* The lattice over a node, top row first. 0 or -1 (said). */
 int bake_texture_read(const bake_image *image, const ff_terrain_info *info, ff_key key,
                       uint8_t *rgb);
-/* What clients make of a node's picture, to or from image->texels. 0 or -1 (said). */
-int bake_texture_texels(const bake_image *image, const ff_terrain_info *info, ff_key key, int put,
-                        uint16_t *texels);
+/* What clients see of a node's picture, to or from image->seen. 0 or -1 (said). */
+int bake_texture_seen(const bake_image *image, const ff_terrain_info *info, ff_key key, int put,
+                      uint8_t *rgb);
 /* The part of the image below the node in a column and row of a level's sheet, as if it were all of
  * a terrain's only tile; black where the image shows nothing of it. 0 or -1 (said). */
 int bake_image_part(const bake_picture *picture, const bake_ground *ground,

@@ -11,16 +11,14 @@
 
 int bake_texture_room_make(bake_texture_room *room, const ff_terrain_info *info)
 {
-    *room = (bake_texture_room){ malloc(sizeof(ff_picture_room)), malloc(1 + CODED_BYTES(info)),
-                                 malloc(sizeof(uint16_t) << 2 * info->texture_log2) };
-    return room->picture && room->coded && room->texels ? 0 : bake_fail("out of memory");
+    *room = (bake_texture_room){ malloc(sizeof(ff_picture_room)), malloc(1 + CODED_BYTES(info)) };
+    return room->picture && room->coded ? 0 : bake_fail("out of memory");
 }
 
 void bake_texture_room_free(bake_texture_room *room)
 {
     free(room->picture);
     free(room->coded);
-    free(room->texels);
 }
 
 static int code_jpeg(const bake_texture_room *room, const ff_terrain_info *info, int quality,
@@ -28,8 +26,7 @@ static int code_jpeg(const bake_texture_room *room, const ff_terrain_info *info,
 {
     uint32_t side = 1u << info->texture_log2;
     int bytes = sys_jpeg_encode(rgb, side, side, quality, room->coded, CODED_BYTES(info));
-    int rc = bytes > 0 && decoded ? sys_jpeg_decode(room->coded, (size_t)bytes, side, side, decoded)
-                                  : FF_OK;
+    int rc = bytes > 0 ? sys_jpeg_decode(room->coded, (size_t)bytes, side, side, decoded) : FF_OK;
     return rc < 0 ? rc : bytes;
 }
 
@@ -38,10 +35,9 @@ int bake_texture_code(const bake_texture_room *room, const ff_terrain_info *info
 {
     int bytes;
     if (info->flags & FF_TERRAIN_PICTURES)
-        bytes = ff_picture_encode(rgb, info->texture_log2,
-                                  (ff_picture_above){ above.texels, above.quadrant },
-                                  (unsigned)quality, room->picture, room->texels, decoded,
-                                  room->coded, CODED_BYTES(info));
+        bytes = ff_picture_encode(
+            rgb, info->texture_log2, (ff_picture_above){ above.rgb, above.quadrant },
+            (unsigned)quality, room->picture, decoded, room->coded, CODED_BYTES(info));
     else
         bytes = code_jpeg(room, info, quality, rgb, decoded);
     return bytes > 0 ? bytes : bake_fail("cannot encode a texture: %s", ff_error_text(bytes));

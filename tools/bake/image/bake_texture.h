@@ -4,9 +4,9 @@
 
 #include "bake_image.h"
 
-/* Texels of a node's parent, RGB565, and which of its children the node is; NULL: a root. */
+/* What clients see of a node's parent, and which of its children the node is; NULL: a root. */
 typedef struct bake_texture_above {
-    const uint16_t *texels;
+    const uint8_t *rgb;
     unsigned quadrant;
 } bake_texture_above;
 
@@ -14,13 +14,12 @@ typedef struct bake_texture_above {
 typedef struct bake_texture_room {
     void *picture;
     uint8_t *coded;
-    uint16_t *texels; /* what clients make of it; of pictures alone */
 } bake_texture_room;
 
 int bake_texture_room_make(bake_texture_room *room, const ff_terrain_info *info);
 void bake_texture_room_free(bake_texture_room *room);
 
-/* Codes `rgb`, top row first, to room->coded; `decoded`, not NULL, receives what clients see.
+/* Codes `rgb`, top row first, to room->coded; `decoded` receives what clients see.
  * Bytes, or -1 (said). */
 int bake_texture_code(const bake_texture_room *room, const ff_terrain_info *info, int quality,
                       bake_texture_above above, const uint8_t *rgb, uint8_t *decoded);
