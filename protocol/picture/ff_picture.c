@@ -72,7 +72,7 @@ static void go_corner(ff_picture *p, ff_picture_part part)
         if (p->eye) p->eye->corner(p->eye->context, kind, value[plane][0]);
 #endif
         int32_t number = ff_picture_number(p, kind, p->by->corner[kind], value[plane][0]);
-        value[plane][0] = (coefficient(p, plane, number) + 8) >> 4;
+        value[plane][0] = ((coefficient(p, plane, number) >> FF_PICTURE_CORNER_FINER) + 8) >> 4;
     }
     finish(p, part.x, part.y, 0, expected, value);
 }
@@ -113,6 +113,7 @@ static void go_eight(ff_picture *p, ff_picture_part part, uint8_t before[3][8])
         line_numbers(p, plane, value[plane], before);
         for (unsigned u = 0; u < FF_PICTURE_BLOCK; u++)
             whole[u] = coefficient(p, plane, value[plane][u]);
+        whole[0] = (int16_t)(whole[0] >> FF_PICTURE_MEAN_FINER);
         ff_picture_line(whole, value[plane]);
     }
     unsigned upright = part.height > 1, from = upright ? part.y : part.x;

@@ -66,6 +66,11 @@ typedef struct ff_picture {
     const ff_picture_eye *eye;
 } ff_picture;
 
+/* A corner's steps are 4 times as fine, those of an eight's mean twice: on even ground a line must
+ * not be farther off than the blocks beside it. As powers of two. */
+#define FF_PICTURE_CORNER_FINER 2
+#define FF_PICTURE_MEAN_FINER   1
+
 /* At most 8 x 8 texels. */
 typedef struct ff_picture_part {
     unsigned x, y, width, height;

@@ -14,10 +14,10 @@ static const int8_t matrix[8][8] = {
 };
 
 /* Steps of `size`, in 2^shift of a sixteenth. */
-static int32_t steps_of(int64_t size, unsigned shift, int32_t step_q4)
+static int32_t steps_of(int64_t size, unsigned shift, int32_t step_q4, int dead_256)
 {
     int64_t whole = (int64_t)step_q4 << shift, away = size < 0 ? -size : size;
-    int32_t steps = (int32_t)((away + whole / 2 - whole * DEAD_256 / 512) / whole);
+    int32_t steps = (int32_t)((away + whole / 2 - whole * dead_256 / 512) / whole);
     return size < 0 ? -steps : steps;
 }
 
@@ -37,7 +37,9 @@ void ff_picture_count_corner(const ff_picture *p, ff_picture_part part, uint8_t 
 {
     int32_t left[3];
     left_of(p, part.x, part.y, expected[0], left);
-    for (unsigned c = 0; c < 3; c++) value[c][0] = steps_of(left[c] * 4, 0, p->step_q4[c]);
+    for (unsigned c = 0; c < 3; c++)
+        value[c][0] = steps_of((int64_t)left[c] * 4 * (1 << FF_PICTURE_CORNER_FINER), 0,
+                               p->step_q4[c], 0);
 }
 
 /* Texels that are coded otherwise count as the next that is not. */
@@ -64,7 +66,9 @@ void ff_picture_count_line(const ff_picture *p, ff_picture_part part, uint8_t ex
             int64_t sum = 0;
             for (unsigned i = 0; i < 8; i++) sum += matrix[u][i] * left[i][c];
             /* sixteenths: of 4 * 181.02 times as much, and 181.02 is 2^15 / 181.02 */
-            value[c][u] = steps_of(sum * 4 * 181, ONE_LOG2, p->step_q4[c]);
+            value[c][u] = u ? steps_of(sum * 4 * 181, ONE_LOG2, p->step_q4[c], DEAD_256)
+                            : steps_of(sum * 4 * 181 * (1 << FF_PICTURE_MEAN_FINER), ONE_LOG2,
+                                       p->step_q4[c], 0);
         }
 }
 
@@ -88,7 +92,7 @@ void ff_picture_count_block(const ff_picture *p, ff_picture_part part, uint8_t e
             for (unsigned u = 0; u < 8; u++) {
                 int64_t sum = 0;
                 for (unsigned y = 0; y < 8; y++) sum += (int64_t)matrix[v][y] * half[8 * y + u];
-                value[c][8 * v + u] = steps_of(sum * 4, ONE_LOG2, p->step_q4[c]);
+                value[c][8 * v + u] = steps_of(sum * 4, ONE_LOG2, p->step_q4[c], DEAD_256);
             }
     }
 }

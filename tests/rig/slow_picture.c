@@ -202,7 +202,7 @@ static void corner(picture *p, int x, int y)
     for (int plane = 0; plane < 3; plane++) {
         int k = plane + 3 * p->is_root;
         int64_t c = coefficient(p, plane, number(p, k, ff_picture_learned.corner[k]));
-        left[plane] = floored(c + 8, 16);
+        left[plane] = floored(floored(c, 4) + 8, 16);
     }
     put(p, x, y, expected, left);
 }
@@ -242,9 +242,11 @@ static void line(picture *p, int is_upright, int aside)
             int x = is_upright ? aside : from + i, y = is_upright ? from + i : aside, expected[3];
             int64_t left[3] = { 1024, 1024, 1024 };
             for (int plane = 0; plane < 3; plane++) {
-                for (int u = 0; u < 8; u++)
-                    left[plane] += m(u, i) *
-                                   floored(181 * coefficient(p, plane, v[plane][u]) + 128, 256);
+                for (int u = 0; u < 8; u++) {
+                    int64_t c = coefficient(p, plane, v[plane][u]);
+                    if (u == 0) c = floored(c, 2);
+                    left[plane] += m(u, i) * floored(181 * c + 128, 256);
+                }
                 left[plane] = floored(left[plane], 2048);
             }
             if (from + i == 0 || from + i == p->side - 1) continue;
