@@ -88,14 +88,15 @@ void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, cons
     make_heights(info, parent, source, between, out, decoded);
     if (ways == 1 || ff_is_as_predicted(out)) return;
     least = bytes_of(info, parent, decoded, out);
-    while (++out->way < ways) {
+    for (unsigned way = 1; way < ways; way++) {
+        out->way = (uint8_t)way;
         make_heights(info, parent, source, between, out, decoded);
         int bytes = bytes_of(info, parent, decoded, out);
         if (bytes >= least) continue;
         least = bytes;
-        best = out->way;
+        best = way;
     }
-    if (best == --out->way) return;
+    if (best == ways - 1) return;
     out->way = (uint8_t)best;
     make_heights(info, parent, source, between, out, decoded);
 }

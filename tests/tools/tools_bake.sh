@@ -153,6 +153,9 @@ PY
 }
 for rms in 1 3 12; do check "--rms-error $rms is kept, and no step is left" rms_bound $rms; done
 check "--rms-error is kept over blocks and small tiles" rms_bound 3 --tile-log2 4
+"$BAKE" plain.r16 --raw 150x131 --spacing 10 --max-error 60000 --quiet --json -o rms.ffp >rms.json # errors that no bound makes larger
+far=$(python3 -c "print($(field rms_error_m rms.json) * 1.0001)")
+check "--rms-error ends where errors do not grow with their bound" timeout 60 "$BAKE" plain.r16 --raw 150x131 --spacing 10 --rms-error "$far" --quiet -o rms.ffp
 check "--rms-error below a step is lossless" round_trip plain.r16 150x131 0 --rms-error 0.3
 refuses 2 "--rms-error beside --max-error" "rms-error chooses --max-error" "$BAKE" plain.r16 --raw 150x131 --rms-error 1 --max-error 1 -o OUT.ffp
 for steps in 0.1:10 0.05:20 0.3:3 0.01:100; do

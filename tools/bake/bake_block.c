@@ -144,7 +144,7 @@ static int end_records(bake_block *block)
     return 0;
 }
 
-static bake_off measure(const bake_block *block)
+bake_off bake_block_off(const bake_block *block)
 {
     const bake_levels *levels = &block->levels;
     ff_extent size = extent_of(block, block->key);
@@ -165,7 +165,6 @@ int bake_block_encode(bake_block *block, const bake_top *top)
     know_above(block, top);
     start(block, top);
     node->leaf = 1; /* where nothing is finer */
-    if (bake_levels_encode_below(&block->levels, block->key, node) || end_records(block)) return -1;
-    block->off = measure(block);
-    return 0;
+    return bake_levels_encode_below(&block->levels, block->key, node) || end_records(block) ? -1
+                                                                                            : 0;
 }

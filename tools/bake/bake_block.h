@@ -20,7 +20,6 @@ typedef struct bake_block {
     ff_key key;          /* the node */
     bake_known above[BAKE_LEVELS_MAX]; /* what the block adds to its node and those above, by
                                           level */
-    bake_off off;
 } bake_block;
 
 /* For blocks of nodes of the level `top` ends with; both must outlive the block. Close it whatever
@@ -32,5 +31,7 @@ void bake_block_close(bake_block *block);
 int bake_block_load(bake_block *block, const bake_samples *samples, ff_key key);
 /* Encodes what is loaded, below the top of its tile. 0 or -1 (said). */
 int bake_block_encode(bake_block *block, const bake_top *top);
+/* How far what was encoded is from what was loaded. */
+bake_off bake_block_off(const bake_block *block);
 
 #endif

@@ -186,22 +186,33 @@ static int drop_records(void *context, uint32_t section, const bake_blob *record
     return 0;
 }
 
-/* The largest error with which the root mean square is within what was asked for. Errors are spread
- * evenly as long as they are smaller than the ground is rough: their mean is 1/sqrt(3) of the
- * largest then, else less. */
+#define BY_GROWTH 4 /* tries: as a rule they are all */
+
+/* What to try between an error that fits and one that does not. Errors are spread evenly while they
+ * are smaller than the ground is rough, so their mean grows with the largest: `guess`. Where it
+ * does not grow so, a fourth of what is between is ruled out each time. */
+static uint32_t between(uint32_t fits, uint32_t fails, double guess, int by_growth)
+{
+    uint32_t quarter = by_growth ? 0 : (fails - fits) / 4, least = fits + (quarter ? quarter : 1),
+             most = fails - (quarter ? quarter : 1);
+    return (uint32_t)fmin(fmax(guess, least), most);
+}
+
+/* The largest error with which the root mean square is within what was asked for; no larger than
+ * the ground is high. */
 static int choose_error(bake *b)
 {
     static const bake_image no_image = { .levels = 0 };
-    double wanted_m = b->options->rms_error_m, next = wanted_m / b->steps.step_m * sqrt(3);
-    uint32_t fits = 0, fails = INT16_MAX + 1;
+    double wanted_m = b->options->rms_error_m, guess = wanted_m / b->steps.step_m * sqrt(3);
+    uint32_t relief = b->info.height_max - b->info.height_min, fits = 0,
+             fails = (relief < INT16_MAX ? relief : INT16_MAX) + 1, tries = 0;
     if (wanted_m <= 0) return 0;
     while (fails - fits > 1) {
-        uint32_t steps = (uint32_t)fmin(fmax(next, fits + 1), fails - 1);
+        uint32_t steps = between(fits, fails, guess, tries++ < BY_GROWTH);
         bake_set_error(&b->info, steps);
         if (make_tiles(b, &no_image, drop_records)) return -1;
         *(b->rms_m <= wanted_m ? &fits : &fails) = steps;
-        next = b->rms_m > 0 ? floor(steps * wanted_m / b->rms_m) : 2.0 * steps;
-        if (next <= fits && fails - fits > 1) next = fits + 1;
+        guess = b->rms_m > 0 ? steps * wanted_m / b->rms_m : fails;
     }
     bake_set_error(&b->info, fits);
     if (!fits)

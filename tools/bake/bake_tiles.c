@@ -10,6 +10,7 @@
 typedef struct worker {
     bake_top top;
     bake_block block;
+    bake_off off;
     bake_blob texture[BAKE_TEXTURE_LEVELS_MAX]; /* that its block makes */
 } worker;
 
@@ -71,10 +72,10 @@ static int make_block(void *context, int number, uint32_t job)
     if (!has_ground && !is_last(c, job)) return 0;
     if (bake_top_load(&w->top, t->samples, ff_key_tile(key))) return -1;
     if (!has_ground) return 0;
-    return bake_block_load(&w->block, t->samples, key) || bake_block_encode(&w->block, &w->top) ||
-                   make_textures(c, w, key)
-               ? -1
-               : 0;
+    if (bake_block_load(&w->block, t->samples, key) || bake_block_encode(&w->block, &w->top))
+        return -1;
+    if (t->off) w->off = bake_block_off(&w->block);
+    return make_textures(c, w, key);
 }
 
 /* ---- in order ---- */
@@ -100,12 +101,12 @@ static void gather_known(crew *c, const bake_block *block)
     }
 }
 
-static void gather_off(const crew *c, const bake_block *block)
+static void gather_off(const crew *c, const worker *w)
 {
     bake_off *off = c->tiles->off;
     if (!off) return;
-    off->squares += block->off.squares;
-    off->samples += block->off.samples;
+    off->squares += w->off.squares;
+    off->samples += w->off.samples;
 }
 
 /* Textures of the block's node and of those above; none where there is no ground. */
@@ -166,7 +167,7 @@ static int take_block(void *context, int number, uint32_t job)
         return -1;
     if (has_ground) {
         gather_known(c, &w->block);
-        gather_off(c, &w->block);
+        gather_off(c, w);
         if (take_below(c, w)) return -1;
     }
     return is_last(c, job) ? take_top(c, w) : 0;
