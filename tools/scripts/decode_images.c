@@ -3,22 +3,11 @@
  * Prints how many texels were made and their sum: the same on every machine. */
 #include "../../platform/sys.h"
 #include "../../protocol/ff_image.h"
-#include "../../protocol/ff_pack.h"
 #include "../../protocol/picture/ff_picture.h"
-#include "count_marks.h"
+#include "counted_pack.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-
-static ff_pack pack;
 static ff_picture_room room;
 static unsigned long long texels, sum, bytes_read;
-
-static int fail(const char *what)
-{
-    fprintf(stderr, "decode_images: %s\n", what);
-    exit(1);
-}
 
 static void decode(const ff_image *image, ff_key key, const uint8_t *parent, uint8_t *rgb)
 {
@@ -54,14 +43,7 @@ static void below(ff_key key, const uint8_t *parent)
 
 int main(int argc, char **argv)
 {
-    FILE *file = argc == 2 ? fopen(argv[1], "rb") : NULL;
-    if (!file || fseek(file, 0, SEEK_END)) return fail("decode_images PACK");
-    size_t bytes = (size_t)ftell(file);
-    rewind(file);
-    void *text = malloc(bytes);
-    if (!text || fread(text, 1, bytes, file) != bytes) return fail("the pack cannot be read");
-    fclose(file);
-    if (ff_pack_open(&pack, text, bytes)) return fail("it is no pack");
+    open_pack(argc, argv);
     handheld_mark_start();
     for (uint32_t i = 0; i < pack.tiles; i++) below(ff_key_make(i, 0, 0), NULL);
     printf("texels %llu\nbytes %llu\nsum %llu\n", texels, bytes_read, sum);

@@ -2,24 +2,13 @@
  * roots down, for bench_codec.py: cross-built for the handheld, counted by tcg_count.c. What is
  * decoding lies in the phase "work". Prints how many heights were made, those of rims with every
  * node that has them, and their sum: the same on every machine. */
-#include "../../protocol/ff_pack.h"
 #include "../../protocol/shape/ff_shape.h"
-#include "count_marks.h"
+#include "counted_pack.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-
-static ff_pack pack;
 static ff_decoder *decoder;
 static int32_t value[FF_REFINED_HEIGHTS_MAX];
 static uint16_t room[FF_CODEC_ROOM_MAX / 2 + 1];
 static unsigned long long heights, sum;
-
-static int fail(const char *what)
-{
-    fprintf(stderr, "decode_pack: %s\n", what);
-    exit(1);
-}
 
 static int record(enum ff_section_kind kind, ff_key key, const uint8_t **payload)
 {
@@ -75,14 +64,7 @@ static void tile(uint32_t number)
 
 int main(int argc, char **argv)
 {
-    FILE *file = argc == 2 ? fopen(argv[1], "rb") : NULL;
-    if (!file || fseek(file, 0, SEEK_END)) return fail("decode_pack PACK");
-    size_t bytes = (size_t)ftell(file);
-    rewind(file);
-    void *text = malloc(bytes);
-    if (!text || fread(text, 1, bytes, file) != bytes) return fail("the pack cannot be read");
-    fclose(file);
-    if (ff_pack_open(&pack, text, bytes)) return fail("it is no pack");
+    open_pack(argc, argv);
     size_t decoder_bytes = ff_decoder_bytes(&pack.header.info);
     decoder = ff_decoder_create(&pack.header.info, malloc(decoder_bytes), decoder_bytes);
     handheld_mark_start();

@@ -4,6 +4,7 @@
 #include "../../platform/sys.h"
 #include "../bake/bake_say.h"
 #include "train_picture_local.h"
+#include "train_write.h"
 
 #include <errno.h>
 #include <math.h>
@@ -11,7 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define A_LINE    16
 #define QUALITIES 5
 #define JPEGS     20 /* qualities of JPEGs, 5 apart */
 #define RGB       3
@@ -93,14 +93,6 @@ int train_pictures_measure(const train_pictures *from, const ff_picture_tables *
 
 /* ---- as C ---- */
 
-static void put_numbers(FILE *out, const void *at, size_t count, int is_signed)
-{
-    for (size_t i = 0; i < count; i++) {
-        int number = is_signed ? ((const int16_t *)at)[i] : ((const uint16_t *)at)[i];
-        fprintf(out, "%s%d", i == 0 ? "" : i % A_LINE ? "," : ",\n        ", number);
-    }
-}
-
 int train_pictures_write(const char *path, const ff_picture_tables *t)
 {
     FILE *out = fopen(path, "w");
@@ -112,14 +104,14 @@ int train_pictures_write(const char *path, const ff_picture_tables *t)
           out);
     for (unsigned row = 0; row < FF_PICTURE_ROWS; row++) {
         fputs("        {", out);
-        put_numbers(out, t->weight[row], FF_PICTURE_KNOWN, 1);
+        train_put_numbers(out, t->weight[row], FF_PICTURE_KNOWN, 1);
         fputs("},\n", out);
     }
     fputs("    },\n    .corner = {", out);
     for (unsigned kind = 0; kind < FF_PICTURE_KINDS; kind++)
         fprintf(out, "%s%u", kind ? "," : "", t->corner[kind]);
     fputs("},\n    .one = {\n        ", out);
-    put_numbers(out, t->one, FF_PICTURE_CONTEXTS, 0);
+    train_put_numbers(out, t->one, FF_PICTURE_CONTEXTS, 0);
     fputs("},\n};\n/* clang-format on */\n", out);
     return fclose(out) ? bake_fail("cannot write %s: %s", path, strerror(errno)) : 0;
 }

@@ -8,8 +8,7 @@
 
 #define A_LINE 16
 
-/* `count` numbers from `at` on, 16 bits each. */
-static void put_numbers(FILE *out, const void *at, size_t count, int is_signed)
+void train_put_numbers(FILE *out, const void *at, size_t count, int is_signed)
 {
     for (size_t i = 0; i < count; i++) {
         int number = is_signed ? ((const int16_t *)at)[i] : ((const uint16_t *)at)[i];
@@ -24,7 +23,7 @@ static void put_rows(FILE *out, const char *name, const void *at, size_t rows, s
     fprintf(out, "    .%s = {\n", name);
     for (size_t i = 0; i < rows; i++) {
         fprintf(out, "        {");
-        put_numbers(out, (const char *)at + i * count * sizeof(int16_t), count, is_signed);
+        train_put_numbers(out, (const char *)at + i * count * sizeof(int16_t), count, is_signed);
         fprintf(out, "},\n");
     }
     fprintf(out, "    },\n");
@@ -33,7 +32,7 @@ static void put_rows(FILE *out, const char *name, const void *at, size_t rows, s
 static void put_row(FILE *out, const char *name, const uint16_t *at, size_t count)
 {
     fprintf(out, "    .%s = {", name);
-    put_numbers(out, at, count, 0);
+    train_put_numbers(out, at, count, 0);
     fprintf(out, "},\n");
 }
 
@@ -44,7 +43,7 @@ static void put_weights(FILE *out, const ff_weights *w)
         fputs("        {\n", out);
         for (unsigned bucket = 0; bucket < FF_TRAINED_BUCKETS; bucket++) {
             fputs("        {{", out);
-            put_numbers(out, w->taps[kind][bucket].tap, FF_TRAINED_TAPS, 1);
+            train_put_numbers(out, w->taps[kind][bucket].tap, FF_TRAINED_TAPS, 1);
             fprintf(out, "}, %d},\n", (int)w->taps[kind][bucket].sum);
         }
         fputs("        },\n", out);
