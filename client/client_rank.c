@@ -36,9 +36,12 @@ static void want(ff_client *client, const ff_wish *wish, enum ff_request_class r
 {
     enum ff_kind kind = (enum ff_kind)wish->kind;
     ff_source *source = ff_client_route(client, kind, wish->key, wish->lacks);
+    unsigned sides = kind == FF_KIND_REFINEMENT && source && source->io
+                         ? ff_tree_sides(client->tree, wish->key)
+                         : 0;
     if (source)
         ff_requests_want(&source->requests, kind, ff_source_own_key(source, wish->key), rank,
-                         priority, NULL);
+                         priority, sides, NULL);
 }
 
 static void want_tree(ff_client *client)

@@ -20,6 +20,7 @@
     PART(nodes_capacity, tree.nodes_capacity) \
     PART(pool_full, tree.pool_full) \
     PART(orphans, tree.orphans) \
+    PART(sides_gone, tree.sides_gone) \
     PART(nodes_hidden, tree.nodes_hidden) \
     PART(triangles_hidden, tree.triangles_hidden) \
     KEPT(c3d_stats, c3d, from->c3d, "of the graphics device") \

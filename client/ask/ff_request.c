@@ -220,7 +220,8 @@ static int keep_ask(ff_requests *requests, ff_request *request, const ff_ask *as
 }
 
 int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
-                     enum ff_request_class rank, uint32_t priority, const ff_ask *ask)
+                     enum ff_request_class rank, uint32_t priority, unsigned sides,
+                     const ff_ask *ask)
 {
     FF_ASSERT(rank <= FF_CLASS_RESERVE && kind != FF_KIND_VIEW);
     FF_ASSERT((ask != NULL) == (ff_kind[kind].asks != FF_ASKS_NODE));
@@ -229,6 +230,7 @@ int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
     ff_request *request = brought ? NULL : mark(requests, kind, key);
     if (request && request->state == FF_REQUEST_QUEUED) {
         request->rank = (uint8_t)rank;
+        request->sides = (uint8_t)sides;
         request->value = value_of(requests, kind, level_of(request), priority);
     }
     if (request && ask && !keep_ask(requests, request, ask)) request = NULL;

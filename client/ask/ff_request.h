@@ -64,6 +64,7 @@ typedef struct ff_request {
     uint16_t named;            /* FF_KIND_VIEW: bit i: what its view names at i has come */
     uint32_t bytes_came;       /* the same: of the answers so far */
     uint8_t ask;               /* of FF_ASKS_PANORAMA, FF_ASKS_FAR: ff_requests_ask_of */
+    uint8_t sides;             /* of a refinement: as in ff_get */
 } ff_request;
 
 typedef struct ff_request_counts {
@@ -115,9 +116,11 @@ void ff_requests_clear(ff_requests *requests);
  * were not wanted again are dropped. */
 void ff_requests_rank_begin(ff_requests *requests);
 /* 1 when queued or already under way, 0 when the queue is full, or FF_REQUESTS_ASKS_MAX are out.
- * priority per byte decides within `rank`. */
+ * priority per byte decides within `rank`. `sides` of a refinement, bits of ff_side: they are held,
+ * and may be left out. */
 int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
-                     enum ff_request_class rank, uint32_t priority, const ff_ask *ask);
+                     enum ff_request_class rank, uint32_t priority, unsigned sides,
+                     const ff_ask *ask);
 /* The same for a view, before all else; 0 also while an older one is sent or arriving. */
 int ff_requests_want_view(ff_requests *requests, const ff_get_view *view);
 void ff_requests_rank_end(ff_requests *requests);

@@ -85,7 +85,7 @@ static void want_sectors(const ff_sets *sets, ff_requests *requests, const ff_vi
                      rank == FF_CLASS_FIRST     ? PRIORITY_SECTOR
                      : rank == FF_CLASS_RESERVE ? PRIORITY_RESERVE
                                                 : 1,
-                     &ask);
+                     0, &ask);
 }
 
 void ff_sets_want(const ff_sets *sets, ff_requests *requests, const ff_view *view, unsigned soon,

@@ -214,7 +214,7 @@ static void want_faces(const ff_panorama *panorama, ff_requests *requests, const
     FF_ASSERT(request.face_count > 0 && request.face_count <= FF_FACE_COUNT);
     ask.panorama = request;
     ff_requests_want(requests, FF_KIND_FACE, set->key, rank,
-                     rank == FF_CLASS_FIRST ? PRIORITY_FACE : 1, &ask);
+                     rank == FF_CLASS_FIRST ? PRIORITY_FACE : 1, 0, &ask);
 }
 
 void ff_panorama_want(const ff_panorama *panorama, ff_requests *requests, const ff_view *view,

@@ -141,19 +141,13 @@ ff_tree *ff_tree_create(const ff_tree_desc *desc, void *memory, size_t bytes)
     return tree;
 }
 
-static uint16_t *heights_of(const ff_tree *tree, uint32_t slot)
-{
-    FF_ASSERT(slot < tree->node_count);
-    return tree->heights + slot * ff_heights_per_node(tree);
-}
-
 FF_STATIC_ASSERT(FF_NODE_HEIGHTS_MAX <= UINT32_MAX / UINT16_MAX); /* a sum of heights */
 
 /* Of a node whose heights are there: what the payload says of it, and what its heights say. */
 static void take_node(ff_tree *tree, uint32_t slot, const ff_residuals *residuals, uint32_t q,
                       unsigned source)
 {
-    const uint16_t *height = heights_of(tree, slot);
+    const uint16_t *height = ff_heights_of(tree, slot);
     size_t count = ff_heights_per_node(tree);
     uint32_t sum = 0;
     uint16_t lowest = UINT16_MAX, highest = 0;
@@ -194,7 +188,7 @@ int ff_tree_deliver_root(ff_tree *tree, uint32_t tile, unsigned source,
     }
     FF_ASSERT(tree->free_count > 0);
     uint32_t slot = ff_tree_take_slot(tree, key, FF_SLOT_NONE);
-    int rc = ff_reconstruct_root(info, residuals, heights_of(tree, slot), tree->room);
+    int rc = ff_reconstruct_root(info, residuals, ff_heights_of(tree, slot), tree->room);
     if (rc != FF_OK) {
         ff_tree_drop_root(tree, &tree->node[slot]);
         return rc;
@@ -224,7 +218,7 @@ static void take_children(ff_tree *tree, uint32_t slot, const ff_residuals *resi
         ff_key key = ff_key_child(tree->node[slot].key, q);
         if (!ff_shape_has_ground(info, key)) continue;
         uint32_t child = ff_tree_take_slot(tree, key, slot);
-        ff_refined_child(info, tree->refined, q, heights_of(tree, child));
+        ff_refined_child(info, tree->refined, q, ff_heights_of(tree, child));
         take_node(tree, child, residuals, q, source);
         tree->node[slot].child[q] = child;
         ff_tree_reshade_beside(tree, key);
@@ -246,11 +240,15 @@ int ff_tree_deliver_children(ff_tree *tree, ff_key key, unsigned source,
     }
     if (ff_node_has_children(&tree->node[slot])) return FF_OK;
     if (ff_node_is_stub(&tree->node[slot])) return FF_ERR_NOT_FOUND; /* nobody asked */
-    int rc = make_room(tree, slot);
+    if (!ff_tree_take_sides(tree, key, residuals->sides)) {
+        tree->stats.sides_gone++;
+        return FF_ERR_NOT_FOUND; /* it is wished for again, as a whole */
+    }
+    int rc = make_room(tree, slot); /* what is beside it may go for that */
     if (rc != FF_OK) return rc;
     FF_ASSERT(tree->node[slot].key == key); /* it was spared itself */
-    rc = ff_reconstruct_refinement(info, heights_of(tree, slot), residuals, tree->refined,
-                                   tree->room);
+    rc = ff_reconstruct_beside(info, ff_heights_of(tree, slot), residuals, tree->refined,
+                               tree->room);
     if (rc != FF_OK) return rc;
     take_children(tree, slot, residuals, source);
     return FF_OK;
@@ -268,7 +266,7 @@ void ff_tree_make_children(ff_tree *tree)
         const ff_terrain_info *info = ff_ground_of(tree, node->key);
         ff_residuals all = ff_leaf_residuals(info, node->error_code, node->flags & FF_NODE_FILLED);
         FF_ASSERT(ff_key_level(node->key) + 1 < ff_terrain_levels(info));
-        ff_predict_children(info, ff_shape_cells(info, node->key, 1), heights_of(tree, slot),
+        ff_predict_children(info, ff_shape_cells(info, node->key, 1), ff_heights_of(tree, slot),
                             tree->refined, tree->room);
         take_children(tree, slot, &all, 0);
     }

@@ -109,6 +109,7 @@ typedef struct ff_tree_stats {
     uint32_t stitched;               /* drawn nodes with at least one coarser neighbour */
     uint32_t pool_full;              /* refinements that found no room */
     uint32_t orphans;                /* refinements that arrived for a node no longer held */
+    uint32_t sides_gone;             /* that came without a side which is no longer held */
     uint32_t selects, selects_skipped;
     /* nodes of the last selection near enough to split but exact already: not asked for */
     uint32_t flat;
@@ -184,6 +185,9 @@ const ff_quality *ff_tree_quality(const ff_tree *tree);
 const ff_placed *ff_tree_placed(const ff_node *node);
 /* The largest distance between a node's triangles and the ground. */
 int64_t ff_tree_error_wu(const ff_terrain_info *info, const ff_node *node);
+/* Bits of ff_side: sides of a node's children that are held, of the nodes across. A refinement that
+ * leaves them out can be delivered. */
+unsigned ff_tree_sides(const ff_tree *tree, ff_key key);
 /* What would make the picture better, most urgent first. The tree does not remember asking: the
  * caller does. */
 uint32_t ff_tree_wishes(const ff_tree *tree, const ff_wish **list);

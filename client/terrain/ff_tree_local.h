@@ -241,6 +241,12 @@ static inline size_t ff_heights_per_node(const ff_tree *tree)
     return (size_t)ff_node_side(tree->ground) * ff_node_side(tree->ground);
 }
 static inline int ff_node_held(const ff_node *node) { return node->key != FF_KEY_NONE; }
+static inline uint16_t *ff_heights_of(const ff_tree *tree, uint32_t slot)
+{
+    FF_ASSERT(slot < tree->node_count);
+    return tree->heights + slot * ff_heights_per_node(tree);
+}
+
 static inline int ff_node_has_children(const ff_node *node)
 {
     return (node->child[0] & node->child[1] & node->child[2] & node->child[3]) != FF_SLOT_NONE;
@@ -287,6 +293,9 @@ void ff_tree_make_children(ff_tree *tree);
 
 /* ff_pool.c */
 uint32_t ff_tree_find(const ff_tree *tree, ff_key key);
+/* ff_sides.c: puts the sides of a node's children into tree->refined, from those of the nodes
+ * across. 0: one of these is not held. */
+int ff_tree_take_sides(ff_tree *tree, ff_key key, unsigned sides);
 /* The node itself or its nearest held ancestor, or FF_SLOT_NONE. */
 uint32_t ff_tree_find_nearest(const ff_tree *tree, ff_key key);
 uint32_t ff_tree_take_slot(ff_tree *tree, ff_key key, uint32_t parent);

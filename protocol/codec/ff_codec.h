@@ -95,6 +95,10 @@ ff_decoder *ff_decoder_create(const ff_terrain_info *info, void *memory, size_t 
 size_t ff_decoder_bytes_any(const ff_terrain_info *info);
 int ff_decoder_turn(ff_decoder *dec, const ff_terrain_info *info);
 
+/* Have the sides of a refinement bytes of their own in what is carried, and stand their lengths
+ * before them, for who leaves some out? */
+enum ff_sides_form { FF_SIDES_NONE, FF_SIDES_BARE, FF_SIDES_MEASURED };
+
 /* What the first stage makes of a payload. Corner values of a root are absolute. */
 typedef struct ff_residuals {
     ff_cells cells; /* given by the caller of ff_decode_* and ff_encode_heights */
@@ -109,12 +113,20 @@ typedef struct ff_residuals {
     /* bit q: child q (a root: bit 0, itself), which is no leaf, is a stub: there is finer ground,
      * but none is stored here */
     uint8_t stub;
-    uint8_t way;            /* which of the codec's predictions the residuals are added to */
-    uint16_t count;         /* valid entries of value[]; 0 while the payload is carried */
+    uint8_t way;    /* which of the codec's predictions the residuals are added to */
+    uint8_t sides;  /* bit ff_side: not in the payload, the heights of that side are known */
+    uint8_t apart;  /* enum ff_sides_form */
+    uint16_t count; /* valid entries of value[]; 0 while the payload is carried */
     uint16_t carried_bytes; /* of the payload, in the memory of value[]: FF_NEEDS_PARENT alone */
     /* caller's array of at least ff_refined_side()^2 entries; quantised residuals */
     int32_t *value;
+    /* encoder, a codec of several predictions: caller's array of FF_PAYLOAD_BYTES_MAX, which keeps
+     * what the first step has coded */
+    uint8_t *body;
+    uint16_t body_bytes;
+    uint16_t body_half; /* bytes of it when a part of the points was made, or 0 */
 } ff_residuals;
+FF_STATIC_ASSERT(FF_PAYLOAD_BYTES_MAX <= UINT16_MAX);                     /* body_bytes */
 FF_STATIC_ASSERT(FF_REFINED_HEIGHTS_MAX * sizeof(int32_t) <= UINT16_MAX); /* carried_bytes */
 
 /* FF_OK, or FF_ERR_TRUNCATED, FF_ERR_FORMAT, FF_ERR_RANGE: payload bytes are never trusted. */
@@ -130,9 +142,20 @@ size_t ff_codec_room(const ff_terrain_info *info);
  * FF_NEEDS_PARENT also the errors of ff_decode_*, and no heights. */
 int ff_reconstruct_root(const ff_terrain_info *info, const ff_residuals *res, uint16_t *heights,
                         void *room);
-/* `parent` ff_node_side()^2 values, `refined` receives ff_refined_side()^2 values. */
+/* `parent` ff_node_side()^2 values, `refined` receives ff_refined_side()^2 values. FF_ERR_FORMAT
+ * also where sides are left out. */
 int ff_reconstruct_refinement(const ff_terrain_info *info, const uint16_t *parent,
                               const ff_residuals *res, uint16_t *refined, void *room);
+/* The same, and of the sides in res->sides `refined` has the heights already, from the refinement
+ * of the node beside it. */
+int ff_reconstruct_beside(const ff_terrain_info *info, const uint16_t *parent,
+                          const ff_residuals *res, uint16_t *refined, void *room);
+/* A refinement's payload without those of the `sides` that it has, and without what only serves to
+ * leave some out: nothing else changes. Bytes written to `out` (capacity at least
+ * FF_PAYLOAD_BYTES_MAX), 0: it stays as it is, since its codec leaves out none, or an error of
+ * ff_decode_*. */
+int ff_without_sides(const ff_terrain_info *info, const uint8_t *payload, size_t bytes,
+                     unsigned sides, uint8_t *out);
 /* What stands for the payload of a leaf of this error code: its children are leaves, filled when it
  * is, with the code ff_geometric_error_below. Without values. */
 ff_residuals ff_leaf_residuals(const ff_terrain_info *info, uint8_t code, int filled);

@@ -13,7 +13,8 @@
  *   decode       a payload to residuals, on the network worker
  *   predict      what the residuals are added to, and their order
  *   reconstruct  residuals and the parent's heights to heights, on the main thread
- *   encode       residuals to a payload; only in builds with FF_ENCODER
+ *   make         encoder: the closed loop (ff_make_residuals: by `predict`)
+ *   encode       encoder: residuals to a payload; both only in builds with FF_ENCODER
  *
  * ff_codec_local.h has the types of the functions. */
 #ifndef FF_CODEC_LIST_H
@@ -21,13 +22,13 @@
 
 /* clang-format off */
 #define FF_CODEC_LIST(ROW) \
-    /*  number, constant, name,      needs,   head, ways, memory,            decode,            predict,            reconstruct,            encode */ \
-    ROW(0,      RAW,      "raw",     NOTHING, 0,    1,    ff_no_memory,      ff_raw_decode,     ff_interpolate,     ff_add_residuals,       ff_raw_encode) \
-    ROW(1,      DEFLATE,  "deflate", ZLIB,    1,    1,    ff_deflate_memory, ff_deflate_decode, ff_interpolate,     ff_add_residuals,       ff_deflate_encode) \
-    ROW(2,      RICE,     "rice",    NOTHING, 1,    1,    ff_no_memory,      ff_rice_decode,    ff_interpolate,     ff_add_residuals,       ff_rice_encode) \
-    ROW(3,      TRAINED,  "trained", TRAINED, 1,    2,    ff_no_memory,      ff_trained_decode, ff_trained_predict, ff_trained_reconstruct, ff_trained_encode)
+    /*  number, constant, name,      needs,   head, ways, memory,            decode,            predict,            reconstruct,            make,              encode */ \
+    ROW(0,      RAW,      "raw",     NOTHING, 0,    1,    ff_no_memory,      ff_raw_decode,     ff_interpolate,     ff_add_residuals,       ff_make_residuals, ff_raw_encode) \
+    ROW(1,      DEFLATE,  "deflate", ZLIB,    1,    1,    ff_deflate_memory, ff_deflate_decode, ff_interpolate,     ff_add_residuals,       ff_make_residuals, ff_deflate_encode) \
+    ROW(2,      RICE,     "rice",    NOTHING, 1,    1,    ff_no_memory,      ff_rice_decode,    ff_interpolate,     ff_add_residuals,       ff_make_residuals, ff_rice_encode) \
+    ROW(3,      TRAINED,  "trained", TRAINED, 1,    2,    ff_no_memory,      ff_trained_decode, ff_trained_predict, ff_trained_reconstruct, ff_trained_make,   ff_trained_encode)
 
-#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, encode) FF_CODEC_##constant = number,
+#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, make, encode) FF_CODEC_##constant = number,
 enum ff_codec_id { FF_CODEC_LIST(ROW) FF_CODEC_COUNT };
 #undef ROW
 /* clang-format on */

@@ -57,6 +57,17 @@ typedef size_t ff_encode_fn(const ff_terrain_info *info, const uint16_t *parent,
                             const uint16_t *decoded, const ff_contents *contents,
                             const ff_residuals *res, uint8_t *out);
 
+/* The true grid: heights, and NULL or a byte beside each, not 0 where what is predicted will do. */
+typedef struct ff_source_heights {
+    const uint16_t *height;
+    const uint8_t *between;
+} ff_source_heights;
+/* Encoder: residuals and heights by prediction out->way, and what is coded of them. A root's
+ * corners are there already. out->body_half not 0: where a part of it takes more bytes than that,
+ * the rest is not made, and body_bytes is UINT16_MAX. */
+typedef void ff_make_fn(const ff_terrain_info *info, const uint16_t *parent,
+                        const ff_source_heights *source, ff_residuals *out, uint16_t *decoded);
+
 /* A row of the list, without the encoder: that one costs a device nothing. */
 typedef struct ff_codec {
     const char *name;
@@ -71,14 +82,15 @@ typedef struct ff_codec {
  * link a longer table in place of that file. */
 const ff_codec *ff_codec_row(int codec);
 ff_encode_fn *ff_codec_encoder(int codec);
+ff_make_fn *ff_codec_maker(int codec);
 /* Bytes before the error codes of an encoded payload. */
 size_t ff_codec_head(int codec);
 /* Predictions that an encoder has to choose from. */
 unsigned ff_codec_ways(int codec);
 
 /* clang-format off */
-#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, encode) \
-    ff_memory_fn memory; ff_decode_fn decode; ff_predict_fn predict; ff_reconstruct_fn reconstruct; ff_encode_fn encode;
+#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, make, encode) \
+    ff_memory_fn memory; ff_decode_fn decode; ff_predict_fn predict; ff_reconstruct_fn reconstruct; ff_make_fn make; ff_encode_fn encode;
 /* clang-format on */
 FF_CODEC_LIST(ROW)
 #undef ROW
@@ -96,6 +108,9 @@ static inline size_t ff_align_up(size_t bytes)
 
 /* 0: the build has left protocol/trained out. */
 extern const uint8_t ff_trained_built;
+/* Codec trained's ff_without_sides. */
+int ff_trained_without_sides(const ff_terrain_info *info, const uint8_t *payload, size_t bytes,
+                             unsigned sides, uint8_t *out);
 
 /* ---- parts of payloads that codecs share ---- */
 
@@ -175,6 +190,10 @@ static inline uint16_t ff_dequantise(int32_t quantum, int32_t predicted, int32_t
     if (quantum == 1) return (uint16_t)height;
     return (uint16_t)(height < 0 ? 0 : height > UINT16_MAX ? UINT16_MAX : height);
 }
+
+/* Encoder: the height of the point `at`, predicted so, and its residual. */
+uint16_t ff_make_height(const ff_source_heights *source, uint32_t at, int32_t quantum,
+                        int32_t predicted, int32_t *residual);
 
 /* Residuals are coded as 0, 1, 2, 3, ... for 0, -1, 1, -2, ... */
 static inline uint32_t ff_zigzag(int32_t v)

@@ -164,6 +164,7 @@ static int decode(ff_decoder *dec, const uint8_t *payload, size_t bytes,
     if (bytes < 1) return FF_ERR_TRUNCATED;
     out->count = (uint16_t)contents->count;
     out->carried_bytes = 0;
+    out->sides = out->apart = 0;
     rc = dec->codec->decode(dec, &in, contents, out);
     FF_ASSERT(rc != FF_OK ||
               out->count == (dec->codec->needs & FF_NEEDS_PARENT ? 0 : contents->count));
@@ -227,10 +228,25 @@ int ff_reconstruct_root(const ff_terrain_info *info, const ff_residuals *res, ui
     return reconstruct(info, NULL, res, heights, room);
 }
 
+int ff_reconstruct_beside(const ff_terrain_info *info, const uint16_t *parent,
+                          const ff_residuals *res, uint16_t *refined, void *room)
+{
+    return reconstruct(info, parent, res, refined, room);
+}
+
 int ff_reconstruct_refinement(const ff_terrain_info *info, const uint16_t *parent,
                               const ff_residuals *res, uint16_t *refined, void *room)
 {
-    return reconstruct(info, parent, res, refined, room);
+    return res->sides ? FF_ERR_FORMAT : reconstruct(info, parent, res, refined, room);
+}
+
+int ff_without_sides(const ff_terrain_info *info, const uint8_t *payload, size_t bytes,
+                     unsigned sides, uint8_t *out)
+{
+    FF_ASSERT(sides < 1u << FF_SIDE_COUNT);
+    return info->codec == FF_CODEC_TRAINED
+               ? ff_trained_without_sides(info, payload, bytes, sides, out)
+               : 0;
 }
 
 ff_residuals ff_leaf_residuals(const ff_terrain_info *info, uint8_t code, int filled)

@@ -6,9 +6,30 @@
 
 #include <string.h>
 
+static int32_t quantised(const ff_source_heights *source, uint32_t at, int32_t quantum,
+                         int32_t predicted)
+{
+    int32_t difference = source->height[at] - predicted, half = quantum / 2;
+    if (quantum == 1) /* modulo 2^16: the shorter way round */
+        return difference > INT16_MAX   ? difference - 65536
+               : difference < INT16_MIN ? difference + 65536
+                                        : difference;
+    return difference >= 0 ? (difference + half) / quantum : -((half - difference) / quantum);
+}
+
+uint16_t ff_make_height(const ff_source_heights *source, uint32_t at, int32_t quantum,
+                        int32_t predicted, int32_t *residual)
+{
+    int between = source->between && source->between[at];
+    *residual = between ? 0 : quantised(source, at, quantum, predicted);
+    uint16_t height = ff_dequantise(quantum, predicted, *residual);
+    FF_ASSERT(between || (height - source->height[at] <= quantum / 2 &&
+                          source->height[at] - height <= quantum / 2)); /* max_error */
+    return height;
+}
+
 typedef struct quantisation {
-    const uint16_t *source;
-    const uint8_t *between;
+    const ff_source_heights *source;
     int32_t *next;
     int32_t quantum;
 } quantisation;
@@ -16,56 +37,29 @@ typedef struct quantisation {
 static uint16_t take_residual(void *context, uint32_t at, int32_t predicted)
 {
     quantisation *q = context;
-    if (q->between && q->between[at]) {
-        *q->next++ = 0;
-        return ff_dequantise(q->quantum, predicted, 0);
-    }
-    int32_t difference = q->source[at] - predicted, half = q->quantum / 2;
-    int32_t residual;
-    uint16_t height;
-
-    if (q->quantum == 1) /* modulo 2^16: the shorter way round */
-        residual = difference > INT16_MAX   ? difference - 65536
-                   : difference < INT16_MIN ? difference + 65536
-                                            : difference;
-    else
-        residual = difference >= 0 ? (difference + half) / q->quantum
-                                   : -((half - difference) / q->quantum);
-    *q->next++ = residual;
-    height = ff_dequantise(q->quantum, predicted, residual);
-    FF_ASSERT(height - q->source[at] <= half && q->source[at] - height <= half); /* max_error */
-    return height;
+    return ff_make_height(q->source, at, q->quantum, predicted, q->next++);
 }
 
-/* Residuals and heights by prediction out->way. */
-static void make_heights(const ff_terrain_info *info, const uint16_t *parent,
-                         const uint16_t *source, const uint8_t *between, ff_residuals *out,
-                         uint16_t *decoded)
+void ff_make_residuals(const ff_terrain_info *info, const uint16_t *parent,
+                       const ff_source_heights *source, ff_residuals *out, uint16_t *decoded)
 {
     uint16_t room[FF_CODEC_ROOM_MAX / 2 + 1];
-    quantisation q = { source, between, out->value, ff_quantum(info, !parent) };
-
-    for (uint32_t corner = 0; !parent && corner < FF_CORNERS; corner++) {
-        uint32_t at = ff_corner_at(info, corner);
-        FF_ASSERT(!between || !between[at]);
-        *q.next = (source[at] + q.quantum / 2) / q.quantum;
-        decoded[at] = ff_dequantise(q.quantum, 0, *q.next++);
-    }
+    quantisation q = { source, out->value + (parent ? 0 : FF_CORNERS), ff_quantum(info, !parent) };
     ff_codec_row(info->codec)
         ->predict(info, out->cells, out->way, parent, decoded, room, take_residual, &q);
     FF_ASSERT(q.next == out->value + out->count);
 }
 
-/* Bytes of the payload, but for errors and marks. */
-static int bytes_of(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *decoded,
-                    const ff_residuals *made)
+static void make_corners(const ff_terrain_info *info, const ff_source_heights *source,
+                         int32_t *value, uint16_t *decoded)
 {
-    uint8_t payload[FF_PAYLOAD_BYTES_MAX];
-    ff_residuals alone = {
-        .cells = made->cells, .way = made->way, .count = made->count, .value = made->value
-    };
-
-    return ff_encode_payload(info, parent, decoded, &alone, payload);
+    int32_t quantum = ff_quantum(info, 1);
+    for (uint32_t corner = 0; corner < FF_CORNERS; corner++) {
+        uint32_t at = ff_corner_at(info, corner);
+        FF_ASSERT(!source->between || !source->between[at]);
+        value[corner] = (source->height[at] + quantum / 2) / quantum;
+        decoded[at] = ff_dequantise(quantum, 0, value[corner]);
+    }
 }
 
 int ff_is_as_predicted(const ff_residuals *res)
@@ -75,30 +69,49 @@ int ff_is_as_predicted(const ff_residuals *res)
     return res->way == 0;
 }
 
+/* A prediction that is behind half-way is given up, where there are bytes enough to tell. */
+#define HALF_TELLS 48
+
+/* Makes it by another prediction, and keeps that if it is shorter. */
+static void try_way(const ff_terrain_info *info, const uint16_t *parent,
+                    const ff_source_heights *from, unsigned way, ff_residuals *out,
+                    uint16_t *decoded)
+{
+    uint16_t heights[FF_REFINED_HEIGHTS_MAX];
+    int32_t value[FF_REFINED_HEIGHTS_MAX];
+    uint8_t body[FF_PAYLOAD_BYTES_MAX];
+    uint32_t side = parent ? ff_refined_side(info) : ff_node_side(info);
+    ff_residuals other = *out;
+    other.way = (uint8_t)way;
+    other.value = value;
+    other.body = body;
+    other.body_half = (uint16_t)(other.body_half < HALF_TELLS ? 0 : other.body_half + 1);
+    if (!parent) make_corners(info, from, value, heights);
+    ff_codec_maker(info->codec)(info, parent, from, &other, heights);
+    if (other.body_bytes >= out->body_bytes) return;
+    memcpy(out->value, value, out->count * sizeof *value);
+    memcpy(out->body, body, other.body_bytes);
+    memcpy(decoded, heights, (size_t)side * side * sizeof *heights);
+    out->way = (uint8_t)way;
+    out->body_bytes = other.body_bytes;
+}
+
 /* Of a codec's predictions the one of the shortest payload; that of leaves where it is right. */
 void ff_encode_heights(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *source,
                        const uint8_t *between, ff_residuals *out, uint16_t *decoded)
 {
-    unsigned ways = ff_codec_ways(info->codec), best = 0;
-    int least;
-
+    const ff_source_heights from = { source, between };
+    ff_make_fn *make = ff_codec_maker(info->codec);
+    unsigned ways = ff_codec_ways(info->codec);
+    FF_ASSERT(ways == 1 || out->body);
     out->count = (uint16_t)ff_coded_count(info, out->cells, !parent);
     out->carried_bytes = 0;
-    out->way = 0;
-    make_heights(info, parent, source, between, out, decoded);
-    if (ways == 1 || ff_is_as_predicted(out)) return;
-    least = bytes_of(info, parent, decoded, out);
-    for (unsigned way = 1; way < ways; way++) {
-        out->way = (uint8_t)way;
-        make_heights(info, parent, source, between, out, decoded);
-        int bytes = bytes_of(info, parent, decoded, out);
-        if (bytes >= least) continue;
-        least = bytes;
-        best = way;
-    }
-    if (best == ways - 1) return;
-    out->way = (uint8_t)best;
-    make_heights(info, parent, source, between, out, decoded);
+    out->sides = out->way = 0;
+    out->body_half = 0;
+    if (!parent) make_corners(info, &from, out->value, decoded);
+    make(info, parent, &from, out, decoded);
+    for (unsigned way = 1; way < ways && !ff_is_as_predicted(out); way++)
+        try_way(info, parent, &from, way, out, decoded);
 }
 
 int ff_encode_payload(const ff_terrain_info *info, const uint16_t *parent, const uint16_t *decoded,
@@ -118,7 +131,8 @@ int ff_encode_root(const ff_terrain_info *info, const uint16_t *source, uint8_t 
                    uint8_t *out, uint16_t *decoded)
 {
     int32_t value[FF_NODE_HEIGHTS_MAX];
-    ff_residuals res = { .child_error = { error_code }, .value = value };
+    uint8_t body[FF_PAYLOAD_BYTES_MAX];
+    ff_residuals res = { .child_error = { error_code }, .value = value, .body = body };
 
     ff_encode_heights(info, NULL, source, NULL, &res, decoded);
     return ff_encode_payload(info, NULL, decoded, &res, out);
@@ -129,7 +143,8 @@ int ff_encode_refinement(const ff_terrain_info *info, const uint16_t *parent,
                          uint16_t *decoded)
 {
     int32_t value[FF_REFINED_HEIGHTS_MAX];
-    ff_residuals res = { .value = value };
+    uint8_t body[FF_PAYLOAD_BYTES_MAX];
+    ff_residuals res = { .value = value, .body = body };
 
     memcpy(res.child_error, child_error, sizeof(res.child_error));
     ff_encode_heights(info, parent, source, NULL, &res, decoded);

@@ -41,8 +41,10 @@ int ff_message_get_ok(const ff_get *get, enum ff_kind kind)
     uint32_t level = ff_key_level(get->key);
 
     FF_ASSERT(ff_kind[kind].asks == FF_ASKS_NODE);
+    if (kind != FF_KIND_REFINEMENT && get->sides) return 0;
     return (uint64_t)ff_key_code(get->key) >> (2 * level) == 0 &&
-           (kind != FF_KIND_ROOT || level == 0);
+           (kind != FF_KIND_ROOT || level == 0) && get->sides >> FF_SIDE_COUNT == 0 &&
+           (kind != FF_KIND_REFINEMENT || level < FF_KEY_LEVEL_MAX);
 }
 
 void ff_message_write_key(ff_writer *out, uint32_t what, ff_key key)
@@ -393,7 +395,7 @@ static void read_get(ff_reader *in, ff_get *get, enum ff_kind kind)
 {
     uint32_t form = (uint32_t)ff_read_bytes(in, 1);
 
-    get->key = ff_message_read_key(in, form);
+    *get = (ff_get){ .key = ff_message_read_key(in, form) };
     ff_message_require(&in->error, (form & 15u) == 0 && ff_message_get_ok(get, kind));
 }
 

@@ -17,7 +17,7 @@
 #include "../ff_about.h"
 #include "../ff_kind.h"
 
-#define FF_PROTOCOL_VERSION   8
+#define FF_PROTOCOL_VERSION   9
 #define FF_MESSAGE_BODY_MAX   (1u << 18) /* a longer length is a protocol error */
 #define FF_MESSAGE_HEADER_MAX 4
 #define FF_REQUEST_BYTES_MAX  480 /* any client message but CAPS fits */
@@ -99,7 +99,8 @@ typedef struct ff_hello {
     uint32_t known_checksum; /* of the pack in the client's cache; 0: none */
 } ff_hello;
 typedef struct ff_get {
-    ff_key key; /* of a root: level 0 */
+    ff_key key;    /* of a root: level 0 */
+    uint8_t sides; /* of a refinement: bit ff_side: the client has that side, it may be left out */
 } ff_get;
 
 /* The faces of a cube aligned with the world, each named for the direction it looks in. Images of

@@ -46,7 +46,9 @@ static void write_get(ff_writer *out, const ff_get *get, enum ff_kind kind)
     ff_write_bytes(
         out, GET + (tile ? GET_TILE : 0) + 16u * ff_kind[kind].what + ff_key_level(get->key), 1);
     if (tile) ff_write_varint(out, tile);
-    ff_write_varint(out, ff_key_code(get->key));
+    ff_write_varint(out, kind == FF_KIND_REFINEMENT
+                             ? ff_key_code(get->key) << FF_SIDE_COUNT | get->sides
+                             : ff_key_code(get->key));
 }
 
 static void write_node(ff_writer *out, const ff_data *data)
@@ -130,6 +132,11 @@ static int decode_get(const uint8_t *bytes, size_t count, ff_message *out)
     ff_message_require(&in.error, tile < FF_KEY_TILES_MAX && (tile || !has_tile));
     if (in.error != FF_OK) return in.error;
     FF_ASSERT(out->kind < FF_KIND_COUNT);
+    out->u.get = (ff_get){ 0 };
+    if (out->kind == FF_KIND_REFINEMENT) {
+        out->u.get.sides = (uint8_t)(code & ((1u << FF_SIDE_COUNT) - 1));
+        code >>= FF_SIDE_COUNT;
+    }
     out->u.get.key = ff_key_make(tile, form & 15u, code);
     return ff_message_get_ok(&out->u.get, out->kind) ? (int)(in.at - bytes) : FF_ERR_RANGE;
 }

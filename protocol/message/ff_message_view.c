@@ -21,9 +21,9 @@ static int view_ok(const ff_get_view *view)
         view->edge_count > (view->count ? FF_VIEW_EDGE_MAX : 0))
         return 0;
     for (unsigned i = 0; i < view->edge_count; i++)
-        if (!ff_message_get_ok(&(ff_get){ view->edge[i] }, FF_KIND_REFINEMENT)) return 0;
+        if (!ff_message_get_ok(&(ff_get){ .key = view->edge[i] }, FF_KIND_REFINEMENT)) return 0;
     for (unsigned i = 0; i < view->count; i++) {
-        const ff_get get = { view->below[i] };
+        const ff_get get = { .key = view->below[i] };
         if (!ff_message_get_ok(&get, view->roots >> i & 1u ? FF_KIND_ROOT : FF_KIND_REFINEMENT))
             return 0;
     }

@@ -17,11 +17,14 @@
 typedef struct ff_range {
     uint32_t width, code; /* of the range; how far the stream is above its beginning */
     const uint8_t *in, *end;
+    uint32_t beyond; /* bytes that were read beyond the end */
 } ff_range;
 
 static inline uint32_t ff_range_byte(ff_range *range)
 {
-    return range->in < range->end ? *range->in++ : 0;
+    if (range->in < range->end) return *range->in++;
+    range->beyond++;
+    return 0;
 }
 
 static inline void ff_range_read(ff_range *range, const uint8_t *bytes, size_t count)
@@ -45,6 +48,16 @@ static inline unsigned ff_range_take(ff_range *range, uint32_t one)
     return bit;
 }
 
+/* A stream that others follow ends so many bytes after those that have grown its range: whatever
+ * the next ones are, they do not lead out of it. */
+static inline unsigned ff_range_tail(uint32_t width) { return width >= 2 * FF_RANGE_LEAST ? 1 : 2; }
+/* Where the next one begins, or NULL: the bytes end before. */
+static inline const uint8_t *ff_range_next(const ff_range *range)
+{
+    uint32_t ahead = 4 - ff_range_tail(range->width);
+    return range->beyond > ahead ? NULL : range->in - (ahead - range->beyond);
+}
+
 /* ---- encoder ---- */
 
 /* Bytes that a carry may still change are held back: one, and as many of 255 as follow it. */
@@ -61,5 +74,7 @@ void ff_range_write(ff_range_writer *to, uint8_t *bytes, size_t limit);
 void ff_range_put(ff_range_writer *to, uint32_t one, unsigned bit);
 /* Bytes in all, or -1: they did not fit. */
 int ff_range_end(ff_range_writer *to);
+/* The same of a stream that others follow. */
+int ff_range_end_before(ff_range_writer *to);
 
 #endif

@@ -43,6 +43,16 @@ void ff_range_put(ff_range_writer *to, uint32_t one, unsigned bit)
     for (; to->width < FF_RANGE_LEAST; to->width <<= 8) shift(to);
 }
 
+int ff_range_end_before(ff_range_writer *to)
+{
+    unsigned spare = 4 - ff_range_tail(to->width);
+    uint64_t rest = (UINT64_C(1) << 8 * spare) - 1;
+    to->low = (to->low + rest) & ~rest;
+    for (unsigned i = 0; i < 5; i++) shift(to);
+    FF_ASSERT(to->is_full || to->out - to->begin >= 4);
+    return to->is_full ? -1 : (int)(to->out - to->begin) - (int)spare;
+}
+
 /* Of all numbers in the range that with the most zeros at its end. */
 int ff_range_end(ff_range_writer *to)
 {

@@ -63,18 +63,66 @@ typedef struct ff_expected {
     uint32_t error_shift;
 } ff_expected;
 
-/* Returns a point's height. */
-typedef uint16_t ff_expected_fn(void *context, const ff_expected *point);
+/* Who makes the points. */
+typedef struct ff_points {
+    /* Returns a point's height. */
+    uint16_t (*height)(void *context, const ff_expected *point);
+    /* Of a refinement, or NULL: a side's points come next, so many; with FF_SIDE_COUNT all that
+     * are on none. 1: those of the side are in the grid already, and none is asked for. */
+    int (*side)(void *context, unsigned side, uint32_t points);
+    /* or NULL: of the last doubling a fourth and more is made; 0: the rest is not wanted */
+    int (*go_on)(void *context);
+    void *context;
+} ff_points;
 
 /* As ff_predict_fn, by weights of number `set`. Without errors, how far points were from what was
  * expected, only ff_expected.at and predicted are told. `room`: ff_codec_room() bytes. */
 void ff_expect(const ff_trained *by, unsigned set, const ff_terrain_info *info, ff_cells cells,
                const uint16_t *parent, uint16_t *grid, int with_errors, void *room,
-               ff_expected_fn *sample, void *context);
-/* Encoder: the stream of a grid's residuals, of corners none. Bytes; `limit`: it takes no fewer. */
-size_t ff_trained_stream(const ff_trained *by, unsigned set, const ff_terrain_info *info,
-                         ff_cells cells, const uint16_t *parent, const uint16_t *decoded,
-                         const int32_t *residual, uint8_t *out, size_t limit);
+               const ff_points *points);
+/* Encoder: the closed loop and a body in one. Of a grid, with its corners where it is a root's, the
+ * residuals of all other points of `source`, and what is decoded. `apart`, of a refinement: sides
+ * as streams of their own. `half`, or NULL: receives the bytes when the middles of the last
+ * doubling begin; if it was not 0, and they are more, the rest is given up. Bytes of the body,
+ * without corners; FF_TRAINED_BODY_MAX, of which `out` has room: it takes no fewer, or a side more
+ * than its length can tell; SIZE_MAX: given up. */
+size_t ff_trained_put(const ff_trained *by, unsigned set, const ff_terrain_info *info,
+                      ff_cells cells, const uint16_t *parent, const ff_source_heights *source,
+                      int32_t *residual, uint16_t *decoded, int apart, uint8_t *out,
+                      uint16_t *half);
+
+/* ---- payloads (SPEC.md, "Payload, codec 3") ---- */
+
+#define FF_TRAINED_WORDS       0x01u
+#define FF_TRAINED_SET_SHIFT   1
+#define FF_TRAINED_SET         (1u << FF_TRAINED_SET_SHIFT)
+#define FF_TRAINED_SIDES_SHIFT 4 /* bit s: side s is left out */
+#define FF_TRAINED_SIDES       0xf0u
+/* sides have streams of their own, and their lengths are left out; a refinement is one stream */
+#define FF_TRAINED_ALL (FF_TRAINED_WORDS | FF_TRAINED_SIDES)
+#define FF_TRAINED_ONE (FF_TRAINED_WORDS | 1u << FF_TRAINED_SIDES_SHIFT)
+
+#define FF_TRAINED_BODY_MAX (2 * FF_REFINED_HEIGHTS_MAX)
+FF_STATIC_ASSERT(FF_TRAINED_BODY_MAX < FF_PAYLOAD_BYTES_MAX);
+
+/* The lengths of four sides take so many bytes; each so many bits. */
+static inline unsigned ff_trained_length_bits(const ff_terrain_info *info)
+{
+    return info->node_log2 + 1u;
+}
+static inline size_t ff_trained_lengths(const ff_terrain_info *info)
+{
+    return (4 * (size_t)ff_trained_length_bits(info) + 7) / 8;
+}
+/* The first one's lie lowest. */
+static inline void ff_trained_lengths_of(const ff_terrain_info *info, const uint8_t *bytes,
+                                         uint8_t length[4])
+{
+    uint32_t all = 0, width = ff_trained_length_bits(info);
+    for (size_t i = 0; i < ff_trained_lengths(info); i++) all |= (uint32_t)bytes[i] << 8 * i;
+    for (unsigned i = 0; i < 4; i++, all >>= width)
+        length[i] = (uint8_t)(all & ((1u << width) - 1));
+}
 /* For who trains: the known heights that a point's mean comes from, and the measures that its
  * distance comes from. How many there are. */
 uint32_t ff_trained_known(const ff_expected *p, int32_t known[FF_TRAINED_TAPS]);

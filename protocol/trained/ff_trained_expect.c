@@ -20,8 +20,8 @@
 
 typedef struct walk {
     const ff_weights *by;
-    ff_expected_fn *sample;
-    void *context;
+    const ff_points *points;
+    int is_known;   /* the points that come next are in the grid */
     uint16_t *grid; /* as the caller has it: `side` points, of which every `step` are made */
     uint32_t side, step;
     uint16_t *height; /* the copy's first point */
@@ -273,7 +273,8 @@ static FF_ALWAYS_INLINE void make_point(const walk *w, enum ff_trained_class kin
         measure(w, kind, trait, traits, &p);
         place_mean(w, kind == FF_POINT_R, &p);
     }
-    uint16_t height = w->sample(w->context, &p);
+    uint16_t height = kind == FF_POINT_R && w->is_known ? w->grid[p.at]
+                                                        : w->points->height(w->points->context, &p);
     w->height[index] = height;
     if (!w->with_errors) return;
     uint32_t off = (uint32_t)(size(16 * height - p.mean_q4) + 8) >> 4 >> w->error_shift;
@@ -282,9 +283,16 @@ static FF_ALWAYS_INLINE void make_point(const walk *w, enum ff_trained_class kin
 
 /* ---- a doubling ---- */
 
-/* New points of a side, from `column`, `row` on along an axis. */
-static void make_side(const walk *w, int32_t column, int32_t row, unsigned axis, int inward)
+static int begin(const walk *w, unsigned side, uint32_t points)
 {
+    return w->points->side ? w->points->side(w->points->context, side, points) : 0;
+}
+
+/* New points of a side, from `column`, `row` on along an axis. */
+static void make_side(walk *w, enum ff_side side, int32_t column, int32_t row, unsigned axis,
+                      int inward)
+{
+    w->is_known = begin(w, side, (uint32_t)w->coded[axis] / 2);
     int32_t along = axis ? w->pitch : 1, away = axis ? inward : inward * w->pitch;
     uint32_t cells = (w->side - 1) / (2 * w->step), apart = 2 * w->step * (axis ? w->side : 1);
     const uint16_t *first = w->grid + ((uint32_t)row * w->side + (uint32_t)column) * w->step;
@@ -404,13 +412,15 @@ static void make_doubling(walk *w, uint32_t step, ff_cells ground)
     open_copy(w);
     for (unsigned axis = 0; axis < 2; axis++) fill_line(w, axis);
     fill_margin(w);
-    make_side(w, 0, 0, 0, 1);
-    make_side(w, 0, w->last[1], 0, -1);
-    make_side(w, 0, 0, 1, 1);
-    make_side(w, w->last[0], 0, 1, -1);
+    make_side(w, FF_SIDE_SOUTH, 0, 0, 0, 1);
+    make_side(w, FF_SIDE_EAST, w->last[0], 0, 1, -1);
+    make_side(w, FF_SIDE_NORTH, 0, w->last[1], 0, -1);
+    make_side(w, FF_SIDE_WEST, 0, 0, 1, 1);
+    begin(w, FF_SIDE_COUNT, 0);
     fill_margin(w);
     if (w->with_errors) fill_error_margin(w);
     make_centres(w);
+    if (step == 1 && w->points->go_on && !w->points->go_on(w->points->context)) return;
     make_middles(w);
     close_copy(w);
     ff_repeat_last(w->grid, w->side, step, ground);
@@ -428,9 +438,10 @@ size_t ff_codec_room(const ff_terrain_info *info)
 
 void ff_expect(const ff_trained *by, unsigned set, const ff_terrain_info *info, ff_cells cells,
                const uint16_t *parent, uint16_t *grid, int with_errors, void *room,
-               ff_expected_fn *sample, void *context)
+               const ff_points *points)
 {
-    walk w = { .by = &by->weights[set], .sample = sample, .context = context, .grid = grid };
+    walk w = { .by = &by->weights[set], .points = points, .grid = grid };
+    FF_ASSERT(parent || !points->side);
     size_t pitch, log2;
     w.quantum = ff_quantum(info, !parent);
     w.reciprocal = (UINT32_C(1) << 31) / (uint32_t)w.quantum + 1;

@@ -19,6 +19,13 @@ void ff_trained_predict(const ff_terrain_info *info, ff_cells cells, unsigned wa
     ff_interpolate(info, cells, way, parent, grid, room, sample, context);
 }
 
+int ff_trained_without_sides(const ff_terrain_info *info, const uint8_t *payload, size_t bytes,
+                             unsigned sides, uint8_t *out)
+{
+    (void)info, (void)payload, (void)bytes, (void)sides, (void)out;
+    return 0;
+}
+
 int ff_trained_reconstruct(const ff_terrain_info *info, const uint16_t *parent,
                            const ff_residuals *res, uint16_t *heights, void *room)
 {

@@ -25,7 +25,7 @@ struct ff_packs_entered {
     uint16_t decoded[FF_NODE_HEIGHTS_MAX];
     int made; /* bytes of the payload; 0: none has been made */
     uint32_t tile;
-    uint8_t payload[FF_PAYLOAD_BYTES_MAX], image[IMAGE_BYTES_MAX];
+    uint8_t payload[FF_PAYLOAD_BYTES_MAX], body[FF_PAYLOAD_BYTES_MAX], image[IMAGE_BYTES_MAX];
     max_align_t decoder_memory[];
 };
 
@@ -96,6 +96,7 @@ static int encode(ff_packs_entered *entered, const ff_terrain_info *info, ff_key
     node *n = &entered->node;
     n->residuals.cells = ff_shape_cells(info, root, 0);
     n->residuals.value = n->value;
+    n->residuals.body = entered->body;
     ff_encode_heights(info, NULL, n->heights, NULL, &n->residuals, entered->decoded);
     FF_ASSERT(!memcmp(entered->decoded, n->heights,
                       (size_t)ff_node_side(info) * ff_node_side(info) * sizeof *n->heights));

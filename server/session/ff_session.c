@@ -27,7 +27,8 @@ typedef struct request {
     ff_session_fetch *fetch; /* NULL: cancelled */
     enum ff_kind kind;
     ff_key key;
-    uint16_t id; /* 0: it has none */
+    uint16_t id;   /* 0: it has none */
+    uint8_t sides; /* as in ff_get */
 } request;
 
 /* How often something dear may be asked for: some at once, then as time goes by. */
@@ -212,7 +213,10 @@ static int put_error(ff_session *session, uint16_t id, int error)
 static int serve_payload(ff_session *session, const request *wanted)
 {
     ff_message message;
+    uint8_t less[FF_PAYLOAD_BYTES_MAX];
     int rc = fetch_answer(session, wanted, &message);
+    if (rc == FF_OK && wanted->kind == FF_KIND_REFINEMENT)
+        rc = ff_leave_out(session->pack, wanted->key, wanted->sides, less, &message.u.data);
     if (rc == FF_OK) rc = put_answer(session, &message, session->desc.out_bytes_max);
     if (rc < 0) return put_error(session, wanted->id, rc);
     session->stats.answers[ff_kind[wanted->kind].data] += (uint32_t)rc;
@@ -223,10 +227,11 @@ static int serve_payload(ff_session *session, const request *wanted)
 static int serve_view(ff_session *session)
 {
     ff_message message;
+    uint8_t less[FF_PAYLOAD_BYTES_MAX];
     int error;
     size_t bytes_max = VIEW_BYTES < session->desc.out_bytes_max ? VIEW_BYTES
                                                                 : session->desc.out_bytes_max;
-    while (ff_view_answer_next(&session->view, session->pack, &message, &error)) {
+    while (ff_view_answer_next(&session->view, session->pack, less, &message, &error)) {
         if (put_answer(session, &message, bytes_max) <= 0) return 0;
         ff_view_answer_sent(&session->view, &message);
         session->stats.damaged += error == FF_ERR_CHECKSUM;
@@ -278,7 +283,7 @@ int ff_session_queue(ff_session *session, const ff_message *ask, ff_session_fetc
 {
     assert(ff_kind[ask->kind].asks == FF_ASKS_NODE &&
            ff_kind[ask->kind].brings == FF_BRINGS_PAYLOAD);
-    return enqueue(session, (request){ fetch, ask->kind, ask->u.get.key, 0 });
+    return enqueue(session, (request){ fetch, ask->kind, ask->u.get.key, 0, ask->u.get.sides });
 }
 
 static int fetch_record(const ff_session *session, enum ff_kind kind, ff_key key,
@@ -308,7 +313,7 @@ int ff_session_ask_view(ff_session *session, const ff_message *ask)
         return FF_OK;
     }
     session->stats.views++;
-    return enqueue(session, (request){ fetch_record, ask->kind, 0, wanted->id });
+    return enqueue(session, (request){ fetch_record, ask->kind, 0, wanted->id, 0 });
 }
 
 /* ---- panoramas and far sets ---- */

@@ -1,5 +1,6 @@
 #include "ff_view_answer.h"
 #include "../../protocol/ff_bytes.h"
+#include "../../protocol/shape/ff_shape.h"
 
 #include <assert.h>
 #include <stdlib.h>
@@ -33,6 +34,7 @@ int ff_view_answer_begin(ff_view_answer *answer, const ff_pack *pack, const ff_g
                      : ff_view_named(view, answer->part);
     if (count < 0) return count;
     answer->first = answer->count = 0;
+    answer->parts = (uint16_t)count;
     answer->turns = TURNS;
     answer->tells_roots = view->count == 0;
     answer->tells_edge = view->edge_count > 0;
@@ -63,8 +65,43 @@ static unsigned waiting(ff_view_answer *answer)
         }
 }
 
-int ff_view_answer_next(ff_view_answer *answer, const ff_pack *pack, ff_message *message,
-                        int *error)
+int ff_leave_out(const ff_pack *pack, ff_key key, unsigned sides,
+                 uint8_t less[FF_PAYLOAD_BYTES_MAX], ff_data *data)
+{
+    int bytes = ff_without_sides(&ff_pack_of(pack, key)->header.info, data->bytes, data->byte_count,
+                                 sides, less);
+    if (bytes > 0) *data = (ff_data){ less, (uint32_t)bytes };
+    return bytes < 0 ? bytes : FF_OK;
+}
+
+/* Sides that refinements have which went before. */
+static unsigned sides_sent(const ff_view_answer *answer, const ff_pack *pack, ff_key key)
+{
+    unsigned sides = 0;
+    for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
+        ff_key beside =
+            ff_shape_neighbour(&ff_pack_of(pack, key)->header.info, key, (enum ff_side)side).key;
+        for (uint32_t i = 0; beside != FF_KEY_NONE && i < answer->parts; i++)
+            if (answer->part[i].sent && answer->part[i].key == beside) sides |= 1u << side;
+    }
+    return sides;
+}
+
+/* The payload of a part, as it goes. FF_OK or an error. */
+static int fetch(const ff_view_answer *answer, const ff_pack *pack, const ff_view_part *part,
+                 uint8_t less[FF_PAYLOAD_BYTES_MAX], ff_data *data)
+{
+    int bytes = ff_pack_record(pack, (enum ff_section_kind)ff_kind[part->kind].section, part->key,
+                               &data->bytes);
+    if (bytes < 0) return bytes;
+    data->byte_count = (uint32_t)bytes;
+    return part->kind == FF_KIND_REFINEMENT
+               ? ff_leave_out(pack, part->key, sides_sent(answer, pack, part->key), less, data)
+               : FF_OK;
+}
+
+int ff_view_answer_next(ff_view_answer *answer, const ff_pack *pack,
+                        uint8_t less[FF_PAYLOAD_BYTES_MAX], ff_message *message, int *error)
 {
     *error = FF_OK;
     if (answer->tells_roots) {
@@ -83,11 +120,11 @@ int ff_view_answer_next(ff_view_answer *answer, const ff_pack *pack, ff_message 
         return 1;
     }
     const ff_view_part *part = &answer->part[answer->row[answer->first]];
-    int bytes = ff_pack_record(pack, (enum ff_section_kind)ff_kind[part->kind].section, part->key,
-                               &message->u.part.bytes);
-    message->u.part.below = bytes < 0 ? 0 : part->below;
-    message->u.part.byte_count = bytes < 0 ? 0 : (uint32_t)bytes;
-    *error = bytes < 0 ? bytes : FF_OK;
+    ff_data data = { NULL, 0 };
+    *error = fetch(answer, pack, part, less, &data);
+    if (*error == FF_OK)
+        message->u.part =
+            (ff_part){ .below = part->below, .bytes = data.bytes, .byte_count = data.byte_count };
     return 1;
 }
 
@@ -99,8 +136,9 @@ void ff_view_answer_sent(ff_view_answer *answer, const ff_message *message)
     const ff_part *sent = &message->u.part;
     for (unsigned i = 0; i < sent->later; i++) append(answer, take_front(answer));
     if (sent->later) return;
-    const ff_view_part *part = &answer->part[take_front(answer)];
+    ff_view_part *part = &answer->part[take_front(answer)];
     uint32_t number = part->first;
+    part->sent = part->kind == FF_KIND_REFINEMENT && sent->byte_count > 0;
     for (unsigned q = 0; q < 4; q++)
         if (sent->below >> q & 1u) append(answer, number++);
 }

@@ -110,7 +110,7 @@ static int add(search *s, enum ff_kind kind, ff_key key)
     uint64_t bytes = bytes_of(s, kind, key);
     s->full |= s->count == FF_PARTS_MAX || s->bytes + bytes > s->view->bytes_max;
     if (s->full) return 0;
-    s->part[s->count++] = (ff_view_part){ key, (uint8_t)kind, 0, 0, 0 };
+    s->part[s->count++] = (ff_view_part){ .key = key, .kind = (uint8_t)kind };
     s->bytes += bytes;
     return 1;
 }
@@ -210,9 +210,9 @@ static void find_needed(search *s)
 int ff_view_named(const ff_get_view *view, ff_view_part *part)
 {
     for (unsigned i = 0; i < view->count; i++)
-        part[i] = (ff_view_part){ view->below[i],
-                                  view->roots >> i & 1u ? FF_KIND_ROOT : FF_KIND_REFINEMENT, 0, 0,
-                                  0 };
+        part[i] = (ff_view_part){ .key = view->below[i],
+                                  .kind = view->roots >> i & 1u ? FF_KIND_ROOT
+                                                                : FF_KIND_REFINEMENT };
     return view->count;
 }
 
@@ -239,7 +239,8 @@ static uint32_t arrange(search *s, ff_view_part *out, uint32_t count)
             int turn = take(s, FF_KIND_REFINEMENT, key);
             if (turn < 0) continue;
             out[i].below |= (uint8_t)(1u << q);
-            out[count++] = (ff_view_part){ key, FF_KIND_REFINEMENT, 0, 0, (uint16_t)turn };
+            out[count++] =
+                (ff_view_part){ .key = key, .kind = FF_KIND_REFINEMENT, .turn = (uint16_t)turn };
         }
     }
     return count;
@@ -254,7 +255,9 @@ static uint32_t first_parts(search *s, ff_view_part *out, ff_view_front *front)
         int turn = take(s, FF_KIND_REFINEMENT, view->edge[i]);
         if (turn < 0) continue;
         front->edge |= 1u << i;
-        out[count++] = (ff_view_part){ view->edge[i], FF_KIND_REFINEMENT, 0, 0, (uint16_t)turn };
+        out[count++] = (ff_view_part){ .key = view->edge[i],
+                                       .kind = FF_KIND_REFINEMENT,
+                                       .turn = (uint16_t)turn };
     }
     for (uint32_t i = 0; view->count == 0 && i < s->count; i++)
         if (s->part[i].kind == FF_KIND_ROOT) out[count++] = s->part[i];

@@ -12,6 +12,7 @@ typedef struct ff_view_part {
     uint8_t below;  /* as in ff_part */
     uint16_t first; /* the number of the first of those below */
     uint16_t turn;  /* how many others are more urgent */
+    uint8_t sent;   /* 1: with its payload */
 } ff_view_part;
 
 /* What is told before the parts: how many roots stand first that were not named; the bits of the

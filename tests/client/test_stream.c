@@ -289,11 +289,11 @@ static void queue_goes_by_class_then_value_then_age(void **state)
     assert_true(ff_requests_bytes(8) <= sizeof slots);
     ff_requests_init(&requests, 8, slots);
     ff_requests_rank_begin(&requests);
-    ff_requests_want(&requests, FF_KIND_REFINEMENT, 1, FF_CLASS_PREFETCH, 900, NULL);
-    ff_requests_want(&requests, FF_KIND_REFINEMENT, 2, FF_CLASS_IN_VIEW, 100, NULL);
-    ff_requests_want(&requests, FF_KIND_REFINEMENT, 3, FF_CLASS_IN_VIEW, 5000, NULL);
-    ff_requests_want(&requests, FF_KIND_REFINEMENT, 4, FF_CLASS_IN_VIEW, 5000, NULL);
-    ff_requests_want(&requests, FF_KIND_ROOT, 5, FF_CLASS_FIRST, 1, NULL);
+    ff_requests_want(&requests, FF_KIND_REFINEMENT, 1, FF_CLASS_PREFETCH, 900, 0, NULL);
+    ff_requests_want(&requests, FF_KIND_REFINEMENT, 2, FF_CLASS_IN_VIEW, 100, 0, NULL);
+    ff_requests_want(&requests, FF_KIND_REFINEMENT, 3, FF_CLASS_IN_VIEW, 5000, 0, NULL);
+    ff_requests_want(&requests, FF_KIND_REFINEMENT, 4, FF_CLASS_IN_VIEW, 5000, 0, NULL);
+    ff_requests_want(&requests, FF_KIND_ROOT, 5, FF_CLASS_FIRST, 1, 0, NULL);
     ff_requests_rank_end(&requests);
     static const ff_key order[] = { 5, 3, 4, 2 };
     for (unsigned i = 0; i < 4; i++) {
@@ -315,8 +315,8 @@ static void the_reserve_leaves_on_an_idle_link(void **state)
     ff_request out, other;
     ff_requests_init(&requests, 8, slots);
     for (ff_key key = 1; key < 9; key++)
-        ff_requests_want(&requests, FF_KIND_REFINEMENT, key, FF_CLASS_RESERVE, 9000, NULL);
-    ff_requests_want(&requests, FF_KIND_REFINEMENT, 20, FF_CLASS_PREFETCH, 1, NULL);
+        ff_requests_want(&requests, FF_KIND_REFINEMENT, key, FF_CLASS_RESERVE, 9000, 0, NULL);
+    ff_requests_want(&requests, FF_KIND_REFINEMENT, 20, FF_CLASS_PREFETCH, 1, 0, NULL);
     assert_true(ff_requests_waiting(&requests, FF_CLASS_PREFETCH));
     assert_false(ff_requests_waiting(&requests, FF_CLASS_IN_VIEW));
     assert_true(ff_requests_next(&requests, 0, 8, 4000, 1, &other));
@@ -329,7 +329,7 @@ static void the_reserve_leaves_on_an_idle_link(void **state)
     while (ff_requests_next(&requests, 0, 8, 4000, 1, &out)) sent++;
     assert_int_equal(sent, 3); /* of 200 bytes each, the third while fewer than 500 are out */
     assert_int_equal(requests.counts.reserve_sent, 3);
-    ff_requests_want(&requests, FF_KIND_REFINEMENT, 30, FF_CLASS_IN_VIEW, 1, NULL);
+    ff_requests_want(&requests, FF_KIND_REFINEMENT, 30, FF_CLASS_IN_VIEW, 1, 0, NULL);
     assert_true(ff_requests_next(&requests, 0, 8, 4000, 1, &other));
     assert_int_equal(other.key, 30);            /* what comes into view does not wait for it */
     ff_requests_came(&requests, other.id, 400); /* the first of several */
@@ -350,7 +350,7 @@ static void window_leaves_two_always(void **state)
     ff_request out;
     ff_requests_init(&requests, 8, slots);
     for (ff_key key = 0; key < 20; key++)
-        ff_requests_want(&requests, FF_KIND_ROOT, key, FF_CLASS_FIRST, 1, NULL);
+        ff_requests_want(&requests, FF_KIND_ROOT, key, FF_CLASS_FIRST, 1, 0, NULL);
     assert_true(ff_requests_next(&requests, 0, 1, 0, 1, &out));
     assert_true(ff_requests_next(&requests, 0, 1, 0, 1, &out));
     assert_false(ff_requests_next(&requests, 0, 1, 0, 1, &out));

@@ -2,7 +2,7 @@
  * (bits 4-6, modulo the number of codecs), smooth parent or an entered root (bit 7); bytes 1-2:
  * max_error, and in the highest bit whether the ground ends inside the grid: then bytes 3 and 4 say
  * after how many columns and rows of cells. When the payload decodes, its heights and marks must be
- * the slow decoder's. */
+ * the slow decoder's, and those of the payload without some of its sides. */
 #include "../../protocol/codec/ff_codec.h"
 #include "../rig/slow_decoder.h"
 
@@ -35,6 +35,32 @@ static void make_parent(const ff_terrain_info *info, ff_cells cells, int smooth,
     }
 }
 
+/* What has come beside the node: the sides of both grids, as they are left out. */
+static void know_sides(uint16_t *heights, uint16_t *slow, uint32_t side)
+{
+    for (uint32_t i = 0; i < side * side; i++) heights[i] = slow[i] = (uint16_t)(i * 40503u >> 3);
+}
+
+/* `heights`: of the payload, which has decoded. */
+static void leave_out_sides(const ff_terrain_info *info, ff_cells cells, const uint16_t *parent,
+                            ff_decoder *dec, const uint8_t *bytes, size_t count,
+                            const uint16_t *heights)
+{
+    static uint8_t less[FF_PAYLOAD_BYTES_MAX];
+    static uint16_t again[FF_REFINED_HEIGHTS_MAX];
+    static int32_t value[FF_REFINED_HEIGHTS_MAX];
+    ff_residuals residuals = { .value = value, .cells = cells };
+    uint32_t side = ff_refined_side(info);
+    int fewer = ff_without_sides(info, bytes, count, count & 15u, less);
+    if (fewer <= 0 || cells.columns < side - 1 || cells.rows < side - 1) return;
+    memcpy(again, heights, sizeof again);
+    for (uint32_t y = 1; y < side - 1; y++) memset(again + y * side + 1, 0, 2 * (side - 2));
+    int rc = ff_decode_refinement(dec, less, (size_t)fewer, &residuals);
+    assert(rc == FF_OK);
+    rc = ff_reconstruct_beside(info, parent, &residuals, again, codec_room);
+    assert(rc == FF_OK && memcmp(again, heights, 2u * side * side) == 0);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
     static int32_t value[FF_REFINED_HEIGHTS_MAX];
@@ -62,10 +88,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     assert(dec != NULL);
     bytes += head;
     count -= head;
+    know_sides(heights, slow, side);
     rc = refinement ? ff_decode_refinement(dec, bytes, count, &residuals)
                     : ff_decode_root(dec, bytes, count, &residuals);
     if (rc == FF_OK)
-        rc = refinement ? ff_reconstruct_refinement(&info, parent, &residuals, heights, codec_room)
+        rc = refinement ? ff_reconstruct_beside(&info, parent, &residuals, heights, codec_room)
                         : ff_reconstruct_root(&info, &residuals, heights, codec_room);
     if (info.entered) info.max_error = 0; /* SPEC.md, "Entry" */
     slow_rc = slow_decode_part(&info, residuals.cells.columns, residuals.cells.rows,
@@ -74,6 +101,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     if (rc == FF_OK) {
         assert(residuals.filled + 16 * residuals.leaf + 256 * residuals.stub == slow_rc);
         assert(memcmp(heights, slow, 2u * side * side) == 0);
+        if (refinement) leave_out_sides(&info, residuals.cells, parent, dec, bytes, count, heights);
+    } else if (refinement) {
+        static uint8_t less[FF_PAYLOAD_BYTES_MAX];
+        (void)ff_without_sides(&info, bytes, count, count & 15u, less);
     }
     free(memory);
     return 0;

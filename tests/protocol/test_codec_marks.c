@@ -98,8 +98,9 @@ static void check_marking(payload_test *test, int marks)
 static void check(payload_test *test, const uint16_t *source)
 {
     static int32_t value[FF_REFINED_HEIGHTS_MAX];
+    static uint8_t body[FF_PAYLOAD_BYTES_MAX];
     int all = test->parent ? 15 : 1, unmarked = 0;
-    test->res = (ff_residuals){ .value = value };
+    test->res = (ff_residuals){ .value = value, .body = body };
     memcpy(test->res.child_error, test->errors, 4);
     ff_encode_heights(test->info, test->parent, source, NULL, &test->res, test->decoded);
     for (int marks = 0; marks < 4096; marks++) {

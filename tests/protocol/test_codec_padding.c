@@ -57,9 +57,9 @@ static void check(edge_test *t)
     static int32_t value[FF_REFINED_HEIGHTS_MAX], taken[FF_REFINED_HEIGHTS_MAX];
     static uint16_t decoded[FF_REFINED_HEIGHTS_MAX], again[FF_REFINED_HEIGHTS_MAX],
         slow[FF_REFINED_HEIGHTS_MAX];
-    static uint8_t payload[FF_PAYLOAD_BYTES_MAX];
+    static uint8_t payload[FF_PAYLOAD_BYTES_MAX], body[FF_PAYLOAD_BYTES_MAX];
     const uint16_t *parent = t->root ? NULL : t->parent;
-    ff_residuals res = { .cells = t->cells, .value = value },
+    ff_residuals res = { .cells = t->cells, .value = value, .body = body },
                  out = { .cells = t->cells, .value = taken };
     uint32_t side = side_of(t), heights = side * side;
     size_t memory_bytes = ff_decoder_bytes(&t->info);

@@ -177,7 +177,7 @@ static size_t encode(const ff_terrain_info *info, const uint16_t *parent, const 
 /* clang-format off */
 const ff_codec *ff_codec_row(int codec)
 {
-#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, encode) \
+#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, make, encode) \
     { name, FF_NEEDS_##needs, memory, decode, predict, reconstruct },
     static const ff_codec rows[] = { FF_CODEC_LIST(ROW)
         { "parent", FF_NEEDS_PARENT, ff_no_memory, first_stage, ff_interpolate, second_stage } };
@@ -187,15 +187,23 @@ const ff_codec *ff_codec_row(int codec)
 
 ff_encode_fn *ff_codec_encoder(int codec)
 {
-#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, encode) encode,
+#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, make, encode) encode,
     static ff_encode_fn *const encoders[] = { FF_CODEC_LIST(ROW) encode };
 #undef ROW
     return codec >= 0 && codec <= CODEC_BY_PARENT ? encoders[codec] : NULL;
 }
 
+ff_make_fn *ff_codec_maker(int codec)
+{
+#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, make, encode) make,
+    static ff_make_fn *const makers[] = { FF_CODEC_LIST(ROW) ff_make_residuals };
+#undef ROW
+    return codec >= 0 && codec <= CODEC_BY_PARENT ? makers[codec] : NULL;
+}
+
 size_t ff_codec_head(int codec)
 {
-#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, encode) head,
+#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, make, encode) head,
     static const uint8_t heads[] = { FF_CODEC_LIST(ROW) 0 };
 #undef ROW
     return codec >= 0 && codec <= CODEC_BY_PARENT ? heads[codec] : 0;
@@ -203,7 +211,7 @@ size_t ff_codec_head(int codec)
 
 unsigned ff_codec_ways(int codec)
 {
-#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, encode) ways,
+#define ROW(number, constant, name, needs, head, ways, memory, decode, predict, reconstruct, make, encode) ways,
     static const uint8_t all[] = { FF_CODEC_LIST(ROW) 1 };
 #undef ROW
     return codec >= 0 && codec <= CODEC_BY_PARENT ? all[codec] : 0;

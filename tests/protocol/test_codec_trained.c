@@ -87,7 +87,8 @@ static const uint16_t *parent_of(const grid_test *t) { return t->root ? NULL : t
 static int encode(grid_test *t)
 {
     static int32_t value[FF_REFINED_HEIGHTS_MAX];
-    ff_residuals res = { .cells = t->cells, .value = value };
+    static uint8_t body[FF_PAYLOAD_BYTES_MAX];
+    ff_residuals res = { .cells = t->cells, .value = value, .body = body };
     ff_encode_heights(&t->info, parent_of(t), t->source, NULL, &res, t->decoded);
     t->count = res.count - (t->root ? FF_CORNERS : 0);
     return ff_encode_payload(&t->info, parent_of(t), t->decoded, &res, t->payload);
@@ -105,10 +106,11 @@ static int decode(const grid_test *t, const uint8_t *payload, size_t bytes, uint
     free(memory);
     if (rc != FF_OK) return rc;
     return t->root ? ff_reconstruct_root(&t->info, &out, heights, codec_room)
-                   : ff_reconstruct_refinement(&t->info, t->parent, &out, heights, codec_room);
+                   : ff_reconstruct_beside(&t->info, t->parent, &out, heights, codec_room);
 }
 
-/* Both decoders take the payload and make the same of it, or both refuse it. */
+/* Both decoders take the payload and make the same of it, or both refuse it. They find in the grid
+ * what the encoder has made of its sides, should some be left out, and nothing of the rest. */
 static int decode_both(const grid_test *t, const uint8_t *payload, size_t bytes, uint16_t *heights)
 {
     static uint16_t slow[FF_REFINED_HEIGHTS_MAX];
@@ -117,6 +119,10 @@ static int decode_both(const grid_test *t, const uint8_t *payload, size_t bytes,
     if (t->root && info.entered) info.max_error = 0;
     memcpy(exact, payload, bytes);
     exact = realloc(exact, bytes ? bytes : 1);
+    for (uint32_t i = 0, side = side_of(t); i < side * side; i++) {
+        int rim = i % side == 0 || i % side == side - 1 || i < side || i >= side * (side - 1);
+        heights[i] = slow[i] = rim ? t->decoded[i] : 12345;
+    }
     int rc = decode(t, exact, bytes, heights);
     int slow_rc = slow_decode_part(&info, t->cells.columns, t->cells.rows, parent_of(t), exact,
                                    bytes, slow);
@@ -156,8 +162,12 @@ static size_t spoilt_payload(grid_test *t)
     size_t bytes = (size_t)encode(t);
     if (random_below(2)) {
         uint32_t before = 1 + (t->root ? 8 : 0);
-        t->payload[0] = (uint8_t)((random_below(8) == 0) + (random_below(2) << 4)); /* no errors */
-        bytes = before + (t->payload[0] & 1 ? 2 * t->count : random_below(2 * t->count + 2));
+        t->payload[0] = (uint8_t)random_below(4); /* no errors */
+        if (random_below(2)) t->payload[0] |= (uint8_t)(random_below(16) << 4);
+        if (random_below(4)) t->payload[0] &= (uint8_t)~FF_TRAINED_WORDS;
+        bytes = before + ((t->payload[0] & FF_TRAINED_ALL) == FF_TRAINED_WORDS
+                              ? 2 * t->count
+                              : random_below(2 * t->count + 2));
         for (size_t i = 1; i < bytes; i++) t->payload[i] = (uint8_t)random_below(256);
     } else {
         for (uint32_t i = random_below(4); i > 0; i--)
@@ -190,7 +200,7 @@ static void any_bytes_are_read_alike(void **state)
         else
             refused++;
     }
-    assert_true(taken > 1500 && refused > 1000);
+    assert_true(taken > 1000 && refused > 1000);
 }
 
 /* ---- sizes ---- */
@@ -238,7 +248,7 @@ static void smooth_and_rough_ground_take_sets_of_their_own(void **state)
         set_grid(&t, k, 0, 0);
         make_ground(&t, ROUGH);
         encode(&t);
-        assert_int_equal(t.payload[0], 0x10);
+        assert_int_equal(t.payload[0], FF_TRAINED_SET);
         for (uint32_t i = 0, side = side_of(&t); i < side * side; i++)
             t.source[i] = (uint16_t)(20000 + i % side * (i % side) / 4 + 25 * (i / side) +
                                      random_below(3));
@@ -260,9 +270,10 @@ static void ground_that_only_the_second_set_foresees_is_no_leaf(void **state)
 {
     static grid_test t;
     static int32_t value[FF_REFINED_HEIGHTS_MAX];
-    ff_residuals res = { .value = value };
+    static uint8_t body[FF_PAYLOAD_BYTES_MAX];
+    ff_residuals res = { .value = value, .body = body };
     (void)state;
-    set_grid(&t, 3, 0, 0);
+    set_grid(&t, 2, 0, 0);
     make_ground(&t, ROUGH);
     res.cells = t.cells;
     for (unsigned way = 0; way < 2; way++) {
@@ -322,7 +333,98 @@ static void bodies_are_no_longer_than_words(void **state)
         }
 }
 
-/* All that is reserved in the head is refused. */
+/* ---- sides ---- */
+
+/* Which of the sides' points are coded is known only where the ground goes on beyond them. */
+static int may_leave_out(const grid_test *t, unsigned sides)
+{
+    uint32_t side = side_of(t);
+    return !(sides >> FF_SIDE_EAST & 1u && (t->cells.columns + 1u) / 2 * 2 < side - 1) &&
+           !(sides >> FF_SIDE_NORTH & 1u && (t->cells.rows + 1u) / 2 * 2 < side - 1);
+}
+
+static void what_lies_beside_a_node_need_not_come_again(void **state)
+{
+    static grid_test t;
+    static uint16_t again[FF_REFINED_HEIGHTS_MAX];
+    static uint8_t less[FF_PAYLOAD_BYTES_MAX];
+    uint32_t left_out = 0;
+    (void)state;
+    for (uint32_t run = 0; run < 5 * MAX_ERRORS * 2 * 16; run++) {
+        unsigned sides = run / 5 / MAX_ERRORS % 16;
+        set_grid(&t, (uint8_t)(1 + run % 5), 0, max_errors[run / 5 % MAX_ERRORS]);
+        if (run / 5 / MAX_ERRORS / 16)
+            t.cells.columns = (uint8_t)(1 + random_below(side_of(&t) - 1));
+        make_ground(&t, run % 2 ? ROUGH : SMOOTH);
+        int bytes = encode(&t);
+        int fewer = ff_without_sides(&t.info, t.payload, (size_t)bytes, sides, less);
+        if (t.payload[0] & FF_TRAINED_ALL) { /* sides apart would not pay, or words are as short */
+            assert_int_equal(fewer, 0);
+            continue;
+        }
+        assert_in_range(fewer, 1, bytes - (int)ff_trained_lengths(&t.info));
+        assert_int_equal(less[0], sides ? t.payload[0] | sides << 4 : t.payload[0] | 0xF1);
+        if (!may_leave_out(&t, sides)) {
+            assert_int_equal(decode_both(&t, less, (size_t)fewer, again), FF_ERR_FORMAT);
+            continue;
+        }
+        assert_int_equal(decode_both(&t, less, (size_t)fewer, again), FF_OK);
+        assert_memory_equal(again, t.decoded, 2 * side_of(&t) * side_of(&t));
+        assert_int_equal(ff_without_sides(&t.info, less, (size_t)fewer, sides, t.payload), 0);
+        left_out += sides != 0;
+    }
+    assert_true(left_out > 300);
+}
+
+/* Who has not put the sides into the grid is not given what happens to be there. */
+static void sides_are_left_out_for_those_who_know_them(void **state)
+{
+    static grid_test t;
+    static uint8_t less[FF_PAYLOAD_BYTES_MAX];
+    static int32_t value[FF_REFINED_HEIGHTS_MAX];
+    static uint16_t heights[FF_REFINED_HEIGHTS_MAX];
+    ff_residuals out = { .value = value };
+    (void)state;
+    set_grid(&t, 3, 0, 0);
+    make_ground(&t, ROUGH);
+    out.cells = t.cells;
+    int bytes = encode(&t), fewer = ff_without_sides(&t.info, t.payload, (size_t)bytes, 2, less);
+    void *memory = malloc(ff_decoder_bytes(&t.info));
+    ff_decoder *dec = ff_decoder_create(&t.info, memory, ff_decoder_bytes(&t.info));
+    assert_int_equal(ff_decode_refinement(dec, less, (size_t)fewer, &out), FF_OK);
+    assert_int_equal(out.sides, 1 << FF_SIDE_EAST);
+    assert_int_equal(ff_reconstruct_refinement(&t.info, t.parent, &out, heights, codec_room),
+                     FF_ERR_FORMAT);
+    free(memory);
+}
+
+/* A payload that is cut anywhere, or whose lengths are wrong, is not read beyond its end. */
+static void lengths_of_sides_are_held_to_the_payload(void **state)
+{
+    static grid_test t;
+    static uint8_t less[FF_PAYLOAD_BYTES_MAX];
+    static uint16_t heights[FF_REFINED_HEIGHTS_MAX];
+    (void)state;
+    set_grid(&t, 3, 0, 1);
+    make_ground(&t, ROUGH);
+    size_t bytes = (size_t)encode(&t), sides = 1 + 2;
+    assert_int_equal(t.payload[0] & ~FF_TRAINED_SET, 0);
+    for (unsigned s = 0; s < 4; s++) sides += t.payload[1 + s / 2] >> 4 * (s % 2) & 15u;
+    for (size_t cut = 0; cut < sides; cut++) {
+        uint8_t *exact = malloc(cut ? cut : 1);
+        memcpy(exact, t.payload, cut);
+        assert_int_equal(ff_without_sides(&t.info, exact, cut, 5, less), FF_ERR_TRUNCATED);
+        free(exact);
+        assert_true(decode_both(&t, t.payload, cut, heights) < 0);
+    }
+    for (unsigned s = 0; s < 4; s++) {
+        t.payload[1 + s / 2] ^= (uint8_t)(1u << 4 * (s % 2));
+        assert_true(decode_both(&t, t.payload, bytes, heights) < 0);
+        t.payload[1 + s / 2] ^= (uint8_t)(1u << 4 * (s % 2));
+    }
+}
+
+/* A head that means nothing is refused. */
 static void heads_are_held_to_what_they_mean(void **state)
 {
     static grid_test t;
@@ -332,10 +434,16 @@ static void heads_are_held_to_what_they_mean(void **state)
     make_ground(&t, FLAT);
     for (uint32_t head = 0; head < 256; head++) {
         uint8_t payload[1 + 4 + 2 * 208] = { (uint8_t)head };
-        uint32_t form = head >> 2 & 3, errors = form == 1 ? 1 : form == 2 ? 4 : 0;
-        size_t bytes = 1 + errors + (head & 1 ? 2 * 208 : 0);
+        uint32_t form = head >> 2 & 3, errors = form == 1 ? 1 : form == 2 ? 4 : 0, kept = 4;
+        uint32_t sides = head >> 4, words = head & 1, one = words && sides == 1;
+        size_t bytes = 1 + errors;
+        for (unsigned s = 0; s < 4; s++) kept -= !words && sides >> s & 1u;
+        if (words && !sides) bytes += 2 * 208;
+        /* a stream of zeros has a byte for each side */
+        if (!words || sides == 15) bytes += (!sides ? 2 : 0) + kept;
+        if (!sides && !words) payload[1 + errors] = payload[2 + errors] = 0x11;
         assert_int_equal(decode_both(&t, payload, bytes, heights),
-                         head & 0xE2 ? FF_ERR_FORMAT : FF_OK);
+                         words && sides && sides != 15 && !one ? FF_ERR_FORMAT : FF_OK);
     }
 }
 
@@ -384,16 +492,16 @@ static void every_decision_is_possible(void **state)
  * format. Their CRC-32, by k; refinements, then roots. */
 static void payloads_stay_as_they_are(void **state)
 {
-    static const uint32_t golden[2][FF_NODE_LOG2_MAX][2] = { { { 0x9bfb1c1b, 0xfcfc6e07 },
-                                                               { 0x47e545c7, 0xc4028e76 },
-                                                               { 0x0e2098cc, 0x41d41f2f },
-                                                               { 0xb76624f7, 0xd744b927 },
-                                                               { 0xf46301f8, 0xac788f2c } },
-                                                             { { 0xc239c6ab, 0x2c5aa1fc },
-                                                               { 0x9c3904de, 0xc843ddcf },
-                                                               { 0x644fa0d8, 0x95c32ebb },
-                                                               { 0xa3a2a13f, 0x87394c42 },
-                                                               { 0x20b90cf3, 0x0fc6f063 } } };
+    static const uint32_t golden[2][FF_NODE_LOG2_MAX][2] = { { { 0xf4b6e208, 0xa0cd5391 },
+                                                               { 0xc786fa0c, 0x27d2e8bf },
+                                                               { 0x7c46a7c1, 0x75c47c94 },
+                                                               { 0xfe559750, 0xd744b927 },
+                                                               { 0x81577574, 0xac788f2c } },
+                                                             { { 0xf90394b9, 0x8d79e344 },
+                                                               { 0xc2008510, 0xb69fc640 },
+                                                               { 0xbb70de47, 0x95c32ebb },
+                                                               { 0x227dfd53, 0x87394c42 },
+                                                               { 0x41b37a18, 0x0fc6f063 } } };
     static grid_test t;
     int differ = 0;
     (void)state;
@@ -433,6 +541,9 @@ int main(void)
         cmocka_unit_test(ground_that_only_the_second_set_foresees_is_no_leaf),
         cmocka_unit_test(streams_are_held_to_their_end),
         cmocka_unit_test(bodies_are_no_longer_than_words),
+        cmocka_unit_test(what_lies_beside_a_node_need_not_come_again),
+        cmocka_unit_test(sides_are_left_out_for_those_who_know_them),
+        cmocka_unit_test(lengths_of_sides_are_held_to_the_payload),
         cmocka_unit_test(heads_are_held_to_what_they_mean),
         cmocka_unit_test(below_leaves_all_is_prediction),
         cmocka_unit_test(every_decision_is_possible),

@@ -42,7 +42,7 @@ static ff_terrain_info terrain(void)
 
 static ff_message get(enum ff_kind kind, ff_key key)
 {
-    return (ff_message){ .type = FF_MSG_GET, .kind = kind, .u.get = { key } };
+    return (ff_message){ .type = FF_MSG_GET, .kind = kind, .u.get = { .key = key } };
 }
 
 /* Every type, with fields at their ends. */
@@ -58,7 +58,9 @@ static size_t samples(ff_message *list)
                                                               sizeof(columns));
     list[n++] = (ff_message){ .type = FF_MSG_HELLO, .u.hello = { UINT32_MAX, 0x01020304 } };
     list[n++] = get(FF_KIND_ROOT, ff_key_make(0, 0, 0));
-    list[n++] = get(FF_KIND_REFINEMENT, ff_key_make(FF_KEY_TILES_MAX - 1, 15, 0x3fffffff));
+    list[n++] = get(FF_KIND_REFINEMENT, ff_key_make(FF_KEY_TILES_MAX - 1, 14, 0xfffffff));
+    list[n - 1].u.get.sides = 15;
+    list[n++] = get(FF_KIND_TEXTURE, ff_key_make(FF_KEY_TILES_MAX - 1, 15, 0x3fffffff));
     list[n++] = get(FF_KIND_TEXTURE, ff_key_make(127, 3, 63));
     list[n++] = (ff_message){ .type = FF_MSG_GET,
                               .kind = FF_KIND_FACE,
@@ -175,6 +177,7 @@ static void assert_same_get(const ff_message *a, const ff_message *b)
         assert_same_panorama(&a->u.panorama, &b->u.panorama);
     } else {
         assert_true(a->u.get.key == b->u.get.key);
+        assert_int_equal(a->u.get.sides, b->u.get.sides);
     }
 }
 
@@ -290,8 +293,9 @@ static void what_is_said_most_often_is_short(void **state)
         ff_message message;
         int bytes;
     } list[] = {
-        { { .type = FF_MSG_GET, .kind = FF_KIND_REFINEMENT, .u.get = { 7ull << 32 | 16383 } }, 3 },
-        { { .type = FF_MSG_GET, .kind = FF_KIND_TEXTURE, .u.get = { 5ull << 36 | 3ull << 32 } },
+        { { .type = FF_MSG_GET, .kind = FF_KIND_REFINEMENT, .u.get = { 5ull << 32 | 1023, 15 } },
+          3 },
+        { { .type = FF_MSG_GET, .kind = FF_KIND_TEXTURE, .u.get = { 5ull << 36 | 3ull << 32, 0 } },
           3 },
         { { .type = FF_MSG_ANSWER, .kind = FF_KIND_ROOT, .u.data = { payload, 8191 } }, 8193 },
         { { .type = FF_MSG_ANSWER, .kind = FF_KIND_VIEW, .u.part = { 15, payload, 127, 0 } }, 129 },
@@ -433,13 +437,14 @@ static void lengths_and_headers(void **state)
     assert_decode("\xc0\x80\x80\x80\x80\x01\x00", 7, FF_ERR_RANGE); /* tile 2^28 */
     assert_decode("\xc0\x00\x00", 3, FF_ERR_RANGE);                 /* tile 0 is not said */
     assert_decode("\x81\x00", 2, FF_ERR_RANGE);                     /* a root of level 1 */
-    assert_decode("\x92\x10", 2, FF_ERR_RANGE);                     /* no such code at level 2 */
+    assert_decode("\x92\x80\x02", 3, FF_ERR_RANGE);                 /* no such code at level 2 */
     assert_decode("\x50\xff\x1f", 3, FF_ERR_RANGE);                 /* has a shorter form */
     assert_decode("\x54\x01\x00", 3, FF_ERR_RANGE);                 /* 2^18 + 1 bytes */
     assert_decode("\xe1\x00", 2, FF_ERR_RANGE);                     /* nothing, and more below it */
     assert_decode("\x41\x04\x03\x00\x00\x00", 6, FF_ERR_VERSION);   /* older */
-    assert_decode("\x41\x04\x09\x00\x00\x00", 6, FF_ERR_VERSION);   /* newer */
-    uint8_t old[74] = { 0x41, 72, 7 }; /* a whole WELCOME of version 7 */
+    assert_decode("\x9f\x00", 2, FF_ERR_RANGE); /* nothing is below the last level */
+    assert_decode("\x41\x04\x0a\x00\x00\x00", 6, FF_ERR_VERSION); /* newer */
+    uint8_t old[74] = { 0x41, 72, 7 };                            /* a whole WELCOME of version 7 */
     assert_decode((const char *)old, sizeof old, FF_ERR_VERSION);
 }
 
@@ -479,8 +484,11 @@ static void ranges_hold_both_ways(void **state)
     m.type = FF_MSG_GET;
     m.kind = FF_KIND_REFINEMENT;
     BAD(get, key = ff_key_make(0, 2, 16));
+    BAD(get, key = ff_key_make(0, 15, 0));
+    BAD(get, sides = 16);
     m.kind = FF_KIND_ROOT;
     BAD(get, key = ff_key_make(0, 1, 0));
+    BAD(get, sides = 1);
     static const ff_failed good_failed = { 0, -1 };
     m.type = FF_MSG_GOODBYE;
     BAD(failed, id = 1);

@@ -173,7 +173,8 @@ static int node_payload(const pack_fixture_desc *desc, enum ff_section_kind kind
     uint64_t number = ((uint64_t)ff_key_tile(key) << 2 * ff_key_level(key)) + ff_key_code(key);
     uint16_t source[FF_REFINED_HEIGHTS_MAX], refined[FF_REFINED_HEIGHTS_MAX];
     int32_t value[FF_REFINED_HEIGHTS_MAX];
-    ff_residuals res = { .value = value };
+    uint8_t body[FF_PAYLOAD_BYTES_MAX];
+    ff_residuals res = { .value = value, .body = body };
     if (ff_shape_has_ground(&desc->info, key))
         res.cells = ff_shape_cells(&desc->info, key, kind != FF_SECTION_ROOT);
     if (kind == FF_SECTION_ROOT) {

@@ -278,7 +278,7 @@ static int trained(const ff_terrain_info *info, int columns, int rows, const uin
     long corner[4], before = 0;
     int marks;
 
-    if (left < 1 || (at[0] & 0xE2) != 0) return -1;
+    if (left < 1) return -1;
     marks = front(!parent, at, left, corner, &before);
     if (marks < 0) return -1;
     return slow_trained(info, columns, rows, parent, corner, at[0], at + before, left - before,

@@ -17,6 +17,8 @@ typedef struct doubling {
     int repeated_x, repeated_y; /* the odd column, the odd row that are not told, or -1 */
     int64_t told;               /* residuals up to now */
     int set;                    /* of weights */
+    int left_out;               /* sides */
+    const uint16_t *known;      /* heights of these */
 } doubling;
 
 typedef struct stream {
@@ -25,6 +27,7 @@ typedef struct stream {
     int64_t count, taken;
     uint64_t width, code;
     int wrong;
+    const uint8_t *lengths; /* of sides, or NULL */
 } stream;
 
 /* A point, and which way its surroundings count. */
@@ -285,12 +288,13 @@ static int64_t residual(stream *s, const expected *is)
     return within(-32768, value, 32767);
 }
 
-/* Whether all of it has been read, and as it may be. `told`: how many residuals it has. */
-static int is_whole(const stream *s, int64_t told)
+/* Whether all of it has been read, and as it may be. `told`: how many residuals it is of, `whole`:
+ * bytes of the body. */
+static int is_whole(const stream *s, int64_t told, int64_t whole)
 {
     if (s->wrong || s->taken < s->count) return 0;
     if (s->plain) return s->taken == s->count;
-    return s->count < 2 * told && (s->count == 0 || s->bytes[s->count - 1] != 0);
+    return whole < 2 * told && (s->count == 0 || s->bytes[s->count - 1] != 0);
 }
 
 /* ---- points in their order ------------------------------------------------------------------- */
@@ -317,14 +321,68 @@ static void make(doubling *d, stream *s, int64_t step, int class, place at)
     d->off[at.y][at.x] = within(0, off, 255) * coarse;
 }
 
-static void make_sides(doubling *d, stream *s, int64_t step)
+/* The same of a point whose height is known. */
+static void meet(doubling *d, int64_t step, place at)
 {
-    int e = d->last_x, f = d->last_y;
+    expected is;
+    int64_t off, coarse = INT64_C(1) << within(0, highest_bit(step) - 4, 16);
 
-    for (int x = 1; x < e; x += 2) make(d, s, step, CLASS_R, (place){ x, 0, 1, 0, 0, 1 });
-    for (int x = 1; x < e; x += 2) make(d, s, step, CLASS_R, (place){ x, f, 1, 0, 0, -1 });
-    for (int y = 1; y < f; y += 2) make(d, s, step, CLASS_R, (place){ 0, y, 0, 1, 1, 0 });
-    for (int y = 1; y < f; y += 2) make(d, s, step, CLASS_R, (place){ e, y, 0, 1, -1, 0 });
+    if (at.x == d->repeated_x || at.y == d->repeated_y) return;
+    d->height[at.y][at.x] = d->known[at.y * (d->cells + 1) + at.x];
+    is = expect(d, &at, CLASS_R, step);
+    off = (llabs(16 * d->height[at.y][at.x] - is.mean_q4) + 8) / 16 / coarse;
+    d->off[at.y][at.x] = within(0, off, 255) * coarse;
+    d->told++; /* words would have told it, too */
+}
+
+static int length_told(const uint8_t *lengths, int bits, int side)
+{
+    int length = 0;
+
+    for (int i = 0; i < bits; i++) {
+        int at = side * bits + i;
+        length += (lengths[at / 8] >> at % 8 & 1) << i;
+    }
+    return length;
+}
+
+/* Reads what is left again, from where a side's stream has ended. `points`: 0, and it had none. */
+static void end_side(stream *s, int side, int points, int bits)
+{
+    int64_t bytes = points ? s->taken - 4 + (s->width < 1 << 25 ? 2 : 1) : 0;
+    stream next;
+
+    if (bytes > s->count || (s->lengths && length_told(s->lengths, bits, side) != bytes)) {
+        s->wrong = 1;
+        bytes = within(0, bytes, s->count);
+    }
+    next = opened(0, s->bytes + bytes, s->count - bytes);
+    next.wrong = s->wrong;
+    next.lengths = s->lengths;
+    *s = next;
+}
+
+/* South, east, north, west; a refinement has a stream for each. */
+static void make_sides(doubling *d, stream *s, int64_t step, int apart, int bits)
+{
+    const int e = d->last_x, f = d->last_y;
+    const place first[4] = {
+        { 1, 0, 1, 0, 0, 1 }, { e, 1, 0, 1, -1, 0 }, { 1, f, 1, 0, 0, -1 }, { 0, 1, 0, 1, 1, 0 }
+    };
+
+    for (int side = 0; side < 4; side++) {
+        int points = 0;
+        for (place at = first[side]; at.x <= e && at.y <= f;
+             at.x += 2 * at.along_x, at.y += 2 * at.along_y) {
+            if (d->left_out >> side & 1) {
+                meet(d, step, at);
+                continue;
+            }
+            points += at.x != d->repeated_x && at.y != d->repeated_y;
+            make(d, s, step, CLASS_R, at);
+        }
+        if (apart && !(d->left_out >> side & 1)) end_side(s, side, points, bits);
+    }
 }
 
 static void make_beside_sides(doubling *d, stream *s, int64_t step)
@@ -413,12 +471,20 @@ int slow_trained(const ff_terrain_info *info, int columns, int rows, const uint1
                  uint16_t *heights)
 {
     static doubling d;
-    stream s = opened(head & 1, body, bytes);
+    int words = head & 1, sides = head >> 4 & 15, plain = words && !sides;
+    int bits = info->node_log2 + 1, apart = parent && !plain && !(words && sides == 1),
+        lengths = apart && !words && !sides ? (info->node_log2 + 2) / 2 : 0;
+    stream s = opened(plain, body + lengths, bytes - lengths);
     int64_t step = 2 * (int64_t)info->max_error + 1;
     int node = 1 << info->node_log2, cells = parent ? 2 * node : node;
 
     d.told = 0;
-    d.set = head >> 4 & 1;
+    d.set = head >> 1 & 1;
+    d.left_out = words ? 0 : sides;
+    d.known = heights;
+    if ((words && sides && sides != 15 && sides != 1) || (!parent && sides) || lengths > bytes)
+        return -1;
+    s.lengths = lengths ? body : NULL;
     d.cells = parent ? node : 1;
     for (int y = 0; y <= d.cells; y++)
         for (int x = 0; x <= d.cells; x++)
@@ -428,7 +494,8 @@ int slow_trained(const ff_terrain_info *info, int columns, int rows, const uint1
         spread(&d);
         set_ground(&d, columns, rows, cells / d.cells);
         make_provisional(&d);
-        make_sides(&d, &s, step);
+        if ((d.left_out & 2 && d.last_x < cells) || (d.left_out & 4 && d.last_y < cells)) return -1;
+        make_sides(&d, &s, step, apart, bits);
         make_beside_sides(&d, &s, step);
         make_centres(&d, &s, step);
         make_between(&d, &s, step);
@@ -436,5 +503,5 @@ int slow_trained(const ff_terrain_info *info, int columns, int rows, const uint1
     }
     for (int y = 0; y <= cells; y++)
         for (int x = 0; x <= cells; x++) heights[y * (cells + 1) + x] = (uint16_t)d.height[y][x];
-    return is_whole(&s, d.told) ? 0 : -1;
+    return is_whole(&s, d.told, bytes) ? 0 : -1;
 }

@@ -7,9 +7,9 @@
 
 #include "../../protocol/ff_terrain.h"
 
-/* All heights of a grid, row by row, from a payload's head and its body. `columns`, `rows`: cells
- * with ground. A root has no `parent` but four `corner` values. -1 when the body breaks a rule of
- * the specification. */
+/* All heights of a grid, row by row, from a payload's head and its body; of sides that are left
+ * out, `heights` has them. `columns`, `rows`: cells with ground. A root has no `parent` but four
+ * `corner` values. -1 when head or body break a rule of the specification. */
 int slow_trained(const ff_terrain_info *info, int columns, int rows, const uint16_t *parent,
                  const long *corner, unsigned head, const uint8_t *body, long bytes,
                  uint16_t *heights);

@@ -115,7 +115,7 @@ static void nodes_of_every_pack_are_answered(void **state)
     for (uint32_t tile = 0; tile <= 6; tile++) {
         ff_message ask = { .type = FF_MSG_GET, .kind = FF_KIND_REFINEMENT };
         const uint8_t *payload;
-        ask.u.get = (ff_get){ ff_key_make(tile, 1, 2) };
+        ask.u.get = (ff_get){ .key = ff_key_make(tile, 1, 2) };
         say(session, &ask);
         ff_message answer = next_of(session);
         if (tile == 6) {

@@ -36,6 +36,7 @@ typedef struct heights {
     uint8_t between[FF_REFINED_HEIGHTS_MAX];
     uint16_t parent[FF_NODE_HEIGHTS_MAX], decoded[FF_REFINED_HEIGHTS_MAX];
     int32_t value[FF_REFINED_HEIGHTS_MAX];
+    uint8_t body[FF_PAYLOAD_BYTES_MAX];
     ff_residuals residuals;
 } heights;
 
@@ -60,6 +61,7 @@ static void decode_root(bake_levels *levels, uint32_t tile, heights *h)
     uint32_t side = ff_node_side(info), cell = root_cell(levels);
     bake_gather(levels->source, levels->pitch, side, cell, source);
     h->residuals = (ff_residuals){ .value = h->value,
+                                   .body = h->body,
                                    .cells = ff_shape_cells(info, ff_key_make(tile, 0, 0), 0) };
     ff_encode_heights(info, NULL, source, gather_between(levels, 0, side, cell, h->between),
                       &h->residuals, h->decoded);
@@ -74,7 +76,8 @@ static void decode_children(bake_levels *levels, ff_key key, size_t at, uint32_t
     size_t pitch = levels->pitch;
     bake_gather(levels->decoded + at, pitch, ff_node_side(info), cell, h->parent);
     bake_gather(levels->source + at, pitch, ff_refined_side(info), cell / 2, source);
-    h->residuals = (ff_residuals){ .value = h->value, .cells = ff_shape_cells(info, key, 1) };
+    h->residuals =
+        (ff_residuals){ .value = h->value, .body = h->body, .cells = ff_shape_cells(info, key, 1) };
     ff_encode_heights(info, h->parent, source,
                       gather_between(levels, at, ff_refined_side(info), cell / 2, h->between),
                       &h->residuals, h->decoded);

@@ -50,7 +50,7 @@ PLACES = {  # what each counts to under each mark; None: it has nothing to do th
     "client/source/": (LINK, WISHES, None),
     "client/terrain/ff_estimate.o client/terrain/ff_estimate_beyond.o client/terrain/ff_estimate_far.o client/terrain/ff_gaze.o": (None, PANORAMA, None),  # by far auto alone
     "client/terrain/ff_evict.o client/terrain/ff_tree.o": (None, TAKE_IN, STITCH),
-    "client/terrain/ff_foresee.o client/terrain/ff_reserve.o client/terrain/ff_wish.o": (None, WISHES, STITCH),
+    "client/terrain/ff_foresee.o client/terrain/ff_reserve.o client/terrain/ff_sides.o client/terrain/ff_wish.o": (None, WISHES, STITCH),
     "client/terrain/ff_grounds.o client/terrain/ff_cover.o client/terrain/ff_seam.o client/terrain/ff_seam_dive.o client/terrain/ff_seam_rim.o": (None, MEASURE, STITCH),
     "client/terrain/ff_limit.o client/terrain/ff_measure.o client/terrain/ff_pool.o client/terrain/ff_restrict.o client/terrain/ff_select.o": (None, MEASURE, STITCH),
     "client/terrain/ff_spread.o": (None, MEASURE, None),

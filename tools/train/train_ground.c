@@ -91,7 +91,7 @@ typedef struct maker {
     const uint16_t *source;
     train_point point;
     double bits;
-    int32_t residual[FF_REFINED_HEIGHTS_MAX], *next, quantum;
+    int32_t residual[FF_REFINED_HEIGHTS_MAX], quantum;
 } maker;
 
 static int32_t residual_of(const maker *m, const ff_expected *p)
@@ -117,7 +117,6 @@ static uint16_t make_height(void *context, const ff_expected *p)
     m->point.height = m->source[p->at];
     m->point.residual = residual;
     m->eye->point(m->eye->context, &m->point);
-    *m->next++ = residual;
     return ff_dequantise(m->quantum, p->predicted, residual);
 }
 
@@ -131,10 +130,11 @@ static unsigned choose_set(maker *m, const uint16_t *parent, uint16_t *grid, uin
 {
     double least = HUGE_VAL;
     unsigned best = 0;
+    ff_points points = { .height = try_height, .context = m };
     if (m->choice == TRAIN_BY_LEVEL) return cell >= COARSE_CELL;
     for (unsigned set = 0; set < FF_TRAINED_SETS; set++) {
         m->bits = 0;
-        ff_expect(m->by, set, &m->info, (ff_cells){ 0, 0 }, parent, grid, 1, room, try_height, m);
+        ff_expect(m->by, set, &m->info, (ff_cells){ 0, 0 }, parent, grid, 1, room, &points);
         if (m->bits < least) best = set, least = m->bits;
     }
     return best;
@@ -148,8 +148,8 @@ static void make_grid(maker *m, const uint16_t *parent, uint32_t x, uint32_t y, 
     static uint16_t room[FF_CODEC_ROOM_MAX / 2 + 1];
     static uint8_t out[FF_PAYLOAD_BYTES_MAX];
     bake_gather(source_at(m, x, y), m->ground->width, side, cell, source);
+    ff_points points = { .height = make_height, .context = m };
     m->source = source;
-    m->next = m->residual;
     for (uint32_t i = 0; !parent && i < FF_CORNERS; i++) {
         uint32_t at = ff_corner_at(&m->info, i);
         grid[at] = ff_dequantise(m->quantum, 0, (source[at] + m->quantum / 2) / m->quantum);
@@ -158,12 +158,11 @@ static void make_grid(maker *m, const uint16_t *parent, uint32_t x, uint32_t y, 
     /* a level has a fourth of the next one's points, and flights take most of the coarser ones */
     m->point.share = cell;
     m->point.set = choose_set(m, parent, grid, cell, room);
-    ff_expect(m->by, m->point.set, &m->info, (ff_cells){ 0, 0 }, parent, grid, 1, room, make_height,
-              m);
+    ff_expect(m->by, m->point.set, &m->info, (ff_cells){ 0, 0 }, parent, grid, 1, room, &points);
     bake_scatter(grid, m->side, side, cell, m->decoded + (size_t)y * m->side + x);
     if (!m->eye->payload) return;
-    size_t bytes = ff_trained_stream(m->by, m->point.set, &m->info, (ff_cells){ 0, 0 }, parent,
-                                     grid, m->residual, out, sizeof out);
+    size_t bytes = ff_trained_put(m->by, m->point.set, &m->info, (ff_cells){ 0, 0 }, parent,
+                                  &(ff_source_heights){ source, NULL }, m->residual, grid, 0, out, NULL);
     m->eye->payload(m->eye->context, bytes + (parent ? 0 : 2 * FF_CORNERS));
 }
 

@@ -2,6 +2,7 @@
 #include "ff_stream.h"
 #include "ff_receive.h"
 #include "../../../protocol/ff_assert.h"
+#include "../../../protocol/shape/ff_shape.h"
 
 #include <string.h>
 
@@ -221,13 +222,32 @@ static int connect_step(ff_stream *stream, int64_t now_us)
     return 1;
 }
 
+/* Sides of a refinement that are held, or are asked for already: answers come in order. */
+static unsigned sides_known(const ff_stream *stream, const ff_request *request)
+{
+    const ff_intake *intake = stream->intake;
+    int ground = ff_intake_ground(intake, request->key);
+    unsigned sides = request->sides;
+    FF_ASSERT(ground >= 0);
+    if (request->kind != FF_KIND_REFINEMENT) return 0;
+    for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
+        ff_key beside =
+            ff_shape_neighbour(&intake->info[ground], request->key, (enum ff_side)side).key;
+        if (beside != FF_KEY_NONE && ff_requests_out(intake->requests, FF_KIND_REFINEMENT, beside))
+            sides |= 1u << side;
+    }
+    return sides;
+}
+
 static void encode_request(ff_stream *stream, const ff_request *request)
 {
     FF_ASSERT(request->state == FF_REQUEST_SENT && has_send_room(stream));
     const ff_requests *requests = stream->intake->requests;
     ff_message message = { .type = FF_MSG_GET, .kind = (enum ff_kind)request->kind };
     switch ((enum ff_kind_asks)ff_kind[request->kind].asks) {
-        case FF_ASKS_NODE: message.u.get = (ff_get){ request->key }; break;
+        case FF_ASKS_NODE:
+            message.u.get = (ff_get){ request->key, (uint8_t)sides_known(stream, request) };
+            break;
         case FF_ASKS_VIEW:
             message.u.view = requests->view;
             ff_parts_begin(&stream->parts, &requests->view);
