@@ -1,5 +1,6 @@
 #include "bake_info.h"
 #include "bake_info_about.h"
+#include "bake_info_sides.h"
 
 #include "../../protocol/shape/ff_shape.h"
 
@@ -119,8 +120,11 @@ void bake_info_print(const ff_pack *pack, const char *path)
         putchar('\n');
     }
     uint64_t source = source_samples(&pack->header.info), index = index_bytes(pack);
-    printf("\nheights   %12" PRIu64 " bytes, %.3f bits a sample of the source\n",
-           heights.payload_bytes, per(heights.payload_bytes, source));
+    printf("\nheights   %12" PRIu64
+           " bytes, %.3f bits a sample of the source, %.3f where no side is "
+           "fetched twice\n",
+           heights.payload_bytes, per(heights.payload_bytes, source),
+           per(bake_info_sides_once(pack), source));
     printf("textures  %12" PRIu64 " bytes\n", textures.payload_bytes);
     printf("overhead  %12" PRIu64 " bytes (header, indexes, checksums, what is said of it)\n",
            pack->size - heights.payload_bytes - textures.payload_bytes);
@@ -151,7 +155,7 @@ static void print_terrain_json(const ff_terrain_info *info)
 
 void bake_info_print_json(const ff_pack *pack)
 {
-    uint64_t height_bytes = 0, texture_bytes = 0;
+    uint64_t height_bytes = 0, height_index_bytes = 0, texture_bytes = 0;
     uint64_t source = source_samples(&pack->header.info);
     printf("{\"bytes\": %" PRIu64 ", ", pack->size);
     print_terrain_json(&pack->header.info);
@@ -161,12 +165,15 @@ void bake_info_print_json(const ff_pack *pack)
         const ff_pack_section *section = &pack->header.section[i];
         section_sum sum = sum_up(pack, i);
         *(sum.new_samples ? &height_bytes : &texture_bytes) += sum.payload_bytes;
+        if (sum.new_samples) height_index_bytes += ff_index_bytes(&section->index);
         printf("%s{\"kind\": \"%s\", \"level\": %u, \"records\": %" PRIu64 ", \"bytes\": %" PRIu64
                ", \"new_samples\": %" PRIu64 ", \"bits_per_new_sample\": %.4f}",
                i ? ", " : "", ff_kind_of_section(section->kind)->name, section->level, sum.records,
                sum.payload_bytes, sum.new_samples, per(sum.payload_bytes, sum.new_samples));
     }
     printf("], \"height_bytes\": %" PRIu64
-           ", \"bits_per_sample\": %.4f, \"texture_bytes\": %" PRIu64 "}\n",
-           height_bytes, per(height_bytes, source), texture_bytes);
+           ", \"bits_per_sample\": %.4f, \"bits_per_sample_sides_once\": %.4f, "
+           "\"bits_per_sample_with_index\": %.4f, \"texture_bytes\": %" PRIu64 "}\n",
+           height_bytes, per(height_bytes, source), per(bake_info_sides_once(pack), source),
+           per(height_bytes + height_index_bytes, source), texture_bytes);
 }

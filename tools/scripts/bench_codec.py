@@ -102,7 +102,7 @@ class Bench:
         if info["max_error"] != steps:
             raise SystemExit("bench_codec: %s: an error of %d steps, not %d" % (path, info["max_error"], steps))
         row = {"ground": ground.name, "error_m": metres, "codec": codec, "tables": tables, "piece": (1 << node_log2) + 1,
-               "bits": 8 * info["height_bytes"] / (ground.side[0] * ground.side[1])}
+               "bits": info["bits_per_sample"], "bits_once": info["bits_per_sample_sides_once"]}
         run([export, path, "--quiet", "-o", path + ".r16"])
         row.update(errors_of(ground, heights, codec_grounds.read(path + ".r16")))
         if tables != "held out" and self.options.decoder and self.options.plugin:
