@@ -77,6 +77,9 @@ static void count_messages(client_rig *rig, const uint8_t *bytes, size_t count)
     for (int used; count && (used = ff_message_decode(bytes, count, &message)) > 0;
          bytes += used, count -= (size_t)used) {
         if (message.type == FF_MSG_GET) rig->asked[message.kind]++;
+        if (message.type == FF_MSG_GET && message.kind == FF_KIND_REFINEMENT)
+            for (unsigned sides = message.u.get.sides; sides; sides &= sides - 1)
+                rig->sides_left_out++;
         rig->pings += message.type == FF_MSG_PING;
         if (message.type == FF_MSG_GET_ABOUT && !rig->asked_about++)
             rig->about_at = rig->bytes_down;
@@ -176,7 +179,7 @@ static void colour(void *context, int64_t x_wu, int64_t y_wu, uint8_t rgb[3])
 
 #define SAMPLES 129 /* that fill the usual pack's tiles, each way */
 
-enum variant { USUAL, OTHER, FILLED, LEAVES, STUBS, PICTURES };
+enum variant { USUAL, OTHER, FILLED, LEAVES, STUBS, PICTURES, TRAINED };
 
 static void open_pack(client_rig *rig, unsigned texture_log2, unsigned node_log2,
                       enum variant variant, uint32_t samples_x, uint32_t samples_y)
@@ -194,6 +197,7 @@ static void open_pack(client_rig *rig, unsigned texture_log2, unsigned node_log2
     desc.info.texture_log2 = (uint8_t)texture_log2;
     desc.info.texture_levels = texture_log2 ? 3 : 0;
     if (variant == PICTURES) desc.info.flags |= FF_TERRAIN_PICTURES;
+    if (variant == TRAINED) desc.info.codec = FF_CODEC_TRAINED;
     desc.info.hoffset_wu = variant == OTHER ? 1000 : 0;
     desc.info.epsg = rig->epsg;
     desc.info.origin_x_mm = rig->origin_mm[0];
@@ -243,6 +247,8 @@ void rig_use_pictures(client_rig *rig, unsigned texture_log2)
 {
     open_pack(rig, texture_log2, 3, PICTURES, SAMPLES, SAMPLES);
 }
+
+void rig_use_trained(client_rig *rig) { open_pack(rig, 0, 3, TRAINED, SAMPLES, SAMPLES); }
 
 void rig_use_filled(client_rig *rig) { open_pack(rig, 0, 3, FILLED, SAMPLES, SAMPLES); }
 

@@ -30,6 +30,7 @@ typedef struct client_rig {
     uint64_t bytes_down;
     unsigned connections;
     uint32_t asked[FF_KIND_COUNT]; /* messages from the client, by kind */
+    uint32_t sides_left_out;       /* of refinements asked for singly */
     uint32_t pings, asked_about;
     uint64_t about_at; /* bytes_down when that was asked first */
     ff_list about;     /* what the pack says of itself */
@@ -54,6 +55,8 @@ void rig_use_samples(client_rig *rig, uint32_t samples_x, uint32_t samples_y,
                      unsigned texture_log2);
 /* As rig_open, with images that are pictures, not JPEGs. */
 void rig_use_pictures(client_rig *rig, unsigned texture_log2);
+/* As rig_open, with heights of codec trained, which can leave out sides. */
+void rig_use_trained(client_rig *rig);
 /* As rig_open, with a filled void (pack_fixture_hole). */
 void rig_use_filled(client_rig *rig);
 /* As rig_open, with nothing stored below level 1. */
