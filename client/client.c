@@ -80,7 +80,7 @@ void ff_client_default_desc(ff_client_desc *desc)
 {
     if (!desc->width) desc->width = 240;
     if (!desc->height) desc->height = 320;
-    if (!desc->in_flight_max) desc->in_flight_max = 32;
+    if (!desc->in_flight_max) desc->in_flight_max = desc->memory_bytes < 1u << 20 ? 32 : 48;
     if (!desc->answer_timeout_ms) desc->answer_timeout_ms = 60000;
     default_quality(desc);
     default_panorama(&desc->panorama, desc->width);

@@ -63,7 +63,7 @@ static void want_tree(ff_client *client)
 
 static void want_textures(ff_client *client, const ff_view *view, const ff_quality *quality)
 {
-    ff_texture_wish wish[FF_TEXTURE_WISHES];
+    ff_texture_wish *wish = client->texture_wish;
     const ff_drawn *drawn;
     uint32_t drawn_count = ff_tree_drawn(client->tree, &drawn);
     uint32_t count = ff_textures_wishes(&client->textures, client->tree, drawn, drawn_count, view,

@@ -185,7 +185,7 @@ typedef struct ff_client_desc {
      * each entry; a server is asked for those alone, and they have room in the block. Default:
      * nothing */
     uint32_t about;
-    /* requests sent and unanswered at most, default 32 */
+    /* requests sent and unanswered at most, default 48; 32 in less than 1 MB */
     uint16_t in_flight_max;
     /* A connection silent this long with requests out is closed and made anew, default 60000. Never
      * shorter than four round trips, and doubled up to four times while no answer has ever come. */

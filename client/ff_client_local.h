@@ -21,7 +21,7 @@
 #include "images/ff_textures.h"
 
 #define FF_TREE_WISHES     96u
-#define FF_TEXTURE_WISHES  24u
+#define FF_TEXTURE_WISHES  40u
 #define FF_PREFETCH_WISHES 8u
 #define FF_RESERVE_WISHES  16u
 
@@ -46,6 +46,7 @@ struct ff_client {
     c3d_device *device;
     ff_terrain_view view;
     ff_textures textures;
+    ff_texture_wish texture_wish[FF_TEXTURE_WISHES]; /* scratch of the ranking */
     ff_panorama panorama;
     ff_balance balance;
     uint32_t frame_cost; /* as the embedder reports it; 0: triangles are counted */

@@ -30,6 +30,8 @@
     TOLD(uint32_t, textures_held, from->client->textures.held, "images of the ground") \
     TOLD(uint32_t, textures_high, from->client->textures.high, "the most at once") \
     TOLD(uint32_t, textures_full, from->client->textures.full, "images that found no room") \
+    KEPT(uint32_t, textures_lacking, from->client->textures.lacking, \
+         "nodes drawn with the image of one above them, until theirs has come") \
     TOLD(uint32_t, panorama_requests, from->requests.of[FF_KIND_FACE].sent, "sent") \
     TOLD(uint32_t, panorama_faces, from->client->panorama.faces, "that came") \
     TOLD(uint32_t, panorama_faces_empty, from->client->panorama.faces_empty, \

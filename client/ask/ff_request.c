@@ -1,12 +1,11 @@
-#include "ff_request.h"
+#include "ff_request_local.h"
 #include "../../protocol/ff_assert.h"
 
 #include <string.h>
 
-#define HASH_START         UINT64_C(0xcbf29ce484222325)
-#define HASH_PRIME         UINT64_C(0x100000001b3)
 #define ANSWER_BYTES_START 200u /* before the first answer of a kind: Hybrid's 9x9 node is 182 */
-#define SEVERAL            16u /* so many times that of an image, or of a view's answers together */
+#define SEVERAL            16u  /* so many times that of a face, or of a view's answers together */
+#define SOME               3u   /* of a texture, or of a sector */
 #define IN_FLIGHT_ALWAYS   2u
 #define RESERVE_SHARE      8u /* of the bytes that may be in flight */
 
@@ -27,6 +26,13 @@ size_t ff_requests_bytes(unsigned in_flight_max)
     return slots_for(in_flight_max) * sizeof(ff_request);
 }
 
+static uint32_t times_a_node(unsigned kind)
+{
+    int brings = ff_kind[kind].brings;
+    if (brings == FF_BRINGS_PARTS || brings == FF_BRINGS_FACE) return SEVERAL;
+    return ff_kind[kind].has_image ? SOME : 1;
+}
+
 void ff_requests_init(ff_requests *requests, unsigned in_flight_max, void *memory)
 {
     FF_ASSERT(slots_for(in_flight_max) <= UINT16_MAX); /* ids on the wire are slots + 1 */
@@ -35,13 +41,11 @@ void ff_requests_init(ff_requests *requests, unsigned in_flight_max, void *memor
     requests->slot = memory;
     requests->slot_count = (uint16_t)slots_for(in_flight_max);
     requests->queued_max = FF_REQUESTS_QUEUED_MAX;
-    requests->hash = HASH_START;
+    requests->hash = FF_REQUEST_HASH_START;
     memset(requests->slot, 0, ff_requests_bytes(in_flight_max));
     for (unsigned kind = 0; kind < FF_KIND_COUNT; kind++)
         for (unsigned level = 0; level < 16; level++)
-            requests->answer_q4[kind][level] =
-                16 * ANSWER_BYTES_START *
-                (ff_kind[kind].has_image || ff_kind[kind].brings == FF_BRINGS_PARTS ? SEVERAL : 1);
+            requests->answer_q4[kind][level] = 16 * ANSWER_BYTES_START * times_a_node(kind);
 }
 
 static unsigned level_of(const ff_request *request)
@@ -345,8 +349,6 @@ static int goes_before(const ff_request *a, const ff_request *b)
     return a->sequence < b->sequence;
 }
 
-static void hash_word(uint64_t *hash, uint64_t word) { *hash = (*hash ^ word) * HASH_PRIME; }
-
 static unsigned answers_to(const ff_requests *requests, const ff_request *request)
 {
     switch ((enum ff_kind_asks)ff_kind[request->kind].asks) {
@@ -356,40 +358,6 @@ static unsigned answers_to(const ff_requests *requests, const ff_request *reques
         case FF_ASKS_VIEW: break;
     }
     return 1;
-}
-
-static void hash_view(uint64_t *hash, const ff_get_view *view)
-{
-    for (int i = 0; i < 3; i++) hash_word(hash, (uint32_t)view->position_wu[i]);
-    hash_word(hash, (uint32_t)view->yaw << 16 | view->pitch);
-    hash_word(hash, view->bytes_max);
-    hash_word(hash, view->roots);
-    for (unsigned i = 0; i < view->count; i++) hash_word(hash, view->below[i]);
-    for (unsigned i = 0; i < view->edge_count; i++) hash_word(hash, view->edge[i]);
-}
-
-static void hash_place(uint64_t *hash, const int32_t position_wu[3], const uint8_t *list,
-                       unsigned count)
-{
-    for (int i = 0; i < 3; i++) hash_word(hash, (uint32_t)position_wu[i]);
-    for (unsigned i = 0; i < count; i++) hash_word(hash, list[i]);
-}
-
-static void hash_request(uint64_t *hash, const ff_requests *requests, const ff_request *request)
-{
-    const ff_ask *ask = request->ask ? ff_requests_ask_of(requests, request) : NULL;
-    hash_word(hash, request->kind);
-    switch ((enum ff_kind_asks)ff_kind[request->kind].asks) {
-        case FF_ASKS_NODE: hash_word(hash, request->key); break;
-        case FF_ASKS_VIEW: hash_view(hash, &requests->view); break;
-        case FF_ASKS_PANORAMA:
-            hash_place(hash, ask->panorama.position_wu, ask->panorama.face,
-                       ask->panorama.face_count);
-            break;
-        case FF_ASKS_FAR:
-            hash_place(hash, ask->far.position_wu, ask->far.sector, ask->far.sector_count);
-            break;
-    }
 }
 
 static void count_one(uint32_t *count, uint32_t *high)
@@ -408,7 +376,7 @@ static void count_sent(ff_requests *requests, const ff_request *request)
     counts->bytes_in_flight += request->bytes_expected;
     counts->reserve_sent += request->rank == FF_CLASS_RESERVE;
     counts->reserve_in_flight += request->rank == FF_CLASS_RESERVE;
-    hash_request(&requests->hash, requests, request);
+    ff_request_hash(&requests->hash, requests, request);
 }
 
 /* The last class that may leave now: the reserve is for a link that has nothing else to do. */
@@ -420,6 +388,17 @@ static enum ff_request_class last_class(const ff_request_counts *counts,
                (!counts->in_flight ||
                 counts->bytes_in_flight < bytes_in_flight_max / RESERVE_SHARE);
     return idle ? FF_CLASS_RESERVE : FF_CLASS_PREFETCH;
+}
+
+/* An image may be a difference to the one above it, which goes before it. */
+static ff_request *first_above(ff_requests *requests, ff_request *request)
+{
+    while (ff_kind[request->kind].has_image && level_of(request) > 0) {
+        ff_request *above = find(requests, request->kind, ff_key_parent(request->key));
+        if (!above || above->state != FF_REQUEST_QUEUED) break;
+        request = above;
+    }
+    return request;
 }
 
 int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_max,
@@ -439,6 +418,7 @@ int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_m
             best = request;
     }
     if (best) {
+        best = first_above(requests, best);
         leave_state(requests, best);
         best->state = FF_REQUEST_SENT;
         best->sent_us = now_us;
@@ -519,6 +499,14 @@ void ff_requests_passed(ff_requests *requests, uint16_t id)
     sys_mutex_unlock(&requests->mutex);
 }
 
+/* Some of its answer is here, the rest is still out. */
+static void expect_less(ff_requests *requests, ff_request *request, uint32_t bytes)
+{
+    uint32_t less = bytes < request->bytes_expected ? bytes : request->bytes_expected;
+    request->bytes_expected -= less;
+    requests->counts.bytes_in_flight -= less;
+}
+
 void ff_requests_part(ff_requests *requests, uint16_t id, enum ff_kind kind, ff_key key,
                       uint32_t bytes)
 {
@@ -527,9 +515,7 @@ void ff_requests_part(ff_requests *requests, uint16_t id, enum ff_kind kind, ff_
     ff_request *request = &requests->slot[id - 1];
     FF_ASSERT(request->state == FF_REQUEST_SENT);
     request->named |= (uint16_t)ff_view_names(&requests->view, kind, key);
-    uint32_t less = bytes < request->bytes_expected ? bytes : request->bytes_expected;
-    request->bytes_expected -= less;
-    requests->counts.bytes_in_flight -= less;
+    expect_less(requests, request, bytes);
     request->bytes_came += bytes;
     sys_mutex_unlock(&requests->mutex);
 }
@@ -538,10 +524,25 @@ void ff_requests_came(ff_requests *requests, uint16_t id, uint32_t bytes)
 {
     sys_mutex_lock(&requests->mutex);
     FF_ASSERT(id >= 1 && id <= requests->slot_count);
-    const ff_request *request = &requests->slot[id - 1];
+    ff_request *request = &requests->slot[id - 1];
     FF_ASSERT(request->state == FF_REQUEST_SENT);
+    expect_less(requests, request, bytes);
     if (request->rank == FF_CLASS_RESERVE) requests->counts.reserve_bytes += bytes;
     sys_mutex_unlock(&requests->mutex);
+}
+
+/* What is guessed before anything has come is far off for some, and a window full of guesses is
+ * empty: the first answer counts at once, for all levels of which there was none. */
+static void learn_bytes(ff_requests *requests, const ff_request *request, uint32_t bytes)
+{
+    unsigned at = level_of(request), kind = request->kind;
+    uint32_t *mean_q4 = requests->answer_q4[kind];
+    if (ff_kind[kind].asks == FF_ASKS_NODE && !(requests->met[kind] >> at & 1u))
+        for (unsigned level = 0; level <= FF_KEY_LEVEL_MAX; level++)
+            if (!(requests->met[kind] >> level & 1u)) mean_q4[level] = bytes * 16u;
+    requests->met[kind] |= (uint16_t)(1u << at);
+    mean_q4[at] -= mean_q4[at] >> 3;
+    mean_q4[at] += bytes * 16u >> 3;
 }
 
 void ff_requests_arrived(ff_requests *requests, uint16_t id, uint32_t bytes)
@@ -555,11 +556,7 @@ void ff_requests_arrived(ff_requests *requests, uint16_t id, uint32_t bytes)
     requests->counts.arriving++;
     bytes += request->bytes_came;
     if (request->rank == FF_CLASS_RESERVE) requests->counts.reserve_bytes += bytes;
-    if (bytes) {
-        uint32_t *mean_q4 = &requests->answer_q4[request->kind][level_of(request)];
-        *mean_q4 -= *mean_q4 >> 3;
-        *mean_q4 += bytes * 16u >> 3;
-    }
+    if (bytes) learn_bytes(requests, request, bytes);
     sys_mutex_unlock(&requests->mutex);
 }
 

@@ -34,7 +34,7 @@
 #include "../../platform/sys.h"
 #include "../../protocol/message/ff_message.h"
 
-#define FF_REQUESTS_QUEUED_MAX 128 /* queued at a time, besides those in flight */
+#define FF_REQUESTS_QUEUED_MAX 137 /* queued at a time, besides those in flight */
 #define FF_REQUESTS_ASKS_MAX   8   /* of kinds whose key is the client's own, in any state */
 
 enum ff_request_state {
@@ -93,8 +93,10 @@ typedef struct ff_requests {
     /* of those whose key is the client's own; written and read likewise. Bit i: ask[i] is taken */
     ff_ask ask[FF_REQUESTS_ASKS_MAX];
     uint8_t asks_taken;
-    /* bytes of an answer by kind and level, running mean, Q4 */
+    /* bytes of an answer by kind and level, running mean, Q4; bit l: one of level l has come.
+     * Until then it counts as the first of its kind did */
     uint32_t answer_q4[FF_KIND_COUNT][16];
+    uint16_t met[FF_KIND_COUNT];
 } ff_requests;
 
 /* What a request of FF_ASKS_PANORAMA or FF_ASKS_FAR has besides its key. */

@@ -56,10 +56,9 @@ int ff_textures_touch(ff_textures *textures, ff_key key)
     return slot != NULL;
 }
 
-/* The image one level below `held` (NULL: the root's) on the way to `finest`. */
-static ff_key next_finer(const ff_texture_slot *held, ff_key finest)
+/* The image of that level on the way to `finest`. */
+static ff_key on_the_way(ff_key finest, uint32_t level)
 {
-    uint32_t level = held ? ff_key_level(held->key) + 1 : 0;
     FF_ASSERT(level <= ff_key_level(finest));
     while (ff_key_level(finest) > level) finest = ff_key_parent(finest);
     return finest;
@@ -80,15 +79,25 @@ static uint32_t priority_of(const ff_terrain_info *info, ff_key key, const ff_vi
     return value > UINT32_MAX ? UINT32_MAX : (uint32_t)value;
 }
 
-static void insert(ff_texture_wish *list, uint32_t *count, uint32_t capacity, ff_texture_wish wish)
+/* A list of wishes in the making. */
+typedef struct wishes {
+    const ff_tree *tree;
+    const ff_view *view;
+    const ff_quality *quality;
+    ff_texture_wish *list;
+    uint32_t count, capacity;
+} wishes;
+
+static void insert(wishes *w, ff_texture_wish wish)
 {
-    FF_ASSERT(*count <= capacity);
-    for (uint32_t i = 0; i < *count; i++)
+    ff_texture_wish *list = w->list;
+    FF_ASSERT(w->count <= w->capacity);
+    for (uint32_t i = 0; i < w->count; i++)
         if (list[i].key == wish.key) return;
-    uint32_t at = *count;
-    if (at == capacity && (!capacity || list[at - 1].priority >= wish.priority)) return;
-    if (*count < capacity)
-        ++*count;
+    uint32_t at = w->count;
+    if (at == w->capacity && (!w->capacity || list[at - 1].priority >= wish.priority)) return;
+    if (w->count < w->capacity)
+        w->count++;
     else
         at--;
     while (at > 0 && list[at - 1].priority < wish.priority) {
@@ -96,15 +105,31 @@ static void insert(ff_texture_wish *list, uint32_t *count, uint32_t capacity, ff
         at--;
     }
     list[at] = wish;
-    FF_ASSERT(at + 1 == *count || list[at + 1].priority < wish.priority);
+    FF_ASSERT(at + 1 == w->count || list[at + 1].priority < wish.priority);
+}
+
+/* All from `from` down to `finest`, so that they come in one round trip: each stands behind those
+ * above it. */
+static void wish_down(wishes *w, ff_key from, ff_key finest)
+{
+    ff_texture_wish wish = { from, UINT32_MAX };
+    for (uint32_t level = ff_key_level(from); level <= ff_key_level(finest); level++) {
+        wish.key = on_the_way(finest, level);
+        uint32_t own = priority_of(ff_tree_ground(w->tree, wish.key), wish.key, w->view,
+                                   w->quality);
+        if (own < wish.priority) wish.priority = own;
+        insert(w, wish);
+    }
 }
 
 uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
                             uint32_t drawn_count, const ff_view *view, const ff_quality *quality,
                             ff_texture_wish *list, uint32_t capacity)
 {
-    uint32_t count = 0, in_use = 0;
+    wishes w = { tree, view, quality, list, 0, capacity };
+    uint32_t in_use = 0;
     textures->stamp++;
+    textures->lacking = 0;
     for (uint32_t i = 0; i < drawn_count; i++) {
         ff_key finest = ff_texture_key(&textures->info, drawn[i].key);
         if (finest == FF_KEY_NONE) continue;
@@ -114,15 +139,15 @@ uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff
             in_use++;
         }
         if (held && held->key == finest) continue;
-        ff_texture_wish wish = { .key = next_finer(held, finest) };
-        if (held && held->bare >> ff_key_quadrant(wish.key) & 1u) continue;
-        wish.priority = priority_of(ff_tree_ground(tree, wish.key), wish.key, view, quality);
-        insert(list, &count, capacity, wish);
+        ff_key next = on_the_way(finest, held ? ff_key_level(held->key) + 1 : 0);
+        if (held && held->bare >> ff_key_quadrant(next) & 1u) continue;
+        textures->lacking++;
+        wish_down(&w, next, finest);
     }
     FF_ASSERT(in_use <= textures->held && textures->held <= textures->slot_count);
     /* what would find no place is not asked for */
     uint32_t room = textures->slot_count - in_use;
-    return count < room ? count : room;
+    return w.count < room ? w.count : room;
 }
 
 static void unlink_slot(ff_textures *textures, ff_texture_slot *slot)

@@ -37,6 +37,7 @@ typedef struct ff_textures {
     uint16_t held, high;
     uint16_t bucket[FF_TEXTURE_HASH]; /* slot + 1 */
     uint32_t stamp, full, apart;      /* apart: pictures whose parent's was not held */
+    uint32_t lacking; /* drawn nodes whose own image is not held, though it is there */
 } ff_textures;
 
 /* A wish for an image: the one that comes next on the way down to a drawn node. */

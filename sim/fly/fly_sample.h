@@ -124,7 +124,9 @@
     X(packets_down, "%.0f", TOTAL, from->load[SIM_DOWN].packets) \
     X(packets_up, "%.0f", TOTAL, from->load[SIM_UP].packets) \
     X(delay_down_s, "%.3f", LAST, fly_delay_s(&from->load[SIM_DOWN])) \
-    X(delay_up_s, "%.3f", LAST, fly_delay_s(&from->load[SIM_UP]))
+    X(delay_up_s, "%.3f", LAST, fly_delay_s(&from->load[SIM_UP])) \
+    X(images_lacking, "%.0f", MEAN, from->client.textures_lacking) \
+    X(wasted_images, "%.0f", LAST, from->relevance.wasted_images)
 /* clang-format on */
 
 /* What a row is made from. NAN in all that nobody judges. */

@@ -420,13 +420,14 @@ static void mark_hidden(sim_relevance *relevance, ff_key node)
     }
 }
 
-/* Images come from coarse to fine: a node is drawn with the last one that came over it. */
+/* A node is drawn with the last image that came over it, maybe a difference to those above. */
 static void mark_image(sim_relevance *relevance, const ff_terrain_info *info, ff_key node)
 {
     answer *last = NULL;
     for (ff_key key = ff_texture_key(info, node); key != FF_KEY_NONE; key = ff_key_parent(key)) {
         answer *a = find(relevance, FF_KIND_TEXTURE, key);
         if (a && (!last || a > last)) last = a;
+        if (a) a->used = 1;
         if (ff_key_level(key) == 0) break;
     }
     if (last) mark(relevance, last);
@@ -561,15 +562,17 @@ static double percent_of(double judged, double unused, double overhead)
     return judged > overhead ? 100 * (1 - unused / judged) : NAN;
 }
 
-/* Of what was judged: the heights that nothing drawn has needed. */
+/* Of what was judged: heights and images that nothing drawn has needed. */
 static void find_waste(const sim_relevance *relevance, sim_relevance_figures *sum)
 {
-    sum->views_wasted = sum->wasted = 0;
+    sum->views_wasted = sum->wasted = sum->wasted_images = 0;
     for (size_t i = 0; i < relevance->judged_count; i++) {
         const answer *a = &relevance->answer[i];
-        if (a->used || a->reserve || ff_kind[a->kind].data != FF_DATA_HEIGHTS) continue;
-        sum->wasted += a->bytes;
-        sum->views_wasted += a->view ? a->bytes : 0;
+        if (a->used || a->reserve) continue;
+        uint8_t data = ff_kind[a->kind].data;
+        sum->wasted_images += data == FF_DATA_IMAGES ? a->bytes : 0;
+        sum->wasted += data == FF_DATA_HEIGHTS ? a->bytes : 0;
+        sum->views_wasted += data == FF_DATA_HEIGHTS && a->view ? a->bytes : 0;
     }
 }
 

@@ -52,6 +52,7 @@ typedef struct sim_relevance_figures {
     /* of heights that came with views, and of all but the reserve's; of either what came at least
      * SIM_RELEVANCE_US ago, and nothing drawn has needed so far */
     double views_came, views_wasted, wasted;
+    double wasted_images; /* the same of images */
     sim_talk talk;
 } sim_relevance_figures;
 

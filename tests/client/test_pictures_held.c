@@ -1,6 +1,7 @@
 /* Pictures as a client holds them: each is decoded by its parent's, over a stream, from a pack, and
  * below levels that are left out; damaged ones, and those whose parent's is not held. */
 #include "../../client/ff_client_local.h"
+#include "../../client/images/ff_texture_map.h"
 #include "../../common3d/soft/c3d_soft.h"
 #include "../../protocol/ff_entry.h"
 #include "../../protocol/picture/ff_picture_path.h"
@@ -92,6 +93,40 @@ static void roots_below_levels_left_out_bring_what_is_above_them(void **state)
     }
 }
 
+/* So one round trip brings them all. */
+static void what_lacks_images_asks_for_all_on_the_way_down(void **state)
+{
+    (void)state;
+    client_rig rig;
+    ff_texture_wish list[256];
+    ff_textures none = { 0 };
+    const ff_drawn *drawn;
+    open_rig(&rig);
+    rig_local_client(&rig, 4 * MB);
+    assert_true(rig_settle(&rig, 600));
+    const ff_client *client = rig.client;
+    uint32_t drawn_count = ff_tree_drawn(ff_client_tree(rig.client), &drawn), seen = 0;
+    none.info = client->textures.info;
+    none.slot_count = 256;
+    uint32_t count = ff_textures_wishes(&none, client->tree, drawn, drawn_count, &client->last_view,
+                                        &client->desc.quality, list, 256);
+    assert_int_equal(none.lacking, drawn_count);
+    assert_true(count > drawn_count);
+    for (uint32_t i = 0; i < count; i++) {
+        int above = ff_key_level(list[i].key) == 0;
+        for (uint32_t j = 0; j < i; j++) {
+            assert_true(list[j].key != list[i].key);
+            above |= ff_key_level(list[i].key) && list[j].key == ff_key_parent(list[i].key);
+        }
+        assert_true(above);
+    }
+    for (uint32_t i = 0; i < drawn_count; i++)
+        for (uint32_t j = 0; j < count; j++)
+            seen += list[j].key == ff_texture_key(&none.info, drawn[i].key);
+    assert_int_equal(seen, drawn_count);
+    rig_close(&rig);
+}
+
 static ff_new_item item_of(const client_rig *rig, ff_key key)
 {
     static uint8_t bytes[4096];
@@ -138,6 +173,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_are_held_as_the_pack_has_them),
+        cmocka_unit_test(what_lacks_images_asks_for_all_on_the_way_down),
         cmocka_unit_test(roots_below_levels_left_out_bring_what_is_above_them),
         cmocka_unit_test(one_whose_parents_is_not_held_is_not_taken),
     };

@@ -370,7 +370,7 @@ static void estimate_finds_the_link(void **state)
     (void)state;
     ff_link_estimate link;
     ff_link_estimate_reset(&link);
-    assert_int_equal(ff_link_estimate_window(&link), FF_WINDOW_BYTES_MIN);
+    assert_int_equal(ff_link_estimate_window(&link), FF_WINDOW_BYTES_UNTIMED);
     int64_t now_us = 0;
     for (int i = 0; i < 200; i++) { /* 5500 bytes/s, 800 ms */
         ff_link_estimate_sent(&link, now_us);
@@ -385,6 +385,31 @@ static void estimate_finds_the_link(void **state)
     /* a stall does not make the client forget the link's rate */
     ff_link_estimate_received(&link, 50, 1, now_us + 30000000);
     assert_true(link.bytes_s > 4500);
+}
+
+/* NB-IoT: an answer takes 6 s, then it comes as fast as the link goes. */
+static void the_way_there_and_back_is_no_slowness(void **state)
+{
+    (void)state;
+    for (int known = 0; known < 2; known++) {
+        ff_link_estimate link;
+        ff_link_estimate_reset(&link);
+        assert_int_equal(ff_link_estimate_window(&link), FF_WINDOW_BYTES_UNTIMED);
+        if (known) ff_link_estimate_answer(&link, 0, 6000000);
+        ff_link_estimate_sent(&link, 0);
+        for (int64_t now_us = 6000000; now_us < 13000000; now_us += 100000) {
+            ff_link_estimate_received(&link, 300, 1, now_us);
+            ff_link_estimate_answer(&link, 0, 6000000);
+        }
+        assert_in_range(link.bytes_s, 2900, 3100);
+    }
+    /* a single answer tells of no rate */
+    ff_link_estimate link;
+    ff_link_estimate_reset(&link);
+    ff_link_estimate_answer(&link, 0, 6000000);
+    ff_link_estimate_sent(&link, 0);
+    ff_link_estimate_received(&link, 300, 0, 6010000);
+    assert_int_equal(link.bytes_s, 0);
 }
 
 /* ---- threads ---- */
@@ -427,6 +452,7 @@ int main(void)
                                         cmocka_unit_test(the_reserve_leaves_on_an_idle_link),
                                         cmocka_unit_test(window_leaves_two_always),
                                         cmocka_unit_test(estimate_finds_the_link),
+                                        cmocka_unit_test(the_way_there_and_back_is_no_slowness),
                                         cmocka_unit_test(worker_thread_brings_the_same_picture) };
     return cmocka_run_group_tests(tests, make_whole, free_whole);
 }

@@ -20,7 +20,8 @@ void ff_link_estimate_reset(ff_link_estimate *link)
 void ff_link_estimate_sent(ff_link_estimate *link, int64_t now_us)
 {
     if (link->since_us != INT64_MIN) return;
-    link->since_us = now_us;
+    link->since_us = now_us + link->rtt_us;
+    link->unbegun = link->rtt_us == 0;
     link->interval_bytes = 0;
     link->window_full = 0;
 }
@@ -42,10 +43,14 @@ void ff_link_estimate_received(ff_link_estimate *link, uint32_t bytes, int outst
                                int64_t now_us)
 {
     if (link->since_us == INT64_MIN) return;
-    link->interval_bytes += bytes;
+    if (link->unbegun)
+        link->since_us = now_us; /* how long these took on their way is not known */
+    else
+        link->interval_bytes += bytes;
+    link->unbegun = 0;
     int64_t interval_us = now_us - link->since_us;
     int64_t wanted_us = link->rtt_us > INTERVAL_US_MIN ? link->rtt_us : INTERVAL_US_MIN;
-    if (interval_us >= wanted_us || (!outstanding && interval_us > 0)) {
+    if (interval_us >= wanted_us || (!outstanding && interval_us >= INTERVAL_US_MIN)) {
         take_sample(link, interval_us);
         link->since_us = now_us;
         link->interval_bytes = 0;
@@ -69,6 +74,7 @@ void ff_link_estimate_answer(ff_link_estimate *link, int64_t sent_us, int64_t no
 uint32_t ff_link_estimate_window(const ff_link_estimate *link)
 {
     FF_ASSERT(link->bytes_s <= UINT32_MAX / 2); /* times rtt_us, which has 31 bits, it fits */
+    if (!link->bytes_s) return FF_WINDOW_BYTES_UNTIMED;
     uint64_t bytes = 2 * ((uint64_t)link->bytes_s * link->rtt_us / 1000000u);
     if (bytes > WINDOW_BYTES_MAX) bytes = WINDOW_BYTES_MAX;
     return bytes > FF_WINDOW_BYTES_MIN ? (uint32_t)bytes : FF_WINDOW_BYTES_MIN;
