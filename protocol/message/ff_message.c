@@ -143,10 +143,8 @@ static void write_welcome(ff_writer *out, const ff_welcome *welcome)
 {
     ff_message_require(&out->error, welcome->version == FF_PROTOCOL_VERSION &&
                                         ff_terrain_check(&welcome->info) == FF_OK);
-    ff_write_bytes(out, welcome->version, 4);
-    ff_write_bytes(out, FF_WELCOME_TERRAIN, 1);
-    ff_write_varint(out, FF_TERRAIN_BYTES);
-    ff_write_terrain(out, &welcome->info);
+    ff_write_varint(out, welcome->version);
+    ff_message_write_terrain(out, &welcome->info);
     ff_write_span(out, welcome->more.bytes, welcome->more.byte_count);
 }
 
@@ -252,7 +250,7 @@ size_t ff_message_bytes_max(const ff_message *message)
 {
     switch (message->type) {
         case FF_MSG_WELCOME:
-            return FF_MESSAGE_HEADER_MAX + 4 + 2 + FF_TERRAIN_BYTES +
+            return FF_MESSAGE_HEADER_MAX + 1 + 2 + FF_TERRAIN_SET + FF_TERRAIN_BYTES +
                    (size_t)message->u.welcome.more.byte_count;
         case FF_MSG_CAPS:
         case FF_MSG_ABOUT: return FF_MESSAGE_HEADER_MAX + (size_t)message->u.list.byte_count;
@@ -338,9 +336,8 @@ static void keep_error(ff_reader *in, int check)
 static void read_welcome(ff_reader *in, ff_welcome *welcome)
 {
     ff_list_entry terrain;
-    ff_reader value = { NULL, NULL, FF_OK };
 
-    welcome->version = (uint32_t)ff_read_bytes(in, 4);
+    welcome->version = ff_read_varint(in);
     if (in->error == FF_OK && welcome->version != FF_PROTOCOL_VERSION) in->error = FF_ERR_VERSION;
     if (in->error != FF_OK) return;
     welcome->more = read_list(in);
@@ -350,11 +347,7 @@ static void read_welcome(ff_reader *in, ff_welcome *welcome)
     ff_message_require(&in->error, ff_list_next(&welcome->more, &terrain) == 1 &&
                                        terrain.type == FF_WELCOME_TERRAIN);
     if (in->error != FF_OK) return;
-    FF_ASSERT(terrain.byte_count == FF_TERRAIN_BYTES);
-    value.at = terrain.value;
-    value.end = terrain.value + terrain.byte_count;
-    ff_read_terrain(&value, &welcome->info);
-    in->error = value.error;
+    in->error = ff_message_read_terrain(&terrain, &welcome->info);
     if (in->error == FF_OK && ff_welcome_count(welcome) < 1) in->error = FF_ERR_RANGE;
 }
 

@@ -60,8 +60,9 @@ FF_STATIC_ASSERT(2 + FF_PAYLOAD_BYTES_MAX <= FF_MESSAGE_BODY_MAX);
     X(FEATURES, 6, 4, 4)   /* u32 bits: 0 images, 1 panoramas */ \
     X(REACH,    7, 4, 4)   /* u32: ground farther than this along an axis, wu, is not looked at */
 #define FF_WELCOME_GROUNDS 7 /* that a server has, at most */
+#define FF_TERRAIN_SET     ((FF_TERRAIN_BYTES + 7) / 8) /* bytes of a bit for each of its own */
 #define FF_WELCOME_LIST(X) \
-    X(TERRAIN,  1, FF_TERRAIN_BYTES, FF_TERRAIN_BYTES) /* needed */ \
+    X(TERRAIN,  1, FF_TERRAIN_SET, FF_TERRAIN_SET + FF_TERRAIN_BYTES) /* needed; without its zeros */ \
     X(PIXELS,   2, 6, 6) /* u16 face_size at most, u32 pixels of faces in a minute */ \
     X(REQUESTS, 3, 2, 2) /* u16 unanswered at once */ \
     X(BYTES,    4, 4, 4) /* u32 bytes a second */ \

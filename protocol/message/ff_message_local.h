@@ -20,6 +20,9 @@ void ff_message_write_key(ff_writer *out, uint32_t what, ff_key key);
 ff_key ff_message_read_key(ff_reader *in, uint32_t form);
 void ff_message_read_rest(ff_reader *in, const uint8_t **bytes, uint32_t *count);
 
+/* WELCOME's first entry: which bytes of the terrain's description are not 0, and these. */
+void ff_message_write_terrain(ff_writer *out, const ff_terrain_info *info);
+int ff_message_read_terrain(const ff_list_entry *entry, ff_terrain_info *info);
 void ff_message_write_view(ff_writer *out, const ff_get_view *view);
 void ff_message_read_view(ff_reader *in, ff_get_view *view);
 void ff_message_write_get_far(ff_writer *out, const ff_get_far *get);

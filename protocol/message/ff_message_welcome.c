@@ -3,6 +3,39 @@
 
 #include "../ff_assert.h"
 
+void ff_message_write_terrain(ff_writer *out, const ff_terrain_info *info)
+{
+    uint8_t plain[FF_TERRAIN_BYTES], value[FF_TERRAIN_SET + FF_TERRAIN_BYTES] = { 0 };
+    ff_writer terrain = { plain, plain + sizeof plain, FF_OK };
+    uint32_t count = FF_TERRAIN_SET;
+    ff_write_terrain(&terrain, info);
+    FF_ASSERT(terrain.error == FF_OK && terrain.at == terrain.end);
+    for (unsigned i = 0; i < FF_TERRAIN_BYTES; i++) {
+        if (!plain[i]) continue;
+        value[i / 8] |= (uint8_t)(1u << i % 8);
+        value[count++] = plain[i];
+    }
+    ff_list_write(out, FF_WELCOME_TERRAIN, value, count);
+}
+
+int ff_message_read_terrain(const ff_list_entry *entry, ff_terrain_info *info)
+{
+    uint8_t plain[FF_TERRAIN_BYTES] = { 0 };
+    ff_reader in = { entry->value, entry->value + entry->byte_count, FF_OK },
+              terrain = { plain, plain + sizeof plain, FF_OK };
+    const uint8_t *set = ff_read_span(&in, FF_TERRAIN_SET);
+    for (unsigned i = 0; in.error == FF_OK && i < 8 * FF_TERRAIN_SET; i++) {
+        if (!(set[i / 8] >> i % 8 & 1u)) continue;
+        uint8_t byte = (uint8_t)ff_read_bytes(&in, 1);
+        ff_message_require(&in.error, byte && i < FF_TERRAIN_BYTES);
+        if (in.error == FF_OK) plain[i] = byte;
+    }
+    ff_message_require(&in.error, in.at == in.end);
+    if (in.error != FF_OK) return in.error;
+    ff_read_terrain(&terrain, info);
+    return terrain.error;
+}
+
 /* How many values of `bytes` an entry has; 0: there is no such entry, or a part of one is left. */
 static unsigned entries(ff_list list, unsigned type, unsigned bytes, const uint8_t **value)
 {

@@ -21,7 +21,7 @@ BREAKS = [
     ("protocol/codec/ff_codec_deflate.c", "return ff_align_up(ff_refinement_count(info));", "return ff_align_up(ff_node_side(info));", "decoder memory has room for all high parts of a payload", "deflate"),
     ("protocol/codec/ff_predict.c", "uint32_t cells = (side - 1) / (2 * stride), row", "uint32_t cells = side / stride, row", "a doubling has half as many cells as its grid has steps", "deflate"),
     ("protocol/trained/ff_range.h", "while (range->width < FF_RANGE_LEAST) {", "while (range->width < FF_RANGE_LEAST / 256) {", "a range is not left small", ""),
-    ("protocol/message/ff_message.c", "return FF_MESSAGE_HEADER_MAX + 4 + 2 + FF_TERRAIN_BYTES +", "return FF_TERRAIN_BYTES +", "room that ff_message_bytes_max asks for WELCOME", ""),
+    ("protocol/message/ff_message.c", "return FF_MESSAGE_HEADER_MAX + 1 + 2 + FF_TERRAIN_SET + FF_TERRAIN_BYTES +", "return FF_TERRAIN_SET +", "room that ff_message_bytes_max asks for WELCOME", ""),
     ("protocol/message/ff_message.c", "return FF_MESSAGE_HEADER_MAX + 2 + (size_t)message->u.data.byte_count;", "return FF_MESSAGE_HEADER_MAX + (size_t)message->u.data.byte_count;", "room that ff_message_bytes_max asks for an answer", ""),
     ("protocol/message/ff_face_columns.c", "length < 272", "length < 280", "a long run is 272 values at most", "test_message"),
     ("protocol/shape/ff_shape_planar.c", "case FF_SIDE_NORTH: *tile += info->tiles_x; return y + 1 < info->tiles_y;", "case FF_SIDE_NORTH: *tile += info->tiles_x; return y < info->tiles_y;", "the terrain ends north of its last row of tiles", ""),

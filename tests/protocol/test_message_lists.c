@@ -1,4 +1,5 @@
 /* Messages that are lists, CAPS, WELCOME and ABOUT: unknown entries pass, faults of form do not. */
+#include "../../protocol/ff_bytes.h"
 #include "../../protocol/message/ff_message.h"
 #include "../rig/slow_pack.h"
 
@@ -112,22 +113,67 @@ static void welcome_needs_its_terrain(void **state)
 
     (void)state;
     int count = ff_message_encode(&message, bytes, sizeof bytes);
-    assert_int_equal(count, 2 + 4 + 2 + 68 + 4);
+    assert_int_equal(count, 2 + 1 + 2 + 9 + 8 + 4);
     assert_int_equal(ff_message_decode(bytes, (size_t)count, &out), count);
     assert_int_equal(out.u.welcome.info.samples_x, 65);
     assert_int_equal(ff_list_find(out.u.welcome.more, FF_WELCOME_REQUESTS, &value), 2);
     /* as the specification has it: version, then the list */
-    assert_int_equal(slow_list_find(bytes + 6, (size_t)count - 6, 1, &value), 68);
-    assert_ptr_equal(value, bytes + 8);
-    assert_int_equal(slow_list_find(bytes + 6, (size_t)count - 6, 3, &value), 2);
-    bytes[6] = 2; /* another type */
+    assert_int_equal(slow_list_find(bytes + 3, (size_t)count - 3, 1, &value), 9 + 8);
+    assert_ptr_equal(value, bytes + 5);
+    assert_int_equal(slow_list_find(bytes + 3, (size_t)count - 3, 3, &value), 2);
+    bytes[3] = 2; /* another type */
     assert_int_equal(ff_message_decode(bytes, (size_t)count, &out), FF_ERR_RANGE);
-    bytes[6] = 1;
-    bytes[8] = 99; /* no such terrain */
+    bytes[3] = 1;
+    bytes[14] = 99; /* no such terrain */
     assert_int_equal(ff_message_decode(bytes, (size_t)count, &out), FF_ERR_RANGE);
-    assert_int_equal(ff_message_decode((const uint8_t *)"\x41\4\x08\0\0\0", 6, &out), FF_ERR_RANGE);
-    assert_int_equal(ff_message_decode((const uint8_t *)"\x41\x06\x08\0\0\0\1\0", 8, &out),
-                     FF_ERR_RANGE);
+    assert_int_equal(ff_message_decode((const uint8_t *)"\x41\1\x09", 3, &out), FF_ERR_RANGE);
+    assert_int_equal(ff_message_decode((const uint8_t *)"\x41\3\x09\1\0", 5, &out), FF_ERR_RANGE);
+}
+
+/* What a terrain entry of these bytes is read as. */
+static int read_terrain(const uint8_t *value, unsigned count, ff_terrain_info *info)
+{
+    uint8_t bytes[128] = { 1, (uint8_t)count };
+    ff_message out;
+    memcpy(bytes + 2, value, count);
+    uint8_t whole[160] = { 65, (uint8_t)(count + 3), FF_PROTOCOL_VERSION };
+    memcpy(whole + 3, bytes, count + 2);
+    int rc = ff_message_decode(whole, count + 5, &out);
+    if (rc > 0) *info = out.u.welcome.info;
+    return rc;
+}
+
+/* Our reader and the one written from the specification agree on whatever comes. */
+static void a_terrain_travels_without_its_zeros(void **state)
+{
+    ff_message message = { .type = FF_MSG_WELCOME,
+                           .u.welcome = { FF_PROTOCOL_VERSION, terrain, LIST("") } };
+    uint8_t bytes[256], plain[68], expected[68];
+    ff_terrain_info info;
+
+    (void)state;
+    message.u.welcome.info.checksum = 0xFF01FF02;
+    message.u.welcome.info.hoffset_wu = -1;
+    int count = ff_message_encode(&message, bytes, sizeof bytes) - 5;
+    assert_int_equal(count, 9 + 8 + 8);
+    for (int bit = -1; bit < 8 * count; bit++) {
+        if (bit >= 0) bytes[5 + bit / 8] ^= (uint8_t)(1u << bit % 8);
+        int slow = slow_terrain(bytes + 5, (size_t)count, plain),
+            rc = read_terrain(bytes + 5, (unsigned)count, &info);
+        assert_true(slow == 0 || rc < 0);
+        if (rc > 0) {
+            ff_writer out = { expected, expected + sizeof expected, FF_OK };
+            ff_write_terrain(&out, &info);
+            assert_memory_equal(plain, expected, sizeof plain);
+        }
+        if (bit == -1) assert_true(rc > 0);
+        if (bit >= 0) bytes[5 + bit / 8] ^= (uint8_t)(1u << bit % 8);
+    }
+    for (int other = 0; other <= count + 1; other++)
+        assert_int_equal(read_terrain(bytes + 5, (unsigned)other, &info) > 0, other == count);
+    bytes[5 + 8] |= 0x10; /* a byte that there is not */
+    bytes[5 + count] = 1;
+    assert_int_equal(read_terrain(bytes + 5, (unsigned)count + 1, &info), FF_ERR_RANGE);
 }
 
 static void a_client_that_needs_nothing_says_two_bytes(void **state)
@@ -150,6 +196,7 @@ int main(void)
         cmocka_unit_test(faults_of_form_are_errors),
         cmocka_unit_test(lists_are_bounded),
         cmocka_unit_test(welcome_needs_its_terrain),
+        cmocka_unit_test(a_terrain_travels_without_its_zeros),
         cmocka_unit_test(a_client_that_needs_nothing_says_two_bytes),
     };
 

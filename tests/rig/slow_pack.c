@@ -141,3 +141,16 @@ long slow_list_find(const uint8_t *list, size_t bytes, unsigned type, const uint
     }
     return found;
 }
+
+int slow_terrain(const uint8_t *value, size_t bytes, uint8_t plain[68])
+{
+    size_t at = 9;
+    if (bytes < 9 || value[8] > 15) return -1;
+    for (int i = 0; i < 68; i++) {
+        int there = value[i / 8] / (1 << i % 8) % 2;
+        if (there && (at == bytes || value[at] == 0)) return -1;
+        plain[i] = there ? value[at] : 0;
+        at += (size_t)there;
+    }
+    return at == bytes ? 0 : -1;
+}

@@ -95,7 +95,7 @@ import socket, sys
 s = socket.create_connection(("127.0.0.1", int(sys.argv[1])))
 s.sendall(b"\1\x0cFFLD\x09\0\0\0\0\0\0\0" + b"\7\0" + b"\x80\0")
 answer = b""
-while len(answer) < 76 + 5:
+while len(answer) < 2 or len(answer) < 2 + answer[1] + 5: # WELCOME, FAILED
     more = s.recv(4096)
     answer += more or sys.exit("the server closed the connection")
 ' "$port"
@@ -108,18 +108,21 @@ mv "$work/good.ffp" "$work/hills.ffp"
 ask_about() { # name and attribution are asked for; a client of version 8 is sent away with the error of versions
     python3 -c '
 import socket, sys
-def hear(said, count):
+def hear(said, messages):
     s = socket.create_connection(("127.0.0.1", int(sys.argv[1])))
     s.sendall(said)
-    heard = b""
-    while len(heard) < count:
+    heard, whole = b"", []
+    while len(whole) < messages:
         heard += s.recv(4096) or sys.exit("the server closed the connection")
-    return heard
+        while len(heard) >= 2 and len(heard) >= 2 + heard[1]:
+            whole.append(heard[:2 + heard[1]])
+            heard = heard[2 + heard[1]:]
+    return whole
 about = b"\1\5Hills\2\6nobody"
-heard = hear(b"\1\x0cFFLD\x09\0\0\0\0\0\0\0" + b"\7\0" + b"\x08\1\3", 76 + 2 + len(about))
-heard[76:] == b"\x49" + bytes([len(about)]) + about or sys.exit(repr(heard))
-heard = hear(b"\1\x0cFFLD\x08\0\0\0\0\0\0\0", 5)
-heard == b"\x48\3\0\0\xfb" or sys.exit(repr(heard))
+heard = hear(b"\1\x0cFFLD\x09\0\0\0\0\0\0\0" + b"\7\0" + b"\x08\1\3", 2)
+heard[1] == b"\x49" + bytes([len(about)]) + about or sys.exit(repr(heard))
+heard = hear(b"\1\x0cFFLD\x08\0\0\0\0\0\0\0", 1)
+heard[0] == b"\x48\3\0\0\xfb" or sys.exit(repr(heard))
 ' "$port" >"$work/asked" 2>&1
 }
 with_server ask_about
