@@ -27,6 +27,9 @@
 #define TOLERANCE_Q8      GAIN_Q8(FF_BALANCE_NOISE_Q4)
 #define FRAME_MARGIN_Q8   16 /* of a raise */
 #define LINK_MARGIN_Q8    (2 * TOLERANCE_Q8)
+/* A link that idles says that there was nothing to ask for, not how little finer detail would take:
+ * it counts as loaded so much, and detail comes back by two steps at a time. */
+#define LINK_IDLE_Q8 (-LINK_MARGIN_Q8 - 2 * GAIN_Q8(8))
 
 /* gain_q4 has a place for each step of the longest ladder, and a level is a byte */
 FF_STATIC_ASSERT(16 * SHARE_OCTAVES / SHARE_SIXTEENTHS <= FF_BALANCE_STEPS_MAX);
@@ -435,7 +438,8 @@ static int fits(const ff_balance *balance, const ff_balance_dearest *frames, int
 {
     int32_t frame_q8 = frames->load_q8 + FRAME_MARGIN_Q8, full_q8 = frames->full_q8,
             gain_q8 = gains_q8(balance, which, FF_BALANCE_SHARE, from, to),
-            link_q8 = balance->load_q8[FF_BALANCE_FIDELITY] + LINK_MARGIN_Q8 +
+            told_q8 = balance->load_q8[FF_BALANCE_FIDELITY],
+            link_q8 = (told_q8 < LINK_IDLE_Q8 ? LINK_IDLE_Q8 : told_q8) + LINK_MARGIN_Q8 +
                       gains_q8(balance, which, FF_BALANCE_FIDELITY, from, to);
     if (full_q8 < frame_q8) full_q8 = frame_q8;
     if (link_q8 > 0) return 0;
