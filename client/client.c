@@ -398,6 +398,11 @@ int ff_client_filled(const ff_client *client, int32_t x_wu, int32_t y_wu)
     return client->tree ? ff_tree_drawn_filled(client->tree, x_wu, y_wu) : 0;
 }
 
+int ff_client_wears(const ff_client *client, ff_key image)
+{
+    return client->has_textures && ff_textures_is_worn(&client->textures, image);
+}
+
 int ff_client_panorama(const ff_client *client, int32_t position_wu[3], unsigned *faces)
 {
     if (!client->have_terrain || client->panorama.shown < 0) return 0;

@@ -54,6 +54,7 @@ static void carve_textures(ff_client *client, const ff_budget *budget)
     memset(textures, 0, sizeof *textures);
     textures->info = client->info;
     textures->slot_count = (uint16_t)budget->pool[FF_POOL_textures].count;
+    textures->texel_px_q8 = FF_TEXEL_PX_Q8;
     textures->slot = take(client, budget, FF_POOL_textures);
     uint8_t *pictures = take(client, budget, FF_POOL_pictures);
     if (!pictures) return;
@@ -91,6 +92,7 @@ static int carve_view(ff_client *client, const ff_budget *budget)
     view->entry_count = budget->pool[FF_POOL_entries].count;
     view->entry = take(client, budget, FF_POOL_entries);
     view->vertices = take(client, budget, FF_POOL_vertices);
+    view->part = take(client, budget, FF_POOL_fin_indices);
     view->index = take(client, budget, FF_POOL_strip_indices);
     view->kept = take(client, budget, FF_POOL_kept);
     FF_ASSERT(view->entry_count >= FF_ENTRIES_MIN && view->entry_count <= FF_ENTRIES_MAX);
@@ -136,7 +138,6 @@ static int carve_all(ff_client *client, unsigned economy)
     client->textures.device = client->device;
     if (rc == FF_OK) rc = carve_view(client, &budget);
     ff_sets *sets = rc == FF_OK ? take(client, &budget, FF_POOL_far_sets) : NULL;
-    uint16_t *fin_indices = rc == FF_OK ? take(client, &budget, FF_POOL_fin_indices) : NULL;
     if (rc == FF_OK) rc = carve_tree(client, &budget);
     if (rc != FF_OK) {
         ff_client_uncarve(client);
@@ -151,8 +152,8 @@ static int carve_all(ff_client *client, unsigned economy)
     client->sets = sets;
     if (sets) {
         ff_sets_init(sets, client->device, &client->desc.far, &client->info, budget.far_side);
-        ff_sets_scratch(sets, client->view.vertices, fin_indices, client->view.heights_per_node);
-        client->view.part = fin_indices;
+        ff_sets_scratch(sets, client->view.vertices, client->view.part,
+                        client->view.heights_per_node);
         sets->paint_bytes = ff_budget_paint_bytes(&budget);
         sets->watch = client->fins_made;
         sets->watch_context = client->fins_context;

@@ -310,6 +310,9 @@ unsigned ff_client_pools(const ff_client *client, ff_pool_use list[FF_POOLS_MAX]
 int ff_client_plan(const ff_client_desc *desc, const ff_terrain_info *info,
                    ff_pool_use list[FF_POOLS_MAX]);
 
+/* 1 when the last update's picture shows this image of the ground somewhere. */
+int ff_client_wears(const ff_client *client, ff_key image);
+
 /* The panorama in use: 1 and where it was taken, or 0. *faces: bit per enum ff_face_name held
  * (empty ones included). */
 int ff_client_panorama(const ff_client *client, int32_t position_wu[3], unsigned *faces);

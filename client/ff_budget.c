@@ -106,7 +106,7 @@ static void describe_device(ff_budget *b, uint32_t entries, int buffers)
 {
     unsigned faces = b->face_size ? FF_PANORAMA_MESHES : 0, fins = b->far_side ? fin_meshes(b) : 0,
              paint = b->far_side ? FF_SETS_TEXTURES : 0,
-             part = b->far_side ? ff_strips_part(b->heights) : 0,
+             part = b->parts ? ff_strips_part(b->heights) : 0,
              vertices = b->heights > FF_SKY_VERTICES ? b->heights : FF_SKY_VERTICES;
     FF_ASSERT(entries <= FF_ENTRIES_MAX);
     FF_ASSERT(b->pool[FF_POOL_textures].count + 1 + faces + paint <= UINT16_MAX);
@@ -289,6 +289,7 @@ static void add_arriving(ff_budget *b)
     b->texture_bytes = ((size_t)4 << (2 * b->info->texture_log2)) + b->picture_bytes;
     b->heights = ff_node_side(b->info) * ff_node_side(b->info);
     b->indices = ff_strips_indices(b->info->node_log2);
+    b->parts = b->far_side || (b->has_textures && b->desc->backend);
     b->values = ff_refined_side(b->info) * ff_refined_side(b->info);
     FF_POOLS_ARRIVING(X, PART)
 }

@@ -121,11 +121,11 @@
     X(far_sets, b->far_side != 0, 1, 1, 1, \
       sizeof(ff_sets), 1, 1, \
       "the set that is drawn and the one that is coming, by name: meshes and texels are the device's") \
-    X(fin_indices, b->far_side != 0, \
+    X(fin_indices, b->parts, \
       ff_strips_part(b->heights), 1, UINT16_MAX, \
       n * sizeof(uint16_t), ff_strips_part(b->heights), ff_strips_part(b->heights), \
       "of the one strip that is being made, of fins or of a part of a node") \
-    X(strip_indices, b->far_side != 0, \
+    X(strip_indices, b->parts, \
       b->indices, 1, UINT16_MAX, \
       n * sizeof(uint16_t), b->indices, b->indices, \
       "the masks of a node, for parts of them") \
@@ -161,6 +161,7 @@ typedef struct ff_budget {
     unsigned face_size; /* 0: no panoramas */
     unsigned far_side;  /* 0: no far sets */
     uint8_t has_textures;
+    uint8_t parts; /* 1: nodes are drawn in parts, under far sets and images of finer levels */
     /* what rows have in common */
     unsigned links;       /* sources that are servers */
     uint32_t grounds_max; /* that may come: ff_budget_fixed reckons with one of the first source */

@@ -108,9 +108,9 @@ typedef struct c3d_draw {
      * i % tex_columns and row i / tex_columns. s = column * scale + offset in texture widths, t
      * likewise by row; t = 0 is the texture's first row. TEXTURED alone needs them. */
     int32_t tex_scale_q16[2], tex_offset_q16[2];
-    /* columns and rows beyond these places have their s and t: vertices moved there; 0: all their
-     * own */
-    uint32_t tex_last_q16[2];
+    /* columns and rows before the first and beyond the last of these places have their s and t:
+     * vertices moved there, or of no triangle drawn; last 0: none are beyond */
+    uint32_t tex_first_q16[2], tex_last_q16[2];
     uint16_t tex_columns; /* at least 1 */
     uint8_t point_px;     /* c3d_draw_points alone: edge of a point, 1..64 pixels */
     /* C3D_DRAW_PROJECTED with ALPHA_TEST alone: so many 256ths of what is drawn there already show

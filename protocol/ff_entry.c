@@ -45,7 +45,8 @@ ff_key ff_entry_key(const ff_terrain_info *whole, const ff_terrain_info *entered
     ff_sheet at = ff_shape_sheet(entered, ff_key_tile(key)),
              tile = { at.x >> level, at.y >> level };
 
-    FF_ASSERT(ff_terrain_has_node(entered, key) && !whole->entered);
+    FF_ASSERT(ff_terrain_has_node(entered, key) || ff_terrain_has_image(entered, key));
+    FF_ASSERT(!whole->entered);
     return ff_key_make(ff_shape_sheet_tile(whole, tile), level + ff_key_level(key),
                        ff_morton_encode(at.x & within, at.y & within) << 2 * ff_key_level(key) |
                            ff_key_code(key));

@@ -426,7 +426,9 @@ int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
         if (ff_key_level(key) == 0 &&
             (kind == FF_SECTION_ROOT || (kind == FF_SECTION_TEXTURE && pictures)))
             return pack->make_root(pack->root_context, kind, ff_key_tile(key), payload);
-        if (!ff_terrain_has_node(&pack->header.info, key)) return FF_ERR_NOT_FOUND;
+        if (!(kind == FF_SECTION_TEXTURE ? ff_terrain_has_image
+                                         : ff_terrain_has_node)(&pack->header.info, key))
+            return FF_ERR_NOT_FOUND;
         key = ff_entry_key(&pack->stored->header.info, &pack->header.info, key);
         pack = pack->stored;
     }

@@ -71,10 +71,20 @@ int ff_terrain_join(ff_terrain_info *info, const ff_terrain_info *first,
     return ff_terrain_check(info);
 }
 
-int ff_terrain_has_node(const ff_terrain_info *info, ff_key key)
+static int has_key(const ff_terrain_info *info, ff_key key, uint32_t levels)
 {
     uint32_t level = ff_key_level(key);
 
-    return ff_key_tile(key) - info->first_tile < ff_shape_tiles(info) &&
-           level < ff_terrain_levels(info) && ((uint64_t)ff_key_code(key) >> (2 * level)) == 0;
+    return ff_key_tile(key) - info->first_tile < ff_shape_tiles(info) && level < levels &&
+           ((uint64_t)ff_key_code(key) >> (2 * level)) == 0;
+}
+
+int ff_terrain_has_node(const ff_terrain_info *info, ff_key key)
+{
+    return has_key(info, key, ff_terrain_levels(info));
+}
+
+int ff_terrain_has_image(const ff_terrain_info *info, ff_key key)
+{
+    return has_key(info, key, info->texture_levels);
 }

@@ -147,8 +147,24 @@ static inline int ff_terrain_same_ground(const ff_terrain_info *a, uint32_t a_wh
 int ff_terrain_join(ff_terrain_info *info, const ff_terrain_info *first,
                     const ff_terrain_info *last);
 
-/* 1 when `key` names a node of this terrain. */
+/* 1 when `key` names a node of this terrain; the same of its images, whose tree has a depth of its
+ * own. */
 int ff_terrain_has_node(const ff_terrain_info *info, ff_key key);
+int ff_terrain_has_image(const ff_terrain_info *info, ff_key key);
+
+/* An image is at most so many levels finer than the node that wears it: it lies on two cells or
+ * more each way, and eight of them lie on a node's side at most. */
+#define FF_IMAGE_DEPTH_MAX 3
+static inline uint32_t ff_image_depth(unsigned node_log2)
+{
+    return node_log2 - 1 < FF_IMAGE_DEPTH_MAX ? node_log2 - 1 : FF_IMAGE_DEPTH_MAX;
+}
+/* So many levels of images can be seen of a terrain; packs are made with no more. */
+static inline uint32_t ff_image_levels(const ff_terrain_info *info)
+{
+    uint32_t levels = ff_terrain_levels(info) + ff_image_depth(info->node_log2);
+    return levels < FF_KEY_LEVEL_MAX + 1 ? levels : FF_KEY_LEVEL_MAX + 1;
+}
 
 /* The key, among grounds held together, of a node that has the key `own` in its pack and in
  * messages; and back. */
@@ -158,7 +174,7 @@ static inline ff_key ff_terrain_key(const ff_terrain_info *info, ff_key own)
 }
 static inline ff_key ff_terrain_own_key(const ff_terrain_info *info, ff_key key)
 {
-    FF_ASSERT(ff_terrain_has_node(info, key));
+    FF_ASSERT(ff_terrain_has_node(info, key) || ff_terrain_has_image(info, key));
     return key - ((ff_key)info->first_tile << FF_KEY_TILE_SHIFT);
 }
 

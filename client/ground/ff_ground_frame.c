@@ -118,8 +118,11 @@ void ff_ground_frame_last(const ff_terrain_info *info, const ff_drawn *drawn, c3
     unsigned cell_log2 = info->tile_log2 - info->node_log2 - ff_key_level(drawn->key);
     ff_extent extent = ff_shape_extent(info, drawn->key);
     FF_ASSERT(extent.columns > 0 && extent.rows > 0);
-    draw->tex_last_q16[0] = (uint32_t)(((uint64_t)extent.columns << 16) >> cell_log2);
-    draw->tex_last_q16[1] = (uint32_t)(((uint64_t)extent.rows << 16) >> cell_log2);
+    const uint32_t last_q16[2] = { (uint32_t)(((uint64_t)extent.columns << 16) >> cell_log2),
+                                   (uint32_t)(((uint64_t)extent.rows << 16) >> cell_log2) };
+    for (int axis = 0; axis < 2; axis++)
+        if (!draw->tex_last_q16[axis] || draw->tex_last_q16[axis] > last_q16[axis])
+            draw->tex_last_q16[axis] = last_q16[axis];
 }
 
 void ff_ground_frame_draw(const ff_ground_frame *frame, const ff_terrain_info *info,

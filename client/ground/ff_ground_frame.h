@@ -34,7 +34,7 @@ int ff_ground_frame_follow(ff_ground_frame *frame, const ff_terrain_info *ground
 void ff_ground_frame_vertices(const ff_ground_frame *frame, const ff_terrain_info *info,
                               const ff_drawn *drawn, c3d_vertex *vertices, uint32_t count);
 
-/* Where a texture ends on such a node, for its draw call. */
+/* Where a texture ends on such a node, for its draw call, unless it ends before. */
 void ff_ground_frame_last(const ff_terrain_info *info, const ff_drawn *drawn, c3d_draw *draw);
 
 /* Fills what all calls that draw them have in common: origin, scales and the grid's columns. */

@@ -163,6 +163,16 @@ static int free_one_mesh(ff_terrain_view *view)
     return 0;
 }
 
+/* The node's mesh, its entry's or one for this call. */
+static c3d_mesh mesh_of(ff_terrain_view *view, const ff_terrain_info *info, const ff_drawn *drawn,
+                        ff_view_node *entry)
+{
+    c3d_mesh mesh = entry && entry->mesh.id ? entry->mesh : make_mesh(view, info, drawn);
+    if (!mesh.id && free_one_mesh(view)) mesh = make_mesh(view, info, drawn);
+    if (entry) entry->mesh = mesh;
+    return mesh;
+}
+
 static void draw_strips(ff_terrain_view *view, const ff_drawn *drawn, c3d_draw draw)
 {
     uint8_t strip[5];
@@ -188,20 +198,68 @@ static c3d_strip make_part(ff_terrain_view *view, const ff_terrain_info *info,
     return count ? c3d_strip_make(view->device, view->part, count) : (c3d_strip){ 0 };
 }
 
+static void draw_part(ff_terrain_view *view, const ff_terrain_info *info, const ff_drawn *drawn,
+                      ff_squares squares, c3d_draw draw)
+{
+    draw.strip = make_part(view, info, drawn, ~squares);
+    if (draw.strip.id) c3d_draw_strip(view->device, &draw);
+    c3d_strip_free(view->device, draw.strip);
+}
+
+/* A call that draws a node, dressed for the squares that wear an image. */
+static c3d_draw dress(const ff_terrain_view *view, const ff_terrain_info *info,
+                      const ff_drawn *drawn, ff_key image, c3d_draw draw)
+{
+    ff_textures_lay(view->textures, drawn->key, image, &draw);
+    if (draw.flags & C3D_DRAW_TEXTURED) ff_ground_frame_last(info, drawn, &draw);
+    return draw;
+}
+
+/* What a node wears, and the call that draws it in its first image, or in its colours. */
+typedef struct outfit {
+    ff_wear part[FF_WEAR_MAX];
+    unsigned parts;
+    c3d_draw bare, draw;
+} outfit;
+
+/* Of several parts one at most has no image. */
+static void choose_outfit(const ff_terrain_view *view, const ff_terrain_info *info,
+                          const ff_drawn *drawn, const ff_texel_look *look, outfit *wears)
+{
+    wears->draw = wears->bare;
+    wears->parts = view->textures
+                       ? ff_textures_worn(view->textures, view->tree, drawn, look, wears->part)
+                       : 0;
+    unsigned first = wears->parts > 1 && wears->part[0].image == FF_KEY_NONE;
+    if (wears->parts) wears->draw = dress(view, info, drawn, wears->part[first].image, wears->bare);
+}
+
+static void draw_outfit(ff_terrain_view *view, const ff_terrain_info *info, const ff_drawn *drawn,
+                        const outfit *wears)
+{
+    if (wears->parts < 2) draw_strips(view, drawn, wears->draw);
+    for (unsigned i = 0; wears->parts > 1 && i < wears->parts; i++)
+        draw_part(view, info, drawn, wears->part[i].squares,
+                  dress(view, info, drawn, wears->part[i].image, wears->bare));
+}
+
 static void draw_thrown(ff_terrain_view *view, const ff_terrain_info *info, const ff_drawn *drawn,
-                        const ff_view_node *entry, const c3d_draw *draw)
+                        const ff_view_node *entry, const outfit *wears)
 {
     c3d_draw draws[FF_THROWS_MAX];
     const ff_squares *without[FF_THROWS_MAX] = { NULL };
     c3d_strip part = { 0 };
     ff_view_kept *kept = &view->kept[entry ? entry - view->entry : (ptrdiff_t)view->entry_count];
     if (!entry) memset(kept, 0, sizeof *kept);
-    draws[0] = *draw;
+    draws[0] = wears->draw;
     unsigned count = view->throws.lay(view->throws.context, info, drawn, kept, draws, without);
     FF_ASSERT(count >= 1 && count <= FF_THROWS_MAX);
     for (unsigned i = 0; i < count; i++) {
         if (!without[i]) {
-            draw_strips(view, drawn, draws[i]);
+            if (draws[i].flags & C3D_DRAW_TEXTURED)
+                draw_outfit(view, info, drawn, wears);
+            else
+                draw_strips(view, drawn, draws[i]);
             continue;
         }
         if (i == 0 || without[i] != without[i - 1]) {
@@ -220,9 +278,11 @@ void ff_terrain_view_draw(ff_terrain_view *view, const ff_drawn *list, uint32_t 
                           const c3d_camera *camera, unsigned show)
 {
     c3d_draw ground = { .flags = C3D_DRAW_COLOURED };
+    ff_texel_look look = { .focal_q8 = 0 };
     uint32_t ground_count;
     const ff_terrain_info *grounds = ff_tree_grounds(view->tree, &ground_count), *last = NULL;
     if (ff_ground_frame_follow(&view->frame, grounds, ground_count, camera)) free_meshes(view);
+    if (view->textures) look = ff_textures_look(view->textures, ff_tree_frame(view->tree), camera);
     for (uint32_t i = 0; i < count; i++) {
         const ff_drawn *drawn = &list[i];
         const ff_terrain_info *info = ff_tree_ground(view->tree, drawn->key);
@@ -230,17 +290,15 @@ void ff_terrain_view_draw(ff_terrain_view *view, const ff_drawn *list, uint32_t 
         FF_ASSERT((uint32_t)ground.tex_columns * ground.tex_columns == view->heights_per_node);
         last = info;
         ff_view_node *entry = entry_of(view, drawn);
-        c3d_draw draw = ground;
-        draw.mesh = entry && entry->mesh.id ? entry->mesh : make_mesh(view, info, drawn);
-        if (!draw.mesh.id && free_one_mesh(view)) draw.mesh = make_mesh(view, info, drawn);
-        if (entry) entry->mesh = draw.mesh;
-        if (view->textures) ff_textures_lay(view->textures, drawn->key, &draw);
-        if (draw.flags & C3D_DRAW_TEXTURED) ff_ground_frame_last(info, drawn, &draw);
+        outfit wears = { .bare = ground };
+        c3d_mesh mesh = mesh_of(view, info, drawn, entry);
+        wears.bare.mesh = mesh;
+        choose_outfit(view, info, drawn, &look, &wears);
         if (view->throws.lay)
-            draw_thrown(view, info, drawn, entry, &draw);
+            draw_thrown(view, info, drawn, entry, &wears);
         else
-            draw_strips(view, drawn, draw);
-        if (show) ff_show_over(view, drawn, &draw, show);
-        if (!entry && draw.mesh.id) c3d_mesh_free(view->device, draw.mesh);
+            draw_outfit(view, info, drawn, &wears);
+        if (show) ff_show_over(view, drawn, &wears.draw, show);
+        if (!entry && mesh.id) c3d_mesh_free(view->device, mesh);
     }
 }

@@ -55,9 +55,10 @@ typedef struct ff_terrain_view {
     ff_ground_frame frame; /* of all meshes */
     c3d_strip strip[FF_STRIP_COUNT_MAX];
     ff_throws throws; /* lay NULL: none */
-    /* for throws, NULL where nothing is thrown: of each entry, and one for nodes that lack one; the
-     * indices of all strips, and room for those of a node without some squares */
+    /* for throws, NULL where nothing is thrown: of each entry, and one for nodes that lack one */
     ff_view_kept *kept; /* zeroed */
+    /* for throws and textures, NULL where there are neither: the indices of all strips, and room
+     * for those of a node without some squares */
     uint16_t *index, *part;
     uint16_t first[FF_STRIP_COUNT_MAX], length[FF_STRIP_COUNT_MAX];
 } ff_terrain_view;

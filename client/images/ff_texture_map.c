@@ -1,16 +1,8 @@
 #include "ff_texture_map.h"
 #include "../../protocol/ff_assert.h"
 
-ff_key ff_texture_key(const ff_terrain_info *info, ff_key node)
-{
-    if (info->texture_log2 == 0 || info->texture_levels == 0) return FF_KEY_NONE;
-    FF_ASSERT(info->texture_levels <= FF_KEY_LEVEL_MAX + 1);
-    while (ff_key_level(node) >= info->texture_levels) node = ff_key_parent(node);
-    return node;
-}
-
 /* s = (u*(T-1) + 1/2) / T for the fraction u of the textured node's edge; u = (place + vertex/2^k)
- * / 2^depth. */
+ * / 2^depth under one above, vertex/2^k * 2^depth - place under one below. */
 static void map_axis(const ff_terrain_info *info, uint32_t place, uint32_t depth,
                      int32_t *scale_q16, int32_t *offset_q16)
 {
@@ -24,11 +16,34 @@ static void map_axis(const ff_terrain_info *info, uint32_t place, uint32_t depth
     FF_ASSERT(*offset_q16 + (*scale_q16 << info->node_log2) <= 1 << 16);
 }
 
+static void map_axis_below(const ff_terrain_info *info, uint32_t place, uint32_t depth,
+                           int32_t *scale_q16, int32_t *offset_q16)
+{
+    int64_t span_q16 = (((int64_t)1 << info->texture_log2) - 1) << 16;
+    FF_ASSERT(depth <= info->node_log2 && place < 1u << depth);
+    *scale_q16 = (int32_t)((span_q16 << depth) >> (info->node_log2 + info->texture_log2));
+    *offset_q16 = (int32_t)(((1 << 15) >> info->texture_log2) -
+                            ((span_q16 * place) >> info->texture_log2));
+}
+
+static void map_below(const ff_terrain_info *info, ff_key node, ff_key texture,
+                      int32_t scale_q16[2], int32_t offset_q16[2])
+{
+    uint32_t depth = ff_key_level(texture) - ff_key_level(node), within = (1u << depth) - 1;
+    uint32_t x = ff_morton_x(ff_key_code(texture)) & within,
+             y = ff_morton_y(ff_key_code(texture)) & within;
+    map_axis_below(info, x, depth, &scale_q16[0], &offset_q16[0]);
+    map_axis_below(info, y, depth, &scale_q16[1], &offset_q16[1]);
+}
+
 void ff_texture_map(const ff_terrain_info *info, ff_key node, ff_key texture, int32_t scale_q16[2],
                     int32_t offset_q16[2])
 {
-    FF_ASSERT(ff_key_level(texture) <= ff_key_level(node));
     FF_ASSERT(ff_key_tile(texture) == ff_key_tile(node));
+    if (ff_key_level(texture) > ff_key_level(node)) {
+        map_below(info, node, texture, scale_q16, offset_q16);
+        return;
+    }
     uint32_t depth = ff_key_level(node) - ff_key_level(texture);
     uint32_t within = (1u << depth) - 1; /* the bits of the place below the textured node */
     map_axis(info, ff_morton_x(ff_key_code(node)) & within, depth, &scale_q16[0], &offset_q16[0]);

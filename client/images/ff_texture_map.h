@@ -1,5 +1,5 @@
-/* Which image covers a node and how: one rule for the client and the server's renderer, so that
- * near and far ground agree in colour.
+/* How an image covers a node: one rule for the client and the server's renderer, so that near and
+ * far ground agree in colour.
  *
  * A texture of T = 2^texture_log2 texels a side spans the node of its own key edge to edge: texel i
  * lies at i/(T-1) of the edge, so that neighbouring textures share their rim texels and filtering
@@ -12,12 +12,9 @@
 
 #include <stddef.h>
 
-/* The node whose texture is the finest there is over `node`: itself or an ancestor; FF_KEY_NONE
- * when the terrain has no images. */
-ff_key ff_texture_key(const ff_terrain_info *info, ff_key node);
-
 /* Coordinates of c3d_draw for `node`, whose grid has columns and rows 0..2^k, under the texture of
- * `texture` (itself or any ancestor). */
+ * `texture`: itself, any ancestor, or a descendant on whole cells, beyond which they mean nothing.
+ */
 void ff_texture_map(const ff_terrain_info *info, ff_key node, ff_key texture, int32_t scale_q16[2],
                     int32_t offset_q16[2]);
 

@@ -26,26 +26,80 @@ static ff_texture_slot *find(const ff_textures *textures, ff_key key)
     return NULL;
 }
 
-static ff_texture_slot *find_nearest(const ff_textures *textures, ff_key node)
+/* Images that a picture shows of ground whose texels are as large as pixels, in pictures of one
+ * image: they lie askew to it, reach beyond it, and have those above them. */
+#define IMAGES_A_PICTURE 6u
+
+ff_texel_look ff_textures_look(const ff_textures *textures, const ff_frame *frame,
+                               const c3d_camera *camera)
 {
-    ff_key key = ff_texture_key(&textures->info, node);
-    while (key != FF_KEY_NONE) {
-        ff_texture_slot *slot = find(textures, key);
-        FF_ASSERT(ff_key_level(key) < textures->info.texture_levels);
-        if (slot || ff_key_level(key) == 0) return slot;
-        key = ff_key_parent(key);
-    }
-    return NULL;
+    uint64_t pixels = (uint64_t)camera->width * camera->height * IMAGES_A_PICTURE,
+             texels = (uint64_t)textures->slot_count << 2 * textures->info.texture_log2;
+    int32_t fitting_q8 = (int32_t)c3d_isqrt64((pixels << 16) / (texels ? texels : 1)),
+            least_q8 = textures->texel_px_q8;
+    return (ff_texel_look){ .frame = *frame,
+                            .pos_wu = { camera->pos_wu[0], camera->pos_wu[1], camera->pos_wu[2] },
+                            .focal_q8 = camera->focal_q8,
+                            .texel_px_q8 = fitting_q8 > least_q8 ? fitting_q8 : least_q8,
+                            .across = textures->across };
 }
 
-void ff_textures_lay(const ff_textures *textures, ff_key node, c3d_draw *draw)
+/* The image of a key, or the nearest one above it. */
+static ff_texture_slot *find_nearest(const ff_textures *textures, ff_key key)
 {
-    const ff_texture_slot *slot = find_nearest(textures, node);
+    for (;; key = ff_key_parent(key)) {
+        ff_texture_slot *slot = find(textures, key);
+        if (slot || ff_key_level(key) == 0) return slot;
+    }
+}
+
+unsigned ff_textures_wanted(const ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
+                            const ff_texel_look *look, ff_wear list[FF_WEAR_MAX])
+{
+    const ff_terrain_info *info = ff_tree_ground(tree, drawn->key);
+    return info->texture_log2 == textures->info.texture_log2 ? ff_wear_list(tree, drawn, look, list)
+                                                             : 0;
+}
+
+unsigned ff_textures_worn(const ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
+                          const ff_texel_look *look, ff_wear list[FF_WEAR_MAX])
+{
+    unsigned wanted = ff_textures_wanted(textures, tree, drawn, look, list), count = 0;
+    for (unsigned i = 0; i < wanted; i++) {
+        const ff_wear part = list[i]; /* its place may be taken */
+        const ff_texture_slot *slot = find_nearest(textures, part.image);
+        ff_key image = slot && slot->texture.id ? slot->key : FF_KEY_NONE;
+        unsigned same = 0;
+        while (same < count && list[same].image != image) same++;
+        if (same == count) list[count++] = (ff_wear){ image, 0 };
+        list[same].squares |= part.squares;
+    }
+    return count;
+}
+
+/* The columns, or rows, of a node on which an image below it lies. */
+static void set_range(const ff_terrain_info *info, uint32_t depth, uint32_t place,
+                      uint32_t *first_q16, uint32_t *last_q16)
+{
+    uint32_t cells = 1u << (info->node_log2 - depth);
+    *first_q16 = place * cells << 16;
+    *last_q16 = (place + 1) * cells << 16;
+}
+
+void ff_textures_lay(const ff_textures *textures, ff_key node, ff_key image, c3d_draw *draw)
+{
+    const ff_texture_slot *slot = image == FF_KEY_NONE ? NULL : find(textures, image);
     if (!slot || !slot->texture.id) return;
     draw->flags = C3D_DRAW_TEXTURED;
     draw->colour = COLOUR_WHITE;
     draw->texture = slot->texture;
-    ff_texture_map(&textures->info, node, slot->key, draw->tex_scale_q16, draw->tex_offset_q16);
+    ff_texture_map(&textures->info, node, image, draw->tex_scale_q16, draw->tex_offset_q16);
+    if (ff_key_level(image) <= ff_key_level(node)) return;
+    uint32_t depth = ff_key_level(image) - ff_key_level(node), within = (1u << depth) - 1;
+    set_range(&textures->info, depth, ff_morton_x(ff_key_code(image)) & within,
+              &draw->tex_first_q16[0], &draw->tex_last_q16[0]);
+    set_range(&textures->info, depth, ff_morton_y(ff_key_code(image)) & within,
+              &draw->tex_first_q16[1], &draw->tex_last_q16[1]);
 }
 
 int ff_textures_touch(ff_textures *textures, ff_key key)
@@ -81,11 +135,13 @@ static uint32_t priority_of(const ff_terrain_info *info, ff_key key, const ff_vi
 
 /* A list of wishes in the making. */
 typedef struct wishes {
+    ff_textures *textures;
     const ff_tree *tree;
     const ff_view *view;
     const ff_quality *quality;
     ff_texture_wish *list;
     uint32_t count, capacity;
+    uint32_t in_use; /* images that are drawn */
 } wishes;
 
 static void insert(wishes *w, ff_texture_wish wish)
@@ -122,32 +178,48 @@ static void wish_down(wishes *w, ff_key from, ff_key finest)
     }
 }
 
+/* Marks what is drawn where an image is wanted, and wishes for what is lacking on the way to it: 1
+ * when there is any. */
+static int look_for(wishes *w, ff_key finest)
+{
+    ff_textures *textures = w->textures;
+    ff_texture_slot *held = find_nearest(textures, finest);
+    if (held) {
+        w->in_use += held->used != textures->stamp;
+        held->used = textures->stamp;
+        if (held->key == finest) return 0;
+    }
+    ff_key next = on_the_way(finest, held ? ff_key_level(held->key) + 1 : 0);
+    if (held && held->bare >> ff_key_quadrant(next) & 1u) return 0;
+    wish_down(w, next, finest);
+    return 1;
+}
+
 uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
                             uint32_t drawn_count, const ff_view *view, const ff_quality *quality,
                             ff_texture_wish *list, uint32_t capacity)
 {
-    wishes w = { tree, view, quality, list, 0, capacity };
-    uint32_t in_use = 0;
+    const ff_texel_look look = ff_textures_look(textures, &view->frame, &view->camera);
+    wishes w = { textures, tree, view, quality, list, 0, capacity, 0 };
+    ff_wear wear[FF_WEAR_MAX];
     textures->stamp++;
     textures->lacking = 0;
     for (uint32_t i = 0; i < drawn_count; i++) {
-        ff_key finest = ff_texture_key(&textures->info, drawn[i].key);
-        if (finest == FF_KEY_NONE) continue;
-        ff_texture_slot *held = find_nearest(textures, drawn[i].key);
-        if (held && held->used != textures->stamp) {
-            held->used = textures->stamp;
-            in_use++;
-        }
-        if (held && held->key == finest) continue;
-        ff_key next = on_the_way(finest, held ? ff_key_level(held->key) + 1 : 0);
-        if (held && held->bare >> ff_key_quadrant(next) & 1u) continue;
-        textures->lacking++;
-        wish_down(&w, next, finest);
+        unsigned parts = ff_textures_wanted(textures, tree, &drawn[i], &look, wear);
+        int lacks = 0;
+        for (unsigned part = 0; part < parts; part++) lacks |= look_for(&w, wear[part].image);
+        textures->lacking += (unsigned)lacks;
     }
-    FF_ASSERT(in_use <= textures->held && textures->held <= textures->slot_count);
+    FF_ASSERT(w.in_use <= textures->held && textures->held <= textures->slot_count);
     /* what would find no place is not asked for */
-    uint32_t room = textures->slot_count - in_use;
+    uint32_t room = textures->slot_count - w.in_use;
     return w.count < room ? w.count : room;
+}
+
+int ff_textures_is_worn(const ff_textures *textures, ff_key image)
+{
+    const ff_texture_slot *slot = find(textures, image);
+    return slot && slot->used == textures->stamp;
 }
 
 static void unlink_slot(ff_textures *textures, ff_texture_slot *slot)

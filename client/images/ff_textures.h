@@ -1,19 +1,21 @@
 /* Images of the ground: a tree of its own depth, which differs from place to place, over the same
- * keys (Planet: linked height and texture trees). A node is drawn with its own image or its nearest
- * held ancestor's. The image drawn least lately makes room. A client's images come over the link
- * from coarse to fine (wishes, take), those of the server's renderer from the pack (touch, put).
+ * keys (Planet: linked height and texture trees). What is drawn of it is told by the size of texels
+ * in the picture (ff_wear.h), as far as it is held. The image used least lately makes room. A
+ * client's images come over the link from coarse to fine (wishes, take), those of the server's
+ * renderer from the pack (touch, put).
  *
  * The owner zeroes the cache and sets the first part; the slots are the owner's memory. */
 #ifndef FF_TEXTURES_H
 #define FF_TEXTURES_H
 
 #include "../ask/ff_new_data.h"
-#include "../terrain/ff_tree.h"
+#include "ff_wear.h"
 #include "../../protocol/picture/ff_picture.h"
 
 extern const uint8_t ff_textures_built; /* 0: left out of this build */
 
 #define FF_TEXTURE_HASH 256u
+#define FF_TEXEL_PX_Q8  362 /* sqrt 2: texels are as large as pixels, as a mean of levels */
 
 typedef struct ff_texture_slot {
     ff_key key;
@@ -29,6 +31,8 @@ typedef struct ff_textures {
     ff_terrain_info info;
     ff_texture_slot *slot; /* zeroed */
     uint16_t slot_count;
+    int32_t texel_px_q8; /* the least of ff_texel_look */
+    uint8_t across;      /* of ff_texel_look */
     /* Of pictures, where they are to be drawn, those of each slot as they were decoded, RGB888, and
      * two more; else NULL. Those below are differences to them. */
     uint8_t *rgb;
@@ -46,9 +50,22 @@ typedef struct ff_texture_wish {
     uint32_t priority;
 } ff_texture_wish;
 
-/* Lays the nearest held image over `node` on the call that draws it, in place of colours; without
- * one the call stays as it is. */
-void ff_textures_lay(const ff_textures *textures, ff_key node, c3d_draw *draw);
+/* How a camera looks at images: texels as large as pixels, or so much larger that what a picture of
+ * its size shows finds room. */
+ff_texel_look ff_textures_look(const ff_textures *textures, const ff_frame *frame,
+                               const c3d_camera *camera);
+/* Lists what a drawn node would wear if all images were held (ff_wear_list); nodes of grounds whose
+ * images have another size wear none. */
+unsigned ff_textures_wanted(const ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
+                            const ff_texel_look *look, ff_wear list[FF_WEAR_MAX]);
+/* Lists what a drawn node wears of the images that are held: on each of its squares the one that is
+ * wanted there, or the nearest above that; FF_KEY_NONE: none. How many; 0: no images belong to its
+ * ground. */
+unsigned ff_textures_worn(const ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
+                          const ff_texel_look *look, ff_wear list[FF_WEAR_MAX]);
+/* Lays such an image over `node` on the call that draws it, in place of colours; without one the
+ * call stays as it is. */
+void ff_textures_lay(const ff_textures *textures, ff_key node, ff_key image, c3d_draw *draw);
 /* Marks what the drawn nodes of the tree use and lists what they lack, most urgent first;
  * priorities are on the tree's scale. */
 uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
@@ -61,6 +78,8 @@ int ff_textures_put(ff_textures *textures, ff_key key, uint8_t bare, const uint1
 /* The same, for an item of the new-data list, of a key of the ground `info`. A picture whose
  * parent's is not held is not taken, a damaged one makes the item an error. */
 int ff_textures_take(ff_textures *textures, const ff_terrain_info *info, ff_new_item *item);
+/* 1 when the last wishes were made for a picture that shows this image. */
+int ff_textures_is_worn(const ff_textures *textures, ff_key image);
 /* Somebody else may have images where those that are held say that there are none. */
 void ff_textures_doubt(ff_textures *textures);
 /* For an owner whose images come at once (a pack): 1 when this image is held; it is then the last

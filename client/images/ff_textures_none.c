@@ -4,9 +4,29 @@
 
 const uint8_t ff_textures_built = 0;
 
-void ff_textures_lay(const ff_textures *textures, ff_key node, c3d_draw *draw)
+ff_texel_look ff_textures_look(const ff_textures *textures, const ff_frame *frame,
+                               const c3d_camera *camera)
 {
-    (void)textures, (void)node, (void)draw;
+    (void)textures, (void)frame, (void)camera;
+    return (ff_texel_look){ .focal_q8 = 0 };
+}
+
+unsigned ff_textures_worn(const ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
+                          const ff_texel_look *look, ff_wear list[FF_WEAR_MAX])
+{
+    (void)textures, (void)tree, (void)drawn, (void)look, (void)list;
+    return 0;
+}
+
+void ff_textures_lay(const ff_textures *textures, ff_key node, ff_key image, c3d_draw *draw)
+{
+    (void)textures, (void)node, (void)image, (void)draw;
+}
+
+int ff_textures_is_worn(const ff_textures *textures, ff_key image)
+{
+    (void)textures, (void)image;
+    return 0;
 }
 
 uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,

@@ -77,13 +77,19 @@ int64_t ff_tile_distance(const ff_tree *tree, uint32_t tile)
     return distance;
 }
 
+void ff_tree_heights_wu(const ff_terrain_info *info, const ff_node *node, int64_t height_wu[2])
+{
+    int64_t error = ff_steps_wu(info, ff_geometric_error_decode(node->error_code));
+    FF_ASSERT(error >= 0 && node->height_min <= node->height_max);
+    height_wu[0] = ff_height_wu(info, node->height_min) - error;
+    height_wu[1] = ff_height_wu(info, node->height_max) + error;
+}
+
 void ff_node_box(const ff_tree *tree, const ff_node *node, ff_box *box)
 {
     const ff_terrain_info *info = ff_ground_of(tree, node->key);
-    int64_t error = ff_steps_wu(info, ff_geometric_error_decode(node->error_code));
-    FF_ASSERT(error >= 0 && node->height_min <= node->height_max);
-    const int64_t height_wu[2] = { ff_height_wu(info, node->height_min) - error,
-                                   ff_height_wu(info, node->height_max) + error };
+    int64_t height_wu[2];
+    ff_tree_heights_wu(info, node, height_wu);
     *box = ff_shape_box(info, node->key, &node->placed, height_wu, tree->view.camera.pos_wu);
 }
 

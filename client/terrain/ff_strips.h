@@ -55,6 +55,7 @@ uint32_t ff_strips_without(const uint16_t *index, uint32_t length, unsigned node
                            ff_squares squares, uint16_t *out, uint32_t count);
 /* Indices that all strips of such a node take so, at most: they have two for each height and four
  * more. */
-static inline uint32_t ff_strips_part(uint32_t heights) { return 3 * (2 * heights + 4); }
+#define FF_STRIPS_PART(heights) (3 * (2 * (heights) + 4))
+static inline uint32_t ff_strips_part(uint32_t heights) { return FF_STRIPS_PART(heights); }
 
 #endif

@@ -183,6 +183,8 @@ const ff_frame *ff_tree_frame(const ff_tree *tree);
 const ff_quality *ff_tree_quality(const ff_tree *tree);
 /* A node's place there, for ff_shape.h. */
 const ff_placed *ff_tree_placed(const ff_node *node);
+/* Between which heights its ground lies. */
+void ff_tree_heights_wu(const ff_terrain_info *info, const ff_node *node, int64_t height_wu[2]);
 /* The largest distance between a node's triangles and the ground. */
 int64_t ff_tree_error_wu(const ff_terrain_info *info, const ff_node *node);
 /* Bits of ff_side: sides of a node's children that are held, of the nodes across. A refinement that

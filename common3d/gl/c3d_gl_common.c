@@ -224,26 +224,28 @@ static void set_flags(c3d_gl_state *state, uint32_t flags)
     state->flags = flags;
 }
 
-static float grid_place(uint32_t at, uint32_t last_q16)
+static float grid_place(uint32_t at, uint32_t first_q16, uint32_t last_q16)
 {
-    float last = (float)last_q16 * (1.0f / 65536.0f);
+    float first = (float)first_q16 * (1.0f / 65536.0f), last = (float)last_q16 * (1.0f / 65536.0f);
+    if ((float)at < first) return first;
     return last_q16 && last < (float)at ? last : (float)at;
 }
 
-/* All meshes of as many columns, and of the same last ones, have the same grid. */
+/* All meshes of as many columns, and of the same first and last ones, have the same grid. */
 static void set_grid(c3d_gl_state *state, const c3d_draw *draw, uint32_t count)
 {
     uint32_t columns = draw->tex_columns;
-    const uint32_t *last = draw->tex_last_q16;
-    if (state->grid_columns != columns || state->grid_last_q16[0] != last[0] ||
-        state->grid_last_q16[1] != last[1])
+    const uint32_t *first = draw->tex_first_q16, *last = draw->tex_last_q16;
+    if (state->grid_columns != columns ||
+        memcmp(state->grid_first_q16, first, sizeof state->grid_first_q16) != 0 ||
+        memcmp(state->grid_last_q16, last, sizeof state->grid_last_q16) != 0)
         state->grid_count = 0;
     state->grid_columns = columns;
-    state->grid_last_q16[0] = last[0];
-    state->grid_last_q16[1] = last[1];
+    memcpy(state->grid_first_q16, first, sizeof state->grid_first_q16);
+    memcpy(state->grid_last_q16, last, sizeof state->grid_last_q16);
     for (uint32_t i = state->grid_count; i < count; i++) {
-        state->grid[i][0] = grid_place(i % columns, last[0]);
-        state->grid[i][1] = grid_place(i / columns, last[1]);
+        state->grid[i][0] = grid_place(i % columns, first[0], last[0]);
+        state->grid[i][1] = grid_place(i / columns, first[1], last[1]);
     }
     if (state->grid_count < count) state->grid_count = count;
     bind_array(state, 0);

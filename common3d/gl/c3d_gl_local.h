@@ -11,7 +11,7 @@ typedef struct c3d_gl_state {
     uint32_t flags; /* enum c3d_draw_flags that GL is set to; UINT32_MAX: unknown */
     uint32_t array_buffer, element_buffer, texture; /* bound now */
     uint32_t font; /* texture of all glyphs, made with the first label; 0: not yet */
-    uint32_t grid_columns, grid_last_q16[2], grid_count; /* of `grid` now */
+    uint32_t grid_columns, grid_first_q16[2], grid_last_q16[2], grid_count; /* of `grid` now */
     int fog;
     uint16_t width, height;
     c3d_rotation rotation;

@@ -320,12 +320,13 @@ static void transform_far(soft_state *state, const c3d_mesh_data *mesh)
 /* s of a column or t of a row: at * scale + offset, texels Q16. */
 typedef struct texel_axis {
     int64_t scale, offset;
-    int64_t last; /* the most of at * scale */
+    int64_t first, last; /* the least and the most of at * scale */
 } texel_axis;
 
 static int32_t texel_q16(const texel_axis *axis, uint32_t at)
 {
     int64_t along = at * axis->scale, limit = ((int64_t)1 << 28) - 1;
+    if (along < axis->first) along = axis->first;
     int64_t texels = (along > axis->last ? axis->last : along) + axis->offset;
     return (int32_t)(texels > limit ? limit : texels < -limit ? -limit : texels);
 }
@@ -336,7 +337,9 @@ static texel_axis make_axis(soft_state *state, const c3d_draw *draw, int i, uint
     int size_log2 = i ? state->paint.texture->height_log2 : state->paint.texture->width_log2;
     C3D_ASSERT(size_log2 <= 12);
     texel_axis axis = { draw->tex_scale_q16[i] * ((int64_t)1 << size_log2),
-                        draw->tex_offset_q16[i] * ((int64_t)1 << size_log2) - 32768, INT64_MAX };
+                        draw->tex_offset_q16[i] * ((int64_t)1 << size_log2) - 32768, INT64_MIN,
+                        INT64_MAX };
+    if (draw->tex_first_q16[i]) axis.first = draw->tex_first_q16[i] * axis.scale / 65536;
     if (draw->tex_last_q16[i]) axis.last = draw->tex_last_q16[i] * axis.scale / 65536;
     for (int end = 0; end < 2; end++) {
         int32_t texels = texel_q16(&axis, end ? last : 0);
@@ -406,7 +409,7 @@ static int same_looks(const c3d_draw *a, const c3d_draw *b)
     for (int i = 0; i < 2; i++)
         if (a->tex_scale_q16[i] != b->tex_scale_q16[i] ||
             a->tex_offset_q16[i] != b->tex_offset_q16[i] ||
-            a->tex_last_q16[i] != b->tex_last_q16[i])
+            a->tex_first_q16[i] != b->tex_first_q16[i] || a->tex_last_q16[i] != b->tex_last_q16[i])
             return 0;
     return a->flags == b->flags && a->colour == b->colour && a->texture.id == b->texture.id &&
            a->tex_columns == b->tex_columns;

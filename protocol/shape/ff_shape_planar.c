@@ -48,7 +48,7 @@ ff_extent ff_planar_extent(const ff_terrain_info *info, ff_key key)
              edge_log2 = info->tile_log2 - ff_key_level(key);
     ff_extent extent = { 1u << edge_log2, 1u << edge_log2 };
 
-    FF_ASSERT(ff_key_level(key) < ff_terrain_levels(info));
+    FF_ASSERT(ff_key_level(key) <= info->tile_log2);
     if (!(((info->samples_x - 1) | (info->samples_y - 1)) & ((1u << info->tile_log2) - 1)))
         return extent; /* the samples fill the tiles */
     extent.columns = extent_along((tile % info->tiles_x << info->tile_log2) +

@@ -15,10 +15,11 @@ void ff_pack_ground_desc(const ff_pack *pack, const sys_surface_api *surface_api
     uint32_t side = ff_node_side(&pack->header.info);
     *desc = (c3d_desc){ .surface_api = surface_api,
                         .mesh_count = FF_GROUND_NODES,
-                        .strip_count = 32,
+                        .strip_count = FF_STRIP_COUNT_MAX + 1, /* and a part of a node */
                         .texture_count = FF_GROUND_TEXTURES,
                         .mesh_vertices_max = (uint16_t)(side * side),
-                        .strip_indices_max = sizeof((ff_strips *)0)->index / sizeof(uint16_t),
+                        .strip_indices_max = sizeof((ff_strips *)0)->index / sizeof(uint16_t) +
+                                             ff_strips_part(side * side),
                         .use_vertex_buffers = 1 };
 }
 
@@ -31,10 +32,14 @@ static int make_view(ff_pack_ground *ground, c3d_device *device)
                                       .entry = ground->entry,
                                       .entry_count = FF_GROUND_NODES,
                                       .vertices = ground->vertices,
+                                      .index = ground->index,
+                                      .part = ground->part,
                                       .heights_per_node = ff_node_side(info) * ff_node_side(info) };
-    ground->textures = (ff_textures){
-        .device = device, .info = *info, .slot = ground->slot, .slot_count = FF_GROUND_TEXTURES
-    };
+    ground->textures = (ff_textures){ .device = device,
+                                      .info = *info,
+                                      .slot = ground->slot,
+                                      .slot_count = FF_GROUND_TEXTURES,
+                                      .texel_px_q8 = FF_TEXEL_PX_Q8 };
     ff_terrain_view_attach(&ground->view, ground->tree, &ground->textures);
     return ff_terrain_view_strips(&ground->view, info->node_log2, &strips);
 }
@@ -168,21 +173,24 @@ static int make_texels(ff_pack_ground *ground, ff_key key)
     return FF_OK;
 }
 
-/* Puts the finest image over a node into the cache; the least recently used image makes room. A
- * damaged image is remembered as such until its slot is needed. */
-static void fetch_image(ff_pack_ground *ground, ff_key node)
+/* Puts an image, or the nearest one above it, into the cache; the least recently used image makes
+ * room. A damaged image is remembered as such until its slot is needed. */
+static void fetch_image(ff_pack_ground *ground, ff_key key)
 {
-    const ff_terrain_info *info = &ff_pack_of(ground->pack, node)->header.info;
-    ff_key key = info->texture_log2 == ground->textures.info.texture_log2
-                     ? ff_texture_key(info, node)
-                     : FF_KEY_NONE;
     const uint8_t *payload;
-    if (key == FF_KEY_NONE || ff_textures_touch(&ground->textures, key)) return;
+    if (ff_textures_touch(&ground->textures, key)) return;
     int rc = ff_pack_image(ground->pack, &key, &payload);
     if (ff_textures_touch(&ground->textures, key)) return;
     if (rc >= 0) rc = make_texels(ground, key);
     if (rc < 0) ground->stats->nodes_damaged++;
     ff_textures_put(&ground->textures, key, 0, rc < 0 ? NULL : ground->texture_texels);
+}
+
+static void fetch_images(ff_pack_ground *ground, const ff_drawn *drawn, const ff_texel_look *look)
+{
+    ff_wear wear[FF_WEAR_MAX];
+    unsigned count = ff_textures_wanted(&ground->textures, ground->tree, drawn, look, wear);
+    for (unsigned i = 0; i < count; i++) fetch_image(ground, wear[i].image);
 }
 
 static int by_key(const void *a, const void *b)
@@ -225,8 +233,10 @@ void ff_pack_ground_draw(ff_pack_ground *ground, const ff_ground_look *look)
     c3d_begin(ground->device, &frame);
     ground->view.textures = look->bare ? NULL : &ground->textures;
     ff_terrain_view_begin(&ground->view, ground->seen, count);
+    const ff_texel_look texels = ff_textures_look(&ground->textures, ff_tree_frame(ground->tree),
+                                                  &look->camera);
     for (uint32_t i = 0; i < count; i++) {
-        if (!look->bare) fetch_image(ground, ground->seen[i].key);
+        if (!look->bare) fetch_images(ground, &ground->seen[i], &texels);
         ff_terrain_view_draw(&ground->view, &ground->seen[i], 1, &frame.camera, 0);
     }
     ground->stats->nodes_drawn += count;

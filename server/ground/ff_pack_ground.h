@@ -59,6 +59,8 @@ typedef struct ff_pack_ground {
     c3d_vertex vertices[FF_NODE_HEIGHTS_MAX];
     ff_textures textures;
     ff_texture_slot slot[FF_GROUND_TEXTURES];
+    uint16_t index[sizeof((ff_strips *)0)->index / sizeof(uint16_t)],
+        part[FF_STRIPS_PART(FF_NODE_HEIGHTS_MAX)];
     ff_pack_images images;
     void *image_memory;
     uint16_t *texture_texels; /* of one decoded image */

@@ -338,11 +338,15 @@ static int check_terrain(const fly_flight *flight)
     return count == packs->count ? 0 : fail(flight->world->grounds.path[count], "is not shown");
 }
 
+static int wears(const void *client, ff_key image) { return ff_client_wears(client, image); }
+
 /* Tells the relevance what the frame draws. */
 static void tell_relevance(fly_flight *flight)
 {
     const ff_tree *tree = ff_client_tree(flight->world->client);
-    sim_relevance_view view = { .camera = flight->camera };
+    sim_relevance_view view = { .camera = flight->camera,
+                                .wears = wears,
+                                .client = flight->world->client };
     unsigned faces;
     if (!flight->world->relevance || !tree) return;
     view.drawn_count = ff_tree_drawn(tree, &view.drawn);

@@ -8,15 +8,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SAMPLES        3 /* of a pixel, each way */
-#define SIDE_MAX       4096
-#define NODES_MAX      (1u << 20)
-#define TREE_BYTES_MAX ((size_t)512 << 20)
-#define WISHES         (1u << 14)
-#define IMAGE_BYTES    ((size_t)64 << 20) /* of the images on the device */
-#define IMAGES_MAX     1024u
-#define NEAR_WU_MIN    (FF_WU_PER_METRE / 4)
-#define NEAR_WU_MAX    (4096 * FF_WU_PER_METRE)
+#define SAMPLES          3 /* of a pixel, each way */
+#define SIDE_MAX         4096
+#define NODES_MAX        (1u << 20)
+#define TREE_BYTES_MAX   ((size_t)512 << 20)
+#define WISHES           (1u << 14)
+#define IMAGE_BYTES      ((size_t)64 << 20) /* of the images on the device */
+#define IMAGES_MAX       1024u
+#define TEXEL_SAMPLES_Q8 511 /* texels are no smaller than samples */
+#define NEAR_WU_MIN      (FF_WU_PER_METRE / 4)
+#define NEAR_WU_MAX      (4096 * FF_WU_PER_METRE)
 
 /* ---- memory ---- */
 
@@ -61,17 +62,17 @@ static void describe(fly_reference *reference)
                                            .hidden = FF_HIDDEN_FETCHED,
                                            .ground_max = ff_pack_source_grounds(reference->pack) };
     choose_slots(reference);
-    reference->device_desc = (c3d_desc){
-        .mesh_count = 2, /* of the node being drawn, and of the sky */
-        .strip_count = FF_STRIP_COUNT_MAX + 1,
-        .texture_count = (uint16_t)images,
-        .mesh_vertices_max = FF_NODE_HEIGHTS_MAX,
-        .strip_indices_max = sizeof((ff_strips *)0)->index / sizeof(uint16_t) + FF_SKY_INDICES,
-        .frame_format = C3D_RGBA8888,
-        .width = (uint16_t)(reference->width * reference->samples),
-        .height = (uint16_t)(reference->height * reference->samples),
-        .texture_bytes = (uint32_t)(images * one)
-    };
+    reference->device_desc =
+        (c3d_desc){ .mesh_count = 2, /* of the node being drawn, and of the sky */
+                    .strip_count = FF_STRIP_COUNT_MAX + 2, /* the sky, and a part of a node */
+                    .texture_count = (uint16_t)images,
+                    .mesh_vertices_max = FF_NODE_HEIGHTS_MAX,
+                    .strip_indices_max = sizeof((ff_strips *)0)->index / sizeof(uint16_t) +
+                                         FF_SKY_INDICES + FF_STRIPS_PART(FF_NODE_HEIGHTS_MAX),
+                    .frame_format = C3D_RGBA8888,
+                    .width = (uint16_t)(reference->width * reference->samples),
+                    .height = (uint16_t)(reference->height * reference->samples),
+                    .texture_bytes = (uint32_t)(images * one) };
 }
 
 int fly_reference_open(fly_reference *reference, const ff_pack *pack, uint16_t width,
@@ -179,47 +180,10 @@ static int load_ground(fly_reference *reference)
 
 /* ---- images ---- */
 
-static double outside(int64_t lo, int64_t hi)
-{
-    return lo > 0 ? (double)lo : hi < 0 ? (double)-hi : 0;
-}
-
-/* How near the ground under a node's image may be, wu. */
-static double image_distance(const fly_reference *reference, ff_key key)
-{
-    const ff_terrain_info *info = ff_tree_ground(reference->tree, key);
-    ff_placed placed = ff_shape_put(info, &reference->view.frame, key);
-    int64_t height_wu[2];
-    ff_terrain_range_wu(info, height_wu);
-    ff_box box = ff_shape_box(info, key, &placed, height_wu, reference->view.camera.pos_wu);
-    double across = hypot(outside(box.lo[0], box.hi[0]), outside(box.lo[1], box.hi[1]));
-    return hypot(across, outside(box.lo[2], box.hi[2]));
-}
-
-/* The finest image over a node whose texels are not smaller than a sample at the nearest place that
- * the image covers. So a node takes every image above it that another node takes, and what is held
- * for one is right for all. Grounds whose images are not as large as the first one's show none. */
-static ff_key image_of(const fly_reference *reference, const ff_drawn *drawn)
-{
-    const ff_terrain_info *info = ff_tree_ground(reference->tree, drawn->key);
-    double focal_px = reference->view.camera.focal_q8 / 256.0,
-           edge_wu = ldexp(drawn->cell_wu, info->node_log2);
-    ff_key key = info->texture_log2 == reference->tree_desc.info.texture_log2
-                     ? ff_texture_key(info, drawn->key)
-                     : FF_KEY_NONE;
-    while (key != FF_KEY_NONE && ff_key_level(key) > 0) {
-        double texel_wu = ldexp(edge_wu, (int)ff_key_level(drawn->key) - (int)ff_key_level(key) -
-                                             info->texture_log2);
-        if (texel_wu * focal_px >= image_distance(reference, key)) break;
-        key = ff_key_parent(key);
-    }
-    return key;
-}
-
 static int fetch_image(fly_reference *reference, ff_key key)
 {
     const uint8_t *payload;
-    if (key == FF_KEY_NONE || ff_textures_touch(&reference->textures, key)) return FF_OK;
+    if (ff_textures_touch(&reference->textures, key)) return FF_OK;
     int rc = ff_pack_image(reference->pack, &key, &payload);
     if (ff_textures_touch(&reference->textures, key)) return FF_OK;
     if (rc >= 0)
@@ -227,6 +191,18 @@ static int fetch_image(fly_reference *reference, ff_key key)
     if (rc < 0) return rc;
     return ff_textures_put(&reference->textures, key, 0, reference->image_texels) ? FF_OK
                                                                                   : FF_ERR_MEMORY;
+}
+
+/* The images that a node wears. */
+static int fetch_images(fly_reference *reference, const ff_drawn *drawn)
+{
+    const ff_texel_look look = ff_textures_look(&reference->textures, &reference->view.frame,
+                                                &reference->view.camera);
+    ff_wear wear[FF_WEAR_MAX];
+    unsigned count = ff_textures_wanted(&reference->textures, reference->tree, drawn, &look, wear);
+    int rc = FF_OK;
+    for (unsigned i = 0; rc == FF_OK && i < count; i++) rc = fetch_image(reference, wear[i].image);
+    return rc;
 }
 
 /* ---- the picture ---- */
@@ -271,12 +247,17 @@ static int open_device(fly_reference *reference)
     if (rc != FF_OK) return rc;
     uint16_t images = reference->device_desc.texture_count;
     memset(reference->slot, 0, images * sizeof *reference->slot);
-    reference->textures = (ff_textures){
-        .device = reference->device, .info = *info, .slot = reference->slot, .slot_count = images
-    };
+    reference->textures = (ff_textures){ .device = reference->device,
+                                         .info = *info,
+                                         .slot = reference->slot,
+                                         .slot_count = images,
+                                         .texel_px_q8 = TEXEL_SAMPLES_Q8,
+                                         .across = 1 };
     /* no entries: a node's mesh lives as long as it takes to draw it */
     reference->ground = (ff_terrain_view){ .device = reference->device,
                                            .vertices = reference->vertices,
+                                           .index = reference->index,
+                                           .part = reference->part,
                                            .heights_per_node = ff_node_side(info) *
                                                                ff_node_side(info) };
     ff_terrain_view_attach(&reference->ground, reference->tree, &reference->textures);
@@ -295,7 +276,7 @@ static int draw_samples(fly_reference *reference)
     ff_sky_draw(&reference->sky, reference->device, frame.camera.near_wu);
     ff_terrain_view_begin(&reference->ground, list, count);
     for (uint32_t i = 0; rc == FF_OK && i < count; i++) {
-        rc = fetch_image(reference, image_of(reference, &list[i]));
+        rc = fetch_images(reference, &list[i]);
         ff_terrain_view_draw(&reference->ground, &list[i], 1, &frame.camera, 0);
     }
     c3d_end(reference->device);

@@ -30,6 +30,8 @@ typedef struct fly_reference {
     ff_wish *wish;    /* being served */
     uint8_t *sampled; /* RGB888, before samples become pixels */
     ff_texture_slot *slot;
+    uint16_t index[sizeof((ff_strips *)0)->index / sizeof(uint16_t)],
+        part[FF_STRIPS_PART(FF_NODE_HEIGHTS_MAX)];
     ff_pack_images images;
     void *image_memory;
     uint16_t *image_texels; /* of one decoded image */

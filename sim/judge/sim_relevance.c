@@ -1,6 +1,5 @@
 #include "sim_relevance.h"
 
-#include "../../client/images/ff_texture_map.h"
 #include "../../protocol/message/ff_parts.h"
 #include "sim_cover.h"
 #include "sim_cube.h"
@@ -420,17 +419,19 @@ static void mark_hidden(sim_relevance *relevance, ff_key node)
     }
 }
 
-/* A node is drawn with the last image that came over it, maybe a difference to those above. */
-static void mark_image(sim_relevance *relevance, const ff_terrain_info *info, ff_key node)
+/* An image that is drawn may be a difference to those above it. */
+static void mark_images(sim_relevance *relevance, const sim_relevance_view *view)
 {
-    answer *last = NULL;
-    for (ff_key key = ff_texture_key(info, node); key != FF_KEY_NONE; key = ff_key_parent(key)) {
-        answer *a = find(relevance, FF_KIND_TEXTURE, key);
-        if (a && (!last || a > last)) last = a;
-        if (a) a->used = 1;
-        if (ff_key_level(key) == 0) break;
+    for (size_t i = 0; view->wears && i < relevance->count; i++) {
+        answer *a = &relevance->answer[i];
+        if (a->kind != FF_KIND_TEXTURE || !view->wears(view->client, a->key)) continue;
+        mark(relevance, a);
+        for (ff_key key = a->key; ff_key_level(key) > 0;) {
+            key = ff_key_parent(key);
+            answer *above = find(relevance, FF_KIND_TEXTURE, key);
+            if (above) above->used = 1;
+        }
     }
-    if (last) mark(relevance, last);
 }
 
 /* 1 while a face of the set in use may still be drawn in time; the others are older. */
@@ -534,10 +535,10 @@ void sim_relevance_frame(sim_relevance *relevance, const sim_relevance_view *vie
     for (uint32_t i = 0; i < view->drawn_count; i++) {
         const ff_terrain_info *info = sim_mesh_info(&relevance->mesh, &view->drawn[i]);
         mark_heights(relevance, info, view->drawn[i].key);
-        mark_image(relevance, info, view->drawn[i].key);
     }
     for (uint32_t i = view->drawn_count; i < view->in_view_count; i++)
         mark_hidden(relevance, view->drawn[i].key);
+    mark_images(relevance, view);
     mark_faces(relevance, view);
     mark_sectors(relevance, view);
 }

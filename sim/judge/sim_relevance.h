@@ -10,7 +10,7 @@
  *             are not drawn; they are told apart as `supporting`. Nor are nodes in view that the
  *             client left out behind nearer ground: when it asked for them it did not know that
  *             ground yet. They are told apart as `hidden`.
- *   image     it is the last that has come over a drawn node: images come from coarse to fine.
+ *   image     the frame draws it on some of its ground: images come from coarse to fine.
  *   face      its set is the one in use: by the share of its pixels in the window that no drawn
  *             ground hides, in the frame with the largest share; an empty face wholly, when any
  *             direction of it is seen. Four times a second every fourth pixel each way is looked
@@ -61,6 +61,9 @@ typedef struct sim_relevance_view {
     c3d_camera camera;
     const ff_drawn *drawn; /* drawn_count of them, then those in view that nearer ground hides */
     uint32_t drawn_count, in_view_count;
+    /* 1 when the frame draws this image on some of its ground; NULL: none are drawn */
+    int (*wears)(const void *client, ff_key image);
+    const void *client;
     sim_drawn_grounds grounds; /* their keys number those of the stream's messages first */
     int panorama;              /* 1: a panorama is in use, taken at position_wu */
     int32_t panorama_pos_wu[3];

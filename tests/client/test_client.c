@@ -2,7 +2,6 @@
  * settings, stillness, sameness. */
 #include "../rig/client_fixture.h"
 #include "../../client/ff_client_local.h"
-#include "../../client/images/ff_texture_map.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -136,12 +135,14 @@ static void images_come_from_coarse_to_fine(void **state)
     const ff_drawn *drawn;
     uint32_t count = ff_tree_drawn(ff_client_tree(rig.client), &drawn);
     ff_textures *textures = &rig.client->textures;
+    const ff_view *view = &rig.client->last_view;
+    const ff_texel_look look = ff_textures_look(textures, &view->frame, &view->camera);
     for (uint32_t i = 0; i < count; i++) {
-        ff_key key = ff_texture_key(&textures->info, drawn[i].key);
-        int found = 0;
-        for (unsigned slot = 0; slot < textures->slot_count; slot++)
-            found |= textures->slot[slot].held && textures->slot[slot].key == key;
-        assert_true(found);
+        ff_wear wanted[FF_WEAR_MAX];
+        unsigned parts = ff_textures_wanted(textures, ff_client_tree(rig.client), &drawn[i], &look,
+                                            wanted);
+        for (unsigned part = 0; part < parts; part++)
+            assert_true(ff_client_wears(rig.client, wanted[part].image));
     }
     assert_int_equal(rig_stats(&rig).requests_failed, 0);
     assert_int_equal(rig.asked[FF_KIND_TEXTURE], rig_stats(&rig).textures_held);

@@ -74,6 +74,40 @@ static void all_of_the_cut_is_drawn(void **state)
     rig_close(&rig);
 }
 
+/* Images are drawn down to their finest level, whether ground has nodes of it or not: the same
+ * ground and images in nodes of 8 cells, three levels of them, and of 32, two. */
+static void images_finer_than_nodes_are_drawn(void **state)
+{
+    (void)state;
+    uint8_t *picture[2];
+    for (int large = 0; large < 2; large++) {
+        client_rig rig;
+        open_rig(&rig, 5);
+        if (large) rig_use_node_log2(&rig, 5, 5);
+        rig.desc.quality = (ff_quality){ .error_px_q8 = 1,
+                                         .measure = FF_MEASURE_PIXELS,
+                                         .triangles_max = 1000000,
+                                         .view_wu = INT32_MAX };
+        rig.camera.pitch = -12000;
+        rig_client(&rig, 16 * MB);
+        assert_true(rig_settle(&rig, 900));
+        unsigned finest = 0;
+        for (unsigned i = 0; i < rig.client->textures.slot_count; i++) {
+            const ff_texture_slot *slot = &rig.client->textures.slot[i];
+            finest += slot->held && ff_key_level(slot->key) == 2;
+        }
+        assert_true(finest > 4);
+        picture[large] = draw(&rig);
+        rig_close(&rig);
+    }
+    unsigned sum = 0;
+    for (int i = 0; i < WIDTH * HEIGHT * 3; i++)
+        sum += (unsigned)abs(picture[0][i] - picture[1][i]);
+    assert_true(sum < WIDTH * HEIGHT * 3 / 4);
+    free(picture[0]);
+    free(picture[1]);
+}
+
 static void plain_arrays_draw_the_same(void **state)
 {
     (void)state;
@@ -267,6 +301,7 @@ static void meshes_show_stitching_in_another_colour(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(all_of_the_cut_is_drawn),
+                                        cmocka_unit_test(images_finer_than_nodes_are_drawn),
                                         cmocka_unit_test(plain_arrays_draw_the_same),
                                         cmocka_unit_test(sky_stands_until_a_terrain_is_known),
                                         cmocka_unit_test(a_full_mesh_pool_leaves_no_hole),

@@ -62,10 +62,19 @@ static void pictures_are_held_as_the_pack_has_them(void **state)
         assert_true(check_held(&rig) > 5);
         const ff_drawn *drawn;
         uint32_t count = ff_tree_drawn(ff_client_tree(rig.client), &drawn);
+        const ff_textures *textures = &rig.client->textures;
+        const ff_view *view = &rig.client->last_view;
+        const ff_texel_look look = ff_textures_look(textures, &view->frame, &view->camera);
         for (uint32_t i = 0; i < count; i++) {
             c3d_draw call = { 0 };
-            ff_textures_lay(&rig.client->textures, drawn[i].key, &call);
-            assert_int_equal(call.flags, C3D_DRAW_TEXTURED);
+            ff_wear worn[FF_WEAR_MAX];
+            unsigned parts = ff_textures_worn(textures, ff_client_tree(rig.client), &drawn[i],
+                                              &look, worn);
+            assert_true(parts >= 1);
+            for (unsigned part = 0; part < parts; part++) {
+                ff_textures_lay(textures, drawn[i].key, worn[part].image, &call);
+                assert_int_equal(call.flags, C3D_DRAW_TEXTURED);
+            }
         }
         assert_int_equal(rig.client->textures.apart, 0);
         assert_int_equal(rig_stats(&rig).requests_failed, 0);

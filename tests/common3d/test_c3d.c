@@ -251,6 +251,15 @@ static void textures_lie_on_the_grid_of_the_mesh(void **state)
                        "................\n................\n....rrrrrr......\n....rrrrrr......\n"
                        "....rrrrrr......\n....rrrrrr......\n....rrrrrr......\n....rrrrrr......\n"
                        "....rrrrrr......\n....rrrrrr......\n................\n................\n"));
+        /* The first column begins where the second does, the first row as well: before, white. */
+        draw.tex_first_q16[0] = draw.tex_first_q16[1] = 3 << 15;
+        draw.tex_last_q16[0] = draw.tex_last_q16[1] = 0;
+        draw.tex_scale_q16[0] = draw.tex_scale_q16[1] = 43690;
+        assert_true(
+            picture_is(kit, &draw, 1,
+                       "................\n................\n....wwwwww......\n....wwwwww......\n"
+                       "....wwwwww......\n....wwwwww......\n....wwwwww......\n....wwwwww......\n"
+                       "....wwwwww......\n....wwwwww......\n................\n................\n"));
         c3d_texture_free(kit->device, texture);
         c3d_strip_free(kit->device, draw.strip);
         c3d_mesh_free(kit->device, draw.mesh);

@@ -47,6 +47,15 @@ static int wire_reconnect(void *state)
     return 0;
 }
 
+/* The one image that frames draw. */
+static ff_key shown;
+
+static int wears(const void *client, ff_key image)
+{
+    (void)client;
+    return image == shown;
+}
+
 static void start(wire *w)
 {
     memset(w, 0, sizeof *w);
@@ -63,6 +72,8 @@ static void start(wire *w)
     w->view.camera =
         (c3d_camera){ .width = 240, .height = 320, .focal_q8 = c3d_focal_q8(65536 / 6, 240) };
     w->view.drawn = w->drawn;
+    w->view.wears = wears;
+    shown = FF_KEY_NONE;
 }
 
 static void ask(wire *w, const ff_message *message)
@@ -292,34 +303,25 @@ static void what_is_drawn_too_late_is_not_relevant(void **state)
     sim_relevance_destroy(w.relevance);
 }
 
-/* Where a finer image is, the coarser one under it is not drawn. When the coarser image comes
- * again, the finer one is gone. */
-static void only_the_finest_image_is_drawn(void **state)
+/* An image is of use in frames that show it somewhere. */
+static void images_are_of_use_where_they_are_drawn(void **state)
 {
     (void)state;
     static wire w;
     start(&w);
-    ff_key root = ff_key_make(3, 0, 0), child = ff_key_child(root, 0),
-           others[2] = { ff_key_child(child, 1), ff_key_child(root, 3) };
+    ff_key root = ff_key_make(3, 0, 0), child = ff_key_child(root, 0);
     size_t coarse = image(&w, root), fine = image(&w, child);
     receive(&w, 1024);
-    draw(&w, 1, 1, others);
+    shown = child;
+    draw(&w, 1, 1, &root);
     assert_int_equal(figures(&w, SIM_RELEVANCE_US + 1).unused[FF_DATA_IMAGES], coarse);
-    sim_relevance_destroy(w.relevance);
-    start(&w);
-    (void)image(&w, root);
     (void)image(&w, child);
     receive(&w, 1024);
-    draw(&w, 1, 2, others);
-    sim_relevance_figures f = figures(&w, SIM_RELEVANCE_US + 1);
-    assert_int_equal(f.judged[FF_DATA_IMAGES], coarse + fine);
-    assert_int_equal(f.unused[FF_DATA_IMAGES], 0);
-    (void)image(&w, root);
-    receive(&w, 1024);
-    draw(&w, SIM_RELEVANCE_US + 2, 1, others);
-    f = figures(&w, 3 * SIM_RELEVANCE_US);
-    assert_int_equal(f.judged[FF_DATA_IMAGES], 2 * coarse + fine);
-    assert_int_equal(f.unused[FF_DATA_IMAGES], 0);
+    shown = root;
+    draw(&w, SIM_RELEVANCE_US + 2, 1, &root);
+    sim_relevance_figures f = figures(&w, 3 * SIM_RELEVANCE_US);
+    assert_int_equal(f.judged[FF_DATA_IMAGES], coarse + 2 * fine);
+    assert_int_equal(f.unused[FF_DATA_IMAGES], coarse + fine);
     sim_relevance_destroy(w.relevance);
 }
 
@@ -563,7 +565,7 @@ int main(void)
         cmocka_unit_test(the_reserve_is_told_apart),
         cmocka_unit_test(a_hidden_node_is_counted_apart),
         cmocka_unit_test(what_is_drawn_too_late_is_not_relevant),
-        cmocka_unit_test(only_the_finest_image_is_drawn),
+        cmocka_unit_test(images_are_of_use_where_they_are_drawn),
         cmocka_unit_test(faces_in_the_window_are_drawn),
         cmocka_unit_test(hidden_faces_are_not_drawn),
         cmocka_unit_test(a_face_counts_by_its_best_frame),

@@ -1,4 +1,4 @@
-/* Images over nodes: which image is chosen, where its texels fall, which way is up. */
+/* Images over nodes: where their texels fall, which way is up. */
 #include "../../client/images/ff_texture_map.h"
 #include "../rig/pack_fixture.h"
 
@@ -18,17 +18,6 @@ static ff_terrain_info textured(void)
     info.texture_log2 = 6;
     info.texture_levels = 3;
     return info;
-}
-
-static void finest_image_over_a_node(void **state)
-{
-    (void)state;
-    ff_terrain_info info = textured();
-    assert_true(ff_texture_key(&info, ff_key_make(4, 0, 0)) == ff_key_make(4, 0, 0));
-    assert_true(ff_texture_key(&info, ff_key_make(4, 2, 13)) == ff_key_make(4, 2, 13));
-    assert_true(ff_texture_key(&info, ff_key_make(4, 5, 13 << 6 | 42)) == ff_key_make(4, 2, 13));
-    info.texture_levels = 0;
-    assert_true(ff_texture_key(&info, ff_key_make(4, 0, 0)) == FF_KEY_NONE);
 }
 
 /* The ends of a node's edge fall on the right texels, and the neighbour's image continues there
@@ -61,6 +50,28 @@ static void edges_meet_rim_texels(void **state)
     }
 }
 
+/* An image below a node lies on its own cells, from its first texel to its last. */
+static void images_below_a_node_lie_on_their_cells(void **state)
+{
+    (void)state;
+    ff_terrain_info info = textured();
+    for (info.node_log2 = 2; info.node_log2 <= FF_NODE_LOG2_MAX; info.node_log2++)
+        for (uint32_t depth = 1; depth <= ff_image_depth(info.node_log2); depth++)
+            for (uint32_t i = 0; i < 1u << 2 * depth; i++) {
+                ff_key node = ff_key_make(1, 2, 6),
+                       image = ff_key_make(1, 2 + depth, 6u << 2 * depth | i);
+                int32_t scale[2], offset[2], cells = 1 << (info.node_log2 - depth);
+                const int32_t at[2] = { (int32_t)ff_morton_x(i), (int32_t)ff_morton_y(i) };
+                ff_texture_map(&info, node, image, scale, offset);
+                for (int axis = 0; axis < 2; axis++) {
+                    int32_t first = offset[axis] + scale[axis] * at[axis] * cells,
+                            last = first + scale[axis] * cells;
+                    assert_in_range(first - HALF_TEXEL_Q16 + 8, 0, 16);
+                    assert_in_range(last - (65536 - HALF_TEXEL_Q16) + 8, 0, 16);
+                }
+            }
+}
+
 static void first_row_of_a_jpeg_is_north(void **state)
 {
     (void)state;
@@ -81,8 +92,8 @@ static void first_row_of_a_jpeg_is_north(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(finest_image_over_a_node),
         cmocka_unit_test(edges_meet_rim_texels),
+        cmocka_unit_test(images_below_a_node_lie_on_their_cells),
         cmocka_unit_test(first_row_of_a_jpeg_is_north),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -203,6 +203,7 @@ ff_node_(edge|cell)_wu
     client/terrain/ff_cover.c  how far grounds over each other keep from each other's rims, and the steps between tiles
     client/terrain/ff_select.c  hands a node's cell to who draws it
     client/images/ff_textures.c  the e of images
+    client/images/ff_wear.c    the edge of a texel
     client/client_update.c     how far beyond its middle a node reaches, at most
     sim/judge/sim_ground.c     the judge's own side of the plane, with sim_place.c
     sim/judge/sim_watertight.c  compares it with what is drawn

@@ -201,8 +201,7 @@ static int halve_lattice(const bake_grid *fine, const bake_grid *coarse)
 static uint32_t choose_levels(const bake_options *o, const bake_picture *picture,
                               const ff_terrain_info *info)
 {
-    uint32_t most = ff_terrain_levels(info), levels = 1;
-    if (most > BAKE_TEXTURE_LEVELS_MAX - 1) most = BAKE_TEXTURE_LEVELS_MAX - 1;
+    uint32_t most = ff_image_levels(info), levels = 1;
     if (o->texture_levels) return o->texture_levels < most ? o->texture_levels : most;
     double px_per_sample = fmax(picture->width / (picture->east - picture->west),
                                 picture->height / (picture->north - picture->south));
