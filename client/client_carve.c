@@ -53,13 +53,17 @@ static void carve_textures(ff_client *client, const ff_budget *budget)
     FF_ASSERT(budget->pool[FF_POOL_textures].count < UINT16_MAX); /* its lists hold slots + 1 */
     memset(textures, 0, sizeof *textures);
     textures->info = client->info;
-    textures->slot_count = (uint16_t)budget->pool[FF_POOL_textures].count;
+    textures->texture_count = (uint16_t)budget->pool[FF_POOL_textures].count;
+    textures->slot_count = (uint16_t)(textures->texture_count * budget->texture_names);
     textures->texel_px_q8 = FF_TEXEL_PX_Q8;
     textures->slot = take(client, budget, FF_POOL_textures);
     uint8_t *pictures = take(client, budget, FF_POOL_pictures);
     if (!pictures) return;
-    textures->room = (ff_picture_room *)(void *)pictures;
-    textures->rgb = pictures + sizeof *textures->room;
+    unsigned log2 = client->info.texture_log2;
+    textures->texels = (uint16_t *)(void *)pictures;
+    ff_held_pictures_init(&textures->pictures, log2, budget->pool[FF_POOL_pictures].count,
+                          textures->texture_count * FF_CODED_BYTES(log2),
+                          pictures + ((size_t)2 << 2 * log2));
 }
 
 static int open_device(ff_client *client, const ff_budget *budget)
@@ -179,8 +183,8 @@ void ff_client_serve(ff_client *client, ff_source *source)
     client->unranked = 1;
 }
 
-/* Where memory is short for this terrain, panoramas are left out, then images: coarser, never
- * wrong. */
+/* Where memory is short for this terrain, panoramas are left out, then images are fewer, then none:
+ * coarser, never wrong. */
 int ff_client_carve(ff_client *client)
 {
     FF_ASSERT(!client->have_terrain);

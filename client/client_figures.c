@@ -131,6 +131,7 @@ unsigned ff_client_pools(const ff_client *client, ff_pool_use list[FF_POOLS_MAX]
         b->face_size = client->first.intake.face_size_max;
         b->far_side = client->sets ? client->sets->side : 0;
         b->has_textures = client->has_textures;
+        b->economy = client->economy;
         (void)ff_budget_terrain(b, from->c3d.vertex_buffers_used);
     }
     list_pools(b, list);

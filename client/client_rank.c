@@ -61,13 +61,14 @@ static void want_tree(ff_client *client)
     }
 }
 
-static void want_textures(ff_client *client, const ff_view *view, const ff_quality *quality)
+static void want_textures(ff_client *client, const ff_view *view, const ff_quality *quality,
+                          int *changed)
 {
     ff_texture_wish *wish = client->texture_wish;
     const ff_drawn *drawn;
     uint32_t drawn_count = ff_tree_drawn(client->tree, &drawn);
     uint32_t count = ff_textures_wishes(&client->textures, client->tree, drawn, drawn_count, view,
-                                        quality, wish, FF_TEXTURE_WISHES);
+                                        quality, wish, FF_TEXTURE_WISHES, changed);
     FF_ASSERT(count <= FF_TEXTURE_WISHES);
     for (uint32_t i = 0; i < count; i++) {
         const ff_wish image = { .key = wish[i].key, .kind = FF_KIND_TEXTURE };
@@ -164,9 +165,10 @@ static unsigned sectors_ahead(const ff_view *view, const ahead *a)
     return sectors;
 }
 
-void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality,
-                    int64_t now_us)
+int ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality,
+                   int64_t now_us)
 {
+    int changed = 0;
     ff_stream_shared shared;
     ahead a = { .views = 0, .turns = 0 };
     ff_client_link(client, &shared);
@@ -185,9 +187,10 @@ void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *qu
     for (unsigned i = 0; i < client->source_count; i++)
         ff_client_want_view(client, ff_client_source(client, i), view, quality);
     want_tree(client);
-    if (client->has_textures) want_textures(client, view, quality);
+    if (client->has_textures) want_textures(client, view, quality, &changed);
     want_ahead(client, &a);
     want_reserve(client, view, now_us);
     for (unsigned i = 0; i < client->source_count; i++)
         ff_requests_rank_end(&ff_client_source(client, i)->requests);
+    return changed;
 }

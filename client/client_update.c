@@ -222,7 +222,7 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
     /* the panorama's centre and front may be others now */
     make_view(client, camera, &quality, &view);
     ff_tree_select(client->tree, &view, &quality);
-    ff_client_rank(client, &view, &quality, now_us);
+    pictures_changed |= ff_client_rank(client, &view, &quality, now_us);
     const ff_drawn *list;
     uint32_t count = ff_tree_drawn(client->tree, &list);
     ff_terrain_view_begin(&client->view, list, count);
@@ -233,7 +233,7 @@ int ff_client_update(ff_client *client, int64_t now_us, const c3d_camera *given)
     client->last_view = view;
     client->has_camera = 1;
     client->dirty = 0;
-    client->unranked = ff_tree_to_make(client->tree) > 0;
+    client->unranked = ff_tree_to_make(client->tree) > 0 || client->textures.waits;
     client->frame_hash = hash;
     if (!changed) {
         client->frames_skipped++;

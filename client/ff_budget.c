@@ -4,10 +4,12 @@
 
 #include <string.h>
 
-#define FACE_SIZE_MIN    64u
-#define EXTRA_STRIPS     4
-#define EXTRA_INDICES    (FF_SKY_INDICES + 36u) /* and faces */
-#define TEXTURE_ROUNDING 256u
+#define FACE_SIZE_MIN         64u
+#define EXTRA_STRIPS          4
+#define EXTRA_INDICES         (FF_SKY_INDICES + 36u) /* and faces */
+#define TEXTURE_ROUNDING      256u
+#define NODES_WITH_FEW_IMAGES 1024u
+#define TEXTURE_NAMES         4u /* pictures as they came, for each on the device */
 
 /* faces are halved from the largest down to the smallest */
 FF_STATIC_ASSERT(FACE_SIZE_MIN == FF_PANORAMA_FACE_MIN && FACE_SIZE_MIN < FF_FACE_SIZE_MAX);
@@ -69,7 +71,8 @@ void ff_budget_economise(ff_budget *b, const ff_terrain_info *info, unsigned eco
     b->info = info;
     b->face_size = economy < 1 ? fit_face_size(b) : 0;
     b->far_side = economy < 1 ? fit_far_side(b) : 0;
-    b->has_textures = (uint8_t)(economy < 2 && can_have_textures(b));
+    b->economy = (uint8_t)economy;
+    b->has_textures = (uint8_t)(economy + 1 < FF_ECONOMY_STEPS && can_have_textures(b));
 }
 
 /* ---- what is drawn ---- */
@@ -230,6 +233,13 @@ static uint32_t between(size_t wanted, uint32_t least, uint32_t most)
         b->pool[FF_POOL_##name].bytes = (size_t)(bytes_of_n); \
     }
 
+size_t ff_budget_pictures(const ff_budget *b, uint32_t decoded)
+{
+    size_t coded = b->pool[FF_POOL_textures].count * FF_CODED_BYTES(b->info->texture_log2);
+    return ((size_t)2 << 2 * b->info->texture_log2) +
+           ff_held_pictures_bytes(b->info->texture_log2, decoded, coded);
+}
+
 unsigned ff_budget_links(const ff_client_desc *desc)
 {
     unsigned links = desc->stream != NULL;
@@ -283,10 +293,16 @@ static void add_arriving(ff_budget *b)
            far = FF_SETS_TEXELS((size_t)b->far_side);
     b->texels = far > side * side ? far : side * side;
     b->image_bytes = b->texels * sizeof(uint16_t) + (b->far_side ? FF_NEW_FINS_BYTES : 0);
-    b->picture_bytes = b->has_textures && b->desc->backend && b->info->flags & FF_TERRAIN_PICTURES
-                           ? (size_t)3 << (2 * b->info->texture_log2)
-                           : 0;
-    b->texture_bytes = ((size_t)4 << (2 * b->info->texture_log2)) + b->picture_bytes;
+    /* an entered root's picture brings those above it: a byte a texel is more than any takes */
+    size_t row = ((size_t)b->info->entered + 1) << 2 * b->info->texture_log2;
+    if (b->has_textures && b->info->entered && b->image_bytes < row) b->image_bytes = row;
+    b->pictures = b->has_textures && b->desc->backend && b->info->flags & FF_TERRAIN_PICTURES;
+    b->texture_names = b->pictures ? TEXTURE_NAMES : 1;
+    b->texture_bytes = (size_t)4 << 2 * b->info->texture_log2;
+    if (b->pictures)
+        b->texture_bytes += TEXTURE_NAMES * sizeof(ff_texture_slot) +
+                            FF_CODED_BYTES(b->info->texture_log2) +
+                            ((size_t)3 << 2 * b->info->texture_log2) / 8;
     b->heights = ff_node_side(b->info) * ff_node_side(b->info);
     b->indices = ff_strips_indices(b->info->node_log2);
     b->parts = b->far_side || (b->has_textures && b->desc->backend);
@@ -305,5 +321,8 @@ int ff_budget_terrain(ff_budget *b, int buffers)
     size_t scratch = b->desc->backend ? ff_arena_cost(sizeof(ff_strips)) : 0,
            before_tree = b->used - ff_arena_cost(b->pool[FF_POOL_nodes].bytes);
     FF_ASSERT(before_tree >= b->fixed);
+    /* fewer images are of use where there is ground to lay them on */
+    if (b->has_textures && b->economy > 1 && b->pool[FF_POOL_nodes].count < NODES_WITH_FEW_IMAGES)
+        return FF_ERR_MEMORY;
     return b->used <= b->block && before_tree + scratch <= b->block ? FF_OK : FF_ERR_MEMORY;
 }

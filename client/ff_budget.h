@@ -31,8 +31,8 @@
 /* Two images may wait where both, in 16 bits, take so much at most. */
 #define FF_SHARE_OF_WAITING_IMAGES(block) ((block) / 16)
 #define FF_SHARE_OF_ITEMS(block)          ((block) / 10)
-/* Images of the ground, 4 bytes a texel on the device and 3 where they are pictures: the largest
- * share, they are most of what is seen. */
+/* Images of the ground, 4 bytes a texel on the device, a fifth more where they are pictures: the
+ * largest share, they are most of what is seen. */
 #define FF_SHARE_OF_TEXTURES(block) ((block) / 16 * 5)
 /* Of a device without a GL: texels of faces, and of the caller's text. */
 #define FF_SHARE_OF_FACES(block) ((block) / 8)
@@ -88,13 +88,13 @@
       n * b->image_bytes, from->news.images, from->news.images_high, \
       "images decoded and not taken in, 16 bits a texel, fins with them: one waits while the next is decoded") \
     X(textures, b->has_textures, \
-      FF_SHARE_OF_TEXTURES(b->block) / b->texture_bytes, 8, 512, \
-      n * sizeof(ff_texture_slot), from->client->textures.held, from->client->textures.high, \
-      "images of the ground that are held, by name: their texels are the device's") \
-    X(pictures, b->picture_bytes != 0, \
-      b->pool[FF_POOL_textures].count + 2, 10, 514, \
-      n * b->picture_bytes + sizeof(ff_picture_room), from->client->textures.held, from->client->textures.high, \
-      "as they were decoded, which those below are differences to, and two that are being decoded")
+      FF_SHARE_OF_TEXTURES(b->block) / b->texture_bytes >> (b->economy > 1 ? b->economy - 1 : 0), 8, 512, \
+      n * b->texture_names * sizeof(ff_texture_slot), from->client->textures.made, from->client->textures.made_high, \
+      "images of the ground that are drawn, and of pictures four times as many, by name: their texels are the device's") \
+    X(pictures, b->pictures, \
+      b->pool[FF_POOL_textures].count / 8, FF_DECODED_MIN, FF_DECODED_MAX, \
+      ff_budget_pictures(b, n), from->client->textures.pictures.decoded_count, from->client->textures.pictures.decoded_count, \
+      "pictures as they came, 1/4 of a byte a texel; those decoded lately, which those below are differences to; texels of one")
 
 /* What is drawn; the tree takes what is left. */
 #define FF_POOLS_DRAWN(X, PART) \
@@ -156,8 +156,9 @@ typedef struct ff_budget {
     const ff_client_desc *desc;  /* defaults filled in */
     const ff_terrain_info *info; /* NULL: only what outlives a terrain */
     size_t block, used, fixed;   /* fixed: used by what outlives a terrain */
-    /* what depends on the economy: 1 leaves out panoramas and far sets, 2 images of the ground too
-     */
+    /* what depends on the economy: 1 leaves out panoramas and far sets, 2 has half as many images
+     * of the ground, 3 a quarter, 4 none */
+    uint8_t economy;
     unsigned face_size; /* 0: no panoramas */
     unsigned far_side;  /* 0: no far sets */
     uint8_t has_textures;
@@ -168,10 +169,11 @@ typedef struct ff_budget {
     size_t texels;        /* of the largest image that comes; 0: none does */
     size_t image_bytes;   /* of its texels, in 16 bits, and of a sector's fins */
     size_t texture_bytes; /* of an image of the ground, with those on the device */
-    size_t picture_bytes; /* of a picture besides; 0: it is a JPEG, or there is no device */
-    uint32_t heights;     /* of a node */
-    uint32_t indices;     /* of all strips of a node */
-    uint32_t values;      /* residuals of a refinement */
+    uint32_t texture_names; /* that are held for each of them */
+    uint8_t pictures;       /* 1: images are pictures, and there is a device */
+    uint32_t heights;       /* of a node */
+    uint32_t indices;       /* of all strips of a node */
+    uint32_t values;        /* residuals of a refinement */
     uint32_t entries;
     c3d_desc device;
     struct {
@@ -180,7 +182,7 @@ typedef struct ff_budget {
     } pool[FF_POOL_COUNT];
 } ff_budget;
 
-#define FF_ECONOMY_STEPS 3
+#define FF_ECONOMY_STEPS 5
 
 /* Sources that are servers. */
 unsigned ff_budget_links(const ff_client_desc *desc);
@@ -196,6 +198,8 @@ void ff_budget_sky(ff_budget *budget);
 /* All pools, after the fixed ones and the economy; `buffers`: a GL holds the meshes. FF_OK or
  * FF_ERR_MEMORY. */
 int ff_budget_terrain(ff_budget *budget, int buffers);
+/* Bytes of pictures that are held, with so many places for decoded ones. */
+size_t ff_budget_pictures(const ff_budget *budget, uint32_t decoded);
 /* Of the device's texels what the paint of far sets may have; 0: no far sets. */
 uint32_t ff_budget_paint_bytes(const ff_budget *budget);
 

@@ -39,7 +39,7 @@ struct ff_client {
     ff_new_data news;
 
     uint8_t have_terrain;
-    uint8_t economy;   /* left out for want of memory: 1 panoramas, 2 images too */
+    uint8_t economy;   /* what is left out for want of memory: ff_budget.economy */
     int terrain_error; /* of the terrain met last */
     ff_terrain_info info;
     ff_tree *tree;
@@ -151,10 +151,10 @@ void ff_client_want_view(ff_client *client, ff_source *source, const ff_view *vi
                          const ff_quality *quality);
 /* The same while no terrain is known, for who knows where it is. */
 void ff_client_greet_view(ff_client *client, const c3d_camera *camera);
-/* client_rank.c: fills the request queue anew with what tree, images, panorama and prediction
- * want. */
-void ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality,
-                    int64_t now_us);
+/* client_rank.c: fills the request queue anew with what tree, images, panorama and prediction want.
+ * 1 when the picture has changed: an image that was held is drawn now. */
+int ff_client_rank(ff_client *client, const ff_view *view, const ff_quality *quality,
+                   int64_t now_us);
 /* client_balance.c. begin: for a terrain just met, or after settings changed; `fresh` forgets the
  * levels. step: once an update, while there is a terrain. quality: puts the balance's detail into a
  * quality. */

@@ -29,6 +29,7 @@
     PART(device_textures_high, c3d.texture_high) \
     TOLD(uint32_t, textures_held, from->client->textures.held, "images of the ground") \
     TOLD(uint32_t, textures_high, from->client->textures.high, "the most at once") \
+    TOLD(uint32_t, textures_capacity, from->client->has_textures ? from->client->textures.texture_count : 0, "that can be drawn at once; 0: there is no room for any") \
     TOLD(uint32_t, textures_full, from->client->textures.full, "images that found no room") \
     KEPT(uint32_t, textures_lacking, from->client->textures.lacking, \
          "nodes drawn with the image of one above them, until theirs has come") \

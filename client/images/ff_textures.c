@@ -34,7 +34,7 @@ ff_texel_look ff_textures_look(const ff_textures *textures, const ff_frame *fram
                                const c3d_camera *camera)
 {
     uint64_t pixels = (uint64_t)camera->width * camera->height * IMAGES_A_PICTURE,
-             texels = (uint64_t)textures->slot_count << 2 * textures->info.texture_log2;
+             texels = (uint64_t)textures->texture_count << 2 * textures->info.texture_log2;
     int32_t fitting_q8 = (int32_t)c3d_isqrt64((pixels << 16) / (texels ? texels : 1)),
             least_q8 = textures->texel_px_q8;
     return (ff_texel_look){ .frame = *frame,
@@ -44,13 +44,22 @@ ff_texel_look ff_textures_look(const ff_textures *textures, const ff_frame *fram
                             .across = textures->across };
 }
 
-/* The image of a key, or the nearest one above it. */
+/* The image of a key that is held, or the nearest one above it. */
 static ff_texture_slot *find_nearest(const ff_textures *textures, ff_key key)
 {
     for (;; key = ff_key_parent(key)) {
         ff_texture_slot *slot = find(textures, key);
         if (slot || ff_key_level(key) == 0) return slot;
     }
+}
+
+/* The same of those that can be drawn: pictures are held that are not on the device. */
+static ff_texture_slot *find_drawable(const ff_textures *textures, ff_key key)
+{
+    ff_texture_slot *slot = find_nearest(textures, key);
+    while (slot && !slot->texture.id && slot->coded.bytes && ff_key_level(slot->key) > 0)
+        slot = find_nearest(textures, ff_key_parent(slot->key));
+    return slot;
 }
 
 unsigned ff_textures_wanted(const ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
@@ -67,7 +76,7 @@ unsigned ff_textures_worn(const ff_textures *textures, const ff_tree *tree, cons
     unsigned wanted = ff_textures_wanted(textures, tree, drawn, look, list), count = 0;
     for (unsigned i = 0; i < wanted; i++) {
         const ff_wear part = list[i]; /* its place may be taken */
-        const ff_texture_slot *slot = find_nearest(textures, part.image);
+        const ff_texture_slot *slot = find_drawable(textures, part.image);
         ff_key image = slot && slot->texture.id ? slot->key : FF_KEY_NONE;
         unsigned same = 0;
         while (same < count && list[same].image != image) same++;
@@ -106,7 +115,7 @@ int ff_textures_touch(ff_textures *textures, ff_key key)
 {
     ff_texture_slot *slot = find(textures, key);
     textures->stamp++;
-    if (slot) slot->used = textures->stamp;
+    if (slot) slot->used = slot->drawn = textures->stamp;
     return slot != NULL;
 }
 
@@ -133,27 +142,15 @@ static uint32_t priority_of(const ff_terrain_info *info, ff_key key, const ff_vi
     return value > UINT32_MAX ? UINT32_MAX : (uint32_t)value;
 }
 
-/* A list of wishes in the making. */
-typedef struct wishes {
-    ff_textures *textures;
-    const ff_tree *tree;
-    const ff_view *view;
-    const ff_quality *quality;
-    ff_texture_wish *list;
-    uint32_t count, capacity;
-    uint32_t in_use; /* images that are drawn */
-} wishes;
-
-static void insert(wishes *w, ff_texture_wish wish)
+static void insert(ff_texture_wish *list, uint32_t *count, uint32_t capacity, ff_texture_wish wish)
 {
-    ff_texture_wish *list = w->list;
-    FF_ASSERT(w->count <= w->capacity);
-    for (uint32_t i = 0; i < w->count; i++)
+    FF_ASSERT(*count <= capacity);
+    for (uint32_t i = 0; i < *count; i++)
         if (list[i].key == wish.key) return;
-    uint32_t at = w->count;
-    if (at == w->capacity && (!w->capacity || list[at - 1].priority >= wish.priority)) return;
-    if (w->count < w->capacity)
-        w->count++;
+    uint32_t at = *count;
+    if (at == capacity && (!capacity || list[at - 1].priority >= wish.priority)) return;
+    if (*count < capacity)
+        ++*count;
     else
         at--;
     while (at > 0 && list[at - 1].priority < wish.priority) {
@@ -161,66 +158,10 @@ static void insert(wishes *w, ff_texture_wish wish)
         at--;
     }
     list[at] = wish;
-    FF_ASSERT(at + 1 == w->count || list[at + 1].priority < wish.priority);
+    FF_ASSERT(at + 1 == *count || list[at + 1].priority < wish.priority);
 }
 
-/* All from `from` down to `finest`, so that they come in one round trip: each stands behind those
- * above it. */
-static void wish_down(wishes *w, ff_key from, ff_key finest)
-{
-    ff_texture_wish wish = { from, UINT32_MAX };
-    for (uint32_t level = ff_key_level(from); level <= ff_key_level(finest); level++) {
-        wish.key = on_the_way(finest, level);
-        uint32_t own = priority_of(ff_tree_ground(w->tree, wish.key), wish.key, w->view,
-                                   w->quality);
-        if (own < wish.priority) wish.priority = own;
-        insert(w, wish);
-    }
-}
-
-/* Marks what is drawn where an image is wanted, and wishes for what is lacking on the way to it: 1
- * when there is any. */
-static int look_for(wishes *w, ff_key finest)
-{
-    ff_textures *textures = w->textures;
-    ff_texture_slot *held = find_nearest(textures, finest);
-    if (held) {
-        w->in_use += held->used != textures->stamp;
-        held->used = textures->stamp;
-        if (held->key == finest) return 0;
-    }
-    ff_key next = on_the_way(finest, held ? ff_key_level(held->key) + 1 : 0);
-    if (held && held->bare >> ff_key_quadrant(next) & 1u) return 0;
-    wish_down(w, next, finest);
-    return 1;
-}
-
-uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
-                            uint32_t drawn_count, const ff_view *view, const ff_quality *quality,
-                            ff_texture_wish *list, uint32_t capacity)
-{
-    const ff_texel_look look = ff_textures_look(textures, &view->frame, &view->camera);
-    wishes w = { textures, tree, view, quality, list, 0, capacity, 0 };
-    ff_wear wear[FF_WEAR_MAX];
-    textures->stamp++;
-    textures->lacking = 0;
-    for (uint32_t i = 0; i < drawn_count; i++) {
-        unsigned parts = ff_textures_wanted(textures, tree, &drawn[i], &look, wear);
-        int lacks = 0;
-        for (unsigned part = 0; part < parts; part++) lacks |= look_for(&w, wear[part].image);
-        textures->lacking += (unsigned)lacks;
-    }
-    FF_ASSERT(w.in_use <= textures->held && textures->held <= textures->slot_count);
-    /* what would find no place is not asked for */
-    uint32_t room = textures->slot_count - w.in_use;
-    return w.count < room ? w.count : room;
-}
-
-int ff_textures_is_worn(const ff_textures *textures, ff_key image)
-{
-    const ff_texture_slot *slot = find(textures, image);
-    return slot && slot->used == textures->stamp;
-}
+/* ---- slots ---- */
 
 static void unlink_slot(ff_textures *textures, ff_texture_slot *slot)
 {
@@ -233,81 +174,167 @@ static void unlink_slot(ff_textures *textures, ff_texture_slot *slot)
     *link = slot->next;
 }
 
-/* A free slot, or the one longest out of use; NULL when all are drawn. */
-static ff_texture_slot *take_slot(ff_textures *textures)
+static void free_texture(ff_textures *textures, ff_texture_slot *slot)
+{
+    if (!slot->texture.id) return;
+    FF_ASSERT(textures->made > 0);
+    c3d_texture_free(textures->device, slot->texture);
+    slot->texture.id = 0;
+    textures->made--;
+}
+
+/* What came of those behind it moves up. */
+static void forget_coded(ff_textures *textures, ff_texture_slot *slot)
+{
+    const ff_coded coded = slot->coded;
+    if (!coded.bytes) return;
+    ff_held_pictures_cut(&textures->pictures, slot->key, coded);
+    slot->coded.bytes = 0;
+    for (unsigned i = 0; i < textures->slot_count; i++)
+        if (textures->slot[i].held && textures->slot[i].coded.at > coded.at)
+            textures->slot[i].coded.at -= coded.bytes;
+}
+
+static void drop(ff_textures *textures, ff_texture_slot *slot)
+{
+    unlink_slot(textures, slot);
+    free_texture(textures, slot);
+    forget_coded(textures, slot);
+    slot->held = 0;
+    textures->held--;
+}
+
+/* Among those not in use the one longest out of use, of several the finest: no picture goes before
+ * one that is a difference to it. NULL: all are in use. */
+static ff_texture_slot *oldest_slot(const ff_textures *textures)
 {
     ff_texture_slot *oldest = NULL;
     for (unsigned i = 0; i < textures->slot_count; i++) {
         ff_texture_slot *slot = &textures->slot[i];
-        if (!slot->held) return slot;
-        if (slot->used != textures->stamp &&
-            (!oldest || textures->stamp - slot->used > textures->stamp - oldest->used))
+        if (!slot->held || slot->used == textures->stamp) continue;
+        uint32_t age = textures->stamp - slot->used,
+                 most = oldest ? textures->stamp - oldest->used : 0;
+        if (age > most ||
+            (oldest && age == most && ff_key_level(slot->key) > ff_key_level(oldest->key)))
             oldest = slot;
     }
-    FF_ASSERT(textures->held == textures->slot_count);
-    if (!oldest) return NULL;
-    unlink_slot(textures, oldest);
-    if (oldest->texture.id) c3d_texture_free(textures->device, oldest->texture);
-    oldest->held = 0;
-    textures->held--;
     return oldest;
 }
 
-/* ---- pictures ---- */
-
-static size_t picture_bytes(const ff_textures *textures)
+/* A free slot, and room for so many bytes as they came; NULL: there is none. */
+static ff_texture_slot *take_slot(ff_textures *textures, uint32_t coded_bytes)
 {
-    return (size_t)3 << 2 * textures->info.texture_log2;
+    const ff_held_pictures *pictures = &textures->pictures;
+    while (textures->held == textures->slot_count ||
+           coded_bytes > pictures->coded_size - pictures->coded_used) {
+        ff_texture_slot *oldest = oldest_slot(textures);
+        if (!oldest) return NULL;
+        drop(textures, oldest);
+    }
+    for (unsigned i = 0;; i++) {
+        FF_ASSERT(i < textures->slot_count);
+        if (!textures->slot[i].held) return &textures->slot[i];
+    }
 }
 
-static uint8_t *picture_of(const ff_textures *textures, size_t number)
+/* Holds an image by name. NULL: there is no room. */
+static ff_texture_slot *hold(ff_textures *textures, ff_key key, uint8_t bare, uint32_t coded_bytes)
 {
-    return textures->rgb + number * picture_bytes(textures);
+    ff_texture_slot *slot = take_slot(textures, coded_bytes);
+    if (!slot) {
+        textures->full++;
+        return NULL;
+    }
+    *slot = (ff_texture_slot){ .key = key,
+                               .held = 1,
+                               .bare = bare,
+                               .used = textures->stamp,
+                               .drawn = textures->stamp,
+                               .next = textures->bucket[bucket_of(key)] };
+    textures->bucket[bucket_of(key)] = (uint16_t)(slot - textures->slot + 1);
+    if (++textures->held > textures->high) textures->high = textures->held;
+    return slot;
 }
 
-/* The code, in the whole terrain, of a root of an entered one. */
-static uint32_t code_above(const ff_terrain_info *info, ff_key root)
+/* ---- on the device ---- */
+
+/* Makes room for a texture. Of images that are no pictures nothing is left without. */
+static int make_room(ff_textures *textures)
 {
-    ff_sheet at = ff_shape_sheet(info, ff_key_tile(root));
-    uint32_t within = (1u << info->entered) - 1u;
-    return ff_morton_encode(at.x & within, at.y & within);
+    ff_texture_slot *oldest = NULL;
+    if (textures->made < textures->texture_count) return 1;
+    for (unsigned i = 0; i < textures->slot_count; i++) {
+        ff_texture_slot *slot = &textures->slot[i];
+        if (!slot->held || !slot->texture.id || slot->drawn == textures->stamp) continue;
+        if (!oldest || textures->stamp - slot->drawn > textures->stamp - oldest->drawn)
+            oldest = slot;
+    }
+    if (!oldest) return 0;
+    if (oldest->coded.bytes)
+        free_texture(textures, oldest);
+    else
+        drop(textures, oldest);
+    return 1;
 }
 
-/* To the place behind those of the slots. */
-static int decode(ff_textures *textures, const ff_terrain_info *info, const ff_new_item *item,
-                  const ff_texture_slot *parent)
+static int make_texture(ff_textures *textures, ff_texture_slot *slot, const uint16_t *texels)
 {
-    const uint8_t *bytes = (const uint8_t *)item->pixels;
-    uint8_t *rgb = picture_of(textures, textures->slot_count);
-    unsigned log2 = textures->info.texture_log2;
-    if (info->entered && !parent)
-        return ff_picture_decode_row(bytes, item->u.texture.coded_bytes, log2, info->entered,
-                                     code_above(info, item->key), textures->room, rgb,
-                                     picture_of(textures, textures->slot_count + 1u));
-    ff_picture_above above = { 0 };
-    if (parent)
-        above = (ff_picture_above){ picture_of(textures, (size_t)(parent - textures->slot)),
-                                    ff_key_quadrant(item->key) };
-    return ff_picture_decode(bytes, item->u.texture.coded_bytes, log2, above, textures->room, rgb);
+    uint32_t side = 1u << textures->info.texture_log2;
+    if (make_room(textures))
+        slot->texture = c3d_texture_make(textures->device, C3D_RGB565, side, side, texels);
+    textures->made += slot->texture.id != 0;
+    if (textures->made > textures->made_high) textures->made_high = textures->made;
+    textures->full += slot->texture.id == 0;
+    return slot->texture.id != 0;
 }
+
+static ff_coded find_coded(const void *context, ff_key key)
+{
+    const ff_texture_slot *slot = find(context, key);
+    return slot ? slot->coded : (ff_coded){ 0, 0 };
+}
+
+const uint8_t *ff_textures_picture(ff_textures *textures, const ff_terrain_info *info, ff_key key,
+                                   int *error)
+{
+    return ff_held_pictures_get(&textures->pictures, info, key, find_coded, textures, error);
+}
+
+/* Decodes a picture that is held and puts it on the device. 1, or 0: it is not there. */
+static int put_on_device(ff_textures *textures, const ff_terrain_info *info, ff_key key)
+{
+    int error;
+    const uint8_t *rgb = ff_textures_picture(textures, info, key, &error);
+    ff_texture_slot *slot = find(textures, key);
+    if (!rgb || !slot) return 0;
+    ff_texture_texels(&textures->info, rgb, textures->texels);
+    if (!make_texture(textures, slot, textures->texels)) return 0;
+    slot->drawn = textures->stamp;
+    return 1;
+}
+
+/* ---- taking in ---- */
 
 static int take_picture(ff_textures *textures, const ff_terrain_info *info, ff_new_item *item)
 {
-    uint32_t level = ff_key_level(item->key);
-    ff_texture_slot *parent = level ? find(textures, ff_key_parent(item->key)) : NULL;
-    if (!textures->rgb) return ff_textures_put(textures, item->key, item->u.texture.bare, NULL);
-    if (level && !parent) {
+    const uint8_t *bytes = (const uint8_t *)item->pixels;
+    uint32_t level = ff_key_level(item->key), count = item->u.texture.coded_bytes;
+    if (!textures->pictures.rgb)
+        return ff_textures_put(textures, item->key, item->u.texture.bare, NULL);
+    if (find(textures, item->key)) return 0;
+    if (level && !find(textures, ff_key_parent(item->key))) {
         textures->apart++;
         return 0;
     }
-    item->error = decode(textures, info, item, parent);
-    if (item->error != FF_OK) return 0;
-    const uint8_t *rgb = picture_of(textures, textures->slot_count);
-    ff_texture_texels(&textures->info, rgb, item->pixels); /* what was coded is done with */
-    if (!ff_textures_put(textures, item->key, item->u.texture.bare, item->pixels)) return 0;
-    ff_texture_slot *slot = find(textures, item->key);
-    memcpy(picture_of(textures, (size_t)(slot - textures->slot)), rgb, picture_bytes(textures));
-    return 1;
+    ff_texture_slot *slot = hold(textures, item->key, item->u.texture.bare, count);
+    if (!slot) return 0;
+    slot->coded = ff_held_pictures_add(&textures->pictures, bytes, count);
+    (void)ff_textures_picture(textures, info, item->key, &item->error);
+    if (item->error != FF_OK) {
+        drop(textures, slot);
+        return 0;
+    }
+    return put_on_device(textures, info, item->key);
 }
 
 int ff_textures_take(ff_textures *textures, const ff_terrain_info *info, ff_new_item *item)
@@ -317,37 +344,137 @@ int ff_textures_take(ff_textures *textures, const ff_terrain_info *info, ff_new_
     return ff_textures_put(textures, item->key, item->u.texture.bare, item->pixels);
 }
 
-/* ---- */
+int ff_textures_put(ff_textures *textures, ff_key key, uint8_t bare, const uint16_t *texels)
+{
+    if (find(textures, key)) return 0;
+    ff_texture_slot *slot = hold(textures, key, bare, 0);
+    if (!slot || !textures->device || !texels) return slot != NULL;
+    if (make_texture(textures, slot, texels)) return 1;
+    drop(textures, slot);
+    return 0;
+}
 
 void ff_textures_doubt(ff_textures *textures)
 {
     for (unsigned i = 0; i < textures->slot_count; i++) textures->slot[i].bare = 0;
 }
 
-int ff_textures_put(ff_textures *textures, ff_key key, uint8_t bare, const uint16_t *texels)
+/* ---- wishes ---- */
+
+/* What wishes are made of. */
+typedef struct wisher {
+    ff_textures *textures;
+    const ff_tree *tree;
+    const ff_view *view;
+    const ff_quality *quality;
+    ff_texture_wish *list;
+    uint32_t count, capacity;
+    uint32_t in_use, bytes_in_use, drawn; /* held; as they came; on the device */
+    ff_texture_wish missing;              /* the most urgent one that is held and not there */
+} wisher;
+
+/* Marks an image and those above it, without which those below could not be decoded. */
+static void use(wisher *w, ff_key key)
 {
-    if (find(textures, key)) return 0;
-    ff_texture_slot *slot = take_slot(textures);
-    if (!slot) {
-        textures->full++;
-        return 0;
-    }
-    FF_ASSERT(!slot->held && textures->held < textures->slot_count);
-    slot->texture.id = 0;
-    if (textures->device && texels) {
-        uint32_t side = 1u << textures->info.texture_log2;
-        slot->texture = c3d_texture_make(textures->device, C3D_RGB565, side, side, texels);
-        if (!slot->texture.id) {
-            textures->full++;
-            return 0;
+    for (;; key = ff_key_parent(key)) {
+        ff_texture_slot *slot = find(w->textures, key);
+        if (slot && slot->used == w->textures->stamp) return;
+        if (slot) {
+            slot->used = w->textures->stamp;
+            w->in_use++;
+            w->bytes_in_use += slot->coded.bytes;
         }
+        if (ff_key_level(key) == 0 || !w->textures->pictures.rgb) return;
     }
-    slot->key = key;
-    slot->held = 1;
-    slot->bare = bare;
-    slot->used = textures->stamp;
-    slot->next = textures->bucket[bucket_of(key)];
-    textures->bucket[bucket_of(key)] = (uint16_t)(slot - textures->slot + 1);
-    if (++textures->held > textures->high) textures->high = textures->held;
+}
+
+static ff_texture_wish wish_of(const wisher *w, ff_key key)
+{
+    return (ff_texture_wish){ key,
+                              priority_of(ff_tree_ground(w->tree, key), key, w->view, w->quality) };
+}
+
+/* Marks what is drawn where an image is wanted; what is held of it and not drawn is missing. */
+static void draw(wisher *w, const ff_texture_slot *held)
+{
+    ff_texture_slot *slot = find_drawable(w->textures, held->key);
+    if (slot && slot->drawn != w->textures->stamp) {
+        slot->drawn = w->textures->stamp;
+        w->drawn += slot->texture.id != 0;
+    }
+    if (slot == held && (slot->texture.id || !slot->coded.bytes)) return;
+    ff_texture_wish missing = wish_of(w, held->key);
+    if (missing.priority > w->missing.priority) w->missing = missing;
+}
+
+/* All from `from` down to `finest`, so that they come in one round trip: each stands behind those
+ * above it. */
+static void wish_down(wisher *w, ff_key from, ff_key finest)
+{
+    uint32_t least = UINT32_MAX;
+    for (uint32_t level = ff_key_level(from); level <= ff_key_level(finest); level++) {
+        ff_texture_wish wish = wish_of(w, on_the_way(finest, level));
+        if (wish.priority > least) wish.priority = least;
+        least = wish.priority;
+        insert(w->list, &w->count, w->capacity, wish);
+    }
+}
+
+/* What is lacking on the way to a wanted image is wished for: 1 when there is any. */
+static int look_for(wisher *w, ff_key finest)
+{
+    const ff_texture_slot *held = find_nearest(w->textures, finest);
+    if (held) {
+        use(w, held->key);
+        draw(w, held);
+        if (held->key == finest) return 0;
+    }
+    ff_key next = on_the_way(finest, held ? ff_key_level(held->key) + 1 : 0);
+    if (held && held->bare >> ff_key_quadrant(next) & 1u) return 0;
+    wish_down(w, next, finest);
     return 1;
+}
+
+/* How many more images find a place: by name, on the device, and as they come. */
+static uint32_t room_for(const wisher *w)
+{
+    const ff_textures *textures = w->textures;
+    const ff_held_pictures *pictures = &textures->pictures;
+    uint32_t names = textures->slot_count - w->in_use,
+             device = w->drawn < textures->texture_count ? textures->texture_count - w->drawn : 0,
+             room = names < device ? names : device;
+    if (!pictures->rgb) return room;
+    uint32_t coded = (pictures->coded_size - w->bytes_in_use) /
+                     FF_CODED_BYTES(textures->info.texture_log2);
+    return coded < room ? coded : room;
+}
+
+uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
+                            uint32_t drawn_count, const ff_view *view, const ff_quality *quality,
+                            ff_texture_wish *list, uint32_t capacity, int *changed)
+{
+    const ff_texel_look look = ff_textures_look(textures, &view->frame, &view->camera);
+    wisher w = { textures, tree, view, quality, list, 0, capacity, 0, 0, 0, { FF_KEY_NONE, 0 } };
+    ff_wear wear[FF_WEAR_MAX];
+    textures->stamp++;
+    textures->lacking = 0;
+    for (uint32_t i = 0; i < drawn_count; i++) {
+        unsigned parts = ff_textures_wanted(textures, tree, &drawn[i], &look, wear);
+        int lacks = 0;
+        for (unsigned part = 0; part < parts; part++) lacks |= look_for(&w, wear[part].image);
+        textures->lacking += (unsigned)lacks;
+    }
+    FF_ASSERT(w.in_use <= textures->held && textures->held <= textures->slot_count);
+    /* what would find no place is not asked for */
+    uint32_t room = room_for(&w);
+    textures->waits = w.drawn < textures->texture_count && w.missing.key != FF_KEY_NONE &&
+                      put_on_device(textures, ff_tree_ground(tree, w.missing.key), w.missing.key);
+    *changed |= textures->waits;
+    return w.count < room ? w.count : room;
+}
+
+int ff_textures_is_worn(const ff_textures *textures, ff_key image)
+{
+    const ff_texture_slot *slot = find(textures, image);
+    return slot && slot->drawn == textures->stamp;
 }

@@ -9,8 +9,11 @@
 #define FF_TEXTURES_H
 
 #include "../ask/ff_new_data.h"
+#include "ff_held_pictures.h"
 #include "ff_wear.h"
-#include "../../protocol/picture/ff_picture.h"
+
+/* Room for what came of a picture, 1/4 of a byte a texel: as many as the device holds, for each. */
+#define FF_CODED_BYTES(log2) ((1u << 2 * (log2)) / 4)
 
 extern const uint8_t ff_textures_built; /* 0: left out of this build */
 
@@ -19,8 +22,10 @@ extern const uint8_t ff_textures_built; /* 0: left out of this build */
 
 typedef struct ff_texture_slot {
     ff_key key;
-    c3d_texture texture; /* id 0 without a device */
-    uint32_t used;       /* stamp of the last frame it was of use in */
+    c3d_texture texture; /* id 0: not on the device */
+    ff_coded coded;      /* of pictures */
+    uint32_t used;       /* stamp of the last frame it, or one below it, was of use in */
+    uint32_t drawn;      /* and was drawn in */
     uint16_t next;       /* hash chain: slot + 1 */
     uint8_t held;
     uint8_t bare; /* children without an image: ff_image.bare */
@@ -31,14 +36,16 @@ typedef struct ff_textures {
     ff_terrain_info info;
     ff_texture_slot *slot; /* zeroed */
     uint16_t slot_count;
-    int32_t texel_px_q8; /* the least of ff_texel_look */
-    uint8_t across;      /* of ff_texel_look */
-    /* Of pictures, where they are to be drawn, those of each slot as they were decoded, RGB888, and
-     * two more; else NULL. Those below are differences to them. */
-    uint8_t *rgb;
-    ff_picture_room *room;
+    uint16_t texture_count; /* that the device has room for */
+    int32_t texel_px_q8;    /* the least of ff_texel_look */
+    uint8_t across;         /* of ff_texel_look */
+    /* Where pictures are to be drawn: those that are held, on the device or not; and texels of one
+     * image, on their way to the device. */
+    ff_held_pictures pictures;
+    uint16_t *texels;
 
-    uint16_t held, high;
+    uint16_t held, high, made, made_high; /* made: on the device */
+    uint8_t waits; /* 1: something held is to be drawn and not on the device yet */
     uint16_t bucket[FF_TEXTURE_HASH]; /* slot + 1 */
     uint32_t stamp, full, apart;      /* apart: pictures whose parent's was not held */
     uint32_t lacking; /* drawn nodes whose own image is not held, though it is there */
@@ -67,10 +74,11 @@ unsigned ff_textures_worn(const ff_textures *textures, const ff_tree *tree, cons
  * call stays as it is. */
 void ff_textures_lay(const ff_textures *textures, ff_key node, ff_key image, c3d_draw *draw);
 /* Marks what the drawn nodes of the tree use and lists what they lack, most urgent first;
- * priorities are on the tree's scale. */
+ * priorities are on the tree's scale. Puts a picture that is held on the device, if one is wanted
+ * that is not there: *changed. */
 uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
                             uint32_t drawn_count, const ff_view *view, const ff_quality *quality,
-                            ff_texture_wish *list, uint32_t capacity);
+                            ff_texture_wish *list, uint32_t capacity, int *changed);
 /* Takes an image in, RGB565, south row first; NULL: there is none, and ground below `key` shows its
  * colours. `bare`: of its children, ff_image.bare. 1 when the picture may have changed; 0: no room
  * (counted). */
@@ -80,6 +88,9 @@ int ff_textures_put(ff_textures *textures, ff_key key, uint8_t bare, const uint1
 int ff_textures_take(ff_textures *textures, const ff_terrain_info *info, ff_new_item *item);
 /* 1 when the last wishes were made for a picture that shows this image. */
 int ff_textures_is_worn(const ff_textures *textures, ff_key image);
+/* A picture that is held, as it was decoded: ff_held_pictures_get. */
+const uint8_t *ff_textures_picture(ff_textures *textures, const ff_terrain_info *info, ff_key key,
+                                   int *error);
 /* Somebody else may have images where those that are held say that there are none. */
 void ff_textures_doubt(ff_textures *textures);
 /* For an owner whose images come at once (a pack): 1 when this image is held; it is then the last

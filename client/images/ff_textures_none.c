@@ -31,10 +31,10 @@ int ff_textures_is_worn(const ff_textures *textures, ff_key image)
 
 uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
                             uint32_t drawn_count, const ff_view *view, const ff_quality *quality,
-                            ff_texture_wish *list, uint32_t capacity)
+                            ff_texture_wish *list, uint32_t capacity, int *changed)
 {
     (void)textures, (void)tree, (void)drawn, (void)drawn_count, (void)view, (void)quality,
-        (void)list, (void)capacity;
+        (void)list, (void)capacity, (void)changed;
     return 0;
 }
 

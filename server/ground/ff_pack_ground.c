@@ -39,6 +39,7 @@ static int make_view(ff_pack_ground *ground, c3d_device *device)
                                       .info = *info,
                                       .slot = ground->slot,
                                       .slot_count = FF_GROUND_TEXTURES,
+                                      .texture_count = FF_GROUND_TEXTURES,
                                       .texel_px_q8 = FF_TEXEL_PX_Q8 };
     ff_terrain_view_attach(&ground->view, ground->tree, &ground->textures);
     return ff_terrain_view_strips(&ground->view, info->node_log2, &strips);

@@ -430,6 +430,9 @@ static int judge_server(const fly_flight *flight, const ff_client_stats *stats)
                           : stats->protocol_errors
                               ? "does not speak Farfield's protocol, or another version of it"
                               : "no terrain came from there");
+    const ff_terrain_info *info = ff_client_terrain(flight->world->client);
+    if (info && info->texture_log2 && !stats->textures_capacity)
+        fprintf(stderr, "farfield-fly: warning: no room for images of the ground in --memory\n");
     if (stats->protocol_errors)
         fprintf(stderr, "farfield-fly: %s: warning: sent nonsense %u times\n", name,
                 stats->protocol_errors);

@@ -251,6 +251,7 @@ static int open_device(fly_reference *reference)
                                          .info = *info,
                                          .slot = reference->slot,
                                          .slot_count = images,
+                                         .texture_count = images,
                                          .texel_px_q8 = TEXEL_SAMPLES_Q8,
                                          .across = 1 };
     /* no entries: a node's mesh lives as long as it takes to draw it */

@@ -122,6 +122,41 @@ static void the_usual_blocks(void **state)
         }
 }
 
+/* With an entered root's picture come those above it, in one answer. */
+static void rows_of_entered_pictures_find_room(void **state)
+{
+    (void)state;
+    for (unsigned log2 = 5; log2 <= 6; log2++)
+        for (unsigned entered = 0; entered <= 12; entered++) {
+            ff_client_desc desc = desc_of(IMAGES, 1);
+            ff_terrain_info info = terrain_of(IMAGES, 3);
+            ff_budget b;
+            desc.memory_bytes = BLOCK_BYTES;
+            info.texture_log2 = (uint8_t)log2;
+            info.flags |= FF_TERRAIN_PICTURES;
+            info.entered = (uint8_t)entered;
+            assert_true(make_budget(&b, &desc, &info) && b.has_textures);
+            assert_true(b.image_bytes >= (size_t)(entered ? entered + 1 : 2) << 2 * log2);
+            assert_true(b.pool[FF_POOL_textures].count >= 64);
+        }
+}
+
+/* A picture so large that there is no room for all: fewer images, not none. */
+static void large_pictures_leave_room_for_some_images(void **state)
+{
+    (void)state;
+    ff_client_desc desc = desc_of(IMAGES, 1);
+    ff_terrain_info info = terrain_of(IMAGES, 3);
+    ff_budget b;
+    desc.memory_bytes = BLOCK_BYTES;
+    desc.width = 640;
+    desc.height = 480;
+    desc.frame_format = C3D_RGBA8888;
+    assert_true(make_budget(&b, &desc, &info) && b.has_textures);
+    assert_in_range(b.pool[FF_POOL_textures].count, 16, 40);
+    assert_true(b.pool[FF_POOL_nodes].count >= 1024);
+}
+
 /* The pools that a client has are those that were planned for it. */
 static void a_client_is_carved_as_planned(void **state)
 {
@@ -151,7 +186,7 @@ static void a_client_is_carved_as_planned(void **state)
     assert_int_equal(sum, client->arena.used);
     assert_int_equal(carved[FF_POOL_nodes].count, stats.tree.nodes_capacity);
     assert_int_equal(carved[FF_POOL_entries].count, client->view.entry_count);
-    assert_int_equal(carved[FF_POOL_textures].count, client->textures.slot_count);
+    assert_int_equal(carved[FF_POOL_textures].count, client->textures.texture_count);
     assert_int_equal(carved[FF_POOL_items].count, client->news.item_slots);
     assert_int_equal(carved[FF_POOL_images].count, client->news.image_slots);
     assert_int_equal(carved[FF_POOL_requests].count, client->first.requests.slot_count);
@@ -209,6 +244,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(pools_fit_into_every_block),
                                         cmocka_unit_test(the_usual_blocks),
+                                        cmocka_unit_test(rows_of_entered_pictures_find_room),
+                                        cmocka_unit_test(large_pictures_leave_room_for_some_images),
                                         cmocka_unit_test(a_client_is_carved_as_planned),
                                         cmocka_unit_test(pools_tell_what_they_hold) };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -74,7 +74,7 @@ static unsigned want(rig *r, int64_t now_us, enum ff_request_class rank, unsigne
     uint32_t sent = r->requests.counts.sent;
     ff_requests_rank_begin(&r->requests);
     for (unsigned i = 0; i < count; i++)
-        ff_requests_want(&r->requests, FF_KIND_REFINEMENT, node(first + i), rank, 1, NULL);
+        ff_requests_want(&r->requests, FF_KIND_REFINEMENT, node(first + i), rank, 1, 0, NULL);
     ff_requests_rank_end(&r->requests);
     ff_stream_step(&r->stream, now_us);
     return r->requests.counts.sent - sent;
@@ -97,8 +97,8 @@ static void what_is_in_view_takes_along_what_is_ahead(void **state)
     rig *r = *state;
     assert_int_equal(want(r, 0, FF_CLASS_PREFETCH, 1, 1), 1);
     ff_requests_rank_begin(&r->requests);
-    ff_requests_want(&r->requests, FF_KIND_REFINEMENT, node(2), FF_CLASS_PREFETCH, 1, NULL);
-    ff_requests_want(&r->requests, FF_KIND_REFINEMENT, node(3), FF_CLASS_IN_VIEW, 1, NULL);
+    ff_requests_want(&r->requests, FF_KIND_REFINEMENT, node(2), FF_CLASS_PREFETCH, 1, 0, NULL);
+    ff_requests_want(&r->requests, FF_KIND_REFINEMENT, node(3), FF_CLASS_IN_VIEW, 1, 0, NULL);
     ff_requests_rank_end(&r->requests);
     ff_stream_step(&r->stream, SECOND / 10);
     assert_int_equal(r->requests.counts.sent, 3);
@@ -149,10 +149,10 @@ static void an_image_goes_behind_those_above_it(void **state)
     const ff_key root = ff_key_make(0, 0, 0), child = ff_key_child(root, 3),
                  grandchild = ff_key_child(child, 1);
     ff_requests_rank_begin(&r->requests);
-    ff_requests_want(&r->requests, FF_KIND_TEXTURE, grandchild, FF_CLASS_IN_VIEW, 9000, NULL);
-    ff_requests_want(&r->requests, FF_KIND_TEXTURE, child, FF_CLASS_IN_VIEW, 100, NULL);
-    ff_requests_want(&r->requests, FF_KIND_TEXTURE, root, FF_CLASS_IN_VIEW, 10, NULL);
-    ff_requests_want(&r->requests, FF_KIND_REFINEMENT, root, FF_CLASS_IN_VIEW, 50, NULL);
+    ff_requests_want(&r->requests, FF_KIND_TEXTURE, grandchild, FF_CLASS_IN_VIEW, 9000, 0, NULL);
+    ff_requests_want(&r->requests, FF_KIND_TEXTURE, child, FF_CLASS_IN_VIEW, 100, 0, NULL);
+    ff_requests_want(&r->requests, FF_KIND_TEXTURE, root, FF_CLASS_IN_VIEW, 10, 0, NULL);
+    ff_requests_want(&r->requests, FF_KIND_REFINEMENT, root, FF_CLASS_IN_VIEW, 50, 0, NULL);
     ff_requests_rank_end(&r->requests);
     assert_int_equal(sent(r), root);
     assert_int_equal(sent(r), child);
@@ -167,7 +167,7 @@ static void the_first_answer_tells_how_long_others_will_be(void **state)
     const ff_key root = ff_key_make(0, 0, 0);
     uint32_t guess = ff_requests_answer_bytes(&r->requests, FF_KIND_TEXTURE, 5);
     ff_request out;
-    ff_requests_want(&r->requests, FF_KIND_TEXTURE, root, FF_CLASS_IN_VIEW, 1, NULL);
+    ff_requests_want(&r->requests, FF_KIND_TEXTURE, root, FF_CLASS_IN_VIEW, 1, 0, NULL);
     assert_true(ff_requests_next(&r->requests, 0, IN_FLIGHT, 1 << 20, 0, &out));
     ff_requests_arrived(&r->requests, out.id, 80);
     assert_true(guess > 160);
@@ -175,7 +175,7 @@ static void the_first_answer_tells_how_long_others_will_be(void **state)
         assert_int_equal(ff_requests_answer_bytes(&r->requests, FF_KIND_TEXTURE, level), 80);
     ff_requests_finish(&r->requests, out.id, FF_REQUEST_DONE);
     /* the second of a level is one of many, the first of another level tells of all but these */
-    ff_requests_want(&r->requests, FF_KIND_TEXTURE, ff_key_child(root, 0), FF_CLASS_IN_VIEW, 1,
+    ff_requests_want(&r->requests, FF_KIND_TEXTURE, ff_key_child(root, 0), FF_CLASS_IN_VIEW, 1, 0,
                      NULL);
     assert_true(ff_requests_next(&r->requests, 0, IN_FLIGHT, 1 << 20, 0, &out));
     ff_requests_arrived(&r->requests, out.id, 40);
@@ -183,7 +183,7 @@ static void the_first_answer_tells_how_long_others_will_be(void **state)
     assert_int_equal(ff_requests_answer_bytes(&r->requests, FF_KIND_TEXTURE, 1), 40);
     assert_int_equal(ff_requests_answer_bytes(&r->requests, FF_KIND_TEXTURE, 9), 40);
     ff_requests_finish(&r->requests, out.id, FF_REQUEST_DONE);
-    ff_requests_want(&r->requests, FF_KIND_TEXTURE, ff_key_child(root, 1), FF_CLASS_IN_VIEW, 1,
+    ff_requests_want(&r->requests, FF_KIND_TEXTURE, ff_key_child(root, 1), FF_CLASS_IN_VIEW, 1, 0,
                      NULL);
     assert_true(ff_requests_next(&r->requests, 0, IN_FLIGHT, 1 << 20, 0, &out));
     ff_requests_arrived(&r->requests, out.id, 120);

@@ -29,11 +29,11 @@ static void open_rig(client_rig *rig)
 /* What is held of every picture is what the pack has there. How many are held. */
 static unsigned check_held(const client_rig *rig)
 {
-    const ff_textures *textures = &rig->client->textures;
+    ff_textures *textures = &rig->client->textures;
     static ff_picture_path path;
     unsigned held = 0;
     path = (ff_picture_path){ .rgb = malloc(ff_picture_path_bytes(&rig->pack.header.info)) };
-    assert_non_null(textures->rgb);
+    assert_non_null(textures->pictures.rgb);
     for (unsigned i = 0; i < textures->slot_count; i++) {
         const uint8_t *expected;
         ff_key key = textures->slot[i].key;
@@ -41,7 +41,11 @@ static unsigned check_held(const client_rig *rig)
         if (textures->info.entered)
             key = ff_entry_key(&rig->pack.header.info, &textures->info, key);
         assert_int_equal(ff_picture_path_get(&path, &rig->pack, key, &expected), FF_OK);
-        assert_memory_equal(textures->rgb + (size_t)i * BYTES, expected, BYTES);
+        int error;
+        const uint8_t *rgb = ff_textures_picture(textures, &textures->info, textures->slot[i].key,
+                                                 &error);
+        assert_non_null(rgb);
+        assert_memory_equal(rgb, expected, BYTES);
         held++;
     }
     free(path.rgb);
@@ -114,11 +118,16 @@ static void what_lacks_images_asks_for_all_on_the_way_down(void **state)
     rig_local_client(&rig, 4 * MB);
     assert_true(rig_settle(&rig, 600));
     const ff_client *client = rig.client;
-    uint32_t drawn_count = ff_tree_drawn(ff_client_tree(rig.client), &drawn), seen = 0;
+    uint32_t drawn_count = ff_tree_drawn(ff_client_tree(rig.client), &drawn), seen = 0, wanted = 0;
+    int changed = 0;
+    ff_wear wear[FF_WEAR_MAX];
     none.info = client->textures.info;
-    none.slot_count = 256;
+    none.across = client->textures.across;
+    none.slot_count = none.texture_count = 256;
     uint32_t count = ff_textures_wishes(&none, client->tree, drawn, drawn_count, &client->last_view,
-                                        &client->desc.quality, list, 256);
+                                        &client->desc.quality, list, 256, &changed);
+    const ff_texel_look look = ff_textures_look(&none, &client->last_view.frame,
+                                                &client->last_view.camera);
     assert_int_equal(none.lacking, drawn_count);
     assert_true(count > drawn_count);
     for (uint32_t i = 0; i < count; i++) {
@@ -129,10 +138,14 @@ static void what_lacks_images_asks_for_all_on_the_way_down(void **state)
         }
         assert_true(above);
     }
-    for (uint32_t i = 0; i < drawn_count; i++)
-        for (uint32_t j = 0; j < count; j++)
-            seen += list[j].key == ff_texture_key(&none.info, drawn[i].key);
-    assert_int_equal(seen, drawn_count);
+    for (uint32_t i = 0; i < drawn_count; i++) {
+        unsigned parts = ff_textures_wanted(&none, client->tree, &drawn[i], &look, wear);
+        wanted += parts;
+        for (uint32_t j = 0; j < count * parts; j++)
+            seen += list[j / parts].key == wear[j % parts].image;
+    }
+    assert_true(wanted >= drawn_count);
+    assert_int_equal(seen, wanted);
     rig_close(&rig);
 }
 
@@ -178,11 +191,81 @@ static void one_whose_parents_is_not_held_is_not_taken(void **state)
     rig_close(&rig);
 }
 
+static uint32_t images_asked(const client_rig *rig) { return rig->asked[FF_KIND_TEXTURE]; }
+
+/* What the device has no room for any more is held as it came, and drawn again from that. */
+static void pictures_seen_before_come_back_without_a_request(void **state)
+{
+    (void)state;
+    client_rig rig;
+    open_rig(&rig);
+    rig.desc.no_prefetch = rig.desc.no_reserve = 1;
+    rig.desc.width = rig.camera.width = 64;
+    rig.desc.height = rig.camera.height = 64;
+    rig.camera.focal_q8 = 100 * 256;
+    rig_client(&rig, 4 * MB);
+    ff_textures *textures = &rig.client->textures;
+    assert_true(rig_settle(&rig, 600));
+    textures->texture_count = textures->made; /* no room for more */
+    for (int i = 0; i < 8; i++) {
+        rig.camera.yaw += 8192;
+        assert_true(rig_settle(&rig, 600));
+        assert_true(textures->made <= textures->texture_count);
+    }
+    assert_true(textures->held > textures->made);
+    uint32_t asked = images_asked(&rig);
+    for (int i = 0; i < 8; i++) {
+        rig.camera.yaw += 8192;
+        assert_true(rig_settle(&rig, 600));
+        for (int frame = 0; frame < 40; frame++) rig_step(&rig, 50000);
+        const ff_view *view = &rig.client->last_view;
+        const ff_texel_look look = ff_textures_look(textures, &view->frame, &view->camera);
+        const ff_drawn *drawn;
+        uint32_t count = ff_tree_drawn(ff_client_tree(rig.client), &drawn);
+        for (uint32_t j = 0; j < count; j++) {
+            ff_wear wear[FF_WEAR_MAX];
+            unsigned parts = ff_textures_wanted(textures, ff_client_tree(rig.client), &drawn[j],
+                                                &look, wear);
+            for (unsigned part = 0; part < parts; part++)
+                assert_true(ff_client_wears(rig.client, wear[part].image));
+        }
+    }
+    assert_int_equal(images_asked(&rig), asked);
+    assert_int_equal(textures->apart, 0);
+    assert_true(check_held(&rig) > 5);
+    rig_close(&rig);
+}
+
+/* However little is kept of what came: nothing is held without what it is a difference to. */
+static void pictures_go_before_those_above_them(void **state)
+{
+    (void)state;
+    client_rig rig;
+    open_rig(&rig);
+    rig.desc.no_prefetch = rig.desc.no_reserve = 1;
+    rig_client(&rig, 4 * MB);
+    ff_textures *textures = &rig.client->textures;
+    assert_true(rig_settle(&rig, 600));
+    textures->pictures.coded_size = textures->pictures.coded_used + 300;
+    textures->slot_count = (uint16_t)(textures->held + 2);
+    for (int i = 0; i < 40; i++) {
+        rig.camera.yaw += 5000;
+        rig.camera.pos_wu[0] += i % 8 < 4 ? 200 * FF_WU_PER_METRE : -200 * FF_WU_PER_METRE;
+        for (int frame = 0; frame < 20; frame++) rig_step(&rig, 50000);
+        assert_true(textures->pictures.coded_used <= textures->pictures.coded_size);
+        (void)check_held(&rig);
+    }
+    assert_int_equal(rig_stats(&rig).requests_failed, 0);
+    rig_close(&rig);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_are_held_as_the_pack_has_them),
         cmocka_unit_test(what_lacks_images_asks_for_all_on_the_way_down),
+        cmocka_unit_test(pictures_seen_before_come_back_without_a_request),
+        cmocka_unit_test(pictures_go_before_those_above_them),
         cmocka_unit_test(roots_below_levels_left_out_bring_what_is_above_them),
         cmocka_unit_test(one_whose_parents_is_not_held_is_not_taken),
     };
