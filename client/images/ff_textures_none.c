@@ -23,6 +23,18 @@ void ff_textures_lay(const ff_textures *textures, ff_key node, ff_key image, c3d
     (void)textures, (void)node, (void)image, (void)draw;
 }
 
+size_t ff_held_pictures_bytes(unsigned log2, unsigned decoded, size_t coded)
+{
+    (void)log2, (void)decoded, (void)coded;
+    return 0;
+}
+
+void ff_held_pictures_init(ff_held_pictures *pictures, unsigned log2, unsigned decoded,
+                           size_t coded, void *memory)
+{
+    (void)pictures, (void)log2, (void)decoded, (void)coded, (void)memory;
+}
+
 int ff_textures_is_worn(const ff_textures *textures, ff_key image)
 {
     (void)textures, (void)image;
