@@ -68,11 +68,13 @@ static void default_far(ff_client_desc *desc)
 {
     ff_far_desc *far = &desc->far;
     if (!ff_sets_built || !desc->stream) far->enabled = FF_FAR_OFF;
+    if (!ff_picture_built) far->no_paint = 1;
+    if (far->no_paint && far->enabled == FF_FAR_PAINT) far->enabled = FF_FAR_FINS;
     if (far->enabled) desc->panorama.enabled = FF_PANORAMA_OFF;
     if (far->front_wu <= 0) far->front_wu = 7500 * METRES;
     if (far->front_wu > FF_PANORAMA_BACK_WU_MAX) far->front_wu = FF_PANORAMA_BACK_WU_MAX;
     if (!far->coarse) far->coarse = 4;
-    if (!far->jpeg_quality) far->jpeg_quality = 40;
+    if (!far->quality) far->quality = 78;
     if (!far->tolerance_q2) far->tolerance_q2 = 2;
 }
 
@@ -117,7 +119,7 @@ static int check_desc(const ff_client_desc *desc)
         desc->quality.depth_max > FF_QUALITY_DEPTH_MAX)
         return FF_ERR_ARGUMENT;
     if (desc->far.enabled > FF_FAR_AUTO || desc->far.coarse > FF_FAR_COARSE_MAX ||
-        desc->far.paint_shift > FF_FAR_SHIFT_MAX || desc->far.jpeg_quality > 100)
+        desc->far.paint_shift > FF_FAR_SHIFT_MAX || desc->far.quality > 100)
         return FF_ERR_ARGUMENT;
     if ((unsigned)desc->balance.mode > FF_BALANCE_ALL_CLIENT ||
         desc->panorama.enabled > FF_PANORAMA_AUTO)
@@ -323,7 +325,7 @@ void ff_client_set_far(ff_client *client, const ff_far_desc *far)
     if (far->enabled > FF_FAR_AUTO) client->desc.far.enabled = FF_FAR_AUTO;
     if (far->coarse > FF_FAR_COARSE_MAX) client->desc.far.coarse = FF_FAR_COARSE_MAX;
     if (far->paint_shift > FF_FAR_SHIFT_MAX) client->desc.far.paint_shift = FF_FAR_SHIFT_MAX;
-    if (far->jpeg_quality > 100) client->desc.far.jpeg_quality = 100;
+    if (far->quality > 100) client->desc.far.quality = 100;
     default_far(&client->desc);
     client->dirty = 1;
     if (!client->have_terrain) return;

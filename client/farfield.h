@@ -87,14 +87,14 @@ enum ff_far_use { FF_FAR_OFF, FF_FAR_FINS, FF_FAR_PAINT, FF_FAR_AUTO };
  * with panoramas: where sets are used those are off. Zero in any field takes the default given. */
 typedef struct ff_far_desc {
     uint8_t enabled;  /* enum ff_far_use; default FF_FAR_OFF */
-    uint8_t no_paint; /* 1: FF_FAR_AUTO chooses fins at most, as for a display of two colours */
+    uint8_t no_paint; /* 1: fins at most, as for a display of two colours */
     /* from here on, measured as back_plane_wu, or from four fifths of how high the camera is above
      * ground, if that is more; FF_FAR_AUTO may choose half to twice as far; default 7500 m */
     int32_t front_wu;
     /* ground beyond may be so many times as wrong as quality allows, up to 16; default 4 */
     uint8_t coarse;
     uint8_t paint_shift;  /* texels of paint are 2^this as large as pixels, 0 to 3 */
-    uint8_t jpeg_quality; /* of the paint; default 40 */
+    uint8_t quality;      /* of the paint, 1 to 100; default 78 */
     uint8_t tolerance_q2; /* quarter pixels that a fin may be off; default 2 */
 } ff_far_desc;
 

@@ -1,5 +1,6 @@
 /* Sectors of far sets, decoded. Left out with them. */
 #include "../ask/ff_intake_local.h"
+#include "../../protocol/picture/ff_paint.h"
 #include "../../protocol/ff_assert.h"
 
 #include <string.h>
@@ -25,25 +26,21 @@ static unsigned rows_that_fit(const ff_intake *intake, const ff_far *far)
 /* Rounded: cut off, the whole picture would be darker. */
 static unsigned of_31(unsigned of_255) { return (of_255 * 31 + 127) / 255; }
 
-/* Lays the blocks that are there, one behind the other in `rgb`, into the picture, opaque; a texel
- * of rim round it and the blocks that are not there stay transparent. */
-static void lay_blocks(const uint8_t *rgb, const uint8_t *there, unsigned blocks_x,
-                       unsigned blocks_y, unsigned count, uint16_t *out, unsigned width)
+/* Where blocks are laid: a texture with a texel of rim round it. */
+typedef struct canvas {
+    uint16_t *texel;
+    unsigned width, rows; /* texels; rows of blocks that fit */
+} canvas;
+
+static void lay_block(void *context, unsigned column, unsigned row, uint8_t rgb[64][3])
 {
-    unsigned block = 0;
-    for (unsigned i = 0; i < blocks_x * blocks_y; i++) {
-        if (!there[i]) continue;
-        uint16_t *to = out + (size_t)(i / blocks_x * FF_FAR_BLOCK + 1) * width +
-                       i % blocks_x * FF_FAR_BLOCK + 1;
-        FF_ASSERT(block < count);
-        for (unsigned y = 0; y < FF_FAR_BLOCK; y++, to += width) {
-            const uint8_t *from = rgb + 3 * ((size_t)y * count + block) * FF_FAR_BLOCK;
-            for (unsigned x = 0; x < FF_FAR_BLOCK; x++, from += 3)
-                to[x] = (uint16_t)(of_31(from[0]) << 11 | of_31(from[1]) << 6 |
-                                   of_31(from[2]) << 1 | 1u);
-        }
-        block++;
-    }
+    const canvas *on = context;
+    if (row >= on->rows) return;
+    uint16_t *to = on->texel + (size_t)(row * FF_FAR_BLOCK + 1) * on->width +
+                   column * FF_FAR_BLOCK + 1;
+    for (unsigned i = 0; i < 64; i++)
+        to[i / FF_FAR_BLOCK * on->width + i % FF_FAR_BLOCK] =
+            (uint16_t)(of_31(rgb[i][0]) << 11 | of_31(rgb[i][1]) << 6 | of_31(rgb[i][2]) << 1 | 1u);
 }
 
 /* Gives transparent texels beside opaque ones their colour: filtering mixes both. */
@@ -68,23 +65,17 @@ static void bleed(uint16_t *texel, unsigned width, unsigned height)
 
 static int decode_paint(ff_intake *intake, const ff_far *far, ff_new_item *item)
 {
-    unsigned blocks = (unsigned)far->blocks_x * far->blocks_y, rows = rows_that_fit(intake, far),
+    unsigned rows = rows_that_fit(intake, far),
              width = power_of_two(far->blocks_x * FF_FAR_BLOCK + 2u),
              height = power_of_two(rows * FF_FAR_BLOCK + 2u);
-    size_t texels = (size_t)width * height;
-    if (!rows || blocks > intake->rgb_bytes) return FF_ERR_RANGE;
-    /* the list of blocks lies behind the decoded image */
-    uint8_t *there = intake->rgb + intake->rgb_bytes - blocks;
-    int count = ff_blocks_decode(far->blocks, far->blocks_bytes, there, blocks);
-    if (count <= 0) return count < 0 ? count : FF_ERR_FORMAT;
-    if ((size_t)count * FF_FAR_BLOCK * FF_FAR_BLOCK * 3 > intake->rgb_bytes - blocks)
-        return FF_ERR_RANGE;
-    int rc = sys_jpeg_decode(far->image, far->image_bytes, (unsigned)count * FF_FAR_BLOCK,
-                             FF_FAR_BLOCK, intake->rgb);
-    if (rc != FF_OK) return rc;
     uint16_t *out = (uint16_t *)(void *)((uint8_t *)item->pixels + FF_NEW_FINS_BYTES);
-    memset(out, 0, texels * sizeof *out);
-    lay_blocks(intake->rgb, there, far->blocks_x, rows, (unsigned)count, out, width);
+    canvas on = { out, width, rows };
+    const ff_paint_sink sink = { &on, lay_block };
+    if (!rows || ff_paint_room_bytes(far->blocks_x) > intake->rgb_bytes) return FF_ERR_RANGE;
+    memset(out, 0, (size_t)width * height * sizeof *out);
+    int rc = ff_paint_decode(far->paint, far->paint_bytes, far->blocks_x, far->blocks_y,
+                             (ff_paint_room *)(void *)intake->rgb, &sink);
+    if (rc < 0) return rc;
     bleed(out, width, height);
     item->width = (uint16_t)width;
     item->height = (uint16_t)height;

@@ -71,9 +71,8 @@ static void want_sectors(const ff_sets *sets, ff_requests *requests, const ff_vi
                            .focal = set->focal,
                            .down = down_of(set, &view->camera),
                            .paint_shift = set->paint_shift,
-                           .quality = set->painted && !(how & FF_SETS_KEY_FINS)
-                                          ? sets->desc.jpeg_quality
-                                          : 0,
+                           .quality = set->painted && !(how & FF_SETS_KEY_FINS) ? sets->desc.quality
+                                                                                : 0,
                            .tolerance_q2 = sets->desc.tolerance_q2 };
     ff_shape_leave(sets->info, &view->frame, set->position_wu, request.position_wu);
     list_sectors(&request, missing,

@@ -239,7 +239,7 @@ static size_t answer_bytes_max(const ff_message *message)
         case FF_BRINGS_PARTS: return FF_MESSAGE_HEADER_MAX + (size_t)message->u.part.byte_count;
         case FF_BRINGS_FAR:
             return FF_MESSAGE_HEADER_MAX + 15 + (size_t)message->u.far.fins_bytes +
-                   message->u.far.blocks_bytes + message->u.far.image_bytes;
+                   message->u.far.paint_bytes;
         case FF_BRINGS_FACE: break;
     }
     return FF_MESSAGE_HEADER_MAX + 14 + (size_t)message->u.face.columns_bytes +

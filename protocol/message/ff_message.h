@@ -271,12 +271,10 @@ typedef struct ff_far {
     uint8_t sector, flags; /* enum ff_face_flags: FF_FACE_EMPTY, nothing follows; FF_FACE_LAST */
     const uint8_t *fins;   /* ff_fins_decode; no bytes: none */
     uint32_t fins_bytes;
-    uint8_t blocks_x, blocks_y; /* of the paint, each of 16 x 16 texels; 0: no paint */
-    int16_t top;           /* rows of texels that the first block row begins above O's horizon */
-    const uint8_t *blocks; /* which of them are there: ff_blocks_decode */
-    uint32_t blocks_bytes;
-    const uint8_t *image; /* bare JPEG, 16 texels high, 16 wide for each block that is there */
-    uint32_t image_bytes;
+    uint8_t blocks_x, blocks_y; /* of the paint, each of 8 x 8 texels; 0: no paint */
+    int16_t top;          /* rows of texels that the first block row begins above O's horizon */
+    const uint8_t *paint; /* ff_paint_decode */
+    uint32_t paint_bytes;
 } ff_far;
 
 /* Packed spans: `top` and `bottom` have `count` (face_size) entries, each 0..row_count. Encode:

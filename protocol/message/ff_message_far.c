@@ -1,4 +1,4 @@
-/* GET_FAR and its answers, FAR; see SPEC.md, "Messages". Fins and blocks are bytes here. */
+/* GET_FAR and its answers, FAR; see SPEC.md, "Messages". Fins and paint are bytes here. */
 #include "ff_message_local.h"
 
 /* GET_FAR: id, position, front, heading, region, focal length, rows, shift, quality, tolerance,
@@ -72,10 +72,9 @@ void ff_message_read_get_far(ff_reader *in, ff_get_far *get)
 
 static int paint_ok(const ff_far *far)
 {
-    if (far->blocks_x == 0)
-        return far->blocks_y == 0 && far->top == 0 && !far->blocks_bytes && !far->image_bytes;
+    if (far->blocks_x == 0) return far->blocks_y == 0 && far->top == 0 && !far->paint_bytes;
     return far->blocks_x <= FF_FAR_BLOCKS_MAX && far->blocks_x % 2 == 0 && far->blocks_y > 0 &&
-           far->blocks_y <= FF_FAR_BLOCKS_MAX && far->blocks_bytes > 0 && far->image_bytes > 0;
+           far->paint_bytes > 0;
 }
 
 static int far_ok(const ff_far *far)
@@ -96,9 +95,7 @@ void ff_message_write_far(ff_writer *out, const ff_far *far)
     if (!far->blocks_x) return;
     ff_write_bytes(out, far->blocks_y, 1);
     ff_write_bytes(out, (uint16_t)far->top, 2);
-    ff_write_varint(out, far->blocks_bytes);
-    ff_write_span(out, far->blocks, far->blocks_bytes);
-    ff_write_span(out, far->image, far->image_bytes);
+    ff_write_span(out, far->paint, far->paint_bytes);
 }
 
 void ff_message_read_far(ff_reader *in, ff_far *far)
@@ -114,9 +111,7 @@ void ff_message_read_far(ff_reader *in, ff_far *far)
     if (far->blocks_x) {
         far->blocks_y = (uint8_t)ff_read_bytes(in, 1);
         far->top = (int16_t)ff_read_signed(in, 2);
-        far->blocks_bytes = ff_read_varint(in);
-        far->blocks = ff_read_span(in, far->blocks_bytes);
-        ff_message_read_rest(in, &far->image, &far->image_bytes);
+        ff_message_read_rest(in, &far->paint, &far->paint_bytes);
     }
     ff_message_require(&in->error, far_ok(far));
 }

@@ -27,33 +27,24 @@ int ff_picture_begin(ff_picture *p, unsigned log2, unsigned quality, ff_picture_
     p->parent = above.rgb;
     p->column = (above.quadrant & 1u) * (p->side - 1);
     p->row = (above.quadrant >> 1) * (p->side - 1);
-    memcpy(p->room->one, p->by->one, sizeof p->room->one);
+    p->one = p->room->one;
+    memcpy(p->one, p->by->one, sizeof p->room->one);
     return FF_OK;
 }
 
 /* ---- texels ---- */
 
-static uint8_t to_byte(int32_t value)
-{
-    return (uint8_t)(value < 0 ? 0 : value > 255 ? 255 : value);
-}
-
 /* Adds what is left to the i-th texel of a part. */
 static void finish(const ff_picture *p, unsigned x, unsigned y, unsigned i, uint8_t expected[64][3],
                    int32_t left[3][64])
 {
-    int32_t luma = left[0][i], co = left[1][i], cg = left[2][i];
-    const uint8_t *from = expected[i];
-    uint8_t *rgb = p->rgb + ff_picture_at(p, x, y);
-    rgb[0] = to_byte(from[0] + luma + co - cg);
-    rgb[1] = to_byte(from[1] + luma + cg);
-    rgb[2] = to_byte(from[2] + luma - co - cg);
+    ff_picture_add(expected[i], left[0][i], left[1][i], left[2][i],
+                   p->rgb + ff_picture_at(p, x, y));
 }
 
 static int16_t coefficient(const ff_picture *p, unsigned plane, int32_t value)
 {
-    int32_t whole = value * p->step_q4[plane];
-    return (int16_t)(whole < -INT16_MAX ? -INT16_MAX : whole > INT16_MAX ? INT16_MAX : whole);
+    return ff_picture_coefficient(value, p->step_q4[plane]);
 }
 
 /* ---- corners ---- */
@@ -144,17 +135,20 @@ static void go_block(ff_picture *p, unsigned column, unsigned row)
     int32_t value[3][64] = { { 0 } };
     ff_picture_part part = { column * FF_PICTURE_BLOCK, row * FF_PICTURE_BLOCK, FF_PICTURE_BLOCK,
                              FF_PICTURE_BLOCK };
+    ff_picture_sizes here, *before = &p->room->before, *below = &p->room->below[column];
     ff_picture_expect(p, part, expected);
 #ifdef FF_ENCODER
     if (p->to) ff_picture_count_block(p, part, expected, value);
 #endif
     for (unsigned plane = 0; plane < 3; plane++) {
         int16_t whole[64];
-        if (!ff_picture_numbers(p, plane, column, row, value[plane]))
+        if (!ff_picture_numbers(p, plane, column ? before : NULL, row ? below : NULL, value[plane],
+                                &here))
             continue; /* nothing is left */
         for (unsigned z = 0; z < 64; z++) whole[z] = coefficient(p, plane, value[plane][z]);
         ff_picture_block(whole, value[plane]);
     }
+    *before = *below = here;
     /* lines are there */
     unsigned last = p->side - 1, i = 0;
     for (unsigned y = part.y; y < part.y + FF_PICTURE_BLOCK; y++)

@@ -21,12 +21,17 @@
 
 extern const uint8_t ff_picture_built; /* 0: left out of this build */
 
+/* What the next blocks are told by: a block's coefficients, without their signs, and how many there
+ * are, of each plane. */
+typedef struct ff_picture_sizes {
+    uint8_t size[3][64], count[3];
+} ff_picture_sizes;
+
 /* Memory that coding takes; nothing in it outlives a picture. */
 typedef struct ff_picture_room {
     uint16_t one[FF_PICTURE_CONTEXTS]; /* how likely decisions are 1, of 65536 */
-    /* coefficients' sizes of the block before and of those below, and how many there are */
-    uint8_t before[3][64], below[1 << (FF_PICTURE_LOG2_MAX - 3)][3][64];
-    uint8_t before_count[3], below_count[1 << (FF_PICTURE_LOG2_MAX - 3)][3];
+    /* of the block before and of those below */
+    ff_picture_sizes before, below[1 << (FF_PICTURE_LOG2_MAX - 3)];
 } ff_picture_room;
 
 /* What it is predicted from: the parent's, and which of its children it is; NULL: a root. */

@@ -58,12 +58,14 @@ typedef struct ff_picture {
     unsigned column, row; /* of the lattice of the parent's children: the south-west texel's */
     const uint8_t *parent;
     ff_picture_room *room;
+    uint16_t *one; /* the room's */
     uint8_t *rgb;
     ff_range range;
     /* the encoder's; NULL: this is the decoder */
     ff_range_writer *to;
     const uint8_t *source;
     const ff_picture_eye *eye;
+    uint32_t *cost; /* only asks what decisions take: 256ths of a bit are added here; else NULL */
 } ff_picture;
 
 /* A corner's steps are 4 times as fine, those of an eight's mean twice: on even ground a line must
@@ -86,17 +88,40 @@ static inline size_t ff_picture_at(const ff_picture *p, unsigned x, unsigned y)
     return ((size_t)(p->side - 1 - y) * p->side + x) * 3;
 }
 
+static inline int16_t ff_picture_coefficient(int32_t value, int32_t step_q4)
+{
+    int32_t whole = value * step_q4;
+    return (int16_t)(whole < -INT16_MAX ? -INT16_MAX : whole > INT16_MAX ? INT16_MAX : whole);
+}
+
+static inline uint8_t ff_picture_byte(int32_t value)
+{
+    return (uint8_t)(value < 0 ? 0 : value > 255 ? 255 : value);
+}
+
+/* Adds what is left, Y, Co and Cg, to what was expected. */
+static inline void ff_picture_add(const uint8_t from[3], int32_t luma, int32_t co, int32_t cg,
+                                  uint8_t rgb[3])
+{
+    rgb[0] = ff_picture_byte(from[0] + luma + co - cg);
+    rgb[1] = ff_picture_byte(from[1] + luma + cg);
+    rgb[2] = ff_picture_byte(from[2] + luma - co - cg);
+}
+
 /* What is left of 8 x 8 texels, and of 8 in a line, from coefficients in steps of 1/16.
  * ff_picture_cosine.c */
 void ff_picture_block(const int16_t coefficient[64], int32_t left[64]);
 void ff_picture_line(const int16_t coefficient[8], int32_t left[8]);
 
-/* Numbers, and a block's, to and from the range coder; of a block's how many are told.
- * ff_picture_numbers.c */
+/* Numbers, and a block's, to and from the range coder; of a block's how many are told, by those of
+ * the blocks west and south, NULL where there are none. ff_picture_numbers.c */
+extern const uint8_t ff_picture_zigzag[64];
+unsigned ff_picture_decide(ff_picture *p, uint16_t *one, unsigned bit);
 int32_t ff_picture_number(ff_picture *p, unsigned kind, unsigned scale, int32_t value);
 unsigned ff_picture_scale(const ff_picture *p, unsigned row, const int32_t known[FF_PICTURE_KNOWN]);
-unsigned ff_picture_numbers(ff_picture *p, unsigned plane, unsigned column, unsigned row,
-                            int32_t value[64]);
+unsigned ff_picture_numbers(ff_picture *p, unsigned plane, const ff_picture_sizes *west,
+                            const ff_picture_sizes *south, int32_t value[64],
+                            ff_picture_sizes *here);
 void ff_picture_see(const ff_picture *p, unsigned row, const int32_t known[FF_PICTURE_KNOWN],
                     int32_t size);
 
@@ -113,6 +138,12 @@ void ff_picture_count_line(const ff_picture *p, ff_picture_part part, uint8_t ex
                            int32_t value[3][64]);
 void ff_picture_count_corner(const ff_picture *p, ff_picture_part part, uint8_t expected[64][3],
                              int32_t value[3][64]);
+/* What is left of a block's texels, each channel times 4, as numbers; dead_256: of a step, besides
+ * its half, that becomes 0. */
+void ff_picture_steps(const ff_picture *p, int32_t left[64][3], int dead_256, int32_t value[3][64]);
+/* The same as coefficients, in sixteenths times 2^FF_PICTURE_ONE_LOG2. */
+#define FF_PICTURE_ONE_LOG2 15 /* the transform's rows, squared */
+void ff_picture_coefficients(int32_t left[64][3], int64_t whole[3][64]);
 /* As ff_picture_encode, by other tables, and for who trains. */
 int ff_picture_put(const ff_picture_tables *by, const ff_picture_eye *eye, const uint8_t *source,
                    unsigned log2, ff_picture_above above, unsigned quality, ff_picture_room *room,

@@ -1,5 +1,5 @@
 /* Stands in for builds without pictures: ground is drawn in its colours, or by JPEGs. */
-#include "ff_picture.h"
+#include "ff_paint.h"
 
 const uint8_t ff_picture_built = 0;
 
@@ -15,5 +15,12 @@ int ff_picture_decode_row(const uint8_t *bytes, size_t count, unsigned log2, uns
 {
     (void)bytes, (void)count, (void)log2, (void)levels, (void)code, (void)room, (void)rgb,
         (void)spare;
+    return FF_ERR_UNSUPPORTED;
+}
+
+int ff_paint_decode(const uint8_t *bytes, size_t count, unsigned columns, unsigned rows,
+                    ff_paint_room *room, const ff_paint_sink *sink)
+{
+    (void)bytes, (void)count, (void)columns, (void)rows, (void)room, (void)sink;
     return FF_ERR_UNSUPPORTED;
 }

@@ -12,9 +12,25 @@
 
 /* ---- decisions ---- */
 
+#ifdef FF_ENCODER
+/* 256ths of a bit that a decision takes, of such a probability. */
+static uint32_t cost_of(uint32_t part)
+{
+    uint32_t cost = 256, over;
+    for (; part < 32768; part *= 2) cost += 256;
+    over = part - 32768;
+    /* log2(1 + x) is about x + 11/32 x (1 - x) */
+    return cost - (over >> 7) - ((over >> 4) * ((32768 - over) >> 4) * 88 >> 22);
+}
+#endif
+
 static unsigned coin(ff_picture *p, uint32_t one, unsigned bit)
 {
 #ifdef FF_ENCODER
+    if (p->cost) {
+        *p->cost += cost_of(bit ? one : 65536 - one);
+        return bit;
+    }
     if (p->to) {
         ff_range_put(p->to, one, bit);
         return bit;
@@ -24,17 +40,25 @@ static unsigned coin(ff_picture *p, uint32_t one, unsigned bit)
     return ff_range_take(&p->range, one);
 }
 
-static unsigned decide(ff_picture *p, unsigned place, unsigned bit)
+unsigned ff_picture_decide(ff_picture *p, uint16_t *one, unsigned bit)
 {
-    uint16_t *one = &p->room->one[place];
-    FF_ASSERT(place < FF_PICTURE_CONTEXTS);
     bit = coin(p, *one, bit);
+#ifdef FF_ENCODER
+    if (p->cost) return bit;
+#endif
     if (bit)
         *one = (uint16_t)(*one + ((65536u - *one) >> RATE));
     else
         *one = (uint16_t)(*one - (*one >> RATE));
+    return bit;
+}
+
+static unsigned decide(ff_picture *p, unsigned place, unsigned bit)
+{
+    FF_ASSERT(place < FF_PICTURE_CONTEXTS);
+    bit = ff_picture_decide(p, &p->one[place], bit);
 #ifdef FF_ENCODER
-    if (p->eye) p->eye->decision(p->eye->context, place, bit);
+    if (p->eye && !p->cost) p->eye->decision(p->eye->context, place, bit);
 #endif
     return bit;
 }
@@ -43,7 +67,7 @@ void ff_picture_see(const ff_picture *p, unsigned row, const int32_t known[FF_PI
                     int32_t size)
 {
 #ifdef FF_ENCODER
-    if (p->eye) p->eye->number(p->eye->context, row, known, size < 0 ? -size : size);
+    if (p->eye && !p->cost) p->eye->number(p->eye->context, row, known, size < 0 ? -size : size);
 #endif
     (void)p, (void)row, (void)known, (void)size;
 }
@@ -119,11 +143,11 @@ int32_t ff_picture_number(ff_picture *p, unsigned kind, unsigned scale, int32_t 
 
 /* ---- a block's ---- */
 
-static const uint8_t zigzag[64] = {
-    0,  1,  8,  16, 9,  2,  3,  10, 17, 24, 32, 25, 18, 11, 4,  5,  12, 19, 26, 33, 40, 48,
-    41, 34, 27, 20, 13, 6,  7,  14, 21, 28, 35, 42, 49, 56, 57, 50, 43, 36, 29, 22, 15, 23,
-    30, 37, 44, 51, 58, 59, 52, 45, 38, 31, 39, 46, 53, 60, 61, 54, 47, 55, 62, 63
-};
+const uint8_t ff_picture_zigzag[64] = { 0,  1,  8,  16, 9,  2,  3,  10, 17, 24, 32, 25, 18,
+                                        11, 4,  5,  12, 19, 26, 33, 40, 48, 41, 34, 27, 20,
+                                        13, 6,  7,  14, 21, 28, 35, 42, 49, 56, 57, 50, 43,
+                                        36, 29, 22, 15, 23, 30, 37, 44, 51, 58, 59, 52, 45,
+                                        38, 31, 39, 46, 53, 60, 61, 54, 47, 55, 62, 63 };
 
 /* How many coefficients there are up to the last that is not 0, in the order of the zigzag. */
 static unsigned count_of(ff_picture *p, unsigned kind, unsigned scale, unsigned count)
@@ -147,18 +171,17 @@ static unsigned count_of(ff_picture *p, unsigned kind, unsigned scale, unsigned 
     return value + 1;
 }
 
-static unsigned take_count(ff_picture *p, unsigned plane, unsigned column, unsigned row,
-                           const int32_t value[64])
+static unsigned take_count(ff_picture *p, unsigned plane, const ff_picture_sizes *west,
+                           const ff_picture_sizes *south, const int32_t value[64],
+                           const ff_picture_sizes *here)
 {
-    const uint8_t *below = p->room->below_count[column];
     unsigned kind = plane + p->root, count = 64;
     int32_t known[FF_PICTURE_KNOWN] = { 1 };
-    while (p->to && count && !value[zigzag[count - 1]]) count--;
-    known[1] = column ? p->room->before_count[plane] : row ? below[plane] : UNKNOWN;
-    known[2] = row ? below[plane] : known[1];
-    /* of this block's planes before: they are in the places of the block that is below */
-    known[3] = plane > 0 ? p->room->below_count[column][0] : 0;
-    known[4] = plane > 1 ? p->room->below_count[column][1] : 0;
+    while (p->to && count && !value[ff_picture_zigzag[count - 1]]) count--;
+    known[1] = west ? west->count[plane] : south ? south->count[plane] : UNKNOWN;
+    known[2] = south ? south->count[plane] : known[1];
+    known[3] = plane > 0 ? here->count[0] : 0;
+    known[4] = plane > 1 ? here->count[1] : 0;
     ff_picture_see(p, FF_PICTURE_OF_COUNT(kind), known, (int32_t)count);
     return count_of(p, kind, count_scale(p, kind, known), count);
 }
@@ -169,29 +192,28 @@ static uint8_t small(int32_t value)
     return (uint8_t)(size < 255 ? size : 255);
 }
 
-unsigned ff_picture_numbers(ff_picture *p, unsigned plane, unsigned column, unsigned row,
-                            int32_t value[64])
+unsigned ff_picture_numbers(ff_picture *p, unsigned plane, const ff_picture_sizes *west,
+                            const ff_picture_sizes *south, int32_t value[64],
+                            ff_picture_sizes *here)
 {
-    uint8_t near[WIDE * WIDE] = { 0 }, *before = p->room->before[plane],
-                        *below = p->room->below[column][plane];
-    unsigned kind = plane + p->root, count = take_count(p, plane, column, row, value);
+    uint8_t near[WIDE * WIDE] = { 0 };
+    unsigned kind = plane + p->root, count = take_count(p, plane, west, south, value, here);
     for (unsigned i = count; i-- > 0;) {
-        unsigned z = zigzag[i], at = z / 8 * WIDE + z % 8,
+        unsigned z = ff_picture_zigzag[i], at = z / 8 * WIDE + z % 8,
                  weights = FF_PICTURE_OF_BLOCK(kind, z / 8 + z % 8), scale;
         const int32_t known[FF_PICTURE_KNOWN] = { 1, near[at + 1] + near[at + WIDE],
                                                   near[at + WIDE + 1] + near[at + 2] +
                                                       near[at + 2 * WIDE],
-                                                  column ? before[z] : 0, row ? below[z] : 0 };
+                                                  west ? west->size[plane][z] : 0,
+                                                  south ? south->size[plane][z] : 0 };
         ff_picture_see(p, weights, known, value[z]);
         scale = ff_picture_scale(p, weights, known);
         value[z] = i + 1 == count ? signed_size(p, kind, scale, value[z])
                                   : ff_picture_number(p, kind, scale, value[z]);
         near[at] = small(value[z]);
     }
-    for (unsigned v = 0; v < FF_PICTURE_BLOCK; v++) {
-        memcpy(before + v * FF_PICTURE_BLOCK, near + v * WIDE, FF_PICTURE_BLOCK);
-        memcpy(below + v * FF_PICTURE_BLOCK, near + v * WIDE, FF_PICTURE_BLOCK);
-    }
-    p->room->before_count[plane] = p->room->below_count[column][plane] = (uint8_t)count;
+    for (unsigned v = 0; v < FF_PICTURE_BLOCK; v++)
+        memcpy(here->size[plane] + v * FF_PICTURE_BLOCK, near + v * WIDE, FF_PICTURE_BLOCK);
+    here->count[plane] = (uint8_t)count;
     return count;
 }

@@ -4,7 +4,6 @@
 #include "ff_picture_local.h"
 
 #define DEAD_256 82 /* of a step, besides its half, that becomes 0: 0.32 */
-#define ONE_LOG2 15 /* the transform's rows, squared */
 
 static const int8_t matrix[8][8] = {
     { 64, 64, 64, 64, 64, 64, 64, 64 },     { 89, 75, 50, 18, -18, -50, -75, -89 },
@@ -66,21 +65,27 @@ void ff_picture_count_line(const ff_picture *p, ff_picture_part part, uint8_t ex
             int64_t sum = 0;
             for (unsigned i = 0; i < 8; i++) sum += matrix[u][i] * left[i][c];
             /* sixteenths: of 4 * 181.02 times as much, and 181.02 is 2^15 / 181.02 */
-            value[c][u] = u ? steps_of(sum * 4 * 181, ONE_LOG2, p->step_q4[c], DEAD_256)
-                            : steps_of(sum * 4 * 181 * (1 << FF_PICTURE_MEAN_FINER), ONE_LOG2,
-                                       p->step_q4[c], 0);
+            value[c][u] = u ? steps_of(sum * 4 * 181, FF_PICTURE_ONE_LOG2, p->step_q4[c], DEAD_256)
+                            : steps_of(sum * 4 * 181 * (1 << FF_PICTURE_MEAN_FINER),
+                                       FF_PICTURE_ONE_LOG2, p->step_q4[c], 0);
         }
 }
 
 void ff_picture_count_block(const ff_picture *p, ff_picture_part part, uint8_t expected[64][3],
                             int32_t value[3][64])
 {
-    int32_t left[64][3], half[64];
+    int32_t left[64][3];
     for (unsigned i = 0; i < 64; i++) {
         unsigned x = next_inside(part.x + i % 8, part.x, part.x + 7, p->side),
                  y = next_inside(part.y + i / 8, part.y, part.y + 7, p->side);
         left_of(p, x, y, expected[(y - part.y) * 8 + x - part.x], left[i]);
     }
+    ff_picture_steps(p, left, DEAD_256, value);
+}
+
+void ff_picture_coefficients(int32_t left[64][3], int64_t whole[3][64])
+{
+    int32_t half[64];
     for (unsigned c = 0; c < 3; c++) {
         for (unsigned y = 0; y < 8; y++)
             for (unsigned u = 0; u < 8; u++) {
@@ -92,9 +97,18 @@ void ff_picture_count_block(const ff_picture *p, ff_picture_part part, uint8_t e
             for (unsigned u = 0; u < 8; u++) {
                 int64_t sum = 0;
                 for (unsigned y = 0; y < 8; y++) sum += (int64_t)matrix[v][y] * half[8 * y + u];
-                value[c][8 * v + u] = steps_of(sum * 4, ONE_LOG2, p->step_q4[c], DEAD_256);
+                whole[c][8 * v + u] = sum * 4;
             }
     }
+}
+
+void ff_picture_steps(const ff_picture *p, int32_t left[64][3], int dead_256, int32_t value[3][64])
+{
+    int64_t whole[3][64];
+    ff_picture_coefficients(left, whole);
+    for (unsigned c = 0; c < 3; c++)
+        for (unsigned z = 0; z < 64; z++)
+            value[c][z] = steps_of(whole[c][z], FF_PICTURE_ONE_LOG2, p->step_q4[c], dead_256);
 }
 
 int ff_picture_put(const ff_picture_tables *by, const ff_picture_eye *eye, const uint8_t *source,

@@ -3,10 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define B FF_FAR_BLOCK
-/* a JPEG is at most 65500 texels wide */
-#define BLOCKS_THERE_MAX (65500 / B)
-#define SAME_Q8          280 /* nearest and farthest are one place when they differ by less */
+#define B       FF_FAR_BLOCK
+#define SAME_Q8 280 /* nearest and farthest are one place when they differ by less */
 
 /* ---- from subs to texels ---- */
 
@@ -137,7 +135,7 @@ int ff_far_paint_take(ff_far_paint *paint, const ff_far_picture *picture, const 
                   1,
             down = request->down >> request->paint_shift;
     if (end > down) end = down + 1;
-    if (end > top + FF_FAR_BLOCKS_MAX * B) end = top + FF_FAR_BLOCKS_MAX * B;
+    if (end > top + FF_FAR_ROWS_MAX * B) end = top + FF_FAR_ROWS_MAX * B;
     if (end <= top) return FF_OK;
     paint->top = -top;
     paint->width = (uint32_t)ff_far_blocks_x(paint->focal) * B;
@@ -187,38 +185,23 @@ static void cut_rows(ff_far_paint *paint)
     paint->height = (rows - first) * B;
 }
 
-static void lay_block(ff_far_paint *paint, uint32_t block, uint32_t place)
-{
-    uint32_t blocks_x = paint->width / B;
-    const ff_far_texel *from = paint->texel + (size_t)(block / blocks_x) * B * paint->width +
-                               (size_t)(block % blocks_x) * B;
-    for (uint32_t y = 0; y < B; y++)
-        for (uint32_t x = 0; x < B; x++) {
-            uint8_t *to = paint->rgb + 3 * (((size_t)y * paint->blocks_there + place) * B + x);
-            const ff_far_texel *texel = &from[(size_t)y * paint->width + x];
-            for (int c = 0; c < 3; c++) {
-                unsigned value = (texel->rgb_q8[c] + 128u) >> 8;
-                to[c] = (uint8_t)(value > 255 ? 255 : value);
-            }
-        }
-}
-
 int ff_far_paint_keep(ff_far_paint *paint, const ff_far_spots *spots)
 {
     if (!paint->texel) return FF_OK;
     mark_blocks(paint, spots);
     cut_rows(paint);
-    uint32_t blocks = paint->width / B * (paint->height / B), place = 0;
-    for (uint32_t i = 0; i < blocks; i++) {
-        paint->there[i] &= paint->blocks_there < BLOCKS_THERE_MAX; /* those nearest go without */
-        paint->blocks_there += paint->there[i];
-    }
+    size_t texels = (size_t)paint->width * paint->height;
+    for (size_t i = 0; i < texels / (B * B); i++) paint->blocks_there += paint->there[i];
     if (paint->blocks_there == 0) return FF_OK;
+    paint->rgb = malloc(texels * 3);
+    paint->needed = malloc(texels);
+    if (!paint->rgb || !paint->needed) return FF_ERR_MEMORY;
+    for (size_t i = 0; i < texels; i++) paint->needed[i] = paint->texel[i].weight != 0;
     ff_far_fill(paint->texel, paint->width, paint->height);
-    paint->rgb = malloc((size_t)paint->blocks_there * B * B * 3);
-    if (!paint->rgb) return FF_ERR_MEMORY;
-    for (uint32_t i = 0; i < blocks; i++)
-        if (paint->there[i]) lay_block(paint, i, place++);
+    for (size_t i = 0; i < 3 * texels; i++) {
+        unsigned value = (paint->texel[i / 3].rgb_q8[i % 3] + 128u) >> 8;
+        paint->rgb[i] = (uint8_t)(value > 255 ? 255 : value);
+    }
     return FF_OK;
 }
 
@@ -229,5 +212,6 @@ void ff_far_paint_free(ff_far_paint *paint)
     free(paint->farthest);
     free(paint->there);
     free(paint->rgb);
+    free(paint->needed);
     memset(paint, 0, sizeof *paint);
 }

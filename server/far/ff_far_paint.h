@@ -13,7 +13,7 @@ typedef struct ff_far_paint {
     ff_far_texel *texel;          /* and all smaller pictures of the fill behind it */
     uint32_t *nearest, *farthest; /* spots, plus 1; 0: no ground in this texel */
     uint8_t *there;               /* of each block */
-    uint8_t *rgb;                 /* of those that are there, side by side, 16 high */
+    uint8_t *rgb, *needed;        /* texels, and which of them somebody sees */
     uint32_t blocks_there;
     uint32_t ground, seen; /* texels that show ground, and those that somebody sees */
 } ff_far_paint;

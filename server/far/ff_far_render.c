@@ -6,19 +6,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FINE_MAX         4        /* subs to a texel */
-#define PIXELS_MAX       5000000u /* of O's picture, unless one sub to a texel has more */
-#define SIDE_MAX         4095
-#define ERROR_TEXEL_Q8   192 /* of the ground drawn */
-#define QUALITY_STEP     10
-#define FINS_BYTES_MAX   (16 * FF_FAR_VERTICES_MAX)
-#define BLOCKS_BYTES_MAX 8192
-#define IMAGE_BYTES_MAX  (FF_MESSAGE_BODY_MAX - FINS_BYTES_MAX - BLOCKS_BYTES_MAX - 64)
-#define FRONT_MIN_WU     8
+#define FINE_MAX        4        /* subs to a texel */
+#define PIXELS_MAX      5000000u /* of O's picture, unless one sub to a texel has more */
+#define SIDE_MAX        4095
+#define ERROR_TEXEL_Q8  192 /* of the ground drawn */
+#define QUALITY_STEP    10
+#define FINS_BYTES_MAX  (16 * FF_FAR_VERTICES_MAX)
+#define PAINT_BYTES_MAX (FF_MESSAGE_BODY_MAX - FINS_BYTES_MAX - 64)
+#define FRONT_MIN_WU    8
 
 struct ff_far_renderer {
     const ff_pack *pack;
     ff_far_render_stats stats;
+    const ff_far_watch *watch; /* NULL: nobody */
     ff_far_stage stage;
     ff_far_room distance; /* of O's picture */
     ff_far_room eye;      /* of an eye's, and O's second */
@@ -28,7 +28,8 @@ struct ff_far_renderer {
     ff_far_outlines outlines;
     ff_far_paint paint;
     ff_fin_vertex vertex[FF_FAR_VERTICES_MAX];
-    uint8_t fins[FINS_BYTES_MAX], blocks[BLOCKS_BYTES_MAX], image[IMAGE_BYTES_MAX];
+    uint8_t fins[FINS_BYTES_MAX], coded[PAINT_BYTES_MAX];
+    ff_paint_room *room;
 };
 
 int ff_far_renderer_open(const ff_pack *pack, ff_far_renderer **renderer)
@@ -38,7 +39,11 @@ int ff_far_renderer_open(const ff_pack *pack, ff_far_renderer **renderer)
     if (!opened) return FF_ERR_MEMORY;
     opened->pack = pack;
     opened->stage.pack = pack;
-    return FF_OK;
+    opened->room = malloc(ff_paint_room_bytes(FF_FAR_BLOCKS_MAX));
+    if (opened->room) return FF_OK;
+    ff_far_renderer_close(opened);
+    *renderer = NULL;
+    return FF_ERR_MEMORY;
 }
 
 void ff_far_renderer_close(ff_far_renderer *renderer)
@@ -49,6 +54,7 @@ void ff_far_renderer_close(ff_far_renderer *renderer)
     free(renderer->distance.value);
     free(renderer->eye.value);
     free(renderer->rgba);
+    free(renderer->room);
     free(renderer->spots.spot);
     free(renderer->outlines.outline);
     free(renderer);
@@ -58,6 +64,11 @@ void ff_far_renderer_get_stats(const ff_far_renderer *renderer, ff_far_render_st
 {
     *stats = renderer->stats;
     stats->ground = renderer->stage.stats;
+}
+
+void ff_far_renderer_watch(ff_far_renderer *renderer, const ff_far_watch *watch)
+{
+    renderer->watch = watch;
 }
 
 /* ---- O's picture ---- */
@@ -207,14 +218,27 @@ static int draw_picture(ff_far_renderer *renderer, const ff_far_search *search)
 
 /* ---- message ---- */
 
-/* A JPEG at the wanted quality, or the best below it that fits. */
-static int encode_image(ff_far_renderer *renderer, int quality)
+static void look_away(void *context, unsigned column, unsigned row, uint8_t rgb[64][3])
 {
-    const ff_far_paint *paint = &renderer->paint;
+    (void)context, (void)column, (void)row, (void)rgb;
+}
+
+static ff_paint_source source_of(const ff_far_paint *paint)
+{
+    return (ff_paint_source){ .columns = paint->width / FF_FAR_BLOCK,
+                              .rows = paint->height / FF_FAR_BLOCK,
+                              .there = paint->there,
+                              .rgb = paint->rgb };
+}
+
+/* At the wanted quality, or the best below it that fits. */
+static int encode_paint(ff_far_renderer *renderer, int quality)
+{
+    static const ff_paint_sink nobody = { .block = look_away };
+    const ff_paint_source source = source_of(&renderer->paint);
     for (;; quality -= QUALITY_STEP) {
-        int bytes = sys_jpeg_encode(paint->rgb, paint->blocks_there * FF_FAR_BLOCK, FF_FAR_BLOCK,
-                                    quality < 1 ? 1 : quality, renderer->image,
-                                    sizeof renderer->image);
+        int bytes = ff_paint_encode(&source, quality < 1 ? 1 : (unsigned)quality, renderer->room,
+                                    &nobody, renderer->coded, sizeof renderer->coded);
         if (bytes != FF_ERR_FULL || quality < 1) return bytes;
     }
 }
@@ -223,20 +247,15 @@ static int put_paint(ff_far_renderer *renderer, const ff_get_far *request, ff_fa
 {
     const ff_far_paint *paint = &renderer->paint;
     if (paint->blocks_there == 0) return FF_OK;
-    uint32_t blocks_x = paint->width / FF_FAR_BLOCK, blocks_y = paint->height / FF_FAR_BLOCK;
-    int image = encode_image(renderer, request->quality);
-    int blocks = ff_blocks_encode(paint->there, blocks_x * blocks_y, renderer->blocks,
-                                  sizeof renderer->blocks);
-    if (image < 0 || blocks < 0) return image < 0 ? image : blocks;
-    far->blocks_x = (uint8_t)blocks_x;
-    far->blocks_y = (uint8_t)blocks_y;
+    int bytes = encode_paint(renderer, request->quality);
+    if (bytes < 0) return bytes;
+    far->blocks_x = (uint8_t)(paint->width / FF_FAR_BLOCK);
+    far->blocks_y = (uint8_t)(paint->height / FF_FAR_BLOCK);
     far->top = (int16_t)paint->top;
-    far->blocks = renderer->blocks;
-    far->blocks_bytes = (uint32_t)blocks;
-    far->image = renderer->image;
-    far->image_bytes = (uint32_t)image;
+    far->paint = renderer->coded;
+    far->paint_bytes = (uint32_t)bytes;
     renderer->stats.blocks += paint->blocks_there;
-    renderer->stats.image_bytes += (uint32_t)image;
+    renderer->stats.paint_bytes += (uint32_t)bytes;
     return FF_OK;
 }
 
@@ -245,6 +264,12 @@ static int put_fins(ff_far_renderer *renderer, const ff_far_picture *picture,
 {
     int count = ff_far_fins_make(&renderer->outlines, picture, &renderer->spots,
                                  request->tolerance_q2, renderer->vertex);
+    if (count >= 0 && renderer->watch) {
+        const ff_paint_source source = source_of(&renderer->paint);
+        renderer->watch->sector(renderer->watch->context,
+                                renderer->paint.blocks_there ? &source : NULL,
+                                renderer->paint.needed, renderer->vertex, (uint32_t)count);
+    }
     if (count <= 0) return count;
     int bytes = ff_fins_encode(renderer->vertex, (uint32_t)count, renderer->fins,
                                sizeof renderer->fins);

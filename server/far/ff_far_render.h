@@ -9,6 +9,7 @@
 
 #include "../ground/ff_pack_ground.h"
 #include "../../protocol/message/ff_message.h"
+#include "../../protocol/picture/ff_paint.h"
 
 typedef struct ff_far_renderer ff_far_renderer;
 
@@ -18,7 +19,7 @@ typedef struct ff_far_render_stats {
     uint32_t vertices, fins;      /* of fins */
     uint32_t blocks;              /* of paint that are there */
     uint64_t texels, texels_seen; /* of paint: that show ground; that somebody can see */
-    uint64_t bytes, fins_bytes, image_bytes;
+    uint64_t bytes, fins_bytes, paint_bytes;
     ff_pack_ground_stats ground;
     int64_t time_us; /* by sys_time_us */
 } ff_far_render_stats;
@@ -26,6 +27,16 @@ typedef struct ff_far_render_stats {
 /* The pack must outlive it. FF_OK or a negative error. */
 int ff_far_renderer_open(const ff_pack *pack, ff_far_renderer **renderer);
 void ff_far_renderer_close(ff_far_renderer *renderer);
+
+/* Who trains sees what sectors are made of, before it is coded. `paint`: NULL, there is none;
+ * `needed`: 1 for texels of it that somebody sees. */
+typedef struct ff_far_watch {
+    void *context;
+    void (*sector)(void *context, const ff_paint_source *paint, const uint8_t *needed,
+                   const ff_fin_vertex *vertex, uint32_t count);
+} ff_far_watch;
+/* `watch` stays where it is. */
+void ff_far_renderer_watch(ff_far_renderer *renderer, const ff_far_watch *watch);
 
 /* Bytes of the message written to `out`, or a negative error. */
 int ff_far_render_sector(ff_far_renderer *renderer, const ff_get_far *request, uint8_t sector,

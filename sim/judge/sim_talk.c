@@ -8,9 +8,9 @@ static size_t payload_bytes(const ff_message *message)
         case FF_BRINGS_PARTS: return message->u.part.byte_count;
         case FF_BRINGS_FACE: return message->u.face.columns_bytes + message->u.face.image_bytes;
         case FF_BRINGS_FAR:
-            /* where the paint lies, and of which blocks, lays out its image */
+            /* where the paint lies lays it out */
             return message->u.far.fins_bytes + (message->u.far.blocks_x ? 4 : 0) +
-                   message->u.far.blocks_bytes + message->u.far.image_bytes;
+                   message->u.far.paint_bytes;
     }
     return 0;
 }

@@ -99,7 +99,7 @@ static void take_head(sim_tape_player *player)
                                .front_wu = n[21],
                                .coarse = (uint8_t)n[22],
                                .paint_shift = (uint8_t)n[23],
-                               .jpeg_quality = (uint8_t)n[24],
+                               .quality = (uint8_t)n[24],
                                .tolerance_q2 = (uint8_t)n[25] };
 }
 

@@ -73,7 +73,7 @@ static void put_head(FILE *file, const sim_tape_head *head)
                                             f->front_wu,
                                             f->coarse,
                                             f->paint_shift,
-                                            f->jpeg_quality,
+                                            f->quality,
                                             f->tolerance_q2 };
     fwrite(SIM_TAPE_MAGIC, 1, SIM_TAPE_MAGIC_BYTES, file);
     for (unsigned i = 0; i < SIM_TAPE_HEAD; i++) put(file, (uint32_t)number[i], 4);

@@ -337,7 +337,7 @@ static void far_sets_may_be_switched_while_flying(void **state)
     uint32_t faces = rig.asked[FF_KIND_FACE];
     rig_fly(&rig, 200);
     assert_int_equal(rig.asked[FF_KIND_FACE], faces);
-    far = (ff_far_desc){ .enabled = 200, .coarse = 200, .paint_shift = 200, .jpeg_quality = 200 };
+    far = (ff_far_desc){ .enabled = 200, .coarse = 200, .paint_shift = 200, .quality = 200 };
     ff_client_set_far(rig.client, &far); /* brought into range */
     assert_int_equal(rig.client->desc.far.enabled, FF_FAR_AUTO);
     far.enabled = FF_FAR_OFF;

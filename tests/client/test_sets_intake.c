@@ -1,6 +1,7 @@
 /* Sectors of far sets as the worker takes them in: fins and a picture ready for the device. */
 #include "../rig/client_fixture.h"
 #include "../../client/ask/ff_intake_local.h"
+#include "../../protocol/picture/ff_paint.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -9,14 +10,14 @@
 #include <string.h>
 #include <cmocka.h>
 
-enum { BLOCKS_X = 4, SIDE = 128, RGB_BYTES = SIDE * SIDE * 3, MESSAGE_BYTES = 20000 };
+enum { SQUARES_X = 4, SIDE = 128, RGB_BYTES = SIDE * SIDE * 3, MESSAGE_BYTES = 20000 };
 
 typedef struct rig {
     ff_intake intake;
     ff_new_data news;
     uint64_t items[512];
-    uint8_t rgb[RGB_BYTES];
-    uint8_t image[MESSAGE_BYTES], blocks[MESSAGE_BYTES], fins[FF_FAR_FINS_BYTES];
+    uint64_t rgb[RGB_BYTES / 8];
+    uint8_t paint[MESSAGE_BYTES], fins[FF_FAR_FINS_BYTES];
     uint8_t *images;
     ff_message answer;
     ff_new_item *item;
@@ -30,35 +31,44 @@ static void open_rig(rig *r, unsigned rows)
     r->images = malloc(bytes);
     assert_true(ff_new_data_item_bytes(2, 1) <= sizeof r->items);
     ff_new_data_init(&r->news, 2, 1, r->items, 1, bytes, r->images);
-    r->intake = (ff_intake){ .news = &r->news, .rgb = r->rgb, .rgb_bytes = sizeof r->rgb };
+    r->intake =
+        (ff_intake){ .news = &r->news, .rgb = (uint8_t *)r->rgb, .rgb_bytes = sizeof r->rgb };
     r->answer = (ff_message){ .type = FF_MSG_ANSWER, .kind = FF_KIND_FAR };
     r->item = ff_new_data_begin(&r->news);
 }
 
 static void close_rig(rig *r) { free(r->images); }
 
-/* Paint of which some blocks are there, the first green, all others red. */
-static void paint(rig *r, const uint8_t *there, unsigned blocks_y)
+static void look_away(void *context, unsigned column, unsigned row, uint8_t texel[64][3])
 {
-    static uint8_t rgb[RGB_BYTES];
+    (void)context, (void)column, (void)row, (void)texel;
+}
+
+/* Paint of which some squares of two by two blocks are there, the first green, all others red. */
+static void paint(rig *r, const uint8_t *there, unsigned rows)
+{
+    static uint8_t rgb[RGB_BYTES], blocks[RGB_BYTES / 3 / 64];
+    static uint64_t room[4096];
+    static const ff_paint_sink nobody = { .block = look_away };
     ff_far *far = &r->answer.u.far;
-    unsigned count = 0;
-    for (unsigned i = 0; i < BLOCKS_X * blocks_y; i++) count += there[i];
-    for (unsigned i = 0; i < count * 256; i++) {
-        rgb[3 * i] = i % (16 * count) < 16 ? 0 : 255;
-        rgb[3 * i + 1] = i % (16 * count) < 16 ? 255 : 0;
+    unsigned first = 0, width = SQUARES_X * 16;
+    while (!there[first]) first++;
+    for (unsigned i = 0; i < width * rows * 16; i++) {
+        unsigned square = i / width / 16 * SQUARES_X + i % width / 16;
+        blocks[i / width / 8 * SQUARES_X * 2 + i % width / 8] = there[square];
+        rgb[3 * i] = square == first ? 0 : 255;
+        rgb[3 * i + 1] = square == first ? 255 : 0;
         rgb[3 * i + 2] = 0;
     }
-    int image = sys_jpeg_encode(rgb, 16 * count, 16, 95, r->image, sizeof r->image),
-        blocks = ff_blocks_encode(there, BLOCKS_X * blocks_y, r->blocks, sizeof r->blocks);
-    assert_true(image > 0 && blocks > 0);
-    far->blocks_x = BLOCKS_X;
-    far->blocks_y = (uint8_t)blocks_y;
+    const ff_paint_source source = { 2 * SQUARES_X, 2 * rows, blocks, rgb };
+    int bytes = ff_paint_encode(&source, 95, (ff_paint_room *)(void *)room, &nobody, r->paint,
+                                sizeof r->paint);
+    assert_true(bytes > 0);
+    far->blocks_x = 2 * SQUARES_X;
+    far->blocks_y = (uint8_t)(2 * rows);
     far->top = 5;
-    far->image = r->image;
-    far->image_bytes = (uint32_t)image;
-    far->blocks = r->blocks;
-    far->blocks_bytes = (uint32_t)blocks;
+    far->paint = r->paint;
+    far->paint_bytes = (uint32_t)bytes;
 }
 
 /* g: more green, r: more red, .: neither; in capitals opaque. */
@@ -78,7 +88,7 @@ static void paint_has_a_rim_of_its_colour(void **state)
 {
     (void)state;
     static rig r;
-    static const uint8_t there[2 * BLOCKS_X] = { 0, 1, 1, 0, 0, 0, 1, 0 };
+    static const uint8_t there[2 * SQUARES_X] = { 0, 1, 1, 0, 0, 0, 1, 0 };
     open_rig(&r, SIDE);
     paint(&r, there, 2);
     assert_int_equal(ff_intake_far(&r.intake, &r.answer, r.item), FF_OK);
@@ -107,14 +117,15 @@ static void a_picture_that_is_too_high_lacks_its_lowest_blocks(void **state)
 {
     (void)state;
     static rig r;
-    static const uint8_t there[3 * BLOCKS_X] = { 0, 1, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0 };
+    static const uint8_t there[3 * SQUARES_X] = { 0, 1, 0, 0, 1, 0, 0, 1, 0, 1, 0, 0 };
     for (unsigned rows = 32; rows <= 128; rows *= 2) {
         open_rig(&r, rows);
         paint(&r, there, 3);
         assert_int_equal(ff_intake_far(&r.intake, &r.answer, r.item), FF_OK);
         assert_int_equal(r.item->height, rows == 32 ? 32 : 64);
         assert_int_equal(texel_at(&r, 20, 5), 'G');
-        assert_int_equal(texel_at(&r, 5, 20), rows == 32 ? '.' : 'R');
+        assert_int_equal(texel_at(&r, 5, 20), 'R');
+        assert_int_equal(texel_at(&r, 5, 28), rows == 32 ? '.' : 'R');
         if (rows > 32) assert_int_equal(texel_at(&r, 20, 40), 'R');
         close_rig(&r);
     }
@@ -124,7 +135,7 @@ static void what_cannot_be_decoded_is_an_error(void **state)
 {
     (void)state;
     static rig r;
-    static const uint8_t there[BLOCKS_X] = { 0, 1, 0, 0 };
+    static const uint8_t there[SQUARES_X] = { 0, 1, 0, 0 };
     ff_fin_vertex fin[2] = { { .begins = 1 }, { .column = 1 } };
     open_rig(&r, SIDE);
     paint(&r, there, 1);
@@ -140,8 +151,8 @@ static void what_cannot_be_decoded_is_an_error(void **state)
         paint(&r, there, 1);
         r.answer.u.far.fins = r.fins;
         r.answer.u.far.fins_bytes = (uint32_t)(fault == 0 ? bytes - 1 : bytes);
-        if (fault == 1) r.answer.u.far.blocks_bytes--;
-        if (fault == 2) r.answer.u.far.image_bytes = 3;
+        if (fault == 1) r.paint[0] = 0;
+        if (fault == 2) r.answer.u.far.paint_bytes = 2;
         assert_true(ff_intake_far(&r.intake, &r.answer, r.item) < 0);
         close_rig(&r);
     }

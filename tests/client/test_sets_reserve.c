@@ -31,7 +31,7 @@ typedef struct stage {
 static void open_stage(stage *s, int device)
 {
     const ff_far_desc desc = {
-        .enabled = FF_FAR_PAINT, .front_wu = 1000 * M, .jpeg_quality = 40, .tolerance_q2 = 2
+        .enabled = FF_FAR_PAINT, .front_wu = 1000 * M, .quality = 78, .tolerance_q2 = 2
     };
     memset(s, 0, sizeof *s);
     assert_int_equal(picture_open(&s->kit, PICTURE_SOFT, WIDE, HIGH, 0), FF_OK);

@@ -1,54 +1,74 @@
 #include "slow_far.h"
 
+#include "../../protocol/far/ff_fins_local.h"
+
 #include <math.h>
+#include <stdlib.h>
 
-typedef struct bit_row {
+/* ---- decisions, as in tests/rig/slow_picture.c ---- */
+
+typedef struct stream {
     const uint8_t *bytes;
-    size_t count, next; /* of bits */
-    int broken;
-} bit_row;
+    size_t count, taken;
+    uint64_t width, code;
+    int64_t one[FF_FINS_CONTEXTS];
+} stream;
 
-static int one_bit(bit_row *row)
+static uint64_t next_byte(stream *in) { return in->taken < in->count ? in->bytes[in->taken++] : 0; }
+
+static int chance(stream *in, int64_t probability)
 {
-    size_t here = row->next++;
+    uint64_t part = in->width / 65536 * (uint64_t)probability;
+    int is_one = in->code < part;
 
-    if (here >= row->count) {
-        row->broken = 1;
-        return 0;
+    if (is_one) in->width = part;
+    if (!is_one) in->width -= part;
+    if (!is_one) in->code -= part;
+    while (in->width < 1u << 24) {
+        in->width *= 256;
+        in->code = (in->code * 256 + next_byte(in)) % (UINT64_C(1) << 32);
     }
-    return row->bytes[here / 8] / (1 << here % 8) % 2;
+    return is_one;
 }
 
-static long number(bit_row *row, int order)
+static int decide(stream *in, int at)
 {
-    long first = 0, rest = 0, width = 1L << order;
-    int ones = 0;
+    int is_one = chance(in, in->one[at]);
 
-    while (one_bit(row)) {
-        first += width;
-        width *= 2;
-        if (++ones > 16) row->broken = 1;
-        if (row->broken) return 0;
-    }
-    for (long weight = 1; weight < width; weight *= 2) rest += weight * one_bit(row);
-    return first + rest;
+    in->one[at] += is_one ? (65536 - in->one[at]) / 32 : -(in->one[at] / 32);
+    return is_one;
 }
 
-static long with_sign(bit_row *row, int order)
+/* ---- numbers ---- */
+
+static long number(stream *in, int sort, int cell)
 {
-    long value = number(row, order);
+    long value = 1;
+    int bits = 0;
 
-    return value % 2 ? -(value + 1) / 2 : value / 2;
+    while (bits < 15 && decide(in, 24 + 16 * cell + bits)) bits++;
+    for (int i = 0; i < bits; i++)
+        value = 2 * value + (i == 0 ? decide(in, 536 + 16 * sort + bits) : chance(in, 32768));
+    return value - 1;
 }
 
-/* Nothing is left but zeros that fill the last byte. */
-static int at_end(bit_row *row)
+static long with_sign(stream *in, int sort, int cell, long before)
 {
-    if (row->broken || row->count - row->next > 7) return 0;
-    while (row->next < row->count)
-        if (one_bit(row)) return 0;
-    return 1;
+    long size = number(in, sort, cell);
+    int sign = before < 0 ? 1 : before > 0 ? 2 : 0;
+
+    return size && decide(in, 9 + 3 * sort + sign) ? -size : size;
 }
+
+static int bits_of(long value)
+{
+    int bits = 0;
+
+    for (long above = labs(value) + 1; above > 1; above /= 2) bits++;
+    return bits;
+}
+
+static int at_most(int value, int most) { return value < most ? value : most; }
 
 static int in_range(const slow_vertex *vertex)
 {
@@ -56,61 +76,67 @@ static int in_range(const slow_vertex *vertex)
            vertex->height <= 16383 && vertex->distance >= 0 && vertex->distance <= 511;
 }
 
-static void first_of_fin(bit_row *row, const slow_vertex *before, slow_vertex *vertex)
+static slow_vertex first_step(stream *in)
 {
-    vertex->begins = 1;
-    vertex->column = before->column + with_sign(row, 5);
-    vertex->height = before->height + with_sign(row, 5);
-    vertex->distance = before->distance + with_sign(row, 4);
+    slow_vertex step = { 1, 0, 0, 0 };
+
+    step.column = with_sign(in, 0, 0, 0);
+    step.height = with_sign(in, 1, 1, 0);
+    step.distance = with_sign(in, 2, 2, 0);
+    return step;
 }
 
-static void next_of_fin(bit_row *row, const slow_vertex *before, slow_vertex *vertex)
+static slow_vertex next_step(stream *in, const slow_vertex *before)
 {
-    vertex->begins = 0;
-    vertex->column = before->column + number(row, 2) + 1;
-    vertex->height = before->height + with_sign(row, 2);
-    vertex->distance = before->distance + with_sign(row, 1);
+    slow_vertex step = { 0, 0, 0, 0 };
+    int run = before->column ? bits_of(before->column - 1) : 0;
+
+    step.column = number(in, 5, 3 + at_most(run, 3)) + 1;
+    run = bits_of(step.column - 1);
+    step.height = with_sign(in, 3, 7 + 4 * at_most(run, 3) + at_most(bits_of(before->height), 3),
+                            before->height);
+    step.distance = with_sign(
+        in, 4, 23 + 3 * at_most(run, 2) + at_most(bits_of(before->distance), 2), before->distance);
+    return step;
+}
+
+/* ---- fins ---- */
+
+/* Vertices, -1: nonsense. */
+static int fin(stream *in, const slow_vertex *before, slow_vertex *vertex, int room)
+{
+    slow_vertex step = { 0, 0, 0, 0 };
+    int count = 0;
+
+    do {
+        const slow_vertex *from = count ? &vertex[count - 1] : before;
+        if (count == room) return -1;
+        step = count ? next_step(in, &step) : first_step(in);
+        vertex[count] = (slow_vertex){ count == 0, from->column + step.column,
+                                       from->height + step.height, from->distance + step.distance };
+        if (!in_range(&vertex[count])) return -1;
+        if (count == 0) step = (slow_vertex){ 0, 0, 0, 0 };
+        count++;
+    } while (count < 2 || decide(in, 1 + at_most(count - 2, 7)));
+    return count;
 }
 
 int slow_fins(const uint8_t *bytes, size_t count, slow_vertex vertex[SLOW_FAR_VERTICES])
 {
-    bit_row row = { bytes, 8 * count, 0, 0 };
+    stream in = { .bytes = bytes, .count = count, .width = UINT32_MAX };
     slow_vertex start = { 0, 0, 0, 0 };
     int total = 0;
-    long fins;
 
     if (count == 0) return 0;
-    fins = number(&row, 3) + 1;
-    for (long fin = 0; fin < fins; fin++) {
-        long vertices = number(&row, 1) + 2;
-        for (long i = 0; i < vertices; i++, total++) {
-            if (row.broken || total == SLOW_FAR_VERTICES) return -1;
-            if (i == 0) {
-                first_of_fin(&row, &start, &vertex[total]);
-                start = vertex[total];
-            } else {
-                next_of_fin(&row, &vertex[total - 1], &vertex[total]);
-            }
-            if (!in_range(&vertex[total])) return -1;
-        }
-    }
-    return at_end(&row) ? total : -1;
-}
-
-int slow_blocks(const uint8_t *bytes, size_t count, int blocks, uint8_t *there)
-{
-    bit_row row = { bytes, 8 * count, 0, 0 };
-    int told = 0, found = 0;
-
-    for (int run = 0; told < blocks; run++) {
-        long length = run == 0 ? number(&row, 2) : number(&row, 2) + 1;
-        if (row.broken || length > blocks - told) return -1;
-        for (long i = 0; i < length; i++) {
-            there[told++] = (uint8_t)(run % 2);
-            found += run % 2;
-        }
-    }
-    return at_end(&row) && found >= 1 && found <= 4093 ? found : -1;
+    for (int i = 0; i < FF_FINS_CONTEXTS; i++) in.one[i] = ff_fins_learned[i];
+    for (int i = 0; i < 4; i++) in.code = in.code * 256 + next_byte(&in);
+    do {
+        int made = fin(&in, &start, vertex + total, SLOW_FAR_VERTICES - total);
+        if (made < 0) return -1;
+        start = vertex[total];
+        total += made;
+    } while (decide(&in, 0));
+    return in.taken == in.count && bytes[count - 1] ? total : -1;
 }
 
 long slow_distance(int step)

@@ -1,5 +1,6 @@
-/* A second decoder of fins and of blocks of paint, written from protocol/SPEC.md and slow on
- * purpose, as slow_decoder.h is of heights: it shares no code with protocol/. */
+/* A second decoder of fins, written from protocol/SPEC.md and slow on
+ * purpose, as slow_decoder.h is of heights: it shares the learned numbers
+ * with protocol/, which are part of the format, and no code. */
 #ifndef SLOW_FAR_H
 #define SLOW_FAR_H
 
@@ -14,8 +15,6 @@ typedef struct slow_vertex {
 
 /* How many vertices there are, or -1 when the bytes break a rule of the specification. */
 int slow_fins(const uint8_t *bytes, size_t count, slow_vertex vertex[SLOW_FAR_VERTICES]);
-/* Which of the blocks are there, 0 or 1 each: how many, or -1. */
-int slow_blocks(const uint8_t *bytes, size_t count, int blocks, uint8_t *there);
 /* What a step of distances stands for, in wu. */
 long slow_distance(int step);
 

@@ -1,6 +1,6 @@
 #include "slow_picture.h"
 
-#include "../../protocol/picture/ff_picture_local.h"
+#include "../../protocol/picture/ff_paint_local.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -13,8 +13,14 @@ typedef struct stream {
     uint64_t width, code;
 } stream;
 
+/* A block whose numbers are known; row -1: none is. */
+typedef struct place {
+    int row, column;
+} place;
+
 typedef struct picture {
     stream in;
+    const ff_picture_tables *by;
     int side, is_root, quadrant;
     const uint8_t *parent;
     int64_t step[3], one[FF_PICTURE_CONTEXTS];
@@ -72,11 +78,11 @@ static int decide(picture *p, int at)
 
 /* ---- numbers ---- */
 
-static int64_t sum_of(int row, const int64_t known[5])
+static int64_t sum_of(picture *p, int row, const int64_t known[5])
 {
     int64_t sum = 0;
 
-    for (int i = 0; i < 5; i++) sum += ff_picture_learned.weight[row][i] * known[i];
+    for (int i = 0; i < 5; i++) sum += p->by->weight[row][i] * known[i];
     return sum;
 }
 
@@ -88,12 +94,12 @@ static int how_many(const int *list, int count, int64_t sum)
     return many;
 }
 
-static int scale(int row, const int64_t known[5])
+static int scale(picture *p, int row, const int64_t known[5])
 {
     static const int from[] = { 11,  15,  20,  27,  35,  46,  59,   76,   97,   123,  156, 198,
                                 251, 318, 401, 507, 640, 808, 1019, 1285, 1621, 2043, 2575 };
 
-    return how_many(from, 23, sum_of(row, known));
+    return how_many(from, 23, sum_of(p, row, known));
 }
 
 static int64_t size_after_zero(picture *p, int k, int s)
@@ -156,12 +162,12 @@ static void put(picture *p, int x, int y, const int expected[3], const int64_t l
 }
 
 /* The weight, along an axis, of the parent's texel i at a place. */
-static int weight(int place, int side, int i)
+static int weight(int at_place, int side, int i)
 {
-    int at = place / 2, off = i - at;
+    int at = at_place / 2, off = i - at;
 
-    if (place % 2 == 0 && (place == 0 || place == 2 * side - 2)) return off == 0 ? 16 : 0;
-    if (place % 2 == 0) return off == 0 ? 14 : abs(off) == 1 ? 1 : 0;
+    if (at_place % 2 == 0 && (at_place == 0 || at_place == 2 * side - 2)) return off == 0 ? 16 : 0;
+    if (at_place % 2 == 0) return off == 0 ? 14 : abs(off) == 1 ? 1 : 0;
     if (at == 0 || at == side - 2) return off == 0 || off == 1 ? 8 : 0;
     return off == 0 || off == 1 ? 9 : off == -1 || off == 2 ? -1 : 0;
 }
@@ -201,7 +207,7 @@ static void corner(picture *p, int x, int y)
     if (!p->is_root) of_parent(p, x, y, expected);
     for (int plane = 0; plane < 3; plane++) {
         int k = plane + 3 * p->is_root;
-        int64_t c = coefficient(p, plane, number(p, k, ff_picture_learned.corner[k]));
+        int64_t c = coefficient(p, plane, number(p, k, p->by->corner[k]));
         left[plane] = floored(floored(c, 4) + 8, 16);
     }
     put(p, x, y, expected, left);
@@ -227,7 +233,7 @@ static void eight_numbers(picture *p, int plane, int64_t v[3][10], int64_t befor
     for (int u = 7; u >= 0; u--) {
         int64_t known[5] = { 1, size_of(v[plane][u + 1]), size_of(v[plane][u + 2]),
                              size_of(before[plane][u]), plane ? size_of(v[0][u]) : 0 };
-        v[plane][u] = number(p, k, scale(90 + 8 * k + u, known));
+        v[plane][u] = number(p, k, scale(p, 90 + 8 * k + u, known));
     }
 }
 
@@ -260,18 +266,23 @@ static void line(picture *p, int is_upright, int aside)
 
 /* ---- blocks ---- */
 
-static int block_count(picture *p, int column, int row, int plane)
+static int count_at(picture *p, place at, int plane)
+{
+    return at.row < 0 ? 8 : p->counts[at.row][at.column][plane];
+}
+
+static int block_count(picture *p, place here, place west, place south, int plane)
 {
     static const int from[] = { 123,  177,  251,  358,  507,  720,   1019, 1444,
                                 2043, 2892, 4091, 5788, 8187, 11581, 16379 };
-    int k = plane + 3 * p->is_root, west = 8, south;
+    int k = plane + 3 * p->is_root;
 
-    if (row) west = p->counts[row - 1][column][plane];
-    if (column) west = p->counts[row][column - 1][plane];
-    south = row ? p->counts[row - 1][column][plane] : west;
-    const int64_t known[5] = { 1, west, south, plane ? p->counts[row][column][0] : 0,
-                               plane == 2 ? p->counts[row][column][1] : 0 };
-    return count(p, k, how_many(from, 15, sum_of(138 + k, known)));
+    if (west.row < 0) west = south;
+    if (south.row < 0) south = west;
+    const int64_t known[5] = { 1, count_at(p, west, plane), count_at(p, south, plane),
+                               plane ? count_at(p, here, 0) : 0,
+                               plane == 2 ? count_at(p, here, 1) : 0 };
+    return count(p, k, how_many(from, 15, sum_of(p, 138 + k, known)));
 }
 
 static int64_t size_at(int v[8][8], int row, int column)
@@ -291,23 +302,27 @@ static void order(int places[64])
         }
 }
 
-static void block_numbers(picture *p, int column, int row, int plane)
+static int64_t size_of_block(picture *p, place at, int plane, int row, int column)
 {
-    int places[64], k = plane + 3 * p->is_root, n = block_count(p, column, row, plane);
-    int(*v)[8] = p->numbers[row][column][plane];
+    return at.row < 0 ? 0 : size_of(p->numbers[at.row][at.column][plane][row][column]);
+}
+
+static void block_numbers(picture *p, place here, place west, place south, int plane)
+{
+    int places[64], k = plane + 3 * p->is_root, n = block_count(p, here, west, south, plane);
+    int(*v)[8] = p->numbers[here.row][here.column][plane];
 
     order(places);
     memset(v, 0, 64 * sizeof **v);
-    p->counts[row][column][plane] = n;
+    p->counts[here.row][here.column][plane] = n;
     for (int i = n - 1; i >= 0; i--) {
         int r = places[i] / 8, u = places[i] % 8;
-        int64_t west = column ? size_of(p->numbers[row][column - 1][plane][r][u]) : 0,
-                south = row ? size_of(p->numbers[row - 1][column][plane][r][u]) : 0;
         const int64_t known[5] = { 1, size_at(v, r, u + 1) + size_at(v, r + 1, u),
                                    size_at(v, r + 1, u + 1) + size_at(v, r, u + 2) +
                                        size_at(v, r + 2, u),
-                                   west, south };
-        int s = scale(15 * k + r + u, known);
+                                   size_of_block(p, west, plane, r, u),
+                                   size_of_block(p, south, plane, r, u) };
+        int s = scale(p, 15 * k + r + u, known);
         v[r][u] = (int)(i == n - 1 ? not_zero(p, k, s) : number(p, k, s));
     }
 }
@@ -330,7 +345,9 @@ static void block(picture *p, int column, int row)
     int flat[3] = { 0 };
 
     if (p->is_root) of_block(p, 8 * column, 8 * row, flat);
-    for (int plane = 0; plane < 3; plane++) block_numbers(p, column, row, plane);
+    place west = { column ? row : -1, column - 1 }, south = { row - 1, column };
+    for (int plane = 0; plane < 3; plane++)
+        block_numbers(p, (place){ row, column }, west, south, plane);
     for (int i = 0; i < 64; i++) {
         int x = 8 * column + i % 8, y = 8 * row + i / 8, last = p->side - 1, expected[3];
         int64_t left[3];
@@ -345,14 +362,15 @@ static void block(picture *p, int column, int row)
 
 /* ---- all of it ---- */
 
-static int begin(picture *p, const uint8_t *bytes, long bytes_count)
+static int begin(picture *p, const ff_picture_tables *by, const uint8_t *bytes, long bytes_count)
 {
     int q = bytes_count > 0 ? bytes[0] : 0;
 
     if (q < 1 || q > 100) return -1;
+    p->by = by;
     p->step[0] = p->step[2] = q == 100 ? 8 : q >= 50 ? 16 * (100 - q) : 800 + 64 * (50 - q);
     p->step[1] = p->step[0] * 5 / 4;
-    for (int i = 0; i < FF_PICTURE_CONTEXTS; i++) p->one[i] = ff_picture_learned.one[i];
+    for (int i = 0; i < FF_PICTURE_CONTEXTS; i++) p->one[i] = by->one[i];
     p->in = (stream){ .bytes = bytes + 1, .count = bytes_count - 1, .width = UINT32_MAX };
     for (int i = 0; i < 4; i++) p->in.code = 256 * p->in.code + next_byte(&p->in);
     return 0;
@@ -366,7 +384,7 @@ int slow_picture(const uint8_t *bytes, long bytes_count, int side, const uint8_t
     int last = side - 1;
 
     *p = (picture){ .side = side, .parent = parent, .is_root = !parent, .quadrant = quadrant };
-    if (begin(p, bytes, bytes_count)) return -1;
+    if (begin(p, &ff_picture_learned, bytes, bytes_count)) return -1;
     for (int c = 0; c < 4; c++) corner(p, c % 2 * last, c / 2 * last);
     for (int l = 0; l < 4; l++) line(p, l / 2, l % 2 * last);
     for (int row = 0; row < side / 8; row++)
@@ -377,4 +395,98 @@ int slow_picture(const uint8_t *bytes, long bytes_count, int side, const uint8_t
                 rgb[((side - 1 - y) * side + x) * 3 + c] = (uint8_t)p->rgb[y][x][c];
     if (p->in.taken < p->in.count) return -1;
     return bytes_count > 1 && bytes[bytes_count - 1] == 0 ? -1 : 0;
+}
+
+/* ---- paint ---- */
+
+static const int fades[8] = { 120, 85, 62, 46, 34, 25, 20, 15 };
+
+/* Channel c of the i-th texel beside a block: of its left side from the top, of its top from the
+ * left. */
+static int beside(picture *p, place block, int of_left, int i, int c)
+{
+    return of_left ? p->rgb[8 * block.row + i][8 * block.column - 1][c]
+                   : p->rgb[8 * block.row - 1][8 * block.column + i][c];
+}
+
+static int paint_expected(picture *p, place block, int has_left, int has_above, int x, int y, int c)
+{
+    int sum = 0, parts = 8 * (has_left + has_above);
+    int64_t off = 128;
+
+    for (int i = 0; i < 8; i++) {
+        if (has_left) sum += beside(p, block, 1, i, c);
+        if (has_above) sum += beside(p, block, 0, i, c);
+    }
+    int mean = (sum + parts / 2) / parts;
+    if (has_left) off += fades[x] * (beside(p, block, 1, y, c) - mean);
+    if (has_above) off += fades[y] * (beside(p, block, 0, x, c) - mean);
+    return (int)within(0, mean + floored(off, 256), 255);
+}
+
+/* Of a block with nothing beside it: as if the right side of the block before were its left one. */
+static int paint_alone(picture *p, place last, int x, int y, int c)
+{
+    int sum = 4, edge[8];
+
+    for (int i = 0; i < 8; i++) {
+        edge[i] = last.row < 0 ? 128 : p->rgb[8 * last.row + i][8 * last.column + 7][c];
+        sum += edge[i];
+    }
+    return (int)within(0, sum / 8 + floored(fades[x] * (edge[y] - sum / 8) + 128, 256), 255);
+}
+
+/* `last`: the block before, wherever it is. */
+static void paint_block(picture *p, place here, int has_left, int has_above, place last)
+{
+    place above = { here.row - 1, here.column }, left = last;
+    if (!has_left && has_above) left = above;
+    if (!has_above) above = last;
+    for (int plane = 0; plane < 3; plane++) block_numbers(p, here, left, above, plane);
+    for (int i = 0; i < 64; i++) {
+        int expected[3], x = i % 8, y = i / 8;
+        int64_t rest[3];
+        for (int c = 0; c < 3; c++) {
+            if (has_left || has_above)
+                expected[c] = paint_expected(p, here, has_left, has_above, x, y, c);
+            else
+                expected[c] = paint_alone(p, last, x, y, c);
+            rest[c] = left_at(p, here.column, here.row, c, x, y);
+        }
+        put(p, 8 * here.column + x, 8 * here.row + y, expected, rest);
+    }
+}
+
+int slow_paint(const uint8_t *bytes, long bytes_count, int columns, int rows, uint8_t *there,
+               uint8_t *rgb)
+{
+    static picture made;
+    picture *p = &made;
+    int64_t one[16];
+    int count = 0;
+    place last = { -1, 0 };
+
+    *p = (picture){ .side = 8 };
+    if (begin(p, &ff_paint_learned.numbers, bytes, bytes_count)) return -1;
+    p->step[1] = 3 * p->step[0];
+    p->step[2] = 2 * p->step[0];
+    for (int i = 0; i < 16; i++) one[i] = ff_paint_learned.there[i];
+    for (int i = 0; i < rows * columns; i++) {
+        int row = i / columns, column = i % columns, left = column && there[i - 1],
+            above = row && there[i - columns], above_left = row && column && there[i - columns - 1],
+            above_right = row && column + 1 < columns && there[i - columns + 1],
+            around = left + 2 * above + 4 * above_left + 8 * above_right;
+        there[i] = (uint8_t)chance(&p->in, one[around]);
+        one[around] += there[i] ? (65536 - one[around]) / 32 : -(one[around] / 32);
+        if (!there[i]) continue;
+        paint_block(p, (place){ row, column }, left, above, last);
+        last = (place){ row, column };
+        count++;
+    }
+    for (int y = 0; y < 8 * rows; y++)
+        for (int x = 0; x < 8 * columns; x++)
+            for (int c = 0; c < 3; c++)
+                rgb[(y * 8 * columns + x) * 3 + c] = (uint8_t)p->rgb[y][x][c];
+    if (p->in.taken < p->in.count || count == 0) return -1;
+    return bytes_count > 1 && bytes[bytes_count - 1] == 0 ? -1 : count;
 }

@@ -11,4 +11,9 @@
 int slow_picture(const uint8_t *bytes, long count, int side, const uint8_t *parent, int quadrant,
                  uint8_t *rgb);
 
+/* The same of paint (SPEC.md, 5.3), top row first, of columns x rows blocks, at most 32 each way.
+ * Which are there, and how many in all, or -1. */
+int slow_paint(const uint8_t *bytes, long count, int columns, int rows, uint8_t *there,
+               uint8_t *rgb);
+
 #endif

@@ -2,7 +2,6 @@
  * lies where the ground is, the same bytes every time. */
 #include "../rig/far_rays.h"
 #include "../rig/pack_fixture.h"
-#include "../../platform/sys.h"
 #include "../../protocol/shape/ff_shape.h"
 #include "../../server/far/ff_far_fill.h"
 #include "../../server/far/ff_far_render.h"
@@ -377,29 +376,33 @@ static void ground_before_the_front_is_left_out(void **state)
 
 /* ---- paint ---- */
 
+typedef struct looked_for {
+    unsigned x, y, found;
+    uint8_t *rgb;
+} looked_for;
+
+static void look_for(void *context, unsigned column, unsigned row, uint8_t rgb[64][3])
+{
+    looked_for *l = context;
+    if (l->x / FF_FAR_BLOCK != column || l->y / FF_FAR_BLOCK != row) return;
+    memcpy(l->rgb, rgb[l->y % FF_FAR_BLOCK * FF_FAR_BLOCK + l->x % FF_FAR_BLOCK], 3);
+    l->found = 1;
+}
+
 /* The texel in a column and row of texels from the sector's middle and the horizon (down); 0 when
  * its block is not there. */
 static int texel_at(int column, int row, uint8_t out[3])
 {
-    static uint8_t there[FF_FAR_BLOCKS_MAX * FF_FAR_BLOCKS_MAX], rgb[1 << 22];
+    static uint64_t room[8192];
     const ff_far *far = &rig.message.u.far;
-    int x = column + far->blocks_x * FF_FAR_BLOCK / 2, y = row + far->top, place = 0;
-    int blocks = far->blocks_x * far->blocks_y,
-        block = y / FF_FAR_BLOCK * far->blocks_x + x / FF_FAR_BLOCK;
-    int count = ff_blocks_decode(far->blocks, far->blocks_bytes, there, (uint32_t)blocks);
-    assert_true(count > 0);
-    assert_int_equal(sys_jpeg_decode(far->image, far->image_bytes, (uint32_t)count * FF_FAR_BLOCK,
-                                     FF_FAR_BLOCK, rgb),
-                     FF_OK);
-    assert_true(x >= 0 && y >= 0 && x < far->blocks_x * FF_FAR_BLOCK &&
-                y < far->blocks_y * FF_FAR_BLOCK);
-    if (!there[block]) return 0;
-    for (int i = 0; i < block; i++) place += there[i];
-    memcpy(out,
-           rgb + 3 * ((size_t)(y % FF_FAR_BLOCK) * (size_t)count * FF_FAR_BLOCK +
-                      (size_t)(place * FF_FAR_BLOCK + x % FF_FAR_BLOCK)),
-           3);
-    return 1;
+    int x = column + far->blocks_x * FF_FAR_BLOCK / 2, y = row + far->top;
+    looked_for l = { (unsigned)x, (unsigned)y, 0, out };
+    const ff_paint_sink sink = { &l, look_for };
+    assert_in_range(x, 0, far->blocks_x * FF_FAR_BLOCK - 1);
+    assert_in_range(y, 0, far->blocks_y * FF_FAR_BLOCK - 1);
+    assert_true(ff_paint_decode(far->paint, far->paint_bytes, far->blocks_x, far->blocks_y,
+                                (ff_paint_room *)(void *)room, &sink) > 0);
+    return (int)l.found;
 }
 
 static void assert_colour(int column, int row, int red, int green, int blue)

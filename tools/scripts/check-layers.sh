@@ -46,7 +46,7 @@ rooms() {
     cat <<'END'
 protocol            protocol/codec protocol/shape
 protocol/codec      protocol protocol/zlib
-protocol/far        protocol
+protocol/far        protocol protocol/trained
 protocol/message    protocol protocol/codec protocol/far
 protocol/shape      protocol
 protocol/zlib       protocol
@@ -99,7 +99,7 @@ tools/bake/tiles    tools/bake tools/bake/raster platform/sys.h
 tools/info          platform/options tools/bake tools/bake/raster client/farfield.h protocol/ platform/sys.h
 tools/export        platform/options tools/bake tools/bake/raster tools/bake/tiles tools/info client/farfield.h protocol/ platform/sys.h
 tools/merge         platform/options tools/bake tools/bake/raster tools/bake/image tools/info tools/export client/farfield.h protocol/ platform/sys.h
-tools/train         platform/options tools/bake tools/info client/farfield.h protocol/ platform/sys.h
+tools/train         platform/options tools/bake tools/info server/far client/farfield.h protocol/ platform/sys.h
 tools/report        platform/options client/farfield.h common3d platform/sys.h
 tools/scripts       protocol protocol/shape protocol/picture platform/sys.h
 END

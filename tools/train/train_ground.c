@@ -49,12 +49,11 @@ int train_ground_open(train_ground *ground, const char *path)
     *ground = (train_ground){ .path = path,
                               .width = samples.x,
                               .height = samples.y,
-                              .step_m = info->hscale_q24 / 16777216.0 };
+                              .step_m = info->hscale_q24 / 16777216.0,
+                              .max_error = info->max_error };
     ground->heights = calloc((size_t)ground->width * ground->height, sizeof *ground->heights);
     int rc = ground->heights ? bake_unpack_heights(&unpack, ff_terrain_levels(info) - 1, &walk)
                              : bake_fail("out of memory");
-    if (!rc && info->max_error)
-        rc = bake_fail("%s: bake it without --max-error to train on it", path);
     bake_unpack_close(&unpack);
     return rc;
 }

@@ -7,7 +7,8 @@
 typedef struct train_ground {
     const char *path;
     uint32_t width, height;
-    double step_m;     /* metres a height step */
+    double step_m; /* metres a height step */
+    uint32_t max_error;
     uint16_t *heights; /* south to north */
 } train_ground;
 

@@ -2,6 +2,7 @@
 #include "../../client/farfield.h"
 #include "../../platform/options/sys_options.h"
 #include "../bake/bake_say.h"
+#include "train_far.h"
 #include "train_fit.h"
 #include "train_ground.h"
 #include "train_picture.h"
@@ -24,11 +25,12 @@ static const double error_m[ERRORS] = { 0, 1, 4, 10 };
 
 /* clang-format off */
 #define TRAIN_OPTIONS(OPTION) \
-    OPTION(sys_text, out, "output", "FILE", NULL, SYS_ANY, "writes the tables there, as C") \
+    OPTION(sys_text, out, "output", "FILE", NULL, SYS_ANY, "writes the tables there, as C; with --far into this folder") \
     OPTION(sys_text, packs, NULL, "PACKS", NULL, SYS_FLAGS(SYS_NEEDED), \
            "packs to train on, with commas between them") \
     OPTION(sys_flag, pictures, "pictures", NULL, NULL, SYS_ANY, \
            "learns of their images, baked with --texture-quality 100") \
+    OPTION(sys_flag, far, "far", NULL, NULL, SYS_ANY, "learns of their far ground, as sets show it") \
     OPTION(sys_text, measured, "measure", "PACKS", NULL, SYS_ANY, "packs to code with the tables, likewise")
 /* clang-format on */
 
@@ -44,11 +46,12 @@ static const sys_option row[] = { TRAIN_OPTIONS(ROW) };
 static const sys_program program = {
     .name = "farfield-train",
     .version = FARFIELD_VERSION,
-    .usage = "[--pictures] [--output FILE] [--measure PACKS] PACKS",
+    .usage = "[--pictures|--far] [--output FILE] [--measure PACKS] PACKS",
     .about =
         "Learns what heights to expect of ground, for the codec \"trained\": each pack is coded "
         "with errors of 0, 1, 4 and 10 m, ten times, where its steps are coarse in finer ones, too. "
-        "Or the tables of pictures, from images, with five qualities, three times.",
+        "Or the tables of pictures, from images, with five qualities, three times; or those of far "
+        "sets, from what is seen of four places at four heights.",
     .option = row,
     .option_count = sizeof row / sizeof *row
 };
@@ -64,6 +67,7 @@ static int open_one(grounds *all, const char *name, int finer)
     if (all->count == GROUNDS) return bake_fail("more than %d grounds", GROUNDS);
     train_ground *ground = &all->ground[all->count++];
     if (train_ground_open(ground, name)) return -1;
+    if (ground->max_error) return bake_fail("%s: bake it without --max-error to train on it", name);
     if (!finer || ground->step_m < COARSE_M) return 0;
     if (all->count == GROUNDS) return bake_fail("more than %d grounds", GROUNDS);
     return train_ground_refine(&all->ground[all->count++], ground);
@@ -215,12 +219,40 @@ static int train_images(const train_options *options)
     return rc;
 }
 
+/* ---- far ground ---- */
+
+static int open_vistas(train_vistas *all, const char *names)
+{
+    char *text = strdup(names), *rest = NULL;
+    int rc = text ? 0 : bake_fail("out of memory");
+    for (char *name = rc ? NULL : strtok_r(text, ",", &rest); name && !rc;
+         name = strtok_r(NULL, ",", &rest))
+        rc = train_vistas_add(all, name);
+    return rc; /* vistas keep their names */
+}
+
+static int train_far(const train_options *options)
+{
+    static train_vistas taught, measured;
+    static train_far_tables tables;
+    int rc = open_vistas(&taught, options->packs) ||
+             (options->measured && open_vistas(&measured, options->measured)) ||
+             train_far_learn(&taught, &tables);
+    if (!rc && options->measured) rc = train_far_measure(&measured, &tables);
+    if (!rc && options->out) rc = train_far_write(options->out, &tables);
+    train_vistas_close(&taught);
+    train_vistas_close(&measured);
+    return rc;
+}
+
 int main(int argc, char **argv)
 {
     train_options options = { 0 };
     bake_say_setup("farfield-train", 0);
     int rc = sys_options_parse(&program, &options, argc, argv);
     if (rc) return rc < 0 ? SYS_EXIT_USAGE : SYS_EXIT_DONE;
-    rc = options.pictures ? train_images(&options) : train_heights(&options);
+    rc = options.far        ? train_far(&options)
+         : options.pictures ? train_images(&options)
+                            : train_heights(&options);
     return rc ? SYS_EXIT_FAILED : SYS_EXIT_DONE;
 }

@@ -16,15 +16,10 @@ static const unsigned quality[QUALITIES] = { 48, 62, 75, 86, 93 };
 
 /* ---- what is seen ---- */
 
-typedef struct learner {
-    const ff_picture_tables *tables;
-    train_picture_sums *sums;
-} learner;
-
 static void see_number(void *context, unsigned row, const int32_t known[FF_PICTURE_KNOWN],
                        int32_t size)
 {
-    learner *l = context;
+    train_learner *l = context;
     double expected = 0;
     for (unsigned i = 0; i < FF_PICTURE_KNOWN; i++)
         expected += l->tables->weight[row][i] / 256.0 * known[i];
@@ -40,15 +35,20 @@ static void see_number(void *context, unsigned row, const int32_t known[FF_PICTU
 
 static void see_corner(void *context, unsigned kind, int32_t size)
 {
-    learner *l = context;
+    train_learner *l = context;
     l->sums->corner[kind] += size < 0 ? -size : size;
     l->sums->corners[kind]++;
 }
 
 static void see_decision(void *context, unsigned place, unsigned bit)
 {
-    learner *l = context;
+    train_learner *l = context;
     l->sums->decision[place][bit]++;
+}
+
+ff_picture_eye train_picture_eye(train_learner *learner)
+{
+    return (ff_picture_eye){ learner, see_number, see_corner, see_decision };
 }
 
 /* ---- coding all of them ---- */
@@ -134,7 +134,7 @@ static void solve(double a[FF_PICTURE_KNOWN][FF_PICTURE_KNOWN + 1])
     }
 }
 
-static void learn_weights(train_picture_sums *sums, ff_picture_tables *tables)
+void train_picture_weights(train_picture_sums *sums, ff_picture_tables *tables)
 {
     for (unsigned row = 0; row < FF_PICTURE_ROWS; row++) {
         solve(sums->weight[row]);
@@ -150,7 +150,7 @@ static void learn_weights(train_picture_sums *sums, ff_picture_tables *tables)
     }
 }
 
-static void learn_decisions(const train_picture_sums *sums, ff_picture_tables *tables)
+void train_picture_decisions(const train_picture_sums *sums, ff_picture_tables *tables)
 {
     for (unsigned place = 0; place < FF_PICTURE_CONTEXTS; place++) {
         double zero = sums->decision[place][0], one = sums->decision[place][1],
@@ -159,7 +159,7 @@ static void learn_decisions(const train_picture_sums *sums, ff_picture_tables *t
     }
 }
 
-static void begin(ff_picture_tables *tables)
+void train_picture_begin(ff_picture_tables *tables)
 {
     for (unsigned row = 0; row < FF_PICTURE_ROWS; row++) {
         static const int16_t number[FF_PICTURE_KNOWN] = { 12, 50, 25, 25, 25 },
@@ -174,11 +174,11 @@ int train_pictures_learn(const train_pictures *pictures, unsigned count, ff_pict
 {
     train_picture_sums *sums = malloc(sizeof *sums);
     int rc = sums ? 0 : bake_fail("out of memory");
-    begin(tables);
+    train_picture_begin(tables);
     for (unsigned round = 0; !rc && round <= ROUNDS; round++) {
         const ff_picture_tables by = *tables;
-        learner l = { &by, sums };
-        const ff_picture_eye eye = { &l, see_number, see_corner, see_decision };
+        train_learner l = { &by, sums };
+        const ff_picture_eye eye = train_picture_eye(&l);
         memset(sums, 0, sizeof *sums);
         for (unsigned i = 0; !rc && i < count * QUALITIES; i++) {
             coder c = { .pictures = &pictures[i / QUALITIES],
@@ -188,9 +188,9 @@ int train_pictures_learn(const train_pictures *pictures, unsigned count, ff_pict
             rc = code_all(&c);
         }
         if (round < ROUNDS)
-            learn_weights(sums, tables);
+            train_picture_weights(sums, tables);
         else
-            learn_decisions(sums, tables);
+            train_picture_decisions(sums, tables);
     }
     free(sums);
     return rc;
