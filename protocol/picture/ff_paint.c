@@ -17,8 +17,8 @@ int ff_paint_begin(ff_paint *paint, const ff_paint_tables *by, unsigned quality)
     if (!step_q4) return FF_ERR_FORMAT;
     p->by = &by->numbers;
     p->step_q4[0] = step_q4;
-    p->step_q4[1] = 3 * step_q4;
-    p->step_q4[2] = 2 * step_q4;
+    p->step_q4[1] = 4 * step_q4;
+    p->step_q4[2] = 3 * step_q4;
     p->one = room->one;
     memset(room, 0, ff_paint_room_bytes(paint->columns));
     memcpy(room->one, by->numbers.one, sizeof room->one);

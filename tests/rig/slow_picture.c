@@ -468,8 +468,8 @@ int slow_paint(const uint8_t *bytes, long bytes_count, int columns, int rows, ui
 
     *p = (picture){ .side = 8 };
     if (begin(p, &ff_paint_learned.numbers, bytes, bytes_count)) return -1;
-    p->step[1] = 3 * p->step[0];
-    p->step[2] = 2 * p->step[0];
+    p->step[1] = 4 * p->step[0];
+    p->step[2] = 3 * p->step[0];
     for (int i = 0; i < 16; i++) one[i] = ff_paint_learned.there[i];
     for (int i = 0; i < rows * columns; i++) {
         int row = i / columns, column = i % columns, left = column && there[i - 1],
