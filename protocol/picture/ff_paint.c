@@ -60,7 +60,7 @@ void ff_paint_left(const ff_picture *p, int32_t value[3][64])
     for (unsigned plane = 0; plane < 3; plane++) {
         int16_t whole[64];
         for (unsigned z = 0; z < 64; z++)
-            whole[z] = ff_picture_coefficient(value[plane][z], p->step_q4[plane]);
+            whole[z] = ff_picture_coefficient(value[plane][z], ff_paint_step_q4(p, plane, z));
         ff_picture_block(whole, value[plane]);
     }
 }

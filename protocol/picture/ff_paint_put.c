@@ -46,7 +46,6 @@ static void thin_out(ff_picture *p, unsigned plane, const ff_picture_sizes *of_l
                      const ff_picture_sizes *of_above, const int64_t whole[64], int32_t value[64],
                      ff_picture_sizes *here)
 {
-    int32_t step_q4 = p->step_q4[plane];
     uint32_t cost = cost_of(p, plane, of_left, of_above, value, here);
     for (unsigned i = 64; i-- > 0;) {
         unsigned z = ff_picture_zigzag[i];
@@ -54,6 +53,7 @@ static void thin_out(ff_picture *p, unsigned plane, const ff_picture_sizes *of_l
         if (!was) continue;
         value[z] = less;
         uint32_t then = cost_of(p, plane, of_left, of_above, value, here);
+        int32_t step_q4 = ff_paint_step_q4(p, plane, z);
         int64_t worse = off_of(whole[z], less, step_q4) - off_of(whole[z], was, step_q4);
         if (worse < ((int64_t)cost - then) * WORTH)
             cost = then;
@@ -61,6 +61,12 @@ static void thin_out(ff_picture *p, unsigned plane, const ff_picture_sizes *of_l
             value[z] = was;
     }
     (void)cost_of(p, plane, of_left, of_above, value, here);
+}
+
+static int32_t rounded(int64_t whole, int32_t step_q4)
+{
+    int64_t step = (int64_t)step_q4 << FF_PICTURE_ONE_LOG2;
+    return (int32_t)((whole < 0 ? whole - step / 2 : whole + step / 2) / step);
 }
 
 void ff_paint_count_block(ff_paint *paint, unsigned column, unsigned row,
@@ -77,7 +83,9 @@ void ff_paint_count_block(ff_paint *paint, unsigned column, unsigned row,
         left_of(from->rgb + 3 * at, expected[i], left[i]);
     }
     ff_picture_coefficients(left, whole);
-    ff_picture_steps(p, left, 0, value);
+    for (unsigned c = 0; c < 3; c++)
+        for (unsigned z = 0; z < 64; z++)
+            value[c][z] = rounded(whole[c][z], ff_paint_step_q4(p, c, z));
     for (unsigned c = 0; c < 3; c++) thin_out(p, c, of_left, of_above, whole[c], value[c], &here);
 }
 

@@ -31,7 +31,7 @@ typedef struct stage {
 static void open_stage(stage *s, int device)
 {
     const ff_far_desc desc = {
-        .enabled = FF_FAR_PAINT, .front_wu = 1000 * M, .quality = 78, .tolerance_q2 = 2
+        .enabled = FF_FAR_PAINT, .front_wu = 1000 * M, .quality = 80, .tolerance_q2 = 2
     };
     memset(s, 0, sizeof *s);
     assert_int_equal(picture_open(&s->kit, PICTURE_SOFT, WIDE, HIGH, 0), FF_OK);
@@ -130,7 +130,7 @@ static void who_stays_gets_the_rest_with_paint(void **state)
     open_stage(&s, 0);
     assert_true(asked(&s, &request, &ask));
     assert_int_equal(request.rank, FF_CLASS_RESERVE);
-    assert_int_equal(ask.quality, 78);
+    assert_int_equal(ask.quality, 80);
     assert_int_equal(sectors_of(&ask), 1 << 2 | 1 << 3 | 1 << 13 | 1 << 14);
     for (int i = 0; i < 3; i++) {
         assert_true(i == 0 || asked(&s, &request, &ask));
@@ -154,7 +154,7 @@ static void who_passes_gets_what_is_worth_its_bytes(void **state)
     /* it is good for 3000 m more; 13 sectors of 250 bytes are worth it where that is 325 s */
     static const struct {
         int m_s, quality; /* -1: nothing */
-    } at[] = { { 0, 78 }, { 2, 78 }, { 9, 78 }, { 10, 0 }, { 140, 0 }, { 160, -1 }, { 900, -1 } };
+    } at[] = { { 0, 80 }, { 2, 80 }, { 9, 80 }, { 10, 0 }, { 140, 0 }, { 160, -1 }, { 900, -1 } };
     for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
         static stage s;
         ff_request request;
@@ -184,7 +184,7 @@ static void paint_all_round_is_ten_kilobytes_at_most(void **state)
         open_stage(&s, 0);
         s.set->whole_bytes = 3 * bytes;
         assert_true(asked(&s, &request, &ask));
-        assert_int_equal(ask.quality, bytes == 769 ? 78 : 0);
+        assert_int_equal(ask.quality, bytes == 769 ? 80 : 0);
         picture_close(&s.kit);
     }
 }
@@ -245,7 +245,7 @@ static void fins_alone_give_way_to_fins_with_paint(void **state)
     assert_true(asked(&s, &again, &ask));
     assert_int_equal(again.rank, FF_CLASS_FIRST);
     assert_int_not_equal(again.key, request.key); /* a server lets go of the reserve for it */
-    assert_int_equal(ask.quality, 78);
+    assert_int_equal(ask.quality, 80);
     assert_int_equal(sectors_of(&ask), 1 << 2);
     assert_int_equal(answer(&s, again.key, 2, 1), 1);
     assert_int_equal(s.set->bare, 0);
@@ -271,7 +271,7 @@ static void who_has_fins_and_stays_gets_the_paint(void **state)
     assert_false(asked(&s, &request, &ask));
     fly(&s, 0);
     assert_true(asked(&s, &request, &ask));
-    assert_int_equal(ask.quality, 78);
+    assert_int_equal(ask.quality, 80);
     assert_int_equal(sectors_of(&ask), 1 << 7);
     picture_close(&s.kit);
 }

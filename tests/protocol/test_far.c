@@ -197,6 +197,19 @@ static void fins_there_and_back_by_both_decoders(void **state)
     assert_int_equal(slow_fins(&nothing, 0, NULL), 0);
 }
 
+/* Bytes as they have been since protocol 9: whoever changes them changes the format. */
+static void fins_stay_as_they_are(void **state)
+{
+    static ff_fin_vertex vertex[FF_FAR_VERTICES_MAX];
+    static uint8_t bytes[FF_FAR_FINS_BYTES];
+    uint32_t sum = 2166136261u; /* FNV-1a */
+    (void)state;
+    random_state = 5;
+    int used = ff_fins_encode(vertex, ridges(vertex, 12), bytes, sizeof bytes);
+    for (int i = 0; i < used; i++) sum = (sum ^ bytes[i]) * 16777619u;
+    assert_int_equal(sum, 0xf144b883u);
+}
+
 static void a_vertex_of_a_ridge_takes_two_bytes(void **state)
 {
     static ff_fin_vertex vertex[FF_FAR_VERTICES_MAX];
@@ -326,6 +339,7 @@ int main(void)
         cmocka_unit_test(distances_are_those_of_the_specification),
         cmocka_unit_test(a_distance_is_kept_within_1_1_percent),
         cmocka_unit_test(fins_there_and_back_by_both_decoders),
+        cmocka_unit_test(fins_stay_as_they_are),
         cmocka_unit_test(a_vertex_of_a_ridge_takes_two_bytes),
         cmocka_unit_test(the_worst_fins_fit_the_bytes_named),
         cmocka_unit_test(fins_out_of_range_are_not_encoded),

@@ -23,7 +23,7 @@ typedef struct picture {
     const ff_picture_tables *by;
     int side, is_root, quadrant;
     const uint8_t *parent;
-    int64_t step[3], one[FF_PICTURE_CONTEXTS];
+    int64_t step[3], first[3], one[FF_PICTURE_CONTEXTS];
     int rgb[SIDE_MAX][SIDE_MAX][3]; /* [y][x] */
     int numbers[SIDE_MAX / 8][SIDE_MAX / 8][3][8][8], counts[SIDE_MAX / 8][SIDE_MAX / 8][3];
 } picture;
@@ -145,9 +145,9 @@ static int count(picture *p, int k, int s)
     return value + 1;
 }
 
-static int64_t coefficient(picture *p, int plane, int64_t value)
+static int64_t coefficient(int64_t step, int64_t value)
 {
-    return within(-32767, value * p->step[plane], 32767);
+    return within(-32767, value * step, 32767);
 }
 
 static int64_t size_of(int64_t value) { return within(0, llabs(value), 255); }
@@ -207,7 +207,7 @@ static void corner(picture *p, int x, int y)
     if (!p->is_root) of_parent(p, x, y, expected);
     for (int plane = 0; plane < 3; plane++) {
         int k = plane + 3 * p->is_root;
-        int64_t c = coefficient(p, plane, number(p, k, p->by->corner[k]));
+        int64_t c = coefficient(p->step[plane], number(p, k, p->by->corner[k]));
         left[plane] = floored(floored(c, 4) + 8, 16);
     }
     put(p, x, y, expected, left);
@@ -249,7 +249,7 @@ static void line(picture *p, int is_upright, int aside)
             int64_t left[3] = { 1024, 1024, 1024 };
             for (int plane = 0; plane < 3; plane++) {
                 for (int u = 0; u < 8; u++) {
-                    int64_t c = coefficient(p, plane, v[plane][u]);
+                    int64_t c = coefficient(p->step[plane], v[plane][u]);
                     if (u == 0) c = floored(c, 2);
                     left[plane] += m(u, i) * floored(181 * c + 128, 256);
                 }
@@ -334,7 +334,8 @@ static int64_t left_at(picture *p, int column, int row, int plane, int x, int y)
     for (int v = 0; v < 8; v++) {
         int64_t t = 64;
         for (int u = 0; u < 8; u++)
-            t += m(u, x) * coefficient(p, plane, p->numbers[row][column][plane][v][u]);
+            t += m(u, x) * coefficient(u + v ? p->step[plane] : p->first[plane],
+                                       p->numbers[row][column][plane][v][u]);
         sum += m(v, y) * floored(t, 128);
     }
     return floored(sum, 4096);
@@ -370,6 +371,7 @@ static int begin(picture *p, const ff_picture_tables *by, const uint8_t *bytes, 
     p->by = by;
     p->step[0] = p->step[2] = q == 100 ? 8 : q >= 50 ? 16 * (100 - q) : 800 + 64 * (50 - q);
     p->step[1] = p->step[0] * 5 / 4;
+    for (int plane = 0; plane < 3; plane++) p->first[plane] = p->step[plane];
     for (int i = 0; i < FF_PICTURE_CONTEXTS; i++) p->one[i] = by->one[i];
     p->in = (stream){ .bytes = bytes + 1, .count = bytes_count - 1, .width = UINT32_MAX };
     for (int i = 0; i < 4; i++) p->in.code = 256 * p->in.code + next_byte(&p->in);
@@ -470,6 +472,7 @@ int slow_paint(const uint8_t *bytes, long bytes_count, int columns, int rows, ui
     if (begin(p, &ff_paint_learned.numbers, bytes, bytes_count)) return -1;
     p->step[1] = 4 * p->step[0];
     p->step[2] = 3 * p->step[0];
+    p->first[1] = p->first[2] = 3 * p->step[0] / 2;
     for (int i = 0; i < 16; i++) one[i] = ff_paint_learned.there[i];
     for (int i = 0; i < rows * columns; i++) {
         int row = i / columns, column = i % columns, left = column && there[i - 1],
