@@ -33,6 +33,7 @@ THROUGH_POINTERS = [
     (r"ff_predict\.c:|^ff_interpolate$", r"ff_decode\.c:(add_residual|take_prediction)$"),
     (r"ff_trained_expect\.c:|^ff_expect$", r"ff_codec_trained\.c:(take_height|take_word|pass_on)$"),
     (r"ff_codec_trained\.c:pass_on$", r"ff_decode\.c:take_prediction$"),
+    (r"ff_paint\.c:go_block$|^ff_paint_", r"ff_intake_far\.c:lay_block$"),
     (r"ff_pack\.c:|^ff_pack_", None),  # reads parts of a file: packs are mapped
     (r"ff_pool\.c:|^ff_tree_resha(de_beside|de|pe)$", r"ff_terrain_view\.c:on_evict$"),
     (r"ff_sets_draw\.c:|^ff_sets_make_fins$", None),  # those who watch fins: checks
