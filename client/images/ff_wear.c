@@ -3,7 +3,7 @@
 #include "../../protocol/ff_assert.h"
 
 #define ALL          (~(ff_squares)0)
-#define TEXEL_Q8_MAX (INT64_C(1) << 30)
+#define TEXEL_Q8_MAX (INT64_C(1) << 54)
 
 FF_STATIC_ASSERT(FF_IMAGE_DEPTH_MAX <= FF_SQUARES_LOG2); /* a square for each image at least */
 
@@ -23,19 +23,26 @@ static uint32_t shown_q16(const ff_box *box, int64_t aside, int64_t distance)
     return shown >= distance ? 65536 : (uint32_t)((shown << 16) / distance);
 }
 
-/* The side of a texel of an image of a level at the nearest place of a box, pixels Q8. */
+/* The side of a texel of a root's image at the nearest place of a box, pixels Q8: one of level l
+ * has that / 2^l. */
 static int64_t texel_px_q8(const ff_terrain_info *info, const ff_texel_look *look,
-                           const ff_box *box, uint32_t level)
+                           const ff_box *box)
 {
-    int64_t edge_wu = ff_node_edge_wu(info, level);
     int64_t aside = c3d_length64(outside(box->lo[0], box->hi[0]), outside(box->lo[1], box->hi[1]),
                                  0);
     int64_t distance = c3d_length64(aside, outside(box->lo[2], box->hi[2]), 0);
     if (distance < 1) distance = 1;
-    int64_t across_q8 = edge_wu * look->focal_q8 / distance >> info->texture_log2;
+    int64_t across_q8 = (int64_t)ff_node_edge_wu(info, 0) * look->focal_q8 / distance >>
+                        info->texture_log2;
     if (across_q8 > TEXEL_Q8_MAX) across_q8 = TEXEL_Q8_MAX;
     if (look->across) return across_q8;
     return across_q8 * c3d_isqrt64(shown_q16(box, aside, distance)) >> 8;
+}
+
+/* 1 when texels of a level are larger than they should be. */
+static int too_large(const ff_texel_look *look, int64_t root_px_q8, uint32_t level)
+{
+    return root_px_q8 > (int64_t)look->texel_px_q8 << level;
 }
 
 /* ---- squares ---- */
@@ -70,7 +77,7 @@ static int is_wanted(const chooser *c, ff_key image)
     if (!ff_shape_has_ground(c->info, image)) return 0;
     ff_placed placed = ff_shape_put(c->info, &c->look->frame, image);
     ff_box box = ff_shape_box(c->info, image, &placed, c->height_wu, c->look->pos_wu);
-    return texel_px_q8(c->info, c->look, &box, ff_key_level(image) - 1) > c->look->texel_px_q8;
+    return too_large(c->look, texel_px_q8(c->info, c->look, &box), ff_key_level(image) - 1);
 }
 
 /* Lists an image and those below it; they come first. */
@@ -91,9 +98,9 @@ static void choose(chooser *c, ff_key image)
 /* The image over a node whose texels are not too large, or as far up as the image of a level. */
 static ff_key choose_above(const chooser *c, const ff_box *box, ff_key image)
 {
-    while (ff_key_level(image) > 0 &&
-           (ff_key_level(image) > c->last ||
-            texel_px_q8(c->info, c->look, box, ff_key_level(image) - 1) <= c->look->texel_px_q8))
+    int64_t root_px_q8 = texel_px_q8(c->info, c->look, box);
+    while (ff_key_level(image) > 0 && (ff_key_level(image) > c->last ||
+                                       !too_large(c->look, root_px_q8, ff_key_level(image) - 1)))
         image = ff_key_parent(image);
     return image;
 }
