@@ -226,10 +226,10 @@ static int connect_step(ff_stream *stream, int64_t now_us)
 static unsigned sides_known(const ff_stream *stream, const ff_request *request)
 {
     const ff_intake *intake = stream->intake;
-    int ground = ff_intake_ground(intake, request->key);
     unsigned sides = request->sides;
-    FF_ASSERT(ground >= 0);
     if (request->kind != FF_KIND_REFINEMENT) return 0;
+    int ground = ff_intake_ground(intake, request->key);
+    FF_ASSERT(ground >= 0);
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
         ff_key beside =
             ff_shape_neighbour(&intake->info[ground], request->key, (enum ff_side)side).key;
