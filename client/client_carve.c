@@ -57,6 +57,7 @@ static void carve_textures(ff_client *client, const ff_budget *budget)
     textures->slot_count = (uint16_t)(textures->texture_count * budget->texture_names);
     textures->texel_px_q8 = FF_TEXEL_PX_Q8;
     textures->slot = take(client, budget, FF_POOL_textures);
+    textures->wear = take(client, budget, FF_POOL_wear);
     uint8_t *pictures = take(client, budget, FF_POOL_pictures);
     if (!pictures) return;
     unsigned log2 = client->info.texture_log2;
@@ -96,6 +97,7 @@ static int carve_view(ff_client *client, const ff_budget *budget)
     view->entry_count = budget->pool[FF_POOL_entries].count;
     view->entry = take(client, budget, FF_POOL_entries);
     view->vertices = take(client, budget, FF_POOL_vertices);
+    view->wear = client->textures.wear;
     view->part = take(client, budget, FF_POOL_fin_indices);
     view->index = take(client, budget, FF_POOL_strip_indices);
     view->kept = take(client, budget, FF_POOL_kept);

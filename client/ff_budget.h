@@ -91,6 +91,10 @@
       FF_SHARE_OF_TEXTURES(b->block) / b->texture_bytes >> (b->economy > 1 ? b->economy - 1 : 0), 8, 512, \
       n * b->texture_names * sizeof(ff_texture_slot), from->client->textures.made, from->client->textures.made_high, \
       "images of the ground that are drawn, and of pictures four times as many, by name: their texels are the device's") \
+    X(wear, b->has_textures, \
+      FF_WEAR_MAX, FF_WEAR_MAX, FF_WEAR_MAX, \
+      n * sizeof(ff_wear), FF_WEAR_MAX, FF_WEAR_MAX, \
+      "images that the one node wears that is looked at") \
     X(pictures, b->pictures, \
       b->pool[FF_POOL_textures].count / 8, FF_DECODED_MIN, FF_DECODED_MAX, \
       ff_budget_pictures(b, n), from->client->textures.pictures.decoded_count, from->client->textures.pictures.decoded_count, \

@@ -173,14 +173,15 @@ static c3d_mesh mesh_of(ff_terrain_view *view, const ff_terrain_info *info, cons
     return mesh;
 }
 
-static void draw_strips(ff_terrain_view *view, const ff_drawn *drawn, c3d_draw draw)
+/* Draws with `draw`, whose strip is any. */
+static void draw_strips(ff_terrain_view *view, const ff_drawn *drawn, c3d_draw *draw)
 {
     uint8_t strip[5];
     unsigned strips = ff_strips_for(drawn->coarser, strip);
     for (unsigned i = 0; i < strips; i++) {
         FF_ASSERT(strip[i] < FF_STRIP_COUNT_MAX);
-        draw.strip = view->strip[strip[i]];
-        if (draw.strip.id) c3d_draw_strip(view->device, &draw);
+        draw->strip = view->strip[strip[i]];
+        if (draw->strip.id) c3d_draw_strip(view->device, draw);
     }
 }
 
@@ -198,68 +199,59 @@ static c3d_strip make_part(ff_terrain_view *view, const ff_terrain_info *info,
     return count ? c3d_strip_make(view->device, view->part, count) : (c3d_strip){ 0 };
 }
 
-static void draw_part(ff_terrain_view *view, const ff_terrain_info *info, const ff_drawn *drawn,
-                      ff_squares squares, c3d_draw draw)
+/* Dresses a call that draws a node for the squares that wear an image. */
+static void dress(const ff_terrain_view *view, const ff_terrain_info *info, const ff_drawn *drawn,
+                  ff_key image, c3d_draw *draw)
 {
-    draw.strip = make_part(view, info, drawn, ~squares);
-    if (draw.strip.id) c3d_draw_strip(view->device, &draw);
-    c3d_strip_free(view->device, draw.strip);
+    ff_textures_lay(view->textures, drawn->key, image, draw);
+    if (draw->flags & C3D_DRAW_TEXTURED) ff_ground_frame_last(info, drawn, draw);
 }
 
-/* A call that draws a node, dressed for the squares that wear an image. */
-static c3d_draw dress(const ff_terrain_view *view, const ff_terrain_info *info,
-                      const ff_drawn *drawn, ff_key image, c3d_draw draw)
+/* Chooses what a node wears, view->wear: how many parts it has. The call is dressed for the first
+ * that has an image: of several one at most has none. */
+static unsigned choose_outfit(ff_terrain_view *view, const ff_terrain_info *info,
+                              const ff_drawn *drawn, const ff_texel_look *look, c3d_draw *draw)
 {
-    ff_textures_lay(view->textures, drawn->key, image, &draw);
-    if (draw.flags & C3D_DRAW_TEXTURED) ff_ground_frame_last(info, drawn, &draw);
-    return draw;
+    if (!view->textures) return 0;
+    unsigned parts = ff_textures_worn(view->textures, view->tree, drawn, look, view->wear);
+    unsigned first = parts > 1 && view->wear[0].image == FF_KEY_NONE;
+    if (parts) dress(view, info, drawn, view->wear[first].image, draw);
+    return parts;
 }
 
-/* What a node wears, and the call that draws it in its first image, or in its colours. */
-typedef struct outfit {
-    ff_wear part[FF_WEAR_MAX];
-    unsigned parts;
-    c3d_draw bare, draw;
-} outfit;
-
-/* Of several parts one at most has no image. */
-static void choose_outfit(const ff_terrain_view *view, const ff_terrain_info *info,
-                          const ff_drawn *drawn, const ff_texel_look *look, outfit *wears)
-{
-    wears->draw = wears->bare;
-    wears->parts = view->textures
-                       ? ff_textures_worn(view->textures, view->tree, drawn, look, wears->part)
-                       : 0;
-    unsigned first = wears->parts > 1 && wears->part[0].image == FF_KEY_NONE;
-    if (wears->parts) wears->draw = dress(view, info, drawn, wears->part[first].image, wears->bare);
-}
-
+/* Draws a node in its parts: of several `draw` is dressed for each in turn. */
 static void draw_outfit(ff_terrain_view *view, const ff_terrain_info *info, const ff_drawn *drawn,
-                        const outfit *wears)
+                        unsigned parts, c3d_draw *draw)
 {
-    if (wears->parts < 2) draw_strips(view, drawn, wears->draw);
-    for (unsigned i = 0; wears->parts > 1 && i < wears->parts; i++)
-        draw_part(view, info, drawn, wears->part[i].squares,
-                  dress(view, info, drawn, wears->part[i].image, wears->bare));
+    if (parts < 2) draw_strips(view, drawn, draw);
+    for (unsigned i = 0; parts > 1 && i < parts; i++) {
+        draw->flags = C3D_DRAW_COLOURED;
+        for (int axis = 0; axis < 2; axis++)
+            draw->tex_first_q16[axis] = draw->tex_last_q16[axis] = 0;
+        dress(view, info, drawn, view->wear[i].image, draw);
+        draw->strip = make_part(view, info, drawn, ~view->wear[i].squares);
+        if (draw->strip.id) c3d_draw_strip(view->device, draw);
+        c3d_strip_free(view->device, draw->strip);
+    }
 }
 
 static void draw_thrown(ff_terrain_view *view, const ff_terrain_info *info, const ff_drawn *drawn,
-                        const ff_view_node *entry, const outfit *wears)
+                        const ff_view_node *entry, unsigned parts, const c3d_draw *draw)
 {
     c3d_draw draws[FF_THROWS_MAX];
     const ff_squares *without[FF_THROWS_MAX] = { NULL };
     c3d_strip part = { 0 };
     ff_view_kept *kept = &view->kept[entry ? entry - view->entry : (ptrdiff_t)view->entry_count];
     if (!entry) memset(kept, 0, sizeof *kept);
-    draws[0] = wears->draw;
+    draws[0] = *draw;
     unsigned count = view->throws.lay(view->throws.context, info, drawn, kept, draws, without);
     FF_ASSERT(count >= 1 && count <= FF_THROWS_MAX);
     for (unsigned i = 0; i < count; i++) {
         if (!without[i]) {
             if (draws[i].flags & C3D_DRAW_TEXTURED)
-                draw_outfit(view, info, drawn, wears);
+                draw_outfit(view, info, drawn, parts, &draws[i]);
             else
-                draw_strips(view, drawn, draws[i]);
+                draw_strips(view, drawn, &draws[i]);
             continue;
         }
         if (i == 0 || without[i] != without[i - 1]) {
@@ -290,15 +282,14 @@ void ff_terrain_view_draw(ff_terrain_view *view, const ff_drawn *list, uint32_t 
         FF_ASSERT((uint32_t)ground.tex_columns * ground.tex_columns == view->heights_per_node);
         last = info;
         ff_view_node *entry = entry_of(view, drawn);
-        outfit wears = { .bare = ground };
-        c3d_mesh mesh = mesh_of(view, info, drawn, entry);
-        wears.bare.mesh = mesh;
-        choose_outfit(view, info, drawn, &look, &wears);
+        c3d_draw draw = ground;
+        c3d_mesh mesh = draw.mesh = mesh_of(view, info, drawn, entry);
+        unsigned parts = choose_outfit(view, info, drawn, &look, &draw);
         if (view->throws.lay)
-            draw_thrown(view, info, drawn, entry, &wears);
+            draw_thrown(view, info, drawn, entry, parts, &draw);
         else
-            draw_outfit(view, info, drawn, &wears);
-        if (show) ff_show_over(view, drawn, &wears.draw, show);
+            draw_outfit(view, info, drawn, parts, &draw);
+        if (show) ff_show_over(view, drawn, &draw, show);
         if (!entry && mesh.id) c3d_mesh_free(view->device, mesh);
     }
 }

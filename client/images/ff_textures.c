@@ -407,12 +407,12 @@ static void draw(wisher *w, const ff_texture_slot *held)
     if (missing.priority > w->missing.priority) w->missing = missing;
 }
 
-/* All from `from` down to `finest`, so that they come in one round trip: each stands behind those
- * above it. */
-static void wish_down(wisher *w, ff_key from, ff_key finest)
+/* All on the way to `finest` from a level on, down to level `to`, so that they come in one round
+ * trip: each stands behind those above it. */
+static void wish_down(wisher *w, ff_key finest, uint32_t from, uint32_t to)
 {
     uint32_t least = UINT32_MAX;
-    for (uint32_t level = ff_key_level(from); level <= ff_key_level(finest); level++) {
+    for (uint32_t level = from; level <= to && level <= ff_key_level(finest); level++) {
         ff_texture_wish wish = wish_of(w, on_the_way(finest, level));
         if (wish.priority > least) wish.priority = least;
         least = wish.priority;
@@ -420,8 +420,9 @@ static void wish_down(wisher *w, ff_key from, ff_key finest)
     }
 }
 
-/* What is lacking on the way to a wanted image is wished for: 1 when there is any. */
-static int look_for(wisher *w, ff_key finest)
+/* What is lacking on the way to an image that a node of `level` wants is wished for: 1 when there
+ * is any. That there are images below the node only the one above them tells. */
+static int look_for(wisher *w, ff_key finest, uint32_t level)
 {
     const ff_texture_slot *held = find_nearest(w->textures, finest);
     if (held) {
@@ -429,9 +430,9 @@ static int look_for(wisher *w, ff_key finest)
         draw(w, held);
         if (held->key == finest) return 0;
     }
-    ff_key next = on_the_way(finest, held ? ff_key_level(held->key) + 1 : 0);
-    if (held && held->bare >> ff_key_quadrant(next) & 1u) return 0;
-    wish_down(w, next, finest);
+    uint32_t next = held ? ff_key_level(held->key) + 1 : 0;
+    if (held && held->bare >> ff_key_quadrant(on_the_way(finest, next)) & 1u) return 0;
+    wish_down(w, finest, next, level > next ? level : next);
     return 1;
 }
 
@@ -455,13 +456,14 @@ uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff
 {
     const ff_texel_look look = ff_textures_look(textures, &view->frame, &view->camera);
     wisher w = { textures, tree, view, quality, list, 0, capacity, 0, 0, 0, { FF_KEY_NONE, 0 } };
-    ff_wear wear[FF_WEAR_MAX];
     textures->stamp++;
     textures->lacking = 0;
     for (uint32_t i = 0; i < drawn_count; i++) {
-        unsigned parts = ff_textures_wanted(textures, tree, &drawn[i], &look, wear);
+        unsigned parts = ff_textures_wanted(textures, tree, &drawn[i], &look, textures->wear);
+        uint32_t level = ff_key_level(drawn[i].key);
         int lacks = 0;
-        for (unsigned part = 0; part < parts; part++) lacks |= look_for(&w, wear[part].image);
+        for (unsigned part = 0; part < parts; part++)
+            lacks |= look_for(&w, textures->wear[part].image, level);
         textures->lacking += (unsigned)lacks;
     }
     FF_ASSERT(w.in_use <= textures->held && textures->held <= textures->slot_count);

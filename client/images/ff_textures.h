@@ -43,6 +43,7 @@ typedef struct ff_textures {
      * image, on their way to the device. */
     ff_held_pictures pictures;
     uint16_t *texels;
+    ff_wear *wear; /* scratch, FF_WEAR_MAX, of wishes */
 
     uint16_t held, high, made, made_high; /* made: on the device */
     uint8_t waits; /* 1: something held is to be drawn and not on the device yet */

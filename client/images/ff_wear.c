@@ -80,19 +80,47 @@ static int is_wanted(const chooser *c, ff_key image)
     return too_large(c->look, texel_px_q8(c->info, c->look, &box), ff_key_level(image) - 1);
 }
 
-/* Lists an image and those below it; they come first. */
-static void choose(chooser *c, ff_key image)
+/* An image on the way down, its squares that none below it has, and its child that is next. */
+typedef struct step {
+    ff_key image;
+    ff_squares squares;
+    uint32_t quadrant;
+} step;
+
+static step step_to(const chooser *c, ff_key image)
 {
-    ff_squares squares = ff_wear_squares(c->info->node_log2, c->node, image);
-    for (uint32_t q = 0; ff_key_level(image) < c->last && q < 4; q++) {
-        ff_key child = ff_key_child(image, q);
-        if (!is_wanted(c, child)) continue;
-        squares &= ~ff_wear_squares(c->info->node_log2, c->node, child);
-        choose(c, child);
+    return (step){ image, ff_wear_squares(c->info->node_log2, c->node, image), 0 };
+}
+
+/* The next child of an image that is wanted, or FF_KEY_NONE. */
+static ff_key next_wanted(const chooser *c, step *at)
+{
+    while (ff_key_level(at->image) < c->last && at->quadrant < 4) {
+        ff_key child = ff_key_child(at->image, at->quadrant++);
+        if (is_wanted(c, child)) return child;
     }
-    if (!squares) return;
-    FF_ASSERT(c->count < FF_WEAR_MAX);
-    c->list[c->count++] = (ff_wear){ image, squares };
+    return FF_KEY_NONE;
+}
+
+/* Lists a node's own image and those below it; they come first. */
+static void choose(chooser *c)
+{
+    step path[FF_IMAGE_DEPTH_MAX + 1];
+    path[0] = step_to(c, c->node);
+    for (int depth = 0; depth >= 0;) {
+        ff_key child = next_wanted(c, &path[depth]);
+        if (child != FF_KEY_NONE) {
+            FF_ASSERT(depth < FF_IMAGE_DEPTH_MAX);
+            path[depth + 1] = step_to(c, child);
+            path[depth].squares &= ~path[depth + 1].squares;
+            depth++;
+            continue;
+        }
+        FF_ASSERT(c->count < FF_WEAR_MAX);
+        if (path[depth].squares)
+            c->list[c->count++] = (ff_wear){ path[depth].image, path[depth].squares };
+        depth--;
+    }
 }
 
 /* The image over a node whose texels are not too large, or as far up as the image of a level. */
@@ -119,7 +147,7 @@ unsigned ff_wear_list(const ff_tree *tree, const ff_drawn *drawn, const ff_texel
                               look->pos_wu);
     ff_key image = choose_above(&c, &box, drawn->key);
     if (image == drawn->key && level < c.last)
-        choose(&c, image);
+        choose(&c);
     else
         list[c.count++] = (ff_wear){ image, ALL };
     return c.count;

@@ -34,6 +34,7 @@ static int make_view(ff_pack_ground *ground, c3d_device *device)
                                       .vertices = ground->vertices,
                                       .index = ground->index,
                                       .part = ground->part,
+                                      .wear = ground->wear,
                                       .heights_per_node = ff_node_side(info) * ff_node_side(info) };
     ground->textures = (ff_textures){ .device = device,
                                       .info = *info,

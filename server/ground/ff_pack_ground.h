@@ -59,6 +59,7 @@ typedef struct ff_pack_ground {
     c3d_vertex vertices[FF_NODE_HEIGHTS_MAX];
     ff_textures textures;
     ff_texture_slot slot[FF_GROUND_TEXTURES];
+    ff_wear wear[FF_WEAR_MAX];
     uint16_t index[sizeof((ff_strips *)0)->index / sizeof(uint16_t)],
         part[FF_STRIPS_PART(FF_NODE_HEIGHTS_MAX)];
     ff_pack_images images;

@@ -259,6 +259,7 @@ static int open_device(fly_reference *reference)
                                            .vertices = reference->vertices,
                                            .index = reference->index,
                                            .part = reference->part,
+                                           .wear = reference->wear,
                                            .heights_per_node = ff_node_side(info) *
                                                                ff_node_side(info) };
     ff_terrain_view_attach(&reference->ground, reference->tree, &reference->textures);

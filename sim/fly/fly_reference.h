@@ -30,6 +30,7 @@ typedef struct fly_reference {
     ff_wish *wish;    /* being served */
     uint8_t *sampled; /* RGB888, before samples become pixels */
     ff_texture_slot *slot;
+    ff_wear wear[FF_WEAR_MAX];
     uint16_t index[sizeof((ff_strips *)0)->index / sizeof(uint16_t)],
         part[FF_STRIPS_PART(FF_NODE_HEIGHTS_MAX)];
     ff_pack_images images;
