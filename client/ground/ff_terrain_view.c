@@ -210,10 +210,10 @@ static void dress(const ff_terrain_view *view, const ff_terrain_info *info, cons
 /* Chooses what a node wears, view->wear: how many parts it has. The call is dressed for the first
  * that has an image: of several one at most has none. */
 static unsigned choose_outfit(ff_terrain_view *view, const ff_terrain_info *info,
-                              const ff_drawn *drawn, const ff_texel_look *look, c3d_draw *draw)
+                              const ff_drawn *drawn, c3d_draw *draw)
 {
     if (!view->textures) return 0;
-    unsigned parts = ff_textures_worn(view->textures, view->tree, drawn, look, view->wear);
+    unsigned parts = ff_textures_worn(view->textures, view->tree, drawn, &view->look, view->wear);
     unsigned first = parts > 1 && view->wear[0].image == FF_KEY_NONE;
     if (parts) dress(view, info, drawn, view->wear[first].image, draw);
     return parts;
@@ -270,11 +270,11 @@ void ff_terrain_view_draw(ff_terrain_view *view, const ff_drawn *list, uint32_t 
                           const c3d_camera *camera, unsigned show)
 {
     c3d_draw ground = { .flags = C3D_DRAW_COLOURED };
-    ff_texel_look look = { .focal_q8 = 0 };
     uint32_t ground_count;
     const ff_terrain_info *grounds = ff_tree_grounds(view->tree, &ground_count), *last = NULL;
     if (ff_ground_frame_follow(&view->frame, grounds, ground_count, camera)) free_meshes(view);
-    if (view->textures) look = ff_textures_look(view->textures, ff_tree_frame(view->tree), camera);
+    if (view->textures)
+        view->look = ff_textures_look(view->textures, ff_tree_frame(view->tree), camera);
     for (uint32_t i = 0; i < count; i++) {
         const ff_drawn *drawn = &list[i];
         const ff_terrain_info *info = ff_tree_ground(view->tree, drawn->key);
@@ -284,7 +284,7 @@ void ff_terrain_view_draw(ff_terrain_view *view, const ff_drawn *list, uint32_t 
         ff_view_node *entry = entry_of(view, drawn);
         c3d_draw draw = ground;
         c3d_mesh mesh = draw.mesh = mesh_of(view, info, drawn, entry);
-        unsigned parts = choose_outfit(view, info, drawn, &look, &draw);
+        unsigned parts = choose_outfit(view, info, drawn, &draw);
         if (view->throws.lay)
             draw_thrown(view, info, drawn, entry, parts, &draw);
         else

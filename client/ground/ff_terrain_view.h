@@ -60,7 +60,8 @@ typedef struct ff_terrain_view {
     /* for throws and textures, NULL where there are neither: the indices of all strips, and room
      * for those of a node without some squares */
     uint16_t *index, *part;
-    ff_wear *wear; /* scratch, FF_WEAR_MAX, for textures: of the node being drawn */
+    ff_texel_look look; /* of the picture being drawn */
+    ff_wear *wear;      /* scratch, FF_WEAR_MAX, for textures: of the node being drawn */
     uint16_t first[FF_STRIP_COUNT_MAX], length[FF_STRIP_COUNT_MAX];
 } ff_terrain_view;
 
