@@ -229,8 +229,7 @@ static unsigned sides_known(const ff_stream *stream, const ff_request *request)
     unsigned sides = request->sides;
     if (request->kind != FF_KIND_REFINEMENT) return 0;
     int ground = ff_intake_ground(intake, request->key);
-    FF_ASSERT(ground >= 0);
-    for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
+    for (unsigned side = 0; ground >= 0 && side < FF_SIDE_COUNT; side++) {
         ff_key beside =
             ff_shape_neighbour(&intake->info[ground], request->key, (enum ff_side)side).key;
         if (beside != FF_KEY_NONE && ff_requests_out(intake->requests, FF_KIND_REFINEMENT, beside))
