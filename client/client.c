@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#define CLIENT_BYTES_MIN ((size_t)528 << 10)
+#define CLIENT_BYTES_MIN ((size_t)544 << 10)
 #define WORKER_SLEEP_US  2000
 #define METRES           FF_WU_PER_METRE
 #define IN_FLIGHT_LIMIT  1024

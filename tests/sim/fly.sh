@@ -318,7 +318,7 @@ flies around $quick --speed 10000
 is 's["crack_frames"] == 0 and all(0 < row["x_m"] < 10240 and 0 < row["y_m"] < 10240 for row in r)' "10 000 km/h turn round before the border"
 flies node --pack "$work/node.ffp" $quick
 is 's["crack_frames"] == 0 and r[-1]["nodes_drawn"] == 1' "a terrain of one node"
-flies tight --pack "$work/dense.ffp" $quick --memory 528K --fov 100 --quality px:0.1 --triangles 500000 --view 20000 --panorama off
+flies tight --pack "$work/dense.ffp" $quick --memory 544K --fov 100 --quality px:0.1 --triangles 500000 --view 20000 --panorama off
 is 's["crack_frames"] == 0 and 50 < r[-1]["nodes_drawn"] < r[-1]["nodes_held"] < 1500' "little memory: whole"
 little=$(python3 -c "import json; print(json.load(open('$work/tight.json'))['err_px_rms'])")
 flies roomy --pack "$work/dense.ffp" $quick --memory 8M --fov 100 --quality px:0.1 --triangles 500000 --view 20000 --panorama off

@@ -66,7 +66,7 @@ def random_flight(seed, packs, given):
             "--start", f"{rand.random():.3f}", "--speed", str(rand.choice((0, 5, 25, 150, 150, 750, 1000, 3000))),
             "--quality", rand.choice(("low", "medium", "paper-low", "high", "px:0.5", "px:2", "px:8", f"{rand.uniform(0.5, 12):.2f}:{rand.randrange(1, 13)}")),
             "--panorama", rand.choice(("on", "on", "on", "off")), "--face", rand.choice(("64", "128", "256")),
-            "--memory", given.memory or rand.choice(("528K", "640K", "1M", "2M", "4M", "8M")),
+            "--memory", given.memory or rand.choice(("544K", "640K", "1M", "2M", "4M", "8M")),
             "--backend", given.backend or rand.choice(("none", "none", "none", "gl", "gles1", "soft", "soft565")),
             "--size", rand.choice(("240x320", "240x320", "128x128", "320x240", "64x400")), "--fov", str(rand.choice((20, 60, 60, 90))),
             "--fps", str(rand.choice((5, 10, 15))), "--sample", "1", "--audit", "on"]

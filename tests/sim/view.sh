@@ -292,7 +292,7 @@ refuses 2 "a size" "--size: 0x5 is not WIDTHxHEIGHT, each 16 to 4096" --size 0x5
 refuses 2 "a quality" "--quality: best is not low, medium, high" --quality best "$pack"
 refuses 2 "a link" "--link: pigeon is not none or NAME" --link pigeon "$pack"
 refuses 1 "a script" "$work/bad.txt:1: not a command: 0 jump high" --script "$work/bad.txt" "$pack"
-refuses 2 "too little memory" "--memory: 16 is not a number of bytes, with K or M: 528K to 4095M" --memory 16 "$pack"
+refuses 2 "too little memory" "--memory: 16 is not a number of bytes, with K or M: 544K to 4095M" --memory 16 "$pack"
 refuses 1 "a folder for a picture" "$work/none/a.png: " --screenshot "$work/none/a.png" "$pack"
 "$view" --help | grep -q '^Usage: farfield-view' && "$view" --version | grep -q '^farfield-view [0-9]'
 result $? "--help and --version"
