@@ -426,10 +426,9 @@ static void mark_images(sim_relevance *relevance, const sim_relevance_view *view
         answer *a = &relevance->answer[i];
         if (a->kind != FF_KIND_TEXTURE || !view->wears(view->client, a->key)) continue;
         mark(relevance, a);
-        for (ff_key key = a->key; ff_key_level(key) > 0;) {
-            key = ff_key_parent(key);
-            answer *above = find(relevance, FF_KIND_TEXTURE, key);
-            if (above) above->used = 1;
+        while (a && ff_key_level(a->key) > 0) {
+            a = find(relevance, FF_KIND_TEXTURE, ff_key_parent(a->key));
+            if (a) a->used = 1;
         }
     }
 }
