@@ -101,7 +101,7 @@ static ff_request_counts ask(client_rig *rig, uint32_t tile)
     ff_requests *requests = &rig->client->first.requests;
     ff_request_counts counts;
     ff_requests_rank_begin(requests);
-    ff_requests_want(requests, FF_KIND_NOTE, ff_key_make(tile, 0, 0), FF_CLASS_FIRST, 1, NULL);
+    ff_requests_want(requests, FF_KIND_NOTE, ff_key_make(tile, 0, 0), FF_CLASS_FIRST, 1, 0, NULL);
     ff_requests_rank_end(requests);
     assert_true(rig_settle(rig, 400));
     ff_requests_get_counts(requests, &counts, NULL);
@@ -145,7 +145,7 @@ CHANGES = [
      [("build/bin/farfield-link --list", "lorawan"), ("build/tests/test_link_profiles", "PASSED"),
       ("build/bin/farfield-fly --pack hills.ffp --link lorawan --seconds 5 --settle 5 --backend none --json", "geometry_hash")]),
     ("a codec", 2, [("protocol/codec/ff_codec_list.h", "    ROW(3,",
-                     '@LINE@ \\\n    ROW(4, PLAIN, "plain", NOTHING, 0, 1, ff_no_memory, ff_plain_decode, ff_interpolate, ff_add_residuals, ff_plain_encode)\n')],
+                     '@LINE@ \\\n    ROW(4, PLAIN, "plain", NOTHING, 0, 1, ff_no_memory, ff_plain_decode, ff_interpolate, ff_add_residuals, ff_make_residuals, ff_plain_encode)\n')],
      {"protocol/codec/ff_codec_plain.c": PLAIN_CODEC},
      ["build/bin/farfield-bake", "build/bin/farfield-info", "build/bin/farfield-export", "build/bin/farfield-fly"],
      [("build/bin/farfield-bake ../hills.raw %s --codec plain -o plain.ffp" % GRID, ""),

@@ -36,7 +36,7 @@ refused 1 "an empty pack" "empty.ffp" --pack "$work/empty.ffp"
 refused 1 "a truncated pack" "short.ffp" --pack "$work/short.ffp"
 refused 1 "a damaged pack" "flipped.ffp: checksum" --pack "$work/flipped.ffp"
 refused 1 "a foreign file" "hills.r16: not a Farfield" --pack "$work/hills.r16"
-refused 1 "a pack of version 5" "version 5, this program reads 7: bake it again: farfield-bake HEIGHTS" --pack tests/corpus/pack/version-5
+refused 1 "a pack of version 5" "version 5, this program reads 8: bake it again: farfield-bake HEIGHTS" --pack tests/corpus/pack/version-5
 refused 1 "a pack with an unknown part that is needed" "section MARK" --pack tests/corpus/pack/unknown-needed
 refused 2 "an address without a port" "listen" --pack "$work/hills.ffp" --listen 127.0.0.1
 refused 1 "a foreign address" "listen" --pack "$work/hills.ffp" --listen 192.0.2.1:7788
