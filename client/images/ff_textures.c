@@ -119,9 +119,10 @@ int ff_textures_touch(ff_textures *textures, ff_key key)
     return slot != NULL;
 }
 
-/* The image of that level on the way to `finest`. */
-static ff_key on_the_way(ff_key finest, uint32_t level)
+/* The image one level below `held` (NULL: the root's) on the way to `finest`. */
+static ff_key next_finer(const ff_texture_slot *held, ff_key finest)
 {
+    uint32_t level = held ? ff_key_level(held->key) + 1 : 0;
     FF_ASSERT(level <= ff_key_level(finest));
     while (ff_key_level(finest) > level) finest = ff_key_parent(finest);
     return finest;
@@ -407,22 +408,9 @@ static void draw(wisher *w, const ff_texture_slot *held)
     if (missing.priority > w->missing.priority) w->missing = missing;
 }
 
-/* All on the way to `finest` from a level on, down to level `to`, so that they come in one round
- * trip: each stands behind those above it. */
-static void wish_down(wisher *w, ff_key finest, uint32_t from, uint32_t to)
-{
-    uint32_t least = UINT32_MAX;
-    for (uint32_t level = from; level <= to && level <= ff_key_level(finest); level++) {
-        ff_texture_wish wish = wish_of(w, on_the_way(finest, level));
-        if (wish.priority > least) wish.priority = least;
-        least = wish.priority;
-        insert(w->list, &w->count, w->capacity, wish);
-    }
-}
-
-/* What is lacking on the way to an image that a node of `level` wants is wished for: 1 when there
- * is any. That there are images below the node only the one above them tells. */
-static int look_for(wisher *w, ff_key finest, uint32_t level)
+/* What comes next on the way to a wanted image is wished for: 1 when there is such. That there is
+ * one only the image above it tells, so it is no more than one at a time. */
+static int look_for(wisher *w, ff_key finest)
 {
     const ff_texture_slot *held = find_nearest(w->textures, finest);
     if (held) {
@@ -430,9 +418,9 @@ static int look_for(wisher *w, ff_key finest, uint32_t level)
         draw(w, held);
         if (held->key == finest) return 0;
     }
-    uint32_t next = held ? ff_key_level(held->key) + 1 : 0;
-    if (held && held->bare >> ff_key_quadrant(on_the_way(finest, next)) & 1u) return 0;
-    wish_down(w, finest, next, level > next ? level : next);
+    ff_key next = next_finer(held, finest);
+    if (held && held->bare >> ff_key_quadrant(next) & 1u) return 0;
+    insert(w->list, &w->count, w->capacity, wish_of(w, next));
     return 1;
 }
 
@@ -460,10 +448,9 @@ uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff
     textures->lacking = 0;
     for (uint32_t i = 0; i < drawn_count; i++) {
         unsigned parts = ff_textures_wanted(textures, tree, &drawn[i], &look, textures->wear);
-        uint32_t level = ff_key_level(drawn[i].key);
         int lacks = 0;
         for (unsigned part = 0; part < parts; part++)
-            lacks |= look_for(&w, textures->wear[part].image, level);
+            lacks |= look_for(&w, textures->wear[part].image);
         textures->lacking += (unsigned)lacks;
     }
     FF_ASSERT(w.in_use <= textures->held && textures->held <= textures->slot_count);

@@ -106,53 +106,6 @@ static void roots_below_levels_left_out_bring_what_is_above_them(void **state)
     }
 }
 
-/* So one round trip brings them all. */
-static void what_lacks_images_asks_for_all_on_the_way_down(void **state)
-{
-    (void)state;
-    client_rig rig;
-    ff_texture_wish list[256];
-    ff_textures none = { 0 };
-    const ff_drawn *drawn;
-    open_rig(&rig);
-    rig_local_client(&rig, 4 * MB);
-    assert_true(rig_settle(&rig, 600));
-    const ff_client *client = rig.client;
-    uint32_t drawn_count = ff_tree_drawn(ff_client_tree(rig.client), &drawn), seen = 0, wanted = 0;
-    int changed = 0;
-    ff_wear wear[FF_WEAR_MAX];
-    none.info = client->textures.info;
-    none.across = client->textures.across;
-    none.wear = wear;
-    none.slot_count = none.texture_count = 256;
-    uint32_t count = ff_textures_wishes(&none, client->tree, drawn, drawn_count, &client->last_view,
-                                        &client->desc.quality, list, 256, &changed);
-    const ff_texel_look look = ff_textures_look(&none, &client->last_view.frame,
-                                                &client->last_view.camera);
-    assert_int_equal(none.lacking, drawn_count);
-    assert_true(count > drawn_count);
-    for (uint32_t i = 0; i < count; i++) {
-        int above = ff_key_level(list[i].key) == 0;
-        for (uint32_t j = 0; j < i; j++) {
-            assert_true(list[j].key != list[i].key);
-            above |= ff_key_level(list[i].key) && list[j].key == ff_key_parent(list[i].key);
-        }
-        assert_true(above);
-    }
-    for (uint32_t i = 0; i < drawn_count; i++) {
-        unsigned parts = ff_textures_wanted(&none, client->tree, &drawn[i], &look, wear);
-        for (unsigned part = 0; part < parts; part++) {
-            ff_key image = wear[part].image; /* of its own level at most: who has that knows more */
-            while (ff_key_level(image) > ff_key_level(drawn[i].key)) image = ff_key_parent(image);
-            wanted++;
-            for (uint32_t j = 0; j < count; j++) seen += list[j].key == image;
-        }
-    }
-    assert_true(wanted >= drawn_count);
-    assert_int_equal(seen, wanted);
-    rig_close(&rig);
-}
-
 static ff_new_item item_of(const client_rig *rig, ff_key key)
 {
     static uint8_t bytes[4096];
@@ -267,7 +220,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_are_held_as_the_pack_has_them),
-        cmocka_unit_test(what_lacks_images_asks_for_all_on_the_way_down),
         cmocka_unit_test(pictures_seen_before_come_back_without_a_request),
         cmocka_unit_test(pictures_go_before_those_above_them),
         cmocka_unit_test(roots_below_levels_left_out_bring_what_is_above_them),
