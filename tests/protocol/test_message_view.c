@@ -54,12 +54,13 @@ static ff_get_view largest_view(void)
                          .roots = 0x8002,
                          .count = FF_VIEW_KEYS_MAX };
     for (unsigned i = 0; i < FF_VIEW_KEYS_MAX; i++)
-        view.below[i] = view.roots >> i & 1u ? ff_key_make(FF_KEY_TILES_MAX - 1 - i, 0, 0)
-                                             : ff_key_make(FF_KEY_TILES_MAX - 1, i,
-                                                           (uint32_t)((UINT64_C(1) << 2 * i) - 1));
+        view.below[i] = view.roots >> i & 1u
+                            ? ff_key_make(FF_KEY_TILES_MAX - 1 - i, 0, 0)
+                            : ff_key_make(FF_KEY_TILES_MAX - 1, i ? i - 1 : 0,
+                                          (uint32_t)((UINT64_C(1) << 2 * (i ? i - 1 : 0)) - 1));
     view.edge_count = FF_VIEW_EDGE_MAX;
     for (unsigned i = 0; i < FF_VIEW_EDGE_MAX; i++)
-        view.edge[i] = ff_key_make(FF_KEY_TILES_MAX - 1, 15, 0x3fffffff - i);
+        view.edge[i] = ff_key_make(FF_KEY_TILES_MAX - 1, 14, 0xfffffff - i);
     return view;
 }
 

@@ -20,7 +20,7 @@ result $? "tables that are held out are trained on the other grounds"
 cat >"$work/rows.py" <<'END'
 import json, sys
 rows = json.load(open(sys.argv[1], encoding="utf-8"))["rows"]
-bits = {(r["ground"], r["error_m"], r["codec"], r["tables"], r["piece"]): r["bits"] for r in rows}
+bits = {(r["ground"], r["error_m"], r["codec"], r["tables"], r["piece"]): r.get("bits_once", r["bits"]) for r in rows}
 END
 python3 - "$work/codec.json" <<END
 $(cat "$work/rows.py")
