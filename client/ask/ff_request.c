@@ -398,6 +398,7 @@ static ff_request *first_above(ff_requests *requests, ff_request *request)
         if (!above || above->state != FF_REQUEST_QUEUED) break;
         request = above;
     }
+    FF_ASSERT(request->state == FF_REQUEST_QUEUED);
     return request;
 }
 

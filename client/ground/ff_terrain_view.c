@@ -215,6 +215,7 @@ static unsigned choose_outfit(ff_terrain_view *view, const ff_terrain_info *info
     if (!view->textures) return 0;
     unsigned parts = ff_textures_worn(view->textures, view->tree, drawn, &view->look, view->wear);
     unsigned first = parts > 1 && view->wear[0].image == FF_KEY_NONE;
+    FF_ASSERT(parts <= FF_WEAR_MAX && (!parts || first < parts));
     if (parts) dress(view, info, drawn, view->wear[first].image, draw);
     return parts;
 }
@@ -223,6 +224,7 @@ static unsigned choose_outfit(ff_terrain_view *view, const ff_terrain_info *info
 static void draw_outfit(ff_terrain_view *view, const ff_terrain_info *info, const ff_drawn *drawn,
                         unsigned parts, c3d_draw *draw)
 {
+    FF_ASSERT(parts <= FF_WEAR_MAX);
     if (parts < 2) draw_strips(view, drawn, draw);
     for (unsigned i = 0; parts > 1 && i < parts; i++) {
         draw->flags = C3D_DRAW_COLOURED;

@@ -48,11 +48,13 @@ void ff_held_pictures_cut(ff_held_pictures *pictures, ff_key key, ff_coded coded
 
 static uint8_t *place_at(const ff_held_pictures *pictures, const ff_terrain_info *info, unsigned i)
 {
+    FF_ASSERT(i < pictures->decoded_count);
     return pictures->rgb + i * picture_bytes(info->texture_log2);
 }
 
 static int find_place(const ff_held_pictures *pictures, ff_key key)
 {
+    FF_ASSERT(pictures->decoded_count <= FF_DECODED_MAX);
     for (unsigned i = 0; i < pictures->decoded_count; i++)
         if (pictures->key[i] == key) return (int)i;
     return -1;
@@ -67,6 +69,7 @@ static unsigned take_place(ff_held_pictures *pictures, int keep)
         if (pictures->key[best] == FF_KEY_NONE) break;
         if (pictures->key[i] == FF_KEY_NONE || pictures->used[i] < pictures->used[best]) best = i;
     }
+    FF_ASSERT((int)best != keep && best < pictures->decoded_count);
     pictures->key[best] = FF_KEY_NONE;
     return best;
 }
@@ -74,6 +77,7 @@ static unsigned take_place(ff_held_pictures *pictures, int keep)
 /* The code, in the whole terrain, of a root of an entered one. */
 static uint32_t code_above(const ff_terrain_info *info, ff_key root)
 {
+    FF_ASSERT(ff_key_level(root) == 0);
     ff_sheet at = ff_shape_sheet(info, ff_key_tile(root));
     uint32_t within = (1u << info->entered) - 1u;
     return ff_morton_encode(at.x & within, at.y & within);
@@ -88,6 +92,8 @@ static int decode(ff_held_pictures *pictures, const ff_terrain_info *info, ff_ke
     unsigned to = take_place(pictures, parent), log2 = info->texture_log2;
     uint8_t *rgb = place_at(pictures, info, to);
     int rc;
+    FF_ASSERT(coded.bytes <= pictures->coded_used &&
+              coded.at <= pictures->coded_used - coded.bytes);
     if (parent < 0 && info->entered) {
         unsigned spare = take_place(pictures, (int)to);
         rc = ff_picture_decode_row(bytes, coded.bytes, log2, info->entered, code_above(info, key),
@@ -108,6 +114,7 @@ static int decode(ff_held_pictures *pictures, const ff_terrain_info *info, ff_ke
 
 static ff_key above_by(ff_key key, uint32_t levels)
 {
+    FF_ASSERT(levels <= ff_key_level(key));
     while (levels-- > 0) key = ff_key_parent(key);
     return key;
 }
@@ -120,6 +127,7 @@ const uint8_t *ff_held_pictures_get(ff_held_pictures *pictures, const ff_terrain
     int place = find_place(pictures, key);
     while (place < 0 && up < level) place = find_place(pictures, above_by(key, ++up));
     if (place < 0) up++; /* the root, too, is to be decoded */
+    FF_ASSERT(up <= level + 1);
     while (up-- > 0) {
         ff_key next = above_by(key, up);
         ff_coded coded = find(context, next);

@@ -254,6 +254,7 @@ static ff_texture_slot *hold(ff_textures *textures, ff_key key, uint8_t bare, ui
                                .next = textures->bucket[bucket_of(key)] };
     textures->bucket[bucket_of(key)] = (uint16_t)(slot - textures->slot + 1);
     if (++textures->held > textures->high) textures->high = textures->held;
+    FF_ASSERT(textures->held <= textures->slot_count);
     return slot;
 }
 
@@ -429,6 +430,7 @@ static uint32_t room_for(const wisher *w)
 {
     const ff_textures *textures = w->textures;
     const ff_held_pictures *pictures = &textures->pictures;
+    FF_ASSERT(w->in_use <= textures->slot_count);
     uint32_t names = textures->slot_count - w->in_use,
              device = w->drawn < textures->texture_count ? textures->texture_count - w->drawn : 0,
              room = names < device ? names : device;

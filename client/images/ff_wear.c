@@ -17,6 +17,7 @@ static int64_t larger(int64_t a, int64_t b) { return a > b ? a : b; }
  * lowest place, and of what it may lean towards him. */
 static uint32_t shown_q16(const ff_box *box, int64_t aside, int64_t distance)
 {
+    FF_ASSERT(distance >= 1 && aside >= 0);
     int64_t edge = larger(box->hi[0] - box->lo[0], 1), rise = box->hi[2] - box->lo[2];
     int64_t up = larger(-box->lo[2], box->hi[2]);
     int64_t shown = larger(up, 0) + c3d_muldiv64(rise, aside, edge);
@@ -42,6 +43,7 @@ static int64_t texel_px_q8(const ff_terrain_info *info, const ff_texel_look *loo
 /* 1 when texels of a level are larger than they should be. */
 static int too_large(const ff_texel_look *look, int64_t root_px_q8, uint32_t level)
 {
+    FF_ASSERT(level <= FF_KEY_LEVEL_MAX);
     return root_px_q8 > (int64_t)look->texel_px_q8 << level;
 }
 
@@ -74,6 +76,7 @@ typedef struct chooser {
 /* 1 when texels of the level above an image's are too large somewhere on it. */
 static int is_wanted(const chooser *c, ff_key image)
 {
+    FF_ASSERT(ff_key_level(image) >= 1);
     if (!ff_shape_has_ground(c->info, image)) return 0;
     ff_placed placed = ff_shape_put(c->info, &c->look->frame, image);
     ff_box box = ff_shape_box(c->info, image, &placed, c->height_wu, c->look->pos_wu);
@@ -89,12 +92,14 @@ typedef struct step {
 
 static step step_to(const chooser *c, ff_key image)
 {
+    FF_ASSERT(ff_key_level(image) - ff_key_level(c->node) <= FF_IMAGE_DEPTH_MAX);
     return (step){ image, ff_wear_squares(c->info->node_log2, c->node, image), 0 };
 }
 
 /* The next child of an image that is wanted, or FF_KEY_NONE. */
 static ff_key next_wanted(const chooser *c, step *at)
 {
+    FF_ASSERT(at->quadrant <= 4);
     while (ff_key_level(at->image) < c->last && at->quadrant < 4) {
         ff_key child = ff_key_child(at->image, at->quadrant++);
         if (is_wanted(c, child)) return child;
@@ -130,6 +135,7 @@ static ff_key choose_above(const chooser *c, const ff_box *box, ff_key image)
     while (ff_key_level(image) > 0 && (ff_key_level(image) > c->last ||
                                        !too_large(c->look, root_px_q8, ff_key_level(image) - 1)))
         image = ff_key_parent(image);
+    FF_ASSERT(ff_key_level(image) <= ff_key_level(c->node));
     return image;
 }
 
@@ -150,5 +156,6 @@ unsigned ff_wear_list(const ff_tree *tree, const ff_drawn *drawn, const ff_texel
         choose(&c);
     else
         list[c.count++] = (ff_wear){ image, ALL };
+    FF_ASSERT(c.count <= FF_WEAR_MAX);
     return c.count;
 }

@@ -6,6 +6,7 @@ static uint32_t child_at(const ff_tree *tree, uint32_t slot, enum ff_side side, 
 {
     static const uint8_t first[FF_SIDE_COUNT] = { 0, 1, 2, 0 },
                          apart[FF_SIDE_COUNT] = { 1, 2, 1, 2 };
+    FF_ASSERT((unsigned)side < FF_SIDE_COUNT && along < 2);
     return tree->node[slot].child[first[side] + along * apart[side]];
 }
 
@@ -14,6 +15,7 @@ static uint32_t find_beside(const ff_tree *tree, ff_key key, enum ff_side side, 
 {
     *beside = ff_shape_neighbour(ff_ground_of(tree, key), key, side);
     uint32_t slot = beside->key == FF_KEY_NONE ? FF_SLOT_NONE : ff_tree_find(tree, beside->key);
+    FF_ASSERT(slot == FF_SLOT_NONE || tree->node[slot].key == beside->key);
     if (slot == FF_SLOT_NONE || !ff_node_has_children(&tree->node[slot])) return FF_SLOT_NONE;
     for (uint32_t along = 0; along < 2; along++)
         if (child_at(tree, slot, beside->side, along) == FF_SLOT_NONE) return FF_SLOT_NONE;
@@ -27,6 +29,7 @@ unsigned ff_tree_sides(const ff_tree *tree, ff_key key)
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++)
         if (find_beside(tree, key, (enum ff_side)side, &beside) != FF_SLOT_NONE)
             sides |= 1u << side;
+    FF_ASSERT(sides >> FF_SIDE_COUNT == 0);
     return sides;
 }
 
@@ -43,8 +46,10 @@ static void copy_side(ff_tree *tree, uint32_t slot, const ff_beside *beside, enu
     uint32_t across = ff_node_side(info), last = across - 1, stride, own_stride,
              from = first_of(beside->side, across, &stride),
              to = first_of(side, ff_refined_side(info), &own_stride);
+    FF_ASSERT(2 * last + 1 == ff_refined_side(info));
     for (uint32_t i = 0; i <= 2 * last; i++) {
         uint32_t along = ff_beside_along(beside, i, 2 * last), half = along > last;
+        FF_ASSERT(along - half * last <= last);
         const uint16_t *heights = ff_heights_of(tree, child_at(tree, slot, beside->side, half));
         tree->refined[to + i * own_stride] = heights[from + (along - half * last) * stride];
     }
@@ -53,6 +58,7 @@ static void copy_side(ff_tree *tree, uint32_t slot, const ff_beside *beside, enu
 int ff_tree_take_sides(ff_tree *tree, ff_key key, unsigned sides)
 {
     ff_beside beside;
+    FF_ASSERT(sides >> FF_SIDE_COUNT == 0);
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
         if (!(sides >> side & 1u)) continue;
         uint32_t slot = find_beside(tree, key, (enum ff_side)side, &beside);

@@ -62,6 +62,7 @@ static uint32_t number(fins *f, enum sort sort, unsigned cell, uint32_t value)
 {
     unsigned want = length_of(value), length = 0, place = FF_FINS_LENGTH + cell * FF_FINS_BITS;
     uint32_t made = 1;
+    FF_ASSERT(sort <= RUN);
     while (length < FF_FINS_BITS - 1 && decide(f, place + length, want > length)) length++;
     for (unsigned i = length; i-- > 0;) {
         unsigned bit = (value + 1) >> i & 1u;
@@ -79,6 +80,7 @@ static int32_t signed_number(fins *f, enum sort sort, unsigned cell, int32_t bef
 {
     int32_t size = (int32_t)number(f, sort, cell, (uint32_t)(value < 0 ? -value : value));
     unsigned by = before < 0 ? 1 : before > 0 ? 2 : 0;
+    FF_ASSERT(size >= 0);
     if (size && decide(f, FF_FINS_SIGN + 3 * (unsigned)sort + by, value < 0)) return -size;
     return size;
 }
@@ -106,6 +108,7 @@ static void next_step(fins *f, const step *before, step *s)
     unsigned run = before->column > 0 ? length_of((uint32_t)before->column - 1) : 0,
              up = length_of(size_of(before->up)), far = length_of(size_of(before->distance));
     s->column = (int32_t)number(f, RUN, CELL_RUN + least(run, 3), (uint32_t)s->column - 1) + 1;
+    FF_ASSERT(s->column >= 1);
     run = length_of((uint32_t)s->column - 1);
     s->up = signed_number(f, UP, CELL_UP + 4 * least(run, 3) + least(up, 3), before->up, s->up);
     s->distance = signed_number(f, DISTANCE, CELL_DISTANCE + 3 * least(run, 2) + least(far, 2),
@@ -151,6 +154,7 @@ static int take_fin(fins *f, const ff_fin_vertex *before, ff_fin_vertex *vertex,
         last = count ? s : (step){ 0, 0, 0 };
         count++;
     } while (count < 2 || decide(f, FF_FINS_ON + least(count - 2, 7), 0));
+    FF_ASSERT(count >= 2 && count <= room);
     return (int)count;
 }
 
@@ -168,6 +172,7 @@ int ff_fins_decode(const uint8_t *bytes, size_t byte_count, ff_fin_vertex *verte
         if (made < 0) return made;
         first = vertex[count];
         count += (uint32_t)made;
+        FF_ASSERT(count <= room);
     } while (decide(&f, FF_FINS_MORE, 0));
     /* a stream has no byte that says nothing */
     return f.range.in == f.range.end && bytes[byte_count - 1] ? (int)count : FF_ERR_FORMAT;
@@ -194,6 +199,7 @@ static void put_fin(fins *f, const ff_fin_vertex *before, const ff_fin_vertex *v
                     uint32_t length)
 {
     step last = { 0, 0, 0 };
+    FF_ASSERT(length >= 2);
     for (uint32_t i = 0; i < length; i++) {
         const ff_fin_vertex *from = i ? &vertex[i - 1] : before, *to = &vertex[i];
         step s = { to->column - from->column, to->up_q2 - from->up_q2,

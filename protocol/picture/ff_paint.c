@@ -40,6 +40,7 @@ static void mean_of(uint8_t edge[B][3], uint32_t sum[3])
 static void expect(uint8_t left[B][3], uint8_t above[B][3], uint8_t rgb[64][3])
 {
     uint32_t sum[3] = { 0, 0, 0 }, parts = left && above ? 16 : 8;
+    FF_ASSERT(left || above);
     if (left) mean_of(left, sum);
     if (above) mean_of(above, sum);
     for (unsigned c = 0; c < 3; c++) {
@@ -57,6 +58,7 @@ static void expect(uint8_t left[B][3], uint8_t above[B][3], uint8_t rgb[64][3])
 
 void ff_paint_left(const ff_picture *p, int32_t value[3][64])
 {
+    FF_ASSERT(p->step_q4[0] > 0);
     for (unsigned plane = 0; plane < 3; plane++) {
         int16_t whole[64];
         for (unsigned z = 0; z < 64; z++)
@@ -69,6 +71,7 @@ static void go_block(ff_paint *paint, unsigned column, unsigned row, int is_left
 {
     ff_paint_room *room = paint->room;
     ff_paint_column *above = &room->column[column];
+    FF_ASSERT(column < paint->columns && row < paint->rows);
     uint8_t texel[64][3];
     int32_t value[3][64] = { { 0 } };
     ff_picture_sizes here;
@@ -96,6 +99,7 @@ static void go_block(ff_paint *paint, unsigned column, unsigned row, int is_left
 static unsigned take_there(ff_paint *paint, unsigned column, unsigned row, unsigned context)
 {
     unsigned bit = 0;
+    FF_ASSERT(context < 16);
 #ifdef FF_ENCODER
     if (paint->source) bit = paint->source->there[row * paint->columns + column];
 #endif

@@ -138,6 +138,7 @@ static int take_corners(const ff_terrain_info *info, taking *t, uint16_t *height
 static void end_side(taking *t)
 {
     const uint8_t *next = ff_range_next(&t->range);
+    FF_ASSERT(t->side < FF_SIDE_COUNT);
     if (!next) {
         refuse(t, FF_ERR_TRUNCATED);
         next = t->left.end;
@@ -151,6 +152,7 @@ static void end_side(taking *t)
 static int take_side(void *context, unsigned side, uint32_t points)
 {
     taking *t = context;
+    FF_ASSERT(side <= FF_SIDE_COUNT && t->left.at <= t->left.end);
     if (t->side < FF_SIDE_COUNT) end_side(t);
     t->side = FF_SIDE_COUNT;
     if (side == FF_SIDE_COUNT) {
@@ -197,6 +199,7 @@ static void take_points(const ff_terrain_info *info, const uint16_t *parent, tak
     ff_points points = { .height = coded ? take_height : take_word,
                          .side = coded && res->apart ? take_side : NULL,
                          .context = t };
+    FF_ASSERT(parent || !res->apart);
     if (coded && res->apart == FF_SIDES_MEASURED) refuse(t, take_lengths(info, t));
     if (coded && !res->apart) ff_range_read(&t->range, t->left.at, ff_payload_left(&t->left));
     if (t->rc != FF_OK) return;

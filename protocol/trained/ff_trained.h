@@ -119,6 +119,7 @@ static inline void ff_trained_lengths_of(const ff_terrain_info *info, const uint
                                          uint8_t length[4])
 {
     uint32_t all = 0, width = ff_trained_length_bits(info);
+    FF_ASSERT(4 * width <= 32 && 8 * ff_trained_lengths(info) >= 4 * width);
     for (size_t i = 0; i < ff_trained_lengths(info); i++) all |= (uint32_t)bytes[i] << 8 * i;
     for (unsigned i = 0; i < 4; i++, all >>= width)
         length[i] = (uint8_t)(all & ((1u << width) - 1));

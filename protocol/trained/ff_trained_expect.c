@@ -285,6 +285,7 @@ static FF_ALWAYS_INLINE void make_point(const walk *w, enum ff_trained_class kin
 
 static int begin(const walk *w, unsigned side, uint32_t points)
 {
+    FF_ASSERT(side <= FF_SIDE_COUNT);
     return w->points->side ? w->points->side(w->points->context, side, points) : 0;
 }
 
@@ -292,6 +293,7 @@ static int begin(const walk *w, unsigned side, uint32_t points)
 static void make_side(walk *w, enum ff_side side, int32_t column, int32_t row, unsigned axis,
                       int inward)
 {
+    FF_ASSERT(column <= w->last[0] && row <= w->last[1]);
     w->is_known = begin(w, side, (uint32_t)w->coded[axis] / 2);
     int32_t along = axis ? w->pitch : 1, away = axis ? inward : inward * w->pitch;
     uint32_t cells = (w->side - 1) / (2 * w->step), apart = 2 * w->step * (axis ? w->side : 1);
@@ -385,6 +387,7 @@ static void fill_error_margin(const walk *w)
 static void open_copy(const walk *w)
 {
     uint32_t pitch = (uint32_t)w->pitch;
+    FF_ASSERT(w->last[0] >= 2 && w->last[1] >= 2);
     if (w->with_errors) memset(w->error - MARGIN * (pitch + 1), 0, (size_t)pitch * pitch);
     for (int32_t row = 0; row <= w->last[1]; row += 2)
         for (int32_t column = 0; column <= w->last[0]; column += 2)

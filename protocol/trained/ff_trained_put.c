@@ -60,6 +60,7 @@ static void begin_stream(putting *to)
 static void end_side(putting *to)
 {
     int bytes = ff_range_end_before(&to->range);
+    FF_ASSERT(to->side < FF_SIDE_COUNT);
     to->is_full |= bytes < 0 || bytes >> to->length_bits;
     if (to->is_full) return;
     to->out += bytes;
@@ -69,6 +70,7 @@ static void end_side(putting *to)
 static int put_side(void *context, unsigned side, uint32_t points)
 {
     putting *to = context;
+    FF_ASSERT(side <= FF_SIDE_COUNT && to->out <= to->end);
     if (to->side < FF_SIDE_COUNT) end_side(to);
     to->side = points ? side : FF_SIDE_COUNT;
     begin_stream(to);

@@ -14,6 +14,7 @@ typedef struct parts {
 static int take_parts(const ff_terrain_info *info, ff_payload in, parts *out)
 {
     ff_residuals marks;
+    FF_ASSERT(ff_payload_left(&in) >= 1);
     int rc, form = (*in.at++ & FF_HEAD_ERRORS) >> FF_HEAD_ERRORS_SHIFT;
     size_t lengths = ff_trained_lengths(info);
     out->errors = in.at;
@@ -33,6 +34,7 @@ static int take_parts(const ff_terrain_info *info, ff_payload in, parts *out)
 
 static uint8_t *put(uint8_t *to, const uint8_t *bytes, size_t count)
 {
+    FF_ASSERT(count <= FF_PAYLOAD_BYTES_MAX);
     if (count) memcpy(to, bytes, count);
     return to + count;
 }
@@ -42,6 +44,7 @@ int ff_trained_without_sides(const ff_terrain_info *info, const uint8_t *payload
 {
     parts p;
     uint8_t *to = out + 1;
+    FF_ASSERT(sides >> FF_SIDE_COUNT == 0);
     if (bytes < 1) return FF_ERR_TRUNCATED;
     if (bytes > FF_PAYLOAD_BYTES_MAX) return FF_ERR_FORMAT;
     if (payload[0] & (FF_TRAINED_WORDS | FF_TRAINED_SIDES)) return 0;
@@ -54,5 +57,6 @@ int ff_trained_without_sides(const ff_terrain_info *info, const uint8_t *payload
         p.sides += p.length[side];
     }
     to = put(to, p.rest.at, ff_payload_left(&p.rest));
+    FF_ASSERT((size_t)(to - out) + ff_trained_lengths(info) <= bytes);
     return (int)(to - out);
 }

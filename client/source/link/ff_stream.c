@@ -235,6 +235,7 @@ static unsigned sides_known(const ff_stream *stream, const ff_request *request)
         if (beside != FF_KEY_NONE && ff_requests_out(intake->requests, FF_KIND_REFINEMENT, beside))
             sides |= 1u << side;
     }
+    FF_ASSERT(sides >> FF_SIDE_COUNT == 0);
     return sides;
 }
 
