@@ -40,3 +40,24 @@ void session_greet(ff_session *session)
     assert_true(session_tell(session, &(ff_message){ .type = FF_MSG_CAPS }) > 0);
     assert_int_equal(session_heard(session).type, FF_MSG_WELCOME);
 }
+
+ff_message session_deep_view(void)
+{
+    ff_message ask = { .type = FF_MSG_GET, .kind = FF_KIND_VIEW };
+    ask.u.view = (ff_get_view){ .id = 2,
+                                .pitch = (uint16_t)-16000,
+                                .position_wu = { 1000 * FF_WU_PER_METRE, 1000 * FF_WU_PER_METRE,
+                                                 5000 * FF_WU_PER_METRE },
+                                .focal_q8 = 256 * 256,
+                                .width = 256,
+                                .height = 256,
+                                .measure = FF_VIEW_BY_PIXELS,
+                                .allowed_q8 = 1,
+                                .reach_wu = INT32_MAX,
+                                .fine_wu = INT32_MAX,
+                                .coarse = 1,
+                                .bytes_max = UINT32_MAX,
+                                .roots = 1,
+                                .count = 1 };
+    return ask;
+}

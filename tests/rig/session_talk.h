@@ -15,5 +15,7 @@ static inline int session_tell(ff_session *session, const ff_message *message)
 ff_message session_heard(ff_session *session);
 /* HELLO and CAPS, and the WELCOME that answers them. */
 void session_greet(ff_session *session);
+/* Asks for tile 0 whole, from its root down, as one view. */
+ff_message session_deep_view(void);
 
 #endif

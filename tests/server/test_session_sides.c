@@ -75,28 +75,6 @@ static void a_node_comes_without_the_sides_its_client_has(void **state)
     ff_session_destroy(session);
 }
 
-/* All of the ground below the root, as one view. */
-static ff_message deep_view(void)
-{
-    ff_message ask = { .type = FF_MSG_GET, .kind = FF_KIND_VIEW };
-    ask.u.view = (ff_get_view){ .id = 2,
-                                .pitch = (uint16_t)-16000,
-                                .position_wu = { 1000 * FF_WU_PER_METRE, 1000 * FF_WU_PER_METRE,
-                                                 5000 * FF_WU_PER_METRE },
-                                .focal_q8 = 256 * 256,
-                                .width = 256,
-                                .height = 256,
-                                .measure = FF_VIEW_BY_PIXELS,
-                                .allowed_q8 = 1,
-                                .reach_wu = INT32_MAX,
-                                .fine_wu = INT32_MAX,
-                                .coarse = 1,
-                                .bytes_max = UINT32_MAX,
-                                .roots = 1,
-                                .count = 1 };
-    return ask;
-}
-
 static int has_come(const ff_key *list, unsigned count, ff_key key)
 {
     while (count > 0 && list[count - 1] != key) count--;
@@ -108,7 +86,7 @@ static void no_side_goes_twice_in_a_view(void **state)
     static ff_parts parts;
     static ff_key come[FF_PARTS_MAX];
     unsigned count = 0, left_out = 0;
-    ff_message ask = deep_view();
+    ff_message ask = session_deep_view();
     (void)state;
     ff_session *session = greeted();
     session_tell(session, &ask);

@@ -82,32 +82,11 @@ static void a_long_part_does_not_wait_for_a_face(void **state)
     ff_session_destroy(session);
 }
 
-static ff_message deep_view(void)
-{
-    ff_message ask = { .type = FF_MSG_GET, .kind = FF_KIND_VIEW };
-    ask.u.view = (ff_get_view){ .id = 2,
-                                .pitch = (uint16_t)-16000,
-                                .position_wu = { 1000 * FF_WU_PER_METRE, 1000 * FF_WU_PER_METRE,
-                                                 5000 * FF_WU_PER_METRE },
-                                .focal_q8 = 256 * 256,
-                                .width = 256,
-                                .height = 256,
-                                .measure = FF_VIEW_BY_PIXELS,
-                                .allowed_q8 = 1,
-                                .reach_wu = INT32_MAX,
-                                .fine_wu = INT32_MAX,
-                                .coarse = 1,
-                                .bytes_max = UINT32_MAX,
-                                .roots = 1,
-                                .count = 1 };
-    return ask;
-}
-
 /* How many of `count` views, asked for one after the other, bring more than they name. */
 static unsigned searched(ff_session *session, unsigned count, int64_t now_us)
 {
     unsigned with_more = 0;
-    ff_message ask = deep_view(), part;
+    ff_message ask = session_deep_view(), part;
     for (unsigned i = 0; i < count; i++) {
         unsigned parts = 0;
         session_tell_at(session, &ask, now_us);
@@ -144,7 +123,7 @@ static void an_unreadable_part_is_empty(void **state)
     assert_true(bytes > 0);
     uint8_t *victim = pack_bytes + (payload - pack_bytes);
     ff_session *session = greeted(0);
-    ff_message ask = deep_view();
+    ff_message ask = session_deep_view();
     *victim ^= 1;
     ask.u.view.allowed_q8 = INT32_MAX;
     session_tell(session, &ask);
