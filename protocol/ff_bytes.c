@@ -106,7 +106,7 @@ void ff_read_terrain(ff_reader *in, ff_terrain_info *info)
     info->origin_y_mm = ff_read_signed(in, 8);
     info->curve_q60 = (uint32_t)ff_read_bytes(in, 4);
     info->checksum = (uint32_t)ff_read_bytes(in, 4);
-    info->first_tile = info->entered = 0;
+    info->first_tile = info->entered = info->images_whole = 0;
     info->west_wu = info->south_wu = 0;
     if (in->error == FF_OK) in->error = ff_terrain_check(info);
 }

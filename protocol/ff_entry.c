@@ -39,6 +39,18 @@ ff_terrain_info ff_entry_terrain(const ff_terrain_info *whole, uint32_t level)
     return info;
 }
 
+uint64_t ff_entry_nodes(const ff_terrain_info *whole, uint32_t level)
+{
+    ff_terrain_info info = *whole;
+    ff_sheet samples = ff_shape_sheet_samples(whole), nodes;
+
+    FF_ASSERT(level < ff_image_levels(whole) && level < whole->tile_log2);
+    info.tile_log2 = (uint8_t)(info.tile_log2 - level);
+    ff_shape_cover(&info, samples.x, samples.y);
+    nodes = ff_shape_sheet_tiles(&info);
+    return (uint64_t)nodes.x * nodes.y;
+}
+
 ff_key ff_entry_key(const ff_terrain_info *whole, const ff_terrain_info *entered, ff_key key)
 {
     uint32_t level = entered->entered, within = (1u << level) - 1u;

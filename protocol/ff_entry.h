@@ -16,6 +16,8 @@ uint32_t ff_entry_level(const ff_terrain_info *whole, int32_t reach_wu);
 /* The terrain entered there; level below ff_terrain_levels. Its place among others (first_tile) is
  * that of the whole: who holds several gives it another. */
 ff_terrain_info ff_entry_terrain(const ff_terrain_info *whole, uint32_t level);
+/* Nodes of a level, of heights or images, that have ground. */
+uint64_t ff_entry_nodes(const ff_terrain_info *whole, uint32_t level);
 /* The key in the whole of a node of the entered terrain. */
 ff_key ff_entry_key(const ff_terrain_info *whole, const ff_terrain_info *entered, ff_key key);
 

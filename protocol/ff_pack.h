@@ -111,6 +111,8 @@ static inline const ff_pack *ff_pack_of(const ff_pack *pack, ff_key key)
  * (ff_entry_level), no deeper than every node has an image where there are images; 0: the top. A
  * part of another pack may lack ground there. */
 uint32_t ff_pack_entry_level(const ff_pack *pack, int32_t reach_wu);
+/* Levels 0..that-1 have an image wherever there is ground; 0: the root's may be missing. */
+uint32_t ff_pack_images_whole(const ff_pack *pack);
 /* A view on `whole`, which stays where it is, with the nodes of a level as tiles: for reading
  * records and what it says of itself, and to be joined with others. */
 void ff_pack_enter(const ff_pack *whole, uint32_t level, ff_pack_root_fn *make_root, void *context,

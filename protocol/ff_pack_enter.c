@@ -6,12 +6,10 @@
 /* 1 when every node of a level that has ground has an image of its own. */
 static int has_images(const ff_pack *pack, uint32_t level)
 {
-    ff_terrain_info entered = ff_entry_terrain(&pack->header.info, level);
-
     for (uint32_t i = 0; i < pack->header.section_count; i++) {
         const ff_pack_section *section = &pack->header.section[i];
         if (section->kind == FF_SECTION_TEXTURE && section->level == level)
-            return section->index.records == ff_shape_tiles(&entered);
+            return section->index.records == ff_entry_nodes(&pack->header.info, level);
     }
     return 0;
 }
@@ -23,6 +21,19 @@ uint32_t ff_pack_entry_level(const ff_pack *pack, int32_t reach_wu)
 
     while (level && info->texture_log2 && !has_images(pack, level)) level--;
     return level;
+}
+
+uint32_t ff_pack_images_whole(const ff_pack *pack)
+{
+    const ff_pack *stored = pack->stored ? pack->stored : pack;
+    const ff_terrain_info *info = &stored->header.info;
+    uint32_t levels = 0, entered = pack->header.info.entered;
+
+    while (info->texture_log2 && levels < info->texture_levels && levels < ff_image_levels(info) &&
+           has_images(stored, levels))
+        levels++;
+    FF_ASSERT(levels <= info->texture_levels);
+    return levels > entered ? levels - entered : 0;
 }
 
 void ff_pack_enter(const ff_pack *whole, uint32_t level, ff_pack_root_fn *make_root, void *context,

@@ -62,6 +62,9 @@ typedef struct ff_terrain_info {
     /* In no pack either: how many levels of it above these tiles are left out (ff_entry.h). Where
      * some are, roots are coded exactly, whatever max_error is. */
     uint8_t entered;
+    /* Nor this: levels 0..images_whole-1 have an image wherever there is ground, as its server
+     * says; 0: nobody says so. */
+    uint8_t images_whole;
 } ff_terrain_info;
 
 /* Columns and rows of cells of a payload's grid that have ground, from the south-west: of a node's

@@ -28,9 +28,22 @@ void ff_refusals_note(ff_refusals *refusals, unsigned kind, ff_key key, int fina
         refusals->entry[at].tries++;
 }
 
+static int is_at_or_above(ff_key above, ff_key key)
+{
+    uint32_t levels = ff_key_level(key) - ff_key_level(above);
+    return ff_key_tile(above) == ff_key_tile(key) && ff_key_level(above) <= ff_key_level(key) &&
+           ff_key_code(above) == (uint32_t)((uint64_t)ff_key_code(key) >> 2 * levels);
+}
+
 int ff_refusals_final(const ff_refusals *refusals, unsigned kind, ff_key key)
 {
-    int at = find(refusals, kind, key);
-    FF_ASSERT(at < 0 || refusals->entry[at].tries <= FF_REFUSALS_TRIES);
-    return at >= 0 && refusals->entry[at].tries >= FF_REFUSALS_TRIES;
+    FF_ASSERT(kind < FF_KIND_COUNT);
+    for (unsigned i = 0; i < FF_REFUSALS_KEPT; i++) {
+        const ff_refusal *entry = &refusals->entry[i];
+        FF_ASSERT(entry->tries <= FF_REFUSALS_TRIES);
+        if (entry->tries < FF_REFUSALS_TRIES || entry->kind != kind) continue;
+        if (entry->key == key || (ff_kind[kind].has_image && is_at_or_above(entry->key, key)))
+            return 1;
+    }
+    return 0;
 }

@@ -19,7 +19,8 @@ typedef struct ff_refusals {
 
 /* `final`: it need not be tried again. */
 void ff_refusals_note(ff_refusals *refusals, unsigned kind, ff_key key, int final);
-/* 1 when the key was refused FF_REFUSALS_TRIES times: it is not asked for again. */
+/* 1 when the key was refused FF_REFUSALS_TRIES times: it is not asked for again, and no image below
+ * an image is: it may be a difference to it. */
 int ff_refusals_final(const ff_refusals *refusals, unsigned kind, ff_key key);
 
 #endif

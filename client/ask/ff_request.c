@@ -390,6 +390,18 @@ static enum ff_request_class last_class(const ff_request_counts *counts,
     return idle ? FF_CLASS_RESERVE : FF_CLASS_PREFETCH;
 }
 
+/* An image may be a difference to the one above it, which goes before it. */
+static ff_request *first_above(ff_requests *requests, ff_request *request)
+{
+    while (ff_kind[request->kind].has_image && level_of(request) > 0) {
+        ff_request *above = find(requests, request->kind, ff_key_parent(request->key));
+        if (!above || above->state != FF_REQUEST_QUEUED) break;
+        request = above;
+    }
+    FF_ASSERT(request->state == FF_REQUEST_QUEUED);
+    return request;
+}
+
 int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_max,
                      uint32_t bytes_in_flight_max, int prefetch, ff_request *copy)
 {
@@ -407,6 +419,7 @@ int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_m
             best = request;
     }
     if (best) {
+        best = first_above(requests, best);
         leave_state(requests, best);
         best->state = FF_REQUEST_SENT;
         best->sent_us = now_us;

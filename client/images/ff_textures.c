@@ -119,10 +119,9 @@ int ff_textures_touch(ff_textures *textures, ff_key key)
     return slot != NULL;
 }
 
-/* The image one level below `held` (NULL: the root's) on the way to `finest`. */
-static ff_key next_finer(const ff_texture_slot *held, ff_key finest)
+/* The image of that level on the way to `finest`. */
+static ff_key on_the_way(ff_key finest, uint32_t level)
 {
-    uint32_t level = held ? ff_key_level(held->key) + 1 : 0;
     FF_ASSERT(level <= ff_key_level(finest));
     while (ff_key_level(finest) > level) finest = ff_key_parent(finest);
     return finest;
@@ -409,9 +408,33 @@ static void draw(wisher *w, const ff_texture_slot *held)
     if (missing.priority > w->missing.priority) w->missing = missing;
 }
 
-/* What comes next on the way to a wanted image is wished for: 1 when there is such. That there is
- * one only the image above it tells, so it is no more than one at a time. */
-static int look_for(wisher *w, ff_key finest)
+/* All on the way to `finest` from a level on are wished for, down to level `to`, so that they come
+ * in one round trip: none before those above it. */
+static void wish_down(wisher *w, ff_key finest, uint32_t from, uint32_t to)
+{
+    uint32_t least = UINT32_MAX;
+    FF_ASSERT(from <= to && to <= ff_key_level(finest));
+    for (uint32_t level = from; level <= to; level++) {
+        ff_texture_wish wish = wish_of(w, on_the_way(finest, level));
+        if (wish.priority > least) wish.priority = least;
+        least = wish.priority;
+        insert(w->list, &w->count, w->capacity, wish);
+    }
+}
+
+/* The last level that is wished for on the way to an image that a node of level `most` wants, from
+ * level `next` on. Below those that the ground has all images of only the image above one tells
+ * that it is there; below the node's own who draws its children knows better what shows. */
+static uint32_t last_level(const wisher *w, ff_key finest, uint32_t next, uint32_t most)
+{
+    uint32_t whole = ff_tree_ground(w->tree, finest)->images_whole, level = ff_key_level(finest);
+    if (level >= whole) level = whole ? whole - 1 : 0;
+    if (level > most) level = most;
+    return level > next ? level : next;
+}
+
+/* What is lacking on the way to a wanted image is wished for: 1 when there is such. */
+static int look_for(wisher *w, ff_key finest, uint32_t most)
 {
     const ff_texture_slot *held = find_nearest(w->textures, finest);
     if (held) {
@@ -419,9 +442,9 @@ static int look_for(wisher *w, ff_key finest)
         draw(w, held);
         if (held->key == finest) return 0;
     }
-    ff_key next = next_finer(held, finest);
-    if (held && held->bare >> ff_key_quadrant(next) & 1u) return 0;
-    insert(w->list, &w->count, w->capacity, wish_of(w, next));
+    uint32_t next = held ? ff_key_level(held->key) + 1 : 0;
+    if (held && held->bare >> ff_key_quadrant(on_the_way(finest, next)) & 1u) return 0;
+    wish_down(w, finest, next, last_level(w, finest, next, most));
     return 1;
 }
 
@@ -452,7 +475,7 @@ uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff
         unsigned parts = ff_textures_wanted(textures, tree, &drawn[i], &look, textures->wear);
         int lacks = 0;
         for (unsigned part = 0; part < parts; part++)
-            lacks |= look_for(&w, textures->wear[part].image);
+            lacks |= look_for(&w, textures->wear[part].image, ff_key_level(drawn[i].key));
         textures->lacking += (unsigned)lacks;
     }
     FF_ASSERT(w.in_use <= textures->held && textures->held <= textures->slot_count);

@@ -52,7 +52,7 @@ typedef struct ff_textures {
     uint32_t lacking; /* drawn nodes whose own image is not held, though it is there */
 } ff_textures;
 
-/* A wish for an image: the one that comes next on the way down to a drawn node. */
+/* A wish for an image: one that lacks on the way down to what a drawn node wants. */
 typedef struct ff_texture_wish {
     ff_key key;
     uint32_t priority;

@@ -97,6 +97,8 @@ void ff_tree_set_sources(ff_tree *tree, uint32_t ground, uint8_t mask)
     FF_ASSERT(ground < tree->ground_count);
     if (!tree->lacks) return;
     tree->sources[ground] = mask;
+    /* one of them may lack an image that another has, and their answers overtake each other */
+    if (mask & (mask - 1)) tree->ground[ground].images_whole = 0;
     for (uint32_t slot = 0; slot < tree->node_count; slot++) {
         const ff_node *node = &tree->node[slot];
         if (ff_node_held(node) && ff_terrain_has_node(&tree->ground[ground], node->key))

@@ -69,7 +69,8 @@ FF_STATIC_ASSERT(2 + FF_PAYLOAD_BYTES_MAX <= FF_MESSAGE_BODY_MAX);
     X(WHOLE,    5, 4, 4 * FF_WELCOME_GROUNDS) /* u32 of each: checksum of the whole that it is of */ \
     X(TERRAINS, 6, FF_TERRAIN_BYTES, FF_TERRAIN_BYTES * (FF_WELCOME_GROUNDS - 1)) /* more terrains */ \
     X(ENTRY,    7, 1, FF_WELCOME_GROUNDS) /* u8 of each: levels above its tiles that are left out */ \
-    X(LACKS,    8, 4, 4) /* u32 bits of FF_LACKS_: what nobody draws here */
+    X(LACKS,    8, 4, 4) /* u32 bits of FF_LACKS_: what nobody draws here */ \
+    X(IMAGES,   9, 1, FF_WELCOME_GROUNDS) /* u8 of each: ff_terrain_info.images_whole */
 /* clang-format on */
 
 enum ff_caps_entry {

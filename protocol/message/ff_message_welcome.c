@@ -59,19 +59,24 @@ static int read_next(const uint8_t *bytes, row *r, ff_terrain_info *info)
     return rc;
 }
 
-/* Each ground says how many levels are left out above it, or none does; it has room for them. */
-static int entry_ok(const ff_welcome *welcome, unsigned count)
+/* Each ground says how many levels are left out above it, or none does; it has room for them. The
+ * same of levels with all images. */
+static int levels_ok(const ff_welcome *welcome, unsigned count)
 {
     const uint8_t *value;
-    int told = ff_list_find(welcome->more, FF_WELCOME_ENTRY, &value);
-    if (told < 0) return 1;
+    int entries = ff_list_find(welcome->more, FF_WELCOME_ENTRY, &value),
+        images = ff_list_find(welcome->more, FF_WELCOME_IMAGES, &value);
+    if ((entries >= 0 && (unsigned)entries != count) || (images >= 0 && (unsigned)images != count))
+        return 0;
     for (unsigned i = 0; i < count; i++) {
         ff_terrain_info info;
         uint32_t whole;
         ff_welcome_ground(welcome, i, &info, &whole);
-        if (info.entered > FF_KEY_LEVEL_MAX + info.node_log2 - info.tile_log2) return 0;
+        if (info.entered > FF_KEY_LEVEL_MAX + info.node_log2 - info.tile_log2 ||
+            info.images_whole > info.texture_levels)
+            return 0;
     }
-    return (unsigned)told == count;
+    return 1;
 }
 
 int ff_welcome_count(const ff_welcome *welcome)
@@ -89,7 +94,7 @@ int ff_welcome_count(const ff_welcome *welcome)
     if (ff_list_find(welcome->more, FF_WELCOME_WHOLE, &value) > 0 &&
         entries(welcome->more, FF_WELCOME_WHOLE, 4, &value) != count)
         return FF_ERR_RANGE;
-    return entry_ok(welcome, count) ? (int)count : FF_ERR_RANGE;
+    return levels_ok(welcome, count) ? (int)count : FF_ERR_RANGE;
 }
 
 void ff_welcome_ground(const ff_welcome *welcome, unsigned number, ff_terrain_info *info,
@@ -106,6 +111,8 @@ void ff_welcome_ground(const ff_welcome *welcome, unsigned number, ff_terrain_in
     }
     *whole = info->checksum;
     if (number < entries(welcome->more, FF_WELCOME_ENTRY, 1, &value)) info->entered = value[number];
+    if (number < entries(welcome->more, FF_WELCOME_IMAGES, 1, &value))
+        info->images_whole = value[number];
     if (!entries(welcome->more, FF_WELCOME_WHOLE, 4, &value)) return;
     ff_reader in = { value + 4 * number, value + 4 * number + 4, FF_OK };
     *whole = (uint32_t)ff_read_bytes(&in, 4);

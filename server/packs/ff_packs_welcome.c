@@ -20,11 +20,12 @@ static void end(const row *r, enum ff_welcome_entry type, ff_writer *list)
 ff_list ff_packs_welcome(const ff_pack *first, uint32_t lacks, uint8_t bytes[FF_CAPS_BYTES_MAX])
 {
     row wholes = { .needed = 0 }, rest = { .needed = 0 }, entries = { .needed = 0 },
-        not_drawn = { .needed = lacks != 0 };
+        images = { .needed = 0 }, not_drawn = { .needed = lacks != 0 };
     ff_writer list = { bytes, bytes + FF_CAPS_BYTES_MAX, FF_OK };
     begin(&wholes);
     begin(&rest);
     begin(&entries);
+    begin(&images);
     begin(&not_drawn);
     ff_write_bytes(&not_drawn.out, lacks, 4);
     for (const ff_pack *pack = first; pack; pack = pack->next) {
@@ -36,11 +37,15 @@ ff_list ff_packs_welcome(const ff_pack *first, uint32_t lacks, uint8_t bytes[FF_
         rest.needed |= pack != first;
         ff_write_bytes(&entries.out, info->entered, 1);
         entries.needed |= info->entered > 0;
+        uint32_t levels = ff_pack_images_whole(pack);
+        ff_write_bytes(&images.out, levels, 1);
+        images.needed |= levels > 0;
     }
     end(&wholes, FF_WELCOME_WHOLE, &list);
     end(&rest, FF_WELCOME_TERRAINS, &list);
     end(&entries, FF_WELCOME_ENTRY, &list);
     end(&not_drawn, FF_WELCOME_LACKS, &list);
+    end(&images, FF_WELCOME_IMAGES, &list);
     FF_ASSERT(list.error == FF_OK);
     return (ff_list){ bytes, (uint32_t)(list.at - bytes) };
 }

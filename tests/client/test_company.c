@@ -1,5 +1,5 @@
-/* When requests leave, and in which order: what is asked for ahead waits for company,
- * and what is expected of answers follows those that came. */
+/* When requests leave, and in which order: what is asked for ahead waits for company, an image goes
+ * behind those above it, and what is expected of answers follows those that came. */
 #include "../../client/source/link/ff_stream.h"
 
 #include <setjmp.h>
@@ -134,6 +134,33 @@ static void a_window_is_not_full_of_what_only_waits_for_company(void **state)
     assert_int_equal(r->stream.link.window_full, 1);
 }
 
+/* ---- images, which may be differences to those above ---- */
+
+static ff_key sent(rig *r)
+{
+    ff_request out;
+    assert_true(ff_requests_next(&r->requests, 0, IN_FLIGHT, 1 << 20, 0, &out));
+    return out.key;
+}
+
+static void an_image_goes_behind_those_above_it(void **state)
+{
+    rig *r = *state;
+    const ff_key root = ff_key_make(0, 0, 0), child = ff_key_child(root, 3),
+                 grandchild = ff_key_child(child, 1);
+    ff_requests_rank_begin(&r->requests);
+    ff_requests_want(&r->requests, FF_KIND_TEXTURE, grandchild, FF_CLASS_IN_VIEW, 9000, 0, NULL);
+    ff_requests_want(&r->requests, FF_KIND_TEXTURE, child, FF_CLASS_IN_VIEW, 100, 0, NULL);
+    ff_requests_want(&r->requests, FF_KIND_TEXTURE, root, FF_CLASS_IN_VIEW, 10, 0, NULL);
+    ff_requests_want(&r->requests, FF_KIND_REFINEMENT, root, FF_CLASS_IN_VIEW, 50, 0, NULL);
+    ff_requests_rank_end(&r->requests);
+    assert_int_equal(sent(r), root);
+    assert_int_equal(sent(r), child);
+    assert_int_equal(sent(r), grandchild);
+    assert_int_equal(r->requests.counts.of[FF_KIND_TEXTURE].sent, 3);
+    assert_int_equal(sent(r), root);
+}
+
 static void the_first_answer_tells_how_long_others_will_be(void **state)
 {
     rig *r = *state;
@@ -173,6 +200,7 @@ int main(void)
         TEST(what_is_in_view_never_waits),
         TEST(who_turns_does_not_wait),
         TEST(a_window_is_not_full_of_what_only_waits_for_company),
+        TEST(an_image_goes_behind_those_above_it),
         TEST(the_first_answer_tells_how_long_others_will_be),
     };
 #undef TEST

@@ -99,9 +99,114 @@ static void roots_below_levels_left_out_bring_what_is_above_them(void **state)
         rig.desc.place_known = 1;
         rig_client(&rig, 8 * MB);
         assert_true(rig_settle(&rig, 600));
-        assert_int_equal(ff_client_terrain(rig.client)->entered, entered);
+        const ff_terrain_info *info = ff_client_terrain(rig.client);
+        assert_int_equal(info->entered, entered);
+        assert_int_equal(info->images_whole, rig.pack.header.info.texture_levels - entered);
         assert_true(check_held(&rig) >= 1);
         assert_int_equal(rig_stats(&rig).requests_failed, 0);
+        rig_close(&rig);
+    }
+}
+
+/* What a client wishes for that draws these nodes and holds no image. */
+static uint32_t wishes_of_none(const client_rig *rig, ff_textures *none, ff_texture_wish *list,
+                               uint32_t capacity)
+{
+    const ff_client *client = rig->client;
+    const ff_drawn *drawn;
+    uint32_t drawn_count = ff_tree_drawn(client->tree, &drawn);
+    int changed = 0;
+    none->info = client->textures.info;
+    none->across = client->textures.across;
+    none->slot_count = none->texture_count = (uint16_t)capacity;
+    uint32_t count = ff_textures_wishes(none, client->tree, drawn, drawn_count, &client->last_view,
+                                        &client->desc.quality, list, capacity, &changed);
+    assert_int_equal(none->lacking, drawn_count);
+    return count;
+}
+
+static int is_wished_for(const ff_texture_wish *list, uint32_t count, ff_key key)
+{
+    uint32_t i = 0;
+    while (i < count && list[i].key != key) i++;
+    return i < count;
+}
+
+/* The wanted images of drawn nodes, as far down as all of a level are there and the node's own
+ * level, and no others but those above them. */
+static void check_wishes(const client_rig *rig, unsigned whole)
+{
+    ff_wear wear[FF_WEAR_MAX];
+    ff_textures none = { .wear = wear };
+    ff_texture_wish list[256];
+    const ff_drawn *drawn;
+    uint32_t count = wishes_of_none(rig, &none, list, 256), finest = 0,
+             drawn_count = ff_tree_drawn(ff_client_tree(rig->client), &drawn);
+    const ff_texel_look look = ff_textures_look(&none, &rig->client->last_view.frame,
+                                                &rig->client->last_view.camera);
+    for (uint32_t i = 0; i < drawn_count; i++) {
+        unsigned parts = ff_textures_wanted(&none, ff_client_tree(rig->client), &drawn[i], &look,
+                                            wear);
+        for (unsigned part = 0; part < parts; part++) {
+            ff_key image = wear[part].image;
+            while (ff_key_level(image) > 0 && (ff_key_level(image) >= whole ||
+                                               ff_key_level(image) > ff_key_level(drawn[i].key)))
+                image = ff_key_parent(image);
+            assert_true(is_wished_for(list, count, image));
+            if (ff_key_level(image) > finest) finest = ff_key_level(image);
+        }
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        assert_true(ff_key_level(list[i].key) <= finest);
+        assert_false(is_wished_for(list, i, list[i].key));
+        if (ff_key_level(list[i].key))
+            assert_true(is_wished_for(list, i, ff_key_parent(list[i].key)));
+    }
+}
+
+/* So one round trip brings them, and nothing is asked for that there is not: of ground in all its
+ * detail, and where nodes are as coarse as their images are not. */
+static void images_that_are_all_there_are_wished_for_at_once(void **state)
+{
+    (void)state;
+    for (int depth = 0; depth < 3; depth++) {
+        client_rig rig;
+        open_rig(&rig);
+        rig.desc.quality.depth_max = (uint8_t)depth;
+        rig_client(&rig, 4 * MB);
+        assert_true(rig_settle(&rig, 600));
+        uint32_t count;
+        const ff_terrain_info *ground = ff_tree_grounds(rig.client->tree, &count);
+        assert_int_equal(ground->images_whole, ground->texture_levels);
+        assert_int_equal(ground->texture_levels, 3);
+        for (unsigned whole = 0; whole <= 3; whole++) {
+            ((ff_terrain_info *)ground)->images_whole = (uint8_t)whole;
+            check_wishes(&rig, whole);
+        }
+        rig_close(&rig);
+    }
+}
+
+/* Below an image that does not come nothing could be decoded. */
+static void below_a_damaged_image_nothing_is_asked_for(void **state)
+{
+    (void)state;
+    for (int damaged = 0; damaged < 2; damaged++) {
+        client_rig rig;
+        const uint8_t *payload;
+        open_rig(&rig);
+        for (uint32_t tile = 0; tile < rig.pack.tiles; tile++) {
+            ff_key root = ff_key_make(tile, 0, 0);
+            assert_true(ff_pack_record(&rig.pack, FF_SECTION_TEXTURE, root, &payload) > 0);
+            rig.pack_bytes[payload - rig.pack_bytes] ^= (uint8_t)damaged;
+        }
+        rig_client(&rig, 4 * MB);
+        (void)rig_settle(&rig, 600);
+        const uint32_t asked = rig.asked[FF_KIND_TEXTURE];
+        rig_fly(&rig, 200);
+        assert_true(damaged ? rig.asked[FF_KIND_TEXTURE] == asked
+                            : rig.client->textures.held >= 10);
+        if (damaged) assert_int_equal(rig.client->textures.held, 0);
         rig_close(&rig);
     }
 }
@@ -220,6 +325,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_are_held_as_the_pack_has_them),
+        cmocka_unit_test(images_that_are_all_there_are_wished_for_at_once),
+        cmocka_unit_test(below_a_damaged_image_nothing_is_asked_for),
         cmocka_unit_test(pictures_seen_before_come_back_without_a_request),
         cmocka_unit_test(pictures_go_before_those_above_them),
         cmocka_unit_test(roots_below_levels_left_out_bring_what_is_above_them),

@@ -42,6 +42,7 @@ static void a_still_client_settles_on_what_there_is(void **state)
             client_rig rig;
             uint32_t ground, image;
             open(&rig, stubs);
+            assert_int_equal(ff_pack_images_whole(&rig.pack), stubs ? 2 : 3);
             if (local)
                 rig_local_client(&rig, 8 << 20);
             else

@@ -107,8 +107,9 @@ static void keys_mean_the_same_ground(void **state)
         }
 }
 
-/* WELCOME of two grounds, the entry ENTRY of so many bytes: what comes of it. */
-static int welcomed(const uint8_t *entry, uint32_t count, ff_terrain_info got[2])
+/* WELCOME of two grounds, with an entry of so many bytes: what comes of it. */
+static int welcomed(enum ff_welcome_entry type, const uint8_t *entry, uint32_t count,
+                    ff_terrain_info got[2])
 {
     uint8_t list[256], row[FF_TERRAIN_BYTES], bytes[512];
     ff_terrain_info info = terrain(129, 129);
@@ -116,12 +117,14 @@ static int welcomed(const uint8_t *entry, uint32_t count, ff_terrain_info got[2]
     ff_message message = { .type = FF_MSG_WELCOME }, read;
 
     info.epsg = 32632;
+    info.texture_log2 = 5;
+    info.texture_levels = 2;
     message.u.welcome.version = FF_PROTOCOL_VERSION;
     message.u.welcome.info = info;
     info.origin_x_mm = 10000000;
     ff_write_terrain(&rest, &info);
     ff_list_write(&out, FF_WELCOME_TERRAINS, row, sizeof row);
-    ff_list_write(&out, FF_WELCOME_ENTRY, entry, count);
+    ff_list_write(&out, type, entry, count);
     message.u.welcome.more = (ff_list){ list, (uint32_t)(out.at - list) };
     int used = ff_message_encode(&message, bytes, sizeof bytes);
     assert_true(used > 0);
@@ -138,15 +141,52 @@ static void a_welcome_says_what_is_left_out(void **state)
     ff_terrain_info got[2];
 
     (void)state;
-    assert_int_equal(welcomed((const uint8_t[]){ 3, 0 }, 2, got), FF_OK);
+    assert_int_equal(welcomed(FF_WELCOME_ENTRY, (const uint8_t[]){ 3, 0 }, 2, got), FF_OK);
     assert_int_equal(got[0].entered, 3);
     assert_int_equal(got[1].entered, 0);
-    assert_int_equal(welcomed((const uint8_t[]){ 0, 12 }, 2, got), FF_OK);
+    assert_int_equal(welcomed(FF_WELCOME_ENTRY, (const uint8_t[]){ 0, 12 }, 2, got), FF_OK);
     assert_int_equal(got[1].entered, 12);
-    assert_int_equal(welcomed((const uint8_t[]){ 0, 13 }, 2, got), FF_ERR_RANGE);
-    assert_int_equal(welcomed((const uint8_t[]){ 255, 0 }, 2, got), FF_ERR_RANGE);
-    assert_int_equal(welcomed((const uint8_t[]){ 3 }, 1, got), FF_ERR_RANGE);
-    assert_int_equal(welcomed((const uint8_t[]){ 3, 0, 0 }, 3, got), FF_ERR_RANGE);
+    assert_int_equal(welcomed(FF_WELCOME_ENTRY, (const uint8_t[]){ 0, 13 }, 2, got), FF_ERR_RANGE);
+    assert_int_equal(welcomed(FF_WELCOME_ENTRY, (const uint8_t[]){ 255, 0 }, 2, got), FF_ERR_RANGE);
+    assert_int_equal(welcomed(FF_WELCOME_ENTRY, (const uint8_t[]){ 3 }, 1, got), FF_ERR_RANGE);
+    assert_int_equal(welcomed(FF_WELCOME_ENTRY, (const uint8_t[]){ 3, 0, 0 }, 3, got),
+                     FF_ERR_RANGE);
+}
+
+static void a_welcome_says_down_to_where_all_images_are(void **state)
+{
+    ff_terrain_info got[2];
+
+    (void)state;
+    assert_int_equal(welcomed(FF_WELCOME_IMAGES, (const uint8_t[]){ 2, 0 }, 2, got), FF_OK);
+    assert_int_equal(got[0].images_whole, 2);
+    assert_int_equal(got[1].images_whole, 0);
+    assert_int_equal(welcomed(FF_WELCOME_IMAGES, (const uint8_t[]){ 0, 1 }, 2, got), FF_OK);
+    assert_int_equal(got[1].images_whole, 1);
+    assert_int_equal(welcomed(FF_WELCOME_ENTRY, (const uint8_t[]){ 0, 1 }, 2, got), FF_OK);
+    assert_int_equal(got[0].images_whole, 0);
+    assert_int_equal(welcomed(FF_WELCOME_IMAGES, (const uint8_t[]){ 0, 3 }, 2, got), FF_ERR_RANGE);
+    assert_int_equal(welcomed(FF_WELCOME_IMAGES, (const uint8_t[]){ 2 }, 1, got), FF_ERR_RANGE);
+    assert_int_equal(welcomed(FF_WELCOME_IMAGES, (const uint8_t[]){ 2, 0, 0 }, 3, got),
+                     FF_ERR_RANGE);
+}
+
+/* Down to a grid of one node each way, on ground that ends within nodes, and below heights. */
+static void nodes_that_have_ground_are_counted(void **state)
+{
+    static const uint32_t samples[][2] = { { 65, 65 }, { 129, 65 }, { 100, 180 }, { 2, 77 } };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof samples / sizeof *samples; i++) {
+        ff_terrain_info whole = terrain(samples[i][0], samples[i][1]);
+        for (uint32_t level = 0; level < ff_image_levels(&whole) && level < 6; level++) {
+            uint64_t count = 0;
+            for (uint32_t t = 0; t < ff_shape_tiles(&whole); t++)
+                for (uint32_t code = 0; code < 1u << 2 * level; code++)
+                    count += ff_shape_has_ground(&whole, ff_key_make(t, level, code)) != 0;
+            assert_int_equal(ff_entry_nodes(&whole, level), count);
+        }
+    }
 }
 
 int main(void)
@@ -157,6 +197,8 @@ int main(void)
         cmocka_unit_test(where_there_are_images_every_tile_has_one),
         cmocka_unit_test(keys_mean_the_same_ground),
         cmocka_unit_test(a_welcome_says_what_is_left_out),
+        cmocka_unit_test(a_welcome_says_down_to_where_all_images_are),
+        cmocka_unit_test(nodes_that_have_ground_are_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -134,11 +134,28 @@ static void one_source_alone_takes_no_memory(void **state)
     assert_int_equal(ff_tree_bytes(&desc), 0);
 }
 
+/* One may lack an image that another has. */
+static void images_of_several_sources_are_whole_for_nobody(void **state)
+{
+    (void)state;
+    for (unsigned mask = 0; mask < 8; mask++) {
+        grounds_fixture g;
+        uint32_t count;
+        make(&g, 40);
+        ff_terrain_info *ground = (ff_terrain_info *)ff_tree_grounds(g.tree, &count);
+        ground->images_whole = 3;
+        ff_tree_set_sources(g.tree, 0, (uint8_t)mask);
+        assert_int_equal(ground->images_whole, mask == 3 || mask >= 5 ? 0 : 3);
+        grounds_free(&g);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_one_source_lacks_another_is_asked_for),
         cmocka_unit_test(sources_come_and_go_with_any_pool),
+        cmocka_unit_test(images_of_several_sources_are_whole_for_nobody),
         cmocka_unit_test(one_source_alone_takes_no_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
