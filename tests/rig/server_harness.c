@@ -265,7 +265,7 @@ int harness_root_comes(harness_client *client, uint32_t tile)
 {
     ff_message message = { .type = FF_MSG_GET,
                            .kind = FF_KIND_ROOT,
-                           .u.get = { ff_key_make(tile % 4u, 0, 0) } };
+                           .u.get = { .key = ff_key_make(tile % 4u, 0, 0) } };
     return harness_tell(client, &message) && harness_hear(client, &message) == 1 &&
            message.type == FF_MSG_ANSWER && message.kind == FF_KIND_ROOT;
 }

@@ -147,7 +147,8 @@ static void tell_largest(const report_flight *flight, const kind *list, int coun
             name = list[k].name;
         }
     }
-    snprintf(why, WHY_BYTES, all > 0 ? "most of it: %s, %.0f %%" : "", name, 100 * most / all);
+    *why = '\0';
+    if (all > 0) snprintf(why, WHY_BYTES, "most of it: %s, %.0f %%", name, 100 * most / all);
 }
 
 /* Writes a target's line. With `most` 1 the measured value may be at most the target, with 0 it
