@@ -58,7 +58,7 @@ static void across(const ff_picture *p, const taps *column, unsigned x, unsigned
     int16_t channel[3][WIDE];
     take_row(p, x, row, channel);
     for (unsigned i = 0; i < width; i++) {
-        const int16_t *first = channel[0] + (x + i) / 2 - x / 2;
+        const int16_t *first = channel[0] + ((x + i) / 2 - x / 2);
         const taps t = column[i];
         for (unsigned c = 0; c < 3; c++) out[c][i] = (int16_t)weighed(t, first + c * WIDE, 1);
     }
