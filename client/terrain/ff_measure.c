@@ -1,13 +1,26 @@
 /* Distances and the two node measures, all in integers. Boxes are relative to the camera. */
 #include "ff_tree_local.h"
+#include "../../protocol/ff_entry.h"
+
+#define WALK_ACROSS 256u /* tiles along an axis of a view */
+FF_STATIC_ASSERT(WALK_ACROSS *WALK_ACROSS == FF_ENTRY_TILES_MAX);
+
+/* As far as that, or as tiles reach that may be walked over at every picture: whoever tells of a
+ * terrain says how small they are. */
+static int32_t within_walk(const ff_terrain_info *info, int32_t view_wu)
+{
+    int64_t most_wu = (int64_t)ff_node_edge_wu(info, 0) * (WALK_ACROSS / 2 - 1);
+    if (ff_shape_tiles(info) <= FF_ENTRY_TILES_MAX || view_wu <= most_wu) return view_wu;
+    return (int32_t)most_wu;
+}
 
 static ff_reach reach_of(const ff_tree *tree, uint32_t g, int32_t view_wu)
 {
     int64_t height_wu[2];
     ff_terrain_range_wu(&tree->ground[g], height_wu);
     FF_ASSERT(height_wu[0] <= height_wu[1] && view_wu >= 0);
-    return ff_shape_reach(&tree->ground[g], &tree->view.frame, tree->view.centre_wu, view_wu,
-                          height_wu);
+    return ff_shape_reach(&tree->ground[g], &tree->view.frame, tree->view.centre_wu,
+                          within_walk(&tree->ground[g], view_wu), height_wu);
 }
 
 static int has_tiles(const ff_tree *tree, uint32_t g)

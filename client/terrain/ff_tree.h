@@ -52,7 +52,8 @@ typedef struct ff_quality {
     int32_t sigma_q8;
     /* ground further than this (largest of |dx|,|dy|,|dz| to `centre_wu`) is neither drawn nor
      * asked for; nor is what lies beyond the horizon (ff_shape_horizon_wu). INT32_MAX: all that can
-     * be seen, the client's default */
+     * be seen, the client's default. Of a terrain of more than FF_ENTRY_TILES_MAX tiles no more
+     * than those 127 tiles' edges away are looked at */
     int32_t view_wu;
     /* ground nearer than this (measured alike) is not split for its own sake: a panorama leaves it
      * out; 0: none */

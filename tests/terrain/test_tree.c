@@ -167,6 +167,42 @@ static void only_tiles_in_the_window_are_drawn(void **state)
     fixture_free(&fx);
 }
 
+/* Whoever tells of a terrain says how small its tiles are, and all those in reach are walked over.
+ */
+static void tiles_in_reach_are_as_many_as_may_be_walked_over(void **state)
+{
+    static const uint32_t across[][2] = {
+        { 256, 256 }, { 257, 256 }, { 65537, 1 }, { 4096, 4096 }
+    };
+    static const int32_t reach_m[] = { 500, 10000, 10159, 10161, 200000 };
+    (void)state;
+    for (size_t i = 0; i < sizeof across / sizeof *across; i++)
+        for (size_t j = 0; j < sizeof reach_m / sizeof *reach_m; j++) {
+            terrain_fixture fx;
+            uint32_t tile, count = 0, tiles = across[i][0] * across[i][1];
+            fixture_make(&fx, 3, 3, across[i][0], across[i][1], fixture_flat); /* of 80 m */
+            fixture_tree(&fx, 40, 10);
+            ff_quality quality = fixture_quality(FF_MEASURE_DISTANCE);
+            quality.view_wu = reach_m[j] * M;
+            ff_view view = fixture_view(40 * (int32_t)across[i][0], 40 * (int32_t)across[i][1], 100,
+                                        0, -8192);
+            ff_tree_select(fx.tree, &view, &quality);
+            ff_walk walk = ff_shape_walk(&fx.info, &fx.tree->window[0]);
+            while (ff_shape_next(&fx.info, &walk, &tile)) count++;
+            int64_t along = 2 * ((int64_t)reach_m[j] / 80) + 1; /* at least, and two more at most */
+            int64_t least = 1, most = 1;
+            for (int axis = 0; axis < 2; axis++) {
+                int64_t there = across[i][axis];
+                int64_t reached = tiles > 65536 && along > 255 ? 254 : along;
+                least *= reached < there ? reached : there;
+                most *= reached + 2 < there ? reached + 2 : there;
+            }
+            assert_in_range(count, least, most);
+            assert_true(count <= 65536);
+            fixture_free(&fx);
+        }
+}
+
 static void a_world_of_one_node(void **state)
 {
     (void)state;
@@ -418,6 +454,7 @@ int main(void)
         cmocka_unit_test(pixels_split_by_their_error),
         cmocka_unit_test(settled_cut_does_not_depend_on_order),
         cmocka_unit_test(only_tiles_in_the_window_are_drawn),
+        cmocka_unit_test(tiles_in_reach_are_as_many_as_may_be_walked_over),
         cmocka_unit_test(a_world_of_one_node),
         cmocka_unit_test(refinement_of_one_spot_pulls_its_neighbours),
         cmocka_unit_test(flat_ground_asks_for_nothing_below),
