@@ -183,12 +183,18 @@ static inline int32_t ff_quantum(const ff_terrain_info *info, int root)
  * can only bring it nearer to the source. */
 static inline uint16_t ff_dequantise(int32_t quantum, int32_t predicted, int32_t residual)
 {
-    int64_t height = predicted + (int64_t)residual * quantum;
-
-    FF_ASSERT(predicted >= 0 && predicted <= UINT16_MAX);
-    FF_ASSERT(residual >= INT16_MIN && residual <= UINT16_MAX); /* a corner's is unsigned */
+    FF_ASSERT(predicted >= 0 && predicted <= UINT16_MAX && quantum <= UINT16_MAX);
+    FF_ASSERT(residual >= INT16_MIN && residual <= INT16_MAX);
+    int32_t height = predicted + residual * quantum;
     if (quantum == 1) return (uint16_t)height;
     return (uint16_t)(height < 0 ? 0 : height > UINT16_MAX ? UINT16_MAX : height);
+}
+/* A corner's value has no sign. */
+static inline uint16_t ff_dequantise_corner(int32_t quantum, int32_t value)
+{
+    FF_ASSERT(value >= 0 && value <= UINT16_MAX && quantum > 0 && quantum <= UINT16_MAX);
+    uint32_t height = (uint32_t)value * (uint32_t)quantum;
+    return (uint16_t)(height > UINT16_MAX ? UINT16_MAX : height);
 }
 
 /* Encoder: the height of the point `at`, predicted so, and its residual. */

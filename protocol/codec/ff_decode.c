@@ -207,7 +207,7 @@ int ff_add_residuals(const ff_terrain_info *info, const uint16_t *parent, const 
 
     FF_ASSERT(res->count == ff_coded_count(info, res->cells, !parent));
     for (uint32_t corner = 0; !parent && corner < FF_CORNERS; corner++)
-        heights[ff_corner_at(info, corner)] = ff_dequantise(r.quantum, 0, *r.next++);
+        heights[ff_corner_at(info, corner)] = ff_dequantise_corner(r.quantum, *r.next++);
     ff_interpolate(info, res->cells, 0, parent, heights, room, add_residual, &r);
     FF_ASSERT(r.next == res->value + res->count);
     return FF_OK;

@@ -58,7 +58,7 @@ static void make_corners(const ff_terrain_info *info, const ff_source_heights *s
         uint32_t at = ff_corner_at(info, corner);
         FF_ASSERT(!source->between || !source->between[at]);
         value[corner] = (source->height[at] + quantum / 2) / quantum;
-        decoded[at] = ff_dequantise(quantum, 0, value[corner]);
+        decoded[at] = ff_dequantise_corner(quantum, value[corner]);
     }
 }
 

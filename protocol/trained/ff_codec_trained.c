@@ -70,6 +70,7 @@ int ff_trained_decode(const ff_decoder *dec, ff_payload *in, const ff_contents *
 
 typedef struct taking {
     ff_range range;
+    const ff_trained *by;
     ff_payload left; /* words, or streams that have not begun */
     const ff_residuals *res;
     uint8_t length[FF_SIDE_COUNT]; /* of the sides' streams, as they are told */
@@ -83,11 +84,13 @@ static void refuse(taking *t, int error)
     if (t->rc == FF_OK) t->rc = error;
 }
 
-static uint32_t take_magnitude(ff_range *range, uint32_t scale)
+/* Rows of a table lie FF_TRAINED_SCALES apart. */
+static inline uint32_t take_magnitude(const ff_trained *by, ff_range *range, uint32_t scale)
 {
-    const ff_trained *by = &ff_trained_tables;
+    const uint16_t *beyond = by->beyond[0] + scale;
     uint32_t bits = 0, value = 1;
-    while (bits < FF_TRAINED_CLASSES - 1 && ff_range_take(range, by->beyond[bits][scale])) bits++;
+    for (; bits < FF_TRAINED_CLASSES - 1 && ff_range_take(range, *beyond); bits++)
+        beyond += FF_TRAINED_SCALES;
     if (bits > 0) value = 2 | ff_range_take(range, by->second[bits][scale]);
     if (bits > 1)
         value = value << 1 | ff_range_take(range, by->third[2 * bits + (value & 1u)][scale]);
@@ -95,19 +98,20 @@ static uint32_t take_magnitude(ff_range *range, uint32_t scale)
     return value;
 }
 
-static int32_t take_residual(ff_range *range, const ff_expected *p)
+static inline int32_t take_residual(const ff_trained *by, ff_range *range, const ff_expected *p)
 {
-    const ff_trained *by = &ff_trained_tables;
     if (ff_range_take(range, by->zero[p->scale])) return p->residual;
-    int below = (int)ff_range_take(range, by->below[p->phase][p->scale]);
-    int32_t magnitude = (int32_t)take_magnitude(range, p->scale);
+    unsigned below = ff_range_take(range, by->below[p->phase][p->scale]);
+    int32_t magnitude = (int32_t)take_magnitude(by, range, p->scale);
     return p->residual + (below ? -magnitude : magnitude);
 }
 
 static uint16_t take_height(void *context, const ff_expected *p)
 {
     taking *t = context;
-    int32_t residual = take_residual(&t->range, p);
+    ff_range range = t->range; /* in registers */
+    int32_t residual = take_residual(t->by, &range, p);
+    t->range = range;
     if (residual < INT16_MIN || residual > INT16_MAX) {
         refuse(t, FF_ERR_RANGE);
         residual = 0;
@@ -130,7 +134,7 @@ static int take_corners(const ff_terrain_info *info, taking *t, uint16_t *height
     int32_t value[FF_CORNERS];
     int rc = ff_take_words(&t->left, FF_CORNERS, value, FF_CORNERS);
     for (uint32_t i = 0; rc == FF_OK && i < FF_CORNERS; i++)
-        heights[ff_corner_at(info, i)] = ff_dequantise(t->quantum, 0, value[i]);
+        heights[ff_corner_at(info, i)] = ff_dequantise_corner(t->quantum, value[i]);
     return rc;
 }
 
@@ -203,8 +207,7 @@ static void take_points(const ff_terrain_info *info, const uint16_t *parent, tak
     if (coded && res->apart == FF_SIDES_MEASURED) refuse(t, take_lengths(info, t));
     if (coded && !res->apart) ff_range_read(&t->range, t->left.at, ff_payload_left(&t->left));
     if (t->rc != FF_OK) return;
-    ff_expect(&ff_trained_tables, res->way, info, res->cells, parent, heights, coded, room,
-              &points);
+    ff_expect(t->by, res->way, info, res->cells, parent, heights, coded, room, &points);
     FF_ASSERT(coded || !ff_payload_left(&t->left));
     if (coded && !is_all_taken(t)) refuse(t, FF_ERR_FORMAT);
 }
@@ -213,7 +216,8 @@ int ff_trained_reconstruct(const ff_terrain_info *info, const uint16_t *parent,
                            const ff_residuals *res, uint16_t *heights, void *room)
 {
     const uint8_t *carried = (const uint8_t *)res->value;
-    taking t = { .left = { carried, carried + res->carried_bytes },
+    taking t = { .by = &ff_trained_tables,
+                 .left = { carried, carried + res->carried_bytes },
                  .res = res,
                  .side = FF_SIDE_COUNT,
                  .quantum = ff_quantum(info, !parent) };

@@ -39,8 +39,12 @@ static inline unsigned ff_range_take(ff_range *range, uint32_t one)
     uint32_t part = (range->width >> 16) * one;
     unsigned bit = range->code < part;
     FF_ASSERT(range->width >= FF_RANGE_LEAST && one > 0 && one < 65536);
-    range->width = bit ? part : range->width - part;
-    range->code -= bit ? 0 : part;
+    if (bit) {
+        range->width = part;
+    } else {
+        range->width -= part;
+        range->code -= part;
+    }
     while (range->width < FF_RANGE_LEAST) {
         range->width <<= 8;
         range->code = range->code << 8 | ff_range_byte(range);

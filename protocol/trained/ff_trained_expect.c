@@ -7,15 +7,20 @@
 
 #include <string.h>
 
-#define MARGIN          3 /* points beyond a side that are looked at */
+#define MARGIN 3 /* points beyond a side that are looked at */
+/* Of the copy, whatever the nodes' size: places around a point lie at known distances. */
+#define PITCH           ((2 << FF_NODE_LOG2_MAX) + 1 + 2 * MARGIN)
 #define HEIGHT_MAX_Q4   (UINT16_MAX * 16)
 #define DISTANCE_MAX_Q4 (1 << 22)
 #define SCALE_BIAS      90 /* of 256, of 1/16 step */
 
 #ifdef __GNUC__
 #define FF_ALWAYS_INLINE inline __attribute__((always_inline))
+/* No instruction: a long sum is made term by term, not of terms that all are fetched first. */
+#define IN_ORDER(sum) __asm__("" : "+r"(sum))
 #else
 #define FF_ALWAYS_INLINE inline
+#define IN_ORDER(sum)    (void)(sum)
 #endif
 
 typedef struct walk {
@@ -26,13 +31,12 @@ typedef struct walk {
     uint32_t side, step;
     uint16_t *height; /* the copy's first point */
     uint8_t *error;   /* the same of how far points were from what was expected */
-    int32_t pitch;    /* of both */
     int with_errors;
-    int32_t last[2];  /* the last column and row, in steps: the sides */
-    int32_t coded[2]; /* before these, odd ones are coded */
-    int32_t quantum;
+    int32_t last[2];     /* the last column and row, in steps: the sides */
+    int32_t coded[2];    /* before these, odd ones are coded */
     uint32_t reciprocal; /* of the quantum, Q31 */
-    uint32_t error_shift;
+    int32_t always;      /* of a distance: what is the same for all points of a line */
+    ff_expected point;   /* the one that is made */
 } walk;
 
 static inline int32_t clamped(int32_t value, int32_t low, int32_t high)
@@ -46,8 +50,9 @@ static inline int32_t bend(int32_t a, int32_t b, int32_t c) { return size(a - 2 
 
 static inline unsigned log2_of(uint32_t value)
 {
+    FF_ASSERT(value > 0);
 #ifdef __GNUC__
-    return 31u - (unsigned)__builtin_clz(value | 1u);
+    return 31u - (unsigned)__builtin_clz(value);
 #else
     unsigned log2 = 0;
     while (value >> log2 >> 1) log2++;
@@ -55,9 +60,11 @@ static inline unsigned log2_of(uint32_t value)
 #endif
 }
 
+/* By the quantum. */
 static inline uint32_t divided(const walk *w, uint32_t value)
 {
-    return (uint32_t)((uint64_t)value * w->reciprocal >> 31);
+    FF_ASSERT(value <= UINT32_MAX / 2);
+    return (uint32_t)((uint64_t)(2 * value) * w->reciprocal >> 32);
 }
 
 /* ---- what is around a point ----
@@ -83,11 +90,13 @@ static inline uint32_t divided(const walk *w, uint32_t value)
 #define TAPS_V(X) TAPS_OF_MIDDLE(X) X(17, -1, 1) X(18, 0, -2) X(19, -2, 0)
 /* clang-format on */
 
-#define AT(a, b)         (int32_t) at[(a)*along + (b)*away]
-#define ERROR(a, b)      (int32_t) error[(a)*along + (b)*away]
-#define KEEP(i, a, b)    known[i] = AT(a, b);
-#define COUNT(i, a, b)   +1
-#define WEIGHED(i, a, b) +(int64_t)tap[i] * AT(a, b)
+#define AT(a, b)       (int32_t) at[(a)*along + (b)*away]
+#define ERROR(a, b)    (int32_t) error[(a)*along + (b)*away]
+#define KEEP(i, a, b)  known[i] = AT(a, b);
+#define COUNT(i, a, b) +1
+#define WEIGHED(i, a, b)      \
+    sum += tap[i] * AT(a, b); \
+    IN_ORDER(sum);
 
 /* Measures of roughness, from the third on. They return that by which taps are chosen. */
 
@@ -155,16 +164,18 @@ static FF_ALWAYS_INLINE unsigned look_at_errors(enum ff_trained_class kind, cons
     }
 }
 
-static FF_ALWAYS_INLINE int64_t weighed(enum ff_trained_class kind, const int16_t *tap,
+static FF_ALWAYS_INLINE int32_t weighed(enum ff_trained_class kind, const int16_t *tap,
                                         const uint16_t *at, int32_t along, int32_t away)
 {
+    int32_t sum = 0;
     switch (kind) {
-        case FF_POINT_R: return TAPS_R(WEIGHED);
-        case FF_POINT_N: return TAPS_N(WEIGHED);
-        case FF_POINT_C: return TAPS_C(WEIGHED);
-        case FF_POINT_H: return TAPS_H(WEIGHED);
-        default: return TAPS_V(WEIGHED);
+        case FF_POINT_R: TAPS_R(WEIGHED) break;
+        case FF_POINT_N: TAPS_N(WEIGHED) break;
+        case FF_POINT_C: TAPS_C(WEIGHED) break;
+        case FF_POINT_H: TAPS_H(WEIGHED) break;
+        default: TAPS_V(WEIGHED)
     }
+    return sum;
 }
 
 static FF_ALWAYS_INLINE int32_t base_q2(enum ff_trained_class kind, const uint16_t *at,
@@ -199,14 +210,14 @@ uint32_t ff_trained_traits(const ff_expected *p, int32_t trait[FF_TRAINED_TRAITS
 
 /* ---- a point ---- */
 
-static FF_ALWAYS_INLINE void weigh(const walk *w, enum ff_trained_class kind, int32_t rough,
-                                   ff_expected *p)
+static FF_ALWAYS_INLINE void weigh(const walk *w, enum ff_trained_class kind, const uint16_t *at,
+                                   int32_t along, int32_t away, int32_t rough, ff_expected *p)
 {
-    unsigned bucket = log2_of(divided(w, (uint32_t)(4 * rough + w->quantum)));
+    unsigned bucket = log2_of(divided(w, (uint32_t)(4 * rough + p->quantum)));
     if (bucket >= FF_TRAINED_BUCKETS) bucket = FF_TRAINED_BUCKETS - 1;
     const ff_taps *taps = &w->by->taps[kind][bucket];
-    int32_t base = base_q2(kind, p->height, p->along, p->away);
-    int64_t sum = 4 * weighed(kind, taps->tap, p->height, p->along, p->away) -
+    int32_t base = base_q2(kind, at, along, away);
+    int64_t sum = 4 * (int64_t)weighed(kind, taps->tap, at, along, away) -
                   (int64_t)base * taps->sum + (1 << (FF_TRAINED_TAPS_LOG2 - 3));
     p->bucket = (uint8_t)bucket;
     p->base_q2 = base;
@@ -227,58 +238,54 @@ static FF_ALWAYS_INLINE void measure(const walk *w, enum ff_trained_class kind,
                                      const int32_t *trait, unsigned traits, ff_expected *p)
 {
     const int16_t *weight = w->by->trait[kind];
-    int64_t sum = 4 * weight[0] + (int64_t)weight[1] * w->quantum + (int64_t)weight[2] * trait[2] +
-                  (int64_t)weight[3] * trait[3] + (int64_t)weight[4] * trait[4] +
-                  (int64_t)weight[5] * trait[5];
-    if (traits > 6) sum += (int64_t)weight[6] * trait[6];
-    if (traits > 7) sum += (int64_t)weight[7] * trait[7];
-    sum >>= FF_TRAINED_TRAITS_LOG2 - 4;
-    p->distance_q4 = (int32_t)(sum < 1 ? 1 : sum > DISTANCE_MAX_Q4 ? DISTANCE_MAX_Q4 : sum);
+    int32_t sum = w->always;
+    sum += weight[2] * trait[2];
+    sum += weight[3] * trait[3];
+    sum += weight[4] * trait[4];
+    sum += weight[5] * trait[5];
+    if (traits > 6) sum += weight[6] * trait[6];
+    if (traits > 7) sum += weight[7] * trait[7];
+    p->distance_q4 = clamped(sum >> (FF_TRAINED_TRAITS_LOG2 - 4), 1, DISTANCE_MAX_Q4);
     p->scale = scale_of(w, p->distance_q4);
 }
 
 /* Where what is expected lies among the heights that residuals lead to: the likeliest one, and in
  * which quarter around it. */
-static inline void place_mean(const walk *w, int side, ff_expected *p)
+static FF_ALWAYS_INLINE void place_mean(const walk *w, enum ff_trained_class kind, ff_expected *p)
 {
-    int32_t off_q4 = p->mean_q4 - 16 * p->predicted + 8 * w->quantum, steps = off_q4 >> 4;
+    int32_t off_q4 = p->mean_q4 - 16 * p->predicted + 8 * p->quantum, steps = off_q4 >> 4;
     p->residual = 0;
-    if (side) {
+    if (kind == FF_POINT_R) {
         p->residual = steps >= 0 ? (int32_t)divided(w, (uint32_t)steps)
                                  : -1 - (int32_t)divided(w, (uint32_t)(-1 - steps));
         p->residual = clamped(p->residual, -INT16_MAX, INT16_MAX);
-        off_q4 -= 16 * w->quantum * p->residual;
+        off_q4 = clamped(off_q4 - 16 * p->quantum * p->residual, 0, 1 << 26);
     }
-    uint32_t phase = divided(w, (uint32_t)clamped(off_q4 >> 2, 0, 1 << 24));
+    FF_ASSERT(off_q4 >= 0);
+    uint32_t phase = divided(w, (uint32_t)off_q4 >> 2);
     p->phase = (uint8_t)(phase < 3 ? phase : 3);
 }
 
 /* `middle`: of a side, what it predicts itself. */
-static FF_ALWAYS_INLINE void make_point(const walk *w, enum ff_trained_class kind, int32_t column,
-                                        int32_t row, int32_t along, int32_t away, int32_t middle)
+static FF_ALWAYS_INLINE void make_point(walk *w, enum ff_trained_class kind, uint16_t *height,
+                                        uint8_t *error, int32_t along, int32_t away, int32_t middle)
 {
-    int32_t index = row * w->pitch + column, trait[FF_TRAINED_TRAITS];
-    ff_expected p = { .at = ((uint32_t)row * w->side + (uint32_t)column) * w->step,
-                      .kind = (uint8_t)kind,
-                      .height = w->height + index,
-                      .error = w->error + index,
-                      .along = along,
-                      .away = away,
-                      .quantum = w->quantum,
-                      .error_shift = w->error_shift };
-    weigh(w, kind, look(kind, p.height, along, away, trait), &p);
-    p.predicted = kind == FF_POINT_R ? middle : clamped((p.mean_q4 + 8) >> 4, 0, UINT16_MAX);
+    int32_t trait[FF_TRAINED_TRAITS];
+    ff_expected *p = &w->point;
+    p->height = height;
+    p->error = error;
+    weigh(w, kind, height, along, away, look(kind, height, along, away, trait), p);
+    p->predicted = kind == FF_POINT_R ? middle : (p->mean_q4 + 8) >> 4;
     if (w->with_errors) {
-        unsigned traits = look_at_errors(kind, p.error, along, away, w->error_shift, trait);
-        measure(w, kind, trait, traits, &p);
-        place_mean(w, kind == FF_POINT_R, &p);
+        unsigned traits = look_at_errors(kind, error, along, away, p->error_shift, trait);
+        measure(w, kind, trait, traits, p);
+        place_mean(w, kind, p);
     }
-    uint16_t height = kind == FF_POINT_R && w->is_known ? w->grid[p.at]
-                                                        : w->points->height(w->points->context, &p);
-    w->height[index] = height;
+    *height = kind == FF_POINT_R && w->is_known ? w->grid[p->at]
+                                                : w->points->height(w->points->context, p);
     if (!w->with_errors) return;
-    uint32_t off = (uint32_t)(size(16 * height - p.mean_q4) + 8) >> 4 >> w->error_shift;
-    w->error[index] = (uint8_t)(off < 255 ? off : 255);
+    uint32_t off = (uint32_t)(size(16 * *height - p->mean_q4) + 8) >> 4 >> p->error_shift;
+    *error = (uint8_t)(off < 255 ? off : 255);
 }
 
 /* ---- a doubling ---- */
@@ -289,51 +296,75 @@ static int begin(const walk *w, unsigned side, uint32_t points)
     return w->points->side ? w->points->side(w->points->context, side, points) : 0;
 }
 
-/* New points of a side, from `column`, `row` on along an axis. */
-static void make_side(walk *w, enum ff_side side, int32_t column, int32_t row, unsigned axis,
-                      int inward)
+static inline void begin_line(walk *w, enum ff_trained_class kind, int32_t along, int32_t away)
 {
-    FF_ASSERT(column <= w->last[0] && row <= w->last[1]);
+    const int16_t *weight = w->by->trait[kind];
+    w->point.kind = (uint8_t)kind;
+    w->point.along = along;
+    w->point.away = away;
+    w->always = 4 * weight[0] + weight[1] * w->point.quantum;
+}
+
+/* Every second point from `column` and `row` on, before `end`, along an axis. A side's are
+ * predicted along it. */
+static FF_ALWAYS_INLINE void make_line(walk *w, enum ff_trained_class kind, int32_t column,
+                                       int32_t row, unsigned axis, int32_t end, int32_t along,
+                                       int32_t away)
+{
+    int32_t index = row * PITCH + column, next = axis ? 2 * PITCH : 2, i = axis ? row : column;
+    uint16_t *height = w->height + index;
+    uint8_t *error = w->error + index;
+    uint32_t apart = 2 * w->step * (axis ? w->side : 1), cells = (w->side - 1) / (2 * w->step);
+    uint32_t at = ((uint32_t)row * w->side + (uint32_t)column) * w->step, first = at - apart / 2;
+
+    begin_line(w, kind, along, away);
+    for (; i < end; i += 2, height += next, error += next, at += apart) {
+        w->point.at = at;
+        make_point(w, kind, height, error, along, away,
+                   kind == FF_POINT_R
+                       ? ff_predict_middle(w->grid + first, apart, (uint32_t)i / 2, cells)
+                       : 0);
+    }
+}
+
+/* New points of a side, which lies `beside` the other axis's beginning. */
+static void make_side(walk *w, enum ff_side side, unsigned axis, int32_t beside, int inward)
+{
+    int32_t along = axis ? PITCH : 1, away = axis ? inward : inward * PITCH;
+    FF_ASSERT(beside == 0 || beside == w->last[!axis]);
     w->is_known = begin(w, side, (uint32_t)w->coded[axis] / 2);
-    int32_t along = axis ? w->pitch : 1, away = axis ? inward : inward * w->pitch;
-    uint32_t cells = (w->side - 1) / (2 * w->step), apart = 2 * w->step * (axis ? w->side : 1);
-    const uint16_t *first = w->grid + ((uint32_t)row * w->side + (uint32_t)column) * w->step;
-    for (int32_t i = 1; i < w->coded[axis]; i += 2)
-        make_point(w, FF_POINT_R, axis ? column : i, axis ? i : row, along, away,
-                   ff_predict_middle(first, apart, (uint32_t)i / 2, cells));
+    make_line(w, FF_POINT_R, axis ? beside : 1, axis ? 1 : beside, axis, w->coded[axis], along,
+              away);
 }
 
 /* Centres beside a side. */
-static void make_near(const walk *w, unsigned axis, int32_t beside, int inward)
+static void make_near(walk *w, unsigned axis, int32_t beside, int inward)
 {
-    int32_t along = axis ? w->pitch : 1, away = axis ? inward : inward * w->pitch;
+    int32_t along = axis ? PITCH : 1, away = axis ? inward : inward * PITCH;
     int32_t to = w->last[axis] - (axis ? 2 : 0);
     if (beside >= w->coded[!axis]) return;
-    for (int32_t i = axis ? 3 : 1; i < w->coded[axis] && i < to; i += 2)
-        make_point(w, FF_POINT_N, axis ? beside : i, axis ? i : beside, along, away, 0);
+    if (to > w->coded[axis]) to = w->coded[axis];
+    make_line(w, FF_POINT_N, axis ? beside : 1, axis ? 3 : beside, axis, to, along, away);
 }
 
-static void make_centres(const walk *w)
+static void make_centres(walk *w)
 {
+    int32_t end = w->coded[0] < w->last[0] - 2 ? w->coded[0] : w->last[0] - 2;
     make_near(w, 0, 1, 1);
     if (w->last[1] > 2) make_near(w, 0, w->last[1] - 1, -1);
     make_near(w, 1, 1, 1);
     if (w->last[0] > 2) make_near(w, 1, w->last[0] - 1, -1);
     for (int32_t row = 3; row < w->coded[1] && row < w->last[1] - 2; row += 2)
-        for (int32_t column = 3; column < w->coded[0] && column < w->last[0] - 2; column += 2)
-            make_point(w, FF_POINT_C, column, row, 1, w->pitch, 0);
+        make_line(w, FF_POINT_C, 3, row, 0, end, 1, PITCH);
 }
 
-static void make_middles(const walk *w)
+static void make_middles(walk *w)
 {
     for (int32_t row = 1; row < w->last[1]; row++) {
-        int32_t column = 2;
         if (row % 2 == 0)
-            for (column = 1; column < w->coded[0]; column += 2)
-                make_point(w, FF_POINT_H, column, row, 1, w->pitch, 0);
+            make_line(w, FF_POINT_H, 1, row, 0, w->coded[0], 1, PITCH);
         else if (row < w->coded[1])
-            for (; column < w->last[0]; column += 2)
-                make_point(w, FF_POINT_V, column, row, w->pitch, 1, 0);
+            make_line(w, FF_POINT_V, 2, row, 0, w->last[0], PITCH, 1);
     }
 }
 
@@ -343,7 +374,7 @@ static void make_middles(const walk *w)
  * between their four corners. */
 static void fill_line(const walk *w, unsigned axis)
 {
-    int32_t line = w->last[axis] - 1, on = axis ? w->pitch : 1, along = axis ? 1 : w->pitch;
+    int32_t line = w->last[axis] - 1, on = axis ? PITCH : 1, along = axis ? 1 : PITCH;
     uint16_t *at = w->height + line * on;
     if (line < w->coded[axis]) return;
     for (int32_t i = 0; i <= w->last[!axis]; i++, at += along)
@@ -358,14 +389,14 @@ static void fill_margin(const walk *w)
 {
     size_t count = (size_t)w->last[0] + 1 + 2 * MARGIN;
     for (int32_t row = 0; row <= w->last[1]; row++) {
-        uint16_t *first = w->height + row * w->pitch, *last = first + w->last[0];
+        uint16_t *first = w->height + row * PITCH, *last = first + w->last[0];
         first[-1] = first[-2] = first[-3] = *first;
         last[1] = last[2] = last[3] = *last;
     }
     for (int32_t i = 1; i <= MARGIN; i++) {
-        uint16_t *first = w->height - MARGIN, *last = first + w->last[1] * w->pitch;
-        memcpy(first - i * w->pitch, first, count * sizeof *first);
-        memcpy(last + i * w->pitch, last, count * sizeof *last);
+        uint16_t *first = w->height - MARGIN, *last = first + w->last[1] * PITCH;
+        memcpy(first - i * PITCH, first, count * sizeof *first);
+        memcpy(last + i * PITCH, last, count * sizeof *last);
     }
 }
 
@@ -373,25 +404,25 @@ static void fill_margin(const walk *w)
 static void fill_error_margin(const walk *w)
 {
     for (int32_t row = 0; row <= w->last[1]; row++) {
-        uint8_t *first = w->error + row * w->pitch, *last = first + w->last[0];
+        uint8_t *first = w->error + row * PITCH, *last = first + w->last[0];
         first[-1] = first[-2] = *first;
         last[1] = last[2] = *last;
     }
     for (int32_t column = 0; column <= w->last[0]; column++) {
-        uint8_t *first = w->error + column, *last = first + w->last[1] * w->pitch;
-        *(first - w->pitch) = *(first - 2 * w->pitch) = *first;
-        last[w->pitch] = last[2 * w->pitch] = *last;
+        uint8_t *first = w->error + column, *last = first + w->last[1] * PITCH;
+        *(first - PITCH) = *(first - 2 * PITCH) = *first;
+        last[PITCH] = last[2 * PITCH] = *last;
     }
 }
 
 static void open_copy(const walk *w)
 {
-    uint32_t pitch = (uint32_t)w->pitch;
+    size_t rows = (size_t)w->last[1] + 1 + 2 * MARGIN;
     FF_ASSERT(w->last[0] >= 2 && w->last[1] >= 2);
-    if (w->with_errors) memset(w->error - MARGIN * (pitch + 1), 0, (size_t)pitch * pitch);
+    if (w->with_errors) memset(w->error - MARGIN * (PITCH + 1), 0, rows * PITCH);
     for (int32_t row = 0; row <= w->last[1]; row += 2)
         for (int32_t column = 0; column <= w->last[0]; column += 2)
-            w->height[row * w->pitch + column] =
+            w->height[row * PITCH + column] =
                 w->grid[((uint32_t)row * w->side + (uint32_t)column) * w->step];
 }
 
@@ -400,7 +431,7 @@ static void close_copy(const walk *w)
     for (int32_t row = 0; row <= w->last[1]; row++) {
         uint16_t *to = w->grid + (uint32_t)row * w->side * w->step;
         for (int32_t column = 0; column <= w->last[0]; column++, to += w->step)
-            *to = w->height[row * w->pitch + column];
+            *to = w->height[row * PITCH + column];
     }
 }
 
@@ -415,10 +446,10 @@ static void make_doubling(walk *w, uint32_t step, ff_cells ground)
     open_copy(w);
     for (unsigned axis = 0; axis < 2; axis++) fill_line(w, axis);
     fill_margin(w);
-    make_side(w, FF_SIDE_SOUTH, 0, 0, 0, 1);
-    make_side(w, FF_SIDE_EAST, w->last[0], 0, 1, -1);
-    make_side(w, FF_SIDE_NORTH, 0, w->last[1], 0, -1);
-    make_side(w, FF_SIDE_WEST, 0, 0, 1, 1);
+    make_side(w, FF_SIDE_SOUTH, 0, 0, 1);
+    make_side(w, FF_SIDE_EAST, 1, w->last[0], -1);
+    make_side(w, FF_SIDE_NORTH, 0, w->last[1], -1);
+    make_side(w, FF_SIDE_WEST, 1, 0, 1);
     begin(w, FF_SIDE_COUNT, 0);
     fill_margin(w);
     if (w->with_errors) fill_error_margin(w);
@@ -430,13 +461,13 @@ static void make_doubling(walk *w, uint32_t step, ff_cells ground)
 }
 
 FF_STATIC_ASSERT(MARGIN == 3); /* fill_margin */
-FF_STATIC_ASSERT(FF_CODEC_ROOM_MAX == 3 * ((2 << FF_NODE_LOG2_MAX) + 1 + 2 * MARGIN) *
-                                          ((2 << FF_NODE_LOG2_MAX) + 1 + 2 * MARGIN));
+FF_STATIC_ASSERT(FF_CODEC_ROOM_MAX == 3 * PITCH * PITCH);
+
+static size_t copied(uint32_t side) { return (side + 2 * MARGIN) * (size_t)PITCH; }
 
 size_t ff_codec_room(const ff_terrain_info *info)
 {
-    size_t pitch = ff_refined_side(info) + 2 * MARGIN;
-    return pitch * pitch * (sizeof(uint16_t) + 1);
+    return copied(ff_refined_side(info)) * (sizeof(uint16_t) + 1);
 }
 
 void ff_expect(const ff_trained *by, unsigned set, const ff_terrain_info *info, ff_cells cells,
@@ -445,17 +476,15 @@ void ff_expect(const ff_trained *by, unsigned set, const ff_terrain_info *info, 
 {
     walk w = { .by = &by->weights[set], .points = points, .grid = grid };
     FF_ASSERT(parent || !points->side);
-    size_t pitch, log2;
-    w.quantum = ff_quantum(info, !parent);
-    w.reciprocal = (UINT32_C(1) << 31) / (uint32_t)w.quantum + 1;
-    log2 = log2_of((uint32_t)w.quantum);
-    w.error_shift = log2 > 4 ? (uint32_t)log2 - 4 : 0;
+    int32_t quantum = ff_quantum(info, !parent);
+    unsigned log2 = log2_of((uint32_t)quantum);
+    w.point.quantum = quantum;
+    w.point.error_shift = log2 > 4 ? log2 - 4 : 0;
+    w.reciprocal = (UINT32_C(1) << 31) / (uint32_t)quantum + 1;
     w.side = parent ? ff_refined_side(info) : ff_node_side(info);
-    pitch = w.side + 2 * MARGIN;
-    w.pitch = (int32_t)pitch;
-    w.height = (uint16_t *)room + MARGIN * (pitch + 1);
+    w.height = (uint16_t *)room + MARGIN * (PITCH + 1);
     w.with_errors = with_errors;
-    w.error = (uint8_t *)room + pitch * pitch * 2 + MARGIN * (pitch + 1);
+    w.error = (uint8_t *)room + copied(w.side) * sizeof(uint16_t) + MARGIN * (PITCH + 1);
     cells = ff_cells_of(cells, w.side);
     if (parent) ff_spread_parent(info, parent, grid);
     for (uint32_t step = parent ? 1 : (w.side - 1) / 2; step >= 1; step /= 2)

@@ -143,7 +143,7 @@ static int second_stage(const ff_terrain_info *info, const uint16_t *parent,
     if (rc != FF_OK) return rc;
     c.bits = (bits){ .in = in.at, .end = in.end };
     for (uint32_t i = 0; i < FF_CORNERS && !parent; i++)
-        heights[ff_corner_at(info, i)] = ff_dequantise(ff_quantum(info, !parent), 0, corner[i]);
+        heights[ff_corner_at(info, i)] = ff_dequantise_corner(ff_quantum(info, !parent), corner[i]);
     ff_interpolate(info, res->cells, 0, parent, heights, NULL, take_sample, &c);
     if (c.bits.error) return c.bits.error;
     return (c.bits.at + 7) / 8 == ff_payload_left(&in) ? FF_OK : FF_ERR_FORMAT;

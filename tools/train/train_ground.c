@@ -151,7 +151,7 @@ static void make_grid(maker *m, const uint16_t *parent, uint32_t x, uint32_t y, 
     m->source = source;
     for (uint32_t i = 0; !parent && i < FF_CORNERS; i++) {
         uint32_t at = ff_corner_at(&m->info, i);
-        grid[at] = ff_dequantise(m->quantum, 0, (source[at] + m->quantum / 2) / m->quantum);
+        grid[at] = ff_dequantise_corner(m->quantum, (source[at] + m->quantum / 2) / m->quantum);
     }
     m->point.info = &m->info;
     /* a level has a fourth of the next one's points, and flights take most of the coarser ones */
