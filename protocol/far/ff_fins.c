@@ -175,7 +175,7 @@ int ff_fins_decode(const uint8_t *bytes, size_t byte_count, ff_fin_vertex *verte
         FF_ASSERT(count <= room);
     } while (decide(&f, FF_FINS_MORE, 0));
     /* a stream has no byte that says nothing */
-    return f.range.in == f.range.end && bytes[byte_count - 1] ? (int)count : FF_ERR_FORMAT;
+    return ff_range_is_read(&f.range) && bytes[byte_count - 1] ? (int)count : FF_ERR_FORMAT;
 }
 
 /* ---- encoder ---- */

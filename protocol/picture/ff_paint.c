@@ -137,6 +137,6 @@ int ff_paint_decode(const uint8_t *bytes, size_t count, unsigned columns, unsign
     ff_range_read(range, bytes + 1, count - 1);
     ff_paint_go(&paint);
     /* a stream has no byte that says nothing */
-    if (range->in != range->end || (count > 1 && !bytes[count - 1])) return FF_ERR_FORMAT;
+    if (!ff_range_is_read(range) || (count > 1 && !bytes[count - 1])) return FF_ERR_FORMAT;
     return paint.count ? (int)paint.count : FF_ERR_FORMAT;
 }

@@ -176,7 +176,7 @@ int ff_picture_decode(const uint8_t *bytes, size_t count, unsigned log2, ff_pict
     ff_range_read(&p.range, bytes + 1, count - 1);
     ff_picture_go(&p);
     /* a stream has no byte that says nothing */
-    return p.range.in == p.range.end && (count == 1 || bytes[count - 1]) ? FF_OK : FF_ERR_FORMAT;
+    return ff_range_is_read(&p.range) && (count == 1 || bytes[count - 1]) ? FF_OK : FF_ERR_FORMAT;
 }
 
 int ff_picture_decode_row(const uint8_t *bytes, size_t count, unsigned log2, unsigned levels,

@@ -19,7 +19,7 @@ typedef struct prediction {
 static uint16_t pass_on(void *context, const ff_expected *point)
 {
     const prediction *p = context;
-    return p->sample(p->context, point->at, point->predicted);
+    return p->sample(p->context, ff_expected_at(point), point->predicted);
 }
 
 void ff_trained_predict(const ff_terrain_info *info, ff_cells cells, unsigned way,
@@ -28,7 +28,7 @@ void ff_trained_predict(const ff_terrain_info *info, ff_cells cells, unsigned wa
 {
     prediction p = { sample, context };
     ff_points points = { .height = pass_on, .context = &p };
-    ff_expect(&ff_trained_tables, way, info, cells, parent, grid, 0, room, &points);
+    ff_expect(&ff_trained_tables, way, info, cells, parent, grid, room, &points);
 }
 
 /* ---- decoder ---- */
@@ -70,7 +70,7 @@ int ff_trained_decode(const ff_decoder *dec, ff_payload *in, const ff_contents *
 
 typedef struct taking {
     ff_range range;
-    const ff_trained *by;
+    const ff_odds *odds;
     ff_payload left; /* words, or streams that have not begun */
     const ff_residuals *res;
     uint8_t length[FF_SIDE_COUNT]; /* of the sides' streams, as they are told */
@@ -84,38 +84,32 @@ static void refuse(taking *t, int error)
     if (t->rc == FF_OK) t->rc = error;
 }
 
-/* Rows of a table lie FF_TRAINED_SCALES apart. */
-static inline uint32_t take_magnitude(const ff_trained *by, ff_range *range, uint32_t scale)
+static inline uint32_t take_magnitude(const ff_odds *odds, ff_range *range)
 {
-    const uint16_t *beyond = by->beyond[0] + scale;
     uint32_t bits = 0, value = 1;
-    for (; bits < FF_TRAINED_CLASSES - 1 && ff_range_take(range, *beyond); bits++)
-        beyond += FF_TRAINED_SCALES;
-    if (bits > 0) value = 2 | ff_range_take(range, by->second[bits][scale]);
-    if (bits > 1)
-        value = value << 1 | ff_range_take(range, by->third[2 * bits + (value & 1u)][scale]);
+    while (bits < FF_TRAINED_CLASSES - 1 && ff_range_take(range, odds->beyond[bits])) bits++;
+    if (bits > 0) value = 2 | ff_range_take(range, odds->second[bits]);
+    if (bits > 1) value = value << 1 | ff_range_take(range, odds->third[2 * bits + (value & 1u)]);
     for (uint32_t i = 2; i < bits; i++) value = value << 1 | ff_range_take(range, HALF);
     return value;
-}
-
-static inline int32_t take_residual(const ff_trained *by, ff_range *range, const ff_expected *p)
-{
-    if (ff_range_take(range, by->zero[p->scale])) return p->residual;
-    unsigned below = ff_range_take(range, by->below[p->phase][p->scale]);
-    int32_t magnitude = (int32_t)take_magnitude(by, range, p->scale);
-    return p->residual + (below ? -magnitude : magnitude);
 }
 
 static uint16_t take_height(void *context, const ff_expected *p)
 {
     taking *t = context;
     ff_range range = t->range; /* in registers */
-    int32_t residual = take_residual(t->by, &range, p);
-    t->range = range;
-    if (residual < INT16_MIN || residual > INT16_MAX) {
-        refuse(t, FF_ERR_RANGE);
-        residual = 0;
+    const ff_odds *odds = t->odds + p->scale;
+    int32_t residual = p->residual;
+    if (!ff_range_take(&range, odds->zero)) {
+        unsigned below = ff_range_take(&range, odds->below[p->phase]);
+        int32_t magnitude = (int32_t)take_magnitude(odds, &range);
+        residual += below ? -magnitude : magnitude;
+        if (residual < INT16_MIN || residual > INT16_MAX) {
+            refuse(t, FF_ERR_RANGE);
+            residual = 0;
+        }
     }
+    t->range = range;
     return ff_dequantise(t->quantum, p->predicted, residual);
 }
 
@@ -174,7 +168,7 @@ static int take_side(void *context, unsigned side, uint32_t points)
 /* A stream has no byte that says nothing. */
 static int is_all_taken(const taking *t)
 {
-    return t->range.in == t->range.end && (t->left.at == t->left.end || t->left.end[-1]);
+    return ff_range_is_read(&t->range) && (t->left.at == t->left.end || t->left.end[-1]);
 }
 
 /* Sides that are left out are known where the ground goes on beyond them. */
@@ -207,7 +201,7 @@ static void take_points(const ff_terrain_info *info, const uint16_t *parent, tak
     if (coded && res->apart == FF_SIDES_MEASURED) refuse(t, take_lengths(info, t));
     if (coded && !res->apart) ff_range_read(&t->range, t->left.at, ff_payload_left(&t->left));
     if (t->rc != FF_OK) return;
-    ff_expect(t->by, res->way, info, res->cells, parent, heights, coded, room, &points);
+    ff_expect(&ff_trained_tables, res->way, info, res->cells, parent, heights, room, &points);
     FF_ASSERT(coded || !ff_payload_left(&t->left));
     if (coded && !is_all_taken(t)) refuse(t, FF_ERR_FORMAT);
 }
@@ -216,7 +210,7 @@ int ff_trained_reconstruct(const ff_terrain_info *info, const uint16_t *parent,
                            const ff_residuals *res, uint16_t *heights, void *room)
 {
     const uint8_t *carried = (const uint8_t *)res->value;
-    taking t = { .by = &ff_trained_tables,
+    taking t = { .odds = ff_trained_tables.odds,
                  .left = { carried, carried + res->carried_bytes },
                  .res = res,
                  .side = FF_SIDE_COUNT,

@@ -16,20 +16,18 @@
 
 typedef struct ff_range {
     uint32_t width, code; /* of the range; how far the stream is above its beginning */
-    const uint8_t *in, *end;
-    uint32_t beyond; /* bytes that were read beyond the end */
+    const uint8_t *in;
+    int32_t left; /* bytes; of what was read beyond the end less than none */
 } ff_range;
 
 static inline uint32_t ff_range_byte(ff_range *range)
 {
-    if (range->in < range->end) return *range->in++;
-    range->beyond++;
-    return 0;
+    return range->left-- > 0 ? *range->in++ : 0;
 }
 
 static inline void ff_range_read(ff_range *range, const uint8_t *bytes, size_t count)
 {
-    *range = (ff_range){ .width = UINT32_MAX, .in = bytes, .end = bytes + count };
+    *range = (ff_range){ .width = UINT32_MAX, .in = bytes, .left = (int32_t)count };
     for (unsigned i = 0; i < 4; i++) range->code = range->code << 8 | ff_range_byte(range);
 }
 
@@ -52,14 +50,17 @@ static inline unsigned ff_range_take(ff_range *range, uint32_t one)
     return bit;
 }
 
+static inline int ff_range_is_read(const ff_range *range) { return range->left <= 0; }
+
 /* A stream that others follow ends so many bytes after those that have grown its range: whatever
  * the next ones are, they do not lead out of it. */
 static inline unsigned ff_range_tail(uint32_t width) { return width >= 2 * FF_RANGE_LEAST ? 1 : 2; }
 /* Where the next one begins, or NULL: the bytes end before. */
 static inline const uint8_t *ff_range_next(const ff_range *range)
 {
-    uint32_t ahead = 4 - ff_range_tail(range->width);
-    return range->beyond > ahead ? NULL : range->in - (ahead - range->beyond);
+    int32_t ahead = 4 - (int32_t)ff_range_tail(range->width);
+    int32_t back = range->left < 0 ? ahead + range->left : ahead;
+    return back < 0 ? NULL : range->in - back;
 }
 
 /* ---- encoder ---- */

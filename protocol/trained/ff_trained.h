@@ -24,6 +24,9 @@ enum ff_trained_class { FF_POINT_R, FF_POINT_N, FF_POINT_C, FF_POINT_H, FF_POINT
 #define FF_TRAINED_TAPS_LOG2   14
 #define FF_TRAINED_TRAITS_LOG2 12
 
+/* Taps together are less than 2^15, whatever their signs, so that sums of them by heights fit 32
+ * bits. So do sums of traits: from the third on none is more than FF_TRAINED_TRAIT_MAX. */
+#define FF_TRAINED_TRAIT_MAX (2 * 255 << 11)
 typedef struct ff_taps {
     int16_t tap[FF_TRAINED_TAPS];
     int32_t sum; /* of them */
@@ -34,34 +37,50 @@ typedef struct ff_weights {
     int16_t trait[FF_POINTS][FF_TRAINED_TRAITS];
 } ff_weights;
 
+/* Of 65536, how often a decision is 1. */
+typedef struct ff_odds {
+    uint16_t zero;                           /* the value is as expected */
+    uint16_t below[4];                       /* it lies below, by ff_expected.phase */
+    uint16_t beyond[FF_TRAINED_CLASSES - 1]; /* it is beyond class c */
+    uint16_t second[FF_TRAINED_CLASSES];     /* of a value of a class: its second bit from above */
+    uint16_t third[2 * FF_TRAINED_CLASSES];  /* its third one: 2 c and the second */
+} ff_odds;
+#define FF_TRAINED_DECISIONS (sizeof(ff_odds) / sizeof(uint16_t))
+
 typedef struct ff_trained {
     ff_weights weights[FF_TRAINED_SETS];
-    /* of 65536, how often a decision is 1: the value is as expected; it is beyond class c */
-    uint16_t zero[FF_TRAINED_SCALES], beyond[FF_TRAINED_CLASSES - 1][FF_TRAINED_SCALES];
-    /* it lies below, by where in its step what is expected lies */
-    uint16_t below[4][FF_TRAINED_SCALES];
-    /* the highest bits of a value of a class, below the first one: the second and the third */
-    uint16_t second[FF_TRAINED_CLASSES][FF_TRAINED_SCALES],
-        third[2 * FF_TRAINED_CLASSES][FF_TRAINED_SCALES];
+    ff_odds odds[FF_TRAINED_SCALES];
 } ff_trained;
 
 extern const ff_trained ff_trained_tables;
 
 /* What is known of a point beforehand. */
 typedef struct ff_expected {
-    uint32_t at;       /* its index in the grid */
     int32_t predicted; /* its height when its residual is 0 */
     int32_t residual;  /* the likeliest one */
-    uint8_t scale;     /* how far it may be from that, as a row of ff_trained's */
-    uint8_t phase;     /* a row of ff_trained.below */
+    uint8_t scale;     /* how far it may be from that, as a row of ff_trained.odds */
+    uint8_t phase;     /* where in its step what is expected lies */
     /* for who trains: what it comes from, see ff_trained_known */
     uint8_t kind, bucket; /* enum ff_trained_class; row of ff_weights.taps */
-    int32_t base_q2, mean_q4, distance_q4, quantum;
-    const uint16_t *height;
-    const uint8_t *error;
+    int32_t mean_q4, distance_q4, quantum;
     int32_t along, away;
     uint32_t error_shift;
+    const uint16_t *height; /* in a copy of the grid's points, FF_TRAINED_PITCH to a row */
+    const uint16_t *first;  /* of the copy */
+    const uint8_t *error;   /* the same of how far points were from what was expected */
+    uint32_t side, step;    /* the grid's points of a row, of which every `step` are in the copy */
 } ff_expected;
+
+#define FF_TRAINED_MARGIN 3 /* points beyond a side that are looked at */
+/* The same whatever the nodes' size: places around a point lie at known distances. */
+#define FF_TRAINED_PITCH ((2 << FF_NODE_LOG2_MAX) + 1 + 2 * FF_TRAINED_MARGIN)
+
+/* Its index in the grid. */
+static inline uint32_t ff_expected_at(const ff_expected *p)
+{
+    uint32_t place = (uint32_t)(p->height - p->first), row = place / FF_TRAINED_PITCH;
+    return (row * p->side + place % FF_TRAINED_PITCH) * p->step;
+}
 
 /* Who makes the points. */
 typedef struct ff_points {
@@ -75,11 +94,9 @@ typedef struct ff_points {
     void *context;
 } ff_points;
 
-/* As ff_predict_fn, by weights of number `set`. Without errors, how far points were from what was
- * expected, only ff_expected.at and predicted are told. `room`: ff_codec_room() bytes. */
+/* As ff_predict_fn, by weights of number `set`. `room`: ff_codec_room() bytes. */
 void ff_expect(const ff_trained *by, unsigned set, const ff_terrain_info *info, ff_cells cells,
-               const uint16_t *parent, uint16_t *grid, int with_errors, void *room,
-               const ff_points *points);
+               const uint16_t *parent, uint16_t *grid, void *room, const ff_points *points);
 /* Encoder: the closed loop and a body in one. Of a grid, with its corners where it is a root's, the
  * residuals of all other points of `source`, and what is decoded. `apart`, of a refinement: sides
  * as streams of their own. `half`, or NULL: receives the bytes when the middles of the last
@@ -124,9 +141,9 @@ static inline void ff_trained_lengths_of(const ff_terrain_info *info, const uint
     for (unsigned i = 0; i < 4; i++, all >>= width)
         length[i] = (uint8_t)(all & ((1u << width) - 1));
 }
-/* For who trains: the known heights that a point's mean comes from, and the measures that its
- * distance comes from. How many there are. */
-uint32_t ff_trained_known(const ff_expected *p, int32_t known[FF_TRAINED_TAPS]);
+/* For who trains: the known heights that a point's mean comes from, and four times that which they
+ * are told from; the measures that its distance comes from. How many there are. */
+uint32_t ff_trained_known(const ff_expected *p, int32_t known[FF_TRAINED_TAPS], int32_t *base_q2);
 uint32_t ff_trained_traits(const ff_expected *p, int32_t trait[FF_TRAINED_TRAITS]);
 
 #endif

@@ -7,12 +7,13 @@
 
 #include <string.h>
 
-#define MARGIN 3 /* points beyond a side that are looked at */
-/* Of the copy, whatever the nodes' size: places around a point lie at known distances. */
-#define PITCH           ((2 << FF_NODE_LOG2_MAX) + 1 + 2 * MARGIN)
+#define MARGIN          FF_TRAINED_MARGIN
+#define PITCH           FF_TRAINED_PITCH
 #define HEIGHT_MAX_Q4   (UINT16_MAX * 16)
 #define DISTANCE_MAX_Q4 (1 << 22)
-#define SCALE_BIAS      90 /* of 256, of 1/16 step */
+#define SCALE_BIAS      90 /* of 256, of 1/16 step: the first scale's distances begin there */
+#define SCALE_LAST      (3 * 24 + 2)
+#define HALF_TAP        (1 << (FF_TRAINED_TAPS_LOG2 - 3))
 
 #ifdef __GNUC__
 #define FF_ALWAYS_INLINE inline __attribute__((always_inline))
@@ -25,18 +26,19 @@
 
 typedef struct walk {
     const ff_weights *by;
-    const ff_points *points;
-    int is_known;   /* the points that come next are in the grid */
-    uint16_t *grid; /* as the caller has it: `side` points, of which every `step` are made */
-    uint32_t side, step;
-    uint16_t *height; /* the copy's first point */
-    uint8_t *error;   /* the same of how far points were from what was expected */
-    int with_errors;
-    int32_t last[2];     /* the last column and row, in steps: the sides */
-    int32_t coded[2];    /* before these, odd ones are coded */
-    uint32_t reciprocal; /* of the quantum, Q31 */
-    int32_t always;      /* of a distance: what is the same for all points of a line */
-    ff_expected point;   /* the one that is made */
+    ff_points points;
+    const ff_taps *taps;  /* of the class that is made, by bucket */
+    const int16_t *trait; /* its weights */
+    int is_known;         /* the points that come next are in the grid */
+    uint16_t *grid;       /* as the caller has it: `side` points, of which every `step` are made */
+    uint16_t *height;     /* the copy's first point */
+    uint8_t *error;       /* the same of how far points were from what was expected */
+    int32_t last[2];      /* the last column and row, in steps: the sides */
+    int32_t coded[2];     /* before these, odd ones are coded */
+    uint32_t reciprocal;  /* of the quantum, Q31 */
+    uint32_t off_shift;   /* of a distance, Q4 */
+    int32_t always;       /* of a distance: what is the same for all points of a line */
+    ff_expected point;    /* the one that is made */
 } walk;
 
 static inline int32_t clamped(int32_t value, int32_t low, int32_t high)
@@ -48,17 +50,20 @@ static inline int32_t size(int32_t value) { return value < 0 ? -value : value; }
 
 static inline int32_t bend(int32_t a, int32_t b, int32_t c) { return size(a - 2 * b + c); }
 
-static inline unsigned log2_of(uint32_t value)
+/* Bits above the highest one that is 1. */
+static inline unsigned zeros_of(uint32_t value)
 {
     FF_ASSERT(value > 0);
 #ifdef __GNUC__
-    return 31u - (unsigned)__builtin_clz(value);
+    return (unsigned)__builtin_clz(value);
 #else
-    unsigned log2 = 0;
-    while (value >> log2 >> 1) log2++;
-    return log2;
+    unsigned zeros = 0;
+    while (!(value << zeros >> 31)) zeros++;
+    return zeros;
 #endif
 }
+
+static inline unsigned log2_of(uint32_t value) { return 31 - zeros_of(value); }
 
 /* By the quantum. */
 static inline uint32_t divided(const walk *w, uint32_t value)
@@ -94,8 +99,8 @@ static inline uint32_t divided(const walk *w, uint32_t value)
 #define ERROR(a, b)    (int32_t) error[(a)*along + (b)*away]
 #define KEEP(i, a, b)  known[i] = AT(a, b);
 #define COUNT(i, a, b) +1
-#define WEIGHED(i, a, b)      \
-    sum += tap[i] * AT(a, b); \
+#define WEIGHED(i, a, b)                          \
+    sum += (uint32_t)tap[i] * (uint32_t)AT(a, b); \
     IN_ORDER(sum);
 
 /* Measures of roughness, from the third on. They return that by which taps are chosen. */
@@ -140,34 +145,41 @@ static FF_ALWAYS_INLINE int32_t look(enum ff_trained_class kind, const uint16_t 
     return traits_of_centre(at, along, away, trait);
 }
 
-/* Those that tell how far points beside were off. How many traits there are in all. */
+/* Those that tell how far points beside were off, in units of 2^error_shift. How many traits there
+ * are in all. */
 static FF_ALWAYS_INLINE unsigned look_at_errors(enum ff_trained_class kind, const uint8_t *error,
-                                                int32_t along, int32_t away, uint32_t shift,
+                                                int32_t along, int32_t away,
                                                 int32_t trait[FF_TRAINED_TRAITS])
 {
     switch (kind) {
-        case FF_POINT_R: trait[7] = ERROR(-2, 0) << shift; return 8;
+        case FF_POINT_R: trait[7] = ERROR(-2, 0); return 8;
         case FF_POINT_N:
-            trait[5] = ERROR(0, -1) << shift;
-            trait[6] = (ERROR(-2, -1) + ERROR(2, -1)) << shift;
+            trait[5] = ERROR(0, -1);
+            trait[6] = ERROR(-2, -1) + ERROR(2, -1);
             return 7;
         case FF_POINT_C:
-            trait[4] = (ERROR(-2, 0) + ERROR(0, -2)) << shift;
-            trait[5] = (ERROR(-2, -2) + ERROR(2, -2)) << shift;
+            trait[4] = ERROR(-2, 0) + ERROR(0, -2);
+            trait[5] = ERROR(-2, -2) + ERROR(2, -2);
             return 6;
         default:
-            trait[4] = (ERROR(0, -1) + ERROR(0, 1)) << shift;
-            trait[5] = (ERROR(-1, -1) + (kind == FF_POINT_V ? ERROR(-1, 1) : ERROR(1, -1)))
-                       << shift;
-            trait[6] = (ERROR(-2, 0) + ERROR(0, -2)) << shift;
+            trait[4] = ERROR(0, -1) + ERROR(0, 1);
+            trait[5] = ERROR(-1, -1) + (kind == FF_POINT_V ? ERROR(-1, 1) : ERROR(1, -1));
+            trait[6] = ERROR(-2, 0) + ERROR(0, -2);
             return 7;
     }
 }
 
-static FF_ALWAYS_INLINE int32_t weighed(enum ff_trained_class kind, const int16_t *tap,
-                                        const uint16_t *at, int32_t along, int32_t away)
+/* The first one of those. */
+static FF_ALWAYS_INLINE unsigned errors_from(enum ff_trained_class kind)
 {
-    int32_t sum = 0;
+    return kind == FF_POINT_R ? 7 : kind == FF_POINT_N ? 5 : 4;
+}
+
+/* Known heights by their weights, added to `sum`: modulo 2^32, see ff_taps. */
+static FF_ALWAYS_INLINE uint32_t weighed(enum ff_trained_class kind, const int16_t *tap,
+                                         const uint16_t *at, int32_t along, int32_t away,
+                                         uint32_t sum)
+{
     switch (kind) {
         case FF_POINT_R: TAPS_R(WEIGHED) break;
         case FF_POINT_N: TAPS_N(WEIGHED) break;
@@ -187,10 +199,11 @@ static FF_ALWAYS_INLINE int32_t base_q2(enum ff_trained_class kind, const uint16
     return AT(-1, 0) + AT(1, 0) + AT(0, -1) + AT(0, 1);
 }
 
-uint32_t ff_trained_known(const ff_expected *p, int32_t known[FF_TRAINED_TAPS])
+uint32_t ff_trained_known(const ff_expected *p, int32_t known[FF_TRAINED_TAPS], int32_t *base)
 {
     const uint16_t *at = p->height;
     int32_t along = p->along, away = p->away;
+    *base = base_q2(p->kind, at, along, away);
     switch (p->kind) {
         case FF_POINT_R: TAPS_R(KEEP) return TAPS_R(COUNT);
         case FF_POINT_N: TAPS_N(KEEP) return TAPS_N(COUNT);
@@ -202,68 +215,77 @@ uint32_t ff_trained_known(const ff_expected *p, int32_t known[FF_TRAINED_TAPS])
 
 uint32_t ff_trained_traits(const ff_expected *p, int32_t trait[FF_TRAINED_TRAITS])
 {
+    enum ff_trained_class kind = p->kind;
     trait[0] = 4;
     trait[1] = p->quantum;
-    look(p->kind, p->height, p->along, p->away, trait);
-    return look_at_errors(p->kind, p->error, p->along, p->away, p->error_shift, trait);
+    look(kind, p->height, p->along, p->away, trait);
+    unsigned traits = look_at_errors(kind, p->error + (p->height - p->first), p->along, p->away,
+                                     trait);
+    for (unsigned i = errors_from(kind); i < traits; i++) trait[i] <<= p->error_shift;
+    return traits;
 }
 
 /* ---- a point ---- */
 
+/* What taps add to the base: sum of tap * (height - base), of which the base's quarters come in at
+ * the end. */
 static FF_ALWAYS_INLINE void weigh(const walk *w, enum ff_trained_class kind, const uint16_t *at,
                                    int32_t along, int32_t away, int32_t rough, ff_expected *p)
 {
     unsigned bucket = log2_of(divided(w, (uint32_t)(4 * rough + p->quantum)));
     if (bucket >= FF_TRAINED_BUCKETS) bucket = FF_TRAINED_BUCKETS - 1;
-    const ff_taps *taps = &w->by->taps[kind][bucket];
-    int32_t base = base_q2(kind, at, along, away);
-    int64_t sum = 4 * (int64_t)weighed(kind, taps->tap, at, along, away) -
-                  (int64_t)base * taps->sum + (1 << (FF_TRAINED_TAPS_LOG2 - 3));
+    const ff_taps *taps = w->taps + bucket;
+    int32_t base = base_q2(kind, at, along, away), quarters = base & 3;
+    uint32_t sum = weighed(kind, taps->tap, at, along, away,
+                           0 - (uint32_t)(base >> 2) * (uint32_t)taps->sum);
+    int32_t more = (int32_t)sum + ((HALF_TAP - quarters * taps->sum) >> 2);
     p->bucket = (uint8_t)bucket;
-    p->base_q2 = base;
-    p->mean_q4 = clamped(4 * base + (int32_t)(sum >> (FF_TRAINED_TAPS_LOG2 - 2)), 0, HEIGHT_MAX_Q4);
+    p->mean_q4 = clamped(4 * base + (more >> (FF_TRAINED_TAPS_LOG2 - 4)), 0, HEIGHT_MAX_Q4);
 }
 
 /* The row of FF_TRAINED_SCALES, three to a doubling, for a distance. */
 static inline uint8_t scale_of(const walk *w, int32_t distance_q4)
 {
     uint32_t steps_q8 = divided(w, (uint32_t)distance_q4 << 8) + SCALE_BIAS;
-    unsigned log2 = log2_of(steps_q8);
-    uint32_t mantissa = steps_q8 << (31 - log2);
-    int32_t row = 3 * ((int32_t)log2 - 8) + (mantissa >= 0xA1450000u) + (mantissa >= 0xCB300000u);
-    return (uint8_t)clamped(row + 5, 0, FF_TRAINED_SCALES - 1);
+    unsigned zeros = zeros_of(steps_q8);
+    uint32_t mantissa = steps_q8 << zeros;
+    uint32_t row = SCALE_LAST - 3 * zeros + (mantissa >= 0xA1450000u) + (mantissa >= 0xCB300000u);
+    return (uint8_t)(row < FF_TRAINED_SCALES ? row : FF_TRAINED_SCALES - 1);
 }
 
 static FF_ALWAYS_INLINE void measure(const walk *w, enum ff_trained_class kind,
-                                     const int32_t *trait, unsigned traits, ff_expected *p)
+                                     const int32_t *trait, ff_expected *p)
 {
-    const int16_t *weight = w->by->trait[kind];
-    int32_t sum = w->always;
-    sum += weight[2] * trait[2];
-    sum += weight[3] * trait[3];
-    sum += weight[4] * trait[4];
-    sum += weight[5] * trait[5];
-    if (traits > 6) sum += weight[6] * trait[6];
-    if (traits > 7) sum += weight[7] * trait[7];
+    const int16_t *weight = w->trait;
+    int32_t sum = w->always + weight[2] * trait[2] + weight[3] * trait[3], off;
+    if (kind == FF_POINT_R) {
+        sum += weight[4] * trait[4] + weight[5] * trait[5] + weight[6] * trait[6];
+        off = weight[7] * trait[7];
+    } else if (kind == FF_POINT_N) {
+        sum += weight[4] * trait[4];
+        off = weight[5] * trait[5] + weight[6] * trait[6];
+    } else {
+        off = weight[4] * trait[4] + weight[5] * trait[5];
+        if (kind != FF_POINT_C) off += weight[6] * trait[6];
+    }
+    sum += (int32_t)((uint32_t)off << p->error_shift);
     p->distance_q4 = clamped(sum >> (FF_TRAINED_TRAITS_LOG2 - 4), 1, DISTANCE_MAX_Q4);
     p->scale = scale_of(w, p->distance_q4);
 }
 
 /* Where what is expected lies among the heights that residuals lead to: the likeliest one, and in
- * which quarter around it. */
+ * which quarter around it. What a point that is on no side predicts is the likeliest. */
 static FF_ALWAYS_INLINE void place_mean(const walk *w, enum ff_trained_class kind, ff_expected *p)
 {
     int32_t off_q4 = p->mean_q4 - 16 * p->predicted + 8 * p->quantum, steps = off_q4 >> 4;
-    p->residual = 0;
     if (kind == FF_POINT_R) {
         p->residual = steps >= 0 ? (int32_t)divided(w, (uint32_t)steps)
                                  : -1 - (int32_t)divided(w, (uint32_t)(-1 - steps));
         p->residual = clamped(p->residual, -INT16_MAX, INT16_MAX);
-        off_q4 = clamped(off_q4 - 16 * p->quantum * p->residual, 0, 1 << 26);
+        off_q4 = clamped(off_q4 - 16 * p->quantum * p->residual, 0, 16 * p->quantum - 1);
     }
-    FF_ASSERT(off_q4 >= 0);
-    uint32_t phase = divided(w, (uint32_t)off_q4 >> 2);
-    p->phase = (uint8_t)(phase < 3 ? phase : 3);
+    p->phase = (uint8_t)divided(w, (uint32_t)off_q4 >> 2);
+    FF_ASSERT(p->phase < 4);
 }
 
 /* `middle`: of a side, what it predicts itself. */
@@ -273,18 +295,14 @@ static FF_ALWAYS_INLINE void make_point(walk *w, enum ff_trained_class kind, uin
     int32_t trait[FF_TRAINED_TRAITS];
     ff_expected *p = &w->point;
     p->height = height;
-    p->error = error;
     weigh(w, kind, height, along, away, look(kind, height, along, away, trait), p);
     p->predicted = kind == FF_POINT_R ? middle : (p->mean_q4 + 8) >> 4;
-    if (w->with_errors) {
-        unsigned traits = look_at_errors(kind, error, along, away, p->error_shift, trait);
-        measure(w, kind, trait, traits, p);
-        place_mean(w, kind, p);
-    }
-    *height = kind == FF_POINT_R && w->is_known ? w->grid[p->at]
-                                                : w->points->height(w->points->context, p);
-    if (!w->with_errors) return;
-    uint32_t off = (uint32_t)(size(16 * *height - p->mean_q4) + 8) >> 4 >> p->error_shift;
+    look_at_errors(kind, error, along, away, trait);
+    measure(w, kind, trait, p);
+    place_mean(w, kind, p);
+    *height = kind == FF_POINT_R && w->is_known ? w->grid[ff_expected_at(p)]
+                                                : w->points.height(w->points.context, p);
+    uint32_t off = (uint32_t)(size(16 * *height - p->mean_q4) + 8) >> w->off_shift;
     *error = (uint8_t)(off < 255 ? off : 255);
 }
 
@@ -293,16 +311,18 @@ static FF_ALWAYS_INLINE void make_point(walk *w, enum ff_trained_class kind, uin
 static int begin(const walk *w, unsigned side, uint32_t points)
 {
     FF_ASSERT(side <= FF_SIDE_COUNT);
-    return w->points->side ? w->points->side(w->points->context, side, points) : 0;
+    return w->points.side ? w->points.side(w->points.context, side, points) : 0;
 }
 
 static inline void begin_line(walk *w, enum ff_trained_class kind, int32_t along, int32_t away)
 {
-    const int16_t *weight = w->by->trait[kind];
+    w->taps = w->by->taps[kind];
+    w->trait = w->by->trait[kind];
+    w->point.residual = 0;
     w->point.kind = (uint8_t)kind;
     w->point.along = along;
     w->point.away = away;
-    w->always = 4 * weight[0] + weight[1] * w->point.quantum;
+    w->always = 4 * w->trait[0] + w->trait[1] * w->point.quantum;
 }
 
 /* Every second point from `column` and `row` on, before `end`, along an axis. A side's are
@@ -314,17 +334,16 @@ static FF_ALWAYS_INLINE void make_line(walk *w, enum ff_trained_class kind, int3
     int32_t index = row * PITCH + column, next = axis ? 2 * PITCH : 2, i = axis ? row : column;
     uint16_t *height = w->height + index;
     uint8_t *error = w->error + index;
-    uint32_t apart = 2 * w->step * (axis ? w->side : 1), cells = (w->side - 1) / (2 * w->step);
-    uint32_t at = ((uint32_t)row * w->side + (uint32_t)column) * w->step, first = at - apart / 2;
+    uint32_t apart = 2 * w->point.step * (axis ? w->point.side : 1),
+             cells = (w->point.side - 1) / (2 * w->point.step);
+    uint32_t first = ((uint32_t)row * w->point.side + (uint32_t)column) * w->point.step - apart / 2;
 
     begin_line(w, kind, along, away);
-    for (; i < end; i += 2, height += next, error += next, at += apart) {
-        w->point.at = at;
+    for (; i < end; i += 2, height += next, error += next)
         make_point(w, kind, height, error, along, away,
                    kind == FF_POINT_R
                        ? ff_predict_middle(w->grid + first, apart, (uint32_t)i / 2, cells)
                        : 0);
-    }
 }
 
 /* New points of a side, which lies `beside` the other axis's beginning. */
@@ -419,18 +438,18 @@ static void open_copy(const walk *w)
 {
     size_t rows = (size_t)w->last[1] + 1 + 2 * MARGIN;
     FF_ASSERT(w->last[0] >= 2 && w->last[1] >= 2);
-    if (w->with_errors) memset(w->error - MARGIN * (PITCH + 1), 0, rows * PITCH);
+    memset(w->error - MARGIN * (PITCH + 1), 0, rows * PITCH);
     for (int32_t row = 0; row <= w->last[1]; row += 2)
         for (int32_t column = 0; column <= w->last[0]; column += 2)
             w->height[row * PITCH + column] =
-                w->grid[((uint32_t)row * w->side + (uint32_t)column) * w->step];
+                w->grid[((uint32_t)row * w->point.side + (uint32_t)column) * w->point.step];
 }
 
 static void close_copy(const walk *w)
 {
     for (int32_t row = 0; row <= w->last[1]; row++) {
-        uint16_t *to = w->grid + (uint32_t)row * w->side * w->step;
-        for (int32_t column = 0; column <= w->last[0]; column++, to += w->step)
+        uint16_t *to = w->grid + (uint32_t)row * w->point.side * w->point.step;
+        for (int32_t column = 0; column <= w->last[0]; column++, to += w->point.step)
             *to = w->height[row * PITCH + column];
     }
 }
@@ -438,7 +457,7 @@ static void close_copy(const walk *w)
 static void make_doubling(walk *w, uint32_t step, ff_cells ground)
 {
     const uint32_t end[2] = { ground.columns, ground.rows };
-    w->step = step;
+    w->point.step = step;
     for (unsigned axis = 0; axis < 2; axis++) {
         w->last[axis] = (int32_t)(ff_last_point(step, end[axis]) / step);
         w->coded[axis] = 2 * (int32_t)ff_coded_points(step, end[axis]);
@@ -452,12 +471,12 @@ static void make_doubling(walk *w, uint32_t step, ff_cells ground)
     make_side(w, FF_SIDE_WEST, 1, 0, 1);
     begin(w, FF_SIDE_COUNT, 0);
     fill_margin(w);
-    if (w->with_errors) fill_error_margin(w);
+    fill_error_margin(w);
     make_centres(w);
-    if (step == 1 && w->points->go_on && !w->points->go_on(w->points->context)) return;
+    if (step == 1 && w->points.go_on && !w->points.go_on(w->points.context)) return;
     make_middles(w);
     close_copy(w);
-    ff_repeat_last(w->grid, w->side, step, ground);
+    ff_repeat_last(w->grid, w->point.side, step, ground);
 }
 
 FF_STATIC_ASSERT(MARGIN == 3); /* fill_margin */
@@ -471,22 +490,23 @@ size_t ff_codec_room(const ff_terrain_info *info)
 }
 
 void ff_expect(const ff_trained *by, unsigned set, const ff_terrain_info *info, ff_cells cells,
-               const uint16_t *parent, uint16_t *grid, int with_errors, void *room,
-               const ff_points *points)
+               const uint16_t *parent, uint16_t *grid, void *room, const ff_points *points)
 {
-    walk w = { .by = &by->weights[set], .points = points, .grid = grid };
+    walk w = { .by = &by->weights[set], .points = *points, .grid = grid };
     FF_ASSERT(parent || !points->side);
     int32_t quantum = ff_quantum(info, !parent);
     unsigned log2 = log2_of((uint32_t)quantum);
     w.point.quantum = quantum;
     w.point.error_shift = log2 > 4 ? log2 - 4 : 0;
+    w.off_shift = w.point.error_shift + 4;
     w.reciprocal = (UINT32_C(1) << 31) / (uint32_t)quantum + 1;
-    w.side = parent ? ff_refined_side(info) : ff_node_side(info);
+    w.point.side = parent ? ff_refined_side(info) : ff_node_side(info);
     w.height = (uint16_t *)room + MARGIN * (PITCH + 1);
-    w.with_errors = with_errors;
-    w.error = (uint8_t *)room + copied(w.side) * sizeof(uint16_t) + MARGIN * (PITCH + 1);
-    cells = ff_cells_of(cells, w.side);
+    w.point.first = w.height;
+    w.error = (uint8_t *)room + copied(w.point.side) * sizeof(uint16_t) + MARGIN * (PITCH + 1);
+    w.point.error = w.error;
+    cells = ff_cells_of(cells, w.point.side);
     if (parent) ff_spread_parent(info, parent, grid);
-    for (uint32_t step = parent ? 1 : (w.side - 1) / 2; step >= 1; step /= 2)
+    for (uint32_t step = parent ? 1 : (w.point.side - 1) / 2; step >= 1; step /= 2)
         make_doubling(&w, step, cells);
 }

@@ -23,16 +23,15 @@ typedef struct putting {
     size_t half; /* as ff_trained_put says */
 } putting;
 
-static void put_magnitude(const ff_trained *by, ff_range_writer *range, uint32_t scale,
-                          uint32_t value)
+static void put_magnitude(const ff_odds *odds, ff_range_writer *range, uint32_t value)
 {
     uint32_t bits = 0;
     while (value >> bits >> 1) bits++;
-    for (uint32_t i = 0; i < bits; i++) ff_range_put(range, by->beyond[i][scale], 1);
-    if (bits < FF_TRAINED_CLASSES - 1) ff_range_put(range, by->beyond[bits][scale], 0);
+    for (uint32_t i = 0; i < bits; i++) ff_range_put(range, odds->beyond[i], 1);
+    if (bits < FF_TRAINED_CLASSES - 1) ff_range_put(range, odds->beyond[bits], 0);
     for (uint32_t i = 0; i < bits; i++) {
-        uint32_t one = i == 0   ? by->second[bits][scale]
-                       : i == 1 ? by->third[2 * bits + (value >> (bits - 1) & 1u)][scale]
+        uint32_t one = i == 0   ? odds->second[bits]
+                       : i == 1 ? odds->third[2 * bits + (value >> (bits - 1) & 1u)]
                                 : HALF;
         ff_range_put(range, one, value >> (bits - 1 - i) & 1u);
     }
@@ -41,13 +40,14 @@ static void put_magnitude(const ff_trained *by, ff_range_writer *range, uint32_t
 static uint16_t put_height(void *context, const ff_expected *p)
 {
     putting *to = context;
-    const ff_trained *by = to->by;
-    uint16_t height = ff_make_height(to->source, p->at, to->quantum, p->predicted, to->next);
+    const ff_odds *odds = to->by->odds + p->scale;
+    uint16_t height = ff_make_height(to->source, ff_expected_at(p), to->quantum, p->predicted,
+                                     to->next);
     int32_t value = *to->next++ - p->residual;
-    ff_range_put(&to->range, by->zero[p->scale], value == 0);
+    ff_range_put(&to->range, odds->zero, value == 0);
     if (value) {
-        ff_range_put(&to->range, by->below[p->phase][p->scale], value < 0);
-        put_magnitude(by, &to->range, p->scale, (uint32_t)(value < 0 ? -value : value));
+        ff_range_put(&to->range, odds->below[p->phase], value < 0);
+        put_magnitude(odds, &to->range, (uint32_t)(value < 0 ? -value : value));
     }
     return height;
 }
@@ -105,7 +105,7 @@ size_t ff_trained_put(const ff_trained *by, unsigned set, const ff_terrain_info 
     const ff_points points = { put_height, apart ? put_side : NULL, half ? go_on : NULL, &to };
 
     begin_stream(&to);
-    ff_expect(by, set, info, cells, parent, decoded, 1, room, &points);
+    ff_expect(by, set, info, cells, parent, decoded, room, &points);
     if (half) *half = (uint16_t)to.half;
     if (to.is_given_up) return SIZE_MAX;
     int bytes = ff_range_end(&to.range);

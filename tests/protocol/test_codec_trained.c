@@ -471,21 +471,41 @@ static void below_leaves_all_is_prediction(void **state)
 
 /* ---- numbers ---- */
 
-static void expect_possible(const uint16_t *one, uint32_t count)
-{
-    for (uint32_t i = 0; i < count; i++) assert_in_range(one[i], 1, 65535);
-}
-
 /* A decision that cannot be would end the coder's interval. */
 static void every_decision_is_possible(void **state)
 {
-    const ff_trained *by = &ff_trained_tables;
     (void)state;
-    expect_possible(by->zero, sizeof by->zero / 2);
-    expect_possible(by->beyond[0], sizeof by->beyond / 2);
-    expect_possible(by->below[0], sizeof by->below / 2);
-    expect_possible(by->second[1], sizeof by->second / 2 - FF_TRAINED_SCALES);
-    expect_possible(by->third[4], sizeof by->third / 2 - 4 * FF_TRAINED_SCALES);
+    for (uint32_t scale = 0; scale < FF_TRAINED_SCALES; scale++) {
+        const uint16_t *one = (const uint16_t *)&ff_trained_tables.odds[scale];
+        for (uint32_t i = 0; i < FF_TRAINED_DECISIONS; i++) assert_in_range(one[i], 1, 65535);
+    }
+}
+
+static int64_t sizes(const int16_t *weight, uint32_t count)
+{
+    int64_t sum = 0;
+    for (uint32_t i = 0; i < count; i++) sum += weight[i] < 0 ? -weight[i] : weight[i];
+    return sum;
+}
+
+static void sums_of_what_is_around_a_point_fit_32_bits(void **state)
+{
+    (void)state;
+    for (unsigned set = 0; set < FF_TRAINED_SETS; set++)
+        for (unsigned kind = 0; kind < FF_POINTS; kind++) {
+            const ff_weights *by = &ff_trained_tables.weights[set];
+            const int16_t *trait = by->trait[kind];
+            for (unsigned bucket = 0; bucket < FF_TRAINED_BUCKETS; bucket++) {
+                const int16_t *tap = by->taps[kind][bucket].tap;
+                int32_t sum = 0;
+                for (unsigned i = 0; i < FF_TRAINED_TAPS; i++) sum += tap[i];
+                assert_int_equal(by->taps[kind][bucket].sum, sum);
+                assert_in_range(sizes(tap, FF_TRAINED_TAPS), 0, INT16_MAX);
+            }
+            assert_in_range(4 * sizes(trait, 1) + UINT16_MAX * sizes(trait + 1, 1) +
+                                FF_TRAINED_TRAIT_MAX * sizes(trait + 2, FF_TRAINED_TRAITS - 2),
+                            0, INT32_MAX);
+        }
 }
 
 /* Ground without chance, whatever machine made it: its payloads and heights are part of the
@@ -547,6 +567,7 @@ int main(void)
         cmocka_unit_test(heads_are_held_to_what_they_mean),
         cmocka_unit_test(below_leaves_all_is_prediction),
         cmocka_unit_test(every_decision_is_possible),
+        cmocka_unit_test(sums_of_what_is_around_a_point_fit_32_bits),
         cmocka_unit_test(payloads_stay_as_they_are),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -53,7 +53,7 @@ static int reads_back(const uint8_t *bytes, size_t count, int *whole)
     ff_range_read(&range, bytes, count);
     for (uint32_t i = 0; i < d.count; i++)
         if (ff_range_take(&range, d.one[i]) != d.bit[i]) return 0;
-    *whole = range.in == range.end;
+    *whole = ff_range_is_read(&range);
     return 1;
 }
 

@@ -257,16 +257,16 @@ static int decision(stream *s, unsigned probability)
 
 static int64_t streamed(stream *s, const expected *is)
 {
-    const ff_trained *by = &ff_trained_tables;
+    const ff_odds *odds = &ff_trained_tables.odds[is->scale];
     int negative, bits = 0, second = 0;
     int64_t value = 1;
 
-    if (decision(s, by->zero[is->scale])) return is->likeliest;
-    negative = decision(s, by->below[is->phase][is->scale]);
-    while (bits < 15 && decision(s, by->beyond[bits][is->scale])) bits++;
+    if (decision(s, odds->zero)) return is->likeliest;
+    negative = decision(s, odds->below[is->phase]);
+    while (bits < 15 && decision(s, odds->beyond[bits])) bits++;
     for (int i = 0; i < bits; i++) {
-        int bit = decision(s, i == 0   ? by->second[bits][is->scale]
-                              : i == 1 ? by->third[2 * bits + second][is->scale]
+        int bit = decision(s, i == 0   ? odds->second[bits]
+                              : i == 1 ? odds->third[2 * bits + second]
                                        : 32768);
         if (i == 0) second = bit;
         value = 2 * value + bit;

@@ -1,6 +1,7 @@
 #include "train_fit.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define WIDEST (FF_TRAINED_TAPS + 1)
@@ -26,11 +27,12 @@ void train_sum(train_sums sums[FF_TRAINED_SETS], const train_point *point)
 {
     const ff_expected *p = point->expected;
     train_sums *of = &sums[point->set];
-    int32_t known[FF_TRAINED_TAPS], trait[FF_TRAINED_TRAITS];
+    int32_t known[FF_TRAINED_TAPS], trait[FF_TRAINED_TRAITS], base_q2;
     double scale = p->distance_q4 / 16.0 + 0.5 * p->quantum + 0.3,
-           weight = point->share / (scale * scale), base = p->base_q2 / 4.0,
-           off = point->height - base, distance = fabs(point->height - p->mean_q4 / 16.0);
-    unsigned taps = ff_trained_known(p, known), traits = ff_trained_traits(p, trait);
+           weight = point->share / (scale * scale),
+           distance = fabs(point->height - p->mean_q4 / 16.0);
+    unsigned taps = ff_trained_known(p, known, &base_q2), traits = ff_trained_traits(p, trait);
+    double base = base_q2 / 4.0, off = point->height - base;
     for (unsigned i = 0; i < taps; i++) {
         double *row = of->tap[p->kind][p->bucket][i], x = (known[i] - base) * weight;
         if (x == 0) continue;
@@ -121,7 +123,37 @@ void train_weights(train_sums sums[FF_TRAINED_SETS], ff_trained *tables)
     for (unsigned set = 0; set < FF_TRAINED_SETS; set++) fit_set(&sums[set], &tables->weights[set]);
 }
 
+static double sizes(const int16_t *weight, unsigned count)
+{
+    double sum = 0;
+    for (unsigned i = 0; i < count; i++) sum += abs(weight[i]);
+    return sum;
+}
+
+int train_weights_fit(const ff_trained *tables)
+{
+    int fit = 1;
+    for (unsigned set = 0; set < FF_TRAINED_SETS; set++)
+        for (unsigned kind = 0; kind < FF_POINTS; kind++) {
+            const ff_weights *by = &tables->weights[set];
+            for (unsigned bucket = 0; bucket < FF_TRAINED_BUCKETS; bucket++)
+                fit &= sizes(by->taps[kind][bucket].tap, FF_TRAINED_TAPS) <= INT16_MAX;
+            fit &= 65536.0 * sizes(by->trait[kind], 2) +
+                       FF_TRAINED_TRAIT_MAX * sizes(by->trait[kind] + 2, FF_TRAINED_TRAITS - 2) <=
+                   INT32_MAX;
+        }
+    return fit;
+}
+
 /* ---- probabilities ---- */
+
+/* Counts what became of a decision; `one`: its place in the first odds. */
+static void count(train_counts *counts, const ff_expected *p, const uint16_t *one, unsigned way,
+                  double share)
+{
+    size_t decision = (size_t)(one - &ff_trained_tables.odds->zero);
+    counts->of[p->scale][decision][way] += share;
+}
 
 void train_count(train_counts *counts, const train_point *point)
 {
@@ -130,16 +162,17 @@ void train_count(train_counts *counts, const train_point *point)
     int32_t value = point->residual - p->residual;
     uint32_t size = (uint32_t)(value < 0 ? -value : value);
     unsigned bits = 0;
-    counts->zero[p->scale][value == 0] += share;
+    const ff_odds *odds = ff_trained_tables.odds; /* for its members' places */
+    count(counts, p, &odds->zero, value == 0, share);
     if (!value) return;
-    counts->below[p->phase][p->scale][value < 0] += share;
+    count(counts, p, &odds->below[p->phase], value < 0, share);
     while (size >> bits >> 1) bits++;
-    for (unsigned i = 0; i < bits; i++) counts->beyond[i][p->scale][1] += share;
-    if (bits < FF_TRAINED_CLASSES - 1) counts->beyond[bits][p->scale][0] += share;
-    if (bits > 0) counts->second[bits][p->scale][size >> (bits - 1) & 1u] += share;
+    for (unsigned i = 0; i < bits; i++) count(counts, p, &odds->beyond[i], 1, share);
+    if (bits < FF_TRAINED_CLASSES - 1) count(counts, p, &odds->beyond[bits], 0, share);
+    if (bits > 0) count(counts, p, &odds->second[bits], size >> (bits - 1) & 1u, share);
     if (bits > 1)
-        counts->third[2 * bits + (size >> (bits - 1) & 1u)][p->scale][size >> (bits - 2) & 1u] +=
-            share;
+        count(counts, p, &odds->third[2 * bits + (size >> (bits - 1) & 1u)],
+              size >> (bits - 2) & 1u, share);
 }
 
 /* Of 65536; `before`: what it is taken for until there are counts. */
@@ -149,25 +182,24 @@ static uint16_t share(const double count[2], uint16_t before)
     return (uint16_t)(p < 32 ? 32 : p > 65503 ? 65503 : lrint(p));
 }
 
-/* A row that was hardly ever seen goes by the one beside it that was. */
-static void shares(double count[FF_TRAINED_SCALES][2], uint16_t *out)
+/* Of a decision; a scale where it hardly ever was goes by the one beside it where it was. */
+static void shares(const train_counts *counts, size_t decision, ff_trained *tables)
 {
     unsigned first = 0;
-    while (first + 1 < FF_TRAINED_SCALES && count[first][0] + count[first][1] < ENOUGH) first++;
-    uint16_t before = share(count[first], HALF);
-    for (unsigned i = 0; i < FF_TRAINED_SCALES; i++)
-        before = out[i] = i < first ? before : share(count[i], before);
+    for (; first + 1 < FF_TRAINED_SCALES; first++) {
+        const double *of = counts->of[first][decision];
+        if (of[0] + of[1] >= ENOUGH) break;
+    }
+    uint16_t before = share(counts->of[first][decision], HALF);
+    for (unsigned i = 0; i < FF_TRAINED_SCALES; i++) {
+        if (i >= first) before = share(counts->of[i][decision], before);
+        ((uint16_t *)&tables->odds[i])[decision] = before;
+    }
 }
 
 void train_probabilities(train_counts *counts, ff_trained *tables)
 {
-    shares(counts->zero, tables->zero);
-    for (unsigned i = 0; i < FF_TRAINED_CLASSES - 1; i++)
-        shares(counts->beyond[i], tables->beyond[i]);
-    for (unsigned i = 0; i < 4; i++) shares(counts->below[i], tables->below[i]);
-    for (unsigned i = 0; i < FF_TRAINED_CLASSES; i++) shares(counts->second[i], tables->second[i]);
-    for (unsigned i = 0; i < 2 * FF_TRAINED_CLASSES; i++)
-        shares(counts->third[i], tables->third[i]);
+    for (size_t i = 0; i < FF_TRAINED_DECISIONS; i++) shares(counts, i, tables);
 }
 
 static double bits_of(uint16_t probability, int is_one)
@@ -182,15 +214,15 @@ double train_bits(const ff_trained *tables, const ff_expected *p, int32_t residu
 {
     int32_t value = residual - p->residual;
     uint32_t size = (uint32_t)(value < 0 ? -value : value);
-    unsigned bits = 0, scale = p->scale;
-    double sum = bits_of(tables->zero[scale], value == 0);
+    unsigned bits = 0;
+    const ff_odds *odds = &tables->odds[p->scale];
+    double sum = bits_of(odds->zero, value == 0);
     if (!value) return sum;
-    sum += bits_of(tables->below[p->phase][scale], value < 0);
-    while (size >> bits >> 1) sum += bits_of(tables->beyond[bits++][scale], 1);
-    if (bits < FF_TRAINED_CLASSES - 1) sum += bits_of(tables->beyond[bits][scale], 0);
-    if (bits > 0) sum += bits_of(tables->second[bits][scale], size >> (bits - 1) & 1u);
+    sum += bits_of(odds->below[p->phase], value < 0);
+    while (size >> bits >> 1) sum += bits_of(odds->beyond[bits++], 1);
+    if (bits < FF_TRAINED_CLASSES - 1) sum += bits_of(odds->beyond[bits], 0);
+    if (bits > 0) sum += bits_of(odds->second[bits], size >> (bits - 1) & 1u);
     if (bits > 1)
-        sum += bits_of(tables->third[2 * bits + (size >> (bits - 1) & 1u)][scale],
-                       size >> (bits - 2) & 1u);
+        sum += bits_of(odds->third[2 * bits + (size >> (bits - 1) & 1u)], size >> (bits - 2) & 1u);
     return bits > 2 ? sum + bits - 2 : sum;
 }

@@ -22,15 +22,15 @@ typedef struct train_sums {
 
 /* Of each decision: how often it was 0, and 1. */
 typedef struct train_counts {
-    double zero[FF_TRAINED_SCALES][2], beyond[FF_TRAINED_CLASSES - 1][FF_TRAINED_SCALES][2],
-        below[4][FF_TRAINED_SCALES][2], second[FF_TRAINED_CLASSES][FF_TRAINED_SCALES][2],
-        third[2 * FF_TRAINED_CLASSES][FF_TRAINED_SCALES][2];
+    double of[FF_TRAINED_SCALES][FF_TRAINED_DECISIONS][2]; /* as in ff_odds */
 } train_counts;
 
 void train_begin(ff_trained *tables); /* what the first round goes by */
 void train_sum(train_sums sums[FF_TRAINED_SETS], const train_point *point);
 /* Of all sets; changes the sums. */
 void train_weights(train_sums sums[FF_TRAINED_SETS], ff_trained *tables);
+/* 1: sums of them fit 32 bits, see ff_taps. */
+int train_weights_fit(const ff_trained *tables);
 void train_count(train_counts *counts, const train_point *point);
 /* How many bits a residual takes. */
 double train_bits(const ff_trained *tables, const ff_expected *p, int32_t residual);

@@ -95,7 +95,7 @@ typedef struct maker {
 
 static int32_t residual_of(const maker *m, const ff_expected *p)
 {
-    int32_t off = m->source[p->at] - p->predicted, half = m->quantum / 2;
+    int32_t off = m->source[ff_expected_at(p)] - p->predicted, half = m->quantum / 2;
     if (m->quantum == 1) return (int16_t)off; /* the shorter way round */
     return off >= 0 ? (off + half) / m->quantum : -((half - off) / m->quantum);
 }
@@ -113,7 +113,7 @@ static uint16_t make_height(void *context, const ff_expected *p)
     maker *m = context;
     int32_t residual = residual_of(m, p);
     m->point.expected = p;
-    m->point.height = m->source[p->at];
+    m->point.height = m->source[ff_expected_at(p)];
     m->point.residual = residual;
     m->eye->point(m->eye->context, &m->point);
     return ff_dequantise(m->quantum, p->predicted, residual);
@@ -133,7 +133,7 @@ static unsigned choose_set(maker *m, const uint16_t *parent, uint16_t *grid, uin
     if (m->choice == TRAIN_BY_LEVEL) return cell >= COARSE_CELL;
     for (unsigned set = 0; set < FF_TRAINED_SETS; set++) {
         m->bits = 0;
-        ff_expect(m->by, set, &m->info, (ff_cells){ 0, 0 }, parent, grid, 1, room, &points);
+        ff_expect(m->by, set, &m->info, (ff_cells){ 0, 0 }, parent, grid, room, &points);
         if (m->bits < least) best = set, least = m->bits;
     }
     return best;
@@ -157,7 +157,7 @@ static void make_grid(maker *m, const uint16_t *parent, uint32_t x, uint32_t y, 
     /* a level has a fourth of the next one's points, and flights take most of the coarser ones */
     m->point.share = cell;
     m->point.set = choose_set(m, parent, grid, cell, room);
-    ff_expect(m->by, m->point.set, &m->info, (ff_cells){ 0, 0 }, parent, grid, 1, room, &points);
+    ff_expect(m->by, m->point.set, &m->info, (ff_cells){ 0, 0 }, parent, grid, room, &points);
     bake_scatter(grid, m->side, side, cell, m->decoded + (size_t)y * m->side + x);
     if (!m->eye->payload) return;
     size_t bytes = ff_trained_put(m->by, m->point.set, &m->info, (ff_cells){ 0, 0 }, parent,

@@ -29,11 +29,21 @@ static void put_rows(FILE *out, const char *name, const void *at, size_t rows, s
     fprintf(out, "    },\n");
 }
 
-static void put_row(FILE *out, const char *name, const uint16_t *at, size_t count)
+static void put_list(FILE *out, const uint16_t *at, size_t count)
 {
-    fprintf(out, "    .%s = {", name);
+    fputs(",\n        {", out);
     train_put_numbers(out, at, count, 0);
-    fprintf(out, "},\n");
+    fputs("}", out);
+}
+
+static void put_odds(FILE *out, const ff_odds *odds)
+{
+    fprintf(out, "        {%d", odds->zero);
+    put_list(out, odds->below, 4);
+    put_list(out, odds->beyond, FF_TRAINED_CLASSES - 1);
+    put_list(out, odds->second, FF_TRAINED_CLASSES);
+    put_list(out, odds->third, FF_TRAINED_CLASSES * 2);
+    fputs("},\n", out);
 }
 
 static void put_weights(FILE *out, const ff_weights *w)
@@ -63,13 +73,8 @@ int train_write(const char *path, const ff_trained *t)
           "const ff_trained ff_trained_tables = {\n    .weights = {\n",
           out);
     for (unsigned set = 0; set < FF_TRAINED_SETS; set++) put_weights(out, &t->weights[set]);
-    fputs("    },\n", out);
-    put_row(out, "zero", t->zero, FF_TRAINED_SCALES);
-    put_rows(out, "beyond", t->beyond, FF_TRAINED_CLASSES - 1, FF_TRAINED_SCALES, 0);
-    put_rows(out, "below", t->below, 4, FF_TRAINED_SCALES, 0);
-    put_rows(out, "second", t->second, FF_TRAINED_CLASSES, FF_TRAINED_SCALES, 0);
-    put_rows(out, "third", t->third, FF_TRAINED_CLASSES * 2, FF_TRAINED_SCALES, 0);
-
-    fputs("};\n/* clang-format on */\n", out);
+    fputs("    },\n    .odds = {\n", out);
+    for (unsigned scale = 0; scale < FF_TRAINED_SCALES; scale++) put_odds(out, &t->odds[scale]);
+    fputs("    },\n};\n/* clang-format on */\n", out);
     return fclose(out) ? bake_fail("cannot write %s: %s", path, strerror(errno)) : 0;
 }
