@@ -314,7 +314,8 @@ static int begin(const walk *w, unsigned side, uint32_t points)
     return w->points.side ? w->points.side(w->points.context, side, points) : 0;
 }
 
-static inline void begin_line(walk *w, enum ff_trained_class kind, int32_t along, int32_t away)
+/* Before lines of a class. */
+static void begin_class(walk *w, enum ff_trained_class kind, int32_t along, int32_t away)
 {
     w->taps = w->by->taps[kind];
     w->trait = w->by->trait[kind];
@@ -338,7 +339,6 @@ static FF_ALWAYS_INLINE void make_line(walk *w, enum ff_trained_class kind, int3
              cells = (w->point.side - 1) / (2 * w->point.step);
     uint32_t first = ((uint32_t)row * w->point.side + (uint32_t)column) * w->point.step - apart / 2;
 
-    begin_line(w, kind, along, away);
     for (; i < end; i += 2, height += next, error += next)
         make_point(w, kind, height, error, along, away,
                    kind == FF_POINT_R
@@ -352,6 +352,7 @@ static void make_side(walk *w, enum ff_side side, unsigned axis, int32_t beside,
     int32_t along = axis ? PITCH : 1, away = axis ? inward : inward * PITCH;
     FF_ASSERT(beside == 0 || beside == w->last[!axis]);
     w->is_known = begin(w, side, (uint32_t)w->coded[axis] / 2);
+    begin_class(w, FF_POINT_R, along, away);
     make_line(w, FF_POINT_R, axis ? beside : 1, axis ? 1 : beside, axis, w->coded[axis], along,
               away);
 }
@@ -363,6 +364,7 @@ static void make_near(walk *w, unsigned axis, int32_t beside, int inward)
     int32_t to = w->last[axis] - (axis ? 2 : 0);
     if (beside >= w->coded[!axis]) return;
     if (to > w->coded[axis]) to = w->coded[axis];
+    begin_class(w, FF_POINT_N, along, away);
     make_line(w, FF_POINT_N, axis ? beside : 1, axis ? 3 : beside, axis, to, along, away);
 }
 
@@ -373,6 +375,7 @@ static void make_centres(walk *w)
     if (w->last[1] > 2) make_near(w, 0, w->last[1] - 1, -1);
     make_near(w, 1, 1, 1);
     if (w->last[0] > 2) make_near(w, 1, w->last[0] - 1, -1);
+    begin_class(w, FF_POINT_C, 1, PITCH);
     for (int32_t row = 3; row < w->coded[1] && row < w->last[1] - 2; row += 2)
         make_line(w, FF_POINT_C, 3, row, 0, end, 1, PITCH);
 }
@@ -380,10 +383,13 @@ static void make_centres(walk *w)
 static void make_middles(walk *w)
 {
     for (int32_t row = 1; row < w->last[1]; row++) {
-        if (row % 2 == 0)
+        if (row % 2 == 0) {
+            begin_class(w, FF_POINT_H, 1, PITCH);
             make_line(w, FF_POINT_H, 1, row, 0, w->coded[0], 1, PITCH);
-        else if (row < w->coded[1])
+        } else if (row < w->coded[1]) {
+            begin_class(w, FF_POINT_V, PITCH, 1);
             make_line(w, FF_POINT_V, 2, row, 0, w->last[0], PITCH, 1);
+        }
     }
 }
 
@@ -447,10 +453,14 @@ static void open_copy(const walk *w)
 
 static void close_copy(const walk *w)
 {
-    for (int32_t row = 0; row <= w->last[1]; row++) {
-        uint16_t *to = w->grid + (uint32_t)row * w->point.side * w->point.step;
-        for (int32_t column = 0; column <= w->last[0]; column++, to += w->point.step)
-            *to = w->height[row * PITCH + column];
+    const uint16_t *from = w->height;
+    uint32_t step = w->point.step, count = (uint32_t)w->last[0] + 1;
+    for (int32_t row = 0; row <= w->last[1]; row++, from += PITCH) {
+        uint16_t *to = w->grid + (uint32_t)row * w->point.side * step;
+        if (step == 1)
+            memcpy(to, from, count * sizeof *to);
+        else
+            for (uint32_t column = 0; column < count; column++) to[column * step] = from[column];
     }
 }
 
