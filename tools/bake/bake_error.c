@@ -2,8 +2,6 @@
 
 #include "bake_samples.h"
 
-static uint64_t distance(int64_t a, int64_t b) { return (uint64_t)(a > b ? a - b : b - a); }
-
 static uint32_t least(uint32_t a, uint32_t b) { return a < b ? a : b; }
 static uint32_t most(uint32_t a, uint32_t b) { return a > b ? a : b; }
 
@@ -13,32 +11,59 @@ typedef struct looked_at {
     uint32_t wide, deep, west, east, south, north;
 } looked_at;
 
+/* Samples beside each other and the triangle over them, which rises evenly there, in units of
+ * 1/scale: the larger one of `worst` and their distances. */
+static uint64_t run_error(const uint16_t *sample, const uint8_t *mark, uint32_t count,
+                          int64_t height, int64_t rise, int64_t scale, uint64_t worst)
+{
+    for (uint32_t i = 0; i < count; i++, height += rise) {
+        int64_t above = height - sample[i] * scale;
+        uint64_t error = (uint64_t)(above < 0 ? -above : above);
+        if (error > worst && !(mark && mark[i] & BAKE_BETWEEN)) worst = error;
+    }
+    return worst;
+}
+
 /* Largest distance of the samples looked at, of which `sample` is the south-western one, rounded
- * up. Heights on a triangle are whole multiples of 1/scale. */
+ * up. Heights on a triangle are whole multiples of 1/scale. A row runs through the north-western
+ * triangle first. */
 static uint32_t cell_error(const uint16_t *sample, const uint8_t *marks, size_t pitch,
                            const bake_drawn *drawn, const uint16_t *vertex, const looked_at *at)
 {
     int64_t sw = vertex[0], se = vertex[drawn->east], nw = vertex[drawn->north],
             ne = vertex[drawn->north + drawn->east];
-    int64_t a = at->wide == at->deep ? 1 : at->deep, b = at->wide == at->deep ? 1 : at->wide,
-            scale = at->wide * a;
+    uint32_t square = at->wide == at->deep, a = square ? 1 : at->deep, b = square ? 1 : at->wide;
+    int64_t scale = (int64_t)at->wide * a, north_rise = (ne - nw) * a, south_rise = (se - sw) * a;
     uint64_t worst = 0;
     for (uint32_t v = at->south; v <= at->north; v++, sample += pitch) {
-        const uint16_t *row = sample;
-        const uint8_t *mark = marks;
+        uint32_t y = v * b, diagonal = square ? v : (y + a - 1) / a;
+        uint32_t middle = most(at->west, least(diagonal, at->east + 1)), first = middle - at->west;
+        int64_t north = sw * scale + (nw - sw) * y + north_rise * at->west,
+                south = sw * scale + (ne - se) * y + south_rise * middle;
+        worst = run_error(sample, marks, first, north, north_rise, scale, worst);
+        worst = run_error(sample + first, marks ? marks + first : NULL, at->east + 1 - middle,
+                          south, south_rise, scale, worst);
         if (marks) marks += pitch;
-        for (uint32_t u = at->west; u <= at->east; u++) {
-            int64_t x = u * a, y = v * b;
-            if (mark && *mark++ & BAKE_BETWEEN) {
-                row++;
-                continue;
-            }
-            int64_t rise = x >= y ? (se - sw) * x + (ne - se) * y : (nw - sw) * y + (ne - nw) * x;
-            uint64_t error = distance(sw * scale + rise, *row++ * scale);
-            if (error > worst) worst = error;
-        }
     }
     return (uint32_t)((worst + (uint64_t)scale - 1) / (uint64_t)scale);
+}
+
+/* Where every sample is a vertex. */
+static uint32_t vertices_error(const bake_patch *patch, const bake_drawn *drawn)
+{
+    uint32_t worst = 0;
+    for (uint32_t row = 0; row <= patch->size.rows; row++) {
+        const uint16_t *sample = patch->sample + row * patch->pitch;
+        const uint8_t *mark = patch->marks ? patch->marks + row * patch->pitch : NULL;
+        const uint16_t *vertex = drawn->vertex + (patch->first.rows + row) * drawn->north +
+                                 patch->first.columns * drawn->east;
+        for (uint32_t i = 0; i <= patch->size.columns; i++, vertex += drawn->east) {
+            uint32_t error = (uint32_t)(*vertex > sample[i] ? *vertex - sample[i]
+                                                            : sample[i] - *vertex);
+            if (error > worst && !(mark && mark[i] & BAKE_BETWEEN)) worst = error;
+        }
+    }
+    return worst;
 }
 
 /* The last sample of a cell that is looked at: the one that the next cell begins with is left to
@@ -52,6 +77,8 @@ uint32_t bake_patch_error(const bake_patch *patch, const bake_drawn *drawn)
 {
     uint32_t worst = 0, cell = drawn->cell, west = patch->first.columns, south = patch->first.rows,
              east = west + patch->size.columns, north = south + patch->size.rows;
+    if (!patch->size.columns || !patch->size.rows) return 0;
+    if (cell == 1) return vertices_error(patch, drawn);
     for (uint32_t row = south / cell * cell; row < north; row += cell)
         for (uint32_t column = west / cell * cell; column < east; column += cell) {
             looked_at at = { .wide = least(cell, drawn->extent.columns - column),
