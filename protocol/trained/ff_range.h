@@ -76,7 +76,20 @@ typedef struct ff_range_writer {
 } ff_range_writer;
 
 void ff_range_write(ff_range_writer *to, uint8_t *bytes, size_t limit);
-void ff_range_put(ff_range_writer *to, uint32_t one, unsigned bit);
+/* The highest byte of 32 bits leaves. */
+void ff_range_shift(ff_range_writer *to);
+static inline void ff_range_put(ff_range_writer *to, uint32_t one, unsigned bit)
+{
+    uint32_t part = (to->width >> 16) * one;
+    FF_ASSERT(to->width >= FF_RANGE_LEAST && one > 0 && one < 65536);
+    if (bit) {
+        to->width = part;
+    } else {
+        to->low += part;
+        to->width -= part;
+    }
+    for (; to->width < FF_RANGE_LEAST; to->width <<= 8) ff_range_shift(to);
+}
 /* Bytes in all, or -1: they did not fit. */
 int ff_range_end(ff_range_writer *to);
 /* The same of a stream that others follow. */

@@ -19,8 +19,7 @@ static void emit(ff_range_writer *to, uint32_t byte)
         to->is_full = 1;
 }
 
-/* The highest byte of 32 bits leaves. */
-static void shift(ff_range_writer *to)
+void ff_range_shift(ff_range_writer *to)
 {
     uint32_t carry = (uint32_t)(to->low >> 32), byte = (uint32_t)to->low >> 24;
     if (byte == 255 && !carry) {
@@ -34,21 +33,12 @@ static void shift(ff_range_writer *to)
     to->low = (to->low & 0xFFFFFFu) << 8;
 }
 
-void ff_range_put(ff_range_writer *to, uint32_t one, unsigned bit)
-{
-    uint32_t part = (to->width >> 16) * one;
-    FF_ASSERT(to->width >= FF_RANGE_LEAST && one > 0 && one < 65536);
-    if (!bit) to->low += part;
-    to->width = bit ? part : to->width - part;
-    for (; to->width < FF_RANGE_LEAST; to->width <<= 8) shift(to);
-}
-
 int ff_range_end_before(ff_range_writer *to)
 {
     unsigned spare = 4 - ff_range_tail(to->width);
     uint64_t rest = (UINT64_C(1) << 8 * spare) - 1;
     to->low = (to->low + rest) & ~rest;
-    for (unsigned i = 0; i < 5; i++) shift(to);
+    for (unsigned i = 0; i < 5; i++) ff_range_shift(to);
     FF_ASSERT(to->is_full || to->out - to->begin >= 4);
     return to->is_full ? -1 : (int)(to->out - to->begin) - (int)spare;
 }
@@ -62,7 +52,7 @@ int ff_range_end(ff_range_writer *to)
         to->low = value;
         break;
     }
-    for (unsigned i = 0; i < 5; i++) shift(to);
+    for (unsigned i = 0; i < 5; i++) ff_range_shift(to);
     while (to->out > to->begin && !to->out[-1]) to->out--;
     return to->is_full ? -1 : (int)(to->out - to->begin);
 }
