@@ -197,9 +197,28 @@ static inline uint16_t ff_dequantise_corner(int32_t quantum, int32_t value)
     return (uint16_t)(height > UINT16_MAX ? UINT16_MAX : height);
 }
 
+static inline int32_t ff_quantise(const ff_source_heights *source, uint32_t at, int32_t quantum,
+                                  int32_t predicted)
+{
+    int32_t difference = source->height[at] - predicted, half = quantum / 2;
+    if (quantum == 1) /* modulo 2^16: the shorter way round */
+        return difference > INT16_MAX   ? difference - 65536
+               : difference < INT16_MIN ? difference + 65536
+                                        : difference;
+    return difference >= 0 ? (difference + half) / quantum : -((half - difference) / quantum);
+}
+
 /* Encoder: the height of the point `at`, predicted so, and its residual. */
-uint16_t ff_make_height(const ff_source_heights *source, uint32_t at, int32_t quantum,
-                        int32_t predicted, int32_t *residual);
+static inline uint16_t ff_make_height(const ff_source_heights *source, uint32_t at, int32_t quantum,
+                                      int32_t predicted, int32_t *residual)
+{
+    int between = source->between && source->between[at];
+    *residual = between ? 0 : ff_quantise(source, at, quantum, predicted);
+    uint16_t height = ff_dequantise(quantum, predicted, *residual);
+    FF_ASSERT(between || (height - source->height[at] <= quantum / 2 &&
+                          source->height[at] - height <= quantum / 2)); /* max_error */
+    return height;
+}
 
 /* Residuals are coded as 0, 1, 2, 3, ... for 0, -1, 1, -2, ... */
 static inline uint32_t ff_zigzag(int32_t v)

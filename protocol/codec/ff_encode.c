@@ -6,28 +6,6 @@
 
 #include <string.h>
 
-static int32_t quantised(const ff_source_heights *source, uint32_t at, int32_t quantum,
-                         int32_t predicted)
-{
-    int32_t difference = source->height[at] - predicted, half = quantum / 2;
-    if (quantum == 1) /* modulo 2^16: the shorter way round */
-        return difference > INT16_MAX   ? difference - 65536
-               : difference < INT16_MIN ? difference + 65536
-                                        : difference;
-    return difference >= 0 ? (difference + half) / quantum : -((half - difference) / quantum);
-}
-
-uint16_t ff_make_height(const ff_source_heights *source, uint32_t at, int32_t quantum,
-                        int32_t predicted, int32_t *residual)
-{
-    int between = source->between && source->between[at];
-    *residual = between ? 0 : quantised(source, at, quantum, predicted);
-    uint16_t height = ff_dequantise(quantum, predicted, *residual);
-    FF_ASSERT(between || (height - source->height[at] <= quantum / 2 &&
-                          source->height[at] - height <= quantum / 2)); /* max_error */
-    return height;
-}
-
 typedef struct quantisation {
     const ff_source_heights *source;
     int32_t *next;

@@ -16,10 +16,10 @@ typedef struct looked_at {
 static uint64_t run_error(const uint16_t *sample, const uint8_t *mark, uint32_t count,
                           int64_t height, int64_t rise, int64_t scale, uint64_t worst)
 {
-    for (uint32_t i = 0; i < count; i++, height += rise) {
-        int64_t above = height - sample[i] * scale;
+    for (const uint16_t *at = sample, *end = sample + count; at < end; at++, height += rise) {
+        int64_t above = height - *at * scale;
         uint64_t error = (uint64_t)(above < 0 ? -above : above);
-        if (error > worst && !(mark && mark[i] & BAKE_BETWEEN)) worst = error;
+        if (error > worst && !(mark && mark[at - sample] & BAKE_BETWEEN)) worst = error;
     }
     return worst;
 }

@@ -115,8 +115,8 @@ int bake_grid_range(const bake_grid *grid, float *low, float *high)
     for (uint32_t j = 0; !rc && j < grid->height; j++) {
         rc = bake_grid_read(grid, j, 0, grid->width, row);
         for (uint32_t i = 0; !rc && i < grid->width; i++) {
-            *low = fminf(*low, row[i]);
-            *high = fmaxf(*high, row[i]);
+            if (row[i] < *low) *low = row[i];
+            if (row[i] > *high) *high = row[i];
         }
     }
     free(row);

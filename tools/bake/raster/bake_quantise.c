@@ -161,7 +161,7 @@ static void quantise_row(const bake_steps *steps, const float *metres, uint16_t 
     for (uint32_t i = 0; i < count; i++) {
         double h = nearbyint(((double)metres[i] - steps->base_m) / steps->step_m -
                              steps->first_step);
-        heights[i] = (uint16_t)fmin(fmax(h, 0), STEPS_MAX);
+        heights[i] = (uint16_t)(!(h > 0) ? 0 : h < STEPS_MAX ? h : STEPS_MAX);
         if (heights[i] < info->height_min) info->height_min = heights[i];
         if (heights[i] > info->height_max) info->height_max = heights[i];
     }

@@ -99,7 +99,7 @@ int bake_validity_is_void(bake_validity *validity, const bake_unit *unit, double
         if (!validity->absurd++) validity->absurd_value = value;
         return 1;
     }
-    validity->lowest = fmin(validity->lowest, z);
+    if (z < validity->lowest) validity->lowest = z;
     return 0;
 }
 
