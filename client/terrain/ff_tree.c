@@ -55,7 +55,8 @@ static ff_seams *carve_seams(const ff_tree_desc *desc, block *from)
 static ff_tree *carve(const ff_tree_desc *desc, block *from)
 {
     size_t n = desc->node_count, side = ff_node_side(&desc->info),
-           refined = ff_refined_side(&desc->info);
+           refined = ff_refined_side(&desc->info), sort = 2 * n * sizeof(uint64_t),
+           room = ff_codec_room(&desc->info);
     FF_ASSERT(side * side <= FF_NODE_HEIGHTS_MAX && refined * refined <= FF_REFINED_HEIGHTS_MAX);
     ff_tree *tree = take(from, sizeof *tree);
     ff_tree parts = { .ground_max = grounds_of(desc), .source_max = sources_of(desc) };
@@ -65,11 +66,10 @@ static ff_tree *carve(const ff_tree_desc *desc, block *from)
     parts.heights = take(from, n * side * side * sizeof *parts.heights);
     parts.hash = take(from, hash_size(desc->node_count) * sizeof *parts.hash);
     parts.order = take(from, n * sizeof *parts.order);
-    parts.sort = take(from, 2 * n * sizeof *parts.sort);
+    parts.room = parts.sort = take(from, sort > room ? sort : room);
     parts.drawn = take(from, n * sizeof *parts.drawn);
     parts.wish = take(from, desc->wish_count * sizeof *parts.wish);
     parts.refined = take(from, refined * refined * sizeof *parts.refined);
-    parts.room = take(from, ff_codec_room(&desc->info));
     if (desc->hidden != FF_HIDDEN_FETCHED) {
         parts.horizon = take(from, sizeof *parts.horizon);
         parts.horizon_ahead = take(from, sizeof *parts.horizon);

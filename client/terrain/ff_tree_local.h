@@ -83,7 +83,8 @@ struct ff_tree {
     ff_drawn *drawn;
     ff_wish *wish;
     uint16_t *refined; /* grid of four children */
-    void *room;        /* for who makes it (ff_codec_room) */
+    void *room; /* for who makes it (ff_codec_room): that of `sort`, nothing is made while it is
+                   used */
     uint32_t free_head, root_head, free_count;
     uint32_t cut_count, view_count, drawn_count, wish_count;
 
