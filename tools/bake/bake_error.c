@@ -11,12 +11,12 @@ typedef struct looked_at {
     uint32_t wide, deep, west, east, south, north;
 } looked_at;
 
-/* Samples beside each other and the triangle over them, which rises evenly there, in units of
- * 1/scale: the larger one of `worst` and their distances. */
-static uint64_t run_error(const uint16_t *sample, const uint8_t *mark, uint32_t count,
-                          int64_t height, int64_t rise, int64_t scale, uint64_t worst)
+/* Samples beside each other, up to `end`, and the triangle over them, which rises evenly there, in
+ * units of 1/scale: the larger one of `worst` and their distances. */
+static inline uint64_t run_error(const uint16_t *sample, const uint16_t *end, const uint8_t *mark,
+                                 int64_t height, int64_t rise, int64_t scale, uint64_t worst)
 {
-    for (const uint16_t *at = sample, *end = sample + count; at < end; at++, height += rise) {
+    for (const uint16_t *at = sample; at < end; at++, height += rise) {
         int64_t above = height - *at * scale;
         uint64_t error = (uint64_t)(above < 0 ? -above : above);
         if (error > worst && !(mark && mark[at - sample] & BAKE_BETWEEN)) worst = error;
@@ -26,23 +26,29 @@ static uint64_t run_error(const uint16_t *sample, const uint8_t *mark, uint32_t 
 
 /* Largest distance of the samples looked at, of which `sample` is the south-western one, rounded
  * up. Heights on a triangle are whole multiples of 1/scale. A row runs through the north-western
- * triangle first. */
+ * triangle first; `north` and `south` are where the triangles' planes meet its western end. */
 static uint32_t cell_error(const uint16_t *sample, const uint8_t *marks, size_t pitch,
                            const bake_drawn *drawn, const uint16_t *vertex, const looked_at *at)
 {
-    int64_t sw = vertex[0], se = vertex[drawn->east], nw = vertex[drawn->north],
+    int32_t sw = vertex[0], se = vertex[drawn->east], nw = vertex[drawn->north],
             ne = vertex[drawn->north + drawn->east];
-    uint32_t square = at->wide == at->deep, a = square ? 1 : at->deep, b = square ? 1 : at->wide;
-    int64_t scale = (int64_t)at->wide * a, north_rise = (ne - nw) * a, south_rise = (se - sw) * a;
+    uint32_t square = at->wide == at->deep, a = square ? 1 : at->deep, b = square ? 1 : at->wide,
+             count = at->east + 1 - at->west;
+    int64_t scale = (int64_t)at->wide * a, north_rise = (int64_t)(ne - nw) * a,
+            south_rise = (int64_t)(se - sw) * a, north_step = (int64_t)(nw - sw) * b,
+            south_step = (int64_t)(ne - se) * b,
+            north = sw * scale + north_step * at->south + north_rise * at->west,
+            south = sw * scale + south_step * at->south + south_rise * at->west;
     uint64_t worst = 0;
     for (uint32_t v = at->south; v <= at->north; v++, sample += pitch) {
-        uint32_t y = v * b, diagonal = square ? v : (y + a - 1) / a;
-        uint32_t middle = most(at->west, least(diagonal, at->east + 1)), first = middle - at->west;
-        int64_t north = sw * scale + (nw - sw) * y + north_rise * at->west,
-                south = sw * scale + (ne - se) * y + south_rise * middle;
-        worst = run_error(sample, marks, first, north, north_rise, scale, worst);
-        worst = run_error(sample + first, marks ? marks + first : NULL, at->east + 1 - middle,
-                          south, south_rise, scale, worst);
+        uint32_t diagonal = square ? v : (v * b + a - 1) / a,
+                 first = diagonal > at->west ? least(diagonal - at->west, count) : 0;
+        const uint16_t *middle = sample + first;
+        worst = run_error(sample, middle, marks, north, north_rise, scale, worst);
+        worst = run_error(middle, sample + count, marks ? marks + first : NULL,
+                          south + south_rise * first, south_rise, scale, worst);
+        north += north_step;
+        south += south_step;
         if (marks) marks += pitch;
     }
     return (uint32_t)((worst + (uint64_t)scale - 1) / (uint64_t)scale);

@@ -8,6 +8,8 @@ int bake_samples_pick(const bake_samples *samples, uint32_t row, uint32_t column
     uint16_t height[PIECE];
     uint8_t mark[PIECE];
     uint64_t last = samples->width - 1, from = 0, held = 0; /* in `height`, from a column on */
+    if (!apart_log2 && column + (uint64_t)count <= last + 1)
+        return samples->read(samples, row, column, (uint32_t)count, heights, marks);
     for (size_t i = 0; i < count; i++) {
         uint64_t at = column + ((uint64_t)i << apart_log2);
         if (at > last) at = last;

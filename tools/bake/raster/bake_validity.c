@@ -81,11 +81,9 @@ static int is_nodata(const bake_validity *validity, double value)
            (value == validity->nodata || (float)value == (float)validity->nodata);
 }
 
-int bake_validity_sentinel(const bake_validity *validity, double value)
+int bake_validity_which(const bake_validity *validity, double value)
 {
-    if (!(value <= validity->sentinel[0]) || !validity->looks_for_sentinels ||
-        is_nodata(validity, value))
-        return -1;
+    if (!validity->looks_for_sentinels || is_nodata(validity, value)) return -1;
     for (int s = 0; s < BAKE_SENTINELS_MAX; s++)
         if (value == validity->sentinel[s]) return s;
     return -1;

@@ -31,8 +31,12 @@ void bake_validity_open(const bake_options *options, GDALDatasetH set, const bak
  * as many floats as there are values. 0 or -1 (said). */
 int bake_validity_mask(const bake_validity *validity, uint32_t width, uint32_t top, uint32_t rows,
                        double *values, float *room);
+int bake_validity_which(const bake_validity *validity, double value);
 /* Index of the sentinel that `value` is, or -1. */
-int bake_validity_sentinel(const bake_validity *validity, double value);
+static inline int bake_validity_sentinel(const bake_validity *validity, double value)
+{
+    return value <= validity->sentinel[0] ? bake_validity_which(validity, value) : -1;
+}
 /* 1 when a value that is no sentinel is no height either; counted when it is absurd. */
 int bake_validity_is_void(bake_validity *validity, const bake_unit *unit, double value);
 /* Says what was noticed. Samples of a sentinel that lies apart from all heights become NaN in the
