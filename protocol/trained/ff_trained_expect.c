@@ -37,7 +37,7 @@ typedef struct walk {
     int32_t coded[2];     /* before these, odd ones are coded */
     uint32_t reciprocal;  /* of the quantum, Q31 */
     uint32_t off_shift;   /* of a distance, Q4 */
-    int32_t always;       /* of a distance: what is the same for all points of a line */
+    uint32_t always;      /* of a distance: what is the same for all points of a line */
     ff_expected point;    /* the one that is made */
 } walk;
 
@@ -253,23 +253,25 @@ static inline uint8_t scale_of(const walk *w, int32_t distance_q4)
     return (uint8_t)(row < FF_TRAINED_SCALES ? row : FF_TRAINED_SCALES - 1);
 }
 
+#define TERM(i) (uint32_t) weight[i] * (uint32_t)trait[i]
+
 static FF_ALWAYS_INLINE void measure(const walk *w, enum ff_trained_class kind,
                                      const int32_t *trait, ff_expected *p)
 {
     const int16_t *weight = w->trait;
-    int32_t sum = w->always + weight[2] * trait[2] + weight[3] * trait[3], off;
+    uint32_t sum = w->always + TERM(2) + TERM(3), off;
     if (kind == FF_POINT_R) {
-        sum += weight[4] * trait[4] + weight[5] * trait[5] + weight[6] * trait[6];
-        off = weight[7] * trait[7];
+        sum += TERM(4) + TERM(5) + TERM(6);
+        off = TERM(7);
     } else if (kind == FF_POINT_N) {
-        sum += weight[4] * trait[4];
-        off = weight[5] * trait[5] + weight[6] * trait[6];
+        sum += TERM(4);
+        off = TERM(5) + TERM(6);
     } else {
-        off = weight[4] * trait[4] + weight[5] * trait[5];
-        if (kind != FF_POINT_C) off += weight[6] * trait[6];
+        off = TERM(4) + TERM(5);
+        if (kind != FF_POINT_C) off += TERM(6);
     }
-    sum += (int32_t)((uint32_t)off << p->error_shift);
-    p->distance_q4 = clamped(sum >> (FF_TRAINED_TRAITS_LOG2 - 4), 1, DISTANCE_MAX_Q4);
+    sum += off << p->error_shift;
+    p->distance_q4 = clamped((int32_t)sum >> (FF_TRAINED_TRAITS_LOG2 - 4), 1, DISTANCE_MAX_Q4);
     p->scale = scale_of(w, p->distance_q4);
 }
 
@@ -323,7 +325,7 @@ static void begin_class(walk *w, enum ff_trained_class kind, int32_t along, int3
     w->point.kind = (uint8_t)kind;
     w->point.along = along;
     w->point.away = away;
-    w->always = 4 * w->trait[0] + w->trait[1] * w->point.quantum;
+    w->always = 4 * (uint32_t)w->trait[0] + (uint32_t)w->trait[1] * (uint32_t)w->point.quantum;
 }
 
 /* Every second point from `column` and `row` on, before `end`, along an axis. A side's are
