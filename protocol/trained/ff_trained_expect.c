@@ -284,9 +284,10 @@ static FF_ALWAYS_INLINE void place_mean(const walk *w, enum ff_trained_class kin
         p->residual = steps >= 0 ? (int32_t)divided(w, (uint32_t)steps)
                                  : -1 - (int32_t)divided(w, (uint32_t)(-1 - steps));
         p->residual = clamped(p->residual, -INT16_MAX, INT16_MAX);
-        off_q4 = clamped(off_q4 - 16 * p->quantum * p->residual, 0, 16 * p->quantum - 1);
+        off_q4 = clamped(off_q4 - 16 * p->quantum * p->residual, 0, 1 << 26);
     }
-    p->phase = (uint8_t)divided(w, (uint32_t)off_q4 >> 2);
+    uint32_t phase = divided(w, (uint32_t)off_q4 >> 2);
+    p->phase = (uint8_t)(kind == FF_POINT_R && phase > 3 ? 3 : phase);
     FF_ASSERT(p->phase < 4);
 }
 
