@@ -452,9 +452,17 @@ static void a_fault_is_told_where_the_core_finds_one(void **state)
     char text[200];
     (void)state;
     for (int i = 0; i < 200000; i++) {
-        ff_terrain_info info = { 3,    10,   FF_CODEC_DEFLATE, 0,     0, 0, 0, 43000, 0, 4, 2, 4097,
-                                 2000, 2560, 1677722,          -1000, 0, 0, 0, 0,     0, 0, 0, 0,
-                                 0 };
+        ff_terrain_info info = { .node_log2 = 3,
+                                 .tile_log2 = 10,
+                                 .codec = FF_CODEC_DEFLATE,
+                                 .height_max = 43000,
+                                 .tiles_x = 4,
+                                 .tiles_y = 2,
+                                 .samples_x = 4097,
+                                 .samples_y = 2000,
+                                 .spacing_wu = 2560,
+                                 .hscale_q24 = 1677722,
+                                 .hoffset_wu = -1000 };
         for (int n = next_random(&random) >> 30; n >= 0; n--) {
             uint32_t value = edge_number(&random);
             switch (next_random(&random) >> 28) {
