@@ -74,7 +74,7 @@ static void default_far(ff_client_desc *desc)
     if (far->front_wu <= 0) far->front_wu = 7500 * METRES;
     if (far->front_wu > FF_PANORAMA_BACK_WU_MAX) far->front_wu = FF_PANORAMA_BACK_WU_MAX;
     if (!far->coarse) far->coarse = 4;
-    if (!far->quality) far->quality = 80;
+    if (!far->quality) far->quality = desc->width > 320 ? 84 : 80;
     if (!far->tolerance_q2) far->tolerance_q2 = 2;
 }
 

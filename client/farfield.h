@@ -94,7 +94,7 @@ typedef struct ff_far_desc {
     /* ground beyond may be so many times as wrong as quality allows, up to 16; default 4 */
     uint8_t coarse;
     uint8_t paint_shift;  /* texels of paint are 2^this as large as pixels, 0 to 3 */
-    uint8_t quality;      /* of the paint, 1 to 100; default 80 */
+    uint8_t quality;      /* of the paint, 1 to 100; default 80, wider than 320 pixels 84 */
     uint8_t tolerance_q2; /* quarter pixels that a fin may be off; default 2 */
 } ff_far_desc;
 

@@ -17,8 +17,6 @@ int ff_paint_begin(ff_paint *paint, const ff_paint_tables *by, unsigned quality)
     if (!step_q4) return FF_ERR_FORMAT;
     p->by = &by->numbers;
     p->step_q4[0] = step_q4;
-    p->step_q4[1] = 4 * step_q4;
-    p->step_q4[2] = 3 * step_q4;
     p->one = room->one;
     memset(room, 0, ff_paint_room_bytes(paint->columns));
     memcpy(room->one, by->numbers.one, sizeof room->one);
@@ -55,6 +53,14 @@ static void expect(uint8_t left[B][3], uint8_t above[B][3], uint8_t rgb[64][3])
 }
 
 /* ---- blocks ---- */
+
+int32_t ff_paint_step_q4(const ff_picture *p, unsigned plane, unsigned z)
+{
+    /* in halves of luma's: the mean, broad waves, finer and finest */
+    static const uint8_t halves[3][4] = { { 2, 2, 2, 2 }, { 3, 5, 7, 10 }, { 3, 4, 5, 8 } };
+    unsigned frequency = z / B + z % B;
+    return p->step_q4[0] * halves[plane][frequency < 3 ? frequency : 3] / 2;
+}
 
 void ff_paint_left(const ff_picture *p, int32_t value[3][64])
 {

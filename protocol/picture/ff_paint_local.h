@@ -23,11 +23,9 @@ typedef struct ff_paint {
 
 int ff_paint_begin(ff_paint *paint, const ff_paint_tables *by, unsigned quality);
 void ff_paint_go(ff_paint *paint);
-/* Step of a coefficient, in 1/16. That of a block's mean colour is finer: it is seen. */
-static inline int32_t ff_paint_step_q4(const ff_picture *p, unsigned plane, unsigned z)
-{
-    return z || !plane ? p->step_q4[plane] : 3 * p->step_q4[0] / 2;
-}
+/* Step of a coefficient, in 1/16. Colour's grow with the frequency: broad tints are seen, fine ones
+ * are not. */
+int32_t ff_paint_step_q4(const ff_picture *p, unsigned plane, unsigned z);
 /* What is left of a block, from its numbers. */
 void ff_paint_left(const ff_picture *p, int32_t value[3][64]);
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #define B     FF_PAINT_BLOCK
-#define WORTH 20 /* of 65536: a step's square for a 256th of a bit */
+#define WORTH 4 /* of 65536: a step's square for a 256th of a bit, times 1 + the frequency */
 
 /* What is left of the source, each channel times 4. */
 static void left_of(const uint8_t *rgb, const uint8_t expected[3], int32_t left[3])
@@ -55,7 +55,7 @@ static void thin_out(ff_picture *p, unsigned plane, const ff_picture_sizes *of_l
         uint32_t then = cost_of(p, plane, of_left, of_above, value, here);
         int32_t step_q4 = ff_paint_step_q4(p, plane, z);
         int64_t worse = off_of(whole[z], less, step_q4) - off_of(whole[z], was, step_q4);
-        if (worse < ((int64_t)cost - then) * WORTH)
+        if (worse < ((int64_t)cost - then) * WORTH * (1 + z / B + z % B))
             cost = then;
         else
             value[z] = was;

@@ -71,7 +71,7 @@ void sim_far_read(const ff_balance_desc *balance, sys_word *use_far, sys_word *u
     OPTION(sys_whole, far_shift, "far-shift", "N", "0", SYS_WHOLE(0, FF_FAR_SHIFT_MAX, ""), \
            "texels of paint are 2^N pixels wide") \
     OPTION(sys_whole, far_quality, "far-quality", "Q", NULL, SYS_WHOLE(1, 100, ""), \
-           "quality of the paint, as of pictures; default 80") \
+           "quality of the paint, as of pictures; default 80, wider than 320 pixels 84") \
     OPTION(sys_whole, far_tolerance, "far-tolerance", "N", NULL, SYS_WHOLE(1, 64, ""), \
            "quarter pixels that a fin may be off; default 2")
 /* Of a struct that has the fields of those rows. */

@@ -240,6 +240,18 @@ static void pools_tell_what_they_hold(void **state)
     rig_close(&rig);
 }
 
+static void wide_pictures_have_finer_paint(void **state)
+{
+    (void)state;
+    for (uint16_t width = 240; width <= 640; width += 80) {
+        ff_client_desc desc = { .width = width }, asked = { .width = width, .far.quality = 40 };
+        ff_client_default_desc(&desc);
+        ff_client_default_desc(&asked);
+        assert_int_equal(desc.far.quality, width > 320 ? 84 : 80);
+        assert_int_equal(asked.far.quality, 40);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(pools_fit_into_every_block),
@@ -247,6 +259,7 @@ int main(void)
                                         cmocka_unit_test(rows_of_entered_pictures_find_room),
                                         cmocka_unit_test(large_pictures_leave_room_for_some_images),
                                         cmocka_unit_test(a_client_is_carved_as_planned),
-                                        cmocka_unit_test(pools_tell_what_they_hold) };
+                                        cmocka_unit_test(pools_tell_what_they_hold),
+                                        cmocka_unit_test(wide_pictures_have_finer_paint) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

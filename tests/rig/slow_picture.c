@@ -23,7 +23,7 @@ typedef struct picture {
     const ff_picture_tables *by;
     int side, is_root, quadrant;
     const uint8_t *parent;
-    int64_t step[3], first[3], one[FF_PICTURE_CONTEXTS];
+    int64_t step[3], paint[3][4], one[FF_PICTURE_CONTEXTS];
     int rgb[SIDE_MAX][SIDE_MAX][3]; /* [y][x] */
     int numbers[SIDE_MAX / 8][SIDE_MAX / 8][3][8][8], counts[SIDE_MAX / 8][SIDE_MAX / 8][3];
 } picture;
@@ -334,7 +334,7 @@ static int64_t left_at(picture *p, int column, int row, int plane, int x, int y)
     for (int v = 0; v < 8; v++) {
         int64_t t = 64;
         for (int u = 0; u < 8; u++)
-            t += m(u, x) * coefficient(u + v ? p->step[plane] : p->first[plane],
+            t += m(u, x) * coefficient(p->paint[plane][u + v < 3 ? u + v : 3],
                                        p->numbers[row][column][plane][v][u]);
         sum += m(v, y) * floored(t, 128);
     }
@@ -371,7 +371,7 @@ static int begin(picture *p, const ff_picture_tables *by, const uint8_t *bytes, 
     p->by = by;
     p->step[0] = p->step[2] = q == 100 ? 8 : q >= 50 ? 16 * (100 - q) : 800 + 64 * (50 - q);
     p->step[1] = p->step[0] * 5 / 4;
-    for (int plane = 0; plane < 3; plane++) p->first[plane] = p->step[plane];
+    for (int i = 0; i < 12; i++) p->paint[i / 4][i % 4] = p->step[i / 4];
     for (int i = 0; i < FF_PICTURE_CONTEXTS; i++) p->one[i] = by->one[i];
     p->in = (stream){ .bytes = bytes + 1, .count = bytes_count - 1, .width = UINT32_MAX };
     for (int i = 0; i < 4; i++) p->in.code = 256 * p->in.code + next_byte(&p->in);
@@ -401,6 +401,8 @@ int slow_picture(const uint8_t *bytes, long bytes_count, int side, const uint8_t
 
 /* ---- paint ---- */
 
+/* Steps of Co, then of Cg: of the mean, of frequencies 1, 2, and beyond. */
+static const int in_halves[8] = { 3, 5, 7, 10, 3, 4, 5, 8 };
 static const int fades[8] = { 120, 85, 62, 46, 34, 25, 20, 15 };
 
 /* Channel c of the i-th texel beside a block: of its left side from the top, of its top from the
@@ -470,9 +472,7 @@ int slow_paint(const uint8_t *bytes, long bytes_count, int columns, int rows, ui
 
     *p = (picture){ .side = 8 };
     if (begin(p, &ff_paint_learned.numbers, bytes, bytes_count)) return -1;
-    p->step[1] = 4 * p->step[0];
-    p->step[2] = 3 * p->step[0];
-    p->first[1] = p->first[2] = 3 * p->step[0] / 2;
+    for (int i = 0; i < 8; i++) p->paint[1 + i / 4][i % 4] = in_halves[i] * p->step[0] / 2;
     for (int i = 0; i < 16; i++) one[i] = ff_paint_learned.there[i];
     for (int i = 0; i < rows * columns; i++) {
         int row = i / columns, column = i % columns, left = column && there[i - 1],
