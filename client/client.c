@@ -59,8 +59,8 @@ static void default_panorama(ff_panorama_desc *panorama, unsigned width)
     if (panorama->server_back_wu <= panorama->back_plane_wu) panorama->server_back_wu = INT32_MAX;
     if (panorama->error_px_q8 <= 0) panorama->error_px_q8 = (int32_t)width * 128 / 20;
     if (!panorama->face_size) panorama->face_size = 256;
-    if (!panorama->jpeg_quality || panorama->jpeg_quality > 100) panorama->jpeg_quality = 70;
-    if (!ff_panorama_built) panorama->enabled = FF_PANORAMA_OFF;
+    if (!panorama->quality || panorama->quality > 100) panorama->quality = 80;
+    if (!ff_panorama_built || !ff_picture_built) panorama->enabled = FF_PANORAMA_OFF;
     FF_ASSERT(panorama->error_px_q8 > 0 && panorama->server_back_wu >= panorama->back_plane_wu);
 }
 
@@ -110,7 +110,7 @@ static int check_sources(const ff_client_desc *desc)
 static int check_desc(const ff_client_desc *desc)
 {
     if (!desc->memory || desc->width > FF_PICTURE_SIDE_MAX || desc->height > FF_PICTURE_SIDE_MAX ||
-        desc->in_flight_max > IN_FLIGHT_LIMIT || desc->panorama.jpeg_quality > 100 ||
+        desc->in_flight_max > IN_FLIGHT_LIMIT || desc->panorama.quality > 100 ||
         (desc->panorama.face_size && desc->panorama.face_size < FF_PANORAMA_FACE_MIN) ||
         desc->panorama.face_size > FF_FACE_SIZE_MAX)
         return FF_ERR_ARGUMENT;

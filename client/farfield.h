@@ -72,8 +72,8 @@ typedef struct ff_panorama_desc {
     int32_t server_back_wu; /* how far a panorama reaches: z_back_s; default: to the horizon */
     /* epsilon of Hybrid eq. 6, 7 and 13 in pixels of the screen, default 5 % of its half-width */
     int32_t error_px_q8;
-    uint16_t face_size;   /* default 256 */
-    uint8_t jpeg_quality; /* default 70 */
+    uint16_t face_size; /* default 256 */
+    uint8_t quality;    /* of the faces, as of paint; default 80 */
     /* 0 (default): at most one set is asked for at a time; 1: a new set is asked for as soon as the
      * last is outdated, whatever is still on its way (Hybrid's congestion flag) */
     uint8_t hold_back;

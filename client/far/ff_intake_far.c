@@ -1,5 +1,6 @@
 /* Sectors of far sets, decoded. Left out with them. */
 #include "../ask/ff_intake_local.h"
+#include "../ask/ff_texels.h"
 #include "../../protocol/picture/ff_paint.h"
 #include "../../protocol/ff_assert.h"
 
@@ -23,9 +24,6 @@ static unsigned rows_that_fit(const ff_intake *intake, const ff_far *far)
     return rows;
 }
 
-/* Rounded: cut off, the whole picture would be darker. */
-static unsigned of_31(unsigned of_255) { return (of_255 * 31 + 127) / 255; }
-
 /* Where blocks are laid: a texture with a texel of rim round it. */
 typedef struct canvas {
     uint16_t *texel;
@@ -39,28 +37,7 @@ static void lay_block(void *context, unsigned column, unsigned row, uint8_t rgb[
     uint16_t *to = on->texel + (size_t)(row * FF_FAR_BLOCK + 1) * on->width +
                    column * FF_FAR_BLOCK + 1;
     for (unsigned i = 0; i < 64; i++)
-        to[i / FF_FAR_BLOCK * on->width + i % FF_FAR_BLOCK] =
-            (uint16_t)(of_31(rgb[i][0]) << 11 | of_31(rgb[i][1]) << 6 | of_31(rgb[i][2]) << 1 | 1u);
-}
-
-/* Gives transparent texels beside opaque ones their colour: filtering mixes both. */
-static void bleed(uint16_t *texel, unsigned width, unsigned height)
-{
-    for (unsigned y = 0; y < height; y++)
-        for (unsigned x = 0; x < width; x++) {
-            uint16_t *here = texel + (size_t)y * width + x;
-            if (*here & 1u) continue;
-            uint16_t beside = 0;
-            if (x > 0 && here[-1] & 1u)
-                beside = here[-1];
-            else if (x + 1 < width && here[1] & 1u)
-                beside = here[1];
-            else if (y > 0 && here[-(ptrdiff_t)width] & 1u)
-                beside = here[-(ptrdiff_t)width];
-            else if (y + 1 < height && here[width] & 1u)
-                beside = here[width];
-            *here = (uint16_t)(beside & ~1u);
-        }
+        to[i / FF_FAR_BLOCK * on->width + i % FF_FAR_BLOCK] = ff_texel_5551(rgb[i], 1);
 }
 
 static int decode_paint(ff_intake *intake, const ff_far *far, ff_new_item *item)
@@ -76,7 +53,7 @@ static int decode_paint(ff_intake *intake, const ff_far *far, ff_new_item *item)
     int rc = ff_paint_decode(far->paint, far->paint_bytes, far->blocks_x, far->blocks_y,
                              (ff_paint_room *)(void *)intake->rgb, &sink);
     if (rc < 0) return rc;
-    bleed(out, width, height);
+    ff_texels_bleed(out, width, height);
     item->width = (uint16_t)width;
     item->height = (uint16_t)height;
     item->u.far.middle = (int16_t)(far->blocks_x * FF_FAR_BLOCK / 2 + 1);

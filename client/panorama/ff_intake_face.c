@@ -1,5 +1,7 @@
 /* Faces of a panorama, decoded. Left out with panoramas. */
 #include "../ask/ff_intake_local.h"
+#include "../ask/ff_texels.h"
+#include "../../protocol/picture/ff_paint.h"
 #include "../../protocol/ff_assert.h"
 
 #include <string.h>
@@ -13,25 +15,37 @@ static unsigned texture_rows(unsigned rows)
     return height;
 }
 
-/* Converts the face's rows to RGBA5551, lowest row first, padded upwards; only texels within the
- * column spans are opaque. The padding's first row has the colours of the image's top row, because
- * filtering mixes both: black would draw a dark line along the horizon. */
-static void to_rgba5551(const uint8_t *rgb, unsigned width, unsigned rows, const uint16_t *top,
-                        const uint16_t *bottom, unsigned height, uint16_t *out)
+/* Where blocks are laid: lowest row first, padded upwards; only texels within the column spans are
+ * opaque. */
+typedef struct canvas {
+    uint16_t *texel;
+    unsigned size, rows;
+    const uint16_t *top, *bottom;
+} canvas;
+
+static void lay_block(void *context, unsigned column, unsigned row, uint8_t rgb[64][3])
 {
-    FF_ASSERT(rows <= height && height <= width);
-    for (unsigned r = 0; r < rows; r++) {
-        unsigned row = rows - 1 - r;
-        const uint8_t *from = rgb + (size_t)row * width * 3;
-        for (unsigned i = 0; i < width; i++, from += 3) {
-            unsigned opaque = row >= top[i] && row < bottom[i];
-            *out++ = (uint16_t)((from[0] >> 3 << 11) | (from[1] >> 3 << 6) | (from[2] >> 3 << 1) |
-                                opaque);
-        }
+    const canvas *on = context;
+    for (unsigned i = 0; i < 64; i++) {
+        unsigned x = column * FF_PAINT_BLOCK + i % FF_PAINT_BLOCK,
+                 y = row * FF_PAINT_BLOCK + i / FF_PAINT_BLOCK;
+        if (x >= on->size || y >= on->rows) continue;
+        unsigned opaque = y >= on->top[x] && y < on->bottom[x];
+        on->texel[(size_t)(on->rows - 1 - y) * on->size + x] = ff_texel_5551(rgb[i], opaque);
     }
-    for (unsigned i = 0; rows < height && i < width; i++, out++)
-        *out = (uint16_t)(out[-(ptrdiff_t)width] & ~1u);
-    if (rows + 1 < height) memset(out, 0, (size_t)(height - rows - 1) * width * sizeof *out);
+}
+
+static int decode_image(ff_intake *intake, const ff_face *face, canvas *on, unsigned height)
+{
+    const ff_paint_sink sink = { on, lay_block };
+    unsigned blocks_x = ff_face_blocks(face->face_size), blocks_y = ff_face_blocks(face->row_count);
+    if (ff_paint_room_bytes(blocks_x) > intake->rgb_bytes) return FF_ERR_RANGE;
+    memset(on->texel, 0, (size_t)face->face_size * height * sizeof *on->texel);
+    int rc = ff_paint_decode(face->image, face->image_bytes, blocks_x, blocks_y,
+                             (ff_paint_room *)(void *)intake->rgb, &sink);
+    if (rc < 0) return rc;
+    ff_texels_bleed(on->texel, face->face_size, height);
+    return FF_OK;
 }
 
 static int decode_face(ff_intake *intake, const ff_face *face, ff_new_item *item)
@@ -40,20 +54,16 @@ static int decode_face(ff_intake *intake, const ff_face *face, ff_new_item *item
     if (size > intake->face_size_max || (size & (size - 1)) != 0 || face->row_count == 0 ||
         face->row_count > size || face->top_row + face->row_count > size)
         return FF_ERR_RANGE;
-    FF_ASSERT((size_t)size * face->row_count * 3 <= intake->rgb_bytes);
     uint16_t *top = intake->columns, *bottom = intake->columns + size;
-    int rc = ff_face_columns_decode(face->columns, face->columns_bytes, size, face->row_count, top,
-                                    bottom);
-    if (rc == FF_OK)
-        rc = sys_jpeg_decode(face->image, face->image_bytes, size, face->row_count, intake->rgb);
-    if (rc != FF_OK) return rc;
+    canvas on = { item->pixels, size, face->row_count, top, bottom };
     item->width = (uint16_t)size;
     item->height = (uint16_t)texture_rows(face->row_count);
-    FF_ASSERT((size_t)size * item->height * sizeof *item->pixels <= intake->news->image_bytes);
     item->u.face.top_row = face->top_row;
     item->u.face.row_count = face->row_count;
-    to_rgba5551(intake->rgb, size, face->row_count, top, bottom, item->height, item->pixels);
-    return FF_OK;
+    FF_ASSERT((size_t)size * item->height * sizeof *item->pixels <= intake->news->image_bytes);
+    int rc = ff_face_columns_decode(face->columns, face->columns_bytes, size, face->row_count, top,
+                                    bottom);
+    return rc == FF_OK ? decode_image(intake, face, &on, item->height) : rc;
 }
 
 int ff_intake_face(ff_intake *intake, const ff_message *answer, ff_new_item *item)

@@ -208,7 +208,7 @@ static void want_faces(const ff_panorama *panorama, ff_requests *requests, const
                                                ? panorama->desc.server_back_wu
                                                : INT32_MAX,
                                 .face_size = panorama->face_size,
-                                .quality = panorama->desc.jpeg_quality };
+                                .quality = panorama->desc.quality };
     ff_shape_leave(panorama->info, &view->frame, set->position_wu, request.position_wu);
     list_faces(&request, missing, &view->camera);
     FF_ASSERT(request.face_count > 0 && request.face_count <= FF_FACE_COUNT);

@@ -263,9 +263,12 @@ typedef struct ff_face {
     uint16_t top_row, row_count;
     const uint8_t *columns; /* packed column spans, see ff_face_columns_encode */
     uint32_t columns_bytes;
-    const uint8_t *image; /* bare JPEG of face_size by row_count texels */
+    const uint8_t *image; /* paint of ff_face_blocks(face_size) by (row_count) blocks */
     uint32_t image_bytes;
 } ff_face;
+
+/* Blocks of 8 texels along a side of a face's image. */
+static inline unsigned ff_face_blocks(unsigned texels) { return (texels + 7) / 8; }
 
 /* One sector of a set. Flags as a face's. */
 typedef struct ff_far {

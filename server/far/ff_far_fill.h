@@ -1,5 +1,5 @@
-/* Fills the gaps of a picture smoothly from what is round them, so that neither JPEG nor filtering
- * brings a foreign colour to its edges. Pure functions. */
+/* Fills the gaps of a picture smoothly from what is round them, so that neither coding nor
+ * filtering brings a foreign colour to its edges. Pure functions. */
 #ifndef FF_FAR_FILL_H
 #define FF_FAR_FILL_H
 

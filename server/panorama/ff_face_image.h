@@ -20,7 +20,7 @@ void ff_face_find_spans(const uint8_t *rgb, uint32_t size, ff_face_spans *spans)
 void ff_face_lower(ff_face_spans *spans, uint32_t size);
 
 /* Paints over all that is not ground within the spans' rows: ground is continued up, down, into
- * holes and sideways, so that neither JPEG nor filtering brings a foreign colour to its edge. */
+ * holes and sideways, so that neither coding nor filtering brings a foreign colour to its edge. */
 void ff_face_fill(uint8_t *rgb, uint32_t size, const ff_face_spans *spans);
 
 #endif

@@ -1,7 +1,8 @@
-/* One face: bounds, ground, picture, spans, JPEG, message. */
+/* One face: bounds, ground, picture, spans, paint, message. */
 #include "ff_panorama_render.h"
 #include "ff_face_image.h"
 #include "ff_face_view.h"
+#include "../../protocol/picture/ff_paint.h"
 #include "../ground/ff_pack_ground.h"
 
 #include <assert.h>
@@ -12,6 +13,7 @@
 #define SURFACE_SIZE_FIRST 256
 #define COLUMNS_BYTES_MAX  (4 * FF_FACE_SIZE_MAX + 8)
 #define IMAGE_BYTES_MAX    (FF_MESSAGE_BODY_MAX - COLUMNS_BYTES_MAX - 64)
+#define BLOCKS_MAX         (FF_FACE_SIZE_MAX / FF_PAINT_BLOCK)
 #define QUALITY_STEP       15
 #define ERROR_PX_Q8        256 /* one texel of the face */
 
@@ -30,7 +32,10 @@ struct ff_panorama_renderer {
     ff_pack_ground ground;
 
     ff_face_spans spans;
-    uint8_t *rgb; /* surface_size^2 pixels */
+    uint8_t *rgb;   /* surface_size^2 pixels */
+    uint8_t *whole; /* likewise: what of them is coded, in whole blocks */
+    ff_paint_room *room;
+    uint8_t there[BLOCKS_MAX * BLOCKS_MAX];
     uint8_t columns[COLUMNS_BYTES_MAX];
     uint8_t image[IMAGE_BYTES_MAX];
 };
@@ -45,10 +50,13 @@ static void stage_close(ff_panorama_renderer *renderer)
     if (renderer->surface) renderer->surface_api->close(renderer->surface);
     free(renderer->device_memory);
     free(renderer->rgb);
+    free(renderer->whole);
+    free(renderer->room);
     renderer->device = NULL;
     renderer->surface = NULL;
     renderer->device_memory = NULL;
-    renderer->rgb = NULL;
+    renderer->rgb = renderer->whole = NULL;
+    renderer->room = NULL;
     renderer->surface_size = 0;
 }
 
@@ -68,7 +76,10 @@ static int stage_try_open(ff_panorama_renderer *renderer, uint16_t size)
     size_t bytes = c3d_bytes(renderer->backend, &device_desc);
     renderer->device_memory = malloc(bytes);
     renderer->rgb = malloc((size_t)3 * size * size);
-    if (!renderer->device_memory || !renderer->rgb) return FF_ERR_MEMORY;
+    renderer->whole = malloc((size_t)3 * size * size);
+    renderer->room = malloc(ff_paint_room_bytes(ff_face_blocks(size)));
+    if (!renderer->device_memory || !renderer->rgb || !renderer->whole || !renderer->room)
+        return FF_ERR_MEMORY;
     rc = c3d_open(renderer->backend, &device_desc, renderer->device_memory, bytes,
                   &renderer->device);
     if (rc < 0) {
@@ -146,14 +157,45 @@ static int terrain_seen(const ff_terrain_info *info, const ff_frame *frame,
     return ff_face_sees_box(request, face, &box);
 }
 
-/* A JPEG of the spans' rows at the wanted quality, or the best below it that fits a message. */
+/* Blocks that show ground. */
+static void mark_blocks(ff_panorama_renderer *renderer, unsigned size)
+{
+    const ff_face_spans *spans = &renderer->spans;
+    unsigned columns = ff_face_blocks(size);
+    memset(renderer->there, 0, (size_t)columns * ff_face_blocks(spans->row_count));
+    for (unsigned c = 0; c < size; c++)
+        for (unsigned row = spans->top[c]; row < spans->bottom[c]; row++)
+            renderer->there[row / FF_PAINT_BLOCK * columns + c / FF_PAINT_BLOCK] = 1;
+}
+
+/* The spans' rows in whole blocks: beyond the last row and column stand those once more. */
+static ff_paint_source take_rows(ff_panorama_renderer *renderer, unsigned size)
+{
+    const ff_face_spans *spans = &renderer->spans;
+    unsigned columns = ff_face_blocks(size), rows = ff_face_blocks(spans->row_count);
+    uint8_t *to = renderer->whole;
+    for (unsigned y = 0; y < rows * FF_PAINT_BLOCK; y++) {
+        unsigned row = spans->top_row + (y < spans->row_count ? y : spans->row_count - 1u);
+        for (unsigned x = 0; x < columns * FF_PAINT_BLOCK; x++, to += 3)
+            memcpy(to, renderer->rgb + 3 * ((size_t)row * size + (x < size ? x : size - 1)), 3);
+    }
+    mark_blocks(renderer, size);
+    return (ff_paint_source){ columns, rows, renderer->there, renderer->whole };
+}
+
+static void look_away(void *context, unsigned column, unsigned row, uint8_t rgb[64][3])
+{
+    (void)context, (void)column, (void)row, (void)rgb;
+}
+
+/* The spans' rows at the wanted quality, or the best below it that fits a message. */
 static int encode_image(ff_panorama_renderer *renderer, uint16_t size, int quality)
 {
-    const uint8_t *rows = renderer->rgb + (size_t)3 * size * renderer->spans.top_row;
+    static const ff_paint_sink nobody = { .block = look_away };
+    const ff_paint_source source = take_rows(renderer, size);
     for (;; quality -= QUALITY_STEP) {
-        int bytes = sys_jpeg_encode(rows, size, renderer->spans.row_count,
-                                    quality < 1 ? 1 : quality, renderer->image,
-                                    sizeof renderer->image);
+        int bytes = ff_paint_encode(&source, quality < 1 ? 1 : (unsigned)quality, renderer->room,
+                                    &nobody, renderer->image, sizeof renderer->image);
         if (bytes != FF_ERR_FULL || quality < 1) return bytes;
     }
 }

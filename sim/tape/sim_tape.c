@@ -92,7 +92,7 @@ static void take_head(sim_tape_player *player)
                              .server_back_wu = n[12],
                              .error_px_q8 = n[13],
                              .face_size = (uint16_t)n[14],
-                             .jpeg_quality = (uint8_t)n[15],
+                             .quality = (uint8_t)n[15],
                              .hold_back = (uint8_t)n[16] };
     q->triangles_max = (uint32_t)n[17];
     head->far = (ff_far_desc){ .enabled = (uint8_t)(n[20] >= 0 && n[20] <= FF_FAR_AUTO ? n[20] : 0),

@@ -64,7 +64,7 @@ static void put_head(FILE *file, const sim_tape_head *head)
                                             p->server_back_wu,
                                             p->error_px_q8,
                                             p->face_size,
-                                            p->jpeg_quality,
+                                            p->quality,
                                             p->hold_back,
                                             (int32_t)q->triangles_max,
                                             (int32_t)head->hidden,

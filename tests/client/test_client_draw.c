@@ -263,7 +263,7 @@ static void faces_stand_behind_the_ground(void **state)
                         WIDTH * 34);
         for (int p = 0; p < WIDTH * HEIGHT / 2; p++) /* no dark line where ground and sky meet */
             assert_true(rgb[3 * p + 2] > look[i].grey - 12);
-        memset(rgb + 3 * WIDTH * (HEIGHT / 2 - 18), 0, 3 * WIDTH * 36);
+        memset(rgb + 3 * WIDTH * (HEIGHT / 2 - 20), 0, 3 * WIDTH * 40); /* 16 and the pitch */
         assert_int_equal(count_colour(rgb, look[i].grey, look[i].grey, look[i].grey, 3), 0);
         free(rgb);
     }

@@ -1,11 +1,14 @@
 #include "client_fixture.h"
 
+#include "../../protocol/picture/ff_paint.h"
+
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define METRE     FF_WU_PER_METRE
-#define FACE_ROWS 20
+#define METRE       FF_WU_PER_METRE
+#define FACE_ROWS   20
+#define FACE_BLOCKS 3
 
 /* ---- the server's end ---- */
 
@@ -24,10 +27,19 @@ static void begin_session(client_rig *rig)
     rig->connections++;
 }
 
+static void look_away(void *context, unsigned column, unsigned row, uint8_t rgb[64][3])
+{
+    (void)context, (void)column, (void)row, (void)rgb;
+}
+
 static int make_face(const ff_face_job *job, uint8_t *out, size_t capacity)
 {
-    static uint8_t rgb[FF_FACE_SIZE_MAX * FACE_ROWS * 3], jpeg[1 << 16],
+    static uint8_t rgb[FF_FACE_SIZE_MAX * 8 * FACE_BLOCKS * 3],
+        there[FF_FACE_SIZE_MAX / 8 * FACE_BLOCKS], paint[1 << 16],
         columns[4 * FF_FACE_SIZE_MAX + 8];
+    static uint64_t room[8192];
+    const ff_paint_source source = { job->request.face_size / 8u, FACE_BLOCKS, there, rgb };
+    static const ff_paint_sink nobody = { .block = look_away };
     uint16_t top[FF_FACE_SIZE_MAX], bottom[FF_FACE_SIZE_MAX];
     unsigned size = job->request.face_size;
     ff_message message = { .type = FF_MSG_ANSWER, .kind = FF_KIND_FACE };
@@ -50,9 +62,11 @@ static int make_face(const ff_face_job *job, uint8_t *out, size_t capacity)
     face->columns = columns;
     face->columns_bytes = (uint32_t)ff_face_columns_encode(top, bottom, size, columns,
                                                            sizeof columns);
-    face->image = jpeg;
-    face->image_bytes = (uint32_t)sys_jpeg_encode(rgb, size, FACE_ROWS, job->request.quality, jpeg,
-                                                  sizeof jpeg);
+    memset(there, 1, sizeof there);
+    assert(ff_paint_room_bytes(source.columns) <= sizeof room);
+    face->image = paint;
+    face->image_bytes = (uint32_t)ff_paint_encode(
+        &source, job->request.quality, (ff_paint_room *)(void *)room, &nobody, paint, sizeof paint);
     return ff_message_encode(&message, out, capacity);
 }
 

@@ -1,6 +1,7 @@
 /* Panorama faces show ground where ground must be and nothing where there is none, the same on both
  * kinds of GL. */
 #include "../rig/pack_fixture.h"
+#include "../../protocol/picture/ff_paint.h"
 #include "../../platform/sys.h"
 #include "../../server/ground/ff_pack_ground.h"
 #include "../../server/panorama/ff_face_image.h"
@@ -92,8 +93,22 @@ typedef struct face_picture {
     ff_face face;
     uint16_t top[SIZE], bottom[SIZE];
     uint8_t rgb[SIZE * SIZE * 3]; /* rows of the face's image */
+    uint8_t laid[SIZE * SIZE];    /* whether they have come */
     int bytes;
 } face_picture;
+
+static void keep_block(void *context, unsigned column, unsigned row, uint8_t rgb[64][3])
+{
+    face_picture *to = context;
+    for (unsigned i = 0; i < 64; i++) {
+        unsigned x = column * 8 + i % 8, y = row * 8 + i / 8;
+        if (y >= to->face.row_count) continue;
+        memcpy(to->rgb + 3 * (SIZE * y + x), rgb[i], 3);
+        to->laid[SIZE * y + x] = 1;
+    }
+}
+
+static uint64_t room[4096];
 
 static void render_with(ff_panorama_renderer *with, const ff_get_panorama *request,
                         enum ff_face_name name, face_picture *out)
@@ -114,9 +129,13 @@ static void render_with(ff_panorama_renderer *with, const ff_get_panorama *reque
     assert_int_equal(ff_face_columns_decode(out->face.columns, out->face.columns_bytes, SIZE,
                                             out->face.row_count, out->top, out->bottom),
                      FF_OK);
-    assert_int_equal(sys_jpeg_decode(out->face.image, out->face.image_bytes, SIZE,
-                                     out->face.row_count, out->rgb),
-                     FF_OK);
+    const ff_paint_sink sink = { out, keep_block };
+    assert_true(ff_paint_decode(out->face.image, out->face.image_bytes, SIZE / 8,
+                                ff_face_blocks(out->face.row_count), (ff_paint_room *)(void *)room,
+                                &sink) > 0);
+    for (unsigned i = 0; i < SIZE * out->face.row_count; i++)
+        if (i / SIZE >= out->top[i % SIZE] && i / SIZE < out->bottom[i % SIZE])
+            assert_true(out->laid[i]);
 }
 
 static int is_empty(const face_picture *picture)

@@ -75,7 +75,7 @@ if has network; then
     [ "$(value bytes_down "$work/live.txt")" -gt 2000 ] && [ "$(value triangles_mean "$work/live.txt")" -gt 100 ] &&
         [ "$(value protocol_errors "$work/live.txt")" = 0 ]
     result $? "ground comes over the socket"
-    if has panorama && has jpeg; then
+    if has panorama && has picture; then
         faces=$(($(value panorama_faces "$work/live.txt") + $(value panorama_faces_empty "$work/live.txt")))
         [ "$faces" -gt 0 ]
         result $? "and faces of panoramas ($faces)"
@@ -84,7 +84,7 @@ else
     ! "${qemu[@]}" "$program" --server 127.0.0.1:1 >/dev/null 2>"$work/err.txt" && grep -q "not supported" "$work/err.txt"
     result $? "a server is refused as not supported"
 fi
-if has network && has panorama && has textures && has jpeg; then
+if has network && has panorama && has textures && has jpeg && has picture; then
     "$host/farfield-fly" --pack "$work/hills.ffp" --panorama on --back-plane 1500 --seconds 4 --settle 6 --backend none --tape "$work/flight.tape" 2>"$work/fly.err"
     result $? "a flight recorded on tape"
     "${qemu[@]}" "$program" --tape "$work/flight.tape" --hash >"$work/tape.txt"
