@@ -125,6 +125,7 @@ static int check_desc(const ff_client_desc *desc)
         desc->panorama.enabled > FF_PANORAMA_AUTO)
         return FF_ERR_ARGUMENT;
     if (desc->backend && !desc->surface_api) return FF_ERR_ARGUMENT;
+    if (desc->layer && !ff_layer_name_ok(desc->layer)) return FF_ERR_ARGUMENT;
     int rc = check_sources(desc);
     if (rc != FF_OK) return rc;
     return desc->memory_bytes < CLIENT_BYTES_MIN ? FF_ERR_MEMORY : FF_OK;
@@ -188,9 +189,13 @@ static int begin_terrain(ff_client *client)
 {
     const ff_pack *pack = client->desc.pack ? client->desc.pack : ff_several_stand_in(client);
     int rc = FF_ERR_NOT_FOUND;
-    if (client->desc.pack) ff_client_take_pack(&client->first);
+    if (client->desc.pack) ff_client_take_pack(client, &client->first);
     if (pack) {
+        ff_layers layers;
+        ff_pack_layers(pack, &layers);
         client->info = pack->header.info;
+        ff_terrain_show_images(&client->info, &pack->header.info,
+                               ff_client_layer_levels(client, &layers, 0));
         rc = ff_client_carve(client);
     }
     if (rc == FF_OK || client->desc.pack) return rc;
@@ -211,6 +216,7 @@ int ff_client_create(const ff_client_desc *desc, ff_client **result)
     ff_client_default_desc(&client->desc);
     client->arena = arena;
     client->geometry_hash = FF_TERRAIN_VIEW_HASH_START;
+    if (desc->layer) memcpy(client->layer, desc->layer, strlen(desc->layer) + 1);
     rc = make_fixed_part(client);
     if (rc != FF_OK) return rc;
     rc = begin_terrain(client);
@@ -270,8 +276,7 @@ void ff_client_event(ff_client *client, const sys_event *event)
                           ff_client_low_power(client));
 }
 
-/* Gives up the terrain, shares the block out anew and has the server tell of its ground again. */
-static void start_over(ff_client *client)
+void ff_client_start_over(ff_client *client)
 {
     sys_mutex_lock(&client->gate);
     if (client->have_terrain) {
@@ -279,8 +284,10 @@ static void start_over(ff_client *client)
         client->first.intake.told_count = 0;
         (void)begin_terrain(client);
     }
-    client->first.stream.reach_wu = ff_client_reach_wu(client);
-    ff_stream_restart(&client->first.stream);
+    if (client->first.io) {
+        client->first.stream.reach_wu = ff_client_reach_wu(client);
+        ff_stream_restart(&client->first.stream);
+    }
     sys_mutex_unlock(&client->gate);
 }
 
@@ -292,7 +299,7 @@ void ff_client_set_quality(ff_client *client, const ff_quality *quality)
     /* the server has left out levels that a farther view needs */
     if (client->first.io && client->first.io->reconnect &&
         client->first.stream.reach_wu < ff_client_reach_wu(client))
-        start_over(client);
+        ff_client_start_over(client);
     client->dirty = 1;
     ff_client_balance_begin(client, 0);
 }
@@ -309,7 +316,7 @@ void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama)
     client->dirty = 1;
     if (!client->have_terrain) return;
     if (client->desc.panorama.enabled && !face_size && !client->economy && client->desc.stream) {
-        start_over(client); /* the block was shared out without panoramas */
+        ff_client_start_over(client); /* the block was shared out without panoramas */
         return;
     }
     ff_requests_cancel_all(&client->first.requests, FF_KIND_FACE);
@@ -333,7 +340,7 @@ void ff_client_set_far(ff_client *client, const ff_far_desc *far)
         ff_sets_set(client->sets, &client->first.requests, &client->desc.far);
         client->far_asked = 0;
     } else if (client->desc.far.enabled && !client->economy) {
-        start_over(client); /* the block was shared out without sets, or with panoramas */
+        ff_client_start_over(client); /* the block was shared out without sets, or with panoramas */
     }
 }
 

@@ -32,7 +32,7 @@ void ff_source_make(ff_client *client, unsigned number, const ff_source_room *ro
     if (room->about) ff_stream_want_about(&source->stream, desc->about, room->about);
 }
 
-void ff_client_take_pack(ff_source *source)
+void ff_client_take_pack(const ff_client *client, ff_source *source)
 {
     ff_intake *intake = &source->intake;
     intake->ground_count = 0;
@@ -42,9 +42,11 @@ void ff_client_take_pack(ff_source *source)
         intake->info[intake->ground_count++] = pack->header.info;
     }
     intake->told_count = intake->ground_count;
+    ff_pack_layers(source->pack, &source->layers);
+    ff_client_choose_layer(client, source);
 }
 
-void ff_client_take_welcome(ff_source *source)
+void ff_client_take_welcome(const ff_client *client, ff_source *source)
 {
     const ff_stream *stream = &source->stream;
     ff_intake *intake = &source->intake;
@@ -54,6 +56,8 @@ void ff_client_take_welcome(ff_source *source)
         source->ground[i].whole = stream->whole[i];
         intake->info[i] = stream->welcome[i];
     }
+    source->layers = stream->layers;
+    ff_client_choose_layer(client, source);
 }
 
 int ff_client_step_source(ff_client *client, ff_source *source, int64_t now_us)

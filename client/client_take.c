@@ -72,6 +72,10 @@ static int take_item(ff_client *client, ff_new_item *item, int64_t now_us)
     ff_source *source = ff_client_source(client, item->source);
     int changed = 0, of_node = ff_kind[item->kind].asks == FF_ASKS_NODE;
     const ff_key own = item->key;
+    if (item->kind == FF_KIND_TEXTURE && item->layer != source->layer) {
+        item->error = FF_ERR_CLOSED; /* of a layer that is shown no more */
+        return 0;
+    }
     if (of_node) item->key = ff_source_key(source, own);
     if (item->error == FF_OK || !of_node) changed = take(client, item, now_us);
     int lacks = item->error == FF_ERR_NOT_FOUND && client->source_count > 1;

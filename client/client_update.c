@@ -45,8 +45,10 @@ static int carve_anew(ff_client *client)
 static void settle_welcome(ff_client *client)
 {
     sys_mutex_lock(&client->gate);
-    ff_client_take_welcome(&client->first);
+    ff_client_take_welcome(client, &client->first);
     client->info = client->first.intake.info[0];
+    ff_terrain_show_images(&client->info, &client->first.intake.info[0],
+                           ff_client_layer_levels(client, &client->first.layers, 0));
     int rc = ff_several_keep(client) ? FF_OK : carve_anew(client);
     client->terrain_error = rc;
     ff_stream_accept(&client->first.stream, rc == FF_OK);

@@ -174,6 +174,7 @@ typedef struct ff_client_desc {
      * earlier */
     uint8_t place_known;
     uint8_t no_textures; /* 1: images of the terrain are not asked for */
+    const char *layer;   /* of images that is shown, as ff_client_set_layer; NULL: the first */
     uint8_t no_views;    /* 1: ground is asked for level by level, not for a view at once */
     /* 1: the server hands out all levels of its ground, however near quality.view_wu ends (SPEC.md,
      * "Entry") */
@@ -246,6 +247,17 @@ void ff_client_event(ff_client *client, const sys_event *event);
 void ff_client_set_quality(ff_client *client, const ff_quality *quality);
 void ff_client_set_panorama(ff_client *client, const ff_panorama_desc *panorama);
 void ff_client_set_far(ff_client *client, const ff_far_desc *far); /* on: panoramas go off */
+/* Shows another layer of the images that lie over the ground, by its name: "" the first, NULL none.
+ * From now on only its images are asked for and drawn; heights stay as they are. Images of the one
+ * before stay in the memory of those that are not in use, and are there again if it is shown again
+ * soon. FF_OK; FF_ERR_NOT_FOUND: no source has a layer of that name, and nothing changes (before a
+ * terrain is known it is remembered, and no images are shown when it turns out to be missing). */
+int ff_client_set_layer(ff_client *client, const char *name);
+/* The number of the layer that is shown of the first source, or FF_ERR_NOT_FOUND: none is, or there
+ * is none of that name; FF_ERR_AGAIN: no terrain is known. */
+int ff_client_layer(const ff_client *client);
+/* The name of a layer of the first source, or NULL: it has fewer. One without a name is "". */
+const char *ff_client_layer_name(const ff_client *client, unsigned number);
 /* New budgets and limits, or on and off. Share and fidelity stay where they are on their ladders
  * and move from there. */
 void ff_client_set_balance(ff_client *client, const ff_balance_desc *balance);

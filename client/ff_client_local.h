@@ -36,6 +36,8 @@ struct ff_client {
     ff_source first; /* its ground's frame is the client's */
     ff_source *more; /* source_count - 1 of them */
     uint8_t source_count;
+    uint8_t no_layer; /* no images are shown; else those of the layer of this name: */
+    char layer[FF_LAYER_NAME_MAX + 1];
     ff_new_data news;
 
     uint8_t have_terrain;
@@ -113,8 +115,18 @@ void ff_client_link(ff_client *client, ff_stream_shared *shared);
 /* 1 when something of class `last` or one before it waits at any source. */
 int ff_client_waiting(ff_client *client, enum ff_request_class last);
 /* The grounds of a source, as its pack or its server's WELCOME says: it does not serve them yet. */
-void ff_client_take_pack(ff_source *source);
-void ff_client_take_welcome(ff_source *source);
+void ff_client_take_pack(const ff_client *client, ff_source *source);
+void ff_client_take_welcome(const ff_client *client, ff_source *source);
+/* client_layers.c: levels of the layer that is shown, over a ground of those whose layers these
+ * are; 0: it has none. */
+uint8_t ff_client_layer_levels(const ff_client *client, const ff_layers *layers, unsigned ground);
+/* The layer that is shown of a source whose grounds have just been told. */
+void ff_client_choose_layer(const ff_client *client, ff_source *source);
+/* Has the images held go by the layers chosen; once pools are carved, and whenever they change. */
+void ff_client_tag_layer(ff_client *client);
+/* client.c: gives up the terrain, shares the block out anew and has the server tell of its ground
+ * again. */
+void ff_client_start_over(ff_client *client);
 /* client_update.c: what a link has met since the last update. */
 void ff_client_note_link(ff_client *client, ff_source *source, const ff_stream_shared *shared);
 /* several/: of the sources that serve a key's ground and may have it the one to be asked, or NULL.

@@ -32,6 +32,8 @@ typedef struct ff_source {
     /* the server refused to answer for a view: things are asked for singly */
     uint8_t no_views;
     uint32_t losses_seen;
+    ff_layers layers; /* over its grounds */
+    uint8_t layer;    /* that is shown of them, FF_LAYER_NONE: none is */
     ff_source_ground ground[FF_WELCOME_GROUNDS];
 } ff_source;
 

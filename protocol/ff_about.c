@@ -7,8 +7,9 @@
 #define PARAMETER_BYTES  (2 + 8)
 #define HEAD_BYTES       4 /* of an entry: type, and the longest length */
 
-enum about_form { TEXT, NUMBERS, CHECKSUM };
-#define LEAST_OF(form, most) ((form) == TEXT ? 1 : (form) == NUMBERS ? PROJECTION_BYTES : (most))
+enum about_form { TEXT, NUMBERS, CHECKSUM, NAMES };
+#define LEAST_OF(form, most) \
+    ((form) == TEXT ? 1 : (form) == NAMES ? 2 : (form) == NUMBERS ? PROJECTION_BYTES : (most))
 
 /* clang-format off */
 static const ff_list_rule rule[] = {
@@ -70,6 +71,8 @@ static int value_ok(const ff_list_entry *entry)
     for (unsigned i = 0; i < RULES; i++) {
         if (rule[i].type != entry->type) continue;
         if (form_of[i] == TEXT) return ff_about_is_text(entry->value, entry->byte_count);
+        if (form_of[i] == NAMES)
+            return ff_layers_read(entry->value, entry->byte_count, 0, NULL) == FF_OK;
         return form_of[i] != NUMBERS ||
                (entry->byte_count - PROJECTION_BYTES) % PARAMETER_BYTES == 0;
     }

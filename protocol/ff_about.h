@@ -5,6 +5,7 @@
 #ifndef FF_ABOUT_H
 #define FF_ABOUT_H
 
+#include "ff_layers.h"
 #include "ff_list.h"
 
 #define FF_ABOUT_BYTES_MAX 4096 /* of a whole list */
@@ -19,7 +20,8 @@
     X(VERTICAL,    vertical_datum,  5, TEXT,    100) \
     X(WKT,         projection_wkt,  6, TEXT,    2500) /* of the origin's reference system, WKT 2 */ \
     X(PROJECTION,  projection,      7, NUMBERS, 256)  /* ff_about_projection */ \
-    X(WHOLE,       part_of,         8, CHECKSUM, 4)   /* u32, of the pack that this one is cut from */
+    X(WHOLE,       part_of,         8, CHECKSUM, 4)   /* u32, of the pack that this one is cut from */ \
+    X(LAYERS,      layers,          9, NAMES, FF_LAYERS_NAMES_MAX) /* ff_layers.h: of its images */
 
 enum ff_about_entry {
 #define X(entry, name, type, form, most) FF_ABOUT_##entry = type,

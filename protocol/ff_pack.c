@@ -80,6 +80,24 @@ static int same_sort(const ff_pack_section *a, const ff_pack_section *b)
            a->level == b->level && a->flags == b->flags;
 }
 
+uint32_t ff_pack_layer_first(const ff_pack *pack, unsigned layer)
+{
+    uint32_t first = ff_terrain_levels(&pack->header.info);
+
+    FF_ASSERT(layer <= pack->header.layers);
+    for (unsigned before = 0; before < layer; before++) first += pack->header.layer_levels[before];
+    return first;
+}
+
+ff_pack_section ff_pack_layer_section(unsigned layer, unsigned level)
+{
+    FF_ASSERT(layer >= 1 && layer < FF_LAYERS_MAX && level <= FF_KEY_LEVEL_MAX);
+    return (ff_pack_section){ .kind = FF_SECTION_TEXTURE,
+                              .version = SECTION_VERSION,
+                              .codec = (uint8_t)layer,
+                              .level = (uint8_t)level };
+}
+
 /* The section whose records are the parents of another's; NULL: there are none. */
 static const ff_pack_section *section_above(const ff_pack_header *header, uint32_t number)
 {
@@ -105,15 +123,30 @@ static int place_records(ff_pack_header *header, uint32_t number)
                : FF_ERR_RANGE;
 }
 
+/* Behind a terrain's sections: the next level of the layer at hand, or the first one of another. 1,
+ * or 0: it is neither. */
+static int take_layer(ff_pack_header *header, const ff_pack_section *section)
+{
+    uint32_t layer = section->codec;
+    if (!header->layers || layer < header->layers - 1u || layer > header->layers) return 0;
+    if (layer >= FF_LAYERS_MAX || !layer) return 0;
+    if (layer == header->layers) header->layer_levels[header->layers++] = 0;
+    if (header->layer_levels[layer] > FF_KEY_LEVEL_MAX) return 0;
+    const ff_pack_section expected = ff_pack_layer_section(layer, header->layer_levels[layer]++);
+    return same_sort(section, &expected);
+}
+
 static int check_sections(ff_pack_header *header)
 {
     const ff_terrain_info *info = &header->info;
     ff_pack_section expected;
 
+    header->layers = info->texture_levels > 0;
+    header->layer_levels[0] = info->texture_levels;
     for (uint32_t i = 0; i < header->section_count; i++) {
-        if (!ff_pack_section_at(info, i, &expected)) return FF_ERR_RANGE;
-        if (!same_sort(&header->section[i], &expected)) return FF_ERR_RANGE;
-        if (place_records(header, i) != FF_OK) return FF_ERR_RANGE;
+        int ok = ff_pack_section_at(info, i, &expected) ? same_sort(&header->section[i], &expected)
+                                                        : take_layer(header, &header->section[i]);
+        if (!ok || place_records(header, i) != FF_OK) return FF_ERR_RANGE;
     }
     expected = ff_pack_about_section();
     if (header->about.kind &&
@@ -246,7 +279,7 @@ static int is_known(const ff_pack_section *section)
     for (unsigned kind = 0; kind < FF_KIND_COUNT; kind++)
         if (ff_kind[kind].section == section->kind && section->kind)
             return ff_kind[kind].data == FF_DATA_HEIGHTS ? ff_codec_name(section->codec) != NULL
-                                                         : section->codec == 0;
+                                                         : section->codec < FF_LAYERS_MAX;
     return 0;
 }
 
@@ -399,22 +432,35 @@ static int number_at(const ff_pack *pack, const ff_pack_section *section, uint64
     return rc == FF_OK ? ff_index_number(&section->index, block, place, number) : rc;
 }
 
-/* The first section of a kind; they follow each other by level. NULL: the pack has none. */
-static const ff_pack_section *first_section(const ff_pack *pack, uint32_t kind)
+/* The first section of a kind, and of images of a layer; they follow each other by level. NULL: the
+ * pack has none. */
+static const ff_pack_section *first_section(const ff_pack *pack, uint32_t kind, unsigned layer)
 {
-    for (uint32_t i = 0; i < pack->header.section_count; i++)
-        if (pack->header.section[i].kind == kind) return &pack->header.section[i];
+    for (uint32_t i = 0; i < pack->header.section_count; i++) {
+        const ff_pack_section *section = &pack->header.section[i];
+        if (section->kind == kind && (kind != FF_SECTION_TEXTURE || section->codec == layer))
+            return section;
+    }
     return NULL;
 }
 
 static int has_level(const ff_pack *pack, const ff_pack_section *first, uint32_t level)
 {
     uint32_t number = (uint32_t)(first - pack->header.section) + level;
-    return number < pack->header.section_count && pack->header.section[number].kind == first->kind;
+    return number < pack->header.section_count &&
+           pack->header.section[number].kind == first->kind &&
+           pack->header.section[number].codec == first->codec;
 }
 
-int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
-                   const uint8_t **payload)
+static int has_image(const ff_pack *pack, unsigned layer, ff_key key)
+{
+    ff_terrain_info info = pack->header.info;
+    info.texture_levels = (uint8_t)ff_pack_image_levels(pack, layer);
+    return ff_terrain_has_image(&info, key);
+}
+
+static int find_record(const ff_pack *pack, enum ff_section_kind kind, unsigned layer, ff_key key,
+                       const uint8_t **payload)
 {
     uint32_t level, code, number;
     const ff_pack_section *section;
@@ -423,19 +469,19 @@ int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
     if (!pack) return FF_ERR_NOT_FOUND;
     if (pack->stored) {
         int pictures = pack->header.info.flags & FF_TERRAIN_PICTURES;
+        if (!(kind == FF_SECTION_TEXTURE ? has_image(pack, layer, key)
+                                         : ff_terrain_has_node(&pack->header.info, key)))
+            return FF_ERR_NOT_FOUND;
         if (ff_key_level(key) == 0 &&
             (kind == FF_SECTION_ROOT || (kind == FF_SECTION_TEXTURE && pictures)))
-            return pack->make_root(pack->root_context, kind, ff_key_tile(key), payload);
-        if (!(kind == FF_SECTION_TEXTURE ? ff_terrain_has_image
-                                         : ff_terrain_has_node)(&pack->header.info, key))
-            return FF_ERR_NOT_FOUND;
+            return pack->make_root(pack->root_context, kind, layer, ff_key_tile(key), payload);
         key = ff_entry_key(&pack->stored->header.info, &pack->header.info, key);
         pack = pack->stored;
     }
     level = ff_key_level(key);
     code = ff_key_code(key);
     number = ff_key_tile(key) - pack->header.info.first_tile;
-    section = first_section(pack, kind);
+    section = first_section(pack, kind, layer);
     if (!section || !has_level(pack, section, level) || (uint64_t)code >> (2 * level) != 0)
         return FF_ERR_NOT_FOUND;
     for (uint32_t l = 0; kind != FF_SECTION_ROOT && l <= level; l++) {
@@ -446,13 +492,24 @@ int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
     return read_record(pack, section + level, number, payload);
 }
 
-int ff_pack_image(const ff_pack *pack, ff_key *key, const uint8_t **payload)
+int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
+                   const uint8_t **payload)
 {
-    int bytes = ff_pack_record(pack, FF_SECTION_TEXTURE, *key, payload);
+    return find_record(pack, kind, 0, key, payload);
+}
+
+int ff_pack_layer_record(const ff_pack *pack, unsigned layer, ff_key key, const uint8_t **payload)
+{
+    return find_record(pack, FF_SECTION_TEXTURE, layer, key, payload);
+}
+
+int ff_pack_image(const ff_pack *pack, unsigned layer, ff_key *key, const uint8_t **payload)
+{
+    int bytes = ff_pack_layer_record(pack, layer, *key, payload);
 
     while (bytes == FF_ERR_NOT_FOUND && ff_key_level(*key) > 0) {
         *key = ff_key_parent(*key);
-        bytes = ff_pack_record(pack, FF_SECTION_TEXTURE, *key, payload);
+        bytes = ff_pack_layer_record(pack, layer, *key, payload);
     }
     return bytes;
 }

@@ -18,7 +18,7 @@
 
 #define FF_PACK_VERSION      8
 #define FF_PACK_HEADER_BYTES 4096 /* with the directory of sections; the sections follow */
-#define FF_PACK_SECTIONS_MAX 48   /* that this reader knows */
+#define FF_PACK_SECTIONS_MAX 79   /* that this reader knows, but for what it says of itself */
 #define FF_PACK_LISTED_MAX   80   /* with those that it does not */
 #define FF_PACK_ABOUT        FF_LETTERS('A', 'B', 'O', 'U')
 /* Roots and refinements are a section for each level of the deepest tile, textures one for each
@@ -28,7 +28,7 @@ FF_STATIC_ASSERT(FF_TILE_LOG2_MAX + FF_KEY_LEVEL_MAX + 1 <= FF_PACK_SECTIONS_MAX
 typedef struct ff_pack_section {
     uint32_t kind;      /* enum ff_section_kind, or FF_PACK_ABOUT */
     uint8_t version;    /* of the section's layout */
-    uint8_t codec;      /* of its records: the terrain's for heights, else 0 */
+    uint8_t codec;      /* of its records: the terrain's for heights; of images their layer */
     uint8_t level;      /* of the node refined, or textured */
     uint8_t flags;      /* enum ff_pack_section_flags */
     uint32_t index_crc; /* CRC-32 of the index bytes */
@@ -46,6 +46,8 @@ enum ff_pack_section_flags { FF_PACK_NEEDED = 1 /* who does not know the section
 
 typedef struct ff_pack_header {
     ff_terrain_info info;
+    /* layers of images, and the levels of each: the first one's are info's; 0: no images */
+    uint8_t layers, layer_levels[FF_LAYERS_MAX];
     uint32_t section_count; /* of the kinds in ff_kind.h */
     ff_pack_section section[FF_PACK_SECTIONS_MAX];
     ff_pack_section about; /* of kind 0: the pack says nothing of itself */
@@ -55,8 +57,8 @@ typedef struct ff_pack_header {
 typedef int ff_pack_read_fn(void *context, uint64_t offset, void *out, size_t count);
 
 /* Makes the root of a tile that is no stored one (ff_pack_enter), or, where images are pictures,
- * its image: bytes of *payload, which stands until the next one is made, or an error. */
-typedef int ff_pack_root_fn(void *context, enum ff_section_kind kind, uint32_t tile,
+ * its image of a layer: bytes of *payload, which stands until the next one is made, or an error. */
+typedef int ff_pack_root_fn(void *context, enum ff_section_kind kind, unsigned layer, uint32_t tile,
                             const uint8_t **payload);
 
 /* A view on a pack: plain data that owns nothing. A mapping must outlive its view; any number of
@@ -95,7 +97,8 @@ const char *ff_pack_error_text(const ff_pack *pack, int error);
 /* Has `other` go with `pack`, and what was joined to it before, as one more ground: the tiles of
  * its keys are numbered on, and whatever takes `pack` has both. FF_OK, or an error of
  * ff_terrain_join; FF_ERR_ARGUMENT: it holds ground of one that is there already, whole or a part;
- * FF_ERR_FULL. Both stay where they are. */
+ * FF_ERR_FORMAT: layers of images of the same number have different names; FF_ERR_FULL. Both stay
+ * where they are. */
 int ff_pack_join(ff_pack *pack, ff_pack *other);
 /* The checksum of the whole pack that this one is a part of: its own where it is none. */
 uint32_t ff_pack_whole(const ff_pack *pack);
@@ -125,9 +128,23 @@ void ff_pack_enter(const ff_pack *whole, uint32_t level, ff_pack_root_fn *make_r
 int ff_pack_record(const ff_pack *pack, enum ff_section_kind kind, ff_key key,
                    const uint8_t **payload);
 
+/* The same of an image of a layer; of the first one it is the record TEXTURE. */
+int ff_pack_layer_record(const ff_pack *pack, unsigned layer, ff_key key, const uint8_t **payload);
 /* The image over a node: its own, or that of the nearest ancestor that has one, whose key *key is
  * then. As ff_pack_record. */
-int ff_pack_image(const ff_pack *pack, ff_key *key, const uint8_t **payload);
+int ff_pack_image(const ff_pack *pack, unsigned layer, ff_key *key, const uint8_t **payload);
+/* Levels of images of a layer, below where the pack is entered; 0: the pack has no such layer. */
+static inline uint32_t ff_pack_image_levels(const ff_pack *pack, unsigned layer)
+{
+    uint32_t levels = layer < pack->header.layers ? pack->header.layer_levels[layer] : 0,
+             entered = pack->header.info.entered;
+    return levels > entered ? levels - entered : 0;
+}
+/* The number of the first section of a layer of the pack's own images. */
+uint32_t ff_pack_layer_first(const ff_pack *pack, unsigned layer);
+/* The layers of a pack and those joined to it, which have the same names as far as they have them:
+ * `levels` of each ground, of FF_LAYER_GROUNDS at most. */
+void ff_pack_layers(const ff_pack *pack, ff_layers *layers);
 
 /* What the pack says of itself, in the mapping or the room, checked. FF_OK, NOT_FOUND: nothing;
  * CHECKSUM, RANGE, TRUNCATED; FULL. */
@@ -136,6 +153,9 @@ int ff_pack_about(const ff_pack *pack, ff_list *about);
 /* What section `number` of this terrain's packs holds: fills all but places, counts and CRCs. 1, or
  * 0: they have fewer sections. */
 int ff_pack_section_at(const ff_terrain_info *info, uint32_t number, ff_pack_section *section);
+
+/* The section of a level of a layer other than the first, likewise: such follow all others. */
+ff_pack_section ff_pack_layer_section(unsigned layer, unsigned level);
 
 /* Checks indexes, data and every record of every section; *bad receives the number of damaged
  * records. FF_OK or error. */

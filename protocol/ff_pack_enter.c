@@ -3,15 +3,17 @@
 #include "ff_pack.h"
 #include "shape/ff_shape.h"
 
-/* 1 when every node of a level that has ground has an image of its own. */
+/* 1 when every node of a level that has ground has an image of its own, of each layer. */
 static int has_images(const ff_pack *pack, uint32_t level)
 {
+    uint32_t whole = 0;
+
     for (uint32_t i = 0; i < pack->header.section_count; i++) {
         const ff_pack_section *section = &pack->header.section[i];
         if (section->kind == FF_SECTION_TEXTURE && section->level == level)
-            return section->index.records == ff_entry_nodes(&pack->header.info, level);
+            whole += section->index.records == ff_entry_nodes(&pack->header.info, level);
     }
-    return 0;
+    return whole == pack->header.layers;
 }
 
 uint32_t ff_pack_entry_level(const ff_pack *pack, int32_t reach_wu)

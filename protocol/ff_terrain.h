@@ -169,6 +169,17 @@ static inline uint32_t ff_image_levels(const ff_terrain_info *info)
     return levels < FF_KEY_LEVEL_MAX + 1 ? levels : FF_KEY_LEVEL_MAX + 1;
 }
 
+/* Has `info` show so many levels of images like those of `told`; 0: none. */
+static inline void ff_terrain_show_images(ff_terrain_info *info, const ff_terrain_info *told,
+                                          uint32_t levels)
+{
+    unsigned pictures = levels ? told->flags & FF_TERRAIN_PICTURES : 0u;
+    FF_ASSERT(levels <= FF_KEY_LEVEL_MAX + 1);
+    info->texture_log2 = levels ? told->texture_log2 : 0;
+    info->texture_levels = (uint8_t)levels;
+    info->flags = (uint8_t)((info->flags & ~(unsigned)FF_TERRAIN_PICTURES) | pictures);
+}
+
 /* The key, among grounds held together, of a node that has the key `own` in its pack and in
  * messages; and back. */
 static inline ff_key ff_terrain_key(const ff_terrain_info *info, ff_key own)

@@ -28,6 +28,7 @@ static ff_new_item *begin(ff_intake *intake, const ff_request *request, uint32_t
         item->id = request->id;
         item->source = intake->source;
         item->kind = request->kind;
+        item->layer = request->layer;
         item->last = 1;
         item->bytes = bytes;
     }

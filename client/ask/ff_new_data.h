@@ -18,6 +18,7 @@ typedef struct ff_new_item {
     uint8_t kind;     /* enum ff_kind */
     uint8_t last;     /* ends its request: always, but for kinds with several answers; a part of a
                        * view has key and kind of its own */
+    uint8_t layer;    /* of images: of the request */
     uint8_t refused;  /* no answer came: `error` says why, and nothing below counts */
     int32_t error;    /* FF_OK, or why there is nothing to take in */
     uint32_t bytes;   /* of the answer, for the counters */

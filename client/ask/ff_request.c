@@ -119,12 +119,24 @@ void ff_requests_clear(ff_requests *requests)
     sys_mutex_unlock(&requests->mutex);
 }
 
+static uint8_t layer_of(const ff_requests *requests, unsigned kind)
+{
+    return ff_kind[kind].has_image ? requests->layer : 0;
+}
+
+void ff_requests_set_layer(ff_requests *requests, uint8_t layer)
+{
+    sys_mutex_lock(&requests->mutex);
+    requests->layer = layer;
+    sys_mutex_unlock(&requests->mutex);
+}
+
 static ff_request *find(ff_requests *requests, unsigned kind, ff_key key)
 {
     for (unsigned i = 0; i < requests->slot_count; i++) {
         ff_request *request = &requests->slot[i];
         if (request->state != FF_REQUEST_FREE && !request->forgotten && request->kind == kind &&
-            request->key == key)
+            request->key == key && request->layer == layer_of(requests, kind))
             return request;
     }
     return NULL;
@@ -183,6 +195,7 @@ static ff_request *mark(ff_requests *requests, enum ff_kind kind, ff_key key)
         memset(request, 0, sizeof *request);
         request->key = key;
         request->kind = (uint8_t)kind;
+        request->layer = layer_of(requests, kind);
         request->id = (uint16_t)(request - requests->slot + 1);
         request->sequence = requests->sequence++;
         requests->counts.made++;

@@ -65,6 +65,7 @@ typedef struct ff_request {
     uint32_t bytes_came;       /* the same: of the answers so far */
     uint8_t ask;               /* of FF_ASKS_PANORAMA, FF_ASKS_FAR: ff_requests_ask_of */
     uint8_t sides;             /* of a refinement: as in ff_get */
+    uint8_t layer;             /* of images, of which it is asked for */
 } ff_request;
 
 typedef struct ff_request_counts {
@@ -93,6 +94,7 @@ typedef struct ff_requests {
     /* of those whose key is the client's own; written and read likewise. Bit i: ask[i] is taken */
     ff_ask ask[FF_REQUESTS_ASKS_MAX];
     uint8_t asks_taken;
+    uint8_t layer; /* of images, that are asked for now */
     /* bytes of an answer by kind and level, running mean, Q4; bit l: one of level l has come.
      * Until then it counts as the first of its kind did */
     uint32_t answer_q4[FF_KIND_COUNT][16];
@@ -114,6 +116,9 @@ void ff_requests_init(ff_requests *requests, unsigned in_flight_max, void *memor
 void ff_requests_clear(ff_requests *requests);
 
 /* ---- main thread ---- */
+/* Images are asked for of this layer from now on. Those of another one that are on their way are
+ * not taken for it; what waits is dropped by the next ranking. */
+void ff_requests_set_layer(ff_requests *requests, uint8_t layer);
 /* A ranking: begin, want everything worth having (most urgent first), end. Queued requests that
  * were not wanted again are dropped. */
 void ff_requests_rank_begin(ff_requests *requests);

@@ -44,6 +44,11 @@ void ff_held_pictures_cut(ff_held_pictures *pictures, ff_key key, ff_coded coded
         if (pictures->key[i] == key) pictures->key[i] = FF_KEY_NONE;
 }
 
+void ff_held_pictures_forget(ff_held_pictures *pictures)
+{
+    for (unsigned i = 0; i < pictures->decoded_count; i++) pictures->key[i] = FF_KEY_NONE;
+}
+
 /* ---- decoding ---- */
 
 static uint8_t *place_at(const ff_held_pictures *pictures, const ff_terrain_info *info, unsigned i)

@@ -39,6 +39,8 @@ void ff_held_pictures_init(ff_held_pictures *pictures, unsigned log2, unsigned d
 ff_coded ff_held_pictures_add(ff_held_pictures *pictures, const uint8_t *bytes, uint32_t count);
 /* Takes one out: those behind it move up by its bytes (the owner tells them). */
 void ff_held_pictures_cut(ff_held_pictures *pictures, ff_key key, ff_coded coded);
+/* Keys mean other pictures from now on: none counts as decoded. */
+void ff_held_pictures_forget(ff_held_pictures *pictures);
 /* A picture, of which and of all above it what came is kept: RGB888, north row first, until the
  * next call; info: of its ground. NULL: *error says why. */
 const uint8_t *ff_held_pictures_get(ff_held_pictures *pictures, const ff_terrain_info *info,

@@ -24,7 +24,7 @@ size_t ff_pack_images_bytes(const ff_pack *pack)
 {
     size_t path = 0;
     for (const ff_pack *at = pack; at; at = at->next) {
-        size_t bytes = ff_picture_path_bytes(&at->header.info);
+        size_t bytes = ff_picture_path_bytes(at);
         path = bytes > path ? bytes : path;
     }
     return path + rgb_bytes(pack);
@@ -43,7 +43,7 @@ static int get_jpeg(const ff_pack_images *images, const ff_pack *pack, ff_key ke
     uint32_t side = 1u << info->texture_log2;
     const uint8_t *payload;
     ff_image image;
-    int rc = ff_pack_record(pack, FF_SECTION_TEXTURE, key, &payload);
+    int rc = ff_pack_layer_record(pack, images->path.layer, key, &payload);
     if (rc >= 0) rc = ff_image_read(payload, (size_t)rc, &image);
     if (rc >= 0) rc = sys_jpeg_decode(image.coded, image.coded_bytes, side, side, images->rgb);
     if (rc >= 0) ff_texture_texels(info, images->rgb, texels);

@@ -21,7 +21,8 @@ static ff_texture_slot *find(const ff_textures *textures, ff_key key)
 {
     for (unsigned i = textures->bucket[bucket_of(key)]; i; i = textures->slot[i - 1].next) {
         FF_ASSERT(i <= textures->slot_count && textures->slot[i - 1].held == 1);
-        if (textures->slot[i - 1].key == key) return &textures->slot[i - 1];
+        if (textures->slot[i - 1].key == key && textures->slot[i - 1].layer == textures->layer)
+            return &textures->slot[i - 1];
     }
     return NULL;
 }
@@ -247,6 +248,7 @@ static ff_texture_slot *hold(ff_textures *textures, ff_key key, uint8_t bare, ui
     }
     *slot = (ff_texture_slot){ .key = key,
                                .held = 1,
+                               .layer = textures->layer,
                                .bare = bare,
                                .used = textures->stamp,
                                .drawn = textures->stamp,
@@ -353,6 +355,13 @@ int ff_textures_put(ff_textures *textures, ff_key key, uint8_t bare, const uint1
     if (make_texture(textures, slot, texels)) return 1;
     drop(textures, slot);
     return 0;
+}
+
+void ff_textures_set_layer(ff_textures *textures, uint8_t layer)
+{
+    if (textures->layer == layer) return;
+    textures->layer = layer;
+    ff_held_pictures_forget(&textures->pictures);
 }
 
 void ff_textures_doubt(ff_textures *textures)

@@ -28,7 +28,8 @@ typedef struct ff_texture_slot {
     uint32_t drawn;      /* and was drawn in */
     uint16_t next;       /* hash chain: slot + 1 */
     uint8_t held;
-    uint8_t bare; /* children without an image: ff_image.bare */
+    uint8_t layer; /* it is of */
+    uint8_t bare;  /* children without an image: ff_image.bare */
 } ff_texture_slot;
 
 typedef struct ff_textures {
@@ -39,6 +40,7 @@ typedef struct ff_textures {
     uint16_t texture_count; /* that the device has room for */
     int32_t texel_px_q8;    /* the least of ff_texel_look */
     uint8_t across;         /* of ff_texel_look */
+    uint8_t layer;          /* that is shown: ff_textures_set_layer */
     /* Where pictures are to be drawn: those that are held, on the device or not; and texels of one
      * image, on their way to the device. */
     ff_held_pictures pictures;
@@ -92,6 +94,10 @@ int ff_textures_is_worn(const ff_textures *textures, ff_key image);
 /* A picture that is held, as it was decoded: ff_held_pictures_get. */
 const uint8_t *ff_textures_picture(ff_textures *textures, const ff_terrain_info *info, ff_key key,
                                    int *error);
+/* Shows images of another layer. Those of the one before stay, as those not in use do, until there
+ * is no room for them: who comes back to it soon finds them. */
+void ff_textures_set_layer(ff_textures *textures, uint8_t layer);
+#define FF_LAYER_TAG_NONE 255u
 /* Somebody else may have images where those that are held say that there are none. */
 void ff_textures_doubt(ff_textures *textures);
 /* For an owner whose images come at once (a pack): 1 when this image is held; it is then the last

@@ -50,6 +50,8 @@ uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff
     return 0;
 }
 
+void ff_textures_set_layer(ff_textures *textures, uint8_t layer) { textures->layer = layer; }
+
 void ff_textures_doubt(ff_textures *textures) { (void)textures; }
 
 int ff_textures_take(ff_textures *textures, const ff_terrain_info *info, ff_new_item *item)

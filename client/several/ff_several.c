@@ -25,6 +25,8 @@ static int add_ground(ff_client *client, ff_source *source, unsigned own)
 {
     ff_source_ground *ground = &source->ground[own];
     ff_terrain_info info = source->intake.info[own];
+    ff_terrain_show_images(&info, &source->intake.info[own],
+                           ff_client_layer_levels(client, &source->layers, own));
     uint32_t count;
     const ff_terrain_info *all = ff_tree_grounds(client->tree, &count);
     int rc = ff_codec_supported(info.codec) ? ff_terrain_join(&info, all, all + count - 1)
@@ -104,21 +106,23 @@ void ff_several_join(ff_client *client)
     ff_source *first = ff_client_source(client, frame);
     (void)ff_tree_grounds(client->tree, &count);
     FF_ASSERT(count == 1);
-    if (first->pack) ff_client_take_pack(first);
+    if (first->pack) ff_client_take_pack(client, first);
     first->ground[0] = (ff_source_ground){ .whole = first->ground[0].whole };
     (void)join(client, first, 1);
     for (unsigned s = 1; s < client->source_count; s++) {
         ff_source *source = ff_client_source(client, s);
         if (s == frame) continue;
-        if (source->pack) ff_client_take_pack(source);
+        if (source->pack) ff_client_take_pack(client, source);
         if (source->pack || source->stream.has_terrain) (void)join(client, source, 0);
     }
+    ff_client_tag_layer(client);
     tell_sources(client);
 }
 
 static void joined(ff_client *client)
 {
     tell_sources(client);
+    ff_client_tag_layer(client);
     ff_textures_doubt(&client->textures);
     client->dirty = 1;
 }
@@ -140,7 +144,7 @@ int ff_several_keep(ff_client *client)
 static void settle(ff_client *client, ff_source *source)
 {
     int again = source->serves;
-    ff_client_take_welcome(source);
+    ff_client_take_welcome(client, source);
     if (again) { /* it has other packs now: all grounds are put together anew */
         source->stream.has_terrain = 0;
         ff_client_uncarve(client);
@@ -177,9 +181,10 @@ static int may_have(const ff_client *client, const ff_source *source, enum ff_ki
     int own = ff_source_ground_of(source, key);
     if (own < 0 || lacks >> source->number & 1u) return 0;
     const ff_terrain_info *info = &source->intake.info[own];
-    if (kind == FF_KIND_TEXTURE && (info->texture_log2 != client->info.texture_log2 ||
-                                    (info->flags ^ client->info.flags) & FF_TERRAIN_PICTURES ||
-                                    ff_key_level(key) >= info->texture_levels))
+    if (kind == FF_KIND_TEXTURE &&
+        (info->texture_log2 != client->info.texture_log2 ||
+         (info->flags ^ client->info.flags) & FF_TERRAIN_PICTURES ||
+         ff_key_level(key) >= ff_client_layer_levels(client, &source->layers, (unsigned)own)))
         return 0;
     return !ff_refusals_final(&source->refusals, kind, ff_source_own_key(source, key));
 }

@@ -9,7 +9,10 @@ static int answer(ff_intake *intake, const ff_pack *pack, const ff_request *requ
     if (!section) /* a server makes it, and there is none */
         return ff_intake_failed(intake, request, FF_ERR_UNSUPPORTED);
     ff_message message = { .type = FF_MSG_ANSWER, .kind = (enum ff_kind)request->kind };
-    int bytes = ff_pack_record(pack, section, request->key, &message.u.data.bytes);
+    const uint8_t **at = &message.u.data.bytes;
+    int bytes = section == FF_SECTION_TEXTURE
+                    ? ff_pack_layer_record(pack, request->layer, request->key, at)
+                    : ff_pack_record(pack, section, request->key, at);
     if (bytes < 0) return ff_intake_failed(intake, request, bytes);
     message.u.data.byte_count = (uint32_t)bytes;
     return ff_intake_answer(intake, request, &message, (uint32_t)bytes);

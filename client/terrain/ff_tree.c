@@ -303,6 +303,13 @@ const ff_terrain_info *ff_tree_ground(const ff_tree *tree, ff_key key)
     return ff_ground_of(tree, key);
 }
 
+void ff_tree_show_images(ff_tree *tree, uint32_t ground, const ff_terrain_info *told,
+                         uint32_t levels)
+{
+    FF_ASSERT(ground < tree->ground_count);
+    ff_terrain_show_images(&tree->ground[ground], told, levels);
+}
+
 const ff_terrain_info *ff_tree_grounds(const ff_tree *tree, uint32_t *count)
 {
     *count = tree->ground_count;

@@ -17,15 +17,14 @@ static const ff_list_rule caps_rule[] = { FF_CAPS_LIST(X) };
 static const ff_list_rule welcome_rule[] = { FF_WELCOME_LIST(X) };
 #undef X
 
-static int check_list(ff_list list, const ff_list_rule *rule, size_t rules)
+static int check_list(ff_list list, uint32_t most, const ff_list_rule *rule, size_t rules)
 {
-    return list.byte_count > FF_CAPS_BYTES_MAX ? FF_ERR_RANGE
-                                               : ff_list_check(list, rule, (unsigned)rules);
+    return list.byte_count > most ? FF_ERR_RANGE : ff_list_check(list, rule, (unsigned)rules);
 }
 
 static int check_caps(ff_list list)
 {
-    return check_list(list, caps_rule, sizeof caps_rule / sizeof *caps_rule);
+    return check_list(list, FF_CAPS_BYTES_MAX, caps_rule, sizeof caps_rule / sizeof *caps_rule);
 }
 
 static void write_list(ff_writer *out, ff_list list, int check)
@@ -212,6 +211,10 @@ static void write_body(ff_writer *out, const ff_message *message)
         case FF_MSG_PONG: ff_write_bytes(out, message->u.ping.stamp, 4); break;
         case FF_MSG_CAPS: write_list(out, message->u.list, check_caps(message->u.list)); break;
         case FF_MSG_ABOUT: write_list(out, message->u.list, ff_about_check(message->u.list)); break;
+        case FF_MSG_LAYER:
+            ff_message_require(&out->error, message->u.layer.layer <= FF_LAYER_NONE);
+            ff_write_bytes(out, message->u.layer.layer, 1);
+            break;
         case FF_MSG_GET_ABOUT: ff_write_varint(out, message->u.get_about.entries); break;
         case FF_MSG_ROOTS: write_roots(out, &message->u.roots); break;
         case FF_MSG_EDGE:
@@ -341,8 +344,8 @@ static void read_welcome(ff_reader *in, ff_welcome *welcome)
     if (in->error == FF_OK && welcome->version != FF_PROTOCOL_VERSION) in->error = FF_ERR_VERSION;
     if (in->error != FF_OK) return;
     welcome->more = read_list(in);
-    keep_error(in,
-               check_list(welcome->more, welcome_rule, sizeof welcome_rule / sizeof *welcome_rule));
+    keep_error(in, check_list(welcome->more, FF_WELCOME_BYTES_MAX, welcome_rule,
+                              sizeof welcome_rule / sizeof *welcome_rule));
     if (in->error != FF_OK) return;
     ff_message_require(&in->error, ff_list_next(&welcome->more, &terrain) == 1 &&
                                        terrain.type == FF_WELCOME_TERRAIN);
@@ -429,6 +432,10 @@ static void read_body(ff_reader *in, ff_message *out)
         case FF_MSG_ABOUT:
             out->u.list = read_list(in);
             keep_error(in, ff_about_check(out->u.list));
+            break;
+        case FF_MSG_LAYER:
+            out->u.layer.layer = (uint8_t)ff_read_bytes(in, 1);
+            ff_message_require(&in->error, out->u.layer.layer <= FF_LAYER_NONE);
             break;
         case FF_MSG_GET_ABOUT: out->u.get_about.entries = ff_read_varint(in); break;
         case FF_MSG_ROOTS: read_roots(in, &out->u.roots); break;

@@ -22,7 +22,8 @@
 #define FF_MESSAGE_HEADER_MAX 4
 #define FF_REQUEST_BYTES_MAX  480 /* any client message but CAPS fits */
 #define FF_SHORT_BYTES_MAX    60  /* any message without a list, a payload, an image or keys fits */
-#define FF_CAPS_BYTES_MAX     512 /* of the lists in CAPS and in WELCOME */
+#define FF_CAPS_BYTES_MAX     512 /* of the list in CAPS */
+#define FF_WELCOME_BYTES_MAX  1024 /* of that in WELCOME */
 #define FF_FACE_COUNT         6
 #define FF_FACE_SIZE_MAX      1024
 
@@ -39,6 +40,7 @@ FF_STATIC_ASSERT(2 + FF_PAYLOAD_BYTES_MAX <= FF_MESSAGE_BODY_MAX);
     X(CANCEL,     5, CLIENT) /* ff_cancel: the answer is no longer wanted */ \
     X(PING,       6, CLIENT) /* ff_ping */ \
     X(CAPS,       7, CLIENT) /* ff_list: what the client can, FF_CAPS_LIST */ \
+    X(LAYER,     11, CLIENT) /* ff_get_layer: whose images are asked for from here on */ \
     X(GET_ABOUT,  8, CLIENT) /* ff_get_about: what does the pack say of itself */ \
     X(WELCOME,   65, SERVER) /* ff_welcome: the terrain */ \
     X(FAILED,    69, SERVER) /* ff_failed: this request has no answer */ \
@@ -70,7 +72,8 @@ FF_STATIC_ASSERT(2 + FF_PAYLOAD_BYTES_MAX <= FF_MESSAGE_BODY_MAX);
     X(TERRAINS, 6, FF_TERRAIN_BYTES, FF_TERRAIN_BYTES * (FF_WELCOME_GROUNDS - 1)) /* more terrains */ \
     X(ENTRY,    7, 1, FF_WELCOME_GROUNDS) /* u8 of each: levels above its tiles that are left out */ \
     X(LACKS,    8, 4, 4) /* u32 bits of FF_LACKS_: what nobody draws here */ \
-    X(IMAGES,   9, 1, FF_WELCOME_GROUNDS) /* u8 of each: ff_terrain_info.images_whole */
+    X(IMAGES,   9, 1, FF_WELCOME_GROUNDS) /* u8 of each: ff_terrain_info.images_whole */ \
+    X(LAYERS,  10, 2, 1023) /* ff_layers.h, levels of each ground; one without a name is not told */
 /* clang-format on */
 
 enum ff_caps_entry {
@@ -127,6 +130,7 @@ typedef struct ff_get_panorama {
     uint8_t quality;             /* JPEG quality 1..100 */
     uint8_t face_count;          /* 1..6 */
     uint8_t face[FF_FACE_COUNT]; /* enum ff_face_name, in the order in which they are to come */
+    uint8_t layer;               /* of its images; not in the message: LAYER told it */
 } ff_get_panorama;
 
 /* Far ground as fins and paint, taken at one point O: the sectors of a set (protocol/far/ff_far.h
@@ -148,6 +152,7 @@ typedef struct ff_get_far {
     uint8_t tolerance_q2;  /* quarter texels that a fin may be off; 0: no fins */
     uint8_t sector_count;  /* 1..FF_FAR_SECTORS */
     uint8_t sector[FF_FAR_SECTORS]; /* all different, in the order in which they are to come */
+    uint8_t layer;                  /* of its images; not in the message: LAYER told it */
 } ff_get_far;
 
 /* What a request has besides its key, of the kinds whose key is a number of the client's own. */
@@ -232,6 +237,9 @@ typedef struct ff_welcome {
     ff_terrain_info info;
     ff_list more; /* entries behind the terrain's, inside the message: see ff_welcome_ground */
 } ff_welcome;
+typedef struct ff_get_layer {
+    uint8_t layer; /* FF_LAYER_NONE at most; 0 until it is said */
+} ff_get_layer;
 typedef struct ff_get_about {
     uint32_t entries; /* FF_ABOUT_BIT of those wanted */
 } ff_get_about;
@@ -306,6 +314,7 @@ typedef struct ff_message {
         ff_list list; /* CAPS, ABOUT: inside the message */
         ff_roots roots;
         ff_edge edge;
+        ff_get_layer layer;
         ff_get_about get_about;
         ff_welcome welcome;
         ff_data data; /* ANSWER, FF_BRINGS_PAYLOAD */
@@ -346,6 +355,8 @@ int ff_welcome_count(const ff_welcome *welcome);
 /* One of them, and the checksum of the whole pack that it is a part of, or its own. */
 void ff_welcome_ground(const ff_welcome *welcome, unsigned number, ff_terrain_info *info,
                        uint32_t *whole);
+/* The layers of images over its grounds. */
+void ff_welcome_layers(const ff_welcome *welcome, ff_layers *layers);
 /* Bits of FF_LACKS_: of what a client need not ask for. */
 uint32_t ff_welcome_lacks(const ff_welcome *welcome);
 

@@ -3,6 +3,8 @@
 
 #include "../ff_assert.h"
 
+#include <string.h>
+
 void ff_message_write_terrain(ff_writer *out, const ff_terrain_info *info)
 {
     uint8_t plain[FF_TERRAIN_BYTES], value[FF_TERRAIN_SET + FF_TERRAIN_BYTES] = { 0 };
@@ -94,6 +96,9 @@ int ff_welcome_count(const ff_welcome *welcome)
     if (ff_list_find(welcome->more, FF_WELCOME_WHOLE, &value) > 0 &&
         entries(welcome->more, FF_WELCOME_WHOLE, 4, &value) != count)
         return FF_ERR_RANGE;
+    int layers = ff_list_find(welcome->more, FF_WELCOME_LAYERS, &value);
+    if (layers > 0 && ff_layers_read(value, (uint32_t)layers, count, NULL) != FF_OK)
+        return FF_ERR_RANGE;
     return levels_ok(welcome, count) ? (int)count : FF_ERR_RANGE;
 }
 
@@ -116,6 +121,29 @@ void ff_welcome_ground(const ff_welcome *welcome, unsigned number, ff_terrain_in
     if (!entries(welcome->more, FF_WELCOME_WHOLE, 4, &value)) return;
     ff_reader in = { value + 4 * number, value + 4 * number + 4, FF_OK };
     *whole = (uint32_t)ff_read_bytes(&in, 4);
+}
+
+/* The levels of images of the grounds themselves, which are the first layer's. */
+static void first_levels(const ff_welcome *welcome, ff_layers *layers)
+{
+    int count = ff_welcome_count(welcome);
+    for (int i = 0; i < count; i++) {
+        ff_terrain_info info;
+        uint32_t whole;
+        ff_welcome_ground(welcome, (unsigned)i, &info, &whole);
+        layers->levels[0][i] = info.texture_levels;
+        if (info.texture_levels && !layers->count) layers->count = 1;
+    }
+}
+
+void ff_welcome_layers(const ff_welcome *welcome, ff_layers *layers)
+{
+    const uint8_t *value;
+    int bytes = ff_list_find(welcome->more, FF_WELCOME_LAYERS, &value);
+    unsigned grounds = (unsigned)ff_welcome_count(welcome);
+    if (bytes <= 0 || ff_layers_read(value, (uint32_t)bytes, grounds, layers) != FF_OK)
+        memset(layers, 0, sizeof *layers);
+    first_levels(welcome, layers);
 }
 
 uint32_t ff_welcome_lacks(const ff_welcome *welcome)

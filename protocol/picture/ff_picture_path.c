@@ -2,9 +2,20 @@
 
 #include "../ff_image.h"
 
-size_t ff_picture_path_bytes(const ff_terrain_info *info)
+size_t ff_picture_path_bytes(const ff_pack *pack)
 {
-    return info->texture_log2 ? ((size_t)info->texture_levels * 3) << 2 * info->texture_log2 : 0;
+    uint32_t most = 0;
+    for (unsigned layer = 0; layer < pack->header.layers; layer++) {
+        uint32_t levels = ff_pack_image_levels(pack, layer);
+        most = levels > most ? levels : most;
+    }
+    return most ? ((size_t)most * 3) << 2 * pack->header.info.texture_log2 : 0;
+}
+
+void ff_picture_path_layer(ff_picture_path *path, unsigned layer)
+{
+    if (path->layer != layer) path->held = 0;
+    path->layer = (uint8_t)layer;
 }
 
 static uint8_t *picture_at(const ff_picture_path *path, const ff_terrain_info *info, uint32_t level)
@@ -20,7 +31,7 @@ static int decode(ff_picture_path *path, const ff_pack *pack, ff_key key)
                                level ? ff_key_quadrant(key) : 0 };
     const uint8_t *payload;
     ff_image image;
-    int rc = ff_pack_record(pack, FF_SECTION_TEXTURE, key, &payload);
+    int rc = ff_pack_layer_record(pack, path->layer, key, &payload);
     if (rc >= 0) rc = ff_image_read(payload, (size_t)rc, &image);
     if (rc >= 0)
         rc = ff_picture_decode(image.coded, image.coded_bytes, info->texture_log2, above,
@@ -39,7 +50,7 @@ int ff_picture_path_get(ff_picture_path *path, const ff_pack *pack, ff_key key, 
     uint32_t level = ff_key_level(key), at = 0;
     if (!ff_pack_of(pack, key)) return FF_ERR_NOT_FOUND;
     const ff_terrain_info *info = &ff_pack_of(pack, key)->header.info;
-    if (level >= info->texture_levels) return FF_ERR_NOT_FOUND;
+    if (level >= ff_pack_image_levels(ff_pack_of(pack, key), path->layer)) return FF_ERR_NOT_FOUND;
     while (at <= level && at < path->held && path->key[at] == above_by(key, level - at)) at++;
     path->held = at;
     for (; at <= level; at++) {

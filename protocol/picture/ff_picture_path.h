@@ -12,10 +12,14 @@ typedef struct ff_picture_path {
     uint8_t *rgb; /* ff_picture_path_bytes() bytes */
     ff_picture_room room;
     uint32_t held; /* levels of the path */
+    uint8_t layer;
     ff_key key[FF_KEY_LEVEL_MAX + 1];
 } ff_picture_path;
 
-size_t ff_picture_path_bytes(const ff_terrain_info *info);
+/* For pictures of any layer. */
+size_t ff_picture_path_bytes(const ff_pack *pack);
+/* Of which layer they are from now on; at first those of the first one. */
+void ff_picture_path_layer(ff_picture_path *path, unsigned layer);
 /* A node's picture, RGB888, north row first; it stays until the next one is asked for. FF_OK, or an
  * error of ff_pack_record or of decoding. */
 int ff_picture_path_get(ff_picture_path *path, const ff_pack *pack, ff_key key,

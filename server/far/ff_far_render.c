@@ -143,6 +143,7 @@ static void look_at(const ff_far_search *search, int32_t near_wu, ff_ground_look
 {
     const ff_far_picture *picture = search->picture;
     *look = (ff_ground_look){ .frame = *search->frame,
+                              .layer = search->request->layer,
                               .view_wu = INT32_MAX,
                               .hole_wu = near_of(search->request),
                               .error_px_q8 = ERROR_TEXEL_Q8 * picture->fine,

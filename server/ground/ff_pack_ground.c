@@ -115,6 +115,17 @@ static uint32_t serve_wishes(ff_pack_ground *ground)
     return delivered;
 }
 
+static void show_layer(ff_pack_ground *ground, unsigned layer)
+{
+    uint32_t number = 0;
+    if (ground->textures.layer == layer) return;
+    ff_textures_set_layer(&ground->textures, (uint8_t)layer);
+    ff_picture_path_layer(&ground->images.path, layer);
+    for (const ff_pack *pack = ground->pack; pack; pack = pack->next)
+        ff_tree_show_images(ground->tree, number++, &pack->header.info,
+                            ff_pack_image_levels(pack, layer));
+}
+
 void ff_pack_ground_load(ff_pack_ground *ground, const ff_ground_look *look)
 {
     ff_quality quality = { .measure = FF_MEASURE_PIXELS,
@@ -125,6 +136,7 @@ void ff_pack_ground_load(ff_pack_ground *ground, const ff_ground_look *look)
                            .hole_wu = look->hole_wu };
     ff_view view = { .frame = look->frame, .camera = look->camera };
     memcpy(view.centre_wu, look->camera.pos_wu, sizeof view.centre_wu);
+    if (!look->bare) show_layer(ground, look->layer);
     for (int round = 0; round < LOAD_ROUNDS_MAX; round++) {
         ff_tree_select(ground->tree, &view, &quality);
         if (serve_wishes(ground) == 0 && ff_tree_to_make(ground->tree) == 0) break;
@@ -181,7 +193,7 @@ static void fetch_image(ff_pack_ground *ground, ff_key key)
 {
     const uint8_t *payload;
     if (ff_textures_touch(&ground->textures, key)) return;
-    int rc = ff_pack_image(ground->pack, &key, &payload);
+    int rc = ff_pack_image(ground->pack, ground->images.path.layer, &key, &payload);
     if (ff_textures_touch(&ground->textures, key)) return;
     if (rc >= 0) rc = make_texels(ground, key);
     if (rc < 0) ground->stats->nodes_damaged++;

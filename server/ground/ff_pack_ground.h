@@ -28,7 +28,8 @@ typedef struct ff_ground_look {
     int32_t view_wu;   /* as ff_quality has them */
     int32_t hole_wu;
     int32_t error_px_q8;
-    uint8_t bare; /* 1: without images: distances are all that is wanted */
+    uint8_t layer; /* of images */
+    uint8_t bare;  /* 1: without images: distances are all that is wanted */
     /* 1 when a box relative to the camera can show; NULL: whatever the tree finds in view */
     int (*sees)(const void *context, const ff_box *box);
     const void *context;

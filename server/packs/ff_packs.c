@@ -40,6 +40,8 @@ const char *ff_packs_why_apart(int rc)
             return "it has no reference system in common with the first pack, or other nodes: bake "
                    "it with the same --t-srs and --node-log2";
         case FF_ERR_RANGE: return "it lies too far from the first pack";
+        case FF_ERR_FORMAT:
+            return "its layers of images have other names than the first pack's, or another order";
         default: return ff_error_text(rc);
     }
 }

@@ -30,6 +30,6 @@ const char *ff_packs_why_apart(int rc);
 ff_list ff_packs_about(const ff_pack *pack, uint8_t bytes[FF_ABOUT_BYTES_MAX]);
 /* What a client has to know of them to have their ground together with that of others: the entries
  * of a WELCOME behind the first one's terrain. `lacks`: bits of FF_LACKS_. */
-ff_list ff_packs_welcome(const ff_pack *pack, uint32_t lacks, uint8_t bytes[FF_CAPS_BYTES_MAX]);
+ff_list ff_packs_welcome(const ff_pack *pack, uint32_t lacks, uint8_t bytes[FF_WELCOME_BYTES_MAX]);
 
 #endif

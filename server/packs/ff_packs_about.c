@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-enum { TEXT, NUMBERS, CHECKSUM };
+enum { TEXT, NUMBERS, CHECKSUM, NAMES };
 
 /* An entry of a pack: its bytes, not above 0 where it has none. */
 static int find(const ff_pack *pack, unsigned type, const uint8_t **value)

@@ -123,7 +123,8 @@ static int make_heights(ff_packs_entered *entered, uint32_t tile, const uint8_t 
 /* The pictures from the whole's root down to the node, each as it is stored, before each but the
  * last how many bytes it has (16 bits, the higher ones first: below 128); before all of them what
  * the node's own tells of its children. */
-static int make_image(ff_packs_entered *entered, uint32_t tile, const uint8_t **payload)
+static int make_image(ff_packs_entered *entered, unsigned layer, uint32_t tile,
+                      const uint8_t **payload)
 {
     ff_key root = ff_key_make(tile, 0, 0);
     const ff_pack *pack = ff_pack_of(entered->pack, root);
@@ -134,7 +135,7 @@ static int make_image(ff_packs_entered *entered, uint32_t tile, const uint8_t **
     uint8_t bare = 0;
     for (uint32_t i = 0; i <= level; i++, key = ff_key_parent(key)) {
         const uint8_t *stored;
-        int rc = ff_pack_record(pack->stored, FF_SECTION_TEXTURE, key, &stored);
+        int rc = ff_pack_layer_record(pack->stored, layer, key, &stored);
         if (rc >= 0) rc = ff_image_read(stored, (size_t)rc, &image);
         if (rc < 0) return rc;
         if (image.coded_bytes + 3 > (size_t)(to - entered->image) || image.coded_bytes > INT16_MAX)
@@ -151,11 +152,11 @@ static int make_image(ff_packs_entered *entered, uint32_t tile, const uint8_t **
     return (int)(end - to);
 }
 
-static int make_root(void *context, enum ff_section_kind kind, uint32_t tile,
+static int make_root(void *context, enum ff_section_kind kind, unsigned layer, uint32_t tile,
                      const uint8_t **payload)
 {
     return kind == FF_SECTION_ROOT ? make_heights(context, tile, payload)
-                                   : make_image(context, tile, payload);
+                                   : make_image(context, layer, tile, payload);
 }
 
 /* ---- packs ---- */

@@ -17,11 +17,26 @@ static void end(const row *r, enum ff_welcome_entry type, ff_writer *list)
     if (r->needed) ff_list_write(list, type, r->bytes, (uint32_t)(r->out.at - r->bytes));
 }
 
-ff_list ff_packs_welcome(const ff_pack *first, uint32_t lacks, uint8_t bytes[FF_CAPS_BYTES_MAX])
+/* One layer without a name is not told: clients know its levels from the terrain. */
+static void put_layers(const ff_pack *first, ff_writer *list)
+{
+    uint8_t bytes[FF_LAYERS_BYTES_MAX];
+    ff_writer rows = { bytes, bytes + sizeof bytes, FF_OK };
+    ff_layers layers;
+    unsigned grounds = 0;
+    for (const ff_pack *pack = first; pack; pack = pack->next) grounds++;
+    ff_pack_layers(first, &layers);
+    if (!layers.count || (layers.count == 1 && !*layers.name[0])) return;
+    ff_layers_write(&rows, &layers, grounds);
+    FF_ASSERT(rows.error == FF_OK);
+    ff_list_write(list, FF_WELCOME_LAYERS, bytes, (uint32_t)(rows.at - bytes));
+}
+
+ff_list ff_packs_welcome(const ff_pack *first, uint32_t lacks, uint8_t bytes[FF_WELCOME_BYTES_MAX])
 {
     row wholes = { .needed = 0 }, rest = { .needed = 0 }, entries = { .needed = 0 },
         images = { .needed = 0 }, not_drawn = { .needed = lacks != 0 };
-    ff_writer list = { bytes, bytes + FF_CAPS_BYTES_MAX, FF_OK };
+    ff_writer list = { bytes, bytes + FF_WELCOME_BYTES_MAX, FF_OK };
     begin(&wholes);
     begin(&rest);
     begin(&entries);
@@ -46,6 +61,7 @@ ff_list ff_packs_welcome(const ff_pack *first, uint32_t lacks, uint8_t bytes[FF_
     end(&entries, FF_WELCOME_ENTRY, &list);
     end(&not_drawn, FF_WELCOME_LACKS, &list);
     end(&images, FF_WELCOME_IMAGES, &list);
+    put_layers(first, &list);
     FF_ASSERT(list.error == FF_OK);
     return (ff_list){ bytes, (uint32_t)(list.at - bytes) };
 }

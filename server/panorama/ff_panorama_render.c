@@ -259,6 +259,7 @@ static int render_face(ff_panorama_renderer *renderer, const ff_get_panorama *as
                             .view_wu = request->back_wu,
                             .hole_wu = ff_face_near_wu(request),
                             .error_px_q8 = ERROR_PX_Q8,
+                            .layer = request->layer,
                             .sees = face_sees,
                             .context = &of };
     ff_face_camera(request, face->face, &look.camera);

@@ -29,6 +29,7 @@ typedef struct request {
     ff_key key;
     uint16_t id;   /* 0: it has none */
     uint8_t sides; /* as in ff_get */
+    uint8_t layer; /* of images */
 } request;
 
 /* How often something dear may be asked for: some at once, then as time goes by. */
@@ -43,6 +44,7 @@ struct ff_session {
     int greeted, welcomed;     /* HELLO has come; CAPS has, too */
     const ff_pack *pack;       /* as the client has it: */
     ff_packs_entered *entered; /* NULL: all of it */
+    uint8_t layer;             /* of images, as told last */
     int64_t now_us, last_message_us;
 
     uint8_t in[IN_BYTES]; /* the beginning of one message, never a whole one */
@@ -180,7 +182,8 @@ static int end_session(ff_session *session, int error)
 static int fetch_answer(const ff_session *session, const request *wanted, ff_message *message)
 {
     *message = (ff_message){ .type = FF_MSG_ANSWER, .kind = wanted->kind };
-    int bytes = wanted->fetch(session, wanted->kind, wanted->key, &message->u.data.bytes);
+    int bytes = wanted->fetch(session, wanted->kind, wanted->layer, wanted->key,
+                              &message->u.data.bytes);
     if (bytes < 0) return bytes;
     message->u.data.byte_count = (uint32_t)bytes;
     return ff_message_bytes_max(message) <= FACE_BYTES ? FF_OK : FF_ERR_FULL;
@@ -283,13 +286,16 @@ int ff_session_queue(ff_session *session, const ff_message *ask, ff_session_fetc
 {
     assert(ff_kind[ask->kind].asks == FF_ASKS_NODE &&
            ff_kind[ask->kind].brings == FF_BRINGS_PAYLOAD);
-    return enqueue(session, (request){ fetch, ask->kind, ask->u.get.key, 0, ask->u.get.sides });
+    return enqueue(session, (request){ fetch, ask->kind, ask->u.get.key, 0, ask->u.get.sides,
+                                       session->layer });
 }
 
-static int fetch_record(const ff_session *session, enum ff_kind kind, ff_key key,
+static int fetch_record(const ff_session *session, enum ff_kind kind, unsigned layer, ff_key key,
                         const uint8_t **payload)
 {
     enum ff_section_kind section = (enum ff_section_kind)ff_kind[kind].section;
+    if (section == FF_SECTION_TEXTURE)
+        return ff_pack_layer_record(session->pack, layer, key, payload);
     return ff_pack_record(session->pack, section, key, payload);
 }
 
@@ -313,7 +319,7 @@ int ff_session_ask_view(ff_session *session, const ff_message *ask)
         return FF_OK;
     }
     session->stats.views++;
-    return enqueue(session, (request){ fetch_record, ask->kind, 0, wanted->id, 0 });
+    return enqueue(session, (request){ fetch_record, ask->kind, 0, wanted->id, 0, 0 });
 }
 
 /* ---- panoramas and far sets ---- */
@@ -349,12 +355,16 @@ static int draw(ff_session *session, ff_face_job job)
 
 int ff_session_ask_faces(ff_session *session, const ff_message *ask)
 {
-    return draw(session, (ff_face_job){ .kind = ask->kind, .request = ask->u.panorama });
+    ff_face_job job = { .kind = ask->kind, .request = ask->u.panorama };
+    job.request.layer = session->layer;
+    return draw(session, job);
 }
 
 int ff_session_ask_far(ff_session *session, const ff_message *ask)
 {
-    return draw(session, (ff_face_job){ .kind = ask->kind, .far = ask->u.get_far });
+    ff_face_job job = { .kind = ask->kind, .far = ask->u.get_far };
+    job.far.layer = session->layer;
+    return draw(session, job);
 }
 
 int ff_session_next_face(ff_session *session, ff_face_job *job)
@@ -443,7 +453,7 @@ static void enter_packs(ff_session *session, ff_list told)
 /* Nothing else that a client says of itself changes the answers yet. */
 static int caps(ff_session *session, ff_list told)
 {
-    uint8_t more[FF_CAPS_BYTES_MAX];
+    uint8_t more[FF_WELCOME_BYTES_MAX];
     if (!session->greeted || session->welcomed) return end_session(session, FF_ERR_FORMAT);
     ff_message welcome = { .type = FF_MSG_WELCOME };
     welcome.u.welcome.version = FF_PROTOCOL_VERSION;
@@ -486,6 +496,7 @@ static int handle(ff_session *session, const ff_message *message)
     if (!session->welcomed) return end_session(session, FF_ERR_FORMAT);
     switch (message->type) {
         case FF_MSG_GET: return take_request(session, message);
+        case FF_MSG_LAYER: session->layer = message->u.layer.layer; return FF_OK;
         case FF_MSG_GET_ABOUT: about(session, message->u.get_about.entries); return FF_OK;
         case FF_MSG_CANCEL: cancel(session, message->u.cancel.id); return FF_OK;
         case FF_MSG_PING:

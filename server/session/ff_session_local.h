@@ -14,8 +14,8 @@ FF_KIND_LIST(X)
 
 /* The payload of an answer: its bytes, or a negative error that is answered instead. *payload stays
  * valid until the next call. */
-typedef int ff_session_fetch(const ff_session *session, enum ff_kind kind, ff_key key,
-                             const uint8_t **payload);
+typedef int ff_session_fetch(const ff_session *session, enum ff_kind kind, unsigned layer,
+                             ff_key key, const uint8_t **payload);
 
 /* For kinds of one node that one payload answers: the request waits in turn until the answer finds
  * room in the buffer, and is fetched then. */

@@ -65,6 +65,11 @@ static int read_what(const char *what, fly_event *event)
         event->kind = FLY_TELEPORT;
         return read_place(value, event->place);
     }
+    if ((value = after(what, "layer="))) {
+        event->kind = FLY_LAYER;
+        event->layer = value;
+        return 0;
+    }
     if (!(value = after(what, "budget="))) return read_angle(what, event);
     event->kind = FLY_BUDGET;
     rc = sys_whole_at(&value, 0, SIM_BUDGET_MAX, &budget);
@@ -94,8 +99,8 @@ static int event_range(const sys_option *option, char *text, size_t room)
     sys_words_list(plain_words, words, sizeof words);
     return snprintf(text, room,
                     "T 0 to 1e6; WHAT: %s, link=SPEC, teleport=X,Y, each 0 to 1, "
-                    "budget=TRIANGLES, turn=DEGREES, -360 to 360, pitch=DEGREES, -90 to 90, or "
-                    "fov=DEGREES, %g to %g",
+                    "budget=TRIANGLES, turn=DEGREES, -360 to 360, pitch=DEGREES, -90 to 90, "
+                    "fov=DEGREES, %g to %g, or layer=NAME",
                     words, SIM_FOV_MIN, SIM_FOV_MAX);
 }
 

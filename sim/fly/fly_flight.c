@@ -98,6 +98,7 @@ static int apply_event(fly_flight *flight, const fly_event *what, double t_s)
             break;
         case FLY_TURN_BY: world->path.turned_degrees += what->degrees; break;
         case FLY_PITCH: world->path.pitch_degrees = what->degrees; break;
+        case FLY_LAYER: return fly_world_layer(world, what->layer);
         case FLY_FOV: flight->camera.focal_q8 = focal_q8(what->degrees, flight->options); break;
     }
     return 0;

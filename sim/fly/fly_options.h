@@ -29,7 +29,8 @@ enum fly_event_kind {
     FLY_BUDGET,
     FLY_TURN_BY,
     FLY_PITCH,
-    FLY_FOV
+    FLY_FOV,
+    FLY_LAYER
 };
 
 typedef struct fly_event {
@@ -39,7 +40,8 @@ typedef struct fly_event {
     uint32_t budget;    /* of FLY_BUDGET */
     /* of FLY_TELEPORT: share of the terrain's size from its south-west corner, 0..1 */
     double place[2];
-    double degrees; /* of FLY_TURN_BY, FLY_PITCH and FLY_FOV */
+    const char *layer; /* of FLY_LAYER */
+    double degrees;    /* of FLY_TURN_BY, FLY_PITCH and FLY_FOV */
 } fly_event;
 
 typedef struct fly_events {
@@ -84,7 +86,7 @@ extern const sys_option_type fly_events_option;
            "of the terrain's width and height (the path goes on from there and stays at a " \
            "border that it would cross); budget: triangles a frame, with --balance; turn: at once by so " \
            "many degrees to the right, on top of the path's own turns; pitch: looks so many degrees up " \
-           "from now on; fov: the field of view, a zoom") \
+           "from now on; fov: the field of view, a zoom; layer: as --layer") \
     OPTION(sys_text, events_path, "events", "FILE", NULL, SYS_ANY, \
            "such events, one on a line; what follows a # is a comment") \
     HEADING("The link") \
@@ -93,6 +95,8 @@ extern const sys_option_type fly_events_option;
     OPTION(sys_address, server, "server", "ADDR:PORT", NULL, SYS_ANY, \
            "a real server, real sockets and real time; --link and the traces are not used") \
     HEADING("The client") \
+    OPTION(sys_text, layer, "layer", "NAME", NULL, SYS_ANY, \
+           "of the pack's layers of images the one of this name is shown, off: none; default: the first") \
     SIM_CLIENT_OPTIONS(OPTION, "4M", "the client's one block") \
     OPTION(sys_switch, reserve, "reserve", "on|off", "on", SYS_ANY, \
            "coarse ground, fins and paint in every direction while the link is idle") \

@@ -143,6 +143,15 @@ static int serve_wishes(fly_reference *reference)
     return served;
 }
 
+static void set_levels(const fly_reference *reference)
+{
+    uint32_t number = 0;
+    unsigned layer = reference->images.path.layer;
+    for (const ff_pack *pack = reference->pack; pack; pack = pack->next)
+        ff_tree_show_images(reference->tree, number++, &pack->header.info,
+                            ff_pack_image_levels(pack, layer));
+}
+
 /* Reads all that is in view until cells are no wider than so many samples. FF_OK; FF_ERR_FULL:
  * there are too many; or an error of the pack. */
 static int load_until(fly_reference *reference, uint32_t cell)
@@ -159,6 +168,7 @@ static int load_until(fly_reference *reference, uint32_t cell)
     if (!reference->tree) return FF_ERR_MEMORY;
     int rc = ff_pack_source_add(reference->pack, reference->tree);
     if (rc < 0) return rc;
+    set_levels(reference);
     for (;;) {
         ff_tree_select(reference->tree, &reference->view, &quality);
         int served = serve_wishes(reference);
@@ -184,7 +194,7 @@ static int fetch_image(fly_reference *reference, ff_key key)
 {
     const uint8_t *payload;
     if (ff_textures_touch(&reference->textures, key)) return FF_OK;
-    int rc = ff_pack_image(reference->pack, &key, &payload);
+    int rc = ff_pack_image(reference->pack, reference->images.path.layer, &key, &payload);
     if (ff_textures_touch(&reference->textures, key)) return FF_OK;
     if (rc >= 0)
         rc = ff_pack_images_get(&reference->images, reference->pack, key, reference->image_texels);
@@ -298,6 +308,11 @@ static void average(const fly_reference *reference, uint8_t *rgb)
                 for (unsigned i = 0; i < all; i++) sum += from[i / n * row + 3 * (i % n)];
                 *rgb++ = (uint8_t)(sum / all);
             }
+}
+
+void fly_reference_layer(fly_reference *reference, unsigned layer)
+{
+    ff_picture_path_layer(&reference->images.path, layer);
 }
 
 int fly_reference_draw(fly_reference *reference, const c3d_camera *camera, uint8_t *rgb)

@@ -51,6 +51,8 @@ int fly_reference_open(fly_reference *reference, const ff_pack *pack, uint16_t w
                        uint16_t height);
 /* The view's picture, RGB888; camera in world axes. FF_OK, or an error of the pack or of the back
  * end. */
+/* Draws images of this layer from now on. */
+void fly_reference_layer(fly_reference *reference, unsigned layer);
 int fly_reference_draw(fly_reference *reference, const c3d_camera *camera, uint8_t *rgb);
 void fly_reference_close(fly_reference *reference);
 

@@ -123,6 +123,26 @@ static int asked_for_reserve(void *client, enum ff_kind kind, uint16_t id, ff_ke
     return ff_client_asked_for_reserve(client, kind, id, key);
 }
 
+int fly_world_layer(fly_world *world, const char *name)
+{
+    const ff_pack *pack = &world->grounds.packs.pack[0];
+    const char *wanted = strcmp(name, "off") ? name : NULL;
+    ff_layers layers;
+    ff_pack_layers(pack, &layers);
+    int number = wanted ? ff_layers_find(&layers, wanted) : (int)FF_LAYER_NONE;
+    if (number < 0) {
+        char why[FF_LAYERS_NAMES_MAX + 40] = "no layer of this name; it has:";
+        for (unsigned i = 0; i < layers.count; i++)
+            snprintf(why + strlen(why), sizeof why - strlen(why), " %s",
+                     *layers.name[i] ? layers.name[i] : "one without a name");
+        fprintf(stderr, "farfield-fly: --layer %s: %s\n", name, layers.count ? why : "no images");
+        return -1;
+    }
+    fly_reference_layer(&world->reference, (unsigned)number);
+    int rc = ff_client_set_layer(world->client, wanted);
+    return rc == FF_OK ? 0 : fail("--layer", rc);
+}
+
 static int open_client(fly_world *world)
 {
     const fly_options *options = world->options;
@@ -158,7 +178,7 @@ static int open_client(fly_world *world)
     ff_client_set_show(world->client, options->show);
     if (world->auditor) ff_client_watch_fins(world->client, sim_fins_take, &world->fins);
     if (world->relevance) sim_relevance_ask(world->relevance, asked_for_reserve, world->client);
-    return 0;
+    return options->layer ? fly_world_layer(world, options->layer) : 0;
 }
 
 int fly_world_open(fly_world *world, const fly_options *options)

@@ -38,6 +38,9 @@ typedef struct fly_world {
 
 /* 0, or -1 with one line on stderr. Call close in both cases. `options` must outlive the world. */
 int fly_world_open(fly_world *world, const fly_options *options);
+/* Shows a layer of images by its name, "off": none; pictures of the truth, too. 0, or -1 likewise.
+ */
+int fly_world_layer(fly_world *world, const char *name);
 void fly_world_close(fly_world *world);
 
 #endif

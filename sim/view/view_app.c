@@ -84,6 +84,7 @@ static int create_client(view_app *app, const char *backend)
                             .far = app->far,
                             .balance = o->balance,
                             .use_thread = 1,
+                            .layer = o->layer,
                             .about = SIM_ABOUT_SHOWN,
                             .use_plain_arrays = (uint8_t)o->plain_arrays };
     return ff_client_create(&desc, &app->client);

@@ -26,6 +26,7 @@ static const char help[] = "w s a d   fly (or up, down)\n"
 #undef X
     /* clang-format on */
     "p far ground  l link\n"
+    "i images\n"
     "h text   k pools\n"
     "r start   esc quit\n"
     "f1 help   f2 position fix\n"

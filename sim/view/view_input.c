@@ -146,11 +146,20 @@ static void next_far(view_app *app)
     ff_client_set_panorama(app->client, &app->panorama);
 }
 
+/* The next layer of images; behind the last one none. */
+static void next_layer(view_app *app)
+{
+    int shown = ff_client_layer(app->client);
+    const char *name = ff_client_layer_name(app->client, shown < 0 ? 0 : (unsigned)shown + 1);
+    if (shown != FF_ERR_AGAIN) (void)ff_client_set_layer(app->client, name);
+}
+
 static void press(view_app *app, int code)
 {
     static char path[64];
     switch (code) {
         case 'p': next_far(app); break;
+        case 'i': next_layer(app); break;
         case 'l':
             if (app->link) view_link_cycle(app->link);
             break;

@@ -32,7 +32,7 @@ static unsigned check_held(const client_rig *rig)
     ff_textures *textures = &rig->client->textures;
     static ff_picture_path path;
     unsigned held = 0;
-    path = (ff_picture_path){ .rgb = malloc(ff_picture_path_bytes(&rig->pack.header.info)) };
+    path = (ff_picture_path){ .rgb = malloc(ff_picture_path_bytes(&rig->pack)) };
     assert_non_null(textures->pictures.rgb);
     for (unsigned i = 0; i < textures->slot_count; i++) {
         const uint8_t *expected;

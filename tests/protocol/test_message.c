@@ -71,10 +71,12 @@ static size_t samples(ff_message *list)
                                               FF_FACE_SIZE_MAX,
                                               100,
                                               6,
-                                              { 5, 4, 3, 2, 1, 0 } } };
+                                              { 5, 4, 3, 2, 1, 0 },
+                                              0 } };
     list[n++] = (ff_message){ .type = FF_MSG_GET,
                               .kind = FF_KIND_FACE,
-                              .u.panorama = { 2, { 0, 0, 0 }, 1, 2, 16, 1, 1, { 3 } } };
+                              .u.panorama = { 2, { 0, 0, 0 }, 1, 2, 16, 1, 1, { 3 }, 0 } };
+    list[n++] = (ff_message){ .type = FF_MSG_LAYER, .u.layer = { FF_LAYER_NONE } };
     list[n++] = (ff_message){ .type = FF_MSG_CANCEL, .u.cancel = { 65535 } };
     list[n++] = (ff_message){ .type = FF_MSG_PING, .u.ping = { UINT32_MAX } };
     list[n++] = (ff_message){ .type = FF_MSG_WELCOME,
@@ -248,7 +250,7 @@ static void first_bytes_are_those_of_the_specification(void **state)
 {
     static const struct {
         uint8_t first, last;
-    } client[] = { { 1, 1 }, { 4, 10 }, { 128, 223 } },
+    } client[] = { { 1, 1 }, { 4, 11 }, { 128, 223 } },
       server[] = { { 65, 65 }, { 68, 76 }, { 80, 127 }, { 224, 255 } };
     (void)state;
     for (unsigned byte = 0; byte < 256; byte++) {
@@ -450,7 +452,7 @@ static void lengths_and_headers(void **state)
 
 static void ranges_hold_both_ways(void **state)
 {
-    static const ff_get_panorama good = { 1, { 0, 0, 0 }, 100, 200, 256, 70, 2, { 0, 1 } };
+    static const ff_get_panorama good = { 1, { 0, 0, 0 }, 100, 200, 256, 70, 2, { 0, 1 }, 0 };
     ff_message m = { .type = FF_MSG_GET, .kind = FF_KIND_FACE };
     uint8_t bytes[512];
 

@@ -465,8 +465,8 @@ static void unknown_sections_that_are_needed_are_refused_by_name(void **state)
           "it needs section ROOT version 2 codec 0, which this program does not know" },
         { "REFI", 1, 200,
           "it needs section REFI version 1 codec 200, which this program does not know" },
-        { "IMAG", 1, 1,
-          "it needs section IMAG version 1 codec 1, which this program does not know" },
+        { "IMAG", 1, 8,
+          "it needs section IMAG version 1 codec 8, which this program does not know" },
         { "\033[2J", 255, 255,
           "it needs section ???J version 255 codec 255, which this program does not know" },
     };

@@ -21,7 +21,8 @@ static int is_known(const uint8_t *section)
 {
     static const char known[][5] = { "ROOT", "REFI", "IMAG", "ABOU" };
     for (int i = 0; i < 4; i++)
-        if (!memcmp(section, known[i], 4)) return section[4] == 1 && section[5] <= (i < 2 ? 2 : 0);
+        if (!memcmp(section, known[i], 4))
+            return section[4] == 1 && section[5] <= (i < 2 ? 3 : i < 3 ? 7 : 0);
     return 0;
 }
 
@@ -51,12 +52,14 @@ static unsigned crc16(const uint8_t *at, size_t bytes)
 
 static int bit_at(const uint8_t *bytes, uint64_t bit) { return bytes[bit / 8] >> bit % 8 & 1; }
 
-/* The row of a section, by its letters and level; NULL: there is none. */
+/* The row of a section, by its letters and level, and 256 times the layer of images; NULL: there is
+ * none. */
 static const uint8_t *section_of(const uint8_t *pack, const char *letters, unsigned level)
 {
     for (uint64_t i = 0; i < number_at(pack + 80, 4); i++) {
         const uint8_t *section = pack + 84 + 48 * i;
-        if (!memcmp(section, letters, 4) && section[6] == level) return section;
+        unsigned layer = memcmp(letters, "IMAG", 4) ? 0 : section[5];
+        if (!memcmp(section, letters, 4) && section[6] + 256u * layer == level) return section;
     }
     return NULL;
 }
@@ -64,9 +67,10 @@ static const uint8_t *section_of(const uint8_t *pack, const char *letters, unsig
 /* Bits of presence of a section: 0 for roots. */
 static uint64_t places_of(const uint8_t *pack, const char *letters, unsigned level)
 {
-    const uint8_t *above = section_of(pack, level ? letters : "ROOT", level ? level - 1 : 0);
+    const uint8_t *above = section_of(pack, level % 256 ? letters : "ROOT",
+                                      level % 256 ? level - 1 : 0);
     if (!memcmp(letters, "ROOT", 4)) return 0;
-    return number_at(above + 16, 4) * (level ? 4 : 1);
+    return number_at(above + 16, 4) * (level % 256 ? 4 : 1);
 }
 
 /* The record at a place: it counts all bits before. -1: there is none. */
@@ -112,12 +116,26 @@ long slow_pack_record(const uint8_t *pack, size_t bytes, const char *letters, un
         *payload = pack + number_at(section + 32, 8);
         return (long)number_at(section + 40, 8);
     }
-    for (unsigned l = 0; l <= level && number >= 0; l++) {
-        unsigned quadrant = code >> 2 * (level - l) & 3;
-        number = record_at(pack, letters, l,
+    for (unsigned l = 0; l <= level % 256 && number >= 0; l++) {
+        unsigned quadrant = code >> 2 * (level % 256 - l) & 3;
+        number = record_at(pack, letters, level - level % 256 + l,
                            l ? 4 * (uint64_t)number + quadrant : (uint64_t)number);
     }
     return number < 0 ? -1 : payload_of(pack, letters, level, (uint64_t)number, payload);
+}
+
+int slow_layer(const uint8_t *rows, size_t bytes, unsigned number, unsigned grounds, char name[32],
+               uint8_t *levels)
+{
+    size_t at = 0;
+    for (; number > 0 && at < bytes; number--) at += 1 + (size_t)rows[at];
+    if (at + 2 > bytes || at + 1 + rows[at] > bytes || rows[at + 1] > 31) return -1;
+    size_t length = rows[at + 1];
+    if (1 + length + grounds > rows[at]) return -1;
+    memcpy(name, rows + at + 2, length);
+    name[length] = 0;
+    memcpy(levels, rows + at + 2 + length, grounds);
+    return 0;
 }
 
 long slow_list_find(const uint8_t *list, size_t bytes, unsigned type, const uint8_t **value)

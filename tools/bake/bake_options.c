@@ -157,9 +157,11 @@ uint32_t bake_processors(void)
 
 int bake_options_parse(bake_options *o, int argc, char **argv)
 {
-    *o = (bake_options){
-        .jobs = bake_processors(), .refraction = NAN, .void_height_m = NAN, .rim_void_height_m = NAN
-    };
+    *o = (bake_options){ .jobs = bake_processors(),
+                         .refraction = NAN,
+                         .void_height_m = NAN,
+                         .rim_void_height_m = NAN,
+                         .layers = { o->layer_text, 0, FF_LAYERS_MAX } };
     bake_say_setup("farfield-bake", 0);
     int rc = sys_options_parse(&program, o, argc, argv);
     if (rc) return rc;

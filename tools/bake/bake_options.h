@@ -53,6 +53,8 @@ extern const sys_option_type bake_raw_option, bake_nodata_option, bake_box_optio
     HEADING("Input") \
     OPTION(sys_text, color_path, "color", "IMAGE", NULL, SYS_ANY, \
            "image over the same ground, any resolution") \
+    OPTION(sys_texts, layers, "layer", "NAME=IMAGE", NULL, SYS_FLAGS(SYS_REPEATABLE), \
+           "one more image over it, which viewers choose by its name; at most 8 with --color") \
     OPTION(bake_raw, raw, "raw", "WxH[:le|be][:u16|s16]", NULL, SYS_ANY, \
            "HEIGHTS is headerless 16 bit, top row north; default: le, u16") \
     OPTION(bake_nodata, nodata, "nodata", "V", NULL, SYS_ANY, \
@@ -117,6 +119,7 @@ extern const sys_option_type bake_raw_option, bake_nodata_option, bake_box_optio
 /* A number not given is 0: chosen while baking. */
 typedef struct bake_options {
     BAKE_OPTIONS(SYS_FIELD, SYS_NO_FIELD)
+    const char *layer_text[FF_LAYERS_MAX];
     const struct bake_lattice *lattice; /* that lattice_path names, while there is one */
 } bake_options;
 

@@ -17,6 +17,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <string.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -157,6 +158,13 @@ static int take_records(void *context, uint32_t section, const bake_blob *record
     return pack_writer_add(&b->writer, section, records, above);
 }
 
+static int take_layer(void *context, uint32_t section, const bake_blob *records,
+                      const bake_blob *above)
+{
+    bake *b = context;
+    return pack_writer_add(&b->writer, b->layer_at + section, records, above);
+}
+
 typedef int take_fn(void *context, uint32_t section, const bake_blob *records,
                     const bake_blob *above);
 
@@ -169,13 +177,15 @@ static int make_tiles(bake *b, const bake_image *image, take_fn *take)
                          .samples = &samples.samples,
                          .image = image,
                          .texture_quality = (int)b->options->texture_quality,
+                         .images_only = b->layer_at > 0,
                          .block_log2 = BAKE_BLOCK_LOG2,
                          .jobs = b->options->jobs,
                          .off = &off,
                          .context = b,
                          .take = take };
     int rc = bake_tiles_make(&tiles);
-    if (!rc) b->rms_m = sqrt(off.squares / (double)off.samples) * b->steps.step_m;
+    if (!rc && !tiles.images_only)
+        b->rms_m = sqrt(off.squares / (double)off.samples) * b->steps.step_m;
     return rc;
 }
 
@@ -272,8 +282,44 @@ static void report(const bake *b, uint64_t file_bytes)
 ff_list bake_about_of(bake *b, const bake_ground *ground)
 {
     int is_placed = ground->has_place && !ground->is_geographic;
-    return (ff_list){ b->about,
-                      bake_about_list(&ground->about, is_placed ? ground->srs : NULL, b->about) };
+    uint32_t bytes = bake_about_list(&ground->about, is_placed ? ground->srs : NULL, b->about);
+    if (b->layers.count > 1 || *b->layers.name[0]) {
+        uint8_t names[FF_LAYERS_NAMES_MAX];
+        ff_writer rows = { names, names + sizeof names, FF_OK },
+                  list = { b->about + bytes, b->about + sizeof b->about, FF_OK };
+        ff_layers_write(&rows, &b->layers, 0);
+        ff_list_write(&list, FF_ABOUT_LAYERS, names, (uint32_t)(rows.at - names));
+        FF_ASSERT(rows.error == FF_OK && list.error == FF_OK); /* all entries fit together */
+        bytes = (uint32_t)(list.at - b->about);
+    }
+    return (ff_list){ b->about, bytes };
+}
+
+/* Images of one more layer, into sections of their own. */
+static int add_layer(bake *b, const char *path)
+{
+    bake_options own = *b->options;
+    const bake_options *told = b->options;
+    ff_terrain_info first = b->info;
+    bake_image image = { .levels = 0 };
+    own.color_path = path;
+    b->options = &own;
+    int rc = bake_image_make(&own, &b->ground, &b->info, &image);
+    if (!rc) rc = pack_writer_add_layer(&b->writer, image.levels, &b->layer_at);
+    b->layer_at -= ff_terrain_levels(&b->info);
+    if (!rc) rc = make_tiles(b, &image, take_layer);
+    b->options = told;
+    b->info = first;
+    b->layer_at = 0;
+    bake_image_close(&image);
+    return rc;
+}
+
+static int add_layers(bake *b)
+{
+    for (uint32_t i = 1; i < b->layers.count; i++)
+        if (add_layer(b, b->layer_path[i])) return -1;
+    return 0;
 }
 
 static int make_pack(bake *b)
@@ -284,6 +330,8 @@ static int make_pack(bake *b)
         return -1;
     if (pack_writer_open(&b->writer, &b->info)) return -1;
     if (make_tiles(b, &b->image, take_records)) return -1;
+    bake_image_close(&b->image);
+    if (add_layers(b)) return -1;
     b->writer.about = bake_about_of(b, &b->ground);
     if (pack_writer_finish(&b->writer, b->options->out_path, &file_bytes)) return -1;
     report(b, file_bytes);
@@ -297,6 +345,36 @@ static int prepare(const bake_options *o)
         bake_same_file(o->color_path, o->out_path) || bake_same_file(o->lattice_path, o->out_path))
         return bake_fail("%s is the input: not overwritten", o->out_path);
     return pack_writer_prepare(o->out_path);
+}
+
+/* Names and files of the layers: --color's has no name; without it the first --layer is the first
+ * one. 0 or -1 (said). */
+static int take_layers(bake *b, bake_options *o)
+{
+    ff_layers *layers = &b->layers;
+    if (o->color_path) b->layer_path[layers->count++] = o->color_path;
+    for (size_t i = 0; i < o->layers.count; i++) {
+        const char *text = o->layers.text[i], *end = strchr(text, '=');
+        size_t bytes = end ? (size_t)(end - text) : 0;
+        if (layers->count == FF_LAYERS_MAX)
+            return bake_fail("a pack has at most %d layers of images", FF_LAYERS_MAX);
+        if (!bytes || bytes > FF_LAYER_NAME_MAX || !end[1])
+            return bake_fail("--layer %s: it is NAME=IMAGE, the name 1 to %d bytes", text,
+                             FF_LAYER_NAME_MAX);
+        char *name = layers->name[layers->count];
+        memcpy(name, text, bytes);
+        if (!ff_layer_name_ok(name)) return bake_fail("--layer %s: the name is no text", text);
+        if (ff_layers_find(layers, name) >= 0)
+            return bake_fail("--layer %s: there is a layer of this name", name);
+        b->layer_path[layers->count++] = end + 1;
+    }
+    o->color_path = b->layer_path[0];
+    for (uint32_t i = 0; i < layers->count; i++)
+        if (o->out_path && bake_same_file(b->layer_path[i], o->out_path))
+            return bake_fail("%s is the input: not overwritten", o->out_path);
+    if (o->estimate && layers->count > 1)
+        bake_note("--estimate counts the first of %u layers of images", layers->count);
+    return 0;
 }
 
 /* Takes over what has to be alike so that packs can be joined. 0 or -1 (said). */
@@ -317,6 +395,7 @@ int bake_run(const bake_options *told)
     bake b = { .options = options, .started_us = sys_time_us() };
     b.ground.grid = b.heights = b.marks = b.filled = BAKE_GRID_CLOSED;
     bake_temp_setup(options->out_path ? options->out_path : "/tmp/");
+    if (take_layers(&b, options)) return -1;
     if (!options->estimate && prepare(options)) return -1;
     GDALAllRegister();
     GDALSetCacheMax64(GDAL_CACHE_BYTES);

@@ -18,7 +18,10 @@ typedef struct bake {
     bake_grid marks;   /* of filled samples, as the ground is; closed: there are none */
     bake_grid filled;  /* the same beside the heights, a byte each */
     bake_image image;
-    double rms_m; /* of decoded heights: how far they are from their samples */
+    ff_layers layers; /* names alone */
+    const char *layer_path[FF_LAYERS_MAX];
+    uint32_t layer_at; /* of the layer under way: added to numbers of the first one's sections */
+    double rms_m;      /* of decoded heights: how far they are from their samples */
     pack_writer writer;
     uint8_t about[FF_ABOUT_BYTES_MAX];
     int64_t started_us;

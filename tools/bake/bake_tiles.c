@@ -70,6 +70,7 @@ static int make_block(void *context, int number, uint32_t job)
     ff_key key = key_of(c, job);
     int has_ground = ff_shape_has_ground(t->info, key);
     if (!has_ground && !is_last(c, job)) return 0;
+    if (t->images_only) return has_ground ? make_textures(c, w, key) : 0;
     if (bake_top_load(&w->top, t->samples, ff_key_tile(key))) return -1;
     if (!has_ground) return 0;
     if (bake_block_load(&w->block, t->samples, key) || bake_block_encode(&w->block, &w->top))
@@ -130,25 +131,32 @@ static int take(const crew *c, uint32_t section, const bake_blob *records, const
 static int take_below(const crew *c, const worker *w)
 {
     const bake_blob *level = w->block.levels.level, *texture = w->texture;
-    for (uint32_t l = c->bottom + 2; l < c->levels && level[l].record_count; l++)
+    for (uint32_t l = c->bottom + 2;
+         !c->tiles->images_only && l < c->levels && level[l].record_count; l++)
         if (take(c, l, &level[l], &level[l - 1])) return -1;
     for (uint32_t l = c->bottom + 1; l < c->tiles->image->levels; l++)
         if (take(c, c->levels + l, &texture[l], &texture[l - 1])) return -1;
     return 0;
 }
 
-/* The top of the tile, when all of its blocks are taken. */
-static int take_top(crew *c, worker *w)
+static int take_top_heights(crew *c, worker *w)
 {
     const gathered *g = &c->gathered;
     const bake_blob *level = w->top.levels.level;
     if (bake_top_encode(&w->top, g->known) || take(c, 0, &level[0], NULL)) return -1;
     for (uint32_t l = 1; l <= c->bottom; l++)
         if (take(c, l, &level[l], &level[l - 1])) return -1;
-    if (c->bottom + 1 < c->levels && take(c, c->bottom + 1, &g->below, &level[c->bottom]))
-        return -1;
+    return c->bottom + 1 < c->levels && take(c, c->bottom + 1, &g->below, &level[c->bottom]) ? -1
+                                                                                             : 0;
+}
+
+/* The top of the tile, when all of its blocks are taken. Roots have all their places. */
+static int take_top(crew *c, worker *w)
+{
+    const gathered *g = &c->gathered;
+    if (!c->tiles->images_only && take_top_heights(c, w)) return -1;
     for (uint32_t l = 0; l < c->tiles->image->levels && l <= c->bottom; l++)
-        if (take(c, c->levels + l, &g->texture[l], l ? &g->texture[l - 1] : &level[0])) return -1;
+        if (take(c, c->levels + l, &g->texture[l], l ? &g->texture[l - 1] : NULL)) return -1;
     return 0;
 }
 
@@ -161,13 +169,13 @@ static int take_block(void *context, int number, uint32_t job)
     const bake_blob *own = &w->block.levels.level[c->bottom + 1];
     if (!ff_key_code(key)) start_tile(c);
     if (gather_textures(c, w, key, has_ground)) return -1;
-    if (c->bottom + 1 < c->levels &&
+    if (!c->tiles->images_only && c->bottom + 1 < c->levels &&
         bake_blob_add(&c->gathered.below, has_ground ? own->bytes : NULL,
                       has_ground ? own->byte_count : 0))
         return -1;
     if (has_ground) {
-        gather_known(c, &w->block);
-        gather_off(c, w);
+        if (!c->tiles->images_only) gather_known(c, &w->block);
+        if (!c->tiles->images_only) gather_off(c, w);
         if (take_below(c, w)) return -1;
     }
     return is_last(c, job) ? take_top(c, w) : 0;

@@ -13,6 +13,7 @@ typedef struct bake_tiles {
     const bake_samples *samples; /* as many as the terrain has */
     const bake_image *image;     /* without levels: no textures */
     int texture_quality;
+    int images_only;     /* 1: heights are neither made nor taken */
     uint32_t block_log2; /* memory grows with 4^that a job */
     uint32_t jobs;
     bake_off *off; /* NULL, or to be added to */

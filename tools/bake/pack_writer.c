@@ -42,20 +42,44 @@ int pack_writer_prepare(const char *path)
 
 /* ---- sections ---- */
 
-int pack_writer_open(pack_writer *writer, const ff_terrain_info *info)
+static int open_sections(pack_writer *writer, uint32_t count)
 {
-    *writer = (pack_writer){ .info = *info,
-                             .section_count = ff_terrain_levels(info) + info->texture_levels };
-    for (uint32_t i = 0; i < FF_PACK_SECTIONS_MAX; i++)
-        writer->section[i].data_fd = writer->section[i].length_fd = -1;
-    for (uint32_t i = 0; i < writer->section_count; i++) {
-        writer->section[i].data_fd = bake_temp_open();
-        writer->section[i].length_fd = writer->section[i].data_fd < 0 ? -1 : bake_temp_open();
-        if (writer->section[i].length_fd < 0) {
+    for (; count > 0; count--) {
+        pack_section_file *section = &writer->section[writer->section_count++];
+        section->data_fd = bake_temp_open();
+        section->length_fd = section->data_fd < 0 ? -1 : bake_temp_open();
+        if (section->length_fd < 0) {
             pack_writer_close(writer);
             return -1;
         }
     }
+    return 0;
+}
+
+int pack_writer_open(pack_writer *writer, const ff_terrain_info *info)
+{
+    *writer = (pack_writer){ .info = *info, .layers = info->texture_levels > 0 };
+    for (uint32_t i = 0; i < FF_PACK_SECTIONS_MAX; i++)
+        writer->section[i].data_fd = writer->section[i].length_fd = -1;
+    return open_sections(writer, ff_terrain_levels(info) + info->texture_levels);
+}
+
+int pack_writer_add_layer(pack_writer *writer, uint32_t levels, uint32_t *first)
+{
+    *first = writer->section_count;
+    if (levels > FF_PACK_SECTIONS_MAX - writer->section_count)
+        return bake_fail("a pack has %d levels of heights and images at most: fewer layers, or "
+                         "--texture-levels",
+                         FF_PACK_SECTIONS_MAX);
+    writer->layer_first[writer->layers++] = *first;
+    return open_sections(writer, levels);
+}
+
+int pack_writer_add_layers(pack_writer *writer, const ff_pack_header *header)
+{
+    uint32_t first;
+    for (unsigned layer = 1; layer < header->layers; layer++)
+        if (pack_writer_add_layer(writer, header->layer_levels[layer], &first)) return -1;
     return 0;
 }
 
@@ -217,13 +241,22 @@ static int copy_part(int from, int to, uint64_t count, uint64_t to_offset, uint3
     return rc;
 }
 
+static ff_pack_section section_of(const pack_writer *writer, uint32_t number)
+{
+    ff_pack_section section = { 0 };
+    if (ff_pack_section_at(&writer->info, number, &section)) return section;
+    uint32_t layer = writer->layers - 1;
+    while (number < writer->layer_first[layer]) layer--;
+    return ff_pack_layer_section(layer, number - writer->layer_first[layer]);
+}
+
 static int write_sections(const pack_writer *writer, int fd, ff_pack_header *header, uint64_t *end)
 {
     *end = FF_PACK_HEADER_BYTES;
     for (uint32_t i = 0; i < writer->section_count; i++) {
         const pack_section_file *from = &writer->section[i];
         ff_pack_section *section = &header->section[i];
-        ff_pack_section_at(&writer->info, i, section);
+        *section = section_of(writer, i);
         section->index_offset = *end;
         if (put_index(from, fd, section)) return -1;
         section->data_offset = *end + ff_index_bytes(&section->index);

@@ -22,6 +22,7 @@ typedef struct pack_section_file {
 typedef struct pack_writer {
     ff_terrain_info info;
     uint32_t section_count;
+    uint32_t layers, layer_first[FF_LAYERS_MAX]; /* sections of layers of images, from 1 on */
     pack_section_file section[FF_PACK_SECTIONS_MAX];
     ff_list about; /* what the pack says of itself, set before it is finished; may be empty */
     /* Of parts joined: unless the pack has the checksum of their whole, it says that it is a part.
@@ -34,6 +35,11 @@ typedef struct pack_writer {
 int pack_writer_prepare(const char *path);
 /* Sections in order: root, refinements of level 0.., textures of level 0... 0 or -1 (said). */
 int pack_writer_open(pack_writer *writer, const ff_terrain_info *info);
+/* Sections of one more layer of images, of so many levels: *first is the number of the first of
+ * them. 0 or -1 (said). */
+int pack_writer_add_layer(pack_writer *writer, uint32_t levels, uint32_t *first);
+/* The same of all layers of another pack. 0 or -1 (said). */
+int pack_writer_add_layers(pack_writer *writer, const ff_pack_header *header);
 /* Appends records of a tile, or of a part of it, to a section; `above` holds those of their
  * parents, as many or a quarter as many, NULL: roots. Where there is no parent there is no record.
  * 0 or -1 (said). */

@@ -43,7 +43,7 @@ static int read_texture(image_reader *reader, ff_key key, uint32_t column, uint3
     uint32_t side = 1u << unpack->pack.header.info.texture_log2;
     const uint8_t *payload;
     ff_key held = key;
-    int rc = ff_pack_image(&unpack->pack, &held, &payload);
+    int rc = ff_pack_image(&unpack->pack, 0, &held, &payload);
     if (rc == FF_ERR_NOT_FOUND) reader->missing++;
     if (rc == FF_ERR_NOT_FOUND) return 0;
     if (rc >= 0) rc = decode_texture(reader, held, payload, (size_t)rc);
@@ -90,7 +90,7 @@ static int read_textures(export_ground *ground)
     image_reader reader = { .ground = ground,
                             .jpeg = malloc(bytes),
                             .enlarged = malloc(bytes),
-                            .path.rgb = malloc(ff_picture_path_bytes(info)) };
+                            .path.rgb = malloc(ff_picture_path_bytes(&ground->unpack->pack)) };
     int rc = reader.jpeg && reader.enlarged && reader.path.rgb ? 0 : bake_fail("out of memory");
     for (uint32_t tile = 0; !rc && tile < ff_shape_tiles(info); tile++)
         rc = read_below(&reader, ff_key_make(tile, 0, 0));

@@ -24,6 +24,7 @@ typedef struct cutter {
     export_part part;
     ff_list about;
     uint8_t about_bytes[FF_ABOUT_BYTES_MAX];
+    unsigned layer;     /* of images, under way */
     int is_part;        /* something was left out */
     pack_append append; /* without a writer: sections are counted alone */
     section_count count[FF_PACK_SECTIONS_MAX];
@@ -114,10 +115,20 @@ static int cut_heights(cutter *c, ff_key key, unsigned ends)
 
 /* ---- images ---- */
 
+static uint32_t image_levels(const cutter *c)
+{
+    return ff_pack_image_levels(&c->unpack->pack, c->layer);
+}
+
+static uint32_t image_section(const cutter *c, ff_key key)
+{
+    return ff_pack_layer_first(&c->unpack->pack, c->layer) + ff_key_level(key);
+}
+
 static uint8_t bare_below(const cutter *c, ff_key key)
 {
     uint8_t bare = 0;
-    if (ff_key_level(key) + 1 == c->info->texture_levels) return 0;
+    if (ff_key_level(key) + 1 == image_levels(c)) return 0;
     for (uint32_t q = 0; q < 4; q++) {
         ff_key child = ff_key_child(key, q);
         if (ff_shape_has_ground(c->info, child) && !export_part_pictures(&c->part, child))
@@ -130,24 +141,22 @@ static int put_image(cutter *c, ff_key key, uint8_t *bare)
 {
     const uint8_t *payload;
     ff_image image;
-    int rc = ff_pack_record(&c->unpack->pack, FF_SECTION_TEXTURE, key, &payload);
+    int rc = ff_pack_layer_record(&c->unpack->pack, c->layer, key, &payload);
     if (rc >= 0) rc = ff_image_read(payload, (size_t)rc, &image);
     if (rc < 0) return fail_at(c, FF_SECTION_TEXTURE, key, rc);
     *bare = image.bare | bare_below(c, key);
     c->is_part |= *bare != image.bare;
     if (*bare) c->payload[0] = (uint8_t)(FF_IMAGE_BARE + *bare);
     memcpy(c->payload + (*bare > 0), image.coded, image.coded_bytes);
-    return put(c, ff_terrain_levels(c->info) + ff_key_level(key), c->payload,
-               image.coded_bytes + (*bare > 0));
+    return put(c, image_section(c, key), c->payload, image.coded_bytes + (*bare > 0));
 }
 
 /* All from a node on that has ground, or whose parent has an image; `ends`: it has none. */
 static int cut_images(cutter *c, ff_key key, unsigned ends)
 {
     uint8_t bare = 0;
-    if (ff_key_level(key) == c->info->texture_levels) return 0;
-    if (ends || !ff_shape_has_ground(c->info, key))
-        return put(c, ff_terrain_levels(c->info) + ff_key_level(key), NULL, 0);
+    if (ff_key_level(key) == image_levels(c)) return 0;
+    if (ends || !ff_shape_has_ground(c->info, key)) return put(c, image_section(c, key), NULL, 0);
     if (put_image(c, key, &bare)) return -1;
     for (uint32_t q = 0; q < 4; q++)
         if (cut_images(c, ff_key_child(key, q), bare >> q & 1u)) return -1;
@@ -162,8 +171,10 @@ static int cut_tiles(cutter *c)
         ff_key root = ff_key_make(tile, 0, 0);
         ff_residuals marks = { 0 };
         if (put_heights(c, FF_SECTION_ROOT, root, &marks) ||
-            cut_heights(c, root, marks.leaf | marks.stub) || cut_images(c, root, 0))
+            cut_heights(c, root, marks.leaf | marks.stub))
             return -1;
+        for (c->layer = 0; c->layer < c->unpack->pack.header.layers; c->layer++)
+            if (cut_images(c, root, 0)) return -1;
     }
     return c->append.writer ? pack_append_end(&c->append) : 0;
 }
@@ -185,7 +196,7 @@ static int tell_whole(cutter *c)
 static uint64_t file_bytes(const cutter *c)
 {
     uint64_t bytes = FF_PACK_HEADER_BYTES + c->about.byte_count;
-    uint32_t sections = ff_terrain_levels(c->info) + c->info->texture_levels;
+    uint32_t sections = c->unpack->pack.header.section_count;
     for (uint32_t s = 0; s < sections; s++) {
         const section_count *count = &c->count[s];
         ff_index index = { .places = s ? count->places : 0, .records = (uint32_t)count->records };
@@ -199,7 +210,9 @@ static int write_part(cutter *c, const char *path)
 {
     pack_writer writer;
     uint64_t bytes;
-    if (pack_writer_open(&writer, c->info)) return -1;
+    if (pack_writer_open(&writer, c->info) ||
+        pack_writer_add_layers(&writer, &c->unpack->pack.header))
+        return -1;
     c->append.writer = &writer;
     int rc = cut_tiles(c);
     if (!rc) rc = tell_whole(c);

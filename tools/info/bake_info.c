@@ -7,6 +7,7 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 /* Distinct heights of the ground at a level, neighbours' shared rims counted once. */
 static uint64_t lattice_samples(const ff_terrain_info *info, uint32_t level)
@@ -100,11 +101,48 @@ static void print_terrain(const ff_terrain_info *info)
     printf("checksum        %08x\n", info->checksum);
 }
 
+/* Bytes of a layer's images, without CRCs and indexes. */
+static uint64_t layer_bytes(const ff_pack *pack, unsigned layer)
+{
+    uint32_t first = ff_pack_layer_first(pack, layer);
+    uint64_t bytes = 0;
+    for (uint32_t i = 0; i < pack->header.layer_levels[layer]; i++)
+        bytes += sum_up(pack, first + i).payload_bytes;
+    return bytes;
+}
+
+/* One without a name is what the pack has anyway. */
+static void print_layers(const ff_pack *pack)
+{
+    ff_layers layers;
+    ff_pack_layers(pack, &layers);
+    if (layers.count == 1 && !*layers.name[0]) return;
+    for (unsigned i = 0; i < layers.count; i++)
+        printf("layer %u         %s: levels 0 to %u, %" PRIu64 " bytes\n", i,
+               *layers.name[i] ? layers.name[i] : "(no name)", layers.levels[i][0] - 1u,
+               layer_bytes(pack, i));
+}
+
+static void print_layers_json(const ff_pack *pack)
+{
+    ff_layers layers;
+    ff_pack_layers(pack, &layers);
+    printf("\"layers\": [");
+    for (unsigned i = 0; i < layers.count; i++) {
+        printf("%s{\"name\": ", i ? ", " : "");
+        bake_info_print_text((const uint8_t *)layers.name[i], (uint32_t)strlen(layers.name[i]));
+        printf(", \"levels\": %u, \"bytes\": %" PRIu64 "}", layers.levels[i][0],
+               layer_bytes(pack, i));
+    }
+    printf("], ");
+}
+
 void bake_info_print(const ff_pack *pack, const char *path)
 {
     section_sum heights = { 0 }, textures = { 0 };
     printf("%s: Farfield pack, version %d, %" PRIu64 " bytes\n", path, FF_PACK_VERSION, pack->size);
     print_terrain(&pack->header.info);
+    print_layers(pack);
     bake_info_about(pack);
     printf("\nsection     level    records        bytes  bytes/record  bits/new sample\n");
     for (uint32_t i = 0; i < pack->header.section_count; i++) {
@@ -160,6 +198,7 @@ void bake_info_print_json(const ff_pack *pack)
     printf("{\"bytes\": %" PRIu64 ", ", pack->size);
     print_terrain_json(&pack->header.info);
     bake_info_about_json(pack);
+    print_layers_json(pack);
     printf("\"sections\": [");
     for (uint32_t i = 0; i < pack->header.section_count; i++) {
         const ff_pack_section *section = &pack->header.section[i];

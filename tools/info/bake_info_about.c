@@ -53,12 +53,12 @@ void bake_info_about(const ff_pack *pack)
 }
 
 /* Texts have no control characters: only these two are to be marked. */
-static void print_text(const ff_list_entry *entry)
+void bake_info_print_text(const uint8_t *text, uint32_t byte_count)
 {
     putchar('"');
-    for (uint32_t i = 0; i < entry->byte_count; i++) {
-        if (entry->value[i] == '"' || entry->value[i] == '\\') putchar('\\');
-        putchar(entry->value[i]);
+    for (uint32_t i = 0; i < byte_count; i++) {
+        if (text[i] == '"' || text[i] == '\\') putchar('\\');
+        putchar(text[i]);
     }
     putchar('"');
 }
@@ -92,7 +92,7 @@ void bake_info_about_json(const ff_pack *pack)
     printf("\"about\": {");
     if (ff_pack_about(pack, &about) == FF_OK)
         for (rest = about; ff_list_next(&rest, &entry) > 0;) {
-            if (entry.type >= sizeof name / sizeof *name) continue;
+            if (entry.type >= sizeof name / sizeof *name || entry.type == FF_ABOUT_LAYERS) continue;
             printf("%s\"%s\": ", first ? "" : ", ", name[entry.type]);
             first = 0;
             if (entry.type == FF_ABOUT_PROJECTION)
@@ -100,7 +100,7 @@ void bake_info_about_json(const ff_pack *pack)
             else if (entry.type == FF_ABOUT_WHOLE)
                 printf("\"%08" PRIx32 "\"", ff_about_whole(about, 0));
             else
-                print_text(&entry);
+                bake_info_print_text(entry.value, entry.byte_count);
         }
     printf("}, ");
 }

@@ -9,4 +9,7 @@ void bake_info_about(const ff_pack *pack);
 /* "about": an object of the entries there are. */
 void bake_info_about_json(const ff_pack *pack);
 
+/* A text as JSON has it. */
+void bake_info_print_text(const uint8_t *text, uint32_t byte_count);
+
 #endif

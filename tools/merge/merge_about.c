@@ -1,4 +1,5 @@
 #include "merge_about.h"
+#include "merge_parts.h"
 
 #include "../bake/bake_say.h"
 #include "../bake/raster/bake_about.h"
@@ -64,6 +65,10 @@ int merge_about_make(const merge_options *o, const bake_unpack unpack[], uint32_
             bytes = ff_list_find(about[p], entry, &value);
         if (bytes >= 0) ff_list_write(&out, entry, value, (uint32_t)bytes);
     }
+    const uint8_t *names = NULL;
+    int bytes = merge_parts_are(unpack, count) ? ff_list_find(about[0], FF_ABOUT_LAYERS, &names)
+                                               : 0;
+    if (bytes > 0) ff_list_write(&out, FF_ABOUT_LAYERS, names, (uint32_t)bytes);
     FF_ASSERT(out.error == FF_OK);
     *joint = (ff_list){ list, (uint32_t)(out.at - list) };
     return 0;

@@ -16,6 +16,7 @@ typedef struct joiner {
     const bake_unpack *unpack;
     uint32_t count;
     const ff_terrain_info *info;
+    unsigned layer; /* of images, under way */
     pack_append append;
     uint8_t payload[PAYLOAD_ROOM], other[PAYLOAD_ROOM];
 } joiner;
@@ -37,6 +38,14 @@ static void describe(const bake_unpack *unpack, uint8_t bytes[FF_TERRAIN_BYTES])
     FF_ASSERT(out.error == FF_OK);
 }
 
+static int same_layers(const bake_unpack *a, const bake_unpack *b)
+{
+    ff_layers of_a, of_b;
+    ff_pack_layers(&a->pack, &of_a);
+    ff_pack_layers(&b->pack, &of_b);
+    return !memcmp(&of_a, &of_b, sizeof of_a);
+}
+
 int merge_parts_are(const bake_unpack unpack[], uint32_t count)
 {
     uint8_t first[FF_TERRAIN_BYTES], other[FF_TERRAIN_BYTES];
@@ -45,7 +54,9 @@ int merge_parts_are(const bake_unpack unpack[], uint32_t count)
     describe(&unpack[0], first);
     for (uint32_t i = 0; i < count; i++) {
         describe(&unpack[i], other);
-        if (memcmp(first, other, sizeof first) || ff_pack_whole(&unpack[i].pack) != whole) return 0;
+        if (memcmp(first, other, sizeof first) || !same_layers(&unpack[0], &unpack[i]) ||
+            ff_pack_whole(&unpack[i].pack) != whole)
+            return 0;
         parts |= unpack[i].pack.header.info.checksum != whole;
     }
     return parts;
@@ -114,6 +125,11 @@ static int join_heights(joiner *j, ff_key key, part_set have)
 
 /* ---- images ---- */
 
+static uint32_t image_section(const joiner *j, ff_key key)
+{
+    return ff_pack_layer_first(&j->unpack->pack, j->layer) + ff_key_level(key);
+}
+
 /* Puts a node's image that the parts of `have` hold. */
 static int put_image(joiner *j, ff_key key, part_set have, part_set below[4])
 {
@@ -123,7 +139,7 @@ static int put_image(joiner *j, ff_key key, part_set have, part_set below[4])
     for (uint32_t p = 0; p < j->count; p++) {
         const uint8_t *payload;
         if (!(have >> p & 1)) continue;
-        int rc = ff_pack_record(&j->unpack[p].pack, FF_SECTION_TEXTURE, key, &payload);
+        int rc = ff_pack_layer_record(&j->unpack[p].pack, j->layer, key, &payload);
         if (rc >= 0) rc = ff_image_read(payload, (size_t)rc, &image);
         if (rc < 0) return fail_at(j, p, "texture", key, ff_error_text(rc));
         if (!first.coded) first = image;
@@ -136,7 +152,7 @@ static int put_image(joiner *j, ff_key key, part_set have, part_set below[4])
     }
     if (bare) j->payload[0] = (uint8_t)(FF_IMAGE_BARE + bare);
     memcpy(j->payload + (bare > 0), first.coded, first.coded_bytes);
-    return pack_append_add(&j->append, ff_terrain_levels(j->info) + ff_key_level(key), j->payload,
+    return pack_append_add(&j->append, image_section(j, key), j->payload,
                            first.coded_bytes + (bare > 0));
 }
 
@@ -144,9 +160,9 @@ static int put_image(joiner *j, ff_key key, part_set have, part_set below[4])
 static int join_images(joiner *j, ff_key key, part_set have)
 {
     part_set below[4];
-    if (ff_key_level(key) == j->info->texture_levels) return 0;
+    if (ff_key_level(key) == ff_pack_image_levels(&j->unpack->pack, j->layer)) return 0;
     if (!have || !ff_shape_has_ground(j->info, key))
-        return pack_append_add(&j->append, ff_terrain_levels(j->info) + ff_key_level(key), NULL, 0);
+        return pack_append_add(&j->append, image_section(j, key), NULL, 0);
     if (put_image(j, key, have, below)) return -1;
     for (uint32_t q = 0; q < 4; q++)
         if (join_images(j, ff_key_child(key, q), below[q])) return -1;
@@ -168,7 +184,8 @@ int merge_parts_write(const bake_unpack unpack[], uint32_t count, pack_writer *w
         part_set below[4];
         rc = put_heights(&j, FF_SECTION_ROOT, root, all_of(count), below);
         if (!rc) rc = join_heights(&j, root, below[0]);
-        if (!rc) rc = join_images(&j, root, all_of(count));
+        for (j.layer = 0; !rc && j.layer < unpack->pack.header.layers; j.layer++)
+            rc = join_images(&j, root, all_of(count));
         bake_progress("joining", tile + 1, ff_shape_tiles(j.info));
     }
     if (!rc) rc = pack_append_end(&j.append);

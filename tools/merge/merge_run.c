@@ -204,14 +204,26 @@ static int join_parts(merge *m)
     ff_sheet samples = ff_shape_sheet_samples(&m->lattice.info);
     m->lattice.width = samples.x;
     m->lattice.height = samples.y;
-    if (pack_writer_open(&m->writer, &m->lattice.info)) return -1;
+    if (pack_writer_open(&m->writer, &m->lattice.info) ||
+        pack_writer_add_layers(&m->writer, &m->unpack[0].pack.header))
+        return -1;
     m->writer.has_whole = 1;
     m->writer.whole = ff_pack_whole(&m->unpack[0].pack);
     return merge_parts_write(m->unpack, m->count, &m->writer);
 }
 
+static void say_layers(const merge *m)
+{
+    int more = 0;
+    for (uint32_t i = 0; i < m->count; i++) more |= m->unpack[i].pack.header.layers > 1;
+    if (more)
+        bake_note(
+            "the first layer of images alone is joined: only parts of one pack keep all of them");
+}
+
 static int join_samples(merge *m)
 {
+    say_layers(m);
     if (find_lattice(m) || describe(m)) return -1;
     if (merge_samples_open(m->unpack, m->place, m->count, &m->lattice, &m->samples) ||
         check_whole(m))

@@ -37,7 +37,7 @@ PLACES = {  # what each counts to under each mark; None: it has nothing to do th
     "client/client.o client/client_update.o client/client_figures.o": (LINK, MEASURE, STITCH),
     "client/client_carve.o client/ff_budget.o client/ff_arena.o": (None, PANORAMA, None),
     "client/client_rank.o client/client_view.o": (None, WISHES, None),
-    "client/client_source.o": (LINK, WISHES, None),
+    "client/client_source.o client/client_layers.o": (LINK, WISHES, None),
     "client/client_take.o": (None, TAKE_IN, None),
     "client/ff_sky.o": (None, PANORAMA, STITCH),
     "client/far/": (None, PANORAMA, STITCH),

@@ -48,7 +48,7 @@ int train_pictures_open(train_pictures *pictures, const char *name)
                                   .tiles = ff_shape_tiles(info),
                                   .log2 = info->texture_log2,
                                   .levels = info->texture_levels };
-    path.rgb = malloc(ff_picture_path_bytes(info) + 1);
+    path.rgb = malloc(ff_picture_path_bytes(&unpack.pack) + 1);
     path.held = 0;
     int rc = path.rgb ? make_room(pictures) : bake_fail("out of memory");
     if (!rc && !(info->flags & FF_TERRAIN_PICTURES))

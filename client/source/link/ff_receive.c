@@ -51,6 +51,7 @@ static int take_welcome(ff_stream *stream, const ff_welcome *welcome, int64_t no
     for (unsigned i = 0; i < count; i++)
         ff_welcome_ground(welcome, i, &stream->welcome[i], &stream->whole[i]);
     stream->welcome_count = (uint8_t)count;
+    ff_welcome_layers(welcome, &stream->layers);
     stream->about.state = FF_ABOUT_UNKNOWN; /* another pack's */
     stream->about.byte_count = 0;
     sys_mutex_unlock(&stream->intake->requests->mutex);

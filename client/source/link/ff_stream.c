@@ -162,10 +162,12 @@ static void append(ff_stream *stream, const ff_message *message)
     stream->send_count += (uint32_t)count;
 }
 
+#define LAYER_BYTES 3
+
 static int has_send_room(const ff_stream *stream)
 {
     FF_ASSERT(stream->send_count <= sizeof stream->send);
-    return stream->send_count + FF_REQUEST_BYTES_MAX <= sizeof stream->send;
+    return stream->send_count + FF_REQUEST_BYTES_MAX + LAYER_BYTES <= sizeof stream->send;
 }
 
 static void append_caps(ff_stream *stream)
@@ -196,6 +198,7 @@ static void greet(ff_stream *stream, int64_t now_us)
     stream->state = FF_STREAM_GREETING;
     stream->heard_us = stream->sent_us = now_us;
     stream->awaiting = 1;
+    stream->layer = 0;
 }
 
 static int connect_step(ff_stream *stream, int64_t now_us)
@@ -239,6 +242,14 @@ static unsigned sides_known(const ff_stream *stream, const ff_request *request)
     return sides;
 }
 
+/* Whose images are asked for is told when it changes, not with each request. */
+static void tell_layer(ff_stream *stream, const ff_request *request)
+{
+    if (!ff_kind[request->kind].has_image || request->layer == stream->layer) return;
+    append(stream, &(ff_message){ .type = FF_MSG_LAYER, .u.layer = { request->layer } });
+    stream->layer = request->layer;
+}
+
 static void encode_request(ff_stream *stream, const ff_request *request)
 {
     FF_ASSERT(request->state == FF_REQUEST_SENT && has_send_room(stream));
@@ -258,6 +269,7 @@ static void encode_request(ff_stream *stream, const ff_request *request)
             break;
         case FF_ASKS_FAR: message.u.get_far = ff_requests_ask_of(requests, request)->far; break;
     }
+    tell_layer(stream, request);
     append(stream, &message);
 }
 

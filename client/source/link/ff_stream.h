@@ -77,6 +77,7 @@ typedef struct ff_stream {
     int64_t retry_us, backoff_us, connect_us, heard_us, sent_us;
     int64_t ahead_us; /* when something was last asked for ahead */
     uint8_t awaiting; /* HELLO, PING or GET_ABOUT unanswered */
+    uint8_t layer;    /* of images, as the server was told last */
     uint8_t view_out; /* 1: parts answer the view that was sent, or will */
     uint8_t patience; /* how often the time-out has been doubled */
     ff_link_estimate link;
@@ -91,6 +92,7 @@ typedef struct ff_stream {
     ff_terrain_info welcome[FF_WELCOME_GROUNDS];
     uint32_t whole[FF_WELCOME_GROUNDS];
     uint8_t welcome_count;
+    ff_layers layers; /* over them */
 } ff_stream;
 
 void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsigned in_flight_max,
