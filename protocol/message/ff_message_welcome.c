@@ -123,7 +123,8 @@ void ff_welcome_ground(const ff_welcome *welcome, unsigned number, ff_terrain_in
     *whole = (uint32_t)ff_read_bytes(&in, 4);
 }
 
-/* The levels of images of the grounds themselves, which are the first layer's. */
+/* The levels of images of the grounds themselves are the first layer's; where they have none no
+ * other layer has. */
 static void first_levels(const ff_welcome *welcome, ff_layers *layers)
 {
     int count = ff_welcome_count(welcome);
@@ -132,6 +133,8 @@ static void first_levels(const ff_welcome *welcome, ff_layers *layers)
         uint32_t whole;
         ff_welcome_ground(welcome, (unsigned)i, &info, &whole);
         layers->levels[0][i] = info.texture_levels;
+        for (unsigned layer = 1; !info.texture_levels && layer < layers->count; layer++)
+            layers->levels[layer][i] = 0;
         if (info.texture_levels && !layers->count) layers->count = 1;
     }
 }

@@ -47,13 +47,21 @@ static int read_part(void *context, uint64_t offset, void *out, size_t count)
 }
 
 /* A record from the mapping: its bytes, or an error, and the other view's answer is the same. */
-static int both_records(const ff_pack *pack, const ff_pack *read, uint32_t kind, ff_key key,
-                        const uint8_t **payload)
+static int record_of(const ff_pack *pack, const ff_pack_section *section, ff_key key,
+                     const uint8_t **payload)
+{
+    return section->kind == FF_SECTION_TEXTURE
+               ? ff_pack_layer_record(pack, section->codec, key, payload)
+               : ff_pack_record(pack, (enum ff_section_kind)section->kind, key, payload);
+}
+
+static int both_records(const ff_pack *pack, const ff_pack *read, const ff_pack_section *section,
+                        ff_key key, const uint8_t **payload)
 {
     const uint8_t *other;
-    int rc = ff_pack_record(pack, (enum ff_section_kind)kind, key, payload);
+    int rc = record_of(pack, section, key, payload);
 
-    assert(ff_pack_record(read, (enum ff_section_kind)kind, key, &other) == rc);
+    assert(record_of(read, section, key, &other) == rc);
     assert(rc < 0 || memcmp(*payload, other, (size_t)rc) == 0);
     return rc;
 }
@@ -77,7 +85,7 @@ static void use_pack(const uint8_t *bytes, size_t count)
             const uint8_t *payload;
             ff_key key = ff_key_make(i >> (2 * section->level), section->level,
                                      section->level ? i : 0);
-            rc = both_records(&pack, &read, section->kind, key, &payload);
+            rc = both_records(&pack, &read, section, key, &payload);
             if (rc < 0) continue;
             sum += read_all(payload, rc);
             if (section->kind != FF_SECTION_TEXTURE)
@@ -91,6 +99,9 @@ static void use_pack(const uint8_t *bytes, size_t count)
         while (ff_list_next(&about, &entry) > 0)
             sum += read_all(entry.value, (int)entry.byte_count);
     }
+    ff_layers layers;
+    ff_pack_layers(&pack, &layers);
+    assert(layers.count == pack.header.layers);
     records += pack.header.about.kind != 0;
     ff_pack_verify(&pack, &bad);
     assert(bad <= records);
