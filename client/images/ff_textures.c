@@ -249,7 +249,7 @@ static ff_texture_slot *hold(ff_textures *textures, ff_key key, uint8_t bare, ui
     *slot = (ff_texture_slot){ .key = key,
                                .held = 1,
                                .layer = textures->layer,
-                               .bare = bare,
+                               .bare = bare & 15u,
                                .used = textures->stamp,
                                .drawn = textures->stamp,
                                .next = textures->bucket[bucket_of(key)] };

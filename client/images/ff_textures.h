@@ -27,9 +27,9 @@ typedef struct ff_texture_slot {
     uint32_t used;       /* stamp of the last frame it, or one below it, was of use in */
     uint32_t drawn;      /* and was drawn in */
     uint16_t next;       /* hash chain: slot + 1 */
-    uint8_t held;
-    uint8_t layer; /* it is of */
-    uint8_t bare;  /* children without an image: ff_image.bare */
+    uint8_t layer;       /* it is of */
+    uint8_t held : 1;
+    uint8_t bare : 4; /* children without an image: ff_image.bare */
 } ff_texture_slot;
 
 typedef struct ff_textures {
