@@ -52,6 +52,19 @@ static uint32_t check_node(const export_part *part, ff_key key)
     return 1;
 }
 
+/* Images deeper than heights go along with the finest part, and with no other. */
+static void check_deeper(const export_part *part)
+{
+    const ff_terrain_info *info = part->info;
+    int finest = part->level + 1 == ff_terrain_levels(info);
+    for (uint32_t l = ff_terrain_levels(info); l < ff_image_levels(info); l++)
+        for (uint32_t tile = 0; tile < ff_shape_tiles(info); tile++)
+            for (uint32_t code = 0; code >> 2 * l == 0; code++) {
+                ff_key key = ff_key_make(tile, l, code);
+                assert_int_equal(export_part_pictures(part, key), finest && shows(info, key));
+            }
+}
+
 static void check_part(const ff_terrain_info *info, uint32_t level)
 {
     export_part part;
@@ -65,6 +78,7 @@ static void check_part(const ff_terrain_info *info, uint32_t level)
         assert_true(split <= most);
         assert_true(split == 0 || l < level);
     }
+    check_deeper(&part);
 }
 
 static void all_that_is_stored_can_be_drawn(void **state)

@@ -41,6 +41,8 @@ int export_part_splits(const export_part *part, ff_key key)
 
 int export_part_pictures(const export_part *part, ff_key key)
 {
-    uint32_t level = ff_key_level(key);
-    return level == 0 || (level <= part->level && is_inside(part, &part->shown[level], key));
+    int finest = part->level + 1 == ff_terrain_levels(part->info);
+    if (ff_key_level(key) > part->level && !finest) return 0;
+    while (ff_key_level(key) > part->info->tile_log2) key = ff_key_parent(key);
+    return ff_key_level(key) == 0 || is_inside(part, &part->shown[ff_key_level(key)], key);
 }

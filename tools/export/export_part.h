@@ -24,7 +24,8 @@ void export_part_make(const ff_terrain_info *info, const export_window *window, 
                       export_part *part);
 /* 1 when the part has the children of a node. */
 int export_part_splits(const export_part *part, ff_key key);
-/* 1 when the part has a node's image. */
+/* 1 when the part has a node's image: down to its level, and below that where that is the finest.
+ */
 int export_part_pictures(const export_part *part, ff_key key);
 
 #endif
