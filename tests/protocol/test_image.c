@@ -54,7 +54,7 @@ static void the_nearest_image_above_stands_for_one_that_is_not_there(void **stat
             ff_key key = ff_key_make(0, level, code), found = key;
             const uint8_t *payload;
             ff_image image = { 0 };
-            int count = ff_pack_image(&pack, &found, &payload);
+            int count = ff_pack_image(&pack, 0, &found, &payload);
             assert_true(count > 0);
             assert_int_equal(ff_key_level(found), level < 1 ? level : 1);
             assert_int_equal(ff_key_code(found), level < 1 ? code : code >> 2 * (level - 1));
