@@ -3,17 +3,9 @@
 
 #include <string.h>
 
-#define ANSWER_BYTES_START 200u /* before the first answer of a kind: Hybrid's 9x9 node is 182 */
-#define SEVERAL            16u  /* so many times that of a face, or of a view's answers together */
-#define SOME               3u   /* of a texture, or of a sector */
-#define IN_FLIGHT_ALWAYS   2u
-#define RESERVE_SHARE      8u /* of the bytes that may be in flight */
+#define IN_FLIGHT_ALWAYS 2u
+#define RESERVE_SHARE    8u /* of the bytes that may be in flight */
 
-/* answer_q4 has a mean for every level of a key */
-FF_STATIC_ASSERT(sizeof((ff_requests *)0)->answer_q4[0] ==
-                 (FF_KEY_LEVEL_MAX + 1) * sizeof(uint32_t));
-/* a message at its longest, Q4, before an eighth of it is taken */
-FF_STATIC_ASSERT((uint64_t)(FF_MESSAGE_BODY_MAX + FF_MESSAGE_HEADER_MAX) * 16 <= UINT32_MAX);
 FF_STATIC_ASSERT(FF_REQUESTS_QUEUED_MAX <= UINT16_MAX); /* queued_max */
 
 static size_t slots_for(unsigned in_flight_max)
@@ -26,13 +18,6 @@ size_t ff_requests_bytes(unsigned in_flight_max)
     return slots_for(in_flight_max) * sizeof(ff_request);
 }
 
-static uint32_t times_a_node(unsigned kind)
-{
-    int brings = ff_kind[kind].brings;
-    if (brings == FF_BRINGS_PARTS || brings == FF_BRINGS_FACE) return SEVERAL;
-    return ff_kind[kind].has_image ? SOME : 1;
-}
-
 void ff_requests_init(ff_requests *requests, unsigned in_flight_max, void *memory)
 {
     FF_ASSERT(slots_for(in_flight_max) <= UINT16_MAX); /* ids on the wire are slots + 1 */
@@ -43,15 +28,7 @@ void ff_requests_init(ff_requests *requests, unsigned in_flight_max, void *memor
     requests->queued_max = FF_REQUESTS_QUEUED_MAX;
     requests->hash = FF_REQUEST_HASH_START;
     memset(requests->slot, 0, ff_requests_bytes(in_flight_max));
-    for (unsigned kind = 0; kind < FF_KIND_COUNT; kind++)
-        for (unsigned level = 0; level < 16; level++)
-            requests->answer_q4[kind][level] = 16 * ANSWER_BYTES_START * times_a_node(kind);
-}
-
-static unsigned level_of(const ff_request *request)
-{
-    FF_ASSERT(request->kind < FF_KIND_COUNT);
-    return ff_kind[request->kind].asks == FF_ASKS_NODE ? ff_key_level(request->key) : 0;
+    ff_request_guess_bytes(requests);
 }
 
 /* Every way out of QUEUED, SENT and ARRIVING passes here, so that the counts stay true. */
@@ -156,14 +133,6 @@ void ff_requests_rank_begin(ff_requests *requests)
     sys_mutex_unlock(&requests->mutex);
 }
 
-static uint32_t value_of(const ff_requests *requests, unsigned kind, unsigned level,
-                         uint32_t priority)
-{
-    FF_ASSERT(level <= FF_KEY_LEVEL_MAX);
-    uint64_t value = ((uint64_t)priority << 12) / (requests->answer_q4[kind][level] + 1u);
-    return value > UINT32_MAX ? UINT32_MAX : (uint32_t)value;
-}
-
 /* A slot for a new request. In a full queue a request that this ranking has not wanted so far makes
  * room; NULL when there is none. */
 static ff_request *slot_for_new(ff_requests *requests)
@@ -248,7 +217,7 @@ int ff_requests_want(ff_requests *requests, enum ff_kind kind, ff_key key,
     if (request && request->state == FF_REQUEST_QUEUED) {
         request->rank = (uint8_t)rank;
         request->sides = (uint8_t)sides;
-        request->value = value_of(requests, kind, level_of(request), priority);
+        request->value = ff_request_value(requests, kind, ff_request_level(request), priority);
     }
     if (request && ask && !keep_ask(requests, request, ask)) request = NULL;
     sys_mutex_unlock(&requests->mutex);
@@ -298,15 +267,6 @@ void ff_requests_rank_end(ff_requests *requests)
             free_slot(requests, request, &requests->counts.dropped);
     }
     sys_mutex_unlock(&requests->mutex);
-}
-
-uint32_t ff_requests_answer_bytes(ff_requests *requests, enum ff_kind kind, unsigned level)
-{
-    FF_ASSERT(level <= FF_KEY_LEVEL_MAX);
-    sys_mutex_lock(&requests->mutex);
-    uint32_t bytes = requests->answer_q4[kind][level] >> 4;
-    sys_mutex_unlock(&requests->mutex);
-    return bytes;
 }
 
 /* Cancels a request; 1 when it is still under way. */
@@ -406,7 +366,7 @@ static enum ff_request_class last_class(const ff_request_counts *counts,
 /* An image may be a difference to the one above it, which goes before it. */
 static ff_request *first_above(ff_requests *requests, ff_request *request)
 {
-    while (ff_kind[request->kind].has_image && level_of(request) > 0) {
+    while (ff_kind[request->kind].has_image && ff_request_level(request) > 0) {
         ff_request *above = find(requests, request->kind, ff_key_parent(request->key));
         if (!above || above->state != FF_REQUEST_QUEUED) break;
         request = above;
@@ -439,7 +399,7 @@ int ff_requests_next(ff_requests *requests, int64_t now_us, unsigned in_flight_m
         best->order = counts->sent;
         best->cancel = 0;
         if (best->ask) requests->ask[best->ask - 1].id = best->id;
-        best->bytes_expected = (requests->answer_q4[best->kind][level_of(best)] >> 4) *
+        best->bytes_expected = (requests->answer_q4[best->kind][ff_request_level(best)] >> 4) *
                                answers_to(requests, best);
         count_sent(requests, best);
         FF_ASSERT(counts->in_flight <= in_flight_max || counts->in_flight <= IN_FLIGHT_ALWAYS);
@@ -545,20 +505,6 @@ void ff_requests_came(ff_requests *requests, uint16_t id, uint32_t bytes)
     sys_mutex_unlock(&requests->mutex);
 }
 
-/* What is guessed before anything has come is far off for some, and a window full of guesses is
- * empty: the first answer counts at once, for all levels of which there was none. */
-static void learn_bytes(ff_requests *requests, const ff_request *request, uint32_t bytes)
-{
-    unsigned at = level_of(request), kind = request->kind;
-    uint32_t *mean_q4 = requests->answer_q4[kind];
-    if (ff_kind[kind].asks == FF_ASKS_NODE && !(requests->met[kind] >> at & 1u))
-        for (unsigned level = 0; level <= FF_KEY_LEVEL_MAX; level++)
-            if (!(requests->met[kind] >> level & 1u)) mean_q4[level] = bytes * 16u;
-    requests->met[kind] |= (uint16_t)(1u << at);
-    mean_q4[at] -= mean_q4[at] >> 3;
-    mean_q4[at] += bytes * 16u >> 3;
-}
-
 void ff_requests_arrived(ff_requests *requests, uint16_t id, uint32_t bytes)
 {
     sys_mutex_lock(&requests->mutex);
@@ -570,7 +516,7 @@ void ff_requests_arrived(ff_requests *requests, uint16_t id, uint32_t bytes)
     requests->counts.arriving++;
     bytes += request->bytes_came;
     if (request->rank == FF_CLASS_RESERVE) requests->counts.reserve_bytes += bytes;
-    if (bytes) learn_bytes(requests, request, bytes);
+    if (bytes) ff_request_learn_bytes(requests, request, bytes);
     sys_mutex_unlock(&requests->mutex);
 }
 
