@@ -95,7 +95,7 @@ extern const sys_option_type fly_events_option;
     OPTION(sys_address, server, "server", "ADDR:PORT", NULL, SYS_ANY, \
            "a real server, real sockets and real time; --link and the traces are not used") \
     HEADING("The client") \
-    OPTION(sys_text, layer, "layer", "NAME", NULL, SYS_ANY, \
+    OPTION(sys_text, layer, "layer", "LAYER", NULL, SYS_ANY, \
            "of the pack's layers of images the one of this name is shown, off: none; default: the first") \
     SIM_CLIENT_OPTIONS(OPTION, "4M", "the client's one block") \
     OPTION(sys_switch, reserve, "reserve", "on|off", "on", SYS_ANY, \

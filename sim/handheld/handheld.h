@@ -27,6 +27,8 @@
            "how fast") \
     OPTION(sys_whole, height_m, "height", "M", "100", SYS_WHOLE(1, SIM_HEIGHT_M_MAX, "m"), \
            "above the ground drawn") \
+    OPTION(sys_text, layer, "layer", "LAYER", NULL, SYS_ANY, \
+           "the layer of images that is shown, as the flight on a tape had it; default: the first") \
     OPTION(sys_flag, no_textures, "no-textures", NULL, NULL, SYS_ANY, \
            "images of the ground are not asked for") \
     OPTION(sys_flag, no_pictures, "no-pictures", NULL, NULL, SYS_ANY, \

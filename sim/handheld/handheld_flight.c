@@ -66,6 +66,7 @@ ff_client_desc handheld_client_desc(const handheld *device)
                              .use_plain_arrays = 1,
                              .place_known = head != NULL, /* as of who recorded it */
                              .no_views = head ? head->no_views : 0,
+                             .layer = options->layer,
                              .no_textures = (uint8_t)options->no_textures,
                              .hidden = head ? head->hidden : FF_HIDDEN_LEFT_OUT,
                              .balance = options->balance };
@@ -88,6 +89,8 @@ static int open_client(handheld *device)
     desc.stream = options->pack_path ? NULL : &device->stream;
     desc.about = options->hud && !options->tape_path ? handheld_hud_about() : 0;
     int rc = ff_client_create(&desc, &device->client);
+    if (rc == FF_OK && options->layer && ff_client_layer(device->client) == FF_ERR_NOT_FOUND)
+        return fail_with(options->layer, "the pack has no layer of images of this name");
     if (rc == FF_OK) return 0;
     device->client = NULL;
     return fail("client", rc);

@@ -113,6 +113,9 @@ static int open_picture(view_app *app)
         return view_fail("no picture with %s%s: %s%s", backend,
                          app->options->headless ? " (headless)" : "", ff_error_text(rc),
                          app->options->headless ? "" : "; --headless needs no display");
+    if (app->options->layer && ff_client_layer(app->client) == FF_ERR_NOT_FOUND)
+        return view_fail("--layer %s: the ground has no layer of images of this name",
+                         app->options->layer);
     return 0;
 }
 

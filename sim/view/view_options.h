@@ -29,7 +29,7 @@ extern const sys_option_type view_place_option;
     OPTION(sys_flag, no_hud, "no-hud", NULL, NULL, SYS_ANY, "begins without the text") \
     SHOW \
     HEADING("Terrain") \
-    OPTION(sys_text, layer, "layer", "NAME", NULL, SYS_ANY, \
+    OPTION(sys_text, layer, "layer", "LAYER", NULL, SYS_ANY, \
            "the layer of images that is shown first; default: the first one") \
     SIM_CLIENT_OPTIONS(OPTION, "16M", "the client's one block") \
     SIM_PANORAMA_OPTION(OPTION, "far ground as panoramas") \

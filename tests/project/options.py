@@ -11,7 +11,7 @@ import sys
 os.chdir(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../.."))
 BIN = os.environ.get("BIN", "build/bin")
 PROGRAMS = "bake export fly handheld info link merge report server train view".split()
-FREE = "FILE DIR PACK PACKS TEXT TITLE TABLE IMAGE OUT.ffp KIND|FILE".split()  # values that may be any text
+FREE = "LAYER NAME=IMAGE FILE DIR PACK PACKS TEXT TITLE TABLE IMAGE OUT.ffp KIND|FILE".split()  # values that may be any text
 ALIKE = "quality balance memory size fov".split()                        # and links, below: one range in all programs
 failures = 0
 
