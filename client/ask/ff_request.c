@@ -101,13 +101,6 @@ static uint8_t layer_of(const ff_requests *requests, unsigned kind)
     return ff_kind[kind].has_image ? requests->layer : 0;
 }
 
-void ff_requests_set_layer(ff_requests *requests, uint8_t layer)
-{
-    sys_mutex_lock(&requests->mutex);
-    requests->layer = layer;
-    sys_mutex_unlock(&requests->mutex);
-}
-
 static ff_request *find(ff_requests *requests, unsigned kind, ff_key key)
 {
     for (unsigned i = 0; i < requests->slot_count; i++) {

@@ -118,7 +118,12 @@ void ff_requests_clear(ff_requests *requests);
 /* ---- main thread ---- */
 /* Images are asked for of this layer from now on. Those of another one that are on their way are
  * not taken for it; what waits is dropped by the next ranking. */
-void ff_requests_set_layer(ff_requests *requests, uint8_t layer);
+static inline void ff_requests_set_layer(ff_requests *requests, uint8_t layer)
+{
+    sys_mutex_lock(&requests->mutex);
+    requests->layer = layer;
+    sys_mutex_unlock(&requests->mutex);
+}
 /* A ranking: begin, want everything worth having (most urgent first), end. Queued requests that
  * were not wanted again are dropped. */
 void ff_requests_rank_begin(ff_requests *requests);
