@@ -16,6 +16,7 @@ int ff_layer_name_ok(const char *name)
 /* The row of layer `number`. */
 static int read_row(ff_reader *row, unsigned number, unsigned grounds, ff_layers *layers)
 {
+    FF_ASSERT(number < FF_LAYERS_MAX);
     uint32_t bytes = (uint32_t)ff_read_bytes(row, 1);
     const uint8_t *name = ff_read_span(row, bytes);
     if (row->error != FF_OK) return row->error;
@@ -64,6 +65,7 @@ void ff_layers_write(ff_writer *out, const ff_layers *layers, unsigned grounds)
 
 int ff_layers_find(const ff_layers *layers, const char *name)
 {
+    FF_ASSERT(layers->count <= FF_LAYERS_MAX);
     if (!*name) return layers->count ? 0 : FF_ERR_NOT_FOUND;
     for (int i = 0; i < layers->count; i++)
         if (!strcmp(layers->name[i], name)) return i;

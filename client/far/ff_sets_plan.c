@@ -22,6 +22,7 @@ static void look_up(int32_t clearance_wu, int32_t *life_wu, int32_t *lift_wu)
 {
     int64_t at_m = clearance_wu > 0 ? clearance_wu / M : 0;
     unsigned i = 0;
+    FF_ASSERT(at_m < INT32_MAX); /* the last row ends the search */
     while (at_m >= rows[i + 1].clearance_m) i++;
     const plan_row *low = &rows[i], *high = &rows[i + 1];
     FF_ASSERT(high->clearance_m > low->clearance_m);
@@ -40,6 +41,7 @@ int32_t ff_sets_front_wu(const ff_sets *sets, int32_t clearance_wu)
 /* Parallax is the less the farther away ground is. */
 static int32_t stretched(int32_t life_wu, int64_t front_wu, int64_t usual_wu)
 {
+    FF_ASSERT(usual_wu >= USUAL_WU && front_wu >= 0);
     int64_t stretched_wu = life_wu * front_wu / usual_wu;
     return (int32_t)(stretched_wu < 2 * (int64_t)life_wu ? stretched_wu : 2 * (int64_t)life_wu);
 }

@@ -25,6 +25,7 @@ static int add_ground(ff_client *client, ff_source *source, unsigned own)
 {
     ff_source_ground *ground = &source->ground[own];
     ff_terrain_info info = source->intake.info[own];
+    FF_ASSERT(own < source->intake.ground_count);
     ff_terrain_show_images(&info, &source->intake.info[own],
                            ff_client_layer_levels(client, &source->layers, own));
     uint32_t count;
@@ -213,6 +214,7 @@ ff_source *ff_client_route(ff_client *client, enum ff_kind kind, ff_key key, uns
 int ff_several_shares(ff_client *client, ff_key key)
 {
     unsigned serve = 0;
+    FF_ASSERT(client->source_count >= 1);
     for (unsigned s = 0; s < client->source_count; s++)
         serve += ff_source_ground_of(ff_client_source(client, s), key) >= 0;
     return serve > 1;

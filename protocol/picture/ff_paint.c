@@ -59,6 +59,7 @@ int32_t ff_paint_step_q4(const ff_picture *p, unsigned plane, unsigned z)
     /* in halves of luma's: the mean, broad waves, finer and finest */
     static const uint8_t halves[3][4] = { { 2, 2, 2, 2 }, { 3, 5, 7, 10 }, { 3, 4, 5, 8 } };
     unsigned frequency = z / B + z % B;
+    FF_ASSERT(plane < 3 && z < B * B);
     return p->step_q4[0] * halves[plane][frequency < 3 ? frequency : 3] / 2;
 }
 

@@ -56,6 +56,7 @@ static void across(const ff_picture *p, const taps *column, unsigned x, unsigned
                    unsigned row, int16_t out[3][FF_PICTURE_BLOCK])
 {
     int16_t channel[3][WIDE];
+    FF_ASSERT(width <= FF_PICTURE_BLOCK);
     take_row(p, x, row, channel);
     for (unsigned i = 0; i < width; i++) {
         const int16_t *first = channel[0] + ((x + i) / 2 - x / 2);
