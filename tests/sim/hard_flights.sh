@@ -92,7 +92,7 @@ slow="umts,down.bytes_s=5,up.bytes_s=5"
 hard outage calm 15 45 45 4 0 2 --seconds 60 --event 15:link=umts,connect_ms=30000 --event 15:cut
 # What a view lacks is one request, which is made anew and not dropped: single ones are, once nobody wants them any more.
 hard outage-fast calm-fast 15 45 60 5 0 0 --seconds 60 --speed 450 --start 0.3 --event 15:link=umts,connect_ms=30000 --event 15:cut
-hard outage-fast-singly calm-fast 15 45 60 5 0 15 --views off --seconds 60 --speed 450 --start 0.3 --event 15:link=umts,connect_ms=30000 --event 15:cut
+hard outage-fast-singly calm-fast 15 45 60 5 0 10 --views off --seconds 60 --speed 450 --start 0.3 --event 15:link=umts,connect_ms=30000 --event 15:cut
 hard silence calm 15 45 45 4 0 0 --seconds 60 --event 15:link=$slow --event 45:link=umts
 hard stalls calm 20 50 23 4 0 0 --seconds 60 --link gprs,stall_every_ms=6000,stall_ms_min=4000,stall_ms_max=15000 --event 50:link=umts
 # How far a panorama is off while the next one has to be asked for again depends on when in its life the link is cut: three phases. It
