@@ -72,6 +72,15 @@ ff_client_desc handheld_client_desc(const handheld *device)
                              .balance = options->balance };
 }
 
+/* Of a ground that is known. */
+static int check_layer(const handheld *device)
+{
+    const char *layer = device->options->layer;
+    return layer && ff_client_layer(device->client) == FF_ERR_NOT_FOUND
+               ? fail_with(layer, "the ground has no layer of images of this name")
+               : 0;
+}
+
 static int open_client(handheld *device)
 {
     const handheld_options *options = device->options;
@@ -89,9 +98,7 @@ static int open_client(handheld *device)
     desc.stream = options->pack_path ? NULL : &device->stream;
     desc.about = options->hud && !options->tape_path ? handheld_hud_about() : 0;
     int rc = ff_client_create(&desc, &device->client);
-    if (rc == FF_OK && options->layer && ff_client_layer(device->client) == FF_ERR_NOT_FOUND)
-        return fail_with(options->layer, "the pack has no layer of images of this name");
-    if (rc == FF_OK) return 0;
+    if (rc == FF_OK) return check_layer(device);
     device->client = NULL;
     return fail("client", rc);
 }
@@ -251,7 +258,7 @@ static int fly_server(handheld *device)
             if (!work(device, now_us)) sys_sleep_us(WAIT_US);
         (void)step_frame(device, frame, due_us, 1);
     }
-    if (ff_client_terrain(device->client)) return 0;
+    if (ff_client_terrain(device->client)) return check_layer(device);
     ff_client_stats stats;
     ff_client_get_stats(device->client, &stats);
     return fail(device->options->server, stats.refusal ? stats.refusal : FF_ERR_CLOSED);

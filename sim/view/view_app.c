@@ -102,6 +102,18 @@ static int open_with(view_app *app, const char *backend)
     return rc;
 }
 
+/* 1 when the ground is known, and has no layer of the name that was asked for. */
+static int lacks_layer(const view_app *app)
+{
+    return app->options->layer && ff_client_layer(app->client) == FF_ERR_NOT_FOUND;
+}
+
+static int fail_layer(const view_app *app)
+{
+    return view_fail("--layer %s: the ground has no layer of images of this name",
+                     app->options->layer);
+}
+
 static int open_picture(view_app *app)
 {
     const char *backend = app->options->backend ? app->options->backend : "gles1";
@@ -113,10 +125,7 @@ static int open_picture(view_app *app)
         return view_fail("no picture with %s%s: %s%s", backend,
                          app->options->headless ? " (headless)" : "", ff_error_text(rc),
                          app->options->headless ? "" : "; --headless needs no display");
-    if (app->options->layer && ff_client_layer(app->client) == FF_ERR_NOT_FOUND)
-        return view_fail("--layer %s: the ground has no layer of images of this name",
-                         app->options->layer);
-    return 0;
+    return lacks_layer(app) ? fail_layer(app) : 0;
 }
 
 static int open_pack(view_app *app, const char *path)
@@ -274,6 +283,14 @@ static void tell_what_fits_not(view_app *app)
     }
 }
 
+/* A server's ground is known only once it has been heard: ground is shown without images then. */
+static void tell_layer(view_app *app)
+{
+    if (app->layer_known || ff_client_layer(app->client) == FF_ERR_AGAIN) return;
+    app->layer_known = 1;
+    if (lacks_layer(app)) fail_layer(app);
+}
+
 /* 1 when the text on the picture would change; looked at a few times a second. */
 static int hud_changed(view_app *app, int64_t now_us)
 {
@@ -292,6 +309,7 @@ static int turn(view_app *app, int64_t now_us, int64_t dt_us)
     if (!app->interrupted) view_fly_step(&app->fly, app->settling ? 0 : dt_us, app->client);
     int changed = ff_client_update(app->client, now_us, &app->fly.camera);
     tell_what_fits_not(app);
+    tell_layer(app);
     if (app->settling) watch_settling(app, changed);
     /* During an interruption the screen is not ours: the last picture stays. */
     int wanted = (changed && !app->interrupted) || app->redraw || app->screenshot ||

@@ -38,6 +38,7 @@ typedef struct view_app {
     uint8_t show_hud, show_pools, show_help, battery_low, interrupted, tilted;
     uint8_t redraw, quit;
     uint8_t told;           /* bit i: that more[i] is not shown */
+    uint8_t layer_known;    /* whether the ground has the layer asked for */
     const char *screenshot; /* file to be written after the next drawing; or NULL */
     unsigned screenshots;   /* taken by key */
     /* the loop */

@@ -104,6 +104,18 @@ flies unknown both --layer winter
 [ $? != 0 ] && tail -1 "$work/unknown.err" | grep -q "no layer of this name; it has: one without a name autumn"
 result $? "an unknown one is refused, with those that there are"
 
+# a server's are known only when it is heard
+"$bin/farfield-server" --pack "$work/both.ffp" --listen 127.0.0.1:0 --renderers 0 >"$work/server.log" 2>&1 &
+server_pid=$!
+wait_for "$work/server.log" "listening on"
+at=127.0.0.1:$(sed -n 's/.*listening on [^ ]*:\([0-9]*\).*/\1/p' "$work/server.log")
+timeout 60 "$bin/farfield-handheld" --server "$at" --layer autumn --frames 30 >"$work/held.log" 2>&1
+result $? "a server's layer on the handheld"
+timeout 60 "$bin/farfield-handheld" --server "$at" --layer winter --frames 30 >/dev/null 2>"$work/held.err"
+[ $? = 1 ] && [ "$(cat "$work/held.err")" = "farfield-handheld: winter: the ground has no layer of images of this name" ]
+result $? "one that it has not is refused"
+kill "$server_pid"
+
 # parts and what joins them have all layers
 "$bin/farfield-export" "$work/both.ffp" -o "$work/again.ffp" --quiet && cmp -s "$work/both.ffp" "$work/again.ffp"
 result $? "a part that leaves out nothing is the pack, byte for byte"
