@@ -72,11 +72,11 @@ NOTE_SERVER = """\
 /* Kind "note", a newcomer's: tile 0 alone has one. */
 #include "ff_session_local.h"
 
-static int fetch_note(const ff_session *session, enum ff_kind kind, ff_key key,
+static int fetch_note(const ff_session *session, enum ff_kind kind, unsigned layer, ff_key key,
                       const uint8_t **payload)
 {
     static const char note[] = "mind the gap";
-    (void)session, (void)kind;
+    (void)session, (void)kind, (void)layer;
     *payload = (const uint8_t *)note;
     return ff_key_tile(key) == 0 ? (int)sizeof note - 1 : FF_ERR_NOT_FOUND;
 }
@@ -160,7 +160,7 @@ CHANGES = [
       ("build/bin/farfield-fly --pack hills.ffp --laps 10 || [ $? = 2 ]", "farfield-fly: --laps: 10 is not a whole number from 1 to 9 laps"),
       ("build/bin/farfield-fly --pack hills.ffp --laps 7 --link lan --seconds 2 --settle 5 --backend none", "laps 7")]),
     ("a kind", 5, [("protocol/ff_kind.h", "    X(FAR,",
-                    "@LINE@ \\\n    X(NOTE,       note,       11, 0, NODE,     96, PAYLOAD, 0, 0,                           OVERHEAD, 0, note)\n"),
+                    "@LINE@ \\\n    X(NOTE,       note,       12, 0, NODE,     96, PAYLOAD, 0, 0,                           OVERHEAD, 0, note)\n"),
                    ("client/ff_client_local.h", "    ff_turn turn;", "    char note[32];\n")],
      {"client/ask/ff_intake_note.c": NOTE_CLIENT, "server/session/ff_session_note.c": NOTE_SERVER, "tests/client/test_note.c": NOTE_TEST},
      ["build/bin/farfield-fly", "build/tests/test_note", "build/tests/test_client", "build/tests/test_message", "build/tests/test_pack"],
