@@ -10,16 +10,13 @@ static uint32_t child_at(const ff_tree *tree, uint32_t slot, enum ff_side side, 
     return tree->node[slot].child[first[side] + along * apart[side]];
 }
 
-/* The node across, when both of its children there are held. */
+/* The node across, when its children are held. */
 static uint32_t find_beside(const ff_tree *tree, ff_key key, enum ff_side side, ff_beside *beside)
 {
     *beside = ff_shape_neighbour(ff_ground_of(tree, key), key, side);
     uint32_t slot = beside->key == FF_KEY_NONE ? FF_SLOT_NONE : ff_tree_find(tree, beside->key);
     FF_ASSERT(slot == FF_SLOT_NONE || tree->node[slot].key == beside->key);
-    if (slot == FF_SLOT_NONE || !ff_node_has_children(&tree->node[slot])) return FF_SLOT_NONE;
-    for (uint32_t along = 0; along < 2; along++)
-        if (child_at(tree, slot, beside->side, along) == FF_SLOT_NONE) return FF_SLOT_NONE;
-    return slot;
+    return slot != FF_SLOT_NONE && ff_node_has_children(&tree->node[slot]) ? slot : FF_SLOT_NONE;
 }
 
 unsigned ff_tree_sides(const ff_tree *tree, ff_key key)
@@ -40,6 +37,8 @@ static uint32_t first_of(enum ff_side side, uint32_t across, uint32_t *stride)
     return side == FF_SIDE_EAST ? across - 1 : side == FF_SIDE_NORTH ? (across - 1) * across : 0;
 }
 
+/* Where the ground ends along a side, the child there has none and is not held, and points beyond
+ * are made like all others that have none (ff_reconstruct_beside). */
 static void copy_side(ff_tree *tree, uint32_t slot, const ff_beside *beside, enum ff_side side)
 {
     const ff_terrain_info *info = ff_ground_of(tree, tree->node[slot].key);
@@ -48,10 +47,12 @@ static void copy_side(ff_tree *tree, uint32_t slot, const ff_beside *beside, enu
              to = first_of(side, ff_refined_side(info), &own_stride);
     FF_ASSERT(2 * last + 1 == ff_refined_side(info));
     for (uint32_t i = 0; i <= 2 * last; i++) {
-        uint32_t along = ff_beside_along(beside, i, 2 * last), half = along > last;
+        uint32_t along = ff_beside_along(beside, i, 2 * last), half = along > last,
+                 child = child_at(tree, slot, beside->side, half);
         FF_ASSERT(along - half * last <= last);
-        const uint16_t *heights = ff_heights_of(tree, child_at(tree, slot, beside->side, half));
-        tree->refined[to + i * own_stride] = heights[from + (along - half * last) * stride];
+        if (child == FF_SLOT_NONE) continue;
+        tree->refined[to + i * own_stride] = ff_heights_of(
+            tree, child)[from + (along - half * last) * stride];
     }
 }
 

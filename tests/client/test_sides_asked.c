@@ -15,7 +15,7 @@ static client_rig here; /* over the pack itself */
 static void open_trained(client_rig *rig, int no_views)
 {
     rig_open(rig, 0);
-    rig_use_trained(rig);
+    rig_use_trained(rig, 129, 129);
     rig->desc.no_views = (uint8_t)no_views;
 }
 
@@ -36,14 +36,14 @@ static int free_here(void **state)
 
 /* Whatever way it came, the ground is that of the pack. Which nodes are drawn depends on what is
  * held, too: most are the same. */
-static void assert_shows_the_pack(const client_rig *rig)
+static void assert_shows_as(const client_rig *rig, client_rig *pack)
 {
     const ff_drawn *mine, *its;
     uint32_t count = ff_tree_drawn(ff_client_tree(rig->client), &mine), same = 0;
     unsigned side = ff_node_side(ff_client_terrain(rig->client));
-    here.camera = rig->camera;
-    assert_true(rig_settle(&here, 1000));
-    uint32_t its_count = ff_tree_drawn(ff_client_tree(here.client), &its);
+    pack->camera = rig->camera;
+    assert_true(rig_settle(pack, 1000));
+    uint32_t its_count = ff_tree_drawn(ff_client_tree(pack->client), &its);
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t j = 0; j < its_count; j++) {
             if (mine[i].key != its[j].key) continue;
@@ -52,6 +52,8 @@ static void assert_shows_the_pack(const client_rig *rig)
         }
     assert_true(count > 0 && 10 * same > 9 * count);
 }
+
+static void assert_shows_the_pack(const client_rig *rig) { assert_shows_as(rig, &here); }
 
 static void what_is_held_or_on_its_way_is_left_out(void **state)
 {
@@ -70,6 +72,31 @@ static void what_is_held_or_on_its_way_is_left_out(void **state)
         assert_int_equal(rig_stats(&rig).requests_failed, 0);
         rig_close(&rig);
     }
+}
+
+/* Where ground ends along a side, the node across has one child there: its heights are enough. */
+static void ground_that_ends_within_nodes_comes_without_its_sides(void **state)
+{
+    static const uint32_t samples[][2] = { { 97, 129 }, { 129, 90 }, { 70, 101 },
+                                           { 105, 67 }, { 66, 66 },  { 121, 83 } };
+    (void)state;
+    for (size_t i = 0; i < sizeof samples / sizeof *samples; i++)
+        for (int no_views = 0; no_views < 2; no_views++) {
+            client_rig rig, pack;
+            open_trained(&rig, no_views);
+            open_trained(&pack, 0);
+            rig_use_trained(&rig, samples[i][0], samples[i][1]);
+            rig_use_trained(&pack, samples[i][0], samples[i][1]);
+            rig_local_client(&pack, 2 * MB);
+            rig_client(&rig, 2 * MB);
+            rig_fly(&rig, 100);
+            assert_true(rig_settle(&rig, 400));
+            assert_shows_as(&rig, &pack);
+            assert_int_equal(rig_stats(&rig).tree.sides_gone, 0);
+            assert_int_equal(rig_stats(&rig).requests_failed, 0);
+            rig_close(&rig);
+            rig_close(&pack);
+        }
 }
 
 /* A cut takes what was on its way, and with it the sides that others counted on. */
@@ -109,6 +136,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_is_held_or_on_its_way_is_left_out),
+        cmocka_unit_test(ground_that_ends_within_nodes_comes_without_its_sides),
         cmocka_unit_test(the_ground_is_whole_after_cuts),
         cmocka_unit_test(small_pools_settle),
     };

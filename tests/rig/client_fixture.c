@@ -262,7 +262,10 @@ void rig_use_pictures(client_rig *rig, unsigned texture_log2)
     open_pack(rig, texture_log2, 3, PICTURES, SAMPLES, SAMPLES);
 }
 
-void rig_use_trained(client_rig *rig) { open_pack(rig, 0, 3, TRAINED, SAMPLES, SAMPLES); }
+void rig_use_trained(client_rig *rig, uint32_t samples_x, uint32_t samples_y)
+{
+    open_pack(rig, 0, 3, TRAINED, samples_x, samples_y);
+}
 
 void rig_use_filled(client_rig *rig) { open_pack(rig, 0, 3, FILLED, SAMPLES, SAMPLES); }
 

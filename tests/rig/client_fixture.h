@@ -55,8 +55,8 @@ void rig_use_samples(client_rig *rig, uint32_t samples_x, uint32_t samples_y,
                      unsigned texture_log2);
 /* As rig_open, with images that are pictures, not JPEGs. */
 void rig_use_pictures(client_rig *rig, unsigned texture_log2);
-/* As rig_open, with heights of codec trained, which can leave out sides. */
-void rig_use_trained(client_rig *rig);
+/* As rig_use_samples, with heights of codec trained, which can leave out sides. */
+void rig_use_trained(client_rig *rig, uint32_t samples_x, uint32_t samples_y);
 /* As rig_open, with a filled void (pack_fixture_hole). */
 void rig_use_filled(client_rig *rig);
 /* As rig_open, with nothing stored below level 1. */
