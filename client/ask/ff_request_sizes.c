@@ -49,7 +49,7 @@ uint32_t ff_requests_answer_bytes(ff_requests *requests, enum ff_kind kind, unsi
 void ff_request_learn_bytes(ff_requests *requests, const ff_request *request, uint32_t bytes)
 {
     unsigned at = ff_request_level(request), kind = request->kind;
-    FF_ASSERT(bytes > 0 && bytes <= UINT32_MAX / 16);
+    FF_ASSERT(bytes > 0 && kind < FF_KIND_COUNT);
     uint32_t *mean_q4 = requests->answer_q4[kind];
     if (ff_kind[kind].asks == FF_ASKS_NODE && !(requests->met[kind] >> at & 1u))
         for (unsigned level = 0; level <= FF_KEY_LEVEL_MAX; level++)

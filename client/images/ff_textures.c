@@ -143,11 +143,17 @@ static uint32_t priority_of(const ff_terrain_info *info, ff_key key, const ff_vi
     return value > UINT32_MAX ? UINT32_MAX : (uint32_t)value;
 }
 
+static const ff_texture_wish *find_wish(const ff_texture_wish *list, uint32_t count, ff_key key)
+{
+    for (uint32_t i = 0; i < count; i++)
+        if (list[i].key == key) return &list[i];
+    return NULL;
+}
+
+/* One that is not there yet. */
 static void insert(ff_texture_wish *list, uint32_t *count, uint32_t capacity, ff_texture_wish wish)
 {
     FF_ASSERT(*count <= capacity);
-    for (uint32_t i = 0; i < *count; i++)
-        if (list[i].key == wish.key) return;
     uint32_t at = *count;
     if (at == capacity && (!capacity || list[at - 1].priority >= wish.priority)) return;
     if (*count < capacity)
@@ -424,10 +430,12 @@ static void wish_down(wisher *w, ff_key finest, uint32_t from, uint32_t to)
     uint32_t least = UINT32_MAX;
     FF_ASSERT(from <= to && to <= ff_key_level(finest));
     for (uint32_t level = from; level <= to; level++) {
-        ff_texture_wish wish = wish_of(w, on_the_way(finest, level));
+        ff_key key = on_the_way(finest, level);
+        const ff_texture_wish *there = find_wish(w->list, w->count, key);
+        ff_texture_wish wish = there ? *there : wish_of(w, key);
         if (wish.priority > least) wish.priority = least;
         least = wish.priority;
-        insert(w->list, &w->count, w->capacity, wish);
+        if (!there) insert(w->list, &w->count, w->capacity, wish);
     }
 }
 

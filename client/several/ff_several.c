@@ -176,16 +176,22 @@ void ff_several_look(ff_client *client)
 
 /* ---- who is asked ---- */
 
+/* Levels of images that a source has over a ground, of the layer that is shown. */
+static uint32_t image_levels(const ff_source *source, int own)
+{
+    FF_ASSERT(own >= 0 && own < FF_LAYER_GROUNDS);
+    return source->layer == FF_LAYER_NONE ? 0 : source->layers.levels[source->layer][own];
+}
+
 static int may_have(const ff_client *client, const ff_source *source, enum ff_kind kind, ff_key key,
                     unsigned lacks)
 {
     int own = ff_source_ground_of(source, key);
     if (own < 0 || lacks >> source->number & 1u) return 0;
     const ff_terrain_info *info = &source->intake.info[own];
-    if (kind == FF_KIND_TEXTURE &&
-        (info->texture_log2 != client->info.texture_log2 ||
-         (info->flags ^ client->info.flags) & FF_TERRAIN_PICTURES ||
-         ff_key_level(key) >= ff_client_layer_levels(client, &source->layers, (unsigned)own)))
+    if (kind == FF_KIND_TEXTURE && (info->texture_log2 != client->info.texture_log2 ||
+                                    (info->flags ^ client->info.flags) & FF_TERRAIN_PICTURES ||
+                                    ff_key_level(key) >= image_levels(source, own)))
         return 0;
     return !ff_refusals_final(&source->refusals, kind, ff_source_own_key(source, key));
 }

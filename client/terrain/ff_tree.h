@@ -155,10 +155,10 @@ const ff_terrain_info *ff_tree_grounds(const ff_tree *tree, uint32_t *count);
  * mask: a bit for each that serves a ground now; as a tree is made, source 0 serves all. */
 void ff_tree_set_sources(ff_tree *tree, uint32_t ground, uint8_t mask);
 /* A ground is known to be another pack's, of which it was taken for a part: its checksum. */
+void ff_tree_set_checksum(ff_tree *tree, uint32_t ground, uint32_t checksum);
 /* Another layer of images is shown over a ground: ff_terrain_show_images. */
 void ff_tree_show_images(ff_tree *tree, uint32_t ground, const ff_terrain_info *told,
                          uint32_t levels);
-void ff_tree_set_checksum(ff_tree *tree, uint32_t ground, uint32_t checksum);
 /* A source has answered that it has no refinement of a node. Told only where there may be several.
  */
 void ff_tree_lacks(ff_tree *tree, ff_key key, unsigned source);

@@ -127,7 +127,7 @@ typedef struct ff_get_panorama {
     int32_t front_wu;
     int32_t back_wu;             /* Hybrid's z_back_s: nor is ground farther from O */
     uint16_t face_size;          /* texels a side, 16..FF_FACE_SIZE_MAX */
-    uint8_t quality;             /* JPEG quality 1..100 */
+    uint8_t quality;             /* of the paint, 1..100 */
     uint8_t face_count;          /* 1..6 */
     uint8_t face[FF_FACE_COUNT]; /* enum ff_face_name, in the order in which they are to come */
     uint8_t layer;               /* of its images; not in the message: LAYER told it */
@@ -148,7 +148,7 @@ typedef struct ff_get_far {
     uint16_t focal;        /* texels a unit of tangent: FF_FAR_FOCAL_MIN..FF_FAR_FOCAL_MAX */
     uint16_t down;         /* texels below O's horizon that anybody looks at, 1..2 * FOCAL_MAX */
     uint8_t paint_shift;   /* texels of the paint are 2^this as large, 0..3 */
-    uint8_t quality;       /* JPEG quality of the paint, 1..100; 0: no paint */
+    uint8_t quality;       /* of the paint, 1..100; 0: no paint */
     uint8_t tolerance_q2;  /* quarter texels that a fin may be off; 0: no fins */
     uint8_t sector_count;  /* 1..FF_FAR_SECTORS */
     uint8_t sector[FF_FAR_SECTORS]; /* all different, in the order in which they are to come */

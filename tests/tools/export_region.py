@@ -69,12 +69,12 @@ def fly(pack, *options):
     return json.loads(done.stdout)
 
 
-def last_picture(pack, *options):
-    """The picture a flight ends with, as bytes of its PNG."""
-    made = os.path.join(work, "frames")
-    shutil.rmtree(made, ignore_errors=True)
-    fly(pack, "--png", made, "--every", 1, *options)
-    return open(os.path.join(made, max(os.listdir(made))), "rb").read()
+def fly_to(frames, pack, *options):
+    """What fly tells, and the picture that the flight ends with, as bytes of its PNG."""
+    frames = os.path.join(work, frames)
+    shutil.rmtree(frames, ignore_errors=True)
+    told = fly(pack, "--png", frames, "--every", 1, *options)
+    return told, open(os.path.join(frames, max(os.listdir(frames))), "rb").read()
 
 
 def refused_part(pattern, pack, out, *options, code=1):
@@ -165,10 +165,11 @@ def _():
         # a part has six bytes more in all: on a slow link something would come a frame later
         within = "--link", "lan", "--path", "hover", "--start", 0.5, "--height", 60, "--settle", 0, "--seconds", 40 if FULL else 16, "--view", 2000, "--entry", "off", "--panorama", "off"
         for memory in ("4M", "1M") if FULL else ("4M",) if log2 == 10 else ("1M",):
-            whole, ours = fly(f"land{log2}.ffp", *within, "--memory", memory), fly("part.ffp", *within, "--memory", memory, "--truth", f"land{log2}.ffp")
+            whole, there = fly_to("whole", f"land{log2}.ffp", *within, "--memory", memory)
+            ours, here = fly_to("part", "part.ffp", *within, "--memory", memory, "--truth", f"land{log2}.ffp")
             assert (ours["bytes_images"] > 0) == (memory == "4M"), ours["bytes_images"]
             if ours["bytes_images"]:  # a part's images come a level at a time; the same ones, but for bytes that say what has none
-                assert last_picture("part.ffp", *within, "--memory", memory) == last_picture(f"land{log2}.ffp", *within, "--memory", memory)
+                assert here == there
             else:
                 for key in "geometry_hash", "request_hash", "frame_hash", "err_px_rms":
                     assert whole[key] == ours[key], (log2, key, whole[key], ours[key])
