@@ -125,6 +125,7 @@ static int check_desc(const ff_client_desc *desc)
         desc->panorama.enabled > FF_PANORAMA_AUTO)
         return FF_ERR_ARGUMENT;
     if (desc->backend && !desc->surface_api) return FF_ERR_ARGUMENT;
+    if (desc->first_answer_ms > FF_FIRST_ANSWER_MS_MAX) return FF_ERR_ARGUMENT;
     if (desc->layer && !ff_layer_name_ok(desc->layer)) return FF_ERR_ARGUMENT;
     int rc = check_sources(desc);
     if (rc != FF_OK) return rc;

@@ -114,17 +114,28 @@ static int is_stale(ff_client *client, ff_source *source)
     return elsewhere;
 }
 
-/* From a place to another along an axis, as near as numbers go. */
-static int32_t away_wu(int32_t to_wu, int32_t from_wu)
+static int32_t place_wu(int64_t along_wu)
 {
-    int64_t away = (int64_t)to_wu - from_wu;
-    return away < -INT32_MAX ? -INT32_MAX : away > INT32_MAX ? INT32_MAX : (int32_t)away;
+    return along_wu < -INT32_MAX  ? -INT32_MAX
+           : along_wu > INT32_MAX ? INT32_MAX
+                                  : (int32_t)along_wu;
+}
+
+/* Where the viewer is likely to be when the source's answer comes, in the client's frame. */
+static void place_then(const ff_client *client, ff_source *source, const c3d_camera *camera,
+                       int32_t then_wu[3])
+{
+    ff_stream_shared shared;
+    ff_stream_get_shared(&source->stream, &shared);
+    memcpy(then_wu, camera->pos_wu, sizeof camera->pos_wu);
+    (void)ff_motion_predict(&client->motion, shared.rtt_us, then_wu);
 }
 
 void ff_client_want_view(ff_client *client, ff_source *source, const ff_view *view,
                          const ff_quality *quality)
 {
     ff_get_view asked = { 0 };
+    int32_t then_wu[3];
     if (!source->io || !source->serves || client->desc.no_views || source->no_views) return;
     if (ff_requests_out(&source->requests, FF_KIND_VIEW, 0)) {
         if (is_stale(client, source)) ff_requests_cancel(&source->requests, FF_KIND_VIEW, 0);
@@ -133,10 +144,12 @@ void ff_client_want_view(ff_client *client, ff_source *source, const ff_view *vi
     if (!name_wishes(client, source, &asked)) return;
     name_edge(client, source, &asked);
     describe(client, source, &view->camera, quality, &asked);
-    ff_shape_leave(&client->info, &view->frame, view->camera.pos_wu, asked.position_wu);
+    place_then(client, source, &view->camera, then_wu);
+    ff_shape_leave(&client->info, &view->frame, then_wu, asked.position_wu);
     /* the server's world begins at its own ground */
-    asked.position_wu[0] = away_wu(asked.position_wu[0], source->ground[0].south_west_wu[0]);
-    asked.position_wu[1] = away_wu(asked.position_wu[1], source->ground[0].south_west_wu[1]);
+    for (int i = 0; i < 2; i++)
+        asked.position_wu[i] = place_wu((int64_t)asked.position_wu[i] -
+                                        source->ground[0].south_west_wu[i]);
     ff_requests_want_view(&source->requests, &asked);
 }
 
@@ -165,7 +178,10 @@ void ff_client_greet_view(ff_client *client, const c3d_camera *camera)
     ff_requests_rank_begin(&client->first.requests);
     if (!ff_requests_out(&client->first.requests, FF_KIND_VIEW, 0)) {
         describe(client, &client->first, camera, &quality, &asked);
-        memcpy(asked.position_wu, camera->pos_wu, sizeof asked.position_wu);
+        for (int i = 0; i < 3; i++)
+            asked.position_wu[i] = place_wu(camera->pos_wu[i] +
+                                            (int64_t)client->desc.velocity_wu_s[i] *
+                                                client->desc.first_answer_ms / 1000);
         ff_requests_want_view(&client->first.requests, &asked);
     }
     ff_requests_rank_end(&client->first.requests);

@@ -51,6 +51,22 @@ static void complete(fly_options *options)
     if (options->check == SYS_UNSET) options->check = options->audit;
 }
 
+/* A tape holds cameras, what the link did, and layers chosen: no other way to the client. */
+static int fits_tape(const fly_options *options)
+{
+    for (unsigned i = 0; i < options->events.count; i++) switch (options->events.event[i].kind) {
+            case FLY_LOW_BATTERY:
+            case FLY_BATTERY_OK:
+            case FLY_INTERRUPTION:
+            case FLY_RESUME:
+            case FLY_PANORAMA_ON:
+            case FLY_PANORAMA_OFF:
+            case FLY_BUDGET: return 0;
+            default: break;
+        }
+    return 1;
+}
+
 int fly_options_parse(fly_options *options, int argc, char **argv)
 {
     *options = (fly_options){ .seconds = -1,
@@ -63,9 +79,10 @@ int fly_options_parse(fly_options *options, int argc, char **argv)
     int rc = sys_options_parse(&program, options, argc, argv);
     if (rc) return rc;
     complete(options);
-    if (options->tape_path && (options->server || options->events.count || options->events_path ||
+    if (options->tape_path && (options->server || !fits_tape(options) || options->events_path ||
                                options->balance.mode != FF_BALANCE_OFF))
-        return fail("--tape records simulated flights without events and without --balance");
+        return fail("--tape records simulated flights without --balance, --events and events of "
+                    "battery, interruption, panorama and budget");
     if (options->locals.count && options->tape_path)
         return fail("--tape records flights of one source: without --local");
     if (options->truths.count && !options->audit) return fail("--truth needs --audit on");

@@ -149,7 +149,8 @@ extern const sys_option_type fly_events_option;
     OPTION(sys_real, sample_s, "sample", "S", "1", FLY_INTERVAL, "time between rows") \
     OPTION(sys_text, tape_path, "tape", "FILE", NULL, SYS_ANY, \
            "records all that comes to the client, for farfield-handheld --tape (not with " \
-           "--server, --event, --balance)")
+           "--server, --balance, --events, nor with events of battery, interruption, panorama " \
+           "and budget)")
 /* clang-format on */
 
 typedef struct fly_options {

@@ -37,6 +37,19 @@ static int open_ground(fly_world *world)
     return 0;
 }
 
+/* How the flight begins, and when its first answer may come: as a device knows it that has a
+ * satellite receiver and knows its radio. */
+static void foresee_start(fly_world *world)
+{
+    c3d_camera here = { 0 }, later = { 0 };
+    fly_path_at(&world->path, 0, &here);
+    fly_path_at(&world->path, 1, &later);
+    for (int i = 0; i < 3; i++) world->velocity_wu_s[i] = later.pos_wu[i] - here.pos_wu[i];
+    world->first_answer_ms = sim_link_answer_ms(&world->options->link);
+    if (world->first_answer_ms > FF_FIRST_ANSWER_MS_MAX)
+        world->first_answer_ms = FF_FIRST_ANSWER_MS_MAX;
+}
+
 static int open_link(fly_world *world)
 {
     const fly_options *options = world->options;
@@ -44,6 +57,7 @@ static int open_link(fly_world *world)
         int rc = sys_tcp_client(&world->tcp, options->server, &world->stream);
         return rc == FF_OK ? 0 : fail(options->server, rc);
     }
+    foresee_start(world);
     world->link = sim_link_create(&options->link, options->seed);
     if (!world->link)
         return fail("link", options->link.way[SIM_DOWN].trace || options->link.way[SIM_UP].trace
@@ -68,7 +82,9 @@ static int open_tape(fly_world *world)
                            .panorama = options->panorama,
                            .far = options->far,
                            .hidden = (enum ff_hidden)options->hidden,
-                           .no_views = !options->views };
+                           .no_views = !options->views,
+                           .first_answer_ms = world->first_answer_ms };
+    memcpy(head.velocity_wu_s, world->velocity_wu_s, sizeof head.velocity_wu_s);
     int rc = options->tape_path
                  ? sim_tape_record(&world->tape, options->tape_path, &head, &world->stream)
                  : FF_OK;
@@ -139,6 +155,7 @@ int fly_world_layer(fly_world *world, const char *name)
         return -1;
     }
     fly_reference_layer(&world->reference, (unsigned)number);
+    if (world->tape.file) sim_tape_layer(&world->tape, wanted);
     int rc = ff_client_set_layer(world->client, wanted);
     return rc == FF_OK ? 0 : fail("--layer", rc);
 }
@@ -164,10 +181,12 @@ static int open_client(fly_world *world)
                             .use_plain_arrays = (uint8_t)options->plain_arrays,
                             /* to whom a server is a stranger, so is its ground */
                             .place_known = options->server == NULL,
+                            .first_answer_ms = world->first_answer_ms,
                             .no_views = !options->views,
                             .no_entry = !options->entry,
                             .no_reserve = !options->reserve,
                             .hidden = (enum ff_hidden)options->hidden };
+    memcpy(desc.velocity_wu_s, world->velocity_wu_s, sizeof desc.velocity_wu_s);
     desc.backend = backend_of(options->backend);
     desc.frame_format = options->backend == FLY_SOFT ? C3D_RGBA8888 : C3D_RGB565;
     int rc = ff_client_create(&desc, &world->client);

@@ -34,6 +34,9 @@ typedef struct fly_world {
     fly_reference reference; /* pack NULL: no reference is drawn */
     void *memory;
     ff_client *client;
+    /* what the client is told of its start, as ff_client_desc */
+    int32_t velocity_wu_s[3];
+    uint32_t first_answer_ms;
 } fly_world;
 
 /* 0, or -1 with one line on stderr. Call close in both cases. `options` must outlive the world. */

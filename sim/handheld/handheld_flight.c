@@ -65,6 +65,10 @@ ff_client_desc handheld_client_desc(const handheld *device)
                              .backend = device->surface ? c3d_backend_soft() : NULL,
                              .use_plain_arrays = 1,
                              .place_known = head != NULL, /* as of who recorded it */
+                             .velocity_wu_s = { head ? head->velocity_wu_s[0] : 0,
+                                                head ? head->velocity_wu_s[1] : 0,
+                                                head ? head->velocity_wu_s[2] : 0 },
+                             .first_answer_ms = head ? head->first_answer_ms : 0,
                              .no_views = head ? head->no_views : 0,
                              .layer = options->layer,
                              .no_textures = (uint8_t)options->no_textures,
@@ -190,6 +194,10 @@ static int fly_tape(handheld *device)
         if (step.kind == SIM_TAPE_END) break;
         if (step.kind == SIM_TAPE_WORK) {
             (void)work(device, step.now_us);
+            continue;
+        }
+        if (step.kind == SIM_TAPE_LAYER) {
+            (void)ff_client_set_layer(device->client, step.shows_none ? NULL : step.layer);
             continue;
         }
         if (step.flying && !flying) handheld_mark_start();

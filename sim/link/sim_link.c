@@ -42,6 +42,13 @@ static int64_t link_time(sim_link *link, int64_t now_us)
     return time_us;
 }
 
+uint32_t sim_link_answer_ms(const sim_link_desc *desc)
+{
+    uint64_t us = 0;
+    for (int way = 0; way < 2; way++) us += desc->way[way].delay_us + desc->way[way].jitter_us / 2u;
+    return (uint32_t)(us / 1000);
+}
+
 sim_link *sim_link_create(const sim_link_desc *desc, uint64_t seed)
 {
     sim_link *link = calloc(1, sizeof *link);

@@ -43,6 +43,10 @@ typedef struct sim_link_desc {
 const sim_link_desc *sim_link_profile(const char *name);
 const sim_link_desc *sim_link_profile_at(unsigned index);
 
+/* How long it takes on average until what is answered at once is there, without what transmitting
+ * takes: who knows the kind of a link knows this beforehand. */
+uint32_t sim_link_answer_ms(const sim_link_desc *desc);
+
 /* A profile's name, then changes: "gprs,cut_every_ms=10000". FF_OK, FF_ERR_NOT_FOUND (no such
  * profile), FF_ERR_ARGUMENT. */
 int sim_link_parse(const char *spec, sim_link_desc *desc);

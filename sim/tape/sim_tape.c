@@ -77,7 +77,9 @@ static void take_head(sim_tape_player *player)
                              .hidden = n[18] == FF_HIDDEN_FETCHED ? FF_HIDDEN_FETCHED
                                        : n[18] == FF_HIDDEN_DRAWN ? FF_HIDDEN_DRAWN
                                                                   : FF_HIDDEN_LEFT_OUT,
-                             .no_views = n[19] != 0 };
+                             .no_views = n[19] != 0,
+                             .velocity_wu_s = { n[26], n[27], n[28] },
+                             .first_answer_ms = (uint32_t)n[29] };
     *q = (ff_quality){ .measure = n[3] == FF_MEASURE_PIXELS ? FF_MEASURE_PIXELS
                                                             : FF_MEASURE_DISTANCE,
                        .c_q8 = n[4],
@@ -129,6 +131,16 @@ static void take_camera(sim_tape_player *player, sim_tape_step *step)
     step->flying = (int)take(player, 1);
 }
 
+static int take_layer(sim_tape_player *player, sim_tape_step *step)
+{
+    int32_t count = take_i32(player);
+    if (count > FF_LAYER_NAME_MAX || count > player->end - player->at) return FF_ERR_FORMAT;
+    step->kind = SIM_TAPE_LAYER;
+    step->shows_none = count < 0;
+    for (int32_t i = 0; i < count; i++) step->layer[i] = (char)*player->at++;
+    return FF_OK;
+}
+
 int sim_tape_next(sim_tape_player *player, sim_tape_step *step)
 {
     memset(step, 0, sizeof *step);
@@ -144,6 +156,7 @@ int sim_tape_next(sim_tape_player *player, sim_tape_step *step)
         take_camera(player, step);
         return FF_OK;
     }
+    if (begins(player, 'L', 4)) return take_layer(player, step);
     if (begins(player, 'E', 16)) {
         step->kind = SIM_TAPE_END;
         step->geometry_hash = take(player, 8);

@@ -2,7 +2,7 @@
  * machine, another back end) can be flown through the very same flight without server and link.
  * farfield-fly records, farfield-handheld plays.
  *
- * Little endian. "fftape 4", then SIM_TAPE_HEAD signed 32-bit numbers (sim_tape_head), then
+ * Little endian. "fftape 5", then SIM_TAPE_HEAD signed 32-bit numbers (sim_tape_head), then
  * records, each begun by a letter:
  *   W time:i64               ff_client_work
  *   U time:i64 x y z yaw pitch roll focal:i32 flying:u8
@@ -11,6 +11,7 @@
  *                            brought nothing are not recorded
  *   S value:i32 hash:u32     what send answered, and FNV-1a of the bytes that send was offered
  *   C value:i32              what reconnect answered
+ *   L count:i32 name...      ff_client_set_layer by a name of so many bytes; -1: none is shown
  *   E geometry:u64 requests:u64
  *                            the end: the client's two hashes
  */
@@ -30,6 +31,8 @@ typedef struct sim_tape_head {
     ff_far_desc far;
     enum ff_hidden hidden;
     uint8_t no_views;
+    int32_t velocity_wu_s[3];
+    uint32_t first_answer_ms;
 } sim_tape_head;
 
 /* ---- recording ---- */
@@ -45,11 +48,13 @@ int sim_tape_record(sim_tape_recorder *recorder, const char *path, const sim_tap
 void sim_tape_work(sim_tape_recorder *recorder, int64_t now_us);
 void sim_tape_frame(sim_tape_recorder *recorder, int64_t now_us, const c3d_camera *camera,
                     int flying);
+/* The name is given to ff_client_set_layer. */
+void sim_tape_layer(sim_tape_recorder *recorder, const char *name);
 /* Ends and closes the tape: FF_OK, or FF_ERR_SYSTEM when not all of it could be written. */
 int sim_tape_finish(sim_tape_recorder *recorder, uint64_t geometry_hash, uint64_t request_hash);
 
 /* ---- playing ---- */
-enum sim_tape_kind { SIM_TAPE_WORK, SIM_TAPE_FRAME, SIM_TAPE_END };
+enum sim_tape_kind { SIM_TAPE_WORK, SIM_TAPE_FRAME, SIM_TAPE_LAYER, SIM_TAPE_END };
 
 typedef struct sim_tape_step {
     enum sim_tape_kind kind;
@@ -57,6 +62,8 @@ typedef struct sim_tape_step {
     int flying;                           /* of a frame */
     c3d_camera camera;                    /* of a frame */
     uint64_t geometry_hash, request_hash; /* of the end */
+    char layer[FF_LAYER_NAME_MAX + 1];    /* of a layer */
+    int shows_none;                       /* of a layer: no images are shown */
 } sim_tape_step;
 
 typedef struct sim_tape_player {

@@ -1,6 +1,8 @@
 /* Recording a flight's tape. */
 #include "sim_tape_local.h"
 
+#include <string.h>
+
 static void put(FILE *file, uint64_t value, unsigned bytes)
 {
     for (unsigned i = 0; i < bytes; i++) fputc((int)(value >> (8 * i) & 0xFF), file);
@@ -74,7 +76,11 @@ static void put_head(FILE *file, const sim_tape_head *head)
                                             f->coarse,
                                             f->paint_shift,
                                             f->quality,
-                                            f->tolerance_q2 };
+                                            f->tolerance_q2,
+                                            head->velocity_wu_s[0],
+                                            head->velocity_wu_s[1],
+                                            head->velocity_wu_s[2],
+                                            (int32_t)head->first_answer_ms };
     fwrite(SIM_TAPE_MAGIC, 1, SIM_TAPE_MAGIC_BYTES, file);
     for (unsigned i = 0; i < SIM_TAPE_HEAD; i++) put(file, (uint32_t)number[i], 4);
 }
@@ -110,6 +116,13 @@ void sim_tape_frame(sim_tape_recorder *recorder, int64_t now_us, const c3d_camer
     put(recorder->file, (uint64_t)now_us, 8);
     for (unsigned i = 0; i < 7; i++) put(recorder->file, (uint32_t)number[i], 4);
     put(recorder->file, flying != 0, 1);
+}
+
+void sim_tape_layer(sim_tape_recorder *recorder, const char *name)
+{
+    size_t count = name ? strlen(name) : 0;
+    put_record(recorder->file, 'L', name ? (int32_t)count : -1);
+    if (name) fwrite(name, 1, count, recorder->file);
 }
 
 int sim_tape_finish(sim_tape_recorder *recorder, uint64_t geometry_hash, uint64_t request_hash)

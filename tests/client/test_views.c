@@ -111,6 +111,51 @@ static void the_greeting_brings_a_known_place(void **state)
     rig_close(&rig);
 }
 
+/* On a slow link the viewer is somewhere else when the answer comes. */
+static void the_greeting_asks_for_where_the_viewer_will_be(void **state)
+{
+    (void)state;
+    client_rig rig;
+    rig_open(&rig, 0);
+    rig.desc.place_known = 1;
+    rig.desc.velocity_wu_s[0] = 40 * FF_WU_PER_METRE;
+    rig.desc.velocity_wu_s[1] = -20 * FF_WU_PER_METRE;
+    rig.desc.first_answer_ms = 6000;
+    rig.silent_at = 0;
+    rig_client(&rig, 2 * MB);
+    for (int i = 0; i < 20; i++) rig_step(&rig, 50000);
+    const ff_get_view *asked = &rig.client->first.requests.view;
+    assert_int_equal(rig.asked[FF_KIND_VIEW], 1);
+    assert_int_equal(asked->position_wu[0], rig.camera.pos_wu[0] + 240 * FF_WU_PER_METRE);
+    assert_int_equal(asked->position_wu[1], rig.camera.pos_wu[1] - 120 * FF_WU_PER_METRE);
+    assert_int_equal(asked->position_wu[2], rig.camera.pos_wu[2]);
+    rig_close(&rig);
+}
+
+static void a_view_is_of_where_the_viewer_will_be(void **state)
+{
+    (void)state;
+    client_rig rig;
+    rig_open(&rig, 0);
+    rig.desc.no_reserve = 1;
+    rig_client(&rig, 2 * MB);
+    assert_true(rig_settle(&rig, 400));
+    for (int i = 0; i < 40; i++) {
+        rig.camera.pos_wu[0] += 2 * FF_WU_PER_METRE;
+        rig_step(&rig, 50000);
+    }
+    unsigned before = rig.asked[FF_KIND_VIEW];
+    rig.camera.yaw += 32768;
+    for (int i = 0; i < 4 && rig.asked[FF_KIND_VIEW] == before; i++) rig_step(&rig, 50000);
+    assert_int_equal(rig.asked[FF_KIND_VIEW], before + 1);
+    const ff_get_view *asked = &rig.client->first.requests.view;
+    int32_t ahead_wu = (int32_t)(40 * FF_WU_PER_METRE * rig_stats(&rig).rtt_ms / 1000);
+    assert_true(ahead_wu > 0);
+    assert_in_range(asked->position_wu[0] - rig.camera.pos_wu[0], ahead_wu * 7 / 8,
+                    ahead_wu * 9 / 8 + FF_WU_PER_METRE);
+    rig_close(&rig);
+}
+
 static void a_leap_is_answered_at_once(void **state)
 {
     (void)state;
@@ -333,6 +378,8 @@ int main(void)
         cmocka_unit_test(all_levels_come_in_one_answer),
         cmocka_unit_test(far_ground_comes_as_coarsely_as_asked_for),
         cmocka_unit_test(the_greeting_brings_a_known_place),
+        cmocka_unit_test(the_greeting_asks_for_where_the_viewer_will_be),
+        cmocka_unit_test(a_view_is_of_where_the_viewer_will_be),
         cmocka_unit_test(a_leap_is_answered_at_once),
         cmocka_unit_test(refused_views_are_asked_for_singly),
         cmocka_unit_test(damaged_records_are_left_out),

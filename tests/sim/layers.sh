@@ -100,6 +100,9 @@ is 's["none"]["bytes_images"] == 0 and s["none"]["textures_held"] == 0 and s["no
 flies later both --layer off --event 1:layer=autumn
 same later second 9
 result $? "chosen where there was none"
+flies taped both --layer autumn --event 4:layer= --event 6:layer=off --backend soft565 --tape "$work/tape"
+"$bin/farfield-handheld" --tape "$work/tape" >"$work/played.log" 2>"$work/played.err"
+result $? "a tape plays a flight in which layers are chosen"
 flies unknown both --layer winter
 [ $? != 0 ] && tail -1 "$work/unknown.err" | grep -q "no layer of this name; it has: one without a name autumn"
 result $? "an unknown one is refused, with those that there are"
