@@ -88,6 +88,7 @@ void ff_client_default_desc(ff_client_desc *desc)
     default_panorama(&desc->panorama, desc->width);
     default_far(desc);
     desc->no_textures |= !ff_textures_built;
+    desc->use_map &= ff_contours_built && desc->backend;
     desc->about &= FF_ABOUT_KNOWN;
 }
 
@@ -343,6 +344,15 @@ void ff_client_set_far(ff_client *client, const ff_far_desc *far)
     } else if (client->desc.far.enabled && !client->economy) {
         ff_client_start_over(client); /* the block was shared out without sets, or with panoramas */
     }
+}
+
+int ff_client_set_map(ff_client *client, const ff_map_show *map)
+{
+    if (!client->desc.use_map || !client->desc.backend) return FF_ERR_UNSUPPORTED;
+    if (map->contour_wu && map->contour_wu < FF_CONTOUR_WU_MIN) return FF_ERR_ARGUMENT;
+    client->dirty |= memcmp(&client->map, map, sizeof *map) != 0;
+    client->map = *map;
+    return FF_OK;
 }
 
 void ff_client_set_show(ff_client *client, unsigned show)

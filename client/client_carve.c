@@ -101,6 +101,7 @@ static int carve_view(ff_client *client, const ff_budget *budget)
     view->part = take(client, budget, FF_POOL_fin_indices);
     view->index = take(client, budget, FF_POOL_strip_indices);
     view->kept = take(client, budget, FF_POOL_kept);
+    c3d_vertex *ends = take(client, budget, FF_POOL_contours);
     FF_ASSERT(view->entry_count >= FF_ENTRIES_MIN && view->entry_count <= FF_ENTRIES_MAX);
     if (!client->device) return FF_OK;
     /* a mesh for each entry, one for a node without, and the sky's */
@@ -111,6 +112,7 @@ static int carve_view(ff_client *client, const ff_budget *budget)
     ff_strips *strips = ff_arena_take(&client->arena, sizeof *strips);
     int rc = strips ? ff_terrain_view_strips(view, client->info.node_log2, strips) : FF_ERR_MEMORY;
     ff_arena_back_to(&client->arena, mark);
+    if (rc == FF_OK) rc = ff_contours_make(&view->contours, client->device, ends);
     ff_sky_make(&client->sky, client->device);
     return rc;
 }

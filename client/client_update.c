@@ -319,6 +319,18 @@ static void draw_sky(ff_client *client)
     c3d_end(client->device);
 }
 
+/* The viewer's, over a map of it. */
+static void draw_place(ff_client *client)
+{
+    const ff_view *view = &client->last_view;
+    int32_t place_wu[3];
+    int64_t offset_wu[3];
+    ff_shape_enter(&client->info, &view->frame, client->map.place_wu, place_wu);
+    for (int axis = 0; axis < 3; axis++)
+        offset_wu[axis] = (int64_t)place_wu[axis] - view->camera.pos_wu[axis];
+    ff_contours_point(&client->view.contours, offset_wu);
+}
+
 void ff_client_draw(ff_client *client)
 {
     if (!client->device || !client->has_camera) return;
@@ -335,7 +347,9 @@ void ff_client_draw(ff_client *client)
     const ff_drawn *list;
     uint32_t count = ff_tree_drawn(client->tree, &list);
     if (client->sets) ff_sets_aim(client->sets, &frame.camera);
+    client->view.contours.interval_wu = client->map.contour_wu;
     ff_terrain_view_draw(&client->view, list, count, &frame.camera, client->show);
     if (client->sets) ff_sets_draw(client->sets, &frame.camera);
+    if (client->map.has_place) draw_place(client);
     c3d_end(client->device);
 }

@@ -29,6 +29,7 @@ extern "C" {
 #endif
 
 #include "ff_figures.h"
+#include "map/ff_map.h"
 #include "terrain/ff_tree.h"
 #include "../protocol/far/ff_far.h"
 #include "../protocol/ff_pack.h"
@@ -171,6 +172,7 @@ typedef struct ff_client_desc {
     ff_balance_desc balance;
     uint8_t use_thread;       /* 1: ff_client_create starts a thread that calls ff_client_work */
     uint8_t use_plain_arrays; /* 1: no vertex buffers */
+    uint8_t use_map;          /* 1: room for what ff_client_set_map draws, 3 KB */
     /* 1: cameras given before a terrain is known are places on it already, as of a device that
      * knows which ground it is on: what they show is asked for with the greeting, a round trip
      * earlier */
@@ -226,7 +228,7 @@ typedef struct ff_pool_use {
     uint8_t inside;      /* lies inside the pool before it that is not inside another one */
     uint32_t held, high; /* in use now, and the most ever at once */
 } ff_pool_use;
-#define FF_POOLS_MAX 24
+#define FF_POOLS_MAX 28
 
 size_t ff_client_bytes_min(void);
 /* FF_OK or FF_ERR_ARGUMENT, FF_ERR_MEMORY, FF_ERR_UNSUPPORTED, and errors of the pack. */
@@ -292,6 +294,18 @@ enum ff_show { FF_SHOW_MODES(X) };
 /* clang-format on */
 /* `show`: bits of enum ff_show. */
 void ff_client_set_show(ff_client *client, unsigned show);
+
+/* What a map has over its ground (client/map/ff_map.h makes its camera, scale and interval); a
+ * flight may have it, too. */
+typedef struct ff_map_show {
+    int32_t contour_wu;  /* contours lie so far apart in height; 0: none */
+    int32_t place_wu[3]; /* the viewer's, as a camera's: a point is drawn there */
+    uint8_t has_place;
+} ff_map_show;
+/* From the next picture on. FF_OK; FF_ERR_UNSUPPORTED: without desc.use_map or a back end, or not
+ * built; FF_ERR_ARGUMENT: contours less than FF_CONTOUR_WU_MIN apart. */
+#define FF_CONTOUR_WU_MIN 64
+int ff_client_set_map(ff_client *client, const ff_map_show *map);
 
 /* NULL until the terrain is known. */
 const ff_terrain_info *ff_client_terrain(const ff_client *client);

@@ -18,6 +18,7 @@ FF_STATIC_ASSERT((FF_FACE_SIZE_MAX & (FF_FACE_SIZE_MAX - 1)) == 0);
 FF_STATIC_ASSERT((FF_ENTRIES_MAX & (FF_ENTRIES_MAX - 1)) == 0 && FF_ENTRIES_MIN < FF_ENTRIES_MAX);
 FF_STATIC_ASSERT((FF_ENTRIES_MIN & (FF_ENTRIES_MIN - 1)) == 0);
 FF_STATIC_ASSERT(FF_ENTRIES_MAX + 2 + FF_PANORAMA_MESHES <= UINT16_MAX);
+FF_STATIC_ASSERT(FF_CONTOUR_INDICES <= FF_SKY_VERTICES);
 FF_STATIC_ASSERT(FF_SKY_VERTICES <= UINT16_MAX && FF_RECEIVED_MIN < FF_RECEIVED_MAX);
 /* all shares of a block together leave an eighth of it, which is the tree's */
 #define BLOCK (16u << 20)
@@ -114,20 +115,22 @@ static void describe_device(ff_budget *b, uint32_t entries, int buffers)
     FF_ASSERT(entries <= FF_ENTRIES_MAX);
     FF_ASSERT(b->pool[FF_POOL_textures].count + 1 + faces + paint <= UINT16_MAX);
     b->entries = entries;
-    b->device = (c3d_desc){
-        .surface_api = b->desc->surface_api,
-        .use_vertex_buffers = (uint8_t)buffers,
-        .mesh_count = (uint16_t)(entries + 1 /* spare */ + 1 /* sky */ + faces + fins),
-        .strip_count = (uint16_t)(FF_STRIP_COUNT_MAX + EXTRA_STRIPS + fins + (part > 0)),
-        .texture_count = (uint16_t)(b->pool[FF_POOL_textures].count + 1 /* the caller's text */ +
-                                    faces + paint),
-        .mesh_vertices_max = (uint16_t)vertices,
-        .strip_indices_max = b->indices + EXTRA_INDICES + fins * (b->heights * 3 / 2) + part,
-        .width = b->desc->width,
-        .height = b->desc->height,
-        .frame_format = b->desc->frame_format,
-        .texture_bytes = texel_bytes(b)
-    };
+    b->device = (c3d_desc){ .surface_api = b->desc->surface_api,
+                            .use_vertex_buffers = (uint8_t)buffers,
+                            .mesh_count = (uint16_t)(entries + 1 /* spare */ + 1 /* sky */ + faces +
+                                                     fins + b->desc->use_map),
+                            .strip_count = (uint16_t)(FF_STRIP_COUNT_MAX + EXTRA_STRIPS + fins +
+                                                      (part > 0) + b->desc->use_map),
+                            .texture_count = (uint16_t)(b->pool[FF_POOL_textures].count +
+                                                        1 /* the caller's text */ + faces + paint),
+                            .mesh_vertices_max = (uint16_t)vertices,
+                            .strip_indices_max = b->indices + EXTRA_INDICES +
+                                                 fins * (b->heights * 3 / 2) + part +
+                                                 (b->desc->use_map ? FF_CONTOUR_INDICES : 0),
+                            .width = b->desc->width,
+                            .height = b->desc->height,
+                            .frame_format = b->desc->frame_format,
+                            .texture_bytes = texel_bytes(b) };
 }
 
 /* Bytes of the device described, or without some of its parts. */

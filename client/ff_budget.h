@@ -129,10 +129,14 @@
       ff_strips_part(b->heights), 1, UINT16_MAX, \
       n * sizeof(uint16_t), ff_strips_part(b->heights), ff_strips_part(b->heights), \
       "of the one strip that is being made, of fins or of a part of a node") \
-    X(strip_indices, b->parts, \
+    X(strip_indices, b->parts || b->desc->use_map, \
       b->indices, 1, UINT16_MAX, \
       n * sizeof(uint16_t), b->indices, b->indices, \
-      "the masks of a node, for parts of them") \
+      "the masks of a node, for parts of them and for contours") \
+    X(contours, b->desc->use_map, \
+      FF_CONTOUR_INDICES, FF_CONTOUR_INDICES, FF_CONTOUR_INDICES, \
+      n * sizeof(c3d_vertex), FF_CONTOUR_INDICES, FF_CONTOUR_INDICES, \
+      "ends of lines of equal height that are being drawn") \
     X(kept, b->far_side != 0, \
       b->entries + 1, 1, FF_ENTRIES_MAX + 1, \
       n * sizeof(ff_view_kept), from->client->view.held, from->client->view.held_high, \

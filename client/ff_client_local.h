@@ -79,6 +79,7 @@ struct ff_client {
     uint8_t unranked;
     uint8_t resting; /* the viewer stays where it is */
     unsigned show;
+    ff_map_show map;
     c3d_camera camera; /* of the last update, as given but in last_view's frame */
     ff_view last_view;
     uint64_t frame_hash, geometry_hash;

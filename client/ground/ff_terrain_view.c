@@ -266,6 +266,20 @@ static void draw_thrown(ff_terrain_view *view, const ff_terrain_info *info, cons
     c3d_strip_free(view->device, part);
 }
 
+static void draw_contours(ff_terrain_view *view, const ff_terrain_info *info, const ff_drawn *drawn,
+                          const c3d_draw *ground)
+{
+    const ff_contour_node node = { info, drawn->heights, view->vertices, ground };
+    uint8_t strip[5];
+    unsigned strips = ff_strips_for(drawn->coarser, strip);
+    ff_tree_vertices(view->tree, drawn, 0, view->vertices);
+    ff_ground_frame_vertices(&view->frame, info, drawn, view->vertices, view->heights_per_node);
+    for (unsigned i = 0; i < strips; i++)
+        ff_contours_strip(&view->contours, &node, view->index + view->first[strip[i]],
+                          view->length[strip[i]]);
+    ff_contours_flush(&view->contours, ground);
+}
+
 void ff_terrain_view_new_frame(ff_terrain_view *view) { view->frame.set = 0; }
 
 void ff_terrain_view_draw(ff_terrain_view *view, const ff_drawn *list, uint32_t count,
@@ -292,6 +306,7 @@ void ff_terrain_view_draw(ff_terrain_view *view, const ff_drawn *list, uint32_t 
         else
             draw_outfit(view, info, drawn, parts, &draw);
         if (show) ff_show_over(view, drawn, &draw, show);
+        if (view->contours.interval_wu) draw_contours(view, info, drawn, &ground);
         if (!entry && mesh.id) c3d_mesh_free(view->device, mesh);
     }
 }

@@ -10,6 +10,7 @@
 
 #include "ff_ground_frame.h"
 #include "../images/ff_textures.h"
+#include "../map/ff_contours.h"
 #include "../terrain/ff_strips.h"
 #include "../terrain/ff_tree.h"
 
@@ -57,12 +58,13 @@ typedef struct ff_terrain_view {
     ff_throws throws; /* lay NULL: none */
     /* for throws, NULL where nothing is thrown: of each entry, and one for nodes that lack one */
     ff_view_kept *kept; /* zeroed */
-    /* for throws and textures, NULL where there are neither: the indices of all strips, and room
-     * for those of a node without some squares */
+    /* for throws, textures and contours, NULL where there are none: the indices of all strips, and
+     * room for those of a node without some squares */
     uint16_t *index, *part;
     ff_texel_look look; /* of the picture being drawn */
     ff_wear *wear;      /* scratch, FF_WEAR_MAX, for textures: of the node being drawn */
     uint16_t first[FF_STRIP_COUNT_MAX], length[FF_STRIP_COUNT_MAX];
+    ff_contours contours; /* interval_wu 0: none; else `index` is needed, too */
 } ff_terrain_view;
 
 /* Makes the strips on the device. `strips` is scratch, free afterwards. FF_OK or FF_ERR_MEMORY. */

@@ -27,6 +27,8 @@
            "how fast") \
     OPTION(sys_whole, height_m, "height", "M", "100", SYS_WHOLE(1, SIM_HEIGHT_M_MAX, "m"), \
            "above the ground drawn") \
+    OPTION(sys_whole, map_m, "map", "M", "0", SYS_WHOLE(0, 20000, "m"), \
+           "with --pack: a map with contours of so many metres a pixel, in place of a flight") \
     OPTION(sys_text, layer, "layer", "LAYER", NULL, SYS_ANY, \
            "the layer of images that is shown, as the flight on a tape had it; default: the first") \
     OPTION(sys_flag, no_textures, "no-textures", NULL, NULL, SYS_ANY, \
@@ -78,6 +80,7 @@ typedef struct handheld {
     void *memory; /* the block: the one allocation */
     size_t memory_bytes;
     ff_client *client;
+    uint8_t map_told; /* 1: its quality is that of a map */
     handheld_totals totals;
     uint32_t about_frames; /* in which it was told whose the ground is */
 } handheld;
@@ -101,6 +104,10 @@ void handheld_plan(const handheld *device);
 void handheld_hud(handheld *device);
 /* What of what the pack says of itself is shown there: FF_ABOUT_BIT of each; 0 without HUD. */
 uint32_t handheld_hud_about(void);
+
+/* Turns a flight's camera into that of a map (--map) of where it is, and has contours drawn; does
+ * nothing in a build without maps. */
+void handheld_map(handheld *device, int32_t ground_wu, c3d_camera *camera);
 
 /* ---- marks: where tools/scripts/tcg_count.c cuts time into phases; each is a function of its own
  * that does next to nothing ---- */

@@ -64,6 +64,7 @@ ff_client_desc handheld_client_desc(const handheld *device)
                              .surface_api = device->surface_api,
                              .backend = device->surface ? c3d_backend_soft() : NULL,
                              .use_plain_arrays = 1,
+                             .use_map = options->map_m > 0,
                              .place_known = head != NULL, /* as of who recorded it */
                              .velocity_wu_s = { head ? head->velocity_wu_s[0] : 0,
                                                 head ? head->velocity_wu_s[1] : 0,
@@ -212,7 +213,7 @@ static int fly_tape(handheld *device)
 }
 
 /* Places the camera: straight along the terrain's diagonal, above the ground as drawn. */
-static void place(const handheld *device, uint32_t frame, c3d_camera *camera)
+static void place(handheld *device, uint32_t frame, c3d_camera *camera)
 {
     const ff_terrain_info *info = ff_client_terrain(device->client);
     int64_t flown_wu = (int64_t)frame * FRAME_US * device->options->speed_kmh / 3600 *
@@ -233,6 +234,7 @@ static void place(const handheld *device, uint32_t frame, c3d_camera *camera)
     if (!ff_client_ground(device->client, camera->pos_wu[0], camera->pos_wu[1], &ground_wu))
         ground_wu = ff_height_wu(info, info->height_max);
     camera->pos_wu[2] = ground_wu + (int32_t)device->options->height_m * FF_WU_PER_METRE;
+    if (device->options->map_m) handheld_map(device, ground_wu, camera);
 }
 
 /* Frame `frame` of the flight; time is real with a server, else counted. */

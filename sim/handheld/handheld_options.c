@@ -32,6 +32,7 @@ int handheld_options_parse(handheld_options *options, int argc, char **argv)
     if (!options->pack_path + !options->server + !options->tape_path != 2)
         return fail("one of --pack, --server and --tape is wanted; try --help");
     if (options->plan && !options->pack_path) return fail("--plan: --pack is wanted with it");
+    if (options->map_m && !options->pack_path) return fail("--map: --pack is wanted with it");
     if (options->tape_path && options->balance.mode != FF_BALANCE_OFF)
         return fail("--balance: not with --tape");
     if ((options->fb_path || options->hash) && options->no_pictures)

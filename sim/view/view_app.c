@@ -84,6 +84,7 @@ static int create_client(view_app *app, const char *backend)
                             .far = app->far,
                             .balance = o->balance,
                             .use_thread = 1,
+                            .use_map = 1,
                             .layer = o->layer,
                             .about = SIM_ABOUT_SHOWN,
                             .use_plain_arrays = (uint8_t)o->plain_arrays };
@@ -178,6 +179,7 @@ int view_app_open(view_app *app, const view_options *options)
     if (!app->memory) return view_fail("out of memory");
     view_fly_init(&app->fly, options->size.width, options->size.height, options->fov_brad16);
     app->fly.camera.yaw = options->yaw_brad16;
+    app->map.part_q16 = 65536;
     if (open_files(app) || open_terrain(app) || open_picture(app)) return -1;
     app->show = options->show;
     ff_client_set_show(app->client, app->show);
@@ -219,7 +221,8 @@ static int draw(view_app *app)
     app->redraw = 0;
     app->drawn++;
     if (!device) return view_fail("--memory: too little for a picture");
-    if (app->show_hud || app->show_pools || app->show_help) view_hud_draw(&app->hud, app, device);
+    if (app->show_hud || app->show_pools || app->show_help || view_map_shown(&app->map))
+        view_hud_draw(&app->hud, app, device);
     int rc = app->screenshot ? write_screenshot(app, device) : 0;
     if (app->blit.device && view_blit_show(&app->blit, device) < 0)
         return view_fail("cannot show the picture in the window");
@@ -272,6 +275,33 @@ static void place_pilot(view_app *app)
         view_fly_place(&app->fly, info, !o->at.given, o->at.x_wu, o->at.y_wu, o->at.above_wu);
 }
 
+/* --map: as soon as the ground is known below the pilot, who is set over it then. */
+static void begin_map(view_app *app)
+{
+    const c3d_camera *camera = &app->fly.camera;
+    int32_t ground_wu;
+    if (app->map_begun || !app->options->map) return;
+    if (!ff_client_ground(app->client, camera->pos_wu[0], camera->pos_wu[1], &ground_wu)) return;
+    (void)view_fly_step(&app->fly, 0, app->client);
+    view_map_toggle(&app->map, &app->fly, app->client, 0);
+    app->map_begun = 1;
+}
+
+/* The pilot's view, or the map's. */
+static c3d_camera see(view_app *app, int64_t dt_us)
+{
+    c3d_camera camera = app->fly.camera;
+    if (!app->fly.placed) return camera;
+    begin_map(app);
+    uint8_t map_quality = (uint8_t)view_map_step(&app->map, &app->fly, dt_us, app->client, &camera);
+    if (map_quality != app->map_quality) {
+        app->map_quality = map_quality;
+        view_set_quality(app);
+    }
+    view_map_tell(&app->map, &app->fly, app->client);
+    return camera;
+}
+
 /* Once of each pack that is not shown, why. */
 static void tell_what_fits_not(view_app *app)
 {
@@ -294,7 +324,8 @@ static void tell_layer(view_app *app)
 /* 1 when the text on the picture would change; looked at a few times a second. */
 static int hud_changed(view_app *app, int64_t now_us)
 {
-    if ((!app->show_hud && !app->show_pools) || now_us < app->hud_us) return 0;
+    if ((!app->show_hud && !app->show_pools && !view_map_shown(&app->map)) || now_us < app->hud_us)
+        return 0;
     app->hud_us = now_us + HUD_EVERY_US;
     return view_hud_update(&app->hud, app);
 }
@@ -306,8 +337,10 @@ static int turn(view_app *app, int64_t now_us, int64_t dt_us)
     run_script(app);
     while (app->surface_api->poll(app->surface, &event)) view_handle(app, &event);
     place_pilot(app);
-    if (!app->interrupted) view_fly_step(&app->fly, app->settling ? 0 : dt_us, app->client);
-    int changed = ff_client_update(app->client, now_us, &app->fly.camera);
+    if (app->settling || app->interrupted) dt_us = 0;
+    if (!app->interrupted && !app->map.wanted) view_fly_step(&app->fly, dt_us, app->client);
+    c3d_camera camera = see(app, dt_us);
+    int changed = ff_client_update(app->client, now_us, &camera);
     tell_what_fits_not(app);
     tell_layer(app);
     if (app->settling) watch_settling(app, changed);

@@ -9,6 +9,7 @@
 #include "view_fly.h"
 #include "view_hud.h"
 #include "view_link.h"
+#include "view_map.h"
 #include "view_options.h"
 #include "view_script.h"
 
@@ -27,6 +28,9 @@ typedef struct view_app {
     ff_client *client;
     view_blit blit; /* with --backend soft: its picture into the window */
     view_fly fly;
+    view_map map;
+    uint8_t map_quality; /* 1: the ground has the map's */
+    uint8_t map_begun;   /* --map has been done */
     view_hud hud;
     view_script script;
     FILE *events;
@@ -54,5 +58,7 @@ int view_app_close(view_app *app);
 
 /* view_input.c: one event from the window, the script or a function key. */
 void view_handle(view_app *app, const sys_event *event);
+/* Tells the client how fine its ground is to be, in flight or as a map. */
+void view_set_quality(view_app *app);
 
 #endif

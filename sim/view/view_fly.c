@@ -15,18 +15,6 @@
 #define BEYOND_WU           (20000 * FF_WU_PER_METRE) /* how far outside the terrain one may fly */
 #define HEIGHT_WU_MAX       (1000000 * FF_WU_PER_METRE)
 
-enum flying_key {
-    FORWARD = 1,
-    BACK = 2,
-    LEFT = 4,
-    RIGHT = 8,
-    TURN_LEFT = 16,
-    TURN_RIGHT = 32,
-    RISE = 64,
-    SINK = 128,
-    FAST = 256
-};
-
 static int32_t clamp(int64_t value, int64_t low, int64_t high)
 {
     return (int32_t)(value < low ? low : value > high ? high : value);
@@ -66,17 +54,17 @@ int view_fly_key(view_fly *fly, int code, int down)
     static const struct {
         int code;
         unsigned bit;
-    } keys[] = { { 'w', FORWARD },
-                 { SYS_KEY_UP, FORWARD },
-                 { 's', BACK },
-                 { SYS_KEY_DOWN, BACK },
-                 { 'a', LEFT },
-                 { 'd', RIGHT },
-                 { SYS_KEY_LEFT, TURN_LEFT },
-                 { SYS_KEY_RIGHT, TURN_RIGHT },
-                 { SYS_KEY_PAGE_UP, RISE },
-                 { SYS_KEY_PAGE_DOWN, SINK },
-                 { SYS_KEY_SHIFT, FAST } };
+    } keys[] = { { 'w', VIEW_FORWARD },
+                 { SYS_KEY_UP, VIEW_FORWARD },
+                 { 's', VIEW_BACK },
+                 { SYS_KEY_DOWN, VIEW_BACK },
+                 { 'a', VIEW_LEFT },
+                 { 'd', VIEW_RIGHT },
+                 { SYS_KEY_LEFT, VIEW_TURN_LEFT },
+                 { SYS_KEY_RIGHT, VIEW_TURN_RIGHT },
+                 { SYS_KEY_PAGE_UP, VIEW_RISE },
+                 { SYS_KEY_PAGE_DOWN, VIEW_SINK },
+                 { SYS_KEY_SHIFT, VIEW_FAST } };
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         if (keys[i].code != code) continue;
         fly->pressed = down ? fly->pressed | keys[i].bit : fly->pressed & ~keys[i].bit;
@@ -159,19 +147,23 @@ int view_fly_step(view_fly *fly, int64_t dt_us, const ff_client *client)
 {
     const c3d_camera before = fly->camera;
     unsigned pressed = fly->pressed;
-    int64_t way = (int64_t)fly->speed_wu_s * (pressed & FAST ? FAST_FACTOR : 1) * dt_us / 1000000;
+    int64_t way = (int64_t)fly->speed_wu_s * (pressed & VIEW_FAST ? FAST_FACTOR : 1) * dt_us /
+                  1000000;
     int turn = (int)(TURN_BRAD16_S * dt_us / 1000000);
     int32_t ground_wu;
     const ff_terrain_info *info = ff_client_terrain(client);
     if (!fly->placed || !info) return 0;
-    look(fly, turn * (!!(pressed & TURN_RIGHT) - !!(pressed & TURN_LEFT)), 0);
-    move(fly, way * ((pressed & FORWARD || fly->cruise) - !!(pressed & BACK)),
-         way * (!!(pressed & RIGHT) - !!(pressed & LEFT)));
-    if (pressed & (RISE | SINK)) {
-        int64_t z_wu = fly->camera.pos_wu[2] + way * (!!(pressed & RISE) - !!(pressed & SINK));
+    look(fly, turn * (!!(pressed & VIEW_TURN_RIGHT) - !!(pressed & VIEW_TURN_LEFT)), 0);
+    move(fly, way * ((pressed & VIEW_FORWARD || fly->cruise) - !!(pressed & VIEW_BACK)),
+         way * (!!(pressed & VIEW_RIGHT) - !!(pressed & VIEW_LEFT)));
+    if (pressed & (VIEW_RISE | VIEW_SINK)) {
+        int64_t z_wu = fly->camera.pos_wu[2] +
+                       way * (!!(pressed & VIEW_RISE) - !!(pressed & VIEW_SINK));
         fly->camera.pos_wu[2] = clamp(z_wu, -HEIGHT_WU_MAX, HEIGHT_WU_MAX);
     }
-    if (fly->cruise || pressed & (FORWARD | BACK | LEFT | RIGHT | RISE | SINK)) fly->above_wu = -1;
+    if (fly->cruise ||
+        pressed & (VIEW_FORWARD | VIEW_BACK | VIEW_LEFT | VIEW_RIGHT | VIEW_RISE | VIEW_SINK))
+        fly->above_wu = -1;
     stay_inside(fly, info);
     if (ff_client_ground(client, fly->camera.pos_wu[0], fly->camera.pos_wu[1], &ground_wu)) {
         if (fly->above_wu >= 0) fly->camera.pos_wu[2] = ground_wu + fly->above_wu;

@@ -7,13 +7,25 @@
 #define VIEW_SPEED_DEFAULT_WU_S 10667 /* 150 km/h */
 #define VIEW_START_ABOVE_WU     (500 * FF_WU_PER_METRE)
 
+enum view_flying_key {
+    VIEW_FORWARD = 1,
+    VIEW_BACK = 2,
+    VIEW_LEFT = 4,
+    VIEW_RIGHT = 8,
+    VIEW_TURN_LEFT = 16,
+    VIEW_TURN_RIGHT = 32,
+    VIEW_RISE = 64,
+    VIEW_SINK = 128,
+    VIEW_FAST = 256
+};
+
 typedef struct view_fly {
     c3d_camera camera;
     int32_t fov_brad16; /* horizontal */
     int32_t speed_wu_s;
     /* height over ground kept until the first move; negative: the pilot's own */
     int32_t above_wu;
-    unsigned pressed; /* bit per flying key held */
+    unsigned pressed; /* bits of enum view_flying_key, of the keys held */
     uint8_t cruise;   /* forward without a key */
     uint8_t placed;   /* the terrain is known and the start was chosen */
     uint8_t dragging;

@@ -26,7 +26,7 @@ static const char help[] = "w s a d   fly (or up, down)\n"
 #undef X
     /* clang-format on */
     "p far ground  l link\n"
-    "i images\n"
+    "i images  n map  c contours\n"
     "h text   k pools\n"
     "r start   esc quit\n"
     "f1 help   f2 position fix\n"
@@ -133,6 +133,26 @@ static void put_figures(view_hud *hud, const view_app *app)
     if (stats.low_power) put(hud, "low power\n");
 }
 
+/* What stands under the text while the map is shown: a scale, and an arrow to the north. */
+#define BAND_PX 22
+#define BAR_PX  120 /* the longest, of the window */
+
+static void put_map(view_hud *hud, const view_app *app)
+{
+    uint32_t metres;
+    const view_map *map = &app->map;
+    hud->bar_px = 0;
+    if (!view_map_shown(map)) return;
+    hud->bar_px = (int)ff_map_bar(map->px_wu_q8, BAR_PX, &metres) / scale_of(app);
+    hud->north = -map->map.yaw;
+    if (metres >= 1000)
+        put(hud, "%u km", metres / 1000);
+    else
+        put(hud, "%u m", metres);
+    put(hud, "  contours %d m  up is %d deg\n", map->told.contour_wu / FF_WU_PER_METRE,
+        (map->map.yaw & 65535) * 360 / 65536);
+}
+
 int view_hud_update(view_hud *hud, const view_app *app)
 {
     hud->text[0] = 0;
@@ -141,7 +161,32 @@ int view_hud_update(view_hud *hud, const view_app *app)
     else if (app->show_hud)
         put_figures(hud, app);
     if (app->show_help) put(hud, "\n%s", help);
+    put_map(hud, app);
     return strcmp(hud->text, hud->shown) != 0;
+}
+
+static void set_pixel(view_hud *hud, int x, int y)
+{
+    if (x < 0 || y < 0 || x >= VIEW_HUD_SIZE || y >= VIEW_HUD_SIZE) return;
+    memset(hud->rgba + 4 * (y * VIEW_HUD_SIZE + x), 0xFF, 4);
+}
+
+/* A bar with ticks at its ends, and beside it an arrow: a line with a blob at its head. */
+static void paint_band(view_hud *hud, int top)
+{
+    int x0 = MARGIN_PX, y = top + BAND_PX / 2, middle = x0 + BAR_PX + BAND_PX;
+    for (int x = 0; x <= hud->bar_px; x++)
+        for (int k = 0; k < 2; k++) set_pixel(hud, x0 + x, y + k);
+    for (int k = -4; k < 4; k++) {
+        set_pixel(hud, x0, y + k);
+        set_pixel(hud, x0 + hud->bar_px, y + k);
+    }
+    int32_t east = c3d_sin_q30(hud->north), north = c3d_cos_q30(hud->north);
+    for (int k = -9; k <= 9; k++) {
+        int x = middle + (int)((int64_t)k * east >> 30), down = y - (int)((int64_t)k * north >> 30);
+        for (int i = 0; i < (k > 5 ? 9 : 1); i++)
+            set_pixel(hud, x + (k > 5 ? i % 3 - 1 : 0), down + (k > 5 ? i / 3 - 1 : 0));
+    }
 }
 
 /* A dark ground as high as the text, then its lines. */
@@ -149,10 +194,13 @@ static void paint(view_hud *hud)
 {
     int rows = MARGIN_PX;
     for (const char *c = hud->text; *c; c++) rows += *c == '\n' ? C3D_TEXT_LINE_PX : 0;
+    int top = rows;
+    if (hud->bar_px) rows += BAND_PX;
     memset(hud->rgba, 0, sizeof hud->rgba);
     for (int i = 0; i < rows * VIEW_HUD_SIZE && i < VIEW_HUD_SIZE * VIEW_HUD_SIZE; i++)
         hud->rgba[4 * i + 3] = SHADE;
     c3d_text(hud->rgba, VIEW_HUD_SIZE, VIEW_HUD_SIZE, MARGIN_PX, MARGIN_PX, TEXT_COLOUR, hud->text);
+    if (hud->bar_px) paint_band(hud, top);
     memcpy(hud->shown, hud->text, sizeof hud->shown);
 }
 

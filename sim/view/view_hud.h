@@ -13,6 +13,8 @@ struct view_app;
 typedef struct view_hud {
     char text[VIEW_HUD_TEXT];  /* wanted */
     char shown[VIEW_HUD_TEXT]; /* in the texture */
+    int bar_px;                /* of the map's scale; 0: no map is shown */
+    int32_t north;             /* clockwise from up, brad16 */
     c3d_texture texture;
     const c3d_device *device; /* holds the texture; made for the terrain of this checksum */
     uint32_t checksum;

@@ -107,6 +107,18 @@ static int toggle_show(view_app *app, int code)
     return bit != 0;
 }
 
+void view_set_quality(view_app *app)
+{
+    ff_quality quality = app->quality;
+    if (app->map_quality) {
+        quality.measure = FF_MEASURE_PIXELS;
+        quality.error_px_q8 = FF_MAP_ERROR_PX_Q8;
+        quality.depth_max = 0;
+        quality.triangles_max = ff_map_triangles(app->fly.camera.width, app->fly.camera.height);
+    }
+    ff_client_set_quality(app->client, &quality);
+}
+
 static void change_quality(view_app *app, int finer)
 {
     ff_quality *quality = &app->quality;
@@ -117,7 +129,7 @@ static void change_quality(view_app *app, int finer)
                            : (int64_t)*value * QUALITY_STEPS / (QUALITY_STEPS + 1);
     if (changed < 16 || changed > 256 * 256) return;
     *value = (int32_t)changed;
-    ff_client_set_quality(app->client, quality);
+    view_set_quality(app);
 }
 
 static void start_again(view_app *app)
@@ -160,6 +172,8 @@ static void press(view_app *app, int code)
     switch (code) {
         case 'p': next_far(app); break;
         case 'i': next_layer(app); break;
+        case 'n': view_map_toggle(&app->map, &app->fly, app->client, 1); break;
+        case 'c': app->map.contours = !app->map.contours; break;
         case 'l':
             if (app->link) view_link_cycle(app->link);
             break;
@@ -228,8 +242,12 @@ void view_handle(view_app *app, const sys_event *event)
                 press(app, event->u.key.code);
             break;
         case SYS_EVENT_POINTER:
-            view_fly_pointer(&app->fly, event->u.pointer.action, event->u.pointer.x,
-                             event->u.pointer.y, event->u.pointer.button);
+            if (app->map.wanted)
+                view_map_pointer(&app->map, event->u.pointer.action, event->u.pointer.x,
+                                 event->u.pointer.y, event->u.pointer.button);
+            else
+                view_fly_pointer(&app->fly, event->u.pointer.action, event->u.pointer.x,
+                                 event->u.pointer.y, event->u.pointer.button);
             break;
         default: handle_device(app, event); break;
     }

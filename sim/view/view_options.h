@@ -37,6 +37,7 @@ extern const sys_option_type view_place_option;
     OPTION(sim_link_spec, link, "link", "SPEC", NULL, SYS_WORDS(no_link_words), \
            "link model between client and server; with PACK the server's logic runs inside this " \
            "program") \
+    OPTION(sys_flag, map, "map", NULL, NULL, SYS_ANY, "begins with the map") \
     OPTION(view_place, at, "at", "X,Y[,H]", NULL, SYS_ANY, \
            "starts there; default: the middle, 500 m up") \
     OPTION(sys_real, yaw_degrees, "yaw", "DEGREES", "0", SYS_REAL(-360, 360, "degrees"), \

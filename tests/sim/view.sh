@@ -265,6 +265,39 @@ done
 "$view" "$pack" --headless --link umts --panorama on --at 3840,300,900 --script "$work/toggles.txt" --json >"$work/said" 2>"$work/error"
 [ $? = 0 ] && [ "$(value bytes_down)" -gt 1000 ] && [ "$(value panoramas)" -ge 1 ]; result $? "a pack behind a link of its own, with panoramas"
 
+# ---- the map ----
+cat >"$work/map.txt" <<END
+0 settle
+0 screenshot $work/before.png
+1 key n
+3 screenshot $work/aslant.png
+40 settle
+41 screenshot $work/map.png
+42 down pageup
+52 up pageup
+53 settle
+54 screenshot $work/wide.png
+55 key n
+90 settle
+91 screenshot $work/after.png
+92 key c
+93 screenshot $work/lines.png
+94 key c
+95 screenshot $work/without.png
+END
+for backend in gles1 soft; do
+    "$view" "$pack" --headless --backend $backend --at 3840,2000,400 --no-hud --script "$work/map.txt" >"$work/said" 2>"$work/error"
+    [ $? = 0 ] && [ ! -s "$work/error" ]; result $? "a map and back, with $backend"
+    read -r _ aslant map wide after lines without < <(pictures differences "$work/before.png" "$work"/{aslant,map,wide,after,lines,without}.png)
+    [ "${aslant:-0}" -gt 20000 ] && [ "$map" -gt 20000 ] && [ "$wide" -gt 20000 ] && [ "$after" -lt 500 ]; result $? "the flight is as it was: aslant $aslant, map $map, after $after"
+    [ "${lines:-0}" -gt 1500 ] && [ "$without" = "$after" ]; result $? "contours in flight, and off again: $lines"
+    read -r before map after < <(pictures red "$work"/{before,map,after}.png)
+    [ "$before" = 0 ] && [ "$map" -ge 30 ] && [ "$after" = 0 ]; result $? "the place of the viewer is a point: $map"
+done
+"$view" "$pack" --headless --backend soft --at 3840,2000,400 --no-hud --map --script <(printf '0 settle\n1 screenshot %s\n' "$work/first.png") >"$work/said" 2>"$work/error"
+read -r _ first < <(pictures differences "$work/map.png" "$work/first.png")
+[ "${first:--1}" -ge 0 ] && [ "$first" -lt 500 ]; result $? "begins with the map: $first"
+
 # ---- wrong words ----
 python3 tests/rig/hills.py 65 "$work/far.raw" &&
     python3 tests/rig/placed.py "$work/far.raw" 65 0,0,65,65 1 30 32632 "$work/far.vrt" &&

@@ -71,7 +71,8 @@ client/ask          protocol/ platform/sys.h
 client/source       client/ask protocol/ platform/sys.h
 client/source/link  client/ask protocol/ platform/sys.h
 client/images       client/ask client/terrain protocol/ common3d
-client/ground       client/farfield.h client/images client/terrain protocol/ common3d
+client/map          protocol common3d
+client/ground       client/farfield.h client/images client/map client/terrain protocol/ common3d
 client/panorama     client client/ask client/ahead protocol/ common3d
 client/far          client client/ask client/ahead client/ground client/terrain protocol/ common3d
 client/balance      client

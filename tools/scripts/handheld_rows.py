@@ -44,6 +44,7 @@ PLACES = {  # what each counts to under each mark; None: it has nothing to do th
     "client/far/ff_intake_far.o": (JPEG, None, None),
     "client/ground/": (None, MEASURE, STITCH),
     "client/images/": (JPEG, IMAGES, STITCH),
+    "client/map/": (None, MEASURE, STITCH),
     "client/panorama/": (None, PANORAMA, STITCH),
     "client/panorama/ff_intake_face.o": (JPEG, None, None),
     "client/several/": (None, WISHES, None),
