@@ -128,7 +128,7 @@ static void place_then(const ff_client *client, ff_source *source, const c3d_cam
     ff_stream_shared shared;
     ff_stream_get_shared(&source->stream, &shared);
     memcpy(then_wu, camera->pos_wu, sizeof camera->pos_wu);
-    (void)ff_motion_predict(&client->motion, shared.rtt_us, then_wu);
+    (void)ff_motion_level(&client->motion, shared.rtt_us, then_wu);
 }
 
 void ff_client_want_view(ff_client *client, ff_source *source, const ff_view *view,
@@ -178,7 +178,8 @@ void ff_client_greet_view(ff_client *client, const c3d_camera *camera)
     ff_requests_rank_begin(&client->first.requests);
     if (!ff_requests_out(&client->first.requests, FF_KIND_VIEW, 0)) {
         describe(client, &client->first, camera, &quality, &asked);
-        for (int i = 0; i < 3; i++)
+        memcpy(asked.position_wu, camera->pos_wu, sizeof asked.position_wu);
+        for (int i = 0; i < 2; i++)
             asked.position_wu[i] = place_wu(camera->pos_wu[i] +
                                             (int64_t)client->desc.velocity_wu_s[i] *
                                                 client->desc.first_answer_ms / 1000);

@@ -177,12 +177,12 @@ typedef struct ff_client_desc {
      * knows which ground it is on: what they show is asked for with the greeting, a round trip
      * earlier */
     uint8_t place_known;
-    /* How the viewer moves as the client starts, wu a second, as a satellite receiver tells it, and
-     * how long a first answer is likely to take, from the kind of the link or from the last time
-     * (ff_client_stats.rtt_ms), at most FF_FIRST_ANSWER_MS_MAX. What goes out with the greeting is
-     * then what shows when it comes: on a link of seconds the viewer is somewhere else by then. 0:
-     * not known. */
-    int32_t velocity_wu_s[3];
+    /* How the viewer moves over ground as the client starts, wu a second, as a satellite receiver
+     * tells it, and how long a first answer is likely to take, from the kind of the link or from
+     * the last time (ff_client_stats.rtt_ms), at most FF_FIRST_ANSWER_MS_MAX. What goes out with
+     * the greeting is then what shows when it comes: on a link of seconds the viewer is somewhere
+     * else by then. 0: not known. */
+    int32_t velocity_wu_s[2];
     uint32_t first_answer_ms;
     uint8_t no_textures; /* 1: images of the terrain are not asked for */
     const char *layer;   /* of images that is shown, as ff_client_set_layer; NULL: the first */

@@ -44,7 +44,7 @@ static void foresee_start(fly_world *world)
     c3d_camera here = { 0 }, later = { 0 };
     fly_path_at(&world->path, 0, &here);
     fly_path_at(&world->path, 1, &later);
-    for (int i = 0; i < 3; i++) world->velocity_wu_s[i] = later.pos_wu[i] - here.pos_wu[i];
+    for (int i = 0; i < 2; i++) world->velocity_wu_s[i] = later.pos_wu[i] - here.pos_wu[i];
     world->first_answer_ms = sim_link_answer_ms(&world->options->link);
     if (world->first_answer_ms > FF_FIRST_ANSWER_MS_MAX)
         world->first_answer_ms = FF_FIRST_ANSWER_MS_MAX;

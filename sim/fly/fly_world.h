@@ -35,7 +35,7 @@ typedef struct fly_world {
     void *memory;
     ff_client *client;
     /* what the client is told of its start, as ff_client_desc */
-    int32_t velocity_wu_s[3];
+    int32_t velocity_wu_s[2];
     uint32_t first_answer_ms;
 } fly_world;
 

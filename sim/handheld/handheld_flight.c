@@ -67,8 +67,7 @@ ff_client_desc handheld_client_desc(const handheld *device)
                              .use_map = options->map_m > 0,
                              .place_known = head != NULL, /* as of who recorded it */
                              .velocity_wu_s = { head ? head->velocity_wu_s[0] : 0,
-                                                head ? head->velocity_wu_s[1] : 0,
-                                                head ? head->velocity_wu_s[2] : 0 },
+                                                head ? head->velocity_wu_s[1] : 0 },
                              .first_answer_ms = head ? head->first_answer_ms : 0,
                              .no_views = head ? head->no_views : 0,
                              .layer = options->layer,

@@ -78,8 +78,8 @@ static void take_head(sim_tape_player *player)
                                        : n[18] == FF_HIDDEN_DRAWN ? FF_HIDDEN_DRAWN
                                                                   : FF_HIDDEN_LEFT_OUT,
                              .no_views = n[19] != 0,
-                             .velocity_wu_s = { n[26], n[27], n[28] },
-                             .first_answer_ms = (uint32_t)n[29] };
+                             .velocity_wu_s = { n[26], n[27] },
+                             .first_answer_ms = (uint32_t)n[28] };
     *q = (ff_quality){ .measure = n[3] == FF_MEASURE_PIXELS ? FF_MEASURE_PIXELS
                                                             : FF_MEASURE_DISTANCE,
                        .c_q8 = n[4],

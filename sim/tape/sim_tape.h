@@ -31,7 +31,7 @@ typedef struct sim_tape_head {
     ff_far_desc far;
     enum ff_hidden hidden;
     uint8_t no_views;
-    int32_t velocity_wu_s[3];
+    int32_t velocity_wu_s[2];
     uint32_t first_answer_ms;
 } sim_tape_head;
 

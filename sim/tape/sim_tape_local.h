@@ -6,7 +6,7 @@
 
 #define SIM_TAPE_MAGIC       "fftape 5"
 #define SIM_TAPE_MAGIC_BYTES 8
-#define SIM_TAPE_HEAD        30 /* numbers */
+#define SIM_TAPE_HEAD        29 /* numbers */
 
 /* FNV-1a, 32 bits. */
 static inline uint32_t sim_tape_hash(const uint8_t *bytes, size_t count)

@@ -79,7 +79,6 @@ static void put_head(FILE *file, const sim_tape_head *head)
                                             f->tolerance_q2,
                                             head->velocity_wu_s[0],
                                             head->velocity_wu_s[1],
-                                            head->velocity_wu_s[2],
                                             (int32_t)head->first_answer_ms };
     fwrite(SIM_TAPE_MAGIC, 1, SIM_TAPE_MAGIC_BYTES, file);
     for (unsigned i = 0; i < SIM_TAPE_HEAD; i++) put(file, (uint32_t)number[i], 4);
