@@ -129,7 +129,7 @@ bench-codec: $(patsubst %,$(BUILD)/bin/farfield-%,bake export info train) $(DECO
 	    --decoder $(DECODE_PACK) --plugin $(TCG_COUNT) --peer-decoder $(DECODE_PEER) --peer-libs $(PEERS)/armel $(BENCH_OPTIONS)
 
 # ---- make test-cross: the unit tests that need no graphics library, on 32-bit ARM and on a big-endian machine ----
-CROSS_TESTS := key shape codec codec_trained range far message pack fixed predict panorama_rules shade strips texture_map tree tree_pools tree_view watertight link \
+CROSS_TESTS := key geo shape codec codec_trained range far message pack fixed predict panorama_rules shade strips texture_map tree tree_pools tree_view watertight link \
                stream client budget soft c3d c3d_dynamic
 CROSS_SRC := $(filter-out common3d/gl%,$(SRC_core)) $(filter-out platform/posix/png.c,$(SRC_platform)) server/session/ff_session.c \
              $(filter-out sim/link/sim_server.c sim/link/link_%,$(foreach d,sim/link sim/judge sim/tape,$(call srcs,$d))) \

@@ -24,6 +24,7 @@ $(call feature,labels, common3d/soft/soft_label.c, common3d/soft/soft_label_none
 $(call feature,grounds, client/terrain/ff_grounds.c client/terrain/ff_cover.c client/terrain/ff_seam.c client/terrain/ff_seam_dive.c client/terrain/ff_seam_rim.c client/several, \
     client/terrain/ff_grounds_none.c client/several/ff_several_none.c)
 $(call feature,map, client/map sim/handheld/handheld_map.c, client/map/ff_contours_none.c sim/handheld/handheld_map_none.c)
+$(call feature,geo, protocol/geo, protocol/geo/ff_geo_none.c)
 $(call feature,balance, client/balance, client/balance/ff_balance_none.c)
 
 # $(call device,SOURCES,FEATURES LEFT OUT)

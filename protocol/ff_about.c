@@ -117,10 +117,15 @@ uint32_t ff_about_whole(ff_list about, uint32_t checksum)
 
 int ff_about_get_projection(ff_list about, ff_about_projection *projection)
 {
-    const uint8_t *value;
+    const uint8_t *value = NULL;
     int bytes = ff_list_find(about, FF_ABOUT_PROJECTION, &value);
-    if (bytes < PROJECTION_BYTES) return FF_ERR_NOT_FOUND;
-    ff_reader in = { value, value + bytes, FF_OK };
+    return ff_about_read_projection(value, bytes, projection);
+}
+
+int ff_about_read_projection(const uint8_t *value, int byte_count, ff_about_projection *projection)
+{
+    if (byte_count < PROJECTION_BYTES) return FF_ERR_NOT_FOUND;
+    ff_reader in = { value, value + byte_count, FF_OK };
     projection->method = (uint16_t)ff_read_bytes(&in, 2);
     projection->semi_major_um = ff_read_signed(&in, 8);
     projection->inverse_flattening = ff_read_signed(&in, 8);

@@ -8,7 +8,8 @@
 #include "ff_layers.h"
 #include "ff_list.h"
 
-#define FF_ABOUT_BYTES_MAX 4096 /* of a whole list */
+#define FF_ABOUT_BYTES_MAX      4096 /* of a whole list */
+#define FF_ABOUT_PROJECTION_MAX 256
 
 /* clang-format off */
 /* X(ENTRY, name, type, form, most): names are those of farfield-info --json, `most` bytes */
@@ -19,7 +20,7 @@
     X(DATE,        date,            4, TEXT,    40) \
     X(VERTICAL,    vertical_datum,  5, TEXT,    100) \
     X(WKT,         projection_wkt,  6, TEXT,    2500) /* of the origin's reference system, WKT 2 */ \
-    X(PROJECTION,  projection,      7, NUMBERS, 256)  /* ff_about_projection */ \
+    X(PROJECTION,  projection,      7, NUMBERS, FF_ABOUT_PROJECTION_MAX) /* ff_about_projection */ \
     X(WHOLE,       part_of,         8, CHECKSUM, 4)   /* u32, of the pack that this one is cut from */ \
     X(LAYERS,      layers,          9, NAMES, FF_LAYERS_NAMES_MAX) /* ff_layers.h: of its images */
 
@@ -72,6 +73,8 @@ uint32_t ff_about_add_words(uint8_t *text, uint32_t byte_count, uint32_t room, c
                             uint32_t from_bytes);
 /* FF_OK, or FF_ERR_NOT_FOUND. Of a list that was checked. */
 int ff_about_get_projection(ff_list about, ff_about_projection *projection);
+/* The same of the entry's value; parameters stay in it. */
+int ff_about_read_projection(const uint8_t *value, int byte_count, ff_about_projection *projection);
 /* Parameter `number`: EPSG's code of it, and its value: angles in 10^-9 degrees, lengths in
  * micrometres, factors in 10^-12. */
 uint16_t ff_about_parameter(const ff_about_projection *projection, uint32_t number, int64_t *value);

@@ -47,6 +47,7 @@ rooms() {
 protocol            protocol/codec protocol/shape
 protocol/codec      protocol protocol/zlib
 protocol/far        protocol protocol/trained
+protocol/geo        protocol
 protocol/message    protocol protocol/codec protocol/far
 protocol/shape      protocol
 protocol/zlib       protocol
@@ -86,7 +87,7 @@ server/panorama     server/ground client/terrain client/ground client/images pro
 server/far          server/ground client/terrain client/ground client/images protocol/ common3d platform/sys.h
 server/net          server server/session server/panorama server/far protocol/ platform/sys.h
 server              server/ platform/options client/farfield.h protocol/ platform/sys.h
-sim/options         platform/options client/farfield.h
+sim/options         platform/options client/farfield.h protocol/shape
 sim/link            platform/options server/session server/panorama server/far client/farfield.h protocol/ platform/sys.h
 sim/judge           client/terrain client/images protocol/ common3d platform/sys.h
 sim/tape            client/farfield.h protocol/ platform/sys.h

@@ -36,6 +36,7 @@ PLACES = {  # what each counts to under each mark; None: it has nothing to do th
     "client/balance/": (None, MEASURE, STITCH),
     "client/client.o client/client_update.o client/client_figures.o": (LINK, MEASURE, STITCH),
     "client/client_carve.o client/ff_budget.o client/ff_arena.o": (None, PANORAMA, None),
+    "client/client_geo.o": (None, None, STITCH),
     "client/client_rank.o client/client_view.o": (None, WISHES, None),
     "client/client_source.o client/client_layers.o": (LINK, WISHES, None),
     "client/client_take.o": (None, TAKE_IN, None),
@@ -76,6 +77,7 @@ PLACES = {  # what each counts to under each mark; None: it has nothing to do th
     "protocol/codec/": (INFLATE, TAKE_IN, None),
     "protocol/codec/ff_decode.o": (INFLATE, TAKE_IN, STITCH),  # a node's error: is it within the view?
     "protocol/far/": (FINS, TAKE_IN, STITCH),
+    "protocol/geo/": (None, None, STITCH),
     "protocol/shape/": (LINK, MEASURE, STITCH),
     "protocol/message/": (LINK, None, None),
     "protocol/message/ff_message_view.o": (LINK, WISHES, None),
