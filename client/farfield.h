@@ -33,6 +33,7 @@ extern "C" {
 #include "terrain/ff_tree.h"
 #include "../protocol/far/ff_far.h"
 #include "../protocol/ff_pack.h"
+#include "../protocol/geo/ff_geo.h"
 
 #define FARFIELD_VERSION "0.1.0"
 
@@ -310,13 +311,19 @@ int ff_client_set_map(ff_client *client, const ff_map_show *map);
 /* NULL until the terrain is known. */
 const ff_terrain_info *ff_client_terrain(const ff_client *client);
 /* An entry of what the pack says of itself, of those in desc.about: its bytes in `value`, a text
- * without an end mark; FF_ERR_NOT_FOUND: the pack does not say, or it has not come yet;
+ * without an end mark; FF_ERR_AGAIN: it has not come yet; FF_ERR_NOT_FOUND: the pack does not say;
  * FF_ERR_FULL: `value` is too small; of a local pack what is wrong with it. */
 int ff_client_about(ff_client *client, enum ff_about_entry entry, void *value, size_t room);
 /* The same of one of several sources: 0 the first, 1 the first of desc.more. All of their
  * attributions are to be shown. */
 int ff_client_source_about(ff_client *client, unsigned source, enum ff_about_entry entry,
                            void *value, size_t room);
+/* Where on Earth the client's frame lies, for ff_geo_of, ff_geo_to and ff_geo_north
+ * (protocol/geo/ff_geo.h); desc.about has to have FF_ABOUT_BIT(FF_ABOUT_PROJECTION). Worth asking
+ * once for a terrain. FF_OK; FF_ERR_AGAIN: it is not known yet; FF_ERR_NOT_FOUND: the ground does
+ * not say; FF_ERR_UNSUPPORTED: it is projected by another method, or the build has no geo;
+ * FF_ERR_RANGE: what it says is no projection. */
+int ff_client_geo(ff_client *client, ff_geo *geo);
 /* FF_OK, or why a source gives nothing: FF_ERR_AGAIN, its server has not answered yet;
  * FF_ERR_UNSUPPORTED: its ground has no reference system in common with the first one's, or nodes
  * of another size; FF_ERR_RANGE: it lies too far away; FF_ERR_FULL. */

@@ -160,6 +160,81 @@ static void a_pack_on_the_device_is_read_at_once(void **state)
     rig_close(&rig);
 }
 
+/* Transverse Mercator of WGS84, meridian 9 E, as a pack says it. */
+static ff_list utm_32(uint8_t bytes[256])
+{
+    static const int64_t parameter[][2] = { { 8802, INT64_C(9000000000) },
+                                            { 8805, INT64_C(999600000000) },
+                                            { 8806, INT64_C(500000000000) } };
+    uint8_t value[128];
+    ff_writer out = { value, value + sizeof value, FF_OK }, list = { bytes, bytes + 256, FF_OK };
+    ff_write_bytes(&out, 9807, 2);
+    ff_write_bytes(&out, UINT64_C(6378137000000), 8);
+    ff_write_bytes(&out, UINT64_C(298257223563), 8);
+    ff_write_bytes(&out, 0, 8);
+    for (int i = 0; i < 3; i++) {
+        ff_write_bytes(&out, (uint64_t)parameter[i][0], 2);
+        ff_write_bytes(&out, (uint64_t)parameter[i][1], 8);
+    }
+    ff_list_write(&list, FF_ABOUT_PROJECTION, value, (uint32_t)(out.at - value));
+    return (ff_list){ bytes, (uint32_t)(list.at - bytes) };
+}
+
+static void assert_knows_where(client_rig *rig)
+{
+    ff_geo geo;
+    ff_geo_place place;
+    const int32_t corner_wu[3] = { 0, 0, 512 };
+    assert_int_equal(ff_client_geo(rig->client, &geo), FF_OK);
+    assert_int_equal(ff_geo_of(&geo, corner_wu, &place), FF_OK);
+    const ff_terrain_info *info = ff_client_terrain(rig->client);
+    ff_geo same = geo;
+    same.east_um = 0; /* the corner of the ground, from that of the plane */
+    same.north_um = 0;
+    const int32_t origin_wu[3] = { (int32_t)((info->origin_x_mm - 500000000) * 256 / 1000),
+                                   (int32_t)(info->origin_y_mm * 256 / 1000), 512 };
+    ff_geo_place again;
+    assert_int_equal(ff_geo_of(&same, origin_wu, &again), FF_OK);
+    assert_true(llabs(place.latitude_e9 - again.latitude_e9) < 40);
+    assert_true(llabs(place.longitude_e9 - again.longitude_e9) < 60);
+    assert_int_equal(place.height_mm, 2000);
+}
+
+static void where_on_earth_comes_with_what_the_pack_says(void **state)
+{
+    client_rig rig;
+    uint8_t bytes[256];
+    ff_geo geo;
+
+    (void)state;
+    for (int wanted = 0; wanted < 2; wanted++) {
+        rig_open(&rig, 0);
+        rig_use_about(&rig, utm_32(bytes));
+        if (wanted) rig.desc.about = FF_ABOUT_BIT(FF_ABOUT_PROJECTION);
+        rig_client(&rig, 2 * MB);
+        assert_int_equal(ff_client_geo(rig.client, &geo), FF_ERR_AGAIN);
+        assert_true(rig_settle(&rig, 400));
+        for (int i = 0; i < 50; i++) rig_step(&rig, 100000);
+        if (wanted)
+            assert_knows_where(&rig);
+        else
+            assert_int_equal(ff_client_geo(rig.client, &geo), FF_ERR_NOT_FOUND);
+        rig_close(&rig);
+    }
+    rig_open(&rig, 0);
+    rig_use_about(&rig, utm_32(bytes));
+    rig.desc.about = FF_ABOUT_BIT(FF_ABOUT_PROJECTION);
+    rig_local_client(&rig, 2 * MB);
+    assert_knows_where(&rig);
+    rig_close(&rig);
+    rig_open(&rig, 0);
+    rig_use_about(&rig, about); /* says other things */
+    rig.desc.about = FF_ABOUT_KNOWN;
+    rig_local_client(&rig, 2 * MB);
+    assert_int_equal(ff_client_geo(rig.client, &geo), FF_ERR_NOT_FOUND);
+    rig_close(&rig);
+}
+
 typedef struct source {
     const uint8_t *bytes;
     atomic_int inside, met;
@@ -225,7 +300,8 @@ static void answers_that_nobody_asked_for_are_nonsense(void **state)
     rig_client(&rig, 2 * MB);
     for (int i = 0; i < 200 && !rig_stats(&rig).protocol_errors; i++) rig_step(&rig, 100000);
     assert_int_equal(rig_stats(&rig).protocol_errors, 1);
-    assert_says(&rig, FF_ABOUT_NAME, NULL);
+    char value[8];
+    assert_int_equal(ff_client_about(rig.client, FF_ABOUT_NAME, value, sizeof value), FF_ERR_AGAIN);
     rig_close(&rig);
 }
 
@@ -263,6 +339,7 @@ int main(void)
         cmocka_unit_test(ground_goes_first),
         cmocka_unit_test(a_pack_that_says_nothing_is_an_empty_list),
         cmocka_unit_test(a_pack_on_the_device_is_read_at_once),
+        cmocka_unit_test(where_on_earth_comes_with_what_the_pack_says),
         cmocka_unit_test(a_pack_that_is_read_is_read_by_one_at_a_time),
         cmocka_unit_test(answers_that_nobody_asked_for_are_nonsense),
         cmocka_unit_test(a_server_of_another_version_is_told),

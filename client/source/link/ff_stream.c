@@ -55,6 +55,7 @@ int ff_stream_about_entry(ff_stream *stream, unsigned entry, uint8_t *value, siz
     sys_mutex_lock(&stream->intake->requests->mutex);
     ff_list list = { stream->about.bytes, stream->about.byte_count };
     int bytes = ff_list_find(list, entry, &found);
+    if (stream->about.state != FF_ABOUT_HERE) bytes = FF_ERR_AGAIN;
     if (bytes > 0 && (size_t)bytes > room) bytes = FF_ERR_FULL;
     if (bytes > 0) memcpy(value, found, (size_t)bytes);
     sys_mutex_unlock(&stream->intake->requests->mutex);

@@ -100,7 +100,8 @@ void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsign
 /* Before the first step: wants what the pack says of itself, those entries, in `bytes` of
  * ff_about_bytes_max(entries). */
 void ff_stream_want_about(ff_stream *stream, uint32_t entries, uint8_t *bytes);
-/* Copies an entry into `value`: its bytes, or FF_ERR_NOT_FOUND: it is not here, FF_ERR_FULL. */
+/* Copies an entry into `value`: its bytes, or FF_ERR_AGAIN: nothing has come yet; FF_ERR_NOT_FOUND:
+ * the pack does not say; FF_ERR_FULL. */
 int ff_stream_about_entry(ff_stream *stream, unsigned entry, uint8_t *value, size_t room);
 /* Sends, receives, decodes. 1 when anything moved. */
 int ff_stream_step(ff_stream *stream, int64_t now_us);
