@@ -196,11 +196,26 @@ static void judge_nothing(fly_sources *from)
     from->picture = (sim_picture_figures){ NAN, NAN, NAN };
 }
 
+/* Where on Earth the camera is, and where it looks from true north. */
+static void read_place(const fly_world *world, const c3d_camera *camera, fly_sources *from)
+{
+    ff_geo_place place;
+    int32_t north;
+    from->lat_deg = from->lon_deg = from->heading_true_deg = NAN;
+    if (world->geo_error != FF_OK || ff_geo_of(&world->geo, camera->pos_wu, &place) != FF_OK ||
+        ff_geo_north(&world->geo, camera->pos_wu, &north) != FF_OK)
+        return;
+    from->lat_deg = (double)place.latitude_e9 / 1e9;
+    from->lon_deg = (double)place.longitude_e9 / 1e9;
+    from->heading_true_deg = ((camera->yaw - north) & 65535) * 360 / 65536.0;
+}
+
 static int read_sources(fly_flight *flight, double t_s, fly_sources *from)
 {
     const ff_client *client = flight->world->client;
     from->t_s = t_s;
     from->camera = flight->camera;
+    read_place(flight->world, &flight->camera, from);
     from->geometry_hash = ff_client_geometry_hash(client);
     from->request_hash = ff_client_request_hash(client);
     ff_client_get_stats(client, &from->client);

@@ -47,7 +47,9 @@ static void complete(fly_options *options)
                             .face_size = (uint16_t)options->face_texels };
     options->far = SIM_FAR_DESC(options);
     int path = sys_word_index(path_words, options->path_text);
-    options->path = path < 0 ? FLY_RECORDED : (enum fly_path_kind)path;
+    options->path = options->to.given ? FLY_STRAIGHT
+                    : path < 0        ? FLY_RECORDED
+                                      : (enum fly_path_kind)path;
     if (options->check == SYS_UNSET) options->check = options->audit;
 }
 
@@ -79,6 +81,11 @@ int fly_options_parse(fly_options *options, int argc, char **argv)
     int rc = sys_options_parse(&program, options, argc, argv);
     if (rc) return rc;
     complete(options);
+    if (options->to.given && !options->at.given) return fail("--to needs --at");
+    if (options->to.given && strcmp(options->path_text, path_words[FLY_DIAGONAL]))
+        return fail("--to is a path of its own: without --path");
+    if (options->at.given && options->path == FLY_RECORDED)
+        return fail("--at: a recorded flight begins where it began");
     if (options->tape_path && (options->server || !fits_tape(options) || options->events_path ||
                                options->balance.mode != FF_BALANCE_OFF))
         return fail("--tape records simulated flights without --balance, --events and events of "
@@ -128,6 +135,7 @@ int fly_options_load(fly_options *options)
             options->seconds = fmax(0,
                                     recording->fix[recording->count - 1].t_s - options->settle_s);
     }
+    options->until_there = options->seconds < 0 && options->path == FLY_STRAIGHT;
     if (options->seconds < 0) options->seconds = 300;
     return 0;
 }

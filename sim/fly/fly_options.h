@@ -5,6 +5,7 @@
 #include "../../protocol/message/ff_message.h"
 #include "../link/sim_link_option.h"
 #include "../options/sim_client_options.h"
+#include "../options/sim_where.h"
 #include "../../server/packs/ff_packs.h"
 #include "fly_recording.h"
 
@@ -15,7 +16,7 @@
 #define FLY_TEXELS     SYS_WHOLE(FF_PANORAMA_FACE_MIN, FF_FACE_SIZE_MAX, "texels")
 
 enum fly_backend { FLY_GLES1, FLY_GL, FLY_SOFT, FLY_SOFT_565, FLY_NONE };
-enum fly_path_kind { FLY_DIAGONAL, FLY_CIRCLE, FLY_HOVER, FLY_TURN, FLY_RECORDED };
+enum fly_path_kind { FLY_DIAGONAL, FLY_CIRCLE, FLY_HOVER, FLY_TURN, FLY_RECORDED, FLY_STRAIGHT };
 enum fly_event_kind {
     FLY_LOW_BATTERY,
     FLY_BATTERY_OK,
@@ -74,12 +75,16 @@ extern const sys_option_type fly_events_option;
            "may leave the terrain: what was above ground is then above its rim. The CSV of an " \
            "earlier flight is one") \
     OPTION(sys_real, start, "start", "F", "0.4", SYS_REAL(0, 1, ""), "where on the diagonal") \
+    SIM_SPOT_OPTIONS(OPTION, \
+           "begins there instead: degrees north, degrees east, metres above ground (default: --height), of a " \
+           "pack that says where on Earth it lies", \
+           "with --at: flies there in a straight line, rising or sinking to that height above ground, and stays") \
     OPTION(sys_real, speed_kmh, "speed", "KMH", "150", SYS_REAL(0, SIM_SPEED_KMH_MAX, "km/h"), \
            "how fast") \
     OPTION(sys_real, height_m, "height", "M", "100", SYS_REAL(0.01, SIM_HEIGHT_M_MAX, "m"), \
            "above the highest ground within 150 m along the path, smoothed") \
     OPTION(sys_real, seconds, "seconds", "S", NULL, FLY_SECONDS, \
-           "in flight; default 300, or to the end of a recorded flight") \
+           "in flight; default 300, or to the end of a recorded flight, or until --to is reached") \
     OPTION(sys_real, settle_s, "settle", "S", "15", FLY_SECONDS, "standing still before") \
     OPTION(fly_events, events, "event", "T:WHAT", NULL, SYS_FLAGS(SYS_REPEATABLE), \
            "at T seconds. link: the link is another one from now on; teleport: to these shares " \
@@ -167,6 +172,7 @@ typedef struct fly_options {
     ff_balance_desc balance;
     enum fly_path_kind path;
     fly_recording recording; /* of FLY_RECORDED */
+    int until_there;         /* --seconds follows from --to */
 } fly_options;
 
 /* 0: fly; 1: --help or --version was answered; -1: wrong usage, said in one line on stderr. */

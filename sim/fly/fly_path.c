@@ -1,5 +1,6 @@
 #include "fly_path.h"
 
+#include "../../protocol/ff_assert.h"
 #include "../../protocol/shape/ff_shape.h"
 
 #include <math.h>
@@ -32,6 +33,7 @@ void fly_path_init(fly_path *path, const fly_options *options, const ff_terrain_
                         .height_m = options->height_m,
                         .size_m = { size_x, size_y },
                         .pitch_degrees = NAN };
+    path->end_height_m = path->height_m;
     if (options->path == FLY_RECORDED) return;
     if (options->path == FLY_CIRCLE) {
         path->start_m[0] = size_x / 2;
@@ -52,6 +54,23 @@ void fly_path_init(fly_path *path, const fly_options *options, const ff_terrain_
     path->from_m = path->length_m * options->start;
 }
 
+void fly_path_begin_at(fly_path *path, const double at_m[2], const double *to_m)
+{
+    double way[2] = { 0, 1 };
+    if (!to_m) {
+        fly_path_teleport(path, 0, at_m[0] / path->size_m[0], at_m[1] / path->size_m[1]);
+        return;
+    }
+    FF_ASSERT(path->kind == FLY_STRAIGHT);
+    for (int i = 0; i < 2; i++) {
+        path->start_m[i] = at_m[i];
+        way[i] = to_m[i] - at_m[i];
+    }
+    path->length_m = hypot(way[0], way[1]);
+    for (int i = 0; i < 2 && path->length_m > 0; i++) path->direction[i] = way[i] / path->length_m;
+    path->from_m = 0;
+}
+
 /* Position and direction of flight at an arc length, before teleports. */
 static void place_unmoved(const fly_path *path, double arc_m, double pos_m[2], double heading[2])
 {
@@ -61,6 +80,13 @@ static void place_unmoved(const fly_path *path, double arc_m, double pos_m[2], d
         pos_m[1] = path->start_m[1] + path->radius_m * sin(angle);
         heading[0] = -sin(angle);
         heading[1] = cos(angle);
+        return;
+    }
+    if (path->kind == FLY_STRAIGHT) {
+        for (int i = 0; i < 2; i++) {
+            pos_m[i] = path->start_m[i] + arc_m * path->direction[i];
+            heading[i] = path->direction[i];
+        }
         return;
     }
     double half = PI * path->radius_m, s = fmod(arc_m, 2 * (path->length_m + half)), along,
@@ -111,7 +137,20 @@ static double arc_at(const fly_path *path, double flown_s)
     if (path->kind == FLY_HOVER) return path->from_m;
     if (path->kind == FLY_TURN)
         return path->from_m + path->speed_ms * fmin(leg_s, 2 * TURN_EVERY_S - leg_s);
+    if (path->kind == FLY_STRAIGHT) return fmin(flown_s * path->speed_ms, path->length_m);
     return path->from_m + flown_s * path->speed_ms;
+}
+
+double fly_path_seconds(const fly_path *path)
+{
+    return path->speed_ms > 0 ? path->length_m / path->speed_ms : 0;
+}
+
+/* Above ground, at an arc length. */
+static double height_at(const fly_path *path, double arc_m)
+{
+    double share = path->kind == FLY_STRAIGHT && path->length_m > 0 ? arc_m / path->length_m : 0;
+    return path->height_m + share * (path->end_height_m - path->height_m);
 }
 
 /* How far the viewer has turned from the path's direction at a time. */
@@ -176,8 +215,8 @@ void fly_path_at(const fly_path *path, double t_s, c3d_camera *camera)
     double arc_m = arc_at(path, flown_s);
     place(path, arc_m, pos_m, heading);
     double yaw_turns = atan2(heading[0], heading[1]) / (2 * PI) + turned_at(path, flown_s);
-    set_camera(path, camera, pos_m, smooth_ground_m(path, arc_m) + path->height_m, yaw_turns,
-               PITCH_DEGREES);
+    set_camera(path, camera, pos_m, smooth_ground_m(path, arc_m) + height_at(path, arc_m),
+               yaw_turns, PITCH_DEGREES);
 }
 
 void fly_path_teleport(fly_path *path, double t_s, double x, double y)

@@ -166,6 +166,16 @@ static void json_grounds(FILE *file, const fly_sample *sample, size_t from, size
     fputc(']', file);
 }
 
+static void json_place(FILE *file, const char *name, const fly_sample *row)
+{
+    if (!row || isnan(row->lat_deg))
+        fprintf(file, ",\n  \"%s\": null", name);
+    else
+        fprintf(file,
+                ",\n  \"%s\": {\"lat_deg\": %.7f, \"lon_deg\": %.7f, \"heading_true_deg\": %.3f}",
+                name, row->lat_deg, row->lon_deg, row->heading_true_deg);
+}
+
 void fly_json(FILE *file, const fly_options *options, const fly_sample *sample, size_t count,
               const fly_totals *totals)
 {
@@ -188,6 +198,8 @@ void fly_json(FILE *file, const fly_options *options, const fly_sample *sample, 
     json_text(file, "far", sim_far_words[options->use_far]);
     fprintf(file, ",\n  \"speed_kmh\": %g,\n  \"seconds\": %g,\n  \"panorama\": %s",
             options->speed_kmh, options->seconds, options->panorama.enabled ? "true" : "false");
+    json_place(file, "first_place", count ? &sample[0] : NULL);
+    json_place(file, "last_place", count ? &sample[count - 1] : NULL);
     json_columns(file, first_column, FIRST_COUNT, sample, from, count);
     json_columns(file, last_column, LAST_COUNT, sample, from, count);
     json_grounds(file, sample, from, count, totals->grounds);

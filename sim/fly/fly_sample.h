@@ -126,13 +126,17 @@
     X(delay_down_s, "%.3f", LAST, fly_delay_s(&from->load[SIM_DOWN])) \
     X(delay_up_s, "%.3f", LAST, fly_delay_s(&from->load[SIM_UP])) \
     X(images_lacking, "%.0f", MEAN, from->client.textures_lacking) \
-    X(wasted_images, "%.0f", LAST, from->relevance.wasted_images)
+    X(wasted_images, "%.0f", LAST, from->relevance.wasted_images) \
+    X(lat_deg, "%.7f", PLACE, from->lat_deg) \
+    X(lon_deg, "%.7f", PLACE, from->lon_deg) \
+    X(heading_true_deg, "%.3f", PLACE, from->heading_true_deg)
 /* clang-format on */
 
 /* What a row is made from. NAN in all that nobody judges. */
 typedef struct fly_sources {
     double t_s;
     c3d_camera camera;
+    double lat_deg, lon_deg, heading_true_deg; /* of it, where the pack says where it lies */
     ff_client_stats client;
     double estimate_px; /* the client's own of its err_px_p95 */
     sim_audit_result audit;

@@ -16,6 +16,41 @@ static int fail(const char *what, int rc)
     return -1;
 }
 
+static int fail_place(const char *option, int rc)
+{
+    fprintf(stderr, "farfield-fly: %s: %s\n", option, sim_spot_why(rc));
+    return -1;
+}
+
+/* A place of the path in metres, and how high above ground it is there. */
+static int find_place(const fly_world *world, const char *option, const sim_spot *place,
+                      double xy_m[2], double *height_m)
+{
+    int32_t xy_wu[2];
+    int rc = world->geo_error;
+    if (rc == FF_OK) rc = sim_spot_find(place, &world->geo, &world->pack->header.info, xy_wu);
+    if (rc != FF_OK) return fail_place(option, rc);
+    for (int axis = 0; axis < 2; axis++) xy_m[axis] = (double)xy_wu[axis] / FF_WU_PER_METRE;
+    if (place->above_wu >= 0) *height_m = (double)place->above_wu / FF_WU_PER_METRE;
+    return 0;
+}
+
+static int open_path(fly_world *world)
+{
+    const fly_options *options = world->options;
+    fly_path *path = &world->path;
+    double at_m[2], to_m[2];
+    fly_path_init(path, options, &world->pack->header.info, &world->grounds.moderate[0]);
+    world->geo_error = ff_geo_pack(&world->geo, world->pack);
+    if (!options->at.given) return 0;
+    if (find_place(world, "--at", &options->at, at_m, &path->height_m)) return -1;
+    path->end_height_m = path->height_m;
+    if (options->to.given && find_place(world, "--to", &options->to, to_m, &path->end_height_m))
+        return -1;
+    fly_path_begin_at(path, at_m, options->to.given ? to_m : NULL);
+    return 0;
+}
+
 static int open_ground(fly_world *world)
 {
     const fly_options *options = world->options;
@@ -29,7 +64,7 @@ static int open_ground(fly_world *world)
     }
     if (fly_grounds_open(&world->grounds, options, &world->packs, &world->locals)) return -1;
     const ff_terrain_info *info = &world->pack->header.info;
-    fly_path_init(&world->path, options, info, &world->grounds.moderate[0]);
+    if (open_path(world)) return -1;
     if (options->audit) {
         world->auditor = sim_auditor_create(&world->grounds.truth[0], info, options->audit_step_px);
         if (!world->auditor) return fail("auditor", FF_ERR_MEMORY);

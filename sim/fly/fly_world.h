@@ -22,6 +22,8 @@ typedef struct fly_world {
     sim_auditor *auditor;
     sim_fins fins; /* of the client's far sets, for the auditor */
     fly_path path;
+    ff_geo geo;     /* of the first pack */
+    int geo_error;  /* or why there is none */
     sim_link *link; /* NULL with a real server */
     sim_stream client_end;
     sim_server server;

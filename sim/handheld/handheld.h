@@ -7,7 +7,10 @@
 
 #include "../options/sim_about.h"
 #include "../options/sim_client_options.h"
+#include "../options/sim_where.h"
 #include "../tape/sim_tape.h"
+
+#define HANDHELD_FRAME_US 33333
 
 /* clang-format off */
 #define HANDHELD_OPTIONS(OPTION) \
@@ -29,6 +32,10 @@
            "above the ground drawn") \
     OPTION(sys_whole, map_m, "map", "M", "0", SYS_WHOLE(0, 20000, "m"), \
            "with --pack: a map with contours of so many metres a pixel, in place of a flight") \
+    SIM_SPOT_OPTIONS(OPTION, \
+           "begins there instead of on the ground's diagonal: degrees north, degrees east, metres above ground " \
+           "(default: --height), of ground that says where on Earth it lies; not with --tape", \
+           "with --at: flies there, rising or sinking to that height above ground, and stays") \
     OPTION(sys_text, layer, "layer", "LAYER", NULL, SYS_ANY, \
            "the layer of images that is shown, as the flight on a tape had it; default: the first") \
     OPTION(sys_flag, no_textures, "no-textures", NULL, NULL, SYS_ANY, \
@@ -83,6 +90,10 @@ typedef struct handheld {
     uint8_t map_told; /* 1: its quality is that of a map */
     handheld_totals totals;
     uint32_t about_frames; /* in which it was told whose the ground is */
+    sim_where where;       /* asked for with --at, and for the HUD */
+    uint8_t has_way;       /* what follows is known */
+    int32_t at_wu[2];      /* where the flight begins */
+    int64_t way_wu[2];     /* and its direction, as long as the way to --to */
 } handheld;
 
 /* 0, or -1 with one line on stderr; close in both cases. */
@@ -99,9 +110,13 @@ int handheld_report(handheld *device);
 /* Prints, instead of flying, how blocks of several sizes would be shared out. */
 void handheld_plan(const handheld *device);
 
-/* Draws figures over the picture, and at the start whose the ground is; does nothing in a build
- * without HUD. */
-void handheld_hud(handheld *device);
+/* Camera of a frame of a flight of its own. 0, or -1 with one line on stderr: --at or --to is no
+ * place on this ground. */
+int handheld_way(handheld *device, uint32_t frame, c3d_camera *camera);
+
+/* Draws figures over the picture, where on Earth the camera is, and at the start whose the ground
+ * is; does nothing in a build without HUD. */
+void handheld_hud(handheld *device, const c3d_camera *camera);
 /* What of what the pack says of itself is shown there: FF_ABOUT_BIT of each; 0 without HUD. */
 uint32_t handheld_hud_about(void);
 

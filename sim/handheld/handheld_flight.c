@@ -1,16 +1,10 @@
 #include "handheld.h"
 
-#include "../../protocol/shape/ff_shape.h"
-
 #include <stdlib.h>
 #include <string.h>
 
-#define FRAME_US          33333
 #define WORK_STEPS_MAX    64 /* between two frames, without a link */
 #define WAIT_US           2000
-#define HERE              2 / 5   /* where the flight begins, of the diagonal */
-#define PITCH_BRAD16      (-1092) /* 6 degrees down */
-#define FOV_BRAD16        10923   /* 60 degrees */
 #define MEMORY_BYTES      (4u << 20)
 #define BLOCK_ALIGN       64 /* so that no byte of the block is lost to alignment, on any machine */
 #define SETTLE_FRAMES_MAX 3000 /* of a pack's flight, before it starts: until the ground stands */
@@ -101,6 +95,7 @@ static int open_client(handheld *device)
     desc.pack = options->pack_path ? &device->pack : NULL;
     desc.stream = options->pack_path ? NULL : &device->stream;
     desc.about = options->hud && !options->tape_path ? handheld_hud_about() : 0;
+    if (options->at.given) desc.about |= SIM_WHERE_ABOUT;
     int rc = ff_client_create(&desc, &device->client);
     if (rc == FF_OK) return check_layer(device);
     device->client = NULL;
@@ -162,7 +157,7 @@ static int one_frame(handheld *device, int64_t now_us, const c3d_camera *camera,
         handheld_mark_draw();
         ff_client_draw(device->client);
         handheld_mark_outside();
-        if (device->options->hud) handheld_hud(device);
+        if (device->options->hud) handheld_hud(device, camera);
         if (device->options->hash && flying) hash_picture(device);
         (void)device->surface_api->present(device->surface);
     }
@@ -211,49 +206,29 @@ static int fly_tape(handheld *device)
                : fail("tape: another flight than the one recorded", FF_ERR_FORMAT);
 }
 
-/* Places the camera: straight along the terrain's diagonal, above the ground as drawn. */
-static void place(handheld *device, uint32_t frame, c3d_camera *camera)
-{
-    const ff_terrain_info *info = ff_client_terrain(device->client);
-    int64_t flown_wu = (int64_t)frame * FRAME_US * device->options->speed_kmh / 3600 *
-                       FF_WU_PER_METRE / 1000;
-    int64_t size_wu[2] = { 0, 0 }, diagonal_wu = 1;
-    int32_t ground_wu = 0;
-    *camera = (c3d_camera){ .yaw = 8192,
-                            .pitch = PITCH_BRAD16,
-                            .width = device->width,
-                            .height = device->height,
-                            .focal_q8 = c3d_focal_q8(FOV_BRAD16, device->width) };
-    if (!info) return;
-    ff_shape_size_wu(info, size_wu);
-    diagonal_wu = c3d_length64(size_wu[0], size_wu[1], 0);
-    for (int axis = 0; axis < 2; axis++)
-        camera->pos_wu[axis] = (int32_t)(size_wu[axis] * HERE +
-                                         flown_wu * size_wu[axis] / diagonal_wu);
-    if (!ff_client_ground(device->client, camera->pos_wu[0], camera->pos_wu[1], &ground_wu))
-        ground_wu = ff_height_wu(info, info->height_max);
-    camera->pos_wu[2] = ground_wu + (int32_t)device->options->height_m * FF_WU_PER_METRE;
-    if (device->options->map_m) handheld_map(device, ground_wu, camera);
-}
-
-/* Frame `frame` of the flight; time is real with a server, else counted. */
+/* Frame `frame` of the flight; time is real with a server, else counted. 1 when something moved, or
+ * -1 with one line on stderr. */
 static int step_frame(handheld *device, uint32_t frame, int64_t now_us, int flying)
 {
     c3d_camera camera;
     int moved = 1, steps = 0, any = 0;
     while (moved && steps++ < WORK_STEPS_MAX) any |= moved = work(device, now_us);
-    place(device, frame, &camera);
+    if (handheld_way(device, frame, &camera)) return -1;
     return any | one_frame(device, now_us, &camera, flying);
 }
 
 static int fly_pack(handheld *device)
 {
     int64_t now_us = 0;
-    for (unsigned still = 0, i = 0; still < 2 && i < SETTLE_FRAMES_MAX; i++, now_us += FRAME_US)
-        still = step_frame(device, 0, now_us, 0) ? 0 : still + 1;
+    for (unsigned still = 0, i = 0; still < 2 && i < SETTLE_FRAMES_MAX;
+         i++, now_us += HANDHELD_FRAME_US) {
+        int moved = step_frame(device, 0, now_us, 0);
+        if (moved < 0) return -1;
+        still = moved ? 0 : still + 1;
+    }
     handheld_mark_start();
-    for (uint32_t frame = 1; frame <= device->options->frames; frame++, now_us += FRAME_US)
-        (void)step_frame(device, frame, now_us, 1);
+    for (uint32_t frame = 1; frame <= device->options->frames; frame++, now_us += HANDHELD_FRAME_US)
+        if (step_frame(device, frame, now_us, 1) < 0) return -1;
     return 0;
 }
 
@@ -262,10 +237,10 @@ static int fly_server(handheld *device)
     int64_t start_us = sys_time_us();
     handheld_mark_start();
     for (uint32_t frame = 1; frame <= device->options->frames; frame++) {
-        int64_t due_us = start_us + (int64_t)frame * FRAME_US;
+        int64_t due_us = start_us + (int64_t)frame * HANDHELD_FRAME_US;
         for (int64_t now_us; (now_us = sys_time_us()) < due_us;)
             if (!work(device, now_us)) sys_sleep_us(WAIT_US);
-        (void)step_frame(device, frame, due_us, 1);
+        if (step_frame(device, frame, due_us, 1) < 0) return -1;
     }
     if (ff_client_terrain(device->client)) return check_layer(device);
     ff_client_stats stats;

@@ -14,7 +14,7 @@
 #define ABOUT_FRAMES 300 /* ten seconds */
 #define MARGIN       2
 
-uint32_t handheld_hud_about(void) { return SIM_ABOUT_SHOWN; }
+uint32_t handheld_hud_about(void) { return SIM_ABOUT_SHOWN | SIM_WHERE_ABOUT; }
 
 static void show(c3d_device *c3d, int width, int height, int y, const char *text)
 {
@@ -41,9 +41,9 @@ static void show_about(handheld *device, c3d_device *c3d)
          text);
 }
 
-void handheld_hud(handheld *device)
+void handheld_hud(handheld *device, const c3d_camera *camera)
 {
-    char text[48];
+    char text[80];
     ff_client_stats stats;
     c3d_device *c3d = ff_client_device(device->client);
     if (!c3d) return;
@@ -51,5 +51,8 @@ void handheld_hud(handheld *device)
     snprintf(text, sizeof text, "%u T %u N %u KB", (unsigned)stats.tree.triangles,
              (unsigned)stats.tree.nodes_held, (unsigned)(stats.bytes_down / 1024));
     show(c3d, WIDTH, HEIGHT, 0, text);
+    if (sim_where_ask(&device->where, device->client) == FF_OK &&
+        sim_where_line(&device->where, camera, text, sizeof text))
+        show(c3d, ABOUT_WIDTH, HEIGHT, C3D_TEXT_LINE_PX, text);
     show_about(device, c3d);
 }

@@ -33,6 +33,8 @@ int handheld_options_parse(handheld_options *options, int argc, char **argv)
         return fail("one of --pack, --server and --tape is wanted; try --help");
     if (options->plan && !options->pack_path) return fail("--plan: --pack is wanted with it");
     if (options->map_m && !options->pack_path) return fail("--map: --pack is wanted with it");
+    if (options->to.given && !options->at.given) return fail("--to needs --at");
+    if (options->at.given && options->tape_path) return fail("--at: not with --tape");
     if (options->tape_path && options->balance.mode != FF_BALANCE_OFF)
         return fail("--balance: not with --tape");
     if ((options->fb_path || options->hash) && options->no_pictures)

@@ -86,7 +86,7 @@ static int create_client(view_app *app, const char *backend)
                             .use_thread = 1,
                             .use_map = 1,
                             .layer = o->layer,
-                            .about = SIM_ABOUT_SHOWN,
+                            .about = SIM_ABOUT_SHOWN | SIM_WHERE_ABOUT,
                             .use_plain_arrays = (uint8_t)o->plain_arrays };
     return ff_client_create(&desc, &app->client);
 }
@@ -259,7 +259,8 @@ static void watch_settling(view_app *app, int changed)
 {
     ff_client_stats stats;
     ff_client_get_stats(app->client, &stats);
-    int heard = stats.have_terrain && ff_client_source_state(app->client, 0) != FF_ERR_AGAIN,
+    int heard = stats.have_terrain && app->fly.placed &&
+                ff_client_source_state(app->client, 0) != FF_ERR_AGAIN,
         busy = changed || !heard || stats.in_flight || stats.queued;
     app->still_frames = busy ? 0 : app->still_frames + 1;
     if (app->still_frames < SETTLE_FRAMES && sys_time_us() < app->settle_until_us) return;
@@ -267,12 +268,41 @@ static void watch_settling(view_app *app, int changed)
     app->settling = 0;
 }
 
-static void place_pilot(view_app *app)
+/* FF_OK, or why a place on Earth is not found: FF_ERR_AGAIN, a server has not told yet where its
+ * ground lies. Not given, it leaves `place` as it is. */
+static int find_on_earth(view_app *app, const sim_spot *on_earth, view_place *place)
+{
+    int32_t xy_wu[2];
+    if (!on_earth->given) return FF_OK;
+    int rc = sim_where_ask(&app->where, app->client);
+    if (rc == FF_OK)
+        rc = sim_spot_find(on_earth, &app->where.geo, ff_client_terrain(app->client), xy_wu);
+    if (rc != FF_OK) return rc;
+    *place = (view_place){ 1, xy_wu[0], xy_wu[1],
+                           on_earth->above_wu < 0 ? place->above_wu : on_earth->above_wu };
+    return FF_OK;
+}
+
+static int fail_place(const char *option, int rc)
+{
+    return rc == FF_ERR_AGAIN ? 0 : view_fail("%s: %s", option, sim_spot_why(rc));
+}
+
+/* 0, or -1 having said why --at or --to is no place. */
+static int place_pilot(view_app *app)
 {
     const view_options *o = app->options;
     const ff_terrain_info *info = ff_client_terrain(app->client);
-    if (!app->fly.placed && info)
-        view_fly_place(&app->fly, info, !o->at.given, o->at.x_wu, o->at.y_wu, o->at.above_wu);
+    view_place at = o->place, to = { 0 };
+    if (app->fly.placed || !info) return 0;
+    int rc = find_on_earth(app, &o->at, &at);
+    if (rc != FF_OK) return fail_place("--at", rc);
+    to.above_wu = at.above_wu;
+    rc = find_on_earth(app, &o->to, &to);
+    if (rc != FF_OK) return fail_place("--to", rc);
+    view_fly_place(&app->fly, info, !at.given, at.x_wu, at.y_wu, at.above_wu);
+    if (to.given) view_fly_to(&app->fly, to.x_wu, to.y_wu, to.above_wu);
+    return 0;
 }
 
 /* --map: as soon as the ground is known below the pilot, who is set over it then. */
@@ -336,7 +366,8 @@ static int turn(view_app *app, int64_t now_us, int64_t dt_us)
     sys_event event;
     run_script(app);
     while (app->surface_api->poll(app->surface, &event)) view_handle(app, &event);
-    place_pilot(app);
+    (void)sim_where_ask(&app->where, app->client);
+    if (place_pilot(app)) return -1;
     if (app->settling || app->interrupted) dt_us = 0;
     if (!app->interrupted && !app->map.wanted) view_fly_step(&app->fly, dt_us, app->client);
     c3d_camera camera = see(app, dt_us);

@@ -5,6 +5,7 @@
 
 #include "../../server/packs/ff_packs.h"
 #include "../options/sim_about.h"
+#include "../options/sim_where.h"
 #include "view_blit.h"
 #include "view_fly.h"
 #include "view_hud.h"
@@ -31,6 +32,7 @@ typedef struct view_app {
     view_map map;
     uint8_t map_quality; /* 1: the ground has the map's */
     uint8_t map_begun;   /* --map has been done */
+    sim_where where;
     view_hud hud;
     view_script script;
     FILE *events;

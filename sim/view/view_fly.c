@@ -46,7 +46,25 @@ void view_fly_place(view_fly *fly, const ff_terrain_info *info, int anywhere, in
     fly->camera.pos_wu[2] = ff_height_wu(info, info->height_max) + above_wu;
     fly->camera.pitch = -1500;
     fly->above_wu = above_wu;
+    fly->has_goal = 0;
     fly->placed = 1;
+}
+
+/* Angle of (x, y) from the positive y axis, positive towards x. */
+static int32_t angle_of(int64_t x, int64_t y)
+{
+    return (int32_t)lround(atan2((double)x, (double)y) * (32768 / acos(-1)));
+}
+
+void view_fly_to(view_fly *fly, int32_t x_wu, int32_t y_wu, int32_t above_wu)
+{
+    int64_t east = (int64_t)x_wu - fly->camera.pos_wu[0],
+            north = (int64_t)y_wu - fly->camera.pos_wu[1];
+    fly->goal_wu[0] = x_wu;
+    fly->goal_wu[1] = y_wu;
+    fly->goal_above_wu = above_wu;
+    fly->has_goal = 1;
+    if (east || north) fly->camera.yaw = angle_of(east, north) & 65535;
 }
 
 int view_fly_key(view_fly *fly, int code, int down)
@@ -68,6 +86,7 @@ int view_fly_key(view_fly *fly, int code, int down)
     for (size_t i = 0; i < sizeof keys / sizeof *keys; i++) {
         if (keys[i].code != code) continue;
         fly->pressed = down ? fly->pressed | keys[i].bit : fly->pressed & ~keys[i].bit;
+        fly->has_goal = 0;
         return 1;
     }
     return 0;
@@ -106,12 +125,7 @@ void view_fly_position(view_fly *fly, int32_t x_wu, int32_t y_wu, int32_t z_wu)
     fly->camera.pos_wu[1] = y_wu;
     fly->camera.pos_wu[2] = z_wu;
     fly->above_wu = -1;
-}
-
-/* Angle of (x, y) from the positive y axis, positive towards x. */
-static int32_t angle_of(int32_t x, int32_t y)
-{
-    return (int32_t)lround(atan2(x, y) * (32768 / acos(-1)));
+    fly->has_goal = 0;
 }
 
 void view_fly_tilt(view_fly *fly, int32_t x_mg, int32_t y_mg, int32_t z_mg)
@@ -128,6 +142,20 @@ static void move(view_fly *fly, int64_t forward_wu, int64_t right_wu)
     int64_t north = (forward_wu * cosine - right_wu * sine) / C3D_ONE_Q30;
     fly->camera.pos_wu[0] = clamp(fly->camera.pos_wu[0] + east, INT32_MIN, INT32_MAX);
     fly->camera.pos_wu[1] = clamp(fly->camera.pos_wu[1] + north, INT32_MIN, INT32_MAX);
+}
+
+/* Goes some of the way to the goal; the height above ground goes with it. */
+static void approach(view_fly *fly, int64_t way_wu)
+{
+    int64_t way[2], height = (int64_t)fly->goal_above_wu - fly->above_wu;
+    for (int i = 0; i < 2; i++) way[i] = (int64_t)fly->goal_wu[i] - fly->camera.pos_wu[i];
+    int64_t left_wu = c3d_length64(way[0], way[1], 0);
+    if (left_wu <= way_wu) {
+        left_wu = way_wu = 1;
+        fly->has_goal = 0;
+    }
+    for (int i = 0; i < 2; i++) fly->camera.pos_wu[i] += (int32_t)(way[i] * way_wu / left_wu);
+    fly->above_wu += (int32_t)(height * way_wu / left_wu);
 }
 
 static void stay_inside(view_fly *fly, const ff_terrain_info *info)
@@ -154,6 +182,7 @@ int view_fly_step(view_fly *fly, int64_t dt_us, const ff_client *client)
     const ff_terrain_info *info = ff_client_terrain(client);
     if (!fly->placed || !info) return 0;
     look(fly, turn * (!!(pressed & VIEW_TURN_RIGHT) - !!(pressed & VIEW_TURN_LEFT)), 0);
+    if (fly->has_goal) approach(fly, way);
     move(fly, way * ((pressed & VIEW_FORWARD || fly->cruise) - !!(pressed & VIEW_BACK)),
          way * (!!(pressed & VIEW_RIGHT) - !!(pressed & VIEW_LEFT)));
     if (pressed & (VIEW_RISE | VIEW_SINK)) {

@@ -29,6 +29,8 @@ typedef struct view_fly {
     uint8_t cruise;   /* forward without a key */
     uint8_t placed;   /* the terrain is known and the start was chosen */
     uint8_t dragging;
+    uint8_t has_goal; /* it flies there by itself until a key is pressed: */
+    int32_t goal_wu[2], goal_above_wu;
     int drag_x, drag_y;
 } view_fly;
 
@@ -38,6 +40,9 @@ void view_fly_resize(view_fly *fly, int width, int height);
  * above_wu over the ground. */
 void view_fly_place(view_fly *fly, const ff_terrain_info *info, int anywhere, int32_t x_wu,
                     int32_t y_wu, int32_t above_wu);
+
+/* Turns towards a place over ground, and flies there. */
+void view_fly_to(view_fly *fly, int32_t x_wu, int32_t y_wu, int32_t above_wu);
 
 /* Takes a key; 1 when it is one that flies. */
 int view_fly_key(view_fly *fly, int code, int down);

@@ -123,6 +123,8 @@ static void put_figures(view_hud *hud, const view_app *app)
             stats.tree.nodes_held);
     put_link(hud, app, &stats);
     put_quality(hud, app, &stats);
+    char where[80];
+    if (sim_where_line(&app->where, camera, where, sizeof where)) put(hud, "%s\n", where);
     put(hud, "%.2f %.2f km  %d m  %d deg\n", camera->pos_wu[0] / 256000.0,
         camera->pos_wu[1] / 256000.0, camera->pos_wu[2] / FF_WU_PER_METRE,
         camera->yaw * 360 / 65536);

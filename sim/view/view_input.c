@@ -134,10 +134,7 @@ static void change_quality(view_app *app, int finer)
 
 static void start_again(view_app *app)
 {
-    const ff_terrain_info *info = ff_client_terrain(app->client);
-    if (info)
-        view_fly_place(&app->fly, info, !app->options->at.given, app->options->at.x_wu,
-                       app->options->at.y_wu, app->options->at.above_wu);
+    app->fly.placed = 0; /* the loop places the pilot anew */
     app->fly.camera.yaw = app->options->yaw_brad16;
     app->fly.camera.roll = 0;
 }

@@ -68,7 +68,7 @@ int view_options_parse(view_options *o, int argc, char **argv)
 {
     *o = (view_options){ .use_far = SYS_UNSET,
                          .use_panorama = SYS_UNSET,
-                         .at = { .above_wu = VIEW_START_ABOVE_WU },
+                         .place = { .above_wu = VIEW_START_ABOVE_WU },
                          .packs = { o->pack, 0, FF_SOURCES_MAX },
                          .quality = { .view_wu = INT32_MAX } };
     int rc = sys_options_parse(&program, o, argc, argv);

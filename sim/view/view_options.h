@@ -4,6 +4,7 @@
 
 #include "../link/sim_link_option.h"
 #include "../options/sim_client_options.h"
+#include "../options/sim_where.h"
 
 typedef struct view_place {
     int given;
@@ -38,10 +39,14 @@ extern const sys_option_type view_place_option;
            "link model between client and server; with PACK the server's logic runs inside this " \
            "program") \
     OPTION(sys_flag, map, "map", NULL, NULL, SYS_ANY, "begins with the map") \
-    OPTION(view_place, at, "at", "X,Y[,H]", NULL, SYS_ANY, \
+    OPTION(view_place, place, "place", "X,Y[,H]", NULL, SYS_ANY, \
            "starts there; default: the middle, 500 m up") \
+    SIM_SPOT_OPTIONS(OPTION, \
+           "starts there instead: degrees north, degrees east, metres above ground (default: 500), of ground " \
+           "that says where on Earth it lies", \
+           "looks there, and flies there, rising or sinking to that height above ground, until a key is pressed") \
     OPTION(sys_real, yaw_degrees, "yaw", "DEGREES", "0", SYS_REAL(-360, 360, "degrees"), \
-           "first direction, clockwise from north") \
+           "first direction, clockwise from the ground's north") \
     HEADING("Driving it from a file") \
     OPTION(sys_text, script, "script", "FILE", NULL, SYS_ANY, \
            "lines FRAME COMMAND; see sim/view/view_script.h") \

@@ -97,7 +97,7 @@ toggles() { # WHAT, command before the program, options
     shift 2
     rm -f "$work"/*.png
     # shellcheck disable=SC2086
-    $mode "$view" "$pack" --at 3840,300,250 --quality 3:6 --no-hud --script "$work/toggles.txt" --json "$@" >"$work/said" 2>"$work/error"
+    $mode "$view" "$pack" --place 3840,300,250 --quality 3:6 --no-hud --script "$work/toggles.txt" --json "$@" >"$work/said" 2>"$work/error"
     result $? "$what: runs to the end of its script" && [ ! -s "$work/error" ] || head -n 5 "$work/error"
     read -r colours _ < <(pictures colours "$work/plain.png")
     [ "${colours:-0}" -gt 200 ]; result $? "$what: the picture has ${colours:-no} colours"
@@ -135,7 +135,7 @@ cat >"$work/events.txt" <<END
 60 key f5
 70 settle
 END
-"$view" "$pack" --headless --at 3840,1000 --script "$work/events.txt" --events "$work/events.log" --json >"$work/said" 2>"$work/error"
+"$view" "$pack" --headless --place 3840,1000 --script "$work/events.txt" --events "$work/events.log" --json >"$work/said" 2>"$work/error"
 result $? "a script of events"
 cat >"$work/expected" <<END
 key w down
@@ -168,7 +168,7 @@ cut -d' ' -f2- "$work/events.log" | cmp -s - "$work/expected"; result $? "every 
 [ "$(value x_m | cut -d. -f1),$(value y_m | cut -d. -f1)" = 923,2494 ]
 result $? "a position fix moves there, and an interruption holds still"
 printf '0 settle\n1 down w\n31 up w\n32 quit\n' >"$work/fly.txt"
-"$view" "$pack" --headless --at 3840,1000 --script "$work/fly.txt" --json >"$work/said"
+"$view" "$pack" --headless --place 3840,1000 --script "$work/fly.txt" --json >"$work/said"
 # 30 frames of 1/30 s at 150 km/h: 41.7 m to the north.
 value y_m | awk '{ exit !($1 > 1039 && $1 < 1045) }'; result $? "flying forward goes north at the speed shown"
 "$view" "$pack" --headless --frames 120 --json >"$work/said"
@@ -253,7 +253,7 @@ printf '0 settle\n0 screenshot %s\n1 key l\n2 key l\n30 settle\n' "$work/server.
 result $? "over a link to a server" && [ ! -s "$work/error" ] || cat "$work/error"
 [ "$(value nodes_held)" -gt 20 ] && [ "$(value bytes_down)" -gt 1000 ]; result $? "the ground came from the server"
 [ "$(value reconnects)" -ge 1 ]; result $? "another link profile: connected anew"
-"$view" "$address" --headless --panorama on --at 3840,300,900 --script "$work/toggles.txt" --json >"$work/said" 2>"$work/error"
+"$view" "$address" --headless --panorama on --place 3840,300,900 --script "$work/toggles.txt" --json >"$work/said" 2>"$work/error"
 [ $? = 0 ] && [ "$(value panoramas)" -ge 1 ]; result $? "panoramas come from the server"
 stop_server
 for backend in gles1 gl soft; do
@@ -262,7 +262,7 @@ for backend in gles1 gl soft; do
     read -r blue dark < <(pictures sky "$work/waiting.png")
     [ "${blue:-0}" -gt 20000 ] && [ "$dark" = 0 ]; result $? "under the sky"
 done
-"$view" "$pack" --headless --link umts --panorama on --at 3840,300,900 --script "$work/toggles.txt" --json >"$work/said" 2>"$work/error"
+"$view" "$pack" --headless --link umts --panorama on --place 3840,300,900 --script "$work/toggles.txt" --json >"$work/said" 2>"$work/error"
 [ $? = 0 ] && [ "$(value bytes_down)" -gt 1000 ] && [ "$(value panoramas)" -ge 1 ]; result $? "a pack behind a link of its own, with panoramas"
 
 # ---- the map ----
@@ -286,7 +286,7 @@ cat >"$work/map.txt" <<END
 95 screenshot $work/without.png
 END
 for backend in gles1 soft; do
-    "$view" "$pack" --headless --backend $backend --at 3840,2000,400 --no-hud --script "$work/map.txt" >"$work/said" 2>"$work/error"
+    "$view" "$pack" --headless --backend $backend --place 3840,2000,400 --no-hud --script "$work/map.txt" >"$work/said" 2>"$work/error"
     [ $? = 0 ] && [ ! -s "$work/error" ]; result $? "a map and back, with $backend"
     read -r _ aslant map wide after lines without < <(pictures differences "$work/before.png" "$work"/{aslant,map,wide,after,lines,without}.png)
     [ "${aslant:-0}" -gt 20000 ] && [ "$map" -gt 20000 ] && [ "$wide" -gt 20000 ] && [ "$after" -lt 500 ]; result $? "the flight is as it was: aslant $aslant, map $map, after $after"
@@ -294,7 +294,7 @@ for backend in gles1 soft; do
     read -r before map after < <(pictures red "$work"/{before,map,after}.png)
     [ "$before" = 0 ] && [ "$map" -ge 30 ] && [ "$after" = 0 ]; result $? "the place of the viewer is a point: $map"
 done
-"$view" "$pack" --headless --backend soft --at 3840,2000,400 --no-hud --map --script <(printf '0 settle\n1 screenshot %s\n' "$work/first.png") >"$work/said" 2>"$work/error"
+"$view" "$pack" --headless --backend soft --place 3840,2000,400 --no-hud --map --script <(printf '0 settle\n1 screenshot %s\n' "$work/first.png") >"$work/said" 2>"$work/error"
 read -r _ first < <(pictures differences "$work/map.png" "$work/first.png")
 [ "${first:--1}" -ge 0 ] && [ "$first" -lt 500 ]; result $? "begins with the map: $first"
 
