@@ -1,5 +1,8 @@
 #include "bake_info_about.h"
 
+#include "../../protocol/geo/ff_geo.h"
+#include "../../protocol/shape/ff_shape.h"
+
 #include <inttypes.h>
 #include <stdio.h>
 
@@ -29,6 +32,39 @@ static void print_projection(const ff_about_projection *projection)
     putchar('\n');
 }
 
+#define CORNERS 4
+static const char *const corner_name[CORNERS] = { "south-west", "south-east", "north-west",
+                                                  "north-east" };
+
+/* The corners of the ground on Earth. FF_OK, or why they cannot be told. */
+static int find_corners(const ff_pack *pack, ff_geo_place corner[CORNERS])
+{
+    int64_t size_wu[2];
+    ff_geo geo;
+    int rc = ff_geo_pack(&geo, pack);
+    ff_shape_size_wu(&pack->header.info, size_wu);
+    for (int i = 0; rc == FF_OK && i < CORNERS; i++) {
+        const int32_t at_wu[3] = { i & 1 ? (int32_t)size_wu[0] : 0, i & 2 ? (int32_t)size_wu[1] : 0,
+                                   0 };
+        rc = ff_geo_of(&geo, at_wu, &corner[i]);
+    }
+    return rc;
+}
+
+static void print_corners(const ff_pack *pack)
+{
+    ff_geo_place corner[CORNERS];
+    int rc = find_corners(pack, corner);
+    printf("corners        ");
+    if (rc != FF_OK)
+        printf(" not told in degrees: the projection is %s",
+               rc == FF_ERR_UNSUPPORTED ? "of a method that clients do not know" : "out of range");
+    for (int i = 0; rc == FF_OK && i < CORNERS; i++)
+        printf("%s %s %.6f,%.6f", i ? "," : "", corner_name[i],
+               (double)corner[i].latitude_e9 / NANO, (double)corner[i].longitude_e9 / NANO);
+    putchar('\n');
+}
+
 void bake_info_about(const ff_pack *pack)
 {
     static const char *const label[] = { "",        "name", "attribution",
@@ -49,7 +85,9 @@ void bake_info_about(const ff_pack *pack)
                    (const char *)entry.value);
     if (ff_list_find(about, FF_ABOUT_WHOLE, &whole) > 0)
         printf("part of         the pack with checksum %08" PRIx32 "\n", ff_about_whole(about, 0));
-    if (ff_about_get_projection(about, &projection) == FF_OK) print_projection(&projection);
+    if (ff_about_get_projection(about, &projection) != FF_OK) return;
+    print_projection(&projection);
+    print_corners(pack);
 }
 
 /* Texts have no control characters: only these two are to be marked. */
@@ -79,6 +117,17 @@ static void print_numbers(ff_list about)
     printf("}}");
 }
 
+/* "corners": each [latitude, longitude] in degrees, or null. */
+static void print_corners_json(const ff_pack *pack)
+{
+    ff_geo_place corner[CORNERS];
+    int rc = find_corners(pack, corner);
+    printf("\"corners\": %s", rc == FF_OK ? "{" : "null, ");
+    for (int i = 0; rc == FF_OK && i < CORNERS; i++)
+        printf("\"%s\": [%.9f, %.9f]%s", corner_name[i], (double)corner[i].latitude_e9 / NANO,
+               (double)corner[i].longitude_e9 / NANO, i + 1 < CORNERS ? ", " : "}, ");
+}
+
 void bake_info_about_json(const ff_pack *pack)
 {
     static const char *const name[] = { "",
@@ -103,4 +152,5 @@ void bake_info_about_json(const ff_pack *pack)
                 bake_info_print_text(entry.value, entry.byte_count);
         }
     printf("}, ");
+    print_corners_json(pack);
 }

@@ -1,6 +1,7 @@
 #include "bake_about.h"
 
 #include "../../../protocol/ff_error.h"
+#include "../../../protocol/geo/ff_geo.h"
 #include "bake_projection.h"
 #include "../bake_say.h"
 
@@ -153,6 +154,20 @@ void bake_about_read(const bake_texts *told, GDALDatasetH set, bake_about *about
 
 /* ---- the list ---- */
 
+/* Tells where a client cannot say latitudes and longitudes, though the ground has a place. */
+static void note_unknown(const uint8_t *numbers, uint32_t count)
+{
+    const ff_terrain_info anywhere = { 0 };
+    ff_about_projection projection;
+    ff_geo geo;
+    if (ff_about_read_projection(numbers, (int)count, &projection) != FF_OK)
+        bake_note("the projection has no numbers: clients cannot tell latitudes and longitudes");
+    else if (ff_geo_make(&geo, &projection, &anywhere) == FF_ERR_UNSUPPORTED)
+        bake_note("clients do not know projections by EPSG's method %u: they cannot tell latitudes "
+                  "and longitudes",
+                  projection.method);
+}
+
 uint32_t bake_about_list(const bake_about *about, OGRSpatialReferenceH srs,
                          uint8_t list[FF_ABOUT_BYTES_MAX])
 {
@@ -164,6 +179,7 @@ uint32_t bake_about_list(const bake_about *about, OGRSpatialReferenceH srs,
                           (uint32_t)strlen(about->text[i]));
     char *wkt = srs ? bake_projection_wkt(srs) : NULL;
     uint32_t count = wkt ? bake_projection_numbers(srs, wkt, numbers) : 0;
+    if (srs) note_unknown(numbers, count);
     if (wkt) bake_projection_shorten(srs, wkt);
     size_t wkt_bytes = wkt ? strlen(wkt) : 0;
     if (wkt_bytes && wkt_bytes <= bake_about_most(FF_ABOUT_WKT) &&
