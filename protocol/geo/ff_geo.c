@@ -302,6 +302,8 @@ int ff_geo_pack(ff_geo *geo, const ff_pack *pack)
 
 /* ---- places ---- */
 
+static int64_t um_of_wu(int32_t wu) { return ((int64_t)wu * UM_PER_WU_Q2 + 2) >> 2; }
+
 static int32_t wu_of_um(int64_t um, int *error)
 {
     int64_t wu = (um * 8 + UM_PER_WU_Q2) / (2 * UM_PER_WU_Q2);
@@ -322,10 +324,10 @@ static int64_t one_turn(int64_t longitude_e9)
 
 int ff_geo_of(const ff_geo *geo, const int32_t position_wu[3], ff_geo_place *place)
 {
-    int64_t um[2] = { ((int64_t)position_wu[0] * UM_PER_WU_Q2 + 2) >> 2,
-                      ((int64_t)position_wu[1] * UM_PER_WU_Q2 + 2) >> 2 };
-    const int64_t xy[2] = { ff_geo_scale(um[0] + geo->east_um, geo->per_radius, 44),
-                            ff_geo_scale(um[1] + geo->north_um, geo->per_radius, 44) };
+    const int64_t east_um = um_of_wu(position_wu[0]) + geo->east_um,
+                  north_um = um_of_wu(position_wu[1]) + geo->north_um,
+                  xy[2] = { ff_geo_scale(east_um, geo->per_radius, 44),
+                            ff_geo_scale(north_um, geo->per_radius, 44) };
     int64_t latitude, longitude, quarter = 90 * DEGREE_E9;
     FF_ASSERT(geo->per_radius > 0);
     int rc = ff_geo_unproject(geo, xy, &latitude, &longitude);
@@ -368,16 +370,17 @@ int ff_geo_to(const ff_geo *geo, const ff_geo_place *place, int32_t position_wu[
 int ff_geo_north(const ff_geo *geo, const int32_t position_wu[3], int32_t *north_brad16)
 {
     ff_geo_place place;
-    int64_t here[2], there[2], angle;
+    int64_t there[2], angle;
     int rc = ff_geo_of(geo, position_wu, &place);
-    if (rc == FF_OK) rc = project(geo, place.latitude_e9, place.longitude_e9, here);
     if (rc != FF_OK) return rc;
-    /* towards the equator, away from poles */
-    int back = place.latitude_e9 > 0;
+    int back = place.latitude_e9 > 0; /* towards the equator, away from poles */
     rc = project(geo, place.latitude_e9 + (back ? -NORTH_E9 : NORTH_E9), place.longitude_e9, there);
     if (rc != FF_OK) return rc;
-    int64_t east = back ? here[0] - there[0] : there[0] - here[0],
-            north = back ? here[1] - there[1] : there[1] - here[1];
+    int64_t east = there[0] - um_of_wu(position_wu[0]), north = there[1] - um_of_wu(position_wu[1]);
+    if (back) {
+        east = -east;
+        north = -north;
+    }
     (void)ff_geo_polar(north * (1 << 16), east * (1 << 16), &angle);
     *north_brad16 = (int32_t)ff_geo_scale(angle, BRAD16, 88) & 65535;
     return FF_OK;

@@ -2,23 +2,38 @@
 
 #include "../ff_assert.h"
 
-#define STEPS 40 /* the last turn is 2^-39 */
-#define TURNS 19 /* of those after, angle and arc are the same to the last bit */
+#define TURNS 20
 #define LN2   INT64_C(49946518145322874)
 
 /* atan(2^-i), and atanh(2^-i) from i = 1 on */
 static const int64_t turn[2][TURNS] = {
     { 56593902016227522, 33409331186036030, 17652573055549883, 8960721713639278, 4497749271019253,
-      2251067235130761, 1125808294293075, 562938500594601, 281473545067998, 140737309398767,
-      70368721808055, 35184369292630, 17592185694891, 8796092978517, 4398046505643, 2199023254869,
-      1099511627691, 549755813877, 274877906943 },
-    { 0, 39581679150962773, 18404432710750535, 9054556524469743, 4509477471745453, 2252533251233649,
-      1125991546235719, 562961407086883, 281476408379529, 140737667312708, 70368766547298,
-      35184374885035, 17592186393941, 8796093065899, 4398046516565, 2199023256235, 1099511627861,
-      549755813899, 274877906945 }
+      2251067235130761,  1125808294293075,  562938500594601,   281473545067998,  140737309398767,
+      70368721808055,    35184369292630,    17592185694891,    8796092978517,    4398046505643,
+      2199023254869,     1099511627691,     549755813877,      274877906943,     137438953472 },
+    { 0,
+      39581679150962773,
+      18404432710750535,
+      9054556524469743,
+      4509477471745453,
+      2252533251233649,
+      1125991546235719,
+      562961407086883,
+      281476408379529,
+      140737667312708,
+      70368766547298,
+      35184374885035,
+      17592186393941,
+      8796093065899,
+      4398046516565,
+      2199023256235,
+      1099511627861,
+      549755813899,
+      274877906945,
+      137438953472 }
 };
 /* What all turns together make of a vector's length: it begins, or ends, that much shorter. */
-static const int64_t shrink[2] = { 43757185469210202, 87009333510859811 };
+static const int64_t shrink[2] = { 43757185469236734, 87009333510807055 };
 
 /* ---- products and quotients of 128 bits ---- */
 
@@ -64,19 +79,31 @@ typedef struct vector {
 
 /* Turns (x, y) on a circle, or moves it along a hyperbola, by z, which becomes 0; `inverse`: until
  * y is 0, and z becomes greater by as much. Some steps along a hyperbola are made twice, for all of
- * those after together fall short of them. */
+ * those after together fall short of them. What is left is less than 2^-19: its cube is nothing. */
 static void take_turns(vector *v, int hyperbolic, int inverse)
 {
+    int64_t x = v->x, y = v->y, z = v->z;
     FF_ASSERT(hyperbolic == 0 || hyperbolic == 1);
-    for (int i = hyperbolic, again = 0; i < STEPS; i += !again) {
-        int64_t angle = i < TURNS ? turn[hyperbolic][i] : FF_GEO_ONE >> i;
-        int64_t x = v->x >> i, y = v->y >> i;
-        int back = inverse ? v->y > 0 : v->z < 0;
-        v->x += back == hyperbolic ? -y : y;
-        v->y += back ? -x : x;
-        v->z += back ? angle : -angle;
+    for (int i = hyperbolic, again = 0; i < TURNS; i += !again) {
+        int64_t dx = hyperbolic ? -(y >> i) : y >> i, dy = x >> i;
+        if (inverse ? y > 0 : z < 0) {
+            x += dx;
+            y -= dy;
+            z += turn[hyperbolic][i];
+        } else {
+            x -= dx;
+            y += dy;
+            z -= turn[hyperbolic][i];
+        }
         again = hyperbolic && !again && (i == 4 || i == 13);
     }
+    int64_t rest = inverse ? 0 : z, sign = hyperbolic ? 1 : -1;
+    /* a vector of a few units has no direction */
+    if (inverse && x >> 16 > (y < 0 ? -y : y)) rest = -ff_geo_ratio(y, x, 56);
+    int64_t square = ff_geo_mul(rest, rest) / 2;
+    v->x = x + sign * (ff_geo_mul(y, rest) + ff_geo_mul(x, square));
+    v->y = y + ff_geo_mul(x, rest) + sign * ff_geo_mul(y, square);
+    v->z = z - rest;
 }
 
 void ff_geo_circle(int64_t angle, int64_t *sine, int64_t *cosine)
@@ -101,7 +128,7 @@ int64_t ff_geo_polar(int64_t x, int64_t y, int64_t *angle)
     FF_ASSERT(magnitude(x) < (uint64_t)FF_GEO_ONE * 30 && magnitude(y) < (uint64_t)FF_GEO_ONE * 30);
     if (x < 0) v = (vector){ -x, -y, y < 0 ? -FF_GEO_PI : FF_GEO_PI };
     take_turns(&v, 0, 1);
-    FF_ASSERT(v.x >= -STEPS); /* rounding alone is left of nothing */
+    FF_ASSERT(v.x >= -TURNS); /* rounding alone is left of nothing */
     *angle = v.z;
     return ff_geo_mul(v.x, shrink[0]);
 }

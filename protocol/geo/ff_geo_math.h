@@ -1,7 +1,7 @@
 /* Arithmetic of map projections: numbers with 56 bits behind the point (_q56), below 128 either
  * way; angles are radians. Elementary functions turn a vector by angles of 2^-i (Volder 1959;
- * Walther 1971, "A unified algorithm for elementary functions"): shifts and sums alone, the same on
- * every machine. They are good to 2^-38, which is 0.03 mm on the Earth.
+ * Walther 1971, "A unified algorithm for elementary functions"), shifts and sums alone, until what
+ * is left is small enough for its square. Good to 2^-48, the same on every machine.
  */
 #ifndef FF_GEO_MATH_H
 #define FF_GEO_MATH_H
