@@ -73,7 +73,7 @@ const char *sim_spot_why(int error)
         case FF_ERR_AGAIN: return "where the terrain lies on Earth is not known yet";
         case FF_ERR_NOT_FOUND: return "the pack does not say where on Earth it lies";
         case FF_ERR_UNSUPPORTED:
-            return "the pack's projection is none whose latitudes and longitudes can be told";
+            return "this build cannot tell latitudes and longitudes in the pack's projection";
         default: return ff_error_text(error);
     }
 }

@@ -155,7 +155,7 @@ def _():
     bake_as("plain.raw", "nowhere", "--raw", "257x257", "--spacing", "10")
     _, said = bake_as(put("areas.tif", HILLS, place=(4321000, SPACING, 0, 3210000, 0, -SPACING), reference="EPSG:3035"), "areas", "--no-project")
     assert "EPSG's method 9820" in said, said
-    for pack, words in ("nowhere", "does not say where"), ("areas", "projection is none"):
+    for pack, words in ("nowhere", "does not say where"), ("areas", "in the pack's projection"):
         assert words in refused("fly", "--pack", pack + ".ffp", "--backend", "none", "--at", "10,10")
         assert words in refused("view", pack + ".ffp", "--headless", "--backend", "soft", "--at", "10,10")
         assert words in refused("handheld", "--pack", pack + ".ffp", "--at", "10,10")
