@@ -12,7 +12,7 @@ os.chdir(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../.."))
 BIN = os.environ.get("BIN", "build/bin")
 PROGRAMS = "bake export fly handheld info link merge report server train view".split()
 FREE = "LAYER NAME=IMAGE FILE DIR PACK PACKS TEXT TITLE TABLE IMAGE OUT.ffp KIND|FILE".split()  # values that may be any text
-ALIKE = "quality balance memory size fov".split()                        # and links, below: one range in all programs
+ALIKE = "quality balance memory size fov at to".split()                        # and links, below: one range in all programs
 failures = 0
 
 
@@ -119,7 +119,7 @@ def unread(path, text, shared):
 def try_fields():
     lists = [path for path in glob.glob("*/**/*.[ch]", recursive=True) if not path.startswith(("build/", "tests/", "platform/")) and "SYS_FIELD" in open(path).read()]
     shared = {}
-    for path in ("sim/options/sim_client_options.h", "sim/link/sim_link_option.h"):
+    for path in ("sim/options/sim_client_options.h", "sim/options/sim_where.h", "sim/link/sim_link_option.h"):
         for name, body in re.findall(r"#define (SIM_\w+)\(OPTION[^\n]*\\\n((?:.*\\\n)*.*\n)", open(path).read()):
             shared[name] = body
         for name, body in re.findall(r"#define (SIM_\w+)\(options\)[^\n]*\\\n((?:.*\\\n)*.*\n)", open(path).read()):
