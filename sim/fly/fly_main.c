@@ -20,6 +20,7 @@ int main(int argc, char **argv)
     }
     fly_options_print(&options);
     rc = fly_world_open(&world, &options);
+    if (!rc) rc = fly_recording_place(&options.recording, options.path_text, &world.geo);
     if (!rc && options.until_there) options.seconds = fly_path_seconds(&world.path);
     if (!rc && options.csv_path && !(csv = fopen(options.csv_path, "w"))) {
         fprintf(stderr, "farfield-fly: %s: %s\n", options.csv_path, strerror(errno));

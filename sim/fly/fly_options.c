@@ -144,12 +144,20 @@ void fly_options_free(fly_options *options) { fly_recording_free(&options->recor
 
 const char *fly_backend_name(enum fly_backend backend) { return fly_backend_words[backend]; }
 
+static void print_spot(const char *name, const sim_spot *spot)
+{
+    if (!spot->given) return;
+    fprintf(stderr, ", %s %.9f,%.9f", name, (double)spot->latitude_e9 / 1e9,
+            (double)spot->longitude_e9 / 1e9);
+    if (spot->above_wu >= 0) fprintf(stderr, ",%g", (double)spot->above_wu / FF_WU_PER_METRE);
+}
+
 void fly_options_print(const fly_options *options)
 {
     fprintf(stderr,
             "farfield-fly: seed %llu, pack %s, %s %s, %g km/h, %g s after %g s, %s from %g, "
             "%g m up, quality %s, panorama %s, far %s, balance %s, %ux%u at %g degrees, %u fps, "
-            "backend %s, %u bytes, audit %s%s%s\n",
+            "backend %s, %u bytes, audit %s%s%s",
             (unsigned long long)options->seed, options->pack_path,
             options->server ? "server" : "link",
             options->server ? options->server : options->link_text, options->speed_kmh,
@@ -160,4 +168,7 @@ void fly_options_print(const fly_options *options)
             fly_backend_name((enum fly_backend)options->backend), options->memory_bytes,
             options->audit ? "on" : "off", options->truths.count ? " by " : "",
             options->truths.count ? options->truth_path : "");
+    print_spot("at", &options->at);
+    print_spot("to", &options->to);
+    fputc('\n', stderr);
 }

@@ -70,8 +70,8 @@ extern const sys_option_type fly_events_option;
            "in a half circle before the border; circle; hover: in one place, turning 6 degrees " \
            "a second; turn: along the diagonal for 20 s, round on the spot within 2 s, back, " \
            "and so on; FILE: a recorded flight, CSV whose first line names columns t_s, x_m, " \
-           "y_m, z_m (above the terrain's zero) or h_m (above ground), heading_deg and " \
-           "pitch_deg (may be missing). Its times count from the start, --settle included. It " \
+           "y_m (or lat_deg, lon_deg), z_m (above the terrain's zero) or h_m (above ground), heading_deg " \
+           "(heading_true_deg) and pitch_deg (may be missing). Its times count from the start, --settle included. It " \
            "may leave the terrain: what was above ground is then above its rim. The CSV of an " \
            "earlier flight is one") \
     OPTION(sys_real, start, "start", "F", "0.4", SYS_REAL(0, 1, ""), "where on the diagonal") \

@@ -1,5 +1,7 @@
 #include "fly_recording.h"
 
+#include "../../protocol/ff_error.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -18,6 +20,9 @@ enum column {
     COLUMN_H,
     COLUMN_HEADING,
     COLUMN_PITCH,
+    COLUMN_LAT,
+    COLUMN_LON,
+    COLUMN_TRUE,
     COLUMN_COUNT,
     COLUMN_OTHER
 };
@@ -28,7 +33,7 @@ typedef struct reader {
     unsigned line;
     enum column column[COLUMNS_MAX];
     unsigned columns;
-    int has[COLUMN_COUNT];
+    int has[COLUMN_COUNT], on_earth;
     size_t capacity;
 } reader;
 
@@ -51,8 +56,10 @@ static char *next_field(char **rest)
 
 static int read_header(reader *r, char *line)
 {
-    static const char *const name[COLUMN_COUNT] = { "t_s", "x_m",         "y_m",      "z_m",
-                                                    "h_m", "heading_deg", "pitch_deg" };
+    static const char *const name[COLUMN_COUNT] = {
+        "t_s",         "x_m",       "y_m",     "z_m",     "h_m",
+        "heading_deg", "pitch_deg", "lat_deg", "lon_deg", "heading_true_deg"
+    };
     for (char *field; (field = next_field(&line)) != NULL;) {
         enum column column = COLUMN_OTHER;
         for (int i = 0; i < COLUMN_COUNT; i++)
@@ -62,27 +69,33 @@ static int read_header(reader *r, char *line)
         if (column != COLUMN_OTHER) r->has[column] = 1;
         r->column[r->columns++] = column;
     }
-    if (!r->has[COLUMN_T] || !r->has[COLUMN_X] || !r->has[COLUMN_Y] ||
-        r->has[COLUMN_Z] + r->has[COLUMN_H] < 1)
-        return wrong(r, "needs columns t_s, x_m, y_m and z_m or h_m");
+    int in_metres = r->has[COLUMN_X] && r->has[COLUMN_Y],
+        in_degrees = r->has[COLUMN_LAT] && r->has[COLUMN_LON];
+    if (!r->has[COLUMN_T] || !(in_metres || in_degrees) || r->has[COLUMN_Z] + r->has[COLUMN_H] < 1)
+        return wrong(r, "needs columns t_s, x_m, y_m (or lat_deg, lon_deg) and z_m or h_m");
+    r->on_earth = !in_metres;
     return 0;
 }
 
 static int read_fix(const reader *r, char *line, fly_fix *fix)
 {
-    double value[COLUMN_COUNT] = { [COLUMN_HEADING] = NAN, [COLUMN_PITCH] = PITCH_DEG };
+    double value[COLUMN_COUNT] = {
+        [COLUMN_HEADING] = NAN, [COLUMN_PITCH] = PITCH_DEG, [COLUMN_TRUE] = NAN
+    };
     for (unsigned i = 0; i < r->columns; i++) {
         char *field = next_field(&line), *end;
         if (!field) return wrong(r, "too few columns");
-        if (r->column[i] == COLUMN_OTHER) continue;
+        if (r->column[i] == COLUMN_OTHER || (r->column[i] >= COLUMN_LAT && !r->on_earth)) continue;
         double number = strtod(field, &end);
         if (end == field || *end || !(fabs(number) <= 8e6))
             return wrong(r, "not a number, or one beyond 8 000 000");
         value[r->column[i]] = number;
     }
-    *fix = (fly_fix){ value[COLUMN_T],       value[COLUMN_X],
-                      value[COLUMN_Y],       r->has[COLUMN_Z] ? value[COLUMN_Z] : value[COLUMN_H],
-                      value[COLUMN_HEADING], value[COLUMN_PITCH] };
+    enum column x = r->on_earth ? COLUMN_LON : COLUMN_X, y = r->on_earth ? COLUMN_LAT : COLUMN_Y,
+                up = r->has[COLUMN_Z] ? COLUMN_Z : COLUMN_H,
+                heading = r->on_earth ? COLUMN_TRUE : COLUMN_HEADING;
+    *fix = (fly_fix){ value[COLUMN_T], value[x],       value[y],
+                      value[up],       value[heading], value[COLUMN_PITCH] };
     return line ? wrong(r, "too many columns") : 0;
 }
 
@@ -146,8 +159,38 @@ int fly_recording_read(fly_recording *recording, const char *path)
     fclose(file);
     if (rc) fly_recording_free(recording);
     recording->above_ground = !r.has[COLUMN_Z];
-    fill_headings(recording);
+    recording->on_earth = r.on_earth;
+    if (!r.on_earth) fill_headings(recording);
     return rc;
+}
+
+/* A fix in degrees becomes one in metres, its heading one from the ground's north. FF_OK or
+ * FF_ERR_RANGE. */
+static int place_fix(fly_fix *fix, const ff_geo *geo)
+{
+    const ff_geo_place place = { llround(fix->y_m * 1e9), llround(fix->x_m * 1e9), 0 };
+    int32_t wu[3], north;
+    int rc = ff_geo_to(geo, &place, wu);
+    if (rc == FF_OK) rc = ff_geo_north(geo, wu, &north);
+    if (rc != FF_OK) return rc;
+    fix->x_m = (double)wu[0] / FF_WU_PER_METRE;
+    fix->y_m = (double)wu[1] / FF_WU_PER_METRE;
+    fix->heading_deg += north * 360 / 65536.0;
+    return FF_OK;
+}
+
+int fly_recording_place(fly_recording *recording, const char *path, const ff_geo *geo)
+{
+    for (size_t i = 0; recording->on_earth && i < recording->count; i++) {
+        if (place_fix(&recording->fix[i], geo) == FF_OK) continue;
+        fprintf(stderr,
+                "farfield-fly: %s:%zu: the projection of the ground does not show this place\n",
+                path, i + 2);
+        return -1;
+    }
+    if (recording->on_earth) fill_headings(recording);
+    recording->on_earth = 0;
+    return 0;
 }
 
 void fly_recording_free(fly_recording *recording)

@@ -42,6 +42,8 @@ static int open_path(fly_world *world)
     double at_m[2], to_m[2];
     fly_path_init(path, options, &world->pack->header.info, &world->grounds.moderate[0]);
     world->geo_error = ff_geo_pack(&world->geo, world->pack);
+    if (options->recording.on_earth && world->geo_error != FF_OK)
+        return fail_place(options->path_text, world->geo_error);
     if (!options->at.given) return 0;
     if (find_place(world, "--at", &options->at, at_m, &path->height_m)) return -1;
     path->end_height_m = path->height_m;

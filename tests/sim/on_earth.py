@@ -105,6 +105,20 @@ def _():
         assert fly(pack, "--at", "%.9f,%.9f" % at, "--height", 100, "--seconds", 1)[0][0]["z_m"] == higher[0]
 
 
+@case("a recorded flight in degrees is the same flight, also over another pack of the place")
+def _():
+    rows, _ = fly("ground32632.ffp", "--path", "circle", "--seconds", 4, "--speed", 600)
+    record = lambda names: open(os.path.join(work, "track.csv"), "w").write(",".join(names) + "\n" + "".join(",".join("%.9f" % row[name] for name in names) + "\n" for row in rows))
+    record(["t_s", "lat_deg", "lon_deg", "z_m", "heading_true_deg"])
+    again, _ = fly("ground32632.ffp", "--path", "track.csv", "--seconds", 4)
+    for one, other in zip(rows, again):
+        assert math.hypot(one["x_m"] - other["x_m"], one["y_m"] - other["y_m"]) < 0.03 and abs(one["heading_true_deg"] - other["heading_true_deg"]) < 0.02, (one, other)
+    record(["t_s", "lat_deg", "lon_deg", "z_m"])
+    again, _ = fly("ground32632.ffp", "--path", "track.csv", "--seconds", 4)
+    assert abs(again[1]["heading_true_deg"] - rows[1]["heading_true_deg"]) < 5, (rows[1], again[1])  # towards the next row, not along the circle
+    assert "projection of the ground does not show" in refused("fly", "--pack", "ground32719.ffp", "--backend", "none", "--path", "track.csv")
+
+
 @case("a part of a pack has its places on Earth where the whole has them")
 def _():
     degrees = degrees_of(32632)

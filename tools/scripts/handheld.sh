@@ -54,6 +54,17 @@ if [ -x "$host/farfield-handheld" ] && [ -z "${without// /}" ]; then
     [ "$(value geometry_hash "$work/pack.txt")" = "$(value geometry_hash "$work/host.txt")" ] && cmp -s "$work/pack.ppm" "$work/host.ppm"
     result $? "the same geometry and the same pixels as on this machine"
 fi
+python3 tests/rig/placed.py "$work/hills.raw" 257 0,0,257,257 1 40 32632 "$work/placed.vrt" &&
+    "$host/farfield-bake" "$work/placed.vrt" --quiet --codec "$codec" -o "$work/placed.ffp"
+at=(--pack "$work/placed.ffp" --at 45.12,9.05,200 --to 45.13,9.06 --speed 900 --frames 60)
+if has geo && [ -x "$host/farfield-handheld" ] && [ -z "${without// /}" ]; then
+    "${qemu[@]}" "$program" "${at[@]}" >"$work/at.txt" && "$host/farfield-handheld" "${at[@]}" >"$work/host.txt" &&
+        [ "$(value geometry_hash "$work/at.txt")" = "$(value geometry_hash "$work/host.txt")" ]
+    result $? "from one latitude and longitude to another, as on this machine"
+elif ! has geo; then
+    ! "${qemu[@]}" "$program" "${at[@]}" >/dev/null 2>"$work/err.txt" && [ "$(wc -l <"$work/err.txt")" = 1 ]
+    result $? "without geo a latitude is refused in one line"
+fi
 ! "${qemu[@]}" "$program" --pack "$work/hills.raw" >/dev/null 2>"$work/err.txt" && [ "$(wc -l <"$work/err.txt")" = 1 ]
 result $? "what is no pack is refused in one line"
 if ! has deflate; then
