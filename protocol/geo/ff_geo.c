@@ -161,10 +161,9 @@ static int make_mercator(const maker *m)
     return rc;
 }
 
-/* Sets the distance from the pole, radii of the equator, of the parallel whose ln t is `base`; the
- * plane's false origin is at `false_latitude`. */
-static int make_cone(const maker *m, int64_t cone, int64_t base, int64_t radii,
-                     int64_t false_latitude)
+/* `radii`: of the equator, how far from the pole the plane shows where t is 1; its false origin is
+ * at `false_latitude`. */
+static int make_cone(const maker *m, int64_t cone, int64_t radii, int64_t false_latitude)
 {
     ff_geo *geo = m->geo;
     int64_t origin[2] = { 0, 0 };
@@ -172,7 +171,6 @@ static int make_cone(const maker *m, int64_t cone, int64_t base, int64_t radii,
     geo->kind = FF_GEO_CONE;
     geo->cone_q56 = cone;
     geo->per_cone_q56 = ff_geo_ratio(FF_GEO_ONE, cone, 56);
-    geo->base_q56 = base;
     int rc = set_unit(m, radii), at_pole = false_latitude >= FF_GEO_PI / 2;
     if (rc == FF_OK && !at_pole)
         rc = ff_geo_project(geo, geo->south ? -false_latitude : false_latitude, 0, origin);
@@ -203,7 +201,8 @@ static int make_lambert(const maker *m)
         cone = ff_geo_ratio(higher, further, 56);
     }
     if (cone < FF_GEO_ONE / 32) return FF_ERR_RANGE;
-    return make_cone(m, cone, base, ff_geo_ratio(ff_geo_mul(unit, scale), cone, 56), from);
+    unit = ff_geo_ratio(ff_geo_mul(unit, scale), cone, 56);
+    return make_cone(m, cone, ff_geo_ratio(unit, ff_geo_exp(ff_geo_mul(base, cone)), 56), from);
 }
 
 /* The radius of the stereographic plane at t = 1: 2 / sqrt((1 + e)^(1 + e) (1 - e)^(1 - e)); the
@@ -231,7 +230,7 @@ static int make_polar(const maker *m)
         unit = polar_radius(m->e2);
     else
         unit = ff_geo_ratio(parallel_radius(m, parallel), ff_geo_exp(log_t(m, parallel)), 56);
-    return make_cone(m, FF_GEO_ONE, 0, unit, FF_GEO_PI / 2);
+    return make_cone(m, FF_GEO_ONE, unit, FF_GEO_PI / 2);
 }
 
 static int make_method(const maker *m, int64_t n)

@@ -34,9 +34,9 @@ typedef struct ff_geo {
     /* the world's x = y = 0 from where the projection has its own: on its meridian, at the equator,
      * or at the pole */
     int64_t east_um, north_um;
-    int64_t meridian_e9;                      /* east of Greenwich */
-    int64_t west_q56;                         /* where the ground begins, from that meridian */
-    int64_t cone_q56, per_cone_q56, base_q56; /* n, 1 / n, ln t where a cone's unit is taken */
+    int64_t meridian_e9;            /* east of Greenwich */
+    int64_t west_q56;               /* where the ground begins, from that meridian */
+    int64_t cone_q56, per_cone_q56; /* n of a cone, and 1 / n */
     /* by n of the ellipsoid: conformal latitudes from geographic ones, and back; a transverse plane
      * from the sphere's, and back */
     int64_t conformal[4], geographic[4], plane[4], sphere[4];

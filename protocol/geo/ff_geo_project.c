@@ -160,13 +160,12 @@ static int from_mercator(const int64_t xy[2], int64_t *latitude, int64_t *longit
     return FF_OK;
 }
 
-/* (t / t of the unit) to the power of n, or 0 beyond what a cone shows. */
+/* t to the power of n, or 0 beyond what a cone shows. */
 static int64_t cone_distance(const ff_geo *geo, int64_t t)
 {
     FF_ASSERT(t > 0 && geo->cone_q56 > 0);
-    if (geo->cone_q56 == FF_GEO_ONE && !geo->base_q56) return t;
-    int64_t power = ff_geo_mul(ff_geo_log(t) - geo->base_q56, geo->cone_q56);
-    return power > 3 * FF_GEO_ONE ? 0 : ff_geo_exp(power);
+    if (geo->cone_q56 == FF_GEO_ONE) return t;
+    return ff_geo_exp(ff_geo_mul(ff_geo_log(t), geo->cone_q56));
 }
 
 static int to_cone(const ff_geo *geo, int64_t latitude, int64_t longitude, int64_t xy[2])
@@ -189,8 +188,8 @@ static int from_cone(const ff_geo *geo, const int64_t xy[2], int64_t *latitude, 
     t = ff_geo_polar(-xy[1], xy[0], &turned);
     int has_slit = geo->cone_q56 < FF_GEO_ONE;
     if (has_slit && (turned > half_turn || turned < -half_turn)) return FF_ERR_RANGE;
-    if (geo->cone_q56 != FF_GEO_ONE || geo->base_q56) {
-        int64_t power = geo->base_q56 + ff_geo_mul(ff_geo_log(t), geo->per_cone_q56);
+    if (has_slit) {
+        int64_t power = ff_geo_mul(ff_geo_log(t), geo->per_cone_q56);
         if (power > 3 * FF_GEO_ONE) return FF_ERR_RANGE;
         t = ff_geo_exp(power);
     }

@@ -7,8 +7,7 @@
 #include "ff_geo.h"
 
 /* A plane's own (0, 0): MERCATOR and TRANSVERSE: on the meridian, at the equator. CONE, of which a
- * polar stereographic plane is the flattest: at the pole, and y is -radius at the latitude where
- * that is taken. */
+ * polar stereographic plane is the flattest: at the pole, and y is -radius where t is 1. */
 enum ff_geo_kind { FF_GEO_MERCATOR, FF_GEO_TRANSVERSE, FF_GEO_CONE };
 
 /* Sets the series by n, the third flattening (Karney 2011, eq. 35 and 36; 2023, "On auxiliary
