@@ -202,6 +202,24 @@ static void north_is_where_meridians_lead(void **state)
     assert_int_equal(north, 0);
 }
 
+/* Mercator's plane is cut where the ground is not. */
+static void ground_across_the_date_line_is_in_one_piece(void **state)
+{
+    example e = note[3];
+    ff_geo geo;
+    ff_terrain_info info;
+    ff_geo_place place = { 0, INT64_C(-178000000000), 0 };
+    int32_t wu[3];
+    (void)state;
+    e.east_m = 179 * 111319.490793; /* a degree west of the line */
+    e.north_m = 0;
+    assert_int_equal(make(&e, &geo, &info), FF_OK);
+    assert_int_equal(ff_geo_to(&geo, &place, wu), FF_OK);
+    assert_true(fabs(wu[0] / 256.0 - 1000 - 3 * 111319.490793) < 2);
+    assert_int_equal(ff_geo_of(&geo, wu, &place), FF_OK);
+    assert_true(llabs(place.longitude_e9 - INT64_C(-178000000000)) < 40);
+}
+
 static void what_no_projection_shows_is_refused(void **state)
 {
     ff_geo geo;
@@ -372,6 +390,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(examples_of_the_guidance_note_come_out),
         cmocka_unit_test(north_is_where_meridians_lead),
+        cmocka_unit_test(ground_across_the_date_line_is_in_one_piece),
         cmocka_unit_test(what_no_projection_shows_is_refused),
         cmocka_unit_test(other_methods_and_bodies_are_told_apart),
         cmocka_unit_test(any_numbers_end_in_a_place_or_an_error),
