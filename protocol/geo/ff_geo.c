@@ -115,7 +115,7 @@ static int64_t scale_of(const maker *m)
     return is_within(scale, FACTOR / 2, 2 * FACTOR) ? ff_geo_ratio(scale, FACTOR, 56) : 0;
 }
 
-/* The world's origin lies `north` units less to the north than from the plane's false origin. */
+/* Sets where the world's origin lies; the plane's false origin lies `north` units from its own. */
 static int set_origin(const maker *m, int64_t north)
 {
     ff_geo *geo = m->geo;
@@ -182,12 +182,10 @@ static int make_lambert(const maker *m)
 {
     int two = m->projection->method == LAMBERT_2SP;
     int64_t from, first, second, base, unit, scale = two ? FF_GEO_ONE : scale_of(m), cone, cosine;
-    m->geo->south = value_of(m, two ? PARALLEL_1 : LATITUDE, 0) / 2 +
-                        value_of(m, two ? PARALLEL_2 : LATITUDE, 0) / 2 <
-                    0;
+    const unsigned parallel[2] = { two ? PARALLEL_1 : LATITUDE, two ? PARALLEL_2 : LATITUDE };
+    m->geo->south = value_of(m, parallel[0], 0) / 2 + value_of(m, parallel[1], 0) / 2 < 0;
     if (latitude_of(m, two ? FALSE_LATITUDE : LATITUDE, &from) ||
-        latitude_of(m, two ? PARALLEL_1 : LATITUDE, &first) ||
-        latitude_of(m, two ? PARALLEL_2 : LATITUDE, &second))
+        latitude_of(m, parallel[0], &first) || latitude_of(m, parallel[1], &second))
         return FF_ERR_RANGE;
     if (!is_within(first, -STANDARD_MAX, STANDARD_MAX) ||
         !is_within(second, -STANDARD_MAX, STANDARD_MAX) || from < -FF_GEO_PI / 180 * 79 || !scale)
@@ -303,6 +301,7 @@ int ff_geo_pack(ff_geo *geo, const ff_pack *pack)
 
 static int64_t um_of_wu(int32_t wu) { return ((int64_t)wu * UM_PER_WU_Q2 + 2) >> 2; }
 
+/* To the nearest; *error is set where there is none. */
 static int32_t wu_of_um(int64_t um, int *error)
 {
     int64_t wu = (um * 8 + UM_PER_WU_Q2) / (2 * UM_PER_WU_Q2);
