@@ -34,7 +34,8 @@ int ff_client_take_texture(ff_client *client, ff_new_item *item, int64_t now_us)
 {
     (void)now_us;
     FF_ASSERT(ff_key_level(item->key) < ff_tree_ground(client->tree, item->key)->texture_levels);
-    if (ff_several_shares(client, item->key)) item->u.texture.bare = 0; /* others may have them */
+    if (ff_several_shares(client, item->key))
+        item->u.texture.marks.bare = 0; /* others may have them */
     FF_ASSERT(item->width == 1u << client->info.texture_log2 && item->height == item->width);
     return ff_textures_take(&client->textures, ff_tree_ground(client->tree, item->key), item);
 }

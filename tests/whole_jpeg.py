@@ -35,7 +35,8 @@ def segment(marker, body):
 
 
 def whole(side, bare):
-    bare = bare[bare[0] > 128:]  # a byte that says which children have no image may stand before
+    while bare[0] > 128:  # bytes that say which children have no image may stand before
+        bare = bare[1:]
     quality, (steps, codes) = bare[0], annex_k()
     percent = 5000 // quality if quality < 50 else 200 - 2 * quality
     jpeg = b"\xFF\xD8"

@@ -5,6 +5,7 @@
 #ifndef FF_NEW_DATA_H
 #define FF_NEW_DATA_H
 
+#include "../../protocol/ff_image.h"
 #include "ff_request.h"
 
 /* Of the fins in an image slot, before the paint. */
@@ -30,10 +31,10 @@ typedef struct ff_new_item {
         ff_residuals residuals;
         /* VIEW, its end: bit i: what it names at i has not come */
         uint16_t missing;
-        /* TEXTURE: ff_image.bare. pixels: RGB565, width x width, row 0 south; or, of a picture, so
-         * many bytes as they came: what it is a difference to is the main thread's */
+        /* TEXTURE. pixels: RGB565, width x width, row 0 south, unless it is open all over; or, of
+         * a picture, so many bytes as they came: what it is a difference to is the main thread's */
         struct {
-            uint8_t bare;
+            ff_image_marks marks;
             uint32_t coded_bytes; /* 0: texels */
         } texture;
         /* FACE. pixels: RGBA5551 of width x height (a power of two), row 0 lowest, texels without

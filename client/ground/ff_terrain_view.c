@@ -207,16 +207,15 @@ static void dress(const ff_terrain_view *view, const ff_terrain_info *info, cons
     if (draw->flags & C3D_DRAW_TEXTURED) ff_ground_frame_last(info, drawn, draw);
 }
 
-/* Chooses what a node wears, view->wear: how many parts it has. The call is dressed for the first
- * that has an image: of several one at most has none. */
+/* Chooses what a node wears, view->wear: how many parts it has. The call is dressed for the first:
+ * of several only the last has no image. */
 static unsigned choose_outfit(ff_terrain_view *view, const ff_terrain_info *info,
                               const ff_drawn *drawn, c3d_draw *draw)
 {
     if (!view->textures) return 0;
     unsigned parts = ff_textures_worn(view->textures, view->tree, drawn, &view->look, view->wear);
-    unsigned first = parts > 1 && view->wear[0].image == FF_KEY_NONE;
-    FF_ASSERT(parts <= FF_WEAR_MAX && (!parts || first < parts));
-    if (parts) dress(view, info, drawn, view->wear[first].image, draw);
+    FF_ASSERT(parts <= FF_WEAR_MAX);
+    if (parts) dress(view, info, drawn, view->wear[0].image, draw);
     return parts;
 }
 

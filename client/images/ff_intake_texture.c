@@ -36,7 +36,8 @@ int ff_intake_texture(ff_intake *intake, const ff_message *answer, ff_new_item *
     ff_image image;
     int rc = ff_image_read(answer->u.data.bytes, answer->u.data.byte_count, &image);
     if (rc != FF_OK) return rc;
-    item->u.texture.bare = image.bare;
+    item->u.texture.marks = image.marks;
+    if (image.marks.open == 15) return FF_OK;
     return info->flags & FF_TERRAIN_PICTURES ? pass_on(intake, &image, item)
                                              : decode_jpeg(intake, info, &image, item);
 }

@@ -20,8 +20,8 @@ static unsigned bucket_of(ff_key key)
 static ff_texture_slot *find(const ff_textures *textures, ff_key key)
 {
     for (unsigned i = textures->bucket[bucket_of(key)]; i; i = textures->slot[i - 1].next) {
-        FF_ASSERT(i <= textures->slot_count && textures->slot[i - 1].held == 1);
-        if (textures->slot[i - 1].key == key && textures->slot[i - 1].layer == textures->layer)
+        FF_ASSERT(i <= textures->slot_count && textures->slot[i - 1].tag > 0);
+        if (textures->slot[i - 1].key == key && textures->slot[i - 1].tag == textures->layer + 1)
             return &textures->slot[i - 1];
     }
     return NULL;
@@ -71,19 +71,68 @@ unsigned ff_textures_wanted(const ff_textures *textures, const ff_tree *tree, co
                                                              : 0;
 }
 
+/* The image of that level on the way to `finest`. */
+static ff_key on_the_way(ff_key finest, uint32_t level)
+{
+    FF_ASSERT(level <= ff_key_level(finest));
+    while (ff_key_level(finest) > level) finest = ff_key_parent(finest);
+    return finest;
+}
+
+/* 1 when the image held nearest above `image`, which is wanted on the node, tells that the ground
+ * there shows its own colours. */
+static int is_open(const ff_texture_slot *held, ff_key node, ff_key image)
+{
+    ff_key at = ff_key_level(node) > ff_key_level(image) ? node : image;
+    uint32_t level = ff_key_level(held->key);
+    if (ff_key_level(at) <= level) return held->marks.open == 15;
+    return held->marks.open >> ff_key_quadrant(on_the_way(at, level + 1)) & 1;
+}
+
+/* The squares of a node that lie below an image of its own, or a finer one, and show colours. */
+static ff_squares open_squares(const ff_textures *textures, const ff_texture_slot *held,
+                               ff_key node)
+{
+    unsigned log2 = textures->info.node_log2;
+    ff_squares squares = 0;
+    uint32_t level = ff_key_level(held->key) + 1;
+    if (level <= ff_key_level(node) || level > ff_key_level(node) + ff_image_depth(log2)) return 0;
+    for (unsigned q = 0; q < 4; q++)
+        if (held->marks.open >> q & 1)
+            squares |= ff_wear_squares(log2, node, ff_key_child(held->key, q));
+    return squares;
+}
+
+/* What is worn where `part` is wanted; *open: the squares of it that show colours all the same. */
+static ff_key worn(const ff_textures *textures, ff_key node, ff_key image, ff_squares *open)
+{
+    const ff_texture_slot *held = find_nearest(textures, image);
+    *open = 0;
+    if (!held || is_open(held, node, image)) return FF_KEY_NONE;
+    *open = open_squares(textures, held, node);
+    const ff_texture_slot *slot = find_drawable(textures, image);
+    return slot->texture.id ? slot->key : FF_KEY_NONE;
+}
+
 unsigned ff_textures_worn(const ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
                           const ff_texel_look *look, ff_wear list[FF_WEAR_MAX])
 {
     unsigned wanted = ff_textures_wanted(textures, tree, drawn, look, list), count = 0;
+    ff_squares colours = 0;
     for (unsigned i = 0; i < wanted; i++) {
         const ff_wear part = list[i]; /* its place may be taken */
-        const ff_texture_slot *slot = find_drawable(textures, part.image);
-        ff_key image = slot && slot->texture.id ? slot->key : FF_KEY_NONE;
+        ff_squares open;
+        ff_key image = worn(textures, drawn->key, part.image, &open);
+        if (image == FF_KEY_NONE) open = part.squares;
+        colours |= part.squares & open;
+        if (!(part.squares & ~open)) continue;
         unsigned same = 0;
         while (same < count && list[same].image != image) same++;
         if (same == count) list[count++] = (ff_wear){ image, 0 };
-        list[same].squares |= part.squares;
+        list[same].squares |= part.squares & ~open;
     }
+    FF_ASSERT(count < FF_WEAR_MAX || !colours);
+    if (colours) list[count++] = (ff_wear){ FF_KEY_NONE, colours };
     return count;
 }
 
@@ -118,14 +167,6 @@ int ff_textures_touch(ff_textures *textures, ff_key key)
     textures->stamp++;
     if (slot) slot->used = slot->drawn = textures->stamp;
     return slot != NULL;
-}
-
-/* The image of that level on the way to `finest`. */
-static ff_key on_the_way(ff_key finest, uint32_t level)
-{
-    FF_ASSERT(level <= ff_key_level(finest));
-    while (ff_key_level(finest) > level) finest = ff_key_parent(finest);
-    return finest;
 }
 
 /* 1/f of Hybrid eq. 3 for the ground the image covers, Q8: the scale of the tree's wishes. */
@@ -198,7 +239,7 @@ static void forget_coded(ff_textures *textures, ff_texture_slot *slot)
     ff_held_pictures_cut(&textures->pictures, slot->key, coded);
     slot->coded.bytes = 0;
     for (unsigned i = 0; i < textures->slot_count; i++)
-        if (textures->slot[i].held && textures->slot[i].coded.at > coded.at)
+        if (textures->slot[i].tag && textures->slot[i].coded.at > coded.at)
             textures->slot[i].coded.at -= coded.bytes;
 }
 
@@ -207,7 +248,7 @@ static void drop(ff_textures *textures, ff_texture_slot *slot)
     unlink_slot(textures, slot);
     free_texture(textures, slot);
     forget_coded(textures, slot);
-    slot->held = 0;
+    slot->tag = 0;
     textures->held--;
 }
 
@@ -218,7 +259,7 @@ static ff_texture_slot *oldest_slot(const ff_textures *textures)
     ff_texture_slot *oldest = NULL;
     for (unsigned i = 0; i < textures->slot_count; i++) {
         ff_texture_slot *slot = &textures->slot[i];
-        if (!slot->held || slot->used == textures->stamp) continue;
+        if (!slot->tag || slot->used == textures->stamp) continue;
         uint32_t age = textures->stamp - slot->used,
                  most = oldest ? textures->stamp - oldest->used : 0;
         if (age > most ||
@@ -240,12 +281,13 @@ static ff_texture_slot *take_slot(ff_textures *textures, uint32_t coded_bytes)
     }
     for (unsigned i = 0;; i++) {
         FF_ASSERT(i < textures->slot_count);
-        if (!textures->slot[i].held) return &textures->slot[i];
+        if (!textures->slot[i].tag) return &textures->slot[i];
     }
 }
 
 /* Holds an image by name. NULL: there is no room. */
-static ff_texture_slot *hold(ff_textures *textures, ff_key key, uint8_t bare, uint32_t coded_bytes)
+static ff_texture_slot *hold(ff_textures *textures, ff_key key, ff_image_marks marks,
+                             uint32_t coded_bytes)
 {
     ff_texture_slot *slot = take_slot(textures, coded_bytes);
     if (!slot) {
@@ -253,9 +295,8 @@ static ff_texture_slot *hold(ff_textures *textures, ff_key key, uint8_t bare, ui
         return NULL;
     }
     *slot = (ff_texture_slot){ .key = key,
-                               .held = 1,
-                               .layer = textures->layer,
-                               .bare = bare & 15u,
+                               .tag = (uint8_t)(textures->layer + 1),
+                               .marks = marks,
                                .used = textures->stamp,
                                .drawn = textures->stamp,
                                .next = textures->bucket[bucket_of(key)] };
@@ -274,7 +315,7 @@ static int make_room(ff_textures *textures)
     if (textures->made < textures->texture_count) return 1;
     for (unsigned i = 0; i < textures->slot_count; i++) {
         ff_texture_slot *slot = &textures->slot[i];
-        if (!slot->held || !slot->texture.id || slot->drawn == textures->stamp) continue;
+        if (!slot->tag || !slot->texture.id || slot->drawn == textures->stamp) continue;
         if (!oldest || textures->stamp - slot->drawn > textures->stamp - oldest->drawn)
             oldest = slot;
     }
@@ -329,13 +370,13 @@ static int take_picture(ff_textures *textures, const ff_terrain_info *info, ff_n
     const uint8_t *bytes = (const uint8_t *)item->pixels;
     uint32_t level = ff_key_level(item->key), count = item->u.texture.coded_bytes;
     if (!textures->pictures.rgb)
-        return ff_textures_put(textures, item->key, item->u.texture.bare, NULL);
+        return ff_textures_put(textures, item->key, item->u.texture.marks, NULL);
     if (find(textures, item->key)) return 0;
     if (level && !find(textures, ff_key_parent(item->key))) {
         textures->apart++;
         return 0;
     }
-    ff_texture_slot *slot = hold(textures, item->key, item->u.texture.bare, count);
+    ff_texture_slot *slot = hold(textures, item->key, item->u.texture.marks, count);
     if (!slot) return 0;
     slot->coded = ff_held_pictures_add(&textures->pictures, bytes, count);
     (void)ff_textures_picture(textures, info, item->key, &item->error);
@@ -350,13 +391,14 @@ int ff_textures_take(ff_textures *textures, const ff_terrain_info *info, ff_new_
 {
     FF_ASSERT(item->width == 1u << textures->info.texture_log2);
     if (item->u.texture.coded_bytes) return take_picture(textures, info, item);
-    return ff_textures_put(textures, item->key, item->u.texture.bare, item->pixels);
+    return ff_textures_put(textures, item->key, item->u.texture.marks,
+                           item->u.texture.marks.open == 15 ? NULL : item->pixels);
 }
 
-int ff_textures_put(ff_textures *textures, ff_key key, uint8_t bare, const uint16_t *texels)
+int ff_textures_put(ff_textures *textures, ff_key key, ff_image_marks marks, const uint16_t *texels)
 {
     if (find(textures, key)) return 0;
-    ff_texture_slot *slot = hold(textures, key, bare, 0);
+    ff_texture_slot *slot = hold(textures, key, marks, 0);
     if (!slot || !textures->device || !texels) return slot != NULL;
     if (make_texture(textures, slot, texels)) return 1;
     drop(textures, slot);
@@ -372,7 +414,7 @@ void ff_textures_set_layer(ff_textures *textures, uint8_t layer)
 
 void ff_textures_doubt(ff_textures *textures)
 {
-    for (unsigned i = 0; i < textures->slot_count; i++) textures->slot[i].bare = 0;
+    for (unsigned i = 0; i < textures->slot_count; i++) textures->slot[i].marks.bare = 0;
 }
 
 /* ---- wishes ---- */
@@ -450,18 +492,18 @@ static uint32_t last_level(const wisher *w, ff_key finest, uint32_t next, uint32
     return level > next ? level : next;
 }
 
-/* What is lacking on the way to a wanted image is wished for: 1 when there is such. */
-static int look_for(wisher *w, ff_key finest, uint32_t most)
+/* What is lacking on the way to an image that a node wants is wished for: 1 when there is such. */
+static int look_for(wisher *w, ff_key finest, ff_key node)
 {
     const ff_texture_slot *held = find_nearest(w->textures, finest);
     if (held) {
         use(w, held->key);
-        draw(w, held);
+        if (!is_open(held, node, finest)) draw(w, held);
         if (held->key == finest) return 0;
     }
     uint32_t next = held ? ff_key_level(held->key) + 1 : 0;
-    if (held && held->bare >> ff_key_quadrant(on_the_way(finest, next)) & 1u) return 0;
-    wish_down(w, finest, next, last_level(w, finest, next, most));
+    if (held && ff_image_ends(held->marks, ff_key_quadrant(on_the_way(finest, next)))) return 0;
+    wish_down(w, finest, next, last_level(w, finest, next, ff_key_level(node)));
     return 1;
 }
 
@@ -492,7 +534,7 @@ uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff
         unsigned parts = ff_textures_wanted(textures, tree, &drawn[i], &look, textures->wear);
         int lacks = 0;
         for (unsigned part = 0; part < parts; part++)
-            lacks |= look_for(&w, textures->wear[part].image, ff_key_level(drawn[i].key));
+            lacks |= look_for(&w, textures->wear[part].image, drawn[i].key);
         textures->lacking += (unsigned)lacks;
     }
     FF_ASSERT(w.in_use <= textures->held && textures->held <= textures->slot_count);

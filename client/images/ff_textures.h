@@ -27,9 +27,8 @@ typedef struct ff_texture_slot {
     uint32_t used;       /* stamp of the last frame it, or one below it, was of use in */
     uint32_t drawn;      /* and was drawn in */
     uint16_t next;       /* hash chain: slot + 1 */
-    uint8_t layer;       /* it is of */
-    uint8_t held : 1;
-    uint8_t bare : 4; /* children without an image: ff_image.bare */
+    uint8_t tag;         /* 1 + the layer it is of; 0: the slot is free */
+    ff_image_marks marks;
 } ff_texture_slot;
 
 typedef struct ff_textures {
@@ -69,8 +68,8 @@ ff_texel_look ff_textures_look(const ff_textures *textures, const ff_frame *fram
 unsigned ff_textures_wanted(const ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
                             const ff_texel_look *look, ff_wear list[FF_WEAR_MAX]);
 /* Lists what a drawn node wears of the images that are held: on each of its squares the one that is
- * wanted there, or the nearest above that; FF_KEY_NONE: none. How many; 0: no images belong to its
- * ground. */
+ * wanted there, or the nearest above that; FF_KEY_NONE, in the last place: none is held, or the
+ * images end there. How many; 0: no images belong to its ground. */
 unsigned ff_textures_worn(const ff_textures *textures, const ff_tree *tree, const ff_drawn *drawn,
                           const ff_texel_look *look, ff_wear list[FF_WEAR_MAX]);
 /* Lays such an image over `node` on the call that draws it, in place of colours; without one the
@@ -83,9 +82,9 @@ uint32_t ff_textures_wishes(ff_textures *textures, const ff_tree *tree, const ff
                             uint32_t drawn_count, const ff_view *view, const ff_quality *quality,
                             ff_texture_wish *list, uint32_t capacity, int *changed);
 /* Takes an image in, RGB565, south row first; NULL: there is none, and ground below `key` shows its
- * colours. `bare`: of its children, ff_image.bare. 1 when the picture may have changed; 0: no room
- * (counted). */
-int ff_textures_put(ff_textures *textures, ff_key key, uint8_t bare, const uint16_t *texels);
+ * colours. 1 when the picture may have changed; 0: no room (counted). */
+int ff_textures_put(ff_textures *textures, ff_key key, ff_image_marks marks,
+                    const uint16_t *texels);
 /* The same, for an item of the new-data list, of a key of the ground `info`. A picture whose
  * parent's is not held is not taken, a damaged one makes the item an error. */
 int ff_textures_take(ff_textures *textures, const ff_terrain_info *info, ff_new_item *item);
@@ -97,7 +96,7 @@ const uint8_t *ff_textures_picture(ff_textures *textures, const ff_terrain_info 
 /* Shows images of another layer. Those of the one before stay, as those not in use do, until there
  * is no room for them: who comes back to it soon finds them. */
 void ff_textures_set_layer(ff_textures *textures, uint8_t layer);
-#define FF_LAYER_TAG_NONE 255u
+#define FF_LAYER_TAG_NONE 254u
 /* Somebody else may have images where those that are held say that there are none. */
 void ff_textures_doubt(ff_textures *textures);
 /* For an owner whose images come at once (a pack): 1 when this image is held; it is then the last

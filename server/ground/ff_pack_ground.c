@@ -192,12 +192,15 @@ static int make_texels(ff_pack_ground *ground, ff_key key)
 static void fetch_image(ff_pack_ground *ground, ff_key key)
 {
     const uint8_t *payload;
+    ff_image image = { 0 };
     if (ff_textures_touch(&ground->textures, key)) return;
     int rc = ff_pack_image(ground->pack, ground->images.path.layer, &key, &payload);
     if (ff_textures_touch(&ground->textures, key)) return;
-    if (rc >= 0) rc = make_texels(ground, key);
+    if (rc >= 0) rc = ff_image_read(payload, (size_t)rc, &image);
+    if (rc >= 0 && image.coded_bytes) rc = make_texels(ground, key);
     if (rc < 0) ground->stats->nodes_damaged++;
-    ff_textures_put(&ground->textures, key, 0, rc < 0 ? NULL : ground->texture_texels);
+    ff_textures_put(&ground->textures, key, image.marks,
+                    rc < 0 || !image.coded_bytes ? NULL : ground->texture_texels);
 }
 
 static void fetch_images(ff_pack_ground *ground, const ff_drawn *drawn, const ff_texel_look *look)

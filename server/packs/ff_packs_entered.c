@@ -132,22 +132,26 @@ static int make_image(ff_packs_entered *entered, unsigned layer, uint32_t tile,
     uint32_t level = ff_key_level(key);
     uint8_t *end = entered->image + IMAGE_BYTES_MAX, *to = end;
     ff_image image = { 0 };
-    uint8_t bare = 0;
+    ff_image_marks marks = { 0 };
     for (uint32_t i = 0; i <= level; i++, key = ff_key_parent(key)) {
         const uint8_t *stored;
         int rc = ff_pack_layer_record(pack->stored, layer, key, &stored);
         if (rc >= 0) rc = ff_image_read(stored, (size_t)rc, &image);
         if (rc < 0) return rc;
-        if (image.coded_bytes + 3 > (size_t)(to - entered->image) || image.coded_bytes > INT16_MAX)
+        if (image.coded_bytes + 2 + FF_IMAGE_MARKS_BYTES > (size_t)(to - entered->image) ||
+            image.coded_bytes > INT16_MAX)
             return FF_ERR_FULL;
         to -= image.coded_bytes;
         memcpy(to, image.coded, image.coded_bytes);
-        if (i == 0) bare = image.bare;
+        if (i == 0) marks = image.marks;
         if (i > 0) *--to = (uint8_t)image.coded_bytes;
         if (i > 0) *--to = (uint8_t)(image.coded_bytes >> 8);
         if (ff_key_level(key) == 0) break;
     }
-    if (bare) *--to = (uint8_t)(FF_IMAGE_BARE + bare);
+    uint8_t before[FF_IMAGE_MARKS_BYTES];
+    size_t bytes = ff_image_put_marks(marks, before);
+    to -= bytes;
+    memcpy(to, before, bytes);
     *payload = to;
     return (int)(end - to);
 }

@@ -193,14 +193,18 @@ static int load_ground(fly_reference *reference)
 static int fetch_image(fly_reference *reference, ff_key key)
 {
     const uint8_t *payload;
+    ff_image image = { 0 };
     if (ff_textures_touch(&reference->textures, key)) return FF_OK;
     int rc = ff_pack_image(reference->pack, reference->images.path.layer, &key, &payload);
     if (ff_textures_touch(&reference->textures, key)) return FF_OK;
-    if (rc >= 0)
+    if (rc >= 0) rc = ff_image_read(payload, (size_t)rc, &image);
+    if (rc >= 0 && image.coded_bytes)
         rc = ff_pack_images_get(&reference->images, reference->pack, key, reference->image_texels);
     if (rc < 0) return rc;
-    return ff_textures_put(&reference->textures, key, 0, reference->image_texels) ? FF_OK
-                                                                                  : FF_ERR_MEMORY;
+    return ff_textures_put(&reference->textures, key, image.marks,
+                           image.coded_bytes ? reference->image_texels : NULL)
+               ? FF_OK
+               : FF_ERR_MEMORY;
 }
 
 /* The images that a node wears. */

@@ -94,7 +94,7 @@ static void images_finer_than_nodes_are_drawn(void **state)
         unsigned finest = 0;
         for (unsigned i = 0; i < rig.client->textures.slot_count; i++) {
             const ff_texture_slot *slot = &rig.client->textures.slot[i];
-            finest += slot->held && ff_key_level(slot->key) == 2;
+            finest += slot->tag && ff_key_level(slot->key) == 2;
         }
         assert_true(finest > 4);
         picture[large] = draw(&rig);

@@ -15,6 +15,7 @@
 static ff_textures textures;
 static ff_texture_slot slot[4];
 static uint8_t room[1 << 16];
+static const ff_image_marks no_marks;
 
 static void open_textures(void)
 {
@@ -31,11 +32,11 @@ static void images_of_one_layer_are_not_those_of_another(void **state)
     const ff_key key = ff_key_make(3, 2, 5);
     (void)state;
     open_textures();
-    assert_int_equal(ff_textures_put(&textures, key, 0, NULL), 1);
+    assert_int_equal(ff_textures_put(&textures, key, no_marks, NULL), 1);
     assert_int_equal(ff_textures_touch(&textures, key), 1);
     ff_textures_set_layer(&textures, 1);
     assert_int_equal(ff_textures_touch(&textures, key), 0);
-    assert_int_equal(ff_textures_put(&textures, key, 0, NULL), 1);
+    assert_int_equal(ff_textures_put(&textures, key, no_marks, NULL), 1);
     assert_int_equal(textures.held, 2);
     ff_textures_set_layer(&textures, 0);
     assert_int_equal(ff_textures_touch(&textures, key), 1);
@@ -46,11 +47,11 @@ static void those_of_another_layer_make_room_first(void **state)
     (void)state;
     open_textures();
     for (uint32_t i = 0; i < 4; i++)
-        (void)ff_textures_put(&textures, ff_key_make(i, 0, 0), 0, NULL);
+        (void)ff_textures_put(&textures, ff_key_make(i, 0, 0), no_marks, NULL);
     ff_textures_set_layer(&textures, 1);
     for (uint32_t i = 0; i < 4; i++) {
         textures.stamp++;
-        assert_int_equal(ff_textures_put(&textures, ff_key_make(i, 0, 0), 0, NULL), 1);
+        assert_int_equal(ff_textures_put(&textures, ff_key_make(i, 0, 0), no_marks, NULL), 1);
         for (uint32_t before = 0; before <= i; before++)
             assert_int_equal(ff_textures_touch(&textures, ff_key_make(before, 0, 0)), 1);
     }

@@ -37,7 +37,7 @@ static unsigned check_held(const client_rig *rig)
     for (unsigned i = 0; i < textures->slot_count; i++) {
         const uint8_t *expected;
         ff_key key = textures->slot[i].key;
-        if (!textures->slot[i].held) continue;
+        if (!textures->slot[i].tag) continue;
         if (textures->info.entered)
             key = ff_entry_key(&rig->pack.header.info, &textures->info, key);
         assert_int_equal(ff_picture_path_get(&path, &rig->pack, key, &expected), FF_OK);

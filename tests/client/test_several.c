@@ -51,7 +51,7 @@ static void assert_shows_whole_ground(client_rig *rig, unsigned texture_log2)
     assert_true(rig_same_picture(rig, &whole));
     for (unsigned i = 0; i < whole.client->textures.slot_count; i++) {
         const ff_texture_slot *slot = &whole.client->textures.slot[i];
-        if (slot->held && ff_client_wears(whole.client, slot->key))
+        if (slot->tag && ff_client_wears(whole.client, slot->key))
             assert_true(ff_client_wears(rig->client, slot->key));
     }
     rig_close(&whole);

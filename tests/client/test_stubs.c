@@ -30,7 +30,7 @@ static void finest(const client_rig *rig, uint32_t *ground, uint32_t *image)
     for (uint32_t i = 0; i < count; i++)
         if (ff_key_level(list[i].key) > *ground) *ground = ff_key_level(list[i].key);
     for (unsigned i = 0; i < textures->slot_count; i++)
-        if (textures->slot[i].held && ff_key_level(textures->slot[i].key) > *image)
+        if (textures->slot[i].tag && ff_key_level(textures->slot[i].key) > *image)
             *image = ff_key_level(textures->slot[i].key);
 }
 

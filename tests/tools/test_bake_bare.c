@@ -83,7 +83,7 @@ static int stored(ff_key key, uint8_t rgb[SIDE * SIDE * RGB], uint8_t *bare)
     if (blob.byte_count) {
         assert_int_equal(ff_image_read(blob.bytes, blob.byte_count, &read), FF_OK);
         assert_int_equal(sys_jpeg_decode(read.coded, read.coded_bytes, SIDE, SIDE, rgb), FF_OK);
-        *bare = read.bare;
+        *bare = read.marks.bare;
     }
     int is_stored = blob.byte_count > 0;
     bake_blob_free(&blob);

@@ -52,9 +52,11 @@ extern const sys_option_type bake_raw_option, bake_nodata_option, bake_box_optio
     OPTION(sys_text, heights_path, NULL, "HEIGHTS", NULL, SYS_FLAGS(SYS_NEEDED), "the raster") \
     HEADING("Input") \
     OPTION(sys_text, color_path, "color", "IMAGE", NULL, SYS_ANY, \
-           "image over the same ground, any resolution") \
+           "image over the same ground or a part of it, any resolution: where it ends, or is clear " \
+           "(alpha, mask or nodata), the ground has its own colours, and no bytes") \
     OPTION(sys_texts, layers, "layer", "NAME=IMAGE", NULL, SYS_FLAGS(SYS_REPEATABLE), \
-           "one more image over it, which viewers choose by its name; at most 8 with --color") \
+           "one more image over it, or a part of it, which viewers choose by its name; at most 8 with " \
+           "--color") \
     OPTION(bake_raw, raw, "raw", "WxH[:le|be][:u16|s16]", NULL, SYS_ANY, \
            "HEIGHTS is headerless 16 bit, top row north; default: le, u16") \
     OPTION(bake_nodata, nodata, "nodata", "V", NULL, SYS_ANY, \

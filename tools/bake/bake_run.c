@@ -304,7 +304,8 @@ static int add_layer(bake *b, const char *path)
     bake_image image = { .levels = 0 };
     own.color_path = path;
     b->options = &own;
-    int rc = bake_image_make(&own, &b->ground, &b->info, &image);
+    bake_grid_samples heights = bake_samples_of(&b->heights, &b->filled);
+    int rc = bake_image_make(&own, &b->ground, &heights.samples, &b->info, &image);
     if (!rc) rc = pack_writer_add_layer(&b->writer, image.levels, &b->layer_at);
     b->layer_at -= ff_terrain_levels(&b->info);
     if (!rc) rc = make_tiles(b, &image, take_layer);
@@ -326,7 +327,9 @@ static int make_pack(bake *b)
 {
     uint64_t file_bytes;
     if (make_ground(b) || bake_describe(b) || choose_error(b)) return -1;
-    if (b->options->color_path && bake_image_make(b->options, &b->ground, &b->info, &b->image))
+    bake_grid_samples heights = bake_samples_of(&b->heights, &b->filled);
+    if (b->options->color_path &&
+        bake_image_make(b->options, &b->ground, &heights.samples, &b->info, &b->image))
         return -1;
     if (pack_writer_open(&b->writer, &b->info)) return -1;
     if (make_tiles(b, &b->image, take_records)) return -1;

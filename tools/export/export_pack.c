@@ -125,41 +125,45 @@ static uint32_t image_section(const cutter *c, ff_key key)
     return ff_pack_layer_first(&c->unpack->pack, c->layer) + ff_key_level(key);
 }
 
-static uint8_t bare_below(const cutter *c, ff_key key)
+/* Of the children that have an image, those that lose it. */
+static uint8_t bare_below(const cutter *c, ff_key key, ff_image_marks marks)
 {
     uint8_t bare = 0;
     if (ff_key_level(key) + 1 == image_levels(c)) return 0;
     for (uint32_t q = 0; q < 4; q++) {
         ff_key child = ff_key_child(key, q);
-        if (ff_shape_has_ground(c->info, child) && !export_part_pictures(&c->part, child))
+        if (ff_shape_has_ground(c->info, child) && !export_part_pictures(&c->part, child) &&
+            !ff_image_ends(marks, q))
             bare |= (uint8_t)(1u << q);
     }
     return bare;
 }
 
-static int put_image(cutter *c, ff_key key, uint8_t *bare)
+static int put_image(cutter *c, ff_key key, ff_image_marks *marks)
 {
     const uint8_t *payload;
     ff_image image;
     int rc = ff_pack_layer_record(&c->unpack->pack, c->layer, key, &payload);
     if (rc >= 0) rc = ff_image_read(payload, (size_t)rc, &image);
     if (rc < 0) return fail_at(c, FF_SECTION_TEXTURE, key, rc);
-    *bare = image.bare | bare_below(c, key);
-    c->is_part |= *bare != image.bare;
-    if (*bare) c->payload[0] = (uint8_t)(FF_IMAGE_BARE + *bare);
-    memcpy(c->payload + (*bare > 0), image.coded, image.coded_bytes);
-    return put(c, image_section(c, key), c->payload, image.coded_bytes + (*bare > 0));
+    uint8_t bare = bare_below(c, key, image.marks);
+    *marks = image.marks;
+    marks->bare |= bare & 15u;
+    c->is_part |= bare;
+    size_t before = ff_image_put_marks(*marks, c->payload);
+    memcpy(c->payload + before, image.coded, image.coded_bytes);
+    return put(c, image_section(c, key), c->payload, before + image.coded_bytes);
 }
 
 /* All from a node on that has ground, or whose parent has an image; `ends`: it has none. */
 static int cut_images(cutter *c, ff_key key, unsigned ends)
 {
-    uint8_t bare = 0;
+    ff_image_marks marks = { 0 };
     if (ff_key_level(key) == image_levels(c)) return 0;
     if (ends || !ff_shape_has_ground(c->info, key)) return put(c, image_section(c, key), NULL, 0);
-    if (put_image(c, key, &bare)) return -1;
+    if (put_image(c, key, &marks)) return -1;
     for (uint32_t q = 0; q < 4; q++)
-        if (cut_images(c, ff_key_child(key, q), bare >> q & 1u)) return -1;
+        if (cut_images(c, ff_key_child(key, q), (unsigned)ff_image_ends(marks, q))) return -1;
     return 0;
 }
 

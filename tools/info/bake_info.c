@@ -1,5 +1,6 @@
 #include "bake_info.h"
 #include "bake_info_about.h"
+#include "bake_info_cover.h"
 #include "bake_info_sides.h"
 
 #include "../../protocol/shape/ff_shape.h"
@@ -65,8 +66,16 @@ static double radius_m(const ff_terrain_info *info)
     return info->curve_q60 ? ldexp(1, 59) / info->curve_q60 / FF_WU_PER_METRE : 0;
 }
 
-static void print_terrain(const ff_terrain_info *info)
+/* Where a layer's images end, unless they cover all of the ground. */
+static void print_covered(const ff_pack *pack, unsigned layer)
 {
+    double covered = bake_info_covered(pack, layer);
+    if (covered < 1) printf(", over %.2g %% of the ground", 100 * covered);
+}
+
+static void print_terrain(const ff_pack *pack)
+{
+    const ff_terrain_info *info = &pack->header.info;
     double step = info->hscale_q24 / 16777216.0, spacing = metres(info->spacing_wu);
     ff_sheet samples = ff_shape_sheet_samples(info), tiles = ff_shape_sheet_tiles(info);
     printf("samples         %u x %u, %.9g m apart (%.3f x %.3f km)\n", samples.x, samples.y,
@@ -91,11 +100,14 @@ static void print_terrain(const ff_terrain_info *info)
                radius_m(info) / 1000);
     else
         printf("curvature       none (flat)\n");
-    if (info->texture_levels)
-        printf("textures        %u x %u texels on levels 0 to %u\n", 1u << info->texture_log2,
+    if (info->texture_levels) {
+        printf("textures        %u x %u texels on levels 0 to %u", 1u << info->texture_log2,
                1u << info->texture_log2, info->texture_levels - 1);
-    else
+        print_covered(pack, 0);
+        putchar('\n');
+    } else {
         printf("textures        none\n");
+    }
     printf("codec           %s%s\n", ff_codec_name(info->codec),
            info->flags & FF_TERRAIN_DENSIFIED ? "; part of the detail is invented" : "");
     printf("checksum        %08x\n", info->checksum);
@@ -117,10 +129,13 @@ static void print_layers(const ff_pack *pack)
     ff_layers layers;
     ff_pack_layers(pack, &layers);
     if (layers.count == 1 && !*layers.name[0]) return;
-    for (unsigned i = 0; i < layers.count; i++)
-        printf("layer %u         %s: levels 0 to %u, %" PRIu64 " bytes\n", i,
+    for (unsigned i = 0; i < layers.count; i++) {
+        printf("layer %u         %s: levels 0 to %u, %" PRIu64 " bytes", i,
                *layers.name[i] ? layers.name[i] : "(no name)", layers.levels[i][0] - 1u,
                layer_bytes(pack, i));
+        print_covered(pack, i);
+        putchar('\n');
+    }
 }
 
 static void print_layers_json(const ff_pack *pack)
@@ -131,8 +146,8 @@ static void print_layers_json(const ff_pack *pack)
     for (unsigned i = 0; i < layers.count; i++) {
         printf("%s{\"name\": ", i ? ", " : "");
         bake_info_print_text((const uint8_t *)layers.name[i], (uint32_t)strlen(layers.name[i]));
-        printf(", \"levels\": %u, \"bytes\": %" PRIu64 "}", layers.levels[i][0],
-               layer_bytes(pack, i));
+        printf(", \"levels\": %u, \"bytes\": %" PRIu64 ", \"covered\": %.6f}", layers.levels[i][0],
+               layer_bytes(pack, i), bake_info_covered(pack, i));
     }
     printf("], ");
 }
@@ -141,7 +156,7 @@ void bake_info_print(const ff_pack *pack, const char *path)
 {
     section_sum heights = { 0 }, textures = { 0 };
     printf("%s: Farfield pack, version %d, %" PRIu64 " bytes\n", path, FF_PACK_VERSION, pack->size);
-    print_terrain(&pack->header.info);
+    print_terrain(pack);
     print_layers(pack);
     bake_info_about(pack);
     printf("\nsection     level    records        bytes  bytes/record  bits/new sample\n");

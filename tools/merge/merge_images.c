@@ -47,7 +47,9 @@ static int join_images(mosaic *m)
     return m->set ? 0 : bake_fail_gdal("cannot put the images together");
 }
 
-static int lay(const mosaic *m, uint32_t quality, merge_lattice *l, bake_image *image)
+/* Between samples of unlike spacing no colours are known. */
+static int lay(const mosaic *m, uint32_t quality, const bake_samples *heights, merge_lattice *l,
+               bake_image *image)
 {
     double spacing_m = merge_spacing_m(&l->info), east_m = (double)l->info.origin_x_mm / 1000,
            north_m = (double)l->info.origin_y_mm / 1000;
@@ -57,18 +59,19 @@ static int lay(const mosaic *m, uint32_t quality, merge_lattice *l, bake_image *
                                              north_m + (l->height - 0.5) * spacing_m, 0,
                                              -spacing_m } };
     bake_note("images are made anew, with quality %u", quality);
-    return bake_image_lay(&options, m->set, &ground, &l->info, image);
+    return bake_image_lay(&options, m->set, &ground, l->apart_log2 ? NULL : heights, &l->info,
+                          image);
 }
 
 int merge_images_make(const bake_unpack unpack[], uint32_t count, uint32_t quality,
-                      merge_lattice *lattice, bake_image *image)
+                      const bake_samples *heights, merge_lattice *lattice, bake_image *image)
 {
     mosaic m = { .count = 0 };
     int rc = 0;
     for (uint32_t i = count; !rc && i-- > 0;) rc = open_images(&unpack[i], &m);
     sort_images(&m);
     if (!rc && m.count) rc = join_images(&m);
-    if (!rc && m.count) rc = lay(&m, quality, lattice, image);
+    if (!rc && m.count) rc = lay(&m, quality, heights, lattice, image);
     if (m.set) GDALClose(m.set);
     for (uint32_t i = 0; i < m.count; i++) export_ground_close(&m.ground[i]);
     return rc;

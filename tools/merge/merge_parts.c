@@ -134,7 +134,6 @@ static uint32_t image_section(const joiner *j, ff_key key)
 static int put_image(joiner *j, ff_key key, part_set have, part_set below[4])
 {
     ff_image first = { 0 }, image;
-    uint8_t bare = 15;
     memset(below, 0, 4 * sizeof *below);
     for (uint32_t p = 0; p < j->count; p++) {
         const uint8_t *payload;
@@ -143,17 +142,17 @@ static int put_image(joiner *j, ff_key key, part_set have, part_set below[4])
         if (rc >= 0) rc = ff_image_read(payload, (size_t)rc, &image);
         if (rc < 0) return fail_at(j, p, "texture", key, ff_error_text(rc));
         if (!first.coded) first = image;
-        if (image.coded_bytes != first.coded_bytes ||
+        if (image.marks.open != first.marks.open || image.coded_bytes != first.coded_bytes ||
             memcmp(image.coded, first.coded, first.coded_bytes))
             return fail_at(j, p, "texture", key, unlike);
-        bare &= image.bare;
+        first.marks.bare &= image.marks.bare;
         for (uint32_t q = 0; q < 4; q++)
-            if (!(image.bare >> q & 1)) below[q] |= (part_set)1 << p;
+            if (!ff_image_ends(image.marks, q)) below[q] |= (part_set)1 << p;
     }
-    if (bare) j->payload[0] = (uint8_t)(FF_IMAGE_BARE + bare);
-    memcpy(j->payload + (bare > 0), first.coded, first.coded_bytes);
+    size_t before = ff_image_put_marks(first.marks, j->payload);
+    memcpy(j->payload + before, first.coded, first.coded_bytes);
     return pack_append_add(&j->append, image_section(j, key), j->payload,
-                           first.coded_bytes + (bare > 0));
+                           before + first.coded_bytes);
 }
 
 /* All from a node on that has ground, or whose parent has an image. */

@@ -231,7 +231,8 @@ static int join_samples(merge *m)
     if (m->samples.gap > 0)
         bake_note("no pack covers %.2g %% of the rectangle round them: filled from around it",
                   100 * m->samples.gap);
-    if (merge_images_make(m->unpack, m->count, m->options->texture_quality, &m->lattice, &m->image))
+    if (merge_images_make(m->unpack, m->count, m->options->texture_quality, &m->samples.samples,
+                          &m->lattice, &m->image))
         return -1;
     return pack_writer_open(&m->writer, &m->lattice.info) || make_tiles(m) ? -1 : 0;
 }

@@ -96,7 +96,7 @@ sim/view            platform/options sim/options sim/link server/packs client/fa
 sim/handheld        platform/options sim/options sim/tape client/farfield.h protocol/ common3d platform/sys.h
 tools/bake          platform/options tools/bake/ client/farfield.h protocol/ platform/sys.h
 tools/bake/raster   tools/bake protocol/ platform/sys.h
-tools/bake/image    tools/bake tools/bake/raster protocol/ platform/sys.h
+tools/bake/image    tools/bake tools/bake/raster client/terrain/ff_shade.h protocol/ platform/sys.h
 tools/bake/tiles    tools/bake tools/bake/raster platform/sys.h
 tools/info          platform/options tools/bake tools/bake/raster client/farfield.h protocol/ platform/sys.h
 tools/export        platform/options tools/bake tools/bake/raster tools/bake/tiles tools/info client/farfield.h protocol/ platform/sys.h
@@ -208,6 +208,7 @@ ff_node_(edge|cell)_wu
     client/images/ff_wear.c    the edge of a texel
     client/client_update.c     how far beyond its middle a node reaches, at most
     sim/judge/sim_ground.c     the judge's own side of the plane, with sim_place.c
+    tools/bake/image/bake_own.c  the slope between samples
     sim/judge/sim_watertight.c  compares it with what is drawn
 drawn(\[[^]]*\])?(\.|->)origin_wu
     client/terrain/ff_select.c  asks the shape for it

@@ -4,6 +4,7 @@
 #include "../bake_enlarge.h"
 #include "../bake_say.h"
 #include "bake_image_local.h"
+#include "bake_open.h"
 #include "bake_texture.h"
 
 #include <errno.h>
@@ -17,6 +18,7 @@
 /* of mean squares: 1.25 of their roots */
 #define WORSE      25
 #define WORSE_THAN 16
+#define OPEN_ROOT  0xF0
 
 /* What is at work: the levels of the branch that is looked at. */
 typedef struct sifter {
@@ -47,18 +49,28 @@ static int read_mark(const bake_image *image, const ff_terrain_info *info, ff_ke
     return bake_grid_read(&image->bare[ff_key_level(key)], y, x, 1, mark);
 }
 
-int bake_bare_of(const bake_image *image, const ff_terrain_info *info, ff_key key, int *bare)
+/* A node's mark has ff_image_marks.bare in its low bits, .open in its high ones. */
+static ff_image_marks marks_of(uint8_t mark)
+{
+    return (ff_image_marks){ mark & 15u, mark >> 4 & 15u };
+}
+
+int bake_bare_of(const bake_image *image, const ff_terrain_info *info, ff_key key,
+                 ff_image_marks *marks)
 {
     uint8_t mark = 0;
-    *bare = 0;
-    if (!image->has_bare) return 0;
-    if (ff_key_level(key) + 1 < image->levels && read_mark(image, info, key, &mark)) return -1;
-    *bare = mark;
+    *marks = marks_of(0);
+    if (!image->has_bare) return 1;
+    int open = ff_key_level(key) ? 0 : bake_is_open(image, info, key);
+    if (open < 0) return -1;
+    if (!open && ff_key_level(key) + 1 < image->levels && read_mark(image, info, key, &mark))
+        return -1;
+    *marks = marks_of(open ? OPEN_ROOT : mark);
     for (; ff_key_level(key) > 0; key = ff_key_parent(key)) {
         if (read_mark(image, info, ff_key_parent(key), &mark)) return -1;
-        if (mark >> ff_key_quadrant(key) & 1u) *bare = -1;
+        if (ff_image_ends(marks_of(mark), ff_key_quadrant(key))) return 0;
     }
-    return 0;
+    return 1;
 }
 
 static int is_picture(const ff_terrain_info *info) { return info->flags & FF_TERRAIN_PICTURES; }
@@ -123,10 +135,12 @@ static int make_image(sifter *s, ff_key key)
     return bake_texture_seen(s->image, s->info, key, 1, s->decoded[level]);
 }
 
-/* 1 when the image of a node, or one below it, shows more than that of `above`; -1 (said). Its own
- * is made then. */
+/* 1 when the image of a node, or one below it, shows more than that of `above`, or one of them is
+ * open; -1 (said). Its own is made unless it is open. */
 static int shows_more(sifter *s, ff_key key, ff_key above)
 {
+    int open = bake_is_open(s->image, s->info, key);
+    if (open) return open;
     if (make_image(s, key)) return -1;
     bake_enlarge(s->info, s->decoded[ff_key_level(above)], above, key, s->enlarged);
     if (!is_near(s, s->decoded[ff_key_level(key)])) return 1;
@@ -139,30 +153,44 @@ static int shows_more(sifter *s, ff_key key, ff_key above)
     return 0;
 }
 
+static int write_mark(const sifter *s, ff_key key, uint8_t mark)
+{
+    uint32_t x, y;
+    if (ff_key_level(key) + 1 == s->image->levels) return 0;
+    place_of(s->info, key, &x, &y);
+    return bake_grid_write(&s->image->bare[ff_key_level(key)], y, x, 1, &mark);
+}
+
 /* Marks a node whose image is made, and all below it. */
 static int sift(sifter *s, ff_key key)
 {
     uint8_t mark = 0;
-    uint32_t x, y;
     if (ff_key_level(key) + 1 == s->image->levels) return 0;
     for (uint32_t q = 0; q < 4; q++) {
         ff_key child = ff_key_child(key, q);
         if (!ff_shape_has_ground(s->info, child)) continue;
-        int more = shows_more(s, child, key);
-        if (more < 0) return -1;
-        if (!more) mark |= (uint8_t)(1u << q);
+        int open = bake_is_open(s->image, s->info, child);
+        int more = open ? 0 : shows_more(s, child, key);
+        if (open < 0 || more < 0) return -1;
+        if (!more) mark |= (uint8_t)((open ? 16u : 1u) << q);
         if (more && sift(s, child)) return -1;
     }
-    place_of(s->info, key, &x, &y);
-    return bake_grid_write(&s->image->bare[ff_key_level(key)], y, x, 1, &mark);
+    return write_mark(s, key, mark);
+}
+
+static int sift_tile(sifter *s, uint32_t tile)
+{
+    ff_key root = ff_key_make(tile, 0, 0);
+    int open = bake_is_open(s->image, s->info, root);
+    if (open) return open < 0 ? -1 : write_mark(s, root, OPEN_ROOT);
+    return make_image(s, root) ? -1 : sift(s, root);
 }
 
 static int sift_tiles(sifter *s)
 {
     uint32_t tiles = ff_shape_tiles(s->info);
     for (uint32_t tile = 0; tile < tiles; tile++) {
-        ff_key root = ff_key_make(tile, 0, 0);
-        if (make_image(s, root) || sift(s, root)) return -1;
+        if (sift_tile(s, tile)) return -1;
         bake_progress("images", tile + 1, tiles);
     }
     return 0;

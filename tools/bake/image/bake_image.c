@@ -5,6 +5,7 @@
 #include "bake_bare.h"
 #include "bake_image_local.h"
 #include "bake_nearest.h"
+#include "bake_open.h"
 #include "bake_texture.h"
 #include "../bake_say.h"
 
@@ -24,13 +25,6 @@ typedef struct row_ring {
     uint32_t slots, width;
     uint8_t *source; /* one row of the image */
 } row_ring;
-
-/* Where texels of the finest lattice lie: `samples` apart, the first one (first_x, first_y) texels
- * from the south-west; those beyond the ground's last sample lie on it. */
-typedef struct texel_place {
-    double samples, last_x, last_y;
-    uint32_t first_x, first_y;
-} texel_place;
 
 /* The stretch *from .. *to of pixels round a centre, kept inside 0..size and never empty. */
 static void footprint(double centre, double wide, uint32_t size, double *from, double *to)
@@ -54,7 +48,7 @@ static void mean_pixels(const uint8_t *rgba, double from, double to, float *out)
 }
 
 static const float *filtered_row(const bake_picture *picture, row_ring *ring, uint32_t row,
-                                 const texel_place *place)
+                                 const bake_texel_place *place)
 {
     float *out = ring->row + (size_t)(row % ring->slots) * ring->width * RGBA;
     if (ring->held[row % ring->slots] == row) return out;
@@ -95,7 +89,7 @@ static uint64_t finish_row(const lattice_row *out, uint32_t width)
 
 /* Sums the rows from..to of the image, weighted, into one row of the finest lattice. */
 static int sample_row(const bake_picture *picture, row_ring *ring, double from, double to,
-                      const texel_place *place, float *sum)
+                      const bake_texel_place *place, float *sum)
 {
     size_t values = (size_t)ring->width * RGBA;
     memset(sum, 0, values * sizeof *sum);
@@ -109,7 +103,7 @@ static int sample_row(const bake_picture *picture, row_ring *ring, double from, 
 }
 
 /* *covered receives how many texels the image covers. */
-static int sample_rows(const bake_picture *picture, row_ring *ring, const texel_place *place,
+static int sample_rows(const bake_picture *picture, row_ring *ring, const bake_texel_place *place,
                        const bake_grid *lattice, const bake_grid *distance, const lattice_row *out,
                        uint64_t *covered)
 {
@@ -125,14 +119,23 @@ static int sample_rows(const bake_picture *picture, row_ring *ring, const texel_
         if (bake_grid_write(distance, j, 0, lattice->width, out->distance)) return -1;
         bake_progress("colour", lattice->height - j, lattice->height);
     }
-    return *covered && *covered < (uint64_t)lattice->width * lattice->height
-               ? bake_nearest_fill(lattice, distance)
-               : 0;
+    return 0;
 }
 
-static int sample_image(const bake_picture *picture, const texel_place *place,
-                        const bake_grid *lattice, uint64_t *covered)
+/* Sees to the texels that the image does not cover. */
+static int fill_open(bake_image *image, const ff_terrain_info *info, const bake_samples *heights,
+                     const bake_texel_place *place, const bake_grid *distance, uint64_t covered)
 {
+    if (covered == (uint64_t)distance->width * distance->height) return 0;
+    return covered ? bake_open_fill(image, info, heights, place, distance)
+                   : bake_open_all(image, info);
+}
+
+static int sample_image(const bake_picture *picture, const ff_terrain_info *info,
+                        const bake_samples *heights, const bake_texel_place *place,
+                        bake_image *image, uint64_t *covered)
+{
+    const bake_grid *lattice = &image->lattice[image->levels - 1];
     double px_per_sample = picture->height / (picture->north - picture->south);
     row_ring ring = { .slots = (uint32_t)ceil(fmax(1, place->samples * px_per_sample)) + 2,
                       .width = lattice->width };
@@ -147,6 +150,7 @@ static int sample_image(const bake_picture *picture, const texel_place *place,
         rc = bake_fail("out of memory");
     for (uint32_t i = 0; !rc && i < ring.slots; i++) ring.held[i] = -1;
     if (!rc) rc = sample_rows(picture, &ring, place, lattice, &distance, &out, covered);
+    if (!rc) rc = fill_open(image, info, heights, place, &distance, *covered);
     bake_grid_close(&distance);
     free(out.sum);
     free(out.rgb);
@@ -214,8 +218,8 @@ static uint32_t choose_levels(const bake_options *o, const bake_picture *picture
 /* The lattices of all levels from that of a node on, as far as nodes have ground: `samples` of it,
  * less one, from the node's first. */
 static int make_lattices(const bake_picture *picture, const bake_ground *ground,
-                         const ff_terrain_info *info, ff_sheet node, ff_sheet samples,
-                         bake_image *image, uint64_t *covered)
+                         const bake_samples *heights, const ff_terrain_info *info, ff_sheet node,
+                         ff_sheet samples, bake_image *image, uint64_t *covered)
 {
     uint32_t steps = (1u << info->texture_log2) - 1, top = image->levels - 1,
              edge_log2 = info->tile_log2 - (info->texture_levels - image->levels);
@@ -224,14 +228,14 @@ static int make_lattices(const bake_picture *picture, const bake_ground *ground,
                            (((samples.x - 1) >> (edge_log2 - l)) + 1) * steps + 1,
                            (((samples.y - 1) >> (edge_log2 - l)) + 1) * steps + 1, RGB))
             return -1;
-    texel_place place = {
+    bake_texel_place place = {
         .samples = (double)(1u << (info->tile_log2 - (info->texture_levels - 1u))) / steps,
         .last_x = ground->grid.width - 1.0,
         .last_y = ground->grid.height - 1.0,
         .first_x = node.x * steps << top,
         .first_y = node.y * steps << top
     };
-    if (sample_image(picture, &place, &image->lattice[top], covered)) return -1;
+    if (sample_image(picture, info, heights, &place, image, covered)) return -1;
     for (uint32_t l = top; l > 0; l--)
         if (halve_lattice(&image->lattice[l], &image->lattice[l - 1])) return -1;
     return 0;
@@ -256,8 +260,8 @@ int bake_picture_levels(const bake_options *o, const bake_ground *ground, ff_ter
 static void open_image(bake_image *image, uint32_t levels)
 {
     for (int l = 0; l < BAKE_TEXTURE_LEVELS_MAX; l++)
-        image->lattice[l] = image->bare[l] = image->seen[l] = BAKE_GRID_CLOSED;
-    image->has_bare = 0;
+        image->lattice[l] = image->bare[l] = image->seen[l] = image->open[l] = BAKE_GRID_CLOSED;
+    image->has_bare = image->has_open = 0;
     image->levels = levels;
 }
 
@@ -267,40 +271,41 @@ int bake_image_part(const bake_picture *picture, const bake_ground *ground,
     uint64_t covered;
     uint32_t edge = 1u << (info->tile_log2 - level);
     open_image(image, info->texture_levels - level);
-    return make_lattices(picture, ground, info, node, (ff_sheet){ edge, edge }, image, &covered);
+    return make_lattices(picture, ground, NULL, info, node, (ff_sheet){ edge, edge }, image,
+                         &covered);
 }
 
 /* All of the image, of the levels that info tells. */
 static int make_image(const bake_options *o, const bake_picture *picture, const bake_ground *ground,
-                      const ff_terrain_info *info, bake_image *image)
+                      const bake_samples *heights, const ff_terrain_info *info, bake_image *image)
 {
     uint64_t covered;
     ff_sheet samples = { ground->grid.width - 1, ground->grid.height - 1 };
     image->levels = info->texture_levels;
-    if (make_lattices(picture, ground, info, (ff_sheet){ 0, 0 }, samples, image, &covered))
+    if (make_lattices(picture, ground, heights, info, (ff_sheet){ 0, 0 }, samples, image, &covered))
         return -1;
     if (!covered) return bake_fail("the image shows nothing of this ground");
     return bake_bare_find(image, info, (int)o->texture_quality);
 }
 
-int bake_image_make(const bake_options *o, const bake_ground *ground, ff_terrain_info *info,
-                    bake_image *image)
+int bake_image_make(const bake_options *o, const bake_ground *ground, const bake_samples *heights,
+                    ff_terrain_info *info, bake_image *image)
 {
     bake_picture picture;
     open_image(image, 0);
     if (bake_picture_levels(o, ground, info, &picture)) return -1;
-    int rc = make_image(o, &picture, ground, info, image);
+    int rc = make_image(o, &picture, ground, heights, info, image);
     bake_picture_close(&picture);
     return rc;
 }
 
 int bake_image_lay(const bake_options *o, GDALDatasetH set, const bake_ground *ground,
-                   ff_terrain_info *info, bake_image *image)
+                   const bake_samples *heights, ff_terrain_info *info, bake_image *image)
 {
     bake_picture picture = bake_picture_of(ground, set);
     open_image(image, 0);
     choose_textures(o, &picture, info);
-    return make_image(o, &picture, ground, info, image);
+    return make_image(o, &picture, ground, heights, info, image);
 }
 
 void bake_image_close(bake_image *image)
@@ -309,6 +314,7 @@ void bake_image_close(bake_image *image)
         bake_grid_close(&image->lattice[l]);
         if (image->has_bare) bake_grid_close(&image->bare[l]);
         if (image->has_bare) bake_grid_close(&image->seen[l]);
+        if (image->has_open) bake_grid_close(&image->open[l]);
     }
     image->levels = 0;
 }
@@ -362,21 +368,22 @@ static int find_above(const encoder *e, ff_key key, bake_texture_above *above)
     return bake_texture_seen(e->image, e->info, ff_key_parent(key), 0, e->above);
 }
 
-/* A node's image, and before it which children have none. */
+/* A node's image, and before it which children have none, as packs have them. */
 static int encode_texture(const encoder *e, ff_key key)
 {
     bake_texture_above above;
-    int bare = 0;
+    ff_image_marks marks;
     if (!ff_shape_has_ground(e->info, key)) return bake_blob_add(e->blob, NULL, 0);
-    if (bake_bare_of(e->image, e->info, key, &bare)) return -1;
-    if (bare < 0) return bake_blob_add(e->blob, NULL, 0);
+    int has = bake_bare_of(e->image, e->info, key, &marks);
+    if (has <= 0) return has ? -1 : bake_blob_add(e->blob, NULL, 0);
+    size_t before = ff_image_put_marks(marks, e->room.coded);
+    if (marks.open == 15) return bake_blob_add(e->blob, e->room.coded, before);
     if (bake_texture_read(e->image, e->info, key, e->rgb) || find_above(e, key, &above)) return -1;
     int bytes = bake_texture_code(&e->room, e->info, e->quality, above, e->rgb, e->decoded);
     if (bytes < 0) return -1;
-    if (!bare) return bake_blob_add(e->blob, e->room.coded, (size_t)bytes);
-    memmove(e->room.coded + 1, e->room.coded, (size_t)bytes);
-    *e->room.coded = (uint8_t)(FF_IMAGE_BARE + (unsigned)bare);
-    return bake_blob_add(e->blob, e->room.coded, 1 + (size_t)bytes);
+    memmove(e->room.coded + before, e->room.coded, (size_t)bytes);
+    ff_image_put_marks(marks, e->room.coded);
+    return bake_blob_add(e->blob, e->room.coded, before + (size_t)bytes);
 }
 
 int bake_texture_encode(const bake_image *image, const ff_terrain_info *info, int quality,

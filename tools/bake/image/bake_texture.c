@@ -1,6 +1,7 @@
 #include "bake_texture.h"
 
 #include "../../../platform/sys.h"
+#include "../../../protocol/ff_image.h"
 #include "../../../protocol/picture/ff_picture.h"
 #include "../bake_say.h"
 
@@ -11,7 +12,8 @@
 
 int bake_texture_room_make(bake_texture_room *room, const ff_terrain_info *info)
 {
-    *room = (bake_texture_room){ malloc(sizeof(ff_picture_room)), malloc(1 + CODED_BYTES(info)) };
+    *room = (bake_texture_room){ malloc(sizeof(ff_picture_room)),
+                                 malloc(FF_IMAGE_MARKS_BYTES + CODED_BYTES(info)) };
     return room->picture && room->coded ? 0 : bake_fail("out of memory");
 }
 
