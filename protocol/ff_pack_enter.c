@@ -1,5 +1,6 @@
 /* Packs entered below their top. */
 #include "ff_entry.h"
+#include "ff_image.h"
 #include "ff_pack.h"
 #include "shape/ff_shape.h"
 
@@ -16,12 +17,43 @@ static int has_images(const ff_pack *pack, uint32_t level)
     return whole == pack->header.layers;
 }
 
+/* 1 when each node with ground so many levels below one that has an image has its own, or the
+ * layer's image ends before it. Goes over what the layer covers alone. */
+static int all_told(const ff_pack *pack, unsigned layer, ff_key key, uint32_t below)
+{
+    const uint8_t *payload;
+    ff_image image;
+    int all = 1, bytes = ff_pack_layer_record(pack, layer, key, &payload);
+
+    if (bytes < 0 || ff_image_read(payload, (size_t)bytes, &image) != FF_OK) return 0;
+    if (!below || image.marks.open == 15) return 1;
+    for (unsigned q = 0; all && q < 4; q++) {
+        ff_key child = ff_key_child(key, q);
+        if (ff_shape_has_ground(&pack->header.info, child) && !(image.marks.open >> q & 1))
+            all = !ff_image_ends(image.marks, q) && all_told(pack, layer, child, below - 1);
+    }
+    return all;
+}
+
+/* 1 when an image is told for every node of a level that has ground, of each layer: its own, or
+ * that there is none. */
+static int tells_images(const ff_pack *pack, uint32_t level)
+{
+    uint32_t tiles = ff_shape_tiles(&pack->header.info);
+
+    if (has_images(pack, level)) return 1;
+    for (unsigned layer = 0; layer < pack->header.layers; layer++)
+        for (uint32_t tile = 0; tile < tiles; tile++)
+            if (!all_told(pack, layer, ff_key_make(tile, 0, 0), level)) return 0;
+    return 1;
+}
+
 uint32_t ff_pack_entry_level(const ff_pack *pack, int32_t reach_wu)
 {
     const ff_terrain_info *info = &pack->header.info;
     uint32_t level = ff_entry_level(info, reach_wu);
 
-    while (level && info->texture_log2 && !has_images(pack, level)) level--;
+    while (level && info->texture_log2 && !tells_images(pack, level)) level--;
     return level;
 }
 

@@ -123,12 +123,9 @@ static int make_heights(ff_packs_entered *entered, uint32_t tile, const uint8_t 
 /* The pictures from the whole's root down to the node, each as it is stored, before each but the
  * last how many bytes it has (16 bits, the higher ones first: below 128); before all of them what
  * the node's own tells of its children. */
-static int make_image(ff_packs_entered *entered, unsigned layer, uint32_t tile,
+static int make_image(ff_packs_entered *entered, const ff_pack *pack, unsigned layer, ff_key key,
                       const uint8_t **payload)
 {
-    ff_key root = ff_key_make(tile, 0, 0);
-    const ff_pack *pack = ff_pack_of(entered->pack, root);
-    ff_key key = ff_entry_key(&pack->stored->header.info, &pack->header.info, root);
     uint32_t level = ff_key_level(key);
     uint8_t *end = entered->image + IMAGE_BYTES_MAX, *to = end;
     ff_image image = { 0 };
@@ -156,11 +153,35 @@ static int make_image(ff_packs_entered *entered, unsigned layer, uint32_t tile,
     return (int)(end - to);
 }
 
+/* 1 when the layer's image ends before a node: the nearest image above it, its payload at hand, is
+ * not its own. */
+static int is_open(ff_key key, ff_key held, const uint8_t *payload, size_t bytes)
+{
+    ff_image image;
+    if (ff_image_read(payload, bytes, &image) != FF_OK) return 0;
+    while (ff_key_level(key) > ff_key_level(held) + 1) key = ff_key_parent(key);
+    return held != key && image.marks.open >> ff_key_quadrant(key) & 1;
+}
+
+static int make_image_root(ff_packs_entered *entered, unsigned layer, uint32_t tile,
+                           const uint8_t **payload)
+{
+    static const uint8_t open = FF_IMAGE_OPEN + 15;
+    ff_key root = ff_key_make(tile, 0, 0);
+    const ff_pack *pack = ff_pack_of(entered->pack, root);
+    ff_key key = ff_entry_key(&pack->stored->header.info, &pack->header.info, root), held = key;
+    int bytes = ff_pack_image(pack->stored, layer, &held, payload);
+    if (bytes < 0 || !is_open(key, held, *payload, (size_t)bytes))
+        return make_image(entered, pack, layer, key, payload);
+    *payload = &open;
+    return 1;
+}
+
 static int make_root(void *context, enum ff_section_kind kind, unsigned layer, uint32_t tile,
                      const uint8_t **payload)
 {
     return kind == FF_SECTION_ROOT ? make_heights(context, tile, payload)
-                                   : make_image(context, layer, tile, payload);
+                                   : make_image_root(context, layer, tile, payload);
 }
 
 /* ---- packs ---- */
