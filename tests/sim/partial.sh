@@ -30,6 +30,8 @@ s = {os.path.basename(path)[:-5]: json.load(open(path)) for path in glob.glob(sy
 frame = lambda name: gdal.Open(f"{sys.argv[1]}/{name}/frame-0008.00.png").ReadAsArray()[:3].astype(int)
 off = lambda a, b: np.abs(frame(a) - frame(b)).mean()
 root = lambda name: next(x["bytes"] for x in s[name + "-info"]["sections"] if x["kind"] == "texture")
+bands = lambda name: gdal.Open(f"{sys.argv[1]}/{name}").RasterCount
+alpha = lambda name: (gdal.Open(f"{sys.argv[1]}/{name}.tif").ReadAsArray()[3] > 0).mean()
 covered = lambda name, layer=0: s[name + "-info"]["layers"][layer]["covered"]
 sys.exit(0 if eval(sys.argv[2]) else 1)
 END
@@ -153,5 +155,18 @@ result $? "two halves joined are the pack, byte for byte"
 flies halves west high --local "$work/east.ffp"
 flies both-high both high
 is 'off("halves", "both-high") == 0' "a server with one half, a device with the other"
+
+# other programs
+"$bin/farfield-export" "$work/both.ffp" --images -o "$work/first.tif" --quiet && "$bin/farfield-export" "$work/both.ffp" --images --layer other -o "$work/other.tif" --quiet &&
+    "$bin/farfield-export" "$work/part.ffp" --images -o "$work/opaque.jpg" --quiet && "$bin/farfield-export" "$work/whole.ffp" --images -o "$work/all.tif" --quiet
+result $? "images of either layer are exported"
+is 'alpha("first") < 0.01 + covered("both") and alpha("first") > covered("both") and covered("both", 1) < alpha("other") < covered("both", 1) + 0.01 and bands("opaque.jpg") == bands("all.tif") == 3' \
+    "with an alpha band where they end, clear beyond, but in JPEGs"
+gdal_translate -q -srcwin 0 0 257 513 "$work/hills.tif" "$work/left.tif" && gdal_translate -q -srcwin 256 0 257 513 "$work/hills.tif" "$work/right.tif" &&
+    "$bin/farfield-bake" "$work/left.tif" --hscale 0.1 --color "$work/part.tif" --quiet -o "$work/left.ffp" &&
+    "$bin/farfield-bake" "$work/right.tif" --lattice "$work/left.ffp" --quiet -o "$work/right.ffp" &&
+    "$bin/farfield-merge" "$work/left.ffp" "$work/right.ffp" --quiet -o "$work/merged.ffp" && "$bin/farfield-info" --json "$work/merged.ffp" >"$work/merged-info.json"
+result $? "ground with an image and ground without are joined"
+is '0.4 * covered("part") < covered("merged") < 0.8 * covered("part")' "what was not covered is not"
 [ $failures = 0 ] && rm -rf "$work"
 exit $((failures > 0))

@@ -1,5 +1,5 @@
-"""Images of any make over the ground, run by bake_colours.sh: the texture of the pack shows their colours, and the nearest one where they show
-nothing."""
+"""Images of any make over the ground, run by bake_colours.sh: the texture of the pack shows their colours, and where they show nothing those
+of ground without images, but for the nearest two texels."""
 import os
 import subprocess
 import sys
@@ -24,11 +24,15 @@ def texture(image):
     return lambda row, column: texels[:, 63 - round((59 - row) * 63 / 128), round(column * 63 / 128)]
 
 
-def shows(image, in_west, in_east):
-    """The colours in the west and the east; in the hole, the nearest one."""
+def shows(image, in_west, in_east, has_hole=True):
+    """The colours in the west and the east; in the hole the ground's own, at its rim the nearest one."""
     at = texture(image)
-    for row, column, colour in ((50, 10, in_west), (10, 10, in_west), (50, 70, in_east), (30, 35, in_west), (30, 45, in_east), (25, 33, in_west)):
+    for row, column, colour in ((50, 10, in_west), (10, 10, in_west), (50, 70, in_east), (25, 31, in_west), (25, 48, in_east)) + has_hole * ((30, 40, own),):
         assert abs(at(row, column) - np.array(colour)).max() < 30, (image, row, column, at(row, column), colour)
+
+
+corner = (y < 9) & (x < 9)
+own = texture(put("corner.tif", [np.where(corner, 9, 0)] * 3 + [np.where(corner, 255, 0)], gdal.GDT_Byte, place=UTM_PLACE, reference="EPSG:32632", alpha=True))(30, 40)
 
 
 def placed_or_not(name, bands, in_west, in_east, make=lambda path: path, **options):
@@ -86,12 +90,12 @@ def _():
 def _():
     for bits in (1, 2, 4):
         image = put("bits.tif", np.where(west, 0, 2**bits - 1), gdal.GDT_Byte, options=["NBITS=%d" % bits])
-        shows(image, (0, 0, 0), (255, 255, 255))
+        shows(image, (0, 0, 0), (255, 255, 255), has_hole=False)
         png = os.path.join(work, "bits.png")
         gdal.Translate(png, image, format="PNG", creationOptions=["NBITS=%d" % bits])
-        shows(png, (0, 0, 0), (255, 255, 255))
+        shows(png, (0, 0, 0), (255, 255, 255), has_hole=False)
     colours = [np.where(west, a, b) for a, b in ((0, 15), (15, 5), (5, 15))]
-    shows(put("bits.tif", colours, gdal.GDT_Byte, options=["NBITS=4"]), (0, 255, 85), (255, 85, 255))
+    shows(put("bits.tif", colours, gdal.GDT_Byte, options=["NBITS=4"]), (0, 255, 85), (255, 85, 255), has_hole=False)
     for bands in ([np.where(hole, 9, band) for band in colours], np.where(hole, 9, np.where(west, 0, 15))[None]):
         image = put("bits.tif", [*bands, np.where(hole, 0, 15)], gdal.GDT_Byte, options=["NBITS=4"], alpha=True)
         shows(image, (0, 255, 85) if len(bands) == 3 else (0, 0, 0), (255, 85, 255) if len(bands) == 3 else (255,) * 3)

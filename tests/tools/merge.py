@@ -341,7 +341,7 @@ def texels(name):
     done = run("export", name, "-o", "texels.tif", "--images")
     assert done.returncode == 0, done.stderr
     made = gdal.Open(os.path.join(work, "texels.tif"))
-    return made.ReadAsArray().astype(float), made.GetGeoTransform()
+    return made.ReadAsArray()[:3].astype(float), made.GetGeoTransform()
 
 
 def sampled(name, x, y):
@@ -373,7 +373,7 @@ def _():
     for order in (dark, light), (light, dark):
         merge(*order)
         joint = sampled("joint.ffp", x, y)
-        assert np.abs(joint - source)[:, 200:296, 200:296].mean() < 2 * once.mean() + 2 and np.abs(joint[:, :150] - 20).mean() < 4
+        assert np.abs(joint - source)[:, 200:296, 200:296].mean() < 2 * once.mean() + 2 and np.abs(joint[:, :150, :590] - 20).mean() < 4
     merge(left, bare)
     assert np.abs(sampled("joint.ffp", x, y) - source)[:, :, :300].mean() < 2 * once.mean() + 2
 

@@ -49,15 +49,27 @@ void export_reading(const export_ground *ground, ff_key key, uint32_t level)
     bake_progress("reading", (uint32_t)(done * PROGRESS / all), PROGRESS);
 }
 
-int export_put_row(const export_ground *ground, uint32_t column, uint32_t row, uint32_t count,
-                   const uint8_t *cells)
+static int put_row(const export_ground *ground, const bake_grid *grid, uint32_t column,
+                   uint32_t row, uint32_t count, const uint8_t *cells)
 {
     const export_window *w = &ground->window;
     int64_t from = (int64_t)column - w->left, up = (int64_t)row - w->bottom;
     int64_t first = from < 0 ? -from : 0, end = from + count > w->width ? w->width - from : count;
     if (up < 0 || up >= w->height || first >= end) return 0;
-    return bake_grid_write(&ground->cells, w->height - 1 - (uint32_t)up, (uint32_t)(from + first),
-                           (uint32_t)(end - first), cells + first * ground->cells.cell_bytes);
+    return bake_grid_write(grid, w->height - 1 - (uint32_t)up, (uint32_t)(from + first),
+                           (uint32_t)(end - first), cells + first * grid->cell_bytes);
+}
+
+int export_put_row(const export_ground *ground, uint32_t column, uint32_t row, uint32_t count,
+                   const uint8_t *cells)
+{
+    return put_row(ground, &ground->cells, column, row, count, cells);
+}
+
+int export_put_mask(const export_ground *ground, uint32_t column, uint32_t row, uint32_t count,
+                    const uint8_t *mask)
+{
+    return put_row(ground, &ground->mask, column, row, count, mask);
 }
 
 /* ---- heights ---- */
@@ -130,14 +142,17 @@ int export_ground_begin(export_ground *ground, const bake_box *region, uint32_t 
 int export_ground_finish(export_ground *ground, int rc)
 {
     if (!rc) {
-        ground->set = bake_grid_dataset(&ground->cells, ground->bands == 1 ? GDT_UInt16 : GDT_Byte,
-                                        ground->bands);
+        ground->set = ground->bands == 1 ? bake_grid_dataset(&ground->cells, GDT_UInt16, 1)
+                                         : bake_grid_dataset(&ground->cells, GDT_Byte, 4);
         rc = ground->set ? 0 : -1;
     }
     if (rc) {
         export_ground_close(ground);
         return rc;
     }
+    for (int b = 0; ground->bands == 3 && b < 4; b++)
+        GDALSetRasterColorInterpretation(GDALGetRasterBand(ground->set, b + 1),
+                                         (GDALColorInterp)(GCI_RedBand + b));
     GDALSetGeoTransform(ground->set, ground->geotransform);
     if (ground->srs) GDALSetSpatialRef(ground->set, ground->srs);
     return 0;

@@ -35,7 +35,8 @@ typedef struct export_ground {
     uint32_t level;
     export_lattice lattice;
     export_window window;
-    int bands;       /* 1: heights, uint16 steps; 3: colours, bytes */
+    int bands; /* 1: heights, uint16 steps; 3: colours, bytes, and a 4th in cells and set: alpha */
+    int has_open;    /* of colours: alpha is not 255 everywhere; the mask has such as beyond */
     bake_grid cells; /* of the window, row 0 north */
     bake_grid mask;  /* bytes of enum export_cell; closed: all is measured */
     double geotransform[6];
@@ -50,9 +51,9 @@ typedef struct export_ground {
  * or -1 (said). */
 int export_ground_open(const bake_unpack *unpack, uint32_t level, const bake_box *region,
                        export_ground *ground);
-/* Colours of a level of textures (0 .. texture_levels - 1). */
-int export_ground_open_images(const bake_unpack *unpack, uint32_t level, const bake_box *region,
-                              export_ground *ground);
+/* Colours of a level of a layer of textures (0 .. ff_pack_image_levels - 1). */
+int export_ground_open_images(const bake_unpack *unpack, unsigned layer, uint32_t level,
+                              const bake_box *region, export_ground *ground);
 void export_ground_close(export_ground *ground);
 
 #endif

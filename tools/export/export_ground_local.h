@@ -21,6 +21,9 @@ void export_reading(const export_ground *ground, ff_key key, uint32_t level);
  * (said). */
 int export_put_row(const export_ground *ground, uint32_t column, uint32_t row, uint32_t count,
                    const uint8_t *cells);
+/* The same of the mask. */
+int export_put_mask(const export_ground *ground, uint32_t column, uint32_t row, uint32_t count,
+                    const uint8_t *mask);
 
 /* How far samples, and the triangles between them, may be from the source. 0 or -1 (said). */
 int export_told_error(const export_ground *ground, export_error *error);

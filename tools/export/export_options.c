@@ -71,6 +71,7 @@ int export_options_parse(export_options *o, int argc, char **argv)
     if (!o->pack_path) return bake_fail("--estimate needs PACK");
     if (o->estimate && o->out_path && !export_pack_is(o->out_path))
         return bake_fail("--estimate tells the size of a part as a pack: -o OUT.ffp, or none");
+    if (o->layer && !o->images) return bake_fail("--layer is one of --images");
     if (o->images && o->voids == EXPORT_VOIDS_NODATA)
         return bake_fail("--voids nodata marks heights, not --images");
     if (!o->mesh && (o->mesh_error_m > 0 || o->normals || o->gzip))

@@ -1,6 +1,7 @@
 #include "export_raster.h"
 
 #include "../bake/bake_say.h"
+#include "../bake/raster/bake_view.h"
 #include "export_about.h"
 #include "export_whole.h"
 
@@ -121,6 +122,15 @@ static char **settings_of(const export_options *o, const export_about *about, co
     return list;
 }
 
+/* The data set to be written: colours without their alpha where they have none to tell, or `opaque`
+ * says so; what is not ground->set is to be closed. NULL: GDAL's error. */
+static GDALDatasetH image_of(const export_ground *ground, int opaque)
+{
+    static const char *const colours[] = { "-b", "1", "-b", "2", "-b", "3", NULL };
+    if (ground->bands == 1 || (ground->has_open && !opaque)) return ground->set;
+    return bake_view(ground->set, CSLDuplicate((char **)colours));
+}
+
 static int write_image(const export_options *o, const export_about *about,
                        const export_whole *whole, export_ground *ground)
 {
@@ -131,14 +141,17 @@ static int write_image(const export_options *o, const export_about *about,
         return bake_fail("%s: %u x %u texels do not fit a JPEG: write .tif, or give --level or "
                          "--region",
                          whole->path, ground->cells.width, ground->cells.height);
+    GDALDatasetH set = image_of(ground, !strcmp(driver, "JPEG"));
+    if (!set) return bake_fail_gdal("cannot write %s", whole->path);
     char **settings = settings_of(o, about, driver);
     /* nothing beside the image: no .aux.xml */
     CPLSetConfigOption("GDAL_PAM_ENABLED", "NO");
     CPLErrorReset();
-    GDALDatasetH copy = GDALCreateCopy(GDALGetDriverByName(driver), whole->temp, ground->set, 0,
-                                       settings, NULL, NULL);
+    GDALDatasetH copy = GDALCreateCopy(GDALGetDriverByName(driver), whole->temp, set, 0, settings,
+                                       NULL, NULL);
     CSLDestroy(settings);
     if (copy) GDALClose(copy);
+    if (set != ground->set) GDALClose(set);
     if (copy && CPLGetLastErrorType() < CE_Failure) return 0;
     return bake_fail_gdal("cannot write %s", whole->path);
 }
@@ -149,10 +162,6 @@ int export_raster_write(const export_options *o, export_ground *ground)
     export_whole whole;
     export_about_ground(ground, &about);
     export_about_tag(&about, &ground->unpack->pack, ground->set);
-    if (ground->bands == 3)
-        for (int b = 0; b < 3; b++)
-            GDALSetRasterColorInterpretation(GDALGetRasterBand(ground->set, b + 1),
-                                             (GDALColorInterp)(GCI_RedBand + b));
     if (o->voids == EXPORT_VOIDS_NODATA && mark_voids(ground)) return -1;
     if (export_whole_begin(o->out_path, 0, &whole)) return -1;
     int rc = strcmp(ending_of(o->out_path), ".r16") ? write_image(o, &about, &whole, ground)

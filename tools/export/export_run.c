@@ -13,10 +13,24 @@
 
 static int is_pack(const export_options *o) { return o->estimate || export_pack_is(o->out_path); }
 
-/* The level asked for, or the finest, of heights or of images. 0 or -1 (said). */
-static int choose_level(const export_options *o, const ff_terrain_info *info, uint32_t *level)
+/* The number of the layer asked for, or of the first; -1 (said). */
+static int choose_layer(const export_options *o, const ff_pack *pack)
 {
-    uint32_t levels = o->images ? info->texture_levels : ff_terrain_levels(info);
+    ff_layers layers;
+    if (!o->layer) return 0;
+    ff_pack_layers(pack, &layers);
+    int number = ff_layers_find(&layers, o->layer);
+    return number >= 0
+               ? number
+               : bake_fail("--layer %s: %s has no layer of this name", o->layer, o->pack_path);
+}
+
+/* The level asked for, or the finest, of heights or of a layer of images. 0 or -1 (said). */
+static int choose_level(const export_options *o, const ff_pack *pack, unsigned layer,
+                        uint32_t *level)
+{
+    uint32_t levels = o->images ? ff_pack_image_levels(pack, layer)
+                                : ff_terrain_levels(&pack->header.info);
     if (!levels) return bake_fail("--images: %s has none", o->pack_path);
     *level = o->has_level ? o->level : levels - 1;
     if (*level < levels) return 0;
@@ -46,14 +60,12 @@ static int export_pack(const export_options *o, const bake_unpack *unpack)
 {
     export_ground ground;
     uint32_t level = 0;
-    if (is_pack(o))
-        return choose_level(o, &unpack->pack.header.info, &level)
-                   ? -1
-                   : export_pack_write(o, unpack, level);
+    int layer = choose_layer(o, &unpack->pack);
+    if (layer < 0 || choose_level(o, &unpack->pack, (unsigned)layer, &level)) return -1;
+    if (is_pack(o)) return export_pack_write(o, unpack, level);
     int is_raster = export_raster_is(o->out_path);
     if (!is_raster && !o->mesh && export_pyramid_check(o, &unpack->pack.header.info)) return -1;
-    if (choose_level(o, &unpack->pack.header.info, &level)) return -1;
-    if (o->images ? export_ground_open_images(unpack, level, &o->region, &ground)
+    if (o->images ? export_ground_open_images(unpack, (unsigned)layer, level, &o->region, &ground)
                   : export_ground_open(unpack, level, &o->region, &ground))
         return -1;
     int rc = write_ground(o, &ground);

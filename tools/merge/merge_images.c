@@ -15,7 +15,7 @@ static int open_images(const bake_unpack *unpack, mosaic *m)
     static const bake_box everywhere;
     const ff_terrain_info *info = &unpack->pack.header.info;
     if (!info->texture_levels) return 0;
-    if (export_ground_open_images(unpack, info->texture_levels - 1u, &everywhere,
+    if (export_ground_open_images(unpack, 0, info->texture_levels - 1u, &everywhere,
                                   &m->ground[m->count]))
         return -1;
     if (info->texture_log2 > m->texture_log2) m->texture_log2 = info->texture_log2;

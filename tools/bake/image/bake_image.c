@@ -15,6 +15,7 @@
 
 /* The finest level's texels are at most this many image pixels wide. */
 #define COARSEST_TEXEL_PX 1.25
+#define BEYOND_PX         0.25
 #define RGB               3
 #define RGBA              4
 
@@ -26,12 +27,15 @@ typedef struct row_ring {
     uint8_t *source; /* one row of the image */
 } row_ring;
 
-/* The stretch *from .. *to of pixels round a centre, kept inside 0..size and never empty. */
-static void footprint(double centre, double wide, uint32_t size, double *from, double *to)
+/* The stretch *from .. *to of pixels round a centre, kept inside 0..size and never empty. 0: the
+ * centre lies beyond, by more than rounding makes it. */
+static int footprint(double centre, double wide, uint32_t size, double *from, double *to)
 {
     if (wide < 1) wide = 1;
+    if (centre < -BEYOND_PX || centre > size + BEYOND_PX) return 0;
     *from = fmin(fmax(centre - wide / 2, 0), size - 0.5);
     *to = fmax(fmin(centre + wide / 2, size), *from + 0.5);
+    return 1;
 }
 
 /* Mean of the pixels from..to of a row, each weighted by how much of it is covered. */
@@ -56,9 +60,11 @@ static const float *filtered_row(const bake_picture *picture, row_ring *ring, ui
     double px_per_sample = picture->width / (picture->east - picture->west);
     for (uint32_t i = 0; i < ring->width; i++) {
         double from, to, x = fmin((place->first_x + (double)i) * place->samples, place->last_x);
-        footprint((x - picture->west) * px_per_sample, place->samples * px_per_sample,
-                  picture->width, &from, &to);
-        mean_pixels(ring->source, from, to, out + (size_t)i * RGBA);
+        float *texel = out + (size_t)i * RGBA;
+        memset(texel, 0, RGBA * sizeof *texel);
+        if (footprint((x - picture->west) * px_per_sample, place->samples * px_per_sample,
+                      picture->width, &from, &to))
+            mean_pixels(ring->source, from, to, texel);
     }
     ring->held[row % ring->slots] = row;
     return out;
@@ -71,18 +77,19 @@ typedef struct lattice_row {
     uint32_t *distance; /* to the nearest covered texel: bake_nearest.h */
 } lattice_row;
 
-/* Makes colours of weighted sums; returns the number of texels that the image covers. */
+/* Makes colours of weighted sums; returns the number of texels that the image covers by half or
+ * more. */
 static uint64_t finish_row(const lattice_row *out, uint32_t width)
 {
     uint64_t covered = 0;
     for (size_t i = 0; i < width; i++) {
         const float *texel = out->sum + i * RGBA;
-        int is_covered = texel[RGB] > 1e-4f;
+        int is_covered = texel[RGB] > 1e-4f, is_half = texel[RGB] >= 0.5f;
         for (size_t c = 0; c < RGB; c++)
             out->rgb[i * RGB + c] = is_covered ? (uint8_t)fminf(texel[c] / texel[RGB] + 0.5f, 255)
                                                : 0;
-        out->distance[i] = is_covered ? 0 : BAKE_NEAREST_FAR;
-        covered += (uint64_t)is_covered;
+        out->distance[i] = is_half ? 0 : is_covered ? 1 : BAKE_NEAREST_FAR;
+        covered += (uint64_t)is_half;
     }
     return covered;
 }
@@ -111,9 +118,11 @@ static int sample_rows(const bake_picture *picture, row_ring *ring, const bake_t
     *covered = 0;
     for (uint32_t j = lattice->height; j-- > 0;) {
         double from, to, y = fmin((place->first_y + (double)j) * place->samples, place->last_y);
-        footprint((picture->north - y) * px_per_sample, place->samples * px_per_sample,
-                  picture->height, &from, &to);
-        if (sample_row(picture, ring, from, to, place, out->sum)) return -1;
+        if (!footprint((picture->north - y) * px_per_sample, place->samples * px_per_sample,
+                       picture->height, &from, &to))
+            memset(out->sum, 0, (size_t)RGBA * lattice->width * sizeof *out->sum);
+        else if (sample_row(picture, ring, from, to, place, out->sum))
+            return -1;
         *covered += finish_row(out, lattice->width);
         if (bake_grid_write(lattice, j, 0, lattice->width, out->rgb)) return -1;
         if (bake_grid_write(distance, j, 0, lattice->width, out->distance)) return -1;

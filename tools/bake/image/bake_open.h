@@ -1,11 +1,11 @@
 /* Ground that an image does not cover: such texels get the ground's own colours, such nodes no
  * image.
  *
- * A texel counts as covered when some of the image lies in its square. Near what is covered, up to
- * BAKE_OPEN_NEAR texels away, the nearest colour goes on: images that end with the ground lack a
- * few texels along its rim. A node is open when no texel inside it (those on its very edges belong
- * to its neighbours as well) is covered, and nothing below it: it then has no image, and the ground
- * there shows what ground without images shows. */
+ * A texel counts as covered when half of its square is. Near that, up to BAKE_OPEN_NEAR texels
+ * away, the nearest colour goes on: images that end with the ground lack a few texels along its
+ * rim. A node is open when no texel inside it (those on its very edges belong to its neighbours as
+ * well) is covered, and nothing below it: it then has no image, and the ground there shows what
+ * ground without images shows. */
 #ifndef BAKE_OPEN_H
 #define BAKE_OPEN_H
 
@@ -21,8 +21,8 @@ typedef struct bake_texel_place {
 } bake_texel_place;
 
 /* Fills the texels of the finest lattice that are not covered, and finds image->open.
- * `distance` (uint32) holds 0 where a texel is covered, BAKE_NEAREST_FAR elsewhere, both somewhere;
- * it is used up. `heights` as of bake_image_make. 0 or -1 (said). */
+ * `distance` as of bake_nearest_fill; it is used up. `heights` as of bake_image_make. 0 or -1
+ * (said). */
 int bake_open_fill(bake_image *image, const ff_terrain_info *info, const bake_samples *heights,
                    const bake_texel_place *place, const bake_grid *distance);
 /* The same of an image that covers nothing of it: image->open alone. */
