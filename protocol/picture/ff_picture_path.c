@@ -33,6 +33,7 @@ static int decode(ff_picture_path *path, const ff_pack *pack, ff_key key)
     ff_image image;
     int rc = ff_pack_layer_record(pack, path->layer, key, &payload);
     if (rc >= 0) rc = ff_image_read(payload, (size_t)rc, &image);
+    if (rc >= 0 && !image.coded_bytes) rc = FF_ERR_NOT_FOUND; /* open all over */
     if (rc >= 0)
         rc = ff_picture_decode(image.coded, image.coded_bytes, info->texture_log2, above,
                                &path->room, picture_at(path, info, level));

@@ -32,6 +32,7 @@ static void below(ff_key key, const uint8_t *parent)
     int bytes = ff_pack_record(&pack, FF_SECTION_TEXTURE, key, &payload);
     if (bytes == FF_ERR_NOT_FOUND) return;
     if (bytes < 0 || ff_image_read(payload, (size_t)bytes, &image) < 0) fail("a record is broken");
+    if (!image.coded_bytes) return; /* open all over */
     uint8_t *own = malloc((size_t)3 << 2 * pack.header.info.texture_log2);
     if (!own) fail("out of memory");
     bytes_read += image.coded_bytes;
