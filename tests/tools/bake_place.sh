@@ -73,9 +73,12 @@ result $? "one that lies nowhere near is refused, and its reference system asked
 placed bare.ppm far.vrt EPSG:4326 80 .001 0 45 0 -.001
 refused "shows nothing of this ground" utm.vrt --color far.vrt
 result $? "an image of ground far off is refused before a pixel of it is read"
-placed bare.ppm dots.vrt EPSG:32632 500000 .00001 0 5000000 0 -.00001
+gdal_translate -q -of VRT -outsize 200000 160000 -a_srs EPSG:32632 -a_ullr 500000 5000000 501800 4998560 bare.ppm dots.vrt
 refused "make it coarser (gdalwarp -tr)" utm.vrt --color dots.vrt
 result $? "an image whose pixels are dust on the ground is refused with what to do"
+placed bare.ppm speck.vrt EPSG:32632 500000 .00001 0 5000000 0 -.00001
+refused "shows nothing of this ground" utm.vrt --color speck.vrt
+result $? "an image that is a speck on the ground is refused"
 gdal_translate -q -of VRT -outsize 400000 300000 utm.vrt vast.vrt
 refused "cut a part with gdal_translate -projwin" vast.vrt
 result $? "more samples than the limit are refused before they are read"

@@ -82,7 +82,10 @@ static void make(covers_fn covers)
             uint32_t far = covers(x, y) ? 0 : BAKE_NEAREST_FAR;
             assert_int_equal(bake_grid_write(&distance, y, x, 1, &far), 0);
         }
-    assert_int_equal(bake_open_fill(&image, &info, &hills, &place, &distance), 0);
+    bake_own *own = bake_own_open(&info, &hills);
+    assert_non_null(own);
+    assert_int_equal(bake_open_fill(&image, &info, own, &place, &distance), 0);
+    bake_own_close(own);
     bake_grid_close(&distance);
 }
 
@@ -128,7 +131,7 @@ static void texels_beyond_have_the_colours_of_the_ground(void **state)
     bake_own *colours = bake_own_open(&info, &hills);
     assert_non_null(colours);
     for (uint32_t y = 0; y < WIDE; y++) {
-        assert_int_equal(bake_own_row(colours, y * place.samples), 0);
+        assert_int_equal(bake_own_row(colours, y * place.samples, place.samples), 0);
         for (uint32_t x = 0; x < WIDE; x++) {
             uint8_t rgb[RGB], expected[RGB];
             assert_int_equal(bake_grid_read(&image.lattice[LEVELS - 1], y, x, 1, rgb), 0);
@@ -164,7 +167,7 @@ static void colours_of_the_ground_are_those_of_clients(void **state)
                 for (uint32_t i = 0; i < 11; i++)
                     framed[j * 11 + i] = pack_fixture_hills(NULL, x + i - 1, y + j - 1);
             for (uint32_t j = 0; j < 9; j++) {
-                assert_int_equal(bake_own_row(colours, y + j), 0);
+                assert_int_equal(bake_own_row(colours, y + j, 1), 0);
                 for (uint32_t i = 0; i < 9; i++) {
                     uint8_t rgba[4], rgb[RGB];
                     ff_shade(&grid, i, j, rgba);

@@ -33,20 +33,13 @@ typedef struct sifter {
 
 /* ---- marks ---- */
 
-static void place_of(const ff_terrain_info *info, ff_key key, uint32_t *x, uint32_t *y)
-{
-    ff_sheet tile = ff_shape_sheet(info, ff_key_tile(key));
-    uint32_t level = ff_key_level(key), code = ff_key_code(key);
-    *x = (tile.x << level) + ff_morton_x(code);
-    *y = (tile.y << level) + ff_morton_y(code);
-}
-
 static int read_mark(const bake_image *image, const ff_terrain_info *info, ff_key key,
                      uint8_t *mark)
 {
-    uint32_t x, y;
-    place_of(info, key, &x, &y);
-    return bake_grid_read(&image->bare[ff_key_level(key)], y, x, 1, mark);
+    ff_sheet at;
+    int has = bake_image_has(image, info, key, &at);
+    FF_ASSERT(has);
+    return bake_grid_read(&image->bare[ff_key_level(key)], at.y, at.x, 1, mark);
 }
 
 /* A node's mark has ff_image_marks.bare in its low bits, .open in its high ones. */
@@ -59,8 +52,13 @@ int bake_bare_of(const bake_image *image, const ff_terrain_info *info, ff_key ke
                  ff_image_marks *marks)
 {
     uint8_t mark = 0;
+    ff_sheet at;
     *marks = marks_of(0);
     if (!image->has_bare) return 1;
+    if (!bake_image_has(image, info, key, &at)) {
+        *marks = marks_of(OPEN_ROOT);
+        return ff_key_level(key) == 0;
+    }
     int open = ff_key_level(key) ? 0 : bake_is_open(image, info, key);
     if (open < 0) return -1;
     if (!open && ff_key_level(key) + 1 < image->levels && read_mark(image, info, key, &mark))
@@ -155,10 +153,10 @@ static int shows_more(sifter *s, ff_key key, ff_key above)
 
 static int write_mark(const sifter *s, ff_key key, uint8_t mark)
 {
-    uint32_t x, y;
-    if (ff_key_level(key) + 1 == s->image->levels) return 0;
-    place_of(s->info, key, &x, &y);
-    return bake_grid_write(&s->image->bare[ff_key_level(key)], y, x, 1, &mark);
+    ff_sheet at;
+    if (ff_key_level(key) + 1 == s->image->levels || !bake_image_has(s->image, s->info, key, &at))
+        return 0;
+    return bake_grid_write(&s->image->bare[ff_key_level(key)], at.y, at.x, 1, &mark);
 }
 
 /* Marks a node whose image is made, and all below it. */

@@ -6,6 +6,7 @@
 #include "bake_image_local.h"
 #include "bake_nearest.h"
 #include "bake_open.h"
+#include "bake_own.h"
 #include "bake_texture.h"
 #include "../bake_say.h"
 
@@ -131,18 +132,18 @@ static int sample_rows(const bake_picture *picture, row_ring *ring, const bake_t
     return 0;
 }
 
-/* Sees to the texels that the image does not cover. */
-static int fill_open(bake_image *image, const ff_terrain_info *info, const bake_samples *heights,
-                     const bake_texel_place *place, const bake_grid *distance, uint64_t covered)
+/* Sees to the texels that the image does not cover; `parted`: and it reaches not into all nodes. */
+static int fill_open(bake_image *image, const ff_terrain_info *info, bake_own *own,
+                     const bake_texel_place *place, const bake_grid *distance, int parted,
+                     uint64_t covered)
 {
-    if (covered == (uint64_t)distance->width * distance->height) return 0;
-    return covered ? bake_open_fill(image, info, heights, place, distance)
-                   : bake_open_all(image, info);
+    if (!parted && covered == (uint64_t)distance->width * distance->height) return 0;
+    return covered ? bake_open_fill(image, info, own, place, distance) : bake_open_all(image, info);
 }
 
-static int sample_image(const bake_picture *picture, const ff_terrain_info *info,
-                        const bake_samples *heights, const bake_texel_place *place,
-                        bake_image *image, uint64_t *covered)
+static int sample_image(const bake_picture *picture, const ff_terrain_info *info, bake_own *own,
+                        const bake_texel_place *place, int parted, bake_image *image,
+                        uint64_t *covered)
 {
     const bake_grid *lattice = &image->lattice[image->levels - 1];
     double px_per_sample = picture->height / (picture->north - picture->south);
@@ -159,7 +160,7 @@ static int sample_image(const bake_picture *picture, const ff_terrain_info *info
         rc = bake_fail("out of memory");
     for (uint32_t i = 0; !rc && i < ring.slots; i++) ring.held[i] = -1;
     if (!rc) rc = sample_rows(picture, &ring, place, lattice, &distance, &out, covered);
-    if (!rc) rc = fill_open(image, info, heights, place, &distance, *covered);
+    if (!rc) rc = fill_open(image, info, own, place, &distance, parted, *covered);
     bake_grid_close(&distance);
     free(out.sum);
     free(out.rgb);
@@ -170,13 +171,18 @@ static int sample_image(const bake_picture *picture, const ff_terrain_info *info
     return rc;
 }
 
-/* Makes a row of every second point of the finer lattice, weighted 1-2-1 along both axes; points
- * beyond its rim repeat it. */
-static void halve_row(uint8_t *const fine[3], uint32_t fine_width, uint32_t coarse_width,
-                      uint8_t *out)
+static uint32_t inside(int64_t at, uint32_t count)
+{
+    return (uint32_t)(at < 0 ? 0 : at >= count ? (int64_t)count - 1 : at);
+}
+
+/* Makes a row of every second point of the finer lattice, which begins `skip` points on, weighted
+ * 1-2-1 along both axes; points beyond its rim repeat it. */
+static void halve_row(uint8_t *const fine[3], uint32_t fine_width, uint32_t skip,
+                      uint32_t coarse_width, uint8_t *out)
 {
     for (uint32_t i = 0; i < coarse_width; i++) {
-        size_t last = fine_width - 1, at = 2 * (size_t)i < last ? 2 * (size_t)i : last,
+        size_t last = fine_width - 1, at = inside(2 * (int64_t)i - skip, fine_width),
                west = at ? at - 1 : at, east = at < last ? at + 1 : at;
         for (int c = 0; c < RGB; c++) {
             unsigned sum = 8;
@@ -190,7 +196,8 @@ static void halve_row(uint8_t *const fine[3], uint32_t fine_width, uint32_t coar
     }
 }
 
-static int halve_lattice(const bake_grid *fine, const bake_grid *coarse)
+/* `skip`: how many points the finer lattice begins further on than the coarser one. */
+static int halve_lattice(const bake_grid *fine, ff_sheet skip, const bake_grid *coarse)
 {
     size_t row_bytes = (size_t)fine->width * RGB;
     uint8_t *memory = malloc(4 * row_bytes);
@@ -199,12 +206,11 @@ static int halve_lattice(const bake_grid *fine, const bake_grid *coarse)
     int rc = 0;
     for (uint32_t j = 0; !rc && j < coarse->height; j++) {
         for (int r = 0; !rc && r < 3; r++) {
-            int64_t row = 2 * (int64_t)j + r - 1;
-            row = row < 0 ? 0 : row >= fine->height ? fine->height - 1 : row;
-            rc = bake_grid_read(fine, (uint32_t)row, 0, fine->width, rows[r]);
+            uint32_t row = inside(2 * (int64_t)j + r - 1 - skip.y, fine->height);
+            rc = bake_grid_read(fine, row, 0, fine->width, rows[r]);
         }
         if (rc) break;
-        halve_row(rows, fine->width, coarse->width, memory + 3 * row_bytes);
+        halve_row(rows, fine->width, skip.x, coarse->width, memory + 3 * row_bytes);
         rc = bake_grid_write(coarse, j, 0, coarse->width, memory + 3 * row_bytes);
     }
     free(memory);
@@ -224,30 +230,75 @@ static uint32_t choose_levels(const bake_options *o, const bake_picture *picture
     return levels;
 }
 
+/* Of nodes first..last of the finest level along an axis those that the picture reaches into. */
+static void reach(double low, double high, double edge, uint32_t *first, uint32_t *last)
+{
+    double from = floor(low / edge), to = floor(high / edge);
+    if (to < *first || from > *last) from = to = *first; /* none: it covers nothing */
+    if (from > *first) *first = (uint32_t)from;
+    if (to < *last) *last = (uint32_t)to;
+}
+
+/* Opens the lattices of nodes first..last of the finest level and those above them. */
+static int open_lattices(const ff_terrain_info *info, ff_sheet first, ff_sheet last,
+                         bake_image *image)
+{
+    uint32_t steps = (1u << info->texture_log2) - 1;
+    for (uint32_t l = 0; l < image->levels; l++) {
+        uint32_t up = image->levels - 1 - l;
+        image->first[l] = (ff_sheet){ first.x >> up, first.y >> up };
+        if (bake_grid_open(&image->lattice[l], ((last.x >> up) - image->first[l].x + 1) * steps + 1,
+                           ((last.y >> up) - image->first[l].y + 1) * steps + 1, RGB))
+            return -1;
+    }
+    return 0;
+}
+
+/* Makes coarser lattices of the finest one: `place` is its. What that tells nothing of has the
+ * ground's own colours. */
+static int halve_lattices(const ff_terrain_info *info, bake_own *own, bake_texel_place place,
+                          bake_image *image)
+{
+    uint32_t steps = (1u << info->texture_log2) - 1;
+    for (uint32_t l = image->levels - 1; l > 0; l--) {
+        const ff_sheet *first = &image->first[l];
+        const ff_sheet skip = { (first->x & 1) * steps, (first->y & 1) * steps };
+        place.samples *= 2;
+        place.first_x = (place.first_x - skip.x) / 2;
+        place.first_y = (place.first_y - skip.y) / 2;
+        if (halve_lattice(&image->lattice[l], skip, &image->lattice[l - 1])) return -1;
+        if (own && bake_open_beyond(own, &place, &image->lattice[l], skip, &image->lattice[l - 1]))
+            return -1;
+    }
+    return 0;
+}
+
 /* The lattices of all levels from that of a node on, as far as nodes have ground: `samples` of it,
- * less one, from the node's first. */
+ * less one, from the node's first. With `heights` those alone that the picture reaches into. */
 static int make_lattices(const bake_picture *picture, const bake_ground *ground,
                          const bake_samples *heights, const ff_terrain_info *info, ff_sheet node,
                          ff_sheet samples, bake_image *image, uint64_t *covered)
 {
     uint32_t steps = (1u << info->texture_log2) - 1, top = image->levels - 1,
-             edge_log2 = info->tile_log2 - (info->texture_levels - image->levels);
-    for (uint32_t l = 0; l <= top; l++)
-        if (bake_grid_open(&image->lattice[l],
-                           (((samples.x - 1) >> (edge_log2 - l)) + 1) * steps + 1,
-                           (((samples.y - 1) >> (edge_log2 - l)) + 1) * steps + 1, RGB))
-            return -1;
-    bake_texel_place place = {
-        .samples = (double)(1u << (info->tile_log2 - (info->texture_levels - 1u))) / steps,
-        .last_x = ground->grid.width - 1.0,
-        .last_y = ground->grid.height - 1.0,
-        .first_x = node.x * steps << top,
-        .first_y = node.y * steps << top
-    };
-    if (sample_image(picture, info, heights, &place, image, covered)) return -1;
-    for (uint32_t l = top; l > 0; l--)
-        if (halve_lattice(&image->lattice[l], &image->lattice[l - 1])) return -1;
-    return 0;
+             edge_log2 = info->tile_log2 - (info->texture_levels - 1u);
+    ff_sheet first = { 0, 0 }, all = { (samples.x - 1) >> edge_log2, (samples.y - 1) >> edge_log2 },
+             last = all;
+    if (heights) {
+        reach(picture->west, picture->east, 1u << edge_log2, &first.x, &last.x);
+        reach(picture->south, picture->north, 1u << edge_log2, &first.y, &last.y);
+    }
+    bake_texel_place place = { .samples = (double)(1u << edge_log2) / steps,
+                               .last_x = ground->grid.width - 1.0,
+                               .last_y = ground->grid.height - 1.0,
+                               .first_x = ((node.x << top) + first.x) * steps,
+                               .first_y = ((node.y << top) + first.y) * steps };
+    int parted = first.x || first.y || last.x < all.x || last.y < all.y;
+    bake_own *own = heights ? bake_own_open(info, heights) : NULL;
+    int rc = heights && !own ? -1 : open_lattices(info, first, last, image);
+    if (!rc) rc = sample_image(picture, info, own, &place, parted, image, covered);
+    if (!rc) rc = halve_lattices(info, parted ? own : NULL, place, image);
+    bake_own_close(own);
+    return rc;
 }
 
 static void choose_textures(const bake_options *o, const bake_picture *picture,
@@ -330,13 +381,25 @@ void bake_image_close(bake_image *image)
 
 /* ---- textures of nodes ---- */
 
+int bake_image_has(const bake_image *image, const ff_terrain_info *info, ff_key key, ff_sheet *at)
+{
+    uint32_t level = ff_key_level(key), code = ff_key_code(key),
+             steps = (1u << info->texture_log2) - 1;
+    ff_sheet tile = ff_shape_sheet(info, ff_key_tile(key)), first = image->first[level];
+    const bake_grid *lattice = &image->lattice[level];
+    *at = (ff_sheet){ (tile.x << level) + ff_morton_x(code) - first.x,
+                      (tile.y << level) + ff_morton_y(code) - first.y };
+    return at->x < (lattice->width - 1) / steps && at->y < (lattice->height - 1) / steps;
+}
+
 int bake_texture_read(const bake_image *image, const ff_terrain_info *info, ff_key key,
                       uint8_t *rgb)
 {
-    uint32_t side = 1u << info->texture_log2, level = ff_key_level(key), code = ff_key_code(key);
-    ff_sheet tile = ff_shape_sheet(info, ff_key_tile(key));
-    uint32_t column = ((tile.x << level) + ff_morton_x(code)) * (side - 1),
-             row = ((tile.y << level) + ff_morton_y(code)) * (side - 1);
+    uint32_t side = 1u << info->texture_log2, level = ff_key_level(key);
+    ff_sheet at;
+    int has = bake_image_has(image, info, key, &at);
+    FF_ASSERT(has);
+    uint32_t column = at.x * (side - 1), row = at.y * (side - 1);
     for (uint32_t j = 0; j < side; j++)
         if (bake_grid_read(&image->lattice[level], row + j, column, side,
                            rgb + (size_t)(side - 1 - j) * side * RGB))
@@ -347,10 +410,11 @@ int bake_texture_read(const bake_image *image, const ff_terrain_info *info, ff_k
 int bake_texture_seen(const bake_image *image, const ff_terrain_info *info, ff_key key, int put,
                       uint8_t *rgb)
 {
-    uint32_t side = 1u << info->texture_log2, level = ff_key_level(key), code = ff_key_code(key);
-    ff_sheet tile = ff_shape_sheet(info, ff_key_tile(key));
-    uint32_t column = ((tile.x << level) + ff_morton_x(code)) * side,
-             row = ((tile.y << level) + ff_morton_y(code)) * side;
+    uint32_t side = 1u << info->texture_log2, level = ff_key_level(key);
+    ff_sheet at;
+    int has = bake_image_has(image, info, key, &at);
+    FF_ASSERT(has);
+    uint32_t column = at.x * side, row = at.y * side;
     const bake_grid *grid = &image->seen[level];
     int rc = 0;
     for (uint32_t j = 0; !rc && j < side; j++, rgb += (size_t)side * RGB)

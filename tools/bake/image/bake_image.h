@@ -20,6 +20,9 @@
 
 typedef struct bake_image {
     bake_grid lattice[BAKE_TEXTURE_LEVELS_MAX]; /* RGB, rows south to north */
+    /* the node of each level in the south-west corner of what the lattice and the grids below are
+     * of: all of the ground, or the nodes that an image of a part of it reaches into */
+    ff_sheet first[BAKE_TEXTURE_LEVELS_MAX];
     uint32_t levels;
     /* of all levels but the last, a byte for each node: which children have no image (bake_bare.h)
      */
@@ -27,7 +30,7 @@ typedef struct bake_image {
     int has_bare; /* 0: all nodes with ground have one, and `bare` is not looked at */
     /* of all levels, a byte for each node: 1 when the image covers nothing of it (bake_open.h) */
     bake_grid open[BAKE_TEXTURE_LEVELS_MAX];
-    int has_open; /* 0: it covers some of every node */
+    int has_open; /* 0: it covers some of every node; 1: and nothing of those not here */
     /* of pictures, of all levels but the last: what clients see of each node's, RGB, top row first;
      * those below are differences to it */
     bake_grid seen[BAKE_TEXTURE_LEVELS_MAX];

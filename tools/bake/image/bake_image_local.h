@@ -29,10 +29,12 @@ int bake_picture_levels(const bake_options *options, const bake_ground *ground,
 void bake_picture_close(bake_picture *picture);
 /* Reads one row as RGBA. 0 or -1 (said). */
 int bake_picture_row(const bake_picture *picture, uint32_t row, uint8_t *rgba);
-/* The lattice over a node, top row first. 0 or -1 (said). */
+/* Where a node is in grids of a byte for each: 0: it is not. */
+int bake_image_has(const bake_image *image, const ff_terrain_info *info, ff_key key, ff_sheet *at);
+/* The lattice over a node that is there, top row first. 0 or -1 (said). */
 int bake_texture_read(const bake_image *image, const ff_terrain_info *info, ff_key key,
                       uint8_t *rgb);
-/* What clients see of a node's picture, to or from image->seen. 0 or -1 (said). */
+/* What clients see of such a node's picture, to or from image->seen. 0 or -1 (said). */
 int bake_texture_seen(const bake_image *image, const ff_terrain_info *info, ff_key key, int put,
                       uint8_t *rgb);
 /* The part of the image below the node in a column and row of a level's sheet, as if it were all of

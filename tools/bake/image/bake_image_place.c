@@ -73,14 +73,16 @@ static GDALDatasetH lay_over_source(const bake_ground *ground, GDALDatasetH set)
     return laid;
 }
 
-/* Makes a view of the image warped onto the ground's plane and area, in about its own resolution.
- */
+/* Makes a view of the image warped onto the ground's plane, as far as it reaches over its area, in
+ * about its own resolution. */
 static GDALDatasetH warp_onto_ground(const bake_ground *ground, GDALDatasetH set,
-                                     const bake_shift *shift)
+                                     const bake_area *reach, const bake_shift *shift)
 {
     const double *gt = ground->geotransform;
     double y0 = gt[3], y1 = gt[3] + gt[5] * ground->grid.height;
-    double area[4] = { gt[0], fmin(y0, y1), gt[0] + gt[1] * ground->grid.width, fmax(y0, y1) };
+    double area[4] = { fmax(gt[0], reach->west), fmax(fmin(y0, y1), reach->south),
+                       fmin(gt[0] + gt[1] * ground->grid.width, reach->east),
+                       fmin(fmax(y0, y1), reach->north) };
     char **list = CSLAddString(CSLAddString(NULL, "-of"), "VRT");
     list = CSLAddString(CSLAddString(list, "-r"), "bilinear");
     list = CSLAddString(list, "-dstalpha");
@@ -111,8 +113,10 @@ static OGRSpatialReferenceH reference_for(const bake_ground *ground, GDALDataset
     return bake_area_meets(&image, &now) ? ground->srs : NULL;
 }
 
-/* Whether any of the image comes to lie on the ground, told before a pixel is read; -1 (said). */
-static int meets_ground(const bake_ground *ground, GDALDatasetH set, const bake_shift *shift)
+/* Whether any of the image comes to lie on the ground, told before a pixel is read, and which area
+ * it then has; -1 (said). */
+static int meets_ground(const bake_ground *ground, GDALDatasetH set, const bake_shift *shift,
+                        bake_area *reach)
 {
     void *transform = bake_warp_transform(set, ground->srs, shift);
     double gt[6], extent[4];
@@ -122,9 +126,9 @@ static int meets_ground(const bake_ground *ground, GDALDatasetH set, const bake_
                                       extent, 0) == CE_None;
     GDALDestroyGenImgProjTransformer(transform);
     if (!ok) return 0;
-    bake_area image = { extent[0], extent[1], extent[2], extent[3] },
-              here = bake_area_of(ground->geotransform, ground->grid.width, ground->grid.height);
-    return bake_area_meets(&image, &here);
+    bake_area here = bake_area_of(ground->geotransform, ground->grid.width, ground->grid.height);
+    *reach = (bake_area){ extent[0], extent[1], extent[2], extent[3] };
+    return bake_area_meets(reach, &here);
 }
 
 static int check_bands(const char *path, GDALDatasetH set)
@@ -214,14 +218,16 @@ static int lay_picture(const bake_ground *ground, const char *path, bake_picture
     if (own_place && find_reference(ground, path, picture)) return -1;
     bake_shift shift;
     if (find_shift(ground, path, picture->set, &shift)) return -1;
-    int meets = meets_ground(ground, picture->set, &shift);
+    bake_area reach;
+    int meets = meets_ground(ground, picture->set, &shift, &reach);
     if (meets < 0) return -1;
     if (!meets) return bake_fail("%s: the image shows nothing of this ground", path);
-    if (stack_view(picture, warp_onto_ground(ground, picture->set, &shift), path)) return -1;
+    if (stack_view(picture, warp_onto_ground(ground, picture->set, &reach, &shift), path))
+        return -1;
     double columns = GDALGetRasterXSize(picture->set), rows = GDALGetRasterYSize(picture->set);
     if (columns * rows > BAKE_SAMPLES_MAX)
         return bake_fail(
-            "%s: its resolution over all of the ground makes %.0f x %.0f pixels, more than %g: "
+            "%s: its resolution over its part of the ground makes %.0f x %.0f pixels, more than %g: "
             "make it coarser (gdalwarp -tr), or the heights fewer (gdal_translate -projwin)",
             path, columns, rows, BAKE_SAMPLES_MAX);
     GDALGetGeoTransform(picture->set, gt);

@@ -10,6 +10,7 @@
 #define BAKE_OPEN_H
 
 #include "bake_image.h"
+#include "bake_own.h"
 
 #define BAKE_OPEN_NEAR 2u
 
@@ -21,10 +22,14 @@ typedef struct bake_texel_place {
 } bake_texel_place;
 
 /* Fills the texels of the finest lattice that are not covered, and finds image->open.
- * `distance` as of bake_nearest_fill; it is used up. `heights` as of bake_image_make. 0 or -1
- * (said). */
-int bake_open_fill(bake_image *image, const ff_terrain_info *info, const bake_samples *heights,
+ * `distance` as of bake_nearest_fill; it is used up. own NULL: the nearest colour goes on
+ * everywhere. 0 or -1 (said). */
+int bake_open_fill(bake_image *image, const ff_terrain_info *info, bake_own *own,
                    const bake_texel_place *place, const bake_grid *distance);
+/* Fills the points of a coarser lattice, whose place is told, that do not lie on the finer one:
+ * that begins `skip` of its points further on. 0 or -1 (said). */
+int bake_open_beyond(bake_own *own, const bake_texel_place *place, const bake_grid *fine,
+                     ff_sheet skip, const bake_grid *coarse);
 /* The same of an image that covers nothing of it: image->open alone. */
 int bake_open_all(bake_image *image, const ff_terrain_info *info);
 /* 1: no image covers the node; 0; -1 (said). */
