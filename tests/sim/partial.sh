@@ -117,15 +117,15 @@ is 's["along-part"]["bytes_images"] < root("part") + 8 and abs(s["along-part"]["
 
 # far pictures, drawn by the server, and levels that a near view leaves out above
 for pack in none part; do
-    flies $pack-fins $pack far --far auto --size 320x240 --seconds 16
+    flies $pack-fins $pack far --far paint --far-front 4000 --size 320x240 --seconds 16
     flies $pack-faces $pack far --far off --panorama on --back-plane 5000 --size 320x240 --seconds 16
     flies $pack-near $pack edge --view 3000
     flies $pack-lower $pack inside --view 2000
 done
 flies part-upper part edge --view 3000 --entry off
 flies part-whole part inside --view 2000 --entry off
-is '0.3 < off("part-faces", "none-faces") < 12 and s["part-faces"]["requests_failed"] == 0' "a panorama shows the image where it is"
-is '0.3 < off("part-fins", "none-fins") < 12 and s["part-fins"]["requests_failed"] == 0' "and so does far ground by fins and paint"
+is '0.3 < off("part-faces", "none-faces") < 12 and s["part-faces"]["requests_failed"] == 0 and s["part-faces"]["bytes_faces"] > 0' "a panorama shows the image where it is"
+is '0.3 < off("part-fins", "none-fins") < 12 and s["part-fins"]["requests_failed"] == 0 and s["part-fins"]["bytes_far"] > 0' "and so does far ground by fins and paint"
 is 'off("part-near", "part-upper") < 1 and off("part-lower", "part-whole") < 1 and s["part-lower"]["requests_failed"] == 0' "entered below its top it looks the same"
 is 's["part-near"]["bytes_heights"] == s["none-near"]["bytes_heights"]' "and is entered as deep as a pack without images"
 

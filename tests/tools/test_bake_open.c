@@ -52,8 +52,9 @@ static int west(uint32_t x, uint32_t y) { return x <= 40 || (x == 100 && y == 70
 static int edge(uint32_t x, uint32_t y) { return x == 4 * STEPS && y > 0; }
 static int all_but_a_speck(uint32_t x, uint32_t y) { return x < 50 || x > 53 || y < 50 || y > 53; }
 
-/* Lattices of a photograph of random grey where it covers. */
-static void make(covers_fn covers)
+/* Lattices of a photograph where it covers: of random grey, or, `flat`, of one, which goes on
+ * everywhere. */
+static void make_of(covers_fn covers, int flat)
 {
     bake_grid distance;
     info = (ff_terrain_info){ .node_log2 = 3,
@@ -73,7 +74,8 @@ static void make(covers_fn covers)
         for (uint32_t y = 0; y < wide; y++)
             for (uint32_t x = 0; x < wide; x++) {
                 uint8_t rgb[RGB];
-                memset(rgb, PHOTO + (int)((x << skip) * 7 + (y << skip) * 13) % 56, RGB);
+                int grey = flat ? 0 : (int)((x << skip) * 7 + (y << skip) * 13) % 56;
+                memset(rgb, PHOTO + grey, RGB);
                 assert_int_equal(bake_grid_write(&image.lattice[l], y, x, 1, rgb), 0);
             }
     }
@@ -84,10 +86,12 @@ static void make(covers_fn covers)
         }
     bake_own *own = bake_own_open(&info, &hills);
     assert_non_null(own);
-    assert_int_equal(bake_open_fill(&image, &info, own, &place, &distance), 0);
+    assert_int_equal(bake_open_fill(&image, &info, flat ? NULL : own, &place, &distance), 0);
     bake_own_close(own);
     bake_grid_close(&distance);
 }
+
+static void make(covers_fn covers) { make_of(covers, 0); }
 
 /* Some texel inside it, not on its edges, is covered. */
 static int is_covered(covers_fn covers, ff_key key)
@@ -212,6 +216,30 @@ static void what_is_stored_tells_where_the_image_ends(void **state)
     bake_image_close(&image);
 }
 
+static int has_open(ff_key key)
+{
+    if (bake_is_open(&image, &info, key)) return 1;
+    for (uint32_t q = 0; q < 4 && ff_key_level(key) + 1 < LEVELS; q++)
+        if (has_open(ff_key_child(key, q))) return 1;
+    return 0;
+}
+
+/* Of one colour all are like the root; but its image must not lie on what is open. */
+static void no_image_above_stands_for_what_is_open(void **state)
+{
+    (void)state;
+    make_of(west, 1);
+    assert_int_equal(bake_bare_find(&image, &info, QUALITY), 0);
+    for (uint32_t level = 1; level < LEVELS; level++)
+        for (uint32_t code = 0; code >> 2 * level == 0; code++) {
+            ff_key key = ff_key_make(0, level, code);
+            ff_image read;
+            assert_int_equal(stored(key, &read) > 0,
+                             has_open(key) && !bake_is_open(&image, &info, key));
+        }
+    bake_image_close(&image);
+}
+
 static void an_open_root_is_stored_as_a_mark(void **state)
 {
     (void)state;
@@ -231,6 +259,7 @@ int main(void)
         cmocka_unit_test(texels_beyond_have_the_colours_of_the_ground),
         cmocka_unit_test(colours_of_the_ground_are_those_of_clients),
         cmocka_unit_test(what_is_stored_tells_where_the_image_ends),
+        cmocka_unit_test(no_image_above_stands_for_what_is_open),
         cmocka_unit_test(an_open_root_is_stored_as_a_mark)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
