@@ -117,7 +117,7 @@ is 's["along-part"]["bytes_images"] < root("part") + 8 and abs(s["along-part"]["
 
 # far pictures, drawn by the server, and levels that a near view leaves out above
 for pack in none part; do
-    flies $pack-fins $pack far --far paint --far-front 4000 --size 320x240 --seconds 16
+    flies $pack-fins $pack far --far paint --far-front 4000 --seconds 16
     flies $pack-faces $pack far --far off --panorama on --back-plane 5000 --size 320x240 --seconds 16
     flies $pack-near $pack edge --view 3000
     flies $pack-lower $pack inside --view 2000
