@@ -16,7 +16,7 @@
 #include "ff_index.h"
 #include "ff_kind.h"
 
-#define FF_PACK_VERSION      8
+#define FF_PACK_VERSION      9
 #define FF_PACK_HEADER_BYTES 4096 /* with the directory of sections; the sections follow */
 #define FF_PACK_SECTIONS_MAX 79   /* that this reader knows, but for what it says of itself */
 #define FF_PACK_LISTED_MAX   80   /* with those that it does not */

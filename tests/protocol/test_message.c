@@ -445,7 +445,7 @@ static void lengths_and_headers(void **state)
     assert_decode("\xe1\x00", 2, FF_ERR_RANGE);                     /* nothing, and more below it */
     assert_decode("\x41\x04\x03\x00\x00\x00", 6, FF_ERR_VERSION);   /* older */
     assert_decode("\x9f\x00", 2, FF_ERR_RANGE);                     /* below the last level */
-    assert_decode("\x41\x01\x0b", 3, FF_ERR_VERSION);               /* newer */
+    assert_decode("\x41\x01\x0c", 3, FF_ERR_VERSION);               /* newer */
     uint8_t old[76] = { 0x41, 74, 8 }; /* a whole WELCOME of version 8 */
     assert_decode((const char *)old, sizeof old, FF_ERR_VERSION);
 }

@@ -126,8 +126,8 @@ static void welcome_needs_its_terrain(void **state)
     bytes[3] = 1;
     bytes[14] = 99; /* no such terrain */
     assert_int_equal(ff_message_decode(bytes, (size_t)count, &out), FF_ERR_RANGE);
-    assert_int_equal(ff_message_decode((const uint8_t *)"\x41\1\x0a", 3, &out), FF_ERR_RANGE);
-    assert_int_equal(ff_message_decode((const uint8_t *)"\x41\3\x0a\1\0", 5, &out), FF_ERR_RANGE);
+    assert_int_equal(ff_message_decode((const uint8_t *)"\x41\1\x0b", 3, &out), FF_ERR_RANGE);
+    assert_int_equal(ff_message_decode((const uint8_t *)"\x41\3\x0b\1\0", 5, &out), FF_ERR_RANGE);
 }
 
 /* What a terrain entry of these bytes is read as. */

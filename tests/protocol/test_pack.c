@@ -493,12 +493,12 @@ static void older_packs_are_refused_with_the_command_that_bakes_them(void **stat
     int rc = ff_pack_open(&pack, f->bytes, f->count);
     assert_int_equal(rc, FF_ERR_VERSION);
     assert_string_equal(ff_pack_error_text(&pack, rc),
-                        "a pack of version 5, this program reads 8: bake it again: farfield-bake "
+                        "a pack of version 5, this program reads 9: bake it again: farfield-bake "
                         "HEIGHTS -o OUT.ffp");
     memset(f->bytes + 8, 0xff, 4);
     rc = ff_pack_open(&pack, f->bytes, f->count);
     assert_string_equal(ff_pack_error_text(&pack, rc),
-                        "a pack of version 4294967295, this program reads 8: it needs a newer "
+                        "a pack of version 4294967295, this program reads 9: it needs a newer "
                         "Farfield");
     assert_string_equal(ff_pack_error_text(&pack, FF_ERR_MEMORY), ff_error_text(FF_ERR_MEMORY));
 }

@@ -30,7 +30,7 @@ static int can_be_read(const uint8_t *pack, size_t bytes)
 {
     static const uint8_t magic[] = { 0x89, 0x46, 0x46, 0x50, 0x0D, 0x0A, 0x1A, 0x0A };
     uint8_t zeroed[4092];
-    if (bytes < 4096 || memcmp(pack, magic, 8) || number_at(pack + 8, 4) != 8) return 0;
+    if (bytes < 4096 || memcmp(pack, magic, 8) || number_at(pack + 8, 4) != 9) return 0;
     if (crc(pack, 4092) != number_at(pack + 4092, 4)) return 0;
     memcpy(zeroed, pack, sizeof zeroed);
     memset(zeroed + 76, 0, 4);

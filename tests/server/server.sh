@@ -36,7 +36,7 @@ refused 1 "an empty pack" "empty.ffp" --pack "$work/empty.ffp"
 refused 1 "a truncated pack" "short.ffp" --pack "$work/short.ffp"
 refused 1 "a damaged pack" "flipped.ffp: checksum" --pack "$work/flipped.ffp"
 refused 1 "a foreign file" "hills.r16: not a Farfield" --pack "$work/hills.r16"
-refused 1 "a pack of version 5" "version 5, this program reads 8: bake it again: farfield-bake HEIGHTS" --pack tests/corpus/pack/version-5
+refused 1 "a pack of version 5" "version 5, this program reads 9: bake it again: farfield-bake HEIGHTS" --pack tests/corpus/pack/version-5
 refused 1 "a pack with an unknown part that is needed" "section MARK" --pack tests/corpus/pack/unknown-needed
 refused 2 "an address without a port" "listen" --pack "$work/hills.ffp" --listen 127.0.0.1
 refused 1 "a foreign address" "listen" --pack "$work/hills.ffp" --listen 192.0.2.1:7788
@@ -93,7 +93,7 @@ ask_root() {
     python3 -c '
 import socket, sys
 s = socket.create_connection(("127.0.0.1", int(sys.argv[1])))
-s.sendall(b"\1\x0cFFLD\x0a\0\0\0\0\0\0\0" + b"\7\0" + b"\x80\0")
+s.sendall(b"\1\x0cFFLD\x0b\0\0\0\0\0\0\0" + b"\7\0" + b"\x80\0")
 answer = b""
 while len(answer) < 2 or len(answer) < 2 + answer[1] + 5: # WELCOME, FAILED
     more = s.recv(4096)
@@ -105,7 +105,7 @@ with_server ask_root
 result $? "a damaged record is told to the operator"
 mv "$work/good.ffp" "$work/hills.ffp"
 
-ask_about() { # name and attribution are asked for; a client of version 9 is sent away with the error of versions
+ask_about() { # name and attribution are asked for; a client of version 10 is sent away with the error of versions
     python3 -c '
 import socket, sys
 def hear(said, messages):
@@ -119,9 +119,9 @@ def hear(said, messages):
             heard = heard[2 + heard[1]:]
     return whole
 about = b"\1\5Hills\2\6nobody"
-heard = hear(b"\1\x0cFFLD\x0a\0\0\0\0\0\0\0" + b"\7\0" + b"\x08\1\3", 2)
+heard = hear(b"\1\x0cFFLD\x0b\0\0\0\0\0\0\0" + b"\7\0" + b"\x08\1\3", 2)
 heard[1] == b"\x49" + bytes([len(about)]) + about or sys.exit(repr(heard))
-heard = hear(b"\1\x0cFFLD\x09\0\0\0\0\0\0\0", 1)
+heard = hear(b"\1\x0cFFLD\x0a\0\0\0\0\0\0\0", 1)
 heard[0] == b"\x48\3\0\0\xfb" or sys.exit(repr(heard))
 ' "$port" >"$work/asked" 2>&1
 }

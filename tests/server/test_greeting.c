@@ -95,7 +95,7 @@ static void welcome_comes_after_caps(void **state)
 static void hello_and_caps_may_come_together(void **state)
 {
     static const uint8_t both[] = "\1\x0c"
-                                  "FFLD\x0a\0\0\0\0\0\0\0\7\0";
+                                  "FFLD\x0b\0\0\0\0\0\0\0\7\0";
     (void)state;
     ff_session *session = session_new();
     assert_int_equal(ff_session_receive(session, both, 16, 0), 16);
