@@ -129,11 +129,11 @@ bench-codec: $(patsubst %,$(BUILD)/bin/farfield-%,bake export info train) $(DECO
 	    --decoder $(DECODE_PACK) --plugin $(TCG_COUNT) --peer-decoder $(DECODE_PEER) --peer-libs $(PEERS)/armel $(BENCH_OPTIONS)
 
 # ---- make test-cross: the unit tests that need no graphics library, on 32-bit ARM and on a big-endian machine ----
-CROSS_TESTS := key geo shape codec codec_trained range far message pack fixed predict panorama_rules shade strips texture_map tree tree_pools tree_view watertight link \
+CROSS_TESTS := key geo shape codec codec_trained trained_parts range far message pack fixed predict panorama_rules shade strips texture_map tree tree_pools tree_view watertight link \
                stream client budget soft c3d c3d_dynamic
 CROSS_SRC := $(filter-out common3d/gl%,$(SRC_core)) $(filter-out platform/posix/png.c,$(SRC_platform)) server/session/ff_session.c \
              $(filter-out sim/link/sim_server.c sim/link/link_%,$(foreach d,sim/link sim/judge sim/tape,$(call srcs,$d))) \
-             $(foreach t,client_fixture pack_fixture picture slow_decoder slow_trained slow_far slow_watertight terrain_fixture no_graphics,tests/rig/$t.c)
+             $(foreach t,client_fixture pack_fixture picture slow_decoder slow_tail slow_trained slow_far slow_watertight terrain_fixture trained_grid no_graphics,tests/rig/$t.c)
 CROSS_MAINS := $(foreach t,$(CROSS_TESTS),$(filter %/test_$t.c,$(TEST_MAINS)))
 CROSS_CASES := $(patsubst %,build/s390x/%.tap,$(CROSS_TESTS)) $(patsubst %,build/arm/%.tap,$(CROSS_TESTS))
 # $(call cross_tests,NAME,COMPILER,DEBIAN ARCHITECTURE,TRIPLET,QEMU)

@@ -95,9 +95,9 @@ ff_decoder *ff_decoder_create(const ff_terrain_info *info, void *memory, size_t 
 size_t ff_decoder_bytes_any(const ff_terrain_info *info);
 int ff_decoder_turn(ff_decoder *dec, const ff_terrain_info *info);
 
-/* Have the sides of a refinement bytes of their own in what is carried, and stand their lengths
- * before them, for who leaves some out? */
-enum ff_sides_form { FF_SIDES_NONE, FF_SIDES_BARE, FF_SIDES_MEASURED };
+/* Have the sides of a refinement bits of their own in what is carried, and stand their lengths
+ * before them, for who leaves some out? Or is it all words? */
+enum ff_sides_form { FF_SIDES_NONE, FF_SIDES_BARE, FF_SIDES_MEASURED, FF_SIDES_WORDS };
 
 /* What the first stage makes of a payload. Corner values of a root are absolute. */
 typedef struct ff_residuals {
@@ -118,6 +118,7 @@ typedef struct ff_residuals {
     uint8_t apart;  /* enum ff_sides_form */
     uint16_t count; /* valid entries of value[]; 0 while the payload is carried */
     uint16_t carried_bytes; /* of the payload, in the memory of value[]: FF_NEEDS_PARENT alone */
+    uint16_t head_bits;     /* of what is carried, those that the first stage has read */
     /* caller's array of at least ff_refined_side()^2 entries; quantised residuals */
     int32_t *value;
     /* encoder, a codec of several predictions: caller's array of FF_PAYLOAD_BYTES_MAX, which keeps
@@ -125,6 +126,7 @@ typedef struct ff_residuals {
     uint8_t *body;
     uint16_t body_bytes;
     uint16_t body_half; /* bytes of it when a part of the points was made, or 0 */
+    uint32_t body_bits; /* of the payload that it makes; UINT32_MAX: the rest is not made */
 } ff_residuals;
 FF_STATIC_ASSERT(FF_PAYLOAD_BYTES_MAX <= UINT16_MAX);                     /* body_bytes */
 FF_STATIC_ASSERT(FF_REFINED_HEIGHTS_MAX * sizeof(int32_t) <= UINT16_MAX); /* carried_bytes */
@@ -135,7 +137,7 @@ int ff_decode_refinement(ff_decoder *dec, const uint8_t *payload, size_t bytes, 
 
 /* What prediction works in: as many bytes, aligned for uint16_t, of the caller's. */
 size_t ff_codec_room(const ff_terrain_info *info);
-#define FF_CODEC_ROOM_MAX (3 * (65 + 6) * (65 + 6))
+#define FF_CODEC_ROOM_MAX (3 * (65 + 4) * (65 + 4))
 
 /* Second stage: prediction plus residual times step, clamped to 0..65535 (lossless: modulo 2^16, so
  * that 16 bits hold any residual). `heights` receives ff_node_side()^2 values. FF_OK; with

@@ -64,7 +64,7 @@ typedef struct ff_source_heights {
 } ff_source_heights;
 /* Encoder: residuals and heights by prediction out->way, and what is coded of them. A root's
  * corners are there already. out->body_half not 0: where a part of it takes more bytes than that,
- * the rest is not made, and body_bytes is UINT16_MAX. */
+ * the rest is not made, and body_bits is UINT32_MAX. */
 typedef void ff_make_fn(const ff_terrain_info *info, const uint16_t *parent,
                         const ff_source_heights *source, ff_residuals *out, uint16_t *decoded);
 
@@ -108,9 +108,13 @@ static inline size_t ff_align_up(size_t bytes)
 
 /* 0: the build has left protocol/trained out. */
 extern const uint8_t ff_trained_built;
-/* Codec trained's ff_without_sides. */
+/* Codec trained's ff_without_sides, ff_read_marks and ff_mark_stubs. */
 int ff_trained_without_sides(const ff_terrain_info *info, const uint8_t *payload, size_t bytes,
                              unsigned sides, uint8_t *out);
+int ff_trained_read_marks(const ff_terrain_info *info, int root, const uint8_t *payload,
+                          size_t bytes, ff_residuals *out);
+int ff_trained_mark_stubs(const ff_terrain_info *info, int root, const uint8_t *payload,
+                          size_t bytes, uint8_t stub, uint8_t *out);
 
 /* ---- parts of payloads that codecs share ---- */
 

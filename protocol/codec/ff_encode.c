@@ -66,12 +66,13 @@ static void try_way(const ff_terrain_info *info, const uint16_t *parent,
     other.body_half = (uint16_t)(other.body_half < HALF_TELLS ? 0 : other.body_half + 1);
     if (!parent) make_corners(info, from, value, heights);
     ff_codec_maker(info->codec)(info, parent, from, &other, heights);
-    if (other.body_bytes >= out->body_bytes) return;
+    if (other.body_bits >= out->body_bits) return;
     memcpy(out->value, value, out->count * sizeof *value);
     memcpy(out->body, body, other.body_bytes);
     memcpy(decoded, heights, (size_t)side * side * sizeof *heights);
     out->way = (uint8_t)way;
     out->body_bytes = other.body_bytes;
+    out->body_bits = other.body_bits;
 }
 
 /* Of a codec's predictions the one of the shortest payload; that of leaves where it is right. */
@@ -146,6 +147,8 @@ int ff_read_marks(const ff_terrain_info *info, int root, const uint8_t *payload,
                   ff_residuals *out)
 {
     ff_payload in = { payload, payload + bytes };
+    if (info->codec == FF_CODEC_TRAINED)
+        return ff_trained_read_marks(info, root, payload, bytes, out);
     int form = take_marks(info, root, &in, out);
 
     return form < 0 ? form : FF_OK;
@@ -157,6 +160,8 @@ int ff_mark_stubs(const ff_terrain_info *info, int root, const uint8_t *payload,
     size_t head = ff_codec_head(info->codec), put;
     ff_payload in = { payload, payload + bytes };
     ff_residuals res;
+    if (info->codec == FF_CODEC_TRAINED)
+        return ff_trained_mark_stubs(info, root, payload, bytes, stub, out);
     int form = take_marks(info, root, &in, &res);
 
     if (form < 0) return form;

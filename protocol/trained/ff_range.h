@@ -28,7 +28,14 @@ static inline uint32_t ff_range_byte(ff_range *range)
 static inline void ff_range_read(ff_range *range, const uint8_t *bytes, size_t count)
 {
     *range = (ff_range){ .width = UINT32_MAX, .in = bytes, .left = (int32_t)count };
-    for (unsigned i = 0; i < 4; i++) range->code = range->code << 8 | ff_range_byte(range);
+    if (count < 4) {
+        for (unsigned i = 0; i < 4; i++) range->code = range->code << 8 | ff_range_byte(range);
+        return;
+    }
+    range->code = (uint32_t)bytes[0] << 24 | (uint32_t)bytes[1] << 16 | (uint32_t)bytes[2] << 8 |
+                  bytes[3];
+    range->in += 4;
+    range->left -= 4;
 }
 
 /* `one` of 65536 is how likely the decision is 1. */
@@ -52,15 +59,19 @@ static inline unsigned ff_range_take(ff_range *range, uint32_t one)
 
 static inline int ff_range_is_read(const ff_range *range) { return range->left <= 0; }
 
-/* A stream that others follow ends so many bytes after those that have grown its range: whatever
+/* A stream that others follow takes so many bits beyond those that have grown its range: whatever
  * the next ones are, they do not lead out of it. */
-static inline unsigned ff_range_tail(uint32_t width) { return width >= 2 * FF_RANGE_LEAST ? 1 : 2; }
-/* Where the next one begins, or NULL: the bytes end before. */
-static inline const uint8_t *ff_range_next(const ff_range *range)
+static inline unsigned ff_range_tail(uint32_t width)
 {
-    int32_t ahead = 4 - (int32_t)ff_range_tail(range->width);
-    int32_t back = range->left < 0 ? ahead + range->left : ahead;
-    return back < 0 ? NULL : range->in - back;
+    unsigned bits = 2;
+    FF_ASSERT(width >= FF_RANGE_LEAST);
+    for (; !(width >> 31); width <<= 1) bits++;
+    return bits;
+}
+/* How many it took, of `count` bytes that were given. */
+static inline uint32_t ff_range_bits(const ff_range *range, size_t count)
+{
+    return 8 * (uint32_t)((int32_t)count - range->left - 4) + ff_range_tail(range->width);
 }
 
 /* ---- encoder ---- */
@@ -92,7 +103,9 @@ static inline void ff_range_put(ff_range_writer *to, uint32_t one, unsigned bit)
 }
 /* Bytes in all, or -1: they did not fit. */
 int ff_range_end(ff_range_writer *to);
-/* The same of a stream that others follow. */
+/* The same in bits, the fewest. */
+int ff_range_end_bits(ff_range_writer *to);
+/* Bits of a stream that others follow. */
 int ff_range_end_before(ff_range_writer *to);
 
 #endif

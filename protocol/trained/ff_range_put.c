@@ -35,18 +35,18 @@ void ff_range_shift(ff_range_writer *to)
 
 int ff_range_end_before(ff_range_writer *to)
 {
-    unsigned spare = 4 - ff_range_tail(to->width);
-    uint64_t rest = (UINT64_C(1) << 8 * spare) - 1;
+    unsigned bits = ff_range_tail(to->width);
+    uint64_t rest = (UINT64_C(1) << (32 - bits)) - 1;
     to->low = (to->low + rest) & ~rest;
     for (unsigned i = 0; i < 5; i++) ff_range_shift(to);
     FF_ASSERT(to->is_full || to->out - to->begin >= 4);
-    return to->is_full ? -1 : (int)(to->out - to->begin) - (int)spare;
+    return to->is_full ? -1 : 8 * ((int)(to->out - to->begin) - 4) + (int)bits;
 }
 
-/* Of all numbers in the range that with the most zeros at its end. */
-int ff_range_end(ff_range_writer *to)
+/* Of all numbers in the range that with the most zeros at its end, told in steps of bits. Bytes. */
+static int end_in(ff_range_writer *to, unsigned step)
 {
-    for (unsigned bits = 32;; bits -= 8) {
+    for (unsigned bits = 32;; bits -= step) {
         uint64_t rest = (UINT64_C(1) << bits) - 1, value = (to->low + rest) & ~rest;
         if (value >= to->low + to->width) continue;
         to->low = value;
@@ -55,6 +55,15 @@ int ff_range_end(ff_range_writer *to)
     for (unsigned i = 0; i < 5; i++) ff_range_shift(to);
     while (to->out > to->begin && !to->out[-1]) to->out--;
     return to->is_full ? -1 : (int)(to->out - to->begin);
+}
+
+int ff_range_end(ff_range_writer *to) { return end_in(to, 8); }
+
+int ff_range_end_bits(ff_range_writer *to)
+{
+    int bytes = end_in(to, 1), bits = 8 * bytes;
+    for (unsigned last = bytes > 0 ? to->out[-1] : 1; !(last & 1u); last >>= 1) bits--;
+    return bytes < 0 ? -1 : bits;
 }
 
 #else

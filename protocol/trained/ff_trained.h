@@ -12,6 +12,7 @@
 #define FF_TRAINED_H
 
 #include "../codec/ff_codec_local.h"
+#include "ff_tail.h"
 
 enum ff_trained_class { FF_POINT_R, FF_POINT_N, FF_POINT_C, FF_POINT_H, FF_POINT_V, FF_POINTS };
 
@@ -71,7 +72,7 @@ typedef struct ff_expected {
     uint32_t side, step;    /* the grid's points of a row, of which every `step` are in the copy */
 } ff_expected;
 
-#define FF_TRAINED_MARGIN 3 /* points beyond a side that are looked at */
+#define FF_TRAINED_MARGIN 2 /* points beyond a side that are looked at */
 /* The same whatever the nodes' size: places around a point lie at known distances. */
 #define FF_TRAINED_PITCH ((2 << FF_NODE_LOG2_MAX) + 1 + 2 * FF_TRAINED_MARGIN)
 
@@ -97,50 +98,58 @@ typedef struct ff_points {
 /* As ff_predict_fn, by weights of number `set`. `room`: ff_codec_room() bytes. */
 void ff_expect(const ff_trained *by, unsigned set, const ff_terrain_info *info, ff_cells cells,
                const uint16_t *parent, uint16_t *grid, void *room, const ff_points *points);
-/* Encoder: the closed loop and a body in one. Of a grid, with its corners where it is a root's, the
- * residuals of all other points of `source`, and what is decoded. `apart`, of a refinement: sides
- * as streams of their own. `half`, or NULL: receives the bytes when the middles of the last
- * doubling begin; if it was not 0, and they are more, the rest is given up. Bytes of the body,
- * without corners; FF_TRAINED_BODY_MAX, of which `out` has room: it takes no fewer, or a side more
- * than its length can tell; SIZE_MAX: given up. */
-size_t ff_trained_put(const ff_trained *by, unsigned set, const ff_terrain_info *info,
-                      ff_cells cells, const uint16_t *parent, const ff_source_heights *source,
-                      int32_t *residual, uint16_t *decoded, int apart, uint8_t *out,
-                      uint16_t *half);
-
 /* ---- payloads (SPEC.md, "Payload, codec 3") ---- */
 
-#define FF_TRAINED_WORDS       0x01u
-#define FF_TRAINED_SET_SHIFT   1
-#define FF_TRAINED_SET         (1u << FF_TRAINED_SET_SHIFT)
-#define FF_TRAINED_SIDES_SHIFT 4 /* bit s: side s is left out */
-#define FF_TRAINED_SIDES       0xf0u
-/* sides have streams of their own, and their lengths are left out; a refinement is one stream */
-#define FF_TRAINED_ALL (FF_TRAINED_WORDS | FF_TRAINED_SIDES)
-#define FF_TRAINED_ONE (FF_TRAINED_WORDS | 1u << FF_TRAINED_SIDES_SHIFT)
+#define FF_TRAINED_SIDES 15u /* bit s: side s is left out */
 
-#define FF_TRAINED_BODY_MAX (2 * FF_REFINED_HEIGHTS_MAX)
-FF_STATIC_ASSERT(FF_TRAINED_BODY_MAX < FF_PAYLOAD_BYTES_MAX);
-
-/* The lengths of four sides take so many bytes; each so many bits. */
-static inline unsigned ff_trained_length_bits(const ff_terrain_info *info)
+/* The most bits of a side's stream. */
+static inline uint32_t ff_trained_side_bits(const ff_terrain_info *info)
+{
+    return 16u << info->node_log2;
+}
+/* Of the number that tells how many it has. */
+static inline unsigned ff_trained_length_order(const ff_terrain_info *info)
 {
     return info->node_log2 + 1u;
 }
-static inline size_t ff_trained_lengths(const ff_terrain_info *info)
+
+/* The head: what a payload tells of its children, its set as `way`, its form as `apart`, and its
+ * sides. FF_OK, or FF_ERR_TRUNCATED, FF_ERR_FORMAT, FF_ERR_RANGE. */
+int ff_trained_take_head(const ff_terrain_info *info, int root, ff_tail *tail, ff_residuals *out);
+void ff_trained_put_head(const ff_terrain_info *info, int root, const ff_residuals *res,
+                         ff_bits *to);
+
+/* Passes lengths, and the sides they are of. FF_OK, FF_ERR_TRUNCATED, FF_ERR_FORMAT. */
+int ff_trained_pass_sides(const ff_terrain_info *info, ff_tail *tail);
+
+/* Bytes of a stream; a side's, that of all else. */
+#define FF_TRAINED_SIDE_BYTES (2 << FF_NODE_LOG2_MAX)
+#define FF_TRAINED_BODY_MAX   (2 * FF_REFINED_HEIGHTS_MAX)
+FF_STATIC_ASSERT(FF_TRAINED_BODY_MAX < FF_PAYLOAD_BYTES_MAX);
+
+/* Streams of sides, each from its first byte on. */
+typedef struct ff_trained_sides {
+    uint32_t bits[FF_SIDE_COUNT];
+    uint8_t bytes[FF_SIDE_COUNT][FF_TRAINED_SIDE_BYTES + 4]; /* a writer goes a little beyond */
+} ff_trained_sides;
+
+static inline uint32_t ff_trained_bits_of(const ff_trained_sides *sides)
 {
-    return (4 * (size_t)ff_trained_length_bits(info) + 7) / 8;
+    return sides->bits[0] + sides->bits[1] + sides->bits[2] + sides->bits[3];
 }
-/* The first one's lie lowest. */
-static inline void ff_trained_lengths_of(const ff_terrain_info *info, const uint8_t *bytes,
-                                         uint8_t length[4])
-{
-    uint32_t all = 0, width = ff_trained_length_bits(info);
-    FF_ASSERT(4 * width <= 32 && 8 * ff_trained_lengths(info) >= 4 * width);
-    for (size_t i = 0; i < ff_trained_lengths(info); i++) all |= (uint32_t)bytes[i] << 8 * i;
-    for (unsigned i = 0; i < 4; i++, all >>= width)
-        length[i] = (uint8_t)(all & ((1u << width) - 1));
-}
+
+/* Encoder: the closed loop and a body in one. Of a grid, with its corners where it is a root's, the
+ * residuals of all other points of `source`, and what is decoded. `sides`, of a refinement, or
+ * NULL: receives those as streams of their own. `half`, or NULL: receives the bytes when the
+ * middles of the last doubling begin; if it was not 0, and they are more, the rest is given up.
+ * Bits of the stream at `out`, which has room for FF_TRAINED_BODY_MAX bytes. */
+#define FF_TRAINED_GIVEN_UP UINT32_MAX
+#define FF_TRAINED_FULL     (8u * FF_TRAINED_BODY_MAX) /* it takes no fewer, or a side too many */
+uint32_t ff_trained_put(const ff_trained *by, unsigned set, const ff_terrain_info *info,
+                        ff_cells cells, const uint16_t *parent, const ff_source_heights *source,
+                        int32_t *residual, uint16_t *decoded, ff_trained_sides *sides, uint8_t *out,
+                        uint16_t *half);
+
 /* For who trains: the known heights that a point's mean comes from, and four times that which they
  * are told from; the measures that its distance comes from. How many there are. */
 uint32_t ff_trained_known(const ff_expected *p, int32_t known[FF_TRAINED_TAPS], int32_t *base_q2);

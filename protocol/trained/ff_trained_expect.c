@@ -418,8 +418,8 @@ static void fill_margin(const walk *w)
     size_t count = (size_t)w->last[0] + 1 + 2 * MARGIN;
     for (int32_t row = 0; row <= w->last[1]; row++) {
         uint16_t *first = w->height + row * PITCH, *last = first + w->last[0];
-        first[-1] = first[-2] = first[-3] = *first;
-        last[1] = last[2] = last[3] = *last;
+        first[-1] = first[-2] = *first;
+        last[1] = last[2] = *last;
     }
     for (int32_t i = 1; i <= MARGIN; i++) {
         uint16_t *first = w->height - MARGIN, *last = first + w->last[1] * PITCH;
@@ -445,9 +445,8 @@ static void fill_error_margin(const walk *w)
 
 static void open_copy(const walk *w)
 {
-    size_t rows = (size_t)w->last[1] + 1 + 2 * MARGIN;
     FF_ASSERT(w->last[0] >= 2 && w->last[1] >= 2);
-    memset(w->error - MARGIN * (PITCH + 1), 0, rows * PITCH);
+    memset(w->error - (PITCH + 1), 0, (size_t)(w->last[1] + 2) * PITCH); /* a margin of one */
     for (int32_t row = 0; row <= w->last[1]; row += 2)
         for (int32_t column = 0; column <= w->last[0]; column += 2)
             w->height[row * PITCH + column] =
@@ -492,7 +491,7 @@ static void make_doubling(walk *w, uint32_t step, ff_cells ground)
     ff_repeat_last(w->grid, w->point.side, step, ground);
 }
 
-FF_STATIC_ASSERT(MARGIN == 3); /* fill_margin */
+FF_STATIC_ASSERT(MARGIN == 2); /* fill_margin, fill_error_margin */
 FF_STATIC_ASSERT(FF_CODEC_ROOM_MAX == 3 * PITCH * PITCH);
 
 static size_t copied(uint32_t side) { return (side + 2 * MARGIN) * (size_t)PITCH; }

@@ -26,6 +26,20 @@ int ff_trained_without_sides(const ff_terrain_info *info, const uint8_t *payload
     return 0;
 }
 
+int ff_trained_read_marks(const ff_terrain_info *info, int root, const uint8_t *payload,
+                          size_t bytes, ff_residuals *out)
+{
+    (void)info, (void)root, (void)payload, (void)bytes, (void)out;
+    return FF_ERR_UNSUPPORTED;
+}
+
+int ff_trained_mark_stubs(const ff_terrain_info *info, int root, const uint8_t *payload,
+                          size_t bytes, uint8_t stub, uint8_t *out)
+{
+    (void)info, (void)root, (void)payload, (void)bytes, (void)stub, (void)out;
+    return FF_ERR_UNSUPPORTED;
+}
+
 int ff_trained_reconstruct(const ff_terrain_info *info, const uint16_t *parent,
                            const ff_residuals *res, uint16_t *heights, void *room)
 {

@@ -14,12 +14,11 @@ typedef struct putting {
     const ff_source_heights *source;
     int32_t *next, quantum;
     ff_range_writer range;
-    uint8_t *out, *end;   /* of what is written, and of the room for it */
-    uint32_t lengths;     /* of sides, as the payload has them */
-    unsigned length_bits; /* of one of them */
-    unsigned side;        /* whose stream is written, FF_SIDE_COUNT: none's */
+    ff_trained_sides *sides; /* NULL: there is one stream */
+    unsigned side;           /* whose stream is written, FF_SIDE_COUNT: none's */
+    uint32_t side_bits;      /* at most */
+    uint8_t *out;
     int is_full, is_given_up;
-    const uint8_t *begin;
     size_t half; /* as ff_trained_put says */
 } putting;
 
@@ -52,127 +51,178 @@ static uint16_t put_height(void *context, const ff_expected *p)
     return height;
 }
 
-static void begin_stream(putting *to)
-{
-    ff_range_write(&to->range, to->out, (size_t)(to->end - to->out));
-}
-
 static void end_side(putting *to)
 {
-    int bytes = ff_range_end_before(&to->range);
+    int bits = ff_range_end_before(&to->range);
     FF_ASSERT(to->side < FF_SIDE_COUNT);
-    to->is_full |= bytes < 0 || bytes >> to->length_bits;
-    if (to->is_full) return;
-    to->out += bytes;
-    to->lengths |= (uint32_t)bytes << to->side * to->length_bits;
+    to->is_full |= bits < 0 || (uint32_t)bits > to->side_bits;
+    to->sides->bits[to->side] = to->is_full ? 0 : (uint32_t)bits;
 }
 
 static int put_side(void *context, unsigned side, uint32_t points)
 {
     putting *to = context;
-    FF_ASSERT(side <= FF_SIDE_COUNT && to->out <= to->end);
+    FF_ASSERT(side <= FF_SIDE_COUNT);
     if (to->side < FF_SIDE_COUNT) end_side(to);
     to->side = points ? side : FF_SIDE_COUNT;
-    begin_stream(to);
+    if (points)
+        ff_range_write(&to->range, to->sides->bytes[side], sizeof to->sides->bytes[side]);
+    else
+        ff_range_write(&to->range, to->out, FF_TRAINED_BODY_MAX);
     return 0;
 }
 
 static int go_on(void *context)
 {
     putting *to = context;
-    size_t half = (size_t)(to->range.out - to->begin), most = to->half;
+    size_t half = (size_t)(to->range.out - to->out), most = to->half;
+    if (to->sides) half += ff_trained_bits_of(to->sides) / 8;
     to->half = half;
     to->is_given_up = most && half > most;
     return !to->is_given_up;
 }
 
-size_t ff_trained_put(const ff_trained *by, unsigned set, const ff_terrain_info *info,
-                      ff_cells cells, const uint16_t *parent, const ff_source_heights *source,
-                      int32_t *residual, uint16_t *decoded, int apart, uint8_t *out, uint16_t *half)
+uint32_t ff_trained_put(const ff_trained *by, unsigned set, const ff_terrain_info *info,
+                        ff_cells cells, const uint16_t *parent, const ff_source_heights *source,
+                        int32_t *residual, uint16_t *decoded, ff_trained_sides *sides, uint8_t *out,
+                        uint16_t *half)
 {
     uint16_t room[FF_CODEC_ROOM_MAX / 2 + 1];
-    size_t lengths = apart ? ff_trained_lengths(info) : 0;
     putting to = { .by = by,
                    .source = source,
                    .next = residual,
                    .quantum = ff_quantum(info, !parent),
-                   .out = out + lengths,
-                   .end = out + FF_TRAINED_BODY_MAX,
-                   .length_bits = ff_trained_length_bits(info),
+                   .sides = sides,
                    .side = FF_SIDE_COUNT,
-                   .begin = out,
+                   .side_bits = ff_trained_side_bits(info),
+                   .out = out,
                    .half = half ? *half : 0 };
-    const ff_points points = { put_height, apart ? put_side : NULL, half ? go_on : NULL, &to };
+    const ff_points points = { put_height, sides ? put_side : NULL, half ? go_on : NULL, &to };
 
-    begin_stream(&to);
+    if (sides) memset(sides->bits, 0, sizeof sides->bits);
+    ff_range_write(&to.range, out, FF_TRAINED_BODY_MAX);
     ff_expect(by, set, info, cells, parent, decoded, room, &points);
     if (half) *half = (uint16_t)to.half;
-    if (to.is_given_up) return SIZE_MAX;
-    int bytes = ff_range_end(&to.range);
-    for (size_t i = 0; i < lengths; i++) out[i] = (uint8_t)(to.lengths >> 8 * i);
-    return to.is_full || bytes < 0 ? FF_TRAINED_BODY_MAX : (size_t)(to.out - out) + (size_t)bytes;
+    if (to.is_given_up) return FF_TRAINED_GIVEN_UP;
+    int bits = ff_range_end_bits(&to.range);
+    return to.is_full || bits < 0 ? FF_TRAINED_FULL : (uint32_t)bits;
 }
 
-static size_t bytes_of_sides(const ff_terrain_info *info, const uint8_t *body)
-{
-    uint8_t length[FF_SIDE_COUNT];
-    ff_trained_lengths_of(info, body, length);
-    return (size_t)length[0] + length[1] + length[2] + length[3];
-}
+/* What a payload is put together from, as it is kept in ff_residuals.body; the stream, or words,
+ * lie behind it. */
+typedef struct body {
+    enum ff_sides_form form;
+    uint32_t stream_bits;
+    ff_trained_sides sides;
+} body;
+FF_STATIC_ASSERT(sizeof(body) + FF_TRAINED_BODY_MAX <= FF_PAYLOAD_BYTES_MAX);
 
-/* Sides apart cost a byte or two each, but who has a side already need not take it: of four, more
- * than one in a flight. So one stream is looked at only where sides are short. */
+/* A side apart costs a bit or two, but who has a side already need not take it: of four, more than
+ * one in a flight. So one stream is looked at only where sides are short. */
 #define SIDES_SHARE 3
-#define SIDES_LONG  (SIDES_SHARE * 2 * FF_SIDE_COUNT)
+#define SIDES_LONG  (SIDES_SHARE * 3 * FF_SIDE_COUNT) /* bits */
+#define SIDES_TOLD  4                                 /* bits that tell which are left out */
+#define ONE_TOLD    6                                 /* those that tell that there are none */
 
 /* A body of sides apart, or of one stream where that pays more, or words. */
 void ff_trained_make(const ff_terrain_info *info, const uint16_t *parent,
                      const ff_source_heights *source, ff_residuals *out, uint16_t *decoded)
 {
-    const uint32_t corners = parent ? 0 : FF_CORNERS;
-    const size_t words = 2 * (size_t)(out->count - corners);
+    const uint32_t corners = parent ? 0 : FF_CORNERS, words = 16 * (out->count - corners);
     const ff_trained *by = &ff_trained_tables;
-    uint8_t one[FF_TRAINED_BODY_MAX], *body = out->body + 1;
+    uint8_t one[FF_TRAINED_BODY_MAX], *stream = out->body + sizeof(body);
     int32_t *residual = out->value + corners;
-    size_t bytes = ff_trained_put(by, out->way, info, out->cells, parent, source, residual, decoded,
-                                  parent != NULL, body, &out->body_half);
-    if (bytes == SIZE_MAX) {
-        out->body_bytes = UINT16_MAX;
-        return;
-    }
-    size_t sides = parent && bytes < words ? bytes_of_sides(info, body) : 0;
+    body b = { .form = parent ? FF_SIDES_MEASURED : FF_SIDES_NONE };
+    b.stream_bits = ff_trained_put(by, out->way, info, out->cells, parent, source, residual,
+                                   decoded, parent ? &b.sides : NULL, stream, &out->body_half);
+    out->body_bits = b.stream_bits;
+    if (b.stream_bits == FF_TRAINED_GIVEN_UP) return;
+    uint32_t sides = parent ? ff_trained_bits_of(&b.sides) : 0;
 
-    out->body[0] = 0;
-    if (parent && sides < SIDES_LONG) {
-        size_t in_one = ff_trained_put(by, out->way, info, out->cells, parent, source, residual,
-                                       decoded, 0, one, NULL);
-        if (bytes >= words || bytes > in_one + ff_trained_lengths(info) + sides / SIDES_SHARE) {
-            out->body[0] = FF_TRAINED_ONE;
-            bytes = in_one;
-            if (in_one < words) memcpy(body, one, in_one);
+    if (parent) out->body_bits += sides + SIDES_TOLD;
+    if (parent && (sides < SIDES_LONG || out->body_bits >= words)) {
+        uint32_t bits = ff_trained_put(by, out->way, info, out->cells, parent, source, residual,
+                                       decoded, NULL, one, NULL);
+        if (out->body_bits >= words || out->body_bits > bits + ONE_TOLD + sides / SIDES_SHARE) {
+            b.form = FF_SIDES_NONE;
+            b.stream_bits = bits;
+            out->body_bits = bits + ONE_TOLD;
+            memcpy(stream, one, (bits + 7) / 8);
         }
     }
-    if (bytes >= words) {
-        out->body[0] = FF_TRAINED_WORDS;
-        bytes = ff_put_words(residual, out->count - corners, body);
+    if (out->body_bits >= words && words) {
+        b.form = FF_SIDES_WORDS;
+        out->body_bits = b.stream_bits = words;
+        ff_put_words(residual, out->count - corners, stream);
     }
-    out->body_bytes = (uint16_t)(1 + bytes);
+    memcpy(out->body, &b, sizeof b);
+    out->body_bytes = (uint16_t)(sizeof b + (b.stream_bits + 7) / 8);
+}
+
+static void put_sides(const ff_terrain_info *info, const ff_trained_sides *sides, ff_bits *to)
+{
+    for (unsigned side = 0; side < FF_SIDE_COUNT; side++)
+        ff_bits_number(to, sides->bits[side], ff_trained_length_order(info));
+    for (unsigned side = 0; side < FF_SIDE_COUNT; side++)
+        for (uint32_t bit = 0; bit < sides->bits[side]; bit++)
+            ff_bits_put(to, sides->bytes[side][bit / 8] >> (7 - bit % 8), 1);
 }
 
 size_t ff_trained_encode(const ff_terrain_info *info, const uint16_t *parent,
                          const uint16_t *decoded, const ff_contents *contents,
                          const ff_residuals *res, uint8_t *out)
 {
-    enum ff_errors_form form = ff_errors_form_of(res, contents->errors);
-    size_t bytes = 1;
+    ff_residuals head = *res;
+    ff_bits tail = { 0 };
+    body b;
 
-    (void)info, (void)parent, (void)decoded;
-    out[0] = (uint8_t)(res->body[0] | (unsigned)form << FF_HEAD_ERRORS_SHIFT |
-                       (unsigned)res->way << FF_TRAINED_SET_SHIFT);
-    bytes += ff_put_errors(res, form, contents->errors, out + bytes);
-    bytes += ff_put_words(res->value, contents->corners, out + bytes);
-    memcpy(out + bytes, res->body + 1, res->body_bytes - 1u);
-    return bytes + res->body_bytes - 1;
+    (void)parent, (void)decoded;
+    memcpy(&b, res->body, sizeof b);
+    head.apart = (uint8_t)b.form;
+    head.sides = 0;
+    ff_trained_put_head(info, contents->corners > 0, &head, &tail);
+    for (uint32_t i = 0; i < contents->corners; i++)
+        ff_bits_put(&tail, (uint32_t)res->value[i], 16);
+    if (b.form == FF_SIDES_MEASURED) put_sides(info, &b.sides, &tail);
+    memcpy(out, res->body + sizeof b, (b.stream_bits + 7) / 8);
+    return ff_bits_join(&tail, out, b.stream_bits);
+}
+
+/* ---- marks of payloads that are there ---- */
+
+int ff_trained_read_marks(const ff_terrain_info *info, int root, const uint8_t *payload,
+                          size_t bytes, ff_residuals *out)
+{
+    ff_tail tail = { payload, (uint32_t)bytes, 0 };
+    return ff_trained_take_head(info, root, &tail, out);
+}
+
+int ff_trained_mark_stubs(const ff_terrain_info *info, int root, const uint8_t *payload,
+                          size_t bytes, uint8_t stub, uint8_t *out)
+{
+    ff_residuals head = { 0 };
+    ff_tail tail = { payload, (uint32_t)bytes, 0 };
+    ff_bits bits = { 0 };
+    uint8_t last;
+    int rc = ff_trained_take_head(info, root, &tail, &head);
+    if (rc != FF_OK) return rc;
+    if (head.apart == FF_SIDES_BARE) return FF_ERR_FORMAT; /* no pack has it */
+    head.stub = stub;
+    if (head.stub >> (root ? 1 : 4) || head.stub & head.leaf) return FF_ERR_RANGE;
+    ff_trained_put_head(info, root, &head, &bits);
+    ff_tail rest = tail;
+    for (unsigned i = 0; i < FF_CORNERS && root; i++) rest.at += 16;
+    if (head.apart == FF_SIDES_MEASURED) rc = ff_trained_pass_sides(info, &rest);
+    if (rc == FF_OK && ff_tail_is_short(&rest)) rc = FF_ERR_TRUNCATED;
+    if (rc != FF_OK) return rc;
+    uint32_t stream = ff_tail_before(&rest, &last);
+    if (stream + sizeof bits.bytes > FF_PAYLOAD_BYTES_MAX) return FF_ERR_FORMAT;
+    uint32_t stream_bits = head.apart == FF_SIDES_WORDS ? 8 * (uint32_t)(bytes - (rest.at + 7) / 8)
+                                                        : ff_stream_bits(payload, stream, last);
+    ff_bits_copy(&bits, &tail, rest.at - tail.at);
+    memcpy(out, payload, stream);
+    if (stream > 0) out[stream - 1] = last;
+    return (int)ff_bits_join(&bits, out, stream_bits);
 }
 
 #else

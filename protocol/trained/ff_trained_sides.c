@@ -1,62 +1,56 @@
-/* Payloads of codec trained without some of their sides: stored bytes put together anew. */
-#include "../codec/ff_body.h"
+/* Payloads of codec trained without some of their sides: stored bits put together anew. */
 #include "ff_trained.h"
 
 #include <string.h>
 
-/* What stands behind the head: error codes and marks; then lengths, sides and the rest. */
-typedef struct parts {
-    const uint8_t *errors, *sides;
-    uint8_t length[FF_SIDE_COUNT];
-    ff_payload rest;
-} parts;
-
-static int take_parts(const ff_terrain_info *info, ff_payload in, parts *out)
+/* Numbers of bits, and the sides that have so many. */
+static int take_lengths(const ff_terrain_info *info, ff_tail *tail, uint32_t length[FF_SIDE_COUNT],
+                        uint32_t *sum)
 {
-    ff_residuals marks;
-    FF_ASSERT(ff_payload_left(&in) >= 1);
-    int rc, form = (*in.at++ & FF_HEAD_ERRORS) >> FF_HEAD_ERRORS_SHIFT;
-    size_t lengths = ff_trained_lengths(info);
-    out->errors = in.at;
-    rc = ff_take_errors(&in, (unsigned)form, 4, &marks);
-    if (rc != FF_OK) return rc;
-    if (ff_payload_left(&in) < lengths) return FF_ERR_TRUNCATED;
-    ff_trained_lengths_of(info, in.at, out->length);
-    in.at += lengths;
-    out->sides = in.at;
+    *sum = 0;
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
-        if (ff_payload_left(&in) < out->length[side]) return FF_ERR_TRUNCATED;
-        in.at += out->length[side];
+        length[side] = ff_tail_number(tail, ff_trained_length_order(info));
+        if (length[side] > ff_trained_side_bits(info)) return FF_ERR_FORMAT;
+        *sum += length[side];
     }
-    out->rest = in;
-    return FF_OK;
+    return tail->at + *sum > 8 * tail->count ? FF_ERR_TRUNCATED : FF_OK;
 }
 
-static uint8_t *put(uint8_t *to, const uint8_t *bytes, size_t count)
+int ff_trained_pass_sides(const ff_terrain_info *info, ff_tail *tail)
 {
-    FF_ASSERT(count <= FF_PAYLOAD_BYTES_MAX);
-    if (count) memcpy(to, bytes, count);
-    return to + count;
+    uint32_t length[FF_SIDE_COUNT], sum;
+    int rc = take_lengths(info, tail, length, &sum);
+    if (rc == FF_OK) tail->at += sum;
+    return rc;
 }
 
 int ff_trained_without_sides(const ff_terrain_info *info, const uint8_t *payload, size_t bytes,
                              unsigned sides, uint8_t *out)
 {
-    parts p;
-    uint8_t *to = out + 1;
+    ff_residuals head = { 0 };
+    ff_tail tail = { payload, (uint32_t)bytes, 0 };
+    ff_bits bits = { 0 };
+    uint32_t length[FF_SIDE_COUNT], sum;
+    uint8_t last;
     FF_ASSERT(sides >> FF_SIDE_COUNT == 0);
     if (bytes < 1) return FF_ERR_TRUNCATED;
     if (bytes > FF_PAYLOAD_BYTES_MAX) return FF_ERR_FORMAT;
-    if (payload[0] & (FF_TRAINED_WORDS | FF_TRAINED_SIDES)) return 0;
-    int rc = take_parts(info, (ff_payload){ payload, payload + bytes }, &p);
+    int rc = ff_trained_take_head(info, 0, &tail, &head);
     if (rc != FF_OK) return rc;
-    out[0] = (uint8_t)(payload[0] | (sides ? sides << FF_TRAINED_SIDES_SHIFT : FF_TRAINED_ALL));
-    to = put(to, p.errors, (size_t)(p.sides - p.errors) - ff_trained_lengths(info));
+    if (head.apart != FF_SIDES_MEASURED) return 0;
+    rc = take_lengths(info, &tail, length, &sum);
+    if (rc != FF_OK) return rc;
+    head.apart = FF_SIDES_BARE;
+    head.sides = (uint8_t)sides;
+    ff_trained_put_head(info, 0, &head, &bits);
     for (unsigned side = 0; side < FF_SIDE_COUNT; side++) {
-        if (!(sides >> side & 1u)) to = put(to, p.sides, p.length[side]);
-        p.sides += p.length[side];
+        if (sides >> side & 1u)
+            tail.at += length[side];
+        else
+            ff_bits_copy(&bits, &tail, length[side]);
     }
-    to = put(to, p.rest.at, ff_payload_left(&p.rest));
-    FF_ASSERT((size_t)(to - out) + ff_trained_lengths(info) <= bytes);
-    return (int)(to - out);
+    uint32_t stream = ff_tail_before(&tail, &last);
+    memcpy(out, payload, stream);
+    if (stream > 0) out[stream - 1] = last;
+    return (int)ff_bits_join(&bits, out, ff_stream_bits(payload, stream, last));
 }

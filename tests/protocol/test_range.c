@@ -156,12 +156,65 @@ static void nothing_is_written_beyond_the_limit(void **state)
     }
 }
 
+static ff_range_writer written(void)
+{
+    ff_range_writer to;
+    memset(stream, 0, 400);
+    ff_range_write(&to, stream, BYTES_MAX);
+    for (uint32_t i = 0; i < d.count; i++) ff_range_put(&to, d.one[i], d.bit[i]);
+    return to;
+}
+
+/* Other bits from bit `from` on. */
+static void replace_after(int from, int bytes, uint32_t by)
+{
+    for (int bit = from; bit < 8 * bytes; bit++) {
+        uint8_t mask = (uint8_t)(128 >> bit % 8);
+        stream[bit / 8] = (uint8_t)(stream[bit / 8] & ~mask);
+        if (by == 2 ? random_below(2) : by) stream[bit / 8] |= mask;
+    }
+}
+
+/* A stream that others follow says the same whatever these are, and takes two to three bits more
+ * than a last one does, which ends in a bit 1. */
+static void streams_end_within_a_byte(void **state)
+{
+    uint32_t more = 0;
+    (void)state;
+    for (int run = 0; run < 2000; run++) {
+        ff_range range;
+        int whole;
+        d.count = 0;
+        for (int i = run % 60; i > 0; i--) add_random();
+        ff_range_writer to = written();
+        int bits = ff_range_end_before(&to), bytes = (bits + 7) / 8 + 8;
+        for (uint32_t by = 0; by < 4; by++) {
+            replace_after(bits, bytes, by < 2 ? by : 2);
+            assert_true(reads_back(stream, (size_t)bytes, &whole));
+            ff_range_read(&range, stream, (size_t)bytes);
+            for (uint32_t i = 0; i < d.count; i++) ff_range_take(&range, d.one[i]);
+            assert_int_equal(ff_range_bits(&range, (size_t)bytes), bits);
+        }
+        to = written();
+        int last = ff_range_end_bits(&to);
+        assert_true(last <= bits && reads_back(stream, (size_t)(last + 7) / 8, &whole));
+        assert_true(last == 0 || stream[(last - 1) / 8] >> (7 - (last - 1) % 8) & 1);
+        replace_after(last, (last + 7) / 8, 1);
+        more += (uint32_t)(bits - last);
+        if (last == 0) continue;
+        replace_after(last - 1, (last + 7) / 8, 0); /* without that bit it says something else */
+        assert_false(reads_back(stream, (size_t)(last + 7) / 8, &whole));
+    }
+    assert_in_range(more, 2 * 2000, 3 * 2000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(decisions_of_every_probability_come_back),
         cmocka_unit_test(decisions_cost_what_they_tell),
         cmocka_unit_test(streams_end_as_soon_as_they_can),
+        cmocka_unit_test(streams_end_within_a_byte),
         cmocka_unit_test(bytes_too_many_are_noticed),
         cmocka_unit_test(nothing_is_written_beyond_the_limit),
     };

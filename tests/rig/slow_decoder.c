@@ -272,21 +272,6 @@ static int residuals(int codec, int root, const uint8_t *at, long left, long *re
     }
 }
 
-static int trained(const ff_terrain_info *info, int columns, int rows, const uint16_t *parent,
-                   const uint8_t *at, long left, uint16_t *heights)
-{
-    long corner[4], before = 0;
-    int marks;
-
-    if (left < 1) return -1;
-    marks = front(!parent, at, left, corner, &before);
-    if (marks < 0) return -1;
-    return slow_trained(info, columns, rows, parent, corner, at[0], at + before, left - before,
-                        heights)
-               ? -1
-               : marks;
-}
-
 int slow_decode(const ff_terrain_info *info, const uint16_t *parent, const uint8_t *payload,
                 size_t bytes, uint16_t *heights)
 {
@@ -303,7 +288,7 @@ int slow_decode_part(const ff_terrain_info *info, int columns, int rows, const u
     int node = 1 << info->node_log2, count = (node + 1) * (node + 1), values = 4, marks;
 
     if (info->codec == 3)
-        return trained(info, columns, rows, parent, payload, (long)bytes, heights);
+        return slow_trained(info, columns, rows, parent, payload, (long)bytes, heights);
     f.last = parent ? 2 * node : node;
     f.maximum_error = info->max_error;
     f.residual = residual;

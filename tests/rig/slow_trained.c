@@ -1,5 +1,7 @@
 #include "slow_trained.h"
 
+#include "slow_tail.h"
+
 #include "../../protocol/trained/ff_trained.h"
 
 #include <stdlib.h>
@@ -15,19 +17,19 @@ typedef struct doubling {
     int cells;                                                   /* along a side */
     int last_x, last_y;                                          /* E and F */
     int repeated_x, repeated_y; /* the odd column, the odd row that are not told, or -1 */
-    int64_t told;               /* residuals up to now */
     int set;                    /* of weights */
     int left_out;               /* sides */
     const uint16_t *known;      /* heights of these */
 } doubling;
 
 typedef struct stream {
-    int plain;
-    const uint8_t *bytes;
+    int words;
+    const uint8_t *bytes; /* a copy of the stream's bits, shifted together */
     int64_t count, taken;
     uint64_t width, code;
     int wrong;
-    const uint8_t *lengths; /* of sides, or NULL */
+    slow_payload *of; /* sides are read from its tail; NULL: there are none */
+    int64_t *length;  /* of sides, or NULL */
 } stream;
 
 /* A point, and which way its surroundings count. */
@@ -232,13 +234,14 @@ static unsigned next_byte(stream *s)
     return byte;
 }
 
-static stream opened(int plain, const uint8_t *bytes, int64_t count)
+static void open_stream(stream *s, const uint8_t *bytes, int64_t count)
 {
-    stream s = { .plain = plain, .bytes = bytes, .count = count, .width = 0xFFFFFFFF };
-
-    if (!plain)
-        for (int i = 0; i < 4; i++) s.code = s.code * 256 + next_byte(&s);
-    return s;
+    s->bytes = bytes;
+    s->count = count;
+    s->taken = 0;
+    s->width = 0xFFFFFFFF;
+    s->code = 0;
+    for (int i = 0; i < 4 && !s->words; i++) s->code = s->code * 256 + next_byte(s);
 }
 
 static int decision(stream *s, unsigned probability)
@@ -278,7 +281,7 @@ static int64_t residual(stream *s, const expected *is)
 {
     int64_t value;
 
-    if (s->plain) {
+    if (s->words) {
         value = next_byte(s);
         value += 256 * next_byte(s);
         return value >= 32768 ? value - 65536 : value;
@@ -288,13 +291,16 @@ static int64_t residual(stream *s, const expected *is)
     return within(-32768, value, 32767);
 }
 
-/* Whether all of it has been read, and as it may be. `told`: how many residuals it is of, `whole`:
- * bytes of the body. */
-static int is_whole(const stream *s, int64_t told, int64_t whole)
+/* Whether it has been read to its last 1, and no byte could be left out. */
+static int is_whole(const stream *s, const slow_payload *p)
 {
-    if (s->wrong || s->taken < s->count) return 0;
-    if (s->plain) return s->taken == s->count;
-    return whole < 2 * told && (s->count == 0 || s->bytes[s->count - 1] != 0);
+    int64_t zeros = 0, bits = 8 * p->count - p->tail;
+
+    if (s->wrong) return 0;
+    if (s->words) return s->taken == s->count;
+    while (zeros < bits && !(s->bytes[(bits - 1 - zeros) / 8] >> (7 - (bits - 1 - zeros) % 8) & 1))
+        zeros++;
+    return zeros < 8 && bits - zeros <= 8 * s->taken;
 }
 
 /* ---- points in their order ------------------------------------------------------------------- */
@@ -315,7 +321,6 @@ static void make(doubling *d, stream *s, int64_t step, int class, place at)
     if (at.x == d->repeated_x || at.y == d->repeated_y) return;
     is = expect(d, &at, class, step);
     value = moved(is.predicted, residual(s, &is), step);
-    d->told++;
     off = (llabs(16 * value - is.mean_q4) + 8) / 16 / coarse;
     d->height[at.y][at.x] = value;
     d->off[at.y][at.x] = within(0, off, 255) * coarse;
@@ -332,38 +337,49 @@ static void meet(doubling *d, int64_t step, place at)
     is = expect(d, &at, CLASS_R, step);
     off = (llabs(16 * d->height[at.y][at.x] - is.mean_q4) + 8) / 16 / coarse;
     d->off[at.y][at.x] = within(0, off, 255) * coarse;
-    d->told++; /* words would have told it, too */
 }
 
-static int length_told(const uint8_t *lengths, int bits, int side)
+static void begin_side(stream *s)
 {
-    int length = 0;
+    static uint8_t bytes[4096];
+    int64_t count = (8 * s->of->count - s->of->tail + 7) / 8;
 
-    for (int i = 0; i < bits; i++) {
-        int at = side * bits + i;
-        length += (lengths[at / 8] >> at % 8 & 1) << i;
-    }
-    return length;
+    memset(bytes, 0, sizeof(bytes));
+    if (count < 0) count = 0;
+    if (count > 1000) count = 1000;
+    for (int64_t i = 0; i < 8 * count; i++)
+        bytes[i / 8] |= (uint8_t)(slow_tail_bit(s->of, s->of->tail + i) << (7 - i % 8));
+    open_stream(s, bytes, count);
 }
 
-/* Reads what is left again, from where a side's stream has ended. `points`: 0, and it had none. */
-static void end_side(stream *s, int side, int points, int bits)
+/* Bits that are not the stream's own, of those that have been read: they could be all 0 or all 1.
+ */
+static int is_decided(const stream *s, int own)
 {
-    int64_t bytes = points ? s->taken - 4 + (s->width < 1 << 25 ? 2 : 1) : 0;
-    stream next;
+    uint64_t others = 0, most = (UINT64_C(1) << (32 - own)) - 1;
 
-    if (bytes > s->count || (s->lengths && length_told(s->lengths, bits, side) != bytes)) {
-        s->wrong = 1;
-        bytes = within(0, bytes, s->count);
+    for (int i = 0; i < 32 - own; i++) {
+        int64_t bit = 8 * s->taken - (32 - own) + i;
+        int is = bit < 8 * s->count ? s->bytes[bit / 8] >> (7 - bit % 8) & 1 : 0;
+        others = 2 * others + (unsigned)is;
     }
-    next = opened(0, s->bytes + bytes, s->count - bytes);
-    next.wrong = s->wrong;
-    next.lengths = s->lengths;
-    *s = next;
+    return s->code >= others && s->code - others + most < s->width;
+}
+
+/* `points`: 0, and it has no bits. */
+static void end_side(stream *s, int side, int points, int most)
+{
+    int own = 33 - highest_bit((int64_t)s->width);
+    int64_t bits = points ? 8 * (s->taken - 4) + own : 0;
+
+    if (points && !is_decided(s, own)) s->wrong = 1;
+    if ((s->length && s->length[side] != bits) || bits > most) s->wrong = 1;
+    s->of->tail += bits;
+    if (s->of->tail > 8 * s->of->count) s->wrong = 1;
 }
 
 /* South, east, north, west; a refinement has a stream for each. */
-static void make_sides(doubling *d, stream *s, int64_t step, int apart, int bits)
+static void make_sides(doubling *d, stream *s, int64_t step, int most)
 {
     const int e = d->last_x, f = d->last_y;
     const place first[4] = {
@@ -371,7 +387,8 @@ static void make_sides(doubling *d, stream *s, int64_t step, int apart, int bits
     };
 
     for (int side = 0; side < 4; side++) {
-        int points = 0;
+        int points = 0, apart = s->of && !(d->left_out >> side & 1);
+        if (apart) begin_side(s);
         for (place at = first[side]; at.x <= e && at.y <= f;
              at.x += 2 * at.along_x, at.y += 2 * at.along_y) {
             if (d->left_out >> side & 1) {
@@ -381,7 +398,7 @@ static void make_sides(doubling *d, stream *s, int64_t step, int apart, int bits
             points += at.x != d->repeated_x && at.y != d->repeated_y;
             make(d, s, step, CLASS_R, at);
         }
-        if (apart && !(d->left_out >> side & 1)) end_side(s, side, points, bits);
+        if (apart) end_side(s, side, points, most);
     }
 }
 
@@ -466,25 +483,32 @@ static void spread(doubling *d)
     d->cells *= 2;
 }
 
-int slow_trained(const ff_terrain_info *info, int columns, int rows, const uint16_t *parent,
-                 const long *corner, unsigned head, const uint8_t *body, long bytes,
-                 uint16_t *heights)
+/* ---- payloads -------------------------------------------------------------------------------- */
+
+static int grid(const ff_terrain_info *info, int columns, int rows, const uint16_t *parent,
+                slow_payload *p, const slow_head *is, uint16_t *heights)
 {
     static doubling d;
-    int words = head & 1, sides = head >> 4 & 15, plain = words && !sides;
-    int bits = info->node_log2 + 1, apart = parent && !plain && !(words && sides == 1),
-        lengths = apart && !words && !sides ? (info->node_log2 + 2) / 2 : 0;
-    stream s = opened(plain, body + lengths, bytes - lengths);
-    int64_t step = 2 * (int64_t)info->max_error + 1;
-    int node = 1 << info->node_log2, cells = parent ? 2 * node : node;
+    static uint8_t bytes[65536];
+    int64_t step = 2 * (int64_t)info->max_error + 1, length[4], corner[4];
+    int node = 1 << info->node_log2, cells = parent ? 2 * node : node, most = 16 << info->node_log2;
+    stream s = { .words = is->form == 2 };
 
-    d.told = 0;
-    d.set = head >> 1 & 1;
-    d.left_out = words ? 0 : sides;
+    for (int i = 0; i < 4 && !parent; i++) corner[i] = slow_tail_bits(p, 16);
+    d.set = is->set;
+    d.left_out = 0;
     d.known = heights;
-    if ((words && sides && sides != 15 && sides != 1) || (!parent && sides) || lengths > bytes)
-        return -1;
-    s.lengths = lengths ? body : NULL;
+    if (parent && is->form == 0) {
+        int told = (int)slow_tail_bits(p, 4), measured = told == 15 && !slow_tail_bits(p, 1);
+        for (int i = 0; i < 4 && measured; i++)
+            length[i] = slow_tail_number(p, info->node_log2 + 1);
+        s.of = p;
+        s.length = measured ? length : NULL;
+        d.left_out = measured ? 0 : told;
+    }
+    if (p->tail > 8 * p->count) return -1;
+    if (s.words) open_stream(&s, p->bytes, p->count - (p->tail + 7) / 8);
+    if (!s.words && !s.of) open_stream(&s, bytes, slow_stream_of(p, bytes));
     d.cells = parent ? node : 1;
     for (int y = 0; y <= d.cells; y++)
         for (int x = 0; x <= d.cells; x++)
@@ -495,7 +519,9 @@ int slow_trained(const ff_terrain_info *info, int columns, int rows, const uint1
         set_ground(&d, columns, rows, cells / d.cells);
         make_provisional(&d);
         if ((d.left_out & 2 && d.last_x < cells) || (d.left_out & 4 && d.last_y < cells)) return -1;
-        make_sides(&d, &s, step, apart, bits);
+        make_sides(&d, &s, step, most);
+        if (s.wrong) return -1;
+        if (s.of) open_stream(&s, bytes, slow_stream_of(p, bytes));
         make_beside_sides(&d, &s, step);
         make_centres(&d, &s, step);
         make_between(&d, &s, step);
@@ -503,5 +529,16 @@ int slow_trained(const ff_terrain_info *info, int columns, int rows, const uint1
     }
     for (int y = 0; y <= cells; y++)
         for (int x = 0; x <= cells; x++) heights[y * (cells + 1) + x] = (uint16_t)d.height[y][x];
-    return is_whole(&s, d.told, bytes) ? 0 : -1;
+    return is_whole(&s, p) ? 0 : -1;
+}
+
+int slow_trained(const ff_terrain_info *info, int columns, int rows, const uint16_t *parent,
+                 const uint8_t *bytes, long count, uint16_t *heights)
+{
+    slow_payload p = { bytes, count, 0 };
+    slow_head is;
+
+    if (slow_head_of(&p, !parent, info->max_error, &is) || p.tail > 8 * p.count) return -1;
+    if (grid(info, columns, rows, parent, &p, &is, heights)) return -1;
+    return 256 * is.stub + 16 * is.leaf + is.filled;
 }

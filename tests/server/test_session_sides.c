@@ -101,7 +101,8 @@ static void no_side_goes_twice_in_a_view(void **state)
         assert_true(ff_parts_next(&parts, &kind, &key, &named));
         if (kind == FF_KIND_REFINEMENT && part->byte_count) {
             ff_residuals residuals = told(key, part->bytes, part->byte_count);
-            for (unsigned side = 0; side < FF_SIDE_COUNT && residuals.apart; side++) {
+            for (unsigned side = 0; side < FF_SIDE_COUNT && residuals.apart == FF_SIDES_BARE;
+                 side++) {
                 ff_key beside = ff_shape_neighbour(&pack.header.info, key, (enum ff_side)side).key;
                 int known = beside != FF_KEY_NONE && has_come(come, count, beside);
                 assert_int_equal(residuals.sides >> side & 1, known);

@@ -160,10 +160,10 @@ static void make_grid(maker *m, const uint16_t *parent, uint32_t x, uint32_t y, 
     ff_expect(m->by, m->point.set, &m->info, (ff_cells){ 0, 0 }, parent, grid, room, &points);
     bake_scatter(grid, m->side, side, cell, m->decoded + (size_t)y * m->side + x);
     if (!m->eye->payload) return;
-    size_t bytes = ff_trained_put(m->by, m->point.set, &m->info, (ff_cells){ 0, 0 }, parent,
-                                  &(ff_source_heights){ source, NULL }, m->residual, grid, 0, out,
-                                  NULL);
-    m->eye->payload(m->eye->context, bytes + (parent ? 0 : 2 * FF_CORNERS));
+    uint32_t bits = ff_trained_put(m->by, m->point.set, &m->info, (ff_cells){ 0, 0 }, parent,
+                                   &(ff_source_heights){ source, NULL }, m->residual, grid, NULL,
+                                   out, NULL);
+    m->eye->payload(m->eye->context, (bits + 7) / 8 + (parent ? 0 : 2 * FF_CORNERS));
 }
 
 static void make_below(maker *m, uint32_t x, uint32_t y, uint32_t cell)
