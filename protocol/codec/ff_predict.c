@@ -54,7 +54,8 @@ uint32_t ff_coded_points(uint32_t stride, uint32_t ground)
 
 uint32_t ff_last_point(uint32_t stride, uint32_t ground)
 {
-    return (ground + 2 * stride - 1) / (2 * stride) * (2 * stride);
+    FF_ASSERT(stride > 0 && (stride & (stride - 1)) == 0);
+    return (ground + 2 * stride - 1) & ~(2 * stride - 1);
 }
 
 /* The column, or row, whose height stands in column `at` after a doubling. */

@@ -63,10 +63,14 @@ static inline int ff_range_is_read(const ff_range *range) { return range->left <
  * the next ones are, they do not lead out of it. */
 static inline unsigned ff_range_tail(uint32_t width)
 {
-    unsigned bits = 2;
     FF_ASSERT(width >= FF_RANGE_LEAST);
+#ifdef __GNUC__
+    return 2 + (unsigned)__builtin_clz(width);
+#else
+    unsigned bits = 2;
     for (; !(width >> 31); width <<= 1) bits++;
     return bits;
+#endif
 }
 /* How many it took, of `count` bytes that were given. */
 static inline uint32_t ff_range_bits(const ff_range *range, size_t count)

@@ -469,9 +469,10 @@ static void close_copy(const walk *w)
 static void make_doubling(walk *w, uint32_t step, ff_cells ground)
 {
     const uint32_t end[2] = { ground.columns, ground.rows };
+    unsigned log2 = log2_of(step);
     w->point.step = step;
     for (unsigned axis = 0; axis < 2; axis++) {
-        w->last[axis] = (int32_t)(ff_last_point(step, end[axis]) / step);
+        w->last[axis] = (int32_t)(ff_last_point(step, end[axis]) >> log2);
         w->coded[axis] = 2 * (int32_t)ff_coded_points(step, end[axis]);
     }
     open_copy(w);
