@@ -24,7 +24,7 @@ extern const sys_option_type export_zooms_option;
     OPTION(sys_flag, images, "images", NULL, NULL, SYS_ANY, \
            "the images laid over the ground (OUT.jpg, too) instead of its heights; what they do not " \
            "cover is clear, but in JPEGs") \
-    OPTION(sys_text, layer, "layer", "NAME", NULL, SYS_ANY, \
+    OPTION(sys_text, layer, "layer", "LAYER", NULL, SYS_ANY, \
            "of the layers of images the one of this name; default: the first") \
     OPTION(sys_whole, level, "level", "L", NULL, SYS_WHOLE(0, FF_KEY_LEVEL_MAX, ""), \
            "0: roots only; default: the finest level") \
