@@ -328,7 +328,7 @@ static verdict conclude(const estimate *e)
     const ff_terrain_info *info = &b->info;
     double samples = (double)e->place.grid.width * e->place.grid.height, textures = 0;
     for (uint32_t l = 0; l < info->texture_levels; l++)
-        textures += fmax(1, samples / pow(4, info->tile_log2 - l));
+        textures += fmax(1, e->textures.reach * samples / pow(4, info->tile_log2 - l));
     uint32_t jobs = bake_tiles_workers(info, BAKE_BLOCK_LOG2, b->options->jobs);
     uint32_t about = bake_about_of(e->b, &e->place).byte_count;
     double known = FF_PACK_HEADER_BYTES + about + e->index +

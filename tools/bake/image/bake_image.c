@@ -230,13 +230,19 @@ static uint32_t choose_levels(const bake_options *o, const bake_picture *picture
     return levels;
 }
 
-/* Of nodes first..last of the finest level along an axis those that the picture reaches into. */
+/* Of nodes first..last along an axis those that a picture reaches into. */
 static void reach(double low, double high, double edge, uint32_t *first, uint32_t *last)
 {
     double from = floor(low / edge), to = floor(high / edge);
     if (to < *first || from > *last) from = to = *first; /* none: it covers nothing */
     if (from > *first) *first = (uint32_t)from;
     if (to < *last) *last = (uint32_t)to;
+}
+
+void bake_picture_reach(const bake_picture *picture, double edge, ff_sheet *first, ff_sheet *last)
+{
+    reach(picture->west, picture->east, edge, &first->x, &last->x);
+    reach(picture->south, picture->north, edge, &first->y, &last->y);
 }
 
 /* Opens the lattices of nodes first..last of the finest level and those above them. */
@@ -283,10 +289,7 @@ static int make_lattices(const bake_picture *picture, const bake_ground *ground,
              edge_log2 = info->tile_log2 - (info->texture_levels - 1u);
     ff_sheet first = { 0, 0 }, all = { (samples.x - 1) >> edge_log2, (samples.y - 1) >> edge_log2 },
              last = all;
-    if (heights) {
-        reach(picture->west, picture->east, 1u << edge_log2, &first.x, &last.x);
-        reach(picture->south, picture->north, 1u << edge_log2, &first.y, &last.y);
-    }
+    if (heights) bake_picture_reach(picture, 1u << edge_log2, &first, &last);
     bake_texel_place place = { .samples = (double)(1u << edge_log2) / steps,
                                .last_x = ground->grid.width - 1.0,
                                .last_y = ground->grid.height - 1.0,

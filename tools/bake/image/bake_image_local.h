@@ -26,6 +26,9 @@ bake_picture bake_picture_of(const bake_ground *ground, GDALDatasetH set);
 /* As bake_picture_open; sets info->texture_log2 and texture_levels. */
 int bake_picture_levels(const bake_options *options, const bake_ground *ground,
                         ff_terrain_info *info, bake_picture *picture);
+/* Of the nodes first..last in columns and rows, each so many samples along its side, those that the
+ * picture reaches into; one, when there are none. */
+void bake_picture_reach(const bake_picture *picture, double edge, ff_sheet *first, ff_sheet *last);
 void bake_picture_close(bake_picture *picture);
 /* Reads one row as RGBA. 0 or -1 (said). */
 int bake_picture_row(const bake_picture *picture, uint32_t row, uint8_t *rgba);

@@ -11,7 +11,7 @@
 
 /* Parts that are made, of so many nodes of their level. */
 typedef struct stratum {
-    ff_sheet size;
+    ff_sheet first, size;
     double bytes, squares, root_bytes;
     uint32_t made;
 } stratum;
@@ -74,8 +74,8 @@ static int make_stratum(sampling *s, uint32_t side, stratum *of)
              rows = of->size.y < side ? of->size.y : side;
     for (uint32_t j = rows; j-- > 0;)
         for (uint32_t i = 0; i < columns; i++) {
-            ff_sheet node = { (2 * i + 1) * of->size.x / (2 * columns),
-                              (2 * j + 1) * of->size.y / (2 * rows) };
+            ff_sheet node = { of->first.x + (2 * i + 1) * of->size.x / (2 * columns),
+                              of->first.y + (2 * j + 1) * of->size.y / (2 * rows) };
             if (make_part(s, node, of)) return -1;
         }
     return 0;
@@ -97,9 +97,12 @@ static void add_up(const sampling *s, const stratum *of, bake_image_guess *guess
 static int sample(sampling *s, bake_image_guess *guess)
 {
     uint32_t edge = 1u << (s->info->tile_log2 - s->level);
-    stratum part = { .size = { (s->ground->grid.width - 2) / edge + 1,
-                               (s->ground->grid.height - 2) / edge + 1 } };
-    *guess = (bake_image_guess){ 0 };
+    ff_sheet last = { (s->ground->grid.width - 2) / edge, (s->ground->grid.height - 2) / edge };
+    double all = (last.x + 1.0) * (last.y + 1.0);
+    stratum part = { .made = 0 };
+    bake_picture_reach(&s->picture, edge, &part.first, &last);
+    part.size = (ff_sheet){ last.x - part.first.x + 1, last.y - part.first.y + 1 };
+    *guess = (bake_image_guess){ .reach = (double)part.size.x * part.size.y / all };
     if (make_stratum(s, PARTS_SIDE, &part)) return -1;
     add_up(s, &part, guess);
     guess->share /= (double)part.size.x * part.size.y;

@@ -8,6 +8,7 @@ typedef struct bake_image_guess {
     double bytes, deviation;    /* of all textures, and its standard deviation */
     double lattice_s, encode_s; /* processor time for all of them */
     double share;               /* of the textures that were made */
+    double reach;               /* share of the ground's nodes that the image reaches into */
 } bake_image_guess;
 
 /* Makes the textures of a few parts of the ground, and of the padding beyond it, from the image of
