@@ -325,6 +325,7 @@ static void draw_place(ff_client *client)
     const ff_view *view = &client->last_view;
     int32_t place_wu[3];
     int64_t offset_wu[3];
+    FF_ASSERT(client->have_terrain && client->desc.use_map);
     ff_shape_enter(&client->info, &view->frame, client->map.place_wu, place_wu);
     for (int axis = 0; axis < 3; axis++)
         offset_wu[axis] = (int64_t)place_wu[axis] - view->camera.pos_wu[axis];

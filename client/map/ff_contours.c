@@ -26,6 +26,7 @@ void ff_contours_flush(ff_contours *contours, const c3d_draw *ground)
                        .strip = contours->lines,
                        .xy_scale_wu = 1,
                        .z_scale_q16 = 1u << 16 };
+    FF_ASSERT(contours->count <= FF_CONTOUR_INDICES && contours->count % 2 == 0);
     if (!contours->count) return;
     for (int axis = 0; axis < 3; axis++) lines.origin_wu[axis] = ground->origin_wu[axis];
     /* the strip's lines are all drawn: those that are none lie in one point */
@@ -63,6 +64,7 @@ static corner corner_of(const ff_contour_node *node, uint16_t index)
 {
     const c3d_vertex *vertex = &node->vertices[index];
     const c3d_draw *ground = node->ground;
+    FF_ASSERT(ground->xy_scale_wu > 0);
     return (corner){ .place_wu = { (int64_t)vertex->x * ground->xy_scale_wu,
                                    (int64_t)vertex->y * ground->xy_scale_wu,
                                    ((int64_t)vertex->z * ground->z_scale_q16) >> 16 },
@@ -81,6 +83,7 @@ static void pass(const corner *lower, const corner *higher, int64_t level_wu, c3
             whole = (int64_t)higher->height_wu - lower->height_wu, at[3];
     FF_ASSERT(part > 0 && part <= whole);
     int64_t share_q24 = c3d_divide_saturated((uint64_t)part << 24, (uint64_t)whole);
+    FF_ASSERT(share_q24 >= 0 && share_q24 <= 1 << 24);
     for (int axis = 0; axis < 3; axis++)
         at[axis] = lower->place_wu[axis] +
                    ((higher->place_wu[axis] - lower->place_wu[axis]) * share_q24 >> 24);
@@ -106,9 +109,15 @@ static void sort(corner corners[3])
         corners[a] = corners[b];
         corners[b] = higher;
     }
+    FF_ASSERT(corners[0].height_wu <= corners[1].height_wu);
+    FF_ASSERT(corners[1].height_wu <= corners[2].height_wu);
 }
 
-static int32_t floor_divide(int32_t n, int32_t d) { return n / d - (n % d < 0); }
+static int32_t floor_divide(int32_t n, int32_t d)
+{
+    FF_ASSERT(d > 0);
+    return n / d - (n % d < 0);
+}
 
 /* Lines whose height is above the lowest corner's, and not above the highest one's. */
 static void add_triangle(ff_contours *contours, const ff_contour_node *node,
@@ -120,6 +129,7 @@ static void add_triangle(ff_contours *contours, const ff_contour_node *node,
     int32_t first = floor_divide(c[0].height_wu, contours->interval_wu) + 1,
             last = floor_divide(c[2].height_wu, contours->interval_wu);
     contours->band_wu = (int64_t)(first - 1) * contours->interval_wu;
+    FF_ASSERT(first <= last + 1);
     if (last - first >= FF_CONTOURS_OF_ONE) return;
     for (int32_t number = first; number <= last; number++) {
         int64_t level_wu = (int64_t)number * contours->interval_wu;

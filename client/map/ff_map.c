@@ -10,6 +10,7 @@
 
 static int64_t within(int64_t value, int64_t least, int64_t most)
 {
+    FF_ASSERT(least <= most);
     return value < least ? least : value > most ? most : value;
 }
 
@@ -91,6 +92,7 @@ static int64_t by_ratio(int64_t a, int64_t b, uint32_t part_q16)
 
 static int32_t straight(int32_t from, int32_t to, uint32_t part_q16)
 {
+    FF_ASSERT(part_q16 <= 65536);
     return (int32_t)(from + (((int64_t)to - from) * part_q16 >> 16));
 }
 
@@ -111,6 +113,7 @@ ff_map ff_map_between(const ff_map *from, const ff_map *to, uint32_t part_q16)
 static uint64_t next_round(uint64_t metres)
 {
     uint64_t ten = 1;
+    FF_ASSERT(metres > 0);
     while (metres / ten >= 10) ten *= 10;
     return metres / ten == 2 ? 5 * ten : 2 * metres;
 }
@@ -137,5 +140,6 @@ uint32_t ff_map_bar(int64_t px_wu_q8, uint32_t most_px, uint32_t *metres)
 
 uint32_t ff_map_triangles(uint32_t width, uint32_t height)
 {
+    FF_ASSERT(width <= 4096 && height <= 4096); /* c3d_camera's */
     return width * height / PIXELS_OF_A_TRIANGLE;
 }
