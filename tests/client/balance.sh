@@ -59,8 +59,8 @@ is 'mean(220, 260, "fidelity_percent") > mean(130, 170, "fidelity_percent")' "an
 is 's["balance_turns"] <= 8' "without going to and fro"
 flies detail --speed 600 --start 0.1 --link umts --seconds 250 --panorama off --triangles 38400 --balance 0,600
 is 'gain(40, 100, "bytes_down") / 59 <= 600 * 1.1 and mean(40, 100, "error_px") > 1.5' "without panoramas detail gives way"
-# at the corners of the ground nothing is left to ask for, and then much at once: half as much again
-is 'all(gain(a, a + 40, "bytes_down") / 39 <= 600 * 1.65 for a in range(40, 220))' "in any 40 s, after idle ones too, no more than two thirds above it"
+# at the corners of the ground nothing is left to ask for, and then much at once
+is 'all(gain(a, a + 40, "bytes_down") / 39 <= 600 * 1.1 for a in range(40, 220))' "in any 40 s, after idle ones too, it is not passed"
 
 # ---- the ends ----
 flies server --link umts --seconds 40 --balance server --audit on

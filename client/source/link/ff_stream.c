@@ -18,6 +18,8 @@
 #define COMPANY_US     1000000
 #define ABOUT_AFTER_US 20000000 /* so long ground in view goes first, always */
 
+#define PURSE_S 4 /* so that 40 s have at most a tenth more than they may */
+
 FF_STATIC_ASSERT(FF_REQUEST_BYTES_MAX <= FF_STREAM_SEND_BYTES);
 FF_STATIC_ASSERT(FF_BACKOFF_US_MIN < FF_BACKOFF_US_MAX && FF_BACKOFF_US_MAX <= INT64_MAX / 2);
 /* UINT32_MAX milliseconds are below 2^42 microseconds */
@@ -38,7 +40,7 @@ void ff_stream_init(ff_stream *stream, sys_stream *io, ff_intake *intake, unsign
     stream->reach_wu = INT32_MAX;
     stream->backoff_us = FF_BACKOFF_US_MIN;
     stream->connect_us = stream->heard_us = stream->sent_us = INT64_MIN;
-    stream->ahead_us = INT64_MIN / 2;
+    stream->ahead_us = stream->purse_us = INT64_MIN / 2; /* the purse is full */
     ff_link_estimate_reset(&stream->link);
 }
 
@@ -103,6 +105,13 @@ void ff_stream_hurry(ff_stream *stream, int hurry)
 {
     sys_mutex_lock(&stream->intake->requests->mutex);
     stream->shared.hurry = (uint8_t)hurry;
+    sys_mutex_unlock(&stream->intake->requests->mutex);
+}
+
+void ff_stream_allow(ff_stream *stream, uint32_t bytes_s)
+{
+    sys_mutex_lock(&stream->intake->requests->mutex);
+    stream->shared.allowed_bytes_s = bytes_s;
     sys_mutex_unlock(&stream->intake->requests->mutex);
 }
 
@@ -282,6 +291,21 @@ static int in_company(ff_stream *stream, int64_t now_us)
            ff_requests_waiting(stream->intake->requests, FF_CLASS_IN_VIEW);
 }
 
+/* What may still be asked for of the bytes allowed, and what has been saved while little came. */
+static uint32_t purse(ff_stream *stream, uint32_t bytes_s, int64_t now_us)
+{
+    int64_t most = (int64_t)bytes_s * PURSE_S, passed_us = now_us - stream->purse_us;
+    if (!bytes_s) return UINT32_MAX;
+    FF_ASSERT(stream->bytes_down >= stream->purse_down);
+    if (passed_us > PURSE_S * 1000000ll) passed_us = PURSE_S * 1000000ll;
+    stream->purse += passed_us * bytes_s -
+                     (int64_t)(stream->bytes_down - stream->purse_down) * 1000000;
+    if (stream->purse > most * 1000000) stream->purse = most * 1000000;
+    stream->purse_us = now_us;
+    stream->purse_down = stream->bytes_down;
+    return stream->purse > 0 ? (uint32_t)(stream->purse / 1000000) : 0;
+}
+
 /* Puts requests into the send buffer, as many as the link's window and the buffer take, so that
  * they leave in one piece. */
 static int ask(ff_stream *stream, int64_t now_us)
@@ -292,11 +316,13 @@ static int ask(ff_stream *stream, int64_t now_us)
     int prefetch = !stream->shared.no_prefetch &&
                    requests->counts.in_flight < stream->in_flight_max / 2u;
     int hurry = stream->shared.hurry;
+    uint32_t bytes_s = stream->shared.allowed_bytes_s, in_flight = requests->counts.bytes_in_flight;
     sys_mutex_unlock(&requests->mutex);
     int company = hurry || in_company(stream, now_us);
     prefetch &= company;
     FF_ASSERT(stream->state == FF_STREAM_UP || stream->state == FF_STREAM_GREETING);
-    uint32_t window = ff_link_estimate_window(&stream->link);
+    uint32_t window = ff_link_estimate_window(&stream->link), left = purse(stream, bytes_s, now_us);
+    quiet |= left <= in_flight;
     int moved = 0;
     ff_request request;
     while (has_send_room(stream)) {
@@ -305,8 +331,8 @@ static int ask(ff_stream *stream, int64_t now_us)
             ff_message cancel = { .type = FF_MSG_CANCEL };
             cancel.u.cancel.id = id;
             append(stream, &cancel);
-        } else if (!quiet && ff_requests_next(requests, now_us, stream->in_flight_max, window,
-                                              prefetch, &request)) {
+        } else if (!quiet && ff_requests_next(requests, now_us, stream->in_flight_max,
+                                              window < left ? window : left, prefetch, &request)) {
             encode_request(stream, &request);
             if (request.rank >= FF_CLASS_PREFETCH) stream->ahead_us = now_us;
             ff_link_estimate_sent(&stream->link, now_us);
@@ -316,6 +342,7 @@ static int ask(ff_stream *stream, int64_t now_us)
         moved = 1;
     }
     /* more requests would have gone; the reserve waits for other reasons */
+    if (left < window) return moved;
     stream->link.window_full |= (uint8_t)ff_requests_waiting(requests, company ? FF_CLASS_PREFETCH
                                                                                : FF_CLASS_IN_VIEW);
     return moved;

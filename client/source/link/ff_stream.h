@@ -42,6 +42,7 @@ typedef struct ff_stream_shared {
     int8_t refusal;  /* why the server would not have this client: an error, or FF_OK */
     uint8_t quiet;   /* main: ask nothing new (interruption) */
     uint8_t no_prefetch;
+    uint32_t allowed_bytes_s; /* main: of ff_stream_allow */
     uint8_t hurry;  /* main: the viewer turns, what is asked for ahead does not wait for company */
     uint32_t lacks; /* FF_LACKS_ of the last WELCOME */
 } ff_stream_shared;
@@ -86,6 +87,8 @@ typedef struct ff_stream {
     uint32_t protocol_errors, reconnects, losses;
     ff_stream_about about; /* of the terrain held */
     int64_t welcomed_us;
+    int64_t purse, purse_us; /* byte microseconds that are left, and when that was */
+    uint64_t purse_down;     /* bytes_down then */
     ff_stream_shared shared;
     /* in WELCOMED, where the worker waits, for the main thread: the grounds, and the checksum of
      * the whole pack that each is a part of */
@@ -113,6 +116,9 @@ void ff_stream_restart(ff_stream *stream);
 void ff_stream_get_shared(ff_stream *stream, ff_stream_shared *shared);
 void ff_stream_say(ff_stream *stream, int quiet, int no_prefetch);
 void ff_stream_hurry(ff_stream *stream, int hurry);
+/* So many bytes may come in a second, and four seconds more that were saved up; 0: as many as do.
+ */
+void ff_stream_allow(ff_stream *stream, uint32_t bytes_s);
 void ff_stream_close(ff_stream *stream);
 
 #endif
