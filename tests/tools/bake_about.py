@@ -183,7 +183,7 @@ def _():
     of = lambda name: run("info", "--verify", os.path.join(folder, name))
     for name in "good", "leaves", "stubs", "textured", "about", "trained", "unknown-optional":
         assert of(name).returncode == 0, of(name).stderr
-    for name, words in {"version-3": "farfield-bake", "version-4": "farfield-bake", "version-5": "farfield-bake", "version-6": "farfield-bake", "version-7": "farfield-bake", "version-9": "newer", "unknown-needed": "MARK version 7 codec 9",
+    for name, words in {"version-3": "farfield-bake", "version-4": "farfield-bake", "version-5": "farfield-bake", "version-6": "farfield-bake", "version-7": "farfield-bake", "version-8": "farfield-bake", "version-10": "newer", "unknown-needed": "MARK version 7 codec 9",
                         "about-control": "says of itself", "about-order": "says of itself", "about-cut": "says of itself"}.items():
         done = of(name)
         assert done.returncode == 1 and done.stderr.count("\n") == 1 and words in done.stderr, (name, done.stderr)
